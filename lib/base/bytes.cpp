@@ -1,0 +1,140 @@
+#include "base/bytes.hpp"
+
+#include <array>
+
+#include "base/error.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr uint32_t kByteOrder = 0x01020304u;
+constexpr size_t kFileHeader = 8 + 4 + 4 + 8, kSectionHeader = 4 + 4 + 8;
+
+constexpr std::array<uint32_t, 256> make_crc_table() {
+  std::array<uint32_t, 256> t{};
+  for (uint32_t i = 0; i < 256; ++i) {
+    uint32_t c = i;
+    for (int k = 0; k < 8; ++k) c = (c & 1u) ? 0xEDB88320u ^ (c >> 1) : c >> 1;
+    t[i] = c;
+  }
+  return t;
+}
+constexpr auto kCrcTable = make_crc_table();
+
+template <class T>
+T load(const unsigned char* p) {
+  T v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+
+}  // namespace
+
+uint32_t crc32(const void* data, size_t size, uint32_t crc) {
+  const auto* p = static_cast<const unsigned char*>(data);
+  crc = ~crc;
+  for (size_t i = 0; i < size; ++i) crc = kCrcTable[(crc ^ p[i]) & 0xFFu] ^ (crc >> 8);
+  return ~crc;
+}
+
+void Writer::text(const char* s) {
+  const size_t n = std::strlen(s);
+  value(static_cast<uint32_t>(n));
+  bytes(s, n);
+}
+
+void Writer::patch(size_t at, const void* src, size_t n) {
+  if (at + n <= capacity_) std::memcpy(data_ + at, src, n);
+}
+
+void Writer::begin_file(const char magic[8], uint32_t version) {
+  file_ = at_;
+  bytes(magic, 8);
+  value(version);
+  value(kByteOrder);
+  value(uint64_t{0});
+}
+
+void Writer::end_file() {
+  const uint64_t length = at_ - file_ - kFileHeader;
+  patch(file_ + 16, &length, 8);
+}
+
+void Writer::begin_section(const char tag[4]) {
+  section_ = at_;
+  bytes(tag, 4);
+  value(uint32_t{0});
+  value(uint64_t{0});
+}
+
+void Writer::end_section() {
+  const size_t begin = section_ + kSectionHeader;
+  const uint64_t length = at_ - begin;
+  const uint32_t crc = at_ <= capacity_ ? crc32(data_ + begin, length) : 0;
+  patch(section_ + 4, &crc, 4);
+  patch(section_ + 8, &length, 8);
+}
+
+void Reader::bad(const char* why) const { fail(Code::kFormat, "%s: %s", what_, why); }
+
+void Reader::bytes(void* dst, size_t n) {
+  const unsigned char* p = view(n);
+  if (n) std::memcpy(dst, p, n);
+}
+
+const unsigned char* Reader::view(size_t n) {
+  if (n > end_ - at_) bad("truncated");
+  at_ += n;
+  return data_ + at_ - n;
+}
+
+void Reader::text(char* dst, size_t capacity) {
+  const auto n = value<uint32_t>();
+  if (n >= capacity) bad("a text is too long");
+  bytes(dst, n);
+  dst[n] = '\0';
+}
+
+uint32_t Reader::begin_file(const char magic[8], uint32_t newest_version) {
+  if (size_ - at_ < kFileHeader) bad("truncated header");
+  if (std::memcmp(view(8), magic, 8) != 0) bad("wrong magic: not a file of this kind");
+  const auto version = value<uint32_t>();
+  if (value<uint32_t>() != kByteOrder) bad("written with another byte order");
+  if (version == 0 || version > newest_version)
+    fail(Code::kVersion, "%s: format version %u, this library reads 1 to %u", what_, version, newest_version);
+  const auto length = value<uint64_t>();
+  if (length != size_ - at_) bad("truncated or with a tail: the length does not match");
+  file_begin_ = at_;
+  file_end_ = size_;
+  for (size_t p = file_begin_; p < file_end_;) {
+    if (file_end_ - p < kSectionHeader) bad("truncated section");
+    const auto n = load<uint64_t>(data_ + p + 8);
+    if (n > file_end_ - p - kSectionHeader) bad("truncated section");
+    if (crc32(data_ + p + kSectionHeader, n) != load<uint32_t>(data_ + p + 4)) bad("checksum mismatch");
+    p += kSectionHeader + n;
+  }
+  return version;
+}
+
+bool Reader::find_section(const char tag[4]) {
+  for (size_t p = file_begin_; p < file_end_;) {
+    const auto n = load<uint64_t>(data_ + p + 8);
+    if (std::memcmp(data_ + p, tag, 4) == 0) {
+      at_ = p + kSectionHeader;
+      end_ = at_ + n;
+      return true;
+    }
+    p += kSectionHeader + n;
+  }
+  return false;
+}
+
+void Reader::need_section(const char tag[4]) {
+  if (!find_section(tag)) fail(Code::kFormat, "%s: section %.4s is missing", what_, tag);
+}
+
+void Reader::expect_end() {
+  if (at_ != end_) bad("a section is longer than expected");
+}
+
+}  // namespace rdm

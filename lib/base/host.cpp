@@ -1,0 +1,54 @@
+#include "base/host.hpp"
+
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+
+#include "base/error.hpp"
+
+namespace rdm {
+namespace {
+HostHooks g_host;
+thread_local const HostHooks* t_scope = nullptr;
+}  // namespace
+
+const HostHooks& host() { return t_scope ? *t_scope : g_host; }
+HostScope::HostScope(const HostHooks& hooks) : hooks_(hooks), outer_(t_scope) { t_scope = &hooks_; }
+HostScope::~HostScope() { t_scope = outer_; }
+void set_host(const HostHooks& hooks) { g_host = hooks; }
+
+void* host_alloc(const HostHooks& hooks, size_t bytes, size_t align) {
+  if (bytes == 0) bytes = 1;
+  if (align < sizeof(void*)) align = sizeof(void*);
+  void* p = nullptr;
+  if (hooks.alloc) {
+    p = hooks.alloc(hooks.user, bytes, align);
+  } else if (posix_memalign(&p, align, bytes) != 0) {
+    p = nullptr;
+  }
+  if (!p) fail(Code::kMemory, "out of memory: %zu bytes were refused", bytes);
+  return p;
+}
+
+void host_release(const HostHooks& hooks, void* p, size_t bytes, size_t align) noexcept {
+  if (!p) return;
+  if (bytes == 0) bytes = 1;
+  if (align < sizeof(void*)) align = sizeof(void*);
+  if (hooks.alloc)
+    hooks.release(hooks.user, p, bytes, align);
+  else
+    std::free(p);
+}
+
+void log(const HostHooks& hooks, LogLevel level, const char* format, ...) {
+  if (!hooks.log) return;
+  char line[512];
+  va_list args;
+  va_start(args, format);
+  std::vsnprintf(line, sizeof line, format, args);
+  va_end(args);
+  hooks.log(hooks.user, static_cast<int32_t>(level), line);
+}
+
+}  // namespace rdm

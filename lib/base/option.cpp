@@ -1,0 +1,173 @@
+#include "base/option.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "base/error.hpp"
+
+namespace rdm {
+namespace {
+
+char fold(char c) {
+  if (c == '-') return '_';
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+int edit_distance(const char* a, const char* b) {
+  constexpr size_t kMax = 64;
+  const size_t n = std::min(std::strlen(a), kMax), m = std::min(std::strlen(b), kMax);
+  int row[kMax + 1];
+  for (size_t j = 0; j <= m; ++j) row[j] = static_cast<int>(j);
+  for (size_t i = 1; i <= n; ++i) {
+    int diagonal = row[0];
+    row[0] = static_cast<int>(i);
+    for (size_t j = 1; j <= m; ++j) {
+      const int substitute = diagonal + (fold(a[i - 1]) != fold(b[j - 1]));
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
+    }
+  }
+  return row[m];
+}
+
+// True when `word` is one of the '|'-separated `choices`; out gets the spelling of the list.
+bool match_choice(const char* choices, const char* word, char* out) {
+  for (const char* p = choices; *p;) {
+    const char* end = std::strchr(p, '|');
+    const size_t n = end ? static_cast<size_t>(end - p) : std::strlen(p);
+    char choice[kOptionTextSize];
+    std::snprintf(choice, sizeof choice, "%.*s", static_cast<int>(n), p);
+    if (same_name(choice, word)) {
+      std::strcpy(out, choice);
+      return true;
+    }
+    p += n + (end ? 1 : 0);
+  }
+  return false;
+}
+
+}  // namespace
+
+bool same_name(const char* a, const char* b) {
+  for (; *a && *b; ++a, ++b)
+    if (fold(*a) != fold(*b)) return false;
+  return *a == *b;
+}
+
+int32_t nearest_name(const char* name, const char* const* names, int32_t count) {
+  int32_t best = -1;
+  int least = 1 << 30;
+  for (int32_t i = 0; i < count; ++i) {
+    const int d = edit_distance(name, names[i]);
+    if (d < least) least = d, best = i;
+  }
+  return best;
+}
+
+int32_t Options::find(const char* key) const {
+  for (size_t i = 0; i < rows_.size(); ++i)
+    if (same_name(rows_[i].spec->key, key)) return static_cast<int32_t>(i);
+  return -1;
+}
+
+void Options::add_table(const OptionSpec* specs, int32_t count) {
+  for (int32_t i = 0; i < count; ++i) {
+    if (find(specs[i].key) >= 0) fail(Code::kInternal, "option %s is declared twice", specs[i].key);
+    Row row{&specs[i], specs[i].number, "", false};
+    if (specs[i].text) std::snprintf(row.text, sizeof row.text, "%s", specs[i].text);
+    rows_.push_back(row);
+  }
+}
+
+void Options::assign(Row& row, const OptionInput& input, const char* owner) const {
+  const OptionSpec& s = *row.spec;
+  if (s.kind == OptionKind::kText) {
+    if (!input.text) fail(Code::kArgument, "%s option %s: a text is needed", owner, s.key);
+    if (std::strlen(input.text) >= kOptionTextSize)
+      fail(Code::kRange, "%s option %s: longer than %d characters", owner, s.key, kOptionTextSize - 1);
+    if (!s.choices)
+      std::strcpy(row.text, input.text);
+    else if (!match_choice(s.choices, input.text, row.text))
+      fail(Code::kRange, "%s option %s: '%s' is not one of %s", owner, s.key, input.text, s.choices);
+    return;
+  }
+  double v = input.number;
+  if (input.text) {
+    char* end = nullptr;
+    v = std::strtod(input.text, &end);
+    if (s.kind == OptionKind::kFlag && (same_name(input.text, "true") || same_name(input.text, "on")))
+      v = 1;
+    else if (s.kind == OptionKind::kFlag && (same_name(input.text, "false") || same_name(input.text, "off")))
+      v = 0;
+    else if (end == input.text || *end)
+      fail(Code::kArgument, "%s option %s: '%s' is not a number", owner, s.key, input.text);
+  }
+  if (!std::isfinite(v)) fail(Code::kArgument, "%s option %s: the value is not finite", owner, s.key);
+  if (v < s.low || v > s.high)
+    fail(Code::kRange, "%s option %s: %.9g is outside [%.9g, %.9g]", owner, s.key, v, s.low, s.high);
+  if (s.kind != OptionKind::kNumber && v != std::floor(v))
+    fail(Code::kRange, "%s option %s: %.9g is not a whole number", owner, s.key, v);
+  row.number = v;
+}
+
+void Options::set(const OptionInput& input, const char* owner) {
+  if (!input.key) fail(Code::kArgument, "%s option: the key is NULL", owner);
+  const int32_t i = find(input.key);
+  if (i < 0) {
+    Vector<const char*> keys;
+    for (const Row& r : rows_) keys.push_back(r.spec->key);
+    const int32_t near = nearest_name(input.key, keys.data(), static_cast<int32_t>(keys.size()));
+    fail(Code::kNotFound, "%s option %.64s: unknown%s%s", owner, input.key, near >= 0 ? "; nearest is " : "",
+         near >= 0 ? keys[static_cast<size_t>(near)] : "");
+  }
+  Row& row = rows_[static_cast<size_t>(i)];
+  assign(row, input, owner);
+  row.given = true;
+}
+
+const Options::Row& Options::need(const char* key, OptionKind kind) const {
+  const int32_t i = find(key);
+  if (i < 0 || rows_[static_cast<size_t>(i)].spec->kind != kind)
+    fail(Code::kInternal, "option %s is not declared with this kind", key);
+  return rows_[static_cast<size_t>(i)];
+}
+
+double Options::number(const char* key) const { return need(key, OptionKind::kNumber).number; }
+int32_t Options::integer(const char* key) const {
+  return static_cast<int32_t>(need(key, OptionKind::kInteger).number);
+}
+bool Options::flag(const char* key) const { return need(key, OptionKind::kFlag).number != 0; }
+const char* Options::text(const char* key) const { return need(key, OptionKind::kText).text; }
+bool Options::given(const char* key) const {
+  const int32_t i = find(key);
+  return i >= 0 && rows_[static_cast<size_t>(i)].given;
+}
+
+void Options::print(int32_t i, char* out) const {
+  const Row& r = rows_[static_cast<size_t>(i)];
+  if (r.spec->kind == OptionKind::kText)
+    std::snprintf(out, kOptionTextSize, "%s", r.text);
+  else if (r.spec->kind == OptionKind::kFlag)
+    std::snprintf(out, kOptionTextSize, "%s", r.number != 0 ? "true" : "false");
+  else
+    std::snprintf(out, kOptionTextSize, "%.9g", r.number);
+}
+
+void Options::set_default(const char* key, double number) {
+  const int32_t i = find(key);
+  if (i < 0) fail(Code::kInternal, "option %s is not declared", key);
+  Row& row = rows_[static_cast<size_t>(i)];
+  if (!row.given) assign(row, {key, nullptr, number}, "default");
+}
+
+void Options::set_default(const char* key, const char* text) {
+  const int32_t i = find(key);
+  if (i < 0) fail(Code::kInternal, "option %s is not declared", key);
+  Row& row = rows_[static_cast<size_t>(i)];
+  if (!row.given) assign(row, {key, text, 0}, "default");
+}
+
+}  // namespace rdm

@@ -1,0 +1,116 @@
+#include "base/workers.hpp"
+
+#include <unistd.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <new>
+#include <system_error>
+#include <thread>
+
+#include "base/error.hpp"
+#include "base/fpmode.hpp"
+
+namespace rdm {
+
+struct Workers::Shared {
+  explicit Shared(int32_t count) : pid(getpid()), threads(static_cast<size_t>(count)) {}
+
+  void loop(int32_t self, int32_t width) {
+    uint64_t seen = 0;
+    for (;;) {
+      {
+        std::unique_lock lock(mutex);
+        start.wait(lock, [&] { return stop || round != seen; });
+        if (stop) return;
+        seen = round;
+      }
+      share(self, width);
+      std::lock_guard lock(mutex);
+      if (--running == 0) finish.notify_one();
+    }
+  }
+  void share(int32_t self, int32_t width) const {
+    const FpMode mode;
+    for (int32_t i = self; i < n; i += width) body(context, i);
+  }
+  void end() {
+    {
+      std::lock_guard lock(mutex);
+      stop = true;
+    }
+    start.notify_all();
+    for (auto& t : threads)
+      if (t.joinable()) t.join();
+  }
+
+  pid_t pid;
+  std::mutex mutex;
+  std::condition_variable start, finish;
+  uint64_t round = 0;
+  int32_t running = 0, n = 0;
+  bool stop = false;
+  ParallelBody body = nullptr;
+  void* context = nullptr;
+  Vector<std::thread> threads;
+};
+
+Workers::Workers(const HostHooks& hooks, int32_t threads) : hooks_(hooks) {
+  width_ = threads > 1 ? threads : 1;
+  if (hooks_.parallel || width_ == 1) return;
+  shared_ = host_new<Shared>(hooks_, width_ - 1);
+  try {
+    for (int32_t i = 1; i < width_; ++i)
+      shared_->threads[static_cast<size_t>(i - 1)] =
+          std::thread([s = shared_, i, w = width_] { s->loop(i, w); });
+  } catch (const std::system_error&) {
+    shared_->end();
+    host_delete(hooks_, shared_);
+    fail(Code::kMemory, "num_threads: could not start %d threads", threads);
+  }
+}
+
+Workers::~Workers() {
+  if (!shared_) return;
+  if (shared_->pid == getpid()) {
+    shared_->end();
+    host_delete(hooks_, shared_);
+  }  // in a forked child the threads do not exist: their memory is left alone
+}
+
+void Workers::run(int32_t n, ParallelBody body, void* context) {
+  if (hooks_.parallel) {
+    struct Wrapped {
+      ParallelBody body;
+      void* context;
+    } wrapped{body, context};
+    hooks_.parallel(
+        hooks_.user, n,
+        [](void* c, int32_t i) {
+          const FpMode mode;
+          const auto* w = static_cast<Wrapped*>(c);
+          w->body(w->context, i);
+        },
+        &wrapped);
+    return;
+  }
+  if (!shared_) {
+    for (int32_t i = 0; i < n; ++i) body(context, i);
+    return;
+  }
+  if (shared_->pid != getpid()) fail(Code::kState, "worker threads do not survive fork: make the handle in the child");
+  {
+    std::lock_guard lock(shared_->mutex);
+    shared_->n = n;
+    shared_->body = body;
+    shared_->context = context;
+    shared_->running = width_ - 1;
+    ++shared_->round;
+  }
+  shared_->start.notify_all();
+  shared_->share(0, width_);
+  std::unique_lock lock(shared_->mutex);
+  shared_->finish.wait(lock, [&] { return shared_->running == 0; });
+}
+
+}  // namespace rdm

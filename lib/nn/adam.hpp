@@ -1,0 +1,22 @@
+// Adam (betas 0.9 and 0.999, epsilon 1e-8) over a flat vector, with global-norm clipping in the same pass.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "base/arena.hpp"
+
+namespace rdm {
+
+struct Adam {
+  size_t size = 0;
+  float *m = nullptr, *v = nullptr;  // [size]
+  int64_t t = 0;                     // steps taken
+};
+Adam carve_adam(Arena& arena, size_t size);
+
+// params -= rate * m^/(sqrt(v^) + 1e-8) with the gradient scaled by min(1, max_norm / (norm + 1e-6)).
+// max_norm <= 0: no clipping. Returns the norm before clipping, summed in a fixed order in double. With a
+// norm that is not finite nothing is changed.
+double adam_step(Adam& adam, float* params, const float* grad, double rate, double max_norm);
+
+}  // namespace rdm

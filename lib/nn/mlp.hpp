@@ -1,0 +1,60 @@
+// Multilayer perceptron: forward and backward over batches, parameters in one flat float vector.
+//
+// A batch is row-major, one row per sample. All memory comes from the caller; nothing is allocated.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "base/arena.hpp"
+#include "base/rng.hpp"
+
+namespace rdm {
+
+enum class Activation : int32_t { kTanh = 0, kElu = 1, kRelu = 2 };
+
+inline constexpr int kMaxHidden = 4;
+inline constexpr int kMaxWidth = 4096;
+
+struct MlpShape {
+  int32_t in = 0, out = 0;
+  int32_t num_hidden = 0;
+  int32_t hidden[kMaxHidden] = {};
+  Activation activation = Activation::kTanh;
+
+  int32_t num_layers() const { return num_hidden + 1; }
+  int32_t layer_in(int32_t l) const { return l == 0 ? in : hidden[l - 1]; }
+  int32_t layer_out(int32_t l) const { return l == num_hidden ? out : hidden[l]; }
+  // Per layer: weight [layer_out][layer_in] row-major, then bias [layer_out].
+  size_t weight_offset(int32_t l) const;
+  size_t bias_offset(int32_t l) const;
+  size_t num_params() const;
+};
+
+// Workspace of one thread for batches of up to `rows` rows.
+struct MlpScratch {
+  int32_t rows = 0;
+  float* activation[kMaxHidden + 1] = {};  // [rows][layer_out(l)], hidden layers after their activation
+  float* delta[2] = {};                    // [rows][widest layer], ping and pong
+  float* packed = nullptr;                 // panels of the matrix products
+};
+MlpScratch carve_mlp_scratch(Arena& arena, const MlpShape& shape, int32_t rows);
+
+// y = net(x). x [rows][in], y [rows][out]; hidden activations stay in the scratch for the backward pass.
+void mlp_forward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
+                 const MlpScratch& scratch, float* y);
+
+// grad [num_params] is overwritten with d(loss)/d(params), given dy = d(loss)/dy [rows][out] of the last
+// forward pass over the same x. Sums over rows are taken in a fixed order.
+void mlp_backward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
+                  const MlpScratch& scratch, const float* dy, float* grad);
+
+// Kaiming-uniform with a = sqrt(5): weight and bias ~ U(-1/sqrt(fan_in), 1/sqrt(fan_in)); the last layer's
+// weights and bias are scaled by last_layer_scale.
+void mlp_init(const MlpShape& shape, Stream& stream, float last_layer_scale, float* params);
+
+// The instruction set that the kernels run on: "x86-64-v2", "x86-64-v3", "x86-64-v4". Chosen once at first use, from
+// what the CPU has. set_kernel_isa forces a lower one (tests); false if this CPU lacks it.
+const char* kernel_isa();
+bool set_kernel_isa(const char* name);
+
+}  // namespace rdm

@@ -1,0 +1,51 @@
+// The frozen policy: normaliser, actor network, action scale; runs on a machine that has nothing else.
+// Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC".
+#pragma once
+#include <cstdint>
+
+#include "base/bytes.hpp"
+#include "nn/mlp.hpp"
+
+namespace rdm {
+
+inline constexpr char kPolicyMagic[8] = {'R', 'D', 'M', 'P', 'O', 'L', 'I', 'C'};
+inline constexpr uint32_t kPolicyVersion = 1;
+
+// Everything that a policy file holds, as views of memory that somebody else owns.
+struct PolicyView {
+  MlpShape actor;
+  const float* params = nullptr;        // [actor.num_params()]
+  const float* log_std = nullptr;       // [actor.out]
+  const float* shift = nullptr;         // [actor.in] observation normaliser: clip((x - shift) scale, +-clip)
+  const float* scale = nullptr;         // [actor.in]
+  float clip = 0;                       // 0: no normaliser
+  int32_t action_repeat = 1;            // control steps per decision
+  float noise_correlation = 0;          // AR(1) coefficient of the exploration noise
+  float control_dt = 0;                 // s, 0 unknown
+  uint64_t layout_hash = 0;             // of the observation and action layout, 0 unknown
+  char task[64] = "";                   // "" for a host's own environment
+  const float* example_obs = nullptr;   // [actor.in], null: zeros are written
+  const float* example_action = nullptr;// [actor.out], the mean action for it; a load checks it
+};
+void write_policy(Writer& out, const PolicyView& view);
+
+// An owned, immutable policy. act is const and uses only the caller's scratch.
+class Policy {
+ public:
+  // Copies. Error(kFormat) for anything that is not a whole policy file, kVersion for a newer one.
+  static Policy* read(const void* bytes, size_t size, const HostHooks& hooks);
+  static void destroy(Policy* p);
+
+  const PolicyView& view() const { return view_; }
+  size_t scratch_bytes(int32_t rows) const;
+  // action [rows][out] = clip(mean + std * noise, -1, 1); noise [rows][out] standard normals or null for
+  // the mean. scratch: scratch_bytes(rows) bytes, 64-byte aligned.
+  void act(const float* obs, int32_t rows, const float* noise, float* action, void* scratch) const;
+
+ private:
+  HostHooks hooks_;
+  Arena arena_;
+  PolicyView view_;
+};
+
+}  // namespace rdm

@@ -1,0 +1,113 @@
+// One simulated world: joint coordinates and free bodies as state, behind one interface for all engines.
+//
+// Tasks read and write this class and never learn which engine moves it. The joint coordinates are the
+// state of every articulation; link poses and velocities follow from them by forward kinematics.
+#pragma once
+#include <cstdint>
+
+#include "base/arena.hpp"
+#include "base/bytes.hpp"
+#include "physics/scene.hpp"
+
+namespace rdm {
+
+enum class EngineKind : int32_t { kOde = 0, kArticulated = 1 };
+
+// Degraded steps raise bits, they neither fail nor hide.
+enum : uint32_t {
+  kStatusContactOverflow = 1u,  // more contacts than contacts_max: the last ones were left out
+  kStatusDiverged = 2u,         // a value is not finite, or the engine gave up; reset the world
+};
+
+struct Motion {
+  Pose X;       // pose in the world, of the link's (joint) frame or of the body's centre of mass
+  Vec3 v, w;    // velocity of that origin, angular velocity; world axes; m/s, rad/s
+};
+
+struct Contact {
+  int32_t shape_a, shape_b;  // indices of Scene::shapes
+  Vec3 p, n;                 // point; unit normal from b into a; world
+  double depth;              // m
+  Vec3 force;                // on a, N, world
+};
+
+struct Wrench {
+  Vec3 force, torque;
+};
+
+class World {
+ public:
+  // Arrays come out of `arena` (or are only measured); the engine's own memory is the C library's.
+  // `scene` must outlive the world. Error(kUnsupported) for an engine this build has not.
+  static World* create(EngineKind kind, const Scene& scene, Arena& arena, const HostHooks& hooks);
+  static void measure(EngineKind kind, const Scene& scene, Arena& arena);
+  // Bytes that the engine allocates by itself for one world, an estimate from above.
+  static size_t engine_bytes(EngineKind kind, const Scene& scene);
+  static void destroy(World* world, const HostHooks& hooks);
+  virtual ~World() = default;
+
+  const Scene& scene() const { return *scene_; }
+  virtual EngineKind engine() const = 0;
+
+  // One control step: solver.substeps substeps towards `target`. Clears and sets status, contacts,
+  // torques, wrenches. Never throws.
+  virtual void step() = 0;
+
+  // Joint coordinates, [num_links], rad and rad/s (m, m/s). target is what the drives go for.
+  const double* q() const { return q_; }
+  const double* qd() const { return qd_; }
+  double* target() { return target_; }
+  const double* target() const { return target_; }
+  const double* torque() const { return torque_; }  // drive torque, mean over the substeps, N m
+
+  // Sets all joint coordinates of one articulation and rebuilds its links. Values are clamped to range.
+  void set_joints(int32_t articulation, const double* q, const double* qd);
+
+  const Motion& link(int32_t i) const { return links_[i]; }   // [num_links]
+  const Motion& base(int32_t articulation) const { return bases_[articulation]; }
+  const Motion& body(int32_t i) const { return bodies_[i]; }  // [num_bodies]
+  virtual void set_body(int32_t i, const Motion& m) = 0;
+  Pose shape_pose(int32_t shape) const;
+
+  // Acts during the next step only; world axes; at the centre of mass of the body, or at p of the link.
+  virtual void push_body(int32_t i, const Vec3& force, const Vec3& torque) = 0;
+  virtual void push_link(int32_t i, const Vec3& force, const Vec3& p_W) = 0;
+
+  // Contacts of the last substep; pair_touched is the OR over all substeps of the last step.
+  const Contact* contacts() const { return contacts_; }
+  int32_t num_contacts() const { return num_contacts_; }
+  bool pair_touched(int32_t pair) const { return touched_[pair] != 0; }  // index of Scene::pairs
+  // Contact force and torque about the link's origin, in the link's frame, mean over the substeps.
+  const Wrench& sensor(int32_t i) const { return sensors_[i]; }          // index of Scene::sensors
+
+  // Depth of the deepest overlap at the present poses between a body's shapes and everything it may
+  // touch, m; 0 when clear. Used to redraw bad start poses.
+  virtual double body_overlap(int32_t body) = 0;
+
+  uint32_t status() const { return status_; }
+  // Largest distance between the two sides of any joint, m: 0 by construction where links are rebuilt.
+  virtual double joint_drift() const = 0;
+
+  // The whole state, exact to the bit: a world that loads it goes on as the one that saved it.
+  virtual void save(Writer& out) const = 0;
+  virtual void load(Reader& in) = 0;
+
+ protected:
+  World(const Scene& scene, Arena& arena);
+  void carve(Arena& arena);
+  // Forward kinematics of one articulation: links_ from q_, qd_ and bases_.
+  void rebuild(int32_t articulation);
+  // Called after links_ or bases_ changed outside of step.
+  virtual void links_changed(int32_t articulation) = 0;
+
+  const Scene* scene_;
+  double *q_ = nullptr, *qd_ = nullptr, *target_ = nullptr, *torque_ = nullptr;
+  Motion *links_ = nullptr, *bases_ = nullptr, *bodies_ = nullptr;
+  Contact* contacts_ = nullptr;
+  Wrench* sensors_ = nullptr;
+  uint8_t* touched_ = nullptr;
+  int32_t num_contacts_ = 0;
+  uint32_t status_ = 0;
+};
+
+}  // namespace rdm
