@@ -1,0 +1,26 @@
+# Numbered example programs, one file each, and the command-line tool in examples/redman: all see the
+# public headers alone.
+set(RDM_EXAMPLES "")
+function(rdm_example target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic $<$<BOOL:${REDMAN_WERROR}>:-Werror>)
+  target_link_libraries(${target} PRIVATE $<IF:$<BOOL:${REDMAN_SHARED}>,redman,redman_static>)
+endfunction()
+
+file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/[0-9]*.c ${PROJECT_SOURCE_DIR}/examples/[0-9]*.cpp)
+foreach(source ${sources})
+  get_filename_component(name ${source} NAME_WE)
+  add_executable(${name} ${source})
+  set_target_properties(${name} PROPERTIES C_STANDARD 99 CXX_STANDARD 20)
+  target_link_libraries(${name} PRIVATE m)
+  rdm_example(${name})
+  list(APPEND RDM_EXAMPLES ${name})
+endforeach()
+
+file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/redman/*.cpp)
+if(sources AND NOT REDMAN_TOOL STREQUAL "OFF" AND NOT RDM_TOOL_MISSING)
+  add_executable(redman_tool ${sources})
+  target_include_directories(redman_tool PRIVATE ${PROJECT_SOURCE_DIR}/examples)
+  target_link_libraries(redman_tool PRIVATE CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG)
+  set_target_properties(redman_tool PROPERTIES OUTPUT_NAME redman CXX_STANDARD 20)
+  rdm_example(redman_tool)
+endif()

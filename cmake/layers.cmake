@@ -1,0 +1,92 @@
+# rdm_flags: what all our code is compiled with. Fused multiply-add stays off so that results do not
+# depend on how the compiler contracts; x86-64-v2 is the oldest machine that is supported.
+add_library(rdm_flags INTERFACE)
+target_compile_features(rdm_flags INTERFACE cxx_std_20 c_std_99)
+target_compile_options(rdm_flags INTERFACE -ffp-contract=off -fno-math-errno
+                       -Wall -Wextra -Wpedantic -Wconversion $<$<BOOL:${REDMAN_WERROR}>:-Werror>)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+  target_compile_options(rdm_flags INTERFACE -march=x86-64-v2)
+endif()
+if(REDMAN_SANITIZE)
+  target_compile_options(rdm_flags INTERFACE -fsanitize=${REDMAN_SANITIZE} -fno-omit-frame-pointer
+                         -fno-sanitize-recover=all)
+  target_link_options(rdm_flags INTERFACE -fsanitize=${REDMAN_SANITIZE})
+endif()
+
+set(RDM_LAYERS "")
+set(RDM_LINKS "")
+
+# rdm_layer(name folder libraries...): the folder's sources as the object library rdm_<name>. A folder
+# without sources (headers only) is no target.
+macro(rdm_layer name folder)
+  file(GLOB rdm_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+  list(APPEND RDM_LINKS ${ARGN})
+  if(rdm_sources)
+    add_library(rdm_${name} OBJECT ${rdm_sources})
+    target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR}/lib)
+    target_link_libraries(rdm_${name} PRIVATE rdm_flags ${ARGN})
+    set_target_properties(rdm_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON
+                          CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+    list(APPEND RDM_LAYERS rdm_${name})
+    if("${name}" MATCHES "^(tasks|algos|capi)$")
+      target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR})
+    endif()
+    if("${name}" STREQUAL "capi")
+      target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR}/include)
+      target_compile_definitions(rdm_${name} PRIVATE RDM_BUILDING
+        RDM_WITH_SIM=$<BOOL:${REDMAN_SIM}> RDM_WITH_LEARN=$<BOOL:${REDMAN_LEARN}>
+        RDM_ODE_VERSION="${RDM_VERSION_TEXT_ODE}" RDM_CCD_VERSION="${RDM_VERSION_TEXT_CCD}"
+        RDM_EIGEN_VERSION="${RDM_VERSION_TEXT_EIGEN}" RDM_OCTOMAP_VERSION="${RDM_VERSION_TEXT_OCTOMAP}")
+    endif()
+  endif()
+endmacro()
+
+# The linker script that exports the checked-in lists and nothing else.
+function(rdm_version_script out)
+  set(names "")
+  foreach(list redman redman_experimental)
+    set(file ${PROJECT_SOURCE_DIR}/capi/${list}.symbols)
+    if(EXISTS ${file})
+      set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+      file(STRINGS ${file} lines REGEX "^rdm_")
+      list(APPEND names ${lines})
+    endif()
+  endforeach()
+  set(${out} "" PARENT_SCOPE)
+  if(names)
+    list(JOIN names "; " names)
+    set(map ${PROJECT_BINARY_DIR}/redman.map)
+    file(CONFIGURE OUTPUT ${map} CONTENT "REDMAN_${RDM_ABI} { global: ${names}; local: *; };\n")
+    set(${out} ${map} PARENT_SCOPE)
+  endif()
+endfunction()
+
+# rdm_library(target STATIC|SHARED) from the objects of all layers.
+function(rdm_library target kind)
+  set(objects "")
+  foreach(layer ${RDM_LAYERS})
+    list(APPEND objects $<TARGET_OBJECTS:${layer}>)
+  endforeach()
+  list(REMOVE_DUPLICATES RDM_LINKS)
+  list(REMOVE_ITEM RDM_LINKS Eigen3::Eigen)
+  add_library(${target} ${kind} ${objects})
+  add_library(redman::${target} ALIAS ${target})
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${target} PRIVATE ${RDM_LINKS})
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME redman LINKER_LANGUAGE CXX
+                        VERSION ${PROJECT_VERSION} SOVERSION ${RDM_ABI})
+  if(REDMAN_SANITIZE)
+    target_link_options(${target} PUBLIC -fsanitize=${REDMAN_SANITIZE})
+  elseif(kind STREQUAL "SHARED")
+    target_link_options(${target} PRIVATE -Wl,-z,defs)
+  endif()
+  if(kind STREQUAL "SHARED")
+    target_link_options(${target} PRIVATE -Wl,--as-needed)
+    rdm_version_script(map)
+    if(map)
+      target_link_options(${target} PRIVATE -Wl,--version-script=${map})
+      set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${map})
+    endif()
+  endif()
+endfunction()
