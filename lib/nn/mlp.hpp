@@ -13,7 +13,8 @@ namespace rdm {
 enum class Activation : int32_t { kTanh = 0, kElu = 1, kRelu = 2 };
 
 inline constexpr int kMaxHidden = 4;
-inline constexpr int kMaxWidth = 4096;
+inline constexpr int kMaxWidth = 4096;  // of a hidden layer and of the output
+inline constexpr int kMaxInputs = 65536;
 
 struct MlpShape {
   int32_t in = 0, out = 0;
@@ -29,6 +30,8 @@ struct MlpShape {
   size_t bias_offset(int32_t l) const;
   size_t num_params() const;
 };
+// Error(kRange) for a count, width or activation outside the bounds above.
+void check_mlp_shape(const MlpShape& shape);
 
 // Workspace of one thread for batches of up to `rows` rows.
 struct MlpScratch {
@@ -48,12 +51,17 @@ void mlp_forward(const MlpShape& shape, const float* params, const float* x, int
 void mlp_backward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
                   const MlpScratch& scratch, const float* dy, float* grad);
 
+// dy = (d net / d params) direction, rows of the same x as the last forward pass: the tangent half of a
+// Fisher-vector product (mlp_backward is the other half). direction [num_params], dy [rows][out].
+void mlp_tangent(const MlpShape& shape, const float* params, const float* direction, const float* x,
+                 int32_t rows, const MlpScratch& scratch, float* dy);
+
 // Kaiming-uniform with a = sqrt(5): weight and bias ~ U(-1/sqrt(fan_in), 1/sqrt(fan_in)); the last layer's
 // weights and bias are scaled by last_layer_scale.
 void mlp_init(const MlpShape& shape, Stream& stream, float last_layer_scale, float* params);
 
-// The instruction set that the kernels run on: "x86-64-v2", "x86-64-v3", "x86-64-v4". Chosen once at first use, from
-// what the CPU has. set_kernel_isa forces a lower one (tests); false if this CPU lacks it.
+// The instruction set that the kernels run on: "x86-64-v2", "x86-64-v3", "x86-64-v4". Chosen once at first
+// use, from what the CPU has. set_kernel_isa forces a lower one (tests); false if this CPU lacks it.
 const char* kernel_isa();
 bool set_kernel_isa(const char* name);
 

@@ -9,8 +9,8 @@ namespace rdm {
 struct Normalizer {
   int32_t dim = 0;
   double count = 0;
-  double *mean = nullptr, *m2 = nullptr;                // [dim]; m2: sum of squared deviations
-  float *shift = nullptr, *scale = nullptr;             // [dim]: output = clip((x - shift) scale, +-clip)
+  double *mean = nullptr, *m2 = nullptr;     // [dim]; m2: sum of squared deviations
+  float *shift = nullptr, *scale = nullptr;  // [dim]: output = clip((x - shift) scale, +-clip)
   float clip = 5;
 };
 Normalizer carve_normalizer(Arena& arena, int32_t dim);

@@ -14,18 +14,18 @@ inline constexpr uint32_t kPolicyVersion = 1;
 // Everything that a policy file holds, as views of memory that somebody else owns.
 struct PolicyView {
   MlpShape actor;
-  const float* params = nullptr;        // [actor.num_params()]
-  const float* log_std = nullptr;       // [actor.out]
-  const float* shift = nullptr;         // [actor.in] observation normaliser: clip((x - shift) scale, +-clip)
-  const float* scale = nullptr;         // [actor.in]
-  float clip = 0;                       // 0: no normaliser
-  int32_t action_repeat = 1;            // control steps per decision
-  float noise_correlation = 0;          // AR(1) coefficient of the exploration noise
-  float control_dt = 0;                 // s, 0 unknown
-  uint64_t layout_hash = 0;             // of the observation and action layout, 0 unknown
-  char task[64] = "";                   // "" for a host's own environment
-  const float* example_obs = nullptr;   // [actor.in], null: zeros are written
-  const float* example_action = nullptr;// [actor.out], the mean action for it; a load checks it
+  const float* params = nullptr;       // [actor.num_params()]
+  const float* log_std = nullptr;      // [actor.out]
+  const float* shift = nullptr;        // [actor.in] observation normaliser: clip((x - shift) scale, +-clip)
+  const float* scale = nullptr;        // [actor.in]
+  float clip = 0;                      // 0: no normaliser
+  int32_t action_repeat = 1;           // control steps per decision
+  float noise_correlation = 0;         // AR(1) coefficient of the exploration noise
+  float control_dt = 0;                // s, 0 unknown
+  uint64_t layout_hash = 0;            // of the observation and action layout, 0 unknown
+  char task[64] = "";                  // "" for a host's own environment
+  const float* example_obs = nullptr;  // [actor.in], null: zeros are written
+  const float* example_action = nullptr;  // [actor.out], the mean action for it; a load checks it
 };
 void write_policy(Writer& out, const PolicyView& view);
 

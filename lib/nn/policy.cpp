@@ -1,0 +1,223 @@
+#include "nn/policy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "nn/scratch.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr const char* kWhat = "policy file";
+constexpr int32_t kChunk = 128;  // rows at a time: bounds the scratch
+constexpr float kExampleTolerance = 1e-4f;
+
+size_t sz(int32_t n) {
+  return static_cast<size_t>(n);
+}
+float clip_unit(float v) {
+  return std::clamp(v, -1.0f, 1.0f);
+}
+
+[[noreturn]] void bad(const char* why) {
+  fail(Code::kFormat, "%s: %s", kWhat, why);
+}
+
+void write_floats(Writer& out, const float* v, size_t n) {
+  out.bytes(v, n * sizeof(float));
+}
+
+// `n` floats in place, which must be the next bytes of the section; all finite.
+const unsigned char* view_floats(Reader& in, size_t n) {
+  if (n > in.left() / sizeof(float)) bad("a section is shorter than the network");
+  const unsigned char* p = in.view(n * sizeof(float));
+  for (size_t i = 0; i < n; ++i) {
+    float v;
+    std::memcpy(&v, p + i * sizeof(float), sizeof v);
+    if (!std::isfinite(v)) bad("a number is not finite");
+  }
+  return p;
+}
+
+const float* keep(Arena& arena, const unsigned char* from, size_t n) {
+  float* to = arena.make<float>(n);
+  if (to) std::memcpy(to, from, n * sizeof(float));
+  return to;
+}
+
+// What act needs per chunk of rows; nothing of the backward pass.
+struct ActScratch {
+  MlpScratch mlp;
+  float* obs = nullptr;  // normalised
+  size_t bytes = 0;
+};
+ActScratch cut_act_scratch(const MlpShape& shape, int32_t rows, void* memory) {
+  ActScratch s;
+  ScratchCutter cutter(memory);
+  rows = std::clamp(rows, 1, kChunk);
+  s.mlp = cut_forward_scratch(cutter, shape, rows);
+  s.obs = cutter.make(sz(rows) * sz(shape.in));
+  s.bytes = cutter.used();
+  return s;
+}
+
+void act_view(const PolicyView& v, const float* obs, int32_t rows, const float* noise, float* action,
+              void* scratch) {
+  const ActScratch s = cut_act_scratch(v.actor, rows, scratch);
+  const size_t in = sz(v.actor.in), out = sz(v.actor.out);
+  for (int32_t at = 0; at < rows; at += s.mlp.rows) {
+    const int32_t n = std::min(s.mlp.rows, rows - at);
+    const float* x = obs + sz(at) * in;
+    float* a = action + sz(at) * out;
+    if (v.clip > 0) {
+      for (size_t r = 0; r < sz(n); ++r)
+        for (size_t j = 0; j < in; ++j)
+          s.obs[r * in + j] = std::clamp((x[r * in + j] - v.shift[j]) * v.scale[j], -v.clip, v.clip);
+      x = s.obs;
+    }
+    mlp_forward(v.actor, v.params, x, n, s.mlp, a);
+    const float* e = noise ? noise + sz(at) * out : nullptr;
+    for (size_t r = 0; r < sz(n); ++r)
+      for (size_t j = 0; j < out; ++j) {
+        float& y = a[r * out + j];
+        y = clip_unit(e ? y + std::exp(v.log_std[j]) * e[r * out + j] : y);
+      }
+  }
+}
+
+void read_meta(Reader& in, PolicyView& v) {
+  in.need_section("META");
+  v.clip = in.value<float>();
+  v.action_repeat = in.value<int32_t>();
+  v.noise_correlation = in.value<float>();
+  v.control_dt = in.value<float>();
+  v.layout_hash = in.value<uint64_t>();
+  in.text(v.task, sizeof v.task);
+  in.expect_end();
+  if (!(v.clip >= 0 && v.clip <= 1e6f)) bad("the normaliser's clip is out of range");
+  if (v.action_repeat < 1 || v.action_repeat > 1000000) bad("the action repeat is out of range");
+  if (!(v.noise_correlation >= 0 && v.noise_correlation < 1)) bad("the noise correlation is out of range");
+  if (!(v.control_dt >= 0 && v.control_dt <= 1e6f)) bad("the control interval is out of range");
+}
+
+void read_arch(Reader& in, MlpShape& shape) {
+  in.need_section("ARCH");
+  shape.in = in.value<int32_t>();
+  shape.out = in.value<int32_t>();
+  shape.activation = static_cast<Activation>(in.value<int32_t>());
+  shape.num_hidden = in.value<int32_t>();
+  for (int32_t& h : shape.hidden) h = in.value<int32_t>();
+  in.expect_end();
+  try {
+    check_mlp_shape(shape);
+  } catch (const Error& e) {
+    bad(e.text);
+  }
+  for (int32_t l = shape.num_hidden; l < kMaxHidden; ++l)
+    if (shape.hidden[l] != 0) bad("a layer that does not exist has a width");
+}
+
+}  // namespace
+
+void write_policy(Writer& out, const PolicyView& view) {
+  const MlpShape& shape = view.actor;
+  const size_t n_in = sz(shape.in), n_out = sz(shape.out);
+  Vector<float> obs(n_in), action(n_out);
+  if (view.example_obs) std::copy_n(view.example_obs, n_in, obs.begin());
+  if (view.example_obs && view.example_action) {
+    std::copy_n(view.example_action, n_out, action.begin());
+  } else {
+    Vector<float> memory(cut_act_scratch(shape, 1, nullptr).bytes / sizeof(float) + Arena::kAlign);
+    act_view(view, obs.data(), 1, nullptr, action.data(), align_scratch(memory.data()));
+  }
+  out.begin_file(kPolicyMagic, kPolicyVersion);
+  out.begin_section("META");
+  out.value(view.clip);
+  out.value(view.action_repeat);
+  out.value(view.noise_correlation);
+  out.value(view.control_dt);
+  out.value(view.layout_hash);
+  out.text(view.task);
+  out.end_section();
+  out.begin_section("ARCH");
+  out.value(shape.in);
+  out.value(shape.out);
+  out.value(static_cast<int32_t>(shape.activation));
+  out.value(shape.num_hidden);
+  for (int32_t l = 0; l < kMaxHidden; ++l) out.value(l < shape.num_hidden ? shape.hidden[l] : int32_t{0});
+  out.end_section();
+  out.begin_section("WGTS");
+  write_floats(out, view.params, shape.num_params());
+  write_floats(out, view.log_std, n_out);
+  out.end_section();
+  out.begin_section("NORM");
+  if (view.clip > 0) {
+    write_floats(out, view.shift, n_in);
+    write_floats(out, view.scale, n_in);
+  }
+  out.end_section();
+  out.begin_section("EXMP");
+  write_floats(out, obs.data(), n_in);
+  write_floats(out, action.data(), n_out);
+  out.end_section();
+  out.end_file();
+}
+
+Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
+  PolicyView v;
+  Reader in(bytes, size, kWhat);
+  in.begin_file(kPolicyMagic, kPolicyVersion);
+  read_meta(in, v);
+  read_arch(in, v.actor);
+  const size_t n_in = sz(v.actor.in), n_out = sz(v.actor.out), n_params = v.actor.num_params();
+  in.need_section("WGTS");
+  const unsigned char *params = view_floats(in, n_params), *log_std = view_floats(in, n_out);
+  in.expect_end();
+  in.need_section("NORM");
+  const size_t n_norm = v.clip > 0 ? n_in : 0;
+  const unsigned char *shift = view_floats(in, n_norm), *scale = view_floats(in, n_norm);
+  in.expect_end();
+  in.need_section("EXMP");
+  const unsigned char *obs = view_floats(in, n_in), *action = view_floats(in, n_out);
+  in.expect_end();
+
+  const auto carve = [&](Arena& arena) {
+    v.params = keep(arena, params, n_params);
+    v.log_std = keep(arena, log_std, n_out);
+    v.shift = n_norm ? keep(arena, shift, n_in) : nullptr;
+    v.scale = n_norm ? keep(arena, scale, n_in) : nullptr;
+    v.example_obs = keep(arena, obs, n_in);
+    v.example_action = keep(arena, action, n_out);
+    float* check = arena.make<float>(n_out);
+    auto* scratch = arena.make<unsigned char>(cut_act_scratch(v.actor, 1, nullptr).bytes);
+    if (arena.measuring()) return;
+    act_view(v, v.example_obs, 1, nullptr, check, scratch);
+    for (size_t j = 0; j < n_out; ++j)
+      if (!(std::abs(check[j] - clip_unit(v.example_action[j])) <= kExampleTolerance))
+        bad("the network does not give the example action that is stored beside it");
+  };
+  Arena measure;
+  carve(measure);
+  Arena arena(hooks, measure.used());
+  carve(arena);
+  Policy* p = host_new<Policy>(hooks);
+  p->hooks_ = hooks;
+  p->arena_ = std::move(arena);
+  p->view_ = v;
+  return p;
+}
+
+void Policy::destroy(Policy* p) {
+  if (p) host_delete(p->hooks_, p);
+}
+
+size_t Policy::scratch_bytes(int32_t rows) const {
+  return cut_act_scratch(view_.actor, rows, nullptr).bytes;
+}
+
+void Policy::act(const float* obs, int32_t rows, const float* noise, float* action, void* scratch) const {
+  act_view(view_, obs, rows, noise, action, scratch);
+}
+
+}  // namespace rdm
