@@ -1,0 +1,80 @@
+// N worlds of one task, stepped together over the workers, with buffers, episodes and autoreset. Mirrors
+// rdm_pool_*; all memory is carved at creation, step allocates nothing.
+#pragma once
+#include <cstdint>
+
+#include "base/arena.hpp"
+#include "base/workers.hpp"
+#include "env/task.hpp"
+
+namespace rdm {
+
+enum class Autoreset : int32_t { kSameStep = 0, kNextStep = 1, kOff = 2 };
+inline constexpr uint32_t kStatusBadAction = 4u;
+
+struct PoolConfig {
+  int32_t num_envs = 1, num_threads = 0;
+  const char* task = nullptr;
+  uint64_t seed = 0;
+  Autoreset autoreset = Autoreset::kSameStep;
+  const OptionInput* options = nullptr;
+  int32_t num_options = 0;
+  HostHooks hooks;
+};
+
+// Meaning and shapes as rdm_buffers.
+struct Buffers {
+  float *obs = nullptr, *final_obs = nullptr, *action = nullptr, *reward = nullptr, *cost = nullptr,
+        *cost_raw = nullptr, *episode_return = nullptr, *episode_cost = nullptr;
+  int32_t* episode_step = nullptr;
+  uint32_t* status = nullptr;
+  uint8_t *terminated = nullptr, *truncated = nullptr, *success = nullptr;
+};
+
+struct PoolStats {
+  int32_t contacts_max = 0;
+  double contacts_mean = 0, joint_drift = 0;
+  int64_t steps = 0, diverged = 0, overflowed = 0;
+};
+
+enum class Baseline : int32_t { kZero = 0, kHold = 1, kRandom = 2 };
+
+class Pool {
+ public:
+  // Validates the config; bytes of create from the hooks (exact) and of the engines (estimate).
+  static void memory(const PoolConfig& config, size_t* ours, size_t* engines);
+  static Pool* create(const PoolConfig& config);
+  static void destroy(Pool* p);
+
+  const Task& task() const;
+  int32_t task_index() const;
+  const Options& options() const;
+  const PoolConfig& config() const;  // pointers inside are not valid any more
+  int32_t obs_dim() const;
+  int32_t cost_dim() const;
+  const Buffers& buffers() const;
+  void bind(const Buffers& host);    // non-null pointers take over; contents are copied
+
+  void reset(const uint64_t* seeds, const uint8_t* mask);
+  void step(const uint8_t* mask);    // null: all
+  void baseline(Baseline kind);
+
+  size_t state_size(int32_t env) const;
+  void get_state(int32_t env, Writer& out) const;              // env -1: all
+  void set_state(int32_t env, const void* bytes, size_t size); // all checks before any change
+  uint64_t hash(int32_t env) const;
+
+  World& world(int32_t env);
+  const World& world(int32_t env) const;
+  PoolStats stats() const;
+  Workers& workers();
+
+ private:
+  Pool();
+  ~Pool();
+  struct Impl;
+  friend struct Impl;
+  Impl* impl_;
+};
+
+}  // namespace rdm

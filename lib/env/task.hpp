@@ -1,0 +1,89 @@
+// What a task is to the pool: a constant description, and per world reset, control, observation, verdict.
+//
+// A task draws only from the stream it is given and keeps its per-world values in its own plain struct, which
+// the pool carves, saves and restores as bytes.
+#pragma once
+#include <cstdint>
+
+#include "base/option.hpp"
+#include "base/rng.hpp"
+#include "physics/world.hpp"
+
+namespace rdm {
+
+inline constexpr int kMaxTaskCosts = 16;
+
+struct FieldSpec {
+  Name name;
+  const char* unit;  // static
+  int32_t count;
+};
+struct CostSpec {
+  const char* name;
+  const char* help;
+  double limit;  // default limit per episode, < 0: none
+};
+struct CameraSpec {
+  const char* name;
+  Vec3 eye, target;  // m
+  double fov_y;      // rad
+};
+struct LearnerDefault {
+  const char* key;
+  const char* value;
+};
+
+struct Verdict {
+  double reward = 0;
+  double cost[kMaxTaskCosts] = {};      // as the buffers have them
+  double cost_raw[kMaxTaskCosts] = {};  // the measured value behind each
+  bool terminated = false, success = false;
+};
+
+// One task with its options laid in: constant after creation, shared by all worlds of a pool.
+class Task {
+ public:
+  virtual ~Task() = default;
+  virtual const Scene& scene() const = 0;
+  virtual EngineKind engine() const = 0;
+  virtual int32_t max_steps() const = 0;
+  virtual int32_t action_dim() const = 0;
+  virtual const Vector<FieldSpec>& fields() const = 0;        // in order; offsets are the running sums
+  virtual const char* action_order() const = 0;               // joins the layout hash
+  virtual size_t state_bytes() const = 0;                     // of the task's per-world struct
+  virtual void reset(World& world, void* state, Stream& stream) const = 0;
+  // Clipped actions [action_dim] to drive targets (and base wrenches) of the next control step.
+  virtual void control(World& world, void* state, const float* action) const = 0;
+  // After the control step. `step` counts from 1 within the episode.
+  virtual Verdict judge(World& world, void* state, int32_t step) const = 0;
+  virtual void observe(const World& world, const void* state, float* obs) const = 0;
+  // The hold action: the nominal start pose, base entries 0. [action_dim]
+  virtual void hold_action(float* action) const = 0;
+  // Mean action that a new policy starts from. [action_dim]
+  virtual void initial_mean(float* action) const = 0;
+};
+
+// One row of the registry: static data.
+struct TaskInfo {
+  const char* name;
+  const char* alias;       // Safety-Gymnasium's id, null: none
+  const char* summary;
+  const OptionSpec* (*options)(int32_t* count);  // table, static after the first call
+  const CostSpec* costs;
+  int32_t num_costs;
+  const CameraSpec* cameras;
+  int32_t num_cameras;
+  const LearnerDefault* defaults;
+  int32_t num_defaults;
+  Task* (*make)(const Options& options, const HostHooks& hooks);
+  void (*destroy)(Task* task, const HostHooks& hooks);
+};
+void register_task(const TaskInfo& info);  // before the first pool; static data
+int32_t task_count();
+const TaskInfo& task_at(int32_t index);
+int32_t task_find(const char* name);       // Error(kNotFound) with the nearest name; aliases count
+
+int32_t obs_dim(const Task& task);
+uint64_t layout_hash(const Task& task);    // field names, counts, action order, action count
+
+}  // namespace rdm
