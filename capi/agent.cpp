@@ -1,0 +1,301 @@
+// rdm_agent_*: config to agent and back.
+#include "base/file.hpp"
+#include "capi/handles.hpp"
+
+using namespace rdm;
+using namespace rdm::capi;
+
+rdm_result rdm_agent_config_init(rdm_agent_config* c, size_t size) {
+  return call(nullptr, [&] {
+    rdm_agent_config d{};
+    d.cost_dim = 1;
+    d.algo = "ppo_lag";
+    d.task = "";
+    init_struct(c, size, sizeof(rdm_agent_config), d, "c");
+  });
+}
+
+#if RDM_WITH_LEARN
+namespace {
+
+// A public config as the library takes it, with the option lists that it points to.
+struct Config {
+  AgentConfig agent;
+  Vector<OptionInput> defaults, options;
+};
+
+void read_config(const rdm_agent_config* c, Config* out) {
+  const auto in = read_struct(c, sizeof(rdm_agent_config), rdm_agent_config{}, "config");
+  AgentConfig& a = out->agent;
+  need(in.algo, "config.algo");
+  a.hooks = hooks_from(in.host);
+  a.obs_dim = in.obs_dim;
+  a.action_dim = in.action_dim;
+  a.cost_dim = in.cost_dim;
+  a.num_envs = in.num_envs;
+  a.num_threads = in.num_threads;
+  a.algo = in.algo;
+  a.task = in.task ? in.task : "";
+  a.seed = in.seed;
+  a.layout_hash = in.layout_hash;
+  a.control_dt = in.control_dt;
+  a.max_steps = in.max_steps;
+  a.initial_mean = in.initial_mean;
+  a.cost_limits = in.cost_limits;
+  out->defaults = read_options(in.defaults, in.num_defaults, "defaults");
+  out->options = read_options(in.options, in.num_options, "options");
+  a.defaults = out->defaults.data();
+  a.num_defaults = in.num_defaults;
+  a.options = out->options.data();
+  a.num_options = in.num_options;
+}
+
+DecisionBuffers carve_decision(Arena& arena, const AgentConfig& c) {
+  const auto n = static_cast<size_t>(c.num_envs);
+  DecisionBuffers d;
+  d.reward = arena.make<float>(n);
+  d.cost = arena.make<float>(n * static_cast<size_t>(c.cost_dim));
+  d.steps = arena.make<int32_t>(n);
+  d.mask = arena.make<uint8_t>(n);
+  d.valid = arena.make<uint8_t>(n);
+  d.ended = arena.make<uint8_t>(n);
+  d.success = arena.make<uint8_t>(n);
+  return d;
+}
+
+// Writes a byte stream of unknown length: `write` runs once to count and once into the caller's memory.
+template <class F>
+void emit(void* bytes, size_t capacity, size_t* size, F&& write) {
+  need(size, "size");
+  Writer count(nullptr, 0);
+  write(count);
+  if (bytes) {
+    if (capacity < count.size()) fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, count.size());
+    Writer out(bytes, capacity);
+    write(out);
+  }
+  *size = count.size();
+}
+
+}  // namespace
+
+rdm_result rdm_agent_memory(const rdm_agent_config* c, size_t* bytes) {
+  return call(nullptr, [&] {
+    need(bytes, "bytes");
+    Config config;
+    read_config(c, &config);
+    const size_t inner = Agent::memory(config.agent);  // validates the dimensions first
+    Arena measure;
+    carve_decision(measure, config.agent);
+    *bytes = inner + measure.used() + sizeof(rdm_agent);
+  });
+}
+
+rdm_result rdm_agent_create(rdm_agent** out, const rdm_agent_config* c) {
+  return call(nullptr, [&] {
+    need(out, "out");
+    Config config;
+    read_config(c, &config);
+    const HostHooks hooks = config.agent.hooks;
+    const HostScope scope(hooks);
+    rdm_agent* a = host_new<rdm_agent>(hooks);
+    a->hooks = hooks;
+    try {
+      a->agent = Agent::create(config.agent);
+      Arena measure;
+      carve_decision(measure, config.agent);
+      a->arena = Arena(hooks, measure.used());
+      a->decision = carve_decision(a->arena, config.agent);
+    } catch (...) {
+      rdm_agent_destroy(a);
+      throw;
+    }
+    *out = a;
+  });
+}
+
+void rdm_agent_destroy(rdm_agent* a) {
+  if (!a) return;
+  Agent::destroy(a->agent);
+  host_delete(a->hooks, a);
+}
+
+const char* rdm_agent_error(const rdm_agent* a) { return a ? a->error : "agent is NULL"; }
+
+rdm_result rdm_agent_act(rdm_agent* a, const float* obs, int32_t mode, float* action) {
+  return call(a ? a->error : nullptr, [&] {
+    need(a, "agent");
+    need(obs, "obs");
+    need(action, "action");
+    if (mode != RDM_SAMPLE && mode != RDM_MEAN) fail(Code::kRange, "mode: %d is not RDM_SAMPLE or RDM_MEAN", mode);
+    a->agent->act(obs, mode == RDM_SAMPLE, action);
+  });
+}
+
+rdm_result rdm_agent_record(rdm_agent* a, const rdm_transition* t) {
+  return call(a ? a->error : nullptr, [&] {
+    need(a, "agent");
+    const auto in = read_struct(t, sizeof(rdm_transition), rdm_transition{}, "transition");
+    need(in.reward, "transition.reward");
+    if (a->agent->config().cost_dim > 0) need(in.cost, "transition.cost");
+    Transition x;
+    x.reward = in.reward;
+    x.cost = in.cost;
+    x.terminated = in.terminated;
+    x.truncated = in.truncated;
+    x.valid = in.valid;
+    x.success = in.success;
+    x.final_obs = in.final_obs;
+    x.steps = in.steps;
+    a->agent->record(x);
+  });
+}
+
+namespace rdm::capi {
+void write_epoch(rdm_epoch* io, const Epoch& e) {
+  rdm_epoch out{};
+  out.epoch = e.epoch;
+  out.env_steps = e.env_steps;
+  out.episodes = e.episodes;
+  out.ret = e.ret;
+  std::copy(e.cost, e.cost + kMaxCosts, out.cost);
+  out.cost_per_step = e.cost_per_step;
+  out.length = e.length;
+  out.fall_rate = e.fall_rate;
+  out.success_rate = e.success_rate;
+  std::copy(e.multiplier, e.multiplier + kMaxCosts, out.multiplier);
+  out.kl = e.kl;
+  out.entropy = e.entropy;
+  out.learning_rate = e.learning_rate;
+  out.action_std = e.action_std;
+  out.loss_policy = e.loss_policy;
+  out.loss_reward_value = e.loss_reward_value;
+  out.loss_cost_value = e.loss_cost_value;
+  out.clip_fraction = e.clip_fraction;
+  out.value_reward = e.value_reward;
+  out.value_cost = e.value_cost;
+  out.passes = e.passes;
+  write_struct(io, out, sizeof(rdm_epoch), "io");
+}
+}  // namespace rdm::capi
+
+rdm_result rdm_agent_update(rdm_agent* a, const float* last_obs, rdm_epoch* io) {
+  return call(a ? a->error : nullptr, [&] {
+    need(a, "agent");
+    need(last_obs, "last_obs");
+    if (io) check_out(io, sizeof(rdm_epoch), "io");
+    Epoch e;
+    a->agent->update(last_obs, &e);
+    if (io) write_epoch(io, e);
+  });
+}
+
+void rdm_agent_cancel(rdm_agent* a) {
+  if (a) a->agent->cancel();
+}
+
+rdm_result rdm_agent_set(rdm_agent* a, const rdm_option* option) {
+  return call(a ? a->error : nullptr, [&] {
+    need(a, "agent");
+    need(option, "option");
+    need(option->key, "option.key");
+    a->agent->set_option({option->key, option->text, option->number});
+  });
+}
+
+rdm_result rdm_agent_option(const rdm_agent* a, int32_t i, const char** key, char* text) {
+  return call(nullptr, [&] {
+    need(a, "agent");
+    need(key, "key");
+    need(text, "text");
+    const Options& o = a->agent->options();
+    need_index(i, o.count(), "i");
+    *key = o.spec(i).key;
+    o.print(i, text);
+  });
+}
+
+rdm_result rdm_agent_tensor(const rdm_agent* a, int32_t i, rdm_tensor* out) {
+  return call(nullptr, [&] {
+    need(a, "agent");
+    need(out, "out");
+    TensorInfo t;
+    if (i < 0 || !a->agent->tensor(i, &t)) fail(Code::kRange, "i: %d is past the end of the tensors", i);
+    *out = {t.name, t.rows, t.cols};
+  });
+}
+
+namespace {
+TensorInfo find_tensor(Agent& agent, const char* name, size_t count) {
+  need(name, "name");
+  Vector<const char*> names;
+  TensorInfo t;
+  for (int32_t i = 0; agent.tensor(i, &t); ++i) {
+    if (std::strcmp(t.name, name) == 0) {
+      const size_t size = static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols);
+      if (count != size) fail(Code::kRange, "count: %s has %zu values, not %zu", name, size, count);
+      return t;
+    }
+    names.push_back(t.name);
+  }
+  const int32_t near = nearest_name(name, names.data(), static_cast<int32_t>(names.size()));
+  fail(Code::kNotFound, "tensor %.64s: unknown; nearest is %s", name, names[static_cast<size_t>(near)]);
+}
+}  // namespace
+
+rdm_result rdm_agent_tensor_read(const rdm_agent* a, const char* name, float* out, size_t count) {
+  return call(nullptr, [&] {
+    need(a, "agent");
+    need(out, "out");
+    const TensorInfo t = find_tensor(*a->agent, name, count);
+    std::copy(t.data, t.data + count, out);
+  });
+}
+
+rdm_result rdm_agent_tensor_write(rdm_agent* a, const char* name, const float* values, size_t count) {
+  return call(a ? a->error : nullptr, [&] {
+    need(a, "agent");
+    need(values, "values");
+    const TensorInfo t = find_tensor(*a->agent, name, count);
+    for (size_t i = 0; i < count; ++i)
+      if (!std::isfinite(values[i])) fail(Code::kArgument, "values: entry %zu is not finite", i);
+    std::copy(values, values + count, t.data);
+    a->agent->tensors_changed();
+  });
+}
+
+rdm_result rdm_agent_policy(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
+  return call(nullptr, [&] {
+    need(a, "agent");
+    emit(bytes, capacity, size, [&](Writer& w) { a->agent->write_policy_file(w); });
+  });
+}
+
+rdm_result rdm_agent_policy_file(const rdm_agent* a, const char* path) {
+  return call(nullptr, [&] {
+    need(a, "agent");
+    need(path, "path");
+    Writer count(nullptr, 0);
+    a->agent->write_policy_file(count);
+    Vector<unsigned char> file(count.size());
+    Writer out(file.data(), file.size());
+    a->agent->write_policy_file(out);
+    write_file(path, file.data(), file.size());
+  });
+}
+
+rdm_result rdm_agent_save(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
+  return call(nullptr, [&] {
+    need(a, "agent");
+    emit(bytes, capacity, size, [&](Writer& w) { a->agent->save(w); });
+  });
+}
+
+rdm_result rdm_agent_load(rdm_agent* a, const void* bytes, size_t size) {
+  return call(a ? a->error : nullptr, [&] {
+    need(a, "agent");
+    need(bytes, "bytes");
+    a->agent->load(bytes, size);
+  });
+}
+#endif

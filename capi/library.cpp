@@ -1,0 +1,73 @@
+// Version, build, results, and process-wide hooks.
+#include <cstdio>
+#include <mutex>
+
+#include "capi/shim.hpp"
+#if RDM_WITH_LEARN
+#include "nn/mlp.hpp"
+#endif
+
+using namespace rdm;
+using namespace rdm::capi;
+
+#define RDM_TEXT_OF(x) #x
+#define RDM_TEXT_OF_VALUE(x) RDM_TEXT_OF(x)
+
+namespace {
+std::mutex g_init_mutex;
+int32_t g_init_count = 0;
+}  // namespace
+
+const char* rdm_result_string(rdm_result r) { return code_string(r); }
+const char* rdm_last_error(void) { return last_error(); }
+uint32_t rdm_version(void) { return RDM_VERSION; }
+uint32_t rdm_features(void) {
+  return (RDM_WITH_SIM ? RDM_FEATURE_SIM : 0u) | (RDM_WITH_LEARN ? RDM_FEATURE_LEARN : 0u);
+}
+
+rdm_result rdm_check_abi(uint32_t abi, uint32_t version) {
+  return call(nullptr, [&] {
+    if (abi != RDM_ABI) fail(Code::kVersion, "abi: the header has %u, the library %d", abi, RDM_ABI);
+    if (version > RDM_VERSION) fail(Code::kVersion, "version: the header has %u, the library %d", version, RDM_VERSION);
+  });
+}
+
+rdm_result rdm_build_info(rdm_build* io) {
+  return call(nullptr, [&] {
+    rdm_build b{};
+    b.abi = RDM_ABI;
+    b.version = RDM_TEXT_OF_VALUE(RDM_VERSION_MAJOR) "." RDM_TEXT_OF_VALUE(RDM_VERSION_MINOR) "." RDM_TEXT_OF_VALUE(
+        RDM_VERSION_PATCH);
+    b.ode = RDM_ODE_VERSION;
+    b.eigen = RDM_EIGEN_VERSION;
+    b.ccd = RDM_CCD_VERSION;
+    b.octomap = RDM_OCTOMAP_VERSION;
+    b.precision = "double physics, float networks";
+#if defined(__clang__)
+    b.compiler = "clang " __clang_version__;
+#else
+    b.compiler = "gcc " __VERSION__;
+#endif
+#if RDM_WITH_LEARN
+    b.kernels = kernel_isa();
+#else
+    b.kernels = "";
+#endif
+    write_struct(io, b, sizeof(rdm_build), "io");
+  });
+}
+
+rdm_result rdm_init(const rdm_host* host) {
+  return call(nullptr, [&] {
+    const std::lock_guard lock(g_init_mutex);
+    const HostHooks hooks = host ? hooks_from(host) : HostHooks{};
+    if (g_init_count > 0 && host) fail(Code::kState, "rdm_init: hooks were set before; shut down first");
+    if (g_init_count == 0) set_host(hooks);
+    ++g_init_count;
+  });
+}
+
+void rdm_shutdown(void) {
+  const std::lock_guard lock(g_init_mutex);
+  if (g_init_count > 0 && --g_init_count == 0) set_host(HostHooks{});
+}

@@ -1,0 +1,190 @@
+// rdm_agent_rollout and what else needs both halves: agents that learn from pools, and checkpoints.
+#include "base/file.hpp"
+#include "capi/handles.hpp"
+
+#if RDM_WITH_SIM && RDM_WITH_LEARN
+using namespace rdm;
+using namespace rdm::capi;
+
+namespace rdm::capi {
+void write_epoch(rdm_epoch* io, const Epoch& e);
+}
+
+namespace {
+
+void check_match(const AgentConfig& a, const Pool& p) {
+  const auto same = [](int32_t agent, int32_t pool, const char* what) {
+    if (agent != pool) fail(Code::kArgument, "%s: the agent has %d, the pool %d", what, agent, pool);
+  };
+  same(a.num_envs, p.config().num_envs, "num_envs");
+  same(a.obs_dim, p.obs_dim(), "obs_dim");
+  same(a.action_dim, p.task().action_dim(), "action_dim");
+  same(a.cost_dim, p.cost_dim(), "cost_dim");
+  if (p.config().autoreset == Autoreset::kOff)
+    fail(Code::kState, "pool: its autoreset is off, so a rollout would stop at the first end of an episode");
+}
+
+// One decision: the action in the pool's buffer is held for `repeat` control steps; a world whose episode
+// ends sits out the rest, so that every world has the same number of decisions.
+void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat) {
+  const Buffers& b = pool.buffers();
+  const auto n = static_cast<size_t>(pool.config().num_envs);
+  const auto costs = static_cast<size_t>(pool.cost_dim());
+  const bool next_step = pool.config().autoreset == Autoreset::kNextStep;
+  std::fill_n(d.reward, n, 0.0f);
+  std::fill_n(d.cost, n * costs, 0.0f);
+  std::fill_n(d.steps, n, 0);
+  std::fill_n(d.success, n, uint8_t{0});
+  for (size_t i = 0; i < n; ++i) {
+    d.mask[i] = 1;
+    // in next-step mode the step after an end only resets: a dead transition of one step
+    d.valid[i] = !(next_step && (b.terminated[i] || b.truncated[i]));
+  }
+  for (int32_t r = 0; r < repeat; ++r) {
+    pool.step(d.mask);
+    bool any = false;
+    for (size_t i = 0; i < n; ++i) {
+      if (!d.mask[i]) continue;
+      if (d.valid[i]) {
+        d.reward[i] += b.reward[i];
+        for (size_t k = 0; k < costs; ++k) d.cost[i * costs + k] += b.cost[i * costs + k];
+        ++d.steps[i];
+        d.success[i] |= b.success[i];
+      }
+      if (b.terminated[i] || b.truncated[i] || !d.valid[i]) d.mask[i] = 0;
+      any |= d.mask[i] != 0;
+    }
+    if (!any) break;
+  }
+}
+
+void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
+  check_match(agent.config(), pool);
+  if (agent.missing() != agent.horizon())
+    fail(Code::kState, "agent: a horizon was begun by hand: finish it with record and update");
+  const Buffers& b = pool.buffers();
+  Transition t;
+  t.reward = d.reward;
+  t.cost = d.cost;
+  t.terminated = b.terminated;
+  t.truncated = b.truncated;
+  t.final_obs = b.final_obs;
+  t.valid = d.valid;
+  t.success = d.success;
+  t.steps = d.steps;
+  try {
+    while (agent.missing() > 0) {
+      agent.check_cancel();
+      agent.act(b.obs, true, b.action);
+      hold_action(pool, d, agent.action_repeat());
+      agent.record(t);
+    }
+    agent.update(b.obs, out);
+  } catch (...) {
+    agent.drop_horizon();
+    throw;
+  }
+}
+
+constexpr char kCheckpointMagic[8] = {'R', 'D', 'M', 'C', 'H', 'E', 'C', 'K'};
+constexpr uint32_t kCheckpointVersion = 1;
+
+template <class F>
+void section(Writer& w, const char tag[4], F&& body) {
+  w.begin_section(tag);
+  body(w);
+  w.end_section();
+}
+
+void write_checkpoint(Writer& w, const Agent& agent, const Pool* pool, const void* note, size_t note_size) {
+  w.begin_file(kCheckpointMagic, kCheckpointVersion);
+  section(w, "AGNT", [&](Writer& s) { agent.save(s); });
+  if (pool) section(w, "POOL", [&](Writer& s) { pool->get_state(-1, s); });
+  section(w, "NOTE", [&](Writer& s) { s.bytes(note, note_size); });
+  w.end_file();
+}
+
+}  // namespace
+
+rdm_result rdm_agent_rollout(rdm_agent* a, rdm_pool* p, rdm_epoch* io) {
+  return call(a ? a->error : nullptr, [&] {
+    need(a, "agent");
+    need(p, "pool");
+    if (io) check_out(io, sizeof(rdm_epoch), "io");
+    Epoch e;
+    rollout(*a->agent, *p->pool, a->decision, &e);
+    if (io) write_epoch(io, e);
+  });
+}
+
+rdm_result rdm_agent_config_for_pool(rdm_agent_config* c, const rdm_pool* p) {
+  return call(nullptr, [&] {
+    need(p, "pool");
+    auto config = read_struct(c, sizeof(rdm_agent_config), rdm_agent_config{}, "config");
+    const Pool& pool = *p->pool;
+    config.obs_dim = pool.obs_dim();
+    config.action_dim = pool.task().action_dim();
+    config.cost_dim = pool.cost_dim();
+    config.num_envs = pool.config().num_envs;
+    config.task = task_at(pool.task_index()).name;
+    config.layout_hash = layout_hash(pool.task());
+    config.control_dt = static_cast<float>(pool.task().scene().control_dt());
+    config.max_steps = pool.task().max_steps();
+    config.initial_mean = p->initial_mean;
+    config.defaults = p->defaults;
+    config.num_defaults = task_at(pool.task_index()).num_defaults;
+    config.cost_limits = p->cost_limits;
+    write_struct(c, config, sizeof(rdm_agent_config), "config");
+  });
+}
+
+rdm_result rdm_checkpoint_write(const char* path, const rdm_agent* a, const rdm_pool* p, const void* note,
+                                size_t note_size) {
+  return call(nullptr, [&] {
+    need(path, "path");
+    need(a, "agent");
+    if (note_size) need(note, "note");
+    const Pool* pool = p ? p->pool : nullptr;
+    Writer count(nullptr, 0);
+    write_checkpoint(count, *a->agent, pool, note, note_size);
+    Vector<unsigned char> file(count.size());
+    Writer out(file.data(), file.size());
+    write_checkpoint(out, *a->agent, pool, note, note_size);
+    write_file(path, file.data(), file.size());
+  });
+}
+
+rdm_result rdm_checkpoint_read(const char* path, rdm_agent* a, rdm_pool* p, void* note, size_t capacity,
+                               size_t* note_size) {
+  return call(a ? a->error : nullptr, [&] {
+    need(path, "path");
+    need(a, "agent");
+    need(note_size, "note_size");
+    if (capacity) need(note, "note");
+    const auto file = read_file(path);
+    Reader in(file.data(), file.size(), "checkpoint");
+    in.begin_file(kCheckpointMagic, kCheckpointVersion);
+    Vector<unsigned char> before;  // the pool as it was, in case the agent refuses its part
+    if (p) {
+      size_t size = p->pool->state_size(-1);
+      before.resize(size);
+      Writer keep(before.data(), size);
+      p->pool->get_state(-1, keep);
+      in.need_section("POOL");
+      size = in.left();
+      p->pool->set_state(-1, in.view(size), size);
+    }
+    try {
+      in.need_section("AGNT");
+      const size_t size = in.left();
+      a->agent->load(in.view(size), size);
+    } catch (...) {
+      if (p) p->pool->set_state(-1, before.data(), before.size());
+      throw;
+    }
+    in.need_section("NOTE");
+    *note_size = in.left();
+    in.bytes(note, std::min(capacity, *note_size));
+  });
+}
+#endif
