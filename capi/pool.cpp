@@ -1,0 +1,331 @@
+// rdm_pool_*: config to pool and back. Pictures and poses are in look.cpp.
+#include "capi/handles.hpp"
+#if RDM_WITH_SIM
+#include "tasks/catalog.hpp"
+#endif
+
+using namespace rdm;
+using namespace rdm::capi;
+
+rdm_result rdm_pool_config_init(rdm_pool_config* c, size_t size) {
+  return call(nullptr, [&] {
+    rdm_pool_config d{};
+    d.num_envs = 1;
+    init_struct(c, size, sizeof(rdm_pool_config), d, "c");
+  });
+}
+
+#if RDM_WITH_SIM
+namespace {
+
+struct Config {
+  PoolConfig pool;
+  Vector<OptionInput> options;
+};
+
+void read_config(const rdm_pool_config* c, Config* out) {
+  register_builtin_tasks();
+  const auto in = read_struct(c, sizeof(rdm_pool_config), rdm_pool_config{}, "config");
+  need(in.task, "config.task");
+  PoolConfig& p = out->pool;
+  p.hooks = hooks_from(in.host);
+  p.num_envs = in.num_envs;
+  p.num_threads = in.num_threads;
+  p.task = in.task;
+  p.seed = in.seed;
+  if (in.autoreset < RDM_AUTORESET_SAME_STEP || in.autoreset > RDM_AUTORESET_OFF)
+    fail(Code::kRange, "config.autoreset: %d is outside [0, 2]", in.autoreset);
+  p.autoreset = static_cast<Autoreset>(in.autoreset);
+  out->options = read_options(in.options, in.num_options, "options");
+  p.options = out->options.data();
+  p.num_options = in.num_options;
+}
+
+rdm_spec spec_of(const Task& task, int32_t index) {
+  rdm_spec s{};
+  s.control_dt = static_cast<float>(task.scene().control_dt());
+  s.obs_dim = obs_dim(task);
+  s.action_dim = task.action_dim();
+  s.cost_dim = task_at(index).num_costs;
+  s.max_steps = task.max_steps();
+  s.layout_hash = layout_hash(task);
+  s.num_fields = static_cast<int32_t>(task.fields().size());
+  s.num_shapes = static_cast<int32_t>(task.scene().shapes.size());
+  s.num_joints = task.scene().num_links;
+  s.task = index;
+  return s;
+}
+
+// The arrays that rdm_agent_config_for_pool lends out.
+void carve(Arena& arena, const Task& task, const TaskInfo& info, rdm_pool* p) {
+  p->defaults = arena.make<rdm_option>(static_cast<size_t>(info.num_defaults));
+  p->initial_mean = arena.make<float>(static_cast<size_t>(task.action_dim()));
+  p->cost_limits = arena.make<double>(static_cast<size_t>(info.num_costs));
+}
+
+size_t lent_bytes(const PoolConfig& config) {
+  const int32_t index = task_find(config.task);
+  const TaskInfo& info = task_at(index);
+  Task* task = make_task(config);
+  Arena measure;
+  rdm_pool none;
+  carve(measure, *task, info, &none);
+  info.destroy(task, config.hooks);
+  return measure.used();
+}
+
+void fill_lent(rdm_pool* p) {
+  const Task& task = p->pool->task();
+  const TaskInfo& info = task_at(p->pool->task_index());
+  Arena measure;
+  carve(measure, task, info, p);
+  p->arena = Arena(p->hooks, measure.used());
+  carve(p->arena, task, info, p);
+  for (int32_t i = 0; i < info.num_defaults; ++i) p->defaults[i] = {info.defaults[i].key, info.defaults[i].value, 0};
+  task.initial_mean(p->initial_mean);
+  // only column 0 is limited unless the host says otherwise
+  for (int32_t i = 0; i < info.num_costs; ++i) p->cost_limits[i] = i == 0 ? info.costs[0].limit : -1;
+}
+
+}  // namespace
+
+rdm_result rdm_pool_spec(const rdm_pool_config* c, rdm_spec* io) {
+  return call(nullptr, [&] {
+    check_out(io, sizeof(rdm_spec), "io");
+    Config config;
+    read_config(c, &config);
+    const HostScope scope(config.pool.hooks);
+    const int32_t index = task_find(config.pool.task);
+    Task* task = make_task(config.pool);
+    const rdm_spec s = spec_of(*task, index);
+    task_at(index).destroy(task, config.pool.hooks);
+    write_struct(io, s, sizeof(rdm_spec), "io");
+  });
+}
+
+rdm_result rdm_pool_memory(const rdm_pool_config* c, size_t* ours, size_t* engines) {
+  return call(nullptr, [&] {
+    Config config;
+    read_config(c, &config);
+    size_t a = 0, b = 0;
+    Pool::memory(config.pool, &a, &b);
+    if (ours) *ours = a + sizeof(rdm_pool) + lent_bytes(config.pool);
+    if (engines) *engines = b;
+  });
+}
+
+rdm_result rdm_pool_create(rdm_pool** out, const rdm_pool_config* c) {
+  return call(nullptr, [&] {
+    need(out, "out");
+    Config config;
+    read_config(c, &config);
+    const HostScope scope(config.pool.hooks);
+    rdm_pool* p = host_new<rdm_pool>(config.pool.hooks);
+    p->hooks = config.pool.hooks;
+    try {
+      p->pool = Pool::create(config.pool);
+      fill_lent(p);
+    } catch (...) {
+      rdm_pool_destroy(p);
+      throw;
+    }
+    *out = p;
+  });
+}
+
+void rdm_pool_destroy(rdm_pool* p) {
+  if (!p) return;
+  const FpMode mode;
+  if (p->pool) Pool::destroy(p->pool);
+  host_delete(p->hooks, p);
+}
+
+const char* rdm_pool_error(const rdm_pool* p) { return p ? p->error : "pool is NULL"; }
+
+rdm_result rdm_pool_get_spec(const rdm_pool* p, rdm_spec* io) {
+  return call(nullptr, [&] {
+    need(p, "pool");
+    write_struct(io, spec_of(p->pool->task(), p->pool->task_index()), sizeof(rdm_spec), "io");
+  });
+}
+
+namespace rdm::capi {
+rdm_field field_of(const Task& task, int32_t i) {
+  const auto& fields = task.fields();
+  need_index(i, static_cast<int64_t>(fields.size()), "i");
+  rdm_field f{fields[static_cast<size_t>(i)].name.text, fields[static_cast<size_t>(i)].unit, 0,
+              fields[static_cast<size_t>(i)].count};
+  for (int32_t k = 0; k < i; ++k) f.offset += fields[static_cast<size_t>(k)].count;
+  return f;
+}
+}  // namespace rdm::capi
+
+rdm_result rdm_pool_field(const rdm_pool* p, int32_t i, rdm_field* out) {
+  return call(nullptr, [&] {
+    need(p, "pool");
+    need(out, "out");
+    *out = field_of(p->pool->task(), i);
+  });
+}
+
+rdm_result rdm_pool_option(const rdm_pool* p, int32_t i, const char** key, char* text) {
+  return call(nullptr, [&] {
+    need(p, "pool");
+    need(key, "key");
+    need(text, "text");
+    const Options& o = p->pool->options();
+    need_index(i, o.count(), "i");
+    *key = o.spec(i).key;
+    o.print(i, text);
+  });
+}
+
+rdm_result rdm_pool_buffers(const rdm_pool* p, rdm_buffers* io) {
+  return call(nullptr, [&] {
+    need(p, "pool");
+    const Buffers& b = p->pool->buffers();
+    rdm_buffers out{};
+    out.obs = b.obs;
+    out.final_obs = b.final_obs;
+    out.action = b.action;
+    out.reward = b.reward;
+    out.cost = b.cost;
+    out.cost_raw = b.cost_raw;
+    out.episode_return = b.episode_return;
+    out.episode_cost = b.episode_cost;
+    out.episode_step = b.episode_step;
+    out.status = b.status;
+    out.terminated = b.terminated;
+    out.truncated = b.truncated;
+    out.success = b.success;
+    write_struct(io, out, sizeof(rdm_buffers), "io");
+  });
+}
+
+rdm_result rdm_pool_bind(rdm_pool* p, const rdm_buffers* b) {
+  return call(p ? p->error : nullptr, [&] {
+    need(p, "pool");
+    const auto in = read_struct(b, sizeof(rdm_buffers), rdm_buffers{}, "b");
+    const auto aligned = [](const void* q, const char* name) {
+      if (reinterpret_cast<uintptr_t>(q) % 4) fail(Code::kArgument, "b.%s is not 4-byte aligned", name);
+    };
+    aligned(in.obs, "obs");
+    aligned(in.final_obs, "final_obs");
+    aligned(in.action, "action");
+    aligned(in.reward, "reward");
+    aligned(in.cost, "cost");
+    aligned(in.cost_raw, "cost_raw");
+    aligned(in.episode_return, "episode_return");
+    aligned(in.episode_cost, "episode_cost");
+    aligned(in.episode_step, "episode_step");
+    aligned(in.status, "status");
+    Buffers h;
+    h.obs = in.obs;
+    h.final_obs = in.final_obs;
+    h.action = in.action;
+    h.reward = in.reward;
+    h.cost = in.cost;
+    h.cost_raw = in.cost_raw;
+    h.episode_return = in.episode_return;
+    h.episode_cost = in.episode_cost;
+    h.episode_step = in.episode_step;
+    h.status = in.status;
+    h.terminated = in.terminated;
+    h.truncated = in.truncated;
+    h.success = in.success;
+    p->pool->bind(h);
+  });
+}
+
+rdm_result rdm_pool_reset(rdm_pool* p, const uint64_t* seeds, const uint8_t* mask) {
+  return call(p ? p->error : nullptr, [&] {
+    need(p, "pool");
+    p->pool->reset(seeds, mask);
+  });
+}
+
+rdm_result rdm_pool_step(rdm_pool* p) {
+  return call(p ? p->error : nullptr, [&] {
+    need(p, "pool");
+    p->pool->step(nullptr);
+  });
+}
+
+rdm_result rdm_pool_step_masked(rdm_pool* p, const uint8_t* mask) {
+  return call(p ? p->error : nullptr, [&] {
+    need(p, "pool");
+    need(mask, "mask");
+    p->pool->step(mask);
+  });
+}
+
+rdm_result rdm_pool_baseline(rdm_pool* p, int32_t kind) {
+  return call(p ? p->error : nullptr, [&] {
+    need(p, "pool");
+    if (kind < RDM_BASELINE_ZERO || kind > RDM_BASELINE_RANDOM)
+      fail(Code::kRange, "kind: %d is outside [0, 2]", kind);
+    p->pool->baseline(static_cast<Baseline>(kind));
+  });
+}
+
+namespace {
+void check_env(const rdm_pool* p, int32_t env, bool all_allowed) {
+  need(p, "pool");
+  if (env == -1 && all_allowed) return;
+  need_index(env, p->pool->config().num_envs, "env");
+}
+}  // namespace
+
+rdm_result rdm_pool_state_size(const rdm_pool* p, int32_t env, size_t* bytes) {
+  return call(nullptr, [&] {
+    check_env(p, env, true);
+    need(bytes, "bytes");
+    *bytes = p->pool->state_size(env);
+  });
+}
+
+rdm_result rdm_pool_get_state(const rdm_pool* p, int32_t env, void* bytes, size_t capacity, size_t* size) {
+  return call(nullptr, [&] {
+    check_env(p, env, true);
+    need(bytes, "bytes");
+    need(size, "size");
+    const size_t n = p->pool->state_size(env);
+    if (capacity < n) fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, n);
+    Writer out(bytes, capacity);
+    p->pool->get_state(env, out);
+    *size = out.size();
+  });
+}
+
+rdm_result rdm_pool_set_state(rdm_pool* p, int32_t env, const void* bytes, size_t size) {
+  return call(p ? p->error : nullptr, [&] {
+    check_env(p, env, true);
+    need(bytes, "bytes");
+    p->pool->set_state(env, bytes, size);
+  });
+}
+
+rdm_result rdm_pool_hash(const rdm_pool* p, int32_t env, uint64_t* hash) {
+  return call(nullptr, [&] {
+    check_env(p, env, true);
+    need(hash, "hash");
+    *hash = p->pool->hash(env);
+  });
+}
+
+rdm_result rdm_pool_get_stats(const rdm_pool* p, rdm_pool_stats* io) {
+  return call(nullptr, [&] {
+    need(p, "pool");
+    check_out(io, sizeof(rdm_pool_stats), "io");
+    const PoolStats s = p->pool->stats();
+    rdm_pool_stats out{};
+    out.contacts_max = s.contacts_max;
+    out.contacts_mean = s.contacts_mean;
+    out.joint_drift = s.joint_drift;
+    out.steps = s.steps;
+    out.diverged = s.diverged;
+    out.overflowed = s.overflowed;
+    write_struct(io, out, sizeof(rdm_pool_stats), "io");
+  });
+}
+#endif
