@@ -13,33 +13,54 @@ if(REDMAN_SANITIZE)
   target_link_options(rdm_flags INTERFACE -fsanitize=${REDMAN_SANITIZE})
 endif()
 
-set(RDM_LAYERS "")
-set(RDM_LINKS "")
+set(RDM_SIM_ROWS physics robot sense env tasks)
+set(RDM_LEARN_ROWS nn algos)
+set(RDM_ROWS "")
 
-# rdm_layer(name folder libraries...): the folder's sources as the object library rdm_<name>. A folder
-# without sources (headers only) is no target.
-macro(rdm_layer name folder)
-  file(GLOB rdm_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
-  list(APPEND RDM_LINKS ${ARGN})
-  if(rdm_sources)
-    add_library(rdm_${name} OBJECT ${rdm_sources})
-    target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR}/lib)
-    target_link_libraries(rdm_${name} PRIVATE rdm_flags ${ARGN})
-    set_target_properties(rdm_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON
-                          CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-    list(APPEND RDM_LAYERS rdm_${name})
-    if("${name}" MATCHES "^(tasks|algos|capi)$")
-      target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR})
-    endif()
-    if("${name}" STREQUAL "capi")
-      target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR}/include)
-      target_compile_definitions(rdm_${name} PRIVATE RDM_BUILDING
-        RDM_WITH_SIM=$<BOOL:${REDMAN_SIM}> RDM_WITH_LEARN=$<BOOL:${REDMAN_LEARN}>
-        RDM_ODE_VERSION="${RDM_VERSION_TEXT_ODE}" RDM_CCD_VERSION="${RDM_VERSION_TEXT_CCD}"
-        RDM_EIGEN_VERSION="${RDM_VERSION_TEXT_EIGEN}" RDM_OCTOMAP_VERSION="${RDM_VERSION_TEXT_OCTOMAP}")
-    endif()
+# rdm_layer(name folder SEES rows... LINKS libraries...): the folder's sources as the object library
+# rdm_<name>. A folder without sources is no target; a row of a half that is switched off is left out.
+function(rdm_layer name folder)
+  cmake_parse_arguments(arg "" "" "SEES;LINKS" ${ARGN})
+  set(RDM_TABLE "${RDM_TABLE}${name} ${folder} ${arg_SEES}\n" PARENT_SCOPE)
+  if((name IN_LIST RDM_SIM_ROWS AND NOT REDMAN_SIM) OR (name IN_LIST RDM_LEARN_ROWS AND NOT REDMAN_LEARN))
+    return()
   endif()
-endmacro()
+  set(RDM_ROWS ${RDM_ROWS} ${name} PARENT_SCOPE)
+  set(RDM_SEES_${name} ${arg_SEES} PARENT_SCOPE)
+  set(RDM_LINKS_${name} ${arg_LINKS} PARENT_SCOPE)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_library(rdm_${name} OBJECT ${sources})
+  target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR}/lib)
+  target_link_libraries(rdm_${name} PRIVATE rdm_flags ${arg_LINKS})
+  set_target_properties(rdm_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON
+                        CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  if(name MATCHES "^(tasks|algos|capi)$")
+    target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  endif()
+  if(name STREQUAL "capi")
+    target_include_directories(rdm_capi PRIVATE ${PROJECT_SOURCE_DIR}/include)
+    target_compile_definitions(rdm_capi PRIVATE RDM_BUILDING
+      RDM_WITH_SIM=$<BOOL:${REDMAN_SIM}> RDM_WITH_LEARN=$<BOOL:${REDMAN_LEARN}>
+      RDM_ODE_VERSION="${RDM_VERSION_TEXT_ODE}" RDM_CCD_VERSION="${RDM_VERSION_TEXT_CCD}"
+      RDM_EIGEN_VERSION="${RDM_VERSION_TEXT_EIGEN}" RDM_OCTOMAP_VERSION="${RDM_VERSION_TEXT_OCTOMAP}")
+  endif()
+endfunction()
+
+# rdm_use_rows(target rows...): the objects of the rows, and what they link.
+function(rdm_use_rows target)
+  foreach(row ${ARGN})
+    if(TARGET rdm_${row})
+      target_sources(${target} PRIVATE $<TARGET_OBJECTS:rdm_${row}>)
+    endif()
+    list(APPEND links ${RDM_LINKS_${row}})
+  endforeach()
+  list(REMOVE_DUPLICATES links)
+  list(REMOVE_ITEM links Eigen3::Eigen)  # headers only
+  target_link_libraries(${target} PRIVATE ${links})
+endfunction()
 
 # The linker script that exports the checked-in lists and nothing else.
 function(rdm_version_script out)
@@ -63,17 +84,11 @@ endfunction()
 
 # rdm_library(target STATIC|SHARED) from the objects of all layers.
 function(rdm_library target kind)
-  set(objects "")
-  foreach(layer ${RDM_LAYERS})
-    list(APPEND objects $<TARGET_OBJECTS:${layer}>)
-  endforeach()
-  list(REMOVE_DUPLICATES RDM_LINKS)
-  list(REMOVE_ITEM RDM_LINKS Eigen3::Eigen)
-  add_library(${target} ${kind} ${objects})
+  add_library(${target} ${kind})
   add_library(redman::${target} ALIAS ${target})
+  rdm_use_rows(${target} ${RDM_ROWS})
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_link_libraries(${target} PRIVATE ${RDM_LINKS})
   set_target_properties(${target} PROPERTIES OUTPUT_NAME redman LINKER_LANGUAGE CXX
                         VERSION ${PROJECT_VERSION} SOVERSION ${RDM_ABI})
   if(REDMAN_SANITIZE)

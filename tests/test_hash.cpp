@@ -1,6 +1,6 @@
-#include "base/hash.hpp"
-
 #include <gtest/gtest.h>
+
+#include "base/hash.hpp"
 
 namespace rdm {
 namespace {

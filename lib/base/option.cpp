@@ -1,9 +1,9 @@
 #include "base/option.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 
 #include "base/error.hpp"
@@ -96,13 +96,15 @@ void Options::assign(Row& row, const OptionInput& input, const char* owner) cons
   }
   double v = input.number;
   if (input.text) {
-    char* end = nullptr;
-    v = std::strtod(input.text, &end);
+    // Not strtod: a host may have set a locale with a decimal comma.
+    const char* begin = input.text + (input.text[0] == '+' ? 1 : 0);
+    const char* stop = input.text + std::strlen(input.text);
+    const auto [end, error] = std::from_chars(begin, stop, v);
     if (s.kind == OptionKind::kFlag && (same_name(input.text, "true") || same_name(input.text, "on")))
       v = 1;
     else if (s.kind == OptionKind::kFlag && (same_name(input.text, "false") || same_name(input.text, "off")))
       v = 0;
-    else if (end == input.text || *end)
+    else if (error != std::errc() || end != stop)
       fail(Code::kArgument, "%s option %s: '%s' is not a number", owner, s.key, input.text);
   }
   if (!std::isfinite(v)) fail(Code::kArgument, "%s option %s: the value is not finite", owner, s.key);
@@ -135,12 +137,18 @@ const Options::Row& Options::need(const char* key, OptionKind kind) const {
   return rows_[static_cast<size_t>(i)];
 }
 
-double Options::number(const char* key) const { return need(key, OptionKind::kNumber).number; }
+double Options::number(const char* key) const {
+  return need(key, OptionKind::kNumber).number;
+}
 int32_t Options::integer(const char* key) const {
   return static_cast<int32_t>(need(key, OptionKind::kInteger).number);
 }
-bool Options::flag(const char* key) const { return need(key, OptionKind::kFlag).number != 0; }
-const char* Options::text(const char* key) const { return need(key, OptionKind::kText).text; }
+bool Options::flag(const char* key) const {
+  return need(key, OptionKind::kFlag).number != 0;
+}
+const char* Options::text(const char* key) const {
+  return need(key, OptionKind::kText).text;
+}
 bool Options::given(const char* key) const {
   const int32_t i = find(key);
   return i >= 0 && rows_[static_cast<size_t>(i)].given;
@@ -153,7 +161,7 @@ void Options::print(int32_t i, char* out) const {
   else if (r.spec->kind == OptionKind::kFlag)
     std::snprintf(out, kOptionTextSize, "%s", r.number != 0 ? "true" : "false");
   else
-    std::snprintf(out, kOptionTextSize, "%.9g", r.number);
+    *std::to_chars(out, out + kOptionTextSize - 1, r.number, std::chars_format::general, 9).ptr = '\0';
 }
 
 void Options::set_default(const char* key, double number) {

@@ -1,0 +1,193 @@
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/option.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr OptionSpec kTable[] = {
+    number_option("gamma", 0.96, 0, 1, "discount per control step"),
+    integer_option("minibatches", 4, 1, 64, "parts of a pass"),
+    flag_option("reset_noise", false, "random start poses"),
+    text_option("object", "egg", "egg|ball|soup_can", "what is thrown"),
+    text_option("note", "", nullptr, "free text"),
+    number_option("learning_rate", 1e-3, 1e-8, 1, "Adam step", true),
+};
+
+Options made() {
+  Options o;
+  o.add_table(kTable, 6);
+  return o;
+}
+Code set(Options& o, const char* key, const char* text, double number = 0) {
+  return guard([&] { o.set({key, text, number}, "task"); });
+}
+std::string printed(const Options& o, int32_t i) {
+  char out[kOptionTextSize];
+  o.print(i, out);
+  return out;
+}
+
+TEST(Options, DefaultsStandUntilGiven) {
+  Options o = made();
+  EXPECT_EQ(o.count(), 6);
+  EXPECT_EQ(o.number("gamma"), 0.96);
+  EXPECT_EQ(o.integer("minibatches"), 4);
+  EXPECT_FALSE(o.flag("reset_noise"));
+  EXPECT_STREQ(o.text("object"), "egg");
+  EXPECT_FALSE(o.given("gamma"));
+  EXPECT_TRUE(o.spec(5).live);
+  EXPECT_FALSE(o.spec(0).live);
+  ASSERT_EQ(set(o, "gamma", nullptr, 0.5), Code::kOk);
+  EXPECT_EQ(o.number("gamma"), 0.5);
+  EXPECT_TRUE(o.given("gamma"));
+  EXPECT_FALSE(o.given("unknown"));
+}
+
+TEST(Options, TextIsParsed) {
+  Options o = made();
+  EXPECT_EQ(set(o, "gamma", "2.5e-1"), Code::kOk);
+  EXPECT_EQ(o.number("gamma"), 0.25);
+  EXPECT_EQ(set(o, "minibatches", "16"), Code::kOk);
+  EXPECT_EQ(o.integer("minibatches"), 16);
+  EXPECT_EQ(set(o, "minibatches", "+8"), Code::kOk);
+  EXPECT_EQ(o.integer("minibatches"), 8);
+  for (const char* yes : {"true", "on", "1", "TRUE"}) {
+    EXPECT_EQ(set(o, "reset_noise", yes), Code::kOk);
+    EXPECT_TRUE(o.flag("reset_noise")) << yes;
+    EXPECT_EQ(set(o, "reset_noise", "off"), Code::kOk);
+    EXPECT_FALSE(o.flag("reset_noise"));
+  }
+  for (const char* bad : {"", "x", "0.5x", "0,5", "1 2", "true", "1e999", "+", "0x1"})
+    EXPECT_EQ(set(o, "gamma", bad), Code::kArgument) << bad;
+  EXPECT_EQ(o.number("gamma"), 0.25);
+}
+
+TEST(Options, BoundsAreInclusiveAndKept) {
+  Options o = made();
+  EXPECT_EQ(set(o, "gamma", nullptr, 0), Code::kOk);
+  EXPECT_EQ(set(o, "gamma", nullptr, 1), Code::kOk);
+  EXPECT_EQ(set(o, "gamma", nullptr, std::nextafter(1.0, 2.0)), Code::kRange);
+  EXPECT_EQ(set(o, "gamma", "-0.1"), Code::kRange);
+  EXPECT_STREQ(last_error(), "task option gamma: -0.1 is outside [0, 1]");
+  EXPECT_EQ(o.number("gamma"), 1.0);
+  EXPECT_EQ(set(o, "minibatches", nullptr, 2.5), Code::kRange);
+  EXPECT_EQ(set(o, "reset_noise", nullptr, 0.5), Code::kRange);
+  EXPECT_EQ(set(o, "reset_noise", nullptr, 2), Code::kRange);
+  for (const double v : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    EXPECT_EQ(set(o, "gamma", nullptr, v), Code::kArgument);
+  EXPECT_EQ(set(o, "gamma", "nan"), Code::kArgument);
+}
+
+TEST(Options, ChoicesTakeTheSpellingOfTheTable) {
+  Options o = made();
+  EXPECT_EQ(set(o, "object", "Soup-Can"), Code::kOk);
+  EXPECT_STREQ(o.text("object"), "soup_can");
+  for (const char* bad : {"", "eg", "eggs", "egg|ball", "soup"})
+    EXPECT_EQ(set(o, "object", bad), Code::kRange) << bad;
+  EXPECT_STREQ(o.text("object"), "soup_can");
+  EXPECT_EQ(set(o, "object", nullptr, 1), Code::kArgument);
+}
+
+TEST(Options, FreeTextHasAnEnd) {
+  Options o = made();
+  const std::string fits(kOptionTextSize - 1, 'a'), over(kOptionTextSize, 'a');
+  EXPECT_EQ(set(o, "note", fits.c_str()), Code::kOk);
+  EXPECT_EQ(o.text("note"), fits);
+  EXPECT_EQ(set(o, "note", over.c_str()), Code::kRange);
+  EXPECT_EQ(o.text("note"), fits);
+}
+
+TEST(Options, UnknownKeyNamesTheNearest) {
+  Options o = made();
+  EXPECT_EQ(set(o, "lerning-rate", nullptr, 1), Code::kNotFound);
+  EXPECT_STREQ(last_error(), "task option lerning-rate: unknown; nearest is learning_rate");
+  EXPECT_EQ(set(o, nullptr, nullptr, 1), Code::kArgument);
+  EXPECT_EQ(set(o, std::string(5000, 'k').c_str(), nullptr, 1), Code::kNotFound);
+  Options none;
+  EXPECT_EQ(set(none, "gamma", nullptr, 1), Code::kNotFound);
+}
+
+TEST(Options, KeysMatchWithoutCaseAndHyphens) {
+  Options o = made();
+  EXPECT_EQ(set(o, "Learning-Rate", nullptr, 0.1), Code::kOk);
+  EXPECT_EQ(o.number("learning_rate"), 0.1);
+  EXPECT_TRUE(o.knows("LEARNING_RATE"));
+  EXPECT_TRUE(same_name("hand-over", "HAND_over"));
+  EXPECT_FALSE(same_name("hand", "hand_"));
+  EXPECT_FALSE(same_name("hand_", "hand"));
+}
+
+TEST(Options, LaterDuplicatesWin) {
+  Options o = made();
+  set(o, "gamma", nullptr, 0.1);
+  set(o, "GAMMA", nullptr, 0.2);
+  EXPECT_EQ(o.number("gamma"), 0.2);
+}
+
+TEST(Options, DeclaredTwiceOrReadAsAnotherKindIsOurOwnFault) {
+  Options o = made();
+  EXPECT_EQ(guard([&] { o.add_table(kTable + 3, 1); }), Code::kInternal);
+  EXPECT_EQ(guard([&] { o.integer("gamma"); }), Code::kInternal);
+  EXPECT_EQ(guard([&] { o.text("unknown"); }), Code::kInternal);
+}
+
+TEST(Options, OwnDefaultsYieldToTheHost) {
+  Options o = made();
+  o.set_default("gamma", 0.9);
+  o.set_default("object", "ball");
+  EXPECT_EQ(o.number("gamma"), 0.9);
+  EXPECT_STREQ(o.text("object"), "ball");
+  EXPECT_FALSE(o.given("gamma"));
+  set(o, "gamma", nullptr, 0.8);
+  o.set_default("gamma", 0.7);
+  EXPECT_EQ(o.number("gamma"), 0.8);
+  EXPECT_EQ(guard([&] { o.set_default("minibatches", 1000); }), Code::kRange);
+  EXPECT_EQ(guard([&] { o.set_default("unknown", 1.0); }), Code::kInternal);
+}
+
+TEST(Options, PrintReadsBack) {
+  Options o = made();
+  set(o, "gamma", nullptr, 0.123456789);
+  set(o, "learning_rate", nullptr, 3e-4);
+  EXPECT_EQ(printed(o, 0), "0.123456789");
+  EXPECT_EQ(printed(o, 1), "4");
+  EXPECT_EQ(printed(o, 2), "false");
+  EXPECT_EQ(printed(o, 3), "egg");
+  EXPECT_EQ(printed(o, 5), "0.0003");
+  for (int32_t i = 0; i < o.count(); ++i)
+    EXPECT_EQ(set(o, o.spec(i).key, printed(o, i).c_str()), Code::kOk) << o.spec(i).key;
+  EXPECT_EQ(o.number("gamma"), 0.123456789);
+}
+
+TEST(Options, DecimalPointInEveryLocale) {
+  const char* before = std::setlocale(LC_NUMERIC, nullptr);
+  const std::string keep = before ? before : "C";
+  const char* comma = nullptr;
+  for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE.utf8", "nl_NL.UTF-8"})
+    if (!comma) comma = std::setlocale(LC_NUMERIC, name);
+  if (!comma) GTEST_SKIP() << "this machine has no locale with a decimal comma";
+  Options o = made();
+  EXPECT_EQ(set(o, "gamma", "0.25"), Code::kOk);
+  EXPECT_EQ(o.number("gamma"), 0.25);
+  EXPECT_EQ(printed(o, 0), "0.25");
+  std::setlocale(LC_NUMERIC, keep.c_str());
+}
+
+TEST(NearestName, ByEditDistance) {
+  const char* names[] = {"ppo", "ppo_lag", "trpo", "cpo"};
+  EXPECT_EQ(nearest_name("ppolag", names, 4), 1);
+  EXPECT_EQ(nearest_name("TRPO", names, 4), 2);
+  EXPECT_EQ(nearest_name("trpoo", names, 4), 2);
+  EXPECT_EQ(nearest_name("c", names, 4), 3);
+  EXPECT_EQ(nearest_name("x", names, 0), -1);
+}
+
+}  // namespace
+}  // namespace rdm

@@ -1,0 +1,155 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/fpmode.hpp"
+#include "base/workers.hpp"
+
+namespace rdm {
+namespace {
+
+struct Visits {
+  explicit Visits(int n) : count(static_cast<size_t>(n), 0), thread(static_cast<size_t>(n)) {}
+  std::vector<int> count;
+  std::vector<std::thread::id> thread;
+  static void body(void* context, int32_t i) {
+    auto* v = static_cast<Visits*>(context);
+    ++v->count[static_cast<size_t>(i)];
+    v->thread[static_cast<size_t>(i)] = std::this_thread::get_id();
+  }
+  bool all(int times) const {
+    return std::all_of(count.begin(), count.end(), [=](int c) { return c == times; });
+  }
+};
+
+class WorkersOf : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Threads, WorkersOf, testing::Values(0, 1, 2, 4));
+
+TEST_P(WorkersOf, EveryIndexOnceEveryRound) {
+  Workers workers(host(), GetParam());
+  EXPECT_EQ(workers.width(), std::max(1, GetParam()));
+  for (const int n : {0, 1, 2, 3, 7, 64}) {
+    Visits visits(n);
+    for (int round = 1; round <= 200; ++round) {
+      workers.run(n, Visits::body, &visits);
+      ASSERT_TRUE(visits.all(round)) << n << " bodies, round " << round;
+    }
+  }
+}
+
+TEST_P(WorkersOf, BodyStaysWithItsThread) {
+  const int threads = std::max(1, GetParam());
+  Workers workers(host(), GetParam());
+  Visits first(40), later(40);
+  workers.run(40, Visits::body, &first);
+  for (int i = 0; i < 20; ++i) workers.run(40, Visits::body, &later);
+  EXPECT_EQ(first.thread, later.thread);
+  EXPECT_EQ(first.thread[0], std::this_thread::get_id());
+  for (int i = 0; i < 40; ++i)
+    for (int j = 0; j < 40; ++j)
+      EXPECT_EQ(first.thread[static_cast<size_t>(i)] == first.thread[static_cast<size_t>(j)],
+                i % threads == j % threads);
+}
+
+TEST_P(WorkersOf, ResultDoesNotDependOnTheThreads) {
+  struct Sums {
+    double out[33] = {};
+    static void body(void* context, int32_t i) {
+      double x = 1.0 / (i + 1);
+      for (int k = 0; k < 1000; ++k) x += 1e-3 * std::sqrt(x + k);
+      static_cast<Sums*>(context)->out[i] = x;
+    }
+  } serial, parallel;
+  for (int32_t i = 0; i < 33; ++i) Sums::body(&serial, i);
+  Workers(host(), GetParam()).run(33, Sums::body, &parallel);
+  for (int i = 0; i < 33; ++i) EXPECT_EQ(serial.out[i], parallel.out[i]);
+}
+
+TEST(Workers, HostHookTakesTheWork) {
+  struct Host {
+    int calls = 0;
+    int32_t n = 0;
+  } spread;
+  HostHooks hooks;
+  hooks.user = &spread;
+  hooks.parallel = [](void* user, int32_t n, ParallelBody body, void* context) {
+    auto* host = static_cast<Host*>(user);
+    ++host->calls;
+    host->n = n;
+    std::vector<std::thread> threads;
+    for (int32_t i = n - 1; i >= 0; --i) threads.emplace_back(body, context, i);
+    for (auto& t : threads) t.join();
+  };
+  Workers workers(hooks, 4);
+  EXPECT_EQ(workers.width(), 4);
+  Visits visits(9);
+  workers.run(9, Visits::body, &visits);
+  EXPECT_TRUE(visits.all(1));
+  EXPECT_EQ(spread.calls, 1);
+  EXPECT_EQ(spread.n, 9);
+}
+
+#if defined(__SSE2__)
+void write_mode(void* context, int32_t i) {
+  static_cast<unsigned*>(context)[i] = _mm_getcsr() & 0xFFC0u;
+}
+
+TEST(Workers, BodiesRunInTheLibrarysFloatingPointMode) {
+  unsigned modes[8] = {};
+  Workers(host(), 4).run(8, write_mode, modes);
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(modes[i], 0x9FC0u) << i;
+
+  HostHooks hooks;
+  hooks.parallel = [](void*, int32_t n, ParallelBody body, void* context) {
+    for (int32_t i = 0; i < n; ++i) body(context, i);
+  };
+  std::fill(modes, modes + 8, 0u);
+  const unsigned before = _mm_getcsr();
+  Workers(hooks, 2).run(8, write_mode, modes);
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(modes[i], 0x9FC0u) << i;
+  EXPECT_EQ(_mm_getcsr() & 0xFFC0u, before & 0xFFC0u);
+}
+#endif
+
+#if !defined(__SANITIZE_THREAD__)  // a forked child may not start threads under the thread sanitizer
+TEST(Workers, ForkedChildIsToldAndCanMakeItsOwn) {
+  Workers workers(host(), 2);
+  Visits visits(4);
+  workers.run(4, Visits::body, &visits);
+  const pid_t child = fork();
+  if (child == 0) {
+    const bool told = guard([&] { workers.run(4, Visits::body, &visits); }) == Code::kState;
+    Visits own(4);
+    Workers(host(), 2).run(4, Visits::body, &own);
+    { Workers moved_along(host(), 1); }
+    _exit(told && own.all(1) && visits.all(1) ? 0 : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  workers.run(4, Visits::body, &visits);
+  EXPECT_TRUE(visits.all(2));
+}
+
+TEST(Workers, SerialPoolSurvivesFork) {
+  Workers workers(host(), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    Visits own(4);
+    workers.run(4, Visits::body, &own);
+    _exit(own.all(1) ? 0 : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+}
+#endif
+
+}  // namespace
+}  // namespace rdm
