@@ -52,6 +52,9 @@ class Options {
   // Error(kNotFound) with the nearest key for an unknown key, kRange outside the bounds or the choices,
   // kArgument for a value that cannot be read or is not finite. Later duplicates win.
   void add_table(const OptionSpec* specs, int32_t count);
+  // Makes room for `rows` rows in all: one block of bytes(rows) from the host.
+  void reserve(int32_t rows) { rows_.reserve(static_cast<size_t>(rows)); }
+  static size_t bytes(int32_t rows) { return static_cast<size_t>(rows) * sizeof(Row); }
   void set(const OptionInput& input, const char* owner);
   bool knows(const char* key) const { return find(key) >= 0; }
 

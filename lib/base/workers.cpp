@@ -70,6 +70,11 @@ Workers::Workers(const HostHooks& hooks, int32_t threads) : hooks_(hooks) {
   }
 }
 
+size_t Workers::memory(const HostHooks& hooks, int32_t threads) {
+  if (hooks.parallel || threads <= 1) return 0;
+  return sizeof(Shared) + static_cast<size_t>(threads - 1) * sizeof(std::thread);
+}
+
 Workers::~Workers() {
   if (!shared_) return;
   if (shared_->pid == getpid()) {

@@ -23,6 +23,8 @@ class Workers {
   void run(int32_t n, ParallelBody body, void* context);
 
   int32_t width() const { return width_; }
+  // Bytes that the constructor takes from the alloc hook.
+  static size_t memory(const HostHooks& hooks, int32_t threads);
 
  private:
   struct Shared;
