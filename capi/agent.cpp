@@ -70,7 +70,8 @@ void emit(void* bytes, size_t capacity, size_t* size, F&& write) {
   Writer count(nullptr, 0);
   write(count);
   if (bytes) {
-    if (capacity < count.size()) fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, count.size());
+    if (capacity < count.size())
+      fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, count.size());
     Writer out(bytes, capacity);
     write(out);
   }
@@ -120,14 +121,17 @@ void rdm_agent_destroy(rdm_agent* a) {
   host_delete(a->hooks, a);
 }
 
-const char* rdm_agent_error(const rdm_agent* a) { return a ? a->error : "agent is NULL"; }
+const char* rdm_agent_error(const rdm_agent* a) {
+  return a ? a->error : "agent is NULL";
+}
 
 rdm_result rdm_agent_act(rdm_agent* a, const float* obs, int32_t mode, float* action) {
   return call(a ? a->error : nullptr, [&] {
     need(a, "agent");
     need(obs, "obs");
     need(action, "action");
-    if (mode != RDM_SAMPLE && mode != RDM_MEAN) fail(Code::kRange, "mode: %d is not RDM_SAMPLE or RDM_MEAN", mode);
+    if (mode != RDM_SAMPLE && mode != RDM_MEAN)
+      fail(Code::kRange, "mode: %d is not RDM_SAMPLE or RDM_MEAN", mode);
     a->agent->act(obs, mode == RDM_SAMPLE, action);
   });
 }

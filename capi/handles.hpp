@@ -3,6 +3,7 @@
 #include "capi/shim.hpp"
 #if RDM_WITH_SIM
 #include "env/pool.hpp"
+#include "sense/raycast.hpp"
 #endif
 #if RDM_WITH_LEARN
 #include "algos/agent.hpp"
@@ -14,19 +15,21 @@ struct rdm_pool {
   rdm::HostHooks hooks;
   char error[rdm::kErrorTextSize] = "";
   rdm::Pool* pool = nullptr;
-  rdm::Arena arena;                     // the arrays below
-  rdm_option* defaults = nullptr;       // [num_defaults] of the agent, for rdm_agent_config_for_pool
-  float* initial_mean = nullptr;        // [action_dim]
-  double* cost_limits = nullptr;        // [cost_dim]
+  rdm::Arena arena;                // the arrays below
+  rdm_option* defaults = nullptr;  // [num_defaults] of the agent, for rdm_agent_config_for_pool
+  float* initial_mean = nullptr;   // [action_dim]
+  double* cost_limits = nullptr;   // [cost_dim]
+  rdm::RaycastScratch raycast;
+  rdm::RenderShape* shapes = nullptr;  // [num_shapes]
 };
 #endif
 
 #if RDM_WITH_LEARN
 // Sums over the control steps of one decision, for rdm_agent_rollout.
 struct DecisionBuffers {
-  float* reward = nullptr;   // [num_envs]
-  float* cost = nullptr;     // [num_envs][cost_dim]
-  int32_t* steps = nullptr;  // [num_envs]
+  float* reward = nullptr;                                                          // [num_envs]
+  float* cost = nullptr;                                                            // [num_envs][cost_dim]
+  int32_t* steps = nullptr;                                                         // [num_envs]
   uint8_t *mask = nullptr, *valid = nullptr, *ended = nullptr, *success = nullptr;  // [num_envs]
 };
 

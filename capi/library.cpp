@@ -18,17 +18,27 @@ std::mutex g_init_mutex;
 int32_t g_init_count = 0;
 }  // namespace
 
-const char* rdm_result_string(rdm_result r) { return code_string(r); }
-const char* rdm_last_error(void) { return last_error(); }
-uint32_t rdm_version(void) { return RDM_VERSION; }
+const char* rdm_result_string(rdm_result r) {
+  return code_string(r);
+}
+const char* rdm_last_error(void) {
+  return last_error();
+}
+uint32_t rdm_version(void) {
+  return RDM_VERSION;
+}
 uint32_t rdm_features(void) {
-  return (RDM_WITH_SIM ? RDM_FEATURE_SIM : 0u) | (RDM_WITH_LEARN ? RDM_FEATURE_LEARN : 0u);
+  uint32_t f = 0;
+  if (RDM_WITH_SIM) f |= RDM_FEATURE_SIM;
+  if (RDM_WITH_LEARN) f |= RDM_FEATURE_LEARN;
+  return f;
 }
 
 rdm_result rdm_check_abi(uint32_t abi, uint32_t version) {
   return call(nullptr, [&] {
     if (abi != RDM_ABI) fail(Code::kVersion, "abi: the header has %u, the library %d", abi, RDM_ABI);
-    if (version > RDM_VERSION) fail(Code::kVersion, "version: the header has %u, the library %d", version, RDM_VERSION);
+    if (version > RDM_VERSION)
+      fail(Code::kVersion, "version: the header has %u, the library %d", version, RDM_VERSION);
   });
 }
 
@@ -36,8 +46,8 @@ rdm_result rdm_build_info(rdm_build* io) {
   return call(nullptr, [&] {
     rdm_build b{};
     b.abi = RDM_ABI;
-    b.version = RDM_TEXT_OF_VALUE(RDM_VERSION_MAJOR) "." RDM_TEXT_OF_VALUE(RDM_VERSION_MINOR) "." RDM_TEXT_OF_VALUE(
-        RDM_VERSION_PATCH);
+    b.version = RDM_TEXT_OF_VALUE(RDM_VERSION_MAJOR) "." RDM_TEXT_OF_VALUE(
+        RDM_VERSION_MINOR) "." RDM_TEXT_OF_VALUE(RDM_VERSION_PATCH);
     b.ode = RDM_ODE_VERSION;
     b.eigen = RDM_EIGEN_VERSION;
     b.ccd = RDM_CCD_VERSION;

@@ -70,8 +70,8 @@ size_t rdm_policy_scratch(const rdm_policy* p, int32_t rows) {
   return p && rows > 0 ? p->policy->scratch_bytes(rows) : 0;
 }
 
-rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, const float* noise, float* action,
-                          void* scratch, size_t scratch_bytes) {
+rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, const float* noise,
+                          float* action, void* scratch, size_t scratch_bytes) {
   return call(nullptr, [&] {
     need(p, "policy");
     need(obs, "obs");
@@ -98,8 +98,8 @@ rdm_result rdm_policy_check(const rdm_policy* p, const rdm_spec* spec) {
     if (v.layout_hash && s.layout_hash && v.layout_hash != s.layout_hash)
       fail(Code::kVersion, "layout_hash: the policy learned another layout of observations or actions");
     if (v.control_dt > 0 && s.control_dt > 0 && std::abs(v.control_dt - s.control_dt) > 1e-6f)
-      fail(Code::kVersion, "control_dt: the policy has %g s, the task %g s", static_cast<double>(v.control_dt),
-           static_cast<double>(s.control_dt));
+      fail(Code::kVersion, "control_dt: the policy has %g s, the task %g s",
+           static_cast<double>(v.control_dt), static_cast<double>(s.control_dt));
   });
 }
 #endif

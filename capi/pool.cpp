@@ -56,14 +56,17 @@ rdm_spec spec_of(const Task& task, int32_t index) {
   return s;
 }
 
-// The arrays that rdm_agent_config_for_pool lends out.
+// The arrays that rdm_agent_config_for_pool lends out, and what pictures are made in.
 void carve(Arena& arena, const Task& task, const TaskInfo& info, rdm_pool* p) {
   p->defaults = arena.make<rdm_option>(static_cast<size_t>(info.num_defaults));
   p->initial_mean = arena.make<float>(static_cast<size_t>(task.action_dim()));
   p->cost_limits = arena.make<double>(static_cast<size_t>(info.num_costs));
+  const auto shapes = task.scene().shapes.size();
+  p->shapes = arena.make<RenderShape>(shapes);
+  p->raycast = carve_raycast_scratch(arena, static_cast<int32_t>(shapes));
 }
 
-size_t lent_bytes(const PoolConfig& config) {
+size_t side_bytes(const PoolConfig& config) {
   const int32_t index = task_find(config.task);
   const TaskInfo& info = task_at(index);
   Task* task = make_task(config);
@@ -74,14 +77,15 @@ size_t lent_bytes(const PoolConfig& config) {
   return measure.used();
 }
 
-void fill_lent(rdm_pool* p) {
+void fill_side(rdm_pool* p) {
   const Task& task = p->pool->task();
   const TaskInfo& info = task_at(p->pool->task_index());
   Arena measure;
   carve(measure, task, info, p);
   p->arena = Arena(p->hooks, measure.used());
   carve(p->arena, task, info, p);
-  for (int32_t i = 0; i < info.num_defaults; ++i) p->defaults[i] = {info.defaults[i].key, info.defaults[i].value, 0};
+  for (int32_t i = 0; i < info.num_defaults; ++i)
+    p->defaults[i] = {info.defaults[i].key, info.defaults[i].value, 0};
   task.initial_mean(p->initial_mean);
   // only column 0 is limited unless the host says otherwise
   for (int32_t i = 0; i < info.num_costs; ++i) p->cost_limits[i] = i == 0 ? info.costs[0].limit : -1;
@@ -109,7 +113,7 @@ rdm_result rdm_pool_memory(const rdm_pool_config* c, size_t* ours, size_t* engin
     read_config(c, &config);
     size_t a = 0, b = 0;
     Pool::memory(config.pool, &a, &b);
-    if (ours) *ours = a + sizeof(rdm_pool) + lent_bytes(config.pool);
+    if (ours) *ours = a + sizeof(rdm_pool) + side_bytes(config.pool);
     if (engines) *engines = b;
   });
 }
@@ -124,7 +128,7 @@ rdm_result rdm_pool_create(rdm_pool** out, const rdm_pool_config* c) {
     p->hooks = config.pool.hooks;
     try {
       p->pool = Pool::create(config.pool);
-      fill_lent(p);
+      fill_side(p);
     } catch (...) {
       rdm_pool_destroy(p);
       throw;
@@ -140,7 +144,9 @@ void rdm_pool_destroy(rdm_pool* p) {
   host_delete(p->hooks, p);
 }
 
-const char* rdm_pool_error(const rdm_pool* p) { return p ? p->error : "pool is NULL"; }
+const char* rdm_pool_error(const rdm_pool* p) {
+  return p ? p->error : "pool is NULL";
+}
 
 rdm_result rdm_pool_get_spec(const rdm_pool* p, rdm_spec* io) {
   return call(nullptr, [&] {

@@ -1,5 +1,4 @@
-// rdm_agent_rollout and what else needs both halves: agents that learn from pools, and checkpoints.
-#include "base/file.hpp"
+// Agents that learn from pools: what needs both halves.
 #include "capi/handles.hpp"
 
 #if RDM_WITH_SIM && RDM_WITH_LEARN
@@ -86,24 +85,6 @@ void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
   }
 }
 
-constexpr char kCheckpointMagic[8] = {'R', 'D', 'M', 'C', 'H', 'E', 'C', 'K'};
-constexpr uint32_t kCheckpointVersion = 1;
-
-template <class F>
-void section(Writer& w, const char tag[4], F&& body) {
-  w.begin_section(tag);
-  body(w);
-  w.end_section();
-}
-
-void write_checkpoint(Writer& w, const Agent& agent, const Pool* pool, const void* note, size_t note_size) {
-  w.begin_file(kCheckpointMagic, kCheckpointVersion);
-  section(w, "AGNT", [&](Writer& s) { agent.save(s); });
-  if (pool) section(w, "POOL", [&](Writer& s) { pool->get_state(-1, s); });
-  section(w, "NOTE", [&](Writer& s) { s.bytes(note, note_size); });
-  w.end_file();
-}
-
 }  // namespace
 
 rdm_result rdm_agent_rollout(rdm_agent* a, rdm_pool* p, rdm_epoch* io) {
@@ -138,53 +119,4 @@ rdm_result rdm_agent_config_for_pool(rdm_agent_config* c, const rdm_pool* p) {
   });
 }
 
-rdm_result rdm_checkpoint_write(const char* path, const rdm_agent* a, const rdm_pool* p, const void* note,
-                                size_t note_size) {
-  return call(nullptr, [&] {
-    need(path, "path");
-    need(a, "agent");
-    if (note_size) need(note, "note");
-    const Pool* pool = p ? p->pool : nullptr;
-    Writer count(nullptr, 0);
-    write_checkpoint(count, *a->agent, pool, note, note_size);
-    Vector<unsigned char> file(count.size());
-    Writer out(file.data(), file.size());
-    write_checkpoint(out, *a->agent, pool, note, note_size);
-    write_file(path, file.data(), file.size());
-  });
-}
-
-rdm_result rdm_checkpoint_read(const char* path, rdm_agent* a, rdm_pool* p, void* note, size_t capacity,
-                               size_t* note_size) {
-  return call(a ? a->error : nullptr, [&] {
-    need(path, "path");
-    need(a, "agent");
-    need(note_size, "note_size");
-    if (capacity) need(note, "note");
-    const auto file = read_file(path);
-    Reader in(file.data(), file.size(), "checkpoint");
-    in.begin_file(kCheckpointMagic, kCheckpointVersion);
-    Vector<unsigned char> before;  // the pool as it was, in case the agent refuses its part
-    if (p) {
-      size_t size = p->pool->state_size(-1);
-      before.resize(size);
-      Writer keep(before.data(), size);
-      p->pool->get_state(-1, keep);
-      in.need_section("POOL");
-      size = in.left();
-      p->pool->set_state(-1, in.view(size), size);
-    }
-    try {
-      in.need_section("AGNT");
-      const size_t size = in.left();
-      a->agent->load(in.view(size), size);
-    } catch (...) {
-      if (p) p->pool->set_state(-1, before.data(), before.size());
-      throw;
-    }
-    in.need_section("NOTE");
-    *note_size = in.left();
-    in.bytes(note, std::min(capacity, *note_size));
-  });
-}
 #endif

@@ -1,5 +1,8 @@
 #include "capi/shim.hpp"
 
+#include <cstdio>
+#include <mutex>
+
 namespace rdm::capi {
 
 HostHooks hooks_from(const rdm_host* host) {
@@ -16,8 +19,15 @@ HostHooks hooks_from(const rdm_host* host) {
 }
 
 rdm_option_info describe(const OptionSpec& s) {
-  return {s.key,  s.help, s.kind == OptionKind::kText ? s.text : nullptr, s.choices, s.number,
-          s.low,  s.high, static_cast<int32_t>(s.kind),                   s.live ? 1 : 0};
+  return {s.key,
+          s.help,
+          s.kind == OptionKind::kText ? s.text : nullptr,
+          s.choices,
+          s.number,
+          s.low,
+          s.high,
+          static_cast<int32_t>(s.kind),
+          s.live ? 1 : 0};
 }
 
 Vector<OptionInput> read_options(const rdm_option* options, int32_t count, const char* name) {
@@ -27,6 +37,18 @@ Vector<OptionInput> read_options(const rdm_option* options, int32_t count, const
   Vector<OptionInput> out;
   for (int32_t i = 0; i < count; ++i) out.push_back({options[i].key, options[i].text, options[i].number});
   return out;
+}
+
+const char* lasting_name(const char* name) {
+  static char table[512][32];
+  static int used = 0;
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  for (int i = 0; i < used; ++i)
+    if (std::strncmp(table[i], name, sizeof table[i] - 1) == 0) return table[i];
+  if (used == 512) return "";
+  std::snprintf(table[used], sizeof table[used], "%s", name);
+  return table[used++];
 }
 
 }  // namespace rdm::capi

@@ -26,7 +26,8 @@ inline void need(const void* p, const char* name) {
 }
 inline void need_index(int64_t i, int64_t count, const char* name) {
   if (i < 0 || i >= count)
-    fail(Code::kRange, "%s: %lld is outside [0, %lld)", name, static_cast<long long>(i), static_cast<long long>(count));
+    fail(Code::kRange, "%s: %lld is outside [0, %lld)", name, static_cast<long long>(i),
+         static_cast<long long>(count));
 }
 
 // The caller's struct as this version knows it: fields beyond an older caller's size keep `defaults`, a
@@ -79,6 +80,9 @@ rdm_option_info describe(const OptionSpec& spec);
 // Public options as the library takes them; the strings stay the caller's. Error(kArgument) for a NULL list
 // with a count or a negative count.
 Vector<OptionInput> read_options(const rdm_option* options, int32_t count, const char* name);
+
+// A copy of `name` that lives as long as the process. The table is fixed: names beyond it are cut to "".
+const char* lasting_name(const char* name);
 
 [[noreturn]] inline void left_out(const char* half) {
   fail(Code::kUnsupported, "this build was made without the %s half", half);

@@ -15,7 +15,9 @@ Arena::~Arena() {
   if (block_) host_release(hooks_, block_, capacity_, kAlign);
 }
 
-Arena::Arena(Arena&& other) noexcept { *this = std::move(other); }
+Arena::Arena(Arena&& other) noexcept {
+  *this = std::move(other);
+}
 
 Arena& Arena::operator=(Arena&& other) noexcept {
   std::swap(hooks_, other.hooks_);
@@ -31,7 +33,8 @@ void* Arena::take(size_t bytes) {
   used_ += padded;
   if (!block_) return nullptr;
   if (used_ > capacity_)
-    fail(Code::kInternal, "arena of %zu bytes asked for %zu: measured and carved sizes differ", capacity_, used_);
+    fail(Code::kInternal, "arena of %zu bytes asked for %zu: measured and carved sizes differ", capacity_,
+         used_);
   return block_ + at;
 }
 

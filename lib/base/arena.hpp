@@ -15,7 +15,7 @@ class Arena {
  public:
   static constexpr size_t kAlign = 64;
 
-  Arena() = default;                              // measuring: make() returns null and counts
+  Arena() = default;                               // measuring: make() returns null and counts
   Arena(const HostHooks& hooks, size_t capacity);  // one zeroed block of `capacity` bytes
   ~Arena();
   Arena(Arena&& other) noexcept;

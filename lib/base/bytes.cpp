@@ -47,8 +47,18 @@ void Writer::patch(size_t at, const void* src, size_t n) {
   if (at + n <= capacity_) std::memcpy(data_ + at, src, n);
 }
 
+void Writer::push(size_t at) {
+  if (depth_ == kDepth) fail(Code::kInternal, "sections are nested deeper than %d", kDepth);
+  open_[depth_++] = at;
+}
+
+size_t Writer::pop() {
+  if (depth_ == 0) fail(Code::kInternal, "a section is ended that was not begun");
+  return open_[--depth_];
+}
+
 void Writer::begin_file(const char magic[8], uint32_t version) {
-  file_ = at_;
+  push(at_);
   bytes(magic, 8);
   value(version);
   value(kByteOrder);
@@ -56,26 +66,30 @@ void Writer::begin_file(const char magic[8], uint32_t version) {
 }
 
 void Writer::end_file() {
-  const uint64_t length = at_ - file_ - kFileHeader;
-  patch(file_ + 16, &length, 8);
+  const size_t file = pop();
+  const uint64_t length = at_ - file - kFileHeader;
+  patch(file + 16, &length, 8);
 }
 
 void Writer::begin_section(const char tag[4]) {
-  section_ = at_;
+  push(at_);
   bytes(tag, 4);
   value(uint32_t{0});
   value(uint64_t{0});
 }
 
 void Writer::end_section() {
-  const size_t begin = section_ + kSectionHeader;
+  const size_t section = pop();
+  const size_t begin = section + kSectionHeader;
   const uint64_t length = at_ - begin;
   const uint32_t crc = at_ <= capacity_ ? crc32(data_ + begin, length) : 0;
-  patch(section_ + 4, &crc, 4);
-  patch(section_ + 8, &length, 8);
+  patch(section + 4, &crc, 4);
+  patch(section + 8, &length, 8);
 }
 
-void Reader::bad(const char* why) const { fail(Code::kFormat, "%s: %s", what_, why); }
+void Reader::bad(const char* why) const {
+  fail(Code::kFormat, "%s: %s", what_, why);
+}
 
 void Reader::bytes(void* dst, size_t n) {
   const unsigned char* p = view(n);

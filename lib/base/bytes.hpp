@@ -13,10 +13,11 @@ namespace rdm {
 uint32_t crc32(const void* data, size_t size, uint32_t crc = 0);
 
 // Writes into [data, data + capacity), or only counts when data is null or the end is passed: size()
-// then is what it would have taken.
+// then is what it would have taken. Files and sections may be nested, up to kDepth open at once.
 class Writer {
  public:
-  Writer(void* data, size_t capacity) : data_(static_cast<unsigned char*>(data)), capacity_(data ? capacity : 0) {}
+  Writer(void* data, size_t capacity)
+      : data_(static_cast<unsigned char*>(data)), capacity_(data ? capacity : 0) {}
 
   void bytes(const void* src, size_t n) {
     if (n && at_ + n <= capacity_) std::memcpy(data_ + at_, src, n);
@@ -38,9 +39,14 @@ class Writer {
   bool fits() const { return at_ <= capacity_; }
 
  private:
+  static constexpr int kDepth = 8;
   void patch(size_t at, const void* src, size_t n);
+  void push(size_t at);
+  size_t pop();
   unsigned char* data_;
-  size_t capacity_, at_ = 0, file_ = 0, section_ = 0;
+  size_t capacity_, at_ = 0;
+  size_t open_[kDepth] = {};  // where the files and sections that are not ended began
+  int depth_ = 0;
 };
 
 // Reads what Writer wrote. Every way in which the bytes can be wrong is Error(kFormat), a newer version

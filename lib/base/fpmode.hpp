@@ -12,8 +12,12 @@ namespace rdm {
 class FpMode {
  public:
 #if defined(__SSE2__)
-  FpMode() : saved_(_mm_getcsr()) { _mm_setcsr(0x1F80u | 0x8040u); }
-  ~FpMode() { _mm_setcsr(saved_); }
+  FpMode() : saved_(_mm_getcsr()) {
+    _mm_setcsr(0x1F80u | 0x8040u);
+  }
+  ~FpMode() {
+    _mm_setcsr(saved_);
+  }
 
  private:
   unsigned saved_;

@@ -13,10 +13,18 @@ HostHooks g_host;
 thread_local const HostHooks* t_scope = nullptr;
 }  // namespace
 
-const HostHooks& host() { return t_scope ? *t_scope : g_host; }
-HostScope::HostScope(const HostHooks& hooks) : hooks_(hooks), outer_(t_scope) { t_scope = &hooks_; }
-HostScope::~HostScope() { t_scope = outer_; }
-void set_host(const HostHooks& hooks) { g_host = hooks; }
+const HostHooks& host() {
+  return t_scope ? *t_scope : g_host;
+}
+HostScope::HostScope(const HostHooks& hooks) : hooks_(hooks), outer_(t_scope) {
+  t_scope = &hooks_;
+}
+HostScope::~HostScope() {
+  t_scope = outer_;
+}
+void set_host(const HostHooks& hooks) {
+  g_host = hooks;
+}
 
 void* host_alloc(const HostHooks& hooks, size_t bytes, size_t align) {
   if (bytes == 0) bytes = 1;

@@ -11,9 +11,9 @@ using ParallelBody = void (*)(void* context, int32_t index);
 
 struct HostHooks {
   void* user = nullptr;
-  void* (*alloc)(void* user, size_t bytes, size_t align) = nullptr;              // null: the C library's
-  void (*release)(void* user, void* p, size_t bytes, size_t align) = nullptr;    // comes with alloc
-  void (*log)(void* user, int32_t level, const char* line) = nullptr;            // null: silent
+  void* (*alloc)(void* user, size_t bytes, size_t align) = nullptr;            // null: the C library's
+  void (*release)(void* user, void* p, size_t bytes, size_t align) = nullptr;  // comes with alloc
+  void (*log)(void* user, int32_t level, const char* line) = nullptr;          // null: silent
   // Runs body(context, i) once for every i in [0, n), each on one OS thread, and returns when all are
   // done. Serial execution is allowed. Null: the library's own workers.
   void (*parallel)(void* user, int32_t n, ParallelBody body, void* context) = nullptr;

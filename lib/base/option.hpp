@@ -13,12 +13,12 @@ enum class OptionKind : int32_t { kNumber = 0, kInteger = 1, kFlag = 2, kText = 
 struct OptionSpec {
   const char* key;
   OptionKind kind;
-  double number;         // default of number, integer and flag
-  double low, high;      // bounds, inclusive; unused for text
-  const char* text;      // default of a text option, else null
-  const char* choices;   // text: allowed words separated by '|', or null for free text
-  const char* help;      // one line with unit
-  bool live;             // may change after creation (rdm_agent_set)
+  double number;        // default of number, integer and flag
+  double low, high;     // bounds, inclusive; unused for text
+  const char* text;     // default of a text option, else null
+  const char* choices;  // text: allowed words separated by '|', or null for free text
+  const char* help;     // one line with unit
+  bool live;            // may change after creation (rdm_agent_set)
 };
 
 constexpr OptionSpec number_option(const char* key, double value, double low, double high, const char* help,

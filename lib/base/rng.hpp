@@ -10,12 +10,12 @@ namespace rdm {
 
 // What a stream is for; the values are part of the saved state and frozen.
 enum class Purpose : uint32_t {
-  kReset = 1,        // start poses and goals of a world
-  kPolicyNoise = 2,  // exploration of a world's actions
-  kMinibatch = 3,    // shuffling
-  kInit = 4,         // network weights
-  kRandomPolicy = 5, // uniform actions of the `random` baseline
-  kSense = 6,        // sampling of point clouds
+  kReset = 1,         // start poses and goals of a world
+  kPolicyNoise = 2,   // exploration of a world's actions
+  kMinibatch = 3,     // shuffling
+  kInit = 4,          // network weights
+  kRandomPolicy = 5,  // uniform actions of the `random` baseline
+  kSense = 6,         // sampling of point clouds
   kTest = 7,
 };
 
@@ -30,9 +30,9 @@ class Stream {
     block(counter_++, out);
     return (static_cast<uint64_t>(out[1]) << 32) | out[0];
   }
-  double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }                // [0, 1)
+  double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }  // [0, 1)
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  double signed_unit() { return 2 * uniform() - 1; }                                      // [-1, 1)
+  double signed_unit() { return 2 * uniform() - 1; }  // [-1, 1)
   // Unbiased to 2^-32 for n < 2^32.
   uint32_t below(uint32_t n) { return static_cast<uint32_t>(((next() >> 32) * n) >> 32); }
   // `count` standard normals; one block of the cipher gives two (Box-Muller).

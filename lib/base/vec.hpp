@@ -14,18 +14,36 @@ struct Vec3 {
   Vec3& operator+=(const Vec3& b) { return *this = {x + b.x, y + b.y, z + b.z}; }
   Vec3& operator-=(const Vec3& b) { return *this = {x - b.x, y - b.y, z - b.z}; }
 };
-inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
-inline Vec3 operator*(double s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
-inline Vec3 operator*(const Vec3& a, double s) { return s * a; }
-inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3 operator+(const Vec3& a, const Vec3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vec3 operator-(const Vec3& a, const Vec3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vec3 operator-(const Vec3& a) {
+  return {-a.x, -a.y, -a.z};
+}
+inline Vec3 operator*(double s, const Vec3& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+inline Vec3 operator*(const Vec3& a, double s) {
+  return s * a;
+}
+inline double dot(const Vec3& a, const Vec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
-inline Vec3 normalized(const Vec3& a) { return (1 / norm(a)) * a; }
-inline bool finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+inline double norm(const Vec3& a) {
+  return std::sqrt(dot(a, a));
+}
+inline Vec3 normalized(const Vec3& a) {
+  return (1 / norm(a)) * a;
+}
+inline bool finite(const Vec3& a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 
 struct Quat {
   double w = 1, x = 0, y = 0, z = 0;
@@ -34,7 +52,9 @@ inline Quat operator*(const Quat& a, const Quat& b) {
   return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
           a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
 }
-inline Quat conjugate(const Quat& q) { return {q.w, -q.x, -q.y, -q.z}; }
+inline Quat conjugate(const Quat& q) {
+  return {q.w, -q.x, -q.y, -q.z};
+}
 inline Quat normalized(const Quat& q) {
   const double s = 1 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   return {s * q.w, s * q.x, s * q.y, s * q.z};
@@ -84,8 +104,12 @@ struct Pose {
   Vec3 p;
   Quat q;
 };
-inline Pose operator*(const Pose& a, const Pose& b) { return {a.p + rotate(a.q, b.p), a.q * b.q}; }
-inline Vec3 operator*(const Pose& a, const Vec3& v) { return a.p + rotate(a.q, v); }
+inline Pose operator*(const Pose& a, const Pose& b) {
+  return {a.p + rotate(a.q, b.p), a.q * b.q};
+}
+inline Vec3 operator*(const Pose& a, const Vec3& v) {
+  return a.p + rotate(a.q, v);
+}
 inline Pose inverse(const Pose& a) {
   const Quat c = conjugate(a.q);
   return {-rotate(c, a.p), c};

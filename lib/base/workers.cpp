@@ -103,7 +103,8 @@ void Workers::run(int32_t n, ParallelBody body, void* context) {
     for (int32_t i = 0; i < n; ++i) body(context, i);
     return;
   }
-  if (shared_->pid != getpid()) fail(Code::kState, "worker threads do not survive fork: make the handle in the child");
+  if (shared_->pid != getpid())
+    fail(Code::kState, "worker threads do not survive fork: make the handle in the child");
   {
     std::lock_guard lock(shared_->mutex);
     shared_->n = n;

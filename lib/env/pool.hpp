@@ -22,8 +22,8 @@ struct PoolConfig {
   HostHooks hooks;
 };
 
-// The task of a config with its options laid in, made with host_new of the hooks in force; TaskInfo::destroy ends
-// it. Validates task name and options (the C ABI asks for dimensions before a pool is made).
+// The task of a config with its options laid in, made with host_new of the hooks in force; TaskInfo::destroy
+// ends it. Validates task name and options (the C ABI asks for dimensions before a pool is made).
 Task* make_task(const PoolConfig& config);
 
 // Meaning and shapes as rdm_buffers.
@@ -57,15 +57,15 @@ class Pool {
   int32_t obs_dim() const;
   int32_t cost_dim() const;
   const Buffers& buffers() const;
-  void bind(const Buffers& host);    // non-null pointers take over; contents are copied
+  void bind(const Buffers& host);  // non-null pointers take over; contents are copied
 
   void reset(const uint64_t* seeds, const uint8_t* mask);
-  void step(const uint8_t* mask);    // null: all
+  void step(const uint8_t* mask);  // null: all
   void baseline(Baseline kind);
 
   size_t state_size(int32_t env) const;
-  void get_state(int32_t env, Writer& out) const;              // env -1: all
-  void set_state(int32_t env, const void* bytes, size_t size); // all checks before any change
+  void get_state(int32_t env, Writer& out) const;               // env -1: all
+  void set_state(int32_t env, const void* bytes, size_t size);  // all checks before any change
   uint64_t hash(int32_t env) const;
 
   World& world(int32_t env);

@@ -48,9 +48,9 @@ class Task {
   virtual EngineKind engine() const = 0;
   virtual int32_t max_steps() const = 0;
   virtual int32_t action_dim() const = 0;
-  virtual const Vector<FieldSpec>& fields() const = 0;        // in order; offsets are the running sums
-  virtual const char* action_order() const = 0;               // joins the layout hash
-  virtual size_t state_bytes() const = 0;                     // of the task's per-world struct
+  virtual const Vector<FieldSpec>& fields() const = 0;  // in order; offsets are the running sums
+  virtual const char* action_order() const = 0;         // joins the layout hash
+  virtual size_t state_bytes() const = 0;               // of the task's per-world struct
   virtual void reset(World& world, void* state, Stream& stream) const = 0;
   // Clipped actions [action_dim] to drive targets (and base wrenches) of the next control step.
   virtual void control(World& world, void* state, const float* action) const = 0;
@@ -66,7 +66,7 @@ class Task {
 // One row of the registry: static data.
 struct TaskInfo {
   const char* name;
-  const char* alias;       // Safety-Gymnasium's id, null: none
+  const char* alias;  // Safety-Gymnasium's id, null: none
   const char* summary;
   const OptionSpec* (*options)(int32_t* count);  // table, static after the first call
   const CostSpec* costs;
@@ -81,9 +81,9 @@ struct TaskInfo {
 void register_task(const TaskInfo& info);  // before the first pool; static data
 int32_t task_count();
 const TaskInfo& task_at(int32_t index);
-int32_t task_find(const char* name);       // Error(kNotFound) with the nearest name; aliases count
+int32_t task_find(const char* name);  // Error(kNotFound) with the nearest name; aliases count
 
 int32_t obs_dim(const Task& task);
-uint64_t layout_hash(const Task& task);    // field names, counts, action order, action count
+uint64_t layout_hash(const Task& task);  // field names, counts, action order, action count
 
 }  // namespace rdm

@@ -1,0 +1,104 @@
+// Checkpoints: agent, pool and a note of the host's in one file.
+#include "base/file.hpp"
+#include "capi/handles.hpp"
+
+#if RDM_WITH_LEARN
+using namespace rdm;
+using namespace rdm::capi;
+
+namespace {
+
+constexpr char kCheckpointMagic[8] = {'R', 'D', 'M', 'C', 'H', 'E', 'C', 'K'};
+constexpr uint32_t kCheckpointVersion = 1;
+
+template <class F>
+void section(Writer& w, const char tag[4], F&& body) {
+  w.begin_section(tag);
+  body(w);
+  w.end_section();
+}
+
+// The pool's part; a build without the simulation half has none to save.
+#if RDM_WITH_SIM
+size_t pool_size(const rdm_pool* p) {
+  return p->pool->state_size(-1);
+}
+void save_pool(const rdm_pool* p, Writer& out) {
+  p->pool->get_state(-1, out);
+}
+void load_pool(rdm_pool* p, const void* bytes, size_t size) {
+  p->pool->set_state(-1, bytes, size);
+}
+#else
+size_t pool_size(const rdm_pool*) {
+  left_out("simulation");
+}
+void save_pool(const rdm_pool*, Writer&) {
+  left_out("simulation");
+}
+void load_pool(rdm_pool*, const void*, size_t) {
+  left_out("simulation");
+}
+#endif
+
+void write_checkpoint(Writer& w, const Agent& agent, const rdm_pool* pool, const void* note,
+                      size_t note_size) {
+  w.begin_file(kCheckpointMagic, kCheckpointVersion);
+  section(w, "AGNT", [&](Writer& s) { agent.save(s); });
+  if (pool) section(w, "POOL", [&](Writer& s) { save_pool(pool, s); });
+  section(w, "NOTE", [&](Writer& s) { s.bytes(note, note_size); });
+  w.end_file();
+}
+
+}  // namespace
+
+rdm_result rdm_checkpoint_write(const char* path, const rdm_agent* a, const rdm_pool* p, const void* note,
+                                size_t note_size) {
+  return call(nullptr, [&] {
+    need(path, "path");
+    need(a, "agent");
+    if (note_size) need(note, "note");
+    Writer count(nullptr, 0);
+    write_checkpoint(count, *a->agent, p, note, note_size);
+    Vector<unsigned char> file(count.size());
+    Writer out(file.data(), file.size());
+    write_checkpoint(out, *a->agent, p, note, note_size);
+    write_file(path, file.data(), file.size());
+  });
+}
+
+rdm_result rdm_checkpoint_read(const char* path, rdm_agent* a, rdm_pool* p, void* note, size_t capacity,
+                               size_t* note_size) {
+  return call(a ? a->error : nullptr, [&] {
+    need(path, "path");
+    need(a, "agent");
+    need(note_size, "note_size");
+    if (capacity) need(note, "note");
+    const auto file = read_file(path);
+    Reader in(file.data(), file.size(), "checkpoint");
+    in.begin_file(kCheckpointMagic, kCheckpointVersion);
+    in.need_section("AGNT");
+    const size_t agent_size = in.left();
+    const void* agent_bytes = in.view(agent_size);
+    in.need_section("NOTE");
+    Vector<unsigned char> before;  // the pool as it was, in case the agent refuses its part
+    if (p) {
+      before.resize(pool_size(p));
+      Writer keep(before.data(), before.size());
+      save_pool(p, keep);
+      in.need_section("POOL");
+      const size_t size = in.left();
+      load_pool(p, in.view(size), size);
+    }
+    try {
+      a->agent->load(agent_bytes, agent_size);
+    } catch (...) {
+      if (p) load_pool(p, before.data(), before.size());
+      throw;
+    }
+    in.need_section("NOTE");
+    *note_size = in.left();
+    in.bytes(note, std::min(capacity, *note_size));
+  });
+}
+#endif

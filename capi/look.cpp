@@ -1,0 +1,127 @@
+// Looking into a world: shapes, poses, contacts, pictures.
+#include "capi/handles.hpp"
+
+#if RDM_WITH_SIM
+#include "sense/scene_shapes.hpp"
+
+using namespace rdm;
+using namespace rdm::capi;
+
+namespace {
+
+World& world_of(const rdm_pool* p, int32_t env) {
+  need(p, "pool");
+  need_index(env, p->pool->config().num_envs, "env");
+  return p->pool->world(env);
+}
+
+void to_floats(const Vec3& v, float out[3]) {
+  for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(v[k]);
+}
+
+constexpr int kColorSamples = 3;  // per side of a pixel
+
+}  // namespace
+
+rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {
+  return call(nullptr, [&] {
+    need(p, "pool");
+    need(out, "out");
+    const auto& shapes = p->pool->task().scene().shapes;
+    need_index(i, static_cast<int64_t>(shapes.size()), "i");
+    const SceneShape& s = shapes[static_cast<size_t>(i)];
+    rdm_shape shape{};
+    shape.name = s.def.name.text;
+    to_floats(s.def.size, shape.size);
+    shape.kind = static_cast<int32_t>(s.def.kind);
+    std::copy(s.def.color, s.def.color + 3, shape.color);
+    shape.color[3] = 255;
+    shape.fixed = s.carrier == Carrier::kStatic;
+    *out = shape;
+  });
+}
+
+rdm_result rdm_pool_poses(const rdm_pool* p, int32_t env, float* pose) {
+  return call(nullptr, [&] {
+    const World& world = world_of(p, env);
+    need(pose, "pose");
+    const auto count = static_cast<int32_t>(world.scene().shapes.size());
+    for (int32_t i = 0; i < count; ++i, pose += 7) {
+      const Pose X = world.shape_pose(i);
+      to_floats(X.p, pose);
+      const double q[4] = {X.q.x, X.q.y, X.q.z, X.q.w};
+      for (int k = 0; k < 4; ++k) pose[3 + k] = static_cast<float>(q[k]);
+    }
+  });
+}
+
+rdm_result rdm_pool_contacts(const rdm_pool* p, int32_t env, rdm_contact* out, int32_t capacity,
+                             int32_t* count) {
+  return call(nullptr, [&] {
+    const World& world = world_of(p, env);
+    need(count, "count");
+    if (capacity < 0) fail(Code::kRange, "capacity: %d is negative", capacity);
+    if (capacity > 0) need(out, "out");
+    *count = world.num_contacts();
+    for (int32_t i = 0; i < std::min(capacity, *count); ++i) {
+      const Contact& c = world.contacts()[i];
+      rdm_contact o{};
+      o.shape_a = c.shape_a;
+      o.shape_b = c.shape_b;
+      to_floats(c.p, o.position);
+      to_floats(c.n, o.normal);
+      to_floats(c.force, o.force);
+      o.depth = static_cast<float>(c.depth);
+      out[i] = o;
+    }
+  });
+}
+
+rdm_result rdm_pool_render(rdm_pool* p, int32_t env, const char* camera, int32_t w, int32_t h, uint8_t* rgb,
+                           float* depth, int32_t* segmentation) {
+  return call(p ? p->error : nullptr, [&] {
+    const World& world = world_of(p, env);
+    need(camera, "camera");
+    const TaskInfo& info = task_at(p->pool->task_index());
+    Vector<const char*> names;
+    const CameraSpec* found = nullptr;
+    for (int32_t i = 0; i < info.num_cameras; ++i) {
+      if (!found && same_name(info.cameras[i].name, camera)) found = &info.cameras[i];
+      names.push_back(info.cameras[i].name);
+    }
+    if (!found) {
+      const int32_t near = nearest_name(camera, names.data(), info.num_cameras);
+      fail(Code::kNotFound, "camera %.32s: unknown; nearest is %s", camera,
+           near >= 0 ? names[static_cast<size_t>(near)] : "(none)");
+    }
+    const int32_t count = gather_shapes(world, p->shapes);
+    Image image;
+    image.width = w;
+    image.height = h;
+    image.rgb = rgb;
+    image.depth = depth;
+    image.segmentation = segmentation;
+    RenderOptions options;
+    options.samples_per_side = rgb ? kColorSamples : 1;
+    render(p->shapes, count, {found->name, found->eye, found->target, found->fov_y}, image, options,
+           p->raycast);
+  });
+}
+
+rdm_result rdm_pool_push(rdm_pool* p, int32_t env, int32_t shape, const float force[3]) {
+  return call(p ? p->error : nullptr, [&] {
+    World& world = world_of(p, env);
+    need(force, "force");
+    const auto& shapes = world.scene().shapes;
+    need_index(shape, static_cast<int64_t>(shapes.size()), "shape");
+    const SceneShape& s = shapes[static_cast<size_t>(shape)];
+    const Vec3 f{force[0], force[1], force[2]};
+    if (!finite(f)) fail(Code::kArgument, "force is not finite");
+    if (s.carrier == Carrier::kStatic) fail(Code::kArgument, "shape: %s never moves", s.def.name.text);
+    if (s.carrier == Carrier::kBody)
+      world.push_body(s.index, f, {});
+    else
+      world.push_link(s.index, f, world.link(s.index).X * world.scene().link(s.index).inertia.com);
+  });
+}
+#endif
