@@ -76,6 +76,7 @@ class Pool {
  private:
   Pool();
   ~Pool();
+  static void end(Pool* p, const HostHooks& hooks);
   struct Impl;
   friend struct Impl;
   Impl* impl_;

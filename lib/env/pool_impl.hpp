@@ -1,0 +1,143 @@
+// The inside of a pool, shared by its source files.
+#pragma once
+#include "base/error.hpp"
+#include "base/fpmode.hpp"
+#include "env/pool.hpp"
+
+namespace rdm {
+
+// Where a world stands between two calls.
+enum class Phase : uint32_t {
+  kNew = 0,  // never reset
+  kRunning = 1,
+  kEnded = 2,  // the episode is over: next-step mode resets it by itself, mode off waits for reset()
+};
+
+// One world's episode, part of the saved state.
+struct Episode {
+  uint64_t seed;
+  Stream reset, policy;
+  Phase phase;
+  int32_t step;
+  uint8_t terminated, truncated;  // as in the buffers while the phase is kEnded
+  double sum_reward, sum_cost[kMaxTaskCosts];
+};
+
+struct Counters {
+  int32_t contacts_max;
+  int64_t contacts_sum, steps, diverged, overflowed;
+};
+
+// All that belongs to world i beside its buffer rows.
+struct Slot {
+  World* world;
+  void* task_state;
+  Episode episode;
+  Counters counters;
+};
+
+// A run of worlds that stays with one worker.
+struct alignas(Arena::kAlign) Block {
+  float* action;  // [action_dim] clipped
+  Error error;
+  bool failed;
+};
+
+// A config made concrete: task, options, sizes. What memory() and create() have in common.
+struct PoolPlan {
+  explicit PoolPlan(const PoolConfig& c);
+  ~PoolPlan();
+  PoolPlan(const PoolPlan&) = delete;
+  PoolPlan& operator=(const PoolPlan&) = delete;
+
+  PoolConfig config;
+  Options options;
+  int32_t task_index = -1;
+  const TaskInfo* info = nullptr;
+  Task* task = nullptr;
+  int32_t obs_dim = 0, action_dim = 0, cost_dim = 0;
+  uint64_t options_hash = 0;  // task name and every option's value
+
+  size_t num() const { return static_cast<size_t>(config.num_envs); }
+  int32_t num_blocks() const;
+};
+
+struct Pool::Impl : PoolPlan {
+  explicit Impl(const PoolConfig& c) : PoolPlan(c) {}
+  ~Impl();
+
+  // Rows, slots and blocks: the same cuts for measuring and for real. The worlds' own cuts follow them.
+  struct Carved {
+    Buffers buffers;
+    Slot* slots = nullptr;
+    Block* blocks = nullptr;
+  };
+  static Carved carve_rows(const PoolPlan& plan, Arena& arena);
+  static size_t arena_bytes(const PoolPlan& plan);
+  void build();
+  void name_streams(int32_t env, uint64_t seed);
+
+  // --- stepping
+  void check_ready(const uint8_t* mask) const;
+  void step_world(int32_t env, Block& block);
+  void begin_episode(int32_t env);  // resets world, streams go on, writes obs
+  void clear_rows(int32_t env);     // reward, costs, flags, status, sums; final_obs becomes obs
+  void lose_step(int32_t env, float* row) const;
+  void take_step(int32_t env, const float* action, Verdict* verdict, uint32_t* status);
+  void write_verdict(int32_t env, const Verdict& verdict, uint32_t status);
+  template <class F>
+  void each_world(const uint8_t* mask, F&& f);  // f(env, block) on the workers; rethrows the first error
+
+  // --- state
+  void write_world(int32_t env, Writer& out) const;
+  void read_world(int32_t env, Reader& in);
+
+  float* obs(int32_t env) const { return buffers.obs + env * static_cast<ptrdiff_t>(obs_dim); }
+  float* final_obs(int32_t env) const { return buffers.final_obs + env * static_cast<ptrdiff_t>(obs_dim); }
+  float* action(int32_t env) const { return buffers.action + env * static_cast<ptrdiff_t>(action_dim); }
+  float* cost_row(float* column, int32_t env) const {
+    return column + env * static_cast<ptrdiff_t>(cost_dim);
+  }
+
+  Arena arena;
+  Buffers buffers;
+  Slot* slots = nullptr;              // [num_envs]
+  Block* blocks = nullptr;            // [num_blocks]
+  unsigned char* pristine = nullptr;  // a world's state before anything happened: what a reset starts from
+  size_t pristine_size = 0;
+  Workers* workers = nullptr;
+};
+
+template <class F>
+void Pool::Impl::each_world(const uint8_t* mask, F&& f) {
+  struct Call {
+    Impl* impl;
+    const uint8_t* mask;
+    F* f;
+  } call{this, mask, &f};
+  const int32_t count = num_blocks();
+  for (int32_t b = 0; b < count; ++b) blocks[b].failed = false;
+  workers->run(
+      count,
+      [](void* context, int32_t b) {
+        const FpMode mode;
+        const Call& c = *static_cast<Call*>(context);
+        Impl& impl = *c.impl;
+        Block& block = impl.blocks[b];
+        const int64_t n = impl.config.num_envs, blocks = impl.num_blocks();
+        const auto begin = static_cast<int32_t>(n * b / blocks),
+                   end = static_cast<int32_t>(n * (b + 1) / blocks);
+        try {
+          for (int32_t env = begin; env < end; ++env)
+            if (!c.mask || c.mask[env]) (*c.f)(env, block);
+        } catch (const Error& e) {
+          block.failed = true;
+          block.error = e;
+        }
+      },
+      &call);
+  for (int32_t b = 0; b < count; ++b)
+    if (blocks[b].failed) throw blocks[b].error;
+}
+
+}  // namespace rdm

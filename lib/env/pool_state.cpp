@@ -1,0 +1,174 @@
+// Saving, restoring and hashing worlds.
+//
+// A state is a file of two sections: HEAD says what it belongs to, WRLD holds one record a world: length,
+// world, task struct, episode, observation row.
+#include <cmath>
+#include <cstdio>
+
+#include "base/bytes.hpp"
+#include "base/hash.hpp"
+#include "env/pool_impl.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr char kMagic[8] = {'R', 'D', 'M', 'S', 'T', 'A', 'T', 'E'};
+constexpr uint32_t kVersion = 1;
+constexpr size_t kTextSize = 64;
+
+struct Range {
+  int32_t begin, end;
+  int32_t count() const { return end - begin; }
+};
+
+Range range_of(int32_t env, int32_t num_envs) {
+  if (env < -1 || env >= num_envs) fail(Code::kRange, "env: %d is outside [-1, %d)", env, num_envs);
+  return env < 0 ? Range{0, num_envs} : Range{env, env + 1};
+}
+
+void write_episode(const Episode& e, int32_t costs, Writer& out) {
+  out.value(e.seed);
+  out.value(e.reset);
+  out.value(e.policy);
+  out.value(e.phase);
+  out.value(e.step);
+  out.value(e.terminated);
+  out.value(e.truncated);
+  out.value(e.sum_reward);
+  for (int32_t k = 0; k < costs; ++k) out.value(e.sum_cost[k]);
+}
+
+void read_episode(Reader& in, int32_t costs, Episode* e) {
+  e->seed = in.value<uint64_t>();
+  e->reset = in.value<Stream>();
+  e->policy = in.value<Stream>();
+  const auto phase = in.value<uint32_t>();
+  if (phase > static_cast<uint32_t>(Phase::kEnded)) fail(Code::kFormat, "state: phase %u", phase);
+  e->phase = static_cast<Phase>(phase);
+  e->step = in.value<int32_t>();
+  if (e->step < 0) fail(Code::kFormat, "state: step %d", e->step);
+  e->terminated = in.value<uint8_t>() != 0;
+  e->truncated = in.value<uint8_t>() != 0;
+  e->sum_reward = in.value<double>();
+  bool good = std::isfinite(e->sum_reward);
+  for (int32_t k = 0; k < costs; ++k) {
+    e->sum_cost[k] = in.value<double>();
+    good = good && std::isfinite(e->sum_cost[k]);
+  }
+  if (!good) fail(Code::kFormat, "state: a sum is not finite");
+}
+
+}  // namespace
+
+void Pool::Impl::write_world(int32_t env, Writer& out) const {
+  const Slot& s = slots[env];
+  Writer count(nullptr, 0);
+  s.world->save(count);
+  out.value(static_cast<uint64_t>(count.size()));
+  s.world->save(out);
+  out.bytes(s.task_state, task->state_bytes());
+  write_episode(s.episode, cost_dim, out);
+  out.bytes(obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
+}
+
+void Pool::Impl::read_world(int32_t env, Reader& in) {
+  Slot& s = slots[env];
+  const auto size = in.value<uint64_t>();
+  if (size > in.left()) fail(Code::kFormat, "state: truncated");
+  const size_t left = in.left() - size;
+  s.world->load(in);
+  if (in.left() != left) fail(Code::kFormat, "state: a world's record has another length");
+  in.bytes(s.task_state, task->state_bytes());
+  read_episode(in, cost_dim, &s.episode);
+  in.bytes(obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
+}
+
+size_t Pool::state_size(int32_t env) const {
+  Writer count(nullptr, 0);
+  get_state(env, count);
+  return count.size();
+}
+
+void Pool::get_state(int32_t env, Writer& out) const {
+  const FpMode mode;
+  const Impl& m = *impl_;
+  const Range range = range_of(env, m.config.num_envs);
+  out.begin_file(kMagic, kVersion);
+  out.begin_section("HEAD");
+  out.text(m.info->name);
+  out.value(static_cast<int32_t>(m.slots[0].world->engine()));
+  out.value(m.options_hash);
+  out.value(layout_hash(*m.task));
+  out.value(range.count());
+  out.end_section();
+  out.begin_section("WRLD");
+  for (int32_t i = range.begin; i < range.end; ++i) m.write_world(i, out);
+  out.end_section();
+  out.end_file();
+}
+
+void Pool::set_state(int32_t env, const void* bytes, size_t size) {
+  const FpMode mode;
+  Impl& m = *impl_;
+  const HostScope scope(m.config.hooks);
+  const Range range = range_of(env, m.config.num_envs);
+  Reader in(bytes, size, "state");
+  in.begin_file(kMagic, kVersion);
+  in.need_section("HEAD");
+  char name[kTextSize];
+  in.text(name, sizeof name);
+  if (!same_name(name, m.info->name))
+    fail(Code::kFormat, "state: of task %s, the pool has %s", name, m.info->name);
+  if (in.value<int32_t>() != static_cast<int32_t>(m.slots[0].world->engine()))
+    fail(Code::kFormat, "state: of another physics engine");
+  if (in.value<uint64_t>() != m.options_hash)
+    fail(Code::kFormat, "state: of a pool of task %s with other options", m.info->name);
+  if (in.value<uint64_t>() != layout_hash(*m.task)) fail(Code::kFormat, "state: of another layout");
+  const auto count = in.value<int32_t>();
+  if (count != range.count())
+    fail(Code::kFormat, "state: it holds %d worlds, %d are to be set", count, range.count());
+  in.expect_end();
+  in.need_section("WRLD");
+
+  // a record that turns out bad half-way must leave no trace
+  Writer need(nullptr, 0);
+  for (int32_t i = range.begin; i < range.end; ++i) m.write_world(i, need);
+  Vector<unsigned char> backup(need.size());
+  Writer keep(backup.data(), backup.size());
+  for (int32_t i = range.begin; i < range.end; ++i) m.write_world(i, keep);
+  int32_t at = range.begin;
+  try {
+    for (; at < range.end; ++at) m.read_world(at, in);
+    in.expect_end();
+  } catch (...) {
+    Reader old(backup.data(), backup.size(), "state");
+    for (int32_t i = range.begin; i < range.end && i <= at; ++i) m.read_world(i, old);
+    throw;
+  }
+  for (int32_t i = range.begin; i < range.end; ++i) {
+    m.clear_rows(i);
+    // the flags of an ended world that waits for its reset belong to its state; all else is of a step
+    m.buffers.terminated[i] = m.slots[i].episode.terminated;
+    m.buffers.truncated[i] = m.slots[i].episode.truncated;
+  }
+}
+
+uint64_t Pool::hash(int32_t env) const {
+  const FpMode mode;
+  const Impl& m = *impl_;
+  const HostScope scope(m.config.hooks);
+  const Range range = range_of(env, m.config.num_envs);
+  Vector<unsigned char> record;
+  uint64_t hash = kHashSeed;
+  for (int32_t i = range.begin; i < range.end; ++i) {
+    Writer count(nullptr, 0);
+    m.write_world(i, count);
+    record.resize(count.size());
+    Writer out(record.data(), record.size());
+    m.write_world(i, out);
+    hash = hash_bytes(record.data(), record.size(), hash);
+  }
+  return hash;
+}
+
+}  // namespace rdm

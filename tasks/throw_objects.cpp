@@ -1,0 +1,118 @@
+#include "tasks/throw_objects.hpp"
+
+#include <cstring>
+
+#include "base/error.hpp"
+#include "base/option.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// egg: mass and moments of the ellipsoid 0.03, 0.03, 0.04 m at 500 kg/m3, seen and touched as a capsule.
+// From cracker_box on: sizes and masses that the YCB set publishes.
+constexpr ThrowObject kObjects[] = {
+    {"egg", "capsule r 0.03, straight part 0.02", ShapeKind::kCapsule, {0.03, 0.01, 0}, 0.0754,
+     {3.77e-5, 3.77e-5, 2.71e-5}, {240, 225, 190}},
+    {"ball", "sphere r 0.0333", ShapeKind::kSphere, {0.0333, 0, 0}, 0.0754, {}, {220, 80, 60}},
+    {"heavy_ball", "sphere r 0.0375", ShapeKind::kSphere, {0.0375, 0, 0}, 0.25, {}, {120, 60, 60}},
+    {"cracker_box", "box 0.16 x 0.21 x 0.06", ShapeKind::kBox, {0.08, 0.105, 0.03}, 0.411, {}, {200, 40, 40}},
+    {"soup_can", "cylinder r 0.033, h 0.101", ShapeKind::kCylinder, {0.033, 0.0505, 0}, 0.349, {},
+     {210, 60, 50}},
+    {"mustard_bottle", "box 0.058 x 0.095 x 0.19", ShapeKind::kBox, {0.029, 0.0475, 0.095}, 0.603, {},
+     {230, 190, 40}},
+    {"potted_meat_can", "box 0.05 x 0.097 x 0.082", ShapeKind::kBox, {0.025, 0.0485, 0.041}, 0.37, {},
+     {60, 80, 160}},
+    {"mug", "cylinder r 0.04, h 0.081", ShapeKind::kCylinder, {0.04, 0.0405, 0}, 0.118, {}, {200, 50, 50}},
+    {"baseball", "sphere r 0.0375", ShapeKind::kSphere, {0.0375, 0, 0}, 0.148, {}, {235, 235, 230}},
+    {"tennis_ball", "sphere r 0.033", ShapeKind::kSphere, {0.033, 0, 0}, 0.058, {}, {200, 220, 60}},
+    {"foam_brick", "box 0.05 x 0.075 x 0.05", ShapeKind::kBox, {0.025, 0.0375, 0.025}, 0.028, {},
+     {180, 60, 60}},
+    {"rubiks_cube", "box 0.057 x 0.057 x 0.057", ShapeKind::kBox, {0.0285, 0.0285, 0.0285}, 0.094, {},
+     {60, 120, 200}},
+};
+constexpr int32_t kCount = sizeof kObjects / sizeof *kObjects;
+
+}  // namespace
+
+int32_t throw_object_count() { return kCount; }
+
+const ThrowObject& throw_object_at(int32_t index) {
+  if (index < 0 || index >= kCount) fail(Code::kRange, "object: %d is outside [0, %d)", index, kCount);
+  return kObjects[index];
+}
+
+const ThrowObject& throw_object_named(const char* name) {
+  const char* names[kCount];
+  for (int32_t i = 0; i < kCount; ++i) {
+    if (same_name(kObjects[i].name, name)) return kObjects[i];
+    names[i] = kObjects[i].name;
+  }
+  fail(Code::kNotFound, "object %.64s: unknown; nearest is %s", name, names[nearest_name(name, names, kCount)]);
+}
+
+const char* throw_object_choices() {
+  struct Text {
+    char text[kCount * kNameSize] = "";
+    Text() {
+      for (const ThrowObject& o : kObjects) {
+        if (*text) std::strcat(text, "|");
+        std::strcat(text, o.name);
+      }
+    }
+  };
+  static const Text choices;
+  return choices.text;
+}
+
+Vec3 solid_moment(ShapeKind kind, const Vec3& size, double mass) {
+  const double r = size.x, half = size.y;
+  switch (kind) {
+    case ShapeKind::kSphere: {
+      const double i = 0.4 * mass * r * r;
+      return {i, i, i};
+    }
+    case ShapeKind::kBox: {
+      const double k = mass / 3;
+      return {k * (size.y * size.y + size.z * size.z), k * (size.x * size.x + size.z * size.z),
+              k * (size.x * size.x + size.y * size.y)};
+    }
+    case ShapeKind::kCylinder: {
+      const double side = mass * (3 * r * r + 4 * half * half) / 12;
+      return {side, side, 0.5 * mass * r * r};
+    }
+    case ShapeKind::kCapsule: {
+      const double tube = kPi * r * r * 2 * half, ends = 4.0 / 3 * kPi * r * r * r;
+      const double m_tube = mass * tube / (tube + ends), m_ends = mass - m_tube;
+      // a half sphere's centre of mass sits 3/8 r from its flat side
+      const double side = m_tube * (3 * r * r + 4 * half * half) / 12 +
+                          m_ends * (0.4 * r * r + half * half + 0.75 * half * r);
+      return {side, side, (0.5 * m_tube + 0.4 * m_ends) * r * r};
+    }
+    case ShapeKind::kPlane: break;
+  }
+  fail(Code::kInternal, "a plane has no moment");
+}
+
+BodyDef make_throw_body(const ThrowObject& object, double mass, double rolling_damping, int32_t material,
+                        const Pose& X_WB) {
+  BodyDef body;
+  body.name = "object";
+  body.X_WB = X_WB;
+  body.angular_damping = rolling_damping;
+  body.inertia.mass = mass > 0 ? mass : object.mass;
+  Vec3 moment = object.moment;
+  if (dot(moment, moment) == 0) moment = solid_moment(object.kind, object.size, object.mass);
+  for (int i = 0; i < 3; ++i) body.inertia.moment[i] = moment[i] * body.inertia.mass / object.mass;
+  ShapeDef shape;
+  shape.name = "object";
+  shape.kind = object.kind;
+  shape.size = object.size;
+  shape.material = material;
+  std::memcpy(shape.color, object.color, sizeof shape.color);
+  body.shapes.push_back(shape);
+  return body;
+}
+
+}  // namespace rdm
