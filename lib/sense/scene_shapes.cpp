@@ -1,0 +1,20 @@
+#include "sense/scene_shapes.hpp"
+
+namespace rdm {
+
+int32_t gather_shapes(const World& world, RenderShape* out) {
+  const Scene& scene = world.scene();
+  const auto count = static_cast<int32_t>(scene.shapes.size());
+  for (int32_t i = 0; i < count; ++i) {
+    const ShapeDef& def = scene.shapes[static_cast<size_t>(i)].def;
+    RenderShape& shape = out[i];
+    shape.kind = def.kind;
+    shape.size = def.size;
+    shape.X_WS = world.shape_pose(i);
+    for (int k = 0; k < 3; ++k) shape.color[k] = def.color[k];
+    shape.id = i;
+  }
+  return count;
+}
+
+}  // namespace rdm

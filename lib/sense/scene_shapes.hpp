@@ -1,0 +1,14 @@
+// From a world to what a picture is made of.
+#pragma once
+#include <cstdint>
+
+#include "physics/world.hpp"
+#include "sense/render_shape.hpp"
+
+namespace rdm {
+
+// Writes all shapes of the world's scene at their present poses to `out` [scene().shapes.size()], in the
+// scene's order; id is the shape's number in the scene. Returns how many there are.
+int32_t gather_shapes(const World& world, RenderShape* out);
+
+}  // namespace rdm
