@@ -1,0 +1,151 @@
+// What the tests of the C ABI share: a counting, refusing allocator, small pools and agents, and the check
+// that nothing was printed.
+#pragma once
+#include <gtest/gtest.h>
+#include <redman/redman.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+// Hooks that count live bytes and calls, and refuse from the call number `refuse_at` on.
+struct CountingHost {
+  size_t live = 0, calls = 0, peak = 0;
+  size_t refuse_at = SIZE_MAX;
+  rdm_host hooks{sizeof(rdm_host), 0, this, alloc, release, nullptr, nullptr};
+
+  static void* alloc(void* user, size_t bytes, size_t align) {
+    auto* h = static_cast<CountingHost*>(user);
+    if (h->calls++ >= h->refuse_at) return nullptr;
+    void* p = nullptr;
+    if (posix_memalign(&p, align, bytes) != 0) return nullptr;
+    h->live += bytes;
+    h->peak = std::max(h->peak, h->live);
+    return p;
+  }
+  static void release(void* user, void* p, size_t bytes, size_t) {
+    static_cast<CountingHost*>(user)->live -= bytes;
+    std::free(p);
+  }
+};
+
+// Everything that the process prints while it lives, read back at the end.
+class Silence {
+ public:
+  Silence() {
+    std::fflush(nullptr);
+    file_ = std::tmpfile();
+    for (int fd : {1, 2}) {
+      saved_[fd - 1] = dup(fd);
+      dup2(fileno(file_), fd);
+    }
+  }
+  ~Silence() { restore(); }
+  std::string restore() {
+    if (!file_) return text_;
+    std::fflush(nullptr);
+    for (int fd : {1, 2}) {
+      dup2(saved_[fd - 1], fd);
+      close(saved_[fd - 1]);
+    }
+    std::rewind(file_);
+    char buffer[4096];
+    text_.assign(buffer, std::fread(buffer, 1, sizeof buffer, file_));
+    std::fclose(file_);
+    file_ = nullptr;
+    return text_;
+  }
+
+ private:
+  FILE* file_ = nullptr;
+  int saved_[2] = {};
+  std::string text_;
+};
+
+inline rdm_pool_config pool_config(int32_t envs = 2) {
+  rdm_pool_config c;
+  EXPECT_EQ(rdm_pool_config_init(&c, sizeof c), RDM_OK);
+  c.task = "hand_over_safe_finger";
+  c.num_envs = envs;
+  return c;
+}
+
+inline rdm_pool* make_pool(const rdm_pool_config& c) {
+  rdm_pool* p = nullptr;
+  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_OK) << rdm_last_error();
+  return p;
+}
+
+inline rdm_buffers buffers_of(const rdm_pool* p) {
+  rdm_buffers b{};
+  b.struct_size = sizeof b;
+  EXPECT_EQ(rdm_pool_buffers(p, &b), RDM_OK);
+  return b;
+}
+
+inline uint64_t hash_of(const rdm_pool* p, int32_t env = -1) {
+  uint64_t h = 0;
+  EXPECT_EQ(rdm_pool_hash(p, env, &h), RDM_OK);
+  return h;
+}
+
+// A small agent of a host's own environment: 3 observations, 2 actions, 1 cost, 4 rows, 8 decisions.
+inline constexpr rdm_option kSmallAgentOptions[] = {
+    {"hidden", "8,8", 0}, {"horizon", nullptr, 8}, {"passes", nullptr, 2}, {"minibatches", nullptr, 2}};
+
+inline rdm_agent_config agent_config() {
+  rdm_agent_config c;
+  EXPECT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+  c.obs_dim = 3;
+  c.action_dim = 2;
+  c.num_envs = 4;
+  c.options = kSmallAgentOptions;
+  c.num_options = 4;
+  return c;
+}
+
+inline rdm_agent* make_agent(const rdm_agent_config& c) {
+  rdm_agent* a = nullptr;
+  EXPECT_EQ(rdm_agent_create(&a, &c), RDM_OK) << rdm_last_error();
+  return a;
+}
+
+// One epoch of made-up data, different in every decision; returns the last result.
+inline rdm_result feed_epoch(rdm_agent* a, int horizon = 8) {
+  float obs[12], action[8], reward[4], cost[4];
+  uint8_t ended[4] = {};
+  for (int h = 0; h < horizon; ++h) {
+    for (int i = 0; i < 12; ++i) obs[i] = static_cast<float>((7 * i + 3 * h) % 11) * 0.1f;
+    if (const rdm_result r = rdm_agent_act(a, obs, RDM_SAMPLE, action)) return r;
+    for (int i = 0; i < 4; ++i) {
+      reward[i] = -action[2 * i] * action[2 * i];
+      cost[i] = action[2 * i + 1] > 0;
+      ended[i] = h % 4 == 3;
+    }
+    rdm_transition t{};
+    t.struct_size = sizeof t;
+    t.reward = reward;
+    t.cost = cost;
+    t.terminated = ended;
+    if (const rdm_result r = rdm_agent_record(a, &t)) return r;
+  }
+  return rdm_agent_update(a, obs, nullptr);
+}
+
+inline std::vector<unsigned char> policy_bytes(const rdm_agent* a) {
+  size_t n = 0;
+  EXPECT_EQ(rdm_agent_policy(a, nullptr, 0, &n), RDM_OK);
+  std::vector<unsigned char> out(n);
+  EXPECT_EQ(rdm_agent_policy(a, out.data(), n, &n), RDM_OK);
+  return out;
+}
+
+inline std::vector<unsigned char> saved(const rdm_agent* a) {
+  size_t n = 0;
+  EXPECT_EQ(rdm_agent_save(a, nullptr, 0, &n), RDM_OK) << rdm_last_error();
+  std::vector<unsigned char> out(n);
+  EXPECT_EQ(rdm_agent_save(a, out.data(), n, &n), RDM_OK);
+  return out;
+}

@@ -1,0 +1,290 @@
+// The C ABI of agents and policies: what bad input gets, and that it loses nothing.
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstdio>
+#include <limits>
+
+#include "contract.hpp"
+
+namespace {
+
+TEST(ContractAgent, NullIsAnArgumentError) {
+  rdm_agent_config c = agent_config();
+  rdm_agent* a = nullptr;
+  rdm_policy* p = nullptr;
+  float x[8] = {};
+  size_t n;
+  EXPECT_EQ(rdm_agent_config_init(nullptr, sizeof c), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_config_for_pool(&c, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_create(nullptr, &c), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_create(&a, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_memory(&c, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_act(nullptr, x, RDM_MEAN, x), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_record(nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_update(nullptr, x, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_rollout(nullptr, nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_set(nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_option(nullptr, 0, nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_tensor(nullptr, 0, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_tensor_read(nullptr, "x", x, 1), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_tensor_write(nullptr, "x", x, 1), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_policy(nullptr, nullptr, 0, &n), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_policy_file(nullptr, "x"), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_save(nullptr, nullptr, 0, &n), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_load(nullptr, x, 1), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_checkpoint_write("x", nullptr, nullptr, nullptr, 0), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_checkpoint_read("x", nullptr, nullptr, nullptr, 0, &n), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_policy_load(nullptr, x, 4), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_policy_load(&p, nullptr, 4), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_policy_load_file(&p, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_policy_act(nullptr, x, 1, nullptr, x, x, 0), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_policy_check(nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_policy_get_info(nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_policy_scratch(nullptr, 1), 0u);
+  rdm_agent_cancel(nullptr);
+  rdm_agent_destroy(nullptr);
+  rdm_policy_destroy(nullptr);
+}
+
+TEST(ContractAgent, BadConfigsSayWhatIsWrong) {
+  rdm_agent* a = nullptr;
+  auto expect = [&](const rdm_agent_config& c, rdm_result code, const char* word) {
+    EXPECT_EQ(rdm_agent_create(&a, &c), code) << word;
+    EXPECT_NE(std::string(rdm_last_error()).find(word), std::string::npos) << rdm_last_error();
+    size_t bytes;
+    EXPECT_EQ(rdm_agent_memory(&c, &bytes), code) << word;
+    EXPECT_EQ(a, nullptr);
+  };
+  rdm_agent_config c = agent_config();
+  c.algo = "ppo_lagg";
+  expect(c, RDM_NOT_FOUND, "ppo_lag");
+  c = agent_config();
+  c.obs_dim = 0;
+  expect(c, RDM_RANGE, "obs_dim");
+  c = agent_config();
+  c.action_dim = 1 << 30;
+  expect(c, RDM_RANGE, "action_dim");
+  c = agent_config();
+  c.cost_dim = RDM_MAX_COSTS + 1;
+  expect(c, RDM_RANGE, "cost_dim");
+  c = agent_config();
+  c.num_envs = -3;
+  expect(c, RDM_RANGE, "num_envs");
+  c = agent_config();
+  const float bad_mean[2] = {0, std::numeric_limits<float>::quiet_NaN()};
+  c.initial_mean = bad_mean;
+  expect(c, RDM_ARGUMENT, "initial_mean");
+  rdm_option o{"hiden", "8", 0};
+  c = agent_config();
+  c.options = &o;
+  c.num_options = 1;
+  expect(c, RDM_NOT_FOUND, "hidden");
+  o = {"hidden", "8,potato", 0};
+  EXPECT_LT(rdm_agent_create(&a, &c), 0);
+  o = {"discount", nullptr, 1.5};
+  expect(c, RDM_RANGE, "discount");
+}
+
+TEST(ContractAgent, WrongOrderIsAStateErrorAndTheHandleStaysGood) {
+  rdm_agent* a = make_agent(agent_config());
+  const float reward[4] = {}, cost[4] = {}, obs[12] = {};
+  float action[8];
+  rdm_transition t{};
+  t.struct_size = sizeof t;
+  t.reward = reward;
+  t.cost = cost;
+  EXPECT_EQ(rdm_agent_record(a, &t), RDM_STATE);
+  EXPECT_EQ(rdm_agent_update(a, obs, nullptr), RDM_STATE);
+  EXPECT_EQ(rdm_agent_act(a, obs, 9, action), RDM_RANGE);
+  EXPECT_EQ(rdm_agent_act(a, obs, RDM_MEAN, action), RDM_OK);
+  EXPECT_EQ(rdm_agent_record(a, &t), RDM_STATE);  // a mean action is not remembered
+  EXPECT_EQ(rdm_agent_act(a, obs, RDM_SAMPLE, action), RDM_OK);
+  size_t n;
+  EXPECT_EQ(rdm_agent_save(a, nullptr, 0, &n), RDM_STATE);
+  EXPECT_EQ(rdm_agent_record(a, &t), RDM_OK);
+  EXPECT_STRNE(rdm_agent_error(a), "");
+  EXPECT_EQ(feed_epoch(a, 7), RDM_OK) << rdm_agent_error(a);
+  EXPECT_EQ(feed_epoch(a), RDM_OK) << rdm_agent_error(a);
+  rdm_agent_destroy(a);
+}
+
+TEST(ContractAgent, ValuesThatAreNotFiniteAreRefused) {
+  rdm_agent* a = make_agent(agent_config());
+  float obs[12] = {}, action[8], reward[4] = {}, cost[4] = {};
+  obs[7] = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(rdm_agent_act(a, obs, RDM_SAMPLE, action), RDM_ARGUMENT);
+  obs[7] = 0;
+  ASSERT_EQ(rdm_agent_act(a, obs, RDM_SAMPLE, action), RDM_OK);
+  rdm_transition t{};
+  t.struct_size = sizeof t;
+  t.reward = reward;
+  t.cost = cost;
+  reward[2] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(rdm_agent_record(a, &t), RDM_ARGUMENT);
+  reward[2] = 0;
+  EXPECT_EQ(rdm_agent_record(a, &t), RDM_OK) << rdm_agent_error(a);
+  rdm_agent_destroy(a);
+}
+
+TEST(ContractAgent, TensorsAreListedReadAndWritten) {
+  rdm_agent* a = make_agent(agent_config());
+  rdm_tensor t;
+  int count = 0;
+  while (rdm_agent_tensor(a, count, &t) == RDM_OK) ++count;
+  EXPECT_GE(count, 13);  // three networks of three layers, and the log standard deviation
+  ASSERT_EQ(rdm_agent_tensor(a, 0, &t), RDM_OK);
+  std::vector<float> values(static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols));
+  ASSERT_EQ(rdm_agent_tensor_read(a, t.name, values.data(), values.size()), RDM_OK);
+  EXPECT_EQ(rdm_agent_tensor_read(a, t.name, values.data(), values.size() + 1), RDM_RANGE);
+  EXPECT_EQ(rdm_agent_tensor_read(a, "actor.0.weigth", values.data(), 1), RDM_NOT_FOUND);
+  EXPECT_NE(std::string(rdm_last_error()).find("actor.0.weight"), std::string::npos);
+  for (float& v : values) v = 0.25f;
+  ASSERT_EQ(rdm_agent_tensor_write(a, t.name, values.data(), values.size()), RDM_OK);
+  std::vector<float> back(values.size());
+  ASSERT_EQ(rdm_agent_tensor_read(a, t.name, back.data(), back.size()), RDM_OK);
+  EXPECT_EQ(back, values);
+  values[0] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(rdm_agent_tensor_write(a, t.name, values.data(), values.size()), RDM_ARGUMENT);
+  rdm_agent_destroy(a);
+}
+
+TEST(ContractAgent, CorruptSavesChangeNothing) {
+  rdm_agent* a = make_agent(agent_config());
+  ASSERT_EQ(feed_epoch(a), RDM_OK);
+  const auto good = saved(a);
+  ASSERT_EQ(feed_epoch(a), RDM_OK);
+  const auto now = saved(a);
+  ASSERT_NE(good, now);
+  for (size_t cut = 0; cut < good.size(); cut += 101)
+    EXPECT_LT(rdm_agent_load(a, good.data(), cut), 0) << cut;
+  for (size_t at = 0; at < good.size(); at += 17) {
+    auto bad = good;
+    bad[at] ^= static_cast<unsigned char>(1u << (at % 8));
+    EXPECT_LT(rdm_agent_load(a, bad.data(), bad.size()), 0) << at;
+  }
+  const auto policy = policy_bytes(a);
+  EXPECT_EQ(rdm_agent_load(a, policy.data(), policy.size()), RDM_FORMAT);  // a foreign file
+  EXPECT_EQ(saved(a), now);
+  EXPECT_EQ(rdm_agent_load(a, good.data(), good.size()), RDM_OK);
+  EXPECT_EQ(saved(a), good);
+  rdm_agent_destroy(a);
+}
+
+TEST(ContractAgent, CorruptPoliciesAreRefused) {
+  rdm_agent* a = make_agent(agent_config());
+  const auto good = policy_bytes(a);
+  rdm_policy* p = nullptr;
+  for (size_t cut = 0; cut < good.size(); cut += 7)
+    EXPECT_EQ(rdm_policy_load(&p, good.data(), cut), RDM_FORMAT);
+  for (size_t at = 0; at < good.size(); ++at) {
+    auto bad = good;
+    bad[at] ^= static_cast<unsigned char>(1u << (at % 8));
+    EXPECT_LT(rdm_policy_load(&p, bad.data(), bad.size()), 0) << at;
+    EXPECT_EQ(p, nullptr);
+  }
+  const auto save = saved(a);
+  EXPECT_EQ(rdm_policy_load(&p, save.data(), save.size()), RDM_FORMAT);
+  EXPECT_EQ(rdm_policy_load_file(&p, "no/such/file.rdm"), RDM_NOT_FOUND);
+  ASSERT_EQ(rdm_policy_load(&p, good.data(), good.size()), RDM_OK) << rdm_last_error();
+  const size_t bytes = rdm_policy_scratch(p, 4);
+  void* scratch = nullptr;
+  ASSERT_EQ(posix_memalign(&scratch, 64, bytes), 0);
+  const float obs[12] = {};
+  float action[8];
+  EXPECT_EQ(rdm_policy_act(p, obs, 0, nullptr, action, scratch, bytes), RDM_RANGE);
+  EXPECT_EQ(rdm_policy_act(p, obs, 4, nullptr, action, scratch, bytes - 1), RDM_RANGE);
+  EXPECT_EQ(rdm_policy_act(p, obs, 4, nullptr, action, static_cast<char*>(scratch) + 4, bytes), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_policy_act(p, obs, 4, nullptr, action, scratch, bytes), RDM_OK);
+  std::free(scratch);
+  rdm_policy_destroy(p);
+  rdm_agent_destroy(a);
+}
+
+TEST(ContractAgent, AFullDiskKeepsTheOldFile) {
+  rdm_agent* a = make_agent(agent_config());
+  const std::string path = testing::TempDir() + "redman_contract_policy.rdm";
+  ASSERT_EQ(rdm_agent_policy_file(a, path.c_str()), RDM_OK) << rdm_last_error();
+  const auto before = policy_bytes(a);
+  ASSERT_EQ(feed_epoch(a), RDM_OK);
+  rlimit old{};
+  getrlimit(RLIMIT_FSIZE, &old);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit tiny{512, old.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &tiny);
+  const rdm_result policy_result = rdm_agent_policy_file(a, path.c_str());
+  const std::string text = rdm_last_error();
+  const rdm_result checkpoint_result = rdm_checkpoint_write(path.c_str(), a, nullptr, nullptr, 0);
+  setrlimit(RLIMIT_FSIZE, &old);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(policy_result, RDM_IO);
+  EXPECT_EQ(checkpoint_result, RDM_IO);
+  EXPECT_NE(text.find(path), std::string::npos) << text;
+  FILE* f = std::fopen(path.c_str(), "rb");
+  ASSERT_NE(f, nullptr);
+  std::vector<unsigned char> now(before.size() + 1);
+  now.resize(std::fread(now.data(), 1, now.size(), f));
+  std::fclose(f);
+  EXPECT_EQ(now, before);
+  EXPECT_EQ(rdm_agent_policy_file(a, path.c_str()), RDM_OK);
+  EXPECT_EQ(rdm_agent_policy_file(a, "/proc/none/policy.rdm"), RDM_IO);
+  std::remove(path.c_str());
+  rdm_agent_destroy(a);
+}
+
+TEST(ContractAgent, CheckpointsCarryAgentPoolAndNote) {
+  rdm_pool* p = make_pool(pool_config(4));
+  ASSERT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
+  rdm_agent_config c;
+  ASSERT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+  ASSERT_EQ(rdm_agent_config_for_pool(&c, p), RDM_OK);
+  const rdm_option small[] = {{"hidden", "8", 0}, {"horizon", nullptr, 4}};
+  c.options = small;
+  c.num_options = 2;
+  rdm_agent* a = make_agent(c);
+  ASSERT_EQ(rdm_agent_rollout(a, p, nullptr), RDM_OK) << rdm_agent_error(a);
+  const std::string path = testing::TempDir() + "redman_contract_checkpoint.rdm";
+  ASSERT_EQ(rdm_checkpoint_write(path.c_str(), a, p, "hello", 5), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_agent_rollout(a, p, nullptr), RDM_OK);
+  const auto unbroken = saved(a);
+  const uint64_t hash = hash_of(p);
+  char note[16] = {};
+  size_t n = 0;
+  rdm_agent* fresh = make_agent(c);
+  rdm_pool* world = make_pool(pool_config(4));
+  ASSERT_EQ(rdm_checkpoint_read(path.c_str(), fresh, world, note, sizeof note, &n), RDM_OK)
+      << rdm_last_error();
+  EXPECT_EQ(std::string(note, n), "hello");
+  ASSERT_EQ(rdm_agent_rollout(fresh, world, nullptr), RDM_OK) << rdm_agent_error(fresh);
+  EXPECT_EQ(saved(fresh), unbroken);
+  EXPECT_EQ(hash_of(world), hash);
+  rdm_agent* other = make_agent(agent_config());
+  EXPECT_LT(rdm_checkpoint_read(path.c_str(), other, world, note, sizeof note, &n), 0);
+  EXPECT_EQ(hash_of(world), hash);  // the pool went back to what it was
+  std::remove(path.c_str());
+  for (rdm_agent* x : {a, fresh, other}) rdm_agent_destroy(x);
+  rdm_pool_destroy(p);
+  rdm_pool_destroy(world);
+}
+
+TEST(ContractAgent, CancelLeavesAGoodHandle) {
+  rdm_pool* p = make_pool(pool_config(4));
+  ASSERT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
+  rdm_agent_config c;
+  ASSERT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+  ASSERT_EQ(rdm_agent_config_for_pool(&c, p), RDM_OK);
+  const rdm_option small[] = {{"hidden", "8", 0}, {"horizon", nullptr, 4}};
+  c.options = small;
+  c.num_options = 2;
+  rdm_agent* a = make_agent(c);
+  rdm_agent_cancel(a);
+  EXPECT_EQ(rdm_agent_rollout(a, p, nullptr), RDM_CANCELLED);
+  EXPECT_EQ(rdm_agent_rollout(a, p, nullptr), RDM_OK) << rdm_agent_error(a);
+  rdm_pool* small_pool = make_pool(pool_config(2));
+  EXPECT_EQ(rdm_agent_rollout(a, small_pool, nullptr), RDM_ARGUMENT);  // another number of worlds
+  rdm_pool_destroy(small_pool);
+  rdm_agent_destroy(a);
+  rdm_pool_destroy(p);
+}
+
+}  // namespace
