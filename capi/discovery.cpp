@@ -142,38 +142,40 @@ rdm_result rdm_task_default(int32_t task, int32_t i, rdm_option* out) {
 }
 
 int32_t rdm_robot_count(void) {
-  return robot_count();
+  return num_robots();
 }
 
 rdm_result rdm_robot_at(int32_t index, rdm_robot* io) {
   return call(nullptr, [&] {
     check_out(io, sizeof(rdm_robot), "io");
-    need_index(index, robot_count(), "index");
-    const RobotDef& r = robot_at(index);
+    need_index(index, num_robots(), "index");
+    const Robot& r = robot(index);
     rdm_robot o{};
-    o.num_joints = r.num_links;
-    for (int32_t i = 0; i < r.num_links; ++i) o.num_actuated += r.links[i].action >= 0;
+    o.num_joints = r.links.count;
+    o.num_actuated = r.num_actuated();
     o.name = r.name;
-    o.summary = r.summary;
+    o.summary = r.help;
     write_struct(io, o, sizeof(rdm_robot), "io");
   });
 }
 
-rdm_result rdm_robot_joint(int32_t robot, int32_t i, rdm_joint* out) {
+rdm_result rdm_robot_joint(int32_t robot_index, int32_t i, rdm_joint* out) {
   return call(nullptr, [&] {
     need(out, "out");
-    need_index(robot, robot_count(), "robot");
-    const RobotDef& r = robot_at(robot);
-    need_index(i, r.num_links, "i");
-    const auto& l = r.links[i];
+    need_index(robot_index, num_robots(), "robot");
+    const Robot& r = robot(robot_index);
+    need_index(i, r.links.count, "i");
+    const RobotLink& l = r.links[i];
     rdm_joint o{};
     o.name = l.joint;
     o.lower = l.lower;
     o.upper = l.upper;
-    o.kp = l.action >= 0 ? l.kp : 0;
+    o.kp = r.coupled(i) ? 0 : l.kp;
     o.kd = l.kd;
     o.effort = l.effort;
-    o.action = l.action;
+    o.action = -1;
+    for (int32_t k = 0; k < r.num_actuated(); ++k)
+      if (r.actuated(k) == i) o.action = k;
     *out = o;
   });
 }
