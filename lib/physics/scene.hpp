@@ -4,6 +4,7 @@
 // Every shape has one number (its index in Scene::shapes) by which contacts, pictures and tasks name it.
 #pragma once
 #include <cstdint>
+#include <utility>
 
 #include "base/host.hpp"
 #include "base/vec.hpp"
@@ -26,10 +27,10 @@ struct ShapeDef {
   Name name;
   ShapeKind kind = ShapeKind::kSphere;
   Vec3 size;
-  Pose X_LS;                  // in the frame of the link or body that carries it (of the world if static)
-  int32_t material = 0;       // row of the pair friction table
+  Pose X_LS;             // in the frame of the link or body that carries it (of the world if static)
+  int32_t material = 0;  // row of the pair friction table
   uint8_t color[3] = {200, 200, 200};
-  bool collides = true;       // false: only seen
+  bool collides = true;  // false: only seen
 };
 
 enum class JointKind : int32_t { kRevolute = 0, kPrismatic = 1 };
@@ -40,19 +41,19 @@ struct JointDef {
   Name name;
   JointKind kind = JointKind::kRevolute;
   Vec3 axis{0, 0, 1};
-  double lower = 0, upper = 0;        // range
-  double kp = 0, kd = 0;              // drive: torque = kp (target - q) - kd qd, implicit
-  double effort = 0;                  // bound of the drive's torque
-  double armature = 0;                // added inertia about the axis
-  double friction = 0;                // dry friction torque
+  double lower = 0, upper = 0;  // range
+  double kp = 0, kd = 0;        // drive: torque = kp (target - q) - kd qd, implicit
+  double effort = 0;            // bound of the drive's torque
+  double armature = 0;          // added inertia about the axis
+  double friction = 0;          // dry friction torque
   // A coupled joint has no target of its own: it is driven to clamp(q, ratio q_other -+ slack).
-  int32_t coupled_to = -1;            // link index in the same articulation, -1: none
+  int32_t coupled_to = -1;  // link index in the same articulation, -1: none
   double ratio = 1, slack = 0;
 };
 
 struct Inertia {
-  double mass = 0;      // kg
-  Vec3 com;             // in the link frame
+  double mass = 0;                        // kg
+  Vec3 com;                               // in the link frame
   double moment[6] = {0, 0, 0, 0, 0, 0};  // xx yy zz xy xz yz about com, link axes, kg m2
 };
 
@@ -72,10 +73,10 @@ struct ArticulationShape {
 
 struct ArticulationDef {
   Name name;
-  Pose X_WB;                    // base frame in the world (start pose when free)
+  Pose X_WB;  // base frame in the world (start pose when free)
   bool free_base = false;
-  Inertia base;                 // of a free base
-  double base_damping = 0;      // 1/s on linear and angular velocity of every link of a free-base robot
+  Inertia base;             // of a free base
+  double base_damping = 0;  // 1/s on linear and angular velocity of every link of a free-base robot
   bool gravity = false;
   Vector<LinkDef> links;
   Vector<ArticulationShape> shapes;
@@ -84,10 +85,10 @@ struct ArticulationDef {
 
 struct BodyDef {
   Name name;
-  Pose X_WB;                    // start pose
-  Inertia inertia;              // com must be the body's origin
-  double angular_damping = 0;   // 1/s, implicit
-  double linear_damping = 0;    // 1/s, implicit
+  Pose X_WB;                   // start pose
+  Inertia inertia;             // com must be the body's origin
+  double angular_damping = 0;  // 1/s, implicit
+  double linear_damping = 0;   // 1/s, implicit
   bool gravity = true;
   Vector<ShapeDef> shapes;
 };
@@ -98,20 +99,21 @@ struct Friction {
 };
 
 struct SolverDef {
-  double h = 1.0 / 120;               // substep, s
-  int32_t substeps = 2;               // per control step, 1..16
-  int32_t iterations = 8;             // 1..8: more would draw from ODE's process-wide seed
-  double relaxation = 1.3;            // successive over-relaxation of QuickStep
-  double erp = 0.8, cfm = 1e-9;       // joints
+  double h = 1.0 / 120;          // substep, s
+  int32_t substeps = 2;          // per control step, 1..16
+  int32_t iterations = 8;        // 1..8: more would draw from ODE's process-wide seed
+  double relaxation = 1.3;       // successive over-relaxation of QuickStep
+  double erp = 0.8, cfm = 1e-9;  // joints
   double contact_erp = 0.2, contact_cfm = 1e-4;
-  double contact_layer = 0.0005;      // m of allowed depth
-  double contact_max_speed = 1.0;     // m/s, correction of depth
-  int32_t contacts_per_pair = 4;      // 1..8
-  int32_t contacts_max = 64;          // per world and substep, 1..256; more raise kContactOverflow
-  double limit_margin = 5e-3;         // rad beyond a joint's range before it is clamped
-  double limit_stiffness = 100;       // N m/rad of the soft limit
-  double link_armature = 3e-5;        // kg m2 about the joint axis of each finger link (engine ode)
-  bool spring_only_effort = false;    // true: effort bounds the spring alone, damping stays outside
+  double contact_layer = 0.0005;    // m of allowed depth
+  double contact_max_speed = 1.0;   // m/s, correction of depth
+  int32_t contacts_per_pair = 4;    // 1..8
+  int32_t contacts_max = 64;        // per world and substep, 1..256; more raise kContactOverflow
+  double limit_margin = 5e-3;       // rad beyond a joint's range before it is clamped
+  double limit_stiffness = 100;     // N m/rad of the soft limit
+  double link_armature = 3e-5;      // kg m2 about the joint axis of each finger link (engine ode)
+  bool spring_only_effort = false;  // true: effort bounds the spring alone, damping stays outside
+  bool exact = false;               // engine ode: the O(n^3) solver, slow; the reference of tests
 };
 
 inline constexpr int kMaxMaterials = 16;
@@ -127,19 +129,31 @@ struct SceneDef {
   bool hand_hand_contact = true;  // shapes of different articulations may touch (friction by material)
 };
 
-// Where a shape of the flattened scene sits.
-enum class Carrier : int32_t { kStatic = 0, kLink = 1, kBody = 2 };
+// Where a shape of the flattened scene sits. The base of an articulation may be fixed or free.
+enum class Carrier : int32_t { kStatic = 0, kLink = 1, kBody = 2, kBase = 3 };
 struct SceneShape {
   ShapeDef def;
   Carrier carrier = Carrier::kStatic;
-  int32_t index = -1;        // flat link index or body index; -1 for statics and fixed bases
-  int32_t articulation = -1; // owner, -1: none
+  int32_t index = -1;         // flat link index or body index; -1 for statics and bases
+  int32_t articulation = -1;  // owner, -1: none
+  double radius = 0;          // m, of the sphere around X_LS.p that holds the shape; < 0: a plane
 };
 
+// `a` always moves; `b` may be at rest.
 struct ShapePair {
-  int32_t a, b;       // indices of Scene::shapes
+  int32_t a, b;  // indices of Scene::shapes
   double mu;
-  double reach;       // m, sum of bounding radii; < 0: a plane is involved
+  double reach;  // m, sum of bounding radii; < 0: b is a plane
+};
+
+// What forward kinematics needs of a link, packed.
+struct LinkFrame {
+  int32_t parent = -1;  // flat link index, -1: the base
+  bool prismatic = false;
+  bool turned = false;  // q_PL is not the identity
+  Vec3 p_PL;
+  Quat q_PL;
+  Vec3 axis;
 };
 
 // The flattened, validated, constant model. Links of all articulations are numbered in one row
@@ -147,13 +161,19 @@ struct ShapePair {
 struct Scene {
   SceneDef def;
   int32_t num_links = 0, num_bodies = 0;
-  Vector<int32_t> link_offset;       // per articulation
-  Vector<int32_t> link_articulation; // per link
-  Vector<SceneShape> shapes;         // articulation by articulation (base shapes are in place), bodies, statics
-  Vector<ShapePair> pairs;           // all pairs that may touch, in fixed order
-  Vector<int32_t> sensors;           // link indices with a sensor
+  Vector<int32_t> link_offset;        // per articulation
+  Vector<int32_t> link_articulation;  // per link
+  Vector<LinkFrame> frames;           // per link
+  Vector<SceneShape> shapes;  // articulation by articulation (base shapes are in place), bodies, statics
+  Vector<ShapePair> pairs;    // all pairs that may touch, in fixed order
+  Vector<int32_t> sensors;    // link indices with a sensor
 
   const LinkDef& link(int32_t i) const;
+  bool moves(const SceneShape& shape) const;  // not static, not on a fixed base
+  // Indices by name; Error(kNotFound).
+  int32_t find_link(int32_t articulation, const char* name) const;  // flat
+  int32_t find_body(const char* name) const;
+  int32_t find_shape(const char* name) const;
   double control_dt() const { return def.solver.h * def.solver.substeps; }
 };
 

@@ -20,8 +20,8 @@ enum : uint32_t {
 };
 
 struct Motion {
-  Pose X;       // pose in the world, of the link's (joint) frame or of the body's centre of mass
-  Vec3 v, w;    // velocity of that origin, angular velocity; world axes; m/s, rad/s
+  Pose X;     // pose in the world, of the link's (joint) frame or of the body's centre of mass
+  Vec3 v, w;  // velocity of that origin, angular velocity; world axes; m/s, rad/s
 };
 
 struct Contact {
@@ -63,22 +63,26 @@ class World {
   // Sets all joint coordinates of one articulation and rebuilds its links. Values are clamped to range.
   void set_joints(int32_t articulation, const double* q, const double* qd);
 
-  const Motion& link(int32_t i) const { return links_[i]; }   // [num_links]
+  const Motion& link(int32_t i) const { return links_[i]; }  // [num_links]
   const Motion& base(int32_t articulation) const { return bases_[articulation]; }
   const Motion& body(int32_t i) const { return bodies_[i]; }  // [num_bodies]
   virtual void set_body(int32_t i, const Motion& m) = 0;
+  // Moves a free base; its links follow with their joint coordinates. Error(kState) for a fixed base.
+  virtual void set_base(int32_t articulation, const Motion& m) = 0;
   Pose shape_pose(int32_t shape) const;
 
   // Acts during the next step only; world axes; at the centre of mass of the body, or at p of the link.
   virtual void push_body(int32_t i, const Vec3& force, const Vec3& torque) = 0;
   virtual void push_link(int32_t i, const Vec3& force, const Vec3& p_W) = 0;
+  // On a free base, at its centre of mass. Error(kState) for a fixed base.
+  virtual void push_base(int32_t articulation, const Vec3& force, const Vec3& torque) = 0;
 
   // Contacts of the last substep; pair_touched is the OR over all substeps of the last step.
   const Contact* contacts() const { return contacts_; }
   int32_t num_contacts() const { return num_contacts_; }
   bool pair_touched(int32_t pair) const { return touched_[pair] != 0; }  // index of Scene::pairs
   // Contact force and torque about the link's origin, in the link's frame, mean over the substeps.
-  const Wrench& sensor(int32_t i) const { return sensors_[i]; }          // index of Scene::sensors
+  const Wrench& sensor(int32_t i) const { return sensors_[i]; }  // index of Scene::sensors
 
   // Depth of the deepest overlap at the present poses between a body's shapes and everything it may
   // touch, m; 0 when clear. Used to redraw bad start poses.
@@ -88,7 +92,8 @@ class World {
   // Largest distance between the two sides of any joint, m: 0 by construction where links are rebuilt.
   virtual double joint_drift() const = 0;
 
-  // The whole state, exact to the bit: a world that loads it goes on as the one that saved it.
+  // The whole state, exact to the bit: a world that loads it goes on as the one that saved it. Torques,
+  // sensors and status are in it; contacts are not (none after load), nor are pushes not yet acted on.
   virtual void save(Writer& out) const = 0;
   virtual void load(Reader& in) = 0;
 
@@ -103,6 +108,8 @@ class World {
   const Scene* scene_;
   double *q_ = nullptr, *qd_ = nullptr, *target_ = nullptr, *torque_ = nullptr;
   Motion *links_ = nullptr, *bases_ = nullptr, *bodies_ = nullptr;
+  Mat3 *link_R_ = nullptr, *base_R_ = nullptr;  // R_WL and R_WB of the poses above
+  Vec3* axes_ = nullptr;                        // joint axes, world
   Contact* contacts_ = nullptr;
   Wrench* sensors_ = nullptr;
   uint8_t* touched_ = nullptr;

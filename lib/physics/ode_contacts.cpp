@@ -1,0 +1,182 @@
+#include "physics/ode_contacts.hpp"
+
+#include <algorithm>
+
+#include "physics/convert.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr int kMaxPerPair = 8;
+
+// The one place where a contact's surface is described, every field of the mode included.
+dContact describe(const SolverDef& solver, const dContactGeom& geom, double mu) {
+  dContact contact = {};
+  contact.geom = geom;
+  contact.surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
+  contact.surface.mu = mu;
+  contact.surface.soft_erp = solver.contact_erp;
+  contact.surface.soft_cfm = solver.contact_cfm;
+  return contact;
+}
+
+dGeomID create_geom(const ShapeDef& shape, const Pose& X_WS) {
+  const Vec3& s = shape.size;
+  switch (shape.kind) {
+    case ShapeKind::kSphere:
+      return dCreateSphere(nullptr, s.x);
+    case ShapeKind::kCapsule:
+      return dCreateCapsule(nullptr, s.x, 2 * s.y);
+    case ShapeKind::kBox:
+      return dCreateBox(nullptr, 2 * s.x, 2 * s.y, 2 * s.z);
+    case ShapeKind::kCylinder:
+      return dCreateCylinder(nullptr, s.x, 2 * s.y);
+    case ShapeKind::kPlane:
+      break;
+  }
+  const Vec3 n = rotate(X_WS.q, {0, 0, 1});
+  return dCreatePlane(nullptr, n.x, n.y, n.z, dot(n, X_WS.p));
+}
+
+}  // namespace
+
+OdeContacts::~OdeContacts() {
+  if (group_) dJointGroupDestroy(group_);
+  for (int32_t i = 0; shapes_ && i < num_shapes_; ++i)
+    if (shapes_[i].geom) dGeomDestroy(shapes_[i].geom);
+}
+
+void OdeContacts::carve(const Scene& scene, Arena& arena) {
+  num_shapes_ = static_cast<int32_t>(scene.shapes.size());
+  shapes_ = arena.make<Shape>(scene.shapes.size());
+  feedback_ = arena.make<dJointFeedback>(static_cast<size_t>(scene.def.solver.contacts_max));
+}
+
+void OdeContacts::make_geom(const Scene& scene, int32_t index, dBodyID body, const Vec3& com,
+                            const Pose& X_WC) {
+  const SceneShape& def = scene.shapes[static_cast<size_t>(index)];
+  if (!def.def.collides) return;
+  const Pose& X_LS = def.def.X_LS;
+  const Pose X_WS = X_WC * X_LS;
+  Shape& shape = shapes_[index];
+  shape.geom = create_geom(def.def, X_WS);
+  shape.body = body;
+  shape.radius = def.radius;
+  shape.rest = body == nullptr;
+  if (def.radius < 0) {
+    shape.center = rotate(X_WS.q, {0, 0, 1});
+    shape.radius = dot(shape.center, X_WS.p);
+    return;
+  }
+  dQuaternion q;
+  if (!body) {
+    to_ode(X_WS.q, q);
+    dGeomSetPosition(shape.geom, X_WS.p.x, X_WS.p.y, X_WS.p.z);
+    dGeomSetQuaternion(shape.geom, q);
+    shape.center = X_WS.p;
+    return;
+  }
+  shape.offset = X_LS.p - com;
+  shape.p = dBodyGetPosition(body);
+  shape.r = dBodyGetRotation(body);
+  dGeomSetBody(shape.geom, body);
+  const bool turned = X_LS.q.x != 0 || X_LS.q.y != 0 || X_LS.q.z != 0;
+  if (turned || norm(shape.offset) != 0) {
+    to_ode(X_LS.q, q);
+    dGeomSetOffsetPosition(shape.geom, shape.offset.x, shape.offset.y, shape.offset.z);
+    dGeomSetOffsetQuaternion(shape.geom, q);
+  }
+}
+
+void OdeContacts::make_group() {
+  group_ = dJointGroupCreate(0);
+}
+
+void OdeContacts::empty() {
+  dJointGroupEmpty(group_);
+}
+
+void OdeContacts::make_joint(dWorldID world, const Scene& scene, const dContactGeom& geom, double mu,
+                             dBodyID a, dBodyID b, int32_t index) {
+  const dContact contact = describe(scene.def.solver, geom, mu);
+  const dJointID joint = dJointCreateContact(world, group_, &contact);
+  dJointAttach(joint, a, b);
+  dJointSetFeedback(joint, &feedback_[index]);
+}
+
+void OdeContacts::fill(dWorldID world, const Scene& scene, const dBodyID* bodies, int32_t count) {
+  dContactGeom geom = {};
+  geom.normal[2] = 1;
+  for (int32_t i = 0; i < scene.def.solver.contacts_max; ++i) {
+    const dBodyID a = bodies[i % count], b = bodies[(i + 1) % count];
+    make_joint(world, scene, geom, 1, a, a == b ? nullptr : b, i);
+  }
+}
+
+void OdeContacts::update_centers(int32_t num_shapes) {
+  for (int32_t i = 0; i < num_shapes; ++i) {
+    Shape& s = shapes_[i];
+    if (!s.geom || s.rest) continue;
+    const dReal* r = s.r;
+    const Vec3& o = s.offset;
+    s.center = {s.p[0] + r[0] * o.x + r[1] * o.y + r[2] * o.z, s.p[1] + r[4] * o.x + r[5] * o.y + r[6] * o.z,
+                s.p[2] + r[8] * o.x + r[9] * o.y + r[10] * o.z};
+  }
+}
+
+bool OdeContacts::near(const ShapePair& pair) const {
+  const Shape &a = shapes_[pair.a], &b = shapes_[pair.b];
+  if (pair.reach < 0) return dot(a.center, b.center) - b.radius < a.radius;
+  const Vec3 d = a.center - b.center;
+  return dot(d, d) < pair.reach * pair.reach;
+}
+
+OdeContacts::Found OdeContacts::collide(dWorldID world, const Scene& scene, Contact* contacts,
+                                        uint8_t* touched) {
+  empty();
+  update_centers(num_shapes_);
+  const SolverDef& solver = scene.def.solver;
+  Found found = {0, false};
+  dContactGeom geoms[kMaxPerPair];
+  const auto num_pairs = static_cast<int32_t>(scene.pairs.size());
+  const ShapePair* pairs = scene.pairs.data();
+  for (int32_t k = 0; k < num_pairs; ++k) {
+    const ShapePair& pair = pairs[k];
+    if (!near(pair)) continue;
+    const Shape &a = shapes_[pair.a], &b = shapes_[pair.b];
+    const int n = dCollide(a.geom, b.geom, solver.contacts_per_pair, geoms, sizeof geoms[0]);
+    if (n > 0) touched[k] = 1;
+    for (int i = 0; i < n; ++i) {
+      if (found.count == solver.contacts_max) {
+        found.overflow = true;
+        break;
+      }
+      make_joint(world, scene, geoms[i], pair.mu, a.body, b.body, found.count);
+      contacts[found.count++] = {pair.a,         pair.b, from_ode(geoms[i].pos), from_ode(geoms[i].normal),
+                                 geoms[i].depth, {}};
+    }
+  }
+  return found;
+}
+
+void OdeContacts::read_forces(int32_t count, Contact* contacts) const {
+  for (int32_t i = 0; i < count; ++i) contacts[i].force = from_ode(feedback_[i].f1);
+}
+
+double OdeContacts::overlap(const Scene& scene, int32_t body) {
+  update_centers(num_shapes_);
+  const auto carries = [&](int32_t shape) {
+    const SceneShape& s = scene.shapes[static_cast<size_t>(shape)];
+    return s.carrier == Carrier::kBody && s.index == body;
+  };
+  double deepest = 0;
+  dContactGeom geoms[kMaxPerPair];
+  for (const ShapePair& pair : scene.pairs) {
+    if (!(carries(pair.a) || carries(pair.b)) || !near(pair)) continue;
+    const int n = dCollide(shapes_[pair.a].geom, shapes_[pair.b].geom, kMaxPerPair, geoms, sizeof geoms[0]);
+    for (int i = 0; i < n; ++i) deepest = std::max(deepest, static_cast<double>(geoms[i].depth));
+  }
+  return deepest;
+}
+
+}  // namespace rdm

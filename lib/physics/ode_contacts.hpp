@@ -1,0 +1,58 @@
+// Collision from the scene's fixed pair list, contact joints under a cap, and their forces.
+#pragma once
+#include <ode/ode.h>
+
+#include "base/arena.hpp"
+#include "physics/world.hpp"
+
+namespace rdm {
+
+class OdeContacts {
+ public:
+  OdeContacts() = default;
+  ~OdeContacts();
+  OdeContacts(const OdeContacts&) = delete;
+  OdeContacts& operator=(const OdeContacts&) = delete;
+
+  void carve(const Scene& scene, Arena& arena);
+  // A geom for every colliding shape. `body` and `com` (of that body, in the carrier's frame) are null
+  // and 0 for shapes at rest, which stand at X_WC * X_LS.
+  void make_geom(const Scene& scene, int32_t shape, dBodyID body, const Vec3& com, const Pose& X_WC);
+  void make_group();
+  // Fills the group with as many contacts as may ever be, between the given bodies, so that ODE's memory
+  // is all there before the first step; empty() follows after one solver step.
+  void fill(dWorldID world, const Scene& scene, const dBodyID* bodies, int32_t count);
+  void empty();
+
+  struct Found {
+    int32_t count;
+    bool overflow;
+  };
+  // Finds contacts and makes their joints; contacts[] gets all but the force. touched[] is only set.
+  Found collide(dWorldID world, const Scene& scene, Contact* contacts, uint8_t* touched);
+  // Forces of the last solver step, on shape_a.
+  void read_forces(int32_t count, Contact* contacts) const;
+  double overlap(const Scene& scene, int32_t body);
+
+ private:
+  struct Shape {
+    dGeomID geom;
+    dBodyID body;
+    const dReal *p, *r;  // position and rotation of the body, or of the geom at rest
+    Vec3 offset;         // of the shape's centre, from p, in r's axes
+    Vec3 center;         // world; of a plane: its normal
+    double radius;       // of a plane: its constant (normal . x = radius on it)
+    bool rest;
+  };
+  void update_centers(int32_t num_shapes);
+  bool near(const ShapePair& pair) const;
+  void make_joint(dWorldID world, const Scene& scene, const dContactGeom& geom, double mu, dBodyID a,
+                  dBodyID b, int32_t index);
+
+  Shape* shapes_ = nullptr;
+  dJointFeedback* feedback_ = nullptr;
+  dJointGroupID group_ = nullptr;
+  int32_t num_shapes_ = 0;
+};
+
+}  // namespace rdm

@@ -1,0 +1,126 @@
+#include "physics/world.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "physics/ode_world.hpp"
+
+namespace rdm {
+
+World* World::create(EngineKind kind, const Scene& scene, Arena& arena, const HostHooks& hooks) {
+  if (kind != EngineKind::kOde)
+    fail(Code::kUnsupported, "engine %d is not in this build", static_cast<int>(kind));
+  return host_new<OdeWorld>(hooks, scene, arena);
+}
+
+void World::measure(EngineKind kind, const Scene& scene, Arena& arena) {
+  if (kind != EngineKind::kOde)
+    fail(Code::kUnsupported, "engine %d is not in this build", static_cast<int>(kind));
+  if (!arena.measuring()) fail(Code::kInternal, "measure: the arena is a real one");
+  const OdeWorld world(scene, arena);
+}
+
+size_t World::engine_bytes(EngineKind kind, const Scene& scene) {
+  if (kind != EngineKind::kOde)
+    fail(Code::kUnsupported, "engine %d is not in this build", static_cast<int>(kind));
+  return OdeWorld::heap_bytes(scene);
+}
+
+void World::destroy(World* world, const HostHooks& hooks) {
+  // All engines are made by host_new of their own type.
+  if (world) host_delete(hooks, static_cast<OdeWorld*>(world));
+}
+
+World::World(const Scene& scene, Arena& arena) : scene_(&scene) {
+  carve(arena);
+}
+
+void World::carve(Arena& arena) {
+  const auto links = static_cast<size_t>(scene_->num_links), bases = scene_->def.articulations.size();
+  q_ = arena.make<double>(links);
+  qd_ = arena.make<double>(links);
+  target_ = arena.make<double>(links);
+  torque_ = arena.make<double>(links);
+  links_ = arena.make<Motion>(links);
+  link_R_ = arena.make<Mat3>(links);
+  axes_ = arena.make<Vec3>(links);
+  bases_ = arena.make<Motion>(bases);
+  base_R_ = arena.make<Mat3>(bases);
+  bodies_ = arena.make<Motion>(static_cast<size_t>(scene_->num_bodies));
+  contacts_ = arena.make<Contact>(static_cast<size_t>(scene_->def.solver.contacts_max));
+  sensors_ = arena.make<Wrench>(scene_->sensors.size());
+  touched_ = arena.make<uint8_t>(scene_->pairs.size());
+  if (arena.measuring()) return;
+  for (size_t a = 0; a < bases; ++a) {
+    const ArticulationDef& def = scene_->def.articulations[a];
+    bases_[a] = {def.X_WB, {}, {}};
+    base_R_[a] = to_matrix(def.X_WB.q);
+  }
+  for (size_t i = 0; i < links; ++i) {
+    const JointDef& joint = scene_->link(static_cast<int32_t>(i)).joint;
+    q_[i] = target_[i] = std::clamp(0.0, joint.lower, joint.upper);
+  }
+  for (size_t i = 0; i < scene_->def.bodies.size(); ++i) bodies_[i] = {scene_->def.bodies[i].X_WB, {}, {}};
+}
+
+void World::set_joints(int32_t articulation, const double* q, const double* qd) {
+  const auto a = static_cast<size_t>(articulation);
+  const int32_t first = scene_->link_offset[a];
+  const auto count = static_cast<int32_t>(scene_->def.articulations[a].links.size());
+  for (int32_t i = 0; i < count; ++i)
+    if (!std::isfinite(q[i]) || !std::isfinite(qd[i]))
+      fail(Code::kArgument, "set_joints: joint %d is not finite", i);
+  for (int32_t i = 0; i < count; ++i) {
+    const JointDef& joint = scene_->link(first + i).joint;
+    q_[first + i] = std::clamp(q[i], joint.lower, joint.upper);
+    qd_[first + i] = qd[i];
+  }
+  rebuild(articulation);
+  links_changed(articulation);
+}
+
+void World::rebuild(int32_t articulation) {
+  const auto a = static_cast<size_t>(articulation);
+  const int32_t first = scene_->link_offset[a];
+  const int32_t end = first + static_cast<int32_t>(scene_->def.articulations[a].links.size());
+  const LinkFrame* frames = scene_->frames.data();
+  for (int32_t i = first; i < end; ++i) {
+    const LinkFrame& frame = frames[i];
+    const Motion& parent = frame.parent < 0 ? bases_[a] : links_[frame.parent];
+    const Mat3& R_WP = frame.parent < 0 ? base_R_[a] : link_R_[frame.parent];
+    Motion& link = links_[i];
+    Vec3 r = R_WP * frame.p_PL;
+    Quat q_WL = frame.turned ? parent.X.q * frame.q_PL : parent.X.q;
+    if (frame.prismatic) {
+      link_R_[i] = to_matrix(q_WL);
+      axes_[i] = link_R_[i] * frame.axis;
+      r += q_[i] * axes_[i];
+      link.w = parent.w;
+      link.v = parent.v + cross(parent.w, r) + qd_[i] * axes_[i];
+    } else {
+      q_WL = q_WL * axis_angle(frame.axis, q_[i]);
+      link_R_[i] = to_matrix(q_WL);
+      axes_[i] = link_R_[i] * frame.axis;
+      link.w = parent.w + qd_[i] * axes_[i];
+      link.v = parent.v + cross(parent.w, r);
+    }
+    link.X = {parent.X.p + r, q_WL};
+  }
+}
+
+Pose World::shape_pose(int32_t shape) const {
+  const SceneShape& s = scene_->shapes[static_cast<size_t>(shape)];
+  switch (s.carrier) {
+    case Carrier::kLink:
+      return links_[s.index].X * s.def.X_LS;
+    case Carrier::kBody:
+      return bodies_[s.index].X * s.def.X_LS;
+    case Carrier::kBase:
+      return bases_[s.articulation].X * s.def.X_LS;
+    case Carrier::kStatic:
+      break;
+  }
+  return s.def.X_LS;
+}
+
+}  // namespace rdm
