@@ -440,6 +440,7 @@ typedef struct rdm_tensor {   /* frozen layout: a named block of parameters */
   int32_t rows, cols;         /* row-major; cols 1 for vectors                                            */
 } rdm_tensor;
 RDM_API rdm_result rdm_agent_tensor(const rdm_agent *a, int32_t i, rdm_tensor *out); /* RANGE ends the list */
+/* Copies the named tensor out or in; count must be rows * cols. NOT_FOUND, RANGE. */
 RDM_API rdm_result rdm_agent_tensor_read(const rdm_agent *a, const char *name, float *out, size_t count);
 RDM_API rdm_result rdm_agent_tensor_write(rdm_agent *a, const char *name, const float *values, size_t count);
 

@@ -1,0 +1,17 @@
+#!/bin/sh
+# A C program built against the installed package by pkg-config alone, shared and static.
+# Arguments: C compiler, prefix, its library folder, a folder for the programs.
+set -eu
+cc=$1 prefix=$2 libdir=$3 out=$4
+source=$(dirname "$0")/use.c
+PKG_CONFIG_PATH=$prefix/$libdir/pkgconfig
+export PKG_CONFIG_PATH
+# shellcheck disable=SC2046
+"$cc" -std=c99 "$source" -o "$out/use_shared" $(pkg-config --cflags --libs redman)
+LD_LIBRARY_PATH=$prefix/$libdir "$out/use_shared"
+# Our archive by its name, what it needs by pkg-config.
+# shellcheck disable=SC2046
+"$cc" -std=c99 "$source" $(pkg-config --cflags redman) -o "$out/use_static" \
+  "$prefix/$libdir/libredman.a" $(pkg-config --static --libs redman | sed 's/-lredman//')
+"$out/use_static"
+! ldd "$out/use_static" | grep -q libredman
