@@ -1,44 +1,28 @@
 #include "nn/gaussian.hpp"
 
-#include <cmath>
+#include "nn/kernels.hpp"
 
 namespace rdm {
-namespace {
-constexpr double kHalfLogTwoPi = 0.91893853320467274178;
-}
 
 float gaussian_log_prob(const float* mean, const float* log_std, const float* action, int32_t dim) {
-  float sum = 0;
-  for (int32_t j = 0; j < dim; ++j) {
-    const float u = (action[j] - mean[j]) * std::exp(-log_std[j]);
-    sum -= 0.5f * u * u + log_std[j] + static_cast<float>(kHalfLogTwoPi);
-  }
-  return sum;
+  return kernels().log_prob(mean, log_std, action, dim);
 }
 
 void gaussian_log_prob_grad(const float* mean, const float* log_std, const float* action, int32_t dim,
                             float scale, float* dmean, float* dlog_std) {
-  for (int32_t j = 0; j < dim; ++j) {
-    const float s = std::exp(-log_std[j]), u = (action[j] - mean[j]) * s;
-    dmean[j] = scale * u * s;
-    dlog_std[j] += scale * (u * u - 1);
-  }
+  kernels().log_prob_grad(mean, log_std, action, dim, scale, dmean, dlog_std);
 }
 
 float gaussian_entropy(const float* log_std, int32_t dim) {
+  constexpr float kHalfLogTwoPiE = 1.41893853320467274178f;
   float sum = 0;
-  for (int32_t j = 0; j < dim; ++j) sum += log_std[j] + static_cast<float>(kHalfLogTwoPi + 0.5);
+  for (int32_t j = 0; j < dim; ++j) sum += log_std[j] + kHalfLogTwoPiE;
   return sum;
 }
 
 float gaussian_kl(const float* mean0, const float* log_std0, const float* mean1, const float* log_std1,
                   int32_t dim) {
-  float sum = 0;
-  for (int32_t j = 0; j < dim; ++j) {
-    const float d = log_std1[j] - log_std0[j], u = (mean0[j] - mean1[j]) * std::exp(-log_std1[j]);
-    sum += d + 0.5f * (std::expm1(-2 * d) + u * u);
-  }
-  return sum;
+  return kernels().kl(mean0, log_std0, mean1, log_std1, dim);
 }
 
 }  // namespace rdm

@@ -2,41 +2,44 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "base/error.hpp"
+#include "nn/kernels.hpp"
 #include "nn/scratch.hpp"
 
 namespace rdm {
 namespace {
 
-float activate(Activation a, float z) {
-  switch (a) {
-    case Activation::kTanh:
-      return std::tanh(z);
-    case Activation::kElu:
-      return z > 0 ? z : std::expm1(z);
-    case Activation::kRelu:
-      return z > 0 ? z : 0;
-  }
-  return z;
-}
-
-// Derivative by the activation's own value h.
-float slope(Activation a, float h) {
-  switch (a) {
-    case Activation::kTanh:
-      return 1 - h * h;
-    case Activation::kElu:
-      return h > 0 ? 1 : h + 1;
-    case Activation::kRelu:
-      return h > 0 ? 1 : 0;
-  }
-  return 1;
-}
-
 size_t sz(int32_t n) {
   return static_cast<size_t>(n);
+}
+
+size_t forward_pack_floats(const MlpShape& shape) {
+  size_t most = 0;
+  for (int32_t l = 0; l < shape.num_layers(); ++l)
+    most = std::max(most, gemm_pack_floats(shape.layer_out(l), shape.layer_in(l)));
+  return most;
+}
+
+size_t pack_floats(const MlpShape& shape, int32_t rows) {
+  size_t most = forward_pack_floats(shape);
+  for (int32_t l = 0; l < shape.num_layers(); ++l)
+    most = std::max({most, gemm_pack_floats(shape.layer_in(l), shape.layer_out(l)),
+                     gemm_pack_floats(shape.layer_in(l), rows)});
+  return most;
+}
+
+// C [rows][out] = x W^T of layer l.
+GemmArgs times_weights(const MlpShape& shape, int32_t l, const float* w, const float* x, int32_t rows,
+                       float* c, float* packed) {
+  GemmArgs g;
+  g.m = rows, g.n = shape.layer_out(l), g.k = shape.layer_in(l);
+  g.a = x, g.a_row = sz(g.k), g.a_col = 1;
+  g.b = w, g.b_row = 1, g.b_col = sz(g.k);
+  g.c = c;
+  g.activation = shape.activation;
+  g.packed = packed;
+  return g;
 }
 
 }  // namespace
@@ -61,7 +64,7 @@ MlpScratch carve_mlp_scratch(Arena& arena, const MlpShape& shape, int32_t rows) 
   for (int32_t l = 0; l < shape.num_hidden; ++l)
     s.activation[l] = arena.make<float>(sz(rows) * sz(shape.hidden[l]));
   for (float*& d : s.delta) d = arena.make<float>(sz(rows) * sz(widest));
-  s.packed = arena.make<float>(16);
+  s.packed = arena.make<float>(pack_floats(shape, rows));
   return s;
 }
 
@@ -72,75 +75,69 @@ MlpScratch cut_forward_scratch(ScratchCutter& cutter, const MlpShape& shape, int
   for (int32_t l = 0; l < shape.num_hidden; ++l) widest[l & 1] = std::max(widest[l & 1], shape.hidden[l]);
   float* const rows_of[2] = {cutter.make(sz(rows) * sz(widest[0])), cutter.make(sz(rows) * sz(widest[1]))};
   for (int32_t l = 0; l < shape.num_hidden; ++l) s.activation[l] = rows_of[l & 1];
-  s.packed = cutter.make(16);
+  s.packed = cutter.make(forward_pack_floats(shape));
   return s;
 }
 
 void mlp_forward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
                  const MlpScratch& scratch, float* y) {
-  const float* h = x;
+  const Kernels& kernel = kernels();
   for (int32_t l = 0; l < shape.num_layers(); ++l) {
-    const int32_t in = shape.layer_in(l), out = shape.layer_out(l);
     const bool last = l == shape.num_hidden;
     float* z = last ? y : scratch.activation[l];
-    const float *w = params + shape.weight_offset(l), *b = params + shape.bias_offset(l);
-    for (int32_t r = 0; r < rows; ++r)
-      for (int32_t o = 0; o < out; ++o) {
-        float sum = b[o];
-        for (int32_t i = 0; i < in; ++i) sum += h[sz(r) * sz(in) + sz(i)] * w[sz(o) * sz(in) + sz(i)];
-        z[sz(r) * sz(out) + sz(o)] = last ? sum : activate(shape.activation, sum);
-      }
-    h = z;
+    GemmArgs g = times_weights(shape, l, params + shape.weight_offset(l), x, rows, z, scratch.packed);
+    g.bias = params + shape.bias_offset(l);
+    g.activate = !last;
+    kernel.gemm(g);
+    x = z;
   }
 }
 
 void mlp_tangent(const MlpShape& shape, const float* params, const float* direction, const float* x,
                  int32_t rows, const MlpScratch& scratch, float* dy) {
-  const float *h = x, *dh = nullptr;
+  const Kernels& kernel = kernels();
+  const float* dx = nullptr;
   for (int32_t l = 0; l < shape.num_layers(); ++l) {
-    const int32_t in = shape.layer_in(l), out = shape.layer_out(l);
     const bool last = l == shape.num_hidden;
     float* dz = last ? dy : scratch.delta[l & 1];
-    const float *w = params + shape.weight_offset(l), *v = direction + shape.weight_offset(l),
-                *c = direction + shape.bias_offset(l);
-    for (int32_t r = 0; r < rows; ++r)
-      for (int32_t o = 0; o < out; ++o) {
-        float sum = c[o];
-        for (int32_t i = 0; i < in; ++i) {
-          sum += h[sz(r) * sz(in) + sz(i)] * v[sz(o) * sz(in) + sz(i)];
-          if (dh) sum += dh[sz(r) * sz(in) + sz(i)] * w[sz(o) * sz(in) + sz(i)];
-        }
-        const size_t at = sz(r) * sz(out) + sz(o);
-        dz[at] = last ? sum : sum * slope(shape.activation, scratch.activation[l][at]);
-      }
-    h = last ? nullptr : scratch.activation[l];
-    dh = dz;
+    GemmArgs g = times_weights(shape, l, direction + shape.weight_offset(l), x, rows, dz, scratch.packed);
+    if (dx) {
+      kernel.gemm(g);
+      g.a = dx, g.b = params + shape.weight_offset(l), g.add = true;
+    }
+    g.bias = direction + shape.bias_offset(l);
+    g.slope_of = last ? nullptr : scratch.activation[l];
+    kernel.gemm(g);
+    x = scratch.activation[l], dx = dz;
   }
 }
 
 void mlp_backward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
                   const MlpScratch& scratch, const float* dy, float* grad) {
+  const Kernels& kernel = kernels();
   const float* delta = dy;
-  std::memset(grad, 0, shape.num_params() * sizeof(float));
   for (int32_t l = shape.num_hidden; l >= 0; --l) {
     const int32_t in = shape.layer_in(l), out = shape.layer_out(l);
     const float* h = l == 0 ? x : scratch.activation[l - 1];
-    const float* w = params + shape.weight_offset(l);
-    float *dw = grad + shape.weight_offset(l), *db = grad + shape.bias_offset(l);
-    float* next = l == 0 ? nullptr : scratch.delta[l & 1];
-    for (int32_t r = 0; r < rows; ++r) {
-      const float* d = delta + sz(r) * sz(out);
-      for (int32_t o = 0; o < out; ++o) {
-        db[o] += d[o];
-        for (int32_t i = 0; i < in; ++i) dw[sz(o) * sz(in) + sz(i)] += d[o] * h[sz(r) * sz(in) + sz(i)];
-      }
-      for (int32_t i = 0; next && i < in; ++i) {
-        float sum = 0;
-        for (int32_t o = 0; o < out; ++o) sum += d[o] * w[sz(o) * sz(in) + sz(i)];
-        next[sz(r) * sz(in) + sz(i)] = sum * slope(shape.activation, h[sz(r) * sz(in) + sz(i)]);
-      }
-    }
-    delta = next;
+    kernel.column_sums(delta, rows, out, grad + shape.bias_offset(l));
+    GemmArgs g;  // dW = delta^T h
+    g.m = out, g.n = in, g.k = rows;
+    g.a = delta, g.a_row = 1, g.a_col = sz(out);
+    g.b = h, g.b_row = sz(in), g.b_col = 1;
+    g.c = grad + shape.weight_offset(l);
+    g.packed = scratch.packed;
+    kernel.gemm(g);
+    if (l == 0) break;
+    GemmArgs d;  // next delta = delta W .* act'(h)
+    d.m = rows, d.n = in, d.k = out;
+    d.a = delta, d.a_row = sz(out), d.a_col = 1;
+    d.b = params + shape.weight_offset(l), d.b_row = sz(in), d.b_col = 1;
+    d.c = scratch.delta[l & 1];
+    d.slope_of = h;
+    d.activation = shape.activation;
+    d.packed = scratch.packed;
+    kernel.gemm(d);
+    delta = d.c;
   }
 }
 
@@ -166,13 +163,6 @@ void check_mlp_shape(const MlpShape& shape) {
   const auto a = static_cast<int32_t>(shape.activation);
   if (a < 0 || a > static_cast<int32_t>(Activation::kRelu))
     fail(Code::kRange, "activation: %d is unknown", a);
-}
-
-const char* kernel_isa() {
-  return "x86-64-v2";
-}
-bool set_kernel_isa(const char* name) {
-  return std::strcmp(name, "x86-64-v2") == 0;
 }
 
 }  // namespace rdm

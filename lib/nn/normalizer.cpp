@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nn/kernels.hpp"
+
 namespace rdm {
 
 Normalizer carve_normalizer(Arena& arena, int32_t dim) {
@@ -35,35 +37,28 @@ void normalizer_merge(Normalizer& n, const float* x, int32_t rows, const uint8_t
   double k = 0;
   for (int32_t r = 0; r < rows; ++r) k += !mask || mask[r];
   if (k == 0) return;
-  const auto dim = static_cast<size_t>(n.dim);
   const double total = n.count + k;
-  for (size_t j = 0; j < dim; ++j) {
-    double mean = 0, m2 = 0;
-    for (size_t r = 0; r < static_cast<size_t>(rows); ++r)
-      if (!mask || mask[r]) mean += static_cast<double>(x[r * dim + j]);
-    mean /= k;
-    for (size_t r = 0; r < static_cast<size_t>(rows); ++r)
-      if (!mask || mask[r]) {
-        const double d = static_cast<double>(x[r * dim + j]) - mean;
-        m2 += d * d;
-      }
-    const double gap = mean - n.mean[j];
-    n.mean[j] += gap * (k / total);
-    n.m2[j] += m2 + gap * gap * (n.count * k / total);
+  constexpr int32_t kColumns = 256;  // the batch's moments live on the stack
+  double mean[kColumns], m2[kColumns];
+  for (int32_t j0 = 0; j0 < n.dim; j0 += kColumns) {
+    const int32_t width = std::min(kColumns, n.dim - j0);
+    kernels().column_moments(x + j0, rows, width, n.dim, mask, k, mean, m2);
+    for (int32_t j = 0; j < width; ++j) {
+      const double gap = mean[j] - n.mean[j0 + j];
+      n.mean[j0 + j] += gap * (k / total);
+      n.m2[j0 + j] += m2[j] + gap * gap * (n.count * k / total);
+    }
   }
   n.count = total;
   if (count_max > 1 && total > count_max) {
-    for (size_t j = 0; j < dim; ++j) n.m2[j] *= (count_max - 1) / (total - 1);
+    for (int32_t j = 0; j < n.dim; ++j) n.m2[j] *= (count_max - 1) / (total - 1);
     n.count = count_max;
   }
   normalizer_refresh(n);
 }
 
 void normalizer_apply(const Normalizer& n, const float* x, int32_t rows, float* y) {
-  const auto dim = static_cast<size_t>(n.dim);
-  for (size_t r = 0; r < static_cast<size_t>(rows); ++r)
-    for (size_t j = 0; j < dim; ++j)
-      y[r * dim + j] = std::clamp((x[r * dim + j] - n.shift[j]) * n.scale[j], -n.clip, n.clip);
+  kernels().normalize(x, rows, n.dim, n.shift, n.scale, n.clip, y);
 }
 
 }  // namespace rdm

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "nn/kernels.hpp"
 #include "nn/scratch.hpp"
 
 namespace rdm {
@@ -64,6 +65,7 @@ ActScratch cut_act_scratch(const MlpShape& shape, int32_t rows, void* memory) {
 
 void act_view(const PolicyView& v, const float* obs, int32_t rows, const float* noise, float* action,
               void* scratch) {
+  const Kernels& kernel = kernels();
   const ActScratch s = cut_act_scratch(v.actor, rows, scratch);
   const size_t in = sz(v.actor.in), out = sz(v.actor.out);
   for (int32_t at = 0; at < rows; at += s.mlp.rows) {
@@ -71,18 +73,11 @@ void act_view(const PolicyView& v, const float* obs, int32_t rows, const float* 
     const float* x = obs + sz(at) * in;
     float* a = action + sz(at) * out;
     if (v.clip > 0) {
-      for (size_t r = 0; r < sz(n); ++r)
-        for (size_t j = 0; j < in; ++j)
-          s.obs[r * in + j] = std::clamp((x[r * in + j] - v.shift[j]) * v.scale[j], -v.clip, v.clip);
+      kernel.normalize(x, n, v.actor.in, v.shift, v.scale, v.clip, s.obs);
       x = s.obs;
     }
     mlp_forward(v.actor, v.params, x, n, s.mlp, a);
-    const float* e = noise ? noise + sz(at) * out : nullptr;
-    for (size_t r = 0; r < sz(n); ++r)
-      for (size_t j = 0; j < out; ++j) {
-        float& y = a[r * out + j];
-        y = clip_unit(e ? y + std::exp(v.log_std[j]) * e[r * out + j] : y);
-      }
+    kernel.add_noise(v.log_std, noise ? noise + sz(at) * out : nullptr, n, v.actor.out, a);
   }
 }
 

@@ -1,0 +1,76 @@
+// The inner loops of lib/nn, one table of them per instruction set, chosen at run time.
+//
+// Every product adds its terms in the order of k, one fused multiply-add each, whatever the number of rows:
+// so a row's result does not depend on the batch that it came in, and one instruction set always gives
+// the same bytes.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "nn/mlp.hpp"
+
+namespace rdm {
+
+// C = A B, or C += A B, then optionally + bias[j], an activation, or a product with an activation's slope.
+struct GemmArgs {
+  int32_t m = 0, n = 0, k = 0;
+  const float* a = nullptr;  // A(i, k) = a[i a_row + k a_col]; a_row or a_col is 1
+  size_t a_row = 0, a_col = 0;
+  const float* b = nullptr;  // B(k, j) = b[k b_row + j b_col]; b_row or b_col is 1
+  size_t b_row = 0, b_col = 0;
+  float* c = nullptr;  // C(i, j) = c[i n + j]
+  bool add = false;
+  const float* bias = nullptr;      // [n] or null
+  bool activate = false;            // C = act(C)
+  const float* slope_of = nullptr;  // [m][n] values of act or null: C *= act' there
+  Activation activation = Activation::kTanh;
+  float* packed = nullptr;  // gemm_pack_floats(n, k) floats
+};
+
+// Columns and depth of B that are packed at a time.
+inline constexpr int32_t kPackColumns = 512, kPackDepth = 256;
+size_t gemm_pack_floats(int32_t n, int32_t k);
+
+struct AdamArgs {
+  size_t size;
+  float *params, *m, *v;
+  const float* grad;
+  float scale, step, root;  // gradient scale, rate / (1 - 0.9^t), 1 / sqrt(1 - 0.999^t)
+};
+
+struct Kernels {
+  const char* isa;
+  void (*gemm)(const GemmArgs& args);
+  // sum[j] = sum of x[r][j] over r, in the order of r. x [rows][n].
+  void (*column_sums)(const float* x, int32_t rows, int32_t n, float* sum);
+  void (*adam)(const AdamArgs& args);
+  double (*sum_squares)(const float* x, size_t n);
+  // Mean and sum of squared deviations of the first n columns of x [rows][row_step] over the rows whose mask
+  // is not 0 (null: all); `count` of them, at least one.
+  void (*column_moments)(const float* x, int32_t rows, int32_t n, int32_t row_step, const uint8_t* mask,
+                         double count, double* mean, double* m2);
+  // y = clip((x - shift) scale, +-limit); not-a-number stays.
+  void (*normalize)(const float* x, int32_t rows, int32_t n, const float* shift, const float* scale,
+                    float limit, float* y);
+  // y = clip(y + exp(log_std) noise, +-1); noise null: the clip alone. y, noise [rows][n].
+  void (*add_noise)(const float* log_std, const float* noise, int32_t rows, int32_t n, float* y);
+  float (*log_prob)(const float* mean, const float* log_std, const float* action, int32_t n);
+  void (*log_prob_grad)(const float* mean, const float* log_std, const float* action, int32_t n, float scale,
+                        float* dmean, float* dlog_std);
+  float (*kl)(const float* mean0, const float* log_std0, const float* mean1, const float* log_std1,
+              int32_t n);
+  // Elementwise, y may be x: for tests of their accuracy.
+  void (*map_tanh)(const float* x, size_t n, float* y);
+  void (*map_elu)(const float* x, size_t n, float* y);
+  void (*map_exp)(const float* x, size_t n, float* y);
+};
+
+// The table in force; set_kernel_isa changes it.
+const Kernels& kernels();
+
+// Null where this compiler or processor family has none.
+const Kernels* kernels_v2();
+const Kernels* kernels_v3();
+const Kernels* kernels_v4();
+
+}  // namespace rdm
