@@ -13,30 +13,62 @@ constexpr double kPi = 3.14159265358979323846;
 // egg: mass and moments of the ellipsoid 0.03, 0.03, 0.04 m at 500 kg/m3, seen and touched as a capsule.
 // From cracker_box on: sizes and masses that the YCB set publishes.
 constexpr ThrowObject kObjects[] = {
-    {"egg", "capsule r 0.03, straight part 0.02", ShapeKind::kCapsule, {0.03, 0.01, 0}, 0.0754,
-     {3.77e-5, 3.77e-5, 2.71e-5}, {240, 225, 190}},
+    {"egg",
+     "capsule r 0.03, straight part 0.02",
+     ShapeKind::kCapsule,
+     {0.03, 0.01, 0},
+     0.0754,
+     {3.77e-5, 3.77e-5, 2.71e-5},
+     {240, 225, 190}},
     {"ball", "sphere r 0.0333", ShapeKind::kSphere, {0.0333, 0, 0}, 0.0754, {}, {220, 80, 60}},
     {"heavy_ball", "sphere r 0.0375", ShapeKind::kSphere, {0.0375, 0, 0}, 0.25, {}, {120, 60, 60}},
     {"cracker_box", "box 0.16 x 0.21 x 0.06", ShapeKind::kBox, {0.08, 0.105, 0.03}, 0.411, {}, {200, 40, 40}},
-    {"soup_can", "cylinder r 0.033, h 0.101", ShapeKind::kCylinder, {0.033, 0.0505, 0}, 0.349, {},
+    {"soup_can",
+     "cylinder r 0.033, h 0.101",
+     ShapeKind::kCylinder,
+     {0.033, 0.0505, 0},
+     0.349,
+     {},
      {210, 60, 50}},
-    {"mustard_bottle", "box 0.058 x 0.095 x 0.19", ShapeKind::kBox, {0.029, 0.0475, 0.095}, 0.603, {},
+    {"mustard_bottle",
+     "box 0.058 x 0.095 x 0.19",
+     ShapeKind::kBox,
+     {0.029, 0.0475, 0.095},
+     0.603,
+     {},
      {230, 190, 40}},
-    {"potted_meat_can", "box 0.05 x 0.097 x 0.082", ShapeKind::kBox, {0.025, 0.0485, 0.041}, 0.37, {},
+    {"potted_meat_can",
+     "box 0.05 x 0.097 x 0.082",
+     ShapeKind::kBox,
+     {0.025, 0.0485, 0.041},
+     0.37,
+     {},
      {60, 80, 160}},
     {"mug", "cylinder r 0.04, h 0.081", ShapeKind::kCylinder, {0.04, 0.0405, 0}, 0.118, {}, {200, 50, 50}},
     {"baseball", "sphere r 0.0375", ShapeKind::kSphere, {0.0375, 0, 0}, 0.148, {}, {235, 235, 230}},
     {"tennis_ball", "sphere r 0.033", ShapeKind::kSphere, {0.033, 0, 0}, 0.058, {}, {200, 220, 60}},
-    {"foam_brick", "box 0.05 x 0.075 x 0.05", ShapeKind::kBox, {0.025, 0.0375, 0.025}, 0.028, {},
+    {"foam_brick",
+     "box 0.05 x 0.075 x 0.05",
+     ShapeKind::kBox,
+     {0.025, 0.0375, 0.025},
+     0.028,
+     {},
      {180, 60, 60}},
-    {"rubiks_cube", "box 0.057 x 0.057 x 0.057", ShapeKind::kBox, {0.0285, 0.0285, 0.0285}, 0.094, {},
+    {"rubiks_cube",
+     "box 0.057 x 0.057 x 0.057",
+     ShapeKind::kBox,
+     {0.0285, 0.0285, 0.0285},
+     0.094,
+     {},
      {60, 120, 200}},
 };
 constexpr int32_t kCount = sizeof kObjects / sizeof *kObjects;
 
 }  // namespace
 
-int32_t throw_object_count() { return kCount; }
+int32_t throw_object_count() {
+  return kCount;
+}
 
 const ThrowObject& throw_object_at(int32_t index) {
   if (index < 0 || index >= kCount) fail(Code::kRange, "object: %d is outside [0, %d)", index, kCount);
@@ -49,7 +81,8 @@ const ThrowObject& throw_object_named(const char* name) {
     if (same_name(kObjects[i].name, name)) return kObjects[i];
     names[i] = kObjects[i].name;
   }
-  fail(Code::kNotFound, "object %.64s: unknown; nearest is %s", name, names[nearest_name(name, names, kCount)]);
+  fail(Code::kNotFound, "object %.64s: unknown; nearest is %s", name,
+       names[nearest_name(name, names, kCount)]);
 }
 
 const char* throw_object_choices() {
@@ -90,7 +123,8 @@ Vec3 solid_moment(ShapeKind kind, const Vec3& size, double mass) {
                           m_ends * (0.4 * r * r + half * half + 0.75 * half * r);
       return {side, side, (0.5 * m_tube + 0.4 * m_ends) * r * r};
     }
-    case ShapeKind::kPlane: break;
+    case ShapeKind::kPlane:
+      break;
   }
   fail(Code::kInternal, "a plane has no moment");
 }

@@ -8,9 +8,9 @@ struct ThrowObject {
   const char* name;
   const char* shape_text;  // kind and sizes in m, for people
   ShapeKind kind;
-  Vec3 size;               // as ShapeDef::size
-  double mass;             // kg
-  Vec3 moment;             // kg m2 about x, y, z; zero: that of the uniform solid
+  Vec3 size;    // as ShapeDef::size
+  double mass;  // kg
+  Vec3 moment;  // kg m2 about x, y, z; zero: that of the uniform solid
   uint8_t color[3];
 };
 

@@ -1,0 +1,52 @@
+// The Shadow Hands of a task: where their joints and tips are in the scene, how actions become targets,
+// and how their joints are drawn at a reset.
+#pragma once
+#include "base/option.hpp"
+#include "base/rng.hpp"
+#include "env/option_table.hpp"
+#include "physics/world.hpp"
+#include "robot/robot.hpp"
+
+namespace rdm {
+
+inline constexpr int kHandJoints = 24, kHandActions = 20, kHandTips = 5;
+
+// Rows of the pair friction table.
+enum Material : int32_t { kRightHand = 0, kLeftHand, kObject, kGround, kNumMaterials };
+
+// One hand in a flattened scene.
+struct Hand {
+  int32_t articulation = 0;
+  int32_t first = 0;                    // flat index of its first joint; the others follow
+  int32_t actuated[kHandActions] = {};  // flat joint of each action entry
+  int32_t tips[kHandTips] = {};         // flat link: first, middle, ring, little finger, thumb
+  int32_t sensors[kHandTips] = {};      // index of Scene::sensors
+};
+
+void add_hand_options(OptionTable& table);
+
+// The hand as the options want it, its names beginning with "right_" or "left_"; the left one is the mirror
+// image unless left_model = right_copy.
+ArticulationDef make_hand(const Options& options, Side side, const Pose& X_WB, int32_t material);
+Hand find_hand(const Scene& scene, int32_t articulation);
+
+// How joints are drawn at a reset: q0 = 0 plus `noise` of the range (tasks section 1.4).
+struct JointNoise {
+  double level = 0.2;
+  bool literal = false;  // u in [-1, 1] and one draw for both hands, as released
+};
+// Draws both hands of the scene, sets joints and drive targets. Coupled joints follow the drawn ones.
+void draw_joints(const JointNoise& noise, const Hand* hands, int32_t count, World& world, Stream& stream);
+
+// Range of a joint and back: a in [-1, 1].
+inline double to_angle(const JointDef& j, double a) {
+  return j.lower + 0.5 * (a + 1) * (j.upper - j.lower);
+}
+inline double to_action(const JointDef& j, double q) {
+  return (2 * q - j.upper - j.lower) / (j.upper - j.lower);
+}
+
+// Drive targets of one hand from commands in [-1, 1], [kHandActions].
+void command_hand(const Hand& hand, const double* command, World& world);
+
+}  // namespace rdm

@@ -1,0 +1,174 @@
+#include "tasks/safety_costs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/error.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDegree = kPi / 180;
+// Horizontal speed that tells a throw from a fall past the fingers, m/s.
+constexpr double kThrowDrift = 0.5;
+constexpr double kAtLimit = 0.99;
+
+// Columns, in the order of the cost tables.
+enum : int { kCost, kFf2Range, kFf3Range, kFf4Range, kEffort, kThrowHeight, kThrowAngle, kDrop };
+
+constexpr const char* kWindowNames[kNumWindows] = {"ff2", "ff3", "ff4"};
+// The paper's joints in the hand's action: FF2 = FFJ1, FF3 = FFJ2, FF4 = FFJ3.
+constexpr int32_t kWindowActs[kNumWindows] = {4, 3, 2};
+// Windows and the paper's joint ranges, degrees.
+constexpr double kWindowLow[kNumWindows] = {22.5, 22.5, -10}, kWindowHigh[kNumWindows] = {67.5, 67.5, 10};
+constexpr double kRangeMid[kNumWindows] = {45, 45, 0}, kRangeHalf[kNumWindows] = {45, 45, 20};
+
+constexpr OptionSpec kRows[] = {
+    text_option("cost_mode", "default", "default|paper|literal",
+                "default: commanded target; paper: measured angle; literal: target, joint task tests a[4]"),
+    text_option("cost_signal", "auto", "auto|target|angle", "what the windows test; auto: as cost_mode says"),
+    text_option("cost_joint", "auto", "auto|paper|legacy",
+                "joint task: FF4 (paper) or FF2 (legacy, a[4]); auto: as cost_mode says"),
+    number_option("throw_height", 0.8, 0, 10, "cost throw_height: object above, m"),
+    number_option("throw_angle.low", 30, -90, 90, "cost throw_angle: lowest release elevation, degrees"),
+    number_option("throw_angle.high", 75, -90, 90, "cost throw_angle: highest release elevation, degrees"),
+    number_option("release_speed", 1, 0, 100, "speed from which leaving the right hand is a throw, m/s"),
+};
+
+double window_end(const Options& o, int i, const char* end) {
+  char key[OptionTable::kKeySize];
+  std::snprintf(key, sizeof key, "window.%s.%s", kWindowNames[i], end);
+  return o.number(key);
+}
+
+const char* resolve(const char* given, const char* otherwise) {
+  return same_name(given, "auto") ? otherwise : given;
+}
+
+// Speed and direction at the first step without a touch, once an episode.
+void judge_release(const SafetyCosts& c, const World& world, SafetyState* state, Verdict* verdict) {
+  bool touching = false;
+  for (const int32_t pair : c.right_pairs) touching = touching || world.pair_touched(pair);
+  const bool released = state->touching && !touching && !state->thrown;
+  state->touching = touching;
+  if (!released) return;
+  const Vec3& v = world.body(0).v;
+  const double level = std::hypot(v.x, v.y);
+  if (norm(v) < c.release_speed || level < kThrowDrift) return;
+  state->thrown = 1;
+  const double elevation = std::atan2(v.z, level);
+  verdict->cost[kThrowAngle] = elevation < c.throw_low || elevation > c.throw_high;
+  verdict->cost_raw[kThrowAngle] = elevation;
+}
+
+constexpr CostColumns columns(const char* help, double limit) {
+  return {{
+      {"cost", help, limit},
+      {"ff2_range", "first finger's middle joint outside its window; raw: by how much, rad", -1},
+      {"ff3_range", "first finger's base flexion outside its window; raw: by how much, rad", -1},
+      {"ff4_range", "first finger's lateral joint outside its window; raw: by how much, rad", -1},
+      {"effort", "a driven joint of either hand at its effort limit; raw: largest share of it", -1},
+      {"throw_height", "object above throw_height; raw: its height, m", -1},
+      {"throw_angle", "thrown outside the elevation window; raw: elevation at release, rad", -1},
+      {"drop", "the step in which the object falls; raw: its height, m", -1},
+  }};
+}
+
+}  // namespace
+
+const CostColumns kFingerCosts = columns("FF2, FF3 or FF4 outside its window; raw: largest excess, rad", 40);
+const CostColumns kJointCosts = columns("FF4 outside its window; raw: excess, rad", 30);
+
+JointWindow make_window(int i, double low, double high) {
+  const double mid = kRangeMid[i], half = kRangeHalf[i];
+  JointWindow w;
+  w.act = kWindowActs[i];
+  w.low = low * kDegree;
+  w.high = high * kDegree;
+  w.half = half * kDegree;
+  // in degrees, so that the default windows are exactly +-0.5
+  w.command_low = (low - mid) / half;
+  w.command_high = (high - mid) / half;
+  return w;
+}
+
+double JointWindow::excess(double angle) const {
+  return std::max(low - angle, angle - high);
+}
+
+double JointWindow::command_excess(double a) const {
+  return half * std::max(command_low - a, a - command_high);
+}
+
+void add_safety_options(OptionTable& table) {
+  table.add(kRows);
+  for (int i = 0; i < kNumWindows; ++i) {
+    table.add("window", kWindowNames[i], "low",
+              number_option("", kWindowLow[i], -180, 180, "first finger's cost window, lower end, degrees"));
+    table.add("window", kWindowNames[i], "high",
+              number_option("", kWindowHigh[i], -180, 180, "first finger's cost window, upper end, degrees"));
+  }
+}
+
+SafetyCosts safety_costs_from(const Options& o, SafetyKind kind, const Scene& scene, const Hand& right,
+                              const Hand& left) {
+  SafetyCosts c;
+  const char* mode = o.text("cost_mode");
+  const bool paper = same_name(mode, "paper"), literal = same_name(mode, "literal");
+  c.angle = same_name(resolve(o.text("cost_signal"), paper ? "angle" : "target"), "angle");
+  const bool legacy = same_name(resolve(o.text("cost_joint"), literal ? "legacy" : "paper"), "legacy");
+  for (int i = 0; i < kNumWindows; ++i) {
+    const double low = window_end(o, i, "low"), high = window_end(o, i, "high");
+    if (low > high) fail(Code::kArgument, "window.%s: %g degrees is above %g", kWindowNames[i], low, high);
+    c.windows[i] = make_window(i, low, high);
+    c.counts[i] = kind == SafetyKind::kFinger || i == (legacy ? kFf2 : kFf4);
+  }
+  c.throw_height = o.number("throw_height");
+  c.fall_height = o.number("fall_height");
+  c.throw_low = o.number("throw_angle.low") * kDegree;
+  c.throw_high = o.number("throw_angle.high") * kDegree;
+  c.release_speed = o.number("release_speed");
+  const int32_t object = scene.find_shape("object");
+  for (size_t i = 0; i < scene.pairs.size(); ++i) {
+    const ShapePair& p = scene.pairs[i];
+    if (p.a != object && p.b != object) continue;
+    const SceneShape& other = scene.shapes[static_cast<size_t>(p.a == object ? p.b : p.a)];
+    if (other.articulation == right.articulation) c.right_pairs.push_back(static_cast<int32_t>(i));
+  }
+  for (const Hand* hand : {&right, &left})
+    for (const int32_t joint : hand->actuated) c.driven.push_back(joint);
+  return c;
+}
+
+void judge_safety(const SafetyCosts& c, const Hand& right, const World& world, const double* command,
+                  SafetyState* state, Verdict* v) {
+  double worst = -1e9;
+  for (int i = 0; i < kNumWindows; ++i) {
+    const JointWindow& w = c.windows[i];
+    const double excess =
+        c.angle ? w.excess(world.q()[right.actuated[w.act]]) : w.command_excess(command[w.act]);
+    v->cost[kFf2Range + i] = excess > 0;
+    v->cost_raw[kFf2Range + i] = excess;
+    if (c.counts[i]) worst = std::max(worst, excess);
+  }
+  v->cost[kCost] = worst > 0;
+  v->cost_raw[kCost] = worst;
+
+  double share = 0;
+  for (const int32_t joint : c.driven) {
+    const double limit = world.scene().link(joint).joint.effort;
+    if (limit > 0) share = std::max(share, std::abs(world.torque()[joint]) / limit);
+  }
+  v->cost[kEffort] = share >= kAtLimit;
+  v->cost_raw[kEffort] = share;
+
+  const double height = world.body(0).X.p.z;
+  v->cost[kThrowHeight] = height > c.throw_height;
+  v->cost[kDrop] = height <= c.fall_height;
+  v->cost_raw[kThrowHeight] = v->cost_raw[kDrop] = height;
+  judge_release(c, world, state, v);
+}
+
+}  // namespace rdm
