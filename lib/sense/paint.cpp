@@ -110,7 +110,8 @@ Lanes3 color_of(const Painter& painter, const Nearby& nearby, const Hits& hits, 
   if (!any(hit)) return behind;
   const Lanes t = select(hit, hits.t[r], splat(1));
   Surface surface{t * d, d, splat(0, 0, 1), splat(0, 0, 0), splat(1), splat(1)};
-  LaneMask left = hit, flat = splat_int(0);
+  LaneMask left = hit;
+  Lanes fade = splat(0);
   for (int i = 0; i < kLanes; ++i) {
     if (!left[i]) continue;
     const LaneMask same = left & (who == who[i]);
@@ -122,7 +123,7 @@ Lanes3 color_of(const Painter& painter, const Nearby& nearby, const Hits& hits, 
     const Lanes3 color =
         plane ? floor_albedo(painter, s, d, t, share) : splat(s.color[0], s.color[1], s.color[2]);
     surface.albedo = select(same, color, surface.albedo);
-    if (plane) flat |= same;
+    if (plane) fade = select(same, haze(t * sqrt(dot(d, d)), s.o_S[2]), fade);
   }
   if (nearby.shadow.count > 0)
     surface.lit = light_share(painter, nearby.shadow, who, surface.p, surface.n, sample, r);
@@ -132,7 +133,6 @@ Lanes3 color_of(const Painter& painter, const Nearby& nearby, const Hits& hits, 
     surface.open = surface.open * (1.0f - select(who == index, splat(0), 0.8f * hidden));
   }
   const Lanes3 near_color = shade(surface);
-  const Lanes fade = select(flat, haze(t * sqrt(dot(d, d))), splat(0));
   return select(hit, mix(near_color, behind, fade), behind);
 }
 

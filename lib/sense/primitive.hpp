@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "sense/camera.hpp"
-#include "sense/lanes.hpp"
+#include "sense/packet.hpp"
 #include "sense/render_shape.hpp"
 
 namespace rdm {

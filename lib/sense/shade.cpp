@@ -8,7 +8,8 @@ namespace {
 
 constexpr float kSquare = 0.1f;     // m
 constexpr float kDarker = 0.74f;    // of the second square
-constexpr float kHazeRange = 3.2f;  // m at which half of the floor is left
+constexpr float kHazeRange = 3.5f;  // eye heights at which half of the floor is left
+constexpr float kLowEye = 0.8f;     // m: lower eyes see as far as this one
 
 Lanes floor(Lanes v) {
   return Lanes{std::floor(v[0]), std::floor(v[1]), std::floor(v[2]), std::floor(v[3])};
@@ -36,9 +37,9 @@ Lanes3 shade(const Surface& s) {
   const Lanes3 l = splat(static_cast<float>(key.x), static_cast<float>(key.y), static_cast<float>(key.z));
   const Lanes3 v = normalized(splat(0, 0, 0) - s.d);
   const Lanes facing = max(dot(s.n, v), splat(0));
-  const Lanes key_light = 1.85f * s.lit * max(dot(s.n, l), splat(0));
+  const Lanes key_light = 1.95f * s.lit * max(dot(s.n, l), splat(0));
   const Lanes up = 0.5f + 0.5f * s.n.z;
-  const Lanes3 sky = mix(splat(0.30f, 0.28f, 0.26f), splat(0.52f, 0.57f, 0.66f), up);
+  const Lanes3 sky = mix(splat(0.25f, 0.23f, 0.22f), splat(0.42f, 0.47f, 0.56f), up);
   Lanes3 light = s.open * sky + key_light * splat(1.0f, 0.96f, 0.90f);
   light = light + (0.18f * facing * s.open) * splat(1, 1, 1);
 
@@ -57,8 +58,8 @@ Lanes3 background(const Lanes3& d) {
   return mix(horizon, zenith, rise * (2.0f - rise));
 }
 
-Lanes haze(Lanes r) {
-  const Lanes q = r * (1 / kHazeRange), q2 = q * q;
+Lanes haze(Lanes r, float height) {
+  const Lanes q = r * (1 / (kHazeRange * std::fmax(height, kLowEye))), q2 = q * q;
   return 1.0f - 1.0f / (1.0f + q2 * q2);
 }
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "sense/entry.hpp"
-#include "sense/lanes.hpp"
+#include "sense/packet.hpp"
 
 namespace rdm {
 
@@ -28,8 +28,9 @@ Lanes3 shade(const Surface& s);
 // What is seen where nothing is hit: a gradient over the height of the ray.
 Lanes3 background(const Lanes3& d);
 
-// Share of the background in the colour of a floor at distance r, m, 0 to 1: floors fade into the distance.
-Lanes haze(Lanes r);
+// Share of the background in the colour of a floor, 0 to 1, at distance r from an eye that is `height` above
+// it, m: floors fade towards the horizon, the sooner the lower the eye.
+Lanes haze(Lanes r, float height);
 
 // Colour of a plane at (x, y) of its frame, m: squares of 0.1 m in `color` and a darker tone, averaged over
 // the box (wx, wy) that a sample stands for.

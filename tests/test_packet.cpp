@@ -1,13 +1,13 @@
 #include <gtest/gtest.h>
 
-#include "sense/lanes.hpp"
+#include "sense/packet.hpp"
 
 namespace rdm {
 namespace {
 
 constexpr Lanes kA{-2, 0, 3, 16}, kB{1, -0.5f, 3, 9};
 
-TEST(Lanes, EachLaneIsTheScalarOperation) {
+TEST(Packet, EachLaneIsTheScalarOperation) {
   const Lanes lo = min(kA, kB), hi = max(kA, kB), held = clamp(kA, -1, 4), root = sqrt(hi);
   for (int i = 0; i < kLanes; ++i) {
     EXPECT_EQ(lo[i], std::min(kA[i], kB[i]));
@@ -20,7 +20,7 @@ TEST(Lanes, EachLaneIsTheScalarOperation) {
   EXPECT_EQ(largest(-kA), 2);
 }
 
-TEST(Lanes, MasksChooseLaneByLane) {
+TEST(Packet, MasksChooseLaneByLane) {
   const LaneMask less = kA < kB;
   const Lanes chosen = select(less, kA, kB);
   for (int i = 0; i < kLanes; ++i) EXPECT_EQ(chosen[i], kA[i] < kB[i] ? kA[i] : kB[i]);
@@ -33,7 +33,7 @@ TEST(Lanes, MasksChooseLaneByLane) {
   }
 }
 
-TEST(Lanes, VectorsOfLanes) {
+TEST(Packet, VectorsOfLanes) {
   const Lanes3 v{Lanes{3, 0, 1, 2}, Lanes{4, -2, 2, 3}, Lanes{12, 0, 2, 6}};
   const Lanes length = sqrt(dot(v, v)), unit = dot(normalized(v), normalized(v));
   EXPECT_EQ(length[0], 13);
