@@ -88,8 +88,10 @@ void read_meta(Reader& in, PolicyView& v) {
   v.noise_correlation = in.value<float>();
   v.control_dt = in.value<float>();
   v.layout_hash = in.value<uint64_t>();
+  const size_t task_bytes = in.left();
   in.text(v.task, sizeof v.task);
   in.expect_end();
+  if (std::strlen(v.task) + sizeof(uint32_t) != task_bytes) bad("the task's name holds a zero");
   if (!(v.clip >= 0 && v.clip <= 1e6f)) bad("the normaliser's clip is out of range");
   if (v.action_repeat < 1 || v.action_repeat > 1000000) bad("the action repeat is out of range");
   if (!(v.noise_correlation >= 0 && v.noise_correlation < 1)) bad("the noise correlation is out of range");
@@ -173,6 +175,11 @@ Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
   const size_t n_norm = v.clip > 0 ? n_in : 0;
   const unsigned char *shift = view_floats(in, n_norm), *scale = view_floats(in, n_norm);
   in.expect_end();
+  for (size_t j = 0; j < n_norm; ++j) {
+    float v_j;
+    std::memcpy(&v_j, scale + j * sizeof v_j, sizeof v_j);
+    if (!(v_j > 0)) bad("a scale of the normaliser is not positive");
+  }
   in.need_section("EXMP");
   const unsigned char *obs = view_floats(in, n_in), *action = view_floats(in, n_out);
   in.expect_end();

@@ -1,0 +1,349 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <memory>
+#include <thread>
+
+#include "base/error.hpp"
+#include "heap_count.hpp"
+#include "nn/policy.hpp"
+#include "nn_data.hpp"
+
+using namespace rdm;
+
+namespace {
+
+using Bytes = std::vector<unsigned char>;
+
+struct Made {
+  explicit Made(const MlpShape& shape, float clip = 5) {
+    const auto in = static_cast<size_t>(shape.in), out = static_cast<size_t>(shape.out);
+    params.resize(shape.num_params());
+    Stream stream(1, 0, Purpose::kInit);
+    mlp_init(shape, stream, 1, params.data());
+    log_std = random_floats(out, 2, 0.5f);
+    shift = random_floats(in, 3);
+    scale = random_floats(in, 4);
+    for (float& s : scale) s = 0.5f + std::abs(s);
+    obs = random_floats(in, 5);
+    view.actor = shape;
+    view.params = params.data();
+    view.log_std = log_std.data();
+    view.clip = clip;
+    if (clip > 0) view.shift = shift.data(), view.scale = scale.data();
+    view.action_repeat = 2;
+    view.noise_correlation = 0.25f;
+    view.control_dt = 1.0f / 60;
+    view.layout_hash = 0x0123456789abcdefull;
+    std::strcpy(view.task, "egg_catch");
+    view.example_obs = obs.data();
+  }
+  Bytes bytes() const {
+    Writer measure(nullptr, 0);
+    write_policy(measure, view);
+    Bytes b(measure.size());
+    Writer out(b.data(), b.size());
+    write_policy(out, view);
+    EXPECT_TRUE(out.fits());
+    return b;
+  }
+  std::vector<float> params, log_std, shift, scale, obs;
+  PolicyView view;
+};
+
+using Owned = std::unique_ptr<Policy, void (*)(Policy*)>;
+Owned read(const Bytes& b, const HostHooks& hooks = {}) {
+  return Owned(Policy::read(b.data(), b.size(), hooks), Policy::destroy);
+}
+
+std::vector<float> act(const Policy& p, const float* obs, int32_t rows, const float* noise) {
+  std::vector<float> action(static_cast<size_t>(rows * p.view().actor.out), 9);
+  const size_t size = p.scratch_bytes(rows);
+  auto* scratch = static_cast<unsigned char*>(std::aligned_alloc(64, (size + 127) / 64 * 64));
+  std::memset(scratch, 0xA5, size + 64);
+  p.act(obs, rows, noise, action.data(), scratch);
+  for (size_t i = size; i < size + 64; ++i) EXPECT_EQ(scratch[i], 0xA5) << "written past the scratch";
+  std::free(scratch);
+  return action;
+}
+
+// The payload of a section, to be changed; seal() then makes its checksum right again.
+unsigned char* section(Bytes& b, const char* tag, size_t* size = nullptr) {
+  for (size_t p = 24; p < b.size();) {
+    uint64_t n;
+    std::memcpy(&n, &b[p + 8], 8);
+    if (std::memcmp(&b[p], tag, 4) == 0) {
+      if (size) *size = n;
+      return &b[p + 16];
+    }
+    p += 16 + n;
+  }
+  return nullptr;
+}
+void seal(Bytes& b) {
+  for (size_t p = 24; p < b.size();) {
+    uint64_t n;
+    std::memcpy(&n, &b[p + 8], 8);
+    const uint32_t crc = crc32(&b[p + 16], n);
+    std::memcpy(&b[p + 4], &crc, 4);
+    p += 16 + n;
+  }
+}
+
+Code code_of(const Bytes& b, const HostHooks& hooks = {}) {
+  return guard([&] { read(b, hooks); });
+}
+
+template <class T>
+void put(unsigned char* at, T v) {
+  std::memcpy(at, &v, sizeof v);
+}
+
+}  // namespace
+
+TEST(Policy, RoundTripKeepsEverything) {
+  const Made made(make_shape(21, {16, 8}, 5, Activation::kElu));
+  const Bytes b = made.bytes();
+  const Owned p = read(b);
+  const PolicyView& v = p->view();
+  EXPECT_EQ(v.actor.in, 21);
+  EXPECT_EQ(v.actor.out, 5);
+  EXPECT_EQ(v.actor.num_hidden, 2);
+  EXPECT_EQ(v.actor.hidden[0], 16);
+  EXPECT_EQ(v.actor.hidden[1], 8);
+  EXPECT_EQ(v.actor.activation, Activation::kElu);
+  EXPECT_EQ(std::memcmp(v.params, made.params.data(), made.params.size() * 4), 0);
+  EXPECT_EQ(std::memcmp(v.log_std, made.log_std.data(), 20), 0);
+  EXPECT_EQ(std::memcmp(v.shift, made.shift.data(), 84), 0);
+  EXPECT_EQ(std::memcmp(v.scale, made.scale.data(), 84), 0);
+  EXPECT_EQ(v.clip, 5);
+  EXPECT_EQ(v.action_repeat, 2);
+  EXPECT_EQ(v.noise_correlation, 0.25f);
+  EXPECT_EQ(v.control_dt, 1.0f / 60);
+  EXPECT_EQ(v.layout_hash, 0x0123456789abcdefull);
+  EXPECT_STREQ(v.task, "egg_catch");
+  EXPECT_EQ(std::memcmp(v.example_obs, made.obs.data(), 84), 0);
+  const auto action = act(*p, v.example_obs, 1, nullptr);
+  EXPECT_EQ(std::memcmp(v.example_action, action.data(), 20), 0);
+  Writer again(nullptr, 0);
+  write_policy(again, v);
+  Bytes copy(again.size());
+  Writer out(copy.data(), copy.size());
+  write_policy(out, v);
+  EXPECT_EQ(copy, b);
+}
+
+TEST(Policy, ActIsTheNormalisedNetPlusNoiseClipped) {
+  for (const float clip : {0.0f, 1.5f})
+    for_each_isa([&](const char* isa) {
+      SCOPED_TRACE(isa);
+      const Made made(make_shape(19, {24, 12}, 7), clip);
+      const Owned p = read(made.bytes());
+      const int32_t rows = 300;
+      const auto obs = random_floats(rows * 19, 6, 2), noise = random_floats(rows * 7, 7, 0.7f);
+      const auto mean = act(*p, obs.data(), rows, nullptr), action = act(*p, obs.data(), rows, noise.data());
+      const std::vector<double> params(made.params.begin(), made.params.end());
+      int clipped = 0;
+      for (size_t r = 0; r < rows; ++r) {
+        std::vector<double> x;
+        for (size_t j = 0; j < 19; ++j) {
+          auto u = static_cast<double>(obs[r * 19 + j]);
+          if (clip > 0)
+            u = std::clamp((u - static_cast<double>(made.shift[j])) * static_cast<double>(made.scale[j]),
+                           -1.5, 1.5);
+          x.push_back(u);
+        }
+        const auto y = net_in_double(made.view.actor, params, x);
+        for (size_t j = 0; j < 7; ++j) {
+          const double e = static_cast<double>(noise[r * 7 + j]),
+                       s = std::exp(static_cast<double>(made.log_std[j]));
+          EXPECT_NEAR(mean[r * 7 + j], std::clamp(y[j], -1.0, 1.0), 3e-6);
+          EXPECT_NEAR(action[r * 7 + j], std::clamp(y[j] + s * e, -1.0, 1.0), 3e-6);
+          clipped += std::abs(action[r * 7 + j]) == 1;
+        }
+      }
+      EXPECT_GT(clipped, 50);
+    });
+}
+
+TEST(Policy, ARowDoesNotDependOnItsBatch) {
+  for_each_isa([](const char* isa) {
+    SCOPED_TRACE(isa);
+    const Made made(make_shape(398, {64, 64}, 40));
+    const Owned p = read(made.bytes());
+    const auto obs = random_floats(400 * 398, 8);
+    const auto whole = act(*p, obs.data(), 400, nullptr);
+    for (const size_t r : {0u, 1u, 77u, 127u, 128u, 399u}) {
+      const auto one = act(*p, &obs[r * 398], 1, nullptr);
+      EXPECT_EQ(std::memcmp(one.data(), &whole[r * 40], 160), 0) << "row " << r;
+    }
+  });
+}
+
+TEST(Policy, ScratchMayBeAlignedForFloatsOnly) {
+  const Made made(make_shape(21, {16, 8}, 5));
+  const Owned p = read(made.bytes());
+  std::vector<float> scratch(p->scratch_bytes(3) / sizeof(float) + 16), action(15);
+  const auto obs = random_floats(3 * 21, 8);
+  const auto want = act(*p, obs.data(), 3, nullptr);
+  for (size_t shift = 0; shift < 16; ++shift) {
+    p->act(obs.data(), 3, nullptr, action.data(), &scratch[shift]);
+    EXPECT_EQ(action, want);
+  }
+}
+
+TEST(Policy, ThreadsMayShareOne) {
+  const Made made(make_shape(50, {64, 64}, 10));
+  const Owned p = read(made.bytes());
+  const auto obs = random_floats(200 * 50, 8);
+  const auto want = act(*p, obs.data(), 200, nullptr);
+  std::vector<float> got[2];
+  std::thread other([&] {
+    for (int i = 0; i < 50; ++i) got[1] = act(*p, obs.data(), 200, nullptr);
+  });
+  for (int i = 0; i < 50; ++i) got[0] = act(*p, obs.data(), 200, nullptr);
+  other.join();
+  EXPECT_EQ(got[0], want);
+  EXPECT_EQ(got[1], want);
+}
+
+TEST(Policy, ActAllocatesNothing) {
+  if (!kHeapIsCounted) GTEST_SKIP() << "a sanitizer owns the heap";
+  const Made made(make_shape(398, {64, 64}, 40));
+  const Owned p = read(made.bytes());
+  const auto obs = random_floats(200 * 398, 8);
+  std::vector<float> action(200 * 40);
+  const std::unique_ptr<void, void (*)(void*)> scratch(std::aligned_alloc(64, p->scratch_bytes(200)),
+                                                       std::free);
+  const int64_t before = heap_count();
+  p->act(obs.data(), 200, obs.data(), action.data(), scratch.get());
+  EXPECT_EQ(heap_count(), before);
+}
+
+TEST(Policy, ExamplesAreMadeWhenTheWriterHasNone) {
+  Made made(make_shape(6, {4}, 2));
+  made.view.example_obs = nullptr;
+  const Owned p = read(made.bytes());
+  const std::vector<float> zeros(6);
+  EXPECT_EQ(std::memcmp(p->view().example_obs, zeros.data(), 24), 0);
+  const auto action = act(*p, zeros.data(), 1, nullptr);
+  EXPECT_EQ(std::memcmp(p->view().example_action, action.data(), 8), 0);
+}
+
+TEST(Policy, AnExampleThatTheNetDoesNotGiveIsAnError) {
+  Made made(make_shape(6, {4}, 2));
+  std::vector<float> action = act(*read(made.bytes()), made.obs.data(), 1, nullptr);
+  made.view.example_action = action.data();
+  EXPECT_EQ(code_of(made.bytes()), Code::kOk);
+  action[1] += 5e-5f;
+  EXPECT_EQ(code_of(made.bytes()), Code::kOk);
+  action[1] += 2e-4f;
+  EXPECT_EQ(code_of(made.bytes()), Code::kFormat);
+}
+
+TEST(Policy, EveryTruncationIsAnError) {
+  const Bytes b = Made(make_shape(3, {2}, 1)).bytes();
+  for (size_t n = 0; n < b.size(); ++n) {
+    const Bytes cut(b.begin(), b.begin() + static_cast<long>(n));
+    EXPECT_EQ(code_of(cut), Code::kFormat) << n;
+  }
+  Bytes longer = b;
+  longer.push_back(0);
+  EXPECT_EQ(code_of(longer), Code::kFormat);
+}
+
+TEST(Policy, EveryFlippedBitIsAnError) {
+  const Bytes b = Made(make_shape(3, {2}, 1)).bytes();
+  for (size_t i = 0; i < b.size() * 8; ++i) {
+    Bytes flipped = b;
+    flipped[i / 8] = static_cast<unsigned char>(flipped[i / 8] ^ (1u << (i % 8)));
+    const Code code = code_of(flipped);
+    EXPECT_TRUE(code == Code::kFormat || (code == Code::kVersion && i / 32 == 2)) << "bit " << i;
+  }
+}
+
+// Bits flipped under a right checksum may give another policy, but never a crash (run with a sanitizer).
+TEST(Policy, ForgedBytesAreAPolicyOrAnError) {
+  const Bytes b = Made(make_shape(3, {2}, 1)).bytes();
+  int errors = 0;
+  for (const char* tag : {"META", "ARCH", "WGTS", "NORM", "EXMP"}) {
+    Bytes whole = b;
+    size_t size = 0;
+    section(whole, tag, &size);
+    for (size_t i = 0; i < size * 8; ++i) {
+      Bytes forged = b;
+      unsigned char* at = section(forged, tag) + i / 8;
+      *at = static_cast<unsigned char>(*at ^ (1u << (i % 8)));
+      seal(forged);
+      const Code code = code_of(forged);
+      EXPECT_TRUE(code == Code::kOk || code == Code::kFormat) << tag << " bit " << i;
+      errors += code == Code::kFormat;
+    }
+  }
+  EXPECT_GT(errors, 300);
+}
+
+TEST(Policy, AbsurdSizesAreRefusedBeforeAnythingIsAllocated) {
+  static int64_t allocations = 0;
+  HostHooks hooks;
+  hooks.alloc = [](void*, size_t bytes, size_t align) -> void* {
+    ++allocations;
+    return std::aligned_alloc(align, (bytes + align - 1) / align * align);
+  };
+  hooks.release = [](void*, void* p, size_t, size_t) { std::free(p); };
+  const Bytes b = Made(make_shape(3, {2}, 1)).bytes();
+  EXPECT_EQ(code_of(b, hooks), Code::kOk);
+  EXPECT_GT(allocations, 0);
+  allocations = 0;
+  for (const int32_t n : {0, -1, 4, 4096, 65536, 1 << 30, INT32_MAX, INT32_MIN})
+    for (size_t field = 0; field < 8; ++field) {
+      Bytes forged = b;
+      unsigned char* at = section(forged, "ARCH") + 4 * field;
+      int32_t old;
+      std::memcpy(&old, at, 4);
+      if (old == n) continue;
+      put(at, n);
+      seal(forged);
+      EXPECT_EQ(code_of(forged, hooks), Code::kFormat) << "field " << field << " = " << n;
+    }
+  EXPECT_EQ(allocations, 0);
+}
+
+TEST(Policy, ValuesOutOfRangeAreErrors) {
+  const Bytes b = Made(make_shape(3, {2}, 1)).bytes();
+  const auto with = [&](const char* tag, size_t at, auto v) {
+    Bytes forged = b;
+    put(section(forged, tag) + at, v);
+    seal(forged);
+    return code_of(forged);
+  };
+  EXPECT_EQ(with("META", 0, -1.0f), Code::kFormat);
+  EXPECT_EQ(with("META", 0, NAN), Code::kFormat);
+  EXPECT_EQ(with("META", 4, int32_t{0}), Code::kFormat);
+  EXPECT_EQ(with("META", 8, 1.0f), Code::kFormat);
+  EXPECT_EQ(with("META", 12, -INFINITY), Code::kFormat);
+  EXPECT_EQ(with("META", 24, uint32_t{64}), Code::kFormat);          // length of the task's name
+  EXPECT_EQ(with("META", 28, uint32_t{0x00670067}), Code::kFormat);  // a zero inside it
+  EXPECT_EQ(with("WGTS", 0, NAN), Code::kFormat);
+  EXPECT_EQ(with("NORM", 4, INFINITY), Code::kFormat);
+  EXPECT_EQ(with("NORM", 12, 0.0f), Code::kFormat);  // a scale that is not positive
+  EXPECT_EQ(with("EXMP", 0, NAN), Code::kFormat);
+}
+
+TEST(Policy, ForeignAndNewerFilesAreNamed) {
+  const Bytes b = Made(make_shape(3, {2}, 1)).bytes();
+  const Bytes text = {'h', 'e', 'l', 'l', 'o'};
+  EXPECT_EQ(code_of(text), Code::kFormat);
+  EXPECT_EQ(code_of(Bytes(4096, 0)), Code::kFormat);
+  EXPECT_EQ(code_of({}), Code::kFormat);
+  Bytes agent = b;
+  std::memcpy(agent.data(), "RDMAGENT", 8);
+  EXPECT_EQ(code_of(agent), Code::kFormat);
+  Bytes newer = b;
+  put(&newer[8], kPolicyVersion + 1);
+  EXPECT_EQ(code_of(newer), Code::kVersion);
+  Bytes big_endian = b;
+  put(&big_endian[12], uint32_t{0x04030201});
+  EXPECT_EQ(code_of(big_endian), Code::kFormat);
+  EXPECT_NE(std::strstr(last_error(), "byte order"), nullptr);
+}
