@@ -19,7 +19,7 @@ inline constexpr int kMaxCosts = 16;  // = RDM_MAX_COSTS
 struct AlgoInfo {
   const char* name;
   const char* summary;
-  const OptionSpec* options;   // the whole table: shared options first, then the algorithm's own
+  const OptionSpec* options;  // the whole table: shared options first, then the algorithm's own
   int32_t num_options;
 };
 int32_t algo_count();
@@ -34,21 +34,21 @@ struct AgentConfig {
   uint64_t seed = 0, layout_hash = 0;
   float control_dt = 0;
   int32_t max_steps = 0;
-  const float* initial_mean = nullptr;                // [action_dim] or null
-  const OptionInput* defaults = nullptr;              // laid under options; unknown keys are an error
+  const float* initial_mean = nullptr;    // [action_dim] or null
+  const OptionInput* defaults = nullptr;  // laid under options; unknown keys are an error
   int32_t num_defaults = 0;
   const OptionInput* options = nullptr;
   int32_t num_options = 0;
-  const double* cost_limits = nullptr;                // [cost_dim] or null; < 0: none
+  const double* cost_limits = nullptr;  // [cost_dim] or null; < 0: none
   HostHooks hooks;
 };
 
 struct Transition {
-  const float* reward = nullptr;         // [num_envs]
-  const float* cost = nullptr;           // [num_envs][cost_dim]
+  const float* reward = nullptr;  // [num_envs]
+  const float* cost = nullptr;    // [num_envs][cost_dim]
   const uint8_t *terminated = nullptr, *truncated = nullptr, *valid = nullptr, *success = nullptr;
-  const float* final_obs = nullptr;      // [num_envs][obs_dim]
-  const int32_t* steps = nullptr;        // [num_envs]
+  const float* final_obs = nullptr;  // [num_envs][obs_dim]
+  const int32_t* steps = nullptr;    // [num_envs]
 };
 
 // Field by field the public rdm_epoch, without struct_size.
@@ -71,7 +71,7 @@ struct TensorInfo {
 
 class Agent {
  public:
-  static size_t memory(const AgentConfig& config);     // bytes of create, exact
+  static size_t memory(const AgentConfig& config);  // bytes of create, exact
   static Agent* create(const AgentConfig& config);
   static void destroy(Agent* a);
   virtual ~Agent() = default;
@@ -83,18 +83,18 @@ class Agent {
   virtual int32_t missing() const = 0;
   virtual int32_t horizon() const = 0;
   virtual int32_t action_repeat() const = 0;
-  virtual void drop_horizon() = 0;                     // after a cancel: forget what was collected
+  virtual void drop_horizon() = 0;  // after a cancel: forget what was collected
 
   virtual void set_option(const OptionInput& option) = 0;
   virtual const Options& options() const = 0;
   virtual bool tensor(int32_t index, TensorInfo* out) = 0;  // false past the end
-  virtual void tensors_changed() = 0;                  // after a write through TensorInfo::data
+  virtual void tensors_changed() = 0;                       // after a write through TensorInfo::data
 
-  virtual void write_policy_file(Writer& out) = 0;     // const but for scratch
-  virtual void save(Writer& out) const = 0;            // Error(kState) inside a horizon
+  virtual void write_policy_file(Writer& out) = 0;  // const but for scratch
+  virtual void save(Writer& out) const = 0;         // Error(kState) inside a horizon
   virtual void load(const void* bytes, size_t size) = 0;
 
-  virtual const AgentConfig& config() const = 0;       // pointers inside are not valid any more
+  virtual const AgentConfig& config() const = 0;  // pointers inside are not valid any more
 
   // Throws Error(kCancelled) once after cancel() was called (async-signal-safe).
   void check_cancel();

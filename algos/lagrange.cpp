@@ -1,0 +1,53 @@
+#include "algos/lagrange.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace rdm {
+
+Lagrange::Lagrange(const Plan& plan) : count_(plan.num_limited) {
+  const Options& o = plan.options;
+  const char* name = o.text("multiplier_optimizer");
+  options_.optimizer = std::strcmp(name, "sgd") == 0    ? MultiplierOptimizer::kSgd
+                       : std::strcmp(name, "adam") == 0 ? MultiplierOptimizer::kAdam
+                                                        : MultiplierOptimizer::kSoftplus;
+  options_.init = o.number("multiplier_init");
+  options_.normalized = o.flag("multiplier_normalized");
+  split_ = std::strcmp(o.text("cost_loss"), "split") == 0;
+  read_live(o);
+  for (Multiplier& m : multiplier_) m.reset(options_);
+}
+
+void Lagrange::read_live(const Options& o) {
+  options_.rate = o.number("multiplier_lr");
+  options_.max = o.number("multiplier_max");
+  warmup_ = o.integer("multiplier_warmup");
+}
+
+void Lagrange::step(const EpisodeStats& stats, const Plan& plan, int32_t epoch) {
+  if (!stats.fresh) return;
+  const double warmth = warmup_ > 0 ? std::min(1.0, static_cast<double>(epoch - 1) / warmup_) : 1;
+  for (int32_t i = 0; i < count_; ++i)
+    multiplier_[i].step(options_, stats.charged_cost[plan.column[i]], plan.limit[i], warmth);
+}
+
+void Lagrange::visit(StateIo& io) {
+  io.section("LAGR");
+  for (int32_t i = 0; i < count_; ++i) multiplier_[i].visit(io);
+}
+
+void combine_advantages(const Rollout& r, const double* weights, bool split) {
+  const auto costs = static_cast<size_t>(r.num_costs);
+  double total = 1;
+  for (size_t k = 0; k < costs; ++k) total += weights[k];
+  for (size_t i = 0; i < static_cast<size_t>(r.samples()); ++i) {
+    double cost = 0;
+    for (size_t k = 0; k < costs; ++k)
+      cost += weights[k] * static_cast<double>(r.cost_advantage[i * costs + k]);
+    const auto reward = static_cast<double>(r.advantage[i]);
+    r.gain[i] = static_cast<float>((split ? reward : reward - cost) / total);
+    r.linear[i] = static_cast<float>(split ? -cost / total : 0);
+  }
+}
+
+}  // namespace rdm

@@ -1,0 +1,31 @@
+#include "algos/lanes.hpp"
+
+namespace rdm {
+namespace {
+
+// Scratch for `wide` also serves `narrow`.
+bool covers(const MlpShape& wide, const MlpShape& narrow) {
+  if (wide.num_hidden != narrow.num_hidden || wide.out < narrow.out) return false;
+  for (int32_t l = 0; l < wide.num_hidden; ++l)
+    if (wide.hidden[l] < narrow.hidden[l]) return false;
+  return true;
+}
+
+}  // namespace
+
+Lane carve_lane(Arena& arena, const Plan& plan, size_t num_params) {
+  Lane lane;
+  lane.rows = std::min(kPieceRows, std::max(plan.minibatch_rows, plan.config.num_envs));
+  const auto rows = static_cast<size_t>(lane.rows);
+  const auto widest = static_cast<size_t>(std::max(plan.actor.out, plan.cost_critic.out));
+  lane.actor = carve_mlp_scratch(arena, plan.actor, lane.rows);
+  lane.critic = covers(plan.actor, plan.cost_critic) ? lane.actor
+                                                     : carve_mlp_scratch(arena, plan.cost_critic, lane.rows);
+  lane.obs = arena.make<float>(rows * plan.obs_dim());
+  lane.out = arena.make<float>(rows * widest);
+  lane.dout = arena.make<float>(rows * widest);
+  lane.grad = arena.make<float>(num_params);
+  return lane;
+}
+
+}  // namespace rdm

@@ -1,0 +1,102 @@
+// The option tables of the algorithms: shared rows, rows of the clipped loss, rows of the multiplier.
+#pragma once
+#include <array>
+#include <cstddef>
+
+#include "algos/agent.hpp"
+
+namespace rdm {
+
+inline constexpr double kHuge = 1e12;
+
+// What every algorithm understands.
+inline constexpr std::array kSharedOptions = {
+    text_option(
+        "preset", "default", "default|safe|paper|omnisafe",
+        "set of values laid under the options: safe charges falls, paper and omnisafe are the peers'"),
+    // networks
+    text_option("hidden", "64,64", nullptr, "widths of the hidden layers, at most 4, separated by commas"),
+    text_option("critic_hidden", "", nullptr, "the same for the critics; empty: as hidden"),
+    text_option("activation", "tanh", "tanh|elu|relu", "of the hidden layers"),
+    number_option("last_layer_scale", 0.01, 0, 100, "factor on the actor's initial last layer"),
+    // collecting
+    integer_option("horizon", 128, 1, 1 << 20, "decisions of each environment per epoch"),
+    integer_option("action_repeat", 1, 1, 10000, "control steps for which a decision's action is held"),
+    number_option("noise_correlation", 0, 0, 0.999,
+                  "AR(1) coefficient of the exploration noise over decisions"),
+    number_option("init_std", 0.6, 1e-6, 1e3, "initial standard deviation of the action (stationary)"),
+    number_option("std_min", 0.01, 1e-6, 1e3, "lower bound on the standard deviation"),
+    number_option("std_max", 10, 1e-6, 1e3, "upper bound on the standard deviation"),
+    flag_option("learn_std", true, "learn the standard deviation"),
+    flag_option("normalize_obs", true,
+                "subtract the running mean of observations, divide by their deviation"),
+    number_option("obs_clip", 5, 0.1, 1e6, "bound on normalised observations"),
+    number_option("obs_count_max", 0, 0, kHuge, "samples after which old statistics fade; 0: never"),
+    // returns
+    number_option("discount", 0.99, 0, 1, "per control step; a decision has discount^action_repeat"),
+    number_option("lambda", 0.95, 0, 1, "of the reward advantage (GAE)"),
+    number_option("cost_lambda", 0.95, 0, 1, "of the cost advantages (GAE)"),
+    flag_option("standardize_reward_adv", true, "reward advantage to mean 0 and deviation 1 over the batch"),
+    text_option("scale_cost_adv", "center", "center|std",
+                "cost advantages: subtract the mean, or standardise"),
+    flag_option("terminal_cost", false, "charge a terminated episode's missing steps at its own cost rate"),
+    // learning
+    integer_option("passes", 10, 1, 10000, "over the data of an epoch"),
+    integer_option("minibatches", 4, 1, 1 << 20, "per pass"),
+    number_option("learning_rate", 3e-4, 0, 10, "Adam rate of the actor", true),
+    number_option("critic_learning_rate", 0, 0, 10, "Adam rate of the critics, constant; 0: learning_rate",
+                  true),
+    text_option("lr_schedule", "constant", "constant|linear|kl",
+                "of the actor's rate: linear falls to 0, kl adapts"),
+    integer_option("total_epochs", 1000, 1, 1 << 30, "epochs of the linear schedule", true),
+    number_option("kl_target", 0.02, 1e-9, 1e3,
+                  "kl schedule: the epoch's mean KL is kept in half to twice this", true),
+    number_option("kl_factor", 1.3, 1, 10, "kl schedule: change of the rate per epoch", true),
+    number_option("lr_min", 1e-5, 0, 10, "kl schedule: lowest rate", true),
+    number_option("lr_max", 3e-3, 0, 10, "kl schedule: highest rate", true),
+    number_option("early_stop_kl", 0, 0, 1e3, "stop the passes above this KL over the batch; 0: never", true),
+    number_option("entropy", 0, 0, 1e3, "weight of the entropy bonus", true),
+    number_option("max_grad_norm", 1, 0, kHuge, "bound on each network's gradient norm; 0: none", true),
+    number_option("critic_l2", 1e-3, 0, 1e3, "weight of the critics' squared parameters", true),
+    // costs
+    number_option("cost_limit", 25, -1, kHuge, "limit on column 0's sum over an episode; < 0: none", true),
+};
+
+// The clipped surrogate.
+inline constexpr std::array kClipOptions = {
+    number_option("clip", 0.2, 1e-6, 10, "bound on the change of the probability ratio", true),
+};
+
+// Lagrange multipliers, one per limited cost.
+inline constexpr std::array kMultiplierOptions = {
+    text_option("cost_loss", "combined", "combined|split",
+                "combined: one clipped advantage (A_r - l A_c)/(1 + l); split: the cost part is not clipped"),
+    text_option("multiplier_optimizer", "adam", "sgd|adam|softplus",
+                "of the multipliers; softplus: Adam on ln(e^l - 1)"),
+    number_option("multiplier_init", 0.001, 0, 1e6, "initial multiplier"),
+    number_option("multiplier_lr", 0.035, 0, 1e3, "rate of the multiplier per epoch", true),
+    number_option("multiplier_max", 1e6, 0, kHuge, "upper bound on the multiplier", true),
+    flag_option("multiplier_normalized", false, "divide the violation by the limit"),
+    integer_option("multiplier_warmup", 0, 0, 1 << 30, "epochs in which the multiplier's rate grows from 0",
+                   true),
+    integer_option("multiplier_window", 100, 1, 10000, "finished episodes that J_c is the mean of"),
+};
+
+template <size_t... N>
+constexpr auto join_options(const std::array<OptionSpec, N>&... tables) {
+  std::array<OptionSpec, (N + ...)> all{};
+  size_t at = 0;
+  const auto append = [&](const auto& table) {
+    for (const OptionSpec& s : table) all[at++] = s;
+  };
+  (append(tables), ...);
+  return all;
+}
+
+// The values for one agent: table, then config.defaults, then the preset, then config.options. A default
+// that only other algorithms know is skipped; an option is not. Takes memory from the hooks of the config
+// once, options_bytes in all.
+Options read_options(const AgentConfig& config, const AlgoInfo& algo);
+size_t options_bytes(const AlgoInfo& algo);
+
+}  // namespace rdm

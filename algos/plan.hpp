@@ -1,0 +1,46 @@
+// Everything that is decided before an agent takes memory: checked config, option values, network shapes.
+#pragma once
+#include <algorithm>
+#include <utility>
+
+#include "algos/agent.hpp"
+#include "nn/mlp.hpp"
+
+namespace rdm {
+
+struct AlgoRow;
+
+// Rows of a batch that one thread handles at a time. Fixed: the order of sums follows from it.
+inline constexpr int32_t kPieceRows = 256;
+
+struct Plan {
+  Plan(const AgentConfig& c, Options&& o, const AlgoRow& r) : config(c), options(std::move(o)), row(&r) {}
+
+  AgentConfig config;  // scalars and names stay valid, arrays only until the agent is made
+  char task[kOptionTextSize] = "";
+  Options options;
+  const AlgoRow* row;
+
+  MlpShape actor, reward_critic, cost_critic;  // cost_critic.out = num_limited
+  int32_t num_limited = 0;                     // limited cost columns; 0 for algorithms without costs
+  int32_t column[kMaxCosts] = {};              // [num_limited] column of each
+  double limit[kMaxCosts] = {};                // [num_limited]
+
+  int32_t horizon = 0, action_repeat = 0;
+  int32_t samples = 0;         // num_envs * horizon
+  int32_t minibatch_rows = 0;  // largest minibatch
+  int32_t lanes = 1;           // pieces in flight
+
+  size_t obs_dim() const { return static_cast<size_t>(config.obs_dim); }
+  size_t action_dim() const { return static_cast<size_t>(config.action_dim); }
+  size_t num_envs() const { return static_cast<size_t>(config.num_envs); }
+};
+
+// Error(kRange, kArgument, kNotFound) with the name of the field or option.
+Plan make_plan(const AgentConfig& config);
+
+inline int32_t num_pieces(int32_t rows) {
+  return (rows + kPieceRows - 1) / kPieceRows;
+}
+
+}  // namespace rdm

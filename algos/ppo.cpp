@@ -1,0 +1,51 @@
+#include "algos/ppo.hpp"
+
+#include <cmath>
+
+#include "algos/options.hpp"
+#include "algos/registry.hpp"
+#include "nn/gaussian.hpp"
+
+namespace rdm {
+
+ClippedLoss clipped_loss(float ratio, float gain, float linear, float clip) {
+  ClippedLoss out;
+  out.clipped = gain >= 0 ? ratio > 1 + clip : ratio < 1 - clip;
+  const float bound = gain >= 0 ? 1 + clip : 1 - clip;
+  out.loss = -(out.clipped ? bound : ratio) * gain - ratio * linear;
+  out.slope = -ratio * ((out.clipped ? 0 : gain) + linear);
+  return out;
+}
+
+void Ppo::read_live() {
+  PolicyGradient::read_live();
+  clip_ = static_cast<float>(options().number("clip"));
+}
+
+void Ppo::policy_loss(const PolicyPiece& piece) const {
+  const Rollout& r = rollout();
+  const auto dim = static_cast<int32_t>(r.action_dim);
+  for (int32_t i = 0; i < piece.rows; ++i) {
+    const auto at = static_cast<size_t>(piece.order[i]);
+    const float* action = r.action + at * r.action_dim;
+    const float* mean = piece.mean + static_cast<size_t>(i) * r.action_dim;
+    const float change = gaussian_log_prob(mean, piece.log_std, action, dim) - r.log_prob[at];
+    // exp(20) is far past any clip and still finite after it is multiplied.
+    const ClippedLoss l = clipped_loss(std::exp(std::min(change, 20.0f)), r.gain[at], r.linear[at], clip_);
+    gaussian_log_prob_grad(mean, piece.log_std, action, dim, piece.scale * l.slope,
+                           piece.dmean + static_cast<size_t>(i) * r.action_dim, piece.dlog_std);
+    piece.sums->loss += static_cast<double>(l.loss);
+    piece.sums->clipped += l.clipped;
+    piece.sums->kl += static_cast<double>(
+        gaussian_kl(r.mean + at * r.action_dim, piece.old_log_std, mean, piece.log_std, dim));
+  }
+}
+
+namespace {
+constexpr auto kOptions = join_options(kSharedOptions, kClipOptions);
+}
+constinit const AlgoRow kPpo = make_algo_row<Ppo>(
+    "ppo", "Proximal policy optimisation, clipped (Schulman et al. 2017); costs are recorded only", kOptions,
+    false);
+
+}  // namespace rdm

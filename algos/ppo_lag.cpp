@@ -1,0 +1,14 @@
+// PPO-Lag (Ray et al. 2019): PPO on the advantage that Lagrange multipliers combine.
+#include "algos/lagrange.hpp"
+#include "algos/options.hpp"
+#include "algos/ppo.hpp"
+#include "algos/registry.hpp"
+
+namespace rdm {
+namespace {
+constexpr auto kOptions = join_options(kSharedOptions, kClipOptions, kMultiplierOptions);
+}
+constinit const AlgoRow kPpoLag = make_algo_row<Weighted<Ppo, Lagrange>>(
+    "ppo_lag", "PPO with a Lagrange multiplier for each cost limit (Ray et al. 2019)", kOptions, true);
+
+}  // namespace rdm

@@ -1,0 +1,66 @@
+#include "algos/registry.hpp"
+
+#include <iterator>
+
+#include "algos/options.hpp"
+#include "base/error.hpp"
+
+namespace rdm {
+namespace {
+
+const AlgoRow* const kRows[] = {&kPpo, &kPpoLag};
+
+}  // namespace
+
+int32_t algo_count() {
+  return static_cast<int32_t>(std::size(kRows));
+}
+
+const AlgoRow& algo_row(int32_t index) {
+  if (index < 0 || index >= algo_count())
+    fail(Code::kRange, "algorithm index: %d is outside [0, %d]", index, algo_count() - 1);
+  return *kRows[index];
+}
+
+const AlgoInfo& algo_at(int32_t index) {
+  return algo_row(index).info;
+}
+
+int32_t algo_find(const char* name) {
+  if (!name) fail(Code::kArgument, "algo: NULL");
+  const char* names[std::size(kRows)];
+  for (int32_t i = 0; i < algo_count(); ++i) {
+    names[i] = kRows[i]->info.name;
+    if (same_name(names[i], name)) return i;
+  }
+  fail(Code::kNotFound, "algo %.64s: unknown; nearest is %s", name,
+       names[nearest_name(name, names, algo_count())]);
+}
+
+size_t Agent::memory(const AgentConfig& config) {
+  Plan plan = make_plan(config);
+  const size_t rows = options_bytes(plan.row->info);
+  const AlgoRow& row = *plan.row;
+  return row.measure(std::move(plan)) + rows + Workers::memory(config.hooks, config.num_threads);
+}
+
+Agent* Agent::create(const AgentConfig& config) {
+  Plan plan = make_plan(config);
+  const AlgoRow& row = *plan.row;
+  PolicyGradient* agent = row.make(config.hooks, std::move(plan));
+  try {
+    agent->open(config);
+  } catch (...) {
+    row.end(agent);
+    throw;
+  }
+  return agent;
+}
+
+void Agent::destroy(Agent* a) {
+  if (!a) return;
+  auto* agent = static_cast<PolicyGradient*>(a);
+  agent->row().end(agent);
+}
+
+}  // namespace rdm

@@ -1,0 +1,46 @@
+// The list of algorithms: how each is described, made and ended.
+#pragma once
+#include <array>
+
+#include "algos/plan.hpp"
+#include "algos/policy_gradient.hpp"
+
+namespace rdm {
+
+struct AlgoRow {
+  AlgoInfo info;
+  bool needs_costs;  // learns from cost columns with a limit
+  size_t (*measure)(Plan&& plan);
+  PolicyGradient* (*make)(const HostHooks& hooks, Plan&& plan);
+  void (*end)(PolicyGradient* agent);
+};
+const AlgoRow& algo_row(int32_t index);
+
+// One per algorithm file.
+extern const AlgoRow kPpo, kPpoLag;
+
+// The row of an algorithm whose class is T.
+template <class T, size_t N>
+constexpr AlgoRow make_algo_row(const char* name, const char* summary,
+                                const std::array<OptionSpec, N>& options, bool needs_costs) {
+  AlgoRow row{};
+  row.info = {name, summary, options.data(), static_cast<int32_t>(N)};
+  row.needs_costs = needs_costs;
+  row.measure = [](Plan&& plan) -> size_t {
+    T agent(std::move(plan));
+    Arena arena;
+    agent.carve(arena);
+    return sizeof(T) + arena.used();
+  };
+  row.make = [](const HostHooks& hooks, Plan&& plan) -> PolicyGradient* {
+    T* agent = host_new<T>(hooks, std::move(plan));
+    return agent;
+  };
+  row.end = [](PolicyGradient* agent) {
+    const HostHooks hooks = agent->config().hooks;
+    host_delete(hooks, static_cast<T*>(agent));
+  };
+  return row;
+}
+
+}  // namespace rdm

@@ -1,0 +1,43 @@
+// What an epoch collects: one row per decision, sample t of environment e at row t num_envs + e, so that an
+// act writes one block.
+#pragma once
+#include "algos/gae.hpp"
+#include "algos/plan.hpp"
+
+namespace rdm {
+
+struct Rollout {
+  int32_t horizon = 0, num_envs = 0, num_costs = 0;
+  size_t obs_dim = 0, action_dim = 0;
+  int32_t filled = 0;  // decisions recorded
+
+  // [samples] rows of:
+  float* obs = nullptr;     // [obs_dim] as the networks saw it
+  float* action = nullptr;  // [action_dim] less the offset of the correlated noise
+  float* mean = nullptr;    // [action_dim] of the policy that acted
+  float* log_prob = nullptr;
+  float *reward = nullptr, *value = nullptr, *advantage = nullptr, *target = nullptr;
+  // [num_costs]
+  float *cost = nullptr, *cost_value = nullptr, *cost_advantage = nullptr, *cost_target = nullptr;
+  float* discount = nullptr;  // 0 where a path ended
+  uint8_t* valid = nullptr;
+  // What the actor climbs: clipped, and linear in the ratio (0 unless the algorithm splits its loss).
+  float *gain = nullptr, *linear = nullptr;
+  float *last_value = nullptr, *last_cost_value = nullptr;  // [num_envs], [num_envs][num_costs]
+  int32_t* order = nullptr;                                 // [samples] valid rows, shuffled
+
+  size_t row(int32_t t) const { return static_cast<size_t>(t) * static_cast<size_t>(num_envs); }
+  int32_t samples() const { return horizon * num_envs; }
+};
+Rollout carve_rollout(Arena& arena, const Plan& plan);
+
+struct AdvantageOptions {
+  double lambda = 0.95, cost_lambda = 0.95;
+  bool standardize_reward = true, standardize_cost = false;
+};
+// Fills advantages and targets of reward and costs, and scales the advantages.
+void estimate_advantages(const Rollout& r, const AdvantageOptions& options);
+// Writes the valid rows into order; returns their number.
+int32_t list_valid(const Rollout& r);
+
+}  // namespace rdm
