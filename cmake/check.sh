@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves]: installs what the tests need, builds, and runs them.
+# The last line says how many passed and failed; the exit status is 0 when none failed.
+set -u
+cd "$(dirname "$0")/.." || exit 1
+. cmake/packages.sh
+mode=${1:-dev}
+
+# Runs ctest and ends with "N passed, M failed".
+run_tests() {
+  local preset=$1 log=build/ctest-$mode.log
+  shift
+  (cd "build/$preset" && ctest --output-on-failure --no-tests=error -j "$(nproc)" "$@") 2>&1 | tee "$log"
+  local status=${PIPESTATUS[0]} failed total
+  failed=$(sed -n 's/.* tests passed, \([0-9]*\) tests* failed out of .*/\1/p' "$log" | tail -n1)
+  total=$(sed -n 's/.* failed out of \([0-9]*\).*/\1/p' "$log" | tail -n1)
+  [ -n "$total" ] || die "ctest ran nothing"
+  echo "$((total - failed)) passed, $failed failed"
+  return "$status"
+}
+
+# shellcheck disable=SC2086
+need $build_packages libgtest-dev clang-format-14
+case $mode in
+  dev)
+    configure dev
+    build dev
+    run_tests dev -LE slow
+    ;;
+  asan | tsan)
+    configure "$mode"
+    build "$mode"
+    export UBSAN_OPTIONS=print_stacktrace=1
+    run_tests "$mode" -LE 'slow|format'
+    ;;
+  slow)
+    configure dev
+    build dev
+    run_tests dev -L slow
+    ;;
+  valgrind)
+    need valgrind libc6-dbg
+    configure dev -DREDMAN_VALGRIND=ON
+    build dev
+    run_tests dev -L valgrind
+    ;;
+  tidy)
+    need clang-tidy-14
+    configure dev
+    build dev
+    passed=0 failed=0
+    list=$(mktemp -d)
+    find lib tasks algos capi -name '*.cpp' -print0 | xargs -0 -n 1 -P "$(nproc)" sh -c '
+      if clang-tidy-14 -p build/dev --quiet "$1" > "$0/$$.out" 2> /dev/null; then echo ok > "$0/$$.ok"; else
+        echo "$1"; cat "$0/$$.out"; echo bad > "$0/$$.bad"; fi' "$list"
+    passed=$(find "$list" -name '*.ok' | wc -l) failed=$(find "$list" -name '*.bad' | wc -l)
+    rm -rf "$list"
+    echo "$passed passed, $failed failed"
+    [ "$failed" -eq 0 ]
+    ;;
+  halves)
+    # Each half builds, passes its tests and installs without the other.
+    for half in SIM LEARN; do
+      configure dev -B build/without-$half -DREDMAN_$half=OFF
+      cmake --build build/without-$half -j "$(nproc)" >&2 || die "the build without $half failed: see above"
+      run_tests without-$half -LE slow || exit 1
+    done
+    ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves]" ;;
+esac
