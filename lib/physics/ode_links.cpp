@@ -18,6 +18,20 @@ double largest_moment(const Inertia& inertia) {
   return std::max({inertia.moment[0], inertia.moment[1], inertia.moment[2]});
 }
 
+double trace(const Inertia& inertia) {
+  return inertia.moment[0] + inertia.moment[1] + inertia.moment[2];
+}
+
+// About the joint's axis. The outer axis of a universal joint turns in the link, so that one gets it all
+// around.
+void add_armature(Inertia* inertia, double armature, const Vec3& axis, bool all_around) {
+  Mat3 moment = moment_matrix(*inertia);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      moment(r, c) += armature * (all_around ? (r == c ? 1.0 : 0.0) : axis[r] * axis[c]);
+  set_moment(inertia, moment);
+}
+
 dBodyID make_body(dWorldID world, const Inertia& inertia) {
   const dBodyID body = dBodyCreate(world);
   dMass mass;
@@ -74,16 +88,18 @@ void OdeLinks::make_bodies(dWorldID world, int32_t articulation, const LinkState
     const LinkDef& link = scene.link(i);
     const int32_t parent = scene.frames[static_cast<size_t>(i)].parent;
     const bool universal = parent >= 0 && !links_[parent].owner;
+    // The light link in the middle of a universal joint is lumped at its child's centre of mass; shifting
+    // the centre and adding its moment made the fingers softer under load.
     Inertia inertia = link.inertia;
-    if (universal) inertia = combined(inertia, transformed(scene.link(parent).inertia, inverse(link.X_PL)));
+    if (universal) inertia.mass += scene.link(parent).inertia.mass;
     if (inertia.mass <= 0 || !positive_definite(moment_matrix(inertia)))
       fail(Code::kRange, "%s: a link with a body needs mass and moment above 0", link.name.text);
     double armature = link.joint.armature;
+    if (universal) armature = std::max(armature, scene.link(parent).joint.armature);
     if (largest_moment(inertia) < kLightMoment) armature += scene.def.solver.link_armature;
-    const double own = largest_moment(inertia);
-    // Both axes of a universal joint, and the loads from the sides on a light link, want it all around.
-    for (int k = 0; k < 3; ++k) inertia.moment[k] += armature;
-    links_[i].own_share = own / (own + armature);
+    const double own = trace(inertia);
+    add_armature(&inertia, armature, link.joint.axis, universal);
+    links_[i].own_share = own / trace(inertia);
     links_[i].com = inertia.com;
     links_[i].body = make_body(world, inertia);
     dBodySetGravityMode(links_[i].body, def.gravity);

@@ -93,6 +93,8 @@ void check_joint(JointDef* joint, int32_t self, int32_t num_links) {
   need(joint->kd, 0, 1e7, name, "kd");
   need(joint->effort, 0, 1e7, name, "effort");
   need(joint->armature, 0, 1e4, name, "armature");
+  if (joint->kind == JointKind::kPrismatic && joint->armature != 0)
+    fail(Code::kArgument, "%s: a prismatic joint takes no armature", name);
   need(joint->friction, 0, 1e4, name, "friction");
   need(joint->slack, 0, 1e4, name, "slack");
   need(joint->ratio, -1e3, 1e3, name, "ratio");

@@ -44,7 +44,7 @@ struct JointDef {
   double lower = 0, upper = 0;  // range
   double kp = 0, kd = 0;        // drive: torque = kp (target - q) - kd qd, implicit
   double effort = 0;            // bound of the drive's torque
-  double armature = 0;          // added inertia about the axis
+  double armature = 0;          // added inertia about the axis, kg m2; revolute only
   double friction = 0;          // dry friction torque
   // A coupled joint has no target of its own: it is driven to clamp(q, ratio q_other -+ slack).
   int32_t coupled_to = -1;  // link index in the same articulation, -1: none
@@ -111,7 +111,7 @@ struct SolverDef {
   int32_t contacts_max = 64;        // per world and substep, 1..256; more raise kContactOverflow
   double limit_margin = 5e-3;       // rad beyond a joint's range before it is clamped
   double limit_stiffness = 100;     // N m/rad of the soft limit
-  double link_armature = 3e-5;      // kg m2 about the joint axis of each finger link (engine ode)
+  double link_armature = 3e-5;      // kg m2 about the joint axis of links under 1e-4 kg m2 (engine ode)
   bool spring_only_effort = false;  // true: effort bounds the spring alone, damping stays outside
   bool exact = false;               // engine ode: the O(n^3) solver, slow; the reference of tests
 };
