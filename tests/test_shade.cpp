@@ -18,13 +18,17 @@ Surface surface(const Vec3& n, float lit = 1, float open = 1) {
   return {wide(d), wide(d), wide(n), splat(0.5f, 0.5f, 0.5f), splat(lit), splat(open)};
 }
 
+Lanes3 lit(const Surface& s) {
+  return shade(s, wide(light_direction(0, 0)));
+}
+
 TEST(Shade, BrighterTheMoreItFacesTheLight) {
   const Vec3 key = light_direction(0, 0), side = normalized(cross(key, {0.2, 1, 0.1}));
   double before = HUGE_VAL;
   for (double angle = 0; angle < 1.5; angle += 0.1) {
     // Compared with the same point in shadow, so that only the key light counts.
     const Vec3 n = std::cos(angle) * key + std::sin(angle) * side;
-    const double gain = sum(shade(surface(n, 1))) - sum(shade(surface(n, 0)));
+    const double gain = sum(lit(surface(n, 1))) - sum(lit(surface(n, 0)));
     EXPECT_GT(gain, 0);
     EXPECT_LT(gain, before) << angle;
     before = gain;
@@ -33,9 +37,9 @@ TEST(Shade, BrighterTheMoreItFacesTheLight) {
 
 TEST(Shade, ShadowAndClosenessDarken) {
   const Vec3 up{0, 0, 1};
-  EXPECT_LT(sum(shade(surface(up, 0))), 0.6 * sum(shade(surface(up, 1))));
-  EXPECT_LT(sum(shade(surface(up, 1, 0.3f))), sum(shade(surface(up, 1, 1))));
-  EXPECT_GT(sum(shade(surface(up, 0))), 0.1);  // shadows are not black
+  EXPECT_LT(sum(lit(surface(up, 0))), 0.6 * sum(lit(surface(up, 1))));
+  EXPECT_LT(sum(lit(surface(up, 1, 0.3f))), sum(lit(surface(up, 1, 1))));
+  EXPECT_GT(sum(lit(surface(up, 0))), 0.1);  // shadows are not black
 }
 
 TEST(Shade, LightDirectionsFillTheDisc) {

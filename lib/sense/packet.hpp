@@ -42,7 +42,8 @@ inline bool any(LaneMask m) {
   return (m[0] | m[1] | m[2] | m[3]) != 0;
 }
 inline float largest(Lanes v) {
-  return std::fmax(std::fmax(v[0], v[1]), std::fmax(v[2], v[3]));
+  const float a = v[0] > v[1] ? v[0] : v[1], b = v[2] > v[3] ? v[2] : v[3];
+  return a > b ? a : b;
 }
 
 // Four vectors.
@@ -72,6 +73,12 @@ inline Lanes3 normalized(const Lanes3& a) {
 }
 inline Lanes3 select(LaneMask m, const Lanes3& a, const Lanes3& b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+}
+inline Lanes3 min(const Lanes3& a, const Lanes3& b) {
+  return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
+}
+inline Lanes3 max(const Lanes3& a, const Lanes3& b) {
+  return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
 }
 inline Lanes3 mix(const Lanes3& a, const Lanes3& b, Lanes t) {
   return a + t * (b - a);

@@ -17,29 +17,25 @@ struct Ball {
 };
 
 Ball ball_about(const Hits* hits, int count) {
-  float lo[3] = {kNoHit, kNoHit, kNoHit}, hi[3] = {-kNoHit, -kNoHit, -kNoHit};
+  Lanes3 lo = splat(kNoHit, kNoHit, kNoHit), hi = splat(-kNoHit, -kNoHit, -kNoHit);
   for (int k = 0; k < count; ++k)
     for (int r = 0; r < kTileSide; ++r) {
+      const LaneMask hit = hits[k].who[r] >= 0;
       const Lanes3 p = hits[k].t[r] * hits[k].d[r];
-      for (int i = 0; i < kLanes; ++i) {
-        if (hits[k].who[r][i] < 0) continue;
-        const float v[3] = {p.x[i], p.y[i], p.z[i]};
-        for (int a = 0; a < 3; ++a) {
-          lo[a] = std::fmin(lo[a], v[a]);
-          hi[a] = std::fmax(hi[a], v[a]);
-        }
-      }
+      lo = select(hit, min(lo, p), lo);
+      hi = select(hit, max(hi, p), hi);
     }
-  if (!(lo[0] <= hi[0])) return {0, 0, 0, -1};
-  const float dx = hi[0] - lo[0], dy = hi[1] - lo[1], dz = hi[2] - lo[2];
-  return {0.5f * (lo[0] + hi[0]), 0.5f * (lo[1] + hi[1]), 0.5f * (lo[2] + hi[2]),
+  const float x1 = largest(hi.x), y1 = largest(hi.y), z1 = largest(hi.z);
+  const float x0 = -largest(-lo.x), y0 = -largest(-lo.y), z0 = -largest(-lo.z);
+  if (!(x0 <= x1)) return {0, 0, 0, -1};
+  const float dx = x1 - x0, dy = y1 - y0, dz = z1 - z0;
+  return {0.5f * (x0 + x1), 0.5f * (y0 + y1), 0.5f * (z0 + z1),
           0.5f * std::sqrt(dx * dx + dy * dy + dz * dz)};
 }
 
 // Primitives that may stand between the ball and the light.
 int32_t list_shadows(const Painter& painter, const Ball& ball, int32_t* out) {
-  const Vec3 key = light_direction(0, 0);
-  const float lx = static_cast<float>(key.x), ly = static_cast<float>(key.y), lz = static_cast<float>(key.z);
+  const float lx = painter.lights.key.x[0], ly = painter.lights.key.y[0], lz = painter.lights.key.z[0];
   int32_t n = 0;
   for (int32_t k = 0; k < painter.all.count; ++k) {
     const Primitive& s = painter.scratch.primitives[painter.all.at[k]];
@@ -71,17 +67,22 @@ Lanes light_share(const Painter& painter, const IndexList& list, LaneMask who, c
                   const Lanes3& n, int sample, int row) {
   const LightRays& lights = painter.lights;
   const int samples = painter.options.samples_per_side * painter.options.samples_per_side;
+  LaneMask left[kMaxRaysPerSample];
+  for (int j = 0; j < lights.per_sample; ++j)
+    left[j] = (who >= 0) & (dot(n, lights.at[sample + j * samples][row]) > 0.0f);
   Lanes lost = splat(0);
-  for (int j = 0; j < lights.per_sample; ++j) {
-    const Lanes3& l = lights.at[sample + j * samples][row];
-    LaneMask left = (who >= 0) & (dot(n, l) > 0.0f);
-    for (int32_t k = 0; k < list.count && any(left); ++k) {
-      // A convex shape throws no shadow on itself; its rounded normals would say so at the edges.
-      const Primitive& s = painter.scratch.primitives[list.at[k]];
-      const Lanes t = entry(s, to_shape(s, p), rotate_to_shape(s, l));
-      const LaneMask dark = left & (who != list.at[k]) & (t > kOffSurface) & (t < kNoHit);
+  for (int32_t k = 0; k < list.count; ++k) {
+    const Primitive& s = painter.scratch.primitives[list.at[k]];
+    const Lanes3 o = to_shape(s, p);
+    // A convex shape throws no shadow on itself; its rounded normals would say so at the edges.
+    const LaneMask other = who != list.at[k];
+    for (int j = 0; j < lights.per_sample; ++j) {
+      const LaneMask asked = left[j] & other;
+      if (!any(asked)) continue;
+      const Lanes t = entry(s, o, rotate_to_shape(s, lights.at[sample + j * samples][row]));
+      const LaneMask dark = asked & (t > kOffSurface) & (t < kNoHit);
       lost += select(dark, splat(1), splat(0));
-      left &= ~dark;
+      left[j] &= ~dark;
     }
   }
   return 1.0f - lost * (1 / static_cast<float>(lights.per_sample));
@@ -132,7 +133,7 @@ Lanes3 color_of(const Painter& painter, const Nearby& nearby, const Hits& hits, 
     const Lanes hidden = occlusion(painter.scratch.primitives[index], surface.p, surface.n);
     surface.open = surface.open * (1.0f - select(who == index, splat(0), 0.8f * hidden));
   }
-  const Lanes3 near_color = shade(surface);
+  const Lanes3 near_color = shade(surface, painter.lights.key);
   return select(hit, mix(near_color, behind, fade), behind);
 }
 
@@ -157,7 +158,9 @@ LightRays make_light_rays(int32_t samples_per_side) {
   constexpr double kGoldenAngle = 2.399963229728653;
   LightRays out;
   const int samples = samples_per_side * samples_per_side;
-  out.per_sample = samples > 1 && samples <= 16 ? 4 : 1;
+  out.per_sample = samples > 1 && samples <= 16 ? kMaxRaysPerSample : 1;
+  const Vec3 key = light_direction(0, 0);
+  out.key = splat(static_cast<float>(key.x), static_cast<float>(key.y), static_cast<float>(key.z));
   const int count = samples * out.per_sample;
   for (int k = 0; k < count; ++k)
     for (int r = 0; r < kTileSide; ++r)

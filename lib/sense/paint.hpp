@@ -9,7 +9,9 @@ namespace rdm {
 
 // Directions to points of the light's disc, turned from pixel to pixel of a tile so that the edges of soft
 // shadows show no bands. One ray for a single sample a pixel: hard shadows.
+inline constexpr int kMaxRaysPerSample = 4;
 struct LightRays {
+  Lanes3 key;  // to the middle of the disc
   int32_t per_sample = 1;
   Lanes3 at[kMaxSamplesPerSide * kMaxSamplesPerSide][kTileSide];  // [ray][row of a tile]
 };

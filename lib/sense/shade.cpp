@@ -1,5 +1,6 @@
 #include "sense/shade.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rdm {
@@ -32,18 +33,16 @@ Vec3 light_direction(double u, double v) {
   return normalized(key + kLightSpread * (u * side + v * up));
 }
 
-Lanes3 shade(const Surface& s) {
-  const Vec3 key = light_direction(0, 0);
-  const Lanes3 l = splat(static_cast<float>(key.x), static_cast<float>(key.y), static_cast<float>(key.z));
+Lanes3 shade(const Surface& s, const Lanes3& key) {
   const Lanes3 v = normalized(splat(0, 0, 0) - s.d);
   const Lanes facing = max(dot(s.n, v), splat(0));
-  const Lanes key_light = 1.95f * s.lit * max(dot(s.n, l), splat(0));
+  const Lanes key_light = 1.95f * s.lit * max(dot(s.n, key), splat(0));
   const Lanes up = 0.5f + 0.5f * s.n.z;
   const Lanes3 sky = mix(splat(0.25f, 0.23f, 0.22f), splat(0.42f, 0.47f, 0.56f), up);
   Lanes3 light = s.open * sky + key_light * splat(1.0f, 0.96f, 0.90f);
   light = light + (0.18f * facing * s.open) * splat(1, 1, 1);
 
-  const Lanes3 h = normalized(l + v);
+  const Lanes3 h = normalized(key + v);
   Lanes gloss = max(dot(s.n, h), splat(0));
   for (int i = 0; i < 5; ++i) gloss = gloss * gloss;
   const Lanes edge = 1.0f - facing;
@@ -95,7 +94,7 @@ uint8_t to_srgb(float value) {
   const float s1 = std::sqrt(v), s2 = std::sqrt(s1), s3 = std::sqrt(s2);
   const float srgb =
       v <= 0.0031308f ? 12.92f * v : 0.66200269f * s1 + 0.68412206f * s2 - 0.32358360f * s3 - 0.02254115f * v;
-  return static_cast<uint8_t>(std::fmin(255.0f, 255.0f * srgb + 0.5f));
+  return static_cast<uint8_t>(std::min(255.0f, 255.0f * srgb + 0.5f));
 }
 
 }  // namespace rdm

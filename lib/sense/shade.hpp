@@ -23,7 +23,8 @@ struct Surface {
 Vec3 light_direction(double u, double v);
 inline constexpr double kLightSpread = 0.045;  // tangent of the disc's half angle
 
-Lanes3 shade(const Surface& s);
+// Colour of the points under the key light from direction `key`.
+Lanes3 shade(const Surface& s, const Lanes3& key);
 
 // What is seen where nothing is hit: a gradient over the height of the ray.
 Lanes3 background(const Lanes3& d);
