@@ -1,0 +1,82 @@
+// The bytes that Pool::memory reports are those that create takes, and all come back.
+#include <cstdlib>
+
+#include "tasks/catalog.hpp"
+#include "toy_task.hpp"
+
+namespace rdm::test {
+namespace {
+
+struct CountedHost {
+  size_t live = 0, calls = 0, refuse_at = SIZE_MAX;
+  HostHooks hooks() {
+    HostHooks h;
+    h.user = this;
+    h.alloc = [](void* user, size_t bytes, size_t align) -> void* {
+      auto& c = *static_cast<CountedHost*>(user);
+      if (c.calls++ >= c.refuse_at) return nullptr;
+      void* p = nullptr;
+      if (posix_memalign(&p, align, bytes) != 0) return nullptr;
+      c.live += bytes;
+      return p;
+    };
+    h.release = [](void* user, void* p, size_t bytes, size_t) {
+      static_cast<CountedHost*>(user)->live -= bytes;
+      std::free(p);
+    };
+    return h;
+  }
+};
+
+TEST(PoolMemory, IsExact) {
+  register_toy();
+  register_builtin_tasks();
+  for (const char* task : {"toy_push", "hand_over_safe_finger"})
+    for (const int32_t envs : {1, 5})
+      for (const int32_t threads : {0, 3}) {
+        CountedHost host;
+        PoolConfig c;
+        c.task = task;
+        c.num_envs = envs;
+        c.num_threads = threads;
+        c.hooks = host.hooks();
+        size_t ours = 0, engines = 0;
+        Pool::memory(c, &ours, &engines);
+        EXPECT_EQ(host.live, 0u);
+        EXPECT_GT(engines, 0u);
+        Pool* p = Pool::create(c);
+        EXPECT_EQ(host.live, ours) << task << " x " << envs << " on " << threads;
+        p->reset(nullptr, nullptr);
+        p->step(nullptr);
+        EXPECT_EQ(host.live, ours);
+        Pool::destroy(p);
+        EXPECT_EQ(host.live, 0u);
+      }
+}
+
+TEST(PoolMemory, ARefusalAtAnyPlaceLosesNothing) {
+  register_toy();
+  CountedHost host;
+  PoolConfig c;
+  c.task = "toy_push";
+  c.num_envs = 2;
+  c.hooks = host.hooks();
+  for (size_t at = 0;; ++at) {
+    host.calls = 0;
+    host.refuse_at = at;
+    Pool* p = nullptr;
+    const Code code = code_of([&] { p = Pool::create(c); });
+    if (code == Code::kOk) {
+      EXPECT_GT(at, 5u);
+      Pool::destroy(p);
+      break;
+    }
+    EXPECT_EQ(code, Code::kMemory);
+    EXPECT_EQ(host.live, 0u) << "refused call " << at;
+    ASSERT_LT(at, 10000u);
+  }
+  EXPECT_EQ(host.live, 0u);
+}
+
+}  // namespace
+}  // namespace rdm::test
