@@ -21,7 +21,8 @@ set(RDM_ROWS "")
 # rdm_<name>. A folder without sources is no target; a row of a half that is switched off is left out.
 function(rdm_layer name folder)
   cmake_parse_arguments(arg "" "" "SEES;LINKS" ${ARGN})
-  set(RDM_TABLE "${RDM_TABLE}${name} ${folder} ${arg_SEES}\n" PARENT_SCOPE)
+  list(JOIN arg_SEES " " sees)
+  set(RDM_TABLE "${RDM_TABLE}${name} ${folder} ${sees}\n" PARENT_SCOPE)
   if((name IN_LIST RDM_SIM_ROWS AND NOT REDMAN_SIM) OR (name IN_LIST RDM_LEARN_ROWS AND NOT REDMAN_LEARN))
     return()
   endif()
@@ -42,7 +43,7 @@ function(rdm_layer name folder)
   endif()
   if(name STREQUAL "capi")
     target_include_directories(rdm_capi PRIVATE ${PROJECT_SOURCE_DIR}/include)
-    target_compile_definitions(rdm_capi PRIVATE RDM_BUILDING
+    target_compile_definitions(rdm_capi PRIVATE RDM_EXPERIMENTAL
       RDM_WITH_SIM=$<BOOL:${REDMAN_SIM}> RDM_WITH_LEARN=$<BOOL:${REDMAN_LEARN}>
       RDM_ODE_VERSION="${RDM_VERSION_TEXT_ODE}" RDM_CCD_VERSION="${RDM_VERSION_TEXT_CCD}"
       RDM_EIGEN_VERSION="${RDM_VERSION_TEXT_EIGEN}" RDM_OCTOMAP_VERSION="${RDM_VERSION_TEXT_OCTOMAP}")
