@@ -57,6 +57,33 @@ TEST(ShadowHand, ForwardKinematicsGolden) {
   }
 }
 
+// A draw inside the limits, and the tips it gives in the forearm's frame (position, quaternion w x y z).
+const double kRandomPose[24] = {-0.066226, -0.027677, -0.262059, 0.800957, 0.952968,  0.094169,
+                                0.311894,  0.838881,  1.0019,    0.155782, -0.213076, 0.47527,
+                                0.294611,  0.509748,  0.403562,  0.174518, 0.38517,   1.452319,
+                                1.269961,  -0.356335, 0.203936,  0.094683, -0.36561,  -1.458873};
+const Pose kRandomTips[5] = {
+    {{0.017908, -0.078714, 0.40772}, {0.605429, 0.778946, -0.097379, 0.131209}},
+    {{0.005109, -0.078144, 0.403924}, {0.549038, 0.826765, 0.064185, -0.104387}},
+    {{-0.037661, -0.058475, 0.448556}, {0.80256, 0.580106, -0.111048, 0.083914}},
+    {{-0.024054, -0.053005, 0.375796}, {0.063644, -0.980869, -0.176359, 0.052373}},
+    {{0.04561, -0.033253, 0.386771}, {0.844829, 0.198523, -0.489985, -0.082262}},
+};
+
+TEST(ShadowHand, TipsAgreeWithTheIndependentModel) {
+  test::Simulation sim(one_hand(Side::kRight, {}));
+  const double still[24] = {};
+  sim->set_joints(0, kRandomPose, still);
+  const Pose X_BF = kShadowHand.X_BR * Pose{{0, 0.01, 0}, {}};
+  for (int i = 0; i < 5; ++i) {
+    const RobotTip& tip = kShadowHand.tips[i];
+    const Pose X_FT = inverse(X_BF) * sim->link(tip.link).X * Pose{tip.p_L, {}};
+    EXPECT_LT(norm(X_FT.p - kRandomTips[i].p), 2e-6) << i;
+    const Quat error = X_FT.q * conjugate(kRandomTips[i].q);
+    EXPECT_LT(norm({error.x, error.y, error.z}), 2e-6) << i;
+  }
+}
+
 TEST(ShadowHand, HoldsThePoseWithItsDrives) {
   test::Simulation sim(one_hand(Side::kRight, {}));
   double q[24], still[24] = {};
