@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "base/error.hpp"
+#include "base/rng.hpp"
+#include "tasks/throw_objects.hpp"
+
+namespace rdm {
+namespace {
+
+TEST(ThrowObjects, EggBallAndThePublishedSizes) {
+  EXPECT_STREQ(throw_object_at(0).name, "egg");
+  EXPECT_EQ(throw_object_named("egg").mass, 0.0754);
+  EXPECT_EQ(throw_object_named("ball").size.x, 0.0333);
+  EXPECT_EQ(throw_object_named("Heavy-Ball").mass, 0.25);
+  EXPECT_EQ(throw_object_named("cracker_box").size.y, 0.105);
+  EXPECT_EQ(throw_object_named("soup_can").size.y, 0.0505);
+  EXPECT_EQ(throw_object_count(), 12);
+  EXPECT_EQ(guard([] { throw_object_named("bal"); }), Code::kNotFound);
+  EXPECT_NE(std::string(last_error()).find("nearest is ball"), std::string::npos);
+  EXPECT_EQ(guard([] { throw_object_at(12); }), Code::kRange);
+}
+
+TEST(ThrowObjects, ChoicesNameThemAll) {
+  std::string text;
+  for (int32_t i = 0; i < throw_object_count(); ++i)
+    text += std::string(i ? "|" : "") + throw_object_at(i).name;
+  EXPECT_EQ(throw_object_choices(), text);
+}
+
+bool inside(ShapeKind kind, const Vec3& s, const Vec3& p) {
+  switch (kind) {
+    case ShapeKind::kSphere:
+      return norm(p) <= s.x;
+    case ShapeKind::kBox:
+      return std::abs(p.x) <= s.x && std::abs(p.y) <= s.y && std::abs(p.z) <= s.z;
+    case ShapeKind::kCylinder:
+      return std::hypot(p.x, p.y) <= s.x && std::abs(p.z) <= s.y;
+    case ShapeKind::kCapsule: {
+      const double z = std::max(0.0, std::abs(p.z) - s.y);
+      return p.x * p.x + p.y * p.y + z * z <= s.x * s.x;
+    }
+    case ShapeKind::kPlane:
+      break;
+  }
+  return false;
+}
+
+// Against sums over points drawn inside each solid.
+TEST(ThrowObjects, MomentsAreThoseOfTheSolids) {
+  const struct {
+    ShapeKind kind;
+    Vec3 size, half;
+  } rows[] = {{ShapeKind::kSphere, {0.03, 0, 0}, {0.03, 0.03, 0.03}},
+              {ShapeKind::kBox, {0.02, 0.05, 0.03}, {0.02, 0.05, 0.03}},
+              {ShapeKind::kCylinder, {0.03, 0.05, 0}, {0.03, 0.03, 0.05}},
+              {ShapeKind::kCapsule, {0.03, 0.02, 0}, {0.03, 0.03, 0.05}}};
+  for (const auto& row : rows) {
+    Stream stream(1, 0, Purpose::kTest);
+    Vec3 sum;
+    int count = 0;
+    while (count < 200000) {
+      Vec3 p;
+      for (int i = 0; i < 3; ++i) p[i] = row.half[i] * stream.signed_unit();
+      if (!inside(row.kind, row.size, p)) continue;
+      ++count;
+      sum += {p.y * p.y + p.z * p.z, p.x * p.x + p.z * p.z, p.x * p.x + p.y * p.y};
+    }
+    const Vec3 expected = 0.5 / count * sum, moment = solid_moment(row.kind, row.size, 0.5);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(moment[i] / expected[i], 1, 0.01) << static_cast<int>(row.kind);
+  }
+}
+
+TEST(ThrowObjects, BodyTakesMassAndKeepsShape) {
+  const BodyDef egg = make_throw_body(throw_object_named("egg"), 0, 0.1, 2, {{1, 2, 3}, {}});
+  EXPECT_EQ(egg.inertia.mass, 0.0754);
+  EXPECT_DOUBLE_EQ(egg.inertia.moment[0], 3.77e-5);
+  EXPECT_DOUBLE_EQ(egg.inertia.moment[2], 2.71e-5);
+  EXPECT_EQ(egg.angular_damping, 0.1);
+  EXPECT_EQ(egg.shapes[0].kind, ShapeKind::kCapsule);
+  EXPECT_EQ(egg.shapes[0].size.x, 0.03);
+  EXPECT_EQ(2 * egg.shapes[0].size.y, 0.02);  // straight part
+  EXPECT_EQ(egg.shapes[0].material, 2);
+  EXPECT_EQ(egg.X_WB.p.z, 3);
+  const BodyDef heavy = make_throw_body(throw_object_named("egg"), 0.1508, 0.1, 2, {});
+  EXPECT_DOUBLE_EQ(heavy.inertia.mass, 0.1508);
+  EXPECT_DOUBLE_EQ(heavy.inertia.moment[0], 2 * 3.77e-5);
+  const BodyDef ball = make_throw_body(throw_object_named("ball"), 0, 0, 0, {});
+  EXPECT_DOUBLE_EQ(ball.inertia.moment[1], 0.4 * 0.0754 * 0.0333 * 0.0333);
+}
+
+}  // namespace
+}  // namespace rdm
