@@ -55,6 +55,10 @@ void OdeWorld::make_world() {
   if (!ode_.world || !ode_.threading) fail(Code::kMemory, "ode: no memory for a world");
   dWorldSetStepThreadingImplementation(ode_.world, dThreadingImplementationGetFunctions(ode_.threading),
                                        ode_.threading);
+  // The prewarming step asks for the most that is ever needed: reserves on top of it would lie idle.
+  const dWorldStepReserveInfo reserve = {sizeof reserve, 1.0f, 4096};
+  if (!dWorldSetStepMemoryReservationPolicy(ode_.world, &reserve))
+    fail(Code::kMemory, "ode: no memory for a world");
   const Vec3& g = scene_->def.gravity;
   dWorldSetGravity(ode_.world, g.x, g.y, g.z);
   dWorldSetERP(ode_.world, solver.erp);
