@@ -8,6 +8,7 @@ namespace {
 
 constexpr int kPanel = kLanes * kTileVectors;
 constexpr int32_t kDotColumns = 3;   // up to here dot products along k beat padded panels
+constexpr int32_t kSkinnyRows = 4;   // up to here B is not worth packing when its columns lie in order
 constexpr int32_t kInPlaceRows = 2;  // up to here B is not worth packing when its rows lie in order
 
 inline int32_t less_of(int32_t a, int32_t b) {
@@ -25,7 +26,14 @@ void tile(int32_t k, const float* a, size_t a_step, const float* b, size_t b_ste
 #pragma GCC unroll 8
   for (size_t i = 0; i < kRows; ++i)
 #pragma GCC unroll 8
-    for (size_t j = 0; j < kVectors; ++j) sum[i][j] = add ? load(c + i * c_row + j * kLanes) : V{};
+    for (size_t j = 0; j < kVectors; ++j) sum[i][j] = V{};
+  if (add) {
+    const float* from = c;
+#pragma GCC unroll 8
+    for (size_t i = 0; i < kRows; ++i, from += c_row)
+#pragma GCC unroll 8
+      for (size_t j = 0; j < kVectors; ++j) sum[i][j] = load(from + j * kLanes);
+  }
   for (int32_t p = 0; p < k; ++p) {
     V row[kVectors];
 #pragma GCC unroll 8
@@ -40,9 +48,9 @@ void tile(int32_t k, const float* a, size_t a_step, const float* b, size_t b_ste
     b += b_step;
   }
 #pragma GCC unroll 8
-  for (size_t i = 0; i < kRows; ++i)
+  for (size_t i = 0; i < kRows; ++i, c += c_row)
 #pragma GCC unroll 8
-    for (size_t j = 0; j < kVectors; ++j) store(c + i * c_row + j * kLanes, sum[i][j]);
+    for (size_t j = 0; j < kVectors; ++j) store(c + j * kLanes, sum[i][j]);
 }
 
 using Tile = void (*)(int32_t, const float*, size_t, const float*, size_t, float*, size_t, bool);
@@ -102,8 +110,11 @@ void pack_columns(const float* b, size_t b_col, int32_t k, int32_t n, float* pac
       const int32_t live = width - j;
       int32_t p = 0;
       if (live >= kBlock)
-        for (; p + kBlock <= k; p += kBlock)
-          transpose_block(from + p, b_col, panel + at(p) * at(wide) + at(j), at(wide));
+        for (; p + kBlock <= k; p += kBlock) {
+          Column column[kBlock];
+          load_columns(from + p, b_col, column);
+          for (int32_t q = 0; q < kBlock; ++q) store_column(panel + at(p + q) * at(wide) + at(j), column[q]);
+        }
       for (; p < k; ++p)
         for (int32_t i = 0; i < kBlock; ++i)
           panel[at(p) * at(wide) + at(j + i)] = i < live ? from[at(i) * b_col + at(p)] : 0.0f;
@@ -182,6 +193,65 @@ void dot_products(const GemmArgs& g) {
   finish_rows(g, 0, g.m, 0, g.n);
 }
 
+// kBlocks blocks of columns of C for kRows rows: B is turned in registers, the order of the sums is a tile's.
+template <int kRows, int kBlocks>
+void turned_columns(const GemmArgs& g, int32_t i0, int32_t j0) {
+  Column sum[kRows][kBlocks];
+  float* const c = g.c + at(i0) * at(g.n) + at(j0);
+  const float *const a = g.a + at(i0) * g.a_row, *const b = g.b + at(j0) * g.b_col;
+#pragma GCC unroll 4
+  for (size_t i = 0; i < kRows; ++i)
+#pragma GCC unroll 4
+    for (size_t j = 0; j < kBlocks; ++j)
+      sum[i][j] = g.add ? load_column(c + i * at(g.n) + j * kBlock) : all_column(0.0f);
+  int32_t p = 0;
+  for (; p + kBlock <= g.k; p += kBlock)
+#pragma GCC unroll 4
+    for (size_t j = 0; j < kBlocks; ++j) {
+      Column column[kBlock];
+      load_columns(b + j * kBlock * g.b_col + at(p), g.b_col, column);
+#pragma GCC unroll 4
+      for (size_t i = 0; i < kRows; ++i)
+#pragma GCC unroll 8
+        for (size_t q = 0; q < kBlock; ++q)
+          sum[i][j] = fma(all_column(a[i * g.a_row + at(p) + q]), column[q], sum[i][j]);
+    }
+  for (; p < g.k; ++p)
+    for (size_t j = 0; j < kBlocks; ++j) {
+      float column[kBlock];
+      for (size_t q = 0; q < kBlock; ++q) column[q] = b[(j * kBlock + q) * g.b_col + at(p)];
+      for (size_t i = 0; i < kRows; ++i)
+        sum[i][j] = fma(all_column(a[i * g.a_row + at(p)]), load_column(column), sum[i][j]);
+    }
+#pragma GCC unroll 4
+  for (size_t i = 0; i < kRows; ++i)
+#pragma GCC unroll 4
+    for (size_t j = 0; j < kBlocks; ++j) store_column(c + i * at(g.n) + j * kBlock, sum[i][j]);
+}
+
+template <int kRows>
+void skinny_rows(const GemmArgs& g, int32_t i0) {
+  int32_t j = 0;
+  for (; j + 2 * kBlock <= g.n; j += 2 * kBlock) turned_columns<kRows, 2>(g, i0, j);
+  for (; j + kBlock <= g.n; j += kBlock) turned_columns<kRows, 1>(g, i0, j);
+  for (; j < g.n; ++j)
+    for (int32_t i = i0; i < i0 + kRows; ++i) {
+      float& c = g.c[at(i) * at(g.n) + at(j)];
+      float sum = g.add ? c : 0.0f;
+      for (int32_t p = 0; p < g.k; ++p)
+        sum = fma(g.a[at(i) * g.a_row + at(p)], g.b[at(j) * g.b_col + at(p)], sum);
+      c = sum;
+    }
+}
+
+// A few rows, both A's rows and B's columns contiguous in k.
+void skinny_product(const GemmArgs& g) {
+  int32_t i = 0;
+  for (; i + 2 <= g.m; i += 2) skinny_rows<2>(g, i);
+  if (i < g.m) skinny_rows<1>(g, i);
+  finish_rows(g, 0, g.m, 0, g.n);
+}
+
 template <bool kColumns>
 void blocked_product(const GemmArgs& g) {
   const bool in_place = g.b_col == 1 && g.m <= kInPlaceRows;
@@ -210,6 +280,8 @@ void blocked_product(const GemmArgs& g) {
 void gemm(const GemmArgs& g) {
   if (g.n <= kDotColumns && g.a_col == 1 && g.b_row == 1)
     dot_products(g);
+  else if (g.m <= kSkinnyRows && g.a_col == 1 && g.b_row == 1)
+    skinny_product(g);
   else if (g.a_col == 1)
     blocked_product<false>(g);
   else

@@ -67,11 +67,29 @@ inline D fma(D a, D b, D c) {
   return a * b + c;
 }
 
+// A block of 4 x 4: column[k] holds from[0..3][k].
+using Column = V;
 constexpr int kBlock = 4;
-// to[k][j] = from[j][k] of a 4 x 4 block.
-inline void transpose_block(const float* from, size_t from_row, float* to, size_t to_row) {
-  for (size_t k = 0; k < 4; ++k)
-    store(to + k * to_row, V{from[k], from[from_row + k], from[2 * from_row + k], from[3 * from_row + k]});
+inline void load_columns(const float* from, size_t row, Column (&column)[kBlock]) {
+  const V a = load(from), b = load(from + row), c = load(from + 2 * row), d = load(from + 3 * row);
+  const V ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+  const V ab2 = __builtin_shufflevector(a, b, 2, 6, 3, 7), cd2 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  column[0] = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
+  column[1] = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+  column[2] = __builtin_shufflevector(ab2, cd2, 0, 1, 4, 5);
+  column[3] = __builtin_shufflevector(ab2, cd2, 2, 3, 6, 7);
+}
+inline Column load_column(const float* p) {
+  return load(p);
+}
+inline void store_column(float* p, Column v) {
+  store(p, v);
+}
+inline Column all_column(float s) {
+  return all(s);
+}
+inline float fma(float a, float b, float c) {
+  return a * b + c;
 }
 
 }  // namespace

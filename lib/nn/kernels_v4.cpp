@@ -68,24 +68,39 @@ inline D fma(D a, D b, D c) {
   return _mm512_fmadd_pd(a, b, c);
 }
 
+// A block of 8 x 8: column[k] holds from[0..7][k]. The halves are put in place by the loads.
+using Column = __m256;
 constexpr int kBlock = 8;
-// to[k][j] = from[j][k] of an 8 x 8 block.
-inline void transpose_block(const float* from, size_t from_row, float* to, size_t to_row) {
+inline void load_columns(const float* from, size_t row, Column (&column)[kBlock]) {
   __m256 r[8], t[8];
-  for (size_t i = 0; i < 8; ++i) r[i] = _mm256_loadu_ps(from + i * from_row);
+  for (size_t i = 0; i < 4; ++i)
+    for (size_t half = 0; half < 2; ++half)
+      r[i + 4 * half] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(from + i * row + 4 * half)),
+                                             _mm_loadu_ps(from + (i + 4) * row + 4 * half), 1);
   for (size_t i = 0; i < 8; i += 2) {
     t[i] = _mm256_unpacklo_ps(r[i], r[i + 1]);
     t[i + 1] = _mm256_unpackhi_ps(r[i], r[i + 1]);
   }
   for (size_t i = 0; i < 8; i += 4)
     for (size_t j = 0; j < 2; ++j) {
-      r[i + 2 * j] = _mm256_shuffle_ps(t[i + j], t[i + j + 2], 0x44);
-      r[i + 2 * j + 1] = _mm256_shuffle_ps(t[i + j], t[i + j + 2], 0xEE);
+      column[i + 2 * j] = _mm256_shuffle_ps(t[i + j], t[i + j + 2], 0x44);
+      column[i + 2 * j + 1] = _mm256_shuffle_ps(t[i + j], t[i + j + 2], 0xEE);
     }
-  for (size_t i = 0; i < 4; ++i) {
-    _mm256_storeu_ps(to + i * to_row, _mm256_permute2f128_ps(r[i], r[i + 4], 0x20));
-    _mm256_storeu_ps(to + (i + 4) * to_row, _mm256_permute2f128_ps(r[i], r[i + 4], 0x31));
-  }
+}
+inline Column load_column(const float* p) {
+  return _mm256_loadu_ps(p);
+}
+inline void store_column(float* p, Column v) {
+  _mm256_storeu_ps(p, v);
+}
+inline Column all_column(float s) {
+  return _mm256_set1_ps(s);
+}
+inline Column fma(Column a, Column b, Column c) {
+  return _mm256_fmadd_ps(a, b, c);
+}
+inline float fma(float a, float b, float c) {
+  return _mm_cvtss_f32(_mm_fmadd_ss(_mm_set_ss(a), _mm_set_ss(b), _mm_set_ss(c)));
 }
 
 }  // namespace
