@@ -11,11 +11,9 @@ bool covers(const MlpShape& wide, const MlpShape& narrow) {
   return true;
 }
 
-}  // namespace
-
 Lane carve_lane(Arena& arena, const Plan& plan, size_t num_params) {
   Lane lane;
-  lane.rows = std::min(kPieceRows, std::max(plan.minibatch_rows, plan.config.num_envs));
+  lane.rows = plan.piece_rows;
   const auto rows = static_cast<size_t>(lane.rows);
   const auto widest = static_cast<size_t>(std::max(plan.actor.out, plan.cost_critic.out));
   lane.actor = carve_mlp_scratch(arena, plan.actor, lane.rows);
@@ -26,6 +24,17 @@ Lane carve_lane(Arena& arena, const Plan& plan, size_t num_params) {
   lane.dout = arena.make<float>(rows * widest);
   lane.grad = arena.make<float>(num_params);
   return lane;
+}
+
+}  // namespace
+
+void Lanes::carve(Arena& arena, const Plan& plan, size_t num_params) {
+  count_ = plan.lanes;
+  lanes_ = arena.make<Lane>(static_cast<size_t>(count_));
+  for (int32_t i = 0; i < count_; ++i) {
+    const Lane lane = carve_lane(arena, plan, num_params);
+    if (lanes_) lanes_[i] = lane;
+  }
 }
 
 }  // namespace rdm

@@ -1,12 +1,15 @@
 // Batches cut into pieces of fixed size, several in flight. Pieces are folded in their order, so sums are
 // the same for any number of lanes and any schedule.
 #pragma once
-#include "algos/networks.hpp"
+#include <memory>
+#include <optional>
+
+#include "algos/plan.hpp"
 #include "base/workers.hpp"
 
 namespace rdm {
 
-// Sums over samples of a piece or a batch.
+// Sums over the samples of a piece or a batch.
 struct BatchSums {
   double loss = 0, kl = 0, clipped = 0, reward_loss = 0, cost_loss = 0;
   BatchSums& operator+=(const BatchSums& b) {
@@ -22,30 +25,55 @@ struct Lane {
   MlpScratch actor, critic;
   float* obs = nullptr;                   // [rows][obs_dim]
   float *out = nullptr, *dout = nullptr;  // [rows][widest output]
-  float* grad = nullptr;                  // [Networks::size]
+  float* grad = nullptr;                  // [num_params]
   BatchSums sums;
 };
-Lane carve_lane(Arena& arena, const Plan& plan, size_t num_params);
 
-// body(i) for i in [0, n), spread over the workers. body must not throw.
-template <class Body>
-void spread(Workers& workers, int32_t n, Body&& body) {
-  if (n == 1) {
-    body(0);
-    return;
-  }
-  workers.run(
-      n, [](void* context, int32_t i) { (*static_cast<std::remove_reference_t<Body>*>(context))(i); }, &body);
-}
+// One lane per thread that helps, at most one per piece.
+class Lanes {
+ public:
+  void carve(Arena& arena, const Plan& plan, size_t num_params);
+  void open(const HostHooks& hooks, int32_t threads) { workers_.emplace(hooks, threads); }
 
-// work(lane, piece) for all pieces, at most `lanes` at once; then fold(first, n) for each group in order.
-template <class Work, class Fold>
-void sweep(Workers& workers, int32_t lanes, int32_t pieces, Work&& work, Fold&& fold) {
-  for (int32_t first = 0; first < pieces; first += lanes) {
-    const int32_t n = std::min(lanes, pieces - first);
-    spread(workers, n, [&](int32_t lane) { work(lane, first + lane); });
-    fold(first, n);
+  int32_t count() const { return count_; }
+  const Lane& operator[](int32_t i) const { return lanes_[i]; }
+
+  // body(i) for i in [0, n), spread over the threads. body must not throw.
+  template <class Body>
+  void spread(int32_t n, Body&& body) {
+    if (n == 1) {
+      body(0);
+      return;
+    }
+    using Plain = std::remove_reference_t<Body>;
+    workers_->run(
+        n, [](void* context, int32_t i) { (*static_cast<Plain*>(context))(i); },
+        const_cast<void*>(static_cast<const void*>(std::addressof(body))));
   }
-}
+
+  // work(lane, first, n) for the pieces of [0, rows), then fold(first piece, n) for each group of pieces
+  // that ran together, in order: piece `first piece + i` was done by lane i.
+  template <class Work, class Fold>
+  void sweep(int32_t rows, int32_t piece_rows, Work&& work, Fold&& fold) {
+    const int32_t pieces = (rows + piece_rows - 1) / piece_rows;
+    for (int32_t group = 0; group < pieces; group += count_) {
+      const int32_t n = std::min(count_, pieces - group);
+      spread(n, [&](int32_t i) {
+        const int32_t first = (group + i) * piece_rows;
+        work(lanes_[i], first, std::min(piece_rows, rows - first));
+      });
+      fold(group, n);
+    }
+  }
+  template <class Work>
+  void sweep(int32_t rows, int32_t piece_rows, Work&& work) {
+    sweep(rows, piece_rows, work, [](int32_t, int32_t) {});
+  }
+
+ private:
+  Lane* lanes_ = nullptr;
+  int32_t count_ = 0;
+  std::optional<Workers> workers_;
+};
 
 }  // namespace rdm

@@ -49,6 +49,12 @@ void clamp_log_std(const Networks& n, const Options& o) {
   for (int32_t j = 0; j < n.action_dim; ++j) n.log_std()[j] = std::clamp(n.log_std()[j], low, high);
 }
 
+int32_t Networks::num_tensors() const {
+  int32_t tensors = 1;
+  for (int32_t i = 0; i < count; ++i) tensors += 2 * shape[i].num_layers();
+  return tensors;
+}
+
 void Networks::visit(StateIo& io) {
   io.section("NETS");
   io.numbers(params, size, -kBound, kBound);

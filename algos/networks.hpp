@@ -26,6 +26,15 @@ struct Networks {
   float* log_std() const { return params; }
   size_t net_offset(int32_t i) const { return block[i].offset + (i == kActor ? std_size : 0); }
   float* net(int32_t i) const { return params + net_offset(i); }
+  // y = network i of x, and the gradient of its block, grad laid out as params.
+  void forward(int32_t i, const float* x, int32_t rows, const MlpScratch& scratch, float* y) const {
+    mlp_forward(shape[i], net(i), x, rows, scratch, y);
+  }
+  void backward(int32_t i, const float* x, int32_t rows, const MlpScratch& scratch, const float* dy,
+                float* grad) const {
+    mlp_backward(shape[i], net(i), x, rows, scratch, dy, grad + net_offset(i));
+  }
+  int32_t num_tensors() const;
   void visit(StateIo& io);
 };
 Networks carve_networks(Arena& arena, const Plan& plan);

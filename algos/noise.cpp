@@ -1,15 +1,11 @@
 #include "algos/noise.hpp"
 
-#include <cmath>
-
 namespace rdm {
 
 void Noise::carve(Arena& arena, const Plan& plan) {
   num_envs_ = plan.config.num_envs;
   dim_ = plan.config.action_dim;
-  const double rho = plan.options.number("noise_correlation");
-  correlation_ = static_cast<float>(rho);
-  log_share_ = static_cast<float>(0.5 * std::log1p(-rho * rho));
+  correlation_ = static_cast<float>(plan.options.number("noise_correlation"));
   stream_ = arena.make<Stream>(plan.num_envs());
   state_ = arena.make<float>(plan.num_envs() * plan.action_dim());
 }

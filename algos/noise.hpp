@@ -16,14 +16,12 @@ class Noise {
   // std: of the innovation.
   void sample(int32_t env, const float* mean, const float* std, float* action, float* centered);
   void end_episode(int32_t env);
-  // log of the innovation's share of sigma.
-  float log_share() const { return log_share_; }
   float correlation() const { return correlation_; }
   void visit(StateIo& io);
 
  private:
   int32_t num_envs_ = 0, dim_ = 0;
-  float correlation_ = 0, log_share_ = 0;
+  float correlation_ = 0;
   Stream* stream_ = nullptr;  // [num_envs]
   float* state_ = nullptr;    // [num_envs][dim]
 };

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <utility>
 
-#include "algos/options.hpp"
-#include "algos/registry.hpp"
+#include "algos/algo_registry.hpp"
+#include "algos/option_tables.hpp"
 #include "base/error.hpp"
 
 namespace rdm {
@@ -110,8 +110,14 @@ void plan_batches(Plan& plan) {
   plan.samples = static_cast<int32_t>(samples);
   const int32_t parts = std::min(o.integer("minibatches"), plan.samples);
   plan.minibatch_rows = (plan.samples + parts - 1) / parts;
-  const int32_t most = std::max(num_pieces(plan.minibatch_rows), num_pieces(plan.config.num_envs));
-  plan.lanes = std::clamp(plan.config.num_threads, 1, most);
+  // A quarter of a minibatch keeps four threads busy; larger pieces than 256 rows leave the cache. Not by
+  // num_threads: results must not depend on it.
+  const int32_t quarter = (plan.minibatch_rows + 3) / 4;
+  plan.piece_rows = std::clamp((quarter + 31) / 32 * 32, 64, 256);
+  const int32_t rows = std::max(plan.minibatch_rows, plan.config.num_envs);
+  plan.lanes = std::clamp(plan.config.num_threads, 1, (rows + plan.piece_rows - 1) / plan.piece_rows);
+  const double rho = o.number("noise_correlation");
+  plan.log_share = static_cast<float>(0.5 * std::log1p(-rho * rho));
 }
 
 void check_pairs(const Plan& plan) {

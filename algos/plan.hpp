@@ -10,9 +10,6 @@ namespace rdm {
 
 struct AlgoRow;
 
-// Rows of a batch that one thread handles at a time. Fixed: the order of sums follows from it.
-inline constexpr int32_t kPieceRows = 256;
-
 struct Plan {
   Plan(const AgentConfig& c, Options&& o, const AlgoRow& r) : config(c), options(std::move(o)), row(&r) {}
 
@@ -29,7 +26,9 @@ struct Plan {
   int32_t horizon = 0, action_repeat = 0;
   int32_t samples = 0;         // num_envs * horizon
   int32_t minibatch_rows = 0;  // largest minibatch
+  int32_t piece_rows = 0;      // of a batch, by one thread at a time; the order of sums follows from it
   int32_t lanes = 1;           // pieces in flight
+  float log_share = 0;         // ln of the innovation's share of the standard deviation
 
   size_t obs_dim() const { return static_cast<size_t>(config.obs_dim); }
   size_t action_dim() const { return static_cast<size_t>(config.action_dim); }
@@ -38,9 +37,5 @@ struct Plan {
 
 // Error(kRange, kArgument, kNotFound) with the name of the field or option.
 Plan make_plan(const AgentConfig& config);
-
-inline int32_t num_pieces(int32_t rows) {
-  return (rows + kPieceRows - 1) / kPieceRows;
-}
 
 }  // namespace rdm

@@ -3,41 +3,31 @@
 #include <cmath>
 #include <cstring>
 
-#include "algos/registry.hpp"
+#include "algos/fingerprint.hpp"
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
+#include "nn/policy.hpp"
 
 namespace rdm {
+namespace {
+
+constexpr char kMagic[8] = {'R', 'D', 'M', 'A', 'G', 'E', 'N', 'T'};
+constexpr uint32_t kVersion = 1;
+constexpr double kEntropyOfUnit = 1.4189385332046727;  // of a normal with deviation 1
+
+}  // namespace
 
 void Agent::check_cancel() {
   if (cancelled_.exchange(false, std::memory_order_relaxed)) fail(Code::kCancelled, "cancelled by the host");
 }
 
 void PolicyGradient::carve(Arena& arena) {
-  const size_t envs = plan_.num_envs();
   nets_ = carve_networks(arena, plan_);
-  rollout_ = carve_rollout(arena, plan_);
-  normalizer_ = carve_normalizer(arena, plan_.config.obs_dim);
-  noise_.carve(arena, plan_);
-  const Options& o = plan_.options;
-  episodes_.carve(arena, plan_.config.num_envs, plan_.config.cost_dim,
-                  o.knows("multiplier_window") ? o.integer("multiplier_window") : kStatsWindow);
-  lanes_ = arena.make<Lane>(static_cast<size_t>(plan_.lanes));
-  for (int32_t i = 0; i < plan_.lanes; ++i) {
-    const Lane lane = carve_lane(arena, plan_, nets_.size);
-    if (lanes_) lanes_[i] = lane;
-  }
-  grad_ = arena.make<float>(nets_.size);
-  log_std_ = arena.make<float>(plan_.action_dim());
-  old_log_std_ = arena.make<float>(plan_.action_dim());
-  std_ = arena.make<float>(plan_.action_dim());
-  final_value_ = arena.make<float>(envs);
-  final_cost_ = arena.make<float>(envs * static_cast<size_t>(plan_.num_limited));
-  listed_ = arena.make<int32_t>(envs);
-  int32_t tensors = 1;
-  for (int32_t i = 0; i < nets_.count; ++i) tensors += 2 * nets_.shape[i].num_layers();
-  names_ = static_cast<char(*)[kTensorNameSize]>(
-      static_cast<void*>(arena.make<char>(static_cast<size_t>(tensors) * kTensorNameSize)));
+  lanes_.carve(arena, plan_, nets_.size);
+  collector_.carve(arena, plan_);
+  learner_.carve(arena, plan_, nets_.size);
+  char* names = arena.make<char>(static_cast<size_t>(nets_.num_tensors()) * kTensorNameSize);
+  names_ = reinterpret_cast<char(*)[kTensorNameSize]>(names);
 }
 
 void PolicyGradient::open(const AgentConfig& config) {
@@ -45,37 +35,26 @@ void PolicyGradient::open(const AgentConfig& config) {
   carve(measure);
   arena_ = Arena(config.hooks, measure.used());
   carve(arena_);
-  workers_.emplace(config.hooks, config.num_threads);
-  const Options& o = plan_.options;
-  normalize_ = o.flag("normalize_obs");
-  normalizer_.clip = static_cast<float>(o.number("obs_clip"));
-  learn_std_ = o.flag("learn_std");
-  terminal_cost_ = o.flag("terminal_cost");
-  discount_ = o.number("discount");
-  advantage_ = {o.number("lambda"), o.number("cost_lambda"), o.flag("standardize_reward_adv"),
-                std::strcmp(o.text("scale_cost_adv"), "std") == 0};
-  schedule_.reset(o);
-  read_live();
+  lanes_.open(config.hooks, config.num_threads);
+  collector_.open(plan_, nets_, lanes_);
+  learner_.open(plan_, rollout(), nets_, lanes_);
+  schedule_.reset(plan_.options);
   shuffle_ = Stream(config.seed, 0, Purpose::kMinibatch);
-  noise_.reset(config.seed);
   init_networks(nets_, plan_);
-  clamp_log_std(nets_, o);
-  plan_.config.task = plan_.task;
-  plan_.config.defaults = plan_.config.options = nullptr;
-  plan_.config.initial_mean = nullptr;
-  plan_.config.cost_limits = nullptr;
+  read_live();
+  TensorInfo t;
+  for (int32_t i = 0; find_tensor(nets_, i, names_[i], &t);) ++i;
+  AgentConfig& c = plan_.config;
+  c.task = plan_.task;
+  c.defaults = c.options = nullptr;
+  c.initial_mean = nullptr;
+  c.cost_limits = nullptr;
 }
 
 void PolicyGradient::read_live() {
-  const Options& o = plan_.options;
-  live_.critic_rate = o.number("critic_learning_rate");
-  if (live_.critic_rate == 0) live_.critic_rate = o.number("learning_rate");
-  live_.entropy = o.number("entropy");
-  live_.max_grad_norm = o.number("max_grad_norm");
-  live_.critic_l2 = o.number("critic_l2");
-  live_.early_stop_kl = o.number("early_stop_kl");
-  schedule_.read_live(o);
-  if (plan_.num_limited > 0 && plan_.column[0] == 0) plan_.limit[0] = o.number("cost_limit");
+  learner_.read_live(plan_.options);
+  schedule_.read_live(plan_.options);
+  if (plan_.num_limited > 0 && plan_.column[0] == 0) plan_.limit[0] = plan_.options.number("cost_limit");
 }
 
 void PolicyGradient::set_option(const OptionInput& option) {
@@ -84,28 +63,24 @@ void PolicyGradient::set_option(const OptionInput& option) {
   for (int32_t i = 0; i < o.count(); ++i)
     if (same_name(o.spec(i).key, option.key) && !o.spec(i).live)
       fail(Code::kState, "agent option %s: fixed at creation", o.spec(i).key);
-  if (same_name(option.key, "cost_limit")) {
-    const double before = o.number("cost_limit");
-    o.set(option, "agent");
-    if ((before < 0) != (o.number("cost_limit") < 0)) {
-      o.set({option.key, nullptr, before}, "agent");
-      fail(Code::kState, "agent option cost_limit: column 0 was created %s a limit",
-           before < 0 ? "without" : "with");
-    }
-  }
+  const double limit = o.number("cost_limit");
   o.set(option, "agent");
+  if ((limit < 0) != (o.number("cost_limit") < 0)) {
+    o.set({"cost_limit", nullptr, limit}, "agent");
+    fail(Code::kState, "agent option cost_limit: column 0 was created %s a limit",
+         limit < 0 ? "without" : "with");
+  }
   read_live();
 }
 
-void PolicyGradient::drop_horizon() {
-  rollout_.filled = 0;
-  pending_ = false;
+void PolicyGradient::act(const float* obs, bool sample, float* action) {
+  const FpMode mode;
+  collector_.act(obs, sample, action);
 }
 
-void PolicyGradient::begin_epoch(const EpisodeStats&, int32_t) {
-  const auto n = static_cast<size_t>(rollout_.samples());
-  std::memcpy(rollout_.gain, rollout_.advantage, n * sizeof(float));
-  std::memset(rollout_.linear, 0, n * sizeof(float));
+void PolicyGradient::record(const Transition& t) {
+  const FpMode mode;
+  collector_.record(t);
 }
 
 void PolicyGradient::update(const float* last_obs, Epoch* out) {
@@ -115,14 +90,18 @@ void PolicyGradient::update(const float* last_obs, Epoch* out) {
   check_rows("last_obs", last_obs, nullptr, plan_.config.num_envs, plan_.obs_dim());
   try {
     check_cancel();
-    estimate(last_obs);
-    const EpisodeStats stats = episodes_.stats();
+    valid_rows_ = collector_.estimate(last_obs);
+    const EpisodeStats stats = collector_.episodes().stats();
     begin_epoch(stats, epoch_ + 1);
-    learned_ = Learned();
     const double rate = schedule_.rate(epoch_);
+    const int64_t skipped = learner_.skipped();
+    learned_ = Learned();
     learn();
-    schedule_.adapt(learned_.mean_kl);
-    episodes_.mark();
+    if (learner_.skipped() > skipped)
+      log(plan_.config.hooks, LogLevel::kWarning, "update: %lld gradients were not finite and left out",
+          static_cast<long long>(learner_.skipped() - skipped));
+    if (learned_.passes > 0) schedule_.adapt(learned_.mean_kl);
+    collector_.episodes().mark();
     ++epoch_;
     if (out) fill_epoch(stats, rate, out);
   } catch (...) {
@@ -132,53 +111,67 @@ void PolicyGradient::update(const float* last_obs, Epoch* out) {
   drop_horizon();
 }
 
-// Values after the horizon, then both kinds of advantage.
-void PolicyGradient::estimate(const float* last_obs) {
-  const int32_t envs = plan_.config.num_envs;
-  sweep(
-      *workers_, plan_.lanes, num_pieces(envs),
-      [&](int32_t l, int32_t piece) {
-        const Lane& lane = lanes_[l];
-        const int32_t first = piece * kPieceRows, rows = std::min(kPieceRows, envs - first);
-        const auto at = static_cast<size_t>(first);
-        const float* x = normalized(last_obs + at * plan_.obs_dim(), rows, lane.obs);
-        forward_critics(lane, x, rows, rollout_.last_value + at,
-                        rollout_.last_cost_value + at * static_cast<size_t>(plan_.num_limited));
-      },
-      [](int32_t, int32_t) {});
-  estimate_advantages(rollout_, advantage_);
-  valid_rows_ = list_valid(rollout_);
+void PolicyGradient::begin_epoch(const EpisodeStats&, int32_t) {
+  const Rollout& r = rollout();
+  const auto n = static_cast<size_t>(r.samples());
+  std::memcpy(r.gain, r.advantage, n * sizeof(float));
+  std::memset(r.linear, 0, n * sizeof(float));
+}
+
+void PolicyGradient::learn() {
+  const int32_t count = valid_rows_;
+  if (count == 0) return;
+  const Options& o = plan_.options;
+  const int32_t parts = std::min(o.integer("minibatches"), count), size = (count + parts - 1) / parts;
+  const double rate = schedule_.rate(epoch_), stop = o.number("early_stop_kl");
+  int32_t* order = rollout().order;
+  BatchSums all, pass;
+  while (learned_.passes < o.integer("passes")) {
+    for (int32_t i = count - 1; i > 0; --i)
+      std::swap(order[i], order[shuffle_.below(static_cast<uint32_t>(i) + 1)]);
+    pass = BatchSums();
+    for (int32_t first = 0; first < count; first += size) {
+      check_cancel();
+      pass += learner_.gradient(&policy_loss(), true, order + first, std::min(size, count - first));
+      learner_.step(rate);
+    }
+    all += pass;
+    ++learned_.passes;
+    if (stop > 0 && learner_.kl(order, count) > stop) break;
+  }
+  const double samples = static_cast<double>(count) * learned_.passes;
+  learned_.last_kl = pass.kl / count;
+  learned_.mean_kl = all.kl / samples;
+  learned_.mean = {all.loss / samples, all.kl / samples, all.clipped / samples, all.reward_loss / samples,
+                   all.cost_loss / samples};
 }
 
 void PolicyGradient::fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const {
+  const Rollout& r = rollout();
   Epoch e;
   e.epoch = epoch_;
-  e.env_steps = env_steps_;
+  e.env_steps = collector_.env_steps();
   e.episodes = stats.finished;
   e.ret = stats.ret;
-  for (int32_t k = 0; k < plan_.config.cost_dim; ++k) e.cost[k] = stats.cost[k];
+  std::memcpy(e.cost, stats.cost, sizeof e.cost);
   e.cost_per_step = stats.cost_per_step;
   e.length = stats.length;
   e.fall_rate = stats.fall_rate;
   e.success_rate = stats.success_rate;
   for (int32_t i = 0; i < plan_.num_limited; ++i) e.multiplier[plan_.column[i]] = cost_weight(i);
-  e.kl = learned_.pass_kl;
-  e.learning_rate = rate;
-  const float* log_std = nets_.log_std();
-  double sum = 0, entropy = 0;
   for (int32_t j = 0; j < plan_.config.action_dim; ++j) {
-    sum += std::exp(static_cast<double>(log_std[j]));
-    entropy += static_cast<double>(log_std[j] + noise_.log_share()) + 1.4189385332046727;
+    const auto log_std = static_cast<double>(nets_.log_std()[j]);
+    e.action_std += std::exp(log_std) / plan_.config.action_dim;
+    e.entropy += log_std + static_cast<double>(plan_.log_share) + kEntropyOfUnit;
   }
-  e.action_std = sum / plan_.config.action_dim;
-  e.entropy = entropy;
-  e.loss_policy = learned_.loss_policy;
-  e.loss_reward_value = learned_.loss_reward;
-  e.loss_cost_value = learned_.loss_cost;
-  e.clip_fraction = learned_.clip_fraction;
-  e.value_reward = masked_mean(rollout_.value, 1, rollout_.valid, rollout_.samples());
-  if (plan_.num_limited > 0)
-    e.value_cost = masked_mean(rollout_.cost_value, plan_.num_limited, rollout_.valid, rollout_.samples());
+  e.kl = learned_.last_kl;
+  e.learning_rate = rate;
+  e.loss_policy = learned_.mean.loss;
+  e.loss_reward_value = learned_.mean.reward_loss;
+  e.loss_cost_value = learned_.mean.cost_loss;
+  e.clip_fraction = learned_.mean.clipped;
+  e.value_reward = masked_mean(r.value, 1, r.valid, r.samples());
+  if (r.num_costs > 0) e.value_cost = masked_mean(r.cost_value, r.num_costs, r.valid, r.samples());
   e.passes = learned_.passes;
   *out = e;
 }
@@ -186,9 +179,64 @@ void PolicyGradient::fill_epoch(const EpisodeStats& stats, double rate, Epoch* o
 bool PolicyGradient::tensor(int32_t index, TensorInfo* out) {
   char name[kTensorNameSize];
   if (!find_tensor(nets_, index, name, out)) return false;
-  std::memcpy(names_[index], name, sizeof name);
   out->name = names_[index];
   return true;
+}
+
+void PolicyGradient::visit_state(StateIo& io) {
+  io.section("COUN");
+  io.integer(epoch_, 0, INT32_MAX);
+  io.stream(shuffle_);
+  nets_.visit(io);
+  collector_.visit(io);
+  learner_.visit(io);
+  schedule_.visit(io);
+}
+
+void PolicyGradient::save(Writer& out) const {
+  if (!collector_.idle()) fail(Code::kState, "save: only between epochs; this horizon has begun");
+  out.begin_file(kMagic, kVersion);
+  write_fingerprint(out, plan_);
+  StateWriter io(out);
+  // The listing is shared with load; a StateWriter only reads.
+  const_cast<PolicyGradient*>(this)->visit_state(io);
+  io.end();
+  out.end_file();
+}
+
+void PolicyGradient::load(const void* bytes, size_t size) {
+  if (!bytes) fail(Code::kArgument, "agent state: NULL");
+  for (const bool apply : {false, true}) {
+    Reader in(bytes, size, "agent state");
+    in.begin_file(kMagic, kVersion);
+    read_fingerprint(in, plan_, apply);
+    if (apply) read_live();
+    StateReader io(in, apply);
+    visit_state(io);
+    io.end();
+  }
+  collector_.after_load();
+  clamp_log_std(nets_, plan_.options);
+  drop_horizon();
+}
+
+void PolicyGradient::write_policy_file(Writer& out) {
+  const HostScope scope(plan_.config.hooks);
+  const Normalizer& n = collector_.normalizer();
+  PolicyView v;
+  v.actor = nets_.shape[Networks::kActor];
+  v.params = nets_.net(Networks::kActor);
+  v.log_std = nets_.log_std();
+  v.shift = n.shift;
+  v.scale = n.scale;
+  v.clip = collector_.normalizes() ? n.clip : 0;
+  v.action_repeat = plan_.action_repeat;
+  v.noise_correlation = static_cast<float>(plan_.options.number("noise_correlation"));
+  v.control_dt = plan_.config.control_dt;
+  v.layout_hash = plan_.config.layout_hash;
+  std::memcpy(v.task, plan_.task, sizeof v.task);
+  v.example_obs = n.shift;
+  write_policy(out, v);
 }
 
 }  // namespace rdm

@@ -2,14 +2,14 @@
 
 #include <cmath>
 
-#include "algos/options.hpp"
-#include "algos/registry.hpp"
+#include "algos/algo_registry.hpp"
+#include "algos/option_tables.hpp"
 #include "nn/gaussian.hpp"
 
 namespace rdm {
 
-ClippedLoss clipped_loss(float ratio, float gain, float linear, float clip) {
-  ClippedLoss out;
+SampleLoss clipped_loss(float ratio, float gain, float linear, float clip) {
+  SampleLoss out;
   out.clipped = gain >= 0 ? ratio > 1 + clip : ratio < 1 - clip;
   const float bound = gain >= 0 ? 1 + clip : 1 - clip;
   out.loss = -(out.clipped ? bound : ratio) * gain - ratio * linear;
@@ -17,27 +17,21 @@ ClippedLoss clipped_loss(float ratio, float gain, float linear, float clip) {
   return out;
 }
 
-void Ppo::read_live() {
-  PolicyGradient::read_live();
-  clip_ = static_cast<float>(options().number("clip"));
-}
-
-void Ppo::policy_loss(const PolicyPiece& piece) const {
-  const Rollout& r = rollout();
+void ClippedSurrogate::add(const PolicyPiece& piece) const {
+  const Rollout& r = *piece.rollout;
   const auto dim = static_cast<int32_t>(r.action_dim);
-  for (int32_t i = 0; i < piece.rows; ++i) {
+  for (size_t i = 0; i < static_cast<size_t>(piece.rows); ++i) {
     const auto at = static_cast<size_t>(piece.order[i]);
-    const float* action = r.action + at * r.action_dim;
-    const float* mean = piece.mean + static_cast<size_t>(i) * r.action_dim;
+    const float *action = r.action + at * r.action_dim, *mean = piece.mean + i * r.action_dim;
     const float change = gaussian_log_prob(mean, piece.log_std, action, dim) - r.log_prob[at];
     // exp(20) is far past any clip and still finite after it is multiplied.
-    const ClippedLoss l = clipped_loss(std::exp(std::min(change, 20.0f)), r.gain[at], r.linear[at], clip_);
+    const SampleLoss l = clipped_loss(std::exp(std::min(change, 20.0f)), r.gain[at], r.linear[at], clip);
     gaussian_log_prob_grad(mean, piece.log_std, action, dim, piece.scale * l.slope,
-                           piece.dmean + static_cast<size_t>(i) * r.action_dim, piece.dlog_std);
+                           piece.dmean + i * r.action_dim, piece.dlog_std);
     piece.sums->loss += static_cast<double>(l.loss);
     piece.sums->clipped += l.clipped;
-    piece.sums->kl += static_cast<double>(
-        gaussian_kl(r.mean + at * r.action_dim, piece.old_log_std, mean, piece.log_std, dim));
+    piece.sums->kl +=
+        static_cast<double>(gaussian_kl(r.mean + at * r.action_dim, r.log_std, mean, piece.log_std, dim));
   }
 }
 

@@ -5,23 +5,32 @@
 namespace rdm {
 
 // Loss of one sample with ratio rho and its derivative by log p:
-// -min(rho gain, clip(rho, 1 - clip, 1 + clip) gain) - rho linear.
-struct ClippedLoss {
+// -min(rho gain, clip(rho, 1 - clip, 1 + clip) gain) - rho linear. Ties have the unclipped derivative.
+struct SampleLoss {
   float loss = 0, slope = 0;
   bool clipped = false;
 };
-ClippedLoss clipped_loss(float ratio, float gain, float linear, float clip);
+SampleLoss clipped_loss(float ratio, float gain, float linear, float clip);
+
+class ClippedSurrogate final : public PolicyLoss {
+ public:
+  void add(const PolicyPiece& piece) const override;
+  float clip = 0.2f;
+};
 
 class Ppo : public PolicyGradient {
  public:
   explicit Ppo(Plan&& plan) : PolicyGradient(std::move(plan)) {}
 
  protected:
-  void policy_loss(const PolicyPiece& piece) const override;
-  void read_live() override;
+  const PolicyLoss& policy_loss() const override { return loss_; }
+  void read_live() override {
+    PolicyGradient::read_live();
+    loss_.clip = static_cast<float>(options().number("clip"));
+  }
 
  private:
-  float clip_ = 0.2f;
+  ClippedSurrogate loss_;
 };
 
 }  // namespace rdm

@@ -1,8 +1,8 @@
 // PPO-Lag (Ray et al. 2019): PPO on the advantage that Lagrange multipliers combine.
+#include "algos/algo_registry.hpp"
 #include "algos/lagrange.hpp"
-#include "algos/options.hpp"
+#include "algos/option_tables.hpp"
 #include "algos/ppo.hpp"
-#include "algos/registry.hpp"
 
 namespace rdm {
 namespace {

@@ -21,6 +21,7 @@ struct Rollout {
   float *cost = nullptr, *cost_value = nullptr, *cost_advantage = nullptr, *cost_target = nullptr;
   float* discount = nullptr;  // 0 where a path ended
   uint8_t* valid = nullptr;
+  float* log_std = nullptr;  // [action_dim] of the innovation, of the policy that acted
   // What the actor climbs: clipped, and linear in the ratio (0 unless the algorithm splits its loss).
   float *gain = nullptr, *linear = nullptr;
   float *last_value = nullptr, *last_cost_value = nullptr;  // [num_envs], [num_envs][num_costs]

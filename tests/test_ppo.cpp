@@ -11,14 +11,14 @@ TEST(Ppo, ClippedLossOfOneSample) {
   const Case cases[] = {{1.1f, 1, -1.1f, -1.1f}, {1.3f, 1, -1.2f, 0},    {0.7f, 1, -0.7f, -0.7f},
                         {0.7f, -1, 0.8f, 0},     {1.3f, -1, 1.3f, 1.3f}, {0.9f, -1, 0.9f, 0.9f}};
   for (const Case& c : cases) {
-    const ClippedLoss l = clipped_loss(c.ratio, c.advantage, 0, 0.2f);
+    const SampleLoss l = clipped_loss(c.ratio, c.advantage, 0, 0.2f);
     EXPECT_FLOAT_EQ(l.loss, c.loss) << c.ratio << " " << c.advantage;
     EXPECT_FLOAT_EQ(l.slope, c.slope) << c.ratio << " " << c.advantage;
   }
 }
 
 TEST(Ppo, LinearPartIsNeverClipped) {
-  const ClippedLoss l = clipped_loss(1.5f, 1, -0.25f, 0.2f);
+  const SampleLoss l = clipped_loss(1.5f, 1, -0.25f, 0.2f);
   EXPECT_FLOAT_EQ(l.loss, -1.2f + 0.375f);
   EXPECT_FLOAT_EQ(l.slope, 0.375f);
   EXPECT_TRUE(l.clipped);

@@ -1,4 +1,4 @@
-#include "algos/options.hpp"
+#include "algos/option_tables.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
-#include "algos/registry.hpp"
+#include "algos/algo_registry.hpp"
 
 #include <iterator>
 
-#include "algos/options.hpp"
+#include "algos/option_tables.hpp"
 #include "base/error.hpp"
 
 namespace rdm {

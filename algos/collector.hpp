@@ -1,0 +1,70 @@
+// The collecting half of an agent: acts, records what followed, estimates advantages.
+#pragma once
+#include "algos/episodes.hpp"
+#include "algos/lanes.hpp"
+#include "algos/networks.hpp"
+#include "algos/noise.hpp"
+#include "algos/rollout.hpp"
+#include "nn/normalizer.hpp"
+
+namespace rdm {
+
+class Collector {
+ public:
+  void carve(Arena& arena, const Plan& plan);
+  // The three must outlive the collector.
+  void open(const Plan& plan, const Networks& nets, Lanes& lanes);
+
+  void act(const float* obs, bool sample, float* action);
+  void record(const Transition& t);
+  // Decisions still missing in this horizon.
+  int32_t missing() const { return rollout_.horizon - rollout_.filled; }
+  // Nothing is collected and no act waits for its record.
+  bool idle() const { return rollout_.filled == 0 && !pending_; }
+  void drop();
+
+  // Advantages and targets of a full horizon, in the rollout; the number of valid rows, listed in its order.
+  int32_t estimate(const float* last_obs);
+
+  const Rollout& rollout() const { return rollout_; }
+  Episodes& episodes() { return episodes_; }
+  const Episodes& episodes() const { return episodes_; }
+  const Normalizer& normalizer() const { return normalizer_; }
+  bool normalizes() const { return normalize_; }
+  int64_t env_steps() const { return env_steps_; }
+  void visit(StateIo& io);
+  void after_load() { normalizer_refresh(normalizer_); }
+
+ private:
+  const float* normalized(const float* obs, int32_t rows, float* memory) const;
+  void values(const Lane& lane, const float* x, int32_t rows, float* value, float* cost_value) const;
+  void act_rows(const Lane& lane, const float* obs, int32_t first, int32_t rows, float* action);
+  void mean_rows(const Lane& lane, const float* obs, int32_t rows, float* action) const;
+  void check(const Transition& t) const;
+  void value_truncated(const Transition& t);
+  void record_row(const Transition& t, int32_t env);
+  void charge_fall(int32_t env, float discount, float* sample_cost, double* charge) const;
+
+  const Plan* plan_ = nullptr;
+  const Networks* nets_ = nullptr;
+  Lanes* lanes_ = nullptr;
+  Rollout rollout_;
+  Normalizer normalizer_;
+  Noise noise_;
+  Episodes episodes_;
+  float* std_ = nullptr;          // [action_dim] of the innovation
+  float* final_value_ = nullptr;  // [num_envs] V of the final observation after truncation, else 0
+  float* final_cost_ = nullptr;   // [num_envs][num_limited]
+  int32_t* listed_ = nullptr;     // [num_envs] environments that were truncated
+  AdvantageOptions advantage_;
+  double discount_ = 0, obs_count_max_ = 0;
+  int64_t env_steps_ = 0;
+  bool pending_ = false;  // a sampled act waits for its record
+  bool normalize_ = true, terminal_cost_ = false;
+};
+
+// Error(kArgument) naming the first row of x [rows][dim] that is not finite; rows whose mask is 0 are
+// skipped.
+void check_rows(const char* name, const float* x, const uint8_t* mask, int32_t rows, size_t dim);
+
+}  // namespace rdm

@@ -1,0 +1,165 @@
+#include "algos/learner.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "nn/gaussian.hpp"
+
+namespace rdm {
+
+void Learner::carve(Arena& arena, const Plan& plan, size_t num_params) {
+  grad_ = arena.make<float>(num_params);
+  log_std_ = arena.make<float>(plan.action_dim());
+}
+
+void Learner::open(const Plan& plan, const Rollout& rollout, Networks& nets, Lanes& lanes) {
+  plan_ = &plan;
+  rollout_ = &rollout;
+  nets_ = &nets;
+  lanes_ = &lanes;
+  learn_std_ = plan.options.flag("learn_std");
+}
+
+void Learner::read_live(const Options& o) {
+  critic_rate_ = o.number("critic_learning_rate");
+  if (critic_rate_ == 0) critic_rate_ = o.number("learning_rate");
+  entropy_ = o.number("entropy");
+  max_norm_ = o.number("max_grad_norm");
+  critic_l2_ = o.number("critic_l2");
+}
+
+void Learner::refresh_log_std() {
+  for (size_t j = 0; j < plan_->action_dim(); ++j) log_std_[j] = nets_->log_std()[j] + plan_->log_share;
+}
+
+void Learner::gather(const Lane& lane, const int32_t* order, int32_t rows) const {
+  const size_t dim = plan_->obs_dim();
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
+    std::memcpy(lane.obs + i * dim, rollout_->obs + static_cast<size_t>(order[i]) * dim, dim * sizeof(float));
+}
+
+BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const int32_t* order, int32_t rows) {
+  refresh_log_std();
+  policy_ = policy != nullptr;
+  critics_ = critics;
+  scale_ = 1 / static_cast<float>(rows);
+  begin_ = policy_ ? 0 : nets_->block[Networks::kReward].offset;
+  end_ = critics ? nets_->size : nets_->block[Networks::kReward].offset;
+  BatchSums sums;
+  lanes_->sweep(
+      rows, plan_->piece_rows,
+      [&](Lane& lane, int32_t first, int32_t n) {
+        // The first piece writes where the sum is wanted.
+        float* grad = first == 0 ? grad_ : lane.grad;
+        const int32_t* piece = order + first;
+        lane.sums = BatchSums();
+        gather(lane, piece, n);
+        if (policy) policy_gradient(lane, *policy, piece, n, grad);
+        if (!critics) return;
+        lane.sums.reward_loss = critic_gradient(lane, Networks::kReward, piece, n, grad);
+        if (nets_->count > Networks::kCost)
+          lane.sums.cost_loss = critic_gradient(lane, Networks::kCost, piece, n, grad);
+      },
+      [&](int32_t group, int32_t n) {
+        for (int32_t i = 0; i < n; ++i) sums += (*lanes_)[i].sums;
+        fold(group, n);
+      });
+  add_penalties();
+  return sums;
+}
+
+void Learner::policy_gradient(Lane& lane, const PolicyLoss& policy, const int32_t* order, int32_t rows,
+                              float* grad) const {
+  nets_->forward(Networks::kActor, lane.obs, rows, lane.actor, lane.out);
+  std::memset(grad, 0, nets_->std_size * sizeof(float));
+  policy.add({rollout_, order, rows, lane.out, log_std_, scale_, lane.dout, grad, &lane.sums});
+  nets_->backward(Networks::kActor, lane.obs, rows, lane.actor, lane.dout, grad);
+}
+
+// Squared error against the targets; returns its sum over rows and columns.
+double Learner::critic_gradient(Lane& lane, Networks::Index net, const int32_t* order, int32_t rows,
+                                float* grad) const {
+  const auto out = static_cast<size_t>(nets_->shape[net].out);
+  const float* target = net == Networks::kReward ? rollout_->target : rollout_->cost_target;
+  nets_->forward(net, lane.obs, rows, lane.critic, lane.out);
+  double loss = 0;
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
+    for (size_t k = 0; k < out; ++k) {
+      const float error = lane.out[i * out + k] - target[static_cast<size_t>(order[i]) * out + k];
+      lane.dout[i * out + k] = 2 * scale_ * error;
+      loss += static_cast<double>(error) * static_cast<double>(error);
+    }
+  nets_->backward(net, lane.obs, rows, lane.critic, lane.dout, grad);
+  return loss;
+}
+
+// grad_ += the lanes' parts in order, every range of parameters by another thread.
+void Learner::fold(int32_t group, int32_t n) {
+  const int32_t from = group == 0 ? 1 : 0;
+  if (from >= n) return;
+  const auto ranges = static_cast<size_t>(n), size = end_ - begin_;
+  lanes_->spread(n, [&](int32_t range) {
+    const auto k = static_cast<size_t>(range);
+    const size_t low = begin_ + size * k / ranges, high = begin_ + size * (k + 1) / ranges;
+    for (int32_t l = from; l < n; ++l) {
+      const float* part = (*lanes_)[l].grad;
+      for (size_t i = low; i < high; ++i) grad_[i] += part[i];
+    }
+  });
+}
+
+void Learner::add_penalties() {
+  for (size_t j = 0; policy_ && j < plan_->action_dim(); ++j)
+    grad_[j] = learn_std_ ? grad_[j] - static_cast<float>(entropy_) : 0;
+  if (!critics_ || critic_l2_ == 0) return;
+  const auto twice = static_cast<float>(2 * critic_l2_);
+  for (int32_t i = Networks::kReward; i < nets_->count; ++i) {
+    const Block& b = nets_->block[i];
+    for (size_t j = b.offset; j < b.offset + b.size; ++j) grad_[j] += twice * nets_->params[j];
+  }
+}
+
+void Learner::step(double actor_rate) {
+  bool left_out[3] = {};
+  const int32_t first = policy_ ? Networks::kActor : Networks::kReward;
+  const int32_t last = critics_ ? nets_->count : int32_t{Networks::kReward};
+  lanes_->spread(last - first, [&](int32_t i) {
+    const int32_t net = first + i;
+    Block& b = nets_->block[net];
+    const double rate = net == Networks::kActor ? actor_rate : critic_rate_;
+    const double norm = adam_step(b.adam, nets_->params + b.offset, grad_ + b.offset, rate, max_norm_);
+    left_out[net] = !std::isfinite(norm);
+  });
+  for (const bool out : left_out) skipped_ += out;
+  if (policy_) clamp_log_std(*nets_, plan_->options);
+}
+
+double Learner::kl(const int32_t* order, int32_t rows) {
+  refresh_log_std();
+  const size_t dim = plan_->action_dim();
+  double sum = 0;
+  lanes_->sweep(
+      rows, plan_->piece_rows,
+      [&](Lane& lane, int32_t first, int32_t n) {
+        gather(lane, order + first, n);
+        nets_->forward(Networks::kActor, lane.obs, n, lane.actor, lane.out);
+        lane.sums = BatchSums();
+        for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
+          const float* old =
+              rollout_->mean + static_cast<size_t>(order[static_cast<size_t>(first) + i]) * dim;
+          lane.sums.kl += static_cast<double>(
+              gaussian_kl(old, rollout_->log_std, lane.out + i * dim, log_std_, static_cast<int32_t>(dim)));
+        }
+      },
+      [&](int32_t, int32_t n) {
+        for (int32_t i = 0; i < n; ++i) sum += (*lanes_)[i].sums.kl;
+      });
+  return sum / rows;
+}
+
+void Learner::visit(StateIo& io) {
+  io.section("LEAR");
+  io.integer(skipped_, 0, int64_t{1} << 62);
+}
+
+}  // namespace rdm

@@ -1,0 +1,74 @@
+// The learning half of an agent: gradients of batches, cut into pieces and folded in order, and Adam steps.
+#pragma once
+#include "algos/lanes.hpp"
+#include "algos/networks.hpp"
+#include "algos/rollout.hpp"
+
+namespace rdm {
+
+// A piece of a batch as a policy loss sees it.
+struct PolicyPiece {
+  const Rollout* rollout = nullptr;
+  const int32_t* order = nullptr;  // [rows] rows of the rollout
+  int32_t rows = 0;
+  const float* mean = nullptr;     // [rows][action_dim] of the policy that is learned
+  const float* log_std = nullptr;  // [action_dim] of its innovation
+  float scale = 1;                 // 1 / rows of the batch
+  float* dmean = nullptr;          // out: scale d(loss)/d(mean) [rows][action_dim]
+  float* dlog_std = nullptr;       // added to: scale d(loss)/d(log_std) [action_dim]
+  BatchSums* sums = nullptr;       // added to: loss, kl, clipped
+};
+
+class PolicyLoss {
+ public:
+  // Runs on any thread and must not throw.
+  virtual void add(const PolicyPiece& piece) const = 0;
+
+ protected:
+  ~PolicyLoss() = default;
+};
+
+class Learner {
+ public:
+  void carve(Arena& arena, const Plan& plan, size_t num_params);
+  // All must outlive the learner.
+  void open(const Plan& plan, const Rollout& rollout, Networks& nets, Lanes& lanes);
+  void read_live(const Options& options);
+
+  // Gradients of mean loss over the listed rows: the policy's (null: none) less the entropy bonus, and, if
+  // asked, the critics' squared errors with their L2 term. Valid until the next call.
+  BatchSums gradient(const PolicyLoss* policy, bool critics, const int32_t* order, int32_t rows);
+  const float* gradient() const { return grad_; }
+  // Adam steps along what the last gradient computed. A network whose gradient is not finite stays as it is.
+  void step(double actor_rate);
+
+  // KL(old || now), mean over the listed rows.
+  double kl(const int32_t* order, int32_t rows);
+  // Steps that were left out so far.
+  int64_t skipped() const { return skipped_; }
+  void visit(StateIo& io);
+
+ private:
+  void refresh_log_std();
+  void gather(const Lane& lane, const int32_t* order, int32_t rows) const;
+  void policy_gradient(Lane& lane, const PolicyLoss& policy, const int32_t* order, int32_t rows,
+                       float* grad) const;
+  double critic_gradient(Lane& lane, Networks::Index net, const int32_t* order, int32_t rows,
+                         float* grad) const;
+  void fold(int32_t group, int32_t n);
+  void add_penalties();
+
+  const Plan* plan_ = nullptr;
+  const Rollout* rollout_ = nullptr;
+  Networks* nets_ = nullptr;
+  Lanes* lanes_ = nullptr;
+  float* grad_ = nullptr;       // [Networks::size]
+  float* log_std_ = nullptr;    // [action_dim] of the innovation
+  float scale_ = 1;             // 1 / rows of the batch
+  size_t begin_ = 0, end_ = 0;  // of grad_: what the last gradient covers
+  bool policy_ = false, critics_ = false, learn_std_ = true;
+  double critic_rate_ = 0, entropy_ = 0, max_norm_ = 0, critic_l2_ = 0;
+  int64_t skipped_ = 0;
+};
+
+}  // namespace rdm
