@@ -14,24 +14,22 @@ struct Entry {
   void (*write)(const HandView& v, int32_t tip, float* out);
 };
 
-template <class F>
-void each_joint(const HandView& v, float* out, F&& value) {
-  for (int32_t i = 0; i < kHandJoints; ++i) out[i] = static_cast<float>(value(v.hand.first + i));
-}
-
 constexpr Entry kJoints[] = {
     {"joint_position", "1", kHandJoints,
      [](const HandView& v, int32_t, float* out) {
-       each_joint(v, out,
-                  [&](int32_t i) { return to_action(v.world.scene().link(i).joint, v.world.q()[i]); });
+       const double* q = v.world.q() + v.hand.first;
+       for (int i = 0; i < kHandJoints; ++i)
+         out[i] = static_cast<float>(to_action(v.hand.lower[i], v.hand.upper[i], q[i]));
      }},
     {"joint_velocity", "5 rad/s", kHandJoints,
      [](const HandView& v, int32_t, float* out) {
-       each_joint(v, out, [&](int32_t i) { return 0.2 * v.world.qd()[i]; });
+       const double* qd = v.world.qd() + v.hand.first;
+       for (int i = 0; i < kHandJoints; ++i) out[i] = static_cast<float>(0.2 * qd[i]);
      }},
     {"joint_force", "0.1 N m", kHandJoints,
      [](const HandView& v, int32_t, float* out) {
-       each_joint(v, out, [&](int32_t i) { return 10 * v.world.torque()[i]; });
+       const double* torque = v.world.torque() + v.hand.first;
+       for (int i = 0; i < kHandJoints; ++i) out[i] = static_cast<float>(10 * torque[i]);
      }},
 };
 

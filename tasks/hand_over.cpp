@@ -89,7 +89,7 @@ class HandOver final : public Task {
         scene_(make_scene(make_scene_def(o))),
         hands_{find_hand(scene_, 0), find_hand(scene_, 1)},
         game_(throw_game_from(o)),
-        costs_(safety_costs_from(o, kind, scene_, hands_[0], hands_[1])) {
+        costs_(safety_costs_from(o, kind, scene_, hands_[0])) {
     add_hand_fields(fields_, "right");
     add_hand_fields(fields_, "left");
     add_throw_fields(fields_);
@@ -112,10 +112,7 @@ class HandOver final : public Task {
   void reset(World& world, void* state, Stream& stream) const override {
     State& s = *static_cast<State*>(state);
     draw_joints({game_.joint_noise, game_.joint_noise_literal}, hands_, 2, world, stream);
-    for (int i = 0; i < kActions; ++i) {
-      const int32_t joint = joint_of(i);
-      s.command[i] = to_action(scene_.link(joint).joint, world.q()[joint]);
-    }
+    for (int i = 0; i < kActions; ++i) s.command[i] = to_command(i, world.q());
     reset_throw(game_, world, &s.game, stream);
   }
 
@@ -136,7 +133,7 @@ class HandOver final : public Task {
     v.reward = throw_reward(m, game_.alpha, game_.reward_scale);
     v.success = count_success(game_, m.distance, &s.game);
     v.terminated = world.body(0).X.p.z <= game_.fall_height;
-    judge_safety(costs_, hands_[0], world, s.command, &s.safety, &v);
+    judge_safety(costs_, hands_, world, s.command, &s.safety, &v);
     return v;
   }
 
@@ -157,11 +154,16 @@ class HandOver final : public Task {
   }
 
  private:
-  int32_t joint_of(int action) const { return hands_[action / kHandActions].actuated[action % kHandActions]; }
+  // The command that asks the joint of action entry i to be where it is in q [num_links].
+  double to_command(int i, const double* q) const {
+    const Hand& hand = hands_[i / kHandActions];
+    const int32_t k = i % kHandActions, joint = hand.joint(k);
+    return to_action(hand.lower[joint], hand.upper[joint], q[hand.actuated[k]]);
+  }
 
   void hold(float* action) const {
-    for (int i = 0; i < kActions; ++i)
-      action[i] = static_cast<float>(to_action(scene_.link(joint_of(i)).joint, 0));
+    constexpr double kStraight[2 * kHandJoints] = {};
+    for (int i = 0; i < kActions; ++i) action[i] = static_cast<float>(to_command(i, kStraight));
   }
 
   // The right hand flat and both wrists raised; thumb and left hand at the middle of their ranges. With

@@ -41,6 +41,12 @@ Hand find_hand(const Scene& scene, int32_t articulation) {
   Hand h;
   h.articulation = articulation;
   h.first = scene.link_offset[static_cast<size_t>(articulation)];
+  for (int32_t i = 0; i < kHandJoints; ++i) {
+    const JointDef& j = scene.link(h.first + i).joint;
+    h.lower[i] = j.lower;
+    h.upper[i] = j.upper;
+    h.effort[i] = j.effort;
+  }
   for (int32_t i = 0; i < kHandActions; ++i) h.actuated[i] = h.first + kShadowHand.actuated(i);
   for (int32_t i = 0; i < kHandTips; ++i) {
     h.tips[i] = h.first + kShadowHand.tips[i].link;
@@ -69,9 +75,11 @@ void draw_joints(const JointNoise& noise, const Hand* hands, int32_t count, Worl
 }
 
 void command_hand(const Hand& hand, const double* command, World& world) {
+  double* target = world.target();
   for (int32_t i = 0; i < kHandActions; ++i) {
-    const JointDef& j = world.scene().link(hand.actuated[i]).joint;
-    world.target()[hand.actuated[i]] = std::clamp(to_angle(j, command[i]), j.lower, j.upper);
+    const int32_t j = hand.joint(i);
+    target[hand.actuated[i]] =
+        std::clamp(to_angle(hand.lower[j], hand.upper[j], command[i]), hand.lower[j], hand.upper[j]);
   }
 }
 

@@ -21,6 +21,10 @@ struct Hand {
   int32_t actuated[kHandActions] = {};  // flat joint of each action entry
   int32_t tips[kHandTips] = {};         // flat link: first, middle, ring, little finger, thumb
   int32_t sensors[kHandTips] = {};      // index of Scene::sensors
+  // Of its joints, copied together because every step reads them; rad, N m.
+  double lower[kHandJoints] = {}, upper[kHandJoints] = {}, effort[kHandJoints] = {};
+  // Joint of an action entry, counted within the hand.
+  int32_t joint(int32_t action) const { return actuated[action] - first; }
 };
 
 void add_hand_options(OptionTable& table);
@@ -38,12 +42,12 @@ struct JointNoise {
 // Draws both hands of the scene, sets joints and drive targets. Coupled joints follow the drawn ones.
 void draw_joints(const JointNoise& noise, const Hand* hands, int32_t count, World& world, Stream& stream);
 
-// Range of a joint and back: a in [-1, 1].
-inline double to_angle(const JointDef& j, double a) {
-  return j.lower + 0.5 * (a + 1) * (j.upper - j.lower);
+// A command in [-1, 1] as an angle in the joint's range, and back.
+inline double to_angle(double lower, double upper, double a) {
+  return lower + 0.5 * (a + 1) * (upper - lower);
 }
-inline double to_action(const JointDef& j, double q) {
-  return (2 * q - j.upper - j.lower) / (j.upper - j.lower);
+inline double to_action(double lower, double upper, double q) {
+  return (2 * q - upper - lower) / (upper - lower);
 }
 
 // Drive targets of one hand from commands in [-1, 1], [kHandActions].

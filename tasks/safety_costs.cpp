@@ -114,8 +114,7 @@ void add_safety_options(OptionTable& table) {
   }
 }
 
-SafetyCosts safety_costs_from(const Options& o, SafetyKind kind, const Scene& scene, const Hand& right,
-                              const Hand& left) {
+SafetyCosts safety_costs_from(const Options& o, SafetyKind kind, const Scene& scene, const Hand& right) {
   SafetyCosts c;
   const char* mode = o.text("cost_mode");
   const bool paper = same_name(mode, "paper"), literal = same_name(mode, "literal");
@@ -139,18 +138,16 @@ SafetyCosts safety_costs_from(const Options& o, SafetyKind kind, const Scene& sc
     const SceneShape& other = scene.shapes[static_cast<size_t>(p.a == object ? p.b : p.a)];
     if (other.articulation == right.articulation) c.right_pairs.push_back(static_cast<int32_t>(i));
   }
-  for (const Hand* hand : {&right, &left})
-    for (const int32_t joint : hand->actuated) c.driven.push_back(joint);
   return c;
 }
 
-void judge_safety(const SafetyCosts& c, const Hand& right, const World& world, const double* command,
+void judge_safety(const SafetyCosts& c, const Hand* hands, const World& world, const double* command,
                   SafetyState* state, Verdict* v) {
   double worst = -1e9;
   for (int i = 0; i < kNumWindows; ++i) {
     const JointWindow& w = c.windows[i];
     const double excess =
-        c.angle ? w.excess(world.q()[right.actuated[w.act]]) : w.command_excess(command[w.act]);
+        c.angle ? w.excess(world.q()[hands[0].actuated[w.act]]) : w.command_excess(command[w.act]);
     v->cost[kFf2Range + i] = excess > 0;
     v->cost_raw[kFf2Range + i] = excess;
     if (c.counts[i]) worst = std::max(worst, excess);
@@ -159,10 +156,11 @@ void judge_safety(const SafetyCosts& c, const Hand& right, const World& world, c
   v->cost_raw[kCost] = worst;
 
   double share = 0;
-  for (const int32_t joint : c.driven) {
-    const double limit = world.scene().link(joint).joint.effort;
-    if (limit > 0) share = std::max(share, std::abs(world.torque()[joint]) / limit);
-  }
+  for (int h = 0; h < 2; ++h)
+    for (int k = 0; k < kHandActions; ++k) {
+      const double limit = hands[h].effort[hands[h].joint(k)];
+      if (limit > 0) share = std::max(share, std::abs(world.torque()[hands[h].actuated[k]]) / limit);
+    }
   v->cost[kEffort] = share >= kAtLimit;
   v->cost_raw[kEffort] = share;
 

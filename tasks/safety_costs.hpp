@@ -36,7 +36,6 @@ struct SafetyCosts {
   double throw_low = 0, throw_high = 0;          // release elevation, rad
   double release_speed = 1;                      // m/s
   Vector<int32_t> right_pairs;                   // right hand with object: indices of Scene::pairs
-  Vector<int32_t> driven;                        // joints with a drive of their own, both hands
 };
 
 struct SafetyState {
@@ -49,11 +48,11 @@ using CostColumns = std::array<CostSpec, kNumSafetyCosts>;
 extern const CostColumns kFingerCosts, kJointCosts;
 
 void add_safety_options(OptionTable& table);
-SafetyCosts safety_costs_from(const Options& options, SafetyKind kind, const Scene& scene, const Hand& right,
-                              const Hand& left);
+SafetyCosts safety_costs_from(const Options& options, SafetyKind kind, const Scene& scene, const Hand& right);
 
-// `command`: the right hand's commands in [-1, 1], [kHandActions]. Fills cost and cost_raw.
-void judge_safety(const SafetyCosts& costs, const Hand& right, const World& world, const double* command,
+// `hands`: right, left. `command`: the right hand's commands in [-1, 1], [kHandActions]. Fills cost and
+// cost_raw.
+void judge_safety(const SafetyCosts& costs, const Hand* hands, const World& world, const double* command,
                   SafetyState* state, Verdict* verdict);
 
 }  // namespace rdm

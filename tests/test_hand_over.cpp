@@ -100,7 +100,7 @@ TEST_F(HandOver, HoldActionIsTheStraightHand) {
   for (int k = 0; k < 40; ++k) {
     const int dof = kShadowHand.actuated(k % 20);
     const JointDef& j = p->task().scene().link(dof).joint;
-    EXPECT_NEAR(to_angle(j, static_cast<double>(p.action(0)[k])), 0, 1e-7) << k;
+    EXPECT_NEAR(to_angle(j.lower, j.upper, static_cast<double>(p.action(0)[k])), 0, 1e-7) << k;
   }
   EXPECT_EQ(p.action(0)[3], -1);
 }
@@ -200,8 +200,8 @@ TEST_F(HandOver, HoldingTheDrawnPose) {
       if (p.rows().episode_step[i] != 0 && !p.ended(i)) continue;
       for (int k = 0; k < 40; ++k) {
         const int32_t joint = 24 * (k / 20) + kShadowHand.actuated(k % 20);
-        p.action(i)[k] =
-            static_cast<float>(to_action(p->task().scene().link(joint).joint, p->world(i).q()[joint]));
+        const JointDef& j = p->task().scene().link(joint).joint;
+        p.action(i)[k] = static_cast<float>(to_action(j.lower, j.upper, p->world(i).q()[joint]));
       }
     }
   });

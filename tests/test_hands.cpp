@@ -114,7 +114,7 @@ TEST_F(Hands, DistalJointsFollow) {
                {{"coupling", coupling, 0}, {"fall_height", nullptr, -10}, {"start.x", nullptr, 3}});
     p->reset(nullptr, nullptr);
     p->baseline(Baseline::kHold);
-    p.action(0)[4] = static_cast<float>(to_action(joint(p, 4), 0.8));
+    p.action(0)[4] = static_cast<float>(to_action(0, 1.571, 0.8));
     for (int t = 0; t < 70; ++t) p->step(nullptr);
     const double* q = p->world(0).q();
     EXPECT_NEAR(q[4], 0.8, 0.01);

@@ -39,8 +39,8 @@ void FieldWriter::finish() const {
 
 void clip_row(float* row, int32_t count, float limit) {
   for (int32_t i = 0; i < count; ++i) {
-    if (row[i] > limit) row[i] = limit;
-    if (row[i] < -limit) row[i] = -limit;
+    const float x = row[i] > limit ? limit : row[i];
+    row[i] = x < -limit ? -limit : x;
   }
 }
 
