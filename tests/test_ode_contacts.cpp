@@ -237,6 +237,24 @@ TEST(OdeContacts, CylindersCapsulesAndBoxesRest) {
   }
 }
 
+TEST(OdeContacts, BottleStandsAndLiesStillOnATable) {
+  for (const bool lies : {false, true}) {
+    SceneDef def = on_the_ground(ShapeKind::kCylinder, {0.0395, 0.0875, 0},
+                                 cylinder_inertia(0.06, 0.0395, 0.0875), lies ? 0.0393 : 0.0873, 0.5);
+    if (lies) def.bodies[0].X_WB.q = axis_angle({0, 1, 0}, std::acos(0.0));
+    ShapeDef& table = def.statics[0];
+    table.kind = ShapeKind::kBox;
+    table.size = {0.5, 0.5, 0.01};
+    table.X_LS.p = {0, 0, -0.01};
+    test::Simulation sim(def);
+    for (int k = 0; k < 600; ++k) sim->step();
+    EXPECT_LT(std::hypot(sim->body(0).X.p.x, sim->body(0).X.p.y), 2e-3) << lies;
+    const Vec3 up = rotate(sim->body(0).X.q, {0, 0, 1});
+    EXPECT_LT(std::fabs(lies ? std::asin(up.z) : std::acos(std::min(1.0, up.z))), 0.01) << lies;
+    EXPECT_LT(norm(sim->body(0).v), 5e-3) << lies;
+  }
+}
+
 TEST(OdeContacts, GraspsAreKept) {
   int kept = 0;
   for (uint32_t trial = 0; trial < 10; ++trial) {

@@ -1,13 +1,16 @@
 #include "physics/ode_contacts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "physics/convert.hpp"
+#include "physics/manifold.hpp"
 
 namespace rdm {
 namespace {
 
 constexpr int kMaxPerPair = 8;
+constexpr double kFlat = 0.99;  // cosine between a contact's normal and that of a face it counts for
 
 // The one place where a contact's surface is described, every field of the mode included.
 dContact describe(const SolverDef& solver, const dContactGeom& geom, double mu) {
@@ -18,6 +21,25 @@ dContact describe(const SolverDef& solver, const dContactGeom& geom, double mu) 
   contact.surface.soft_erp = solver.contact_erp;
   contact.surface.soft_cfm = solver.contact_cfm;
   return contact;
+}
+
+// The side of a box whose outward normal is nearest to `n`; false when none is near.
+bool face_of_box(dGeomID box, const Vec3& size, const Vec3& n, double* half, Face* face) {
+  const Mat3 r = mat_from_ode(dGeomGetRotation(box));
+  for (int k = 0; k < 3; ++k) {
+    const double cosine = dot(n, r.col(k));
+    if (std::fabs(cosine) < kFlat) continue;
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    face->n = std::copysign(1.0, cosine) * r.col(k);
+    face->center = from_ode(dGeomGetPosition(box)) + size[k] * face->n;
+    face->offset = dot(face->n, face->center);
+    face->side[0] = r.col(i);
+    face->side[1] = r.col(j);
+    half[0] = size[i], half[1] = size[j];
+    face->half = half;
+    return true;
+  }
+  return false;
 }
 
 dGeomID create_geom(const ShapeDef& shape, const Pose& X_WS) {
@@ -62,6 +84,8 @@ void OdeContacts::make_geom(const Scene& scene, int32_t index, dBodyID body, con
   shape.geom = create_geom(def.def, X_WS);
   shape.body = body;
   shape.radius = def.radius;
+  shape.kind = def.def.kind;
+  shape.size = def.def.size;
   shape.rest = body == nullptr;
   if (def.radius < 0) {
     shape.center = rotate(X_WS.q, {0, 0, 1});
@@ -131,6 +155,35 @@ bool OdeContacts::near(const ShapePair& pair) const {
   return dot(d, d) < pair.reach * pair.reach;
 }
 
+int OdeContacts::collide_pair(const ShapePair& pair, int most, dContactGeom* out) const {
+  const Shape &a = shapes_[pair.a], &b = shapes_[pair.b];
+  const int found = dCollide(a.geom, b.geom, most, out, sizeof out[0]);
+  const bool first = a.kind == ShapeKind::kCylinder;
+  if (found == 0 || (!first && b.kind != ShapeKind::kCylinder)) return found;
+  const Shape &round = first ? a : b, &flat = first ? b : a;
+  const Vec3 n = first ? from_ode(out[0].normal) : -from_ode(out[0].normal);
+  Face face;
+  double half[2];
+  if (flat.kind == ShapeKind::kPlane) {
+    face.n = flat.center;
+    face.offset = flat.radius;
+  } else if (flat.kind != ShapeKind::kBox || !face_of_box(flat.geom, flat.size, n, half, &face)) {
+    return found;
+  }
+  const Cylinder cylinder = {from_ode(dGeomGetPosition(round.geom)),
+                             mat_from_ode(dGeomGetRotation(round.geom)), round.size.x, round.size.y};
+  ManifoldPoint points[kManifoldPoints];
+  const int count = std::min(cylinder_on_face(cylinder, face, points), most);
+  if (count <= 0) return found;
+  for (int i = 0; i < count; ++i) {
+    out[i] = out[0];
+    to_ode(points[i].p, out[i].pos);
+    to_ode(first ? face.n : -face.n, out[i].normal);
+    out[i].depth = points[i].depth;
+  }
+  return count;
+}
+
 OdeContacts::Found OdeContacts::collide(dWorldID world, const Scene& scene, Contact* contacts,
                                         uint8_t* touched) {
   empty();
@@ -144,7 +197,7 @@ OdeContacts::Found OdeContacts::collide(dWorldID world, const Scene& scene, Cont
     const ShapePair& pair = pairs[k];
     if (!near(pair)) continue;
     const Shape &a = shapes_[pair.a], &b = shapes_[pair.b];
-    const int n = dCollide(a.geom, b.geom, solver.contacts_per_pair, geoms, sizeof geoms[0]);
+    const int n = collide_pair(pair, solver.contacts_per_pair, geoms);
     if (n > 0) touched[k] = 1;
     for (int i = 0; i < n; ++i) {
       if (found.count == solver.contacts_max) {
@@ -173,7 +226,7 @@ double OdeContacts::overlap(const Scene& scene, int32_t body) {
   dContactGeom geoms[kMaxPerPair];
   for (const ShapePair& pair : scene.pairs) {
     if (!(carries(pair.a) || carries(pair.b)) || !near(pair)) continue;
-    const int n = dCollide(shapes_[pair.a].geom, shapes_[pair.b].geom, kMaxPerPair, geoms, sizeof geoms[0]);
+    const int n = collide_pair(pair, kMaxPerPair, geoms);
     for (int i = 0; i < n; ++i) deepest = std::max(deepest, static_cast<double>(geoms[i].depth));
   }
   return deepest;

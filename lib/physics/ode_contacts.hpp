@@ -42,10 +42,13 @@ class OdeContacts {
     Vec3 offset;         // of the shape's centre, from p, in r's axes
     Vec3 center;         // world; of a plane: its normal
     double radius;       // of a plane: its constant (normal . x = radius on it)
+    ShapeKind kind;
+    Vec3 size;
     bool rest;
   };
   void update_centers(int32_t num_shapes);
   bool near(const ShapePair& pair) const;
+  int collide_pair(const ShapePair& pair, int most, dContactGeom* out) const;
   void make_joint(dWorldID world, const Scene& scene, const dContactGeom& geom, double mu, dBodyID a,
                   dBodyID b, int32_t index);
 
