@@ -68,6 +68,7 @@ void OdeWorld::make_world() {
   dWorldSetContactMaxCorrectingVel(ode_.world, solver.contact_max_speed);
   dWorldSetContactSurfaceLayer(ode_.world, solver.contact_layer);
   dWorldSetAutoDisableFlag(ode_.world, 0);
+  dWorldSetStepIslandsProcessingMaxThreadCount(ode_.world, 1);  // worlds are the unit of parallel work
 }
 
 void OdeWorld::make_bodies() {
