@@ -58,7 +58,8 @@ class World {
   const double* qd() const { return qd_; }
   double* target() { return target_; }
   const double* target() const { return target_; }
-  const double* torque() const { return torque_; }  // drive torque, mean over the substeps, N m
+  // Drive torque (with the limit spring) by the drive law at the end of each substep, their mean, N m.
+  const double* torque() const { return torque_; }
 
   // Sets all joint coordinates of one articulation and rebuilds its links. Values are clamped to range.
   void set_joints(int32_t articulation, const double* q, const double* qd);
