@@ -254,6 +254,15 @@ TEST(Mlp, NothingIsAllocated) {
   EXPECT_GT(heap_count(), before) << "the counter counts";
 }
 
+TEST(Mlp, NoRowsGiveNoGradient) {
+  const MlpShape shape = make_shape(5, {4}, 2);
+  std::vector<float> params(shape.num_params(), 0.1f), grad(shape.num_params(), 9);
+  OwnedScratch s(shape, 1);
+  mlp_forward(shape, params.data(), params.data(), 0, s.scratch, nullptr);
+  mlp_backward(shape, params.data(), params.data(), 0, s.scratch, params.data(), grad.data());
+  EXPECT_EQ(grad, std::vector<float>(shape.num_params(), 0));
+}
+
 TEST(Mlp, NotANumberIsNotHidden) {
   for_each_isa([](const char* isa) {
     SCOPED_TRACE(isa);

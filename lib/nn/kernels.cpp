@@ -24,6 +24,9 @@ const Kernels* usable_v4() {
 }
 
 const Kernels* best() {
+#if defined(__x86_64__)
+  __builtin_cpu_init();  // a host's static objects may come here before the runtime has
+#endif
   if (const Kernels* k = usable_v4()) return k;
   if (const Kernels* k = usable_v3()) return k;
   return kernels_v2();

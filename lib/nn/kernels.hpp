@@ -1,8 +1,8 @@
 // The inner loops of lib/nn, one table of them per instruction set, chosen at run time.
 //
-// Every product adds its terms in the order of k, one fused multiply-add each, whatever the number of rows:
-// so a row's result does not depend on the batch that it came in, and one instruction set always gives
-// the same bytes.
+// Every entry of a product adds its terms in an order that depends on the sizes n and k alone, never on the
+// number of rows: so a row's result does not depend on the batch that it came in, and one instruction set
+// always gives the same bytes.
 #pragma once
 #include <cstddef>
 #include <cstdint>

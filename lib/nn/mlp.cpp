@@ -116,6 +116,7 @@ void mlp_backward(const MlpShape& shape, const float* params, const float* x, in
                   const MlpScratch& scratch, const float* dy, float* grad) {
   const Kernels& kernel = kernels();
   const float* delta = dy;
+  if (rows == 0) std::fill_n(grad, shape.num_params(), 0.0f);
   for (int32_t l = shape.num_hidden; l >= 0; --l) {
     const int32_t in = shape.layer_in(l), out = shape.layer_out(l);
     const float* h = l == 0 ? x : scratch.activation[l - 1];
