@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# The README's learning table, measured again: every row is trained from scratch with the defaults, for several
+# seeds, and evaluated on 100 fresh episodes. Finished runs are kept, so the script can be stopped and called again.
+#   bash examples/learning_table.sh [OUT]      OUT: folder of the runs, default runs/table
+# Environment: REDMAN (the tool), SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), STEPS and PPO_STEPS
+# (control steps of the safe and the plain runs), TASKS, OBJECTS.
+set -eu
+here=$(cd "$(dirname "$0")/.." && pwd)
+redman=${REDMAN:-$here/build/release/bin/redman}
+out=${1:-$here/runs/table}
+seeds=${SEEDS:-0 1 2} jobs=${JOBS:-2} steps=${STEPS:-3000000} ppo_steps=${PPO_STEPS:-1500000}
+tasks=${TASKS:-hand_over_safe_finger hand_over_safe_joint} objects=${OBJECTS:-egg ball}
+mkdir -p "$out"
+
+# value KEY FILE: a number of the tool's one-line JSON
+value() { sed -n "s/.*\"$1\":\[\{0,1\}\([-0-9.e+]*\|true\|false\).*/\1/p" "$2"; }
+
+train() {  # NAME TASK OBJECT ALGO LIMIT SEED STEPS
+  [ -s "$out/$1.json" ] && return
+  rm -rf "${out:?}/$1"
+  "$redman" train --task "$2" --algo "$4" --cost-limit "$5" --seed "$6" --steps "$7" --set object="$3" \
+    --out "$out/$1" --json > "$out/$1.tmp" 2> "$out/$1.log" && mv "$out/$1.tmp" "$out/$1.json"
+}
+
+baseline() {  # NAME TASK OBJECT POLICY
+  [ -s "$out/$1.json" ] && return
+  "$redman" rollout --task "$2" --policy "$4" --set object="$3" --episodes 500 --seed 1000000 --json \
+    > "$out/$1.tmp" && mv "$out/$1.tmp" "$out/$1.json"
+}
+
+rows() {  # one line per run: KIND NAME TASK OBJECT POLICY-OR-ALGO LIMIT SEED STEPS
+  for object in $objects; do for task in $tasks; do
+    for policy in zero hold random; do
+      echo "baseline $task.$object.$policy $task $object $policy - 0 0"
+    done
+    for seed in $seeds; do
+      for limit in 40 30; do
+        echo "train $task.$object.ppo_lag$limit.$seed $task $object ppo_lag $limit $seed $steps"
+      done
+      echo "train $task.$object.ppo.$seed $task $object ppo 40 $seed $ppo_steps"
+    done
+  done; done
+}
+
+rows | {
+  while read -r kind name task object policy limit seed n; do
+    while [ "$(jobs -rp | wc -l)" -ge "$jobs" ]; do sleep 1; done
+    if [ "$kind" = train ]; then
+      train "$name" "$task" "$object" "$policy" "$limit" "$seed" "$n" &
+    else
+      baseline "$name" "$task" "$object" "$policy" &
+    fi
+  done
+  wait
+}
+
+echo "| task | object | policy | limit | return | cost | length | falls | caught | steps | wall s |"
+echo "|---|---|---|---|---|---|---|---|---|---|---|"
+rows | while read -r kind name task object policy limit seed n; do
+  f=$out/$name.json
+  [ -s "$f" ] || continue
+  if [ "$kind" = train ]; then r=return c=cost l=length; else r=return_mean c=cost_mean l=length_mean; fi
+  echo "$task $object $policy $limit $(value $r "$f") $(value $c "$f") $(value $l "$f") $(value fall_rate "$f")" \
+    "$(value success_rate "$f") $(value env_steps "$f") $(value wall_seconds "$f")"
+done | awk '{ key = $1 " | " $2 " | " $3 " | " $4
+  if (!(key in n)) order[++count] = key
+  i = ++n[key]; for (k = 5; k <= 11; ++k) { sum[key, k] += $k }
+  each[key] = each[key] (i > 1 ? ", " : "") sprintf("%.1f", $5); costs[key] = costs[key] (i > 1 ? ", " : "") sprintf("%.1f", $6) }
+  END { for (j = 1; j <= count; ++j) { k = order[j]; m = n[k]
+    printf "| %s | %.1f", k, sum[k, 5] / m; if (m > 1) printf " (%s)", each[k]
+    printf " | %.1f", sum[k, 6] / m; if (m > 1) printf " (%s)", costs[k]
+    printf " | %.0f | %.0f %% | %.0f %% | %.2g M | %.0f |\n", sum[k, 7] / m, 100 * sum[k, 8] / m, 100 * sum[k, 9] / m,
+      sum[k, 10] / m / 1e6, sum[k, 11] / m } }'

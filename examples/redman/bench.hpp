@@ -1,0 +1,32 @@
+// The three benchmarks: flags in, report out.
+#pragma once
+#include "setup.hpp"
+
+namespace tool {
+
+struct StepFlags {
+  PoolSettings pool;
+  std::vector<std::string> sets;
+  double seconds = 10;
+};
+// Random actions in every world and every control step.
+Report bench_step(StepFlags flags);
+
+struct UpdateFlags {
+  std::string algo = "ppo_lag", hidden = "256,256";
+  std::vector<std::string> sets;
+  int32_t obs = 211, act = 26, samples = 8192, epochs = 5, minibatch = 2048, threads = 0;
+  double seconds = 5;
+};
+// rdm_agent_update alone, on made-up data.
+Report bench_update(const UpdateFlags& flags);
+
+struct ActFlags {
+  std::string hidden = "256,256";
+  int32_t obs = 211, act = 26, rows = 1;
+  double seconds = 2;
+};
+// rdm_policy_act alone.
+Report bench_act(const ActFlags& flags);
+
+}  // namespace tool

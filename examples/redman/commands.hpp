@@ -1,0 +1,23 @@
+// The subcommands. Each adds itself to the command line; when it is the one that was asked for, it leaves in
+// `run` what main then calls.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "report.hpp"
+
+namespace tool {
+
+using Run = std::function<Report()>;
+
+void add_tasks(CLI::App& app, Run& run);
+void add_algos(CLI::App& app, Run& run);
+void add_train(CLI::App& app, Run& run);
+void add_eval(CLI::App& app, Run& run);
+void add_rollout(CLI::App& app, Run& run);
+void add_render(CLI::App& app, Run& run);
+void add_bench(CLI::App& app, Run& run);
+void add_info(CLI::App& app, Run& run);
+void add_plot(CLI::App& app, Run& run);
+
+}  // namespace tool

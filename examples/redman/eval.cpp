@@ -1,0 +1,92 @@
+// `eval`: how good a policy is, over many episodes.
+#include "commands.hpp"
+#include "evaluate.hpp"
+#include "names.hpp"
+#include "text.hpp"
+
+namespace tool {
+
+Evaluation evaluate(const ActorChoice& choice, PoolSettings settings, const std::vector<std::string>& limits,
+                    int32_t episodes, bool stochastic) {
+  settings.envs = std::min(settings.envs, episodes);
+  redman::Pool pool = make_pool(settings, RDM_AUTORESET_OFF);
+  Evaluation out;
+  out.limits = cost_limits(pool, limits);
+  for (const rdm_cost& c : task_costs(pool.spec().task)) out.costs.push_back(c.name);
+  Actor actor(choice, pool, stochastic, settings.seed);
+  pool.reset();
+  out.summary = summarise(play_episodes(pool, actor, static_cast<size_t>(episodes)), out.limits);
+  return out;
+}
+
+namespace {
+
+struct EvalFlags {
+  std::string policy = "hold";
+  PoolSettings pool;
+  std::vector<std::string> sets, limits;
+  int32_t episodes = kEvalEpisodes;
+  bool stochastic = false, task_given = false;
+};
+
+std::string evaluation_text(const Evaluation& e, int32_t episodes) {
+  const Summary& s = e.summary;
+  std::string text =
+      format("%d episodes: return %.3f +- %.3f, length %.1f, success %.1f%%, falls %.1f%%\n", episodes,
+             s.return_mean, s.return_std, s.length_mean, 100 * s.success_rate, 100 * s.fall_rate);
+  Table costs({"cost", "mean", "std", "limit"});
+  for (size_t k = 0; k < e.costs.size(); ++k)
+    costs.add({e.costs[k], format("%.3f", s.cost_mean[k]), format("%.3f", s.cost_std[k]),
+               e.limits[k] < 0 ? "-" : number_text(e.limits[k])});
+  return text + costs.text() +
+         format("episodes over a limit: %.1f%%; cost per step: %.4f\n", 100 * s.violation_rate,
+                s.cost_per_step);
+}
+
+Report run_eval(EvalFlags flags) {
+  const ActorChoice choice = choose_actor(flags.policy);
+  adopt_task(choice, flags.task_given, flags.pool);
+  apply_sets(flags.sets, flags.pool, nullptr);
+  std::vector<std::string> limits = choice.limits;
+  limits.insert(limits.end(), flags.limits.begin(), flags.limits.end());
+  const Evaluation e = evaluate(choice, flags.pool, limits, flags.episodes, flags.stochastic);
+  const Summary& s = e.summary;
+  return {{{"policy", flags.policy},
+           {"task", task_at(find_task(flags.pool.task)).name},
+           {"episodes", flags.episodes},
+           {"return_mean", s.return_mean},
+           {"return_std", s.return_std},
+           {"cost_mean", s.cost_mean},
+           {"cost_std", s.cost_std},
+           {"success_rate", s.success_rate},
+           {"length_mean", s.length_mean},
+           {"violation_rate", s.violation_rate},
+           {"fall_rate", s.fall_rate},
+           {"cost_per_step", s.cost_per_step},
+           {"feasible", feasible(s, e.limits)}},
+          evaluation_text(e, flags.episodes)};
+}
+
+}  // namespace
+
+void add_eval(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<EvalFlags>();
+  flags->pool.envs = kEvalEnvs;
+  CLI::App* command = app.add_subcommand("eval", "Evaluate a policy over whole episodes");
+  command->add_option("--policy", flags->policy,
+                      "policy file, run folder, zero, hold or random; a run's task options come with it");
+  CLI::Option* task = command->add_option("--task", flags->pool.task, "task; default: the policy's");
+  command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::PositiveNumber);
+  command->add_option("--envs,--num-envs", flags->pool.envs, "worlds");
+  command->add_option("--threads", flags->pool.threads, "threads; 0: the caller's own");
+  command->add_option("--seed", flags->pool.seed, "seed");
+  command->add_flag("--stochastic", flags->stochastic, "sample actions instead of taking the mean");
+  add_cost_limit_flag(*command, flags->limits);
+  add_set_flag(*command, flags->sets);
+  command->callback([&run, flags, task] {
+    flags->task_given = task->count() > 0;
+    run = [flags] { return run_eval(*flags); };
+  });
+}
+
+}  // namespace tool

@@ -1,0 +1,36 @@
+// Pictures: 8-bit RGB in memory, PNG files, and frames for a film made by the ffmpeg program.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tool {
+
+struct Image {
+  int32_t width = 0, height = 0;
+  std::vector<unsigned char> rgb;  // [height][width][3]
+};
+
+// Equal heights, left to right, with a thin white line between them inside the given sizes.
+Image side_by_side(const std::vector<Image>& images);
+
+// Replaces the file atomically. Failure when it cannot be written.
+void write_png(const std::string& path, const Image& image);
+
+// Frames piped to `ffmpeg`; the ending of the name chooses the kind: .mp4 or .gif.
+class Film {
+ public:
+  // Usage for another ending; Failure when there is no ffmpeg program.
+  Film(const std::string& path, int32_t width, int32_t height, double frames_per_second);
+  ~Film();
+  Film(const Film&) = delete;
+  Film& operator=(const Film&) = delete;
+  void add(const Image& image);
+  void finish();  // waits for ffmpeg; Failure when it failed
+
+ private:
+  std::string path_;
+  int pipe_ = -1, child_ = -1;
+};
+
+}  // namespace tool

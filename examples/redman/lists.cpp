@@ -1,0 +1,125 @@
+// `tasks`, `algos` and `info`: what there is, straight from the library's discovery.
+#include <redman/redman.hpp>
+
+#include "commands.hpp"
+#include "names.hpp"
+#include "text.hpp"
+
+namespace tool {
+namespace {
+
+struct ListFlags {
+  std::string name;
+  bool markdown = false;
+};
+
+std::string limit_text(const std::vector<rdm_cost>& costs) {
+  return costs.empty() || costs[0].limit < 0 ? "-" : number_text(costs[0].limit);
+}
+
+Json task_json(int32_t index) {
+  const rdm_task t = task_at(index);
+  Json costs = Json::array(), fields = Json::array();
+  for (const rdm_cost& c : task_costs(index))
+    costs.push_back({{"name", c.name}, {"limit", c.limit < 0 ? Json() : Json(c.limit)}, {"help", c.help}});
+  for (const rdm_field& f : task_fields(index))
+    fields.push_back({{"name", f.name}, {"unit", f.unit}, {"offset", f.offset}, {"count", f.count}});
+  return {{"name", t.name},           {"summary", t.summary},
+          {"obs_dim", t.obs_dim},     {"action_dim", t.action_dim},
+          {"cost_dim", t.cost_dim},   {"costs", costs},
+          {"max_steps", t.max_steps}, {"control_dt", t.control_dt},
+          {"fields", fields},         {"options", options_json(task_options(index))}};
+}
+
+std::string task_text(int32_t index) {
+  const rdm_task t = task_at(index);
+  std::string out =
+      format("%s: %s\n%d observations, %d actions, %d costs, %d steps of %.4f s\n\n", t.name, t.summary,
+             t.obs_dim, t.action_dim, t.cost_dim, t.max_steps, static_cast<double>(t.control_dt));
+  Table fields({"field", "unit", "offset", "count"}), costs({"cost", "limit", "meaning"});
+  for (const rdm_field& f : task_fields(index))
+    fields.add({f.name, f.unit, std::to_string(f.offset), std::to_string(f.count)});
+  for (const rdm_cost& c : task_costs(index))
+    costs.add({c.name, c.limit < 0 ? "-" : number_text(c.limit), c.help});
+  return out + fields.text() + '\n' + costs.text() + '\n' + options_text(task_options(index));
+}
+
+Report list_tasks(const ListFlags& flags) {
+  Json all = Json::array();
+  Table table({"task", "observations", "actions", "costs", "steps", "limit", "summary"});
+  const int32_t only = flags.name.empty() ? -1 : find_task(flags.name);
+  for (int32_t i = 0; i < rdm_task_count(); ++i) {
+    if (only >= 0 && i != only) continue;
+    const rdm_task t = task_at(i);
+    all.push_back(task_json(i));
+    const std::string name = flags.markdown ? format("`%s`", t.name) : t.name;
+    table.add({name, std::to_string(t.obs_dim), std::to_string(t.action_dim), std::to_string(t.cost_dim),
+               std::to_string(t.max_steps), limit_text(task_costs(i)), t.summary});
+  }
+  const std::string text = flags.markdown ? table.markdown() : only >= 0 ? task_text(only) : table.text();
+  return {{{"tasks", all}}, text};
+}
+
+Report list_algos(const ListFlags& flags) {
+  Json all = Json::array();
+  Table table({"algorithm", "summary"});
+  const int32_t only = flags.name.empty() ? -1 : find_algo(flags.name);
+  std::string text;
+  for (int32_t i = 0; i < rdm_algo_count(); ++i) {
+    if (only >= 0 && i != only) continue;
+    const rdm_algo a = algo_at(i);
+    const auto options = algo_options(i);
+    all.push_back({{"name", a.name}, {"summary", a.summary}, {"params", options_json(options)}});
+    table.add({flags.markdown ? format("`%s`", a.name) : a.name, a.summary});
+    if (only >= 0) text = format("%s: %s\n\n", a.name, a.summary) + options_text(options);
+  }
+  if (flags.markdown) text = table.markdown();
+  return {{{"algos", all}}, text.empty() ? table.text() : text};
+}
+
+Report show_info() {
+  auto b = redman::sized<rdm_build>();
+  redman::check(rdm_build_info(&b));
+  const uint32_t features = rdm_features();
+  const Json json = {{"version", b.version},
+                     {"abi", b.abi},
+                     {"ode", b.ode},
+                     {"eigen", b.eigen},
+                     {"ccd", b.ccd},
+                     {"octomap", b.octomap},
+                     {"precision", b.precision},
+                     {"compiler", b.compiler},
+                     {"kernels", b.kernels},
+                     {"simulator", (features & RDM_FEATURE_SIM) != 0},
+                     {"learner", (features & RDM_FEATURE_LEARN) != 0}};
+  std::string text;
+  for (const auto& [key, value] : json.items())
+    text +=
+        format("%-10s ", key.c_str()) + (value.is_string() ? value.get<std::string>() : value.dump()) + '\n';
+  return {json, text};
+}
+
+void add_list(CLI::App& app, Run& run, const char* name, const char* help, Report (*list)(const ListFlags&)) {
+  auto flags = std::make_shared<ListFlags>();
+  CLI::App* command = app.add_subcommand(name, help);
+  command->add_option("name", flags->name, "show one of them with its options");
+  command->add_flag("--markdown", flags->markdown, "print the table of the README");
+  command->callback([&run, flags, list] { run = [flags, list] { return list(*flags); }; });
+}
+
+}  // namespace
+
+void add_tasks(CLI::App& app, Run& run) {
+  add_list(app, run, "tasks", "List the tasks: observations, costs, options", list_tasks);
+}
+
+void add_algos(CLI::App& app, Run& run) {
+  add_list(app, run, "algos", "List the algorithms and their parameters", list_algos);
+}
+
+void add_info(CLI::App& app, Run& run) {
+  CLI::App* command = app.add_subcommand("info", "Print versions and how the library was built");
+  command->callback([&run] { run = show_info; });
+}
+
+}  // namespace tool

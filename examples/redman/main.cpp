@@ -1,0 +1,108 @@
+// The redman command-line tool: simulate, train, evaluate and look, written against the public headers alone.
+// Results go to stdout, progress and errors to stderr. Exit status: 0 good, 1 the work failed, 2 wrong usage.
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <exception>
+#include <redman/redman.hpp>
+
+#include "commands.hpp"
+#include "names.hpp"
+
+namespace {
+
+using namespace tool;
+
+struct Arguments {
+  std::vector<std::string> words;
+  bool json = false;
+};
+
+// --json may stand anywhere, and flags may be written with underscores or capitals.
+Arguments read_arguments(int argc, char** argv) {
+  Arguments out;
+  for (int i = 1; i < argc; ++i) {
+    std::string word = argv[i];
+    if (word.rfind("--", 0) == 0) {
+      const size_t end = std::min(word.find('='), word.size());
+      for (size_t k = 2; k < end; ++k)
+        word[k] = word[k] == '_' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(word[k])));
+    }
+    if (word == "--json")
+      out.json = true;
+    else
+      out.words.push_back(word);
+  }
+  return out;
+}
+
+void print_result(const Report& report, bool json) {
+  if (json)
+    std::printf("%s\n", report.json.dump().c_str());
+  else
+    std::fputs(report.text.c_str(), stdout);
+}
+
+int fail(const std::string& text, int status, bool json) {
+  std::fprintf(stderr, "redman: %s\n", text.c_str());
+  if (json) print_result({{{"error", text}, {"status", status}}, ""}, true);
+  return status;
+}
+
+// CLI11 answers an unknown subcommand with an unexpected argument.
+std::string usage_text(const CLI::App& app, const CLI::ParseError& error, const Arguments& arguments) {
+  std::string text = error.what();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (arguments.words.empty()) return "a subcommand is needed; redman --help lists them";
+  const std::string& first = arguments.words.front();
+  std::vector<std::string> names;
+  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(sub->get_name());
+  if (first[0] != '-' && std::find(names.begin(), names.end(), first) == names.end())
+    return "subcommand " + first + ": unknown; nearest is " + nearest_name(first, names);
+  return text + (app.get_subcommands().empty() ? "; see redman --help" : "; see redman " + first + " --help");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments = read_arguments(argc, argv);
+  const bool json = arguments.json;
+
+  CLI::App app("Safe dexterous manipulation: simulate, train, evaluate, look.", "redman");
+  app.footer("With --json, stdout is one JSON object on one line. Names: case is ignored, '-' equals '_'.");
+  app.require_subcommand(1);
+  app.option_defaults()->always_capture_default();
+  Run run;
+  add_tasks(app, run);
+  add_algos(app, run);
+  add_train(app, run);
+  add_eval(app, run);
+  add_rollout(app, run);
+  add_render(app, run);
+  add_bench(app, run);
+  add_plot(app, run);
+  add_info(app, run);
+  app.set_help_all_flag("--help-all", "Help of every subcommand");
+  try {
+    redman::check(rdm_check_abi(RDM_ABI, RDM_VERSION));
+    std::vector<std::string> reversed(arguments.words.rbegin(), arguments.words.rend());
+    app.parse(reversed);
+    print_result(run(), json);
+    return 0;
+  } catch (const CLI::CallForHelp&) {
+    const std::string text = app.help();  // of the subcommand, if there is one
+    print_result({{{"help", text}}, text + '\n'}, json);
+    return 0;
+  } catch (const CLI::CallForAllHelp&) {
+    const std::string text = app.help("", CLI::AppFormatMode::All);
+    print_result({{{"help", text}}, text + '\n'}, json);
+    return 0;
+  } catch (const CLI::ParseError& e) {
+    return fail(usage_text(app, e, arguments), 2, json);
+  } catch (const Usage& e) {
+    return fail(e.what(), 2, json);
+  } catch (const std::exception& e) {
+    return fail(e.what(), 1, json);
+  }
+}

@@ -1,0 +1,136 @@
+// `plot`: learning curves of one or more run folders.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "commands.hpp"
+#include "files.hpp"
+#include "run_data.hpp"
+#include "svg.hpp"
+#include "text.hpp"
+
+namespace tool {
+namespace {
+
+struct PlotFlags {
+  std::vector<std::string> folders;
+  std::string out = "plot.svg";
+  bool each = false;
+};
+
+// Runs that share a line: seeds of one task, algorithm and limit.
+struct Group {
+  std::string label;
+  std::vector<const RunData*> runs;
+};
+
+std::string group_label(const RunData& run, bool many_tasks) {
+  std::string text = many_tasks ? run.task + ", " + run.algo : run.algo;
+  if (run.limit >= 0) text += ", limit " + number_text(run.limit);
+  return text;
+}
+
+std::vector<Group> make_groups(const std::vector<RunData>& runs, bool each) {
+  const bool many_tasks =
+      std::any_of(runs.begin(), runs.end(), [&](const RunData& r) { return r.task != runs[0].task; });
+  std::vector<Group> groups;
+  for (const RunData& run : runs) {
+    std::string label = group_label(run, many_tasks);
+    if (each) label += ", seed " + std::to_string(run.seed);
+    auto found = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.label == label; });
+    if (each || found == groups.end()) found = groups.insert(groups.end(), {label, {}});
+    found->runs.push_back(&run);
+  }
+  for (Group& g : groups)
+    if (g.runs.size() > 1) g.label += format(" (%zu runs)", g.runs.size());
+  return groups;
+}
+
+// y at x on the line through the points; NaN outside of them.
+double interpolate(const std::vector<double>& xs, const std::vector<double>& ys, double x) {
+  const auto after = std::lower_bound(xs.begin(), xs.end(), x);
+  if (after == xs.end()) return std::nan("");
+  const auto i = static_cast<size_t>(after - xs.begin());
+  if (xs[i] == x || i == 0) return xs[i] == x ? ys[i] : std::nan("");
+  return ys[i - 1] + (ys[i] - ys[i - 1]) * (x - xs[i - 1]) / (xs[i] - xs[i - 1]);
+}
+
+Series single_line(const RunData& run, const std::string& column, size_t color) {
+  return {color, run.column("TotalEnvSteps"), run.column(column), {}, {}};
+}
+
+// Mean and standard deviation over the runs that reach each x.
+Series mean_line(const Group& group, const std::string& column, size_t color) {
+  constexpr int kPoints = 200;
+  double last = 0;
+  for (const RunData* run : group.runs) last = std::max(last, run->column("TotalEnvSteps").back());
+  Series s;
+  s.color = color;
+  for (int i = 1; i <= kPoints; ++i) {
+    const double x = last * i / kPoints;
+    double sum = 0, squares = 0, n = 0;
+    for (const RunData* run : group.runs) {
+      if (run->column(column).empty()) continue;
+      const double y = interpolate(run->column("TotalEnvSteps"), run->column(column), x);
+      if (!std::isfinite(y)) continue;
+      sum += y;
+      squares += y * y;
+      n += 1;
+    }
+    const double mean = n > 0 ? sum / n : std::nan(""),
+                 std = std::sqrt(std::max(0.0, squares / n - mean * mean));
+    s.x.push_back(x);
+    s.y.push_back(mean);
+    s.low.push_back(mean - std);
+    s.high.push_back(mean + std);
+  }
+  return s;
+}
+
+Panel make_panel(const char* title, const std::string& column, const std::vector<Group>& groups,
+                 bool share = false) {
+  Panel panel;
+  panel.title = title;
+  panel.share = share;
+  for (size_t i = 0; i < groups.size(); ++i)
+    panel.series.push_back(groups[i].runs.size() == 1 ? single_line(*groups[i].runs[0], column, i)
+                                                      : mean_line(groups[i], column, i));
+  return panel;
+}
+
+Report run_plot(const PlotFlags& flags) {
+  std::vector<RunData> runs;
+  for (const std::string& folder : flags.folders) runs.push_back(read_run(folder));
+  const auto groups = make_groups(runs, flags.each);
+  std::vector<Panel> panels = {make_panel("Return of an episode", "Metrics/EpRet", groups),
+                               make_panel("Cost of an episode (dashed: limit)", "Metrics/EpCost", groups),
+                               make_panel("Lagrange multiplier", "Metrics/LagrangeMultiplier", groups),
+                               make_panel("Length of an episode, steps", "Metrics/EpLen", groups),
+                               make_panel("Episodes that end in a fall", "Metrics/FallRate", groups, true),
+                               make_panel("Episodes with success", "Metrics/SuccessRate", groups, true)};
+  for (size_t i = 0; i < groups.size(); ++i)
+    if (groups[i].runs[0]->limit >= 0) panels[1].levels.push_back({i, groups[i].runs[0]->limit});
+  std::vector<LegendEntry> legend;
+  for (size_t i = 0; i < groups.size(); ++i) legend.push_back({i, groups[i].label});
+  const bool one_task =
+      std::all_of(runs.begin(), runs.end(), [&](const RunData& r) { return r.task == runs[0].task; });
+  replace_file(flags.out,
+               draw_chart(one_task ? runs[0].task : "Learning curves", panels, 3, "control steps", legend));
+  return {{{"file", flags.out}, {"runs", runs.size()}, {"lines", groups.size()}},
+          "wrote " + flags.out + '\n'};
+}
+
+}  // namespace
+
+void add_plot(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<PlotFlags>();
+  CLI::App* command = app.add_subcommand("plot", "Draw the learning curves of run folders as SVG");
+  command
+      ->add_option("folders", flags->folders, "run folders; seeds of one setting become a mean with a band")
+      ->required();
+  command->add_option("--out", flags->out, "SVG file; default plot.svg");
+  command->add_flag("--each", flags->each, "a line for every folder");
+  command->callback([&run, flags] { run = [flags] { return run_plot(*flags); }; });
+}
+
+}  // namespace tool

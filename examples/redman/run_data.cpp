@@ -1,0 +1,60 @@
+#include "run_data.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "files.hpp"
+#include "report.hpp"
+
+namespace tool {
+namespace {
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream in(line);
+  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+double number(const std::string& cell) {
+  char* end = nullptr;
+  const double value = std::strtod(cell.c_str(), &end);
+  return end == cell.c_str() ? std::nan("") : value;
+}
+
+}  // namespace
+
+const std::vector<double>& RunData::column(const std::string& name) const {
+  static const std::vector<double> kNone;
+  const auto found = columns.find(name);
+  return found == columns.end() ? kNone : found->second;
+}
+
+RunData read_run(const std::string& path) {
+  RunData run;
+  run.path = path;
+  try {
+    const Json config = Json::parse(read_file(path + "/config.json"));
+    run.task = config.at("task");
+    run.algo = config.at("algo");
+    run.seed = config.at("seed");
+    const Json& limits = config.at("cost_limits");
+    if (!limits.empty()) run.limit = limits.contains("cost") ? limits["cost"].get<double>() : -1;
+  } catch (const Json::exception& e) {
+    throw Failure(path + "/config.json is not a run's configuration: " + e.what());
+  }
+  std::istringstream in(read_file(path + "/progress.csv"));
+  std::string line;
+  std::getline(in, line);
+  const auto names = split(line);
+  while (std::getline(in, line)) {
+    const auto cells = split(line);
+    if (cells.size() != names.size()) continue;
+    for (size_t i = 0; i < names.size(); ++i) run.columns[names[i]].push_back(number(cells[i]));
+  }
+  if (run.column("TotalEnvSteps").empty()) throw Failure(path + "/progress.csv has no finished epoch yet");
+  return run;
+}
+
+}  // namespace tool

@@ -1,0 +1,127 @@
+// `train`: a run from flags or from its folder, and how good its policy is in the end.
+#include "commands.hpp"
+#include "evaluate.hpp"
+#include "names.hpp"
+#include "text.hpp"
+#include "trainer.hpp"
+
+namespace tool {
+namespace {
+
+struct TrainFlags {
+  RunSettings run;
+  double steps = 1e6;
+  std::vector<std::string> sets;
+  std::string out, resume;
+  bool steps_given = false, threads_given = false, others_given = false, overwrite = false;
+};
+
+// The option cost_limit of an algorithm is the limit on column 0.
+void take_limit_from_sets(std::vector<std::string>& sets, std::vector<std::string>& limits) {
+  const auto is_limit = [](const std::string& s) {
+    return same_name(s.substr(0, s.find('=')), "cost_limit");
+  };
+  for (const std::string& s : sets)
+    if (is_limit(s) && s.find('=') != std::string::npos) limits.push_back(s.substr(s.find('=') + 1));
+  sets.erase(std::remove_if(sets.begin(), sets.end(), is_limit), sets.end());
+}
+
+Trainer begin(TrainFlags flags) {
+  RunSettings& run = flags.run;
+  take_limit_from_sets(flags.sets, run.limits);
+  apply_sets(flags.sets, run.pool, &run.agent);
+  run.steps = static_cast<int64_t>(flags.steps);
+  Trainer trainer(run);  // a wrong value throws here, before there is a folder
+  trainer.begin(
+      RunFolder::create(flags.out.empty() ? RunFolder::default_path(run) : flags.out, flags.overwrite));
+  return trainer;
+}
+
+Trainer go_on(const TrainFlags& flags) {
+  if (flags.others_given)
+    throw Usage("--resume takes its settings from the folder; only --steps and --threads may change");
+  const RunFolder folder = RunFolder::open(flags.resume);
+  RunSettings run = folder.read_config();
+  if (flags.steps_given) run.steps = static_cast<int64_t>(flags.steps);
+  if (flags.threads_given) run.pool.threads = flags.run.pool.threads;
+  Trainer trainer(run);
+  trainer.resume(folder);
+  return trainer;
+}
+
+Report run_train(const TrainFlags& flags) {
+  Trainer trainer = flags.resume.empty() ? begin(flags) : go_on(flags);
+  std::fprintf(stderr, "training in %s\n", trainer.folder().path().c_str());
+  trainer.run();
+
+  const RunSettings& run = trainer.settings();
+  PoolSettings settings = run.pool;
+  settings.seed += Trainer::kEvalSeed;
+  settings.envs = kEvalEnvs;
+  const ActorChoice choice = choose_actor(trainer.folder().policy());
+  const Evaluation e = evaluate(choice, settings, run.limits, kEvalEpisodes, false);
+  const Summary& s = e.summary;
+  const bool safe = feasible(s, e.limits);
+  const double cost = s.cost_mean.empty() ? 0 : s.cost_mean[0], limit = e.limits.empty() ? -1 : e.limits[0];
+  const Json json = {{"run", trainer.folder().path()},
+                     {"policy", trainer.folder().policy()},
+                     {"env_steps", trainer.env_steps()},
+                     {"wall_seconds", trainer.seconds()},
+                     {"steps_per_second", trainer.steps_per_second()},
+                     {"return", s.return_mean},
+                     {"cost", cost},
+                     {"success_rate", s.success_rate},
+                     {"cost_limit", limit < 0 ? Json() : Json(limit)},
+                     {"feasible", safe},
+                     {"fall_rate", s.fall_rate},
+                     {"length", s.length_mean},
+                     {"interrupted", trainer.interrupted()}};
+  std::string text = format("run      %s\npolicy   %s\n", trainer.folder().path().c_str(),
+                            trainer.folder().policy().c_str());
+  text += format("steps    %lld in %.1f s, %.0f steps/s\n", static_cast<long long>(trainer.env_steps()),
+                 trainer.seconds(), trainer.steps_per_second());
+  text += format(
+      "policy over %d episodes: return %.3f, cost %.3f (limit %s), %s; success %.0f%%, falls %.0f%%, length "
+      "%.0f\n",
+      kEvalEpisodes, s.return_mean, cost, limit < 0 ? "none" : number_text(limit).c_str(),
+      safe ? "feasible" : "not feasible", 100 * s.success_rate, 100 * s.fall_rate, s.length_mean);
+  return {json, text};
+}
+
+}  // namespace
+
+void add_train(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<TrainFlags>();
+  RunSettings& r = flags->run;
+  r.pool.envs = 64;
+  CLI::App* command = app.add_subcommand("train", "Train a policy into a run folder, or go on with one");
+  std::vector<CLI::Option*> others = {
+      command->add_option("--task,--env-id", r.pool.task, "task"),
+      command->add_option("--algo", r.agent.algo, "algorithm"),
+      command->add_option("--envs,--num-envs", r.pool.envs, "worlds"),
+      command->add_option("--seed", r.pool.seed, "seed of worlds, weights and noise"),
+      command->add_option("--out", flags->out, "run folder; default runs/<algo>-{<task>}/seed-<n>-<time>"),
+      command->add_option("--eval-every", r.eval_every, "epochs between evaluations")
+          ->check(CLI::PositiveNumber),
+      command->add_option("--checkpoint-every", r.checkpoint_every, "epochs between checkpoints")
+          ->check(CLI::PositiveNumber)};
+  CLI::Option* threads = command->add_option("--threads", r.pool.threads, "threads; 0: the caller's own");
+  CLI::Option* steps =
+      command->add_option("--steps,--total-steps", flags->steps, "control steps, all worlds together")
+          ->check(CLI::PositiveNumber);
+  add_cost_limit_flag(*command, r.limits);
+  add_set_flag(*command, flags->sets);
+  others.push_back(command->get_option("--cost-limit"));
+  others.push_back(command->get_option("--set"));
+  others.push_back(
+      command->add_flag("--overwrite", flags->overwrite, "begin again in a folder that holds a run"));
+  command->add_option("--resume", flags->resume, "run folder to go on with, from its last checkpoint");
+  command->callback([&run, flags, threads, steps, others] {
+    flags->threads_given = threads->count() > 0;
+    flags->steps_given = steps->count() > 0;
+    for (const CLI::Option* o : others) flags->others_given |= o->count() > 0;
+    run = [flags] { return run_train(*flags); };
+  });
+}
+
+}  // namespace tool

@@ -1,0 +1,64 @@
+#!/bin/sh
+# test_tool_resume.sh TOOL: a run that was killed and resumed ends in the same bytes as one that was not
+# (Time/* columns apart), wherever it was killed; SIGINT saves and exits with status 0.
+set -u
+tool=$1
+failed=0
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+cd "$dir" || exit 1
+flags='--envs 8 --set max_steps=20 --set hidden=16,16 --set horizon=8 --eval-every 4 --checkpoint-every 3'
+steps=20000
+
+# The columns before the first Time/ column.
+curve() {
+  awk -F, 'NR == 1 { for (i = NF; i > 0; --i) if ($i ~ /^Time\//) last = i - 1 }
+           { for (i = 1; i <= last; ++i) printf "%s%s", $i, i < last ? "," : "\n" }' "$1/progress.csv"
+}
+same() {
+  curve "$1" > a
+  curve "$2" > b
+  cmp -s a b || { echo "$2/progress.csv differs from $1's ($3)"; failed=1; }
+  cmp -s "$1/policy.rdm" "$2/policy.rdm" || { echo "$2/policy.rdm differs from $1's ($3)"; failed=1; }
+}
+
+# shellcheck disable=SC2086
+"$tool" train $flags --steps $steps --out whole > /dev/null 2> err || { cat err; exit 1; }
+[ "$(wc -l < whole/progress.csv)" -gt 40 ] || { echo "the run is too short to be broken"; failed=1; }
+
+# Killed when the curve has so many rows: before and after checkpoints and evaluations.
+for rows in 1 2 5 9 14 23; do
+  rm -rf broken
+  # shellcheck disable=SC2086
+  "$tool" train $flags --steps $steps --out broken > /dev/null 2>&1 &
+  pid=$!
+  while kill -0 $pid 2> /dev/null && { [ ! -f broken/progress.csv ] || [ "$(wc -l < broken/progress.csv)" -lt $rows ]; }; do
+    sleep 0.01
+  done
+  kill -9 $pid 2> /dev/null
+  wait $pid 2> /dev/null
+  "$tool" train --resume broken > /dev/null 2> err || { echo "resume failed: $(cat err)"; failed=1; }
+  same whole broken "killed at row $rows"
+done
+
+# A run that ended early goes on to more steps.
+# shellcheck disable=SC2086
+"$tool" train $flags --steps 7000 --out longer > /dev/null 2>&1
+"$tool" train --resume longer --steps $steps > /dev/null 2> err || { echo "resume failed: $(cat err)"; failed=1; }
+same whole longer 'resumed with more steps'
+
+# SIGINT ends the epoch, saves, exits with 0; the run can go on.
+# shellcheck disable=SC2086
+"$tool" train $flags --steps $steps --out stopped > /dev/null 2> err &
+pid=$!
+while kill -0 $pid 2> /dev/null && { [ ! -f stopped/progress.csv ] || [ "$(wc -l < stopped/progress.csv)" -lt 6 ]; }; do
+  sleep 0.01
+done
+kill -INT $pid
+wait $pid
+status=$?
+[ $status -eq 0 ] || { echo "after SIGINT the exit status is $status"; failed=1; }
+grep -q 'train --resume stopped' err || { echo "after SIGINT there is no note: $(cat err)"; failed=1; }
+"$tool" train --resume stopped > /dev/null 2> err || { echo "resume failed: $(cat err)"; failed=1; }
+same whole stopped 'stopped by SIGINT'
+exit $failed

@@ -1,0 +1,96 @@
+#!/bin/sh
+# test_tool_usage.sh TOOL: exit statuses, nearest names, and that --json leaves one JSON object on stdout.
+set -u
+tool=$1
+failed=0
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+cd "$dir" || exit 1
+
+# expect STATUS TEXT ARGUMENTS...: the exit status, and a text that stderr holds in one line.
+expect() {
+  status=$1 text=$2
+  shift 2
+  "$tool" "$@" > out 2> err
+  got=$?
+  if [ "$got" -ne "$status" ]; then
+    echo "redman $*: exit status $got, not $status: $(cat err)"
+    failed=1
+  fi
+  if [ -n "$text" ] && ! grep -q -- "$text" err; then
+    echo "redman $*: stderr has no '$text': $(cat err)"
+    failed=1
+  fi
+  if [ "$status" -ne 0 ] && [ "$(wc -l < err)" -ne 1 ]; then
+    echo "redman $*: stderr has $(wc -l < err) lines, not 1"
+    failed=1
+  fi
+}
+
+expect 0 '' --help
+expect 0 '' train --help
+expect 2 'subcommand' 
+expect 2 'nearest is train' trian
+expect 2 'redman train --help' train --no-such-flag 3
+expect 2 'nearest is hand_over_safe_finger' train --task hand_over_safe_fingr
+expect 2 'nearest is ppo_lag' train --algo ppo_lagg
+expect 2 'nearest is hidden' train --set hiden=3
+expect 2 'not key=value' train --set hidden
+expect 2 'outside' train --set clip=-1
+expect 2 'not a number' train --cost-limit many
+expect 2 'nearest is drop' train --cost-limit dropp=1
+expect 2 'envs' rollout --envs 0
+expect 2 'camera' render --camera frnt
+expect 2 'WIDTHxHEIGHT' render --size 64
+expect 2 '' eval --episodes 0
+expect 1 'no such file' eval --policy nothing.rdm
+expect 1 'not a run folder' train --resume nothing
+expect 1 'cannot read' plot nothing
+printf 'not a policy' > bad.rdm
+expect 1 'bad.rdm' eval --policy bad.rdm
+[ ! -d runs ] || { echo "a wrong call left a run folder behind"; failed=1; }
+
+# Hyphens, capitals and underscores in names and flags.
+expect 0 '' rollout --task Hand-Over-Safe-Finger --policy ZERO --set Max-Steps=2
+expect 0 '' rollout --TASK hand_over_safe_finger --set max_steps=2 --num_envs 1
+
+# json KEYS ARGUMENTS...: stdout is one line that holds an object with these keys.
+json() {
+  keys=$1
+  shift
+  "$tool" "$@" --json > out 2> err || { echo "redman $*: failed: $(cat err)"; failed=1; }
+  if [ "$(wc -l < out)" -ne 1 ] || ! grep -q '^{.*}$' out; then
+    echo "redman $* --json: stdout is not one object on one line"
+    failed=1
+  fi
+  for key in $keys; do
+    grep -q "\"$key\":" out || { echo "redman $* --json: no key $key"; failed=1; }
+  done
+}
+
+json 'tasks name summary obs_dim action_dim cost_dim costs limit max_steps control_dt fields unit offset count
+      options key default low high help' tasks
+json 'algos name summary params key default low high help' algos
+json 'version abi ode eigen ccd octomap precision compiler' info
+json 'run policy env_steps wall_seconds steps_per_second return cost success_rate cost_limit feasible fall_rate length' \
+  train --envs 4 --steps 200 --set max_steps=10 --out run
+json 'episodes return_mean return_std cost_mean cost_std success_rate length_mean violation_rate fall_rate
+      cost_per_step' eval --policy run/policy.rdm --episodes 3
+json 'episodes return_mean cost_mean length_mean fall_rate hash' rollout --policy random --set max_steps=5
+json 'file width height frames frames_per_second' render --step 2 --size 32x24 --out a.png
+json 'file width height frames frames_per_second' render --strip 3 --size 32x24 --out b.png --to 4
+json 'task envs threads steps_per_second bytes_per_env allocations_per_step max_joint_drift_m' \
+  bench step --envs 2 --seconds 0.05
+json 'samples_per_second allocations_per_update bytes' \
+  bench update --obs 8 --act 2 --hidden 16,16 --samples 256 --minibatch 64 --seconds 0.01
+json 'actions_per_second' bench act --obs 8 --act 2 --hidden 16,16 --seconds 0.01
+json 'file' plot run --out curve.svg
+for file in a.png b.png curve.svg run/config.json run/progress.csv run/policy.rdm run/checkpoint.rdm; do
+  [ -s "$file" ] || { echo "$file was not written"; failed=1; }
+done
+
+# Failures keep the promise of --json too, and a folder that holds a run is not written over.
+"$tool" train --task nothing --json > out 2> err
+[ $? -eq 2 ] && grep -q '^{"error":' out || { echo "a failure with --json printed: $(cat out)"; failed=1; }
+expect 1 'holds a run already' train --out run
+exit $failed
