@@ -32,6 +32,7 @@ constexpr OptionSpec kRows[] = {
         "initial_mean", "auto", "auto|flat|window|hold|zero",
         "start of a new policy: right hand flat, the same with the first finger inside its cost window, "
         "the hold action, or 0; auto: window for the finger cost, else flat"),
+    flag_option("hand_contact", true, "the hands may touch each other"),
     number_option("friction.hand_object", 1, 0, 10, "friction coefficient of hands and object"),
     number_option("friction.hand_hand", 0, 0, 10, "friction coefficient of one hand and the other"),
     number_option("friction.hand_self", 0, 0, 10, "friction coefficient inside one hand"),
@@ -66,6 +67,7 @@ SceneDef make_scene_def(const Options& o) {
   ground.material = kGround;
   ground.color[0] = 90, ground.color[1] = 100, ground.color[2] = 105;
   s.statics.push_back(ground);
+  s.hand_hand_contact = o.flag("hand_contact");
   s.num_materials = kNumMaterials;
   const auto rub = [&](int32_t a, int32_t b, const char* key) {
     s.friction[a][b].mu = s.friction[b][a].mu = o.number(key);

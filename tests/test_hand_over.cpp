@@ -321,6 +321,23 @@ TEST_F(HandOver, EveryObjectRuns) {
   }
 }
 
+TEST_F(HandOver, HandsTouchUnlessToldNotTo) {
+  const auto between = [](const char* contact) {
+    TestPool p(kFinger, 1, {{"hand_contact", contact, 0}});
+    const Scene& scene = p->task().scene();
+    int count = 0;
+    for (const ShapePair& pair : scene.pairs) {
+      const int32_t a = scene.shapes[static_cast<size_t>(pair.a)].articulation;
+      const int32_t b = scene.shapes[static_cast<size_t>(pair.b)].articulation;
+      count += a >= 0 && b >= 0 && a != b;
+      EXPECT_TRUE(a < 0 || b < 0 || pair.mu == 0);
+    }
+    return count;
+  };
+  EXPECT_GT(between("true"), 100);
+  EXPECT_EQ(between("false"), 0);
+}
+
 TEST_F(HandOver, FrictionOptionsReachThePairs) {
   TestPool p(kFinger, 1, {{"friction.hand_object", nullptr, 0.3}, {"friction.object_ground", nullptr, 0.7}});
   const Scene& scene = p->task().scene();
