@@ -76,6 +76,10 @@ int32_t PoolPlan::num_blocks() const {
   return threads < config.num_envs ? threads : config.num_envs;
 }
 
+int32_t PoolPlan::block_begin(int32_t block) const {
+  return static_cast<int32_t>(int64_t{config.num_envs} * block / num_blocks());
+}
+
 Pool::Impl::Carved Pool::Impl::carve_rows(const PoolPlan& plan, Arena& arena) {
   const size_t n = plan.num(), blocks = static_cast<size_t>(plan.num_blocks());
   const auto obs = static_cast<size_t>(plan.obs_dim), actions = static_cast<size_t>(plan.action_dim),
@@ -118,11 +122,15 @@ void Pool::Impl::build() {
   buffers = carved.buffers;
   slots = carved.slots;
   blocks = carved.blocks;
-  for (int32_t i = 0; i < config.num_envs; ++i) {
-    Slot& s = slots[i];
-    s.task_state = arena.make<unsigned char>(task->state_bytes());
-    s.world = World::create(task->engine(), task->scene(), arena, config.hooks);
-    name_streams(i, config.seed);
+  for (int32_t b = 0; b < num_blocks(); ++b) {
+    World* partner = nullptr;  // the worlds of a block step one after the other
+    for (int32_t i = block_begin(b); i < block_begin(b + 1); ++i) {
+      Slot& s = slots[i];
+      s.task_state = arena.make<unsigned char>(task->state_bytes());
+      s.world = World::create(task->engine(), task->scene(), arena, config.hooks, partner);
+      if (!partner) partner = s.world;
+      name_streams(i, config.seed);
+    }
   }
   Writer count(nullptr, 0);
   slots[0].world->save(count);

@@ -60,6 +60,7 @@ struct PoolPlan {
 
   size_t num() const { return static_cast<size_t>(config.num_envs); }
   int32_t num_blocks() const;
+  int32_t block_begin(int32_t block) const;  // first world of a block; of num_blocks(): num_envs
 };
 
 struct Pool::Impl : PoolPlan {
@@ -124,9 +125,7 @@ void Pool::Impl::each_world(const uint8_t* mask, F&& f) {
         const Call& c = *static_cast<Call*>(context);
         Impl& impl = *c.impl;
         Block& block = impl.blocks[b];
-        const int64_t n = impl.config.num_envs, blocks = impl.num_blocks();
-        const auto begin = static_cast<int32_t>(n * b / blocks),
-                   end = static_cast<int32_t>(n * (b + 1) / blocks);
+        const int32_t begin = impl.block_begin(b), end = impl.block_begin(b + 1);
         try {
           for (int32_t env = begin; env < end; ++env)
             if (!c.mask || c.mask[env]) (*c.f)(env, block);

@@ -17,7 +17,7 @@ constexpr OptionSpec kRows[] = {
     number_option("contact_layer", 0.0005, 0, 0.01, "depth that is left alone, m"),
     number_option("contact_max_speed", 1, 0.01, 100, "bound of depth correction, m/s"),
     integer_option("contacts_per_pair", 4, 1, 8, "contact points of one pair of shapes"),
-    integer_option("contacts_max", 64, 1, 256, "contact points of a world in one substep"),
+    integer_option("contacts_max", 36, 1, 256, "contact points of a world in one substep"),
     number_option("limit_margin", 5e-3, 0, 0.1, "how far a joint may leave its range, rad"),
     number_option("limit_stiffness", 100, 0, 1e5, "stiffness of joint limits, N m/rad"),
     number_option("link_armature", 3e-5, 0, 0.1, "inertia added to finger links in engine ode, kg m2"),

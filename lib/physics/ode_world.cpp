@@ -25,7 +25,7 @@ OdeWorld::Handle::~Handle() {
   if (threading) dThreadingFreeImplementation(threading);
 }
 
-OdeWorld::OdeWorld(const Scene& scene, Arena& arena) : World(scene, arena) {
+OdeWorld::OdeWorld(const Scene& scene, Arena& arena, OdeWorld* partner) : World(scene, arena) {
   const auto links = static_cast<size_t>(scene.num_links), bodies = static_cast<size_t>(scene.num_bodies);
   tree_.carve(scene, arena);
   contact_.carve(scene, arena);
@@ -36,7 +36,7 @@ OdeWorld::OdeWorld(const Scene& scene, Arena& arena) : World(scene, arena) {
   if (arena.measuring()) return;
   const OdeScope scope;
   try {
-    make_world();
+    make_world(partner);
     make_bodies();
     make_geoms();
     make_forces();
@@ -48,7 +48,7 @@ OdeWorld::OdeWorld(const Scene& scene, Arena& arena) : World(scene, arena) {
 
 OdeWorld::~OdeWorld() = default;
 
-void OdeWorld::make_world() {
+void OdeWorld::make_world(const OdeWorld* partner) {
   const SolverDef& solver = scene_->def.solver;
   ode_.world = dWorldCreate();
   ode_.threading = dThreadingAllocateSelfThreadedImplementation();
@@ -57,7 +57,8 @@ void OdeWorld::make_world() {
                                        ode_.threading);
   // The prewarming step asks for the most that is ever needed: reserves on top of it would lie idle.
   const dWorldStepReserveInfo reserve = {sizeof reserve, 1.0f, 4096};
-  if (!dWorldSetStepMemoryReservationPolicy(ode_.world, &reserve))
+  if (!dWorldUseSharedWorkingMemory(ode_.world, partner ? partner->ode_.world : nullptr) ||
+      !dWorldSetStepMemoryReservationPolicy(ode_.world, &reserve))
     fail(Code::kMemory, "ode: no memory for a world");
   const Vec3& g = scene_->def.gravity;
   dWorldSetGravity(ode_.world, g.x, g.y, g.z);

@@ -15,7 +15,7 @@ namespace rdm {
 class OdeWorld final : public World {
  public:
   // With a measuring arena only the arrays are counted and no ODE object is made.
-  OdeWorld(const Scene& scene, Arena& arena);
+  OdeWorld(const Scene& scene, Arena& arena, OdeWorld* partner = nullptr);
   ~OdeWorld() override;
 
   // Heap that one world takes inside ODE, an estimate from above, bytes.
@@ -56,7 +56,7 @@ class OdeWorld final : public World {
   }
   void links_changed(int32_t articulation) override;
   void put_base(int32_t articulation, const Motion& m);
-  void make_world();
+  void make_world(const OdeWorld* partner);
   void make_bodies();
   void make_geoms();
   void make_forces();

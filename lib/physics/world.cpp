@@ -7,10 +7,11 @@
 
 namespace rdm {
 
-World* World::create(EngineKind kind, const Scene& scene, Arena& arena, const HostHooks& hooks) {
+World* World::create(EngineKind kind, const Scene& scene, Arena& arena, const HostHooks& hooks,
+                     World* partner) {
   if (kind != EngineKind::kOde)
     fail(Code::kUnsupported, "engine %d is not in this build", static_cast<int>(kind));
-  return host_new<OdeWorld>(hooks, scene, arena);
+  return host_new<OdeWorld>(hooks, scene, arena, static_cast<OdeWorld*>(partner));
 }
 
 void World::measure(EngineKind kind, const Scene& scene, Arena& arena) {

@@ -39,7 +39,10 @@ class World {
  public:
   // Arrays come out of `arena` (or are only measured); the engine's own memory is the C library's.
   // `scene` must outlive the world. Error(kUnsupported) for an engine this build has not.
-  static World* create(EngineKind kind, const Scene& scene, Arena& arena, const HostHooks& hooks);
+  // `partner`, of the same scene, lends the solver's working memory (half of what an engine takes): the two
+  // worlds must then never step at the same time.
+  static World* create(EngineKind kind, const Scene& scene, Arena& arena, const HostHooks& hooks,
+                       World* partner = nullptr);
   static void measure(EngineKind kind, const Scene& scene, Arena& arena);
   // Bytes that the engine allocates by itself for one world, an estimate from above.
   static size_t engine_bytes(EngineKind kind, const Scene& scene);
