@@ -15,7 +15,7 @@ Report bench_step(StepFlags flags);
 struct UpdateFlags {
   std::string algo = "ppo_lag", hidden = "256,256";
   std::vector<std::string> sets;
-  int32_t obs = 211, act = 26, samples = 8192, epochs = 5, minibatch = 2048, threads = 0;
+  int32_t obs = 398, act = 40, samples = 8192, epochs = 5, minibatch = 2048, threads = 0;
   double seconds = 5;
 };
 // rdm_agent_update alone, on made-up data.
@@ -23,7 +23,7 @@ Report bench_update(const UpdateFlags& flags);
 
 struct ActFlags {
   std::string hidden = "256,256";
-  int32_t obs = 211, act = 26, rows = 1;
+  int32_t obs = 398, act = 40, rows = 1;
   double seconds = 2;
 };
 // rdm_policy_act alone.

@@ -59,11 +59,11 @@ Series single_line(const RunData& run, const std::string& column, size_t color) 
   return {color, run.column("TotalEnvSteps"), run.column(column), {}, {}};
 }
 
-// Mean and standard deviation over the runs that reach each x.
+// Mean and standard deviation, as far as all runs of the group go.
 Series mean_line(const Group& group, const std::string& column, size_t color) {
   constexpr int kPoints = 200;
-  double last = 0;
-  for (const RunData* run : group.runs) last = std::max(last, run->column("TotalEnvSteps").back());
+  double last = group.runs[0]->column("TotalEnvSteps").back();
+  for (const RunData* run : group.runs) last = std::min(last, run->column("TotalEnvSteps").back());
   Series s;
   s.color = color;
   for (int i = 1; i <= kPoints; ++i) {
@@ -98,6 +98,18 @@ Panel make_panel(const char* title, const std::string& column, const std::vector
   return panel;
 }
 
+// A dashed line per limit: grey when all groups share it, else in the group's colour.
+std::vector<Level> limit_levels(const std::vector<Group>& groups) {
+  const double first = groups[0].runs[0]->limit;
+  const bool shared =
+      std::all_of(groups.begin(), groups.end(), [&](const Group& g) { return g.runs[0]->limit == first; });
+  if (shared) return first >= 0 ? std::vector<Level>{{kGrey, first}} : std::vector<Level>{};
+  std::vector<Level> levels;
+  for (size_t i = 0; i < groups.size(); ++i)
+    if (groups[i].runs[0]->limit >= 0) levels.push_back({i, groups[i].runs[0]->limit});
+  return levels;
+}
+
 Report run_plot(const PlotFlags& flags) {
   std::vector<RunData> runs;
   for (const std::string& folder : flags.folders) runs.push_back(read_run(folder));
@@ -108,8 +120,7 @@ Report run_plot(const PlotFlags& flags) {
                                make_panel("Length of an episode, steps", "Metrics/EpLen", groups),
                                make_panel("Episodes that end in a fall", "Metrics/FallRate", groups, true),
                                make_panel("Episodes with success", "Metrics/SuccessRate", groups, true)};
-  for (size_t i = 0; i < groups.size(); ++i)
-    if (groups[i].runs[0]->limit >= 0) panels[1].levels.push_back({i, groups[i].runs[0]->limit});
+  panels[1].levels = limit_levels(groups);
   std::vector<LegendEntry> legend;
   for (size_t i = 0; i < groups.size(); ++i) legend.push_back({i, groups[i].label});
   const bool one_task =

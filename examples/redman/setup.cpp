@@ -63,8 +63,9 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
     append_keys(task_table, keys);
     append_keys(algo_table, keys);
     const std::string owner =
-        agent ? "task " + pool.task + " and algorithm " + agent->algo : "task " + pool.task;
-    throw Usage("--set " + text + ": " + owner + " have no option " + pair.first + "; nearest is " +
+        agent ? "neither task " + pool.task + " nor algorithm " + agent->algo + " has option "
+              : "task " + pool.task + " has no option ";
+    throw Usage("--set " + text + ": " + owner + pair.first + "; nearest is " +
                 nearest_name(pair.first, keys));
   }
 }

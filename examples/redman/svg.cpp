@@ -91,7 +91,7 @@ class PanelDrawing {
     if (!y.empty() && y.low > 0 && y.low < 0.5 * y.high) y.low = 0;
     x_ = x;
     if (x_.high <= x_.low) x_.high = x_.low + 1;
-    x_step_ = tick_step(x_, 4);
+    x_step_ = tick_step(x_, 5);
     y_ = widened(y, &y_step_);
   }
 

@@ -11,6 +11,8 @@ struct Series {
   std::vector<double> x, y, low, high;
 };
 
+inline constexpr size_t kGrey = 6;  // in the palette
+
 // A dashed horizontal line.
 struct Level {
   size_t color = 0;

@@ -153,10 +153,16 @@ void Trainer::save() {
 
 void Trainer::restore() {
   const std::string path = folder_->checkpoint();
-  size_t size = 0;
-  redman::check(rdm_checkpoint_read(path.c_str(), agent_.get(), pool_.get(), nullptr, 0, &size));
-  std::string bytes(size, '\0');
-  redman::check(rdm_checkpoint_read(path.c_str(), agent_.get(), pool_.get(), bytes.data(), size, &size));
+  std::string bytes;
+  const auto read = [&] {
+    size_t size = 0;
+    if (rdm_checkpoint_read(path.c_str(), agent_.get(), pool_.get(), bytes.data(), bytes.size(), &size) !=
+        RDM_OK)
+      throw Failure("cannot go on from " + path + ": " + rdm_last_error());
+    return size;
+  };
+  bytes.resize(read());  // the first time asks for the length of the note
+  read();
   const size_t line = bytes.find('\n');
   try {
     const Json note = Json::parse(bytes.substr(0, line));

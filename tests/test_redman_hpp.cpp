@@ -1,0 +1,110 @@
+// redman.hpp: owners, views and exceptions over the C ABI.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <redman/redman.hpp>
+#include <type_traits>
+
+namespace {
+
+constexpr const char* kTask = "hand_over_safe_finger";
+
+TEST(RedmanHpp, OwnersMoveAndDoNotCopy) {
+  EXPECT_FALSE(std::is_copy_constructible_v<redman::Pool>);
+  EXPECT_FALSE(std::is_copy_constructible_v<redman::Agent>);
+  EXPECT_FALSE(std::is_copy_constructible_v<redman::Policy>);
+  redman::Pool a(redman::pool_config(kTask, 2));
+  rdm_pool* handle = a.get();
+  redman::Pool b = std::move(a);
+  EXPECT_EQ(b.get(), handle);
+  EXPECT_EQ(a.get(), nullptr);
+  b.reset();
+  b.step();
+}
+
+TEST(RedmanHpp, ErrorsCarryCodeAndText) {
+  try {
+    redman::Pool pool(redman::pool_config("hand_over_safe_fingr"));
+    FAIL() << "a pool of an unknown task";
+  } catch (const redman::Error& e) {
+    EXPECT_EQ(e.code(), RDM_NOT_FOUND);
+    EXPECT_NE(std::string(e.what()).find(kTask), std::string::npos) << e.what();
+  }
+  redman::Pool pool(redman::pool_config(kTask));
+  try {
+    pool.step();
+    FAIL() << "a step before the first reset";
+  } catch (const redman::Error& e) {
+    EXPECT_EQ(e.code(), RDM_STATE);
+    EXPECT_STREQ(e.what(), rdm_pool_error(pool.get()));
+  }
+  EXPECT_THROW(redman::Policy(redman::Bytes(10)), redman::Error);
+}
+
+TEST(RedmanHpp, ViewsAreTheBuffers) {
+  redman::Pool pool(redman::pool_config(kTask, 3));
+  pool.reset();
+  const rdm_buffers& b = pool.buffers();
+  const auto width = static_cast<size_t>(pool.spec().obs_dim);
+  EXPECT_EQ(pool.num_envs(), 3u);
+  EXPECT_EQ(pool.obs().width(), width);
+  EXPECT_EQ(pool.obs()[2].data(), b.obs + 2 * width);
+  EXPECT_EQ(pool.obs()[2].size(), width);
+  EXPECT_EQ(pool.reward().size(), 3u);
+  EXPECT_EQ(pool.cost()[1].data(), b.cost + pool.spec().cost_dim);
+  for (float& a : pool.action()[1]) a = 0.25f;
+  EXPECT_EQ(b.action[pool.spec().action_dim], 0.25f);
+}
+
+TEST(RedmanHpp, BoundMemoryShowsInTheViews) {
+  redman::Pool pool(redman::pool_config(kTask));
+  std::vector<float> reward(1);
+  auto b = redman::sized<rdm_buffers>();
+  b.reward = reward.data();
+  pool.bind(b);
+  EXPECT_EQ(pool.reward().data(), reward.data());
+}
+
+TEST(RedmanHpp, StatesOfOneWorldAndOfAllGoRound) {
+  redman::Pool pool(redman::pool_config(kTask, 2));
+  pool.reset();
+  const redman::Bytes all = pool.state(), one = pool.state(1);
+  const uint64_t hash = pool.hash(), hash_of_one = pool.hash(1);
+  pool.baseline(RDM_BASELINE_RANDOM);
+  pool.step();
+  EXPECT_NE(pool.hash(1), hash_of_one);
+  pool.set_state(one, 1);
+  EXPECT_EQ(pool.hash(1), hash_of_one);
+  EXPECT_NE(pool.hash(), hash);
+  pool.set_state(all);
+  EXPECT_EQ(pool.hash(), hash);
+}
+
+TEST(RedmanHpp, AgentLearnsFromAPoolAndItsPolicyActs) {
+  redman::Pool pool(redman::pool_config(kTask, 2));
+  pool.reset();
+  auto config = redman::agent_config(pool);
+  const rdm_option options[] = {{"hidden", "8,8", 0}, {"horizon", "4", 0}};
+  config.options = options;
+  config.num_options = 2;
+  redman::Agent agent(config);
+  EXPECT_EQ(agent.rollout(pool).epoch, 1);
+  const redman::Bytes state = agent.save(), file = agent.policy();
+  agent.rollout(pool);
+  EXPECT_NE(agent.policy(), file);
+  agent.load(state);
+  EXPECT_EQ(agent.policy(), file);
+
+  const redman::Policy policy(file);
+  policy.check_fits(pool.spec());
+  EXPECT_STREQ(policy.info().task, kTask);
+  alignas(64) unsigned char scratch[65536];
+  ASSERT_LE(policy.scratch_bytes(2), sizeof scratch);
+  std::vector<float> by_policy(2 * pool.action().width()), by_agent(by_policy.size());
+  policy.act(pool.obs().data(), 2, nullptr, by_policy.data(), scratch, sizeof scratch);
+  agent.act(pool.obs().data(), RDM_MEAN, by_agent.data());
+  for (size_t i = 0; i < by_agent.size(); ++i)
+    EXPECT_NEAR(by_policy[i], std::min(1.0f, std::max(-1.0f, by_agent[i])), 1e-5f) << i;
+}
+
+}  // namespace
