@@ -45,6 +45,7 @@ size_t Agent::memory(const AgentConfig& config) {
 }
 
 Agent* Agent::create(const AgentConfig& config) {
+  const HostScope scope(config.hooks);
   Plan plan = make_plan(config);
   const AlgoRow& row = *plan.row;
   PolicyGradient* agent = row.make(config.hooks, std::move(plan));

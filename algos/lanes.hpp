@@ -41,8 +41,8 @@ class Lanes {
   // body(i) for i in [0, n), spread over the threads. body must not throw.
   template <class Body>
   void spread(int32_t n, Body&& body) {
-    if (n == 1) {
-      body(0);
+    if (n == 1 || workers_->width() == 1) {
+      for (int32_t i = 0; i < n; ++i) body(i);
       return;
     }
     using Plain = std::remove_reference_t<Body>;

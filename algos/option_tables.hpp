@@ -42,7 +42,7 @@ inline constexpr std::array kSharedOptions = {
     flag_option("terminal_cost", false, "charge a terminated episode's missing steps at its own cost rate"),
     // learning
     integer_option("passes", 10, 1, 10000, "over the data of an epoch"),
-    integer_option("minibatches", 4, 1, 1 << 20, "per pass"),
+    integer_option("minibatches", 4, 1, 1 << 20, "number of minibatches in a pass"),
     number_option("learning_rate", 3e-4, 0, 10, "Adam rate of the actor", true),
     number_option("critic_learning_rate", 0, 0, 10, "Adam rate of the critics, constant; 0: learning_rate",
                   true),
@@ -70,7 +70,7 @@ inline constexpr std::array kClipOptions = {
 // Lagrange multipliers, one per limited cost.
 inline constexpr std::array kMultiplierOptions = {
     text_option("cost_loss", "combined", "combined|split",
-                "combined: one clipped advantage (A_r - l A_c)/(1 + l); split: the cost part is not clipped"),
+                "combined: one clipped advantage (A_r - l A_c)/(1 + l); split: cost part unclipped"),
     text_option("multiplier_optimizer", "adam", "sgd|adam|softplus",
                 "of the multipliers; softplus: Adam on ln(e^l - 1)"),
     number_option("multiplier_init", 0.001, 0, 1e6, "initial multiplier"),

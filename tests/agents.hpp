@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "algos/agent.hpp"
+#include "base/bytes.hpp"
 #include "base/error.hpp"
 #include "base/rng.hpp"
 

@@ -1,0 +1,90 @@
+#include "agents.hpp"
+#include "algos/option_tables.hpp"
+
+using namespace rdm;
+using namespace rdm::test;
+
+namespace {
+
+Options read(AgentSetup& s, std::vector<OptionInput> defaults = {}) {
+  s.ready();
+  s.config.defaults = defaults.data();
+  s.config.num_defaults = static_cast<int32_t>(defaults.size());
+  return read_options(s.config, algo_at(algo_find(s.config.algo)));
+}
+
+}  // namespace
+
+TEST(OptionTables, EveryRowHasHelpAndADefaultInsideItsBounds) {
+  for (int32_t a = 0; a < algo_count(); ++a) {
+    const AlgoInfo& info = algo_at(a);
+    for (int32_t i = 0; i < info.num_options; ++i) {
+      const OptionSpec& s = info.options[i];
+      EXPECT_GT(std::strlen(s.help), 8u) << s.key;
+      EXPECT_LT(std::strlen(s.help), 110u) << s.key;
+      if (s.kind == OptionKind::kText) continue;
+      EXPECT_GE(s.number, s.low) << s.key;
+      EXPECT_LE(s.number, s.high) << s.key;
+    }
+    Options all;
+    all.add_table(info.options, info.num_options);  // throws on a key that stands twice
+    EXPECT_TRUE(all.knows("hidden"));
+  }
+}
+
+TEST(OptionTables, GivenOverPresetOverDefaultsOverTable) {
+  AgentSetup s("ppo_lag", 1, 1, 4);
+  s.with("clip", "0.3").with("preset", "paper");
+  const Options o = read(s, {{"clip", nullptr, 0.4},
+                             {"passes", "7", 0},
+                             {"lr_schedule", "linear", 0},
+                             {"total_epochs", nullptr, 9}});
+  EXPECT_EQ(o.number("clip"), 0.3);
+  EXPECT_EQ(o.integer("passes"), 5);
+  EXPECT_STREQ(o.text("lr_schedule"), "kl");
+  EXPECT_STREQ(o.text("hidden"), "1024,1024,512");
+  EXPECT_EQ(o.integer("total_epochs"), 9);
+  EXPECT_EQ(o.number("lambda"), 0.95);
+  EXPECT_TRUE(o.given("clip"));
+  EXPECT_FALSE(o.given("passes"));
+}
+
+TEST(OptionTables, DefaultsMayBeOtherAlgorithms) {
+  AgentSetup s("ppo", 1, 1, 4);
+  EXPECT_NO_THROW(read(s, {{"multiplier_lr", nullptr, 0.1}}));
+  const Thrown t = thrown([&] { read(s, {{"multiplier_rl", nullptr, 0.1}}); });
+  EXPECT_EQ(t.code, Code::kNotFound);
+  EXPECT_EQ(thrown([&] { read(s, {{nullptr, nullptr, 0.1}}); }).code, Code::kArgument);
+  EXPECT_EQ(thrown([&] { read(s, {{"clip", nullptr, -1}}); }).code, Code::kRange);
+}
+
+TEST(OptionTables, UnknownOptionNamesTheNearest) {
+  AgentSetup s("ppo", 1, 1, 4);
+  s.with("learning_rat", "1");
+  const Thrown t = thrown([&] { read(s); });
+  EXPECT_EQ(t.code, Code::kNotFound);
+  EXPECT_NE(t.text.find("learning_rate"), std::string::npos) << t.text;
+  AgentSetup other("ppo", 1, 1, 4);
+  other.with("multiplier_lr", "1");
+  EXPECT_EQ(thrown([&] { read(other); }).code, Code::kNotFound);
+}
+
+TEST(OptionTables, SafePreset) {
+  AgentSetup s("ppo_lag", 1, 1, 4);
+  s.with("preset", "safe");
+  EXPECT_FALSE(read(s).flag("terminal_cost"));  // the length of an episode is unknown
+  s.config.max_steps = 75;
+  EXPECT_TRUE(read(s).flag("terminal_cost"));
+  EXPECT_GT(read(s).integer("multiplier_warmup"), 0);
+  s.with("terminal-cost", "off");
+  EXPECT_FALSE(read(s).flag("terminal_cost"));
+}
+
+TEST(OptionTables, OmnisafePresetHasMinibatchesOf64) {
+  AgentSetup s("ppo_lag", 1, 1, 10);
+  s.with("preset", "omnisafe").with("horizon", "2000");
+  const Options o = read(s);
+  EXPECT_EQ(o.integer("minibatches"), 312);
+  EXPECT_EQ(o.integer("passes"), 40);
+  EXPECT_EQ(o.number("max_grad_norm"), 40);
+}
