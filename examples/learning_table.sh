@@ -3,7 +3,7 @@
 # seeds, and evaluated on 100 fresh episodes. Finished runs are kept, so the script can be stopped and called again.
 #   bash examples/learning_table.sh [OUT]      OUT: folder of the runs, default runs/table
 # Environment: REDMAN (the tool), SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), STEPS and PPO_STEPS
-# (control steps of the safe and the plain runs), TASKS, OBJECTS.
+# (control steps of the safe and the plain runs), TASKS, OBJECTS, LIMITS (cost limits; the paper's of each task).
 set -eu
 here=$(cd "$(dirname "$0")/.." && pwd)
 redman=${REDMAN:-$here/build/release/bin/redman}
@@ -28,16 +28,19 @@ baseline() {  # NAME TASK OBJECT POLICY
     > "$out/$1.tmp" && mv "$out/$1.tmp" "$out/$1.json"
 }
 
+# Limit of the paper's table for a task.
+paper_limit() { case $1 in *finger) echo 40 ;; *) echo 30 ;; esac; }
+
 rows() {  # one line per run: KIND NAME TASK OBJECT POLICY-OR-ALGO LIMIT SEED STEPS
   for object in $objects; do for task in $tasks; do
     for policy in zero hold random; do
       echo "baseline $task.$object.$policy $task $object $policy - 0 0"
     done
+    for limit in ${LIMITS:-$(paper_limit "$task")}; do for seed in $seeds; do
+      echo "train $task.$object.ppo_lag$limit.$seed $task $object ppo_lag $limit $seed $steps"
+    done; done
     for seed in $seeds; do
-      for limit in 40 30; do
-        echo "train $task.$object.ppo_lag$limit.$seed $task $object ppo_lag $limit $seed $steps"
-      done
-      echo "train $task.$object.ppo.$seed $task $object ppo 40 $seed $ppo_steps"
+      echo "train $task.$object.ppo.$seed $task $object ppo $(paper_limit "$task") $seed $ppo_steps"
     done
   done; done
 }
