@@ -65,7 +65,7 @@ SceneDef make_scene_def(const Options& o) {
   ground.name = "ground";
   ground.kind = ShapeKind::kPlane;
   ground.material = kGround;
-  ground.color[0] = 90, ground.color[1] = 100, ground.color[2] = 105;
+  ground.color[0] = 150, ground.color[1] = 158, ground.color[2] = 165;
   s.statics.push_back(ground);
   s.hand_hand_contact = o.flag("hand_contact");
   s.num_materials = kNumMaterials;

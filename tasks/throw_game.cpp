@@ -142,6 +142,7 @@ const CameraSpec kThrowCameras[] = {
     {"top", {0, -0.5, 1.8}, {0, -0.5, 0.5}, 45 * kDegree},
     {"right", {0.6, 0.3, 0.9}, {0, -0.4, 0.5}, 45 * kDegree},
     {"left", {0.6, -1.3, 0.9}, {0, -0.6, 0.5}, 45 * kDegree},
+    {"close", {0.62, -0.34, 0.84}, {0, -0.5, 0.53}, 45 * kDegree},
     // close by, for point clouds
     {"cloud_above", {0, -0.5, 0.95}, {0, -0.5, 0.5}, 57 * kDegree},
     {"cloud_front", {0.4, -0.5, 0.75}, {0, -0.5, 0.5}, 57 * kDegree},

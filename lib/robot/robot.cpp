@@ -22,8 +22,8 @@ Name joined(const char* prefix, const char* name) {
 
 // The left side's tint: the same greys, a little towards blue.
 void tint(uint8_t* color) {
-  color[0] = static_cast<uint8_t>(color[0] * 9 / 10);
-  color[2] = static_cast<uint8_t>(color[2] + (255 - color[2]) / 3);
+  color[0] = static_cast<uint8_t>(color[0] * 7 / 8);
+  color[2] = static_cast<uint8_t>(color[2] + (255 - color[2]) / 6);
 }
 
 Inertia mirrored_inertia(const Inertia& inertia, int32_t axis) {
