@@ -35,7 +35,7 @@ struct AgentConfig {
   float control_dt = 0;
   int32_t max_steps = 0;
   const float* initial_mean = nullptr;    // [action_dim] or null
-  const OptionInput* defaults = nullptr;  // laid under options; unknown keys are an error
+  const OptionInput* defaults = nullptr;  // laid under options; keys of other algorithms are skipped
   int32_t num_defaults = 0;
   const OptionInput* options = nullptr;
   int32_t num_options = 0;

@@ -1,5 +1,6 @@
 #include "algos/ppo.hpp"
 #include "bandit.hpp"
+#include "two_state.hpp"
 
 using namespace rdm;
 using namespace rdm::test;
@@ -30,4 +31,11 @@ TEST(Ppo, BanditGoesToTheBestAction) {
   EXPECT_NEAR(play_bandit(s, 100, &e), 2, 0.05);
   EXPECT_EQ(e.multiplier[0], 0);
   EXPECT_NEAR(e.ret, -0.25, 0.1);
+}
+
+// 20 epochs of 100 episodes: the standard error of the mean return is 0.4.
+TEST(Ppo, TwoStatesReachTheOptimum) {
+  const Outcome o = play_two_state("ppo", {}, 100, 20);
+  EXPECT_NEAR(o.ret, 17.912088, 0.8);
+  EXPECT_NEAR(o.cost, 8.329670, 0.4);
 }
