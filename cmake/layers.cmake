@@ -3,7 +3,8 @@
 add_library(rdm_flags INTERFACE)
 target_compile_features(rdm_flags INTERFACE cxx_std_20 c_std_99)
 target_compile_options(rdm_flags INTERFACE -ffp-contract=off -fno-math-errno
-                       -Wall -Wextra -Wpedantic -Wconversion $<$<BOOL:${REDMAN_WERROR}>:-Werror>)
+                       -Wall -Wextra -Wpedantic -Wconversion $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>
+                       $<$<BOOL:${REDMAN_WERROR}>:-Werror>)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
   target_compile_options(rdm_flags INTERFACE -march=x86-64-v2)
 endif()

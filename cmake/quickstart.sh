@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 . cmake/packages.sh
 task=hand_over_safe_finger
 run=runs/quickstart
-train=(--task "$task" --algo ppo_lag --envs 64 --steps 400000 --seed 0 --out "$run")
+train=(--task "$task" --algo ppo_lag --envs 64 --steps 400000 --seed 0 --out "$run" --overwrite)
 redman=build/release/bin/redman
 
 started=$SECONDS
@@ -31,7 +31,7 @@ part "training: redman train ${train[*]}"
 trained=$("$redman" train "${train[@]}" --json)
 policy=$(text policy "$trained")
 part "evaluating"
-agent=$("$redman" rollout --task "$task" --policy "$policy" --episodes 100 --seed 1000 --json)
+agent=$("$redman" eval --task "$task" --policy "$policy" --episodes 100 --seed 1000 --json)
 random=$("$redman" rollout --task "$task" --policy random --episodes 100 --seed 1000 --json)
 part "drawing"
 picture=$(text file "$("$redman" render --task "$task" --policy "$policy" --strip 6 --size 320x240 --out "$run/strip.png" --json)")
