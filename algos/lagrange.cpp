@@ -36,18 +36,4 @@ void Lagrange::visit(StateIo& io) {
   for (int32_t i = 0; i < count_; ++i) multiplier_[i].visit(io);
 }
 
-void combine_advantages(const Rollout& r, const double* weights, bool split) {
-  const auto costs = static_cast<size_t>(r.num_costs);
-  double total = 1;
-  for (size_t k = 0; k < costs; ++k) total += weights[k];
-  for (size_t i = 0; i < static_cast<size_t>(r.samples()); ++i) {
-    double cost = 0;
-    for (size_t k = 0; k < costs; ++k)
-      cost += weights[k] * static_cast<double>(r.cost_advantage[i * costs + k]);
-    const auto reward = static_cast<double>(r.advantage[i]);
-    r.gain[i] = static_cast<float>((split ? reward : reward - cost) / total);
-    r.linear[i] = static_cast<float>(split ? -cost / total : 0);
-  }
-}
-
 }  // namespace rdm

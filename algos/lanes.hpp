@@ -17,6 +17,7 @@ struct BatchSums {
     reward_loss += b.reward_loss, cost_loss += b.cost_loss;
     return *this;
   }
+  BatchSums scaled(double s) const { return {s * loss, s * kl, s * clipped, s * reward_loss, s * cost_loss}; }
 };
 
 // Workspace of one piece in flight.

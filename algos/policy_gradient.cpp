@@ -100,7 +100,7 @@ void PolicyGradient::update(const float* last_obs, Epoch* out) {
     if (learner_.skipped() > skipped)
       log(plan_.config.hooks, LogLevel::kWarning, "update: %lld gradients were not finite and left out",
           static_cast<long long>(learner_.skipped() - skipped));
-    if (learned_.passes > 0) schedule_.adapt(learned_.mean_kl);
+    if (learned_.passes > 0) schedule_.adapt(learned_.mean.kl);
     collector_.episodes().mark();
     ++epoch_;
     if (out) fill_epoch(stats, rate, out);
@@ -118,32 +118,35 @@ void PolicyGradient::begin_epoch(const EpisodeStats&, int32_t) {
   std::memset(r.linear, 0, n * sizeof(float));
 }
 
-void PolicyGradient::learn() {
-  const int32_t count = valid_rows_;
-  if (count == 0) return;
-  const Options& o = plan_.options;
-  const int32_t parts = std::min(o.integer("minibatches"), count), size = (count + parts - 1) / parts;
-  const double rate = schedule_.rate(epoch_), stop = o.number("early_stop_kl");
+BatchSums PolicyGradient::pass(const PolicyLoss* policy) {
+  const int32_t count = valid_rows_, parts = std::min(plan_.options.integer("minibatches"), count);
+  const int32_t size = (count + parts - 1) / parts;
+  const double rate = schedule_.rate(epoch_);
   int32_t* order = rollout().order;
-  BatchSums all, pass;
-  while (learned_.passes < o.integer("passes")) {
-    for (int32_t i = count - 1; i > 0; --i)
-      std::swap(order[i], order[shuffle_.below(static_cast<uint32_t>(i) + 1)]);
-    pass = BatchSums();
-    for (int32_t first = 0; first < count; first += size) {
-      check_cancel();
-      pass += learner_.gradient(&policy_loss(), true, order + first, std::min(size, count - first));
-      learner_.step(rate);
-    }
-    all += pass;
-    ++learned_.passes;
-    if (stop > 0 && learner_.kl(order, count) > stop) break;
+  for (int32_t i = count - 1; i > 0; --i)
+    std::swap(order[i], order[shuffle_.below(static_cast<uint32_t>(i) + 1)]);
+  BatchSums sums;
+  for (int32_t first = 0; first < count; first += size) {
+    check_cancel();
+    sums += learner_.gradient(policy, true, order + first, std::min(size, count - first));
+    learner_.step(rate);
   }
-  const double samples = static_cast<double>(count) * learned_.passes;
-  learned_.last_kl = pass.kl / count;
-  learned_.mean_kl = all.kl / samples;
-  learned_.mean = {all.loss / samples, all.kl / samples, all.clipped / samples, all.reward_loss / samples,
-                   all.cost_loss / samples};
+  return sums;
+}
+
+void PolicyGradient::learn() {
+  const Options& o = plan_.options;
+  const double stop = o.number("early_stop_kl"), count = valid_rows_;
+  BatchSums all, last;
+  while (valid_rows_ > 0 && learned_.passes < o.integer("passes")) {
+    last = pass(&policy_loss());
+    all += last;
+    ++learned_.passes;
+    if (stop > 0 && learner_.kl(rollout().order, valid_rows_) > stop) break;
+  }
+  if (learned_.passes == 0) return;
+  learned_.last_kl = last.kl / count;
+  learned_.mean = all.scaled(1 / (count * learned_.passes));
 }
 
 void PolicyGradient::fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const {

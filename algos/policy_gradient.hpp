@@ -47,6 +47,9 @@ class PolicyGradient : public Agent {
   virtual void learn();
   // Multiplier of limited cost i.
   virtual double cost_weight(int32_t) const { return 0; }
+  // One pass over the valid rows in shuffled minibatches: a step of the critics and, unless null, of the
+  // policy for each.
+  BatchSums pass(const PolicyLoss* policy);
   // Copies live options to where they are used.
   virtual void read_live();
   virtual void visit_state(StateIo& io);
@@ -54,8 +57,8 @@ class PolicyGradient : public Agent {
   // What learn() leaves for the Epoch: means over samples.
   struct Learned {
     int32_t passes = 0;
-    double last_kl = 0, mean_kl = 0;  // KL(old || new) over the last pass, over all
-    BatchSums mean;
+    double last_kl = 0;  // KL(old || new) over the last pass
+    BatchSums mean;      // over all passes
   };
 
   const Plan& plan() const { return plan_; }

@@ -3,6 +3,7 @@
 #include "algos/lagrange.hpp"
 #include "algos/option_tables.hpp"
 #include "algos/ppo.hpp"
+#include "algos/weighted.hpp"
 
 namespace rdm {
 namespace {

@@ -38,6 +38,9 @@ struct AdvantageOptions {
 };
 // Fills advantages and targets of reward and costs, and scales the advantages.
 void estimate_advantages(const Rollout& r, const AdvantageOptions& options);
+// What the actor climbs under cost weights l [num_costs]: gain = (A_r - sum l_i A_ci) / (1 + sum l_i); with
+// split the cost part of it stands in linear instead, which no clip touches.
+void combine_advantages(const Rollout& r, const double* weights, bool split);
 // Writes the valid rows into order; returns their number.
 int32_t list_valid(const Rollout& r);
 

@@ -20,43 +20,7 @@ EpisodeStats costing(double cost, bool fresh = true) {
   return s;
 }
 
-// A rollout of one sample with two costs.
-struct OneSample {
-  float advantage = 2, cost[2] = {1, 4}, gain = 0, linear = 9;
-  Rollout rollout;
-  explicit OneSample(int32_t costs) {
-    rollout.horizon = rollout.num_envs = 1;
-    rollout.num_costs = costs;
-    rollout.advantage = &advantage;
-    rollout.cost_advantage = cost;
-    rollout.gain = &gain;
-    rollout.linear = &linear;
-  }
-};
-
 }  // namespace
-
-TEST(Lagrange, CombinedAdvantage) {
-  OneSample s(1);
-  for (const auto& [weight, wanted] : {std::pair{1.0, 0.5f}, std::pair{0.0, 2.0f}}) {
-    combine_advantages(s.rollout, &weight, false);
-    EXPECT_FLOAT_EQ(s.gain, wanted);
-    EXPECT_EQ(s.linear, 0);
-  }
-  const double large = 1e9;
-  combine_advantages(s.rollout, &large, false);
-  EXPECT_NEAR(s.gain, -1, 1e-6);
-}
-
-TEST(Lagrange, SeveralCostsAndSplit) {
-  OneSample s(2);
-  const double weights[] = {1, 0.5};
-  combine_advantages(s.rollout, weights, false);
-  EXPECT_FLOAT_EQ(s.gain, (2 - 1 - 2) / 2.5f);
-  combine_advantages(s.rollout, weights, true);
-  EXPECT_FLOAT_EQ(s.gain, 2 / 2.5f);
-  EXPECT_FLOAT_EQ(s.linear, -3 / 2.5f);
-}
 
 TEST(Lagrange, MovesOnFreshEpisodesOnly) {
   AgentSetup s = sgd();

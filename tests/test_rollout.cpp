@@ -28,6 +28,20 @@ AgentSetup two_costs() {
   return s;
 }
 
+// A rollout of one sample with two costs.
+struct OneSample {
+  float advantage = 2, cost[2] = {1, 4}, gain = 0, linear = 9;
+  Rollout rollout;
+  explicit OneSample(int32_t costs) {
+    rollout.horizon = rollout.num_envs = 1;
+    rollout.num_costs = costs;
+    rollout.advantage = &advantage;
+    rollout.cost_advantage = cost;
+    rollout.gain = &gain;
+    rollout.linear = &linear;
+  }
+};
+
 }  // namespace
 
 TEST(Rollout, LimitedColumnsOnly) {
@@ -83,4 +97,26 @@ TEST(Rollout, ListOfValidRows) {
   ASSERT_EQ(list_valid(m.rollout), 4);
   const int32_t wanted[] = {1, 2, 3, 5};
   for (size_t i = 0; i < 4; ++i) EXPECT_EQ(m.rollout.order[i], wanted[i]);
+}
+
+TEST(Rollout, CombinedAdvantage) {
+  OneSample s(1);
+  for (const auto& [weight, wanted] : {std::pair{1.0, 0.5f}, std::pair{0.0, 2.0f}}) {
+    combine_advantages(s.rollout, &weight, false);
+    EXPECT_FLOAT_EQ(s.gain, wanted);
+    EXPECT_EQ(s.linear, 0);
+  }
+  const double large = 1e9;
+  combine_advantages(s.rollout, &large, false);
+  EXPECT_NEAR(s.gain, -1, 1e-6);
+}
+
+TEST(Rollout, SeveralCostsAndSplit) {
+  OneSample s(2);
+  const double weights[] = {1, 0.5};
+  combine_advantages(s.rollout, weights, false);
+  EXPECT_FLOAT_EQ(s.gain, (2 - 1 - 2) / 2.5f);
+  combine_advantages(s.rollout, weights, true);
+  EXPECT_FLOAT_EQ(s.gain, 2 / 2.5f);
+  EXPECT_FLOAT_EQ(s.linear, -3 / 2.5f);
 }
