@@ -97,8 +97,7 @@ Trainer::Trainer(RunSettings settings)
       agent_(make_agent(settings_.agent, pool_, limits_, settings_.pool.seed, settings_.pool.threads)),
       score_limits_(limits_),
       last_{std::nan(""), std::nan("")} {
-  if (settings_.limits.empty() && !handles_costs(settings_.agent.algo, pool_))
-    score_limits_.assign(limits_.size(), -1);
+  if (!handles_costs(settings_.agent.algo, pool_)) score_limits_.assign(limits_.size(), -1);
 }
 
 void Trainer::begin(RunFolder folder) {
