@@ -1,0 +1,245 @@
+// What the tables of tasks, algorithms, robots and objects promise to whoever builds a menu from them.
+#include <gtest/gtest.h>
+#include <redman/redman.h>
+
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+void check_option(const rdm_option_info& o, const char* owner) {
+  SCOPED_TRACE(std::string(owner) + "." + o.key);
+  ASSERT_GT(std::strlen(o.key), 0u);
+  ASSERT_NE(o.help, nullptr);
+  EXPECT_GT(std::strlen(o.help), 0u);
+  EXPECT_TRUE(o.live == 0 || o.live == 1);
+  if (o.kind == RDM_TEXT) {
+    ASSERT_NE(o.text, nullptr);
+    EXPECT_LT(std::strlen(o.text), static_cast<size_t>(RDM_TEXT_SIZE));
+    const std::string choices = o.choices ? std::string("|") + o.choices + "|" : "";
+    EXPECT_TRUE(!o.choices || choices.find(std::string("|") + o.text + "|") != std::string::npos) << choices;
+    return;
+  }
+  EXPECT_EQ(o.text, nullptr);
+  EXPECT_LE(o.low, o.number);
+  EXPECT_LE(o.number, o.high);
+  EXPECT_TRUE(o.kind != RDM_FLAG || (o.low == 0 && o.high == 1));
+  EXPECT_TRUE(o.kind == RDM_NUMBER || o.number == std::floor(o.number));
+}
+
+std::vector<rdm_task> all_tasks() {
+  std::vector<rdm_task> tasks;
+  for (int32_t i = 0; i < rdm_task_count(); ++i) {
+    rdm_task t;
+    t.struct_size = sizeof t;
+    EXPECT_EQ(rdm_task_at(i, &t), RDM_OK) << rdm_last_error();
+    tasks.push_back(t);
+  }
+  return tasks;
+}
+
+TEST(Discovery, TasksAreFoundByTheirNames) {
+  const auto tasks = all_tasks();
+  ASSERT_GE(tasks.size(), 2u);
+  std::set<std::string> names;
+  for (size_t i = 0; i < tasks.size(); ++i) {
+    EXPECT_TRUE(names.insert(tasks[i].name).second) << tasks[i].name;
+    EXPECT_GT(std::strlen(tasks[i].summary), 0u);
+    int32_t found = -1;
+    EXPECT_EQ(rdm_task_find(tasks[i].name, &found), RDM_OK);
+    EXPECT_EQ(found, static_cast<int32_t>(i));
+  }
+  int32_t found = -1;
+  EXPECT_EQ(rdm_task_find("Hand-Over-SAFE-finger", &found), RDM_OK);
+  EXPECT_STREQ(tasks[static_cast<size_t>(found)].name, "hand_over_safe_finger");
+  EXPECT_EQ(rdm_task_find("hand_over_safe_finder", &found), RDM_NOT_FOUND);
+  EXPECT_NE(std::string(rdm_last_error()).find("hand_over_safe_finger"), std::string::npos)
+      << rdm_last_error();
+}
+
+TEST(Discovery, FieldsCoverTheObservationWithoutGaps) {
+  const auto tasks = all_tasks();
+  for (int32_t t = 0; t < rdm_task_count(); ++t) {
+    const rdm_task& task = tasks[static_cast<size_t>(t)];
+    SCOPED_TRACE(task.name);
+    int32_t next = 0;
+    std::set<std::string> names;
+    rdm_field f;
+    for (int32_t i = 0; i < task.num_fields; ++i) {
+      ASSERT_EQ(rdm_task_field(t, i, &f), RDM_OK) << rdm_last_error();
+      EXPECT_EQ(f.offset, next) << f.name;
+      EXPECT_GT(f.count, 0) << f.name;
+      EXPECT_GT(std::strlen(f.unit), 0u) << f.name;
+      EXPECT_TRUE(names.insert(f.name).second) << f.name;
+      next += f.count;
+    }
+    EXPECT_EQ(next, task.obs_dim);
+    EXPECT_EQ(rdm_task_field(t, task.num_fields, &f), RDM_RANGE);
+    EXPECT_EQ(rdm_task_field(t, -1, &f), RDM_RANGE);
+  }
+}
+
+TEST(Discovery, CostsOptionsCamerasAndDefaults) {
+  const auto tasks = all_tasks();
+  for (int32_t t = 0; t < rdm_task_count(); ++t) {
+    const rdm_task& task = tasks[static_cast<size_t>(t)];
+    SCOPED_TRACE(task.name);
+    ASSERT_GE(task.cost_dim, 1);
+    ASSERT_LE(task.cost_dim, RDM_MAX_COSTS);
+    rdm_cost cost;
+    for (int32_t i = 0; i < task.cost_dim; ++i) {
+      ASSERT_EQ(rdm_task_cost(t, i, &cost), RDM_OK);
+      EXPECT_GT(std::strlen(cost.name), 0u);
+      EXPECT_GT(std::strlen(cost.help), 0u);
+      EXPECT_FALSE(std::isnan(cost.limit));
+    }
+    ASSERT_EQ(rdm_task_cost(t, 0, &cost), RDM_OK);
+    EXPECT_GE(cost.limit, 0);
+    EXPECT_EQ(rdm_task_cost(t, task.cost_dim, &cost), RDM_RANGE);
+
+    std::set<std::string> keys;
+    rdm_option_info option;
+    for (int32_t i = 0; i < task.num_options; ++i) {
+      ASSERT_EQ(rdm_task_option(t, i, &option), RDM_OK);
+      check_option(option, task.name);
+      EXPECT_TRUE(keys.insert(option.key).second) << option.key;
+    }
+    EXPECT_EQ(rdm_task_option(t, task.num_options, &option), RDM_RANGE);
+
+    rdm_camera camera;
+    ASSERT_GE(task.num_cameras, 1);
+    for (int32_t i = 0; i < task.num_cameras; ++i) {
+      ASSERT_EQ(rdm_task_camera(t, i, &camera), RDM_OK);
+      EXPECT_GT(camera.fov_y, 0.05f);
+      EXPECT_LT(camera.fov_y, 3.1f);
+      EXPECT_NE(std::memcmp(camera.eye, camera.target, sizeof camera.eye), 0);
+    }
+    EXPECT_EQ(rdm_task_camera(t, task.num_cameras, &camera), RDM_RANGE);
+  }
+}
+
+// Every algorithm must take what a task suggests, or a menu that joins the two would fail.
+TEST(Discovery, DefaultsOfEveryTaskFitEveryAlgorithm) {
+  const auto tasks = all_tasks();
+  for (int32_t t = 0; t < rdm_task_count(); ++t) {
+    std::vector<rdm_option> defaults(static_cast<size_t>(tasks[static_cast<size_t>(t)].num_defaults));
+    for (size_t i = 0; i < defaults.size(); ++i)
+      ASSERT_EQ(rdm_task_default(t, static_cast<int32_t>(i), &defaults[i]), RDM_OK);
+    rdm_option past;
+    EXPECT_EQ(rdm_task_default(t, static_cast<int32_t>(defaults.size()), &past), RDM_RANGE);
+    for (int32_t a = 0; a < rdm_algo_count(); ++a) {
+      rdm_algo algo;
+      algo.struct_size = sizeof algo;
+      ASSERT_EQ(rdm_algo_at(a, &algo), RDM_OK);
+      rdm_agent_config config;
+      rdm_agent_config_init(&config, sizeof config);
+      config.algo = algo.name;
+      config.obs_dim = 4;
+      config.action_dim = 2;
+      config.num_envs = 2;
+      config.defaults = defaults.data();
+      config.num_defaults = static_cast<int32_t>(defaults.size());
+      size_t bytes = 0;
+      EXPECT_EQ(rdm_agent_memory(&config, &bytes), RDM_OK) << algo.name << ": " << rdm_last_error();
+    }
+  }
+}
+
+TEST(Discovery, TasksAreWhatTheirPoolsAre) {
+  for (const rdm_task& task : all_tasks()) {
+    SCOPED_TRACE(task.name);
+    rdm_pool_config config;
+    rdm_pool_config_init(&config, sizeof config);
+    config.task = task.name;
+    rdm_spec spec;
+    spec.struct_size = sizeof spec;
+    ASSERT_EQ(rdm_pool_spec(&config, &spec), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(spec.obs_dim, task.obs_dim);
+    EXPECT_EQ(spec.action_dim, task.action_dim);
+    EXPECT_EQ(spec.cost_dim, task.cost_dim);
+    EXPECT_EQ(spec.max_steps, task.max_steps);
+    EXPECT_EQ(spec.control_dt, task.control_dt);
+    EXPECT_EQ(spec.num_fields, task.num_fields);
+  }
+}
+
+TEST(Discovery, Algorithms) {
+  ASSERT_GE(rdm_algo_count(), 2);
+  for (int32_t a = 0; a < rdm_algo_count(); ++a) {
+    rdm_algo algo;
+    algo.struct_size = sizeof algo;
+    ASSERT_EQ(rdm_algo_at(a, &algo), RDM_OK);
+    EXPECT_GT(std::strlen(algo.summary), 0u);
+    int32_t found = -1;
+    EXPECT_EQ(rdm_algo_find(algo.name, &found), RDM_OK);
+    EXPECT_EQ(found, a);
+    std::set<std::string> keys;
+    rdm_option_info option;
+    for (int32_t i = 0; i < algo.num_options; ++i) {
+      ASSERT_EQ(rdm_algo_option(a, i, &option), RDM_OK);
+      check_option(option, algo.name);
+      EXPECT_TRUE(keys.insert(option.key).second) << option.key;
+    }
+    EXPECT_EQ(rdm_algo_option(a, algo.num_options, &option), RDM_RANGE);
+  }
+  int32_t found = -1;
+  EXPECT_EQ(rdm_algo_find("ppo_lagg", &found), RDM_NOT_FOUND);
+  EXPECT_NE(std::string(rdm_last_error()).find("ppo_lag"), std::string::npos);
+}
+
+TEST(Discovery, RobotsAndObjects) {
+  ASSERT_GE(rdm_robot_count(), 1);
+  for (int32_t r = 0; r < rdm_robot_count(); ++r) {
+    rdm_robot robot;
+    robot.struct_size = sizeof robot;
+    ASSERT_EQ(rdm_robot_at(r, &robot), RDM_OK);
+    SCOPED_TRACE(robot.name);
+    std::set<int32_t> actions;
+    rdm_joint joint;
+    for (int32_t i = 0; i < robot.num_joints; ++i) {
+      ASSERT_EQ(rdm_robot_joint(r, i, &joint), RDM_OK);
+      EXPECT_LT(joint.lower, joint.upper) << joint.name;
+      EXPECT_GT(joint.effort, 0) << joint.name;
+      EXPECT_EQ(joint.action >= 0, joint.kp > 0) << joint.name;
+      EXPECT_TRUE(joint.action < 0 || actions.insert(joint.action).second) << joint.name;
+    }
+    EXPECT_EQ(static_cast<int32_t>(actions.size()), robot.num_actuated);
+    EXPECT_EQ(*actions.begin(), 0);
+    EXPECT_EQ(*actions.rbegin(), robot.num_actuated - 1);
+    EXPECT_EQ(rdm_robot_joint(r, robot.num_joints, &joint), RDM_RANGE);
+  }
+  rdm_object object;
+  ASSERT_GE(rdm_object_count(), 2);
+  for (int32_t i = 0; i < rdm_object_count(); ++i) {
+    ASSERT_EQ(rdm_object_at(i, &object), RDM_OK);
+    EXPECT_GT(object.mass, 0) << object.name;
+    EXPECT_GT(std::strlen(object.shape), 0u) << object.name;
+  }
+  EXPECT_EQ(rdm_object_at(rdm_object_count(), &object), RDM_RANGE);
+}
+
+TEST(Discovery, SurvivesBadCalls) {
+  int32_t index = 0;
+  EXPECT_EQ(rdm_task_at(0, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_task_find(nullptr, &index), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_task_find("grasp", nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_task_field(0, 0, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_task_option(0, 0, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_algo_find(nullptr, &index), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_algo_option(0, 0, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_robot_at(0, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_object_at(0, nullptr), RDM_ARGUMENT);
+  rdm_task task;
+  task.struct_size = 4;
+  EXPECT_EQ(rdm_task_at(0, &task), RDM_ARGUMENT);
+  task.struct_size = sizeof task;
+  EXPECT_EQ(rdm_task_at(rdm_task_count(), &task), RDM_RANGE);
+  EXPECT_EQ(rdm_task_at(-1, &task), RDM_RANGE);
+  rdm_field field;
+  EXPECT_EQ(rdm_task_field(rdm_task_count(), 0, &field), RDM_RANGE);
+}
+
+}  // namespace

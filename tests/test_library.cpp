@@ -1,0 +1,95 @@
+#include <gtest/gtest.h>
+#include <redman/redman.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <thread>
+
+namespace {
+
+TEST(Library, HeaderAndLibraryAreCompared) {
+  EXPECT_EQ(rdm_version(), static_cast<uint32_t>(RDM_VERSION));
+  EXPECT_EQ(rdm_check_abi(RDM_ABI, RDM_VERSION), RDM_OK);
+  EXPECT_EQ(rdm_check_abi(RDM_ABI, 0), RDM_OK);  // an older header
+  EXPECT_EQ(rdm_check_abi(RDM_ABI, RDM_VERSION + 1), RDM_VERSION_MISMATCH);
+  EXPECT_EQ(rdm_check_abi(RDM_ABI + 1, RDM_VERSION), RDM_VERSION_MISMATCH);
+  EXPECT_NE(std::string(rdm_last_error()).find("abi"), std::string::npos);
+}
+
+TEST(Library, ResultsHaveStrings) {
+  for (const rdm_result r : std::initializer_list<rdm_result>{
+           RDM_OK, RDM_ARGUMENT, RDM_RANGE, RDM_STATE, RDM_MEMORY, RDM_IO, RDM_FORMAT, RDM_VERSION_MISMATCH,
+           RDM_UNSUPPORTED, RDM_PHYSICS, RDM_NOT_FOUND, RDM_CANCELLED, RDM_INTERNAL, 1, 1000, -1000})
+    EXPECT_GT(std::strlen(rdm_result_string(r)), 0u) << r;
+  EXPECT_STRNE(rdm_result_string(RDM_IO), rdm_result_string(RDM_FORMAT));
+}
+
+TEST(Library, BuildInfoFillsNoMoreThanItsCallerHas) {
+  struct Newer {  // a caller whose header has one more field
+    rdm_build build;
+    uint64_t more;
+  } newer;
+  std::memset(&newer, 0x55, sizeof newer);
+  newer.build.struct_size = sizeof newer;
+  ASSERT_EQ(rdm_build_info(&newer.build), RDM_OK);
+  EXPECT_EQ(newer.build.struct_size, sizeof newer);
+  EXPECT_EQ(newer.more, 0x5555555555555555u);
+  const std::string want = std::to_string(RDM_VERSION_MAJOR) + "." + std::to_string(RDM_VERSION_MINOR) + "." +
+                           std::to_string(RDM_VERSION_PATCH);
+  EXPECT_EQ(newer.build.version, want);
+  EXPECT_EQ(rdm_build_info(nullptr), RDM_ARGUMENT);
+  newer.build.struct_size = 8;
+  EXPECT_EQ(rdm_build_info(&newer.build), RDM_ARGUMENT);
+}
+
+TEST(Library, HooksAreCountedAndPutBack) {
+  static int calls = 0;
+  rdm_host host = {};
+  host.struct_size = sizeof host;
+  host.alloc = [](void*, size_t bytes, size_t align) -> void* {
+    ++calls;
+    return std::aligned_alloc(align, (bytes + align - 1) / align * align);
+  };
+  EXPECT_EQ(rdm_init(&host), RDM_ARGUMENT);  // alloc without release
+  host.release = [](void*, void* p, size_t, size_t) { std::free(p); };
+  const auto make_policyless_agent = [] {
+    rdm_agent_config config;
+    rdm_agent_config_init(&config, sizeof config);
+    config.obs_dim = 2;
+    config.action_dim = config.num_envs = 1;
+    rdm_agent* agent = nullptr;
+    EXPECT_EQ(rdm_agent_create(&agent, &config), RDM_OK) << rdm_last_error();
+    return agent;
+  };
+
+  ASSERT_EQ(rdm_init(&host), RDM_OK);
+  ASSERT_EQ(rdm_init(nullptr), RDM_OK);   // a second user of the library
+  EXPECT_EQ(rdm_init(&host), RDM_STATE);  // who may not change the hooks under the first
+  rdm_agent* hooked = make_policyless_agent();
+  EXPECT_GT(calls, 0);
+  rdm_shutdown();
+  const int before = calls;
+  rdm_agent* still = make_policyless_agent();
+  EXPECT_GT(calls, before);
+  rdm_shutdown();
+  const int after = calls;
+  rdm_agent* plain = make_policyless_agent();
+  EXPECT_EQ(calls, after);
+  rdm_agent_destroy(hooked);  // with the hooks it was made with
+  rdm_agent_destroy(still);
+  rdm_agent_destroy(plain);
+  rdm_shutdown();  // one too many is harmless
+}
+
+TEST(Library, ErrorTextBelongsToTheThread) {
+  ASSERT_EQ(rdm_check_abi(RDM_ABI + 1, 0), RDM_VERSION_MISMATCH);
+  const std::string mine = rdm_last_error();
+  std::thread([] {
+    EXPECT_STREQ(rdm_last_error(), "");
+    EXPECT_EQ(rdm_task_find(nullptr, nullptr), RDM_ARGUMENT);
+  }).join();
+  EXPECT_EQ(rdm_last_error(), mine);
+}
+
+}  // namespace
