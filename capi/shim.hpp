@@ -78,7 +78,7 @@ HostHooks hooks_from(const rdm_host* host);
 rdm_option_info describe(const OptionSpec& spec);
 
 // Public options as the library takes them; the strings stay the caller's. Error(kArgument) for a NULL list
-// with a count or a negative count.
+// with a count, Error(kRange) for a count outside [0, 4096].
 Vector<OptionInput> read_options(const rdm_option* options, int32_t count, const char* name);
 
 // A copy of `name` that lives as long as the process. The table is fixed: names beyond it are cut to "".

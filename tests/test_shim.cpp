@@ -62,14 +62,13 @@ INSTANTIATE_TEST_SUITE_P(Sizes, ShimInit, testing::Values(8, 12, 16, 24));
 
 TEST_P(ShimInit, TouchesItsBytesAlone) {
   const size_t size = GetParam();
-  alignas(8) unsigned char bytes[64];
-  std::memset(bytes, 0x5a, sizeof bytes);
-  auto* out = reinterpret_cast<Known*>(bytes);
+  Vector<unsigned char> bytes(64, 0x5a);
+  auto* out = reinterpret_cast<Known*>(bytes.data());
   init_struct(out, size, kFirst, kDefaults, "config");
   EXPECT_EQ(out->struct_size, size);
   EXPECT_EQ(out->a, 1);
   for (size_t i = sizeof(Known); i < size; ++i) EXPECT_EQ(bytes[i], 0);
-  for (size_t i = size; i < sizeof bytes; ++i) EXPECT_EQ(bytes[i], 0x5a);
+  for (size_t i = size; i < bytes.size(); ++i) EXPECT_EQ(bytes[i], 0x5a);
 }
 
 TEST(Shim, InitRefusesLessThanTheFirstVersion) {
@@ -92,7 +91,8 @@ TEST(Shim, OptionListsAreChecked) {
   EXPECT_EQ(read_options(list, 2, "options").size(), 2u);
   EXPECT_EQ(read_options(nullptr, 0, "options").size(), 0u);
   EXPECT_EQ(guard([&] { read_options(nullptr, 1, "options"); }), Code::kArgument);
-  EXPECT_EQ(guard([&] { read_options(list, -1, "options"); }), Code::kArgument);
+  EXPECT_EQ(guard([&] { read_options(list, 4097, "options"); }), Code::kRange);
+  EXPECT_EQ(guard([&] { read_options(list, -1, "options"); }), Code::kRange);
 }
 
 }  // namespace
