@@ -9,6 +9,7 @@
 namespace rdm {
 namespace {
 
+constexpr double kFar = 1e300;  // m
 constexpr int kMaxPerPair = 8;
 constexpr double kFlat = 0.99;  // cosine between a contact's normal and that of a face it counts for
 
@@ -71,6 +72,8 @@ OdeContacts::~OdeContacts() {
 void OdeContacts::carve(const Scene& scene, Arena& arena) {
   num_shapes_ = static_cast<int32_t>(scene.shapes.size());
   shapes_ = arena.make<Shape>(scene.shapes.size());
+  num_articulations_ = static_cast<int32_t>(scene.def.articulations.size());
+  boxes_ = arena.make<Box>(scene.def.articulations.size());
   feedback_ = arena.make<dJointFeedback>(static_cast<size_t>(scene.def.solver.contacts_max));
 }
 
@@ -83,6 +86,7 @@ void OdeContacts::make_geom(const Scene& scene, int32_t index, dBodyID body, con
   Shape& shape = shapes_[index];
   shape.geom = create_geom(def.def, X_WS);
   shape.body = body;
+  shape.articulation = def.articulation;
   shape.radius = def.radius;
   shape.kind = def.def.kind;
   shape.size = def.def.size;
@@ -137,15 +141,34 @@ void OdeContacts::fill(dWorldID world, const Scene& scene, const dBodyID* bodies
   }
 }
 
-void OdeContacts::update_centers(int32_t num_shapes) {
-  for (int32_t i = 0; i < num_shapes; ++i) {
+void OdeContacts::update_centers() {
+  for (int32_t i = 0; i < num_articulations_; ++i) boxes_[i] = {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  for (int32_t i = 0; i < num_shapes_; ++i) {
     Shape& s = shapes_[i];
-    if (!s.geom || s.rest) continue;
-    const dReal* r = s.r;
-    const Vec3& o = s.offset;
-    s.center = {s.p[0] + r[0] * o.x + r[1] * o.y + r[2] * o.z, s.p[1] + r[4] * o.x + r[5] * o.y + r[6] * o.z,
-                s.p[2] + r[8] * o.x + r[9] * o.y + r[10] * o.z};
+    if (!s.geom) continue;
+    if (!s.rest) {
+      const dReal* r = s.r;
+      const Vec3& o = s.offset;
+      s.center = {s.p[0] + r[0] * o.x + r[1] * o.y + r[2] * o.z,
+                  s.p[1] + r[4] * o.x + r[5] * o.y + r[6] * o.z,
+                  s.p[2] + r[8] * o.x + r[9] * o.y + r[10] * o.z};
+    }
+    if (s.articulation < 0) continue;
+    Box& box = boxes_[s.articulation];
+    for (int k = 0; k < 3; ++k) {
+      box.low[k] = std::min(box.low[k], s.center[k] - s.radius);
+      box.high[k] = std::max(box.high[k], s.center[k] + s.radius);
+    }
   }
+}
+
+bool OdeContacts::near(const Shape& shape, const Box& box) const {
+  double square = 0;  // of the distance to the box
+  for (int k = 0; k < 3; ++k) {
+    const double d = std::max({box.low[k] - shape.center[k], shape.center[k] - box.high[k], 0.0});
+    square += d * d;
+  }
+  return square < shape.radius * shape.radius;
 }
 
 bool OdeContacts::near(const ShapePair& pair) const {
@@ -187,29 +210,34 @@ int OdeContacts::collide_pair(const ShapePair& pair, int most, dContactGeom* out
 OdeContacts::Found OdeContacts::collide(dWorldID world, const Scene& scene, Contact* contacts,
                                         uint8_t* touched) {
   empty();
-  update_centers(num_shapes_);
-  const SolverDef& solver = scene.def.solver;
+  update_centers();
   Found found = {0, false};
-  dContactGeom geoms[kMaxPerPair];
-  const auto num_pairs = static_cast<int32_t>(scene.pairs.size());
-  const ShapePair* pairs = scene.pairs.data();
-  for (int32_t k = 0; k < num_pairs; ++k) {
-    const ShapePair& pair = pairs[k];
-    if (!near(pair)) continue;
-    const Shape &a = shapes_[pair.a], &b = shapes_[pair.b];
-    const int n = collide_pair(pair, solver.contacts_per_pair, geoms);
-    if (n > 0) touched[k] = 1;
-    for (int i = 0; i < n; ++i) {
-      if (found.count == solver.contacts_max) {
-        found.overflow = true;
-        break;
-      }
-      make_joint(world, scene, geoms[i], pair.mu, a.body, b.body, found.count);
-      contacts[found.count++] = {pair.a,         pair.b, from_ode(geoms[i].pos), from_ode(geoms[i].normal),
-                                 geoms[i].depth, {}};
+  for (const PairRun& run : scene.runs) {
+    if (run.shape >= 0 && !near(shapes_[run.shape], boxes_[run.articulation])) continue;
+    for (int32_t k = run.first; k < run.first + run.count; ++k) {
+      const ShapePair& pair = scene.pairs[static_cast<size_t>(k)];
+      if (near(pair) && touch(world, scene, pair, contacts, &found)) touched[k] = 1;
     }
   }
   return found;
+}
+
+bool OdeContacts::touch(dWorldID world, const Scene& scene, const ShapePair& pair, Contact* contacts,
+                        Found* found) {
+  const SolverDef& solver = scene.def.solver;
+  const Shape &a = shapes_[pair.a], &b = shapes_[pair.b];
+  dContactGeom geoms[kMaxPerPair];
+  const int n = collide_pair(pair, solver.contacts_per_pair, geoms);
+  for (int i = 0; i < n; ++i) {
+    if (found->count == solver.contacts_max) {
+      found->overflow = true;
+      break;
+    }
+    make_joint(world, scene, geoms[i], pair.mu, a.body, b.body, found->count);
+    contacts[found->count++] = {pair.a,         pair.b, from_ode(geoms[i].pos), from_ode(geoms[i].normal),
+                                geoms[i].depth, {}};
+  }
+  return n > 0;
 }
 
 void OdeContacts::read_forces(int32_t count, Contact* contacts) const {
@@ -217,7 +245,7 @@ void OdeContacts::read_forces(int32_t count, Contact* contacts) const {
 }
 
 double OdeContacts::overlap(const Scene& scene, int32_t body) {
-  update_centers(num_shapes_);
+  update_centers();
   const auto carries = [&](int32_t shape) {
     const SceneShape& s = scene.shapes[static_cast<size_t>(shape)];
     return s.carrier == Carrier::kBody && s.index == body;

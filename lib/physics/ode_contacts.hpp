@@ -38,24 +38,32 @@ class OdeContacts {
   struct Shape {
     dGeomID geom;
     dBodyID body;
-    const dReal *p, *r;  // position and rotation of the body, or of the geom at rest
-    Vec3 offset;         // of the shape's centre, from p, in r's axes
-    Vec3 center;         // world; of a plane: its normal
-    double radius;       // of a plane: its constant (normal . x = radius on it)
+    const dReal *p, *r;    // position and rotation of the body, or of the geom at rest
+    Vec3 offset;           // of the shape's centre, from p, in r's axes
+    Vec3 center;           // world; of a plane: its normal
+    int32_t articulation;  // -1: none
+    double radius;         // of a plane: its constant (normal . x = radius on it)
     ShapeKind kind;
     Vec3 size;
     bool rest;
   };
-  void update_centers(int32_t num_shapes);
+  struct Box {
+    Vec3 low, high;  // around the bounding spheres of an articulation's shapes, world
+  };
+  void update_centers();
   bool near(const ShapePair& pair) const;
+  bool near(const Shape& shape, const Box& box) const;
   int collide_pair(const ShapePair& pair, int most, dContactGeom* out) const;
+  // Contacts of one pair, appended; true when there is any.
+  bool touch(dWorldID world, const Scene& scene, const ShapePair& pair, Contact* contacts, Found* found);
   void make_joint(dWorldID world, const Scene& scene, const dContactGeom& geom, double mu, dBodyID a,
                   dBodyID b, int32_t index);
 
   Shape* shapes_ = nullptr;
   dJointFeedback* feedback_ = nullptr;
   dJointGroupID group_ = nullptr;
-  int32_t num_shapes_ = 0;
+  Box* boxes_ = nullptr;  // [num_articulations_]
+  int32_t num_shapes_ = 0, num_articulations_ = 0;
 };
 
 }  // namespace rdm

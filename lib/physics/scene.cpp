@@ -262,6 +262,21 @@ void list_pairs(Scene* scene) {
     }
 }
 
+void list_runs(Scene* scene) {
+  for (int32_t k = 0; k < static_cast<int32_t>(scene->pairs.size()); ++k) {
+    const ShapePair& pair = scene->pairs[static_cast<size_t>(k)];
+    const SceneShape &x = scene->shapes[static_cast<size_t>(pair.a)],
+                     &y = scene->shapes[static_cast<size_t>(pair.b)];
+    const bool boxed = y.articulation >= 0 && y.articulation != x.articulation;
+    const PairRun run = {k, 1, boxed ? pair.a : -1, boxed ? y.articulation : -1};
+    if (scene->runs.empty() || scene->runs.back().shape != run.shape ||
+        scene->runs.back().articulation != run.articulation)
+      scene->runs.push_back(run);
+    else
+      ++scene->runs.back().count;
+  }
+}
+
 }  // namespace
 
 Name::Name(const char* s) {
@@ -317,6 +332,7 @@ Scene make_scene(SceneDef def) {
   scene.def = std::move(def);
   flatten(&scene);
   list_pairs(&scene);
+  list_runs(&scene);
   return scene;
 }
 

@@ -156,6 +156,13 @@ struct LinkFrame {
   Vec3 axis;
 };
 
+// A run of neighbours in Scene::pairs. With an articulation given, all of them are pairs of one `shape` with
+// shapes of that articulation: while the shape is outside the box around those, none of them can touch.
+struct PairRun {
+  int32_t first, count;
+  int32_t shape, articulation;  // -1: pairs of any kind
+};
+
 // The flattened, validated, constant model. Links of all articulations are numbered in one row
 // (`link_offset`), and so are their joints: joint i moves link i.
 struct Scene {
@@ -166,6 +173,7 @@ struct Scene {
   Vector<LinkFrame> frames;           // per link
   Vector<SceneShape> shapes;  // articulation by articulation (base shapes are in place), bodies, statics
   Vector<ShapePair> pairs;    // all pairs that may touch, in fixed order
+  Vector<PairRun> runs;       // the same pairs, run by run
   Vector<int32_t> sensors;    // link indices with a sensor
 
   const LinkDef& link(int32_t i) const;
