@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# From a fresh clone to a trained policy: installs what is missing, builds, trains for about a minute,
+# From a fresh clone to a trained policy: installs what is missing, builds, trains for a minute or two,
 # evaluates beside a random policy, and draws a strip of pictures. A second call rebuilds what changed.
 set -eu
 cd "$(dirname "$0")/.."
 . cmake/packages.sh
 task=hand_over_safe_finger
 run=runs/quickstart
-train=(--task "$task" --algo ppo_lag --envs 64 --steps 400000 --seed 0 --out "$run" --overwrite)
+train=(--task "$task" --algo ppo_lag --envs 64 --threads "$(nproc)" --steps 1000000 --seed 0 --out "$run" --overwrite)
 redman=build/release/bin/redman
 
 started=$SECONDS
@@ -34,7 +34,7 @@ part "evaluating"
 agent=$("$redman" eval --task "$task" --policy "$policy" --episodes 100 --seed 1000 --json)
 random=$("$redman" rollout --task "$task" --policy random --episodes 100 --seed 1000 --json)
 part "drawing"
-picture=$(text file "$("$redman" render --task "$task" --policy "$policy" --strip 6 --size 320x240 --out "$run/strip.png" --json)")
+picture=$(text file "$("$redman" render --task "$task" --policy "$policy" --strip 6 --from 6 --to 36 --camera close --size 320x240 --out "$run/strip.png" --json)")
 part "done"
 
 row() { # row NAME JSON
