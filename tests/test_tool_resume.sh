@@ -2,7 +2,7 @@
 # test_tool_resume.sh TOOL: a run that was killed and resumed ends in the same bytes as one that was not
 # (Time/* columns apart), wherever it was killed; SIGINT saves and exits with status 0.
 set -u
-tool=$1
+tool=$(realpath "$1")
 failed=0
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT

@@ -2,7 +2,7 @@
 # test_tool_threads.sh TOOL: the same seed gives the same bytes for any number of threads: rollouts with their
 # state hash, and whole training runs.
 set -u
-tool=$1
+tool=$(realpath "$1")
 failed=0
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT

@@ -1,7 +1,7 @@
 #!/bin/sh
 # test_tool_usage.sh TOOL: exit statuses, nearest names, and that --json leaves one JSON object on stdout.
 set -u
-tool=$1
+tool=$(realpath "$1")
 failed=0
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
@@ -45,7 +45,7 @@ expect 2 'WIDTHxHEIGHT' render --size 64
 expect 2 '' eval --episodes 0
 expect 1 'no such file' eval --policy nothing.rdm
 expect 1 'not a run folder' train --resume nothing
-expect 1 'cannot read' plot nothing
+expect 1 'holds no run' plot nothing
 printf 'not a policy' > bad.rdm
 expect 1 'bad.rdm' eval --policy bad.rdm
 [ ! -d runs ] || { echo "a wrong call left a run folder behind"; failed=1; }

@@ -154,8 +154,7 @@ Report bench_update(const UpdateFlags& flags) {
   lay("passes", passes);
   lay("minibatches", parts);
   lay("early_stop_kl", "0");
-  for (const std::string& s : flags.sets)
-    options.emplace_back(s.substr(0, s.find('=')), s.substr(s.find('=') + 1));
+  for (const std::string& s : flags.sets) options.push_back(split_pair(s, "--set"));
   const auto raw = raw_options(options);
   auto config = redman::agent_config(flags.obs, flags.act, envs);
   const double limit = 10;

@@ -26,10 +26,7 @@ void add_bench(CLI::App& app, Run& run) {
   auto step = std::make_shared<StepFlags>();
   step->pool.envs = 64;
   CLI::App* command = bench->add_subcommand("step", "Control steps per second under random actions");
-  command->add_option("--task", step->pool.task, "task");
-  command->add_option("--envs,--num-envs", step->pool.envs, "worlds");
-  command->add_option("--threads", step->pool.threads, "threads; 0: the caller's own");
-  command->add_option("--seed", step->pool.seed, "seed");
+  add_pool_flags(*command, step->pool, "task");
   add_seconds(*command, step->seconds);
   add_set_flag(*command, step->sets);
   command->callback([&run, step] { run = [step] { return bench_step(*step); }; });

@@ -60,6 +60,7 @@ Report run_eval(EvalFlags flags) {
            {"cost_std", s.cost_std},
            {"success_rate", s.success_rate},
            {"length_mean", s.length_mean},
+           {"cost_limits", e.limits},
            {"violation_rate", s.violation_rate},
            {"fall_rate", s.fall_rate},
            {"cost_per_step", s.cost_per_step},
@@ -75,11 +76,8 @@ void add_eval(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("eval", "Evaluate a policy over whole episodes");
   command->add_option("--policy", flags->policy,
                       "policy file, run folder, zero, hold or random; a run's task options come with it");
-  CLI::Option* task = command->add_option("--task", flags->pool.task, "task; default: the policy's");
+  CLI::Option* task = add_pool_flags(*command, flags->pool, "task; default: the policy's");
   command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::PositiveNumber);
-  command->add_option("--envs,--num-envs", flags->pool.envs, "worlds");
-  command->add_option("--threads", flags->pool.threads, "threads; 0: the caller's own");
-  command->add_option("--seed", flags->pool.seed, "seed");
   command->add_flag("--stochastic", flags->stochastic, "sample actions instead of taking the mean");
   add_cost_limit_flag(*command, flags->limits);
   add_set_flag(*command, flags->sets);

@@ -78,20 +78,9 @@ Report list_algos(const ListFlags& flags) {
 }
 
 Report show_info() {
-  auto b = redman::sized<rdm_build>();
-  redman::check(rdm_build_info(&b));
-  const uint32_t features = rdm_features();
-  const Json json = {{"version", b.version},
-                     {"abi", b.abi},
-                     {"ode", b.ode},
-                     {"eigen", b.eigen},
-                     {"ccd", b.ccd},
-                     {"octomap", b.octomap},
-                     {"precision", b.precision},
-                     {"compiler", b.compiler},
-                     {"kernels", b.kernels},
-                     {"simulator", (features & RDM_FEATURE_SIM) != 0},
-                     {"learner", (features & RDM_FEATURE_LEARN) != 0}};
+  Json json = build_json();
+  json["simulator"] = (rdm_features() & RDM_FEATURE_SIM) != 0;
+  json["learner"] = (rdm_features() & RDM_FEATURE_LEARN) != 0;
   std::string text;
   for (const auto& [key, value] : json.items())
     text +=

@@ -117,6 +117,14 @@ bool has_option(const std::vector<rdm_option_info>& table, const std::string& ke
   return std::any_of(table.begin(), table.end(), [&](const auto& o) { return same_name(o.key, key); });
 }
 
+Json build_json() {
+  auto b = redman::sized<rdm_build>();
+  redman::check(rdm_build_info(&b));
+  return {{"version", b.version},     {"abi", b.abi},           {"ode", b.ode},
+          {"eigen", b.eigen},         {"ccd", b.ccd},           {"octomap", b.octomap},
+          {"precision", b.precision}, {"compiler", b.compiler}, {"kernels", b.kernels}};
+}
+
 Json options_json(const std::vector<rdm_option_info>& table) {
   Json out = Json::array();
   for (const rdm_option_info& o : table) {

@@ -26,6 +26,9 @@ std::vector<rdm_option_info> task_options(int32_t task);
 std::vector<rdm_option_info> algo_options(int32_t algo);
 bool has_option(const std::vector<rdm_option_info>& table, const std::string& key);
 
+// Versions and how the library was built.
+Json build_json();
+
 // A table of options as the tool's JSON has it, and as text for people.
 Json options_json(const std::vector<rdm_option_info>& table);
 std::string options_text(const std::vector<rdm_option_info>& table);

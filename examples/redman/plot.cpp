@@ -112,7 +112,8 @@ std::vector<Level> limit_levels(const std::vector<Group>& groups) {
 
 Report run_plot(const PlotFlags& flags) {
   std::vector<RunData> runs;
-  for (const std::string& folder : flags.folders) runs.push_back(read_run(folder));
+  for (const std::string& folder : flags.folders)
+    for (const std::string& path : find_runs(folder)) runs.push_back(read_run(path));
   const auto groups = make_groups(runs, flags.each);
   std::vector<Panel> panels = {make_panel("Return of an episode", "Metrics/EpRet", groups),
                                make_panel("Cost of an episode (dashed: limit)", "Metrics/EpCost", groups),
@@ -137,7 +138,8 @@ void add_plot(CLI::App& app, Run& run) {
   auto flags = std::make_shared<PlotFlags>();
   CLI::App* command = app.add_subcommand("plot", "Draw the learning curves of run folders as SVG");
   command
-      ->add_option("folders", flags->folders, "run folders; seeds of one setting become a mean with a band")
+      ->add_option("folders", flags->folders,
+                   "run folders, or folders of them; seeds of one setting become a mean with a band")
       ->required();
   command->add_option("--out", flags->out, "SVG file; default plot.svg");
   command->add_flag("--each", flags->each, "a line for every folder");

@@ -1,7 +1,9 @@
 #include "run_data.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
 
 #include "files.hpp"
@@ -29,6 +31,17 @@ const std::vector<double>& RunData::column(const std::string& name) const {
   static const std::vector<double> kNone;
   const auto found = columns.find(name);
   return found == columns.end() ? kNone : found->second;
+}
+
+std::vector<std::string> find_runs(const std::string& folder) {
+  if (file_exists(folder + "/config.json")) return {folder};
+  std::vector<std::string> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, error))
+    if (entry.path().filename() == "config.json") found.push_back(entry.path().parent_path().string());
+  if (found.empty()) throw Failure(folder + " holds no run: no config.json in it or below");
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 RunData read_run(const std::string& path) {

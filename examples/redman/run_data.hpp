@@ -14,7 +14,9 @@ struct RunData {
   const std::vector<double>& column(const std::string& name) const;  // empty when there is none
 };
 
-// Failure when the folder holds no run. A last row that is cut short is left out.
+// The folder itself when it is a run, else every run below it, sorted. Failure when there is none.
+std::vector<std::string> find_runs(const std::string& folder);
+// Failure when the folder is no run or has no finished epoch. A last row that is cut short is left out.
 RunData read_run(const std::string& path);
 
 }  // namespace tool

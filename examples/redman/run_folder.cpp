@@ -33,8 +33,7 @@ std::vector<std::string> as_sets(const Options& options) {
 
 Options from_sets(const Json& sets) {
   Options out;
-  for (const std::string text : sets)
-    out.emplace_back(text.substr(0, text.find('=')), text.substr(text.find('=') + 1));
+  for (const std::string text : sets) out.push_back(split_pair(text, "set"));
   return out;
 }
 
@@ -49,14 +48,6 @@ Json values_json(int32_t count, Get get) {
     out[key] = text;
   }
   return out;
-}
-
-Json build_json() {
-  auto b = redman::sized<rdm_build>();
-  redman::check(rdm_build_info(&b));
-  return {{"version", b.version},     {"abi", b.abi},           {"ode", b.ode},
-          {"eigen", b.eigen},         {"ccd", b.ccd},           {"octomap", b.octomap},
-          {"precision", b.precision}, {"compiler", b.compiler}, {"kernels", b.kernels}};
 }
 
 }  // namespace

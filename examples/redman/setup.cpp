@@ -5,12 +5,6 @@
 namespace tool {
 namespace {
 
-std::pair<std::string, std::string> split_pair(const std::string& text, const char* flag) {
-  const size_t at = text.find('=');
-  if (at == 0 || at == std::string::npos) throw Usage(std::string(flag) + " " + text + ": not key=value");
-  return {text.substr(0, at), text.substr(at + 1)};
-}
-
 double limit_number(const std::string& text, const std::string& whole) {
   size_t used = 0;
   double value = 0;
@@ -29,10 +23,24 @@ void append_keys(const std::vector<rdm_option_info>& table, std::vector<std::str
 
 }  // namespace
 
+std::pair<std::string, std::string> split_pair(const std::string& text, const char* flag) {
+  const size_t at = text.find('=');
+  if (at == 0 || at == std::string::npos) throw Usage(std::string(flag) + " " + text + ": not key=value");
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
 std::vector<rdm_option> raw_options(const Options& options) {
   std::vector<rdm_option> raw;
   for (const auto& [key, value] : options) raw.push_back({key.c_str(), value.c_str(), 0});
   return raw;
+}
+
+CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help) {
+  CLI::Option* task = command.add_option("--task,--env-id", pool.task, task_help);
+  command.add_option("--envs,--num-envs", pool.envs, "worlds");
+  command.add_option("--threads", pool.threads, "threads; 0: the caller's own");
+  command.add_option("--seed", pool.seed, "seed");
+  return task;
 }
 
 void add_set_flag(CLI::App& command, std::vector<std::string>& sets) {

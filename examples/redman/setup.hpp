@@ -12,6 +12,8 @@ namespace tool {
 
 using Options = std::vector<std::pair<std::string, std::string>>;  // key, value as text
 
+// "key=value" in two. Usage that names the flag when there is no '=' or no key.
+std::pair<std::string, std::string> split_pair(const std::string& text, const char* flag);
 // The list as the ABI takes it; borrows from `options`.
 std::vector<rdm_option> raw_options(const Options& options);
 
@@ -28,7 +30,8 @@ struct AgentSettings {
   Options options;
 };
 
-// Flags that several subcommands share.
+// Flags that several subcommands share. The first returns --task.
+CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help);
 void add_set_flag(CLI::App& command, std::vector<std::string>& sets);
 void add_cost_limit_flag(CLI::App& command, std::vector<std::string>& limits);
 
