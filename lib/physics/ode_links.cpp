@@ -143,8 +143,12 @@ void OdeLinks::make_joint(dWorldID world, int32_t i, const LinkState& state) {
     const Vec3 &one = parent_first ? outer : axis, &two = parent_first ? axis : outer;
     dJointAttach(id, parent_first ? parent_body : child_body, parent_first ? child_body : parent_body);
     dJointSetUniversalAnchor(id, p.x, p.y, p.z);
-    dJointSetUniversalAxis1(id, one.x, one.y, one.z);
+    // ODE takes a frame from both axes at each call and reads rubbish while they are parallel, as a new
+    // joint's other axis may be: the first one goes by a direction between.
+    const Vec3 between = one + two + cross(one, two);
+    dJointSetUniversalAxis1(id, between.x, between.y, between.z);
     dJointSetUniversalAxis2(id, two.x, two.y, two.z);
+    dJointSetUniversalAxis1(id, one.x, one.y, one.z);
   } else if (frame.prismatic) {
     joint.id = dJointCreateSlider(world, nullptr);
     joint.row = Row::kSlider;
