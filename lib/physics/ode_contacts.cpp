@@ -109,6 +109,7 @@ void OdeContacts::make_geom(const Scene& scene, int32_t index, dBodyID body, con
   shape.r = dBodyGetRotation(body);
   dGeomSetBody(shape.geom, body);
   const bool turned = X_LS.q.x != 0 || X_LS.q.y != 0 || X_LS.q.z != 0;
+  shape.slender = def.def.kind == ShapeKind::kCapsule && !turned;
   if (turned || norm(shape.offset) != 0) {
     to_ode(X_LS.q, q);
     dGeomSetOffsetPosition(shape.geom, shape.offset.x, shape.offset.y, shape.offset.z);
@@ -152,6 +153,7 @@ void OdeContacts::update_centers() {
       s.center = {s.p[0] + r[0] * o.x + r[1] * o.y + r[2] * o.z,
                   s.p[1] + r[4] * o.x + r[5] * o.y + r[6] * o.z,
                   s.p[2] + r[8] * o.x + r[9] * o.y + r[10] * o.z};
+      s.axis = {r[2], r[6], r[10]};
     }
     if (s.articulation < 0) continue;
     Box& box = boxes_[s.articulation];
@@ -175,7 +177,16 @@ bool OdeContacts::near(const ShapePair& pair) const {
   const Shape &a = shapes_[pair.a], &b = shapes_[pair.b];
   if (pair.reach < 0) return dot(a.center, b.center) - b.radius < a.radius;
   const Vec3 d = a.center - b.center;
-  return dot(d, d) < pair.reach * pair.reach;
+  return dot(d, d) < pair.reach * pair.reach && !(b.slender && beside(a, b, d)) &&
+         !(a.slender && beside(b, a, -d));
+}
+
+// The bounding sphere of `shape`, whose centre is at `d` from the capsule's, does not reach the capsule.
+bool OdeContacts::beside(const Shape& shape, const Shape& capsule, const Vec3& d) {
+  const double half = capsule.size.y, along = std::clamp(dot(d, capsule.axis), -half, half);
+  const Vec3 off = d - along * capsule.axis;
+  const double reach = shape.radius + capsule.size.x;
+  return dot(off, off) > reach * reach;
 }
 
 int OdeContacts::collide_pair(const ShapePair& pair, int most, dContactGeom* out) const {

@@ -40,12 +40,14 @@ class OdeContacts {
     dBodyID body;
     const dReal *p, *r;    // position and rotation of the body, or of the geom at rest
     Vec3 offset;           // of the shape's centre, from p, in r's axes
+    Vec3 axis;             // of a capsule along its body's z: world direction
     Vec3 center;           // world; of a plane: its normal
     int32_t articulation;  // -1: none
     double radius;         // of a plane: its constant (normal . x = radius on it)
     ShapeKind kind;
     Vec3 size;
     bool rest;
+    bool slender;  // a capsule with `axis`
   };
   struct Box {
     Vec3 low, high;  // around the bounding spheres of an articulation's shapes, world
@@ -53,6 +55,7 @@ class OdeContacts {
   void update_centers();
   bool near(const ShapePair& pair) const;
   bool near(const Shape& shape, const Box& box) const;
+  static bool beside(const Shape& shape, const Shape& capsule, const Vec3& d);
   int collide_pair(const ShapePair& pair, int most, dContactGeom* out) const;
   // Contacts of one pair, appended; true when there is any.
   bool touch(dWorldID world, const Scene& scene, const ShapePair& pair, Contact* contacts, Found* found);
