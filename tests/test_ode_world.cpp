@@ -111,9 +111,13 @@ TEST(OdeWorld, StepsAtTheContactCapWithoutTheHeap) {
   def.statics.push_back(ground);
   test::Simulation sim(def);
   const int64_t before = heap_count();
-  for (int k = 0; k < 50; ++k) sim->step();
+  bool full = false;
+  for (int k = 0; k < 50; ++k) {
+    sim->step();
+    full |= (sim->status() & kStatusContactOverflow) != 0;
+  }
   EXPECT_EQ(heap_count() - before, 0);
-  EXPECT_EQ(sim.scene().def.solver.contacts_max, 64);
+  EXPECT_TRUE(full);
 }
 
 TEST(OdeWorld, TakesTheMemoryItAnnounces) {
