@@ -64,6 +64,14 @@ void World::carve(Arena& arena) {
   for (size_t i = 0; i < scene_->def.bodies.size(); ++i) bodies_[i] = {scene_->def.bodies[i].X_WB, {}, {}};
 }
 
+void World::step_together(World* const* worlds, int32_t count) {
+  if (count > 0) worlds[0]->step_group(worlds, count);
+}
+
+void World::step_group(World* const* worlds, int32_t count) {
+  for (int32_t i = 0; i < count; ++i) worlds[i]->step();
+}
+
 void World::set_joints(int32_t articulation, const double* q, const double* qd) {
   const auto a = static_cast<size_t>(articulation);
   const int32_t first = scene_->link_offset[a];

@@ -55,6 +55,11 @@ class World {
   // One control step: solver.substeps substeps towards `target`. Clears and sets status, contacts,
   // torques, wrenches. Never throws.
   virtual void step() = 0;
+  // The same for `count` worlds that share working memory (see create), together where the engine gains
+  // from it: the bytes are those of stepping each alone.
+  static void step_together(World* const* worlds, int32_t count);
+  // The number of worlds that are best stepped together.
+  virtual int32_t group_size() const { return 1; }
 
   // Joint coordinates, [num_links], rad and rad/s (m, m/s). target is what the drives go for.
   const double* q() const { return q_; }
@@ -108,6 +113,7 @@ class World {
   void rebuild(int32_t articulation);
   // Called after links_ or bases_ changed outside of step.
   virtual void links_changed(int32_t articulation) = 0;
+  virtual void step_group(World* const* worlds, int32_t count);
 
   const Scene* scene_;
   double *q_ = nullptr, *qd_ = nullptr, *target_ = nullptr, *torque_ = nullptr;
