@@ -41,14 +41,14 @@ inline SceneDef two_hands_def(const TwoHands& c = {}) {
   return def;
 }
 
-// Owns a world and the arena it lives in.
+// Owns a world and the arena it lives in. Error(kUnsupported) for an engine this build has not.
 class Simulation {
  public:
-  explicit Simulation(SceneDef def) : scene_(make_scene(std::move(def))) {
+  explicit Simulation(SceneDef def, EngineKind kind = EngineKind::kOde) : scene_(make_scene(std::move(def))) {
     Arena measure;
-    World::measure(EngineKind::kOde, scene_, measure);
+    World::measure(kind, scene_, measure);
     arena_ = Arena(HostHooks{}, measure.used());
-    world_ = World::create(EngineKind::kOde, scene_, arena_, HostHooks{});
+    world_ = World::create(kind, scene_, arena_, HostHooks{});
   }
   ~Simulation() { World::destroy(world_, HostHooks{}); }
   Simulation(const Simulation&) = delete;
