@@ -5,6 +5,8 @@
 #pragma once
 #include <cmath>
 
+#include "base/elementary.hpp"
+
 namespace rdm {
 
 struct Vec3 {
@@ -61,8 +63,8 @@ inline Quat normalized(const Quat& q) {
 }
 // Turn by `angle` rad about the unit vector `axis`.
 inline Quat axis_angle(const Vec3& axis, double angle) {
-  const double s = std::sin(0.5 * angle);
-  return {std::cos(0.5 * angle), s * axis.x, s * axis.y, s * axis.z};
+  const elementary::SinCos half = elementary::sincos(0.5 * angle);
+  return {half.cos, half.sin * axis.x, half.sin * axis.y, half.sin * axis.z};
 }
 // R = Rz(rpy.z) Ry(rpy.y) Rx(rpy.x): fixed axes, rad.
 inline Quat from_rpy(const Vec3& rpy) {
@@ -100,6 +102,19 @@ inline Mat3 to_matrix(const Quat& q) {
            2 * (q.x * q.z - q.w * q.y), 2 * (q.y * q.z + q.w * q.x), 1 - 2 * (q.x * q.x + q.y * q.y)}};
 }
 
+// The unit quaternion of a rotation matrix.
+inline Quat to_quat(const Mat3& r) {
+  const double trace = r.m[0] + r.m[4] + r.m[8];
+  if (trace > 0) return normalized(Quat{1 + trace, r.m[7] - r.m[5], r.m[2] - r.m[6], r.m[3] - r.m[1]});
+  if (r.m[0] >= r.m[4] && r.m[0] >= r.m[8])
+    return normalized(
+        Quat{r.m[7] - r.m[5], 1 + r.m[0] - r.m[4] - r.m[8], r.m[1] + r.m[3], r.m[2] + r.m[6]});
+  if (r.m[4] >= r.m[8])
+    return normalized(
+        Quat{r.m[2] - r.m[6], r.m[1] + r.m[3], 1 + r.m[4] - r.m[0] - r.m[8], r.m[5] + r.m[7]});
+  return normalized(Quat{r.m[3] - r.m[1], r.m[2] + r.m[6], r.m[5] + r.m[7], 1 + r.m[8] - r.m[0] - r.m[4]});
+}
+
 struct Pose {
   Vec3 p;
   Quat q;
@@ -109,6 +124,12 @@ inline Pose operator*(const Pose& a, const Pose& b) {
 }
 inline Vec3 operator*(const Pose& a, const Vec3& v) {
   return a.p + rotate(a.q, v);
+}
+// The pose after `h` s of the steady velocities v and w, world axes.
+inline Pose moved(const Pose& a, const Vec3& v, const Vec3& w, double h) {
+  const double rate = norm(w);
+  if (rate == 0) return {a.p + h * v, a.q};
+  return {a.p + h * v, normalized(axis_angle((1 / rate) * w, h * rate) * a.q)};
 }
 inline Pose inverse(const Pose& a) {
   const Quat c = conjugate(a.q);

@@ -4,14 +4,11 @@
 #include <cmath>
 
 #include "physics/convert.hpp"
-#include "physics/manifold.hpp"
 
 namespace rdm {
 namespace {
 
 constexpr double kFar = 1e300;  // m
-constexpr int kMaxPerPair = 8;
-constexpr double kFlat = 0.99;  // cosine between a contact's normal and that of a face it counts for
 
 // The one place where a contact's surface is described, every field of the mode included.
 dContact describe(const SolverDef& solver, const dContactGeom& geom, double mu) {
@@ -24,49 +21,12 @@ dContact describe(const SolverDef& solver, const dContactGeom& geom, double mu) 
   return contact;
 }
 
-// The side of a box whose outward normal is nearest to `n`; false when none is near.
-bool face_of_box(dGeomID box, const Vec3& size, const Vec3& n, double* half, Face* face) {
-  const Mat3 r = mat_from_ode(dGeomGetRotation(box));
-  for (int k = 0; k < 3; ++k) {
-    const double cosine = dot(n, r.col(k));
-    if (std::fabs(cosine) < kFlat) continue;
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    face->n = std::copysign(1.0, cosine) * r.col(k);
-    face->center = from_ode(dGeomGetPosition(box)) + size[k] * face->n;
-    face->offset = dot(face->n, face->center);
-    face->side[0] = r.col(i);
-    face->side[1] = r.col(j);
-    half[0] = size[i], half[1] = size[j];
-    face->half = half;
-    return true;
-  }
-  return false;
-}
-
-dGeomID create_geom(const ShapeDef& shape, const Pose& X_WS) {
-  const Vec3& s = shape.size;
-  switch (shape.kind) {
-    case ShapeKind::kSphere:
-      return dCreateSphere(nullptr, s.x);
-    case ShapeKind::kCapsule:
-      return dCreateCapsule(nullptr, s.x, 2 * s.y);
-    case ShapeKind::kBox:
-      return dCreateBox(nullptr, 2 * s.x, 2 * s.y, 2 * s.z);
-    case ShapeKind::kCylinder:
-      return dCreateCylinder(nullptr, s.x, 2 * s.y);
-    case ShapeKind::kPlane:
-      break;
-  }
-  const Vec3 n = rotate(X_WS.q, {0, 0, 1});
-  return dCreatePlane(nullptr, n.x, n.y, n.z, dot(n, X_WS.p));
-}
-
 }  // namespace
 
 OdeContacts::~OdeContacts() {
   if (group_) dJointGroupDestroy(group_);
   for (int32_t i = 0; shapes_ && i < num_shapes_; ++i)
-    if (shapes_[i].geom) dGeomDestroy(shapes_[i].geom);
+    if (shapes_[i].geom.id) dGeomDestroy(shapes_[i].geom.id);
 }
 
 void OdeContacts::carve(const Scene& scene, Arena& arena) {
@@ -84,36 +44,31 @@ void OdeContacts::make_geom(const Scene& scene, int32_t index, dBodyID body, con
   const Pose& X_LS = def.def.X_LS;
   const Pose X_WS = X_WC * X_LS;
   Shape& shape = shapes_[index];
-  shape.geom = create_geom(def.def, X_WS);
+  shape.geom = rdm::make_geom(def.def, X_WS);
   shape.body = body;
   shape.articulation = def.articulation;
   shape.radius = def.radius;
-  shape.kind = def.def.kind;
-  shape.size = def.def.size;
   shape.rest = body == nullptr;
   if (def.radius < 0) {
-    shape.center = rotate(X_WS.q, {0, 0, 1});
-    shape.radius = dot(shape.center, X_WS.p);
+    shape.center = shape.geom.plane_n;
+    shape.radius = shape.geom.plane_d;
     return;
   }
-  dQuaternion q;
   if (!body) {
-    to_ode(X_WS.q, q);
-    dGeomSetPosition(shape.geom, X_WS.p.x, X_WS.p.y, X_WS.p.z);
-    dGeomSetQuaternion(shape.geom, q);
     shape.center = X_WS.p;
     return;
   }
   shape.offset = X_LS.p - com;
   shape.p = dBodyGetPosition(body);
   shape.r = dBodyGetRotation(body);
-  dGeomSetBody(shape.geom, body);
+  dGeomSetBody(shape.geom.id, body);
   const bool turned = X_LS.q.x != 0 || X_LS.q.y != 0 || X_LS.q.z != 0;
   shape.slender = def.def.kind == ShapeKind::kCapsule && !turned;
   if (turned || norm(shape.offset) != 0) {
+    dQuaternion q;
     to_ode(X_LS.q, q);
-    dGeomSetOffsetPosition(shape.geom, shape.offset.x, shape.offset.y, shape.offset.z);
-    dGeomSetOffsetQuaternion(shape.geom, q);
+    dGeomSetOffsetPosition(shape.geom.id, shape.offset.x, shape.offset.y, shape.offset.z);
+    dGeomSetOffsetQuaternion(shape.geom.id, q);
   }
 }
 
@@ -146,7 +101,7 @@ void OdeContacts::update_centers() {
   for (int32_t i = 0; i < num_articulations_; ++i) boxes_[i] = {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
   for (int32_t i = 0; i < num_shapes_; ++i) {
     Shape& s = shapes_[i];
-    if (!s.geom) continue;
+    if (!s.geom.id) continue;
     if (!s.rest) {
       const dReal* r = s.r;
       const Vec3& o = s.offset;
@@ -183,39 +138,10 @@ bool OdeContacts::near(const ShapePair& pair) const {
 
 // The bounding sphere of `shape`, whose centre is at `d` from the capsule's, does not reach the capsule.
 bool OdeContacts::beside(const Shape& shape, const Shape& capsule, const Vec3& d) {
-  const double half = capsule.size.y, along = std::clamp(dot(d, capsule.axis), -half, half);
+  const double half = capsule.geom.size.y, along = std::clamp(dot(d, capsule.axis), -half, half);
   const Vec3 off = d - along * capsule.axis;
-  const double reach = shape.radius + capsule.size.x;
+  const double reach = shape.radius + capsule.geom.size.x;
   return dot(off, off) > reach * reach;
-}
-
-int OdeContacts::collide_pair(const ShapePair& pair, int most, dContactGeom* out) const {
-  const Shape &a = shapes_[pair.a], &b = shapes_[pair.b];
-  const int found = dCollide(a.geom, b.geom, most, out, sizeof out[0]);
-  const bool first = a.kind == ShapeKind::kCylinder;
-  if (found == 0 || (!first && b.kind != ShapeKind::kCylinder)) return found;
-  const Shape &round = first ? a : b, &flat = first ? b : a;
-  const Vec3 n = first ? from_ode(out[0].normal) : -from_ode(out[0].normal);
-  Face face;
-  double half[2];
-  if (flat.kind == ShapeKind::kPlane) {
-    face.n = flat.center;
-    face.offset = flat.radius;
-  } else if (flat.kind != ShapeKind::kBox || !face_of_box(flat.geom, flat.size, n, half, &face)) {
-    return found;
-  }
-  const Cylinder cylinder = {from_ode(dGeomGetPosition(round.geom)),
-                             mat_from_ode(dGeomGetRotation(round.geom)), round.size.x, round.size.y};
-  ManifoldPoint points[kManifoldPoints];
-  const int count = std::min(cylinder_on_face(cylinder, face, points), most);
-  if (count <= 0) return found;
-  for (int i = 0; i < count; ++i) {
-    out[i] = out[0];
-    to_ode(points[i].p, out[i].pos);
-    to_ode(first ? face.n : -face.n, out[i].normal);
-    out[i].depth = points[i].depth;
-  }
-  return count;
 }
 
 OdeContacts::Found OdeContacts::collide(dWorldID world, const Scene& scene, Contact* contacts,
@@ -237,8 +163,8 @@ bool OdeContacts::touch(dWorldID world, const Scene& scene, const ShapePair& pai
                         Found* found) {
   const SolverDef& solver = scene.def.solver;
   const Shape &a = shapes_[pair.a], &b = shapes_[pair.b];
-  dContactGeom geoms[kMaxPerPair];
-  const int n = collide_pair(pair, solver.contacts_per_pair, geoms);
+  dContactGeom geoms[kMaxPairPoints];
+  const int n = collide_geoms(a.geom, b.geom, solver.contacts_per_pair, geoms);
   for (int i = 0; i < n; ++i) {
     if (found->count == solver.contacts_max) {
       found->overflow = true;
@@ -262,10 +188,10 @@ double OdeContacts::overlap(const Scene& scene, int32_t body) {
     return s.carrier == Carrier::kBody && s.index == body;
   };
   double deepest = 0;
-  dContactGeom geoms[kMaxPerPair];
+  dContactGeom geoms[kMaxPairPoints];
   for (const ShapePair& pair : scene.pairs) {
     if (!(carries(pair.a) || carries(pair.b)) || !near(pair)) continue;
-    const int n = collide_pair(pair, kMaxPerPair, geoms);
+    const int n = collide_geoms(shapes_[pair.a].geom, shapes_[pair.b].geom, kMaxPairPoints, geoms);
     for (int i = 0; i < n; ++i) deepest = std::max(deepest, static_cast<double>(geoms[i].depth));
   }
   return deepest;

@@ -3,6 +3,7 @@
 #include <ode/ode.h>
 
 #include "base/arena.hpp"
+#include "physics/geom.hpp"
 #include "physics/world.hpp"
 
 namespace rdm {
@@ -36,7 +37,7 @@ class OdeContacts {
 
  private:
   struct Shape {
-    dGeomID geom;
+    Geom geom;
     dBodyID body;
     const dReal *p, *r;    // position and rotation of the body, or of the geom at rest
     Vec3 offset;           // of the shape's centre, from p, in r's axes
@@ -44,8 +45,6 @@ class OdeContacts {
     Vec3 center;           // world; of a plane: its normal
     int32_t articulation;  // -1: none
     double radius;         // of a plane: its constant (normal . x = radius on it)
-    ShapeKind kind;
-    Vec3 size;
     bool rest;
     bool slender;  // a capsule with `axis`
   };
@@ -56,7 +55,6 @@ class OdeContacts {
   bool near(const ShapePair& pair) const;
   bool near(const Shape& shape, const Box& box) const;
   static bool beside(const Shape& shape, const Shape& capsule, const Vec3& d);
-  int collide_pair(const ShapePair& pair, int most, dContactGeom* out) const;
   // Contacts of one pair, appended; true when there is any.
   bool touch(dWorldID world, const Scene& scene, const ShapePair& pair, Contact* contacts, Found* found);
   void make_joint(dWorldID world, const Scene& scene, const dContactGeom& geom, double mu, dBodyID a,

@@ -75,12 +75,14 @@ void OdeWorld::make_world(const OdeWorld* partner) {
 void OdeWorld::make_bodies() {
   const auto num_articulations = static_cast<int32_t>(scene_->def.articulations.size());
   // ODE's joints are made in the pose of q = 0, whether it is in range or not.
-  for (int32_t i = 0; i < scene_->num_links; ++i) q_[i] = 0;
+  for (int32_t i = 0; i < scene_->num_links; ++i) {
+    q_[i] = 0;
+    fresh_[i] = 1;
+  }
   for (int32_t a = 0; a < num_articulations; ++a) rebuild(a);
   tree_.make(ode_.world, state());
   for (int32_t i = 0; i < scene_->num_links; ++i) q_[i] = target_[i];
   for (int32_t a = 0; a < num_articulations; ++a) {
-    rebuild(a);
     links_changed(a);
   }
   for (int32_t i = 0; i < scene_->num_bodies; ++i) {
@@ -176,6 +178,7 @@ void OdeWorld::prewarm() {
 }
 
 void OdeWorld::links_changed(int32_t articulation) {
+  rebuild(articulation);
   tree_.write(articulation, state());
 }
 

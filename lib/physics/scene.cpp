@@ -182,6 +182,7 @@ void flatten(Scene* scene) {
     const ArticulationDef& def = scene->def.articulations[static_cast<size_t>(a)];
     const int32_t offset = scene->num_links;
     scene->link_offset.push_back(offset);
+    scene->first_shape.push_back(static_cast<int32_t>(scene->shapes.size()));
     for (const LinkDef& link : def.links) {
       if (link.sensor) scene->sensors.push_back(scene->num_links);
       const Quat& q = link.X_PL.q;

@@ -114,6 +114,9 @@ struct SolverDef {
   double link_armature = 3e-5;      // kg m2 about the joint axis of links under 1e-4 kg m2 (engine ode)
   bool spring_only_effort = false;  // true: effort bounds the spring alone, damping stays outside
   bool exact = false;               // engine ode: the O(n^3) solver, slow; the reference of tests
+  // Engine articulated:
+  bool double_precision = false;  // arithmetic in double, one lane: a reference, half as fast
+  int32_t lanes = 0;              // 1, 4 or 8 numbers at a time; 0: what suits the scene. Same bytes for all
 };
 
 inline constexpr int kMaxMaterials = 16;
@@ -170,6 +173,7 @@ struct Scene {
   int32_t num_links = 0, num_bodies = 0;
   Vector<int32_t> link_offset;        // per articulation
   Vector<int32_t> link_articulation;  // per link
+  Vector<int32_t> first_shape;        // per articulation
   Vector<LinkFrame> frames;           // per link
   Vector<SceneShape> shapes;  // articulation by articulation (base shapes are in place), bodies, statics
   Vector<ShapePair> pairs;    // all pairs that may touch, in fixed order

@@ -3,33 +3,38 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "physics/articulated_world.hpp"
 #include "physics/ode_world.hpp"
 
 namespace rdm {
 
 World* World::create(EngineKind kind, const Scene& scene, Arena& arena, const HostHooks& hooks,
                      World* partner) {
-  if (kind != EngineKind::kOde)
-    fail(Code::kUnsupported, "engine %d is not in this build", static_cast<int>(kind));
-  return host_new<OdeWorld>(hooks, scene, arena, static_cast<OdeWorld*>(partner));
+  const HostScope scope(hooks);
+  if (kind == EngineKind::kOde)
+    return host_new<OdeWorld>(hooks, scene, arena, static_cast<OdeWorld*>(partner));
+  return host_new<ArticulatedWorld>(hooks, scene, arena, static_cast<ArticulatedWorld*>(partner),
+                                    partner != nullptr);
 }
 
-void World::measure(EngineKind kind, const Scene& scene, Arena& arena) {
-  if (kind != EngineKind::kOde)
-    fail(Code::kUnsupported, "engine %d is not in this build", static_cast<int>(kind));
+void World::measure(EngineKind kind, const Scene& scene, Arena& arena, bool partnered) {
   if (!arena.measuring()) fail(Code::kInternal, "measure: the arena is a real one");
-  const OdeWorld world(scene, arena);
+  if (kind == EngineKind::kOde)
+    const OdeWorld world(scene, arena);
+  else
+    const ArticulatedWorld world(scene, arena, nullptr, partnered);
 }
 
 size_t World::engine_bytes(EngineKind kind, const Scene& scene) {
-  if (kind != EngineKind::kOde)
-    fail(Code::kUnsupported, "engine %d is not in this build", static_cast<int>(kind));
-  return OdeWorld::heap_bytes(scene);
+  return kind == EngineKind::kOde ? OdeWorld::heap_bytes(scene) : ArticulatedWorld::heap_bytes(scene);
 }
 
 void World::destroy(World* world, const HostHooks& hooks) {
-  // All engines are made by host_new of their own type.
-  if (world) host_delete(hooks, static_cast<OdeWorld*>(world));
+  if (!world) return;
+  if (world->engine() == EngineKind::kOde)
+    host_delete(hooks, static_cast<OdeWorld*>(world));
+  else
+    host_delete(hooks, static_cast<ArticulatedWorld*>(world));
 }
 
 World::World(const Scene& scene, Arena& arena) : scene_(&scene) {
@@ -51,6 +56,7 @@ void World::carve(Arena& arena) {
   contacts_ = arena.make<Contact>(static_cast<size_t>(scene_->def.solver.contacts_max));
   sensors_ = arena.make<Wrench>(scene_->sensors.size());
   touched_ = arena.make<uint8_t>(scene_->pairs.size());
+  fresh_ = arena.make<uint8_t>(links);
   if (arena.measuring()) return;
   for (size_t a = 0; a < bases; ++a) {
     const ArticulationDef& def = scene_->def.articulations[a];
@@ -84,7 +90,6 @@ void World::set_joints(int32_t articulation, const double* q, const double* qd) 
     q_[first + i] = std::clamp(q[i], joint.lower, joint.upper);
     qd_[first + i] = qd[i];
   }
-  rebuild(articulation);
   links_changed(articulation);
 }
 
@@ -121,7 +126,7 @@ Pose World::shape_pose(int32_t shape) const {
   const SceneShape& s = scene_->shapes[static_cast<size_t>(shape)];
   switch (s.carrier) {
     case Carrier::kLink:
-      return links_[s.index].X * s.def.X_LS;
+      return link(s.index).X * s.def.X_LS;
     case Carrier::kBody:
       return bodies_[s.index].X * s.def.X_LS;
     case Carrier::kBase:

@@ -43,7 +43,8 @@ class World {
   // worlds must then never step at the same time.
   static World* create(EngineKind kind, const Scene& scene, Arena& arena, const HostHooks& hooks,
                        World* partner = nullptr);
-  static void measure(EngineKind kind, const Scene& scene, Arena& arena);
+  // What create carves, without or with a partner.
+  static void measure(EngineKind kind, const Scene& scene, Arena& arena, bool partnered = false);
   // Bytes that the engine allocates by itself for one world, an estimate from above.
   static size_t engine_bytes(EngineKind kind, const Scene& scene);
   static void destroy(World* world, const HostHooks& hooks);
@@ -72,7 +73,10 @@ class World {
   // Sets all joint coordinates of one articulation and rebuilds its links. Values are clamped to range.
   void set_joints(int32_t articulation, const double* q, const double* qd);
 
-  const Motion& link(int32_t i) const { return links_[i]; }  // [num_links]
+  const Motion& link(int32_t i) const {  // [num_links]
+    if (!fresh_[i]) fetch_link(i);
+    return links_[i];
+  }
   const Motion& base(int32_t articulation) const { return bases_[articulation]; }
   const Motion& body(int32_t i) const { return bodies_[i]; }  // [num_bodies]
   virtual void set_body(int32_t i, const Motion& m) = 0;
@@ -111,7 +115,9 @@ class World {
   void carve(Arena& arena);
   // Forward kinematics of one articulation: links_ from q_, qd_ and bases_.
   void rebuild(int32_t articulation);
-  // Called after links_ or bases_ changed outside of step.
+  // Brings links_[i] and link_R_[i] up to date where an engine does so only when asked: fresh_[i] is 0.
+  virtual void fetch_link(int32_t) const {}
+  // Called after q_, qd_ or bases_ changed outside of step.
   virtual void links_changed(int32_t articulation) = 0;
   virtual void step_group(World* const* worlds, int32_t count);
 
@@ -122,7 +128,7 @@ class World {
   Vec3* axes_ = nullptr;                        // joint axes, world
   Contact* contacts_ = nullptr;
   Wrench* sensors_ = nullptr;
-  uint8_t* touched_ = nullptr;
+  uint8_t *touched_ = nullptr, *fresh_ = nullptr;
   int32_t num_contacts_ = 0;
   uint32_t status_ = 0;
 };

@@ -1,0 +1,26 @@
+// One collision shape in ODE: how it is made, and the contact points of two of them.
+#pragma once
+#include <ode/ode.h>
+
+#include "physics/scene.hpp"
+
+namespace rdm {
+
+inline constexpr int kMaxPairPoints = 8;
+
+struct Geom {
+  dGeomID id = nullptr;  // null: the shape does not collide
+  ShapeKind kind = ShapeKind::kSphere;
+  Vec3 size;
+  Vec3 plane_n;        // of a plane: n . x = plane_d on it, world
+  double plane_d = 0;  // m
+};
+
+// A geom of its own, in no space, at X_WS. The caller destroys it.
+Geom make_geom(const ShapeDef& shape, const Pose& X_WS);
+
+// At most `most` points; normals point from b into a. A cylinder on a flat face gets the points of
+// cylinder_on_face instead of the collider's.
+int collide_geoms(const Geom& a, const Geom& b, int most, dContactGeom* out);
+
+}  // namespace rdm
