@@ -17,6 +17,7 @@ struct HandView {
 };
 
 void add_hand_fields(FieldTable& table, const char* prefix);
-void write_hand(const HandView& view, FieldWriter& out);
+// Returns the place behind the block.
+float* write_hand(const HandView& view, float* out);
 
 }  // namespace rdm

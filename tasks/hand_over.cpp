@@ -141,13 +141,11 @@ class HandOver final : public Task {
 
   void observe(const World& world, const void* state, float* obs) const override {
     const State& s = *static_cast<const State*>(state);
-    FieldWriter out(fields_, obs);
-    write_hand({world, hands_[0], s.action, sensor_}, out);
-    write_hand({world, hands_[1], s.action + kHandActions, sensor_}, out);
-    write_throw(game_, world, s.game, out);
-    out.finish();
-    clip_row(obs, 2 * kHandBlock + kThrowBlock, kObsLimit);
+    obs = write_hand({world, hands_[0], s.action, sensor_}, obs);
+    obs = write_hand({world, hands_[1], s.action + kHandActions, sensor_}, obs);
+    write_throw(game_, world, s.game, obs);
   }
+  float obs_limit() const override { return kObsLimit; }
 
   void hold_action(float* action) const override { hold(action); }
 

@@ -1,6 +1,7 @@
 #include "tasks/hands.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "env/robot_options.hpp"
 #include "robot/override.hpp"
@@ -45,9 +46,16 @@ Hand find_hand(const Scene& scene, int32_t articulation) {
     const JointDef& j = scene.link(h.first + i).joint;
     h.lower[i] = j.lower;
     h.upper[i] = j.upper;
-    h.effort[i] = j.effort;
+    h.effort[i] = std::numeric_limits<double>::infinity();
   }
-  for (int32_t i = 0; i < kHandActions; ++i) h.actuated[i] = h.first + kShadowHand.actuated(i);
+  for (int32_t i = 0; i < kHandActions; ++i) {
+    const int32_t joint = kShadowHand.actuated(i);
+    h.actuated[i] = h.first + joint;
+    h.act_lower[i] = h.lower[joint];
+    h.act_upper[i] = h.upper[joint];
+    const double effort = scene.link(h.actuated[i]).joint.effort;
+    if (effort > 0) h.effort[joint] = effort;
+  }
   for (int32_t i = 0; i < kHandTips; ++i) {
     h.tips[i] = h.first + kShadowHand.tips[i].link;
     const auto sensor = std::find(scene.sensors.begin(), scene.sensors.end(), h.tips[i]);
@@ -75,12 +83,15 @@ void draw_joints(const JointNoise& noise, const Hand* hands, int32_t count, Worl
 }
 
 void command_hand(const Hand& hand, const double* command, World& world) {
-  double* target = world.target();
+  double angle[kHandActions];
   for (int32_t i = 0; i < kHandActions; ++i) {
-    const int32_t j = hand.joint(i);
-    target[hand.actuated[i]] =
-        std::clamp(to_angle(hand.lower[j], hand.upper[j], command[i]), hand.lower[j], hand.upper[j]);
+    const double lower = hand.act_lower[i], upper = hand.act_upper[i];
+    const double a = to_angle(lower, upper, command[i]);
+    const double above = a < lower ? lower : a;
+    angle[i] = upper < above ? upper : above;
   }
+  double* target = world.target();
+  for (int32_t i = 0; i < kHandActions; ++i) target[hand.actuated[i]] = angle[i];
 }
 
 }  // namespace rdm

@@ -21,8 +21,12 @@ struct Hand {
   int32_t actuated[kHandActions] = {};  // flat joint of each action entry
   int32_t tips[kHandTips] = {};         // flat link: first, middle, ring, little finger, thumb
   int32_t sensors[kHandTips] = {};      // index of Scene::sensors
-  // Of its joints, copied together because every step reads them; rad, N m.
-  double lower[kHandJoints] = {}, upper[kHandJoints] = {}, effort[kHandJoints] = {};
+  // Ranges of its joints, rad; copied together, as all below, because every step reads them.
+  double lower[kHandJoints] = {}, upper[kHandJoints] = {};
+  // The same for each action entry's joint.
+  double act_lower[kHandActions] = {}, act_upper[kHandActions] = {};
+  // Effort limits, N m; infinite where no action drives the joint or it has no limit.
+  double effort[kHandJoints] = {};
   // Joint of an action entry, counted within the hand.
   int32_t joint(int32_t action) const { return actuated[action] - first; }
 };

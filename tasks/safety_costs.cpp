@@ -63,6 +63,18 @@ void judge_release(const SafetyCosts& c, const World& world, SafetyState* state,
   verdict->cost_raw[kThrowAngle] = elevation;
 }
 
+// Of a driven joint's torque in its effort limit.
+double largest_share(const Hand& hand, const World& world) {
+  const double* torque = world.torque() + hand.first;
+  double most[2] = {};
+  for (int i = 0; i < kHandJoints; i += 2)
+    for (int k = 0; k < 2; ++k) {
+      const double share = std::abs(torque[i + k]) / hand.effort[i + k];
+      most[k] = share > most[k] ? share : most[k];
+    }
+  return std::max(most[0], most[1]);
+}
+
 constexpr CostColumns columns(const char* help, double limit) {
   return {{
       {"cost", help, limit},
@@ -155,12 +167,7 @@ void judge_safety(const SafetyCosts& c, const Hand* hands, const World& world, c
   v->cost[kCost] = worst > 0;
   v->cost_raw[kCost] = worst;
 
-  double share = 0;
-  for (int h = 0; h < 2; ++h)
-    for (int k = 0; k < kHandActions; ++k) {
-      const double limit = hands[h].effort[hands[h].joint(k)];
-      if (limit > 0) share = std::max(share, std::abs(world.torque()[hands[h].actuated[k]]) / limit);
-    }
+  const double share = std::max(largest_share(hands[0], world), largest_share(hands[1], world));
   v->cost[kEffort] = share >= kAtLimit;
   v->cost_raw[kEffort] = share;
 

@@ -80,21 +80,23 @@ Quat draw_rotation(Stream& stream) {
 
 void reset_throw(const ThrowGame& game, World& world, ThrowState* state, Stream& stream) {
   Motion m;
-  for (int draw = 0; draw < kMaxDraws; ++draw) {
+  bool clear = false;
+  for (int draw = 0; draw < kMaxDraws && !clear; ++draw) {
     for (int i = 0; i < 3; ++i) m.X.p[i] = game.start[i] + game.start_noise * stream.signed_unit();
     m.X.q = game.random_start ? draw_rotation(stream) : Quat{};
     world.set_body(0, m);
-    if (world.body_overlap(0) <= 0) break;
+    clear = world.body_overlap(0) <= 0;
   }
-  for (int raise = 0; raise < kMaxRaises && world.body_overlap(0) > 0; ++raise) {
+  for (int raise = 0; raise < kMaxRaises && !clear; ++raise) {
     m.X.p.z += kRaise;
     world.set_body(0, m);
+    clear = world.body_overlap(0) <= 0;
   }
   state->goal = game.random_goal ? draw_rotation(stream) : Quat{};
 }
 
-Quat rotation_error(const ThrowGame& game, const World& world, const ThrowState& state) {
-  const Quat q = world.body(0).X.q * conjugate(state.goal);
+Quat rotation_error(const ThrowGame& game, const Quat& rotation, const ThrowState& state) {
+  const Quat q = rotation * conjugate(state.goal);
   return game.canonical_rotation && q.w < 0 ? Quat{-q.w, -q.x, -q.y, -q.z} : q;
 }
 
@@ -103,8 +105,8 @@ double rotation_angle(const Quat& q) {
 }
 
 ThrowMeasure measure_throw(const ThrowGame& game, const World& world, const ThrowState& state) {
-  return {norm(world.body(0).X.p - game.goal),
-          game.ignore_rotation ? 0 : rotation_angle(rotation_error(game, world, state))};
+  const Pose& X = world.body(0).X;
+  return {norm(X.p - game.goal), game.ignore_rotation ? 0 : rotation_angle(rotation_error(game, X.q, state))};
 }
 
 double throw_reward(const ThrowMeasure& m, double alpha, double scale) {
@@ -116,25 +118,33 @@ bool count_success(const ThrowGame& game, double distance, ThrowState* state) {
   return state->near >= game.success_steps;
 }
 
+namespace {
+
+struct ThrowView {
+  const ThrowGame& game;
+  const ThrowState& state;
+  const Motion& object;
+};
+
+constexpr FieldEntry<ThrowView> kFields[] = {
+    {"object.position", "m", 3, [](const ThrowView& v, float* out) { put(v.object.X.p, out); }},
+    {"object.rotation", "1", 4, [](const ThrowView& v, float* out) { put(v.object.X.q, out); }},
+    {"object.velocity", "m/s", 3, [](const ThrowView& v, float* out) { put(v.object.v, out); }},
+    {"object.spin", "5 rad/s", 3, [](const ThrowView& v, float* out) { put(v.object.w, out, 0.2); }},
+    {"goal.position", "m", 3, [](const ThrowView& v, float* out) { put(v.game.goal, out); }},
+    {"goal.rotation", "1", 4, [](const ThrowView& v, float* out) { put(v.state.goal, out); }},
+    {"object.rotation_error", "1", 4,
+     [](const ThrowView& v, float* out) { put(rotation_error(v.game, v.object.X.q, v.state), out); }},
+};
+
+}  // namespace
+
 void add_throw_fields(FieldTable& table) {
-  add_field(table, "object", "position", "m", 3);
-  add_field(table, "object", "rotation", "1", 4);
-  add_field(table, "object", "velocity", "m/s", 3);
-  add_field(table, "object", "spin", "5 rad/s", 3);
-  add_field(table, "goal", "position", "m", 3);
-  add_field(table, "goal", "rotation", "1", 4);
-  add_field(table, "object", "rotation_error", "1", 4);
+  for (const auto& e : kFields) add_field(table, nullptr, e.name, e.unit, e.count);
 }
 
-void write_throw(const ThrowGame& game, const World& world, const ThrowState& state, FieldWriter& out) {
-  const Motion& object = world.body(0);
-  put(object.X.p, out.next(3));
-  put(object.X.q, out.next(4));
-  put(object.v, out.next(3));
-  put(object.w, out.next(3), 0.2);
-  put(game.goal, out.next(3));
-  put(state.goal, out.next(4));
-  put(rotation_error(game, world, state), out.next(4));
+float* write_throw(const ThrowGame& game, const World& world, const ThrowState& state, float* out) {
+  return write_fields<kFields>(ThrowView{game, state, world.body(0)}, out);
 }
 
 const CameraSpec kThrowCameras[] = {

@@ -50,7 +50,7 @@ Quat draw_rotation(Stream& stream);
 void reset_throw(const ThrowGame& game, World& world, ThrowState* state, Stream& stream);
 
 // Object rotation times conjugate goal rotation.
-Quat rotation_error(const ThrowGame& game, const World& world, const ThrowState& state);
+Quat rotation_error(const ThrowGame& game, const Quat& rotation, const ThrowState& state);
 // Rotation angle of a unit quaternion, rad in [0, pi].
 double rotation_angle(const Quat& q);
 ThrowMeasure measure_throw(const ThrowGame& game, const World& world, const ThrowState& state);
@@ -63,9 +63,9 @@ bool count_success(const ThrowGame& game, double distance, ThrowState* state);
 inline constexpr int kThrowBlock = 24;
 
 // Object pose, velocities, goal pose, rotation error: kThrowBlock numbers
-// (tasks section 3.3).
+// (tasks section 3.3). Returns the place behind them.
 void add_throw_fields(FieldTable& table);
-void write_throw(const ThrowGame& game, const World& world, const ThrowState& state, FieldWriter& out);
+float* write_throw(const ThrowGame& game, const World& world, const ThrowState& state, float* out);
 
 // Settings that learned the throw (one decision each 4 control steps, 64 worlds).
 using ThrowLearner = std::array<LearnerDefault, 20>;

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "toy_task.hpp"
 
 namespace rdm::test {
@@ -24,17 +26,20 @@ TEST(Fields, NamesMustFit) {
   EXPECT_EQ(code_of([&] { add_field(t, nullptr, "none", "1", 0); }), Code::kInternal);
 }
 
-TEST(Fields, TheWriterWalksTheTable) {
-  const FieldTable t = small_table();
-  float row[5] = {};
-  FieldWriter w(t, row);
-  EXPECT_EQ(w.next(2), row);
-  EXPECT_EQ(code_of([&] { w.finish(); }), Code::kInternal);
-  EXPECT_EQ(w.next(3), row + 2);
-  EXPECT_EQ(code_of([&] { w.finish(); }), Code::kOk);
-  EXPECT_EQ(code_of([&] { w.next(1); }), Code::kInternal);
-  FieldWriter wrong(t, row);
-  EXPECT_EQ(code_of([&] { wrong.next(3); }), Code::kInternal);
+struct Source {
+  float joint, goal;
+};
+constexpr FieldEntry<Source> kEntries[] = {
+    {"joint", "1", 2, [](const Source& s, float* out) { out[0] = out[1] = s.joint; }},
+    {"goal", "m", 3, [](const Source& s, float* out) { out[0] = out[1] = out[2] = s.goal; }},
+};
+
+TEST(Fields, EntriesAreWrittenOneBehindTheOther) {
+  float row[6] = {};
+  row[5] = -1;
+  EXPECT_EQ(write_fields<kEntries>(Source{7, 9}, row), row + 5);
+  const float expected[] = {7, 7, 9, 9, 9, -1};
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(row[i], expected[i]) << i;
 }
 
 TEST(Fields, QuaternionsAreScalarLast) {
@@ -46,15 +51,42 @@ TEST(Fields, QuaternionsAreScalarLast) {
   EXPECT_EQ(out[2], static_cast<float>(0.2 * 3));
 }
 
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
 TEST(Fields, ClippingKeepsWhatIsNotANumber) {
-  float row[] = {7, -7, 4.5f, std::numeric_limits<float>::quiet_NaN(),
-                 std::numeric_limits<float>::infinity()};
-  clip_row(row, 5, 5);
+  float row[] = {7, -7, 4.5f, kNan, kInf, -kInf};
+  EXPECT_FALSE(clip_row(row, 6, 5));
   EXPECT_EQ(row[0], 5);
   EXPECT_EQ(row[1], -5);
   EXPECT_EQ(row[2], 4.5f);
   EXPECT_NE(row[3], row[3]);
   EXPECT_EQ(row[4], 5);
+  EXPECT_EQ(row[5], -5);
+}
+
+// At every place of a row: the loop takes several entries at a time and a rest.
+TEST(Fields, ClippingTellsWhetherAllIsFinite) {
+  for (int count = 1; count < 20; ++count)
+    for (int at = 0; at < count; ++at)
+      for (const float bad : {kNan, -kNan, kInf, -kInf}) {
+        float row[20], out[20];
+        for (float& x : row) x = 3e38f;
+        EXPECT_TRUE(clip_row(row, count, kInf));
+        EXPECT_TRUE(clip_action(row, count, out));
+        row[at] = bad;
+        EXPECT_FALSE(clip_row(row, count, kInf)) << count << " " << at;
+        EXPECT_FALSE(clip_action(row, count, out)) << count << " " << at;
+        EXPECT_EQ(clip_row(row, count, 5), bad == bad);  // an infinity is bounded
+      }
+}
+
+TEST(Fields, ActionsAreBoundedByOne) {
+  const float row[] = {-3, -1, -0.0f, 0.25f, 1, 1.5f};
+  const float expected[] = {-1, -1, 0, 0.25f, 1, 1};
+  float out[6];
+  EXPECT_TRUE(clip_action(row, 6, out));
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(out[i], expected[i]) << i;
 }
 
 // A task with other fields, order or actions has another layout.

@@ -217,6 +217,67 @@ TEST(PoolStep, AnErrorInAWorkerComesOutOfStep) {
   EXPECT_STREQ(last_error(), "the toy throws");
 }
 
+// World 1 is a step ahead, so that it throws alone.
+TEST(PoolStep, AnErrorOfOneWorldStopsNoOther) {
+  for (const int32_t group : {1, 2, 4}) {
+    PoolConfig c = mode(Autoreset::kSameStep);
+    c.group_size = group;
+    TestPool p("toy_push", 4, {{"throw_at", nullptr, 2}}, c);
+    p->reset(nullptr, nullptr);
+    const uint8_t ahead[] = {0, 1, 0, 0};
+    p->step(ahead);
+    EXPECT_EQ(code_of([&] { p->step(nullptr); }), Code::kInternal);
+    for (int env = 0; env < 4; ++env) EXPECT_EQ(p.rows().episode_step[env], 1) << group << " " << env;
+    for (const int env : {0, 2, 3}) EXPECT_EQ(p.rows().episode_cost[2 * env + 1], 0.25f) << env;
+  }
+}
+
+// What a host can see after steps with masks, bad actions and worlds that break and end at different times.
+std::vector<unsigned char> history(Autoreset autoreset, const char* end, int32_t group, int32_t threads) {
+  PoolConfig c = mode(autoreset, 5);
+  c.group_size = group;
+  c.num_threads = threads;
+  constexpr int kWorlds = 11;
+  TestPool p("toy_push", kWorlds, {{end, nullptr, 7}}, c);
+  p->reset(nullptr, nullptr);
+  Stream stream(1, 0, Purpose::kTest);
+  std::vector<unsigned char> seen;
+  const auto see = [&](const void* from, size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(from);
+    seen.insert(seen.end(), bytes, bytes + size);
+  };
+  for (int t = 0; t < 60; ++t) {
+    p->baseline(Baseline::kRandom);
+    uint8_t mask[kWorlds];
+    for (uint8_t& on : mask) on = stream.below(3) > 0;
+    if (stream.below(2)) p.action(static_cast<int>(stream.below(kWorlds)))[0] = NAN;
+    p->step(t % 3 ? mask : nullptr);
+    const Buffers& b = p.rows();
+    see(b.obs, sizeof(float) * kWorlds * kToyObs);
+    see(b.final_obs, sizeof(float) * kWorlds * kToyObs);
+    see(b.reward, sizeof(float) * kWorlds);
+    see(b.episode_return, sizeof(float) * kWorlds);
+    for (const float* costs : {b.cost, b.cost_raw, b.episode_cost})
+      see(costs, sizeof(float) * kWorlds * kToyCosts);
+    see(b.episode_step, sizeof(int32_t) * kWorlds);
+    see(b.status, sizeof(uint32_t) * kWorlds);
+    for (const uint8_t* flags : {b.terminated, b.truncated, b.success}) see(flags, kWorlds);
+  }
+  const auto state = p.state();
+  see(state.data(), state.size());
+  return seen;
+}
+
+TEST(PoolStep, GroupsGiveTheSameBytes) {
+  for (const Autoreset autoreset : {Autoreset::kSameStep, Autoreset::kNextStep})
+    for (const char* end : {"nan_at", "max_steps"}) {
+      const auto alone = history(autoreset, end, 1, 0);
+      for (const int32_t group : {0, 2, 3, 4, 8, 11, 100})
+        for (const int32_t threads : {0, 3})
+          EXPECT_TRUE(history(autoreset, end, group, threads) == alone) << group << " " << threads;
+    }
+}
+
 TEST(PoolStep, MaskedWorldsStandStill) {
   TestPool p("toy_push", 2, {}, mode(Autoreset::kSameStep));
   p->reset(nullptr, nullptr);
@@ -311,6 +372,7 @@ TEST(PoolStep, AllocatesNothing) {
   for (const int32_t threads : {0, 2}) {
     PoolConfig c = mode(Autoreset::kSameStep);
     c.num_threads = threads;
+    c.group_size = 3;
     TestPool p("toy_push", 4, {}, c);
     const int64_t before = heap_count();
     p->reset(nullptr, nullptr);

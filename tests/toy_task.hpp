@@ -83,13 +83,10 @@ class ToyTask final : public Task {
   }
   void observe(const World& world, const void* state, float* obs) const override {
     const auto& s = *static_cast<const State*>(state);
-    FieldWriter out(fields_, obs);
-    float* position = out.next(3);
-    put(world.body(0).X.p, position);
-    if (s.steps == nan_at_) position[1] = std::numeric_limits<float>::quiet_NaN();
-    put(world.body(0).v, out.next(3));
-    std::memcpy(out.next(kToyActions), s.action, sizeof s.action);
-    out.finish();
+    put(world.body(0).X.p, obs);
+    if (s.steps == nan_at_) obs[1] = std::numeric_limits<float>::quiet_NaN();
+    put(world.body(0).v, obs + 3);
+    std::memcpy(obs + 6, s.action, sizeof s.action);
   }
   void hold_action(float* action) const override { action[0] = action[1] = 0.125f; }
   void initial_mean(float* action) const override { action[0] = action[1] = 0; }

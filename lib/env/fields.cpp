@@ -1,5 +1,7 @@
 #include "env/fields.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cstdio>
 #include <cstring>
 
@@ -7,6 +9,15 @@
 #include "base/hash.hpp"
 
 namespace rdm {
+namespace {
+
+// The bits of |x|, which stand in the order of |x|: a loop over them has neither branches nor an order.
+int32_t magnitude(float x) {
+  return std::bit_cast<int32_t>(x) & 0x7FFFFFFF;
+}
+constexpr int32_t kInfinity = 0x7F800000;  // and above: not a number
+
+}  // namespace
 
 void add_field(FieldTable& table, const char* prefix, const char* name, const char* unit, int32_t count) {
   char full[2 * kNameSize];
@@ -22,26 +33,25 @@ int32_t field_total(const FieldTable& table) {
   return total;
 }
 
-float* FieldWriter::next(int32_t count) {
-  if (field_ == table_.size()) fail(Code::kInternal, "observation: more fields are written than declared");
-  const FieldSpec& f = table_[field_++];
-  if (f.count != count)
-    fail(Code::kInternal, "observation field %s: declared %d, written %d", f.name.text, f.count, count);
-  float* const here = at_;
-  at_ += count;
-  return here;
-}
-
-void FieldWriter::finish() const {
-  if (field_ != table_.size())
-    fail(Code::kInternal, "observation field %s is not written", table_[field_].name.text);
-}
-
-void clip_row(float* row, int32_t count, float limit) {
+bool clip_row(float* row, int32_t count, float limit) {
+  int32_t top = 0;
   for (int32_t i = 0; i < count; ++i) {
-    const float x = row[i] > limit ? limit : row[i];
-    row[i] = x < -limit ? -limit : x;
+    float x = row[i] > limit ? limit : row[i];
+    x = x < -limit ? -limit : x;
+    row[i] = x;
+    top = std::max(top, magnitude(x));
   }
+  return top < kInfinity;
+}
+
+bool clip_action(const float* row, int32_t count, float* out) {
+  int32_t top = 0;
+  for (int32_t i = 0; i < count; ++i) {
+    const float x = row[i] < -1 ? -1 : row[i];
+    out[i] = x > 1 ? 1 : x;
+    top = std::max(top, magnitude(row[i]));
+  }
+  return top < kInfinity;
 }
 
 int32_t obs_dim(const Task& task) {

@@ -1,8 +1,10 @@
-// Runs of numbers in an observation row: declared once, in order, and written in that order.
+// Runs of numbers in an observation row: each is declared and written by one entry of a constant table.
 //
-// No one computes an offset: a table is a list of counts, and the writer walks it.
+// No one computes an offset: fields stand in a row as they stand in the table.
 #pragma once
 #include <cstdint>
+#include <iterator>
+#include <utility>
 
 #include "base/vec.hpp"
 #include "env/task.hpp"
@@ -17,21 +19,25 @@ void add_field(FieldTable& table, const char* prefix, const char* name, const ch
 
 int32_t field_total(const FieldTable& table);
 
-// Walks a row field by field. A count that differs from the table's, a field too many, or one missing at
-// finish() is Error(kInternal): a defect of the task.
-class FieldWriter {
- public:
-  FieldWriter(const FieldTable& table, float* row) : table_(table), at_(row) {}
-
-  // The next field's place in the row.
-  float* next(int32_t count);
-  void finish() const;
-
- private:
-  const FieldTable& table_;
-  float* at_;
-  size_t field_ = 0;
+// One field of a row that is made from a From.
+template <class From>
+struct FieldEntry {
+  const char* name;
+  const char* unit;
+  int32_t count;
+  void (*write)(const From& from, float* out);  // exactly `count` numbers
 };
+
+// Writes the fields of a constexpr array of FieldEntry in order; returns the place behind them.
+template <const auto& kEntries, class From>
+float* write_fields(const From& from, float* out) {
+  // the calls are unrolled and so inlined, where a loop would go through the pointers
+  const auto each = [&]<size_t... I>(std::index_sequence<I...>) {
+    ((kEntries[I].write(from, out), out += kEntries[I].count), ...);
+  };
+  each(std::make_index_sequence<std::size(kEntries)>());
+  return out;
+}
 
 // Geometry as observations have it: quaternions in (x, y, z, w).
 inline void put(const Vec3& v, float* out, double scale = 1) {
@@ -44,7 +50,10 @@ inline void put(const Quat& q, float* out) {
   out[3] = static_cast<float>(q.w);
 }
 
-// Bounds every entry by +-limit; what is not a number stays so, for the pool to see.
-void clip_row(float* row, int32_t count, float limit);
+// Bounds every entry by +-limit. False when an entry is not finite after that; it stays as it is.
+bool clip_row(float* row, int32_t count, float limit);
+
+// False when an entry is not finite; else `out` has the row bounded by +-1.
+bool clip_action(const float* row, int32_t count, float* out);
 
 }  // namespace rdm

@@ -1,6 +1,7 @@
 // Making, ending and describing pools.
 #include "env/pool.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <new>
 
@@ -65,6 +66,7 @@ PoolPlan::PoolPlan(const PoolConfig& c) : config(c) {
   obs_dim = rdm::obs_dim(*task);
   action_dim = task->action_dim();
   cost_dim = info->num_costs;
+  obs_limit = task->obs_limit();
 }
 
 PoolPlan::~PoolPlan() {
@@ -132,6 +134,8 @@ void Pool::Impl::build() {
       name_streams(i, config.seed);
     }
   }
+  group_size =
+      std::clamp(config.group_size > 0 ? config.group_size : slots[0].world->group_size(), 1, kMaxGroup);
   Writer count(nullptr, 0);
   slots[0].world->save(count);
   pristine_size = count.size();

@@ -19,6 +19,7 @@ struct PoolConfig {
   Autoreset autoreset = Autoreset::kSameStep;
   const OptionInput* options = nullptr;
   int32_t num_options = 0;
+  int32_t group_size = 0;  // worlds that the engine steps together, at most; 0: as many as it likes to
   HostHooks hooks;
 };
 

@@ -36,11 +36,21 @@ struct Slot {
   Counters counters;
 };
 
+inline constexpr int32_t kMaxGroup = 16;
+
 // A run of worlds that stays with one worker.
 struct alignas(Arena::kAlign) Block {
   float* action;  // [action_dim] clipped
+  // Worlds that have their targets and wait for the engine, and their numbers.
+  World* group[kMaxGroup];
+  int32_t member[kMaxGroup];
+  int32_t waiting;
+  int32_t failed;  // first world with an error, -1: none
   Error error;
-  bool failed;
+
+  // Runs f, for world `env`; an error stays here and stops no other world.
+  template <class F>
+  void attempt(int32_t env, F&& f);
 };
 
 // A config made concrete: task, options, sizes. What memory() and create() have in common.
@@ -56,6 +66,7 @@ struct PoolPlan {
   const TaskInfo* info = nullptr;
   Task* task = nullptr;
   int32_t obs_dim = 0, action_dim = 0, cost_dim = 0;
+  float obs_limit = 0;
   uint64_t options_hash = 0;  // task name and every option's value
 
   size_t num() const { return static_cast<size_t>(config.num_envs); }
@@ -80,14 +91,23 @@ struct Pool::Impl : PoolPlan {
 
   // --- stepping
   void check_ready(const uint8_t* mask) const;
-  void step_world(int32_t env, Block& block);
-  void begin_episode(int32_t env);  // resets world, streams go on, writes obs
-  void clear_rows(int32_t env);     // reward, costs, flags, status, sums; final_obs becomes obs
-  void lose_step(int32_t env, float* row) const;
-  void take_step(int32_t env, const float* action, Verdict* verdict, uint32_t* status);
+  void begin_episode(int32_t env);              // resets world, streams go on, writes obs
+  void clear_rows(int32_t env);                 // reward, costs, flags, status, sums; final_obs becomes obs
+  bool observe(int32_t env, float* row) const;  // false: an entry is not finite
+  // A step in three parts, so that the engine can take several worlds at once: all that comes before it, the
+  // engine and what comes behind for all that wait, and what comes behind for one world.
+  void start_step(int32_t env, Block& block);
+  void step_group(Block& block);
+  void finish_step(int32_t env);
+  void lose_step(int32_t env, uint32_t status);
+  void close_step(int32_t env, const Verdict& verdict, uint32_t status, bool lost);
   void write_verdict(int32_t env, const Verdict& verdict, uint32_t status);
+  // f(begin, end, block) for every block, f(env, block) for every world, on the workers. Both rethrow the
+  // error of the lowest world when all is done.
   template <class F>
-  void each_world(const uint8_t* mask, F&& f);  // f(env, block) on the workers; rethrows the first error
+  void each_block(F&& f);
+  template <class F>
+  void each_world(const uint8_t* mask, F&& f);
 
   // --- state
   void write_world(int32_t env, Writer& out) const;
@@ -106,37 +126,48 @@ struct Pool::Impl : PoolPlan {
   Block* blocks = nullptr;            // [num_blocks]
   unsigned char* pristine = nullptr;  // a world's state before anything happened: what a reset starts from
   size_t pristine_size = 0;
+  int32_t group_size = 1;  // worlds that the engine takes together, at most
   Workers* workers = nullptr;
 };
 
 template <class F>
-void Pool::Impl::each_world(const uint8_t* mask, F&& f) {
+void Block::attempt(int32_t env, F&& f) {
+  try {
+    f();
+  } catch (const Error& e) {
+    if (failed >= 0 && failed < env) return;
+    failed = env;
+    error = e;
+  }
+}
+
+template <class F>
+void Pool::Impl::each_block(F&& f) {
   struct Call {
     Impl* impl;
-    const uint8_t* mask;
     F* f;
-  } call{this, mask, &f};
+  } call{this, &f};
   const int32_t count = num_blocks();
-  for (int32_t b = 0; b < count; ++b) blocks[b].failed = false;
   workers->run(
       count,
       [](void* context, int32_t b) {
         const FpMode mode;
         const Call& c = *static_cast<Call*>(context);
-        Impl& impl = *c.impl;
-        Block& block = impl.blocks[b];
-        const int32_t begin = impl.block_begin(b), end = impl.block_begin(b + 1);
-        try {
-          for (int32_t env = begin; env < end; ++env)
-            if (!c.mask || c.mask[env]) (*c.f)(env, block);
-        } catch (const Error& e) {
-          block.failed = true;
-          block.error = e;
-        }
+        Block& block = c.impl->blocks[b];
+        block.failed = -1;
+        (*c.f)(c.impl->block_begin(b), c.impl->block_begin(b + 1), block);
       },
       &call);
   for (int32_t b = 0; b < count; ++b)
-    if (blocks[b].failed) throw blocks[b].error;
+    if (blocks[b].failed >= 0) throw blocks[b].error;
+}
+
+template <class F>
+void Pool::Impl::each_world(const uint8_t* mask, F&& f) {
+  each_block([&](int32_t begin, int32_t end, Block& block) {
+    for (int32_t env = begin; env < end; ++env)
+      if (!mask || mask[env]) block.attempt(env, [&] { f(env, block); });
+  });
 }
 
 }  // namespace rdm

@@ -1,26 +1,16 @@
 // Episodes: reset, control steps, their ends, and the baseline actions.
-#include <bit>
-#include <cmath>
 #include <cstring>
 
+#include "env/fields.hpp"
 #include "env/pool_impl.hpp"
 
 namespace rdm {
 namespace {
 
-bool all_finite(const float* row, int32_t count) {
-  // on the bits, so that the loop has no branch and no order: an exponent of ones is infinite or not a number
-  constexpr uint32_t kExponent = 0x7F800000u;
-  uint32_t bad = 0;
-  for (int32_t i = 0; i < count; ++i)
-    bad |= static_cast<uint32_t>((std::bit_cast<uint32_t>(row[i]) & kExponent) == kExponent);
-  return bad == 0;
-}
-
 bool all_finite(const Verdict& v, int32_t costs) {
-  bool good = std::isfinite(v.reward);
-  for (int32_t k = 0; k < costs; ++k) good = good && std::isfinite(v.cost[k]) && std::isfinite(v.cost_raw[k]);
-  return good;
+  double zero = 0 * v.reward;  // 0 times what is not finite is not a number
+  for (int32_t k = 0; k < costs; ++k) zero += 0 * v.cost[k] + 0 * v.cost_raw[k];
+  return zero == 0;
 }
 
 }  // namespace
@@ -39,7 +29,15 @@ void Pool::step(const uint8_t* mask) {
   const FpMode mode;
   Impl& m = *impl_;
   m.check_ready(mask);
-  m.each_world(mask, [&](int32_t env, Block& block) { m.step_world(env, block); });
+  m.each_block([&](int32_t begin, int32_t end, Block& block) {
+    block.waiting = 0;
+    for (int32_t env = begin; env < end; ++env) {
+      if (mask && !mask[env]) continue;
+      block.attempt(env, [&] { m.start_step(env, block); });
+      if (block.waiting == m.group_size) m.step_group(block);
+    }
+    m.step_group(block);
+  });
 }
 
 void Pool::baseline(Baseline kind) {
@@ -78,7 +76,13 @@ void Pool::Impl::begin_episode(int32_t env) {
   e.sum_reward = 0;
   for (double& sum : e.sum_cost) sum = 0;
   task->reset(*s.world, s.task_state, e.reset);
-  task->observe(*s.world, s.task_state, obs(env));
+  observe(env, obs(env));
+}
+
+bool Pool::Impl::observe(int32_t env, float* row) const {
+  const Slot& s = slots[env];
+  task->observe(*s.world, s.task_state, row);
+  return clip_row(row, obs_dim, obs_limit);
 }
 
 void Pool::Impl::clear_rows(int32_t env) {
@@ -93,49 +97,53 @@ void Pool::Impl::clear_rows(int32_t env) {
   buffers.terminated[env] = buffers.truncated[env] = buffers.success[env] = 0;
 }
 
-void Pool::Impl::take_step(int32_t env, const float* action_row, Verdict* verdict, uint32_t* status) {
+void Pool::Impl::start_step(int32_t env, Block& block) {
   Slot& s = slots[env];
-  task->control(*s.world, s.task_state, action_row);
-  s.world->step();
-  *status |= s.world->status();
-  Counters& c = s.counters;
+  if (s.episode.phase == Phase::kEnded) {  // next-step mode: this step only resets
+    begin_episode(env);
+    clear_rows(env);
+  } else if (clip_action(action(env), action_dim, block.action)) {
+    task->control(*s.world, s.task_state, block.action);
+    block.group[block.waiting] = s.world;
+    block.member[block.waiting++] = env;
+  } else {
+    lose_step(env, kStatusBadAction);
+  }
+}
+
+void Pool::Impl::step_group(Block& block) {
+  World::step_together(block.group, block.waiting);
+  for (int32_t i = 0; i < block.waiting; ++i)
+    block.attempt(block.member[i], [&] { finish_step(block.member[i]); });
+  block.waiting = 0;
+}
+
+void Pool::Impl::finish_step(int32_t env) {
+  const Slot& s = slots[env];
+  const uint32_t status = s.world->status();
   const int32_t contacts = s.world->num_contacts();
+  Counters& c = slots[env].counters;
   c.contacts_max = contacts > c.contacts_max ? contacts : c.contacts_max;
   c.contacts_sum += contacts;
   ++c.steps;
-  c.overflowed += (*status & kStatusContactOverflow) != 0;
-  if (*status & kStatusDiverged) return;
-  *verdict = task->judge(*s.world, s.task_state, s.episode.step + 1);
-  task->observe(*s.world, s.task_state, final_obs(env));
-  if (!all_finite(final_obs(env), obs_dim) || !all_finite(*verdict, cost_dim)) *status |= kStatusDiverged;
+  c.overflowed += (status & kStatusContactOverflow) != 0;
+  if (status & kStatusDiverged) return lose_step(env, status);
+  const Verdict verdict = task->judge(*s.world, s.task_state, s.episode.step + 1);
+  if (!observe(env, final_obs(env)) || !all_finite(verdict, cost_dim))
+    return lose_step(env, status | kStatusDiverged);
+  std::memcpy(obs(env), final_obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
+  close_step(env, verdict, status, false);
 }
 
-void Pool::Impl::step_world(int32_t env, Block& block) {
+void Pool::Impl::lose_step(int32_t env, uint32_t status) {
+  slots[env].counters.diverged += (status & kStatusDiverged) != 0;
+  // the last finite one
+  std::memcpy(final_obs(env), obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
+  close_step(env, Verdict{}, status, true);
+}
+
+void Pool::Impl::close_step(int32_t env, const Verdict& verdict, uint32_t status, bool lost) {
   Episode& e = slots[env].episode;
-  if (e.phase == Phase::kEnded) {  // next-step mode: this step only resets
-    begin_episode(env);
-    clear_rows(env);
-    return;
-  }
-  uint32_t status = 0;
-  Verdict verdict;
-  const float* given = action(env);
-  if (all_finite(given, action_dim)) {
-    for (int32_t i = 0; i < action_dim; ++i)
-      block.action[i] = given[i] < -1 ? -1.0f : given[i] > 1 ? 1.0f : given[i];
-    take_step(env, block.action, &verdict, &status);
-  } else {
-    status = kStatusBadAction;
-  }
-  const bool lost = (status & (kStatusDiverged | kStatusBadAction)) != 0;
-  const size_t row = sizeof(float) * static_cast<size_t>(obs_dim);
-  if (lost) {
-    slots[env].counters.diverged += (status & kStatusDiverged) != 0;
-    verdict = Verdict{};
-    std::memcpy(final_obs(env), obs(env), row);  // the last finite one
-  } else {
-    std::memcpy(obs(env), final_obs(env), row);
-  }
   ++e.step;
   e.terminated = verdict.terminated;
   e.truncated = lost || (!verdict.terminated && e.step >= task->max_steps());

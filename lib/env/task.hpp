@@ -4,6 +4,7 @@
 // the pool carves, saves and restores as bytes.
 #pragma once
 #include <cstdint>
+#include <limits>
 
 #include "base/option.hpp"
 #include "base/rng.hpp"
@@ -56,7 +57,9 @@ class Task {
   virtual void control(World& world, void* state, const float* action) const = 0;
   // After the control step. `step` counts from 1 within the episode.
   virtual Verdict judge(World& world, void* state, int32_t step) const = 0;
+  // Whoever asks for an observation then bounds its entries by +-obs_limit().
   virtual void observe(const World& world, const void* state, float* obs) const = 0;
+  virtual float obs_limit() const { return std::numeric_limits<float>::infinity(); }
   // The hold action: the nominal start pose, base entries 0. [action_dim]
   virtual void hold_action(float* action) const = 0;
   // Mean action that a new policy starts from. [action_dim]
