@@ -10,11 +10,11 @@
 
 namespace rdm {
 
-// Where a shape is, roughly: the centre with the radius of the sphere that holds it, and for a capsule the
-// half axis (else 0). World, m.
+// Where a shape is, roughly: inside a capsule about its centre. Half axis of a capsule shape, else 0. World,
+// m.
 struct Bound {
-  float center[4];  // x y z radius
-  float axis[4];    // x y z, 0
+  float center[4];  // x y z, radius of the sphere that holds the shape
+  float axis[4];    // x y z, radius of the capsule
 };
 
 class Collider {
@@ -50,16 +50,21 @@ class Collider {
  private:
   struct Pair {
     int32_t a, b;
-    float reach;  // sum of the bounding radii; < 0: b is a plane
-    float gap;    // both are spheres or capsules: sum of their radii; else < 0
+    float gap, reach;  // m2, squares of the sums of the bounds' capsule and sphere radii
+    int32_t plane;     // b is one: only its own test counts
   };
   struct Box {
     float low[4], high[4];
   };
   void update_boxes(const Scene& scene);
-  bool near(const Pair& pair) const;
+  bool above(const Pair& pair) const;
+  uint32_t near_four(const int32_t* list) const;
+  bool near_one(int32_t pair) const;
+  void mark_neighbours(const Scene& scene, int32_t articulation, const Box& box);
   static bool near(const Bound& bound, const Box& box);
-  int touch(const Scene& scene, Poses& poses, int32_t pair, int most, dContactGeom* out);
+  int touch(Poses& poses, int32_t pair, int most, dContactGeom* out);
+  void add_points(const Scene& scene, Poses& poses, int32_t pair, Contact* contacts, int32_t* pairs,
+                  uint8_t* touched, Found* found);
   void put(Poses& poses, int32_t shape);
 
   Geom* geoms_ = nullptr;
@@ -67,7 +72,7 @@ class Collider {
   Pair* pairs_ = nullptr;
   Box* boxes_ = nullptr;  // [articulations]
   uint32_t* placed_ = nullptr;
-  uint8_t* moves_ = nullptr;
+  uint8_t *moves_ = nullptr, *neighbours_ = nullptr;
   uint32_t search_ = 0;
   int32_t num_shapes_ = 0;
 };

@@ -20,6 +20,7 @@ namespace rdm {
 namespace {
 
 constexpr int kConjugateFrom = 6;
+constexpr double kStill = 1e-9;  // square of the relative change at which the sweeps end early
 
 template <class S>
 struct ContactRows {
@@ -111,7 +112,7 @@ struct ContactRows {
     out[1] = a[2] + a[3];
     out[2] = b[0] + b[1];
   }
-  S sweep();
+  S sweep(S* size);
 };
 
 template <class S>
@@ -155,10 +156,10 @@ void ContactRows<S>::warm(Point* p, const S* impulse) {
   }
 }
 
-// One pass over all points; the sum of squared impulse changes.
+// One pass over all points; the sums of squared impulse changes and of squared impulses.
 template <class S>
-S ContactRows<S>::sweep() {
-  S moved = 0;
+S ContactRows<S>::sweep(S* size) {
+  S moved = 0, all = 0;
   for (int32_t i = 0; i < count; ++i) {
     Point& p = points[i];
     const Row* z = rows + 3 * p.first;
@@ -174,6 +175,7 @@ S ContactRows<S>::sweep() {
       change[i][0] = d;
       change[i][1] = change[i][2] = 0;
       moved += d * d;
+      all += n * n;
       continue;
     }
     Row r[3] = {};
@@ -211,16 +213,20 @@ S ContactRows<S>::sweep() {
     change[i][1] = d1;
     change[i][2] = d2;
     moved += d0 * d0 + d1 * d1 + d2 * d2;
+    all += n * n + t1 * t1 + t2 * t2;
   }
+  *size = all;
   return moved;
 }
 
 template <class S>
 void ContactRows<S>::solve(int32_t iterations) {
-  constexpr S kStill = S(1e-16);  // (N s)2
+  S size = 0;  // sum of squared impulses
   if (count < kConjugateFrom) {
-    for (int32_t k = 0; k < iterations; ++k)
-      if (sweep() < kStill) return;
+    for (int32_t k = 0; k < iterations; ++k) {
+      const S moved = sweep(&size);
+      if (moved <= S(kStill) * size) return;
+    }
     return;
   }
   const auto restart = [&] {
@@ -232,8 +238,8 @@ void ContactRows<S>::solve(int32_t iterations) {
   S last = 0;
   for (int32_t k = 0; k < iterations; ++k) {
     for (int32_t s = 0; s < num_segments; ++s) before[s] = sum[s];
-    const S moved = sweep();
-    if (moved < kStill || k + 1 == iterations) return;
+    const S moved = sweep(&size);
+    if (moved <= S(kStill) * size || k + 1 == iterations) return;
     const S beta = k ? moved / last : S(0);
     last = moved;
     if (beta > 1) {
