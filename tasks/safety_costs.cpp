@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/elementary.hpp"
 #include "base/error.hpp"
 
 namespace rdm {
@@ -55,10 +56,10 @@ void judge_release(const SafetyCosts& c, const World& world, SafetyState* state,
   state->touching = touching;
   if (!released) return;
   const Vec3& v = world.body(0).v;
-  const double level = std::hypot(v.x, v.y);
+  const double level = norm({v.x, v.y, 0});
   if (norm(v) < c.release_speed || level < kThrowDrift) return;
   state->thrown = 1;
-  const double elevation = std::atan2(v.z, level);
+  const double elevation = elementary::atan2(v.z, level);
   verdict->cost[kThrowAngle] = elevation < c.throw_low || elevation > c.throw_high;
   verdict->cost_raw[kThrowAngle] = elevation;
 }

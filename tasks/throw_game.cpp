@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "tasks/hands.hpp"
 #include "tasks/throw_objects.hpp"
 
@@ -101,7 +102,7 @@ Quat rotation_error(const ThrowGame& game, const Quat& rotation, const ThrowStat
 }
 
 double rotation_angle(const Quat& q) {
-  return 2 * std::asin(std::min(1.0, std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z)));
+  return 2 * elementary::asin(std::min(1.0, std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z)));
 }
 
 ThrowMeasure measure_throw(const ThrowGame& game, const World& world, const ThrowState& state) {
@@ -110,7 +111,7 @@ ThrowMeasure measure_throw(const ThrowGame& game, const World& world, const Thro
 }
 
 double throw_reward(const ThrowMeasure& m, double alpha, double scale) {
-  return scale * std::exp(-0.2 * (alpha * m.distance + m.theta));
+  return scale * elementary::exp(-0.2 * (alpha * m.distance + m.theta));
 }
 
 bool count_success(const ThrowGame& game, double distance, ThrowState* state) {

@@ -163,7 +163,7 @@ double bounding_radius(const ShapeDef& shape) {
     case ShapeKind::kCapsule:
       return s.x + s.y;
     case ShapeKind::kCylinder:
-      return std::hypot(s.x, s.y);
+      return norm({s.x, s.y, 0});
     case ShapeKind::kBox:
       return norm(s);
     case ShapeKind::kPlane:
