@@ -1,8 +1,8 @@
 #include "algos/collector.hpp"
 
-#include <cmath>
 #include <cstring>
 
+#include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "nn/gaussian.hpp"
 
@@ -102,7 +102,7 @@ void Collector::act(const float* obs, bool sample, float* action) {
     if (normalize_) normalizer_merge(normalizer_, obs, envs, nullptr, obs_count_max_);
     for (size_t j = 0; j < rollout_.action_dim; ++j) {
       rollout_.log_std[j] = nets_->log_std()[j] + plan_->log_share;
-      std_[j] = std::exp(rollout_.log_std[j]);
+      std_[j] = static_cast<float>(elementary::exp(static_cast<double>(rollout_.log_std[j])));
     }
   }
   // A row's result does not depend on its batch, so the cut may follow the number of lanes.
@@ -167,7 +167,7 @@ void Collector::charge_fall(int32_t env, float discount, float* sample_cost, dou
   const auto steps = static_cast<double>(left);
   for (int32_t k = 0; k < plan_->config.cost_dim; ++k)
     charge[k] = episodes_.cost(env, k) / static_cast<double>(length) * steps;
-  const double tail = discount_ < 1 ? (1 - std::pow(discount_, steps)) / (1 - discount_) : steps;
+  const double tail = discount_ < 1 ? (1 - elementary::pow(discount_, left)) / (1 - discount_) : steps;
   for (int32_t i = 0; i < plan_->num_limited; ++i)
     sample_cost[i] += discount * static_cast<float>(charge[plan_->column[i]] / steps * tail);
 }
@@ -187,7 +187,7 @@ void Collector::record_row(const Transition& t, int32_t env) {
   const float* cost = t.cost ? t.cost + e * static_cast<size_t>(plan_->config.cost_dim) : nullptr;
   const int32_t steps = t.steps ? t.steps[e] : plan_->action_repeat;
   const bool terminated = flag(t.terminated, e, false), over = terminated || flag(t.truncated, e, false);
-  const auto discount = static_cast<float>(std::pow(discount_, steps));
+  const auto discount = static_cast<float>(elementary::pow(discount_, steps));
   env_steps_ += steps;
   episodes_.add(env, static_cast<double>(t.reward[e]), cost, steps, flag(t.success, e, false));
   r.reward[at] = t.reward[e] + discount * final_value_[e];

@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.hpp"
+
 namespace rdm {
 namespace {
 
 double softplus(double w) {
-  return w > 30 ? w : std::log1p(std::exp(w));
+  return w > 30 ? w : elementary::log1p(elementary::exp(w));
 }
 double softplus_inverse(double l) {
-  return l > 30 ? l : std::log(std::expm1(std::max(l, 1e-12)));
+  return l > 30 ? l : elementary::log(elementary::expm1(std::max(l, 1e-12)));
 }
 
 }  // namespace
@@ -31,8 +33,8 @@ void Multiplier::step(const MultiplierOptions& options, double cost, double limi
     ++t_;
     m_ = 0.9 * m_ - 0.1 * e;
     v_ = 0.999 * v_ + 0.001 * e * e;
-    const double m = m_ / (1 - std::pow(0.9, static_cast<double>(t_)));
-    const double v = v_ / (1 - std::pow(0.999, static_cast<double>(t_)));
+    const double m = m_ / (1 - elementary::pow(0.9, t_));
+    const double v = v_ / (1 - elementary::pow(0.999, t_));
     raw_ -= rate * m / (std::sqrt(v) + 1e-8);
   }
   if (options.optimizer == MultiplierOptimizer::kSoftplus)

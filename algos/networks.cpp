@@ -1,8 +1,9 @@
 #include "algos/networks.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
+
+#include "base/elementary.hpp"
 
 namespace rdm {
 namespace {
@@ -39,13 +40,13 @@ void init_networks(const Networks& n, const Plan& plan) {
   float* bias = n.net(Networks::kActor) + actor.bias_offset(actor.num_hidden);
   for (int32_t j = 0; j < n.action_dim; ++j) {
     bias[j] = plan.config.initial_mean ? plan.config.initial_mean[j] : 0;
-    n.log_std()[j] = static_cast<float>(std::log(o.number("init_std")));
+    n.log_std()[j] = static_cast<float>(elementary::log(o.number("init_std")));
   }
 }
 
 void clamp_log_std(const Networks& n, const Options& o) {
-  const auto low = static_cast<float>(std::log(o.number("std_min")));
-  const auto high = static_cast<float>(std::log(o.number("std_max")));
+  const auto low = static_cast<float>(elementary::log(o.number("std_min")));
+  const auto high = static_cast<float>(elementary::log(o.number("std_max")));
   for (int32_t j = 0; j < n.action_dim; ++j) n.log_std()[j] = std::clamp(n.log_std()[j], low, high);
 }
 

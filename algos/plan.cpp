@@ -8,6 +8,7 @@
 
 #include "algos/algo_registry.hpp"
 #include "algos/option_tables.hpp"
+#include "base/elementary.hpp"
 #include "base/error.hpp"
 
 namespace rdm {
@@ -117,7 +118,7 @@ void plan_batches(Plan& plan) {
   const int32_t rows = std::max(plan.minibatch_rows, plan.config.num_envs);
   plan.lanes = std::clamp(plan.config.num_threads, 1, (rows + plan.piece_rows - 1) / plan.piece_rows);
   const double rho = o.number("noise_correlation");
-  plan.log_share = static_cast<float>(0.5 * std::log1p(-rho * rho));
+  plan.log_share = static_cast<float>(0.5 * elementary::log1p(-rho * rho));
 }
 
 void check_pairs(const Plan& plan) {

@@ -1,9 +1,9 @@
 #include "algos/policy_gradient.hpp"
 
-#include <cmath>
 #include <cstring>
 
 #include "algos/fingerprint.hpp"
+#include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
 #include "nn/policy.hpp"
@@ -164,7 +164,7 @@ void PolicyGradient::fill_epoch(const EpisodeStats& stats, double rate, Epoch* o
   for (int32_t i = 0; i < plan_.num_limited; ++i) e.multiplier[plan_.column[i]] = cost_weight(i);
   for (int32_t j = 0; j < plan_.config.action_dim; ++j) {
     const auto log_std = static_cast<double>(nets_.log_std()[j]);
-    e.action_std += std::exp(log_std) / plan_.config.action_dim;
+    e.action_std += elementary::exp(log_std) / plan_.config.action_dim;
     e.entropy += log_std + static_cast<double>(plan_.log_share) + kEntropyOfUnit;
   }
   e.kl = learned_.last_kl;

@@ -1,9 +1,8 @@
 #include "algos/ppo.hpp"
 
-#include <cmath>
-
 #include "algos/algo_registry.hpp"
 #include "algos/option_tables.hpp"
+#include "base/elementary.hpp"
 #include "nn/gaussian.hpp"
 
 namespace rdm {
@@ -25,7 +24,8 @@ void ClippedSurrogate::add(const PolicyPiece& piece) const {
     const float *action = r.action + at * r.action_dim, *mean = piece.mean + i * r.action_dim;
     const float change = gaussian_log_prob(mean, piece.log_std, action, dim) - r.log_prob[at];
     // exp(20) is far past any clip and still finite after it is multiplied.
-    const SampleLoss l = clipped_loss(std::exp(std::min(change, 20.0f)), r.gain[at], r.linear[at], clip);
+    const double ratio = elementary::exp(static_cast<double>(std::min(change, 20.0f)));
+    const SampleLoss l = clipped_loss(static_cast<float>(ratio), r.gain[at], r.linear[at], clip);
     gaussian_log_prob_grad(mean, piece.log_std, action, dim, piece.scale * l.slope,
                            piece.dmean + i * r.action_dim, piece.dlog_std);
     piece.sums->loss += static_cast<double>(l.loss);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/elementary.hpp"
+
 namespace rdm {
 
 // What a stream is for; the values are part of the saved state and frozen.
@@ -42,9 +44,10 @@ class Stream {
       block(counter_++, u);
       const double a = (static_cast<double>(u[0]) + 0.5) * 0x1p-32;
       const double b = static_cast<double>(u[1]) * (6.283185307179586 * 0x1p-32);
-      const double r = std::sqrt(-2 * std::log(a));
-      out[i] = static_cast<float>(r * std::cos(b));
-      if (i + 1 < count) out[i + 1] = static_cast<float>(r * std::sin(b));
+      const double r = std::sqrt(-2 * elementary::log(a));
+      const elementary::SinCos turn = elementary::sincos(b);
+      out[i] = static_cast<float>(r * turn.cos);
+      if (i + 1 < count) out[i + 1] = static_cast<float>(r * turn.sin);
     }
   }
   uint64_t counter() const { return counter_; }

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "base/elementary.hpp"
 #include "base/error.hpp"
 
 namespace rdm {
@@ -55,7 +56,8 @@ View make_view(const Camera& camera, int32_t width, int32_t height) {
   View view;
   view.eye = camera.eye;
   view.R_WC = {{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z}};
-  view.pixel = 2 * std::tan(0.5 * camera.fov_y) / height;
+  const elementary::SinCos half = elementary::sincos(0.5 * camera.fov_y);
+  view.pixel = 2 * half.sin / (half.cos * height);
   view.width = width;
   view.height = height;
   return view;

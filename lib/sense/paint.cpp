@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/elementary.hpp"
 #include "sense/shade.hpp"
 
 namespace rdm {
@@ -167,7 +168,8 @@ LightRays make_light_rays(int32_t samples_per_side) {
       for (int i = 0; i < kLanes; ++i) {
         const double radius = count > 1 ? std::sqrt((k + 0.5) / count) : 0;
         const double angle = kGoldenAngle * k + kRank[r][i] * (std::numbers::pi / 8);
-        const Vec3 l = light_direction(radius * std::cos(angle), radius * std::sin(angle));
+        const elementary::SinCos turn = elementary::sincos(angle);
+        const Vec3 l = light_direction(radius * turn.cos, radius * turn.sin);
         out.at[k][r].x[i] = static_cast<float>(l.x);
         out.at[k][r].y[i] = static_cast<float>(l.y);
         out.at[k][r].z[i] = static_cast<float>(l.z);

@@ -116,7 +116,7 @@ void bound_bulk(const RenderShape& shape, const Mat3& R_ES, Primitive* out) {
   if (shape.kind == ShapeKind::kCapsule || shape.kind == ShapeKind::kCylinder) {
     const bool round = shape.kind == ShapeKind::kCapsule;
     half = round ? s.y : std::max(0.0, s.y - s.x);
-    radius = round ? s.x + s.y : std::hypot(s.x, s.y);
+    radius = round ? s.x + s.y : norm({s.x, s.y, 0});
   } else if (shape.kind == ShapeKind::kBox) {
     axis = s.x > s.y ? (s.x > s.z ? 0 : 2) : (s.y > s.z ? 1 : 2);
     thick = std::sqrt(s.x * s.y * s.z / s[axis]);

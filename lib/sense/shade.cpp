@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.hpp"
+
 namespace rdm {
 
 namespace {
@@ -84,7 +86,9 @@ Lanes occlusion(const Primitive& s, const Lanes3& p, const Lanes3& n) {
 
 float from_srgb(uint8_t value) {
   const float v = static_cast<float>(value) * (1 / 255.0f);
-  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+  if (v <= 0.04045f) return v / 12.92f;
+  const auto base = static_cast<double>((v + 0.055f) / 1.055f);
+  return static_cast<float>(elementary::exp(2.4 * elementary::log(base)));
 }
 
 uint8_t to_srgb(float value) {
