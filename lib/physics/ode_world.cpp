@@ -11,6 +11,7 @@ namespace rdm {
 namespace {
 
 constexpr double kStateBound = 1e6;     // m, m/s, rad/s; a body beyond it has diverged
+constexpr int32_t kMaxOdeIterations = 8;  // more would draw from a process-wide seed
 constexpr double kMaxBodySpin = 100.0;  // rad/s, of free bodies
 
 bool bounded(const Vec3& v) {
@@ -33,6 +34,9 @@ OdeWorld::OdeWorld(const Scene& scene, Arena& arena, OdeWorld* partner) : World(
   sensor_of_link_ = arena.make<int32_t>(links);
   num_forces_ = static_cast<int32_t>(links + scene.def.articulations.size() + bodies);
   forces_ = arena.make<Force>(static_cast<size_t>(num_forces_));
+  if (scene.def.solver.iterations > kMaxOdeIterations)
+    fail(Code::kRange, "iterations: engine ode takes at most %d, not %d", kMaxOdeIterations,
+         scene.def.solver.iterations);
   if (arena.measuring()) return;
   const OdeScope scope;
   try {

@@ -29,7 +29,7 @@ void check_pose(Pose* X, const char* owner) {
 void check_solver(const SolverDef& s) {
   need(s.h, 1e-5, 0.1, "solver", "h");
   need(s.substeps, 1, 16, "solver", "substeps");
-  need(s.iterations, 1, 8, "solver", "iterations");
+  need(s.iterations, 1, 1000, "solver", "iterations");
   need(s.relaxation, 0.1, 1.99, "solver", "relaxation");
   need(s.erp, 0, 1, "solver", "erp");
   need(s.cfm, 0, 1, "solver", "cfm");
@@ -38,10 +38,12 @@ void check_solver(const SolverDef& s) {
   need(s.contact_layer, 0, 0.1, "solver", "contact_layer");
   need(s.contact_max_speed, 0, 1e3, "solver", "contact_max_speed");
   need(s.contacts_per_pair, 1, 8, "solver", "contacts_per_pair");
-  need(s.contacts_max, 1, 256, "solver", "contacts_max");
+  need(s.contacts_max, 1, 4096, "solver", "contacts_max");
   need(s.limit_margin, 0, 0.1, "solver", "limit_margin");
   need(s.limit_stiffness, 0, 1e6, "solver", "limit_stiffness");
   need(s.link_armature, 0, 1, "solver", "link_armature");
+  if (s.lanes != 0 && s.lanes != 1 && s.lanes != 4 && s.lanes != 8)
+    fail(Code::kRange, "solver: lanes: %d is none of 0, 1, 4, 8", s.lanes);
 }
 
 void check_inertia(const Inertia& inertia, bool may_be_empty, const char* owner) {

@@ -101,14 +101,14 @@ struct Friction {
 struct SolverDef {
   double h = 1.0 / 120;          // substep, s
   int32_t substeps = 2;          // per control step, 1..16
-  int32_t iterations = 8;        // 1..8: more would draw from ODE's process-wide seed
+  int32_t iterations = 8;        // at most; engine ode 1..8
   double relaxation = 1.3;       // successive over-relaxation of QuickStep
   double erp = 0.8, cfm = 1e-9;  // joints
   double contact_erp = 0.2, contact_cfm = 1e-4;
   double contact_layer = 0.0005;    // m of allowed depth
   double contact_max_speed = 1.0;   // m/s, correction of depth
   int32_t contacts_per_pair = 4;    // 1..8
-  int32_t contacts_max = 36;        // per world and substep, 1..256; more raise kContactOverflow
+  int32_t contacts_max = 36;        // per world and substep, 1..4096; more raise kContactOverflow
   double limit_margin = 5e-3;       // rad beyond a joint's range before it is clamped
   double limit_stiffness = 100;     // N m/rad of the soft limit
   double link_armature = 3e-5;      // kg m2 about the joint axis of links under 1e-4 kg m2 (engine ode)

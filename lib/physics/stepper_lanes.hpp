@@ -167,6 +167,11 @@ void StepperLanes<L>::fill_constants(TreeLanes<L>& t, int32_t set) {
   t.limit_stiffness = static_cast<S>(solver.limit_stiffness);
   t.spring_only = solver.spring_only_effort;
   assign(t, set, group_);
+  if (tree.free_base)
+    for (int k = 0; k < 3; ++k) {
+      t.coord[k].s[k] = L::all(1);
+      t.coord[3 + k].a[k] = L::all(1);
+    }
   const auto put = [](V* v, int lane, double x) { L::set(v, lane, static_cast<S>(x)); };
   for (int l = 0; l < L::kCount; ++l) {
     const TreeMember& m = member_of(t, l);
@@ -338,7 +343,7 @@ void StepperLanes<L>::scatter(TreeLanes<L>& t) {
   L::scatter(t.keep[0].R, kLink * tree.num_links, lanes, to);
 }
 
-// Free bases go on by the rates of their first six coordinates.
+// Free bases go on by the rates of their first six coordinates: the centre of mass straight on.
 template <class L>
 void StepperLanes<L>::move_base(TreeLanes<L>& t) {
   if (!t.tree->free_base) return;
@@ -352,8 +357,18 @@ void StepperLanes<L>::move_base(TreeLanes<L>& t) {
         base.v[k] = static_cast<double>(L::get(t.coord[k].qd, l));
         base.w[k] = static_cast<double>(L::get(t.coord[3 + k].qd, l));
       }
-      base.X = moved(base.X, base.v, base.w, h);
-      world.base_R_out(a) = to_matrix(base.X.q);
+      const Vec3& com = member_of(t, l).base.com;
+      Mat3& R = world.base_R_out(a);
+      const Vec3 arm = R * com, v = base.v + cross(base.w, arm);
+      base.X = moved({base.X.p + arm, base.X.q}, v, base.w, h);
+      R = to_matrix(base.X.q);
+      const Vec3 next = R * com;
+      base.X.p -= next;
+      base.v = v - cross(base.w, next);
+      for (int k = 0; k < 3; ++k) {
+        L::set(&t.coord[k].qd, l, static_cast<S>(base.v[k]));
+        base.v[k] = static_cast<double>(static_cast<S>(base.v[k]));
+      }
     }
     set_base(t, l);
   }

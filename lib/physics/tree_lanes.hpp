@@ -257,12 +257,16 @@ void place_masses(TreeLanes<L>& t) {
   }
 }
 
-// Momentum balance and composite inertia of one body, about the base's origin.
+// Momentum balance and composite inertia of one body, about the base's origin. With `turning` (its rate
+// against the base) the balance is turned from the middle of the step towards its end, without which a free
+// swing loses energy fast; `reaction` adds up what that does to the sum of all momenta.
 template <class L, class V>
-inline void balance(const TreeLanes<L>& t, const V* v, const V* w, const V* arm, const V* linear,
-                    const V* angular, const V& mass, bool round, LinkWork<V>* b) {
+[[gnu::always_inline]] inline void balance(const TreeLanes<L>& t, const V* v, const V* w, const V* arm,
+                                           const V* linear, const V* angular, const V& mass, bool round,
+                                           const V* turning, V* reaction, LinkWork<V>* b) {
   using S = typename L::Scalar;
-  V swing[3], now[3], dv[3], dn[3], t1[3], t2[3];
+  V swing[3], now[3], dv[3], dn[3];
+  const V* c = b->c;
   cross(w, arm, swing);
   if (round)
     for (int r = 0; r < 3; ++r) now[r] = b->moment[0] * w[r];
@@ -272,19 +276,33 @@ inline void balance(const TreeLanes<L>& t, const V* v, const V* w, const V* arm,
     dv[r] = (v[r] + swing[r] - t.linear_damping * linear[r]) * t.inverse_h;
     dn[r] = (now[r] - t.angular_damping * angular[r]) * t.inverse_h;
   }
-  cross(w, dv, t1);
-  cross(w, dn, t2);
-  const S turn_by = S(kTurn) * t.h;
-  for (int r = 0; r < 3; ++r) {
-    b->f[r] = mass * (dv[r] + turn_by * t1[r] - t.linear_damping * t.gravity[r]);
-    dn[r] += turn_by * t2[r];
+  if (turning) {
+    const S turn_by = S(kTurn) * t.h;
+    V tv[3], tn[3];
+    cross(turning, dv, tv);
+    cross(turning, dn, tn);
+    for (int r = 0; r < 3; ++r) {
+      tv[r] = turn_by * tv[r];
+      tn[r] = turn_by * tn[r];
+      dv[r] += tv[r];
+      dn[r] += tn[r];
+    }
+    if (reaction) {
+      for (int r = 0; r < 3; ++r) tv[r] = mass * tv[r];
+      V moment[3];
+      cross(c, tv, moment);
+      for (int r = 0; r < 3; ++r) {
+        reaction[r] += tv[r];
+        reaction[3 + r] += moment[r] + tn[r];
+      }
+    }
   }
+  for (int r = 0; r < 3; ++r) b->f[r] = mass * (dv[r] - t.linear_damping * t.gravity[r]);
   if (t.any_push)
     for (int r = 0; r < 3; ++r) {
       b->f[r] -= t.linear_damping * b->push[r];
       dn[r] -= t.angular_damping * b->push[3 + r];
     }
-  const V* c = b->c;
   cross(c, b->f, b->n);
   for (int r = 0; r < 3; ++r) {
     b->n[r] += dn[r];
@@ -306,6 +324,9 @@ void dynamics(TreeLanes<L>& t) {
   using V = typename L::V;
   const Tree& tree = *t.tree;
   const int offset = tree.coord(0);
+  V reaction[6] = {}, base_w[3] = {};
+  if (tree.free_base)
+    for (int k = 0; k < 3; ++k) base_w[k] = t.coord[3 + k].qd;
   for (int i = 0; i < tree.num_links; ++i) {
     const TreeLink& link = tree.links[static_cast<size_t>(i)];
     const LinkKeep<V>& me = t.keep[i];
@@ -326,12 +347,20 @@ void dynamics(TreeLanes<L>& t) {
     }
     V arm[3];
     for (int r = 0; r < 3; ++r) arm[r] = b.c[r] - me.P[r];
-    balance<L>(t, me.v, me.w, arm, me.linear, me.angular, t.bones[i].mass, link.round, &b);
+    V turning[3];
+    for (int r = 0; r < 3; ++r) turning[r] = tree.free_base ? me.w[r] - base_w[r] : me.w[r];
+    balance<L>(t, me.v, me.w, arm, me.linear, me.angular, t.bones[i].mass, link.round, turning,
+               tree.free_base ? reaction : nullptr, &b);
   }
   if (tree.free_base) {
-    V v[3], w[3];
-    for (int k = 0; k < 3; ++k) v[k] = t.coord[k].qd, w[k] = t.coord[3 + k].qd;
-    balance<L>(t, v, w, t.base.c, t.base_keep.linear, t.base_keep.angular, t.base_mass, false, &t.base);
+    V v[3];
+    for (int k = 0; k < 3; ++k) v[k] = t.coord[k].qd;
+    balance<L>(t, v, base_w, t.base.c, t.base_keep.linear, t.base_keep.angular, t.base_mass, false,
+               static_cast<const V*>(nullptr), static_cast<V*>(nullptr), &t.base);
+    for (int r = 0; r < 3; ++r) {  // the base takes the reaction: momentum is kept
+      t.base.f[r] -= reaction[r];
+      t.base.n[r] -= reaction[3 + r];
+    }
   }
   for (int i = tree.num_links - 1; i >= 0; --i) {
     const TreeLink& link = tree.links[static_cast<size_t>(i)];
