@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "base/hash.hpp"
 #include "nn/kernels.hpp"
 #include "nn_data.hpp"
 
@@ -62,6 +63,37 @@ void check_product(int32_t m, int32_t n, int32_t k, Layout layout, bool add, boo
   EXPECT_LT(worst, 1e-6 * k + 1e-5);
   EXPECT_EQ(std::memcmp(c.data() + size, before.data() + size, 16 * sizeof(float)), 0) << "written past C";
   for (size_t i = room; i < packed.size(); ++i) EXPECT_EQ(packed[i], 7) << "written past the packed panels";
+}
+
+// A hash over what the table in force makes of a fixed input.
+uint64_t bytes_of_all() {
+  const int32_t m = 37, n = 53, k = 211, actions = 20;
+  const auto a = random_floats(sz(m) * sz(k), 1), b = random_floats(sz(k) * sz(n), 2),
+             bias = random_floats(sz(n), 3), log_std = random_floats(sz(actions), 4);
+  uint64_t h = kHashSeed;
+  const auto join = [&h](const auto& v) { h = hash_bytes(v.data(), v.size() * sizeof v[0], h); };
+  const Kernels& t = kernels();
+  std::vector<float> c(sz(m) * sz(n)), packed(gemm_pack_floats(n, k)), y(a.size());
+  GemmArgs g;
+  g.m = m, g.n = n, g.k = k, g.a = a.data(), g.a_row = sz(k), g.a_col = 1, g.b = b.data(), g.b_row = sz(n);
+  g.b_col = 1, g.c = c.data(), g.bias = bias.data(), g.activate = true, g.packed = packed.data();
+  t.gemm(g);
+  join(c);
+  for (const auto map : {t.map_tanh, t.map_elu, t.map_exp}) {
+    map(a.data(), a.size(), y.data());
+    join(y);
+  }
+  std::vector<float> p = bias, first(sz(n), 0.1f), second(sz(n), 0.2f);
+  t.adam({sz(n), p.data(), first.data(), second.data(), b.data(), 0.5f, 0.01f, 3});
+  join(p);
+  std::vector<float> sums = {static_cast<float>(t.sum_squares(a.data(), a.size()))};
+  for (size_t i = 0; i < sz(m); ++i) {
+    const float *x = a.data() + i * sz(actions), *z = b.data() + i * sz(actions);
+    sums.push_back(t.log_prob(x, log_std.data(), z, actions));
+    sums.push_back(t.kl(x, log_std.data(), z, bias.data(), actions));
+  }
+  join(sums);
+  return h;
 }
 
 }  // namespace
@@ -159,6 +191,16 @@ TEST(Kernels, SumsOfColumnsAndSquares) {
       EXPECT_EQ(sum[sz(n)], 7);
       EXPECT_NEAR(kernels().sum_squares(x.data(), x.size()), squares, 1e-13 * squares);
     }
+  });
+}
+
+// Each set has its own number, the same on every processor, compiler and mathematics library.
+TEST(Kernels, AnInstructionSetAlwaysGivesTheSameBytes) {
+  for_each_isa([](const char* isa) {
+    const uint64_t want = isa == std::string("x86-64-v2")   ? 0x725b861ff5f662c0u
+                          : isa == std::string("x86-64-v3") ? 0xcd37037b1a06d979u
+                                                            : 0xd39b51a1098e38bcu;
+    EXPECT_EQ(bytes_of_all(), want) << isa;
   });
 }
 

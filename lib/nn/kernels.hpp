@@ -1,8 +1,13 @@
 // The inner loops of lib/nn, one table of them per instruction set, chosen at run time.
 //
 // Every entry of a product adds its terms in an order that depends on the sizes n and k alone, never on the
-// number of rows: so a row's result does not depend on the batch that it came in, and one instruction set
-// always gives the same bytes.
+// number of rows: so a row's result does not depend on the batch that it came in.
+//
+// One instruction set gives the same bytes on every processor that has it. Two sets do not: v3 and v4 agree
+// in products, activations and Adam, not in the sums over a row or a gradient (log_prob, kl, sum_squares),
+// which they add in as many parts as they have lanes; v2 has no fused multiply-add and differs in nearly all.
+// So a policy acts alike on v3 and v4, and training repeats bit by bit on machines of one set; every machine
+// can be lowered to v2 by set_kernel_isa.
 #pragma once
 #include <cstddef>
 #include <cstdint>
