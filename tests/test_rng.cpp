@@ -73,6 +73,24 @@ TEST(Stream, UniformMomentsAndRange) {
   }
 }
 
+// Also where the counter passes 32 and 64 bits, and for counts that fill no vector.
+TEST(Stream, ManySignedUnitsAreTheSameNumbers) {
+  for (const uint64_t counter : {0ull, 5ull, 0xfffffffdull, ~0ull - 20})
+    for (int count = 0; count < 20; ++count) {
+      Stream one = restore({0x123456789abcdef0ull, counter, 77, 5}), many = one;
+      float row[21];
+      for (float& x : row) x = 9;
+      many.signed_units(row, count);
+      for (int i = 0; i < count; ++i) ASSERT_EQ(row[i], static_cast<float>(one.signed_unit())) << counter;
+      EXPECT_EQ(row[count], 9);
+      EXPECT_EQ(many.counter(), one.counter());
+    }
+  Stream one(1, 2, Purpose::kTest), many = one;
+  std::vector<float> row(100000);
+  many.signed_units(row.data(), static_cast<int>(row.size()));
+  for (const float x : row) ASSERT_EQ(x, static_cast<float>(one.signed_unit()));
+}
+
 TEST(Stream, BelowIsUnbiased) {
   Stream s(2, 0, Purpose::kTest);
   const int sides = 7, n = 140000;

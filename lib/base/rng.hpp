@@ -35,6 +35,8 @@ class Stream {
   double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }  // [0, 1)
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   double signed_unit() { return 2 * uniform() - 1; }  // [-1, 1)
+  // `count` times signed_unit(), the same numbers, several at a time.
+  void signed_units(float* out, int count);
   // Unbiased to 2^-32 for n < 2^32.
   uint32_t below(uint32_t n) { return static_cast<uint32_t>(((next() >> 32) * n) >> 32); }
   // `count` standard normals; one block of the cipher gives two (Box-Muller).
@@ -53,20 +55,24 @@ class Stream {
   uint64_t counter() const { return counter_; }
 
  private:
+  static constexpr uint32_t kM0 = 0xD2511F53u, kM1 = 0xCD9E8D57u, kW0 = 0x9E3779B9u, kW1 = 0xBB67AE85u;
+  static constexpr int kRounds = 10;
+  // Eight of signed_units, with the keys of all rounds; for processors with AVX2.
+  void chunk(uint64_t counter, const uint32_t* keys, float* out) const;
   void block(uint64_t counter, uint32_t out[4]) const {
     uint32_t c0 = static_cast<uint32_t>(counter), c1 = static_cast<uint32_t>(counter >> 32);
     uint32_t c2 = world_, c3 = purpose_;
     uint32_t k0 = static_cast<uint32_t>(seed_), k1 = static_cast<uint32_t>(seed_ >> 32);
-    for (int i = 0; i < 10; ++i) {
-      const uint64_t p0 = uint64_t{0xD2511F53u} * c0, p1 = uint64_t{0xCD9E8D57u} * c2;
+    for (int i = 0; i < kRounds; ++i) {
+      const uint64_t p0 = uint64_t{kM0} * c0, p1 = uint64_t{kM1} * c2;
       const uint32_t n0 = static_cast<uint32_t>(p1 >> 32) ^ c1 ^ k0;
       const uint32_t n2 = static_cast<uint32_t>(p0 >> 32) ^ c3 ^ k1;
       c1 = static_cast<uint32_t>(p1);
       c3 = static_cast<uint32_t>(p0);
       c0 = n0;
       c2 = n2;
-      k0 += 0x9E3779B9u;
-      k1 += 0xBB67AE85u;
+      k0 += kW0;
+      k1 += kW1;
     }
     out[0] = c0, out[1] = c1, out[2] = c2, out[3] = c3;
   }

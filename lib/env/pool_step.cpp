@@ -1,4 +1,5 @@
 // Episodes: reset, control steps, their ends, and the baseline actions.
+#include <algorithm>
 #include <cstring>
 
 #include "env/fields.hpp"
@@ -45,10 +46,16 @@ void Pool::baseline(Baseline kind) {
   Impl& m = *impl_;
   m.each_world(nullptr, [&](int32_t env, Block&) {
     float* row = m.action(env);
-    if (kind == Baseline::kHold) m.task->hold_action(row);
-    for (int32_t i = 0; i < m.action_dim; ++i) {
-      if (kind == Baseline::kZero) row[i] = 0;
-      if (kind == Baseline::kRandom) row[i] = static_cast<float>(m.slots[env].episode.policy.signed_unit());
+    switch (kind) {
+      case Baseline::kZero:
+        std::fill_n(row, m.action_dim, 0.0f);
+        break;
+      case Baseline::kHold:
+        m.task->hold_action(row);
+        break;
+      case Baseline::kRandom:
+        m.slots[env].episode.policy.signed_units(row, m.action_dim);
+        break;
     }
   });
 }
