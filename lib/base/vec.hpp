@@ -107,11 +107,9 @@ inline Quat to_quat(const Mat3& r) {
   const double trace = r.m[0] + r.m[4] + r.m[8];
   if (trace > 0) return normalized(Quat{1 + trace, r.m[7] - r.m[5], r.m[2] - r.m[6], r.m[3] - r.m[1]});
   if (r.m[0] >= r.m[4] && r.m[0] >= r.m[8])
-    return normalized(
-        Quat{r.m[7] - r.m[5], 1 + r.m[0] - r.m[4] - r.m[8], r.m[1] + r.m[3], r.m[2] + r.m[6]});
+    return normalized(Quat{r.m[7] - r.m[5], 1 + r.m[0] - r.m[4] - r.m[8], r.m[1] + r.m[3], r.m[2] + r.m[6]});
   if (r.m[4] >= r.m[8])
-    return normalized(
-        Quat{r.m[2] - r.m[6], r.m[1] + r.m[3], 1 + r.m[4] - r.m[0] - r.m[8], r.m[5] + r.m[7]});
+    return normalized(Quat{r.m[2] - r.m[6], r.m[1] + r.m[3], 1 + r.m[4] - r.m[0] - r.m[8], r.m[5] + r.m[7]});
   return normalized(Quat{r.m[3] - r.m[1], r.m[2] + r.m[6], r.m[5] + r.m[7], 1 + r.m[8] - r.m[0] - r.m[4]});
 }
 
