@@ -231,7 +231,7 @@ inline Crash crash(const Column& column) {
       about_center(after[0]) + about_center(after[1]) - about_center(before[0]) - about_center(before[1]);
   out.linear = rig.checked(norm(p) / (norm(before[0].linear) + norm(before[1].linear)));
   out.angular = rig.checked(norm(l) / (norm(about_center(before[0])) + norm(about_center(before[1]))));
-  out.kinetic = (after[0].kinetic + after[1].kinetic) / (before[0].kinetic + before[1].kinetic);
+  out.kinetic = rig.checked((after[0].kinetic + after[1].kinetic) / (before[0].kinetic + before[1].kinetic));
   return out;
 }
 

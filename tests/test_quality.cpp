@@ -169,16 +169,18 @@ TEST_P(Exacting, FreeHandsSwingAsTheReference) {
 TEST_P(Quality, CollidingHandsKeepTheirMomentum) {
   const Crash c = crash(GetParam());
   EXPECT_GT(c.touching, 0);
-  EXPECT_LT(c.linear, bound(0.05, 0.01));
-  EXPECT_LT(c.angular, bound(0.2, 0.1));
+  EXPECT_LT(c.linear, bound(0.05, 1e-3));
+  EXPECT_LT(c.angular, bound(0.2, 0.01));
   EXPECT_LT(c.kinetic, 1);
 }
 
 TEST_P(Exacting, ShorterStepsKeepMomentumBetter) {
-  const Crash c = crash(finer(GetParam(), 4));
+  Column column = finer(GetParam(), 8);
+  column.solver.limit_margin = 0.1;  // the clamp stops a joint without a reaction, so it must not be reached
+  const Crash c = crash(column);
   EXPECT_GT(c.touching, 0);
-  EXPECT_LT(c.linear, 0.005);
-  EXPECT_LT(c.angular, 0.02);
+  EXPECT_LT(c.linear, 1e-4);
+  EXPECT_LT(c.angular, 1e-3);
 }
 
 // The judge is judged: with velocity products pushed from outside, nothing but the step is left.
