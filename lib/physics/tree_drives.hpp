@@ -32,7 +32,7 @@ void set_drives(TreeLanes<L>& t) {
     V target = me.target;
     const int other = tree.links[static_cast<size_t>(i)].other;
     if (other >= 0) {
-      const V middle = bone.ratio * t.work[other].q;
+      const V middle = bone.ratio * (t.work[other].q + t.h * t.coord[offset + other].qd);
       target = clamp<L>(me.q, V(middle - bone.slack), V(middle + bone.slack));
     }
     target = clamp<L>(target, bone.lower, bone.upper);
