@@ -111,11 +111,14 @@ Pool::Impl::Carved Pool::Impl::carve_rows(const PoolPlan& plan, Arena& arena) {
 }
 
 size_t Pool::Impl::arena_bytes(const PoolPlan& plan) {
-  Arena rows, world;
+  Arena rows, world[2];  // the first world of a block and the others
   carve_rows(plan, rows);
-  world.make<unsigned char>(plan.task->state_bytes());
-  World::measure(plan.task->engine(), plan.task->scene(), world);
-  return rows.used() + plan.num() * world.used();
+  for (const bool partnered : {false, true}) {
+    world[partnered].make<unsigned char>(plan.task->state_bytes());
+    World::measure(plan.task->engine(), plan.task->scene(), world[partnered], partnered);
+  }
+  const auto blocks = static_cast<size_t>(plan.num_blocks());
+  return rows.used() + blocks * world[0].used() + (plan.num() - blocks) * world[1].used();
 }
 
 void Pool::Impl::build() {

@@ -42,21 +42,29 @@ void Pool::memory(const PoolConfig& config, size_t* ours, size_t* engines) {
   size_t total = counter.live + sizeof(Pool) + sizeof(Impl) + Impl::arena_bytes(plan) + sizeof(Workers) +
                  Workers::memory(config.hooks, config.num_threads);
 
-  // one world tells what each takes beside its arrays, and how long its saved state is
+  // two worlds tell what each takes beside its arrays, and how long its saved state is
   const EngineKind engine = plan.task->engine();
+  const Scene& scene = plan.task->scene();
+  const size_t blocks = static_cast<size_t>(plan.num_blocks()), others = plan.num() - blocks;
   Arena measure;
-  World::measure(engine, plan.task->scene(), measure);
+  World::measure(engine, scene, measure);
+  World::measure(engine, scene, measure, true);
   Arena arena(config.hooks, measure.used());
   const size_t before = counter.live;
-  World* world = World::create(engine, plan.task->scene(), arena, hooks);
-  total += plan.num() * (counter.live - before);
+  World* first = World::create(engine, scene, arena, hooks);
+  const size_t between = counter.live;
+  World* other = World::create(engine, scene, arena, hooks, first);
+  total += blocks * (between - before) + others * (counter.live - between);
   Writer state(nullptr, 0);
-  world->save(state);
+  first->save(state);
   total += state.size();
-  World::destroy(world, hooks);
+  World::destroy(other, hooks);
+  World::destroy(first, hooks);
 
   if (ours) *ours = total;
-  if (engines) *engines = plan.num() * World::engine_bytes(engine, plan.task->scene());
+  if (engines)
+    *engines =
+        blocks * World::engine_bytes(engine, scene) + others * World::engine_bytes(engine, scene, true);
 }
 
 }  // namespace rdm

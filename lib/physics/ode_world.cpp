@@ -10,9 +10,9 @@
 namespace rdm {
 namespace {
 
-constexpr double kStateBound = 1e6;     // m, m/s, rad/s; a body beyond it has diverged
+constexpr double kStateBound = 1e6;       // m, m/s, rad/s; a body beyond it has diverged
 constexpr int32_t kMaxOdeIterations = 8;  // more would draw from a process-wide seed
-constexpr double kMaxBodySpin = 100.0;  // rad/s, of free bodies
+constexpr double kMaxBodySpin = 100.0;    // rad/s, of free bodies
 
 bool bounded(const Vec3& v) {
   return std::fabs(v.x) < kStateBound && std::fabs(v.y) < kStateBound && std::fabs(v.z) < kStateBound;
@@ -70,7 +70,8 @@ void OdeWorld::make_world(const OdeWorld* partner) {
   dWorldSetCFM(ode_.world, solver.cfm);
   dWorldSetQuickStepNumIterations(ode_.world, solver.iterations);
   dWorldSetQuickStepW(ode_.world, solver.relaxation);
-  dWorldSetContactMaxCorrectingVel(ode_.world, solver.contact_max_speed);
+  dWorldSetContactMaxCorrectingVel(
+      ode_.world, solver.contact_max_speed > 0 ? solver.contact_max_speed : kOdeContactSpeed);
   dWorldSetContactSurfaceLayer(ode_.world, solver.contact_layer);
   dWorldSetAutoDisableFlag(ode_.world, 0);
   dWorldSetStepIslandsProcessingMaxThreadCount(ode_.world, 1);  // worlds are the unit of parallel work

@@ -188,6 +188,7 @@ template <class L>
 void StepperLanes<L>::solve_world(int32_t world) {
   ArticulatedWorld& w = *worlds_[world];
   const SolverDef& solver = scene_->def.solver;
+  const double fastest = solver.contact_max_speed > 0 ? solver.contact_max_speed : kArticulatedContactSpeed;
   const S softness = static_cast<S>(solver.contact_cfm / solver.h);
   const int32_t count = w.num_contacts();
   rows_.begin();
@@ -199,7 +200,7 @@ void StepperLanes<L>::solve_world(int32_t world) {
     Vec3 axes[3] = {contact.n, {}, {}};
     tangents(contact.n, &axes[1], &axes[2]);
     const double deep = std::max(contact.depth - solver.contact_layer, 0.0) * solver.contact_erp / solver.h;
-    point.b[0] = static_cast<S>(std::min(deep, solver.contact_max_speed));
+    point.b[0] = static_cast<S>(std::min(deep, fastest));
     add_side(&point, places_[contact.shape_a], world, S(1), contact.p, axes);
     add_side(&point, places_[contact.shape_b], world, S(-1), contact.p, axes);
     rows_.finish(&point);

@@ -25,8 +25,9 @@ void World::measure(EngineKind kind, const Scene& scene, Arena& arena, bool part
     const ArticulatedWorld world(scene, arena, nullptr, partnered);
 }
 
-size_t World::engine_bytes(EngineKind kind, const Scene& scene) {
-  return kind == EngineKind::kOde ? OdeWorld::heap_bytes(scene) : ArticulatedWorld::heap_bytes(scene);
+size_t World::engine_bytes(EngineKind kind, const Scene& scene, bool partnered) {
+  if (kind == EngineKind::kOde) return OdeWorld::heap_bytes(scene);
+  return partnered ? 0 : ArticulatedWorld::heap_bytes(scene);
 }
 
 void World::destroy(World* world, const HostHooks& hooks) {

@@ -46,7 +46,7 @@ class World {
   // What create carves, without or with a partner.
   static void measure(EngineKind kind, const Scene& scene, Arena& arena, bool partnered = false);
   // Bytes that the engine allocates by itself for one world, an estimate from above.
-  static size_t engine_bytes(EngineKind kind, const Scene& scene);
+  static size_t engine_bytes(EngineKind kind, const Scene& scene, bool partnered = false);
   static void destroy(World* world, const HostHooks& hooks);
   virtual ~World() = default;
 
