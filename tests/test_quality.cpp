@@ -78,9 +78,16 @@ TEST_P(Quality, LowStacksStand) {
   EXPECT_FALSE(three.overflow);
 }
 
+TEST_P(Exacting, HighStacksStand) {
+  const Pile ten = stack(GetParam(), 10);
+  EXPECT_LT(ten.motion, 5e-3);
+  EXPECT_LT(ten.depth, 1e-3);
+}
+
 TEST_P(Exacting, ATowerStandsUntilItIsPulledDown) {
   const Jenga j = jenga(GetParam());
-  EXPECT_LT(j.standing.motion, 5e-3);
+  EXPECT_LT(j.standing.motion, 1e-3);
+  EXPECT_LT(j.standing.depth, 1e-3);
   EXPECT_FALSE(j.standing.overflow);
   EXPECT_LT(j.after_middle, 2e-3);
   EXPECT_GT(j.after_side, 5e-3);
