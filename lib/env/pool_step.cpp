@@ -8,6 +8,9 @@
 namespace rdm {
 namespace {
 
+// Up to so many entries are drawn sooner than other threads wake up.
+constexpr int32_t kFewActions = 4096;
+
 bool all_finite(const Verdict& v, int32_t costs) {
   double zero = 0 * v.reward;  // 0 times what is not finite is not a number
   for (int32_t k = 0; k < costs; ++k) zero += 0 * v.cost[k] + 0 * v.cost_raw[k];
@@ -44,7 +47,7 @@ void Pool::step(const uint8_t* mask) {
 void Pool::baseline(Baseline kind) {
   const FpMode mode;
   Impl& m = *impl_;
-  m.each_world(nullptr, [&](int32_t env, Block&) {
+  const auto fill = [&](int32_t env) {
     float* row = m.action(env);
     switch (kind) {
       case Baseline::kZero:
@@ -57,7 +60,11 @@ void Pool::baseline(Baseline kind) {
         m.slots[env].episode.policy.signed_units(row, m.action_dim);
         break;
     }
-  });
+  };
+  if (m.config.num_envs * m.action_dim > kFewActions)
+    m.each_world(nullptr, [&](int32_t env, Block&) { fill(env); });
+  else
+    for (int32_t env = 0; env < m.config.num_envs; ++env) fill(env);
 }
 
 void Pool::Impl::check_ready(const uint8_t* mask) const {

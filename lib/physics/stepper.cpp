@@ -8,7 +8,7 @@
 namespace rdm {
 namespace {
 
-constexpr size_t kBaseNumbers = 6, kLinkNumbers = 26;  // BaseKeep, LinkKeep
+constexpr size_t kBaseNumbers = 6, kLinkNumbers = 30;  // BaseKeep, LinkKeep
 
 bool usable(const StepperTable& table) {
   if (!table.isa) return false;

@@ -102,6 +102,7 @@ class StepperLanes final : public Stepper {
   int32_t* keep_first_ = nullptr;      // [articulations] in numbers
   uint8_t* touched_ = nullptr;         // [articulations] by a contact of the world being solved
   S* change_ = nullptr;                // [most coordinates][4]
+  Quat* link_back_ = nullptr;          // [num_links] q_JL
   Mat3* link_turn_ = nullptr;          // [num_links] R_JL
   ContactRows<S> rows_;
   int32_t num_groups_ = 0, num_sets_ = 0, group_ = 1, count_ = 0;
@@ -155,6 +156,7 @@ void StepperLanes<L>::carve(Arena& arena) {
   touched_ = arena.make<uint8_t>(scene_->def.articulations.size());
   change_ = arena.make<S>(4 * static_cast<size_t>(most_coords));
   link_turn_ = arena.make<Mat3>(static_cast<size_t>(scene_->num_links));
+  link_back_ = arena.make<Quat>(static_cast<size_t>(scene_->num_links));
   rows_.carve(arena, scene_->def.solver.contacts_max, segments, path);
 }
 
@@ -186,6 +188,8 @@ void StepperLanes<L>::fill_constants(TreeLanes<L>& t, int32_t set) {
       const JointDef& joint = bone.joint;
       BoneLanes<L>& b = t.bones[i];
       for (int k = 0; k < 9; ++k) put(&b.R_PJ[k], l, bone.R_PJ.m[k]);
+      const double q_PJ[4] = {bone.q_PJ.w, bone.q_PJ.x, bone.q_PJ.y, bone.q_PJ.z};
+      for (int k = 0; k < 4; ++k) put(&b.q_PJ[k], l, q_PJ[k]);
       for (int r = 0; r < 3; ++r) put(&b.p_PJ[r], l, bone.p_PJ[r]);
       for (int r = 0; r < 3; ++r) put(&b.com[r], l, bone.inertia.com[r]);
       for (int k = 0; k < 6; ++k) put(&b.moment[k], l, bone.inertia.moment[k]);
@@ -224,8 +228,10 @@ void StepperLanes<L>::list_places() {
     for (int32_t m = 0; m < groups_[g].members; ++m, segment += tree.num_segments) {
       const TreeMember& member = tree.members[static_cast<size_t>(m)];
       member_segment_[member.articulation] = segment;
-      for (int32_t i = 0; i < tree.num_links; ++i)
+      for (int32_t i = 0; i < tree.num_links; ++i) {
         link_turn_[member.first_link + i] = transpose(member.bones[static_cast<size_t>(i)].R_LJ);
+        link_back_[member.first_link + i] = conjugate(member.bones[static_cast<size_t>(i)].q_LJ);
+      }
       for (size_t k = 0; k < tree.shape_links.size(); ++k) {
         const int32_t link = tree.shape_links[k],
                       coord = link < 0 ? (tree.free_base ? 5 : -1) : tree.coord(link);
@@ -264,6 +270,9 @@ void StepperLanes<L>::set_base(TreeLanes<L>& t, int lane) {
   const int32_t a = member_of(t, lane).articulation;
   const Mat3& R = world.base_R(a);
   for (int k = 0; k < 9; ++k) L::set(&t.base_R[k], lane, static_cast<S>(R.m[k]));
+  const Quat& turn = world.base(a).X.q;
+  const double q[4] = {turn.w, turn.x, turn.y, turn.z};
+  for (int k = 0; k < 4; ++k) L::set(&t.base_q[k], lane, static_cast<S>(q[k]));
 }
 
 template <class L>
@@ -416,7 +425,10 @@ void StepperLanes<L>::step(ArticulatedWorld* const* worlds, int32_t count) {
     gather(sets_[k]);
   }
   for (int32_t s = 0; s < scene_->def.solver.substeps; ++s) substep();
-  for (int32_t k = 0; k < num_sets_; ++k) scatter(sets_[k]);
+  for (int32_t k = 0; k < num_sets_; ++k) {
+    turns(sets_[k]);
+    scatter(sets_[k]);
+  }
   for (int32_t w = 0; w < count; ++w) worlds[w]->end_step();
 }
 
@@ -433,6 +445,7 @@ void StepperLanes<L>::refresh(ArticulatedWorld& world, int32_t articulation) {
     if (!here) continue;
     gather(t);
     kinematics(t);
+    turns(t);
     place_masses(t);
     const int32_t links = t.tree->num_links;
     LinkKeep<V>* all = t.keep;
@@ -469,7 +482,9 @@ void StepperLanes<L>::read_link(const ArticulatedWorld& world, int32_t link, Mot
     m->v[r] = static_cast<double>(keep.v[r]);
     m->w[r] = static_cast<double>(keep.w[r]);
   }
-  m->X.q = to_quat(*R);
+  const Quat q_WJ = {static_cast<double>(keep.q[0]), static_cast<double>(keep.q[1]),
+                     static_cast<double>(keep.q[2]), static_cast<double>(keep.q[3])};
+  m->X.q = normalized(q_WJ * link_back_[link]);
 }
 
 template <class L>

@@ -59,7 +59,14 @@ TreeMember make_member(const Scene& scene, int32_t articulation) {
     bone.R_PJ = R_JP * to_matrix(link.X_PL.q) * bone.R_LJ;
     bone.p_PJ = R_JP * link.X_PL.p;
     // Parallel axes: products of a turn and its transpose, off by a rounding.
-    if (std::fabs(bone.R_PJ.m[0] + bone.R_PJ.m[4] + bone.R_PJ.m[8] - 3) < 1e-14) bone.R_PJ = Mat3{};
+    bone.q_LJ = to_quat(bone.R_LJ);
+    const Quat q_JP =
+        link.parent < 0 ? Quat{} : conjugate(member.bones[static_cast<size_t>(link.parent)].q_LJ);
+    bone.q_PJ = q_JP * link.X_PL.q * bone.q_LJ;
+    if (std::fabs(bone.R_PJ.m[0] + bone.R_PJ.m[4] + bone.R_PJ.m[8] - 3) < 1e-14) {
+      bone.R_PJ = Mat3{};
+      bone.q_PJ = {bone.q_PJ.w > 0 ? 1.0 : -1.0, 0, 0, 0};
+    }
     bone.inertia = turned(link.inertia, bone.R_LJ);
     bone.joint = link.joint;
     member.bones.push_back(bone);
@@ -174,7 +181,7 @@ void find_shortcuts(Tree* tree) {
       return std::all_of(tree->members.begin(), tree->members.end(),
                          [&](const TreeMember& m) { return is(m.bones[i]); });
     };
-    link.aligned = everywhere([](const TreeBone& b) { return is_identity(b.R_PJ); });
+    link.aligned = everywhere([](const TreeBone& b) { return is_identity(b.R_PJ) && b.q_PJ.w > 0; });
     link.round = everywhere([](const TreeBone& b) { return is_round(b.inertia); });
     link.massless = everywhere([](const TreeBone& b) { return is_massless(b.inertia); });
   }

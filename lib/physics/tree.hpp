@@ -24,6 +24,7 @@ struct TreeBone {
   Mat3 R_PJ;        // at q = 0; the parent's joint frame, or the base
   Vec3 p_PJ;        // m
   Mat3 R_LJ;        // constant turn from the link frame
+  Quat q_PJ, q_LJ;  // the same two turns; their signs make link quaternions continuous in the coordinates
   Inertia inertia;  // in joint axes
   JointDef joint;
 };

@@ -22,7 +22,7 @@ constexpr double kTurn = 0.4;
 template <class L>
 struct BoneLanes {
   using V = typename L::V;
-  V R_PJ[9], p_PJ[3], com[3], mass, moment[6];
+  V R_PJ[9], q_PJ[4], p_PJ[3], com[3], mass, moment[6];
   V kp, kd, effort, lower, upper, armature, friction, ratio, slack;
 };
 
@@ -33,6 +33,7 @@ struct LinkKeep {
   V R[9], P[3], w[3], v[3];  // R_WJ, origin from the base's, angular velocity, velocity of the origin
   V linear[3], angular[3];   // velocity of the centre of mass and angular momentum, as solved
   V saturated, limited;      // the sets: -1, 0, 1
+  V q[4];                    // q_WJ, w first; of the end of the control step
 };
 template <class V>
 struct BaseKeep {
@@ -68,7 +69,7 @@ struct TreeLanes {
   bool spring_only, any_push;
   Mask frozen;                                    // lanes whose sets stay as they are for this substep
   V gravity[3], linear_damping, angular_damping;  // factors of implicit damping, 1 without
-  V base_R[9], base_mass, base_com[3], base_moment[6];
+  V base_R[9], base_q[4], base_mass, base_com[3], base_moment[6];
   BaseKeep<V> base_keep;
   LinkWork<V> base;
   BoneLanes<L>* bones;
@@ -172,6 +173,42 @@ void kinematics(TreeLanes<L>& t) {
       me.v[r] = link.prismatic ? v[r] + swing[r] + along : v[r] + swing[r];
       me.w[r] = link.prismatic ? w[r] : w[r] + along;
     }
+  }
+}
+
+// a b, quaternions with w first
+template <class V>
+[[gnu::always_inline]] inline void times_quaternion(const V* a, const V* b, V* out) {
+  out[0] = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3];
+  out[1] = a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2];
+  out[2] = a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1];
+  out[3] = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0];
+}
+
+// The links' quaternions. A matrix does not tell a quaternion's sign; along the joints it never jumps.
+template <class L>
+void turns(TreeLanes<L>& t) {
+  using V = typename L::V;
+  using S = typename L::Scalar;
+  for (int i = 0; i < t.tree->num_links; ++i) {
+    const TreeLink& link = t.tree->links[static_cast<size_t>(i)];
+    const V* up = link.parent < 0 ? t.base_q : t.keep[link.parent].q;
+    V turned[4];
+    if (link.aligned)
+      for (int k = 0; k < 4; ++k) turned[k] = up[k];
+    else
+      times_quaternion(up, t.bones[i].q_PJ, turned);
+    V* q = t.keep[i].q;
+    if (link.prismatic) {
+      for (int k = 0; k < 4; ++k) q[k] = turned[k];
+      continue;
+    }
+    V s, c;
+    sine_cosine<L>(V(t.work[i].q * S(0.5)), &s, &c);
+    q[0] = c * turned[0] - s * turned[3];
+    q[1] = c * turned[1] + s * turned[2];
+    q[2] = c * turned[2] - s * turned[1];
+    q[3] = c * turned[3] + s * turned[0];
   }
 }
 
