@@ -128,7 +128,12 @@ TEST(OdeWorld, TakesTheMemoryItAnnounces) {
   World* world = World::create(EngineKind::kOde, scene, arena, HostHooks{});
   EXPECT_EQ(arena.used(), measure.used());
   World::destroy(world, HostHooks{});
-  EXPECT_THROW(World::create(EngineKind::kArticulated, scene, arena, HostHooks{}), Error);
+}
+
+TEST(OdeWorld, TakesAtMostEightIterations) {
+  SceneDef def = test::two_hands_def();
+  def.solver.iterations = 9;
+  EXPECT_THROW(test::Simulation sim(def), Error);
 }
 
 TEST(OdeWorld, NanTargetIsFlaggedAndReplaced) {

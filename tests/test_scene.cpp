@@ -115,7 +115,7 @@ TEST(Scene, NamesAreCut) {
 TEST(Scene, RefusesWhatCannotBeSimulated) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(code_of([](SceneDef&) {}), Code::kOk);
-  EXPECT_EQ(code_of([](SceneDef& d) { d.solver.iterations = 9; }), Code::kRange);
+  EXPECT_EQ(code_of([](SceneDef& d) { d.solver.iterations = 1001; }), Code::kRange);
   EXPECT_EQ(code_of([](SceneDef& d) { d.solver.substeps = 0; }), Code::kRange);
   EXPECT_EQ(code_of([](SceneDef& d) { d.solver.contacts_max = 0; }), Code::kRange);
   EXPECT_EQ(code_of([&](SceneDef& d) { d.solver.h = nan; }), Code::kRange);

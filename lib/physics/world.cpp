@@ -8,16 +8,27 @@
 
 namespace rdm {
 
+namespace {
+
+void check_kind(EngineKind kind) {
+  if (kind != EngineKind::kOde && kind != EngineKind::kArticulated)
+    fail(Code::kUnsupported, "engine %d does not exist", static_cast<int>(kind));
+}
+
+}  // namespace
+
 World* World::create(EngineKind kind, const Scene& scene, Arena& arena, const HostHooks& hooks,
                      World* partner) {
   const HostScope scope(hooks);
   if (kind == EngineKind::kOde)
     return host_new<OdeWorld>(hooks, scene, arena, static_cast<OdeWorld*>(partner));
+  check_kind(kind);
   return host_new<ArticulatedWorld>(hooks, scene, arena, static_cast<ArticulatedWorld*>(partner),
                                     partner != nullptr);
 }
 
 void World::measure(EngineKind kind, const Scene& scene, Arena& arena, bool partnered) {
+  check_kind(kind);
   if (!arena.measuring()) fail(Code::kInternal, "measure: the arena is a real one");
   if (kind == EngineKind::kOde)
     const OdeWorld world(scene, arena);
@@ -26,6 +37,7 @@ void World::measure(EngineKind kind, const Scene& scene, Arena& arena, bool part
 }
 
 size_t World::engine_bytes(EngineKind kind, const Scene& scene, bool partnered) {
+  check_kind(kind);
   if (kind == EngineKind::kOde) return OdeWorld::heap_bytes(scene);
   return partnered ? 0 : ArticulatedWorld::heap_bytes(scene);
 }
