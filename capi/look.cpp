@@ -117,9 +117,11 @@ rdm_result rdm_pool_push(rdm_pool* p, int32_t env, int32_t shape, const float fo
     const SceneShape& s = shapes[static_cast<size_t>(shape)];
     const Vec3 f{force[0], force[1], force[2]};
     if (!finite(f)) fail(Code::kArgument, "force is not finite");
-    if (s.carrier == Carrier::kStatic) fail(Code::kArgument, "shape: %s never moves", s.def.name.text);
+    if (!world.scene().moves(s)) fail(Code::kArgument, "shape: %s never moves", s.def.name.text);
     if (s.carrier == Carrier::kBody)
       world.push_body(s.index, f, {});
+    else if (s.carrier == Carrier::kBase)
+      world.push_base(s.articulation, f, {});
     else
       world.push_link(s.index, f, world.link(s.index).X * world.scene().link(s.index).inertia.com);
   });
