@@ -22,7 +22,8 @@
  *   - Structs begin with struct_size = sizeof of your version: set it yourself or through the _init function.
  *   - Strings that are returned live as long as their handle (static ones: for ever). UTF-8.
  *   - Arrays are row-major. SI units, radians. Quaternions are (x, y, z, w) here and in observations.
- *   - Same seed, same bytes: for any number of threads, on one kind of processor.
+ *   - Same seed, same bytes: for any number of threads; worlds on every x86-64 machine, learners on
+ *     every machine of the same vector unit.
  */
 #ifndef REDMAN_H
 #define REDMAN_H
