@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "heap_count.hpp"
@@ -254,6 +255,20 @@ TEST_F(HandOver, ThreadsSeedsAndRestartsGiveTheSameBytes) {
   for (const int32_t threads : {1, 2, 4}) EXPECT_EQ(run(threads, 6, false), hash) << threads;
   EXPECT_EQ(run(0, 99, true), hash);
   EXPECT_NE(run(0, 7, false), hash);
+}
+
+// So many entries that threads share them.
+TEST_F(HandOver, BaselinesOfManyWorldsDoNotDependOnThreads) {
+  constexpr int kWorlds = 110;
+  PoolConfig shared;
+  shared.num_threads = 3;
+  TestPool alone(kFinger, kWorlds), many(kFinger, kWorlds, {}, shared);
+  for (const Baseline kind : {Baseline::kRandom, Baseline::kHold, Baseline::kRandom, Baseline::kZero}) {
+    alone->baseline(kind);
+    many->baseline(kind);
+    const float *a = alone.rows().action, *b = many.rows().action;
+    EXPECT_TRUE(std::equal(a, a + kWorlds * 40, b)) << static_cast<int>(kind);
+  }
 }
 
 TEST_F(HandOver, ASavedPoolGoesOnInAnother) {

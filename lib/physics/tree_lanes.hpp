@@ -355,6 +355,19 @@ template <class L, class V>
   b->J[5] = b->moment[5] - b->h[1] * c[2];
 }
 
+// A link without mass hands a push on to what hangs on it. The push is about the centre of mass it names.
+template <class L, class V>
+void push_massless(const TreeLanes<L>& t, const LinkKeep<V>& keep, const V* com, LinkWork<V>* b) {
+  V arm[3];
+  turn(keep.R, com, arm);
+  for (int r = 0; r < 3; ++r) {
+    arm[r] += keep.P[r];
+    b->f[r] = -(t.linear_damping * b->push[r]);
+  }
+  cross(arm, b->f, b->n);
+  for (int r = 0; r < 3; ++r) b->n[r] -= t.angular_damping * b->push[3 + r];
+}
+
 // Bias forces and mass matrix of the present pose.
 template <class L>
 void dynamics(TreeLanes<L>& t) {
@@ -380,6 +393,7 @@ void dynamics(TreeLanes<L>& t) {
       for (int r = 0; r < 3; ++r) b.f[r] = b.n[r] = b.h[r] = V{};
       for (int k = 0; k < 6; ++k) b.J[k] = V{};
       b.mass = V{};
+      if (t.any_push) push_massless(t, me, t.bones[i].com, &b);
       continue;
     }
     V arm[3];
