@@ -1,5 +1,6 @@
-// One number per task that says whether its physics, observations, rewards or costs changed in any bit: the
-// same on every machine. With RDM_WRITE_GOLDEN set, tests/golden/tasks.txt is written instead of compared.
+// One number per task and engine that says whether its physics, observations, rewards or costs changed in any
+// bit: the same on every machine. With RDM_WRITE_GOLDEN set, tests/golden/tasks.txt is written instead of
+// compared.
 #include <gtest/gtest.h>
 #include <redman/redman.h>
 
@@ -15,10 +16,12 @@
 namespace {
 
 // Episodes of random actions in four worlds: everything that a host can see joins the hash.
-uint64_t run(const char* task) {
+uint64_t run(const char* task, const rdm_option* engine) {
   rdm_pool_config c;
   rdm_pool_config_init(&c, sizeof c);
   c.task = task;
+  c.options = engine;
+  c.num_options = engine ? 1 : 0;
   c.num_envs = 4;
   c.seed = 7;
   rdm_pool* p = nullptr;
@@ -44,15 +47,37 @@ uint64_t run(const char* task) {
   return rdm::hash_bytes(&state, sizeof state, h);
 }
 
+bool has_engines(const rdm_task& task) {
+  rdm_pool_config c;
+  rdm_pool_config_init(&c, sizeof c);
+  c.task = task.name;
+  const rdm_option engine{"engine", "ode", 0};
+  c.options = &engine;
+  c.num_options = 1;
+  rdm_spec spec{};
+  spec.struct_size = sizeof spec;
+  return rdm_pool_spec(&c, &spec) == RDM_OK;
+}
+
 TEST(Golden, EveryTaskGivesTheRecordedBytes) {
-  std::string now = "# task, hash\n";
+  std::string now = "# task, engine, hash\n";
   for (int32_t i = 0; i < rdm_task_count(); ++i) {
     rdm_task t{};
     t.struct_size = sizeof t;
     ASSERT_EQ(rdm_task_at(i, &t), RDM_OK);
-    char hash[20];
-    std::snprintf(hash, sizeof hash, "%016" PRIx64, run(t.name));
-    now += std::string(t.name) + " " + hash + "\n";
+    const auto add = [&](const char* engine, const rdm_option* option) {
+      char hash[20];
+      std::snprintf(hash, sizeof hash, "%016" PRIx64, run(t.name, option));
+      now += std::string(t.name) + " " + engine + " " + hash + "\n";
+    };
+    if (!has_engines(t)) {
+      add("-", nullptr);
+      continue;
+    }
+    for (const char* engine : {"articulated", "ode"}) {
+      const rdm_option option{"engine", engine, 0};
+      add(engine, &option);
+    }
   }
   const char* path = RDM_TEST_DATA "/golden/tasks.txt";
   if (std::getenv("RDM_WRITE_GOLDEN")) {

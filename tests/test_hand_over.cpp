@@ -48,7 +48,7 @@ TEST_F(HandOver, TheTwoTasksShareTheLayout) {
 }
 
 TEST_F(HandOver, HandsFaceEachOther) {
-  TestPool p(kFinger, 1, {{"joint_noise", nullptr, 0}});
+  TestPool p(kFinger, 1, {{"joint_noise", nullptr, 0}, {"precision", "double", 0}});
   p->reset(nullptr, nullptr);
   // middle fingers' distal origins: 0.459 m from the bases at y = 0 and -1
   EXPECT_NEAR(p->world(0).link(9).X.p.y, -0.459, 1e-9);

@@ -37,7 +37,7 @@ TEST(SimOptions, DefaultsAreTheSolversOwn) {
   EXPECT_EQ(s.link_armature, d.link_armature);
   EXPECT_EQ(s.spring_only_effort, d.spring_only_effort);
   EXPECT_EQ(s.exact, d.exact);
-  EXPECT_EQ(engine_from(sim_options({})), EngineKind::kOde);
+  EXPECT_EQ(engine_from(sim_options({})), EngineKind::kArticulated);
   EXPECT_EQ(gravity_from(sim_options({})).z, -9.81);
 }
 
@@ -60,7 +60,7 @@ TEST(SimOptions, EachReachesTheSolver) {
                                  {"link_armature", nullptr, 1e-5},
                                  {"effort_bounds", "spring", 0},
                                  {"exact_solver", "true", 0},
-                                 {"engine", "articulated", 0}});
+                                 {"engine", "ode", 0}});
   const SolverDef s = solver_from(o);
   EXPECT_DOUBLE_EQ(s.h, 1.0 / 120);
   EXPECT_EQ(s.substeps, 4);
@@ -79,7 +79,7 @@ TEST(SimOptions, EachReachesTheSolver) {
   EXPECT_EQ(s.link_armature, 1e-5);
   EXPECT_TRUE(s.spring_only_effort);
   EXPECT_TRUE(s.exact);
-  EXPECT_EQ(engine_from(o), EngineKind::kArticulated);
+  EXPECT_EQ(engine_from(o), EngineKind::kOde);
   EXPECT_EQ(gravity_from(o).z, -1.62);
 }
 

@@ -4,7 +4,8 @@ namespace rdm {
 namespace {
 
 constexpr OptionSpec kRows[] = {
-    text_option("engine", "ode", "ode|articulated", "physics engine"),
+    text_option("engine", "articulated", "articulated|ode",
+                "robots in joint coordinates, or bodies and joints of ODE: slow, a cross-check"),
     number_option("frequency", 60, 10, 1000, "control steps per second, Hz"),
     integer_option("substeps", 2, 1, 16, "physics substeps per control step"),
     integer_option("iterations", 8, 1, 1000,

@@ -87,7 +87,12 @@ ArticulatedWorld::ArticulatedWorld(const Scene& scene, Arena& arena, Articulated
   sensor_of_link_ = arena.make<int32_t>(links);
   good_bodies_ = arena.make<Motion>(bodies);
   good_bases_ = arena.make<Motion>(bases);
-  make_shared(arena, partner, partnered);
+  try {
+    make_shared(arena, partner, partnered);
+  } catch (...) {  // no destructor runs
+    release_shared();
+    throw;
+  }
   if (arena.measuring()) return;
   for (size_t i = 0; i < links; ++i) sensor_of_link_[i] = -1;
   for (size_t i = 0; i < scene.sensors.size(); ++i)
@@ -127,6 +132,10 @@ void ArticulatedWorld::make_shared(Arena& arena, ArticulatedWorld* partner, bool
 }
 
 ArticulatedWorld::~ArticulatedWorld() {
+  release_shared();
+}
+
+void ArticulatedWorld::release_shared() {
   if (!shared_ || --shared_->users > 0) return;
   const HostHooks hooks = shared_->hooks;
   if (shared_->group && shared_->group != shared_->alone) shared_->group->end(hooks);

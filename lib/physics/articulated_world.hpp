@@ -103,6 +103,7 @@ class ArticulatedWorld final : public World {
   void step_group(World* const* worlds, int32_t count) override;
   void fetch_link(int32_t i) const override;
   void make_shared(Arena& arena, ArticulatedWorld* partner, bool partnered);
+  void release_shared();
   void set_body_bounds();
   void recover();
 
