@@ -2,6 +2,7 @@
 
 #include "env/task.hpp"
 #include "tasks/hand_over.hpp"
+#include "tasks/small_worlds.hpp"
 
 namespace rdm {
 
@@ -9,6 +10,9 @@ void register_builtin_tasks() {
   // a static's initialisation runs once, whichever thread comes first
   static const bool done = [] {
     for (const TaskInfo* info : {&kHandOverSafeFinger, &kHandOverSafeJoint}) register_task(*info);
+    for (const TaskInfo* info :
+         {&kBandit, &kTwoState, &kLqrLine, &kBallRun, &kBallCircle, &kCarRun, &kSwimmerVelocity})
+      register_task(*info);
     return true;
   }();
   static_cast<void>(done);

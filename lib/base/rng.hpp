@@ -19,6 +19,7 @@ enum class Purpose : uint32_t {
   kRandomPolicy = 5,  // uniform actions of the `random` baseline
   kSense = 6,         // sampling of point clouds
   kTest = 7,
+  kWorldNoise = 8,  // what a world draws within an episode
 };
 
 class Stream {

@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "physics/articulated_world.hpp"
+#include "physics/kinematic_world.hpp"
 #include "physics/ode_world.hpp"
 
 namespace rdm {
@@ -11,7 +12,7 @@ namespace rdm {
 namespace {
 
 void check_kind(EngineKind kind) {
-  if (kind != EngineKind::kOde && kind != EngineKind::kArticulated)
+  if (kind != EngineKind::kOde && kind != EngineKind::kArticulated && kind != EngineKind::kKinematic)
     fail(Code::kUnsupported, "engine %d does not exist", static_cast<int>(kind));
 }
 
@@ -23,6 +24,7 @@ World* World::create(EngineKind kind, const Scene& scene, Arena& arena, const Ho
   if (kind == EngineKind::kOde)
     return host_new<OdeWorld>(hooks, scene, arena, static_cast<OdeWorld*>(partner));
   check_kind(kind);
+  if (kind == EngineKind::kKinematic) return host_new<KinematicWorld>(hooks, scene, arena);
   return host_new<ArticulatedWorld>(hooks, scene, arena, static_cast<ArticulatedWorld*>(partner),
                                     partner != nullptr);
 }
@@ -32,6 +34,8 @@ void World::measure(EngineKind kind, const Scene& scene, Arena& arena, bool part
   if (!arena.measuring()) fail(Code::kInternal, "measure: the arena is a real one");
   if (kind == EngineKind::kOde)
     const OdeWorld world(scene, arena);
+  else if (kind == EngineKind::kKinematic)
+    const KinematicWorld world(scene, arena);
   else
     const ArticulatedWorld world(scene, arena, nullptr, partnered);
 }
@@ -39,13 +43,15 @@ void World::measure(EngineKind kind, const Scene& scene, Arena& arena, bool part
 size_t World::engine_bytes(EngineKind kind, const Scene& scene, bool partnered) {
   check_kind(kind);
   if (kind == EngineKind::kOde) return OdeWorld::heap_bytes(scene);
-  return partnered ? 0 : ArticulatedWorld::heap_bytes(scene);
+  return partnered || kind == EngineKind::kKinematic ? 0 : ArticulatedWorld::heap_bytes(scene);
 }
 
 void World::destroy(World* world, const HostHooks& hooks) {
   if (!world) return;
   if (world->engine() == EngineKind::kOde)
     host_delete(hooks, static_cast<OdeWorld*>(world));
+  else if (world->engine() == EngineKind::kKinematic)
+    host_delete(hooks, static_cast<KinematicWorld*>(world));
   else
     host_delete(hooks, static_cast<ArticulatedWorld*>(world));
 }

@@ -11,7 +11,7 @@
 
 namespace rdm {
 
-enum class EngineKind : int32_t { kOde = 0, kArticulated = 1 };
+enum class EngineKind : int32_t { kOde = 0, kArticulated = 1, kKinematic = 2 };
 
 // Degraded steps raise bits, they neither fail nor hide.
 enum : uint32_t {

@@ -1,0 +1,39 @@
+#include "physics/kinematic_world.hpp"
+
+#include "base/error.hpp"
+
+namespace rdm {
+namespace {
+
+[[noreturn]] void refuse(const char* what) {
+  fail(Code::kUnsupported, "%s: this task moves its bodies itself", what);
+}
+
+}  // namespace
+
+KinematicWorld::KinematicWorld(const Scene& scene, Arena& arena) : World(scene, arena) {
+  if (!scene.def.articulations.empty()) refuse("articulation");
+}
+
+void KinematicWorld::set_base(int32_t, const Motion&) {
+  refuse("set_base");
+}
+void KinematicWorld::push_body(int32_t, const Vec3&, const Vec3&) {
+  refuse("push");
+}
+void KinematicWorld::push_link(int32_t, const Vec3&, const Vec3&) {
+  refuse("push");
+}
+void KinematicWorld::push_base(int32_t, const Vec3&, const Vec3&) {
+  refuse("push");
+}
+
+void KinematicWorld::save(Writer& out) const {
+  out.bytes(bodies_, sizeof(Motion) * static_cast<size_t>(scene_->num_bodies));
+}
+
+void KinematicWorld::load(Reader& in) {
+  in.bytes(bodies_, sizeof(Motion) * static_cast<size_t>(scene_->num_bodies));
+}
+
+}  // namespace rdm

@@ -1,0 +1,11 @@
+// Tasks with known answers: closed forms, or dynamics that published figures can be held against. They need
+// no physics engine; each computes its own motion.
+#pragma once
+#include "env/task.hpp"
+
+namespace rdm {
+
+extern const TaskInfo kBandit, kTwoState, kLqrLine;
+extern const TaskInfo kBallRun, kBallCircle, kCarRun, kSwimmerVelocity;
+
+}  // namespace rdm

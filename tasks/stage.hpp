@@ -1,0 +1,98 @@
+// What tasks without a physics engine share: a floor with marks and bodies that the task places itself.
+#pragma once
+#include <cstddef>
+#include <initializer_list>
+
+#include "base/option.hpp"
+#include "env/fields.hpp"
+#include "env/task.hpp"
+
+namespace rdm {
+
+struct Color {
+  uint8_t red, green, blue;
+};
+inline constexpr Color kMarkRed{205, 70, 60}, kMarkGreen{70, 165, 90}, kMarkBlue{60, 110, 200},
+    kMarkYellow{225, 185, 60}, kMarkGrey{120, 125, 132}, kMarkCyan{70, 180, 190}, kMarkPurple{140, 90, 180};
+
+// Puts a scene together. Nothing in it collides.
+class Stage {
+ public:
+  // A floor at z = 0; control_dt is the simulated time of a control step, s, in [1e-5, 1].
+  explicit Stage(double control_dt);
+  // A body that the task moves, with its first shape; bodies are numbered from 0 as they come.
+  Stage& body(const char* name, ShapeKind kind, const Vec3& size, Color color, const Pose& X_LS = {});
+  // One more shape of the body that came last.
+  Stage& shape(const char* name, ShapeKind kind, const Vec3& size, Color color, const Pose& X_LS = {});
+  // A shape at rest.
+  Stage& mark(const char* name, ShapeKind kind, const Vec3& size, Color color, const Pose& X_WS);
+  // A flat disc, and a thin wall along x or y between two ends, both at rest.
+  Stage& disc(const char* name, double radius, Color color, double x, double y);
+  Stage& wall(const char* name, Color color, double x0, double y0, double x1, double y1);
+  // Calls f(stage): for parts that are shared.
+  template <class F>
+  Stage& also(F&& f) {
+    f(*this);
+    return *this;
+  }
+  Scene build() { return make_scene(std::move(def_)); }
+
+ private:
+  SceneDef def_;
+};
+
+// A body at (x, y, z), turned by yaw about z, moving at (vx, vy) and turning at `rate`. m, rad, s.
+Motion planar_motion(const Vec3& p, double yaw, double vx = 0, double vy = 0, double rate = 0);
+
+// The part of a task that is the same for all of them. Their hold action and first mean are 0.
+class StageTask : public Task {
+ public:
+  const Scene& scene() const override { return scene_; }
+  EngineKind engine() const override { return EngineKind::kKinematic; }
+  int32_t max_steps() const override { return max_steps_; }
+  const Vector<FieldSpec>& fields() const override { return fields_; }
+  void hold_action(float* action) const override;
+  void initial_mean(float* action) const override;
+
+ protected:
+  StageTask(Scene&& scene, int32_t max_steps, std::initializer_list<FieldSpec> fields);
+
+ private:
+  Scene scene_;
+  int32_t max_steps_;
+  FieldTable fields_;
+};
+
+// Parts of a TaskInfo.
+template <const auto& kRows>
+const OptionSpec* stage_options(int32_t* count) {
+  *count = static_cast<int32_t>(std::size(kRows));
+  return std::data(kRows);
+}
+template <class T>
+Task* make_stage_task(const Options& options, const HostHooks& hooks) {
+  const HostScope scope(hooks);
+  return host_new<T>(hooks, options);
+}
+template <class T>
+void end_stage_task(Task* task, const HostHooks& hooks) {
+  host_delete(hooks, static_cast<T*>(task));
+}
+// A T is made from the options alone. Alias null: none.
+template <class T, const auto& kRows, const auto& kCosts, const auto& kCameras, const auto& kDefaults>
+constexpr TaskInfo stage_task_info(const char* name, const char* alias, const char* summary) {
+  return {name,
+          alias,
+          summary,
+          &stage_options<kRows>,
+          std::data(kCosts),
+          static_cast<int32_t>(std::size(kCosts)),
+          std::data(kCameras),
+          static_cast<int32_t>(std::size(kCameras)),
+          std::data(kDefaults),
+          static_cast<int32_t>(std::size(kDefaults)),
+          &make_stage_task<T>,
+          &end_stage_task<T>};
+}
+
+}  // namespace rdm
