@@ -13,6 +13,7 @@
 
 namespace rdm {
 
+inline constexpr int kMaxActions = 1024;
 inline constexpr int kMaxCosts = 16;  // = RDM_MAX_COSTS
 
 // One row of the registry of algorithms.

@@ -8,7 +8,8 @@
 namespace rdm {
 namespace {
 
-const AlgoRow* const kRows[] = {&kPpo, &kPpoLag};
+const AlgoRow* const kRows[] = {&kPpo, &kTrpo, &kPpoLag, &kTrpoLag, &kCppoPid,
+                                &kCpo, &kPcpo, &kFocops, &kP3o,     &kIpo};
 
 }  // namespace
 

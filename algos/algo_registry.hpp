@@ -7,9 +7,13 @@
 
 namespace rdm {
 
+// How many limited cost columns an algorithm learns from: none, any number, or one at a time (several are
+// refused, or the most violated counts, by option several_costs).
+enum class Costs : int32_t { kNone, kAny, kOne };
+
 struct AlgoRow {
   AlgoInfo info;
-  bool needs_costs;  // learns from cost columns with a limit
+  Costs costs;
   size_t (*measure)(Plan&& plan);
   PolicyGradient* (*make)(const HostHooks& hooks, Plan&& plan);
   void (*end)(PolicyGradient* agent);
@@ -17,15 +21,15 @@ struct AlgoRow {
 const AlgoRow& algo_row(int32_t index);
 
 // One per algorithm file.
-extern const AlgoRow kPpo, kPpoLag;
+extern const AlgoRow kPpo, kTrpo, kPpoLag, kTrpoLag, kCppoPid, kCpo, kPcpo, kFocops, kP3o, kIpo;
 
 // The row of an algorithm whose class is T.
 template <class T, size_t N>
 constexpr AlgoRow make_algo_row(const char* name, const char* summary,
-                                const std::array<OptionSpec, N>& options, bool needs_costs) {
+                                const std::array<OptionSpec, N>& options, Costs costs) {
   AlgoRow row{};
   row.info = {name, summary, options.data(), static_cast<int32_t>(N)};
-  row.needs_costs = needs_costs;
+  row.costs = costs;
   row.measure = [](Plan&& plan) -> size_t {
     T agent(std::move(plan));
     Arena arena;

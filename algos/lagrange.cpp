@@ -13,7 +13,7 @@ Lagrange::Lagrange(const Plan& plan) : count_(plan.num_limited) {
                                                         : MultiplierOptimizer::kSoftplus;
   options_.init = o.number("multiplier_init");
   options_.normalized = o.flag("multiplier_normalized");
-  split_ = std::strcmp(o.text("cost_loss"), "split") == 0;
+  split_ = o.knows("cost_loss") && std::strcmp(o.text("cost_loss"), "split") == 0;
   read_live(o);
   for (Multiplier& m : multiplier_) m.reset(options_);
 }

@@ -3,6 +3,7 @@
 #include "algos/episodes.hpp"
 #include "algos/multiplier.hpp"
 #include "algos/plan.hpp"
+#include "algos/rollout.hpp"
 
 namespace rdm {
 
@@ -13,6 +14,7 @@ class Lagrange {
   // counts from 1 and drives the warm-up.
   void step(const EpisodeStats& stats, const Plan& plan, int32_t epoch);
   double weight(int32_t i) const { return multiplier_[i].value(); }
+  Mix mix() const { return Mix::kSum; }
   bool split() const { return split_; }
   void read_live(const Options& options);
   void visit(StateIo& io);

@@ -1,5 +1,7 @@
 #include "algos/lanes.hpp"
 
+#include <cmath>
+
 namespace rdm {
 namespace {
 
@@ -27,6 +29,26 @@ Lane carve_lane(Arena& arena, const Plan& plan, size_t num_params) {
 }
 
 }  // namespace
+
+bool Surrogate::finite() const {
+  double sum = gain + kl;
+  for (const double c : cost) sum += c;
+  return std::isfinite(sum);
+}
+
+void Lanes::fold(int32_t group, int32_t n, float* total, size_t begin, size_t end) {
+  const int32_t from = group == 0 ? 1 : 0;
+  if (from >= n) return;
+  const auto ranges = static_cast<size_t>(n), size = end - begin;
+  spread(n, [&](int32_t range) {
+    const auto k = static_cast<size_t>(range);
+    const size_t low = begin + size * k / ranges, high = begin + size * (k + 1) / ranges;
+    for (int32_t l = from; l < n; ++l) {
+      const float* part = lanes_[l].grad;
+      for (size_t i = low; i < high; ++i) total[i] += part[i];
+    }
+  });
+}
 
 void Lanes::carve(Arena& arena, const Plan& plan, size_t num_params) {
   count_ = plan.lanes;

@@ -20,6 +20,14 @@ struct BatchSums {
   BatchSums scaled(double s) const { return {s * loss, s * kl, s * clipped, s * reward_loss, s * cost_loss}; }
 };
 
+// Means over listed rows of what the policy as it is now does to them.
+struct Surrogate {
+  double gain = 0;              // rho (gain + linear)
+  double cost[kMaxCosts] = {};  // rho A_c of each limited cost, or its clipped form
+  double kl = 0;                // KL(old || now)
+  bool finite() const;
+};
+
 // Workspace of one piece in flight.
 struct Lane {
   int32_t rows = 0;
@@ -28,6 +36,7 @@ struct Lane {
   float *out = nullptr, *dout = nullptr;  // [rows][widest output]
   float* grad = nullptr;                  // [num_params]
   BatchSums sums;
+  Surrogate surrogate;
 };
 
 // One lane per thread that helps, at most one per piece.
@@ -66,6 +75,9 @@ class Lanes {
       fold(group, n);
     }
   }
+  // Adds entries [begin, end) of the gradients of the n lanes of a group to total, in order, every range of
+  // them by another thread. The first piece of all is taken to have written its part into total itself.
+  void fold(int32_t group, int32_t n, float* total, size_t begin, size_t end);
   template <class Work>
   void sweep(int32_t rows, int32_t piece_rows, Work&& work) {
     sweep(rows, piece_rows, work, [](int32_t, int32_t) {});

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/elementary.hpp"
 #include "nn/gaussian.hpp"
 
 namespace rdm {
@@ -32,12 +33,6 @@ void Learner::refresh_log_std() {
   for (size_t j = 0; j < plan_->action_dim(); ++j) log_std_[j] = nets_->log_std()[j] + plan_->log_share;
 }
 
-void Learner::gather(const Lane& lane, const int32_t* order, int32_t rows) const {
-  const size_t dim = plan_->obs_dim();
-  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
-    std::memcpy(lane.obs + i * dim, rollout_->obs + static_cast<size_t>(order[i]) * dim, dim * sizeof(float));
-}
-
 BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const int32_t* order, int32_t rows) {
   refresh_log_std();
   policy_ = policy != nullptr;
@@ -53,7 +48,7 @@ BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const int32_
         float* grad = first == 0 ? grad_ : lane.grad;
         const int32_t* piece = order + first;
         lane.sums = BatchSums();
-        gather(lane, piece, n);
+        gather_obs(*rollout_, piece, 1, n, lane.obs);
         if (policy) policy_gradient(lane, *policy, piece, n, grad);
         if (!critics) return;
         lane.sums.reward_loss = critic_gradient(lane, Networks::kReward, piece, n, grad);
@@ -62,9 +57,9 @@ BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const int32_
       },
       [&](int32_t group, int32_t n) {
         for (int32_t i = 0; i < n; ++i) sums += (*lanes_)[i].sums;
-        fold(group, n);
+        lanes_->fold(group, n, grad_, begin_, end_);
       });
-  add_penalties();
+  add_penalties(policy);
   return sums;
 }
 
@@ -93,24 +88,9 @@ double Learner::critic_gradient(Lane& lane, Networks::Index net, const int32_t* 
   return loss;
 }
 
-// grad_ += the lanes' parts in order, every range of parameters by another thread.
-void Learner::fold(int32_t group, int32_t n) {
-  const int32_t from = group == 0 ? 1 : 0;
-  if (from >= n) return;
-  const auto ranges = static_cast<size_t>(n), size = end_ - begin_;
-  lanes_->spread(n, [&](int32_t range) {
-    const auto k = static_cast<size_t>(range);
-    const size_t low = begin_ + size * k / ranges, high = begin_ + size * (k + 1) / ranges;
-    for (int32_t l = from; l < n; ++l) {
-      const float* part = (*lanes_)[l].grad;
-      for (size_t i = low; i < high; ++i) grad_[i] += part[i];
-    }
-  });
-}
-
-void Learner::add_penalties() {
-  for (size_t j = 0; policy_ && j < plan_->action_dim(); ++j)
-    grad_[j] = learn_std_ ? grad_[j] - static_cast<float>(entropy_) : 0;
+void Learner::add_penalties(const PolicyLoss* policy) {
+  const auto bonus = policy && policy->explores() ? static_cast<float>(entropy_) : 0.0f;
+  for (size_t j = 0; policy && j < plan_->action_dim(); ++j) grad_[j] = learn_std_ ? grad_[j] - bonus : 0;
   if (!critics_ || critic_l2_ == 0) return;
   const auto twice = static_cast<float>(2 * critic_l2_);
   for (int32_t i = Networks::kReward; i < nets_->count; ++i) {
@@ -134,27 +114,45 @@ void Learner::step(double actor_rate) {
   if (policy_) clamp_log_std(*nets_, plan_->options);
 }
 
-double Learner::kl(const int32_t* order, int32_t rows) {
+void Learner::measure_rows(Lane& lane, const int32_t* order, int32_t rows, float clip) const {
+  const Rollout& r = *rollout_;
+  const auto dim = static_cast<int32_t>(r.action_dim);
+  const auto costs = static_cast<size_t>(r.num_costs);
+  gather_obs(r, order, 1, rows, lane.obs);
+  nets_->forward(Networks::kActor, lane.obs, rows, lane.actor, lane.out);
+  lane.surrogate = Surrogate();
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
+    const auto at = static_cast<size_t>(order[i]);
+    const float* mean = lane.out + i * r.action_dim;
+    lane.surrogate.kl +=
+        static_cast<double>(gaussian_kl(r.mean + at * r.action_dim, r.log_std, mean, log_std_, dim));
+    const double ratio = sample_ratio(r, at, mean, log_std_);
+    lane.surrogate.gain += ratio * static_cast<double>(r.gain[at] + r.linear[at]);
+    const double bounded =
+        std::clamp(ratio, 1.0 - static_cast<double>(clip), 1.0 + static_cast<double>(clip));
+    for (size_t k = 0; k < costs; ++k) {
+      const auto cost = static_cast<double>(r.cost_advantage[at * costs + k]);
+      lane.surrogate.cost[k] += clip > 0 ? std::max(ratio * cost, bounded * cost) : ratio * cost;
+    }
+  }
+}
+
+Surrogate Learner::measure(const int32_t* order, int32_t rows, float clip) {
   refresh_log_std();
-  const size_t dim = plan_->action_dim();
-  double sum = 0;
+  Surrogate mean;
   lanes_->sweep(
       rows, plan_->piece_rows,
-      [&](Lane& lane, int32_t first, int32_t n) {
-        gather(lane, order + first, n);
-        nets_->forward(Networks::kActor, lane.obs, n, lane.actor, lane.out);
-        lane.sums = BatchSums();
-        for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
-          const float* old =
-              rollout_->mean + static_cast<size_t>(order[static_cast<size_t>(first) + i]) * dim;
-          lane.sums.kl += static_cast<double>(
-              gaussian_kl(old, rollout_->log_std, lane.out + i * dim, log_std_, static_cast<int32_t>(dim)));
-        }
-      },
+      [&](Lane& lane, int32_t first, int32_t n) { measure_rows(lane, order + first, n, clip); },
       [&](int32_t, int32_t n) {
-        for (int32_t i = 0; i < n; ++i) sum += (*lanes_)[i].sums.kl;
+        for (int32_t i = 0; i < n; ++i) {
+          const Surrogate& part = (*lanes_)[i].surrogate;
+          mean.gain += part.gain, mean.kl += part.kl;
+          for (int32_t k = 0; k < rollout_->num_costs; ++k) mean.cost[k] += part.cost[k];
+        }
       });
-  return sum / rows;
+  mean.gain /= rows, mean.kl /= rows;
+  for (double& c : mean.cost) c /= rows;
+  return mean;
 }
 
 void Learner::visit(StateIo& io) {

@@ -23,6 +23,8 @@ class PolicyLoss {
  public:
   // Runs on any thread and must not throw.
   virtual void add(const PolicyPiece& piece) const = 0;
+  // The entropy bonus belongs to this loss.
+  virtual bool explores() const { return true; }
 
  protected:
   ~PolicyLoss() = default;
@@ -42,21 +44,22 @@ class Learner {
   // Adam steps along what the last gradient computed. A network whose gradient is not finite stays as it is.
   void step(double actor_rate);
 
-  // KL(old || now), mean over the listed rows.
-  double kl(const int32_t* order, int32_t rows);
+  // Of the policy as it is now, over the listed rows. clip > 0: each sample's cost is
+  // max(rho A_c, clip(rho, 1 - clip, 1 + clip) A_c), so that only a fall of the cost can be hidden.
+  Surrogate measure(const int32_t* order, int32_t rows, float clip = 0);
+  double kl(const int32_t* order, int32_t rows) { return measure(order, rows).kl; }
   // Steps that were left out so far.
   int64_t skipped() const { return skipped_; }
   void visit(StateIo& io);
 
  private:
   void refresh_log_std();
-  void gather(const Lane& lane, const int32_t* order, int32_t rows) const;
   void policy_gradient(Lane& lane, const PolicyLoss& policy, const int32_t* order, int32_t rows,
                        float* grad) const;
   double critic_gradient(Lane& lane, Networks::Index net, const int32_t* order, int32_t rows,
                          float* grad) const;
-  void fold(int32_t group, int32_t n);
-  void add_penalties();
+  void measure_rows(Lane& lane, const int32_t* order, int32_t rows, float clip) const;
+  void add_penalties(const PolicyLoss* policy);
 
   const Plan* plan_ = nullptr;
   const Rollout* rollout_ = nullptr;

@@ -69,8 +69,6 @@ inline constexpr std::array kClipOptions = {
 
 // Lagrange multipliers, one per limited cost.
 inline constexpr std::array kMultiplierOptions = {
-    text_option("cost_loss", "combined", "combined|split",
-                "combined: one clipped advantage (A_r - l A_c)/(1 + l); split: cost part unclipped"),
     text_option("multiplier_optimizer", "adam", "sgd|adam|softplus",
                 "of the multipliers; softplus: Adam on ln(e^l - 1)"),
     number_option("multiplier_init", 0.001, 0, 1e6, "initial multiplier"),
@@ -81,6 +79,67 @@ inline constexpr std::array kMultiplierOptions = {
                    true),
     integer_option("multiplier_window", 100, 1, 10000, "finished episodes that J_c is the mean of"),
 };
+
+// Where the cost part of a combined advantage stands.
+inline constexpr std::array kSplitOptions = {
+    text_option("cost_loss", "combined", "combined|split",
+                "combined: one clipped advantage (A_r - l A_c)/(1 + l); split: cost part unclipped"),
+};
+
+// The window alone, for rules without a multiplier.
+inline constexpr std::array kWindowOptions = {
+    integer_option("multiplier_window", 100, 1, 10000, "finished episodes that J_c is the mean of"),
+};
+
+// A rule with a place for each cost, or one that follows a single one.
+inline constexpr std::array kOneCostOptions = {
+    text_option("several_costs", "refuse", "refuse|worst",
+                "with more than one limited cost: refuse, or follow the most violated one in each epoch"),
+};
+
+// The trust region: max G x under x (F + damping I) x / 2 <= trust_kl, F by conjugate gradients.
+inline constexpr std::array kTrustOptions = {
+    number_option("trust_kl", 0.01, 1e-9, 1e3, "bound on the KL of an epoch's policy step", true),
+    integer_option("cg_iterations", 15, 1, 1000, "of conjugate gradients, at most", true),
+    number_option("cg_tolerance", 1e-6, 0, 1, "residual, relative to the right-hand side, that is enough",
+                  true),
+    number_option("cg_damping", 0.1, 0, 1e6, "added to the diagonal of the Fisher matrix", true),
+    integer_option("fisher_stride", 1, 1, 1 << 20, "the Fisher matrix is of every n-th sample", true),
+    integer_option("line_search_steps", 15, 1, 1000, "lengths that are tried", true),
+    number_option("line_search_decay", 0.8, 0.01, 0.99, "of one length to the next", true),
+    flag_option("kl_mean_over_dims", false,
+                "KL and Fisher matrix averaged over action dimensions, as the peers have it; else summed"),
+};
+
+// How a constraint that an episode's sum J_c sets is put in the units of a mean over decisions.
+inline constexpr std::array kViolationOptions = {
+    text_option("violation_scale", "step", "step|discount|raw",
+                "factor on J_c - limit: 1 / decisions of an episode, 1 - discount, or 1"),
+};
+
+// `table` with other defaults, by name.
+struct OtherDefault {
+  const char* key;
+  double number;
+  const char* text = nullptr;
+};
+inline constexpr OtherDefault kTrustDefaults[] = {{"critic_learning_rate", 1e-3}};
+template <size_t N, size_t M>
+constexpr auto with_defaults(std::array<OptionSpec, N> table, const OtherDefault (&values)[M]) {
+  const auto same = [](const char* a, const char* b) {
+    while (*a && *a == *b) ++a, ++b;
+    return *a == *b;
+  };
+  for (const OtherDefault& v : values) {
+    size_t at = 0;
+    while (!same(table.at(at).key, v.key)) ++at;  // past the end: an error of the compiler
+    if (v.text)
+      table[at].text = v.text;
+    else
+      table[at].number = v.number;
+  }
+  return table;
+}
 
 template <size_t... N>
 constexpr auto join_options(const std::array<OptionSpec, N>&... tables) {

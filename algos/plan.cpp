@@ -24,7 +24,7 @@ void check_range(const char* name, int64_t value, int64_t low, int64_t high) {
 
 void check_config(const AgentConfig& c) {
   check_range("obs_dim", c.obs_dim, 1, 16384);
-  check_range("action_dim", c.action_dim, 1, 1024);
+  check_range("action_dim", c.action_dim, 1, kMaxActions);
   check_range("cost_dim", c.cost_dim, 0, kMaxCosts);
   check_range("num_envs", c.num_envs, 1, 65536);
   check_range("num_threads", c.num_threads, 0, 256);
@@ -78,7 +78,7 @@ void plan_costs(Plan& plan) {
   Options& o = plan.options;
   if (c.cost_limits && c.cost_dim > 0 && !o.given("cost_limit"))
     o.set_default("cost_limit", c.cost_limits[0] < 0 ? -1.0 : c.cost_limits[0]);
-  if (!plan.row->needs_costs) return;
+  if (plan.row->costs == Costs::kNone) return;
   for (int32_t k = 0; k < c.cost_dim; ++k) {
     const double limit = k == 0 ? o.number("cost_limit") : c.cost_limits ? c.cost_limits[k] : -1;
     if (limit < 0) continue;
@@ -87,6 +87,13 @@ void plan_costs(Plan& plan) {
   }
   if (plan.num_limited == 0)
     fail(Code::kArgument, "cost_limits: %s needs at least one cost column with a limit", plan.row->info.name);
+  if (plan.row->costs == Costs::kOne && plan.num_limited > 1 &&
+      std::strcmp(o.text("several_costs"), "worst") != 0)
+    fail(Code::kUnsupported,
+         "cost_limits: %s is defined for one limited cost, %d have limits; several_costs=worst follows the "
+         "most "
+         "violated one",
+         plan.row->info.name, plan.num_limited);
 }
 
 void plan_networks(Plan& plan) {

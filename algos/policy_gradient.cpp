@@ -41,6 +41,7 @@ void PolicyGradient::open(const AgentConfig& config) {
   schedule_.reset(plan_.options);
   shuffle_ = Stream(config.seed, 0, Purpose::kMinibatch);
   init_networks(nets_, plan_);
+  opened();
   read_live();
   TensorInfo t;
   for (int32_t i = 0; find_tensor(nets_, i, names_[i], &t);) ++i;
@@ -128,10 +129,21 @@ BatchSums PolicyGradient::pass(const PolicyLoss* policy) {
   BatchSums sums;
   for (int32_t first = 0; first < count; first += size) {
     check_cancel();
-    sums += learner_.gradient(policy, true, order + first, std::min(size, count - first));
+    const int32_t rows = std::min(size, count - first);
+    if (policy) begin_minibatch(order + first, rows);
+    sums += learner_.gradient(policy, true, order + first, rows);
     learner_.step(rate);
   }
   return sums;
+}
+
+double PolicyGradient::violation(const EpisodeStats& stats, int32_t i) const {
+  const double gap = stats.finished > 0 ? stats.charged_cost[plan_.column[i]] - plan_.limit[i] : 0;
+  const char* scale = plan_.options.text("violation_scale");
+  if (std::strcmp(scale, "raw") == 0) return gap;
+  if (std::strcmp(scale, "discount") == 0)
+    return gap * (1 - elementary::pow(plan_.options.number("discount"), plan_.action_repeat));
+  return gap / std::max(1.0, stats.length / plan_.action_repeat);
 }
 
 void PolicyGradient::learn() {

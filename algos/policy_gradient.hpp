@@ -38,6 +38,8 @@ class PolicyGradient : public Agent {
   const AgentConfig& config() const override { return plan_.config; }
 
  protected:
+  // After open has made everything.
+  virtual void opened() {}
   // What the passes of the default learn() minimise.
   virtual const PolicyLoss& policy_loss() const = 0;
   // After advantages were estimated, before the policy step: moves multipliers, sets gain and linear of the
@@ -45,6 +47,8 @@ class PolicyGradient : public Agent {
   virtual void begin_epoch(const EpisodeStats& stats, int32_t epoch);
   // The steps of policy and critics. Default: passes over shuffled minibatches, stopped early by KL.
   virtual void learn();
+  // Before the gradient of each minibatch of the default learn().
+  virtual void begin_minibatch(const int32_t*, int32_t) {}
   // Multiplier of limited cost i.
   virtual double cost_weight(int32_t) const { return 0; }
   // One pass over the valid rows in shuffled minibatches: a step of the critics and, unless null, of the
@@ -62,6 +66,13 @@ class PolicyGradient : public Agent {
   };
 
   const Plan& plan() const { return plan_; }
+  Networks& nets() { return nets_; }
+  Lanes& lanes() { return lanes_; }
+  Learner& learner() { return learner_; }
+  Learned& learned() { return learned_; }
+  int32_t valid_rows() const { return valid_rows_; }
+  // J_c - limit of limited cost i in the units of a mean over decisions (option violation_scale).
+  double violation(const EpisodeStats& stats, int32_t i) const;
   const Rollout& rollout() const { return collector_.rollout(); }
 
  private:

@@ -1,21 +1,21 @@
 // PPO (Schulman et al. 2017): the clipped surrogate.
 #pragma once
 #include "algos/policy_gradient.hpp"
+#include "algos/ratio_loss.hpp"
 
 namespace rdm {
 
-// Loss of one sample with ratio rho and its derivative by log p:
 // -min(rho gain, clip(rho, 1 - clip, 1 + clip) gain) - rho linear. Ties have the unclipped derivative.
-struct SampleLoss {
-  float loss = 0, slope = 0;
-  bool clipped = false;
-};
 SampleLoss clipped_loss(float ratio, float gain, float linear, float clip);
 
-class ClippedSurrogate final : public PolicyLoss {
+class ClippedSurrogate final : public RatioLoss {
  public:
-  void add(const PolicyPiece& piece) const override;
   float clip = 0.2f;
+
+ protected:
+  SampleLoss sample(const Rollout& r, size_t at, float ratio) const override {
+    return clipped_loss(ratio, r.gain[at], r.linear[at], clip);
+  }
 };
 
 class Ppo : public PolicyGradient {

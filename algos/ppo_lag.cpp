@@ -7,9 +7,9 @@
 
 namespace rdm {
 namespace {
-constexpr auto kOptions = join_options(kSharedOptions, kClipOptions, kMultiplierOptions);
+constexpr auto kOptions = join_options(kSharedOptions, kClipOptions, kMultiplierOptions, kSplitOptions);
 }
 constinit const AlgoRow kPpoLag = make_algo_row<Weighted<Ppo, Lagrange>>(
-    "ppo_lag", "PPO with a Lagrange multiplier for each cost limit (Ray et al. 2019)", kOptions, true);
+    "ppo_lag", "PPO with a Lagrange multiplier for each cost limit (Ray et al. 2019)", kOptions, Costs::kAny);
 
 }  // namespace rdm

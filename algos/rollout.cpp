@@ -1,5 +1,10 @@
 #include "algos/rollout.hpp"
 
+#include <cstring>
+
+#include "base/elementary.hpp"
+#include "nn/gaussian.hpp"
+
 namespace rdm {
 
 Rollout carve_rollout(Arena& arena, const Plan& plan) {
@@ -38,15 +43,29 @@ void estimate_advantages(const Rollout& r, const AdvantageOptions& options) {
   }
 }
 
-void combine_advantages(const Rollout& r, const double* weights, bool split) {
+double sample_ratio(const Rollout& r, size_t at, const float* mean, const float* log_std) {
+  const float* action = r.action + at * r.action_dim;
+  const float log_prob = gaussian_log_prob(mean, log_std, action, static_cast<int32_t>(r.action_dim));
+  return elementary::exp(static_cast<double>(std::min(log_prob - r.log_prob[at], 20.0f)));
+}
+
+void gather_obs(const Rollout& r, const int32_t* order, int32_t stride, int32_t n, float* x) {
+  for (size_t i = 0; i < static_cast<size_t>(n); ++i)
+    std::memcpy(x + i * r.obs_dim,
+                r.obs + static_cast<size_t>(order[i * static_cast<size_t>(stride)]) * r.obs_dim,
+                r.obs_dim * sizeof(float));
+}
+
+void combine_advantages(const Rollout& r, const double* weights, Mix mix, bool split) {
   const auto costs = static_cast<size_t>(r.num_costs);
-  double total = 1;
-  for (size_t k = 0; k < costs; ++k) total += weights[k];
+  double sum = 0;
+  for (size_t k = 0; k < costs; ++k) sum += weights[k];
+  const double total = mix == Mix::kSum ? 1 + sum : 1, share = mix == Mix::kDifference ? 1 - sum : 1;
   for (size_t i = 0; i < static_cast<size_t>(r.samples()); ++i) {
     double cost = 0;
     for (size_t k = 0; k < costs; ++k)
       cost += weights[k] * static_cast<double>(r.cost_advantage[i * costs + k]);
-    const auto reward = static_cast<double>(r.advantage[i]);
+    const auto reward = share * static_cast<double>(r.advantage[i]);
     r.gain[i] = static_cast<float>((split ? reward : reward - cost) / total);
     r.linear[i] = static_cast<float>(split ? -cost / total : 0);
   }

@@ -36,11 +36,21 @@ struct AdvantageOptions {
   double lambda = 0.95, cost_lambda = 0.95;
   bool standardize_reward = true, standardize_cost = false;
 };
+// p(action) / p_old(action) of row `at` under a policy with this mean and innovation; at most e^20, which is
+// far past any clip and still finite after it is multiplied.
+double sample_ratio(const Rollout& r, size_t at, const float* mean, const float* log_std);
+// Copies the observations of n listed rows, every stride-th entry of the list, to x [n][obs_dim].
+void gather_obs(const Rollout& r, const int32_t* order, int32_t stride, int32_t n, float* x);
+
+// How cost weights l meet the reward: (A_r - sum l_i A_ci) / (1 + sum l_i), (1 - sum l_i) A_r - sum l_i A_ci,
+// or A_r - sum l_i A_ci.
+enum class Mix : int32_t { kSum, kDifference, kPlain };
+
 // Fills advantages and targets of reward and costs, and scales the advantages.
 void estimate_advantages(const Rollout& r, const AdvantageOptions& options);
-// What the actor climbs under cost weights l [num_costs]: gain = (A_r - sum l_i A_ci) / (1 + sum l_i); with
-// split the cost part of it stands in linear instead, which no clip touches.
-void combine_advantages(const Rollout& r, const double* weights, bool split);
+// What the actor climbs under cost weights l [num_costs], in gain; with split the cost part of it stands in
+// linear instead, which no clip touches.
+void combine_advantages(const Rollout& r, const double* weights, Mix mix, bool split);
 // Writes the valid rows into order; returns their number.
 int32_t list_valid(const Rollout& r);
 

@@ -5,7 +5,7 @@
 namespace rdm {
 
 // Base: a PolicyGradient. Rule: made from a Plan; step(stats, plan, epoch) once per epoch before the policy
-// step, then weight(i) of limited cost i, split(), read_live(options), visit(io).
+// step, then weight(i) of limited cost i, mix(), split(), read_live(options), visit(io).
 template <class Base, class Rule>
 class Weighted : public Base {
  public:
@@ -16,7 +16,7 @@ class Weighted : public Base {
     rule_.step(stats, this->plan(), epoch);
     double weights[kMaxCosts];
     for (int32_t i = 0; i < this->plan().num_limited; ++i) weights[i] = rule_.weight(i);
-    combine_advantages(this->rollout(), weights, rule_.split());
+    combine_advantages(this->rollout(), weights, rule_.mix(), rule_.split());
   }
   double cost_weight(int32_t i) const override { return rule_.weight(i); }
   void read_live() override {

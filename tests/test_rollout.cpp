@@ -102,21 +102,21 @@ TEST(Rollout, ListOfValidRows) {
 TEST(Rollout, CombinedAdvantage) {
   OneSample s(1);
   for (const auto& [weight, wanted] : {std::pair{1.0, 0.5f}, std::pair{0.0, 2.0f}}) {
-    combine_advantages(s.rollout, &weight, false);
+    combine_advantages(s.rollout, &weight, Mix::kSum, false);
     EXPECT_FLOAT_EQ(s.gain, wanted);
     EXPECT_EQ(s.linear, 0);
   }
   const double large = 1e9;
-  combine_advantages(s.rollout, &large, false);
+  combine_advantages(s.rollout, &large, Mix::kSum, false);
   EXPECT_NEAR(s.gain, -1, 1e-6);
 }
 
 TEST(Rollout, SeveralCostsAndSplit) {
   OneSample s(2);
   const double weights[] = {1, 0.5};
-  combine_advantages(s.rollout, weights, false);
+  combine_advantages(s.rollout, weights, Mix::kSum, false);
   EXPECT_FLOAT_EQ(s.gain, (2 - 1 - 2) / 2.5f);
-  combine_advantages(s.rollout, weights, true);
+  combine_advantages(s.rollout, weights, Mix::kSum, true);
   EXPECT_FLOAT_EQ(s.gain, 2 / 2.5f);
   EXPECT_FLOAT_EQ(s.linear, -3 / 2.5f);
 }

@@ -1,0 +1,62 @@
+// Conjugate gradients for A x = b with a symmetric positive definite A that is only known by its products.
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "base/arena.hpp"
+
+namespace rdm {
+
+// Sum of a[i] b[i] in double, in a fixed order.
+inline double dot(const float* a, const float* b, size_t n) {
+  double sum[4] = {};
+  size_t i = 0;
+  for (; i + 4 <= n; i += 4)
+    for (size_t k = 0; k < 4; ++k) sum[k] += static_cast<double>(a[i + k]) * static_cast<double>(b[i + k]);
+  for (; i < n; ++i) sum[0] += static_cast<double>(a[i]) * static_cast<double>(b[i]);
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+struct CgWork {
+  size_t size = 0;
+  float *residual = nullptr, *direction = nullptr, *product = nullptr;  // [size]
+};
+inline CgWork carve_cg_work(Arena& arena, size_t size) {
+  CgWork w;
+  w.size = size;
+  for (float** v : {&w.residual, &w.direction, &w.product}) *v = arena.make<float>(size);
+  return w;
+}
+
+struct CgOptions {
+  int32_t iterations = 15;
+  double tolerance = 1e-6;  // |residual| / |b| that is enough
+};
+
+// x [size] = the iterate reached from 0. multiply(v, out): out = A v. Stops early at the tolerance, and
+// where rounding leaves no positive curvature. Returns the number of products.
+template <class Multiply>
+int32_t conjugate_gradient(Multiply&& multiply, const float* b, const CgWork& work, const CgOptions& options,
+                           float* x) {
+  const size_t n = work.size;
+  float *const r = work.residual, *const d = work.direction, *const z = work.product;
+  for (size_t i = 0; i < n; ++i) x[i] = 0, r[i] = d[i] = b[i];
+  double rr = dot(r, r, n);
+  const double enough = options.tolerance * options.tolerance * rr;
+  for (int32_t k = 0; k < options.iterations; ++k) {
+    if (!(rr > enough)) return k;
+    multiply(static_cast<const float*>(d), z);
+    const double curvature = dot(d, z, n);
+    if (!(curvature > 0) || !std::isfinite(curvature)) return k;
+    const auto step = static_cast<float>(rr / curvature);
+    for (size_t i = 0; i < n; ++i) x[i] += step * d[i], r[i] -= step * z[i];
+    const double next = dot(r, r, n);
+    const auto keep = static_cast<float>(next / rr);
+    for (size_t i = 0; i < n; ++i) d[i] = r[i] + keep * d[i];
+    rr = next;
+  }
+  return options.iterations;
+}
+
+}  // namespace rdm

@@ -1,0 +1,36 @@
+// Products with the Fisher matrix of the policy, without forming it.
+//
+// For a Gaussian whose deviation does not depend on the state the Hessian of the mean KL(old || new) at
+// new = old is J' diag(1 / sigma^2) J / N for the network, J the derivative of the mean, and 2 I for the log
+// deviations, with nothing between the two.
+#pragma once
+#include "algos/lanes.hpp"
+#include "algos/networks.hpp"
+#include "algos/rollout.hpp"
+
+namespace rdm {
+
+class Fisher {
+ public:
+  void carve(Arena& arena, const Plan& plan);
+  // All must outlive it.
+  void open(const Plan& plan, const Rollout& rollout, const Networks& nets, Lanes& lanes);
+  void read_live(const Options& options);
+
+  // The matrix is of every stride-th of the listed rows, at the policy as it is at each product.
+  void set_rows(const int32_t* order, int32_t rows);
+  // out = (F + damping I) v; both laid out as the actor's block.
+  void multiply(const float* v, float* out);
+
+ private:
+  const Plan* plan_ = nullptr;
+  const Rollout* rollout_ = nullptr;
+  const Networks* nets_ = nullptr;
+  Lanes* lanes_ = nullptr;
+  float* weight_ = nullptr;  // [action_dim] 1 / (N sigma^2)
+  const int32_t* order_ = nullptr;
+  int32_t rows_ = 0, stride_ = 1;
+  double damping_ = 0.1, dims_ = 1;  // dims: what sums over action dimensions are divided by
+};
+
+}  // namespace rdm

@@ -1,0 +1,149 @@
+// What every algorithm promises, for each of the list.
+#include <cmath>
+
+#include "agents.hpp"
+#include "heap_count.hpp"
+
+using namespace rdm;
+using namespace rdm::test;
+
+namespace {
+
+// Two costs with limits where an algorithm takes several.
+AgentSetup setup_of(const std::string& algo, int32_t threads = 0) {
+  static const double limits[] = {1, 0.5};
+  AgentSetup s(algo.c_str(), 6, 3, 40);
+  s.config.num_threads = threads;
+  s.config.cost_dim = 2;
+  s.config.max_steps = 30;
+  s.config.seed = 11;
+  s.config.cost_limits = limits;
+  s.with("hidden", "16,8").with("horizon", "12").with("passes", "3").with("minibatches", "2");
+  s.with("noise_correlation", "0.3").with("lr_schedule", "kl").with("learning_rate", "2e-3");
+  s.with("terminal_cost", "on");
+  for (const char* one : {"cpo", "pcpo", "focops"})
+    if (algo == one) s.with("several_costs", "worst");
+  return s;
+}
+
+std::vector<unsigned char> state_after(AgentSetup s, int epochs) {
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  for (int i = 0; i < epochs; ++i) world.epoch(*a);
+  return saved(*a);
+}
+
+class EveryAlgo : public testing::TestWithParam<int> {
+ protected:
+  const char* name() const { return algo_at(GetParam()).name; }
+};
+
+}  // namespace
+
+TEST_P(EveryAlgo, Learns) {
+  AgentSetup s = setup_of(name());
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  const std::vector<float> before = parameters(*a);
+  Epoch e;
+  for (int i = 0; i < 3; ++i) world.epoch(*a, &e);
+  const std::vector<float> after = parameters(*a);
+  size_t changed = 0;
+  for (size_t i = 0; i < after.size(); ++i) {
+    ASSERT_TRUE(std::isfinite(after[i]));
+    changed += after[i] != before[i];
+  }
+  EXPECT_GT(changed, after.size() * 9 / 10);
+  EXPECT_GT(e.kl, 0);
+  EXPECT_EQ(e.passes, 3);
+  EXPECT_GT(e.loss_reward_value, 0);
+}
+
+TEST_P(EveryAlgo, SameBytesForAnyThreads) {
+  const auto wanted = state_after(setup_of(name()), 3);
+  for (const int32_t threads : {1, 2, 4})
+    EXPECT_EQ(state_after(setup_of(name(), threads), 3), wanted) << threads;
+}
+
+TEST_P(EveryAlgo, ResumeEqualsUnbroken) {
+  AgentSetup s = setup_of(name());
+  const AgentPtr whole = s.make();
+  NoiseWorld world(s.config);
+  for (int i = 0; i < 3; ++i) world.epoch(*whole);
+  const auto bytes = saved(*whole);
+  AgentSetup other = setup_of(name(), 2);
+  other.config.seed = 999;
+  const AgentPtr resumed = other.make();
+  resumed->load(bytes.data(), bytes.size());
+  EXPECT_EQ(saved(*resumed), bytes);
+  NoiseWorld copy = world;
+  Epoch e, f;
+  for (int i = 0; i < 3; ++i) {
+    world.epoch(*whole, &e);
+    copy.epoch(*resumed, &f);
+    EXPECT_EQ(0, std::memcmp(&e, &f, sizeof e)) << i;
+  }
+  EXPECT_EQ(saved(*whole), saved(*resumed));
+}
+
+TEST_P(EveryAlgo, NoHeapInActRecordUpdate) {
+  if (!kHeapIsCounted) GTEST_SKIP() << "the heap is the sanitizer's here";
+  for (const int32_t threads : {0, 2}) {
+    AgentSetup s = setup_of(name(), threads);
+    const AgentPtr a = s.make();
+    NoiseWorld world(s.config);
+    Epoch e;
+    const int64_t before = heap_count();
+    for (int i = 0; i < 3; ++i) world.epoch(*a, &e);
+    a->act(world.obs(), false, world.action());
+    EXPECT_EQ(heap_count(), before) << threads;
+  }
+}
+
+TEST_P(EveryAlgo, AHorizonOfDeadRowsTeachesNothing) {
+  AgentSetup s = setup_of(name());
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  const std::vector<uint8_t> none(40, 0);
+  while (a->missing() > 0) {
+    a->act(world.obs(), true, world.action());
+    world.draw();
+    Transition t = world.transition();
+    t.valid = none.data();
+    a->record(t);
+  }
+  const std::vector<float> before = parameters(*a);
+  a->update(world.obs(), nullptr);
+  EXPECT_EQ(parameters(*a), before);
+}
+
+TEST_P(EveryAlgo, CancelLeavesAWorkingAgent) {
+  AgentSetup s = setup_of(name());
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  while (a->missing() > 0) world.decide(*a);
+  const std::vector<float> before = parameters(*a);
+  a->cancel();
+  EXPECT_EQ(thrown([&] { a->update(world.obs(), nullptr); }).code, Code::kCancelled);
+  EXPECT_EQ(parameters(*a), before);
+  world.epoch(*a);
+}
+
+TEST_P(EveryAlgo, OptionsHaveHelpAndBounds) {
+  const AlgoInfo& info = algo_at(GetParam());
+  for (int32_t i = 0; i < info.num_options; ++i) {
+    const OptionSpec& o = info.options[i];
+    EXPECT_GT(std::strlen(o.help), 10u) << o.key;
+    EXPECT_LT(std::strlen(o.help), 100u) << o.key;
+    for (int32_t k = 0; k < i; ++k) EXPECT_FALSE(same_name(o.key, info.options[k].key)) << o.key;
+    if (o.kind == OptionKind::kText) {
+      EXPECT_NE(o.text, nullptr) << o.key;
+    } else {
+      EXPECT_LE(o.low, o.number) << o.key;
+      EXPECT_GE(o.high, o.number) << o.key;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(List, EveryAlgo, testing::Range(0, algo_count()),
+                         [](const auto& info) { return std::string(algo_at(info.param).name); });

@@ -1,0 +1,65 @@
+#include "algos/p3o.hpp"
+#include "bandit.hpp"
+#include "learner_bench.hpp"
+
+using namespace rdm;
+using namespace rdm::test;
+
+TEST(P3o, ClipHidesFallsOfTheCostAlone) {
+  const float wanted[][5] = {// rho, A_c, loss, slope
+                             {1.3f, 1, 1.3f, 1.3f},
+                             {0.7f, 1, 0.8f, 0},
+                             {1.3f, -1, -1.2f, 0},
+                             {0.7f, -1, -0.7f, -0.7f}};
+  for (const auto& w : wanted) {
+    const SampleLoss l = penalty_loss(w[0], w[1], 0.2f);
+    EXPECT_FLOAT_EQ(l.loss, w[2]);
+    EXPECT_FLOAT_EQ(l.slope, w[3]);
+  }
+}
+
+TEST(P3o, WithoutPenaltyItIsPpo) {
+  AgentSetup plain = bandit("ppo"), s = bandit("p3o");
+  s.with("cost_limit", "1").with("penalty", "0").with("penalty_max", "0");
+  Epoch a, b;
+  EXPECT_EQ(play_bandit(plain, 5, &a), play_bandit(s, 5, &b));
+  EXPECT_EQ(a.kl, b.kl);
+}
+
+TEST(P3o, KappaGrowsToItsBound) {
+  AgentSetup s = bandit("p3o");
+  s.with("cost_limit", "1").with("penalty", "1").with("penalty_growth", "2").with("penalty_max", "5");
+  Epoch e;
+  for (const double kappa : {1.0, 2.0, 4.0, 5.0}) {
+    play_bandit(s, kappa == 1 ? 1 : kappa == 2 ? 2 : kappa == 4 ? 3 : 4, &e);
+    EXPECT_EQ(e.multiplier[0], kappa);
+  }
+}
+
+TEST(P3o, GradientIsTheFiniteDifference) {
+  AgentSetup s("p3o", 3, 2, 16);
+  const double limits[] = {1, 2};
+  s.config.cost_dim = 2;
+  s.config.cost_limits = limits;
+  s.with("hidden", "5,4").with("horizon", "10").with("minibatches", "1").with("last_layer_scale", "1");
+  Bench b(std::move(s));
+  std::fill_n(b.rollout.linear, b.order.size(), 0.0f);
+  PenalizedSurrogate loss;
+  loss.weight[0] = 3, loss.weight[1] = 0.5f;
+  b.learner.gradient(&loss, false, b.order.data(), b.plan.samples);
+  const auto total = [&](const std::vector<double>& p) {
+    double sum = 0;
+    for (size_t i = 0; i < b.order.size(); ++i) {
+      const double rho = std::exp(b.log_prob(p, i) - static_cast<double>(b.rollout.log_prob[i]));
+      const double cut = std::clamp(rho, 1 - kClip, 1 + kClip);
+      const auto gain = static_cast<double>(b.rollout.gain[i]);
+      sum -= std::min(rho * gain, cut * gain);
+      for (size_t k = 0; k < 2; ++k) {
+        const auto c = static_cast<double>(b.rollout.cost_advantage[2 * i + k]);
+        sum += static_cast<double>(loss.weight[k]) * std::max(rho * c, cut * c);
+      }
+    }
+    return sum / b.plan.samples;
+  };
+  expect_gradient(b, total, 5e-6);
+}
