@@ -25,4 +25,13 @@ void OptionTable::add(const char* first, const char* name, const char* last, Opt
   add(row);
 }
 
+void OptionTable::set_default(const char* key, double number) {
+  for (int32_t i = 0; i < count_; ++i) {
+    if (std::strcmp(rows_[i].key, key) != 0) continue;
+    rows_[i].number = number;
+    return;
+  }
+  fail(Code::kInternal, "option %s: there is no such row", key);
+}
+
 }  // namespace rdm

@@ -19,6 +19,9 @@ class OptionTable {
   // A row whose key is made here: "first.name.last", parts may be null.
   void add(const char* first, const char* name, const char* last, OptionSpec row);
 
+  // Another default for a number or integer that is in the table already: a task's own.
+  void set_default(const char* key, double number);
+
   const OptionSpec* rows() const { return rows_; }
   int32_t count() const { return count_; }
 

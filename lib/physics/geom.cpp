@@ -30,6 +30,29 @@ bool face_of_box(const Geom& box, const Vec3& n, double* half, Face* face) {
   return false;
 }
 
+// Keeps `most` of `count` points, in front: the deepest, then each time the one farthest from all kept.
+int spread_points(dContactGeom* points, int count, int most) {
+  if (count <= most) return count;
+  int first = 0;
+  for (int i = 1; i < count; ++i)
+    if (points[i].depth > points[first].depth) first = i;
+  std::swap(points[0], points[first]);
+  double gap[kMaxPairPoints];  // m2, to the nearest kept point
+  std::fill_n(gap, count, HUGE_VAL);
+  for (int kept = 1; kept < most; ++kept) {
+    const Vec3 last = from_ode(points[kept - 1].pos);
+    int next = kept;
+    for (int i = kept; i < count; ++i) {
+      const Vec3 d = from_ode(points[i].pos) - last;
+      gap[i] = std::min(gap[i], dot(d, d));
+      if (gap[i] > gap[next]) next = i;
+    }
+    std::swap(points[kept], points[next]);
+    std::swap(gap[kept], gap[next]);
+  }
+  return most;
+}
+
 }  // namespace
 
 Geom make_geom(const ShapeDef& shape, const Pose& X_WS) {
@@ -64,26 +87,33 @@ Geom make_geom(const ShapeDef& shape, const Pose& X_WS) {
 }
 
 int collide_geoms(const Geom& a, const Geom& b, int most, dContactGeom* out) {
-  const int found = dCollide(a.id, b.id, most, out, sizeof out[0]);
+  // Two boxes have no more points; asked for fewer, ODE would choose them by an arc tangent of the C library.
+  dContactGeom all[kMaxPairPoints];
+  const int found = dCollide(a.id, b.id, kMaxPairPoints, all, sizeof all[0]);
   const bool first = a.kind == ShapeKind::kCylinder;
-  if (found == 0 || (!first && b.kind != ShapeKind::kCylinder)) return found;
+  const auto as_found = [&] {
+    const int kept = spread_points(all, found, most);
+    std::copy_n(all, kept, out);
+    return kept;
+  };
+  if (found == 0 || (!first && b.kind != ShapeKind::kCylinder)) return as_found();
   const Geom &round = first ? a : b, &flat = first ? b : a;
-  const Vec3 n = first ? from_ode(out[0].normal) : -from_ode(out[0].normal);
+  const Vec3 n = first ? from_ode(all[0].normal) : -from_ode(all[0].normal);
   Face face;
   double half[2];
   if (flat.kind == ShapeKind::kPlane) {
     face.n = flat.plane_n;
     face.offset = flat.plane_d;
   } else if (flat.kind != ShapeKind::kBox || !face_of_box(flat, n, half, &face)) {
-    return found;
+    return as_found();
   }
   const Cylinder cylinder = {from_ode(dGeomGetPosition(round.id)), mat_from_ode(dGeomGetRotation(round.id)),
                              round.size.x, round.size.y};
   ManifoldPoint points[kManifoldPoints];
   const int count = std::min(cylinder_on_face(cylinder, face, points), most);
-  if (count <= 0) return found;
+  if (count <= 0) return as_found();
   for (int i = 0; i < count; ++i) {
-    out[i] = out[0];
+    out[i] = all[0];
     to_ode(points[i].p, out[i].pos);
     to_ode(first ? face.n : -face.n, out[i].normal);
     out[i].depth = points[i].depth;
