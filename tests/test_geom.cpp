@@ -31,7 +31,7 @@ class GeomTest : public testing::Test {
   OdeScope scope_;
   std::vector<Geom> made_ = [] {
     std::vector<Geom> room;
-    room.reserve(8);  // references stay good
+    room.reserve(16);  // references stay good
     return room;
   }();
 };
@@ -113,14 +113,39 @@ TEST_F(GeomTest, ACylinderThatIsOffTouchesNothing) {
   EXPECT_EQ(collide_geoms(cylinder, plane, kMaxPairPoints, out), 0);
 }
 
-TEST_F(GeomTest, ACylinderOnASphereKeepsTheCollidersPoints) {
+TEST_F(GeomTest, ACylinderTouchesEveryKind) {
   dContactGeom out[kMaxPairPoints];
   const Geom& cylinder = make(ShapeKind::kCylinder, {kRadius, kHalf, 0}, {{0, 0, kHalf - kDepth}, {}});
-  const Geom& ball = make(ShapeKind::kSphere, {0.1, 0, 0}, {{0, 0, -0.1}, {}});
-  const int count = collide_geoms(cylinder, ball, kMaxPairPoints, out);
-  ASSERT_EQ(count, 1);
-  EXPECT_NEAR(out[0].depth, kDepth, 1e-9);
-  EXPECT_LT(norm(from_ode(out[0].normal) - Vec3{0, 0, 1}), 1e-9);
+  const Geom* below[] = {&make(ShapeKind::kSphere, {0.1, 0, 0}, {{0, 0, -0.1}, {}}),
+                         &make(ShapeKind::kCapsule, {0.1, 0.2, 0}, {{0, 0, -0.3}, {}}),
+                         &make(ShapeKind::kCylinder, {0.1, 0.2, 0}, {{0, 0, -0.2}, {}}),
+                         &make(ShapeKind::kBox, {0.1, 0.1, 0.1}, {{0, 0, -0.1}, {}})};
+  for (const Geom* geom : below)
+    for (const bool first : {true, false}) {
+      const int count = first ? collide_geoms(cylinder, *geom, kMaxPairPoints, out)
+                              : collide_geoms(*geom, cylinder, kMaxPairPoints, out);
+      ASSERT_GE(count, 1);
+      EXPECT_NEAR(out[0].depth, kDepth, 1e-6);
+      EXPECT_LT(norm(from_ode(out[0].normal) - Vec3{0, 0, first ? 1.0 : -1.0}), 1e-3);
+      EXPECT_EQ(out[0].g1, first ? cylinder.id : geom->id);
+    }
+}
+
+// Asked for fewer points of two boxes, the deepest and far ones stay.
+TEST_F(GeomTest, FewerPointsAreSpread) {
+  dContactGeom out[kMaxPairPoints];
+  const Geom& table = make(ShapeKind::kBox, {1, 1, 0.1}, {{0, 0, -0.1}, {}});
+  const Geom& slab =
+      make(ShapeKind::kBox, {1, 1, 0.05},
+           {{0, 0, 0.0495}, axis_angle({0, 0, 1}, std::atan(1.0)) * axis_angle({0, 1, 0}, 1e-4)});
+  const int all = collide_geoms(slab, table, kMaxPairPoints, out);
+  ASSERT_EQ(all, 8);
+  double deepest = 0;
+  for (int i = 0; i < all; ++i) deepest = std::max(deepest, static_cast<double>(out[i].depth));
+  ASSERT_EQ(collide_geoms(slab, table, 4, out), 4);
+  EXPECT_EQ(out[0].depth, deepest);
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < i; ++j) EXPECT_GT(norm(from_ode(out[i].pos) - from_ode(out[j].pos)), 0.8) << i << j;
 }
 
 }  // namespace

@@ -2,81 +2,165 @@
 
 #include <cmath>
 
+#include "base/rng.hpp"
 #include "physics/manifold.hpp"
 
 namespace rdm {
 namespace {
 
-constexpr double kRadius = 0.04, kHalf = 0.09;
+constexpr double kRadius = 0.04, kHalf = 0.09, kPi = 3.14159265358979323846;
+constexpr Vec3 kUp = {0, 0, 1};
 
-Face ground() {
-  Face face;
-  face.n = {0, 0, 1};
-  return face;
+Convex solid(ShapeKind kind, const Vec3& size, const Vec3& p, const Quat& q = {}) {
+  return {kind, size, p, to_matrix(q)};
+}
+Convex cylinder(const Vec3& p, const Quat& q = {}) {
+  return solid(ShapeKind::kCylinder, {kRadius, kHalf, 0}, p, q);
+}
+Quat lying(const Vec3& about) {
+  return axis_angle(about, kPi / 2);
 }
 
-Cylinder cylinder(const Vec3& p, const Quat& q) {
-  return {p, to_matrix(q), kRadius, kHalf};
-}
-
-TEST(Manifold, StandsOnFourRimPoints) {
-  for (const bool head_down : {false, true}) {
-    ManifoldPoint points[kManifoldPoints];
-    const Quat q = head_down ? axis_angle({1, 0, 0}, std::acos(-1.0)) : Quat{};
-    ASSERT_EQ(cylinder_on_face(cylinder({1, 2, kHalf - 1e-3}, q), ground(), points), 4);
-    Vec3 mean;
-    for (const ManifoldPoint& point : points) {
-      EXPECT_NEAR(point.depth, 1e-3, 1e-12);
-      EXPECT_NEAR(std::hypot(point.p.x - 1, point.p.y - 2), kRadius, 1e-12);
-      mean += 0.25 * point.p;
-    }
-    EXPECT_NEAR(norm(mean - Vec3{1, 2, -1e-3}), 0, 1e-12);
+struct Points {
+  ManifoldPoint at[kManifoldPoints];
+  int count;
+  Points(const Convex& a, const Convex& b) : count(manifold_between(a, b, at)) {}
+  explicit Points(const Convex& a) : count(manifold_on_plane(a, kUp, 0, at)) {}
+  Vec3 mean() const {
+    Vec3 m;
+    for (int i = 0; i < count; ++i) m += (1.0 / count) * at[i].p;
+    return m;
   }
+};
+
+TEST(Manifold, ACylinderStandsOnFourRimPoints) {
+  const Convex table = solid(ShapeKind::kBox, {0.5, 0.4, 0.1}, {0.8, 1.9, -0.1});
+  for (const bool head_down : {false, true})
+    for (const bool on_table : {false, true}) {
+      const Convex c = cylinder({1, 2, kHalf - 1e-3}, head_down ? axis_angle({1, 0, 0}, kPi) : Quat{});
+      const Points m = on_table ? Points(c, table) : Points(c);
+      ASSERT_EQ(m.count, 4);
+      for (const ManifoldPoint& point : m.at) {
+        EXPECT_NEAR(point.depth, 1e-3, 1e-12);
+        EXPECT_LT(norm(point.n - kUp), 1e-12);
+        EXPECT_NEAR(std::hypot(point.p.x - 1, point.p.y - 2), kRadius, 1e-12);
+      }
+      EXPECT_NEAR(norm(m.mean() - Vec3{1, 2, -1e-3}), 0, 1e-12);
+      if (!on_table) continue;
+      const Points turned(table, c);
+      ASSERT_EQ(turned.count, 4);
+      EXPECT_LT(norm(turned.at[0].n + kUp), 1e-12);
+    }
 }
 
 TEST(Manifold, TiltedItsLowestPointIsFound) {
-  for (const double angle : {0.005, 0.1, 0.4}) {
+  for (const double angle : {0.005, 0.1, 0.4, 0.8, 1.2, 1.5}) {
     const double low = kHalf * std::cos(angle) + kRadius * std::sin(angle);  // of the rim below the centre
-    ManifoldPoint points[kManifoldPoints];
-    const Quat q = axis_angle(normalized(Vec3{1, 2, 0}), angle);
-    ASSERT_GE(cylinder_on_face(cylinder({0, 0, low - 1e-4}, q), ground(), points), 1);
-    EXPECT_NEAR(points[0].depth, 1e-4, 1e-12) << angle;
+    const Points m(cylinder({0, 0, low - 1e-4}, axis_angle(normalized(Vec3{1, 2, 0}), angle)));
+    ASSERT_GE(m.count, 1);
+    EXPECT_NEAR(m.at[0].depth, 1e-4, 1e-12) << angle;
   }
 }
 
 TEST(Manifold, LiesOnTheEndsOfItsLowestLine) {
-  const Quat q = axis_angle({0, 1, 0}, std::acos(0.0));  // axis along x
-  ManifoldPoint points[kManifoldPoints];
-  ASSERT_EQ(cylinder_on_face(cylinder({0, 0, kRadius - 1e-3}, q), ground(), points), 2);
-  EXPECT_NEAR(std::fabs(points[0].p.x - points[1].p.x), 2 * kHalf, 1e-12);
-  for (int i = 0; i < 2; ++i) EXPECT_NEAR(points[i].depth, 1e-3, 1e-12);
+  const Points m(cylinder({0, 0, kRadius - 1e-3}, lying({0, 1, 0})));
+  ASSERT_EQ(m.count, 2);
+  EXPECT_NEAR(std::fabs(m.at[0].p.x - m.at[1].p.x), 2 * kHalf, 1e-12);
+  for (int i = 0; i < 2; ++i) EXPECT_NEAR(m.at[i].depth, 1e-3, 1e-12);
 }
 
 TEST(Manifold, KeepsToTheFace) {
-  const double half[2] = {0.5, 0.1};
-  Face table = ground();
-  table.side[0] = {1, 0, 0};
-  table.side[1] = {0, 1, 0};
-  table.half = half;
-  ManifoldPoint points[kManifoldPoints];
-  EXPECT_EQ(cylinder_on_face(cylinder({0, 0, kHalf - 1e-3}, {}), table, points), 4);
-  EXPECT_EQ(cylinder_on_face(cylinder({0, 0.08, kHalf - 1e-3}, {}), table, points), -1);  // over the edge
-  // Lying across the table it rests on the line's part above it.
-  const Quat across = axis_angle({1, 0, 0}, std::acos(0.0));
-  ASSERT_EQ(cylinder_on_face(cylinder({0, 0.05, kRadius - 1e-3}, across), table, points), 2);
-  EXPECT_NEAR(std::max(points[0].p.y, points[1].p.y), 0.1, 1e-12);
-  EXPECT_NEAR(std::min(points[0].p.y, points[1].p.y), 0.05 - kHalf, 1e-12);
-  EXPECT_EQ(cylinder_on_face(cylinder({0.6, 0, kRadius - 1e-3}, across), table, points), -1);
+  const Convex table = solid(ShapeKind::kBox, {0.5, 0.1, 0.05}, {0, 0, -0.05});
+  // half over the edge: what is above the table carries
+  const Points foot(cylinder({0, 0.09, kHalf - 1e-3}), table);
+  ASSERT_GE(foot.count, 3);
+  for (int i = 0; i < foot.count; ++i) EXPECT_LE(foot.at[i].p.y, 0.1 + 1e-12);
+  const Points across(cylinder({0, 0.05, kRadius - 1e-3}, lying({1, 0, 0})), table);
+  ASSERT_EQ(across.count, 2);
+  EXPECT_NEAR(std::max(across.at[0].p.y, across.at[1].p.y), 0.1, 1e-12);
+  EXPECT_NEAR(std::min(across.at[0].p.y, across.at[1].p.y), 0.05 - kHalf, 1e-12);
+  EXPECT_EQ(Points(cylinder({0.6, 0, kRadius - 1e-3}, lying({1, 0, 0})), table).count, 0);
 }
 
-TEST(Manifold, LeavesSlantedOnesToTheCollider) {
-  ManifoldPoint points[kManifoldPoints];
-  EXPECT_EQ(cylinder_on_face(cylinder({0, 0, 0.05}, axis_angle({1, 0, 0}, 0.8)), ground(), points), -1);
+TEST(Manifold, NothingWhereTheyAreApart) {
+  EXPECT_EQ(Points(cylinder({0, 0, kHalf + 1e-6})).count, 0);
+  const Convex box = solid(ShapeKind::kBox, {0.1, 0.1, 0.1}, {0, 0, -0.1 - 1e-5});
+  EXPECT_EQ(Points(cylinder({0, 0, kHalf}), box).count, 0);
+  EXPECT_EQ(Points(cylinder({}), cylinder({2 * kRadius + 1e-6, 0, 0.01})).count, 0);
+  EXPECT_EQ(Points(cylinder({}), cylinder({0, 0, 2 * kHalf + 1e-5})).count, 0);
 }
 
-TEST(Manifold, NothingAboveTheFace) {
-  ManifoldPoint points[kManifoldPoints];
-  EXPECT_EQ(cylinder_on_face(cylinder({0, 0, kHalf + 1e-3}, {}), ground(), points), 0);
+TEST(Manifold, TwoCylindersSideBySideTouchAlongALine) {
+  const Points m(cylinder({2 * kRadius - 1e-3, 0, 0.05}), cylinder({}));
+  ASSERT_EQ(m.count, 2);
+  EXPECT_NEAR(std::min(m.at[0].p.z, m.at[1].p.z), 0.05 - kHalf, 1e-12);
+  EXPECT_NEAR(std::max(m.at[0].p.z, m.at[1].p.z), kHalf, 1e-12);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_NEAR(m.at[i].depth, 1e-3, 1e-12);
+    EXPECT_LT(norm(m.at[i].n - Vec3{1, 0, 0}), 1e-12);
+    EXPECT_NEAR(m.at[i].p.x, kRadius - 0.5e-3, 1e-12);
+  }
+}
+
+TEST(Manifold, CrossedSidesTouchAtOnePoint) {
+  const Convex finger =
+      solid(ShapeKind::kCapsule, {0.01, 0.03, 0}, {kRadius + 0.01 - 1e-3, 0.01, 0.02}, lying({1, 0, 0}));
+  const Points m(finger, cylinder({}));
+  ASSERT_EQ(m.count, 1);
+  EXPECT_NEAR(m.at[0].depth, 1e-3, 1e-12);
+  EXPECT_LT(norm(m.at[0].n - Vec3{1, 0, 0}), 1e-12);
+  EXPECT_LT(norm(m.at[0].p - Vec3{kRadius - 0.5e-3, 0, 0.02}), 1e-12);
+}
+
+TEST(Manifold, OneCylinderStandsOnAnother) {
+  const Points m(cylinder({0.01, 0, 2 * kHalf - 1e-3}), cylinder({}));
+  ASSERT_EQ(m.count, 4);
+  for (const ManifoldPoint& point : m.at) {
+    EXPECT_NEAR(point.depth, 1e-3, 1e-9);
+    EXPECT_LT(norm(point.n - kUp), 1e-9);
+  }
+  EXPECT_LT(norm(m.mean() - Vec3{0.005, 0, kHalf}), 0.01);
+}
+
+TEST(Manifold, AFingersTipOnACap) {
+  // the capsule stands on the cap and touches with its round end
+  const Points m(solid(ShapeKind::kCapsule, {0.01, 0.03, 0}, {0.02, 0, kHalf + 0.04 - 1e-3}), cylinder({}));
+  ASSERT_GE(m.count, 1);
+  EXPECT_NEAR(m.at[0].depth, 1e-3, 1e-6);
+  EXPECT_LT(norm(m.at[0].n - kUp), 1e-6);
+}
+
+// Whatever the pose: moved apart by the deepest point's depth, along its normal, little is left of the
+// overlap.
+TEST(Manifold, TheDeepestPointTellsTheWayOut) {
+  Stream stream(5, 0, Purpose::kTest);
+  const auto direction = [&] {
+    Vec3 d;
+    for (int i = 0; i < 3; ++i) d[i] = stream.signed_unit();
+    return normalized(d);
+  };
+  constexpr ShapeKind kKinds[] = {ShapeKind::kSphere, ShapeKind::kCapsule, ShapeKind::kBox,
+                                  ShapeKind::kCylinder};
+  int found = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const ShapeKind kind = kKinds[stream.next() % 4];
+    const Convex b = cylinder({}, axis_angle(direction(), 2));
+    Convex a = solid(kind, {0.03, 0.04, 0.05}, 0.11 * direction(), axis_angle(direction(), 2));
+    const Points m(a, b);
+    if (m.count == 0 || m.at[0].depth > 0.003) continue;
+    ++found;
+    for (int k = 0; k < m.count; ++k) {
+      EXPECT_NEAR(norm(m.at[k].n), 1, 1e-9);
+      EXPECT_GT(m.at[k].depth, 0);
+      EXPECT_LE(m.at[k].depth, m.at[0].depth);
+    }
+    a.p += (m.at[0].depth + 1e-9) * m.at[0].n;
+    Overlap left;
+    if (find_overlap(a, b, &left)) {
+      EXPECT_LT(left.depth, 4e-4) << i << " of " << m.at[0].depth;
+    }
+  }
+  EXPECT_GT(found, 200);
 }
 
 }  // namespace

@@ -9,25 +9,13 @@
 namespace rdm {
 namespace {
 
-constexpr double kFlat = 0.99;  // cosine between a contact's normal and that of a face it counts for
+// ODE lets a cylinder rock on faces, and knows no contact of it with a capsule or another cylinder.
+bool is_ours(const Geom& geom) {
+  return geom.kind == ShapeKind::kCylinder;
+}
 
-// The side of a box whose outward normal is nearest to `n`; false when none is near.
-bool face_of_box(const Geom& box, const Vec3& n, double* half, Face* face) {
-  const Mat3 r = mat_from_ode(dGeomGetRotation(box.id));
-  for (int k = 0; k < 3; ++k) {
-    const double cosine = dot(n, r.col(k));
-    if (std::fabs(cosine) < kFlat) continue;
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    face->n = std::copysign(1.0, cosine) * r.col(k);
-    face->center = from_ode(dGeomGetPosition(box.id)) + box.size[k] * face->n;
-    face->offset = dot(face->n, face->center);
-    face->side[0] = r.col(i);
-    face->side[1] = r.col(j);
-    half[0] = box.size[i], half[1] = box.size[j];
-    face->half = half;
-    return true;
-  }
-  return false;
+Convex convex_of(const Geom& geom) {
+  return {geom.kind, geom.size, from_ode(dGeomGetPosition(geom.id)), mat_from_ode(dGeomGetRotation(geom.id))};
 }
 
 // Keeps `most` of `count` points, in front: the deepest, then each time the one farthest from all kept.
@@ -87,36 +75,35 @@ Geom make_geom(const ShapeDef& shape, const Pose& X_WS) {
 }
 
 int collide_geoms(const Geom& a, const Geom& b, int most, dContactGeom* out) {
-  // Two boxes have no more points; asked for fewer, ODE would choose them by an arc tangent of the C library.
-  dContactGeom all[kMaxPairPoints];
-  const int found = dCollide(a.id, b.id, kMaxPairPoints, all, sizeof all[0]);
-  const bool first = a.kind == ShapeKind::kCylinder;
-  const auto as_found = [&] {
+  if (!is_ours(a) && !is_ours(b)) {
+    // Two boxes have no more points; asked for fewer, ODE would choose them by an arc tangent of the C
+    // library.
+    dContactGeom all[kMaxPairPoints];
+    const int found = dCollide(a.id, b.id, kMaxPairPoints, all, sizeof all[0]);
     const int kept = spread_points(all, found, most);
     std::copy_n(all, kept, out);
     return kept;
-  };
-  if (found == 0 || (!first && b.kind != ShapeKind::kCylinder)) return as_found();
-  const Geom &round = first ? a : b, &flat = first ? b : a;
-  const Vec3 n = first ? from_ode(all[0].normal) : -from_ode(all[0].normal);
-  Face face;
-  double half[2];
-  if (flat.kind == ShapeKind::kPlane) {
-    face.n = flat.plane_n;
-    face.offset = flat.plane_d;
-  } else if (flat.kind != ShapeKind::kBox || !face_of_box(flat, n, half, &face)) {
-    return as_found();
   }
-  const Cylinder cylinder = {from_ode(dGeomGetPosition(round.id)), mat_from_ode(dGeomGetRotation(round.id)),
-                             round.size.x, round.size.y};
   ManifoldPoint points[kManifoldPoints];
-  const int count = std::min(cylinder_on_face(cylinder, face, points), most);
-  if (count <= 0) return as_found();
+  int count = 0;
+  double sign = 1;
+  if (b.kind == ShapeKind::kPlane) {
+    count = manifold_on_plane(convex_of(a), b.plane_n, b.plane_d, points);
+  } else if (a.kind == ShapeKind::kPlane) {
+    count = manifold_on_plane(convex_of(b), a.plane_n, a.plane_d, points);
+    sign = -1;
+  } else {
+    count = manifold_between(convex_of(a), convex_of(b), points);
+  }
+  count = std::min(count, most);
   for (int i = 0; i < count; ++i) {
-    out[i] = all[0];
+    out[i] = {};
     to_ode(points[i].p, out[i].pos);
-    to_ode(first ? face.n : -face.n, out[i].normal);
+    to_ode(sign * points[i].n, out[i].normal);
     out[i].depth = points[i].depth;
+    out[i].g1 = a.id;
+    out[i].g2 = b.id;
+    out[i].side1 = out[i].side2 = -1;
   }
   return count;
 }

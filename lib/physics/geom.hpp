@@ -19,8 +19,8 @@ struct Geom {
 // A geom of its own, in no space, at X_WS. The caller destroys it.
 Geom make_geom(const ShapeDef& shape, const Pose& X_WS);
 
-// At most `most` points; normals point from b into a. A cylinder on a flat face gets the points of
-// cylinder_on_face instead of the collider's.
+// At most `most` points, the deepest among them; normals point from b into a. ODE finds those of spheres,
+// capsules, boxes and planes with each other, all others are manifold.hpp's.
 int collide_geoms(const Geom& a, const Geom& b, int most, dContactGeom* out);
 
 }  // namespace rdm
