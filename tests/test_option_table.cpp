@@ -26,6 +26,18 @@ TEST(OptionTable, MakesKeysThatLast) {
   EXPECT_EQ(o.number("alpha"), 50);
 }
 
+TEST(OptionTable, ATaskMaySetADefaultOfItsOwn) {
+  static OptionTable t;
+  const OptionSpec rows[] = {number_option("alpha", 50, 0, 100, "weight")};
+  t.add(rows);
+  t.set_default("alpha", 7);
+  Options o;
+  o.add_table(t.rows(), t.count());
+  EXPECT_EQ(o.number("alpha"), 7);
+  EXPECT_FALSE(o.given("alpha"));
+  EXPECT_EQ(guard([] { t.set_default("beta", 1); }), Code::kInternal);
+}
+
 TEST(OptionTable, RefusesWhatDoesNotFit) {
   static OptionTable t;
   const OptionSpec row = number_option("", 1, 0, 10, "");
