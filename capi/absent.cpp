@@ -1,5 +1,6 @@
 // The functions of a half that was left out of the build: they exist and say so.
 #include "capi/shim.hpp"
+#include "redman/redman_map.h"
 
 using namespace rdm;
 using namespace rdm::capi;
@@ -25,6 +26,27 @@ void rdm_pool_destroy(rdm_pool*) {}
 const char* rdm_pool_error(const rdm_pool*) {
   return "this build was made without the simulation half";
 }
+void rdm_map_destroy(rdm_map*) {}
+const char* rdm_map_error(const rdm_map*) {
+  return "this build was made without the simulation half";
+}
+RDM_SIM_ABSENT(rdm_map_config_init, rdm_map_config*, size_t)
+RDM_SIM_ABSENT(rdm_map_create, rdm_map**, const rdm_map_config*)
+RDM_SIM_ABSENT(rdm_map_get_info, const rdm_map*, rdm_map_info*)
+RDM_SIM_ABSENT(rdm_map_clear, rdm_map*)
+RDM_SIM_ABSENT(rdm_map_insert, rdm_map*, const float*, const float*, size_t, uint64_t*)
+RDM_SIM_ABSENT(rdm_map_scan, rdm_map*, rdm_pool*, int32_t, const char*, int32_t, int32_t, const int32_t*,
+               int32_t, uint64_t*)
+RDM_SIM_ABSENT(rdm_map_query, const rdm_map*, const float*, size_t, float*)
+RDM_SIM_ABSENT(rdm_map_box, const rdm_map*, const float*, const float*, rdm_voxel*, size_t, size_t*)
+RDM_SIM_ABSENT(rdm_map_meets, const rdm_map*, const float*, const float*, int32_t*)
+RDM_SIM_ABSENT(rdm_map_raycast, const rdm_map*, const float*, const float*, float, int32_t, float*, int32_t*)
+RDM_SIM_ABSENT(rdm_map_distance, const rdm_map*, const float*, size_t, float, float*)
+RDM_SIM_ABSENT(rdm_map_grid, const rdm_map*, const float*, const int32_t*, float, int8_t*)
+RDM_SIM_ABSENT(rdm_map_save, const rdm_map*, int32_t, void*, size_t, size_t*)
+RDM_SIM_ABSENT(rdm_map_save_file, const rdm_map*, const char*)
+RDM_SIM_ABSENT(rdm_map_load, rdm_map*, const void*, size_t)
+RDM_SIM_ABSENT(rdm_map_load_file, rdm_map*, const char*)
 RDM_SIM_ABSENT(rdm_task_at, int32_t, rdm_task*)
 RDM_SIM_ABSENT(rdm_task_find, const char*, int32_t*)
 RDM_SIM_ABSENT(rdm_task_field, int32_t, int32_t, rdm_field*)
@@ -94,6 +116,8 @@ RDM_LEARN_ABSENT(rdm_policy_load_file, rdm_policy**, const char*)
 RDM_LEARN_ABSENT(rdm_policy_get_info, const rdm_policy*, rdm_policy_info*)
 RDM_LEARN_ABSENT(rdm_policy_act, const rdm_policy*, const float*, int32_t, const float*, float*, void*,
                  size_t)
+RDM_LEARN_ABSENT(rdm_policy_tensor, const rdm_policy*, int32_t, rdm_tensor*)
+RDM_LEARN_ABSENT(rdm_policy_tensor_read, const rdm_policy*, const char*, float*, size_t)
 RDM_LEARN_ABSENT(rdm_policy_check, const rdm_policy*, const rdm_spec*)
 RDM_LEARN_ABSENT(rdm_checkpoint_write, const char*, const rdm_agent*, const rdm_pool*, const void*, size_t)
 RDM_LEARN_ABSENT(rdm_checkpoint_read, const char*, rdm_agent*, rdm_pool*, void*, size_t, size_t*)

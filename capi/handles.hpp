@@ -22,6 +22,11 @@ struct rdm_pool {
   rdm::RaycastScratch raycast;
   rdm::RenderShape* shapes = nullptr;  // [num_shapes]
 };
+
+namespace rdm::capi {
+// A camera of the task by name; Error(kNotFound) offers the nearest.
+Camera task_camera(int32_t task, const char* name);
+}  // namespace rdm::capi
 #endif
 
 #if RDM_WITH_LEARN

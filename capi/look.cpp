@@ -23,6 +23,20 @@ constexpr int kColorSamples = 3;  // per side of a pixel
 
 }  // namespace
 
+Camera rdm::capi::task_camera(int32_t task, const char* name) {
+  need(name, "camera");
+  const TaskInfo& info = task_at(task);
+  Vector<const char*> names;
+  for (int32_t i = 0; i < info.num_cameras; ++i) {
+    const CameraSpec& c = info.cameras[i];
+    if (same_name(c.name, name)) return {c.name, c.eye, c.target, c.fov_y};
+    names.push_back(c.name);
+  }
+  const int32_t near = nearest_name(name, names.data(), info.num_cameras);
+  fail(Code::kNotFound, "camera %.32s: unknown; nearest is %s", name,
+       near >= 0 ? names[static_cast<size_t>(near)] : "(none)");
+}
+
 rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {
   return call(nullptr, [&] {
     need(p, "pool");
@@ -81,19 +95,7 @@ rdm_result rdm_pool_render(rdm_pool* p, int32_t env, const char* camera, int32_t
                            float* depth, int32_t* segmentation) {
   return call(p ? p->error : nullptr, [&] {
     const World& world = world_of(p, env);
-    need(camera, "camera");
-    const TaskInfo& info = task_at(p->pool->task_index());
-    Vector<const char*> names;
-    const CameraSpec* found = nullptr;
-    for (int32_t i = 0; i < info.num_cameras; ++i) {
-      if (!found && same_name(info.cameras[i].name, camera)) found = &info.cameras[i];
-      names.push_back(info.cameras[i].name);
-    }
-    if (!found) {
-      const int32_t near = nearest_name(camera, names.data(), info.num_cameras);
-      fail(Code::kNotFound, "camera %.32s: unknown; nearest is %s", camera,
-           near >= 0 ? names[static_cast<size_t>(near)] : "(none)");
-    }
+    const Camera eye = task_camera(p->pool->task_index(), camera);
     const int32_t count = gather_shapes(world, p->shapes);
     Image image;
     image.width = w;
@@ -103,8 +105,7 @@ rdm_result rdm_pool_render(rdm_pool* p, int32_t env, const char* camera, int32_t
     image.segmentation = segmentation;
     RenderOptions options;
     options.samples_per_side = rgb ? kColorSamples : 1;
-    render(p->shapes, count, {found->name, found->eye, found->target, found->fov_y}, image, options,
-           p->raycast);
+    render(p->shapes, count, eye, image, options, p->raycast);
   });
 }
 

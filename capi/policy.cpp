@@ -24,6 +24,57 @@ void make(rdm_policy** out, const void* bytes, size_t size) {
   }
   *out = p;
 }
+
+const char* activation_name(Activation a) {
+  switch (a) {
+    case Activation::kTanh:
+      return "tanh";
+    case Activation::kElu:
+      return "elu";
+    case Activation::kRelu:
+      return "relu";
+  }
+  return "";
+}
+
+struct PolicyTensor {
+  const char* name;  // static
+  const float* data;
+  int32_t rows, cols;
+};
+
+// The i-th block of numbers of a policy file; false past the end.
+bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
+  static constexpr const char* kWeights[] = {"actor.0.weight", "actor.1.weight", "actor.2.weight",
+                                             "actor.3.weight", "actor.4.weight"};
+  static constexpr const char* kBiases[] = {"actor.0.bias", "actor.1.bias", "actor.2.bias", "actor.3.bias",
+                                            "actor.4.bias"};
+  static_assert(std::size(kWeights) == kMaxHidden + 1 && std::size(kBiases) == kMaxHidden + 1);
+  const MlpShape& s = v.actor;
+  if (i < 0) return false;
+  if (i < 2 * s.num_layers()) {
+    const int32_t l = i / 2;
+    if (i % 2)
+      *out = {kBiases[l], v.params + s.bias_offset(l), s.layer_out(l), 1};
+    else
+      *out = {kWeights[l], v.params + s.weight_offset(l), s.layer_out(l), s.layer_in(l)};
+    return true;
+  }
+  const PolicyTensor always[] = {{"actor.log_std", v.log_std, s.out, 1},
+                                 {"example.obs", v.example_obs, s.in, 1},
+                                 {"example.action", v.example_action, s.out, 1}};
+  const PolicyTensor normalizer[] = {{"normalizer.shift", v.shift, s.in, 1},
+                                     {"normalizer.scale", v.scale, s.in, 1},
+                                     {"normalizer.clip", &v.clip, 1, 1}};
+  const auto rest = static_cast<size_t>(i - 2 * s.num_layers());
+  if (rest < std::size(always))
+    *out = always[rest];
+  else if (v.clip > 0 && rest < std::size(always) + std::size(normalizer))
+    *out = normalizer[rest - std::size(always)];
+  else
+    return false;
+  return true;
+}
 }  // namespace
 
 rdm_result rdm_policy_load(rdm_policy** out, const void* bytes, size_t size) {
@@ -62,7 +113,8 @@ rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
     info.layout_hash = v.layout_hash;
     info.num_params = v.actor.num_params();
     info.task = v.task;
-    write_struct(io, info, sizeof(rdm_policy_info), "io");
+    info.activation = activation_name(v.actor.activation);
+    write_struct(io, info, offsetof(rdm_policy_info, activation), "io");
   });
 }
 
@@ -83,6 +135,37 @@ rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, c
     if (reinterpret_cast<uintptr_t>(scratch) % Arena::kAlign)
       fail(Code::kArgument, "scratch is not %zu-byte aligned", Arena::kAlign);
     p->policy->act(obs, rows, noise, action, scratch);
+  });
+}
+
+rdm_result rdm_policy_tensor(const rdm_policy* p, int32_t i, rdm_tensor* out) {
+  return call(nullptr, [&] {
+    need(p, "policy");
+    need(out, "out");
+    PolicyTensor t;
+    if (!tensor_at(p->policy->view(), i, &t)) fail(Code::kRange, "i: %d is past the end of the tensors", i);
+    *out = {t.name, t.rows, t.cols};
+  });
+}
+
+rdm_result rdm_policy_tensor_read(const rdm_policy* p, const char* name, float* out, size_t count) {
+  return call(nullptr, [&] {
+    need(p, "policy");
+    need(name, "name");
+    need(out, "out");
+    Vector<const char*> names;
+    PolicyTensor t;
+    for (int32_t i = 0; tensor_at(p->policy->view(), i, &t); ++i) {
+      if (std::strcmp(t.name, name) == 0) {
+        const size_t size = static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols);
+        if (count != size) fail(Code::kRange, "count: %s has %zu values, not %zu", name, size, count);
+        std::copy(t.data, t.data + size, out);
+        return;
+      }
+      names.push_back(t.name);
+    }
+    const int32_t near = nearest_name(name, names.data(), static_cast<int32_t>(names.size()));
+    fail(Code::kNotFound, "tensor %.64s: unknown; nearest is %s", name, names[static_cast<size_t>(near)]);
   });
 }
 

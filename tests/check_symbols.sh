@@ -12,8 +12,8 @@ same() { # same WHAT A B
 for part in stable experimental; do
   case $part in stable) list=capi/redman.symbols ;; *) list=capi/redman_experimental.symbols ;; esac
   grep '^rdm_' "$root/$list" | LC_ALL=C sort > "$work/$part.listed"
-  awk -v mode=$part -f "$root/tests/header.awk" "$root/include/redman/redman.h" | LC_ALL=C sort > "$work/$part.declared"
-  same "declared as $part in redman.h (<) and listed in $list (>)" "$work/$part.declared" "$work/$part.listed"
+  awk -v mode=$part -f "$root/tests/header.awk" "$root"/include/redman/*.h | LC_ALL=C sort > "$work/$part.declared"
+  same "declared as $part in the headers (<) and listed in $list (>)" "$work/$part.declared" "$work/$part.listed"
 done
 nm -D --defined-only "$library" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | LC_ALL=C sort > "$work/exported"
 LC_ALL=C sort "$work/stable.listed" "$work/experimental.listed" > "$work/listed"

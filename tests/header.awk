@@ -1,4 +1,4 @@
-# Reads redman.h. -v mode=stable|experimental: names of the exported functions of that part;
+# Reads redman.h and the headers beside it, which are experimental as a whole. -v mode=stable|experimental: names of the exported functions of that part;
 # mode=layout: a C program that prints size and offsets; mode=docs: functions and fields without comment.
 function strip(text) { gsub(/\/\*[^*]*\*+([^\/*][^*]*\*+)*\//, "", text); return text }
 
@@ -37,11 +37,17 @@ function field_line(text, has_comment,   n, i, list, names) {
 
 BEGIN {
   part = "stable"
-  if (mode == "layout") print "#define RDM_EXPERIMENTAL\n#include <redman/redman.h>\n#include <stdio.h>\nint main(void) {"
+  if (mode == "layout") {
+    print "#define RDM_EXPERIMENTAL\n#include <stdio.h>"
+    for (i = 1; i < ARGC; ++i) { name = ARGV[i]; sub(/.*\//, "", name); print "#include <redman/" name ">" }
+    print "int main(void) {"
+  }
 }
 { sub(/\r$/, "") }
+FNR == 1 && FILENAME ~ /redman_[a-z]+\.h$/ { part = "experimental"; beside = 1 }
+FNR == 1 && FILENAME !~ /redman_[a-z]+\.h$/ { part = "stable"; beside = 0 }
 /^#ifdef RDM_EXPERIMENTAL/ { part = "experimental" }
-/^#endif/ { part = "stable" }
+/^#endif/ && !beside { part = "stable" }
 /^#|^$/ { covered = 0; next }
 in_comment { if (/\*\//) { in_comment = 0; covered = 1 } ; next }
 /^[ \t]*\/\*/ && !/\*\// { in_comment = 1; next }

@@ -18,6 +18,7 @@ void add_rollout(CLI::App& app, Run& run);
 void add_render(CLI::App& app, Run& run);
 void add_bench(CLI::App& app, Run& run);
 void add_info(CLI::App& app, Run& run);
+void add_export(CLI::App& app, Run& run);
 void add_plot(CLI::App& app, Run& run);
 
 }  // namespace tool

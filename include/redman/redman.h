@@ -471,6 +471,7 @@ typedef struct rdm_policy_info {
   uint64_t layout_hash;       /* 0: unknown                                                               */
   uint64_t num_params;        /* of the network                                                           */
   const char *task;           /* "" for a host's own environment                                          */
+  const char *activation;     /* of the hidden layers: "tanh", "elu", "relu"; static                      */
 } rdm_policy_info;
 RDM_API rdm_result rdm_policy_load(rdm_policy **out, const void *bytes, size_t size); /* copies */
 RDM_API rdm_result rdm_policy_load_file(rdm_policy **out, const char *path);          /* NOT_FOUND, FORMAT ... */
@@ -482,6 +483,9 @@ RDM_API size_t rdm_policy_scratch(const rdm_policy *p, int32_t rows); /* bytes f
  * hidden state: any number of threads, each with its own scratch. */
 RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t rows, const float *noise,
                                   float *action, void *scratch, size_t scratch_bytes);
+/* "actor.0.weight" [out][in], "actor.log_std", "normalizer.shift|scale|clip" if it has one, "example.obs|action". */
+RDM_API rdm_result rdm_policy_tensor(const rdm_policy *p, int32_t i, rdm_tensor *out); /* RANGE ends the list */
+RDM_API rdm_result rdm_policy_tensor_read(const rdm_policy *p, const char *name, float *out, size_t count); /* NOT_FOUND, RANGE */
 /* OK, or VERSION_MISMATCH with a text that says which field of the spec differs. */
 RDM_API rdm_result rdm_policy_check(const rdm_policy *p, const rdm_spec *spec);
 

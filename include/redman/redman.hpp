@@ -231,6 +231,18 @@ class Policy {
            size_t scratch_bytes) const {
     check(rdm_policy_act(get(), obs, rows, noise, action, scratch, scratch_bytes));
   }
+  std::vector<rdm_tensor> tensors() const {
+    std::vector<rdm_tensor> out;
+    rdm_tensor t;
+    for (int32_t i = 0; rdm_policy_tensor(get(), i, &t) == RDM_OK; ++i) out.push_back(t);
+    return out;
+  }
+  // [rows][cols] values.
+  std::vector<float> read(const rdm_tensor& t) const {
+    std::vector<float> out(static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols));
+    check(rdm_policy_tensor_read(get(), t.name, out.data(), out.size()));
+    return out;
+  }
   void check_fits(const rdm_spec& spec) const { check(rdm_policy_check(get(), &spec)); }
 
  private:

@@ -1,0 +1,35 @@
+// A policy's numbers by name, and the files that other programs read them from.
+#pragma once
+#include <redman/redman.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tool {
+
+struct NamedTensor {
+  std::string name;
+  std::vector<int64_t> shape;
+  std::vector<float> values;  // row-major
+};
+
+struct Network {
+  explicit Network(const redman::Policy& policy);
+
+  std::string activation;  // "tanh", "elu", "relu"
+  int32_t obs_dim = 0, action_dim = 0, num_layers = 0;
+  std::vector<NamedTensor> tensors;  // as rdm_policy_tensor names them
+  // What a reader has to know beside the numbers: task, layout hash, rates, bounds of the action.
+  std::vector<std::pair<std::string, std::string>> metadata;
+
+  const NamedTensor* find(const std::string& name) const;  // null: there is none
+};
+
+// ONNX, IR 8, operators 17: input obs [batch][obs_dim]; outputs action [batch][action_dim] clipped to [-1,
+// 1], mean (the same before the clip) and log_std [action_dim]. The normaliser is part of the graph.
+std::string onnx_bytes(const Network& network);
+
+// safetensors: a JSON header and the numbers.
+std::string safetensors_bytes(const Network& network);
+
+}  // namespace tool

@@ -1,0 +1,37 @@
+// onnx_compare.cjs MODULES FILE.onnx PROBE.json TOLERANCE: runs the file in onnxruntime-node on the
+// observations of the probe, in batches of 1 and of 7 and all at once, and compares with the actions in it.
+const path = require('path');
+const fs = require('fs');
+const [modules, model, probe, tolerance] = process.argv.slice(2);
+const ort = require(path.join(path.resolve(modules), 'node_modules', 'onnxruntime-node'));
+
+async function main() {
+  const want = JSON.parse(fs.readFileSync(probe, 'utf8'));
+  const obs = Float32Array.from(want.obs);
+  const session = await ort.InferenceSession.create(model);
+  let largest = 0;
+  let spread = 0;
+  const compare = async (begin, rows) => {
+    const data = obs.slice(begin * want.obs_dim, (begin + rows) * want.obs_dim);
+    const out = await session.run({ obs: new ort.Tensor('float32', data, [rows, want.obs_dim]) });
+    const shape = [rows, want.action_dim];
+    if (String(out.action.dims) !== String(shape)) throw new Error(`action is ${out.action.dims}, not ${shape}`);
+    if (out.log_std.dims[0] !== want.action_dim) throw new Error(`log_std is ${out.log_std.dims}`);
+    out.action.data.forEach((a, i) => {
+      const gap = Math.abs(a - want.action[begin * want.action_dim + i]);
+      if (!(gap <= largest)) largest = gap;
+      if (Math.abs(a - Math.min(1, Math.max(-1, out.mean.data[i]))) !== 0) throw new Error('action is not clip(mean)');
+      spread = Math.max(spread, Math.abs(a - out.action.data[0]));
+    });
+  };
+  await compare(0, want.rows);
+  for (let begin = 0; begin + 7 <= want.rows; begin += 7) await compare(begin, 7);
+  for (let begin = 0; begin < Math.min(want.rows, 100); ++begin) await compare(begin, 1);
+  console.log(`${want.rows} rows, largest difference ${largest.toExponential(2)}, actions spread over ${spread.toFixed(3)}`);
+  if (!(largest <= Number(tolerance))) throw new Error(`the difference is above ${tolerance}`);
+  if (spread === 0) throw new Error('all actions are the same: nothing was compared');
+}
+main().catch((e) => {
+  console.error(`${model}: ${e.message}`);
+  process.exit(1);
+});

@@ -1,0 +1,74 @@
+#!/bin/sh
+# test_tool_export.sh TOOL: exported files give the policy's actions. The ONNX file runs in onnxruntime-node,
+# which npm puts beside the build (77, a skip, where there is no npm or no network); the safetensors file is
+# read by Python when it is there.
+set -u
+tool=$(realpath "$1")
+here=$(cd "$(dirname "$0")" && pwd)
+failed=0
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+
+modules=$(dirname "$(dirname "$tool")")/npm
+module=$modules/node_modules/onnxruntime-node
+reason=
+if ! command -v node > /dev/null || ! command -v npm > /dev/null; then
+  reason="there is no npm"
+elif [ ! -d "$module" ]; then
+  mkdir -p "$modules"
+  ONNXRUNTIME_NODE_INSTALL=skip npm install --ignore-scripts --no-audit --no-fund --no-save --loglevel=error \
+    --prefix "$modules" onnxruntime-node@1.30.0 > "$dir/npm" 2>&1 < /dev/null || reason="npm cannot install onnxruntime-node"
+fi
+
+# policies of every activation, with a normaliser that has seen data and without one
+policy() { # policy NAME FLAGS...
+  name=$1
+  shift
+  "$tool" train --envs 4 --steps 512 --set max_steps=20 --set horizon=8 "$@" --out "$dir/$name" \
+    > /dev/null 2> "$dir/err" || { cat "$dir/err"; exit 1; }
+  "$tool" export --policy "$dir/$name/policy.rdm" --onnx "$dir/$name.onnx" --safetensors "$dir/$name.safetensors" \
+    --probe "$dir/$name.json" --probes 1000 > /dev/null || failed=1
+  [ -z "$reason" ] && { node "$here/onnx_compare.cjs" "$modules" "$dir/$name.onnx" "$dir/$name.json" 1e-5 || failed=1; }
+}
+policy tanh --set hidden=64,64 --set activation=tanh
+policy elu --set hidden=128,64,32 --set activation=elu
+policy relu --set hidden=32 --set activation=relu
+policy bare --set hidden=16,16 --set normalize_obs=false
+
+command -v python3 > /dev/null && python3 - "$dir" << 'EOF' || failed=1
+import json, math, struct, sys
+for name in "tanh elu relu bare".split():
+    data = open(f"{sys.argv[1]}/{name}.safetensors", "rb").read()
+    (n,) = struct.unpack("<Q", data[:8])
+    head = json.loads(data[8:8 + n])
+    meta = head.pop("__metadata__")
+    body = data[8 + n:]
+    at, t = 0, {}
+    for key, v in head.items():
+        begin, end = v["data_offsets"]
+        assert begin == at and v["dtype"] == "F32" and end - begin == 4 * math.prod(v["shape"]), key
+        at, t[key] = end, struct.unpack(f"<{(end - begin) // 4}f", body[begin:end])
+    assert at == len(body)
+    assert ("normalizer.shift" in t) == (name != "bare"), sorted(t)
+    x = t["example.obs"]
+    if "normalizer.shift" in t:
+        c = t["normalizer.clip"][0]
+        x = [min(c, max(-c, (a - b) * s)) for a, b, s in zip(x, t["normalizer.shift"], t["normalizer.scale"])]
+    f = {"tanh": math.tanh, "elu": lambda z: z if z > 0 else math.expm1(z), "relu": lambda z: max(0.0, z)}[meta["activation"]]
+    layers = sum(1 for key in t if key.endswith(".weight"))
+    for l in range(layers):
+        w, b = t[f"actor.{l}.weight"], t[f"actor.{l}.bias"]
+        x = [b[o] + math.fsum(w[o * len(x) + i] * x[i] for i in range(len(x))) for o in range(len(b))]
+        if l + 1 < layers:
+            x = [f(z) for z in x]
+    gap = max(abs(min(1, max(-1, a)) - b) for a, b in zip(x, t["example.action"]))
+    assert gap < 1e-5, (name, gap)
+    assert meta["task"] == "hand_over_safe_finger" and len(meta["layout_hash"]) == 16, meta
+EOF
+
+"$tool" export --policy hold --onnx "$dir/x.onnx" > /dev/null 2>&1
+[ $? -eq 2 ] || { echo "a baseline was exported"; failed=1; }
+"$tool" export --policy "$dir/tanh" > /dev/null 2>&1
+[ $? -eq 2 ] || { echo "an export of nothing is no usage error"; failed=1; }
+[ $failed -eq 0 ] || exit 1
+[ -z "$reason" ] || { echo "skipped onnxruntime: $reason"; exit 77; }
