@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# From a fresh clone to a trained policy: installs what is missing, builds, trains for a minute or two,
+# From a fresh clone to a trained policy: installs what is missing, builds, trains for about a minute on two cores,
 # evaluates beside a random policy, and draws a strip of pictures. A second call rebuilds what changed.
 set -eu
 cd "$(dirname "$0")/.."
 . cmake/packages.sh
 task=hand_over_safe_finger
 run=runs/quickstart
-train=(--task "$task" --algo ppo_lag --envs 64 --threads "$(nproc)" --steps 1000000 --seed 0 --out "$run" --overwrite)
+train=(--task "$task" --algo ppo_lag --envs 64 --threads "$(nproc)" --steps 3000000 --seed 0 --out "$run" --overwrite)
 redman=build/release/bin/redman
 
 started=$SECONDS
