@@ -10,6 +10,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "quality_arm.hpp"
 #include "quality_grasp.hpp"
 #include "quality_towers.hpp"
 
@@ -101,6 +102,11 @@ Rows flick_rows(const Flick& s, const Flick& r) {
           {"wrist_rate_rad_s", s.wrist_rate},     {"proximal_rate_rad_s", s.finger_rate}};
 }
 
+Rows reach_rows(const Reach& s, const Reach& r) {
+  return {{"arm_rms", rms_error(s, r, 0, kArmLinks)},
+          {"hand_rms_rad", rms_error(s, r, kArmLinks, kArmHandLinks)}};
+}
+
 Rows limits_rows(const Limits& s) {
   return {
       {"pushed_rad", s.worst}, {"steady_rad", s.steady}, {"wrist_rad", s.wrist}, {"impact_rad", s.impact}};
@@ -180,6 +186,7 @@ std::vector<Experiment> all_experiments() {
       compared(
           "rest_200g", [](const Column& c) { return rest(c, 0.2); }, rest_rows),
       compared("throw", throw_ball, throw_rows),
+      compared("reach", reach, reach_rows),
       compared("flick", flick, flick_rows),
       absolute("limits", limits, limits_rows),
       absolute(

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "quality_arm.hpp"
 #include "quality_grasp.hpp"
 #include "quality_towers.hpp"
 
@@ -97,6 +98,13 @@ TEST_P(Quality, HandsSagAsTheReference) {
   static const Sag exact = sag(reference_column());
   const Sag s = sag(GetParam());
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(s.joint[i] / exact.joint[i], 1, bound(0.05, 0.005)) << i;
+}
+
+TEST_P(Quality, AnArmReachesWithItsHandAsTheReference) {
+  static const Reach exact = reach(reference_column());
+  const Reach r = reach(GetParam());
+  EXPECT_LT(rms_error(r, exact, 0, kArmLinks), bound(0.08, 0.02));
+  EXPECT_LT(rms_error(r, exact, kArmLinks, kArmHandLinks), bound(0.06, 0.015));
 }
 
 TEST_P(Quality, FlicksFollowTheReference) {
