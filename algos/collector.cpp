@@ -32,6 +32,10 @@ void Collector::carve(Arena& arena, const Plan& plan) {
   const Options& o = plan.options;
   rollout_ = carve_rollout(arena, plan);
   normalizer_ = carve_normalizer(arena, plan.config.obs_dim);
+  reward_scale_ = carve_normalizer(arena, 1);
+  cost_scale_ = carve_normalizer(arena, plan.config.cost_dim);
+  scaled_reward_ = arena.make<float>(plan.num_envs());
+  scaled_cost_ = arena.make<float>(plan.num_envs() * static_cast<size_t>(plan.config.cost_dim));
   noise_.carve(arena, plan);
   episodes_.carve(arena, plan.config.num_envs, plan.config.cost_dim,
                   o.knows("multiplier_window") ? o.integer("multiplier_window") : kStatsWindow);
@@ -50,7 +54,10 @@ void Collector::open(const Plan& plan, const Networks& nets, Lanes& lanes) {
   normalizer_.clip = static_cast<float>(o.number("obs_clip"));
   normalize_ = o.flag("normalize_obs");
   obs_count_max_ = o.number("obs_count_max");
+  normalize_reward_ = o.flag("normalize_reward");
+  normalize_cost_ = o.flag("normalize_cost") && plan.config.cost_dim > 0;
   terminal_cost_ = o.flag("terminal_cost");
+  discounted_limit_ = o.flag("discounted_limit");
   discount_ = o.number("discount");
   advantage_ = {o.number("lambda"), o.number("cost_lambda"), o.flag("standardize_reward_adv"),
                 std::strcmp(o.text("scale_cost_adv"), "std") == 0};
@@ -168,8 +175,30 @@ void Collector::charge_fall(int32_t env, float discount, float* sample_cost, dou
   for (int32_t k = 0; k < plan_->config.cost_dim; ++k)
     charge[k] = episodes_.cost(env, k) / static_cast<double>(length) * steps;
   const double tail = discount_ < 1 ? (1 - elementary::pow(discount_, left)) / (1 - discount_) : steps;
-  for (int32_t i = 0; i < plan_->num_limited; ++i)
-    sample_cost[i] += discount * static_cast<float>(charge[plan_->column[i]] / steps * tail);
+  for (int32_t i = 0; i < plan_->num_limited; ++i) {
+    const int32_t k = plan_->column[i];
+    const float scale = normalize_cost_ ? cost_scale_.scale[k] : 1;
+    sample_cost[i] += discount * scale * static_cast<float>(charge[k] / steps * tail);
+  }
+  if (!discounted_limit_) return;
+  const double share = elementary::pow(discount_, length) * tail / steps;
+  for (int32_t k = 0; k < plan_->config.cost_dim; ++k) charge[k] *= share;
+}
+
+// Statistics first, then the samples: as for observations.
+void Collector::scale_rewards(const Transition& t) {
+  const int32_t envs = rollout_.num_envs;
+  reward_ = t.reward, cost_ = t.cost;
+  if (normalize_reward_) {
+    normalizer_merge(reward_scale_, t.reward, envs, t.valid, 0);
+    normalizer_apply(reward_scale_, t.reward, envs, scaled_reward_);
+    reward_ = scaled_reward_;
+  }
+  if (normalize_cost_) {
+    normalizer_merge(cost_scale_, t.cost, envs, t.valid, 0);
+    normalizer_apply(cost_scale_, t.cost, envs, scaled_cost_);
+    cost_ = scaled_cost_;
+  }
 }
 
 void Collector::record_row(const Transition& t, int32_t env) {
@@ -184,15 +213,17 @@ void Collector::record_row(const Transition& t, int32_t env) {
     noise_.end_episode(env);
     return;
   }
-  const float* cost = t.cost ? t.cost + e * static_cast<size_t>(plan_->config.cost_dim) : nullptr;
+  const size_t first = e * static_cast<size_t>(plan_->config.cost_dim);
+  const float *cost = t.cost ? t.cost + first : nullptr, *learned = t.cost ? cost_ + first : nullptr;
   const int32_t steps = t.steps ? t.steps[e] : plan_->action_repeat;
   const bool terminated = flag(t.terminated, e, false), over = terminated || flag(t.truncated, e, false);
   const auto discount = static_cast<float>(elementary::pow(discount_, steps));
   env_steps_ += steps;
-  episodes_.add(env, static_cast<double>(t.reward[e]), cost, steps, flag(t.success, e, false));
-  r.reward[at] = t.reward[e] + discount * final_value_[e];
+  const double weight = discounted_limit_ ? elementary::pow(discount_, episodes_.length(env)) : 1;
+  episodes_.add(env, static_cast<double>(t.reward[e]), cost, steps, flag(t.success, e, false), weight);
+  r.reward[at] = reward_[e] + discount * final_value_[e];
   for (size_t i = 0; i < costs; ++i)
-    limited[i] = cost[plan_->column[i]] + discount * final_cost_[e * costs + i];
+    limited[i] = learned[plan_->column[i]] + discount * final_cost_[e * costs + i];
   r.discount[at] = over ? 0 : discount;
   if (!over) return;
   double charge[kMaxCosts];
@@ -207,6 +238,7 @@ void Collector::record(const Transition& t) {
   if (!pending_) fail(Code::kState, "record: no sampled act came before");
   check(t);
   value_truncated(t);
+  scale_rewards(t);
   for (int32_t env = 0; env < rollout_.num_envs; ++env) record_row(t, env);
   ++rollout_.filled;
   pending_ = false;
@@ -226,10 +258,12 @@ int32_t Collector::estimate(const float* last_obs) {
 void Collector::visit(StateIo& io) {
   io.section("COLL");
   io.integer(env_steps_, 0, int64_t{1} << 62);
-  const auto dim = static_cast<size_t>(normalizer_.dim);
-  io.number(normalizer_.count, 0, 1e300);
-  io.numbers(normalizer_.mean, dim, -1e300, 1e300);
-  io.numbers(normalizer_.m2, dim, 0, 1e300);
+  for (Normalizer* n : {&normalizer_, &reward_scale_, &cost_scale_}) {
+    const auto dim = static_cast<size_t>(n->dim);
+    io.number(n->count, 0, 1e300);
+    io.numbers(n->mean, dim, -1e300, 1e300);
+    io.numbers(n->m2, dim, 0, 1e300);
+  }
   noise_.visit(io);
   episodes_.visit(io);
 }

@@ -33,7 +33,9 @@ class Collector {
   bool normalizes() const { return normalize_; }
   int64_t env_steps() const { return env_steps_; }
   void visit(StateIo& io);
-  void after_load() { normalizer_refresh(normalizer_); }
+  void after_load() {
+    for (Normalizer* n : {&normalizer_, &reward_scale_, &cost_scale_}) normalizer_refresh(*n);
+  }
 
  private:
   const float* normalized(const float* obs, int32_t rows, float* memory) const;
@@ -42,6 +44,7 @@ class Collector {
   void mean_rows(const Lane& lane, const float* obs, int32_t rows, float* action) const;
   void check(const Transition& t) const;
   void value_truncated(const Transition& t);
+  void scale_rewards(const Transition& t);
   void record_row(const Transition& t, int32_t env);
   void charge_fall(int32_t env, float discount, float* sample_cost, double* charge) const;
 
@@ -49,18 +52,23 @@ class Collector {
   const Networks* nets_ = nullptr;
   Lanes* lanes_ = nullptr;
   Rollout rollout_;
-  Normalizer normalizer_;
+  Normalizer normalizer_, reward_scale_, cost_scale_;
   Noise noise_;
   Episodes episodes_;
   float* std_ = nullptr;          // [action_dim] of the innovation
   float* final_value_ = nullptr;  // [num_envs] V of the final observation after truncation, else 0
   float* final_cost_ = nullptr;   // [num_envs][num_limited]
   int32_t* listed_ = nullptr;     // [num_envs] environments that were truncated
+  // What is learned from: [num_envs] and [num_envs][cost_dim], the transition's own or normalised in
+  // scaled_*.
+  const float *reward_ = nullptr, *cost_ = nullptr;
+  float *scaled_reward_ = nullptr, *scaled_cost_ = nullptr;
   AdvantageOptions advantage_;
   double discount_ = 0, obs_count_max_ = 0;
   int64_t env_steps_ = 0;
   bool pending_ = false;  // a sampled act waits for its record
-  bool normalize_ = true, terminal_cost_ = false;
+  bool normalize_ = true, terminal_cost_ = false, discounted_limit_ = false;
+  bool normalize_reward_ = false, normalize_cost_ = false;
 };
 
 // Error(kArgument) naming the first row of x [rows][dim] that is not finite; rows whose mask is 0 are

@@ -24,7 +24,7 @@ bool Cpo::solve(double c) {
 }
 
 double Cpo::step_policy(const int32_t* order, int32_t rows) {
-  region().linearize(order, rows, cost_);
+  region().linearize(order, rows, cost_, schedule_share());
   const bool keep_reward = solve(c_);
   const auto k = static_cast<size_t>(cost_);
   return region().search([&](const Surrogate& before, const Surrogate& after) {

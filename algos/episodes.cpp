@@ -17,6 +17,7 @@ void Episodes::carve(Arena& arena, int32_t num_envs, int32_t cost_dim, int32_t c
   const auto c = static_cast<size_t>(capacity_);
   ret_ = arena.make<double>(n);
   cost_ = arena.make<double>(n * k);
+  weighed_ = arena.make<double>(n * k);
   length_ = arena.make<int64_t>(n);
   success_ = arena.make<uint8_t>(n);
   done_ret_ = arena.make<double>(c);
@@ -27,9 +28,13 @@ void Episodes::carve(Arena& arena, int32_t num_envs, int32_t cost_dim, int32_t c
   done_success_ = arena.make<uint8_t>(c);
 }
 
-void Episodes::add(int32_t env, double reward, const float* cost, int32_t steps, bool success) {
+void Episodes::add(int32_t env, double reward, const float* cost, int32_t steps, bool success,
+                   double weight) {
   ret_[env] += reward;
-  for (int32_t k = 0; k < cost_dim_; ++k) cost_[at(env, k)] += static_cast<double>(cost[k]);
+  for (int32_t k = 0; k < cost_dim_; ++k) {
+    cost_[at(env, k)] += static_cast<double>(cost[k]);
+    weighed_[at(env, k)] += weight * static_cast<double>(cost[k]);
+  }
   length_[env] += steps;
   if (success) success_[env] = 1;
 }
@@ -42,8 +47,8 @@ void Episodes::finish(int32_t env, bool terminated, const double* charge) {
   done_success_[slot] = success_[env];
   for (int32_t k = 0; k < cost_dim_; ++k) {
     done_cost_[at(slot, k)] = cost_[at(env, k)];
-    done_charged_[at(slot, k)] = cost_[at(env, k)] + (charge ? charge[k] : 0);
-    cost_[at(env, k)] = 0;
+    done_charged_[at(slot, k)] = weighed_[at(env, k)] + (charge ? charge[k] : 0);
+    cost_[at(env, k)] = weighed_[at(env, k)] = 0;
   }
   ret_[env] = 0;
   length_[env] = 0;
@@ -86,6 +91,7 @@ void Episodes::visit(StateIo& io) {
   io.integer(marked_, 0, kMost);
   io.numbers(ret_, n, -kBound, kBound);
   io.numbers(cost_, n * k, -kBound, kBound);
+  io.numbers(weighed_, n * k, -kBound, kBound);
   for (size_t i = 0; i < n; ++i) io.integer(length_[i], 0, kMost);
   io.bytes(success_, n);
   io.numbers(done_ret_, c, -kBound, kBound);

@@ -14,7 +14,7 @@ struct EpisodeStats {
   bool fresh = false;    // at least one since the last mark
   double ret = 0, length = 0, fall_rate = 0, success_rate = 0, cost_per_step = 0;
   double cost[kMaxCosts] = {};  // raw sum of each column
-  // Mean of the last `cost_window` episodes' sums with what falls were charged: what limits hold for.
+  // Mean of the last `cost_window` episodes' weighed sums with what falls were charged: what limits hold for.
   double charged_cost[kMaxCosts] = {};
 };
 
@@ -23,8 +23,8 @@ class Episodes {
   // cost_window: episodes behind charged_cost.
   void carve(Arena& arena, int32_t num_envs, int32_t cost_dim, int32_t cost_window);
 
-  // Adds a decision of environment env; cost [cost_dim].
-  void add(int32_t env, double reward, const float* cost, int32_t steps, bool success);
+  // Adds a decision of environment env; cost [cost_dim]. weight: of its costs in what limits hold for.
+  void add(int32_t env, double reward, const float* cost, int32_t steps, bool success, double weight = 1);
   // Control steps and cost so far of the episode that runs in env.
   int64_t length(int32_t env) const { return length_[env]; }
   double cost(int32_t env, int32_t column) const { return cost_[at(env, column)]; }
@@ -42,7 +42,7 @@ class Episodes {
   int32_t num_envs_ = 0, cost_dim_ = 0, cost_window_ = 0, capacity_ = 0;
   int64_t finished_ = 0, marked_ = 0;
   // [num_envs] of the running episodes
-  double *ret_ = nullptr, *cost_ = nullptr;  // cost [num_envs][cost_dim]
+  double *ret_ = nullptr, *cost_ = nullptr, *weighed_ = nullptr;  // cost, weighed [num_envs][cost_dim]
   int64_t* length_ = nullptr;
   uint8_t* success_ = nullptr;
   // [capacity] rings; episode number i is at i mod capacity

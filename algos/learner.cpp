@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "algos/conjugate_gradient.hpp"
 #include "base/elementary.hpp"
 #include "nn/gaussian.hpp"
 
@@ -18,7 +19,9 @@ void Learner::open(const Plan& plan, const Rollout& rollout, Networks& nets, Lan
   rollout_ = &rollout;
   nets_ = &nets;
   lanes_ = &lanes;
-  learn_std_ = plan.options.flag("learn_std");
+  const Options& o = plan.options;
+  learn_std_ = o.flag("learn_std") && std::strcmp(o.text("std_schedule"), "none") == 0;
+  follow_actor_ = std::strcmp(o.text("critic_lr_schedule"), "actor") == 0;
 }
 
 void Learner::read_live(const Options& o) {
@@ -27,6 +30,8 @@ void Learner::read_live(const Options& o) {
   entropy_ = o.number("entropy");
   max_norm_ = o.number("max_grad_norm");
   critic_l2_ = o.number("critic_l2");
+  joint_norm_ = o.flag("joint_grad_norm");
+  value_clip_ = static_cast<float>(o.number("value_clip"));
 }
 
 void Learner::refresh_log_std() {
@@ -71,17 +76,26 @@ void Learner::policy_gradient(Lane& lane, const PolicyLoss& policy, const int32_
   nets_->backward(Networks::kActor, lane.obs, rows, lane.actor, lane.dout, grad);
 }
 
-// Squared error against the targets; returns its sum over rows and columns.
+// Squared error against the targets, or with value_clip the larger one of it and of that of a value held near
+// the one that acted; returns its sum over rows and columns.
 double Learner::critic_gradient(Lane& lane, Networks::Index net, const int32_t* order, int32_t rows,
                                 float* grad) const {
   const auto out = static_cast<size_t>(nets_->shape[net].out);
-  const float* target = net == Networks::kReward ? rollout_->target : rollout_->cost_target;
+  const bool reward = net == Networks::kReward;
+  const float* target = reward ? rollout_->target : rollout_->cost_target;
+  const float* acted = reward ? rollout_->value : rollout_->cost_value;
   nets_->forward(net, lane.obs, rows, lane.critic, lane.out);
   double loss = 0;
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
     for (size_t k = 0; k < out; ++k) {
-      const float error = lane.out[i * out + k] - target[static_cast<size_t>(order[i]) * out + k];
-      lane.dout[i * out + k] = 2 * scale_ * error;
+      const size_t at = static_cast<size_t>(order[i]) * out + k;
+      float error = lane.out[i * out + k] - target[at], slope = 1;
+      if (value_clip_ > 0) {
+        const float change = lane.out[i * out + k] - acted[at];
+        const float held = acted[at] + std::clamp(change, -value_clip_, value_clip_) - target[at];
+        if (held * held > error * error) error = held, slope = std::abs(change) <= value_clip_ ? 1.0f : 0.0f;
+      }
+      lane.dout[i * out + k] = 2 * scale_ * error * slope;
       loss += static_cast<double>(error) * static_cast<double>(error);
     }
   nets_->backward(net, lane.obs, rows, lane.critic, lane.dout, grad);
@@ -99,15 +113,32 @@ void Learner::add_penalties(const PolicyLoss* policy) {
   }
 }
 
-void Learner::step(double actor_rate) {
+// The factor that bounds the norm over all networks that take part.
+double Learner::joint_scale(int32_t first, int32_t last) const {
+  double squares = 0;
+  for (int32_t net = first; net < last; ++net)
+    squares +=
+        dot(grad_ + nets_->block[net].offset, grad_ + nets_->block[net].offset, nets_->block[net].size);
+  return max_norm_ > 0 ? std::min(1.0, max_norm_ / (std::sqrt(squares) + 1e-6)) : 1;
+}
+
+void Learner::step(double actor_rate, double actor_share) {
   bool left_out[3] = {};
   const int32_t first = policy_ ? Networks::kActor : Networks::kReward;
   const int32_t last = critics_ ? nets_->count : int32_t{Networks::kReward};
+  const double critic_rate = follow_actor_ ? critic_rate_ * actor_share : critic_rate_;
+  double bound = max_norm_;
+  if (joint_norm_) {
+    const double scale = joint_scale(first, last);
+    for (size_t j = begin_; std::isfinite(scale) && scale < 1 && j < end_; ++j)
+      grad_[j] = static_cast<float>(scale * static_cast<double>(grad_[j]));
+    bound = 0;
+  }
   lanes_->spread(last - first, [&](int32_t i) {
     const int32_t net = first + i;
     Block& b = nets_->block[net];
-    const double rate = net == Networks::kActor ? actor_rate : critic_rate_;
-    const double norm = adam_step(b.adam, nets_->params + b.offset, grad_ + b.offset, rate, max_norm_);
+    const double rate = net == Networks::kActor ? actor_rate : critic_rate;
+    const double norm = adam_step(b.adam, nets_->params + b.offset, grad_ + b.offset, rate, bound);
     left_out[net] = !std::isfinite(norm);
   });
   for (const bool out : left_out) skipped_ += out;

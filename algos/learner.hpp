@@ -41,8 +41,9 @@ class Learner {
   // asked, the critics' squared errors with their L2 term. Valid until the next call.
   BatchSums gradient(const PolicyLoss* policy, bool critics, const int32_t* order, int32_t rows);
   const float* gradient() const { return grad_; }
-  // Adam steps along what the last gradient computed. A network whose gradient is not finite stays as it is.
-  void step(double actor_rate);
+  // Adam steps along what the last gradient computed; actor_share: actor_rate over its first value, which the
+  // critics may follow. A network whose gradient is not finite stays as it is.
+  void step(double actor_rate, double actor_share = 1);
 
   // Of the policy as it is now, over the listed rows. clip > 0: each sample's cost is
   // max(rho A_c, clip(rho, 1 - clip, 1 + clip) A_c), so that only a fall of the cost can be hidden.
@@ -60,6 +61,7 @@ class Learner {
                          float* grad) const;
   void measure_rows(Lane& lane, const int32_t* order, int32_t rows, float clip) const;
   void add_penalties(const PolicyLoss* policy);
+  double joint_scale(int32_t first, int32_t last) const;
 
   const Plan* plan_ = nullptr;
   const Rollout* rollout_ = nullptr;
@@ -69,7 +71,8 @@ class Learner {
   float* log_std_ = nullptr;    // [action_dim] of the innovation
   float scale_ = 1;             // 1 / rows of the batch
   size_t begin_ = 0, end_ = 0;  // of grad_: what the last gradient covers
-  bool policy_ = false, critics_ = false, learn_std_ = true;
+  bool policy_ = false, critics_ = false, learn_std_ = true, joint_norm_ = false, follow_actor_ = false;
+  float value_clip_ = 0;
   double critic_rate_ = 0, entropy_ = 0, max_norm_ = 0, critic_l2_ = 0;
   int64_t skipped_ = 0;
 };

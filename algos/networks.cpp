@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 
 #include "base/elementary.hpp"
 
@@ -48,6 +49,13 @@ void clamp_log_std(const Networks& n, const Options& o) {
   const auto low = static_cast<float>(elementary::log(o.number("std_min")));
   const auto high = static_cast<float>(elementary::log(o.number("std_max")));
   for (int32_t j = 0; j < n.action_dim; ++j) n.log_std()[j] = std::clamp(n.log_std()[j], low, high);
+}
+
+void schedule_std(const Networks& n, const Options& o, int32_t done) {
+  if (std::strcmp(o.text("std_schedule"), "linear") != 0) return;
+  const double left = std::max(0.0, 1 - static_cast<double>(done) / o.integer("total_epochs"));
+  const double std = o.number("std_min") + (o.number("init_std") - o.number("std_min")) * left;
+  for (int32_t j = 0; j < n.action_dim; ++j) n.log_std()[j] = static_cast<float>(elementary::log(std));
 }
 
 int32_t Networks::num_tensors() const {

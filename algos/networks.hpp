@@ -41,6 +41,8 @@ Networks carve_networks(Arena& arena, const Plan& plan);
 // Weights from the streams (seed, network, init); the actor's last bias is the initial mean.
 void init_networks(const Networks& n, const Plan& plan);
 void clamp_log_std(const Networks& n, const Options& options);
+// With std_schedule=linear the deviation for the epoch that follows `done` finished ones.
+void schedule_std(const Networks& n, const Options& options, int32_t done);
 
 inline constexpr int32_t kTensorNameSize = 32;
 // Tensor `index` in the order above, names "actor.log_std", "actor.0.weight", "cost_critic.2.bias".

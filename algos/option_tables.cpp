@@ -9,12 +9,13 @@ namespace {
 
 constexpr const char* kOwner = "agent";
 
+// `beside`: the row holds only for algorithms that also know this key; null: for all.
 struct PresetValue {
-  const char *preset, *key, *text;
+  const char *preset, *key, *text, *beside = nullptr;
 };
 
-// Sources: paper is the code behind the paper's table of hand tasks, omnisafe that library's on-policy
-// defaults with its minibatches of 64 expressed as a count.
+// Sources: paper is the code behind the paper's table of hand tasks and the papers of the algorithms,
+// omnisafe that library's on-policy defaults with its minibatches of 64 or 128 expressed as a count.
 constexpr PresetValue kPresetValues[] = {
     {"safe", "terminal_cost", "true"},
     {"safe", "multiplier_warmup", "20"},
@@ -48,6 +49,18 @@ constexpr PresetValue kPresetValues[] = {
     {"paper", "multiplier_init", "0.6932"},
     {"paper", "multiplier_lr", "0.05"},
     {"paper", "multiplier_normalized", "false"},
+    {"paper", "trust_kl", "0.02"},
+    {"paper", "cg_damping", "0.1"},
+    {"paper", "cg_iterations", "10"},
+    {"paper", "penalty", "1"},
+    {"paper", "penalty_growth", "1.05"},
+    {"paper", "penalty_max", "20"},
+    {"paper", "violation_scale", "discount"},
+    {"paper", "multiplier_optimizer", "sgd", "focops_eta"},
+    {"paper", "multiplier_init", "0", "focops_eta"},
+    {"paper", "multiplier_lr", "0.01", "focops_eta"},
+    {"paper", "kl_target", "0.02", "focops_eta"},
+    {"paper", "pid_kp", "0.01"},
     {"omnisafe", "hidden", "64,64"},
     {"omnisafe", "critic_hidden", ""},
     {"omnisafe", "activation", "tanh"},
@@ -72,6 +85,29 @@ constexpr PresetValue kPresetValues[] = {
     {"omnisafe", "multiplier_init", "0.001"},
     {"omnisafe", "multiplier_lr", "0.035"},
     {"omnisafe", "multiplier_normalized", "false"},
+    {"omnisafe", "multiplier_divide", "true"},
+    {"omnisafe", "passes", "10", "penalty"},
+    {"omnisafe", "passes", "10", "barrier_kappa"},
+    {"omnisafe", "passes", "10", "trust_kl"},
+    {"omnisafe", "critic_learning_rate", "1e-3", "trust_kl"},
+    {"omnisafe", "lr_schedule", "constant", "trust_kl"},
+    {"omnisafe", "trust_kl", "0.01"},
+    {"omnisafe", "kl_mean_over_dims", "true"},
+    {"omnisafe", "cg_iterations", "15"},
+    {"omnisafe", "cg_damping", "0.1"},
+    {"omnisafe", "line_search_steps", "20", "several_costs"},
+    {"omnisafe", "line_search_steps", "200", "projection"},
+    {"omnisafe", "violation_scale", "raw"},
+    {"omnisafe", "penalty", "20"},
+    {"omnisafe", "penalty_growth", "1"},
+    {"omnisafe", "penalty_clip", "false"},
+    {"omnisafe", "barrier_kappa", "0.01"},
+    {"omnisafe", "barrier_max", "1"},
+    {"omnisafe", "normalize_reward", "true", "barrier_kappa"},
+    {"omnisafe", "normalize_cost", "true", "barrier_kappa"},
+    {"omnisafe", "pid_kp", "0.1"},
+    {"omnisafe", "pid_ki", "0.01"},
+    {"omnisafe", "pid_kd", "0.01"},
 };
 
 bool any_algo_knows(const char* key) {
@@ -100,11 +136,13 @@ void lay_preset(Options& o, const AgentConfig& config) {
   for (const PresetValue& v : kPresetValues) {
     // Without the length of an episode there is nothing to charge.
     if (same_name(v.key, "terminal_cost") && config.max_steps <= 0) continue;
+    if (v.beside && !o.knows(v.beside)) continue;
     if (same_name(v.preset, preset) && o.knows(v.key)) o.set_default(v.key, v.text);
   }
   if (same_name(preset, "omnisafe")) {
     const int64_t rows = int64_t{o.integer("horizon")} * config.num_envs;
-    o.set_default("minibatches", static_cast<double>(std::clamp<int64_t>(rows / 64, 1, 1 << 20)));
+    const int64_t size = o.knows("trust_kl") ? 128 : 64;
+    o.set_default("minibatches", static_cast<double>(std::clamp<int64_t>(rows / size, 1, 1 << 20)));
   }
 }
 

@@ -28,10 +28,15 @@ inline constexpr std::array kSharedOptions = {
     number_option("std_min", 0.01, 1e-6, 1e3, "lower bound on the standard deviation"),
     number_option("std_max", 10, 1e-6, 1e3, "upper bound on the standard deviation"),
     flag_option("learn_std", true, "learn the standard deviation"),
+    text_option("std_schedule", "none", "none|linear",
+                "linear: not learned, falls from init_std to std_min over total_epochs"),
     flag_option("normalize_obs", true,
                 "subtract the running mean of observations, divide by their deviation"),
     number_option("obs_clip", 5, 0.1, 1e6, "bound on normalised observations"),
     number_option("obs_count_max", 0, 0, kHuge, "samples after which old statistics fade; 0: never"),
+    flag_option("normalize_reward", false,
+                "learn from rewards less their running mean, over their deviation"),
+    flag_option("normalize_cost", false, "the same for costs; limits hold for costs as they are"),
     // returns
     number_option("discount", 0.99, 0, 1, "per control step; a decision has discount^action_repeat"),
     number_option("lambda", 0.95, 0, 1, "of the reward advantage (GAE)"),
@@ -39,16 +44,18 @@ inline constexpr std::array kSharedOptions = {
     flag_option("standardize_reward_adv", true, "reward advantage to mean 0 and deviation 1 over the batch"),
     text_option("scale_cost_adv", "center", "center|std",
                 "cost advantages: subtract the mean, or standardise"),
+    flag_option("discounted_limit", false, "limits hold for discounted sums over an episode"),
     flag_option("terminal_cost", false, "charge a terminated episode's missing steps at its own cost rate"),
     // learning
     integer_option("passes", 10, 1, 10000, "over the data of an epoch"),
     integer_option("minibatches", 4, 1, 1 << 20, "number of minibatches in a pass"),
     number_option("learning_rate", 3e-4, 0, 10, "Adam rate of the actor", true),
-    number_option("critic_learning_rate", 0, 0, 10, "Adam rate of the critics, constant; 0: learning_rate",
-                  true),
+    number_option("critic_learning_rate", 0, 0, 10, "Adam rate of the critics; 0: learning_rate", true),
     text_option("lr_schedule", "constant", "constant|linear|kl",
-                "of the actor's rate: linear falls to 0, kl adapts"),
-    integer_option("total_epochs", 1000, 1, 1 << 30, "epochs of the linear schedule", true),
+                "of the actor's rate (linear: of a trust region's radius too): linear falls to 0, kl adapts"),
+    text_option("critic_lr_schedule", "constant", "constant|actor",
+                "of the critics' rate: constant, or in step with the actor's"),
+    integer_option("total_epochs", 1000, 1, 1 << 30, "epochs of the linear schedules", true),
     number_option("kl_target", 0.02, 1e-9, 1e3,
                   "kl schedule: the epoch's mean KL is kept in half to twice this", true),
     number_option("kl_factor", 1.3, 1, 10, "kl schedule: change of the rate per epoch", true),
@@ -57,6 +64,9 @@ inline constexpr std::array kSharedOptions = {
     number_option("early_stop_kl", 0, 0, 1e3, "stop the passes above this KL over the batch; 0: never", true),
     number_option("entropy", 0, 0, 1e3, "weight of the entropy bonus", true),
     number_option("max_grad_norm", 1, 0, kHuge, "bound on each network's gradient norm; 0: none", true),
+    flag_option("joint_grad_norm", false, "max_grad_norm bounds the norm over all networks together", true),
+    number_option("value_clip", 0, 0, 1e6,
+                  "bound on a value's change from the one that acted, in the critics' loss; 0: none", true),
     number_option("critic_l2", 1e-3, 0, 1e3, "weight of the critics' squared parameters", true),
     // costs
     number_option("cost_limit", 25, -1, kHuge, "limit on column 0's sum over an episode; < 0: none", true),
@@ -77,7 +87,7 @@ inline constexpr std::array kMultiplierOptions = {
     flag_option("multiplier_normalized", false, "divide the violation by the limit"),
     integer_option("multiplier_warmup", 0, 0, 1 << 30, "epochs in which the multiplier's rate grows from 0",
                    true),
-    integer_option("multiplier_window", 100, 1, 10000, "finished episodes that J_c is the mean of"),
+    integer_option("multiplier_window", 100, 1, 1000000, "finished episodes that J_c is the mean of"),
 };
 
 // Where the cost part of a combined advantage stands.
@@ -88,7 +98,7 @@ inline constexpr std::array kSplitOptions = {
 
 // The window alone, for rules without a multiplier.
 inline constexpr std::array kWindowOptions = {
-    integer_option("multiplier_window", 100, 1, 10000, "finished episodes that J_c is the mean of"),
+    integer_option("multiplier_window", 100, 1, 1000000, "finished episodes that J_c is the mean of"),
 };
 
 // A rule with a place for each cost, or one that follows a single one.

@@ -104,6 +104,7 @@ void PolicyGradient::update(const float* last_obs, Epoch* out) {
     if (learned_.passes > 0) schedule_.adapt(learned_.mean.kl);
     collector_.episodes().mark();
     ++epoch_;
+    schedule_std(nets_, plan_.options, epoch_);
     if (out) fill_epoch(stats, rate, out);
   } catch (...) {
     drop_horizon();
@@ -132,7 +133,7 @@ BatchSums PolicyGradient::pass(const PolicyLoss* policy) {
     const int32_t rows = std::min(size, count - first);
     if (policy) begin_minibatch(order + first, rows);
     sums += learner_.gradient(policy, true, order + first, rows);
-    learner_.step(rate);
+    learner_.step(rate, schedule_.change(epoch_));
   }
   return sums;
 }

@@ -70,6 +70,8 @@ class PolicyGradient : public Agent {
   Lanes& lanes() { return lanes_; }
   Learner& learner() { return learner_; }
   Learned& learned() { return learned_; }
+  // Share of a linear schedule that is left in this epoch.
+  double schedule_share() const { return schedule_.share(epoch_); }
   int32_t valid_rows() const { return valid_rows_; }
   // J_c - limit of limited cost i in the units of a mean over decisions (option violation_scale).
   double violation(const EpisodeStats& stats, int32_t i) const;

@@ -23,8 +23,12 @@ void RateSchedule::read_live(const Options& o) {
   high_ = o.number("lr_max");
 }
 
+double RateSchedule::share(int32_t done) const {
+  return kind_ == Kind::kLinear ? std::max(0.0, 1 - static_cast<double>(done) / total_) : 1;
+}
+
 double RateSchedule::rate(int32_t done) const {
-  if (kind_ == Kind::kLinear) return base_ * std::max(0.0, 1 - static_cast<double>(done) / total_);
+  if (kind_ == Kind::kLinear) return base_ * share(done);
   return kind_ == Kind::kKl ? adapted_ : base_;
 }
 

@@ -11,6 +11,10 @@ class RateSchedule {
   void read_live(const Options& options);
   // Rate of the epoch that follows `done` finished ones.
   double rate(int32_t done) const;
+  // The linear schedule's share of the rate at that time; 1 with others.
+  double share(int32_t done) const;
+  // rate() over learning_rate, whatever the schedule.
+  double change(int32_t done) const { return base_ > 0 ? rate(done) / base_ : 1; }
   // After an epoch, with its KL(old || new), mean over all passes.
   void adapt(double kl);
   void visit(StateIo& io);

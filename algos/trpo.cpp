@@ -22,7 +22,7 @@ void Trpo::read_live() {
 }
 
 double Trpo::step_policy(const int32_t* order, int32_t rows) {
-  region_.linearize(order, rows, -1);
+  region_.linearize(order, rows, -1, schedule_share());
   if (region_.q() > 0)
     region_.set_step(std::sqrt(2 * region_.delta() / region_.q()), 0, 0);
   else

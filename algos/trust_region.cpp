@@ -28,7 +28,7 @@ void TrustRegion::open(Agent& agent, const Plan& plan, const Rollout& rollout, N
 void TrustRegion::read_live(const Options& o) {
   fisher_.read_live(o);
   cg_options_ = {o.integer("cg_iterations"), o.number("cg_tolerance")};
-  delta_ = o.number("trust_kl");
+  limit_ = o.number("trust_kl");
   tries_ = o.integer("line_search_steps");
   decay_ = o.number("line_search_decay");
 }
@@ -48,7 +48,8 @@ void TrustRegion::solve(const float* b, float* x) {
       b, cg_, cg_options_, x);
 }
 
-void TrustRegion::linearize(const int32_t* order, int32_t rows, int32_t cost) {
+void TrustRegion::linearize(const int32_t* order, int32_t rows, int32_t cost, double share) {
+  delta_ = limit_ * share * share;
   order_ = order;
   rows_ = rows;
   fisher_.set_rows(order, rows);

@@ -259,3 +259,35 @@ TEST(Collector, NoiseStartsAfreshWithAnEpisode) {
     EXPECT_EQ(fresh, i < 3) << i;
   }
 }
+
+TEST(Collector, RewardsAndCostsAreNormalisedWhereItIsAsked) {
+  AgentSetup s = world();
+  Bench plain(world()), b(std::move(s.with("normalize_reward", "on").with("normalize_cost", "on")));
+  for (Bench* c : {&plain, &b}) {
+    c->reward = {1, 2, 3, 4};
+    c->cost = {0, 1, 0, 1};
+    c->decide();
+  }
+  const double reward_std = std::sqrt(5.0 / 3), cost_std = std::sqrt(1.0 / 3);
+  for (size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(b.rollout().reward[i], (static_cast<double>(i) - 1.5) / reward_std, 1e-6);
+    EXPECT_NEAR(b.rollout().cost[i], (static_cast<double>(i % 2) - 0.5) / cost_std, 1e-6);
+    EXPECT_EQ(plain.rollout().reward[i], static_cast<float>(i + 1));
+  }
+  // What is reported and what limits hold for stay as they are.
+  b.terminated = {1, 1, 1, 1};
+  b.decide();
+  EXPECT_EQ(b.collector.episodes().stats().ret, 5);
+  EXPECT_EQ(b.collector.episodes().stats().charged_cost[0], 1);
+}
+
+TEST(Collector, DiscountedLimit) {
+  AgentSetup s = world();
+  Bench b(std::move(s.with("discounted_limit", "on")));
+  b.decide();
+  b.terminated = {1, 0, 0, 0};
+  b.decide();
+  const EpisodeStats e = b.collector.episodes().stats();
+  EXPECT_NEAR(e.charged_cost[0], 2 + 0.81 * 2, 1e-6);  // decisions of two control steps
+  EXPECT_EQ(e.cost[0], 4);
+}

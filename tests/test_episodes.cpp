@@ -87,3 +87,13 @@ TEST(Episodes, FreshUntilMarked) {
   b.episodes.mark();
   EXPECT_FALSE(b.episodes.stats().fresh);
 }
+
+TEST(Episodes, LimitsHoldForWeighedCosts) {
+  Book b(1, 1, 100);
+  const float cost = 2;
+  b.episodes.add(0, 0, &cost, 1, false, 1);
+  b.episodes.add(0, 0, &cost, 1, false, 0.5);
+  b.episodes.finish(0, false, nullptr);
+  EXPECT_EQ(b.episodes.stats().cost[0], 4);
+  EXPECT_EQ(b.episodes.stats().charged_cost[0], 3);
+}

@@ -20,7 +20,7 @@ AgentSetup setup_of(const std::string& algo, int32_t threads = 0) {
   s.config.cost_limits = limits;
   s.with("hidden", "16,8").with("horizon", "12").with("passes", "3").with("minibatches", "2");
   s.with("noise_correlation", "0.3").with("lr_schedule", "kl").with("learning_rate", "2e-3");
-  s.with("terminal_cost", "on");
+  s.with("terminal_cost", "on").with("normalize_reward", "on").with("normalize_cost", "on");
   for (const char* one : {"cpo", "pcpo", "focops"})
     if (algo == one) s.with("several_costs", "worst");
   return s;

@@ -117,3 +117,63 @@ TEST(Learner, GradientThatIsNotFiniteLeavesItsNetworkAlone) {
   EXPECT_NE(b.nets.params[0], before[0]);
   EXPECT_NE(*b.nets.net(Networks::kCost), before[b.nets.net_offset(Networks::kCost)]);
 }
+
+TEST(Learner, ClippedValuesAreTheLargerError) {
+  AgentSetup s = small();
+  Bench b(std::move(s.with("value_clip", "0.05").with("critic_l2", "0")));
+  Stream stream(9, 0, Purpose::kTest);
+  for (size_t i = 0; i < b.order.size(); ++i) {
+    b.rollout.value[i] =
+        static_cast<float>(b.network(b.params(), Networks::kReward, i)[0] + 0.1 * stream.signed_unit());
+    b.rollout.cost_value[i] = static_cast<float>(stream.signed_unit());
+  }
+  b.learner.gradient(nullptr, true, b.order.data(), b.plan.samples);
+  const auto total = [&](const std::vector<double>& p) {
+    double sum = 0;
+    for (size_t i = 0; i < b.order.size(); ++i)
+      for (const int32_t net : {Networks::kReward, Networks::kCost}) {
+        const bool reward = net == Networks::kReward;
+        const double v = b.network(p, net, i)[0];
+        const auto old = static_cast<double>((reward ? b.rollout.value : b.rollout.cost_value)[i]);
+        const auto target = static_cast<double>((reward ? b.rollout.target : b.rollout.cost_target)[i]);
+        const double held = old + std::clamp(v - old, -0.05, 0.05);
+        sum += std::max((v - target) * (v - target), (held - target) * (held - target));
+      }
+    return sum / b.plan.samples;
+  };
+  std::vector<double> p = b.params();
+  for (size_t j = b.nets.block[Networks::kReward].offset; j < b.nets.size; ++j) {
+    const double kept = p[j], h = 1e-6 * (1 + std::abs(kept));
+    p[j] = kept + h;
+    const double up = total(p);
+    p[j] = kept - h;
+    const double down = total(p);
+    p[j] = kept;
+    EXPECT_NEAR(static_cast<double>(b.learner.gradient()[j]), (up - down) / (2 * h), 5e-6) << j;
+  }
+}
+
+TEST(Learner, JointNormBoundsAllNetworksTogether) {
+  AgentSetup s = small();
+  Bench b(std::move(s.with("joint_grad_norm", "on").with("max_grad_norm", "0.1")));
+  b.learner.gradient(&b.loss, true, b.order.data(), b.plan.samples);
+  std::vector<double> before(b.learner.gradient(), b.learner.gradient() + b.nets.size);
+  double norm = 0;
+  for (const double x : before) norm += x * x;
+  norm = std::sqrt(norm);
+  ASSERT_GT(norm, 0.1);
+  b.learner.step(1e-3);
+  for (size_t j = 0; j < before.size(); ++j)
+    EXPECT_NEAR(static_cast<double>(b.learner.gradient()[j]), before[j] * 0.1 / norm, 1e-6);
+}
+
+TEST(Learner, CriticsMayFollowTheActorsRate) {
+  for (const char* schedule : {"constant", "actor"}) {
+    AgentSetup s = small();
+    Bench b(std::move(s.with("critic_lr_schedule", schedule)));
+    const std::vector<double> before = b.params();
+    b.learner.gradient(nullptr, true, b.order.data(), b.plan.samples);
+    b.learner.step(1e-3, 0);
+    EXPECT_EQ(b.params() == before, std::string(schedule) == "actor");
+  }
+}

@@ -100,3 +100,16 @@ TEST(Networks, DeviationStaysInItsBounds) {
   EXPECT_FLOAT_EQ(m.nets.log_std()[0], std::log(0.1f));
   EXPECT_FLOAT_EQ(m.nets.log_std()[1], 0);
 }
+
+TEST(Networks, DeviationOnALinearSchedule) {
+  AgentSetup s("ppo_lag", 5, 3, 2);
+  s.with("std_schedule", "linear").with("init_std", "0.5").with("std_min", "0.1").with("total_epochs", "4");
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  TensorInfo t;
+  for (const double wanted : {0.5, 0.4, 0.3, 0.2, 0.1, 0.1}) {
+    ASSERT_TRUE(a->tensor(0, &t));
+    for (int32_t j = 0; j < 3; ++j) EXPECT_NEAR(std::exp(t.data[j]), wanted, 1e-6);
+    world.epoch(*a);
+  }
+}

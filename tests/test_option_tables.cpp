@@ -88,3 +88,30 @@ TEST(OptionTables, OmnisafePresetHasMinibatchesOf64) {
   EXPECT_EQ(o.integer("passes"), 40);
   EXPECT_EQ(o.number("max_grad_norm"), 40);
 }
+
+TEST(OptionTables, PresetsKnowTheAlgorithm) {
+  AgentSetup paper("p3o", 1, 1, 10), cpo("cpo", 1, 1, 10), ipo("ipo", 1, 1, 10), pcpo("pcpo", 1, 1, 10);
+  paper.with("preset", "paper");
+  EXPECT_EQ(read(paper).number("penalty"), 1);
+  EXPECT_EQ(read(paper).number("penalty_growth"), 1.05);
+  for (AgentSetup* s : {&cpo, &ipo, &pcpo}) s->with("preset", "omnisafe").with("horizon", "2000");
+  const Options o = read(cpo);
+  EXPECT_EQ(o.integer("passes"), 10);
+  EXPECT_EQ(o.integer("minibatches"), 156);
+  EXPECT_EQ(o.number("critic_learning_rate"), 1e-3);
+  EXPECT_TRUE(o.flag("kl_mean_over_dims"));
+  EXPECT_STREQ(o.text("violation_scale"), "raw");
+  EXPECT_EQ(o.integer("line_search_steps"), 20);
+  EXPECT_EQ(read(pcpo).integer("line_search_steps"), 200);
+  EXPECT_TRUE(read(ipo).flag("normalize_cost"));
+  EXPECT_FALSE(read(cpo).flag("normalize_cost"));
+}
+
+TEST(OptionTables, AlgorithmsHaveTheirOwnDefaults) {
+  AgentSetup focops("focops", 1, 1, 4), lag("ppo_lag", 1, 1, 4), trpo("trpo", 1, 1, 4);
+  EXPECT_STREQ(read(focops).text("multiplier_optimizer"), "sgd");
+  EXPECT_EQ(read(focops).number("multiplier_max"), 2);
+  EXPECT_EQ(read(focops).number("early_stop_kl"), 0.02);
+  EXPECT_STREQ(read(lag).text("multiplier_optimizer"), "adam");
+  EXPECT_EQ(read(trpo).number("critic_learning_rate"), 1e-3);
+}

@@ -37,7 +37,7 @@ struct RegionBench {
     region.carve(arena, net.plan, net.nets, true);
     region.open(agent, net.plan, net.rollout, net.nets, net.lanes, net.learner);
     region.read_live(net.plan.options);
-    region.linearize(net.order.data(), 2, 0);
+    region.linearize(net.order.data(), 2, 0, 1);
   }
 };
 
