@@ -11,7 +11,8 @@ void register_builtin_tasks() {
   static const bool done = [] {
     for (const TaskInfo* info : {&kHandOverSafeFinger, &kHandOverSafeJoint}) register_task(*info);
     for (const TaskInfo* info :
-         {&kBandit, &kTwoState, &kLqrLine, &kBallRun, &kBallCircle, &kCarRun, &kSwimmerVelocity})
+         {&kBandit, &kTwoState, &kLqrLine, &kBallRun, &kBallCircle, &kCarRun, &kSwimmerVelocity, &kPointGoal1,
+          &kPointGoal2, &kPointButton1, &kPointButton2})
       register_task(*info);
     return true;
   }();

@@ -7,5 +7,6 @@ namespace rdm {
 
 extern const TaskInfo kBandit, kTwoState, kLqrLine;
 extern const TaskInfo kBallRun, kBallCircle, kCarRun, kSwimmerVelocity;
+extern const TaskInfo kPointGoal1, kPointGoal2, kPointButton1, kPointButton2;
 
 }  // namespace rdm
