@@ -78,6 +78,7 @@ int main(int argc, char** argv) {
   add_algos(app, run);
   add_train(app, run);
   add_eval(app, run);
+  add_baseline(app, run);
   add_rollout(app, run);
   add_render(app, run);
   add_bench(app, run);

@@ -1,0 +1,74 @@
+// `baseline`: what policies without learning get, so that every learning figure has its floor beside it.
+#include "commands.hpp"
+#include "evaluate.hpp"
+#include "names.hpp"
+#include "text.hpp"
+
+namespace tool {
+namespace {
+
+constexpr const char* kPolicies[] = {"zero", "hold", "random"};
+
+struct BaselineFlags {
+  std::vector<std::string> tasks;  // empty: all
+  PoolSettings pool;
+  int32_t episodes = kEvalEpisodes;
+  bool markdown = false;
+};
+
+std::vector<std::string> chosen_tasks(const BaselineFlags& flags) {
+  std::vector<std::string> names;
+  if (flags.tasks.empty())
+    for (int32_t i = 0; i < rdm_task_count(); ++i) names.push_back(task_at(i).name);
+  for (const std::string& name : flags.tasks) names.push_back(task_at(find_task(name)).name);
+  return names;
+}
+
+Report run_baseline(const BaselineFlags& flags) {
+  Json rows = Json::array();
+  Table table({"task", "policy", "return", "cost", "limit", "length", "success"});
+  for (const std::string& task : chosen_tasks(flags))
+    for (const char* policy : kPolicies) {
+      PoolSettings pool = flags.pool;
+      pool.task = task;
+      const Evaluation e = evaluate(choose_actor(policy), pool, {}, flags.episodes, false);
+      const Summary& s = e.summary;
+      rows.push_back({{"task", task},
+                      {"policy", policy},
+                      {"episodes", flags.episodes},
+                      {"return_mean", s.return_mean},
+                      {"return_std", s.return_std},
+                      {"cost_mean", s.cost_mean},
+                      {"cost_std", s.cost_std},
+                      {"success_rate", s.success_rate},
+                      {"length_mean", s.length_mean},
+                      {"cost_limits", e.limits},
+                      {"violation_rate", s.violation_rate},
+                      {"fall_rate", s.fall_rate},
+                      {"cost_per_step", s.cost_per_step},
+                      {"feasible", feasible(s, e.limits)}});
+      table.add({flags.markdown ? format("`%s`", task.c_str()) : task, policy,
+                 format("%.2f +- %.2f", s.return_mean, s.return_std), format("%.2f", s.cost_mean[0]),
+                 e.limits[0] < 0 ? "-" : number_text(e.limits[0]), format("%.0f", s.length_mean),
+                 format("%.0f%%", 100 * s.success_rate)});
+    }
+  return {{{"rows", rows}}, flags.markdown ? table.markdown() : table.text()};
+}
+
+}  // namespace
+
+void add_baseline(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<BaselineFlags>();
+  flags->pool.envs = kEvalEnvs;
+  CLI::App* command = app.add_subcommand("baseline", "Evaluate zero, hold and random actions on every task");
+  command->add_option("--task,--env-id", flags->tasks, "task; repeatable; default: all")
+      ->allow_extra_args(false);
+  command->add_option("--envs,--num-envs", flags->pool.envs, "worlds")->check(CLI::PositiveNumber);
+  command->add_option("--threads", flags->pool.threads, "threads; 0: the caller's own");
+  command->add_option("--seed", flags->pool.seed, "seed of worlds and random actions");
+  command->add_option("--episodes", flags->episodes, "episodes of each policy")->check(CLI::PositiveNumber);
+  command->add_flag("--markdown", flags->markdown, "the text as a Markdown table");
+  command->callback([&run, flags] { run = [flags] { return run_baseline(*flags); }; });
+}
+
+}  // namespace tool
