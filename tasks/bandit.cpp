@@ -67,10 +67,26 @@ constexpr CameraSpec kCameras[] = {
     {"top", {1, -0.01, 7}, {1, 0, 0}, 0.8},
 };
 constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},       {"activation", "tanh"}, {"discount", "1"},    {"lambda", "1"},
-    {"cost_lambda", "1"},      {"horizon", "32"},      {"minibatches", "8"}, {"passes", "5"},
-    {"init_std", "0.1"},       {"learn_std", "false"}, {"critic_l2", "0"},   {"learning_rate", "1e-3"},
-    {"lr_schedule", "linear"}, {"cost_limit", "1"},
+    {"hidden", "64,64"},
+    {"activation", "tanh"},
+    {"horizon", "128"},
+    {"minibatches", "8"},
+    {"passes", "5"},
+    {"discount", "1"},
+    {"lambda", "1"},
+    {"cost_lambda", "1"},
+    {"init_std", "0.1"},
+    {"learning_rate", "1e-3"},
+    {"learn_std", "false"},
+    {"normalize_obs", "false"},
+    {"critic_l2", "0"},
+    {"lr_schedule", "linear"},
+    {"multiplier_optimizer", "sgd"},
+    {"multiplier_normalized", "true"},
+    {"multiplier_init", "1"},
+    {"multiplier_lr", "0.1"},
+    {"multiplier_window", "2000"},
+    {"cost_limit", "1"},
 };
 
 }  // namespace

@@ -84,10 +84,26 @@ constexpr CameraSpec kCameras[] = {
     {"top", {0, -0.01, 5}, {0, 0, 0}, 0.8},
 };
 constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},       {"activation", "tanh"}, {"discount", "0.95"}, {"lambda", "0.95"},
-    {"cost_lambda", "0.95"},   {"horizon", "40"},      {"minibatches", "8"}, {"passes", "10"},
-    {"init_std", "0.02"},      {"learn_std", "false"}, {"critic_l2", "0"},   {"learning_rate", "1e-3"},
-    {"lr_schedule", "linear"}, {"cost_limit", "1"},
+    {"hidden", "64,64"},
+    {"activation", "tanh"},
+    {"horizon", "140"},
+    {"minibatches", "8"},
+    {"passes", "10"},
+    {"discount", "0.95"},
+    {"lambda", "0.95"},
+    {"cost_lambda", "0.95"},
+    {"init_std", "0.02"},
+    {"learning_rate", "2e-3"},
+    {"learn_std", "false"},
+    {"normalize_obs", "false"},
+    {"critic_l2", "0"},
+    {"lr_schedule", "linear"},
+    {"multiplier_optimizer", "sgd"},
+    {"multiplier_normalized", "true"},
+    {"multiplier_init", "2"},
+    {"multiplier_lr", "0.1"},
+    {"multiplier_window", "400"},
+    {"cost_limit", "1"},
 };
 
 }  // namespace

@@ -86,10 +86,26 @@ constexpr CameraSpec kCameras[] = {
     {"top", {0, -0.01, 5}, {0, 0, 0}, 0.8},
 };
 constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},       {"activation", "tanh"}, {"discount", "1"},    {"lambda", "0.95"},
-    {"cost_lambda", "0.95"},   {"horizon", "48"},      {"minibatches", "8"}, {"passes", "5"},
-    {"init_std", "0.6"},       {"learn_std", "false"}, {"critic_l2", "0"},   {"learning_rate", "1e-3"},
-    {"lr_schedule", "linear"}, {"cost_limit", "2.5"},
+    {"hidden", "64,64"},
+    {"activation", "tanh"},
+    {"horizon", "128"},
+    {"minibatches", "8"},
+    {"passes", "5"},
+    {"discount", "1"},
+    {"lambda", "0.95"},
+    {"cost_lambda", "0.95"},
+    {"init_std", "0.6"},
+    {"learning_rate", "1e-3"},
+    {"learn_std", "false"},
+    {"normalize_obs", "false"},
+    {"critic_l2", "0"},
+    {"lr_schedule", "linear"},
+    {"multiplier_optimizer", "sgd"},
+    {"multiplier_normalized", "true"},
+    {"multiplier_init", "0.3"},
+    {"multiplier_lr", "0.02"},
+    {"multiplier_window", "1000"},
+    {"cost_limit", "2.5"},
 };
 
 }  // namespace
