@@ -1,0 +1,96 @@
+#!/usr/bin/env bash
+# Every algorithm on the small worlds with known answers: each run from scratch with the tasks' defaults.
+# Finished runs are kept and stopped ones go on, so the script can be stopped and called again.
+#   bash examples/verification_table.sh [OUT]      OUT: folder of the runs, default runs/verification
+# It leaves OUT/rows.csv, a row for each finished run, and prints a Markdown table of the means over seeds,
+# with the floor (zero, hold, random) and what is known of each task: its optimum or published safe rows.
+# return and cost are means over the last tenth of training, with exploration, as published figures are; those of
+# the evaluation are of the mean action over 100 episodes.
+# Environment: REDMAN (the tool), TASKS, ALGOS, SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), STEPS
+# (control steps; else 0.3 to 2 million by task), ENVS (worlds; 16).
+set -eu
+here=$(cd "$(dirname "$0")/.." && pwd)
+redman=${REDMAN:-$here/build/release/bin/redman}
+out=${1:-$here/runs/verification}
+seeds=${SEEDS:-0 1 2} jobs=${JOBS:-2} envs=${ENVS:-16}
+tasks=${TASKS:-bandit two_state lqr_line ball_run ball_circle car_run swimmer_velocity point_goal1 point_goal2
+  point_button1 point_button2}
+algos=${ALGOS:-ppo trpo ppo_lag trpo_lag cppo_pid cpo pcpo focops p3o ipo}
+mkdir -p "$out"
+
+# value KEY FILE: a number of the tool's one-line JSON
+value() { sed -n "s/.*\"$1\":\[\{0,1\}\([-0-9.e+]*\|true\|false\).*/\1/p" "$2"; }
+
+steps() {
+  case $1 in
+    bandit) echo 300000 ;;
+    two_state | lqr_line | ball_run) echo 600000 ;;
+    ball_circle | car_run | swimmer_velocity) echo 1000000 ;;
+    *) echo 2000000 ;;
+  esac
+}
+
+# What is known: return / cost of the constrained optimum, or of published rows that meet the limit.
+known() {
+  case $1 in
+    bandit) echo "optimum -1.25 / 1; free -0.25 / 2" ;;
+    two_state) echo "optimum 9.687 / 2.5; free 17.912 / 8.33" ;;
+    lqr_line) echo "optimum -1.583 / 1; free -1.526 / 1.364" ;;
+    ball_run) echo "best 581.5 / 0, 608.1 / 25; paper 558 to 577 / 0 to 24; free 2132 / 231" ;;
+    ball_circle) echo "paper PPO-Lag 428 / 5, FOCOPS 536 / 20, TRPO-Lag 596 / 24" ;;
+    car_run) echo "750 / 0 at the limit; paper 729 to 732 / 13 to 21" ;;
+    swimmer_velocity) echo "OmniSafe TRPO-Lag 81 / 22, CPPO-PID 91 / 19, CPO 65 / 18; PPO 120 / 165" ;;
+    point_goal1) echo "OmniSafe TRPO-Lag 18.5 / 23, PCPO 18.6 / 23; PPO 25.4 / 56" ;;
+    point_goal2) echo "OmniSafe TRPO-Lag 4.6 / 26; PPO 25.5 / 159" ;;
+    point_button1) echo "OmniSafe PPO-Lag 4.6 / 21; PPO 27.0 / 152" ;;
+    point_button2) echo "OmniSafe FOCOPS 2.4 / 18, TRPO-Lag 5.4 / 25; PPO 25.9 / 167" ;;
+  esac
+}
+
+train() {  # TASK ALGO SEED
+  local name=$1.$2.$3
+  [ -s "$out/$name.json" ] && return
+  if [ -s "$out/$name/config.json" ]; then
+    "$redman" train --resume "$out/$name" --json > "$out/$name.tmp" 2> "$out/$name.log"
+  else
+    "$redman" train --task "$1" --algo "$2" --seed "$3" --steps "${STEPS:-$(steps "$1")}" --envs "$envs" \
+      --out "$out/$name" --overwrite --json > "$out/$name.tmp" 2> "$out/$name.log"
+  fi && grep -q '"interrupted":false' "$out/$name.tmp" && mv "$out/$name.tmp" "$out/$name.json"
+}
+
+# tail_of FILE: return and cost, means over the last tenth of the epochs of a progress.csv.
+tail_of() {
+  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == "Metrics/EpRet") r = i; if ($i == "Metrics/EpCost") c = i } next }
+    { ret[NR] = $r; cost[NR] = $c }
+    END { first = NR - int((NR - 1) / 10) + 1; if (first > NR) first = NR
+      for (i = first; i <= NR; ++i) { a += ret[i]; b += cost[i] }
+      printf "%.4f,%.4f", a / (NR - first + 1), b / (NR - first + 1) }' "$1"
+}
+
+for task in $tasks; do for algo in $algos; do for seed in $seeds; do
+  while [ "$(jobs -rp | wc -l)" -ge "$jobs" ]; do sleep 1; done
+  train "$task" "$algo" "$seed" || echo "$task.$algo.$seed failed: see $out/$task.$algo.$seed.log" >&2 &
+done; done; done
+wait
+
+echo "task,algo,seed,return,cost,eval_return,eval_cost,limit,feasible,steps,wall_seconds" > "$out/rows.csv"
+for task in $tasks; do for algo in $algos; do for seed in $seeds; do
+  f=$out/$task.$algo.$seed.json
+  [ -s "$f" ] || continue
+  echo "$task,$algo,$seed,$(tail_of "${f%.json}/progress.csv"),$(value return "$f"),$(value cost "$f"),$(value \
+    cost_limit "$f"),$(value feasible "$f"),$(value env_steps "$f"),$(value wall_seconds "$f")" >> "$out/rows.csv"
+done; done; done
+
+echo "| task | policy | return | cost | evaluation: return | cost | steps | wall s |"
+echo "|---|---|---|---|---|---|---|---|"
+for task in $tasks; do
+  "$redman" baseline --task "$task" --seed 1000000 --markdown | awk -F'|' 'NR > 2 {
+    split($4, r, " "); gsub(/ /, "", $3); printf "|%s| %s | | | %s |%s| | |\n", $2, $3, r[1], $5 }'
+  echo "| \`$task\` | $(known "$task") | | | | | | |"
+  awk -F, -v task="$task" '$1 == task { if (!($2 in n)) order[++count] = $2
+      i = ++n[$2]; for (k = 4; k <= 11; ++k) sum[$2, k] += $k
+      each[$2] = each[$2] (i > 1 ? ", " : "") sprintf("%.4g", $4); costs[$2] = costs[$2] (i > 1 ? ", " : "") sprintf("%.3g", $5) }
+    END { for (j = 1; j <= count; ++j) { a = order[j]; m = n[a]
+      printf "| `%s` | %s | %.4g (%s) | %.3g (%s) | %.4g | %.3g | %.2g M | %.0f |\n", task, a, sum[a, 4] / m, each[a],
+        sum[a, 5] / m, costs[a], sum[a, 6] / m, sum[a, 7] / m, sum[a, 10] / m / 1e6, sum[a, 11] / m } }' "$out/rows.csv"
+done
