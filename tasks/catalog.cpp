@@ -1,7 +1,11 @@
 #include "tasks/catalog.hpp"
 
 #include "env/task.hpp"
+#include "tasks/catch_underarm.hpp"
+#include "tasks/grasp.hpp"
 #include "tasks/hand_over.hpp"
+#include "tasks/hand_over_wall.hpp"
+#include "tasks/reorient.hpp"
 #include "tasks/small_worlds.hpp"
 
 namespace rdm {
@@ -9,7 +13,10 @@ namespace rdm {
 void register_builtin_tasks() {
   // a static's initialisation runs once, whichever thread comes first
   static const bool done = [] {
-    for (const TaskInfo* info : {&kHandOverSafeFinger, &kHandOverSafeJoint}) register_task(*info);
+    for (const TaskInfo* info :
+         {&kHandOverSafeFinger, &kHandOverSafeJoint, &kCatchUnderarmSafeFinger, &kCatchUnderarmSafeJoint})
+      register_task(*info);
+    for (const TaskInfo* info : {&kGrasp, &kReorient, &kHandOverWall}) register_task(*info);
     for (const TaskInfo* info :
          {&kBandit, &kTwoState, &kLqrLine, &kBallRun, &kBallCircle, &kCarRun, &kSwimmerVelocity, &kPointGoal1,
           &kPointGoal2, &kPointButton1, &kPointButton2})

@@ -1,10 +1,12 @@
 #include "tasks/hand_block.hpp"
 
+#include <algorithm>
 #include <cstdio>
-#include <cstring>
 
 namespace rdm {
 namespace {
+
+constexpr double kPi = 3.14159265358979323846;
 
 struct TipForce {
   const Wrench& wrench;
@@ -42,9 +44,10 @@ constexpr FieldEntry<TipForce> kSensors[] = {
     {"tip_torque", "0.1 N m", 3, [](const TipForce& f, float* out) { put(f.wrench.torque, out, f.scale); }},
 };
 
-constexpr FieldEntry<HandView> kAction[] = {
-    {"action", "1", kHandActions,
-     [](const HandView& v, float* out) { std::memcpy(out, v.action, sizeof(float) * kHandActions); }},
+constexpr FieldEntry<HandView> kBase[] = {
+    {"base_position", "m", 3, [](const HandView& v, float* out) { put(v.base->X.p, out); }},
+    {"base_angles", "rad", 3,
+     [](const HandView& v, float* out) { put(roll_pitch_yaw(v.base->X.q, v.signed_angles), out); }},
 };
 
 constexpr const char* kFingers[kHandTips] = {"ff", "mf", "rf", "lf", "th"};
@@ -61,20 +64,56 @@ void add_entries(FieldTable& table, const char* prefix, const char* finger,
 
 }  // namespace
 
-void add_hand_fields(FieldTable& table, const char* prefix) {
+void add_joint_fields(FieldTable& table, const char* prefix) {
   add_entries(table, prefix, nullptr, kJoints);
-  for (const char* finger : kFingers) add_entries(table, prefix, finger, kTips);
-  for (const char* finger : kFingers) add_entries(table, prefix, finger, kSensors);
-  add_entries(table, prefix, nullptr, kAction);
 }
 
-float* write_hand(const HandView& view, float* out) {
-  out = write_fields<kJoints>(view, out);
+void add_tip_fields(FieldTable& table, const char* prefix) {
+  for (const char* finger : kFingers) add_entries(table, prefix, finger, kTips);
+  for (const char* finger : kFingers) add_entries(table, prefix, finger, kSensors);
+}
+
+void add_action_field(FieldTable& table, const char* prefix, bool base) {
+  add_field(table, prefix, "action", "1", base ? kFlyingHandActions : kHandActions);
+}
+
+void add_hand_fields(FieldTable& table, const char* prefix, bool base) {
+  add_joint_fields(table, prefix);
+  add_tip_fields(table, prefix);
+  if (base) add_entries(table, prefix, nullptr, kBase);
+  add_action_field(table, prefix, base);
+}
+
+float* write_joints(const HandView& view, float* out) {
+  return write_fields<kJoints>(view, out);
+}
+
+float* write_tips(const HandView& view, float* out) {
   for (const int32_t tip : view.hand.tips) out = write_fields<kTips>(view.world.link(tip), out);
   const double scale = view.sensor ? 10 : 0;
   for (const int32_t sensor : view.hand.sensors)
     out = write_fields<kSensors>(TipForce{view.world.sensor(sensor), scale}, out);
-  return write_fields<kAction>(view, out);
+  return out;
+}
+
+float* write_action(const HandView& view, float* out) {
+  return std::copy_n(view.action, view.base ? kFlyingHandActions : kHandActions, out);
+}
+
+float* write_hand(const HandView& view, float* out) {
+  out = write_tips(view, write_joints(view, out));
+  if (view.base) out = write_fields<kBase>(view, out);
+  return write_action(view, out);
+}
+
+Vec3 roll_pitch_yaw(const Quat& q, bool signed_angles) {
+  const Mat3 R = to_matrix(q);
+  Vec3 a{elementary::atan2(R(2, 1), R(2, 2)), elementary::asin(std::clamp(-R(2, 0), -1.0, 1.0)),
+         elementary::atan2(R(1, 0), R(0, 0))};
+  if (!signed_angles)
+    for (int i = 0; i < 3; ++i)
+      if (a[i] < 0) a[i] += 2 * kPi;
+  return a;
 }
 
 }  // namespace rdm

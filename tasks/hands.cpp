@@ -12,6 +12,9 @@ namespace {
 constexpr OptionSpec kRows[] = {
     text_option("coupling", "model", "model|paper",
                 "distal joints: 1.142 of the middle one within 0.142 rad, or (paper) the middle one's angle"),
+};
+
+constexpr OptionSpec kLeftRows[] = {
     text_option("left_model", "mirror", "mirror|right_copy",
                 "left hand: mirror image, or a second right hand"),
 };
@@ -23,9 +26,13 @@ void add_hand_options(OptionTable& table) {
   add_robot_options(kShadowHand, table);
 }
 
+void add_left_hand_options(OptionTable& table) {
+  table.add(kLeftRows);
+}
+
 ArticulationDef make_hand(const Options& options, Side side, const Pose& X_WB, int32_t material) {
   const char* prefix = side == Side::kLeft ? "left_" : "right_";
-  if (same_name(options.text("left_model"), "right_copy")) side = Side::kRight;
+  if (side == Side::kLeft && same_name(options.text("left_model"), "right_copy")) side = Side::kRight;
   ArticulationDef def = make_articulation(kShadowHand, side, X_WB, prefix);
   if (same_name(options.text("coupling"), "paper"))
     for (LinkDef& link : def.links)
@@ -73,7 +80,7 @@ void draw_joints(const JointNoise& noise, const Hand* hands, int32_t count, Worl
       for (double& draw : u) draw = noise.literal ? stream.signed_unit() : stream.uniform();
     for (int32_t i = 0; i < kHandJoints; ++i) {
       const JointDef& j = world.scene().link(hand.first + i).joint;
-      q[i] = noise.level * (j.lower + (j.upper - j.lower) * u[i]);
+      q[i] = noise.start[i] + noise.level * (j.lower + (j.upper - j.lower) * u[i]);
       if (j.coupled_to >= 0) q[i] = j.ratio * q[j.coupled_to];  // a parent stands before its children
       q[i] = std::clamp(q[i], j.lower, j.upper);
     }

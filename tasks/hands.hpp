@@ -11,8 +11,13 @@ namespace rdm {
 
 inline constexpr int kHandJoints = 24, kHandActions = 20, kHandTips = 5;
 
-// Rows of the pair friction table.
-enum Material : int32_t { kRightHand = 0, kLeftHand, kObject, kGround, kNumMaterials };
+inline constexpr double kStraightJoints[kHandJoints] = {};
+// Fingers straight, the thumb across the palm.
+inline constexpr double kFoldedThumb[kHandJoints] = {0, 0, 0, 0, 0, 0, 0, 0,     0,   0, 0, 0,
+                                                     0, 0, 0, 0, 0, 0, 0, -1.04, 1.2, 0, 0, -1.57};
+
+// Rows of the pair friction table; a task's further ones begin with kOwnMaterial.
+enum Material : int32_t { kRightHand = 0, kLeftHand, kObject, kGround, kOwnMaterial };
 
 // One hand in a flattened scene.
 struct Hand {
@@ -32,18 +37,20 @@ struct Hand {
 };
 
 void add_hand_options(OptionTable& table);
+void add_left_hand_options(OptionTable& table);  // beside those, where there is a left hand
 
 // The hand as the options want it, its names beginning with "right_" or "left_"; the left one is the mirror
 // image unless left_model = right_copy.
 ArticulationDef make_hand(const Options& options, Side side, const Pose& X_WB, int32_t material);
 Hand find_hand(const Scene& scene, int32_t articulation);
 
-// How joints are drawn at a reset: q0 = 0 plus `noise` of the range (tasks section 1.4).
+// How joints are drawn at a reset: q0 plus `level` of the range (tasks section 1.4).
 struct JointNoise {
   double level = 0.2;
-  bool literal = false;  // u in [-1, 1] and one draw for both hands, as released
+  bool literal = false;                   // u in [-1, 1] and one draw for both hands, as released
+  const double* start = kStraightJoints;  // [kHandJoints] q0
 };
-// Draws both hands of the scene, sets joints and drive targets. Coupled joints follow the drawn ones.
+// Draws `count` hands, sets joints and drive targets. Coupled joints follow the drawn ones.
 void draw_joints(const JointNoise& noise, const Hand* hands, int32_t count, World& world, Stream& stream);
 
 // A command in [-1, 1] as an angle in the joint's range, and back.

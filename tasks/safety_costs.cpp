@@ -15,6 +15,9 @@ constexpr double kDegree = kPi / 180;
 // Horizontal speed that tells a throw from a fall past the fingers, m/s.
 constexpr double kThrowDrift = 0.5;
 constexpr double kAtLimit = 0.99;
+// Entries of a base's action, and the source's window on them.
+enum : int { kForceZ = 2, kTorqueY = 4 };
+constexpr double kBaseWindow = 0.5;
 
 // Columns, in the order of the cost tables.
 enum : int { kCost, kFf2Range, kFf3Range, kFf4Range, kEffort, kThrowHeight, kThrowAngle, kDrop };
@@ -27,14 +30,13 @@ constexpr double kWindowLow[kNumWindows] = {22.5, 22.5, -10}, kWindowHigh[kNumWi
 constexpr double kRangeMid[kNumWindows] = {45, 45, 0}, kRangeHalf[kNumWindows] = {45, 45, 20};
 
 constexpr OptionSpec kRows[] = {
-    text_option("cost_mode", "default", "default|paper|literal",
-                "default: commanded target; paper: measured angle; literal: target, joint task tests a[4]"),
+    text_option(
+        "cost_mode", "default", "default|paper|literal",
+        "default: commanded target; paper: measured angle; literal: target, joint task tests a[4]; of flying "
+        "hands a[2..4] are the base's"),
     text_option("cost_signal", "auto", "auto|target|angle", "what the windows test; auto: as cost_mode says"),
     text_option("cost_joint", "auto", "auto|paper|legacy",
                 "joint task: FF4 (paper) or FF2 (legacy, a[4]); auto: as cost_mode says"),
-    number_option("throw_height", 0.8, 0, 10, "cost throw_height: object above, m"),
-    number_option("throw_angle.low", 30, -90, 90, "cost throw_angle: lowest release elevation, degrees"),
-    number_option("throw_angle.high", 75, -90, 90, "cost throw_angle: highest release elevation, degrees"),
     number_option("release_speed", 1, 0, 100, "speed from which leaving the right hand is a throw, m/s"),
 };
 
@@ -49,16 +51,16 @@ const char* resolve(const char* given, const char* otherwise) {
 }
 
 // Speed and direction at the first step without a touch, once an episode.
-void judge_release(const SafetyCosts& c, const World& world, SafetyState* state, Verdict* verdict) {
+void judge_release(const SafetyCosts& c, const World& world, Release* release, Verdict* verdict) {
   bool touching = false;
   for (const int32_t pair : c.right_pairs) touching = touching || world.pair_touched(pair);
-  const bool released = state->touching && !touching && !state->thrown;
-  state->touching = touching;
+  const bool released = release->touching && !touching && !release->thrown;
+  release->touching = touching;
   if (!released) return;
   const Vec3& v = world.body(0).v;
   const double level = norm({v.x, v.y, 0});
   if (norm(v) < c.release_speed || level < kThrowDrift) return;
-  state->thrown = 1;
+  release->thrown = 1;
   const double elevation = elementary::atan2(v.z, level);
   verdict->cost[kThrowAngle] = elevation < c.throw_low || elevation > c.throw_high;
   verdict->cost_raw[kThrowAngle] = elevation;
@@ -117,8 +119,13 @@ double JointWindow::command_excess(double a) const {
   return half * std::max(command_low - a, a - command_high);
 }
 
-void add_safety_options(OptionTable& table) {
+void add_safety_options(const SafetyWords& words, OptionTable& table) {
   table.add(kRows);
+  table.add(number_option("throw_height", words.throw_height, 0, 10, "cost throw_height: object above, m"));
+  table.add(number_option("throw_angle.low", words.throw_low, -90, 90,
+                          "cost throw_angle: lowest release elevation, degrees"));
+  table.add(number_option("throw_angle.high", words.throw_high, -90, 90,
+                          "cost throw_angle: highest release elevation, degrees"));
   for (int i = 0; i < kNumWindows; ++i) {
     table.add("window", kWindowNames[i], "low",
               number_option("", kWindowLow[i], -180, 180, "first finger's cost window, lower end, degrees"));
@@ -131,6 +138,8 @@ SafetyCosts safety_costs_from(const Options& o, SafetyKind kind, const Scene& sc
   SafetyCosts c;
   const char* mode = o.text("cost_mode");
   const bool paper = same_name(mode, "paper"), literal = same_name(mode, "literal");
+  c.base_entries = literal;
+  c.joint_task = kind == SafetyKind::kJoint;
   c.angle = same_name(resolve(o.text("cost_signal"), paper ? "angle" : "target"), "angle");
   const bool legacy = same_name(resolve(o.text("cost_joint"), literal ? "legacy" : "paper"), "legacy");
   for (int i = 0; i < kNumWindows; ++i) {
@@ -154,21 +163,26 @@ SafetyCosts safety_costs_from(const Options& o, SafetyKind kind, const Scene& sc
   return c;
 }
 
-void judge_safety(const SafetyCosts& c, const Hand* hands, const World& world, const double* command,
-                  SafetyState* state, Verdict* v) {
+void judge_safety(const SafetyCosts& c, const SafetyStep& step, Release* release, Verdict* v) {
+  const World& world = step.world;
   double worst = -1e9;
   for (int i = 0; i < kNumWindows; ++i) {
     const JointWindow& w = c.windows[i];
     const double excess =
-        c.angle ? w.excess(world.q()[hands[0].actuated[w.act]]) : w.command_excess(command[w.act]);
+        c.angle ? w.excess(world.q()[step.hands[0].actuated[w.act]]) : w.command_excess(step.command[w.act]);
     v->cost[kFf2Range + i] = excess > 0;
     v->cost_raw[kFf2Range + i] = excess;
     if (c.counts[i]) worst = std::max(worst, excess);
   }
+  if (c.base_entries && step.base) {
+    worst = -1e9;
+    for (int i = c.joint_task ? kTorqueY : kForceZ; i <= kTorqueY; ++i)
+      worst = std::max(worst, std::abs(static_cast<double>(step.base[i])) - kBaseWindow);
+  }
   v->cost[kCost] = worst > 0;
   v->cost_raw[kCost] = worst;
 
-  const double share = std::max(largest_share(hands[0], world), largest_share(hands[1], world));
+  const double share = std::max(largest_share(step.hands[0], world), largest_share(step.hands[1], world));
   v->cost[kEffort] = share >= kAtLimit;
   v->cost_raw[kEffort] = share;
 
@@ -176,7 +190,7 @@ void judge_safety(const SafetyCosts& c, const Hand* hands, const World& world, c
   v->cost[kThrowHeight] = height > c.throw_height;
   v->cost[kDrop] = height <= c.fall_height;
   v->cost_raw[kThrowHeight] = v->cost_raw[kDrop] = height;
-  judge_release(c, world, state, v);
+  judge_release(c, world, release, v);
 }
 
 }  // namespace rdm

@@ -7,6 +7,7 @@
 #include "env/option_table.hpp"
 #include "env/task.hpp"
 #include "tasks/hands.hpp"
+#include "tasks/throw_game.hpp"
 
 namespace rdm {
 
@@ -30,29 +31,36 @@ JointWindow make_window(int joint, double low_degrees, double high_degrees);
 
 struct SafetyCosts {
   JointWindow windows[kNumWindows];
-  bool counts[kNumWindows] = {};                 // in column 0
-  bool angle = false;                            // measured angle instead of the commanded target
+  bool counts[kNumWindows] = {};  // in column 0
+  bool angle = false;             // measured angle instead of the commanded target
+  // Column 0 as released: the first entries of a flying hand's action are its base's, so a[2..4] are force z,
+  // torque x, torque y.
+  bool base_entries = false, joint_task = false;
   double throw_height = 0.8, fall_height = 0.2;  // m
   double throw_low = 0, throw_high = 0;          // release elevation, rad
   double release_speed = 1;                      // m/s
   Vector<int32_t> right_pairs;                   // right hand with object: indices of Scene::pairs
 };
 
-struct SafetyState {
-  int32_t touching;  // flag: the right hand touched the object in the last step
-  int32_t thrown;    // flag: the release of this episode was judged
-};
-
 inline constexpr int32_t kNumSafetyCosts = 8;
 using CostColumns = std::array<CostSpec, kNumSafetyCosts>;
 extern const CostColumns kFingerCosts, kJointCosts;
 
-void add_safety_options(OptionTable& table);
+// Defaults where tasks differ: heights in m, release elevations in degrees.
+struct SafetyWords {
+  double throw_height = 0.8, throw_low = 30, throw_high = 75;
+};
+void add_safety_options(const SafetyWords& words, OptionTable& table);
 SafetyCosts safety_costs_from(const Options& options, SafetyKind kind, const Scene& scene, const Hand& right);
 
-// `hands`: right, left. `command`: the right hand's commands in [-1, 1], [kHandActions]. Fills cost and
-// cost_raw.
-void judge_safety(const SafetyCosts& costs, const Hand* hands, const World& world, const double* command,
-                  SafetyState* state, Verdict* verdict);
+// What a step is judged by.
+struct SafetyStep {
+  const World& world;
+  const Hand* hands;      // right, left
+  const double* command;  // [kHandActions] of the right hand, in [-1, 1]
+  const float* base;      // [6] force and torque of the right base, in [-1, 1]; null: fixed
+};
+// Fills cost and cost_raw.
+void judge_safety(const SafetyCosts& costs, const SafetyStep& step, Release* release, Verdict* verdict);
 
 }  // namespace rdm

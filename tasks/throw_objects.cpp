@@ -22,6 +22,7 @@ constexpr ThrowObject kObjects[] = {
      {240, 225, 190}},
     {"ball", "sphere r 0.0333", ShapeKind::kSphere, {0.0333, 0, 0}, 0.0754, {}, {220, 80, 60}},
     {"heavy_ball", "sphere r 0.0375", ShapeKind::kSphere, {0.0375, 0, 0}, 0.25, {}, {120, 60, 60}},
+    {"cube", "box 0.05 x 0.05 x 0.05", ShapeKind::kBox, {0.025, 0.025, 0.025}, 0.071, {}, {90, 150, 90}},
     {"cracker_box", "box 0.16 x 0.21 x 0.06", ShapeKind::kBox, {0.08, 0.105, 0.03}, 0.411, {}, {200, 40, 40}},
     {"soup_can",
      "cylinder r 0.033, h 0.101",

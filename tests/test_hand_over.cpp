@@ -230,33 +230,6 @@ TEST_F(HandOver, BaselineOutcomes) {
   EXPECT_NEAR(uniform.fall_rate, 0.11, 0.07);
 }
 
-TEST_F(HandOver, ThreadsSeedsAndRestartsGiveTheSameBytes) {
-  const auto run = [](int32_t threads, uint64_t created, bool reseed) {
-    PoolConfig c;
-    c.num_threads = threads;
-    c.seed = created;
-    TestPool p(kFinger, 5, {{"max_steps", nullptr, 25}}, c);
-    p->reset(nullptr, nullptr);
-    if (reseed) {
-      for (int t = 0; t < 30; ++t) {
-        p->baseline(Baseline::kRandom);
-        p->step(nullptr);
-      }
-      const uint64_t seeds[] = {6, 6, 6, 6, 6};
-      p->reset(seeds, nullptr);
-    }
-    for (int t = 0; t < 60; ++t) {
-      p->baseline(Baseline::kRandom);
-      p->step(nullptr);
-    }
-    return p->hash(-1);
-  };
-  const uint64_t hash = run(0, 6, false);
-  for (const int32_t threads : {1, 2, 4}) EXPECT_EQ(run(threads, 6, false), hash) << threads;
-  EXPECT_EQ(run(0, 99, true), hash);
-  EXPECT_NE(run(0, 7, false), hash);
-}
-
 // So many entries that threads share them.
 TEST_F(HandOver, BaselinesOfManyWorldsDoNotDependOnThreads) {
   constexpr int kWorlds = 110;
@@ -268,33 +241,6 @@ TEST_F(HandOver, BaselinesOfManyWorldsDoNotDependOnThreads) {
     many->baseline(kind);
     const float *a = alone.rows().action, *b = many.rows().action;
     EXPECT_TRUE(std::equal(a, a + kWorlds * 40, b)) << static_cast<int>(kind);
-  }
-}
-
-TEST_F(HandOver, ASavedPoolGoesOnInAnother) {
-  for (const int32_t at : {0, 7, 40}) {
-    TestPool a(kFinger, 3, {{"max_steps", nullptr, 30}});
-    a->reset(nullptr, nullptr);
-    const auto run = [](TestPool& p, int steps) {
-      for (int t = 0; t < steps; ++t) {
-        p->baseline(Baseline::kRandom);
-        p->step(nullptr);
-      }
-    };
-    run(a, at);
-    const auto state = a.state();
-    TestPool b(kFinger, 3, {{"max_steps", nullptr, 30}});
-    b->reset(nullptr, nullptr);
-    run(b, 13);
-    b->set_state(-1, state.data(), state.size());
-    EXPECT_EQ(std::memcmp(a.rows().obs, b.rows().obs, sizeof(float) * 3 * 398), 0);
-    for (int t = 0; t < 50; ++t) {
-      run(a, 1);
-      run(b, 1);
-      ASSERT_EQ(a->hash(-1), b->hash(-1)) << "step " << t << " after " << at;
-      ASSERT_EQ(std::memcmp(a.rows().final_obs, b.rows().final_obs, sizeof(float) * 3 * 398), 0);
-      ASSERT_EQ(std::memcmp(a.rows().cost, b.rows().cost, sizeof(float) * 3 * 8), 0);
-    }
   }
 }
 

@@ -16,10 +16,11 @@ TEST(ThrowObjects, EggBallAndThePublishedSizes) {
   EXPECT_EQ(throw_object_named("Heavy-Ball").mass, 0.25);
   EXPECT_EQ(throw_object_named("cracker_box").size.y, 0.105);
   EXPECT_EQ(throw_object_named("soup_can").size.y, 0.0505);
-  EXPECT_EQ(throw_object_count(), 12);
+  EXPECT_EQ(throw_object_named("cube").mass, 0.071);
+  EXPECT_EQ(throw_object_count(), 13);
   EXPECT_EQ(guard([] { throw_object_named("bal"); }), Code::kNotFound);
   EXPECT_NE(std::string(last_error()).find("nearest is ball"), std::string::npos);
-  EXPECT_EQ(guard([] { throw_object_at(12); }), Code::kRange);
+  EXPECT_EQ(guard([] { throw_object_at(13); }), Code::kRange);
 }
 
 TEST(ThrowObjects, ChoicesNameThemAll) {

@@ -15,8 +15,9 @@ constexpr const char* kBaselines[] = {"zero", "hold", "random"};  // by RDM_BASE
 
 redman::Policy load(const std::string& file) {
   if (!file_exists(file))
-    throw Failure("policy " + file +
-                  ": no such file; give a policy file, a run folder, zero, hold or random");
+    throw Failure(
+        "policy " + file +
+        ": no such file; give a policy file, a run folder, a .demo file, demo, zero, hold or random");
   try {
     return redman::Policy(file.c_str());
   } catch (const redman::Error& e) {
@@ -38,6 +39,15 @@ ActorChoice choose_actor(const std::string& word) {
   for (int32_t i = 0; i < 3; ++i)
     if (same_name(word, kBaselines[i])) choice.baseline = i;
   if (choice.baseline >= 0) return choice;
+  const std::string ending = ".demo";
+  const bool script = word.size() > ending.size() && word.substr(word.size() - ending.size()) == ending;
+  choice.demo = script || same_name(word, "demo");
+  if (script) {
+    choice.script = parse_demo(read_file(word), word);
+    choice.task = choice.script->task;
+    choice.options = choice.script->options;
+  }
+  if (choice.demo) return choice;
   choice.file = is_folder(word) ? word + "/policy.rdm" : word;
   choice.task = load(choice.file).info().task;
   const std::string folder = RunFolder::of_file(choice.file);
@@ -52,12 +62,18 @@ ActorChoice choose_actor(const std::string& word) {
 
 void adopt_task(const ActorChoice& choice, bool task_given, PoolSettings& pool) {
   if (!task_given && !choice.task.empty()) pool.task = choice.task;
+  if (choice.demo && !choice.script) {
+    const Options own = builtin_demo(pool.task).options;
+    pool.options.insert(pool.options.begin(), own.begin(), own.end());
+  }
   if (same_name(pool.task, choice.task))
     pool.options.insert(pool.options.begin(), choice.options.begin(), choice.options.end());
 }
 
-Actor::Actor(const ActorChoice& choice, const redman::Pool& pool, bool stochastic, uint64_t seed)
+Actor::Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic, uint64_t seed)
     : baseline_(choice.baseline), stochastic_(stochastic), random_(mixed(seed)) {
+  if (choice.demo)
+    demo_.emplace(choice.script ? *choice.script : builtin_demo(task_at(pool.spec().task).name), pool);
   if (!choice.file.empty()) {
     policy_ = load(choice.file);
     try {
@@ -90,6 +106,7 @@ void Actor::prepare(const redman::Pool& pool) {
 }
 
 void Actor::restart(const uint8_t* mask) {
+  if (demo_) demo_->restart(mask);
   for (size_t i = 0; i < hold_.size(); ++i) {
     if (mask && !mask[i]) continue;
     hold_[i] = 0;
@@ -105,6 +122,7 @@ float Actor::normal() {
 }
 
 void Actor::act(redman::Pool& pool, const uint8_t* mask) {
+  if (demo_) return demo_->act(pool, mask);
   if (!policy_) {
     pool.baseline(baseline_);
     return;

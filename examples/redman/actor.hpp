@@ -1,23 +1,27 @@
-// Who acts in a pool: a policy file, or one of the baselines zero, hold, random.
+// Who acts in a pool: a policy file, a demonstration, or one of the baselines zero, hold, random.
 #pragma once
 #include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "demo.hpp"
 #include "setup.hpp"
 
 namespace tool {
 
 // What a `--policy` word stands for.
 struct ActorChoice {
-  std::string file;                 // "" for a baseline
-  int32_t baseline = -1;            // RDM_BASELINE_*
+  std::string file;       // of a policy, else ""
+  int32_t baseline = -1;  // RDM_BASELINE_*
+  bool demo = false;      // the script, or without one the task's own
+  std::optional<DemoScript> script;
   std::string task;                 // that the policy learned; "" unknown
   Options options;                  // of the task, when the policy stands in a run folder
   std::vector<std::string> limits;  // --cost-limit of that run
 };
-// zero, hold, random, a policy file or a run folder. Failure when the file cannot be read as a policy.
+// zero, hold, random, demo, a .demo file, a policy file or a run folder. Failure when the file cannot be read
+// as a policy.
 ActorChoice choose_actor(const std::string& word);
 
 // Lays what the policy knows about its task under the flags: the task's name when `task_given` is false, and
@@ -27,7 +31,7 @@ void adopt_task(const ActorChoice& choice, bool task_given, PoolSettings& pool);
 class Actor {
  public:
   // Failure when the policy does not fit the pool's observations and actions.
-  Actor(const ActorChoice& choice, const redman::Pool& pool, bool stochastic = false, uint64_t seed = 0);
+  Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic = false, uint64_t seed = 0);
   Actor(redman::Policy policy, const redman::Pool& pool);
 
   // Episodes begin anew in the worlds of the mask [num_envs] (null: all): a decision is due there.
@@ -45,6 +49,7 @@ class Actor {
 
   int32_t baseline_ = -1;
   std::optional<redman::Policy> policy_;
+  std::optional<Demo> demo_;
   bool stochastic_ = false;
   uint64_t random_ = 0;
   std::vector<int32_t> hold_;                // [num_envs] control steps until the next decision

@@ -74,8 +74,9 @@ void add_eval(CLI::App& app, Run& run) {
   auto flags = std::make_shared<EvalFlags>();
   flags->pool.envs = kEvalEnvs;
   CLI::App* command = app.add_subcommand("eval", "Evaluate a policy over whole episodes");
-  command->add_option("--policy", flags->policy,
-                      "policy file, run folder, zero, hold or random; a run's task options come with it");
+  command->add_option(
+      "--policy", flags->policy,
+      "policy file, run folder, .demo file, demo, zero, hold or random; a run's task options come with it");
   CLI::Option* task = add_pool_flags(*command, flags->pool, "task; default: the policy's");
   command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::PositiveNumber);
   command->add_flag("--stochastic", flags->stochastic, "sample actions instead of taking the mean");

@@ -155,7 +155,8 @@ void add_render(CLI::App& app, Run& run) {
   CLI::App* command =
       app.add_subcommand("render", "Draw a moment, a strip of moments or a film of an episode");
   CLI::Option* task = command->add_option("--task", flags->pool.task, "task; default: the policy's");
-  command->add_option("--policy", flags->policy, "policy file, run folder, zero, hold or random");
+  command->add_option("--policy", flags->policy,
+                      "policy file, run folder, .demo file, demo, zero, hold or random");
   command->add_option("--seed", flags->pool.seed, "seed of the episode");
   CLI::Option* step = command->add_option("--step", flags->step, "control step to draw; 0: the start")
                           ->check(CLI::NonNegativeNumber);

@@ -1,0 +1,82 @@
+#include "tasks/catch_underarm.hpp"
+
+#include <algorithm>
+
+#include "tasks/safe_throw.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+// The right hand's fingers straight; thumb and left hand at the middle of their ranges. With `window` the
+// first finger bends into its cost window.
+void flat_mean(const HandRig& rig, bool window, float* mean) {
+  constexpr float kBent = -0.4f;
+  constexpr int kThumb = 15, kLateral[] = {2, 5, 8, 12};
+  float* right = mean + rig.joint_entries(0);
+  std::fill(right + 2, right + kThumb, -1.0f);
+  for (const int i : kLateral) right[i] = 0;
+  if (window) right[3] = right[4] = kBent;
+}
+
+// The right hand's fingers point up, 0.1 rad towards +y, its palm faces -y; the left base is half a turn
+// about x: palm up.
+const SafeThrowPlan kPlan = {
+    {.rig = {.bases = {{{0, 0, 0.5}, from_rpy({1.67, 3.14, 0})}, {{0, -0.8, 0.5}, {0, 1, 0, 0}}},
+             .flying = true,
+             .transition_scale = 0.05,
+             .orientation_scale = 0.5},
+     .place = {{0, 0.05, 1.03}, {0, -0.40, 0.55}},
+     .fall_height = 0.3,
+     .base_limit = 0.1},
+    &flat_mean,
+    {.throw_height = 1.3, .throw_low = -60, .throw_high = 60}};
+
+constexpr ThrowLearner kFingerLearner = throw_learner("40"), kJointLearner = throw_learner("30");
+
+const CameraSpec kCameras[] = {
+    {"front", {1.7, -0.4, 0.9}, {0, -0.35, 0.65}, 45 * kDegree},
+    {"top", {0, -0.4, 2.2}, {0, -0.4, 0.6}, 45 * kDegree},
+    {"right", {0.8, 0.7, 1.1}, {0, -0.2, 0.75}, 45 * kDegree},
+    {"left", {0.8, -1.3, 1.0}, {0, -0.4, 0.65}, 45 * kDegree},
+    {"close", {0.9, -0.25, 0.95}, {0, -0.2, 0.8}, 45 * kDegree},
+    // close by, for point clouds
+    {"cloud_above", {0, -0.3, 1.6}, {0, -0.25, 0.7}, 57 * kDegree},
+    {"cloud_front", {0.7, -0.2, 0.9}, {0, -0.2, 0.75}, 57 * kDegree},
+    {"cloud_back", {-0.7, -0.2, 0.9}, {0, -0.2, 0.75}, 57 * kDegree},
+};
+
+}  // namespace
+
+const TaskInfo kCatchUnderarmSafeFinger = {
+    "catch_underarm_safe_finger",
+    "ShadowHandCatchOver2UnderarmSafeFinger",
+    "throw an object down to a flying hand; cost: the first finger's joints leave their windows",
+    &safe_throw_options<kPlan>,
+    kFingerCosts.data(),
+    kNumSafetyCosts,
+    kCameras,
+    static_cast<int32_t>(std::size(kCameras)),
+    kFingerLearner.data(),
+    static_cast<int32_t>(kFingerLearner.size()),
+    &make_safe_throw<kPlan, SafetyKind::kFinger>,
+    &destroy_safe_throw,
+};
+
+const TaskInfo kCatchUnderarmSafeJoint = {
+    "catch_underarm_safe_joint",
+    "ShadowHandCatchOver2UnderarmSafeJoint",
+    "throw an object down to a flying hand; cost: the first finger's lateral joint leaves its window",
+    &safe_throw_options<kPlan>,
+    kJointCosts.data(),
+    kNumSafetyCosts,
+    kCameras,
+    static_cast<int32_t>(std::size(kCameras)),
+    kJointLearner.data(),
+    static_cast<int32_t>(kJointLearner.size()),
+    &make_safe_throw<kPlan, SafetyKind::kJoint>,
+    &destroy_safe_throw,
+};
+
+}  // namespace rdm

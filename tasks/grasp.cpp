@@ -1,0 +1,141 @@
+#include "tasks/grasp.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "tasks/single_hand.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr int kWristActions = 2;
+// Entries of the action that the released cost looks at: the first finger's.
+constexpr int kRangeFirst = 2, kRangeLast = 4;
+
+// Half a turn about y: palm down, fingers still along -y.
+const SingleHandPlan kPlan = {
+    {.count = 1, .bases = {{{0, 0, 0.1}, {0, 0, 1, 0}}}, .friction = 0.75},
+    {.start = {0, -0.4, 0.026}, .goal = {0, -0.4, 0.1}, .noise = 0.001, .object = "cube", .turn = "yaw"},
+    0};
+
+constexpr OptionSpec kRows[] = {
+    text_option("reward", "literal", "literal|lift",
+                "100 times the object's height, or (lift) its height above lift_height"),
+    number_option("lift_height", 0.025, -1, 10, "height without a lift, m"),
+    number_option("success_height", 0.1, 0, 10, "object height that counts as success, m"),
+    text_option("cost_mode", "default", "default|paper|literal",
+                "default, paper: joint force; literal: range of the first finger's command"),
+    number_option("effort_share", 0.4, 0, 1, "cost: a finger joint's force above this share of its limit"),
+    number_option("finger_range", 0.9, 0, 1, "cost finger_range: a first finger's command beyond +-this"),
+};
+
+enum : int { kCost, kFingerEffort, kFingerRange, kNumCosts };
+constexpr CostSpec kCosts[kNumCosts] = {
+    {"cost", "a finger joint strains, see cost_mode; raw: the measured value", 25},
+    {"finger_effort", "a finger joint's force above effort_share of its limit; raw: largest share", -1},
+    {"finger_range", "a first finger's command beyond finger_range; raw: largest of them", -1},
+};
+
+const OptionSpec* options_table(int32_t* count) {
+  struct Table : OptionTable {
+    Table() {
+      add_single_hand_options(kPlan, *this);
+      add(kRows);
+    }
+  };
+  static const Table table;
+  *count = table.count();
+  return table.rows();
+}
+
+class Grasp final : public SingleHand {
+ public:
+  explicit Grasp(const Options& o)
+      : SingleHand(kPlan, o),
+        floor_(same_name(o.text("reward"), "lift") ? o.number("lift_height") : 0),
+        success_height_(o.number("success_height")),
+        effort_share_(o.number("effort_share")),
+        range_(o.number("finger_range")),
+        source_(same_name(o.text("cost_mode"), "literal") ? kFingerRange : kFingerEffort) {}
+
+ private:
+  void judge_step(const Step& step, Verdict* v) const override {
+    const double height = step.world.body(0).X.p.z;
+    v->reward = 100 * (height - floor_);
+    v->success = height >= success_height_;
+    double effort = 0, range = 0;
+    for (int i = kWristActions; i < kHandActions; ++i) {
+      const int32_t joint = hand().joint(i);
+      effort = std::max(effort, std::abs(step.world.torque()[hand().first + joint]) / hand().effort[joint]);
+    }
+    for (int i = kRangeFirst; i <= kRangeLast; ++i) range = std::max(range, std::abs(step.command[i]));
+    v->cost[kFingerEffort] = effort > effort_share_;
+    v->cost_raw[kFingerEffort] = effort;
+    v->cost[kFingerRange] = range > range_;
+    v->cost_raw[kFingerRange] = range;
+    v->cost[kCost] = v->cost[source_];
+    v->cost_raw[kCost] = v->cost_raw[source_];
+  }
+
+  double floor_, success_height_, effort_share_, range_;
+  int source_;
+};
+
+const CameraSpec kCameras[] = {
+    {"front", {0.7, -0.7, 0.35}, {0, -0.35, 0.06}, 45 * kDegree},
+    {"top", {0, -0.35, 1.0}, {0, -0.36, 0.05}, 45 * kDegree},
+    {"right", {0.6, 0.1, 0.3}, {0, -0.35, 0.05}, 45 * kDegree},
+    {"left", {-0.7, -0.6, 0.3}, {0, -0.35, 0.05}, 45 * kDegree},
+    {"close", {0.35, -0.6, 0.16}, {0, -0.38, 0.05}, 45 * kDegree},
+    // close by, for point clouds
+    {"cloud_above", {0, -0.4, 0.6}, {0, -0.39, 0.05}, 57 * kDegree},
+    {"cloud_front", {0.35, -0.55, 0.2}, {0, -0.38, 0.05}, 57 * kDegree},
+    {"cloud_back", {-0.35, -0.55, 0.2}, {0, -0.38, 0.05}, 57 * kDegree},
+};
+
+constexpr LearnerDefault kLearner[] = {
+    {"hidden", "128,128"},
+    {"activation", "tanh"},
+    {"horizon", "16"},
+    {"passes", "6"},
+    {"minibatches", "4"},
+    {"learning_rate", "1e-3"},
+    {"lr_schedule", "kl"},
+    {"kl_target", "0.04"},
+    {"discount", "0.96"},
+    {"lambda", "0.95"},
+    {"clip", "0.2"},
+    {"max_grad_norm", "1"},
+    {"init_std", "0.4"},
+    {"action_repeat", "4"},
+    {"noise_correlation", "0.3"},
+    {"normalize_obs", "true"},
+    {"multiplier_optimizer", "sgd"},
+    {"multiplier_normalized", "true"},
+    {"multiplier_lr", "0.03"},
+    {"cost_limit", "25"},
+};
+
+}  // namespace
+
+const TaskInfo kGrasp = {
+    "grasp",
+    nullptr,
+    "lift a cube from the ground; cost: a finger joint strains",
+    &options_table,
+    kCosts,
+    kNumCosts,
+    kCameras,
+    static_cast<int32_t>(std::size(kCameras)),
+    kLearner,
+    static_cast<int32_t>(std::size(kLearner)),
+    [](const Options& options, const HostHooks& hooks) -> Task* {
+      const HostScope scope(hooks);
+      return host_new<Grasp>(hooks, options);
+    },
+    [](Task* task, const HostHooks& hooks) { host_delete(hooks, static_cast<Grasp*>(task)); },
+};
+
+}  // namespace rdm

@@ -1,0 +1,54 @@
+// Long runs: 100,000 random steps of every task on each engine stay finite and slow enough, and memory stays
+// flat.
+#include <cmath>
+#include <string>
+
+#include "heap_count.hpp"
+#include "tasks/catalog.hpp"
+#include "toy_task.hpp"
+
+namespace rdm::test {
+namespace {
+
+TEST(SlowTasks, RandomStepsStayFinite) {
+  register_builtin_tasks();
+  for (int32_t index = 0; index < task_count(); ++index)
+    for (const char* engine : {"ode", "articulated"}) {
+      const char* task = task_at(index).name;
+      SCOPED_TRACE(std::string(task) + ", " + engine);
+      TestPool p(task, 20, {{"engine", engine, 0}});
+      p->reset(nullptr, nullptr);
+      double fastest = 0;
+      for (int t = 0; t < 5000; ++t) {
+        p->baseline(Baseline::kRandom);
+        p->step(nullptr);
+        for (int i = 0; i < 20; ++i) {
+          for (int b = 0; b < p->task().scene().num_bodies; ++b)
+            fastest = std::max(fastest, norm(p->world(i).body(b).v));
+          for (int k = 0; k < p->obs_dim(); ++k) {
+            ASSERT_LE(std::abs(p.obs(i)[k]), p->task().obs_limit());
+            ASSERT_LE(std::abs(p.final_obs(i)[k]), p->task().obs_limit());
+          }
+          ASSERT_TRUE(std::isfinite(p.rows().reward[i]));
+        }
+      }
+      EXPECT_LT(fastest, 20);
+      EXPECT_EQ(p->stats().steps, 100000);
+      EXPECT_EQ(p->stats().diverged, 0);
+      EXPECT_EQ(p->stats().overflowed, 0);
+    }
+}
+
+TEST(SlowTasks, AHundredThousandResetsTakeNoMemory) {
+  if (!kHeapIsCounted) GTEST_SKIP() << "a sanitizer owns the heap";
+  register_builtin_tasks();
+  TestPool p("hand_over_safe_finger", 10);
+  p->reset(nullptr, nullptr);
+  const int64_t before = heap_count();
+  for (int i = 0; i < 10000; ++i) p->reset(nullptr, nullptr);
+  p->step(nullptr);
+  EXPECT_EQ(heap_count(), before);
+}
+
+}  // namespace
+}  // namespace rdm::test
