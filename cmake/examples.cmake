@@ -21,18 +21,23 @@ endforeach()
 
 file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/redman/*.cpp)
 if(sources AND NOT REDMAN_TOOL STREQUAL "OFF" AND NOT RDM_TOOL_MISSING)
-  # The tool carries the demonstrations: rows {"task", text}.
+  # The tool carries the demonstrations.
   file(GLOB demos CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/demos/*.demo)
-  set(rows "")
+  set(RDM_DEMOS "")
   foreach(demo ${demos})
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${demo})
     get_filename_component(name ${demo} NAME_WE)
     file(READ ${demo} text)
-    string(APPEND rows "{\"${name}\", R\"demo(${text})demo\"},\n")
+    string(APPEND RDM_DEMOS "    {\"${name}\", R\"demo(${text})demo\"},\n")
   endforeach()
-  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/demos/demos.inc CONTENT "@rows@" @ONLY)
-  add_executable(redman_tool ${sources})
-  target_include_directories(redman_tool PRIVATE ${PROJECT_BINARY_DIR}/demos)
+  file(CONFIGURE OUTPUT demos.cpp @ONLY CONTENT "#include \"redman/demo.hpp\"
+namespace tool {
+const CarriedDemo kCarriedDemos[] = {
+@RDM_DEMOS@    {nullptr, nullptr},
+};
+}
+")
+  add_executable(redman_tool ${sources} ${CMAKE_CURRENT_BINARY_DIR}/demos.cpp)
   target_include_directories(redman_tool PRIVATE ${PROJECT_SOURCE_DIR}/examples)
   target_link_libraries(redman_tool PRIVATE CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG)
   set_target_properties(redman_tool PROPERTIES OUTPUT_NAME redman CXX_STANDARD 20)

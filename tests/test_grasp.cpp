@@ -78,8 +78,7 @@ TEST_F(GraspTask, ForceIsAShareOfTheEffortLimit) {
       int strained = 0;
       for (int t = 0; t < 60; ++t) {
         p->baseline(Baseline::kHold);
-        p.action(0)[1] = 1;                     // the wrist down
-        p.action(0)[6] = t < 30 ? 0.0f : 1.0f;  // then the middle finger into the ground
+        if (t >= 30) p.action(0)[1] = p.action(0)[6] = 1;  // the wrist and the middle finger into the ground
         p->step(nullptr);
         const World& w = p->world(0);
         double most = 0;
@@ -90,7 +89,7 @@ TEST_F(GraspTask, ForceIsAShareOfTheEffortLimit) {
         EXPECT_NEAR(p.rows().cost_raw[kEffort], most, 1e-6);
         EXPECT_EQ(p.cost(0)[kCost], most > 0.4);
         EXPECT_EQ(p.cost(0)[kCost], p.cost(0)[kEffort]);
-        if (t < 30) EXPECT_EQ(p.cost(0)[kCost], 0);
+        EXPECT_TRUE(t >= 30 || p.cost(0)[kCost] == 0);
         strained += p.cost(0)[kCost] > 0;
       }
       EXPECT_GT(strained, 10) << engine;

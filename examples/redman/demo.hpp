@@ -38,6 +38,12 @@ struct DemoScript {
   Options options;  // of the task
   std::vector<Phase> phases;
 };
+// The files of examples/demos, put into the program when it is built; the last row is null.
+struct CarriedDemo {
+  const char *task, *text;
+};
+extern const CarriedDemo kCarriedDemos[];
+
 DemoScript parse_demo(const std::string& text, const std::string& file);
 // The script that the tool carries for a task; Failure when there is none.
 DemoScript builtin_demo(const std::string& task);

@@ -10,15 +10,6 @@
 namespace tool {
 namespace {
 
-// {task, text} of every file in examples/demos.
-struct Carried {
-  const char *task, *text;
-};
-constexpr Carried kCarried[] = {
-#include "demos.inc"
-    {nullptr, nullptr},
-};
-
 // One line as words, and what is wrong with it.
 class Line {
  public:
@@ -145,8 +136,8 @@ DemoScript parse_demo(const std::string& text, const std::string& file) {
 
 DemoScript builtin_demo(const std::string& task) {
   const std::string name = task_at(find_task(task)).name;
-  for (const Carried& c : kCarried)
-    if (c.task && same_name(name, c.task)) return parse_demo(c.text, name + ".demo");
+  for (const CarriedDemo* c = kCarriedDemos; c->task; ++c)
+    if (same_name(name, c->task)) return parse_demo(c->text, name + ".demo");
   throw Failure("policy demo: there is no demonstration of " + name + "; write one, and give its file");
 }
 
