@@ -10,11 +10,18 @@
 namespace rdm::test {
 namespace {
 
+constexpr const char* kTasks[] = {"hand_over_safe_finger",
+                                  "hand_over_safe_joint",
+                                  "catch_underarm_safe_finger",
+                                  "catch_underarm_safe_joint",
+                                  "grasp",
+                                  "reorient",
+                                  "hand_over_wall"};
+
 TEST(SlowTasks, RandomStepsStayFinite) {
   register_builtin_tasks();
-  for (int32_t index = 0; index < task_count(); ++index)
+  for (const char* task : kTasks)
     for (const char* engine : {"ode", "articulated"}) {
-      const char* task = task_at(index).name;
       SCOPED_TRACE(std::string(task) + ", " + engine);
       TestPool p(task, 20, {{"engine", engine, 0}});
       p->reset(nullptr, nullptr);
