@@ -2,9 +2,12 @@
 
 #include "env/task.hpp"
 #include "tasks/catch_underarm.hpp"
+#include "tasks/clean_house.hpp"
 #include "tasks/grasp.hpp"
 #include "tasks/hand_over.hpp"
 #include "tasks/hand_over_wall.hpp"
+#include "tasks/jenga.hpp"
+#include "tasks/pick_bottles.hpp"
 #include "tasks/reorient.hpp"
 #include "tasks/small_worlds.hpp"
 
@@ -17,6 +20,7 @@ void register_builtin_tasks() {
          {&kHandOverSafeFinger, &kHandOverSafeJoint, &kCatchUnderarmSafeFinger, &kCatchUnderarmSafeJoint})
       register_task(*info);
     for (const TaskInfo* info : {&kGrasp, &kReorient, &kHandOverWall}) register_task(*info);
+    for (const TaskInfo* info : {&kJenga, &kPickBottles, &kCleanHouse}) register_task(*info);
     for (const TaskInfo* info :
          {&kBandit, &kTwoState, &kLqrLine, &kBallRun, &kBallCircle, &kCarRun, &kSwimmerVelocity, &kPointGoal1,
           &kPointGoal2, &kPointButton1, &kPointButton2})

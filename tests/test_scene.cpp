@@ -145,5 +145,29 @@ TEST(Scene, RefusesWhatCannotBeSimulated) {
   EXPECT_EQ(code_of([](SceneDef& d) { d.articulations.clear(), d.bodies.clear(); }), Code::kArgument);
 }
 
+TEST(Scene, MaterialsMayPassEachOther) {
+  const auto pairs = [](bool passes) {
+    SceneDef def;
+    def.num_materials = 2;
+    def.friction[0][1].passes = def.friction[1][0].passes = passes;
+    for (int32_t material : {0, 1}) {
+      BodyDef body;
+      body.inertia = sphere_inertia(1, 0.1);
+      ShapeDef shape;
+      shape.size = {0.1, 0, 0};
+      shape.material = material;
+      body.shapes.push_back(shape);
+      def.bodies.push_back(body);
+    }
+    return make_scene(std::move(def)).pairs.size();
+  };
+  EXPECT_EQ(pairs(false), 1u);
+  EXPECT_EQ(pairs(true), 0u);
+  SceneDef def;
+  def.num_materials = 2;
+  def.friction[0][1].passes = true;
+  EXPECT_EQ(guard([&] { make_scene(std::move(def)); }), Code::kArgument);
+}
+
 }  // namespace
 }  // namespace rdm

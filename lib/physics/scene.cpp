@@ -147,7 +147,8 @@ void check(SceneDef* def) {
   for (int i = 0; i < def->num_materials; ++i)
     for (int j = 0; j < def->num_materials; ++j) {
       need(def->friction[i][j].mu, 0, 1e3, "friction", "mu");
-      if (def->friction[i][j].mu != def->friction[j][i].mu)
+      if (def->friction[i][j].mu != def->friction[j][i].mu ||
+          def->friction[i][j].passes != def->friction[j][i].passes)
         fail(Code::kArgument, "friction: materials %d and %d differ by order", i, j);
     }
   if (def->articulations.empty() && def->bodies.empty())
@@ -242,8 +243,9 @@ void add_pair(Scene* scene, int32_t a, int32_t b) {
   }
   if (!scene->moves(*x)) return;
   if (!scene->moves(*y) && !within_reach(*scene, *x, *y)) return;
-  const double mu = scene->def.friction[x->def.material][y->def.material].mu;
-  scene->pairs.push_back({a, b, mu, y->radius < 0 ? -1 : x->radius + y->radius});
+  const Friction& friction = scene->def.friction[x->def.material][y->def.material];
+  if (friction.passes) return;
+  scene->pairs.push_back({a, b, friction.mu, y->radius < 0 ? -1 : x->radius + y->radius});
 }
 
 void list_pairs(Scene* scene) {

@@ -96,6 +96,7 @@ struct BodyDef {
 // mu and softness of contacts between two materials; the table is symmetric.
 struct Friction {
   double mu = 1;
+  bool passes = false;  // the two go through each other
 };
 
 struct SolverDef {
