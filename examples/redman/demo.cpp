@@ -11,6 +11,7 @@ namespace tool {
 namespace {
 
 constexpr double kSoon = 1e-6;  // s
+constexpr double kPi = 3.14159265358979323846;
 
 // Where each action entry stands, by name.
 struct EntryNames {
@@ -65,14 +66,16 @@ bool matches(const std::string& pattern, const std::string& name) {
 }
 
 // "object.position[2]" as an index of the observation; -1 when there is none.
-int32_t observed(const redman::Pool& pool, const std::string& word) {
+int32_t observed(const redman::Pool& pool, const std::string& word, bool* angle) {
   const size_t open = word.find('[');
   const std::string name = word.substr(0, open);
   const int32_t k = open == std::string::npos ? 0 : std::atoi(word.c_str() + open + 1);
   for (int32_t i = 0; i < pool.spec().num_fields; ++i) {
     rdm_field f;
     redman::check(rdm_pool_field(pool.get(), i, &f));
-    if (same_name(f.name, name)) return k >= 0 && k < f.count ? f.offset + k : -1;
+    if (!same_name(f.name, name)) continue;
+    if (angle) *angle = std::string(f.unit) == "rad";
+    return k >= 0 && k < f.count ? f.offset + k : -1;
   }
   return -1;
 }
@@ -81,8 +84,10 @@ int32_t observed(const redman::Pool& pool, const std::string& word) {
   throw Failure(format("demo %s, line %d: %s", script.file.c_str(), line, what.c_str()));
 }
 
-int32_t need_field(const DemoScript& script, int line, const redman::Pool& pool, const std::string& word) {
-  const int32_t at = observed(pool, word);
+// `angle`: whether the field is one.
+int32_t need_field(const DemoScript& script, int line, const redman::Pool& pool, const std::string& word,
+                   bool* angle = nullptr) {
+  const int32_t at = observed(pool, word, angle);
   if (at < 0) bad(script, line, "the task observes no " + word);
   return at;
 }
@@ -105,14 +110,14 @@ Demo::Demo(const DemoScript& script, redman::Pool& pool)
         if (c.degrees) {
           const double lower = entries.lower[k], upper = entries.upper[k];
           if (!(upper > lower)) bad(script, c.line, entries.names[k] + " takes no degrees");
-          v = (2 * c.value * 3.14159265358979323846 / 180 - upper - lower) / (upper - lower);
+          v = (2 * c.value * kPi / 180 - upper - lower) / (upper - lower);
         }
         out.entries.push_back(static_cast<int32_t>(k));
         out.values.push_back(static_cast<float>(std::clamp(v, -1.0, 1.0)));
       }
       if (out.entries.empty()) bad(script, c.line, "the task has no action " + c.entry);
       if (c.follows) {
-        out.measured = need_field(script, c.line, pool, c.measured);
+        out.measured = need_field(script, c.line, pool, c.measured, &out.turns);
         if (!c.aim.empty()) out.aim = need_field(script, c.line, pool, c.aim);
       }
       memory_ += out.entries.size();
@@ -155,7 +160,8 @@ void Demo::run(World& w, const float* obs, float* action) const {
     for (size_t k = 0; k < c.entries.size(); ++k) {
       float& value = w.value[static_cast<size_t>(c.entries[k])];
       if (c.follows) {
-        const double error = aim - static_cast<double>(obs[c.measured]);
+        double error = aim - static_cast<double>(obs[c.measured]);
+        if (c.turns) error = std::remainder(error, 2 * kPi);
         value = static_cast<float>(std::clamp(c.gain * error, -c.limit, c.limit));
         continue;
       }

@@ -65,6 +65,7 @@ class Demo {
     double at, over, gain, limit, offset;
     int32_t measured, aim;  // observation entries, aim -1: none
     size_t memory;          // first of its places in World::from
+    bool turns = false;     // measures an angle: the error is the shorter way round
   };
   struct Condition {
     int32_t entry;
