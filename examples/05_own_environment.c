@@ -1,6 +1,6 @@
 /* 05: the agent learns a world of your own, without a pool: act, record, update.
  *
- *   05_own_environment [epochs]
+ *   05_own_environment [epochs [algorithm]]
  *
  * The world: a cart with a throttle. Reward is the distance driven; going faster than 1 m/s costs 1 per step.
  * At full throttle an episode of 50 steps costs more than 40. The limit is 5, so the agent must learn to
@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
   config.obs_dim = 2;
   config.action_dim = 1;
   config.num_envs = CARTS;
-  config.algo = "ppo_lag";
+  config.algo = argc > 2 ? argv[2] : "ppo_lag";
   config.cost_limits = &limit;
   config.initial_mean = &start;
   config.max_steps = LENGTH;
