@@ -18,8 +18,8 @@ tasks=${TASKS:-bandit two_state lqr_line ball_run ball_circle car_run swimmer_ve
 algos=${ALGOS:-ppo trpo ppo_lag trpo_lag cppo_pid cpo pcpo focops p3o ipo}
 mkdir -p "$out"
 
-# value KEY FILE: a number of the tool's one-line JSON
-value() { sed -n "s/.*\"$1\":\[\{0,1\}\([-0-9.e+]*\|true\|false\).*/\1/p" "$2"; }
+# value KEY FILE: a number or truth value of the tool's one-line JSON
+value() { sed -n "s/.*\"$1\":\[\{0,1\}\([-+.0-9a-z]*\).*/\1/p" "$2"; }
 
 steps() {
   case $1 in

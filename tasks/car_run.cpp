@@ -92,9 +92,24 @@ class CarRun final : public StageTask {
 
 constexpr auto kOptions = track_options(1.5, 11, 500);
 constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},     {"activation", "tanh"},    {"discount", "0.99"},  {"lambda", "0.95"},
-    {"cost_lambda", "0.95"}, {"horizon", "125"},        {"minibatches", "32"}, {"passes", "10"},
-    {"init_std", "0.3"},     {"learning_rate", "1e-3"}, {"cost_limit", "25"},
+    {"hidden", "64,64"},
+    {"activation", "tanh"},
+    {"passes", "10"},
+    {"lambda", "0.95"},
+    {"cost_lambda", "0.95"},
+    {"lr_schedule", "linear"},
+    {"early_stop_kl", "0.03"},
+    {"horizon", "250"},
+    {"minibatches", "32"},
+    {"discount", "0.95"},
+    {"init_std", "0.05"},
+    {"std_min", "0.01"},
+    {"learning_rate", "1e-3"},
+    {"multiplier_optimizer", "sgd"},
+    {"multiplier_normalized", "true"},
+    {"multiplier_init", "1"},
+    {"multiplier_lr", "0.1"},
+    {"cost_limit", "25"},
 };
 
 }  // namespace

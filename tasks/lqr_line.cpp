@@ -100,7 +100,7 @@ constexpr LearnerDefault kDefaults[] = {
     {"lr_schedule", "linear"},
     {"multiplier_optimizer", "sgd"},
     {"multiplier_normalized", "true"},
-    {"multiplier_init", "2"},
+    {"multiplier_init", "3"},
     {"multiplier_lr", "0.1"},
     {"multiplier_window", "400"},
     {"cost_limit", "1"},

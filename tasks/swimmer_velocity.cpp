@@ -96,9 +96,24 @@ constexpr CameraSpec kCameras[] = {
     {"top", {2, -0.01, 10}, {2, 0, 0}, 0.9},
 };
 constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},     {"activation", "tanh"},    {"discount", "0.999"}, {"lambda", "0.95"},
-    {"cost_lambda", "0.95"}, {"horizon", "250"},        {"minibatches", "32"}, {"passes", "10"},
-    {"init_std", "0.6"},     {"learning_rate", "1e-3"}, {"cost_limit", "25"},
+    {"hidden", "64,64"},
+    {"activation", "tanh"},
+    {"passes", "10"},
+    {"lambda", "0.95"},
+    {"cost_lambda", "0.95"},
+    {"lr_schedule", "linear"},
+    {"early_stop_kl", "0.03"},
+    {"horizon", "500"},
+    {"minibatches", "64"},
+    {"discount", "0.995"},
+    {"init_std", "0.6"},
+    {"std_min", "0.05"},
+    {"learning_rate", "1e-3"},
+    {"multiplier_optimizer", "sgd"},
+    {"multiplier_normalized", "true"},
+    {"multiplier_init", "0.3"},
+    {"multiplier_lr", "0.05"},
+    {"cost_limit", "25"},
 };
 
 }  // namespace
