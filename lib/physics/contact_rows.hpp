@@ -22,7 +22,9 @@ namespace {
 
 constexpr int kConjugateFrom = 6;
 constexpr int32_t kPileFactor = 4;
-constexpr double kStill = 1e-9;  // square of the relative change at which the sweeps end early
+// Square of the relative change at which the sweeps end early, and that of a pile of more than kPile points.
+constexpr double kStill = 1e-9, kPileStill = 1e-8;
+constexpr int32_t kPile = 64;
 
 template <class S>
 struct ContactRows {
@@ -225,11 +227,12 @@ template <class S>
 void ContactRows<S>::solve(int32_t iterations) {
   S size = 0;  // sum of squared impulses
   // weight travels from point to point, one sweep each: piles get more
+  const S still = count > kPile ? S(kPileStill) : S(kStill);
   iterations = std::clamp(3 * count / 4, iterations, kPileFactor * iterations);
   if (count < kConjugateFrom) {
     for (int32_t k = 0; k < iterations; ++k) {
       const S moved = sweep(&size);
-      if (moved <= S(kStill) * size) return;
+      if (moved <= still * size) return;
     }
     return;
   }
@@ -243,7 +246,7 @@ void ContactRows<S>::solve(int32_t iterations) {
   for (int32_t k = 0; k < iterations; ++k) {
     for (int32_t s = 0; s < num_segments; ++s) before[s] = sum[s];
     const S moved = sweep(&size);
-    if (moved <= S(kStill) * size || k + 1 == iterations) return;
+    if (moved <= still * size || k + 1 == iterations) return;
     const S beta = k ? moved / last : S(0);
     last = moved;
     if (beta > 1) {
