@@ -6,6 +6,7 @@
 #include "articulated.hpp"
 #include "physics/collider.hpp"
 #include "physics/convert.hpp"
+#include "physics/convex.hpp"
 #include "physics/ode_guard.hpp"
 
 namespace rdm {
@@ -122,9 +123,10 @@ class Rig final : public Collider::Poses {
       dGeomSetRotation(geoms_[i].id, r);
       dGeomSetPosition(geoms_[i].id, poses_[i].p.x, poses_[i].p.y, poses_[i].p.z);
       Bound& bound = collider_.bounds()[i];
+      const Vec3 axis = R * capsule_around(s).axis;
       for (int k = 0; k < 3; ++k) {
         bound.center[k] = static_cast<float>(poses_[i].p[k]);
-        if (s.def.kind == ShapeKind::kCapsule) bound.axis[k] = static_cast<float>(s.def.size.y * R(k, 2));
+        bound.axis[k] = static_cast<float>(axis[k]);
       }
     }
   }
@@ -178,6 +180,35 @@ TEST(Collider, FindsWhatAskingEveryPairFinds) {
   EXPECT_GT(points, 2500);
   EXPECT_GT(robots, 1000);
   EXPECT_GT(planes, 20);
+}
+
+// No point of a shape is outside of the capsule around it.
+TEST(Collider, ACapsuleHoldsItsShape) {
+  Stream random(4, 0, Purpose::kTest);
+  const ShapeKind kinds[] = {ShapeKind::kSphere, ShapeKind::kCapsule, ShapeKind::kBox, ShapeKind::kCylinder};
+  int slender = 0;
+  for (int k = 0; k < 400; ++k) {
+    ShapeDef def;
+    def.kind = kinds[k % 4];
+    def.size = {random.uniform(0.01, 1), random.uniform(0.01, 1), random.uniform(0.01, 1)};
+    const Vec3& s = def.size;
+    SceneShape shape = {def, k % 3 == 0 ? Carrier::kLink : Carrier::kBody, 0, -1, 0};
+    shape.radius = def.kind == ShapeKind::kBox        ? norm(s)
+                   : def.kind == ShapeKind::kCylinder ? std::hypot(s.x, s.y)
+                   : def.kind == ShapeKind::kCapsule  ? s.x + s.y
+                                                      : s.x;
+    const Capsule around = capsule_around(shape);
+    slender += norm(around.axis) > 0 && def.kind != ShapeKind::kCapsule;
+    EXPECT_LE(around.radius, shape.radius + 1e-12);
+    for (int i = 0; i < 30; ++i) {
+      const Convex solid = {def.kind, def.size, {}, {}};
+      const Vec3 p = farthest(solid, {random.signed_unit(), random.signed_unit(), random.signed_unit()});
+      const double square = dot(around.axis, around.axis);
+      const double t = square > 0 ? std::clamp(dot(p, around.axis) / square, -1.0, 1.0) : 0;
+      EXPECT_LE(norm(p - t * around.axis), around.radius + 1e-12) << k;
+    }
+  }
+  EXPECT_GT(slender, 50);
 }
 
 TEST(Collider, TheFirstPointsStayWhenThereAreTooMany) {

@@ -63,10 +63,12 @@ class StillPoses final : public Collider::Poses {
   const World& world_;
 };
 
-void set_bound(const ShapeDef& def, const Vec3& p, const Mat3& R, Bound* bound) {
-  for (int k = 0; k < 3; ++k) bound->center[k] = static_cast<float>(p[k]);
-  if (def.kind != ShapeKind::kCapsule) return;
-  for (int k = 0; k < 3; ++k) bound->axis[k] = static_cast<float>(def.size.y * R(k, 2));
+void set_bound(const SceneShape& shape, const Vec3& p, const Mat3& R, Bound* bound) {
+  const Vec3 axis = R * capsule_around(shape).axis;
+  for (int k = 0; k < 3; ++k) {
+    bound->center[k] = static_cast<float>(p[k]);
+    bound->axis[k] = static_cast<float>(axis[k]);
+  }
 }
 
 }  // namespace
@@ -252,7 +254,7 @@ void ArticulatedWorld::set_body_bounds() {
     if (s.carrier == Carrier::kStatic) continue;
     if (s.carrier != Carrier::kBody) break;  // bodies stand after all articulations
     const Mat3& R_WB = moving_[s.index].R;
-    set_bound(s.def, bodies_[s.index].X.p + R_WB * s.def.X_LS.p, R_WB * to_matrix(s.def.X_LS.q), &bounds[i]);
+    set_bound(s, bodies_[s.index].X.p + R_WB * s.def.X_LS.p, R_WB * to_matrix(s.def.X_LS.q), &bounds[i]);
   }
 }
 
@@ -367,7 +369,7 @@ double ArticulatedWorld::body_overlap(int32_t body) {
     const SceneShape& s = scene_->shapes[i];
     if (!scene_->moves(s)) continue;
     const Pose X_WS = shape_pose(static_cast<int32_t>(i));
-    set_bound(s.def, X_WS.p, to_matrix(X_WS.q), &bounds[i]);
+    set_bound(s, X_WS.p, to_matrix(X_WS.q), &bounds[i]);
   }
   StillPoses poses(*this);
   return shared_->collider.overlap(*scene_, poses, body);

@@ -85,6 +85,21 @@ Four segment_distance(const Four* p, const Four* u, const Four* q, const Four* v
 
 }  // namespace
 
+Capsule capsule_around(const SceneShape& shape) {
+  const Vec3& s = shape.def.size;
+  const Capsule sphere = {{}, shape.radius};
+  if (shape.def.kind == ShapeKind::kCapsule) return {{0, 0, s.y}, s.x};
+  // of links the engine knows no axis
+  if (shape.carrier != Carrier::kBody && shape.carrier != Carrier::kStatic) return sphere;
+  if (shape.def.kind == ShapeKind::kCylinder && s.y > s.x) return {{0, 0, s.y}, s.x};
+  if (shape.def.kind != ShapeKind::kBox) return sphere;
+  const int longest = s.x >= s.y && s.x >= s.z ? 0 : s.y >= s.z ? 1 : 2;
+  Vec3 axis, rest = s;
+  axis[longest] = s[longest];
+  rest[longest] = 0;
+  return norm(rest) < s[longest] ? Capsule{axis, norm(rest)} : sphere;
+}
+
 Collider::~Collider() {
   for (int32_t i = 0; geoms_ && i < num_shapes_; ++i)
     if (geoms_[i].id) dGeomDestroy(geoms_[i].id);
@@ -113,9 +128,9 @@ void Collider::make(const Scene& scene) {
     bound.center[3] = static_cast<float>(s.radius);
     for (int k = 0; k < 3; ++k) bound.center[k] = static_cast<float>(X_WS.p[k]);
     bound.axis[3] = bound.center[3];
-    if (s.def.kind != ShapeKind::kCapsule) continue;
-    bound.axis[3] = static_cast<float>(s.def.size.x);
-    const Vec3 axis = rotate(X_WS.q, {0, 0, s.def.size.y});
+    const Capsule capsule = capsule_around(s);
+    bound.axis[3] = static_cast<float>(capsule.radius);
+    const Vec3 axis = rotate(X_WS.q, capsule.axis);
     for (int k = 0; k < 3; ++k) bound.axis[k] = static_cast<float>(axis[k]);
   }
   for (size_t k = 0; k < scene.pairs.size(); ++k) {

@@ -10,8 +10,15 @@
 
 namespace rdm {
 
-// Where a shape is, roughly: inside a capsule about its centre. Half axis of a capsule shape, else 0. World,
-// m.
+// The capsule about a shape: its half axis in the shape's frame, and its radius, m. Along the longest way of
+// long bodies and things at rest, along capsules; else a sphere, without an axis.
+struct Capsule {
+  Vec3 axis;
+  double radius;
+};
+Capsule capsule_around(const SceneShape& shape);
+
+// Where a shape is, roughly: inside its capsule. World, m.
 struct Bound {
   float center[4];  // x y z, radius of the sphere that holds the shape
   float axis[4];    // x y z, radius of the capsule
