@@ -20,5 +20,5 @@ demo() {
 
 demo pick_bottles 300 0 1
 demo jenga 600 0 1
-demo clean_house 17500 100 0
+demo clean_house 17500 30 1
 exit $failed
