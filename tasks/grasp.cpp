@@ -28,8 +28,16 @@ constexpr OptionSpec kRows[] = {
     text_option("cost_mode", "default", "default|paper|literal",
                 "default, paper: joint force; literal: range of the first finger's command"),
     number_option("effort_share", 0.4, 0, 1, "cost: a finger joint's force above this share of its limit"),
+    text_option(
+        "initial_mean", "close", "close|hold|zero",
+        "start of a new policy: the wrist down and fingers and thumb around the cube, the hold action, "
+        "or 0"),
     number_option("finger_range", 0.9, 0, 1, "cost finger_range: a first finger's command beyond +-this"),
 };
+
+// Wrist down, fingers and thumb where they meet around the cube.
+constexpr float kClosed[kHandActions] = {0.4f, 0.7f,  0, 0.3f, 0.1f, 0, 0.1f, 0.1f,  0,     0.35f,
+                                         0.1f, -0.5f, 0, 0.4f, 0.1f, 1, 0.5f, -0.3f, -0.5f, -0.4f};
 
 enum : int { kCost, kFingerEffort, kFingerRange, kNumCosts };
 constexpr CostSpec kCosts[kNumCosts] = {
@@ -58,7 +66,13 @@ class Grasp final : public SingleHand {
         success_height_(o.number("success_height")),
         effort_share_(o.number("effort_share")),
         range_(o.number("finger_range")),
-        source_(same_name(o.text("cost_mode"), "literal") ? kFingerRange : kFingerEffort) {}
+        source_(same_name(o.text("cost_mode"), "literal") ? kFingerRange : kFingerEffort) {
+    const char* mean = o.text("initial_mean");
+    if (same_name(mean, "hold"))
+      hold_action(initial_mean_);
+    else if (same_name(mean, "close"))
+      std::copy(std::begin(kClosed), std::end(kClosed), initial_mean_);
+  }
 
  private:
   void judge_step(const Step& step, Verdict* v) const override {

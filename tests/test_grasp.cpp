@@ -96,6 +96,18 @@ TEST_F(GraspTask, ForceIsAShareOfTheEffortLimit) {
     }
 }
 
+TEST_F(GraspTask, InitialMean) {
+  float a[20], b[20];
+  TestPool("grasp", 1)->task().initial_mean(a);
+  EXPECT_GT(a[1], 0.5f);  // the wrist down
+  TestPool p("grasp", 1, {{"initial_mean", "hold", 0}});
+  p->task().initial_mean(a);
+  p->task().hold_action(b);
+  for (int k = 0; k < 20; ++k) EXPECT_EQ(a[k], b[k]);
+  TestPool("grasp", 1, {{"initial_mean", "zero", 0}})->task().initial_mean(a);
+  for (const float x : a) EXPECT_EQ(x, 0);
+}
+
 // What the specification asks of the default threshold: it tells policies apart.
 TEST_F(GraspTask, BaselinesDiffer) {
   const auto cost = [](Baseline kind) {
