@@ -1,6 +1,7 @@
 // The functions of a half that was left out of the build: they exist and say so.
 #include "capi/shim.hpp"
 #include "redman/redman_map.h"
+#include "redman/redman_sense.h"
 
 using namespace rdm;
 using namespace rdm::capi;
@@ -30,6 +31,12 @@ void rdm_map_destroy(rdm_map*) {}
 const char* rdm_map_error(const rdm_map*) {
   return "this build was made without the simulation half";
 }
+size_t rdm_sample_scratch(int32_t) {
+  return 0;
+}
+RDM_SIM_ABSENT(rdm_pool_sensors, const rdm_pool*, rdm_sensors*)
+RDM_SIM_ABSENT(rdm_pool_sensor_camera, const rdm_pool*, int32_t, int32_t, rdm_camera*)
+RDM_SIM_ABSENT(rdm_sample_furthest, const float*, int32_t, int32_t, int32_t, int32_t*, void*, size_t)
 RDM_SIM_ABSENT(rdm_map_config_init, rdm_map_config*, size_t)
 RDM_SIM_ABSENT(rdm_map_create, rdm_map**, const rdm_map_config*)
 RDM_SIM_ABSENT(rdm_map_get_info, const rdm_map*, rdm_map_info*)

@@ -69,6 +69,9 @@ rdm_result rdm_task_at(int32_t index, rdm_task* io) {
     t.max_steps = task->max_steps();
     t.num_fields = static_cast<int32_t>(task->fields().size());
     info.options(&t.num_options);
+    int32_t seen = 0;
+    sense_options(&seen);
+    t.num_options += seen;
     t.num_cameras = info.num_cameras;
     t.num_defaults = info.num_defaults;
     write_struct(io, t, sizeof(rdm_task), "io");
@@ -108,11 +111,23 @@ rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost* out) {
 rdm_result rdm_task_option(int32_t task, int32_t i, rdm_option_info* out) {
   return call(nullptr, [&] {
     need(out, "out");
-    int32_t count = 0;
+    int32_t count = 0, seen = 0;
     const OptionSpec* specs = info_at(task).options(&count);
-    need_index(i, count, "i");
-    *out = describe(specs[i]);
+    const OptionSpec* sense = sense_options(&seen);
+    need_index(i, count + seen, "i");
+    *out = describe(i < count ? specs[i] : sense[i - count]);
   });
+}
+
+rdm_camera rdm::capi::describe(const CameraSpec& c) {
+  rdm_camera o{};
+  o.name = c.name;
+  for (int k = 0; k < 3; ++k) {
+    o.eye[k] = static_cast<float>(c.eye[k]);
+    o.target[k] = static_cast<float>(c.target[k]);
+  }
+  o.fov_y = static_cast<float>(c.fov_y);
+  return o;
 }
 
 rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera* out) {
@@ -120,15 +135,7 @@ rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera* out) {
     need(out, "out");
     const TaskInfo& info = info_at(task);
     need_index(i, info.num_cameras, "i");
-    const CameraSpec& c = info.cameras[i];
-    rdm_camera o{};
-    o.name = c.name;
-    for (int k = 0; k < 3; ++k) {
-      o.eye[k] = static_cast<float>(c.eye[k]);
-      o.target[k] = static_cast<float>(c.target[k]);
-    }
-    o.fov_y = static_cast<float>(c.fov_y);
-    *out = o;
+    *out = describe(info.cameras[i]);
   });
 }
 

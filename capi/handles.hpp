@@ -26,6 +26,7 @@ struct rdm_pool {
 namespace rdm::capi {
 // A camera of the task by name; Error(kNotFound) offers the nearest.
 Camera task_camera(int32_t task, const char* name);
+rdm_camera describe(const CameraSpec& c);
 }  // namespace rdm::capi
 #endif
 

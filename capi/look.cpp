@@ -25,16 +25,7 @@ constexpr int kColorSamples = 3;  // per side of a pixel
 
 Camera rdm::capi::task_camera(int32_t task, const char* name) {
   need(name, "camera");
-  const TaskInfo& info = task_at(task);
-  Vector<const char*> names;
-  for (int32_t i = 0; i < info.num_cameras; ++i) {
-    const CameraSpec& c = info.cameras[i];
-    if (same_name(c.name, name)) return {c.name, c.eye, c.target, c.fov_y};
-    names.push_back(c.name);
-  }
-  const int32_t near = nearest_name(name, names.data(), info.num_cameras);
-  fail(Code::kNotFound, "camera %.32s: unknown; nearest is %s", name,
-       near >= 0 ? names[static_cast<size_t>(near)] : "(none)");
+  return camera_of(task_at(task), name);
 }
 
 rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {

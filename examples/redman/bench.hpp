@@ -1,4 +1,4 @@
-// The three benchmarks: flags in, report out.
+// The benchmarks: flags in, report out.
 #pragma once
 #include "setup.hpp"
 
@@ -11,6 +11,15 @@ struct StepFlags {
 };
 // Random actions in every world and every control step.
 Report bench_step(StepFlags flags);
+
+struct ObserveFlags {
+  PoolSettings pool;
+  std::vector<std::string> sets;
+  std::string modality = "points";
+  double seconds = 10;
+};
+// The same with pictures, points or voxels of every world in every step.
+Report bench_observe(ObserveFlags flags);
 
 struct UpdateFlags {
   std::string algo = "ppo_lag", hidden = "256,256";

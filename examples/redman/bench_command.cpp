@@ -1,4 +1,4 @@
-// `bench`: the flags of its three parts.
+// `bench`: the flags of its parts.
 #include <memory>
 
 #include "bench.hpp"
@@ -30,6 +30,15 @@ void add_bench(CLI::App& app, Run& run) {
   add_seconds(*command, step->seconds);
   add_set_flag(*command, step->sets);
   command->callback([&run, step] { run = [step] { return bench_step(*step); }; });
+
+  auto observe = std::make_shared<ObserveFlags>();
+  observe->pool.envs = 16;
+  command = bench->add_subcommand("observe", "Worlds x frames per second with pictures, points or voxels");
+  add_pool_flags(*command, observe->pool, "task");
+  command->add_option("--modality", observe->modality, "as the option modality");
+  add_seconds(*command, observe->seconds);
+  add_set_flag(*command, observe->sets);
+  command->callback([&run, observe] { run = [observe] { return bench_observe(*observe); }; });
 
   auto update = std::make_shared<UpdateFlags>();
   const auto positive = CLI::PositiveNumber;

@@ -13,9 +13,12 @@ namespace {
 
 constexpr int32_t kMaxEnvs = 65536, kMaxThreads = 256;
 
+// Of what decides a world's course: not of what is seen of it.
 uint64_t hash_options(const TaskInfo& info, const Options& options) {
   uint64_t hash = hash_bytes(info.name, std::strlen(info.name) + 1);
-  for (int32_t i = 0; i < options.count(); ++i) {
+  int32_t count = 0;
+  info.options(&count);
+  for (int32_t i = 0; i < count; ++i) {
     const OptionSpec& spec = options.spec(i);
     hash = hash_bytes(spec.key, std::strlen(spec.key) + 1, hash);
     if (spec.kind == OptionKind::kText) {
@@ -37,6 +40,8 @@ void read_options(const PoolConfig& config, const TaskInfo& info, Options* out) 
     fail(Code::kArgument, "options: %d given, but no list", config.num_options);
   int32_t count = 0;
   const OptionSpec* specs = info.options(&count);
+  out->add_table(specs, count);
+  specs = sense_options(&count);
   out->add_table(specs, count);
   for (int32_t i = 0; i < config.num_options; ++i) out->set(config.options[i], info.name);
 }
@@ -67,6 +72,7 @@ PoolPlan::PoolPlan(const PoolConfig& c) : config(c) {
   action_dim = task->action_dim();
   cost_dim = info->num_costs;
   obs_limit = task->obs_limit();
+  sense = sense_from(options, *info);
 }
 
 PoolPlan::~PoolPlan() {
@@ -101,11 +107,16 @@ Pool::Impl::Carved Pool::Impl::carve_rows(const PoolPlan& plan, Arena& arena) {
   b.terminated = arena.make<uint8_t>(n);
   b.truncated = arena.make<uint8_t>(n);
   b.success = arena.make<uint8_t>(n);
+  c.sensed = carve_sense_buffers(arena, plan.sense, n);
   c.slots = arena.make<Slot>(n);
   c.blocks = arena.make<Block>(blocks);
   for (size_t i = 0; i < blocks; ++i) {
     float* action = arena.make<float>(actions);
-    if (c.blocks) c.blocks[i].action = action;
+    const SenseScratch sense =
+        carve_sense_scratch(arena, plan.sense, static_cast<int32_t>(plan.task->scene().shapes.size()));
+    if (!c.blocks) continue;
+    c.blocks[i].action = action;
+    c.blocks[i].sense = sense;
   }
   return c;
 }
@@ -125,6 +136,7 @@ void Pool::Impl::build() {
   arena = Arena(config.hooks, arena_bytes(*this));
   const Carved carved = carve_rows(*this, arena);
   buffers = carved.buffers;
+  sensed = carved.sensed;
   slots = carved.slots;
   blocks = carved.blocks;
   for (int32_t b = 0; b < num_blocks(); ++b) {
@@ -213,6 +225,12 @@ int32_t Pool::cost_dim() const {
 }
 const Buffers& Pool::buffers() const {
   return impl_->buffers;
+}
+const SenseConfig& Pool::sense() const {
+  return impl_->sense;
+}
+const SenseBuffers& Pool::sensed() const {
+  return impl_->sensed;
 }
 World& Pool::world(int32_t env) {
   return *impl_->slots[env].world;

@@ -5,6 +5,7 @@
 
 #include "base/arena.hpp"
 #include "base/workers.hpp"
+#include "env/observer.hpp"
 #include "env/task.hpp"
 
 namespace rdm {
@@ -58,7 +59,9 @@ class Pool {
   int32_t obs_dim() const;
   int32_t cost_dim() const;
   const Buffers& buffers() const;
-  void bind(const Buffers& host);  // non-null pointers take over; contents are copied
+  const SenseConfig& sense() const;
+  const SenseBuffers& sensed() const;  // written by reset and step
+  void bind(const Buffers& host);      // non-null pointers take over; contents are copied
 
   void reset(const uint64_t* seeds, const uint8_t* mask);
   void step(const uint8_t* mask);  // null: all

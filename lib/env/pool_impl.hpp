@@ -2,6 +2,7 @@
 #pragma once
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
+#include "env/observer.hpp"
 #include "env/pool.hpp"
 
 namespace rdm {
@@ -41,6 +42,7 @@ inline constexpr int32_t kMaxGroup = 16;
 // A run of worlds that stays with one worker.
 struct alignas(Arena::kAlign) Block {
   float* action;  // [action_dim] clipped
+  SenseScratch sense;
   // Worlds that have their targets and wait for the engine, and their numbers.
   World* group[kMaxGroup];
   int32_t member[kMaxGroup];
@@ -67,6 +69,7 @@ struct PoolPlan {
   Task* task = nullptr;
   int32_t obs_dim = 0, action_dim = 0, cost_dim = 0;
   float obs_limit = 0;
+  SenseConfig sense;
   uint64_t options_hash = 0;  // task name and every option's value
 
   size_t num() const { return static_cast<size_t>(config.num_envs); }
@@ -81,6 +84,7 @@ struct Pool::Impl : PoolPlan {
   // Rows, slots and blocks: the same cuts for measuring and for real. The worlds' own cuts follow them.
   struct Carved {
     Buffers buffers;
+    SenseBuffers sensed;
     Slot* slots = nullptr;
     Block* blocks = nullptr;
   };
@@ -94,6 +98,7 @@ struct Pool::Impl : PoolPlan {
   void begin_episode(int32_t env);              // resets world, streams go on, writes obs
   void clear_rows(int32_t env);                 // reward, costs, flags, status, sums; final_obs becomes obs
   bool observe(int32_t env, float* row) const;  // false: an entry is not finite
+  void see(int32_t env, Block& block);          // pictures, points and voxels
   // A step in three parts, so that the engine can take several worlds at once: all that comes before it, the
   // engine and what comes behind for all that wait, and what comes behind for one world.
   void start_step(int32_t env, Block& block);
@@ -122,6 +127,7 @@ struct Pool::Impl : PoolPlan {
 
   Arena arena;
   Buffers buffers;
+  SenseBuffers sensed;
   Slot* slots = nullptr;              // [num_envs]
   Block* blocks = nullptr;            // [num_blocks]
   unsigned char* pristine = nullptr;  // a world's state before anything happened: what a reset starts from

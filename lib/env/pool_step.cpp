@@ -22,10 +22,11 @@ bool all_finite(const Verdict& v, int32_t costs) {
 void Pool::reset(const uint64_t* seeds, const uint8_t* mask) {
   const FpMode mode;
   Impl& m = *impl_;
-  m.each_world(mask, [&](int32_t env, Block&) {
+  m.each_world(mask, [&](int32_t env, Block& block) {
     if (seeds) m.name_streams(env, seeds[env]);
     m.begin_episode(env);
     m.clear_rows(env);
+    m.see(env, block);
   });
 }
 
@@ -41,6 +42,9 @@ void Pool::step(const uint8_t* mask) {
       if (block.waiting == m.group_size) m.step_group(block);
     }
     m.step_group(block);
+    if (!m.sense.any()) return;
+    for (int32_t env = begin; env < end; ++env)
+      if (!mask || mask[env]) block.attempt(env, [&] { m.see(env, block); });
   });
 }
 
@@ -97,6 +101,17 @@ bool Pool::Impl::observe(int32_t env, float* row) const {
   const Slot& s = slots[env];
   task->observe(*s.world, s.task_state, row);
   return clip_row(row, obs_dim, obs_limit);
+}
+
+void Pool::Impl::see(int32_t env, Block& block) {
+  const Slot& s = slots[env];
+  if (!sense.any()) return;
+  // a saved state shows the same points when it is gone on with
+  const uint64_t moment =
+      0x9e3779b97f4a7c15u * (s.episode.reset.counter() + static_cast<uint64_t>(s.episode.step));
+  sense_world(sense, *s.world, task->focus(*s.world, s.task_state),
+              Stream(s.episode.seed + moment, static_cast<uint32_t>(env), Purpose::kSense), block.sense,
+              sensed, static_cast<size_t>(env));
 }
 
 void Pool::Impl::clear_rows(int32_t env) {

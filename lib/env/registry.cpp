@@ -66,4 +66,8 @@ int32_t task_find(const char* name) {
        near >= 0 ? names[near] : "");
 }
 
+Vec3 Task::focus(const World& world, const void*) const {
+  return world.scene().num_bodies > 0 ? world.body(0).X.p : Vec3{0, -0.5, 0.5};
+}
+
 }  // namespace rdm

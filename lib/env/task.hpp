@@ -60,6 +60,8 @@ class Task {
   // Whoever asks for an observation then bounds its entries by +-obs_limit().
   virtual void observe(const World& world, const void* state, float* obs) const = 0;
   virtual float obs_limit() const { return std::numeric_limits<float>::infinity(); }
+  // What the local grid of voxels is about, m: the first free body, unless the task knows better.
+  virtual Vec3 focus(const World& world, const void* state) const;
   // The hold action: the nominal start pose, base entries 0. [action_dim]
   virtual void hold_action(float* action) const = 0;
   // Mean action that a new policy starts from. [action_dim]

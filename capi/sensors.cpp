@@ -1,0 +1,82 @@
+// What the worlds of a pool see, and the sampling of a host's own clouds.
+#include <cmath>
+
+#include "capi/handles.hpp"
+#include "redman/redman_sense.h"
+
+#if RDM_WITH_SIM
+#include "sense/furthest.hpp"
+
+using namespace rdm;
+using namespace rdm::capi;
+
+rdm_result rdm_pool_sensors(const rdm_pool* p, rdm_sensors* io) {
+  return call(nullptr, [&] {
+    need(p, "pool");
+    const SenseConfig& c = p->pool->sense();
+    const SenseBuffers& b = p->pool->sensed();
+    rdm_sensors s{};
+    s.num_cameras = c.num_cameras;
+    s.width = c.width;
+    s.height = c.height;
+    s.num_points = c.num_points;
+    s.num_voxels = c.grid;
+    s.voxel_size = static_cast<float>(c.cell);
+    s.rgb = b.rgb;
+    s.depth = b.depth;
+    s.segmentation = b.segmentation;
+    s.points = b.points;
+    s.point_shape = b.point_shape;
+    s.point_count = b.point_count;
+    s.voxels = b.voxels;
+    write_struct(io, s, sizeof(rdm_sensors), "io");
+  });
+}
+
+rdm_result rdm_pool_sensor_camera(const rdm_pool* p, int32_t cloud, int32_t i, rdm_camera* out) {
+  return call(nullptr, [&] {
+    need(p, "pool");
+    need(out, "out");
+    if (cloud < 0 || cloud > 1) fail(Code::kRange, "cloud: %d is outside [0, 1]", cloud);
+    const SenseConfig& c = p->pool->sense();
+    need_index(i, cloud ? c.num_cloud_cameras : c.num_cameras, "i");
+    *out = describe(
+        camera_spec(task_at(p->pool->task_index()), (cloud ? c.cloud_cameras : c.cameras)[i].name.text));
+  });
+}
+
+namespace {
+size_t sampling_bytes(int32_t count) {
+  Arena measure;
+  carve_furthest_scratch(measure, count);
+  return measure.used();
+}
+}  // namespace
+
+size_t rdm_sample_scratch(int32_t count) {
+  return count < 1 || count > kMaxCloud ? 0 : sampling_bytes(count);
+}
+
+rdm_result rdm_sample_furthest(const float* points, int32_t count, int32_t wanted, int32_t start,
+                               int32_t* chosen, void* scratch, size_t scratch_bytes) {
+  return call(nullptr, [&] {
+    need(points, "points");
+    need(chosen, "chosen");
+    need(scratch, "scratch");
+    if (count < 1 || count > kMaxCloud) fail(Code::kRange, "count: %d is outside [1, %d]", count, kMaxCloud);
+    const size_t bytes = sampling_bytes(count);
+    if (scratch_bytes < bytes) fail(Code::kRange, "scratch_bytes: %zu, %zu are needed", scratch_bytes, bytes);
+    if (reinterpret_cast<uintptr_t>(scratch) % Arena::kAlign)
+      fail(Code::kArgument, "scratch is not %zu-byte aligned", Arena::kAlign);
+    for (int64_t i = 0; i < 3 * int64_t{count}; ++i)
+      if (!std::isfinite(points[i]))
+        fail(Code::kArgument, "points: entry %lld is not finite", static_cast<long long>(i));
+    HostHooks lent;  // an arena over the caller's memory
+    lent.user = scratch;
+    lent.alloc = [](void* user, size_t, size_t) { return user; };
+    lent.release = [](void*, void*, size_t, size_t) {};
+    Arena arena(lent, bytes);
+    sample_furthest(points, count, wanted, start, carve_furthest_scratch(arena, count), chosen);
+  });
+}
+#endif
