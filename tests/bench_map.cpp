@@ -34,7 +34,7 @@ struct Scan {
   std::vector<float> points;
 };
 
-// Depths of the scene without its floor, from three cameras, while random actions move the hands.
+// Depths of the scene from three cameras, while random actions move the hands.
 std::vector<Scan> make_scans(Pool& pool, int count) {
   const SenseConfig& c = pool.sense();
   const Scene& scene = pool.task().scene();

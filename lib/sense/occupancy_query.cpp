@@ -25,6 +25,10 @@ bool each_occupied(const MapTree& tree, float threshold, const MapNode* node, co
   return true;
 }
 
+float probability_of(float log_odds) {
+  return static_cast<float>(1 / (1 + elementary::exp(-static_cast<double>(log_odds))));
+}
+
 double square(double v) {
   return v * v;
 }
@@ -103,14 +107,23 @@ class TurnedBox {
 float Occupancy::at(const Vec3& p) const {
   const VoxelLattice lattice(tree_->getResolution());
   VoxelKey key;
-  int depth = 0;
-  const MapNode* leaf = lattice.key(p, &key) ? tree_->leaf(key, &depth) : nullptr;
-  if (!leaf) return -1;
-  return static_cast<float>(1 / (1 + elementary::exp(-static_cast<double>(leaf->getLogOdds()))));
+  const MapNode* leaf = lattice.key(p, &key) ? MapCursor(*tree_).leaf(key) : nullptr;
+  return leaf ? probability_of(leaf->getLogOdds()) : -1;
 }
 
 void Occupancy::query(const float* points, size_t count, float* probability) const {
-  for (size_t i = 0; i < count; ++i, points += 3) probability[i] = at({points[0], points[1], points[2]});
+  const VoxelLattice lattice(tree_->getResolution());
+  MapCursor cursor(*tree_);
+  float last = 0, known = 0.5f;  // most voxels hold one of few values
+  for (size_t i = 0; i < count; ++i, points += 3) {
+    VoxelKey key;
+    const MapNode* leaf = lattice.key({points[0], points[1], points[2]}, &key) ? cursor.leaf(key) : nullptr;
+    if (leaf && leaf->getLogOdds() != last) {
+      last = leaf->getLogOdds();
+      known = probability_of(last);
+    }
+    probability[i] = leaf ? known : -1;
+  }
 }
 
 void Occupancy::each_in_box(const Vec3& low, const Vec3& high, void (*visit)(void*, const OccupiedVoxel&),
@@ -158,9 +171,9 @@ bool Occupancy::cast(const Vec3& from, const Vec3& direction, double range, bool
       range = std::min(range, (bound - (unit[i] > 0 ? from[i] : -from[i])) / std::abs(unit[i]) * (1 - 1e-12));
   }
   bool found = false;
+  MapCursor cursor(*tree_);
   walk_voxels(lattice, from, from + range * unit, [&](const VoxelKey& key, double t) {
-    int depth = 0;
-    const MapNode* leaf = tree_->leaf(key, &depth);
+    const MapNode* leaf = cursor.leaf(key);
     if (!leaf) return through_unknown;
     if (leaf->getLogOdds() < threshold_log_) return true;
     found = true;
@@ -182,14 +195,14 @@ double Occupancy::distance(const Vec3& p, double most) const {
 void Occupancy::grid(const Pose& X_WG, const int32_t n[3], double side, int8_t* out) const {
   const VoxelLattice lattice(tree_->getResolution());
   const Mat3 R = to_matrix(X_WG.q);
+  MapCursor cursor(*tree_);
   const auto middle = [&](int axis, int32_t i) { return (i + 0.5 - 0.5 * n[axis]) * side; };
   for (int32_t x = 0; x < n[0]; ++x)
     for (int32_t y = 0; y < n[1]; ++y)
       for (int32_t z = 0; z < n[2]; ++z) {
         VoxelKey key;
-        int depth = 0;
         const Vec3 p = X_WG.p + R * Vec3{middle(0, x), middle(1, y), middle(2, z)};
-        const MapNode* leaf = lattice.key(p, &key) ? tree_->leaf(key, &depth) : nullptr;
+        const MapNode* leaf = lattice.key(p, &key) ? cursor.leaf(key) : nullptr;
         *out++ = static_cast<int8_t>(!leaf ? -1 : leaf->getLogOdds() >= threshold_log_);
       }
 }

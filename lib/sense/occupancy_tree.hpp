@@ -64,21 +64,6 @@ class MapTree : public octomap::OcTree {
     clear();
     lists_ = 0;
   }
-  // The leaf that holds the voxel, or null; *depth is its depth.
-  const MapNode* leaf(const VoxelKey& key, int* depth) const {
-    const MapNode* node = root;
-    int d = 0;
-    for (; node && d < kMapDepth; ++d) {
-      const MapNode* next = child(node, index(key, d));
-      if (!next) {
-        if (nodeHasChildren(node)) node = nullptr;
-        break;
-      }
-      node = next;
-    }
-    *depth = d;
-    return node;
-  }
   // Which child of a node of depth d the voxel is in.
   static unsigned index(const VoxelKey& key, int d) {
     const int bit = kMapDepth - 1 - d;
@@ -88,6 +73,39 @@ class MapTree : public octomap::OcTree {
 
  private:
   size_t lists_ = 0;
+};
+
+// Finds leaves one after the other; what two voxels have in common of the way down is gone once. To be thrown
+// away when the tree changes.
+class MapCursor {
+ public:
+  explicit MapCursor(const MapTree& tree) : tree_(tree) { path_[0] = tree.getRoot(); }
+
+  // The leaf that holds the voxel, or null: unknown.
+  const MapNode* leaf(const VoxelKey& key) {
+    if (!path_[0]) return nullptr;
+    const int32_t change = (key.k[0] ^ last_.k[0]) | (key.k[1] ^ last_.k[1]) | (key.k[2] ^ last_.k[2]);
+    const int common =
+        change ? __builtin_clz(static_cast<unsigned>(change)) - (31 - kMapDepth) - 1 : kMapDepth;
+    int d = common < depth_ ? common : depth_;
+    last_ = key;
+    for (; d < kMapDepth; ++d) {
+      const unsigned i = MapTree::index(key, d);
+      if (!tree_.nodeChildExists(path_[d], i)) {
+        depth_ = d;
+        return tree_.nodeHasChildren(path_[d]) ? nullptr : path_[d];
+      }
+      path_[d + 1] = tree_.getNodeChild(path_[d], i);
+    }
+    depth_ = d;
+    return path_[d];
+  }
+
+ private:
+  const MapTree& tree_;
+  const MapNode* path_[kMapDepth + 1] = {};
+  VoxelKey last_ = {{0, 0, 0}};
+  int depth_ = 0;  // of the last node on the path
 };
 
 // A cube of the tree on the way down: the key of its lowest voxel and its depth.

@@ -15,12 +15,11 @@ struct VoxelLattice {
   explicit VoxelLattice(double side) : size(side), inverse(1 / side) {}
   // False outside the lattice and for what is not finite.
   bool key(const Vec3& p, VoxelKey* out) const {
-    for (int i = 0; i < 3; ++i) {
-      const double at = std::floor(p[i] * inverse) + kKeyCount / 2;
-      if (!(at >= 0 && at < kKeyCount)) return false;
-      out->k[i] = static_cast<int32_t>(at);
-    }
-    return true;
+    const double x = std::floor(p.x * inverse) + kKeyCount / 2, y = std::floor(p.y * inverse) + kKeyCount / 2,
+                 z = std::floor(p.z * inverse) + kKeyCount / 2;
+    const bool inside = (x >= 0) & (x < kKeyCount) & (y >= 0) & (y < kKeyCount) & (z >= 0) & (z < kKeyCount);
+    if (inside) *out = {{static_cast<int32_t>(x), static_cast<int32_t>(y), static_cast<int32_t>(z)}};
+    return inside;
   }
   double low(int32_t k) const { return (k - kKeyCount / 2) * size; }
   Vec3 centre(const VoxelKey& key) const {
