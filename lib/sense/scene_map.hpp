@@ -1,0 +1,15 @@
+// A map of what stands about in a scene at its start, as depth cameras would show it to a robot before it
+// moves.
+#pragma once
+#include "physics/scene.hpp"
+#include "sense/camera.hpp"
+#include "sense/occupancy.hpp"
+
+namespace rdm {
+
+// Puts a scan by each camera, pictures of side x side rays, into the map. They see what is at rest and the
+// bodies listed, at their start poses; planes and hands are left out, as a robot leaves out itself.
+void scan_scene(const Scene& scene, const int32_t* bodies, int32_t num_bodies, const Camera* cameras,
+                int32_t num_cameras, int32_t side, Occupancy* map);
+
+}  // namespace rdm
