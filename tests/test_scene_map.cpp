@@ -43,7 +43,7 @@ TEST(SceneMap, HoldsWhatStandsThere) {
   const std::unique_ptr<Occupancy, void (*)(Occupancy*)> map(Occupancy::create(config, {}),
                                                              Occupancy::destroy);
   const int32_t chair = 0;
-  scan_scene(scene, &chair, 1, cameras, 2, 128, map.get());
+  scan_scene(scene, true, &chair, 1, cameras, 2, 128, map.get());
   const auto near = [&](const Vec3& p) { return map->distance(p, 1) < 0.06; };
   EXPECT_TRUE(near({0, 0, 0.45}));
   EXPECT_TRUE(near({0.3, 0.1, 0.4}));
@@ -55,9 +55,13 @@ TEST(SceneMap, HoldsWhatStandsThere) {
   const Vec3 head{0.25, 0.05, 0.3};
   EXPECT_TRUE(map->meets_box({{0.35, -1, 0.3}, {}}, head));
   EXPECT_FALSE(map->meets_box({{0.6, -1, 0.3}, {}}, head));
-  EXPECT_TRUE(map->meets_box({{0.4, -0.8, 0.3}, axis_angle({0, 0, 1}, -0.8)}, head));
+  EXPECT_TRUE(map->meets_box({{0.3, -0.8, 0.3}, axis_angle({0, 0, 1}, 0.8)}, head));
   EXPECT_FALSE(map->meets_box({{0, 1, 0.3}, {}}, head));
   EXPECT_EQ(map->info().dropped, 0u);
+  map->clear();
+  scan_scene(scene, false, &chair, 1, cameras, 2, 128, map.get());
+  EXPECT_FALSE(near({0.3, 0.1, 0.4})) << "what is at rest is left out";
+  EXPECT_TRUE(near({0.2, -1, 0.3}));
 }
 
 }  // namespace

@@ -7,13 +7,14 @@
 
 namespace rdm {
 
-void scan_scene(const Scene& scene, const int32_t* bodies, int32_t num_bodies, const Camera* cameras,
-                int32_t num_cameras, int32_t side, Occupancy* map) {
+void scan_scene(const Scene& scene, bool statics, const int32_t* bodies, int32_t num_bodies,
+                const Camera* cameras, int32_t num_cameras, int32_t side, Occupancy* map) {
   Vector<RenderShape> shapes;
   for (const SceneShape& s : scene.shapes) {
     const bool listed =
         s.carrier == Carrier::kBody && std::find(bodies, bodies + num_bodies, s.index) != bodies + num_bodies;
-    if (s.def.kind == ShapeKind::kPlane || (s.carrier != Carrier::kStatic && !listed)) continue;
+    const bool stands = statics && s.carrier == Carrier::kStatic;
+    if (s.def.kind == ShapeKind::kPlane || !(listed || stands)) continue;
     RenderShape shape;
     shape.kind = s.def.kind;
     shape.size = s.def.size;

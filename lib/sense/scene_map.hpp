@@ -7,9 +7,10 @@
 
 namespace rdm {
 
-// Puts a scan by each camera, pictures of side x side rays, into the map. They see what is at rest and the
-// bodies listed, at their start poses; planes and hands are left out, as a robot leaves out itself.
-void scan_scene(const Scene& scene, const int32_t* bodies, int32_t num_bodies, const Camera* cameras,
-                int32_t num_cameras, int32_t side, Occupancy* map);
+// Puts a scan by each camera, pictures of side x side rays, into the map. They see the bodies listed, at
+// their start poses, and what is at rest if `statics`; planes and hands are left out, as a robot leaves out
+// itself.
+void scan_scene(const Scene& scene, bool statics, const int32_t* bodies, int32_t num_bodies,
+                const Camera* cameras, int32_t num_cameras, int32_t side, Occupancy* map);
 
 }  // namespace rdm
