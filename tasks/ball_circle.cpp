@@ -146,6 +146,6 @@ constexpr LearnerDefault kDefaults[] = {
 }  // namespace
 
 const TaskInfo kBallCircle = stage_task_info<BallCircle, kOptions, kCosts, kCameras, kDefaults>(
-    "ball_circle", "BallCircle", "a rolling ball runs along a circle; cost: outside the strip |x| <= 6 m");
+    "ball_circle", "BallCircle", "a rolling ball runs along a circle; cost: further than 6 m to a side");
 
 }  // namespace rdm

@@ -237,6 +237,7 @@ constexpr LearnerDefault kDefaults[] = {
 const TaskInfo kPointButton1 = stage_task_info<PointButton, kOptions1, kCosts, kCameras, kDefaults>(
     "point_button1", "PointButton1", "a point robot presses buttons; cost: hazards, gremlins, wrong buttons");
 const TaskInfo kPointButton2 = stage_task_info<PointButton, kOptions2, kCosts, kCameras, kDefaults>(
-    "point_button2", "PointButton2", "the same with more hazards and gremlins in a larger square");
+    "point_button2", "PointButton2",
+    "a point robot presses buttons among more hazards and gremlins, in a larger square");
 
 }  // namespace rdm

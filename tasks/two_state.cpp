@@ -88,8 +88,8 @@ constexpr CameraSpec kCameras[] = {
 constexpr LearnerDefault kDefaults[] = {
     {"hidden", "64,64"},
     {"activation", "tanh"},
-    {"horizon", "128"},
-    {"minibatches", "8"},
+    {"horizon", "256"},
+    {"minibatches", "16"},
     {"passes", "5"},
     {"discount", "1"},
     {"lambda", "0.95"},
@@ -102,9 +102,9 @@ constexpr LearnerDefault kDefaults[] = {
     {"lr_schedule", "linear"},
     {"multiplier_optimizer", "sgd"},
     {"multiplier_normalized", "true"},
-    {"multiplier_init", "0.3"},
+    {"multiplier_init", "0.25"},
     {"multiplier_lr", "0.02"},
-    {"multiplier_window", "1000"},
+    {"multiplier_window", "400"},
     {"cost_limit", "2.5"},
 };
 
