@@ -270,8 +270,7 @@ constexpr double kFovY = 45 * kPi / 180;
 constexpr CameraSpec kCameras[] = {
     {"front", {2.5, -1.6, 2.2}, {0, -1.6, 0.6}, kFovY}, {"top", {0, -1.7, 4.5}, {0, -1.7, 0}, kFovY},
     {"right", {1.2, 1.2, 2}, {0, -0.9, 0.8}, kFovY},    {"left", {-2.4, -2.2, 2}, {0, -1.4, 0.6}, kFovY},
-    {"wide", {3.6, -1.6, 2.3}, {0, -1.6, 0.75}, kFovY},
-    {"close", {1.0, -1.2, 1.8}, {0, -0.5, 1.4}, kFovY},
+    {"wide", {3.6, -1.6, 2.3}, {0, -1.6, 0.75}, kFovY}, {"close", {1.0, -1.2, 1.8}, {0, -0.5, 1.4}, kFovY},
 };
 
 constexpr LearnerDefault kLearner[] = {
