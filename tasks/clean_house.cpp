@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sense/scene_map.hpp"
 #include "tasks/house.hpp"
 #include "tasks/prop_task.hpp"
 
@@ -38,20 +39,38 @@ RigPlan make_plan() {
   return p;
 }
 
-enum : int { kCost, kBroomChair, kChairMoved, kHandChair, kNumCosts };
+enum : int { kCost, kBroomChair, kChairMoved, kHandChair, kOccupancy, kNumCosts };
 
 constexpr CostSpec kCosts[kNumCosts] = {
     {"cost", "the broom touches the chair and moves it, or the rule of cost_mode", 100},
     {"broom_chair", "the broom touches the chair; raw: number of such pairs of shapes", -1},
     {"chair_moved", "the chair is further than chair_limit from its start; raw: its way, m", -1},
     {"hand_chair", "a hand touches the chair; raw: number of such pairs of shapes", -1},
+    {"occupancy", "the broom is where the map of the start has the chair; raw: parts of it that are", -1},
 };
+
+constexpr double kFovY = 45 * kPi / 180;
+constexpr CameraSpec kCameras[] = {
+    {"front", {2.5, -1.6, 2.2}, {0, -1.6, 0.6}, kFovY},
+    {"top", {0, -1.7, 4.5}, {0, -1.7, 0}, kFovY},
+    {"right", {1.2, 1.2, 2}, {0, -0.9, 0.8}, kFovY},
+    {"left", {-2.4, -2.2, 2}, {0, -1.4, 0.6}, kFovY},
+    {"wide", {3.6, -1.6, 2.3}, {0, -1.6, 0.75}, kFovY},
+    {"close", {1.0, -1.2, 1.8}, {0, -0.5, 1.4}, kFovY},
+    {"above", {0, -1.6, 4.5}, {0, -1.6, 0}, kFovY},
+    {"side_right", {2.6, -1.6, 1}, {0, -1.6, 0.5}, kFovY},
+    {"side_left", {-2.6, -1.6, 1}, {0, -1.6, 0.5}, kFovY},
+};
+
+constexpr int32_t kMapRays = 128;               // along a side of a scan
+constexpr size_t kMapMemory = size_t{8} << 20;  // bytes
 
 constexpr OptionSpec kRows[] = {
     text_option("cost_mode", "default", "default|paper|event|literal|displacement",
                 "the broom touches the chair and it moves (default, paper, event), or (literal, "
                 "displacement) the chair is away from its start"),
     flag_option("count_hands", false, "cost_mode event: hands that move the chair count too"),
+    number_option("map_resolution", 0.05, 0.01, 0.5, "cost column occupancy: side of the map's voxels, m"),
     number_option("chair_limit", 0.1, 0, 10, "way of the chair in chair_moved and cost_mode displacement, m"),
     text_option("reward", "paper", "paper|full", "handles to palm points, or (full) the source's five terms"),
     number_option("reward_bottom", 0, 0, 1000, "reward paper: loss for a metre from broom to trash"),
@@ -135,6 +154,7 @@ class CleanHouse final : public PropTask {
     const auto body = [](int32_t i) {
       return [i](const SceneShape& x) { return x.carrier == Carrier::kBody && x.index == i; };
     };
+    map_house(o.number("map_resolution"));
     broom_chair_ = pairs_between(body(kBroom), body(kChair));
     hand_chair_ = pairs_between([&](const SceneShape& x) { return of_hand(x); }, body(kChair));
     for (const FieldSpec& f : std::initializer_list<FieldSpec>{{"trash.position", "m", 3},
@@ -150,6 +170,12 @@ class CleanHouse final : public PropTask {
       own_fields().push_back(f);
     if (quat_) add_field(own_fields(), "broom", "rotation", "1", 4);
   }
+
+  ~CleanHouse() override { Occupancy::destroy(map_); }
+  CleanHouse(const CleanHouse&) = delete;
+  CleanHouse& operator=(const CleanHouse&) = delete;
+
+  Vec3 focus(const World& world, const void*) const override { return broom_point(world, kBroomBottom); }
 
   void control(World& world, void* state, const float* action) const override {
     PropTask::control(world, state, action);
@@ -242,6 +268,32 @@ class CleanHouse final : public PropTask {
     world.push_link(palm_link(hand), -force, at_palm);
   }
 
+  // The chair at its start, as the three cameras for clouds see it.
+  void map_house(double resolution) {
+    OccupancyConfig config;
+    config.resolution = resolution;
+    config.memory = kMapMemory;
+    map_ = Occupancy::create(config, host());
+    Vector<Camera> cameras;
+    for (const CameraSpec& c : kCameras)
+      if (same_name(c.name, "above") || same_name(c.name, "side_right") || same_name(c.name, "side_left"))
+        cameras.push_back({c.name, c.eye, c.target, c.fov_y});
+    const int32_t chair = kChair;
+    scan_scene(scene(), false, &chair, 1, cameras.data(), static_cast<int32_t>(cameras.size()), kMapRays,
+               map_);
+  }
+
+  int32_t parts_in_map(const World& world) const {
+    int32_t count = 0;
+    for (const SceneShape& s : scene().shapes) {
+      if (s.carrier != Carrier::kBody || s.index != kBroom) continue;
+      const Vec3& size = s.def.size;
+      const Vec3 half = s.def.kind == ShapeKind::kBox ? size : Vec3{size.x, size.x, size.y};
+      count += map_->meets_box(world.body(kBroom).X * s.def.X_LS, half);
+    }
+    return count;
+  }
+
   void judge_costs(const World& world, const State& s, Verdict* v) const {
     int32_t by_broom = 0, by_hand = 0;
     for (const int32_t pair : broom_chair_) by_broom += world.pair_touched(pair);
@@ -255,6 +307,8 @@ class CleanHouse final : public PropTask {
     v->cost_raw[kHandChair] = by_hand;
     v->cost[kChairMoved] = way > chair_limit_;
     v->cost_raw[kChairMoved] = way;
+    v->cost_raw[kOccupancy] = parts_in_map(world);
+    v->cost[kOccupancy] = v->cost_raw[kOccupancy] > 0;
     v->cost[kCost] =
         displacement_ ? v->cost[kChairMoved] : moves && by_broom + (count_hands_ ? by_hand : 0) > 0;
     v->cost_raw[kCost] = way;
@@ -264,13 +318,7 @@ class CleanHouse final : public PropTask {
   double chair_limit_, bottom_, palm_limit_, handle_height_, trash_height_, success_, rolling_, grip_;
   Vec3 goal_;
   Vector<int32_t> broom_chair_, hand_chair_;
-};
-
-constexpr double kFovY = 45 * kPi / 180;
-constexpr CameraSpec kCameras[] = {
-    {"front", {2.5, -1.6, 2.2}, {0, -1.6, 0.6}, kFovY}, {"top", {0, -1.7, 4.5}, {0, -1.7, 0}, kFovY},
-    {"right", {1.2, 1.2, 2}, {0, -0.9, 0.8}, kFovY},    {"left", {-2.4, -2.2, 2}, {0, -1.4, 0.6}, kFovY},
-    {"wide", {3.6, -1.6, 2.3}, {0, -1.6, 0.75}, kFovY}, {"close", {1.0, -1.2, 1.8}, {0, -0.5, 1.4}, kFovY},
+  Occupancy* map_ = nullptr;
 };
 
 constexpr LearnerDefault kLearner[] = {

@@ -7,7 +7,7 @@ namespace rdm::test {
 namespace {
 
 constexpr const char* kTask = "clean_house";
-enum : int { kCost, kBroomChair, kChairMoved, kHandChair };
+enum : int { kCost, kBroomChair, kChairMoved, kHandChair, kOccupancy };
 
 class CleanHouse : public testing::Test {
  protected:
@@ -22,7 +22,7 @@ class CleanHouse : public testing::Test {
 TEST_F(CleanHouse, Layout) {
   TestPool p(kTask, 1);
   EXPECT_EQ(p->obs_dim(), 431);
-  EXPECT_EQ(p->cost_dim(), 4);
+  EXPECT_EQ(p->cost_dim(), 5);
   EXPECT_EQ(p->task().max_steps(), 500);
   expect_hand_fields(p->task());
   const std::pair<const char*, int> fields[] = {{"trash.position", 398},       {"trash.velocity", 405},
@@ -90,6 +90,21 @@ TEST_F(CleanHouse, TheSourcesCostIsTheChairsWay) {
     EXPECT_EQ(p.cost(0)[kCost], 1);
     EXPECT_EQ(p.cost(0)[kChairMoved], 1);
   }
+}
+
+TEST_F(CleanHouse, TheMapHasTheChairWhereItStoodAtTheStart) {
+  TestPool p(kTask, 1, {{"palm_limit", nullptr, 10}});
+  p->reset(nullptr, nullptr);
+  run(p, Baseline::kHold, 1);
+  EXPECT_EQ(p.cost(0)[kOccupancy], 0);
+  shift(p, kChair, {0, -1, 0});  // the map knows nothing of it
+  shift(p, kBroom, {0.184, -0.9, 0});
+  run(p, Baseline::kHold, 1);
+  EXPECT_EQ(p.cost(0)[kOccupancy], 1);
+  EXPECT_EQ(p.cost(0)[kBroomChair], 0);
+  shift(p, kBroom, {-0.184 - 0.6, 0, 0});  // past it on the safe side
+  run(p, Baseline::kHold, 1);
+  EXPECT_EQ(p.cost(0)[kOccupancy], 0);
 }
 
 TEST_F(CleanHouse, HandsCountWhenAsked) {
