@@ -42,7 +42,7 @@ double throw_reward(const ThrowMeasure& m, double alpha = 50, double scale = 1);
 bool count_success(const ThrowGame& game, double distance, ThrowState* state);
 
 // Settings that learned the throw (one decision each 4 control steps, 64 worlds).
-using ThrowLearner = std::array<LearnerDefault, 25>;
+using ThrowLearner = std::array<LearnerDefault, 26>;
 constexpr ThrowLearner throw_learner(const char* cost_limit) {
   return {{
       {"hidden", "128,128"},
@@ -68,6 +68,7 @@ constexpr ThrowLearner throw_learner(const char* cost_limit) {
       {"pid_kd", "0.0075"},
       {"penalty", "2"},
       {"focops_eta", "0.04"},
+      {"trust_kl", "0.15"},
       {"normalize_obs", "true"},
       {"cost_limit", cost_limit},
   }};
