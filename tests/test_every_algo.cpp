@@ -1,5 +1,6 @@
 // What every algorithm promises, for each of the list.
 #include <cmath>
+#include <cstring>
 
 #include "agents.hpp"
 #include "heap_count.hpp"
@@ -10,9 +11,9 @@ using namespace rdm::test;
 namespace {
 
 // Two costs with limits where an algorithm takes several.
-AgentSetup setup_of(const std::string& algo, int32_t threads = 0) {
+AgentSetup setup_of(const char* algo, int32_t threads = 0) {
   static const double limits[] = {1, 0.5};
-  AgentSetup s(algo.c_str(), 6, 3, 40);
+  AgentSetup s(algo, 6, 3, 40);
   s.config.num_threads = threads;
   s.config.cost_dim = 2;
   s.config.max_steps = 30;
@@ -22,7 +23,7 @@ AgentSetup setup_of(const std::string& algo, int32_t threads = 0) {
   s.with("noise_correlation", "0.3").with("lr_schedule", "kl").with("learning_rate", "2e-3");
   s.with("terminal_cost", "on").with("normalize_reward", "on").with("normalize_cost", "on");
   for (const char* one : {"cpo", "pcpo", "focops"})
-    if (algo == one) s.with("several_costs", "worst");
+    if (std::strcmp(algo, one) == 0) s.with("several_costs", "worst");
   return s;
 }
 
