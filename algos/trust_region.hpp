@@ -25,8 +25,6 @@ class TrustRegion {
   double s() const { return s_; }
   double bb() const { return bb_; }
   double delta() const { return delta_; }
-  const float* reward_gradient() const { return g_; }
-  const float* cost_gradient() const { return b_; }
 
   // step = along_x x + along_p p + along_b b.
   void set_step(double along_x, double along_p, double along_b);

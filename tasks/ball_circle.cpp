@@ -9,7 +9,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kStartInner = 2, kStartOuter = 4;  // m
 constexpr double kBounce = 0.35;                    // restitution of ball and wall, multiplied
 constexpr double kWallSlack = 11;                   // m; no wall is nearer
@@ -122,30 +121,18 @@ constexpr CameraSpec kCameras[] = {
     {"front", {0, -17, 13}, {0, 0, 0}, 0.9},
     {"top", {0, -0.01, 20}, {0, 0, 0}, 0.9},
 };
-constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},
-    {"activation", "tanh"},
-    {"passes", "10"},
-    {"lambda", "0.95"},
-    {"cost_lambda", "0.95"},
-    {"lr_schedule", "linear"},
-    {"early_stop_kl", "0.03"},
-    {"horizon", "250"},
-    {"minibatches", "32"},
-    {"discount", "0.99"},
-    {"init_std", "0.6"},
-    {"std_min", "0.05"},
-    {"learning_rate", "1e-3"},
-    {"multiplier_optimizer", "sgd"},
-    {"multiplier_normalized", "true"},
-    {"multiplier_init", "1"},
-    {"multiplier_lr", "0.05"},
-    {"cost_limit", "25"},
-};
+constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
+                                                          {"minibatches", "32"},
+                                                          {"discount", "0.99"},
+                                                          {"init_std", "0.6"},
+                                                          {"std_min", "0.05"},
+                                                          {"multiplier_init", "1"},
+                                                          {"multiplier_lr", "0.05"}});
 
 }  // namespace
 
-const TaskInfo kBallCircle = stage_task_info<BallCircle, kOptions, kCosts, kCameras, kDefaults>(
-    "ball_circle", "BallCircle", "a rolling ball runs along a circle; cost: further than 6 m to a side");
+constinit const TaskInfo kBallCircle = task_info<BallCircle, kCosts, kCameras, kDefaults>(
+    "ball_circle", "BallCircle", "a rolling ball runs along a circle; cost: further than 6 m to a side",
+    &constant_options<kOptions>);
 
 }  // namespace rdm

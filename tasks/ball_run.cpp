@@ -56,30 +56,18 @@ class BallRun final : public StageTask {
 };
 
 constexpr auto kOptions = track_options(2.5, 9, 250);
-constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},
-    {"activation", "tanh"},
-    {"passes", "10"},
-    {"lambda", "0.95"},
-    {"cost_lambda", "0.95"},
-    {"lr_schedule", "linear"},
-    {"early_stop_kl", "0.03"},
-    {"horizon", "250"},
-    {"minibatches", "32"},
-    {"discount", "0.99"},
-    {"init_std", "0.6"},
-    {"std_min", "0.05"},
-    {"learning_rate", "1e-3"},
-    {"multiplier_optimizer", "sgd"},
-    {"multiplier_normalized", "true"},
-    {"multiplier_init", "1"},
-    {"multiplier_lr", "0.1"},
-    {"cost_limit", "25"},
-};
+constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
+                                                          {"minibatches", "32"},
+                                                          {"discount", "0.99"},
+                                                          {"init_std", "0.6"},
+                                                          {"std_min", "0.05"},
+                                                          {"multiplier_init", "1"},
+                                                          {"multiplier_lr", "0.1"}});
 
 }  // namespace
 
-const TaskInfo kBallRun = stage_task_info<BallRun, kOptions, kRunCosts, kRunCameras, kDefaults>(
-    "ball_run", "BallRun", "a rolling ball runs along x; cost: faster than 2.5 m/s, or outside its lane");
+constinit const TaskInfo kBallRun = task_info<BallRun, kRunCosts, kRunCameras, kDefaults>(
+    "ball_run", "BallRun", "a rolling ball runs along x; cost: faster than 2.5 m/s, or outside its lane",
+    &constant_options<kOptions>);
 
 }  // namespace rdm

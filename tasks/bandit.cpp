@@ -66,32 +66,23 @@ constexpr CameraSpec kCameras[] = {
     {"front", {1, -5, 3}, {1, 0, 0}, 0.8},
     {"top", {1, -0.01, 7}, {1, 0, 0}, 0.8},
 };
-constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},
-    {"activation", "tanh"},
-    {"horizon", "128"},
-    {"minibatches", "8"},
-    {"passes", "5"},
-    {"discount", "1"},
-    {"lambda", "1"},
-    {"cost_lambda", "1"},
-    {"init_std", "0.1"},
-    {"learning_rate", "1e-3"},
-    {"learn_std", "false"},
-    {"normalize_obs", "false"},
-    {"critic_l2", "0"},
-    {"lr_schedule", "linear"},
-    {"multiplier_optimizer", "sgd"},
-    {"multiplier_normalized", "true"},
-    {"multiplier_init", "1"},
-    {"multiplier_lr", "0.1"},
-    {"multiplier_window", "2000"},
-    {"cost_limit", "1"},
-};
+constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "128"},
+                                                         {"minibatches", "8"},
+                                                         {"passes", "5"},
+                                                         {"discount", "1"},
+                                                         {"lambda", "1"},
+                                                         {"cost_lambda", "1"},
+                                                         {"init_std", "0.1"},
+                                                         {"learning_rate", "1e-3"},
+                                                         {"multiplier_init", "1"},
+                                                         {"multiplier_lr", "0.1"},
+                                                         {"multiplier_window", "2000"},
+                                                         {"cost_limit", "1"}});
 
 }  // namespace
 
-const TaskInfo kBandit = stage_task_info<Bandit, kOptions, kCosts, kCameras, kDefaults>(
-    "bandit", nullptr, "one Gaussian choice an episode; reward -(a - 2)^2, cost a; the optimum is known");
+constinit const TaskInfo kBandit = task_info<Bandit, kCosts, kCameras, kDefaults>(
+    "bandit", nullptr, "one Gaussian choice an episode; reward -(a - 2)^2, cost a; the optimum is known",
+    &constant_options<kOptions>);
 
 }  // namespace rdm

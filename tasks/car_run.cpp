@@ -91,30 +91,18 @@ class CarRun final : public StageTask {
 };
 
 constexpr auto kOptions = track_options(1.5, 11, 500);
-constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},
-    {"activation", "tanh"},
-    {"passes", "10"},
-    {"lambda", "0.95"},
-    {"cost_lambda", "0.95"},
-    {"lr_schedule", "linear"},
-    {"early_stop_kl", "0.03"},
-    {"horizon", "250"},
-    {"minibatches", "32"},
-    {"discount", "0.95"},
-    {"init_std", "0.05"},
-    {"std_min", "0.01"},
-    {"learning_rate", "1e-3"},
-    {"multiplier_optimizer", "sgd"},
-    {"multiplier_normalized", "true"},
-    {"multiplier_init", "1"},
-    {"multiplier_lr", "0.1"},
-    {"cost_limit", "25"},
-};
+constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
+                                                          {"minibatches", "32"},
+                                                          {"discount", "0.95"},
+                                                          {"init_std", "0.05"},
+                                                          {"std_min", "0.01"},
+                                                          {"multiplier_init", "1"},
+                                                          {"multiplier_lr", "0.1"}});
 
 }  // namespace
 
-const TaskInfo kCarRun = stage_task_info<CarRun, kOptions, kRunCosts, kRunCameras, kDefaults>(
-    "car_run", "CarRun", "a car runs along x; cost: faster than 1.5 m/s, or outside its lane");
+constinit const TaskInfo kCarRun = task_info<CarRun, kRunCosts, kRunCameras, kDefaults>(
+    "car_run", "CarRun", "a car runs along x; cost: faster than 1.5 m/s, or outside its lane",
+    &constant_options<kOptions>);
 
 }  // namespace rdm

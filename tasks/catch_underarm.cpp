@@ -1,24 +1,10 @@
 #include "tasks/catch_underarm.hpp"
 
-#include <algorithm>
-
+#include "tasks/hand_learner.hpp"
 #include "tasks/safe_throw.hpp"
 
 namespace rdm {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
-
-// The right hand's fingers straight; thumb and left hand at the middle of their ranges. With `window` the
-// first finger bends into its cost window.
-void flat_mean(const HandRig& rig, bool window, float* mean) {
-  constexpr float kBent = -0.4f;
-  constexpr int kThumb = 15, kLateral[] = {2, 5, 8, 12};
-  float* right = mean + rig.joint_entries(0);
-  std::fill(right + 2, right + kThumb, -1.0f);
-  for (const int i : kLateral) right[i] = 0;
-  if (window) right[3] = right[4] = kBent;
-}
 
 // The right hand's fingers point up, 0.1 rad towards +y, its palm faces -y; the left base is half a turn
 // about x: palm up.
@@ -30,10 +16,10 @@ const SafeThrowPlan kPlan = {
      .place = {{0, 0.05, 1.03}, {0, -0.40, 0.55}},
      .fall_height = 0.3,
      .base_limit = 0.1},
-    &flat_mean,
+    &flat_hand_mean,
     {.throw_height = 1.3, .throw_low = -60, .throw_high = 60}};
 
-constexpr ThrowLearner kFingerLearner = throw_learner("40"), kJointLearner = throw_learner("30");
+constexpr auto kFingerLearner = throw_learner("40"), kJointLearner = throw_learner("30");
 
 const CameraSpec kCameras[] = {
     {"front", {1.7, -0.4, 0.9}, {0, -0.35, 0.65}, 45 * kDegree},
@@ -49,34 +35,16 @@ const CameraSpec kCameras[] = {
 
 }  // namespace
 
-const TaskInfo kCatchUnderarmSafeFinger = {
-    "catch_underarm_safe_finger",
-    "ShadowHandCatchOver2UnderarmSafeFinger",
-    "throw an object down to a flying hand; cost: the first finger's joints leave their windows",
-    &safe_throw_options<kPlan>,
-    kFingerCosts.data(),
-    kNumSafetyCosts,
-    kCameras,
-    static_cast<int32_t>(std::size(kCameras)),
-    kFingerLearner.data(),
-    static_cast<int32_t>(kFingerLearner.size()),
-    &make_safe_throw<kPlan, SafetyKind::kFinger>,
-    &destroy_safe_throw,
-};
+constinit const TaskInfo kCatchUnderarmSafeFinger =
+    task_info<PlannedThrow<kPlan, SafetyKind::kFinger>, kFingerCosts, kCameras, kFingerLearner>(
+        "catch_underarm_safe_finger", "ShadowHandCatchOver2UnderarmSafeFinger",
+        "throw an object down to a flying hand; cost: the first finger's joints leave their windows",
+        &filled_options<add_planned_options<kPlan>>);
 
-const TaskInfo kCatchUnderarmSafeJoint = {
-    "catch_underarm_safe_joint",
-    "ShadowHandCatchOver2UnderarmSafeJoint",
-    "throw an object down to a flying hand; cost: the first finger's lateral joint leaves its window",
-    &safe_throw_options<kPlan>,
-    kJointCosts.data(),
-    kNumSafetyCosts,
-    kCameras,
-    static_cast<int32_t>(std::size(kCameras)),
-    kJointLearner.data(),
-    static_cast<int32_t>(kJointLearner.size()),
-    &make_safe_throw<kPlan, SafetyKind::kJoint>,
-    &destroy_safe_throw,
-};
+constinit const TaskInfo kCatchUnderarmSafeJoint =
+    task_info<PlannedThrow<kPlan, SafetyKind::kJoint>, kJointCosts, kCameras, kJointLearner>(
+        "catch_underarm_safe_joint", "ShadowHandCatchOver2UnderarmSafeJoint",
+        "throw an object down to a flying hand; cost: the first finger's lateral joint leaves its window",
+        &filled_options<add_planned_options<kPlan>>);
 
 }  // namespace rdm

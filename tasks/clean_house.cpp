@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "sense/scene_map.hpp"
+#include "tasks/hand_learner.hpp"
 #include "tasks/house.hpp"
 #include "tasks/prop_task.hpp"
 
 namespace rdm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr HouseMaterials kHouse = {kObject, kOwnMaterial, kOwnMaterial + 1, kOwnMaterial + 2,
                                    kOwnMaterial + 3};
 constexpr int32_t kMaterials = kOwnMaterial + 4;
@@ -95,16 +95,9 @@ constexpr OptionSpec kRows[] = {
     number_option("friction.other", 0.5, 0, 10, "friction coefficient of all other pairs of things"),
 };
 
-const OptionSpec* options_table(int32_t* count) {
-  struct Table : OptionTable {
-    Table() {
-      add(kRows);
-      add_prop_options(make_plan(), 500, 96, *this);
-    }
-  };
-  static const Table table;
-  *count = table.count();
-  return table.rows();
+void add_options(OptionTable& table) {
+  table.add(kRows);
+  add_prop_options(make_plan(), 500, 96, table);
 }
 
 SceneDef make_scene_def(const Options& o) {
@@ -155,8 +148,8 @@ class CleanHouse final : public PropTask {
       return [i](const SceneShape& x) { return x.carrier == Carrier::kBody && x.index == i; };
     };
     map_house(o.number("map_resolution"));
-    broom_chair_ = pairs_between(body(kBroom), body(kChair));
-    hand_chair_ = pairs_between([&](const SceneShape& x) { return of_hand(x); }, body(kChair));
+    broom_chair_ = pairs_between(scene(), body(kBroom), body(kChair));
+    hand_chair_ = pairs_between(scene(), of_hand, body(kChair));
     for (const FieldSpec& f : std::initializer_list<FieldSpec>{{"trash.position", "m", 3},
                                                                {"trash.rotation", "1", 4},
                                                                {"trash.velocity", "m/s", 3},
@@ -295,9 +288,7 @@ class CleanHouse final : public PropTask {
   }
 
   void judge_costs(const World& world, const State& s, Verdict* v) const {
-    int32_t by_broom = 0, by_hand = 0;
-    for (const int32_t pair : broom_chair_) by_broom += world.pair_touched(pair);
-    for (const int32_t pair : hand_chair_) by_hand += world.pair_touched(pair);
+    const int by_broom = touching(world, broom_chair_), by_hand = touching(world, hand_chair_);
     const Motion& chair = world.body(kChair);
     const double way = norm(chair.X.p - s.chair);
     const bool moves = norm(chair.v) > kMovingSpeed || way > kMovingWay;
@@ -321,43 +312,13 @@ class CleanHouse final : public PropTask {
   Occupancy* map_ = nullptr;
 };
 
-constexpr LearnerDefault kLearner[] = {
-    {"hidden", "128,128"},     {"activation", "tanh"},
-    {"horizon", "16"},         {"passes", "6"},
-    {"minibatches", "4"},      {"learning_rate", "1e-3"},
-    {"lr_schedule", "kl"},     {"kl_target", "0.04"},
-    {"discount", "0.96"},      {"lambda", "0.95"},
-    {"clip", "0.2"},           {"max_grad_norm", "1"},
-    {"init_std", "0.4"},       {"noise_correlation", "0.3"},
-    {"action_repeat", "4"},    {"multiplier_optimizer", "sgd"},
-    {"multiplier_lr", "0.03"}, {"multiplier_normalized", "true"},
-    {"normalize_obs", "true"}, {"cost_limit", "100"},
-};
-
-Task* make(const Options& options, const HostHooks& hooks) {
-  const HostScope scope(hooks);
-  return host_new<CleanHouse>(hooks, options);
-}
-
-void destroy(Task* task, const HostHooks& hooks) {
-  host_delete(hooks, static_cast<CleanHouse*>(task));
-}
+constexpr auto kLearner = hand_learner("100");
 
 }  // namespace
 
-const TaskInfo kCleanHouse = {
-    "clean_house",
-    nullptr,
+constinit const TaskInfo kCleanHouse = task_info<CleanHouse, kCosts, kCameras, kLearner>(
+    "clean_house", nullptr,
     "sweep trash to a dustpan with a broom in two hands; cost: the broom pushes the chair",
-    &options_table,
-    kCosts,
-    kNumCosts,
-    kCameras,
-    static_cast<int32_t>(std::size(kCameras)),
-    kLearner,
-    static_cast<int32_t>(std::size(kLearner)),
-    &make,
-    &destroy,
-};
+    &filled_options<add_options>);
 
 }  // namespace rdm

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <iterator>
 
+#include "tasks/hand_learner.hpp"
 #include "tasks/single_hand.hpp"
 
 namespace rdm {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr int kWristActions = 2;
 // Entries of the action that the released cost looks at: the first finger's.
 constexpr int kRangeFirst = 2, kRangeLast = 4;
@@ -46,16 +46,9 @@ constexpr CostSpec kCosts[kNumCosts] = {
     {"finger_range", "a first finger's command beyond finger_range; raw: largest of them", -1},
 };
 
-const OptionSpec* options_table(int32_t* count) {
-  struct Table : OptionTable {
-    Table() {
-      add_single_hand_options(kPlan, *this);
-      add(kRows);
-    }
-  };
-  static const Table table;
-  *count = table.count();
-  return table.rows();
+void add_options(OptionTable& table) {
+  add_single_hand_options(kPlan, table);
+  table.add(kRows);
 }
 
 class Grasp final : public SingleHand {
@@ -109,47 +102,12 @@ const CameraSpec kCameras[] = {
     {"cloud_back", {-0.35, -0.55, 0.2}, {0, -0.38, 0.05}, 57 * kDegree},
 };
 
-constexpr LearnerDefault kLearner[] = {
-    {"hidden", "128,128"},
-    {"activation", "tanh"},
-    {"horizon", "16"},
-    {"passes", "6"},
-    {"minibatches", "4"},
-    {"learning_rate", "1e-3"},
-    {"lr_schedule", "kl"},
-    {"kl_target", "0.04"},
-    {"discount", "0.96"},
-    {"lambda", "0.95"},
-    {"clip", "0.2"},
-    {"max_grad_norm", "1"},
-    {"init_std", "0.4"},
-    {"action_repeat", "4"},
-    {"noise_correlation", "0.3"},
-    {"normalize_obs", "true"},
-    {"multiplier_optimizer", "sgd"},
-    {"multiplier_normalized", "true"},
-    {"multiplier_lr", "0.03"},
-    {"cost_limit", "25"},
-};
+constexpr auto kLearner = hand_learner("25");
 
 }  // namespace
 
-const TaskInfo kGrasp = {
-    "grasp",
-    nullptr,
-    "lift a cube from the ground; cost: a finger joint strains",
-    &options_table,
-    kCosts,
-    kNumCosts,
-    kCameras,
-    static_cast<int32_t>(std::size(kCameras)),
-    kLearner,
-    static_cast<int32_t>(std::size(kLearner)),
-    [](const Options& options, const HostHooks& hooks) -> Task* {
-      const HostScope scope(hooks);
-      return host_new<Grasp>(hooks, options);
-    },
-    [](Task* task, const HostHooks& hooks) { host_delete(hooks, static_cast<Grasp*>(task)); },
-};
+constinit const TaskInfo kGrasp = task_info<Grasp, kCosts, kCameras, kLearner>(
+    "grasp", nullptr, "lift a cube from the ground; cost: a finger joint strains",
+    &filled_options<add_options>);
 
 }  // namespace rdm

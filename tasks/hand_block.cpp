@@ -6,8 +6,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 struct TipForce {
   const Wrench& wrench;
   double scale;

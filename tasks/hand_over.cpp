@@ -1,5 +1,6 @@
 #include "tasks/hand_over.hpp"
 
+#include "tasks/hand_learner.hpp"
 #include "tasks/safe_throw.hpp"
 
 namespace rdm {
@@ -12,38 +13,20 @@ const SafeThrowPlan kPlan = {{.rig = {.bases = {{{0, 0, 0.5}, {}}, {{0, -1, 0.5}
                              &flat_throw_mean,
                              {}};
 
-constexpr ThrowLearner kFingerLearner = throw_learner("40"), kJointLearner = throw_learner("30");
+constexpr auto kFingerLearner = throw_learner("40"), kJointLearner = throw_learner("30");
 
 }  // namespace
 
-const TaskInfo kHandOverSafeFinger = {
-    "hand_over_safe_finger",
-    "ShadowHandOverSafeFinger",
-    "throw an object from hand to hand; cost: the first finger's joints leave their windows",
-    &safe_throw_options<kPlan>,
-    kFingerCosts.data(),
-    kNumSafetyCosts,
-    kThrowCameras,
-    kNumThrowCameras,
-    kFingerLearner.data(),
-    static_cast<int32_t>(kFingerLearner.size()),
-    &make_safe_throw<kPlan, SafetyKind::kFinger>,
-    &destroy_safe_throw,
-};
+constinit const TaskInfo kHandOverSafeFinger =
+    task_info<PlannedThrow<kPlan, SafetyKind::kFinger>, kFingerCosts, kThrowCameras, kFingerLearner>(
+        "hand_over_safe_finger", "ShadowHandOverSafeFinger",
+        "throw an object from hand to hand; cost: the first finger's joints leave their windows",
+        &filled_options<add_planned_options<kPlan>>);
 
-const TaskInfo kHandOverSafeJoint = {
-    "hand_over_safe_joint",
-    "ShadowHandOverSafeJoint",
-    "throw an object from hand to hand; cost: the first finger's lateral joint leaves its window",
-    &safe_throw_options<kPlan>,
-    kJointCosts.data(),
-    kNumSafetyCosts,
-    kThrowCameras,
-    kNumThrowCameras,
-    kJointLearner.data(),
-    static_cast<int32_t>(kJointLearner.size()),
-    &make_safe_throw<kPlan, SafetyKind::kJoint>,
-    &destroy_safe_throw,
-};
+constinit const TaskInfo kHandOverSafeJoint =
+    task_info<PlannedThrow<kPlan, SafetyKind::kJoint>, kJointCosts, kThrowCameras, kJointLearner>(
+        "hand_over_safe_joint", "ShadowHandOverSafeJoint",
+        "throw an object from hand to hand; cost: the first finger's lateral joint leaves its window",
+        &filled_options<add_planned_options<kPlan>>);
 
 }  // namespace rdm

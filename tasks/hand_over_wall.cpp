@@ -4,13 +4,13 @@
 #include <cmath>
 #include <iterator>
 
+#include "tasks/hand_learner.hpp"
 #include "tasks/throw_task.hpp"
 #include "tasks/wall.hpp"
 
 namespace rdm {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr int32_t kWall = kOwnMaterial, kMaterials = kOwnMaterial + 1;
 
 const ThrowPlan kPlan = {.rig = {.bases = {{{0, 0, 0.5}, {}}, {{0, -1.05, 0.5}, {0, 1, 0, 0}}}},
@@ -42,17 +42,10 @@ constexpr CostSpec kCosts[kNumCosts] = {
     {"throw_height", "object above throw_height; raw: its height, m", -1},
 };
 
-const OptionSpec* options_table(int32_t* count) {
-  struct Table : OptionTable {
-    Table() {
-      add_throw_task_options(kPlan, *this);
-      add_wall_options(*this);
-      add(kRows);
-    }
-  };
-  static const Table table;
-  *count = table.count();
-  return table.rows();
+void add_options(OptionTable& table) {
+  add_throw_task_options(kPlan, table);
+  add_wall_options(table);
+  table.add(kRows);
 }
 
 bool literal(const Options& o) {
@@ -82,32 +75,15 @@ class HandOverWall final : public ThrowTask {
         literal_(literal(o)),
         count_hands_(o.flag("count_hands")),
         throw_height_(o.number("throw_height")) {
-    list_pairs();
-    const char* mean = o.text("initial_mean");
-    if (same_name(mean, "hold"))
-      rig().hold(initial_mean_);
-    else if (!same_name(mean, "zero"))
-      flat_throw_mean(rig(), false, initial_mean_);
+    const auto wall = [](const SceneShape& x) { return x.def.material == kWall; };
+    object_pairs_ = pairs_between(
+        scene(), [](const SceneShape& x) { return x.carrier == Carrier::kBody; }, wall);
+    hand_pairs_ = pairs_between(
+        scene(), [](const SceneShape& x) { return x.carrier != Carrier::kBody; }, wall);
+    choose_mean(o.text("initial_mean"), &flat_throw_mean, false);
   }
 
  private:
-  void list_pairs() {
-    const auto is_wall = [&](int32_t shape) {
-      return scene().shapes[static_cast<size_t>(shape)].def.material == kWall;
-    };
-    for (size_t i = 0; i < scene().pairs.size(); ++i) {
-      const ShapePair& p = scene().pairs[i];
-      if (!is_wall(p.a) && !is_wall(p.b)) continue;
-      const SceneShape& other = scene().shapes[static_cast<size_t>(is_wall(p.a) ? p.b : p.a)];
-      (other.carrier == Carrier::kBody ? object_pairs_ : hand_pairs_).push_back(static_cast<int32_t>(i));
-    }
-  }
-
-  static int touching(const World& world, const Vector<int32_t>& pairs) {
-    return static_cast<int>(
-        std::count_if(pairs.begin(), pairs.end(), [&](int32_t pair) { return world.pair_touched(pair); }));
-  }
-
   // How deep the object's centre is in the slab, m, where that is not the released hole; else 0 or less.
   double slab_depth(const Vec3& p) const {
     const bool hole = std::fabs(p.x) <= kSourceHalfWidth && p.z >= kSourceLow && p.z <= kSourceHigh;
@@ -143,26 +119,12 @@ const CameraSpec kCameras[] = {
     {"cloud_left", {0, -1.525, 1.5}, {0.1, 0.475, 0.5}, 57 * kDegree},
 };
 
-constexpr ThrowLearner kLearner = throw_learner("3");
+constexpr auto kLearner = throw_learner("3");
 
 }  // namespace
 
-const TaskInfo kHandOverWall = {
-    "hand_over_wall",
-    nullptr,
-    "throw an object through a hole in a wall; cost: the object touches the wall",
-    &options_table,
-    kCosts,
-    kNumCosts,
-    kCameras,
-    static_cast<int32_t>(std::size(kCameras)),
-    kLearner.data(),
-    static_cast<int32_t>(kLearner.size()),
-    [](const Options& options, const HostHooks& hooks) -> Task* {
-      const HostScope scope(hooks);
-      return host_new<HandOverWall>(hooks, options);
-    },
-    [](Task* task, const HostHooks& hooks) { host_delete(hooks, static_cast<HandOverWall*>(task)); },
-};
+constinit const TaskInfo kHandOverWall = task_info<HandOverWall, kCosts, kCameras, kLearner>(
+    "hand_over_wall", nullptr, "throw an object through a hole in a wall; cost: the object touches the wall",
+    &filled_options<add_options>);
 
 }  // namespace rdm

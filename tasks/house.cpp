@@ -55,7 +55,7 @@ BodyDef make_trash(const HouseMaterials& m, double mass, double sink) {
   BodyDef b;
   b.name = "trash";
   // its axis along x: it rolls along y
-  b.X_WB = {kTrashStart - Vec3{0, 0, sink}, axis_angle({0, 1, 0}, 0.5 * 3.14159265358979323846)};
+  b.X_WB = {kTrashStart - Vec3{0, 0, sink}, axis_angle({0, 1, 0}, 0.5 * kPi)};
   b.inertia = cylinder_inertia(mass, kTrashRadius, kTrashHalf);
   b.shapes.push_back(
       shape("trash", ShapeKind::kCylinder, {kTrashRadius, kTrashHalf, 0}, {}, m.trash, kGreen));

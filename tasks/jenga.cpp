@@ -2,13 +2,13 @@
 
 #include <cmath>
 
+#include "tasks/hand_learner.hpp"
 #include "tasks/jenga_tower.hpp"
 #include "tasks/prop_task.hpp"
 
 namespace rdm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kTilt = 130 * kPi / 180;
 constexpr int32_t kTarget = kObject, kBlock = kOwnMaterial, kTable = kBlock + 1, kMaterials = kTable + 1;
 constexpr double kTipBeyond = 0.02;  // m, from the distal origin, as the reward measures
@@ -58,17 +58,10 @@ constexpr OptionSpec kRows[] = {
     number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table"),
 };
 
-const OptionSpec* options_table(int32_t* count) {
-  struct Table : OptionTable {
-    Table() {
-      add(kRows);
-      add_tower_options(*this);
-      add_prop_options(make_plan(false), 250, 256, *this);
-    }
-  };
-  static const Table table;
-  *count = table.count();
-  return table.rows();
+void add_options(OptionTable& table) {
+  table.add(kRows);
+  add_tower_options(table);
+  add_prop_options(make_plan(false), 250, 256, table);
 }
 
 SceneDef make_scene_def(const JengaTower& tower, const Options& o) {
@@ -143,9 +136,8 @@ class Jenga final : public PropTask {
             : is("literal", "sum") ? Mode::kSum
             : is("contact", "")    ? Mode::kContact
                                    : Mode::kAny;
-    hand_block_ =
-        pairs_between([&](const SceneShape& a) { return of_hand(a); },
-                      [](const SceneShape& b) { return b.carrier == Carrier::kBody && b.index > 0; });
+    hand_block_ = pairs_between(
+        scene(), of_hand, [](const SceneShape& b) { return b.carrier == Carrier::kBody && b.index > 0; });
     FieldTable& table = own_fields();
     add_field(table, "target", "position", "m", 3);
     add_field(table, "target", "rotation", "1", 4);
@@ -167,8 +159,7 @@ class Jenga final : public PropTask {
       deepest = std::max(deepest, -way.z);
       all_dropped = all_dropped && std::fabs(way.z) > drop_;
     }
-    int32_t touched = 0;
-    for (const int32_t pair : hand_block_) touched += world.pair_touched(pair);
+    const int touched = touching(world, hand_block_);
     v->cost[kMoved] = longest > tower_.moved;
     v->cost_raw[kMoved] = longest;
     v->cost[kContact] = touched > 0;
@@ -213,43 +204,12 @@ constexpr CameraSpec kCameras[] = {
     {"close", {0.5, -0.85, 0.5}, {0, -0.65, 0.41}, kFovY},
 };
 
-constexpr LearnerDefault kLearner[] = {
-    {"hidden", "128,128"},     {"activation", "tanh"},
-    {"horizon", "16"},         {"passes", "6"},
-    {"minibatches", "4"},      {"learning_rate", "1e-3"},
-    {"lr_schedule", "kl"},     {"kl_target", "0.04"},
-    {"discount", "0.96"},      {"lambda", "0.95"},
-    {"clip", "0.2"},           {"max_grad_norm", "1"},
-    {"init_std", "0.4"},       {"noise_correlation", "0.3"},
-    {"action_repeat", "4"},    {"multiplier_optimizer", "sgd"},
-    {"multiplier_lr", "0.03"}, {"multiplier_normalized", "true"},
-    {"normalize_obs", "true"}, {"cost_limit", "5"},
-};
-
-Task* make(const Options& options, const HostHooks& hooks) {
-  const HostScope scope(hooks);
-  return host_new<Jenga>(hooks, options);
-}
-
-void destroy(Task* task, const HostHooks& hooks) {
-  host_delete(hooks, static_cast<Jenga*>(task));
-}
+constexpr auto kLearner = hand_learner("5");
 
 }  // namespace
 
-const TaskInfo kJenga = {
-    "jenga",
-    nullptr,
-    "push one block out of a tower; cost: another block moves",
-    &options_table,
-    kCosts,
-    kNumCosts,
-    kCameras,
-    static_cast<int32_t>(std::size(kCameras)),
-    kLearner,
-    static_cast<int32_t>(std::size(kLearner)),
-    &make,
-    &destroy,
-};
+constinit const TaskInfo kJenga = task_info<Jenga, kCosts, kCameras, kLearner>(
+    "jenga", nullptr, "push one block out of a tower; cost: another block moves",
+    &filled_options<add_options>);
 
 }  // namespace rdm

@@ -83,32 +83,23 @@ constexpr CameraSpec kCameras[] = {
     {"front", {0, -4, 2}, {0, 0, 0}, 0.8},
     {"top", {0, -0.01, 5}, {0, 0, 0}, 0.8},
 };
-constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},
-    {"activation", "tanh"},
-    {"horizon", "140"},
-    {"minibatches", "8"},
-    {"passes", "10"},
-    {"discount", "0.95"},
-    {"lambda", "0.95"},
-    {"cost_lambda", "0.95"},
-    {"init_std", "0.02"},
-    {"learning_rate", "2e-3"},
-    {"learn_std", "false"},
-    {"normalize_obs", "false"},
-    {"critic_l2", "0"},
-    {"lr_schedule", "linear"},
-    {"multiplier_optimizer", "sgd"},
-    {"multiplier_normalized", "true"},
-    {"multiplier_init", "3"},
-    {"multiplier_lr", "0.1"},
-    {"multiplier_window", "400"},
-    {"cost_limit", "1"},
-};
+constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "140"},
+                                                         {"minibatches", "8"},
+                                                         {"passes", "10"},
+                                                         {"discount", "0.95"},
+                                                         {"lambda", "0.95"},
+                                                         {"cost_lambda", "0.95"},
+                                                         {"init_std", "0.02"},
+                                                         {"learning_rate", "2e-3"},
+                                                         {"multiplier_init", "3"},
+                                                         {"multiplier_lr", "0.1"},
+                                                         {"multiplier_window", "400"},
+                                                         {"cost_limit", "1"}});
 
 }  // namespace
 
-const TaskInfo kLqrLine = stage_task_info<LqrLine, kOptions, kCosts, kCameras, kDefaults>(
-    "lqr_line", nullptr, "bring a point on a line to 0 with little effort; the optimum is known");
+constinit const TaskInfo kLqrLine = task_info<LqrLine, kCosts, kCameras, kDefaults>(
+    "lqr_line", nullptr, "bring a point on a line to 0 with little effort; the optimum is known",
+    &constant_options<kOptions>);
 
 }  // namespace rdm

@@ -10,7 +10,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kMaxDraws = 100;
 constexpr double kRaise = 0.005;  // m a time, when no draw was clear
 constexpr int kMaxRaises = 100;

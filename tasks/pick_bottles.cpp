@@ -4,12 +4,12 @@
 #include <cstring>
 
 #include "tasks/bottles.hpp"
+#include "tasks/hand_learner.hpp"
 #include "tasks/prop_task.hpp"
 
 namespace rdm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int32_t kPicked = kObject, kOther = kOwnMaterial, kTable = kOther + 1, kMaterials = kTable + 1;
 constexpr double kTipBeyond = 0.02;    // m, from the distal origin, as the reward measures
 constexpr double kLane = 0.03;         // m, of cost_mode literal
@@ -63,16 +63,9 @@ constexpr OptionSpec kRows[] = {
     number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table"),
 };
 
-const OptionSpec* options_table(int32_t* count) {
-  struct Table : OptionTable {
-    Table() {
-      add(kRows);
-      add_prop_options(make_plan(false), 250, 96, *this);
-    }
-  };
-  static const Table table;
-  *count = table.count();
-  return table.rows();
+void add_options(OptionTable& table) {
+  table.add(kRows);
+  add_prop_options(make_plan(false), 250, 96, table);
 }
 
 SceneDef make_scene_def(const Options& o) {
@@ -110,9 +103,9 @@ class PickBottles final : public PropTask {
     const auto other = [&](const SceneShape& x) {
       return std::strncmp(x.def.name.text, "bottle_", 7) == 0 && !picked(x);
     };
-    hand_other_ = pairs_between([&](const SceneShape& x) { return of_hand(x); }, other);
-    picked_other_ = pairs_between(picked, other);
-    for (const int32_t pair : pairs_between(picked, picked)) picked_other_.push_back(pair);
+    hand_other_ = pairs_between(scene(), of_hand, other);
+    picked_other_ = pairs_between(scene(), picked, other);
+    for (const int32_t pair : pairs_between(scene(), picked, picked)) picked_other_.push_back(pair);
     FieldTable& table = own_fields();
     for (const char* prefix : {"left_bottle", "right_bottle"}) {
       add_field(table, prefix, "position", "m", 3);
@@ -173,9 +166,7 @@ class PickBottles final : public PropTask {
 
  private:
   void judge_costs(const World& world, const State& s, Verdict* v) const {
-    int32_t by_hand = 0, by_bottle = 0;
-    for (const int32_t pair : hand_other_) by_hand += world.pair_touched(pair);
-    for (const int32_t pair : picked_other_) by_bottle += world.pair_touched(pair);
+    const int by_hand = touching(world, hand_other_), by_bottle = touching(world, picked_other_);
     double upright = 1;  // cosine
     for (int32_t i = 0; i < scene().num_bodies; ++i)
       upright = std::min(upright, rotate(world.body(i).X.q, {0, 0, 1}).z);
@@ -211,43 +202,12 @@ constexpr CameraSpec kCameras[] = {
     {"close", {0.55, -0.75, 0.75}, {0, -0.62, 0.55}, kFovY},
 };
 
-constexpr LearnerDefault kLearner[] = {
-    {"hidden", "128,128"},     {"activation", "tanh"},
-    {"horizon", "16"},         {"passes", "6"},
-    {"minibatches", "4"},      {"learning_rate", "1e-3"},
-    {"lr_schedule", "kl"},     {"kl_target", "0.04"},
-    {"discount", "0.96"},      {"lambda", "0.95"},
-    {"clip", "0.2"},           {"max_grad_norm", "1"},
-    {"init_std", "0.4"},       {"noise_correlation", "0.3"},
-    {"action_repeat", "4"},    {"multiplier_optimizer", "sgd"},
-    {"multiplier_lr", "0.03"}, {"multiplier_normalized", "true"},
-    {"normalize_obs", "true"}, {"cost_limit", "13"},
-};
-
-Task* make(const Options& options, const HostHooks& hooks) {
-  const HostScope scope(hooks);
-  return host_new<PickBottles>(hooks, options);
-}
-
-void destroy(Task* task, const HostHooks& hooks) {
-  host_delete(hooks, static_cast<PickBottles*>(task));
-}
+constexpr auto kLearner = hand_learner("13");
 
 }  // namespace
 
-const TaskInfo kPickBottles = {
-    "pick_bottles",
-    nullptr,
-    "lift two bottles out of a row of five; cost: another bottle is touched",
-    &options_table,
-    kCosts,
-    kNumCosts,
-    kCameras,
-    static_cast<int32_t>(std::size(kCameras)),
-    kLearner,
-    static_cast<int32_t>(std::size(kLearner)),
-    &make,
-    &destroy,
-};
+constinit const TaskInfo kPickBottles = task_info<PickBottles, kCosts, kCameras, kLearner>(
+    "pick_bottles", nullptr, "lift two bottles out of a row of five; cost: another bottle is touched",
+    &filled_options<add_options>);
 
 }  // namespace rdm

@@ -6,7 +6,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kSpotDraws = 100, kLayoutDraws = 100;
 
 bool clear_of(const Keepout& a, const Keepout* others, int32_t count) {

@@ -6,6 +6,7 @@
 #include "base/option.hpp"
 #include "base/rng.hpp"
 #include "tasks/point_robot.hpp"
+#include "tasks/small_worlds.hpp"
 
 namespace rdm {
 
@@ -43,6 +44,18 @@ inline constexpr double kPointLidarRange = 3;                        // m
 inline constexpr double kRobotKeepout = 0.4, kHazardKeepout = 0.18;  // m
 inline constexpr int32_t kMaxThings = 32;                            // of each kind
 inline constexpr double kThingRadius = 0.11;  // m, disc for a vase or gremlin, a box of 0.2 m
+
+inline constexpr CameraSpec kPointCameras[] = {
+    {"front", {0, -4.5, 4}, {0, 0, 0}, 0.8},
+    {"top", {0, -0.01, 6}, {0, 0, 0}, 0.8},
+};
+inline constexpr auto kPointLearner = join_defaults(kSafetyLearner, {{"horizon", "500"},
+                                                                     {"minibatches", "64"},
+                                                                     {"discount", "0.99"},
+                                                                     {"init_std", "0.6"},
+                                                                     {"std_min", "0.05"},
+                                                                     {"multiplier_init", "0.3"},
+                                                                     {"multiplier_lr", "0.05"}});
 
 // A thing of the arena for pictures: lies at z, does not turn.
 Motion spot_motion(const Spot& spot, double z);

@@ -65,7 +65,7 @@ class PointButton final : public StageTask {
     for (int32_t i = 0; i < gremlins_; ++i) things[n++].keepout = kGremlinKeepout;
     draw_layout(extent_, s.noise, things, n);
     s.robot.x = things[0].at.x, s.robot.y = things[0].at.y;
-    s.robot.yaw = kTurn * s.noise.uniform();
+    s.robot.yaw = 2 * kPi * s.noise.uniform();
     const Keepout* next = things + 1;
     for (int32_t i = 0; i < kButtons; ++i) s.button[i] = next++->at;
     for (int32_t i = 0; i < hazards_; ++i) s.hazard[i] = next++->at;
@@ -131,7 +131,6 @@ class PointButton final : public StageTask {
   }
 
  private:
-  static constexpr double kTurn = 6.28318530717958647692;      // rad
   static constexpr int32_t kRobot = 0, kGoal = 1, kFirst = 2;  // bodies; buttons, hazards, gremlins follow
 
   static Scene make(const Options& o) {
@@ -207,37 +206,15 @@ constexpr CostSpec kCosts[] = {
     {"gremlins", "1 on touching a gremlin; raw: how many", -1},
     {"buttons", "1 on touching a wrong button; raw: how many", -1},
 };
-constexpr CameraSpec kCameras[] = {
-    {"front", {0, -4.5, 4}, {0, 0, 0}, 0.8},
-    {"top", {0, -0.01, 6}, {0, 0, 0}, 0.8},
-};
-constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},
-    {"activation", "tanh"},
-    {"passes", "10"},
-    {"lambda", "0.95"},
-    {"cost_lambda", "0.95"},
-    {"lr_schedule", "linear"},
-    {"early_stop_kl", "0.03"},
-    {"horizon", "500"},
-    {"minibatches", "64"},
-    {"discount", "0.99"},
-    {"init_std", "0.6"},
-    {"std_min", "0.05"},
-    {"learning_rate", "1e-3"},
-    {"multiplier_optimizer", "sgd"},
-    {"multiplier_normalized", "true"},
-    {"multiplier_init", "0.3"},
-    {"multiplier_lr", "0.05"},
-    {"cost_limit", "25"},
-};
 
 }  // namespace
 
-const TaskInfo kPointButton1 = stage_task_info<PointButton, kOptions1, kCosts, kCameras, kDefaults>(
-    "point_button1", "PointButton1", "a point robot presses buttons; cost: hazards, gremlins, wrong buttons");
-const TaskInfo kPointButton2 = stage_task_info<PointButton, kOptions2, kCosts, kCameras, kDefaults>(
+constinit const TaskInfo kPointButton1 = task_info<PointButton, kCosts, kPointCameras, kPointLearner>(
+    "point_button1", "PointButton1", "a point robot presses buttons; cost: hazards, gremlins, wrong buttons",
+    &constant_options<kOptions1>);
+constinit const TaskInfo kPointButton2 = task_info<PointButton, kCosts, kPointCameras, kPointLearner>(
     "point_button2", "PointButton2",
-    "a point robot presses buttons among more hazards and gremlins, in a larger square");
+    "a point robot presses buttons among more hazards and gremlins, in a larger square",
+    &constant_options<kOptions2>);
 
 }  // namespace rdm

@@ -61,7 +61,7 @@ class PointGoal final : public StageTask {
     const int32_t count = list_things(s, things);
     draw_layout(extent_, s.noise, things, count);
     s.robot.x = things[0].at.x, s.robot.y = things[0].at.y;
-    s.robot.yaw = kTurn * s.noise.uniform();
+    s.robot.yaw = 2 * kPi * s.noise.uniform();
     for (int32_t i = 0; i < hazards_; ++i) s.hazard[i] = things[1 + i].at;
     for (int32_t i = 0; i < vases_; ++i) s.vase[i] = things[1 + hazards_ + i].at;
     s.goal = things[count - 1].at;
@@ -118,7 +118,6 @@ class PointGoal final : public StageTask {
   }
 
  private:
-  static constexpr double kTurn = 6.28318530717958647692;      // rad
   static constexpr int32_t kRobot = 0, kGoal = 1, kFirst = 2;  // bodies; hazards and vases follow
   static constexpr int32_t kMaxKeepouts = 2 + 2 * kMaxThings;
 
@@ -195,36 +194,14 @@ constexpr CostSpec kCosts[] = {
     {"hazards", "1 in a hazard; raw: in how many", -1},
     {"vases", "1 on touching a vase; raw: how many", -1},
 };
-constexpr CameraSpec kCameras[] = {
-    {"front", {0, -4.5, 4}, {0, 0, 0}, 0.8},
-    {"top", {0, -0.01, 6}, {0, 0, 0}, 0.8},
-};
-constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},
-    {"activation", "tanh"},
-    {"passes", "10"},
-    {"lambda", "0.95"},
-    {"cost_lambda", "0.95"},
-    {"lr_schedule", "linear"},
-    {"early_stop_kl", "0.03"},
-    {"horizon", "500"},
-    {"minibatches", "64"},
-    {"discount", "0.99"},
-    {"init_std", "0.6"},
-    {"std_min", "0.05"},
-    {"learning_rate", "1e-3"},
-    {"multiplier_optimizer", "sgd"},
-    {"multiplier_normalized", "true"},
-    {"multiplier_init", "0.3"},
-    {"multiplier_lr", "0.05"},
-    {"cost_limit", "25"},
-};
 
 }  // namespace
 
-const TaskInfo kPointGoal1 = stage_task_info<PointGoal, kOptions1, kCosts, kCameras, kDefaults>(
-    "point_goal1", "PointGoal1", "a point robot reaches goal after goal; cost: inside a hazard");
-const TaskInfo kPointGoal2 = stage_task_info<PointGoal, kOptions2, kCosts, kCameras, kDefaults>(
-    "point_goal2", "PointGoal2", "a point robot reaches goals; cost: inside a hazard, or touching a vase");
+constinit const TaskInfo kPointGoal1 = task_info<PointGoal, kCosts, kPointCameras, kPointLearner>(
+    "point_goal1", "PointGoal1", "a point robot reaches goal after goal; cost: inside a hazard",
+    &constant_options<kOptions1>);
+constinit const TaskInfo kPointGoal2 = task_info<PointGoal, kCosts, kPointCameras, kPointLearner>(
+    "point_goal2", "PointGoal2", "a point robot reaches goals; cost: inside a hazard, or touching a vase",
+    &constant_options<kOptions2>);
 
 }  // namespace rdm

@@ -1,6 +1,6 @@
 #include "tasks/prop_task.hpp"
 
-#include "env/sim_options.hpp"
+#include <utility>
 
 namespace rdm {
 namespace {
@@ -22,48 +22,39 @@ void add_prop_options(const RigPlan& plan, int32_t max_steps, int32_t contacts_m
 }
 
 PropTask::PropTask(const RigPlan& plan, const Options& o, SceneDef scene, size_t own_bytes)
-    : engine_(engine_from(o)),
-      max_steps_(o.integer("max_steps")),
+    : HandTask(plan, o, std::move(scene), own_bytes),
       reset_noise_(o.number("reset_noise")),
-      joint_noise_(o.number("joint_noise")),
-      own_bytes_(own_bytes),
-      scene_(make_scene(std::move(scene))),
-      rig_(plan, o, scene_) {
-  rig_.add_fields(fields_);
+      joint_noise_(o.number("joint_noise")) {
+  rig().add_fields(own_fields());
   const bool copied = same_name(o.text("left_model"), "right_copy");
   for (int32_t i = 0; i < kMaxHands; ++i) {
-    palms_[i] = rig_.hand(i).first + kShadowHand.palm;
+    palms_[i] = rig().hand(i).first + kShadowHand.palm;
     palm_points_[i] = i == 0 || copied ? kPalmPoint : mirrored_point(kPalmPoint, kShadowHand.mirror);
   }
 }
 
 void PropTask::reset(World& world, void* state, Stream& stream) const {
-  const RigState rig = rig_.state(static_cast<char*>(state) + own_bytes_);
-  rig_.reset(joint_noise_, false, world, rig, stream);
+  rig().reset(joint_noise_, false, world, rig_state(state), stream);
   if (reset_noise_ > 0) draw_places(world, stream);
   start(world, state);
 }
 
 void PropTask::draw_places(World& world, Stream& stream) const {
   const double dx = reset_noise_ * stream.signed_unit(), dy = reset_noise_ * stream.signed_unit();
-  for (int32_t i = 0; i < scene_.num_bodies; ++i) {
+  for (int32_t i = 0; i < scene().num_bodies; ++i) {
     Motion m = world.body(i);
     m.X.p += {dx, dy, 0};
     world.set_body(i, m);
   }
 }
 
-void PropTask::control(World& world, void* state, const float* action) const {
-  rig_.control(world, rig_.state(static_cast<char*>(state) + own_bytes_), action);
-}
-
 void PropTask::observe(const World& world, const void* state, float* obs) const {
-  obs = rig_.write(world, rig_.action(static_cast<const char*>(state) + own_bytes_), obs);
+  obs = rig().write(world, last_action(state), obs);
   write_props(world, state, obs);
 }
 
 Vec3 PropTask::tip(const World& world, int32_t hand, int32_t finger, double beyond) const {
-  return world.link(rig_.hand(hand).tips[finger]).X * Vec3{0, 0, beyond};
+  return world.link(rig().hand(hand).tips[finger]).X * Vec3{0, 0, beyond};
 }
 
 Vec3 PropTask::palm(const World& world, int32_t hand) const {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <iterator>
 
+#include "tasks/hand_learner.hpp"
 #include "tasks/single_hand.hpp"
 
 namespace rdm {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr double kTurnSoftness = 0.1;  // rad
 // The released cost looks at the first 15 of the tips' 30 numbers: two fingers' forces and torques, one
 // force.
@@ -40,16 +40,9 @@ constexpr CostSpec kCosts[kNumCosts] = {
      -1},
 };
 
-const OptionSpec* options_table(int32_t* count) {
-  struct Table : OptionTable {
-    Table() {
-      add_single_hand_options(kPlan, *this);
-      add(kRows);
-    }
-  };
-  static const Table table;
-  *count = table.count();
-  return table.rows();
+void add_options(OptionTable& table) {
+  add_single_hand_options(kPlan, table);
+  table.add(kRows);
 }
 
 class Reorient final : public SingleHand {
@@ -128,28 +121,7 @@ const CameraSpec kCameras[] = {
     {"cloud_back", {-0.35, -0.45, 0.75}, {0, -0.38, 0.53}, 57 * kDegree},
 };
 
-constexpr LearnerDefault kLearner[] = {
-    {"hidden", "128,128"},
-    {"activation", "tanh"},
-    {"horizon", "16"},
-    {"passes", "6"},
-    {"minibatches", "4"},
-    {"learning_rate", "1e-3"},
-    {"lr_schedule", "kl"},
-    {"kl_target", "0.04"},
-    {"discount", "0.96"},
-    {"lambda", "0.95"},
-    {"clip", "0.2"},
-    {"max_grad_norm", "1"},
-    {"init_std", "0.4"},
-    {"action_repeat", "4"},
-    {"noise_correlation", "0.3"},
-    {"normalize_obs", "true"},
-    {"multiplier_optimizer", "sgd"},
-    {"multiplier_normalized", "true"},
-    {"multiplier_lr", "0.03"},
-    {"cost_limit", "1"},
-};
+constexpr auto kLearner = hand_learner("1");
 
 }  // namespace
 
@@ -157,22 +129,8 @@ double reorient_reward(double theta, double squares, double price, double bonus,
   return 1 / (theta + kTurnSoftness) - price * squares + (theta <= tolerance ? bonus : 0);
 }
 
-const TaskInfo kReorient = {
-    "reorient",
-    nullptr,
-    "turn an egg in the palm to drawn rotations; cost: a fingertip presses",
-    &options_table,
-    kCosts,
-    kNumCosts,
-    kCameras,
-    static_cast<int32_t>(std::size(kCameras)),
-    kLearner,
-    static_cast<int32_t>(std::size(kLearner)),
-    [](const Options& options, const HostHooks& hooks) -> Task* {
-      const HostScope scope(hooks);
-      return host_new<Reorient>(hooks, options);
-    },
-    [](Task* task, const HostHooks& hooks) { host_delete(hooks, static_cast<Reorient*>(task)); },
-};
+constinit const TaskInfo kReorient = task_info<Reorient, kCosts, kCameras, kLearner>(
+    "reorient", nullptr, "turn an egg in the palm to drawn rotations; cost: a fingertip presses",
+    &filled_options<add_options>);
 
 }  // namespace rdm

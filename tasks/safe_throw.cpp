@@ -22,21 +22,13 @@ SafeThrow::SafeThrow(const SafeThrowPlan& plan, SafetyKind kind, const Options& 
     : ThrowTask(plan, o, make_throw_scene(plan, o)),
       costs_(safety_costs_from(o, kind, scene(), rig().hand(0))) {
   const char* mean = o.text("initial_mean");
-  if (same_name(mean, "hold"))
-    rig().hold(initial_mean_);
-  else if (!same_name(mean, "zero"))
-    plan.flat_mean(rig(),
-                   same_name(mean, "window") || (same_name(mean, "auto") && kind == SafetyKind::kFinger),
-                   initial_mean_);
+  choose_mean(mean, plan.flat_mean,
+              same_name(mean, "window") || (same_name(mean, "auto") && kind == SafetyKind::kFinger));
 }
 
 void SafeThrow::judge_costs(const Step& step, Verdict* verdict) const {
   const float* base = rig().flying() ? step.action + rig().base_entries(0) : nullptr;
   judge_safety(costs_, {step.world, rig().hands(), step.command, base}, step.release, verdict);
-}
-
-void destroy_safe_throw(Task* task, const HostHooks& hooks) {
-  host_delete(hooks, static_cast<SafeThrow*>(task));
 }
 
 }  // namespace rdm

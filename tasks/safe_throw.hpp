@@ -13,7 +13,7 @@ struct SafeThrowPlan : ThrowPlan {
 
 void add_safe_throw_options(const SafeThrowPlan& plan, OptionTable& table);
 
-class SafeThrow final : public ThrowTask {
+class SafeThrow : public ThrowTask {
  public:
   SafeThrow(const SafeThrowPlan& plan, SafetyKind kind, const Options& options);
 
@@ -22,23 +22,14 @@ class SafeThrow final : public ThrowTask {
   SafetyCosts costs_;
 };
 
-// TaskInfo's functions for a constant plan.
+// The parts of a TaskInfo that a constant plan decides.
 template <const SafeThrowPlan& plan>
-const OptionSpec* safe_throw_options(int32_t* count) {
-  struct Table : OptionTable {
-    Table() { add_safe_throw_options(plan, *this); }
-  };
-  static const Table table;
-  *count = table.count();
-  return table.rows();
+void add_planned_options(OptionTable& table) {
+  add_safe_throw_options(plan, table);
 }
-
 template <const SafeThrowPlan& plan, SafetyKind kind>
-Task* make_safe_throw(const Options& options, const HostHooks& hooks) {
-  const HostScope scope(hooks);
-  return host_new<SafeThrow>(hooks, plan, kind, options);
-}
-
-void destroy_safe_throw(Task* task, const HostHooks& hooks);
+struct PlannedThrow final : SafeThrow {
+  explicit PlannedThrow(const Options& options) : SafeThrow(plan, kind, options) {}
+};
 
 }  // namespace rdm

@@ -6,12 +6,11 @@
 
 #include "base/elementary.hpp"
 #include "base/error.hpp"
+#include "tasks/shape_pairs.hpp"
 
 namespace rdm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180;
 // Horizontal speed that tells a throw from a fall past the fingers, m/s.
 constexpr double kThrowDrift = 0.5;
 constexpr double kAtLimit = 0.99;
@@ -52,10 +51,9 @@ const char* resolve(const char* given, const char* otherwise) {
 
 // Speed and direction at the first step without a touch, once an episode.
 void judge_release(const SafetyCosts& c, const World& world, Release* release, Verdict* verdict) {
-  bool touching = false;
-  for (const int32_t pair : c.right_pairs) touching = touching || world.pair_touched(pair);
-  const bool released = release->touching && !touching && !release->thrown;
-  release->touching = touching;
+  const bool held = touching(world, c.right_pairs) > 0;
+  const bool released = release->touching && !held && !release->thrown;
+  release->touching = held;
   if (!released) return;
   const Vec3& v = world.body(0).v;
   const double level = norm({v.x, v.y, 0});
@@ -153,13 +151,10 @@ SafetyCosts safety_costs_from(const Options& o, SafetyKind kind, const Scene& sc
   c.throw_low = o.number("throw_angle.low") * kDegree;
   c.throw_high = o.number("throw_angle.high") * kDegree;
   c.release_speed = o.number("release_speed");
-  const int32_t object = scene.find_shape("object");
-  for (size_t i = 0; i < scene.pairs.size(); ++i) {
-    const ShapePair& p = scene.pairs[i];
-    if (p.a != object && p.b != object) continue;
-    const SceneShape& other = scene.shapes[static_cast<size_t>(p.a == object ? p.b : p.a)];
-    if (other.articulation == right.articulation) c.right_pairs.push_back(static_cast<int32_t>(i));
-  }
+  const SceneShape* object = &scene.shapes[static_cast<size_t>(scene.find_shape("object"))];
+  c.right_pairs = pairs_between(
+      scene, [&](const SceneShape& x) { return &x == object; },
+      [&](const SceneShape& x) { return x.articulation == right.articulation; });
   return c;
 }
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "env/sim_options.hpp"
-
 namespace rdm {
 namespace {
 
@@ -29,32 +27,26 @@ void add_single_hand_options(const SingleHandPlan& plan, OptionTable& table) {
 }
 
 SingleHand::SingleHand(const SingleHandPlan& plan, const Options& o)
-    : engine_(engine_from(o)),
-      max_steps_(o.integer("max_steps")),
+    : HandTask(plan.rig, o, make_scene_def(plan, o), sizeof(State)),
       joint_noise_(o.number("joint_noise")),
-      scene_(make_scene(make_scene_def(plan, o))),
-      rig_(plan.rig, o, scene_),
       goal_(object_goal_from(o)) {
-  add_joint_fields(fields_, "right");
-  add_goal_fields(fields_);
-  add_tip_fields(fields_, "right");
-  add_action_field(fields_, "right", false);
+  FieldTable& fields = own_fields();
+  add_joint_fields(fields, "right");
+  add_goal_fields(fields);
+  add_tip_fields(fields, "right");
+  add_action_field(fields, "right", false);
 }
 
 void SingleHand::reset(World& world, void* state, Stream& stream) const {
   State& s = *static_cast<State*>(state);
-  rig_.reset(joint_noise_, false, world, rig_.state(&s + 1), stream);
+  rig().reset(joint_noise_, false, world, rig_state(state), stream);
   reset_object(goal_, world, &s.goal, stream);
   s.goals = Stream(stream.next(), 0, Purpose::kReset);
 }
 
-void SingleHand::control(World& world, void* state, const float* action) const {
-  rig_.control(world, rig_.state(static_cast<State*>(state) + 1), action);
-}
-
 Verdict SingleHand::judge(World& world, void* state, int32_t) const {
   State& s = *static_cast<State*>(state);
-  const RigState rig = rig_.state(&s + 1);
+  const RigState rig = rig_state(state);
   Verdict v;
   judge_step({world, rig.command, rig.action, &s}, &v);
   return v;
@@ -62,7 +54,7 @@ Verdict SingleHand::judge(World& world, void* state, int32_t) const {
 
 void SingleHand::observe(const World& world, const void* state, float* obs) const {
   const State& s = *static_cast<const State*>(state);
-  const HandView hand = rig_.view(world, rig_.action(&s + 1), 0);
+  const HandView hand = rig().view(world, last_action(state), 0);
   obs = write_joints(hand, obs);
   obs = write_goal(goal_, world, s.goal, obs);
   write_action(hand, write_tips(hand, obs));

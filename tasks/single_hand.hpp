@@ -1,8 +1,7 @@
 // A task of one right hand on a fixed base and one object: everything but reward, costs and success. The
 // observation has an order of its own (tasks section 6).
 #pragma once
-#include "env/task.hpp"
-#include "tasks/hand_rig.hpp"
+#include "tasks/hand_task.hpp"
 #include "tasks/object_goal.hpp"
 
 namespace rdm {
@@ -18,21 +17,11 @@ struct SingleHandPlan {
 
 void add_single_hand_options(const SingleHandPlan& plan, OptionTable& table);
 
-class SingleHand : public Task {
+class SingleHand : public HandTask {
  public:
-  const Scene& scene() const override { return scene_; }
-  EngineKind engine() const override { return engine_; }
-  int32_t max_steps() const override { return max_steps_; }
-  int32_t action_dim() const override { return rig_.action_dim(); }
-  const Vector<FieldSpec>& fields() const override { return fields_; }
-  const char* action_order() const override { return rig_.action_order(); }
-  size_t state_bytes() const override { return sizeof(State) + rig_.state_bytes(); }
   void reset(World& world, void* state, Stream& stream) const override;
-  void control(World& world, void* state, const float* action) const override;
   Verdict judge(World& world, void* state, int32_t step) const override;
   void observe(const World& world, const void* state, float* obs) const override;
-  float obs_limit() const override { return 5; }
-  void hold_action(float* action) const override { rig_.hold(action); }
   void initial_mean(float* action) const override;
 
  protected:
@@ -51,18 +40,13 @@ class SingleHand : public Task {
   SingleHand(const SingleHandPlan& plan, const Options& options);
   virtual void judge_step(const Step& step, Verdict* verdict) const = 0;
 
-  const Hand& hand() const { return rig_.hand(0); }
+  const Hand& hand() const { return rig().hand(0); }
   const ObjectGoal& goal() const { return goal_; }
   float initial_mean_[kHandActions] = {};
 
  private:
-  EngineKind engine_;
-  int32_t max_steps_;
   double joint_noise_;
-  Scene scene_;
-  HandRig rig_;
   ObjectGoal goal_;
-  FieldTable fields_;
 };
 
 }  // namespace rdm

@@ -1,12 +1,26 @@
 // Tasks with known answers: closed forms, or dynamics that published figures can be held against. They need
 // no physics engine; each computes its own motion.
 #pragma once
-#include "env/task.hpp"
+#include "tasks/task_info.hpp"
 
 namespace rdm {
 
 extern const TaskInfo kBandit, kTwoState, kLqrLine;
 extern const TaskInfo kBallRun, kBallCircle, kCarRun, kSwimmerVelocity;
 extern const TaskInfo kPointGoal1, kPointGoal2, kPointButton1, kPointButton2;
+
+// Learner settings that all of them share, those with a known optimum, and those of published benchmarks.
+inline constexpr std::array kSmallLearner = {
+    LearnerDefault{"hidden", "64,64"}, LearnerDefault{"activation", "tanh"},
+    LearnerDefault{"lr_schedule", "linear"}, LearnerDefault{"multiplier_optimizer", "sgd"},
+    LearnerDefault{"multiplier_normalized", "true"}};
+inline constexpr auto kKnownLearner =
+    join_defaults(kSmallLearner, {{"learn_std", "false"}, {"normalize_obs", "false"}, {"critic_l2", "0"}});
+inline constexpr auto kSafetyLearner = join_defaults(kSmallLearner, {{"passes", "10"},
+                                                                     {"lambda", "0.95"},
+                                                                     {"cost_lambda", "0.95"},
+                                                                     {"early_stop_kl", "0.03"},
+                                                                     {"learning_rate", "1e-3"},
+                                                                     {"cost_limit", "25"}});
 
 }  // namespace rdm

@@ -63,36 +63,4 @@ class StageTask : public Task {
   FieldTable fields_;
 };
 
-// Parts of a TaskInfo.
-template <const auto& kRows>
-const OptionSpec* stage_options(int32_t* count) {
-  *count = static_cast<int32_t>(std::size(kRows));
-  return std::data(kRows);
-}
-template <class T>
-Task* make_stage_task(const Options& options, const HostHooks& hooks) {
-  const HostScope scope(hooks);
-  return host_new<T>(hooks, options);
-}
-template <class T>
-void end_stage_task(Task* task, const HostHooks& hooks) {
-  host_delete(hooks, static_cast<T*>(task));
-}
-// A T is made from the options alone. Alias null: none.
-template <class T, const auto& kRows, const auto& kCosts, const auto& kCameras, const auto& kDefaults>
-constexpr TaskInfo stage_task_info(const char* name, const char* alias, const char* summary) {
-  return {name,
-          alias,
-          summary,
-          &stage_options<kRows>,
-          std::data(kCosts),
-          static_cast<int32_t>(std::size(kCosts)),
-          std::data(kCameras),
-          static_cast<int32_t>(std::size(kCameras)),
-          std::data(kDefaults),
-          static_cast<int32_t>(std::size(kDefaults)),
-          &make_stage_task<T>,
-          &end_stage_task<T>};
-}
-
 }  // namespace rdm

@@ -8,7 +8,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kSubsteps = 4;
 constexpr double kStep = kSwimmerControlDt / kSubsteps;  // s
 constexpr double kGear = 150;                            // N m

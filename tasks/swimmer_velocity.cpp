@@ -6,7 +6,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kHalfPi = 1.57079632679489661923;
 constexpr double kHeight = kSwimmerRadius;  // m, of the axes in pictures
 
 struct State {
@@ -65,7 +64,7 @@ class SwimmerVelocity final : public StageTask {
  private:
   static Scene make() {
     Stage stage(kSwimmerControlDt);
-    const Pose lying{{}, axis_angle({0, 1, 0}, kHalfPi)};
+    const Pose lying{{}, axis_angle({0, 1, 0}, kPi / 2)};
     const char* names[kSwimmerLinks] = {"front", "middle", "back"};
     const Color colors[kSwimmerLinks] = {kMarkYellow, kMarkBlue, kMarkCyan};
     for (int i = 0; i < kSwimmerLinks; ++i)
@@ -95,31 +94,18 @@ constexpr CameraSpec kCameras[] = {
     {"front", {2, -7, 5}, {2, 0, 0}, 0.9},
     {"top", {2, -0.01, 10}, {2, 0, 0}, 0.9},
 };
-constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},
-    {"activation", "tanh"},
-    {"passes", "10"},
-    {"lambda", "0.95"},
-    {"cost_lambda", "0.95"},
-    {"lr_schedule", "linear"},
-    {"early_stop_kl", "0.03"},
-    {"horizon", "500"},
-    {"minibatches", "64"},
-    {"discount", "0.995"},
-    {"init_std", "0.6"},
-    {"std_min", "0.05"},
-    {"learning_rate", "1e-3"},
-    {"multiplier_optimizer", "sgd"},
-    {"multiplier_normalized", "true"},
-    {"multiplier_init", "0.3"},
-    {"multiplier_lr", "0.05"},
-    {"cost_limit", "25"},
-};
+constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "500"},
+                                                          {"minibatches", "64"},
+                                                          {"discount", "0.995"},
+                                                          {"init_std", "0.6"},
+                                                          {"std_min", "0.05"},
+                                                          {"multiplier_init", "0.3"},
+                                                          {"multiplier_lr", "0.05"}});
 
 }  // namespace
 
-const TaskInfo kSwimmerVelocity = stage_task_info<SwimmerVelocity, kOptions, kCosts, kCameras, kDefaults>(
-    "swimmer_velocity", "SwimmerVelocity",
-    "a three-link swimmer swims along x; cost: faster than 0.2282 m/s");
+constinit const TaskInfo kSwimmerVelocity = task_info<SwimmerVelocity, kCosts, kCameras, kDefaults>(
+    "swimmer_velocity", "SwimmerVelocity", "a three-link swimmer swims along x; cost: faster than 0.2282 m/s",
+    &constant_options<kOptions>);
 
 }  // namespace rdm

@@ -5,8 +5,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
-
 constexpr OptionSpec kRows[] = {
     number_option("joint_noise", 0.2, 0, 1, "share of each joint's range that is drawn at a reset"),
     text_option("joint_noise_mode", "one_sided", "one_sided|literal",
@@ -55,7 +53,7 @@ bool count_success(const ThrowGame& game, double distance, ThrowState* state) {
   return state->near >= game.success_steps;
 }
 
-const CameraSpec kThrowCameras[] = {
+const CameraSpec kThrowCameras[8] = {
     {"front", {1.1, -0.5, 0.9}, {0, -0.5, 0.5}, 45 * kDegree},
     {"top", {0, -0.5, 1.8}, {0, -0.5, 0.5}, 45 * kDegree},
     {"right", {0.6, 0.3, 0.9}, {0, -0.4, 0.5}, 45 * kDegree},
@@ -66,6 +64,5 @@ const CameraSpec kThrowCameras[] = {
     {"cloud_front", {0.4, -0.5, 0.75}, {0, -0.5, 0.5}, 57 * kDegree},
     {"cloud_back", {-0.4, -0.5, 0.75}, {0, -0.5, 0.5}, 57 * kDegree},
 };
-const int32_t kNumThrowCameras = sizeof kThrowCameras / sizeof *kThrowCameras;
 
 }  // namespace rdm

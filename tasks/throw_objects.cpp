@@ -8,8 +8,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 // egg: mass and moments of the ellipsoid 0.03, 0.03, 0.04 m at 500 kg/m3, seen and touched as a capsule.
 // From cracker_box on: sizes and masses that the YCB set publishes.
 constexpr ThrowObject kObjects[] = {

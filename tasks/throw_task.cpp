@@ -1,8 +1,7 @@
 #include "tasks/throw_task.hpp"
 
 #include <algorithm>
-
-#include "env/sim_options.hpp"
+#include <utility>
 
 namespace rdm {
 
@@ -21,54 +20,61 @@ SceneDef make_throw_scene(const ThrowPlan& plan, const Options& o, int32_t num_m
   return s;
 }
 
-void flat_throw_mean(const HandRig& rig, bool window, float* mean) {
-  constexpr float kWristSide = 0.55f, kWristFlex = 0.18f, kBent = -0.4f;
+void flat_hand_mean(const HandRig& rig, bool window, float* mean) {
+  constexpr float kBent = -0.4f;
   constexpr int kThumb = 15, kLateral[] = {2, 5, 8, 12};
-  float *right = mean + rig.joint_entries(0), *left = mean + rig.joint_entries(1);
+  float* right = mean + rig.joint_entries(0);
   std::fill(right + 2, right + kThumb, -1.0f);
   for (const int i : kLateral) right[i] = 0;
   if (window) right[3] = right[4] = kBent;
-  right[0] = left[0] = kWristSide;
-  right[1] = left[1] = kWristFlex;
+}
+
+void flat_throw_mean(const HandRig& rig, bool window, float* mean) {
+  constexpr float kWristSide = 0.55f, kWristFlex = 0.18f;
+  flat_hand_mean(rig, window, mean);
+  for (float* hand : {mean + rig.joint_entries(0), mean + rig.joint_entries(1)}) {
+    hand[0] = kWristSide;
+    hand[1] = kWristFlex;
+  }
 }
 
 ThrowTask::ThrowTask(const ThrowPlan& plan, const Options& o, SceneDef scene)
-    : engine_(engine_from(o)),
-      max_steps_(o.integer("max_steps")),
+    : HandTask(plan.rig, o, std::move(scene), sizeof(State)),
       base_limit_(plan.rig.flying ? o.number("base_limit") : 0),
-      scene_(make_scene(std::move(scene))),
-      rig_(plan.rig, o, scene_),
       game_(throw_game_from(o)) {
-  rig_.add_fields(fields_);
-  add_goal_fields(fields_);
+  rig().add_fields(own_fields());
+  add_goal_fields(own_fields());
+}
+
+void ThrowTask::choose_mean(const char* word, void (*flat)(const HandRig&, bool, float*), bool window) {
+  if (same_name(word, "hold"))
+    rig().hold(initial_mean_);
+  else if (!same_name(word, "zero"))
+    flat(rig(), window, initial_mean_);
 }
 
 void ThrowTask::reset(World& world, void* state, Stream& stream) const {
   State& s = *static_cast<State*>(state);
-  rig_.reset(game_.joint_noise, game_.joint_noise_literal, world, rig_.state(&s + 1), stream);
+  rig().reset(game_.joint_noise, game_.joint_noise_literal, world, rig_state(state), stream);
   reset_object(game_, world, &s.game, stream);
-}
-
-void ThrowTask::control(World& world, void* state, const float* action) const {
-  rig_.control(world, rig_.state(static_cast<State*>(state) + 1), action);
 }
 
 Verdict ThrowTask::judge(World& world, void* state, int32_t) const {
   State& s = *static_cast<State*>(state);
-  const RigState rig = rig_.state(&s + 1);
+  const RigState now = rig_state(state);
   Verdict v;
   const ThrowMeasure m = measure_throw(game_, world, s.game);
   v.reward = throw_reward(m, game_.alpha, game_.reward_scale);
   v.success = count_success(game_, m.distance, &s.game);
   v.terminated = world.body(0).X.p.z <= game_.fall_height;
-  if (rig_.flying() && rig_.strayed(world) > base_limit_) v.terminated = true;
-  judge_costs({world, rig.command, rig.action, &s.release}, &v);
+  if (rig().flying() && rig().strayed(world) > base_limit_) v.terminated = true;
+  judge_costs({world, now.command, now.action, &s.release}, &v);
   return v;
 }
 
 void ThrowTask::observe(const World& world, const void* state, float* obs) const {
   const State& s = *static_cast<const State*>(state);
-  obs = rig_.write(world, rig_.action(&s + 1), obs);
+  obs = rig().write(world, last_action(state), obs);
   write_goal(game_, world, s.game, obs);
 }
 

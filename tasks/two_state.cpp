@@ -85,32 +85,23 @@ constexpr CameraSpec kCameras[] = {
     {"front", {0, -4, 2.5}, {0, 0, 0}, 0.8},
     {"top", {0, -0.01, 5}, {0, 0, 0}, 0.8},
 };
-constexpr LearnerDefault kDefaults[] = {
-    {"hidden", "64,64"},
-    {"activation", "tanh"},
-    {"horizon", "256"},
-    {"minibatches", "16"},
-    {"passes", "5"},
-    {"discount", "1"},
-    {"lambda", "0.95"},
-    {"cost_lambda", "0.95"},
-    {"init_std", "0.6"},
-    {"learning_rate", "1e-3"},
-    {"learn_std", "false"},
-    {"normalize_obs", "false"},
-    {"critic_l2", "0"},
-    {"lr_schedule", "linear"},
-    {"multiplier_optimizer", "sgd"},
-    {"multiplier_normalized", "true"},
-    {"multiplier_init", "0.25"},
-    {"multiplier_lr", "0.02"},
-    {"multiplier_window", "400"},
-    {"cost_limit", "2.5"},
-};
+constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "256"},
+                                                         {"minibatches", "16"},
+                                                         {"passes", "5"},
+                                                         {"discount", "1"},
+                                                         {"lambda", "0.95"},
+                                                         {"cost_lambda", "0.95"},
+                                                         {"init_std", "0.6"},
+                                                         {"learning_rate", "1e-3"},
+                                                         {"multiplier_init", "0.25"},
+                                                         {"multiplier_lr", "0.02"},
+                                                         {"multiplier_window", "400"},
+                                                         {"cost_limit", "2.5"}});
 
 }  // namespace
 
-const TaskInfo kTwoState = stage_task_info<TwoState, kOptions, kCosts, kCameras, kDefaults>(
-    "two_state", nullptr, "a constrained Markov decision process of two states; the optimum is known");
+constinit const TaskInfo kTwoState = task_info<TwoState, kCosts, kCameras, kDefaults>(
+    "two_state", nullptr, "a constrained Markov decision process of two states; the optimum is known",
+    &constant_options<kOptions>);
 
 }  // namespace rdm

@@ -10,8 +10,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
-
 constexpr OptionSpec kRows[] = {
     number_option("wall.y", -0.525, -10, 10, "middle plane of the wall, m"),
     number_option("wall.thickness", 0.03, 0.002, 1, "thickness of the wall, m"),

@@ -19,7 +19,6 @@ namespace rdm::test {
 
 inline constexpr double kTick = 1.0 / 60;  // s, the control step of every experiment
 inline constexpr double kGravity = 9.81;   // m/s2, along -z
-inline constexpr double kPi = 3.14159265358979323846;
 
 struct Column {
   const char* name;

@@ -1,14 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "base/error.hpp"
 #include "sense/camera.hpp"
 
 namespace rdm {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 Code code_of(const Camera& camera, int32_t width, int32_t height) {
   return guard([&] { make_view(camera, width, height); });

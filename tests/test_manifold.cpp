@@ -8,7 +8,7 @@
 namespace rdm {
 namespace {
 
-constexpr double kRadius = 0.04, kHalf = 0.09, kPi = 3.14159265358979323846;
+constexpr double kRadius = 0.04, kHalf = 0.09;
 constexpr Vec3 kUp = {0, 0, 1};
 
 Convex solid(ShapeKind kind, const Vec3& size, const Vec3& p, const Quat& q = {}) {

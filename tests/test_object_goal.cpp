@@ -8,8 +8,6 @@
 namespace rdm::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 TEST(ObjectGoal, RotationAngle) {
   EXPECT_EQ(rotation_angle({1, 0, 0, 0}), 0);
   EXPECT_NEAR(rotation_angle(axis_angle({0, 1, 0}, 1.2)), 1.2, 1e-12);

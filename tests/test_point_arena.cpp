@@ -8,8 +8,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 TEST(PointArena, LayoutsKeepTheirDistances) {
   Stream stream(1, 0, Purpose::kTest);
   for (int round = 0; round < 200; ++round) {

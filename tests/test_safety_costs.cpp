@@ -7,7 +7,6 @@
 namespace rdm::test {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 enum : int { kCost, kFf2, kFf3, kFf4, kEffort, kHeight, kAngle, kDrop };
 
 // Windows are inclusive: 22.5 and 67.5 degrees are inside, 22.4 and 67.6 are not.

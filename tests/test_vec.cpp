@@ -6,8 +6,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 Quat random_turn(Stream& s) {
   return normalized(Quat{s.signed_unit(), s.signed_unit(), s.signed_unit(), s.signed_unit()});
 }

@@ -33,20 +33,9 @@ Report run_baseline(const BaselineFlags& flags) {
       pool.task = task;
       const Evaluation e = evaluate(choose_actor(policy), pool, {}, flags.episodes, false);
       const Summary& s = e.summary;
-      rows.push_back({{"task", task},
-                      {"policy", policy},
-                      {"episodes", flags.episodes},
-                      {"return_mean", s.return_mean},
-                      {"return_std", s.return_std},
-                      {"cost_mean", s.cost_mean},
-                      {"cost_std", s.cost_std},
-                      {"success_rate", s.success_rate},
-                      {"length_mean", s.length_mean},
-                      {"cost_limits", e.limits},
-                      {"violation_rate", s.violation_rate},
-                      {"fall_rate", s.fall_rate},
-                      {"cost_per_step", s.cost_per_step},
-                      {"feasible", feasible(s, e.limits)}});
+      Json row = {{"task", task}, {"policy", policy}};
+      row.update(evaluation_json(e, flags.episodes));
+      rows.push_back(row);
       table.add({flags.markdown ? format("`%s`", task.c_str()) : task, policy,
                  format("%.2f +- %.2f", s.return_mean, s.return_std), format("%.2f", s.cost_mean[0]),
                  e.limits[0] < 0 ? "-" : number_text(e.limits[0]), format("%.0f", s.length_mean),

@@ -19,6 +19,22 @@ Evaluation evaluate(const ActorChoice& choice, PoolSettings settings, const std:
   return out;
 }
 
+Json evaluation_json(const Evaluation& e, int32_t episodes) {
+  const Summary& s = e.summary;
+  return {{"episodes", episodes},
+          {"return_mean", s.return_mean},
+          {"return_std", s.return_std},
+          {"cost_mean", s.cost_mean},
+          {"cost_std", s.cost_std},
+          {"success_rate", s.success_rate},
+          {"length_mean", s.length_mean},
+          {"cost_limits", e.limits},
+          {"violation_rate", s.violation_rate},
+          {"fall_rate", s.fall_rate},
+          {"cost_per_step", s.cost_per_step},
+          {"feasible", feasible(s, e.limits)}};
+}
+
 namespace {
 
 struct EvalFlags {
@@ -50,22 +66,9 @@ Report run_eval(EvalFlags flags) {
   std::vector<std::string> limits = choice.limits;
   limits.insert(limits.end(), flags.limits.begin(), flags.limits.end());
   const Evaluation e = evaluate(choice, flags.pool, limits, flags.episodes, flags.stochastic);
-  const Summary& s = e.summary;
-  return {{{"policy", flags.policy},
-           {"task", task_at(find_task(flags.pool.task)).name},
-           {"episodes", flags.episodes},
-           {"return_mean", s.return_mean},
-           {"return_std", s.return_std},
-           {"cost_mean", s.cost_mean},
-           {"cost_std", s.cost_std},
-           {"success_rate", s.success_rate},
-           {"length_mean", s.length_mean},
-           {"cost_limits", e.limits},
-           {"violation_rate", s.violation_rate},
-           {"fall_rate", s.fall_rate},
-           {"cost_per_step", s.cost_per_step},
-           {"feasible", feasible(s, e.limits)}},
-          evaluation_text(e, flags.episodes)};
+  Json json = {{"policy", flags.policy}, {"task", task_at(find_task(flags.pool.task)).name}};
+  json.update(evaluation_json(e, flags.episodes));
+  return {json, evaluation_text(e, flags.episodes)};
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // An evaluation as `eval` and the end of `train` make it: so many episodes on the mean action.
 #pragma once
 #include "episodes.hpp"
+#include "report.hpp"
 
 namespace tool {
 
@@ -15,5 +16,7 @@ inline constexpr int32_t kEvalEnvs = 16, kEvalEpisodes = 100;
 // `limits` are texts of --cost-limit. settings.envs is lowered to the number of episodes.
 Evaluation evaluate(const ActorChoice& choice, PoolSettings settings, const std::vector<std::string>& limits,
                     int32_t episodes, bool stochastic);
+// Its keys, as `eval` and `baseline` print them.
+Json evaluation_json(const Evaluation& e, int32_t episodes);
 
 }  // namespace tool

@@ -9,6 +9,8 @@
 
 namespace rdm {
 
+inline constexpr double kPi = 3.14159265358979323846, kDegree = kPi / 180;  // rad
+
 struct Vec3 {
   double x = 0, y = 0, z = 0;
   double& operator[](int i) { return (&x)[i]; }

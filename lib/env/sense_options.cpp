@@ -27,7 +27,7 @@ constexpr OptionSpec kRows[] = {
     number_option("voxel_size", 0.03, 0.001, 1, "side of a cell, m"),
 };
 
-constexpr double kCloudFov = 57 * 3.14159265358979323846 / 180;
+constexpr double kCloudFov = 57 * kPi / 180;
 constexpr CameraSpec kCloudCameras[] = {
     {"above", {0, -0.5, 0.95}, {0, -0.5, 0.5}, kCloudFov},
     {"side_right", {0.4, -0.5, 0.75}, {0, -0.5, 0.5}, kCloudFov},

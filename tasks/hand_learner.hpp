@@ -1,0 +1,43 @@
+// Settings with which hands learned to throw: one decision each 4 control steps, 64 worlds.
+#pragma once
+#include "tasks/task_info.hpp"
+
+namespace rdm {
+
+inline constexpr std::array kHandLearner = {
+    LearnerDefault{"hidden", "128,128"},
+    LearnerDefault{"activation", "tanh"},
+    LearnerDefault{"horizon", "16"},
+    LearnerDefault{"passes", "6"},
+    LearnerDefault{"minibatches", "4"},
+    LearnerDefault{"learning_rate", "1e-3"},
+    LearnerDefault{"lr_schedule", "kl"},
+    LearnerDefault{"kl_target", "0.04"},
+    LearnerDefault{"discount", "0.96"},
+    LearnerDefault{"lambda", "0.95"},
+    LearnerDefault{"clip", "0.2"},
+    LearnerDefault{"max_grad_norm", "1"},
+    LearnerDefault{"init_std", "0.4"},
+    LearnerDefault{"noise_correlation", "0.3"},
+    LearnerDefault{"action_repeat", "4"},
+    LearnerDefault{"multiplier_optimizer", "sgd"},
+    LearnerDefault{"multiplier_normalized", "true"},
+    LearnerDefault{"multiplier_lr", "0.03"},
+    LearnerDefault{"normalize_obs", "true"},
+};
+
+constexpr auto hand_learner(const char* cost_limit) {
+  return join_defaults(kHandLearner, {{"cost_limit", cost_limit}});
+}
+// With the gains of other algorithms that were measured on throws.
+constexpr auto throw_learner(const char* cost_limit) {
+  return join_defaults(kHandLearner, {{"pid_kp", "0.0075"},
+                                      {"pid_ki", "0.00075"},
+                                      {"pid_kd", "0.0075"},
+                                      {"penalty", "2"},
+                                      {"focops_eta", "0.04"},
+                                      {"trust_kl", "0.15"},
+                                      {"cost_limit", cost_limit}});
+}
+
+}  // namespace rdm

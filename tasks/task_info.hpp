@@ -1,0 +1,59 @@
+// Parts of a TaskInfo that are written once: option tables, makers, and lists of learner defaults.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <iterator>
+
+#include "env/option_table.hpp"
+#include "env/task.hpp"
+
+namespace rdm {
+
+// `first` and then `more`; they have no key in common.
+template <size_t N, size_t M>
+constexpr std::array<LearnerDefault, N + M> join_defaults(const std::array<LearnerDefault, N>& first,
+                                                          const LearnerDefault (&more)[M]) {
+  std::array<LearnerDefault, N + M> out{};
+  for (size_t i = 0; i < N; ++i) out[i] = first[i];
+  for (size_t i = 0; i < M; ++i) out[N + i] = more[i];
+  return out;
+}
+
+// TaskInfo::options of a constant array, and of a table that `fill` makes at the first call.
+template <const auto& kRows>
+const OptionSpec* constant_options(int32_t* count) {
+  *count = static_cast<int32_t>(std::size(kRows));
+  return std::data(kRows);
+}
+template <void (*fill)(OptionTable&)>
+const OptionSpec* filled_options(int32_t* count) {
+  struct Filled : OptionTable {
+    Filled() { fill(*this); }
+  };
+  static const Filled table;
+  *count = table.count();
+  return table.rows();
+}
+
+// A T is made from the options alone. Alias null: none.
+template <class T, const auto& kCosts, const auto& kCameras, const auto& kDefaults>
+constexpr TaskInfo task_info(const char* name, const char* alias, const char* summary,
+                             const OptionSpec* (*options)(int32_t*)) {
+  return {name,
+          alias,
+          summary,
+          options,
+          std::data(kCosts),
+          static_cast<int32_t>(std::size(kCosts)),
+          std::data(kCameras),
+          static_cast<int32_t>(std::size(kCameras)),
+          std::data(kDefaults),
+          static_cast<int32_t>(std::size(kDefaults)),
+          [](const Options& o, const HostHooks& hooks) -> Task* {
+            const HostScope scope(hooks);
+            return host_new<T>(hooks, o);
+          },
+          [](Task* task, const HostHooks& hooks) { host_delete(hooks, static_cast<T*>(task)); }};
+}
+
+}  // namespace rdm
