@@ -5,6 +5,7 @@
 #include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "nn/gaussian.hpp"
+#include "nn/kernels.hpp"
 
 namespace rdm {
 namespace {
@@ -39,7 +40,7 @@ void Collector::carve(Arena& arena, const Plan& plan) {
   noise_.carve(arena, plan);
   episodes_.carve(arena, plan.config.num_envs, plan.config.cost_dim,
                   o.knows("multiplier_window") ? o.integer("multiplier_window") : kStatsWindow);
-  std_ = arena.make<float>(plan.action_dim());
+  std_ = arena.make<float>(plan.state_std() ? 0 : plan.action_dim());
   final_value_ = arena.make<float>(plan.num_envs());
   final_cost_ = arena.make<float>(plan.num_envs() * static_cast<size_t>(plan.num_limited));
   listed_ = arena.make<int32_t>(plan.num_envs());
@@ -80,8 +81,18 @@ void Collector::values(const Lane& lane, const float* x, int32_t rows, float* va
   if (nets_->count > Networks::kCost) nets_->forward(Networks::kCost, x, rows, lane.critic, cost_value);
 }
 
+void Collector::split_head(const float* y, int32_t rows, float* mean, float* log_std) const {
+  const size_t dim = rollout_.action_dim;
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i, y += 2 * dim) {
+    std::memcpy(mean + i * dim, y, dim * sizeof(float));
+    if (log_std) std::memcpy(log_std + i * dim, y + dim, dim * sizeof(float));
+  }
+}
+
 void Collector::mean_rows(const Lane& lane, const float* obs, int32_t rows, float* action) const {
-  nets_->forward(Networks::kActor, normalized(obs, rows, lane.obs), rows, lane.actor, action);
+  float* y = nets_->state_std() ? lane.out : action;
+  nets_->forward(Networks::kActor, normalized(obs, rows, lane.obs), rows, lane.actor, y);
+  if (y != action) split_head(y, rows, action, nullptr);
 }
 
 void Collector::act_rows(const Lane& lane, const float* obs, int32_t first, int32_t rows, float* action) {
@@ -90,13 +101,17 @@ void Collector::act_rows(const Lane& lane, const float* obs, int32_t first, int3
   float* x = r.obs + at * r.obs_dim;
   if (normalized(obs, rows, x) != x)
     std::memcpy(x, obs, static_cast<size_t>(rows) * r.obs_dim * sizeof(float));
-  float* mean = r.mean + at * dim;
-  nets_->forward(Networks::kActor, x, rows, lane.actor, mean);
+  float *mean = r.mean + at * dim, *y = nets_->state_std() ? lane.out : mean;
+  nets_->forward(Networks::kActor, x, rows, lane.actor, y);
+  if (y != mean) split_head(y, rows, mean, r.log_std_of(at));
   values(lane, x, rows, r.value + at, r.cost_value + at * static_cast<size_t>(r.num_costs));
+  float own_std[kMaxActions];
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
     float* centered = r.action + (at + i) * dim;
-    noise_.sample(first + static_cast<int32_t>(i), mean + i * dim, std_, action + i * dim, centered);
-    r.log_prob[at + i] = gaussian_log_prob(mean + i * dim, r.log_std, centered, static_cast<int32_t>(dim));
+    const float *log_std = r.log_std_of(at + i), *std = std_;
+    if (nets_->state_std()) kernels().map_exp(log_std, dim, own_std), std = own_std;
+    noise_.sample(first + static_cast<int32_t>(i), mean + i * dim, std, action + i * dim, centered);
+    r.log_prob[at + i] = gaussian_log_prob(mean + i * dim, log_std, centered, static_cast<int32_t>(dim));
   }
 }
 
@@ -107,7 +122,7 @@ void Collector::act(const float* obs, bool sample, float* action) {
   check_rows("obs", obs, nullptr, envs, rollout_.obs_dim);
   if (sample) {
     if (normalize_) normalizer_merge(normalizer_, obs, envs, nullptr, obs_count_max_);
-    for (size_t j = 0; j < rollout_.action_dim; ++j) {
+    for (size_t j = 0; !nets_->state_std() && j < rollout_.action_dim; ++j) {
       rollout_.log_std[j] = nets_->log_std()[j] + plan_->log_share;
       std_[j] = static_cast<float>(elementary::exp(static_cast<double>(rollout_.log_std[j])));
     }

@@ -41,6 +41,8 @@ class Collector {
   const float* normalized(const float* obs, int32_t rows, float* memory) const;
   void values(const Lane& lane, const float* x, int32_t rows, float* value, float* cost_value) const;
   void act_rows(const Lane& lane, const float* obs, int32_t first, int32_t rows, float* action);
+  // What a network with std_mode=state gives, taken apart: means, log deviations (null: not wanted).
+  void split_head(const float* y, int32_t rows, float* mean, float* log_std) const;
   void mean_rows(const Lane& lane, const float* obs, int32_t rows, float* action) const;
   void check(const Transition& t) const;
   void value_truncated(const Transition& t);
@@ -55,7 +57,7 @@ class Collector {
   Normalizer normalizer_, reward_scale_, cost_scale_;
   Noise noise_;
   Episodes episodes_;
-  float* std_ = nullptr;          // [action_dim] of the innovation
+  float* std_ = nullptr;          // [action_dim] of the innovation; none with std_mode=state
   float* final_value_ = nullptr;  // [num_envs] V of the final observation after truncation, else 0
   float* final_cost_ = nullptr;   // [num_envs][num_limited]
   int32_t* listed_ = nullptr;     // [num_envs] environments that were truncated

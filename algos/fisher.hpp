@@ -2,7 +2,8 @@
 //
 // For a Gaussian whose deviation does not depend on the state the Hessian of the mean KL(old || new) at
 // new = old is J' diag(1 / sigma^2) J / N for the network, J the derivative of the mean, and 2 I for the log
-// deviations, with nothing between the two.
+// deviations, with nothing between the two. With std_mode=state it is J' diag(1 / sigma^2, 2) J / N, J the
+// derivative of means and log deviations; where these are at a bound, J is 0.
 #pragma once
 #include "algos/lanes.hpp"
 #include "algos/networks.hpp"
@@ -23,11 +24,14 @@ class Fisher {
   void multiply(const float* v, float* out);
 
  private:
+  // Tangents of the outputs of n rows into what is propagated back.
+  void weigh(const float* y, int32_t n, float* dy) const;
+
   const Plan* plan_ = nullptr;
   const Rollout* rollout_ = nullptr;
   const Networks* nets_ = nullptr;
   Lanes* lanes_ = nullptr;
-  float* weight_ = nullptr;  // [action_dim] 1 / (N sigma^2)
+  float* weight_ = nullptr;  // [action_dim] 1 / (N sigma^2); none with std_mode=state
   const int32_t* order_ = nullptr;
   int32_t rows_ = 0, stride_ = 1;
   double damping_ = 0.1, dims_ = 1;  // dims: what sums over action dimensions are divided by

@@ -14,29 +14,32 @@ void FocopsLoss::add(const PolicyPiece& piece) const {
   const size_t dim = r.action_dim;
   const auto dims = static_cast<int32_t>(dim);
   float precision[kMaxActions], dlog_std[kMaxActions];  // 1 / old variance; d KL / d log sigma
-  for (size_t j = 0; j < dim; ++j) {
-    const auto old = static_cast<double>(r.log_std[j]);
-    precision[j] = static_cast<float>(elementary::exp(-2 * old));
-    dlog_std[j] = static_cast<float>(elementary::expm1(2 * (static_cast<double>(piece.log_std[j]) - old)));
-  }
+  const auto prepare = [&](const float* log_std, const float* old) {
+    for (size_t j = 0; j < dim; ++j) {
+      const auto was = static_cast<double>(old[j]);
+      precision[j] = static_cast<float>(elementary::exp(-2 * was));
+      dlog_std[j] = static_cast<float>(elementary::expm1(2 * (static_cast<double>(log_std[j]) - was)));
+    }
+  };
   for (size_t i = 0; i < static_cast<size_t>(piece.rows); ++i) {
     const auto at = static_cast<size_t>(piece.order[i]);
-    const float *mean = piece.mean + i * dim, *old = r.mean + at * dim;
-    float* dmean = piece.dmean + i * dim;
-    const float kl = gaussian_kl(mean, piece.log_std, old, r.log_std, dims);
-    piece.sums->kl += static_cast<double>(gaussian_kl(old, r.log_std, mean, piece.log_std, dims));
+    const float *mean = piece.mean_of(i), *log_std = piece.log_std_of(i);
+    const float *old = r.mean + at * dim, *old_log_std = r.log_std_of(at);
+    float *dmean = piece.dmean_of(i), *dstd = piece.dlog_std_of(i);
+    if (i == 0 || piece.std_step > 0) prepare(log_std, old_log_std);
+    const float kl = gaussian_kl(mean, log_std, old, old_log_std, dims);
+    piece.sums->kl += static_cast<double>(gaussian_kl(old, old_log_std, mean, log_std, dims));
     if (!(kl <= eta)) {
       std::fill_n(dmean, dim, 0.0f);
       piece.sums->clipped += 1;
       continue;
     }
-    const auto ratio = static_cast<float>(sample_ratio(r, at, mean, piece.log_std));
+    const auto ratio = static_cast<float>(sample_ratio(r, at, mean, log_std));
     const float pull = ratio * r.gain[at] / temperature;
-    gaussian_log_prob_grad(mean, piece.log_std, r.action + at * dim, dims, -piece.scale * pull, dmean,
-                           piece.dlog_std);
+    gaussian_log_prob_grad(mean, log_std, r.action + at * dim, dims, -piece.scale * pull, dmean, dstd);
     for (size_t j = 0; j < dim; ++j) {
       dmean[j] += piece.scale * (mean[j] - old[j]) * precision[j];
-      piece.dlog_std[j] += piece.scale * dlog_std[j];
+      dstd[j] += piece.scale * dlog_std[j];
     }
     piece.sums->loss += static_cast<double>(kl - pull);
   }

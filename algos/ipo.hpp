@@ -1,12 +1,23 @@
-// The rule of IPO (Liu et al. 2020): the slope of a logarithmic barrier before each cost limit.
+// IPO (Liu et al. 2020): a logarithmic barrier before each cost limit, its slope fixed for an epoch (the
+// rule) or exact at every step (the loss).
 #pragma once
-#include "algos/episodes.hpp"
-#include "algos/rollout.hpp"
+#include "algos/p3o.hpp"
 
 namespace rdm {
 
 // kappa / (limit - cost + 1e-8), and `max` where that is larger or the limit is exceeded.
 double barrier_slope(double cost, double limit, double kappa, double max);
+
+// -min(rho gain, clip(rho) gain) - kappa sum_k ln(-violation_k - L_ck), L_c the mean of rho A_c over the
+// batch: its gradient is the penalised surrogate's with the slopes of the logarithms at that batch as
+// weights. Like barrier_slope a slope is `max` where the logarithm is steeper or does not exist. violation:
+// J_c - limit, in the units of L_c.
+class BarrierLoss final : public PenalizedSurrogate {
+ public:
+  BarrierLoss() { clip_cost = false; }
+  void aim(const Surrogate& now, const double* violation, int32_t count);
+  double kappa = 0.01, max = 1;
+};
 
 class BarrierRule {
  public:

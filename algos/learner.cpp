@@ -11,7 +11,7 @@ namespace rdm {
 
 void Learner::carve(Arena& arena, const Plan& plan, size_t num_params) {
   grad_ = arena.make<float>(num_params);
-  log_std_ = arena.make<float>(plan.action_dim());
+  log_std_ = arena.make<float>(plan.state_std() ? 0 : plan.action_dim());
 }
 
 void Learner::open(const Plan& plan, const Rollout& rollout, Networks& nets, Lanes& lanes) {
@@ -35,7 +35,18 @@ void Learner::read_live(const Options& o) {
 }
 
 void Learner::refresh_log_std() {
-  for (size_t j = 0; j < plan_->action_dim(); ++j) log_std_[j] = nets_->log_std()[j] + plan_->log_share;
+  for (size_t j = 0; !nets_->state_std() && j < plan_->action_dim(); ++j)
+    log_std_[j] = nets_->log_std()[j] + plan_->log_share;
+}
+
+PolicyPiece Learner::piece_of(Lane& lane, const int32_t* order, int32_t rows, float* grad) const {
+  PolicyPiece p{rollout_, order, rows, lane.out, log_std_, scale_, lane.dout, grad, &lane.sums};
+  p.mean_step = static_cast<size_t>(nets_->shape[Networks::kActor].out);
+  if (nets_->state_std()) {
+    const size_t dim = rollout_->action_dim;
+    p.log_std = lane.out + dim, p.dlog_std = lane.dout + dim, p.std_step = p.mean_step;
+  }
+  return p;
 }
 
 BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const int32_t* order, int32_t rows) {
@@ -72,7 +83,13 @@ void Learner::policy_gradient(Lane& lane, const PolicyLoss& policy, const int32_
                               float* grad) const {
   nets_->forward(Networks::kActor, lane.obs, rows, lane.actor, lane.out);
   std::memset(grad, 0, nets_->std_size * sizeof(float));
-  policy.add({rollout_, order, rows, lane.out, log_std_, scale_, lane.dout, grad, &lane.sums});
+  const PolicyPiece piece = piece_of(lane, order, rows, grad);
+  const size_t dim = rollout_->action_dim;
+  const bool state = nets_->state_std();
+  for (size_t i = 0; state && i < static_cast<size_t>(rows); ++i)
+    std::fill_n(piece.dlog_std_of(i), dim, policy.explores() ? -scale_ * static_cast<float>(entropy_) : 0.0f);
+  policy.add(piece);
+  if (state) nets_->gate_std(lane.out, rows, lane.dout);
   nets_->backward(Networks::kActor, lane.obs, rows, lane.actor, lane.dout, grad);
 }
 
@@ -104,7 +121,8 @@ double Learner::critic_gradient(Lane& lane, Networks::Index net, const int32_t* 
 
 void Learner::add_penalties(const PolicyLoss* policy) {
   const auto bonus = policy && policy->explores() ? static_cast<float>(entropy_) : 0.0f;
-  for (size_t j = 0; policy && j < plan_->action_dim(); ++j) grad_[j] = learn_std_ ? grad_[j] - bonus : 0;
+  for (size_t j = 0; policy && !nets_->state_std() && j < plan_->action_dim(); ++j)
+    grad_[j] = learn_std_ ? grad_[j] - bonus : 0;
   if (!critics_ || critic_l2_ == 0) return;
   const auto twice = static_cast<float>(2 * critic_l2_);
   for (int32_t i = Networks::kReward; i < nets_->count; ++i) {
@@ -142,7 +160,7 @@ void Learner::step(double actor_rate, double actor_share) {
     left_out[net] = !std::isfinite(norm);
   });
   for (const bool out : left_out) skipped_ += out;
-  if (policy_) clamp_log_std(*nets_, plan_->options);
+  if (policy_) clamp_log_std(*nets_);
 }
 
 void Learner::measure_rows(Lane& lane, const int32_t* order, int32_t rows, float clip) const {
@@ -152,12 +170,13 @@ void Learner::measure_rows(Lane& lane, const int32_t* order, int32_t rows, float
   gather_obs(r, order, 1, rows, lane.obs);
   nets_->forward(Networks::kActor, lane.obs, rows, lane.actor, lane.out);
   lane.surrogate = Surrogate();
+  const PolicyPiece piece = piece_of(lane, order, rows, nullptr);
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
     const auto at = static_cast<size_t>(order[i]);
-    const float* mean = lane.out + i * r.action_dim;
+    const float *mean = piece.mean_of(i), *log_std = piece.log_std_of(i);
     lane.surrogate.kl +=
-        static_cast<double>(gaussian_kl(r.mean + at * r.action_dim, r.log_std, mean, log_std_, dim));
-    const double ratio = sample_ratio(r, at, mean, log_std_);
+        static_cast<double>(gaussian_kl(r.mean + at * r.action_dim, r.log_std_of(at), mean, log_std, dim));
+    const double ratio = sample_ratio(r, at, mean, log_std);
     lane.surrogate.gain += ratio * static_cast<double>(r.gain[at] + r.linear[at]);
     const double bounded =
         std::clamp(ratio, 1.0 - static_cast<double>(clip), 1.0 + static_cast<double>(clip));

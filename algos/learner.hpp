@@ -6,17 +6,24 @@
 
 namespace rdm {
 
-// A piece of a batch as a policy loss sees it.
+// A piece of a batch as a policy loss sees it. Row i of its means is mean_step i further on, of its
+// deviations std_step i: 0 where one serves all.
 struct PolicyPiece {
   const Rollout* rollout = nullptr;
   const int32_t* order = nullptr;  // [rows] rows of the rollout
   int32_t rows = 0;
-  const float* mean = nullptr;     // [rows][action_dim] of the policy that is learned
+  const float* mean = nullptr;     // [action_dim] of the policy that is learned
   const float* log_std = nullptr;  // [action_dim] of its innovation
   float scale = 1;                 // 1 / rows of the batch
-  float* dmean = nullptr;          // out: scale d(loss)/d(mean) [rows][action_dim]
+  float* dmean = nullptr;          // out: scale d(loss)/d(mean) [action_dim]
   float* dlog_std = nullptr;       // added to: scale d(loss)/d(log_std) [action_dim]
   BatchSums* sums = nullptr;       // added to: loss, kl, clipped
+  size_t mean_step = 0, std_step = 0;
+
+  const float* mean_of(size_t i) const { return mean + i * mean_step; }
+  const float* log_std_of(size_t i) const { return log_std + i * std_step; }
+  float* dmean_of(size_t i) const { return dmean + i * mean_step; }
+  float* dlog_std_of(size_t i) const { return dlog_std + i * std_step; }
 };
 
 class PolicyLoss {
@@ -55,6 +62,8 @@ class Learner {
 
  private:
   void refresh_log_std();
+  // The policy at the outputs that a lane holds; its derivatives go to the lane's and to grad.
+  PolicyPiece piece_of(Lane& lane, const int32_t* order, int32_t rows, float* grad) const;
   void policy_gradient(Lane& lane, const PolicyLoss& policy, const int32_t* order, int32_t rows,
                        float* grad) const;
   double critic_gradient(Lane& lane, Networks::Index net, const int32_t* order, int32_t rows,
@@ -68,7 +77,7 @@ class Learner {
   Networks* nets_ = nullptr;
   Lanes* lanes_ = nullptr;
   float* grad_ = nullptr;       // [Networks::size]
-  float* log_std_ = nullptr;    // [action_dim] of the innovation
+  float* log_std_ = nullptr;    // [action_dim] of the innovation; none with std_mode=state
   float scale_ = 1;             // 1 / rows of the batch
   size_t begin_ = 0, end_ = 0;  // of grad_: what the last gradient covers
   bool policy_ = false, critics_ = false, learn_std_ = true, joint_norm_ = false, follow_actor_ = false;

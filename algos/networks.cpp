@@ -19,7 +19,10 @@ Networks carve_networks(Arena& arena, const Plan& plan) {
   n.shape[Networks::kCost] = plan.cost_critic;
   n.count = plan.num_limited > 0 ? 3 : 2;
   n.action_dim = plan.config.action_dim;
-  n.std_size = (plan.action_dim() + 15) / 16 * 16;
+  n.std_size = plan.state_std() ? 0 : (plan.action_dim() + 15) / 16 * 16;
+  n.std_low = static_cast<float>(elementary::log(plan.options.number("std_min")));
+  n.std_high = static_cast<float>(elementary::log(plan.options.number("std_max")));
+  n.log_share = plan.log_share;
   for (int32_t i = 0; i < n.count; ++i) {
     n.block[i].offset = n.size;
     n.block[i].size = n.shape[i].num_params() + (i == Networks::kActor ? n.std_size : 0);
@@ -39,16 +42,34 @@ void init_networks(const Networks& n, const Plan& plan) {
   }
   const MlpShape& actor = n.shape[Networks::kActor];
   float* bias = n.net(Networks::kActor) + actor.bias_offset(actor.num_hidden);
+  float* log_std = n.state_std() ? bias + n.action_dim : n.log_std();
   for (int32_t j = 0; j < n.action_dim; ++j) {
     bias[j] = plan.config.initial_mean ? plan.config.initial_mean[j] : 0;
-    n.log_std()[j] = static_cast<float>(elementary::log(o.number("init_std")));
+    log_std[j] = static_cast<float>(elementary::log(o.number("init_std")));
   }
 }
 
-void clamp_log_std(const Networks& n, const Options& o) {
-  const auto low = static_cast<float>(elementary::log(o.number("std_min")));
-  const auto high = static_cast<float>(elementary::log(o.number("std_max")));
-  for (int32_t j = 0; j < n.action_dim; ++j) n.log_std()[j] = std::clamp(n.log_std()[j], low, high);
+void clamp_log_std(const Networks& n) {
+  if (n.state_std()) return;
+  for (int32_t j = 0; j < n.action_dim; ++j)
+    n.log_std()[j] = std::clamp(n.log_std()[j], n.std_low, n.std_high);
+}
+
+void Networks::bound_std(int32_t rows, float* y) const {
+  const auto out = static_cast<size_t>(shape[kActor].out);
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
+    for (size_t j = out / 2; j < out; ++j) {
+      float& l = y[i * out + j];
+      l = std::clamp(l, std_low, std_high) + log_share;
+    }
+}
+
+void Networks::gate_std(const float* y, int32_t rows, float* dy) const {
+  const float low = std_low + log_share, high = std_high + log_share;
+  const auto out = static_cast<size_t>(shape[kActor].out);
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
+    for (size_t j = out / 2; j < out; ++j)
+      if (!(y[i * out + j] > low && y[i * out + j] < high)) dy[i * out + j] = 0;
 }
 
 void schedule_std(const Networks& n, const Options& o, int32_t done) {
@@ -59,7 +80,7 @@ void schedule_std(const Networks& n, const Options& o, int32_t done) {
 }
 
 int32_t Networks::num_tensors() const {
-  int32_t tensors = 1;
+  int32_t tensors = state_std() ? 0 : 1;
   for (int32_t i = 0; i < count; ++i) tensors += 2 * shape[i].num_layers();
   return tensors;
 }
@@ -82,11 +103,10 @@ bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) 
     *out = {name, rows, cols, data};
     return true;
   };
-  if (index == 0) {
+  if (!n.state_std() && index-- == 0) {
     std::snprintf(name, kTensorNameSize, "actor.log_std");
     return set(n.action_dim, 1, n.log_std());
   }
-  --index;
   for (int32_t i = 0; i < n.count; ++i) {
     const MlpShape& s = n.shape[i];
     const int32_t tensors = 2 * s.num_layers();

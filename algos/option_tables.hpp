@@ -28,6 +28,8 @@ inline constexpr std::array kSharedOptions = {
     number_option("std_min", 0.01, 1e-6, 1e3, "lower bound on the standard deviation"),
     number_option("std_max", 10, 1e-6, 1e3, "upper bound on the standard deviation"),
     flag_option("learn_std", true, "learn the standard deviation"),
+    text_option("std_mode", "free", "free|state",
+                "deviation as parameters, or outputs of the actor's network; no gradient at its bounds"),
     text_option("std_schedule", "none", "none|linear",
                 "linear: not learned, falls from init_std to std_min over total_epochs"),
     flag_option("normalize_obs", true,

@@ -8,8 +8,9 @@ namespace rdm {
 // Clipping can hide a fall of the cost, never a rise.
 SampleLoss penalty_loss(float ratio, float cost, float clip);
 
-// -min(rho gain, clip(rho) gain) + sum_k weight_k max(rho A_ck, clip(rho) A_ck).
-class PenalizedSurrogate final : public RatioLoss {
+// -min(rho gain, clip(rho) gain) + sum_k weight_k max(rho A_ck, clip(rho) A_ck), or without clip_cost
+// weight_k rho A_ck.
+class PenalizedSurrogate : public RatioLoss {
  public:
   float clip = 0.2f;
   bool clip_cost = true;

@@ -100,7 +100,8 @@ void plan_networks(Plan& plan) {
   const AgentConfig& c = plan.config;
   const Options& o = plan.options;
   const char* critic = *o.text("critic_hidden") ? "critic_hidden" : "hidden";
-  plan.actor = parse_shape(o, "hidden", c.obs_dim, c.action_dim);
+  const int32_t outputs = std::strcmp(o.text("std_mode"), "state") == 0 ? 2 : 1;
+  plan.actor = parse_shape(o, "hidden", c.obs_dim, outputs * c.action_dim);
   plan.reward_critic = parse_shape(o, critic, c.obs_dim, 1);
   plan.cost_critic = parse_shape(o, critic, c.obs_dim, std::max(plan.num_limited, 1));
   check_mlp_shape(plan.actor);
@@ -133,6 +134,12 @@ void check_pairs(const Plan& plan) {
   if (o.number("std_min") > o.number("std_max")) fail(Code::kRange, "std_min: above std_max");
   if (o.number("init_std") < o.number("std_min") || o.number("init_std") > o.number("std_max"))
     fail(Code::kRange, "init_std: %g is outside [std_min, std_max]", o.number("init_std"));
+  if (std::strcmp(o.text("std_mode"), "state") == 0) {
+    if (!o.flag("learn_std") || std::strcmp(o.text("std_schedule"), "none") != 0)
+      fail(Code::kUnsupported, "std_mode: state is for a deviation that is learned, without a schedule");
+    if (o.number("init_std") <= o.number("std_min") || o.number("init_std") >= o.number("std_max"))
+      fail(Code::kRange, "init_std: at a bound, where std_mode=state has no gradient");
+  }
   if (o.number("lr_min") > o.number("lr_max")) fail(Code::kRange, "lr_min: above lr_max");
   if (o.flag("terminal_cost") && plan.config.max_steps <= 0)
     fail(Code::kArgument, "terminal_cost: needs max_steps, which is unknown (0)");

@@ -30,6 +30,8 @@ struct Plan {
   int32_t lanes = 1;           // pieces in flight
   float log_share = 0;         // ln of the innovation's share of the standard deviation
 
+  // The actor's network gives log deviations behind its means.
+  bool state_std() const { return actor.out != config.action_dim; }
   size_t obs_dim() const { return static_cast<size_t>(config.obs_dim); }
   size_t action_dim() const { return static_cast<size_t>(config.action_dim); }
   size_t num_envs() const { return static_cast<size_t>(config.num_envs); }

@@ -162,6 +162,23 @@ void PolicyGradient::learn() {
   learned_.mean = all.scaled(1 / (count * learned_.passes));
 }
 
+void PolicyGradient::fill_spread(Epoch& e) const {
+  const int32_t dim = plan_.config.action_dim;
+  const auto add = [&](const float* log_std, double share, double count) {
+    for (int32_t j = 0; j < dim; ++j) {
+      const auto l = static_cast<double>(log_std[j]);
+      e.action_std += elementary::exp(l) / (count * dim);
+      e.entropy += (l + share + kEntropyOfUnit) / count;
+    }
+  };
+  const auto share = static_cast<double>(plan_.log_share);
+  if (!nets_.state_std()) return add(nets_.log_std(), share, 1);
+  const Rollout& r = rollout();
+  for (int32_t i = 0; i < valid_rows_; ++i)
+    add(r.log_std_of(static_cast<size_t>(r.order[i])), 0, valid_rows_);
+  e.action_std *= elementary::exp(-share);
+}
+
 void PolicyGradient::fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const {
   const Rollout& r = rollout();
   Epoch e;
@@ -175,11 +192,7 @@ void PolicyGradient::fill_epoch(const EpisodeStats& stats, double rate, Epoch* o
   e.fall_rate = stats.fall_rate;
   e.success_rate = stats.success_rate;
   for (int32_t i = 0; i < plan_.num_limited; ++i) e.multiplier[plan_.column[i]] = cost_weight(i);
-  for (int32_t j = 0; j < plan_.config.action_dim; ++j) {
-    const auto log_std = static_cast<double>(nets_.log_std()[j]);
-    e.action_std += elementary::exp(log_std) / plan_.config.action_dim;
-    e.entropy += log_std + static_cast<double>(plan_.log_share) + kEntropyOfUnit;
-  }
+  fill_spread(e);
   e.kl = learned_.last_kl;
   e.learning_rate = rate;
   e.loss_policy = learned_.mean.loss;
@@ -232,7 +245,7 @@ void PolicyGradient::load(const void* bytes, size_t size) {
     io.end();
   }
   collector_.after_load();
-  clamp_log_std(nets_, plan_.options);
+  clamp_log_std(nets_);
   drop_horizon();
 }
 
@@ -242,7 +255,10 @@ void PolicyGradient::write_policy_file(Writer& out) {
   PolicyView v;
   v.actor = nets_.shape[Networks::kActor];
   v.params = nets_.net(Networks::kActor);
-  v.log_std = nets_.log_std();
+  if (nets_.state_std())
+    v.state_std = true, v.std_bounds[0] = nets_.std_low, v.std_bounds[1] = nets_.std_high;
+  else
+    v.log_std = nets_.log_std();
   v.shift = n.shift;
   v.scale = n.scale;
   v.clip = collector_.normalizes() ? n.clip : 0;

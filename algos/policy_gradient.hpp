@@ -30,7 +30,7 @@ class PolicyGradient : public Agent {
   void set_option(const OptionInput& option) override;
   const Options& options() const override { return plan_.options; }
   bool tensor(int32_t index, TensorInfo* out) override;
-  void tensors_changed() override { clamp_log_std(nets_, plan_.options); }
+  void tensors_changed() override { clamp_log_std(nets_); }
 
   void write_policy_file(Writer& out) override;
   void save(Writer& out) const override;
@@ -78,6 +78,8 @@ class PolicyGradient : public Agent {
   const Rollout& rollout() const { return collector_.rollout(); }
 
  private:
+  // action_std and entropy: of the policy now, or with std_mode=state as it was on the epoch's data.
+  void fill_spread(Epoch& e) const;
   void fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const;
 
   Plan plan_;

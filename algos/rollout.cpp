@@ -26,7 +26,8 @@ Rollout carve_rollout(Arena& arena, const Plan& plan) {
   r.valid = arena.make<uint8_t>(n);
   r.last_value = arena.make<float>(plan.num_envs());
   r.last_cost_value = arena.make<float>(plan.num_envs() * k);
-  r.log_std = arena.make<float>(r.action_dim);
+  r.std_step = plan.state_std() ? r.action_dim : 0;
+  r.log_std = arena.make<float>(plan.state_std() ? n * r.action_dim : r.action_dim);
   r.order = arena.make<int32_t>(n);
   return r;
 }

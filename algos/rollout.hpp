@@ -21,12 +21,14 @@ struct Rollout {
   float *cost = nullptr, *cost_value = nullptr, *cost_advantage = nullptr, *cost_target = nullptr;
   float* discount = nullptr;  // 0 where a path ended
   uint8_t* valid = nullptr;
-  float* log_std = nullptr;  // [action_dim] of the innovation, of the policy that acted
+  float* log_std = nullptr;  // [action_dim] of the innovation, of the policy that acted; std_step apart
+  size_t std_step = 0;       // 0: one for all rows
   // What the actor climbs: clipped, and linear in the ratio (0 unless the algorithm splits its loss).
   float *gain = nullptr, *linear = nullptr;
   float *last_value = nullptr, *last_cost_value = nullptr;  // [num_envs], [num_envs][num_costs]
   int32_t* order = nullptr;                                 // [samples] valid rows, shuffled
 
+  float* log_std_of(size_t at) const { return log_std + at * std_step; }
   size_t row(int32_t t) const { return static_cast<size_t>(t) * static_cast<size_t>(num_envs); }
   int32_t samples() const { return horizon * num_envs; }
 };

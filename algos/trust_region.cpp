@@ -87,7 +87,7 @@ void TrustRegion::move(double f) {
   for (size_t i = 0; i < size_; ++i)
     nets_->params[i] =
         static_cast<float>(static_cast<double>(before_[i]) + f * static_cast<double>(step_[i]));
-  clamp_log_std(*nets_, plan_->options);
+  clamp_log_std(*nets_);
 }
 
 }  // namespace rdm

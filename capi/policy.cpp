@@ -60,9 +60,11 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
       *out = {kWeights[l], v.params + s.weight_offset(l), s.layer_out(l), s.layer_in(l)};
     return true;
   }
-  const PolicyTensor always[] = {{"actor.log_std", v.log_std, s.out, 1},
-                                 {"example.obs", v.example_obs, s.in, 1},
-                                 {"example.action", v.example_action, s.out, 1}};
+  const PolicyTensor std_bounds = {"actor.log_std_bounds", v.std_bounds, 2, 1};
+  const PolicyTensor always[] = {
+      v.state_std ? std_bounds : PolicyTensor{"actor.log_std", v.log_std, s.out, 1},
+      {"example.obs", v.example_obs, s.in, 1},
+      {"example.action", v.example_action, v.action_dim(), 1}};
   const PolicyTensor normalizer[] = {{"normalizer.shift", v.shift, s.in, 1},
                                      {"normalizer.scale", v.scale, s.in, 1},
                                      {"normalizer.clip", &v.clip, 1, 1}};
@@ -106,7 +108,7 @@ rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
     const PolicyView& v = p->policy->view();
     rdm_policy_info info{};
     info.obs_dim = v.actor.in;
-    info.action_dim = v.actor.out;
+    info.action_dim = v.action_dim();
     info.action_repeat = v.action_repeat;
     info.control_dt = v.control_dt;
     info.noise_correlation = v.noise_correlation;
@@ -176,8 +178,8 @@ rdm_result rdm_policy_check(const rdm_policy* p, const rdm_spec* spec) {
     const PolicyView& v = p->policy->view();
     if (v.actor.in != s.obs_dim)
       fail(Code::kVersion, "obs_dim: the policy has %d, the task %d", v.actor.in, s.obs_dim);
-    if (v.actor.out != s.action_dim)
-      fail(Code::kVersion, "action_dim: the policy has %d, the task %d", v.actor.out, s.action_dim);
+    if (v.action_dim() != s.action_dim)
+      fail(Code::kVersion, "action_dim: the policy has %d, the task %d", v.action_dim(), s.action_dim);
     if (v.layout_hash && s.layout_hash && v.layout_hash != s.layout_hash)
       fail(Code::kVersion, "layout_hash: the policy learned another layout of observations or actions");
     if (v.control_dt > 0 && s.control_dt > 0 && std::abs(v.control_dt - s.control_dt) > 1e-6f)

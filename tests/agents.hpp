@@ -130,6 +130,15 @@ inline std::vector<unsigned char> saved(const Agent& a) {
   return bytes;
 }
 
+inline std::vector<unsigned char> policy_file(Agent& a) {
+  Writer count(nullptr, 0);
+  a.write_policy_file(count);
+  std::vector<unsigned char> bytes(count.size());
+  Writer out(bytes.data(), bytes.size());
+  a.write_policy_file(out);
+  return bytes;
+}
+
 // The code and text of the Error that f throws; kOk when it throws none.
 struct Thrown {
   Code code = Code::kOk;

@@ -58,11 +58,13 @@ struct Bench {
     std::fill_n(rollout.valid, n, uint8_t{1});
     draw(rollout.target, n);
     draw(rollout.cost_target, n * size_of(plan.num_limited));
-    for (size_t j = 0; j < a; ++j) rollout.log_std[j] = nets.log_std()[j] + plan.log_share;
     for (size_t i = 0; i < n; ++i) {
-      const std::vector<double> m = network(params(), Networks::kActor, i);
+      const Head now = head(params(), i);
       for (size_t j = 0; j < a; ++j)
-        rollout.mean[i * a + j] = static_cast<float>(m[j] + 0.1 * s.signed_unit());
+        rollout.mean[i * a + j] = static_cast<float>(now.mean[j] + 0.1 * s.signed_unit());
+      for (size_t j = 0; j < a; ++j)
+        rollout.log_std_of(i)[j] =
+            static_cast<float>(now.log_std[j] + (plan.state_std() ? 0.1 * s.signed_unit() : 0));
       const double push = i % 2 ? 0.1 * s.signed_unit() : std::log(1.5) * (i % 4 ? 1 : -1);
       rollout.log_prob[i] = static_cast<float>(log_prob(params(), i) - push);
     }
@@ -91,15 +93,56 @@ struct Bench {
     }
     return h;
   }
+  // The policy at a row: means and log deviations of the innovation.
+  struct Head {
+    std::vector<double> mean, log_std;
+  };
+  Head head(const std::vector<double>& p, size_t row) const {
+    const size_t a = plan.action_dim();
+    Head h{network(p, Networks::kActor, row), {p.begin(), p.begin() + static_cast<long>(a)}};
+    for (size_t j = 0; j < a; ++j) {
+      if (plan.state_std())
+        h.log_std[j] =
+            std::clamp(h.mean[a + j], static_cast<double>(nets.std_low), static_cast<double>(nets.std_high));
+      h.log_std[j] += static_cast<double>(plan.log_share);
+    }
+    h.mean.resize(a);
+    return h;
+  }
   double log_prob(const std::vector<double>& p, size_t row) const {
-    const std::vector<double> m = network(p, Networks::kActor, row);
+    const Head h = head(p, row);
     double sum = 0;
-    for (size_t j = 0; j < m.size(); ++j) {
-      const double log_std = p[j] + static_cast<double>(plan.log_share);
-      const double z = (static_cast<double>(rollout.action[row * m.size() + j]) - m[j]) / std::exp(log_std);
-      sum += -z * z / 2 - log_std - 0.9189385332046727;
+    for (size_t j = 0; j < h.mean.size(); ++j) {
+      const double gap = static_cast<double>(rollout.action[row * h.mean.size() + j]) - h.mean[j];
+      const double z = gap / std::exp(h.log_std[j]);
+      sum += -z * z / 2 - h.log_std[j] - 0.9189385332046727;
     }
     return sum;
+  }
+  // KL(one || other) at a row.
+  static double kl_of(const Head& one, const Head& other) {
+    double sum = 0;
+    for (size_t j = 0; j < one.mean.size(); ++j) {
+      const double d = one.mean[j] - other.mean[j], l = other.log_std[j];
+      sum += l - one.log_std[j] + (std::exp(2 * one.log_std[j]) + d * d) / (2 * std::exp(2 * l)) - 0.5;
+    }
+    return sum;
+  }
+  // The policy that acted at a row.
+  Head acted(size_t row) const {
+    const size_t a = plan.action_dim();
+    const float *mean = rollout.mean + row * a, *log_std = rollout.log_std_of(row);
+    return {{mean, mean + a}, {log_std, log_std + a}};
+  }
+  // Share of the rows and dimensions whose deviation is at a bound.
+  double share_at_bound() const {
+    size_t count = 0;
+    for (size_t i = 0; i < order.size(); ++i) {
+      const std::vector<double> y = network(params(), Networks::kActor, i);
+      for (size_t j = plan.action_dim(); j < y.size(); ++j)
+        count += y[j] <= static_cast<double>(nets.std_low) || y[j] >= static_cast<double>(nets.std_high);
+    }
+    return static_cast<double>(count) / static_cast<double>(order.size() * plan.action_dim());
   }
   double total_loss(const std::vector<double>& p) const {
     const double n = plan.samples;
@@ -108,6 +151,7 @@ struct Bench {
       const double ratio = std::exp(log_prob(p, i) - static_cast<double>(rollout.log_prob[i]));
       const auto gain = static_cast<double>(rollout.gain[i]), linear = static_cast<double>(rollout.linear[i]);
       sum -= std::min(ratio * gain, std::clamp(ratio, 1 - kClip, 1 + kClip) * gain) + ratio * linear;
+      for (const double l : head(p, i).log_std) sum -= plan.options.number("entropy") * l;
       const double v = network(p, Networks::kReward, i)[0] - static_cast<double>(rollout.target[i]);
       sum += v * v;
       const std::vector<double> c = network(p, Networks::kCost, i);
@@ -117,12 +161,17 @@ struct Bench {
       }
     }
     double penalty = 0;
-    for (size_t j = 0; j < plan.action_dim(); ++j) penalty -= plan.options.number("entropy") * p[j];
     for (size_t j = nets.block[Networks::kReward].offset; j < nets.size; ++j)
       penalty += plan.options.number("critic_l2") * p[j] * p[j];
     return sum / n + penalty;
   }
 };
+
+// With std_mode=state and bounds so near that some deviations are at them.
+inline AgentSetup with_state_std(AgentSetup s) {
+  s.with("std_mode", "state").with("std_min", "0.57").with("init_std", "0.6").with("std_max", "0.63");
+  return s;
+}
 
 // The learner's last gradient of the actor is the central difference of total(params).
 template <class Total>

@@ -16,7 +16,8 @@ async function main() {
     const out = await session.run({ obs: new ort.Tensor('float32', data, [rows, want.obs_dim]) });
     const shape = [rows, want.action_dim];
     if (String(out.action.dims) !== String(shape)) throw new Error(`action is ${out.action.dims}, not ${shape}`);
-    if (out.log_std.dims[0] !== want.action_dim) throw new Error(`log_std is ${out.log_std.dims}`);
+    const stds = out.log_std.dims;
+    if (stds[stds.length - 1] !== want.action_dim || (stds.length > 1 && stds[0] !== rows)) throw new Error(`log_std is ${out.log_std.dims}`);
     out.action.data.forEach((a, i) => {
       const gap = Math.abs(a - want.action[begin * want.action_dim + i]);
       if (!(gap <= largest)) largest = gap;

@@ -87,6 +87,23 @@ TEST(Collector, EndsOfPaths) {
   EXPECT_EQ(s.ret, 1);
 }
 
+// A regression test: a peer bootstrapped costs with the reward's value. V = 3, V_c = 7, r = 1, c = 2.
+TEST(Collector, CostsBootstrapWithTheCostCritic) {
+  AgentSetup s = world();
+  Bench b(std::move(s.with("cost_lambda", "0").with("lambda", "0")));
+  b.decide();
+  b.truncated = {0, 1, 0, 0};
+  b.decide();
+  b.truncated = {0, 0, 0, 0};
+  b.decide();
+  b.collector.estimate(b.obs.data());
+  const Rollout& r = b.rollout();
+  for (const size_t row : {0u, 5u, 8u}) {  // inside a path, at a time limit, at the horizon
+    EXPECT_FLOAT_EQ(r.target[row], 1 + 0.81f * 3) << row;
+    EXPECT_FLOAT_EQ(r.cost_target[row], 2 + 0.81f * 7) << row;
+  }
+}
+
 TEST(Collector, TruncationWithoutFinalObservationHasValueZero) {
   Bench b(world());
   b.truncated = {1, 0, 0, 0};

@@ -1,6 +1,7 @@
 // What every algorithm promises, for each of the list.
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 #include "agents.hpp"
 #include "heap_count.hpp"
@@ -11,7 +12,7 @@ using namespace rdm::test;
 namespace {
 
 // Two costs with limits where an algorithm takes several.
-AgentSetup setup_of(const char* algo, int32_t threads = 0) {
+AgentSetup setup_of(const char* algo, const char* std_mode, int32_t threads = 0) {
   static const double limits[] = {1, 0.5};
   AgentSetup s(algo, 6, 3, 40);
   s.config.num_threads = threads;
@@ -22,6 +23,7 @@ AgentSetup setup_of(const char* algo, int32_t threads = 0) {
   s.with("hidden", "16,8").with("horizon", "12").with("passes", "3").with("minibatches", "2");
   s.with("noise_correlation", "0.3").with("lr_schedule", "kl").with("learning_rate", "2e-3");
   s.with("terminal_cost", "on").with("normalize_reward", "on").with("normalize_cost", "on");
+  s.with("std_mode", std_mode);
   for (const char* one : {"cpo", "pcpo", "focops"})
     if (std::strcmp(algo, one) == 0) s.with("several_costs", "worst");
   return s;
@@ -34,15 +36,18 @@ std::vector<unsigned char> state_after(AgentSetup s, int epochs) {
   return saved(*a);
 }
 
-class EveryAlgo : public testing::TestWithParam<int> {
+class EveryAlgo : public testing::TestWithParam<std::tuple<int, const char*>> {
  protected:
-  const char* name() const { return algo_at(GetParam()).name; }
+  const AlgoInfo& info() const { return algo_at(std::get<0>(GetParam())); }
+  AgentSetup setup(int32_t threads = 0) const {
+    return setup_of(info().name, std::get<1>(GetParam()), threads);
+  }
 };
 
 }  // namespace
 
 TEST_P(EveryAlgo, Learns) {
-  AgentSetup s = setup_of(name());
+  AgentSetup s = setup();
   const AgentPtr a = s.make();
   NoiseWorld world(s.config);
   const std::vector<float> before = parameters(*a);
@@ -61,18 +66,17 @@ TEST_P(EveryAlgo, Learns) {
 }
 
 TEST_P(EveryAlgo, SameBytesForAnyThreads) {
-  const auto wanted = state_after(setup_of(name()), 3);
-  for (const int32_t threads : {1, 2, 4})
-    EXPECT_EQ(state_after(setup_of(name(), threads), 3), wanted) << threads;
+  const auto wanted = state_after(setup(), 3);
+  for (const int32_t threads : {1, 2, 4}) EXPECT_EQ(state_after(setup(threads), 3), wanted) << threads;
 }
 
 TEST_P(EveryAlgo, ResumeEqualsUnbroken) {
-  AgentSetup s = setup_of(name());
+  AgentSetup s = setup();
   const AgentPtr whole = s.make();
   NoiseWorld world(s.config);
   for (int i = 0; i < 3; ++i) world.epoch(*whole);
   const auto bytes = saved(*whole);
-  AgentSetup other = setup_of(name(), 2);
+  AgentSetup other = setup(2);
   other.config.seed = 999;
   const AgentPtr resumed = other.make();
   resumed->load(bytes.data(), bytes.size());
@@ -90,7 +94,7 @@ TEST_P(EveryAlgo, ResumeEqualsUnbroken) {
 TEST_P(EveryAlgo, NoHeapInActRecordUpdate) {
   if (!kHeapIsCounted) GTEST_SKIP() << "the heap is the sanitizer's here";
   for (const int32_t threads : {0, 2}) {
-    AgentSetup s = setup_of(name(), threads);
+    AgentSetup s = setup(threads);
     const AgentPtr a = s.make();
     NoiseWorld world(s.config);
     Epoch e;
@@ -102,7 +106,7 @@ TEST_P(EveryAlgo, NoHeapInActRecordUpdate) {
 }
 
 TEST_P(EveryAlgo, AHorizonOfDeadRowsTeachesNothing) {
-  AgentSetup s = setup_of(name());
+  AgentSetup s = setup();
   const AgentPtr a = s.make();
   NoiseWorld world(s.config);
   const std::vector<uint8_t> none(40, 0);
@@ -119,7 +123,7 @@ TEST_P(EveryAlgo, AHorizonOfDeadRowsTeachesNothing) {
 }
 
 TEST_P(EveryAlgo, CancelLeavesAWorkingAgent) {
-  AgentSetup s = setup_of(name());
+  AgentSetup s = setup();
   const AgentPtr a = s.make();
   NoiseWorld world(s.config);
   while (a->missing() > 0) world.decide(*a);
@@ -131,12 +135,12 @@ TEST_P(EveryAlgo, CancelLeavesAWorkingAgent) {
 }
 
 TEST_P(EveryAlgo, OptionsHaveHelpAndBounds) {
-  const AlgoInfo& info = algo_at(GetParam());
-  for (int32_t i = 0; i < info.num_options; ++i) {
-    const OptionSpec& o = info.options[i];
+  const AlgoInfo& algo = info();
+  for (int32_t i = 0; i < algo.num_options; ++i) {
+    const OptionSpec& o = algo.options[i];
     EXPECT_GT(std::strlen(o.help), 10u) << o.key;
     EXPECT_LT(std::strlen(o.help), 100u) << o.key;
-    for (int32_t k = 0; k < i; ++k) EXPECT_FALSE(same_name(o.key, info.options[k].key)) << o.key;
+    for (int32_t k = 0; k < i; ++k) EXPECT_FALSE(same_name(o.key, algo.options[k].key)) << o.key;
     if (o.kind == OptionKind::kText) {
       EXPECT_NE(o.text, nullptr) << o.key;
     } else {
@@ -146,5 +150,9 @@ TEST_P(EveryAlgo, OptionsHaveHelpAndBounds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(List, EveryAlgo, testing::Range(0, algo_count()),
-                         [](const auto& info) { return std::string(algo_at(info.param).name); });
+INSTANTIATE_TEST_SUITE_P(List, EveryAlgo,
+                         testing::Combine(testing::Range(0, algo_count()), testing::Values("free", "state")),
+                         [](const auto& info) {
+                           return std::string(algo_at(std::get<0>(info.param)).name) + "_" +
+                                  std::get<1>(info.param);
+                         });

@@ -48,13 +48,7 @@ std::vector<float> random_direction(const Bench& b, uint64_t seed) {
 double mean_kl(const Bench& b, const std::vector<double>& p) {
   double sum = 0;
   const std::vector<double> old = b.params();
-  for (size_t i = 0; i < b.order.size(); ++i) {
-    const auto m0 = b.network(old, Networks::kActor, i), m1 = b.network(p, Networks::kActor, i);
-    for (size_t j = 0; j < m0.size(); ++j) {
-      const double d = m0[j] - m1[j];
-      sum += p[j] - old[j] + (std::exp(2 * old[j]) + d * d) / (2 * std::exp(2 * p[j])) - 0.5;
-    }
-  }
+  for (size_t i = 0; i < b.order.size(); ++i) sum += Bench::kl_of(b.head(old, i), b.head(p, i));
   return sum / static_cast<double>(b.order.size());
 }
 
@@ -91,8 +85,13 @@ TEST(Fisher, MeanOverDimensionsIsAnOptionAndNotTheDefault) {
 }
 
 TEST(Fisher, IsTheSecondDerivativeOfTheMeanKl) {
-  for (const char* activation : {"tanh", "elu", "relu"}) {
-    Bench b(wide(activation));
+  for (const char* activation : {"tanh", "elu", "relu", "state"}) {
+    const bool state = std::strcmp(activation, "state") == 0;
+    Bench b(state ? with_state_std(wide("tanh")) : wide(activation));
+    if (state) {
+      EXPECT_GT(b.share_at_bound(), 0.1);
+      EXPECT_LT(b.share_at_bound(), 0.9);
+    }
     FisherBench f(b);
     const std::vector<float> v = random_direction(b, 3);
     const double damping = b.plan.options.number("cg_damping");
@@ -106,8 +105,10 @@ TEST(Fisher, IsTheSecondDerivativeOfTheMeanKl) {
   }
 }
 
-TEST(Fisher, IsSymmetricAndPositive) {
-  Bench b(wide("tanh"));
+namespace {
+
+void expect_symmetric(AgentSetup s) {
+  Bench b(std::move(s));
   FisherBench f(b);
   for (uint64_t seed = 0; seed < 10; ++seed) {
     const auto u = random_direction(b, 2 * seed), v = random_direction(b, 2 * seed + 1);
@@ -115,6 +116,38 @@ TEST(Fisher, IsSymmetricAndPositive) {
     EXPECT_NEAR(uv, vu, 1e-5 * std::max(1.0, std::abs(uv)));
     EXPECT_GT(dot(v.data(), f.times(v).data(), f.size), 0);
   }
+}
+
+}  // namespace
+
+TEST(Fisher, IsSymmetricAndPositive) {
+  expect_symmetric(wide("tanh"));
+  expect_symmetric(with_state_std(wide("tanh")));
+}
+
+// v'F is the derivative along v of the gradient of the KL: here each of its entries by itself.
+TEST(Fisher, ProductWithStateDeviationsIsTheDifferenceOfKlGradients) {
+  AgentSetup s = with_state_std(wide("tanh"));
+  s.with("cg_damping", "0").with("hidden", "6");
+  Bench b(std::move(s));
+  FisherBench f(b);
+  const std::vector<float> v = random_direction(b, 5), fv = f.times(v);
+  const double h = 1e-5;
+  const auto slope = [&](double along, size_t j) {  // of the KL by parameter j, a step along v away
+    std::vector<double> p = b.params();
+    for (size_t i = 0; i < v.size(); ++i) p[i] += along * static_cast<double>(v[i]);
+    p[j] += h;
+    const double up = mean_kl(b, p);
+    p[j] -= 2 * h;
+    return (up - mean_kl(b, p)) / (2 * h);
+  };
+  double largest = 0;
+  for (size_t j = 0; j < v.size(); ++j) {
+    const double wanted = (slope(h, j) - slope(-h, j)) / (2 * h);
+    largest = std::max(largest, std::abs(wanted));
+    EXPECT_NEAR(static_cast<double>(fv[j]), wanted, 3e-4) << j;
+  }
+  EXPECT_GT(largest, 1);
 }
 
 TEST(Fisher, AnyNumberOfLanesGivesTheSameBytes) {

@@ -39,26 +39,21 @@ TEST(Focops, GoldenLossAndGradients) {
   }
 }
 
-TEST(Focops, GradientIsTheFiniteDifference) {
-  AgentSetup s("focops", 3, 2, 16);
+namespace {
+
+void expect_finite_difference(AgentSetup s) {
   s.with("hidden", "5,4").with("horizon", "10").with("minibatches", "1").with("last_layer_scale", "1");
   Bench b(std::move(s));
-  for (size_t j = 0; j < 2; ++j) b.rollout.log_std[j] += j == 0 ? 0.05f : -0.04f;
+  const bool state = b.plan.state_std();
+  for (size_t j = 0; !state && j < 2; ++j) b.rollout.log_std[j] += j == 0 ? 0.05f : -0.04f;
   FocopsLoss loss;
-  loss.eta = 0.01f;
+  loss.eta = state ? 0.02f : 0.01f;
   const BatchSums sums = b.learner.gradient(&loss, false, b.order.data(), b.plan.samples);
   EXPECT_GT(sums.clipped, 10);
   EXPECT_LT(sums.clipped, 150);
   const std::vector<double> start = b.params();
   const auto kl_of = [&](const std::vector<double>& p, size_t i) {
-    const auto m = b.network(p, Networks::kActor, i);
-    double kl = 0;
-    for (size_t j = 0; j < 2; ++j) {
-      const auto old = static_cast<double>(b.rollout.log_std[j]);
-      const double d = m[j] - static_cast<double>(b.rollout.mean[2 * i + j]);
-      kl += old - p[j] + (std::exp(2 * p[j]) + d * d) / (2 * std::exp(2 * old)) - 0.5;
-    }
-    return kl;
+    return Bench::kl_of(b.head(p, i), b.acted(i));
   };
   const auto total = [&](const std::vector<double>& p) {
     double sum = 0;
@@ -70,6 +65,14 @@ TEST(Focops, GradientIsTheFiniteDifference) {
     return sum / b.plan.samples;
   };
   expect_gradient(b, total, 5e-6);
+}
+
+}  // namespace
+
+TEST(Focops, GradientIsTheFiniteDifference) {
+  const AgentSetup s("focops", 3, 2, 16);
+  expect_finite_difference(s);
+  expect_finite_difference(with_state_std(s));
 }
 
 TEST(Focops, SeveralCostsAreRefusedOrTheWorstIsFollowed) {

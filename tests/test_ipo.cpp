@@ -1,5 +1,6 @@
 #include "algos/ipo.hpp"
 #include "bandit.hpp"
+#include "learner_bench.hpp"
 
 using namespace rdm;
 using namespace rdm::test;
@@ -17,9 +18,52 @@ TEST(Ipo, SlopeIsTheDerivativeOfTheLogarithm) {
 
 // Without weight of the barrier every number is PPO's, bit for bit.
 TEST(Ipo, WithoutBarrierItIsPpo) {
-  AgentSetup plain = bandit("ppo"), s = bandit("ipo");
-  s.with("cost_limit", "1").with("barrier_max", "0");
-  Epoch a, b;
-  EXPECT_EQ(play_bandit(plain, 5, &a), play_bandit(s, 5, &b));
-  EXPECT_EQ(a.kl, b.kl);
+  for (const char* barrier : {"epoch", "exact"}) {
+    AgentSetup plain = bandit("ppo"), s = bandit("ipo");
+    s.with("cost_limit", "1").with("barrier_max", "0").with("barrier", barrier);
+    Epoch a, b;
+    EXPECT_EQ(play_bandit(plain, 5, &a), play_bandit(s, 5, &b));
+    EXPECT_EQ(a.kl, b.kl);
+  }
+}
+
+// One cost inside its domain, one at the bound of its slope because the batch is outside.
+TEST(Ipo, ExactBarrierHasTheGradientOfTheLogarithm) {
+  AgentSetup s("ipo", 3, 2, 16);
+  const double limits[] = {1, 2};
+  s.config.cost_dim = 2;
+  s.config.cost_limits = limits;
+  s.with("hidden", "5,4").with("horizon", "10").with("minibatches", "1").with("last_layer_scale", "1");
+  Bench b(std::move(s));
+  std::fill_n(b.rollout.linear, b.order.size(), 0.0f);
+  BarrierLoss loss;
+  loss.kappa = 0.3, loss.max = 5;
+  const double violation[] = {-0.4, 0.5};
+  loss.aim(b.learner.measure(b.order.data(), b.plan.samples), violation, 2);
+  EXPECT_NE(loss.weight[0], static_cast<float>(0.3 / 0.4));  // not the slope where the epoch began
+  EXPECT_EQ(loss.weight[1], 5);
+  b.learner.gradient(&loss, false, b.order.data(), b.plan.samples);
+  const auto total = [&](const std::vector<double>& p) {
+    double gain = 0, cost[2] = {};
+    for (size_t i = 0; i < b.order.size(); ++i) {
+      const double rho = std::exp(b.log_prob(p, i) - static_cast<double>(b.rollout.log_prob[i]));
+      const auto g = static_cast<double>(b.rollout.gain[i]);
+      gain += std::min(rho * g, std::clamp(rho, 1 - kClip, 1 + kClip) * g) / b.plan.samples;
+      for (size_t k = 0; k < 2; ++k)
+        cost[k] += rho * static_cast<double>(b.rollout.cost_advantage[2 * i + k]) / b.plan.samples;
+    }
+    return -gain - 0.3 * std::log(-violation[0] - cost[0]) + 5 * cost[1];
+  };
+  expect_gradient(b, total, 5e-6);
+}
+
+TEST(Ipo, ExactBarrierStopsBeforeTheLimit) {
+  AgentSetup s = bandit("ipo");
+  s.with("cost_limit", "1").with("barrier", "exact").with("multiplier_window", "2000");
+  s.with("barrier_kappa", "0.1").with("barrier_max", "20");
+  Epoch e;
+  const float mean = play_bandit(s, 100, &e);
+  // Where the slope kappa / (1 - mean) is the multiplier 1.8856: 0.053 before the limit.
+  EXPECT_NEAR(mean, 1 - 0.053, 0.04);
+  EXPECT_GT(e.multiplier[0], 1);
 }

@@ -17,10 +17,10 @@ AgentSetup small() {
 }  // namespace
 
 TEST(Learner, GradientIsTheFiniteDifferenceOfTheWholeLoss) {
-  for (const int32_t costs : {1, 3}) {
-    AgentSetup s = small();
+  for (const int32_t costs : {1, 3, -1}) {  // -1: one, with deviations that depend on the state
+    AgentSetup s = costs < 0 ? with_state_std(small()) : small();
     const double limits[] = {1, 2, 3};
-    s.config.cost_dim = costs;
+    s.config.cost_dim = std::abs(costs);
     s.config.cost_limits = limits;
     Bench b(std::move(s));
     ASSERT_EQ(b.plan.piece_rows, 64);  // 160 rows in 3 pieces
@@ -42,12 +42,10 @@ TEST(Learner, GradientIsTheFiniteDifferenceOfTheWholeLoss) {
     EXPECT_GT(sums.clipped, 20);
     EXPECT_LT(sums.clipped, 140);
     double kl = 0;
-    for (size_t i = 0; i < b.order.size(); ++i) {
-      const std::vector<double> m = b.network(p, Networks::kActor, i);
-      for (size_t j = 0; j < m.size(); ++j) {
-        const double d = static_cast<double>(b.rollout.mean[i * m.size() + j]) - m[j];
-        kl += d * d / (2 * std::exp(2 * static_cast<double>(b.rollout.log_std[j])));
-      }
+    for (size_t i = 0; i < b.order.size(); ++i) kl += Bench::kl_of(b.acted(i), b.head(p, i));
+    if (costs < 0) {
+      EXPECT_GT(b.share_at_bound(), 0.1);
+      EXPECT_LT(b.share_at_bound(), 0.9);
     }
     EXPECT_NEAR(sums.kl, kl, 1e-4 * kl);
     EXPECT_NEAR(b.learner.kl(b.order.data(), b.plan.samples), kl / b.plan.samples,

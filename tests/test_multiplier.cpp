@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "algos/multiplier.hpp"
+#include "algos/pid.hpp"
 
 using namespace rdm;
 
@@ -48,6 +49,21 @@ TEST(Multiplier, SgdGolden) {
   expect_close(respond(o, {30, 30, 10}), {0.05, 0.10, 0});
   o.normalized = true;
   expect_close(respond(o, {30, 30, 10}), {0.002, 0.004, 0});
+}
+
+// A regression test: behind Adam a violation of 1 and one of 100 are the same.
+TEST(Multiplier, SgdStepsAreInProportionToTheViolation) {
+  MultiplierOptions o;
+  o.optimizer = MultiplierOptimizer::kSgd;
+  o.init = 0;
+  const double one = respond(o, {26})[0], hundred = respond(o, {125})[0];
+  EXPECT_NEAR(one, o.rate, 1e-12);
+  EXPECT_NEAR(hundred, 100 * one, 1e-9);
+  Pid small, large;
+  const PidOptions pid{.init = 0};
+  small.reset(pid), large.reset(pid);
+  small.step(pid, 1, 0), large.step(pid, 100, 0);
+  EXPECT_NEAR(large.value(), 100 * small.value(), 1e-9);
 }
 
 TEST(Multiplier, SoftplusStartsWhereItIsTold) {

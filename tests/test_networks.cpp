@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstring>
 
 #include "agents.hpp"
 #include "algos/networks.hpp"
@@ -57,6 +58,48 @@ TEST(Networks, TensorsByName) {
   EXPECT_FALSE(find_tensor(m.nets, -1, name, &t));
 }
 
+TEST(Networks, StateDeviationsAreOutputsWithinTheirBounds) {
+  AgentSetup s("ppo", 5, 3, 2);
+  s.with("std_mode", "state").with("hidden", "7").with("init_std", "0.4").with("last_layer_scale", "0");
+  s.with("std_min", "0.1").with("std_max", "2").with("noise_correlation", "0.6");
+  Made m(s);
+  char name[kTensorNameSize];
+  TensorInfo t;
+  ASSERT_TRUE(find_tensor(m.nets, 0, name, &t));
+  EXPECT_STREQ(name, "actor.0.weight");
+  ASSERT_TRUE(find_tensor(m.nets, 3, name, &t));
+  EXPECT_STREQ(name, "actor.1.bias");
+  ASSERT_EQ(t.rows, 6);
+  t.data[4] = -9, t.data[5] = 9;
+  Arena measure;
+  carve_mlp_scratch(measure, m.plan.actor, 1);
+  Arena arena(host(), measure.used());
+  const float x[] = {3, -1, 2, 0.5f, 1}, share = std::log(0.8f);
+  float y[6], dy[] = {1, 1, 1, 1, 1, 1};
+  m.nets.forward(Networks::kActor, x, 1, carve_mlp_scratch(arena, m.plan.actor, 1), y);
+  EXPECT_NEAR(y[3], std::log(0.4f) + share, 1e-6);
+  EXPECT_NEAR(y[4], std::log(0.1f) + share, 1e-6);
+  EXPECT_NEAR(y[5], std::log(2.0f) + share, 1e-6);
+  m.nets.gate_std(y, 1, dy);
+  const float wanted[] = {1, 1, 1, 1, 0, 0};
+  EXPECT_EQ(0, std::memcmp(dy, wanted, sizeof dy));
+}
+
+TEST(Networks, StateDeviationsAreNeitherFixedNorScheduled) {
+  struct Bad {
+    const char *key, *value;
+    Code code;
+  };
+  const Bad bad[] = {{"learn_std", "false", Code::kUnsupported},
+                     {"std_schedule", "linear", Code::kUnsupported},
+                     {"init_std", "10", Code::kRange}};
+  for (const Bad& b : bad) {
+    AgentSetup s("ppo", 5, 3, 2);
+    s.with("std_mode", "state").with(b.key, b.value);
+    EXPECT_EQ(thrown([&] { s.make(); }).code, b.code) << b.key;
+  }
+}
+
 TEST(Networks, NoCostCriticWithoutLimits) {
   AgentSetup s("ppo", 5, 3, 2);
   EXPECT_EQ(Made(s).nets.count, 2);
@@ -96,7 +139,7 @@ TEST(Networks, DeviationStaysInItsBounds) {
   s.with("std_min", "0.1").with("std_max", "1");
   Made m(s);
   m.nets.log_std()[0] = -5, m.nets.log_std()[1] = 5;
-  clamp_log_std(m.nets, m.plan.options);
+  clamp_log_std(m.nets);
   EXPECT_FLOAT_EQ(m.nets.log_std()[0], std::log(0.1f));
   EXPECT_FLOAT_EQ(m.nets.log_std()[1], 0);
 }

@@ -1,3 +1,5 @@
+#include <sstream>
+
 #include "agents.hpp"
 #include "algos/option_tables.hpp"
 
@@ -105,6 +107,67 @@ TEST(OptionTables, PresetsKnowTheAlgorithm) {
   EXPECT_EQ(read(pcpo).integer("line_search_steps"), 200);
   EXPECT_TRUE(read(ipo).flag("normalize_cost"));
   EXPECT_FALSE(read(cpo).flag("normalize_cost"));
+}
+
+// What the peers and the papers do differently, by key: each value is taken, one outside its bounds is not.
+TEST(OptionTables, PeersCanBeMatched) {
+  struct Choice {
+    const char *algo, *key, *values, *outside;
+  };
+  const Choice choices[] = {
+      {"cpo", "kl_mean_over_dims", "false|true", "2"},
+      {"ppo", "scale_cost_adv", "center|std", "mean"},
+      {"trpo_lag", "multiplier_optimizer", "sgd|adam|softplus", "rmsprop"},
+      {"focops", "multiplier_optimizer", "sgd|adam|softplus", "rmsprop"},
+      {"focops", "multiplier_divide", "false|true", "2"},
+      {"ppo_lag", "cost_loss", "combined|split", "none"},
+      {"trpo_lag", "cost_loss", "combined|split", "none"},
+      {"ipo", "cost_loss", "combined|split", "none"},
+      {"ipo", "barrier", "epoch|exact", "none"},
+      {"p3o", "penalty_clip", "false|true", "2"},
+      {"p3o", "violation_scale", "step|discount|raw", "none"},
+      {"cpo", "violation_scale", "step|discount|raw", "none"},
+      {"pcpo", "violation_scale", "step|discount|raw", "none"},
+      {"pcpo", "projection", "kl|l2", "l1"},
+      {"cppo_pid", "pid_norm", "sum|diff|none", "half"},
+      {"ppo", "std_schedule", "none|linear", "cosine"},
+      {"ppo", "std_mode", "free|state", "none"},
+      {"ppo", "learn_std", "false|true", "2"},
+      {"ppo", "lr_schedule", "constant|linear|kl", "cosine"},
+      {"ppo", "critic_lr_schedule", "constant|actor", "kl"},
+      {"ppo", "activation", "tanh|elu|relu", "gelu"},
+      {"ppo", "value_clip", "0|0.2", "-1"},
+      {"ppo", "joint_grad_norm", "false|true", "2"},
+      {"ppo", "max_grad_norm", "0|40", "-1"},
+      {"ppo", "critic_l2", "0|0.001", "-1"},
+      {"ppo", "normalize_obs", "false|true", "2"},
+      {"ppo", "normalize_reward", "false|true", "2"},
+      {"ppo", "normalize_cost", "false|true", "2"},
+      {"ppo", "preset", "default|paper|omnisafe|safe", "none"},
+  };
+  for (const Choice& c : choices) {
+    std::istringstream values(c.values);
+    for (std::string value; std::getline(values, value, '|');) {
+      AgentSetup s(c.algo, 1, 1, 4);
+      s.with(c.key, value.c_str());
+      EXPECT_EQ(thrown([&] { read(s); }).text, "") << c.algo << " " << c.key;
+    }
+    AgentSetup s(c.algo, 1, 1, 4);
+    s.with(c.key, c.outside);
+    EXPECT_NE(thrown([&] { read(s); }).code, Code::kOk) << c.algo << " " << c.key;
+    EXPECT_NE(thrown([&] { read(s); }).code, Code::kNotFound) << c.algo << " " << c.key;
+  }
+}
+
+// Regression tests: a deviation is learned, not scheduled, and KL is summed over dimensions.
+TEST(OptionTables, DefaultsAreNotThePeersDefects) {
+  for (int32_t i = 0; i < algo_count(); ++i) {
+    AgentSetup s(algo_at(i).name, 1, 1, 4);
+    const Options o = read(s);
+    EXPECT_TRUE(o.flag("learn_std"));
+    EXPECT_STREQ(o.text("std_schedule"), "none");
+    EXPECT_FALSE(o.knows("kl_mean_over_dims") && o.flag("kl_mean_over_dims"));
+  }
 }
 
 TEST(OptionTables, AlgorithmsHaveTheirOwnDefaults) {

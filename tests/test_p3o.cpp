@@ -18,6 +18,25 @@ TEST(P3o, ClipHidesFallsOfTheCostAlone) {
   }
 }
 
+// A regression test: peers add J_c - limit of an episode to a mean over decisions, and clip no cost.
+TEST(P3o, TheLimitIsInTheUnitsOfADecision) {
+  struct Probe : Ppo {
+    using Ppo::Ppo;
+    using Ppo::violation;
+  };
+  EpisodeStats stats;
+  stats.finished = 1, stats.length = 40, stats.charged_cost[0] = 35;
+  const std::pair<const char*, double> wanted[] = {{nullptr, 0.5}, {"discount", 1.9}, {"raw", 10}};
+  for (const auto& [scale, violation] : wanted) {
+    AgentSetup s("p3o", 3, 2, 16);
+    s.with("action_repeat", "2").with("discount", "0.9").with("cost_limit", "25");
+    if (scale) s.with("violation_scale", scale);
+    const Probe p(make_plan(s.ready()));
+    EXPECT_NEAR(p.violation(stats, 0), violation, 1e-12);
+    EXPECT_TRUE(p.options().flag("penalty_clip"));
+  }
+}
+
 TEST(P3o, WithoutPenaltyItIsPpo) {
   AgentSetup plain = bandit("ppo"), s = bandit("p3o");
   s.with("cost_limit", "1").with("penalty", "0").with("penalty_max", "0");
@@ -36,8 +55,9 @@ TEST(P3o, KappaGrowsToItsBound) {
   }
 }
 
-TEST(P3o, GradientIsTheFiniteDifference) {
-  AgentSetup s("p3o", 3, 2, 16);
+namespace {
+
+void expect_finite_difference(AgentSetup s) {
   const double limits[] = {1, 2};
   s.config.cost_dim = 2;
   s.config.cost_limits = limits;
@@ -62,4 +82,12 @@ TEST(P3o, GradientIsTheFiniteDifference) {
     return sum / b.plan.samples;
   };
   expect_gradient(b, total, 5e-6);
+}
+
+}  // namespace
+
+TEST(P3o, GradientIsTheFiniteDifference) {
+  const AgentSetup s("p3o", 3, 2, 16);
+  expect_finite_difference(s);
+  expect_finite_difference(with_state_std(s));
 }

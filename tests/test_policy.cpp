@@ -16,7 +16,8 @@ namespace {
 using Bytes = std::vector<unsigned char>;
 
 struct Made {
-  explicit Made(const MlpShape& shape, float clip = 5) {
+  // state: the second half of the outputs are log deviations within [-0.1, 0.15].
+  explicit Made(const MlpShape& shape, float clip = 5, bool state = false) {
     const auto in = static_cast<size_t>(shape.in), out = static_cast<size_t>(shape.out);
     params.resize(shape.num_params());
     Stream stream(1, 0, Purpose::kInit);
@@ -28,7 +29,11 @@ struct Made {
     obs = random_floats(in, 5);
     view.actor = shape;
     view.params = params.data();
-    view.log_std = log_std.data();
+    view.state_std = state;
+    if (state)
+      view.std_bounds[0] = -0.1f, view.std_bounds[1] = 0.15f;
+    else
+      view.log_std = log_std.data();
     view.clip = clip;
     if (clip > 0) view.shift = shift.data(), view.scale = scale.data();
     view.action_repeat = 2;
@@ -57,7 +62,7 @@ Owned read(const Bytes& b, const HostHooks& hooks = {}) {
 }
 
 std::vector<float> act(const Policy& p, const float* obs, int32_t rows, const float* noise) {
-  std::vector<float> action(static_cast<size_t>(rows * p.view().actor.out), 9);
+  std::vector<float> action(static_cast<size_t>(rows * p.view().action_dim()), 9);
   const size_t size = p.scratch_bytes(rows);
   auto* scratch = static_cast<unsigned char*>(std::aligned_alloc(64, (size + 127) / 64 * 64));
   std::memset(scratch, 0xA5, size + 64);
@@ -166,6 +171,54 @@ TEST(Policy, ActIsTheNormalisedNetPlusNoiseClipped) {
     });
 }
 
+TEST(Policy, DeviationsOfTheStateAreTheNetsWithinBounds) {
+  const Made made(make_shape(19, {33, 20}, 14), 5, true);
+  const Owned p = read(made.bytes());
+  EXPECT_EQ(p->view().action_dim(), 7);
+  EXPECT_EQ(p->view().log_std, nullptr);
+  const int32_t rows = 150;  // more than a chunk
+  const auto obs = random_floats(150 * 19, 6), noise = random_floats(150 * 7, 7);
+  const auto mean = act(*p, obs.data(), rows, nullptr), action = act(*p, obs.data(), rows, noise.data());
+  const std::vector<double> params(made.params.begin(), made.params.end());
+  int low = 0, high = 0, inside = 0;
+  for (size_t r = 0; r < 150; ++r) {
+    std::vector<double> x;
+    for (size_t j = 0; j < 19; ++j)
+      x.push_back(
+          std::clamp(static_cast<double>((obs[r * 19 + j] - made.shift[j]) * made.scale[j]), -5., 5.));
+    const auto y = net_in_double(made.view.actor, params, x);
+    for (size_t j = 0; j < 7; ++j) {
+      const double l = std::clamp(y[7 + j], -0.1, 0.15), e = static_cast<double>(noise[r * 7 + j]);
+      EXPECT_NEAR(mean[r * 7 + j], std::clamp(y[j], -1.0, 1.0), 3e-6);
+      EXPECT_NEAR(action[r * 7 + j], std::clamp(y[j] + std::exp(l) * e, -1.0, 1.0), 6e-6);
+      low += l == -0.1, high += l == 0.15, inside += l > -0.1 && l < 0.15;
+    }
+  }
+  EXPECT_GT(std::min({low, high, inside}), 10);
+}
+
+TEST(Policy, OnlyDeviationsOfTheStateNeedTheNewVersion) {
+  const Bytes plain = Made(make_shape(3, {2}, 2)).bytes(),
+              state = Made(make_shape(3, {2}, 2), 5, true).bytes();
+  EXPECT_EQ(plain[8], 1);
+  EXPECT_EQ(state[8], 2);
+  const auto with = [&](float low, float high) {
+    Bytes forged = state;
+    put(section(forged, "HEAD"), low);
+    put(section(forged, "HEAD") + 4, high);
+    seal(forged);
+    return code_of(forged);
+  };
+  EXPECT_EQ(with(-1, 0), Code::kOk);
+  EXPECT_EQ(with(1, 0), Code::kFormat);
+  EXPECT_EQ(with(NAN, 0), Code::kFormat);
+  EXPECT_EQ(with(-1, 1000), Code::kFormat);
+  Bytes older = state;
+  older[8] = 1;
+  EXPECT_EQ(code_of(older), Code::kFormat);
+  EXPECT_EQ(code_of(Made(make_shape(3, {2}, 3), 5, true).bytes()), Code::kFormat);
+}
+
 TEST(Policy, ARowDoesNotDependOnItsBatch) {
   for_each_isa([](const char* isa) {
     SCOPED_TRACE(isa);
@@ -264,9 +317,9 @@ TEST(Policy, EveryFlippedBitIsAnError) {
 
 // Bits flipped under a right checksum may give another policy, but never a crash (run with a sanitizer).
 TEST(Policy, ForgedBytesAreAPolicyOrAnError) {
-  const Bytes b = Made(make_shape(3, {2}, 1)).bytes();
+  const Bytes b = Made(make_shape(3, {2}, 2), 5, true).bytes();
   int errors = 0;
-  for (const char* tag : {"META", "ARCH", "WGTS", "NORM", "EXMP"}) {
+  for (const char* tag : {"META", "ARCH", "HEAD", "WGTS", "NORM", "EXMP"}) {
     Bytes whole = b;
     size_t size = 0;
     section(whole, tag, &size);

@@ -1,9 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <thread>
 
 #include "agents.hpp"
-#include "algos/policy_gradient.hpp"
+#include "algos/ppo.hpp"
 #include "heap_count.hpp"
 #include "nn/policy.hpp"
 
@@ -188,6 +189,32 @@ TEST(PolicyGradient, EpochTellsWhatHappened) {
   EXPECT_GT(e.learning_rate, 0);
 }
 
+// A regression test of a peer that went through the data in the order in which they were collected.
+TEST(PolicyGradient, EveryPassIsShuffled) {
+  struct Probe : Ppo {
+    using Ppo::Ppo;
+    using Ppo::rollout;
+  };
+  AgentSetup s("ppo", 6, 3, 40);
+  s.with("horizon", "12").with("hidden", "8").with("passes", "1");
+  Probe a(make_plan(s.ready()));
+  a.open(s.config);
+  NoiseWorld world(s.config);
+  std::vector<std::vector<int32_t>> orders;
+  for (int epoch = 0; epoch < 2; ++epoch) {
+    world.epoch(a);
+    const Rollout& r = a.rollout();
+    const auto valid = static_cast<size_t>(std::count(r.valid, r.valid + r.samples(), 1));
+    std::vector<int32_t> order(r.order, r.order + valid);
+    EXPECT_FALSE(std::is_sorted(order.begin(), order.end()));
+    orders.push_back(order);
+    std::sort(order.begin(), order.end());
+    EXPECT_EQ(std::adjacent_find(order.begin(), order.end()), order.end());
+    for (const int32_t row : order) EXPECT_TRUE(r.valid[row]);
+  }
+  EXPECT_NE(orders[0], orders[1]);
+}
+
 TEST(PolicyGradient, EarlyStopEndsThePasses) {
   AgentSetup s = lag();
   const AgentPtr a = s.with("passes", "50").with("early_stop_kl", "0.001").make();
@@ -304,11 +331,7 @@ TEST(PolicyGradient, PolicyFileActsAsTheAgent) {
   const AgentPtr a = s.with("action_repeat", "4").make();
   NoiseWorld world(s.config);
   world.epoch(*a);
-  Writer count(nullptr, 0);
-  a->write_policy_file(count);
-  std::vector<unsigned char> bytes(count.size());
-  Writer out(bytes.data(), bytes.size());
-  a->write_policy_file(out);
+  const std::vector<unsigned char> bytes = policy_file(*a);
   Policy* p = Policy::read(bytes.data(), bytes.size(), HostHooks());
   const PolicyView& v = p->view();
   EXPECT_STREQ(v.task, "noise");
@@ -326,6 +349,69 @@ TEST(PolicyGradient, PolicyFileActsAsTheAgent) {
   p->act(world.obs(), 40, nullptr, action.data(), arena.make<unsigned char>(p->scratch_bytes(40)));
   for (size_t i = 0; i < action.size(); ++i) EXPECT_EQ(action[i], std::clamp(world.action()[i], -1.0f, 1.0f));
   Policy::destroy(p);
+}
+
+// At a rate of 0 the policy that is learned is the one that acted: no KL, and a mean advantage of 0.
+TEST(PolicyGradient, StateDeviationsActAsTheyAreLearned) {
+  for (const int32_t threads : {0, 2}) {
+    AgentSetup s = lag();
+    s.config.num_threads = threads;
+    s.with("std_mode", "state").with("last_layer_scale", "1").with("learning_rate", "0").with("lr_min", "0");
+    s.with("multiplier_init", "0").with("multiplier_lr", "0").with("std_max", "0.7");
+    const AgentPtr a = s.make();
+    NoiseWorld world(s.config);
+    Epoch e;
+    world.epoch(*a, &e);
+    EXPECT_NEAR(e.kl, 0, 1e-6);
+    EXPECT_NEAR(e.loss_policy, 0, 1e-5);
+    EXPECT_EQ(e.clip_fraction, 0);
+    EXPECT_GT(e.action_std, 0.3);
+    EXPECT_LT(e.action_std, 0.7);
+    const std::vector<unsigned char> bytes = policy_file(*a);
+    Policy* p = Policy::read(bytes.data(), bytes.size(), HostHooks());
+    EXPECT_EQ(p->view().action_dim(), s.config.action_dim);
+    EXPECT_FLOAT_EQ(std::exp(p->view().std_bounds[1]), 0.7f);  // the stationary deviation's
+    Policy::destroy(p);
+  }
+}
+
+// One step per episode, observation -1 or 1; only at 1 does the action matter, and only at 1 does noise cost.
+// The deviations are those of the policy file.
+TEST(PolicyGradient, StateDeviationsFallWhereNoiseCosts) {
+  for (const char* algo : {"ppo_lag", "cpo"}) {
+    constexpr int32_t kEnvs = 50;
+    AgentSetup s(algo, 1, 1, kEnvs);
+    s.with("std_mode", "state").with("horizon", "20").with("hidden", "16").with("learning_rate", "3e-3");
+    s.with("entropy", "0.02").with("cost_limit", "100").with("init_std", "0.5");
+    const AgentPtr a = s.make();
+    std::vector<float> obs(kEnvs), action(kEnvs), reward(kEnvs), spread(kEnvs);
+    const std::vector<float> cost(kEnvs, 0), ones(kEnvs, 1);
+    const std::vector<uint8_t> over(kEnvs, 1);
+    for (size_t i = 0; i < kEnvs; ++i) obs[i] = i % 2 ? 1.0f : -1.0f;
+    Transition t;
+    t.reward = reward.data(), t.cost = cost.data(), t.terminated = over.data();
+    for (int epoch = 0; epoch < 60; ++epoch) {
+      while (a->missing() > 0) {
+        a->act(obs.data(), true, action.data());
+        for (size_t i = 0; i < kEnvs; ++i)
+          reward[i] = obs[i] > 0 ? -(action[i] - 0.3f) * (action[i] - 0.3f) : 0;
+        a->record(t);
+      }
+      a->update(obs.data(), nullptr);
+    }
+    const std::vector<unsigned char> bytes = policy_file(*a);
+    Policy* p = Policy::read(bytes.data(), bytes.size(), HostHooks());
+    Arena measure;
+    measure.make<unsigned char>(p->scratch_bytes(kEnvs));
+    Arena arena(HostHooks(), measure.used());
+    auto* scratch = arena.make<unsigned char>(p->scratch_bytes(kEnvs));
+    p->act(obs.data(), kEnvs, nullptr, action.data(), scratch);
+    p->act(obs.data(), kEnvs, ones.data(), spread.data(), scratch);
+    Policy::destroy(p);
+    EXPECT_NEAR(action[1], 0.3, 0.05) << algo;
+    EXPECT_LT(spread[1] - action[1], 0.2) << algo;
+    EXPECT_GT(spread[0] - action[0], 0.4) << algo;
+  }
 }
 
 TEST(PolicyGradient, ConfigIsCopied) {

@@ -124,6 +124,17 @@ TEST_P(PolicyTensors, AreTheWholePolicy) {
 
 INSTANTIATE_TEST_SUITE_P(Activations, PolicyTensors, testing::Values("tanh", "elu", "relu"));
 
+TEST(PolicyTensorList, DeviationsOfTheStateAreTheLastOutputs) {
+  Loaded p({{"std_mode", "state", 0}, {"hidden", "8", 0}, {"horizon", nullptr, 4}, {"std_max", nullptr, 2}});
+  EXPECT_EQ(p.info.action_dim, 3);
+  EXPECT_EQ(p.tensors.count("actor.log_std"), 0u);
+  EXPECT_EQ(p.tensors["actor.1.bias"].size(), 6u);
+  ASSERT_EQ(p.tensors["actor.log_std_bounds"].size(), 2u);
+  EXPECT_FLOAT_EQ(p.tensors["actor.log_std_bounds"][1], std::log(2.0f));
+  const auto y = p.act(p.tensors["example.obs"]);
+  for (size_t j = 0; j < 3; ++j) EXPECT_NEAR(p.tensors["example.action"][j], y[j], 1e-6);
+}
+
 TEST(PolicyTensorList, BadQuestionsGetAnswers) {
   Loaded p({{"horizon", nullptr, 4}, {"minibatches", nullptr, 1}});
   rdm_tensor t;

@@ -34,10 +34,11 @@ policy tanh --set hidden=64,64 --set activation=tanh
 policy elu --set hidden=128,64,32 --set activation=elu
 policy relu --set hidden=32 --set activation=relu
 policy bare --set hidden=16,16 --set normalize_obs=false
+policy state --set hidden=16,16 --set std_mode=state
 
 command -v python3 > /dev/null && python3 - "$dir" << 'EOF' || failed=1
 import json, math, struct, sys
-for name in "tanh elu relu bare".split():
+for name in "tanh elu relu bare state".split():
     data = open(f"{sys.argv[1]}/{name}.safetensors", "rb").read()
     (n,) = struct.unpack("<Q", data[:8])
     head = json.loads(data[8:8 + n])

@@ -34,6 +34,18 @@ std::vector<float> after_one_epoch(const char* algo, float reward_scale) {
 
 }  // namespace
 
+// Regression tests of a peer that stepped once for each minibatch, and tried lengths of at most 0.01 of the
+// step.
+TEST(Trpo, AnEpochIsOneStepOnTheWholeBatch) {
+  AgentSetup one = bandit("trpo"), many = bandit("trpo");
+  one.with("minibatches", "1"), many.with("minibatches", "40");
+  Epoch e;
+  const float whole = play_bandit(one, 1, &e);
+  EXPECT_GT(e.kl, 0.005);
+  EXPECT_LE(e.kl, 0.01);
+  EXPECT_NEAR(play_bandit(many, 1, &e), whole, 1e-5);
+}
+
 TEST(Trpo, BanditGoesToTheBestAction) {
   AgentSetup s = bandit("trpo");
   Epoch e;

@@ -26,7 +26,8 @@ struct Network {
 };
 
 // ONNX, IR 8, operators 17: input obs [batch][obs_dim]; outputs action [batch][action_dim] clipped to [-1,
-// 1], mean (the same before the clip) and log_std [action_dim]. The normaliser is part of the graph.
+// 1], mean (the same before the clip) and log_std [action_dim], or [batch][action_dim] where it depends on
+// the state. The normaliser is part of the graph.
 std::string onnx_bytes(const Network& network);
 
 // safetensors: a JSON header and the numbers.

@@ -103,6 +103,30 @@ void add_normalizer(const Network& network, Graph& graph, std::string& x) {
       "normalized");
 }
 
+NamedTensor half(const NamedTensor& t, bool second) {
+  NamedTensor part = t;
+  const size_t n = t.values.size() / 2;
+  const auto begin = t.values.begin() + static_cast<long>(second ? n : 0);
+  part.name += second ? ".log_std" : ".mean";
+  part.shape[0] /= 2;
+  part.values.assign(begin, begin + static_cast<long>(n));
+  return part;
+}
+
+// The last layer of a policy whose deviations depend on the state; returns the mean.
+std::string add_head(Graph& graph, const std::string& x, const NamedTensor& weight, const NamedTensor& bias,
+                     const NamedTensor& bounds) {
+  const auto part = [&](bool second, const char* out) {
+    return graph.node("Gemm", {x, graph.constant(half(weight, second)), graph.constant(half(bias, second))},
+                      out, true);
+  };
+  graph.node("Clip",
+             {part(true, "log_std.free"), graph.constant("log_std.low", {}, {bounds.values[0]}),
+              graph.constant("log_std.high", {}, {bounds.values[1]})},
+             "log_std");
+  return part(false, "mean");
+}
+
 }  // namespace
 
 std::string onnx_bytes(const Network& network) {
@@ -110,21 +134,26 @@ std::string onnx_bytes(const Network& network) {
   graph.input("obs", {0, network.obs_dim});
   std::string x = "obs";
   add_normalizer(network, graph, x);
+  const NamedTensor *log_std = network.find("actor.log_std"), *bounds = network.find("actor.log_std_bounds");
   for (int32_t l = 0; l < network.num_layers; ++l) {
     const std::string layer = "actor." + std::to_string(l);
     const bool last = l + 1 == network.num_layers;
-    x = graph.node(
-        "Gemm",
-        {x, graph.constant(*network.find(layer + ".weight")), graph.constant(*network.find(layer + ".bias"))},
-        last ? "mean" : layer, true);
+    const NamedTensor &weight = *network.find(layer + ".weight"), &bias = *network.find(layer + ".bias");
+    if (last && bounds)
+      x = add_head(graph, x, weight, bias, *bounds);
+    else
+      x = graph.node("Gemm", {x, graph.constant(weight), graph.constant(bias)}, last ? "mean" : layer, true);
     if (!last) x = graph.node(activation_operator(network.activation).c_str(), {x}, layer + ".out");
   }
   graph.node("Clip", {x, graph.constant("action.low", {}, {-1}), graph.constant("action.high", {}, {1})},
              "action");
-  graph.node("Identity", {graph.constant(*network.find("actor.log_std"))}, "log_std");
+  if (log_std) graph.node("Identity", {graph.constant(*log_std)}, "log_std");
   graph.output("action", {0, network.action_dim});
   graph.output("mean", {0, network.action_dim});
-  graph.output("log_std", {network.action_dim});
+  if (log_std)
+    graph.output("log_std", {network.action_dim});
+  else
+    graph.output("log_std", {0, network.action_dim});
 
   Message operators, model;  // ModelProto
   operators.text(1, "");

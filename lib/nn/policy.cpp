@@ -50,34 +50,51 @@ const float* keep(Arena& arena, const unsigned char* from, size_t n) {
 // What act needs per chunk of rows; nothing of the backward pass.
 struct ActScratch {
   MlpScratch mlp;
-  float* obs = nullptr;  // normalised
+  float* obs = nullptr;   // normalised
+  float* head = nullptr;  // the network's outputs, with state_std
   size_t bytes = 0;
 };
-ActScratch cut_act_scratch(const MlpShape& shape, int32_t rows, void* memory) {
+ActScratch cut_act_scratch(const PolicyView& v, int32_t rows, void* memory) {
+  const MlpShape& shape = v.actor;
   ActScratch s;
   ScratchCutter cutter(memory);
   rows = std::clamp(rows, 1, kChunk);
   s.mlp = cut_forward_scratch(cutter, shape, rows);
   s.obs = cutter.make(sz(rows) * sz(shape.in));
+  s.head = cutter.make(v.state_std ? sz(rows) * sz(shape.out) : 0);
   s.bytes = cutter.used();
   return s;
+}
+
+// Actions out of what a network with state_std gave: head [rows][2 action_dim].
+void act_head(const PolicyView& v, float* head, int32_t rows, const float* noise, float* action) {
+  const size_t dim = sz(v.action_dim());
+  for (size_t i = 0; i < sz(rows); ++i, head += 2 * dim) {
+    std::copy_n(head, dim, action + i * dim);
+    for (size_t j = dim; j < 2 * dim; ++j) head[j] = std::clamp(head[j], v.std_bounds[0], v.std_bounds[1]);
+    kernels().add_noise(head + dim, noise ? noise + i * dim : nullptr, 1, v.action_dim(), action + i * dim);
+  }
 }
 
 void act_view(const PolicyView& v, const float* obs, int32_t rows, const float* noise, float* action,
               void* scratch) {
   const Kernels& kernel = kernels();
-  const ActScratch s = cut_act_scratch(v.actor, rows, scratch);
-  const size_t in = sz(v.actor.in), out = sz(v.actor.out);
+  const ActScratch s = cut_act_scratch(v, rows, scratch);
+  const size_t in = sz(v.actor.in), out = sz(v.action_dim());
   for (int32_t at = 0; at < rows; at += s.mlp.rows) {
     const int32_t n = std::min(s.mlp.rows, rows - at);
     const float* x = obs + sz(at) * in;
+    const float* e = noise ? noise + sz(at) * out : nullptr;
     float* a = action + sz(at) * out;
     if (v.clip > 0) {
       kernel.normalize(x, n, v.actor.in, v.shift, v.scale, v.clip, s.obs);
       x = s.obs;
     }
-    mlp_forward(v.actor, v.params, x, n, s.mlp, a);
-    kernel.add_noise(v.log_std, noise ? noise + sz(at) * out : nullptr, n, v.actor.out, a);
+    mlp_forward(v.actor, v.params, x, n, s.mlp, v.state_std ? s.head : a);
+    if (v.state_std)
+      act_head(v, s.head, n, e, a);
+    else
+      kernel.add_noise(v.log_std, e, n, v.actor.out, a);
   }
 }
 
@@ -115,20 +132,31 @@ void read_arch(Reader& in, MlpShape& shape) {
     if (shape.hidden[l] != 0) bad("a layer that does not exist has a width");
 }
 
+void read_head(Reader& in, PolicyView& v) {
+  v.state_std = in.find_section("HEAD");
+  if (!v.state_std) return;
+  v.std_bounds[0] = in.value<float>();
+  v.std_bounds[1] = in.value<float>();
+  in.expect_end();
+  if (v.actor.out % 2 != 0) bad("the network's outputs are not means and deviations");
+  if (!(v.std_bounds[0] <= v.std_bounds[1] && v.std_bounds[0] >= -50 && v.std_bounds[1] <= 50))
+    bad("the deviation's bounds are out of range");
+}
+
 }  // namespace
 
 void write_policy(Writer& out, const PolicyView& view) {
   const MlpShape& shape = view.actor;
-  const size_t n_in = sz(shape.in), n_out = sz(shape.out);
+  const size_t n_in = sz(shape.in), n_out = sz(view.action_dim());
   Vector<float> obs(n_in), action(n_out);
   if (view.example_obs) std::copy_n(view.example_obs, n_in, obs.begin());
   if (view.example_obs && view.example_action) {
     std::copy_n(view.example_action, n_out, action.begin());
   } else {
-    Vector<float> memory(cut_act_scratch(shape, 1, nullptr).bytes / sizeof(float) + Arena::kAlign);
+    Vector<float> memory(cut_act_scratch(view, 1, nullptr).bytes / sizeof(float) + Arena::kAlign);
     act_view(view, obs.data(), 1, nullptr, action.data(), align_scratch(memory.data()));
   }
-  out.begin_file(kPolicyMagic, kPolicyVersion);
+  out.begin_file(kPolicyMagic, view.state_std ? kPolicyVersion : 1);
   out.begin_section("META");
   out.value(view.clip);
   out.value(view.action_repeat);
@@ -144,9 +172,15 @@ void write_policy(Writer& out, const PolicyView& view) {
   out.value(shape.num_hidden);
   for (int32_t l = 0; l < kMaxHidden; ++l) out.value(l < shape.num_hidden ? shape.hidden[l] : int32_t{0});
   out.end_section();
+  if (view.state_std) {
+    out.begin_section("HEAD");
+    out.value(view.std_bounds[0]);
+    out.value(view.std_bounds[1]);
+    out.end_section();
+  }
   out.begin_section("WGTS");
   write_floats(out, view.params, shape.num_params());
-  write_floats(out, view.log_std, n_out);
+  if (!view.state_std) write_floats(out, view.log_std, n_out);
   out.end_section();
   out.begin_section("NORM");
   if (view.clip > 0) {
@@ -164,12 +198,14 @@ void write_policy(Writer& out, const PolicyView& view) {
 Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
   PolicyView v;
   Reader in(bytes, size, kWhat);
-  in.begin_file(kPolicyMagic, kPolicyVersion);
+  const uint32_t version = in.begin_file(kPolicyMagic, kPolicyVersion);
   read_meta(in, v);
   read_arch(in, v.actor);
-  const size_t n_in = sz(v.actor.in), n_out = sz(v.actor.out), n_params = v.actor.num_params();
+  if (version > 1) read_head(in, v);
+  const size_t n_in = sz(v.actor.in), n_out = sz(v.action_dim()), n_params = v.actor.num_params();
+  const size_t n_std = v.state_std ? 0 : n_out;
   in.need_section("WGTS");
-  const unsigned char *params = view_floats(in, n_params), *log_std = view_floats(in, n_out);
+  const unsigned char *params = view_floats(in, n_params), *log_std = view_floats(in, n_std);
   in.expect_end();
   in.need_section("NORM");
   const size_t n_norm = v.clip > 0 ? n_in : 0;
@@ -186,13 +222,13 @@ Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
 
   const auto carve = [&](Arena& arena) {
     v.params = keep(arena, params, n_params);
-    v.log_std = keep(arena, log_std, n_out);
+    v.log_std = n_std ? keep(arena, log_std, n_std) : nullptr;
     v.shift = n_norm ? keep(arena, shift, n_in) : nullptr;
     v.scale = n_norm ? keep(arena, scale, n_in) : nullptr;
     v.example_obs = keep(arena, obs, n_in);
     v.example_action = keep(arena, action, n_out);
     float* check = arena.make<float>(n_out);
-    auto* scratch = arena.make<unsigned char>(cut_act_scratch(v.actor, 1, nullptr).bytes);
+    auto* scratch = arena.make<unsigned char>(cut_act_scratch(v, 1, nullptr).bytes);
     if (arena.measuring()) return;
     act_view(v, v.example_obs, 1, nullptr, check, scratch);
     for (size_t j = 0; j < n_out; ++j)
@@ -215,7 +251,7 @@ void Policy::destroy(Policy* p) {
 }
 
 size_t Policy::scratch_bytes(int32_t rows) const {
-  return cut_act_scratch(view_.actor, rows, nullptr).bytes;
+  return cut_act_scratch(view_, rows, nullptr).bytes;
 }
 
 void Policy::act(const float* obs, int32_t rows, const float* noise, float* action, void* scratch) const {

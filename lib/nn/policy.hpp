@@ -1,5 +1,6 @@
 // The frozen policy: normaliser, actor network, action scale; runs on a machine that has nothing else.
-// Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC".
+// Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC". Version 2 is written for a policy
+// whose deviation depends on the state, which version 1 does not know.
 #pragma once
 #include <cstdint>
 
@@ -9,13 +10,15 @@
 namespace rdm {
 
 inline constexpr char kPolicyMagic[8] = {'R', 'D', 'M', 'P', 'O', 'L', 'I', 'C'};
-inline constexpr uint32_t kPolicyVersion = 1;
+inline constexpr uint32_t kPolicyVersion = 2;
 
 // Everything that a policy file holds, as views of memory that somebody else owns.
 struct PolicyView {
-  MlpShape actor;
+  MlpShape actor;                      // out: action_dim, or with state_std twice that, log deviations last
   const float* params = nullptr;       // [actor.num_params()]
-  const float* log_std = nullptr;      // [actor.out]
+  const float* log_std = nullptr;      // [action_dim], null with state_std
+  bool state_std = false;              // the network gives the log deviations
+  float std_bounds[2] = {};            // lowest and highest of these
   const float* shift = nullptr;        // [actor.in] observation normaliser: clip((x - shift) scale, +-clip)
   const float* scale = nullptr;        // [actor.in]
   float clip = 0;                      // 0: no normaliser
@@ -25,7 +28,9 @@ struct PolicyView {
   uint64_t layout_hash = 0;            // of the observation and action layout, 0 unknown
   char task[64] = "";                  // "" for a host's own environment
   const float* example_obs = nullptr;  // [actor.in], null: zeros are written
-  const float* example_action = nullptr;  // [actor.out], the mean action for it; a load checks it
+  const float* example_action = nullptr;  // [action_dim], the mean action for it; a load checks it
+
+  int32_t action_dim() const { return state_std ? actor.out / 2 : actor.out; }
 };
 void write_policy(Writer& out, const PolicyView& view);
 
@@ -38,8 +43,8 @@ class Policy {
 
   const PolicyView& view() const { return view_; }
   size_t scratch_bytes(int32_t rows) const;
-  // action [rows][out] = clip(mean + std * noise, -1, 1); noise [rows][out] standard normals or null for
-  // the mean. scratch: scratch_bytes(rows) bytes, 64-byte aligned.
+  // action [rows][action_dim] = clip(mean + std * noise, -1, 1); noise, as action, standard normals or null
+  // for the mean. scratch: scratch_bytes(rows) bytes, 64-byte aligned.
   void act(const float* obs, int32_t rows, const float* noise, float* action, void* scratch) const;
 
  private:
