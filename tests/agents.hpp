@@ -121,22 +121,21 @@ inline std::vector<float> parameters(Agent& a) {
   return all;
 }
 
-inline std::vector<unsigned char> saved(const Agent& a) {
+// What write(Writer&) writes.
+template <class F>
+std::vector<unsigned char> written(F&& write) {
   Writer count(nullptr, 0);
-  a.save(count);
+  write(count);
   std::vector<unsigned char> bytes(count.size());
   Writer out(bytes.data(), bytes.size());
-  a.save(out);
+  write(out);
   return bytes;
 }
-
+inline std::vector<unsigned char> saved(const Agent& a) {
+  return written([&](Writer& w) { a.save(w); });
+}
 inline std::vector<unsigned char> policy_file(Agent& a) {
-  Writer count(nullptr, 0);
-  a.write_policy_file(count);
-  std::vector<unsigned char> bytes(count.size());
-  Writer out(bytes.data(), bytes.size());
-  a.write_policy_file(out);
-  return bytes;
+  return written([&](Writer& w) { a.write_policy_file(w); });
 }
 
 // The code and text of the Error that f throws; kOk when it throws none.

@@ -119,6 +119,9 @@ struct Bench {
     }
     return sum;
   }
+  double ratio(const std::vector<double>& p, size_t row) const {
+    return std::exp(log_prob(p, row) - static_cast<double>(rollout.log_prob[row]));
+  }
   // KL(one || other) at a row.
   static double kl_of(const Head& one, const Head& other) {
     double sum = 0;
@@ -144,13 +147,16 @@ struct Bench {
     }
     return static_cast<double>(count) / static_cast<double>(order.size() * plan.action_dim());
   }
+  double clipped_gain(double rho, size_t row) const {
+    const auto gain = static_cast<double>(rollout.gain[row]);
+    return std::min(rho * gain, std::clamp(rho, 1 - kClip, 1 + kClip) * gain);
+  }
   double total_loss(const std::vector<double>& p) const {
     const double n = plan.samples;
     double sum = 0;
     for (size_t i = 0; i < size_of(plan.samples); ++i) {
-      const double ratio = std::exp(log_prob(p, i) - static_cast<double>(rollout.log_prob[i]));
-      const auto gain = static_cast<double>(rollout.gain[i]), linear = static_cast<double>(rollout.linear[i]);
-      sum -= std::min(ratio * gain, std::clamp(ratio, 1 - kClip, 1 + kClip) * gain) + ratio * linear;
+      const double rho = ratio(p, i), linear = static_cast<double>(rollout.linear[i]);
+      sum -= clipped_gain(rho, i) + rho * linear;
       for (const double l : head(p, i).log_std) sum -= plan.options.number("entropy") * l;
       const double v = network(p, Networks::kReward, i)[0] - static_cast<double>(rollout.target[i]);
       sum += v * v;
@@ -166,6 +172,15 @@ struct Bench {
     return sum / n + penalty;
   }
 };
+
+// A small net and one minibatch of 160 rows with two limited costs.
+inline AgentSetup two_costs(AgentSetup s) {
+  static const double limits[] = {1, 2};
+  s.config.cost_dim = 2;
+  s.config.cost_limits = limits;
+  s.with("hidden", "5,4").with("horizon", "10").with("minibatches", "1").with("last_layer_scale", "1");
+  return s;
+}
 
 // With std_mode=state and bounds so near that some deviations are at them.
 inline AgentSetup with_state_std(AgentSetup s) {

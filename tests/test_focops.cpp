@@ -59,7 +59,7 @@ void expect_finite_difference(AgentSetup s) {
     double sum = 0;
     for (size_t i = 0; i < b.order.size(); ++i) {
       if (kl_of(start, i) > static_cast<double>(loss.eta)) continue;  // the indicator is a constant
-      const double rho = std::exp(b.log_prob(p, i) - static_cast<double>(b.rollout.log_prob[i]));
+      const double rho = b.ratio(p, i);
       sum += kl_of(p, i) - rho * static_cast<double>(b.rollout.gain[i]) / 1.5;
     }
     return sum / b.plan.samples;

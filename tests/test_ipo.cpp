@@ -29,12 +29,7 @@ TEST(Ipo, WithoutBarrierItIsPpo) {
 
 // One cost inside its domain, one at the bound of its slope because the batch is outside.
 TEST(Ipo, ExactBarrierHasTheGradientOfTheLogarithm) {
-  AgentSetup s("ipo", 3, 2, 16);
-  const double limits[] = {1, 2};
-  s.config.cost_dim = 2;
-  s.config.cost_limits = limits;
-  s.with("hidden", "5,4").with("horizon", "10").with("minibatches", "1").with("last_layer_scale", "1");
-  Bench b(std::move(s));
+  Bench b(two_costs({"ipo", 3, 2, 16}));
   std::fill_n(b.rollout.linear, b.order.size(), 0.0f);
   BarrierLoss loss;
   loss.kappa = 0.3, loss.max = 5;
@@ -46,9 +41,8 @@ TEST(Ipo, ExactBarrierHasTheGradientOfTheLogarithm) {
   const auto total = [&](const std::vector<double>& p) {
     double gain = 0, cost[2] = {};
     for (size_t i = 0; i < b.order.size(); ++i) {
-      const double rho = std::exp(b.log_prob(p, i) - static_cast<double>(b.rollout.log_prob[i]));
-      const auto g = static_cast<double>(b.rollout.gain[i]);
-      gain += std::min(rho * g, std::clamp(rho, 1 - kClip, 1 + kClip) * g) / b.plan.samples;
+      const double rho = b.ratio(p, i);
+      gain += b.clipped_gain(rho, i) / b.plan.samples;
       for (size_t k = 0; k < 2; ++k)
         cost[k] += rho * static_cast<double>(b.rollout.cost_advantage[2 * i + k]) / b.plan.samples;
     }

@@ -58,11 +58,7 @@ TEST(P3o, KappaGrowsToItsBound) {
 namespace {
 
 void expect_finite_difference(AgentSetup s) {
-  const double limits[] = {1, 2};
-  s.config.cost_dim = 2;
-  s.config.cost_limits = limits;
-  s.with("hidden", "5,4").with("horizon", "10").with("minibatches", "1").with("last_layer_scale", "1");
-  Bench b(std::move(s));
+  Bench b(two_costs(std::move(s)));
   std::fill_n(b.rollout.linear, b.order.size(), 0.0f);
   PenalizedSurrogate loss;
   loss.weight[0] = 3, loss.weight[1] = 0.5f;
@@ -70,10 +66,8 @@ void expect_finite_difference(AgentSetup s) {
   const auto total = [&](const std::vector<double>& p) {
     double sum = 0;
     for (size_t i = 0; i < b.order.size(); ++i) {
-      const double rho = std::exp(b.log_prob(p, i) - static_cast<double>(b.rollout.log_prob[i]));
-      const double cut = std::clamp(rho, 1 - kClip, 1 + kClip);
-      const auto gain = static_cast<double>(b.rollout.gain[i]);
-      sum -= std::min(rho * gain, cut * gain);
+      const double rho = b.ratio(p, i), cut = std::clamp(rho, 1 - kClip, 1 + kClip);
+      sum -= b.clipped_gain(rho, i);
       for (size_t k = 0; k < 2; ++k) {
         const auto c = static_cast<double>(b.rollout.cost_advantage[2 * i + k]);
         sum += static_cast<double>(loss.weight[k]) * std::max(rho * c, cut * c);

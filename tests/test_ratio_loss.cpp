@@ -43,17 +43,12 @@ TEST(RatioLoss, TheEntropyBonusIsNotTheCosts) {
 }
 
 TEST(RatioLoss, MeasureIsTheMeanOverTheRows) {
-  AgentSetup s("p3o", 3, 2, 16);
-  const double limits[] = {1, 2};
-  s.config.cost_dim = 2;
-  s.config.cost_limits = limits;
-  s.with("hidden", "5,4").with("horizon", "10").with("minibatches", "1").with("last_layer_scale", "1");
-  Bench b(std::move(s));
+  Bench b(two_costs({"p3o", 3, 2, 16}));
   for (const float clip : {0.0f, 0.2f}) {
     const Surrogate got = b.learner.measure(b.order.data(), b.plan.samples, clip);
     double gain = 0, cost[2] = {};
     for (size_t i = 0; i < b.order.size(); ++i) {
-      const double rho = std::exp(b.log_prob(b.params(), i) - static_cast<double>(b.rollout.log_prob[i]));
+      const double rho = b.ratio(b.params(), i);
       gain += rho * static_cast<double>(b.rollout.gain[i] + b.rollout.linear[i]) / b.plan.samples;
       for (size_t k = 0; k < 2; ++k) {
         const auto a = static_cast<double>(b.rollout.cost_advantage[2 * i + k]);
