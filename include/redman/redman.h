@@ -483,8 +483,7 @@ RDM_API size_t rdm_policy_scratch(const rdm_policy *p, int32_t rows); /* bytes f
  * hidden state: any number of threads, each with its own scratch. */
 RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t rows, const float *noise,
                                   float *action, void *scratch, size_t scratch_bytes);
-/* "actor.0.weight" [out][in], "actor.log_std", "normalizer.shift|scale|clip" if it has one, "example.obs|action".
- * Without log_std the last layer gives means, then log deviations, which "actor.log_std_bounds" hold. */
+/* "actor.0.weight" [out][in], "actor.log_std" or "actor.log_std_bounds", "normalizer.shift|scale|clip", "example.obs|action". */
 RDM_API rdm_result rdm_policy_tensor(const rdm_policy *p, int32_t i, rdm_tensor *out); /* RANGE ends the list */
 RDM_API rdm_result rdm_policy_tensor_read(const rdm_policy *p, const char *name, float *out, size_t count); /* NOT_FOUND, RANGE */
 /* OK, or VERSION_MISMATCH with a text that says which field of the spec differs. */
