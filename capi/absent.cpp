@@ -35,6 +35,7 @@ size_t rdm_sample_scratch(int32_t) {
   return 0;
 }
 RDM_SIM_ABSENT(rdm_pool_sensors, const rdm_pool*, rdm_sensors*)
+RDM_SIM_ABSENT(rdm_pool_hull, const rdm_pool*, int32_t, float*, int32_t, int32_t*)
 RDM_SIM_ABSENT(rdm_pool_sensor_camera, const rdm_pool*, int32_t, int32_t, rdm_camera*)
 RDM_SIM_ABSENT(rdm_sample_furthest, const float*, int32_t, int32_t, int32_t, int32_t*, void*, size_t)
 RDM_SIM_ABSENT(rdm_map_config_init, rdm_map_config*, size_t)

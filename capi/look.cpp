@@ -1,5 +1,6 @@
 // Looking into a world: shapes, poses, contacts, pictures.
 #include "capi/handles.hpp"
+#include "redman/redman_sense.h"
 
 #if RDM_WITH_SIM
 #include "sense/scene_shapes.hpp"
@@ -43,6 +44,21 @@ rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {
     shape.color[3] = 255;
     shape.fixed = s.carrier == Carrier::kStatic;
     *out = shape;
+  });
+}
+
+rdm_result rdm_pool_hull(const rdm_pool* p, int32_t i, float* points, int32_t capacity, int32_t* count) {
+  return call(nullptr, [&] {
+    need(p, "pool");
+    need(count, "count");
+    const Scene& scene = p->pool->task().scene();
+    need_index(i, static_cast<int64_t>(scene.shapes.size()), "i");
+    const Hull* hull = scene.hull_of(scene.shapes[static_cast<size_t>(i)]);
+    if (!hull) fail(Code::kArgument, "i: shape %d is no hull", i);
+    if (capacity < 0) fail(Code::kRange, "capacity: %d is negative", capacity);
+    if (capacity > 0) need(points, "points");
+    *count = hull->num_points;
+    for (int32_t k = 0; k < std::min(capacity, *count); ++k) to_floats(hull->points[k], points + 3 * k);
   });
 }
 

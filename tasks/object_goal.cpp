@@ -11,6 +11,7 @@ namespace rdm {
 namespace {
 
 constexpr int kMaxDraws = 100;
+constexpr const char* kOctahedron = "0.035,0,0;-0.035,0,0;0,0.035,0;0,-0.035,0;0,0,0.035;0,0,-0.035";
 constexpr double kRaise = 0.005;  // m a time, when no draw was clear
 constexpr int kMaxRaises = 100;
 
@@ -35,6 +36,9 @@ Quat draw_start(Turn turn, Stream& stream) {
 
 void add_object_options(const ObjectPlace& place, OptionTable& table) {
   table.add(text_option("object", place.object, throw_object_choices(), "what is handled"));
+  table.add(text_option("hull", kOctahedron, nullptr,
+                        "points of object=hull, m, at most 32: x,y,z;x,y,z;... (redman hull makes them)",
+                        kHullTextSize - 1));
   table.add(number_option("object_mass", place.mass, 0, 10, "mass of the object, kg; 0: its own"));
   constexpr const char* kAxes[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i)
@@ -62,7 +66,7 @@ ObjectGoal object_goal_from(const Options& o) {
 BodyDef object_body_from(const Options& o) {
   const Pose start{object_goal_from(o).start, {}};
   return make_throw_body(throw_object_named(o.text("object")), o.number("object_mass"),
-                         o.number("object_damping"), kObject, start);
+                         o.number("object_damping"), kObject, start, o.text("hull"));
 }
 
 Quat draw_rotation(Stream& stream) {

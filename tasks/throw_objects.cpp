@@ -1,9 +1,11 @@
 #include "tasks/throw_objects.hpp"
 
+#include <charconv>
 #include <cstring>
 
 #include "base/error.hpp"
 #include "base/option.hpp"
+#include "physics/inertia.hpp"
 
 namespace rdm {
 namespace {
@@ -60,6 +62,14 @@ constexpr ThrowObject kObjects[] = {
      0.094,
      {},
      {60, 120, 200}},
+    {"ellipsoid_egg",
+     "ellipsoid 0.03 x 0.03 x 0.04 (half axes)",
+     ShapeKind::kEllipsoid,
+     {0.03, 0.03, 0.04},
+     0.0754,
+     {},
+     {240, 225, 190}},
+    {"hull", "convex hull of the points of option hull", ShapeKind::kHull, {}, 0, {}, {150, 140, 200}},
 };
 constexpr int32_t kCount = sizeof kObjects / sizeof *kObjects;
 
@@ -122,23 +132,54 @@ Vec3 solid_moment(ShapeKind kind, const Vec3& size, double mass) {
                           m_ends * (0.4 * r * r + half * half + 0.75 * half * r);
       return {side, side, (0.5 * m_tube + 0.4 * m_ends) * r * r};
     }
+    case ShapeKind::kEllipsoid: {
+      const Inertia i = ellipsoid_inertia(mass, size);
+      return {i.moment[0], i.moment[1], i.moment[2]};
+    }
+    case ShapeKind::kHull:
     case ShapeKind::kPlane:
       break;
   }
-  fail(Code::kInternal, "a plane has no moment");
+  fail(Code::kInternal, "no moment by sizes alone");
+}
+
+Vector<Vec3> hull_points_from(const char* text) {
+  Vector<Vec3> points;
+  const char *at = text, *end = text + std::strlen(text);
+  while (at < end) {
+    Vec3 p;
+    for (int k = 0; k < 3; ++k) {
+      while (*at == ' ' || *at == '+') ++at;
+      const auto [stop, error] = std::from_chars(at, end, p[k]);
+      if (error != std::errc() || (k < 2 ? *stop != ',' : *stop != ';' && *stop != '\0'))
+        fail(Code::kArgument, "hull: point %d is not x,y,z with ';' between points",
+             static_cast<int>(points.size()));
+      at = stop < end ? stop + 1 : end;
+    }
+    points.push_back(p);
+  }
+  return points;
 }
 
 BodyDef make_throw_body(const ThrowObject& object, double mass, double rolling_damping, int32_t material,
-                        const Pose& X_WB) {
+                        const Pose& X_WB, const char* hull_text) {
   BodyDef body;
   body.name = "object";
   body.X_WB = X_WB;
   body.angular_damping = rolling_damping;
-  body.inertia.mass = mass > 0 ? mass : object.mass;
-  Vec3 moment = object.moment;
-  if (dot(moment, moment) == 0) moment = solid_moment(object.kind, object.size, object.mass);
-  for (int i = 0; i < 3; ++i) body.inertia.moment[i] = moment[i] * body.inertia.mass / object.mass;
   ShapeDef shape;
+  body.inertia.mass = mass > 0 ? mass : object.mass;
+  if (object.kind == ShapeKind::kHull) {
+    shape.points = hull_points_from(hull_text);
+    const Hull hull = make_hull(shape.points.data(), static_cast<int32_t>(shape.points.size()), "hull");
+    body.inertia = hull_inertia(mass > 0 ? mass : kHullDensity * hull.volume, hull);
+    body.inertia.com = {};
+    for (Vec3& p : shape.points) p -= hull.com;
+  } else {
+    Vec3 moment = object.moment;
+    if (dot(moment, moment) == 0) moment = solid_moment(object.kind, object.size, object.mass);
+    for (int i = 0; i < 3; ++i) body.inertia.moment[i] = moment[i] * body.inertia.mass / object.mass;
+  }
   shape.name = "object";
   shape.kind = object.kind;
   shape.size = object.size;

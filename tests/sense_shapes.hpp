@@ -6,12 +6,16 @@
 #include <vector>
 
 #include "base/arena.hpp"
+#include "hulls.hpp"
 #include "sense/raycast.hpp"
 
 namespace rdm {
 
-inline constexpr ShapeKind kAllKinds[] = {ShapeKind::kSphere, ShapeKind::kCapsule, ShapeKind::kBox,
-                                          ShapeKind::kCylinder, ShapeKind::kPlane};
+inline constexpr ShapeKind kAllKinds[] = {ShapeKind::kSphere,   ShapeKind::kCapsule, ShapeKind::kBox,
+                                          ShapeKind::kCylinder, ShapeKind::kPlane,   ShapeKind::kEllipsoid,
+                                          ShapeKind::kHull};
+
+inline constexpr double kNarrow = 0.6;  // of hulls: their heads
 
 // Signed distance (a lower bound of it inside) from p, in the shape's frame: the reference that the closed
 // forms are held against, written without any of them.
@@ -29,6 +33,18 @@ inline double signed_distance(ShapeKind kind, const Vec3& size, const Vec3& p) {
     case ShapeKind::kCylinder: {
       const double a = std::hypot(p.x, p.y) - size.x, b = std::abs(p.z) - size.y;
       return std::hypot(std::max(a, 0.0), std::max(b, 0.0)) + std::min(0.0, std::max(a, b));
+    }
+    case ShapeKind::kEllipsoid: {
+      // a lower bound outside: the surface is nowhere flatter than its smallest half axis says
+      const double k = norm({p.x / size.x, p.y / size.y, p.z / size.z});
+      return (k - 1) * std::min({size.x, size.y, size.z});
+    }
+    case ShapeKind::kHull: {
+      double out = -HUGE_VAL;  // likewise: to the farthest plane
+      const Hull& hull = kept_hull(size, kNarrow);
+      for (int32_t i = 0; i < hull.num_faces; ++i)
+        out = std::max(out, dot(hull.faces[i].n, p) - hull.faces[i].offset);
+      return out;
     }
     case ShapeKind::kPlane:
       return p.z;
@@ -68,6 +84,7 @@ inline RenderShape make_shape(ShapeKind kind, Vec3 size, Pose X_WS, int32_t id =
   s.size = size;
   s.X_WS = X_WS;
   s.id = id;
+  if (kind == ShapeKind::kHull) s.hull = &kept_hull(size, kNarrow);
   return s;
 }
 
@@ -75,13 +92,15 @@ inline Camera look(Vec3 eye, Vec3 target, double fov_y = 0.8) {
   return {"test", eye, target, fov_y};
 }
 
+inline constexpr ShapeKind kFinite[] = {ShapeKind::kSphere,   ShapeKind::kCapsule,   ShapeKind::kBox,
+                                        ShapeKind::kCylinder, ShapeKind::kEllipsoid, ShapeKind::kHull};
 // `count` small shapes of all finite kinds about the origin, and a floor below.
 inline std::vector<RenderShape> crowd(uint64_t seed, int count) {
   Draw draw(seed);
   std::vector<RenderShape> shapes{make_shape(ShapeKind::kPlane, {}, {{0, 0, -0.4}, {}}, 7)};
   for (int i = 0; i < count; ++i) {
     const Vec3 size{draw.uniform(0.01, 0.06), draw.uniform(0.01, 0.12), draw.uniform(0.01, 0.06)};
-    shapes.push_back(make_shape(kAllKinds[i % 4], size, {draw.box(0.4), draw.turn()}, 100 + i));
+    shapes.push_back(make_shape(kFinite[i % 6], size, {draw.box(0.4), draw.turn()}, 100 + i));
     for (uint8_t& c : shapes.back().color) c = static_cast<uint8_t>(draw.uniform(20, 240));
   }
   return shapes;

@@ -53,7 +53,8 @@ class Rig final : public Collider::Poses {
     arena_ = Arena(HostHooks{}, measure.used());
     collider_.carve(scene_, arena_);
     collider_.make(scene_);
-    for (const SceneShape& s : scene_.shapes) geoms_.push_back(make_geom(s.def, s.def.X_LS));
+    for (const SceneShape& s : scene_.shapes)
+      geoms_.push_back(make_geom(s.def, scene_.hull_of(s), s.def.X_LS));
     poses_.resize(geoms_.size());
     contacts_.resize(static_cast<size_t>(scene_.def.solver.contacts_max));
     pairs_.resize(contacts_.size());

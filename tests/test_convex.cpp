@@ -3,13 +3,14 @@
 #include <cmath>
 
 #include "base/rng.hpp"
+#include "hulls.hpp"
 #include "physics/convex.hpp"
 
 namespace rdm {
 namespace {
 
 Convex solid(ShapeKind kind, const Vec3& size, const Pose& X = {}) {
-  return {kind, size, X.p, to_matrix(X.q)};
+  return {kind, size, X.p, to_matrix(X.q), kind == ShapeKind::kHull ? &kept_hull(size) : nullptr};
 }
 
 Vec3 direction(Stream& stream) {
@@ -29,13 +30,15 @@ double reach(ShapeKind kind, const Vec3& s, const Vec3& d) {
       return s.x + s.y * std::fabs(d.z);
     case ShapeKind::kCylinder:
       return s.x * std::hypot(d.x, d.y) + s.y * std::fabs(d.z);
+    case ShapeKind::kEllipsoid:
+      return norm({s.x * d.x, s.y * d.y, s.z * d.z});
     default:
       return s.x * std::fabs(d.x) + s.y * std::fabs(d.y) + s.z * std::fabs(d.z);
   }
 }
 
-constexpr ShapeKind kKinds[] = {ShapeKind::kSphere, ShapeKind::kCapsule, ShapeKind::kBox,
-                                ShapeKind::kCylinder};
+constexpr ShapeKind kKinds[] = {ShapeKind::kSphere,   ShapeKind::kCapsule,   ShapeKind::kBox,
+                                ShapeKind::kCylinder, ShapeKind::kEllipsoid, ShapeKind::kHull};
 constexpr Vec3 kSize = {0.3, 0.2, 0.1};
 
 TEST(Convex, ReachesAsItsFormulaSays) {
@@ -95,7 +98,8 @@ TEST(Convex, OverlapOfKnownPairs) {
   };
   for (const Row& row :
        {Row{ShapeKind::kSphere, {0.1, 0, 0}, 0.1}, Row{ShapeKind::kCapsule, {0.1, 0.2, 0}, 0.3},
-        Row{ShapeKind::kCylinder, {0.1, 0.2, 0}, 0.2}, Row{ShapeKind::kBox, {0.1, 0.1, 0.2}, 0.2}}) {
+        Row{ShapeKind::kCylinder, {0.1, 0.2, 0}, 0.2}, Row{ShapeKind::kBox, {0.1, 0.1, 0.2}, 0.2},
+        Row{ShapeKind::kEllipsoid, {0.1, 0.05, 0.2}, 0.2}, Row{ShapeKind::kHull, {0.1, 0.1, 0.2}, 0.2}}) {
     ASSERT_TRUE(find_overlap(solid(row.kind, row.size, {{0, 0, row.height - 1e-3}, {}}), box, &o));
     EXPECT_NEAR(o.depth, 1e-3, 1e-6);
     EXPECT_LT(norm(o.n - Vec3{0, 0, 1}), 2e-3);
@@ -110,7 +114,7 @@ TEST(Convex, TheDepthTakesThemApart) {
   Stream stream(3, 0, Purpose::kTest);
   int found = 0;
   for (int i = 0; i < 4000; ++i) {
-    const ShapeKind ka = kKinds[stream.next() % 4], kb = kKinds[stream.next() % 4];
+    const ShapeKind ka = kKinds[stream.next() % 6], kb = kKinds[stream.next() % 6];
     const Convex b = solid(kb, {0.05, 0.06, 0.04}, {{}, axis_angle(direction(stream), 2)});
     Convex a = solid(ka, {0.04, 0.05, 0.06}, {0.09 * direction(stream), axis_angle(direction(stream), 1)});
     Overlap o, rest;
@@ -124,6 +128,20 @@ TEST(Convex, TheDepthTakesThemApart) {
     EXPECT_TRUE(find_overlap(moved, b, &rest) || o.depth < 1e-5);
   }
   EXPECT_GT(found, 100);
+}
+
+// On a sphere the normal is along the line of centres, whatever shape the ellipsoid has there.
+TEST(Convex, AnEllipsoidsNormalIsItsSurfaces) {
+  Stream stream(4, 0, Purpose::kTest);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 half = {0.03, 0.02, 0.04}, d = direction(stream);
+    const Convex egg = solid(ShapeKind::kEllipsoid, half, {{}, axis_angle(direction(stream), 2)});
+    const Vec3 on = farthest(egg, d);
+    Overlap o;
+    ASSERT_TRUE(find_overlap(solid(ShapeKind::kSphere, {0.01, 0, 0}, {on + (0.01 - 2e-4) * d, {}}), egg, &o));
+    EXPECT_LT(norm(o.n - d), 5e-3);
+    EXPECT_NEAR(o.depth, 2e-4, 2e-6);
+  }
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace rdm::test {
 namespace {
 
 struct Case {
-  std::string task, engine;
+  std::string task, engine, object = "";  // "": the task's own
 };
 
 // Tasks that have a choice of engines.
@@ -25,6 +25,10 @@ std::vector<Case> all_cases() {
       continue;
     for (const char* engine : {"ode", "articulated"}) out.push_back({task_at(i).name, engine});
   }
+  // objects of forms that no task begins with
+  for (const char* engine : {"ode", "articulated"})
+    for (const char* object : {"ellipsoid_egg", "hull"})
+      out.push_back({"hand_over_safe_finger", engine, object});
   return out;
 }
 
@@ -32,6 +36,7 @@ class EveryTask : public testing::TestWithParam<Case> {
  protected:
   std::vector<OptionInput> options(std::vector<OptionInput> more = {}) const {
     more.push_back({"engine", GetParam().engine.c_str(), 0});
+    if (!GetParam().object.empty()) more.push_back({"object", GetParam().object.c_str(), 0});
     return more;
   }
   const char* task() const { return GetParam().task.c_str(); }

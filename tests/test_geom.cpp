@@ -22,7 +22,7 @@ class GeomTest : public testing::Test {
     for (const Geom& geom : made_) dGeomDestroy(geom.id);
   }
   const Geom& make(ShapeKind kind, const Vec3& size, const Pose& X) {
-    made_.push_back(make_geom(shape_of(kind, size), X));
+    made_.push_back(make_geom(shape_of(kind, size), nullptr, X));
     return made_.back();
   }
 

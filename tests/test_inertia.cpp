@@ -45,6 +45,20 @@ TEST(Inertia, SolidsAgreeWithSums) {
               0.02);
 }
 
+TEST(Inertia, OfAnEllipsoidIsItsClosedForm) {
+  const Inertia egg = ellipsoid_inertia(0.0754, {0.03, 0.03, 0.04});
+  EXPECT_NEAR(egg.moment[0], 3.77e-5, 1e-9);  // what the task's egg has
+  EXPECT_NEAR(egg.moment[2], 2.71e-5, 1e-7);
+  const Inertia ball = ellipsoid_inertia(2, {0.3, 0.3, 0.3}), same = sphere_inertia(2, 0.3);
+  for (int i = 0; i < 6; ++i) EXPECT_DOUBLE_EQ(ball.moment[i], same.moment[i]);
+  expect_near(ellipsoid_inertia(2, {0.3, 0.2, 0.1}),
+              summed(2, 0.3,
+                     [](Vec3 p) {
+                       return norm({p.x / 0.3, p.y / 0.2, p.z / 0.1}) < 1;
+                     }),
+              0.02);
+}
+
 TEST(Inertia, TwoBallsAsOne) {
   Inertia a = sphere_inertia(1, 0.1), b = sphere_inertia(3, 0.1);
   a.com = {1, 0, 0};

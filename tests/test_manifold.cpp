@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/rng.hpp"
+#include "hulls.hpp"
 #include "physics/manifold.hpp"
 
 namespace rdm {
@@ -161,6 +162,61 @@ TEST(Manifold, TheDeepestPointTellsTheWayOut) {
     }
   }
   EXPECT_GT(found, 200);
+}
+
+void expect_same_points(const Points& a, const Points& b) {
+  ASSERT_EQ(a.count, b.count);
+  for (int i = 0; i < a.count; ++i) {
+    double nearest = HUGE_VAL;
+    for (int k = 0; k < b.count; ++k)
+      nearest = std::min(nearest, norm(a.at[i].p - b.at[k].p) + norm(a.at[i].n - b.at[k].n) +
+                                      std::fabs(a.at[i].depth - b.at[k].depth));
+    EXPECT_LT(nearest, 1e-9);
+  }
+}
+
+TEST(Manifold, AHullOfABoxsCornersTouchesAsTheBox) {
+  const Vec3 half = {0.05, 0.04, 0.03};
+  const Hull& hull = kept_hull(half);
+  const Convex table = solid(ShapeKind::kBox, {0.5, 0.5, 0.1}, {0.03, 0, -0.1});
+  for (const double yaw : {0.0, 0.4, 1.2})
+    for (const double tilt : {0.0, 0.005, 0.05}) {
+      const Quat q = axis_angle({0, 0, 1}, yaw) * axis_angle({1, 0, 0}, tilt);
+      const Convex box = solid(ShapeKind::kBox, half, {0.02, 0, half.z - 1e-3}, q);
+      Convex same = box;
+      same.kind = ShapeKind::kHull;
+      same.hull = &hull;
+      expect_same_points(Points(same, table), Points(box, table));
+      if (tilt < 0.01) expect_same_points(Points(same), Points(box));
+    }
+}
+
+TEST(Manifold, AHullStandsOnAllItsCornersBelowAPlane) {
+  // on its edge along x: the two ends of it
+  const Hull& hull = kept_hull({0.05, 0.03, 0.03});
+  Convex c = solid(ShapeKind::kHull, half_box(hull), {0, 0, 0.03 * std::sqrt(2.0) - 1e-3},
+                   axis_angle({1, 0, 0}, kPi / 4));
+  c.hull = &hull;
+  const Points edge(c);
+  ASSERT_EQ(edge.count, 2);
+  EXPECT_NEAR(std::fabs(edge.at[0].p.x - edge.at[1].p.x), 0.1, 1e-12);
+  EXPECT_NEAR(edge.at[0].depth, 1e-3, 1e-12);
+}
+
+TEST(Manifold, AnEllipsoidTouchesAPlaneBelowItsLowestPoint) {
+  const Vec3 half = {0.02, 0.03, 0.04};
+  for (const double angle : {0.0, 0.3, 0.9, 1.5}) {
+    const Quat q = axis_angle({1, 0, 0}, angle);
+    // by the support function of the ellipse in the plane of the turn
+    const double low = std::hypot(half.z * std::cos(angle), half.y * std::sin(angle));
+    const double aside = std::sin(angle) * std::cos(angle) * (half.z * half.z - half.y * half.y) /
+                         low;  // of the foot, along y
+    const Points m(solid(ShapeKind::kEllipsoid, half, {0, 0, low - 1e-3}, q));
+    ASSERT_EQ(m.count, 1);
+    EXPECT_NEAR(m.at[0].depth, 1e-3, 1e-12);
+    EXPECT_NEAR(m.at[0].p.x, 0, 1e-12);
+    EXPECT_NEAR(std::fabs(m.at[0].p.y), std::fabs(aside), 1e-12);
+  }
 }
 
 }  // namespace

@@ -17,10 +17,11 @@ TEST(ThrowObjects, EggBallAndThePublishedSizes) {
   EXPECT_EQ(throw_object_named("cracker_box").size.y, 0.105);
   EXPECT_EQ(throw_object_named("soup_can").size.y, 0.0505);
   EXPECT_EQ(throw_object_named("cube").mass, 0.071);
-  EXPECT_EQ(throw_object_count(), 13);
+  EXPECT_EQ(throw_object_named("ellipsoid_egg").size.z, 0.04);
+  EXPECT_EQ(throw_object_count(), 15);
   EXPECT_EQ(guard([] { throw_object_named("bal"); }), Code::kNotFound);
   EXPECT_NE(std::string(last_error()).find("nearest is ball"), std::string::npos);
-  EXPECT_EQ(guard([] { throw_object_at(13); }), Code::kRange);
+  EXPECT_EQ(guard([] { throw_object_at(15); }), Code::kRange);
 }
 
 TEST(ThrowObjects, ChoicesNameThemAll) {
@@ -42,6 +43,9 @@ bool inside(ShapeKind kind, const Vec3& s, const Vec3& p) {
       const double z = std::max(0.0, std::abs(p.z) - s.y);
       return p.x * p.x + p.y * p.y + z * z <= s.x * s.x;
     }
+    case ShapeKind::kEllipsoid:
+      return norm({p.x / s.x, p.y / s.y, p.z / s.z}) <= 1;
+    case ShapeKind::kHull:
     case ShapeKind::kPlane:
       break;
   }
@@ -56,7 +60,8 @@ TEST(ThrowObjects, MomentsAreThoseOfTheSolids) {
   } rows[] = {{ShapeKind::kSphere, {0.03, 0, 0}, {0.03, 0.03, 0.03}},
               {ShapeKind::kBox, {0.02, 0.05, 0.03}, {0.02, 0.05, 0.03}},
               {ShapeKind::kCylinder, {0.03, 0.05, 0}, {0.03, 0.03, 0.05}},
-              {ShapeKind::kCapsule, {0.03, 0.02, 0}, {0.03, 0.03, 0.05}}};
+              {ShapeKind::kCapsule, {0.03, 0.02, 0}, {0.03, 0.03, 0.05}},
+              {ShapeKind::kEllipsoid, {0.03, 0.04, 0.05}, {0.03, 0.04, 0.05}}};
   for (const auto& row : rows) {
     Stream stream(1, 0, Purpose::kTest);
     Vec3 sum;
@@ -89,6 +94,29 @@ TEST(ThrowObjects, BodyTakesMassAndKeepsShape) {
   EXPECT_DOUBLE_EQ(heavy.inertia.moment[0], 2 * 3.77e-5);
   const BodyDef ball = make_throw_body(throw_object_named("ball"), 0, 0, 0, {});
   EXPECT_DOUBLE_EQ(ball.inertia.moment[1], 0.4 * 0.0754 * 0.0333 * 0.0333);
+}
+
+// A box by its corners, somewhere, is the box at the origin.
+TEST(ThrowObjects, AHullsBodyIsInItsCentreOfMass) {
+  const char* text = "0,0,0; 0.04,0,0; 0,0.06,0; 0.04,0.06,0;0,0,0.1;+0.04,0,1e-1;0,0.06,.1;0.04,0.06,0.1;";
+  const BodyDef box = make_throw_body(throw_object_named("hull"), 0, 0.1, 2, {{1, 2, 3}, {}}, text);
+  EXPECT_NEAR(box.inertia.mass, kHullDensity * 0.04 * 0.06 * 0.1, 1e-12);
+  const Vec3 moment = solid_moment(ShapeKind::kBox, {0.02, 0.03, 0.05}, box.inertia.mass);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(box.inertia.moment[i], moment[i], 1e-12);
+    EXPECT_NEAR(box.inertia.moment[3 + i], 0, 1e-12);
+  }
+  ASSERT_EQ(box.shapes[0].points.size(), 8u);
+  EXPECT_LT(norm(box.shapes[0].points[7] - Vec3{0.02, 0.03, 0.05}), 1e-12);
+  EXPECT_EQ(box.inertia.com.x, 0);
+  EXPECT_DOUBLE_EQ(make_throw_body(throw_object_named("hull"), 0.2, 0, 2, {}, text).inertia.mass, 0.2);
+}
+
+TEST(ThrowObjects, RefusesWhatIsNoListOfPoints) {
+  for (const char* text : {"1", "1,2", "1,2,3,4", "1 2 3", "a,b,c", "0,0,0;;1,0,0"}) {
+    EXPECT_EQ(guard([&] { hull_points_from(text); }), Code::kArgument) << text;
+  }
+  EXPECT_EQ(guard([] { make_throw_body(throw_object_named("hull"), 0, 0, 0, {}, ""); }), Code::kRange);
 }
 
 }  // namespace

@@ -205,7 +205,7 @@ RDM_API rdm_result rdm_robot_joint(int32_t robot, int32_t i, rdm_joint *out);  /
 typedef struct rdm_object { /* frozen layout: an object of the throw tasks, by option object=... */
   const char *name;         /* "egg"                                                          */
   const char *shape;        /* "capsule 0.03 0.01" : kind and sizes in m                      */
-  double mass;              /* kg                                                             */
+  double mass;              /* kg; 0: 500 kg/m3 times its volume                              */
 } rdm_object;
 RDM_API int32_t rdm_object_count(void); /* number of objects */
 RDM_API rdm_result rdm_object_at(int32_t index, rdm_object *out);              /* RANGE past the end */
@@ -307,11 +307,11 @@ RDM_API rdm_result rdm_pool_get_state(const rdm_pool *p, int32_t env, void *byte
 RDM_API rdm_result rdm_pool_set_state(rdm_pool *p, int32_t env, const void *bytes, size_t size);
 RDM_API rdm_result rdm_pool_hash(const rdm_pool *p, int32_t env, uint64_t *hash); /* of the state; -1: all */
 
-enum { RDM_SPHERE = 0, RDM_CAPSULE = 1, RDM_BOX = 2, RDM_CYLINDER = 3, RDM_PLANE = 4 };
+enum { RDM_SPHERE, RDM_CAPSULE, RDM_BOX, RDM_CYLINDER, RDM_PLANE, RDM_ELLIPSOID, RDM_HULL };
 typedef struct rdm_shape {   /* frozen layout: what the scene is made of, the same for all worlds */
   const char *name;          /* "right.ff_distal"                                                         */
-  float size[3];             /* m: radius | radius, half length along z | half sizes                      */
-  int32_t kind;              /* RDM_SPHERE ... RDM_PLANE (the half space below z = 0 of its frame)        */
+  float size[3];             /* m: radius | radius, half length along z | half sizes (hull: of its box)   */
+  int32_t kind;              /* RDM_SPHERE ... RDM_HULL; plane: the half space below z = 0 of its frame   */
   uint8_t color[4];          /* red, green, blue, 255                                                     */
   int32_t fixed;             /* flag: never moves                                                         */
 } rdm_shape;

@@ -41,6 +41,10 @@ RDM_API rdm_result rdm_pool_sensors(const rdm_pool *p, rdm_sensors *io); /* fill
 /* The cameras that rows stand for: i-th of the pictures (cloud 0) or of points and voxels (cloud 1). RANGE ends. */
 RDM_API rdm_result rdm_pool_sensor_camera(const rdm_pool *p, int32_t cloud, int32_t i, rdm_camera *out);
 
+/* Corners [capacity][3] of shape i, an RDM_HULL, in its own frame, m. Writes up to capacity of them; *count is how
+ * many there are. */
+RDM_API rdm_result rdm_pool_hull(const rdm_pool *p, int32_t i, float *points, int32_t capacity, int32_t *count);
+
 /* `wanted` of points [count][3] that lie furthest from each other: their numbers, in order of choice, to chosen
  * [wanted]. `start` is the first. Exact. scratch: rdm_sample_scratch(count) bytes, 64-byte aligned; no heap. */
 RDM_API rdm_result rdm_sample_furthest(const float *points, int32_t count, int32_t wanted, int32_t start,

@@ -76,20 +76,29 @@ int32_t Options::find(const char* key) const {
 void Options::add_table(const OptionSpec* specs, int32_t count) {
   for (int32_t i = 0; i < count; ++i) {
     if (find(specs[i].key) >= 0) fail(Code::kInternal, "option %s is declared twice", specs[i].key);
-    Row row{&specs[i], specs[i].number, "", false};
-    if (specs[i].text) std::snprintf(row.text, sizeof row.text, "%s", specs[i].text);
+    Row row{&specs[i], specs[i].number, "", {}, false};
+    if (specs[i].text) write(row, specs[i].text);
     rows_.push_back(row);
   }
+}
+
+void Options::write(Row& row, const char* text) {
+  const size_t size = std::strlen(text) + 1;
+  if (size <= sizeof row.text)
+    row.long_text.clear();
+  else
+    row.long_text.assign(text, text + size);
+  std::snprintf(row.text, sizeof row.text, "%s", text);
 }
 
 void Options::assign(Row& row, const OptionInput& input, const char* owner) const {
   const OptionSpec& s = *row.spec;
   if (s.kind == OptionKind::kText) {
     if (!input.text) fail(Code::kArgument, "%s option %s: a text is needed", owner, s.key);
-    if (std::strlen(input.text) >= kOptionTextSize)
-      fail(Code::kRange, "%s option %s: longer than %d characters", owner, s.key, kOptionTextSize - 1);
+    if (std::strlen(input.text) > static_cast<size_t>(s.longest))
+      fail(Code::kRange, "%s option %s: longer than %d characters", owner, s.key, s.longest);
     if (!s.choices)
-      std::strcpy(row.text, input.text);
+      write(row, input.text);
     else if (!match_choice(s.choices, input.text, row.text))
       fail(Code::kRange, "%s option %s: '%s' is not one of %s", owner, s.key, input.text, s.choices);
     return;
@@ -147,7 +156,8 @@ bool Options::flag(const char* key) const {
   return need(key, OptionKind::kFlag).number != 0;
 }
 const char* Options::text(const char* key) const {
-  return need(key, OptionKind::kText).text;
+  const Row& row = need(key, OptionKind::kText);
+  return row.long_text.empty() ? row.text : row.long_text.data();
 }
 bool Options::given(const char* key) const {
   const int32_t i = find(key);

@@ -13,12 +13,13 @@ enum class OptionKind : int32_t { kNumber = 0, kInteger = 1, kFlag = 2, kText = 
 struct OptionSpec {
   const char* key;
   OptionKind kind;
-  double number;        // default of number, integer and flag
-  double low, high;     // bounds, inclusive; unused for text
-  const char* text;     // default of a text option, else null
-  const char* choices;  // text: allowed words separated by '|', or null for free text
-  const char* help;     // one line with unit
-  bool live;            // may change after creation (rdm_agent_set)
+  double number;         // default of number, integer and flag
+  double low, high;      // bounds, inclusive; unused for text
+  const char* text;      // default of a text option, else null
+  const char* choices;   // text: allowed words separated by '|', or null for free text
+  const char* help;      // one line with unit
+  bool live;             // may change after creation (rdm_agent_set)
+  int32_t longest = 63;  // characters of a text
 };
 
 constexpr OptionSpec number_option(const char* key, double value, double low, double high, const char* help,
@@ -32,11 +33,11 @@ constexpr OptionSpec integer_option(const char* key, double value, double low, d
 constexpr OptionSpec flag_option(const char* key, bool value, const char* help, bool live = false) {
   return {key, OptionKind::kFlag, value ? 1.0 : 0.0, 0, 1, nullptr, nullptr, help, live};
 }
-constexpr OptionSpec text_option(const char* key, const char* value, const char* choices, const char* help) {
-  return {key, OptionKind::kText, 0, 0, 0, value, choices, help, false};
-}
-
 inline constexpr int kOptionTextSize = 64;
+constexpr OptionSpec text_option(const char* key, const char* value, const char* choices, const char* help,
+                                 int32_t longest = kOptionTextSize - 1) {
+  return {key, OptionKind::kText, 0, 0, 0, value, choices, help, false, longest};
+}
 
 // What a host gives: either a number (number, integer, flag) or a text. A text for a numeric option is
 // parsed ("0.5", "true").
@@ -66,7 +67,7 @@ class Options {
 
   int32_t count() const { return static_cast<int32_t>(rows_.size()); }
   const OptionSpec& spec(int32_t i) const { return *rows_[static_cast<size_t>(i)].spec; }
-  // Current value as text ("0.5", "true", "egg"); the buffer has kOptionTextSize bytes.
+  // Current value as text ("0.5", "true", "egg"), cut to the kOptionTextSize bytes of the buffer.
   void print(int32_t i, char* out) const;
   // Changes the default of one key (a task's or an algorithm's own default); bounds are checked.
   void set_default(const char* key, double number);
@@ -77,10 +78,12 @@ class Options {
     const OptionSpec* spec;
     double number;
     char text[kOptionTextSize];
+    Vector<char> long_text;  // in place of `text`, where that is too short
     bool given;
   };
   int32_t find(const char* key) const;
   const Row& need(const char* key, OptionKind kind) const;
+  static void write(Row& row, const char* text);
   void assign(Row& row, const OptionInput& input, const char* owner) const;
   Vector<Row> rows_;
 };

@@ -123,7 +123,7 @@ void Collider::make(const Scene& scene) {
     Pose X_WS = s.def.X_LS;
     if (s.carrier == Carrier::kBase && !moves_[i])
       X_WS = scene.def.articulations[static_cast<size_t>(s.articulation)].X_WB * X_WS;
-    if (s.def.collides) geoms_[i] = make_geom(s.def, X_WS);
+    if (s.def.collides) geoms_[i] = make_geom(s.def, scene.hull_of(s), X_WS);
     Bound& bound = bounds_[i];
     bound.center[3] = static_cast<float>(s.radius);
     for (int k = 0; k < 3; ++k) bound.center[k] = static_cast<float>(X_WS.p[k]);

@@ -11,6 +11,8 @@ namespace {
 constexpr double kLevel = 1e-3;      // sine of the tilt below which a cap has no farthest point of its own
 constexpr double kCapFrom = 0.7;     // cosine between axis and direction from which a cap is shown
 constexpr double kTolerance = 1e-7;  // m
+constexpr double kWidest = 0.2, kNarrowest = 1e-4;  // rad, steps of sharpen
+constexpr int kStepsEach = 8;
 constexpr int kIterations = 200;
 
 void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
@@ -20,8 +22,20 @@ void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
 }
 
 void center(const void* object, ccd_vec3_t* out) {
-  const Vec3& p = static_cast<const Convex*>(object)->p;
+  const Convex& solid = *static_cast<const Convex*>(object);
+  // a hull need not hold the origin of its frame
+  const Vec3 p = solid.hull ? solid.p + solid.R * solid.hull->com : solid.p;
   ccdVec3Set(out, p.x, p.y, p.z);
+}
+
+int32_t farthest_corner(const Hull& hull, const Vec3& d) {
+  int32_t best = 0;
+  double most = dot(d, hull.points[0]);
+  for (int32_t i = 1; i < hull.num_points; ++i) {
+    const double reach = dot(d, hull.points[i]);
+    if (reach > most) most = reach, best = i;
+  }
+  return best;
 }
 
 // Farthest in the solid's own frame.
@@ -41,6 +55,14 @@ Vec3 farthest_local(const Convex& solid, const Vec3& d) {
       const double scale = out > 0 ? s.x / out : 0;
       return {scale * d.x, scale * d.y, std::copysign(s.y, d.z)};
     }
+    case ShapeKind::kEllipsoid: {
+      const Vec3 q{s.x * d.x, s.y * d.y, s.z * d.z};
+      const double length = norm(q);
+      if (!(length > 0)) return {0, 0, s.z};
+      return (1 / length) * Vec3{s.x * q.x, s.y * q.y, s.z * q.z};
+    }
+    case ShapeKind::kHull:
+      return solid.hull->points[farthest_corner(*solid.hull, d)];
     case ShapeKind::kPlane:
       break;
   }
@@ -87,13 +109,59 @@ Feature part_of_cylinder(const Convex& c, const Vec3& n) {
   const Vec3 cap = c.p + half * f.n;
   const Vec3 first = sine > kLevel ? (1 / sine) * out : c.R.col(0), second = cross(axis, first);
   constexpr double kDiagonal = 0.70710678118654752;
-  constexpr double kRim[Feature::kMost][2] = {
+  constexpr int kRimPoints = 8;
+  constexpr double kRim[kRimPoints][2] = {
       {1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},
       {-1, 0}, {-kDiagonal, -kDiagonal}, {0, -1}, {kDiagonal, -kDiagonal}};
-  f.count = Feature::kMost;
+  f.count = kRimPoints;
   for (int i = 0; i < f.count; ++i)
     f.points[i] = cap + (radius * kRim[i][0]) * first + (radius * kRim[i][1]) * second;
   return f;
+}
+
+Feature side_of_hull(const Convex& solid, const Vec3& n) {
+  const Hull& hull = *solid.hull;
+  const Vec3 d = transpose(solid.R) * n;
+  const int32_t tip = farthest_corner(hull, d);
+  const Hull::Face* best = nullptr;
+  for (int32_t i = 0; i < hull.num_faces; ++i) {
+    const Hull::Face& face = hull.faces[i];
+    const uint8_t *first = hull.corners + face.first, *end = first + face.count;
+    if ((!best || dot(d, face.n) > dot(d, best->n)) && std::find(first, end, tip) != end) best = &face;
+  }
+  Feature f;
+  f.n = solid.R * best->n;
+  f.count = std::min(best->count, Feature::kMost);
+  for (int i = 0; i < f.count; ++i)
+    f.points[i] = solid.p + solid.R * hull.corner(*best, i * best->count / f.count);
+  return f;
+}
+
+// MPR's normal leans towards the line of centres where surfaces are round. The least depth over all normals
+// is near by, and found by trying steps to four sides, along an axis of the solid that may have edges. False
+// when a normal shows them apart.
+bool sharpen(const Convex& a, const Convex& b, Overlap* out) {
+  const bool round_a = a.kind == ShapeKind::kEllipsoid;
+  const Mat3& R = round_a ? b.R : a.R;
+  const auto depth = [&](const Vec3& n) { return dot(n, farthest(b, n) - farthest(a, -n)); };
+  Vec3 n = normalized(out->n);
+  double least = depth(n);
+  for (double step = kWidest; step > kNarrowest; step *= 0.5)
+    for (int k = 0; k < kStepsEach; ++k) {
+      const Vec3 u = R.col(std::fabs(dot(n, R.col(2))) < 0.9 ? 2 : 0), side = normalized(cross(n, u)),
+                 along = cross(side, n), from = n;
+      for (const Vec3& way : {along, -along, side, -side}) {
+        const Vec3 trial = normalized(from + step * way);
+        const double d = depth(trial);
+        if (d < least) least = d, n = trial;
+      }
+      if (dot(n - from, n - from) == 0) break;
+    }
+  if (!(least > 0)) return false;
+  out->n = n;
+  out->depth = least;
+  out->p = round_a ? farthest(a, -n) + (0.5 * least) * n : farthest(b, n) - (0.5 * least) * n;
+  return true;
 }
 
 }  // namespace
@@ -109,6 +177,8 @@ Feature shown(const Convex& solid, const Vec3& n) {
       return side_of_box(solid, n);
     case ShapeKind::kCylinder:
       return part_of_cylinder(solid, n);
+    case ShapeKind::kHull:
+      return side_of_hull(solid, n);
     case ShapeKind::kCapsule: {
       const Vec3 half = solid.size.y * solid.R.col(2), out = solid.p + solid.size.x * n;
       f.count = 2;
@@ -117,6 +187,7 @@ Feature shown(const Convex& solid, const Vec3& n) {
       return f;
     }
     case ShapeKind::kSphere:
+    case ShapeKind::kEllipsoid:
     case ShapeKind::kPlane:
       break;
   }
@@ -138,7 +209,9 @@ bool find_overlap(const Convex& a, const Convex& b, Overlap* out) {
   out->n = -Vec3{direction.v[0], direction.v[1], direction.v[2]};
   out->p = {p.v[0], p.v[1], p.v[2]};
   out->depth = depth;
-  return depth > 0 && std::fabs(dot(out->n, out->n) - 1) < 1e-6;
+  if (!(depth > 0 && std::fabs(dot(out->n, out->n) - 1) < 1e-6)) return false;
+  const bool round = a.kind == ShapeKind::kEllipsoid || b.kind == ShapeKind::kEllipsoid;
+  return !round || sharpen(a, b, out);
 }
 
 }  // namespace rdm

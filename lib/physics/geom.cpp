@@ -9,13 +9,16 @@
 namespace rdm {
 namespace {
 
-// ODE lets a cylinder rock on faces, and knows no contact of it with a capsule or another cylinder.
+// ODE lets a cylinder rock on faces, and knows no contact of it with a capsule or another cylinder; it has no
+// ellipsoid, and one point for two hulls.
 bool is_ours(const Geom& geom) {
-  return geom.kind == ShapeKind::kCylinder;
+  return geom.kind == ShapeKind::kCylinder || geom.kind == ShapeKind::kEllipsoid ||
+         geom.kind == ShapeKind::kHull;
 }
 
 Convex convex_of(const Geom& geom) {
-  return {geom.kind, geom.size, from_ode(dGeomGetPosition(geom.id)), mat_from_ode(dGeomGetRotation(geom.id))};
+  return {geom.kind, geom.size, from_ode(dGeomGetPosition(geom.id)), mat_from_ode(dGeomGetRotation(geom.id)),
+          geom.hull};
 }
 
 // Keeps `most` of `count` points, in front: the deepest, then each time the one farthest from all kept.
@@ -43,11 +46,12 @@ int spread_points(dContactGeom* points, int count, int most) {
 
 }  // namespace
 
-Geom make_geom(const ShapeDef& shape, const Pose& X_WS) {
+Geom make_geom(const ShapeDef& shape, const Hull* hull, const Pose& X_WS) {
   const Vec3& s = shape.size;
   Geom geom;
   geom.kind = shape.kind;
   geom.size = s;
+  geom.hull = hull;
   switch (shape.kind) {
     case ShapeKind::kSphere:
       geom.id = dCreateSphere(nullptr, s.x);
@@ -60,6 +64,10 @@ Geom make_geom(const ShapeDef& shape, const Pose& X_WS) {
       break;
     case ShapeKind::kCylinder:
       geom.id = dCreateCylinder(nullptr, s.x, 2 * s.y);
+      break;
+    case ShapeKind::kEllipsoid:
+    case ShapeKind::kHull:
+      geom.id = dCreateSphere(nullptr, norm(s));
       break;
     case ShapeKind::kPlane:
       geom.plane_n = rotate(X_WS.q, {0, 0, 1});

@@ -12,12 +12,14 @@ struct Geom {
   dGeomID id = nullptr;  // null: the shape does not collide
   ShapeKind kind = ShapeKind::kSphere;
   Vec3 size;
+  const Hull* hull = nullptr;
   Vec3 plane_n;        // of a plane: n . x = plane_d on it, world
   double plane_d = 0;  // m
 };
 
-// A geom of its own, in no space, at X_WS. The caller destroys it.
-Geom make_geom(const ShapeDef& shape, const Pose& X_WS);
+// A geom of its own, in no space, at X_WS. The caller destroys it, and keeps the hull of a shape of that
+// kind. ODE knows ellipsoids and hulls as the spheres about them.
+Geom make_geom(const ShapeDef& shape, const Hull* hull, const Pose& X_WS);
 
 // At most `most` points, the deepest among them; normals point from b into a. ODE finds those of spheres,
 // capsules, boxes and planes with each other, all others are manifold.hpp's.

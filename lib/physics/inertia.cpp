@@ -81,4 +81,17 @@ Inertia cylinder_inertia(double mass, double r, double h) {
   return diagonal(mass, across, across, 0.5 * mass * r * r);
 }
 
+Inertia ellipsoid_inertia(double mass, const Vec3& half) {
+  const double x = half.x * half.x, y = half.y * half.y, z = half.z * half.z;
+  return diagonal(mass, mass / 5 * (y + z), mass / 5 * (x + z), mass / 5 * (x + y));
+}
+
+Inertia hull_inertia(double mass, const Hull& hull) {
+  Inertia out;
+  out.mass = mass;
+  out.com = hull.com;
+  for (int i = 0; i < 6; ++i) out.moment[i] = mass * hull.moment[i];
+  return out;
+}
+
 }  // namespace rdm

@@ -21,5 +21,7 @@ Inertia sphere_inertia(double mass, double radius);
 Inertia box_inertia(double mass, const Vec3& half);
 Inertia capsule_inertia(double mass, double radius, double half_length);   // along z
 Inertia cylinder_inertia(double mass, double radius, double half_length);  // along z
+Inertia ellipsoid_inertia(double mass, const Vec3& half);
+Inertia hull_inertia(double mass, const Hull& hull);  // com where it is in the hull's frame
 
 }  // namespace rdm

@@ -137,12 +137,17 @@ int round_sides(const Axis& a, const Axis& b, ManifoldPoint* out) {
 }  // namespace
 
 int manifold_on_plane(const Convex& a, const Vec3& n, double offset, ManifoldPoint* out) {
-  const Feature f = shown(a, -n);
-  ManifoldPoint points[Feature::kMost];
+  ManifoldPoint points[kMaxHullPoints];
   int count = 0;
-  for (int i = 0; i < f.count; ++i) {
-    const double depth = offset - dot(n, f.points[i]);
-    if (depth > 0) points[count++] = {f.points[i], n, depth};
+  const auto add = [&](const Vec3& p) {
+    const double depth = offset - dot(n, p);
+    if (depth > 0) points[count++] = {p, n, depth};
+  };
+  if (a.hull) {
+    for (int32_t i = 0; i < a.hull->num_points; ++i) add(a.p + a.R * a.hull->points[i]);
+  } else {
+    const Feature f = shown(a, -n);
+    for (int i = 0; i < f.count; ++i) add(f.points[i]);
   }
   count = thin_out(points, count);
   std::copy_n(points, count, out);

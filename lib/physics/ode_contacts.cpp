@@ -44,7 +44,7 @@ void OdeContacts::make_geom(const Scene& scene, int32_t index, dBodyID body, con
   const Pose& X_LS = def.def.X_LS;
   const Pose X_WS = X_WC * X_LS;
   Shape& shape = shapes_[index];
-  shape.geom = rdm::make_geom(def.def, X_WS);
+  shape.geom = rdm::make_geom(def.def, scene.hull_of(def), X_WS);
   shape.body = body;
   shape.articulation = def.articulation;
   shape.radius = def.radius;

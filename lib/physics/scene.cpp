@@ -72,8 +72,11 @@ void check_shape(ShapeDef* shape, int32_t num_materials, bool moves) {
       need(s.y, 1e-6, 1e3, name, "half length");
       return;
     case ShapeKind::kBox:
+    case ShapeKind::kEllipsoid:
       for (int i = 0; i < 3; ++i) need(s[i], 1e-6, 1e3, name, "half size");
       return;
+    case ShapeKind::kHull:
+      return;  // make_hull checks its points
     case ShapeKind::kPlane:
       if (moves) fail(Code::kArgument, "%s: a plane cannot move", name);
       return;
@@ -169,6 +172,9 @@ double bounding_radius(const ShapeDef& shape) {
       return norm({s.x, s.y, 0});
     case ShapeKind::kBox:
       return norm(s);
+    case ShapeKind::kEllipsoid:
+      return std::max({s.x, s.y, s.z});
+    case ShapeKind::kHull:
     case ShapeKind::kPlane:
       break;
   }
@@ -176,7 +182,16 @@ double bounding_radius(const ShapeDef& shape) {
 }
 
 void add_shape(Scene* scene, const ShapeDef& def, Carrier carrier, int32_t index, int32_t articulation) {
-  scene->shapes.push_back({def, carrier, index, articulation, bounding_radius(def)});
+  SceneShape shape{def, carrier, index, articulation, bounding_radius(def), -1};
+  if (def.kind == ShapeKind::kHull) {
+    const Hull hull = make_hull(def.points.data(), static_cast<int32_t>(def.points.size()), def.name.text);
+    shape.hull = static_cast<int32_t>(scene->hulls.size());
+    shape.def.size = half_box(hull);
+    shape.radius = 0;
+    for (int32_t i = 0; i < hull.num_points; ++i) shape.radius = std::max(shape.radius, norm(hull.points[i]));
+    scene->hulls.push_back(hull);
+  }
+  scene->shapes.push_back(shape);
 }
 
 void flatten(Scene* scene) {

@@ -8,6 +8,7 @@
 
 #include "base/host.hpp"
 #include "base/vec.hpp"
+#include "physics/hull.hpp"
 
 namespace rdm {
 
@@ -19,10 +20,19 @@ struct Name {
   bool operator==(const char* s) const;
 };
 
-enum class ShapeKind : int32_t { kSphere = 0, kCapsule = 1, kBox = 2, kCylinder = 3, kPlane = 4 };
+enum class ShapeKind : int32_t {
+  kSphere = 0,
+  kCapsule = 1,
+  kBox = 2,
+  kCylinder = 3,
+  kPlane = 4,
+  kEllipsoid = 5,
+  kHull = 6
+};
 
 // size: sphere (radius, 0, 0); capsule and cylinder along z (radius, half length of the straight part, 0);
-// box half sizes; plane (0, 0, 0): the half space below z = 0 of its frame. m.
+// box half sizes; plane (0, 0, 0): the half space below z = 0 of its frame; ellipsoid half axes; hull: the
+// scene sets it to half sizes of the box about its frame's origin that holds it. m.
 struct ShapeDef {
   Name name;
   ShapeKind kind = ShapeKind::kSphere;
@@ -31,6 +41,7 @@ struct ShapeDef {
   int32_t material = 0;  // row of the pair friction table
   uint8_t color[3] = {200, 200, 200};
   bool collides = true;  // false: only seen
+  Vector<Vec3> points;   // of a hull: what make_hull takes
 };
 
 enum class JointKind : int32_t { kRevolute = 0, kPrismatic = 1 };
@@ -144,6 +155,7 @@ struct SceneShape {
   int32_t index = -1;         // flat link index or body index; -1 for statics and bases
   int32_t articulation = -1;  // owner, -1: none
   double radius = 0;          // m, of the sphere around X_LS.p that holds the shape; < 0: a plane
+  int32_t hull = -1;          // index of Scene::hulls
 };
 
 // `a` always moves; `b` may be at rest.
@@ -180,12 +192,17 @@ struct Scene {
   Vector<int32_t> first_shape;        // per articulation
   Vector<LinkFrame> frames;           // per link
   Vector<SceneShape> shapes;  // articulation by articulation (base shapes are in place), bodies, statics
-  Vector<ShapePair> pairs;    // all pairs that may touch, in fixed order
-  Vector<PairRun> runs;       // the same pairs, run by run
-  Vector<int32_t> sensors;    // link indices with a sensor
+  Vector<Hull> hulls;
+  Vector<ShapePair> pairs;  // all pairs that may touch, in fixed order
+  Vector<PairRun> runs;     // the same pairs, run by run
+  Vector<int32_t> sensors;  // link indices with a sensor
 
   const LinkDef& link(int32_t i) const;
   bool moves(const SceneShape& shape) const;  // not static, not on a fixed base
+  // Null where the shape is of another kind.
+  const Hull* hull_of(const SceneShape& shape) const {
+    return shape.hull < 0 ? nullptr : &hulls[static_cast<size_t>(shape.hull)];
+  }
   // Indices by name; Error(kNotFound).
   int32_t find_link(int32_t articulation, const char* name) const;  // flat
   int32_t find_body(const char* name) const;

@@ -14,6 +14,21 @@ Lanes rim(Lanes v, float half, float rounding) {
   return select(v < 0.0f, -over, over);
 }
 
+// Of the face whose plane p is farthest out of.
+Lanes3 hull_normal(const Hull& hull, const Lanes3& p) {
+  Lanes3 best = splat(0, 0, 1);
+  Lanes most = splat(-kNoHit);
+  for (int32_t i = 0; i < hull.num_faces; ++i) {
+    const Hull::Face& face = hull.faces[i];
+    const Lanes3 n =
+        splat(static_cast<float>(face.n.x), static_cast<float>(face.n.y), static_cast<float>(face.n.z));
+    const Lanes beyond = dot(n, p) - static_cast<float>(face.offset);
+    best = select(beyond > most, n, best);
+    most = max(most, beyond);
+  }
+  return best;
+}
+
 }  // namespace
 
 Lanes3 surface_normal(const Primitive& s, const Lanes3& p) {
@@ -32,6 +47,12 @@ Lanes3 surface_normal(const Primitive& s, const Lanes3& p) {
       const Lanes scale = rim(across, s.size[0], r) / max(across, splat(1e-12f));
       return normalized(Lanes3{scale * p.x, scale * p.y, rim(p.z, s.size[1], r)});
     }
+    case ShapeKind::kEllipsoid: {
+      const float x = 1 / s.size[0], y = 1 / s.size[1], z = 1 / s.size[2];
+      return normalized(Lanes3{x * x * p.x, y * y * p.y, z * z * p.z});
+    }
+    case ShapeKind::kHull:
+      return hull_normal(*s.hull, p);
     case ShapeKind::kPlane:
       break;
   }

@@ -91,6 +91,27 @@ inline Lanes entry_box(const Primitive& s, const Lanes3& o, const Lanes3& d) {
   return select(in <= out, in, splat(kNoHit));
 }
 
+inline Lanes entry_ellipsoid(const Primitive& s, const Lanes3& o, const Lanes3& d) {
+  const float x = 1 / s.size[0], y = 1 / s.size[1], z = 1 / s.size[2];
+  const Middle m = middle({x * o.x, y * o.y, z * o.z}, {x * d.x, y * d.y, z * d.z});
+  const Lanes square = 1.0f - dot(m.p, m.p);
+  return select(square >= 0.0f, m.t - sqrt(max(square, splat(0)) / m.dd), splat(kNoHit));
+}
+
+inline Lanes entry_hull(const Primitive& s, const Lanes3& o, const Lanes3& d) {
+  Lanes in = splat(-kNoHit), out = splat(kNoHit);
+  for (int32_t i = 0; i < s.hull->num_faces; ++i) {
+    const Hull::Face& face = s.hull->faces[i];
+    const Lanes3 n =
+        splat(static_cast<float>(face.n.x), static_cast<float>(face.n.y), static_cast<float>(face.n.z));
+    const Lanes slope = not_zero(dot(n, d));
+    const Lanes t = (static_cast<float>(face.offset) - dot(n, o)) / slope;
+    in = select(slope < 0.0f, max(in, t), in);
+    out = select(slope < 0.0f, out, min(out, t));
+  }
+  return select(in <= out, in, splat(kNoHit));
+}
+
 inline Lanes entry_plane(const Lanes3& o, const Lanes3& d) {
   const LaneMask meets = (o.z > 0.0f) & (d.z < 0.0f);
   return select(meets, o.z / select(meets, -d.z, splat(1)), splat(kNoHit));
@@ -110,6 +131,10 @@ inline Lanes entry(const Primitive& s, const Lanes3& o, const Lanes3& d) {
       return detail::entry_box(s, o, d);
     case ShapeKind::kCylinder:
       return detail::entry_cylinder(s, o, d);
+    case ShapeKind::kEllipsoid:
+      return detail::entry_ellipsoid(s, o, d);
+    case ShapeKind::kHull:
+      return detail::entry_hull(s, o, d);
     case ShapeKind::kPlane:
       return detail::entry_plane(o, d);
   }

@@ -28,7 +28,11 @@ void check_size(const RenderShape& shape, int32_t index) {
     case ShapeKind::kCylinder:
       used = 2;
       break;
+    case ShapeKind::kHull:
+      if (!shape.hull) fail(Code::kArgument, "shapes[%d]: a hull without its points", index);
+      [[fallthrough]];
     case ShapeKind::kBox:
+    case ShapeKind::kEllipsoid:
       used = 3;
       break;
     case ShapeKind::kPlane:
@@ -43,7 +47,7 @@ void check_size(const RenderShape& shape, int32_t index) {
 }
 
 // The shape lies in the convex hull of balls of radius `round` about these points of S.
-int hull(const RenderShape& shape, Vec3 points[8], double* round) {
+int wrap(const RenderShape& shape, Vec3 points[kMaxHullPoints], double* round) {
   const Vec3& s = shape.size;
   switch (shape.kind) {
     case ShapeKind::kCapsule:
@@ -56,6 +60,14 @@ int hull(const RenderShape& shape, Vec3 points[8], double* round) {
       for (int i = 0; i < 8; ++i) points[i] = {i & 1 ? s.x : -s.x, i & 2 ? s.y : -s.y, i & 4 ? s.z : -s.z};
       *round = 0;
       return 8;
+    case ShapeKind::kHull:
+      std::copy_n(shape.hull->points, shape.hull->num_points, points);
+      *round = 0;
+      return shape.hull->num_points;
+    case ShapeKind::kEllipsoid:
+      points[0] = {};
+      *round = std::max({s.x, s.y, s.z});
+      return 1;
     default:
       points[0] = {};
       *round = s.x;
@@ -76,9 +88,9 @@ void bound_in_image(const RenderShape& shape, const Mat3& R_CS, const Vec3& p_CS
   out->x0 = out->y0 = -kEverywhere;
   out->x1 = out->y1 = kEverywhere;
   if (shape.kind == ShapeKind::kPlane) return;
-  Vec3 points[8];
+  Vec3 points[kMaxHullPoints];
   double round = 0;
-  const int n = hull(shape, points, &round);
+  const int n = wrap(shape, points, &round);
   double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL, near = HUGE_VAL, far = -HUGE_VAL;
   for (int i = 0; i < n; ++i) {
     const Vec3 p = p_CS + R_CS * points[i];
@@ -117,11 +129,12 @@ void bound_bulk(const RenderShape& shape, const Mat3& R_ES, Primitive* out) {
     const bool round = shape.kind == ShapeKind::kCapsule;
     half = round ? s.y : std::max(0.0, s.y - s.x);
     radius = round ? s.x + s.y : norm({s.x, s.y, 0});
-  } else if (shape.kind == ShapeKind::kBox) {
+  } else if (shape.kind == ShapeKind::kBox || shape.kind == ShapeKind::kHull ||
+             shape.kind == ShapeKind::kEllipsoid) {
     axis = s.x > s.y ? (s.x > s.z ? 0 : 2) : (s.y > s.z ? 1 : 2);
     thick = std::sqrt(s.x * s.y * s.z / s[axis]);
     half = std::max(0.0, s[axis] - thick);
-    radius = norm(s);
+    radius = shape.kind == ShapeKind::kEllipsoid ? s[axis] : norm(s);
   } else if (shape.kind == ShapeKind::kPlane) {
     radius = HUGE_VAL;
   }
@@ -141,6 +154,7 @@ bool make_primitive(const RenderShape& shape, int32_t index, const View& view, P
   const Vec3 o_S = R_SE * -p_ES;
   out->kind = shape.kind;
   out->id = shape.id;
+  out->hull = shape.hull;
   for (int k = 0; k < 9; ++k) out->R_SE[k] = static_cast<float>(R_SE.m[k]);
   for (int k = 0; k < 3; ++k) {
     out->p_ES[k] = static_cast<float>(p_ES[k]);

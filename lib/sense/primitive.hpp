@@ -15,6 +15,7 @@ namespace rdm {
 struct Primitive {
   ShapeKind kind;
   int32_t id;
+  const Hull* hull;       // of kind kHull
   float R_SE[9];          // row-major
   float p_ES[3];          // centre, m
   float o_S[3];           // the eye in S, m

@@ -18,6 +18,7 @@ void scan_scene(const Scene& scene, bool statics, const int32_t* bodies, int32_t
     RenderShape shape;
     shape.kind = s.def.kind;
     shape.size = s.def.size;
+    shape.hull = scene.hull_of(s);
     shape.X_WS = listed ? scene.def.bodies[static_cast<size_t>(s.index)].X_WB * s.def.X_LS : s.def.X_LS;
     shapes.push_back(shape);
   }
