@@ -24,10 +24,10 @@ constexpr OptionSpec kRows[] = {
     number_option("success_angle", 0.1, 0, 3.2, "rotation error that counts as success, rad"),
     number_option("fall_distance", 0.4, 0.01, 100,
                   "the episode ends with the object so far from the goal, m"),
-    text_option(
-        "cost_mode", "default", "default|paper|literal",
-        "default, paper: any fingertip's force; literal: the largest of 15 signed numbers, forces and "
-        "torques of two fingers and a force"),
+    text_option("cost_mode", "default", "default|paper|literal|object",
+                "default, paper: any fingertip's force, another finger's too; object: the object's alone; "
+                "literal: the "
+                "largest of 15 signed numbers, forces and torques of two fingers and a force"),
     number_option("force_threshold", 0.5, 0, 1000, "cost: a fingertip's contact force above, N"),
 };
 
@@ -54,7 +54,8 @@ class Reorient final : public SingleHand {
         tolerance_(o.number("success_angle")),
         fall_distance_(o.number("fall_distance")),
         threshold_(o.number("force_threshold")),
-        literal_(same_name(o.text("cost_mode"), "literal")) {}
+        literal_(same_name(o.text("cost_mode"), "literal")),
+        object_only_(same_name(o.text("cost_mode"), "object")) {}
 
  private:
   void judge_step(const Step& step, Verdict* v) const override {
@@ -83,7 +84,7 @@ class Reorient final : public SingleHand {
     v->cost_raw[kObjectForce] = pressed;
     v->cost[kFingertipForce] = most > threshold_;
     v->cost_raw[kFingertipForce] = most;
-    v->cost_raw[kCost] = literal_ ? number : most;
+    v->cost_raw[kCost] = literal_ ? number : object_only_ ? pressed : most;
     v->cost[kCost] = v->cost_raw[kCost] > threshold_;
   }
 
@@ -106,7 +107,7 @@ class Reorient final : public SingleHand {
   }
 
   double price_, bonus_, tolerance_, fall_distance_, threshold_;
-  bool literal_;
+  bool literal_, object_only_;
 };
 
 const CameraSpec kCameras[] = {

@@ -110,10 +110,15 @@ TEST_F(ReorientTask, FingersThatTouchEachOtherPressNoObject) {
   TestPool p("reorient", 1,
              {{"start.x", nullptr, 0.1}, {"gravity", nullptr, 0}, {"engine", "articulated", 0}});
   p->reset(nullptr, nullptr);
+  TestPool of_object("reorient", 1, {{"cost_mode", "object", 0}, {"engine", "articulated", 0}});
+  of_object->reset(nullptr, nullptr);
   float sensed = 0;
   for (int t = 0; t < 40; ++t) {
-    p->baseline(Baseline::kZero);
-    p->step(nullptr);
+    for (TestPool* pool : {&p, &of_object}) {
+      (*pool)->baseline(Baseline::kZero);
+      (*pool)->step(nullptr);
+    }
+    EXPECT_EQ(of_object.cost(0)[kCost], of_object.cost(0)[kObject]);
     sensed = std::max(sensed, p.rows().cost_raw[kForce]);
     EXPECT_EQ(p.rows().cost_raw[kObject], 0);
   }
