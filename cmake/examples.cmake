@@ -40,6 +40,10 @@ const CarriedDemo kCarriedDemos[] = {
   add_executable(redman_tool ${sources} ${CMAKE_CURRENT_BINARY_DIR}/demos.cpp)
   target_include_directories(redman_tool PRIVATE ${PROJECT_SOURCE_DIR}/examples)
   target_link_libraries(redman_tool PRIVATE CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG)
+  if(TARGET Qhull::qhull_r)
+    target_compile_definitions(redman_tool PRIVATE REDMAN_QHULL=1)
+    target_link_libraries(redman_tool PRIVATE Qhull::qhull_r)
+  endif()
   set_target_properties(redman_tool PROPERTIES OUTPUT_NAME redman CXX_STANDARD 20)
   rdm_example(redman_tool)
   target_compile_options(redman_tool PRIVATE -O1)  # its time goes by in the library; half the time to build

@@ -21,5 +21,6 @@ void add_bench(CLI::App& app, Run& run);
 void add_info(CLI::App& app, Run& run);
 void add_export(CLI::App& app, Run& run);
 void add_plot(CLI::App& app, Run& run);
+void add_hull(CLI::App& app, Run& run);
 
 }  // namespace tool

@@ -84,6 +84,7 @@ int main(int argc, char** argv) {
   add_bench(app, run);
   add_plot(app, run);
   add_export(app, run);
+  add_hull(app, run);
   add_info(app, run);
   app.set_help_all_flag("--help-all", "Help of every subcommand");
   try {
