@@ -1,7 +1,7 @@
 // Looking into a pool: shapes, poses, contacts, pictures, and the experimental push.
 #define RDM_EXPERIMENTAL
 #include <gtest/gtest.h>
-#include <redman/redman.h>
+#include <redman/redman_sense.h>
 
 #include <cmath>
 #include <cstring>
@@ -19,9 +19,11 @@ class Look : public testing::Test {
     ASSERT_EQ(rdm_pool_get_spec(pool, &spec), RDM_OK);
   }
   void TearDown() override { rdm_pool_destroy(pool); }
-  static rdm_pool* make() {
+  static rdm_pool* make(const rdm_option* options = nullptr, int32_t count = 0) {
     rdm_pool_config config;
     rdm_pool_config_init(&config, sizeof config);
+    config.options = options;
+    config.num_options = count;
     config.task = "hand_over_safe_finger";
     config.num_envs = 2;
     rdm_pool* made = nullptr;
@@ -34,10 +36,11 @@ class Look : public testing::Test {
     EXPECT_EQ(rdm_pool_poses(p, env, out.data()), RDM_OK);
     return out;
   }
-  int32_t object() const {
+  int32_t object() const { return object(pool); }
+  int32_t object(const rdm_pool* p) const {
     rdm_shape s;
     for (int32_t i = 0; i < spec.num_shapes; ++i)
-      if (rdm_pool_shape(pool, i, &s) == RDM_OK && std::string(s.name).find("object") != std::string::npos)
+      if (rdm_pool_shape(p, i, &s) == RDM_OK && std::string(s.name).find("object") != std::string::npos)
         return i;
     ADD_FAILURE() << "no shape is called object";
     return 0;
@@ -45,6 +48,31 @@ class Look : public testing::Test {
   rdm_pool* pool = nullptr;
   rdm_spec spec;
 };
+
+TEST_F(Look, AHullShowsItsCorners) {
+  const rdm_option asked[] = {{"object", "hull", 0},
+                              {"hull", "0,0,0;0.06,0,0;0,0.06,0;0,0,0.06;0.01,0.01,0.01", 0}};
+  rdm_pool* p = make(asked, 2);
+  const int32_t i = object(p);
+  rdm_shape s;
+  ASSERT_EQ(rdm_pool_shape(p, i, &s), RDM_OK);
+  EXPECT_EQ(s.kind, RDM_HULL);
+  EXPECT_NEAR(s.size[0], 0.045, 1e-6);  // the centre of mass is at a quarter
+  float corners[12] = {}, sum[3] = {};
+  int32_t count = 0;
+  ASSERT_EQ(rdm_pool_hull(p, i, corners, 4, &count), RDM_OK);
+  EXPECT_EQ(count, 4);
+  for (int k = 0; k < 12; ++k) sum[k % 3] += corners[k];
+  for (const float x : sum) EXPECT_NEAR(x, 0, 1e-6);
+  EXPECT_EQ(rdm_pool_hull(p, i, nullptr, 0, &count), RDM_OK);
+  EXPECT_EQ(rdm_pool_hull(p, i, nullptr, 1, &count), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_hull(p, i, corners, -1, &count), RDM_RANGE);
+  EXPECT_EQ(rdm_pool_hull(p, i, corners, 4, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_hull(p, spec.num_shapes, corners, 4, &count), RDM_RANGE);
+  EXPECT_EQ(rdm_pool_hull(pool, object(), corners, 4, &count), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_hull(nullptr, 0, corners, 4, &count), RDM_ARGUMENT);
+  rdm_pool_destroy(p);
+}
 
 TEST_F(Look, ShapesAndPoses) {
   ASSERT_GT(spec.num_shapes, 30);

@@ -18,11 +18,12 @@ constexpr OptionSpec kTable[] = {
     text_option("object", "egg", "egg|ball|soup_can", "what is thrown"),
     text_option("note", "", nullptr, "free text"),
     number_option("learning_rate", 1e-3, 1e-8, 1, "Adam step", true),
+    text_option("points", "0,0,0", nullptr, "a long text", 200),
 };
 
 Options made() {
   Options o;
-  o.add_table(kTable, 6);
+  o.add_table(kTable, 7);
   return o;
 }
 Code set(Options& o, const char* key, const char* text, double number = 0) {
@@ -102,6 +103,18 @@ TEST(Options, FreeTextHasAnEnd) {
   EXPECT_EQ(o.text("note"), fits);
   EXPECT_EQ(set(o, "note", over.c_str()), Code::kRange);
   EXPECT_EQ(o.text("note"), fits);
+}
+
+TEST(Options, ALongTextIsKeptWholeAndPrintedCut) {
+  Options o = made();
+  const std::string fits(200, 'b'), over(201, 'b');
+  EXPECT_EQ(set(o, "points", fits.c_str()), Code::kOk);
+  EXPECT_EQ(set(o, "points", over.c_str()), Code::kRange);
+  const Options copy = o;
+  EXPECT_EQ(copy.text("points"), fits);
+  EXPECT_EQ(printed(copy, 6), fits.substr(0, kOptionTextSize - 1));
+  EXPECT_EQ(set(o, "points", "short"), Code::kOk);
+  EXPECT_STREQ(o.text("points"), "short");
 }
 
 TEST(Options, UnknownKeyNamesTheNearest) {
