@@ -69,7 +69,7 @@ constexpr ThrowObject kObjects[] = {
      0.0754,
      {},
      {240, 225, 190}},
-    {"hull", "convex hull of the points of option hull", ShapeKind::kHull, {}, 0, {}, {150, 140, 200}},
+    {"hull", "convex hull of the points of option hull", ShapeKind::kHull, {}, 0.0286, {}, {150, 140, 200}},
 };
 constexpr int32_t kCount = sizeof kObjects / sizeof *kObjects;
 

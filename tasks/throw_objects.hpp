@@ -9,7 +9,7 @@ struct ThrowObject {
   const char* shape_text;  // kind and sizes in m, for people
   ShapeKind kind;
   Vec3 size;    // as ShapeDef::size
-  double mass;  // kg; 0: kHullDensity times its volume
+  double mass;  // kg; hull: of the points that the option begins with
   Vec3 moment;  // kg m2 about x, y, z; zero: that of the uniform solid
   uint8_t color[3];
 };

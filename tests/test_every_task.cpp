@@ -153,8 +153,10 @@ TEST_P(EveryTask, HoldAndMeanAreActions) {
   for (const float x : a) EXPECT_LE(std::abs(x), 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Tasks, EveryTask, testing::ValuesIn(all_cases()),
-                         [](const auto& info) { return info.param.task + "_" + info.param.engine; });
+INSTANTIATE_TEST_SUITE_P(Tasks, EveryTask, testing::ValuesIn(all_cases()), [](const auto& info) {
+  const Case& c = info.param;
+  return c.task + "_" + c.engine + (c.object.empty() ? "" : "_" + c.object);
+});
 
 }  // namespace
 }  // namespace rdm::test

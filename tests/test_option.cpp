@@ -37,7 +37,7 @@ std::string printed(const Options& o, int32_t i) {
 
 TEST(Options, DefaultsStandUntilGiven) {
   Options o = made();
-  EXPECT_EQ(o.count(), 6);
+  EXPECT_EQ(o.count(), 7);
   EXPECT_EQ(o.number("gamma"), 0.96);
   EXPECT_EQ(o.integer("minibatches"), 4);
   EXPECT_FALSE(o.flag("reset_noise"));

@@ -205,7 +205,7 @@ RDM_API rdm_result rdm_robot_joint(int32_t robot, int32_t i, rdm_joint *out);  /
 typedef struct rdm_object { /* frozen layout: an object of the throw tasks, by option object=... */
   const char *name;         /* "egg"                                                          */
   const char *shape;        /* "capsule 0.03 0.01" : kind and sizes in m                      */
-  double mass;              /* kg; 0: 500 kg/m3 times its volume                              */
+  double mass;              /* kg; hull: of the default points, 500 kg/m3                     */
 } rdm_object;
 RDM_API int32_t rdm_object_count(void); /* number of objects */
 RDM_API rdm_result rdm_object_at(int32_t index, rdm_object *out);              /* RANGE past the end */
