@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "articulated.hpp"
+#include "hulls.hpp"
 #include "physics/collider.hpp"
 #include "physics/convert.hpp"
 #include "physics/convex.hpp"
@@ -36,6 +37,10 @@ SceneDef everything(int32_t contacts_max) {
   add_body(&def, ShapeKind::kBox, {0.04, 0.03, 0.02}, {});
   add_body(&def, ShapeKind::kCylinder, {0.03, 0.05, 0}, {});
   add_body(&def, ShapeKind::kCapsule, {0.02, 0.05, 0}, {0.03, 0, 0});
+  add_body(&def, ShapeKind::kEllipsoid, {0.03, 0.05, 0.02}, {0, 0.03, 0});
+  add_body(&def, ShapeKind::kHull, {}, {});
+  const Hull& block = kept_hull({0.04, 0.03, 0.03}, 0.5);
+  def.bodies.back().shapes[0].points.assign(block.points, block.points + block.num_points);
   ShapeDef table;
   table.kind = ShapeKind::kBox;
   table.size = {0.3, 0.3, 0.05};
@@ -186,18 +191,20 @@ TEST(Collider, FindsWhatAskingEveryPairFinds) {
 // No point of a shape is outside of the capsule around it.
 TEST(Collider, ACapsuleHoldsItsShape) {
   Stream random(4, 0, Purpose::kTest);
-  const ShapeKind kinds[] = {ShapeKind::kSphere, ShapeKind::kCapsule, ShapeKind::kBox, ShapeKind::kCylinder};
+  const ShapeKind kinds[] = {ShapeKind::kSphere, ShapeKind::kCapsule, ShapeKind::kBox, ShapeKind::kCylinder,
+                             ShapeKind::kEllipsoid};
   int slender = 0;
   for (int k = 0; k < 400; ++k) {
     ShapeDef def;
-    def.kind = kinds[k % 4];
+    def.kind = kinds[k % 5];
     def.size = {random.uniform(0.01, 1), random.uniform(0.01, 1), random.uniform(0.01, 1)};
     const Vec3& s = def.size;
     SceneShape shape = {def, k % 3 == 0 ? Carrier::kLink : Carrier::kBody, 0, -1, 0};
-    shape.radius = def.kind == ShapeKind::kBox        ? norm(s)
-                   : def.kind == ShapeKind::kCylinder ? std::hypot(s.x, s.y)
-                   : def.kind == ShapeKind::kCapsule  ? s.x + s.y
-                                                      : s.x;
+    shape.radius = def.kind == ShapeKind::kBox         ? norm(s)
+                   : def.kind == ShapeKind::kCylinder  ? std::hypot(s.x, s.y)
+                   : def.kind == ShapeKind::kCapsule   ? s.x + s.y
+                   : def.kind == ShapeKind::kEllipsoid ? std::max({s.x, s.y, s.z})
+                                                       : s.x;
     const Capsule around = capsule_around(shape);
     slender += norm(around.axis) > 0 && def.kind != ShapeKind::kCapsule;
     EXPECT_LE(around.radius, shape.radius + 1e-12);

@@ -14,9 +14,6 @@ Primitive primitive(ShapeKind kind, const Vec3& size) {
   return s;
 }
 
-Lanes3 wide(const Vec3& v) {
-  return splat(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
-}
 // What the float ray really is.
 Vec3 rounded(const Vec3& v) {
   return {static_cast<double>(static_cast<float>(v.x)), static_cast<double>(static_cast<float>(v.y)),

@@ -92,11 +92,17 @@ Capsule capsule_around(const SceneShape& shape) {
   // of links the engine knows no axis
   if (shape.carrier != Carrier::kBody && shape.carrier != Carrier::kStatic) return sphere;
   if (shape.def.kind == ShapeKind::kCylinder && s.y > s.x) return {{0, 0, s.y}, s.x};
-  if (shape.def.kind != ShapeKind::kBox) return sphere;
+  const bool round = shape.def.kind == ShapeKind::kEllipsoid;
+  if (!round && shape.def.kind != ShapeKind::kBox) return sphere;
   const int longest = s.x >= s.y && s.x >= s.z ? 0 : s.y >= s.z ? 1 : 2;
   Vec3 axis, rest = s;
   axis[longest] = s[longest];
   rest[longest] = 0;
+  if (round) {
+    const double wide = std::max({rest.x, rest.y, rest.z});
+    axis[longest] -= wide;
+    return {axis, wide};
+  }
   return norm(rest) < s[longest] ? Capsule{axis, norm(rest)} : sphere;
 }
 

@@ -20,8 +20,7 @@ Lanes3 hull_normal(const Hull& hull, const Lanes3& p) {
   Lanes most = splat(-kNoHit);
   for (int32_t i = 0; i < hull.num_faces; ++i) {
     const Hull::Face& face = hull.faces[i];
-    const Lanes3 n =
-        splat(static_cast<float>(face.n.x), static_cast<float>(face.n.y), static_cast<float>(face.n.z));
+    const Lanes3 n = wide(face.n);
     const Lanes beyond = dot(n, p) - static_cast<float>(face.offset);
     best = select(beyond > most, n, best);
     most = max(most, beyond);

@@ -102,8 +102,7 @@ inline Lanes entry_hull(const Primitive& s, const Lanes3& o, const Lanes3& d) {
   Lanes in = splat(-kNoHit), out = splat(kNoHit);
   for (int32_t i = 0; i < s.hull->num_faces; ++i) {
     const Hull::Face& face = s.hull->faces[i];
-    const Lanes3 n =
-        splat(static_cast<float>(face.n.x), static_cast<float>(face.n.y), static_cast<float>(face.n.z));
+    const Lanes3 n = wide(face.n);
     const Lanes slope = not_zero(dot(n, d));
     const Lanes t = (static_cast<float>(face.offset) - dot(n, o)) / slope;
     in = select(slope < 0.0f, max(in, t), in);

@@ -32,6 +32,11 @@ struct Primitive {
 // than 1e6 m from the world's origin.
 bool make_primitive(const RenderShape& shape, int32_t index, const View& view, Primitive* out);
 
+// The same vector for every ray.
+inline Lanes3 wide(const Vec3& v) {
+  return splat(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
+}
+
 inline Lanes3 rotate_to_shape(const Primitive& s, const Lanes3& v) {
   const float* r = s.R_SE;
   return {r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,

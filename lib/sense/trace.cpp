@@ -5,9 +5,6 @@
 namespace rdm {
 
 Rays make_rays(const View& view) {
-  const auto wide = [](const Vec3& v) {
-    return splat(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
-  };
   return {wide(view.pixel * view.R_WC.col(0)), wide(view.pixel * view.R_WC.col(1)),
           wide(view.R_WC * view.ray_C(0, 0))};
 }
