@@ -12,6 +12,7 @@ constexpr double kLevel = 1e-3;      // sine of the tilt below which a cap has n
 constexpr double kCapFrom = 0.7;     // cosine between axis and direction from which a cap is shown
 constexpr double kTolerance = 1e-7;  // m
 constexpr double kWidest = 0.2, kNarrowest = 1e-4;  // rad, steps of sharpen
+constexpr double kInside = 0.6;                     // of a step: near enough for the next, a quarter as wide
 constexpr int kStepsEach = 8;
 constexpr int kIterations = 200;
 
@@ -138,24 +139,35 @@ Feature side_of_hull(const Convex& solid, const Vec3& n) {
 }
 
 // MPR's normal leans towards the line of centres where surfaces are round. The least depth over all normals
-// is near by, and found by trying steps to four sides, along an axis of the solid that may have edges. False
-// when a normal shows them apart.
+// is near by: found by steps to four sides, along an axis of the solid that may have edges, and to where
+// parabolas through them are lowest. False when a normal shows them apart.
 bool sharpen(const Convex& a, const Convex& b, Overlap* out) {
   const bool round_a = a.kind == ShapeKind::kEllipsoid;
   const Mat3& R = round_a ? b.R : a.R;
-  const auto depth = [&](const Vec3& n) { return dot(n, farthest(b, n) - farthest(a, -n)); };
   Vec3 n = normalized(out->n);
-  double least = depth(n);
-  for (double step = kWidest; step > kNarrowest; step *= 0.5)
+  double least = HUGE_VAL;
+  const auto try_normal = [&](const Vec3& along) {
+    const Vec3 trial = normalized(along);
+    const double depth = dot(trial, farthest(b, trial) - farthest(a, -trial));
+    if (depth < least) least = depth, n = trial;
+    return depth;
+  };
+  try_normal(n);
+  for (double step = kWidest; step > kNarrowest; step *= 0.25)
     for (int k = 0; k < kStepsEach; ++k) {
-      const Vec3 u = R.col(std::fabs(dot(n, R.col(2))) < 0.9 ? 2 : 0), side = normalized(cross(n, u)),
-                 along = cross(side, n), from = n;
-      for (const Vec3& way : {along, -along, side, -side}) {
-        const Vec3 trial = normalized(from + step * way);
-        const double d = depth(trial);
-        if (d < least) least = d, n = trial;
+      const Vec3 from = n, u = R.col(std::fabs(dot(n, R.col(2))) < 0.9 ? 2 : 0),
+                 side = normalized(cross(n, u));
+      const double here = least;
+      Vec3 lowest = from;
+      bool inside = true;
+      for (const Vec3& way : {step * cross(side, from), step * side}) {
+        const double up = try_normal(from + way), down = try_normal(from - way), bend = up + down - 2 * here;
+        const double low = bend > 0 ? std::clamp(0.5 * (down - up) / bend, -1.0, 1.0) : 0;
+        lowest += low * way;
+        inside = inside && std::fabs(low) < kInside;
       }
-      if (dot(n - from, n - from) == 0) break;
+      try_normal(lowest);
+      if (inside || !(least < here)) break;
     }
   if (!(least > 0)) return false;
   out->n = n;
