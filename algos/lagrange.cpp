@@ -21,6 +21,7 @@ Lagrange::Lagrange(const Plan& plan) : count_(plan.num_limited) {
 void Lagrange::read_live(const Options& o) {
   options_.rate = o.number("multiplier_lr");
   options_.max = o.number("multiplier_max");
+  options_.gain = o.number("multiplier_gain");
   warmup_ = o.integer("multiplier_warmup");
 }
 

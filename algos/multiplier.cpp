@@ -41,7 +41,8 @@ void Multiplier::step(const MultiplierOptions& options, double cost, double limi
     raw_ = std::min(raw_, softplus_inverse(options.max));
   else
     raw_ = std::clamp(raw_, 0.0, options.max);
-  value_ = options.optimizer == MultiplierOptimizer::kSoftplus ? softplus(raw_) : raw_;
+  const double learnt = options.optimizer == MultiplierOptimizer::kSoftplus ? softplus(raw_) : raw_;
+  value_ = options.gain > 0 ? std::clamp(learnt + options.gain * warmth * e, 0.0, options.max) : learnt;
 }
 
 void Multiplier::visit(StateIo& io) {

@@ -86,6 +86,8 @@ inline constexpr std::array kMultiplierOptions = {
     number_option("multiplier_init", 0.001, 0, 1e6, "initial multiplier"),
     number_option("multiplier_lr", 0.035, 0, 1e3, "rate of the multiplier per epoch", true),
     number_option("multiplier_max", 1e6, 0, kHuge, "upper bound on the multiplier", true),
+    number_option("multiplier_gain", 0, 0, 1e6,
+                  "added to the multiplier per violation: damps its swings (augmented Lagrangian)", true),
     flag_option("multiplier_normalized", false, "divide the violation by the limit"),
     integer_option("multiplier_warmup", 0, 0, 1 << 30, "epochs in which the multiplier's rate grows from 0",
                    true),

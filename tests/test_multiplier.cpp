@@ -94,6 +94,17 @@ TEST(Multiplier, StaysUnderItsBound) {
   }
 }
 
+TEST(Multiplier, GainAddsTheAugmentedTermWithinTheBounds) {
+  MultiplierOptions o;
+  o.optimizer = MultiplierOptimizer::kSgd;
+  o.init = 0;
+  o.rate = 0.01;
+  o.gain = 0.1;
+  o.max = 1;
+  // l = 0.05, 0.10, 0, 0.20, 0.20; the term is not summed.
+  expect_close(respond(o, {30, 30, 10, 45, 25}), {0.55, 0.60, 0, 1, 0.20});
+}
+
 TEST(Multiplier, WarmthScalesTheStep) {
   MultiplierOptions o;
   o.optimizer = MultiplierOptimizer::kSgd;
