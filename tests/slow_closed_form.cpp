@@ -107,14 +107,17 @@ void run(const char* world, const char* epochs, const Settings& settings) {
 
 }  // namespace
 
+// Steps that chase the batch's own optimum need a larger batch.
 TEST(ClosedForm, Bandit) {
   run<BanditWorld>("bandit", "100",
                    with(dual("0.15", "0.5",
                              {{kEvery, {{"init_std", "0.5"}, {"horizon", "160"}, {"learning_rate", "5e-2"}}},
                               {kTrust, {{"trust_kl", "0.05"}}},
                               {kLimited, {{"multiplier_window", "8000"}}},
+                              {"trpo_lag focops", {{"horizon", "480"}, {"multiplier_window", "24000"}}},
+                              {"trpo_lag", {{"trust_kl", "0.02"}}},
                               // A barrier whose slope cannot reach the optimal multiplier does not hold.
-                              {"ipo", {{"barrier_max", "4"}}}})));
+                              {"ipo", {{"barrier_max", "4"}, {"learning_rate", "1e-2"}}}})));
 }
 
 TEST(ClosedForm, TwoState) {
@@ -124,6 +127,8 @@ TEST(ClosedForm, TwoState) {
           "0.03", "0.3",
           {{kEvery, {{"init_std", "1"}, {"horizon", "300"}, {"discount", "1"}, {"learning_rate", "2e-2"}}},
            {kLimited, {{"multiplier_window", "1500"}}},
+           {"ppo_lag trpo_lag cppo_pid focops",
+            {{"horizon", "450"}, {"multiplier_window", "2250"}, {"learning_rate", "1e-2"}}},
            // With the whole batch the penalty switches where the predicted cost meets the limit.
            {"p3o", {{"penalty", "1"}, {"minibatches", "1"}, {"passes", "8"}, {"multiplier_window", "3000"}}},
            {"ipo", {{"barrier_max", "0.5"}, {"multiplier_window", "4500"}}}})));
