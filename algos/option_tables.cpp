@@ -1,6 +1,8 @@
 #include "algos/option_tables.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstring>
 
 #include "base/error.hpp"
 
@@ -110,17 +112,34 @@ constexpr PresetValue kPresetValues[] = {
     {"omnisafe", "pid_kd", "0.01"},
 };
 
-bool any_algo_knows(const char* key) {
-  for (int32_t i = 0; i < algo_count(); ++i) {
-    const AlgoInfo& a = algo_at(i);
-    for (int32_t k = 0; k < a.num_options; ++k)
-      if (same_name(a.options[k].key, key)) return true;
-  }
+bool knows(const AlgoInfo& algo, const char* key) {
+  for (int32_t k = 0; k < algo.num_options; ++k)
+    if (same_name(algo.options[k].key, key)) return true;
   return false;
 }
 
-void lay_default(Options& o, const OptionInput& in) {
+bool any_algo_knows(const char* key) {
+  for (int32_t i = 0; i < algo_count(); ++i)
+    if (knows(algo_at(i), key)) return true;
+  return false;
+}
+
+// "focops:passes" names an algorithm and is for that one alone. False: for another.
+bool take_owner(const AlgoInfo& algo, OptionInput& in) {
+  const char* colon = std::strchr(in.key, ':');
+  if (!colon) return true;
+  char name[64];
+  std::snprintf(name, sizeof name, "%.*s", static_cast<int>(colon - in.key), in.key);
+  const AlgoInfo& owner = algo_at(algo_find(name));
+  in.key = colon + 1;
+  if (!knows(owner, in.key))
+    fail(Code::kNotFound, "%s default: \"%s\" has no option \"%s\"", kOwner, name, in.key);
+  return &owner == &algo;
+}
+
+void lay_default(Options& o, const AlgoInfo& algo, OptionInput in) {
   if (!in.key) fail(Code::kArgument, "%s default: the key is NULL", kOwner);
+  if (!take_owner(algo, in)) return;
   if (!o.knows(in.key)) {
     if (!any_algo_knows(in.key)) o.set(in, kOwner);  // names the nearest key
     return;
@@ -158,7 +177,7 @@ Options read_options(const AgentConfig& config, const AlgoInfo& algo) {
   o.reserve(algo.num_options);
   o.add_table(algo.options, algo.num_options);
   for (int32_t i = 0; i < config.num_options; ++i) o.set(config.options[i], kOwner);
-  for (int32_t i = 0; i < config.num_defaults; ++i) lay_default(o, config.defaults[i]);
+  for (int32_t i = 0; i < config.num_defaults; ++i) lay_default(o, algo, config.defaults[i]);
   lay_preset(o, config);
   return o;
 }

@@ -167,8 +167,8 @@ constexpr auto join_options(const std::array<OptionSpec, N>&... tables) {
 }
 
 // The values for one agent: table, then config.defaults, then the preset, then config.options. A default
-// that only other algorithms know is skipped; an option is not. Takes memory from the hooks of the config
-// once, options_bytes in all.
+// that only other algorithms know, or of the form "algorithm:key" for another, is skipped; an option is not.
+// Takes memory from the hooks of the config once, options_bytes in all.
 Options read_options(const AgentConfig& config, const AlgoInfo& algo);
 size_t options_bytes(const AlgoInfo& algo);
 

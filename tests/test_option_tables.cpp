@@ -34,6 +34,17 @@ TEST(OptionTables, EveryRowHasHelpAndADefaultInsideItsBounds) {
   }
 }
 
+TEST(OptionTables, ADefaultMayBelongToOneAlgorithm) {
+  const std::vector<OptionInput> rows = {
+      {"passes", "7", 0}, {"focops:passes", "3", 0}, {"cpo:trust_kl", nullptr, 0.5}};
+  AgentSetup focops("focops", 1, 1, 4), lag("ppo_lag", 1, 1, 4), cpo("cpo", 1, 1, 4);
+  EXPECT_EQ(read(focops, rows).integer("passes"), 3);
+  EXPECT_EQ(read(lag, rows).integer("passes"), 7);
+  EXPECT_EQ(read(cpo, rows).number("trust_kl"), 0.5);
+  EXPECT_EQ(thrown([&] { read(lag, {{"fokops:passes", "3", 0}}); }).code, Code::kNotFound);
+  EXPECT_EQ(thrown([&] { read(lag, {{"focops:trust_kl", "3", 0}}); }).code, Code::kNotFound);
+}
+
 TEST(OptionTables, GivenOverPresetOverDefaultsOverTable) {
   AgentSetup s("ppo_lag", 1, 1, 4);
   s.with("clip", "0.3").with("preset", "paper");

@@ -360,7 +360,7 @@ typedef struct rdm_agent_config {
   float control_dt;           /* s, kept in policy files; 0: unknown                                      */
   int32_t max_steps;          /* control steps of an episode, for terminal_cost; 0: unknown               */
   const float *initial_mean;  /* [action_dim] mean action of the new policy, copied; NULL: 0              */
-  const rdm_option *defaults; /* [num_defaults] laid under options (a task's own); NULL: none             */
+  const rdm_option *defaults; /* [num_defaults] laid under options (a task's); "algo:key" is for one algo */
   const rdm_option *options;  /* [num_options] the caller's; NULL: none                                   */
   int32_t num_defaults;       /* count, default 0                                                         */
   int32_t num_options;        /* count, default 0                                                         */
