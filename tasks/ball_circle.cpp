@@ -122,12 +122,13 @@ constexpr CameraSpec kCameras[] = {
     {"top", {0, -0.01, 20}, {0, 0, 0}, 0.9},
 };
 constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
+                                                          {"learning_rate", "1e-3"},
                                                           {"minibatches", "32"},
                                                           {"discount", "0.99"},
                                                           {"init_std", "0.6"},
                                                           {"std_min", "0.05"},
                                                           {"multiplier_init", "1"},
-                                                          {"multiplier_lr", "0.05"}});
+                                                          {"multiplier_lr", "0.2"}});
 
 }  // namespace
 

@@ -57,6 +57,7 @@ class BallRun final : public StageTask {
 
 constexpr auto kOptions = track_options(2.5, 9, 250);
 constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
+                                                          {"learning_rate", "1e-3"},
                                                           {"minibatches", "32"},
                                                           {"discount", "0.99"},
                                                           {"init_std", "0.6"},

@@ -92,12 +92,13 @@ class CarRun final : public StageTask {
 
 constexpr auto kOptions = track_options(1.5, 11, 500);
 constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
+                                                          {"learning_rate", "3e-4"},
                                                           {"minibatches", "32"},
                                                           {"discount", "0.95"},
                                                           {"init_std", "0.05"},
                                                           {"std_min", "0.01"},
                                                           {"multiplier_init", "1"},
-                                                          {"multiplier_lr", "0.1"}});
+                                                          {"multiplier_lr", "0.2"}});
 
 }  // namespace
 

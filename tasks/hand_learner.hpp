@@ -36,6 +36,7 @@ constexpr auto throw_learner(const char* cost_limit) {
                                       {"pid_kd", "0.0075"},
                                       {"penalty", "2"},
                                       {"focops_eta", "0.04"},
+                                      {"focops:early_stop_kl", "0.04"},
                                       {"trust_kl", "0.15"},
                                       {"cost_limit", cost_limit}});
 }

@@ -50,6 +50,7 @@ inline constexpr CameraSpec kPointCameras[] = {
     {"top", {0, -0.01, 6}, {0, 0, 0}, 0.8},
 };
 inline constexpr auto kPointLearner = join_defaults(kSafetyLearner, {{"horizon", "500"},
+                                                                     {"learning_rate", "1e-3"},
                                                                      {"minibatches", "64"},
                                                                      {"discount", "0.99"},
                                                                      {"init_std", "0.6"},

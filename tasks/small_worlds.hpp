@@ -20,7 +20,10 @@ inline constexpr auto kSafetyLearner = join_defaults(kSmallLearner, {{"passes", 
                                                                      {"lambda", "0.95"},
                                                                      {"cost_lambda", "0.95"},
                                                                      {"early_stop_kl", "0.03"},
-                                                                     {"learning_rate", "1e-3"},
+                                                                     {"pid_ki", "0.004"},
+                                                                     {"pid_kd", "0.05"},
+                                                                     {"pid_smooth_p", "0"},
+                                                                     {"pid_smooth_d", "0.5"},
                                                                      {"cost_limit", "25"}});
 
 }  // namespace rdm

@@ -95,6 +95,7 @@ constexpr CameraSpec kCameras[] = {
     {"top", {2, -0.01, 10}, {2, 0, 0}, 0.9},
 };
 constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "500"},
+                                                          {"learning_rate", "1e-3"},
                                                           {"minibatches", "64"},
                                                           {"discount", "0.995"},
                                                           {"init_std", "0.6"},
