@@ -11,6 +11,7 @@ redman=${REDMAN:-$here/build/release/bin/redman}
 out=${1:-$here/runs/table}
 seeds=${SEEDS:-0 1 2} jobs=${JOBS:-2} ppo_steps=${PPO_STEPS:-2000000}
 tasks=${TASKS:-hand_over_safe_finger hand_over_safe_joint} objects=${OBJECTS:-egg ball}
+algos=${ALGOS:-ppo_lag ppo}
 mkdir -p "$out"
 
 # value KEY FILE: a number of the tool's one-line JSON
@@ -40,11 +41,11 @@ rows() {  # one line per run: KIND NAME TASK OBJECT POLICY-OR-ALGO LIMIT SEED ST
     for policy in zero hold random; do
       echo "baseline $task.$object.$policy $task $object $policy - 0 0"
     done
-    for limit in ${LIMITS:-$(paper_limit "$task")}; do for seed in $seeds; do
-      echo "train $task.$object.ppo_lag$limit.$seed $task $object ppo_lag $limit $seed $(safe_steps "$object")"
-    done; done
-    for seed in $seeds; do
-      echo "train $task.$object.ppo.$seed $task $object ppo $(paper_limit "$task") $seed $ppo_steps"
+    for algo in $algos; do
+      case $algo in ppo | trpo) n=$ppo_steps ;; *) n=$(safe_steps "$object") ;; esac
+      for limit in ${LIMITS:-$(paper_limit "$task")}; do for seed in $seeds; do
+        echo "train $task.$object.$algo$limit.$seed $task $object $algo $limit $seed $n"
+      done; done
     done
   done; done
 }

@@ -7,7 +7,7 @@
 # return and cost are means over the last tenth of training, with exploration, as published figures are; those of
 # the evaluation are of the mean action over 100 episodes.
 # Environment: REDMAN (the tool), TASKS, ALGOS, SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), STEPS
-# (control steps; else 0.3 to 2 million by task), ENVS (worlds; 16).
+# (control steps; else 0.3 to 3 million by task), ENVS (worlds; 16).
 set -eu
 here=$(cd "$(dirname "$0")/.." && pwd)
 redman=${REDMAN:-$here/build/release/bin/redman}
@@ -26,7 +26,7 @@ steps() {
     bandit) echo 300000 ;;
     two_state | lqr_line | ball_run) echo 600000 ;;
     ball_circle | car_run | swimmer_velocity) echo 1000000 ;;
-    *) echo 2000000 ;;
+    *) echo 3000000 ;;
   esac
 }
 

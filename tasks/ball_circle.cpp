@@ -128,7 +128,9 @@ constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
                                                           {"init_std", "0.6"},
                                                           {"std_min", "0.05"},
                                                           {"multiplier_init", "1"},
-                                                          {"multiplier_lr", "0.2"}});
+                                                          {"normalize_obs", "false"},
+                                                          {"multiplier_lr", "0.2"},
+                                                          {"focops:multiplier_lr", "0.4"}});
 
 }  // namespace
 

@@ -98,6 +98,7 @@ constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
                                                           {"init_std", "0.05"},
                                                           {"std_min", "0.01"},
                                                           {"multiplier_init", "1"},
+                                                          {"penalty", "10"},
                                                           {"multiplier_lr", "0.2"}});
 
 }  // namespace

@@ -38,6 +38,7 @@ constexpr auto throw_learner(const char* cost_limit) {
                                       {"focops_eta", "0.04"},
                                       {"focops:early_stop_kl", "0.04"},
                                       {"trust_kl", "0.15"},
+                                      {"fisher_stride", "4"},
                                       {"cost_limit", cost_limit}});
 }
 

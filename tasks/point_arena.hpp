@@ -49,14 +49,15 @@ inline constexpr CameraSpec kPointCameras[] = {
     {"front", {0, -4.5, 4}, {0, 0, 0}, 0.8},
     {"top", {0, -0.01, 6}, {0, 0, 0}, 0.8},
 };
-inline constexpr auto kPointLearner = join_defaults(kSafetyLearner, {{"horizon", "500"},
+inline constexpr auto kPointLearner = join_defaults(kSafetyLearner, {{"horizon", "200"},
                                                                      {"learning_rate", "1e-3"},
-                                                                     {"minibatches", "64"},
-                                                                     {"discount", "0.99"},
+                                                                     {"minibatches", "32"},
+                                                                     {"action_repeat", "5"},
+                                                                     {"discount", "0.97"},
                                                                      {"init_std", "0.6"},
                                                                      {"std_min", "0.05"},
                                                                      {"multiplier_init", "0.3"},
-                                                                     {"multiplier_lr", "0.05"}});
+                                                                     {"multiplier_lr", "0.2"}});
 
 // A thing of the arena for pictures: lies at z, does not turn.
 Motion spot_motion(const Spot& spot, double z);

@@ -24,6 +24,10 @@ inline constexpr auto kSafetyLearner = join_defaults(kSmallLearner, {{"passes", 
                                                                      {"pid_kd", "0.05"},
                                                                      {"pid_smooth_p", "0"},
                                                                      {"pid_smooth_d", "0.5"},
+                                                                     {"barrier_kappa", "10"},
+                                                                     {"barrier_max", "20"},
+                                                                     {"focops:multiplier_max", "100"},
+                                                                     {"multiplier_divide", "true"},
                                                                      {"cost_limit", "25"}});
 
 }  // namespace rdm
