@@ -312,7 +312,7 @@ class CleanHouse final : public PropTask {
   Occupancy* map_ = nullptr;
 };
 
-constexpr auto kLearner = hand_learner("100");
+constexpr auto kLearner = hand_learner("100", "0.15");
 
 }  // namespace
 

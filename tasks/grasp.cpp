@@ -102,7 +102,7 @@ const CameraSpec kCameras[] = {
     {"cloud_back", {-0.35, -0.55, 0.2}, {0, -0.38, 0.05}, 57 * kDegree},
 };
 
-constexpr auto kLearner = hand_learner("25");
+constexpr auto kLearner = hand_learner("25", "0.15");
 
 }  // namespace
 

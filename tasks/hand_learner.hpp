@@ -17,7 +17,6 @@ inline constexpr std::array kHandLearner = {
     LearnerDefault{"lambda", "0.95"},
     LearnerDefault{"clip", "0.2"},
     LearnerDefault{"max_grad_norm", "1"},
-    LearnerDefault{"init_std", "0.4"},
     LearnerDefault{"noise_correlation", "0.3"},
     LearnerDefault{"action_repeat", "4"},
     LearnerDefault{"multiplier_optimizer", "sgd"},
@@ -26,12 +25,14 @@ inline constexpr std::array kHandLearner = {
     LearnerDefault{"normalize_obs", "true"},
 };
 
-constexpr auto hand_learner(const char* cost_limit) {
-  return join_defaults(kHandLearner, {{"cost_limit", cost_limit}});
+// init_std: a throw needs wild trials, a grip that must not be lost small ones.
+constexpr auto hand_learner(const char* cost_limit, const char* init_std) {
+  return join_defaults(kHandLearner, {{"init_std", init_std}, {"cost_limit", cost_limit}});
 }
 // With the gains of other algorithms that were measured on throws.
 constexpr auto throw_learner(const char* cost_limit) {
-  return join_defaults(kHandLearner, {{"pid_kp", "0.0075"},
+  return join_defaults(kHandLearner, {{"init_std", "0.4"},
+                                      {"pid_kp", "0.0075"},
                                       {"pid_ki", "0.00075"},
                                       {"pid_kd", "0.0075"},
                                       {"penalty", "2"},

@@ -204,7 +204,7 @@ constexpr CameraSpec kCameras[] = {
     {"close", {0.5, -0.85, 0.5}, {0, -0.65, 0.41}, kFovY},
 };
 
-constexpr auto kLearner = hand_learner("5");
+constexpr auto kLearner = hand_learner("5", "0.15");
 
 }  // namespace
 

@@ -122,7 +122,7 @@ const CameraSpec kCameras[] = {
     {"cloud_back", {-0.35, -0.45, 0.75}, {0, -0.38, 0.53}, 57 * kDegree},
 };
 
-constexpr auto kLearner = hand_learner("1");
+constexpr auto kLearner = hand_learner("1", "0.4");
 
 }  // namespace
 
