@@ -130,7 +130,8 @@ constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
                                                           {"multiplier_init", "1"},
                                                           {"normalize_obs", "false"},
                                                           {"multiplier_lr", "0.2"},
-                                                          {"focops:multiplier_lr", "0.4"}});
+                                                          {"focops:multiplier_lr", "0.4"},
+                                                          {"ipo:barrier_kappa", "5"}});
 
 }  // namespace
 

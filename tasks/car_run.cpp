@@ -98,7 +98,7 @@ constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
                                                           {"init_std", "0.05"},
                                                           {"std_min", "0.01"},
                                                           {"multiplier_init", "1"},
-                                                          {"penalty", "10"},
+                                                          {"ipo:barrier_kappa", "20"},
                                                           {"multiplier_lr", "0.2"}});
 
 }  // namespace

@@ -103,11 +103,9 @@ constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "500"},
                                                           {"multiplier_init", "0.3"},
                                                           {"multiplier_lr", "0.05"},
                                                           {"trpo_lag:multiplier_lr", "0.1"},
-                                                          {"trust_kl", "0.04"},
-                                                          {"trpo:lr_schedule", "constant"},
                                                           {"trpo_lag:lr_schedule", "constant"},
-                                                          {"cpo:lr_schedule", "constant"},
-                                                          {"pcpo:lr_schedule", "constant"}});
+                                                          {"cpo:trust_kl", "0.04"},
+                                                          {"cpo:lr_schedule", "constant"}});
 
 }  // namespace
 
