@@ -66,7 +66,8 @@ constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
                                                           {"std_min", "0.05"},
                                                           {"multiplier_init", "1"},
                                                           {"normalize_obs", "false"},
-                                                          {"multiplier_lr", "0.2"}});
+                                                          {"multiplier_lr", "0.2"},
+                                                          {"focops:multiplier_lr", "0.4"}});
 
 }  // namespace
 

@@ -57,7 +57,17 @@ inline constexpr auto kPointLearner = join_defaults(kSafetyLearner, {{"horizon",
                                                                      {"init_std", "0.6"},
                                                                      {"std_min", "0.05"},
                                                                      {"multiplier_init", "0.3"},
-                                                                     {"multiplier_lr", "0.2"}});
+                                                                     {"multiplier_lr", "0.2"},
+                                                                     {"pid_kp", "0.02"},
+                                                                     {"pid_ki", "0.01"},
+                                                                     {"pid_kd", "0.02"},
+                                                                     {"pid_smooth_p", "0.5"},
+                                                                     {"cpo:violation_scale", "discount"},
+                                                                     {"pcpo:violation_scale", "discount"},
+                                                                     {"p3o:violation_scale", "discount"},
+                                                                     {"penalty", "6"},
+                                                                     {"barrier_kappa", "0.5"},
+                                                                     {"barrier_max", "6"}});
 
 // A thing of the arena for pictures: lies at z, does not turn.
 Motion spot_motion(const Spot& spot, double z);
