@@ -67,7 +67,7 @@ constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
                                                           {"multiplier_init", "1"},
                                                           {"normalize_obs", "false"},
                                                           {"multiplier_lr", "0.2"},
-                                                          {"focops:multiplier_lr", "0.4"}});
+                                                          {"focops:multiplier_lr", "0.1"}});
 
 }  // namespace
 
