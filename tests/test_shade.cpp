@@ -1,14 +1,12 @@
 #include <gtest/gtest.h>
 
+#include "sense/primitive.hpp"
 #include "sense/shade.hpp"
 #include "sense_shapes.hpp"
 
 namespace rdm {
 namespace {
 
-Lanes3 wide(const Vec3& v) {
-  return splat(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
-}
 double sum(const Lanes3& c) {
   return c.x[0] + c.y[0] + c.z[0];
 }
