@@ -121,17 +121,8 @@ constexpr CameraSpec kCameras[] = {
     {"front", {0, -17, 13}, {0, 0, 0}, 0.9},
     {"top", {0, -0.01, 20}, {0, 0, 0}, 0.9},
 };
-constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
-                                                          {"learning_rate", "1e-3"},
-                                                          {"minibatches", "32"},
-                                                          {"discount", "0.99"},
-                                                          {"init_std", "0.6"},
-                                                          {"std_min", "0.05"},
-                                                          {"multiplier_init", "1"},
-                                                          {"normalize_obs", "false"},
-                                                          {"multiplier_lr", "0.2"},
-                                                          {"focops:multiplier_lr", "0.4"},
-                                                          {"ipo:barrier_kappa", "5"}});
+constexpr auto kDefaults =
+    join_defaults(kBallLearner, {{"focops:multiplier_lr", "0.4"}, {"ipo:barrier_kappa", "5"}});
 
 }  // namespace
 

@@ -56,18 +56,7 @@ class BallRun final : public StageTask {
 };
 
 constexpr auto kOptions = track_options(2.5, 9, 250);
-// Observations are scaled as they are; a normaliser that still drifts would move the held speed across the
-// limit.
-constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
-                                                          {"learning_rate", "1e-3"},
-                                                          {"minibatches", "32"},
-                                                          {"discount", "0.99"},
-                                                          {"init_std", "0.6"},
-                                                          {"std_min", "0.05"},
-                                                          {"multiplier_init", "1"},
-                                                          {"normalize_obs", "false"},
-                                                          {"multiplier_lr", "0.2"},
-                                                          {"focops:multiplier_lr", "0.1"}});
+constexpr auto kDefaults = join_defaults(kBallLearner, {{"focops:multiplier_lr", "0.1"}});
 
 }  // namespace
 

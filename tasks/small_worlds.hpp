@@ -30,5 +30,16 @@ inline constexpr auto kSafetyLearner = join_defaults(kSmallLearner, {{"passes", 
                                                                      {"focops:multiplier_max", "100"},
                                                                      {"multiplier_divide", "true"},
                                                                      {"cost_limit", "25"}});
+// Of the rolling ball. Its observations are scaled as they are; a normaliser that still drifts would move the
+// held speed across the limit.
+inline constexpr auto kBallLearner = join_defaults(kSafetyLearner, {{"horizon", "250"},
+                                                                    {"learning_rate", "1e-3"},
+                                                                    {"minibatches", "32"},
+                                                                    {"discount", "0.99"},
+                                                                    {"init_std", "0.6"},
+                                                                    {"std_min", "0.05"},
+                                                                    {"multiplier_init", "1"},
+                                                                    {"normalize_obs", "false"},
+                                                                    {"multiplier_lr", "0.2"}});
 
 }  // namespace rdm
