@@ -16,6 +16,11 @@ const char* color(size_t i) {
   return kPalette[i % std::size(kPalette)];
 }
 
+// Lines beyond the palette are dashed.
+const char* dash(size_t i) {
+  return i < std::size(kPalette) ? "" : " stroke-dasharray=\"5 4\"";
+}
+
 constexpr double kPanelWidth = 330, kPanelHeight = 210;                           // of the plotting area
 constexpr double kLeft = 58, kRight = 16, kTop = 34, kBottom = 36, kMargin = 14;  // around it
 constexpr double kTitleHeight = 34, kLegendHeight = 24, kLegendWidth = 9;         // the last: of a letter
@@ -80,7 +85,7 @@ class PanelDrawing {
     for (const Series& s : panel.series) {
       for (const double v : s.x) x.add(v);
       for (const auto* values : {&s.y, &s.low, &s.high})
-        for (const double v : *values) y.add(v);
+        for (const double v : *values) y.add(shown(v));
     }
     x.add(0);
     for (const Level& l : panel.levels) y.add(l.y);
@@ -111,6 +116,8 @@ class PanelDrawing {
   }
 
  private:
+  // A band of shares ends where shares do.
+  double shown(double v) const { return panel_.share ? std::clamp(v, 0.0, 1.0) : v; }
   double at_x(double v) const { return left_ + (v - x_.low) / (x_.high - x_.low) * kPanelWidth; }
   double at_y(double v) const { return top_ + (y_.high - v) / (y_.high - y_.low) * kPanelHeight; }
 
@@ -137,8 +144,8 @@ class PanelDrawing {
     std::string forth, back;
     for (size_t i = 0; i < s.low.size(); ++i) {
       if (!std::isfinite(s.low[i]) || !std::isfinite(s.high[i])) continue;
-      forth += format("%s%.1f %.1f", forth.empty() ? "M" : "L", at_x(s.x[i]), at_y(s.high[i]));
-      back = format("L%.1f %.1f", at_x(s.x[i]), at_y(s.low[i])) + back;
+      forth += format("%s%.1f %.1f", forth.empty() ? "M" : "L", at_x(s.x[i]), at_y(shown(s.high[i])));
+      back = format("L%.1f %.1f", at_x(s.x[i]), at_y(shown(s.low[i]))) + back;
     }
     if (forth.empty()) return "";
     return format("<path class=\"band\" fill=\"%s\" d=\"", color(s.color)) + forth + back + "Z\"/>\n";
@@ -153,7 +160,8 @@ class PanelDrawing {
       pen = good;
     }
     if (path.empty()) return "";
-    return format("<path class=\"line\" stroke=\"%s\" d=\"", color(s.color)) + path + "\"/>\n";
+    return format("<path class=\"line\" stroke=\"%s\"%s d=\"", color(s.color), dash(s.color)) + path +
+           "\"/>\n";
   }
 
   const Panel& panel_;
@@ -175,9 +183,9 @@ std::string draw_legend(const std::vector<LegendEntry>& legend, double width, do
     }
     const double y = top + (*rows - 1) * kLegendHeight;
     out += format(
-        "<line class=\"line\" stroke=\"%s\" x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\"/>"
+        "<line class=\"line\" stroke=\"%s\"%s x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\"/>"
         "<text class=\"legend\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-        color(e.color), x, x + 22, y, y, x + 29, y + 4, escaped(e.label).c_str());
+        color(e.color), dash(e.color), x, x + 22, y, y, x + 29, y + 4, escaped(e.label).c_str());
     x += space;
   }
   return out;
