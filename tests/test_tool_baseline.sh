@@ -1,11 +1,6 @@
 #!/bin/sh
 # test_tool_baseline.sh TOOL: the floor rows of tasks: three policies each, as `eval` gives them.
-set -u
-tool=$(realpath "$1")
-failed=0
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir" || exit 1
+. "$(dirname "$0")/tool.sh"
 
 check() {  # check WHAT COMMAND...
   what=$1

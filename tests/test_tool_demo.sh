@@ -1,13 +1,8 @@
 #!/bin/sh
 # test_tool_demo.sh TOOL: the demonstrations that the tool carries play, follow what is observed, and a bad script
 # is named by its line.
-set -u
-tool=$(realpath "$1")
-demos=$(realpath "$(dirname "$0")/../examples/demos")
-failed=0
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir" || exit 1
+. "$(dirname "$0")/tool.sh"
+demos=$here/../examples/demos
 
 for file in "$demos"/*.demo; do
   task=$(basename "$file" .demo)

@@ -2,12 +2,7 @@
 # test_tool_export.sh TOOL: exported files give the policy's actions. The ONNX file runs in onnxruntime-node,
 # which npm puts beside the build (77, a skip, where there is no npm or no network); the safetensors file is
 # read by Python when it is there.
-set -u
-tool=$(realpath "$1")
-here=$(cd "$(dirname "$0")" && pwd)
-failed=0
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
+. "$(dirname "$0")/tool.sh"
 
 modules=$(dirname "$(dirname "$tool")")/npm
 module=$modules/node_modules/onnxruntime-node

@@ -1,11 +1,6 @@
 #!/bin/sh
 # test_tool_hull.sh TOOL: a mesh becomes an object that is thrown; .obj and both kinds of .stl are read.
-set -u
-tool=$(realpath "$1")
-failed=0
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir" || exit 1
+. "$(dirname "$0")/tool.sh"
 say() { echo "$*"; failed=1; }
 
 # A block of 40 x 60 x 100 mm with points that are no corners of its hull.

@@ -1,12 +1,7 @@
 #!/bin/sh
 # test_tool_props.sh TOOL: demonstrations do what they claim, on the default engine: bottles are lifted by their
 # necks, a broom is held and swept, a block leaves its tower; throws are caught, costs under their limits.
-set -u
-tool=$(realpath "$1")
-failed=0
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir" || exit 1
+. "$(dirname "$0")/tool.sh"
 
 number() { grep -o "\"$1\":\[*[-0-9.e+]*" row | head -1 | grep -o '[-0-9.e+]*$'; }
 

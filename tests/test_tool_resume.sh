@@ -1,12 +1,7 @@
 #!/bin/sh
 # test_tool_resume.sh TOOL: a run that was killed and resumed ends in the same bytes as one that was not
 # (Time/* columns apart), wherever it was killed; SIGINT saves and exits with status 0.
-set -u
-tool=$(realpath "$1")
-failed=0
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir" || exit 1
+. "$(dirname "$0")/tool.sh"
 flags='--envs 8 --set max_steps=20 --set hidden=16,16 --set horizon=8 --eval-every 4 --checkpoint-every 3'
 steps=20000
 

@@ -1,12 +1,7 @@
 #!/bin/sh
 # test_tool_threads.sh TOOL: the same seed gives the same bytes for any number of threads: rollouts with their
 # state hash, and whole training runs.
-set -u
-tool=$(realpath "$1")
-failed=0
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir" || exit 1
+. "$(dirname "$0")/tool.sh"
 for threads in 0 1 2 4; do
   "$tool" rollout --policy random --episodes 6 --envs 4 --seed 5 --threads $threads --out $threads.csv --json \
     2> /dev/null | sed 's/"file":[^}]*//' > $threads.json

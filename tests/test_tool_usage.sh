@@ -1,11 +1,6 @@
 #!/bin/sh
 # test_tool_usage.sh TOOL: exit statuses, nearest names, and that --json leaves one JSON object on stdout.
-set -u
-tool=$(realpath "$1")
-failed=0
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir" || exit 1
+. "$(dirname "$0")/tool.sh"
 
 # expect STATUS TEXT ARGUMENTS...: the exit status, and a text that stderr holds in one line.
 expect() {
