@@ -109,33 +109,18 @@ const char* throw_object_choices() {
 }
 
 Vec3 solid_moment(ShapeKind kind, const Vec3& size, double mass) {
-  const double r = size.x, half = size.y;
+  const auto principal = [](const Inertia& i) { return Vec3{i.moment[0], i.moment[1], i.moment[2]}; };
   switch (kind) {
-    case ShapeKind::kSphere: {
-      const double i = 0.4 * mass * r * r;
-      return {i, i, i};
-    }
-    case ShapeKind::kBox: {
-      const double k = mass / 3;
-      return {k * (size.y * size.y + size.z * size.z), k * (size.x * size.x + size.z * size.z),
-              k * (size.x * size.x + size.y * size.y)};
-    }
-    case ShapeKind::kCylinder: {
-      const double side = mass * (3 * r * r + 4 * half * half) / 12;
-      return {side, side, 0.5 * mass * r * r};
-    }
-    case ShapeKind::kCapsule: {
-      const double tube = kPi * r * r * 2 * half, ends = 4.0 / 3 * kPi * r * r * r;
-      const double m_tube = mass * tube / (tube + ends), m_ends = mass - m_tube;
-      // a half sphere's centre of mass sits 3/8 r from its flat side
-      const double side = m_tube * (3 * r * r + 4 * half * half) / 12 +
-                          m_ends * (0.4 * r * r + half * half + 0.75 * half * r);
-      return {side, side, (0.5 * m_tube + 0.4 * m_ends) * r * r};
-    }
-    case ShapeKind::kEllipsoid: {
-      const Inertia i = ellipsoid_inertia(mass, size);
-      return {i.moment[0], i.moment[1], i.moment[2]};
-    }
+    case ShapeKind::kSphere:
+      return principal(sphere_inertia(mass, size.x));
+    case ShapeKind::kBox:
+      return principal(box_inertia(mass, size));
+    case ShapeKind::kCylinder:
+      return principal(cylinder_inertia(mass, size.x, size.y));
+    case ShapeKind::kCapsule:
+      return principal(capsule_inertia(mass, size.x, size.y));
+    case ShapeKind::kEllipsoid:
+      return principal(ellipsoid_inertia(mass, size));
     case ShapeKind::kHull:
     case ShapeKind::kPlane:
       break;
