@@ -56,6 +56,7 @@ void Collector::open(const Plan& plan, const Networks& nets, Lanes& lanes) {
   normalize_ = o.flag("normalize_obs");
   obs_count_max_ = o.number("obs_count_max");
   normalize_reward_ = o.flag("normalize_reward");
+  reward_factor_ = static_cast<float>(o.number("reward_factor"));
   normalize_cost_ = o.flag("normalize_cost") && plan.config.cost_dim > 0;
   terminal_cost_ = o.flag("terminal_cost");
   discounted_limit_ = o.flag("discounted_limit");
@@ -207,6 +208,10 @@ void Collector::scale_rewards(const Transition& t) {
   if (normalize_reward_) {
     normalizer_merge(reward_scale_, t.reward, envs, t.valid, 0);
     normalizer_apply(reward_scale_, t.reward, envs, scaled_reward_);
+    reward_ = scaled_reward_;
+  }
+  if (reward_factor_ != 1) {
+    for (int32_t i = 0; i < envs; ++i) scaled_reward_[i] = reward_factor_ * reward_[i];
     reward_ = scaled_reward_;
   }
   if (normalize_cost_) {

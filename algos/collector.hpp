@@ -61,8 +61,7 @@ class Collector {
   float* final_value_ = nullptr;  // [num_envs] V of the final observation after truncation, else 0
   float* final_cost_ = nullptr;   // [num_envs][num_limited]
   int32_t* listed_ = nullptr;     // [num_envs] environments that were truncated
-  // What is learned from: [num_envs] and [num_envs][cost_dim], the transition's own or normalised in
-  // scaled_*.
+  // What is learned from: [num_envs] and [num_envs][cost_dim], the transition's own or scaled in scaled_*.
   const float *reward_ = nullptr, *cost_ = nullptr;
   float *scaled_reward_ = nullptr, *scaled_cost_ = nullptr;
   AdvantageOptions advantage_;
@@ -71,6 +70,7 @@ class Collector {
   bool pending_ = false;  // a sampled act waits for its record
   bool normalize_ = true, terminal_cost_ = false, discounted_limit_ = false;
   bool normalize_reward_ = false, normalize_cost_ = false;
+  float reward_factor_ = 1;
 };
 
 // Error(kArgument) naming the first row of x [rows][dim] that is not finite; rows whose mask is 0 are

@@ -39,6 +39,8 @@ inline constexpr std::array kSharedOptions = {
     flag_option("normalize_reward", false,
                 "learn from rewards less their running mean, over their deviation"),
     flag_option("normalize_cost", false, "the same for costs; limits hold for costs as they are"),
+    number_option("reward_factor", 1, 1e-9, 1e9,
+                  "factor on rewards in what is learned; brings values near 1, where the critic learns soon"),
     // returns
     number_option("discount", 0.99, 0, 1, "per control step; a decision has discount^action_repeat"),
     number_option("lambda", 0.95, 0, 1, "of the reward advantage (GAE)"),

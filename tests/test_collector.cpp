@@ -298,6 +298,17 @@ TEST(Collector, RewardsAndCostsAreNormalisedWhereItIsAsked) {
   EXPECT_EQ(b.collector.episodes().stats().charged_cost[0], 1);
 }
 
+TEST(Collector, RewardsAreLearnedTimesAFactor) {
+  AgentSetup s = world();
+  Bench b(std::move(s.with("reward_factor", "0.25")));
+  b.reward = {1, 2, 3, 4};
+  b.terminated = {1, 1, 1, 1};
+  b.decide();
+  for (size_t i = 0; i < 4; ++i) EXPECT_EQ(b.rollout().reward[i], 0.25f * static_cast<float>(i + 1));
+  EXPECT_EQ(b.rollout().cost[0], 2);
+  EXPECT_EQ(b.collector.episodes().stats().ret, 2.5) << "what is reported stays as it is";
+}
+
 TEST(Collector, DiscountedLimit) {
   AgentSetup s = world();
   Bench b(std::move(s.with("discounted_limit", "on")));

@@ -154,6 +154,7 @@ TEST(OptionTables, PeersCanBeMatched) {
       {"ppo", "normalize_obs", "false|true", "2"},
       {"ppo", "normalize_reward", "false|true", "2"},
       {"ppo", "normalize_cost", "false|true", "2"},
+      {"ppo", "reward_factor", "0.01|1", "0"},
       {"ppo", "preset", "default|paper|omnisafe|safe", "none"},
   };
   for (const Choice& c : choices) {
