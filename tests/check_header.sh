@@ -7,7 +7,7 @@ status=0
 strict='-Wall -Wextra -pedantic -Werror -fsyntax-only'
 try() { # try COMPILER LANGUAGE HEADER DIALECT
   padded=-Wpadded
-  [ "$3" != redman.hpp ] || padded=
+  case $3 in *.hpp) padded= ;; esac
   for macro in RDM_STABLE_ONLY RDM_EXPERIMENTAL; do
     # shellcheck disable=SC2086
     printf '#include <redman/%s>\n' "$3" | "$1" -x "$2" "-std=$4" "-D$macro" "-I$root/include" $strict $padded - ||
@@ -15,6 +15,7 @@ try() { # try COMPILER LANGUAGE HEADER DIALECT
   done
 }
 headers=$(cd "$root/include/redman" && ls -- *.h)
+owners=$(cd "$root/include/redman" && ls -- *.hpp)
 for compiler in "$cc" clang; do
   command -v "$compiler" > /dev/null || continue
   for header in $headers; do
@@ -25,7 +26,7 @@ for compiler in "$cxx" clang++; do
   command -v "$compiler" > /dev/null || continue
   for dialect in c++17 c++20; do
     for header in $headers; do try "$compiler" c++ "$header" $dialect; done
-    [ ! -f "$root/include/redman/redman.hpp" ] || try "$compiler" c++ redman.hpp $dialect
+    for header in $owners; do try "$compiler" c++ "$header" $dialect; done
   done
 done
 bare=$(awk -v mode=docs -f "$root/tests/header.awk" "$root"/include/redman/*.h)
