@@ -6,29 +6,13 @@
 # (control steps of the safe and the plain runs; 7 million for the egg and 3 for the ball, and 2), TASKS, OBJECTS,
 # LIMITS (cost limits; the paper's of each task).
 set -eu
-here=$(cd "$(dirname "$0")/.." && pwd)
-redman=${REDMAN:-$here/build/release/bin/redman}
-out=${1:-$here/runs/table}
-seeds=${SEEDS:-0 1 2} jobs=${JOBS:-2} ppo_steps=${PPO_STEPS:-2000000}
+# shellcheck source=examples/runs.sh
+. "$(dirname "$0")/runs.sh"
+out=${1:-runs/table}
+seeds=${SEEDS:-0 1 2} ppo_steps=${PPO_STEPS:-2000000}
 tasks=${TASKS:-hand_over_safe_finger hand_over_safe_joint} objects=${OBJECTS:-egg ball}
 algos=${ALGOS:-ppo_lag ppo}
 mkdir -p "$out"
-
-# value KEY FILE: a number of the tool's one-line JSON
-value() { sed -n "s/.*\"$1\":\[\{0,1\}\([-0-9.e+]*\|true\|false\).*/\1/p" "$2"; }
-
-train() {  # NAME TASK OBJECT ALGO LIMIT SEED STEPS
-  [ -s "$out/$1.json" ] && return
-  rm -rf "${out:?}/$1"
-  "$redman" train --task "$2" --algo "$4" --cost-limit "$5" --seed "$6" --steps "$7" --set object="$3" \
-    --out "$out/$1" --json > "$out/$1.tmp" 2> "$out/$1.log" && mv "$out/$1.tmp" "$out/$1.json"
-}
-
-baseline() {  # NAME TASK OBJECT POLICY
-  [ -s "$out/$1.json" ] && return
-  "$redman" rollout --task "$2" --policy "$4" --set object="$3" --episodes 500 --seed 1000000 --json \
-    > "$out/$1.tmp" && mv "$out/$1.tmp" "$out/$1.json"
-}
 
 # Limit of the paper's table for a task.
 paper_limit() { case $1 in *finger) echo 40 ;; *) echo 30 ;; esac; }
@@ -52,11 +36,13 @@ rows() {  # one line per run: KIND NAME TASK OBJECT POLICY-OR-ALGO LIMIT SEED ST
 
 rows | {
   while read -r kind name task object policy limit seed n; do
-    while [ "$(jobs -rp | wc -l)" -ge "$jobs" ]; do sleep 1; done
+    wait_turn
     if [ "$kind" = train ]; then
-      train "$name" "$task" "$object" "$policy" "$limit" "$seed" "$n" &
+      trained "$out/$name" --task "$task" --algo "$policy" --cost-limit "$limit" --seed "$seed" --steps "$n" \
+        --set object="$object" &
     else
-      baseline "$name" "$task" "$object" "$policy" &
+      kept "$out/$name.json" rollout --task "$task" --policy "$policy" --set object="$object" --episodes 500 \
+        --seed 1000000 &
     fi
   done
   wait

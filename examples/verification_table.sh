@@ -9,17 +9,14 @@
 # Environment: REDMAN (the tool), TASKS, ALGOS, SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), STEPS
 # (control steps; else 0.3 to 3 million by task), ENVS (worlds; 16).
 set -eu
-here=$(cd "$(dirname "$0")/.." && pwd)
-redman=${REDMAN:-$here/build/release/bin/redman}
-out=${1:-$here/runs/verification}
-seeds=${SEEDS:-0 1 2} jobs=${JOBS:-2} envs=${ENVS:-16}
+# shellcheck source=examples/runs.sh
+. "$(dirname "$0")/runs.sh"
+out=${1:-runs/verification}
+seeds=${SEEDS:-0 1 2} envs=${ENVS:-16}
 tasks=${TASKS:-bandit two_state lqr_line ball_run ball_circle car_run swimmer_velocity point_goal1 point_goal2
   point_button1 point_button2}
 algos=${ALGOS:-ppo trpo ppo_lag trpo_lag cppo_pid cpo pcpo focops p3o ipo}
 mkdir -p "$out"
-
-# value KEY FILE: a number or truth value of the tool's one-line JSON
-value() { sed -n "s/.*\"$1\":\[\{0,1\}\([-+.0-9a-z]*\).*/\1/p" "$2"; }
 
 steps() {
   case $1 in
@@ -47,29 +44,11 @@ known() {
   esac
 }
 
-train() {  # TASK ALGO SEED
-  local name=$1.$2.$3
-  [ -s "$out/$name.json" ] && return
-  if [ -s "$out/$name/config.json" ]; then
-    "$redman" train --resume "$out/$name" --json > "$out/$name.tmp" 2> "$out/$name.log"
-  else
-    "$redman" train --task "$1" --algo "$2" --seed "$3" --steps "${STEPS:-$(steps "$1")}" --envs "$envs" \
-      --out "$out/$name" --overwrite --json > "$out/$name.tmp" 2> "$out/$name.log"
-  fi && grep -q '"interrupted":false' "$out/$name.tmp" && mv "$out/$name.tmp" "$out/$name.json"
-}
-
-# tail_of FILE: return and cost, means over the last tenth of the epochs of a progress.csv.
-tail_of() {
-  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == "Metrics/EpRet") r = i; if ($i == "Metrics/EpCost") c = i } next }
-    { ret[NR] = $r; cost[NR] = $c }
-    END { first = NR - int((NR - 1) / 10) + 1; if (first > NR) first = NR
-      for (i = first; i <= NR; ++i) { a += ret[i]; b += cost[i] }
-      printf "%.4f,%.4f", a / (NR - first + 1), b / (NR - first + 1) }' "$1"
-}
-
 for task in $tasks; do for algo in $algos; do for seed in $seeds; do
-  while [ "$(jobs -rp | wc -l)" -ge "$jobs" ]; do sleep 1; done
-  train "$task" "$algo" "$seed" || echo "$task.$algo.$seed failed: see $out/$task.$algo.$seed.log" >&2 &
+  name=$task.$algo.$seed
+  wait_turn
+  trained "$out/$name" --task "$task" --algo "$algo" --seed "$seed" --steps "${STEPS:-$(steps "$task")}" --envs "$envs" ||
+    echo "$name failed: see $out/$name.log" >&2 &
 done; done; done
 wait
 

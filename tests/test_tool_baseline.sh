@@ -15,7 +15,7 @@ for task in ball_run two_state; do
     check "no row $task $policy" grep -q "{\"task\":\"$task\",\"policy\":\"$policy\",\"episodes\":20," rows
   done
 done
-check 'six rows' test "$(grep -o '"policy"' rows | wc -l)" -eq 6
+check 'six rows, for neither has a demonstration' test "$(grep -o '"policy"' rows | wc -l)" -eq 6
 
 # a ball at rest costs nothing; the random one falls short of the finish too
 "$tool" baseline --task ball_run --episodes 20 --markdown > table || exit 1
@@ -27,6 +27,13 @@ mean() { grep -o "$1[^{]*" "$2" | head -1 | grep -o '"return_mean":[^,]*'; }
 check 'eval differs' test "$(mean '"policy":"random"' rows)" = "$(mean '"policy":"random"' one)"
 "$tool" baseline --task ball_run --task two_state --episodes 20 --threads 3 --json > again || exit 1
 check 'threads differ' cmp -s rows again
+
+# a demonstration has its row, beside the floors, with the options that it was written for
+"$tool" baseline --task grasp --episodes 4 --json > grasp || exit 1
+check 'no row of the demonstration' grep -q '"policy":"demo","episodes":4,' grasp
+"$tool" rollout --task grasp --policy demo --episodes 4 --json > demo || exit 1
+check 'the demonstration is another one' \
+  test "$(mean '"policy":"demo"' grasp)" = "$(grep -o '"return_mean":[^,]*' demo)"
 
 "$tool" baseline --task nothing > out 2> err
 check 'an unknown task is wrong usage' test $? -eq 2

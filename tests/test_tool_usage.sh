@@ -74,7 +74,8 @@ json 'episodes return_mean return_std cost_mean cost_std success_rate length_mea
 json 'episodes return_mean cost_mean length_mean fall_rate hash' rollout --policy random --set max_steps=5
 json 'file width height frames frames_per_second' render --step 2 --size 32x24 --out a.png
 json 'file width height frames frames_per_second' render --strip 3 --size 32x24 --out b.png --to 4
-json 'task envs threads steps_per_second bytes_per_env allocations_per_step max_joint_drift_m' \
+json 'task envs threads steps_per_second bytes_per_env allocations_per_step max_joint_drift_m contacts_mean
+      contacts_max overflowed diverged' \
   bench step --envs 2 --seconds 0.05
 json 'samples_per_second allocations_per_update bytes' \
   bench update --obs 8 --act 2 --hidden 16,16 --samples 256 --minibatch 64 --seconds 0.01

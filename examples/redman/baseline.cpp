@@ -1,4 +1,6 @@
-// `baseline`: what policies without learning get, so that every learning figure has its floor beside it.
+// `baseline`: what policies without learning get, so that every learning figure has its floor beside it, and
+// the demonstration where the tool carries one.
+#include "actor.hpp"
 #include "commands.hpp"
 #include "evaluate.hpp"
 #include "names.hpp"
@@ -6,8 +8,6 @@
 
 namespace tool {
 namespace {
-
-constexpr const char* kPolicies[] = {"zero", "hold", "random"};
 
 struct BaselineFlags {
   std::vector<std::string> tasks;  // empty: all
@@ -24,14 +24,22 @@ std::vector<std::string> chosen_tasks(const BaselineFlags& flags) {
   return names;
 }
 
+std::vector<std::string> policies_of(const std::string& task) {
+  std::vector<std::string> names = {"zero", "hold", "random"};
+  if (has_builtin_demo(task)) names.push_back("demo");
+  return names;
+}
+
 Report run_baseline(const BaselineFlags& flags) {
   Json rows = Json::array();
   Table table({"task", "policy", "return", "cost", "limit", "length", "success"});
   for (const std::string& task : chosen_tasks(flags))
-    for (const char* policy : kPolicies) {
+    for (const std::string& policy : policies_of(task)) {
       PoolSettings pool = flags.pool;
       pool.task = task;
-      const Evaluation e = evaluate(choose_actor(policy), pool, {}, flags.episodes, false);
+      const ActorChoice choice = choose_actor(policy);
+      adopt_task(choice, true, pool);
+      const Evaluation e = evaluate(choice, pool, {}, flags.episodes, false);
       const Summary& s = e.summary;
       Json row = {{"task", task}, {"policy", policy}};
       row.update(evaluation_json(e, flags.episodes));
@@ -49,7 +57,8 @@ Report run_baseline(const BaselineFlags& flags) {
 void add_baseline(CLI::App& app, Run& run) {
   auto flags = std::make_shared<BaselineFlags>();
   flags->pool.envs = kEvalEnvs;
-  CLI::App* command = app.add_subcommand("baseline", "Evaluate zero, hold and random actions on every task");
+  CLI::App* command = app.add_subcommand(
+      "baseline", "Evaluate zero, hold and random actions, and demonstrations, on every task");
   command->add_option("--task,--env-id", flags->tasks, "task; repeatable; default: all")
       ->allow_extra_args(false);
   command->add_option("--envs,--num-envs", flags->pool.envs, "worlds")->check(CLI::PositiveNumber);

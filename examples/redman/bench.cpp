@@ -124,6 +124,7 @@ Report bench_step(StepFlags flags) {
   const double rate = static_cast<double>(steps) * flags.pool.envs / seconds;
   const double per_step =
       allocation_count() < 0 ? -1 : static_cast<double>(allocations) / static_cast<double>(steps);
+  const rdm_pool_stats stats = pool.stats();
   const Json json = {{"task", task_at(pool.spec().task).name},
                      {"envs", flags.pool.envs},
                      {"threads", flags.pool.threads},
@@ -131,6 +132,10 @@ Report bench_step(StepFlags flags) {
                      {"bytes_per_env", bytes},
                      {"allocations_per_step", per_step},
                      {"max_joint_drift_m", drift},
+                     {"contacts_mean", stats.contacts_mean},
+                     {"contacts_max", stats.contacts_max},
+                     {"overflowed", stats.overflowed},
+                     {"diverged", stats.diverged},
                      {"seconds", seconds}};
   return {json,
           format("%.0f control steps/s (%d worlds, %d threads), %.0f kB per world, %g allocations per step, "

@@ -47,6 +47,7 @@ extern const CarriedDemo kCarriedDemos[];
 DemoScript parse_demo(const std::string& text, const std::string& file);
 // The script that the tool carries for a task; Failure when there is none.
 DemoScript builtin_demo(const std::string& task);
+bool has_builtin_demo(const std::string& task);
 
 // A script at work in the worlds of one pool.
 class Demo {

@@ -100,6 +100,13 @@ DemoScript::Command read_command(Line& line, const std::string& entry) {
   return c;
 }
 
+// Null when the tool carries none.
+const char* carried_text(const std::string& task) {
+  for (const CarriedDemo* c = kCarriedDemos; c->task; ++c)
+    if (same_name(task, c->task)) return c->text;
+  return nullptr;
+}
+
 }  // namespace
 
 DemoScript parse_demo(const std::string& text, const std::string& file) {
@@ -134,10 +141,13 @@ DemoScript parse_demo(const std::string& text, const std::string& file) {
   return script;
 }
 
+bool has_builtin_demo(const std::string& task) {
+  return carried_text(task) != nullptr;
+}
+
 DemoScript builtin_demo(const std::string& task) {
   const std::string name = task_at(find_task(task)).name;
-  for (const CarriedDemo* c = kCarriedDemos; c->task; ++c)
-    if (same_name(name, c->task)) return parse_demo(c->text, name + ".demo");
+  if (const char* text = carried_text(name)) return parse_demo(text, name + ".demo");
   throw Failure("policy demo: there is no demonstration of " + name + "; write one, and give its file");
 }
 

@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# The README's table of tasks: what PPO-Lag and PPO learn on each of the paper's ten with the defaults, beside the
+# floors (zero, hold, random) and the demonstration, 100 fresh episodes each. Finished runs are kept and stopped ones
+# go on, so the script can be stopped and called again.
+#   bash examples/task_table.sh [OUT]      OUT: folder of the runs, default runs/tasks
+# It leaves OUT/TASK.svg, the curves of a task's runs.
+# Environment: REDMAN (the tool), TASKS, ALGOS ("ppo_lag ppo"), SEEDS ("0 1"), JOBS (runs at once, one thread each;
+# 2), STEPS (control steps; else 0.5 to 5 million by task).
+set -eu
+# shellcheck source=examples/runs.sh
+. "$(dirname "$0")/runs.sh"
+out=${1:-runs/tasks}
+tasks=${TASKS:-hand_over_safe_finger hand_over_safe_joint catch_underarm_safe_finger catch_underarm_safe_joint grasp
+  reorient hand_over_wall jenga pick_bottles clean_house}
+algos=${ALGOS:-ppo_lag ppo} seeds=${SEEDS:-0 1}
+mkdir -p "$out"
+
+steps() {
+  case $1 in
+    jenga) echo 1000000 ;;
+    pick_bottles | clean_house) echo 2000000 ;;
+    *) echo 5000000 ;;
+  esac
+}
+
+for task in $tasks; do
+  wait_turn
+  kept "$out/$task.floor.json" baseline --task "$task" --seed 1000000 &
+  for algo in $algos; do for seed in $seeds; do
+    wait_turn
+    name=$task.$algo.$seed
+    trained "$out/$name" --task "$task" --algo "$algo" --seed "$seed" --steps "${STEPS:-$(steps "$task")}" ||
+      echo "$name failed: see $out/$name.log" >&2 &
+  done; done
+done
+wait
+
+# One line per policy of a task's floor rows: POLICY RETURN COST
+floor() {
+  tr '{' '\n' < "$out/$1.floor.json" | sed -n 's/.*"policy":"\([a-z]*\)".*"return_mean":\([-+.0-9e]*\).*"cost_mean":\[\([-+.0-9e]*\).*/\1 \2 \3/p'
+}
+
+echo "| task (limit) | zero | hold | random | demonstration | algorithm | return (each seed) | cost | length | falls | success | steps | wall s |"
+echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+for task in $tasks; do
+  curves=()
+  floors=$(for policy in zero hold random demo; do
+    floor "$task" | awk -v p="$policy" '$1 == p { printf "%.4g @ %.3g | ", $2, $3 }'; done)
+  for algo in $algos; do
+    for seed in $seeds; do
+      f=$out/$task.$algo.$seed.json
+      [ -s "$f" ] || continue
+      echo "$(value return "$f") $(value cost "$f") $(value length "$f") $(value fall_rate "$f") $(value success_rate "$f")" \
+        "$(value env_steps "$f") $(value wall_seconds "$f") $(value cost_limit "$f")"
+    done | awk -v head="$task" -v floors="$floors" -v algo="$algo" '
+      { for (k = 1; k <= 8; ++k) sum[k] += $k
+        each = each (NR > 1 ? ", " : "") sprintf("%.4g", $1); costs = costs (NR > 1 ? ", " : "") sprintf("%.3g", $2) }
+      END { if (NR == 0) exit
+        printf "| `%s` (%g) | %s`%s` | %.4g (%s) | %.3g (%s) | %.0f | %.0f %% | %.0f %% | %.2g M | %.0f |\n", head, sum[8] / NR,
+          floors, algo, sum[1] / NR, each, sum[2] / NR, costs, sum[3] / NR, 100 * sum[4] / NR, 100 * sum[5] / NR,
+          sum[6] / NR / 1e6, sum[7] / NR }'
+    floors=" | | | | "
+  done
+  for algo in $algos; do for seed in $seeds; do
+    [ -s "$out/$task.$algo.$seed.json" ] && curves+=("$out/$task.$algo.$seed")
+  done; done
+  [ ${#curves[@]} -eq 0 ] || "$redman" plot "${curves[@]}" --out "$out/$task.svg" > "$out/$task.plot.log"
+done
