@@ -5,7 +5,7 @@
 #   bash examples/task_table.sh [OUT]      OUT: folder of the runs, default runs/tasks
 # It leaves OUT/TASK.svg, the curves of a task's runs.
 # Environment: REDMAN (the tool), TASKS, ALGOS ("ppo_lag ppo"), SEEDS ("0 1"), JOBS (runs at once, one thread each;
-# 2), STEPS (control steps; else 0.5 to 5 million by task).
+# 2), STEPS (control steps; else 1.5 to 8 million by task).
 set -eu
 # shellcheck source=examples/runs.sh
 . "$(dirname "$0")/runs.sh"
@@ -17,9 +17,10 @@ mkdir -p "$out"
 
 steps() {
   case $1 in
-    jenga) echo 1000000 ;;
-    pick_bottles | clean_house) echo 2000000 ;;
-    *) echo 5000000 ;;
+    jenga) echo 1500000 ;;
+    catch_underarm*) echo 6000000 ;;
+    hand_over_wall) echo 8000000 ;;
+    *) echo 3000000 ;;
   esac
 }
 

@@ -312,7 +312,9 @@ class CleanHouse final : public PropTask {
   Occupancy* map_ = nullptr;
 };
 
-constexpr auto kLearner = hand_learner("100", "0.15");
+// Rewards are near 30 a step.
+constexpr auto kLearner =
+    join_defaults(hand_learner("100", "0.05"), {{"discount", "0.98"}, {"reward_factor", "0.01"}});
 
 }  // namespace
 

@@ -119,7 +119,8 @@ const CameraSpec kCameras[] = {
     {"cloud_left", {0, -1.525, 1.5}, {0.1, 0.475, 0.5}, 57 * kDegree},
 };
 
-constexpr auto kLearner = throw_learner("3");
+// Until it is learned to throw through the hole, every throw costs: the limit has to wait.
+constexpr auto kLearner = join_defaults(throw_learner("3"), {{"multiplier_lr", "0.001"}});
 
 }  // namespace
 

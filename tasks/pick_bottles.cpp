@@ -202,7 +202,7 @@ constexpr CameraSpec kCameras[] = {
     {"close", {0.55, -0.75, 0.75}, {0, -0.62, 0.55}, kFovY},
 };
 
-constexpr auto kLearner = hand_learner("13", "0.15");
+constexpr auto kLearner = join_defaults(hand_learner("13", "0.15"), {{"discount", "0.98"}});
 
 }  // namespace
 

@@ -31,7 +31,7 @@ check 'threads differ' cmp -s rows again
 # a demonstration has its row, beside the floors, with the options that it was written for
 "$tool" baseline --task grasp --episodes 4 --json > grasp || exit 1
 check 'no row of the demonstration' grep -q '"policy":"demo","episodes":4,' grasp
-"$tool" rollout --task grasp --policy demo --episodes 4 --json > demo || exit 1
+"$tool" eval --task grasp --policy demo --episodes 4 --json > demo || exit 1
 check 'the demonstration is another one' \
   test "$(mean '"policy":"demo"' grasp)" = "$(grep -o '"return_mean":[^,]*' demo)"
 

@@ -18,31 +18,23 @@ struct PlotFlags {
   bool each = false;
 };
 
-// Runs that share a line: seeds of one task, algorithm and limit.
+// Runs that share a line: seeds of one task, algorithm and, where it tells lines apart, limit.
 struct Group {
   std::string label;
   std::vector<const RunData*> runs;
+  size_t color = 0;
 };
 
-std::string group_label(const RunData& run, bool many_tasks) {
-  std::string text = many_tasks ? run.task + ", " + run.algo : run.algo;
-  if (run.limit >= 0) text += ", limit " + number_text(run.limit);
-  return text;
-}
-
-std::vector<Group> make_groups(const std::vector<RunData>& runs, bool each) {
-  const bool many_tasks =
-      std::any_of(runs.begin(), runs.end(), [&](const RunData& r) { return r.task != runs[0].task; });
+std::vector<Group> make_groups(const std::vector<const RunData*>& runs, bool each, bool by_limit) {
   std::vector<Group> groups;
-  for (const RunData& run : runs) {
-    std::string label = group_label(run, many_tasks);
-    if (each) label += ", seed " + std::to_string(run.seed);
+  for (const RunData* run : runs) {
+    std::string label = run->algo;
+    if (by_limit && run->limit >= 0) label += ", limit " + number_text(run->limit);
+    if (each) label += ", seed " + std::to_string(run->seed);
     auto found = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.label == label; });
-    if (each || found == groups.end()) found = groups.insert(groups.end(), {label, {}});
-    found->runs.push_back(&run);
+    if (each || found == groups.end()) found = groups.insert(groups.end(), {label, {}, groups.size()});
+    found->runs.push_back(run);
   }
-  for (Group& g : groups)
-    if (g.runs.size() > 1) g.label += format(" (%zu runs)", g.runs.size());
   return groups;
 }
 
@@ -61,7 +53,7 @@ Series single_line(const RunData& run, const std::string& column, size_t color) 
 
 // Mean and standard deviation, as far as all runs of the group go.
 Series mean_line(const Group& group, const std::string& column, size_t color) {
-  constexpr int kPoints = 200;
+  constexpr int kPoints = 120;
   double last = group.runs[0]->column("TotalEnvSteps").back();
   for (const RunData* run : group.runs) last = std::min(last, run->column("TotalEnvSteps").back());
   Series s;
@@ -87,14 +79,14 @@ Series mean_line(const Group& group, const std::string& column, size_t color) {
   return s;
 }
 
-Panel make_panel(const char* title, const std::string& column, const std::vector<Group>& groups,
+Panel make_panel(const std::string& title, const std::string& column, const std::vector<Group>& groups,
                  bool share = false) {
   Panel panel;
   panel.title = title;
   panel.share = share;
-  for (size_t i = 0; i < groups.size(); ++i)
-    panel.series.push_back(groups[i].runs.size() == 1 ? single_line(*groups[i].runs[0], column, i)
-                                                      : mean_line(groups[i], column, i));
+  for (const Group& g : groups)
+    panel.series.push_back(g.runs.size() == 1 ? single_line(*g.runs[0], column, g.color)
+                                              : mean_line(g, column, g.color));
   return panel;
 }
 
@@ -105,31 +97,72 @@ std::vector<Level> limit_levels(const std::vector<Group>& groups) {
       std::all_of(groups.begin(), groups.end(), [&](const Group& g) { return g.runs[0]->limit == first; });
   if (shared) return first >= 0 ? std::vector<Level>{{kGrey, first}} : std::vector<Level>{};
   std::vector<Level> levels;
-  for (size_t i = 0; i < groups.size(); ++i)
-    if (groups[i].runs[0]->limit >= 0) levels.push_back({i, groups[i].runs[0]->limit});
+  for (const Group& g : groups)
+    if (g.runs[0]->limit >= 0) levels.push_back({g.color, g.runs[0]->limit});
   return levels;
+}
+
+struct Chart {
+  std::string title;
+  std::vector<Panel> panels;
+  std::vector<LegendEntry> legend;
+};
+
+Chart chart_of_a_task(const std::vector<const RunData*>& runs, bool each) {
+  std::vector<Group> groups = make_groups(runs, each, true);
+  Chart chart{runs[0]->task,
+              {make_panel("Return of an episode", "Metrics/EpRet", groups),
+               make_panel("Cost of an episode (dashed: limit)", "Metrics/EpCost", groups),
+               make_panel("Lagrange multiplier", "Metrics/LagrangeMultiplier", groups),
+               make_panel("Length of an episode, steps", "Metrics/EpLen", groups),
+               make_panel("Episodes that end in a fall", "Metrics/FallRate", groups, true),
+               make_panel("Episodes with success", "Metrics/SuccessRate", groups, true)},
+              {}};
+  chart.panels[1].levels = limit_levels(groups);
+  for (const Group& g : groups)
+    chart.legend.push_back(
+        {g.color, g.runs.size() > 1 ? g.label + format(" (%zu runs)", g.runs.size()) : g.label});
+  return chart;
+}
+
+// A row of panels for each task; an algorithm has one colour in all of them.
+Chart chart_of_tasks(const std::vector<std::vector<const RunData*>>& tasks, bool each) {
+  Chart chart{"Learning curves", {}, {}};
+  for (const auto& runs : tasks) {
+    std::vector<Group> groups = make_groups(runs, each, false);
+    for (Group& g : groups) {
+      auto& legend = chart.legend;
+      const auto known = std::find_if(legend.begin(), legend.end(),
+                                      [&](const LegendEntry& e) { return e.label == g.label; });
+      g.color = static_cast<size_t>(known - legend.begin());
+      if (known == legend.end()) legend.push_back({g.color, g.label});
+    }
+    chart.panels.push_back(make_panel(runs[0]->task + ": return", "Metrics/EpRet", groups));
+    chart.panels.push_back(make_panel("cost (dashed: limit)", "Metrics/EpCost", groups));
+    chart.panels.back().levels = limit_levels(groups);
+    chart.panels.push_back(make_panel("episodes with success", "Metrics/SuccessRate", groups, true));
+  }
+  return chart;
 }
 
 Report run_plot(const PlotFlags& flags) {
   std::vector<RunData> runs;
   for (const std::string& folder : flags.folders)
     for (const std::string& path : find_runs(folder)) runs.push_back(read_run(path));
-  const auto groups = make_groups(runs, flags.each);
-  std::vector<Panel> panels = {make_panel("Return of an episode", "Metrics/EpRet", groups),
-                               make_panel("Cost of an episode (dashed: limit)", "Metrics/EpCost", groups),
-                               make_panel("Lagrange multiplier", "Metrics/LagrangeMultiplier", groups),
-                               make_panel("Length of an episode, steps", "Metrics/EpLen", groups),
-                               make_panel("Episodes that end in a fall", "Metrics/FallRate", groups, true),
-                               make_panel("Episodes with success", "Metrics/SuccessRate", groups, true)};
-  panels[1].levels = limit_levels(groups);
-  std::vector<LegendEntry> legend;
-  for (size_t i = 0; i < groups.size(); ++i) legend.push_back({i, groups[i].label});
-  const bool one_task =
-      std::all_of(runs.begin(), runs.end(), [&](const RunData& r) { return r.task == runs[0].task; });
-  replace_file(flags.out,
-               draw_chart(one_task ? runs[0].task : "Learning curves", panels, 3, "control steps", legend));
-  return {{{"file", flags.out}, {"runs", runs.size()}, {"lines", groups.size()}},
-          "wrote " + flags.out + '\n'};
+  std::vector<std::vector<const RunData*>> tasks;
+  for (const RunData& run : runs) {
+    auto found = std::find_if(tasks.begin(), tasks.end(),
+                              [&](const auto& others) { return others[0]->task == run.task; });
+    if (found == tasks.end()) found = tasks.insert(tasks.end(), std::vector<const RunData*>());
+    found->push_back(&run);
+  }
+  const Chart chart =
+      tasks.size() == 1 ? chart_of_a_task(tasks[0], flags.each) : chart_of_tasks(tasks, flags.each);
+  size_t lines = 0;
+  for (size_t i = 0; i < chart.panels.size(); i += tasks.size() == 1 ? chart.panels.size() : 3)
+    lines += chart.panels[i].series.size();
+  replace_file(flags.out, draw_chart(chart.title, chart.panels, 3, "control steps", chart.legend));
+  return {{{"file", flags.out}, {"runs", runs.size()}, {"lines", lines}}, "wrote " + flags.out + '\n'};
 }
 
 }  // namespace
@@ -139,7 +172,8 @@ void add_plot(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("plot", "Draw the learning curves of run folders as SVG");
   command
       ->add_option("folders", flags->folders,
-                   "run folders, or folders of them; seeds of one setting become a mean with a band")
+                   "run folders, or folders of them; seeds of one setting become a mean with a band, several "
+                   "tasks a row of panels each")
       ->required();
   command->add_option("--out", flags->out, "SVG file; default plot.svg");
   command->add_flag("--each", flags->each, "a line for every folder");

@@ -1,0 +1,29 @@
+#!/bin/sh
+# test_tool_plot.sh TOOL: seeds of a setting share a line, tasks have a row of panels each, a limit is drawn.
+. "$(dirname "$0")/tool.sh"
+
+for run in 'ball_run ppo_lag 0' 'ball_run ppo_lag 1' 'ball_run ppo 0' 'two_state ppo_lag 0'; do
+  # shellcheck disable=SC2086
+  set -- $run
+  "$tool" train --task "$1" --algo "$2" --seed "$3" --envs 2 --steps 600 --set max_steps=20 --set horizon=50 \
+    --out "$1.$2.$3" --json > /dev/null 2> err || exit 1
+done
+
+check() {  # check WHAT TEXT FILE COUNT
+  count=$(grep -o -- "$2" "$3" | wc -l)
+  [ "$count" -eq "$4" ] || { echo "$1: $count instead of $4"; failed=1; }
+}
+
+"$tool" plot ball_run.* --out one.svg --json > one || exit 1
+check 'lines of one task' '"lines":2' one 1
+check 'panels of one task' 'class="title"' one.svg 6
+check 'the two seeds share a line' 'ppo_lag, limit 25 (2 runs)' one.svg 1
+check 'the limit' 'class="level"' one.svg 1
+"$tool" plot . --out all.svg --json > all || exit 1
+check 'runs' '"runs":4,"lines":3' all 1
+for task in ball_run two_state; do check "a row of $task" ">$task: return<" all.svg 1; done
+check 'an algorithm is named once' 'class="legend"' all.svg 2
+check 'the limits' 'class="level"' all.svg 2
+"$tool" plot ball_run.* --each --out each.svg --json > each || exit 1
+check 'lines of each' '"lines":3' each 1
+exit "$failed"
