@@ -3,7 +3,7 @@
 # floors (zero, hold, random) and the demonstration, 100 fresh episodes each. Finished runs are kept and stopped ones
 # go on, so the script can be stopped and called again.
 #   bash examples/task_table.sh [OUT]      OUT: folder of the runs, default runs/tasks
-# It leaves OUT/TASK.svg, the curves of a task's runs.
+# It leaves OUT/curves.svg.
 # Environment: REDMAN (the tool), TASKS, ALGOS ("ppo_lag ppo"), SEEDS ("0 1"), JOBS (runs at once, one thread each;
 # 2), STEPS (control steps; else 1.5 to 8 million by task).
 set -eu
@@ -44,7 +44,6 @@ floor() {
 echo "| task (limit) | zero | hold | random | demonstration | algorithm | return (each seed) | cost | length | falls | success | steps | wall s |"
 echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
 for task in $tasks; do
-  curves=()
   floors=$(for policy in zero hold random demo; do
     floor "$task" | awk -v p="$policy" '$1 == p { printf "%.4g @ %.3g | ", $2, $3 }'; done)
   for algo in $algos; do
@@ -62,8 +61,5 @@ for task in $tasks; do
           sum[6] / NR / 1e6, sum[7] / NR }'
     floors=" | | | | "
   done
-  for algo in $algos; do for seed in $seeds; do
-    [ -s "$out/$task.$algo.$seed.json" ] && curves+=("$out/$task.$algo.$seed")
-  done; done
-  [ ${#curves[@]} -eq 0 ] || "$redman" plot "${curves[@]}" --out "$out/$task.svg" > "$out/$task.plot.log"
 done
+"$redman" plot "$out" --out "$out/curves.svg" > /dev/null
