@@ -98,8 +98,8 @@ constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
                                                           {"init_std", "0.05"},
                                                           {"std_min", "0.01"},
                                                           {"multiplier_init", "1"},
-                                                          {"p3o:penalty", "40"},
-                                                          {"p3o:penalty_max", "40"},
+                                                          {"p3o:penalty", "60"},
+                                                          {"p3o:penalty_max", "60"},
                                                           {"ipo:barrier_kappa", "20"},
                                                           {"multiplier_lr", "0.2"}});
 
