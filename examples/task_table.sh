@@ -46,21 +46,24 @@ echo "| task (limit) | zero | hold | random | demonstration | algorithm | return
 echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
 for task in $tasks; do
   floors=$(for policy in zero hold random demo; do
-    floor "$task" | awk -v p="$policy" '$1 == p { printf "%.4g @ %.3g | ", $2, $3 }'; done)
+    floor "$task" | awk -v p="$policy" '$1 == p { printf ($2 < 1e3 ? "%.3g" : "%.0f") " @ %.3g | ", $2, $3 }'; done)
+  head="\`$task\`"
   for algo in $algos; do
     for seed in $seeds; do
       f=$out/$task.$algo.$seed.json
       [ -s "$f" ] || continue
       echo "$(value return "$f") $(value cost "$f") $(value length "$f") $(value fall_rate "$f") $(value success_rate "$f")" \
         "$(value env_steps "$f") $(value wall_seconds "$f") $(value cost_limit "$f")"
-    done | awk -v head="$task" -v floors="$floors" -v algo="$algo" '
+    done | awk -v head="$head" -v floors="$floors" -v algo="$algo" '
+      function number(x) { return sprintf(x < 1e3 ? "%.3g" : "%.0f", x) }
       { for (k = 1; k <= 8; ++k) sum[k] += $k
-        each = each (NR > 1 ? ", " : "") sprintf("%.4g", $1); costs = costs (NR > 1 ? ", " : "") sprintf("%.3g", $2) }
+        each = each (NR > 1 ? ", " : "") number($1); costs = costs (NR > 1 ? ", " : "") sprintf("%.3g", $2) }
       END { if (NR == 0) exit
-        printf "| `%s` (%g) | %s`%s` | %.4g (%s) | %.3g (%s) | %.0f | %.0f %% | %.0f %% | %.2g M | %.0f |\n", head, sum[8] / NR,
-          floors, algo, sum[1] / NR, each, sum[2] / NR, costs, sum[3] / NR, 100 * sum[4] / NR, 100 * sum[5] / NR,
+        if (head != "") head = head " (" sum[8] / NR ")"
+        printf "| %s | %s`%s` | %s (%s) | %.3g (%s) | %.0f | %.0f %% | %.0f %% | %.2g M | %.0f |\n", head, floors, algo,
+          number(sum[1] / NR), each, sum[2] / NR, costs, sum[3] / NR, 100 * sum[4] / NR, 100 * sum[5] / NR,
           sum[6] / NR / 1e6, sum[7] / NR }'
-    floors=" | | | | "
+    floors=" | | | | " head=""
   done
 done
 "$redman" plot "$out" --out "$out/curves.svg" > /dev/null
