@@ -22,7 +22,7 @@ for task in $tasks; do
   bench "$task" 2 articulated
   two=$(value steps_per_second "$part")
   bench "$task" 0 articulated
-  printf "| \`%s\` | %'.0f | %'.0f | %'.0f | %.0f | %g | %.1f | %d | %d |\n" "$task" \
+  printf "| \`%s\` | %.0f | %.0f | %.0f | %.0f | %g | %.1f | %d | %d |\n" "$task" \
     "$(value steps_per_second "$part")" "$two" "$ode" "$(awk -v b="$(value bytes_per_env "$part")" 'BEGIN { print b / 1e3 }')" \
     "$(value allocations_per_step "$part")" "$(value contacts_mean "$part")" "$(value contacts_max "$part")" \
     "$(value diverged "$part")"
