@@ -8,7 +8,7 @@
 set -eu
 # shellcheck source=examples/runs.sh
 . "$(dirname "$0")/runs.sh"
-out=${1:-runs/table}
+out=${1:-$root/runs/table}
 seeds=${SEEDS:-0 1 2} ppo_steps=${PPO_STEPS:-2000000}
 tasks=${TASKS:-hand_over_safe_finger hand_over_safe_joint} objects=${OBJECTS:-egg ball}
 algos=${ALGOS:-ppo_lag ppo}

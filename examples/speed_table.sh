@@ -5,8 +5,7 @@
 set -eu
 # shellcheck source=examples/runs.sh
 . "$(dirname "$0")/runs.sh"
-tasks=${TASKS:-hand_over_safe_finger hand_over_safe_joint catch_underarm_safe_finger catch_underarm_safe_joint grasp
-  reorient hand_over_wall jenga pick_bottles clean_house}
+tasks=${TASKS:-$paper_tasks}
 part=$(mktemp)
 trap 'rm -f "$part"' EXIT
 

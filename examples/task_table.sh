@@ -9,9 +9,8 @@
 set -eu
 # shellcheck source=examples/runs.sh
 . "$(dirname "$0")/runs.sh"
-out=${1:-runs/tasks}
-tasks=${TASKS:-hand_over_safe_finger hand_over_safe_joint catch_underarm_safe_finger catch_underarm_safe_joint grasp
-  reorient hand_over_wall jenga pick_bottles clean_house}
+out=${1:-$root/runs/tasks}
+tasks=${TASKS:-$paper_tasks}
 algos=${ALGOS:-ppo_lag ppo} seeds=${SEEDS:-0 1}
 mkdir -p "$out"
 

@@ -11,7 +11,7 @@
 set -eu
 # shellcheck source=examples/runs.sh
 . "$(dirname "$0")/runs.sh"
-out=${1:-runs/verification}
+out=${1:-$root/runs/verification}
 seeds=${SEEDS:-0 1 2} envs=${ENVS:-16}
 tasks=${TASKS:-bandit two_state lqr_line ball_run ball_circle car_run swimmer_velocity point_goal1 point_goal2
   point_button1 point_button2}
@@ -42,6 +42,15 @@ known() {
     point_button1) echo "OmniSafe PPO-Lag 4.6 / 21; PPO 27.0 / 152" ;;
     point_button2) echo "OmniSafe FOCOPS 2.4 / 18, TRPO-Lag 5.4 / 25; PPO 25.9 / 167" ;;
   esac
+}
+
+# tail_of CSV: "return,cost", means over the last tenth of the epochs of a progress.csv.
+tail_of() {
+  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == "Metrics/EpRet") r = i; if ($i == "Metrics/EpCost") c = i } next }
+    { ret[NR] = $r; cost[NR] = $c }
+    END { first = NR - int((NR - 1) / 10) + 1; if (first > NR) first = NR
+      for (i = first; i <= NR; ++i) { a += ret[i]; b += cost[i] }
+      printf "%.4f,%.4f", a / (NR - first + 1), b / (NR - first + 1) }' "$1"
 }
 
 for task in $tasks; do for algo in $algos; do for seed in $seeds; do

@@ -1,5 +1,5 @@
 #!/bin/sh
-# test_tool_baseline.sh TOOL: the floor rows of tasks: three policies each, as `eval` gives them.
+# test_tool_baseline.sh TOOL: the floor rows of tasks: three policies each and the demonstration, as `eval` gives them.
 . "$(dirname "$0")/tool.sh"
 
 check() {  # check WHAT COMMAND...

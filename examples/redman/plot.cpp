@@ -106,10 +106,11 @@ struct Chart {
   std::string title;
   std::vector<Panel> panels;
   std::vector<LegendEntry> legend;
+  size_t lines = 0;  // groups of runs
 };
 
 Chart chart_of_a_task(const std::vector<const RunData*>& runs, bool each) {
-  std::vector<Group> groups = make_groups(runs, each, true);
+  const std::vector<Group> groups = make_groups(runs, each, true);
   Chart chart{runs[0]->task,
               {make_panel("Return of an episode", "Metrics/EpRet", groups),
                make_panel("Cost of an episode (dashed: limit)", "Metrics/EpCost", groups),
@@ -117,7 +118,8 @@ Chart chart_of_a_task(const std::vector<const RunData*>& runs, bool each) {
                make_panel("Length of an episode, steps", "Metrics/EpLen", groups),
                make_panel("Episodes that end in a fall", "Metrics/FallRate", groups, true),
                make_panel("Episodes with success", "Metrics/SuccessRate", groups, true)},
-              {}};
+              {},
+              groups.size()};
   chart.panels[1].levels = limit_levels(groups);
   for (const Group& g : groups)
     chart.legend.push_back(
@@ -127,7 +129,7 @@ Chart chart_of_a_task(const std::vector<const RunData*>& runs, bool each) {
 
 // A row of panels for each task; an algorithm has one colour in all of them.
 Chart chart_of_tasks(const std::vector<std::vector<const RunData*>>& tasks, bool each) {
-  Chart chart{"Learning curves", {}, {}};
+  Chart chart{"Learning curves", {}, {}, 0};
   for (const auto& runs : tasks) {
     std::vector<Group> groups = make_groups(runs, each, false);
     for (Group& g : groups) {
@@ -137,6 +139,7 @@ Chart chart_of_tasks(const std::vector<std::vector<const RunData*>>& tasks, bool
       g.color = static_cast<size_t>(known - legend.begin());
       if (known == legend.end()) legend.push_back({g.color, g.label});
     }
+    chart.lines += groups.size();
     chart.panels.push_back(make_panel(runs[0]->task + ": return", "Metrics/EpRet", groups));
     chart.panels.push_back(make_panel("cost (dashed: limit)", "Metrics/EpCost", groups));
     chart.panels.back().levels = limit_levels(groups);
@@ -158,11 +161,8 @@ Report run_plot(const PlotFlags& flags) {
   }
   const Chart chart =
       tasks.size() == 1 ? chart_of_a_task(tasks[0], flags.each) : chart_of_tasks(tasks, flags.each);
-  size_t lines = 0;
-  for (size_t i = 0; i < chart.panels.size(); i += tasks.size() == 1 ? chart.panels.size() : 3)
-    lines += chart.panels[i].series.size();
   replace_file(flags.out, draw_chart(chart.title, chart.panels, 3, "control steps", chart.legend));
-  return {{{"file", flags.out}, {"runs", runs.size()}, {"lines", lines}}, "wrote " + flags.out + '\n'};
+  return {{{"file", flags.out}, {"runs", runs.size()}, {"lines", chart.lines}}, "wrote " + flags.out + '\n'};
 }
 
 }  // namespace
