@@ -67,7 +67,7 @@ inline constexpr auto kPointLearner = join_defaults(kSafetyLearner, {{"horizon",
                                                                      {"cpo:violation_scale", "discount"},
                                                                      {"pcpo:violation_scale", "discount"},
                                                                      {"p3o:violation_scale", "discount"},
-                                                                     {"p3o:minibatches", "4"},
+                                                                     {"p3o:minibatches", "2"},
                                                                      {"penalty", "8"},
                                                                      {"barrier_kappa", "0.5"},
                                                                      {"barrier_max", "6"}});
