@@ -2,7 +2,7 @@
 
 #include <iterator>
 
-#include "algos/option_tables.hpp"
+#include "algos/core/option_tables.hpp"
 #include "base/error.hpp"
 
 namespace rdm {
@@ -39,7 +39,7 @@ int32_t algo_find(const char* name) {
 }
 
 size_t Agent::memory(const AgentConfig& config) {
-  Plan plan = make_plan(config);
+  ResolvedAgentConfig plan = make_plan(config);
   const size_t rows = options_bytes(plan.row->info);
   const AlgoRow& row = *plan.row;
   return row.measure(std::move(plan)) + rows + Workers::memory(config.hooks, config.num_threads);
@@ -47,7 +47,7 @@ size_t Agent::memory(const AgentConfig& config) {
 
 Agent* Agent::create(const AgentConfig& config) {
   const HostScope scope(config.hooks);
-  Plan plan = make_plan(config);
+  ResolvedAgentConfig plan = make_plan(config);
   const AlgoRow& row = *plan.row;
   PolicyGradient* agent = row.make(config.hooks, std::move(plan));
   try {

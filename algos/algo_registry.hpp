@@ -2,8 +2,8 @@
 #pragma once
 #include <array>
 
-#include "algos/plan.hpp"
-#include "algos/policy_gradient.hpp"
+#include "algos/core/policy_gradient.hpp"
+#include "algos/core/resolved_config.hpp"
 
 namespace rdm {
 
@@ -14,8 +14,8 @@ enum class Costs : int32_t { kNone, kAny, kOne };
 struct AlgoRow {
   AlgoInfo info;
   Costs costs;
-  size_t (*measure)(Plan&& plan);
-  PolicyGradient* (*make)(const HostHooks& hooks, Plan&& plan);
+  size_t (*measure)(ResolvedAgentConfig&& plan);
+  PolicyGradient* (*make)(const HostHooks& hooks, ResolvedAgentConfig&& plan);
   void (*end)(PolicyGradient* agent);
 };
 const AlgoRow& algo_row(int32_t index);
@@ -30,13 +30,13 @@ constexpr AlgoRow make_algo_row(const char* name, const char* summary,
   AlgoRow row{};
   row.info = {name, summary, options.data(), static_cast<int32_t>(N)};
   row.costs = costs;
-  row.measure = [](Plan&& plan) -> size_t {
+  row.measure = [](ResolvedAgentConfig&& plan) -> size_t {
     T agent(std::move(plan));
     Arena arena;
     agent.carve(arena);
     return sizeof(T) + arena.used();
   };
-  row.make = [](const HostHooks& hooks, Plan&& plan) -> PolicyGradient* {
+  row.make = [](const HostHooks& hooks, ResolvedAgentConfig&& plan) -> PolicyGradient* {
     T* agent = host_new<T>(hooks, std::move(plan));
     return agent;
   };

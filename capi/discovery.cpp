@@ -3,7 +3,7 @@
 #if RDM_WITH_SIM
 #include "robot/robot.hpp"
 #include "tasks/catalog.hpp"
-#include "tasks/throw_objects.hpp"
+#include "tasks/throw/throw_objects.hpp"
 #endif
 
 using namespace rdm;
@@ -202,7 +202,7 @@ rdm_result rdm_object_at(int32_t index, rdm_object* out) {
 #endif
 
 #if RDM_WITH_LEARN
-#include "algos/agent.hpp"
+#include "algos/core/agent.hpp"
 
 int32_t rdm_algo_count(void) {
   return algo_count();

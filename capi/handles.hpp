@@ -1,12 +1,12 @@
 // The handles behind the ABI: the object itself, its error text, and what only the shim needs.
 #pragma once
-#include "capi/shim.hpp"
+#include "capi/abi_call.hpp"
 #if RDM_WITH_SIM
 #include "env/pool.hpp"
-#include "sense/raycast.hpp"
+#include "sense/render/raycast.hpp"
 #endif
 #if RDM_WITH_LEARN
-#include "algos/agent.hpp"
+#include "algos/core/agent.hpp"
 #include "nn/policy.hpp"
 #endif
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <mutex>
 
-#include "capi/shim.hpp"
+#include "capi/abi_call.hpp"
 #if RDM_WITH_LEARN
 #include "nn/mlp.hpp"
 #endif

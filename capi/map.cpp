@@ -4,7 +4,7 @@
 #include "redman/redman_map.h"
 
 #if RDM_WITH_SIM
-#include "sense/occupancy.hpp"
+#include "sense/map/occupancy.hpp"
 #include "sense/scene_shapes.hpp"
 
 using namespace rdm;

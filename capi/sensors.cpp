@@ -5,7 +5,7 @@
 #include "redman/redman_sense.h"
 
 #if RDM_WITH_SIM
-#include "sense/furthest.hpp"
+#include "sense/cloud/furthest.hpp"
 
 using namespace rdm;
 using namespace rdm::capi;

@@ -15,7 +15,7 @@ if(REDMAN_SIM)
 
   # OctoMap is linked once lib/sense uses it; its version is recorded in any case.
   find_package(octomap QUIET)
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/sense/occupancy*)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/sense/occupancy*)
   foreach(source ${sources})
     file(STRINGS ${source} lines REGEX "#include <octomap/")
     if(lines)

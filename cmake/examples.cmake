@@ -19,7 +19,7 @@ foreach(source ${sources})
   list(APPEND RDM_EXAMPLES ${name})
 endforeach()
 
-file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/redman/*.cpp)
+file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/redman/*.cpp)
 if(sources AND NOT REDMAN_TOOL STREQUAL "OFF" AND NOT RDM_TOOL_MISSING)
   # The tool carries the demonstrations.
   file(GLOB demos CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/demos/*.demo)
@@ -30,7 +30,7 @@ if(sources AND NOT REDMAN_TOOL STREQUAL "OFF" AND NOT RDM_TOOL_MISSING)
     file(READ ${demo} text)
     string(APPEND RDM_DEMOS "    {\"${name}\", R\"demo(${text})demo\"},\n")
   endforeach()
-  file(CONFIGURE OUTPUT demos.cpp @ONLY CONTENT "#include \"redman/demo.hpp\"
+  file(CONFIGURE OUTPUT demos.cpp @ONLY CONTENT "#include \"demo/demo.hpp\"
 namespace tool {
 const CarriedDemo kCarriedDemos[] = {
 @RDM_DEMOS@    {nullptr, nullptr},
@@ -38,7 +38,7 @@ const CarriedDemo kCarriedDemos[] = {
 }
 ")
   add_executable(redman_tool ${sources} ${CMAKE_CURRENT_BINARY_DIR}/demos.cpp)
-  target_include_directories(redman_tool PRIVATE ${PROJECT_SOURCE_DIR}/examples)
+  target_include_directories(redman_tool PRIVATE ${PROJECT_SOURCE_DIR}/examples/redman)
   target_link_libraries(redman_tool PRIVATE CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG)
   if(TARGET Qhull::qhull_r)
     target_compile_definitions(redman_tool PRIVATE REDMAN_QHULL=1)

@@ -1,15 +1,15 @@
 #include "tasks/catalog.hpp"
 
 #include "env/task.hpp"
-#include "tasks/catch_underarm.hpp"
-#include "tasks/clean_house.hpp"
-#include "tasks/grasp.hpp"
-#include "tasks/hand_over.hpp"
-#include "tasks/hand_over_wall.hpp"
-#include "tasks/jenga.hpp"
-#include "tasks/pick_bottles.hpp"
-#include "tasks/reorient.hpp"
+#include "tasks/hand/grasp.hpp"
+#include "tasks/hand/reorient.hpp"
+#include "tasks/props/clean_house.hpp"
+#include "tasks/props/jenga.hpp"
+#include "tasks/props/pick_bottles.hpp"
 #include "tasks/small_worlds.hpp"
+#include "tasks/throw/catch_underarm.hpp"
+#include "tasks/throw/hand_over.hpp"
+#include "tasks/throw/hand_over_wall.hpp"
 
 namespace rdm {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "demo.hpp"
+#include "demo/demo.hpp"
 #include "setup.hpp"
 
 namespace tool {

@@ -2,9 +2,9 @@
 // the demonstration where the tool carries one.
 #include "actor.hpp"
 #include "commands.hpp"
+#include "draw/text.hpp"
 #include "evaluate.hpp"
 #include "names.hpp"
-#include "text.hpp"
 
 namespace tool {
 namespace {

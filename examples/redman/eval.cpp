@@ -1,8 +1,8 @@
 // `eval`: how good a policy is, over many episodes.
 #include "commands.hpp"
+#include "draw/text.hpp"
 #include "evaluate.hpp"
 #include "names.hpp"
-#include "text.hpp"
 
 namespace tool {
 

@@ -4,9 +4,9 @@
 
 #include "actor.hpp"
 #include "commands.hpp"
+#include "draw/text.hpp"
 #include "files.hpp"
 #include "network.hpp"
-#include "text.hpp"
 
 namespace tool {
 namespace {

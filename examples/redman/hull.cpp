@@ -6,8 +6,8 @@
 #include <redman/redman.hpp>
 
 #include "commands.hpp"
+#include "draw/text.hpp"
 #include "mesh.hpp"
-#include "text.hpp"
 
 #ifdef REDMAN_QHULL
 #include <libqhull_r/qhull_ra.h>

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <redman/redman.hpp>
 
-#include "text.hpp"
+#include "draw/text.hpp"
 
 namespace tool {
 namespace {

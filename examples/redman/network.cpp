@@ -2,8 +2,8 @@
 
 #include <cinttypes>
 
+#include "draw/text.hpp"
 #include "report.hpp"
-#include "text.hpp"
 
 namespace tool {
 namespace {

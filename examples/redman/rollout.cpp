@@ -2,10 +2,10 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "draw/text.hpp"
 #include "episodes.hpp"
 #include "files.hpp"
 #include "names.hpp"
-#include "text.hpp"
 
 namespace tool {
 namespace {

@@ -9,9 +9,9 @@
 #include <ctime>
 #include <filesystem>
 
+#include "draw/text.hpp"
 #include "files.hpp"
 #include "names.hpp"
-#include "text.hpp"
 
 namespace tool {
 namespace {

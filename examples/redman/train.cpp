@@ -1,8 +1,8 @@
 // `train`: a run from flags or from its folder, and how good its policy is in the end.
 #include "commands.hpp"
+#include "draw/text.hpp"
 #include "evaluate.hpp"
 #include "names.hpp"
-#include "text.hpp"
 #include "trainer.hpp"
 
 namespace tool {

@@ -6,9 +6,9 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "draw/text.hpp"
 #include "files.hpp"
 #include "names.hpp"
-#include "text.hpp"
 
 namespace tool {
 namespace {

@@ -2,9 +2,9 @@
 #pragma once
 #include <optional>
 
-#include "curve.hpp"
+#include "bench/meter.hpp"
+#include "draw/curve.hpp"
 #include "episodes.hpp"
-#include "meter.hpp"
 #include "run_folder.hpp"
 
 namespace tool {

@@ -1,8 +1,8 @@
 // Pictures, points and voxels of the worlds of a pool: their buffers, and how one world's rows are filled.
 #pragma once
-#include "env/sense_options.hpp"
-#include "sense/depth_grid.hpp"
-#include "sense/raycast.hpp"
+#include "env/options/sense.hpp"
+#include "sense/cloud/depth_grid.hpp"
+#include "sense/render/raycast.hpp"
 
 namespace rdm {
 

@@ -6,7 +6,7 @@
 #include <new>
 
 #include "base/hash.hpp"
-#include "env/pool_impl.hpp"
+#include "env/pool_internal.hpp"
 
 namespace rdm {
 namespace {
@@ -56,7 +56,7 @@ Task* make_task(const PoolConfig& config) {
   return info.make(options, config.hooks);
 }
 
-PoolPlan::PoolPlan(const PoolConfig& c) : config(c) {
+ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
   if (c.num_envs < 1 || c.num_envs > kMaxEnvs)
     fail(Code::kRange, "num_envs: %d is outside [1, %d]", c.num_envs, kMaxEnvs);
   if (c.num_threads < 0 || c.num_threads > kMaxThreads)
@@ -75,20 +75,20 @@ PoolPlan::PoolPlan(const PoolConfig& c) : config(c) {
   sense = sense_from(options, *info);
 }
 
-PoolPlan::~PoolPlan() {
+ResolvedPoolConfig::~ResolvedPoolConfig() {
   if (task) info->destroy(task, config.hooks);
 }
 
-int32_t PoolPlan::num_blocks() const {
+int32_t ResolvedPoolConfig::num_blocks() const {
   const int32_t threads = config.num_threads > 1 ? config.num_threads : 1;
   return threads < config.num_envs ? threads : config.num_envs;
 }
 
-int32_t PoolPlan::block_begin(int32_t block) const {
+int32_t ResolvedPoolConfig::block_begin(int32_t block) const {
   return static_cast<int32_t>(int64_t{config.num_envs} * block / num_blocks());
 }
 
-Pool::Impl::Carved Pool::Impl::carve_rows(const PoolPlan& plan, Arena& arena) {
+Pool::Impl::Carved Pool::Impl::carve_rows(const ResolvedPoolConfig& plan, Arena& arena) {
   const size_t n = plan.num(), blocks = static_cast<size_t>(plan.num_blocks());
   const auto obs = static_cast<size_t>(plan.obs_dim), actions = static_cast<size_t>(plan.action_dim),
              costs = static_cast<size_t>(plan.cost_dim);
@@ -121,7 +121,7 @@ Pool::Impl::Carved Pool::Impl::carve_rows(const PoolPlan& plan, Arena& arena) {
   return c;
 }
 
-size_t Pool::Impl::arena_bytes(const PoolPlan& plan) {
+size_t Pool::Impl::arena_bytes(const ResolvedPoolConfig& plan) {
   Arena rows, world[2];  // the first world of a block and the others
   carve_rows(plan, rows);
   for (const bool partnered : {false, true}) {

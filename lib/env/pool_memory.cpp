@@ -1,6 +1,6 @@
 // What a pool would take, found by making its parts with hooks that count.
 #include "base/fpmode.hpp"
-#include "env/pool_impl.hpp"
+#include "env/pool_internal.hpp"
 
 namespace rdm {
 namespace {
@@ -38,7 +38,7 @@ void Pool::memory(const PoolConfig& config, size_t* ours, size_t* engines) {
   const HostScope scope(hooks);
   PoolConfig counted = config;
   counted.hooks = hooks;
-  const PoolPlan plan(counted);
+  const ResolvedPoolConfig plan(counted);
   size_t total = counter.live + sizeof(Pool) + sizeof(Impl) + Impl::arena_bytes(plan) + sizeof(Workers) +
                  Workers::memory(config.hooks, config.num_threads);
 

@@ -7,7 +7,7 @@
 
 #include "base/bytes.hpp"
 #include "base/hash.hpp"
-#include "env/pool_impl.hpp"
+#include "env/pool_internal.hpp"
 
 namespace rdm {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "env/fields.hpp"
-#include "env/pool_impl.hpp"
+#include "env/pool_internal.hpp"
 
 namespace rdm {
 namespace {

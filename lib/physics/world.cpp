@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "physics/articulated_world.hpp"
+#include "physics/articulated/articulated_world.hpp"
 #include "physics/kinematic_world.hpp"
-#include "physics/ode_world.hpp"
+#include "physics/ode/ode_world.hpp"
 
 namespace rdm {
 

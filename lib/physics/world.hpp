@@ -7,7 +7,7 @@
 
 #include "base/arena.hpp"
 #include "base/bytes.hpp"
-#include "physics/scene.hpp"
+#include "physics/model/scene.hpp"
 
 namespace rdm {
 

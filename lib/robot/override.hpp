@@ -1,7 +1,7 @@
 // Changing single numbers of a robot by name: what the options joint.<name>.<field>, link.<name>.mass and
 // scale.<field> do.
 #pragma once
-#include "physics/scene.hpp"
+#include "physics/model/scene.hpp"
 
 namespace rdm {
 

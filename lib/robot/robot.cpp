@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/option.hpp"
-#include "physics/inertia.hpp"
+#include "physics/model/inertia.hpp"
 
 namespace rdm {
 namespace {

@@ -5,7 +5,7 @@
 #pragma once
 #include <cstdint>
 
-#include "physics/scene.hpp"
+#include "physics/model/scene.hpp"
 
 namespace rdm {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "physics/world.hpp"
-#include "sense/render_shape.hpp"
+#include "sense/render/render_shape.hpp"
 
 namespace rdm {
 

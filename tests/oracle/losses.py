@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Gradients of every policy loss by an independent autograd framework (torch, double precision), as a C++ table.
 
-    python3 tests/oracle/losses.py > tests/oracle_losses.hpp
+    python3 tests/oracle/losses.py > tests/support/oracle_losses.hpp
 
 The network, the batch and the behaviour policy come from plain integer formulas that tests/test_oracle.cpp
 repeats, so that only the losses, the gradients and one Fisher-vector product need to be stored."""

@@ -1,0 +1,291 @@
+#include "algos/core/collector.hpp"
+
+#include <cstring>
+
+#include "base/elementary.hpp"
+#include "base/error.hpp"
+#include "nn/gaussian.hpp"
+#include "nn/kernels.hpp"
+
+namespace rdm {
+namespace {
+
+// Zero times a number that is not finite is not a number.
+bool all_finite(const float* x, size_t count) {
+  float sum = 0;
+  for (size_t j = 0; j < count; ++j) sum += x[j] * 0.0f;
+  return sum == 0;
+}
+
+bool flag(const uint8_t* flags, size_t i, bool none) {
+  return flags ? flags[i] != 0 : none;
+}
+
+}  // namespace
+
+void check_rows(const char* name, const float* x, const uint8_t* mask, int32_t rows, size_t dim) {
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
+    if (flag(mask, i, true) && !all_finite(x + i * dim, dim))
+      fail(Code::kArgument, "%s: row %zu is not finite", name, i);
+}
+
+void Collector::carve(Arena& arena, const ResolvedAgentConfig& plan) {
+  const Options& o = plan.options;
+  rollout_ = carve_rollout(arena, plan);
+  normalizer_ = carve_normalizer(arena, plan.config.obs_dim);
+  reward_scale_ = carve_normalizer(arena, 1);
+  cost_scale_ = carve_normalizer(arena, plan.config.cost_dim);
+  scaled_reward_ = arena.make<float>(plan.num_envs());
+  scaled_cost_ = arena.make<float>(plan.num_envs() * static_cast<size_t>(plan.config.cost_dim));
+  noise_.carve(arena, plan);
+  episodes_.carve(arena, plan.config.num_envs, plan.config.cost_dim,
+                  o.knows("multiplier_window") ? o.integer("multiplier_window") : kStatsWindow);
+  std_ = arena.make<float>(plan.state_std() ? 0 : plan.action_dim());
+  final_value_ = arena.make<float>(plan.num_envs());
+  final_cost_ = arena.make<float>(plan.num_envs() * static_cast<size_t>(plan.num_limited));
+  listed_ = arena.make<int32_t>(plan.num_envs());
+}
+
+void Collector::open(const ResolvedAgentConfig& plan, const Networks& nets, BatchWorkers& lanes) {
+  const Options& o = plan.options;
+  plan_ = &plan;
+  nets_ = &nets;
+  lanes_ = &lanes;
+  noise_.reset(plan.config.seed);
+  normalizer_.clip = static_cast<float>(o.number("obs_clip"));
+  normalize_ = o.flag("normalize_obs");
+  obs_count_max_ = o.number("obs_count_max");
+  normalize_reward_ = o.flag("normalize_reward");
+  reward_factor_ = static_cast<float>(o.number("reward_factor"));
+  normalize_cost_ = o.flag("normalize_cost") && plan.config.cost_dim > 0;
+  terminal_cost_ = o.flag("terminal_cost");
+  discounted_limit_ = o.flag("discounted_limit");
+  discount_ = o.number("discount");
+  advantage_ = {o.number("lambda"), o.number("cost_lambda"), o.flag("standardize_reward_adv"),
+                std::strcmp(o.text("scale_cost_adv"), "std") == 0};
+}
+
+void Collector::drop() {
+  rollout_.filled = 0;
+  pending_ = false;
+}
+
+const float* Collector::normalized(const float* obs, int32_t rows, float* memory) const {
+  if (!normalize_) return obs;
+  normalizer_apply(normalizer_, obs, rows, memory);
+  return memory;
+}
+
+void Collector::values(const Lane& lane, const float* x, int32_t rows, float* value,
+                       float* cost_value) const {
+  nets_->forward(Networks::kReward, x, rows, lane.critic, value);
+  if (nets_->count > Networks::kCost) nets_->forward(Networks::kCost, x, rows, lane.critic, cost_value);
+}
+
+void Collector::split_head(const float* y, int32_t rows, float* mean, float* log_std) const {
+  const size_t dim = rollout_.action_dim;
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i, y += 2 * dim) {
+    std::memcpy(mean + i * dim, y, dim * sizeof(float));
+    if (log_std) std::memcpy(log_std + i * dim, y + dim, dim * sizeof(float));
+  }
+}
+
+void Collector::mean_rows(const Lane& lane, const float* obs, int32_t rows, float* action) const {
+  float* y = nets_->state_std() ? lane.out : action;
+  nets_->forward(Networks::kActor, normalized(obs, rows, lane.obs), rows, lane.actor, y);
+  if (y != action) split_head(y, rows, action, nullptr);
+}
+
+void Collector::act_rows(const Lane& lane, const float* obs, int32_t first, int32_t rows, float* action) {
+  Rollout& r = rollout_;
+  const size_t at = r.row(r.filled) + static_cast<size_t>(first), dim = r.action_dim;
+  float* x = r.obs + at * r.obs_dim;
+  if (normalized(obs, rows, x) != x)
+    std::memcpy(x, obs, static_cast<size_t>(rows) * r.obs_dim * sizeof(float));
+  float *mean = r.mean + at * dim, *y = nets_->state_std() ? lane.out : mean;
+  nets_->forward(Networks::kActor, x, rows, lane.actor, y);
+  if (y != mean) split_head(y, rows, mean, r.log_std_of(at));
+  values(lane, x, rows, r.value + at, r.cost_value + at * static_cast<size_t>(r.num_costs));
+  float own_std[kMaxActions];
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
+    float* centered = r.action + (at + i) * dim;
+    const float *log_std = r.log_std_of(at + i), *std = std_;
+    if (nets_->state_std()) kernels().map_exp(log_std, dim, own_std), std = own_std;
+    noise_.sample(first + static_cast<int32_t>(i), mean + i * dim, std, action + i * dim, centered);
+    r.log_prob[at + i] = gaussian_log_prob(mean + i * dim, log_std, centered, static_cast<int32_t>(dim));
+  }
+}
+
+void Collector::act(const float* obs, bool sample, float* action) {
+  if (sample && pending_) fail(Code::kState, "act: the last sampled actions were not recorded");
+  if (sample && missing() == 0) fail(Code::kState, "act: the horizon is full, update is due");
+  const int32_t envs = rollout_.num_envs;
+  check_rows("obs", obs, nullptr, envs, rollout_.obs_dim);
+  if (sample) {
+    if (normalize_) normalizer_merge(normalizer_, obs, envs, nullptr, obs_count_max_);
+    for (size_t j = 0; !nets_->state_std() && j < rollout_.action_dim; ++j) {
+      rollout_.log_std[j] = nets_->log_std()[j] + plan_->log_share;
+      std_[j] = static_cast<float>(elementary::exp(static_cast<double>(rollout_.log_std[j])));
+    }
+  }
+  // A row's result does not depend on its batch, so the cut may follow the number of lanes.
+  const int32_t share = std::min((envs + lanes_->count() - 1) / lanes_->count(), plan_->piece_rows);
+  lanes_->sweep(envs, share, [&](const Lane& lane, int32_t first, int32_t rows) {
+    const float* x = obs + static_cast<size_t>(first) * rollout_.obs_dim;
+    float* a = action + static_cast<size_t>(first) * rollout_.action_dim;
+    if (sample)
+      act_rows(lane, x, first, rows, a);
+    else
+      mean_rows(lane, x, rows, a);
+  });
+  if (sample) pending_ = true;
+}
+
+void Collector::check(const Transition& t) const {
+  const AgentConfig& c = plan_->config;
+  if (!t.reward) fail(Code::kArgument, "reward: NULL");
+  if (!t.cost && c.cost_dim > 0) fail(Code::kArgument, "cost: NULL with cost_dim %d", c.cost_dim);
+  check_rows("reward", t.reward, t.valid, c.num_envs, 1);
+  check_rows("cost", t.cost, t.valid, c.num_envs, static_cast<size_t>(c.cost_dim));
+  for (size_t i = 0; i < plan_->num_envs(); ++i) {
+    if (!flag(t.valid, i, true)) continue;
+    if (t.steps && t.steps[i] < 0) fail(Code::kRange, "steps: row %zu is %d", i, t.steps[i]);
+    if (t.final_obs && flag(t.truncated, i, false) &&
+        !all_finite(t.final_obs + i * plan_->obs_dim(), plan_->obs_dim()))
+      fail(Code::kArgument, "final_obs: row %zu is not finite", i);
+  }
+}
+
+// V of the final observations of paths that a time limit cut, a piece at a time.
+void Collector::value_truncated(const Transition& t) {
+  const size_t costs = static_cast<size_t>(plan_->num_limited), dim = plan_->obs_dim();
+  std::memset(final_value_, 0, plan_->num_envs() * sizeof(float));
+  std::memset(final_cost_, 0, plan_->num_envs() * costs * sizeof(float));
+  if (!t.truncated || !t.final_obs) return;
+  int32_t count = 0;
+  for (size_t i = 0; i < plan_->num_envs(); ++i)
+    if (t.truncated[i] && !flag(t.terminated, i, false) && flag(t.valid, i, true))
+      listed_[count++] = static_cast<int32_t>(i);
+  const Lane& lane = (*lanes_)[0];
+  for (int32_t first = 0; first < count; first += lane.rows) {
+    const int32_t rows = std::min(lane.rows, count - first);
+    const int32_t* env = listed_ + first;
+    for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
+      std::memcpy(lane.obs + i * dim, t.final_obs + static_cast<size_t>(env[i]) * dim, dim * sizeof(float));
+    values(lane, normalized(lane.obs, rows, lane.obs), rows, lane.out, lane.dout);
+    for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
+      final_value_[env[i]] = lane.out[i];
+      std::memcpy(final_cost_ + static_cast<size_t>(env[i]) * costs, lane.dout + i * costs,
+                  costs * sizeof(float));
+    }
+  }
+}
+
+// A fall ends costs early, which is no safety: the steps that are missing are charged at the episode's own
+// rate, in full in the episode's cost (charge [cost_dim]), discounted in what is learned from.
+void Collector::charge_fall(int32_t env, float discount, float* sample_cost, double* charge) const {
+  const int64_t length = episodes_.length(env), left = plan_->config.max_steps - length;
+  for (int32_t k = 0; k < plan_->config.cost_dim; ++k) charge[k] = 0;
+  if (left <= 0 || length == 0) return;
+  const auto steps = static_cast<double>(left);
+  for (int32_t k = 0; k < plan_->config.cost_dim; ++k)
+    charge[k] = episodes_.cost(env, k) / static_cast<double>(length) * steps;
+  const double tail = discount_ < 1 ? (1 - elementary::pow(discount_, left)) / (1 - discount_) : steps;
+  for (int32_t i = 0; i < plan_->num_limited; ++i) {
+    const int32_t k = plan_->column[i];
+    const float scale = normalize_cost_ ? cost_scale_.scale[k] : 1;
+    sample_cost[i] += discount * scale * static_cast<float>(charge[k] / steps * tail);
+  }
+  if (!discounted_limit_) return;
+  const double share = elementary::pow(discount_, length) * tail / steps;
+  for (int32_t k = 0; k < plan_->config.cost_dim; ++k) charge[k] *= share;
+}
+
+// Statistics first, then the samples: as for observations.
+void Collector::scale_rewards(const Transition& t) {
+  const int32_t envs = rollout_.num_envs;
+  reward_ = t.reward, cost_ = t.cost;
+  if (normalize_reward_) {
+    normalizer_merge(reward_scale_, t.reward, envs, t.valid, 0);
+    normalizer_apply(reward_scale_, t.reward, envs, scaled_reward_);
+    reward_ = scaled_reward_;
+  }
+  if (reward_factor_ != 1) {
+    for (int32_t i = 0; i < envs; ++i) scaled_reward_[i] = reward_factor_ * reward_[i];
+    reward_ = scaled_reward_;
+  }
+  if (normalize_cost_) {
+    normalizer_merge(cost_scale_, t.cost, envs, t.valid, 0);
+    normalizer_apply(cost_scale_, t.cost, envs, scaled_cost_);
+    cost_ = scaled_cost_;
+  }
+}
+
+void Collector::record_row(const Transition& t, int32_t env) {
+  Rollout& r = rollout_;
+  const auto e = static_cast<size_t>(env), costs = static_cast<size_t>(r.num_costs);
+  const size_t at = r.row(r.filled) + e;
+  float* limited = r.cost + at * costs;
+  r.reward[at] = r.discount[at] = 0;
+  for (size_t i = 0; i < costs; ++i) limited[i] = 0;
+  r.valid[at] = flag(t.valid, e, true);
+  if (!r.valid[at]) {
+    noise_.end_episode(env);
+    return;
+  }
+  const size_t first = e * static_cast<size_t>(plan_->config.cost_dim);
+  const float *cost = t.cost ? t.cost + first : nullptr, *learned = t.cost ? cost_ + first : nullptr;
+  const int32_t steps = t.steps ? t.steps[e] : plan_->action_repeat;
+  const bool terminated = flag(t.terminated, e, false), over = terminated || flag(t.truncated, e, false);
+  const auto discount = static_cast<float>(elementary::pow(discount_, steps));
+  env_steps_ += steps;
+  const double weight = discounted_limit_ ? elementary::pow(discount_, episodes_.length(env)) : 1;
+  episodes_.add(env, static_cast<double>(t.reward[e]), cost, steps, flag(t.success, e, false), weight);
+  r.reward[at] = reward_[e] + discount * final_value_[e];
+  for (size_t i = 0; i < costs; ++i)
+    limited[i] = learned[plan_->column[i]] + discount * final_cost_[e * costs + i];
+  r.discount[at] = over ? 0 : discount;
+  if (!over) return;
+  double charge[kMaxCosts];
+  const bool charged = terminated && terminal_cost_;
+  if (charged) charge_fall(env, discount, limited, charge);
+  episodes_.finish(env, terminated, charged ? charge : nullptr);
+  noise_.end_episode(env);
+}
+
+void Collector::record(const Transition& t) {
+  if (missing() == 0) fail(Code::kState, "record: the horizon is full, update is due");
+  if (!pending_) fail(Code::kState, "record: no sampled act came before");
+  check(t);
+  value_truncated(t);
+  scale_rewards(t);
+  for (int32_t env = 0; env < rollout_.num_envs; ++env) record_row(t, env);
+  ++rollout_.filled;
+  pending_ = false;
+}
+
+int32_t Collector::estimate(const float* last_obs) {
+  const Rollout& r = rollout_;
+  lanes_->sweep(r.num_envs, plan_->piece_rows, [&](const Lane& lane, int32_t first, int32_t rows) {
+    const auto at = static_cast<size_t>(first);
+    const float* x = normalized(last_obs + at * r.obs_dim, rows, lane.obs);
+    values(lane, x, rows, r.last_value + at, r.last_cost_value + at * static_cast<size_t>(r.num_costs));
+  });
+  estimate_advantages(r, advantage_);
+  return list_valid(r);
+}
+
+void Collector::visit(StateIo& io) {
+  io.section("COLL");
+  io.integer(env_steps_, 0, int64_t{1} << 62);
+  for (Normalizer* n : {&normalizer_, &reward_scale_, &cost_scale_}) {
+    const auto dim = static_cast<size_t>(n->dim);
+    io.number(n->count, 0, 1e300);
+    io.numbers(n->mean, dim, -1e300, 1e300);
+    io.numbers(n->m2, dim, 0, 1e300);
+  }
+  noise_.visit(io);
+  episodes_.visit(io);
+}
+
+}  // namespace rdm

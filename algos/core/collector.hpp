@@ -1,0 +1,80 @@
+// The collecting half of an agent: acts, records what followed, estimates advantages.
+#pragma once
+#include "algos/core/batch_workers.hpp"
+#include "algos/core/episodes.hpp"
+#include "algos/core/networks.hpp"
+#include "algos/core/noise.hpp"
+#include "algos/core/rollout.hpp"
+#include "nn/normalizer.hpp"
+
+namespace rdm {
+
+class Collector {
+ public:
+  void carve(Arena& arena, const ResolvedAgentConfig& plan);
+  // The three must outlive the collector.
+  void open(const ResolvedAgentConfig& plan, const Networks& nets, BatchWorkers& lanes);
+
+  void act(const float* obs, bool sample, float* action);
+  void record(const Transition& t);
+  // Decisions still missing in this horizon.
+  int32_t missing() const { return rollout_.horizon - rollout_.filled; }
+  // Nothing is collected and no act waits for its record.
+  bool idle() const { return rollout_.filled == 0 && !pending_; }
+  void drop();
+
+  // Advantages and targets of a full horizon, in the rollout; the number of valid rows, listed in its order.
+  int32_t estimate(const float* last_obs);
+
+  const Rollout& rollout() const { return rollout_; }
+  Episodes& episodes() { return episodes_; }
+  const Episodes& episodes() const { return episodes_; }
+  const Normalizer& normalizer() const { return normalizer_; }
+  bool normalizes() const { return normalize_; }
+  int64_t env_steps() const { return env_steps_; }
+  void visit(StateIo& io);
+  void after_load() {
+    for (Normalizer* n : {&normalizer_, &reward_scale_, &cost_scale_}) normalizer_refresh(*n);
+  }
+
+ private:
+  const float* normalized(const float* obs, int32_t rows, float* memory) const;
+  void values(const Lane& lane, const float* x, int32_t rows, float* value, float* cost_value) const;
+  void act_rows(const Lane& lane, const float* obs, int32_t first, int32_t rows, float* action);
+  // What a network with std_mode=state gives, taken apart: means, log deviations (null: not wanted).
+  void split_head(const float* y, int32_t rows, float* mean, float* log_std) const;
+  void mean_rows(const Lane& lane, const float* obs, int32_t rows, float* action) const;
+  void check(const Transition& t) const;
+  void value_truncated(const Transition& t);
+  void scale_rewards(const Transition& t);
+  void record_row(const Transition& t, int32_t env);
+  void charge_fall(int32_t env, float discount, float* sample_cost, double* charge) const;
+
+  const ResolvedAgentConfig* plan_ = nullptr;
+  const Networks* nets_ = nullptr;
+  BatchWorkers* lanes_ = nullptr;
+  Rollout rollout_;
+  Normalizer normalizer_, reward_scale_, cost_scale_;
+  Noise noise_;
+  Episodes episodes_;
+  float* std_ = nullptr;          // [action_dim] of the innovation; none with std_mode=state
+  float* final_value_ = nullptr;  // [num_envs] V of the final observation after truncation, else 0
+  float* final_cost_ = nullptr;   // [num_envs][num_limited]
+  int32_t* listed_ = nullptr;     // [num_envs] environments that were truncated
+  // What is learned from: [num_envs] and [num_envs][cost_dim], the transition's own or scaled in scaled_*.
+  const float *reward_ = nullptr, *cost_ = nullptr;
+  float *scaled_reward_ = nullptr, *scaled_cost_ = nullptr;
+  AdvantageOptions advantage_;
+  double discount_ = 0, obs_count_max_ = 0;
+  int64_t env_steps_ = 0;
+  bool pending_ = false;  // a sampled act waits for its record
+  bool normalize_ = true, terminal_cost_ = false, discounted_limit_ = false;
+  bool normalize_reward_ = false, normalize_cost_ = false;
+  float reward_factor_ = 1;
+};
+
+// Error(kArgument) naming the first row of x [rows][dim] that is not finite; rows whose mask is 0 are
+// skipped.
+void check_rows(const char* name, const float* x, const uint8_t* mask, int32_t rows, size_t dim);
+
+}  // namespace rdm

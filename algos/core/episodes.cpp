@@ -1,0 +1,105 @@
+#include "algos/core/episodes.hpp"
+
+#include <algorithm>
+
+namespace rdm {
+namespace {
+constexpr double kBound = 1e300;
+constexpr int64_t kMost = int64_t{1} << 62;
+}  // namespace
+
+void Episodes::carve(Arena& arena, int32_t num_envs, int32_t cost_dim, int32_t cost_window) {
+  num_envs_ = num_envs;
+  cost_dim_ = cost_dim;
+  cost_window_ = cost_window;
+  capacity_ = std::max(cost_window, kStatsWindow);
+  const auto n = static_cast<size_t>(num_envs), k = static_cast<size_t>(cost_dim);
+  const auto c = static_cast<size_t>(capacity_);
+  ret_ = arena.make<double>(n);
+  cost_ = arena.make<double>(n * k);
+  weighed_ = arena.make<double>(n * k);
+  length_ = arena.make<int64_t>(n);
+  success_ = arena.make<uint8_t>(n);
+  done_ret_ = arena.make<double>(c);
+  done_cost_ = arena.make<double>(c * k);
+  done_charged_ = arena.make<double>(c * k);
+  done_length_ = arena.make<int64_t>(c);
+  done_fall_ = arena.make<uint8_t>(c);
+  done_success_ = arena.make<uint8_t>(c);
+}
+
+void Episodes::add(int32_t env, double reward, const float* cost, int32_t steps, bool success,
+                   double weight) {
+  ret_[env] += reward;
+  for (int32_t k = 0; k < cost_dim_; ++k) {
+    cost_[at(env, k)] += static_cast<double>(cost[k]);
+    weighed_[at(env, k)] += weight * static_cast<double>(cost[k]);
+  }
+  length_[env] += steps;
+  if (success) success_[env] = 1;
+}
+
+void Episodes::finish(int32_t env, bool terminated, const double* charge) {
+  const auto slot = static_cast<int32_t>(finished_ % capacity_);
+  done_ret_[slot] = ret_[env];
+  done_length_[slot] = length_[env];
+  done_fall_[slot] = terminated;
+  done_success_[slot] = success_[env];
+  for (int32_t k = 0; k < cost_dim_; ++k) {
+    done_cost_[at(slot, k)] = cost_[at(env, k)];
+    done_charged_[at(slot, k)] = weighed_[at(env, k)] + (charge ? charge[k] : 0);
+    cost_[at(env, k)] = weighed_[at(env, k)] = 0;
+  }
+  ret_[env] = 0;
+  length_[env] = 0;
+  success_[env] = 0;
+  ++finished_;
+}
+
+EpisodeStats Episodes::stats() const {
+  EpisodeStats s;
+  s.finished = finished_;
+  s.fresh = finished_ > marked_;
+  const int64_t shown = std::min<int64_t>(finished_, kStatsWindow);
+  for (int64_t i = finished_ - shown; i < finished_; ++i) {
+    const auto slot = static_cast<int32_t>(i % capacity_);
+    s.ret += done_ret_[slot];
+    s.length += static_cast<double>(done_length_[slot]);
+    s.fall_rate += done_fall_[slot];
+    s.success_rate += done_success_[slot];
+    for (int32_t k = 0; k < cost_dim_; ++k) s.cost[k] += done_cost_[at(slot, k)];
+  }
+  if (shown == 0) return s;
+  const int64_t charged = std::min<int64_t>(finished_, cost_window_);
+  for (int64_t i = finished_ - charged; i < finished_; ++i)
+    for (int32_t k = 0; k < cost_dim_; ++k)
+      s.charged_cost[k] += done_charged_[at(static_cast<int32_t>(i % capacity_), k)];
+  if (s.length > 0) s.cost_per_step = s.cost[0] / s.length;
+  for (double* sum : {&s.ret, &s.length, &s.fall_rate, &s.success_rate}) *sum /= static_cast<double>(shown);
+  for (int32_t k = 0; k < cost_dim_; ++k) {
+    s.cost[k] /= static_cast<double>(shown);
+    s.charged_cost[k] /= static_cast<double>(charged);
+  }
+  return s;
+}
+
+void Episodes::visit(StateIo& io) {
+  io.section("EPIS");
+  const auto n = static_cast<size_t>(num_envs_), k = static_cast<size_t>(cost_dim_);
+  const auto c = static_cast<size_t>(capacity_);
+  io.integer(finished_, 0, kMost);
+  io.integer(marked_, 0, kMost);
+  io.numbers(ret_, n, -kBound, kBound);
+  io.numbers(cost_, n * k, -kBound, kBound);
+  io.numbers(weighed_, n * k, -kBound, kBound);
+  for (size_t i = 0; i < n; ++i) io.integer(length_[i], 0, kMost);
+  io.bytes(success_, n);
+  io.numbers(done_ret_, c, -kBound, kBound);
+  io.numbers(done_cost_, c * k, -kBound, kBound);
+  io.numbers(done_charged_, c * k, -kBound, kBound);
+  for (size_t i = 0; i < c; ++i) io.integer(done_length_[i], 0, kMost);
+  io.bytes(done_fall_, c);
+  io.bytes(done_success_, c);
+}
+
+}  // namespace rdm

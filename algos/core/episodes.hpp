@@ -1,0 +1,54 @@
+// Running episodes of all environments and the window of the last finished ones; statistics are values.
+#pragma once
+#include "algos/core/agent.hpp"
+#include "algos/core/state_io.hpp"
+#include "base/arena.hpp"
+
+namespace rdm {
+
+inline constexpr int32_t kStatsWindow = 100;  // episodes behind the numbers of an Epoch
+
+// Means over finished episodes; all 0 while there is none.
+struct EpisodeStats {
+  int64_t finished = 0;  // so far
+  bool fresh = false;    // at least one since the last mark
+  double ret = 0, length = 0, fall_rate = 0, success_rate = 0, cost_per_step = 0;
+  double cost[kMaxCosts] = {};  // raw sum of each column
+  // Mean of the last `cost_window` episodes' weighed sums with what falls were charged: what limits hold for.
+  double charged_cost[kMaxCosts] = {};
+};
+
+class Episodes {
+ public:
+  // cost_window: episodes behind charged_cost.
+  void carve(Arena& arena, int32_t num_envs, int32_t cost_dim, int32_t cost_window);
+
+  // Adds a decision of environment env; cost [cost_dim]. weight: of its costs in what limits hold for.
+  void add(int32_t env, double reward, const float* cost, int32_t steps, bool success, double weight = 1);
+  // Control steps and cost so far of the episode that runs in env.
+  int64_t length(int32_t env) const { return length_[env]; }
+  double cost(int32_t env, int32_t column) const { return cost_[at(env, column)]; }
+  // Ends it. charge [cost_dim] or null is added to the charged costs.
+  void finish(int32_t env, bool terminated, const double* charge);
+
+  EpisodeStats stats() const;
+  void mark() { marked_ = finished_; }
+  void visit(StateIo& io);
+
+ private:
+  size_t at(int32_t i, int32_t column) const {
+    return static_cast<size_t>(i) * static_cast<size_t>(cost_dim_) + static_cast<size_t>(column);
+  }
+  int32_t num_envs_ = 0, cost_dim_ = 0, cost_window_ = 0, capacity_ = 0;
+  int64_t finished_ = 0, marked_ = 0;
+  // [num_envs] of the running episodes
+  double *ret_ = nullptr, *cost_ = nullptr, *weighed_ = nullptr;  // cost, weighed [num_envs][cost_dim]
+  int64_t* length_ = nullptr;
+  uint8_t* success_ = nullptr;
+  // [capacity] rings; episode number i is at i mod capacity
+  double *done_ret_ = nullptr, *done_cost_ = nullptr, *done_charged_ = nullptr;
+  int64_t* done_length_ = nullptr;
+  uint8_t *done_fall_ = nullptr, *done_success_ = nullptr;
+};
+
+}  // namespace rdm

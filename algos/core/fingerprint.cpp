@@ -1,0 +1,116 @@
+#include "algos/core/fingerprint.hpp"
+
+#include <cstring>
+
+#include "base/error.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr const char* kWhat = "agent state";
+
+double option_number(const Options& o, int32_t i) {
+  const OptionSpec& s = o.spec(i);
+  switch (s.kind) {
+    case OptionKind::kNumber:
+      return o.number(s.key);
+    case OptionKind::kInteger:
+      return o.integer(s.key);
+    case OptionKind::kFlag:
+      return o.flag(s.key);
+    case OptionKind::kText:
+      break;
+  }
+  return 0;
+}
+
+const char* option_text(const Options& o, int32_t i) {
+  return o.spec(i).kind == OptionKind::kText ? o.text(o.spec(i).key) : "";
+}
+
+struct Field {
+  const char* name;
+  int32_t value;
+};
+constexpr int kFields = 6;
+void list_fields(const ResolvedAgentConfig& plan, Field* out) {
+  const AgentConfig& c = plan.config;
+  const Field fields[kFields] = {{"obs_dim", c.obs_dim},     {"action_dim", c.action_dim},
+                                 {"cost_dim", c.cost_dim},   {"num_envs", c.num_envs},
+                                 {"max_steps", c.max_steps}, {"number of limited costs", plan.num_limited}};
+  for (int i = 0; i < kFields; ++i) out[i] = fields[i];
+}
+
+void read_option(Reader& in, Options& o, int32_t i, bool apply) {
+  const OptionSpec& s = o.spec(i);
+  char key[kOptionTextSize], text[kOptionTextSize];
+  in.text(key, sizeof key);
+  in.text(text, sizeof text);
+  const auto number = in.value<double>();
+  if (std::strcmp(key, s.key) != 0) fail(Code::kFormat, "%s: option %s where %s belongs", kWhat, key, s.key);
+  if (s.live) {
+    const bool whole =
+        s.kind == OptionKind::kNumber || number == static_cast<double>(static_cast<int64_t>(number));
+    if (!(number >= s.low && number <= s.high) || !whole)
+      fail(Code::kFormat, "%s: option %s is %g", kWhat, s.key, number);
+    if (apply) o.set({s.key, nullptr, number}, "agent");
+    return;
+  }
+  if (std::strcmp(text, option_text(o, i)) == 0 && number == option_number(o, i)) return;
+  char here[kOptionTextSize];
+  o.print(i, here);
+  if (s.kind == OptionKind::kText)
+    fail(Code::kFormat, "%s: option %s is '%s' there, '%s' in this agent", kWhat, s.key, text, here);
+  fail(Code::kFormat, "%s: option %s is %.9g there, %s in this agent", kWhat, s.key, number, here);
+}
+
+}  // namespace
+
+void write_fingerprint(Writer& out, const ResolvedAgentConfig& plan) {
+  const Options& o = plan.options;
+  out.begin_section("CONF");
+  out.text(plan.config.algo);
+  Field fields[kFields];
+  list_fields(plan, fields);
+  for (const Field& f : fields) out.value(f.value);
+  for (int32_t i = 0; i < plan.num_limited; ++i) out.value(plan.column[i]);
+  for (int32_t i = 0; i < plan.num_limited; ++i) out.value(plan.limit[i]);
+  out.value(o.count());
+  for (int32_t i = 0; i < o.count(); ++i) {
+    out.text(o.spec(i).key);
+    out.text(option_text(o, i));
+    out.value(option_number(o, i));
+  }
+  out.end_section();
+}
+
+void read_fingerprint(Reader& in, ResolvedAgentConfig& plan, bool apply) {
+  in.need_section("CONF");
+  char algo[kOptionTextSize];
+  in.text(algo, sizeof algo);
+  if (std::strcmp(algo, plan.config.algo) != 0)
+    fail(Code::kFormat, "%s: of algorithm %s, this agent is %s", kWhat, algo, plan.config.algo);
+  Field fields[kFields];
+  list_fields(plan, fields);
+  for (const Field& f : fields)
+    if (const auto there = in.value<int32_t>(); there != f.value)
+      fail(Code::kFormat, "%s: %s is %d there, %d in this agent", kWhat, f.name, there, f.value);
+  for (int32_t i = 0; i < plan.num_limited; ++i)
+    if (const auto there = in.value<int32_t>(); there != plan.column[i])
+      fail(Code::kFormat, "%s: cost column %d is limited there, %d in this agent", kWhat, there,
+           plan.column[i]);
+  for (int32_t i = 0; i < plan.num_limited; ++i) {
+    const auto there = in.value<double>();
+    const bool live = plan.column[i] == 0;  // option cost_limit
+    if (!live && there != plan.limit[i])
+      fail(Code::kFormat, "%s: the limit of cost column %d is %g there, %g in this agent", kWhat,
+           plan.column[i], there, plan.limit[i]);
+  }
+  Options& o = plan.options;
+  if (const auto there = in.value<int32_t>(); there != o.count())
+    fail(Code::kFormat, "%s: %d options there, %d in this agent", kWhat, there, o.count());
+  for (int32_t i = 0; i < o.count(); ++i) read_option(in, o, i, apply);
+  in.expect_end();
+}
+
+}  // namespace rdm

@@ -1,0 +1,214 @@
+#include "algos/core/learner.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "algos/trust_region/conjugate_gradient.hpp"
+#include "base/elementary.hpp"
+#include "nn/gaussian.hpp"
+
+namespace rdm {
+
+void Learner::carve(Arena& arena, const ResolvedAgentConfig& plan, size_t num_params) {
+  grad_ = arena.make<float>(num_params);
+  log_std_ = arena.make<float>(plan.state_std() ? 0 : plan.action_dim());
+}
+
+void Learner::open(const ResolvedAgentConfig& plan, const Rollout& rollout, Networks& nets,
+                   BatchWorkers& lanes) {
+  plan_ = &plan;
+  rollout_ = &rollout;
+  nets_ = &nets;
+  lanes_ = &lanes;
+  const Options& o = plan.options;
+  learn_std_ = o.flag("learn_std") && std::strcmp(o.text("std_schedule"), "none") == 0;
+  follow_actor_ = std::strcmp(o.text("critic_lr_schedule"), "actor") == 0;
+}
+
+void Learner::read_live(const Options& o) {
+  critic_rate_ = o.number("critic_learning_rate");
+  if (critic_rate_ == 0) critic_rate_ = o.number("learning_rate");
+  entropy_ = o.number("entropy");
+  max_norm_ = o.number("max_grad_norm");
+  critic_l2_ = o.number("critic_l2");
+  joint_norm_ = o.flag("joint_grad_norm");
+  value_clip_ = static_cast<float>(o.number("value_clip"));
+}
+
+void Learner::refresh_log_std() {
+  for (size_t j = 0; !nets_->state_std() && j < plan_->action_dim(); ++j)
+    log_std_[j] = nets_->log_std()[j] + plan_->log_share;
+}
+
+PolicyPiece Learner::piece_of(Lane& lane, const int32_t* order, int32_t rows, float* grad) const {
+  PolicyPiece p{rollout_, order, rows, lane.out, log_std_, scale_, lane.dout, grad, &lane.sums};
+  p.mean_step = static_cast<size_t>(nets_->shape[Networks::kActor].out);
+  if (nets_->state_std()) {
+    const size_t dim = rollout_->action_dim;
+    p.log_std = lane.out + dim, p.dlog_std = lane.dout + dim, p.std_step = p.mean_step;
+  }
+  return p;
+}
+
+BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const int32_t* order, int32_t rows) {
+  refresh_log_std();
+  policy_ = policy != nullptr;
+  critics_ = critics;
+  scale_ = 1 / static_cast<float>(rows);
+  begin_ = policy_ ? 0 : nets_->block[Networks::kReward].offset;
+  end_ = critics ? nets_->size : nets_->block[Networks::kReward].offset;
+  BatchSums sums;
+  lanes_->sweep(
+      rows, plan_->piece_rows,
+      [&](Lane& lane, int32_t first, int32_t n) {
+        // The first piece writes where the sum is wanted.
+        float* grad = first == 0 ? grad_ : lane.grad;
+        const int32_t* piece = order + first;
+        lane.sums = BatchSums();
+        gather_obs(*rollout_, piece, 1, n, lane.obs);
+        if (policy) policy_gradient(lane, *policy, piece, n, grad);
+        if (!critics) return;
+        lane.sums.reward_loss = critic_gradient(lane, Networks::kReward, piece, n, grad);
+        if (nets_->count > Networks::kCost)
+          lane.sums.cost_loss = critic_gradient(lane, Networks::kCost, piece, n, grad);
+      },
+      [&](int32_t group, int32_t n) {
+        for (int32_t i = 0; i < n; ++i) sums += (*lanes_)[i].sums;
+        lanes_->fold(group, n, grad_, begin_, end_);
+      });
+  add_penalties(policy);
+  return sums;
+}
+
+void Learner::policy_gradient(Lane& lane, const PolicyLoss& policy, const int32_t* order, int32_t rows,
+                              float* grad) const {
+  nets_->forward(Networks::kActor, lane.obs, rows, lane.actor, lane.out);
+  std::memset(grad, 0, nets_->std_size * sizeof(float));
+  const PolicyPiece piece = piece_of(lane, order, rows, grad);
+  const size_t dim = rollout_->action_dim;
+  const bool state = nets_->state_std();
+  for (size_t i = 0; state && i < static_cast<size_t>(rows); ++i)
+    std::fill_n(piece.dlog_std_of(i), dim, policy.explores() ? -scale_ * static_cast<float>(entropy_) : 0.0f);
+  policy.add(piece);
+  if (state) nets_->gate_std(lane.out, rows, lane.dout);
+  nets_->backward(Networks::kActor, lane.obs, rows, lane.actor, lane.dout, grad);
+}
+
+// Squared error against the targets, or with value_clip the larger one of it and of that of a value held near
+// the one that acted; returns its sum over rows and columns.
+double Learner::critic_gradient(Lane& lane, Networks::Index net, const int32_t* order, int32_t rows,
+                                float* grad) const {
+  const auto out = static_cast<size_t>(nets_->shape[net].out);
+  const bool reward = net == Networks::kReward;
+  const float* target = reward ? rollout_->target : rollout_->cost_target;
+  const float* acted = reward ? rollout_->value : rollout_->cost_value;
+  nets_->forward(net, lane.obs, rows, lane.critic, lane.out);
+  double loss = 0;
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
+    for (size_t k = 0; k < out; ++k) {
+      const size_t at = static_cast<size_t>(order[i]) * out + k;
+      float error = lane.out[i * out + k] - target[at], slope = 1;
+      if (value_clip_ > 0) {
+        const float change = lane.out[i * out + k] - acted[at];
+        const float held = acted[at] + std::clamp(change, -value_clip_, value_clip_) - target[at];
+        if (held * held > error * error) error = held, slope = std::abs(change) <= value_clip_ ? 1.0f : 0.0f;
+      }
+      lane.dout[i * out + k] = 2 * scale_ * error * slope;
+      loss += static_cast<double>(error) * static_cast<double>(error);
+    }
+  nets_->backward(net, lane.obs, rows, lane.critic, lane.dout, grad);
+  return loss;
+}
+
+void Learner::add_penalties(const PolicyLoss* policy) {
+  const auto bonus = policy && policy->explores() ? static_cast<float>(entropy_) : 0.0f;
+  for (size_t j = 0; policy && !nets_->state_std() && j < plan_->action_dim(); ++j)
+    grad_[j] = learn_std_ ? grad_[j] - bonus : 0;
+  if (!critics_ || critic_l2_ == 0) return;
+  const auto twice = static_cast<float>(2 * critic_l2_);
+  for (int32_t i = Networks::kReward; i < nets_->count; ++i) {
+    const Block& b = nets_->block[i];
+    for (size_t j = b.offset; j < b.offset + b.size; ++j) grad_[j] += twice * nets_->params[j];
+  }
+}
+
+// The factor that bounds the norm over all networks that take part.
+double Learner::joint_scale(int32_t first, int32_t last) const {
+  double squares = 0;
+  for (int32_t net = first; net < last; ++net)
+    squares +=
+        dot(grad_ + nets_->block[net].offset, grad_ + nets_->block[net].offset, nets_->block[net].size);
+  return max_norm_ > 0 ? std::min(1.0, max_norm_ / (std::sqrt(squares) + 1e-6)) : 1;
+}
+
+void Learner::step(double actor_rate, double actor_share) {
+  bool left_out[3] = {};
+  const int32_t first = policy_ ? Networks::kActor : Networks::kReward;
+  const int32_t last = critics_ ? nets_->count : int32_t{Networks::kReward};
+  const double critic_rate = follow_actor_ ? critic_rate_ * actor_share : critic_rate_;
+  double bound = max_norm_;
+  if (joint_norm_) {
+    const double scale = joint_scale(first, last);
+    for (size_t j = begin_; std::isfinite(scale) && scale < 1 && j < end_; ++j)
+      grad_[j] = static_cast<float>(scale * static_cast<double>(grad_[j]));
+    bound = 0;
+  }
+  lanes_->spread(last - first, [&](int32_t i) {
+    const int32_t net = first + i;
+    Block& b = nets_->block[net];
+    const double rate = net == Networks::kActor ? actor_rate : critic_rate;
+    const double norm = adam_step(b.adam, nets_->params + b.offset, grad_ + b.offset, rate, bound);
+    left_out[net] = !std::isfinite(norm);
+  });
+  for (const bool out : left_out) skipped_ += out;
+  if (policy_) clamp_log_std(*nets_);
+}
+
+void Learner::measure_rows(Lane& lane, const int32_t* order, int32_t rows, float clip) const {
+  const Rollout& r = *rollout_;
+  const auto dim = static_cast<int32_t>(r.action_dim);
+  const auto costs = static_cast<size_t>(r.num_costs);
+  gather_obs(r, order, 1, rows, lane.obs);
+  nets_->forward(Networks::kActor, lane.obs, rows, lane.actor, lane.out);
+  lane.surrogate = Surrogate();
+  const PolicyPiece piece = piece_of(lane, order, rows, nullptr);
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
+    const auto at = static_cast<size_t>(order[i]);
+    const float *mean = piece.mean_of(i), *log_std = piece.log_std_of(i);
+    lane.surrogate.kl +=
+        static_cast<double>(gaussian_kl(r.mean + at * r.action_dim, r.log_std_of(at), mean, log_std, dim));
+    const double ratio = sample_ratio(r, at, mean, log_std);
+    lane.surrogate.gain += ratio * static_cast<double>(r.gain[at] + r.linear[at]);
+    const double bounded =
+        std::clamp(ratio, 1.0 - static_cast<double>(clip), 1.0 + static_cast<double>(clip));
+    for (size_t k = 0; k < costs; ++k) {
+      const auto cost = static_cast<double>(r.cost_advantage[at * costs + k]);
+      lane.surrogate.cost[k] += clip > 0 ? std::max(ratio * cost, bounded * cost) : ratio * cost;
+    }
+  }
+}
+
+Surrogate Learner::measure(const int32_t* order, int32_t rows, float clip) {
+  refresh_log_std();
+  Surrogate mean;
+  lanes_->sweep(
+      rows, plan_->piece_rows,
+      [&](Lane& lane, int32_t first, int32_t n) { measure_rows(lane, order + first, n, clip); },
+      [&](int32_t, int32_t n) {
+        for (int32_t i = 0; i < n; ++i) {
+          const Surrogate& part = (*lanes_)[i].surrogate;
+          mean.gain += part.gain, mean.kl += part.kl;
+          for (int32_t k = 0; k < rollout_->num_costs; ++k) mean.cost[k] += part.cost[k];
+        }
+      });
+  mean.gain /= rows, mean.kl /= rows;
+  for (double& c : mean.cost) c /= rows;
+  return mean;
+}
+
+void Learner::visit(StateIo& io) {
+  io.section("LEAR");
+  io.integer(skipped_, 0, int64_t{1} << 62);
+}
+
+}  // namespace rdm

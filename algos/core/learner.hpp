@@ -1,0 +1,89 @@
+// The learning half of an agent: gradients of batches, cut into pieces and folded in order, and Adam steps.
+#pragma once
+#include "algos/core/batch_workers.hpp"
+#include "algos/core/networks.hpp"
+#include "algos/core/rollout.hpp"
+
+namespace rdm {
+
+// A piece of a batch as a policy loss sees it. Row i of its means is mean_step i further on, of its
+// deviations std_step i: 0 where one serves all.
+struct PolicyPiece {
+  const Rollout* rollout = nullptr;
+  const int32_t* order = nullptr;  // [rows] rows of the rollout
+  int32_t rows = 0;
+  const float* mean = nullptr;     // [action_dim] of the policy that is learned
+  const float* log_std = nullptr;  // [action_dim] of its innovation
+  float scale = 1;                 // 1 / rows of the batch
+  float* dmean = nullptr;          // out: scale d(loss)/d(mean) [action_dim]
+  float* dlog_std = nullptr;       // added to: scale d(loss)/d(log_std) [action_dim]
+  BatchSums* sums = nullptr;       // added to: loss, kl, clipped
+  size_t mean_step = 0, std_step = 0;
+
+  const float* mean_of(size_t i) const { return mean + i * mean_step; }
+  const float* log_std_of(size_t i) const { return log_std + i * std_step; }
+  float* dmean_of(size_t i) const { return dmean + i * mean_step; }
+  float* dlog_std_of(size_t i) const { return dlog_std + i * std_step; }
+};
+
+class PolicyLoss {
+ public:
+  // Runs on any thread and must not throw.
+  virtual void add(const PolicyPiece& piece) const = 0;
+  // The entropy bonus belongs to this loss.
+  virtual bool explores() const { return true; }
+
+ protected:
+  ~PolicyLoss() = default;
+};
+
+class Learner {
+ public:
+  void carve(Arena& arena, const ResolvedAgentConfig& plan, size_t num_params);
+  // All must outlive the learner.
+  void open(const ResolvedAgentConfig& plan, const Rollout& rollout, Networks& nets, BatchWorkers& lanes);
+  void read_live(const Options& options);
+
+  // Gradients of mean loss over the listed rows: the policy's (null: none) less the entropy bonus, and, if
+  // asked, the critics' squared errors with their L2 term. Valid until the next call.
+  BatchSums gradient(const PolicyLoss* policy, bool critics, const int32_t* order, int32_t rows);
+  const float* gradient() const { return grad_; }
+  // Adam steps along what the last gradient computed; actor_share: actor_rate over its first value, which the
+  // critics may follow. A network whose gradient is not finite stays as it is.
+  void step(double actor_rate, double actor_share = 1);
+
+  // Of the policy as it is now, over the listed rows. clip > 0: each sample's cost is
+  // max(rho A_c, clip(rho, 1 - clip, 1 + clip) A_c), so that only a fall of the cost can be hidden.
+  Surrogate measure(const int32_t* order, int32_t rows, float clip = 0);
+  double kl(const int32_t* order, int32_t rows) { return measure(order, rows).kl; }
+  // Steps that were left out so far.
+  int64_t skipped() const { return skipped_; }
+  void visit(StateIo& io);
+
+ private:
+  void refresh_log_std();
+  // The policy at the outputs that a lane holds; its derivatives go to the lane's and to grad.
+  PolicyPiece piece_of(Lane& lane, const int32_t* order, int32_t rows, float* grad) const;
+  void policy_gradient(Lane& lane, const PolicyLoss& policy, const int32_t* order, int32_t rows,
+                       float* grad) const;
+  double critic_gradient(Lane& lane, Networks::Index net, const int32_t* order, int32_t rows,
+                         float* grad) const;
+  void measure_rows(Lane& lane, const int32_t* order, int32_t rows, float clip) const;
+  void add_penalties(const PolicyLoss* policy);
+  double joint_scale(int32_t first, int32_t last) const;
+
+  const ResolvedAgentConfig* plan_ = nullptr;
+  const Rollout* rollout_ = nullptr;
+  Networks* nets_ = nullptr;
+  BatchWorkers* lanes_ = nullptr;
+  float* grad_ = nullptr;       // [Networks::size]
+  float* log_std_ = nullptr;    // [action_dim] of the innovation; none with std_mode=state
+  float scale_ = 1;             // 1 / rows of the batch
+  size_t begin_ = 0, end_ = 0;  // of grad_: what the last gradient covers
+  bool policy_ = false, critics_ = false, learn_std_ = true, joint_norm_ = false, follow_actor_ = false;
+  float value_clip_ = 0;
+  double critic_rate_ = 0, entropy_ = 0, max_norm_ = 0, critic_l2_ = 0;
+  int64_t skipped_ = 0;
+};
+
+}  // namespace rdm

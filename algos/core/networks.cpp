@@ -1,0 +1,126 @@
+#include "algos/core/networks.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+#include "base/elementary.hpp"
+
+namespace rdm {
+namespace {
+constexpr double kBound = 3e38;
+constexpr const char* kNames[] = {"actor", "reward_critic", "cost_critic"};
+}  // namespace
+
+Networks carve_networks(Arena& arena, const ResolvedAgentConfig& plan) {
+  Networks n;
+  n.shape[Networks::kActor] = plan.actor;
+  n.shape[Networks::kReward] = plan.reward_critic;
+  n.shape[Networks::kCost] = plan.cost_critic;
+  n.count = plan.num_limited > 0 ? 3 : 2;
+  n.action_dim = plan.config.action_dim;
+  n.std_size = plan.state_std() ? 0 : (plan.action_dim() + 15) / 16 * 16;
+  n.std_low = static_cast<float>(elementary::log(plan.options.number("std_min")));
+  n.std_high = static_cast<float>(elementary::log(plan.options.number("std_max")));
+  n.log_share = plan.log_share;
+  for (int32_t i = 0; i < n.count; ++i) {
+    n.block[i].offset = n.size;
+    n.block[i].size = n.shape[i].num_params() + (i == Networks::kActor ? n.std_size : 0);
+    n.size += (n.block[i].size + 15) / 16 * 16;
+  }
+  n.params = arena.make<float>(n.size);
+  for (int32_t i = 0; i < n.count; ++i) n.block[i].adam = carve_adam(arena, n.block[i].size);
+  return n;
+}
+
+void init_networks(const Networks& n, const ResolvedAgentConfig& plan) {
+  const Options& o = plan.options;
+  for (int32_t i = 0; i < n.count; ++i) {
+    Stream stream(plan.config.seed, static_cast<uint32_t>(i), Purpose::kInit);
+    const double last = i == Networks::kActor ? o.number("last_layer_scale") : 1;
+    mlp_init(n.shape[i], stream, static_cast<float>(last), n.net(i));
+  }
+  const MlpShape& actor = n.shape[Networks::kActor];
+  float* bias = n.net(Networks::kActor) + actor.bias_offset(actor.num_hidden);
+  float* log_std = n.state_std() ? bias + n.action_dim : n.log_std();
+  for (int32_t j = 0; j < n.action_dim; ++j) {
+    bias[j] = plan.config.initial_mean ? plan.config.initial_mean[j] : 0;
+    log_std[j] = static_cast<float>(elementary::log(o.number("init_std")));
+  }
+}
+
+void clamp_log_std(const Networks& n) {
+  if (n.state_std()) return;
+  for (int32_t j = 0; j < n.action_dim; ++j)
+    n.log_std()[j] = std::clamp(n.log_std()[j], n.std_low, n.std_high);
+}
+
+void Networks::bound_std(int32_t rows, float* y) const {
+  const auto out = static_cast<size_t>(shape[kActor].out);
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
+    for (size_t j = out / 2; j < out; ++j) {
+      float& l = y[i * out + j];
+      l = std::clamp(l, std_low, std_high) + log_share;
+    }
+}
+
+void Networks::gate_std(const float* y, int32_t rows, float* dy) const {
+  const float low = std_low + log_share, high = std_high + log_share;
+  const auto out = static_cast<size_t>(shape[kActor].out);
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
+    for (size_t j = out / 2; j < out; ++j)
+      if (!(y[i * out + j] > low && y[i * out + j] < high)) dy[i * out + j] = 0;
+}
+
+void schedule_std(const Networks& n, const Options& o, int32_t done) {
+  if (std::strcmp(o.text("std_schedule"), "linear") != 0) return;
+  const double left = std::max(0.0, 1 - static_cast<double>(done) / o.integer("total_epochs"));
+  const double std = o.number("std_min") + (o.number("init_std") - o.number("std_min")) * left;
+  for (int32_t j = 0; j < n.action_dim; ++j) n.log_std()[j] = static_cast<float>(elementary::log(std));
+}
+
+int32_t Networks::num_tensors() const {
+  int32_t tensors = state_std() ? 0 : 1;
+  for (int32_t i = 0; i < count; ++i) tensors += 2 * shape[i].num_layers();
+  return tensors;
+}
+
+void Networks::visit(StateIo& io) {
+  io.section("NETS");
+  io.numbers(params, size, -kBound, kBound);
+  io.section("ADAM");
+  for (int32_t i = 0; i < count; ++i) {
+    Adam& a = block[i].adam;
+    io.integer(a.t, 0, int64_t{1} << 62);
+    io.numbers(a.m, a.size, -kBound, kBound);
+    io.numbers(a.v, a.size, 0, kBound);
+  }
+}
+
+bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) {
+  if (index < 0) return false;
+  const auto set = [&](int32_t rows, int32_t cols, float* data) {
+    *out = {name, rows, cols, data};
+    return true;
+  };
+  if (!n.state_std() && index-- == 0) {
+    std::snprintf(name, kTensorNameSize, "actor.log_std");
+    return set(n.action_dim, 1, n.log_std());
+  }
+  for (int32_t i = 0; i < n.count; ++i) {
+    const MlpShape& s = n.shape[i];
+    const int32_t tensors = 2 * s.num_layers();
+    if (index >= tensors) {
+      index -= tensors;
+      continue;
+    }
+    const int32_t l = index / 2;
+    const bool weight = index % 2 == 0;
+    std::snprintf(name, kTensorNameSize, "%s.%d.%s", kNames[i], l, weight ? "weight" : "bias");
+    float* at = n.net(i) + (weight ? s.weight_offset(l) : s.bias_offset(l));
+    return set(s.layer_out(l), weight ? s.layer_in(l) : 1, at);
+  }
+  return false;
+}
+
+}  // namespace rdm

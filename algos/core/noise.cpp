@@ -1,0 +1,40 @@
+#include "algos/core/noise.hpp"
+
+namespace rdm {
+
+void Noise::carve(Arena& arena, const ResolvedAgentConfig& plan) {
+  num_envs_ = plan.config.num_envs;
+  dim_ = plan.config.action_dim;
+  correlation_ = static_cast<float>(plan.options.number("noise_correlation"));
+  stream_ = arena.make<Stream>(plan.num_envs());
+  state_ = arena.make<float>(plan.num_envs() * plan.action_dim());
+}
+
+void Noise::reset(uint64_t seed) {
+  for (int32_t env = 0; env < num_envs_; ++env)
+    stream_[env] = Stream(seed, static_cast<uint32_t>(env), Purpose::kPolicyNoise);
+}
+
+void Noise::sample(int32_t env, const float* mean, const float* std, float* action, float* centered) {
+  float* state = state_ + static_cast<size_t>(env) * static_cast<size_t>(dim_);
+  stream_[env].normals(centered, dim_);
+  for (int32_t j = 0; j < dim_; ++j) {
+    const float fresh = std[j] * centered[j], offset = correlation_ * state[j];
+    centered[j] = mean[j] + fresh;
+    state[j] = offset + fresh;
+    action[j] = centered[j] + offset;
+  }
+}
+
+void Noise::end_episode(int32_t env) {
+  float* state = state_ + static_cast<size_t>(env) * static_cast<size_t>(dim_);
+  for (int32_t j = 0; j < dim_; ++j) state[j] = 0;
+}
+
+void Noise::visit(StateIo& io) {
+  io.section("NOIS");
+  for (int32_t env = 0; env < num_envs_; ++env) io.stream(stream_[env]);
+  io.numbers(state_, static_cast<size_t>(num_envs_) * static_cast<size_t>(dim_), -3e38, 3e38);
+}
+
+}  // namespace rdm

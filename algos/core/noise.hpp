@@ -1,0 +1,29 @@
+// Exploration noise that is correlated over decisions: n' = rho n + sqrt(1 - rho^2) sigma z.
+//
+// sigma is the stationary deviation, the one that a policy file keeps. Given the offset rho n, what is left
+// of an action is a sample of N(mean, (1 - rho^2) sigma^2): that is the density that is learned from.
+#pragma once
+#include "algos/core/resolved_config.hpp"
+#include "algos/core/state_io.hpp"
+
+namespace rdm {
+
+class Noise {
+ public:
+  void carve(Arena& arena, const ResolvedAgentConfig& plan);
+  void reset(uint64_t seed);
+  // Draws for environment env: action = mean + noise, centered = action - offset. All [action_dim].
+  // std: of the innovation.
+  void sample(int32_t env, const float* mean, const float* std, float* action, float* centered);
+  void end_episode(int32_t env);
+  float correlation() const { return correlation_; }
+  void visit(StateIo& io);
+
+ private:
+  int32_t num_envs_ = 0, dim_ = 0;
+  float correlation_ = 0;
+  Stream* stream_ = nullptr;  // [num_envs]
+  float* state_ = nullptr;    // [num_envs][dim]
+};
+
+}  // namespace rdm

@@ -1,0 +1,185 @@
+#include "algos/core/option_tables.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+#include "base/error.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr const char* kOwner = "agent";
+
+// `beside`: the row holds only for algorithms that also know this key; null: for all.
+struct PresetValue {
+  const char *preset, *key, *text, *beside = nullptr;
+};
+
+// Sources: paper is the code behind the paper's table of hand tasks and the papers of the algorithms,
+// omnisafe that library's on-policy defaults with its minibatches of 64 or 128 expressed as a count.
+constexpr PresetValue kPresetValues[] = {
+    {"safe", "terminal_cost", "true"},
+    {"safe", "multiplier_warmup", "20"},
+    {"paper", "hidden", "1024,1024,512"},
+    {"paper", "critic_hidden", ""},
+    {"paper", "activation", "elu"},
+    {"paper", "last_layer_scale", "0.01"},
+    {"paper", "horizon", "8"},
+    {"paper", "action_repeat", "1"},
+    {"paper", "noise_correlation", "0"},
+    {"paper", "init_std", "0.8"},
+    {"paper", "discount", "0.99"},
+    {"paper", "lambda", "0.95"},
+    {"paper", "cost_lambda", "0.95"},
+    {"paper", "scale_cost_adv", "std"},
+    {"paper", "passes", "5"},
+    {"paper", "minibatches", "4"},
+    {"paper", "learning_rate", "3e-4"},
+    {"paper", "critic_learning_rate", "0"},
+    {"paper", "lr_schedule", "kl"},
+    {"paper", "kl_target", "0.016"},
+    {"paper", "kl_factor", "1.5"},
+    {"paper", "lr_min", "1e-5"},
+    {"paper", "lr_max", "1e-2"},
+    {"paper", "early_stop_kl", "0"},
+    {"paper", "entropy", "0"},
+    {"paper", "max_grad_norm", "1"},
+    {"paper", "critic_l2", "0"},
+    {"paper", "clip", "0.2"},
+    {"paper", "multiplier_optimizer", "softplus"},
+    {"paper", "multiplier_init", "0.6932"},
+    {"paper", "multiplier_lr", "0.05"},
+    {"paper", "multiplier_normalized", "false"},
+    {"paper", "trust_kl", "0.02"},
+    {"paper", "cg_damping", "0.1"},
+    {"paper", "cg_iterations", "10"},
+    {"paper", "penalty", "1"},
+    {"paper", "penalty_growth", "1.05"},
+    {"paper", "penalty_max", "20"},
+    {"paper", "violation_scale", "discount"},
+    {"paper", "multiplier_optimizer", "sgd", "focops_eta"},
+    {"paper", "multiplier_init", "0", "focops_eta"},
+    {"paper", "multiplier_lr", "0.01", "focops_eta"},
+    {"paper", "kl_target", "0.02", "focops_eta"},
+    {"paper", "pid_kp", "0.01"},
+    {"omnisafe", "hidden", "64,64"},
+    {"omnisafe", "critic_hidden", ""},
+    {"omnisafe", "activation", "tanh"},
+    {"omnisafe", "last_layer_scale", "1"},
+    {"omnisafe", "action_repeat", "1"},
+    {"omnisafe", "noise_correlation", "0"},
+    {"omnisafe", "init_std", "1"},
+    {"omnisafe", "discount", "0.99"},
+    {"omnisafe", "lambda", "0.95"},
+    {"omnisafe", "cost_lambda", "0.95"},
+    {"omnisafe", "scale_cost_adv", "center"},
+    {"omnisafe", "passes", "40"},
+    {"omnisafe", "learning_rate", "3e-4"},
+    {"omnisafe", "critic_learning_rate", "0"},
+    {"omnisafe", "lr_schedule", "linear"},
+    {"omnisafe", "early_stop_kl", "0.02"},
+    {"omnisafe", "entropy", "0"},
+    {"omnisafe", "max_grad_norm", "40"},
+    {"omnisafe", "critic_l2", "1e-3"},
+    {"omnisafe", "clip", "0.2"},
+    {"omnisafe", "multiplier_optimizer", "adam"},
+    {"omnisafe", "multiplier_init", "0.001"},
+    {"omnisafe", "multiplier_lr", "0.035"},
+    {"omnisafe", "multiplier_normalized", "false"},
+    {"omnisafe", "multiplier_divide", "true"},
+    {"omnisafe", "passes", "10", "penalty"},
+    {"omnisafe", "passes", "10", "barrier_kappa"},
+    {"omnisafe", "passes", "10", "trust_kl"},
+    {"omnisafe", "critic_learning_rate", "1e-3", "trust_kl"},
+    {"omnisafe", "lr_schedule", "constant", "trust_kl"},
+    {"omnisafe", "trust_kl", "0.01"},
+    {"omnisafe", "kl_mean_over_dims", "true"},
+    {"omnisafe", "cg_iterations", "15"},
+    {"omnisafe", "cg_damping", "0.1"},
+    {"omnisafe", "line_search_steps", "20", "several_costs"},
+    {"omnisafe", "line_search_steps", "200", "projection"},
+    {"omnisafe", "violation_scale", "raw"},
+    {"omnisafe", "penalty", "20"},
+    {"omnisafe", "penalty_growth", "1"},
+    {"omnisafe", "penalty_clip", "false"},
+    {"omnisafe", "barrier_kappa", "0.01"},
+    {"omnisafe", "barrier_max", "1"},
+    {"omnisafe", "normalize_reward", "true", "barrier_kappa"},
+    {"omnisafe", "normalize_cost", "true", "barrier_kappa"},
+    {"omnisafe", "pid_kp", "0.1"},
+    {"omnisafe", "pid_ki", "0.01"},
+    {"omnisafe", "pid_kd", "0.01"},
+};
+
+bool knows(const AlgoInfo& algo, const char* key) {
+  for (int32_t k = 0; k < algo.num_options; ++k)
+    if (same_name(algo.options[k].key, key)) return true;
+  return false;
+}
+
+bool any_algo_knows(const char* key) {
+  for (int32_t i = 0; i < algo_count(); ++i)
+    if (knows(algo_at(i), key)) return true;
+  return false;
+}
+
+// "focops:passes" names an algorithm and is for that one alone. False: for another.
+bool take_owner(const AlgoInfo& algo, OptionInput& in) {
+  const char* colon = std::strchr(in.key, ':');
+  if (!colon) return true;
+  char name[64];
+  std::snprintf(name, sizeof name, "%.*s", static_cast<int>(colon - in.key), in.key);
+  const AlgoInfo& owner = algo_at(algo_find(name));
+  in.key = colon + 1;
+  if (!knows(owner, in.key))
+    fail(Code::kNotFound, "%s default: \"%s\" has no option \"%s\"", kOwner, name, in.key);
+  return &owner == &algo;
+}
+
+void lay_default(Options& o, const AlgoInfo& algo, OptionInput in) {
+  if (!in.key) fail(Code::kArgument, "%s default: the key is NULL", kOwner);
+  if (!take_owner(algo, in)) return;
+  if (!o.knows(in.key)) {
+    if (!any_algo_knows(in.key)) o.set(in, kOwner);  // names the nearest key
+    return;
+  }
+  if (in.text)
+    o.set_default(in.key, in.text);
+  else
+    o.set_default(in.key, in.number);
+}
+
+void lay_preset(Options& o, const AgentConfig& config) {
+  const char* preset = o.text("preset");
+  for (const PresetValue& v : kPresetValues) {
+    // Without the length of an episode there is nothing to charge.
+    if (same_name(v.key, "terminal_cost") && config.max_steps <= 0) continue;
+    if (v.beside && !o.knows(v.beside)) continue;
+    if (same_name(v.preset, preset) && o.knows(v.key)) o.set_default(v.key, v.text);
+  }
+  if (same_name(preset, "omnisafe")) {
+    const int64_t rows = int64_t{o.integer("horizon")} * config.num_envs;
+    const int64_t size = o.knows("trust_kl") ? 128 : 64;
+    o.set_default("minibatches", static_cast<double>(std::clamp<int64_t>(rows / size, 1, 1 << 20)));
+  }
+}
+
+}  // namespace
+
+size_t options_bytes(const AlgoInfo& algo) {
+  return Options::bytes(algo.num_options);
+}
+
+Options read_options(const AgentConfig& config, const AlgoInfo& algo) {
+  const HostScope scope(config.hooks);
+  Options o;
+  o.reserve(algo.num_options);
+  o.add_table(algo.options, algo.num_options);
+  for (int32_t i = 0; i < config.num_options; ++i) o.set(config.options[i], kOwner);
+  for (int32_t i = 0; i < config.num_defaults; ++i) lay_default(o, algo, config.defaults[i]);
+  lay_preset(o, config);
+  return o;
+}
+
+}  // namespace rdm

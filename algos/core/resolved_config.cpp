@@ -1,0 +1,163 @@
+#include "algos/core/resolved_config.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "algos/algo_registry.hpp"
+#include "algos/core/option_tables.hpp"
+#include "base/elementary.hpp"
+#include "base/error.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr int64_t kMaxSamples = 1 << 28;
+
+void check_range(const char* name, int64_t value, int64_t low, int64_t high) {
+  if (value < low || value > high)
+    fail(Code::kRange, "%s: %lld is outside [%lld, %lld]", name, static_cast<long long>(value),
+         static_cast<long long>(low), static_cast<long long>(high));
+}
+
+void check_config(const AgentConfig& c) {
+  check_range("obs_dim", c.obs_dim, 1, 16384);
+  check_range("action_dim", c.action_dim, 1, kMaxActions);
+  check_range("cost_dim", c.cost_dim, 0, kMaxCosts);
+  check_range("num_envs", c.num_envs, 1, 65536);
+  check_range("num_threads", c.num_threads, 0, 256);
+  check_range("max_steps", c.max_steps, 0, INT32_MAX);
+  check_range("num_defaults", c.num_defaults, 0, INT32_MAX);
+  check_range("num_options", c.num_options, 0, INT32_MAX);
+  if (c.num_defaults && !c.defaults)
+    fail(Code::kArgument, "defaults: NULL with num_defaults %d", c.num_defaults);
+  if (c.num_options && !c.options) fail(Code::kArgument, "options: NULL with num_options %d", c.num_options);
+  if (!c.algo) fail(Code::kArgument, "algo: NULL");
+  if (!std::isfinite(c.control_dt) || c.control_dt < 0)
+    fail(Code::kRange, "control_dt: %g is not a time", static_cast<double>(c.control_dt));
+  if (c.task && std::strlen(c.task) >= kOptionTextSize)
+    fail(Code::kRange, "task: longer than %d characters", kOptionTextSize - 1);
+  for (int32_t i = 0; c.initial_mean && i < c.action_dim; ++i)
+    if (!std::isfinite(c.initial_mean[i])) fail(Code::kArgument, "initial_mean[%d] is not finite", i);
+  for (int32_t i = 0; c.cost_limits && i < c.cost_dim; ++i)
+    if (!std::isfinite(c.cost_limits[i])) fail(Code::kArgument, "cost_limits[%d] is not finite", i);
+}
+
+Activation activation_of(const char* name) {
+  if (std::strcmp(name, "elu") == 0) return Activation::kElu;
+  return std::strcmp(name, "relu") == 0 ? Activation::kRelu : Activation::kTanh;
+}
+
+// "64,64" into widths; blanks are skipped.
+MlpShape parse_shape(const Options& o, const char* key, int32_t in, int32_t out) {
+  MlpShape s;
+  s.in = in;
+  s.out = out;
+  s.activation = activation_of(o.text("activation"));
+  const char* p = o.text(key);
+  while (*p == ' ') ++p;
+  while (*p) {
+    char* end = nullptr;
+    const long width = std::strtol(p, &end, 10);
+    while (*end == ' ') ++end;
+    if (end == p || (*end && *end != ','))
+      fail(Code::kArgument, "%s: '%s' is not a list of widths such as 64,64", key, o.text(key));
+    if (s.num_hidden == kMaxHidden) fail(Code::kRange, "%s: more than %d layers", key, kMaxHidden);
+    check_range(key, width, 1, kMaxWidth);
+    s.hidden[s.num_hidden++] = static_cast<int32_t>(width);
+    p = *end ? end + 1 : end;
+    if (*end && !*p) fail(Code::kArgument, "%s: '%s' ends in a comma", key, o.text(key));
+  }
+  return s;
+}
+
+void plan_costs(ResolvedAgentConfig& plan) {
+  AgentConfig& c = plan.config;
+  Options& o = plan.options;
+  if (c.cost_limits && c.cost_dim > 0 && !o.given("cost_limit"))
+    o.set_default("cost_limit", c.cost_limits[0] < 0 ? -1.0 : c.cost_limits[0]);
+  if (plan.row->costs == Costs::kNone) return;
+  for (int32_t k = 0; k < c.cost_dim; ++k) {
+    const double limit = k == 0 ? o.number("cost_limit") : c.cost_limits ? c.cost_limits[k] : -1;
+    if (limit < 0) continue;
+    plan.column[plan.num_limited] = k;
+    plan.limit[plan.num_limited++] = limit;
+  }
+  if (plan.num_limited == 0)
+    fail(Code::kArgument, "cost_limits: %s needs at least one cost column with a limit", plan.row->info.name);
+  if (plan.row->costs == Costs::kOne && plan.num_limited > 1 &&
+      std::strcmp(o.text("several_costs"), "worst") != 0)
+    fail(Code::kUnsupported,
+         "cost_limits: %s is defined for one limited cost, %d have limits; several_costs=worst follows the "
+         "most "
+         "violated one",
+         plan.row->info.name, plan.num_limited);
+}
+
+void plan_networks(ResolvedAgentConfig& plan) {
+  const AgentConfig& c = plan.config;
+  const Options& o = plan.options;
+  const char* critic = *o.text("critic_hidden") ? "critic_hidden" : "hidden";
+  const int32_t outputs = std::strcmp(o.text("std_mode"), "state") == 0 ? 2 : 1;
+  plan.actor = parse_shape(o, "hidden", c.obs_dim, outputs * c.action_dim);
+  plan.reward_critic = parse_shape(o, critic, c.obs_dim, 1);
+  plan.cost_critic = parse_shape(o, critic, c.obs_dim, std::max(plan.num_limited, 1));
+  check_mlp_shape(plan.actor);
+  check_mlp_shape(plan.reward_critic);
+}
+
+void plan_batches(ResolvedAgentConfig& plan) {
+  const Options& o = plan.options;
+  plan.horizon = o.integer("horizon");
+  plan.action_repeat = o.integer("action_repeat");
+  const int64_t samples = int64_t{plan.horizon} * plan.config.num_envs;
+  if (samples > kMaxSamples)
+    fail(Code::kRange, "horizon: %d decisions of %d environments are more than %lld samples", plan.horizon,
+         plan.config.num_envs, static_cast<long long>(kMaxSamples));
+  plan.samples = static_cast<int32_t>(samples);
+  const int32_t parts = std::min(o.integer("minibatches"), plan.samples);
+  plan.minibatch_rows = (plan.samples + parts - 1) / parts;
+  // A quarter of a minibatch keeps four threads busy; larger pieces than 256 rows leave the cache. Not by
+  // num_threads: results must not depend on it.
+  const int32_t quarter = (plan.minibatch_rows + 3) / 4;
+  plan.piece_rows = std::clamp((quarter + 31) / 32 * 32, 64, 256);
+  const int32_t rows = std::max(plan.minibatch_rows, plan.config.num_envs);
+  plan.lanes = std::clamp(plan.config.num_threads, 1, (rows + plan.piece_rows - 1) / plan.piece_rows);
+  const double rho = o.number("noise_correlation");
+  plan.log_share = static_cast<float>(0.5 * elementary::log1p(-rho * rho));
+}
+
+void check_pairs(const ResolvedAgentConfig& plan) {
+  const Options& o = plan.options;
+  if (o.number("std_min") > o.number("std_max")) fail(Code::kRange, "std_min: above std_max");
+  if (o.number("init_std") < o.number("std_min") || o.number("init_std") > o.number("std_max"))
+    fail(Code::kRange, "init_std: %g is outside [std_min, std_max]", o.number("init_std"));
+  if (std::strcmp(o.text("std_mode"), "state") == 0) {
+    if (!o.flag("learn_std") || std::strcmp(o.text("std_schedule"), "none") != 0)
+      fail(Code::kUnsupported, "std_mode: state is for a deviation that is learned, without a schedule");
+    if (o.number("init_std") <= o.number("std_min") || o.number("init_std") >= o.number("std_max"))
+      fail(Code::kRange, "init_std: at a bound, where std_mode=state has no gradient");
+  }
+  if (o.number("lr_min") > o.number("lr_max")) fail(Code::kRange, "lr_min: above lr_max");
+  if (o.flag("terminal_cost") && plan.config.max_steps <= 0)
+    fail(Code::kArgument, "terminal_cost: needs max_steps, which is unknown (0)");
+}
+
+}  // namespace
+
+ResolvedAgentConfig make_plan(const AgentConfig& config) {
+  check_config(config);
+  const AlgoRow& row = algo_row(algo_find(config.algo));
+  ResolvedAgentConfig plan(config, read_options(config, row.info), row);
+  std::snprintf(plan.task, sizeof plan.task, "%s", config.task ? config.task : "");
+  plan.config.algo = row.info.name;
+  check_pairs(plan);
+  plan_costs(plan);
+  plan_networks(plan);
+  plan_batches(plan);
+  return plan;
+}
+
+}  // namespace rdm

@@ -1,0 +1,44 @@
+// Everything that is decided before an agent takes memory: checked config, option values, network shapes.
+#pragma once
+#include <algorithm>
+#include <utility>
+
+#include "algos/core/agent.hpp"
+#include "nn/mlp.hpp"
+
+namespace rdm {
+
+struct AlgoRow;
+
+struct ResolvedAgentConfig {
+  ResolvedAgentConfig(const AgentConfig& c, Options&& o, const AlgoRow& r)
+      : config(c), options(std::move(o)), row(&r) {}
+
+  AgentConfig config;  // scalars and names stay valid, arrays only until the agent is made
+  char task[kOptionTextSize] = "";
+  Options options;
+  const AlgoRow* row;
+
+  MlpShape actor, reward_critic, cost_critic;  // cost_critic.out = num_limited
+  int32_t num_limited = 0;                     // limited cost columns; 0 for algorithms without costs
+  int32_t column[kMaxCosts] = {};              // [num_limited] column of each
+  double limit[kMaxCosts] = {};                // [num_limited]
+
+  int32_t horizon = 0, action_repeat = 0;
+  int32_t samples = 0;         // num_envs * horizon
+  int32_t minibatch_rows = 0;  // largest minibatch
+  int32_t piece_rows = 0;      // of a batch, by one thread at a time; the order of sums follows from it
+  int32_t lanes = 1;           // pieces in flight
+  float log_share = 0;         // ln of the innovation's share of the standard deviation
+
+  // The actor's network gives log deviations behind its means.
+  bool state_std() const { return actor.out != config.action_dim; }
+  size_t obs_dim() const { return static_cast<size_t>(config.obs_dim); }
+  size_t action_dim() const { return static_cast<size_t>(config.action_dim); }
+  size_t num_envs() const { return static_cast<size_t>(config.num_envs); }
+};
+
+// Error(kRange, kArgument, kNotFound) with the name of the field or option.
+ResolvedAgentConfig make_plan(const AgentConfig& config);
+
+}  // namespace rdm

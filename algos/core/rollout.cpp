@@ -1,0 +1,82 @@
+#include "algos/core/rollout.hpp"
+
+#include <cstring>
+
+#include "base/elementary.hpp"
+#include "nn/gaussian.hpp"
+
+namespace rdm {
+
+Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& plan) {
+  Rollout r;
+  r.horizon = plan.horizon;
+  r.num_envs = plan.config.num_envs;
+  r.num_costs = plan.num_limited;
+  r.obs_dim = plan.obs_dim();
+  r.action_dim = plan.action_dim();
+  const auto n = static_cast<size_t>(plan.samples), k = static_cast<size_t>(r.num_costs);
+  r.obs = arena.make<float>(n * r.obs_dim);
+  r.action = arena.make<float>(n * r.action_dim);
+  r.mean = arena.make<float>(n * r.action_dim);
+  for (float** column :
+       {&r.log_prob, &r.reward, &r.value, &r.advantage, &r.target, &r.discount, &r.gain, &r.linear})
+    *column = arena.make<float>(n);
+  for (float** column : {&r.cost, &r.cost_value, &r.cost_advantage, &r.cost_target})
+    *column = arena.make<float>(n * k);
+  r.valid = arena.make<uint8_t>(n);
+  r.last_value = arena.make<float>(plan.num_envs());
+  r.last_cost_value = arena.make<float>(plan.num_envs() * k);
+  r.std_step = plan.state_std() ? r.action_dim : 0;
+  r.log_std = arena.make<float>(plan.state_std() ? n * r.action_dim : r.action_dim);
+  r.order = arena.make<int32_t>(n);
+  return r;
+}
+
+void estimate_advantages(const Rollout& r, const AdvantageOptions& options) {
+  gae({r.reward, r.value, r.last_value, r.advantage, r.target, 1}, r.discount, r.valid, r.horizon, r.num_envs,
+      options.lambda);
+  if (options.standardize_reward) standardize(r.advantage, 1, r.valid, r.samples(), true);
+  for (int32_t k = 0; k < r.num_costs; ++k) {
+    gae({r.cost + k, r.cost_value + k, r.last_cost_value + k, r.cost_advantage + k, r.cost_target + k,
+         r.num_costs},
+        r.discount, r.valid, r.horizon, r.num_envs, options.cost_lambda);
+    standardize(r.cost_advantage + k, r.num_costs, r.valid, r.samples(), options.standardize_cost);
+  }
+}
+
+double sample_ratio(const Rollout& r, size_t at, const float* mean, const float* log_std) {
+  const float* action = r.action + at * r.action_dim;
+  const float log_prob = gaussian_log_prob(mean, log_std, action, static_cast<int32_t>(r.action_dim));
+  return elementary::exp(static_cast<double>(std::min(log_prob - r.log_prob[at], 20.0f)));
+}
+
+void gather_obs(const Rollout& r, const int32_t* order, int32_t stride, int32_t n, float* x) {
+  for (size_t i = 0; i < static_cast<size_t>(n); ++i)
+    std::memcpy(x + i * r.obs_dim,
+                r.obs + static_cast<size_t>(order[i * static_cast<size_t>(stride)]) * r.obs_dim,
+                r.obs_dim * sizeof(float));
+}
+
+void combine_advantages(const Rollout& r, const double* weights, Mix mix, bool split) {
+  const auto costs = static_cast<size_t>(r.num_costs);
+  double sum = 0;
+  for (size_t k = 0; k < costs; ++k) sum += weights[k];
+  const double total = mix == Mix::kSum ? 1 + sum : 1, share = mix == Mix::kDifference ? 1 - sum : 1;
+  for (size_t i = 0; i < static_cast<size_t>(r.samples()); ++i) {
+    double cost = 0;
+    for (size_t k = 0; k < costs; ++k)
+      cost += weights[k] * static_cast<double>(r.cost_advantage[i * costs + k]);
+    const auto reward = share * static_cast<double>(r.advantage[i]);
+    r.gain[i] = static_cast<float>((split ? reward : reward - cost) / total);
+    r.linear[i] = static_cast<float>(split ? -cost / total : 0);
+  }
+}
+
+int32_t list_valid(const Rollout& r) {
+  int32_t count = 0;
+  for (int32_t i = 0; i < r.samples(); ++i)
+    if (r.valid[i]) r.order[count++] = i;
+  return count;
+}
+
+}  // namespace rdm

@@ -1,0 +1,59 @@
+// What an epoch collects: one row per decision, sample t of environment e at row t num_envs + e, so that an
+// act writes one block.
+#pragma once
+#include "algos/core/gae.hpp"
+#include "algos/core/resolved_config.hpp"
+
+namespace rdm {
+
+struct Rollout {
+  int32_t horizon = 0, num_envs = 0, num_costs = 0;
+  size_t obs_dim = 0, action_dim = 0;
+  int32_t filled = 0;  // decisions recorded
+
+  // [samples] rows of:
+  float* obs = nullptr;     // [obs_dim] as the networks saw it
+  float* action = nullptr;  // [action_dim] less the offset of the correlated noise
+  float* mean = nullptr;    // [action_dim] of the policy that acted
+  float* log_prob = nullptr;
+  float *reward = nullptr, *value = nullptr, *advantage = nullptr, *target = nullptr;
+  // [num_costs]
+  float *cost = nullptr, *cost_value = nullptr, *cost_advantage = nullptr, *cost_target = nullptr;
+  float* discount = nullptr;  // 0 where a path ended
+  uint8_t* valid = nullptr;
+  float* log_std = nullptr;  // [action_dim] of the innovation, of the policy that acted; std_step apart
+  size_t std_step = 0;       // 0: one for all rows
+  // What the actor climbs: clipped, and linear in the ratio (0 unless the algorithm splits its loss).
+  float *gain = nullptr, *linear = nullptr;
+  float *last_value = nullptr, *last_cost_value = nullptr;  // [num_envs], [num_envs][num_costs]
+  int32_t* order = nullptr;                                 // [samples] valid rows, shuffled
+
+  float* log_std_of(size_t at) const { return log_std + at * std_step; }
+  size_t row(int32_t t) const { return static_cast<size_t>(t) * static_cast<size_t>(num_envs); }
+  int32_t samples() const { return horizon * num_envs; }
+};
+Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& plan);
+
+struct AdvantageOptions {
+  double lambda = 0.95, cost_lambda = 0.95;
+  bool standardize_reward = true, standardize_cost = false;
+};
+// p(action) / p_old(action) of row `at` under a policy with this mean and innovation; at most e^20, which is
+// far past any clip and still finite after it is multiplied.
+double sample_ratio(const Rollout& r, size_t at, const float* mean, const float* log_std);
+// Copies the observations of n listed rows, every stride-th entry of the list, to x [n][obs_dim].
+void gather_obs(const Rollout& r, const int32_t* order, int32_t stride, int32_t n, float* x);
+
+// How cost weights l meet the reward: (A_r - sum l_i A_ci) / (1 + sum l_i), (1 - sum l_i) A_r - sum l_i A_ci,
+// or A_r - sum l_i A_ci.
+enum class Mix : int32_t { kSum, kDifference, kPlain };
+
+// Fills advantages and targets of reward and costs, and scales the advantages.
+void estimate_advantages(const Rollout& r, const AdvantageOptions& options);
+// What the actor climbs under cost weights l [num_costs], in gain; with split the cost part of it stands in
+// linear instead, which no clip touches.
+void combine_advantages(const Rollout& r, const double* weights, Mix mix, bool split);
+// Writes the valid rows into order; returns their number.
+int32_t list_valid(const Rollout& r);
+
+}  // namespace rdm

@@ -1,0 +1,29 @@
+// The actor's learning rate from epoch to epoch: constant, falling linearly, or adapted to the KL.
+#pragma once
+#include "algos/core/state_io.hpp"
+#include "base/option.hpp"
+
+namespace rdm {
+
+class RateSchedule {
+ public:
+  void reset(const Options& options);
+  void read_live(const Options& options);
+  // Rate of the epoch that follows `done` finished ones.
+  double rate(int32_t done) const;
+  // The linear schedule's share of the rate at that time; 1 with others.
+  double share(int32_t done) const;
+  // rate() over learning_rate, whatever the schedule.
+  double change(int32_t done) const { return base_ > 0 ? rate(done) / base_ : 1; }
+  // After an epoch, with its KL(old || new), mean over all passes.
+  void adapt(double kl);
+  void visit(StateIo& io);
+
+ private:
+  enum class Kind { kConstant, kLinear, kKl } kind_ = Kind::kConstant;
+  double base_ = 0, adapted_ = 0;
+  double target_ = 0, factor_ = 1, low_ = 0, high_ = 0;
+  int32_t total_ = 1;
+};
+
+}  // namespace rdm

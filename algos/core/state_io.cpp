@@ -1,0 +1,68 @@
+#include "algos/core/state_io.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "base/error.hpp"
+
+namespace rdm {
+
+void StateWriter::section(const char tag[4]) {
+  end();
+  out_.begin_section(tag);
+  open_ = true;
+}
+
+void StateWriter::end() {
+  if (open_) out_.end_section();
+  open_ = false;
+}
+
+void StateReader::section(const char tag[4]) {
+  end();
+  in_.need_section(tag);
+  std::memcpy(tag_, tag, 4);
+}
+
+void StateReader::end() {
+  if (*tag_) in_.expect_end();
+  *tag_ = '\0';
+}
+
+template <class T>
+void StateReader::read(T* x, size_t count, double low, double high) {
+  const unsigned char* p = in_.view(count * sizeof(T));
+  if (apply_) {
+    if (count) std::memcpy(x, p, count * sizeof(T));
+    return;
+  }
+  for (size_t i = 0; i < count; ++i) {
+    T v;
+    std::memcpy(&v, p + i * sizeof(T), sizeof v);
+    const auto d = static_cast<double>(v);
+    if (!(d >= low && d <= high))
+      fail(Code::kFormat, "agent state: section %s holds %g, outside [%g, %g]", tag_, d, low, high);
+  }
+}
+
+void StateReader::numbers(float* x, size_t count, double low, double high) {
+  read(x, count, low, high);
+}
+void StateReader::numbers(double* x, size_t count, double low, double high) {
+  read(x, count, low, high);
+}
+
+void StateReader::integer(int64_t& x, int64_t low, int64_t high) {
+  const auto v = in_.value<int64_t>();
+  if (v < low || v > high)
+    fail(Code::kFormat, "agent state: section %s holds %lld, outside [%lld, %lld]", tag_,
+         static_cast<long long>(v), static_cast<long long>(low), static_cast<long long>(high));
+  if (apply_) x = v;
+}
+
+void StateReader::bytes(void* x, size_t count) {
+  const unsigned char* p = in_.view(count);
+  if (apply_ && count) std::memcpy(x, p, count);
+}
+
+}  // namespace rdm

@@ -1,0 +1,88 @@
+#include "algos/first_order/focops.hpp"
+
+#include <algorithm>
+
+#include "algos/algo_registry.hpp"
+#include "algos/core/option_tables.hpp"
+#include "base/elementary.hpp"
+#include "nn/gaussian.hpp"
+
+namespace rdm {
+
+void FocopsLoss::add(const PolicyPiece& piece) const {
+  const Rollout& r = *piece.rollout;
+  const size_t dim = r.action_dim;
+  const auto dims = static_cast<int32_t>(dim);
+  float precision[kMaxActions], dlog_std[kMaxActions];  // 1 / old variance; d KL / d log sigma
+  const auto prepare = [&](const float* log_std, const float* old) {
+    for (size_t j = 0; j < dim; ++j) {
+      const auto was = static_cast<double>(old[j]);
+      precision[j] = static_cast<float>(elementary::exp(-2 * was));
+      dlog_std[j] = static_cast<float>(elementary::expm1(2 * (static_cast<double>(log_std[j]) - was)));
+    }
+  };
+  for (size_t i = 0; i < static_cast<size_t>(piece.rows); ++i) {
+    const auto at = static_cast<size_t>(piece.order[i]);
+    const float *mean = piece.mean_of(i), *log_std = piece.log_std_of(i);
+    const float *old = r.mean + at * dim, *old_log_std = r.log_std_of(at);
+    float *dmean = piece.dmean_of(i), *dstd = piece.dlog_std_of(i);
+    if (i == 0 || piece.std_step > 0) prepare(log_std, old_log_std);
+    const float kl = gaussian_kl(mean, log_std, old, old_log_std, dims);
+    piece.sums->kl += static_cast<double>(gaussian_kl(old, old_log_std, mean, log_std, dims));
+    if (!(kl <= eta)) {
+      std::fill_n(dmean, dim, 0.0f);
+      piece.sums->clipped += 1;
+      continue;
+    }
+    const auto ratio = static_cast<float>(sample_ratio(r, at, mean, log_std));
+    const float pull = ratio * r.gain[at] / temperature;
+    gaussian_log_prob_grad(mean, log_std, r.action + at * dim, dims, -piece.scale * pull, dmean, dstd);
+    for (size_t j = 0; j < dim; ++j) {
+      dmean[j] += piece.scale * (mean[j] - old[j]) * precision[j];
+      dstd[j] += piece.scale * dlog_std[j];
+    }
+    piece.sums->loss += static_cast<double>(kl - pull);
+  }
+}
+
+void FocopsBase::read_live() {
+  PolicyGradient::read_live();
+  loss_.temperature = static_cast<float>(options().number("temperature"));
+  loss_.eta = static_cast<float>(options().number("focops_eta"));
+}
+
+FocopsRule::FocopsRule(const ResolvedAgentConfig& plan)
+    : lagrange_(plan), mix_(plan.options.flag("multiplier_divide") ? Mix::kSum : Mix::kPlain) {}
+
+void FocopsRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t epoch) {
+  lagrange_.step(stats, plan, epoch);
+  if (stats.finished == 0) return;
+  const auto excess = [&](int32_t i) { return stats.charged_cost[plan.column[i]] - plan.limit[i]; };
+  worst_ = 0;
+  for (int32_t i = 1; i < plan.num_limited; ++i)
+    if (excess(i) > excess(worst_)) worst_ = i;
+}
+
+void FocopsRule::visit(StateIo& io) {
+  lagrange_.visit(io);
+  io.integer(worst_, 0, kMaxCosts);
+}
+
+namespace {
+constexpr std::array kFocopsOptions = {
+    number_option("temperature", 1.5, 1e-6, 1e6, "lambda of the paper, fixed", true),
+    number_option("focops_eta", 0.02, 0, 1e6, "samples whose KL(new || old) is above this teach nothing",
+                  true),
+    flag_option("multiplier_divide", false, "advantage over (1 + nu), as a peer has it"),
+};
+constexpr auto kOptions =
+    with_defaults(join_options(kSharedOptions, kMultiplierOptions, kFocopsOptions, kOneCostOptions),
+                  {OtherDefault{"multiplier_optimizer", 0, "sgd"}, OtherDefault{"multiplier_init", 0},
+                   OtherDefault{"multiplier_lr", 0.01}, OtherDefault{"multiplier_max", 2},
+                   OtherDefault{"early_stop_kl", 0.02}});
+}  // namespace
+constinit const AlgoRow kFocops = make_algo_row<Focops>(
+    "focops", "First-order constrained optimisation in policy space (Zhang et al. 2020)", kOptions,
+    Costs::kOne);
+
+}  // namespace rdm

@@ -1,0 +1,47 @@
+// FOCOPS (Zhang et al. 2020): first-order projection of the optimal nonparametric policy.
+#pragma once
+#include "algos/core/policy_gradient.hpp"
+#include "algos/lagrange/cost_weighted.hpp"
+#include "algos/lagrange/lagrange.hpp"
+
+namespace rdm {
+
+// Of one sample: [KL(new || old) - rho gain / temperature], nothing where that KL is above eta.
+class FocopsLoss final : public PolicyLoss {
+ public:
+  void add(const PolicyPiece& piece) const override;
+  float temperature = 1.5f, eta = 0.02f;
+};
+
+class FocopsBase : public PolicyGradient {
+ public:
+  explicit FocopsBase(ResolvedAgentConfig&& plan) : PolicyGradient(std::move(plan)) {}
+
+ protected:
+  const PolicyLoss& policy_loss() const override { return loss_; }
+  void read_live() override;
+
+ private:
+  FocopsLoss loss_;
+};
+
+// One multiplier for each cost; of several, only the most violated one weighs in an epoch.
+class FocopsRule {
+ public:
+  explicit FocopsRule(const ResolvedAgentConfig& plan);
+  void step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t epoch);
+  double weight(int32_t i) const { return i == worst_ ? lagrange_.weight(i) : 0; }
+  Mix mix() const { return mix_; }
+  bool split() const { return false; }
+  void read_live(const Options& options) { lagrange_.read_live(options); }
+  void visit(StateIo& io);
+
+ private:
+  Lagrange lagrange_;
+  Mix mix_ = Mix::kPlain;
+  int32_t worst_ = 0;
+};
+
+using Focops = CostWeighted<FocopsBase, FocopsRule>;
+
+}  // namespace rdm

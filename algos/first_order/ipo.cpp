@@ -1,0 +1,93 @@
+#include "algos/first_order/ipo.hpp"
+
+#include <cstring>
+
+#include "algos/algo_registry.hpp"
+#include "algos/core/option_tables.hpp"
+#include "algos/first_order/p3o.hpp"
+#include "algos/lagrange/cost_weighted.hpp"
+
+namespace rdm {
+
+double barrier_slope(double cost, double limit, double kappa, double max) {
+  const double slope = kappa / (limit - cost + 1e-8);
+  return slope < 0 || slope > max ? max : slope;
+}
+
+void BarrierRule::read_live(const Options& o) {
+  kappa_ = o.number("barrier_kappa");
+  max_ = o.number("barrier_max");
+  split_ = std::strcmp(o.text("cost_loss"), "split") == 0;
+}
+
+void BarrierRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t) {
+  if (stats.finished == 0) return;
+  for (int32_t i = 0; i < count_; ++i)
+    slope_[i] = barrier_slope(stats.charged_cost[plan.column[i]], plan.limit[i], kappa_, max_);
+}
+
+void BarrierRule::visit(StateIo& io) {
+  io.section("BARR");
+  io.numbers(slope_, static_cast<size_t>(count_), 0, 1e300);
+}
+
+void BarrierLoss::aim(const Surrogate& now, const double* violation, int32_t count) {
+  for (int32_t k = 0; k < count; ++k)
+    weight[k] = static_cast<float>(barrier_slope(now.cost[k] + violation[k], 0, kappa, max));
+}
+
+namespace {
+
+// With barrier=exact: PPO's loss less kappa ln(-violation - L_c) of each cost.
+class Ipo final : public CostWeighted<Ppo, BarrierRule> {
+ public:
+  explicit Ipo(ResolvedAgentConfig&& plan) : CostWeighted(std::move(plan)) {}
+
+ protected:
+  const PolicyLoss& policy_loss() const override {
+    if (exact_) return loss_;
+    return CostWeighted::policy_loss();
+  }
+  void opened() override { exact_ = std::strcmp(options().text("barrier"), "exact") == 0; }
+  void read_live() override {
+    CostWeighted::read_live();
+    loss_.clip = static_cast<float>(options().number("clip"));
+    loss_.kappa = options().number("barrier_kappa");
+    loss_.max = options().number("barrier_max");
+  }
+  void begin_epoch(const EpisodeStats& stats, int32_t epoch) override {
+    CostWeighted::begin_epoch(stats, epoch);
+    known_ = stats.finished > 0;
+    if (!exact_) return;
+    PolicyGradient::begin_epoch(stats, epoch);
+    for (int32_t i = 0; i < plan().num_limited; ++i) violation_[i] = violation(stats, i), loss_.weight[i] = 0;
+    if (known_) loss_.aim(Surrogate(), violation_, plan().num_limited);
+  }
+  void begin_minibatch(const int32_t* order, int32_t rows) override {
+    if (exact_ && known_) loss_.aim(learner().measure(order, rows), violation_, plan().num_limited);
+  }
+  double cost_weight(int32_t i) const override {
+    return exact_ ? static_cast<double>(loss_.weight[i]) : CostWeighted::cost_weight(i);
+  }
+
+ private:
+  BarrierLoss loss_;
+  double violation_[kMaxCosts] = {};
+  bool exact_ = false, known_ = false;
+};
+
+constexpr std::array kBarrierOptions = {
+    text_option("barrier", "epoch", "epoch|exact",
+                "slope at J_c for the whole epoch, or at J_c + L_c as each minibatch has it, never clipped"),
+    number_option("barrier_kappa", 0.01, 0, 1e6, "weight of ln(limit - J_c): 1 / m of the paper", true),
+    number_option("barrier_max", 1, 0, kHuge, "bound on the barrier's slope, and the slope beyond the limit",
+                  true),
+};
+constexpr auto kOptions = with_defaults(join_options(kSharedOptions, kClipOptions, kBarrierOptions,
+                                                     kSplitOptions, kViolationOptions, kWindowOptions),
+                                        {OtherDefault{"violation_scale", 0, "raw"}});
+}  // namespace
+constinit const AlgoRow kIpo = make_algo_row<Ipo>(
+    "ipo", "PPO with a logarithmic barrier before each cost limit (Liu et al. 2020)", kOptions, Costs::kAny);
+
+}  // namespace rdm

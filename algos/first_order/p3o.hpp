@@ -1,0 +1,43 @@
+// P3O (Zhang et al. 2022): the clipped surrogate with an exact penalty on each cost limit.
+#pragma once
+#include "algos/first_order/ppo.hpp"
+
+namespace rdm {
+
+// What one sample adds to the penalty of a cost: max(rho A_c, clip(rho) A_c), and its derivative by log p.
+// Clipping can hide a fall of the cost, never a rise.
+SampleLoss penalty_loss(float ratio, float cost, float clip);
+
+// -min(rho gain, clip(rho) gain) + sum_k weight_k max(rho A_ck, clip(rho) A_ck), or without clip_cost
+// weight_k rho A_ck.
+class PenalizedSurrogate : public RatioLoss {
+ public:
+  float clip = 0.2f;
+  bool clip_cost = true;
+  float weight[kMaxCosts] = {};  // kappa where the penalty is on, else 0
+
+ protected:
+  SampleLoss sample(const Rollout& r, size_t at, float ratio) const override;
+};
+
+class P3o final : public Ppo {
+ public:
+  explicit P3o(ResolvedAgentConfig&& plan) : Ppo(std::move(plan)) {}
+
+ protected:
+  const PolicyLoss& policy_loss() const override { return loss_; }
+  void begin_epoch(const EpisodeStats& stats, int32_t epoch) override;
+  // The penalty is on where the minibatch's estimate of the constraint is above 0.
+  void begin_minibatch(const int32_t* order, int32_t rows) override;
+  double cost_weight(int32_t) const override { return kappa_; }
+  void opened() override { kappa_ = options().number("penalty"); }
+  void read_live() override;
+  void visit_state(StateIo& io) override;
+
+ private:
+  PenalizedSurrogate loss_;
+  double kappa_ = 0;
+  double violation_[kMaxCosts] = {};
+};
+
+}  // namespace rdm

@@ -1,0 +1,36 @@
+// PPO (Schulman et al. 2017): the clipped surrogate.
+#pragma once
+#include "algos/core/policy_gradient.hpp"
+#include "algos/first_order/ratio_loss.hpp"
+
+namespace rdm {
+
+// -min(rho gain, clip(rho, 1 - clip, 1 + clip) gain) - rho linear. Ties have the unclipped derivative.
+SampleLoss clipped_loss(float ratio, float gain, float linear, float clip);
+
+class ClippedSurrogate final : public RatioLoss {
+ public:
+  float clip = 0.2f;
+
+ protected:
+  SampleLoss sample(const Rollout& r, size_t at, float ratio) const override {
+    return clipped_loss(ratio, r.gain[at], r.linear[at], clip);
+  }
+};
+
+class Ppo : public PolicyGradient {
+ public:
+  explicit Ppo(ResolvedAgentConfig&& plan) : PolicyGradient(std::move(plan)) {}
+
+ protected:
+  const PolicyLoss& policy_loss() const override { return loss_; }
+  void read_live() override {
+    PolicyGradient::read_live();
+    loss_.clip = static_cast<float>(options().number("clip"));
+  }
+
+ private:
+  ClippedSurrogate loss_;
+};
+
+}  // namespace rdm

@@ -1,0 +1,27 @@
+// The rule of CPPO-PID: one PID controller for each cost limit.
+#pragma once
+#include "algos/core/episodes.hpp"
+#include "algos/core/rollout.hpp"
+#include "algos/lagrange/pid.hpp"
+
+namespace rdm {
+
+class PidRule {
+ public:
+  explicit PidRule(const ResolvedAgentConfig& plan);
+  // Not without a fresh episode.
+  void step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t epoch);
+  double weight(int32_t i) const { return pid_[i].value(); }
+  Mix mix() const { return mix_; }
+  bool split() const { return false; }
+  void read_live(const Options& options);
+  void visit(StateIo& io);
+
+ private:
+  PidOptions options_;
+  Pid pid_[kMaxCosts];
+  Mix mix_ = Mix::kSum;
+  int32_t count_ = 0;
+};
+
+}  // namespace rdm

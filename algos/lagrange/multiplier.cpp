@@ -1,0 +1,57 @@
+#include "algos/lagrange/multiplier.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/elementary.hpp"
+
+namespace rdm {
+namespace {
+
+double softplus(double w) {
+  return w > 30 ? w : elementary::log1p(elementary::exp(w));
+}
+double softplus_inverse(double l) {
+  return l > 30 ? l : elementary::log(elementary::expm1(std::max(l, 1e-12)));
+}
+
+}  // namespace
+
+void Multiplier::reset(const MultiplierOptions& options) {
+  *this = Multiplier();
+  value_ = std::min(options.init, options.max);
+  raw_ = options.optimizer == MultiplierOptimizer::kSoftplus ? softplus_inverse(value_) : value_;
+}
+
+void Multiplier::step(const MultiplierOptions& options, double cost, double limit, double warmth) {
+  double e = cost - limit;
+  if (options.normalized) e /= std::max(limit, 1e-8);
+  const double rate = options.rate * warmth;
+  if (options.optimizer == MultiplierOptimizer::kSgd) {
+    raw_ += rate * e;
+  } else {
+    ++t_;
+    m_ = 0.9 * m_ - 0.1 * e;
+    v_ = 0.999 * v_ + 0.001 * e * e;
+    const double m = m_ / (1 - elementary::pow(0.9, t_));
+    const double v = v_ / (1 - elementary::pow(0.999, t_));
+    raw_ -= rate * m / (std::sqrt(v) + 1e-8);
+  }
+  if (options.optimizer == MultiplierOptimizer::kSoftplus)
+    raw_ = std::min(raw_, softplus_inverse(options.max));
+  else
+    raw_ = std::clamp(raw_, 0.0, options.max);
+  const double learnt = options.optimizer == MultiplierOptimizer::kSoftplus ? softplus(raw_) : raw_;
+  value_ = options.gain > 0 ? std::clamp(learnt + options.gain * warmth * e, 0.0, options.max) : learnt;
+}
+
+void Multiplier::visit(StateIo& io) {
+  constexpr double kBound = 1e300;
+  io.number(value_, 0, kBound);
+  io.number(raw_, -kBound, kBound);
+  io.number(m_, -kBound, kBound);
+  io.number(v_, 0, kBound);
+  io.integer(t_, 0, int64_t{1} << 62);
+}
+
+}  // namespace rdm

@@ -1,0 +1,35 @@
+// A PID controller of one cost multiplier (Stooke et al. 2020), one step per epoch.
+#pragma once
+#include <cstdint>
+
+#include "algos/core/state_io.hpp"
+
+namespace rdm {
+
+inline constexpr int32_t kMaxPidDelay = 64;
+
+struct PidOptions {
+  double kp = 0.1, ki = 0.01, kd = 0.01;
+  double smooth_p = 0.95, smooth_d = 0.95;  // EMA factors; 0: none
+  int32_t delay = 10;                       // epochs that the derivative looks back
+  double init = 0.001;                      // of the integral
+  double integral_max = 1e300, max = 1e300;
+};
+
+// With e = J_c - limit: integral I = clip(I + ki e, 0, integral_max), P an EMA of e, C an EMA of J_c from 0,
+// D = max(0, C - C of `delay` steps ago (0 before)); multiplier = clip(kp P + I + kd D, 0, max). So only a
+// rising cost is derived, and the integral never winds up below 0.
+class Pid {
+ public:
+  void reset(const PidOptions& options);
+  void step(const PidOptions& options, double cost, double limit);
+  double value() const { return value_; }
+  void visit(StateIo& io);
+
+ private:
+  double integral_ = 0, p_ = 0, cost_ = 0, value_ = 0;
+  double past_[kMaxPidDelay] = {};  // ring of C
+  int32_t steps_ = 0;               // mod delay
+};
+
+}  // namespace rdm

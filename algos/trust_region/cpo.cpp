@@ -1,0 +1,52 @@
+#include "algos/trust_region/cpo.hpp"
+
+#include "algos/algo_registry.hpp"
+#include "algos/core/option_tables.hpp"
+#include "algos/trust_region/cpo_problem.hpp"
+
+namespace rdm {
+
+void Cpo::begin_epoch(const EpisodeStats& stats, int32_t epoch) {
+  Trpo::begin_epoch(stats, epoch);
+  cost_ = 0;
+  for (int32_t i = 0; i < plan().num_limited; ++i) {
+    const double c = violation(stats, i);
+    if (i == 0 || c > c_) cost_ = i, c_ = c;
+  }
+}
+
+bool Cpo::solve(double c) {
+  const TrustRegion& t = region();
+  const CpoStep y = solve_cpo({t.q(), t.r(), t.s(), c, t.delta()});
+  nu_ = y.nu;
+  region().set_step(y.along_x, y.along_p, 0);
+  return y.which == CpoCase::kBoundary || y.which == CpoCase::kInside || y.which == CpoCase::kNoCost;
+}
+
+double Cpo::step_policy(const int32_t* order, int32_t rows) {
+  region().linearize(order, rows, cost_, schedule_share());
+  const bool keep_reward = solve(c_);
+  const auto k = static_cast<size_t>(cost_);
+  return region().search([&](const Surrogate& before, const Surrogate& after) {
+    return after.cost[k] - before.cost[k] <= std::max(-c_, 0.0) &&
+           (!keep_reward || after.gain >= before.gain);
+  });
+}
+
+void Cpo::visit_state(StateIo& io) {
+  Trpo::visit_state(io);
+  io.section("CPO ");
+  io.number(nu_, 0, 1e300);
+  io.integer(cost_, 0, kMaxCosts);
+}
+
+namespace {
+constexpr auto kOptions = with_defaults(
+    join_options(kSharedOptions, kTrustOptions, kViolationOptions, kOneCostOptions, kWindowOptions),
+    kTrustDefaults);
+}
+constinit const AlgoRow kCpo = make_algo_row<Cpo>(
+    "cpo", "Constrained policy optimisation, its local problem solved exactly (Achiam et al. 2017)", kOptions,
+    Costs::kOne);
+
+}  // namespace rdm

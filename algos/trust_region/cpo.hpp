@@ -1,0 +1,28 @@
+// CPO (Achiam et al. 2017): the trust region's step under a linearised cost limit.
+#pragma once
+#include "algos/trust_region/trpo.hpp"
+
+namespace rdm {
+
+class Cpo : public Trpo {
+ public:
+  explicit Cpo(ResolvedAgentConfig&& plan) : Trpo(std::move(plan)) {}
+
+ protected:
+  void begin_epoch(const EpisodeStats& stats, int32_t epoch) override;
+  double step_policy(const int32_t* order, int32_t rows) override;
+  bool constrained() const override { return true; }
+  double cost_weight(int32_t i) const override { return i == cost_ ? nu_ : 0; }
+  void visit_state(StateIo& io) override;
+
+  // Sets the region's step for the constraint value c = violation(); returns whether the reward must not
+  // fall.
+  virtual bool solve(double c);
+  double nu_ = 0;
+
+ private:
+  int32_t cost_ = 0;  // the limited cost that this epoch follows
+  double c_ = 0;
+};
+
+}  // namespace rdm

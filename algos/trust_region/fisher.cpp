@@ -1,0 +1,70 @@
+#include "algos/trust_region/fisher.hpp"
+
+#include "base/elementary.hpp"
+
+namespace rdm {
+
+void Fisher::carve(Arena& arena, const ResolvedAgentConfig& plan) {
+  weight_ = arena.make<float>(plan.state_std() ? 0 : plan.action_dim());
+}
+
+void Fisher::open(const ResolvedAgentConfig& plan, const Rollout& rollout, const Networks& nets,
+                  BatchWorkers& lanes) {
+  plan_ = &plan;
+  rollout_ = &rollout;
+  nets_ = &nets;
+  lanes_ = &lanes;
+  dims_ = plan.options.flag("kl_mean_over_dims") ? plan.config.action_dim : 1;
+}
+
+void Fisher::read_live(const Options& o) {
+  damping_ = o.number("cg_damping");
+  stride_ = o.integer("fisher_stride");
+}
+
+void Fisher::set_rows(const int32_t* order, int32_t rows) {
+  order_ = order;
+  rows_ = (rows + stride_ - 1) / stride_;
+  for (size_t j = 0; !nets_->state_std() && j < plan_->action_dim(); ++j) {
+    const auto log_std = static_cast<double>(nets_->log_std()[j] + plan_->log_share);
+    weight_[j] = static_cast<float>(elementary::exp(-2 * log_std) / (rows_ * dims_));
+  }
+}
+
+void Fisher::weigh(const float* y, int32_t n, float* dy) const {
+  const size_t dim = plan_->action_dim();
+  if (!nets_->state_std()) {
+    for (size_t i = 0; i < static_cast<size_t>(n); ++i)
+      for (size_t j = 0; j < dim; ++j) dy[i * dim + j] *= weight_[j];
+    return;
+  }
+  const double share = 1 / (rows_ * dims_);
+  for (size_t i = 0; i < static_cast<size_t>(n); ++i)
+    for (size_t j = 0; j < dim; ++j) {
+      const size_t mean = 2 * i * dim + j, log_std = mean + dim;
+      dy[mean] *= static_cast<float>(share * elementary::exp(-2 * static_cast<double>(y[log_std])));
+      dy[log_std] *= static_cast<float>(2 * share);
+    }
+  nets_->gate_std(y, n, dy);
+}
+
+void Fisher::multiply(const float* v, float* out) {
+  const MlpShape& shape = nets_->shape[Networks::kActor];
+  const float* net = nets_->net(Networks::kActor);
+  const size_t skip = nets_->std_size, size = nets_->block[Networks::kActor].size;
+  lanes_->sweep(
+      rows_, plan_->piece_rows,
+      [&](Lane& lane, int32_t first, int32_t n) {
+        gather_obs(*rollout_, order_ + first * stride_, stride_, n, lane.obs);
+        nets_->forward(Networks::kActor, lane.obs, n, lane.actor, lane.out);
+        mlp_tangent(shape, net, v + skip, lane.obs, n, lane.actor, lane.dout);
+        weigh(lane.out, n, lane.dout);
+        mlp_backward(shape, net, lane.obs, n, lane.actor, lane.dout, (first == 0 ? out : lane.grad) + skip);
+      },
+      [&](int32_t group, int32_t n) { lanes_->fold(group, n, out, skip, size); });
+  const auto damping = static_cast<float>(damping_), own = static_cast<float>(2 / dims_);
+  for (size_t j = 0; j < skip; ++j) out[j] = (own + damping) * v[j];
+  for (size_t j = skip; j < size; ++j) out[j] += damping * v[j];
+}
+
+}  // namespace rdm

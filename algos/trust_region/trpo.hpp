@@ -1,0 +1,30 @@
+// TRPO (Schulman et al. 2015): one natural-gradient step of the actor in a trust region, then the critics.
+#pragma once
+#include "algos/core/policy_gradient.hpp"
+#include "algos/first_order/ratio_loss.hpp"
+#include "algos/trust_region/trust_region.hpp"
+
+namespace rdm {
+
+class Trpo : public PolicyGradient {
+ public:
+  explicit Trpo(ResolvedAgentConfig&& plan) : PolicyGradient(std::move(plan)) {}
+  void carve(Arena& arena) override;
+
+ protected:
+  void opened() override;
+  void read_live() override;
+  void learn() override;
+  const PolicyLoss& policy_loss() const override { return loss_; }
+  // The step of the actor over the listed rows; returns the fraction of it that the line search took.
+  virtual double step_policy(const int32_t* order, int32_t rows);
+  // A limited cost is linearised beside the reward.
+  virtual bool constrained() const { return false; }
+  TrustRegion& region() { return region_; }
+
+ private:
+  GainLoss loss_;
+  TrustRegion region_;
+};
+
+}  // namespace rdm

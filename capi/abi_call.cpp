@@ -1,0 +1,54 @@
+#include "capi/abi_call.hpp"
+
+#include <cstdio>
+#include <mutex>
+
+namespace rdm::capi {
+
+HostHooks hooks_from(const rdm_host* host) {
+  if (!host) return rdm::host();
+  const rdm_host in = read_struct(host, sizeof(rdm_host), rdm_host{}, "host");
+  if (!in.alloc != !in.release) fail(Code::kArgument, "host: alloc and release come together or not at all");
+  HostHooks out;
+  out.user = in.user;
+  out.alloc = in.alloc;
+  out.release = in.release;
+  out.log = in.log;
+  out.parallel = in.parallel;
+  return out;
+}
+
+rdm_option_info describe(const OptionSpec& s) {
+  return {s.key,
+          s.help,
+          s.kind == OptionKind::kText ? s.text : nullptr,
+          s.choices,
+          s.number,
+          s.low,
+          s.high,
+          static_cast<int32_t>(s.kind),
+          s.live ? 1 : 0};
+}
+
+Vector<OptionInput> read_options(const rdm_option* options, int32_t count, const char* name) {
+  if (count < 0) fail(Code::kRange, "num_%s: %d is negative", name, count);
+  if (count > 4096) fail(Code::kRange, "num_%s: %d is above 4096", name, count);
+  if (count > 0 && !options) fail(Code::kArgument, "%s is NULL, but num_%s is %d", name, name, count);
+  Vector<OptionInput> out;
+  for (int32_t i = 0; i < count; ++i) out.push_back({options[i].key, options[i].text, options[i].number});
+  return out;
+}
+
+const char* lasting_name(const char* name) {
+  static char table[512][32];
+  static int used = 0;
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  for (int i = 0; i < used; ++i)
+    if (std::strncmp(table[i], name, sizeof table[i] - 1) == 0) return table[i];
+  if (used == 512) return "";
+  std::snprintf(table[used], sizeof table[used], "%s", name);
+  return table[used++];
+}
+
+}  // namespace rdm::capi

@@ -1,0 +1,45 @@
+#include <png.h>
+
+#include <algorithm>
+
+#include "draw/image.hpp"
+#include "files.hpp"
+#include "report.hpp"
+
+namespace tool {
+
+Image side_by_side(const std::vector<Image>& images) {
+  constexpr int32_t kLine = 2;  // pixels
+  Image out;
+  for (const Image& i : images) {
+    out.width += i.width;
+    out.height = std::max(out.height, i.height);
+  }
+  out.rgb.resize(static_cast<size_t>(out.width) * static_cast<size_t>(out.height) * 3, 255);
+  size_t left = 0;
+  for (const Image& i : images) {
+    const auto drawn = static_cast<size_t>(&i == &images.back() ? i.width : std::max(i.width - kLine, 0));
+    for (size_t y = 0; y < static_cast<size_t>(i.height); ++y)
+      std::copy_n(
+          i.rgb.begin() + static_cast<std::ptrdiff_t>(y * static_cast<size_t>(i.width) * 3), drawn * 3,
+          out.rgb.begin() + static_cast<std::ptrdiff_t>((y * static_cast<size_t>(out.width) + left) * 3));
+    left += static_cast<size_t>(i.width);
+  }
+  return out;
+}
+
+void write_png(const std::string& path, const Image& image) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = static_cast<png_uint_32>(image.width);
+  png.height = static_cast<png_uint_32>(image.height);
+  png.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string bytes(size, '\0');
+  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr))
+    throw Failure("cannot make the picture " + path + ": " + png.message);
+  bytes.resize(size);
+  replace_file(path, bytes);
+}
+
+}  // namespace tool

@@ -1,0 +1,42 @@
+// What the worlds of a pool see: the options that every task has beside its own.
+#pragma once
+#include <cstdint>
+
+#include "base/option.hpp"
+#include "env/task.hpp"
+#include "sense/cloud/cloud.hpp"
+#include "sense/render/camera.hpp"
+
+namespace rdm {
+
+inline constexpr int32_t kMaxCameras = 8;
+
+// The rows, static.
+const OptionSpec* sense_options(int32_t* count);
+
+struct SenseConfig {
+  bool rgb = false, depth = false, segmentation = false, points = false, voxels = false;
+  int32_t num_cameras = 0, width = 0, height = 0;  // of the pictures
+  Camera cameras[kMaxCameras];
+  int32_t num_cloud_cameras = 0, cloud_width = 0, cloud_height = 0;  // of points and voxels
+  Camera cloud_cameras[kMaxCameras];
+  int32_t num_points = 0;
+  Thinning thinning = Thinning::kFurthest;
+  double thinning_voxel = 0, range = 0;  // m
+  int32_t grid = 0;                      // cells along a side
+  double cell = 0;                       // m
+
+  bool pictures() const { return rgb || depth || segmentation; }
+  bool clouds() const { return points || voxels; }
+  bool any() const { return pictures() || clouds(); }
+};
+// Error(kArgument) for a modality that is unknown, Error(kNotFound) for a camera that is neither the task's
+// nor one of the three that every task has for clouds.
+SenseConfig sense_from(const Options& options, const TaskInfo& task);
+
+// A camera of the task, or "above", "side_right", "side_left": those for clouds, about (0, -0.5, 0.5), of
+// tasks that name none so.
+const CameraSpec& camera_spec(const TaskInfo& task, const char* name);
+Camera camera_of(const TaskInfo& task, const char* name);
+
+}  // namespace rdm

@@ -1,0 +1,75 @@
+#include "env/options/simulation.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr OptionSpec kRows[] = {
+    text_option("engine", "articulated", "articulated|ode",
+                "robots in joint coordinates, or bodies and joints of ODE: slow, a cross-check"),
+    number_option("frequency", 60, 10, 1000, "control steps per second, Hz"),
+    integer_option("substeps", 2, 1, 16, "physics substeps per control step"),
+    integer_option("iterations", 8, 1, 1000,
+                   "solver iterations per substep, at most; engine ode takes 8 at most"),
+    number_option("gravity", 9.81, 0, 100, "acceleration along -z, m/s2; hands do not feel it"),
+    number_option("relaxation", 1.3, 0.1, 1.9, "over-relaxation factor of the solver"),
+    number_option("erp", 0.8, 0, 1, "share of a joint error that one substep corrects"),
+    number_option("cfm", 1e-9, 0, 1, "softness of joint constraints"),
+    number_option("contact_erp", 0.2, 0, 1, "share of a contact's depth that one substep corrects"),
+    number_option("contact_cfm", 1e-4, 0, 1, "softness of contacts"),
+    number_option("contact_layer", 0.0005, 0, 0.01, "depth that is left alone, m"),
+    number_option("contact_max_speed", 0, 0, 100,
+                  "bound of depth correction, m/s; 0: 1 in engine ode, 0.4 in engine articulated"),
+    integer_option("contacts_per_pair", 4, 1, 8, "contact points of one pair of shapes"),
+    integer_option("contacts_max", 36, 1, 4096, "contact points of a world in one substep"),
+    number_option("limit_margin", 5e-3, 0, 0.1, "how far a joint may leave its range, rad"),
+    number_option("limit_stiffness", 100, 0, 1e5, "stiffness of joint limits, N m/rad"),
+    number_option("link_armature", 3e-5, 0, 0.1, "inertia added to finger links in engine ode, kg m2"),
+    text_option("effort_bounds", "drive", "drive|spring",
+                "what a joint's effort limit bounds: spring and damping, or the spring alone"),
+    text_option("precision", "single", "single|double",
+                "engine articulated: arithmetic; double is a reference, half as fast"),
+    text_option("lanes", "auto", "auto|1|4|8",
+                "engine articulated: numbers computed at a time; the results are the same"),
+    flag_option("exact_solver", false, "engine ode: the direct solver, slow; a reference"),
+};
+
+}  // namespace
+
+void add_sim_options(OptionTable& table) {
+  table.add(kRows);
+}
+
+EngineKind engine_from(const Options& options) {
+  return same_name(options.text("engine"), "ode") ? EngineKind::kOde : EngineKind::kArticulated;
+}
+
+SolverDef solver_from(const Options& o) {
+  SolverDef s;
+  s.substeps = o.integer("substeps");
+  s.h = 1 / (o.number("frequency") * s.substeps);
+  s.iterations = o.integer("iterations");
+  s.relaxation = o.number("relaxation");
+  s.erp = o.number("erp");
+  s.cfm = o.number("cfm");
+  s.contact_erp = o.number("contact_erp");
+  s.contact_cfm = o.number("contact_cfm");
+  s.contact_layer = o.number("contact_layer");
+  s.contact_max_speed = o.number("contact_max_speed");
+  s.contacts_per_pair = o.integer("contacts_per_pair");
+  s.contacts_max = o.integer("contacts_max");
+  s.limit_margin = o.number("limit_margin");
+  s.limit_stiffness = o.number("limit_stiffness");
+  s.link_armature = o.number("link_armature");
+  s.spring_only_effort = same_name(o.text("effort_bounds"), "spring");
+  s.exact = o.flag("exact_solver");
+  s.double_precision = same_name(o.text("precision"), "double");
+  const char* lanes = o.text("lanes");
+  s.lanes = same_name(lanes, "auto") ? 0 : lanes[0] - '0';
+  return s;
+}
+
+Vec3 gravity_from(const Options& options) {
+  return {0, 0, -options.number("gravity")};
+}
+
+}  // namespace rdm

@@ -1,0 +1,17 @@
+// Options of time and solver that every task has.
+#pragma once
+#include "base/option.hpp"
+#include "env/options/table.hpp"
+#include "physics/world.hpp"
+
+namespace rdm {
+
+void add_sim_options(OptionTable& table);
+
+EngineKind engine_from(const Options& options);
+// Solver settings; h follows from frequency and substeps.
+SolverDef solver_from(const Options& options);
+// Gravity along -z, m/s2.
+Vec3 gravity_from(const Options& options);
+
+}  // namespace rdm

@@ -1,0 +1,179 @@
+// The inside of a pool, shared by its source files.
+#pragma once
+#include "base/error.hpp"
+#include "base/fpmode.hpp"
+#include "env/observer.hpp"
+#include "env/pool.hpp"
+
+namespace rdm {
+
+// Where a world stands between two calls.
+enum class Phase : uint32_t {
+  kNew = 0,  // never reset
+  kRunning = 1,
+  kEnded = 2,  // the episode is over: next-step mode resets it by itself, mode off waits for reset()
+};
+
+// One world's episode, part of the saved state.
+struct Episode {
+  uint64_t seed;
+  Stream reset, policy;
+  Phase phase;
+  int32_t step;
+  uint8_t terminated, truncated;  // as in the buffers while the phase is kEnded
+  double sum_reward, sum_cost[kMaxTaskCosts];
+};
+
+struct Counters {
+  int32_t contacts_max;
+  int64_t contacts_sum, steps, diverged, overflowed;
+};
+
+// All that belongs to world i beside its buffer rows.
+struct Slot {
+  World* world;
+  void* task_state;
+  Episode episode;
+  Counters counters;
+};
+
+inline constexpr int32_t kMaxGroup = 16;
+
+// A run of worlds that stays with one worker.
+struct alignas(Arena::kAlign) Block {
+  float* action;  // [action_dim] clipped
+  SenseScratch sense;
+  // Worlds that have their targets and wait for the engine, and their numbers.
+  World* group[kMaxGroup];
+  int32_t member[kMaxGroup];
+  int32_t waiting;
+  int32_t failed;  // first world with an error, -1: none
+  Error error;
+
+  // Runs f, for world `env`; an error stays here and stops no other world.
+  template <class F>
+  void attempt(int32_t env, F&& f);
+};
+
+// A config made concrete: task, options, sizes. What memory() and create() have in common.
+struct ResolvedPoolConfig {
+  explicit ResolvedPoolConfig(const PoolConfig& c);
+  ~ResolvedPoolConfig();
+  ResolvedPoolConfig(const ResolvedPoolConfig&) = delete;
+  ResolvedPoolConfig& operator=(const ResolvedPoolConfig&) = delete;
+
+  PoolConfig config;
+  Options options;
+  int32_t task_index = -1;
+  const TaskInfo* info = nullptr;
+  Task* task = nullptr;
+  int32_t obs_dim = 0, action_dim = 0, cost_dim = 0;
+  float obs_limit = 0;
+  SenseConfig sense;
+  uint64_t options_hash = 0;  // task name and every option's value
+
+  size_t num() const { return static_cast<size_t>(config.num_envs); }
+  int32_t num_blocks() const;
+  int32_t block_begin(int32_t block) const;  // first world of a block; of num_blocks(): num_envs
+};
+
+struct Pool::Impl : ResolvedPoolConfig {
+  explicit Impl(const PoolConfig& c) : ResolvedPoolConfig(c) {}
+  ~Impl();
+
+  // Rows, slots and blocks: the same cuts for measuring and for real. The worlds' own cuts follow them.
+  struct Carved {
+    Buffers buffers;
+    SenseBuffers sensed;
+    Slot* slots = nullptr;
+    Block* blocks = nullptr;
+  };
+  static Carved carve_rows(const ResolvedPoolConfig& plan, Arena& arena);
+  static size_t arena_bytes(const ResolvedPoolConfig& plan);
+  void build();
+  void name_streams(int32_t env, uint64_t seed);
+
+  // --- stepping
+  void check_ready(const uint8_t* mask) const;
+  void begin_episode(int32_t env);              // resets world, streams go on, writes obs
+  void clear_rows(int32_t env);                 // reward, costs, flags, status, sums; final_obs becomes obs
+  bool observe(int32_t env, float* row) const;  // false: an entry is not finite
+  void see(int32_t env, Block& block);          // pictures, points and voxels
+  // A step in three parts, so that the engine can take several worlds at once: all that comes before it, the
+  // engine and what comes behind for all that wait, and what comes behind for one world.
+  void start_step(int32_t env, Block& block);
+  void step_group(Block& block);
+  void finish_step(int32_t env);
+  void lose_step(int32_t env, uint32_t status);
+  void close_step(int32_t env, const Verdict& verdict, uint32_t status, bool lost);
+  void write_verdict(int32_t env, const Verdict& verdict, uint32_t status);
+  // f(begin, end, block) for every block, f(env, block) for every world, on the workers. Both rethrow the
+  // error of the lowest world when all is done.
+  template <class F>
+  void each_block(F&& f);
+  template <class F>
+  void each_world(const uint8_t* mask, F&& f);
+
+  // --- state
+  void write_world(int32_t env, Writer& out) const;
+  void read_world(int32_t env, Reader& in);
+
+  float* obs(int32_t env) const { return buffers.obs + env * static_cast<ptrdiff_t>(obs_dim); }
+  float* final_obs(int32_t env) const { return buffers.final_obs + env * static_cast<ptrdiff_t>(obs_dim); }
+  float* action(int32_t env) const { return buffers.action + env * static_cast<ptrdiff_t>(action_dim); }
+  float* cost_row(float* column, int32_t env) const {
+    return column + env * static_cast<ptrdiff_t>(cost_dim);
+  }
+
+  Arena arena;
+  Buffers buffers;
+  SenseBuffers sensed;
+  Slot* slots = nullptr;              // [num_envs]
+  Block* blocks = nullptr;            // [num_blocks]
+  unsigned char* pristine = nullptr;  // a world's state before anything happened: what a reset starts from
+  size_t pristine_size = 0;
+  int32_t group_size = 1;  // worlds that the engine takes together, at most
+  Workers* workers = nullptr;
+};
+
+template <class F>
+void Block::attempt(int32_t env, F&& f) {
+  try {
+    f();
+  } catch (const Error& e) {
+    if (failed >= 0 && failed < env) return;
+    failed = env;
+    error = e;
+  }
+}
+
+template <class F>
+void Pool::Impl::each_block(F&& f) {
+  struct Call {
+    Impl* impl;
+    F* f;
+  } call{this, &f};
+  const int32_t count = num_blocks();
+  workers->run(
+      count,
+      [](void* context, int32_t b) {
+        const FpMode mode;
+        const Call& c = *static_cast<Call*>(context);
+        Block& block = c.impl->blocks[b];
+        block.failed = -1;
+        (*c.f)(c.impl->block_begin(b), c.impl->block_begin(b + 1), block);
+      },
+      &call);
+  for (int32_t b = 0; b < count; ++b)
+    if (blocks[b].failed >= 0) throw blocks[b].error;
+}
+
+template <class F>
+void Pool::Impl::each_world(const uint8_t* mask, F&& f) {
+  each_block([&](int32_t begin, int32_t end, Block& block) {
+    for (int32_t env = begin; env < end; ++env)
+      if (!mask || mask[env]) block.attempt(env, [&] { f(env, block); });
+  });
+}
+
+}  // namespace rdm

@@ -1,0 +1,65 @@
+#include "physics/articulated/stepper.hpp"
+
+#include <atomic>
+#include <cstring>
+
+#include "physics/articulated/stepper_table.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr size_t kBaseNumbers = 6, kLinkNumbers = 30;  // BaseState, LinkState
+
+bool usable(const StepperTable& table) {
+  if (!table.isa) return false;
+#if defined(__x86_64__)
+  if (std::strcmp(table.isa, "x86-64-v3") == 0) {
+    __builtin_cpu_init();  // a host's static objects may come here before the runtime has
+    return __builtin_cpu_supports("avx2");
+  }
+#endif
+  return true;
+}
+
+// 0: the best there is; else an index into the tables, plus 1.
+std::atomic<int> chosen{0};
+
+StepperTable table_at(int i) {
+  return i == 0 ? steppers_v2() : steppers_v3();
+}
+
+StepperTable table() {
+  const int choice = chosen.load(std::memory_order_acquire);
+  if (choice > 0) return table_at(choice - 1);
+  return usable(steppers_v3()) ? steppers_v3() : steppers_v2();
+}
+
+}  // namespace
+
+Stepper* make_stepper(const StepperKind& kind, const Scene& scene, ArticulatedShared& shared, Arena& arena) {
+  return table().make(kind, scene, shared, arena);
+}
+
+size_t keep_bytes(const Scene& scene, bool double_precision) {
+  size_t numbers = 0;
+  for (const ArticulationDef& a : scene.def.articulations)
+    numbers += kBaseNumbers + kLinkNumbers * a.links.size();
+  return numbers * (double_precision ? sizeof(double) : sizeof(float));
+}
+
+bool set_stepper_isa(const char* name) {
+  for (int i = 0; i < 2; ++i) {
+    const StepperTable t = table_at(i);
+    if (usable(t) && std::strcmp(t.isa, name) == 0) {
+      chosen.store(i + 1, std::memory_order_release);
+      return true;
+    }
+  }
+  return false;
+}
+
+const char* stepper_isa() {
+  return table().isa;
+}
+
+}  // namespace rdm

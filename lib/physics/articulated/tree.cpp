@@ -1,0 +1,207 @@
+#include "physics/articulated/tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "physics/model/inertia.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr int32_t kMaxCoords = 512;  // of one tree
+
+// The smallest turn from z to the unit vector `axis`.
+Mat3 turn_from_z(const Vec3& a) {
+  if (a.z < -0.999999) return {{1, 0, 0, 0, -1, 0, 0, 0, -1}};
+  const double k = 1 / (1 + a.z);
+  return {{1 - a.x * a.x * k, -a.x * a.y * k, a.x, -a.x * a.y * k, 1 - a.y * a.y * k, a.y, -a.x, -a.y, a.z}};
+}
+
+bool is_identity(const Mat3& r) {
+  constexpr Mat3 kOne;
+  return std::equal(std::begin(r.m), std::end(r.m), std::begin(kOne.m));
+}
+
+bool is_round(const Inertia& inertia) {
+  const double* m = inertia.moment;
+  return m[0] == m[1] && m[0] == m[2] && m[3] == 0 && m[4] == 0 && m[5] == 0;
+}
+
+bool is_massless(const Inertia& inertia) {
+  return inertia.mass == 0 &&
+         std::all_of(inertia.moment, inertia.moment + 6, [](double m) { return m == 0; });
+}
+
+// The same inertia in axes turned by R_LJ; a round one keeps its very numbers.
+Inertia turned(const Inertia& inertia, const Mat3& R_LJ) {
+  Inertia out = inertia;
+  const Mat3 R_JL = transpose(R_LJ);
+  out.com = R_JL * inertia.com;
+  if (!is_round(inertia)) set_moment(&out, R_JL * moment_matrix(inertia) * R_LJ);
+  return out;
+}
+
+TreeMember make_member(const Scene& scene, int32_t articulation) {
+  const ArticulationDef& def = scene.def.articulations[static_cast<size_t>(articulation)];
+  TreeMember member;
+  member.articulation = articulation;
+  member.first_link = scene.link_offset[static_cast<size_t>(articulation)];
+  member.first_shape = scene.first_shape[static_cast<size_t>(articulation)];
+  member.base = def.base;
+  if (def.gravity) member.gravity = scene.def.gravity;
+  member.base_damping = def.free_base ? def.base_damping : 0;
+  for (const LinkDef& link : def.links) {
+    MemberLink bone;
+    bone.R_LJ = turn_from_z(link.joint.axis);
+    const Mat3 R_JP =
+        link.parent < 0 ? Mat3{} : transpose(member.bones[static_cast<size_t>(link.parent)].R_LJ);
+    bone.R_PJ = R_JP * to_matrix(link.X_PL.q) * bone.R_LJ;
+    bone.p_PJ = R_JP * link.X_PL.p;
+    // Parallel axes: products of a turn and its transpose, off by a rounding.
+    bone.q_LJ = to_quat(bone.R_LJ);
+    const Quat q_JP =
+        link.parent < 0 ? Quat{} : conjugate(member.bones[static_cast<size_t>(link.parent)].q_LJ);
+    bone.q_PJ = q_JP * link.X_PL.q * bone.q_LJ;
+    if (std::fabs(bone.R_PJ.m[0] + bone.R_PJ.m[4] + bone.R_PJ.m[8] - 3) < 1e-14) {
+      bone.R_PJ = Mat3{};
+      bone.q_PJ = {bone.q_PJ.w > 0 ? 1.0 : -1.0, 0, 0, 0};
+    }
+    bone.inertia = turned(link.inertia, bone.R_LJ);
+    bone.joint = link.joint;
+    member.bones.push_back(bone);
+  }
+  for (const ArticulationShape& s : def.shapes) {
+    const Mat3 R_JL = s.link < 0 ? Mat3{} : transpose(member.bones[static_cast<size_t>(s.link)].R_LJ);
+    member.shapes.push_back({R_JL * to_matrix(s.shape.X_LS.q), R_JL * s.shape.X_LS.p});
+  }
+  return member;
+}
+
+bool same_shape_of_tree(const Scene& scene, const Tree& tree, int32_t articulation) {
+  const ArticulationDef& def = scene.def.articulations[static_cast<size_t>(articulation)];
+  if (def.free_base != tree.free_base || static_cast<int32_t>(def.links.size()) != tree.num_links ||
+      def.shapes.size() != tree.shape_links.size())
+    return false;
+  for (size_t i = 0; i < def.shapes.size(); ++i)
+    if (def.shapes[i].link != tree.shape_links[i] ||
+        (def.shapes[i].shape.kind == ShapeKind::kCapsule) != (tree.shape_slender[i] != 0))
+      return false;
+  for (size_t i = 0; i < def.links.size(); ++i) {
+    const LinkDef& link = def.links[i];
+    const TreeLink& other = tree.links[i];
+    if (link.parent != other.parent || (link.joint.kind == JointKind::kPrismatic) != other.prismatic ||
+        link.joint.coupled_to != other.other || link.sensor != other.sensor)
+      return false;
+  }
+  return true;
+}
+
+void add_coord(Tree* tree, int32_t parent) {
+  const auto at = static_cast<int32_t>(tree->depth.size());
+  tree->row.push_back(static_cast<int32_t>(tree->path.size()));
+  const int32_t depth = parent < 0 ? 0 : tree->depth[static_cast<size_t>(parent)] + 1;
+  tree->depth.push_back(depth);
+  for (int32_t d = 0; d < depth; ++d)
+    tree->path.push_back(tree->path[static_cast<size_t>(tree->row[static_cast<size_t>(parent)] + d)]);
+  tree->path.push_back(static_cast<int16_t>(at));
+}
+
+void list_slots(Tree* tree) {
+  const auto count = static_cast<size_t>(tree->num_coords);
+  Vector<int32_t> children(count), segments(count);  // segments: on the path so far
+  const auto parent = [&](size_t c) -> int32_t {
+    const int32_t depth = tree->depth[c];
+    return depth == 0 ? -1 : tree->path[static_cast<size_t>(tree->row[c] + depth - 1)];
+  };
+  for (size_t c = 0; c < count; ++c)
+    if (parent(c) >= 0) ++children[static_cast<size_t>(parent(c))];
+  for (size_t c = 0; c < count; ++c) {
+    const int32_t p = parent(c);
+    const TreeSlot* above = p < 0 ? nullptr : &tree->slots[static_cast<size_t>(p)];
+    const bool goes_on = above && children[static_cast<size_t>(p)] == 1 && above->slot + 1 < kSegment;
+    segments[c] = (p < 0 ? 0 : segments[static_cast<size_t>(p)]) + (goes_on ? 0 : 1);
+    if (goes_on)
+      tree->slots.push_back({above->segment, static_cast<int16_t>(above->slot + 1)});
+    else
+      tree->slots.push_back({static_cast<int16_t>(tree->num_segments++), 0});
+    tree->path_segments = std::max(tree->path_segments, segments[c]);
+  }
+}
+
+Tree make_tree(const Scene& scene, int32_t articulation) {
+  const ArticulationDef& def = scene.def.articulations[static_cast<size_t>(articulation)];
+  Tree tree;
+  tree.free_base = def.free_base;
+  tree.num_links = static_cast<int32_t>(def.links.size());
+  tree.num_coords = tree.coord(tree.num_links);
+  if (tree.num_coords > kMaxCoords)
+    fail(Code::kUnsupported, "%s: %d coordinates, the engine takes at most %d", def.name.text,
+         tree.num_coords, kMaxCoords);
+  if (def.free_base)
+    for (int32_t k = 0; k < 6; ++k) add_coord(&tree, k - 1);
+  const int32_t root = def.free_base ? 5 : -1;
+  for (const LinkDef& link : def.links) {
+    TreeLink t;
+    t.parent = link.parent;
+    t.other = link.joint.coupled_to;
+    t.prismatic = link.joint.kind == JointKind::kPrismatic;
+    t.sensor = link.sensor;
+    tree.links.push_back(t);
+    add_coord(&tree, link.parent < 0 ? root : tree.coord(link.parent));
+  }
+  for (const ArticulationShape& s : def.shapes) {
+    tree.shape_links.push_back(s.link);
+    tree.shape_slender.push_back(s.shape.kind == ShapeKind::kCapsule);
+  }
+  list_slots(&tree);
+  return tree;
+}
+
+// Without any inertia a joint's row has nothing to divide by.
+void check_masses(const Scene& scene, const Tree& tree) {
+  Vector<uint8_t> heavy(tree.links.size());
+  for (const TreeMember& member : tree.members) {
+    for (size_t i = tree.links.size(); i-- > 0;) {
+      const MemberLink& bone = member.bones[i];
+      if (!is_massless(bone.inertia) || bone.joint.armature > 0) heavy[i] = 1;
+      if (!heavy[i])
+        fail(Code::kRange, "%s: a link needs mass, or a heavier link or armature behind it",
+             scene.link(member.first_link + static_cast<int32_t>(i)).name.text);
+      if (tree.links[i].parent >= 0) heavy[static_cast<size_t>(tree.links[i].parent)] = 1;
+    }
+  }
+}
+
+// Shortcuts hold for all members or for none: a lane's bits must not depend on its neighbours.
+void find_shortcuts(Tree* tree) {
+  for (size_t i = 0; i < tree->links.size(); ++i) {
+    TreeLink& link = tree->links[i];
+    const auto everywhere = [&](auto is) {
+      return std::all_of(tree->members.begin(), tree->members.end(),
+                         [&](const TreeMember& m) { return is(m.bones[i]); });
+    };
+    link.aligned = everywhere([](const MemberLink& b) { return is_identity(b.R_PJ) && b.q_PJ.w > 0; });
+    link.round = everywhere([](const MemberLink& b) { return is_round(b.inertia); });
+    link.massless = everywhere([](const MemberLink& b) { return is_massless(b.inertia); });
+  }
+}
+
+}  // namespace
+
+Vector<Tree> make_trees(const Scene& scene) {
+  Vector<Tree> trees;
+  for (int32_t a = 0; a < static_cast<int32_t>(scene.def.articulations.size()); ++a) {
+    auto tree = std::find_if(trees.begin(), trees.end(),
+                             [&](const Tree& t) { return same_shape_of_tree(scene, t, a); });
+    if (tree == trees.end()) tree = trees.insert(tree, make_tree(scene, a));
+    tree->members.push_back(make_member(scene, a));
+  }
+  for (Tree& tree : trees) {
+    check_masses(scene, tree);
+    find_shortcuts(&tree);
+  }
+  return trees;
+}
+
+}  // namespace rdm

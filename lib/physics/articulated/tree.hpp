@@ -1,0 +1,78 @@
+// The constant model of robots in generalised coordinates: what the articulated engine knows of them.
+//
+// A tree's links sit in their *joint frames* J: the link frame turned so that the joint's axis is z. Its
+// coordinates are the base's six (velocity of its origin, angular velocity; only when free), then one per
+// link. A row of the mass matrix holds a coordinate's ancestors alone, root first, itself last.
+#pragma once
+#include "physics/model/scene.hpp"
+
+namespace rdm {
+
+// What all members of a tree have in common, per link.
+struct TreeLink {
+  int32_t parent = -1;  // link of the tree, -1: the base
+  int32_t other = -1;   // link whose angle a coupled joint follows
+  bool prismatic = false;
+  bool aligned = false;   // J is not turned against the parent's J at q = 0
+  bool round = false;     // the moments are the same about every axis
+  bool massless = false;  // neither mass nor moments
+  bool sensor = false;
+};
+
+// What differs from member to member, per link.
+struct MemberLink {
+  Mat3 R_PJ;        // at q = 0; the parent's joint frame, or the base
+  Vec3 p_PJ;        // m
+  Mat3 R_LJ;        // constant turn from the link frame
+  Quat q_PJ, q_LJ;  // the same two turns; their signs make link quaternions continuous in the coordinates
+  Inertia inertia;  // in joint axes
+  JointDef joint;
+};
+
+struct TreeShape {
+  Mat3 R_JS;  // in the link's joint frame, or the base's
+  Vec3 p_JS;
+};
+
+// One articulation of a tree.
+struct TreeMember {
+  int32_t articulation;
+  int32_t first_link, first_shape;  // in the scene's rows
+  Inertia base;                     // of a free base
+  Vec3 gravity;                     // m/s2; 0 where the robot does not feel it
+  double base_damping;              // 1/s
+  Vector<MemberLink> bones;         // [num_links]
+  Vector<TreeShape> shapes;
+};
+
+// A coordinate's place in the whitened vector that contacts act on: slot of a segment. Segments are runs
+// of a path without a branch, at most kSegment long.
+inline constexpr int kSegment = 8;
+struct TreeSlot {
+  int16_t segment, slot;
+};
+
+// Articulations with the same links, joints and shapes in the same places: lanes of one computation.
+struct Tree {
+  bool free_base = false;
+  int32_t num_links = 0, num_coords = 0;
+  Vector<TreeLink> links;
+  Vector<TreeMember> members;
+  // Shape i of a member is shape first_shape + i of the scene.
+  Vector<int32_t> shape_links;    // -1: the base
+  Vector<uint8_t> shape_slender;  // capsules: their bounds have an axis
+
+  Vector<int32_t> row;    // [num_coords]: where a coordinate's row begins in `path` and in the matrix
+  Vector<int32_t> depth;  // [num_coords]: ancestors of a coordinate
+  Vector<int16_t> path;   // all rows: the ancestors' indices and the coordinate's own
+  Vector<TreeSlot> slots;
+  int32_t num_segments = 0;
+  int32_t path_segments = 0;  // most segments on one path
+
+  int32_t coord(int32_t link) const { return link + (free_base ? 6 : 0); }
+};
+
+// Every articulation of the scene, in order of first appearance. Error(kUnsupported): too many coordinates.
+Vector<Tree> make_trees(const Scene& scene);
+
+}  // namespace rdm

@@ -1,0 +1,181 @@
+#include "physics/collision/manifold.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rdm {
+namespace {
+
+constexpr double kFlat = 0.985;      // cosine between the overlap's normal and a face it counts for
+constexpr double kAlong = 0.1;       // sine between two edges that count as along each other
+constexpr double kPreferred = 1e-3;  // by which a's face must fit better than b's to be the one cut at
+constexpr double kSideways = 1e-9;   // sine of two axes that have no crossing
+constexpr int kMostCut = 2 * Feature::kMost;
+
+// Keeps kManifoldPoints of `count` points in front: the deepest, then each time the farthest from all kept.
+int thin_out(ManifoldPoint* points, int count) {
+  int first = 0;
+  for (int i = 1; i < count; ++i)
+    if (points[i].depth > points[first].depth) first = i;
+  std::swap(points[0], points[first]);
+  if (count <= kManifoldPoints) return count;
+  double gap[kMostCut];  // m2, to the nearest kept point
+  std::fill_n(gap, count, HUGE_VAL);
+  for (int kept = 1; kept < kManifoldPoints; ++kept) {
+    int next = kept;
+    for (int i = kept; i < count; ++i) {
+      const Vec3 d = points[i].p - points[kept - 1].p;
+      gap[i] = std::min(gap[i], dot(d, d));
+      if (gap[i] > gap[next]) next = i;
+    }
+    std::swap(points[kept], points[next]);
+    std::swap(gap[kept], gap[next]);
+  }
+  return kManifoldPoints;
+}
+
+// What is left of a polygon (or edge, or point) on the inner side of the plane through `corner`.
+int cut(const Vec3* in, int count, const Vec3& outward, const Vec3& corner, Vec3* out) {
+  const auto beyond = [&](const Vec3& p) { return dot(outward, p - corner); };
+  int kept = 0;
+  const int edges = count > 2 ? count : count - 1;
+  if (count == 1 || edges == 1) {
+    // ends of an edge stay ends
+    if (beyond(in[0]) <= 0) out[kept++] = in[0];
+  }
+  for (int i = 0; i < edges; ++i) {
+    const Vec3 &p = in[i], &q = in[(i + 1) % count];
+    const double bp = beyond(p), bq = beyond(q);
+    if ((bp > 0) != (bq > 0) && kept < kMostCut) out[kept++] = p + (bp / (bp - bq)) * (q - p);
+    if (bq <= 0 && kept < kMostCut) out[kept++] = q;
+  }
+  return kept;
+}
+
+// Points of `edge` or face `other` in front of the face, below its plane. `sign` 1: the face is b's.
+int points_on_face(const Feature& face, const Feature& other, double sign, ManifoldPoint* out) {
+  Vec3 buffers[2][kMostCut];
+  int count = other.count, now = 0;
+  std::copy_n(other.points, count, buffers[0]);
+  for (int i = 0; i < face.count && count > 0; ++i) {
+    const Vec3 &p = face.points[i], &q = face.points[(i + 1) % face.count];
+    Vec3 outward = cross(q - p, face.n);
+    // corners may go either way round
+    if (dot(outward, face.points[(i + 2) % face.count] - p) > 0) outward = -outward;
+    count = cut(buffers[now], count, outward, p, buffers[1 - now]);
+    now = 1 - now;
+  }
+  int found = 0;
+  for (int i = 0; i < count; ++i) {
+    const Vec3& p = buffers[now][i];
+    const double depth = dot(face.n, face.points[0] - p);
+    if (depth > 0) out[found++] = {p, sign * face.n, depth};
+  }
+  return found;
+}
+
+// A solid with a straight axis that is as good as a capsule where its side touches.
+bool has_side(const Convex& solid) {
+  return solid.kind == ShapeKind::kCapsule || solid.kind == ShapeKind::kCylinder ||
+         solid.kind == ShapeKind::kSphere;
+}
+
+struct Axis {
+  Vec3 p, u;  // centre, unit direction
+  double half, radius;
+  bool capped;  // beyond its ends it is not round
+};
+Axis axis_of(const Convex& s) {
+  return {s.p, s.R.col(2), s.kind == ShapeKind::kSphere ? 0 : s.size.y, s.size.x,
+          s.kind == ShapeKind::kCylinder};
+}
+
+// Contact of two round sides. -1 where a cylinder's cap takes part, which is another matter.
+int round_sides(const Axis& a, const Axis& b, ManifoldPoint* out) {
+  const Vec3 r = a.p - b.p;
+  const double k = dot(a.u, b.u), ar = dot(a.u, r), br = dot(b.u, r), d = 1 - k * k;
+  double s = 0, t;
+  const bool along = d < kAlong * kAlong && a.half > 0 && b.half > 0;
+  if (d > kSideways) s = std::clamp((k * br - ar) / d, -a.half, a.half);
+  t = k * s + br;
+  if (std::fabs(t) > b.half) {
+    t = std::clamp(t, -b.half, b.half);
+    s = std::clamp(k * t - ar, -a.half, a.half);
+  }
+  const auto at = [&](double sa, double tb, ManifoldPoint* point) {
+    const Vec3 pa = a.p + sa * a.u, pb = b.p + tb * b.u, gap = pa - pb;
+    const double distance = norm(gap);
+    if (distance >= a.radius + b.radius || distance == 0) return false;
+    point->n = (1 / distance) * gap;
+    point->depth = a.radius + b.radius - distance;
+    point->p = pb + (b.radius - 0.5 * point->depth) * point->n;
+    return true;
+  };
+  if (along) {
+    // from where both are side by side on: the ends of that stretch
+    const double way = k < 0 ? -1 : 1, shift = -ar;  // of b's centre along a
+    const double low = std::max(-a.half, shift - b.half), high = std::min(a.half, shift + b.half);
+    if (low < high) {
+      int count = 0;
+      double deepest = 0;
+      for (const double sa : {low, high}) {
+        const double tb = std::clamp(way * (sa - shift), -b.half, b.half);
+        if (!at(sa, tb, out + count)) continue;
+        deepest = std::max(deepest, out[count++].depth);
+      }
+      // one on top of the other is shorter out along the axis
+      return (a.capped || b.capped) && deepest > high - low ? -1 : count;
+    }
+  }
+  const double to_cap =
+      std::min(a.capped ? a.half - std::fabs(s) : HUGE_VAL, b.capped ? b.half - std::fabs(t) : HUGE_VAL);
+  if (to_cap <= 0) return -1;
+  if (!at(s, t, out)) return 0;
+  return out->depth > to_cap ? -1 : 1;
+}
+
+}  // namespace
+
+int manifold_on_plane(const Convex& a, const Vec3& n, double offset, ManifoldPoint* out) {
+  ManifoldPoint points[kMaxHullPoints];
+  int count = 0;
+  const auto add = [&](const Vec3& p) {
+    const double depth = offset - dot(n, p);
+    if (depth > 0) points[count++] = {p, n, depth};
+  };
+  if (a.hull) {
+    for (int32_t i = 0; i < a.hull->num_points; ++i) add(a.p + a.R * a.hull->points[i]);
+  } else {
+    const Feature f = shown(a, -n);
+    for (int i = 0; i < f.count; ++i) add(f.points[i]);
+  }
+  count = thin_out(points, count);
+  std::copy_n(points, count, out);
+  return count;
+}
+
+int manifold_between(const Convex& a, const Convex& b, ManifoldPoint* out) {
+  if (has_side(a) && has_side(b)) {
+    const int count = round_sides(axis_of(a), axis_of(b), out);
+    if (count >= 0) return count;
+  }
+  Overlap overlap;
+  if (!find_overlap(a, b, &overlap)) return 0;
+  const Feature of_a = shown(a, -overlap.n), of_b = shown(b, overlap.n);
+  const double fits_a = of_a.count > 2 ? -dot(of_a.n, overlap.n) : 0,
+               fits_b = of_b.count > 2 ? dot(of_b.n, overlap.n) : 0;
+  const bool on_a = fits_a > fits_b + kPreferred;
+  ManifoldPoint points[kMostCut];
+  int count = 0;
+  if (std::max(fits_a, fits_b) > kFlat)
+    count = on_a ? points_on_face(of_a, of_b, -1, points) : points_on_face(of_b, of_a, 1, points);
+  if (count == 0) {
+    out[0] = {overlap.p, overlap.n, overlap.depth};
+    return 1;
+  }
+  count = thin_out(points, count);
+  std::copy_n(points, count, out);
+  return count;
+}
+
+}  // namespace rdm

@@ -1,0 +1,119 @@
+#include "physics/collision/shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/collision/manifold.hpp"
+#include "physics/ode/ode_convert.hpp"
+
+namespace rdm {
+namespace {
+
+// ODE lets a cylinder rock on faces, and knows no contact of it with a capsule or another cylinder; it has no
+// ellipsoid, and one point for two hulls.
+bool is_ours(const Geom& geom) {
+  return geom.kind == ShapeKind::kCylinder || geom.kind == ShapeKind::kEllipsoid ||
+         geom.kind == ShapeKind::kHull;
+}
+
+Convex convex_of(const Geom& geom) {
+  return {geom.kind, geom.size, from_ode(dGeomGetPosition(geom.id)), mat_from_ode(dGeomGetRotation(geom.id)),
+          geom.hull};
+}
+
+// Keeps `most` of `count` points, in front: the deepest, then each time the one farthest from all kept.
+int spread_points(dContactGeom* points, int count, int most) {
+  if (count <= most) return count;
+  int first = 0;
+  for (int i = 1; i < count; ++i)
+    if (points[i].depth > points[first].depth) first = i;
+  std::swap(points[0], points[first]);
+  double gap[kMaxPairPoints];  // m2, to the nearest kept point
+  std::fill_n(gap, count, HUGE_VAL);
+  for (int kept = 1; kept < most; ++kept) {
+    const Vec3 last = from_ode(points[kept - 1].pos);
+    int next = kept;
+    for (int i = kept; i < count; ++i) {
+      const Vec3 d = from_ode(points[i].pos) - last;
+      gap[i] = std::min(gap[i], dot(d, d));
+      if (gap[i] > gap[next]) next = i;
+    }
+    std::swap(points[kept], points[next]);
+    std::swap(gap[kept], gap[next]);
+  }
+  return most;
+}
+
+}  // namespace
+
+Geom make_geom(const ShapeDef& shape, const Hull* hull, const Pose& X_WS) {
+  const Vec3& s = shape.size;
+  Geom geom;
+  geom.kind = shape.kind;
+  geom.size = s;
+  geom.hull = hull;
+  switch (shape.kind) {
+    case ShapeKind::kSphere:
+      geom.id = dCreateSphere(nullptr, s.x);
+      break;
+    case ShapeKind::kCapsule:
+      geom.id = dCreateCapsule(nullptr, s.x, 2 * s.y);
+      break;
+    case ShapeKind::kBox:
+      geom.id = dCreateBox(nullptr, 2 * s.x, 2 * s.y, 2 * s.z);
+      break;
+    case ShapeKind::kCylinder:
+      geom.id = dCreateCylinder(nullptr, s.x, 2 * s.y);
+      break;
+    case ShapeKind::kEllipsoid:
+    case ShapeKind::kHull:
+      geom.id = dCreateSphere(nullptr, norm(s));
+      break;
+    case ShapeKind::kPlane:
+      geom.plane_n = rotate(X_WS.q, {0, 0, 1});
+      geom.plane_d = dot(geom.plane_n, X_WS.p);
+      geom.id = dCreatePlane(nullptr, geom.plane_n.x, geom.plane_n.y, geom.plane_n.z, geom.plane_d);
+      return geom;
+  }
+  dQuaternion q;
+  to_ode(X_WS.q, q);
+  dGeomSetPosition(geom.id, X_WS.p.x, X_WS.p.y, X_WS.p.z);
+  dGeomSetQuaternion(geom.id, q);
+  return geom;
+}
+
+int collide_geoms(const Geom& a, const Geom& b, int most, dContactGeom* out) {
+  if (!is_ours(a) && !is_ours(b)) {
+    // Two boxes have no more points; asked for fewer, ODE would choose them by an arc tangent of the C
+    // library.
+    dContactGeom all[kMaxPairPoints];
+    const int found = dCollide(a.id, b.id, kMaxPairPoints, all, sizeof all[0]);
+    const int kept = spread_points(all, found, most);
+    std::copy_n(all, kept, out);
+    return kept;
+  }
+  ManifoldPoint points[kManifoldPoints];
+  int count = 0;
+  double sign = 1;
+  if (b.kind == ShapeKind::kPlane) {
+    count = manifold_on_plane(convex_of(a), b.plane_n, b.plane_d, points);
+  } else if (a.kind == ShapeKind::kPlane) {
+    count = manifold_on_plane(convex_of(b), a.plane_n, a.plane_d, points);
+    sign = -1;
+  } else {
+    count = manifold_between(convex_of(a), convex_of(b), points);
+  }
+  count = std::min(count, most);
+  for (int i = 0; i < count; ++i) {
+    out[i] = {};
+    to_ode(points[i].p, out[i].pos);
+    to_ode(sign * points[i].n, out[i].normal);
+    out[i].depth = points[i].depth;
+    out[i].g1 = a.id;
+    out[i].g2 = b.id;
+    out[i].side1 = out[i].side2 = -1;
+  }
+  return count;
+}
+
+}  // namespace rdm

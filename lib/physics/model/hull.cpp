@@ -1,0 +1,200 @@
+#include "physics/model/hull.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kFlat = 1e-6;      // of the hull's size: farther from a plane, a point is not in it
+constexpr double kSliver = 1e-4;    // of the hull's size: height of triangles that span no plane
+constexpr double kThinnest = 1e-3;  // of the hull's size: nothing flatter is a solid
+constexpr double kFarthest = 1e3;   // m
+
+// The corners of a polygon among the points of one plane, counterclockwise about n: gift wrapping.
+int32_t wrap(const Vec3* points, const uint8_t* list, int32_t count, const Vec3& n, double flat,
+             uint8_t* out) {
+  Vec3 center;
+  for (int32_t i = 0; i < count; ++i) center += (1.0 / count) * points[list[i]];
+  int32_t first = 0;
+  const auto square = [&](int32_t i) {
+    const Vec3 d = points[list[i]] - center;
+    return dot(d, d);
+  };
+  for (int32_t i = 1; i < count; ++i)
+    if (square(i) > square(first)) first = i;
+  int32_t corners = 0, now = first;
+  do {
+    out[corners++] = list[now];
+    const Vec3& p = points[list[now]];
+    int32_t next = now == 0 ? 1 : 0;
+    for (int32_t i = 0; i < count; ++i) {
+      if (i == now || i == next) continue;
+      const Vec3 d = points[list[i]] - p, best = points[list[next]] - p;
+      const double side = dot(n, cross(best, d)), along = flat * norm(best);
+      if (side < -along || (side <= along && dot(d, d) > dot(best, best))) next = i;
+    }
+    now = next;
+  } while (now != first && corners < count);
+  return corners;
+}
+
+class Builder {
+ public:
+  Builder(const Vec3* points, int32_t count, const char* owner) : owner_(owner) {
+    if (count < 4 || count > Hull::kMostPoints)
+      fail(Code::kRange, "%s: %d points are outside [4, %d]", owner, count, Hull::kMostPoints);
+    hull_.num_points = count;
+    for (int32_t i = 0; i < count; ++i) {
+      if (!finite(points[i])) fail(Code::kArgument, "%s: point %d is not finite", owner, i);
+      if (norm(points[i]) > kFarthest)
+        fail(Code::kRange, "%s: point %d is farther than %g m from the origin", owner, i, kFarthest);
+      hull_.points[i] = points[i];
+      size_ = std::max(size_, norm(points[i] - points[0]));
+    }
+  }
+  Hull make() {
+    const int32_t n = hull_.num_points;
+    for (int32_t i = 0; i < n; ++i)
+      for (int32_t j = i + 1; j < n; ++j)
+        for (int32_t k = j + 1; k < n; ++k) try_face(i, j, k);
+    keep_corners();
+    if (!closed()) fail(Code::kArgument, "%s: the points are in one plane or too near each other", owner_);
+    weigh();
+    return hull_;
+  }
+
+ private:
+  bool known(int32_t i, int32_t j, int32_t k) const {
+    const uint32_t all = 1u << i | 1u << j | 1u << k;
+    return std::any_of(members_, members_ + hull_.num_faces, [&](uint32_t m) { return (m & all) == all; });
+  }
+  void try_face(int32_t i, int32_t j, int32_t k) {
+    const Vec3* p = hull_.points;
+    const Vec3 u = p[j] - p[i], v = p[k] - p[i], w = p[k] - p[j];
+    const double longest = std::sqrt(std::max({dot(u, u), dot(v, v), dot(w, w)}));
+    Vec3 n = cross(u, v);
+    const double area = norm(n);
+    if (!(area > kSliver * size_ * longest) || known(i, j, k)) return;
+    n = (1 / area) * n;
+    double offset = dot(n, p[i]), low = 0, high = 0;
+    uint8_t list[Hull::kMostPoints];
+    int32_t count = 0;
+    uint32_t member = 0;
+    for (int32_t q = 0; q < hull_.num_points; ++q) {
+      const double beyond = dot(n, p[q]) - offset;
+      low = std::min(low, beyond);
+      high = std::max(high, beyond);
+      if (std::fabs(beyond) > kFlat * size_) continue;
+      list[count++] = static_cast<uint8_t>(q);
+      member |= 1u << q;
+    }
+    if (high > kFlat * size_) {
+      if (low < -kFlat * size_) return;
+      n = -n;
+      offset = -offset;
+      std::swap(low, high);
+      low = -low;
+    }
+    const double depth = -low;
+    if (depth < kThinnest * size_ || hull_.num_faces == Hull::kMostFaces) {
+      broken_ = true;
+      return;
+    }
+    uint8_t around[Hull::kMostPoints];
+    const int32_t corners = wrap(p, list, count, n, kFlat * size_, around);
+    if (corners < 3 || used_ + corners > 3 * Hull::kMostFaces) {
+      broken_ = true;
+      return;
+    }
+    std::copy_n(around, corners, hull_.corners + used_);
+    members_[hull_.num_faces] = member;
+    hull_.faces[hull_.num_faces++] = {n, offset, used_, corners};
+    used_ += corners;
+  }
+  void keep_corners() {
+    uint8_t place[Hull::kMostPoints];
+    bool seen[Hull::kMostPoints] = {};
+    for (int32_t i = 0; i < used_; ++i) seen[hull_.corners[i]] = true;
+    int32_t kept = 0;
+    for (int32_t i = 0; i < hull_.num_points; ++i) {
+      if (!seen[i]) continue;
+      place[i] = static_cast<uint8_t>(kept);
+      hull_.points[kept++] = hull_.points[i];
+    }
+    hull_.num_points = kept;
+    for (int32_t i = 0; i < used_; ++i) hull_.corners[i] = place[hull_.corners[i]];
+  }
+  // Each edge is one of two faces, once each way.
+  bool closed() const {
+    if (broken_ || hull_.num_points + hull_.num_faces - used_ / 2 != 2) return false;
+    uint32_t edges[Hull::kMostPoints] = {};
+    for (int32_t f = 0; f < hull_.num_faces; ++f) {
+      const Hull::Face& face = hull_.faces[f];
+      for (int32_t i = 0; i < face.count; ++i) {
+        const int32_t a = hull_.corners[face.first + i], b = hull_.corners[face.first + (i + 1) % face.count];
+        if (edges[a] >> b & 1u) return false;
+        edges[a] |= 1u << b;
+      }
+    }
+    for (int32_t a = 0; a < hull_.num_points; ++a)
+      for (int32_t b = 0; b < a; ++b)
+        if ((edges[a] >> b & 1u) != (edges[b] >> a & 1u)) return false;
+    return true;
+  }
+  // Sum over tetrahedra from one corner: for each, the second moments are those of its corners (Tonon 2004).
+  void weigh() {
+    const Vec3 o = hull_.points[0];
+    Vec3 first;
+    Mat3 second{{0, 0, 0, 0, 0, 0, 0, 0, 0}};
+    for (int32_t f = 0; f < hull_.num_faces; ++f) {
+      const Hull::Face& face = hull_.faces[f];
+      for (int32_t i = 1; i + 1 < face.count; ++i) {
+        const Vec3 a = hull_.corner(face, 0) - o, b = hull_.corner(face, i) - o,
+                   c = hull_.corner(face, i + 1) - o, sum = a + b + c;
+        const double volume = dot(a, cross(b, c)) / 6;
+        hull_.volume += volume;
+        first += (volume / 4) * sum;
+        for (int x = 0; x < 3; ++x)
+          for (int y = 0; y < 3; ++y)
+            second(x, y) += volume / 20 * (a[x] * a[y] + b[x] * b[y] + c[x] * c[y] + sum[x] * sum[y]);
+      }
+    }
+    const Vec3 center = (1 / hull_.volume) * first;
+    hull_.com = o + center;
+    double spread[3][3];
+    for (int x = 0; x < 3; ++x)
+      for (int y = 0; y < 3; ++y) spread[x][y] = second(x, y) / hull_.volume - center[x] * center[y];
+    const double moment[6] = {spread[1][1] + spread[2][2],
+                              spread[0][0] + spread[2][2],
+                              spread[0][0] + spread[1][1],
+                              -spread[0][1],
+                              -spread[0][2],
+                              -spread[1][2]};
+    std::copy_n(moment, 6, hull_.moment);
+  }
+
+  const char* owner_;
+  Hull hull_;
+  double size_ = 0;
+  int32_t used_ = 0;                    // corners
+  uint32_t members_[Hull::kMostFaces];  // points in the plane of each face
+  bool broken_ = false;
+};
+
+}  // namespace
+
+Hull make_hull(const Vec3* points, int32_t count, const char* owner) {
+  return Builder(points, count, owner).make();
+}
+
+Vec3 half_box(const Hull& hull) {
+  Vec3 half;
+  for (int32_t i = 0; i < hull.num_points; ++i)
+    for (int k = 0; k < 3; ++k) half[k] = std::max(half[k], std::fabs(hull.points[i][k]));
+  return half;
+}
+
+}  // namespace rdm

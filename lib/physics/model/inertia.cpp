@@ -1,0 +1,97 @@
+#include "physics/model/inertia.hpp"
+
+namespace rdm {
+namespace {
+
+// m (|c|^2 1 - c c^T)
+void add_point(Mat3* moment, double mass, const Vec3& c) {
+  const double square = dot(c, c);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) (*moment)(i, j) += mass * ((i == j ? square : 0) - c[i] * c[j]);
+}
+
+Inertia diagonal(double mass, double xx, double yy, double zz) {
+  Inertia out;
+  out.mass = mass;
+  out.moment[0] = xx, out.moment[1] = yy, out.moment[2] = zz;
+  return out;
+}
+
+}  // namespace
+
+Mat3 moment_matrix(const Inertia& inertia) {
+  const double* m = inertia.moment;
+  return {{m[0], m[3], m[4], m[3], m[1], m[5], m[4], m[5], m[2]}};
+}
+
+void set_moment(Inertia* inertia, const Mat3& a) {
+  const double m[6] = {a(0, 0), a(1, 1), a(2, 2), a(0, 1), a(0, 2), a(1, 2)};
+  for (int i = 0; i < 6; ++i) inertia->moment[i] = m[i];
+}
+
+Inertia transformed(const Inertia& inertia, const Pose& X_AB) {
+  Inertia out;
+  out.mass = inertia.mass;
+  out.com = X_AB * inertia.com;
+  const Mat3 r = to_matrix(X_AB.q);
+  set_moment(&out, r * moment_matrix(inertia) * transpose(r));
+  return out;
+}
+
+Inertia combined(const Inertia& a, const Inertia& b) {
+  Inertia out;
+  out.mass = a.mass + b.mass;
+  if (out.mass <= 0) return out;
+  out.com = (1 / out.mass) * (a.mass * a.com + b.mass * b.com);
+  Mat3 sum = moment_matrix(a);
+  const Mat3 other = moment_matrix(b);
+  for (int i = 0; i < 9; ++i) sum.m[i] += other.m[i];
+  add_point(&sum, a.mass, a.com - out.com);
+  add_point(&sum, b.mass, b.com - out.com);
+  set_moment(&out, sum);
+  return out;
+}
+
+bool positive_definite(const Mat3& a) {
+  const double second = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
+  const double third = dot(a.col(0), cross(a.col(1), a.col(2)));
+  return a(0, 0) > 0 && second > 0 && third > 0;
+}
+
+Inertia sphere_inertia(double mass, double radius) {
+  const double i = 0.4 * mass * radius * radius;
+  return diagonal(mass, i, i, i);
+}
+
+Inertia box_inertia(double mass, const Vec3& half) {
+  const double x = half.x * half.x, y = half.y * half.y, z = half.z * half.z;
+  return diagonal(mass, mass / 3 * (y + z), mass / 3 * (x + z), mass / 3 * (x + y));
+}
+
+Inertia capsule_inertia(double mass, double r, double h) {
+  const double straight = 2 * h, ball = 4.0 / 3 * r;  // volumes over pi r^2
+  const double mc = mass * straight / (straight + ball), ms = mass - mc;
+  const double along = 0.5 * mc * r * r + 0.4 * ms * r * r;
+  const double across = mc * (r * r / 4 + h * h / 3) + ms * (0.4 * r * r + h * h + 0.75 * h * r);
+  return diagonal(mass, across, across, along);
+}
+
+Inertia cylinder_inertia(double mass, double r, double h) {
+  const double across = mass * (r * r / 4 + h * h / 3);
+  return diagonal(mass, across, across, 0.5 * mass * r * r);
+}
+
+Inertia ellipsoid_inertia(double mass, const Vec3& half) {
+  const double x = half.x * half.x, y = half.y * half.y, z = half.z * half.z;
+  return diagonal(mass, mass / 5 * (y + z), mass / 5 * (x + z), mass / 5 * (x + y));
+}
+
+Inertia hull_inertia(double mass, const Hull& hull) {
+  Inertia out;
+  out.mass = mass;
+  out.com = hull.com;
+  for (int i = 0; i < 6; ++i) out.moment[i] = mass * hull.moment[i];
+  return out;
+}
+
+}  // namespace rdm

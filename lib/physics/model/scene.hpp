@@ -1,0 +1,216 @@
+// What a world is made of: constant, shared by all worlds of a pool, and free of any engine's types.
+//
+// A scene has articulations (trees of links on a fixed or free base), free bodies, and static shapes.
+// Every shape has one number (its index in Scene::shapes) by which contacts, pictures and tasks name it.
+#pragma once
+#include <cstdint>
+#include <utility>
+
+#include "base/host.hpp"
+#include "base/vec.hpp"
+#include "physics/model/hull.hpp"
+
+namespace rdm {
+
+inline constexpr int kNameSize = 32;
+struct Name {
+  char text[kNameSize] = "";
+  Name() = default;
+  Name(const char* s);  // cuts at kNameSize - 1
+  bool operator==(const char* s) const;
+};
+
+enum class ShapeKind : int32_t {
+  kSphere = 0,
+  kCapsule = 1,
+  kBox = 2,
+  kCylinder = 3,
+  kPlane = 4,
+  kEllipsoid = 5,
+  kHull = 6
+};
+
+// size: sphere (radius, 0, 0); capsule and cylinder along z (radius, half length of the straight part, 0);
+// box half sizes; plane (0, 0, 0): the half space below z = 0 of its frame; ellipsoid half axes; hull: the
+// scene sets it to half sizes of the box about its frame's origin that holds it. m.
+struct ShapeDef {
+  Name name;
+  ShapeKind kind = ShapeKind::kSphere;
+  Vec3 size;
+  Pose X_LS;             // in the frame of the link or body that carries it (of the world if static)
+  int32_t material = 0;  // row of the pair friction table
+  uint8_t color[3] = {200, 200, 200};
+  bool collides = true;  // false: only seen
+  Vector<Vec3> points;   // of a hull: what make_hull takes
+};
+
+enum class JointKind : int32_t { kRevolute = 0, kPrismatic = 1 };
+
+// A joint moves its link about (along) `axis` of the link's own frame, at the link's origin. rad, N m, s
+// (m, N for prismatic).
+struct JointDef {
+  Name name;
+  JointKind kind = JointKind::kRevolute;
+  Vec3 axis{0, 0, 1};
+  double lower = 0, upper = 0;  // range
+  double kp = 0, kd = 0;        // drive: torque = kp (target - q) - kd qd, implicit
+  double effort = 0;            // bound of the drive's torque
+  double armature = 0;          // added inertia about the axis, kg m2; revolute only
+  double friction = 0;          // dry friction torque
+  // A coupled joint has no target of its own: it is driven to clamp(q, ratio q_other -+ slack).
+  int32_t coupled_to = -1;  // link index in the same articulation, -1: none
+  double ratio = 1, slack = 0;
+};
+
+struct Inertia {
+  double mass = 0;                        // kg
+  Vec3 com;                               // in the link frame
+  double moment[6] = {0, 0, 0, 0, 0, 0};  // xx yy zz xy xz yz about com, link axes, kg m2
+};
+
+struct LinkDef {
+  Name name;
+  int32_t parent = -1;  // link index, -1: the base; a parent stands before its children
+  Pose X_PL;            // link frame in the parent's frame at q = 0
+  Inertia inertia;
+  JointDef joint;
+  bool sensor = false;  // contact force and torque on it are summed and reported
+};
+
+struct ArticulationShape {
+  int32_t link = -1;  // -1: the base
+  ShapeDef shape;
+};
+
+struct ArticulationDef {
+  Name name;
+  Pose X_WB;  // base frame in the world (start pose when free)
+  bool free_base = false;
+  Inertia base;             // of a free base
+  double base_damping = 0;  // 1/s on linear and angular velocity of every link of a free-base robot
+  bool gravity = false;
+  Vector<LinkDef> links;
+  Vector<ArticulationShape> shapes;
+  Vector<std::pair<int32_t, int32_t>> self_pairs;  // shape indices within `shapes` that may touch
+};
+
+struct BodyDef {
+  Name name;
+  Pose X_WB;                   // start pose
+  Inertia inertia;             // com must be the body's origin
+  double angular_damping = 0;  // 1/s, implicit
+  double linear_damping = 0;   // 1/s, implicit
+  bool gravity = true;
+  Vector<ShapeDef> shapes;
+};
+
+// mu and softness of contacts between two materials; the table is symmetric.
+struct Friction {
+  double mu = 1;
+  bool passes = false;  // the two go through each other
+};
+
+struct SolverDef {
+  double h = 1.0 / 120;          // substep, s
+  int32_t substeps = 2;          // per control step, 1..16
+  int32_t iterations = 8;        // at most; engine ode 1..8
+  double relaxation = 1.3;       // successive over-relaxation of QuickStep
+  double erp = 0.8, cfm = 1e-9;  // joints
+  double contact_erp = 0.2, contact_cfm = 1e-4;
+  double contact_layer = 0.0005;    // m of allowed depth
+  double contact_max_speed = 0;     // m/s, correction of depth; 0: the engine's own, see below
+  int32_t contacts_per_pair = 4;    // 1..8
+  int32_t contacts_max = 36;        // per world and substep, 1..4096; more raise kContactOverflow
+  double limit_margin = 5e-3;       // rad beyond a joint's range before it is clamped
+  double limit_stiffness = 100;     // N m/rad of the soft limit
+  double link_armature = 3e-5;      // kg m2 about the joint axis of links under 1e-4 kg m2 (engine ode)
+  bool spring_only_effort = false;  // true: effort bounds the spring alone, damping stays outside
+  bool exact = false;               // engine ode: the O(n^3) solver, slow; the reference of tests
+  // Engine articulated:
+  bool double_precision = false;  // arithmetic in double, one lane: a reference, half as fast
+  int32_t lanes = 0;              // 1, 4 or 8 numbers at a time; 0: what suits the scene. Same bytes for all
+};
+
+// Faster correction helps engine ode, whose contacts give way; in joint coordinates it would kick fingers.
+inline constexpr double kOdeContactSpeed = 1.0, kArticulatedContactSpeed = 0.4;  // m/s
+
+inline constexpr int kMaxMaterials = 16;
+
+struct SceneDef {
+  Vec3 gravity{0, 0, -9.81};
+  SolverDef solver;
+  Vector<ArticulationDef> articulations;
+  Vector<BodyDef> bodies;
+  Vector<ShapeDef> statics;
+  int32_t num_materials = 1;
+  Friction friction[kMaxMaterials][kMaxMaterials];
+  bool hand_hand_contact = true;  // shapes of different articulations may touch (friction by material)
+};
+
+// Where a shape of the flattened scene sits. The base of an articulation may be fixed or free.
+enum class Carrier : int32_t { kStatic = 0, kLink = 1, kBody = 2, kBase = 3 };
+struct SceneShape {
+  ShapeDef def;
+  Carrier carrier = Carrier::kStatic;
+  int32_t index = -1;         // flat link index or body index; -1 for statics and bases
+  int32_t articulation = -1;  // owner, -1: none
+  double radius = 0;          // m, of the sphere around X_LS.p that holds the shape; < 0: a plane
+  int32_t hull = -1;          // index of Scene::hulls
+};
+
+// `a` always moves; `b` may be at rest.
+struct ShapePair {
+  int32_t a, b;  // indices of Scene::shapes
+  double mu;
+  double reach;  // m, sum of bounding radii; < 0: b is a plane
+};
+
+// What forward kinematics needs of a link, packed.
+struct LinkFrame {
+  int32_t parent = -1;  // flat link index, -1: the base
+  bool prismatic = false;
+  bool turned = false;  // q_PL is not the identity
+  Vec3 p_PL;
+  Quat q_PL;
+  Vec3 axis;
+};
+
+// A run of neighbours in Scene::pairs. With an articulation given, all of them are pairs of one `shape` with
+// shapes of that articulation: while the shape is outside the box around those, none of them can touch.
+struct PairRun {
+  int32_t first, count;
+  int32_t shape, articulation;  // -1: pairs of any kind
+};
+
+// The flattened, validated, constant model. Links of all articulations are numbered in one row
+// (`link_offset`), and so are their joints: joint i moves link i.
+struct Scene {
+  SceneDef def;
+  int32_t num_links = 0, num_bodies = 0;
+  Vector<int32_t> link_offset;        // per articulation
+  Vector<int32_t> link_articulation;  // per link
+  Vector<int32_t> first_shape;        // per articulation
+  Vector<LinkFrame> frames;           // per link
+  Vector<SceneShape> shapes;  // articulation by articulation (base shapes are in place), bodies, statics
+  Vector<Hull> hulls;
+  Vector<ShapePair> pairs;  // all pairs that may touch, in fixed order
+  Vector<PairRun> runs;     // the same pairs, run by run
+  Vector<int32_t> sensors;  // link indices with a sensor
+
+  const LinkDef& link(int32_t i) const;
+  bool moves(const SceneShape& shape) const;  // not static, not on a fixed base
+  // Null where the shape is of another kind.
+  const Hull* hull_of(const SceneShape& shape) const {
+    return shape.hull < 0 ? nullptr : &hulls[static_cast<size_t>(shape.hull)];
+  }
+  // Indices by name; Error(kNotFound).
+  int32_t find_link(int32_t articulation, const char* name) const;  // flat
+  int32_t find_body(const char* name) const;
+  int32_t find_shape(const char* name) const;
+  double control_dt() const { return def.solver.h * def.solver.substeps; }
+};
+
+// Error(kArgument) or Error(kRange) for anything a world could not be made of.
+Scene make_scene(SceneDef def);
+
+}  // namespace rdm

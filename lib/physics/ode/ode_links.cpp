@@ -1,0 +1,310 @@
+#include "physics/ode/ode_links.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "physics/model/inertia.hpp"
+#include "physics/ode/ode_convert.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr dReal kStill[4] = {0, 0, 0, 0};
+constexpr double kRateBound = 1e6;     // rad/s or m/s; beyond it a world counts as diverged
+constexpr double kLightMoment = 1e-4;  // kg m2: links below it get the solver's link_armature
+
+double largest_moment(const Inertia& inertia) {
+  return std::max({inertia.moment[0], inertia.moment[1], inertia.moment[2]});
+}
+
+double trace(const Inertia& inertia) {
+  return inertia.moment[0] + inertia.moment[1] + inertia.moment[2];
+}
+
+// About the joint's axis. The outer axis of a universal joint turns in the link, so that one gets it all
+// around.
+void add_armature(Inertia* inertia, double armature, const Vec3& axis, bool all_around) {
+  Mat3 moment = moment_matrix(*inertia);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      moment(r, c) += armature * (all_around ? (r == c ? 1.0 : 0.0) : axis[r] * axis[c]);
+  set_moment(inertia, moment);
+}
+
+dBodyID make_body(dWorldID world, const Inertia& inertia) {
+  const dBodyID body = dBodyCreate(world);
+  dMass mass;
+  const double* m = inertia.moment;
+  dMassSetParameters(&mass, inertia.mass, 0, 0, 0, m[0], m[1], m[2], m[3], m[4], m[5]);
+  dBodySetMass(body, &mass);
+  dBodySetGyroscopicMode(body, 0);
+  return body;
+}
+
+}  // namespace
+
+void OdeLinks::carve(const Scene& scene, Arena& arena) {
+  num_links_ = scene.num_links;
+  links_ = arena.make<Link>(static_cast<size_t>(num_links_));
+  joints_ = arena.make<Joint>(static_cast<size_t>(num_links_));
+  bases_ = arena.make<Link>(scene.def.articulations.size());
+}
+
+// A link without shapes whose only child turns about a second axis through the same origin, at a right
+// angle: one universal joint serves both, and the light body in between is spared.
+bool OdeLinks::merges(const Scene& scene, int32_t link) const {
+  const auto& frames = scene.frames;
+  int32_t child = -1;
+  for (int32_t i = link + 1; i < num_links_; ++i) {
+    if (frames[static_cast<size_t>(i)].parent != link) continue;
+    if (child >= 0) return false;
+    child = i;
+  }
+  if (child < 0) return false;
+  for (const SceneShape& shape : scene.shapes)
+    if (shape.carrier == Carrier::kLink && shape.index == link) return false;
+  const LinkFrame &a = frames[static_cast<size_t>(link)], &b = frames[static_cast<size_t>(child)];
+  if (a.prismatic || b.prismatic || norm(b.p_PL) != 0 || scene.link(link).sensor) return false;
+  const bool parent_merges = a.parent >= 0 && !links_[a.parent].owner;
+  return !parent_merges && std::fabs(dot(a.axis, rotate(b.q_PL, b.axis))) < 1e-9;
+}
+
+void OdeLinks::make_bodies(dWorldID world, int32_t articulation, const LinkState& state) {
+  const Scene& scene = *state.scene;
+  const ArticulationDef& def = scene.def.articulations[static_cast<size_t>(articulation)];
+  Link& base = bases_[articulation];
+  base = {nullptr, true, {}, 1};
+  if (def.free_base) {
+    base.com = def.base.com;
+    base.body = make_body(world, def.base);
+    dBodySetGravityMode(base.body, def.gravity);
+  }
+  const int32_t first = scene.link_offset[static_cast<size_t>(articulation)];
+  const int32_t end = first + static_cast<int32_t>(def.links.size());
+  for (int32_t i = first; i < end; ++i) {
+    links_[i] = {nullptr, !merges(scene, i), {}, 1};
+    if (!links_[i].owner) continue;
+    const LinkDef& link = scene.link(i);
+    const int32_t parent = scene.frames[static_cast<size_t>(i)].parent;
+    const bool universal = parent >= 0 && !links_[parent].owner;
+    // The light link in the middle of a universal joint is lumped at its child's centre of mass; shifting
+    // the centre and adding its moment made the fingers softer under load.
+    Inertia inertia = link.inertia;
+    if (universal) inertia.mass += scene.link(parent).inertia.mass;
+    if (inertia.mass <= 0 || !positive_definite(moment_matrix(inertia)))
+      fail(Code::kRange, "%s: a link with a body needs mass and moment above 0", link.name.text);
+    double armature = link.joint.armature;
+    if (universal) armature = std::max(armature, scene.link(parent).joint.armature);
+    if (largest_moment(inertia) < kLightMoment) armature += scene.def.solver.link_armature;
+    const double own = trace(inertia);
+    add_armature(&inertia, armature, link.joint.axis, universal);
+    links_[i].own_share = own / trace(inertia);
+    links_[i].com = inertia.com;
+    links_[i].body = make_body(world, inertia);
+    dBodySetGravityMode(links_[i].body, def.gravity);
+    if (universal) links_[parent].body = links_[i].body;
+  }
+}
+
+void OdeLinks::make_joint(dWorldID world, int32_t i, const LinkState& state) {
+  const Scene& scene = *state.scene;
+  if (!links_[i].owner) return;  // its child makes the joint of both
+  const LinkFrame& frame = scene.frames[static_cast<size_t>(i)];
+  const bool universal = frame.parent >= 0 && !links_[frame.parent].owner;
+  const int32_t first = universal ? frame.parent : i;
+  const int32_t parent = scene.frames[static_cast<size_t>(first)].parent;
+  const int32_t articulation = scene.link_articulation[static_cast<size_t>(i)];
+  const dBodyID child_body = links_[i].body;
+  const dBodyID parent_body = parent >= 0 ? links_[parent].body : bases_[articulation].body;
+  const Vec3& p = state.links[i].X.p;
+
+  Joint& joint = joints_[i];
+  joint.def = &scene.link(i).joint;
+  joint.child = child_body;
+  joint.parent = parent_body;
+  joint.w_child = dBodyGetAngularVel(child_body);
+  joint.w_parent = parent_body ? dBodyGetAngularVel(parent_body) : kStill;
+  joint.sign = 1;
+  joint.cfm = joint.force = -1;
+  const Vec3& axis = state.axes[i];
+  if (universal) {
+    const Vec3& outer = state.axes[first];
+    const dJointID id = dJointCreateUniversal(world, nullptr);
+    Joint& joint_of_first = joints_[first];
+    joint_of_first = joint;
+    joint_of_first.def = &scene.link(first).joint;
+    joint.id = joint_of_first.id = id;
+    // ODE measures the first body against the second; a joint with the world wants its body first.
+    const bool parent_first = parent_body != nullptr;
+    joint.sign = joint_of_first.sign = parent_first ? -1 : 1;
+    joint.row = parent_first ? Row::kUniversal2 : Row::kUniversal1;
+    joint_of_first.row = parent_first ? Row::kUniversal1 : Row::kUniversal2;
+    const Vec3 &one = parent_first ? outer : axis, &two = parent_first ? axis : outer;
+    dJointAttach(id, parent_first ? parent_body : child_body, parent_first ? child_body : parent_body);
+    dJointSetUniversalAnchor(id, p.x, p.y, p.z);
+    // ODE takes a frame from both axes at each call and reads rubbish while they are parallel, as a new
+    // joint's other axis may be: the first one goes by a direction between.
+    const Vec3 between = one + two + cross(one, two);
+    dJointSetUniversalAxis1(id, between.x, between.y, between.z);
+    dJointSetUniversalAxis2(id, two.x, two.y, two.z);
+    dJointSetUniversalAxis1(id, one.x, one.y, one.z);
+  } else if (frame.prismatic) {
+    joint.id = dJointCreateSlider(world, nullptr);
+    joint.row = Row::kSlider;
+    dJointAttach(joint.id, child_body, parent_body);
+    dJointSetSliderAxis(joint.id, axis.x, axis.y, axis.z);
+  } else {
+    joint.id = dJointCreateHinge(world, nullptr);
+    joint.row = Row::kHinge;
+    dJointAttach(joint.id, child_body, parent_body);
+    dJointSetHingeAnchor(joint.id, p.x, p.y, p.z);
+    dJointSetHingeAxis(joint.id, axis.x, axis.y, axis.z);
+  }
+}
+
+void OdeLinks::make(dWorldID world, const LinkState& state) {
+  const Scene& scene = *state.scene;
+  for (int32_t a = 0; a < static_cast<int32_t>(scene.def.articulations.size()); ++a) {
+    make_bodies(world, a, state);
+    write_base(a, state);
+    write(a, state);
+    const int32_t first = scene.link_offset[static_cast<size_t>(a)];
+    const auto count = static_cast<int32_t>(scene.def.articulations[static_cast<size_t>(a)].links.size());
+    for (int32_t i = first; i < first + count; ++i) make_joint(world, i, state);
+    for (int32_t i = first; i < first + count; ++i) {
+      const int32_t other = joints_[i].def->coupled_to;
+      joints_[i].other = other < 0 ? -1 : first + other;
+    }
+  }
+}
+
+void OdeLinks::tell(Joint& joint, const MotorRow& row) const {
+  const double velocity = joint.sign * row.velocity;
+  const bool softness = row.cfm != joint.cfm, bound = row.force != joint.force;
+  switch (joint.row) {
+    case Row::kHinge:
+      dJointSetHingeParam(joint.id, dParamVel, velocity);
+      if (softness) dJointSetHingeParam(joint.id, dParamCFM, row.cfm);
+      if (bound) dJointSetHingeParam(joint.id, dParamFMax, row.force);
+      break;
+    case Row::kSlider:
+      dJointSetSliderParam(joint.id, dParamVel, velocity);
+      if (softness) dJointSetSliderParam(joint.id, dParamCFM, row.cfm);
+      if (bound) dJointSetSliderParam(joint.id, dParamFMax, row.force);
+      break;
+    case Row::kUniversal1:
+    case Row::kUniversal2: {
+      const int group = joint.row == Row::kUniversal2 ? static_cast<int>(dParamGroup2) : 0;
+      dJointSetUniversalParam(joint.id, group | static_cast<int>(dParamVel), velocity);
+      if (softness) dJointSetUniversalParam(joint.id, group | static_cast<int>(dParamCFM), row.cfm);
+      if (bound) dJointSetUniversalParam(joint.id, group | static_cast<int>(dParamFMax), row.force);
+      break;
+    }
+  }
+  joint.cfm = row.cfm;
+  joint.force = row.force;
+  joint.motor = row;
+}
+
+void OdeLinks::drive(const LinkState& state) {
+  const SolverDef& solver = state.scene->def.solver;
+  for (int32_t i = 0; i < num_links_; ++i) {
+    Joint& joint = joints_[i];
+    const JointDef& def = *joint.def;
+    const double goal = joint.other >= 0 ? coupled_target(def, state.q[i], state.q[joint.other])
+                                         : std::clamp(state.target[i], def.lower, def.upper);
+    tell(joint, motor_row(def, solver, state.q[i], state.qd[i], goal));
+  }
+}
+
+double OdeLinks::rate(const Joint& joint, const Vec3& axis) const {
+  if (joint.row == Row::kSlider) {
+    Vec3 v = from_ode(dBodyGetLinearVel(joint.child));
+    if (joint.parent) {
+      const Vec3 arm = from_ode(dBodyGetPosition(joint.child)) - from_ode(dBodyGetPosition(joint.parent));
+      v -= from_ode(dBodyGetLinearVel(joint.parent)) + cross(from_ode(joint.w_parent), arm);
+    }
+    return dot(axis, v);
+  }
+  return dot(axis, from_ode(joint.w_child) - from_ode(joint.w_parent));
+}
+
+bool OdeLinks::integrate(const LinkState& state, double weight) {
+  const SolverDef& solver = state.scene->def.solver;
+  for (int32_t i = 0; i < num_links_; ++i) {
+    const Joint& joint = joints_[i];
+    const JointDef& def = *joint.def;
+    double qd = rate(joint, state.axes[i]);
+    if (!(std::fabs(qd) < kRateBound)) return false;
+    state.torque[i] += weight * motor_torque(joint.motor, qd);
+    double q = state.q[i] + solver.h * qd;
+    const double low = def.lower - solver.limit_margin, high = def.upper + solver.limit_margin;
+    if (q < low) {
+      q = low;
+      qd = std::max(qd, 0.0);
+    } else if (q > high) {
+      q = high;
+      qd = std::min(qd, 0.0);
+    }
+    state.q[i] = q;
+    state.qd[i] = qd;
+  }
+  return true;
+}
+
+void OdeLinks::read_base(int32_t articulation, const LinkState& state) {
+  const Link& base = bases_[articulation];
+  if (!base.body) return;
+  const Mat3 r = mat_from_ode(dBodyGetRotation(base.body));
+  const Vec3 arm = r * base.com, w = from_ode(dBodyGetAngularVel(base.body));
+  state.base_R[articulation] = r;
+  state.bases[articulation] = {
+      {from_ode(dBodyGetPosition(base.body)) - arm, quat_from_ode(dBodyGetQuaternion(base.body))},
+      from_ode(dBodyGetLinearVel(base.body)) - cross(w, arm),
+      w};
+}
+
+void OdeLinks::write_base(int32_t articulation, const LinkState& state) {
+  const Link& base = bases_[articulation];
+  if (!base.body) return;
+  const Motion& m = state.bases[articulation];
+  const Vec3 arm = state.base_R[articulation] * base.com;
+  write_pose(base.body, m.X.p + arm, m.X.q, state.base_R[articulation]);
+  write_velocity(base.body, m.v + cross(m.w, arm), m.w);
+  read_base(articulation, state);
+}
+
+void OdeLinks::write(int32_t articulation, const LinkState& state) {
+  const auto a = static_cast<size_t>(articulation);
+  const int32_t first = state.scene->link_offset[a];
+  const int32_t end = first + static_cast<int32_t>(state.scene->def.articulations[a].links.size());
+  for (int32_t i = first; i < end; ++i) {
+    const Link& link = links_[i];
+    if (!link.owner) continue;
+    const Motion& m = state.links[i];
+    const Vec3 arm = state.link_R[i] * link.com;
+    write_pose(link.body, m.X.p + arm, m.X.q, state.link_R[i]);
+    write_velocity(link.body, m.v + cross(m.w, arm), m.w);
+  }
+}
+
+double OdeLinks::drift(const Scene& scene) const {
+  double worst = 0;
+  for (int32_t i = 0; i < num_links_; ++i) {
+    const Joint& joint = joints_[i];
+    if (joint.row == Row::kSlider || scene.frames[static_cast<size_t>(i)].prismatic) continue;
+    dVector3 a, b;
+    if (joint.row == Row::kHinge) {
+      dJointGetHingeAnchor(joint.id, a);
+      dJointGetHingeAnchor2(joint.id, b);
+    } else {
+      dJointGetUniversalAnchor(joint.id, a);
+      dJointGetUniversalAnchor2(joint.id, b);
+    }
+    worst = std::max(worst, norm(from_ode(a) - from_ode(b)));
+  }
+  return worst;
+}
+
+}  // namespace rdm

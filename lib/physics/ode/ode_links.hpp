@@ -1,0 +1,81 @@
+// The ODE bodies and joints of the articulations, and the way between them and joint coordinates.
+//
+// ODE only supplies rates: after each substep they are read about the axes the solver used, integrated
+// here, and every body is put back exactly where forward kinematics says.
+#pragma once
+#include <ode/ode.h>
+
+#include "base/arena.hpp"
+#include "physics/model/drive.hpp"
+#include "physics/world.hpp"
+
+namespace rdm {
+
+// What ODE's objects are made from and written from: the arrays of a World.
+struct LinkState {
+  const Scene* scene;
+  double *q, *qd, *target, *torque;
+  Motion *links, *bases;
+  Mat3 *link_R, *base_R;
+  Vec3* axes;
+};
+
+class OdeLinks {
+ public:
+  void carve(const Scene& scene, Arena& arena);
+  // Makes bodies and joints at the poses in `state`, which must be those of q = 0.
+  void make(dWorldID world, const LinkState& state);
+
+  // Body of a link; a link without one of its own (massless, two axes at one origin) has its child's.
+  dBodyID body(int32_t link) const { return links_[link].body; }
+  dBodyID base(int32_t articulation) const { return bases_[articulation].body; }  // null: fixed
+  // Centre of mass of that body, in the link's frame.
+  const Vec3& com(int32_t link) const { return links_[link].com; }
+  const Vec3& base_com(int32_t articulation) const { return bases_[articulation].com; }
+  // Share of the link's moment that is its own and not armature: damping acts on that.
+  double own_share(int32_t link) const { return links_[link].own_share; }
+
+  // Motor rows for the next substep.
+  void drive(const LinkState& state);
+  // Reads rates, adds each row's torque x weight, integrates and clamps q. False: a rate is out of bounds.
+  bool integrate(const LinkState& state, double weight);
+  // Motion of a free base from its body.
+  void read_base(int32_t articulation, const LinkState& state);
+  // Into its body, and back again: the bits the body holds are the state.
+  void write_base(int32_t articulation, const LinkState& state);
+  // Poses and velocities of all links of one articulation into their bodies.
+  void write(int32_t articulation, const LinkState& state);
+  double drift(const Scene& scene) const;
+
+ private:
+  enum class Row : int32_t { kHinge, kSlider, kUniversal1, kUniversal2 };
+  struct Link {
+    dBodyID body;
+    bool owner;  // false: the body belongs to the child
+    Vec3 com;
+    double own_share;
+  };
+  struct Joint {
+    dJointID id;
+    const JointDef* def;
+    const dReal *w_child, *w_parent;  // angular velocities; linear ones for a slider
+    dBodyID child, parent;
+    Row row;
+    double sign;        // of the row's rate against the joint's
+    double cfm, force;  // what ODE was told last
+    MotorRow motor;
+    int32_t other;  // flat link a coupled joint follows, -1
+  };
+  bool merges(const Scene& scene, int32_t link) const;
+  void make_bodies(dWorldID world, int32_t articulation, const LinkState& state);
+  void make_joint(dWorldID world, int32_t link, const LinkState& state);
+  void tell(Joint& joint, const MotorRow& row) const;
+  double rate(const Joint& joint, const Vec3& axis) const;
+
+  Link* links_ = nullptr;
+  Link* bases_ = nullptr;
+  Joint* joints_ = nullptr;
+  int32_t num_links_ = 0;
+};
+
+}  // namespace rdm

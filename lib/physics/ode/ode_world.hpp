@@ -1,0 +1,88 @@
+// The world on ODE's QuickStep: contacts and drives are solved there, joint coordinates are kept here.
+//
+// At most 8 iterations a substep: from the ninth on QuickStep draws from one process-wide seed and
+// results would depend on what other worlds and threads do.
+#pragma once
+#include <ode/ode.h>
+
+#include "physics/ode/ode_contacts.hpp"
+#include "physics/ode/ode_guard.hpp"
+#include "physics/ode/ode_links.hpp"
+#include "physics/world.hpp"
+
+namespace rdm {
+
+class OdeWorld final : public World {
+ public:
+  // With a measuring arena only the arrays are counted and no ODE object is made.
+  OdeWorld(const Scene& scene, Arena& arena, OdeWorld* partner = nullptr);
+  ~OdeWorld() override;
+
+  // Heap that one world takes inside ODE, an estimate from above, bytes.
+  static size_t heap_bytes(const Scene& scene);
+
+  EngineKind engine() const override { return EngineKind::kOde; }
+  void step() override;
+  void set_body(int32_t i, const Motion& m) override;
+  void set_base(int32_t articulation, const Motion& m) override;
+  void push_body(int32_t i, const Vec3& force, const Vec3& torque) override;
+  void push_link(int32_t i, const Vec3& force, const Vec3& p_W) override;
+  void push_base(int32_t articulation, const Vec3& force, const Vec3& torque) override;
+  double body_overlap(int32_t body) override;
+  double joint_drift() const override;
+  void save(Writer& out) const override;
+  void load(Reader& in) override;
+
+ private:
+  // ODE's world and its own threading implementation: the default one is shared by all worlds and not
+  // thread-safe.
+  struct Handle {
+    dWorldID world = nullptr;
+    dThreadingImplementationID threading = nullptr;
+    ~Handle();
+  };
+  // One ODE body: what acts on it besides gravity and joints. Factors are those of implicit damping,
+  // v <- factor (v + h a), brought in before the solver runs.
+  struct Force {
+    dBodyID body;
+    double linear, angular;
+    Vec3 gravity;  // N that damping takes from ODE's own gravity
+    Wrench push;
+    bool pushed;
+  };
+
+  LinkState state() const {
+    return {scene_, q_, qd_, target_, torque_, links_, bases_, link_R_, base_R_, axes_};
+  }
+  void links_changed(int32_t articulation) override;
+  void put_base(int32_t articulation, const Motion& m);
+  void make_world(const OdeWorld* partner);
+  void make_bodies();
+  void make_geoms();
+  void make_forces();
+  void prewarm();
+  void set_force(Force* force, dBodyID body, double linear_damping, double angular_damping, double mass,
+                 bool gravity);
+  void add_push(Force& force, const Vec3& f, const Vec3& torque);
+  bool substep(double weight);  // false: diverged
+  void apply_forces();
+  void solve();
+  bool read_bodies();
+  void add_sensors(double weight);
+  void recover();
+  void save_body(Writer& out, dBodyID body) const;
+  void load_body(Reader& in, dBodyID body);
+  void read_body(int32_t i);
+
+  OdeGuard guard_;
+  Handle ode_;
+  OdeLinks tree_;
+  OdeContacts contact_;
+  dBodyID* body_ids_ = nullptr;        // [num_bodies]
+  int32_t* sensor_of_link_ = nullptr;  // [num_links], -1: none
+  // Links (a merged one shares its child's), bases, bodies.
+  Force* forces_ = nullptr;
+  int32_t num_forces_ = 0;
+};
+
+}  // namespace rdm

@@ -1,0 +1,47 @@
+// Pinhole cameras by name, and the rays of their pixels.
+//
+// The camera frame C has its origin in the eye, x to the right of the picture, y down, z forward along the
+// optical axis. Pixel (0, 0) is the upper left one; its centre is (0.5, 0.5).
+#pragma once
+#include <cstdint>
+
+#include "base/vec.hpp"
+#include "physics/model/scene.hpp"
+
+namespace rdm {
+
+inline constexpr int32_t kMaxImageSide = 8192;  // pixels
+
+struct Camera {
+  Name name;
+  Vec3 eye, target;  // world, m; the picture's centre looks from eye to target
+  double fov_y = 0;  // vertical field of view, rad, in (0, pi)
+};
+
+// front, top, right and left: the cameras of every task that names none of its own. The hands reach from
+// (0, 0, 0.5) and (0, -1, 0.5) towards each other; front has the right hand on its right.
+inline constexpr int32_t kNumStandardCameras = 4;
+Camera standard_camera(int32_t index);  // [0, kNumStandardCameras), else Error(kRange)
+
+// The first of `cameras` [num_cameras] with that name; Error(kNotFound) lists those there are.
+const Camera& find_camera(const Camera* cameras, int32_t num_cameras, const char* name);
+
+// A camera with a picture size. World z is up in the picture; a camera that looks straight up or down has
+// world -x up, so that `top` is `front` tipped over.
+struct View {
+  Vec3 eye;
+  Mat3 R_WC;
+  double pixel = 0;  // side of a pixel at a depth of 1 m, m
+  int32_t width = 0, height = 0;
+
+  // Direction through the image point (x, y), pixels, in C; z is 1: scaled by a depth it ends at that depth.
+  Vec3 ray_C(double x, double y) const { return {(x - 0.5 * width) * pixel, (y - 0.5 * height) * pixel, 1}; }
+  // World point at `depth` m along the optical axis, seen at the image point (x, y).
+  Vec3 point(double x, double y, double depth) const { return eye + depth * (R_WC * ray_C(x, y)); }
+};
+
+// Error(kRange) for a size outside [1, kMaxImageSide] or a bad angle; Error(kArgument) for an eye or target
+// that is not finite, or eye and target less than 1e-6 m apart.
+View make_view(const Camera& camera, int32_t width, int32_t height);
+
+}  // namespace rdm

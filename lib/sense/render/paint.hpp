@@ -1,0 +1,34 @@
+// Colour of one tile of pixels: traces its samples, finds shadows and closeness, shades, and averages.
+#pragma once
+#include <cstdint>
+
+#include "sense/render/raycast.hpp"
+#include "sense/render/trace.hpp"
+
+namespace rdm {
+
+// Directions to points of the light's disc, turned from pixel to pixel of a tile so that the edges of soft
+// shadows show no bands. One ray for a single sample a pixel: hard shadows.
+inline constexpr int kMaxRaysPerSample = 4;
+struct LightRays {
+  Lanes3 key;  // to the middle of the disc
+  int32_t per_sample = 1;
+  Lanes3 at[kMaxSamplesPerSide * kMaxSamplesPerSide][kTileSide];  // [ray][row of a tile]
+};
+LightRays make_light_rays(int32_t samples_per_side);
+
+// What paint_tile needs to know of the picture.
+struct Painter {
+  const View& view;
+  const Rays& rays;
+  const LightRays& lights;
+  const RenderOptions& options;
+  const RaycastScratch& scratch;
+  IndexList all;  // every primitive, by nearest depth
+};
+
+// Pixels from (x, y) on, clipped to the picture. `seen` holds what may be seen there; `flat` says that none
+// of it but planes can be: where no shadow falls either, one sample does for all.
+void paint_tile(const Painter& painter, const IndexList& seen, bool flat, int32_t x, int32_t y, uint8_t* rgb);
+
+}  // namespace rdm

@@ -1,0 +1,88 @@
+// Gaussian bandit: one step per episode, nothing to see, reward -(a - target)^2, cost a. With the limit d on
+// the mean of a the best mean is min(target, d), its multiplier max(0, 2 (target - d)).
+#include <algorithm>
+
+#include "tasks/planar/planar_scene.hpp"
+#include "tasks/small_worlds.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kRadius = 0.2;  // m, of the ball in pictures, which stands at x = a
+constexpr double kNear = 0.1;
+constexpr double kLimit = 1;
+
+struct State {
+  double a;
+};
+
+class Bandit final : public PlanarTask {
+ public:
+  explicit Bandit(const Options& o)
+      : PlanarTask(make(o.number("target")), 1, {{"constant", "1", 1}}),
+        target_(o.number("target")),
+        scale_(o.number("action_scale")) {}
+
+  int32_t action_dim() const override { return 1; }
+  const char* action_order() const override { return "a"; }
+  size_t state_bytes() const override { return sizeof(State); }
+  void reset(World&, void*, Stream&) const override {}
+
+  void control(World& world, void* state, const float* action) const override {
+    State& s = *static_cast<State*>(state);
+    s.a = scale_ * static_cast<double>(action[0]);
+    world.set_body(0, planar_motion({s.a, 0, kRadius}, 0));
+  }
+
+  Verdict judge(World&, void* state, int32_t) const override {
+    const double a = static_cast<State*>(state)->a;
+    Verdict v;
+    v.reward = -(a - target_) * (a - target_);
+    v.cost[0] = v.cost_raw[0] = a;
+    v.success = std::fabs(a - std::min(target_, kLimit)) <= kNear;
+    v.terminated = true;
+    return v;
+  }
+
+  void observe(const World&, const void*, float* obs) const override { obs[0] = 1; }
+
+ private:
+  static Scene make(double target) {
+    return PlanarScene(1)
+        .body("choice", ShapeKind::kSphere, {kRadius, 0, 0}, kMarkBlue, {})
+        .disc("target", 2 * kRadius, kMarkGreen, target, 0)
+        .disc("limit", 2 * kRadius, kMarkYellow, kLimit, 0)
+        .build();
+  }
+  double target_, scale_;
+};
+
+constexpr OptionSpec kOptions[] = {
+    number_option("target", 2, -4, 4, "action that the reward wants"),
+    number_option("action_scale", 5, 0.1, 100, "what an action entry of 1 stands for"),
+};
+constexpr CostSpec kCosts[] = {{"cost", "the action a itself", kLimit}};
+constexpr CameraSpec kCameras[] = {
+    {"front", {1, -5, 3}, {1, 0, 0}, 0.8},
+    {"top", {1, -0.01, 7}, {1, 0, 0}, 0.8},
+};
+constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "128"},
+                                                         {"minibatches", "8"},
+                                                         {"passes", "5"},
+                                                         {"discount", "1"},
+                                                         {"lambda", "1"},
+                                                         {"cost_lambda", "1"},
+                                                         {"init_std", "0.1"},
+                                                         {"learning_rate", "1e-3"},
+                                                         {"multiplier_init", "1"},
+                                                         {"multiplier_lr", "0.1"},
+                                                         {"multiplier_window", "2000"},
+                                                         {"cost_limit", "1"}});
+
+}  // namespace
+
+constinit const TaskInfo kBandit = task_info<Bandit, kCosts, kCameras, kDefaults>(
+    "bandit", nullptr, "one Gaussian choice an episode; reward -(a - 2)^2, cost a; the optimum is known",
+    &constant_options<kOptions>);
+
+}  // namespace rdm

@@ -1,0 +1,105 @@
+// A point on a line: x' = x + a + noise, reward -(x^2 + 0.1 a^2), cost a^2, start N(0, 1), 20 steps.
+//
+// For actions drawn from N(-k x, 0.1^2): without a limit the best k is 0.915, return -1.52626 at cost
+// 1.36366; limit 1: k 0.734456, return -1.583058; limit 0.75: k 0.571281, return -1.760243.
+#include "tasks/planar/planar_scene.hpp"
+#include "tasks/small_worlds.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kRadius = 0.1;  // m, of the point in pictures
+constexpr double kNear = 0.2;
+
+struct State {
+  Stream noise;
+  double x, reward, cost;
+};
+
+double normal(Stream& stream) {
+  float out = 0;
+  stream.normals(&out, 1);
+  return static_cast<double>(out);
+}
+
+class LqrLine final : public PlanarTask {
+ public:
+  explicit LqrLine(const Options& o)
+      : PlanarTask(PlanarScene(1)
+                       .body("point", ShapeKind::kSphere, {kRadius, 0, 0}, kMarkBlue)
+                       .disc("goal", 2 * kRadius, kMarkGreen, 0, 0)
+                       .build(),
+                   o.integer("max_steps"), {{"position", "m", 1}}),
+        scale_(o.number("action_scale")),
+        noise_(o.number("noise")),
+        effort_(o.number("effort")) {}
+
+  int32_t action_dim() const override { return 1; }
+  const char* action_order() const override { return "displacement"; }
+  size_t state_bytes() const override { return sizeof(State); }
+
+  void reset(World& world, void* state, Stream& stream) const override {
+    State& s = *static_cast<State*>(state);
+    s.noise = Stream(stream.next(), 0, Purpose::kWorldNoise);
+    s.x = normal(s.noise);
+    place(world, s);
+  }
+
+  void control(World& world, void* state, const float* action) const override {
+    State& s = *static_cast<State*>(state);
+    const double a = scale_ * static_cast<double>(action[0]);
+    s.reward = -(s.x * s.x + effort_ * a * a);
+    s.cost = a * a;
+    s.x += a + noise_ * normal(s.noise);
+    place(world, s);
+  }
+
+  Verdict judge(World&, void* state, int32_t) const override {
+    const State& s = *static_cast<State*>(state);
+    Verdict v;
+    v.reward = s.reward;
+    v.cost[0] = v.cost_raw[0] = s.cost;
+    v.success = std::fabs(s.x) <= kNear;
+    return v;
+  }
+
+  void observe(const World&, const void* state, float* obs) const override {
+    obs[0] = static_cast<float>(static_cast<const State*>(state)->x);
+  }
+
+ private:
+  static void place(World& world, const State& s) { world.set_body(0, planar_motion({s.x, 0, kRadius}, 0)); }
+  double scale_, noise_, effort_;
+};
+
+constexpr OptionSpec kOptions[] = {
+    number_option("action_scale", 5, 0.1, 100, "displacement for an action entry of 1, m"),
+    number_option("noise", 0.1, 0, 10, "standard deviation of the noise, m"),
+    number_option("effort", 0.1, 0, 10, "weight of a^2 in the reward"),
+    integer_option("max_steps", 20, 1, 100000, "control steps of an episode"),
+};
+constexpr CostSpec kCosts[] = {{"cost", "squared displacement a^2, m2", 1}};
+constexpr CameraSpec kCameras[] = {
+    {"front", {0, -4, 2}, {0, 0, 0}, 0.8},
+    {"top", {0, -0.01, 5}, {0, 0, 0}, 0.8},
+};
+constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "140"},
+                                                         {"minibatches", "8"},
+                                                         {"passes", "10"},
+                                                         {"discount", "0.95"},
+                                                         {"lambda", "0.95"},
+                                                         {"cost_lambda", "0.95"},
+                                                         {"init_std", "0.02"},
+                                                         {"learning_rate", "2e-3"},
+                                                         {"multiplier_init", "3"},
+                                                         {"multiplier_lr", "0.1"},
+                                                         {"multiplier_window", "400"},
+                                                         {"cost_limit", "1"}});
+
+}  // namespace
+
+constinit const TaskInfo kLqrLine = task_info<LqrLine, kCosts, kCameras, kDefaults>(
+    "lqr_line", nullptr, "bring a point on a line to 0 with little effort; the optimum is known",
+    &constant_options<kOptions>);
+
+}  // namespace rdm

@@ -1,0 +1,107 @@
+// A constrained Markov decision process of two states, solved by a linear programme. The action is one bit:
+// a = 1 where the entry is positive. Each step ends the episode with probability 0.1.
+//
+// Without a limit: always a = 1, return 17.912088 at cost 8.329670. Limit 2.5: return 9.687058 with
+// P(a = 1 | 0) = 1 and P(a = 1 | 1) = 0.294079.
+#include "tasks/planar/planar_scene.hpp"
+#include "tasks/small_worlds.hpp"
+
+namespace rdm {
+namespace {
+
+// [state][a]
+constexpr double kToOne[2][2] = {{0.1, 0.8}, {0.2, 0.9}};
+constexpr double kReward[2][2] = {{0, 1}, {0.5, 2}};
+constexpr double kCost[2][2] = {{0, 0.2}, {0, 1}};
+
+constexpr double kRadius = 0.3;  // m, of the token in pictures
+
+struct State {
+  Stream noise;
+  double reward, cost;
+  int32_t at, over;
+};
+
+class TwoState final : public PlanarTask {
+ public:
+  explicit TwoState(const Options& o)
+      : PlanarTask(PlanarScene(1)
+                       .body("token", ShapeKind::kSphere, {kRadius, 0, 0}, kMarkBlue)
+                       .disc("state_0", 2 * kRadius, kMarkGreen, -1, 0)
+                       .disc("state_1", 2 * kRadius, kMarkRed, 1, 0)
+                       .build(),
+                   o.integer("max_steps"), {{"state", "1", 2}}),
+        end_(o.number("end_probability")) {}
+
+  int32_t action_dim() const override { return 1; }
+  const char* action_order() const override { return "choice"; }
+  size_t state_bytes() const override { return sizeof(State); }
+
+  void reset(World& world, void* state, Stream& stream) const override {
+    State& s = *static_cast<State*>(state);
+    s.noise = Stream(stream.next(), 0, Purpose::kWorldNoise);
+    place(world, s);
+  }
+
+  void control(World& world, void* state, const float* action) const override {
+    State& s = *static_cast<State*>(state);
+    const int a = action[0] > 0;
+    s.reward = kReward[s.at][a];
+    s.cost = kCost[s.at][a];
+    s.over = s.noise.uniform() < end_;
+    s.at = s.noise.uniform() < kToOne[s.at][a];
+    place(world, s);
+  }
+
+  Verdict judge(World&, void* state, int32_t) const override {
+    const State& s = *static_cast<State*>(state);
+    Verdict v;
+    v.reward = s.reward;
+    v.cost[0] = v.cost_raw[0] = s.cost;
+    v.success = s.at == 1;
+    v.terminated = s.over != 0;
+    return v;
+  }
+
+  void observe(const World&, const void* state, float* obs) const override {
+    const State& s = *static_cast<const State*>(state);
+    obs[0] = s.at == 0;
+    obs[1] = s.at == 1;
+  }
+
+ private:
+  static void place(World& world, const State& s) {
+    world.set_body(0, planar_motion({s.at ? 1.0 : -1.0, 0, kRadius}, 0));
+  }
+  double end_;
+};
+
+constexpr OptionSpec kOptions[] = {
+    number_option("end_probability", 0.1, 0.001, 1, "of the episode, at each step"),
+    integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"),
+};
+constexpr CostSpec kCosts[] = {{"cost", "0.2 for a = 1 in state 0, 1 for a = 1 in state 1", 2.5}};
+constexpr CameraSpec kCameras[] = {
+    {"front", {0, -4, 2.5}, {0, 0, 0}, 0.8},
+    {"top", {0, -0.01, 5}, {0, 0, 0}, 0.8},
+};
+constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "256"},
+                                                         {"minibatches", "16"},
+                                                         {"passes", "5"},
+                                                         {"discount", "1"},
+                                                         {"lambda", "0.95"},
+                                                         {"cost_lambda", "0.95"},
+                                                         {"init_std", "0.6"},
+                                                         {"learning_rate", "1e-3"},
+                                                         {"multiplier_init", "0.25"},
+                                                         {"multiplier_lr", "0.02"},
+                                                         {"multiplier_window", "400"},
+                                                         {"cost_limit", "2.5"}});
+
+}  // namespace
+
+constinit const TaskInfo kTwoState = task_info<TwoState, kCosts, kCameras, kDefaults>(
+    "two_state", nullptr, "a constrained Markov decision process of two states; the optimum is known",
+    &constant_options<kOptions>);
+
+}  // namespace rdm

@@ -1,0 +1,113 @@
+#include "tasks/hand/grasp.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "tasks/hand/hand_learner.hpp"
+#include "tasks/hand/single_hand.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr int kWristActions = 2;
+// Entries of the action that the released cost looks at: the first finger's.
+constexpr int kRangeFirst = 2, kRangeLast = 4;
+
+// Half a turn about y: palm down, fingers still along -y.
+const SingleHandConfig kPlan = {
+    {.count = 1, .bases = {{{0, 0, 0.1}, {0, 0, 1, 0}}}, .friction = 0.75},
+    {.start = {0, -0.4, 0.026}, .goal = {0, -0.4, 0.1}, .noise = 0.001, .object = "cube", .turn = "yaw"},
+    0};
+
+constexpr OptionSpec kRows[] = {
+    text_option("reward", "literal", "literal|lift",
+                "100 times the object's height, or (lift) its height above lift_height"),
+    number_option("lift_height", 0.025, -1, 10, "height without a lift, m"),
+    number_option("success_height", 0.1, 0, 10, "object height that counts as success, m"),
+    text_option("cost_mode", "default", "default|paper|literal",
+                "default, paper: joint force; literal: range of the first finger's command"),
+    number_option("effort_share", 0.4, 0, 1, "cost: a finger joint's force above this share of its limit"),
+    text_option(
+        "initial_mean", "close", "close|hold|zero",
+        "start of a new policy: the wrist down and fingers and thumb around the cube, the hold action, "
+        "or 0"),
+    number_option("finger_range", 0.9, 0, 1, "cost finger_range: a first finger's command beyond +-this"),
+};
+
+// Wrist down, fingers and thumb where they meet around the cube.
+constexpr float kClosed[kHandActions] = {0.4f, 0.7f,  0, 0.3f, 0.1f, 0, 0.1f, 0.1f,  0,     0.35f,
+                                         0.1f, -0.5f, 0, 0.4f, 0.1f, 1, 0.5f, -0.3f, -0.5f, -0.4f};
+
+enum : int { kCost, kFingerEffort, kFingerRange, kNumCosts };
+constexpr CostSpec kCosts[kNumCosts] = {
+    {"cost", "a finger joint strains, see cost_mode; raw: the measured value", 25},
+    {"finger_effort", "a finger joint's force above effort_share of its limit; raw: largest share", -1},
+    {"finger_range", "a first finger's command beyond finger_range; raw: largest of them", -1},
+};
+
+void add_options(OptionTable& table) {
+  add_single_hand_options(kPlan, table);
+  table.add(kRows);
+}
+
+class Grasp final : public SingleHand {
+ public:
+  explicit Grasp(const Options& o)
+      : SingleHand(kPlan, o),
+        floor_(same_name(o.text("reward"), "lift") ? o.number("lift_height") : 0),
+        success_height_(o.number("success_height")),
+        effort_share_(o.number("effort_share")),
+        range_(o.number("finger_range")),
+        source_(same_name(o.text("cost_mode"), "literal") ? kFingerRange : kFingerEffort) {
+    const char* mean = o.text("initial_mean");
+    if (same_name(mean, "hold"))
+      hold_action(initial_mean_);
+    else if (same_name(mean, "close"))
+      std::copy(std::begin(kClosed), std::end(kClosed), initial_mean_);
+  }
+
+ private:
+  void judge_step(const Step& step, Verdict* v) const override {
+    const double height = step.world.body(0).X.p.z;
+    v->reward = 100 * (height - floor_);
+    v->success = height >= success_height_;
+    double effort = 0, range = 0;
+    for (int i = kWristActions; i < kHandActions; ++i) {
+      const int32_t joint = hand().joint(i);
+      effort = std::max(effort, std::abs(step.world.torque()[hand().first + joint]) / hand().effort[joint]);
+    }
+    for (int i = kRangeFirst; i <= kRangeLast; ++i) range = std::max(range, std::abs(step.command[i]));
+    v->cost[kFingerEffort] = effort > effort_share_;
+    v->cost_raw[kFingerEffort] = effort;
+    v->cost[kFingerRange] = range > range_;
+    v->cost_raw[kFingerRange] = range;
+    v->cost[kCost] = v->cost[source_];
+    v->cost_raw[kCost] = v->cost_raw[source_];
+  }
+
+  double floor_, success_height_, effort_share_, range_;
+  int source_;
+};
+
+const CameraSpec kCameras[] = {
+    {"front", {0.7, -0.7, 0.35}, {0, -0.35, 0.06}, 45 * kDegree},
+    {"top", {0, -0.35, 1.0}, {0, -0.36, 0.05}, 45 * kDegree},
+    {"right", {0.6, 0.1, 0.3}, {0, -0.35, 0.05}, 45 * kDegree},
+    {"left", {-0.7, -0.6, 0.3}, {0, -0.35, 0.05}, 45 * kDegree},
+    {"close", {0.35, -0.6, 0.16}, {0, -0.38, 0.05}, 45 * kDegree},
+    // close by, for point clouds
+    {"cloud_above", {0, -0.4, 0.6}, {0, -0.39, 0.05}, 57 * kDegree},
+    {"cloud_front", {0.35, -0.55, 0.2}, {0, -0.38, 0.05}, 57 * kDegree},
+    {"cloud_back", {-0.35, -0.55, 0.2}, {0, -0.38, 0.05}, 57 * kDegree},
+};
+
+constexpr auto kLearner = hand_learner("25", "0.15");
+
+}  // namespace
+
+constinit const TaskInfo kGrasp = task_info<Grasp, kCosts, kCameras, kLearner>(
+    "grasp", nullptr, "lift a cube from the ground; cost: a finger joint strains",
+    &filled_options<add_options>);
+
+}  // namespace rdm

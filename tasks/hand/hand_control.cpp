@@ -1,0 +1,226 @@
+#include "tasks/hand/hand_control.hpp"
+
+#include <algorithm>
+
+#include "env/options/simulation.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kSourceStep = 1.0 / 60;  // s, of the source's scales
+
+constexpr OptionSpec kRows[] = {
+    number_option("action_average", 1, 0.01, 1, "weight of the new action in the moving average of targets"),
+    text_option("sensor", "contact", "contact|none", "fingertip force entries: contact forces, or zero"),
+};
+constexpr OptionSpec kPairRows[] = {
+    flag_option("hand_contact", true, "the hands may touch each other"),
+    number_option("friction.hand_hand", 0, 0, 10, "friction coefficient of one hand and the other"),
+};
+constexpr OptionSpec kFrictionRows[] = {
+    number_option("friction.hand_self", 0, 0, 10, "friction coefficient inside one hand"),
+    number_option("friction.hand_ground", 1, 0, 10, "friction coefficient of hand and ground"),
+};
+constexpr OptionSpec kFlyingRows[] = {
+    text_option("action_order", "paper", "paper|legacy",
+                "of a hand's entries: joints, force, torque (paper) or force, torque, joints (legacy)"),
+    number_option("base_damping", 100, 0, 1e4, "damping of a flying hand's links, 1/s"),
+    text_option("base_angles", "positive", "positive|signed",
+                "base angles in the observation: in [0, 2 pi) or in [-pi, pi]"),
+    number_option("base_speed", 2, 0.01, 100, "bound of a base's speed, m/s"),
+    number_option("base_spin", 10, 0.1, 1000, "bound of a base's angular speed, rad/s"),
+    number_option("base_reach", 0, 0, 10, "how far from its start a base can fly, m; 0: no bound"),
+};
+
+Vec3 bounded(const Vec3& v, double most) {
+  const double length = norm(v);
+  return length > most ? (most / length) * v : v;
+}
+
+}  // namespace
+
+void add_rig_options(const HandControlConfig& plan, OptionTable& table) {
+  table.add(kRows);
+  table.add(number_option("friction.hand_object", plan.friction, 0, 10,
+                          "friction coefficient of hands and object"));
+  table.add(kFrictionRows);
+  if (plan.count > 1) {
+    table.add(kPairRows);
+    add_left_hand_options(table);
+  }
+  if (plan.flying) {
+    table.add(kFlyingRows);
+    table.add(number_option("transition_scale", plan.transition_scale, 0, 10,
+                            "force of a base's action entry of 1, in 1667 N"));
+    table.add(number_option("orientation_scale", plan.orientation_scale, 0, 10,
+                            "torque of a base's action entry of 1, in 16.7 N m"));
+  }
+  add_sim_options(table);
+  add_hand_options(table);
+}
+
+void set_friction(SceneDef* scene, int32_t a, int32_t b, double mu) {
+  scene->friction[a][b].mu = scene->friction[b][a].mu = mu;
+}
+
+SceneDef make_rig_scene(const HandControlConfig& plan, const Options& o, int32_t num_materials) {
+  SceneDef s;
+  s.gravity = gravity_from(o);
+  s.solver = solver_from(o);
+  for (int32_t i = 0; i < plan.count; ++i) {
+    ArticulationDef hand =
+        make_hand(o, i == 0 ? Side::kRight : Side::kLeft, plan.bases[i], i == 0 ? kRightHand : kLeftHand);
+    if (plan.flying) {
+      hand.free_base = true;
+      hand.base_damping = o.number("base_damping");
+    }
+    s.articulations.push_back(hand);
+  }
+  ShapeDef ground;
+  ground.name = "ground";
+  ground.kind = ShapeKind::kPlane;
+  ground.material = kGround;
+  ground.color[0] = 150, ground.color[1] = 158, ground.color[2] = 165;
+  s.statics.push_back(ground);
+  s.num_materials = num_materials;
+  for (const int32_t hand : {kRightHand, kLeftHand}) {
+    set_friction(&s, hand, hand, o.number("friction.hand_self"));
+    set_friction(&s, hand, kObject, o.number("friction.hand_object"));
+    set_friction(&s, hand, kGround, o.number("friction.hand_ground"));
+  }
+  if (plan.count > 1) {
+    s.hand_hand_contact = o.flag("hand_contact");
+    set_friction(&s, kRightHand, kLeftHand, o.number("friction.hand_hand"));
+  }
+  return s;
+}
+
+HandControl::HandControl(const HandControlConfig& plan, const Options& o, const Scene& scene)
+    : count_(plan.count),
+      flying_(plan.flying),
+      sensor_(same_name(o.text("sensor"), "contact")),
+      average_(o.number("action_average")),
+      start_(plan.start) {
+  for (int32_t i = 0; i < count_; ++i) {
+    hands_[i] = find_hand(scene, i);
+    bases_[i] = plan.bases[i].p;
+  }
+  if (!flying_) return;
+  per_hand_ = kFlyingHandActions;
+  paper_order_ = same_name(o.text("action_order"), "paper");
+  (paper_order_ ? first_base_ : first_joint_) = paper_order_ ? kHandActions : kBaseActions;
+  signed_angles_ = same_name(o.text("base_angles"), "signed");
+  force_ = kSourceStep * 1e5 * o.number("transition_scale");
+  torque_ = kSourceStep * 1e3 * o.number("orientation_scale");
+  most_speed_ = o.number("base_speed");
+  most_spin_ = o.number("base_spin");
+  reach_ = o.number("base_reach");
+}
+
+const char* HandControl::action_order() const {
+  if (!flying_) return count_ > 1 ? "right joints, left joints" : "right joints";
+  return paper_order_ ? "right joints, force, torque, left joints, force, torque"
+                      : "right force, torque, joints, left force, torque, joints";
+}
+
+size_t HandControl::state_bytes() const {
+  return static_cast<size_t>(count_) * kHandActions * sizeof(double) +
+         static_cast<size_t>(action_dim()) * sizeof(float);
+}
+
+RigState HandControl::state(void* bytes) const {
+  auto* command = static_cast<double*>(bytes);
+  return {command, reinterpret_cast<float*>(command + count_ * kHandActions)};
+}
+
+const float* HandControl::action(const void* bytes) const {
+  return reinterpret_cast<const float*>(static_cast<const double*>(bytes) + count_ * kHandActions);
+}
+
+void HandControl::reset(double noise, bool literal, World& world, const RigState& state,
+                        Stream& stream) const {
+  draw_joints({noise, literal, start_}, hands_, count_, world, stream);
+  for (int32_t i = 0; i < count_; ++i)
+    for (int32_t k = 0; k < kHandActions; ++k) {
+      const Hand& h = hands_[i];
+      state.command[i * kHandActions + k] =
+          to_action(h.act_lower[k], h.act_upper[k], world.q()[h.actuated[k]]);
+    }
+}
+
+void HandControl::control(World& world, const RigState& state, const float* action) const {
+  std::copy_n(action, action_dim(), state.action);
+  for (int32_t i = 0; i < count_; ++i) {
+    double* command = state.command + i * kHandActions;
+    const float* a = action + joint_entries(i);
+    for (int32_t k = 0; k < kHandActions; ++k)
+      command[k] = average_ * static_cast<double>(a[k]) + (1 - average_) * command[k];
+    command_hand(hands_[i], command, world);
+  }
+  if (flying_) push_bases(world, action);
+}
+
+// Nothing but a blow makes a base as fast as its bound: force against damping ends far below.
+void HandControl::slow_base(World& world, int32_t articulation) const {
+  Motion m = world.base(articulation);
+  if (norm(m.v) <= most_speed_ && norm(m.w) <= most_spin_) return;
+  m.v = bounded(m.v, most_speed_);
+  m.w = bounded(m.w, most_spin_);
+  world.set_base(articulation, m);
+}
+
+void HandControl::push_bases(World& world, const float* action) const {
+  for (int32_t i = 0; i < count_; ++i) {
+    const int32_t articulation = hands_[i].articulation;
+    slow_base(world, articulation);
+    const float* a = action + base_entries(i);
+    Vec3 force, torque;
+    for (int k = 0; k < 3; ++k) {
+      force[k] = force_ * static_cast<double>(a[k]);
+      torque[k] = torque_ * static_cast<double>(a[3 + k]);
+    }
+    const Vec3 out = world.base(articulation).X.p - bases_[i];
+    if (reach_ > 0 && dot(out, out) >= reach_ * reach_) {
+      const double outward = dot(force, out);
+      if (outward > 0) force -= (outward / dot(out, out)) * out;
+    }
+    world.push_base(articulation, force, torque);
+  }
+}
+
+double HandControl::strayed(const World& world) const {
+  double most = 0;
+  for (int32_t i = 0; flying_ && i < count_; ++i)
+    most = std::max(most, norm(world.base(hands_[i].articulation).X.p - bases_[i]));
+  return most;
+}
+
+HandView HandControl::view(const World& world, const float* action, int32_t i) const {
+  return {world,
+          hands_[i],
+          action + i * per_hand_,
+          sensor_,
+          flying_ ? &world.base(hands_[i].articulation) : nullptr,
+          signed_angles_};
+}
+
+void HandControl::add_fields(FieldTable& table) const {
+  for (int32_t i = 0; i < count_; ++i) add_hand_fields(table, i == 0 ? "right" : "left", flying_);
+}
+
+float* HandControl::write(const World& world, const float* action, float* out) const {
+  for (int32_t i = 0; i < count_; ++i) out = write_hand(view(world, action, i), out);
+  return out;
+}
+
+void HandControl::hold(float* action) const {
+  std::fill_n(action, action_dim(), 0.0f);
+  for (int32_t i = 0; i < count_; ++i)
+    for (int32_t k = 0; k < kHandActions; ++k) {
+      const Hand& h = hands_[i];
+      const double q = std::clamp(start_[h.joint(k)], h.act_lower[k], h.act_upper[k]);
+      action[joint_entries(i) + k] = static_cast<float>(to_action(h.act_lower[k], h.act_upper[k], q));
+    }
+}
+
+}  // namespace rdm

@@ -1,0 +1,83 @@
+// The hands of a task as one: their part of options and scene, how actions become drive targets and wrenches
+// on flying bases, how they are reset, and their entries of the observation.
+#pragma once
+#include "base/option.hpp"
+#include "base/rng.hpp"
+#include "env/options/table.hpp"
+#include "tasks/hand/hand_observation.hpp"
+#include "tasks/hand/hands.hpp"
+
+namespace rdm {
+
+inline constexpr int kMaxHands = 2;
+inline constexpr int kMaxRigActions = kMaxHands * kFlyingHandActions;
+
+// The words of one task.
+struct HandControlConfig {
+  int32_t count = 2;      // right, left
+  Pose bases[kMaxHands];  // of the mounts, at the start
+  bool flying = false;    // bases are free and have six action entries each
+  // Largest force 1e5/60 N and torque 1e3/60 N m times these (tasks section 2.4).
+  double transition_scale = 0, orientation_scale = 0;
+  const double* start = kStraightJoints;  // [kHandJoints] of each hand
+  double friction = 1;                    // hand and object, option friction.hand_object
+};
+
+void add_rig_options(const HandControlConfig& plan, OptionTable& table);
+// A scene of the hands and the ground, with gravity, solver, `num_materials` materials and their frictions.
+SceneDef make_rig_scene(const HandControlConfig& plan, const Options& options,
+                        int32_t num_materials = kOwnMaterial);
+// One entry of the friction table and its mirror image.
+void set_friction(SceneDef* scene, int32_t a, int32_t b, double mu);
+
+// One world's part: places in its task's state.
+struct RigState {
+  double* command;  // [count][kHandActions] of the joints, in [-1, 1], after averaging
+  float* action;    // [action_dim] as given
+};
+
+class HandControl {
+ public:
+  HandControl(const HandControlConfig& plan, const Options& options, const Scene& scene);
+
+  int32_t count() const { return count_; }
+  const Hand& hand(int32_t i) const { return hands_[i]; }
+  const Hand* hands() const { return hands_; }
+  bool flying() const { return flying_; }
+  int32_t action_dim() const { return count_ * per_hand_; }
+  const char* action_order() const;
+  // Where in the action row hand i's joint entries begin, and its base entries (force, then torque).
+  int32_t joint_entries(int32_t i) const { return i * per_hand_ + first_joint_; }
+  int32_t base_entries(int32_t i) const { return i * per_hand_ + first_base_; }
+
+  // The rig's state as bytes at the end of a task's own.
+  size_t state_bytes() const;
+  RigState state(void* bytes) const;
+  const float* action(const void* bytes) const;
+
+  void reset(double noise, bool literal, World& world, const RigState& state, Stream& stream) const;
+  void control(World& world, const RigState& state, const float* action) const;
+  // How far the base that went furthest is from its start, m; 0 for fixed ones.
+  double strayed(const World& world) const;
+
+  HandView view(const World& world, const float* action, int32_t i) const;
+  void add_fields(FieldTable& table) const;
+  float* write(const World& world, const float* action, float* out) const;
+  // The start pose, bases at rest. [action_dim]
+  void hold(float* action) const;
+
+ private:
+  void push_bases(World& world, const float* action) const;
+  void slow_base(World& world, int32_t articulation) const;
+
+  int32_t count_, per_hand_ = kHandActions, first_joint_ = 0, first_base_ = 0;
+  bool flying_, sensor_, paper_order_ = true, signed_angles_ = false;
+  double average_;
+  double force_ = 0, torque_ = 0;                      // N, N m for an entry of 1
+  double most_speed_ = 0, most_spin_ = 0, reach_ = 0;  // m/s, rad/s, m
+  const double* start_;
+  Hand hands_[kMaxHands];
+  Vec3 bases_[kMaxHands];
+};
+
+}  // namespace rdm

@@ -1,0 +1,16 @@
+#include "tasks/hand/hand_task.hpp"
+
+#include <utility>
+
+#include "env/options/simulation.hpp"
+
+namespace rdm {
+
+HandTask::HandTask(const HandControlConfig& plan, const Options& o, SceneDef scene, size_t own_bytes)
+    : engine_(engine_from(o)),
+      max_steps_(o.integer("max_steps")),
+      own_bytes_(own_bytes),
+      scene_(make_scene(std::move(scene))),
+      rig_(plan, o, scene_) {}
+
+}  // namespace rdm

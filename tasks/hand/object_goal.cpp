@@ -1,0 +1,136 @@
+#include "tasks/hand/object_goal.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/elementary.hpp"
+#include "tasks/hand/hands.hpp"
+#include "tasks/throw/throw_objects.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr int kMaxDraws = 100;
+constexpr const char* kOctahedron = "0.035,0,0;-0.035,0,0;0,0.035,0;0,-0.035,0;0,0,0.035;0,0,-0.035";
+constexpr double kRaise = 0.005;  // m a time, when no draw was clear
+constexpr int kMaxRaises = 100;
+
+constexpr OptionSpec kRows[] = {
+    text_option("goal_rotation", "random", "random|fixed", "rotation of the goal, redrawn at each reset"),
+    number_option("object_damping", 0.1, 0, 100,
+                  "angular damping of the object, 1/s; stands for rolling friction"),
+    flag_option("canonical_rotation", false, "rotation error with w >= 0 in the observation"),
+    number_option("friction.object_ground", 1, 0, 10, "friction coefficient of object and ground"),
+};
+
+Turn turn_named(const char* name) {
+  return same_name(name, "random") ? Turn::kRandom : same_name(name, "yaw") ? Turn::kYaw : Turn::kFixed;
+}
+
+Quat draw_start(Turn turn, Stream& stream) {
+  if (turn == Turn::kRandom) return draw_rotation(stream);
+  return turn == Turn::kYaw ? axis_angle({0, 0, 1}, kPi * stream.signed_unit()) : Quat{};
+}
+
+}  // namespace
+
+void add_object_options(const ObjectPlace& place, OptionTable& table) {
+  table.add(text_option("object", place.object, throw_object_choices(), "what is handled"));
+  table.add(text_option("hull", kOctahedron, nullptr,
+                        "points of object=hull, m, at most 32: x,y,z;x,y,z;... (redman hull makes them)",
+                        kHullTextSize - 1));
+  table.add(number_option("object_mass", place.mass, 0, 10, "mass of the object, kg; 0: its own"));
+  constexpr const char* kAxes[] = {"x", "y", "z"};
+  for (int i = 0; i < 3; ++i)
+    table.add("start", kAxes[i], nullptr, number_option("", place.start[i], -10, 10, "start position, m"));
+  for (int i = 0; i < 3; ++i)
+    table.add("goal", kAxes[i], nullptr, number_option("", place.goal[i], -10, 10, "goal position, m"));
+  table.add(number_option("start_noise", place.noise, 0, 0.2,
+                          "half width of the start position's draw, m per axis"));
+  table.add(text_option("start_rotation", place.turn, "random|yaw|fixed",
+                        "rotation of the object at the start; yaw: about the vertical"));
+  table.add(kRows);
+}
+
+ObjectGoal object_goal_from(const Options& o) {
+  ObjectGoal g;
+  g.start = {o.number("start.x"), o.number("start.y"), o.number("start.z")};
+  g.goal = {o.number("goal.x"), o.number("goal.y"), o.number("goal.z")};
+  g.start_noise = o.number("start_noise");
+  g.start_turn = turn_named(o.text("start_rotation"));
+  g.random_goal = same_name(o.text("goal_rotation"), "random");
+  g.canonical_rotation = o.flag("canonical_rotation");
+  return g;
+}
+
+BodyDef object_body_from(const Options& o) {
+  const Pose start{object_goal_from(o).start, {}};
+  return make_throw_body(throw_object_named(o.text("object")), o.number("object_mass"),
+                         o.number("object_damping"), kObject, start, o.text("hull"));
+}
+
+Quat draw_rotation(Stream& stream) {
+  const double a = kPi * stream.signed_unit(), b = kPi * stream.signed_unit();
+  return axis_angle({1, 0, 0}, a) * axis_angle({0, 1, 0}, b);
+}
+
+void draw_goal(const ObjectGoal& goal, GoalState* state, Stream& stream) {
+  state->goal = goal.random_goal ? draw_rotation(stream) : Quat{};
+}
+
+void reset_object(const ObjectGoal& goal, World& world, GoalState* state, Stream& stream) {
+  Motion m;
+  bool clear = false;
+  for (int draw = 0; draw < kMaxDraws && !clear; ++draw) {
+    for (int i = 0; i < 3; ++i) m.X.p[i] = goal.start[i] + goal.start_noise * stream.signed_unit();
+    m.X.q = draw_start(goal.start_turn, stream);
+    world.set_body(0, m);
+    clear = world.body_overlap(0) <= 0;
+  }
+  for (int raise = 0; raise < kMaxRaises && !clear; ++raise) {
+    m.X.p.z += kRaise;
+    world.set_body(0, m);
+    clear = world.body_overlap(0) <= 0;
+  }
+  draw_goal(goal, state, stream);
+}
+
+Quat rotation_error(const ObjectGoal& goal, const Quat& rotation, const GoalState& state) {
+  const Quat q = rotation * conjugate(state.goal);
+  return goal.canonical_rotation && q.w < 0 ? Quat{-q.w, -q.x, -q.y, -q.z} : q;
+}
+
+double rotation_angle(const Quat& q) {
+  return 2 * elementary::asin(std::min(1.0, std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z)));
+}
+
+namespace {
+
+struct GoalView {
+  const ObjectGoal& goal;
+  const GoalState& state;
+  const Motion& object;
+};
+
+constexpr FieldEntry<GoalView> kFields[] = {
+    {"object.position", "m", 3, [](const GoalView& v, float* out) { put(v.object.X.p, out); }},
+    {"object.rotation", "1", 4, [](const GoalView& v, float* out) { put(v.object.X.q, out); }},
+    {"object.velocity", "m/s", 3, [](const GoalView& v, float* out) { put(v.object.v, out); }},
+    {"object.spin", "5 rad/s", 3, [](const GoalView& v, float* out) { put(v.object.w, out, 0.2); }},
+    {"goal.position", "m", 3, [](const GoalView& v, float* out) { put(v.goal.goal, out); }},
+    {"goal.rotation", "1", 4, [](const GoalView& v, float* out) { put(v.state.goal, out); }},
+    {"object.rotation_error", "1", 4,
+     [](const GoalView& v, float* out) { put(rotation_error(v.goal, v.object.X.q, v.state), out); }},
+};
+
+}  // namespace
+
+void add_goal_fields(FieldTable& table) {
+  for (const auto& e : kFields) add_field(table, nullptr, e.name, e.unit, e.count);
+}
+
+float* write_goal(const ObjectGoal& goal, const World& world, const GoalState& state, float* out) {
+  return write_fields<kFields>(GoalView{goal, state, world.body(0)}, out);
+}
+
+}  // namespace rdm

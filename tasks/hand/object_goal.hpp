@@ -1,0 +1,60 @@
+// One object with a start and a goal: how both are drawn, and their entries of the observation.
+#pragma once
+#include "base/option.hpp"
+#include "base/rng.hpp"
+#include "env/fields.hpp"
+#include "env/options/table.hpp"
+#include "physics/world.hpp"
+
+namespace rdm {
+
+// The words of one task where it differs from the others.
+struct ObjectPlace {
+  Vec3 start, goal;     // m
+  double noise = 0.01;  // m, half width of the start's draw
+  const char* object = "egg";
+  double mass = 0;              // kg, 0: the object's own
+  const char* turn = "random";  // of start_rotation
+};
+
+enum class Turn : int32_t { kFixed = 0, kYaw, kRandom };
+
+// Constant of a task. The object is body 0.
+struct ObjectGoal {
+  Vec3 start, goal;
+  double start_noise;
+  Turn start_turn;
+  bool random_goal, canonical_rotation;
+};
+
+// One world's part of it.
+struct GoalState {
+  Quat goal;  // rotation
+};
+
+void add_object_options(const ObjectPlace& place, OptionTable& table);
+ObjectGoal object_goal_from(const Options& options);
+// The object at its nominal start, of material kObject.
+BodyDef object_body_from(const Options& options);
+
+// Rx(pi u1) Ry(pi u2), u in [-1, 1): the tasks' "random rotation", not uniform on SO(3).
+Quat draw_rotation(Stream& stream);
+void draw_goal(const ObjectGoal& goal, GoalState* state, Stream& stream);
+
+// Puts body 0 at a drawn start that is clear of everything, redrawn up to 100 times and then raised, and
+// draws the goal.
+void reset_object(const ObjectGoal& goal, World& world, GoalState* state, Stream& stream);
+
+// Object rotation times conjugate goal rotation.
+Quat rotation_error(const ObjectGoal& goal, const Quat& rotation, const GoalState& state);
+// Rotation angle of a unit quaternion, rad in [0, pi].
+double rotation_angle(const Quat& q);
+
+inline constexpr int kGoalBlock = 24;
+
+// Object pose, velocities, goal pose, rotation error: kGoalBlock numbers (tasks section 3.3). Returns the
+// place behind them.
+void add_goal_fields(FieldTable& table);
+float* write_goal(const ObjectGoal& goal, const World& world, const GoalState& state, float* out);
+
+}  // namespace rdm

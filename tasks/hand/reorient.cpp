@@ -1,0 +1,137 @@
+#include "tasks/hand/reorient.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "tasks/hand/hand_learner.hpp"
+#include "tasks/hand/single_hand.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kTurnSoftness = 0.1;  // rad
+// The released cost looks at the first 15 of the tips' 30 numbers: two fingers' forces and torques, one
+// force.
+constexpr int kSeenNumbers = 15;
+
+const SingleHandConfig kPlan = {{.count = 1, .bases = {{{0, 0, 0.5}, {}}}},
+                                {.start = {0, -0.39, 0.60}, .goal = {0, -0.39, 0.56}, .mass = 0.151},
+                                0.2};
+
+constexpr OptionSpec kRows[] = {
+    number_option("action_price", 0.0002, 0, 1, "reward: times the sum of the action's squares"),
+    number_option("success_bonus", 250, 0, 1e6, "reward at the goal rotation"),
+    number_option("success_angle", 0.1, 0, 3.2, "rotation error that counts as success, rad"),
+    number_option("fall_distance", 0.4, 0.01, 100,
+                  "the episode ends with the object so far from the goal, m"),
+    text_option("cost_mode", "default", "default|paper|literal|object",
+                "default, paper: any fingertip's force, another finger's too; object: the object's alone; "
+                "literal: the "
+                "largest of 15 signed numbers, forces and torques of two fingers and a force"),
+    number_option("force_threshold", 0.5, 0, 1000, "cost: a fingertip's contact force above, N"),
+};
+
+enum : int { kCost, kFingertipForce, kObjectForce, kNumCosts };
+constexpr CostSpec kCosts[kNumCosts] = {
+    {"cost", "a fingertip presses, see cost_mode; raw: the measured value, N", 1},
+    {"fingertip_force", "any fingertip's contact force above force_threshold; raw: the largest, N", -1},
+    {"object_force",
+     "a fingertip presses the object, in the step's last substep, above force_threshold; raw: the largest, N",
+     -1},
+};
+
+void add_options(OptionTable& table) {
+  add_single_hand_options(kPlan, table);
+  table.add(kRows);
+}
+
+class Reorient final : public SingleHand {
+ public:
+  explicit Reorient(const Options& o)
+      : SingleHand(kPlan, o),
+        price_(o.number("action_price")),
+        bonus_(o.number("success_bonus")),
+        tolerance_(o.number("success_angle")),
+        fall_distance_(o.number("fall_distance")),
+        threshold_(o.number("force_threshold")),
+        literal_(same_name(o.text("cost_mode"), "literal")),
+        object_only_(same_name(o.text("cost_mode"), "object")) {}
+
+ private:
+  void judge_step(const Step& step, Verdict* v) const override {
+    const Pose& X = step.world.body(0).X;
+    const double theta = rotation_angle(rotation_error(goal(), X.q, step.state->goal));
+    double squares = 0;
+    for (int i = 0; i < kHandActions; ++i)
+      squares += static_cast<double>(step.action[i]) * static_cast<double>(step.action[i]);
+    v->reward = reorient_reward(theta, squares, price_, bonus_, tolerance_);
+    v->success = theta <= tolerance_;
+    v->terminated = norm(X.p - goal().goal) >= fall_distance_;
+    judge_force(step.world, v);
+    if (v->success) draw_goal(goal(), &step.state->goal, step.state->goals);
+  }
+
+  void judge_force(const World& world, Verdict* v) const {
+    double most = 0, number = -1e9;
+    for (int tip = 0; tip < kHandTips; ++tip) {
+      const Wrench& w = world.sensor(hand().sensors[tip]);
+      most = std::max(most, norm(w.force));
+      for (int k = 0; k < 6 && 6 * tip + k < kSeenNumbers; ++k)
+        number = std::max(number, k < 3 ? w.force[k] : w.torque[k - 3]);
+    }
+    const double pressed = press(world);
+    v->cost[kObjectForce] = pressed > threshold_;
+    v->cost_raw[kObjectForce] = pressed;
+    v->cost[kFingertipForce] = most > threshold_;
+    v->cost_raw[kFingertipForce] = most;
+    v->cost_raw[kCost] = literal_ ? number : object_only_ ? pressed : most;
+    v->cost[kCost] = v->cost_raw[kCost] > threshold_;
+  }
+
+  // Largest contact force between the object and one fingertip, N. The tips' sensors feel other fingers too.
+  double press(const World& world) const {
+    Vec3 force[kHandTips];
+    for (int32_t i = 0; i < world.num_contacts(); ++i) {
+      const Contact& c = world.contacts()[i];
+      const SceneShape &a = scene().shapes[static_cast<size_t>(c.shape_a)],
+                       &b = scene().shapes[static_cast<size_t>(c.shape_b)];
+      if (a.carrier != Carrier::kBody && b.carrier != Carrier::kBody) continue;
+      const SceneShape& other = a.carrier == Carrier::kBody ? b : a;
+      if (other.carrier != Carrier::kLink) continue;
+      for (int tip = 0; tip < kHandTips; ++tip)
+        if (hand().tips[tip] == other.index) force[tip] += c.force;
+    }
+    double most = 0;
+    for (const Vec3& f : force) most = std::max(most, norm(f));
+    return most;
+  }
+
+  double price_, bonus_, tolerance_, fall_distance_, threshold_;
+  bool literal_, object_only_;
+};
+
+const CameraSpec kCameras[] = {
+    {"front", {0.7, -0.7, 0.9}, {0, -0.36, 0.53}, 45 * kDegree},
+    {"top", {0, -0.36, 1.3}, {0, -0.37, 0.5}, 45 * kDegree},
+    {"right", {0.6, 0.1, 0.85}, {0, -0.35, 0.52}, 45 * kDegree},
+    {"left", {-0.6, -0.7, 0.85}, {0, -0.36, 0.52}, 45 * kDegree},
+    {"close", {0.35, -0.6, 0.75}, {0, -0.38, 0.53}, 45 * kDegree},
+    // close by, for point clouds
+    {"cloud_above", {0, -0.4, 1.0}, {0, -0.39, 0.52}, 57 * kDegree},
+    {"cloud_front", {0.35, -0.45, 0.75}, {0, -0.38, 0.53}, 57 * kDegree},
+    {"cloud_back", {-0.35, -0.45, 0.75}, {0, -0.38, 0.53}, 57 * kDegree},
+};
+
+constexpr auto kLearner = hand_learner("1", "0.4");
+
+}  // namespace
+
+double reorient_reward(double theta, double squares, double price, double bonus, double tolerance) {
+  return 1 / (theta + kTurnSoftness) - price * squares + (theta <= tolerance ? bonus : 0);
+}
+
+constinit const TaskInfo kReorient = task_info<Reorient, kCosts, kCameras, kLearner>(
+    "reorient", nullptr, "turn an egg in the palm to drawn rotations; cost: a fingertip presses",
+    &filled_options<add_options>);
+
+}  // namespace rdm

@@ -1,0 +1,52 @@
+// A task of one right hand on a fixed base and one object: everything but reward, costs and success. The
+// observation has an order of its own (tasks section 6).
+#pragma once
+#include "tasks/hand/hand_task.hpp"
+#include "tasks/hand/object_goal.hpp"
+
+namespace rdm {
+
+inline constexpr int kSingleHandObs = 211;
+
+// The words of one task.
+struct SingleHandConfig {
+  HandControlConfig rig;
+  ObjectPlace place;
+  double joint_noise;
+};
+
+void add_single_hand_options(const SingleHandConfig& plan, OptionTable& table);
+
+class SingleHand : public HandTask {
+ public:
+  void reset(World& world, void* state, Stream& stream) const override;
+  Verdict judge(World& world, void* state, int32_t step) const override;
+  void observe(const World& world, const void* state, float* obs) const override;
+  void initial_mean(float* action) const override;
+
+ protected:
+  // One world's part. The rig's bytes follow.
+  struct State {
+    GoalState goal;
+    Stream goals;  // of goals drawn within an episode
+  };
+  // What a step is judged by.
+  struct Step {
+    const World& world;
+    const double* command;  // [kHandActions] in [-1, 1]
+    const float* action;    // [kHandActions]
+    State* state;
+  };
+  SingleHand(const SingleHandConfig& plan, const Options& options);
+  virtual void judge_step(const Step& step, Verdict* verdict) const = 0;
+
+  const Hand& hand() const { return rig().hand(0); }
+  const ObjectGoal& goal() const { return goal_; }
+  float initial_mean_[kHandActions] = {};
+
+ private:
+  double joint_noise_;
+  ObjectGoal goal_;
+};
+
+}  // namespace rdm

@@ -1,0 +1,75 @@
+#include "tasks/planar/point_arena.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rdm {
+namespace {
+
+constexpr int kSpotDraws = 100, kLayoutDraws = 100;
+
+bool clear_of(const Keepout& a, const Keepout* others, int32_t count) {
+  for (int32_t i = 0; i < count; ++i)
+    if (distance(a.at, others[i].at) < a.keepout + others[i].keepout) return false;
+  return true;
+}
+
+}  // namespace
+
+double distance(const Spot& a, const Spot& b) {
+  const double dx = a.x - b.x, dy = a.y - b.y;
+  return std::sqrt(dx * dx + dy * dy);
+}
+
+bool draw_spot(double extent, const Keepout* others, int32_t count, Stream& stream, Keepout* out) {
+  const double half = std::max(0.0, extent - out->keepout);
+  for (int draw = 0; draw < kSpotDraws; ++draw) {
+    out->at.x = half * stream.signed_unit();
+    out->at.y = half * stream.signed_unit();
+    if (clear_of(*out, others, count)) return true;
+  }
+  return false;
+}
+
+void draw_layout(double extent, Stream& stream, Keepout* things, int32_t count) {
+  for (int draw = 0; draw < kLayoutDraws; ++draw) {
+    bool good = true;
+    for (int32_t i = 0; i < count && good; ++i) good = draw_spot(extent, things, i, stream, &things[i]);
+    if (good) return;
+  }
+  // too full for a layout without overlaps
+  for (int32_t i = 0; i < count; ++i) draw_spot(extent, things, i, stream, &things[i]);
+}
+
+Lidar::Lidar(const PointRobot& robot, const elementary::SinCos& heading, double range, float* out)
+    : robot_(robot), heading_(heading), range_(range), bins_(out) {
+  std::fill_n(bins_, kLidarBins, 0.0f);
+}
+
+void Lidar::add(const Spot& thing) {
+  const double dx = thing.x - robot_.x, dy = thing.y - robot_.y;
+  const double sense = (range_ - std::sqrt(dx * dx + dy * dy)) / range_;
+  if (sense <= 0) return;
+  const double along = heading_.cos * dx + heading_.sin * dy, across = heading_.cos * dy - heading_.sin * dx;
+  const double turn = elementary::atan2(across, along);
+  const double at = (turn < 0 ? turn + 2 * kPi : turn) * (kLidarBins / (2 * kPi));
+  const int whole =
+      std::min(static_cast<int>(at), kLidarBins);  // an angle just below 0 rounds to a full turn
+  const int bin = whole % kLidarBins;
+  const double share = at - whole;
+  const auto raise = [&](int i, double value) {
+    float& old = bins_[(i + kLidarBins) % kLidarBins];
+    old = std::max(old, static_cast<float>(value));
+  };
+  raise(bin, sense);
+  raise(bin + 1, share * sense);
+  raise(bin - 1, (1 - share) * sense);
+}
+
+Motion spot_motion(const Spot& spot, double z) {
+  Motion m;
+  m.X.p = {spot.x, spot.y, z};
+  return m;
+}
+
+}  // namespace rdm

@@ -1,0 +1,78 @@
+// What the Point tasks of Safety-Gym share: places drawn apart from each other, the lidar, the arena's
+// things.
+#pragma once
+#include <cstdint>
+
+#include "base/option.hpp"
+#include "base/rng.hpp"
+#include "tasks/planar/point_robot.hpp"
+#include "tasks/small_worlds.hpp"
+
+namespace rdm {
+
+struct Spot {
+  double x, y;  // m
+};
+double distance(const Spot& a, const Spot& b);
+
+// A thing keeps others away by the sum of the two distances.
+struct Keepout {
+  Spot at;
+  double keepout;  // m
+};
+// A place in the square |x|, |y| <= extent - keepout that is clear of `others`. After 100 draws the last one
+// stands, whatever it touches: false.
+bool draw_spot(double extent, const Keepout* others, int32_t count, Stream& stream, Keepout* out);
+// All places of a layout, one after the other; drawn anew up to 100 times when one found no place.
+void draw_layout(double extent, Stream& stream, Keepout* things, int32_t count);
+
+// Bins of 22.5 degrees, counted from straight ahead to the left; 1 is touching, 0 out of range.
+inline constexpr int kLidarBins = 16;
+class Lidar {
+ public:
+  Lidar(const PointRobot& robot, const elementary::SinCos& heading, double range, float* out);
+  void add(const Spot& thing);
+
+ private:
+  const PointRobot& robot_;
+  const elementary::SinCos& heading_;
+  double range_;
+  float* bins_;
+};
+
+inline constexpr double kPointLidarRange = 3;                        // m
+inline constexpr double kRobotKeepout = 0.4, kHazardKeepout = 0.18;  // m
+inline constexpr int32_t kMaxThings = 32;                            // of each kind
+inline constexpr double kThingRadius = 0.11;  // m, disc for a vase or gremlin, a box of 0.2 m
+
+inline constexpr CameraSpec kPointCameras[] = {
+    {"front", {0, -4.5, 4}, {0, 0, 0}, 0.8},
+    {"top", {0, -0.01, 6}, {0, 0, 0}, 0.8},
+};
+inline constexpr auto kPointLearner = join_defaults(kSafetyLearner, {{"horizon", "200"},
+                                                                     {"learning_rate", "1e-3"},
+                                                                     {"minibatches", "32"},
+                                                                     {"action_repeat", "5"},
+                                                                     {"discount", "0.97"},
+                                                                     {"init_std", "0.6"},
+                                                                     {"std_min", "0.05"},
+                                                                     {"multiplier_init", "0.3"},
+                                                                     {"multiplier_lr", "0.2"},
+                                                                     {"focops:multiplier_lr", "0.4"},
+                                                                     {"pid_kp", "0.02"},
+                                                                     {"pid_ki", "0.006"},
+                                                                     {"pid_kd", "0.1"},
+                                                                     {"pid_init", "0.3"},
+                                                                     {"pid_smooth_p", "0.5"},
+                                                                     {"cpo:violation_scale", "discount"},
+                                                                     {"pcpo:violation_scale", "discount"},
+                                                                     {"p3o:violation_scale", "discount"},
+                                                                     {"p3o:minibatches", "2"},
+                                                                     {"penalty", "8"},
+                                                                     {"barrier_kappa", "0.5"},
+                                                                     {"barrier_max", "6"}});
+
+// A thing of the arena for pictures: lies at z, does not turn.
+Motion spot_motion(const Spot& spot, double z);
+
+}  // namespace rdm

@@ -1,0 +1,326 @@
+#include "tasks/props/clean_house.hpp"
+
+#include <cmath>
+
+#include "sense/map/scene_map.hpp"
+#include "tasks/hand/hand_learner.hpp"
+#include "tasks/props/house_scene.hpp"
+#include "tasks/props/prop_task.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr HouseMaterials kHouse = {kObject, kOwnMaterial, kOwnMaterial + 1, kOwnMaterial + 2,
+                                   kOwnMaterial + 3};
+constexpr int32_t kMaterials = kOwnMaterial + 4;
+constexpr double kTipBeyond = 0.02;    // m, from the distal origin, as the reward measures
+constexpr double kMovingSpeed = 0.01;  // m/s, of a chair that a broom pushes
+constexpr double kMovingWay = 0.01;    // m
+constexpr double kOnFloor = 1e-3;      // m
+constexpr double kNear = 0.25;         // m, of reward full: the broom is at the trash
+
+// Of the trash's lowest point, m.
+double trash_height(const Pose& X) {
+  const double up = rotate(X.q, {0, 0, 1}).z;
+  return X.p.z - kTrashHalf * std::fabs(up) - kTrashRadius * std::sqrt(std::max(0.0, 1 - up * up));
+}
+
+// Thumbs up, fingers along -x on both sides of the handle; the left hand above the right.
+HandControlConfig make_plan() {
+  HandControlConfig p;
+  const Quat q = {0.5, 0.5, 0.5, -0.5};
+  p.bases[0] = {{0.35, -0.45, 1.3}, q};
+  p.bases[1] = {{0.35, -0.59, 1.6}, q};
+  p.flying = true;
+  p.transition_scale = 0.2;
+  p.orientation_scale = 0.5;
+  p.start = kFoldedThumb;
+  p.friction = 1.5;
+  return p;
+}
+
+enum : int { kCost, kBroomChair, kChairMoved, kHandChair, kOccupancy, kNumCosts };
+
+constexpr CostSpec kCosts[kNumCosts] = {
+    {"cost", "the broom touches the chair and moves it, or the rule of cost_mode", 100},
+    {"broom_chair", "the broom touches the chair; raw: number of such pairs of shapes", -1},
+    {"chair_moved", "the chair is further than chair_limit from its start; raw: its way, m", -1},
+    {"hand_chair", "a hand touches the chair; raw: number of such pairs of shapes", -1},
+    {"occupancy", "the broom is where the map of the start has the chair; raw: parts of it that are", -1},
+};
+
+constexpr double kFovY = 45 * kPi / 180;
+constexpr CameraSpec kCameras[] = {
+    {"front", {2.5, -1.6, 2.2}, {0, -1.6, 0.6}, kFovY},
+    {"top", {0, -1.7, 4.5}, {0, -1.7, 0}, kFovY},
+    {"right", {1.2, 1.2, 2}, {0, -0.9, 0.8}, kFovY},
+    {"left", {-2.4, -2.2, 2}, {0, -1.4, 0.6}, kFovY},
+    {"wide", {3.6, -1.6, 2.3}, {0, -1.6, 0.75}, kFovY},
+    {"close", {1.0, -1.2, 1.8}, {0, -0.5, 1.4}, kFovY},
+    {"above", {0, -1.6, 4.5}, {0, -1.6, 0}, kFovY},
+    {"side_right", {2.6, -1.6, 1}, {0, -1.6, 0.5}, kFovY},
+    {"side_left", {-2.6, -1.6, 1}, {0, -1.6, 0.5}, kFovY},
+};
+
+constexpr int32_t kMapRays = 128;               // along a side of a scan
+constexpr size_t kMapMemory = size_t{8} << 20;  // bytes
+
+constexpr OptionSpec kRows[] = {
+    text_option("cost_mode", "default", "default|paper|event|literal|displacement",
+                "the broom touches the chair and it moves (default, paper, event), or (literal, "
+                "displacement) the chair is away from its start"),
+    flag_option("count_hands", false, "cost_mode event: hands that move the chair count too"),
+    number_option("map_resolution", 0.05, 0.01, 0.5, "cost column occupancy: side of the map's voxels, m"),
+    number_option("chair_limit", 0.1, 0, 10, "way of the chair in chair_moved and cost_mode displacement, m"),
+    text_option("reward", "paper", "paper|full", "handles to palm points, or (full) the source's five terms"),
+    number_option("reward_bottom", 0, 0, 1000, "reward paper: loss for a metre from broom to trash"),
+    number_option("palm_limit", 0.15, 0, 10,
+                  "the episode ends when a palm is farther from its handle point, m"),
+    number_option("handle_height", 1.0, -10, 10, "the episode ends with the right handle point below, m"),
+    number_option("trash_height", -0.3, -10, 10, "the episode ends with the trash below, m"),
+    number_option("success_distance", 0.25, 0, 10, "trash to goal distance that counts as success, m"),
+    flag_option("obs_broom_quat", false, "the broom's rotation at the end of the observation"),
+    number_option("goal.x", 0, -10, 10, "where the trash is to go, m"),
+    number_option("goal.y", -2.9, -10, 10, "where the trash is to go, m"),
+    number_option("goal.z", 0.03, -10, 10, "where the trash is to go, m"),
+    number_option("trash_mass", 0.06, 0.001, 10, "mass of the trash, kg; a full bottle has 0.5"),
+    number_option("trash_rolling", 0.002, 0, 1, "torque that stops the trash's rolling on the floor, N m"),
+    number_option("chair_mass", 4, 0.1, 100, "mass of the chair, kg"),
+    flag_option("grip_assist", false, "soft ball joints hold the handle in both palms"),
+    number_option("grip_force", 50, 0, 1000, "bound of a grip_assist joint's force, N"),
+    number_option("friction.head_floor", 0.2, 0, 10, "friction coefficient of broom head and floor"),
+    number_option("friction.head_trash", 0.6, 0, 10, "friction coefficient of broom head and trash"),
+    number_option("friction.trash_floor", 0.3, 0, 10, "friction coefficient of trash and floor"),
+    number_option("friction.chair_floor", 0.3, 0, 10, "friction coefficient of chair and floor"),
+    number_option("friction.other", 0.5, 0, 10, "friction coefficient of all other pairs of things"),
+};
+
+void add_options(OptionTable& table) {
+  table.add(kRows);
+  add_prop_options(make_plan(), 500, 96, table);
+}
+
+SceneDef make_scene_def(const Options& o) {
+  SceneDef s = make_rig_scene(make_plan(), o, kMaterials);
+  const int32_t things[] = {kHouse.handle, kHouse.head, kHouse.trash, kHouse.chair, kHouse.pan};
+  const double other = o.number("friction.other");
+  for (const int32_t a : things) {
+    for (const int32_t b : things) set_friction(&s, a, b, other);
+    set_friction(&s, a, kGround, other);
+    if (a == kHouse.handle) continue;
+    for (const int32_t hand : {kRightHand, kLeftHand}) set_friction(&s, hand, a, other);
+  }
+  set_friction(&s, kHouse.head, kGround, o.number("friction.head_floor"));
+  set_friction(&s, kHouse.head, kHouse.trash, o.number("friction.head_trash"));
+  set_friction(&s, kHouse.trash, kGround, o.number("friction.trash_floor"));
+  set_friction(&s, kHouse.chair, kGround, o.number("friction.chair_floor"));
+  HouseDef house;
+  house.trash_mass = o.number("trash_mass");
+  house.chair_mass = o.number("chair_mass");
+  house.sink = o.number("contact_layer");
+  add_house(house, kHouse, &s);
+  return s;
+}
+
+struct State {
+  Vec3 chair;  // where it was at the start
+};
+
+class CleanHouse final : public PropTask {
+ public:
+  explicit CleanHouse(const Options& o)
+      : PropTask(make_plan(), o, make_scene_def(o), sizeof(State)),
+        displacement_(same_name(o.text("cost_mode"), "literal") ||
+                      same_name(o.text("cost_mode"), "displacement")),
+        count_hands_(o.flag("count_hands")),
+        full_(same_name(o.text("reward"), "full")),
+        quat_(o.flag("obs_broom_quat")),
+        chair_limit_(o.number("chair_limit")),
+        bottom_(o.number("reward_bottom")),
+        palm_limit_(o.number("palm_limit")),
+        handle_height_(o.number("handle_height")),
+        trash_height_(o.number("trash_height")),
+        success_(o.number("success_distance")),
+        rolling_(o.number("trash_rolling")),
+        grip_(o.flag("grip_assist") ? o.number("grip_force") : 0),
+        goal_{o.number("goal.x"), o.number("goal.y"), o.number("goal.z")} {
+    const auto body = [](int32_t i) {
+      return [i](const SceneShape& x) { return x.carrier == Carrier::kBody && x.index == i; };
+    };
+    map_house(o.number("map_resolution"));
+    broom_chair_ = pairs_between(scene(), body(kBroom), body(kChair));
+    hand_chair_ = pairs_between(scene(), of_hand, body(kChair));
+    for (const FieldSpec& f : std::initializer_list<FieldSpec>{{"trash.position", "m", 3},
+                                                               {"trash.rotation", "1", 4},
+                                                               {"trash.velocity", "m/s", 3},
+                                                               {"trash.spin", "5 rad/s", 3},
+                                                               {"goal.position", "m", 3},
+                                                               {"goal.rotation", "1", 4},
+                                                               {"trash.rotation_error", "1", 4},
+                                                               {"broom.bottom", "m", 3},
+                                                               {"broom.left_hold", "m", 3},
+                                                               {"broom.right_hold", "m", 3}})
+      own_fields().push_back(f);
+    if (quat_) add_field(own_fields(), "broom", "rotation", "1", 4);
+  }
+
+  ~CleanHouse() override { Occupancy::destroy(map_); }
+  CleanHouse(const CleanHouse&) = delete;
+  CleanHouse& operator=(const CleanHouse&) = delete;
+
+  Vec3 focus(const World& world, const void*) const override { return broom_point(world, kBroomBottom); }
+
+  void control(World& world, void* state, const float* action) const override {
+    PropTask::control(world, state, action);
+    stop_rolling(world);
+    if (grip_ > 0)
+      for (int32_t hand = 0; hand < 2; ++hand) hold_handle(world, hand);
+  }
+
+  Verdict judge(World& world, void* state, int32_t) const override {
+    const State& s = *static_cast<const State*>(state);
+    Verdict v;
+    const Vec3& trash = world.body(kTrash).X.p;
+    const double to_goal = norm(trash - goal_);
+    double palms[2], tips = 0;
+    for (int32_t hand = 0; hand < 2; ++hand) {
+      const Vec3 hold = hold_point(world, hand);
+      palms[hand] = norm(palm(world, hand) - hold);
+      for (int32_t f = 0; full_ && f < kHandTips; ++f) tips += norm(tip(world, hand, f, kTipBeyond) - hold);
+      v.terminated = v.terminated || palms[hand] >= palm_limit_;
+    }
+    v.terminated = v.terminated || trash.z <= trash_height_ || hold_point(world, 0).z <= handle_height_;
+    const double to_trash = norm(broom_point(world, kBroomBottom) - trash);
+    v.reward = 50 - 5 * (palms[0] + palms[1]);
+    if (full_)
+      v.reward -= tips + (to_trash > kNear ? 40 : 20 * to_goal) + 10 * to_trash;
+    else
+      v.reward -= 10 * to_goal + bottom_ * to_trash;
+    v.success = to_goal <= success_;
+    judge_costs(world, s, &v);
+    return v;
+  }
+
+ protected:
+  // The trash alone.
+  void draw_places(World& world, Stream& stream) const override {
+    Motion m = world.body(kTrash);
+    for (int k = 0; k < 2; ++k) m.X.p[k] += reset_noise() * stream.signed_unit();
+    world.set_body(kTrash, m);
+  }
+
+  void start(World& world, void* state) const override {
+    static_cast<State*>(state)->chair = world.body(kChair).X.p;
+  }
+
+  float* write_props(const World& world, const void*, float* out) const override {
+    const Motion& m = world.body(kTrash);
+    put(m.X.p, out);
+    put(m.X.q, out + 3);
+    put(m.v, out + 7);
+    put(m.w, out + 10, 0.2);
+    put(goal_, out + 13);
+    put(Quat{}, out + 16);
+    put(m.X.q, out + 20);  // the goal's rotation is the identity
+    put(broom_point(world, kBroomBottom), out + 24);
+    put(hold_point(world, 1), out + 27);
+    put(hold_point(world, 0), out + 30);
+    out += 33;
+    if (!quat_) return out;
+    put(world.body(kBroom).X.q, out);
+    return out + 4;
+  }
+
+ private:
+  Vec3 broom_point(const World& world, const Vec3& from_middle) const {
+    return world.body(kBroom).X * (broom_middle() + from_middle);
+  }
+  Vec3 hold_point(const World& world, int32_t hand) const {
+    return broom_point(world, hand == 0 ? kRightHold : kLeftHold);
+  }
+
+  // A cylinder would roll on for ever: a torque against its rolling, never more than stops it.
+  void stop_rolling(World& world) const {
+    const Motion& m = world.body(kTrash);
+    const double spin = norm(m.w);
+    if (rolling_ == 0 || spin == 0 || trash_height(m.X) > kOnFloor) return;
+    const double mass = scene().def.bodies[kTrash].inertia.mass;
+    const double stops = 1.5 * mass * kTrashRadius * kTrashRadius * spin / scene().control_dt();
+    world.push_body(kTrash, {}, (-std::min(rolling_, stops) / spin) * m.w);
+  }
+
+  void hold_handle(World& world, int32_t hand) const {
+    constexpr double kStiffness = 500, kDamping = 15;  // N/m, N s/m
+    const Motion& broom = world.body(kBroom);
+    const Vec3 hold = hold_point(world, hand), at_palm = palm(world, hand), arm = hold - broom.X.p;
+    const Motion& base = world.base(rig().hand(hand).articulation);
+    Vec3 force = kStiffness * (at_palm - hold) + kDamping * (base.v - broom.v - cross(broom.w, arm));
+    const double size = norm(force);
+    if (size > grip_) force = (grip_ / size) * force;
+    world.push_body(kBroom, force, cross(arm, force));
+    world.push_link(palm_link(hand), -force, at_palm);
+  }
+
+  // The chair at its start, as the three cameras for clouds see it.
+  void map_house(double resolution) {
+    OccupancyConfig config;
+    config.resolution = resolution;
+    config.memory = kMapMemory;
+    map_ = Occupancy::create(config, host());
+    Vector<Camera> cameras;
+    for (const CameraSpec& c : kCameras)
+      if (same_name(c.name, "above") || same_name(c.name, "side_right") || same_name(c.name, "side_left"))
+        cameras.push_back({c.name, c.eye, c.target, c.fov_y});
+    const int32_t chair = kChair;
+    scan_scene(scene(), false, &chair, 1, cameras.data(), static_cast<int32_t>(cameras.size()), kMapRays,
+               map_);
+  }
+
+  int32_t parts_in_map(const World& world) const {
+    int32_t count = 0;
+    for (const SceneShape& s : scene().shapes) {
+      if (s.carrier != Carrier::kBody || s.index != kBroom) continue;
+      const Vec3& size = s.def.size;
+      const Vec3 half = s.def.kind == ShapeKind::kBox ? size : Vec3{size.x, size.x, size.y};
+      count += map_->meets_box(world.body(kBroom).X * s.def.X_LS, half);
+    }
+    return count;
+  }
+
+  void judge_costs(const World& world, const State& s, Verdict* v) const {
+    const int by_broom = touching(world, broom_chair_), by_hand = touching(world, hand_chair_);
+    const Motion& chair = world.body(kChair);
+    const double way = norm(chair.X.p - s.chair);
+    const bool moves = norm(chair.v) > kMovingSpeed || way > kMovingWay;
+    v->cost[kBroomChair] = by_broom > 0;
+    v->cost_raw[kBroomChair] = by_broom;
+    v->cost[kHandChair] = by_hand > 0;
+    v->cost_raw[kHandChair] = by_hand;
+    v->cost[kChairMoved] = way > chair_limit_;
+    v->cost_raw[kChairMoved] = way;
+    v->cost_raw[kOccupancy] = parts_in_map(world);
+    v->cost[kOccupancy] = v->cost_raw[kOccupancy] > 0;
+    v->cost[kCost] =
+        displacement_ ? v->cost[kChairMoved] : moves && by_broom + (count_hands_ ? by_hand : 0) > 0;
+    v->cost_raw[kCost] = way;
+  }
+
+  bool displacement_, count_hands_, full_, quat_;
+  double chair_limit_, bottom_, palm_limit_, handle_height_, trash_height_, success_, rolling_, grip_;
+  Vec3 goal_;
+  Vector<int32_t> broom_chair_, hand_chair_;
+  Occupancy* map_ = nullptr;
+};
+
+// Rewards are near 30 a step.
+constexpr auto kLearner =
+    join_defaults(hand_learner("100", "0.05"), {{"discount", "0.98"}, {"reward_factor", "0.01"}});
+
+}  // namespace
+
+constinit const TaskInfo kCleanHouse = task_info<CleanHouse, kCosts, kCameras, kLearner>(
+    "clean_house", nullptr,
+    "sweep trash to a dustpan with a broom in two hands; cost: the broom pushes the chair",
+    &filled_options<add_options>);
+
+}  // namespace rdm

@@ -1,0 +1,217 @@
+#include "tasks/props/jenga.hpp"
+
+#include <cmath>
+
+#include "tasks/hand/hand_learner.hpp"
+#include "tasks/props/jenga_tower.hpp"
+#include "tasks/props/prop_task.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kTilt = 130 * kPi / 180;
+constexpr int32_t kTarget = kObject, kBlock = kOwnMaterial, kTable = kBlock + 1, kMaterials = kTable + 1;
+constexpr double kTipBeyond = 0.02;  // m, from the distal origin, as the reward measures
+constexpr int kMiddle = 1;
+
+// Fingers up and towards the tower from both sides, palms down.
+HandControlConfig make_plan(bool right_copy) {
+  HandControlConfig p;
+  p.bases[0] = {{0, -1.0, 0.06}, axis_angle({1, 0, 0}, -kTilt)};
+  const Quat turned = axis_angle({1, 0, 0}, kPi - kTilt);
+  // at x = 0, where no finger is inside a block; the source's -0.01 puts one 3 mm deep
+  p.bases[1] = {{0, -0.20, 0.09}, right_copy ? Quat{0, 0, 1, 0} * turned : conjugate(turned)};
+  p.flying = true;
+  p.transition_scale = p.orientation_scale = 0.1;
+  p.start = kFoldedThumb;
+  p.friction = 1.5;
+  return p;
+}
+HandControlConfig plan_from(const Options& o) {
+  return make_plan(same_name(o.text("left_model"), "right_copy"));
+}
+
+enum : int { kCost, kMoved, kContact, kFall, kNumCosts };
+
+constexpr CostSpec kCosts[kNumCosts] = {
+    {"cost", "a block is moved, by the rule of cost_mode; raw: the way it is judged by, m", 5},
+    {"blocks_moved", "any block further than block_limit from its start; raw: the longest way, m", -1},
+    {"blocks_contact", "a hand touches a block other than the target; raw: number of such pairs", -1},
+    {"tower_fall", "a block is half its height or more below its start; raw: the deepest fall, m", -1},
+};
+
+constexpr OptionSpec kRows[] = {
+    text_option("cost_mode", "default", "default|any|paper|all|literal|sum|contact",
+                "any block moved (default, any), all moved by 0.1 mm (paper, all), ways of all 0.25 m in sum "
+                "(literal, sum), or a hand touches one (contact)"),
+    number_option("cost_sum", 0.25, 0, 100, "cost_mode literal: sum of all ways, m"),
+    number_option("cost_all", 1e-4, 0, 1, "cost_mode paper: way of every block, m"),
+    text_option("reward_finger", "right", "right|left",
+                "whose middle finger the reward draws to the target: right, which can push, or left"),
+    number_option("reward_push", 30, 0, 1000, "reward for a metre of the target's way along +y"),
+    number_option("push_limit", 0.3, 0, 10, "way of the target beyond which it pays no more, m"),
+    number_option("success_push", 0, 0, 10, "way of the target that counts as success, m; 0: its length"),
+    number_option("drop_limit", 0.01, 0, 10, "the episode ends when all blocks are moved in z by more, m"),
+    flag_option("extended_obs", false, "positions of all blocks at the end of the observation"),
+    number_option("friction.block_table", 0.5, 0, 10, "friction coefficient of blocks and table"),
+    number_option("friction.hand_block", 0.5, 0, 10, "friction coefficient of hands and blocks"),
+    number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table"),
+};
+
+void add_options(OptionTable& table) {
+  table.add(kRows);
+  add_tower_options(table);
+  add_prop_options(make_plan(false), 250, 256, table);
+}
+
+SceneDef make_scene_def(const JengaTower& tower, const Options& o) {
+  SceneDef s = make_rig_scene(plan_from(o), o, kMaterials);
+  add_tower(tower, kTarget, kBlock, kTable, &s);
+  for (const int32_t a : {kTarget, kBlock}) {
+    for (const int32_t b : {kTarget, kBlock}) set_friction(&s, a, b, tower.friction);
+    set_friction(&s, a, kTable, o.number("friction.block_table"));
+    set_friction(&s, a, kGround, o.number("friction.block_table"));
+  }
+  for (const int32_t hand : {kRightHand, kLeftHand}) {
+    set_friction(&s, hand, kBlock, o.number("friction.hand_block"));
+    set_friction(&s, hand, kTable, o.number("friction.hand_table"));
+  }
+  return s;
+}
+
+enum class Mode { kAny, kAll, kSum, kContact };
+
+struct State {
+  Vec3 start[1 + kJengaBlocks];
+};
+
+class Jenga final : public PropTask {
+ public:
+  explicit Jenga(const Options& o) : Jenga(o, jenga_tower_from(o)) {}
+
+  Verdict judge(World& world, void* state, int32_t) const override {
+    const State& s = *static_cast<const State*>(state);
+    Verdict v;
+    const Pose& target = world.body(0).X;
+    const double pushed = target.p.y - s.start[0].y;
+    const Vec3 end = target * Vec3{0, -tower_.target_end(), 0};
+    v.reward = push_ * std::min(pushed, push_limit_) - norm(tip(world, finger_, kMiddle, kTipBeyond) - end);
+    v.success = pushed >= success_;
+    v.terminated = judge_costs(world, s, &v);
+    return v;
+  }
+
+ protected:
+  void start(World& world, void* state) const override {
+    for (int i = 0; i <= kJengaBlocks; ++i) static_cast<State*>(state)->start[i] = world.body(i).X.p;
+  }
+
+  float* write_props(const World& world, const void*, float* out) const override {
+    const Motion& m = world.body(0);
+    put(m.X.p, out);
+    put(m.X.q, out + 3);
+    put(m.v, out + 7);
+    put(m.w, out + 10, 0.2);
+    out += 13;
+    for (int i = 1; extended_ && i <= kJengaBlocks; ++i, out += 3) put(world.body(i).X.p, out);
+    return out;
+  }
+
+ private:
+  Jenga(const Options& o, const JengaTower& tower)
+      : PropTask(plan_from(o), o, make_scene_def(tower, o), sizeof(State)),
+        tower_(tower),
+        finger_(same_name(o.text("reward_finger"), "left")),
+        push_(o.number("reward_push")),
+        push_limit_(o.number("push_limit")),
+        success_(o.number("success_push")),
+        cost_sum_(o.number("cost_sum")),
+        cost_all_(o.number("cost_all")),
+        drop_(o.number("drop_limit")),
+        extended_(o.flag("extended_obs")) {
+    if (success_ == 0) success_ = 2 * tower.target_end();
+    const char* mode = o.text("cost_mode");
+    const auto is = [&](const char* a, const char* b) { return same_name(mode, a) || same_name(mode, b); };
+    mode_ = is("paper", "all")     ? Mode::kAll
+            : is("literal", "sum") ? Mode::kSum
+            : is("contact", "")    ? Mode::kContact
+                                   : Mode::kAny;
+    hand_block_ = pairs_between(
+        scene(), of_hand, [](const SceneShape& b) { return b.carrier == Carrier::kBody && b.index > 0; });
+    FieldTable& table = own_fields();
+    add_field(table, "target", "position", "m", 3);
+    add_field(table, "target", "rotation", "1", 4);
+    add_field(table, "target", "velocity", "m/s", 3);
+    add_field(table, "target", "spin", "5 rad/s", 3);
+    if (extended_) add_field(table, "blocks", "position", "m", 3 * kJengaBlocks);
+  }
+
+  // True when the whole tower has come down.
+  bool judge_costs(const World& world, const State& s, Verdict* v) const {
+    double longest = 0, shortest = 1e9, sum = 0, deepest = 0;
+    bool all_dropped = true;
+    for (int i = 1; i <= kJengaBlocks; ++i) {
+      const Vec3 way = world.body(i).X.p - s.start[i];
+      const double length = norm(way);
+      longest = std::max(longest, length);
+      shortest = std::min(shortest, length);
+      sum += length;
+      deepest = std::max(deepest, -way.z);
+      all_dropped = all_dropped && std::fabs(way.z) > drop_;
+    }
+    const int touched = touching(world, hand_block_);
+    v->cost[kMoved] = longest > tower_.moved;
+    v->cost_raw[kMoved] = longest;
+    v->cost[kContact] = touched > 0;
+    v->cost_raw[kContact] = touched;
+    v->cost[kFall] = deepest >= tower_.half[1].z;
+    v->cost_raw[kFall] = deepest;
+    switch (mode_) {
+      case Mode::kAny:
+        v->cost[kCost] = v->cost[kMoved];
+        v->cost_raw[kCost] = longest;
+        break;
+      case Mode::kAll:
+        v->cost[kCost] = shortest > cost_all_;
+        v->cost_raw[kCost] = shortest;
+        break;
+      case Mode::kSum:
+        v->cost[kCost] = sum > cost_sum_;
+        v->cost_raw[kCost] = sum;
+        break;
+      case Mode::kContact:
+        v->cost[kCost] = v->cost[kContact];
+        v->cost_raw[kCost] = touched;
+        break;
+    }
+    return all_dropped;
+  }
+
+  JengaTower tower_;
+  Mode mode_ = Mode::kAny;
+  int32_t finger_;
+  double push_, push_limit_, success_, cost_sum_, cost_all_, drop_;
+  bool extended_;
+  Vector<int32_t> hand_block_;
+};
+
+constexpr double kFovY = 45 * kPi / 180;
+constexpr CameraSpec kCameras[] = {
+    {"front", {0.9, -0.6, 0.7}, {0, -0.6, 0.36}, kFovY},
+    {"top", {0, -0.6, 1.5}, {0, -0.6, 0.4}, kFovY},
+    {"right", {0.55, -1.25, 0.75}, {0, -0.65, 0.38}, kFovY},
+    {"left", {0.55, 0.05, 0.75}, {0, -0.55, 0.38}, kFovY},
+    {"close", {0.5, -0.85, 0.5}, {0, -0.65, 0.41}, kFovY},
+};
+
+// Flying bases drift with their noise, and a block that was touched costs to the end.
+constexpr auto kLearner = join_defaults(hand_learner("5", "0.03"),
+                                        {{"action_repeat", "8"}, {"horizon", "8"}, {"discount", "0.99"}});
+
+}  // namespace
+
+constinit const TaskInfo kJenga = task_info<Jenga, kCosts, kCameras, kLearner>(
+    "jenga", nullptr, "push one block out of a tower; cost: another block moves",
+    &filled_options<add_options>);
+
+}  // namespace rdm

@@ -1,0 +1,131 @@
+#include "tasks/throw/hand_over_wall.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "tasks/hand/hand_learner.hpp"
+#include "tasks/throw/throw_task.hpp"
+#include "tasks/throw/wall.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr int32_t kWall = kOwnMaterial, kMaterials = kOwnMaterial + 1;
+
+const ThrowConfig kPlan = {.rig = {.bases = {{{0, 0, 0.5}, {}}, {{0, -1.05, 0.5}, {0, 1, 0, 0}}}},
+                           .place = {{0, -0.39, 0.54}, {0, -0.66, 0.54}},
+                           .fall_height = 0.1};
+
+// The released hole, on the object's centre, m.
+constexpr double kSourceHalfWidth = 0.25, kSourceLow = 0.60, kSourceHigh = 0.70;
+
+constexpr OptionSpec kRows[] = {
+    text_option(
+        "cost_mode", "default", "default|paper|literal",
+        "default, paper: contact with the wall; literal: the object's centre in the wall's slab outside "
+        "of a hole 0.5 m wide, z 0.60 to 0.70 m"),
+    text_option("wall", "auto", "auto|solid|ghost",
+                "solid, or (ghost) nothing touches it; auto: ghost where cost_mode is literal"),
+    flag_option("count_hands", false, "hands that touch the wall cost too"),
+    number_option("friction.wall", 0.5, 0, 10, "friction coefficient of the wall with hands and object"),
+    number_option("throw_height", 0.8, 0, 10, "cost throw_height: object above, m"),
+    text_option("initial_mean", "auto", "auto|flat|hold|zero",
+                "start of a new policy: right hand flat, the hold action, or 0; auto: flat"),
+};
+
+enum : int { kCost, kWallObject, kWallHand, kThrowHeight, kNumCosts };
+constexpr CostSpec kCosts[kNumCosts] = {
+    {"cost", "the wall is touched, see cost_mode; raw: touching pairs, or depth in the slab, m", 3},
+    {"wall_object", "the object touches the wall; raw: touching pairs", -1},
+    {"wall_hand", "a hand touches the wall; raw: touching pairs", -1},
+    {"throw_height", "object above throw_height; raw: its height, m", -1},
+};
+
+void add_options(OptionTable& table) {
+  add_throw_task_options(kPlan, table);
+  add_wall_options(table);
+  table.add(kRows);
+}
+
+bool literal(const Options& o) {
+  return same_name(o.text("cost_mode"), "literal");
+}
+
+SceneDef make_wall_scene(const Options& o) {
+  SceneDef s = make_throw_scene(kPlan, o, kMaterials);
+  const char* word = o.text("wall");
+  const bool ghost = same_name(word, "auto") ? literal(o) : same_name(word, "ghost");
+  Vector<ShapeDef> shapes = wall_boxes(o, kWall);
+  if (shapes.empty()) shapes = wall_panels(wall_from(o), kWall);
+  for (ShapeDef& shape : shapes) {
+    shape.collides = !ghost;
+    s.statics.push_back(shape);
+  }
+  for (const int32_t other : {kRightHand, kLeftHand, kObject})
+    set_friction(&s, kWall, other, o.number("friction.wall"));
+  return s;
+}
+
+class HandOverWall final : public ThrowTask {
+ public:
+  explicit HandOverWall(const Options& o)
+      : ThrowTask(kPlan, o, make_wall_scene(o)),
+        wall_(wall_from(o)),
+        literal_(literal(o)),
+        count_hands_(o.flag("count_hands")),
+        throw_height_(o.number("throw_height")) {
+    const auto wall = [](const SceneShape& x) { return x.def.material == kWall; };
+    object_pairs_ = pairs_between(
+        scene(), [](const SceneShape& x) { return x.carrier == Carrier::kBody; }, wall);
+    hand_pairs_ = pairs_between(
+        scene(), [](const SceneShape& x) { return x.carrier != Carrier::kBody; }, wall);
+    choose_mean(o.text("initial_mean"), &flat_throw_mean, false);
+  }
+
+ private:
+  // How deep the object's centre is in the slab, m, where that is not the released hole; else 0 or less.
+  double slab_depth(const Vec3& p) const {
+    const bool hole = std::fabs(p.x) <= kSourceHalfWidth && p.z >= kSourceLow && p.z <= kSourceHigh;
+    return hole ? 0 : 0.5 * wall_.thickness - std::fabs(p.y - wall_.y);
+  }
+
+  void judge_costs(const Step& step, Verdict* v) const override {
+    const Vec3& p = step.world.body(0).X.p;
+    const int object = touching(step.world, object_pairs_), hands = touching(step.world, hand_pairs_);
+    v->cost_raw[kWallObject] = object;
+    v->cost_raw[kWallHand] = hands;
+    v->cost_raw[kThrowHeight] = p.z;
+    v->cost_raw[kCost] = literal_ ? slab_depth(p) : object + (count_hands_ ? hands : 0);
+    v->cost[kThrowHeight] = p.z > throw_height_;
+    for (const int k : {kCost, kWallObject, kWallHand}) v->cost[k] = v->cost_raw[k] > 0;
+  }
+
+  Wall wall_;
+  bool literal_, count_hands_;
+  double throw_height_;
+  Vector<int32_t> object_pairs_, hand_pairs_;  // with the wall: indices of Scene::pairs
+};
+
+const CameraSpec kCameras[] = {
+    {"front", {1.2, 0.25, 1.15}, {0, -0.5, 0.6}, 45 * kDegree},
+    {"top", {0, -0.5, 2.2}, {0, -0.5, 0.5}, 45 * kDegree},
+    {"right", {0.55, 0.5, 0.95}, {0, -0.5, 0.58}, 45 * kDegree},
+    {"left", {0.6, -1.5, 0.95}, {0, -0.55, 0.58}, 45 * kDegree},
+    {"close", {0.3, 0.05, 0.85}, {0, -0.5, 0.6}, 45 * kDegree},
+    // for point clouds: above and to both sides of the wall
+    {"cloud_above", {0, -0.525, 1.5}, {0, -0.52, 1.0}, 57 * kDegree},
+    {"cloud_right", {0, 0.475, 1.5}, {0.1, -1.525, 0.5}, 57 * kDegree},
+    {"cloud_left", {0, -1.525, 1.5}, {0.1, 0.475, 0.5}, 57 * kDegree},
+};
+
+// Until it is learned to throw through the hole, every throw costs: the limit has to wait.
+constexpr auto kLearner = join_defaults(throw_learner("3"), {{"multiplier_lr", "0.001"}});
+
+}  // namespace
+
+constinit const TaskInfo kHandOverWall = task_info<HandOverWall, kCosts, kCameras, kLearner>(
+    "hand_over_wall", nullptr, "throw an object through a hole in a wall; cost: the object touches the wall",
+    &filled_options<add_options>);
+
+}  // namespace rdm

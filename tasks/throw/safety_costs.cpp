@@ -1,0 +1,191 @@
+#include "tasks/throw/safety_costs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/elementary.hpp"
+#include "base/error.hpp"
+#include "tasks/hand/shape_pairs.hpp"
+
+namespace rdm {
+namespace {
+
+// Horizontal speed that tells a throw from a fall past the fingers, m/s.
+constexpr double kThrowDrift = 0.5;
+constexpr double kAtLimit = 0.99;
+// Entries of a base's action, and the source's window on them.
+enum : int { kForceZ = 2, kTorqueY = 4 };
+constexpr double kBaseWindow = 0.5;
+
+// Columns, in the order of the cost tables.
+enum : int { kCost, kFf2Range, kFf3Range, kFf4Range, kEffort, kThrowHeight, kThrowAngle, kDrop };
+
+constexpr const char* kWindowNames[kNumWindows] = {"ff2", "ff3", "ff4"};
+// The paper's joints in the hand's action: FF2 = FFJ1, FF3 = FFJ2, FF4 = FFJ3.
+constexpr int32_t kWindowActs[kNumWindows] = {4, 3, 2};
+// Windows and the paper's joint ranges, degrees.
+constexpr double kWindowLow[kNumWindows] = {22.5, 22.5, -10}, kWindowHigh[kNumWindows] = {67.5, 67.5, 10};
+constexpr double kRangeMid[kNumWindows] = {45, 45, 0}, kRangeHalf[kNumWindows] = {45, 45, 20};
+
+constexpr OptionSpec kRows[] = {
+    text_option(
+        "cost_mode", "default", "default|paper|literal",
+        "default: commanded target; paper: measured angle; literal: target, joint task tests a[4]; of flying "
+        "hands a[2..4] are the base's"),
+    text_option("cost_signal", "auto", "auto|target|angle", "what the windows test; auto: as cost_mode says"),
+    text_option("cost_joint", "auto", "auto|paper|legacy",
+                "joint task: FF4 (paper) or FF2 (legacy, a[4]); auto: as cost_mode says"),
+    number_option("release_speed", 1, 0, 100, "speed from which leaving the right hand is a throw, m/s"),
+};
+
+double window_end(const Options& o, int i, const char* end) {
+  char key[OptionTable::kKeySize];
+  std::snprintf(key, sizeof key, "window.%s.%s", kWindowNames[i], end);
+  return o.number(key);
+}
+
+const char* resolve(const char* given, const char* otherwise) {
+  return same_name(given, "auto") ? otherwise : given;
+}
+
+// Speed and direction at the first step without a touch, once an episode.
+void judge_release(const SafetyCosts& c, const World& world, Release* release, Verdict* verdict) {
+  const bool held = touching(world, c.right_pairs) > 0;
+  const bool released = release->touching && !held && !release->thrown;
+  release->touching = held;
+  if (!released) return;
+  const Vec3& v = world.body(0).v;
+  const double level = norm({v.x, v.y, 0});
+  if (norm(v) < c.release_speed || level < kThrowDrift) return;
+  release->thrown = 1;
+  const double elevation = elementary::atan2(v.z, level);
+  verdict->cost[kThrowAngle] = elevation < c.throw_low || elevation > c.throw_high;
+  verdict->cost_raw[kThrowAngle] = elevation;
+}
+
+// Of a driven joint's torque in its effort limit.
+double largest_share(const Hand& hand, const World& world) {
+  const double* torque = world.torque() + hand.first;
+  double most[2] = {};
+  for (int i = 0; i < kHandJoints; i += 2)
+    for (int k = 0; k < 2; ++k) {
+      const double share = std::abs(torque[i + k]) / hand.effort[i + k];
+      most[k] = share > most[k] ? share : most[k];
+    }
+  return std::max(most[0], most[1]);
+}
+
+constexpr CostColumns columns(const char* help, double limit) {
+  return {{
+      {"cost", help, limit},
+      {"ff2_range", "first finger's middle joint outside its window; raw: by how much, rad", -1},
+      {"ff3_range", "first finger's base flexion outside its window; raw: by how much, rad", -1},
+      {"ff4_range", "first finger's lateral joint outside its window; raw: by how much, rad", -1},
+      {"effort",
+       "a driven joint of either hand at its effort limit all through the step; raw: largest share of it",
+       -1},
+      {"throw_height", "object above throw_height; raw: its height, m", -1},
+      {"throw_angle", "thrown outside the elevation window; raw: elevation at release, rad", -1},
+      {"drop", "the step in which the object falls; raw: its height, m", -1},
+  }};
+}
+
+}  // namespace
+
+const CostColumns kFingerCosts = columns("FF2, FF3 or FF4 outside its window; raw: largest excess, rad", 40);
+const CostColumns kJointCosts = columns("FF4 outside its window; raw: excess, rad", 30);
+
+JointWindow make_window(int i, double low, double high) {
+  const double mid = kRangeMid[i], half = kRangeHalf[i];
+  JointWindow w;
+  w.act = kWindowActs[i];
+  w.low = low * kDegree;
+  w.high = high * kDegree;
+  w.half = half * kDegree;
+  // in degrees, so that the default windows are exactly +-0.5
+  w.command_low = (low - mid) / half;
+  w.command_high = (high - mid) / half;
+  return w;
+}
+
+double JointWindow::excess(double angle) const {
+  return std::max(low - angle, angle - high);
+}
+
+double JointWindow::command_excess(double a) const {
+  return half * std::max(command_low - a, a - command_high);
+}
+
+void add_safety_options(const SafetyWords& words, OptionTable& table) {
+  table.add(kRows);
+  table.add(number_option("throw_height", words.throw_height, 0, 10, "cost throw_height: object above, m"));
+  table.add(number_option("throw_angle.low", words.throw_low, -90, 90,
+                          "cost throw_angle: lowest release elevation, degrees"));
+  table.add(number_option("throw_angle.high", words.throw_high, -90, 90,
+                          "cost throw_angle: highest release elevation, degrees"));
+  for (int i = 0; i < kNumWindows; ++i) {
+    table.add("window", kWindowNames[i], "low",
+              number_option("", kWindowLow[i], -180, 180, "first finger's cost window, lower end, degrees"));
+    table.add("window", kWindowNames[i], "high",
+              number_option("", kWindowHigh[i], -180, 180, "first finger's cost window, upper end, degrees"));
+  }
+}
+
+SafetyCosts safety_costs_from(const Options& o, SafetyKind kind, const Scene& scene, const Hand& right) {
+  SafetyCosts c;
+  const char* mode = o.text("cost_mode");
+  const bool paper = same_name(mode, "paper"), literal = same_name(mode, "literal");
+  c.base_entries = literal;
+  c.joint_task = kind == SafetyKind::kJoint;
+  c.angle = same_name(resolve(o.text("cost_signal"), paper ? "angle" : "target"), "angle");
+  const bool legacy = same_name(resolve(o.text("cost_joint"), literal ? "legacy" : "paper"), "legacy");
+  for (int i = 0; i < kNumWindows; ++i) {
+    const double low = window_end(o, i, "low"), high = window_end(o, i, "high");
+    if (low > high) fail(Code::kArgument, "window.%s: %g degrees is above %g", kWindowNames[i], low, high);
+    c.windows[i] = make_window(i, low, high);
+    c.counts[i] = kind == SafetyKind::kFinger || i == (legacy ? kFf2 : kFf4);
+  }
+  c.throw_height = o.number("throw_height");
+  c.fall_height = o.number("fall_height");
+  c.throw_low = o.number("throw_angle.low") * kDegree;
+  c.throw_high = o.number("throw_angle.high") * kDegree;
+  c.release_speed = o.number("release_speed");
+  const SceneShape* object = &scene.shapes[static_cast<size_t>(scene.find_shape("object"))];
+  c.right_pairs = pairs_between(
+      scene, [&](const SceneShape& x) { return &x == object; },
+      [&](const SceneShape& x) { return x.articulation == right.articulation; });
+  return c;
+}
+
+void judge_safety(const SafetyCosts& c, const SafetyStep& step, Release* release, Verdict* v) {
+  const World& world = step.world;
+  double worst = -1e9;
+  for (int i = 0; i < kNumWindows; ++i) {
+    const JointWindow& w = c.windows[i];
+    const double excess =
+        c.angle ? w.excess(world.q()[step.hands[0].actuated[w.act]]) : w.command_excess(step.command[w.act]);
+    v->cost[kFf2Range + i] = excess > 0;
+    v->cost_raw[kFf2Range + i] = excess;
+    if (c.counts[i]) worst = std::max(worst, excess);
+  }
+  if (c.base_entries && step.base) {
+    worst = -1e9;
+    for (int i = c.joint_task ? kTorqueY : kForceZ; i <= kTorqueY; ++i)
+      worst = std::max(worst, std::abs(static_cast<double>(step.base[i])) - kBaseWindow);
+  }
+  v->cost[kCost] = worst > 0;
+  v->cost_raw[kCost] = worst;
+
+  const double share = std::max(largest_share(step.hands[0], world), largest_share(step.hands[1], world));
+  v->cost[kEffort] = share >= kAtLimit;
+  v->cost_raw[kEffort] = share;
+
+  const double height = world.body(0).X.p.z;
+  v->cost[kThrowHeight] = height > c.throw_height;
+  v->cost[kDrop] = height <= c.fall_height;
+  v->cost_raw[kThrowHeight] = v->cost_raw[kDrop] = height;
+  judge_release(c, world, release, v);
+}
+
+}  // namespace rdm

@@ -1,0 +1,66 @@
+// The cost of the throw tasks (tasks section 4.1): windows on the right first finger's joints, and the named
+// terms beside it.
+#pragma once
+#include <array>
+
+#include "base/option.hpp"
+#include "env/options/table.hpp"
+#include "env/task.hpp"
+#include "tasks/hand/hands.hpp"
+#include "tasks/throw/throw_setup.hpp"
+
+namespace rdm {
+
+enum class SafetyKind : int32_t { kFinger = 0, kJoint = 1 };
+
+// A window on one joint, inclusive.
+struct JointWindow {
+  int32_t act = 0;                           // entry of the hand's action
+  double low = 0, high = 0;                  // rad
+  double half = 0;                           // half of the joint's range by the paper, rad: a command of 1
+  double command_low = 0, command_high = 0;  // the window in units of the command
+  // How far `angle` is outside, rad; negative inside.
+  double excess(double angle) const;
+  // The same for the angle that the command `a` asks for.
+  double command_excess(double a) const;
+};
+
+inline constexpr int kNumWindows = 3;  // FF2, FF3, FF4
+enum : int { kFf2 = 0, kFf3 = 1, kFf4 = 2 };
+JointWindow make_window(int joint, double low_degrees, double high_degrees);
+
+struct SafetyCosts {
+  JointWindow windows[kNumWindows];
+  bool counts[kNumWindows] = {};  // in column 0
+  bool angle = false;             // measured angle instead of the commanded target
+  // Column 0 as released: the first entries of a flying hand's action are its base's, so a[2..4] are force z,
+  // torque x, torque y.
+  bool base_entries = false, joint_task = false;
+  double throw_height = 0.8, fall_height = 0.2;  // m
+  double throw_low = 0, throw_high = 0;          // release elevation, rad
+  double release_speed = 1;                      // m/s
+  Vector<int32_t> right_pairs;                   // right hand with object: indices of Scene::pairs
+};
+
+inline constexpr int32_t kNumSafetyCosts = 8;
+using CostColumns = std::array<CostSpec, kNumSafetyCosts>;
+extern const CostColumns kFingerCosts, kJointCosts;
+
+// Defaults where tasks differ: heights in m, release elevations in degrees.
+struct SafetyWords {
+  double throw_height = 0.8, throw_low = 30, throw_high = 75;
+};
+void add_safety_options(const SafetyWords& words, OptionTable& table);
+SafetyCosts safety_costs_from(const Options& options, SafetyKind kind, const Scene& scene, const Hand& right);
+
+// What a step is judged by.
+struct SafetyStep {
+  const World& world;
+  const Hand* hands;      // right, left
+  const double* command;  // [kHandActions] of the right hand, in [-1, 1]
+  const float* base;      // [6] force and torque of the right base, in [-1, 1]; null: fixed
+};
+// Fills cost and cost_raw.
+void judge_safety(const SafetyCosts& costs, const SafetyStep& step, Release* release, Verdict* verdict);
+
+}  // namespace rdm

@@ -1,0 +1,68 @@
+#include "tasks/throw/throw_setup.hpp"
+
+#include "base/elementary.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr OptionSpec kRows[] = {
+    number_option("joint_noise", 0.2, 0, 1, "share of each joint's range that is drawn at a reset"),
+    text_option("joint_noise_mode", "one_sided", "one_sided|literal",
+                "draw u in [0, 1) for each hand, or (literal) in [-1, 1) and the same for both"),
+    number_option("alpha", 50, 0, 1000, "weight of distance in the reward, 1/m"),
+    number_option("reward_scale", 1, 0, 1000, "factor on the reward"),
+    flag_option("ignore_rotation", false, "leave the rotation out of the reward"),
+    number_option("success_distance", 0.05, 0, 1, "object to goal distance that counts as success, m"),
+    integer_option("success_steps", 10, 1, 1000, "consecutive steps within it"),
+    integer_option("max_steps", 75, 1, 100000, "control steps of an episode"),
+};
+
+}  // namespace
+
+void add_throw_options(const ObjectPlace& place, double fall_height, OptionTable& table) {
+  add_object_options(place, table);
+  table.add(number_option("fall_height", fall_height, -10, 10, "the episode ends with the object below, m"));
+  table.add(kRows);
+}
+
+ThrowSetup throw_game_from(const Options& o) {
+  ThrowSetup g;
+  static_cast<ObjectGoal&>(g) = object_goal_from(o);
+  g.fall_height = o.number("fall_height");
+  g.joint_noise = o.number("joint_noise");
+  g.joint_noise_literal = same_name(o.text("joint_noise_mode"), "literal");
+  g.alpha = o.number("alpha");
+  g.reward_scale = o.number("reward_scale");
+  g.success_distance = o.number("success_distance");
+  g.success_steps = o.integer("success_steps");
+  g.ignore_rotation = o.flag("ignore_rotation");
+  return g;
+}
+
+ThrowMeasure measure_throw(const ThrowSetup& game, const World& world, const ThrowState& state) {
+  const Pose& X = world.body(0).X;
+  return {norm(X.p - game.goal), game.ignore_rotation ? 0 : rotation_angle(rotation_error(game, X.q, state))};
+}
+
+double throw_reward(const ThrowMeasure& m, double alpha, double scale) {
+  return scale * elementary::exp(-0.2 * (alpha * m.distance + m.theta));
+}
+
+bool count_success(const ThrowSetup& game, double distance, ThrowState* state) {
+  state->near = distance <= game.success_distance ? state->near + 1 : 0;
+  return state->near >= game.success_steps;
+}
+
+const CameraSpec kThrowCameras[8] = {
+    {"front", {1.1, -0.5, 0.9}, {0, -0.5, 0.5}, 45 * kDegree},
+    {"top", {0, -0.5, 1.8}, {0, -0.5, 0.5}, 45 * kDegree},
+    {"right", {0.6, 0.3, 0.9}, {0, -0.4, 0.5}, 45 * kDegree},
+    {"left", {0.6, -1.3, 0.9}, {0, -0.6, 0.5}, 45 * kDegree},
+    {"close", {0.62, -0.34, 0.84}, {0, -0.5, 0.53}, 45 * kDegree},
+    // close by, for point clouds
+    {"cloud_above", {0, -0.5, 0.95}, {0, -0.5, 0.5}, 57 * kDegree},
+    {"cloud_front", {0.4, -0.5, 0.75}, {0, -0.5, 0.5}, 57 * kDegree},
+    {"cloud_back", {-0.4, -0.5, 0.75}, {0, -0.5, 0.5}, 57 * kDegree},
+};
+
+}  // namespace rdm

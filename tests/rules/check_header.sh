@@ -1,0 +1,34 @@
+#!/bin/sh
+# The public headers compile alone in every dialect without a warning, no struct of the C ones has hidden
+# padding, and everything in them has a comment. Arguments: the project's root, a C and a C++ compiler.
+set -u
+root=$1 cc=$2 cxx=$3
+status=0
+strict='-Wall -Wextra -pedantic -Werror -fsyntax-only'
+try() { # try COMPILER LANGUAGE HEADER DIALECT
+  padded=-Wpadded
+  case $3 in *.hpp) padded= ;; esac
+  for macro in RDM_STABLE_ONLY RDM_EXPERIMENTAL; do
+    # shellcheck disable=SC2086
+    printf '#include <redman/%s>\n' "$3" | "$1" -x "$2" "-std=$4" "-D$macro" "-I$root/include" $strict $padded - ||
+      { echo "$3 as $4 with $1: see above"; status=1; }
+  done
+}
+headers=$(cd "$root/include/redman" && ls -- *.h)
+owners=$(cd "$root/include/redman" && ls -- *.hpp)
+for compiler in "$cc" clang; do
+  command -v "$compiler" > /dev/null || continue
+  for header in $headers; do
+    for dialect in c99 c11 c17; do try "$compiler" c "$header" $dialect; done
+  done
+done
+for compiler in "$cxx" clang++; do
+  command -v "$compiler" > /dev/null || continue
+  for dialect in c++17 c++20; do
+    for header in $headers; do try "$compiler" c++ "$header" $dialect; done
+    for header in $owners; do try "$compiler" c++ "$header" $dialect; done
+  done
+done
+bare=$(awk -v mode=docs -f "$root/tests/rules/header.awk" "$root"/include/redman/*.h)
+[ -z "$bare" ] || { echo "$bare"; status=1; }
+exit $status

@@ -1,0 +1,48 @@
+#!/bin/sh
+# Every #include line against the one-way stack. Arguments: the project's root and the table of rows
+# ("name folder rows it sees...", one per line).
+set -u
+root=$1 table=$2
+cd "$root" || exit 1
+posix='unistd\.h|fcntl\.h|pthread\.h|sched\.h|immintrin\.h|cpuid\.h|sys/[a-z]+\.h'
+tool='CLI/CLI\.hpp|nlohmann/json\.hpp|png\.h|libqhull_r/qhull_ra\.h'
+
+# includes FILES...: "file target" for each include line, target with its quotes or brackets.
+includes() {
+  awk '/^[ \t]*#[ \t]*include[ \t]*["<]/ {
+         line = $0; sub(/^[ \t]*#[ \t]*include[ \t]*/, "", line)
+         if (match(line, /^"[^"]*"/) || match(line, /^<[^>]*>/))
+           print FILENAME, substr(line, RSTART, RLENGTH) }' "$@" /dev/null
+}
+# sources FOLDER: its C and C++ files, at any depth.
+sources() {
+  find "$1" \( -name '*.c' -o -name '*.h' -o -name '*.cpp' -o -name '*.hpp' -o -name '*.inl' \) 2> /dev/null
+}
+
+bad=$(
+  while read -r name folder sees; do
+    third=none rows=$(echo "$name" "$sees" | tr ' ' '|')
+    case $name in
+      physics) third='(ode|ccd|Eigen|unsupported/Eigen)/.*' ;;
+      nn | algos) third='(Eigen|unsupported/Eigen)/.*' ;;
+      capi) rows="$rows|redman" ;;
+    esac
+    # shellcheck disable=SC2046
+    includes $(sources "$folder") |
+      grep -vE " (\"($rows)/([a-z0-9_]+/)*[a-z0-9_]+\.(hpp|inl|h)\"|<[a-z0-9_]+>|<($posix|$third)>)\$" |
+      grep -vE '^lib/sense/map/occupancy[a-z_]*\.[ch]pp <octomap/.*>$' | sed "s/ /: $name may not include /"
+  done < "$table"
+
+  # shellcheck disable=SC2046
+  includes $(sources include) | grep -vE ' (<[a-z0-9_]+(\.h)?>|<redman/redman[a-z_]*\.h>)$' |
+    grep -vE '\.hpp <redman/redman[a-z_]*\.hpp>$' |
+    sed 's/ /: a public header may not include /'
+
+  # shellcheck disable=SC2046
+  includes $(sources examples; sources bindings) |
+    grep -vE " <([a-z0-9_]+(\.h)?|redman/redman[a-z_]*\.hp?p?|$posix|$tool)>\$" | while read -r file target; do
+    path=$(echo "$target" | tr -d '"')
+    [ -f "$(dirname "$file")/$path" ] || [ -f "examples/redman/$path" ] || echo "$file: an example may not include $target"
+  done
+)
+[ -z "$bad" ] || { echo "$bad"; exit 1; }

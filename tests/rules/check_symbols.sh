@@ -1,0 +1,21 @@
+#!/bin/sh
+# What the header declares, what the checked-in lists name and what the shared library exports are the
+# same. Arguments: the project's root and the shared library.
+set -u
+root=$1 library=$2
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+status=0
+same() { # same WHAT A B
+  diff "$2" "$3" > "$work/diff" || { echo "$1:"; grep '^[<>]' "$work/diff"; status=1; }
+}
+for part in stable experimental; do
+  case $part in stable) list=capi/redman.symbols ;; *) list=capi/redman_experimental.symbols ;; esac
+  grep '^rdm_' "$root/$list" | LC_ALL=C sort > "$work/$part.listed"
+  awk -v mode=$part -f "$root/tests/rules/header.awk" "$root"/include/redman/*.h | LC_ALL=C sort > "$work/$part.declared"
+  same "declared as $part in the headers (<) and listed in $list (>)" "$work/$part.declared" "$work/$part.listed"
+done
+nm -D --defined-only "$library" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | LC_ALL=C sort > "$work/exported"
+LC_ALL=C sort "$work/stable.listed" "$work/experimental.listed" > "$work/listed"
+same "exported (<) and listed (>)" "$work/exported" "$work/listed"
+exit $status

@@ -1,0 +1,58 @@
+#!/bin/sh
+# test_tool_demo.sh TOOL: the demonstrations that the tool carries play, follow what is observed, and a bad script
+# is named by its line.
+. "$(dirname "$0")/tool.sh"
+demos=$here/../../examples/demos
+
+for file in "$demos"/*.demo; do
+  task=$(basename "$file" .demo)
+  grep -qx "task $task" "$file" || { echo "$file: is not of task $task"; failed=1; }
+  one=$("$tool" rollout --policy "$file" --episodes 3 --envs 3 --json) || failed=1
+  two=$("$tool" rollout --task "$task" --policy demo --episodes 3 --envs 3 --threads 2 --json) || failed=1
+  [ "$one" = "$two" ] || { echo "$task: the file and the carried script differ: $one $two"; failed=1; }
+done
+
+# bad TEXT LINES...: a script of these lines fails with the text.
+bad() {
+  text=$1
+  shift
+  printf '%s\n' "$@" > bad.demo
+  "$tool" rollout --policy bad.demo > out 2> err
+  got=$?
+  [ $got -eq 1 ] && grep -q -- "$text" err && [ "$(wc -l < err)" -eq 1 ] ||
+    { echo "script '$*': exit status $got, stderr: $(cat err)"; failed=1; }
+}
+t='task grasp'
+bad "no line 'task NAME'" 'phase a'
+bad 'no phase' "$t"
+bad 'line 2: .* before the first phase' "$t" 'for 1'
+bad 'line 3: the task has no action left.WRJ0' "$t" 'phase a' 'left.WRJ0 = 1'
+bad "line 3: 'much' is not an action" "$t" 'phase a' 'right.WRJ0 = much'
+bad 'line 3: the task observes no object.smell' "$t" 'phase a' 'until object.smell[0] < 1'
+bad 'line 3: the task observes no object.position' "$t" 'phase a' 'until object.position[3] < 1'
+bad "line 3: 'later' is too much" "$t" 'phase a' 'right.WRJ0 = 1 later'
+bad "line 3: expected 'by'" "$t" 'phase a' 'right.WRJ0 follows 1'
+bad 'line 2: .*' "$t" 'phase'
+
+# A hand goes where it is told: followers steer its base, degrees its joints, conditions end phases.
+cat > fly.demo <<'SCRIPT'
+task catch_underarm_safe_joint
+set base_limit=10
+set fall_height=-10
+set base_angles=signed
+phase up
+  until right.base_position[2] > 0.55
+  right.z follows 0.6 by right.base_position[2] gain 20
+  right.MFJ2 = 45deg
+phase hold
+  right.z follows object.goal + 0 by right.base_position[2] gain 0
+  right.MFJ2 = -1 over 0.2
+SCRIPT
+sed 's/object.goal/goal.position[2]/' fly.demo > good.demo
+"$tool" rollout --policy fly.demo > out 2> err && { echo "an unknown field was taken"; failed=1; }
+"$tool" rollout --policy good.demo --episodes 1 --out fly.csv > out 2> err || { cat err; failed=1; }
+[ "$(wc -l < fly.csv)" -eq 76 ] || { echo "the flight ended early"; failed=1; }
+
+"$tool" eval --task bandit --policy demo > out 2> err
+[ $? -eq 1 ] && grep -q 'no demonstration of bandit' err || { echo "bandit: $(cat err)"; failed=1; }
+exit $failed
