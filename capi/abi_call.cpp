@@ -1,7 +1,8 @@
 #include "capi/abi_call.hpp"
 
-#include <cstdio>
 #include <mutex>
+
+#include "base/text.hpp"
 
 namespace rdm::capi {
 
@@ -44,10 +45,12 @@ const char* lasting_name(const char* name) {
   static int used = 0;
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
+  char cut[sizeof table[0]];
+  copy_text(cut, sizeof cut, name);
   for (int i = 0; i < used; ++i)
-    if (std::strncmp(table[i], name, sizeof table[i] - 1) == 0) return table[i];
+    if (std::strcmp(table[i], cut) == 0) return table[i];
   if (used == 512) return "";
-  std::snprintf(table[used], sizeof table[used], "%s", name);
+  std::strcpy(table[used], cut);
   return table[used++];
 }
 
