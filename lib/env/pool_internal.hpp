@@ -117,6 +117,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   // --- state
   void write_world(int32_t env, Writer& out) const;
   void read_world(int32_t env, Reader& in);
+  void check_world(int32_t env) const;  // Error(kFormat) when what was read makes no sense
 
   float* obs(int32_t env) const { return buffers.obs + env * static_cast<ptrdiff_t>(obs_dim); }
   float* final_obs(int32_t env) const { return buffers.final_obs + env * static_cast<ptrdiff_t>(obs_dim); }
