@@ -233,17 +233,24 @@ void PolicyGradient::save(Writer& out) const {
   out.end_file();
 }
 
-void PolicyGradient::load(const void* bytes, size_t size) {
+void PolicyGradient::read_state(const void* bytes, size_t size, bool apply) {
+  Reader in(bytes, size, "agent state");
+  in.begin_file(kMagic, kVersion);
+  read_fingerprint(in, plan_, apply);
+  if (apply) read_live();
+  StateReader io(in, apply);
+  visit_state(io);
+  io.end();
+}
+
+void PolicyGradient::check_state(const void* bytes, size_t size) {
   if (!bytes) fail(Code::kArgument, "agent state: NULL");
-  for (const bool apply : {false, true}) {
-    Reader in(bytes, size, "agent state");
-    in.begin_file(kMagic, kVersion);
-    read_fingerprint(in, plan_, apply);
-    if (apply) read_live();
-    StateReader io(in, apply);
-    visit_state(io);
-    io.end();
-  }
+  read_state(bytes, size, false);
+}
+
+void PolicyGradient::load(const void* bytes, size_t size) {
+  check_state(bytes, size);
+  read_state(bytes, size, true);
   collector_.after_load();
   clamp_log_std(nets_);
   drop_horizon();
