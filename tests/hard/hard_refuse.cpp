@@ -12,7 +12,6 @@
 
 #include <atomic>
 #include <cerrno>
-#include <memory>
 
 #include "isolate.hpp"
 #include "worlds.hpp"
@@ -107,8 +106,8 @@ struct Case {
 
 // What the cases work on. Empty between two of them.
 struct Bench {
-  std::unique_ptr<PoolOf> pool;
-  std::unique_ptr<AgentOf> agent;
+  PoolOf pool;
+  AgentOf agent;
   rdm_map* map = nullptr;
   rdm_policy* policy = nullptr;
   Bytes bytes;
@@ -129,8 +128,8 @@ void must(rdm_result r) {
 }
 rdm_result steps(int n) {
   for (int i = 0; i < n; ++i) {
-    g.pool->fill_actions(static_cast<uint32_t>(i));
-    if (const rdm_result r = rdm_pool_step(g.pool->handle)) return r;
+    g.pool.fill_actions(static_cast<uint32_t>(i));
+    if (const rdm_result r = rdm_pool_step(g.pool.handle)) return r;
   }
   return RDM_OK;
 }
@@ -160,26 +159,24 @@ std::vector<Case> all_cases() {
   std::vector<Case> out;
   const auto nothing = [](const rdm_host*) {};
   const auto clear = [] { g.clear(); };
-  const auto create = [](World w, int32_t envs, int32_t threads, std::vector<rdm_option> options) {
-    return [=](const rdm_host* host) {
-      g.pool = std::make_unique<PoolOf>();
-      const rdm_result r = g.pool->make(w, envs, host, threads, options);
-      if (r != RDM_OK) g.pool.reset();
-      return r;
-    };
+  const auto ask = [](const World& w, int32_t envs, int32_t threads, const std::vector<rdm_option>& options) {
+    return [=](const rdm_host* host) { g.pool.configure(w, envs, host, threads, options); };
   };
-  const auto ready = [=](World w, std::vector<rdm_option> options) {
+  const auto create = [](const rdm_host*) { return g.pool.create(); };
+  const auto made = [=](const World& w, const std::vector<rdm_option>& options) {
+    return [=](const rdm_host* host) { must(g.pool.make(w, 1, host, 0, options)); };
+  };
+  const auto ready = [=](const World& w, const std::vector<rdm_option>& options) {
     return [=](const rdm_host* host) {
-      must(create(w, 1, 0, options)(host));
-      must(rdm_pool_reset(g.pool->handle, nullptr, nullptr));
+      made(w, options)(host);
+      must(rdm_pool_reset(g.pool.handle, nullptr, nullptr));
     };
   };
   for (const World& w : all_worlds()) {
-    out.push_back({"pool " + w.name(), nothing, create(w, 1, 0, {}), clear});
-    out.push_back({"reset and steps " + w.name(),
-                   [=](const rdm_host* host) { must(create(w, 1, 0, {})(host)); },
+    out.push_back({"pool " + w.name(), ask(w, 1, 0, {}), create, clear});
+    out.push_back({"reset and steps " + w.name(), made(w, {}),
                    [](const rdm_host*) {
-                     const rdm_result r = rdm_pool_reset(g.pool->handle, nullptr, nullptr);
+                     const rdm_result r = rdm_pool_reset(g.pool.handle, nullptr, nullptr);
                      return r == RDM_OK ? steps(3) : r;
                    },
                    clear});
@@ -187,17 +184,17 @@ std::vector<Case> all_cases() {
                    [=](const rdm_host* host) {
                      ready(w, {})(host);
                      must(steps(2));
-                     g.bytes = g.pool->state();
+                     g.bytes = g.pool.state();
                    },
                    [](const rdm_host*) {
-                     return rdm_pool_set_state(g.pool->handle, -1, g.bytes.data(), g.bytes.size());
+                     return rdm_pool_set_state(g.pool.handle, -1, g.bytes.data(), g.bytes.size());
                    },
                    clear});
   }
   const std::vector<World> worlds = all_worlds();
   for (const World& w : worlds) {
     if (w.task != "grasp" && w.task != "two_state") continue;
-    out.push_back({"pool of 3 worlds, 3 threads " + w.name(), nothing, create(w, 3, 3, {}), clear});
+    out.push_back({"pool of 3 worlds, 3 threads " + w.name(), ask(w, 3, 3, {}), create, clear});
   }
   // what discovery and the asking calls take
   for (const World& w : worlds) {
@@ -228,8 +225,8 @@ std::vector<Case> all_cases() {
     for (const auto& sight : sights) {
       PoolOf probe;
       if (probe.make(w, 1, nullptr, 0, sight) != RDM_OK) continue;
-      out.push_back({"pool that sees, " + std::string(sight[0].text) + " " + w.name(), nothing,
-                     create(w, 1, 0, sight), clear});
+      out.push_back({"pool that sees, " + std::string(sight[0].text) + " " + w.name(), ask(w, 1, 0, sight),
+                     create, clear});
       out.push_back({"steps that see, " + std::string(sight[0].text) + " " + w.name(), ready(w, sight),
                      [](const rdm_host*) { return steps(2); }, clear});
     }
@@ -240,7 +237,7 @@ std::vector<Case> all_cases() {
                    [=](const rdm_host*) {
                      uint8_t rgb[16 * 16 * 3];
                      float depth[16 * 16];
-                     return rdm_pool_render(g.pool->handle, 0, name.c_str(), 16, 16, rgb, depth, nullptr);
+                     return rdm_pool_render(g.pool.handle, 0, name.c_str(), 16, 16, rgb, depth, nullptr);
                    },
                    clear});
     out.push_back({"map scan " + w.name(),
@@ -249,56 +246,49 @@ std::vector<Case> all_cases() {
                      make_map(host);
                    },
                    [=](const rdm_host*) {
-                     return rdm_map_scan(g.map, g.pool->handle, 0, name.c_str(), 16, 16, nullptr, 0, nullptr);
+                     return rdm_map_scan(g.map, g.pool.handle, 0, name.c_str(), 16, 16, nullptr, 0, nullptr);
                    },
                    clear});
   }
   for (const std::string& algo : all_algos()) {
-    const auto agent = [=](int32_t threads) {
-      return [=](const rdm_host* host) {
-        g.agent = std::make_unique<AgentOf>();
-        const rdm_result r = g.agent->make(algo, host, threads);
-        if (r != RDM_OK) g.agent.reset();
-        return r;
-      };
+    const auto configure = [=](int32_t threads) {
+      return [=](const rdm_host* host) { g.agent.configure(algo, host, threads); };
     };
-    const auto made = [=](const rdm_host* host) { must(agent(0)(host)); };
-    out.push_back({"agent " + algo, nothing, agent(0), clear});
-    out.push_back({"agent of 2 threads " + algo, nothing, agent(2), clear});
-    out.push_back({"epoch " + algo, made, [](const rdm_host*) { return g.agent->epoch(); }, clear});
+    const auto create_agent = [](const rdm_host*) { return g.agent.create(); };
+    const auto ready_agent = [=](const rdm_host* host) { must(g.agent.make(algo, host)); };
+    out.push_back({"agent " + algo, configure(0), create_agent, clear});
+    out.push_back({"agent of 2 threads " + algo, configure(2), create_agent, clear});
+    out.push_back({"epoch " + algo, ready_agent, [](const rdm_host*) { return g.agent.epoch(); }, clear});
     out.push_back(
         {"agent load " + algo,
          [=](const rdm_host* host) {
-           made(host);
-           must(g.agent->epoch());
-           g.bytes = g.agent->state();
+           ready_agent(host);
+           must(g.agent.epoch());
+           g.bytes = g.agent.state();
          },
-         [](const rdm_host*) { return rdm_agent_load(g.agent->handle, g.bytes.data(), g.bytes.size()); },
+         [](const rdm_host*) { return rdm_agent_load(g.agent.handle, g.bytes.data(), g.bytes.size()); },
          clear});
     out.push_back({"agent save and policy " + algo,
                    [=](const rdm_host* host) {
-                     made(host);
+                     ready_agent(host);
                      g.bytes.resize(1 << 16);
                    },
                    [](const rdm_host*) {
                      size_t n = 0;
-                     const rdm_result r = rdm_agent_save(g.agent->handle, g.bytes.data(), g.bytes.size(), &n);
-                     return r == RDM_OK
-                                ? rdm_agent_policy(g.agent->handle, g.bytes.data(), g.bytes.size(), &n)
-                                : r;
+                     const rdm_result r = rdm_agent_save(g.agent.handle, g.bytes.data(), g.bytes.size(), &n);
+                     return r == RDM_OK ? rdm_agent_policy(g.agent.handle, g.bytes.data(), g.bytes.size(), &n)
+                                        : r;
                    },
                    clear});
   }
   const std::string checkpoint = "hard_refuse-" + std::to_string(getpid()) + ".rdm";
   const auto pair = [=](const rdm_host* host) {
-    g.agent = std::make_unique<AgentOf>();
-    must(g.agent->make("ppo_lag", host));
-    g.pool = std::make_unique<PoolOf>();
-    must(g.pool->make({"two_state", "", 0, 0}, 2, host));
-    must(rdm_pool_reset(g.pool->handle, nullptr, nullptr));
+    must(g.agent.make("ppo_lag", host));
+    must(g.pool.make({"two_state", "", 0, 0}, 2, host));
+    must(rdm_pool_reset(g.pool.handle, nullptr, nullptr));
   };
   const auto write = [=] {
-    return rdm_checkpoint_write(checkpoint.c_str(), g.agent->handle, g.pool->handle, "note", 4);
+    return rdm_checkpoint_write(checkpoint.c_str(), g.agent.handle, g.pool.handle, "note", 4);
   };
   out.push_back({"checkpoint write", pair, [=](const rdm_host*) { return write(); },
                  [=] {
@@ -313,7 +303,7 @@ std::vector<Case> all_cases() {
                  [=](const rdm_host*) {
                    char note[8];
                    size_t n = 0;
-                   return rdm_checkpoint_read(checkpoint.c_str(), g.agent->handle, g.pool->handle, note,
+                   return rdm_checkpoint_read(checkpoint.c_str(), g.agent.handle, g.pool.handle, note,
                                               sizeof note, &n);
                  },
                  [=] {

@@ -65,31 +65,45 @@ struct PoolOf {
   rdm_pool* handle = nullptr;
   rdm_buffers rows{};
   rdm_spec spec{};
+  rdm_pool_config config{};
   int32_t num_envs = 1;
 
   PoolOf() = default;
   PoolOf(const PoolOf&) = delete;
   PoolOf& operator=(const PoolOf&) = delete;
-  ~PoolOf() { rdm_pool_destroy(handle); }
-  rdm_result make(const World& w, int32_t envs, const rdm_host* host = nullptr, int32_t threads = 0,
-                  std::vector<rdm_option> options = {}) {
-    if (!w.engine.empty()) options.push_back({"engine", w.engine.c_str(), 0});
-    rdm_pool_config c;
-    rdm_pool_config_init(&c, sizeof c);
-    c.task = w.task.c_str();
-    c.num_envs = envs;
-    c.num_threads = threads;
-    c.host = host;
-    c.options = options.data();
-    c.num_options = static_cast<int32_t>(options.size());
+  ~PoolOf() { reset(); }
+  void reset() {
+    rdm_pool_destroy(handle);
+    handle = nullptr;
+  }
+  // make is configure and create; create takes no memory of its own.
+  void configure(const World& w, int32_t envs, const rdm_host* host = nullptr, int32_t threads = 0,
+                 const std::vector<rdm_option>& options = {}) {
+    world_ = w;
+    options_ = options;
+    if (!w.engine.empty()) options_.push_back({"engine", world_.engine.c_str(), 0});
+    rdm_pool_config_init(&config, sizeof config);
+    config.task = world_.task.c_str();
+    config.num_envs = envs;
+    config.num_threads = threads;
+    config.host = host;
+    config.options = options_.data();
+    config.num_options = static_cast<int32_t>(options_.size());
     num_envs = envs;
-    const rdm_result r = rdm_pool_create(&handle, &c);
+  }
+  rdm_result create() {
+    const rdm_result r = rdm_pool_create(&handle, &config);
     if (r != RDM_OK) return r;
     rows.struct_size = sizeof rows;
     spec.struct_size = sizeof spec;
     rdm_pool_buffers(handle, &rows);
     rdm_pool_get_spec(handle, &spec);
     return RDM_OK;
+  }
+  rdm_result make(const World& w, int32_t envs, const rdm_host* host = nullptr, int32_t threads = 0,
+                  const std::vector<rdm_option>& options = {}) {
+    configure(w, envs, host, threads, options);
+    return create();
   }
   static size_t count(int32_t width) { return static_cast<size_t>(width); }
   // Actions that differ from step to step, the same in every run.
@@ -101,7 +115,7 @@ struct PoolOf {
   }
   Bytes state() const {
     size_t n = 0;
-    HARD_REQUIRE(rdm_pool_get_state(handle, -1, nullptr, 0, &n) == RDM_OK, "%s", rdm_last_error());
+    HARD_REQUIRE(rdm_pool_state_size(handle, -1, &n) == RDM_OK, "%s", rdm_last_error());
     Bytes out(n);
     HARD_REQUIRE(rdm_pool_get_state(handle, -1, out.data(), n, &n) == RDM_OK, "%s", rdm_last_error());
     return out;
@@ -124,6 +138,10 @@ struct PoolOf {
     }
     return nullptr;
   }
+
+ private:
+  World world_;
+  std::vector<rdm_option> options_;
 };
 
 // The text of a failure: UTF-8, one line, no control characters.
@@ -155,31 +173,40 @@ inline void require_refusal(rdm_result r) {
 struct AgentOf {
   static constexpr int32_t kObs = 3, kActions = 2, kCosts = 2, kRows = 4, kHorizon = 8;
   rdm_agent* handle = nullptr;
+  rdm_agent_config config{};
 
   AgentOf() = default;
   AgentOf(const AgentOf&) = delete;
   AgentOf& operator=(const AgentOf&) = delete;
-  ~AgentOf() { rdm_agent_destroy(handle); }
-  rdm_result make(const std::string& algo, const rdm_host* host = nullptr, int32_t threads = 0) {
+  ~AgentOf() { reset(); }
+  void reset() {
+    rdm_agent_destroy(handle);
+    handle = nullptr;
+  }
+  void configure(const std::string& algo, const rdm_host* host = nullptr, int32_t threads = 0) {
     static const rdm_option options[] = {{"hidden", "4,4", 0},
                                          {"horizon", nullptr, kHorizon},
                                          {"passes", nullptr, 2},
                                          {"minibatches", nullptr, 2}};
-    static const double limits[kCosts] = {1, 2};
-    rdm_agent_config c;
-    rdm_agent_config_init(&c, sizeof c);
-    c.algo = algo.c_str();
-    c.obs_dim = kObs;
-    c.action_dim = kActions;
-    c.cost_dim = kCosts;
-    c.num_envs = kRows;
-    c.num_threads = threads;
-    c.cost_limits = limits;
+    static const double limits[kCosts] = {1, -1};
+    algo_ = algo;
+    rdm_agent_config_init(&config, sizeof config);
+    config.algo = algo_.c_str();
+    config.obs_dim = kObs;
+    config.action_dim = kActions;
+    config.cost_dim = kCosts;
+    config.num_envs = kRows;
+    config.num_threads = threads;
+    config.cost_limits = limits;
     // what an algorithm has no use for is laid under, not asked for
-    c.defaults = options;
-    c.num_defaults = 4;
-    c.host = host;
-    return rdm_agent_create(&handle, &c);
+    config.defaults = options;
+    config.num_defaults = 4;
+    config.host = host;
+  }
+  rdm_result create() { return rdm_agent_create(&handle, &config); }
+  rdm_result make(const std::string& algo, const rdm_host* host = nullptr, int32_t threads = 0) {
+    configure(algo, host, threads);
+    return create();
   }
   // One epoch of made-up data; every number that comes out is finite.
   rdm_result epoch(bool require_finite = true) {
@@ -217,6 +244,9 @@ struct AgentOf {
     HARD_REQUIRE(rdm_agent_policy(handle, out.data(), n, &n) == RDM_OK, "%s", rdm_last_error());
     return out;
   }
+
+ private:
+  std::string algo_;
 };
 
 inline std::vector<std::string> all_algos() {
