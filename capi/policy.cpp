@@ -1,4 +1,6 @@
 // rdm_policy_*: the frozen network.
+#include <bit>
+
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "capi/handles.hpp"
@@ -78,6 +80,16 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
     return false;
   return true;
 }
+
+void need_finite(const float* x, int32_t rows, int32_t width, const char* name) {
+  const auto dim = static_cast<size_t>(width);
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
+    uint32_t largest = 0;  // of the magnitudes, which order as their bits do
+    for (size_t k = 0; k < dim; ++k)
+      largest = std::max(largest, std::bit_cast<uint32_t>(x[i * dim + k]) & 0x7fffffffu);
+    if (largest >= 0x7f800000u) fail(Code::kArgument, "%s: row %zu is not finite", name, i);
+  }
+}
 }  // namespace
 
 rdm_result rdm_policy_load(rdm_policy** out, const void* bytes, size_t size) {
@@ -137,7 +149,11 @@ rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, c
     if (scratch_bytes < bytes) fail(Code::kRange, "scratch_bytes: %zu, %zu are needed", scratch_bytes, bytes);
     if (reinterpret_cast<uintptr_t>(scratch) % Arena::kAlign)
       fail(Code::kArgument, "scratch is not %zu-byte aligned", Arena::kAlign);
+    const PolicyView& v = p->policy->view();
+    need_finite(obs, rows, v.actor.in, "obs");
+    if (noise) need_finite(noise, rows, v.action_dim(), "noise");
     p->policy->act(obs, rows, noise, action, scratch);
+    need_finite(action, rows, v.action_dim(), "action: the network overflows on these observations");
   });
 }
 
