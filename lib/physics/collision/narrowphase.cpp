@@ -5,10 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
-
+#include "base/simd.hpp"
 #include "physics/ode/ode_convert.hpp"
 
 namespace rdm {
@@ -19,66 +16,31 @@ constexpr float kFar = 1e30f;       // m
 constexpr float kSlack = 1e-5f;     // m, for the rounding of bounds
 constexpr float kFlatness = 1e-6f;  // of two axes that count as parallel
 
-using Four = float __attribute__((vector_size(16)));
-using FourMask = int32_t __attribute__((vector_size(16)));
-
-Four load(const float* p) {
-  Four v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
-void store(float* p, Four v) {
-  std::memcpy(p, &v, sizeof v);
-}
-float dot3(Four a, Four b) {
-  const Four p = a * b;
+float dot3(Float4 a, Float4 b) {
+  const Float4 p = a * b;
   return p[0] + p[1] + p[2];
 }
 
-Four clamp_unit(Four x) {
-  const Four one = Four{} + 1.0f;
+Float4 clamp_unit(Float4 x) {
+  const Float4 one = Float4{} + 1.0f;
   x = x < -one ? -one : x;
   return x > one ? one : x;
 }
 
-// Four rows into four columns.
-void transpose(Four* r) {
-  const Four a = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5),
-             b = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7);
-  const Four c = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5),
-             d = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
-  r[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
-  r[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
-  r[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
-  r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
-}
-
-uint32_t bits_of(FourMask m) {
-#if defined(__x86_64__)
-  __m128 r;
-  std::memcpy(&r, &m, sizeof r);
-  return static_cast<uint32_t>(_mm_movemask_ps(r));
-#else
-  uint32_t bits = 0;
-  for (int k = 0; k < 4; ++k) bits |= static_cast<uint32_t>(m[k] != 0) << k;
-  return bits;
-#endif
-}
-
-Four dot(const Four* a, const Four* b) {
+Float4 dot(const Float4* a, const Float4* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 // Squared distances of four pairs of segments p +- u and q +- v, by coordinate.
-Four segment_distance(const Four* p, const Four* u, const Four* q, const Four* v) {
-  const Four tiny = Four{} + 1e-10f;
-  const Four r[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-  const Four a = dot(u, u) + tiny, e = dot(v, v) + tiny, b = dot(u, v), c = dot(u, r), f = dot(v, r);
-  const Four d = a * e - b * b;
-  const Four s = clamp_unit(d > kFlatness * a * e ? (b * f - c * e) / d : -c / a);
-  const Four t = (b * s + f) / e, inside = clamp_unit(t);
-  const Four s2 = t == inside ? s : clamp_unit((b * inside - c) / a);
-  Four w[3];
+Float4 segment_distance(const Float4* p, const Float4* u, const Float4* q, const Float4* v) {
+  const Float4 tiny = Float4{} + 1e-10f;
+  const Float4 r[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+  const Float4 a = dot(u, u) + tiny, e = dot(v, v) + tiny, b = dot(u, v), c = dot(u, r), f = dot(v, r);
+  const Float4 d = a * e - b * b;
+  const Float4 s = clamp_unit(d > kFlatness * a * e ? (b * f - c * e) / d : -c / a);
+  const Float4 t = (b * s + f) / e, inside = clamp_unit(t);
+  const Float4 s2 = t == inside ? s : clamp_unit((b * inside - c) / a);
+  Float4 w[3];
   for (int k = 0; k < 3; ++k) w[k] = r[k] + u[k] * s2 - v[k] * inside;
   return dot(w, w);
 }
@@ -152,21 +114,21 @@ void Collider::update_boxes(const Scene& scene) {
   for (size_t a = 0; a < scene.def.articulations.size(); ++a) {
     const int32_t first = scene.first_shape[a];
     const auto end = first + static_cast<int32_t>(scene.def.articulations[a].shapes.size());
-    Four low = Four{} + kFar, high = Four{} - kFar;
+    Float4 low = Float4{} + kFar, high = Float4{} - kFar;
     for (int32_t i = first; i < end; ++i) {
-      const Four c = load(bounds_[i].center), r = Four{} + (c[3] + kSlack), x = c - r, y = c + r;
+      const Float4 c = load4(bounds_[i].center), r = Float4{} + (c[3] + kSlack), x = c - r, y = c + r;
       low = x < low ? x : low;
       high = y > high ? y : high;
     }
-    store(boxes_[a].low, low);
-    store(boxes_[a].high, high);
+    store4(boxes_[a].low, low);
+    store4(boxes_[a].high, high);
   }
 }
 
 bool Collider::near(const Bound& bound, const Box& box) {
-  const Four c = load(bound.center), zero{};
-  const Four under = load(box.low) - c, over = c - load(box.high);
-  Four d = under > over ? under : over;
+  const Float4 c = load4(bound.center), zero{};
+  const Float4 under = load4(box.low) - c, over = c - load4(box.high);
+  Float4 d = under > over ? under : over;
   d = d > zero ? d : zero;
   return dot3(d, d) < c[3] * c[3];
 }
@@ -194,17 +156,17 @@ void Collider::mark_neighbours(const Scene& scene, int32_t articulation, const B
 
 // Bit k: the bounds of pair list[k] meet, or one of them is a plane; four of them.
 uint32_t Collider::near_four(const int32_t* list) const {
-  Four p[4], u[4], q[4], v[4], gap{}, reach{};
+  Float4 p[4], u[4], q[4], v[4], gap{}, reach{};
   for (int k = 0; k < 4; ++k) {
     const Pair& pair = pairs_[list[k]];
     const Bound &a = bounds_[pair.a], &b = bounds_[pair.b];
     gap[k] = pair.gap;
     reach[k] = pair.reach;
-    p[k] = load(a.center), u[k] = load(a.axis);
-    q[k] = load(b.center), v[k] = load(b.axis);
+    p[k] = load4(a.center), u[k] = load4(a.axis);
+    q[k] = load4(b.center), v[k] = load4(b.axis);
   }
   transpose(p), transpose(q);
-  const Four d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+  const Float4 d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
   if (bits_of(dot(d, d) < reach) == 0) return 0;
   transpose(u), transpose(v);
   return bits_of(segment_distance(p, u, q, v) < gap);
