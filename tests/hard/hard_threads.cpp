@@ -159,7 +159,7 @@ void init_and_shutdown(int rounds) {
       }
     });
   in_threads(3, [&](int) {
-    for (int k = 0; k < 100 * rounds; ++k) {
+    for (int k = 0; k < 2000 * rounds; ++k) {
       PoolOf pool;
       must(pool.make({"lqr_line", "", 0, 0}, 1));
       AgentOf agent;
