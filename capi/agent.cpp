@@ -1,5 +1,6 @@
 // rdm_agent_*: config to agent and back.
 #include "base/file.hpp"
+#include "base/text.hpp"
 #include "capi/handles.hpp"
 
 using namespace rdm;
@@ -243,7 +244,8 @@ TensorInfo find_tensor(Agent& agent, const char* name, size_t count) {
     names.push_back(t.name);
   }
   const int32_t near = nearest_name(name, names.data(), static_cast<int32_t>(names.size()));
-  fail(Code::kNotFound, "tensor %.64s: unknown; nearest is %s", name, names[static_cast<size_t>(near)]);
+  fail(Code::kNotFound, "tensor %s: unknown; nearest is %s", Quoted(name).text,
+       names[static_cast<size_t>(near)]);
 }
 }  // namespace
 

@@ -2,6 +2,7 @@
 #include <bit>
 
 #include "base/file.hpp"
+#include "base/text.hpp"
 #include "capi/handles.hpp"
 
 #if RDM_WITH_LEARN
@@ -183,7 +184,8 @@ rdm_result rdm_policy_tensor_read(const rdm_policy* p, const char* name, float* 
       names.push_back(t.name);
     }
     const int32_t near = nearest_name(name, names.data(), static_cast<int32_t>(names.size()));
-    fail(Code::kNotFound, "tensor %.64s: unknown; nearest is %s", name, names[static_cast<size_t>(near)]);
+    fail(Code::kNotFound, "tensor %s: unknown; nearest is %s", Quoted(name).text,
+         names[static_cast<size_t>(near)]);
   });
 }
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr char kMagic[8] = {'R', 'D', 'M', 'A', 'G', 'E', 'N', 'T'};
 constexpr uint32_t kVersion = 1;
+constexpr int32_t kMaxEpochs = 1 << 30;                // of a state that loads; as many more do not overflow
 constexpr double kEntropyOfUnit = 1.4189385332046727;  // of a normal with deviation 1
 
 }  // namespace
@@ -214,7 +215,7 @@ bool PolicyGradient::tensor(int32_t index, TensorInfo* out) {
 
 void PolicyGradient::visit_state(StateIo& io) {
   io.section("COUN");
-  io.integer(epoch_, 0, INT32_MAX);
+  io.integer(epoch_, 0, kMaxEpochs);
   io.stream(shuffle_);
   nets_.visit(io);
   collector_.visit(io);
