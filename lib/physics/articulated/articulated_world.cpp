@@ -263,6 +263,7 @@ void ArticulatedWorld::collide(Collider::Poses& poses) {
   const Collider::Found found =
       shared_->collider.collide(*scene_, poses, contacts_, contact_pairs_, touched_);
   num_contacts_ = found.count;
+  if (found.failed) mark_diverged();
   if (found.overflow) status_ |= kStatusContactOverflow;
   const Bound* bounds = shared_->collider.bounds();
   for (int32_t i = 0; i < num_contacts_; ++i) {
