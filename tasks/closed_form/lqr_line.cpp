@@ -4,6 +4,7 @@
 // 1.36366; limit 1: k 0.734456, return -1.583058; limit 0.75: k 0.571281, return -1.760243.
 #include "tasks/planar/planar_scene.hpp"
 #include "tasks/small_worlds.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -37,6 +38,13 @@ class LqrLine final : public PlanarTask {
   int32_t action_dim() const override { return 1; }
   const char* action_order() const override { return "displacement"; }
   size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override {
+    const State& s = *static_cast<const State*>(state);
+    constexpr double kMaxSquare = kMaxStateNumber * kMaxStateNumber;
+    check_numbers("x", &s.x, 1);
+    check_numbers("reward", &s.reward, 1, kMaxSquare);
+    check_numbers("cost", &s.cost, 1, kMaxSquare);
+  }
 
   void reset(World& world, void* state, Stream& stream) const override {
     State& s = *static_cast<State*>(state);

@@ -5,6 +5,7 @@
 // P(a = 1 | 0) = 1 and P(a = 1 | 1) = 0.294079.
 #include "tasks/planar/planar_scene.hpp"
 #include "tasks/small_worlds.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -36,6 +37,13 @@ class TwoState final : public PlanarTask {
   int32_t action_dim() const override { return 1; }
   const char* action_order() const override { return "choice"; }
   size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override {
+    const State& s = *static_cast<const State*>(state);
+    check_numbers("reward", &s.reward, 1);
+    check_numbers("cost", &s.cost, 1);
+    check_integer("at", s.at, 0, 1);
+    check_integer("over", s.over, 0, 1);
+  }
 
   void reset(World& world, void* state, Stream& stream) const override {
     State& s = *static_cast<State*>(state);

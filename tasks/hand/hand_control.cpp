@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "env/options/simulation.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -135,6 +136,13 @@ RigState HandControl::state(void* bytes) const {
 
 const float* HandControl::action(const void* bytes) const {
   return reinterpret_cast<const float*>(static_cast<const double*>(bytes) + count_ * kHandActions);
+}
+
+void HandControl::check_state(const void* bytes) const {
+  constexpr double kOne = 1 + 1e-6;  // rounding included
+  const auto commands = static_cast<size_t>(count_) * kHandActions;
+  check_numbers("command", static_cast<const double*>(bytes), commands, kOne);
+  check_numbers("action", action(bytes), static_cast<size_t>(action_dim()), 1);
 }
 
 void HandControl::reset(double noise, bool literal, World& world, const RigState& state,

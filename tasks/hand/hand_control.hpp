@@ -54,6 +54,7 @@ class HandControl {
   size_t state_bytes() const;
   RigState state(void* bytes) const;
   const float* action(const void* bytes) const;
+  void check_state(const void* bytes) const;  // of a saved state: Error(kFormat)
 
   void reset(double noise, bool literal, World& world, const RigState& state, Stream& stream) const;
   void control(World& world, const RigState& state, const float* action) const;

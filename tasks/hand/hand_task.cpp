@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "base/error.hpp"
 #include "env/options/simulation.hpp"
 
 namespace rdm {
@@ -11,6 +12,10 @@ HandTask::HandTask(const HandControlConfig& plan, const Options& o, SceneDef sce
       max_steps_(o.integer("max_steps")),
       own_bytes_(own_bytes),
       scene_(make_scene(std::move(scene))),
-      rig_(plan, o, scene_) {}
+      rig_(plan, o, scene_) {
+  if (own_bytes % alignof(double) != 0)
+    fail(Code::kInternal, "hand task: %zu bytes of its own state are not a multiple of %zu", own_bytes,
+         alignof(double));
+}
 
 }  // namespace rdm

@@ -18,12 +18,20 @@ class HandTask : public Task {
   void control(World& world, void* state, const float* action) const override {
     rig_.control(world, rig_state(state), action);
   }
+  void check_state(const void* state) const final {
+    check_own_state(state);
+    rig_.check_state(static_cast<const char*>(state) + own_bytes_);
+  }
   float obs_limit() const override { return 5; }
   void hold_action(float* action) const override { rig_.hold(action); }
 
  protected:
-  // `own_bytes` of a task's own state, a multiple of 8, stand before the rig's.
+  // `own_bytes` of a task's own state stand before the rig's, which begin with doubles: Error(kInternal)
+  // unless it is a multiple of 8.
   HandTask(const HandControlConfig& plan, const Options& options, SceneDef scene, size_t own_bytes);
+
+  // check_state of the task's own part.
+  virtual void check_own_state(const void* state) const = 0;
 
   const HandControl& rig() const { return rig_; }
   RigState rig_state(void* state) const { return rig_.state(static_cast<char*>(state) + own_bytes_); }

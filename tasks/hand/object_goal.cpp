@@ -5,6 +5,7 @@
 
 #include "base/elementary.hpp"
 #include "tasks/hand/hands.hpp"
+#include "tasks/state_check.hpp"
 #include "tasks/throw/throw_objects.hpp"
 
 namespace rdm {
@@ -33,6 +34,10 @@ Quat draw_start(Turn turn, Stream& stream) {
 }
 
 }  // namespace
+
+void check_goal(const GoalState& state) {
+  check_rotation("goal", state.goal);
+}
 
 void add_object_options(const ObjectPlace& place, OptionTable& table) {
   table.add(text_option("object", place.object, throw_object_choices(), "what is handled"));

@@ -32,6 +32,8 @@ struct GoalState {
   Quat goal;  // rotation
 };
 
+void check_goal(const GoalState& state);  // of a saved state: Error(kFormat)
+
 void add_object_options(const ObjectPlace& place, OptionTable& table);
 ObjectGoal object_goal_from(const Options& options);
 // The object at its nominal start, of material kObject.

@@ -44,6 +44,10 @@ void SingleHand::reset(World& world, void* state, Stream& stream) const {
   s.goals = Stream(stream.next(), 0, Purpose::kReset);
 }
 
+void SingleHand::check_own_state(const void* state) const {
+  check_goal(static_cast<const State*>(state)->goal);
+}
+
 Verdict SingleHand::judge(World& world, void* state, int32_t) const {
   State& s = *static_cast<State*>(state);
   const RigState rig = rig_state(state);

@@ -38,6 +38,7 @@ class SingleHand : public HandTask {
     State* state;
   };
   SingleHand(const SingleHandConfig& plan, const Options& options);
+  void check_own_state(const void* state) const override;
   virtual void judge_step(const Step& step, Verdict* verdict) const = 0;
 
   const Hand& hand() const { return rig().hand(0); }

@@ -5,6 +5,7 @@
 #include "base/elementary.hpp"
 #include "tasks/planar/rolling_ball.hpp"
 #include "tasks/small_worlds.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -39,6 +40,11 @@ class BallCircle final : public PlanarTask {
   int32_t action_dim() const override { return 2; }
   const char* action_order() const override { return "push x, push y"; }
   size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override {
+    const State& s = *static_cast<const State*>(state);
+    check_ball(s.ball);
+    check_numbers("effort", &s.effort, 1);
+  }
 
   // Uniform over the ring, by area.
   void reset(World& world, void* state, Stream& stream) const override {

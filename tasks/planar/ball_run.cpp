@@ -2,6 +2,7 @@
 #include "tasks/planar/rolling_ball.hpp"
 #include "tasks/planar/run_track.hpp"
 #include "tasks/small_worlds.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -25,6 +26,12 @@ class BallRun final : public PlanarTask {
   int32_t action_dim() const override { return 2; }
   const char* action_order() const override { return "push x, push y"; }
   size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override {
+    const State& s = *static_cast<const State*>(state);
+    check_ball(s.ball);
+    check_numbers("effort", &s.effort, 1);
+    check_numbers("gain", &s.gain, 1);
+  }
 
   void reset(World& world, void* state, Stream& stream) const override {
     State& s = *static_cast<State*>(state);

@@ -1,10 +1,12 @@
 // Bullet-Safety-Gym's CarRun with a kinematic bicycle in the place of the race car: the wheels' motors pull
 // the speed to 6 a0 m/s, the front wheels stand at 0.5 a1 rad. An upper bound on the original, not a copy.
 #include <algorithm>
+#include <iterator>
 
 #include "base/elementary.hpp"
 #include "tasks/planar/run_track.hpp"
 #include "tasks/small_worlds.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -43,6 +45,11 @@ class CarRun final : public PlanarTask {
   int32_t action_dim() const override { return 2; }
   const char* action_order() const override { return "speed, steering"; }
   size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override {
+    const State& s = *static_cast<const State*>(state);
+    const double values[] = {s.x, s.y, s.yaw, s.speed, s.rate, s.gain};
+    check_numbers("car", values, std::size(values));
+  }
 
   void reset(World& world, void* state, Stream& stream) const override {
     State& s = *static_cast<State*>(state);

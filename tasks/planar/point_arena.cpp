@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tasks/state_check.hpp"
+
 namespace rdm {
 namespace {
 
@@ -19,6 +21,13 @@ bool clear_of(const Keepout& a, const Keepout* others, int32_t count) {
 double distance(const Spot& a, const Spot& b) {
   const double dx = a.x - b.x, dy = a.y - b.y;
   return std::sqrt(dx * dx + dy * dy);
+}
+
+void check_spots(const char* what, const Spot* spots, int32_t count) {
+  for (int32_t i = 0; i < count; ++i) {
+    const double values[] = {spots[i].x, spots[i].y};
+    check_numbers(what, values, 2);
+  }
 }
 
 bool draw_spot(double extent, const Keepout* others, int32_t count, Stream& stream, Keepout* out) {

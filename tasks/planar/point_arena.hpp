@@ -14,6 +14,7 @@ struct Spot {
   double x, y;  // m
 };
 double distance(const Spot& a, const Spot& b);
+void check_spots(const char* what, const Spot* spots, int32_t count);  // of a saved state: Error(kFormat)
 
 // A thing keeps others away by the sum of the two distances.
 struct Keepout {

@@ -7,6 +7,7 @@
 
 #include "tasks/planar/point_arena.hpp"
 #include "tasks/small_worlds.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -53,6 +54,19 @@ class PointButton final : public PlanarTask {
   int32_t action_dim() const override { return kPointActions; }
   const char* action_order() const override { return "thrust, turn"; }
   size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override {
+    const State& s = *static_cast<const State*>(state);
+    check_point_robot(s.robot);
+    check_spots("button", s.button, kButtons);
+    check_spots("hazard", s.hazard, kMaxThings);
+    check_spots("gremlin", s.middle, kMaxThings);
+    check_numbers("distance", &s.last, 1);
+    check_numbers("time", &s.time, 1);
+    check_integer("goal", s.goal, 0, kButtons - 1);
+    check_integer("timer", s.timer, 0, pause_);
+    for (const int32_t pressed : s.pressed) check_integer("pressed", pressed, 0, 1);
+    check_integer("gremlin_hit", s.gremlin_hit, 0, gremlins_);
+  }
 
   void reset(World& world, void* state, Stream& stream) const override {
     State& s = *static_cast<State*>(state);

@@ -8,6 +8,7 @@
 
 #include "tasks/planar/point_arena.hpp"
 #include "tasks/small_worlds.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -53,6 +54,15 @@ class PointGoal final : public PlanarTask {
   int32_t action_dim() const override { return kPointActions; }
   const char* action_order() const override { return "thrust, turn"; }
   size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override {
+    const State& s = *static_cast<const State*>(state);
+    check_point_robot(s.robot);
+    check_spots("goal", &s.goal, 1);
+    check_spots("hazard", s.hazard, kMaxThings);
+    check_spots("vase", s.vase, kMaxThings);
+    check_numbers("distance", &s.last, 1);
+    check_integer("vases_touched", s.vases_touched, 0, (int64_t{1} << vases_) - 1);
+  }
 
   void reset(World& world, void* state, Stream& stream) const override {
     State& s = *static_cast<State*>(state);

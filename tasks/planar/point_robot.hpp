@@ -20,6 +20,8 @@ struct PointRobot {
   double ax, ay;     // m/s2, of the origin, in the last substep
 };
 
+void check_point_robot(const PointRobot& robot);  // of a saved state: Error(kFormat)
+
 // One substep; action (thrust, turn), |entries| <= 1.
 void point_substep(const float* action, PointRobot* robot);
 

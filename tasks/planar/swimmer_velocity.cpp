@@ -2,6 +2,7 @@
 #include "tasks/planar/planar_scene.hpp"
 #include "tasks/planar/swimmer_body.hpp"
 #include "tasks/small_worlds.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -26,6 +27,13 @@ class SwimmerVelocity final : public PlanarTask {
   int32_t action_dim() const override { return kSwimmerMotors; }
   const char* action_order() const override { return "joint 1, joint 2"; }
   size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override {
+    const State& s = *static_cast<const State*>(state);
+    check_numbers("joint positions", s.swimmer.q, kSwimmerDofs);
+    check_numbers("joint velocities", s.swimmer.qd, kSwimmerDofs);
+    check_numbers("speed", &s.speed, 1);
+    check_numbers("effort", &s.effort, 1);
+  }
 
   void reset(World& world, void* state, Stream& stream) const override {
     State& s = *static_cast<State*>(state);

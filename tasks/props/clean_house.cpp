@@ -1,11 +1,13 @@
 #include "tasks/props/clean_house.hpp"
 
 #include <cmath>
+#include <memory>
 
 #include "sense/map/scene_map.hpp"
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/props/house_scene.hpp"
 #include "tasks/props/prop_task.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -164,10 +166,6 @@ class CleanHouse final : public PropTask {
     if (quat_) add_field(own_fields(), "broom", "rotation", "1", 4);
   }
 
-  ~CleanHouse() override { Occupancy::destroy(map_); }
-  CleanHouse(const CleanHouse&) = delete;
-  CleanHouse& operator=(const CleanHouse&) = delete;
-
   Vec3 focus(const World& world, const void*) const override { return broom_point(world, kBroomBottom); }
 
   void control(World& world, void* state, const float* action) const override {
@@ -207,6 +205,10 @@ class CleanHouse final : public PropTask {
     Motion m = world.body(kTrash);
     for (int k = 0; k < 2; ++k) m.X.p[k] += reset_noise() * stream.signed_unit();
     world.set_body(kTrash, m);
+  }
+
+  void check_own_state(const void* state) const override {
+    check_point("start of the chair", static_cast<const State*>(state)->chair);
   }
 
   void start(World& world, void* state) const override {
@@ -266,14 +268,14 @@ class CleanHouse final : public PropTask {
     OccupancyConfig config;
     config.resolution = resolution;
     config.memory = kMapMemory;
-    map_ = Occupancy::create(config, host());
+    map_.reset(Occupancy::create(config, host()));
     Vector<Camera> cameras;
     for (const CameraSpec& c : kCameras)
       if (same_name(c.name, "above") || same_name(c.name, "side_right") || same_name(c.name, "side_left"))
         cameras.push_back({c.name, c.eye, c.target, c.fov_y});
     const int32_t chair = kChair;
     scan_scene(scene(), false, &chair, 1, cameras.data(), static_cast<int32_t>(cameras.size()), kMapRays,
-               map_);
+               map_.get());
   }
 
   int32_t parts_in_map(const World& world) const {
@@ -309,7 +311,10 @@ class CleanHouse final : public PropTask {
   double chair_limit_, bottom_, palm_limit_, handle_height_, trash_height_, success_, rolling_, grip_;
   Vec3 goal_;
   Vector<int32_t> broom_chair_, hand_chair_;
-  Occupancy* map_ = nullptr;
+  struct DestroyMap {
+    void operator()(Occupancy* map) const { Occupancy::destroy(map); }
+  };
+  std::unique_ptr<Occupancy, DestroyMap> map_;  // gives its memory back also when a constructor throws
 };
 
 // Rewards are near 30 a step.

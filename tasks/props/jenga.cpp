@@ -5,6 +5,7 @@
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/props/jenga_tower.hpp"
 #include "tasks/props/prop_task.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -102,6 +103,10 @@ class Jenga final : public PropTask {
   }
 
  protected:
+  void check_own_state(const void* state) const override {
+    for (const Vec3& p : static_cast<const State*>(state)->start) check_point("start of a block", p);
+  }
+
   void start(World& world, void* state) const override {
     for (int i = 0; i <= kJengaBlocks; ++i) static_cast<State*>(state)->start[i] = world.body(i).X.p;
   }

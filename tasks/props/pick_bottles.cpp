@@ -6,6 +6,7 @@
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/props/bottles.hpp"
 #include "tasks/props/prop_task.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -144,6 +145,12 @@ class PickBottles final : public PropTask {
       for (int k = 0; k < 2; ++k) m.X.p[k] += reset_noise() * stream.signed_unit();
       world.set_body(i, m);
     }
+  }
+
+  void check_own_state(const void* state) const override {
+    const State& s = *static_cast<const State*>(state);
+    check_numbers("start of a bottle", s.start_y, 2);
+    check_numbers("height at rest", &s.rest, 1);
   }
 
   void start(World& world, void* state) const override {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "tasks/state_check.hpp"
+
 namespace rdm {
 
 void add_throw_task_options(const ThrowConfig& plan, OptionTable& table) {
@@ -57,6 +59,14 @@ void ThrowTask::reset(World& world, void* state, Stream& stream) const {
   State& s = *static_cast<State*>(state);
   rig().reset(game_.joint_noise, game_.joint_noise_literal, world, rig_state(state), stream);
   reset_object(game_, world, &s.game, stream);
+}
+
+void ThrowTask::check_own_state(const void* state) const {
+  const State& s = *static_cast<const State*>(state);
+  check_goal(s.game);
+  check_integer("near", s.game.near, 0, max_steps());
+  check_integer("touching", s.release.touching, 0, 1);
+  check_integer("thrown", s.release.thrown, 0, 1);
 }
 
 Verdict ThrowTask::judge(World& world, void* state, int32_t) const {

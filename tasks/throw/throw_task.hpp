@@ -44,6 +44,7 @@ class ThrowTask : public HandTask {
     Release* release;
   };
   ThrowTask(const ThrowConfig& plan, const Options& options, SceneDef scene);
+  void check_own_state(const void* state) const override;
   virtual void judge_costs(const Step& step, Verdict* verdict) const = 0;
 
   const ThrowSetup& game() const { return game_; }

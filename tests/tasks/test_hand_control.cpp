@@ -38,7 +38,7 @@ Vec3 drift(const World& w, int32_t hand) {
   return (1 / mass) * sum;
 }
 
-// Specification, acceptance check 8: the terminal speed is force / (100/s times the hand's mass).
+// The terminal speed is force / (base_damping 100/s times the hand's mass).
 TEST_F(HandRigTest, FullForceGivesTheTerminalSpeed) {
   for (const char* engine : kEngines)
     for (const double scale : {0.05, 0.1}) {

@@ -55,7 +55,7 @@ TEST_F(HandOverWallTask, Dimensions) {
   EXPECT_NEAR(p->world(0).base(1).X.p.y, -1.05, 1e-12);
 }
 
-// Specification, acceptance check 11.
+// A ball shot level through the middle of the hole.
 TEST_F(HandOverWallTask, AShotThroughTheHoleCostsNothing) {
   for (const char* engine : kEngines) {
     const Shot s = shoot({{"engine", engine, 0}}, 0);

@@ -10,14 +10,8 @@
 namespace rdm {
 namespace {
 
-constexpr double kStateBound = 1e6;       // m, m/s, rad/s; a body beyond it has diverged
 constexpr int32_t kMaxOdeIterations = 8;  // more would draw from a process-wide seed
-constexpr double kMaxBodySpin = 100.0;    // rad/s, of free bodies
-constexpr double kUnitSlack = 1e-6;       // of a saved orientation
-
-bool bounded(const Vec3& v) {
-  return std::fabs(v.x) < kStateBound && std::fabs(v.y) < kStateBound && std::fabs(v.z) < kStateBound;
-}
+constexpr double kTurnTolerance = 1e-6;   // between a saved quaternion and its matrix
 
 // What the solver's working memory is taken for: a purpose of its own, because it serves all worlds that
 // share it. ODE gives the old block back before it asks for a larger one, and keeps pointing at it when that
@@ -229,26 +223,18 @@ void OdeWorld::links_changed(int32_t articulation) {
 }
 
 void OdeWorld::set_body(int32_t i, const Motion& m) {
-  if (!finite(m.X.p) || !finite(m.v) || !finite(m.w))
-    fail(Code::kArgument, "set_body: body %d is not finite", i);
-  const Quat q = normalized(m.X.q);
-  if (!std::isfinite(q.w)) fail(Code::kArgument, "set_body: body %d has no unit quaternion", i);
+  const Motion checked = checked_motion("set_body", i, m);
   const OdeScope scope;
-  write_pose(body_ids_[i], m.X.p, q, to_matrix(q));
-  write_velocity(body_ids_[i], m.v, m.w);
-  bodies_[i] = {{m.X.p, q}, m.v, m.w};
+  write_pose(body_ids_[i], checked.X.p, checked.X.q, to_matrix(checked.X.q));
+  write_velocity(body_ids_[i], checked.v, checked.w);
+  bodies_[i] = checked;
 }
 
 void OdeWorld::set_base(int32_t articulation, const Motion& m) {
   if (!tree_.base(articulation))
     fail(Code::kState, "set_base: the base of articulation %d is fixed", articulation);
-  if (!finite(m.X.p) || !finite(m.v) || !finite(m.w))
-    fail(Code::kArgument, "set_base: articulation %d is not finite", articulation);
-  const Quat q = normalized(m.X.q);
-  if (!std::isfinite(q.w))
-    fail(Code::kArgument, "set_base: articulation %d has no unit quaternion", articulation);
   const OdeScope scope;
-  put_base(articulation, {{m.X.p, q}, m.v, m.w});
+  put_base(articulation, checked_motion("set_base", articulation, m));
 }
 
 void OdeWorld::put_base(int32_t articulation, const Motion& m) {
@@ -481,32 +467,19 @@ void OdeWorld::save(Writer& out) const {
 void OdeWorld::check_state(Reader in) const {
   if (in.value<int32_t>() != scene_->num_links || in.value<int32_t>() != scene_->num_bodies)
     fail(Code::kFormat, "world state: it is of another scene");
-  bool good = (in.value<uint32_t>() & ~(kStatusContactOverflow | kStatusDiverged)) == 0;
-  const double margin = scene_->def.solver.limit_margin;
-  for (int32_t i = 0; i < scene_->num_links; ++i) {
-    const JointDef& joint = scene_->link(i).joint;
-    const auto q = in.value<double>();
-    good &= q >= joint.lower - margin && q <= joint.upper + margin;
-  }
-  for (int32_t i = 0; i < scene_->num_links; ++i) good &= std::fabs(in.value<double>()) < kStateBound;  // qd
-  const auto left = 2 * static_cast<size_t>(scene_->num_links) + 6 * scene_->sensors.size();
-  for (size_t i = 0; i < left; ++i) good &= std::isfinite(in.value<double>());
+  bool good = sound_rows(in, *scene_);
   int32_t count = scene_->num_bodies;
   for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a)
     count += tree_.base(a) ? 1 : 0;
-  for (int32_t i = 0; i < count; ++i) good &= sound(in.value<BodyState>());
+  for (int32_t i = 0; i < count; ++i) good &= sound_body(in.value<BodyState>());
   if (!good) fail(Code::kFormat, "world state: a number is not finite or out of range");
 }
 
-bool OdeWorld::sound(const BodyState& state) {
-  const Quat& q = state.q;
-  const double unit = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-  if (!(std::fabs(unit - 1) < kUnitSlack)) return false;
-  const Mat3 R = to_matrix(q);
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c)
-      if (!(std::fabs(R(r, c) - state.R(r, c)) < kUnitSlack)) return false;
-  return bounded(state.p) && bounded(state.v) && bounded(state.w);
+bool OdeWorld::sound_body(const BodyState& state) {
+  const Mat3 R = to_matrix(state.q);
+  for (size_t i = 0; i < 9; ++i)
+    if (!bounded(R.m[i] - state.R.m[i], kTurnTolerance)) return false;
+  return sound({{state.p, state.q}, state.v, state.w});
 }
 
 void OdeWorld::load(Reader& in) {

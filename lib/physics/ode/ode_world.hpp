@@ -71,7 +71,7 @@ class OdeWorld final : public World {
   void put_back();
   void restart_solver();
   struct BodyState;
-  static bool sound(const BodyState& state);
+  static bool sound_body(const BodyState& state);
   void check_state(Reader in) const;
   void save_body(Writer& out, dBodyID body) const;
   void load_body(Reader& in, dBodyID body);
