@@ -114,6 +114,7 @@ void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::
   const Collider::Found found =
       collider->collide(*model.scene, poses, s->contacts, s->contact_pairs, s->touched);
   s->num_contacts = found.count;
+  if (found.failed) s->diverged = true;
   if (found.overflow) s->status |= kStatusContactOverflow;
   for (int32_t i = 0; i < s->num_contacts; ++i) {
     const float* center = bounds[s->contacts[i].shape_a].center;

@@ -9,7 +9,9 @@
 #include <immintrin.h>
 #endif
 
+#include "base/error.hpp"
 #include "physics/ode/ode_convert.hpp"
+#include "physics/ode/ode_guard.hpp"
 
 namespace rdm {
 namespace {
@@ -107,6 +109,7 @@ Capsule capsule_around(const SceneShape& shape) {
 }
 
 Collider::~Collider() {
+  const OdeScope scope;
   for (int32_t i = 0; geoms_ && i < num_shapes_; ++i)
     if (geoms_[i].id) dGeomDestroy(geoms_[i].id);
 }
@@ -123,6 +126,7 @@ void Collider::carve(const Scene& scene, Arena& arena) {
 }
 
 void Collider::make(const Scene& scene) {
+  const OdeScope scope;
   for (size_t i = 0; i < scene.shapes.size(); ++i) {
     const SceneShape& s = scene.shapes[i];
     moves_[i] = scene.moves(s);
@@ -250,9 +254,20 @@ void Collider::add_points(const Scene& scene, Poses& poses, int32_t pair, Contac
 
 Collider::Found Collider::collide(const Scene& scene, Poses& poses, Contact* contacts, int32_t* pairs,
                                   uint8_t* touched) {
+  Found found = {0, false, false};
+  try {
+    const OdeScope scope;
+    search(scene, poses, contacts, pairs, touched, &found);
+  } catch (const Error&) {
+    found.failed = true;
+  }
+  return found;
+}
+
+void Collider::search(const Scene& scene, Poses& poses, Contact* contacts, int32_t* pairs, uint8_t* touched,
+                      Found* found) {
   ++search_;
   update_boxes(scene);
-  Found found = {0, false};
   int32_t robots[2] = {-1, -1};  // whose shapes are listed in neighbours_
   for (const PairRun& run : scene.runs) {
     if (run.shape >= 0 && !near(bounds_[run.shape], boxes_[run.articulation])) continue;
@@ -272,13 +287,13 @@ Collider::Found Collider::collide(const Scene& scene, Poses& poses, Contact* con
       for (int32_t k = 0; k < count; k += 4) bits |= uint64_t{near_four(list + k)} << k;
       if (count < kBatch) bits &= (uint64_t{1} << count) - 1;
       for (; bits != 0; bits &= bits - 1)
-        add_points(scene, poses, list[std::countr_zero(bits)], contacts, pairs, touched, &found);
+        add_points(scene, poses, list[std::countr_zero(bits)], contacts, pairs, touched, found);
     }
   }
-  return found;
 }
 
 double Collider::overlap(const Scene& scene, Poses& poses, int32_t body) {
+  const OdeScope scope;
   ++search_;
   const auto carries = [&](int32_t shape) {
     const SceneShape& s = scene.shapes[static_cast<size_t>(shape)];

@@ -35,6 +35,7 @@ class Collider {
   struct Found {
     int32_t count;
     bool overflow;
+    bool failed;  // ODE refused a pose: points may be missing
   };
 
   Collider() = default;
@@ -49,7 +50,7 @@ class Collider {
   Bound* bounds() { return bounds_; }
 
   // Contact points in the order of the pairs, without force; `pairs` [contacts_max] gets each point's pair;
-  // touched[] is only set.
+  // touched[] is only set. Never throws.
   Found collide(const Scene& scene, Poses& poses, Contact* contacts, int32_t* pairs, uint8_t* touched);
   // Deepest overlap of a body's shapes with all that it may touch, m.
   double overlap(const Scene& scene, Poses& poses, int32_t body);
@@ -70,6 +71,8 @@ class Collider {
   void mark_neighbours(const Scene& scene, int32_t articulation, const Box& box);
   static bool near(const Bound& bound, const Box& box);
   int touch(Poses& poses, int32_t pair, int most, dContactGeom* out);
+  void search(const Scene& scene, Poses& poses, Contact* contacts, int32_t* pairs, uint8_t* touched,
+              Found* found);
   void add_points(const Scene& scene, Poses& poses, int32_t pair, Contact* contacts, int32_t* pairs,
                   uint8_t* touched, Found* found);
   void put(Poses& poses, int32_t shape);

@@ -21,12 +21,26 @@ dContact describe(const SolverDef& solver, const dContactGeom& geom, double mu) 
   return contact;
 }
 
+// ODE makes two poses, and forgets the first when it is refused the second.
+void make_offset(dGeomID geom, dBodyID body) {
+  try {
+    dGeomSetOffsetPosition(geom, 0, 0, 0);
+  } catch (...) {
+    void* const pose = const_cast<dReal*>(dGeomGetPosition(geom));  // stands at its beginning
+    if (pose != dBodyGetPosition(body)) dFree(pose, 0);
+    throw;
+  }
+}
+
 }  // namespace
 
-OdeContacts::~OdeContacts() {
+void OdeContacts::destroy() {
   if (group_) dJointGroupDestroy(group_);
-  for (int32_t i = 0; shapes_ && i < num_shapes_; ++i)
+  group_ = nullptr;
+  for (int32_t i = 0; shapes_ && i < num_shapes_; ++i) {
     if (shapes_[i].geom.id) dGeomDestroy(shapes_[i].geom.id);
+    shapes_[i].geom.id = nullptr;
+  }
 }
 
 void OdeContacts::carve(const Scene& scene, Arena& arena) {
@@ -67,6 +81,7 @@ void OdeContacts::make_geom(const Scene& scene, int32_t index, dBodyID body, con
   if (turned || norm(shape.offset) != 0) {
     dQuaternion q;
     to_ode(X_LS.q, q);
+    make_offset(shape.geom.id, body);
     dGeomSetOffsetPosition(shape.geom.id, shape.offset.x, shape.offset.y, shape.offset.z);
     dGeomSetOffsetQuaternion(shape.geom.id, q);
   }

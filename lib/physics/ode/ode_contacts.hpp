@@ -11,7 +11,6 @@ namespace rdm {
 class OdeContacts {
  public:
   OdeContacts() = default;
-  ~OdeContacts();
   OdeContacts(const OdeContacts&) = delete;
   OdeContacts& operator=(const OdeContacts&) = delete;
 
@@ -20,6 +19,8 @@ class OdeContacts {
   // and 0 for shapes at rest, which stand at X_WC * X_LS.
   void make_geom(const Scene& scene, int32_t shape, dBodyID body, const Vec3& com, const Pose& X_WC);
   void make_group();
+  // Ends what was made, as far as it was. Before its bodies go.
+  void destroy();
   // Fills the group with as many contacts as may ever be, between the given bodies, so that ODE's memory
   // is all there before the first step; empty() follows after one solver step.
   void fill(dWorldID world, const Scene& scene, const dBodyID* bodies, int32_t count);
