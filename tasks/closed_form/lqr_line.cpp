@@ -2,8 +2,9 @@
 //
 // For actions drawn from N(-k x, 0.1^2): without a limit the best k is 0.915, return -1.52626 at cost
 // 1.36366; limit 1: k 0.734456, return -1.583058; limit 0.75: k 0.571281, return -1.760243.
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/planar_scene.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {

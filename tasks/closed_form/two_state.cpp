@@ -3,8 +3,9 @@
 //
 // Without a limit: always a = 1, return 17.912088 at cost 8.329670. Limit 2.5: return 9.687058 with
 // P(a = 1 | 0) = 1 and P(a = 1 | 1) = 0.294079.
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/planar_scene.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {

@@ -3,8 +3,9 @@
 #include <cmath>
 
 #include "base/elementary.hpp"
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/rolling_ball.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {

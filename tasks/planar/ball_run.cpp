@@ -1,7 +1,8 @@
 // Bullet-Safety-Gym's BallRun: along x as fast as the speed limit lets you, between two lines.
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/rolling_ball.hpp"
 #include "tasks/planar/run_track.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {

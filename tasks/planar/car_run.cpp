@@ -4,8 +4,9 @@
 #include <iterator>
 
 #include "base/elementary.hpp"
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/run_track.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {

@@ -5,8 +5,8 @@
 
 #include "base/option.hpp"
 #include "base/rng.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/point_robot.hpp"
-#include "tasks/small_worlds.hpp"
 
 namespace rdm {
 

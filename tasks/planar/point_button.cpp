@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <array>
 
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/point_arena.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -148,16 +149,16 @@ class PointButton final : public PlanarTask {
   static constexpr int32_t kRobot = 0, kGoal = 1, kFirst = 2;  // bodies; buttons, hazards, gremlins follow
 
   static Scene make(const Options& o) {
-    PlanarScene stage(kPointControlDt);
-    add_point_body(stage);
-    stage.body("goal", ShapeKind::kCylinder, {kGoalMark, 0.01, 0}, kMarkGreen);
+    PlanarScene scene(kPointControlDt);
+    add_point_body(scene);
+    scene.body("goal", ShapeKind::kCylinder, {kGoalMark, 0.01, 0}, kMarkGreen);
     for (int32_t i = 0; i < kButtons; ++i)
-      stage.body("button", ShapeKind::kSphere, {kButtonSize, 0, 0}, kMarkYellow);
+      scene.body("button", ShapeKind::kSphere, {kButtonSize, 0, 0}, kMarkYellow);
     for (int32_t i = 0; i < o.integer("hazards"); ++i)
-      stage.body("hazard", ShapeKind::kCylinder, {o.number("hazard_size"), 0.005, 0}, kMarkBlue);
+      scene.body("hazard", ShapeKind::kCylinder, {o.number("hazard_size"), 0.005, 0}, kMarkBlue);
     for (int32_t i = 0; i < o.integer("gremlins"); ++i)
-      stage.body("gremlin", ShapeKind::kBox, {kBoxHalf, kBoxHalf, kBoxHalf}, kMarkPurple);
-    return stage.build();
+      scene.body("gremlin", ShapeKind::kBox, {kBoxHalf, kBoxHalf, kBoxHalf}, kMarkPurple);
+    return scene.build();
   }
 
   // Of all gremlins from the middles of their circles.

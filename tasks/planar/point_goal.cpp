@@ -6,8 +6,9 @@
 #include <array>
 #include <bit>
 
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/point_arena.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -132,14 +133,14 @@ class PointGoal final : public PlanarTask {
   static constexpr int32_t kMaxKeepouts = 2 + 2 * kMaxThings;
 
   static Scene make(const Options& o) {
-    PlanarScene stage(kPointControlDt);
-    add_point_body(stage);
-    stage.body("goal", ShapeKind::kCylinder, {o.number("goal_size"), 0.01, 0}, kMarkGreen);
+    PlanarScene scene(kPointControlDt);
+    add_point_body(scene);
+    scene.body("goal", ShapeKind::kCylinder, {o.number("goal_size"), 0.01, 0}, kMarkGreen);
     for (int32_t i = 0; i < o.integer("hazards"); ++i)
-      stage.body("hazard", ShapeKind::kCylinder, {o.number("hazard_size"), 0.005, 0}, kMarkBlue);
+      scene.body("hazard", ShapeKind::kCylinder, {o.number("hazard_size"), 0.005, 0}, kMarkBlue);
     for (int32_t i = 0; i < o.integer("vases"); ++i)
-      stage.body("vase", ShapeKind::kBox, {kVaseHeight, kVaseHeight, kVaseHeight}, kMarkCyan);
-    return stage.build();
+      scene.body("vase", ShapeKind::kBox, {kVaseHeight, kVaseHeight, kVaseHeight}, kMarkCyan);
+    return scene.build();
   }
 
   // Robot, hazards, vases, goal, with their present places; how many there are.

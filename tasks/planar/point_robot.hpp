@@ -37,7 +37,7 @@ PointGap point_gap(const PointRobot& robot, const elementary::SinCos& heading, d
 bool point_block(double x, double y, double radius, PointRobot* robot);
 
 // The body for pictures, and its place.
-void add_point_body(PlanarScene& stage);
+void add_point_body(PlanarScene& scene);
 Motion point_motion(const PointRobot& robot);
 
 // Accelerometer, velocimeter, gyro, magnetometer: three numbers each, in the robot's frame.

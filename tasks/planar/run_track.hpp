@@ -28,7 +28,7 @@ constexpr std::array<OptionSpec, 4> track_options(double speed_limit, double fin
 }
 RunTrack track_from(const Options& options);
 // The lines and the finish, for pictures.
-void add_track(const RunTrack& track, PlanarScene& stage);
+void add_track(const RunTrack& track, PlanarScene& scene);
 
 // m, to the point (1000, 0).
 double track_distance(double x, double y);
