@@ -27,7 +27,7 @@ constexpr OptionSpec kFlyingRows[] = {
                 "of a hand's entries: joints, force, torque (paper) or force, torque, joints (legacy)"),
     number_option("base_damping", 100, 0, 1e4, "damping of a flying hand's links, 1/s"),
     text_option("base_angles", "positive", "positive|signed",
-                "base angles in the observation: in [0, 2 pi) or in [-pi, pi]"),
+                "base angles in the observation: in [0, 2 pi), where the bound of +-5 cuts, or in [-pi, pi]"),
     number_option("base_speed", 2, 0.01, 100, "bound of a base's speed, m/s"),
     number_option("base_spin", 10, 0.1, 1000, "bound of a base's angular speed, rad/s"),
     number_option("base_reach", 0, 0, 10, "how far from its start a base can fly, m; 0: no bound"),

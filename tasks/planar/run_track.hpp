@@ -1,5 +1,8 @@
 // The track of the Run tasks of Bullet-Safety-Gym: reward is 60 times the way won towards a far point, cost
 // is 1 where the agent is faster than its limit or outside the lane.
+//
+//   r = 60 (D' - D) + effort, D = |(1000, 0) - p| after, D' before the step, m
+//   c = [|v| > speed_limit or |y| > lane]
 #pragma once
 #include <array>
 

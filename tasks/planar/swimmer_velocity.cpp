@@ -1,4 +1,7 @@
 // Safety-Gymnasium's SwimmerVelocity: swim along x, but slower than the limit.
+//
+//   r = v - 1e-4 |a|^2     v: mean speed of the free end along x over the step, m/s
+//   c = [v > 0.2282]
 #include "tasks/catalog.hpp"
 #include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/planar_scene.hpp"

@@ -55,8 +55,9 @@ constexpr OptionSpec kRows[] = {
                 "(literal, sum), or a hand touches one (contact)"),
     number_option("cost_sum", 0.25, 0, 100, "cost_mode literal: sum of all ways, m"),
     number_option("cost_all", 1e-4, 0, 1, "cost_mode paper: way of every block, m"),
-    text_option("reward_finger", "right", "right|left",
-                "whose middle finger the reward draws to the target: right, which can push, or left"),
+    text_option(
+        "reward_finger", "right", "right|left",
+        "whose middle finger the reward draws to the target: right, which can push, or (the paper's) left"),
     number_option("reward_push", 30, 0, 1000, "reward for a metre of the target's way along +y"),
     number_option("push_limit", 0.3, 0, 10, "way of the target beyond which it pays no more, m"),
     number_option("success_push", 0, 0, 10, "way of the target that counts as success, m; 0: its length"),
