@@ -4,6 +4,7 @@
 #include "redman/redman_map.h"
 
 #if RDM_WITH_SIM
+#include "base/text.hpp"
 #include "sense/map/occupancy.hpp"
 #include "sense/scene_shapes.hpp"
 
@@ -62,7 +63,7 @@ MapFormat format_of(const char* path) {
   const size_t n = std::strlen(path);
   if (n >= 3 && same_name(path + n - 3, ".bt")) return MapFormat::kBinary;
   if (n >= 3 && same_name(path + n - 3, ".ot")) return MapFormat::kFull;
-  fail(Code::kArgument, "path: %.64s ends neither in .bt nor in .ot", path);
+  fail(Code::kArgument, "path: %s ends neither in .bt nor in .ot", Quoted(path).text);
 }
 
 }  // namespace

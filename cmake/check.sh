@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves]: installs what the tests need, builds, and runs them.
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|coverage]: installs what the tests need, builds, and runs them.
 # The last line says how many passed and failed; the exit status is 0 when none failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -58,6 +58,18 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
+  coverage)
+    # Which lines the tests run: a row a file, the least covered first, in build/coverage.txt; the sum is printed.
+    need gcovr
+    configure coverage
+    build coverage
+    find build/coverage -name '*.gcda' -delete
+    run_tests coverage -LE 'slow|format'
+    status=$?
+    gcovr --root . --object-directory build/coverage --filter '(lib|tasks|algos|capi)/' --exclude-throw-branches \
+      --sort-uncovered --txt build/coverage.txt --print-summary -j "$(nproc)" | grep '^lines' >&2
+    exit $status
+    ;;
   halves)
     # Each half builds, passes its tests and installs without the other.
     for half in SIM LEARN; do
@@ -66,5 +78,5 @@ case $mode in
       run_tests without-$half -LE slow || exit 1
     done
     ;;
-  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves]" ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|coverage]" ;;
 esac

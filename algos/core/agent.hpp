@@ -93,7 +93,9 @@ class Agent {
 
   virtual void write_policy_file(Writer& out) = 0;  // const but for scratch
   virtual void save(Writer& out) const = 0;         // Error(kState) inside a horizon
-  virtual void load(const void* bytes, size_t size) = 0;
+  // Error(kFormat) unless load would take these bytes; changes nothing.
+  virtual void check_state(const void* bytes, size_t size) = 0;
+  virtual void load(const void* bytes, size_t size) = 0;  // changes nothing when it fails
 
   virtual const AgentConfig& config() const = 0;  // pointers inside are not valid any more
 

@@ -1,6 +1,7 @@
 #include "algos/core/collector.hpp"
 
 #include <cstring>
+#include <limits>
 
 #include "base/elementary.hpp"
 #include "base/error.hpp"
@@ -9,6 +10,8 @@
 
 namespace rdm {
 namespace {
+
+constexpr auto kMaxFloat = static_cast<double>(std::numeric_limits<float>::max());
 
 // Zero times a number that is not finite is not a number.
 bool all_finite(const float* x, size_t count) {
@@ -277,12 +280,13 @@ int32_t Collector::estimate(const float* last_obs) {
 
 void Collector::visit(StateIo& io) {
   io.section("COLL");
-  io.integer(env_steps_, 0, int64_t{1} << 62);
+  io.counter(env_steps_);
   for (Normalizer* n : {&normalizer_, &reward_scale_, &cost_scale_}) {
     const auto dim = static_cast<size_t>(n->dim);
-    io.number(n->count, 0, 1e300);
-    io.numbers(n->mean, dim, -1e300, 1e300);
-    io.numbers(n->m2, dim, 0, 1e300);
+    // Means of floats, and squares of floats summed over as many as were counted.
+    io.number(n->count, 0, 1e18);
+    io.numbers(n->mean, dim, -kMaxFloat, kMaxFloat);
+    io.numbers(n->m2, dim, 0, 1e100);
   }
   noise_.visit(io);
   episodes_.visit(io);

@@ -1,8 +1,10 @@
 #include "algos/core/fingerprint.hpp"
 
+#include <cmath>
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
@@ -49,10 +51,12 @@ void read_option(Reader& in, Options& o, int32_t i, bool apply) {
   const auto number = in.value<double>();
   if (std::strcmp(key, s.key) != 0) fail(Code::kFormat, "%s: option %s where %s belongs", kWhat, key, s.key);
   if (s.live) {
-    const bool whole =
-        s.kind == OptionKind::kNumber || number == static_cast<double>(static_cast<int64_t>(number));
-    if (!(number >= s.low && number <= s.high) || !whole)
-      fail(Code::kFormat, "%s: option %s is %g", kWhat, s.key, number);
+    const bool good = number >= s.low && number <= s.high &&
+                      (s.kind == OptionKind::kNumber || number == std::floor(number));
+    if (!good) fail(Code::kFormat, "%s: option %s is %g", kWhat, s.key, number);
+    // Without a limit there is no multiplier and no column of the critic for it.
+    if (same_name(s.key, "cost_limit") && (number < 0) != (o.number(s.key) < 0))
+      fail(Code::kFormat, "%s: column 0 is %s a limit there", kWhat, number < 0 ? "without" : "with");
     if (apply) o.set({s.key, nullptr, number}, "agent");
     return;
   }
@@ -60,7 +64,8 @@ void read_option(Reader& in, Options& o, int32_t i, bool apply) {
   char here[kOptionTextSize];
   o.print(i, here);
   if (s.kind == OptionKind::kText)
-    fail(Code::kFormat, "%s: option %s is '%s' there, '%s' in this agent", kWhat, s.key, text, here);
+    fail(Code::kFormat, "%s: option %s is '%s' there, '%s' in this agent", kWhat, s.key, Quoted(text).text,
+         Quoted(here).text);
   fail(Code::kFormat, "%s: option %s is %.9g there, %s in this agent", kWhat, s.key, number, here);
 }
 

@@ -208,7 +208,7 @@ Surrogate Learner::measure(const int32_t* order, int32_t rows, float clip) {
 
 void Learner::visit(StateIo& io) {
   io.section("LEAR");
-  io.integer(skipped_, 0, int64_t{1} << 62);
+  io.counter(skipped_);
 }
 
 }  // namespace rdm

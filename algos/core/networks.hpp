@@ -26,6 +26,7 @@ struct Networks {
   int32_t action_dim = 0;
   float std_low = 0, std_high = 0;  // bounds on the log deviations that the network gives
   float log_share = 0;              // of the innovation in them
+  double input_bound = 0;           // on the magnitude of inputs
   float* params = nullptr;
 
   bool state_std() const { return std_size == 0; }

@@ -13,6 +13,7 @@ namespace {
 
 constexpr char kMagic[8] = {'R', 'D', 'M', 'A', 'G', 'E', 'N', 'T'};
 constexpr uint32_t kVersion = 1;
+constexpr int32_t kMaxEpochs = 1 << 30;                // of a state that loads; as many more do not overflow
 constexpr double kEntropyOfUnit = 1.4189385332046727;  // of a normal with deviation 1
 
 }  // namespace
@@ -214,7 +215,7 @@ bool PolicyGradient::tensor(int32_t index, TensorInfo* out) {
 
 void PolicyGradient::visit_state(StateIo& io) {
   io.section("COUN");
-  io.integer(epoch_, 0, INT32_MAX);
+  io.integer(epoch_, 0, kMaxEpochs);
   io.stream(shuffle_);
   nets_.visit(io);
   collector_.visit(io);
@@ -233,17 +234,24 @@ void PolicyGradient::save(Writer& out) const {
   out.end_file();
 }
 
-void PolicyGradient::load(const void* bytes, size_t size) {
+void PolicyGradient::read_state(const void* bytes, size_t size, bool apply) {
+  Reader in(bytes, size, "agent state");
+  in.begin_file(kMagic, kVersion);
+  read_fingerprint(in, plan_, apply);
+  if (apply) read_live();
+  StateReader io(in, apply);
+  visit_state(io);
+  io.end();
+}
+
+void PolicyGradient::check_state(const void* bytes, size_t size) {
   if (!bytes) fail(Code::kArgument, "agent state: NULL");
-  for (const bool apply : {false, true}) {
-    Reader in(bytes, size, "agent state");
-    in.begin_file(kMagic, kVersion);
-    read_fingerprint(in, plan_, apply);
-    if (apply) read_live();
-    StateReader io(in, apply);
-    visit_state(io);
-    io.end();
-  }
+  read_state(bytes, size, false);
+}
+
+void PolicyGradient::load(const void* bytes, size_t size) {
+  check_state(bytes, size);
+  read_state(bytes, size, true);
   collector_.after_load();
   clamp_log_std(nets_);
   drop_horizon();

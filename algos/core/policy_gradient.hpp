@@ -34,6 +34,7 @@ class PolicyGradient : public Agent {
 
   void write_policy_file(Writer& out) override;
   void save(Writer& out) const override;
+  void check_state(const void* bytes, size_t size) override;
   void load(const void* bytes, size_t size) override;
   const AgentConfig& config() const override { return plan_.config; }
 
@@ -57,6 +58,8 @@ class PolicyGradient : public Agent {
   // Copies live options to where they are used.
   virtual void read_live();
   virtual void visit_state(StateIo& io);
+  // Checks a saved state, or with `apply` takes one that was checked.
+  void read_state(const void* bytes, size_t size, bool apply);
 
   // What learn() leaves for the Epoch: means over samples.
   struct Learned {

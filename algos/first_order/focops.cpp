@@ -52,7 +52,9 @@ void FocopsBase::read_live() {
 }
 
 FocopsRule::FocopsRule(const ResolvedAgentConfig& plan)
-    : lagrange_(plan), mix_(plan.options.flag("multiplier_divide") ? Mix::kSum : Mix::kPlain) {}
+    : lagrange_(plan),
+      count_(plan.num_limited),
+      mix_(plan.options.flag("multiplier_divide") ? Mix::kSum : Mix::kPlain) {}
 
 void FocopsRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t epoch) {
   lagrange_.step(stats, plan, epoch);
@@ -65,7 +67,7 @@ void FocopsRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& plan
 
 void FocopsRule::visit(StateIo& io) {
   lagrange_.visit(io);
-  io.integer(worst_, 0, kMaxCosts);
+  io.integer(worst_, 0, count_ - 1);
 }
 
 namespace {

@@ -38,8 +38,8 @@ class FocopsRule {
 
  private:
   Lagrange lagrange_;
+  int32_t count_ = 0, worst_ = 0;
   Mix mix_ = Mix::kPlain;
-  int32_t worst_ = 0;
 };
 
 using Focops = CostWeighted<FocopsBase, FocopsRule>;

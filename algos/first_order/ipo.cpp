@@ -28,7 +28,7 @@ void BarrierRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& pla
 
 void BarrierRule::visit(StateIo& io) {
   io.section("BARR");
-  io.numbers(slope_, static_cast<size_t>(count_), 0, 1e300);
+  io.numbers(slope_, static_cast<size_t>(count_), 0, kHuge);
 }
 
 void BarrierLoss::aim(const Surrogate& now, const double* violation, int32_t count) {

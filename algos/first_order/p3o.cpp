@@ -4,6 +4,9 @@
 #include "algos/core/option_tables.hpp"
 
 namespace rdm {
+namespace {
+constexpr double kMaxPenalty = 1e9;
+}
 
 SampleLoss penalty_loss(float ratio, float cost, float clip) {
   SampleLoss out;
@@ -50,14 +53,14 @@ void P3o::begin_minibatch(const int32_t* order, int32_t rows) {
 void P3o::visit_state(StateIo& io) {
   Ppo::visit_state(io);
   io.section("P3O ");
-  io.number(kappa_, 0, 1e300);
+  io.number(kappa_, 0, kMaxPenalty);
 }
 
 namespace {
 constexpr std::array kPenaltyOptions = {
     number_option("penalty", 20, 0, 1e6, "kappa, initial weight of the penalty"),
     number_option("penalty_growth", 1, 1, 10, "factor on kappa per epoch", true),
-    number_option("penalty_max", 20, 0, 1e9, "largest kappa", true),
+    number_option("penalty_max", 20, 0, kMaxPenalty, "largest kappa", true),
     flag_option("penalty_clip", true, "clip the cost's ratio too; the peers do not", true),
 };
 constexpr auto kOptions =

@@ -37,7 +37,7 @@ void Cpo::visit_state(StateIo& io) {
   Trpo::visit_state(io);
   io.section("CPO ");
   io.number(nu_, 0, 1e300);
-  io.integer(cost_, 0, kMaxCosts);
+  io.integer(cost_, 0, plan().num_limited - 1);
 }
 
 namespace {

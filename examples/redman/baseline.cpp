@@ -1,10 +1,10 @@
 // `baseline`: what policies without learning get, so that every learning figure has its floor beside it, and
 // the demonstration where the tool carries one.
-#include "actor.hpp"
 #include "commands.hpp"
-#include "draw/text.hpp"
-#include "evaluate.hpp"
-#include "names.hpp"
+#include "common/names.hpp"
+#include "common/text.hpp"
+#include "play/actor.hpp"
+#include "play/evaluate.hpp"
 
 namespace tool {
 namespace {

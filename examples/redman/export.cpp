@@ -2,11 +2,11 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "actor.hpp"
 #include "commands.hpp"
-#include "draw/text.hpp"
-#include "files.hpp"
-#include "network.hpp"
+#include "common/files.hpp"
+#include "common/text.hpp"
+#include "network/network.hpp"
+#include "play/actor.hpp"
 
 namespace tool {
 namespace {

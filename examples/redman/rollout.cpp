@@ -2,10 +2,10 @@
 #include <memory>
 
 #include "commands.hpp"
-#include "draw/text.hpp"
-#include "episodes.hpp"
-#include "files.hpp"
-#include "names.hpp"
+#include "common/files.hpp"
+#include "common/names.hpp"
+#include "common/text.hpp"
+#include "play/episodes.hpp"
 
 namespace tool {
 namespace {

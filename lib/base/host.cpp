@@ -6,6 +6,7 @@
 #include <new>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
@@ -56,6 +57,7 @@ void log(const HostHooks& hooks, LogLevel level, const char* format, ...) {
   va_start(args, format);
   std::vsnprintf(line, sizeof line, format, args);
   va_end(args);
+  clean_text(line);
   hooks.log(hooks.user, static_cast<int32_t>(level), line);
 }
 

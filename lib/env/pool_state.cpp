@@ -38,9 +38,6 @@ void write_episode(const Episode& e, int32_t costs, Writer& out) {
   for (int32_t k = 0; k < costs; ++k) out.value(e.sum_cost[k]);
 }
 
-// No episode comes near it, and sums below it stay finite as floats.
-constexpr double kMaxSum = 1e30;
-
 bool read_flag(Reader& in) {
   const auto flag = in.value<uint8_t>();
   if (flag > 1) fail(Code::kFormat, "state: flag %u", flag);

@@ -5,6 +5,7 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 #include "base/option.hpp"
 #include "base/rng.hpp"
@@ -87,6 +88,15 @@ struct TaskInfo {
   Task* (*make)(const Options& options, const HostHooks& hooks);
   void (*destroy)(Task* task, const HostHooks& hooks);
 };
+// Ends a task that make made with the same hooks.
+struct EndTask {
+  const TaskInfo* info = nullptr;
+  HostHooks hooks;
+  void operator()(Task* task) const { info->destroy(task, hooks); }
+};
+using TaskHandle = std::unique_ptr<Task, EndTask>;
+TaskHandle make_task(const TaskInfo& info, const Options& options, const HostHooks& hooks);
+
 void register_task(const TaskInfo& info);  // before the first pool; static data
 int32_t task_count();
 const TaskInfo& task_at(int32_t index);

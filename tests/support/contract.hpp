@@ -72,6 +72,16 @@ inline rdm_pool_config pool_config(int32_t envs = 2) {
   return c;
 }
 
+// Names of all tasks, for tests of what each of them promises.
+inline std::vector<std::string> task_names() {
+  std::vector<std::string> out;
+  rdm_task t{};
+  t.struct_size = sizeof t;
+  for (int32_t i = 0; i < rdm_task_count(); ++i)
+    if (rdm_task_at(i, &t) == RDM_OK) out.push_back(t.name);
+  return out;
+}
+
 inline rdm_pool* make_pool(const rdm_pool_config& c) {
   rdm_pool* p = nullptr;
   EXPECT_EQ(rdm_pool_create(&p, &c), RDM_OK) << rdm_last_error();

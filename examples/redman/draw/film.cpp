@@ -7,9 +7,9 @@
 #include <csignal>
 #include <cstring>
 
+#include "common/report.hpp"
+#include "common/text.hpp"
 #include "draw/image.hpp"
-#include "draw/text.hpp"
-#include "report.hpp"
 
 extern char** environ;
 

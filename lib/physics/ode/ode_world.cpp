@@ -10,13 +10,7 @@
 namespace rdm {
 namespace {
 
-constexpr double kStateBound = 1e6;       // m, m/s, rad/s; a body beyond it has diverged
 constexpr int32_t kMaxOdeIterations = 8;  // more would draw from a process-wide seed
-constexpr double kMaxBodySpin = 100.0;    // rad/s, of free bodies
-
-bool bounded(const Vec3& v) {
-  return std::fabs(v.x) < kStateBound && std::fabs(v.y) < kStateBound && std::fabs(v.z) < kStateBound;
-}
 
 }  // namespace
 
@@ -188,24 +182,16 @@ void OdeWorld::links_changed(int32_t articulation) {
 }
 
 void OdeWorld::set_body(int32_t i, const Motion& m) {
-  if (!finite(m.X.p) || !finite(m.v) || !finite(m.w))
-    fail(Code::kArgument, "set_body: body %d is not finite", i);
-  const Quat q = normalized(m.X.q);
-  if (!std::isfinite(q.w)) fail(Code::kArgument, "set_body: body %d has no unit quaternion", i);
-  write_pose(body_ids_[i], m.X.p, q, to_matrix(q));
-  write_velocity(body_ids_[i], m.v, m.w);
-  bodies_[i] = {{m.X.p, q}, m.v, m.w};
+  const Motion checked = checked_motion("set_body", i, m);
+  write_pose(body_ids_[i], checked.X.p, checked.X.q, to_matrix(checked.X.q));
+  write_velocity(body_ids_[i], checked.v, checked.w);
+  bodies_[i] = checked;
 }
 
 void OdeWorld::set_base(int32_t articulation, const Motion& m) {
   if (!tree_.base(articulation))
     fail(Code::kState, "set_base: the base of articulation %d is fixed", articulation);
-  if (!finite(m.X.p) || !finite(m.v) || !finite(m.w))
-    fail(Code::kArgument, "set_base: articulation %d is not finite", articulation);
-  const Quat q = normalized(m.X.q);
-  if (!std::isfinite(q.w))
-    fail(Code::kArgument, "set_base: articulation %d has no unit quaternion", articulation);
-  put_base(articulation, {{m.X.p, q}, m.v, m.w});
+  put_base(articulation, checked_motion("set_base", articulation, m));
 }
 
 void OdeWorld::put_base(int32_t articulation, const Motion& m) {
