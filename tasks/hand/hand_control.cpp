@@ -101,7 +101,9 @@ HandControl::HandControl(const HandControlConfig& config, const Options& o, cons
       flying_(config.flying),
       sensor_(same_name(o.text("sensor"), "contact")),
       average_(o.number("action_average")),
-      start_(config.folded && config.robot->poses.folded.count ? config.robot->poses.folded.rows : nullptr) {
+      start_(config.folded && config.robot->poses.folded.count == config.robot->links.count
+                 ? config.robot->poses.folded.rows
+                 : nullptr) {
   for (int32_t i = 0; i < count_; ++i) {
     hands_[i] = find_hand(*config.robot, scene, i);
     bases_[i] = config.bases[i].p;
@@ -139,7 +141,7 @@ const float* HandControl::action(const void* bytes) const {
 }
 
 void HandControl::check_state(const void* bytes) const {
-  constexpr double kOne = 1 + 1e-6;  // rounding included
+  constexpr double kOne = 1 + 1e-3;  // joints are kept as floats, and a range may be narrow
   const auto commands = static_cast<size_t>(count_ * num_actions());
   check_numbers("command", static_cast<const double*>(bytes), commands, kOne);
   check_numbers("action", action(bytes), static_cast<size_t>(action_dim()), 1);

@@ -9,6 +9,7 @@
 // words are "we can not touch other blocks" (column blocks_contact); the default lies between.
 #include <cmath>
 
+#include "base/error.hpp"
 #include "tasks/catalog.hpp"
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/props/jenga_tower.hpp"
@@ -143,6 +144,8 @@ class Jenga final : public PropTask {
         cost_all_(o.number("cost_all")),
         drop_(o.number("drop_limit")),
         extended_(o.flag("extended_obs")) {
+    if (hands().hand(finger_).num_tips <= kMiddle)
+      fail(Code::kUnsupported, "jenga: robot %s has no second finger", hands().hand(finger_).robot->name);
     if (success_ == 0) success_ = 2 * tower.target_end();
     const char* mode = o.text("cost_mode");
     const auto is = [&](const char* a, const char* b) { return same_name(mode, a) || same_name(mode, b); };
