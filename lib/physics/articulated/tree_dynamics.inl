@@ -8,7 +8,7 @@
 // spatial force is (f, n): force and moment about O.
 //
 //   kinematics          R_WJ = R_WP R_PJ Rz(q), p_J = p_P + R_WP p_PJ; w_J = w_P + z qd,
-//                       v_J = v_P + w_P x (p_J - p_P): RBDA 4.3, the first pass of RNEA
+//                       v_J = v_P + w_P x (p_J - p_P): the first pass of RNEA, RBDA 5.3
 //   orientations        the same for quaternions
 //   link_inertias       c and the moments about it in world axes, R I R^T
 //   motion_subspaces    the column of a joint: revolute (z, p_J x z), prismatic (0, z); RBDA 4.4
