@@ -1,7 +1,6 @@
 // rdm_map_*: occupancy maps.
 #include "base/file.hpp"
 #include "capi/handles.hpp"
-#include "redman/redman_map.h"
 
 #if RDM_WITH_SIM
 #include "base/text.hpp"

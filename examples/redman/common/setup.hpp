@@ -30,6 +30,9 @@ struct AgentSettings {
   Options options;
 };
 
+// Refuses what is above `most`, and what is no number: CLI11's own checks let nan pass.
+CLI::Validator finite_to(double most);
+
 // Flags that several subcommands share. The first returns --task.
 CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help);
 void add_set_flag(CLI::App& command, std::vector<std::string>& sets);
