@@ -4,6 +4,7 @@
 
 #include "algos/core/option_tables.hpp"
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
@@ -34,35 +35,8 @@ int32_t algo_find(const char* name) {
     names[i] = kRows[i]->info.name;
     if (same_name(names[i], name)) return i;
   }
-  fail(Code::kNotFound, "algo %.64s: unknown; nearest is %s", name,
+  fail(Code::kNotFound, "algo %s: unknown; nearest is %s", Quoted(name).text,
        names[nearest_name(name, names, algo_count())]);
-}
-
-size_t Agent::memory(const AgentConfig& config) {
-  ResolvedAgentConfig plan = make_plan(config);
-  const size_t rows = options_bytes(plan.row->info);
-  const AlgoRow& row = *plan.row;
-  return row.measure(std::move(plan)) + rows + Workers::memory(config.hooks, config.num_threads);
-}
-
-Agent* Agent::create(const AgentConfig& config) {
-  const HostScope scope(config.hooks);
-  ResolvedAgentConfig plan = make_plan(config);
-  const AlgoRow& row = *plan.row;
-  PolicyGradient* agent = row.make(config.hooks, std::move(plan));
-  try {
-    agent->open(config);
-  } catch (...) {
-    row.end(agent);
-    throw;
-  }
-  return agent;
-}
-
-void Agent::destroy(Agent* a) {
-  if (!a) return;
-  auto* agent = static_cast<PolicyGradient*>(a);
-  agent->row().end(agent);
 }
 
 }  // namespace rdm

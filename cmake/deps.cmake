@@ -13,16 +13,8 @@ if(REDMAN_SIM)
   set(RDM_VERSION_TEXT_ODE ${ODE_VERSION})
   set(RDM_VERSION_TEXT_CCD ${ccd_VERSION})
 
-  # OctoMap is linked once lib/sense uses it; its version is recorded in any case.
-  find_package(octomap QUIET)
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/sense/occupancy*)
-  foreach(source ${sources})
-    file(STRINGS ${source} lines REGEX "#include <octomap/")
-    if(lines)
-      find_package(octomap REQUIRED)
-      set(RDM_OCTOMAP octomap octomath)
-    endif()
-  endforeach()
+  find_package(octomap REQUIRED)
+  set(RDM_OCTOMAP octomap octomath)
   set(RDM_VERSION_TEXT_OCTOMAP ${octomap_VERSION})
 endif()
 

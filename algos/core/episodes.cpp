@@ -4,8 +4,7 @@
 
 namespace rdm {
 namespace {
-constexpr double kBound = 1e300;
-constexpr int64_t kMost = int64_t{1} << 62;
+constexpr double kBound = 1e60;  // on sums of floats over an episode
 }  // namespace
 
 void Episodes::carve(Arena& arena, int32_t num_envs, int32_t cost_dim, int32_t cost_window) {
@@ -87,19 +86,18 @@ void Episodes::visit(StateIo& io) {
   io.section("EPIS");
   const auto n = static_cast<size_t>(num_envs_), k = static_cast<size_t>(cost_dim_);
   const auto c = static_cast<size_t>(capacity_);
-  io.integer(finished_, 0, kMost);
-  io.integer(marked_, 0, kMost);
+  io.integer(marked_, 0, io.integer(finished_, 0, kMaxCounter));
   io.numbers(ret_, n, -kBound, kBound);
   io.numbers(cost_, n * k, -kBound, kBound);
   io.numbers(weighed_, n * k, -kBound, kBound);
-  for (size_t i = 0; i < n; ++i) io.integer(length_[i], 0, kMost);
-  io.bytes(success_, n);
+  for (size_t i = 0; i < n; ++i) io.counter(length_[i]);
+  io.flags(success_, n);
   io.numbers(done_ret_, c, -kBound, kBound);
   io.numbers(done_cost_, c * k, -kBound, kBound);
   io.numbers(done_charged_, c * k, -kBound, kBound);
-  for (size_t i = 0; i < c; ++i) io.integer(done_length_[i], 0, kMost);
-  io.bytes(done_fall_, c);
-  io.bytes(done_success_, c);
+  for (size_t i = 0; i < c; ++i) io.counter(done_length_[i]);
+  io.flags(done_fall_, c);
+  io.flags(done_success_, c);
 }
 
 }  // namespace rdm

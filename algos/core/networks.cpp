@@ -1,6 +1,7 @@
 #include "algos/core/networks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 
@@ -8,21 +9,54 @@
 
 namespace rdm {
 namespace {
-constexpr double kBound = 3e38;
 constexpr const char* kNames[] = {"actor", "reward_critic", "cost_critic"};
+
+// Bound on what a network of a loaded state may give: far beyond any that learns, and a float still holds its
+// square.
+constexpr double kMaxOutput = 1e18;
+
+// Bound on the magnitude of every sum within a network whose inputs are within +-bound: layer by layer the
+// largest sum of a row's magnitudes. at: where its parameters begin.
+double largest_output(const MlpShape& s, const StateView<float>& params, size_t at, double bound) {
+  double most = bound;
+  for (int32_t l = 0; l < s.num_layers(); ++l) {
+    const auto rows = static_cast<size_t>(s.layer_out(l)), cols = static_cast<size_t>(s.layer_in(l));
+    double widest = 0;
+    for (size_t i = 0; i < rows; ++i) {
+      double sum = 0;
+      for (size_t j = 0; j < cols; ++j)
+        sum += std::abs(static_cast<double>(params[at + s.weight_offset(l) + i * cols + j]));
+      widest =
+          std::max(widest, bound * sum + std::abs(static_cast<double>(params[at + s.bias_offset(l) + i])));
+    }
+    most = std::max(most, widest);
+    bound = s.activation == Activation::kTanh ? 1 : std::max(1.0, widest);
+  }
+  return most;
+}
+
+// Moments that some gradients can have left: with m = sum (1 - a) a^k g_k and v = sum (1 - b) b^k g_k^2 it is
+// |m| <= sqrt(v) (1 - a) / sqrt((1 - b) (1 - a^2 / b)) = 7.27 sqrt(v) (Cauchy and Schwarz), but for squares
+// below the smallest float. So no step is longer than that many learning rates.
+bool moments_agree(const StateView<float>& m, const StateView<float>& v, size_t size) {
+  for (size_t i = 0; i < size; ++i)
+    if (std::abs(static_cast<double>(m[i])) > 8 * std::sqrt(static_cast<double>(v[i])) + 1e-15) return false;
+  return true;
+}
 }  // namespace
 
-Networks carve_networks(Arena& arena, const ResolvedAgentConfig& plan) {
+Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   Networks n;
-  n.shape[Networks::kActor] = plan.actor;
-  n.shape[Networks::kReward] = plan.reward_critic;
-  n.shape[Networks::kCost] = plan.cost_critic;
-  n.count = plan.num_limited > 0 ? 3 : 2;
-  n.action_dim = plan.config.action_dim;
-  n.std_size = plan.state_std() ? 0 : (plan.action_dim() + 15) / 16 * 16;
-  n.std_low = static_cast<float>(elementary::log(plan.options.number("std_min")));
-  n.std_high = static_cast<float>(elementary::log(plan.options.number("std_max")));
-  n.log_share = plan.log_share;
+  n.shape[Networks::kActor] = resolved.actor;
+  n.shape[Networks::kReward] = resolved.reward_critic;
+  n.shape[Networks::kCost] = resolved.cost_critic;
+  n.count = resolved.num_limited > 0 ? 3 : 2;
+  n.action_dim = resolved.config.action_dim;
+  n.std_size = resolved.state_std() ? 0 : (resolved.action_dim() + 15) / 16 * 16;
+  n.std_low = static_cast<float>(elementary::log(resolved.options.number("std_min")));
+  n.std_high = static_cast<float>(elementary::log(resolved.options.number("std_max")));
+  n.log_share = resolved.log_share;
+  n.input_bound = resolved.options.flag("normalize_obs") ? resolved.options.number("obs_clip") : 1e3;
   for (int32_t i = 0; i < n.count; ++i) {
     n.block[i].offset = n.size;
     n.block[i].size = n.shape[i].num_params() + (i == Networks::kActor ? n.std_size : 0);
@@ -33,10 +67,10 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& plan) {
   return n;
 }
 
-void init_networks(const Networks& n, const ResolvedAgentConfig& plan) {
-  const Options& o = plan.options;
+void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
+  const Options& o = resolved.options;
   for (int32_t i = 0; i < n.count; ++i) {
-    Stream stream(plan.config.seed, static_cast<uint32_t>(i), Purpose::kInit);
+    Stream stream(resolved.config.seed, static_cast<uint32_t>(i), Purpose::kInit);
     const double last = i == Networks::kActor ? o.number("last_layer_scale") : 1;
     mlp_init(n.shape[i], stream, static_cast<float>(last), n.net(i));
   }
@@ -44,7 +78,7 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& plan) {
   float* bias = n.net(Networks::kActor) + actor.bias_offset(actor.num_hidden);
   float* log_std = n.state_std() ? bias + n.action_dim : n.log_std();
   for (int32_t j = 0; j < n.action_dim; ++j) {
-    bias[j] = plan.config.initial_mean ? plan.config.initial_mean[j] : 0;
+    bias[j] = resolved.config.initial_mean ? resolved.config.initial_mean[j] : 0;
     log_std[j] = static_cast<float>(elementary::log(o.number("init_std")));
   }
 }
@@ -87,13 +121,16 @@ int32_t Networks::num_tensors() const {
 
 void Networks::visit(StateIo& io) {
   io.section("NETS");
-  io.numbers(params, size, -kBound, kBound);
+  const StateView<float> p = io.numbers(params, size, -kMaxOutput, kMaxOutput);
+  for (int32_t i = 0; p && i < count; ++i)
+    io.require(largest_output(shape[i], p, net_offset(i), input_bound) <= kMaxOutput,
+               "a network whose outputs may be too large");
   io.section("ADAM");
   for (int32_t i = 0; i < count; ++i) {
     Adam& a = block[i].adam;
-    io.integer(a.t, 0, int64_t{1} << 62);
-    io.numbers(a.m, a.size, -kBound, kBound);
-    io.numbers(a.v, a.size, 0, kBound);
+    io.counter(a.t);
+    const StateView<float> m = io.numbers(a.m, a.size, -1e20, 1e20), v = io.numbers(a.v, a.size, 0, 1e38);
+    if (m) io.require(moments_agree(m, v, a.size), "moments that no gradients have");
   }
 }
 

@@ -26,6 +26,7 @@ struct Networks {
   int32_t action_dim = 0;
   float std_low = 0, std_high = 0;  // bounds on the log deviations that the network gives
   float log_share = 0;              // of the innovation in them
+  double input_bound = 0;           // on the magnitude of inputs
   float* params = nullptr;
 
   bool state_std() const { return std_size == 0; }
@@ -50,9 +51,9 @@ struct Networks {
  private:
   void bound_std(int32_t rows, float* y) const;
 };
-Networks carve_networks(Arena& arena, const ResolvedAgentConfig& plan);
+Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved);
 // Weights from the streams (seed, network, init); the actor's last bias is the initial mean.
-void init_networks(const Networks& n, const ResolvedAgentConfig& plan);
+void init_networks(const Networks& n, const ResolvedAgentConfig& resolved);
 void clamp_log_std(const Networks& n);
 // With std_schedule=linear the deviation for the epoch that follows `done` finished ones.
 void schedule_std(const Networks& n, const Options& options, int32_t done);

@@ -1,13 +1,18 @@
 #include "algos/core/noise.hpp"
 
 namespace rdm {
+namespace {
+// Above sigma |z| sqrt(1 - rho^2) / (1 - rho) for sigma <= 1e3 (std_max), |z| < 7 (Stream::normals) and
+// rho <= 0.999.
+constexpr double kMaxNoise = 1e6;
+}  // namespace
 
-void Noise::carve(Arena& arena, const ResolvedAgentConfig& plan) {
-  num_envs_ = plan.config.num_envs;
-  dim_ = plan.config.action_dim;
-  correlation_ = static_cast<float>(plan.options.number("noise_correlation"));
-  stream_ = arena.make<Stream>(plan.num_envs());
-  state_ = arena.make<float>(plan.num_envs() * plan.action_dim());
+void Noise::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
+  num_envs_ = resolved.config.num_envs;
+  dim_ = resolved.config.action_dim;
+  correlation_ = static_cast<float>(resolved.options.number("noise_correlation"));
+  stream_ = arena.make<Stream>(resolved.num_envs());
+  state_ = arena.make<float>(resolved.num_envs() * resolved.action_dim());
 }
 
 void Noise::reset(uint64_t seed) {
@@ -34,7 +39,7 @@ void Noise::end_episode(int32_t env) {
 void Noise::visit(StateIo& io) {
   io.section("NOIS");
   for (int32_t env = 0; env < num_envs_; ++env) io.stream(stream_[env]);
-  io.numbers(state_, static_cast<size_t>(num_envs_) * static_cast<size_t>(dim_), -3e38, 3e38);
+  io.numbers(state_, static_cast<size_t>(num_envs_) * static_cast<size_t>(dim_), -kMaxNoise, kMaxNoise);
 }
 
 }  // namespace rdm

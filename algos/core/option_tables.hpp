@@ -2,12 +2,13 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <span>
 
-#include "algos/core/agent.hpp"
+#include "algos/core/agent_types.hpp"
 
 namespace rdm {
 
-inline constexpr double kHuge = 1e12;
+inline constexpr double kHuge = 1e12, kMaxMultiplier = kHuge, kMaxLearningRate = 10;
 
 // What every algorithm understands.
 inline constexpr std::array kSharedOptions = {
@@ -53,8 +54,9 @@ inline constexpr std::array kSharedOptions = {
     // learning
     integer_option("passes", 10, 1, 10000, "over the data of an epoch"),
     integer_option("minibatches", 4, 1, 1 << 20, "number of minibatches in a pass"),
-    number_option("learning_rate", 3e-4, 0, 10, "Adam rate of the actor", true),
-    number_option("critic_learning_rate", 0, 0, 10, "Adam rate of the critics; 0: learning_rate", true),
+    number_option("learning_rate", 3e-4, 0, kMaxLearningRate, "Adam rate of the actor", true),
+    number_option("critic_learning_rate", 0, 0, kMaxLearningRate,
+                  "Adam rate of the critics; 0: learning_rate", true),
     text_option("lr_schedule", "constant", "constant|linear|kl",
                 "of the actor's rate (linear: of a trust region's radius too): linear falls to 0, kl adapts"),
     text_option("critic_lr_schedule", "constant", "constant|actor",
@@ -63,8 +65,8 @@ inline constexpr std::array kSharedOptions = {
     number_option("kl_target", 0.02, 1e-9, 1e3,
                   "kl schedule: the epoch's mean KL is kept in half to twice this", true),
     number_option("kl_factor", 1.3, 1, 10, "kl schedule: change of the rate per epoch", true),
-    number_option("lr_min", 1e-5, 0, 10, "kl schedule: lowest rate", true),
-    number_option("lr_max", 3e-3, 0, 10, "kl schedule: highest rate", true),
+    number_option("lr_min", 1e-5, 0, kMaxLearningRate, "kl schedule: lowest rate", true),
+    number_option("lr_max", 3e-3, 0, kMaxLearningRate, "kl schedule: highest rate", true),
     number_option("early_stop_kl", 0, 0, 1e3, "stop the passes above this KL over the batch; 0: never", true),
     number_option("entropy", 0, 0, 1e3, "weight of the entropy bonus", true),
     number_option("max_grad_norm", 1, 0, kHuge, "bound on each network's gradient norm; 0: none", true),
@@ -87,7 +89,7 @@ inline constexpr std::array kMultiplierOptions = {
                 "of the multipliers; softplus: Adam on ln(e^l - 1)"),
     number_option("multiplier_init", 0.001, 0, 1e6, "initial multiplier"),
     number_option("multiplier_lr", 0.035, 0, 1e3, "rate of the multiplier per epoch", true),
-    number_option("multiplier_max", 1e6, 0, kHuge, "upper bound on the multiplier", true),
+    number_option("multiplier_max", 1e6, 0, kMaxMultiplier, "upper bound on the multiplier", true),
     number_option("multiplier_gain", 0, 0, 1e6,
                   "added to the multiplier per violation: damps its swings (augmented Lagrangian)", true),
     flag_option("multiplier_normalized", false, "divide the violation by the limit"),
@@ -167,6 +169,13 @@ constexpr auto join_options(const std::array<OptionSpec, N>&... tables) {
   (append(tables), ...);
   return all;
 }
+
+// A row of a preset: what it lays under one option.
+struct PresetValue {
+  const char *preset, *key, *text;
+  const char* algos = nullptr;  // "trpo|cpo": for these alone, over a row for all before it; null: for all
+};
+std::span<const PresetValue> preset_values();
 
 // The values for one agent: table, then config.defaults, then the preset, then config.options. A default
 // that only other algorithms know, or of the form "algorithm:key" for another, is skipped; an option is not.

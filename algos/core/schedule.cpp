@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "algos/core/option_tables.hpp"
+
 namespace rdm {
 
 void RateSchedule::reset(const Options& o) {
@@ -42,7 +44,7 @@ void RateSchedule::adapt(double kl) {
 
 void RateSchedule::visit(StateIo& io) {
   io.section("RATE");
-  io.number(adapted_, 0, 1e300);
+  io.number(adapted_, 0, kMaxLearningRate);
 }
 
 }  // namespace rdm

@@ -30,34 +30,44 @@ void StateReader::end() {
 }
 
 template <class T>
-void StateReader::read(T* x, size_t count, double low, double high) {
-  const unsigned char* p = in_.view(count * sizeof(T));
+StateView<T> StateReader::read(T* x, size_t count, double low, double high) {
+  const StateView<T> view{in_.view(count * sizeof(T))};
   if (apply_) {
-    if (count) std::memcpy(x, p, count * sizeof(T));
-    return;
+    if (count) std::memcpy(x, view.bytes, count * sizeof(T));
+    return {};
   }
   for (size_t i = 0; i < count; ++i) {
-    T v;
-    std::memcpy(&v, p + i * sizeof(T), sizeof v);
-    const auto d = static_cast<double>(v);
+    const auto d = static_cast<double>(view[i]);
     if (!(d >= low && d <= high))
       fail(Code::kFormat, "agent state: section %s holds %g, outside [%g, %g]", tag_, d, low, high);
   }
+  return view;
 }
 
-void StateReader::numbers(float* x, size_t count, double low, double high) {
-  read(x, count, low, high);
+StateView<float> StateReader::numbers(float* x, size_t count, double low, double high) {
+  return read(x, count, low, high);
 }
-void StateReader::numbers(double* x, size_t count, double low, double high) {
-  read(x, count, low, high);
+StateView<double> StateReader::numbers(double* x, size_t count, double low, double high) {
+  return read(x, count, low, high);
 }
 
-void StateReader::integer(int64_t& x, int64_t low, int64_t high) {
+int64_t StateReader::integer(int64_t& x, int64_t low, int64_t high) {
   const auto v = in_.value<int64_t>();
   if (v < low || v > high)
     fail(Code::kFormat, "agent state: section %s holds %lld, outside [%lld, %lld]", tag_,
          static_cast<long long>(v), static_cast<long long>(low), static_cast<long long>(high));
   if (apply_) x = v;
+  return v;
+}
+
+void StateReader::flags(uint8_t* x, size_t count) {
+  const unsigned char* p = in_.view(count);
+  if (apply_ && count) std::memcpy(x, p, count);
+  for (size_t i = 0; i < count; ++i) require(p[i] <= 1, "a flag that is not 0 or 1");
+}
+
+void StateReader::require(bool holds, const char* what) const {
+  if (!holds) fail(Code::kFormat, "agent state: section %s holds %s", tag_, what);
 }
 
 void StateReader::bytes(void* x, size_t count) {

@@ -1,14 +1,32 @@
 // One listing of an agent's state serves saving, checking and loading.
 //
 // A load first runs the listing with a checker, which throws on anything that is wrong, and only then with
-// the copier, which cannot fail: a bad file changes nothing.
+// the copier, which cannot fail: a bad file changes nothing. Bounds are such that the next epochs on any
+// numbers within them stay finite and overflow nothing: a checksum says that bytes are whole, not that a
+// program wrote them.
 #pragma once
 #include <cstdint>
+#include <cstring>
 
 #include "base/bytes.hpp"
 #include "base/rng.hpp"
 
 namespace rdm {
+
+// The numbers of a list as a file has them, at any address; empty unless a load is being checked.
+template <class T>
+struct StateView {
+  const unsigned char* bytes = nullptr;
+  explicit operator bool() const { return bytes != nullptr; }
+  T operator[](size_t i) const {
+    T v;
+    std::memcpy(&v, bytes + i * sizeof v, sizeof v);
+    return v;
+  }
+};
+
+// Bound on counters: far beyond any run, and no sum of two overflows.
+inline constexpr int64_t kMaxCounter = int64_t{1} << 62;
 
 class StateIo {
  public:
@@ -17,17 +35,25 @@ class StateIo {
   virtual void section(const char tag[4]) = 0;
   virtual void end() = 0;
   // Finite numbers in [low, high].
-  virtual void numbers(float* x, size_t count, double low, double high) = 0;
-  virtual void numbers(double* x, size_t count, double low, double high) = 0;
-  virtual void integer(int64_t& x, int64_t low, int64_t high) = 0;
+  virtual StateView<float> numbers(float* x, size_t count, double low, double high) = 0;
+  virtual StateView<double> numbers(double* x, size_t count, double low, double high) = 0;
+  // Returns the value that is written or read.
+  virtual int64_t integer(int64_t& x, int64_t low, int64_t high) = 0;
+  // Each 0 or 1.
+  virtual void flags(uint8_t* x, size_t count) = 0;
+  // Any bytes are good.
   virtual void bytes(void* x, size_t count) = 0;
+  // A condition on what a check has viewed; Error(kFormat) with the section where it does not hold.
+  virtual void require(bool, const char*) const {}
 
   void integer(int32_t& x, int32_t low, int32_t high) {
     int64_t wide = x;
     integer(wide, low, high);
     x = static_cast<int32_t>(wide);
   }
-  void number(double& x, double low, double high) { numbers(&x, 1, low, high); }
+  StateView<double> number(double& x, double low, double high) { return numbers(&x, 1, low, high); }
+  // A count of what happened so far.
+  void counter(int64_t& x) { integer(x, 0, kMaxCounter); }
   void stream(Stream& s) { bytes(&s, sizeof s); }
 };
 
@@ -37,9 +63,19 @@ class StateWriter final : public StateIo {
   using StateIo::integer;
   void section(const char tag[4]) override;
   void end() override;
-  void numbers(float* x, size_t count, double, double) override { out_.bytes(x, count * sizeof *x); }
-  void numbers(double* x, size_t count, double, double) override { out_.bytes(x, count * sizeof *x); }
-  void integer(int64_t& x, int64_t, int64_t) override { out_.value(x); }
+  StateView<float> numbers(float* x, size_t count, double, double) override {
+    out_.bytes(x, count * sizeof *x);
+    return {};
+  }
+  StateView<double> numbers(double* x, size_t count, double, double) override {
+    out_.bytes(x, count * sizeof *x);
+    return {};
+  }
+  int64_t integer(int64_t& x, int64_t, int64_t) override {
+    out_.value(x);
+    return x;
+  }
+  void flags(uint8_t* x, size_t count) override { out_.bytes(x, count); }
   void bytes(void* x, size_t count) override { out_.bytes(x, count); }
 
  private:
@@ -54,14 +90,16 @@ class StateReader final : public StateIo {
   using StateIo::integer;
   void section(const char tag[4]) override;
   void end() override;
-  void numbers(float* x, size_t count, double low, double high) override;
-  void numbers(double* x, size_t count, double low, double high) override;
-  void integer(int64_t& x, int64_t low, int64_t high) override;
+  StateView<float> numbers(float* x, size_t count, double low, double high) override;
+  StateView<double> numbers(double* x, size_t count, double low, double high) override;
+  int64_t integer(int64_t& x, int64_t low, int64_t high) override;
+  void flags(uint8_t* x, size_t count) override;
   void bytes(void* x, size_t count) override;
+  void require(bool holds, const char* what) const override;
 
  private:
   template <class T>
-  void read(T* x, size_t count, double low, double high);
+  StateView<T> read(T* x, size_t count, double low, double high);
   Reader& in_;
   bool apply_;
   char tag_[5] = "";

@@ -4,6 +4,9 @@
 #include "algos/core/option_tables.hpp"
 
 namespace rdm {
+namespace {
+constexpr double kMaxPenalty = 1e9;
+}
 
 SampleLoss penalty_loss(float ratio, float cost, float clip) {
   SampleLoss out;
@@ -38,26 +41,26 @@ void P3o::begin_epoch(const EpisodeStats& stats, int32_t epoch) {
   Ppo::begin_epoch(stats, epoch);
   if (epoch > 1)
     kappa_ = std::min(kappa_ * options().number("penalty_growth"), options().number("penalty_max"));
-  for (int32_t i = 0; i < plan().num_limited; ++i) violation_[i] = violation(stats, i);
+  for (int32_t i = 0; i < resolved().num_limited; ++i) violation_[i] = violation(stats, i);
 }
 
 void P3o::begin_minibatch(const int32_t* order, int32_t rows) {
   const Surrogate now = learner().measure(order, rows, loss_.clip_cost ? loss_.clip : 0);
-  for (int32_t k = 0; k < plan().num_limited; ++k)
+  for (int32_t k = 0; k < resolved().num_limited; ++k)
     loss_.weight[k] = now.cost[k] + violation_[k] > 0 ? static_cast<float>(kappa_) : 0;
 }
 
 void P3o::visit_state(StateIo& io) {
   Ppo::visit_state(io);
   io.section("P3O ");
-  io.number(kappa_, 0, 1e300);
+  io.number(kappa_, 0, kMaxPenalty);
 }
 
 namespace {
 constexpr std::array kPenaltyOptions = {
     number_option("penalty", 20, 0, 1e6, "kappa, initial weight of the penalty"),
     number_option("penalty_growth", 1, 1, 10, "factor on kappa per epoch", true),
-    number_option("penalty_max", 20, 0, 1e9, "largest kappa", true),
+    number_option("penalty_max", 20, 0, kMaxPenalty, "largest kappa", true),
     flag_option("penalty_clip", true, "clip the cost's ratio too; the peers do not", true),
 };
 constexpr auto kOptions =

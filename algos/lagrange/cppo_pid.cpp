@@ -9,8 +9,8 @@
 
 namespace rdm {
 
-PidRule::PidRule(const ResolvedAgentConfig& plan) : count_(plan.num_limited) {
-  const Options& o = plan.options;
+PidRule::PidRule(const ResolvedAgentConfig& resolved) : count_(resolved.num_limited) {
+  const Options& o = resolved.options;
   const char* mix = o.text("pid_norm");
   mix_ = std::strcmp(mix, "sum") == 0    ? Mix::kSum
          : std::strcmp(mix, "diff") == 0 ? Mix::kDifference
@@ -33,15 +33,15 @@ void PidRule::read_live(const Options& o) {
   options_.max = mix_ == Mix::kDifference ? share : o.number("pid_max");
 }
 
-void PidRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t) {
+void PidRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t) {
   if (!stats.fresh) return;
   for (int32_t i = 0; i < count_; ++i)
-    pid_[i].step(options_, stats.charged_cost[plan.column[i]], plan.limit[i]);
+    pid_[i].step(options_, stats.charged_cost[resolved.column[i]], resolved.limit[i]);
 }
 
 void PidRule::visit(StateIo& io) {
   io.section("PID ");
-  for (int32_t i = 0; i < count_; ++i) pid_[i].visit(io);
+  for (int32_t i = 0; i < count_; ++i) pid_[i].visit(io, options_);
 }
 
 namespace {
@@ -54,7 +54,7 @@ constexpr std::array kPidOptions = {
     number_option("pid_smooth_d", 0.95, 0, 0.9999, "EMA factor of the cost that is derived; 0: none"),
     integer_option("pid_delay", 10, 1, kMaxPidDelay, "epochs that the derivative looks back"),
     number_option("pid_init", 0.001, 0, 1e6, "initial integral"),
-    number_option("pid_max", 1e6, 0, kHuge, "upper bound on the multiplier", true),
+    number_option("pid_max", 1e6, 0, kMaxMultiplier, "upper bound on the multiplier", true),
     text_option("pid_norm", "sum", "sum|diff|none",
                 "advantage (A_r - l A_c)/(1 + l), (1 - l) A_r - l A_c with l <= 1, or A_r - l A_c"),
 };

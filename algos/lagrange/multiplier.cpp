@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algos/core/option_tables.hpp"
 #include "base/elementary.hpp"
 
 namespace rdm {
@@ -46,12 +47,12 @@ void Multiplier::step(const MultiplierOptions& options, double cost, double limi
 }
 
 void Multiplier::visit(StateIo& io) {
-  constexpr double kBound = 1e300;
-  io.number(value_, 0, kBound);
-  io.number(raw_, -kBound, kBound);
-  io.number(m_, -kBound, kBound);
-  io.number(v_, 0, kBound);
-  io.integer(t_, 0, int64_t{1} << 62);
+  io.number(value_, 0, 2 * kMaxMultiplier);
+  io.number(raw_, -1e20, 1e20);
+  const StateView<double> m = io.number(m_, -1e100, 1e100), v = io.number(v_, 0, 1e200);
+  // As of any moments of Adam: |m| <= 7.27 sqrt(v) (networks.cpp).
+  if (m) io.require(std::abs(m[0]) <= 8 * std::sqrt(v[0]) + 1e-100, "moments that no costs have");
+  io.counter(t_);
 }
 
 }  // namespace rdm

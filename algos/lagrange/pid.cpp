@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "algos/core/option_tables.hpp"
+
 namespace rdm {
 
 void Pid::reset(const PidOptions& options) {
@@ -21,14 +23,14 @@ void Pid::step(const PidOptions& o, double cost, double limit) {
   value_ = std::clamp(o.kp * p_ + integral_ + o.kd * rise, 0.0, o.max);
 }
 
-void Pid::visit(StateIo& io) {
-  constexpr double kBound = 1e300;
+void Pid::visit(StateIo& io, const PidOptions& o) {
+  constexpr double kBound = 1e100;  // no gain times this, and no sum of the three, overflows
   io.number(integral_, 0, kBound);
   io.number(p_, -kBound, kBound);
   io.number(cost_, -kBound, kBound);
-  io.number(value_, 0, kBound);
+  io.number(value_, 0, kMaxMultiplier);
   io.numbers(past_, kMaxPidDelay, -kBound, kBound);
-  io.integer(steps_, 0, kMaxPidDelay - 1);
+  io.integer(steps_, 0, o.delay - 1);
 }
 
 }  // namespace rdm

@@ -24,7 +24,7 @@ class Pid {
   void reset(const PidOptions& options);
   void step(const PidOptions& options, double cost, double limit);
   double value() const { return value_; }
-  void visit(StateIo& io);
+  void visit(StateIo& io, const PidOptions& options);
 
  private:
   double integral_ = 0, p_ = 0, cost_ = 0, value_ = 0;

@@ -29,7 +29,9 @@ void normalizer_refresh(Normalizer& n) {
   for (int32_t j = 0; j < n.dim; ++j) {
     const bool known = n.count > 1;
     n.shift[j] = known ? static_cast<float>(n.mean[j]) : 0;
-    n.scale[j] = known ? static_cast<float>(1 / std::max(std::sqrt(n.m2[j] / (n.count - 1)), 1e-2)) : 1;
+    // At most 1e37, so that a scale never is a denormal, which is 0 to the library.
+    const double std = known ? std::clamp(std::sqrt(n.m2[j] / (n.count - 1)), 1e-2, 1e37) : 1;
+    n.scale[j] = static_cast<float>(1 / std);
   }
 }
 

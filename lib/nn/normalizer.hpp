@@ -16,8 +16,8 @@ struct Normalizer {
 Normalizer carve_normalizer(Arena& arena, int32_t dim);
 // Leaves the input unchanged (clipped) until two samples were merged.
 void normalizer_reset(Normalizer& n);
-// Merges rows whose mask is not 0 (mask null: all). x [rows][dim]. std = max(sqrt(m2/(count-1)), 1e-2).
-// With count_max > 0 the count saturates there, so that old data fade.
+// Merges rows whose mask is not 0 (mask null: all). x [rows][dim]. std = sqrt(m2/(count-1)) within [1e-2,
+// 1e37]. With count_max > 0 the count saturates there, so that old data fade.
 void normalizer_merge(Normalizer& n, const float* x, int32_t rows, const uint8_t* mask, double count_max);
 // y may be x.
 void normalizer_apply(const Normalizer& n, const float* x, int32_t rows, float* y);

@@ -1,0 +1,306 @@
+#include "algos/core/agent.hpp"
+
+#include <cstring>
+
+#include "algos/algo_registry.hpp"
+#include "algos/core/fingerprint.hpp"
+#include "algos/core/option_tables.hpp"
+#include "base/elementary.hpp"
+#include "base/error.hpp"
+#include "base/fpmode.hpp"
+#include "nn/policy.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr char kMagic[8] = {'R', 'D', 'M', 'A', 'G', 'E', 'N', 'T'};
+constexpr uint32_t kVersion = 1;
+constexpr int32_t kMaxEpochs = 1 << 30;                // of a state that loads; as many more do not overflow
+constexpr double kEntropyOfUnit = 1.4189385332046727;  // of a normal with deviation 1
+
+}  // namespace
+
+size_t Agent::memory(const AgentConfig& config) {
+  ResolvedAgentConfig resolved = resolve_config(config);
+  const size_t rows = options_bytes(resolved.row->info);
+  const AlgoRow& row = *resolved.row;
+  return row.measure(std::move(resolved)) + rows + Workers::memory(config.hooks, config.num_threads);
+}
+
+Agent* Agent::create(const AgentConfig& config) {
+  const HostScope scope(config.hooks);
+  ResolvedAgentConfig resolved = resolve_config(config);
+  const AlgoRow& row = *resolved.row;
+  Agent* agent = row.make(config.hooks, std::move(resolved));
+  try {
+    agent->open(config);
+  } catch (...) {
+    row.end(agent);
+    throw;
+  }
+  return agent;
+}
+
+void Agent::destroy(Agent* a) {
+  if (a) a->resolved().row->end(a);
+}
+
+void Agent::carve(Arena& arena) {
+  nets_ = carve_networks(arena, resolved_);
+  workers_.carve(arena, resolved_, nets_.size);
+  collector_.carve(arena, resolved_);
+  learner_.carve(arena, resolved_, nets_.size);
+  char* names = arena.make<char>(static_cast<size_t>(nets_.num_tensors()) * kTensorNameSize);
+  names_ = reinterpret_cast<char(*)[kTensorNameSize]>(names);
+}
+
+void Agent::open(const AgentConfig& config) {
+  Arena measure;
+  carve(measure);
+  arena_ = Arena(config.hooks, measure.used());
+  carve(arena_);
+  workers_.open(config.hooks, config.num_threads);
+  collector_.open(resolved_, nets_, workers_);
+  learner_.open(resolved_, rollout(), nets_, workers_);
+  schedule_.reset(resolved_.options);
+  shuffle_ = Stream(config.seed, 0, Purpose::kMinibatch);
+  init_networks(nets_, resolved_);
+  opened();
+  read_live();
+  TensorInfo t;
+  for (int32_t i = 0; find_tensor(nets_, i, names_[i], &t);) ++i;
+  AgentConfig& c = resolved_.config;
+  c.task = resolved_.task;
+  c.defaults = c.options = nullptr;
+  c.initial_mean = nullptr;
+  c.cost_limits = nullptr;
+}
+
+void Agent::read_live() {
+  learner_.read_live(resolved_.options);
+  schedule_.read_live(resolved_.options);
+  if (resolved_.num_limited > 0 && resolved_.column[0] == 0)
+    resolved_.limit[0] = resolved_.options.number("cost_limit");
+}
+
+void Agent::set_option(const OptionInput& option) {
+  if (!option.key) fail(Code::kArgument, "agent option: the key is NULL");
+  Options& o = resolved_.options;
+  for (int32_t i = 0; i < o.count(); ++i)
+    if (same_name(o.spec(i).key, option.key) && !o.spec(i).live)
+      fail(Code::kState, "agent option %s: fixed at creation", o.spec(i).key);
+  const double limit = o.number("cost_limit");
+  o.set(option, "agent");
+  if ((limit < 0) != (o.number("cost_limit") < 0)) {
+    o.set({"cost_limit", nullptr, limit}, "agent");
+    fail(Code::kState, "agent option cost_limit: column 0 was created %s a limit",
+         limit < 0 ? "without" : "with");
+  }
+  read_live();
+}
+
+void Agent::act(const float* obs, bool sample, float* action) {
+  const FpMode mode;
+  collector_.act(obs, sample, action);
+}
+
+void Agent::record(const Transition& t) {
+  const FpMode mode;
+  collector_.record(t);
+}
+
+void Agent::update(const float* last_obs, Epoch* out) {
+  const FpMode mode;
+  if (missing() > 0) fail(Code::kState, "update: %d decisions are missing in this horizon", missing());
+  if (!last_obs) fail(Code::kArgument, "last_obs: NULL");
+  check_rows("last_obs", last_obs, nullptr, resolved_.config.num_envs, resolved_.obs_dim());
+  try {
+    check_cancel();
+    valid_rows_ = collector_.estimate(last_obs);
+    const EpisodeStats stats = collector_.episodes().stats();
+    begin_epoch(stats, epoch_ + 1);
+    const double rate = schedule_.rate(epoch_);
+    const int64_t skipped = learner_.skipped();
+    learned_ = Learned();
+    learn();
+    if (learner_.skipped() > skipped)
+      log(resolved_.config.hooks, LogLevel::kWarning, "update: %lld gradients were not finite and left out",
+          static_cast<long long>(learner_.skipped() - skipped));
+    if (learned_.passes > 0) schedule_.adapt(learned_.mean.kl);
+    collector_.episodes().mark();
+    ++epoch_;
+    schedule_std(nets_, resolved_.options, epoch_);
+    if (out) fill_epoch(stats, rate, out);
+  } catch (...) {
+    drop_horizon();
+    throw;
+  }
+  drop_horizon();
+}
+
+void Agent::begin_epoch(const EpisodeStats&, int32_t) {
+  const Rollout& r = rollout();
+  const auto n = static_cast<size_t>(r.samples());
+  std::memcpy(r.gain, r.advantage, n * sizeof(float));
+  std::memset(r.linear, 0, n * sizeof(float));
+}
+
+BatchSums Agent::pass(const PolicyLoss* policy) {
+  const int32_t count = valid_rows_, parts = std::min(resolved_.options.integer("minibatches"), count);
+  const int32_t size = (count + parts - 1) / parts;
+  const double rate = schedule_.rate(epoch_);
+  int32_t* order = rollout().order;
+  for (int32_t i = count - 1; i > 0; --i)
+    std::swap(order[i], order[shuffle_.below(static_cast<uint32_t>(i) + 1)]);
+  BatchSums sums;
+  for (int32_t first = 0; first < count; first += size) {
+    check_cancel();
+    const int32_t rows = std::min(size, count - first);
+    if (policy) begin_minibatch(order + first, rows);
+    sums += learner_.gradient(policy, true, order + first, rows);
+    learner_.step(rate, schedule_.change(epoch_));
+  }
+  return sums;
+}
+
+double Agent::violation(const EpisodeStats& stats, int32_t i) const {
+  const double gap = stats.finished > 0 ? stats.charged_cost[resolved_.column[i]] - resolved_.limit[i] : 0;
+  const char* scale = resolved_.options.text("violation_scale");
+  if (std::strcmp(scale, "raw") == 0) return gap;
+  if (std::strcmp(scale, "discount") == 0)
+    return gap * (1 - elementary::pow(resolved_.options.number("discount"), resolved_.action_repeat));
+  return gap / std::max(1.0, stats.length / resolved_.action_repeat);
+}
+
+void Agent::learn() {
+  const Options& o = resolved_.options;
+  const double stop = o.number("early_stop_kl"), count = valid_rows_;
+  BatchSums all, last;
+  while (valid_rows_ > 0 && learned_.passes < o.integer("passes")) {
+    last = pass(&policy_loss());
+    all += last;
+    ++learned_.passes;
+    if (stop > 0 && learner_.kl(rollout().order, valid_rows_) > stop) break;
+  }
+  if (learned_.passes == 0) return;
+  learned_.last_kl = last.kl / count;
+  learned_.mean = all.scaled(1 / (count * learned_.passes));
+}
+
+void Agent::fill_spread(Epoch& e) const {
+  const int32_t dim = resolved_.config.action_dim;
+  const auto add = [&](const float* log_std, double share, double count) {
+    for (int32_t j = 0; j < dim; ++j) {
+      const auto l = static_cast<double>(log_std[j]);
+      e.action_std += elementary::exp(l) / (count * dim);
+      e.entropy += (l + share + kEntropyOfUnit) / count;
+    }
+  };
+  const auto share = static_cast<double>(resolved_.log_share);
+  if (!nets_.state_std()) return add(nets_.log_std(), share, 1);
+  const Rollout& r = rollout();
+  for (int32_t i = 0; i < valid_rows_; ++i)
+    add(r.log_std_of(static_cast<size_t>(r.order[i])), 0, valid_rows_);
+  e.action_std *= elementary::exp(-share);
+}
+
+void Agent::fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const {
+  const Rollout& r = rollout();
+  Epoch e;
+  e.epoch = epoch_;
+  e.env_steps = collector_.env_steps();
+  e.episodes = stats.finished;
+  e.ret = stats.ret;
+  std::memcpy(e.cost, stats.cost, sizeof e.cost);
+  e.cost_per_step = stats.cost_per_step;
+  e.length = stats.length;
+  e.fall_rate = stats.fall_rate;
+  e.success_rate = stats.success_rate;
+  for (int32_t i = 0; i < resolved_.num_limited; ++i) e.multiplier[resolved_.column[i]] = cost_weight(i);
+  fill_spread(e);
+  e.kl = learned_.last_kl;
+  e.learning_rate = rate;
+  e.loss_policy = learned_.mean.loss;
+  e.loss_reward_value = learned_.mean.reward_loss;
+  e.loss_cost_value = learned_.mean.cost_loss;
+  e.clip_fraction = learned_.mean.clipped;
+  e.value_reward = masked_mean(r.value, 1, r.valid, r.samples());
+  if (r.num_costs > 0) e.value_cost = masked_mean(r.cost_value, r.num_costs, r.valid, r.samples());
+  e.passes = learned_.passes;
+  *out = e;
+}
+
+bool Agent::tensor(int32_t index, TensorInfo* out) {
+  char name[kTensorNameSize];
+  if (!find_tensor(nets_, index, name, out)) return false;
+  out->name = names_[index];
+  return true;
+}
+
+void Agent::visit_state(StateIo& io) {
+  io.section("COUN");
+  io.integer(epoch_, 0, kMaxEpochs);
+  io.stream(shuffle_);
+  nets_.visit(io);
+  collector_.visit(io);
+  learner_.visit(io);
+  schedule_.visit(io);
+}
+
+void Agent::save(Writer& out) const {
+  if (!collector_.idle()) fail(Code::kState, "save: only between epochs; this horizon has begun");
+  out.begin_file(kMagic, kVersion);
+  write_fingerprint(out, resolved_);
+  StateWriter io(out);
+  // The listing is shared with load; a StateWriter only reads.
+  const_cast<Agent*>(this)->visit_state(io);
+  io.end();
+  out.end_file();
+}
+
+void Agent::read_state(const void* bytes, size_t size, bool apply) {
+  Reader in(bytes, size, "agent state");
+  in.begin_file(kMagic, kVersion);
+  read_fingerprint(in, resolved_, apply);
+  if (apply) read_live();
+  StateReader io(in, apply);
+  visit_state(io);
+  io.end();
+}
+
+void Agent::check_state(const void* bytes, size_t size) {
+  if (!bytes) fail(Code::kArgument, "agent state: NULL");
+  read_state(bytes, size, false);
+}
+
+void Agent::load(const void* bytes, size_t size) {
+  check_state(bytes, size);
+  read_state(bytes, size, true);
+  collector_.after_load();
+  clamp_log_std(nets_);
+  drop_horizon();
+}
+
+void Agent::write_policy_file(Writer& out) {
+  const HostScope scope(resolved_.config.hooks);
+  const Normalizer& n = collector_.normalizer();
+  PolicyView v;
+  v.actor = nets_.shape[Networks::kActor];
+  v.params = nets_.net(Networks::kActor);
+  if (nets_.state_std())
+    v.state_std = true, v.std_bounds[0] = nets_.std_low, v.std_bounds[1] = nets_.std_high;
+  else
+    v.log_std = nets_.log_std();
+  v.shift = n.shift;
+  v.scale = n.scale;
+  v.clip = collector_.normalizes() ? n.clip : 0;
+  v.action_repeat = resolved_.action_repeat;
+  v.noise_correlation = static_cast<float>(resolved_.options.number("noise_correlation"));
+  v.control_dt = resolved_.config.control_dt;
+  v.layout_hash = resolved_.config.layout_hash;
+  std::memcpy(v.task, resolved_.task, sizeof v.task);
+  v.example_obs = n.shift;
+  write_policy(out, v);
+}
+
+}  // namespace rdm

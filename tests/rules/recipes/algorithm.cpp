@@ -1,0 +1,41 @@
+// CRPO on PPO's step (Xu, Liang and Lan 2021, algorithm 1): while an episode's cost is above its limit the
+// policy step lowers that cost alone, else it raises the reward.
+#include "algos/algo_registry.hpp"
+#include "algos/core/option_tables.hpp"
+#include "algos/first_order/ppo.hpp"
+#include "algos/lagrange/cost_weighted.hpp"
+
+namespace rdm {
+namespace {
+
+class Rectify {
+ public:
+  explicit Rectify(const ResolvedAgentConfig&) {}
+  void step(const EpisodeStats& stats, const ResolvedAgentConfig& config, int32_t) {
+    if (!stats.fresh) return;
+    violated_ = -1;
+    for (int32_t i = 0; i < config.num_limited && violated_ < 0; ++i)
+      if (stats.charged_cost[config.column[i]] > config.limit[i]) violated_ = i;
+  }
+  double weight(int32_t i) const { return i == violated_ ? 1 : 0; }
+  Mix mix() const { return Mix::kDifference; }  // (1 - sum w) A_r - sum w A_c
+  bool split() const { return false; }
+  void read_live(const Options&) {}
+  void visit(StateIo& io) {
+    io.section("RECT");
+    io.integer(violated_, -1, kMaxCosts - 1);
+  }
+
+ private:
+  int32_t violated_ = -1;  // the limit that the policy step serves, -1: none
+};
+
+constexpr auto kOptions = join_options(kSharedOptions, kClipOptions);
+
+}  // namespace
+
+constinit const AlgoRow kCrpo = make_algo_row<CostWeighted<Ppo, Rectify>>(
+    "crpo", "PPO that lowers a cost alone while it is over its limit (Xu et al. 2021)", kOptions,
+    Costs::kAny);
+
+}  // namespace rdm
