@@ -130,10 +130,19 @@ awk -F, 'NR == 1 { n = NF } NF != n { exit 1 }' full/progress.csv || say "a part
 # Folders that nothing can be written to.
 "$tool" train --task ball_run --steps 400 --out /proc/none > out 2> err && say "a folder in /proc was made"
 [ "$(wc -l < err)" -eq 1 ] || say "/proc: $(cat err)"
-if [ "$(id -u)" -ne 0 ]; then
-  chmod a-w run
-  "$tool" train --resume run --steps 3000 > out 2> err && say "a read-only folder is not noticed"
+powerless() {  # powerless COMMAND...: by one whom permissions bind
+  if [ "$(id -u)" -eq 0 ]; then setpriv --reuid=65534 --regid=65534 --clear-groups "$@"; else "$@"; fi
+}
+cp -r run locked
+chmod 755 .
+chmod -R a+rX,a-w locked
+if powerless "$tool" eval --policy locked --episodes 1 > out 2> err; then
+  cp locked/checkpoint.rdm kept.rdm
+  powerless "$tool" train --resume locked --steps 3000 > out 2> err && say "a read-only folder is not noticed"
+  grep -q 'Permission denied' err && [ "$(wc -l < err)" -eq 1 ] || say "a read-only folder: $(cat err)"
+  powerless "$tool" train --task ball_run --steps 400 --overwrite --out locked > out 2> err && say "a read-only run was overwritten"
   grep -q 'Permission denied' err || say "a read-only folder: $(cat err)"
-  chmod u+w run
+  cmp -s kept.rdm locked/checkpoint.rdm || say "a read-only run has another checkpoint"
 fi
+chmod -R u+w locked
 exit $failed
