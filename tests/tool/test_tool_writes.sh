@@ -139,7 +139,7 @@ chmod -R a+rX,a-w locked
 if powerless "$tool" eval --policy locked --episodes 1 > out 2> err; then
   cp locked/checkpoint.rdm kept.rdm
   powerless "$tool" train --resume locked --steps 3000 > out 2> err && say "a read-only folder is not noticed"
-  grep -q 'Permission denied' err && [ "$(wc -l < err)" -eq 1 ] || say "a read-only folder: $(cat err)"
+  grep -q 'Permission denied' err || say "a read-only folder: $(cat err)"
   powerless "$tool" train --task ball_run --steps 400 --overwrite --out locked > out 2> err && say "a read-only run was overwritten"
   grep -q 'Permission denied' err || say "a read-only folder: $(cat err)"
   cmp -s kept.rdm locked/checkpoint.rdm || say "a read-only run has another checkpoint"
