@@ -4,6 +4,7 @@
 
 #include "algos/core/option_tables.hpp"
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
@@ -34,7 +35,7 @@ int32_t algo_find(const char* name) {
     names[i] = kRows[i]->info.name;
     if (same_name(names[i], name)) return i;
   }
-  fail(Code::kNotFound, "algo %.64s: unknown; nearest is %s", name,
+  fail(Code::kNotFound, "algo %s: unknown; nearest is %s", Quoted(name).text,
        names[nearest_name(name, names, algo_count())]);
 }
 

@@ -1,8 +1,5 @@
 #include "capi/abi_call.hpp"
 
-#include <cstdio>
-#include <mutex>
-
 namespace rdm::capi {
 
 HostHooks hooks_from(const rdm_host* host) {
@@ -37,18 +34,6 @@ Vector<OptionInput> read_options(const rdm_option* options, int32_t count, const
   Vector<OptionInput> out;
   for (int32_t i = 0; i < count; ++i) out.push_back({options[i].key, options[i].text, options[i].number});
   return out;
-}
-
-const char* lasting_name(const char* name) {
-  static char table[512][32];
-  static int used = 0;
-  static std::mutex mutex;
-  const std::lock_guard lock(mutex);
-  for (int i = 0; i < used; ++i)
-    if (std::strncmp(table[i], name, sizeof table[i] - 1) == 0) return table[i];
-  if (used == 512) return "";
-  std::snprintf(table[used], sizeof table[used], "%s", name);
-  return table[used++];
 }
 
 }  // namespace rdm::capi

@@ -30,14 +30,22 @@ inline void need_index(int64_t i, int64_t count, const char* name) {
          static_cast<long long>(count));
 }
 
+// No struct of any version is larger: a size above it was never set.
+inline constexpr size_t kMaxStructSize = 4096;
+
+inline void check_size(size_t size, size_t first_size, const char* name, const char* member) {
+  if (size < first_size) fail(Code::kArgument, "%s%s: %zu is less than %zu", name, member, size, first_size);
+  if (size > kMaxStructSize)
+    fail(Code::kArgument, "%s%s: %zu is more than %zu: was it set?", name, member, size, kMaxStructSize);
+}
+
 // The caller's struct as this version knows it: fields beyond an older caller's size keep `defaults`, a
 // newer caller's tail must be zero.
 template <class T>
 T read_struct(const T* in, size_t first_size, const T& defaults, const char* name) {
   need(in, name);
   const size_t size = in->struct_size;
-  if (size < first_size)
-    fail(Code::kArgument, "%s.struct_size: %zu is less than %zu", name, size, first_size);
+  check_size(size, first_size, name, ".struct_size");
   const auto* bytes = reinterpret_cast<const unsigned char*>(in);
   for (size_t i = sizeof(T); i < size; ++i)
     if (bytes[i]) fail(Code::kVersion, "%s: a field that this version does not know is set", name);
@@ -50,8 +58,7 @@ T read_struct(const T* in, size_t first_size, const T& defaults, const char* nam
 template <class T>
 void check_out(const T* io, size_t first_size, const char* name) {
   need(io, name);
-  if (io->struct_size < first_size)
-    fail(Code::kArgument, "%s.struct_size: %u is less than %zu", name, io->struct_size, first_size);
+  check_size(io->struct_size, first_size, name, ".struct_size");
 }
 
 // Writes as much of `value` as the caller's struct holds; struct_size stays the caller's.
@@ -66,8 +73,8 @@ void write_struct(T* io, T value, size_t first_size, const char* name) {
 template <class T>
 void init_struct(T* out, size_t size, size_t first_size, T value, const char* name) {
   need(out, name);
-  if (size < first_size) fail(Code::kArgument, "size: %zu is less than %zu", size, first_size);
-  value.struct_size = static_cast<uint32_t>(std::min<size_t>(size, UINT32_MAX));
+  check_size(size, first_size, "size", "");
+  value.struct_size = static_cast<uint32_t>(size);
   std::memcpy(out, &value, std::min(size, sizeof(T)));
   if (size > sizeof(T)) std::memset(reinterpret_cast<unsigned char*>(out) + sizeof(T), 0, size - sizeof(T));
 }
@@ -80,9 +87,6 @@ rdm_option_info describe(const OptionSpec& spec);
 // Public options as the library takes them; the strings stay the caller's. Error(kArgument) for a NULL list
 // with a count, Error(kRange) for a count outside [0, 4096].
 Vector<OptionInput> read_options(const rdm_option* options, int32_t count, const char* name);
-
-// A copy of `name` that lives as long as the process. The table is fixed: names beyond it are cut to "".
-const char* lasting_name(const char* name);
 
 [[noreturn]] inline void left_out(const char* half) {
   fail(Code::kUnsupported, "this build was made without the %s half", half);

@@ -1,5 +1,6 @@
 // rdm_agent_*: config to agent and back.
 #include "base/file.hpp"
+#include "base/text.hpp"
 #include "capi/handles.hpp"
 
 using namespace rdm;
@@ -208,7 +209,7 @@ rdm_result rdm_agent_set(rdm_agent* a, const rdm_option* option) {
 }
 
 rdm_result rdm_agent_option(const rdm_agent* a, int32_t i, const char** key, char* text) {
-  return call(nullptr, [&] {
+  return call(a ? a->error : nullptr, [&] {
     need(a, "agent");
     need(key, "key");
     need(text, "text");
@@ -220,7 +221,7 @@ rdm_result rdm_agent_option(const rdm_agent* a, int32_t i, const char** key, cha
 }
 
 rdm_result rdm_agent_tensor(const rdm_agent* a, int32_t i, rdm_tensor* out) {
-  return call(nullptr, [&] {
+  return call(a ? a->error : nullptr, [&] {
     need(a, "agent");
     need(out, "out");
     TensorInfo t;
@@ -243,12 +244,13 @@ TensorInfo find_tensor(Agent& agent, const char* name, size_t count) {
     names.push_back(t.name);
   }
   const int32_t near = nearest_name(name, names.data(), static_cast<int32_t>(names.size()));
-  fail(Code::kNotFound, "tensor %.64s: unknown; nearest is %s", name, names[static_cast<size_t>(near)]);
+  fail(Code::kNotFound, "tensor %s: unknown; nearest is %s", Quoted(name).text,
+       names[static_cast<size_t>(near)]);
 }
 }  // namespace
 
 rdm_result rdm_agent_tensor_read(const rdm_agent* a, const char* name, float* out, size_t count) {
-  return call(nullptr, [&] {
+  return call(a ? a->error : nullptr, [&] {
     need(a, "agent");
     need(out, "out");
     const TensorInfo t = find_tensor(*a->agent, name, count);
@@ -269,14 +271,14 @@ rdm_result rdm_agent_tensor_write(rdm_agent* a, const char* name, const float* v
 }
 
 rdm_result rdm_agent_policy(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
-  return call(nullptr, [&] {
+  return call(a ? a->error : nullptr, [&] {
     need(a, "agent");
     emit(bytes, capacity, size, [&](Writer& w) { a->agent->write_policy_file(w); });
   });
 }
 
 rdm_result rdm_agent_policy_file(const rdm_agent* a, const char* path) {
-  return call(nullptr, [&] {
+  return call(a ? a->error : nullptr, [&] {
     need(a, "agent");
     need(path, "path");
     Writer count(nullptr, 0);
@@ -289,7 +291,7 @@ rdm_result rdm_agent_policy_file(const rdm_agent* a, const char* path) {
 }
 
 rdm_result rdm_agent_save(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
-  return call(nullptr, [&] {
+  return call(a ? a->error : nullptr, [&] {
     need(a, "agent");
     emit(bytes, capacity, size, [&](Writer& w) { a->agent->save(w); });
   });

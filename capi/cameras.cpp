@@ -1,6 +1,5 @@
 // Looking into a world: shapes, poses, contacts, pictures.
 #include "capi/handles.hpp"
-#include "redman/redman_sense.h"
 
 #if RDM_WITH_SIM
 #include "sense/scene_shapes.hpp"
@@ -30,7 +29,7 @@ Camera rdm::capi::task_camera(int32_t task, const char* name) {
 }
 
 rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     need(p, "pool");
     need(out, "out");
     const auto& shapes = p->pool->task().scene().shapes;
@@ -48,7 +47,7 @@ rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {
 }
 
 rdm_result rdm_pool_hull(const rdm_pool* p, int32_t i, float* points, int32_t capacity, int32_t* count) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     need(p, "pool");
     need(count, "count");
     const Scene& scene = p->pool->task().scene();
@@ -63,7 +62,7 @@ rdm_result rdm_pool_hull(const rdm_pool* p, int32_t i, float* points, int32_t ca
 }
 
 rdm_result rdm_pool_poses(const rdm_pool* p, int32_t env, float* pose) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     const World& world = world_of(p, env);
     need(pose, "pose");
     const auto count = static_cast<int32_t>(world.scene().shapes.size());
@@ -78,7 +77,7 @@ rdm_result rdm_pool_poses(const rdm_pool* p, int32_t env, float* pose) {
 
 rdm_result rdm_pool_contacts(const rdm_pool* p, int32_t env, rdm_contact* out, int32_t capacity,
                              int32_t* count) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     const World& world = world_of(p, env);
     need(count, "count");
     if (capacity < 0) fail(Code::kRange, "capacity: %d is negative", capacity);

@@ -10,6 +10,7 @@ namespace {
 
 constexpr char kCheckpointMagic[8] = {'R', 'D', 'M', 'C', 'H', 'E', 'C', 'K'};
 constexpr uint32_t kCheckpointVersion = 1;
+constexpr size_t kMaxNote = 1u << 26;  // bytes
 
 template <class F>
 void section(Writer& w, const char tag[4], F&& body) {
@@ -20,9 +21,6 @@ void section(Writer& w, const char tag[4], F&& body) {
 
 // The pool's part; a build without the simulation half has none to save.
 #if RDM_WITH_SIM
-size_t pool_size(const rdm_pool* p) {
-  return p->pool->state_size(-1);
-}
 void save_pool(const rdm_pool* p, Writer& out) {
   p->pool->get_state(-1, out);
 }
@@ -30,9 +28,6 @@ void load_pool(rdm_pool* p, const void* bytes, size_t size) {
   p->pool->set_state(-1, bytes, size);
 }
 #else
-size_t pool_size(const rdm_pool*) {
-  left_out("simulation");
-}
 void save_pool(const rdm_pool*, Writer&) {
   left_out("simulation");
 }
@@ -40,6 +35,14 @@ void load_pool(rdm_pool*, const void*, size_t) {
   left_out("simulation");
 }
 #endif
+
+// What a file may have that is this agent's and this pool's, or those of another configuration like it.
+FileLimits file_limits(const rdm_agent* a, const rdm_pool* p) {
+  Writer count(nullptr, 0);
+  const bool counted = guard([&] { a->agent->save(count); }) == Code::kOk;  // not inside a horizon
+  const size_t states = (counted ? count.size() : size_t{1} << 28) + (p ? pool_size(p) : 0);
+  return {{kCheckpointMagic, sizeof kCheckpointMagic}, kFileLengthAt, 2 * (kMaxNote + states)};
+}
 
 void write_checkpoint(Writer& w, const Agent& agent, const rdm_pool* pool, const void* note,
                       size_t note_size) {
@@ -54,10 +57,11 @@ void write_checkpoint(Writer& w, const Agent& agent, const rdm_pool* pool, const
 
 rdm_result rdm_checkpoint_write(const char* path, const rdm_agent* a, const rdm_pool* p, const void* note,
                                 size_t note_size) {
-  return call(nullptr, [&] {
+  return call(a ? a->error : nullptr, [&] {
     need(path, "path");
     need(a, "agent");
     if (note_size) need(note, "note");
+    if (note_size > kMaxNote) fail(Code::kRange, "note_size: %zu is above %zu", note_size, kMaxNote);
     Writer count(nullptr, 0);
     write_checkpoint(count, *a->agent, p, note, note_size);
     Vector<unsigned char> file(count.size());
@@ -74,31 +78,24 @@ rdm_result rdm_checkpoint_read(const char* path, rdm_agent* a, rdm_pool* p, void
     need(a, "agent");
     need(note_size, "note_size");
     if (capacity) need(note, "note");
-    const auto file = read_file(path);
+    const auto file = read_file(path, file_limits(a, p));
     Reader in(file.data(), file.size(), "checkpoint");
     in.begin_file(kCheckpointMagic, kCheckpointVersion);
+    in.need_section("NOTE");
+    const size_t size = in.left();
+    const void* note_bytes = in.view(size);
     in.need_section("AGNT");
     const size_t agent_size = in.left();
     const void* agent_bytes = in.view(agent_size);
-    in.need_section("NOTE");
-    Vector<unsigned char> before;  // the pool as it was, in case the agent refuses its part
-    if (p) {
-      before.resize(pool_size(p));
-      Writer keep(before.data(), before.size());
-      save_pool(p, keep);
+    a->agent->check_state(agent_bytes, agent_size);
+    if (p) {  // changes nothing when it fails; what comes after it cannot fail any more
       in.need_section("POOL");
-      const size_t size = in.left();
-      load_pool(p, in.view(size), size);
+      const size_t pool_size = in.left();
+      load_pool(p, in.view(pool_size), pool_size);
     }
-    try {
-      a->agent->load(agent_bytes, agent_size);
-    } catch (...) {
-      if (p) load_pool(p, before.data(), before.size());
-      throw;
-    }
-    in.need_section("NOTE");
-    *note_size = in.left();
-    in.bytes(note, std::min(capacity, *note_size));
+    a->agent->load(agent_bytes, agent_size);
+    *note_size = size;
+    if (const size_t n = std::min(capacity, size)) std::memcpy(note, note_bytes, n);
   });
 }
 #endif

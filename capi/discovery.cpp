@@ -1,6 +1,10 @@
 // What exists: tasks, algorithms, robots, objects, and their tables.
 #include "capi/handles.hpp"
 #if RDM_WITH_SIM
+#include <map>
+#include <mutex>
+#include <vector>
+
 #include "robot/robot.hpp"
 #include "tasks/catalog.hpp"
 #include "tasks/throw/throw_objects.hpp"
@@ -10,10 +14,6 @@ using namespace rdm;
 using namespace rdm::capi;
 
 #if RDM_WITH_SIM
-namespace rdm::capi {
-rdm_field field_of(const Task& task, int32_t i);
-}
-
 namespace {
 
 const TaskInfo& info_at(int32_t index) {
@@ -22,26 +22,54 @@ const TaskInfo& info_at(int32_t index) {
   return task_at(index);
 }
 
-// The task with its default options.
-class DefaultTask {
- public:
-  explicit DefaultTask(const TaskInfo& info) : info_(info) {
-    PoolConfig config;
-    config.task = info.name;
-    config.hooks = hooks_;
-    task_ = make_task(config);
-  }
-  ~DefaultTask() { info_.destroy(task_, hooks_); }
-  DefaultTask(const DefaultTask&) = delete;
-  DefaultTask& operator=(const DefaultTask&) = delete;
-  const Task& operator*() const { return *task_; }
-  const Task* operator->() const { return task_; }
-
- private:
-  const TaskInfo& info_;
-  HostHooks hooks_ = host();
-  Task* task_ = nullptr;
+// What a task with its default options has.
+struct Described {
+  rdm_task task{};
+  std::vector<Name> names;  // of the fields
+  std::vector<rdm_field> fields;
 };
+
+Described describe(const TaskInfo& info) {
+  Options options;
+  int32_t count = 0, seen = 0;
+  const OptionSpec *own = info.options(&count), *sense = sense_options(&seen);
+  options.add_table(own, count);
+  options.add_table(sense, seen);
+  const TaskHandle task = make_task(info, options, host());
+  Described d;
+  d.task.control_dt = static_cast<float>(task->scene().control_dt());
+  d.task.name = info.name;
+  d.task.summary = info.summary;
+  d.task.obs_dim = obs_dim(*task);
+  d.task.action_dim = task->action_dim();
+  d.task.cost_dim = info.num_costs;
+  d.task.max_steps = task->max_steps();
+  d.task.num_fields = static_cast<int32_t>(task->fields().size());
+  d.task.num_options = count + seen;
+  d.task.num_cameras = info.num_cameras;
+  d.task.num_defaults = info.num_defaults;
+  for (int32_t i = 0; i < d.task.num_fields; ++i) {
+    d.names.push_back(task->fields()[static_cast<size_t>(i)].name);
+    d.fields.push_back(field_of(*task, i));
+  }
+  for (size_t i = 0; i < d.fields.size(); ++i) d.fields[i].name = d.names[i].text;
+  return d;
+}
+
+// Made when it is first asked for and kept for the life of the process: its names are handed out.
+const Described& described(int32_t index) {
+  static std::mutex mutex;
+  static auto* const known = new std::map<int32_t, Described>;
+  const TaskInfo& info = info_at(index);
+  {
+    const std::lock_guard lock(mutex);
+    const auto it = known->find(index);
+    if (it != known->end()) return it->second;
+  }
+  Described made = describe(info);  // takes a while, and may call the host
+  const std::lock_guard lock(mutex);
+  return known->try_emplace(index, std::move(made)).first->second;
+}
 
 }  // namespace
 
@@ -57,24 +85,7 @@ int32_t rdm_task_count(void) {
 rdm_result rdm_task_at(int32_t index, rdm_task* io) {
   return call(nullptr, [&] {
     check_out(io, sizeof(rdm_task), "io");
-    const TaskInfo& info = info_at(index);
-    const DefaultTask task(info);
-    rdm_task t{};
-    t.control_dt = static_cast<float>(task->scene().control_dt());
-    t.name = info.name;
-    t.summary = info.summary;
-    t.obs_dim = obs_dim(*task);
-    t.action_dim = task->action_dim();
-    t.cost_dim = info.num_costs;
-    t.max_steps = task->max_steps();
-    t.num_fields = static_cast<int32_t>(task->fields().size());
-    info.options(&t.num_options);
-    int32_t seen = 0;
-    sense_options(&seen);
-    t.num_options += seen;
-    t.num_cameras = info.num_cameras;
-    t.num_defaults = info.num_defaults;
-    write_struct(io, t, sizeof(rdm_task), "io");
+    write_struct(io, described(index).task, sizeof(rdm_task), "io");
   });
 }
 
@@ -87,15 +98,12 @@ rdm_result rdm_task_find(const char* name, int32_t* index) {
   });
 }
 
-// The name of a field belongs to the task object, which is gone after the call: so it is handed out from a
-// table that lives as long as the process.
 rdm_result rdm_task_field(int32_t task, int32_t i, rdm_field* out) {
   return call(nullptr, [&] {
     need(out, "out");
-    const DefaultTask t(info_at(task));
-    rdm_field f = field_of(*t, i);
-    f.name = lasting_name(f.name);
-    *out = f;
+    const Described& d = described(task);
+    need_index(i, d.task.num_fields, "i");
+    *out = d.fields[static_cast<size_t>(i)];
   });
 }
 

@@ -1,4 +1,5 @@
-// The handles behind the ABI: the object itself, its error text, and what only the shim needs.
+// The handles behind the ABI: the object itself, its error text, and what only the shim needs. And what one
+// source file of the shim takes from another.
 #pragma once
 #include "capi/abi_call.hpp"
 #if RDM_WITH_SIM
@@ -13,7 +14,7 @@
 #if RDM_WITH_SIM
 struct rdm_pool {
   rdm::HostHooks hooks;
-  char error[rdm::kErrorTextSize] = "";
+  mutable char error[rdm::kErrorTextSize] = "";  // also of calls that only read
   rdm::Pool* pool = nullptr;
   rdm::Arena arena;                // the arrays below
   rdm_option* defaults = nullptr;  // [num_defaults] of the agent, for rdm_agent_config_for_pool
@@ -27,6 +28,8 @@ namespace rdm::capi {
 // A camera of the task by name; Error(kNotFound) offers the nearest.
 Camera task_camera(int32_t task, const char* name);
 rdm_camera describe(const CameraSpec& c);
+// Field i of a task's observation; Error(kRange) past the end.
+rdm_field field_of(const Task& task, int32_t i);
 }  // namespace rdm::capi
 #endif
 
@@ -41,9 +44,14 @@ struct DecisionBuffers {
 
 struct rdm_agent {
   rdm::HostHooks hooks;
-  char error[rdm::kErrorTextSize] = "";
+  mutable char error[rdm::kErrorTextSize] = "";  // also of calls that only read
   rdm::Agent* agent = nullptr;
   rdm::Arena arena;
   DecisionBuffers decision;
 };
+
+namespace rdm::capi {
+// Into as much of the caller's struct as there is.
+void write_epoch(rdm_epoch* io, const Epoch& e);
+}  // namespace rdm::capi
 #endif

@@ -1,9 +1,9 @@
 // rdm_map_*: occupancy maps.
 #include "base/file.hpp"
 #include "capi/handles.hpp"
-#include "redman/redman_map.h"
 
 #if RDM_WITH_SIM
+#include "base/text.hpp"
 #include "sense/map/occupancy.hpp"
 #include "sense/scene_shapes.hpp"
 
@@ -62,7 +62,7 @@ MapFormat format_of(const char* path) {
   const size_t n = std::strlen(path);
   if (n >= 3 && same_name(path + n - 3, ".bt")) return MapFormat::kBinary;
   if (n >= 3 && same_name(path + n - 3, ".ot")) return MapFormat::kFull;
-  fail(Code::kArgument, "path: %.64s ends neither in .bt nor in .ot", path);
+  fail(Code::kArgument, "path: %s ends neither in .bt nor in .ot", Quoted(path).text);
 }
 
 }  // namespace
@@ -295,7 +295,7 @@ rdm_result rdm_map_load_file(rdm_map* m, const char* path) {
     need(m, "map");
     need(path, "path");
     const HostScope scope(m->hooks);
-    const auto file = read_file(path);
+    const auto file = read_file(path, m->map->file_limits());
     m->map->read(file.data(), file.size());
   });
 }

@@ -1,5 +1,8 @@
 // rdm_policy_*: the frozen network.
+#include <bit>
+
 #include "base/file.hpp"
+#include "base/text.hpp"
 #include "capi/handles.hpp"
 
 #if RDM_WITH_LEARN
@@ -77,6 +80,16 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
     return false;
   return true;
 }
+
+void need_finite(const float* x, int32_t rows, int32_t width, const char* name) {
+  const auto dim = static_cast<size_t>(width);
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
+    uint32_t largest = 0;  // of the magnitudes, which order as their bits do
+    for (size_t k = 0; k < dim; ++k)
+      largest = std::max(largest, std::bit_cast<uint32_t>(x[i * dim + k]) & 0x7fffffffu);
+    if (largest >= 0x7f800000u) fail(Code::kArgument, "%s: row %zu is not finite", name, i);
+  }
+}
 }  // namespace
 
 rdm_result rdm_policy_load(rdm_policy** out, const void* bytes, size_t size) {
@@ -91,7 +104,7 @@ rdm_result rdm_policy_load_file(rdm_policy** out, const char* path) {
   return call(nullptr, [&] {
     need(out, "out");
     need(path, "path");
-    const auto bytes = read_file(path);
+    const auto bytes = read_file(path, Policy::file_limits());
     make(out, bytes.data(), bytes.size());
   });
 }
@@ -136,7 +149,11 @@ rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, c
     if (scratch_bytes < bytes) fail(Code::kRange, "scratch_bytes: %zu, %zu are needed", scratch_bytes, bytes);
     if (reinterpret_cast<uintptr_t>(scratch) % Arena::kAlign)
       fail(Code::kArgument, "scratch is not %zu-byte aligned", Arena::kAlign);
+    const PolicyView& v = p->policy->view();
+    need_finite(obs, rows, v.actor.in, "obs");
+    if (noise) need_finite(noise, rows, v.action_dim(), "noise");
     p->policy->act(obs, rows, noise, action, scratch);
+    need_finite(action, rows, v.action_dim(), "action: the network overflows on these observations");
   });
 }
 
@@ -167,7 +184,8 @@ rdm_result rdm_policy_tensor_read(const rdm_policy* p, const char* name, float* 
       names.push_back(t.name);
     }
     const int32_t near = nearest_name(name, names.data(), static_cast<int32_t>(names.size()));
-    fail(Code::kNotFound, "tensor %.64s: unknown; nearest is %s", name, names[static_cast<size_t>(near)]);
+    fail(Code::kNotFound, "tensor %s: unknown; nearest is %s", Quoted(name).text,
+         names[static_cast<size_t>(near)]);
   });
 }
 

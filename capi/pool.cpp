@@ -1,6 +1,7 @@
-// rdm_pool_*: config to pool and back. Pictures and poses are in look.cpp.
+// rdm_pool_*: config to pool and back. Pictures and poses are in cameras.cpp.
 #include "capi/handles.hpp"
 #if RDM_WITH_SIM
+#include "env/resolved_config.hpp"
 #include "tasks/catalog.hpp"
 #endif
 
@@ -67,13 +68,11 @@ void carve(Arena& arena, const Task& task, const TaskInfo& info, rdm_pool* p) {
 }
 
 size_t side_bytes(const PoolConfig& config) {
-  const int32_t index = task_find(config.task);
-  const TaskInfo& info = task_at(index);
-  Task* task = make_task(config);
+  const HostScope scope(config.hooks);
+  const ResolvedPoolConfig plan(config);
   Arena measure;
   rdm_pool none;
-  carve(measure, *task, info, &none);
-  info.destroy(task, config.hooks);
+  carve(measure, *plan.task, *plan.info, &none);
   return measure.used();
 }
 
@@ -99,11 +98,8 @@ rdm_result rdm_pool_spec(const rdm_pool_config* c, rdm_spec* io) {
     Config config;
     read_config(c, &config);
     const HostScope scope(config.pool.hooks);
-    const int32_t index = task_find(config.pool.task);
-    Task* task = make_task(config.pool);
-    const rdm_spec s = spec_of(*task, index);
-    task_at(index).destroy(task, config.pool.hooks);
-    write_struct(io, s, sizeof(rdm_spec), "io");
+    const ResolvedPoolConfig plan(config.pool);
+    write_struct(io, spec_of(*plan.task, plan.task_index), sizeof(rdm_spec), "io");
   });
 }
 
@@ -149,14 +145,13 @@ const char* rdm_pool_error(const rdm_pool* p) {
 }
 
 rdm_result rdm_pool_get_spec(const rdm_pool* p, rdm_spec* io) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     need(p, "pool");
     write_struct(io, spec_of(p->pool->task(), p->pool->task_index()), sizeof(rdm_spec), "io");
   });
 }
 
-namespace rdm::capi {
-rdm_field field_of(const Task& task, int32_t i) {
+rdm_field rdm::capi::field_of(const Task& task, int32_t i) {
   const auto& fields = task.fields();
   need_index(i, static_cast<int64_t>(fields.size()), "i");
   rdm_field f{fields[static_cast<size_t>(i)].name.text, fields[static_cast<size_t>(i)].unit, 0,
@@ -164,10 +159,9 @@ rdm_field field_of(const Task& task, int32_t i) {
   for (int32_t k = 0; k < i; ++k) f.offset += fields[static_cast<size_t>(k)].count;
   return f;
 }
-}  // namespace rdm::capi
 
 rdm_result rdm_pool_field(const rdm_pool* p, int32_t i, rdm_field* out) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     need(p, "pool");
     need(out, "out");
     *out = field_of(p->pool->task(), i);
@@ -175,7 +169,7 @@ rdm_result rdm_pool_field(const rdm_pool* p, int32_t i, rdm_field* out) {
 }
 
 rdm_result rdm_pool_option(const rdm_pool* p, int32_t i, const char** key, char* text) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     need(p, "pool");
     need(key, "key");
     need(text, "text");
@@ -187,7 +181,7 @@ rdm_result rdm_pool_option(const rdm_pool* p, int32_t i, const char** key, char*
 }
 
 rdm_result rdm_pool_buffers(const rdm_pool* p, rdm_buffers* io) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     need(p, "pool");
     const Buffers& b = p->pool->buffers();
     rdm_buffers out{};
@@ -283,7 +277,7 @@ void check_env(const rdm_pool* p, int32_t env, bool all_allowed) {
 }  // namespace
 
 rdm_result rdm_pool_state_size(const rdm_pool* p, int32_t env, size_t* bytes) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     check_env(p, env, true);
     need(bytes, "bytes");
     *bytes = p->pool->state_size(env);
@@ -291,7 +285,7 @@ rdm_result rdm_pool_state_size(const rdm_pool* p, int32_t env, size_t* bytes) {
 }
 
 rdm_result rdm_pool_get_state(const rdm_pool* p, int32_t env, void* bytes, size_t capacity, size_t* size) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     check_env(p, env, true);
     need(bytes, "bytes");
     need(size, "size");
@@ -312,7 +306,7 @@ rdm_result rdm_pool_set_state(rdm_pool* p, int32_t env, const void* bytes, size_
 }
 
 rdm_result rdm_pool_hash(const rdm_pool* p, int32_t env, uint64_t* hash) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     check_env(p, env, true);
     need(hash, "hash");
     *hash = p->pool->hash(env);
@@ -320,7 +314,7 @@ rdm_result rdm_pool_hash(const rdm_pool* p, int32_t env, uint64_t* hash) {
 }
 
 rdm_result rdm_pool_get_stats(const rdm_pool* p, rdm_pool_stats* io) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     need(p, "pool");
     check_out(io, sizeof(rdm_pool_stats), "io");
     const PoolStats s = p->pool->stats();

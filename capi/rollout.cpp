@@ -5,10 +5,6 @@
 using namespace rdm;
 using namespace rdm::capi;
 
-namespace rdm::capi {
-void write_epoch(rdm_epoch* io, const Epoch& e);
-}
-
 namespace {
 
 void check_match(const AgentConfig& a, const Pool& p) {
@@ -99,7 +95,7 @@ rdm_result rdm_agent_rollout(rdm_agent* a, rdm_pool* p, rdm_epoch* io) {
 }
 
 rdm_result rdm_agent_config_for_pool(rdm_agent_config* c, const rdm_pool* p) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     need(p, "pool");
     auto config = read_struct(c, sizeof(rdm_agent_config), rdm_agent_config{}, "config");
     const Pool& pool = *p->pool;

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "capi/handles.hpp"
-#include "redman/redman_sense.h"
 
 #if RDM_WITH_SIM
 #include "sense/cloud/furthest.hpp"
@@ -11,7 +10,7 @@ using namespace rdm;
 using namespace rdm::capi;
 
 rdm_result rdm_pool_sensors(const rdm_pool* p, rdm_sensors* io) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     need(p, "pool");
     const SenseConfig& c = p->pool->sense();
     const SenseBuffers& b = p->pool->sensed();
@@ -34,7 +33,7 @@ rdm_result rdm_pool_sensors(const rdm_pool* p, rdm_sensors* io) {
 }
 
 rdm_result rdm_pool_sensor_camera(const rdm_pool* p, int32_t cloud, int32_t i, rdm_camera* out) {
-  return call(nullptr, [&] {
+  return call(p ? p->error : nullptr, [&] {
     need(p, "pool");
     need(out, "out");
     if (cloud < 0 || cloud > 1) fail(Code::kRange, "cloud: %d is outside [0, 1]", cloud);

@@ -30,21 +30,28 @@ if(sources AND NOT REDMAN_TOOL STREQUAL "OFF" AND NOT RDM_TOOL_MISSING)
     file(READ ${demo} text)
     string(APPEND RDM_DEMOS "    {\"${name}\", R\"demo(${text})demo\"},\n")
   endforeach()
-  file(CONFIGURE OUTPUT demos.cpp @ONLY CONTENT "#include \"demo/demo.hpp\"
+  file(CONFIGURE OUTPUT demos.cpp @ONLY CONTENT "#include \"demo/script.hpp\"
 namespace tool {
 const CarriedDemo kCarriedDemos[] = {
 @RDM_DEMOS@    {nullptr, nullptr},
 };
 }
 ")
-  add_executable(redman_tool ${sources} ${CMAKE_CURRENT_BINARY_DIR}/demos.cpp)
-  target_include_directories(redman_tool PRIVATE ${PROJECT_SOURCE_DIR}/examples/redman)
-  target_link_libraries(redman_tool PRIVATE CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG)
+  # Everything but main is a library too, for tests of its parsers.
+  list(REMOVE_ITEM sources ${PROJECT_SOURCE_DIR}/examples/redman/main.cpp)
+  add_library(redman_tool_parts STATIC ${sources} ${CMAKE_CURRENT_BINARY_DIR}/demos.cpp)
+  target_include_directories(redman_tool_parts PUBLIC ${PROJECT_SOURCE_DIR}/examples/redman)
+  target_link_libraries(redman_tool_parts PUBLIC CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG)
   if(TARGET Qhull::qhull_r)
-    target_compile_definitions(redman_tool PRIVATE REDMAN_QHULL=1)
-    target_link_libraries(redman_tool PRIVATE Qhull::qhull_r)
+    target_compile_definitions(redman_tool_parts PRIVATE REDMAN_QHULL=1)
+    target_link_libraries(redman_tool_parts PUBLIC Qhull::qhull_r)
   endif()
-  set_target_properties(redman_tool PROPERTIES OUTPUT_NAME redman CXX_STANDARD 20)
-  rdm_example(redman_tool)
-  target_compile_options(redman_tool PRIVATE -O1)  # its time goes by in the library; half the time to build
+  add_executable(redman_tool ${PROJECT_SOURCE_DIR}/examples/redman/main.cpp)
+  target_link_libraries(redman_tool PRIVATE redman_tool_parts)
+  set_target_properties(redman_tool PROPERTIES OUTPUT_NAME redman)
+  foreach(target redman_tool_parts redman_tool)
+    set_target_properties(${target} PROPERTIES CXX_STANDARD 20)
+    rdm_example(${target})
+    target_compile_options(${target} PRIVATE -O1)  # its time goes by in the library; half the time to build
+  endforeach()
 endif()

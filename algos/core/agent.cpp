@@ -258,17 +258,24 @@ void Agent::save(Writer& out) const {
   out.end_file();
 }
 
-void Agent::load(const void* bytes, size_t size) {
+void Agent::read_state(const void* bytes, size_t size, bool apply) {
+  Reader in(bytes, size, "agent state");
+  in.begin_file(kMagic, kVersion);
+  read_fingerprint(in, resolved_, apply);
+  if (apply) read_live();
+  StateReader io(in, apply);
+  visit_state(io);
+  io.end();
+}
+
+void Agent::check_state(const void* bytes, size_t size) {
   if (!bytes) fail(Code::kArgument, "agent state: NULL");
-  for (const bool apply : {false, true}) {
-    Reader in(bytes, size, "agent state");
-    in.begin_file(kMagic, kVersion);
-    read_fingerprint(in, resolved_, apply);
-    if (apply) read_live();
-    StateReader io(in, apply);
-    visit_state(io);
-    io.end();
-  }
+  read_state(bytes, size, false);
+}
+
+void Agent::load(const void* bytes, size_t size) {
+  check_state(bytes, size);
+  read_state(bytes, size, true);
   collector_.after_load();
   clamp_log_std(nets_);
   drop_horizon();

@@ -67,8 +67,9 @@ class Agent {
 
   void write_policy_file(Writer& out);  // const but for scratch
   void save(Writer& out) const;         // Error(kState) inside a horizon
-  // Error(kFormat, kVersion) for bytes that no agent of this config saved; nothing changes then.
-  void load(const void* bytes, size_t size);
+  // Error(kFormat, kVersion) unless load would take these bytes; changes nothing.
+  void check_state(const void* bytes, size_t size);
+  void load(const void* bytes, size_t size);                      // changes nothing when it fails
   const AgentConfig& config() const { return resolved_.config; }  // pointers inside are not valid any more
 
  protected:
@@ -91,6 +92,8 @@ class Agent {
   // Copies live options to where they are used.
   virtual void read_live();
   virtual void visit_state(StateIo& io);
+  // Checks a saved state, or with `apply` takes one that was checked.
+  void read_state(const void* bytes, size_t size, bool apply);
 
   // What learn() leaves for the Epoch: means over samples.
   struct Learned {

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
@@ -64,7 +65,8 @@ void read_option(Reader& in, Options& o, int32_t i, bool apply) {
   char here[kOptionTextSize];
   o.print(i, here);
   if (s.kind == OptionKind::kText)
-    fail(Code::kFormat, "%s: option %s is '%s' there, '%s' in this agent", kWhat, s.key, text, here);
+    fail(Code::kFormat, "%s: option %s is '%s' there, '%s' in this agent", kWhat, s.key, Quoted(text).text,
+         Quoted(here).text);
   fail(Code::kFormat, "%s: option %s is %.9g there, %s in this agent", kWhat, s.key, number, here);
 }
 

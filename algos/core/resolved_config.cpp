@@ -10,6 +10,7 @@
 #include "algos/core/option_tables.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
@@ -63,12 +64,12 @@ MlpShape parse_shape(const Options& o, const char* key, int32_t in, int32_t out)
     const long width = std::strtol(p, &end, 10);
     while (*end == ' ') ++end;
     if (end == p || (*end && *end != ','))
-      fail(Code::kArgument, "%s: '%s' is not a list of widths such as 64,64", key, o.text(key));
+      fail(Code::kArgument, "%s: '%s' is not a list of widths such as 64,64", key, Quoted(o.text(key)).text);
     if (s.num_hidden == kMaxHidden) fail(Code::kRange, "%s: more than %d layers", key, kMaxHidden);
     check_range(key, width, 1, kMaxWidth);
     s.hidden[s.num_hidden++] = static_cast<int32_t>(width);
     p = *end ? end + 1 : end;
-    if (*end && !*p) fail(Code::kArgument, "%s: '%s' ends in a comma", key, o.text(key));
+    if (*end && !*p) fail(Code::kArgument, "%s: '%s' ends in a comma", key, Quoted(o.text(key)).text);
   }
   return s;
 }

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
-#include "report.hpp"
+#include "common/report.hpp"
 
 namespace tool {
 

@@ -1,8 +1,8 @@
 // `eval`: how good a policy is, over many episodes.
 #include "commands.hpp"
-#include "draw/text.hpp"
-#include "evaluate.hpp"
-#include "names.hpp"
+#include "common/names.hpp"
+#include "common/text.hpp"
+#include "play/evaluate.hpp"
 
 namespace tool {
 
@@ -24,8 +24,10 @@ Json evaluation_json(const Evaluation& e, int32_t episodes) {
   return {{"episodes", episodes},
           {"return_mean", s.return_mean},
           {"return_std", s.return_std},
+          {"return_stderr", s.return_stderr},
           {"cost_mean", s.cost_mean},
           {"cost_std", s.cost_std},
+          {"cost_stderr", s.cost_stderr},
           {"success_rate", s.success_rate},
           {"length_mean", s.length_mean},
           {"cost_limits", e.limits},
@@ -81,7 +83,7 @@ void add_eval(CLI::App& app, Run& run) {
       "--policy", flags->policy,
       "policy file, run folder, .demo file, demo, zero, hold or random; a run's task options come with it");
   CLI::Option* task = add_pool_flags(*command, flags->pool, "task; default: the policy's");
-  command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::PositiveNumber);
+  command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));
   command->add_flag("--stochastic", flags->stochastic, "sample actions instead of taking the mean");
   add_cost_limit_flag(*command, flags->limits);
   add_set_flag(*command, flags->sets);

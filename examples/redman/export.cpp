@@ -2,11 +2,11 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "actor.hpp"
 #include "commands.hpp"
-#include "draw/text.hpp"
-#include "files.hpp"
-#include "network.hpp"
+#include "common/files.hpp"
+#include "common/text.hpp"
+#include "network/network.hpp"
+#include "play/actor.hpp"
 
 namespace tool {
 namespace {
@@ -78,7 +78,7 @@ void add_export(CLI::App& app, Run& run) {
   command->add_option(
       "--probe", flags->probe,
       "JSON file to write: random observations and this policy's mean actions, to check others by");
-  command->add_option("--probes", flags->probes, "rows of --probe")->check(CLI::PositiveNumber);
+  command->add_option("--probes", flags->probes, "rows of --probe")->check(CLI::Range(1, 100000));
   command->add_option("--seed", flags->seed, "of --probe");
   command->callback([&run, flags] { run = [flags] { return run_export(*flags); }; });
 }

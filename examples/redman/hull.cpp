@@ -6,8 +6,8 @@
 #include <redman/redman.hpp>
 
 #include "commands.hpp"
-#include "draw/text.hpp"
-#include "mesh.hpp"
+#include "common/text.hpp"
+#include "mesh/mesh.hpp"
 
 #ifdef REDMAN_QHULL
 #include <libqhull_r/qhull_ra.h>
@@ -16,7 +16,8 @@
 namespace tool {
 namespace {
 
-constexpr int kMostPoints = 32;  // what option hull takes
+constexpr int kMostPoints = 32;    // what option hull takes
+constexpr double kFarthest = 1e3;  // m; so too. The squares of its sums stay small in qhull
 
 struct HullFlags {
   std::string file;
@@ -41,6 +42,7 @@ double beyond(const Plane& plane, const Point& p) {
 #ifdef REDMAN_QHULL
 Solid hull_of(std::vector<Point> points, const std::string& what) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> quiet(std::fopen("/dev/null", "w"), std::fclose);
+  if (!quiet) throw Failure("cannot open /dev/null");
   qhT state;
   qhT* qh = &state;
   qh_zero(qh, quiet.get());
@@ -104,7 +106,12 @@ std::string short_number(double x) {
 Report run_hull(const HullFlags& flags) {
   std::vector<Point> points = mesh_points(flags.file);
   for (Point& p : points)
-    for (double& x : p) x *= flags.scale;
+    for (double& x : p) {
+      x *= flags.scale;
+      if (!(std::abs(x) <= kFarthest))
+        throw Failure(flags.file +
+                      format(": with --scale a vertex is farther than %g m from the origin", kFarthest));
+    }
   const Solid whole = hull_of(points, flags.file);
   std::vector<Point> kept = whole.corners;
   if (kept.size() > static_cast<size_t>(flags.points))

@@ -2,8 +2,8 @@
 #include <redman/redman.hpp>
 
 #include "commands.hpp"
-#include "draw/text.hpp"
-#include "names.hpp"
+#include "common/names.hpp"
+#include "common/text.hpp"
 
 namespace tool {
 namespace {

@@ -2,12 +2,16 @@
 // Results go to stdout, progress and errors to stderr. Exit status: 0 good, 1 the work failed, 2 wrong usage.
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
-#include <exception>
+#include <cstring>
+#include <new>
 #include <redman/redman.hpp>
 
 #include "commands.hpp"
-#include "names.hpp"
+#include "common/names.hpp"
+#include "common/text.hpp"
 
 namespace {
 
@@ -37,15 +41,17 @@ Arguments read_arguments(int argc, char** argv) {
 }
 
 void print_result(const Report& report, bool json) {
-  if (json)
-    std::printf("%s\n", report.json.dump().c_str());
-  else
-    std::fputs(report.text.c_str(), stdout);
+  const std::string text = json ? json_text(report.json) + '\n' : printable(report.text);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout))
+    throw Failure(std::string("cannot write to stdout: ") + std::strerror(errno));
 }
 
 int fail(const std::string& text, int status, bool json) {
-  std::fprintf(stderr, "redman: %s\n", text.c_str());
-  if (json) print_result({{{"error", text}, {"status", status}}, ""}, true);
+  std::string line = printable(text);
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  std::fprintf(stderr, "redman: %s\n", line.c_str());
+  if (json) std::printf("%s\n", json_text({{"error", line}, {"status", status}}).c_str());
   return status;
 }
 
@@ -63,10 +69,23 @@ std::string usage_text(const CLI::App& app, const CLI::ParseError& error, const 
   return text + (app.get_subcommands().empty() ? "; see redman --help" : "; see redman " + first + " --help");
 }
 
-}  // namespace
+// Everything that was asked for; throws what failed.
+void work(CLI::App& app, Run& run, const Arguments& arguments) {
+  try {
+    redman::check(rdm_check_abi(RDM_ABI, RDM_VERSION));
+    app.parse(std::vector<std::string>(arguments.words.rbegin(), arguments.words.rend()));
+    print_result(run(), arguments.json);
+  } catch (const CLI::CallForHelp&) {
+    const std::string text = app.help();  // of the subcommand, if there is one
+    print_result({{{"help", text}}, text + '\n'}, arguments.json);
+  } catch (const CLI::CallForAllHelp&) {
+    const std::string text = app.help("", CLI::AppFormatMode::All);
+    print_result({{{"help", text}}, text + '\n'}, arguments.json);
+  }
+}
 
-int main(int argc, char** argv) {
-  Arguments arguments = read_arguments(argc, argv);
+int run_tool(int argc, char** argv) {
+  const Arguments arguments = read_arguments(argc, argv);
   const bool json = arguments.json;
 
   CLI::App app("Safe dexterous manipulation: simulate, train, evaluate, look.", "redman");
@@ -88,24 +107,27 @@ int main(int argc, char** argv) {
   add_info(app, run);
   app.set_help_all_flag("--help-all", "Help of every subcommand");
   try {
-    redman::check(rdm_check_abi(RDM_ABI, RDM_VERSION));
-    std::vector<std::string> reversed(arguments.words.rbegin(), arguments.words.rend());
-    app.parse(reversed);
-    print_result(run(), json);
-    return 0;
-  } catch (const CLI::CallForHelp&) {
-    const std::string text = app.help();  // of the subcommand, if there is one
-    print_result({{{"help", text}}, text + '\n'}, json);
-    return 0;
-  } catch (const CLI::CallForAllHelp&) {
-    const std::string text = app.help("", CLI::AppFormatMode::All);
-    print_result({{{"help", text}}, text + '\n'}, json);
+    work(app, run, arguments);
     return 0;
   } catch (const CLI::ParseError& e) {
     return fail(usage_text(app, e, arguments), 2, json);
   } catch (const Usage& e) {
     return fail(e.what(), 2, json);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory: ask for less at once", 1, json);
   } catch (const std::exception& e) {
     return fail(e.what(), 1, json);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then is an error of write, with a text
+  try {
+    return run_tool(argc, argv);
+  } catch (...) {
+    std::fputs("redman: out of memory\n", stderr);
+    return 1;
   }
 }

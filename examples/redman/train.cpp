@@ -1,9 +1,12 @@
 // `train`: a run from flags or from its folder, and how good its policy is in the end.
+#include <cmath>
+
 #include "commands.hpp"
-#include "draw/text.hpp"
-#include "evaluate.hpp"
-#include "names.hpp"
-#include "trainer.hpp"
+#include "common/json.hpp"
+#include "common/names.hpp"
+#include "common/text.hpp"
+#include "play/evaluate.hpp"
+#include "run/trainer.hpp"
 
 namespace tool {
 namespace {
@@ -26,12 +29,20 @@ void take_limit_from_sets(std::vector<std::string>& sets, std::vector<std::strin
   sets.erase(std::remove_if(sets.begin(), sets.end(), is_limit), sets.end());
 }
 
+int64_t whole_steps(double steps) {
+  if (!(steps >= 1 && steps <= static_cast<double>(kMostExact)) || steps != std::floor(steps))
+    throw Usage("--steps " + number_text(steps) + ": not a whole number of 1 .. " +
+                std::to_string(kMostExact));
+  return static_cast<int64_t>(steps);
+}
+
 Trainer begin(TrainFlags flags) {
   RunSettings& run = flags.run;
   take_limit_from_sets(flags.sets, run.limits);
   apply_sets(flags.sets, run.pool, &run.agent);
-  run.steps = static_cast<int64_t>(flags.steps);
-  Trainer trainer(run);  // a wrong value throws here, before there is a folder
+  run.steps = whole_steps(flags.steps);
+  Trainer trainer(run);  // a wrong value throws here or below, before there is a folder
+  trainer.prepare();
   trainer.begin(
       RunFolder::create(flags.out.empty() ? RunFolder::default_path(run) : flags.out, flags.overwrite));
   return trainer;
@@ -40,18 +51,18 @@ Trainer begin(TrainFlags flags) {
 Trainer go_on(const TrainFlags& flags) {
   if (flags.others_given)
     throw Usage("--resume takes its settings from the folder; only --steps and --threads may change");
-  const RunFolder folder = RunFolder::open(flags.resume);
-  RunSettings run = folder.read_config();
-  if (flags.steps_given) run.steps = static_cast<int64_t>(flags.steps);
+  RunFolder folder = RunFolder::go_on(flags.resume);
+  RunSettings run = run_settings(flags.resume);
+  if (flags.steps_given) run.steps = whole_steps(flags.steps);
   if (flags.threads_given) run.pool.threads = flags.run.pool.threads;
   Trainer trainer(run);
-  trainer.resume(folder);
+  trainer.resume(std::move(folder));
   return trainer;
 }
 
 Report run_train(const TrainFlags& flags) {
   Trainer trainer = flags.resume.empty() ? begin(flags) : go_on(flags);
-  std::fprintf(stderr, "training in %s\n", trainer.folder().path().c_str());
+  std::fprintf(stderr, "training in %s\n", printable(trainer.folder().path()).c_str());
   trainer.run();
 
   const RunSettings& run = trainer.settings();
@@ -70,6 +81,7 @@ Report run_train(const TrainFlags& flags) {
                      {"steps_per_second", trainer.steps_per_second()},
                      {"return", s.return_mean},
                      {"cost", cost},
+                     {"cost_stderr", s.cost_stderr},
                      {"success_rate", s.success_rate},
                      {"cost_limit", limit < 0 ? Json() : Json(limit)},
                      {"feasible", safe},

@@ -154,7 +154,8 @@ class Pool {
   }
   // [h][w][3] bytes.
   Bytes render(int32_t env, const char* camera, int32_t w, int32_t h) {
-    Bytes rgb(static_cast<size_t>(w) * static_cast<size_t>(h) * 3);
+    const bool fits = w >= 1 && h >= 1 && w <= 8192 && h <= 8192;  // if not, the call says so
+    Bytes rgb(fits ? static_cast<size_t>(w) * static_cast<size_t>(h) * 3 : 0);
     check(rdm_pool_render(get(), env, camera, w, h, rgb.data(), nullptr, nullptr));
     return rgb;
   }

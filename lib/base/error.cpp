@@ -2,7 +2,8 @@
 
 #include <cstdarg>
 #include <cstdio>
-#include <cstring>
+
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
@@ -16,8 +17,7 @@ void fail(Code code, const char* format, ...) {
   va_start(args, format);
   std::vsnprintf(e.text, sizeof e.text, format, args);
   va_end(args);
-  for (char* c = e.text; *c; ++c)
-    if (*c == '\n' || *c == '\r') *c = ' ';
+  clean_text(e.text);
   throw e;
 }
 
@@ -26,8 +26,8 @@ const char* last_error() {
 }
 
 void set_last_error(const char* text) {
-  std::strncpy(t_text, text, sizeof t_text - 1);
-  t_text[sizeof t_text - 1] = '\0';
+  copy_text(t_text, sizeof t_text, text);
+  clean_text(t_text);
 }
 
 const char* code_string(int32_t code) {

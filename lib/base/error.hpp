@@ -32,10 +32,11 @@ struct Error {
   char text[kErrorTextSize];
 };
 
-// Throws an Error with a printf-formatted one-line text.
+// Throws an Error with a printf-formatted text, made one line of valid UTF-8 (base/text.hpp).
 [[noreturn]] [[gnu::format(printf, 2, 3)]] void fail(Code code, const char* format, ...);
 
-// This thread's last failure; never NULL. set_last_error cuts at kErrorTextSize - 1 bytes.
+// This thread's last failure; never NULL. set_last_error cuts at a character, at most kErrorTextSize - 1
+// bytes.
 const char* last_error();
 void set_last_error(const char* text);
 

@@ -3,18 +3,23 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
+#include <mutex>
 #include <new>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
+std::mutex g_mutex;
 HostHooks g_host;
 thread_local const HostHooks* t_scope = nullptr;
 }  // namespace
 
-const HostHooks& host() {
-  return t_scope ? *t_scope : g_host;
+HostHooks host() {
+  if (t_scope) return *t_scope;
+  const std::lock_guard lock(g_mutex);
+  return g_host;
 }
 HostScope::HostScope(const HostHooks& hooks) : hooks_(hooks), outer_(t_scope) {
   t_scope = &hooks_;
@@ -23,6 +28,7 @@ HostScope::~HostScope() {
   t_scope = outer_;
 }
 void set_host(const HostHooks& hooks) {
+  const std::lock_guard lock(g_mutex);
   g_host = hooks;
 }
 
@@ -56,6 +62,7 @@ void log(const HostHooks& hooks, LogLevel level, const char* format, ...) {
   va_start(args, format);
   std::vsnprintf(line, sizeof line, format, args);
   va_end(args);
+  clean_text(line);
   hooks.log(hooks.user, static_cast<int32_t>(level), line);
 }
 

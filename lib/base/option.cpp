@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
@@ -88,7 +89,7 @@ void Options::write(Row& row, const char* text) {
     row.long_text.clear();
   else
     row.long_text.assign(text, text + size);
-  std::snprintf(row.text, sizeof row.text, "%s", text);
+  copy_text(row.text, sizeof row.text, text);
 }
 
 void Options::assign(Row& row, const OptionInput& input, const char* owner) const {
@@ -100,7 +101,8 @@ void Options::assign(Row& row, const OptionInput& input, const char* owner) cons
     if (!s.choices)
       write(row, input.text);
     else if (!match_choice(s.choices, input.text, row.text))
-      fail(Code::kRange, "%s option %s: '%s' is not one of %s", owner, s.key, input.text, s.choices);
+      fail(Code::kRange, "%s option %s: '%s' is not one of %s", owner, s.key, Quoted(input.text).text,
+           s.choices);
     return;
   }
   double v = input.number;
@@ -114,7 +116,7 @@ void Options::assign(Row& row, const OptionInput& input, const char* owner) cons
     else if (s.kind == OptionKind::kFlag && (same_name(input.text, "false") || same_name(input.text, "off")))
       v = 0;
     else if (error != std::errc() || end != stop)
-      fail(Code::kArgument, "%s option %s: '%s' is not a number", owner, s.key, input.text);
+      fail(Code::kArgument, "%s option %s: '%s' is not a number", owner, s.key, Quoted(input.text).text);
   }
   if (!std::isfinite(v)) fail(Code::kArgument, "%s option %s: the value is not finite", owner, s.key);
   if (v < s.low || v > s.high)
@@ -131,8 +133,8 @@ void Options::set(const OptionInput& input, const char* owner) {
     Vector<const char*> keys;
     for (const Row& r : rows_) keys.push_back(r.spec->key);
     const int32_t near = nearest_name(input.key, keys.data(), static_cast<int32_t>(keys.size()));
-    fail(Code::kNotFound, "%s option %.64s: unknown%s%s", owner, input.key, near >= 0 ? "; nearest is " : "",
-         near >= 0 ? keys[static_cast<size_t>(near)] : "");
+    fail(Code::kNotFound, "%s option %s: unknown%s%s", owner, Quoted(input.key).text,
+         near >= 0 ? "; nearest is " : "", near >= 0 ? keys[static_cast<size_t>(near)] : "");
   }
   Row& row = rows_[static_cast<size_t>(i)];
   assign(row, input, owner);
@@ -167,7 +169,7 @@ bool Options::given(const char* key) const {
 void Options::print(int32_t i, char* out) const {
   const Row& r = rows_[static_cast<size_t>(i)];
   if (r.spec->kind == OptionKind::kText)
-    std::snprintf(out, kOptionTextSize, "%s", r.text);
+    copy_text(out, kOptionTextSize, r.text);
   else if (r.spec->kind == OptionKind::kFlag)
     std::snprintf(out, kOptionTextSize, "%s", r.number != 0 ? "true" : "false");
   else

@@ -1,92 +1,41 @@
-// Making, ending and describing pools.
+// Making, ending and describing pools, and what one would take.
 #include "env/pool.hpp"
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <new>
 
-#include "base/hash.hpp"
 #include "env/pool_internal.hpp"
 
 namespace rdm {
 namespace {
 
-constexpr int32_t kMaxEnvs = 65536, kMaxThreads = 256;
+struct Counter {
+  HostHooks inner;
+  size_t live = 0;
+};
 
-// Of what decides a world's course: not of what is seen of it.
-uint64_t hash_options(const TaskInfo& info, const Options& options) {
-  uint64_t hash = hash_bytes(info.name, std::strlen(info.name) + 1);
-  int32_t count = 0;
-  info.options(&count);
-  for (int32_t i = 0; i < count; ++i) {
-    const OptionSpec& spec = options.spec(i);
-    hash = hash_bytes(spec.key, std::strlen(spec.key) + 1, hash);
-    if (spec.kind == OptionKind::kText) {
-      const char* text = options.text(spec.key);
-      hash = hash_bytes(text, std::strlen(text) + 1, hash);
-    } else {
-      double value = 0;
-      if (spec.kind == OptionKind::kNumber) value = options.number(spec.key);
-      if (spec.kind == OptionKind::kInteger) value = options.integer(spec.key);
-      if (spec.kind == OptionKind::kFlag) value = options.flag(spec.key);
-      hash = hash_bytes(&value, sizeof value, hash);
-    }
-  }
-  return hash;
-}
-
-void read_options(const PoolConfig& config, const TaskInfo& info, Options* out) {
-  if (config.num_options < 0 || (config.num_options > 0 && !config.options))
-    fail(Code::kArgument, "options: %d given, but no list", config.num_options);
-  int32_t count = 0;
-  const OptionSpec* specs = info.options(&count);
-  out->add_table(specs, count);
-  specs = sense_options(&count);
-  out->add_table(specs, count);
-  for (int32_t i = 0; i < config.num_options; ++i) out->set(config.options[i], info.name);
+HostHooks counting(Counter* counter) {
+  HostHooks hooks = counter->inner;
+  hooks.user = counter;
+  hooks.log = nullptr;
+  hooks.parallel = nullptr;
+  hooks.alloc = [](void* user, size_t bytes, size_t align) {
+    auto* c = static_cast<Counter*>(user);
+    void* p = host_alloc(c->inner, bytes, align);
+    c->live += bytes;
+    return p;
+  };
+  hooks.release = [](void* user, void* p, size_t bytes, size_t align) {
+    auto* c = static_cast<Counter*>(user);
+    host_release(c->inner, p, bytes, align);
+    c->live -= bytes;
+  };
+  return hooks;
 }
 
 }  // namespace
-
-Task* make_task(const PoolConfig& config) {
-  const HostScope scope(config.hooks);
-  const TaskInfo& info = task_at(task_find(config.task));
-  Options options;
-  read_options(config, info, &options);
-  return info.make(options, config.hooks);
-}
-
-ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
-  if (c.num_envs < 1 || c.num_envs > kMaxEnvs)
-    fail(Code::kRange, "num_envs: %d is outside [1, %d]", c.num_envs, kMaxEnvs);
-  if (c.num_threads < 0 || c.num_threads > kMaxThreads)
-    fail(Code::kRange, "num_threads: %d is outside [0, %d]", c.num_threads, kMaxThreads);
-  task_index = task_find(c.task);
-  info = &task_at(task_index);
-  config.task = info->name;
-  config.options = nullptr;
-  read_options(c, *info, &options);
-  options_hash = hash_options(*info, options);
-  task = info->make(options, config.hooks);
-  obs_dim = rdm::obs_dim(*task);
-  action_dim = task->action_dim();
-  cost_dim = info->num_costs;
-  obs_limit = task->obs_limit();
-  sense = sense_from(options, *info);
-}
-
-ResolvedPoolConfig::~ResolvedPoolConfig() {
-  if (task) info->destroy(task, config.hooks);
-}
-
-int32_t ResolvedPoolConfig::num_blocks() const {
-  const int32_t threads = config.num_threads > 1 ? config.num_threads : 1;
-  return threads < config.num_envs ? threads : config.num_envs;
-}
-
-int32_t ResolvedPoolConfig::block_begin(int32_t block) const {
-  return static_cast<int32_t>(int64_t{config.num_envs} * block / num_blocks());
-}
 
 Pool::Impl::Carved Pool::Impl::carve_rows(const ResolvedPoolConfig& plan, Arena& arena) {
   const size_t n = plan.num(), blocks = static_cast<size_t>(plan.num_blocks());
@@ -173,6 +122,43 @@ Pool::Impl::~Impl() {
       if (slots[i].world) World::destroy(slots[i].world, config.hooks);
   host_release(config.hooks, pristine, pristine_size, Arena::kAlign);
   host_delete(config.hooks, workers);
+}
+
+// Makes the parts of a pool with hooks that count.
+void Pool::memory(const PoolConfig& config, size_t* ours, size_t* engines) {
+  const FpMode mode;
+  Counter counter{config.hooks};
+  const HostHooks hooks = counting(&counter);
+  const HostScope scope(hooks);
+  PoolConfig counted = config;
+  counted.hooks = hooks;
+  const ResolvedPoolConfig plan(counted);
+  size_t total = counter.live + sizeof(Pool) + sizeof(Impl) + Impl::arena_bytes(plan) + sizeof(Workers) +
+                 Workers::memory(config.hooks, config.num_threads);
+
+  // two worlds tell what each takes beside its arrays, and how long its saved state is
+  const EngineKind engine = plan.task->engine();
+  const Scene& scene = plan.task->scene();
+  const size_t blocks = static_cast<size_t>(plan.num_blocks()), others = plan.num() - blocks;
+  Arena measure;
+  World::measure(engine, scene, measure);
+  World::measure(engine, scene, measure, true);
+  Arena arena(config.hooks, measure.used());
+  const size_t before = counter.live;
+  const auto end = [&hooks](World* world) { World::destroy(world, hooks); };
+  using OwnedWorld = std::unique_ptr<World, decltype(end)>;
+  const OwnedWorld first(World::create(engine, scene, arena, hooks), end);
+  const size_t between = counter.live;
+  const OwnedWorld other(World::create(engine, scene, arena, hooks, first.get()), end);
+  total += blocks * (between - before) + others * (counter.live - between);
+  Writer state(nullptr, 0);
+  first->save(state);
+  total += state.size();
+
+  if (ours) *ours = total;
+  if (engines)
+    *engines =
+        blocks * World::engine_bytes(engine, scene) + others * World::engine_bytes(engine, scene, true);
 }
 
 Pool::Pool() : impl_(nullptr) {}

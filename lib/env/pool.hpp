@@ -24,10 +24,6 @@ struct PoolConfig {
   HostHooks hooks;
 };
 
-// The task of a config with its options laid in, made with host_new of the hooks in force; TaskInfo::destroy
-// ends it. Validates task name and options (the C ABI asks for dimensions before a pool is made).
-Task* make_task(const PoolConfig& config);
-
 // Meaning and shapes as rdm_buffers.
 struct Buffers {
   float *obs = nullptr, *final_obs = nullptr, *action = nullptr, *reward = nullptr, *cost = nullptr,

@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
 #include "env/observer.hpp"
-#include "env/pool.hpp"
+#include "env/resolved_config.hpp"
 
 namespace rdm {
 
@@ -39,6 +39,10 @@ struct Slot {
 
 inline constexpr int32_t kMaxGroup = 16;
 
+// A reward or cost beyond it is as good as not finite; sums of an episode stay below the other, and both are
+// finite as floats.
+inline constexpr double kMaxVerdict = 1e20, kMaxSum = 1e30;
+
 // A run of worlds that stays with one worker.
 struct alignas(Arena::kAlign) Block {
   float* action;  // [action_dim] clipped
@@ -53,28 +57,6 @@ struct alignas(Arena::kAlign) Block {
   // Runs f, for world `env`; an error stays here and stops no other world.
   template <class F>
   void attempt(int32_t env, F&& f);
-};
-
-// A config made concrete: task, options, sizes. What memory() and create() have in common.
-struct ResolvedPoolConfig {
-  explicit ResolvedPoolConfig(const PoolConfig& c);
-  ~ResolvedPoolConfig();
-  ResolvedPoolConfig(const ResolvedPoolConfig&) = delete;
-  ResolvedPoolConfig& operator=(const ResolvedPoolConfig&) = delete;
-
-  PoolConfig config;
-  Options options;
-  int32_t task_index = -1;
-  const TaskInfo* info = nullptr;
-  Task* task = nullptr;
-  int32_t obs_dim = 0, action_dim = 0, cost_dim = 0;
-  float obs_limit = 0;
-  SenseConfig sense;
-  uint64_t options_hash = 0;  // task name and every option's value
-
-  size_t num() const { return static_cast<size_t>(config.num_envs); }
-  int32_t num_blocks() const;
-  int32_t block_begin(int32_t block) const;  // first world of a block; of num_blocks(): num_envs
 };
 
 struct Pool::Impl : ResolvedPoolConfig {
@@ -117,6 +99,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   // --- state
   void write_world(int32_t env, Writer& out) const;
   void read_world(int32_t env, Reader& in);
+  void check_world(int32_t env) const;  // Error(kFormat) when what was read makes no sense
 
   float* obs(int32_t env) const { return buffers.obs + env * static_cast<ptrdiff_t>(obs_dim); }
   float* final_obs(int32_t env) const { return buffers.final_obs + env * static_cast<ptrdiff_t>(obs_dim); }

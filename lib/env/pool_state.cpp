@@ -38,6 +38,12 @@ void write_episode(const Episode& e, int32_t costs, Writer& out) {
   for (int32_t k = 0; k < costs; ++k) out.value(e.sum_cost[k]);
 }
 
+bool read_flag(Reader& in) {
+  const auto flag = in.value<uint8_t>();
+  if (flag > 1) fail(Code::kFormat, "state: flag %u", flag);
+  return flag != 0;
+}
+
 void read_episode(Reader& in, int32_t costs, Episode* e) {
   e->seed = in.value<uint64_t>();
   e->reset = in.value<Stream>();
@@ -46,16 +52,22 @@ void read_episode(Reader& in, int32_t costs, Episode* e) {
   if (phase > static_cast<uint32_t>(Phase::kEnded)) fail(Code::kFormat, "state: phase %u", phase);
   e->phase = static_cast<Phase>(phase);
   e->step = in.value<int32_t>();
-  if (e->step < 0) fail(Code::kFormat, "state: step %d", e->step);
-  e->terminated = in.value<uint8_t>() != 0;
-  e->truncated = in.value<uint8_t>() != 0;
+  e->terminated = read_flag(in);
+  e->truncated = read_flag(in);
   e->sum_reward = in.value<double>();
-  bool good = std::isfinite(e->sum_reward);
-  for (int32_t k = 0; k < costs; ++k) {
-    e->sum_cost[k] = in.value<double>();
-    good = good && std::isfinite(e->sum_cost[k]);
-  }
-  if (!good) fail(Code::kFormat, "state: a sum is not finite");
+  for (int32_t k = 0; k < costs; ++k) e->sum_cost[k] = in.value<double>();
+}
+
+void check_episode(const Episode& e, int32_t costs, int32_t max_steps) {
+  // a running world has steps left, an ended one has taken some and says how it ended, a new one none of it
+  const bool ended = e.phase == Phase::kEnded;
+  const int32_t low = ended ? 1 : 0, high = e.phase == Phase::kNew ? 0 : max_steps - !ended;
+  if (e.step < low || e.step > high)
+    fail(Code::kFormat, "state: step %d is outside [%d, %d]", e.step, low, high);
+  if (ended != (e.terminated || e.truncated)) fail(Code::kFormat, "state: phase and end flags disagree");
+  bool good = std::abs(e.sum_reward) <= kMaxSum;
+  for (int32_t k = 0; k < costs; ++k) good = good && std::abs(e.sum_cost[k]) <= kMaxSum;
+  if (!good) fail(Code::kFormat, "state: a sum is not finite, or beyond %g", kMaxSum);
 }
 
 }  // namespace
@@ -81,6 +93,19 @@ void Pool::Impl::read_world(int32_t env, Reader& in) {
   in.bytes(s.task_state, task->state_bytes());
   read_episode(in, cost_dim, &s.episode);
   in.bytes(obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
+}
+
+// The world's own part is checked by its load.
+void Pool::Impl::check_world(int32_t env) const {
+  const Slot& s = slots[env];
+  check_episode(s.episode, cost_dim, task->max_steps());
+  // of a world that is not running, the next reset zeroes the struct before anything reads it
+  if (s.episode.phase == Phase::kRunning) task->check_state(s.task_state);
+  const float* row = obs(env);
+  for (int32_t i = 0; i < obs_dim; ++i)
+    if (!std::isfinite(row[i]) || std::abs(row[i]) > obs_limit)
+      fail(Code::kFormat, "state: observation %d is not finite, or beyond %g", i,
+           static_cast<double>(obs_limit));
 }
 
 size_t Pool::state_size(int32_t env) const {
@@ -138,7 +163,10 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
   for (int32_t i = range.begin; i < range.end; ++i) m.write_world(i, keep);
   int32_t at = range.begin;
   try {
-    for (; at < range.end; ++at) m.read_world(at, in);
+    for (; at < range.end; ++at) {
+      m.read_world(at, in);
+      m.check_world(at);
+    }
     in.expect_end();
   } catch (...) {
     Reader old(backup.data(), backup.size(), "state");

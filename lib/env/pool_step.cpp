@@ -1,5 +1,6 @@
 // Episodes: reset, control steps, their ends, and the baseline actions.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "env/fields.hpp"
@@ -11,10 +12,11 @@ namespace {
 // Up to so many entries are drawn sooner than other threads wake up.
 constexpr int32_t kFewActions = 4096;
 
-bool all_finite(const Verdict& v, int32_t costs) {
-  double zero = 0 * v.reward;  // 0 times what is not finite is not a number
-  for (int32_t k = 0; k < costs; ++k) zero += 0 * v.cost[k] + 0 * v.cost_raw[k];
-  return zero == 0;
+bool sound(const Verdict& v, int32_t costs) {
+  bool good = std::abs(v.reward) <= kMaxVerdict;
+  for (int32_t k = 0; k < costs; ++k)
+    good &= std::abs(v.cost[k]) <= kMaxVerdict && std::abs(v.cost_raw[k]) <= kMaxVerdict;
+  return good;
 }
 
 }  // namespace
@@ -158,7 +160,7 @@ void Pool::Impl::finish_step(int32_t env) {
   c.overflowed += (status & kStatusContactOverflow) != 0;
   if (status & kStatusDiverged) return lose_step(env, status);
   const Verdict verdict = task->judge(*s.world, s.task_state, s.episode.step + 1);
-  if (!observe(env, final_obs(env)) || !all_finite(verdict, cost_dim))
+  if (!observe(env, final_obs(env)) || !sound(verdict, cost_dim))
     return lose_step(env, status | kStatusDiverged);
   std::memcpy(obs(env), final_obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
   close_step(env, verdict, status, false);

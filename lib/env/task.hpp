@@ -5,6 +5,7 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 #include "base/option.hpp"
 #include "base/rng.hpp"
@@ -52,6 +53,10 @@ class Task {
   virtual const Vector<FieldSpec>& fields() const = 0;  // in order; offsets are the running sums
   virtual const char* action_order() const = 0;         // joins the layout hash
   virtual size_t state_bytes() const = 0;               // of the task's per-world struct
+  // Error(kFormat) for a per-world struct that no world of this task can have: an index out of range, a
+  // number that is not finite. Called for the bytes of a saved state before anything reads them; zeroed bytes
+  // (a world that was never reset) and whatever reset, control and judge leave pass.
+  virtual void check_state(const void* state) const = 0;
   virtual void reset(World& world, void* state, Stream& stream) const = 0;
   // Clipped actions [action_dim] to drive targets (and base wrenches) of the next control step.
   virtual void control(World& world, void* state, const float* action) const = 0;
@@ -83,6 +88,15 @@ struct TaskInfo {
   Task* (*make)(const Options& options, const HostHooks& hooks);
   void (*destroy)(Task* task, const HostHooks& hooks);
 };
+// Ends a task that make made with the same hooks.
+struct EndTask {
+  const TaskInfo* info = nullptr;
+  HostHooks hooks;
+  void operator()(Task* task) const { info->destroy(task, hooks); }
+};
+using TaskHandle = std::unique_ptr<Task, EndTask>;
+TaskHandle make_task(const TaskInfo& info, const Options& options, const HostHooks& hooks);
+
 void register_task(const TaskInfo& info);  // before the first pool; static data
 int32_t task_count();
 const TaskInfo& task_at(int32_t index);

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "env/task.hpp"
 
 namespace rdm {
@@ -62,7 +63,7 @@ int32_t task_find(const char* name) {
   const char* names[kMaxTasks];
   for (int32_t k = 0; k < g_count; ++k) names[k] = g_tasks[k]->name;
   const int32_t near = nearest_name(name, names, g_count);
-  fail(Code::kNotFound, "task %.64s: unknown%s%s", name, near >= 0 ? "; nearest is " : "",
+  fail(Code::kNotFound, "task %s: unknown%s%s", Quoted(name).text, near >= 0 ? "; nearest is " : "",
        near >= 0 ? names[near] : "");
 }
 

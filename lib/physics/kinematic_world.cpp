@@ -33,6 +33,10 @@ void KinematicWorld::save(Writer& out) const {
 }
 
 void KinematicWorld::load(Reader& in) {
+  Reader check = in;
+  for (int32_t i = 0; i < scene_->num_bodies; ++i)
+    if (!sound(check.value<Motion>()))
+      fail(Code::kFormat, "world state: the motion of body %d is not finite or out of range", i);
   in.bytes(bodies_, sizeof(Motion) * static_cast<size_t>(scene_->num_bodies));
 }
 

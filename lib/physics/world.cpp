@@ -102,14 +102,46 @@ void World::set_joints(int32_t articulation, const double* q, const double* qd) 
   const int32_t first = scene_->link_offset[a];
   const auto count = static_cast<int32_t>(scene_->def.articulations[a].links.size());
   for (int32_t i = 0; i < count; ++i)
-    if (!std::isfinite(q[i]) || !std::isfinite(qd[i]))
-      fail(Code::kArgument, "set_joints: joint %d is not finite", i);
+    if (!std::isfinite(q[i]) || !bounded(qd[i], kRateBound))
+      fail(Code::kArgument, "set_joints: joint %d is not finite or faster than %g", i, kRateBound);
   for (int32_t i = 0; i < count; ++i) {
     const JointDef& joint = scene_->link(first + i).joint;
     q_[first + i] = std::clamp(q[i], joint.lower, joint.upper);
     qd_[first + i] = qd[i];
   }
   links_changed(articulation);
+}
+
+Motion World::checked_motion(const char* call, int32_t index, const Motion& m) {
+  if (!bounded(m.X.p) || !bounded(m.v) || !bounded(m.w))
+    fail(Code::kArgument, "%s: motion %d is not finite or beyond %g", call, index, kStateBound);
+  const Quat q = normalized(m.X.q);
+  if (!is_unit(q)) fail(Code::kArgument, "%s: motion %d has no unit quaternion", call, index);
+  return {{m.X.p, q}, m.v, m.w};
+}
+
+bool World::sound(const Motion& m) {
+  return bounded(m.X.p) && bounded(m.v) && bounded(m.w) && is_unit(m.X.q);
+}
+
+bool World::sound_rows(Reader& in, const Scene& scene) {
+  bool good = (in.value<uint32_t>() & ~(kStatusContactOverflow | kStatusDiverged)) == 0;
+  for (int32_t i = 0; i < scene.num_links; ++i) {
+    const JointDef& joint = scene.link(i).joint;
+    // an engine may keep angles as floats
+    const double room =
+        scene.def.solver.limit_margin + 1e-6 * (1 + std::fabs(joint.lower) + std::fabs(joint.upper));
+    const auto q = in.value<double>();
+    good &= q >= joint.lower - room && q <= joint.upper + room;
+  }
+  for (int32_t i = 0; i < scene.num_links; ++i) good &= bounded(in.value<double>(), kRateBound);
+  for (int32_t i = 0; i < scene.num_links; ++i) good &= bounded(in.value<double>(), kStateBound);  // target
+  for (int32_t i = 0; i < scene.num_links; ++i) good &= bounded(in.value<double>(), FLT_MAX);      // torque
+  for (size_t i = 0; i < scene.sensors.size(); ++i) {
+    const auto sensor = in.value<Wrench>();
+    good &= fits_float(sensor.force) && fits_float(sensor.torque);
+  }
+  return good;
 }
 
 void World::rebuild(int32_t articulation) {

@@ -7,6 +7,7 @@
 
 #include "base/arena.hpp"
 #include "base/bytes.hpp"
+#include "physics/limits.hpp"
 #include "physics/model/scene.hpp"
 
 namespace rdm {
@@ -71,6 +72,7 @@ class World {
   const double* torque() const { return torque_; }
 
   // Sets all joint coordinates of one articulation and rebuilds its links. Values are clamped to range.
+  // Error(kArgument) for a value that is not finite, a rate beyond kRateBound.
   void set_joints(int32_t articulation, const double* q, const double* qd);
 
   const Motion& link(int32_t i) const {  // [num_links]
@@ -79,6 +81,7 @@ class World {
   }
   const Motion& base(int32_t articulation) const { return bases_[articulation]; }
   const Motion& body(int32_t i) const { return bodies_[i]; }  // [num_bodies]
+  // Error(kArgument) for a motion that is not finite or beyond kStateBound, or has no unit quaternion.
   virtual void set_body(int32_t i, const Motion& m) = 0;
   // Moves a free base; its links follow with their joint coordinates. Error(kState) for a fixed base.
   virtual void set_base(int32_t articulation, const Motion& m) = 0;
@@ -107,6 +110,7 @@ class World {
 
   // The whole state, exact to the bit: a world that loads it goes on as the one that saved it. Torques,
   // sensors and status are in it; contacts are not (none after load), nor are pushes not yet acted on.
+  // load: Error(kFormat) where a number is not finite or out of its range; the world then stays as it was.
   virtual void save(Writer& out) const = 0;
   virtual void load(Reader& in) = 0;
 
@@ -120,6 +124,13 @@ class World {
   // Called after q_, qd_ or bases_ changed outside of step.
   virtual void links_changed(int32_t articulation) = 0;
   virtual void step_group(World* const* worlds, int32_t count);
+  // What set_body and set_base take, with a unit quaternion; the text of the error begins with `call`.
+  static Motion checked_motion(const char* call, int32_t index, const Motion& m);
+  // A motion of a loaded state.
+  static bool sound(const Motion& m);
+  // Reads status, q, qd, target, torque and sensors, in which every engine's state agrees; false where one
+  // of them is not finite or out of range.
+  static bool sound_rows(Reader& in, const Scene& scene);
 
   const Scene* scene_;
   double *q_ = nullptr, *qd_ = nullptr, *target_ = nullptr, *torque_ = nullptr;

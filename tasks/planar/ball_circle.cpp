@@ -1,10 +1,15 @@
 // Bullet-Safety-Gym's BallCircle: run clockwise along a circle of 7 m whose sides lie outside the safe strip.
+//
+//   r = 0.1 (y vx - x vy) / (1 + ||p| - 7|) - 0.005 |a|     p = (x, y), m; v, m/s
+//   c = [|x| > 6]
 #include <algorithm>
 #include <cmath>
 
 #include "base/elementary.hpp"
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/rolling_ball.hpp"
-#include "tasks/small_worlds.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -39,6 +44,11 @@ class BallCircle final : public PlanarTask {
   int32_t action_dim() const override { return 2; }
   const char* action_order() const override { return "push x, push y"; }
   size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override {
+    const State& s = *static_cast<const State*>(state);
+    check_ball(s.ball);
+    check_numbers("effort", &s.effort, 1);
+  }
 
   // Uniform over the ring, by area.
   void reset(World& world, void* state, Stream& stream) const override {
@@ -127,7 +137,8 @@ constexpr auto kDefaults =
 }  // namespace
 
 constinit const TaskInfo kBallCircle = task_info<BallCircle, kCosts, kCameras, kDefaults>(
-    "ball_circle", "BallCircle", "a rolling ball runs along a circle; cost: further than 6 m to a side",
+    "ball_circle", "BallCircle",
+    "a ball that rolls by a formula fitted to Bullet runs along a circle; cost: further than 6 m to a side",
     &constant_options<kOptions>);
 
 }  // namespace rdm

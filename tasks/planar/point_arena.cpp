@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tasks/state_check.hpp"
+
 namespace rdm {
 namespace {
 
@@ -19,6 +21,13 @@ bool clear_of(const Keepout& a, const Keepout* others, int32_t count) {
 double distance(const Spot& a, const Spot& b) {
   const double dx = a.x - b.x, dy = a.y - b.y;
   return std::sqrt(dx * dx + dy * dy);
+}
+
+void check_spots(const char* what, const Spot* spots, int32_t count) {
+  for (int32_t i = 0; i < count; ++i) {
+    const double values[] = {spots[i].x, spots[i].y};
+    check_numbers(what, values, 2);
+  }
 }
 
 bool draw_spot(double extent, const Keepout* others, int32_t count, Stream& stream, Keepout* out) {
@@ -66,10 +75,45 @@ void Lidar::add(const Spot& thing) {
   raise(bin - 1, (1 - share) * sense);
 }
 
-Motion spot_motion(const Spot& spot, double z) {
-  Motion m;
-  m.X.p = {spot.x, spot.y, z};
-  return m;
+void write_lidar(const PointRobot& robot, const elementary::SinCos& heading, double range, const Spot* things,
+                 int32_t count, float* out) {
+  Lidar lidar(robot, heading, range, out);
+  for (int32_t i = 0; i < count; ++i) lidar.add(things[i]);
+}
+
+PointArena point_arena_from(const Options& o) {
+  return {o.number("extent"), o.number("hazard_size"), o.number("lidar_range"), o.integer("hazards")};
+}
+
+void add_robot_and_goal(double goal_mark, PlanarScene& scene) {
+  add_point_body(scene);
+  scene.body("goal", ShapeKind::kCylinder, {goal_mark, 0.01, 0}, kMarkGreen);
+}
+
+void add_hazards(const Options& o, PlanarScene& scene) {
+  for (int32_t i = 0; i < o.integer("hazards"); ++i)
+    scene.body("hazard", ShapeKind::kCylinder, {o.number("hazard_size"), 0.005, 0}, kMarkBlue);
+}
+
+void start_robot(const Keepout& place, Stream& noise, World& world, PointRobot* robot) {
+  robot->x = place.at.x, robot->y = place.at.y;
+  robot->yaw = 2 * kPi * noise.uniform();
+  world.set_body(kRobotBody, point_motion(*robot));
+}
+
+int32_t count_hazards(const PointArena& arena, const PointRobot& robot, const Spot* hazards) {
+  int32_t count = 0;
+  for (int32_t i = 0; i < arena.hazards; ++i)
+    count += distance({robot.x, robot.y}, hazards[i]) <= arena.hazard_size;
+  return count;
+}
+
+void place_things(World& world, int32_t first, const Spot* things, int32_t count, double z) {
+  for (int32_t i = 0; i < count; ++i) {
+    Motion m;
+    m.X.p = {things[i].x, things[i].y, z};
+    world.set_body(first + i, m);
+  }
 }
 
 }  // namespace rdm

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -19,6 +22,11 @@ float to_float(double v) {
 }
 
 }  // namespace
+
+void check_point_robot(const PointRobot& r) {
+  const double values[] = {r.x, r.y, r.yaw, r.vx, r.vy, r.w, r.ax, r.ay};
+  check_numbers("robot", values, std::size(values));
+}
 
 void point_substep(const float* action, PointRobot* robot) {
   PointRobot r = *robot;
@@ -69,8 +77,8 @@ bool point_block(double x, double y, double radius, PointRobot* robot) {
   return true;
 }
 
-void add_point_body(PlanarScene& stage) {
-  stage.body("robot", ShapeKind::kSphere, {kPointRadius, 0, 0}, kMarkRed)
+void add_point_body(PlanarScene& scene) {
+  scene.body("robot", ShapeKind::kSphere, {kPointRadius, 0, 0}, kMarkRed)
       .shape("nose", ShapeKind::kBox, {kPointNoseHalf, kPointNoseHalf, kPointNoseHalf}, kMarkRed,
              {{kPointNose, 0, 0}, {}});
 }

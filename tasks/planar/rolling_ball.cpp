@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "tasks/state_check.hpp"
+
 namespace rdm {
 namespace {
 
@@ -17,6 +19,11 @@ double drag(double v) {  // N
 }
 
 }  // namespace
+
+void check_ball(const RollingBall& b) {
+  const double values[] = {b.x, b.y, b.vx, b.vy};
+  check_numbers("ball", values, 4);
+}
 
 double ball_speed(const RollingBall& b) {
   return std::sqrt(b.vx * b.vx + b.vy * b.vy);

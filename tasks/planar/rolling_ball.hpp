@@ -20,6 +20,8 @@ struct RollingBall {
   double x, y, vx, vy;  // m, m/s
 };
 
+void check_ball(const RollingBall& ball);  // of a saved state: Error(kFormat)
+
 // One control step under the push 3.5 (action[0], action[1]) N, world axes; |entries| <= 1.
 void roll(const float* action, RollingBall* ball);
 double ball_speed(const RollingBall& ball);

@@ -1,7 +1,12 @@
 // Safety-Gymnasium's SwimmerVelocity: swim along x, but slower than the limit.
+//
+//   r = v - 1e-4 |a|^2     v: mean speed of the free end along x over the step, m/s
+//   c = [v > 0.2282]
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/planar_scene.hpp"
 #include "tasks/planar/swimmer_body.hpp"
-#include "tasks/small_worlds.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -26,6 +31,13 @@ class SwimmerVelocity final : public PlanarTask {
   int32_t action_dim() const override { return kSwimmerMotors; }
   const char* action_order() const override { return "joint 1, joint 2"; }
   size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override {
+    const State& s = *static_cast<const State*>(state);
+    check_numbers("joint positions", s.swimmer.q, kSwimmerDofs);
+    check_numbers("joint velocities", s.swimmer.qd, kSwimmerDofs);
+    check_numbers("speed", &s.speed, 1);
+    check_numbers("effort", &s.effort, 1);
+  }
 
   void reset(World& world, void* state, Stream& stream) const override {
     State& s = *static_cast<State*>(state);
@@ -63,14 +75,14 @@ class SwimmerVelocity final : public PlanarTask {
 
  private:
   static Scene make() {
-    PlanarScene stage(kSwimmerControlDt);
+    PlanarScene scene(kSwimmerControlDt);
     const Pose lying{{}, axis_angle({0, 1, 0}, kPi / 2)};
     const char* names[kSwimmerLinks] = {"front", "middle", "back"};
     const Color colors[kSwimmerLinks] = {kMarkYellow, kMarkBlue, kMarkCyan};
     for (int i = 0; i < kSwimmerLinks; ++i)
-      stage.body(names[i], ShapeKind::kCapsule, {kSwimmerRadius, 0.5 * kSwimmerLength, 0}, colors[i], lying);
-    for (int x = 0; x <= 100; x += 5) stage.disc("metres", 0.15, kMarkGrey, x, 0);
-    return stage.build();
+      scene.body(names[i], ShapeKind::kCapsule, {kSwimmerRadius, 0.5 * kSwimmerLength, 0}, colors[i], lying);
+    for (int x = 0; x <= 100; x += 5) scene.disc("metres", 0.15, kMarkGrey, x, 0);
+    return scene.build();
   }
   static void place(World& world, const SwimmerState& s) {
     for (int i = 0; i < kSwimmerLinks; ++i) {

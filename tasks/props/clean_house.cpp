@@ -1,11 +1,21 @@
-#include "tasks/props/clean_house.hpp"
-
+// Clean House (ReDMan B.8): two hands sweep a bottle to a dustpan with a broom, past a chair.
+//
+//   r = 50 - 10 d_target - 5 d_left - 5 d_right   eq. (B8): distances of the trash from the dustpan and of
+//   the
+//                                                 palms from their places on the broom's handle, m
+//   c = [the broom touches the chair, and it moves]
+//
+// The text beside eq. (B8) has a fourth part, the distance from trash to broom, which the formula has not:
+// option reward_bottom is its weight.
 #include <cmath>
+#include <memory>
 
 #include "sense/map/scene_map.hpp"
+#include "tasks/catalog.hpp"
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/props/house_scene.hpp"
 #include "tasks/props/prop_task.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
@@ -26,7 +36,7 @@ double trash_height(const Pose& X) {
 }
 
 // Thumbs up, fingers along -x on both sides of the handle; the left hand above the right.
-HandControlConfig make_plan() {
+HandControlConfig make_config() {
   HandControlConfig p;
   const Quat q = {0.5, 0.5, 0.5, -0.5};
   p.bases[0] = {{0.35, -0.45, 1.3}, q};
@@ -34,7 +44,7 @@ HandControlConfig make_plan() {
   p.flying = true;
   p.transition_scale = 0.2;
   p.orientation_scale = 0.5;
-  p.start = kFoldedThumb;
+  p.folded = true;
   p.friction = 1.5;
   return p;
 }
@@ -97,11 +107,11 @@ constexpr OptionSpec kRows[] = {
 
 void add_options(OptionTable& table) {
   table.add(kRows);
-  add_prop_options(make_plan(), 500, 96, table);
+  add_prop_options(make_config(), 500, 96, table);
 }
 
 SceneDef make_scene_def(const Options& o) {
-  SceneDef s = make_rig_scene(make_plan(), o, kMaterials);
+  SceneDef s = make_hand_scene(make_config(), o, kMaterials);
   const int32_t things[] = {kHouse.handle, kHouse.head, kHouse.trash, kHouse.chair, kHouse.pan};
   const double other = o.number("friction.other");
   for (const int32_t a : things) {
@@ -129,7 +139,7 @@ struct State {
 class CleanHouse final : public PropTask {
  public:
   explicit CleanHouse(const Options& o)
-      : PropTask(make_plan(), o, make_scene_def(o), sizeof(State)),
+      : PropTask(make_config(), o, make_scene_def(o), sizeof(State)),
         displacement_(same_name(o.text("cost_mode"), "literal") ||
                       same_name(o.text("cost_mode"), "displacement")),
         count_hands_(o.flag("count_hands")),
@@ -164,10 +174,6 @@ class CleanHouse final : public PropTask {
     if (quat_) add_field(own_fields(), "broom", "rotation", "1", 4);
   }
 
-  ~CleanHouse() override { Occupancy::destroy(map_); }
-  CleanHouse(const CleanHouse&) = delete;
-  CleanHouse& operator=(const CleanHouse&) = delete;
-
   Vec3 focus(const World& world, const void*) const override { return broom_point(world, kBroomBottom); }
 
   void control(World& world, void* state, const float* action) const override {
@@ -186,7 +192,8 @@ class CleanHouse final : public PropTask {
     for (int32_t hand = 0; hand < 2; ++hand) {
       const Vec3 hold = hold_point(world, hand);
       palms[hand] = norm(palm(world, hand) - hold);
-      for (int32_t f = 0; full_ && f < kHandTips; ++f) tips += norm(tip(world, hand, f, kTipBeyond) - hold);
+      for (int32_t f = 0; full_ && f < hands().hand(hand).num_tips; ++f)
+        tips += norm(tip(world, hand, f, kTipBeyond) - hold);
       v.terminated = v.terminated || palms[hand] >= palm_limit_;
     }
     v.terminated = v.terminated || trash.z <= trash_height_ || hold_point(world, 0).z <= handle_height_;
@@ -207,6 +214,10 @@ class CleanHouse final : public PropTask {
     Motion m = world.body(kTrash);
     for (int k = 0; k < 2; ++k) m.X.p[k] += reset_noise() * stream.signed_unit();
     world.set_body(kTrash, m);
+  }
+
+  void check_own_state(const void* state) const override {
+    check_point("start of the chair", static_cast<const State*>(state)->chair);
   }
 
   void start(World& world, void* state) const override {
@@ -253,7 +264,7 @@ class CleanHouse final : public PropTask {
     constexpr double kStiffness = 500, kDamping = 15;  // N/m, N s/m
     const Motion& broom = world.body(kBroom);
     const Vec3 hold = hold_point(world, hand), at_palm = palm(world, hand), arm = hold - broom.X.p;
-    const Motion& base = world.base(rig().hand(hand).articulation);
+    const Motion& base = world.base(hands().hand(hand).articulation);
     Vec3 force = kStiffness * (at_palm - hold) + kDamping * (base.v - broom.v - cross(broom.w, arm));
     const double size = norm(force);
     if (size > grip_) force = (grip_ / size) * force;
@@ -266,14 +277,14 @@ class CleanHouse final : public PropTask {
     OccupancyConfig config;
     config.resolution = resolution;
     config.memory = kMapMemory;
-    map_ = Occupancy::create(config, host());
+    map_.reset(Occupancy::create(config, host()));
     Vector<Camera> cameras;
     for (const CameraSpec& c : kCameras)
       if (same_name(c.name, "above") || same_name(c.name, "side_right") || same_name(c.name, "side_left"))
         cameras.push_back({c.name, c.eye, c.target, c.fov_y});
     const int32_t chair = kChair;
     scan_scene(scene(), false, &chair, 1, cameras.data(), static_cast<int32_t>(cameras.size()), kMapRays,
-               map_);
+               map_.get());
   }
 
   int32_t parts_in_map(const World& world) const {
@@ -309,7 +320,10 @@ class CleanHouse final : public PropTask {
   double chair_limit_, bottom_, palm_limit_, handle_height_, trash_height_, success_, rolling_, grip_;
   Vec3 goal_;
   Vector<int32_t> broom_chair_, hand_chair_;
-  Occupancy* map_ = nullptr;
+  struct DestroyMap {
+    void operator()(Occupancy* map) const { Occupancy::destroy(map); }
+  };
+  std::unique_ptr<Occupancy, DestroyMap> map_;  // gives its memory back also when a constructor throws
 };
 
 // Rewards are near 30 a step.
@@ -320,7 +334,7 @@ constexpr auto kLearner =
 
 constinit const TaskInfo kCleanHouse = task_info<CleanHouse, kCosts, kCameras, kLearner>(
     "clean_house", nullptr,
-    "sweep trash to a dustpan with a broom in two hands; cost: the broom pushes the chair",
+    "sweep trash to a dustpan with a broom in two hands; cost: the broom touches the chair and it moves",
     &filled_options<add_options>);
 
 }  // namespace rdm

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/option.hpp"
+#include "base/text.hpp"
 #include "physics/model/inertia.hpp"
 
 namespace rdm {
@@ -90,7 +91,7 @@ const ThrowObject& throw_object_named(const char* name) {
     if (same_name(kObjects[i].name, name)) return kObjects[i];
     names[i] = kObjects[i].name;
   }
-  fail(Code::kNotFound, "object %.64s: unknown; nearest is %s", name,
+  fail(Code::kNotFound, "object %s: unknown; nearest is %s", Quoted(name).text,
        names[nearest_name(name, names, kCount)]);
 }
 

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
@@ -109,7 +110,7 @@ Vector<ShapeDef> wall_boxes(const Options& o, int32_t material) {
     ShapeDef s;
     paint(&s, static_cast<int>(out.size()) + 1, material);
     if (!parse_box(text, &s))
-      fail(Code::kArgument, "%s: '%s' is not 'x y z width depth height [rx ry rz]'", key, text);
+      fail(Code::kArgument, "%s: '%s' is not 'x y z width depth height [rx ry rz]'", key, Quoted(text).text);
     out.push_back(s);
   }
   return out;

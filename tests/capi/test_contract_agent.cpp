@@ -1,6 +1,7 @@
 // The C ABI of agents and policies: what bad input gets, and that it loses nothing.
 #include <sys/resource.h>
 
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <limits>
@@ -125,6 +126,52 @@ TEST(ContractAgent, ValuesThatAreNotFiniteAreRefused) {
   reward[2] = 0;
   EXPECT_EQ(rdm_agent_record(a, &t), RDM_OK) << rdm_agent_error(a);
   rdm_agent_destroy(a);
+}
+
+// A policy gives actions in [-1, 1] or refuses, with and without a normaliser in front of the network.
+TEST(ContractAgent, APolicyNeverGivesWhatIsNotANumber) {
+  for (const double normalize : {0.0, 1.0}) {
+    rdm_option options[5];
+    std::copy(kSmallAgentOptions, kSmallAgentOptions + 4, options);
+    options[4] = {"normalize_obs", nullptr, normalize};
+    rdm_agent_config c = agent_config();
+    c.options = options;
+    c.num_options = 5;
+    rdm_agent* a = make_agent(c);
+    const auto bytes = policy_bytes(a);
+    rdm_agent_destroy(a);
+    rdm_policy* p = nullptr;
+    ASSERT_EQ(rdm_policy_load(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
+    const size_t size = rdm_policy_scratch(p, 2);
+    void* scratch = std::aligned_alloc(64, (size + 63) / 64 * 64);
+    const float clean[6] = {};
+    float action[4];
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), HUGE_VALF, -HUGE_VALF}) {
+      for (int at = 0; at < 6; ++at) {
+        float obs[6] = {};
+        obs[at] = bad;
+        std::fill_n(action, 4, 9.0f);
+        EXPECT_EQ(rdm_policy_act(p, obs, 2, nullptr, action, scratch, size), RDM_ARGUMENT) << at;
+        EXPECT_NE(std::string(rdm_last_error()).find("obs: row " + std::to_string(at / 3)), std::string::npos)
+            << rdm_last_error();
+        EXPECT_EQ(action[0], 9);
+      }
+      for (int at = 0; at < 4; ++at) {
+        float noise[4] = {};
+        noise[at] = bad;
+        EXPECT_EQ(rdm_policy_act(p, clean, 2, noise, action, scratch, size), RDM_ARGUMENT) << at;
+      }
+    }
+    for (const float large : {1e10f, 3e38f, -3e38f}) {
+      const float obs[6] = {large, -large, large, 0, large, large}, noise[4] = {large, -large, 0, large};
+      const rdm_result r = rdm_policy_act(p, obs, 2, noise, action, scratch, size);
+      ASSERT_TRUE(r == RDM_OK || r == RDM_ARGUMENT) << r;
+      for (const float x : action) EXPECT_TRUE(r || std::abs(x) <= 1) << x;
+    }
+    EXPECT_EQ(rdm_policy_act(p, clean, 2, nullptr, action, scratch, size), RDM_OK);
+    std::free(scratch);
+    rdm_policy_destroy(p);
+  }
 }
 
 TEST(ContractAgent, TensorsAreListedReadAndWritten) {

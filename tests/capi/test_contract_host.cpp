@@ -1,8 +1,8 @@
 // What a host may rely on: exact memory, refusals that leak nothing, its own threads, its floating-point
 // mode.
 #include <sys/wait.h>
-#include <xmmintrin.h>
 
+#include <cfenv>
 #include <thread>
 
 #include "contract.hpp"
@@ -121,15 +121,15 @@ TEST(ContractHost, TheFloatingPointModeIsPutBack) {
   const uint64_t before = hash_of(p);
   ASSERT_EQ(rdm_pool_step(p), RDM_OK);
   const uint64_t nearest = hash_of(p);
-  const unsigned mode = _mm_getcsr();
-  _mm_setcsr((mode & ~0x6000u) | 0x4000u);  // the host rounds up
+  const int mode = std::fegetround();
+  ASSERT_EQ(std::fesetround(FE_UPWARD), 0);  // by the host
   rdm_pool* q = make_pool(pool_config());
   EXPECT_EQ(rdm_pool_reset(q, nullptr, nullptr), RDM_OK);
   const uint64_t reset_up = hash_of(q);
   EXPECT_EQ(rdm_pool_step(q), RDM_OK);
   const uint64_t upward = hash_of(q);
-  EXPECT_EQ(_mm_getcsr() & 0x6000u, 0x4000u);
-  _mm_setcsr(mode);
+  EXPECT_EQ(std::fegetround(), FE_UPWARD);
+  std::fesetround(mode);
   EXPECT_EQ(reset_up, before);
   EXPECT_EQ(upward, nearest);
   rdm_pool_destroy(p);
@@ -150,22 +150,81 @@ TEST(ContractHost, ErrorTextsBelongToThreads) {
   for (int r = -1000; r <= 1; ++r) EXPECT_NE(rdm_result_string(r), nullptr);
 }
 
+// What `body` gives in a forked child; a crash or hang there is not 0.
+template <class F>
+int in_child(F&& body) {
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(60);
+    _exit(body() ? 0 : 1);
+  }
+  int status = -1;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  return status;
+}
+
 TEST(ContractHost, AForkedChildIsToldThatThreadsDoNotSurvive) {
   rdm_pool_config c = pool_config(4);
   c.num_threads = 2;
   rdm_pool* p = make_pool(c);
   ASSERT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
-  const pid_t child = fork();
-  if (child == 0) {
-    const rdm_result r = rdm_pool_step(p);
-    rdm_pool_destroy(p);
-    _exit(r == RDM_STATE ? 0 : 1);
-  }
-  int status = -1;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0);
+  rdm_agent_config ac = agent_config();
+  ac.num_threads = 2;
+  rdm_agent* a = make_agent(ac);
+  const auto told = [](rdm_result r, const char* text) {
+    return r == RDM_STATE && std::strcmp(text, rdm_last_error()) == 0 && std::strstr(text, "fork");
+  };
+  EXPECT_EQ(in_child([&] {
+              const bool pool = told(rdm_pool_step(p), rdm_pool_error(p)) &&
+                                told(rdm_pool_reset(p, nullptr, nullptr), rdm_pool_error(p));
+              const bool agent = told(feed_epoch(a), rdm_agent_error(a));
+              rdm_pool_destroy(p);
+              rdm_agent_destroy(a);
+              return pool && agent;
+            }),
+            0);
   EXPECT_EQ(rdm_pool_step(p), RDM_OK);
+  EXPECT_EQ(feed_epoch(a), RDM_OK);
   rdm_pool_destroy(p);
+  rdm_agent_destroy(a);
+}
+
+TEST(ContractHost, AForkedChildGoesOnWithHandlesThatHaveNoThreads) {
+  for (const int32_t threads : {0, 1}) {
+    rdm_pool_config c = pool_config(3);
+    c.num_threads = threads;
+    rdm_pool* p = make_pool(c);
+    ASSERT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
+    rdm_agent_config ac = agent_config();
+    ac.num_threads = threads;
+    rdm_agent* a = make_agent(ac);
+    ASSERT_EQ(rdm_pool_step(p), RDM_OK);
+    const auto run = [&] {
+      bool good = feed_epoch(a) == RDM_OK;
+      for (int i = 0; i < 20; ++i)
+        good = good && rdm_pool_baseline(p, RDM_BASELINE_RANDOM) == RDM_OK && rdm_pool_step(p) == RDM_OK;
+      return good;
+    };
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    EXPECT_EQ(in_child([&] {
+                const bool good = run();
+                const uint64_t hash = hash_of(p);
+                const bool sent = write(ends[1], &hash, sizeof hash) == sizeof hash;
+                rdm_pool_destroy(p);
+                rdm_agent_destroy(a);
+                return good && sent;
+              }),
+              0);
+    EXPECT_TRUE(run());
+    uint64_t childs = 0;
+    ASSERT_EQ(read(ends[0], &childs, sizeof childs), static_cast<ssize_t>(sizeof childs));
+    EXPECT_EQ(childs, hash_of(p));
+    close(ends[0]);
+    close(ends[1]);
+    rdm_pool_destroy(p);
+    rdm_agent_destroy(a);
+  }
 }
 
 TEST(ContractHost, HeaderAndLibraryAreCompared) {

@@ -67,6 +67,140 @@ TEST(ContractRollout, CheckpointsCarryAgentPoolAndNote) {
   }
 }
 
+// All that a host sees of a pool: the rows and the state.
+std::vector<unsigned char> seen(const rdm_pool* p) {
+  rdm_spec s{};
+  s.struct_size = sizeof s;
+  EXPECT_EQ(rdm_pool_get_spec(p, &s), RDM_OK);
+  const rdm_buffers b = buffers_of(p);
+  std::vector<unsigned char> out;
+  const auto add = [&](const void* data, size_t bytes) {
+    const auto* d = static_cast<const unsigned char*>(data);
+    out.insert(out.end(), d, d + bytes);
+  };
+  const size_t n = 4, row = sizeof(float) * n, costs = row * static_cast<size_t>(s.cost_dim),
+               obs = row * static_cast<size_t>(s.obs_dim);
+  add(b.obs, obs);
+  add(b.final_obs, obs);
+  add(b.action, row * static_cast<size_t>(s.action_dim));
+  add(b.reward, row);
+  add(b.cost, costs);
+  add(b.cost_raw, costs);
+  add(b.episode_return, row);
+  add(b.episode_cost, costs);
+  add(b.episode_step, row);
+  add(b.status, row);
+  add(b.terminated, n);
+  add(b.truncated, n);
+  add(b.success, n);
+  const uint64_t hash = hash_of(p);
+  add(&hash, sizeof hash);
+  return out;
+}
+
+TEST(ContractRollout, ACheckpointThatIsRefusedChangesNothing) {
+  const std::string path = checkpoint_path();
+  Pair a;
+  a.epochs(2);
+  ASSERT_EQ(rdm_checkpoint_write(path.c_str(), a.agent, a.pool, "hello", 5), RDM_OK) << rdm_last_error();
+  a.epochs(1);
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(rdm_pool_step(a.pool), RDM_OK);
+  char note[16] = "before";
+  size_t n = 77;
+  const auto pool_before = seen(a.pool), agent_before = saved(a.agent);
+
+  // the pool would take it, the agent does not
+  rdm_agent_config c;
+  ASSERT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+  ASSERT_EQ(rdm_agent_config_for_pool(&c, a.pool), RDM_OK);
+  const rdm_option other_net[] = {{"hidden", "16", 0}, {"horizon", nullptr, 8}};
+  c.options = other_net;
+  c.num_options = 2;
+  rdm_agent* other = make_agent(c);
+  EXPECT_EQ(rdm_checkpoint_read(path.c_str(), other, a.pool, note, sizeof note, &n), RDM_FORMAT);
+  EXPECT_EQ(seen(a.pool), pool_before);
+  rdm_agent_destroy(other);
+
+  // the agent would take it, the pool does not
+  rdm_pool* small = make_pool(pool_config(3));
+  EXPECT_EQ(rdm_checkpoint_read(path.c_str(), a.agent, small, note, sizeof note, &n), RDM_FORMAT);
+  EXPECT_EQ(saved(a.agent), agent_before);
+  rdm_pool_destroy(small);
+
+  // it has no pool
+  ASSERT_EQ(rdm_checkpoint_write(path.c_str(), a.agent, nullptr, "hello", 5), RDM_OK);
+  EXPECT_EQ(rdm_checkpoint_read(path.c_str(), a.agent, a.pool, note, sizeof note, &n), RDM_FORMAT);
+  EXPECT_EQ(seen(a.pool), pool_before);
+  EXPECT_EQ(saved(a.agent), agent_before);
+  EXPECT_STREQ(note, "before");
+  EXPECT_EQ(n, 77u);
+  std::remove(path.c_str());
+}
+
+TEST(ContractRollout, ACheckpointThatFindsNoMemoryChangesNothing) {
+  const std::string path = checkpoint_path();
+  CountingHost host;  // of the process: reading a file takes memory from it
+  CountingHost handles;
+  rdm_pool_config pc = pool_config(4);
+  pc.host = &handles.hooks;
+  rdm_pool* pool = make_pool(pc);
+  ASSERT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK);
+  rdm_agent_config c;
+  ASSERT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+  ASSERT_EQ(rdm_agent_config_for_pool(&c, pool), RDM_OK);
+  const rdm_option small[] = {{"hidden", "8", 0}, {"horizon", nullptr, 8}};
+  c.options = small;
+  c.num_options = 2;
+  c.host = &handles.hooks;
+  rdm_agent* agent = make_agent(c);
+  ASSERT_EQ(rdm_agent_rollout(agent, pool, nullptr), RDM_OK);
+  ASSERT_EQ(rdm_checkpoint_write(path.c_str(), agent, pool, "hello", 5), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_init(&host.hooks), RDM_OK);
+  char note[16];
+  size_t n = 0;
+  for (CountingHost* refusing : {&host, &handles}) {
+    ASSERT_EQ(rdm_agent_rollout(agent, pool, nullptr), RDM_OK);
+    const auto pool_before = seen(pool), agent_before = saved(agent);
+    int refused = 0;
+    for (rdm_result r = RDM_MEMORY; r != RDM_OK; ++refused) {
+      ASSERT_LT(refused, 1000);
+      refusing->calls = 0;
+      refusing->refuse_at = static_cast<size_t>(refused);
+      r = rdm_checkpoint_read(path.c_str(), agent, pool, note, sizeof note, &n);
+      refusing->refuse_at = SIZE_MAX;
+      if (r == RDM_OK) break;
+      ASSERT_EQ(r, RDM_MEMORY) << rdm_last_error();
+      ASSERT_EQ(seen(pool), pool_before) << refused;
+      ASSERT_EQ(saved(agent), agent_before) << refused;
+    }
+    EXPECT_GT(refused, 0);
+    EXPECT_NE(saved(agent), agent_before);
+  }
+  // an agent that refuses its part, while there is no memory to put the pool back
+  const rdm_option wide[] = {{"hidden", "16", 0}, {"horizon", nullptr, 8}};
+  c.options = wide;
+  rdm_agent* other = make_agent(c);
+  ASSERT_EQ(rdm_agent_rollout(agent, pool, nullptr), RDM_OK);
+  const auto pool_before = seen(pool), other_before = saved(other);
+  for (CountingHost* refusing : {&host, &handles})
+    for (size_t k = 0; k < 12; ++k) {
+      refusing->calls = 0;
+      refusing->refuse_at = k;
+      const rdm_result r = rdm_checkpoint_read(path.c_str(), other, pool, note, sizeof note, &n);
+      refusing->refuse_at = SIZE_MAX;
+      ASSERT_TRUE(r == RDM_MEMORY || r == RDM_FORMAT) << r;
+      ASSERT_EQ(seen(pool), pool_before) << k;
+      ASSERT_EQ(saved(other), other_before) << k;
+    }
+  rdm_agent_destroy(other);
+  rdm_shutdown();
+  rdm_agent_destroy(agent);
+  rdm_pool_destroy(pool);
+  EXPECT_EQ(handles.live, 0u);
+  EXPECT_EQ(host.live, 0u);
+  std::remove(path.c_str());
+}
+
 TEST(ContractRollout, AnyNumberOfThreadsGivesTheSameBytes) {
   Pair one;
   one.epochs(4);

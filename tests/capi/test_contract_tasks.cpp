@@ -192,15 +192,7 @@ TEST_P(ContractTasks, EveryCameraShowsSomethingThatMoves) {
   rdm_pool_destroy(p);
 }
 
-std::vector<std::string> names() {
-  std::vector<std::string> out;
-  rdm_task t{};
-  t.struct_size = sizeof t;
-  for (int32_t i = 0; i < rdm_task_count(); ++i)
-    if (rdm_task_at(i, &t) == RDM_OK) out.push_back(t.name);
-  return out;
-}
-INSTANTIATE_TEST_SUITE_P(Every, ContractTasks, testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(Every, ContractTasks, testing::ValuesIn(task_names()),
                          [](const auto& info) { return info.param; });
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <redman/redman.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -39,6 +40,32 @@ std::vector<rdm_task> all_tasks() {
     tasks.push_back(t);
   }
   return tasks;
+}
+
+// A menu asks for every field of every task: no task is made for each of them.
+TEST(Discovery, FieldsAreAtHand) {
+  const auto tasks = all_tasks();
+  int64_t fields = 0;
+  const auto begin = std::chrono::steady_clock::now();
+  for (size_t t = 0; t < tasks.size(); ++t) {
+    int32_t offset = 0;
+    for (int32_t i = 0; i < tasks[t].num_fields; ++i, ++fields) {
+      rdm_field f, again;
+      ASSERT_EQ(rdm_task_field(static_cast<int32_t>(t), i, &f), RDM_OK) << rdm_last_error();
+      ASSERT_EQ(rdm_task_field(static_cast<int32_t>(t), i, &again), RDM_OK);
+      EXPECT_EQ(f.name, again.name);  // the same text, which stays
+      EXPECT_EQ(f.offset, offset);
+      EXPECT_GT(std::strlen(f.name), 0u);
+      EXPECT_GT(std::strlen(f.unit), 0u);
+      offset += f.count;
+    }
+    EXPECT_EQ(offset, tasks[t].obs_dim) << tasks[t].name;
+    rdm_field past;
+    EXPECT_EQ(rdm_task_field(static_cast<int32_t>(t), tasks[t].num_fields, &past), RDM_RANGE);
+  }
+  const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+  // far below the 10 ms that making one task can take, and far above what a table needs
+  EXPECT_LT(took.count() / static_cast<double>(fields), 100) << fields << " fields";
 }
 
 TEST(Discovery, TasksAreFoundByTheirNames) {

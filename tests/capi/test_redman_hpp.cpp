@@ -41,6 +41,21 @@ TEST(RedmanHpp, ErrorsCarryCodeAndText) {
   EXPECT_THROW(redman::Policy(redman::Bytes(10)), redman::Error);
 }
 
+TEST(RedmanHpp, PicturesOfNoSizeAreErrorsOfTheLibrary) {
+  redman::Pool pool(redman::pool_config(kTask));
+  const int32_t sizes[][2] = {
+      {-1, 8}, {8, -1}, {0, 8}, {8, 0}, {INT32_MIN, INT32_MIN}, {8193, 1}, {INT32_MAX, INT32_MAX}};
+  for (const auto& s : sizes) {
+    try {
+      pool.render(0, "front", s[0], s[1]);
+      FAIL() << s[0] << ' ' << s[1];
+    } catch (const redman::Error& e) {
+      EXPECT_EQ(e.code(), RDM_RANGE) << e.what();
+    }
+  }
+  EXPECT_EQ(pool.render(0, "front", 4, 3).size(), 36u);
+}
+
 TEST(RedmanHpp, ViewsAreTheBuffers) {
   redman::Pool pool(redman::pool_config(kTask, 3));
   pool.reset();

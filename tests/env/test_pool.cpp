@@ -1,4 +1,5 @@
 // Making and describing pools, and binding a host's buffers.
+#include "env/resolved_config.hpp"
 #include "toy_task.hpp"
 
 namespace rdm::test {
@@ -116,9 +117,9 @@ TEST(Pool, MadeTasksCanBeAsked) {
   register_toy();
   PoolConfig c;
   c.task = "toy_push";
-  Task* task = make_task(c);
-  EXPECT_EQ(obs_dim(*task), kToyObs);
-  toy_info().destroy(task, c.hooks);
+  const ResolvedPoolConfig made(c);
+  EXPECT_EQ(obs_dim(*made.task), kToyObs);
+  EXPECT_EQ(made.cost_dim, kToyCosts);
 }
 
 }  // namespace

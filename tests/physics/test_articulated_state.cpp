@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "articulated.hpp"
@@ -186,6 +187,108 @@ TEST(ArticulatedStateBytes, BrokenNumbersAreRefusedAndTheWorldStaysUsable) {
     test::load(*world, bytes);
   }
   EXPECT_GT(refused, 100);
+}
+
+// Numbers that no field of the type may hold.
+template <class T>
+std::vector<T> bad_numbers() {
+  constexpr T kInfinity = std::numeric_limits<T>::infinity(), kMax = std::numeric_limits<T>::max();
+  return {std::numeric_limits<T>::quiet_NaN(), kInfinity, -kInfinity, kMax / 100, -kMax / 100};
+}
+
+// Puts each of `values` where `at` points, one at a time: refused each time, and the world as it was.
+template <class T>
+void expect_refused(World& world, const std::vector<unsigned char>& good, size_t at,
+                    const std::vector<T>& values, const char* field) {
+  const uint64_t before = test::state_hash(world);
+  for (const T& value : values) {
+    std::vector<unsigned char> bytes = good;
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+    ASSERT_EQ(code_of(world, bytes), Code::kFormat) << field << " at " << at << ": " << value;
+    ASSERT_EQ(test::state_hash(world), before) << field << " at " << at;
+  }
+}
+
+template <class S>
+void expect_every_field_checked(World& world) {
+  const Scene& scene = world.scene();
+  const std::vector<unsigned char> good = test::saved(world);
+  size_t at = 0;
+  const auto check = [&](const auto& values, size_t count, const char* field) {
+    for (size_t i = 0; i < count && !testing::Test::HasFatalFailure(); ++i, at += sizeof values[0])
+      expect_refused(world, good, at, values, field);
+  };
+  const std::vector<double> wide = bad_numbers<double>();
+  const auto links = static_cast<size_t>(scene.num_links);
+  check(std::vector<int32_t>{0, -1}, 1, "engine");
+  check(std::vector<int32_t>{-1, 0, scene.num_links + 1}, 1, "links");
+  check(std::vector<int32_t>{-1, 0, scene.num_bodies + 1}, 1, "bodies");
+  check(std::vector<uint32_t>{4, 0x80000000u, ~0u}, 1, "status");
+  check(wide, links, "q");
+  check(wide, links, "qd");
+  check(wide, links, "target");
+  check(wide, links, "torque");
+  check(wide, 6 * scene.sensors.size(), "sensor");
+  check(wide, 13 * scene.def.articulations.size(), "base");
+  check(wide, 13 * static_cast<size_t>(scene.num_bodies), "body");
+  const std::vector<S> words = bad_numbers<S>();
+  const std::vector<S> sets = {S(0.5), S(-2), S(1e9), words[0]};
+  for (const ArticulationDef& a : scene.def.articulations) {
+    check(words, 6, "momentum of a base");
+    for (size_t i = 0; i < a.links.size(); ++i) {
+      check(words, 24, "motion of a link");
+      check(sets, 2, "active set");
+      check(words, 4, "quaternion of a link");
+    }
+  }
+  const int32_t most = scene.def.solver.contacts_max;
+  check(std::vector<int32_t>{-1, most + 1, std::numeric_limits<int32_t>::max()}, 1, "number of impulses");
+  for (int32_t i = 0; i < most; ++i) {
+    check(std::vector<int32_t>{-1, static_cast<int32_t>(scene.pairs.size()), 1 << 30}, 1, "pair");
+    check(bad_numbers<float>(), 6, "point and impulse");
+  }
+  ASSERT_EQ(at, good.size());
+  EXPECT_EQ(code_of(world, good), Code::kOk);
+}
+
+TEST_P(ArticulatedState, EveryFieldIsCheckedAndARefusedStateChangesNothing) {
+  test::Simulation world(def_of(GetParam()), kEngine);
+  Stream random(8, 0, Purpose::kTest);
+  for (int k = 0; k < 30 || (k < 300 && world->num_contacts() == 0); ++k) {
+    drive(*world, random, k);
+    world->step();
+  }
+  ASSERT_GT(world->num_contacts(), 0);
+  if (GetParam().wide)
+    expect_every_field_checked<double>(*world);
+  else
+    expect_every_field_checked<float>(*world);
+}
+
+// What is in range is taken, even where the fields contradict each other: the world goes on, finite.
+TEST_P(ArticulatedState, AStateThatIsTakenStepsFinite) {
+  test::Simulation world(def_of(GetParam()), kEngine);
+  Stream random(9, 0, Purpose::kTest);
+  for (int k = 0; k < 30; ++k) {
+    drive(*world, random, k);
+    world->step();
+  }
+  const std::vector<unsigned char> good = test::saved(*world);
+  int taken = 0;
+  for (int k = 0; k < 3000; ++k) {
+    std::vector<unsigned char> bytes = good;
+    const auto size = static_cast<uint32_t>(bytes.size());
+    for (int flips = 0; flips < 3; ++flips)
+      bytes[random.below(size)] ^= static_cast<unsigned char>(1u << random.below(8));
+    if (code_of(*world, bytes) != Code::kOk) continue;
+    ++taken;
+    world->step();
+    for (int32_t i = 0; i < world.scene().num_links; ++i)
+      ASSERT_TRUE(std::isfinite(world->q()[i]) && std::isfinite(world->qd()[i])) << k;
+    ASSERT_TRUE(finite(world->body(0).X.p) && finite(world->base(0).X.p)) << k;
+    ASSERT_EQ(code_of(*world, test::saved(*world)), Code::kOk) << k;
+  }
+  EXPECT_GT(taken, 500);
 }
 
 }  // namespace

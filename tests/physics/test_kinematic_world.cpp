@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstring>
+#include <limits>
+
 #include "base/error.hpp"
 #include "physics/kinematic_world.hpp"
 #include "tasks/planar/planar_scene.hpp"
@@ -52,6 +56,28 @@ TEST_F(KinematicWorldTest, SavesAndLoads) {
   world->load(in);
   EXPECT_EQ(world->body(0).X.p.z, 3);
   EXPECT_EQ(in.left(), 0u);
+}
+
+TEST_F(KinematicWorldTest, EveryFieldOfAStateIsChecked) {
+  world->set_body(0, planar_motion({1, 2, 3}, 0.5, 4, 5, 6));
+  unsigned char good[1000];
+  Writer out(good, sizeof good);
+  world->save(out);
+  ASSERT_EQ(out.size(), 2 * 13 * sizeof(double));
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (size_t at = 0; at < out.size(); at += sizeof(double))
+    for (const double bad : {std::nan(""), kInfinity, -kInfinity, 1e300, -1e7}) {
+      unsigned char bytes[sizeof good];
+      std::memcpy(bytes, good, sizeof good);
+      std::memcpy(bytes + at, &bad, sizeof bad);
+      Reader in(bytes, out.size(), "state");
+      EXPECT_THROW(world->load(in), Error) << at << ": " << bad;
+      EXPECT_EQ(world->body(0).X.p.z, 3);
+      EXPECT_EQ(world->body(0).w.z, 6);
+    }
+  Reader cut(good, out.size() - 1, "state");
+  EXPECT_THROW(world->load(cut), Error);
+  EXPECT_EQ(world->body(0).X.p.z, 3);
 }
 
 TEST_F(KinematicWorldTest, NothingCanBePushed) {

@@ -80,7 +80,7 @@ TEST(Tree, MirroredHandsAreMembersOfOne) {
     EXPECT_EQ(member.articulation, m);
     EXPECT_EQ(member.first_link, 24 * m);
     EXPECT_EQ(member.first_shape, scene.first_shape[static_cast<size_t>(m)]);
-    EXPECT_EQ(member.bones.size(), 24u);
+    EXPECT_EQ(member.links.size(), 24u);
     EXPECT_EQ(norm(member.gravity), 0);
   }
   EXPECT_EQ(tree.num_coords, 24);
@@ -149,7 +149,7 @@ TEST(Tree, JointFramesGiveTheLinksPlaces) {
     std::vector<Mat3> R_WJ;
     std::vector<Vec3> p;
     for (int32_t i = 0; i < tree.num_links; ++i) {
-      const MemberLink& bone = member.bones[static_cast<size_t>(i)];
+      const MemberLink& bone = member.links[static_cast<size_t>(i)];
       const int32_t up = tree.links[static_cast<size_t>(i)].parent;
       const Mat3 R = up < 0 ? to_matrix(X_WB.q) : R_WJ[static_cast<size_t>(up)];
       p.push_back((up < 0 ? X_WB.p : p[static_cast<size_t>(up)]) + R * bone.p_PJ);
@@ -172,12 +172,12 @@ TEST(Tree, ShortcutsHoldForAllMembersOrNone) {
   const auto link = [&](int32_t i) { return make_trees(make_scene(def))[0].links[static_cast<size_t>(i)]; };
   EXPECT_TRUE(link(4).aligned);   // about x, like its parent
   EXPECT_FALSE(link(3).aligned);  // about x, its parent about y
-  EXPECT_TRUE(link(4).round);
+  EXPECT_TRUE(link(4).isotropic);
   def.articulations[1].links[4].X_PL.q = axis_angle({1, 0, 0}, 0.1);
   EXPECT_FALSE(link(4).aligned);
   def.articulations[0].links[4].inertia.moment[0] *= 1.5;
-  EXPECT_FALSE(link(4).round);
-  EXPECT_TRUE(link(5).round);
+  EXPECT_FALSE(link(4).isotropic);
+  EXPECT_TRUE(link(5).isotropic);
   EXPECT_FALSE(link(2).massless);
   def.articulations[0].links[2].inertia = {};
   EXPECT_FALSE(link(2).massless);

@@ -1,6 +1,9 @@
 // What the tests of the C ABI share: a counting, refusing allocator, small pools and agents, and the check
 // that nothing was printed.
 #pragma once
+#ifndef RDM_EXPERIMENTAL
+#define RDM_EXPERIMENTAL
+#endif
 #include <gtest/gtest.h>
 #include <redman/redman.h>
 #include <unistd.h>
@@ -70,6 +73,16 @@ inline rdm_pool_config pool_config(int32_t envs = 2) {
   c.task = "hand_over_safe_finger";
   c.num_envs = envs;
   return c;
+}
+
+// Names of all tasks, for tests of what each of them promises.
+inline std::vector<std::string> task_names() {
+  std::vector<std::string> out;
+  rdm_task t{};
+  t.struct_size = sizeof t;
+  for (int32_t i = 0; i < rdm_task_count(); ++i)
+    if (rdm_task_at(i, &t) == RDM_OK) out.push_back(t.name);
+  return out;
 }
 
 inline rdm_pool* make_pool(const rdm_pool_config& c) {

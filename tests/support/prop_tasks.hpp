@@ -42,7 +42,7 @@ inline double moved(const World& world, const std::vector<Vec3>& from, int32_t f
   return most;
 }
 
-// Fields of two flying hands stand first, as tasks section 3.2 has them.
+// Fields of two flying hands stand first, where ReDMan's table B3 has them.
 inline void expect_hand_fields(const Task& task) {
   EXPECT_EQ(task.action_dim(), 52);
   EXPECT_EQ(offset_of(task, "right.joint_position"), 0);

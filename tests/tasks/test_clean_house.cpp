@@ -39,7 +39,8 @@ TEST_F(CleanHouse, Layout) {
   EXPECT_EQ(wide->obs_dim(), 435);
 }
 
-// Specification, acceptance check 14.
+// Held at the start pose the broom neither falls nor slips: 50 - 5 (d_left + d_right) - 10 d_target all
+// along.
 TEST_F(CleanHouse, TheBroomStandsAtTheStart) {
   for (const char* engine : kEngines) {
     TestPool p(kTask, 1, with_engine(engine));
@@ -58,7 +59,7 @@ TEST_F(CleanHouse, TheBroomStandsAtTheStart) {
   }
 }
 
-// Specification, acceptance check 14: a forced push of the broom into the chair costs 1 while it moves.
+// A forced push of the broom into the chair costs 1 while the chair moves.
 TEST_F(CleanHouse, TheBroomPushesTheChair) {
   for (const char* engine : kEngines) {
     TestPool p(kTask, 1, with_engine(engine, {{"palm_limit", nullptr, 10}, {"handle_height", nullptr, -1}}));

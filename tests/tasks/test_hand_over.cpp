@@ -4,7 +4,6 @@
 #include "heap_count.hpp"
 #include "tasks/catalog.hpp"
 #include "tasks/hand/hands.hpp"
-#include "tasks/throw/hand_over.hpp"
 #include "toy_task.hpp"
 
 namespace rdm::test {
@@ -172,7 +171,8 @@ Outcome outcome(TestPool& p, int episodes, bool held_only, F&& act) {
   return o;
 }
 
-// Specification, acceptance check 7.
+// Of 75 steps: a window of half a joint's range costs half the time for one joint, 7/8 for three of them,
+// when commands are uniform; normal ones of deviation 0.8, cut at 1, a little more.
 TEST_F(HandOver, CostOfRandomPolicies) {
   const struct {
     const char* task;
@@ -193,7 +193,7 @@ TEST_F(HandOver, CostOfRandomPolicies) {
   }
 }
 
-// Specification, acceptance check 9, with the drawn start pose held; decisions: 3.9, 71.6, 15 % falls.
+// With the drawn start pose held the object stays in the hand: return 3.9, cost 71.6, 15 % of episodes fall.
 TEST_F(HandOver, HoldingTheDrawnPose) {
   TestPool p(kFinger, 40);
   const Outcome o = outcome(p, 200, true, [&] {

@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "tasks/catalog.hpp"
-#include "tasks/throw/hand_over_wall.hpp"
 #include "toy_task.hpp"
 
 namespace rdm::test {
@@ -55,7 +54,7 @@ TEST_F(HandOverWallTask, Dimensions) {
   EXPECT_NEAR(p->world(0).base(1).X.p.y, -1.05, 1e-12);
 }
 
-// Specification, acceptance check 11.
+// A ball shot level through the middle of the hole.
 TEST_F(HandOverWallTask, AShotThroughTheHoleCostsNothing) {
   for (const char* engine : kEngines) {
     const Shot s = shoot({{"engine", engine, 0}}, 0);

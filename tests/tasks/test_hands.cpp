@@ -57,7 +57,7 @@ TEST_F(Hands, EachActionEntryMovesItsOwnJoint) {
   }
 }
 
-TEST_F(Hands, JointsAreDrawnAsTheSpecificationSays) {
+TEST_F(Hands, JointsAreDrawnInAShareOfTheirRange) {
   TestPool p("hand_over_safe_finger", 400);
   p->reset(nullptr, nullptr);
   double low[48], high[48];
@@ -107,7 +107,7 @@ TEST_F(Hands, NoNoiseIsTheStraightHand) {
   for (int i = 0; i < 48; ++i) EXPECT_EQ(p->world(0).q()[i], 0);
 }
 
-// Specification, acceptance check 4.
+// 0.00705 q_distal = 0.00805 q_middle within 0.001 m of tendon, or, as the paper has it, equal angles.
 TEST_F(Hands, DistalJointsFollow) {
   for (const char* coupling : {"model", "paper"}) {
     TestPool p("hand_over_safe_finger", 1,

@@ -29,7 +29,7 @@ TEST_F(Jenga, Layout) {
   EXPECT_EQ(wide.obs(0)[458], static_cast<float>(wide->world(0).body(16).X.p.z));
 }
 
-// Specification, acceptance check 12; 0.5 mm deeper than at first is what a contact is allowed.
+// The tower stands for an episode; 0.5 mm deeper than at first is what a contact is allowed.
 TEST_F(Jenga, TheTowerStandsStill) {
   for (const char* preset : {"redman", "real"}) {
     TestPool p(kTask, 1, with_engine("articulated", {{"preset", preset, 0}}));

@@ -30,7 +30,7 @@ TEST_F(PickBottles, Layout) {
   EXPECT_NEAR(p.obs(0)[412], -0.7f, 1e-6f);
 }
 
-// Specification, acceptance check 13.
+// The start pose holds for an episode: no bottle moves, none is touched, -(d_left + d_right) is the reward.
 TEST_F(PickBottles, HoldingStillCostsNothing) {
   for (const char* engine : kEngines) {
     TestPool p(kTask, 1, with_engine(engine));

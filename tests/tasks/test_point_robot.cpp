@@ -7,7 +7,8 @@
 namespace rdm {
 namespace {
 
-// algorithms.md 9.3, from MuJoCo 2.2.2: world velocity along x and turn rate after 1, 10, 50, 100 steps.
+// Recorded from MuJoCo 2.2.2 with the point robot of Safety-Gym: world velocity along x and turn rate after
+// 1, 10, 50, 100 steps.
 TEST(PointRobot, GoldenTrajectories) {
   constexpr int kAt[4] = {1, 10, 50, 100};
   const double none = NAN;

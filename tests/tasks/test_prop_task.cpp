@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "prop_tasks.hpp"
 #include "tasks/hand/hands.hpp"
 
@@ -14,14 +17,15 @@ Vec3 velocity(const World& world) {
   };
   Vec3 sum = of(world.base(0), scene.def.articulations[0].base);
   double mass = scene.def.articulations[0].base.mass;
-  for (int32_t i = 0; i < kHandJoints; ++i) {
+  for (int32_t i = 0; i < kShadowHand.links.count; ++i) {
     sum += of(world.link(i), scene.link(i).inertia);
     mass += scene.link(i).inertia.mass;
   }
   return (1 / mass) * sum;
 }
 
-// Specification, section 2.4: end speeds of a full force along each axis, and nothing moves without.
+// End speeds of a full force, transition_scale 1e5/60 N over 100/s times the hand's 5.01 kg; and nothing
+// moves without.
 TEST(PropTask, BasesFlyAtTheirEndSpeed) {
   register_builtin_tasks();
   const double speeds[] = {0.333, 0.333, 0.667};
@@ -44,7 +48,7 @@ TEST(PropTask, HandsBeginWithTheThumbFolded) {
   for (const char* task : kTasks) {
     TestPool p(task, 1);
     p->reset(nullptr, nullptr);
-    for (const int first : {0, kHandJoints}) {
+    for (const int first : {0, kShadowHand.links.count}) {
       EXPECT_NEAR(p->world(0).q()[first + 19], -1.04, 1e-6);
       EXPECT_NEAR(p->world(0).q()[first + 20], 1.2, 1e-6);
       EXPECT_NEAR(p->world(0).q()[first + 23], -1.57, 1e-6);
@@ -61,7 +65,64 @@ TEST(PropTask, JointNoiseDrawsTheHands) {
     TestPool p(task, 2, {{"joint_noise", nullptr, 0.05}});
     p->reset(nullptr, nullptr);
     EXPECT_NE(p->world(0).q()[3], p->world(1).q()[3]);
-    EXPECT_NE(p->world(0).q()[3], p->world(0).q()[3 + kHandJoints]);
+    EXPECT_NE(p->world(0).q()[3], p->world(0).q()[3 + kShadowHand.links.count]);
+  }
+}
+
+// Starts within the draw, each its own, of which no two episodes are the same; the hands hold them.
+TEST(PropTask, ResetNoiseMovesThingsWithinItsBound) {
+  register_builtin_tasks();
+  constexpr double kNoise = 0.005;
+  for (const char* task : kTasks) {
+    TestPool still(task, 1), p(task, 6, {{"reset_noise", nullptr, kNoise}, {"joint_noise", nullptr, 0.01}});
+    still->reset(nullptr, nullptr);
+    p->reset(nullptr, nullptr);
+    double most = 0, apart = 0;
+    for (int32_t i = 0; i < 6; ++i)
+      for (int32_t b = 0; b < p->task().scene().num_bodies; ++b) {
+        const Vec3 way = p->world(i).body(b).X.p - still->world(0).body(b).X.p;
+        EXPECT_LE(std::abs(way.x), kNoise) << task;
+        EXPECT_LE(std::abs(way.y), kNoise) << task;
+        EXPECT_EQ(way.z, 0) << task;
+        most = std::max(most, norm(way));
+        apart = std::max(apart, norm(way - (p->world(0).body(b).X.p - still->world(0).body(b).X.p)));
+      }
+    EXPECT_GT(most, 0.2 * kNoise) << task;
+    EXPECT_GT(apart, 0.2 * kNoise) << task;
+    run(p, Baseline::kHold, 20);
+    EXPECT_EQ(p->stats().diverged, 0) << task;
+    for (int32_t i = 0; i < 6; ++i) EXPECT_FALSE(p.ended(i)) << task;
+  }
+}
+
+// With base_angles=signed they are the same angles in [-pi, pi], never cut at the bound of observations.
+TEST(PropTask, SignedBaseAnglesAreNeverCut) {
+  register_builtin_tasks();
+  for (const char* task : kTasks) {
+    TestPool p(task, 4, {{"base_angles", "signed", 0}}), q(task, 4);
+    p->reset(nullptr, nullptr);
+    q->reset(nullptr, nullptr);
+    const float limit = p->task().obs_limit();
+    int below = 0, cut = 0;
+    for (int t = 0; t < 40; ++t) {
+      for (int32_t i = 0; i < 4; ++i)
+        for (const char* field : {"right.base_angles", "left.base_angles"})
+          for (int k = 0; k < 3; ++k) {
+            const int32_t at = offset_of(p->task(), field) + k;
+            const float angle = p.obs(i)[at], positive = q.obs(i)[at];
+            EXPECT_LE(std::abs(angle), 3.14160f) << task;
+            below += angle < 0;
+            cut += positive == limit;
+            const double whole = static_cast<double>(angle) + (angle < 0 ? 2 * kPi : 0);
+            EXPECT_NEAR(static_cast<double>(positive), std::min(static_cast<double>(limit), whole), 1e-6);
+          }
+      p->baseline(Baseline::kRandom);
+      q->baseline(Baseline::kRandom);
+      p->step(nullptr);
+      q->step(nullptr);
+    }
+    EXPECT_GT(below, 0) << task;
+    EXPECT_GT(cut, 0) << task << ": the default's angles reach the bound";
   }
 }
 

@@ -5,7 +5,7 @@
 namespace rdm {
 namespace {
 
-// algorithms.md 9.2, from Bullet 3.24.
+// Recorded from Bullet 3.24: speed after 1, 10, 30, 60 ... steps of full force, then of none.
 TEST(RollingBall, GoldenTrajectory) {
   RollingBall b{};
   const float full[2] = {1, 0}, rest[2] = {0, 0};

@@ -8,7 +8,7 @@
 namespace rdm::test {
 namespace {
 
-// Table of the task specification, section 4.
+// exp(-0.2 (50 d + theta)), ReDMan eq. (B1) with alpha = 50, worked out to four digits.
 TEST(ThrowSetup, RewardTable) {
   const double theta[] = {0, 0.5, 1.57, 2.2, 3.14};
   const struct {

@@ -1,6 +1,6 @@
 // The benchmarks: flags in, report out.
 #pragma once
-#include "setup.hpp"
+#include "common/setup.hpp"
 
 namespace tool {
 

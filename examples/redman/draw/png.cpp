@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "common/files.hpp"
+#include "common/report.hpp"
 #include "draw/image.hpp"
-#include "files.hpp"
-#include "report.hpp"
 
 namespace tool {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "draw/text.hpp"
+#include "common/text.hpp"
 
 namespace tool {
 namespace {
@@ -27,7 +27,7 @@ constexpr double kTitleHeight = 34, kLegendHeight = 24, kLegendWidth = 9;       
 
 std::string escaped(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : printable(text)) {
     if (c == '<')
       out += "&lt;";
     else if (c == '>')

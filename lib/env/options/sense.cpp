@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
@@ -78,7 +79,8 @@ const CameraSpec& camera_spec(const TaskInfo& task, const char* name) {
   if (!c) c = look(kCloudCameras, static_cast<int32_t>(std::size(kCloudCameras)));
   if (c) return *c;
   const int32_t near = nearest_name(name, names.data(), static_cast<int32_t>(names.size()));
-  fail(Code::kNotFound, "camera %.32s: unknown; nearest is %s", name, names[static_cast<size_t>(near)]);
+  fail(Code::kNotFound, "camera %s: unknown; nearest is %s", Quoted(name).text,
+       names[static_cast<size_t>(near)]);
 }
 
 Camera camera_of(const TaskInfo& task, const char* name) {
@@ -105,7 +107,8 @@ SenseConfig sense_from(const Options& options, const TaskInfo& task) {
       return;
     }
     const int32_t near = nearest_name(word, names, static_cast<int32_t>(std::size(words)));
-    fail(Code::kArgument, "modality %.32s: unknown; nearest is %s", word, names[static_cast<size_t>(near)]);
+    fail(Code::kArgument, "modality %s: unknown; nearest is %s", Quoted(word).text,
+         names[static_cast<size_t>(near)]);
   });
   if (c.pictures()) {
     c.num_cameras = read_cameras(options.text("cameras"), task, "cameras", c.cameras);

@@ -3,12 +3,8 @@
 #include <atomic>
 #include <cstring>
 
-#include "physics/articulated/stepper_table.hpp"
-
 namespace rdm {
 namespace {
-
-constexpr size_t kBaseNumbers = 6, kLinkNumbers = 30;  // BaseState, LinkState
 
 bool usable(const StepperTable& table) {
   if (!table.isa) return false;
@@ -36,15 +32,9 @@ StepperTable table() {
 
 }  // namespace
 
-Stepper* make_stepper(const StepperKind& kind, const Scene& scene, ArticulatedShared& shared, Arena& arena) {
-  return table().make(kind, scene, shared, arena);
-}
-
-size_t keep_bytes(const Scene& scene, bool double_precision) {
-  size_t numbers = 0;
-  for (const ArticulationDef& a : scene.def.articulations)
-    numbers += kBaseNumbers + kLinkNumbers * a.links.size();
-  return numbers * (double_precision ? sizeof(double) : sizeof(float));
+Stepper* make_stepper(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
+                      const HostHooks& hooks, Arena& arena) {
+  return table().make(kind, model, collider, hooks, arena);
 }
 
 bool set_stepper_isa(const char* name) {

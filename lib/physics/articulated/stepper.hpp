@@ -1,13 +1,14 @@
 // The arithmetic of a control step in generalised coordinates, for one scalar type, lane count and
 // instruction set. The results have the same bits for all lane counts and instruction sets.
+//
+// The stepper is written once, as a template over lanes (stepper.inl), and compiled once per instruction set
+// (stepper_v*.cpp), as Box2D does with its wide contact solver. It reads the model and reads and writes the
+// worlds' data it is handed; it calls nobody back.
 #pragma once
 #include "base/arena.hpp"
-#include "physics/world.hpp"
+#include "physics/articulated/world_state.hpp"
 
 namespace rdm {
-
-class ArticulatedWorld;
-struct ArticulatedShared;
 
 struct StepperKind {
   bool double_precision = false;  // the reference: one lane
@@ -18,23 +19,31 @@ class Stepper {
  public:
   virtual ~Stepper() = default;
   virtual int32_t group_size() const = 0;  // worlds that fill the lanes
-  virtual void step(ArticulatedWorld* const* worlds, int32_t count) = 0;
+  // One control step of `count` worlds, at most group_size().
+  virtual void step(WorldState* const* worlds, int32_t count) = 0;
   // Joints or base were set from outside: kinematics and momenta follow.
-  virtual void refresh(ArticulatedWorld& world, int32_t articulation) = 0;
-  virtual void read_link(const ArticulatedWorld& world, int32_t link, Motion* m, Mat3* R) const = 0;
+  virtual void refresh(WorldState* world, int32_t articulation) = 0;
+  virtual void read_link(const WorldState& world, int32_t link, Motion* m, Mat3* R) const = 0;
   // Ends the object, which came from these hooks.
   virtual void end(const HostHooks& hooks) = 0;
 };
 
-// Bytes of a world's kinematics and sets, and of the stepper's object itself.
-size_t keep_bytes(const Scene& scene, bool double_precision);
-
-// Arrays come out of `arena` and the object out of the shared hooks; while the arena measures, null.
-// The best instruction set of this machine, or the one chosen by set_stepper_isa.
-Stepper* make_stepper(const StepperKind& kind, const Scene& scene, ArticulatedShared& shared, Arena& arena);
+// Arrays come out of `arena` and the object out of the hooks; while the arena measures, null. `model` and
+// `collider` must outlive it. The best instruction set of this machine, or the one chosen by set_stepper_isa.
+Stepper* make_stepper(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
+                      const HostHooks& hooks, Arena& arena);
 
 // "x86-64-v2", "x86-64-v3": what steppers made from now on use; false where this machine or build has it not.
 bool set_stepper_isa(const char* name);
 const char* stepper_isa();
+
+// The steppers of one instruction set: what stepper_v*.cpp hand to stepper.cpp.
+struct StepperTable {
+  const char* isa = nullptr;  // null: not in this build
+  Stepper* (*make)(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
+                   const HostHooks& hooks, Arena& arena) = nullptr;
+};
+StepperTable steppers_v2();
+StepperTable steppers_v3();
 
 }  // namespace rdm

@@ -4,9 +4,8 @@
 #include <cstring>
 #include <type_traits>
 
-#include "physics/articulated/articulated_world.hpp"
-#include "physics/articulated/stepper_lanes.hpp"
-#include "physics/articulated/stepper_table.hpp"
+#include "physics/articulated/stepper.hpp"
+#include "physics/articulated/stepper.inl"
 #include "physics/model/drive.hpp"
 
 namespace rdm {

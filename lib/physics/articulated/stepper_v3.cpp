@@ -5,8 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "physics/articulated/articulated_world.hpp"
-#include "physics/articulated/stepper_table.hpp"
+#include "physics/articulated/stepper.hpp"
 #include "physics/model/drive.hpp"
 
 #if defined(__x86_64__)
@@ -18,7 +17,7 @@
 #pragma GCC target("avx2")
 #endif
 
-#include "physics/articulated/stepper_lanes.hpp"
+#include "physics/articulated/stepper.inl"
 
 namespace rdm {
 StepperTable steppers_v3() {

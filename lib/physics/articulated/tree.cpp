@@ -11,8 +11,8 @@ namespace {
 
 constexpr int32_t kMaxCoords = 512;  // of one tree
 
-// The smallest turn from z to the unit vector `axis`.
-Mat3 turn_from_z(const Vec3& a) {
+// The smallest rotation from z to the unit vector `axis`.
+Mat3 rotation_from_z(const Vec3& a) {
   if (a.z < -0.999999) return {{1, 0, 0, 0, -1, 0, 0, 0, -1}};
   const double k = 1 / (1 + a.z);
   return {{1 - a.x * a.x * k, -a.x * a.y * k, a.x, -a.x * a.y * k, 1 - a.y * a.y * k, a.y, -a.x, -a.y, a.z}};
@@ -23,7 +23,7 @@ bool is_identity(const Mat3& r) {
   return std::equal(std::begin(r.m), std::end(r.m), std::begin(kOne.m));
 }
 
-bool is_round(const Inertia& inertia) {
+bool is_isotropic(const Inertia& inertia) {
   const double* m = inertia.moment;
   return m[0] == m[1] && m[0] == m[2] && m[3] == 0 && m[4] == 0 && m[5] == 0;
 }
@@ -33,12 +33,12 @@ bool is_massless(const Inertia& inertia) {
          std::all_of(inertia.moment, inertia.moment + 6, [](double m) { return m == 0; });
 }
 
-// The same inertia in axes turned by R_LJ; a round one keeps its very numbers.
-Inertia turned(const Inertia& inertia, const Mat3& R_LJ) {
+// The same inertia in axes rotated by R_LJ; an isotropic one keeps its very numbers.
+Inertia rotated(const Inertia& inertia, const Mat3& R_LJ) {
   Inertia out = inertia;
   const Mat3 R_JL = transpose(R_LJ);
   out.com = R_JL * inertia.com;
-  if (!is_round(inertia)) set_moment(&out, R_JL * moment_matrix(inertia) * R_LJ);
+  if (!is_isotropic(inertia)) set_moment(&out, R_JL * moment_matrix(inertia) * R_LJ);
   return out;
 }
 
@@ -52,27 +52,27 @@ TreeMember make_member(const Scene& scene, int32_t articulation) {
   if (def.gravity) member.gravity = scene.def.gravity;
   member.base_damping = def.free_base ? def.base_damping : 0;
   for (const LinkDef& link : def.links) {
-    MemberLink bone;
-    bone.R_LJ = turn_from_z(link.joint.axis);
+    MemberLink out;
+    out.R_LJ = rotation_from_z(link.joint.axis);
     const Mat3 R_JP =
-        link.parent < 0 ? Mat3{} : transpose(member.bones[static_cast<size_t>(link.parent)].R_LJ);
-    bone.R_PJ = R_JP * to_matrix(link.X_PL.q) * bone.R_LJ;
-    bone.p_PJ = R_JP * link.X_PL.p;
-    // Parallel axes: products of a turn and its transpose, off by a rounding.
-    bone.q_LJ = to_quat(bone.R_LJ);
+        link.parent < 0 ? Mat3{} : transpose(member.links[static_cast<size_t>(link.parent)].R_LJ);
+    out.R_PJ = R_JP * to_matrix(link.X_PL.q) * out.R_LJ;
+    out.p_PJ = R_JP * link.X_PL.p;
+    // Parallel axes: products of a rotation and its transpose, off by a rounding.
+    out.q_LJ = to_quat(out.R_LJ);
     const Quat q_JP =
-        link.parent < 0 ? Quat{} : conjugate(member.bones[static_cast<size_t>(link.parent)].q_LJ);
-    bone.q_PJ = q_JP * link.X_PL.q * bone.q_LJ;
-    if (std::fabs(bone.R_PJ.m[0] + bone.R_PJ.m[4] + bone.R_PJ.m[8] - 3) < 1e-14) {
-      bone.R_PJ = Mat3{};
-      bone.q_PJ = {bone.q_PJ.w > 0 ? 1.0 : -1.0, 0, 0, 0};
+        link.parent < 0 ? Quat{} : conjugate(member.links[static_cast<size_t>(link.parent)].q_LJ);
+    out.q_PJ = q_JP * link.X_PL.q * out.q_LJ;
+    if (std::fabs(out.R_PJ.m[0] + out.R_PJ.m[4] + out.R_PJ.m[8] - 3) < 1e-14) {
+      out.R_PJ = Mat3{};
+      out.q_PJ = {out.q_PJ.w > 0 ? 1.0 : -1.0, 0, 0, 0};
     }
-    bone.inertia = turned(link.inertia, bone.R_LJ);
-    bone.joint = link.joint;
-    member.bones.push_back(bone);
+    out.inertia = rotated(link.inertia, out.R_LJ);
+    out.joint = link.joint;
+    member.links.push_back(out);
   }
   for (const ArticulationShape& s : def.shapes) {
-    const Mat3 R_JL = s.link < 0 ? Mat3{} : transpose(member.bones[static_cast<size_t>(s.link)].R_LJ);
+    const Mat3 R_JL = s.link < 0 ? Mat3{} : transpose(member.links[static_cast<size_t>(s.link)].R_LJ);
     member.shapes.push_back({R_JL * to_matrix(s.shape.X_LS.q), R_JL * s.shape.X_LS.p});
   }
   return member;
@@ -91,7 +91,7 @@ bool same_shape_of_tree(const Scene& scene, const Tree& tree, int32_t articulati
     const LinkDef& link = def.links[i];
     const TreeLink& other = tree.links[i];
     if (link.parent != other.parent || (link.joint.kind == JointKind::kPrismatic) != other.prismatic ||
-        link.joint.coupled_to != other.other || link.sensor != other.sensor)
+        link.joint.coupled_to != other.coupled_to || link.sensor != other.sensor)
       return false;
   }
   return true;
@@ -119,9 +119,9 @@ void list_slots(Tree* tree) {
   for (size_t c = 0; c < count; ++c) {
     const int32_t p = parent(c);
     const TreeSlot* above = p < 0 ? nullptr : &tree->slots[static_cast<size_t>(p)];
-    const bool goes_on = above && children[static_cast<size_t>(p)] == 1 && above->slot + 1 < kSegment;
-    segments[c] = (p < 0 ? 0 : segments[static_cast<size_t>(p)]) + (goes_on ? 0 : 1);
-    if (goes_on)
+    const bool continues = above && children[static_cast<size_t>(p)] == 1 && above->slot + 1 < kSegment;
+    segments[c] = (p < 0 ? 0 : segments[static_cast<size_t>(p)]) + (continues ? 0 : 1);
+    if (continues)
       tree->slots.push_back({above->segment, static_cast<int16_t>(above->slot + 1)});
     else
       tree->slots.push_back({static_cast<int16_t>(tree->num_segments++), 0});
@@ -140,15 +140,15 @@ Tree make_tree(const Scene& scene, int32_t articulation) {
          tree.num_coords, kMaxCoords);
   if (def.free_base)
     for (int32_t k = 0; k < 6; ++k) add_coord(&tree, k - 1);
-  const int32_t root = def.free_base ? 5 : -1;
+  const int32_t base_coord = def.free_base ? 5 : -1;
   for (const LinkDef& link : def.links) {
     TreeLink t;
     t.parent = link.parent;
-    t.other = link.joint.coupled_to;
+    t.coupled_to = link.joint.coupled_to;
     t.prismatic = link.joint.kind == JointKind::kPrismatic;
     t.sensor = link.sensor;
     tree.links.push_back(t);
-    add_coord(&tree, link.parent < 0 ? root : tree.coord(link.parent));
+    add_coord(&tree, link.parent < 0 ? base_coord : tree.coord(link.parent));
   }
   for (const ArticulationShape& s : def.shapes) {
     tree.shape_links.push_back(s.link);
@@ -160,15 +160,15 @@ Tree make_tree(const Scene& scene, int32_t articulation) {
 
 // Without any inertia a joint's row has nothing to divide by.
 void check_masses(const Scene& scene, const Tree& tree) {
-  Vector<uint8_t> heavy(tree.links.size());
+  Vector<uint8_t> has_inertia(tree.links.size());
   for (const TreeMember& member : tree.members) {
     for (size_t i = tree.links.size(); i-- > 0;) {
-      const MemberLink& bone = member.bones[i];
-      if (!is_massless(bone.inertia) || bone.joint.armature > 0) heavy[i] = 1;
-      if (!heavy[i])
+      const MemberLink& link = member.links[i];
+      if (!is_massless(link.inertia) || link.joint.armature > 0) has_inertia[i] = 1;
+      if (!has_inertia[i])
         fail(Code::kRange, "%s: a link needs mass, or a heavier link or armature behind it",
              scene.link(member.first_link + static_cast<int32_t>(i)).name.text);
-      if (tree.links[i].parent >= 0) heavy[static_cast<size_t>(tree.links[i].parent)] = 1;
+      if (tree.links[i].parent >= 0) has_inertia[static_cast<size_t>(tree.links[i].parent)] = 1;
     }
   }
 }
@@ -179,10 +179,10 @@ void find_shortcuts(Tree* tree) {
     TreeLink& link = tree->links[i];
     const auto everywhere = [&](auto is) {
       return std::all_of(tree->members.begin(), tree->members.end(),
-                         [&](const TreeMember& m) { return is(m.bones[i]); });
+                         [&](const TreeMember& m) { return is(m.links[i]); });
     };
     link.aligned = everywhere([](const MemberLink& b) { return is_identity(b.R_PJ) && b.q_PJ.w > 0; });
-    link.round = everywhere([](const MemberLink& b) { return is_round(b.inertia); });
+    link.isotropic = everywhere([](const MemberLink& b) { return is_isotropic(b.inertia); });
     link.massless = everywhere([](const MemberLink& b) { return is_massless(b.inertia); });
   }
 }

@@ -1,8 +1,18 @@
 // The constant model of robots in generalised coordinates: what the articulated engine knows of them.
 //
-// A tree's links sit in their *joint frames* J: the link frame turned so that the joint's axis is z. Its
-// coordinates are the base's six (velocity of its origin, angular velocity; only when free), then one per
-// link. A row of the mass matrix holds a coordinate's ancestors alone, root first, itself last.
+// Frames: W world, B base, L link (as the scene has it), P the parent link's joint frame (or the base), J the
+// link's *joint frame*: L turned about its own origin so that the joint's axis is z, so that every joint's
+// rotation is one sine and cosine in the first two columns of R_WJ. All constants of a link are in J.
+//
+// Coordinates: the base's six (velocity of its origin, angular velocity; only when free), then one per link,
+// a parent before its children: Featherstone's regular numbering (Rigid Body Dynamics Algorithms, 2008,
+// section 4.1). With it the mass matrix has an entry (i, j) only where one of the two is an ancestor of the
+// other (his section 6.4, branch-induced sparsity); a row here holds a coordinate's ancestors alone, root
+// first, itself last, and all rows stand in one array. Six coordinates of a base are a chain: each is the
+// parent of the next.
+//
+// Robots that are alike (links, joints, shapes; not the numbers) are members of one tree, and members are
+// what the lanes of a batch hold.
 #pragma once
 #include "physics/model/scene.hpp"
 
@@ -10,12 +20,12 @@ namespace rdm {
 
 // What all members of a tree have in common, per link.
 struct TreeLink {
-  int32_t parent = -1;  // link of the tree, -1: the base
-  int32_t other = -1;   // link whose angle a coupled joint follows
+  int32_t parent = -1;      // link of the tree, -1: the base
+  int32_t coupled_to = -1;  // link whose angle a coupled joint follows
   bool prismatic = false;
-  bool aligned = false;   // J is not turned against the parent's J at q = 0
-  bool round = false;     // the moments are the same about every axis
-  bool massless = false;  // neither mass nor moments
+  bool aligned = false;    // J is not turned against the parent's J at q = 0
+  bool isotropic = false;  // the moments are the same about every axis
+  bool massless = false;   // neither mass nor moments
   bool sensor = false;
 };
 
@@ -23,8 +33,8 @@ struct TreeLink {
 struct MemberLink {
   Mat3 R_PJ;        // at q = 0; the parent's joint frame, or the base
   Vec3 p_PJ;        // m
-  Mat3 R_LJ;        // constant turn from the link frame
-  Quat q_PJ, q_LJ;  // the same two turns; their signs make link quaternions continuous in the coordinates
+  Mat3 R_LJ;        // constant rotation to the link frame
+  Quat q_PJ, q_LJ;  // the same two rotations; their signs make link quaternions continuous in the coordinates
   Inertia inertia;  // in joint axes
   JointDef joint;
 };
@@ -41,12 +51,12 @@ struct TreeMember {
   Inertia base;                     // of a free base
   Vec3 gravity;                     // m/s2; 0 where the robot does not feel it
   double base_damping;              // 1/s
-  Vector<MemberLink> bones;         // [num_links]
+  Vector<MemberLink> links;         // [num_links]
   Vector<TreeShape> shapes;
 };
 
-// A coordinate's place in the whitened vector that contacts act on: slot of a segment. Segments are runs
-// of a path without a branch, at most kSegment long.
+// A coordinate's place in the half-solved vector that contacts act on (contact_solver.inl): slot of a
+// segment. Segments are runs of a path without a branch, at most kSegment long: one vector register or two.
 inline constexpr int kSegment = 8;
 struct TreeSlot {
   int16_t segment, slot;

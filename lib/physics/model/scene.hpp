@@ -120,7 +120,7 @@ struct SolverDef {
   double contact_layer = 0.0005;    // m of allowed depth
   double contact_max_speed = 0;     // m/s, correction of depth; 0: the engine's own, see below
   int32_t contacts_per_pair = 4;    // 1..8
-  int32_t contacts_max = 36;        // per world and substep, 1..4096; more raise kContactOverflow
+  int32_t contacts_max = 36;        // per world and substep, 1..4096; more raise kStatusContactOverflow
   double limit_margin = 5e-3;       // rad beyond a joint's range before it is clamped
   double limit_stiffness = 100;     // N m/rad of the soft limit
   double link_armature = 3e-5;      // kg m2 about the joint axis of links under 1e-4 kg m2 (engine ode)
@@ -144,7 +144,7 @@ struct SceneDef {
   Vector<ShapeDef> statics;
   int32_t num_materials = 1;
   Friction friction[kMaxMaterials][kMaxMaterials];
-  bool hand_hand_contact = true;  // shapes of different articulations may touch (friction by material)
+  bool articulations_touch = true;  // shapes of different articulations may (friction by material)
 };
 
 // Where a shape of the flattened scene sits. The base of an articulation may be fixed or free.
@@ -203,9 +203,7 @@ struct Scene {
   const Hull* hull_of(const SceneShape& shape) const {
     return shape.hull < 0 ? nullptr : &hulls[static_cast<size_t>(shape.hull)];
   }
-  // Indices by name; Error(kNotFound).
-  int32_t find_link(int32_t articulation, const char* name) const;  // flat
-  int32_t find_body(const char* name) const;
+  // Index by name; Error(kNotFound).
   int32_t find_shape(const char* name) const;
   double control_dt() const { return def.solver.h * def.solver.substeps; }
 };

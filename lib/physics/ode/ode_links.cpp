@@ -11,7 +11,6 @@ namespace rdm {
 namespace {
 
 constexpr dReal kStill[4] = {0, 0, 0, 0};
-constexpr double kRateBound = 1e6;     // rad/s or m/s; beyond it a world counts as diverged
 constexpr double kLightMoment = 1e-4;  // kg m2: links below it get the solver's link_armature
 
 double largest_moment(const Inertia& inertia) {

@@ -1,0 +1,172 @@
+#include "common/files.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <climits>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "common/report.hpp"
+#include "common/text.hpp"
+
+namespace tool {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kTemporary = ".tmp-";
+
+// Where a write to `path` has to go: through symbolic links, dangling ones too.
+std::string target_of(const std::string& path) {
+  constexpr int kMostLinks = 40;
+  fs::path at = path;
+  std::error_code error;
+  for (int i = 0; fs::is_symlink(fs::symlink_status(at, error)); ++i) {
+    if (i == kMostLinks) throw Failure("cannot write " + path + ": too many symbolic links");
+    const fs::path to = fs::read_symlink(at, error);
+    if (error) throw Failure("cannot write " + path + ": " + error.message());
+    at = to.is_absolute() ? to : at.parent_path() / to;
+  }
+  return at.string();
+}
+
+void check_target(const std::string& path, const std::string& target) {
+  struct stat s {};
+  if (stat(target.c_str(), &s) == 0 && !S_ISREG(s.st_mode))
+    throw Failure("cannot write " + path + ": it is not a regular file");
+}
+
+uint64_t random_number() {
+  uint64_t out = 0;
+  if (getrandom(&out, sizeof out, 0) != static_cast<ssize_t>(sizeof out))
+    throw Failure(std::string("cannot draw a random number: ") + std::strerror(errno));
+  return out;
+}
+
+// A process of that number may live elsewhere, with a file system in common: it holds a lock on its file.
+bool is_abandoned(const std::string& temporary, const char* process) {
+  const long pid = std::strtol(process, nullptr, 10);
+  if (pid <= 0 || pid > INT_MAX || kill(static_cast<pid_t>(pid), 0) == 0 || errno != ESRCH) return false;
+  const int file = open(temporary.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool free = flock(file, LOCK_EX | LOCK_NB) == 0;
+  close(file);
+  return free;
+}
+
+}  // namespace
+
+bool file_exists(const std::string& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+bool is_folder(const std::string& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+std::string read_file(const std::string& path, size_t most) {
+  const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);  // a FIFO is not waited for
+  struct stat s {};
+  std::string problem, bytes;
+  if (file < 0 || fstat(file, &s) != 0)
+    problem = std::strerror(errno);
+  else if (!S_ISREG(s.st_mode))
+    problem = "it is not a regular file";
+  else if (static_cast<uint64_t>(s.st_size) > most)
+    problem = "it is longer than " + std::to_string(most) + " bytes";
+  if (problem.empty()) {
+    bytes.resize(static_cast<size_t>(s.st_size));
+    size_t done = 0;
+    while (done < bytes.size()) {
+      const ssize_t n = read(file, bytes.data() + done, bytes.size() - done);
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) problem = std::strerror(errno);
+      if (n <= 0) break;
+      done += static_cast<size_t>(n);
+    }
+    bytes.resize(done);
+  }
+  if (file >= 0) close(file);
+  if (!problem.empty()) throw Failure("cannot read " + path + ": " + problem);
+  return bytes;
+}
+
+PreparedFile::PreparedFile(const std::string& path, const std::string& bytes)
+    : path_(path), target_(target_of(path)) {
+  check_target(path_, target_);
+  sweep_temporaries(target_, false);
+  do {
+    temporary_ =
+        target_ + kTemporary +
+        format("%d-%016llx", static_cast<int>(getpid()), static_cast<unsigned long long>(random_number()));
+    file_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  } while (file_ < 0 && errno == EEXIST);
+  if (file_ < 0) give_up(errno);
+  flock(file_, LOCK_EX | LOCK_NB);  // best effort: says that the writer lives
+  for (size_t done = 0; done < bytes.size();) {
+    const ssize_t n = write(file_, bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno != EINTR) give_up(errno);
+    if (n > 0) done += static_cast<size_t>(n);
+  }
+  if (fsync(file_) != 0) give_up(errno);
+}
+
+PreparedFile::~PreparedFile() {
+  if (file_ < 0) return;
+  unlink(temporary_.c_str());
+  close(file_);
+}
+
+void PreparedFile::commit() {
+  check_target(path_, target_);
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) give_up(errno);
+  close(file_);
+  file_ = -1;
+  const std::string folder = fs::path(target_).parent_path().string();
+  const int f = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (f < 0) return;
+  fsync(f);  // best effort: the rename itself is atomic
+  close(f);
+}
+
+void PreparedFile::give_up(int error) {
+  if (file_ >= 0) {
+    unlink(temporary_.c_str());
+    close(file_);
+    file_ = -1;
+  }
+  throw Failure("cannot write " + path_ + ": " + std::strerror(error));
+}
+
+void check_replaceable(const std::string& path) {
+  check_target(path, path);
+}
+
+void replace_file(const std::string& path, const std::string& bytes) {
+  PreparedFile file(path, bytes);
+  file.commit();
+}
+
+void sweep_temporaries(const std::string& path, bool alone) {
+  const fs::path whole = path;
+  const std::string folder = whole.parent_path().string(), head = whole.filename().string() + kTemporary;
+  std::error_code error;
+  fs::directory_iterator at(folder.empty() ? "." : folder, error);
+  for (; !error && at != fs::directory_iterator(); at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    if (name.compare(0, head.size(), head) != 0) continue;
+    const std::string file = at->path().string();
+    if (alone || is_abandoned(file, name.c_str() + head.size())) unlink(file.c_str());
+  }
+}
+
+}  // namespace tool

@@ -1,0 +1,155 @@
+#include "common/names.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <redman/redman.hpp>
+
+#include "common/text.hpp"
+
+namespace tool {
+namespace {
+
+std::string folded(std::string s) {
+  for (char& c : s) c = c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return s;
+}
+
+size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<size_t> row(b.size() + 1);
+  for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t substitute = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
+    }
+  }
+  return row[b.size()];
+}
+
+int32_t find(rdm_result (*find_name)(const char*, int32_t*), const std::string& name) {
+  int32_t index = -1;
+  const rdm_result r = find_name(name.c_str(), &index);
+  if (r == RDM_UNSUPPORTED) throw Failure(rdm_last_error());
+  if (r != RDM_OK) throw Usage(rdm_last_error());
+  return index;
+}
+
+// All entries of a list of the ABI: get(i, &entry) until it answers RANGE.
+template <class T, class Get>
+std::vector<T> collect(int32_t count, Get get) {
+  std::vector<T> out(static_cast<size_t>(count));
+  for (int32_t i = 0; i < count; ++i) redman::check(get(i, &out[static_cast<size_t>(i)]));
+  return out;
+}
+
+Json default_json(const rdm_option_info& o) {
+  if (o.kind == RDM_TEXT) return o.text ? o.text : "";
+  if (o.kind == RDM_FLAG) return o.number != 0;
+  if (o.kind == RDM_INTEGER) return static_cast<int64_t>(o.number);
+  return o.number;
+}
+
+std::string bounds_text(const rdm_option_info& o) {
+  if (o.kind == RDM_TEXT) return o.choices ? o.choices : "text";
+  if (o.kind == RDM_FLAG) return "true|false";
+  return number_text(o.low) + " .. " + number_text(o.high);
+}
+
+}  // namespace
+
+bool same_name(const std::string& a, const std::string& b) {
+  return folded(a) == folded(b);
+}
+
+std::string nearest_name(const std::string& word, const std::vector<std::string>& names) {
+  const auto nearer = [&](const std::string& a, const std::string& b) {
+    return edit_distance(folded(word), folded(a)) < edit_distance(folded(word), folded(b));
+  };
+  const auto best = std::min_element(names.begin(), names.end(), nearer);
+  return best == names.end() ? "" : *best;
+}
+
+int32_t find_task(const std::string& name) {
+  return find(rdm_task_find, name);
+}
+int32_t find_algo(const std::string& name) {
+  return find(rdm_algo_find, name);
+}
+
+rdm_task task_at(int32_t index) {
+  auto t = redman::sized<rdm_task>();
+  redman::check(rdm_task_at(index, &t));
+  return t;
+}
+
+rdm_algo algo_at(int32_t index) {
+  auto a = redman::sized<rdm_algo>();
+  redman::check(rdm_algo_at(index, &a));
+  return a;
+}
+
+std::vector<rdm_field> task_fields(int32_t task) {
+  return collect<rdm_field>(task_at(task).num_fields,
+                            [&](int32_t i, rdm_field* out) { return rdm_task_field(task, i, out); });
+}
+
+std::vector<rdm_cost> task_costs(int32_t task) {
+  return collect<rdm_cost>(task_at(task).cost_dim,
+                           [&](int32_t i, rdm_cost* out) { return rdm_task_cost(task, i, out); });
+}
+
+std::vector<rdm_option_info> task_options(int32_t task) {
+  return collect<rdm_option_info>(task_at(task).num_options, [&](int32_t i, rdm_option_info* out) {
+    return rdm_task_option(task, i, out);
+  });
+}
+
+std::vector<rdm_option_info> algo_options(int32_t algo) {
+  return collect<rdm_option_info>(algo_at(algo).num_options, [&](int32_t i, rdm_option_info* out) {
+    return rdm_algo_option(algo, i, out);
+  });
+}
+
+bool has_option(const std::vector<rdm_option_info>& table, const std::string& key) {
+  return std::any_of(table.begin(), table.end(), [&](const auto& o) { return same_name(o.key, key); });
+}
+
+Json build_json() {
+  auto b = redman::sized<rdm_build>();
+  redman::check(rdm_build_info(&b));
+  return {{"version", b.version},     {"abi", b.abi},           {"ode", b.ode},
+          {"eigen", b.eigen},         {"ccd", b.ccd},           {"octomap", b.octomap},
+          {"precision", b.precision}, {"compiler", b.compiler}, {"kernels", b.kernels}};
+}
+
+Json options_json(const std::vector<rdm_option_info>& table) {
+  Json out = Json::array();
+  for (const rdm_option_info& o : table) {
+    const bool text = o.kind == RDM_TEXT;
+    Json row = {{"key", o.key},
+                {"default", default_json(o)},
+                {"low", text ? Json() : Json(o.low)},
+                {"high", text ? Json() : Json(o.high)},
+                {"help", o.help},
+                {"live", o.live != 0}};
+    if (text && o.choices) row["choices"] = o.choices;
+    out.push_back(row);
+  }
+  return out;
+}
+
+std::string options_text(const std::vector<rdm_option_info>& table) {
+  Table out({"option", "default", "values", "meaning"});
+  for (const rdm_option_info& o : table) {
+    const std::string value = o.kind == RDM_TEXT   ? (o.text ? o.text : "")
+                              : o.kind == RDM_FLAG ? (o.number != 0 ? "true" : "false")
+                                                   : number_text(o.number);
+    out.add({o.key, value, bounds_text(o), o.help});
+  }
+  return out.text();
+}
+
+}  // namespace tool

@@ -1,0 +1,36 @@
+// Tasks, algorithms and option keys by the names that people type.
+#pragma once
+#include <redman/redman.h>
+
+#include <string>
+#include <vector>
+
+#include "common/report.hpp"
+
+namespace tool {
+
+// Case is ignored and '-' equals '_'.
+bool same_name(const std::string& a, const std::string& b);
+// The entry of `names` with the least edit distance; "" for an empty list.
+std::string nearest_name(const std::string& word, const std::vector<std::string>& names);
+
+// Index by name; Usage with the nearest known name.
+int32_t find_task(const std::string& name);
+int32_t find_algo(const std::string& name);
+rdm_task task_at(int32_t index);
+rdm_algo algo_at(int32_t index);
+
+std::vector<rdm_field> task_fields(int32_t task);
+std::vector<rdm_cost> task_costs(int32_t task);
+std::vector<rdm_option_info> task_options(int32_t task);
+std::vector<rdm_option_info> algo_options(int32_t algo);
+bool has_option(const std::vector<rdm_option_info>& table, const std::string& key);
+
+// Versions and how the library was built.
+Json build_json();
+
+// A table of options as the tool's JSON has it, and as text for people.
+Json options_json(const std::vector<rdm_option_info>& table);
+std::string options_text(const std::vector<rdm_option_info>& table);
+
+}  // namespace tool

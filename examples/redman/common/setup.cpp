@@ -1,0 +1,143 @@
+#include "common/setup.hpp"
+
+#include <cmath>
+#include <cstdlib>
+
+#include "common/names.hpp"
+#include "common/text.hpp"
+
+namespace tool {
+namespace {
+
+double limit_number(const std::string& text, const std::string& whole) {
+  size_t used = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+  }
+  if (used == 0 || used != text.size() || !std::isfinite(value))
+    throw Usage("--cost-limit " + whole + ": not a number or name=number");
+  return value;
+}
+
+void append_keys(const std::vector<rdm_option_info>& table, std::vector<std::string>& keys) {
+  for (const rdm_option_info& o : table) keys.push_back(o.key);
+}
+
+}  // namespace
+
+std::pair<std::string, std::string> split_pair(const std::string& text, const char* flag) {
+  const size_t at = text.find('=');
+  if (at == 0 || at == std::string::npos) throw Usage(std::string(flag) + " " + text + ": not key=value");
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+CLI::Validator finite_to(double most) {
+  return CLI::Validator(
+      [most](const std::string& text) {
+        const double value = std::strtod(text.c_str(), nullptr);
+        return value <= most ? std::string() : text + " is not a number up to " + number_text(most);
+      },
+      "");
+}
+
+std::vector<rdm_option> raw_options(const Options& options) {
+  std::vector<rdm_option> raw;
+  for (const auto& [key, value] : options) raw.push_back({key.c_str(), value.c_str(), 0});
+  return raw;
+}
+
+CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help) {
+  CLI::Option* task = command.add_option("--task,--env-id", pool.task, task_help);
+  command.add_option("--envs,--num-envs", pool.envs, "worlds");
+  command.add_option("--threads", pool.threads, "threads; 0: the caller's own");
+  command.add_option("--seed", pool.seed, "seed");
+  return task;
+}
+
+void add_set_flag(CLI::App& command, std::vector<std::string>& sets) {
+  command.add_option("--set", sets, "key=value of the task or the algorithm; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+}
+
+void add_cost_limit_flag(CLI::App& command, std::vector<std::string>& limits) {
+  command
+      .add_option(
+          "--cost-limit,--cost-lim", limits,
+          "limit on the sum of a cost over an episode: a number for column 0, name=number; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("[NAME=]LIMIT");
+}
+
+void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentSettings* agent) {
+  const auto task_table = task_options(find_task(pool.task));
+  const auto algo_table = agent ? algo_options(find_algo(agent->algo)) : std::vector<rdm_option_info>();
+  for (const std::string& text : sets) {
+    const auto pair = split_pair(text, "--set");
+    if (printable(text) != text) throw Usage("--set " + text + ": control characters, or not UTF-8");
+    const bool of_task = has_option(task_table, pair.first), of_algo = has_option(algo_table, pair.first);
+    if (of_task) pool.options.push_back(pair);
+    if (of_algo) agent->options.push_back(pair);
+    if (of_task || of_algo) continue;
+    std::vector<std::string> keys;
+    append_keys(task_table, keys);
+    append_keys(algo_table, keys);
+    const std::string owner =
+        agent ? "neither task " + pool.task + " nor algorithm " + agent->algo + " has option "
+              : "task " + pool.task + " has no option ";
+    throw Usage("--set " + text + ": " + owner + pair.first + "; nearest is " +
+                nearest_name(pair.first, keys));
+  }
+}
+
+redman::Pool make_pool(const PoolSettings& settings, int32_t autoreset) {
+  auto config = redman::pool_config(settings.task.c_str(), settings.envs);
+  const auto options = raw_options(settings.options);
+  config.seed = settings.seed;
+  config.num_threads = settings.threads;
+  config.autoreset = autoreset;
+  config.options = options.data();
+  config.num_options = static_cast<int32_t>(options.size());
+  return as_usage([&] { return redman::Pool(config); });
+}
+
+redman::Agent make_agent(const AgentSettings& settings, const redman::Pool& pool,
+                         const std::vector<double>& limits, uint64_t seed, int32_t threads) {
+  auto config = redman::agent_config(pool);
+  const auto options = raw_options(settings.options);
+  config.algo = settings.algo.c_str();
+  config.seed = seed;
+  config.num_threads = threads;
+  config.cost_limits = limits.data();
+  config.options = options.data();
+  config.num_options = static_cast<int32_t>(options.size());
+  return as_usage([&] { return redman::Agent(config); });
+}
+
+std::vector<double> cost_limits(const redman::Pool& pool, const std::vector<std::string>& texts) {
+  const auto costs = task_costs(pool.spec().task);
+  const auto config = redman::agent_config(pool);
+  std::vector<double> limits(config.cost_limits, config.cost_limits + costs.size());
+  for (const std::string& text : texts) {
+    if (text.find('=') == std::string::npos) {
+      limits[0] = limit_number(text, text);
+      continue;
+    }
+    const auto [name, value] = split_pair(text, "--cost-limit");
+    std::vector<std::string> names;
+    size_t column = costs.size();
+    for (size_t i = 0; i < costs.size(); ++i) {
+      names.push_back(costs[i].name);
+      if (same_name(name, costs[i].name)) column = i;
+    }
+    if (column == costs.size())
+      throw Usage("--cost-limit " + text + ": no cost column " + name + "; nearest is " +
+                  nearest_name(name, names));
+    limits[column] = limit_number(value, text);
+  }
+  return limits;
+}
+
+}  // namespace tool

@@ -1,0 +1,66 @@
+// From flags to pools and agents: options, cost limits, sizes.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <redman/redman.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/report.hpp"
+
+namespace tool {
+
+using Options = std::vector<std::pair<std::string, std::string>>;  // key, value as text
+
+// "key=value" in two. Usage that names the flag when there is no '=' or no key.
+std::pair<std::string, std::string> split_pair(const std::string& text, const char* flag);
+// The list as the ABI takes it; borrows from `options`.
+std::vector<rdm_option> raw_options(const Options& options);
+
+// What decides a pool, apart from how it is used.
+struct PoolSettings {
+  std::string task = "hand_over_safe_finger";
+  int32_t envs = 1, threads = 0;
+  uint64_t seed = 0;
+  Options options;  // of the task
+};
+
+struct AgentSettings {
+  std::string algo = "ppo_lag";
+  Options options;
+};
+
+// Refuses what is above `most`, and what is no number: CLI11's own checks let nan pass.
+CLI::Validator finite_to(double most);
+
+// Flags that several subcommands share. The first returns --task.
+CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help);
+void add_set_flag(CLI::App& command, std::vector<std::string>& sets);
+void add_cost_limit_flag(CLI::App& command, std::vector<std::string>& limits);
+
+// Gives each "key=value" to the tables that know the key: the task's, and, when `agent` is not null, the
+// algorithm's. Usage with the nearest known key when no table does.
+void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentSettings* agent);
+
+// Makes the worlds, or the agent for them; Usage when a name or a value is wrong.
+redman::Pool make_pool(const PoolSettings& settings, int32_t autoreset);
+redman::Agent make_agent(const AgentSettings& settings, const redman::Pool& pool,
+                         const std::vector<double>& limits, uint64_t seed, int32_t threads);
+
+// [cost_dim] limits: the task's own, with "40" (column 0) or "name=3" of each text laid over. < 0: none.
+std::vector<double> cost_limits(const redman::Pool& pool, const std::vector<std::string>& texts);
+
+// Calls f; a wrong argument, range or name becomes Usage.
+template <class F>
+auto as_usage(F&& f) {
+  try {
+    return f();
+  } catch (const redman::Error& e) {
+    const rdm_result r = e.code();
+    if (r == RDM_ARGUMENT || r == RDM_RANGE || r == RDM_NOT_FOUND || r == RDM_UNSUPPORTED)
+      throw Usage(e.what());
+    throw;
+  }
+}
+
+}  // namespace tool

@@ -1,0 +1,34 @@
+// Text for people: printf into a string, and tables with aligned columns or in Markdown.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace tool {
+
+// printf into a string.
+[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
+
+// A number as short as it reads back to the same double: "40", "0.1".
+std::string number_text(double value);
+
+// The text as a terminal may have it: control characters but '\n' and '\t' become '?', bytes that are no
+// UTF-8 become U+FFFD.
+std::string printable(const std::string& text);
+bool is_utf8(const std::string& text);
+
+// "1.2k", "3.5M": a count for progress lines and axes.
+std::string short_count(double value);
+
+class Table {
+ public:
+  explicit Table(std::vector<std::string> header) : header_(std::move(header)) {}
+  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  std::string text() const;      // aligned, two spaces between columns
+  std::string markdown() const;  // "| a | b |" lines
+
+ private:
+  std::vector<std::string> header_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace tool

@@ -1,0 +1,168 @@
+// Reading the text of a demonstration.
+#include "demo/script.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+
+#include "common/names.hpp"
+#include "common/text.hpp"
+
+namespace tool {
+namespace {
+
+constexpr double kMost = 1e6;  // of any number
+
+// One line as words, and what is wrong with it.
+class Line {
+ public:
+  Line(const std::string& file, int number, const std::string& text) : file_(file), number_(number) {
+    std::istringstream in(text.substr(0, text.find('#')));
+    for (std::string word; in >> word;) words_.push_back(word);
+  }
+  bool empty() const { return at_ >= words_.size(); }
+  int number() const { return number_; }
+  [[noreturn]] void bad(const std::string& what) const {
+    throw Failure(format("demo %s, line %d: %s", file_.c_str(), number_, what.c_str()));
+  }
+  std::string word(const char* what) {
+    if (empty()) bad(std::string("expected ") + what);
+    return words_[at_++];
+  }
+  bool take(const char* word) {
+    if (empty() || words_[at_] != word) return false;
+    ++at_;
+    return true;
+  }
+  double number(const char* what, bool* degrees = nullptr) {
+    const std::string text = word(what);
+    char* end = nullptr;
+    const double v = std::strtod(text.c_str(), &end);
+    const std::string unit = end;
+    if (degrees) *degrees = unit == "deg";
+    if (end == text.c_str() || !(std::abs(v) <= kMost) || (!unit.empty() && !(degrees && *degrees)))
+      bad("'" + text + "' is not " + what);
+    return v;
+  }
+  double number_from_zero(const char* what) {
+    const double v = number(what);
+    if (v < 0) bad("'" + words_[at_ - 1] + "' is negative: expected " + what);
+    return v;
+  }
+  // Whether the next word is a number or begins like one; names begin otherwise.
+  bool number_follows() const { return !empty() && std::strchr("+-.0123456789", words_[at_][0]) != nullptr; }
+  void end() const {
+    if (!empty()) bad("'" + words_[at_] + "' is too much");
+  }
+
+ private:
+  std::string file_;
+  int number_;
+  std::vector<std::string> words_;
+  size_t at_ = 0;
+};
+
+DemoScript::Condition read_condition(Line& line) {
+  DemoScript::Condition c;
+  c.line = line.number();
+  c.field = line.word("an observation such as object.position[2]");
+  const std::string sign = line.word("< or >");
+  if (sign != "<" && sign != ">") line.bad("'" + sign + "' is neither < nor >");
+  c.below = sign == "<";
+  c.value = line.number("a number");
+  return c;
+}
+
+// ENTRY = VALUE [at T] [over T], or ENTRY follows AIM [+|- NUMBER] by MEASURED gain K [limit M] [at T].
+DemoScript::Command read_command(Line& line, const std::string& entry) {
+  DemoScript::Command c;
+  c.line = line.number();
+  c.entry = entry;
+  if (line.take("=")) {
+    c.value = line.number("an action or an angle such as 30deg", &c.degrees);
+  } else if (line.take("follows")) {
+    c.follows = true;
+    if (line.number_follows()) {
+      c.value = line.number("a number");
+    } else {
+      c.aim = line.word("a number or an observation");
+      if (line.take("+")) c.value = line.number("a number");
+      if (line.take("-")) c.value = -line.number("a number");
+    }
+    if (!line.take("by")) line.bad("expected 'by' and the observation that is steered");
+    c.measured = line.word("an observation");
+    if (!line.take("gain")) line.bad("expected 'gain' and a number");
+    c.gain = line.number("a number");
+    if (line.take("limit")) c.limit = line.number_from_zero("a bound");
+  } else {
+    line.bad("expected '=' or 'follows' after " + entry);
+  }
+  while (!line.empty()) {
+    if (line.take("at"))
+      c.at = line.number_from_zero("a time in s");
+    else if (!c.follows && line.take("over"))
+      c.over = line.number_from_zero("a time in s");
+    else
+      line.end();
+  }
+  return c;
+}
+
+// Null when the tool carries none.
+const char* carried_text(const std::string& task) {
+  for (const CarriedDemo* c = kCarriedDemos; c->task; ++c)
+    if (same_name(task, c->task)) return c->text;
+  return nullptr;
+}
+
+}  // namespace
+
+DemoScript parse_demo(const char* text, size_t size, const std::string& file) {
+  if (size > kMostDemoBytes)
+    throw Failure(format("demo %s: longer than %zu bytes", file.c_str(), kMostDemoBytes));
+  DemoScript script;
+  script.file = file;
+  std::istringstream in(std::string(text, size));
+  int number = 0;
+  for (std::string row; std::getline(in, row);) {
+    Line line(file, ++number, row);
+    if (line.empty()) continue;
+    const std::string word = line.word("a word");
+    if (word == "task") {
+      script.task = line.word("the task's name");
+    } else if (word == "set") {
+      const std::string pair = line.word("key=value");
+      const size_t equals = pair.find('=');
+      if (equals == 0 || equals == std::string::npos) line.bad("'" + pair + "' is not key=value");
+      script.options.emplace_back(pair.substr(0, equals), pair.substr(equals + 1));
+    } else if (word == "phase") {
+      script.phases.emplace_back();
+      script.phases.back().name = line.word("the phase's name");
+    } else if (script.phases.empty()) {
+      line.bad("'" + word + "' stands before the first phase");
+    } else if (word == "for") {
+      script.phases.back().seconds = line.number_from_zero("a time in s");
+    } else if (word == "until") {
+      script.phases.back().until.push_back(read_condition(line));
+    } else {
+      script.phases.back().commands.push_back(read_command(line, word));
+    }
+    line.end();
+  }
+  if (script.task.empty()) throw Failure("demo " + file + ": no line 'task NAME'");
+  if (script.phases.empty()) throw Failure("demo " + file + ": no phase");
+  return script;
+}
+
+bool has_builtin_demo(const std::string& task) {
+  return carried_text(task) != nullptr;
+}
+
+DemoScript builtin_demo(const std::string& task) {
+  const std::string name = task_at(find_task(task)).name;
+  if (const char* text = carried_text(name)) return parse_demo(text, std::strlen(text), name + ".demo");
+  throw Failure("policy demo: there is no demonstration of " + name + "; write one, and give its file");
+}
+
+}  // namespace tool

@@ -1,0 +1,158 @@
+#include "play/actor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "common/files.hpp"
+#include "common/names.hpp"
+#include "run/folder.hpp"
+
+namespace tool {
+namespace {
+
+constexpr const char* kBaselines[] = {"zero", "hold", "random"};  // by RDM_BASELINE_*
+
+redman::Policy load(const std::string& file) {
+  if (!file_exists(file))
+    throw Failure(
+        "policy " + file +
+        ": no such file; give a policy file, a run folder, a .demo file, demo, zero, hold or random");
+  try {
+    return redman::Policy(file.c_str());
+  } catch (const redman::Error& e) {
+    throw Failure("policy " + file + ": " + e.what());
+  }
+}
+
+uint64_t mixed(uint64_t x) {
+  x += 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+}  // namespace
+
+ActorChoice choose_actor(const std::string& word) {
+  ActorChoice choice;
+  for (int32_t i = 0; i < 3; ++i)
+    if (same_name(word, kBaselines[i])) choice.baseline = i;
+  if (choice.baseline >= 0) return choice;
+  const std::string ending = ".demo";
+  const bool script = word.size() > ending.size() && word.substr(word.size() - ending.size()) == ending;
+  choice.demo = script || same_name(word, "demo");
+  if (script) {
+    const std::string text = read_file(word, kMostDemoBytes);
+    choice.script = parse_demo(text.data(), text.size(), word);
+    choice.task = choice.script->task;
+    choice.options = choice.script->options;
+  }
+  if (choice.demo) return choice;
+  choice.file = is_folder(word) ? word + "/policy.rdm" : word;
+  choice.task = load(choice.file).info().task;
+  const std::string folder = run_folder_of(choice.file);
+  if (folder.empty()) return choice;
+  const RunSettings run = run_settings(folder);
+  if (same_name(run.pool.task, choice.task)) {
+    choice.options = run.pool.options;
+    choice.limits = run.limits;
+  }
+  return choice;
+}
+
+void adopt_task(const ActorChoice& choice, bool task_given, PoolSettings& pool) {
+  if (!task_given && !choice.task.empty()) pool.task = choice.task;
+  if (choice.demo && !choice.script) {
+    const Options own = builtin_demo(pool.task).options;
+    pool.options.insert(pool.options.begin(), own.begin(), own.end());
+  }
+  if (same_name(pool.task, choice.task))
+    pool.options.insert(pool.options.begin(), choice.options.begin(), choice.options.end());
+}
+
+Actor::Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic, uint64_t seed)
+    : baseline_(choice.baseline), stochastic_(stochastic), random_(mixed(seed)) {
+  if (choice.demo)
+    demo_.emplace(choice.script ? *choice.script : builtin_demo(task_at(pool.spec().task).name), pool);
+  if (!choice.file.empty()) {
+    policy_ = load(choice.file);
+    try {
+      policy_->check_fits(pool.spec());
+    } catch (const redman::Error& e) {
+      throw Failure("policy " + choice.file + " does not fit task " + task_at(pool.spec().task).name + ": " +
+                    e.what());
+    }
+  }
+  prepare(pool);
+}
+
+Actor::Actor(redman::Policy policy, const redman::Pool& pool) : policy_(std::move(policy)) {
+  prepare(pool);
+}
+
+void Actor::prepare(const redman::Pool& pool) {
+  if (!policy_) return;
+  const size_t n = pool.num_envs(), width = pool.action().width();
+  scratch_bytes_ = (policy_->scratch_bytes(static_cast<int32_t>(n)) + 63) / 64 * 64;
+  scratch_.reset(std::aligned_alloc(64, scratch_bytes_));
+  if (!scratch_) throw std::bad_alloc();
+  hold_.assign(n, 0);
+  due_.reserve(n);
+  obs_.resize(n * pool.obs().width());
+  action_.resize(n * width);
+  if (stochastic_) noise_.resize(n * width);
+  if (stochastic_) memory_.resize(n * width);
+  fresh_.assign(n, 1);
+}
+
+void Actor::restart(const uint8_t* mask) {
+  if (demo_) demo_->restart(mask);
+  for (size_t i = 0; i < hold_.size(); ++i) {
+    if (mask && !mask[i]) continue;
+    hold_[i] = 0;
+    fresh_[i] = 1;
+  }
+}
+
+// Standard normal by Box and Muller; the library's own distributions would differ between compilers.
+float Actor::normal() {
+  const auto unit = [&] { return (static_cast<double>(mixed(random_++) >> 11) + 0.5) * 0x1p-53; };
+  const double radius = std::sqrt(-2 * std::log(unit())), angle = 2 * 3.14159265358979323846 * unit();
+  return static_cast<float>(radius * std::cos(angle));
+}
+
+void Actor::act(redman::Pool& pool, const uint8_t* mask) {
+  if (demo_) return demo_->act(pool, mask);
+  if (!policy_) {
+    pool.baseline(baseline_);
+    return;
+  }
+  due_.clear();
+  for (size_t i = 0; i < pool.num_envs(); ++i) {
+    if (mask && !mask[i]) continue;
+    if (hold_[i]-- > 0) continue;
+    hold_[i] = policy_->info().action_repeat - 1;
+    due_.push_back(i);
+  }
+  if (due_.empty()) return;
+  const size_t width = pool.action().width();
+  const float rho = policy_->info().noise_correlation, fresh_part = std::sqrt(1 - rho * rho);
+  for (size_t k = 0; k < due_.size(); ++k) {
+    const size_t i = due_[k];
+    std::copy(pool.obs()[i].begin(), pool.obs()[i].end(), obs_.data() + k * pool.obs().width());
+    if (!stochastic_) continue;
+    for (size_t j = 0; j < width; ++j) {
+      float& m = memory_[i * width + j];
+      m = fresh_[i] ? normal() : rho * m + fresh_part * normal();
+      noise_[k * width + j] = m;
+    }
+    fresh_[i] = 0;
+  }
+  policy_->act(obs_.data(), static_cast<int32_t>(due_.size()), stochastic_ ? noise_.data() : nullptr,
+               action_.data(), scratch_.get(), scratch_bytes_);
+  for (size_t k = 0; k < due_.size(); ++k)
+    std::copy_n(action_.data() + k * width, width, pool.action()[due_[k]].begin());
+}
+
+}  // namespace tool

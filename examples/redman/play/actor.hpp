@@ -1,0 +1,64 @@
+// Who acts in a pool: a policy file, a demonstration, or one of the baselines zero, hold, random.
+#pragma once
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/setup.hpp"
+#include "demo/player.hpp"
+
+namespace tool {
+
+// What a `--policy` word stands for.
+struct ActorChoice {
+  std::string file;       // of a policy, else ""
+  int32_t baseline = -1;  // RDM_BASELINE_*
+  bool demo = false;      // the script, or without one the task's own
+  std::optional<DemoScript> script;
+  std::string task;                 // that the policy learned; "" unknown
+  Options options;                  // of the task, when the policy stands in a run folder
+  std::vector<std::string> limits;  // --cost-limit of that run
+};
+// zero, hold, random, demo, a .demo file, a policy file or a run folder. Failure when the file cannot be read
+// as a policy.
+ActorChoice choose_actor(const std::string& word);
+
+// Lays what the policy knows about its task under the flags: the task's name when `task_given` is false, and
+// the options of its run when the tasks agree.
+void adopt_task(const ActorChoice& choice, bool task_given, PoolSettings& pool);
+
+class Actor {
+ public:
+  // Failure when the policy does not fit the pool's observations and actions.
+  Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic = false, uint64_t seed = 0);
+  Actor(redman::Policy policy, const redman::Pool& pool);
+
+  // Episodes begin anew in the worlds of the mask [num_envs] (null: all): a decision is due there.
+  void restart(const uint8_t* mask = nullptr);
+  // Fills the action rows of the worlds in the mask: a decision every action_repeat control steps, held
+  // between.
+  void act(redman::Pool& pool, const uint8_t* mask = nullptr);
+
+ private:
+  struct Free {
+    void operator()(void* p) const { std::free(p); }
+  };
+  void prepare(const redman::Pool& pool);
+  float normal();
+
+  int32_t baseline_ = -1;
+  std::optional<redman::Policy> policy_;
+  std::optional<Demo> demo_;
+  bool stochastic_ = false;
+  uint64_t random_ = 0;
+  std::vector<int32_t> hold_;                // [num_envs] control steps until the next decision
+  std::vector<size_t> due_;                  // worlds that decide now
+  std::vector<float> obs_, action_, noise_;  // rows of those worlds
+  std::vector<float> memory_;                // [num_envs][action_dim] correlated noise
+  std::vector<uint8_t> fresh_;               // [num_envs] the memory is to be drawn anew
+  std::unique_ptr<void, Free> scratch_;
+  size_t scratch_bytes_ = 0;
+};
+
+}  // namespace tool

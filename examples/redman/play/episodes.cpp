@@ -1,0 +1,94 @@
+#include "play/episodes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace tool {
+namespace {
+
+// Mean and standard deviation of value(episode).
+template <class Value>
+std::pair<double, double> spread(const std::vector<Episode>& episodes, Value value) {
+  double sum = 0, squares = 0;
+  for (const Episode& e : episodes) sum += value(e);
+  const double mean = sum / static_cast<double>(episodes.size());
+  for (const Episode& e : episodes) squares += (value(e) - mean) * (value(e) - mean);
+  return {mean, std::sqrt(squares / static_cast<double>(episodes.size()))};
+}
+
+// Of the mean, from the deviation of the population of so many.
+double standard_error(double deviation, size_t count) {
+  return count > 1 ? deviation / std::sqrt(static_cast<double>(count - 1)) : std::nan("");
+}
+
+}  // namespace
+
+std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t count,
+                                   const StepObserver& observer) {
+  const size_t n = pool.num_envs();
+  std::vector<Episode> episodes(count);
+  std::vector<uint8_t> playing(n), ended(n);
+  std::vector<size_t> episode(n);
+  for (size_t i = 0; i < n; ++i) {
+    episode[i] = i;
+    playing[i] = i < count;
+  }
+  const auto any = [](const std::vector<uint8_t>& mask) {
+    return std::find(mask.begin(), mask.end(), 1) != mask.end();
+  };
+  actor.restart();
+  while (any(playing)) {
+    actor.act(pool, playing.data());
+    pool.step(playing.data());
+    for (size_t i = 0; i < n; ++i) {
+      ended[i] = 0;
+      if (!playing[i]) continue;
+      Episode& e = episodes[episode[i]];
+      e.success |= pool.success()[i] != 0;
+      if (observer) observer(i, episode[i]);
+      if (!pool.terminated()[i] && !pool.truncated()[i]) continue;
+      e.ret = static_cast<double>(pool.episode_return()[i]);
+      e.cost.assign(pool.episode_cost()[i].begin(), pool.episode_cost()[i].end());
+      e.length = pool.buffers().episode_step[i];
+      e.terminated = pool.terminated()[i] != 0;
+      episode[i] += n;
+      playing[i] = ended[i] = episode[i] < count;
+    }
+    if (!any(ended)) continue;
+    pool.reset(nullptr, ended.data());
+    actor.restart(ended.data());
+  }
+  return episodes;
+}
+
+Summary summarise(const std::vector<Episode>& episodes, const std::vector<double>& limits) {
+  Summary s;
+  if (episodes.empty()) return s;
+  std::tie(s.return_mean, s.return_std) = spread(episodes, [](const Episode& e) { return e.ret; });
+  s.return_stderr = standard_error(s.return_std, episodes.size());
+  s.length_mean = spread(episodes, [](const Episode& e) { return e.length; }).first;
+  s.fall_rate = spread(episodes, [](const Episode& e) { return e.terminated ? 1 : 0; }).first;
+  s.success_rate = spread(episodes, [](const Episode& e) { return e.success ? 1 : 0; }).first;
+  for (size_t k = 0; k < limits.size(); ++k) {
+    const auto [mean, std] = spread(episodes, [k](const Episode& e) { return e.cost[k]; });
+    s.cost_mean.push_back(mean);
+    s.cost_std.push_back(std);
+    s.cost_stderr.push_back(standard_error(std, episodes.size()));
+  }
+  s.violation_rate = spread(episodes, [&](const Episode& e) {
+                       for (size_t k = 0; k < limits.size(); ++k)
+                         if (limits[k] >= 0 && e.cost[k] > limits[k]) return 1;
+                       return 0;
+                     }).first;
+  if (!s.cost_mean.empty()) s.cost_per_step = s.cost_mean[0] / s.length_mean;
+  return s;
+}
+
+bool feasible(const Summary& summary, const std::vector<double>& limits) {
+  for (size_t k = 0; k < limits.size(); ++k)
+    if (limits[k] >= 0 && summary.cost_mean[k] > limits[k]) return false;
+  return true;
+}
+
+}  // namespace tool

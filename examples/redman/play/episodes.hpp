@@ -1,0 +1,42 @@
+// Whole episodes, counted without favour to short ones: every world plays a fixed share of them.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "play/actor.hpp"
+
+namespace tool {
+
+inline constexpr int32_t kMostEpisodes = 1'000'000;
+
+struct Episode {
+  double ret = 0;            // sum of rewards
+  std::vector<double> cost;  // [cost_dim] sums
+  int32_t length = 0;        // control steps
+  bool terminated = false;   // a fall
+  bool success = false;      // the task's success held at least once
+};
+
+// Called after each control step of world `env` in its episode number `episode`.
+using StepObserver = std::function<void(size_t env, size_t episode)>;
+
+// Plays `count` episodes in a pool without autoreset that was just reset. Episode e is played by world
+// e mod num_envs; a world that has done its share rests. The result does not depend on threads.
+std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t count,
+                                   const StepObserver& observer = {});
+
+struct Summary {
+  double return_mean = 0, return_std = 0, length_mean = 0, fall_rate = 0, success_rate = 0;
+  double violation_rate = 0;  // share of episodes over a limit
+  double cost_per_step = 0;   // column 0
+  double return_stderr = 0;   // of return_mean; so below
+  std::vector<double> cost_mean, cost_std, cost_stderr;
+};
+// Standard deviations are of the population, standard errors of the mean from the sample's, NaN for one
+// episode. limits [cost_dim], < 0: none.
+Summary summarise(const std::vector<Episode>& episodes, const std::vector<double>& limits);
+
+// Every limited column's mean is at or below its limit.
+bool feasible(const Summary& summary, const std::vector<double>& limits);
+
+}  // namespace tool

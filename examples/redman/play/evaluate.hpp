@@ -1,0 +1,22 @@
+// An evaluation as `eval` and the end of `train` make it: so many episodes on the mean action.
+#pragma once
+#include "common/report.hpp"
+#include "play/episodes.hpp"
+
+namespace tool {
+
+struct Evaluation {
+  std::vector<double> limits;  // [cost_dim], < 0: none
+  std::vector<std::string> costs;
+  Summary summary;
+};
+
+inline constexpr int32_t kEvalEnvs = 16, kEvalEpisodes = 100;
+
+// `limits` are texts of --cost-limit. settings.envs is lowered to the number of episodes.
+Evaluation evaluate(const ActorChoice& choice, PoolSettings settings, const std::vector<std::string>& limits,
+                    int32_t episodes, bool stochastic);
+// Its keys, as `eval` and `baseline` print them.
+Json evaluation_json(const Evaluation& e, int32_t episodes);
+
+}  // namespace tool

@@ -1,0 +1,183 @@
+// `plot`: learning curves of one or more run folders.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "commands.hpp"
+#include "common/files.hpp"
+#include "common/text.hpp"
+#include "draw/svg.hpp"
+#include "run/run_data.hpp"
+
+namespace tool {
+namespace {
+
+struct PlotFlags {
+  std::vector<std::string> folders;
+  std::string out = "plot.svg";
+  bool each = false;
+};
+
+// Runs that share a line: seeds of one task, algorithm and, where it tells lines apart, limit.
+struct Group {
+  std::string label;
+  std::vector<const RunData*> runs;
+  size_t color = 0;
+};
+
+std::vector<Group> make_groups(const std::vector<const RunData*>& runs, bool each, bool by_limit) {
+  std::vector<Group> groups;
+  for (const RunData* run : runs) {
+    std::string label = run->algo;
+    if (by_limit && run->limit >= 0) label += ", limit " + number_text(run->limit);
+    if (each) label += ", seed " + std::to_string(run->seed);
+    auto found = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.label == label; });
+    if (each || found == groups.end()) found = groups.insert(groups.end(), {label, {}, groups.size()});
+    found->runs.push_back(run);
+  }
+  return groups;
+}
+
+// y at x on the line through the points; NaN outside of them.
+double interpolate(const std::vector<double>& xs, const std::vector<double>& ys, double x) {
+  const auto after = std::lower_bound(xs.begin(), xs.end(), x);
+  if (after == xs.end()) return std::nan("");
+  const auto i = static_cast<size_t>(after - xs.begin());
+  if (xs[i] == x || i == 0) return xs[i] == x ? ys[i] : std::nan("");
+  return ys[i - 1] + (ys[i] - ys[i - 1]) * (x - xs[i - 1]) / (xs[i] - xs[i - 1]);
+}
+
+Series single_line(const RunData& run, const std::string& column, size_t color) {
+  return {color, run.column("TotalEnvSteps"), run.column(column), {}, {}};
+}
+
+// Mean and standard deviation, as far as all runs of the group go.
+Series mean_line(const Group& group, const std::string& column, size_t color) {
+  constexpr int kPoints = 120;
+  double last = group.runs[0]->column("TotalEnvSteps").back();
+  for (const RunData* run : group.runs) last = std::min(last, run->column("TotalEnvSteps").back());
+  Series s;
+  s.color = color;
+  for (int i = 1; i <= kPoints; ++i) {
+    const double x = last * i / kPoints;
+    double sum = 0, squares = 0, n = 0;
+    for (const RunData* run : group.runs) {
+      if (run->column(column).empty()) continue;
+      const double y = interpolate(run->column("TotalEnvSteps"), run->column(column), x);
+      if (!std::isfinite(y)) continue;
+      sum += y;
+      squares += y * y;
+      n += 1;
+    }
+    const double mean = n > 0 ? sum / n : std::nan(""),
+                 std = std::sqrt(std::max(0.0, squares / n - mean * mean));
+    s.x.push_back(x);
+    s.y.push_back(mean);
+    s.low.push_back(mean - std);
+    s.high.push_back(mean + std);
+  }
+  return s;
+}
+
+Panel make_panel(const std::string& title, const std::string& column, const std::vector<Group>& groups,
+                 bool share = false) {
+  Panel panel;
+  panel.title = title;
+  panel.share = share;
+  for (const Group& g : groups)
+    panel.series.push_back(g.runs.size() == 1 ? single_line(*g.runs[0], column, g.color)
+                                              : mean_line(g, column, g.color));
+  return panel;
+}
+
+// A dashed line per limit: grey when all groups share it, else in the group's colour.
+std::vector<Level> limit_levels(const std::vector<Group>& groups) {
+  const double first = groups[0].runs[0]->limit;
+  const bool shared =
+      std::all_of(groups.begin(), groups.end(), [&](const Group& g) { return g.runs[0]->limit == first; });
+  if (shared) return first >= 0 ? std::vector<Level>{{kGrey, first}} : std::vector<Level>{};
+  std::vector<Level> levels;
+  for (const Group& g : groups)
+    if (g.runs[0]->limit >= 0) levels.push_back({g.color, g.runs[0]->limit});
+  return levels;
+}
+
+struct Chart {
+  std::string title;
+  std::vector<Panel> panels;
+  std::vector<LegendEntry> legend;
+  size_t lines = 0;  // groups of runs
+};
+
+Chart chart_of_a_task(const std::vector<const RunData*>& runs, bool each) {
+  const std::vector<Group> groups = make_groups(runs, each, true);
+  Chart chart{runs[0]->task,
+              {make_panel("Return of an episode", "Metrics/EpRet", groups),
+               make_panel("Cost of an episode (dashed: limit)", "Metrics/EpCost", groups),
+               make_panel("Lagrange multiplier", "Metrics/LagrangeMultiplier", groups),
+               make_panel("Length of an episode, steps", "Metrics/EpLen", groups),
+               make_panel("Episodes that end in a fall", "Metrics/FallRate", groups, true),
+               make_panel("Episodes with success", "Metrics/SuccessRate", groups, true)},
+              {},
+              groups.size()};
+  chart.panels[1].levels = limit_levels(groups);
+  for (const Group& g : groups)
+    chart.legend.push_back(
+        {g.color, g.runs.size() > 1 ? g.label + format(" (%zu runs)", g.runs.size()) : g.label});
+  return chart;
+}
+
+// A row of panels for each task; an algorithm has one colour in all of them.
+Chart chart_of_tasks(const std::vector<std::vector<const RunData*>>& tasks, bool each) {
+  Chart chart{"Learning curves", {}, {}, 0};
+  for (const auto& runs : tasks) {
+    std::vector<Group> groups = make_groups(runs, each, false);
+    for (Group& g : groups) {
+      auto& legend = chart.legend;
+      const auto known = std::find_if(legend.begin(), legend.end(),
+                                      [&](const LegendEntry& e) { return e.label == g.label; });
+      g.color = static_cast<size_t>(known - legend.begin());
+      if (known == legend.end()) legend.push_back({g.color, g.label});
+    }
+    chart.lines += groups.size();
+    chart.panels.push_back(make_panel(runs[0]->task + ": return", "Metrics/EpRet", groups));
+    chart.panels.push_back(make_panel("cost (dashed: limit)", "Metrics/EpCost", groups));
+    chart.panels.back().levels = limit_levels(groups);
+    chart.panels.push_back(make_panel("episodes with success", "Metrics/SuccessRate", groups, true));
+  }
+  return chart;
+}
+
+Report run_plot(const PlotFlags& flags) {
+  std::vector<RunData> runs;
+  for (const std::string& folder : flags.folders)
+    for (const std::string& path : find_runs(folder)) runs.push_back(read_run(path));
+  std::vector<std::vector<const RunData*>> tasks;
+  for (const RunData& run : runs) {
+    auto found = std::find_if(tasks.begin(), tasks.end(),
+                              [&](const auto& others) { return others[0]->task == run.task; });
+    if (found == tasks.end()) found = tasks.insert(tasks.end(), std::vector<const RunData*>());
+    found->push_back(&run);
+  }
+  const Chart chart =
+      tasks.size() == 1 ? chart_of_a_task(tasks[0], flags.each) : chart_of_tasks(tasks, flags.each);
+  replace_file(flags.out, draw_chart(chart.title, chart.panels, 3, "control steps", chart.legend));
+  return {{{"file", flags.out}, {"runs", runs.size()}, {"lines", chart.lines}}, "wrote " + flags.out + '\n'};
+}
+
+}  // namespace
+
+void add_plot(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<PlotFlags>();
+  CLI::App* command = app.add_subcommand("plot", "Draw the learning curves of run folders as SVG");
+  command
+      ->add_option("folders", flags->folders,
+                   "run folders, or folders of them; seeds of one setting become a mean with a band, several "
+                   "tasks a row of panels each")
+      ->required();
+  command->add_option("--out", flags->out, "SVG file; default plot.svg");
+  command->add_flag("--each", flags->each, "a line for every folder");
+  command->callback([&run, flags] { run = [flags] { return run_plot(*flags); }; });
+}
+
+}  // namespace tool

@@ -1,0 +1,190 @@
+// `render`: a picture of a moment, a strip of moments, or a film of an episode.
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+
+#include "commands.hpp"
+#include "common/names.hpp"
+#include "common/text.hpp"
+#include "draw/image.hpp"
+#include "play/actor.hpp"
+
+namespace tool {
+namespace {
+
+constexpr int32_t kMostPixels = 8192;  // a side
+
+struct RenderFlags {
+  std::string policy = "hold", size = "640x480", camera = "front", out, video;
+  PoolSettings pool;
+  std::vector<std::string> sets;
+  int32_t step = 0, strip = 0, from = 0, to = -1, width = 0, height = 0;
+  bool task_given = false, step_given = false;
+};
+
+void read_size(RenderFlags& flags) {
+  char* end = nullptr;
+  const long width = std::strtol(flags.size.c_str(), &end, 10);
+  const long height = *end == 'x' ? std::strtol(end + 1, &end, 10) : 0;
+  if (*end || width < 1 || height < 1 || width > kMostPixels || height > kMostPixels)
+    throw Usage("--size " + flags.size + ": not WIDTHxHEIGHT, such as 640x480, up to " +
+                std::to_string(kMostPixels));
+  flags.width = static_cast<int32_t>(width);
+  flags.height = static_cast<int32_t>(height);
+}
+
+void check_camera(const std::string& camera, int32_t task) {
+  std::vector<std::string> names;
+  for (int32_t i = 0; i < task_at(task).num_cameras; ++i) {
+    rdm_camera c;
+    redman::check(rdm_task_camera(task, i, &c));
+    if (same_name(camera, c.name)) return;
+    names.push_back(c.name);
+  }
+  throw Usage("--camera " + camera + ": unknown; nearest is " + nearest_name(camera, names));
+}
+
+// One world played from the seed: the same episode each time.
+class Scene {
+ public:
+  Scene(const RenderFlags& flags, const ActorChoice& choice)
+      : flags_(flags), pool_(make_pool(flags.pool, RDM_AUTORESET_OFF)), actor_(choice, pool_) {
+    check_camera(flags.camera, pool_.spec().task);
+    pool_.reset();
+    actor_.restart();
+  }
+  const redman::Pool& pool() const { return pool_; }
+  int32_t step() const { return step_; }
+  // False, and nothing happens, when the episode is over.
+  bool advance() {
+    if (pool_.terminated()[0] || pool_.truncated()[0]) return false;
+    actor_.act(pool_);
+    pool_.step();
+    ++step_;
+    return true;
+  }
+  void advance_to(int32_t step) {
+    while (step_ < step && advance()) {
+    }
+  }
+  Image picture() {
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    Image image{flags_.width, flags_.height, {}};
+    image.rgb = as_usage([&] { return pool_.render(0, flags_.camera.c_str(), flags_.width, flags_.height); });
+    seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
+    ++frames_;
+    return image;
+  }
+  int32_t frames() const { return frames_; }
+  double seconds() const { return seconds_; }  // spent in pictures
+
+ private:
+  const RenderFlags& flags_;
+  redman::Pool pool_;
+  Actor actor_;
+  int32_t step_ = 0, frames_ = 0;
+  double seconds_ = 0;
+};
+
+int32_t last_step(const RenderFlags& flags, const ActorChoice& choice) {
+  Scene scene(flags, choice);
+  scene.advance_to(flags.to >= 0 ? flags.to : scene.pool().spec().max_steps);
+  return scene.step();
+}
+
+Image draw(const RenderFlags& flags, const ActorChoice& choice, Scene& scene) {
+  if (flags.strip < 1) {
+    scene.advance_to(flags.step);
+    return scene.picture();
+  }
+  const int32_t last = last_step(flags, choice), first = std::min(flags.from, last);
+  std::vector<Image> moments;
+  for (int32_t i = 0; i < flags.strip; ++i) {
+    const double share = flags.strip > 1 ? static_cast<double>(i) / (flags.strip - 1) : 0.5;
+    scene.advance_to(first + static_cast<int32_t>(std::lround(share * (last - first))));
+    moments.push_back(scene.picture());
+  }
+  return side_by_side(moments);
+}
+
+void film(const RenderFlags& flags, Scene& scene) {
+  Film film(flags.video, flags.width, flags.height, 1 / static_cast<double>(scene.pool().spec().control_dt));
+  scene.advance_to(flags.from);
+  do {
+    film.add(scene.picture());
+  } while ((flags.to < 0 || scene.step() < flags.to) && scene.advance());
+  film.finish();
+}
+
+Report run_render(RenderFlags flags) {
+  read_size(flags);
+  const ActorChoice choice = choose_actor(flags.policy);
+  adopt_task(choice, flags.task_given, flags.pool);
+  apply_sets(flags.sets, flags.pool, nullptr);
+  const bool only_video = !flags.video.empty() && flags.out.empty() && flags.strip == 0 && !flags.step_given;
+  if (flags.out.empty()) flags.out = "render.png";
+  Json json;
+  int32_t frames = 0;
+  double seconds = 0;
+  int32_t width = flags.width;
+  if (!only_video) {
+    Scene scene(flags, choice);
+    const Image image = draw(flags, choice, scene);
+    write_png(flags.out, image);
+    width = image.width;
+    frames += scene.frames();
+    seconds += scene.seconds();
+  }
+  if (!flags.video.empty()) {
+    Scene scene(flags, choice);
+    film(flags, scene);
+    frames += scene.frames();
+    seconds += scene.seconds();
+  }
+  json["file"] = only_video ? flags.video : flags.out;
+  if (!flags.video.empty()) json["video"] = flags.video;
+  json["width"] = width;
+  json["height"] = flags.height;
+  json["frames"] = frames;
+  json["frames_per_second"] = frames / std::max(seconds, 1e-9);
+  std::string text = format("%dx%d pixels, %d pictures at %.1f per second\n", width, flags.height, frames,
+                            frames / std::max(seconds, 1e-9));
+  if (!only_video) text += "wrote " + flags.out + '\n';
+  if (!flags.video.empty()) text += "wrote " + flags.video + '\n';
+  return {json, text};
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<RenderFlags>();
+  CLI::App* command =
+      app.add_subcommand("render", "Draw a moment, a strip of moments or a film of an episode");
+  CLI::Option* task = command->add_option("--task", flags->pool.task, "task; default: the policy's");
+  command->add_option("--policy", flags->policy,
+                      "policy file, run folder, .demo file, demo, zero, hold or random");
+  command->add_option("--seed", flags->pool.seed, "seed of the episode");
+  CLI::Option* step = command->add_option("--step", flags->step, "control step to draw; 0: the start")
+                          ->check(CLI::NonNegativeNumber);
+  command->add_option("--strip", flags->strip, "so many moments of the episode side by side")
+      ->check(CLI::Range(1, 64))
+      ->excludes(step);
+  command->add_option("--from", flags->from, "first step of the strip and the film")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--to", flags->to, "last step of the strip and the film; default: the episode's end")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--size", flags->size, "pixels of one picture")->type_name("WxH");
+  command->add_option("--camera", flags->camera, "camera of the task");
+  command->add_option("--out", flags->out, "PNG file; default render.png");
+  command->add_option("--video", flags->video,
+                      "film of the episode, .mp4 or .gif, made by the program ffmpeg");
+  add_set_flag(*command, flags->sets);
+  command->callback([&run, flags, task, step] {
+    flags->task_given = task->count() > 0;
+    flags->step_given = step->count() > 0;
+    run = [flags] { return run_render(*flags); };
+  });
+}
+
+}  // namespace tool

@@ -1,0 +1,112 @@
+#include "run/config.hpp"
+
+#include <cmath>
+
+#include "common/json.hpp"
+#include "common/names.hpp"
+#include "common/text.hpp"
+
+namespace tool {
+namespace {
+
+constexpr double kMostLimit = 1e300;
+
+std::vector<std::string> as_sets(const Options& options) {
+  std::vector<std::string> out;
+  for (const auto& [key, value] : options) out.push_back(key + "=" + value);
+  return out;
+}
+
+Options from_sets(const std::vector<std::string>& sets, const char* member) {
+  Options out;
+  try {
+    for (const std::string& text : sets) out.push_back(split_pair(text, member));
+  } catch (const Usage& e) {
+    throw Failure(e.what());
+  }
+  return out;
+}
+
+// Every option as it stands, by index until the list ends.
+template <class Get>
+Json values_json(int32_t count, Get get) {
+  Json out = Json::object();
+  for (int32_t i = 0; i < count; ++i) {
+    const char* key = nullptr;
+    char text[RDM_TEXT_SIZE];
+    redman::check(get(i, &key, text));
+    out[key] = text;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string config_text(const RunSettings& s, const redman::Pool& pool, const redman::Agent& agent,
+                        const std::vector<double>& limits, int64_t steps_per_epoch) {
+  const int32_t task = pool.spec().task, algo = find_algo(s.agent.algo);
+  const std::string task_name = task_at(task).name, algo_name = algo_at(algo).name;
+  const auto costs = task_costs(task);
+  Json limit_values = Json::object();
+  for (size_t i = 0; i < costs.size(); ++i)
+    if (limits[i] >= 0) limit_values[costs[i].name] = limits[i];
+
+  Json algo_cfgs = values_json(algo_at(algo).num_options, [&](int32_t i, const char** key, char* text) {
+    return rdm_agent_option(agent.get(), i, key, text);
+  });
+  algo_cfgs["steps_per_epoch"] = steps_per_epoch;
+  const Json json = {
+      {"exp_name", format("%s-%s-seed-%llu", task_name.c_str(), algo_name.c_str(),
+                          static_cast<unsigned long long>(s.pool.seed))},
+      {"task", task_name},
+      {"algo", algo_name},
+      {"seed", s.pool.seed},
+      {"set", as_sets(s.pool.options)},
+      {"set_algo", as_sets(s.agent.options)},
+      {"set_cost_limit", s.limits},
+      {"cost_limits", limit_values},
+      {"train_cfgs",
+       {{"total_steps", s.steps},
+        {"vector_env_nums", s.pool.envs},
+        {"threads", s.pool.threads},
+        {"eval_every", s.eval_every},
+        {"checkpoint_every", s.checkpoint_every}}},
+      {"algo_cfgs", algo_cfgs},
+      {"env_cfgs", values_json(task_at(task).num_options,
+                               [&](int32_t i, const char** key, char* text) {
+                                 return rdm_pool_option(pool.get(), i, key, text);
+                               })},
+      {"obs_dim", pool.spec().obs_dim},
+      {"action_dim", pool.spec().action_dim},
+      {"layout_hash", format("%016llx", static_cast<unsigned long long>(pool.spec().layout_hash))},
+      {"build", build_json()}};
+  return json_text(json, 2) + '\n';
+}
+
+RunSettings parse_config(const char* text, size_t size) {
+  const Document json = parse_json(text, size);
+  const Document& train = object_at(json, "train_cfgs");
+  RunSettings s;
+  s.pool.task = text_at(json, "task");
+  s.pool.seed = seed_at(json, "seed");
+  s.pool.envs = static_cast<int32_t>(integer_at(train, "vector_env_nums", 1, INT32_MAX));
+  s.pool.threads = static_cast<int32_t>(integer_at(train, "threads", 0, INT32_MAX));
+  s.pool.options = from_sets(texts_at(json, "set"), "set");
+  s.agent.algo = text_at(json, "algo");
+  s.agent.options = from_sets(texts_at(json, "set_algo"), "set_algo");
+  s.limits = texts_at(json, "set_cost_limit");
+  s.steps = integer_at(train, "total_steps", 1, kMostExact);
+  s.eval_every = static_cast<int32_t>(integer_at(train, "eval_every", 1, INT32_MAX));
+  s.checkpoint_every = static_cast<int32_t>(integer_at(train, "checkpoint_every", 1, INT32_MAX));
+  return s;
+}
+
+RunLabel parse_label(const char* text, size_t size) {
+  const Document json = parse_json(text, size);
+  RunLabel label{text_at(json, "task"), text_at(json, "algo"), seed_at(json, "seed"), -1};
+  const Document& limits = object_at(json, "cost_limits");
+  if (limits.contains("cost")) label.limit = number_at(limits, "cost", -kMostLimit, kMostLimit);
+  return label;
+}
+
+}  // namespace tool

@@ -1,0 +1,36 @@
+// config.json: what a run was asked for, with the defaults written out.
+#pragma once
+#include <cstddef>
+#include <string>
+
+#include "common/setup.hpp"
+
+namespace tool {
+
+// What `train` was asked for: everything needed to do it again.
+struct RunSettings {
+  PoolSettings pool;
+  AgentSettings agent;
+  std::vector<std::string> limits;  // as --cost-limit had them
+  int64_t steps = 1000000;          // control steps, all worlds
+  int32_t eval_every = 10;          // epochs
+  int32_t checkpoint_every = 10;    // epochs
+};
+
+// The text of the file. `pool` and `agent` say what the options came to; limits [cost_dim].
+std::string config_text(const RunSettings& settings, const redman::Pool& pool, const redman::Agent& agent,
+                        const std::vector<double>& limits, int64_t steps_per_epoch);
+
+// Failure when a member is missing, of the wrong kind or out of range. Whether task, algorithm and options
+// exist is for the pool and the agent to say.
+RunSettings parse_config(const char* text, size_t size);
+
+// The part that a plot is labelled with.
+struct RunLabel {
+  std::string task, algo;
+  uint64_t seed = 0;
+  double limit = -1;  // of column 0, < 0: none
+};
+RunLabel parse_label(const char* text, size_t size);
+
+}  // namespace tool

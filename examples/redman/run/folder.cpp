@@ -1,0 +1,161 @@
+#include "run/folder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <utility>
+
+#include "common/files.hpp"
+#include "common/json.hpp"
+#include "common/names.hpp"
+#include "common/text.hpp"
+
+namespace tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string canonical_task(const std::string& name) {
+  return task_at(find_task(name)).name;
+}
+std::string canonical_algo(const std::string& name) {
+  return algo_at(find_algo(name)).name;
+}
+
+// Opens the folder with a lock on it. File systems that know no locks are taken as they are.
+int lock_folder(const std::string& path) {
+  const int folder = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) throw Failure("cannot open folder " + path + ": " + std::strerror(errno));
+  if (flock(folder, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return folder;
+  close(folder);
+  throw Failure("another process is training in " + path + ": wait for it or stop it, or give another --out");
+}
+
+// progress.csv for writing; -1, and errno says why.
+int open_progress(const std::string& path, struct stat* s) {
+  const int f = ::open(path.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (f < 0) return f;
+  if (fstat(f, s) == 0 && S_ISREG(s->st_mode)) return f;
+  close(f);
+  errno = EINVAL;
+  return -1;
+}
+
+}  // namespace
+
+RunFolder RunFolder::create(const std::string& path, bool overwrite) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw Failure("cannot make folder " + path + ": " + error.message());
+  RunFolder folder(path, lock_folder(path));
+  if (fs::exists(fs::symlink_status(folder.config(), error)) && !overwrite)
+    throw Failure(path + " holds a run already: go on with --resume " + path +
+                  ", begin again with --overwrite, or give another --out");
+  return folder;
+}
+
+RunFolder RunFolder::go_on(const std::string& path) {
+  if (!file_exists(path + "/config.json"))
+    throw Failure(path + " is not a run folder: it has no config.json; start one with train --out " + path);
+  RunFolder folder(path, lock_folder(path));
+  for (const std::string& file : {folder.config(), folder.progress(), folder.policy(), folder.checkpoint()})
+    sweep_temporaries(file, true);
+  return folder;
+}
+
+RunFolder::RunFolder(RunFolder&& other) noexcept
+    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+
+RunFolder::~RunFolder() {
+  if (lock_ >= 0) close(lock_);
+}
+
+std::string RunFolder::default_path(const RunSettings& settings) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char stamp[32];
+  std::strftime(stamp, sizeof stamp, "%Y-%m-%d-%H-%M-%S", &local);
+  const std::string path = format("runs/%s-{%s}/seed-%03llu-%s", canonical_algo(settings.agent.algo).c_str(),
+                                  canonical_task(settings.pool.task).c_str(),
+                                  static_cast<unsigned long long>(settings.pool.seed), stamp);
+  std::string free_path = path;
+  for (int i = 2; fs::exists(free_path); ++i) free_path = path + "-" + std::to_string(i);
+  return free_path;
+}
+
+void RunFolder::start(const std::string& config, const std::string& header, const std::string& policy) const {
+  for (const std::string& file : {this->config(), progress(), this->policy(), checkpoint()})
+    sweep_temporaries(file, true);
+  PreparedFile new_config(this->config(), config), new_progress(progress(), header + '\n'),
+      new_policy(this->policy(), policy);
+  // the checkpoint first: a kill in between must not leave it beside another run's files
+  if (unlink(checkpoint().c_str()) != 0 && errno != ENOENT)
+    throw Failure("cannot remove " + checkpoint() + ": " + std::strerror(errno));
+  new_config.commit();
+  new_progress.commit();
+  new_policy.commit();
+}
+
+void RunFolder::write_policy(const std::string& bytes) const {
+  check();
+  replace_file(policy(), bytes);
+}
+
+size_t RunFolder::append_progress(const std::string& row) const {
+  check();
+  struct stat s {};
+  const int f = open_progress(progress(), &s);
+  const std::string line = row + '\n';
+  const ssize_t wrote = f < 0 ? -1 : ::write(f, line.data(), line.size());
+  const int error = wrote < 0 ? errno : ENOSPC;
+  const bool good = wrote == static_cast<ssize_t>(line.size());
+  const bool cut = good || f < 0 || ftruncate(f, s.st_size) == 0;  // a part of a row is none
+  if (f >= 0) close(f);
+  if (!good || !cut) throw Failure("cannot write " + progress() + ": " + std::strerror(error));
+  return static_cast<size_t>(s.st_size) + line.size();
+}
+
+void RunFolder::cut_progress(size_t bytes) const {
+  struct stat s {};
+  const int f = open_progress(progress(), &s);
+  const bool opened = f >= 0, enough = opened && static_cast<size_t>(s.st_size) >= bytes;
+  const bool good = enough && ftruncate(f, static_cast<off_t>(bytes)) == 0;
+  const int error = errno;
+  if (opened) close(f);
+  if (good) return;
+  if (opened && !enough)
+    throw Failure(progress() + " is shorter than the checkpoint says; start the run anew");
+  throw Failure("cannot shorten " + progress() + ": " + std::strerror(error));
+}
+
+void RunFolder::check() const {
+  struct stat held {
+  }, there{};
+  if (fstat(lock_, &held) != 0 || stat(path_.c_str(), &there) != 0 || held.st_ino != there.st_ino ||
+      held.st_dev != there.st_dev)
+    throw Failure("the run folder " + path_ + " was removed while this run was training in it");
+}
+
+RunSettings run_settings(const std::string& folder) {
+  const std::string path = folder + "/config.json", text = read_file(path, kMostJsonBytes);
+  try {
+    return parse_config(text.data(), text.size());
+  } catch (const Failure& e) {
+    throw Failure(path + " is not a run's configuration: " + e.what());
+  }
+}
+
+std::string run_folder_of(const std::string& file) {
+  const std::string folder = is_folder(file) ? file : fs::path(file).parent_path().string();
+  const std::string path = folder.empty() ? "." : folder;
+  return file_exists(path + "/config.json") ? path : "";
+}
+
+}  // namespace tool

@@ -1,0 +1,55 @@
+// A run folder: config.json, progress.csv, policy.rdm, checkpoint.rdm. A kill at any moment leaves one that
+// can be read and continued.
+#pragma once
+#include <cstddef>
+#include <string>
+
+#include "run/config.hpp"
+
+namespace tool {
+
+class RunFolder {
+ public:
+  // Makes the folder and its parents, for this process alone to write in. A run that stands there already is
+  // a Failure unless `overwrite`; nothing of it goes before start().
+  static RunFolder create(const std::string& path, bool overwrite);
+  // An existing run, for this process alone to write in. Failure when there is no config.json, or another
+  // process trains there.
+  static RunFolder go_on(const std::string& path);
+  // runs/<algo>-{<task>}/seed-000-<local time>
+  static std::string default_path(const RunSettings& settings);
+
+  ~RunFolder();
+  RunFolder(RunFolder&& other) noexcept;
+  RunFolder& operator=(RunFolder&& other) = delete;
+
+  const std::string& path() const { return path_; }
+  std::string file(const char* name) const { return path_ + '/' + name; }
+  std::string config() const { return file("config.json"); }
+  std::string policy() const { return file("policy.rdm"); }
+  std::string checkpoint() const { return file("checkpoint.rdm"); }
+  std::string progress() const { return file("progress.csv"); }
+
+  // Begins a run. What stood in the folder goes when all of this has been written beside it.
+  void start(const std::string& config, const std::string& header, const std::string& policy) const;
+
+  void write_policy(const std::string& bytes) const;
+
+  // progress.csv: a row is appended whole or not at all; resuming cuts it back to the checkpoint.
+  size_t append_progress(const std::string& row) const;  // returns the new length, bytes
+  void cut_progress(size_t bytes) const;                 // Failure when it is shorter
+  // Failure when the folder was removed, or another one stands in its place.
+  void check() const;
+
+ private:
+  RunFolder(std::string path, int lock) : path_(std::move(path)), lock_(lock) {}
+  std::string path_;
+  int lock_;  // the open folder; the kernel lets its lock go when the process ends, however it does
+};
+
+// The settings of the run in a folder. Failure when there is none, or its config.json is none.
+RunSettings run_settings(const std::string& folder);
+// The run folder that holds `file`, "" when it stands in none.
+std::string run_folder_of(const std::string& file);
+
+}  // namespace tool

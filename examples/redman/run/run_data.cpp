@@ -1,0 +1,51 @@
+#include "run/run_data.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "common/files.hpp"
+#include "common/json.hpp"
+#include "common/report.hpp"
+
+namespace tool {
+
+const std::vector<double>& RunData::column(const std::string& name) const {
+  static const std::vector<double> kNone;
+  const auto found = columns.find(name);
+  return found == columns.end() ? kNone : found->second;
+}
+
+std::vector<std::string> find_runs(const std::string& folder) {
+  namespace fs = std::filesystem;
+  if (file_exists(folder + "/config.json")) return {folder};
+  std::vector<std::string> found;
+  std::error_code error, kind;
+  fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, error);
+  for (; !error && at != fs::recursive_directory_iterator(); at.increment(error))
+    if (at->path().filename() == "config.json" && at->is_regular_file(kind))
+      found.push_back(at->path().parent_path().string());
+  if (found.empty()) throw Failure(folder + " holds no run: no config.json in it or below");
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+RunData read_run(const std::string& path) {
+  const std::string config = path + "/config.json", progress = path + "/progress.csv";
+  const std::string label = read_file(config, kMostJsonBytes), rows = read_file(progress);
+  RunData run;
+  try {
+    static_cast<RunLabel&>(run) = parse_label(label.data(), label.size());
+  } catch (const Failure& e) {
+    throw Failure(config + " is not a run's configuration: " + e.what());
+  }
+  run.path = path;
+  try {
+    run.columns = parse_progress(rows.data(), rows.size());
+  } catch (const Failure& e) {
+    throw Failure(progress + " is not a run's curve: " + e.what());
+  }
+  if (run.column("TotalEnvSteps").empty()) throw Failure(progress + " has no finished epoch yet");
+  return run;
+}
+
+}  // namespace tool

@@ -1,0 +1,260 @@
+#include "run/trainer.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+
+#include "common/files.hpp"
+#include "common/names.hpp"
+#include "common/text.hpp"
+
+namespace tool {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double since(Clock::time_point t) {
+  return std::chrono::duration<double>(Clock::now() - t).count();
+}
+
+std::atomic<int> g_signals{0};
+std::atomic<rdm_agent*> g_agent{nullptr};
+
+// The first signal ends the run after this epoch, whose end can be continued bit for bit; the second at once.
+extern "C" void on_signal(int) {
+  if (g_signals.fetch_add(1) > 0) rdm_agent_cancel(g_agent.load());
+}
+
+class SignalScope {
+ public:
+  explicit SignalScope(rdm_agent* agent) {
+    g_agent = agent;
+    g_signals = 0;
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    sigaction(SIGINT, &action, &old_int_);
+    sigaction(SIGTERM, &action, &old_term_);
+  }
+  ~SignalScope() {
+    sigaction(SIGINT, &old_int_, nullptr);
+    sigaction(SIGTERM, &old_term_, nullptr);
+    g_agent = nullptr;
+  }
+  SignalScope(const SignalScope&) = delete;
+  SignalScope& operator=(const SignalScope&) = delete;
+
+ private:
+  struct sigaction old_int_ {
+  }, old_term_{};
+};
+
+PoolSettings eval_settings(const PoolSettings& train) {
+  PoolSettings s = train;
+  s.envs = static_cast<int32_t>(kSelectionEpisodes);
+  return s;
+}
+
+std::vector<CostColumn> cost_columns(int32_t task, const std::vector<double>& limits) {
+  std::vector<CostColumn> columns;
+  for (const rdm_cost& c : task_costs(task)) columns.push_back({c.name, limits[columns.size()] >= 0});
+  return columns;
+}
+
+// An algorithm that handles costs refuses to work without a limit.
+bool handles_costs(const std::string& algo, const redman::Pool& pool) {
+  auto config = redman::agent_config(pool);
+  const std::vector<double> none(static_cast<size_t>(config.cost_dim), -1);
+  config.algo = algo.c_str();
+  config.cost_limits = none.data();
+  size_t bytes = 0;
+  return rdm_agent_memory(&config, &bytes) != RDM_OK;
+}
+
+std::string agent_option(const redman::Agent& agent, const std::string& algo, const char* wanted) {
+  const int32_t count = algo_at(find_algo(algo)).num_options;
+  for (int32_t i = 0; i < count; ++i) {
+    const char* key = nullptr;
+    char text[RDM_TEXT_SIZE];
+    redman::check(rdm_agent_option(agent.get(), i, &key, text));
+    if (same_name(key, wanted)) return text;
+  }
+  throw Failure("algorithm " + algo + " has no option " + wanted);
+}
+
+}  // namespace
+
+Trainer::Trainer(RunSettings settings)
+    : settings_(std::move(settings)),
+      pool_(make_pool(settings_.pool, RDM_AUTORESET_SAME_STEP)),
+      eval_pool_(make_pool(eval_settings(settings_.pool), RDM_AUTORESET_OFF)),
+      limits_(cost_limits(pool_, settings_.limits)),
+      agent_(make_agent(settings_.agent, pool_, limits_, settings_.pool.seed, settings_.pool.threads)),
+      score_limits_(limits_),
+      last_{std::nan(""), std::nan("")} {
+  if (!handles_costs(settings_.agent.algo, pool_)) score_limits_.assign(limits_.size(), -1);
+}
+
+void Trainer::prepare() {
+  pool_.reset();
+  plan_schedule();
+}
+
+void Trainer::begin(RunFolder folder) {
+  folder_.emplace(std::move(folder));
+  const auto policy = agent_.policy();
+  folder_->start(config_text(settings_, pool_, agent_, limits_, steps_per_epoch()),
+                 curve_header(cost_columns(pool_.spec().task, limits_)), {policy.begin(), policy.end()});
+}
+
+void Trainer::resume(RunFolder folder) {
+  if (!file_exists(folder.checkpoint())) {
+    prepare();
+    return begin(std::move(folder));
+  }
+  folder_.emplace(std::move(folder));
+  restore();
+  plan_schedule();
+  folder_->cut_progress(progress_bytes_);
+  replace_file(folder_->config(), config_text(settings_, pool_, agent_, limits_, steps_per_epoch()));
+}
+
+int64_t Trainer::steps_per_epoch() const {
+  const auto option = [&](const char* key) {
+    return std::strtoll(agent_option(agent_, settings_.agent.algo, key).c_str(), nullptr, 10);
+  };
+  return settings_.pool.envs * option("horizon") * option("action_repeat");
+}
+
+// A rate that falls to 0 does so over this run, unless the caller named a length.
+void Trainer::plan_schedule() {
+  for (const auto& [key, value] : settings_.agent.options)
+    if (same_name(key, "total_epochs")) return;
+  const double epochs =
+      std::ceil(static_cast<double>(settings_.steps) / static_cast<double>(steps_per_epoch()));
+  const rdm_option option = {"total_epochs", nullptr, std::max(1.0, epochs)};
+  as_usage([&] { redman::check(rdm_agent_set(agent_.get(), &option)); });
+}
+
+void Trainer::save() {
+  folder_->check();
+  Note note{epoch_, env_steps_, progress_bytes_, earlier_seconds_ + seconds_, {}, best_, best_policy_};
+  if (!std::isnan(last_.ret)) note.last = last_;
+  const std::string bytes = note_bytes(note);
+  redman::check(rdm_checkpoint_write(folder_->checkpoint().c_str(), agent_.get(), pool_.get(), bytes.data(),
+                                     bytes.size()));
+  saved_epoch_ = epoch_;
+}
+
+void Trainer::restore() {
+  const std::string path = folder_->checkpoint();
+  std::string bytes;
+  const auto read = [&] {
+    size_t size = 0;
+    if (rdm_checkpoint_read(path.c_str(), agent_.get(), pool_.get(), bytes.data(), bytes.size(), &size) !=
+        RDM_OK)
+      throw Failure("cannot go on from " + path + ": " + rdm_last_error());
+    return size;
+  };
+  bytes.resize(read());  // the first time asks for the length of the note
+  bytes.resize(std::min(read(), bytes.size()));
+  try {
+    Note note = parse_note(bytes.data(), bytes.size());
+    if (note.best) redman::Policy(note.best_policy).check_fits(pool_.spec());
+    epoch_ = saved_epoch_ = note.epoch;
+    env_steps_ = note.env_steps;
+    progress_bytes_ = note.progress_bytes;
+    earlier_seconds_ = note.seconds;
+    if (note.last) last_ = *note.last;
+    best_ = note.best;
+    best_policy_ = std::move(note.best_policy);
+  } catch (const std::runtime_error& e) {
+    throw Failure("cannot go on from " + path + ": its note was not written by this tool: " + e.what());
+  }
+}
+
+Score Trainer::evaluate(const redman::Bytes& policy, LastEvaluation* last) {
+  std::vector<uint64_t> seeds(kSelectionEpisodes);
+  for (size_t i = 0; i < seeds.size(); ++i) seeds[i] = selection_seed(settings_.pool.seed, i);
+  eval_pool_.reset(seeds.data());
+  Actor actor(redman::Policy(policy), eval_pool_);
+  const Summary s = summarise(play_episodes(eval_pool_, actor, kSelectionEpisodes), limits_);
+  if (last) *last = {s.return_mean, s.cost_mean.empty() ? 0 : s.cost_mean[0]};
+  return score_of(s, score_limits_);
+}
+
+void Trainer::train_epoch(Meter& meter) {
+  auto clock = Clock::now();
+  const auto begin = clock;
+  const rdm_epoch e = agent_.rollout(pool_);
+  EpochTimes times;
+  times.epoch = since(clock);
+  const int64_t steps = e.env_steps - env_steps_;
+  env_steps_ = e.env_steps;
+  epoch_ = e.epoch;
+  own_steps_ += steps;
+  own_seconds_ += times.epoch;
+  if (epoch_ % settings_.eval_every == 0) {
+    clock = Clock::now();
+    auto policy = agent_.policy();
+    const Score score = evaluate(policy, &last_);
+    if (!best_ || score.better_than(*best_)) {
+      best_ = score;
+      best_policy_ = std::move(policy);
+      folder_->write_policy({best_policy_.begin(), best_policy_.end()});
+    }
+    scored_epoch_ = epoch_;
+    times.evaluation = since(clock);
+  }
+  seconds_ += since(begin);
+  times.total = earlier_seconds_ + seconds_;
+  progress_bytes_ =
+      folder_->append_progress(curve_row(cost_columns(pool_.spec().task, limits_), e, steps, last_, times));
+  if (epoch_ % settings_.checkpoint_every == 0) save();
+  meter.show(e);
+}
+
+void Trainer::train_to_the_end(Meter& meter) {
+  try {
+    while (env_steps_ < settings_.steps && g_signals == 0) train_epoch(meter);
+    if (saved_epoch_ != epoch_) save();
+  } catch (const redman::Error& e) {
+    if (e.code() != RDM_CANCELLED) throw;
+  }
+}
+
+void Trainer::run() {
+  const SignalScope signals(agent_.get());
+  Meter meter(env_steps_, settings_.steps);
+  try {
+    train_to_the_end(meter);
+  } catch (const std::runtime_error& e) {
+    if (saved_epoch_ < 1) throw;
+    throw Failure(std::string(e.what()) +
+                  format("; the checkpoint of epoch %d is kept: go on with train --resume ", saved_epoch_) +
+                  folder_->path());
+  }
+  interrupted_ = env_steps_ < settings_.steps;
+  if (interrupted_)
+    meter.say(saved_epoch_ > 0
+                  ? format("stopped; the checkpoint is at epoch %d: go on with train --resume %s",
+                           saved_epoch_, folder_->path().c_str())
+                  : "stopped inside the first epoch: there is no checkpoint yet");
+  finish();
+}
+
+// The last policy competes for policy.rdm too, but leaves no trace in the checkpoint: a run that is continued
+// later must not depend on where it was stopped.
+void Trainer::finish() {
+  if (epoch_ == 0) return;
+  const auto policy = agent_.policy();
+  const bool better = !best_ || (scored_epoch_ != epoch_ && evaluate(policy, nullptr).better_than(*best_));
+  const redman::Bytes& chosen = better ? policy : best_policy_;
+  folder_->write_policy({chosen.begin(), chosen.end()});
+}
+
+double Trainer::steps_per_second() const {
+  return own_seconds_ > 0 ? static_cast<double>(own_steps_) / own_seconds_ : 0;
+}
+
+}  // namespace tool

@@ -1,0 +1,69 @@
+// One training run in its folder: epochs, evaluations, the best policy so far, checkpoints, resuming.
+#pragma once
+#include <optional>
+
+#include "play/episodes.hpp"
+#include "run/folder.hpp"
+#include "run/meter.hpp"
+#include "run/note.hpp"
+#include "run/progress.hpp"
+
+namespace tool {
+
+class Trainer {
+ public:
+  static constexpr uint64_t kEvalSeed = 1000000;  // the report at the end uses streams of seed + this
+
+  // Makes worlds and agent; nothing is written yet.
+  explicit Trainer(RunSettings settings);
+  // What a run needs from its first step on; throws where the settings do not go together.
+  void prepare();
+  // Starts a run in the folder, after prepare(), or goes back to its checkpoint (to the start when it was
+  // killed before the first).
+  void begin(RunFolder folder);
+  void resume(RunFolder folder);
+
+  // Epochs until the steps are done or SIGINT; then the last checkpoint and policy.rdm.
+  void run();
+
+  const RunFolder& folder() const { return *folder_; }
+  const RunSettings& settings() const { return settings_; }
+  const std::vector<double>& limits() const { return limits_; }
+  int64_t env_steps() const { return env_steps_; }
+  bool interrupted() const { return interrupted_; }
+  double seconds() const { return seconds_; }  // of this process, evaluations included
+  double steps_per_second() const;             // of this process, collecting and learning
+
+ private:
+  void restore();
+  void plan_schedule();
+  int64_t steps_per_epoch() const;  // at most: worlds rest from an episode's end to the next decision
+  void train_epoch(Meter& meter);
+  void train_to_the_end(Meter& meter);
+  Score evaluate(const redman::Bytes& policy, LastEvaluation* last);
+  void save();
+  void finish();
+
+  std::optional<RunFolder> folder_;
+  RunSettings settings_;
+  redman::Pool pool_, eval_pool_;
+  std::vector<double> limits_;
+  redman::Agent agent_;
+  std::vector<double> score_limits_;  // limits that rank policies: none for an algorithm without cost limits
+
+  // What a checkpoint's note carries.
+  int64_t env_steps_ = 0;
+  int32_t epoch_ = 0;
+  size_t progress_bytes_ = 0;
+  std::optional<Score> best_;
+  redman::Bytes best_policy_;
+  LastEvaluation last_;
+  double earlier_seconds_ = 0;  // Time/Total of the processes before this one
+
+  int32_t saved_epoch_ = -1, scored_epoch_ = -1;
+  int64_t own_steps_ = 0;
+  double own_seconds_ = 0, seconds_ = 0;
+  bool interrupted_ = false;
+};
+
+}  // namespace tool

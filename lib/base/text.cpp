@@ -1,0 +1,82 @@
+#include "base/text.hpp"
+
+#include <cstdint>
+#include <cstring>
+
+namespace rdm {
+namespace {
+
+// Bytes that a character beginning with `lead` takes, 0 where none begins so (Unicode 15, table 3-7).
+size_t length_of(unsigned char lead) {
+  if (lead < 0x80) return 1;
+  if (lead >= 0xC2 && lead <= 0xDF) return 2;
+  if (lead >= 0xE0 && lead <= 0xEF) return 3;
+  return lead >= 0xF0 && lead <= 0xF4 ? 4 : 0;
+}
+
+// The next byte after `lead` has a narrower range where overlong forms, surrogates or values above U+10FFFF
+// would begin.
+bool follows(unsigned char lead, size_t at, unsigned char byte) {
+  unsigned char low = 0x80, high = 0xBF;
+  if (at == 1 && lead == 0xE0) low = 0xA0;
+  if (at == 1 && lead == 0xED) high = 0x9F;
+  if (at == 1 && lead == 0xF0) low = 0x90;
+  if (at == 1 && lead == 0xF4) high = 0x8F;
+  return byte >= low && byte <= high;
+}
+
+// Bytes of the whole character at p, 0 when there is none. `cut`: the text ends before it is whole.
+size_t character(const unsigned char* p, bool* cut) {
+  const size_t n = length_of(p[0]);
+  *cut = false;
+  for (size_t i = 1; i < n; ++i) {
+    if (p[i] == '\0') *cut = true;
+    if (!follows(p[0], i, p[i])) return 0;
+  }
+  return n;
+}
+
+}  // namespace
+
+void clean_text(char* text) {
+  auto* p = reinterpret_cast<unsigned char*>(text);
+  while (*p) {
+    bool cut;
+    const size_t n = character(p, &cut);
+    if (cut) {
+      *p = '\0';
+      return;
+    }
+    const bool control = *p < 0x20 || *p == 0x7F || (n == 2 && p[0] == 0xC2 && p[1] < 0xA0);
+    if (n == 0)
+      *p++ = '?';
+    else if (control)
+      for (size_t i = 0; i < n; ++i) *p++ = ' ';
+    else
+      p += n;
+  }
+}
+
+void copy_text(char* out, size_t size, const char* text) {
+  size_t n = std::strlen(text);
+  if (n >= size) {
+    n = size - 1;
+    // back to the first byte of the character that is cut, if there is one
+    size_t lead = n;
+    while (lead > 0 && n - lead < 3 && (static_cast<unsigned char>(text[lead]) & 0xC0) == 0x80) --lead;
+    bool cut;
+    const auto* p = reinterpret_cast<const unsigned char*>(text + lead);
+    if (lead + character(p, &cut) > n) n = lead;
+  }
+  std::memcpy(out, text, n);
+  out[n] = '\0';
+}
+
+Quoted::Quoted(const char* name) {
+  if (!name) name = "NULL";
+  copy_text(text, sizeof text - 3, name);
+  if (name[std::strlen(text)]) std::strcat(text, "...");
+  clean_text(text);
+}
+
+}  // namespace rdm

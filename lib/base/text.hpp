@@ -1,0 +1,23 @@
+// Texts that leave the library: one line of valid UTF-8 without control characters.
+//
+// Names and paths come from a host, a file or a command line and may hold anything. Who prints an error
+// text to a terminal or puts it into JSON need not look at it again.
+#pragma once
+#include <cstddef>
+
+namespace rdm {
+
+// In place: control characters (C0, DEL, C1: line ends and ESC among them) become spaces, bytes that are no
+// UTF-8 become '?', and a last character that is not whole goes. Never longer than before.
+void clean_text(char* text);
+
+// Copies `text`, cut before the first character that does not fit with the terminator into `size` >= 1 bytes.
+void copy_text(char* out, size_t size, const char* text);
+
+// A name for an error text, at most 64 bytes of it: fail(code, "task %s: unknown", Quoted(name).text).
+struct Quoted {
+  explicit Quoted(const char* name);  // NULL: "NULL"
+  char text[64 + 3 + 1];              // "..." where the name was cut
+};
+
+}  // namespace rdm

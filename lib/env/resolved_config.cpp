@@ -1,0 +1,83 @@
+#include "env/resolved_config.hpp"
+
+#include <cstring>
+
+#include "base/error.hpp"
+#include "base/hash.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr int32_t kMaxEnvs = 65536, kMaxThreads = 256;
+
+// Of what decides a world's course: not of what is seen of it.
+uint64_t hash_options(const TaskInfo& info, const Options& options) {
+  uint64_t hash = hash_bytes(info.name, std::strlen(info.name) + 1);
+  int32_t count = 0;
+  info.options(&count);
+  for (int32_t i = 0; i < count; ++i) {
+    const OptionSpec& spec = options.spec(i);
+    hash = hash_bytes(spec.key, std::strlen(spec.key) + 1, hash);
+    if (spec.kind == OptionKind::kText) {
+      const char* text = options.text(spec.key);
+      hash = hash_bytes(text, std::strlen(text) + 1, hash);
+    } else {
+      double value = 0;
+      if (spec.kind == OptionKind::kNumber) value = options.number(spec.key);
+      if (spec.kind == OptionKind::kInteger) value = options.integer(spec.key);
+      if (spec.kind == OptionKind::kFlag) value = options.flag(spec.key);
+      hash = hash_bytes(&value, sizeof value, hash);
+    }
+  }
+  return hash;
+}
+
+void read_options(const PoolConfig& config, const TaskInfo& info, Options* out) {
+  if (config.num_options < 0 || (config.num_options > 0 && !config.options))
+    fail(Code::kArgument, "options: %d given, but no list", config.num_options);
+  int32_t count = 0;
+  const OptionSpec* specs = info.options(&count);
+  out->add_table(specs, count);
+  specs = sense_options(&count);
+  out->add_table(specs, count);
+  for (int32_t i = 0; i < config.num_options; ++i) out->set(config.options[i], info.name);
+}
+
+}  // namespace
+
+TaskHandle make_task(const TaskInfo& info, const Options& options, const HostHooks& hooks) {
+  const HostScope scope(hooks);
+  return {info.make(options, hooks), {&info, hooks}};
+}
+
+ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
+  if (c.num_envs < 1 || c.num_envs > kMaxEnvs)
+    fail(Code::kRange, "num_envs: %d is outside [1, %d]", c.num_envs, kMaxEnvs);
+  if (c.num_threads < 0 || c.num_threads > kMaxThreads)
+    fail(Code::kRange, "num_threads: %d is outside [0, %d]", c.num_threads, kMaxThreads);
+  task_index = task_find(c.task);
+  info = &task_at(task_index);
+  config.task = info->name;
+  config.options = nullptr;
+  read_options(c, *info, &options);
+  sense = sense_from(options, *info);
+  options_hash = hash_options(*info, options);
+  task = make_task(*info, options, config.hooks);
+  obs_dim = rdm::obs_dim(*task);
+  action_dim = task->action_dim();
+  cost_dim = info->num_costs;
+  obs_limit = task->obs_limit();
+  Arena measure;  // the engine refuses here what it cannot do
+  World::measure(task->engine(), task->scene(), measure);
+}
+
+int32_t ResolvedPoolConfig::num_blocks() const {
+  const int32_t threads = config.num_threads > 1 ? config.num_threads : 1;
+  return threads < config.num_envs ? threads : config.num_envs;
+}
+
+int32_t ResolvedPoolConfig::block_begin(int32_t block) const {
+  return static_cast<int32_t>(int64_t{config.num_envs} * block / num_blocks());
+}
+
+}  // namespace rdm

@@ -1,0 +1,30 @@
+// A pool's config made concrete: its task made, its options laid in, its sizes known. What a spec, a measure
+// and a pool have in common, so that none of them accepts what another refuses.
+#pragma once
+#include "env/options/sense.hpp"
+#include "env/pool.hpp"
+#include "env/task.hpp"
+
+namespace rdm {
+
+struct ResolvedPoolConfig {
+  // All that can be wrong with a config is found here, and all but the engine's limits before the task is
+  // made.
+  explicit ResolvedPoolConfig(const PoolConfig& c);
+
+  PoolConfig config;  // its options are laid in: the list is gone
+  Options options;
+  int32_t task_index = -1;
+  const TaskInfo* info = nullptr;
+  SenseConfig sense;
+  uint64_t options_hash = 0;  // task name and every option's value
+  TaskHandle task;
+  int32_t obs_dim = 0, action_dim = 0, cost_dim = 0;
+  float obs_limit = 0;
+
+  size_t num() const { return static_cast<size_t>(config.num_envs); }
+  int32_t num_blocks() const;
+  int32_t block_begin(int32_t block) const;  // first world of a block; of num_blocks(): num_envs
+};
+
+}  // namespace rdm

@@ -1,0 +1,290 @@
+// The contact solver of one world: block projected Gauss-Seidel over contact points, on impulses, in
+// coordinates where the inverse mass matrix is the identity. Part of stepper_v*.cpp.
+//
+// Equations. Unknown are the impulses lambda = (normal n, tangents t, u) of each point, N s. With the
+// velocities v_free of the substep without contacts, the contact Jacobians J and the mass matrix M (drives
+// and joint limits in it: joint_limits.inl), v1 = v_free + M^-1 J^T lambda, and per point
+//   normal    0 <= n   complementary to   J_n v1 + softness n >= b,  b = erp (depth - layer) / h, bounded
+//   friction  |(t, u)| <= mu n, and J_t v1 = J_u v1 = 0 unless on the cone's edge, there against the slip
+// b is the push-out speed of Baumgarte's stabilisation, softness = cfm / h (Catto, Soft Constraints, GDC
+// 2011). A cone and not a pyramid: sliding is opposed along the slip, and the angle at which a body starts to
+// slide does not depend on its heading.
+//
+// Half solve. M = L^T D L (tree_dynamics.inl), so M^-1 = Z^T Z with Z = D^-1/2 L^-T. A contact row is stored
+// as z = Z J^T (MuJoCo's mj_solveM2), for a free body as sqrt(1/m) J_v and C^-1 R^T J_w (I = C C^T). Then
+//   A = J M^-1 J^T = z . z          J (v1 - v_free) = z . sum,  sum = sum of z lambda over all points
+// so that an update of a point reads and writes only `sum`. A row is not zero only on its two paths to the
+// roots: the vector is cut into segments (tree.hpp), runs of a path that fill a register; a free body is one
+// segment of six. The rates follow at the end: v1 = v_free + L^-1 D^-1/2 sum (stepper.inl).
+//
+// One update (Catto's sequential impulses, GDC 2006, with a block per point): normal first,
+//   n <- max(0, n + (b_n - z_n . sum - softness n) / (A_nn + softness)),
+// then both tangents with the new n: if the 2 x 2 system's solution, which stops the slip, is within the cone
+// it stands; else one gradient step of length 1 / (max(A_tt, A_uu) + |A_tu|), a bound on the largest
+// eigenvalue, and radial projection onto the cone.
+//
+// Sweeps visit the points in the order of the scene's pairs, start from the last substep's impulses (warm
+// start), and from kConjugateFrom points on are accelerated by the non-smooth non-linear conjugate gradient
+// method of Silcowitz-Hansen, Niebe and Erleben (2010): a sweep's change d_k is the negative gradient, the
+// next search direction p_k = d_k + beta p_(k-1) with beta = |d_k|^2 / |d_(k-1)|^2 (Fletcher and Reeves),
+// restarted where beta > 1. At most `iterations` sweeps, for stacks of many points up to kStackFactor times
+// as many; fewer once the squared change of a sweep is small against the squared impulses.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/arena.hpp"
+#include "physics/articulated/tree.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr int kConjugateFrom = 6;
+constexpr int32_t kStackFactor = 4;
+// Square of the relative change at which the sweeps end early, and that of a stack: more than kStack points.
+constexpr double kTolerance = 1e-9, kStackTolerance = 1e-8;
+constexpr int32_t kStack = 64;
+
+template <class S>
+struct ContactSolver {
+  typedef S Row __attribute__((vector_size(sizeof(S) * kSegment)));
+
+  struct Point {
+    S A[6];             // J M^-1 J^T: nn, tt, uu, nt, nu, tu
+    S inv_n;            // of nn with softness
+    S inv_tangents[3];  // of the tangents' block: tt, uu, tu
+    S inv_t;            // a step that is short enough for both tangents
+    S b[3];             // wanted change of velocity, b - J v_free
+    S impulse[3];       // normal, tangents, N s
+    S softness, mu;
+    int32_t first, count;  // rows and segments of this point
+    int32_t axes;          // 3, or 1 without friction
+  };
+
+  Point* points = nullptr;                                        // [max_points]
+  Row* rows = nullptr;                                            // [max_points][2 * path_segments][3]
+  int32_t* segments = nullptr;                                    // [max_points][2 * path_segments]
+  Row *sum = nullptr, *previous = nullptr, *direction = nullptr;  // [num_segments]
+  S (*delta)[3] = nullptr;                                        // [max_points]
+  S (*point_direction)[3] = nullptr;
+  int32_t count = 0, num_segments = 0, most_segments = 0;  // most_segments: of a point
+
+  void carve(Arena& arena, int32_t max_points, int32_t segment_count, int32_t path_segments) {
+    const auto n = static_cast<size_t>(max_points), k = static_cast<size_t>(2 * path_segments);
+    most_segments = 2 * path_segments;
+    num_segments = segment_count;
+    points = arena.make<Point>(n);
+    rows = arena.make<Row>(n * k * 3);
+    segments = arena.make<int32_t>(n * k);
+    sum = arena.make<Row>(static_cast<size_t>(segment_count));
+    previous = arena.make<Row>(static_cast<size_t>(segment_count));
+    direction = arena.make<Row>(static_cast<size_t>(segment_count));
+    delta = arena.make<S[3]>(n);
+    point_direction = arena.make<S[3]>(n);
+  }
+
+  void begin() {
+    count = 0;
+    for (int32_t s = 0; s < num_segments; ++s) sum[s] = Row{};
+  }
+  Point& add(S mu, S softness) {
+    Point& p = points[count];
+    p = Point{};
+    p.mu = mu;
+    p.softness = softness;
+    p.first = count++ * most_segments;
+    p.axes = mu > 0 ? 3 : 1;
+    return p;
+  }
+  // The point's rows in a segment, axis by axis.
+  Row* segment_rows(Point* p, int32_t segment) {
+    int32_t k = 0;
+    while (k < p->count && segments[p->first + k] != segment) ++k;
+    Row* r = rows + 3 * (p->first + k);
+    if (k == p->count) {
+      segments[p->first + p->count++] = segment;
+      r[0] = r[1] = r[2] = Row{};
+    }
+    return r;
+  }
+  // A and its inverses, after the rows of both sides are in.
+  void prepare(Point* p);
+  void warm_start(Point* p, const S* impulse);
+  void solve(int32_t iterations);
+
+ private:
+  static S reduce(const Row& r) {
+    S t = 0;
+    const auto halves = [&](int i) { return r[i] + r[i + 4]; };
+    t = (halves(0) + halves(2)) + (halves(1) + halves(3));
+    return t;
+  }
+  // Three sums at once, each summed in the order of reduce().
+  static void reduce_three(const Row* r, S* out) {
+    typedef S Half __attribute__((vector_size(sizeof(S) * 4)));
+    Half h[3];
+    for (int f = 0; f < 3; ++f)
+      h[f] =
+          __builtin_shufflevector(r[f], r[f], 0, 1, 2, 3) + __builtin_shufflevector(r[f], r[f], 4, 5, 6, 7);
+    // (0 + 2, 1 + 3) of rows 0 and 1 side by side, then of row 2
+    const Half a =
+        __builtin_shufflevector(h[0], h[1], 0, 1, 4, 5) + __builtin_shufflevector(h[0], h[1], 2, 3, 6, 7);
+    const Half b =
+        __builtin_shufflevector(h[2], h[2], 0, 1, 0, 1) + __builtin_shufflevector(h[2], h[2], 2, 3, 2, 3);
+    out[0] = a[0] + a[1];
+    out[1] = a[2] + a[3];
+    out[2] = b[0] + b[1];
+  }
+  S sweep(S* impulse_square);
+};
+
+template <class S>
+void ContactSolver<S>::prepare(Point* p) {
+  const auto product = [&](int f, int g) {
+    Row r{};
+    for (int32_t k = 0; k < p->count; ++k) {
+      const Row* z = rows + 3 * (p->first + k);
+      r += z[f] * z[g];
+    }
+    return reduce(r);
+  };
+  p->A[0] = product(0, 0);
+  p->inv_n = 1 / (p->A[0] + p->softness);
+  if (p->axes == 1) return;
+  p->A[1] = product(1, 1);
+  p->A[2] = product(2, 2);
+  p->A[3] = product(0, 1);
+  p->A[4] = product(0, 2);
+  p->A[5] = product(1, 2);
+  const S larger = p->A[1] > p->A[2] ? p->A[1] : p->A[2], coupling = p->A[5] < 0 ? -p->A[5] : p->A[5];
+  p->inv_t = 1 / (larger + coupling);
+  const S determinant = p->A[1] * p->A[2] - p->A[5] * p->A[5];
+  if (determinant > S(1e-6) * larger * larger) {
+    const S d = 1 / determinant;
+    p->inv_tangents[0] = p->A[2] * d;
+    p->inv_tangents[1] = p->A[1] * d;
+    p->inv_tangents[2] = -p->A[5] * d;
+  } else {
+    p->inv_tangents[0] = p->inv_tangents[1] = p->inv_t;
+  }
+}
+
+template <class S>
+void ContactSolver<S>::warm_start(Point* p, const S* impulse) {
+  for (int f = 0; f < p->axes; ++f) p->impulse[f] = impulse[f];
+  for (int32_t k = 0; k < p->count; ++k) {
+    const Row* z = rows + 3 * (p->first + k);
+    Row& s = sum[segments[p->first + k]];
+    for (int f = 0; f < p->axes; ++f) s += z[f] * p->impulse[f];
+  }
+}
+
+// One pass over all points. Returns the sum of the squared changes of the impulses; `impulse_square` of them.
+template <class S>
+S ContactSolver<S>::sweep(S* impulse_square) {
+  S delta_square = 0, square = 0;
+  for (int32_t i = 0; i < count; ++i) {
+    Point& p = points[i];
+    const Row* z = rows + 3 * p.first;
+    const int32_t* segment = segments + p.first;
+    if (p.axes == 1) {
+      Row r{};
+      for (int32_t k = 0; k < p.count; ++k) r += z[3 * k] * sum[segment[k]];
+      S n = p.impulse[0] + (p.b[0] - reduce(r) - p.softness * p.impulse[0]) * p.inv_n;
+      n = n < 0 ? S(0) : n;
+      const S d = n - p.impulse[0];
+      p.impulse[0] = n;
+      for (int32_t k = 0; k < p.count; ++k) sum[segment[k]] += z[3 * k] * d;
+      delta[i][0] = d;
+      delta[i][1] = delta[i][2] = 0;
+      delta_square += d * d;
+      square += n * n;
+      continue;
+    }
+    Row r[3] = {};
+    for (int32_t k = 0; k < p.count; ++k) {
+      const Row s = sum[segment[k]];
+      for (int f = 0; f < 3; ++f) r[f] += z[3 * k + f] * s;
+    }
+    S v[3];
+    reduce_three(r, v);
+    S n = p.impulse[0] + (p.b[0] - v[0] - p.softness * p.impulse[0]) * p.inv_n;
+    n = n < 0 ? S(0) : n;
+    const S d0 = n - p.impulse[0];
+    const S e1 = p.b[1] - v[1] - p.A[3] * d0, e2 = p.b[2] - v[2] - p.A[4] * d0;
+    // stick: both tangents at once; slip: a gradient step back onto the cone
+    S t1 = p.impulse[1] + (p.inv_tangents[0] * e1 + p.inv_tangents[2] * e2);
+    S t2 = p.impulse[2] + (p.inv_tangents[2] * e1 + p.inv_tangents[1] * e2);
+    const S bound = p.mu * n;
+    if (t1 * t1 + t2 * t2 > bound * bound) {
+      t1 = p.impulse[1] + p.inv_t * e1;
+      t2 = p.impulse[2] + p.inv_t * e2;
+      const S square = t1 * t1 + t2 * t2;
+      if (square > bound * bound) {
+        const S shrink = bound / std::sqrt(square);
+        t1 *= shrink;
+        t2 *= shrink;
+      }
+    }
+    const S d1 = t1 - p.impulse[1], d2 = t2 - p.impulse[2];
+    p.impulse[0] = n;
+    p.impulse[1] = t1;
+    p.impulse[2] = t2;
+    for (int32_t k = 0; k < p.count; ++k)
+      sum[segment[k]] += z[3 * k] * d0 + z[3 * k + 1] * d1 + z[3 * k + 2] * d2;
+    delta[i][0] = d0;
+    delta[i][1] = d1;
+    delta[i][2] = d2;
+    delta_square += d0 * d0 + d1 * d1 + d2 * d2;
+    square += n * n + t1 * t1 + t2 * t2;
+  }
+  *impulse_square = square;
+  return delta_square;
+}
+
+template <class S>
+void ContactSolver<S>::solve(int32_t iterations) {
+  S impulse_square = 0;  // sum of squared impulses
+  // weight travels from point to point, one sweep each: stacks get more
+  const S tolerance = count > kStack ? S(kStackTolerance) : S(kTolerance);
+  iterations = std::clamp(3 * count / 4, iterations, kStackFactor * iterations);
+  if (count < kConjugateFrom) {
+    for (int32_t k = 0; k < iterations; ++k) {
+      const S delta_square = sweep(&impulse_square);
+      if (delta_square <= tolerance * impulse_square) return;
+    }
+    return;
+  }
+  const auto restart = [&] {
+    for (int32_t s = 0; s < num_segments; ++s) direction[s] = Row{};
+    for (int32_t i = 0; i < count; ++i)
+      for (int f = 0; f < 3; ++f) point_direction[i][f] = 0;
+  };
+  restart();
+  S last_square = 0;
+  for (int32_t k = 0; k < iterations; ++k) {
+    for (int32_t s = 0; s < num_segments; ++s) previous[s] = sum[s];
+    const S delta_square = sweep(&impulse_square);
+    if (delta_square <= tolerance * impulse_square || k + 1 == iterations) return;
+    const S beta = k ? delta_square / last_square : S(0);
+    last_square = delta_square;
+    if (beta > 1) {
+      restart();
+      continue;
+    }
+    for (int32_t s = 0; s < num_segments; ++s) {
+      const Row d = sum[s] - previous[s];
+      sum[s] += beta * direction[s];
+      direction[s] = beta * direction[s] + d;
+    }
+    for (int32_t i = 0; i < count; ++i)
+      for (int f = 0; f < 3; ++f) {
+        points[i].impulse[f] += beta * point_direction[i][f];
+        point_direction[i][f] = beta * point_direction[i][f] + delta[i][f];
+      }
+  }
+}
+
+}  // namespace
+}  // namespace rdm

@@ -1,0 +1,219 @@
+// Drives, effort bounds and joint limits of a batch, implicit in the mass matrix, as an active set. Part of
+// stepper_v*.cpp.
+//
+// The law, per joint, with q and qd of the substep's start and v1 the rate at its end:
+//   drive  tau = spring - gain v1                    inside +-bound, else the bound (saturated = +-1)
+//          spring = kp (target - q),  gain = h kp + kd + friction / max(|qd|, kFrictionSpeed)
+//          which is kp (target - (q + h v1)) - kd v1 and Coulomb friction as a secant: implicit PD, the same
+//          as physics/model/drive.hpp's motor row (target rate spring / gain, softness 1 / gain, force bound)
+//   limit  tau = k (edge - q - h v1)                 while q + h v1 is beyond the edge (limited = +-1)
+// A coupled joint's target is its own q, clamped to ratio times the other joint's angle as qd will have it
+// at the substep's end, -+ slack. With spring_only_effort the bound scales the spring, kp with it; damping
+// stays outside.
+//
+// A step. Both laws are linear in v1 for a given active set (who is saturated, who is at a limit), so that
+//   (M + h G) (v1 - qd) = h (spring' - bias - G qd),  G = diag(gain of those not saturated + h k of the
+//   limited),
+// spring' with the bound for the saturated and k (edge - q) for the limited: one factorisation. v1 then says
+// which set it should have been with: a linear complementarity problem, solved by pivoting on the set: all
+// contradictions at once (block principal pivoting: Judice and Pires 1994, a basis-exchange of a few passes),
+// after kAllPasses the first contradiction alone (Murty 1974: least index, which for a positive definite
+// matrix cannot cycle). Sets last from step to step: a substep starts from the last one's. Where nothing
+// agrees within kSetPasses, and where contacts and sets chase each other (stepper.inl), the most damped set
+// is taken and frozen for the substep.
+#pragma once
+#include "physics/articulated/tree_dynamics.inl"
+#include "physics/model/drive.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr int kSetPasses = 24;  // then the most damped choice is taken
+constexpr int kAllPasses = 4;   // that change all contradictions at once; after them the first alone (Murty)
+
+template <class L, class V>
+[[gnu::always_inline]] inline V clamp(const V& x, const V& low, const V& high) {
+  const V a = L::select(x < low, low, x);
+  return L::select(a > high, high, a);
+}
+
+// Spring, gain and bound of each drive for this substep.
+template <class L>
+void joint_drives(TreeBatch<L>& t) {
+  using V = typename L::V;
+  using S = typename L::Scalar;
+  const Tree& tree = *t.tree;
+  const int offset = tree.coord(0);
+  for (int i = 0; i < tree.num_links; ++i) {
+    const LinkModel<L>& model = t.model[i];
+    LinkWork<V>& joint = t.work[i];
+    V target = joint.target;
+    const int coupled_to = tree.links[static_cast<size_t>(i)].coupled_to;
+    if (coupled_to >= 0) {
+      const V middle = model.ratio * (t.work[coupled_to].q + t.h * t.coord[offset + coupled_to].qd);
+      target = clamp<L>(joint.q, V(middle - model.slack), V(middle + model.slack));
+    }
+    target = clamp<L>(target, model.lower, model.upper);
+    V kp = model.kp, bound = model.effort, spring = kp * (target - joint.q);
+    if (t.spring_only) {
+      const V size = L::select(spring < V{}, V(-spring), spring);
+      const V share = L::select(size > bound, V(bound / size), L::all(1));
+      spring = spring * share;
+      kp = kp * share;
+      bound = L::all(S(1e30));
+    }
+    const V qd = t.coord[offset + i].qd, speed = L::select(qd < V{}, V(-qd), qd);
+    const V slow = L::all(S(kFrictionSpeed));
+    joint.spring = spring;
+    joint.gain = t.h * kp + model.kd + model.friction / L::select(speed > slow, speed, slow);
+    joint.bound = bound;
+  }
+}
+
+// v1 of the lanes in `lanes` for the present active active.
+template <class L>
+void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
+  using V = typename L::V;
+  using S = typename L::Scalar;
+  const Tree& tree = *t.tree;
+  const int offset = tree.coord(0), entries = static_cast<int>(tree.path.size());
+  for (int k = 0; k < entries; ++k) t.factor[k] = t.mass_matrix[k];
+  for (int c = 0; c < offset; ++c) t.coord[c].dv = -(t.h * t.coord[c].bias);
+  for (int i = 0; i < tree.num_links; ++i) {
+    const LinkModel<L>& model = t.model[i];
+    const LinkWork<V>& joint = t.work[i];
+    const PersistentLink<V>& active = t.state[i];
+    CoordWork<V>& c = t.coord[offset + i];
+    const V free = S(1) - active.saturated * active.saturated, on = active.limited * active.limited;
+    const V limit_gain = on * (t.h * t.limit_stiffness), gain = joint.gain * free + limit_gain;
+    const V edge = L::select(active.limited < V{}, model.lower, model.upper);
+    t.factor[tree.row[static_cast<size_t>(offset + i)] + tree.depth[static_cast<size_t>(offset + i)]] +=
+        t.h * gain;
+    c.dv = t.h * (joint.spring * free + active.saturated * joint.bound - c.bias - c.qd * gain +
+                  on * t.limit_stiffness * (edge - joint.q));
+  }
+  factor(t);
+  solve(t);
+  for (int c = 0; c < tree.num_coords; ++c)
+    t.coord[c].v1 = L::select(lanes, V(t.coord[c].qd + t.coord[c].dv), t.coord[c].v1);
+}
+
+// Changes the active sets of the lanes in `lanes` where v1 contradicts them; the lanes that changed.
+// `single`: at most the first contradiction of a lane, its limit before its drive.
+template <class L>
+typename L::Mask update_active_set(TreeBatch<L>& t, typename L::Mask lanes, bool single) {
+  using V = typename L::V;
+  using Mask = typename L::Mask;
+  const Tree& tree = *t.tree;
+  const int offset = tree.coord(0);
+  const V one = L::all(1), zero{};
+  Mask changed = L::nothing();
+  for (int i = 0; i < tree.num_links; ++i) {
+    const LinkModel<L>& model = t.model[i];
+    const LinkWork<V>& joint = t.work[i];
+    PersistentLink<V>& active = t.state[i];
+    const V v1 = t.coord[offset + i].v1, torque = joint.spring - joint.gain * v1;
+    // never from one end of the bound to the other at once: that kicks
+    const V high = L::select(torque > joint.bound, one, zero),
+            low = L::select(torque < -joint.bound, V(-one), zero);
+    const V saturated = L::select(
+        active.saturated > zero, L::select(torque >= joint.bound, one, zero),
+        L::select(active.saturated < zero, L::select(torque <= -joint.bound, V(-one), zero), V(high + low)));
+    const V next = joint.q + t.h * v1;
+    const V below = L::select(next < model.lower, V(-one), zero),
+            above = L::select(next > model.upper, one, zero);
+    const V limited =
+        L::select(active.limited < zero, below, L::select(active.limited > zero, above, V(below + above)));
+    const Mask limit_flips = limited != active.limited, drive_flips = saturated != active.saturated;
+    Mask flips = (limit_flips | drive_flips) & (lanes & (lanes ^ t.frozen));
+    if (single) flips = flips & (flips ^ changed);  // lanes that have not changed yet
+    if (L::bits(flips) == 0) continue;
+    const Mask drive = single ? Mask(flips & (drive_flips & (limit_flips ^ drive_flips))) : flips;
+    active.limited = L::select(flips, limited, active.limited);
+    active.saturated = L::select(drive, saturated, active.saturated);
+    changed = changed | flips;
+  }
+  return changed;
+}
+
+// The most damped choice, for lanes where no set agrees with itself: drives inside their bounds, limits by
+// today's angle. They stay so for this substep.
+template <class L>
+void damp_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
+  using V = typename L::V;
+  t.frozen = t.frozen | lanes;
+  const V one = L::all(1), zero{};
+  for (int i = 0; i < t.tree->num_links; ++i) {
+    const LinkModel<L>& model = t.model[i];
+    PersistentLink<V>& active = t.state[i];
+    const V q = t.work[i].q;
+    const V limited = L::select(q < model.lower, V(-one), L::select(q > model.upper, one, zero));
+    active.saturated = L::select(lanes, zero, active.saturated);
+    active.limited = L::select(lanes, limited, active.limited);
+  }
+}
+
+// v1 of all lanes as if nothing touched.
+template <class L>
+void solve_without_contacts(TreeBatch<L>& t) {
+  using Mask = typename L::Mask;
+  const Mask everyone = L::mask(~0u);
+  t.frozen = L::nothing();
+  solve_active_set(t, everyone);
+  for (int pass = 0;; ++pass) {
+    const Mask changed = update_active_set(t, everyone, pass >= kAllPasses);
+    if (L::bits(changed) == 0) return;
+    if (pass >= kSetPasses) {
+      damp_active_set(t, changed);
+      solve_active_set(t, everyone);
+      return;
+    }
+    solve_active_set(t, everyone);
+  }
+}
+
+// Torque at the step's end, added to `torque` times `weight`.
+template <class L>
+void joint_torques(TreeBatch<L>& t, typename L::Scalar weight) {
+  using V = typename L::V;
+  const int offset = t.tree->coord(0);
+  for (int i = 0; i < t.tree->num_links; ++i) {
+    const LinkModel<L>& model = t.model[i];
+    LinkWork<V>& joint = t.work[i];
+    const PersistentLink<V>& active = t.state[i];
+    const V v1 = t.coord[offset + i].v1;
+    const V drive = clamp<L>(V(joint.spring - joint.gain * v1), V(-joint.bound), joint.bound);
+    const V edge = L::select(active.limited < V{}, model.lower, model.upper);
+    const V limit = active.limited * active.limited * t.limit_stiffness * (edge - joint.q - t.h * v1);
+    joint.torque += weight * (drive + limit);
+  }
+}
+
+// q <- q + h v1, kept within range and margin; qd <- v1. Lanes whose rates are not below `bound` are given
+// back and stand still.
+template <class L>
+typename L::Mask integrate_joints(TreeBatch<L>& t, typename L::Scalar margin, typename L::Scalar bound) {
+  using V = typename L::V;
+  using Mask = typename L::Mask;
+  const Tree& tree = *t.tree;
+  const int offset = tree.coord(0);
+  const V low = L::all(-bound), high = L::all(bound), zero{};
+  Mask good = L::mask(~0u);
+  for (int c = 0; c < tree.num_coords; ++c) good = good & (t.coord[c].v1 > low) & (t.coord[c].v1 < high);
+  for (int c = 0; c < offset; ++c) t.coord[c].qd = L::select(good, t.coord[c].v1, zero);
+  for (int i = 0; i < tree.num_links; ++i) {
+    const LinkModel<L>& model = t.model[i];
+    V v = L::select(good, t.coord[offset + i].v1, zero), q = t.work[i].q + t.h * v;
+    const V bottom = model.lower - margin, top = model.upper + margin;
+    const Mask under = q<bottom, over = q> top;
+    v = L::select(under & (v < zero), zero, v);
+    v = L::select(over & (v > zero), zero, v);
+    q = L::select(under, bottom, L::select(over, top, q));
+    t.work[i].q = q;
+    t.coord[offset + i].qd = v;
+  }
+  return good;
+}
+
+}  // namespace
+}  // namespace rdm

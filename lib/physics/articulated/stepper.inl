@@ -1,0 +1,872 @@
+// The stepper: one control step of several worlds, their robots in SIMD lanes. Part of stepper_v*.cpp, which
+// compile it once per instruction set.
+//
+// Layout. Robots that are alike are members of one tree (tree.hpp); a batch holds as many of them as there
+// are lanes, from one world or from several: `group_size` worlds fill the lanes, and all batches of all trees
+// are stepped together. Trees run in batches; contacts run world by world, on one lane's numbers.
+//
+// substep() below is the whole of it, in the order of a textbook (MuJoCo's mj_step: position, velocity,
+// actuation, acceleration, constraint, integration):
+//   position       link inertias and shapes in world axes, contact points
+//   acceleration   joint columns, bias forces, composite inertias                          tree_dynamics.inl
+//   actuation      drives, effort bounds and joint limits as an active set, velocities
+//                  without contacts                                                        joint_limits.inl
+//   constraint     contact impulses, in turn with the active set                           contact_solver.inl
+//   integration    semi-implicit Euler: q += h v1; bases, bodies; kinematics of the next substep
+//
+// Contacts and active sets depend on each other: an impulse may push a joint against its limit or a drive
+// past its bound, which changes M and with it every contact. They are solved in turn; a world is open until
+// its sets agree with its contacts' outcome. Rounds 0 and 1 change all contradictions, round 2 the first of
+// each robot alone, then the damped set is frozen and the contacts are solved once more.
+//
+// Numbers. Joint coordinates, bases and bodies are doubles in a world (WorldState); a batch works in S,
+// floats but for the reference, on places relative to each robot's base. A base moves in double, and contact
+// points and free bodies are in double throughout, so that the rounding never depends on where in the
+// world a robot stands. Nothing is summed across lanes: the bytes are those of one lane, whatever shares its
+// batch.
+#pragma once
+#include "physics/articulated/contact_solver.inl"
+#include "physics/articulated/joint_limits.inl"
+#include "physics/articulated/stepper.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr int kContactRounds = 3;  // of contacts and active sets in turn
+
+template <class L>
+class BatchStepper final : public Stepper {
+ public:
+  using S = typename L::Scalar;
+  using V = typename L::V;
+  using Mask = typename L::Mask;
+
+  BatchStepper(const ArticulatedModel& model, Collider* collider, Arena& arena)
+      : model_(&model), scene_(model.scene), collider_(collider) {
+    carve(arena);
+    if (arena.measuring()) return;
+    for (int32_t k = 0; k < num_batches_; ++k) fill_constants(batches_[k], k);
+    list_attachments();
+  }
+  int32_t group_size() const override { return group_size_; }
+  void end(const HostHooks& hooks) override { host_delete(hooks, this); }
+  void step(WorldState* const* worlds, int32_t count) override;
+  void refresh(WorldState* world, int32_t articulation) override;
+  void read_link(const WorldState& world, int32_t link, Motion* m, Mat3* R) const override;
+
+ private:
+  static constexpr int kBase = static_cast<int>(kBaseWords), kLink = static_cast<int>(kLinkWords);
+
+  // The batches of one tree: batches_[first_batch ...].
+  struct Group {
+    const Tree* tree;
+    int32_t members, first_batch, num_batches;
+  };
+  // What carries a shape.
+  struct Attachment {
+    enum Kind : int32_t { kStatic, kTree, kBody } kind;
+    int32_t group, member, coord;  // of a tree: the last coordinate that moves it
+    int32_t link, body;
+    int32_t sensor;         // of the link, -1: none
+    int32_t first_segment;  // of the body or the member in the contact solver
+  };
+  struct Lane {
+    TreeBatch<L>* batch;
+    int lane;
+  };
+  // Exact shape poses of one world, for the collider.
+  struct WorldPoses final : Collider::Poses {
+    WorldPoses(const BatchStepper* s, int32_t i) : stepper(s), index(i) {}
+    void place(int32_t shape, Vec3* p, Mat3* R) override { stepper->shape_pose(index, shape, p, R); }
+    const BatchStepper* stepper;
+    int32_t index;
+  };
+
+  // memory and constants
+  void carve(Arena& arena);
+  void fill_constants(TreeBatch<L>& t, int32_t batch);
+  void list_attachments();
+  // lanes and worlds
+  Lane lane_of(int32_t group, int32_t member, int32_t world) const {
+    const Group& g = groups_[group];
+    const int32_t flat = world * g.members + member;
+    return {&batches_[g.first_batch + flat / L::kCount], flat % L::kCount};
+  }
+  const TreeMember& member_of(const TreeBatch<L>& t, int lane) const {
+    return t.tree->members[static_cast<size_t>(t.member[lane])];
+  }
+  S* persistent_of(const WorldState& world, int32_t articulation) const {
+    return static_cast<S*>(world.persistent) + first_word_[articulation];
+  }
+  // The numbers of a persistent record, one after the other, as a world stores them.
+  template <class Record>
+  static V* words(Record* record) {
+    static_assert(alignof(Record) == alignof(V) && sizeof(Record) % sizeof(V) == 0);
+    return reinterpret_cast<V*>(record);
+  }
+  Mask lanes_of(const TreeBatch<L>& t, uint32_t worlds) const;
+  uint32_t worlds_of(const TreeBatch<L>& t, Mask lanes) const;
+  void assign(TreeBatch<L>& t, int32_t batch, int32_t count);
+  void gather(TreeBatch<L>& t);
+  void gather_pushes(TreeBatch<L>& t);
+  void gather_base(TreeBatch<L>& t, int lane);
+  void scatter(TreeBatch<L>& t);
+  // the stages
+  void substep();
+  void detect_contacts(int32_t world);
+  void shape_pose(int32_t world, int32_t shape, Vec3* p, Mat3* R) const;
+  void solve_contacts();
+  void solve_contacts_of(int32_t world);
+  void add_contact_rows(typename ContactSolver<S>::Point* point, const Attachment& at, int32_t world, S sign,
+                        const Vec3& p, const Vec3* axes);
+  void apply_impulses(int32_t world);
+  void contact_forces(int32_t world);
+  void integrate(TreeBatch<L>& t);
+  void integrate_base(TreeBatch<L>& t);
+
+  const ArticulatedModel* model_;
+  const Scene* scene_;
+  Collider* collider_;
+  Group* groups_ = nullptr;
+  TreeBatch<L>* batches_ = nullptr;
+  Attachment* attachments_ = nullptr;  // [shapes]
+  int32_t* body_segment_ = nullptr;    // [num_bodies]
+  int32_t* member_segment_ = nullptr;  // [articulations] first segment
+  int32_t* first_word_ = nullptr;      // [articulations] in WorldState::persistent, in numbers
+  uint8_t* touched_ = nullptr;         // [articulations] by a contact of the world being solved
+  S* path_ = nullptr;                  // [most coordinates][4] working memory of a contact's path
+  Quat* q_JL_ = nullptr;               // [num_links]
+  Mat3* R_JL_ = nullptr;               // [num_links]
+  ContactSolver<S> contacts_;
+  int32_t num_groups_ = 0, num_batches_ = 0, group_size_ = 1, count_ = 0;
+  WorldState* const* worlds_ = nullptr;  // [count_] of the step under way
+};
+
+// --- The stages.
+
+template <class L>
+void BatchStepper<L>::step(WorldState* const* worlds, int32_t count) {
+  worlds_ = worlds;
+  count_ = count;
+  for (int32_t w = 0; w < count; ++w) begin_step(*model_, worlds[w]);
+  for (int32_t k = 0; k < num_batches_; ++k) {
+    assign(batches_[k], k, count);
+    gather(batches_[k]);
+  }
+  for (int32_t s = 0; s < scene_->def.solver.substeps; ++s) substep();
+  for (int32_t k = 0; k < num_batches_; ++k) {
+    orientations(batches_[k]);
+    scatter(batches_[k]);
+  }
+  worlds_ = nullptr;
+}
+
+template <class L>
+void BatchStepper<L>::substep() {
+  // position
+  for (int32_t k = 0; k < num_batches_; ++k) {
+    link_inertias(batches_[k]);
+    shape_poses(batches_[k]);
+  }
+  for (int32_t w = 0; w < count_; ++w) {
+    predict_bodies(*model_, worlds_[w]);
+    detect_contacts(w);
+  }
+  // acceleration and actuation
+  for (int32_t k = 0; k < num_batches_; ++k) {
+    TreeBatch<L>& t = batches_[k];
+    motion_subspaces(t);
+    body_forces(t);
+    bias_forces(t);
+    composite_inertias(t);
+    joint_drives(t);
+    solve_without_contacts(t);
+  }
+  // constraint
+  solve_contacts();
+  for (int32_t w = 0; w < count_; ++w) contact_forces(w);
+  // integration
+  for (int32_t k = 0; k < num_batches_; ++k) {
+    TreeBatch<L>& t = batches_[k];
+    joint_torques(t, static_cast<S>(1.0 / scene_->def.solver.substeps));
+    integrate(t);
+    momenta(t);
+    integrate_base(t);
+    kinematics(t);
+  }
+  for (int32_t w = 0; w < count_; ++w) {
+    store_impulses(worlds_[w]);
+    integrate_bodies(*model_, worlds_[w]);
+  }
+}
+
+// The bounds of all shapes on trees from the lanes, then the collider.
+template <class L>
+void BatchStepper<L>::detect_contacts(int32_t world) {
+  WorldState& w = *worlds_[world];
+  Bound* bounds = collider_->bounds();
+  for (int32_t g = 0; g < num_groups_; ++g) {
+    const Tree& tree = *groups_[g].tree;
+    for (int32_t m = 0; m < groups_[g].members; ++m) {
+      const auto [batch, lane] = lane_of(g, m, world);
+      const TreeMember& member = tree.members[static_cast<size_t>(m)];
+      const Vec3& base = w.bases[member.articulation].X.p;
+      const float origin[3] = {static_cast<float>(base.x), static_cast<float>(base.y),
+                               static_cast<float>(base.z)};
+      for (size_t k = 0; k < tree.shape_links.size(); ++k) {
+        if (tree.shape_links[k] < 0 && !tree.free_base) continue;
+        Bound& bound = bounds[static_cast<size_t>(member.first_shape) + k];
+        for (int r = 0; r < 3; ++r)
+          bound.center[r] = origin[r] + static_cast<float>(L::get(batch->center[k][r], lane));
+        if (!tree.shape_slender[k]) continue;
+        for (int r = 0; r < 3; ++r) bound.axis[r] = static_cast<float>(L::get(batch->axis[k][r], lane));
+      }
+    }
+  }
+  WorldPoses poses(this, world);
+  find_contacts(*model_, collider_, poses, &w);
+}
+
+// In double, from the pose that the lanes have: what the collider asks for once two bounds meet.
+template <class L>
+void BatchStepper<L>::shape_pose(int32_t world, int32_t shape, Vec3* p, Mat3* R) const {
+  const Attachment& at = attachments_[shape];
+  const WorldState& w = *worlds_[world];
+  if (at.kind == Attachment::kBody) {
+    const Pose& X_BS = scene_->shapes[static_cast<size_t>(shape)].def.X_LS;
+    const Mat3& R_WB = w.free_bodies[at.body].R;
+    *p = w.bodies[at.body].X.p + R_WB * X_BS.p;
+    *R = R_WB * to_matrix(X_BS.q);
+    return;
+  }
+  const auto [batch, lane] = lane_of(at.group, at.member, world);
+  const TreeMember& member = batch->tree->members[static_cast<size_t>(at.member)];
+  const int32_t k = shape - member.first_shape;
+  const V* rows = at.link < 0 ? batch->base_R : batch->state[at.link].R;
+  Mat3 R_WJ;
+  for (int i = 0; i < 9; ++i) R_WJ.m[i] = static_cast<double>(L::get(rows[i], lane));
+  *R = R_WJ * member.shapes[static_cast<size_t>(k)].R_JS;
+  *p = w.bases[member.articulation].X.p;
+  for (int r = 0; r < 3; ++r) (*p)[r] += static_cast<double>(L::get(batch->center[k][r], lane));
+}
+
+// Contacts and active sets in turn, until they agree or the rounds are over: then the damped choice. `open`
+// has a bit for each world that is not done.
+template <class L>
+void BatchStepper<L>::solve_contacts() {
+  uint32_t open = 0;
+  for (int32_t w = 0; w < count_; ++w) {
+    WorldState& world = *worlds_[w];
+    for (int32_t i = 0; i < scene_->num_bodies; ++i) {
+      world.free_bodies[i].v1 = world.free_bodies[i].v;
+      world.free_bodies[i].w1 = world.free_bodies[i].w;
+    }
+    if (world.num_contacts > 0) open |= 1u << w;
+  }
+  for (int round = 0; open != 0; ++round) {
+    for (int32_t k = 0; k < num_batches_; ++k)
+      for (int32_t c = 0; c < batches_[k].tree->num_coords; ++c)
+        batches_[k].coord[c].inv_sqrt_d = L::root(batches_[k].coord[c].inv_d);
+    for (int32_t w = 0; w < count_; ++w)
+      if (open >> w & 1) solve_contacts_of(w);
+    if (round > kContactRounds) return;
+    uint32_t changed = 0;
+    for (int32_t k = 0; k < num_batches_; ++k) {
+      TreeBatch<L>& t = batches_[k];
+      const Mask lanes = update_active_set(t, lanes_of(t, open), round >= 2 && round < kContactRounds);
+      changed |= worlds_of(t, lanes);
+      if (round == kContactRounds) damp_active_set(t, lanes);
+    }
+    if (changed == 0) return;
+    for (int32_t k = 0; k < num_batches_; ++k) solve_active_set(batches_[k], lanes_of(batches_[k], changed));
+    open = changed;
+  }
+}
+
+// Two unit vectors t, u at right angles to n and each other.
+inline void tangents(const Vec3& n, Vec3* t, Vec3* u) {
+  if (n.z * n.z > 0.5) {
+    const double k = 1 / std::sqrt(n.y * n.y + n.z * n.z);
+    *t = {0, -n.z * k, n.y * k};
+  } else {
+    const double k = 1 / std::sqrt(n.x * n.x + n.y * n.y);
+    *t = {-n.y * k, n.x * k, 0};
+  }
+  *u = cross(n, *t);
+}
+
+// One side's part of a point's rows, and its velocity without contacts, which is taken from the wanted one.
+// `sign` is +1 on a, -1 on b; p the point, axes the normal and the tangents, in double.
+// A body:  J = (n, (p - c) x n), half-solved with sqrt(1/m) and C^-1 R^T.
+// A robot: J has an entry n . (s_c + a_c x p) per coordinate c on the path from the touched link to the root,
+// and
+//          z = D^-1/2 L^-T J^T stays on that path: from the link inward, each entry is taken off those before
+//          it.
+template <class L>
+void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, const Attachment& at,
+                                       int32_t world, S sign, const Vec3& p, const Vec3* axes) {
+  const WorldState& w = *worlds_[world];
+  const int count = point->axes;
+  if (at.kind == Attachment::kBody) {
+    const FreeBody& body = w.free_bodies[at.body];
+    const double sqrt_inv_mass = model_->bodies[static_cast<size_t>(at.body)].sqrt_inv_mass;
+    const Vec3 arm = p - w.bodies[at.body].X.p;
+    auto* rows = contacts_.segment_rows(point, at.first_segment);
+    for (int f = 0; f < count; ++f) {
+      const Vec3 moment = cross(arm, axes[f]), angular = body.inv_sqrt_inertia * moment;
+      for (int r = 0; r < 3; ++r) {
+        rows[f][r] += sign * static_cast<S>(axes[f][r] * sqrt_inv_mass);
+        rows[f][3 + r] += sign * static_cast<S>(angular[r]);
+      }
+      point->b[f] -= sign * static_cast<S>(dot(axes[f], body.v) + dot(moment, body.w));
+    }
+    return;
+  }
+  if (at.kind == Attachment::kStatic) return;
+  const auto [batch, lane] = lane_of(at.group, at.member, world);
+  const Tree& tree = *batch->tree;
+  const int32_t articulation = tree.members[static_cast<size_t>(at.member)].articulation;
+  touched_[articulation] = 1;
+  const Vec3& base = w.bases[articulation].X.p;
+  typedef S Axes4 __attribute__((vector_size(sizeof(S) * 4)));  // one number per axis
+  Axes4 axis[3], velocity{};
+  S x[3];
+  for (int r = 0; r < 3; ++r) {
+    x[r] = static_cast<S>(p[r] - base[r]);
+    axis[r] = Axes4{static_cast<S>(axes[0][r]), static_cast<S>(axes[1][r]), static_cast<S>(axes[2][r]), 0};
+  }
+  // z[d]: the three rows' entries of the path's coordinate d
+  Axes4* z = reinterpret_cast<Axes4*>(path_);
+  const int32_t first = tree.row[static_cast<size_t>(at.coord)],
+                depth = tree.depth[static_cast<size_t>(at.coord)];
+  const int16_t* path = tree.path.data() + first;
+  for (int32_t d = 0; d <= depth; ++d) {
+    const CoordWork<V>& c = batch->coord[path[d]];
+    S a[3], s[3];
+    for (int r = 0; r < 3; ++r) {
+      a[r] = L::get(c.a[r], lane);
+      s[r] = L::get(c.s[r], lane);
+    }
+    // velocity of the point at unit rate
+    const S v[3] = {s[0] + (a[1] * x[2] - a[2] * x[1]), s[1] + (a[2] * x[0] - a[0] * x[2]),
+                    s[2] + (a[0] * x[1] - a[1] * x[0])};
+    z[d] = (axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2]) * sign;
+    velocity += z[d] * L::get(c.v1, lane);
+  }
+  for (int f = 0; f < count; ++f) point->b[f] -= velocity[f];
+  // L^-T, then D^-1/2, into the segments that the path runs through
+  int32_t segment = -1;
+  typename ContactSolver<S>::Row* rows = nullptr;
+  for (int32_t d = depth; d >= 0; --d) {
+    const int c = path[d];
+    const V* factor = batch->factor + tree.row[static_cast<size_t>(c)];
+    for (int32_t e = 0; e < d; ++e) z[e] -= z[d] * L::get(factor[e], lane);
+    const Axes4 half_solved = z[d] * L::get(batch->coord[c].inv_sqrt_d, lane);
+    const TreeSlot slot = tree.slots[static_cast<size_t>(c)];
+    if (slot.segment != segment) {
+      segment = slot.segment;
+      rows = contacts_.segment_rows(point, at.first_segment + segment);
+    }
+    for (int f = 0; f < count; ++f) rows[f][slot.slot] += half_solved[f];
+  }
+}
+
+// The impulses of one world's contacts for the present factors, and the velocities v1 that they give. The
+// push-out speed b is erp / h of the depth below the layer, at most `fastest`: a deep overlap, as after a
+// blow, must not turn into a shot.
+template <class L>
+void BatchStepper<L>::solve_contacts_of(int32_t world) {
+  WorldState& w = *worlds_[world];
+  const SolverDef& solver = scene_->def.solver;
+  const double fastest = solver.contact_max_speed > 0 ? solver.contact_max_speed : kArticulatedContactSpeed;
+  const S softness = static_cast<S>(solver.contact_cfm / solver.h);
+  const int32_t count = w.num_contacts;
+  contacts_.begin();
+  for (size_t a = 0; a < scene_->def.articulations.size(); ++a) touched_[a] = 0;
+  for (int32_t i = 0; i < count; ++i) {
+    const Contact& contact = w.contacts[i];
+    const double mu = scene_->pairs[static_cast<size_t>(w.contact_pairs[i])].mu;
+    auto& point = contacts_.add(static_cast<S>(mu), softness);
+    Vec3 axes[3] = {contact.n, {}, {}};
+    tangents(contact.n, &axes[1], &axes[2]);
+    const double push_out =
+        std::max(contact.depth - solver.contact_layer, 0.0) * solver.contact_erp / solver.h;
+    point.b[0] = static_cast<S>(std::min(push_out, fastest));
+    add_contact_rows(&point, attachments_[contact.shape_a], world, S(1), contact.p, axes);
+    add_contact_rows(&point, attachments_[contact.shape_b], world, S(-1), contact.p, axes);
+    contacts_.prepare(&point);
+    Vec3 last;
+    if (!warm_impulse(w, i, &last)) continue;
+    S start[3];
+    for (int f = 0; f < 3; ++f) start[f] = static_cast<S>(dot(last, axes[f]));
+    start[0] = start[0] < 0 ? S(0) : start[0];
+    contacts_.warm_start(&point, start);
+  }
+  contacts_.solve(solver.iterations);
+  for (int32_t i = 0; i < count; ++i) {
+    const Vec3& n = w.contacts[i].n;
+    Vec3 t, u;
+    tangents(n, &t, &u);
+    const auto& impulse = contacts_.points[i].impulse;
+    w.impulses[i] = static_cast<double>(impulse[0]) * n + static_cast<double>(impulse[1]) * t +
+                    static_cast<double>(impulse[2]) * u;
+  }
+  apply_impulses(world);
+}
+
+// v1 += L^-1 D^-1/2 sum for the robots, and the like for bodies.
+template <class L>
+void BatchStepper<L>::apply_impulses(int32_t world) {
+  WorldState& w = *worlds_[world];
+  for (int32_t g = 0; g < num_groups_; ++g) {
+    const Tree& tree = *groups_[g].tree;
+    for (int32_t m = 0; m < groups_[g].members; ++m) {
+      const int32_t a = tree.members[static_cast<size_t>(m)].articulation;
+      if (!touched_[a]) continue;
+      const auto [batch, lane] = lane_of(g, m, world);
+      const auto* sum = contacts_.sum + member_segment_[a];
+      for (int32_t c = 0; c < tree.num_coords; ++c) {
+        const TreeSlot slot = tree.slots[static_cast<size_t>(c)];
+        const int32_t row = tree.row[static_cast<size_t>(c)], depth = tree.depth[static_cast<size_t>(c)];
+        S x = sum[slot.segment][slot.slot] * L::get(batch->coord[c].inv_sqrt_d, lane);
+        for (int32_t d = 0; d < depth; ++d)
+          x -= L::get(batch->factor[row + d], lane) * path_[tree.path[static_cast<size_t>(row + d)]];
+        path_[c] = x;
+        L::set(&batch->coord[c].v1, lane, L::get(batch->coord[c].v1, lane) + x);
+      }
+    }
+  }
+  for (int32_t i = 0; i < scene_->num_bodies; ++i) {
+    FreeBody& body = w.free_bodies[i];
+    const auto& sum = contacts_.sum[body_segment_[i]];
+    const double sqrt_inv_mass = model_->bodies[static_cast<size_t>(i)].sqrt_inv_mass;
+    const Vec3 linear{static_cast<double>(sum[0]), static_cast<double>(sum[1]), static_cast<double>(sum[2])},
+        angular{static_cast<double>(sum[3]), static_cast<double>(sum[4]), static_cast<double>(sum[5])};
+    body.v1 = body.v + sqrt_inv_mass * linear;
+    body.w1 = body.w + transpose(body.inv_sqrt_inertia) * angular;
+  }
+}
+
+// Contact forces, and their mean on the links with a sensor, in the pose they act in.
+template <class L>
+void BatchStepper<L>::contact_forces(int32_t world) {
+  WorldState& w = *worlds_[world];
+  const double inv_h = 1 / scene_->def.solver.h, weight = 1.0 / scene_->def.solver.substeps;
+  for (int32_t i = 0; i < w.num_contacts; ++i) {
+    Contact& contact = w.contacts[i];
+    contact.force = inv_h * w.impulses[i];
+    for (int side = 0; side < 2; ++side) {
+      const Attachment& at = attachments_[side ? contact.shape_b : contact.shape_a];
+      if (at.sensor < 0) continue;
+      const TreeMember& member = groups_[at.group].tree->members[static_cast<size_t>(at.member)];
+      const auto [batch, lane] = lane_of(at.group, at.member, world);
+      const PersistentLink<V>& link = batch->state[at.link];
+      Mat3 R_WJ;
+      for (int k = 0; k < 9; ++k) R_WJ.m[k] = static_cast<double>(L::get(link.R[k], lane));
+      Vec3 origin = w.bases[member.articulation].X.p;
+      for (int r = 0; r < 3; ++r) origin[r] += static_cast<double>(L::get(link.P[r], lane));
+      const Mat3 R_LW = member.links[static_cast<size_t>(at.link)].R_LJ * transpose(R_WJ);
+      const Vec3 force = (side ? -weight : weight) * contact.force;
+      w.sensors[at.sensor].force += R_LW * force;
+      w.sensors[at.sensor].torque += R_LW * cross(contact.p - origin, force);
+    }
+  }
+}
+
+// Joints, and the rates of free bases; a world whose rates are beyond their bound has diverged.
+template <class L>
+void BatchStepper<L>::integrate(TreeBatch<L>& t) {
+  const Mask good =
+      integrate_joints(t, static_cast<S>(scene_->def.solver.limit_margin), static_cast<S>(kRateBound));
+  const uint32_t bad = worlds_of(t, good ^ L::mask(~0u));
+  for (int32_t w = 0; w < count_; ++w)
+    if (bad >> w & 1) worlds_[w]->diverged = true;
+}
+
+// Free bases move by the rates of their first six coordinates, the centre of mass in a straight line: its
+// velocity is what the step solved for, that of the base's origin is not steady while the base turns.
+template <class L>
+void BatchStepper<L>::integrate_base(TreeBatch<L>& t) {
+  if (!t.tree->free_base) return;
+  const double h = scene_->def.solver.h;
+  for (int l = 0; l < L::kCount; ++l) {
+    if (t.used[l]) {
+      WorldState& world = *worlds_[t.world[l]];
+      const int32_t a = member_of(t, l).articulation;
+      Motion& base = world.bases[a];
+      for (int k = 0; k < 3; ++k) {
+        base.v[k] = static_cast<double>(L::get(t.coord[k].qd, l));
+        base.w[k] = static_cast<double>(L::get(t.coord[3 + k].qd, l));
+      }
+      const Vec3& com = member_of(t, l).base.com;
+      Mat3& R = world.base_R[a];
+      const Vec3 arm = R * com, v = base.v + cross(base.w, arm);
+      base.X = moved({base.X.p + arm, base.X.q}, v, base.w, h);
+      R = to_matrix(base.X.q);
+      const Vec3 next = R * com;
+      base.X.p -= next;
+      base.v = v - cross(base.w, next);
+      for (int k = 0; k < 3; ++k) {
+        L::set(&t.coord[k].qd, l, static_cast<S>(base.v[k]));
+        base.v[k] = static_cast<double>(static_cast<S>(base.v[k]));
+      }
+    }
+    gather_base(t, l);
+  }
+}
+
+// --- Between steps.
+
+// Kinematics and momenta of one articulation from its joint coordinates and base, as if the step before had
+// ended so.
+template <class L>
+void BatchStepper<L>::refresh(WorldState* world, int32_t articulation) {
+  worlds_ = &world;
+  count_ = 1;
+  for (int32_t k = 0; k < num_batches_; ++k) {
+    TreeBatch<L>& t = batches_[k];
+    assign(t, k, 1);
+    int lane = -1;
+    for (int l = 0; l < L::kCount; ++l)
+      if (t.used[l] && member_of(t, l).articulation == articulation) lane = l;
+    if (lane < 0) continue;
+    gather(t);
+    kinematics(t);
+    orientations(t);
+    link_inertias(t);
+    momenta(t);
+    // this member alone: the others keep what they have
+    S* to = persistent_of(*world, articulation);
+    const V *base = words(&t.base_state), *links = words(t.state);
+    for (int i = 0; i < kBase; ++i) to[i] = L::get(base[i], lane);
+    for (int i = 0; i < kLink * t.tree->num_links; ++i) to[kBase + i] = L::get(links[i], lane);
+  }
+  worlds_ = nullptr;
+}
+
+// A link's motion from its persistent words: joint frame to link frame, base to world.
+template <class L>
+void BatchStepper<L>::read_link(const WorldState& world, int32_t link, Motion* m, Mat3* R) const {
+  const int32_t a = scene_->link_articulation[static_cast<size_t>(link)];
+  const int32_t i = link - scene_->link_offset[static_cast<size_t>(a)];
+  PersistentLink<S> from;
+  std::memcpy(&from, persistent_of(world, a) + kBase + kLink * i, sizeof from);
+  Mat3 R_WJ;
+  for (int k = 0; k < 9; ++k) R_WJ.m[k] = static_cast<double>(from.R[k]);
+  *R = R_WJ * R_JL_[link];
+  const Vec3& base = world.bases[a].X.p;
+  for (int r = 0; r < 3; ++r) {
+    m->X.p[r] = base[r] + static_cast<double>(from.P[r]);
+    m->v[r] = static_cast<double>(from.v[r]);
+    m->w[r] = static_cast<double>(from.w[r]);
+  }
+  const Quat q_WJ = {static_cast<double>(from.q[0]), static_cast<double>(from.q[1]),
+                     static_cast<double>(from.q[2]), static_cast<double>(from.q[3])};
+  m->X.q = normalized(q_WJ * q_JL_[link]);
+}
+
+// --- Worlds into lanes and back.
+
+// Masks of lanes from sets of worlds, a bit each, and back.
+template <class L>
+typename L::Mask BatchStepper<L>::lanes_of(const TreeBatch<L>& t, uint32_t worlds) const {
+  uint32_t bits = 0;
+  for (int l = 0; l < L::kCount; ++l)
+    if (t.used[l]) bits |= (worlds >> t.world[l] & 1) << l;
+  return L::mask(bits);
+}
+
+template <class L>
+uint32_t BatchStepper<L>::worlds_of(const TreeBatch<L>& t, Mask lanes) const {
+  const uint32_t bits = L::bits(lanes);
+  uint32_t worlds = 0;
+  for (int l = 0; bits != 0 && l < L::kCount; ++l)
+    if (t.used[l] && (bits >> l & 1)) worlds |= 1u << t.world[l];
+  return worlds;
+}
+
+// Which world and member each lane has when `count` worlds are in.
+template <class L>
+void BatchStepper<L>::assign(TreeBatch<L>& t, int32_t batch, int32_t count) {
+  int32_t g = 0;
+  while (batch >= groups_[g].first_batch + groups_[g].num_batches) ++g;
+  const Group& group = groups_[g];
+  for (int l = 0; l < L::kCount; ++l) {
+    const int32_t flat = (batch - group.first_batch) * L::kCount + l;
+    t.member[l] = flat % group.members;
+    t.world[l] = flat / group.members;
+    t.used[l] = t.world[l] < count;
+    if (!t.used[l]) t.world[l] = 0;
+  }
+}
+
+// All that a step reads of its worlds, lane by lane, rounded to S. Lanes without a world read another's and
+// are never written back: they cost nothing and take the same path as that one.
+template <class L>
+void BatchStepper<L>::gather(TreeBatch<L>& t) {
+  const Tree& tree = *t.tree;
+  const int32_t offset = tree.coord(0);
+  const S* from[L::kCount];
+  for (int l = 0; l < L::kCount; ++l) {
+    const WorldState& world = *worlds_[t.world[l]];
+    const TreeMember& member = member_of(t, l);
+    from[l] = persistent_of(world, member.articulation);
+    gather_base(t, l);
+    if (tree.free_base) {
+      const Motion& base = world.bases[member.articulation];
+      for (int k = 0; k < 3; ++k) {
+        L::set(&t.coord[k].qd, l, static_cast<S>(base.v[k]));
+        L::set(&t.coord[3 + k].qd, l, static_cast<S>(base.w[k]));
+      }
+    }
+    const double *q = world.q + member.first_link, *qd = world.qd + member.first_link,
+                 *target = world.target + member.first_link;
+    for (int32_t i = 0; i < tree.num_links; ++i) {
+      L::set(&t.work[i].q, l, static_cast<S>(q[i]));
+      L::set(&t.coord[offset + i].qd, l, static_cast<S>(qd[i]));
+      L::set(&t.work[i].target, l, static_cast<S>(target[i]));
+    }
+  }
+  L::gather(from, kBase, words(&t.base_state));
+  for (const S*& f : from) f += kBase;
+  L::gather(from, kLink * tree.num_links, words(t.state));
+  for (int32_t i = 0; i < tree.num_links; ++i) t.work[i].torque = V{};
+  gather_pushes(t);
+}
+
+template <class L>
+void BatchStepper<L>::gather_pushes(TreeBatch<L>& t) {
+  t.any_push = false;
+  for (int l = 0; l < L::kCount; ++l) t.any_push |= worlds_[t.world[l]]->pushed;
+  if (!t.any_push) return;
+  const auto put = [](V* v, int lane, const Wrench& w) {
+    for (int r = 0; r < 3; ++r) {
+      L::set(&v[r], lane, static_cast<S>(w.force[r]));
+      L::set(&v[3 + r], lane, static_cast<S>(w.torque[r]));
+    }
+  };
+  for (int l = 0; l < L::kCount; ++l) {
+    const WorldState& world = *worlds_[t.world[l]];
+    const TreeMember& member = member_of(t, l);
+    for (int32_t i = 0; i < t.tree->num_links; ++i)
+      put(t.work[i].push, l, world.pushes[member.first_link + i]);
+    put(t.base.push, l, world.base_pushes(*scene_)[member.articulation]);
+  }
+}
+
+template <class L>
+void BatchStepper<L>::gather_base(TreeBatch<L>& t, int lane) {
+  const WorldState& world = *worlds_[t.world[lane]];
+  const int32_t a = member_of(t, lane).articulation;
+  const Mat3& R = world.base_R[a];
+  for (int k = 0; k < 9; ++k) L::set(&t.base_R[k], lane, static_cast<S>(R.m[k]));
+  const Quat& q_WB = world.bases[a].X.q;
+  const double q[4] = {q_WB.w, q_WB.x, q_WB.y, q_WB.z};
+  for (int k = 0; k < 4; ++k) L::set(&t.base_q[k], lane, static_cast<S>(q[k]));
+}
+
+template <class L>
+void BatchStepper<L>::scatter(TreeBatch<L>& t) {
+  const Tree& tree = *t.tree;
+  const int32_t offset = tree.coord(0);
+  S* to[L::kCount] = {};
+  int lanes = 0;
+  for (int l = 0; l < L::kCount && t.used[l]; ++l, ++lanes) {
+    WorldState& world = *worlds_[t.world[l]];
+    const TreeMember& member = member_of(t, l);
+    to[l] = persistent_of(world, member.articulation);
+    double *q = world.q + member.first_link, *qd = world.qd + member.first_link,
+           *torque = world.torque + member.first_link;
+    for (int32_t i = 0; i < tree.num_links; ++i) {
+      q[i] = static_cast<double>(L::get(t.work[i].q, l));
+      qd[i] = static_cast<double>(L::get(t.coord[offset + i].qd, l));
+      torque[i] = static_cast<double>(L::get(t.work[i].torque, l));
+    }
+  }
+  L::scatter(words(&t.base_state), kBase, lanes, to);
+  for (int l = 0; l < lanes; ++l) to[l] += kBase;
+  L::scatter(words(t.state), kLink * tree.num_links, lanes, to);
+}
+
+// --- Memory and constants.
+
+// Segments of the contact solver: those of every member of every tree, then one per body.
+template <class L>
+void BatchStepper<L>::carve(Arena& arena) {
+  num_groups_ = static_cast<int32_t>(model_->trees.size());
+  groups_ = arena.make<Group>(static_cast<size_t>(num_groups_));
+  int32_t most_members = 1, most_coords = 0, segments = scene_->num_bodies, path = 1;
+  num_batches_ = 0;
+  for (const Tree& tree : model_->trees)
+    most_members = std::max(most_members, static_cast<int32_t>(tree.members.size()));
+  group_size_ = std::max(1, L::kCount / most_members);
+  for (int32_t g = 0; g < num_groups_; ++g) {
+    const Tree& tree = model_->trees[static_cast<size_t>(g)];
+    const auto members = static_cast<int32_t>(tree.members.size());
+    const Group group = {&tree, members, num_batches_, (group_size_ * members + L::kCount - 1) / L::kCount};
+    if (groups_) groups_[g] = group;
+    num_batches_ += group.num_batches;
+    most_coords = std::max(most_coords, tree.num_coords);
+    segments += members * tree.num_segments;
+    path = std::max(path, tree.path_segments);
+  }
+  batches_ = arena.make<TreeBatch<L>>(static_cast<size_t>(num_batches_));
+  int32_t batch = 0;
+  for (const Tree& tree : model_->trees) {
+    const auto members = static_cast<int32_t>(tree.members.size());
+    for (int32_t k = 0; k < (group_size_ * members + L::kCount - 1) / L::kCount; ++k, ++batch) {
+      const auto links = static_cast<size_t>(tree.num_links), shapes = tree.shape_links.size();
+      TreeBatch<L> t{};
+      t.tree = &tree;
+      t.model = arena.make<LinkModel<L>>(links);
+      t.state = arena.make<PersistentLink<V>>(links);
+      t.work = arena.make<LinkWork<V>>(links);
+      t.coord = arena.make<CoordWork<V>>(static_cast<size_t>(tree.num_coords));
+      t.mass_matrix = arena.make<V>(tree.path.size());
+      t.factor = arena.make<V>(tree.path.size());
+      t.shape_p = arena.make<V[3]>(shapes);
+      t.shape_a = arena.make<V[3]>(shapes);
+      t.center = arena.make<V[3]>(shapes);
+      t.axis = arena.make<V[3]>(shapes);
+      if (batches_) batches_[batch] = t;
+    }
+  }
+  attachments_ = arena.make<Attachment>(scene_->shapes.size());
+  body_segment_ = arena.make<int32_t>(static_cast<size_t>(scene_->num_bodies));
+  member_segment_ = arena.make<int32_t>(scene_->def.articulations.size());
+  first_word_ = arena.make<int32_t>(scene_->def.articulations.size());
+  touched_ = arena.make<uint8_t>(scene_->def.articulations.size());
+  path_ = arena.make<S>(4 * static_cast<size_t>(most_coords));
+  R_JL_ = arena.make<Mat3>(static_cast<size_t>(scene_->num_links));
+  q_JL_ = arena.make<Quat>(static_cast<size_t>(scene_->num_links));
+  contacts_.carve(arena, scene_->def.solver.contacts_max, segments, path);
+}
+
+// The constants of each lane's member. They stay: a lane holds the same member in every step.
+template <class L>
+void BatchStepper<L>::fill_constants(TreeBatch<L>& t, int32_t batch) {
+  const SolverDef& solver = scene_->def.solver;
+  const Tree& tree = *t.tree;
+  t.h = static_cast<S>(solver.h);
+  t.inv_h = static_cast<S>(1 / solver.h);
+  t.limit_stiffness = static_cast<S>(solver.limit_stiffness);
+  t.spring_only = solver.spring_only_effort;
+  assign(t, batch, group_size_);
+  if (tree.free_base)
+    for (int k = 0; k < 3; ++k) {
+      t.coord[k].s[k] = L::all(1);
+      t.coord[3 + k].a[k] = L::all(1);
+    }
+  const auto put = [](V* v, int lane, double x) { L::set(v, lane, static_cast<S>(x)); };
+  for (int l = 0; l < L::kCount; ++l) {
+    const TreeMember& m = member_of(t, l);
+    for (int r = 0; r < 3; ++r) put(&t.gravity[r], l, m.gravity[r]);
+    put(&t.linear_damping, l, 1 / (1 + solver.h * m.base_damping));
+    put(&t.angular_damping, l, 1 / (1 + solver.h * m.base_damping));
+    put(&t.base_mass, l, m.base.mass);
+    for (int r = 0; r < 3; ++r) put(&t.base_com[r], l, m.base.com[r]);
+    for (int k = 0; k < 6; ++k) put(&t.base_moment[k], l, m.base.moment[k]);
+    for (int32_t i = 0; i < tree.num_links; ++i) {
+      const MemberLink& link = m.links[static_cast<size_t>(i)];
+      const JointDef& joint = link.joint;
+      LinkModel<L>& b = t.model[i];
+      for (int k = 0; k < 9; ++k) put(&b.R_PJ[k], l, link.R_PJ.m[k]);
+      const double q_PJ[4] = {link.q_PJ.w, link.q_PJ.x, link.q_PJ.y, link.q_PJ.z};
+      for (int k = 0; k < 4; ++k) put(&b.q_PJ[k], l, q_PJ[k]);
+      for (int r = 0; r < 3; ++r) put(&b.p_PJ[r], l, link.p_PJ[r]);
+      for (int r = 0; r < 3; ++r) put(&b.com[r], l, link.inertia.com[r]);
+      for (int k = 0; k < 6; ++k) put(&b.moment[k], l, link.inertia.moment[k]);
+      put(&b.mass, l, link.inertia.mass);
+      put(&b.kp, l, joint.kp);
+      put(&b.kd, l, joint.kd);
+      put(&b.effort, l, joint.effort);
+      put(&b.lower, l, joint.lower);
+      put(&b.upper, l, joint.upper);
+      put(&b.armature, l, joint.armature);
+      put(&b.friction, l, joint.friction);
+      put(&b.ratio, l, joint.ratio);
+      put(&b.slack, l, joint.slack);
+    }
+    for (size_t k = 0; k < m.shapes.size(); ++k) {
+      const ShapeDef& def = scene_->shapes[static_cast<size_t>(m.first_shape) + k].def;
+      for (int r = 0; r < 3; ++r) {
+        put(&t.shape_p[k][r], l, m.shapes[k].p_JS[r]);
+        put(&t.shape_a[k][r], l, tree.shape_slender[k] ? def.size.y * m.shapes[k].R_JS(r, 2) : 0);
+      }
+    }
+  }
+}
+
+// Which body, or which link's coordinate, moves each shape, where its rows go, and which sensor feels it.
+template <class L>
+void BatchStepper<L>::list_attachments() {
+  int32_t segment = 0, word = 0;
+  for (size_t a = 0; a < scene_->def.articulations.size(); ++a) {
+    first_word_[a] = word;
+    word += kBase + kLink * static_cast<int32_t>(scene_->def.articulations[a].links.size());
+  }
+  const Attachment none = {Attachment::kStatic, 0, 0, -1, -1, -1, -1, 0};
+  for (size_t i = 0; i < scene_->shapes.size(); ++i) attachments_[i] = none;
+  const auto sensor_of = [&](int32_t link) {
+    for (size_t i = 0; i < scene_->sensors.size(); ++i)
+      if (scene_->sensors[i] == link) return static_cast<int32_t>(i);
+    return -1;
+  };
+  for (int32_t g = 0; g < num_groups_; ++g) {
+    const Tree& tree = *groups_[g].tree;
+    for (int32_t m = 0; m < groups_[g].members; ++m, segment += tree.num_segments) {
+      const TreeMember& member = tree.members[static_cast<size_t>(m)];
+      member_segment_[member.articulation] = segment;
+      for (int32_t i = 0; i < tree.num_links; ++i) {
+        R_JL_[member.first_link + i] = transpose(member.links[static_cast<size_t>(i)].R_LJ);
+        q_JL_[member.first_link + i] = conjugate(member.links[static_cast<size_t>(i)].q_LJ);
+      }
+      for (size_t k = 0; k < tree.shape_links.size(); ++k) {
+        const int32_t link = tree.shape_links[k],
+                      coord = link < 0 ? (tree.free_base ? 5 : -1) : tree.coord(link);
+        if (coord < 0) continue;  // on a fixed base
+        Attachment& at = attachments_[static_cast<size_t>(member.first_shape) + k];
+        at.kind = Attachment::kTree;
+        at.group = g;
+        at.member = m;
+        at.coord = coord;
+        at.link = link;
+        at.sensor = link < 0 ? -1 : sensor_of(member.first_link + link);
+        at.first_segment = segment;
+      }
+    }
+  }
+  for (int32_t i = 0; i < scene_->num_bodies; ++i) body_segment_[i] = segment++;
+  for (size_t i = 0; i < scene_->shapes.size(); ++i) {
+    const SceneShape& s = scene_->shapes[i];
+    if (s.carrier != Carrier::kBody) continue;
+    attachments_[i].kind = Attachment::kBody;
+    attachments_[i].body = s.index;
+    attachments_[i].first_segment = body_segment_[s.index];
+  }
+}
+
+template <class L>
+Stepper* make_batches(const ArticulatedModel& model, Collider* collider, const HostHooks& hooks,
+                      Arena& arena) {
+  if (arena.measuring()) {
+    const BatchStepper<L> measured(model, collider, arena);
+    return nullptr;
+  }
+  return host_new<BatchStepper<L>>(hooks, model, collider, arena);
+}
+
+Stepper* make_kind(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
+                   const HostHooks& hooks, Arena& arena) {
+  if (kind.double_precision) return make_batches<Simd<double, 1>>(model, collider, hooks, arena);
+  if (kind.lanes == 8) return make_batches<Simd<float, 8>>(model, collider, hooks, arena);
+  if (kind.lanes == 4) return make_batches<Simd<float, 4>>(model, collider, hooks, arena);
+  return make_batches<Simd<float, 1>>(model, collider, hooks, arena);
+}
+
+StepperTable stepper_table(const char* isa) {
+  return {isa, make_kind};
+}
+
+}  // namespace
+}  // namespace rdm

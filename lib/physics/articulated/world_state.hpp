@@ -1,0 +1,123 @@
+// What a step of the articulated engine works on: the constant model of a scene and one world's data (as
+// MuJoCo parts mjModel and mjData), and the parts of a substep that are arithmetic in double on one world,
+// whatever the lanes: free bodies, contact points, the impulses that the next solve starts from.
+//
+// A free body has mass m, inertia I about its centre of mass, and no coordinates but pose and velocity:
+//   predict    v = d_v (v + h (g + f/m))         w = d_w (w + h R I^-1 R^T torque)      without contacts
+//   contacts   v1, w1: what the solver makes of them
+//   integrate  p += h v1,  q <- exp(h w1) q,  then w <- R' I^-1 R'^T L with L = R I R^T w1 of the old pose:
+//              a body that spins freely keeps its angular momentum L, not its angular velocity.
+// d = 1 / (1 + h damping) is implicit damping. R rotates the body's axes into world axes.
+#pragma once
+#include <cstdint>
+
+#include "physics/articulated/tree.hpp"
+#include "physics/collision/narrowphase.hpp"
+#include "physics/world.hpp"
+
+namespace rdm {
+
+// Constants of a free body.
+struct BodyModel {
+  double inv_mass, sqrt_inv_mass;
+  Mat3 moment;             // I, body axes, kg m2
+  Mat3 inv_moment;         // I^-1
+  Mat3 inv_sqrt_moment;    // C^-1, where I = C C^T (Cholesky)
+  double linear, angular;  // factors of implicit damping
+  Vec3 gravity;            // m/s2
+};
+
+// Made once for all worlds of a worker and only read afterwards.
+struct ArticulatedModel {
+  const Scene* scene = nullptr;
+  Vector<Tree> trees;
+  Vector<BodyModel> bodies;  // [num_bodies]
+};
+ArticulatedModel make_articulated_model(const Scene& scene);
+
+// State of a link and of a base that lasts from step to step beside the joint coordinates, as V: one number
+// per lane, or a plain number as a world stores it. Velocities are in world axes, relative places from the
+// base's origin. `saturated` and `limited` are the active set of the drives and joint limits: -1 at the lower
+// end, 0 not in it, 1 at the upper end.
+template <class V>
+struct PersistentLink {
+  V R[9], P[3], w[3], v[3];  // R_WJ, origin, angular velocity, velocity of the origin
+  V linear[3], angular[3];   // velocity of the centre of mass, angular momentum about it, as last solved
+  V saturated, limited;
+  V q[4];  // q_WJ, w first; of the end of the control step
+};
+template <class V>
+struct PersistentBase {
+  V linear[3], angular[3];
+};
+inline constexpr size_t kLinkWords = sizeof(PersistentLink<float>) / sizeof(float),
+                        kBaseWords = sizeof(PersistentBase<float>) / sizeof(float);
+static_assert(kLinkWords == 30 && kBaseWords == 6, "saved states hold these");
+static_assert(sizeof(PersistentLink<double>) == kLinkWords * sizeof(double) &&
+              sizeof(PersistentBase<double>) == kBaseWords * sizeof(double));
+
+// A free body within a substep.
+struct FreeBody {
+  Mat3 R, inv_sqrt_inertia;  // R_WB; C^-1 R^T: torque impulse in the world to half-solved coordinates
+  Vec3 v, w;                 // predicted, without contacts
+  Vec3 v1, w1;               // with them
+};
+
+// A contact's impulse on shape a, from which the next substep's solve starts.
+struct WarmPoint {
+  int32_t pair;      // index of Scene::pairs
+  float p[3];        // from the bound's centre of shape a, world axes, m
+  float impulse[3];  // world, N s
+};
+
+// One world's data. The arrays belong to the world.
+struct WorldState {
+  // what lasts
+  double *q, *qd;    // [num_links] rad, rad/s (m, m/s)
+  Motion* bases;     // [articulations]
+  Mat3* base_R;      // [articulations] R_WB
+  Motion* bodies;    // [num_bodies]
+  void* persistent;  // [articulations]: PersistentBase, then PersistentLink per link; float or double
+  WarmPoint* warm;   // [contacts_max], num_warm of the last substep
+  int32_t num_warm;
+
+  // what is done to it
+  double* target;  // [num_links]
+  Wrench* pushes;  // [num_links + articulations + num_bodies] at the centre of mass, world axes
+  bool pushed;     // any of them
+
+  // of the substep
+  FreeBody* free_bodies;   // [num_bodies]
+  Contact* contacts;       // [contacts_max], in the order of the scene's pairs
+  int32_t* contact_pairs;  // [contacts_max] index of Scene::pairs
+  Vec3* impulses;          // [contacts_max] on shape a, N s
+  WarmPoint* next_warm;    // [contacts_max] this substep's points
+  int32_t num_contacts;
+
+  // what comes out of the step
+  double* torque;    // [num_links] mean over the substeps
+  Wrench* sensors;   // [sensors] mean over the substeps, link axes, about the link's origin
+  uint8_t* touched;  // [pairs]
+  uint32_t status;
+  bool diverged;  // the step's numbers are not to be used: the world goes back to the poses below
+  Motion *start_bodies, *start_bases;  // [num_bodies], [articulations] as the step began
+
+  const Wrench* base_pushes(const Scene& scene) const { return pushes + scene.num_links; }
+  const Wrench* body_pushes(const Scene& scene) const {
+    return base_pushes(scene) + scene.def.articulations.size();
+  }
+};
+
+// Outputs to zero, the start's poses stored. A target that is not finite marks the world and holds the joint.
+void begin_step(const ArticulatedModel& model, WorldState* s);
+void predict_bodies(const ArticulatedModel& model, WorldState* s);
+// Contact points of the present poses. The collider's bounds of all shapes of trees are set by the caller.
+void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses, WorldState* s);
+// Impulse on shape a that the last substep gave at a point like this one; false: none.
+bool warm_impulse(const WorldState& s, int32_t contact, Vec3* impulse);
+void store_impulses(WorldState* s);
+void integrate_bodies(const ArticulatedModel& model, WorldState* s);  // by v1, w1
+
+void set_bound(const SceneShape& shape, const Vec3& p, const Mat3& R, Bound* bound);
+
+}  // namespace rdm

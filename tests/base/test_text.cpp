@@ -1,0 +1,79 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace rdm {
+namespace {
+
+std::string cleaned(std::string s) {
+  clean_text(s.data());
+  return s.c_str();
+}
+
+TEST(Text, GoodTextStays) {
+  for (const char* good : {"", "plain", "caf\u00e9 \u20ac \U0001F916", "\u07ff\u0800\uffff\U0010ffff"})
+    EXPECT_EQ(cleaned(good), good);
+}
+
+TEST(Text, ControlCharactersBecomeSpaces) {
+  EXPECT_EQ(cleaned("a\x1b[31mb\r\nc\td\x7f"), "a [31mb  c d ");
+  EXPECT_EQ(cleaned("a\u0080b\u009bc\u00a0"), "a  b  c\u00a0");  // C1, then the first character beyond
+}
+
+TEST(Text, ForeignBytesAreReplacedOneByOne) {
+  EXPECT_EQ(cleaned("\xff\xfez"), "??z");
+  EXPECT_EQ(cleaned("\xc0\xafz"), "??z");                 // overlong
+  EXPECT_EQ(cleaned("\xe0\x9f\xbfz"), "???z");            // overlong
+  EXPECT_EQ(cleaned("\xed\xa0\x80z"), "???z");            // a surrogate
+  EXPECT_EQ(cleaned("\xf4\x90\x80\x80\xf5z"), "?????z");  // above U+10FFFF
+  EXPECT_EQ(cleaned("\xc3 \xe2\x82 \x80z"), "? ?? ?z");   // not whole, in the middle
+  EXPECT_EQ(cleaned("x\xc3"), "x");                       // not whole, at the end
+  EXPECT_EQ(cleaned("x\xe2\x82"), "x");
+  EXPECT_EQ(cleaned("x\xf0\x9f\xa4"), "x");
+}
+
+TEST(Text, CopiesAreCutBetweenCharacters) {
+  const std::string text = "a\u00e9\u20ac\U0001F916z";  // 1 + 2 + 3 + 4 + 1 bytes
+  const size_t whole[] = {0, 1, 1, 3, 3, 3, 6, 6, 6, 6, 10, 11, 11};
+  for (size_t room = 0; room < std::size(whole); ++room) {
+    char out[16];
+    std::memset(out, 'x', sizeof out);
+    copy_text(out, room + 1, text.c_str());
+    EXPECT_EQ(std::string(out), text.substr(0, whole[room])) << room;
+    EXPECT_EQ(out[room + 1], 'x') << room;
+  }
+  char out[4];
+  copy_text(out, sizeof out, "\x80\x80\x80\x80\x80");  // no characters at all: cut at the byte
+  EXPECT_EQ(std::strlen(out), 3u);
+}
+
+TEST(Text, QuotedNamesAreShort) {
+  EXPECT_STREQ(Quoted("egg").text, "egg");
+  EXPECT_STREQ(Quoted(nullptr).text, "NULL");
+  const std::string full(64, 'n');
+  EXPECT_EQ(Quoted(full.c_str()).text, full);
+  EXPECT_EQ(Quoted((full + "n").c_str()).text, full + "...");
+  std::string accents = "x";
+  for (int i = 0; i < 40; ++i) accents += "\u00e9";
+  EXPECT_EQ(Quoted(accents.c_str()).text, accents.substr(0, 63) + "...");
+}
+
+TEST(Text, ErrorTextsEndWithAWholeCharacter) {
+  for (size_t shift = 0; shift < 4; ++shift) {
+    std::string longer(shift, 'x');
+    for (int i = 0; i < 100; ++i) longer += "\U0001F916";
+    EXPECT_EQ(guard([&] { fail(Code::kIo, "%s", longer.c_str()); }), Code::kIo);
+    const std::string text = last_error();
+    EXPECT_EQ(text, longer.substr(0, text.size()));
+    EXPECT_EQ(text.size() % 4, shift);
+    set_last_error(longer.c_str());
+    EXPECT_EQ(last_error(), text);
+  }
+}
+
+}  // namespace
+}  // namespace rdm

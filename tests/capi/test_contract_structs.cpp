@@ -1,0 +1,164 @@
+// Sizes of structs: every function that takes one refuses a size that no version of it has, and touches no
+// byte behind it.
+#include <functional>
+
+#include "contract.hpp"
+
+namespace {
+
+// A caller's struct with more room behind it than any size that is tried.
+template <class T>
+struct Roomy {
+  static constexpr size_t kBytes = 16384;
+  alignas(64) unsigned char bytes[kBytes] = {};
+  T* get() { return reinterpret_cast<T*>(bytes); }
+  explicit Roomy(const T& value = T{}) { std::memcpy(bytes, &value, sizeof value); }
+};
+
+class Structs : public testing::Test {
+ protected:
+  void SetUp() override {
+    pool_ = make_pool(pool_config());
+    ASSERT_EQ(rdm_pool_reset(pool_, nullptr, nullptr), RDM_OK);
+    agent_ = make_agent(agent_config());
+    const auto bytes = policy_bytes(agent_);
+    ASSERT_EQ(rdm_policy_load(&policy_, bytes.data(), bytes.size()), RDM_OK);
+    rdm_map_config c;
+    ASSERT_EQ(rdm_map_config_init(&c, sizeof c), RDM_OK);
+    ASSERT_EQ(rdm_map_create(&map_, &c), RDM_OK);
+  }
+  void TearDown() override {
+    rdm_map_destroy(map_);
+    rdm_policy_destroy(policy_);
+    rdm_agent_destroy(agent_);
+    rdm_pool_destroy(pool_);
+  }
+
+  // `call` takes the struct. One byte less than the first version's, and what nobody sets, are refused; the
+  // largest size that may ever be is not.
+  template <class T>
+  static void sizes(const char* name, const T& value, const std::function<rdm_result(T*)>& call) {
+    SCOPED_TRACE(name);
+    for (const uint32_t size : {4097u, 16384u, 0x7fffffffu, 0xffffffffu, 0u, 4u}) {
+      Roomy<T> in(value);
+      in.get()->struct_size = size;
+      EXPECT_EQ(call(in.get()), RDM_ARGUMENT) << size;
+      EXPECT_NE(std::string(rdm_last_error()).find("struct_size"), std::string::npos) << rdm_last_error();
+    }
+    Roomy<T> in(value);
+    in.get()->struct_size = 4096;
+    EXPECT_NE(call(in.get()), RDM_ARGUMENT) << rdm_last_error();
+  }
+
+  rdm_pool* pool_ = nullptr;
+  rdm_agent* agent_ = nullptr;
+  rdm_policy* policy_ = nullptr;
+  rdm_map* map_ = nullptr;
+};
+
+TEST_F(Structs, ThatGoInHaveASizeThatCanBe) {
+  const auto end_pool = [](rdm_result r, rdm_pool* p) { return rdm_pool_destroy(p), r; };
+  const auto end_agent = [](rdm_result r, rdm_agent* a) { return rdm_agent_destroy(a), r; };
+  rdm_spec spec{};
+  spec.struct_size = sizeof spec;
+  size_t n = 0;
+  sizes<rdm_pool_config>("rdm_pool_create", pool_config(), [&](rdm_pool_config* c) {
+    rdm_pool* p = nullptr;
+    const rdm_result r = rdm_pool_create(&p, c);
+    return end_pool(r, p);
+  });
+  sizes<rdm_pool_config>("rdm_pool_spec", pool_config(), [&](auto* c) { return rdm_pool_spec(c, &spec); });
+  sizes<rdm_pool_config>("rdm_pool_memory", pool_config(),
+                         [&](auto* c) { return rdm_pool_memory(c, &n, nullptr); });
+  sizes<rdm_agent_config>("rdm_agent_create", agent_config(), [&](rdm_agent_config* c) {
+    rdm_agent* a = nullptr;
+    const rdm_result r = rdm_agent_create(&a, c);
+    return end_agent(r, a);
+  });
+  sizes<rdm_agent_config>("rdm_agent_memory", agent_config(),
+                          [&](auto* c) { return rdm_agent_memory(c, &n); });
+  sizes<rdm_agent_config>("rdm_agent_config_for_pool", agent_config(),
+                          [&](auto* c) { return rdm_agent_config_for_pool(c, pool_); });
+  sizes<rdm_host>("rdm_init", rdm_host{}, [](rdm_host* h) {
+    const rdm_result r = rdm_init(h);
+    if (!r) rdm_shutdown();
+    return r;
+  });
+  sizes<rdm_host>("config.host", rdm_host{}, [&](rdm_host* h) {
+    rdm_pool_config c = pool_config();
+    c.host = h;
+    return rdm_pool_spec(&c, &spec);
+  });
+  sizes<rdm_buffers>("rdm_pool_bind", rdm_buffers{}, [&](auto* b) { return rdm_pool_bind(pool_, b); });
+  const float reward[4] = {}, cost[4] = {}, obs[12] = {};
+  float action[8];
+  rdm_transition t{};
+  t.reward = reward;
+  t.cost = cost;
+  sizes<rdm_transition>("rdm_agent_record", t, [&](auto* in) {
+    rdm_agent_act(agent_, obs, RDM_SAMPLE, action);  // STATE while one waits for its record
+    return rdm_agent_record(agent_, in);
+  });
+  sizes<rdm_spec>("rdm_policy_check", spec, [&](auto* s) { return rdm_policy_check(policy_, s); });
+  rdm_map_config mc{};
+  ASSERT_EQ(rdm_map_config_init(&mc, sizeof mc), RDM_OK);
+  sizes<rdm_map_config>("rdm_map_create", mc, [&](rdm_map_config* c) {
+    rdm_map* m = nullptr;
+    const rdm_result r = rdm_map_create(&m, c);
+    rdm_map_destroy(m);
+    return r;
+  });
+}
+
+TEST_F(Structs, ThatComeOutHaveASizeThatCanBe) {
+  sizes<rdm_build>("rdm_build_info", {}, [](auto* io) { return rdm_build_info(io); });
+  sizes<rdm_task>("rdm_task_at", {}, [](auto* io) { return rdm_task_at(0, io); });
+  sizes<rdm_algo>("rdm_algo_at", {}, [](auto* io) { return rdm_algo_at(0, io); });
+  sizes<rdm_robot>("rdm_robot_at", {}, [](auto* io) { return rdm_robot_at(0, io); });
+  sizes<rdm_spec>("rdm_pool_spec", {}, [](auto* io) {
+    const rdm_pool_config c = pool_config();
+    return rdm_pool_spec(&c, io);
+  });
+  sizes<rdm_spec>("rdm_pool_get_spec", {}, [&](auto* io) { return rdm_pool_get_spec(pool_, io); });
+  sizes<rdm_buffers>("rdm_pool_buffers", {}, [&](auto* io) { return rdm_pool_buffers(pool_, io); });
+  sizes<rdm_pool_stats>("rdm_pool_get_stats", {}, [&](auto* io) { return rdm_pool_get_stats(pool_, io); });
+  sizes<rdm_sensors>("rdm_pool_sensors", {}, [&](auto* io) { return rdm_pool_sensors(pool_, io); });
+  sizes<rdm_map_info>("rdm_map_get_info", {}, [&](auto* io) { return rdm_map_get_info(map_, io); });
+  sizes<rdm_policy_info>("rdm_policy_get_info", {},
+                         [&](auto* io) { return rdm_policy_get_info(policy_, io); });
+  const float obs[12] = {};
+  sizes<rdm_epoch>("rdm_agent_update", {}, [&](auto* io) { return rdm_agent_update(agent_, obs, io); });
+  sizes<rdm_epoch>("rdm_agent_rollout", {}, [&](auto* io) {
+    const rdm_result r = rdm_agent_rollout(agent_, pool_, io);  // the dimensions differ: refused later
+    return r == RDM_ARGUMENT && !std::strstr(rdm_last_error(), "struct_size") ? RDM_OK : r;
+  });
+}
+
+TEST_F(Structs, InitFunctionsFillNoMoreThanAStructCanHave) {
+  alignas(64) static unsigned char bytes[65536];
+  const auto tried = [&](const char* name, auto&& init, size_t first) {
+    SCOPED_TRACE(name);
+    for (const size_t size : {size_t{0}, first - 1, size_t{4097}, size_t{65536}, SIZE_MAX}) {
+      std::memset(bytes, 0x5a, sizeof bytes);
+      EXPECT_EQ(init(bytes, size), RDM_ARGUMENT) << size;
+      for (const unsigned char b : bytes) ASSERT_EQ(b, 0x5a);
+    }
+    EXPECT_EQ(init(bytes, 4096), RDM_OK);
+    EXPECT_EQ(bytes[4095], 0);
+    EXPECT_EQ(bytes[4096], 0x5a);
+  };
+  tried(
+      "rdm_pool_config_init",
+      [](void* c, size_t n) { return rdm_pool_config_init(static_cast<rdm_pool_config*>(c), n); },
+      sizeof(rdm_pool_config));
+  tried(
+      "rdm_agent_config_init",
+      [](void* c, size_t n) { return rdm_agent_config_init(static_cast<rdm_agent_config*>(c), n); },
+      sizeof(rdm_agent_config));
+  tried(
+      "rdm_map_config_init",
+      [](void* c, size_t n) { return rdm_map_config_init(static_cast<rdm_map_config*>(c), n); },
+      sizeof(rdm_map_config));
+}
+
+}  // namespace

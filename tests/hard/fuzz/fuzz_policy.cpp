@@ -1,0 +1,57 @@
+// Policy files: what loads acts, within [-1, 1].
+#include "fuzz.hpp"
+
+namespace hard {
+
+std::vector<Bytes> seeds() {
+  std::vector<Bytes> out;
+  for (const char* algo : {"ppo", "trpo_lag"}) {
+    AgentOf a;
+    HARD_REQUIRE(a.make(algo) == RDM_OK, "%s", rdm_last_error());
+    out.push_back(a.policy());
+    HARD_REQUIRE(a.epoch() == RDM_OK, "%s", rdm_last_error());
+    out.push_back(a.policy());
+  }
+  return out;
+}
+
+void whole(unsigned char* data, size_t size) {
+  mend(data, size);
+}
+size_t fixed_bytes() {
+  return kFileHead;
+}
+
+void one(const unsigned char* data, size_t size) {
+  rdm_policy* p = nullptr;
+  const rdm_result r = rdm_policy_load(&p, data, size);
+  if (r != RDM_OK) return require_refusal(r);
+  rdm_policy_info info{};
+  info.struct_size = sizeof info;
+  HARD_REQUIRE(rdm_policy_get_info(p, &info) == RDM_OK, "%s", rdm_last_error());
+  HARD_REQUIRE(good_text(info.task) && good_text(info.activation), "task %s", info.task);
+  const int32_t rows = 3;
+  const auto count = [](int32_t a, int32_t b) { return static_cast<size_t>(a) * static_cast<size_t>(b); };
+  std::vector<float> obs(count(rows, info.obs_dim)), noise(count(rows, info.action_dim), 1.5f),
+      action(noise.size());
+  for (size_t i = 0; i < obs.size(); ++i) obs[i] = static_cast<float>(i % 7) - 3;
+  const size_t bytes = rdm_policy_scratch(p, rows);
+  HARD_REQUIRE(bytes > 0 && bytes < (1u << 28), "%zu bytes of scratch", bytes);
+  void* scratch = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
+  for (const float* e : {static_cast<const float*>(nullptr), static_cast<const float*>(noise.data())}) {
+    const rdm_result act = rdm_policy_act(p, obs.data(), rows, e, action.data(), scratch, bytes);
+    if (act != RDM_OK) require_refusal(act);
+    for (float a : action)
+      HARD_REQUIRE(act != RDM_OK || (a >= -1 && a <= 1), "an action is %g", static_cast<double>(a));
+  }
+  std::free(scratch);
+  rdm_tensor t;
+  for (int32_t i = 0; rdm_policy_tensor(p, i, &t) == RDM_OK; ++i) {
+    std::vector<float> values(count(t.rows, t.cols));
+    HARD_REQUIRE(rdm_policy_tensor_read(p, t.name, values.data(), values.size()) == RDM_OK, "%s",
+                 rdm_last_error());
+  }
+  rdm_policy_destroy(p);
+}
+
+}  // namespace hard
