@@ -11,9 +11,9 @@ namespace rdm {
 
 class Collector {
  public:
-  void carve(Arena& arena, const ResolvedAgentConfig& plan);
+  void carve(Arena& arena, const ResolvedAgentConfig& resolved);
   // The three must outlive the collector.
-  void open(const ResolvedAgentConfig& plan, const Networks& nets, BatchWorkers& lanes);
+  void open(const ResolvedAgentConfig& resolved, const Networks& nets, BatchWorkers& workers);
 
   void act(const float* obs, bool sample, float* action);
   void record(const Transition& t);
@@ -39,20 +39,21 @@ class Collector {
 
  private:
   const float* normalized(const float* obs, int32_t rows, float* memory) const;
-  void values(const Lane& lane, const float* x, int32_t rows, float* value, float* cost_value) const;
-  void act_rows(const Lane& lane, const float* obs, int32_t first, int32_t rows, float* action);
+  void values(const Workspace& workspace, const float* x, int32_t rows, float* value,
+              float* cost_value) const;
+  void act_rows(const Workspace& workspace, const float* obs, int32_t first, int32_t rows, float* action);
   // What a network with std_mode=state gives, taken apart: means, log deviations (null: not wanted).
   void split_head(const float* y, int32_t rows, float* mean, float* log_std) const;
-  void mean_rows(const Lane& lane, const float* obs, int32_t rows, float* action) const;
+  void mean_rows(const Workspace& workspace, const float* obs, int32_t rows, float* action) const;
   void check(const Transition& t) const;
   void value_truncated(const Transition& t);
   void scale_rewards(const Transition& t);
   void record_row(const Transition& t, int32_t env);
   void charge_fall(int32_t env, float discount, float* sample_cost, double* charge) const;
 
-  const ResolvedAgentConfig* plan_ = nullptr;
+  const ResolvedAgentConfig* resolved_ = nullptr;
   const Networks* nets_ = nullptr;
-  BatchWorkers* lanes_ = nullptr;
+  BatchWorkers* workers_ = nullptr;
   Rollout rollout_;
   Normalizer normalizer_, reward_scale_, cost_scale_;
   Noise noise_;

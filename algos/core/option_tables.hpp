@@ -2,8 +2,9 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <span>
 
-#include "algos/core/agent.hpp"
+#include "algos/core/agent_types.hpp"
 
 namespace rdm {
 
@@ -168,6 +169,13 @@ constexpr auto join_options(const std::array<OptionSpec, N>&... tables) {
   (append(tables), ...);
   return all;
 }
+
+// A row of a preset: what it lays under one option.
+struct PresetValue {
+  const char *preset, *key, *text;
+  const char* algos = nullptr;  // "trpo|cpo": for these alone, over a row for all before it; null: for all
+};
+std::span<const PresetValue> preset_values();
 
 // The values for one agent: table, then config.defaults, then the preset, then config.options. A default
 // that only other algorithms know, or of the form "algorithm:key" for another, is skipped; an option is not.

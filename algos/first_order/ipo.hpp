@@ -21,10 +21,10 @@ class BarrierLoss final : public PenalizedSurrogate {
 
 class BarrierRule {
  public:
-  explicit BarrierRule(const ResolvedAgentConfig& plan) : count_(plan.num_limited) {
-    read_live(plan.options);
+  explicit BarrierRule(const ResolvedAgentConfig& resolved) : count_(resolved.num_limited) {
+    read_live(resolved.options);
   }
-  void step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t epoch);
+  void step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t epoch);
   double weight(int32_t i) const { return slope_[i]; }
   Mix mix() const { return Mix::kSum; }
   bool split() const { return split_; }

@@ -22,7 +22,7 @@ class PenalizedSurrogate : public RatioLoss {
 
 class P3o final : public Ppo {
  public:
-  explicit P3o(ResolvedAgentConfig&& plan) : Ppo(std::move(plan)) {}
+  explicit P3o(ResolvedAgentConfig&& resolved) : Ppo(std::move(resolved)) {}
 
  protected:
   const PolicyLoss& policy_loss() const override { return loss_; }

@@ -1,6 +1,6 @@
 // PPO (Schulman et al. 2017): the clipped surrogate.
 #pragma once
-#include "algos/core/policy_gradient.hpp"
+#include "algos/core/agent.hpp"
 #include "algos/first_order/ratio_loss.hpp"
 
 namespace rdm {
@@ -18,14 +18,14 @@ class ClippedSurrogate final : public RatioLoss {
   }
 };
 
-class Ppo : public PolicyGradient {
+class Ppo : public Agent {
  public:
-  explicit Ppo(ResolvedAgentConfig&& plan) : PolicyGradient(std::move(plan)) {}
+  explicit Ppo(ResolvedAgentConfig&& resolved) : Agent(std::move(resolved)) {}
 
  protected:
   const PolicyLoss& policy_loss() const override { return loss_; }
   void read_live() override {
-    PolicyGradient::read_live();
+    Agent::read_live();
     loss_.clip = static_cast<float>(options().number("clip"));
   }
 

@@ -6,7 +6,7 @@ namespace rdm {
 
 class Cpo : public Trpo {
  public:
-  explicit Cpo(ResolvedAgentConfig&& plan) : Trpo(std::move(plan)) {}
+  explicit Cpo(ResolvedAgentConfig&& resolved) : Trpo(std::move(resolved)) {}
 
  protected:
   void begin_epoch(const EpisodeStats& stats, int32_t epoch) override;

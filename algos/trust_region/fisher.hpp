@@ -13,10 +13,10 @@ namespace rdm {
 
 class Fisher {
  public:
-  void carve(Arena& arena, const ResolvedAgentConfig& plan);
+  void carve(Arena& arena, const ResolvedAgentConfig& resolved);
   // All must outlive it.
-  void open(const ResolvedAgentConfig& plan, const Rollout& rollout, const Networks& nets,
-            BatchWorkers& lanes);
+  void open(const ResolvedAgentConfig& resolved, const Rollout& rollout, const Networks& nets,
+            BatchWorkers& workers);
   void read_live(const Options& options);
 
   // The matrix is of every stride-th of the listed rows, at the policy as it is at each product.
@@ -28,10 +28,10 @@ class Fisher {
   // Tangents of the outputs of n rows into what is propagated back.
   void weigh(const float* y, int32_t n, float* dy) const;
 
-  const ResolvedAgentConfig* plan_ = nullptr;
+  const ResolvedAgentConfig* resolved_ = nullptr;
   const Rollout* rollout_ = nullptr;
   const Networks* nets_ = nullptr;
-  BatchWorkers* lanes_ = nullptr;
+  BatchWorkers* workers_ = nullptr;
   float* weight_ = nullptr;  // [action_dim] 1 / (N sigma^2); none with std_mode=state
   const int32_t* order_ = nullptr;
   int32_t rows_ = 0, stride_ = 1;

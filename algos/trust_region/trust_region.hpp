@@ -1,5 +1,6 @@
 // Steps of the actor in a trust region: gradients over the whole batch, natural gradients, line search.
 #pragma once
+#include "algos/core/cancel.hpp"
 #include "algos/core/learner.hpp"
 #include "algos/trust_region/conjugate_gradient.hpp"
 #include "algos/trust_region/fisher.hpp"
@@ -10,9 +11,9 @@ namespace rdm {
 class TrustRegion {
  public:
   // with_cost: also the two vectors of a cost gradient.
-  void carve(Arena& arena, const ResolvedAgentConfig& plan, const Networks& nets, bool with_cost);
-  void open(Agent& agent, const ResolvedAgentConfig& plan, const Rollout& rollout, Networks& nets,
-            BatchWorkers& lanes, Learner& learner);
+  void carve(Arena& arena, const ResolvedAgentConfig& resolved, const Networks& nets, bool with_cost);
+  void open(CancelFlag& cancel, const ResolvedAgentConfig& resolved, const Rollout& rollout, Networks& nets,
+            BatchWorkers& workers, Learner& learner);
   void read_live(const Options& options);
 
   // Gradients at the policy as it is over the listed rows: of the gain, by which all steps rise, and of
@@ -59,8 +60,8 @@ class TrustRegion {
   void move(double f);
   Surrogate measure() { return learner_->measure(order_, rows_); }
 
-  Agent* agent_ = nullptr;
-  const ResolvedAgentConfig* plan_ = nullptr;
+  CancelFlag* cancel_ = nullptr;
+  const ResolvedAgentConfig* resolved_ = nullptr;
   Networks* nets_ = nullptr;
   Learner* learner_ = nullptr;
   Fisher fisher_;

@@ -125,7 +125,7 @@ void OdeWorld::make_bodies() {
 }
 
 void OdeWorld::make_geoms() {
-  contact_.make_group();
+  contact_.make(*scene_);
   for (int32_t i = 0; i < scene_->num_links; ++i) sensor_of_link_[i] = -1;
   for (size_t i = 0; i < scene_->sensors.size(); ++i)
     sensor_of_link_[scene_->sensors[i]] = static_cast<int32_t>(i);
@@ -133,17 +133,16 @@ void OdeWorld::make_geoms() {
     const SceneShape& s = scene_->shapes[static_cast<size_t>(i)];
     switch (s.carrier) {
       case Carrier::kStatic:
-        contact_.make_geom(*scene_, i, nullptr, {}, {});
+        contact_.make_geom(*scene_, i, nullptr, {});
         break;
       case Carrier::kLink:
-        contact_.make_geom(*scene_, i, tree_.body(s.index), tree_.com(s.index), {});
+        contact_.make_geom(*scene_, i, tree_.body(s.index), tree_.com(s.index));
         break;
       case Carrier::kBody:
-        contact_.make_geom(*scene_, i, body_ids_[s.index], {}, {});
+        contact_.make_geom(*scene_, i, body_ids_[s.index], {});
         break;
       case Carrier::kBase:
-        contact_.make_geom(*scene_, i, tree_.base(s.articulation), tree_.base_com(s.articulation),
-                           bases_[s.articulation].X);
+        contact_.make_geom(*scene_, i, tree_.base(s.articulation), tree_.base_com(s.articulation));
         break;
     }
   }
