@@ -460,7 +460,7 @@ RDM_API rdm_result rdm_agent_policy_file(const rdm_agent *a, const char *path); 
  * STATE inside a horizon. load needs an agent of the same config and changes nothing when it fails. */
 RDM_API rdm_result rdm_agent_save(const rdm_agent *a, void *bytes, size_t capacity, size_t *size);
 RDM_API rdm_result rdm_agent_load(rdm_agent *a, const void *bytes, size_t size);
-/* Agent, pool (may be NULL) and a note of the host's own in one file, replaced atomically. */
+/* Agent, pool (may be NULL) and a note of the host's own, to 2^26 bytes, in one file, replaced atomically. */
 RDM_API rdm_result rdm_checkpoint_write(const char *path, const rdm_agent *a, const rdm_pool *p,
                                         const void *note, size_t note_size);
 /* Reads it back; note gets up to capacity bytes, *note_size is how many there are. Nothing changes on failure. */

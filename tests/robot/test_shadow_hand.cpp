@@ -10,7 +10,7 @@ struct Golden {
   const char* link;
   Vec3 zero, bent;
 };
-// Forward kinematics of the task specification: identity base at the origin, metres.
+// Forward kinematics of the released model: identity base at the origin, metres.
 const Golden kGolden[] = {
     {"right_palm", {0, -0.2900, -0.0100}, {0.0068, -0.2893, -0.0100}},
     {"right_ff_distal", {-0.0330, -0.4550, -0.0100}, {-0.0052, -0.4229, 0.0744}},
@@ -51,7 +51,7 @@ TEST(ShadowHand, ForwardKinematicsGolden) {
     if (bent) bent_pose(q);
     sim->set_joints(0, q, still);
     for (const Golden& g : kGolden) {
-      const Vec3 p = sim->link(sim.scene().find_link(0, g.link)).X.p;
+      const Vec3 p = sim->link(test::find_link(sim.scene(), 0, g.link)).X.p;
       EXPECT_LT(norm(p - (bent ? g.bent : g.zero)), 1e-3) << g.link << (bent ? " bent" : " zero");
     }
   }
@@ -92,7 +92,7 @@ TEST(ShadowHand, HoldsThePoseWithItsDrives) {
   for (int i = 0; i < 24; ++i) sim->target()[i] = q[i];
   for (int k = 0; k < 120; ++k) sim->step();
   for (const Golden& g : kGolden)
-    EXPECT_LT(norm(sim->link(sim.scene().find_link(0, g.link)).X.p - g.bent), 1e-3) << g.link;
+    EXPECT_LT(norm(sim->link(test::find_link(sim.scene(), 0, g.link)).X.p - g.bent), 1e-3) << g.link;
 }
 
 TEST(ShadowHand, LeftIsTheMirrorImage) {
