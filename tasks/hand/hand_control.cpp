@@ -90,7 +90,7 @@ SceneDef make_hand_scene(const HandControlConfig& config, const Options& o, int3
     set_friction(&s, hand, kGround, o.number("friction.hand_ground"));
   }
   if (config.count > 1) {
-    s.hand_hand_contact = o.flag("hand_contact");
+    s.articulations_touch = o.flag("hand_contact");
     set_friction(&s, kRightHand, kLeftHand, o.number("friction.hand_hand"));
   }
   return s;

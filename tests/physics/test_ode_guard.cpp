@@ -4,6 +4,7 @@
 #include <cstdarg>
 #include <thread>
 
+#include "base/error.hpp"
 #include "physics/ode/ode_guard.hpp"
 
 namespace rdm {
@@ -17,16 +18,17 @@ void host_message(int, const char*, va_list) {
 TEST(OdeGuard, MisuseInsideIsThrown) {
   const OdeGuard guard;
   const OdeScope scope;
-  EXPECT_THROW(dDebug(1, "misuse %d", 7), OdeFailure);
-  EXPECT_THROW(dError(2, "failure"), OdeFailure);
+  EXPECT_THROW(dDebug(1, "misuse %d", 7), Error);
+  EXPECT_THROW(dError(2, "failure"), Error);
   try {
     dDebug(1, "misuse %d", 7);
-  } catch (const OdeFailure& failure) {
-    EXPECT_STREQ(failure.text, "misuse 7");
+  } catch (const Error& failure) {
+    EXPECT_EQ(failure.code, Code::kPhysics);
+    EXPECT_STREQ(failure.text, "ode: misuse 7");
   }
   // A real one: ODE checks its arguments.
   const dWorldID world = dWorldCreate();
-  EXPECT_THROW(dWorldQuickStep(world, -1), OdeFailure);
+  EXPECT_THROW(dWorldQuickStep(world, -1), Error);
   dWorldDestroy(world);
 }
 
@@ -73,7 +75,7 @@ TEST(OdeGuard, ScopesNest) {
   const OdeGuard guard;
   const OdeScope outer;
   { const OdeScope inner; }
-  EXPECT_THROW(dError(2, "still inside"), OdeFailure);
+  EXPECT_THROW(dError(2, "still inside"), Error);
 }
 
 }  // namespace

@@ -148,6 +148,44 @@ TEST(OdeLinks, TorqueHoldsTheLoad) {
   EXPECT_NEAR(std::fabs(sim->torque()[0]), 0.5 * 9.81 * 0.2 * std::sin(sim->q()[0]), 1e-3);
 }
 
+// A ball rests in a hand without weight: what the drives give is what the contacts ask for, -J^T of their
+// forces, whether the solver has found the drive law's torques in its few iterations or not.
+TEST(OdeLinks, DriveTorquesAreTheContactsReactions) {
+  test::TwoHands c;
+  c.ball_mass = 0.3;
+  test::Simulation sim(test::two_hands_def(c));
+  const Scene& scene = sim.scene();
+  test::target_share(*sim, 0, test::kCup);
+  sim->set_body(0, {{{0, -0.36, 0.57}, {}}, {}, {}});
+  for (int k = 0; k < 240; ++k) sim->step();
+  ASSERT_LT(norm(sim->body(0).v), 0.02);
+  constexpr int kSteps = 60;
+  double given[24] = {}, asked[24] = {}, load = 0;
+  for (int k = 0; k < kSteps; ++k) {
+    sim->step();
+    ASSERT_GT(sim->num_contacts(), 2);
+    for (int i = 0; i < 24; ++i) {
+      given[i] += sim->torque()[i] / kSteps;
+      const Motion& link = sim->link(i);
+      const Vec3 axis = rotate(link.X.q, scene.frames[static_cast<size_t>(i)].axis);
+      for (int32_t n = 0; n < sim->num_contacts(); ++n) {
+        const Contact& contact = sim->contacts()[n];
+        for (const int side : {0, 1}) {
+          const SceneShape& shape =
+              scene.shapes[static_cast<size_t>(side ? contact.shape_b : contact.shape_a)];
+          int32_t on = shape.carrier == Carrier::kLink ? shape.index : -1;
+          while (on > i) on = scene.frames[static_cast<size_t>(on)].parent;
+          if (on != i) continue;
+          asked[i] -= (side ? -1.0 : 1.0) / kSteps * dot(axis, cross(contact.p - link.X.p, contact.force));
+        }
+      }
+    }
+  }
+  for (const double a : asked) load = std::max(load, std::fabs(a));
+  EXPECT_GT(load, 0.05);
+  for (int i = 0; i < 24; ++i) EXPECT_NEAR(given[i], asked[i], 0.02 * load) << i;
+}
+
 TEST(OdeLinks, DampedSwingLosesEnergy) {
   // Springs off, a tenth of the hand's damping: what moves only slows down.
   test::TwoHands c;

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <cmath>
+#include <cstring>
+#include <limits>
 #include <vector>
 
 #include "base/error.hpp"
@@ -112,6 +115,52 @@ TEST(OdeState, RefusesOtherScenesAndBrokenBytes) {
   EXPECT_THROW(load(*world, bytes), Error);
   world->step();
   EXPECT_EQ(world->status(), 0u);
+}
+
+// Every number of a state in turn becomes one that no step leads to: refused, and nothing has changed; or it
+// is one that a world may have, and then the world goes on.
+TEST(OdeState, EveryNumberIsChecked) {
+  test::Simulation world(floating());
+  Stream random(6, 0, Purpose::kTest);
+  for (int k = 0; k < 20; ++k) {
+    drive(*world, random, k);
+    world->step();
+  }
+  const std::vector<unsigned char> good = saved(*world);
+  constexpr size_t kHead = 3 * sizeof(int32_t);
+  ASSERT_EQ((good.size() - kHead) % sizeof(double), 0u);
+  int refused = 0, taken = 0;
+  for (const double value :
+       {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity(), 1e300, -1e7, 3.0})
+    for (size_t at = kHead; at < good.size(); at += sizeof(double)) {
+      std::vector<unsigned char> bytes = good;
+      std::memcpy(bytes.data() + at, &value, sizeof value);
+      Code code = Code::kOk;
+      try {
+        load(*world, bytes);
+      } catch (const Error& error) {
+        code = error.code;
+      }
+      if (code == Code::kOk) {
+        ASSERT_TRUE(std::isfinite(value)) << at;
+        world->step();
+        ASSERT_EQ(world->status(), 0u) << at << ' ' << value;
+        load(*world, saved(*world));
+        load(*world, good);
+        ++taken;
+      } else {
+        ASSERT_EQ(code, Code::kFormat) << at;
+        ASSERT_EQ(saved(*world), good) << at << ' ' << value;
+        ++refused;
+      }
+    }
+  EXPECT_GT(refused, taken);
+  EXPECT_GT(taken, 0);
+  for (const uint32_t status : {4u, 1u << 31}) {
+    std::vector<unsigned char> bytes = good;
+    std::memcpy(bytes.data() + 2 * sizeof(int32_t), &status, sizeof status);
+    EXPECT_THROW(load(*world, bytes), Error);
+  }
 }
 
 size_t heap_in_use() {

@@ -51,7 +51,7 @@ TEST(ShadowHand, ForwardKinematicsGolden) {
     if (bent) bent_pose(q);
     sim->set_joints(0, q, still);
     for (const Golden& g : kGolden) {
-      const Vec3 p = sim->link(sim.scene().find_link(0, g.link)).X.p;
+      const Vec3 p = sim->link(test::find_link(sim.scene(), 0, g.link)).X.p;
       EXPECT_LT(norm(p - (bent ? g.bent : g.zero)), 1e-3) << g.link << (bent ? " bent" : " zero");
     }
   }
@@ -92,7 +92,7 @@ TEST(ShadowHand, HoldsThePoseWithItsDrives) {
   for (int i = 0; i < 24; ++i) sim->target()[i] = q[i];
   for (int k = 0; k < 120; ++k) sim->step();
   for (const Golden& g : kGolden)
-    EXPECT_LT(norm(sim->link(sim.scene().find_link(0, g.link)).X.p - g.bent), 1e-3) << g.link;
+    EXPECT_LT(norm(sim->link(test::find_link(sim.scene(), 0, g.link)).X.p - g.bent), 1e-3) << g.link;
 }
 
 TEST(ShadowHand, LeftIsTheMirrorImage) {

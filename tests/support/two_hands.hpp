@@ -1,5 +1,7 @@
 // The scene of the physics tests: two Shadow Hands face each other, a ball above the right one.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <cmath>
 
 #include "base/arena.hpp"
@@ -19,7 +21,7 @@ struct TwoHands {
 inline SceneDef two_hands_def(const TwoHands& c = {}) {
   SceneDef def;
   def.solver = c.solver;
-  def.hand_hand_contact = c.hand_hand;
+  def.articulations_touch = c.hand_hand;
   def.articulations.push_back(make_articulation(kShadowHand, Side::kRight, {{0, 0, 0.5}, {}}, "right_"));
   def.articulations.push_back(
       make_articulation(kShadowHand, Side::kLeft, {{0, -1, 0.5}, {0, 1, 0, 0}}, "left_"));
@@ -63,6 +65,16 @@ class Simulation {
   Arena arena_;
   World* world_ = nullptr;
 };
+
+// Flat index of an articulation's link; fails the test where there is none of that name.
+inline int32_t find_link(const Scene& scene, int32_t articulation, const char* name) {
+  const auto a = static_cast<size_t>(articulation);
+  const auto& links = scene.def.articulations[a].links;
+  for (size_t i = 0; i < links.size(); ++i)
+    if (links[i].name == name) return scene.link_offset[a] + static_cast<int32_t>(i);
+  ADD_FAILURE() << "no link " << name;
+  return 0;
+}
 
 // A hand held like a cup, share of each joint's range.
 inline constexpr double kCup[24] = {0.8296, 0.5388, 0.3960, 0.5599, 0.5721, 0.5004, 0.3450, 0.5667,

@@ -44,6 +44,7 @@ BodyModel make_body_model(const BodyDef& def, const Scene& scene) {
   return m;
 }
 
+// Of the shapes on free bodies; the capsule axis too, for all that have one.
 void set_body_bounds(const Scene& scene, const WorldState& s, Bound* bounds) {
   for (size_t i = scene.shapes.size(); i-- > 0;) {
     const SceneShape& shape = scene.shapes[i];
@@ -114,6 +115,7 @@ void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::
   const Collider::Found found =
       collider->collide(*model.scene, poses, s->contacts, s->contact_pairs, s->touched);
   s->num_contacts = found.count;
+  if (found.failed) s->diverged = true;
   if (found.overflow) s->status |= kStatusContactOverflow;
   for (int32_t i = 0; i < s->num_contacts; ++i) {
     const float* center = bounds[s->contacts[i].shape_a].center;
@@ -123,6 +125,8 @@ void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::
   }
 }
 
+// The nearest of the last substep's points of the same pair, measured from shape a's centre: points slide
+// with it.
 bool warm_impulse(const WorldState& s, int32_t contact, Vec3* impulse) {
   const WarmPoint& here = s.next_warm[contact];
   float nearest = kWarmReach * kWarmReach;

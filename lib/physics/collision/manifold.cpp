@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/collision/thinning.hpp"
+
 namespace rdm {
 namespace {
 
@@ -11,27 +13,13 @@ constexpr double kAlong = 0.1;       // sine between two edges that count as alo
 constexpr double kPreferred = 1e-3;  // by which a's face must fit better than b's to be the one cut at
 constexpr double kSideways = 1e-9;   // sine of two axes that have no crossing
 constexpr int kMostCut = 2 * Feature::kMost;
+static_assert(kMaxHullPoints <= kMostCut, "a hull's points are thinned out too");
 
-// Keeps kManifoldPoints of `count` points in front: the deepest, then each time the farthest from all kept.
+// Of points in any order: at most kManifoldPoints, the deepest first.
 int thin_out(ManifoldPoint* points, int count) {
-  int first = 0;
-  for (int i = 1; i < count; ++i)
-    if (points[i].depth > points[first].depth) first = i;
-  std::swap(points[0], points[first]);
-  if (count <= kManifoldPoints) return count;
-  double gap[kMostCut];  // m2, to the nearest kept point
-  std::fill_n(gap, count, HUGE_VAL);
-  for (int kept = 1; kept < kManifoldPoints; ++kept) {
-    int next = kept;
-    for (int i = kept; i < count; ++i) {
-      const Vec3 d = points[i].p - points[kept - 1].p;
-      gap[i] = std::min(gap[i], dot(d, d));
-      if (gap[i] > gap[next]) next = i;
-    }
-    std::swap(points[kept], points[next]);
-    std::swap(gap[kept], gap[next]);
-  }
-  return kManifoldPoints;
+  deepest_first(points, count);
+  return keep_spread<kMostCut>(points, count, kManifoldPoints,
+                               [](const ManifoldPoint& point) { return point.p; });
 }
 
 // What is left of a polygon (or edge, or point) on the inner side of the plane through `corner`.

@@ -1,28 +1,15 @@
 // Finds the contact points of a scene's shapes at given poses, from the scene's fixed list of pairs.
 //
-// Holds one ODE geom per shape and no world's state: worlds of one worker share it. Bounds, which the
-// caller gives, pass over most pairs; only where two shapes' bounds meet are their geoms put in place and
-// asked.
+// Two stages. The broad phase passes over the pairs whose bounds, which the caller gives, do not meet. For
+// the others the exact poses are asked for, once per shape and search, and the pair's geoms give the points.
+// Holds one ODE geom per shape and no world's state: worlds of one worker share it.
 #pragma once
 #include "base/arena.hpp"
+#include "physics/collision/broadphase.hpp"
 #include "physics/collision/shapes.hpp"
 #include "physics/world.hpp"
 
 namespace rdm {
-
-// The capsule about a shape: its half axis in the shape's frame, and its radius, m. Along the longest way of
-// long bodies and things at rest, along capsules; else a sphere, without an axis.
-struct Capsule {
-  Vec3 axis;
-  double radius;
-};
-Capsule capsule_around(const SceneShape& shape);
-
-// Where a shape is, roughly: inside its capsule. World, m.
-struct Bound {
-  float center[4];  // x y z, radius of the sphere that holds the shape
-  float axis[4];    // x y z, radius of the capsule
-};
 
 class Collider {
  public:
@@ -35,6 +22,7 @@ class Collider {
   struct Found {
     int32_t count;
     bool overflow;
+    bool failed;  // ODE refused a pose: points may be missing
   };
 
   Collider() = default;
@@ -46,40 +34,33 @@ class Collider {
   void make(const Scene& scene);
 
   // [shapes]; those of shapes at rest are in place.
-  Bound* bounds() { return bounds_; }
+  Bound* bounds() { return broad_.bounds(); }
 
   // Contact points in the order of the pairs, without force; `pairs` [contacts_max] gets each point's pair;
-  // touched[] is only set.
+  // touched[] is only set. Never throws.
   Found collide(const Scene& scene, Poses& poses, Contact* contacts, int32_t* pairs, uint8_t* touched);
   // Deepest overlap of a body's shapes with all that it may touch, m.
   double overlap(const Scene& scene, Poses& poses, int32_t body);
 
  private:
-  struct Pair {
-    int32_t a, b;
-    float gap, reach;  // m2, squares of the sums of the bounds' capsule and sphere radii
-    int32_t plane;     // b is one: only its own test counts
+  // One call of collide.
+  struct Search {
+    Collider* self;
+    const Scene& scene;
+    Poses& poses;
+    Contact* contacts;
+    int32_t* pairs;
+    uint8_t* touched;
+    Found* found;
   };
-  struct Box {
-    float low[4], high[4];
-  };
-  void update_boxes(const Scene& scene);
-  bool above(const Pair& pair) const;
-  uint32_t near_four(const int32_t* list) const;
-  bool near_one(int32_t pair) const;
-  void mark_neighbours(const Scene& scene, int32_t articulation, const Box& box);
-  static bool near(const Bound& bound, const Box& box);
-  int touch(Poses& poses, int32_t pair, int most, dContactGeom* out);
-  void add_points(const Scene& scene, Poses& poses, int32_t pair, Contact* contacts, int32_t* pairs,
-                  uint8_t* touched, Found* found);
+  int touch(Poses& poses, const ShapePair& pair, int most, dContactGeom* out);
+  void add_points(const Search& search, int32_t pair);
   void put(Poses& poses, int32_t shape);
 
   Geom* geoms_ = nullptr;
-  Bound* bounds_ = nullptr;
-  Pair* pairs_ = nullptr;
-  Box* boxes_ = nullptr;  // [articulations]
-  uint32_t* placed_ = nullptr;
-  uint8_t *moves_ = nullptr, *neighbours_ = nullptr;
+  BroadPhase broad_;
+  uint32_t* placed_ = nullptr;  // [shapes] the last search that put the geom in place
+  uint8_t* moves_ = nullptr;
   uint32_t search_ = 0;
   int32_t num_shapes_ = 0;
 };

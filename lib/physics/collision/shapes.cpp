@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "physics/collision/manifold.hpp"
+#include "physics/collision/thinning.hpp"
 #include "physics/ode/ode_convert.hpp"
 
 namespace rdm {
@@ -19,29 +20,6 @@ bool is_ours(const Geom& geom) {
 Convex convex_of(const Geom& geom) {
   return {geom.kind, geom.size, from_ode(dGeomGetPosition(geom.id)), mat_from_ode(dGeomGetRotation(geom.id)),
           geom.hull};
-}
-
-// Keeps `most` of `count` points, in front: the deepest, then each time the one farthest from all kept.
-int spread_points(dContactGeom* points, int count, int most) {
-  if (count <= most) return count;
-  int first = 0;
-  for (int i = 1; i < count; ++i)
-    if (points[i].depth > points[first].depth) first = i;
-  std::swap(points[0], points[first]);
-  double gap[kMaxPairPoints];  // m2, to the nearest kept point
-  std::fill_n(gap, count, HUGE_VAL);
-  for (int kept = 1; kept < most; ++kept) {
-    const Vec3 last = from_ode(points[kept - 1].pos);
-    int next = kept;
-    for (int i = kept; i < count; ++i) {
-      const Vec3 d = from_ode(points[i].pos) - last;
-      gap[i] = std::min(gap[i], dot(d, d));
-      if (gap[i] > gap[next]) next = i;
-    }
-    std::swap(points[kept], points[next]);
-    std::swap(gap[kept], gap[next]);
-  }
-  return most;
 }
 
 }  // namespace
@@ -88,7 +66,8 @@ int collide_geoms(const Geom& a, const Geom& b, int most, dContactGeom* out) {
     // library.
     dContactGeom all[kMaxPairPoints];
     const int found = dCollide(a.id, b.id, kMaxPairPoints, all, sizeof all[0]);
-    const int kept = spread_points(all, found, most);
+    const int kept = keep_spread<kMaxPairPoints>(
+        all, found, most, [](const dContactGeom& point) { return from_ode(point.pos); });
     std::copy_n(all, kept, out);
     return kept;
   }

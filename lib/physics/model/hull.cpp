@@ -3,8 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/eigen.hpp"
 #include "base/error.hpp"
 
+// Faces: a plane through three points is one when all others lie on one side of it. With at most 32 points
+// that is tried for every three; points within kFlat of it belong to the same face, which gift wrapping
+// (Jarvis 1973) puts in order. The result is checked: V - E + F = 2 (Euler) and every edge in two faces, once
+// each way.
+//
+// Weight: the solid is cut into tetrahedra (o, a, b, c) from its corner o. With edges from o, volume
+// V = a . (b x c) / 6, and for uniform density (Tonon, Explicit exact formulas for the 3-D tetrahedron
+// inertia tensor in terms of its vertex coordinates, 2004)
+//   int x dV = V/4 (a + b + c),   int x x^T dV = V/20 (a a^T + b b^T + c c^T + s s^T),  s = a + b + c.
+// About the centre of mass m: S = int x x^T dV / V - m m^T, and per kg I = tr(S) 1 - S.
+//
+// Eigen adds the outer products. The planes' dots and crosses are ours: Eigen's dot of three adds in another
+// order, and the last bits of every hull would change.
 namespace rdm {
 namespace {
 
@@ -12,6 +26,7 @@ constexpr double kFlat = 1e-6;      // of the hull's size: farther from a plane,
 constexpr double kSliver = 1e-4;    // of the hull's size: height of triangles that span no plane
 constexpr double kThinnest = 1e-3;  // of the hull's size: nothing flatter is a solid
 constexpr double kFarthest = 1e3;   // m
+constexpr double kSmallest = 1e-6;  // m: below it the fifth power of a size, a moment, is lost in rounding
 
 // The corners of a polygon among the points of one plane, counterclockwise about n: gift wrapping.
 int32_t wrap(const Vec3* points, const uint8_t* list, int32_t count, const Vec3& n, double flat,
@@ -41,6 +56,12 @@ int32_t wrap(const Vec3* points, const uint8_t* list, int32_t count, const Vec3&
   return corners;
 }
 
+// v v^T
+Eigen::Matrix3d square(const Vec3& v) {
+  const Eigen::Vector3d e = to_eigen(v);
+  return e * e.transpose();
+}
+
 class Builder {
  public:
   Builder(const Vec3* points, int32_t count, const char* owner) : owner_(owner) {
@@ -54,6 +75,8 @@ class Builder {
       hull_.points[i] = points[i];
       size_ = std::max(size_, norm(points[i] - points[0]));
     }
+    if (size_ < kSmallest)
+      fail(Code::kArgument, "%s: the points are too near each other: all lie within %g m", owner, kSmallest);
   }
   Hull make() {
     const int32_t n = hull_.num_points;
@@ -144,11 +167,10 @@ class Builder {
         if ((edges[a] >> b & 1u) != (edges[b] >> a & 1u)) return false;
     return true;
   }
-  // Sum over tetrahedra from one corner: for each, the second moments are those of its corners (Tonon 2004).
   void weigh() {
     const Vec3 o = hull_.points[0];
     Vec3 first;
-    Mat3 second{{0, 0, 0, 0, 0, 0, 0, 0, 0}};
+    Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
     for (int32_t f = 0; f < hull_.num_faces; ++f) {
       const Hull::Face& face = hull_.faces[f];
       for (int32_t i = 1; i + 1 < face.count; ++i) {
@@ -157,22 +179,18 @@ class Builder {
         const double volume = dot(a, cross(b, c)) / 6;
         hull_.volume += volume;
         first += (volume / 4) * sum;
-        for (int x = 0; x < 3; ++x)
-          for (int y = 0; y < 3; ++y)
-            second(x, y) += volume / 20 * (a[x] * a[y] + b[x] * b[y] + c[x] * c[y] + sum[x] * sum[y]);
+        second += volume / 20 * (square(a) + square(b) + square(c) + square(sum));
       }
     }
     const Vec3 center = (1 / hull_.volume) * first;
     hull_.com = o + center;
-    double spread[3][3];
-    for (int x = 0; x < 3; ++x)
-      for (int y = 0; y < 3; ++y) spread[x][y] = second(x, y) / hull_.volume - center[x] * center[y];
-    const double moment[6] = {spread[1][1] + spread[2][2],
-                              spread[0][0] + spread[2][2],
-                              spread[0][0] + spread[1][1],
-                              -spread[0][1],
-                              -spread[0][2],
-                              -spread[1][2]};
+    const Eigen::Matrix3d spread = second / hull_.volume - square(center);
+    const double moment[6] = {spread(1, 1) + spread(2, 2),
+                              spread(0, 0) + spread(2, 2),
+                              spread(0, 0) + spread(1, 1),
+                              -spread(0, 1),
+                              -spread(0, 2),
+                              -spread(1, 2)};
     std::copy_n(moment, 6, hull_.moment);
   }
 

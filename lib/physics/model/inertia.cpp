@@ -1,13 +1,20 @@
 #include "physics/model/inertia.hpp"
 
+#include "base/eigen.hpp"
+
+// Moments of inertia, Featherstone, Rigid Body Dynamics Algorithms (2008), section 2.13, with I about the
+// centre of mass c:
+//   another frame    I_A = R_AB I_B R_AB^T,  c_A = X_AB c_B
+//   two bodies       c = (m1 c1 + m2 c2) / m,  I = sum_i I_i + m_i (|d_i|^2 1 - d_i d_i^T),  d_i = c_i - c
+// Eigen's products and dots of three add in another order than ours, which would change the last bits of
+// every world: they stay ours. Its elementwise sums, outer products and Cholesky's verdict agree.
 namespace rdm {
 namespace {
 
-// m (|c|^2 1 - c c^T)
-void add_point(Mat3* moment, double mass, const Vec3& c) {
-  const double square = dot(c, c);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) (*moment)(i, j) += mass * ((i == j ? square : 0) - c[i] * c[j]);
+// Of a point mass at c.
+Eigen::Matrix3d point_moment(double mass, const Vec3& c) {
+  const Eigen::Vector3d d = to_eigen(c);
+  return mass * (dot(c, c) * Eigen::Matrix3d::Identity() - d * d.transpose());
 }
 
 Inertia diagonal(double mass, double xx, double yy, double zz) {
@@ -43,19 +50,14 @@ Inertia combined(const Inertia& a, const Inertia& b) {
   out.mass = a.mass + b.mass;
   if (out.mass <= 0) return out;
   out.com = (1 / out.mass) * (a.mass * a.com + b.mass * b.com);
-  Mat3 sum = moment_matrix(a);
-  const Mat3 other = moment_matrix(b);
-  for (int i = 0; i < 9; ++i) sum.m[i] += other.m[i];
-  add_point(&sum, a.mass, a.com - out.com);
-  add_point(&sum, b.mass, b.com - out.com);
-  set_moment(&out, sum);
+  const Eigen::Matrix3d sum = to_eigen(moment_matrix(a)) + to_eigen(moment_matrix(b)) +
+                              point_moment(a.mass, a.com - out.com) + point_moment(b.mass, b.com - out.com);
+  set_moment(&out, to_mat3(sum));
   return out;
 }
 
 bool positive_definite(const Mat3& a) {
-  const double second = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
-  const double third = dot(a.col(0), cross(a.col(1), a.col(2)));
-  return a(0, 0) > 0 && second > 0 && third > 0;
+  return to_eigen(a).llt().info() == Eigen::Success;
 }
 
 Inertia sphere_inertia(double mass, double radius) {

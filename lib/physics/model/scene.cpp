@@ -277,7 +277,7 @@ void list_pairs(Scene* scene) {
       const SceneShape &x = shape(i), &y = shape(j);
       if (x.articulation >= 0 && x.articulation == y.articulation) continue;
       if (x.carrier == Carrier::kBody && y.carrier == Carrier::kBody && x.index == y.index) continue;
-      if (x.articulation >= 0 && y.articulation >= 0 && !scene->def.hand_hand_contact) continue;
+      if (x.articulation >= 0 && y.articulation >= 0 && !scene->def.articulations_touch) continue;
       add_pair(scene, i, j);
     }
 }
@@ -322,22 +322,6 @@ bool Scene::moves(const SceneShape& shape) const {
       break;
   }
   return false;
-}
-
-int32_t Scene::find_link(int32_t articulation, const char* name) const {
-  const auto a = static_cast<size_t>(articulation);
-  if (articulation < 0 || a >= link_offset.size())
-    fail(Code::kNotFound, "articulation %d does not exist", articulation);
-  const auto& links = def.articulations[a].links;
-  for (size_t i = 0; i < links.size(); ++i)
-    if (links[i].name == name) return link_offset[a] + static_cast<int32_t>(i);
-  fail(Code::kNotFound, "link %s does not exist in %s", name, def.articulations[a].name.text);
-}
-
-int32_t Scene::find_body(const char* name) const {
-  for (size_t i = 0; i < def.bodies.size(); ++i)
-    if (def.bodies[i].name == name) return static_cast<int32_t>(i);
-  fail(Code::kNotFound, "body %s does not exist", name);
 }
 
 int32_t Scene::find_shape(const char* name) const {

@@ -144,7 +144,7 @@ struct SceneDef {
   Vector<ShapeDef> statics;
   int32_t num_materials = 1;
   Friction friction[kMaxMaterials][kMaxMaterials];
-  bool hand_hand_contact = true;  // shapes of different articulations may touch (friction by material)
+  bool articulations_touch = true;  // shapes of different articulations may (friction by material)
 };
 
 // Where a shape of the flattened scene sits. The base of an articulation may be fixed or free.
@@ -203,9 +203,7 @@ struct Scene {
   const Hull* hull_of(const SceneShape& shape) const {
     return shape.hull < 0 ? nullptr : &hulls[static_cast<size_t>(shape.hull)];
   }
-  // Indices by name; Error(kNotFound).
-  int32_t find_link(int32_t articulation, const char* name) const;  // flat
-  int32_t find_body(const char* name) const;
+  // Index by name; Error(kNotFound).
   int32_t find_shape(const char* name) const;
   double control_dt() const { return def.solver.h * def.solver.substeps; }
 };

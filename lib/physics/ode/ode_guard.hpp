@@ -1,18 +1,23 @@
-// ODE's process-wide state, kept safe: initialisation, per-thread data, error handlers.
+// ODE's process-wide state, kept safe: initialisation, per-thread data, and the handlers for errors and
+// memory.
 //
-// ODE ends the process after an error handler returns, so ours throws OdeFailure while this thread is in
-// an OdeScope; elsewhere a host's own handlers go on working.
+// ODE ends the process after an error handler returns, and uses what its memory handler gives it without a
+// look. So both of ours throw while this thread is in an OdeScope: Error(kPhysics) for a complaint,
+// Error(kMemory) for memory that was refused. Elsewhere a host's own handlers go on working: ours pass on to
+// them.
+//
+// A throw leaves ODE where it was. What its constructors made they take back themselves, but a job of the
+// solver or half of a geom's offset is lost. Where that can happen the scope writes down each block in an
+// OdeBlocks, which frees what is left when the objects are gone.
 #pragma once
+#include <cstddef>
+#include <vector>
 
 namespace rdm {
 
-struct OdeFailure {
-  char text[160];
-};
-
 // Held by every world. The first one initialises ODE (which then stays initialised: a host may use it
 // too) and takes the handlers; the last one puts the host's back.
-// Error(kVersion) when the ODE found at run time is not the double-precision build.
+// Error(kVersion) when the ODE found at run time is not the double-precision build, Error(kMemory).
 class OdeGuard {
  public:
   OdeGuard();
@@ -21,14 +26,54 @@ class OdeGuard {
   OdeGuard& operator=(const OdeGuard&) = delete;
 };
 
-// Around every stretch of ODE calls: ODE has this thread's data, and its complaints are thrown as
-// OdeFailure or, when they are mere messages, dropped.
+// Blocks that ODE has taken and not yet given back, by what they were taken for. Used by one thread at a
+// time; goes after all that uses them and before the last OdeGuard.
+class OdeBlocks {
+ public:
+  OdeBlocks() = default;
+  ~OdeBlocks();
+  OdeBlocks(const OdeBlocks&) = delete;
+  OdeBlocks& operator=(const OdeBlocks&) = delete;
+
+  void add(void* block, size_t bytes, const void* purpose);
+  void replace(const void* block, void* by, size_t bytes);
+  void remove(const void* block);
+  void give_purpose(const void* block, const void* purpose);
+  // Frees all blocks of one purpose, which no object may use any more.
+  void release(const void* purpose);
+
+ private:
+  struct Entry {
+    void* block;
+    size_t bytes;
+    const void* purpose;
+  };
+  Entry* find(const void* block);
+  std::vector<Entry> entries_;
+};
+
+// Around every stretch of ODE calls: ODE has this thread's data, its complaints and refused memory are thrown
+// as Error, mere messages are dropped. With `blocks`, what ODE takes is written down there for `purpose`;
+// without, as in the scope around this one.
 class OdeScope {
  public:
-  OdeScope();
+  explicit OdeScope(OdeBlocks* blocks = nullptr, const void* purpose = nullptr);
   ~OdeScope();
   OdeScope(const OdeScope&) = delete;
   OdeScope& operator=(const OdeScope&) = delete;
+
+  OdeBlocks* blocks() const { return blocks_; }
+  const void* purpose() const { return purpose_; }
+
+ private:
+  OdeScope* outer_;
+  OdeBlocks* blocks_ = nullptr;
+  const void* purpose_ = nullptr;
 };
+
+// What ODE's memory handlers do: the host's, or the C library's. For memory that ODE asks for by other ways.
+void* ode_alloc(size_t bytes, const void* purpose);
+void ode_free(void* block, size_t bytes);
+OdeBlocks* ode_blocks();  // of the scope, may be null
 
 }  // namespace rdm

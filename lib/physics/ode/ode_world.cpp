@@ -11,14 +11,26 @@ namespace rdm {
 namespace {
 
 constexpr int32_t kMaxOdeIterations = 8;  // more would draw from a process-wide seed
+constexpr double kTurnTolerance = 1e-6;   // between a saved quaternion and its matrix
+
+// What the solver's working memory is taken for: a purpose of its own, because it serves all worlds that
+// share it. ODE gives the old block back before it asks for a larger one, and keeps pointing at it when that
+// is refused: it stays until the larger one is there.
+const char kWorkingMemory = 0, kOldWorkingMemory = 0;
+
+void* take_working_memory(dsizeint bytes) {
+  void* const block = ode_alloc(bytes, &kWorkingMemory);
+  ode_blocks()->release(&kOldWorkingMemory);
+  return block;
+}
+void* shrink_working_memory(void* block, dsizeint, dsizeint) {
+  return block;
+}
+void free_working_memory(void* block, dsizeint) {
+  ode_blocks()->give_purpose(block, &kOldWorkingMemory);
+}
 
 }  // namespace
-
-OdeWorld::Handle::~Handle() {
-  const OdeScope scope;
-  if (world) dWorldDestroy(world);
-  if (threading) dThreadingFreeImplementation(threading);
-}
 
 OdeWorld::OdeWorld(const Scene& scene, Arena& arena, OdeWorld* partner) : World(scene, arena) {
   const auto links = static_cast<size_t>(scene.num_links), bodies = static_cast<size_t>(scene.num_bodies);
@@ -32,43 +44,58 @@ OdeWorld::OdeWorld(const Scene& scene, Arena& arena, OdeWorld* partner) : World(
     fail(Code::kRange, "iterations: engine ode takes at most %d, not %d", kMaxOdeIterations,
          scene.def.solver.iterations);
   if (arena.measuring()) return;
-  const OdeScope scope;
+  blocks_ = partner ? partner->blocks_ : std::make_shared<OdeBlocks>();
+  const OdeScope scope(blocks_.get());
   try {
     make_world(partner);
     make_bodies();
     make_geoms();
     make_forces();
     prewarm();
-  } catch (const OdeFailure& failure) {
-    fail(Code::kPhysics, "ode: %s", failure.text);
+  } catch (...) {  // no destructor runs
+    destroy();
+    throw;
   }
 }
 
-OdeWorld::~OdeWorld() = default;
+OdeWorld::~OdeWorld() {
+  if (!blocks_) return;  // measuring
+  const OdeScope scope(blocks_.get());
+  destroy();
+}
+
+void OdeWorld::destroy() {
+  contact_.destroy();
+  if (in_solver_) dWorldCleanupWorkingMemory(ode_);  // a partner takes its own
+  if (ode_) dWorldDestroy(ode_);
+  if (in_solver_)  // jobs that will never be done: ODE must not see them
+    blocks_->release(this);
+  else if (threading_)
+    dThreadingFreeImplementation(threading_);
+}
 
 void OdeWorld::make_world(const OdeWorld* partner) {
   const SolverDef& solver = scene_->def.solver;
-  ode_.world = dWorldCreate();
-  ode_.threading = dThreadingAllocateSelfThreadedImplementation();
-  if (!ode_.world || !ode_.threading) fail(Code::kMemory, "ode: no memory for a world");
-  dWorldSetStepThreadingImplementation(ode_.world, dThreadingImplementationGetFunctions(ode_.threading),
-                                       ode_.threading);
+  ode_ = dWorldCreate();
+  make_threading();
   // The prewarming step asks for the most that is ever needed: reserves on top of it would lie idle.
   const dWorldStepReserveInfo reserve = {sizeof reserve, 1.0f, 4096};
-  if (!dWorldUseSharedWorkingMemory(ode_.world, partner ? partner->ode_.world : nullptr) ||
-      !dWorldSetStepMemoryReservationPolicy(ode_.world, &reserve))
+  const dWorldStepMemoryFunctionsInfo memory = {sizeof memory, take_working_memory, shrink_working_memory,
+                                                free_working_memory};
+  if (!dWorldUseSharedWorkingMemory(ode_, partner ? partner->ode_ : nullptr) ||
+      !dWorldSetStepMemoryReservationPolicy(ode_, &reserve) || !dWorldSetStepMemoryManager(ode_, &memory))
     fail(Code::kMemory, "ode: no memory for a world");
   const Vec3& g = scene_->def.gravity;
-  dWorldSetGravity(ode_.world, g.x, g.y, g.z);
-  dWorldSetERP(ode_.world, solver.erp);
-  dWorldSetCFM(ode_.world, solver.cfm);
-  dWorldSetQuickStepNumIterations(ode_.world, solver.iterations);
-  dWorldSetQuickStepW(ode_.world, solver.relaxation);
+  dWorldSetGravity(ode_, g.x, g.y, g.z);
+  dWorldSetERP(ode_, solver.erp);
+  dWorldSetCFM(ode_, solver.cfm);
+  dWorldSetQuickStepNumIterations(ode_, solver.iterations);
+  dWorldSetQuickStepW(ode_, solver.relaxation);
   dWorldSetContactMaxCorrectingVel(
-      ode_.world, solver.contact_max_speed > 0 ? solver.contact_max_speed : kOdeContactSpeed);
-  dWorldSetContactSurfaceLayer(ode_.world, solver.contact_layer);
-  dWorldSetAutoDisableFlag(ode_.world, 0);
-  dWorldSetStepIslandsProcessingMaxThreadCount(ode_.world, 1);  // worlds are the unit of parallel work
+      ode_, solver.contact_max_speed > 0 ? solver.contact_max_speed : kOdeContactSpeed);
+  dWorldSetContactSurfaceLayer(ode_, solver.contact_layer);
+  dWorldSetAutoDisableFlag(ode_, 0);
+  dWorldSetStepIslandsProcessingMaxThreadCount(ode_, 1);  // worlds are the unit of parallel work
 }
 
 void OdeWorld::make_bodies() {
@@ -79,7 +106,7 @@ void OdeWorld::make_bodies() {
     fresh_[i] = 1;
   }
   for (int32_t a = 0; a < num_articulations; ++a) rebuild(a);
-  tree_.make(ode_.world, state());
+  tree_.make(ode_, state());
   for (int32_t i = 0; i < scene_->num_links; ++i) q_[i] = target_[i];
   for (int32_t a = 0; a < num_articulations; ++a) {
     links_changed(a);
@@ -89,7 +116,7 @@ void OdeWorld::make_bodies() {
     const double* m = def.inertia.moment;
     dMass mass;
     dMassSetParameters(&mass, def.inertia.mass, 0, 0, 0, m[0], m[1], m[2], m[3], m[4], m[5]);
-    body_ids_[i] = dBodyCreate(ode_.world);
+    body_ids_[i] = dBodyCreate(ode_);
     dBodySetMass(body_ids_[i], &mass);
     dBodySetGravityMode(body_ids_[i], def.gravity);
     dBodySetMaxAngularSpeed(body_ids_[i], kMaxBodySpin);
@@ -98,7 +125,7 @@ void OdeWorld::make_bodies() {
 }
 
 void OdeWorld::make_geoms() {
-  contact_.make_group();
+  contact_.make(*scene_);
   for (int32_t i = 0; i < scene_->num_links; ++i) sensor_of_link_[i] = -1;
   for (size_t i = 0; i < scene_->sensors.size(); ++i)
     sensor_of_link_[scene_->sensors[i]] = static_cast<int32_t>(i);
@@ -106,17 +133,16 @@ void OdeWorld::make_geoms() {
     const SceneShape& s = scene_->shapes[static_cast<size_t>(i)];
     switch (s.carrier) {
       case Carrier::kStatic:
-        contact_.make_geom(*scene_, i, nullptr, {}, {});
+        contact_.make_geom(*scene_, i, nullptr, {});
         break;
       case Carrier::kLink:
-        contact_.make_geom(*scene_, i, tree_.body(s.index), tree_.com(s.index), {});
+        contact_.make_geom(*scene_, i, tree_.body(s.index), tree_.com(s.index));
         break;
       case Carrier::kBody:
-        contact_.make_geom(*scene_, i, body_ids_[s.index], {}, {});
+        contact_.make_geom(*scene_, i, body_ids_[s.index], {});
         break;
       case Carrier::kBase:
-        contact_.make_geom(*scene_, i, tree_.base(s.articulation), tree_.base_com(s.articulation),
-                           bases_[s.articulation].X);
+        contact_.make_geom(*scene_, i, tree_.base(s.articulation), tree_.base_com(s.articulation));
         break;
     }
   }
@@ -158,18 +184,31 @@ void OdeWorld::make_forces() {
   }
 }
 
-// One solver step with as many contacts as there can ever be, in one island, then back to the start:
-// ODE's working memory has its final size before the first real step.
-void OdeWorld::prewarm() {
+// A threading implementation of its own: ODE's default one is shared by all worlds and not thread-safe.
+void OdeWorld::make_threading() {
+  const OdeScope scope(blocks_.get(), this);
+  threading_ = dThreadingAllocateSelfThreadedImplementation();
+  if (!threading_) fail(Code::kMemory, "ode: no memory for a world");
+  dWorldSetStepThreadingImplementation(ode_, dThreadingImplementationGetFunctions(threading_), threading_);
+}
+
+// One solver step with as many contacts as there can ever be, in one island: ODE's working memory has its
+// final size before the first real step. The bodies have moved then.
+void OdeWorld::grow_working_memory() {
   Vector<dBodyID> heads;
   for (size_t a = 0; a < scene_->link_offset.size(); ++a)
     if (!scene_->def.articulations[a].links.empty()) heads.push_back(tree_.body(scene_->link_offset[a]));
   for (int32_t i = 0; i < scene_->num_bodies; ++i) heads.push_back(body_ids_[i]);
   if (heads.empty()) heads.push_back(tree_.base(0));
   tree_.drive(state());
-  contact_.fill(ode_.world, *scene_, heads.data(), static_cast<int32_t>(heads.size()));
+  contact_.fill(ode_, *scene_, heads.data(), static_cast<int32_t>(heads.size()));
   solve();
   contact_.empty();
+}
+
+// And back to the start.
+void OdeWorld::prewarm() {
+  grow_working_memory();
   for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a)
     put_base(a, {scene_->def.articulations[static_cast<size_t>(a)].X_WB, {}, {}});
   for (int32_t i = 0; i < scene_->num_bodies; ++i)
@@ -177,12 +216,14 @@ void OdeWorld::prewarm() {
 }
 
 void OdeWorld::links_changed(int32_t articulation) {
+  const OdeScope scope;
   rebuild(articulation);
   tree_.write(articulation, state());
 }
 
 void OdeWorld::set_body(int32_t i, const Motion& m) {
   const Motion checked = checked_motion("set_body", i, m);
+  const OdeScope scope;
   write_pose(body_ids_[i], checked.X.p, checked.X.q, to_matrix(checked.X.q));
   write_velocity(body_ids_[i], checked.v, checked.w);
   bodies_[i] = checked;
@@ -191,6 +232,7 @@ void OdeWorld::set_body(int32_t i, const Motion& m) {
 void OdeWorld::set_base(int32_t articulation, const Motion& m) {
   if (!tree_.base(articulation))
     fail(Code::kState, "set_base: the base of articulation %d is fixed", articulation);
+  const OdeScope scope;
   put_base(articulation, checked_motion("set_base", articulation, m));
 }
 
@@ -210,6 +252,7 @@ void OdeWorld::add_push(Force& force, const Vec3& f, const Vec3& torque) {
 }
 
 void OdeWorld::push_link(int32_t i, const Vec3& force, const Vec3& p_W) {
+  const OdeScope scope;
   const Vec3 arm = p_W - from_ode(dBodyGetPosition(tree_.body(i)));
   add_push(forces_[i], force, cross(arm, force));
 }
@@ -241,11 +284,25 @@ void OdeWorld::apply_forces() {
 }
 
 void OdeWorld::solve() {
+  const OdeScope scope(blocks_.get(), this);
   const SolverDef& solver = scene_->def.solver;
-  if (solver.exact)
-    dWorldStep(ode_.world, solver.h);
-  else
-    dWorldQuickStep(ode_.world, solver.h);
+  in_solver_ = true;
+  if (!(solver.exact ? dWorldStep(ode_, solver.h) : dWorldQuickStep(ode_, solver.h)))
+    fail(Code::kMemory, "ode: no memory for a step");
+  in_solver_ = false;
+}
+
+// After a throw through the solver. Its jobs point into a stack that is gone and the memory it worked in is
+// lost to it: both are given up and made anew.
+void OdeWorld::restart_solver() {
+  dWorldCleanupWorkingMemory(ode_);
+  dWorldSetStepThreadingImplementation(ode_, nullptr, nullptr);
+  for (const void* lost : {static_cast<const void*>(&kWorkingMemory),
+                           static_cast<const void*>(&kOldWorkingMemory), static_cast<const void*>(this)})
+    blocks_->release(lost);
+  threading_ = nullptr;
+  make_threading();
+  grow_working_memory();
 }
 
 void OdeWorld::read_body(int32_t i) {
@@ -293,7 +350,7 @@ void OdeWorld::add_sensors(double weight) {
 bool OdeWorld::substep(double weight) {
   apply_forces();
   tree_.drive(state());
-  const OdeContacts::Found found = contact_.collide(ode_.world, *scene_, contacts_, touched_);
+  const OdeContacts::Found found = contact_.collide(ode_, *scene_, contacts_, touched_);
   num_contacts_ = found.count;
   if (found.overflow) status_ |= kStatusContactOverflow;
   solve();
@@ -311,22 +368,32 @@ bool OdeWorld::substep(double weight) {
 void OdeWorld::recover() {
   status_ |= kStatusDiverged;
   num_contacts_ = 0;
-  contact_.empty();
   for (int32_t i = 0; i < scene_->num_links; ++i) qd_[i] = 0;
-  for (size_t a = 0; a < scene_->link_offset.size(); ++a) {
-    put_base(static_cast<int32_t>(a), {bases_[a].X, {}, {}});
+  for (size_t i = 0; i < scene_->sensors.size(); ++i) sensors_[i] = {};
+  put_back();
+  if (!in_solver_) return;
+  try {
+    restart_solver();
+  } catch (const Error&) {  // without memory: the next step tries again
+    in_solver_ = true;
   }
+  put_back();
+}
+
+void OdeWorld::put_back() {
+  contact_.empty();
+  for (size_t a = 0; a < scene_->link_offset.size(); ++a)
+    put_base(static_cast<int32_t>(a), {bases_[a].X, {}, {}});
   for (int32_t i = 0; i < scene_->num_bodies; ++i) set_body(i, {bodies_[i].X, {}, {}});
   for (int32_t i = 0; i < num_forces_; ++i) {
     if (!forces_[i].body) continue;
     dBodySetForce(forces_[i].body, 0, 0, 0);
     dBodySetTorque(forces_[i].body, 0, 0, 0);
   }
-  for (size_t i = 0; i < scene_->sensors.size(); ++i) sensors_[i] = {};
 }
 
 void OdeWorld::step() {
-  const OdeScope scope;
+  const OdeScope scope(blocks_.get());
   status_ = 0;
   num_contacts_ = 0;
   for (int32_t i = 0; i < scene_->num_links; ++i) {
@@ -338,10 +405,10 @@ void OdeWorld::step() {
   for (size_t i = 0; i < scene_->sensors.size(); ++i) sensors_[i] = {};
   for (size_t i = 0; i < scene_->pairs.size(); ++i) touched_[i] = 0;
   const int32_t substeps = scene_->def.solver.substeps;
-  bool good = true;
+  bool good = !in_solver_;
   try {
     for (int32_t s = 0; s < substeps && good; ++s) good = substep(1.0 / substeps);
-  } catch (const OdeFailure&) {
+  } catch (const Error&) {
     good = false;
   }
   if (!good) recover();
@@ -352,11 +419,102 @@ void OdeWorld::step() {
 }
 
 double OdeWorld::body_overlap(int32_t body) {
+  const OdeScope scope;
   return contact_.overlap(*scene_, body);
 }
 
 double OdeWorld::joint_drift() const {
+  const OdeScope scope;
   return tree_.drift(*scene_);
+}
+
+// ODE renormalises a quaternion that is set and derives the matrix from it; both are kept as they are, or
+// the last bit would change.
+struct OdeWorld::BodyState {
+  Vec3 p;
+  Quat q;
+  Mat3 R;
+  Vec3 v, w;
+};
+
+void OdeWorld::save_body(Writer& out, dBodyID body) const {
+  out.value(BodyState{from_ode(dBodyGetPosition(body)), quat_from_ode(dBodyGetQuaternion(body)),
+                      mat_from_ode(dBodyGetRotation(body)), from_ode(dBodyGetLinearVel(body)),
+                      from_ode(dBodyGetAngularVel(body))});
+}
+
+void OdeWorld::load_body(Reader& in, dBodyID body) {
+  const auto state = in.value<BodyState>();
+  write_pose(body, state.p, state.q, state.R);
+  write_velocity(body, state.v, state.w);
+}
+
+void OdeWorld::save(Writer& out) const {
+  const OdeScope scope;
+  out.value(scene_->num_links);
+  out.value(scene_->num_bodies);
+  out.value(status_);
+  const auto bytes = static_cast<size_t>(scene_->num_links) * sizeof(double);
+  for (const double* row : {q_, qd_, target_, torque_}) out.bytes(row, bytes);
+  out.bytes(sensors_, scene_->sensors.size() * sizeof(Wrench));
+  for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a)
+    if (tree_.base(a)) save_body(out, tree_.base(a));
+  for (int32_t i = 0; i < scene_->num_bodies; ++i) save_body(out, body_ids_[i]);
+}
+
+// Reads a whole state without taking any of it. Error(kFormat) for one that no step leads to.
+void OdeWorld::check_state(Reader in) const {
+  if (in.value<int32_t>() != scene_->num_links || in.value<int32_t>() != scene_->num_bodies)
+    fail(Code::kFormat, "world state: it is of another scene");
+  bool good = sound_rows(in, *scene_);
+  int32_t count = scene_->num_bodies;
+  for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a)
+    count += tree_.base(a) ? 1 : 0;
+  for (int32_t i = 0; i < count; ++i) good &= sound_body(in.value<BodyState>());
+  if (!good) fail(Code::kFormat, "world state: a number is not finite or out of range");
+}
+
+bool OdeWorld::sound_body(const BodyState& state) {
+  const Mat3 R = to_matrix(state.q);
+  for (size_t i = 0; i < 9; ++i)
+    if (!bounded(R.m[i] - state.R.m[i], kTurnTolerance)) return false;
+  return sound({{state.p, state.q}, state.v, state.w});
+}
+
+void OdeWorld::load(Reader& in) {
+  check_state(in);
+  const OdeScope scope;
+  in.view(2 * sizeof(int32_t));
+  status_ = in.value<uint32_t>();
+  const auto bytes = static_cast<size_t>(scene_->num_links) * sizeof(double);
+  for (double* row : {q_, qd_, target_, torque_}) in.bytes(row, bytes);
+  in.bytes(sensors_, scene_->sensors.size() * sizeof(Wrench));
+  for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a) {
+    if (tree_.base(a)) {
+      load_body(in, tree_.base(a));
+      tree_.read_base(a, state());
+    }
+    rebuild(a);
+    tree_.write(a, state());
+  }
+  for (int32_t i = 0; i < scene_->num_bodies; ++i) {
+    load_body(in, body_ids_[i]);
+    read_body(i);
+  }
+  num_contacts_ = 0;
+  for (size_t i = 0; i < scene_->pairs.size(); ++i) touched_[i] = 0;
+  for (int32_t i = 0; i < num_forces_; ++i) {
+    forces_[i].push = {};
+    forces_[i].pushed = false;
+  }
+}
+
+size_t OdeWorld::heap_bytes(const Scene& scene) {
+  const auto links = static_cast<size_t>(scene.num_links), bodies = static_cast<size_t>(scene.num_bodies);
+  const auto contacts = static_cast<size_t>(scene.def.solver.contacts_max);
+  // Measured with the packaged library and rounded up: ODE's objects and, for all contacts in one island,
+  // the solver's rows.
+  return 32000 + links * 2200 + bodies * 1200 + scene.shapes.size() * 300 + contacts * 1600;
 }
 
 }  // namespace rdm

@@ -5,6 +5,8 @@
 #pragma once
 #include <ode/ode.h>
 
+#include <memory>
+
 #include "physics/ode/ode_contacts.hpp"
 #include "physics/ode/ode_guard.hpp"
 #include "physics/ode/ode_links.hpp"
@@ -34,13 +36,6 @@ class OdeWorld final : public World {
   void load(Reader& in) override;
 
  private:
-  // ODE's world and its own threading implementation: the default one is shared by all worlds and not
-  // thread-safe.
-  struct Handle {
-    dWorldID world = nullptr;
-    dThreadingImplementationID threading = nullptr;
-    ~Handle();
-  };
   // One ODE body: what acts on it besides gravity and joints. Factors are those of implicit damping,
   // v <- factor (v + h a), brought in before the solver runs.
   struct Force {
@@ -60,7 +55,10 @@ class OdeWorld final : public World {
   void make_bodies();
   void make_geoms();
   void make_forces();
+  void make_threading();
+  void grow_working_memory();
   void prewarm();
+  void destroy();
   void set_force(Force* force, dBodyID body, double linear_damping, double angular_damping, double mass,
                  bool gravity);
   void add_push(Force& force, const Vec3& f, const Vec3& torque);
@@ -70,12 +68,20 @@ class OdeWorld final : public World {
   bool read_bodies();
   void add_sensors(double weight);
   void recover();
+  void put_back();
+  void restart_solver();
+  struct BodyState;
+  static bool sound_body(const BodyState& state);
+  void check_state(Reader in) const;
   void save_body(Writer& out, dBodyID body) const;
   void load_body(Reader& in, dBodyID body);
   void read_body(int32_t i);
 
   OdeGuard guard_;
-  Handle ode_;
+  std::shared_ptr<OdeBlocks> blocks_;  // of all partners
+  dWorldID ode_ = nullptr;
+  dThreadingImplementationID threading_ = nullptr;
+  bool in_solver_ = false;  // also after a throw through it, until it is restarted
   OdeLinks tree_;
   OdeContacts contact_;
   dBodyID* body_ids_ = nullptr;        // [num_bodies]

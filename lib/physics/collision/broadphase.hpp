@@ -1,0 +1,79 @@
+// Which pairs of a scene may touch at the present poses: most are passed over by bounds alone.
+//
+// Every shape stands in a sphere and, more tightly, in a capsule (a segment c +- u with a radius). Per
+// substep:
+//   1. an axis-aligned box around each articulation's spheres;
+//   2. per run of pairs of one shape with one articulation: the shape's sphere against that box,
+//      |max(low - c, c - high, 0)|^2 < r^2, and that articulation's shapes against the box of the shape's
+//      own;
+//   3. per pair, four at a time: spheres, |c_a - c_b|^2 < (r_a + r_b)^2, then the distance of the two
+//   segments
+//      (Ericson, Real-Time Collision Detection, 2005, section 5.1.9). Planes: n . c - d < r.
+// All in floats with a slack for their rounding: a pair that touches is never passed over, so what is found
+// does not depend on the bounds. A bound with a number missing (NaN) touches nothing.
+#pragma once
+#include "base/arena.hpp"
+#include "physics/model/scene.hpp"
+
+namespace rdm {
+
+// The capsule about a shape: its half axis in the shape's frame, and its radius, m. Along the longest way of
+// long bodies and things at rest, along capsules; else a sphere, without an axis.
+struct Capsule {
+  Vec3 axis;
+  double radius;
+};
+Capsule capsule_around(const SceneShape& shape);
+
+// Where a shape is, roughly: inside its capsule. World, m.
+struct Bound {
+  float center[4];  // x y z, radius of the sphere that holds the shape
+  float axis[4];    // x y z, radius of the capsule
+};
+
+// Pose of a shape that does not move. Of one that does, its pose in the frame that carries it.
+Pose rest_pose(const Scene& scene, const SceneShape& shape);
+
+class BroadPhase {
+ public:
+  using Visit = void (*)(void* context, int32_t pair);
+
+  void carve(const Scene& scene, Arena& arena);
+  // Bounds of shapes at rest, and radii of all.
+  void make(const Scene& scene);
+
+  // [shapes]. Centres and axes of shapes that move are the caller's to set before each search.
+  Bound* bounds() { return bounds_; }
+
+  // Calls visit for each pair that may touch, in the order of Scene::pairs.
+  void search(const Scene& scene, Visit visit, void* context);
+  // For a single pair.
+  bool near(int32_t pair) const;
+
+ private:
+  struct Pair {
+    int32_t a, b;
+    float gap, reach;  // m2, squares of the sums of the bounds' capsule and sphere radii
+    int32_t plane;     // index of planes_ when b is one: only its own test counts; else -1
+  };
+  struct Plane {
+    Vec3 n;
+    double d;  // n . x = d on it, m
+  };
+  struct Box {
+    float low[4], high[4];
+  };
+  void update_boxes(const Scene& scene);
+  void mark_neighbours(const Scene& scene, int32_t articulation, const Box& box);
+  uint32_t near_four(const int32_t* list) const;
+  bool on_plane(const Pair& pair) const;
+  static bool near(const Bound& bound, const Box& box);
+
+  Bound* bounds_ = nullptr;
+  Pair* pairs_ = nullptr;
+  Plane* planes_ = nullptr;
+  Box* boxes_ = nullptr;           // [articulations]
+  uint8_t* neighbours_ = nullptr;  // [shapes] near the other articulation of a run
+};
+
+}  // namespace rdm
