@@ -39,31 +39,4 @@ int32_t algo_find(const char* name) {
        names[nearest_name(name, names, algo_count())]);
 }
 
-size_t Agent::memory(const AgentConfig& config) {
-  ResolvedAgentConfig plan = make_plan(config);
-  const size_t rows = options_bytes(plan.row->info);
-  const AlgoRow& row = *plan.row;
-  return row.measure(std::move(plan)) + rows + Workers::memory(config.hooks, config.num_threads);
-}
-
-Agent* Agent::create(const AgentConfig& config) {
-  const HostScope scope(config.hooks);
-  ResolvedAgentConfig plan = make_plan(config);
-  const AlgoRow& row = *plan.row;
-  PolicyGradient* agent = row.make(config.hooks, std::move(plan));
-  try {
-    agent->open(config);
-  } catch (...) {
-    row.end(agent);
-    throw;
-  }
-  return agent;
-}
-
-void Agent::destroy(Agent* a) {
-  if (!a) return;
-  auto* agent = static_cast<PolicyGradient*>(a);
-  agent->row().end(agent);
-}
-
 }  // namespace rdm

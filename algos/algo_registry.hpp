@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 
-#include "algos/core/policy_gradient.hpp"
+#include "algos/core/agent.hpp"
 #include "algos/core/resolved_config.hpp"
 
 namespace rdm {
@@ -14,9 +14,9 @@ enum class Costs : int32_t { kNone, kAny, kOne };
 struct AlgoRow {
   AlgoInfo info;
   Costs costs;
-  size_t (*measure)(ResolvedAgentConfig&& plan);
-  PolicyGradient* (*make)(const HostHooks& hooks, ResolvedAgentConfig&& plan);
-  void (*end)(PolicyGradient* agent);
+  size_t (*measure)(ResolvedAgentConfig&& resolved);
+  Agent* (*make)(const HostHooks& hooks, ResolvedAgentConfig&& resolved);
+  void (*end)(Agent* agent);
 };
 const AlgoRow& algo_row(int32_t index);
 
@@ -30,17 +30,17 @@ constexpr AlgoRow make_algo_row(const char* name, const char* summary,
   AlgoRow row{};
   row.info = {name, summary, options.data(), static_cast<int32_t>(N)};
   row.costs = costs;
-  row.measure = [](ResolvedAgentConfig&& plan) -> size_t {
-    T agent(std::move(plan));
+  row.measure = [](ResolvedAgentConfig&& resolved) -> size_t {
+    T agent(std::move(resolved));
     Arena arena;
     agent.carve(arena);
     return sizeof(T) + arena.used();
   };
-  row.make = [](const HostHooks& hooks, ResolvedAgentConfig&& plan) -> PolicyGradient* {
-    T* agent = host_new<T>(hooks, std::move(plan));
+  row.make = [](const HostHooks& hooks, ResolvedAgentConfig&& resolved) -> Agent* {
+    T* agent = host_new<T>(hooks, std::move(resolved));
     return agent;
   };
-  row.end = [](PolicyGradient* agent) {
+  row.end = [](Agent* agent) {
     const HostHooks hooks = agent->config().hooks;
     host_delete(hooks, static_cast<T*>(agent));
   };

@@ -1,6 +1,5 @@
 // Looking into a world: shapes, poses, contacts, pictures.
 #include "capi/handles.hpp"
-#include "redman/redman_sense.h"
 
 #if RDM_WITH_SIM
 #include "sense/scene_shapes.hpp"

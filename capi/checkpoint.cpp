@@ -10,6 +10,7 @@ namespace {
 
 constexpr char kCheckpointMagic[8] = {'R', 'D', 'M', 'C', 'H', 'E', 'C', 'K'};
 constexpr uint32_t kCheckpointVersion = 1;
+constexpr size_t kMaxNote = 1u << 26;  // bytes
 
 template <class F>
 void section(Writer& w, const char tag[4], F&& body) {
@@ -35,6 +36,14 @@ void load_pool(rdm_pool*, const void*, size_t) {
 }
 #endif
 
+// What a file may have that is this agent's and this pool's, or those of another configuration like it.
+FileLimits file_limits(const rdm_agent* a, const rdm_pool* p) {
+  Writer count(nullptr, 0);
+  const bool counted = guard([&] { a->agent->save(count); }) == Code::kOk;  // not inside a horizon
+  const size_t states = (counted ? count.size() : size_t{1} << 28) + (p ? pool_size(p) : 0);
+  return {{kCheckpointMagic, sizeof kCheckpointMagic}, kFileLengthAt, 2 * (kMaxNote + states)};
+}
+
 void write_checkpoint(Writer& w, const Agent& agent, const rdm_pool* pool, const void* note,
                       size_t note_size) {
   w.begin_file(kCheckpointMagic, kCheckpointVersion);
@@ -52,6 +61,7 @@ rdm_result rdm_checkpoint_write(const char* path, const rdm_agent* a, const rdm_
     need(path, "path");
     need(a, "agent");
     if (note_size) need(note, "note");
+    if (note_size > kMaxNote) fail(Code::kRange, "note_size: %zu is above %zu", note_size, kMaxNote);
     Writer count(nullptr, 0);
     write_checkpoint(count, *a->agent, p, note, note_size);
     Vector<unsigned char> file(count.size());
@@ -68,7 +78,7 @@ rdm_result rdm_checkpoint_read(const char* path, rdm_agent* a, rdm_pool* p, void
     need(a, "agent");
     need(note_size, "note_size");
     if (capacity) need(note, "note");
-    const auto file = read_file(path);
+    const auto file = read_file(path, file_limits(a, p));
     Reader in(file.data(), file.size(), "checkpoint");
     in.begin_file(kCheckpointMagic, kCheckpointVersion);
     in.need_section("NOTE");

@@ -210,7 +210,7 @@ rdm_result rdm_object_at(int32_t index, rdm_object* out) {
 #endif
 
 #if RDM_WITH_LEARN
-#include "algos/core/agent.hpp"
+#include "algos/core/agent_types.hpp"
 
 int32_t rdm_algo_count(void) {
   return algo_count();

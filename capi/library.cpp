@@ -4,7 +4,7 @@
 
 #include "capi/abi_call.hpp"
 #if RDM_WITH_LEARN
-#include "nn/mlp.hpp"
+#include "nn/kernels.hpp"
 #endif
 
 using namespace rdm;
@@ -16,6 +16,7 @@ using namespace rdm::capi;
 namespace {
 std::mutex g_init_mutex;
 int32_t g_init_count = 0;
+bool g_init_hooks = false;
 }  // namespace
 
 const char* rdm_result_string(rdm_result r) {
@@ -71,8 +72,13 @@ rdm_result rdm_init(const rdm_host* host) {
   return call(nullptr, [&] {
     const std::lock_guard lock(g_init_mutex);
     const HostHooks hooks = host ? hooks_from(host) : HostHooks{};
-    if (g_init_count > 0 && host) fail(Code::kState, "rdm_init: hooks were set before; shut down first");
-    if (g_init_count == 0) set_host(hooks);
+    if (g_init_count > 0 && host)
+      fail(Code::kState, "rdm_init: called before, %s hooks; shut down first",
+           g_init_hooks ? "with" : "without");
+    if (g_init_count == 0) {
+      set_host(hooks);
+      g_init_hooks = host != nullptr;
+    }
     ++g_init_count;
   });
 }

@@ -1,7 +1,6 @@
 // rdm_map_*: occupancy maps.
 #include "base/file.hpp"
 #include "capi/handles.hpp"
-#include "redman/redman_map.h"
 
 #if RDM_WITH_SIM
 #include "base/text.hpp"
@@ -296,7 +295,7 @@ rdm_result rdm_map_load_file(rdm_map* m, const char* path) {
     need(m, "map");
     need(path, "path");
     const HostScope scope(m->hooks);
-    const auto file = read_file(path);
+    const auto file = read_file(path, m->map->file_limits());
     m->map->read(file.data(), file.size());
   });
 }

@@ -104,7 +104,7 @@ rdm_result rdm_policy_load_file(rdm_policy** out, const char* path) {
   return call(nullptr, [&] {
     need(out, "out");
     need(path, "path");
-    const auto bytes = read_file(path);
+    const auto bytes = read_file(path, Policy::file_limits());
     make(out, bytes.data(), bytes.size());
   });
 }

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "capi/handles.hpp"
-#include "redman/redman_sense.h"
 
 #if RDM_WITH_SIM
 #include "sense/cloud/furthest.hpp"

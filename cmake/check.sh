@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|coverage]: installs what the tests need, builds, and runs them.
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|coverage|hard [MINUTES]]: installs what the tests need, builds, and runs them.
 # The last line says how many passed and failed; the exit status is 0 when none failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -78,5 +78,45 @@ case $mode in
       run_tests without-$half -LE slow || exit 1
     done
     ;;
-  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|coverage]" ;;
+  hard)
+    # Tries to break the library for an hour (or MINUTES), builds included: tests/hard/README.md. Two lines of work,
+    # one for each of two processors; every part gets a share of the time that the builds leave.
+    minutes=${2:-60}
+    need clang-14 libclang-rt-14-dev
+    for preset in dev fuzz tsan; do
+      configure $preset
+      targets=hard
+      [ $preset = dev ] && targets="hard redman_tool"
+      [ $preset = tsan ] && targets=hard_threads
+      # shellcheck disable=SC2086
+      cmake --build --preset $preset -j "$(nproc)" --target $targets >&2 || die "preset $preset could not be built: see above"
+    done
+    time=$((minutes * 60 - SECONDS - 30))
+    [ $time -gt 60 ] || time=60
+    echo "hard: $time s for the parts, of $minutes minutes" >&2
+    mkdir -p build/hard
+    # part PERCENT BUILD NAME
+    part() {
+      bash tests/hard/run.sh "$3" $((time * $1 / 100)) "build/$2" > "build/hard/$3.log" 2>&1
+      echo "$3: $(tail -n1 "build/hard/$3.log"), details in build/hard/$3.log" >&2
+    }
+    { part 70 fuzz fuzz; part 30 fuzz words; } &
+    { part 10 tsan threads; part 15 dev kills; part 35 dev refuse; part 40 dev soak; } &
+    wait
+    cat build/hard/{fuzz,words,threads,kills,refuse,soak}.log
+    passed=0 failed=0
+    for name in fuzz words threads kills refuse soak; do
+      result=$(tail -n1 "build/hard/$name.log")
+      case $result in
+        *' passed, '*' failed')
+          passed=$((passed + ${result%% passed*})) result=${result#*passed, }
+          failed=$((failed + ${result%% failed*}))
+          ;;
+        *) echo "$name did not come to its end"; failed=$((failed + 1)) ;;
+      esac
+    done
+    echo "$passed passed, $failed failed"
+    [ "$failed" -eq 0 ]
+    ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|coverage|hard [MINUTES]]" ;;
 esac

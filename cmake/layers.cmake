@@ -22,6 +22,16 @@ set(RDM_SIM_ROWS physics robot sense env tasks)
 set(RDM_LEARN_ROWS nn algos)
 set(RDM_ROWS "")
 
+# The source file, written from the public header, with the functions of the halves that are left out.
+function(rdm_stubs out)
+  find_program(RDM_AWK NAMES mawk gawk awk REQUIRED)
+  set(file ${PROJECT_BINARY_DIR}/stubs.cpp)
+  set(awk ${PROJECT_SOURCE_DIR}/capi/stubs.awk)
+  add_custom_command(OUTPUT ${file} DEPENDS ${RDM_HEADER} ${awk} VERBATIM
+    COMMAND sh -c "'${RDM_AWK}' -v sim=$<BOOL:${REDMAN_SIM}> -v learn=$<BOOL:${REDMAN_LEARN}> -f '${awk}' '${RDM_HEADER}' > '${file}'")
+  set(${out} ${file} PARENT_SCOPE)
+endfunction()
+
 # rdm_layer(name folder SEES rows... LINKS libraries...): the folder's sources as the object library
 # rdm_<name>. A folder without sources is no target; a row of a half that is switched off is left out.
 function(rdm_layer name folder)
@@ -37,6 +47,10 @@ function(rdm_layer name folder)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
   if(NOT sources)
     return()
+  endif()
+  if(name STREQUAL "capi" AND NOT (REDMAN_SIM AND REDMAN_LEARN))
+    rdm_stubs(stubs)
+    list(APPEND sources ${stubs})
   endif()
   add_library(rdm_${name} OBJECT ${sources})
   target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR}/lib)

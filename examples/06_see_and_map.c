@@ -5,8 +5,8 @@
  * Two worlds of the cleaning task give point clouds with every step. Three looks at the first world become an
  * occupancy map; a plan of the broom is asked whether it meets something, and the map is written for
  * OctoMap's programs when a file is named. */
-#include <redman/redman_map.h>
-#include <redman/redman_sense.h>
+#define RDM_EXPERIMENTAL /* what worlds see, and maps: the last part of the header */
+#include <redman/redman.h>
 #include <stdio.h>
 #include <string.h>
 

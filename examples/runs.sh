@@ -35,3 +35,16 @@ trained() {
     kept "$dir.json" train "$@" --out "$dir" --overwrite
   fi
 }
+
+# sampled DIR SEED: 100 episodes of a finished run's policy with its noise, as it explored, on the same starts as its
+# evaluation on the mean action; the result is DIR.sampled.json.
+sampled() {
+  [ ! -s "$1.json" ] || kept "$1.sampled.json" eval --policy "$1" --stochastic --episodes 100 --seed $((1000000 + $2))
+}
+
+# For the awk programs of the tables: a cost as text, marked where it is over its limit.
+marked='function marked(cost, limit) {
+  return sprintf("%.3g", cost) (limit ~ /^[0-9]/ && cost + 0 > limit + 0 ? "!" : "")
+}
+'
+over_note='A seed whose mean cost is over its limit is marked with an exclamation mark.'

@@ -1,9 +1,32 @@
-// All tasks that the library knows, put into the registry.
+// All tasks that the library knows. A task of its own: its file, a line here, a row in catalog.cpp.
 #pragma once
+#include "env/task.hpp"
 
 namespace rdm {
 
-// Once per process, from any thread; further calls do nothing.
+extern const TaskInfo kHandOverSafeFinger;
+extern const TaskInfo kHandOverSafeJoint;
+extern const TaskInfo kCatchUnderarmSafeFinger;
+extern const TaskInfo kCatchUnderarmSafeJoint;
+extern const TaskInfo kGrasp;
+extern const TaskInfo kReorient;
+extern const TaskInfo kHandOverWall;
+extern const TaskInfo kJenga;
+extern const TaskInfo kPickBottles;
+extern const TaskInfo kCleanHouse;
+extern const TaskInfo kBandit;
+extern const TaskInfo kTwoState;
+extern const TaskInfo kLqrLine;
+extern const TaskInfo kBallRun;
+extern const TaskInfo kBallCircle;
+extern const TaskInfo kCarRun;
+extern const TaskInfo kSwimmerVelocity;
+extern const TaskInfo kPointGoal1;
+extern const TaskInfo kPointGoal2;
+extern const TaskInfo kPointButton1;
+extern const TaskInfo kPointButton2;
+
+// Puts them into the registry. Once per process, from any thread; further calls do nothing.
 void register_builtin_tasks();
 
 }  // namespace rdm

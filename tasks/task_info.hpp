@@ -35,8 +35,8 @@ const OptionSpec* filled_options(int32_t* count) {
   return table.rows();
 }
 
-// A T is made from the options alone. Alias null: none.
-template <class T, const auto& kCosts, const auto& kCameras, const auto& kDefaults>
+// A T is made from the constants, if any, and the options. Alias null: none.
+template <class T, const auto& kCosts, const auto& kCameras, const auto& kDefaults, auto... kConstants>
 constexpr TaskInfo task_info(const char* name, const char* alias, const char* summary,
                              const OptionSpec* (*options)(int32_t*)) {
   return {name,
@@ -51,7 +51,7 @@ constexpr TaskInfo task_info(const char* name, const char* alias, const char* su
           static_cast<int32_t>(std::size(kDefaults)),
           [](const Options& o, const HostHooks& hooks) -> Task* {
             const HostScope scope(hooks);
-            return host_new<T>(hooks, o);
+            return host_new<T>(hooks, kConstants..., o);
           },
           [](Task* task, const HostHooks& hooks) { host_delete(hooks, static_cast<T*>(task)); }};
 }

@@ -1,110 +1,137 @@
-// The agent: an algorithm's networks, rollout memory and update behind one handle. Mirrors rdm_agent_*.
+// The agent: an algorithm's networks, rollout memory and update behind one handle. Mirrors rdm_agent_*. All
+// algorithms derive from it.
 //
-// All memory is carved at creation; act, record and update allocate nothing. Work on a minibatch is cut into
-// pieces of fixed size that are reduced in a fixed order, so any number of threads gives the same bytes.
+// An epoch, in the order of its calls:
+//   act, record  `horizon` times: the collector samples a ~ pi_old(. | s) and keeps what followed
+//   update       advantages and targets (collector, gae)
+//                begin_epoch  the algorithm's multipliers, penalties or barriers, from the episodes' costs
+//                             J_c against their limits; leaves in the rollout what the actor climbs
+//                learn        passes over shuffled minibatches (policy_loss, learner), or a trust region's
+//                             step; both move the critics too
+//                the Epoch, the schedules, an empty rollout
+// An algorithm overrides what it does differently: the loss of the policy (policy_loss), what happens before
+// the policy step (begin_epoch), or the whole step (learn).
+//
+// Whose arrays: the agent's one arena holds them all, cut at creation by carve, so act, record and update
+// allocate nothing. Each part owns what its own carve cut and lends it by pointer:
+//   Networks      parameters and Adam's moments
+//   BatchWorkers  scratch of the chunks in flight: activations, a gradient each
+//   Collector     the Rollout, normalisers, noise, episodes; only it writes them, but for gain, linear (the
+//                 algorithm) and order (the passes)
+//   Learner       the gradient that a step follows
+//   TrustRegion, rules of an algorithm: what they carve or hold themselves
+// A part begins in four steps: carve (arrays, twice: to measure and for good), open (pointers to other parts,
+// options that are fixed), opened (an algorithm's own parts), read_live (options that may change; again after
+// every change).
+//
+// Work on a minibatch is cut into chunks of fixed size that are reduced in a fixed order, so any number of
+// threads gives the same bytes.
 #pragma once
-#include <atomic>
-#include <cstdint>
-
-#include "base/arena.hpp"
-#include "base/bytes.hpp"
-#include "base/option.hpp"
-#include "base/workers.hpp"
+#include "algos/core/cancel.hpp"
+#include "algos/core/collector.hpp"
+#include "algos/core/learner.hpp"
+#include "algos/core/schedule.hpp"
 
 namespace rdm {
-
-inline constexpr int kMaxActions = 1024;
-inline constexpr int kMaxCosts = 16;  // = RDM_MAX_COSTS
-
-// One row of the registry of algorithms.
-struct AlgoInfo {
-  const char* name;
-  const char* summary;
-  const OptionSpec* options;  // the whole table: shared options first, then the algorithm's own
-  int32_t num_options;
-};
-int32_t algo_count();
-const AlgoInfo& algo_at(int32_t index);
-// Error(kNotFound) with the nearest name.
-int32_t algo_find(const char* name);
-
-struct AgentConfig {
-  int32_t obs_dim = 0, action_dim = 0, cost_dim = 1, num_envs = 0, num_threads = 0;
-  const char* algo = "ppo_lag";
-  const char* task = "";
-  uint64_t seed = 0, layout_hash = 0;
-  float control_dt = 0;
-  int32_t max_steps = 0;
-  const float* initial_mean = nullptr;    // [action_dim] or null
-  const OptionInput* defaults = nullptr;  // laid under options; keys of other algorithms are skipped
-  int32_t num_defaults = 0;
-  const OptionInput* options = nullptr;
-  int32_t num_options = 0;
-  const double* cost_limits = nullptr;  // [cost_dim] or null; < 0: none
-  HostHooks hooks;
-};
-
-struct Transition {
-  const float* reward = nullptr;  // [num_envs]
-  const float* cost = nullptr;    // [num_envs][cost_dim]
-  const uint8_t *terminated = nullptr, *truncated = nullptr, *valid = nullptr, *success = nullptr;
-  const float* final_obs = nullptr;  // [num_envs][obs_dim]
-  const int32_t* steps = nullptr;    // [num_envs]
-};
-
-// Field by field the public rdm_epoch, without struct_size.
-struct Epoch {
-  int32_t epoch = 0;
-  int64_t env_steps = 0, episodes = 0;
-  double ret = 0, cost[kMaxCosts] = {}, cost_per_step = 0, length = 0, fall_rate = 0, success_rate = 0;
-  double multiplier[kMaxCosts] = {};
-  double kl = 0, entropy = 0, learning_rate = 0, action_std = 0;
-  double loss_policy = 0, loss_reward_value = 0, loss_cost_value = 0, clip_fraction = 0;
-  double value_reward = 0, value_cost = 0;
-  int32_t passes = 0;
-};
-
-struct TensorInfo {
-  const char* name;
-  int32_t rows, cols;
-  float* data;
-};
 
 class Agent {
  public:
   static size_t memory(const AgentConfig& config);  // bytes of create, exact
   static Agent* create(const AgentConfig& config);
   static void destroy(Agent* a);
+
+  explicit Agent(ResolvedAgentConfig&& resolved) : resolved_(std::move(resolved)) {}
   virtual ~Agent() = default;
+  // Takes memory from the hooks and draws the first weights.
+  void open(const AgentConfig& config);
+  // Adds what this algorithm needs to an arena, measuring or real.
+  virtual void carve(Arena& arena);
 
-  virtual void act(const float* obs, bool sample, float* action) = 0;
-  virtual void record(const Transition& t) = 0;
-  virtual void update(const float* last_obs, Epoch* out) = 0;
+  void act(const float* obs, bool sample, float* action);
+  void record(const Transition& t);
+  // After a cancel the parameters are those of the last finished minibatch.
+  void update(const float* last_obs, Epoch* out);
   // Decisions still missing in this horizon; 0: update is due.
-  virtual int32_t missing() const = 0;
-  virtual int32_t horizon() const = 0;
-  virtual int32_t action_repeat() const = 0;
-  virtual void drop_horizon() = 0;  // after a cancel: forget what was collected
+  int32_t missing() const { return collector_.missing(); }
+  int32_t horizon() const { return resolved_.horizon; }
+  int32_t action_repeat() const { return resolved_.action_repeat; }
+  void drop_horizon() { collector_.drop(); }  // after a cancel: forget what was collected
+  void cancel() { cancel_.set(); }            // from any thread or signal handler
+  // Error(kCancelled) once after cancel().
+  void check_cancel() { cancel_.check(); }
 
-  virtual void set_option(const OptionInput& option) = 0;
-  virtual const Options& options() const = 0;
-  virtual bool tensor(int32_t index, TensorInfo* out) = 0;  // false past the end
-  virtual void tensors_changed() = 0;                       // after a write through TensorInfo::data
+  void set_option(const OptionInput& option);
+  const Options& options() const { return resolved_.options; }
+  bool tensor(int32_t index, TensorInfo* out);      // false past the end
+  void tensors_changed() { clamp_log_std(nets_); }  // after a write through TensorInfo::data
 
-  virtual void write_policy_file(Writer& out) = 0;  // const but for scratch
-  virtual void save(Writer& out) const = 0;         // Error(kState) inside a horizon
-  // Error(kFormat) unless load would take these bytes; changes nothing.
-  virtual void check_state(const void* bytes, size_t size) = 0;
-  virtual void load(const void* bytes, size_t size) = 0;  // changes nothing when it fails
+  void write_policy_file(Writer& out);  // const but for scratch
+  void save(Writer& out) const;         // Error(kState) inside a horizon
+  // Error(kFormat, kVersion) unless load would take these bytes; changes nothing.
+  void check_state(const void* bytes, size_t size);
+  void load(const void* bytes, size_t size);                      // changes nothing when it fails
+  const AgentConfig& config() const { return resolved_.config; }  // pointers inside are not valid any more
 
-  virtual const AgentConfig& config() const = 0;  // pointers inside are not valid any more
+ protected:
+  // After open has made everything.
+  virtual void opened() {}
+  // What the passes of the default learn() minimise.
+  virtual const PolicyLoss& policy_loss() const = 0;
+  // After advantages were estimated, before the policy step: moves multipliers, sets gain and linear of the
+  // rollout. Default: the reward advantage. epoch counts from 1.
+  virtual void begin_epoch(const EpisodeStats& stats, int32_t epoch);
+  // The steps of policy and critics. Default: passes over shuffled minibatches, stopped early by KL.
+  virtual void learn();
+  // Before the gradient of each minibatch of the default learn().
+  virtual void begin_minibatch(const int32_t*, int32_t) {}
+  // Multiplier of limited cost i.
+  virtual double cost_weight(int32_t) const { return 0; }
+  // One pass over the valid rows in shuffled minibatches: a step of the critics and, unless null, of the
+  // policy for each.
+  BatchSums pass(const PolicyLoss* policy);
+  // Copies live options to where they are used.
+  virtual void read_live();
+  virtual void visit_state(StateIo& io);
+  // Checks a saved state, or with `apply` takes one that was checked.
+  void read_state(const void* bytes, size_t size, bool apply);
 
-  // Throws Error(kCancelled) once after cancel() was called (async-signal-safe).
-  void check_cancel();
-  void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+  // What learn() leaves for the Epoch: means over samples.
+  struct Learned {
+    int32_t passes = 0;
+    double last_kl = 0;  // KL(old || new) over the last pass, each minibatch's before its step
+    BatchSums mean;      // over all passes
+  };
+
+  const ResolvedAgentConfig& resolved() const { return resolved_; }
+  Networks& nets() { return nets_; }
+  BatchWorkers& workers() { return workers_; }
+  Learner& learner() { return learner_; }
+  Learned& learned() { return learned_; }
+  CancelFlag& cancel_flag() { return cancel_; }
+  // Share of a linear schedule that is left in this epoch.
+  double schedule_share() const { return schedule_.share(epoch_); }
+  int32_t valid_rows() const { return valid_rows_; }
+  // J_c - limit of limited cost i in the units of a mean over decisions (option violation_scale).
+  double violation(const EpisodeStats& stats, int32_t i) const;
+  const Rollout& rollout() const { return collector_.rollout(); }
 
  private:
-  std::atomic<bool> cancelled_{false};
+  // action_std and entropy: of the policy now, or with std_mode=state as it was on the epoch's data.
+  void fill_spread(Epoch& e) const;
+  void fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const;
+
+  ResolvedAgentConfig resolved_;
+  CancelFlag cancel_;
+  Arena arena_;
+  BatchWorkers workers_;
+  Networks nets_;
+  Collector collector_;
+  Learner learner_;
+  RateSchedule schedule_;
+  Stream shuffle_;
+  Learned learned_;
+  int32_t epoch_ = 0, valid_rows_ = 0;
+  char (*names_)[kTensorNameSize] = nullptr;  // of the tensors
 };
 
 }  // namespace rdm

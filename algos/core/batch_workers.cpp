@@ -13,19 +13,20 @@ bool covers(const MlpShape& wide, const MlpShape& narrow) {
   return true;
 }
 
-Lane carve_lane(Arena& arena, const ResolvedAgentConfig& plan, size_t num_params) {
-  Lane lane;
-  lane.rows = plan.piece_rows;
-  const auto rows = static_cast<size_t>(lane.rows);
-  const auto widest = static_cast<size_t>(std::max(plan.actor.out, plan.cost_critic.out));
-  lane.actor = carve_mlp_scratch(arena, plan.actor, lane.rows);
-  lane.critic = covers(plan.actor, plan.cost_critic) ? lane.actor
-                                                     : carve_mlp_scratch(arena, plan.cost_critic, lane.rows);
-  lane.obs = arena.make<float>(rows * plan.obs_dim());
-  lane.out = arena.make<float>(rows * widest);
-  lane.dout = arena.make<float>(rows * widest);
-  lane.grad = arena.make<float>(num_params);
-  return lane;
+Workspace carve_workspace(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_params) {
+  Workspace workspace;
+  workspace.rows = resolved.chunk_rows;
+  const auto rows = static_cast<size_t>(workspace.rows);
+  const auto widest = static_cast<size_t>(std::max(resolved.actor.out, resolved.cost_critic.out));
+  workspace.actor = carve_mlp_scratch(arena, resolved.actor, workspace.rows);
+  workspace.critic = covers(resolved.actor, resolved.cost_critic)
+                         ? workspace.actor
+                         : carve_mlp_scratch(arena, resolved.cost_critic, workspace.rows);
+  workspace.obs = arena.make<float>(rows * resolved.obs_dim());
+  workspace.out = arena.make<float>(rows * widest);
+  workspace.dout = arena.make<float>(rows * widest);
+  workspace.grad = arena.make<float>(num_params);
+  return workspace;
 }
 
 }  // namespace
@@ -36,7 +37,7 @@ bool Surrogate::finite() const {
   return std::isfinite(sum);
 }
 
-void BatchWorkers::fold(int32_t group, int32_t n, float* total, size_t begin, size_t end) {
+void BatchWorkers::reduce(int32_t group, int32_t n, float* total, size_t begin, size_t end) {
   const int32_t from = group == 0 ? 1 : 0;
   if (from >= n) return;
   const auto ranges = static_cast<size_t>(n), size = end - begin;
@@ -44,18 +45,18 @@ void BatchWorkers::fold(int32_t group, int32_t n, float* total, size_t begin, si
     const auto k = static_cast<size_t>(range);
     const size_t low = begin + size * k / ranges, high = begin + size * (k + 1) / ranges;
     for (int32_t l = from; l < n; ++l) {
-      const float* part = lanes_[l].grad;
+      const float* part = workspaces_[l].grad;
       for (size_t i = low; i < high; ++i) total[i] += part[i];
     }
   });
 }
 
-void BatchWorkers::carve(Arena& arena, const ResolvedAgentConfig& plan, size_t num_params) {
-  count_ = plan.lanes;
-  lanes_ = arena.make<Lane>(static_cast<size_t>(count_));
+void BatchWorkers::carve(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_params) {
+  count_ = resolved.workers;
+  workspaces_ = arena.make<Workspace>(static_cast<size_t>(count_));
   for (int32_t i = 0; i < count_; ++i) {
-    const Lane lane = carve_lane(arena, plan, num_params);
-    if (lanes_) lanes_[i] = lane;
+    const Workspace workspace = carve_workspace(arena, resolved, num_params);
+    if (workspaces_) workspaces_[i] = workspace;
   }
 }
 

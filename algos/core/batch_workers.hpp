@@ -1,5 +1,6 @@
-// Batches cut into pieces of fixed size, several in flight. Pieces are folded in their order, so sums are
-// the same for any number of lanes and any schedule.
+// Batches cut into chunks of fixed size, several in flight. Chunks are reduced in their order, so sums are
+// the same for any number of workers and any schedule: float sums depend on the order of their terms, so the
+// cut depends on the batch alone, never on the threads.
 #pragma once
 #include <memory>
 #include <optional>
@@ -9,7 +10,7 @@
 
 namespace rdm {
 
-// Sums over the samples of a piece or a batch.
+// Sums over the samples of a chunk or a batch.
 struct BatchSums {
   double loss = 0, kl = 0, clipped = 0, reward_loss = 0, cost_loss = 0;
   BatchSums& operator+=(const BatchSums& b) {
@@ -28,8 +29,8 @@ struct Surrogate {
   bool finite() const;
 };
 
-// Workspace of one piece in flight.
-struct Lane {
+// Workspace of one chunk in flight.
+struct Workspace {
   int32_t rows = 0;
   MlpScratch actor, critic;
   float* obs = nullptr;                   // [rows][obs_dim]
@@ -39,54 +40,54 @@ struct Lane {
   Surrogate surrogate;
 };
 
-// One lane per thread that helps, at most one per piece.
+// One workspace per thread that helps, at most one per chunk.
 class BatchWorkers {
  public:
-  void carve(Arena& arena, const ResolvedAgentConfig& plan, size_t num_params);
-  void open(const HostHooks& hooks, int32_t threads) { workers_.emplace(hooks, threads); }
+  void carve(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_params);
+  void open(const HostHooks& hooks, int32_t threads) { threads_.emplace(hooks, threads); }
 
   int32_t count() const { return count_; }
-  const Lane& operator[](int32_t i) const { return lanes_[i]; }
+  const Workspace& operator[](int32_t i) const { return workspaces_[i]; }
 
   // body(i) for i in [0, n), spread over the threads. body must not throw.
   template <class Body>
   void spread(int32_t n, Body&& body) {
-    if (n == 1 || workers_->width() == 1) {
+    if (n == 1 || threads_->width() == 1) {
       for (int32_t i = 0; i < n; ++i) body(i);
       return;
     }
     using Plain = std::remove_reference_t<Body>;
-    workers_->run(
+    threads_->run(
         n, [](void* context, int32_t i) { (*static_cast<Plain*>(context))(i); },
         const_cast<void*>(static_cast<const void*>(std::addressof(body))));
   }
 
-  // work(lane, first, n) for the pieces of [0, rows), then fold(first piece, n) for each group of pieces
-  // that ran together, in order: piece `first piece + i` was done by lane i.
-  template <class Work, class Fold>
-  void sweep(int32_t rows, int32_t piece_rows, Work&& work, Fold&& fold) {
-    const int32_t pieces = (rows + piece_rows - 1) / piece_rows;
-    for (int32_t group = 0; group < pieces; group += count_) {
-      const int32_t n = std::min(count_, pieces - group);
+  // work(workspace, first, n) for the chunks of [0, rows), then reduce(first chunk, n) for each group of
+  // chunks that ran together, in order: chunk `first chunk + i` was done by workspace i.
+  template <class Work, class Reduce>
+  void sweep(int32_t rows, int32_t chunk_rows, Work&& work, Reduce&& reduce) {
+    const int32_t chunks = (rows + chunk_rows - 1) / chunk_rows;
+    for (int32_t group = 0; group < chunks; group += count_) {
+      const int32_t n = std::min(count_, chunks - group);
       spread(n, [&](int32_t i) {
-        const int32_t first = (group + i) * piece_rows;
-        work(lanes_[i], first, std::min(piece_rows, rows - first));
+        const int32_t first = (group + i) * chunk_rows;
+        work(workspaces_[i], first, std::min(chunk_rows, rows - first));
       });
-      fold(group, n);
+      reduce(group, n);
     }
   }
-  // Adds entries [begin, end) of the gradients of the n lanes of a group to total, in order, every range of
-  // them by another thread. The first piece of all is taken to have written its part into total itself.
-  void fold(int32_t group, int32_t n, float* total, size_t begin, size_t end);
+  // Adds entries [begin, end) of the gradients of the n workers of a group to total, in order, every range of
+  // them by another thread. The first chunk of all is taken to have written its part into total itself.
+  void reduce(int32_t group, int32_t n, float* total, size_t begin, size_t end);
   template <class Work>
-  void sweep(int32_t rows, int32_t piece_rows, Work&& work) {
-    sweep(rows, piece_rows, work, [](int32_t, int32_t) {});
+  void sweep(int32_t rows, int32_t chunk_rows, Work&& work) {
+    sweep(rows, chunk_rows, work, [](int32_t, int32_t) {});
   }
 
  private:
-  Lane* lanes_ = nullptr;
+  Workspace* workspaces_ = nullptr;
   int32_t count_ = 0;
-  std::optional<Workers> workers_;
+  std::optional<Workers> threads_;
 };
 
 }  // namespace rdm

@@ -32,35 +32,35 @@ void check_rows(const char* name, const float* x, const uint8_t* mask, int32_t r
       fail(Code::kArgument, "%s: row %zu is not finite", name, i);
 }
 
-void Collector::carve(Arena& arena, const ResolvedAgentConfig& plan) {
-  const Options& o = plan.options;
-  rollout_ = carve_rollout(arena, plan);
-  normalizer_ = carve_normalizer(arena, plan.config.obs_dim);
+void Collector::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
+  const Options& o = resolved.options;
+  rollout_ = carve_rollout(arena, resolved);
+  normalizer_ = carve_normalizer(arena, resolved.config.obs_dim);
   reward_scale_ = carve_normalizer(arena, 1);
-  cost_scale_ = carve_normalizer(arena, plan.config.cost_dim);
-  scaled_reward_ = arena.make<float>(plan.num_envs());
-  scaled_cost_ = arena.make<float>(plan.num_envs() * static_cast<size_t>(plan.config.cost_dim));
-  noise_.carve(arena, plan);
-  episodes_.carve(arena, plan.config.num_envs, plan.config.cost_dim,
+  cost_scale_ = carve_normalizer(arena, resolved.config.cost_dim);
+  scaled_reward_ = arena.make<float>(resolved.num_envs());
+  scaled_cost_ = arena.make<float>(resolved.num_envs() * static_cast<size_t>(resolved.config.cost_dim));
+  noise_.carve(arena, resolved);
+  episodes_.carve(arena, resolved.config.num_envs, resolved.config.cost_dim,
                   o.knows("multiplier_window") ? o.integer("multiplier_window") : kStatsWindow);
-  std_ = arena.make<float>(plan.state_std() ? 0 : plan.action_dim());
-  final_value_ = arena.make<float>(plan.num_envs());
-  final_cost_ = arena.make<float>(plan.num_envs() * static_cast<size_t>(plan.num_limited));
-  listed_ = arena.make<int32_t>(plan.num_envs());
+  std_ = arena.make<float>(resolved.state_std() ? 0 : resolved.action_dim());
+  final_value_ = arena.make<float>(resolved.num_envs());
+  final_cost_ = arena.make<float>(resolved.num_envs() * static_cast<size_t>(resolved.num_limited));
+  listed_ = arena.make<int32_t>(resolved.num_envs());
 }
 
-void Collector::open(const ResolvedAgentConfig& plan, const Networks& nets, BatchWorkers& lanes) {
-  const Options& o = plan.options;
-  plan_ = &plan;
+void Collector::open(const ResolvedAgentConfig& resolved, const Networks& nets, BatchWorkers& workers) {
+  const Options& o = resolved.options;
+  resolved_ = &resolved;
   nets_ = &nets;
-  lanes_ = &lanes;
-  noise_.reset(plan.config.seed);
+  workers_ = &workers;
+  noise_.reset(resolved.config.seed);
   normalizer_.clip = static_cast<float>(o.number("obs_clip"));
   normalize_ = o.flag("normalize_obs");
   obs_count_max_ = o.number("obs_count_max");
   normalize_reward_ = o.flag("normalize_reward");
   reward_factor_ = static_cast<float>(o.number("reward_factor"));
-  normalize_cost_ = o.flag("normalize_cost") && plan.config.cost_dim > 0;
+  normalize_cost_ = o.flag("normalize_cost") && resolved.config.cost_dim > 0;
   terminal_cost_ = o.flag("terminal_cost");
   discounted_limit_ = o.flag("discounted_limit");
   discount_ = o.number("discount");
@@ -79,10 +79,10 @@ const float* Collector::normalized(const float* obs, int32_t rows, float* memory
   return memory;
 }
 
-void Collector::values(const Lane& lane, const float* x, int32_t rows, float* value,
+void Collector::values(const Workspace& workspace, const float* x, int32_t rows, float* value,
                        float* cost_value) const {
-  nets_->forward(Networks::kReward, x, rows, lane.critic, value);
-  if (nets_->count > Networks::kCost) nets_->forward(Networks::kCost, x, rows, lane.critic, cost_value);
+  nets_->forward(Networks::kReward, x, rows, workspace.critic, value);
+  if (nets_->count > Networks::kCost) nets_->forward(Networks::kCost, x, rows, workspace.critic, cost_value);
 }
 
 void Collector::split_head(const float* y, int32_t rows, float* mean, float* log_std) const {
@@ -93,22 +93,23 @@ void Collector::split_head(const float* y, int32_t rows, float* mean, float* log
   }
 }
 
-void Collector::mean_rows(const Lane& lane, const float* obs, int32_t rows, float* action) const {
-  float* y = nets_->state_std() ? lane.out : action;
-  nets_->forward(Networks::kActor, normalized(obs, rows, lane.obs), rows, lane.actor, y);
+void Collector::mean_rows(const Workspace& workspace, const float* obs, int32_t rows, float* action) const {
+  float* y = nets_->state_std() ? workspace.out : action;
+  nets_->forward(Networks::kActor, normalized(obs, rows, workspace.obs), rows, workspace.actor, y);
   if (y != action) split_head(y, rows, action, nullptr);
 }
 
-void Collector::act_rows(const Lane& lane, const float* obs, int32_t first, int32_t rows, float* action) {
+void Collector::act_rows(const Workspace& workspace, const float* obs, int32_t first, int32_t rows,
+                         float* action) {
   Rollout& r = rollout_;
   const size_t at = r.row(r.filled) + static_cast<size_t>(first), dim = r.action_dim;
   float* x = r.obs + at * r.obs_dim;
   if (normalized(obs, rows, x) != x)
     std::memcpy(x, obs, static_cast<size_t>(rows) * r.obs_dim * sizeof(float));
-  float *mean = r.mean + at * dim, *y = nets_->state_std() ? lane.out : mean;
-  nets_->forward(Networks::kActor, x, rows, lane.actor, y);
+  float *mean = r.mean + at * dim, *y = nets_->state_std() ? workspace.out : mean;
+  nets_->forward(Networks::kActor, x, rows, workspace.actor, y);
   if (y != mean) split_head(y, rows, mean, r.log_std_of(at));
-  values(lane, x, rows, r.value + at, r.cost_value + at * static_cast<size_t>(r.num_costs));
+  values(workspace, x, rows, r.value + at, r.cost_value + at * static_cast<size_t>(r.num_costs));
   float own_std[kMaxActions];
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
     float* centered = r.action + (at + i) * dim;
@@ -127,58 +128,59 @@ void Collector::act(const float* obs, bool sample, float* action) {
   if (sample) {
     if (normalize_) normalizer_merge(normalizer_, obs, envs, nullptr, obs_count_max_);
     for (size_t j = 0; !nets_->state_std() && j < rollout_.action_dim; ++j) {
-      rollout_.log_std[j] = nets_->log_std()[j] + plan_->log_share;
+      rollout_.log_std[j] = nets_->log_std()[j] + resolved_->log_share;
       std_[j] = static_cast<float>(elementary::exp(static_cast<double>(rollout_.log_std[j])));
     }
   }
-  // A row's result does not depend on its batch, so the cut may follow the number of lanes.
-  const int32_t share = std::min((envs + lanes_->count() - 1) / lanes_->count(), plan_->piece_rows);
-  lanes_->sweep(envs, share, [&](const Lane& lane, int32_t first, int32_t rows) {
+  // A row's result does not depend on its batch, so the cut may follow the number of workers.
+  const int32_t share = std::min((envs + workers_->count() - 1) / workers_->count(), resolved_->chunk_rows);
+  workers_->sweep(envs, share, [&](const Workspace& workspace, int32_t first, int32_t rows) {
     const float* x = obs + static_cast<size_t>(first) * rollout_.obs_dim;
     float* a = action + static_cast<size_t>(first) * rollout_.action_dim;
     if (sample)
-      act_rows(lane, x, first, rows, a);
+      act_rows(workspace, x, first, rows, a);
     else
-      mean_rows(lane, x, rows, a);
+      mean_rows(workspace, x, rows, a);
   });
   if (sample) pending_ = true;
 }
 
 void Collector::check(const Transition& t) const {
-  const AgentConfig& c = plan_->config;
+  const AgentConfig& c = resolved_->config;
   if (!t.reward) fail(Code::kArgument, "reward: NULL");
   if (!t.cost && c.cost_dim > 0) fail(Code::kArgument, "cost: NULL with cost_dim %d", c.cost_dim);
   check_rows("reward", t.reward, t.valid, c.num_envs, 1);
   check_rows("cost", t.cost, t.valid, c.num_envs, static_cast<size_t>(c.cost_dim));
-  for (size_t i = 0; i < plan_->num_envs(); ++i) {
+  for (size_t i = 0; i < resolved_->num_envs(); ++i) {
     if (!flag(t.valid, i, true)) continue;
     if (t.steps && t.steps[i] < 0) fail(Code::kRange, "steps: row %zu is %d", i, t.steps[i]);
     if (t.final_obs && flag(t.truncated, i, false) &&
-        !all_finite(t.final_obs + i * plan_->obs_dim(), plan_->obs_dim()))
+        !all_finite(t.final_obs + i * resolved_->obs_dim(), resolved_->obs_dim()))
       fail(Code::kArgument, "final_obs: row %zu is not finite", i);
   }
 }
 
-// V of the final observations of paths that a time limit cut, a piece at a time.
+// V of the final observations of paths that a time limit cut, a chunk at a time.
 void Collector::value_truncated(const Transition& t) {
-  const size_t costs = static_cast<size_t>(plan_->num_limited), dim = plan_->obs_dim();
-  std::memset(final_value_, 0, plan_->num_envs() * sizeof(float));
-  std::memset(final_cost_, 0, plan_->num_envs() * costs * sizeof(float));
+  const size_t costs = static_cast<size_t>(resolved_->num_limited), dim = resolved_->obs_dim();
+  std::memset(final_value_, 0, resolved_->num_envs() * sizeof(float));
+  std::memset(final_cost_, 0, resolved_->num_envs() * costs * sizeof(float));
   if (!t.truncated || !t.final_obs) return;
   int32_t count = 0;
-  for (size_t i = 0; i < plan_->num_envs(); ++i)
+  for (size_t i = 0; i < resolved_->num_envs(); ++i)
     if (t.truncated[i] && !flag(t.terminated, i, false) && flag(t.valid, i, true))
       listed_[count++] = static_cast<int32_t>(i);
-  const Lane& lane = (*lanes_)[0];
-  for (int32_t first = 0; first < count; first += lane.rows) {
-    const int32_t rows = std::min(lane.rows, count - first);
+  const Workspace& workspace = (*workers_)[0];
+  for (int32_t first = 0; first < count; first += workspace.rows) {
+    const int32_t rows = std::min(workspace.rows, count - first);
     const int32_t* env = listed_ + first;
     for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
-      std::memcpy(lane.obs + i * dim, t.final_obs + static_cast<size_t>(env[i]) * dim, dim * sizeof(float));
-    values(lane, normalized(lane.obs, rows, lane.obs), rows, lane.out, lane.dout);
+      std::memcpy(workspace.obs + i * dim, t.final_obs + static_cast<size_t>(env[i]) * dim,
+                  dim * sizeof(float));
+    values(workspace, normalized(workspace.obs, rows, workspace.obs), rows, workspace.out, workspace.dout);
     for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
-      final_value_[env[i]] = lane.out[i];
-      std::memcpy(final_cost_ + static_cast<size_t>(env[i]) * costs, lane.dout + i * costs,
+      final_value_[env[i]] = workspace.out[i];
+      std::memcpy(final_cost_ + static_cast<size_t>(env[i]) * costs, workspace.dout + i * costs,
                   costs * sizeof(float));
     }
   }
@@ -187,21 +189,21 @@ void Collector::value_truncated(const Transition& t) {
 // A fall ends costs early, which is no safety: the steps that are missing are charged at the episode's own
 // rate, in full in the episode's cost (charge [cost_dim]), discounted in what is learned from.
 void Collector::charge_fall(int32_t env, float discount, float* sample_cost, double* charge) const {
-  const int64_t length = episodes_.length(env), left = plan_->config.max_steps - length;
-  for (int32_t k = 0; k < plan_->config.cost_dim; ++k) charge[k] = 0;
+  const int64_t length = episodes_.length(env), left = resolved_->config.max_steps - length;
+  for (int32_t k = 0; k < resolved_->config.cost_dim; ++k) charge[k] = 0;
   if (left <= 0 || length == 0) return;
   const auto steps = static_cast<double>(left);
-  for (int32_t k = 0; k < plan_->config.cost_dim; ++k)
+  for (int32_t k = 0; k < resolved_->config.cost_dim; ++k)
     charge[k] = episodes_.cost(env, k) / static_cast<double>(length) * steps;
   const double tail = discount_ < 1 ? (1 - elementary::pow(discount_, left)) / (1 - discount_) : steps;
-  for (int32_t i = 0; i < plan_->num_limited; ++i) {
-    const int32_t k = plan_->column[i];
+  for (int32_t i = 0; i < resolved_->num_limited; ++i) {
+    const int32_t k = resolved_->column[i];
     const float scale = normalize_cost_ ? cost_scale_.scale[k] : 1;
     sample_cost[i] += discount * scale * static_cast<float>(charge[k] / steps * tail);
   }
   if (!discounted_limit_) return;
   const double share = elementary::pow(discount_, length) * tail / steps;
-  for (int32_t k = 0; k < plan_->config.cost_dim; ++k) charge[k] *= share;
+  for (int32_t k = 0; k < resolved_->config.cost_dim; ++k) charge[k] *= share;
 }
 
 // Statistics first, then the samples: as for observations.
@@ -236,9 +238,9 @@ void Collector::record_row(const Transition& t, int32_t env) {
     noise_.end_episode(env);
     return;
   }
-  const size_t first = e * static_cast<size_t>(plan_->config.cost_dim);
+  const size_t first = e * static_cast<size_t>(resolved_->config.cost_dim);
   const float *cost = t.cost ? t.cost + first : nullptr, *learned = t.cost ? cost_ + first : nullptr;
-  const int32_t steps = t.steps ? t.steps[e] : plan_->action_repeat;
+  const int32_t steps = t.steps ? t.steps[e] : resolved_->action_repeat;
   const bool terminated = flag(t.terminated, e, false), over = terminated || flag(t.truncated, e, false);
   const auto discount = static_cast<float>(elementary::pow(discount_, steps));
   env_steps_ += steps;
@@ -246,7 +248,7 @@ void Collector::record_row(const Transition& t, int32_t env) {
   episodes_.add(env, static_cast<double>(t.reward[e]), cost, steps, flag(t.success, e, false), weight);
   r.reward[at] = reward_[e] + discount * final_value_[e];
   for (size_t i = 0; i < costs; ++i)
-    limited[i] = learned[plan_->column[i]] + discount * final_cost_[e * costs + i];
+    limited[i] = learned[resolved_->column[i]] + discount * final_cost_[e * costs + i];
   r.discount[at] = over ? 0 : discount;
   if (!over) return;
   double charge[kMaxCosts];
@@ -269,11 +271,13 @@ void Collector::record(const Transition& t) {
 
 int32_t Collector::estimate(const float* last_obs) {
   const Rollout& r = rollout_;
-  lanes_->sweep(r.num_envs, plan_->piece_rows, [&](const Lane& lane, int32_t first, int32_t rows) {
-    const auto at = static_cast<size_t>(first);
-    const float* x = normalized(last_obs + at * r.obs_dim, rows, lane.obs);
-    values(lane, x, rows, r.last_value + at, r.last_cost_value + at * static_cast<size_t>(r.num_costs));
-  });
+  workers_->sweep(r.num_envs, resolved_->chunk_rows,
+                  [&](const Workspace& workspace, int32_t first, int32_t rows) {
+                    const auto at = static_cast<size_t>(first);
+                    const float* x = normalized(last_obs + at * r.obs_dim, rows, workspace.obs);
+                    values(workspace, x, rows, r.last_value + at,
+                           r.last_cost_value + at * static_cast<size_t>(r.num_costs));
+                  });
   estimate_advantages(r, advantage_);
   return list_valid(r);
 }

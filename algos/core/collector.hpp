@@ -1,4 +1,15 @@
 // The collecting half of an agent: acts, records what followed, estimates advantages.
+//
+//   act       x = clip((obs - shift) scale, +-obs_clip), shift and scale of all observations so far, this one
+//             included; mean = actor(x); action = mean + noise (noise.hpp); V and V_c of x for the advantages
+//   record    r_t, c_t and d_t = discount^steps of the decision; at a truncation the value of the final
+//             observation is added, discounted; at a termination costs may be charged on (terminal_cost)
+//   estimate  V of the last observation closes the paths that still run, then gae.hpp
+//
+// What is learned from and what limits hold for are two things. The cost advantage is of costs discounted
+// like rewards; J_c is an episode's plain sum (Achiam et al. 2017 discount both; the tables of ReDMan and
+// Safety Gym count plain sums). With discount 0.96 a step and four steps a decision, the hands' settings, the
+// gradient looks 7 decisions ahead, the limit over the whole episode. discounted_limit=true discounts both.
 #pragma once
 #include "algos/core/batch_workers.hpp"
 #include "algos/core/episodes.hpp"
@@ -11,9 +22,9 @@ namespace rdm {
 
 class Collector {
  public:
-  void carve(Arena& arena, const ResolvedAgentConfig& plan);
+  void carve(Arena& arena, const ResolvedAgentConfig& resolved);
   // The three must outlive the collector.
-  void open(const ResolvedAgentConfig& plan, const Networks& nets, BatchWorkers& lanes);
+  void open(const ResolvedAgentConfig& resolved, const Networks& nets, BatchWorkers& workers);
 
   void act(const float* obs, bool sample, float* action);
   void record(const Transition& t);
@@ -39,20 +50,21 @@ class Collector {
 
  private:
   const float* normalized(const float* obs, int32_t rows, float* memory) const;
-  void values(const Lane& lane, const float* x, int32_t rows, float* value, float* cost_value) const;
-  void act_rows(const Lane& lane, const float* obs, int32_t first, int32_t rows, float* action);
+  void values(const Workspace& workspace, const float* x, int32_t rows, float* value,
+              float* cost_value) const;
+  void act_rows(const Workspace& workspace, const float* obs, int32_t first, int32_t rows, float* action);
   // What a network with std_mode=state gives, taken apart: means, log deviations (null: not wanted).
   void split_head(const float* y, int32_t rows, float* mean, float* log_std) const;
-  void mean_rows(const Lane& lane, const float* obs, int32_t rows, float* action) const;
+  void mean_rows(const Workspace& workspace, const float* obs, int32_t rows, float* action) const;
   void check(const Transition& t) const;
   void value_truncated(const Transition& t);
   void scale_rewards(const Transition& t);
   void record_row(const Transition& t, int32_t env);
   void charge_fall(int32_t env, float discount, float* sample_cost, double* charge) const;
 
-  const ResolvedAgentConfig* plan_ = nullptr;
+  const ResolvedAgentConfig* resolved_ = nullptr;
   const Networks* nets_ = nullptr;
-  BatchWorkers* lanes_ = nullptr;
+  BatchWorkers* workers_ = nullptr;
   Rollout rollout_;
   Normalizer normalizer_, reward_scale_, cost_scale_;
   Noise noise_;

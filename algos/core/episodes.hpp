@@ -1,6 +1,6 @@
 // Running episodes of all environments and the window of the last finished ones; statistics are values.
 #pragma once
-#include "algos/core/agent.hpp"
+#include "algos/core/agent_types.hpp"
 #include "algos/core/state_io.hpp"
 #include "base/arena.hpp"
 

@@ -35,11 +35,12 @@ struct Field {
   int32_t value;
 };
 constexpr int kFields = 6;
-void list_fields(const ResolvedAgentConfig& plan, Field* out) {
-  const AgentConfig& c = plan.config;
-  const Field fields[kFields] = {{"obs_dim", c.obs_dim},     {"action_dim", c.action_dim},
-                                 {"cost_dim", c.cost_dim},   {"num_envs", c.num_envs},
-                                 {"max_steps", c.max_steps}, {"number of limited costs", plan.num_limited}};
+void list_fields(const ResolvedAgentConfig& resolved, Field* out) {
+  const AgentConfig& c = resolved.config;
+  const Field fields[kFields] = {
+      {"obs_dim", c.obs_dim},     {"action_dim", c.action_dim},
+      {"cost_dim", c.cost_dim},   {"num_envs", c.num_envs},
+      {"max_steps", c.max_steps}, {"number of limited costs", resolved.num_limited}};
   for (int i = 0; i < kFields; ++i) out[i] = fields[i];
 }
 
@@ -71,15 +72,15 @@ void read_option(Reader& in, Options& o, int32_t i, bool apply) {
 
 }  // namespace
 
-void write_fingerprint(Writer& out, const ResolvedAgentConfig& plan) {
-  const Options& o = plan.options;
+void write_fingerprint(Writer& out, const ResolvedAgentConfig& resolved) {
+  const Options& o = resolved.options;
   out.begin_section("CONF");
-  out.text(plan.config.algo);
+  out.text(resolved.config.algo);
   Field fields[kFields];
-  list_fields(plan, fields);
+  list_fields(resolved, fields);
   for (const Field& f : fields) out.value(f.value);
-  for (int32_t i = 0; i < plan.num_limited; ++i) out.value(plan.column[i]);
-  for (int32_t i = 0; i < plan.num_limited; ++i) out.value(plan.limit[i]);
+  for (int32_t i = 0; i < resolved.num_limited; ++i) out.value(resolved.column[i]);
+  for (int32_t i = 0; i < resolved.num_limited; ++i) out.value(resolved.limit[i]);
   out.value(o.count());
   for (int32_t i = 0; i < o.count(); ++i) {
     out.text(o.spec(i).key);
@@ -89,29 +90,29 @@ void write_fingerprint(Writer& out, const ResolvedAgentConfig& plan) {
   out.end_section();
 }
 
-void read_fingerprint(Reader& in, ResolvedAgentConfig& plan, bool apply) {
+void read_fingerprint(Reader& in, ResolvedAgentConfig& resolved, bool apply) {
   in.need_section("CONF");
   char algo[kOptionTextSize];
   in.text(algo, sizeof algo);
-  if (std::strcmp(algo, plan.config.algo) != 0)
-    fail(Code::kFormat, "%s: of algorithm %s, this agent is %s", kWhat, algo, plan.config.algo);
+  if (std::strcmp(algo, resolved.config.algo) != 0)
+    fail(Code::kFormat, "%s: of algorithm %s, this agent is %s", kWhat, algo, resolved.config.algo);
   Field fields[kFields];
-  list_fields(plan, fields);
+  list_fields(resolved, fields);
   for (const Field& f : fields)
     if (const auto there = in.value<int32_t>(); there != f.value)
       fail(Code::kFormat, "%s: %s is %d there, %d in this agent", kWhat, f.name, there, f.value);
-  for (int32_t i = 0; i < plan.num_limited; ++i)
-    if (const auto there = in.value<int32_t>(); there != plan.column[i])
+  for (int32_t i = 0; i < resolved.num_limited; ++i)
+    if (const auto there = in.value<int32_t>(); there != resolved.column[i])
       fail(Code::kFormat, "%s: cost column %d is limited there, %d in this agent", kWhat, there,
-           plan.column[i]);
-  for (int32_t i = 0; i < plan.num_limited; ++i) {
+           resolved.column[i]);
+  for (int32_t i = 0; i < resolved.num_limited; ++i) {
     const auto there = in.value<double>();
-    const bool live = plan.column[i] == 0;  // option cost_limit
-    if (!live && there != plan.limit[i])
+    const bool live = resolved.column[i] == 0;  // option cost_limit
+    if (!live && there != resolved.limit[i])
       fail(Code::kFormat, "%s: the limit of cost column %d is %g there, %g in this agent", kWhat,
-           plan.column[i], there, plan.limit[i]);
+           resolved.column[i], there, resolved.limit[i]);
   }
-  Options& o = plan.options;
+  Options& o = resolved.options;
   if (const auto there = in.value<int32_t>(); there != o.count())
     fail(Code::kFormat, "%s: %d options there, %d in this agent", kWhat, there, o.count());
   for (int32_t i = 0; i < o.count(); ++i) read_option(in, o, i, apply);

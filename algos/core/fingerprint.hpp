@@ -5,9 +5,9 @@
 
 namespace rdm {
 
-void write_fingerprint(Writer& out, const ResolvedAgentConfig& plan);
-// Error(kFormat) that names the first field that differs from the plan's. Live options need not agree: with
-// `apply` the plan takes them over.
-void read_fingerprint(Reader& in, ResolvedAgentConfig& plan, bool apply);
+void write_fingerprint(Writer& out, const ResolvedAgentConfig& resolved);
+// Error(kFormat) that names the first field that differs from the resolved's. Live options need not agree:
+// with `apply` the resolved takes them over.
+void read_fingerprint(Reader& in, ResolvedAgentConfig& resolved, bool apply);
 
 }  // namespace rdm

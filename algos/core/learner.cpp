@@ -9,18 +9,18 @@
 
 namespace rdm {
 
-void Learner::carve(Arena& arena, const ResolvedAgentConfig& plan, size_t num_params) {
+void Learner::carve(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_params) {
   grad_ = arena.make<float>(num_params);
-  log_std_ = arena.make<float>(plan.state_std() ? 0 : plan.action_dim());
+  log_std_ = arena.make<float>(resolved.state_std() ? 0 : resolved.action_dim());
 }
 
-void Learner::open(const ResolvedAgentConfig& plan, const Rollout& rollout, Networks& nets,
-                   BatchWorkers& lanes) {
-  plan_ = &plan;
+void Learner::open(const ResolvedAgentConfig& resolved, const Rollout& rollout, Networks& nets,
+                   BatchWorkers& workers) {
+  resolved_ = &resolved;
   rollout_ = &rollout;
   nets_ = &nets;
-  lanes_ = &lanes;
-  const Options& o = plan.options;
+  workers_ = &workers;
+  const Options& o = resolved.options;
   learn_std_ = o.flag("learn_std") && std::strcmp(o.text("std_schedule"), "none") == 0;
   follow_actor_ = std::strcmp(o.text("critic_lr_schedule"), "actor") == 0;
 }
@@ -36,16 +36,17 @@ void Learner::read_live(const Options& o) {
 }
 
 void Learner::refresh_log_std() {
-  for (size_t j = 0; !nets_->state_std() && j < plan_->action_dim(); ++j)
-    log_std_[j] = nets_->log_std()[j] + plan_->log_share;
+  for (size_t j = 0; !nets_->state_std() && j < resolved_->action_dim(); ++j)
+    log_std_[j] = nets_->log_std()[j] + resolved_->log_share;
 }
 
-PolicyPiece Learner::piece_of(Lane& lane, const int32_t* order, int32_t rows, float* grad) const {
-  PolicyPiece p{rollout_, order, rows, lane.out, log_std_, scale_, lane.dout, grad, &lane.sums};
+PolicyChunk Learner::chunk_of(Workspace& workspace, const int32_t* order, int32_t rows, float* grad) const {
+  PolicyChunk p{rollout_, order,          rows, workspace.out,  log_std_,
+                scale_,   workspace.dout, grad, &workspace.sums};
   p.mean_step = static_cast<size_t>(nets_->shape[Networks::kActor].out);
   if (nets_->state_std()) {
     const size_t dim = rollout_->action_dim;
-    p.log_std = lane.out + dim, p.dlog_std = lane.dout + dim, p.std_step = p.mean_step;
+    p.log_std = workspace.out + dim, p.dlog_std = workspace.dout + dim, p.std_step = p.mean_step;
   }
   return p;
 }
@@ -58,71 +59,71 @@ BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const int32_
   begin_ = policy_ ? 0 : nets_->block[Networks::kReward].offset;
   end_ = critics ? nets_->size : nets_->block[Networks::kReward].offset;
   BatchSums sums;
-  lanes_->sweep(
-      rows, plan_->piece_rows,
-      [&](Lane& lane, int32_t first, int32_t n) {
-        // The first piece writes where the sum is wanted.
-        float* grad = first == 0 ? grad_ : lane.grad;
-        const int32_t* piece = order + first;
-        lane.sums = BatchSums();
-        gather_obs(*rollout_, piece, 1, n, lane.obs);
-        if (policy) policy_gradient(lane, *policy, piece, n, grad);
+  workers_->sweep(
+      rows, resolved_->chunk_rows,
+      [&](Workspace& workspace, int32_t first, int32_t n) {
+        // The first chunk writes where the sum is wanted.
+        float* grad = first == 0 ? grad_ : workspace.grad;
+        const int32_t* chunk = order + first;
+        workspace.sums = BatchSums();
+        gather_obs(*rollout_, chunk, 1, n, workspace.obs);
+        if (policy) policy_gradient(workspace, *policy, chunk, n, grad);
         if (!critics) return;
-        lane.sums.reward_loss = critic_gradient(lane, Networks::kReward, piece, n, grad);
+        workspace.sums.reward_loss = critic_gradient(workspace, Networks::kReward, chunk, n, grad);
         if (nets_->count > Networks::kCost)
-          lane.sums.cost_loss = critic_gradient(lane, Networks::kCost, piece, n, grad);
+          workspace.sums.cost_loss = critic_gradient(workspace, Networks::kCost, chunk, n, grad);
       },
       [&](int32_t group, int32_t n) {
-        for (int32_t i = 0; i < n; ++i) sums += (*lanes_)[i].sums;
-        lanes_->fold(group, n, grad_, begin_, end_);
+        for (int32_t i = 0; i < n; ++i) sums += (*workers_)[i].sums;
+        workers_->reduce(group, n, grad_, begin_, end_);
       });
   add_penalties(policy);
   return sums;
 }
 
-void Learner::policy_gradient(Lane& lane, const PolicyLoss& policy, const int32_t* order, int32_t rows,
-                              float* grad) const {
-  nets_->forward(Networks::kActor, lane.obs, rows, lane.actor, lane.out);
+void Learner::policy_gradient(Workspace& workspace, const PolicyLoss& policy, const int32_t* order,
+                              int32_t rows, float* grad) const {
+  nets_->forward(Networks::kActor, workspace.obs, rows, workspace.actor, workspace.out);
   std::memset(grad, 0, nets_->std_size * sizeof(float));
-  const PolicyPiece piece = piece_of(lane, order, rows, grad);
+  const PolicyChunk chunk = chunk_of(workspace, order, rows, grad);
   const size_t dim = rollout_->action_dim;
   const bool state = nets_->state_std();
   for (size_t i = 0; state && i < static_cast<size_t>(rows); ++i)
-    std::fill_n(piece.dlog_std_of(i), dim, policy.explores() ? -scale_ * static_cast<float>(entropy_) : 0.0f);
-  policy.add(piece);
-  if (state) nets_->gate_std(lane.out, rows, lane.dout);
-  nets_->backward(Networks::kActor, lane.obs, rows, lane.actor, lane.dout, grad);
+    std::fill_n(chunk.dlog_std_of(i), dim, policy.explores() ? -scale_ * static_cast<float>(entropy_) : 0.0f);
+  policy.add(chunk);
+  if (state) nets_->gate_std(workspace.out, rows, workspace.dout);
+  nets_->backward(Networks::kActor, workspace.obs, rows, workspace.actor, workspace.dout, grad);
 }
 
 // Squared error against the targets, or with value_clip the larger one of it and of that of a value held near
 // the one that acted; returns its sum over rows and columns.
-double Learner::critic_gradient(Lane& lane, Networks::Index net, const int32_t* order, int32_t rows,
+double Learner::critic_gradient(Workspace& workspace, Networks::Index net, const int32_t* order, int32_t rows,
                                 float* grad) const {
   const auto out = static_cast<size_t>(nets_->shape[net].out);
   const bool reward = net == Networks::kReward;
   const float* target = reward ? rollout_->target : rollout_->cost_target;
   const float* acted = reward ? rollout_->value : rollout_->cost_value;
-  nets_->forward(net, lane.obs, rows, lane.critic, lane.out);
+  nets_->forward(net, workspace.obs, rows, workspace.critic, workspace.out);
   double loss = 0;
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
     for (size_t k = 0; k < out; ++k) {
       const size_t at = static_cast<size_t>(order[i]) * out + k;
-      float error = lane.out[i * out + k] - target[at], slope = 1;
+      float error = workspace.out[i * out + k] - target[at], slope = 1;
       if (value_clip_ > 0) {
-        const float change = lane.out[i * out + k] - acted[at];
+        const float change = workspace.out[i * out + k] - acted[at];
         const float held = acted[at] + std::clamp(change, -value_clip_, value_clip_) - target[at];
         if (held * held > error * error) error = held, slope = std::abs(change) <= value_clip_ ? 1.0f : 0.0f;
       }
-      lane.dout[i * out + k] = 2 * scale_ * error * slope;
+      workspace.dout[i * out + k] = 2 * scale_ * error * slope;
       loss += static_cast<double>(error) * static_cast<double>(error);
     }
-  nets_->backward(net, lane.obs, rows, lane.critic, lane.dout, grad);
+  nets_->backward(net, workspace.obs, rows, workspace.critic, workspace.dout, grad);
   return loss;
 }
 
 void Learner::add_penalties(const PolicyLoss* policy) {
   const auto bonus = policy && policy->explores() ? static_cast<float>(entropy_) : 0.0f;
-  for (size_t j = 0; policy && !nets_->state_std() && j < plan_->action_dim(); ++j)
+  for (size_t j = 0; policy && !nets_->state_std() && j < resolved_->action_dim(); ++j)
     grad_[j] = learn_std_ ? grad_[j] - bonus : 0;
   if (!critics_ || critic_l2_ == 0) return;
   const auto twice = static_cast<float>(2 * critic_l2_);
@@ -153,7 +154,7 @@ void Learner::step(double actor_rate, double actor_share) {
       grad_[j] = static_cast<float>(scale * static_cast<double>(grad_[j]));
     bound = 0;
   }
-  lanes_->spread(last - first, [&](int32_t i) {
+  workers_->spread(last - first, [&](int32_t i) {
     const int32_t net = first + i;
     Block& b = nets_->block[net];
     const double rate = net == Networks::kActor ? actor_rate : critic_rate;
@@ -164,26 +165,26 @@ void Learner::step(double actor_rate, double actor_share) {
   if (policy_) clamp_log_std(*nets_);
 }
 
-void Learner::measure_rows(Lane& lane, const int32_t* order, int32_t rows, float clip) const {
+void Learner::measure_rows(Workspace& workspace, const int32_t* order, int32_t rows, float clip) const {
   const Rollout& r = *rollout_;
   const auto dim = static_cast<int32_t>(r.action_dim);
   const auto costs = static_cast<size_t>(r.num_costs);
-  gather_obs(r, order, 1, rows, lane.obs);
-  nets_->forward(Networks::kActor, lane.obs, rows, lane.actor, lane.out);
-  lane.surrogate = Surrogate();
-  const PolicyPiece piece = piece_of(lane, order, rows, nullptr);
+  gather_obs(r, order, 1, rows, workspace.obs);
+  nets_->forward(Networks::kActor, workspace.obs, rows, workspace.actor, workspace.out);
+  workspace.surrogate = Surrogate();
+  const PolicyChunk chunk = chunk_of(workspace, order, rows, nullptr);
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
     const auto at = static_cast<size_t>(order[i]);
-    const float *mean = piece.mean_of(i), *log_std = piece.log_std_of(i);
-    lane.surrogate.kl +=
+    const float *mean = chunk.mean_of(i), *log_std = chunk.log_std_of(i);
+    workspace.surrogate.kl +=
         static_cast<double>(gaussian_kl(r.mean + at * r.action_dim, r.log_std_of(at), mean, log_std, dim));
     const double ratio = sample_ratio(r, at, mean, log_std);
-    lane.surrogate.gain += ratio * static_cast<double>(r.gain[at] + r.linear[at]);
+    workspace.surrogate.gain += ratio * static_cast<double>(r.gain[at] + r.linear[at]);
     const double bounded =
         std::clamp(ratio, 1.0 - static_cast<double>(clip), 1.0 + static_cast<double>(clip));
     for (size_t k = 0; k < costs; ++k) {
       const auto cost = static_cast<double>(r.cost_advantage[at * costs + k]);
-      lane.surrogate.cost[k] += clip > 0 ? std::max(ratio * cost, bounded * cost) : ratio * cost;
+      workspace.surrogate.cost[k] += clip > 0 ? std::max(ratio * cost, bounded * cost) : ratio * cost;
     }
   }
 }
@@ -191,12 +192,14 @@ void Learner::measure_rows(Lane& lane, const int32_t* order, int32_t rows, float
 Surrogate Learner::measure(const int32_t* order, int32_t rows, float clip) {
   refresh_log_std();
   Surrogate mean;
-  lanes_->sweep(
-      rows, plan_->piece_rows,
-      [&](Lane& lane, int32_t first, int32_t n) { measure_rows(lane, order + first, n, clip); },
+  workers_->sweep(
+      rows, resolved_->chunk_rows,
+      [&](Workspace& workspace, int32_t first, int32_t n) {
+        measure_rows(workspace, order + first, n, clip);
+      },
       [&](int32_t, int32_t n) {
         for (int32_t i = 0; i < n; ++i) {
-          const Surrogate& part = (*lanes_)[i].surrogate;
+          const Surrogate& part = (*workers_)[i].surrogate;
           mean.gain += part.gain, mean.kl += part.kl;
           for (int32_t k = 0; k < rollout_->num_costs; ++k) mean.cost[k] += part.cost[k];
         }

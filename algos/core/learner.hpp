@@ -1,4 +1,23 @@
-// The learning half of an agent: gradients of batches, cut into pieces and folded in order, and Adam steps.
+// The learning half of an agent: gradients of batches, cut into chunks and reduced in order, and Adam steps.
+//
+// Of a batch B of N rows the learner follows the gradient of
+//
+//   policy   1/N sum_B L(rho, A) - entropy H(pi)
+//   critics  1/N sum_B (V - target)^2 + l2 |w|^2
+//
+// with L the algorithm's (PolicyLoss), rho = pi(a|s) / pi_old(a|s), V of the reward or of a limited cost,
+// each network with an Adam of its own (Kingma and Ba 2015) behind a bound on its gradient's norm, or one
+// bound for all (joint_grad_norm). With value_clip the squared error is the larger one of V's and of V_old +
+// clip(V - V_old, +-value_clip)'s, as PPO's first code had it; that is no part of the paper.
+//
+// The stages of gradient(): gather the chunk's observations, forward through the actor, loss and its
+// derivatives by mean and log deviation, backward; the same for each critic; chunks' gradients added in
+// order. measure() is the forward half alone: what the policy as it is now would gain, cost and how far it is
+// from the one that acted, KL(old || now). The kl that an Epoch reports is summed in gradient(), so each
+// minibatch's is of before its own step: 0 for one pass over one minibatch.
+//
+// By hand rather than by Eigen: every sum here runs in a fixed order whatever the processor's vectors and the
+// number of threads, which Eigen's products and reductions do not promise; the matrix products are lib/nn's.
 #pragma once
 #include "algos/core/batch_workers.hpp"
 #include "algos/core/networks.hpp"
@@ -6,9 +25,9 @@
 
 namespace rdm {
 
-// A piece of a batch as a policy loss sees it. Row i of its means is mean_step i further on, of its
+// A chunk of a batch as a policy loss sees it. Row i of its means is mean_step i further on, of its
 // deviations std_step i: 0 where one serves all.
-struct PolicyPiece {
+struct PolicyChunk {
   const Rollout* rollout = nullptr;
   const int32_t* order = nullptr;  // [rows] rows of the rollout
   int32_t rows = 0;
@@ -29,7 +48,7 @@ struct PolicyPiece {
 class PolicyLoss {
  public:
   // Runs on any thread and must not throw.
-  virtual void add(const PolicyPiece& piece) const = 0;
+  virtual void add(const PolicyChunk& chunk) const = 0;
   // The entropy bonus belongs to this loss.
   virtual bool explores() const { return true; }
 
@@ -39,9 +58,10 @@ class PolicyLoss {
 
 class Learner {
  public:
-  void carve(Arena& arena, const ResolvedAgentConfig& plan, size_t num_params);
+  void carve(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_params);
   // All must outlive the learner.
-  void open(const ResolvedAgentConfig& plan, const Rollout& rollout, Networks& nets, BatchWorkers& lanes);
+  void open(const ResolvedAgentConfig& resolved, const Rollout& rollout, Networks& nets,
+            BatchWorkers& workers);
   void read_live(const Options& options);
 
   // Gradients of mean loss over the listed rows: the policy's (null: none) less the entropy bonus, and, if
@@ -62,20 +82,20 @@ class Learner {
 
  private:
   void refresh_log_std();
-  // The policy at the outputs that a lane holds; its derivatives go to the lane's and to grad.
-  PolicyPiece piece_of(Lane& lane, const int32_t* order, int32_t rows, float* grad) const;
-  void policy_gradient(Lane& lane, const PolicyLoss& policy, const int32_t* order, int32_t rows,
+  // The policy at the outputs that a workspace holds; its derivatives go to the workspace's and to grad.
+  PolicyChunk chunk_of(Workspace& workspace, const int32_t* order, int32_t rows, float* grad) const;
+  void policy_gradient(Workspace& workspace, const PolicyLoss& policy, const int32_t* order, int32_t rows,
                        float* grad) const;
-  double critic_gradient(Lane& lane, Networks::Index net, const int32_t* order, int32_t rows,
+  double critic_gradient(Workspace& workspace, Networks::Index net, const int32_t* order, int32_t rows,
                          float* grad) const;
-  void measure_rows(Lane& lane, const int32_t* order, int32_t rows, float clip) const;
+  void measure_rows(Workspace& workspace, const int32_t* order, int32_t rows, float clip) const;
   void add_penalties(const PolicyLoss* policy);
   double joint_scale(int32_t first, int32_t last) const;
 
-  const ResolvedAgentConfig* plan_ = nullptr;
+  const ResolvedAgentConfig* resolved_ = nullptr;
   const Rollout* rollout_ = nullptr;
   Networks* nets_ = nullptr;
-  BatchWorkers* lanes_ = nullptr;
+  BatchWorkers* workers_ = nullptr;
   float* grad_ = nullptr;       // [Networks::size]
   float* log_std_ = nullptr;    // [action_dim] of the innovation; none with std_mode=state
   float scale_ = 1;             // 1 / rows of the batch

@@ -45,18 +45,18 @@ bool moments_agree(const StateView<float>& m, const StateView<float>& v, size_t 
 }
 }  // namespace
 
-Networks carve_networks(Arena& arena, const ResolvedAgentConfig& plan) {
+Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   Networks n;
-  n.shape[Networks::kActor] = plan.actor;
-  n.shape[Networks::kReward] = plan.reward_critic;
-  n.shape[Networks::kCost] = plan.cost_critic;
-  n.count = plan.num_limited > 0 ? 3 : 2;
-  n.action_dim = plan.config.action_dim;
-  n.std_size = plan.state_std() ? 0 : (plan.action_dim() + 15) / 16 * 16;
-  n.std_low = static_cast<float>(elementary::log(plan.options.number("std_min")));
-  n.std_high = static_cast<float>(elementary::log(plan.options.number("std_max")));
-  n.log_share = plan.log_share;
-  n.input_bound = plan.options.flag("normalize_obs") ? plan.options.number("obs_clip") : 1e3;
+  n.shape[Networks::kActor] = resolved.actor;
+  n.shape[Networks::kReward] = resolved.reward_critic;
+  n.shape[Networks::kCost] = resolved.cost_critic;
+  n.count = resolved.num_limited > 0 ? 3 : 2;
+  n.action_dim = resolved.config.action_dim;
+  n.std_size = resolved.state_std() ? 0 : (resolved.action_dim() + 15) / 16 * 16;
+  n.std_low = static_cast<float>(elementary::log(resolved.options.number("std_min")));
+  n.std_high = static_cast<float>(elementary::log(resolved.options.number("std_max")));
+  n.log_share = resolved.log_share;
+  n.input_bound = resolved.options.flag("normalize_obs") ? resolved.options.number("obs_clip") : 1e3;
   for (int32_t i = 0; i < n.count; ++i) {
     n.block[i].offset = n.size;
     n.block[i].size = n.shape[i].num_params() + (i == Networks::kActor ? n.std_size : 0);
@@ -67,10 +67,10 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& plan) {
   return n;
 }
 
-void init_networks(const Networks& n, const ResolvedAgentConfig& plan) {
-  const Options& o = plan.options;
+void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
+  const Options& o = resolved.options;
   for (int32_t i = 0; i < n.count; ++i) {
-    Stream stream(plan.config.seed, static_cast<uint32_t>(i), Purpose::kInit);
+    Stream stream(resolved.config.seed, static_cast<uint32_t>(i), Purpose::kInit);
     const double last = i == Networks::kActor ? o.number("last_layer_scale") : 1;
     mlp_init(n.shape[i], stream, static_cast<float>(last), n.net(i));
   }
@@ -78,7 +78,7 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& plan) {
   float* bias = n.net(Networks::kActor) + actor.bias_offset(actor.num_hidden);
   float* log_std = n.state_std() ? bias + n.action_dim : n.log_std();
   for (int32_t j = 0; j < n.action_dim; ++j) {
-    bias[j] = plan.config.initial_mean ? plan.config.initial_mean[j] : 0;
+    bias[j] = resolved.config.initial_mean ? resolved.config.initial_mean[j] : 0;
     log_std[j] = static_cast<float>(elementary::log(o.number("init_std")));
   }
 }

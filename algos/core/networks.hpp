@@ -51,9 +51,9 @@ struct Networks {
  private:
   void bound_std(int32_t rows, float* y) const;
 };
-Networks carve_networks(Arena& arena, const ResolvedAgentConfig& plan);
+Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved);
 // Weights from the streams (seed, network, init); the actor's last bias is the initial mean.
-void init_networks(const Networks& n, const ResolvedAgentConfig& plan);
+void init_networks(const Networks& n, const ResolvedAgentConfig& resolved);
 void clamp_log_std(const Networks& n);
 // With std_schedule=linear the deviation for the epoch that follows `done` finished ones.
 void schedule_std(const Networks& n, const Options& options, int32_t done);

@@ -7,12 +7,12 @@ namespace {
 constexpr double kMaxNoise = 1e6;
 }  // namespace
 
-void Noise::carve(Arena& arena, const ResolvedAgentConfig& plan) {
-  num_envs_ = plan.config.num_envs;
-  dim_ = plan.config.action_dim;
-  correlation_ = static_cast<float>(plan.options.number("noise_correlation"));
-  stream_ = arena.make<Stream>(plan.num_envs());
-  state_ = arena.make<float>(plan.num_envs() * plan.action_dim());
+void Noise::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
+  num_envs_ = resolved.config.num_envs;
+  dim_ = resolved.config.action_dim;
+  correlation_ = static_cast<float>(resolved.options.number("noise_correlation"));
+  stream_ = arena.make<Stream>(resolved.num_envs());
+  state_ = arena.make<float>(resolved.num_envs() * resolved.action_dim());
 }
 
 void Noise::reset(uint64_t seed) {

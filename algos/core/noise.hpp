@@ -10,7 +10,7 @@ namespace rdm {
 
 class Noise {
  public:
-  void carve(Arena& arena, const ResolvedAgentConfig& plan);
+  void carve(Arena& arena, const ResolvedAgentConfig& resolved);
   void reset(uint64_t seed);
   // Draws for environment env: action = mean + noise, centered = action - offset. All [action_dim].
   // std: of the innovation.

@@ -11,10 +11,7 @@ namespace {
 
 constexpr const char* kOwner = "agent";
 
-// `beside`: the row holds only for algorithms that also know this key; null: for all.
-struct PresetValue {
-  const char *preset, *key, *text, *beside = nullptr;
-};
+constexpr const char* kTrustRegion = "trpo|trpo_lag|cpo|pcpo";
 
 // Sources: paper is the code behind the paper's table of hand tasks and the papers of the algorithms,
 // omnisafe that library's on-policy defaults with its minibatches of 64 or 128 expressed as a count.
@@ -58,10 +55,10 @@ constexpr PresetValue kPresetValues[] = {
     {"paper", "penalty_growth", "1.05"},
     {"paper", "penalty_max", "20"},
     {"paper", "violation_scale", "discount"},
-    {"paper", "multiplier_optimizer", "sgd", "focops_eta"},
-    {"paper", "multiplier_init", "0", "focops_eta"},
-    {"paper", "multiplier_lr", "0.01", "focops_eta"},
-    {"paper", "kl_target", "0.02", "focops_eta"},
+    {"paper", "multiplier_optimizer", "sgd", "focops"},
+    {"paper", "multiplier_init", "0", "focops"},
+    {"paper", "multiplier_lr", "0.01", "focops"},
+    {"paper", "kl_target", "0.02", "focops"},
     {"paper", "pid_kp", "0.01"},
     {"omnisafe", "hidden", "64,64"},
     {"omnisafe", "critic_hidden", ""},
@@ -88,29 +85,41 @@ constexpr PresetValue kPresetValues[] = {
     {"omnisafe", "multiplier_lr", "0.035"},
     {"omnisafe", "multiplier_normalized", "false"},
     {"omnisafe", "multiplier_divide", "true"},
-    {"omnisafe", "passes", "10", "penalty"},
-    {"omnisafe", "passes", "10", "barrier_kappa"},
-    {"omnisafe", "passes", "10", "trust_kl"},
-    {"omnisafe", "critic_learning_rate", "1e-3", "trust_kl"},
-    {"omnisafe", "lr_schedule", "constant", "trust_kl"},
+    {"omnisafe", "passes", "10", "p3o"},
+    {"omnisafe", "passes", "10", "ipo"},
+    {"omnisafe", "passes", "10", kTrustRegion},
+    {"omnisafe", "critic_learning_rate", "1e-3", kTrustRegion},
+    {"omnisafe", "lr_schedule", "constant", kTrustRegion},
     {"omnisafe", "trust_kl", "0.01"},
     {"omnisafe", "kl_mean_over_dims", "true"},
     {"omnisafe", "cg_iterations", "15"},
     {"omnisafe", "cg_damping", "0.1"},
-    {"omnisafe", "line_search_steps", "20", "several_costs"},
-    {"omnisafe", "line_search_steps", "200", "projection"},
+    {"omnisafe", "line_search_steps", "20", "cpo"},
+    {"omnisafe", "line_search_steps", "200", "pcpo"},
     {"omnisafe", "violation_scale", "raw"},
     {"omnisafe", "penalty", "20"},
     {"omnisafe", "penalty_growth", "1"},
     {"omnisafe", "penalty_clip", "false"},
     {"omnisafe", "barrier_kappa", "0.01"},
     {"omnisafe", "barrier_max", "1"},
-    {"omnisafe", "normalize_reward", "true", "barrier_kappa"},
-    {"omnisafe", "normalize_cost", "true", "barrier_kappa"},
+    {"omnisafe", "normalize_reward", "true", "ipo"},
+    {"omnisafe", "normalize_cost", "true", "ipo"},
     {"omnisafe", "pid_kp", "0.1"},
     {"omnisafe", "pid_ki", "0.01"},
     {"omnisafe", "pid_kd", "0.01"},
 };
+
+// `name` is one of the algorithms "a|b|c".
+bool among(const char* algos, const char* name) {
+  const size_t size = std::strlen(name);
+  for (const char* p = algos; *p;) {
+    const char* end = std::strchr(p, '|');
+    const size_t n = end ? static_cast<size_t>(end - p) : std::strlen(p);
+    if (n == size && std::memcmp(p, name, n) == 0) return true;
+    p += n + (end ? 1 : 0);
+  }
+  return false;
+}
 
 bool knows(const AlgoInfo& algo, const char* key) {
   for (int32_t k = 0; k < algo.num_options; ++k)
@@ -150,22 +159,26 @@ void lay_default(Options& o, const AlgoInfo& algo, OptionInput in) {
     o.set_default(in.key, in.number);
 }
 
-void lay_preset(Options& o, const AgentConfig& config) {
+void lay_preset(Options& o, const AgentConfig& config, const char* algo) {
   const char* preset = o.text("preset");
   for (const PresetValue& v : kPresetValues) {
     // Without the length of an episode there is nothing to charge.
     if (same_name(v.key, "terminal_cost") && config.max_steps <= 0) continue;
-    if (v.beside && !o.knows(v.beside)) continue;
+    if (v.algos && !among(v.algos, algo)) continue;
     if (same_name(v.preset, preset) && o.knows(v.key)) o.set_default(v.key, v.text);
   }
   if (same_name(preset, "omnisafe")) {
     const int64_t rows = int64_t{o.integer("horizon")} * config.num_envs;
-    const int64_t size = o.knows("trust_kl") ? 128 : 64;
+    const int64_t size = among(kTrustRegion, algo) ? 128 : 64;
     o.set_default("minibatches", static_cast<double>(std::clamp<int64_t>(rows / size, 1, 1 << 20)));
   }
 }
 
 }  // namespace
+
+std::span<const PresetValue> preset_values() {
+  return kPresetValues;
+}
 
 size_t options_bytes(const AlgoInfo& algo) {
   return Options::bytes(algo.num_options);
@@ -178,7 +191,7 @@ Options read_options(const AgentConfig& config, const AlgoInfo& algo) {
   o.add_table(algo.options, algo.num_options);
   for (int32_t i = 0; i < config.num_options; ++i) o.set(config.options[i], kOwner);
   for (int32_t i = 0; i < config.num_defaults; ++i) lay_default(o, algo, config.defaults[i]);
-  lay_preset(o, config);
+  lay_preset(o, config, algo.name);
   return o;
 }
 

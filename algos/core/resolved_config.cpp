@@ -74,64 +74,66 @@ MlpShape parse_shape(const Options& o, const char* key, int32_t in, int32_t out)
   return s;
 }
 
-void plan_costs(ResolvedAgentConfig& plan) {
-  AgentConfig& c = plan.config;
-  Options& o = plan.options;
+void resolve_costs(ResolvedAgentConfig& resolved) {
+  AgentConfig& c = resolved.config;
+  Options& o = resolved.options;
   if (c.cost_limits && c.cost_dim > 0 && !o.given("cost_limit"))
     o.set_default("cost_limit", c.cost_limits[0] < 0 ? -1.0 : c.cost_limits[0]);
-  if (plan.row->costs == Costs::kNone) return;
+  if (resolved.row->costs == Costs::kNone) return;
   for (int32_t k = 0; k < c.cost_dim; ++k) {
     const double limit = k == 0 ? o.number("cost_limit") : c.cost_limits ? c.cost_limits[k] : -1;
     if (limit < 0) continue;
-    plan.column[plan.num_limited] = k;
-    plan.limit[plan.num_limited++] = limit;
+    resolved.column[resolved.num_limited] = k;
+    resolved.limit[resolved.num_limited++] = limit;
   }
-  if (plan.num_limited == 0)
-    fail(Code::kArgument, "cost_limits: %s needs at least one cost column with a limit", plan.row->info.name);
-  if (plan.row->costs == Costs::kOne && plan.num_limited > 1 &&
+  if (resolved.num_limited == 0)
+    fail(Code::kArgument, "cost_limits: %s needs at least one cost column with a limit",
+         resolved.row->info.name);
+  if (resolved.row->costs == Costs::kOne && resolved.num_limited > 1 &&
       std::strcmp(o.text("several_costs"), "worst") != 0)
     fail(Code::kUnsupported,
          "cost_limits: %s is defined for one limited cost, %d have limits; several_costs=worst follows the "
          "most "
          "violated one",
-         plan.row->info.name, plan.num_limited);
+         resolved.row->info.name, resolved.num_limited);
 }
 
-void plan_networks(ResolvedAgentConfig& plan) {
-  const AgentConfig& c = plan.config;
-  const Options& o = plan.options;
+void resolve_networks(ResolvedAgentConfig& resolved) {
+  const AgentConfig& c = resolved.config;
+  const Options& o = resolved.options;
   const char* critic = *o.text("critic_hidden") ? "critic_hidden" : "hidden";
   const int32_t outputs = std::strcmp(o.text("std_mode"), "state") == 0 ? 2 : 1;
-  plan.actor = parse_shape(o, "hidden", c.obs_dim, outputs * c.action_dim);
-  plan.reward_critic = parse_shape(o, critic, c.obs_dim, 1);
-  plan.cost_critic = parse_shape(o, critic, c.obs_dim, std::max(plan.num_limited, 1));
-  check_mlp_shape(plan.actor);
-  check_mlp_shape(plan.reward_critic);
+  resolved.actor = parse_shape(o, "hidden", c.obs_dim, outputs * c.action_dim);
+  resolved.reward_critic = parse_shape(o, critic, c.obs_dim, 1);
+  resolved.cost_critic = parse_shape(o, critic, c.obs_dim, std::max(resolved.num_limited, 1));
+  check_mlp_shape(resolved.actor);
+  check_mlp_shape(resolved.reward_critic);
 }
 
-void plan_batches(ResolvedAgentConfig& plan) {
-  const Options& o = plan.options;
-  plan.horizon = o.integer("horizon");
-  plan.action_repeat = o.integer("action_repeat");
-  const int64_t samples = int64_t{plan.horizon} * plan.config.num_envs;
+void resolve_batches(ResolvedAgentConfig& resolved) {
+  const Options& o = resolved.options;
+  resolved.horizon = o.integer("horizon");
+  resolved.action_repeat = o.integer("action_repeat");
+  const int64_t samples = int64_t{resolved.horizon} * resolved.config.num_envs;
   if (samples > kMaxSamples)
-    fail(Code::kRange, "horizon: %d decisions of %d environments are more than %lld samples", plan.horizon,
-         plan.config.num_envs, static_cast<long long>(kMaxSamples));
-  plan.samples = static_cast<int32_t>(samples);
-  const int32_t parts = std::min(o.integer("minibatches"), plan.samples);
-  plan.minibatch_rows = (plan.samples + parts - 1) / parts;
-  // A quarter of a minibatch keeps four threads busy; larger pieces than 256 rows leave the cache. Not by
+    fail(Code::kRange, "horizon: %d decisions of %d environments are more than %lld samples",
+         resolved.horizon, resolved.config.num_envs, static_cast<long long>(kMaxSamples));
+  resolved.samples = static_cast<int32_t>(samples);
+  const int32_t parts = std::min(o.integer("minibatches"), resolved.samples);
+  resolved.minibatch_rows = (resolved.samples + parts - 1) / parts;
+  // A quarter of a minibatch keeps four threads busy; larger chunks than 256 rows leave the cache. Not by
   // num_threads: results must not depend on it.
-  const int32_t quarter = (plan.minibatch_rows + 3) / 4;
-  plan.piece_rows = std::clamp((quarter + 31) / 32 * 32, 64, 256);
-  const int32_t rows = std::max(plan.minibatch_rows, plan.config.num_envs);
-  plan.lanes = std::clamp(plan.config.num_threads, 1, (rows + plan.piece_rows - 1) / plan.piece_rows);
+  const int32_t quarter = (resolved.minibatch_rows + 3) / 4;
+  resolved.chunk_rows = std::clamp((quarter + 31) / 32 * 32, 64, 256);
+  const int32_t rows = std::max(resolved.minibatch_rows, resolved.config.num_envs);
+  resolved.workers =
+      std::clamp(resolved.config.num_threads, 1, (rows + resolved.chunk_rows - 1) / resolved.chunk_rows);
   const double rho = o.number("noise_correlation");
-  plan.log_share = static_cast<float>(0.5 * elementary::log1p(-rho * rho));
+  resolved.log_share = static_cast<float>(0.5 * elementary::log1p(-rho * rho));
 }
 
-void check_pairs(const ResolvedAgentConfig& plan) {
-  const Options& o = plan.options;
+void check_pairs(const ResolvedAgentConfig& resolved) {
+  const Options& o = resolved.options;
   if (o.number("std_min") > o.number("std_max")) fail(Code::kRange, "std_min: above std_max");
   if (o.number("init_std") < o.number("std_min") || o.number("init_std") > o.number("std_max"))
     fail(Code::kRange, "init_std: %g is outside [std_min, std_max]", o.number("init_std"));
@@ -142,23 +144,23 @@ void check_pairs(const ResolvedAgentConfig& plan) {
       fail(Code::kRange, "init_std: at a bound, where std_mode=state has no gradient");
   }
   if (o.number("lr_min") > o.number("lr_max")) fail(Code::kRange, "lr_min: above lr_max");
-  if (o.flag("terminal_cost") && plan.config.max_steps <= 0)
+  if (o.flag("terminal_cost") && resolved.config.max_steps <= 0)
     fail(Code::kArgument, "terminal_cost: needs max_steps, which is unknown (0)");
 }
 
 }  // namespace
 
-ResolvedAgentConfig make_plan(const AgentConfig& config) {
+ResolvedAgentConfig resolve_config(const AgentConfig& config) {
   check_config(config);
   const AlgoRow& row = algo_row(algo_find(config.algo));
-  ResolvedAgentConfig plan(config, read_options(config, row.info), row);
-  std::snprintf(plan.task, sizeof plan.task, "%s", config.task ? config.task : "");
-  plan.config.algo = row.info.name;
-  check_pairs(plan);
-  plan_costs(plan);
-  plan_networks(plan);
-  plan_batches(plan);
-  return plan;
+  ResolvedAgentConfig resolved(config, read_options(config, row.info), row);
+  std::snprintf(resolved.task, sizeof resolved.task, "%s", config.task ? config.task : "");
+  resolved.config.algo = row.info.name;
+  check_pairs(resolved);
+  resolve_costs(resolved);
+  resolve_networks(resolved);
+  resolve_batches(resolved);
+  return resolved;
 }
 
 }  // namespace rdm

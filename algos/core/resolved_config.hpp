@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "algos/core/agent.hpp"
+#include "algos/core/agent_types.hpp"
 #include "nn/mlp.hpp"
 
 namespace rdm {
@@ -27,8 +27,8 @@ struct ResolvedAgentConfig {
   int32_t horizon = 0, action_repeat = 0;
   int32_t samples = 0;         // num_envs * horizon
   int32_t minibatch_rows = 0;  // largest minibatch
-  int32_t piece_rows = 0;      // of a batch, by one thread at a time; the order of sums follows from it
-  int32_t lanes = 1;           // pieces in flight
+  int32_t chunk_rows = 0;      // of a batch, by one thread at a time; the order of sums follows from it
+  int32_t workers = 1;         // chunks in flight
   float log_share = 0;         // ln of the innovation's share of the standard deviation
 
   // The actor's network gives log deviations behind its means.
@@ -39,6 +39,6 @@ struct ResolvedAgentConfig {
 };
 
 // Error(kRange, kArgument, kNotFound) with the name of the field or option.
-ResolvedAgentConfig make_plan(const AgentConfig& config);
+ResolvedAgentConfig resolve_config(const AgentConfig& config);
 
 }  // namespace rdm

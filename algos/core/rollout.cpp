@@ -7,14 +7,14 @@
 
 namespace rdm {
 
-Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& plan) {
+Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
   Rollout r;
-  r.horizon = plan.horizon;
-  r.num_envs = plan.config.num_envs;
-  r.num_costs = plan.num_limited;
-  r.obs_dim = plan.obs_dim();
-  r.action_dim = plan.action_dim();
-  const auto n = static_cast<size_t>(plan.samples), k = static_cast<size_t>(r.num_costs);
+  r.horizon = resolved.horizon;
+  r.num_envs = resolved.config.num_envs;
+  r.num_costs = resolved.num_limited;
+  r.obs_dim = resolved.obs_dim();
+  r.action_dim = resolved.action_dim();
+  const auto n = static_cast<size_t>(resolved.samples), k = static_cast<size_t>(r.num_costs);
   r.obs = arena.make<float>(n * r.obs_dim);
   r.action = arena.make<float>(n * r.action_dim);
   r.mean = arena.make<float>(n * r.action_dim);
@@ -24,10 +24,10 @@ Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& plan) {
   for (float** column : {&r.cost, &r.cost_value, &r.cost_advantage, &r.cost_target})
     *column = arena.make<float>(n * k);
   r.valid = arena.make<uint8_t>(n);
-  r.last_value = arena.make<float>(plan.num_envs());
-  r.last_cost_value = arena.make<float>(plan.num_envs() * k);
-  r.std_step = plan.state_std() ? r.action_dim : 0;
-  r.log_std = arena.make<float>(plan.state_std() ? n * r.action_dim : r.action_dim);
+  r.last_value = arena.make<float>(resolved.num_envs());
+  r.last_cost_value = arena.make<float>(resolved.num_envs() * k);
+  r.std_step = resolved.state_std() ? r.action_dim : 0;
+  r.log_std = arena.make<float>(resolved.state_std() ? n * r.action_dim : r.action_dim);
   r.order = arena.make<int32_t>(n);
   return r;
 }

@@ -32,7 +32,7 @@ struct Rollout {
   size_t row(int32_t t) const { return static_cast<size_t>(t) * static_cast<size_t>(num_envs); }
   int32_t samples() const { return horizon * num_envs; }
 };
-Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& plan);
+Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved);
 
 struct AdvantageOptions {
   double lambda = 0.95, cost_lambda = 0.95;

@@ -9,8 +9,8 @@
 
 namespace rdm {
 
-void FocopsLoss::add(const PolicyPiece& piece) const {
-  const Rollout& r = *piece.rollout;
+void FocopsLoss::add(const PolicyChunk& chunk) const {
+  const Rollout& r = *chunk.rollout;
   const size_t dim = r.action_dim;
   const auto dims = static_cast<int32_t>(dim);
   float precision[kMaxActions], dlog_std[kMaxActions];  // 1 / old variance; d KL / d log sigma
@@ -21,47 +21,47 @@ void FocopsLoss::add(const PolicyPiece& piece) const {
       dlog_std[j] = static_cast<float>(elementary::expm1(2 * (static_cast<double>(log_std[j]) - was)));
     }
   };
-  for (size_t i = 0; i < static_cast<size_t>(piece.rows); ++i) {
-    const auto at = static_cast<size_t>(piece.order[i]);
-    const float *mean = piece.mean_of(i), *log_std = piece.log_std_of(i);
+  for (size_t i = 0; i < static_cast<size_t>(chunk.rows); ++i) {
+    const auto at = static_cast<size_t>(chunk.order[i]);
+    const float *mean = chunk.mean_of(i), *log_std = chunk.log_std_of(i);
     const float *old = r.mean + at * dim, *old_log_std = r.log_std_of(at);
-    float *dmean = piece.dmean_of(i), *dstd = piece.dlog_std_of(i);
-    if (i == 0 || piece.std_step > 0) prepare(log_std, old_log_std);
+    float *dmean = chunk.dmean_of(i), *dstd = chunk.dlog_std_of(i);
+    if (i == 0 || chunk.std_step > 0) prepare(log_std, old_log_std);
     const float kl = gaussian_kl(mean, log_std, old, old_log_std, dims);
-    piece.sums->kl += static_cast<double>(gaussian_kl(old, old_log_std, mean, log_std, dims));
+    chunk.sums->kl += static_cast<double>(gaussian_kl(old, old_log_std, mean, log_std, dims));
     if (!(kl <= eta)) {
       std::fill_n(dmean, dim, 0.0f);
-      piece.sums->clipped += 1;
+      chunk.sums->clipped += 1;
       continue;
     }
     const auto ratio = static_cast<float>(sample_ratio(r, at, mean, log_std));
     const float pull = ratio * r.gain[at] / temperature;
-    gaussian_log_prob_grad(mean, log_std, r.action + at * dim, dims, -piece.scale * pull, dmean, dstd);
+    gaussian_log_prob_grad(mean, log_std, r.action + at * dim, dims, -chunk.scale * pull, dmean, dstd);
     for (size_t j = 0; j < dim; ++j) {
-      dmean[j] += piece.scale * (mean[j] - old[j]) * precision[j];
-      dstd[j] += piece.scale * dlog_std[j];
+      dmean[j] += chunk.scale * (mean[j] - old[j]) * precision[j];
+      dstd[j] += chunk.scale * dlog_std[j];
     }
-    piece.sums->loss += static_cast<double>(kl - pull);
+    chunk.sums->loss += static_cast<double>(kl - pull);
   }
 }
 
 void FocopsBase::read_live() {
-  PolicyGradient::read_live();
+  Agent::read_live();
   loss_.temperature = static_cast<float>(options().number("temperature"));
   loss_.eta = static_cast<float>(options().number("focops_eta"));
 }
 
-FocopsRule::FocopsRule(const ResolvedAgentConfig& plan)
-    : lagrange_(plan),
-      count_(plan.num_limited),
-      mix_(plan.options.flag("multiplier_divide") ? Mix::kSum : Mix::kPlain) {}
+FocopsRule::FocopsRule(const ResolvedAgentConfig& resolved)
+    : lagrange_(resolved),
+      count_(resolved.num_limited),
+      mix_(resolved.options.flag("multiplier_divide") ? Mix::kSum : Mix::kPlain) {}
 
-void FocopsRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t epoch) {
-  lagrange_.step(stats, plan, epoch);
+void FocopsRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t epoch) {
+  lagrange_.step(stats, resolved, epoch);
   if (stats.finished == 0) return;
-  const auto excess = [&](int32_t i) { return stats.charged_cost[plan.column[i]] - plan.limit[i]; };
+  const auto excess = [&](int32_t i) { return stats.charged_cost[resolved.column[i]] - resolved.limit[i]; };
   worst_ = 0;
-  for (int32_t i = 1; i < plan.num_limited; ++i)
+  for (int32_t i = 1; i < resolved.num_limited; ++i)
     if (excess(i) > excess(worst_)) worst_ = i;
 }
 

@@ -1,6 +1,17 @@
-// FOCOPS (Zhang et al. 2020): first-order projection of the optimal nonparametric policy.
+// FOCOPS (Zhang, Vuong and Ross 2020): first-order projection of the optimal nonparametric policy.
+//
+// Within a trust region the best policy under a cost limit has the closed form
+//   pi*(a|s) ~ pi_old(a|s) exp((A_r - nu A_c) / lambda)
+// and the parameters follow the gradient of KL(pi || pi*), for one sample
+//   grad KL(pi || pi_old) - (1 / lambda) grad rho (A_r - nu A_c),   where KL(pi || pi_old) <= eta, else 0;
+// nu climbs by nu <- clip(nu + rate (J_c - limit), 0, nu_max); lambda and eta are fixed (temperature,
+// focops_eta).
+//
+// Departures: the cost advantage is centred, not standardised, as the authors' code has both
+// (scale_cost_adv=std: that); multiplier_divide divides by 1 + nu, as a peer does; of several limited costs
+// the most violated one alone weighs in an epoch, with a nu of its own.
 #pragma once
-#include "algos/core/policy_gradient.hpp"
+#include "algos/core/agent.hpp"
 #include "algos/lagrange/cost_weighted.hpp"
 #include "algos/lagrange/lagrange.hpp"
 
@@ -9,13 +20,13 @@ namespace rdm {
 // Of one sample: [KL(new || old) - rho gain / temperature], nothing where that KL is above eta.
 class FocopsLoss final : public PolicyLoss {
  public:
-  void add(const PolicyPiece& piece) const override;
+  void add(const PolicyChunk& chunk) const override;
   float temperature = 1.5f, eta = 0.02f;
 };
 
-class FocopsBase : public PolicyGradient {
+class FocopsBase : public Agent {
  public:
-  explicit FocopsBase(ResolvedAgentConfig&& plan) : PolicyGradient(std::move(plan)) {}
+  explicit FocopsBase(ResolvedAgentConfig&& resolved) : Agent(std::move(resolved)) {}
 
  protected:
   const PolicyLoss& policy_loss() const override { return loss_; }
@@ -28,8 +39,8 @@ class FocopsBase : public PolicyGradient {
 // One multiplier for each cost; of several, only the most violated one weighs in an epoch.
 class FocopsRule {
  public:
-  explicit FocopsRule(const ResolvedAgentConfig& plan);
-  void step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t epoch);
+  explicit FocopsRule(const ResolvedAgentConfig& resolved);
+  void step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t epoch);
   double weight(int32_t i) const { return i == worst_ ? lagrange_.weight(i) : 0; }
   Mix mix() const { return mix_; }
   bool split() const { return false; }

@@ -20,10 +20,10 @@ void BarrierRule::read_live(const Options& o) {
   split_ = std::strcmp(o.text("cost_loss"), "split") == 0;
 }
 
-void BarrierRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t) {
+void BarrierRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t) {
   if (stats.finished == 0) return;
   for (int32_t i = 0; i < count_; ++i)
-    slope_[i] = barrier_slope(stats.charged_cost[plan.column[i]], plan.limit[i], kappa_, max_);
+    slope_[i] = barrier_slope(stats.charged_cost[resolved.column[i]], resolved.limit[i], kappa_, max_);
 }
 
 void BarrierRule::visit(StateIo& io) {
@@ -41,7 +41,7 @@ namespace {
 // With barrier=exact: PPO's loss less kappa ln(-violation - L_c) of each cost.
 class Ipo final : public CostWeighted<Ppo, BarrierRule> {
  public:
-  explicit Ipo(ResolvedAgentConfig&& plan) : CostWeighted(std::move(plan)) {}
+  explicit Ipo(ResolvedAgentConfig&& resolved) : CostWeighted(std::move(resolved)) {}
 
  protected:
   const PolicyLoss& policy_loss() const override {
@@ -59,12 +59,13 @@ class Ipo final : public CostWeighted<Ppo, BarrierRule> {
     CostWeighted::begin_epoch(stats, epoch);
     known_ = stats.finished > 0;
     if (!exact_) return;
-    PolicyGradient::begin_epoch(stats, epoch);
-    for (int32_t i = 0; i < plan().num_limited; ++i) violation_[i] = violation(stats, i), loss_.weight[i] = 0;
-    if (known_) loss_.aim(Surrogate(), violation_, plan().num_limited);
+    Agent::begin_epoch(stats, epoch);
+    for (int32_t i = 0; i < resolved().num_limited; ++i)
+      violation_[i] = violation(stats, i), loss_.weight[i] = 0;
+    if (known_) loss_.aim(Surrogate(), violation_, resolved().num_limited);
   }
   void begin_minibatch(const int32_t* order, int32_t rows) override {
-    if (exact_ && known_) loss_.aim(learner().measure(order, rows), violation_, plan().num_limited);
+    if (exact_ && known_) loss_.aim(learner().measure(order, rows), violation_, resolved().num_limited);
   }
   double cost_weight(int32_t i) const override {
     return exact_ ? static_cast<double>(loss_.weight[i]) : CostWeighted::cost_weight(i);
@@ -77,8 +78,9 @@ class Ipo final : public CostWeighted<Ppo, BarrierRule> {
 };
 
 constexpr std::array kBarrierOptions = {
-    text_option("barrier", "epoch", "epoch|exact",
-                "slope at J_c for the whole epoch, or at J_c + L_c as each minibatch has it, never clipped"),
+    text_option(
+        "barrier", "epoch", "epoch|exact",
+        "epoch: slope at J_c for an epoch, nearly a switch; exact: the paper's, at each minibatch's J_c"),
     number_option("barrier_kappa", 0.01, 0, 1e6, "weight of ln(limit - J_c): 1 / m of the paper", true),
     number_option("barrier_max", 1, 0, kHuge, "bound on the barrier's slope, and the slope beyond the limit",
                   true),
@@ -88,6 +90,8 @@ constexpr auto kOptions = with_defaults(join_options(kSharedOptions, kClipOption
                                         {OtherDefault{"violation_scale", 0, "raw"}});
 }  // namespace
 constinit const AlgoRow kIpo = make_algo_row<Ipo>(
-    "ipo", "PPO with a logarithmic barrier before each cost limit (Liu et al. 2020)", kOptions, Costs::kAny);
+    "ipo",
+    "PPO with a cost weight that jumps to 1 at each limit; a barrier with barrier=exact (Liu et al. 2020)",
+    kOptions, Costs::kAny);
 
 }  // namespace rdm

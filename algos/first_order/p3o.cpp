@@ -41,12 +41,12 @@ void P3o::begin_epoch(const EpisodeStats& stats, int32_t epoch) {
   Ppo::begin_epoch(stats, epoch);
   if (epoch > 1)
     kappa_ = std::min(kappa_ * options().number("penalty_growth"), options().number("penalty_max"));
-  for (int32_t i = 0; i < plan().num_limited; ++i) violation_[i] = violation(stats, i);
+  for (int32_t i = 0; i < resolved().num_limited; ++i) violation_[i] = violation(stats, i);
 }
 
 void P3o::begin_minibatch(const int32_t* order, int32_t rows) {
   const Surrogate now = learner().measure(order, rows, loss_.clip_cost ? loss_.clip : 0);
-  for (int32_t k = 0; k < plan().num_limited; ++k)
+  for (int32_t k = 0; k < resolved().num_limited; ++k)
     loss_.weight[k] = now.cost[k] + violation_[k] > 0 ? static_cast<float>(kappa_) : 0;
 }
 
@@ -59,7 +59,8 @@ void P3o::visit_state(StateIo& io) {
 namespace {
 constexpr std::array kPenaltyOptions = {
     number_option("penalty", 20, 0, 1e6, "kappa, initial weight of the penalty"),
-    number_option("penalty_growth", 1, 1, 10, "factor on kappa per epoch", true),
+    number_option("penalty_growth", 1, 1, 10,
+                  "factor on kappa per epoch; 1: fixed, where the paper has it grow", true),
     number_option("penalty_max", 20, 0, kMaxPenalty, "largest kappa", true),
     flag_option("penalty_clip", true, "clip the cost's ratio too; the peers do not", true),
 };
@@ -67,6 +68,7 @@ constexpr auto kOptions =
     join_options(kSharedOptions, kClipOptions, kPenaltyOptions, kViolationOptions, kWindowOptions);
 }  // namespace
 constinit const AlgoRow kP3o = make_algo_row<P3o>(
-    "p3o", "PPO with an exact penalty on each cost limit (Zhang et al. 2022)", kOptions, Costs::kAny);
+    "p3o", "PPO with an exact penalty of fixed weight on each cost limit (Zhang et al. 2022)", kOptions,
+    Costs::kAny);
 
 }  // namespace rdm

@@ -1,6 +1,11 @@
-// PPO (Schulman et al. 2017): the clipped surrogate.
+// PPO (Schulman et al. 2017, eq. 7): the clipped surrogate, several passes over shuffled minibatches.
+//
+//   max over theta of the mean of min(rho A, clip(rho, 1 - eps, 1 + eps) A)
+//
+// Around it, none of it in the paper's equation: advantages standardised over the batch, Adam behind a bound
+// on the gradient's norm, a rate that may follow the KL (lr_schedule=kl), passes that may stop early by it.
 #pragma once
-#include "algos/core/policy_gradient.hpp"
+#include "algos/core/agent.hpp"
 #include "algos/first_order/ratio_loss.hpp"
 
 namespace rdm {
@@ -18,14 +23,14 @@ class ClippedSurrogate final : public RatioLoss {
   }
 };
 
-class Ppo : public PolicyGradient {
+class Ppo : public Agent {
  public:
-  explicit Ppo(ResolvedAgentConfig&& plan) : PolicyGradient(std::move(plan)) {}
+  explicit Ppo(ResolvedAgentConfig&& resolved) : Agent(std::move(resolved)) {}
 
  protected:
   const PolicyLoss& policy_loss() const override { return loss_; }
   void read_live() override {
-    PolicyGradient::read_live();
+    Agent::read_live();
     loss_.clip = static_cast<float>(options().number("clip"));
   }
 

@@ -4,20 +4,20 @@
 
 namespace rdm {
 
-void RatioLoss::add(const PolicyPiece& piece) const {
-  const Rollout& r = *piece.rollout;
+void RatioLoss::add(const PolicyChunk& chunk) const {
+  const Rollout& r = *chunk.rollout;
   const auto dim = static_cast<int32_t>(r.action_dim);
-  for (size_t i = 0; i < static_cast<size_t>(piece.rows); ++i) {
-    const auto at = static_cast<size_t>(piece.order[i]);
-    const float *action = r.action + at * r.action_dim, *mean = piece.mean_of(i);
-    const float* log_std = piece.log_std_of(i);
+  for (size_t i = 0; i < static_cast<size_t>(chunk.rows); ++i) {
+    const auto at = static_cast<size_t>(chunk.order[i]);
+    const float *action = r.action + at * r.action_dim, *mean = chunk.mean_of(i);
+    const float* log_std = chunk.log_std_of(i);
     const double ratio = sample_ratio(r, at, mean, log_std);
     const SampleLoss l = sample(r, at, static_cast<float>(ratio));
-    gaussian_log_prob_grad(mean, log_std, action, dim, piece.scale * l.slope, piece.dmean_of(i),
-                           piece.dlog_std_of(i));
-    piece.sums->loss += static_cast<double>(l.loss);
-    piece.sums->clipped += l.clipped;
-    piece.sums->kl +=
+    gaussian_log_prob_grad(mean, log_std, action, dim, chunk.scale * l.slope, chunk.dmean_of(i),
+                           chunk.dlog_std_of(i));
+    chunk.sums->loss += static_cast<double>(l.loss);
+    chunk.sums->clipped += l.clipped;
+    chunk.sums->kl +=
         static_cast<double>(gaussian_kl(r.mean + at * r.action_dim, r.log_std_of(at), mean, log_std, dim));
   }
 }

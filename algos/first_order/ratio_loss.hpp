@@ -12,7 +12,7 @@ struct SampleLoss {
 
 class RatioLoss : public PolicyLoss {
  public:
-  void add(const PolicyPiece& piece) const final;
+  void add(const PolicyChunk& chunk) const final;
 
  protected:
   // Of row `at` of the rollout.

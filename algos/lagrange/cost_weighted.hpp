@@ -1,21 +1,22 @@
 // Safe methods that only weigh costs against the reward = a policy step x a rule for the weights.
 #pragma once
-#include "algos/core/policy_gradient.hpp"
+#include "algos/core/agent.hpp"
 
 namespace rdm {
 
-// Base: a PolicyGradient. Rule: made from a ResolvedAgentConfig; step(stats, plan, epoch) once per epoch
+// Base: a Agent. Rule: made from a ResolvedAgentConfig; step(stats, resolved, epoch) once per epoch
 // before the policy step, then weight(i) of limited cost i, mix(), split(), read_live(options), visit(io).
 template <class Base, class Rule>
 class CostWeighted : public Base {
  public:
-  explicit CostWeighted(ResolvedAgentConfig&& plan) : Base(std::move(plan)), rule_(this->plan()) {}
+  explicit CostWeighted(ResolvedAgentConfig&& resolved)
+      : Base(std::move(resolved)), rule_(this->resolved()) {}
 
  protected:
   void begin_epoch(const EpisodeStats& stats, int32_t epoch) override {
-    rule_.step(stats, this->plan(), epoch);
+    rule_.step(stats, this->resolved(), epoch);
     double weights[kMaxCosts];
-    for (int32_t i = 0; i < this->plan().num_limited; ++i) weights[i] = rule_.weight(i);
+    for (int32_t i = 0; i < this->resolved().num_limited; ++i) weights[i] = rule_.weight(i);
     combine_advantages(this->rollout(), weights, rule_.mix(), rule_.split());
   }
   double cost_weight(int32_t i) const override { return rule_.weight(i); }

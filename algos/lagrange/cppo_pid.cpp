@@ -9,8 +9,8 @@
 
 namespace rdm {
 
-PidRule::PidRule(const ResolvedAgentConfig& plan) : count_(plan.num_limited) {
-  const Options& o = plan.options;
+PidRule::PidRule(const ResolvedAgentConfig& resolved) : count_(resolved.num_limited) {
+  const Options& o = resolved.options;
   const char* mix = o.text("pid_norm");
   mix_ = std::strcmp(mix, "sum") == 0    ? Mix::kSum
          : std::strcmp(mix, "diff") == 0 ? Mix::kDifference
@@ -33,10 +33,10 @@ void PidRule::read_live(const Options& o) {
   options_.max = mix_ == Mix::kDifference ? share : o.number("pid_max");
 }
 
-void PidRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t) {
+void PidRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t) {
   if (!stats.fresh) return;
   for (int32_t i = 0; i < count_; ++i)
-    pid_[i].step(options_, stats.charged_cost[plan.column[i]], plan.limit[i]);
+    pid_[i].step(options_, stats.charged_cost[resolved.column[i]], resolved.limit[i]);
 }
 
 void PidRule::visit(StateIo& io) {

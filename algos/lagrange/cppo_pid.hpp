@@ -8,9 +8,9 @@ namespace rdm {
 
 class PidRule {
  public:
-  explicit PidRule(const ResolvedAgentConfig& plan);
+  explicit PidRule(const ResolvedAgentConfig& resolved);
   // Not without a fresh episode.
-  void step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t epoch);
+  void step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t epoch);
   double weight(int32_t i) const { return pid_[i].value(); }
   Mix mix() const { return mix_; }
   bool split() const { return false; }

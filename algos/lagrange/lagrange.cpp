@@ -5,8 +5,8 @@
 
 namespace rdm {
 
-Lagrange::Lagrange(const ResolvedAgentConfig& plan) : count_(plan.num_limited) {
-  const Options& o = plan.options;
+Lagrange::Lagrange(const ResolvedAgentConfig& resolved) : count_(resolved.num_limited) {
+  const Options& o = resolved.options;
   const char* name = o.text("multiplier_optimizer");
   options_.optimizer = std::strcmp(name, "sgd") == 0    ? MultiplierOptimizer::kSgd
                        : std::strcmp(name, "adam") == 0 ? MultiplierOptimizer::kAdam
@@ -25,11 +25,11 @@ void Lagrange::read_live(const Options& o) {
   warmup_ = o.integer("multiplier_warmup");
 }
 
-void Lagrange::step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t epoch) {
+void Lagrange::step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t epoch) {
   if (!stats.fresh) return;
   const double warmth = warmup_ > 0 ? std::min(1.0, static_cast<double>(epoch - 1) / warmup_) : 1;
   for (int32_t i = 0; i < count_; ++i)
-    multiplier_[i].step(options_, stats.charged_cost[plan.column[i]], plan.limit[i], warmth);
+    multiplier_[i].step(options_, stats.charged_cost[resolved.column[i]], resolved.limit[i], warmth);
 }
 
 void Lagrange::visit(StateIo& io) {

@@ -9,10 +9,10 @@ namespace rdm {
 
 class Lagrange {
  public:
-  explicit Lagrange(const ResolvedAgentConfig& plan);
+  explicit Lagrange(const ResolvedAgentConfig& resolved);
   // Moves the multipliers by the episode costs that limits hold for; not without a fresh episode. epoch
   // counts from 1 and drives the warm-up.
-  void step(const EpisodeStats& stats, const ResolvedAgentConfig& plan, int32_t epoch);
+  void step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t epoch);
   double weight(int32_t i) const { return multiplier_[i].value(); }
   Mix mix() const { return Mix::kSum; }
   bool split() const { return split_; }

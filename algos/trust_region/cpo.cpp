@@ -9,7 +9,7 @@ namespace rdm {
 void Cpo::begin_epoch(const EpisodeStats& stats, int32_t epoch) {
   Trpo::begin_epoch(stats, epoch);
   cost_ = 0;
-  for (int32_t i = 0; i < plan().num_limited; ++i) {
+  for (int32_t i = 0; i < resolved().num_limited; ++i) {
     const double c = violation(stats, i);
     if (i == 0 || c > c_) cost_ = i, c_ = c;
   }
@@ -37,7 +37,7 @@ void Cpo::visit_state(StateIo& io) {
   Trpo::visit_state(io);
   io.section("CPO ");
   io.number(nu_, 0, 1e300);
-  io.integer(cost_, 0, plan().num_limited - 1);
+  io.integer(cost_, 0, resolved().num_limited - 1);
 }
 
 namespace {

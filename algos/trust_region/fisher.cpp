@@ -4,17 +4,17 @@
 
 namespace rdm {
 
-void Fisher::carve(Arena& arena, const ResolvedAgentConfig& plan) {
-  weight_ = arena.make<float>(plan.state_std() ? 0 : plan.action_dim());
+void Fisher::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
+  weight_ = arena.make<float>(resolved.state_std() ? 0 : resolved.action_dim());
 }
 
-void Fisher::open(const ResolvedAgentConfig& plan, const Rollout& rollout, const Networks& nets,
-                  BatchWorkers& lanes) {
-  plan_ = &plan;
+void Fisher::open(const ResolvedAgentConfig& resolved, const Rollout& rollout, const Networks& nets,
+                  BatchWorkers& workers) {
+  resolved_ = &resolved;
   rollout_ = &rollout;
   nets_ = &nets;
-  lanes_ = &lanes;
-  dims_ = plan.options.flag("kl_mean_over_dims") ? plan.config.action_dim : 1;
+  workers_ = &workers;
+  dims_ = resolved.options.flag("kl_mean_over_dims") ? resolved.config.action_dim : 1;
 }
 
 void Fisher::read_live(const Options& o) {
@@ -25,14 +25,14 @@ void Fisher::read_live(const Options& o) {
 void Fisher::set_rows(const int32_t* order, int32_t rows) {
   order_ = order;
   rows_ = (rows + stride_ - 1) / stride_;
-  for (size_t j = 0; !nets_->state_std() && j < plan_->action_dim(); ++j) {
-    const auto log_std = static_cast<double>(nets_->log_std()[j] + plan_->log_share);
+  for (size_t j = 0; !nets_->state_std() && j < resolved_->action_dim(); ++j) {
+    const auto log_std = static_cast<double>(nets_->log_std()[j] + resolved_->log_share);
     weight_[j] = static_cast<float>(elementary::exp(-2 * log_std) / (rows_ * dims_));
   }
 }
 
 void Fisher::weigh(const float* y, int32_t n, float* dy) const {
-  const size_t dim = plan_->action_dim();
+  const size_t dim = resolved_->action_dim();
   if (!nets_->state_std()) {
     for (size_t i = 0; i < static_cast<size_t>(n); ++i)
       for (size_t j = 0; j < dim; ++j) dy[i * dim + j] *= weight_[j];
@@ -52,16 +52,17 @@ void Fisher::multiply(const float* v, float* out) {
   const MlpShape& shape = nets_->shape[Networks::kActor];
   const float* net = nets_->net(Networks::kActor);
   const size_t skip = nets_->std_size, size = nets_->block[Networks::kActor].size;
-  lanes_->sweep(
-      rows_, plan_->piece_rows,
-      [&](Lane& lane, int32_t first, int32_t n) {
-        gather_obs(*rollout_, order_ + first * stride_, stride_, n, lane.obs);
-        nets_->forward(Networks::kActor, lane.obs, n, lane.actor, lane.out);
-        mlp_tangent(shape, net, v + skip, lane.obs, n, lane.actor, lane.dout);
-        weigh(lane.out, n, lane.dout);
-        mlp_backward(shape, net, lane.obs, n, lane.actor, lane.dout, (first == 0 ? out : lane.grad) + skip);
+  workers_->sweep(
+      rows_, resolved_->chunk_rows,
+      [&](Workspace& workspace, int32_t first, int32_t n) {
+        gather_obs(*rollout_, order_ + first * stride_, stride_, n, workspace.obs);
+        nets_->forward(Networks::kActor, workspace.obs, n, workspace.actor, workspace.out);
+        mlp_tangent(shape, net, v + skip, workspace.obs, n, workspace.actor, workspace.dout);
+        weigh(workspace.out, n, workspace.dout);
+        mlp_backward(shape, net, workspace.obs, n, workspace.actor, workspace.dout,
+                     (first == 0 ? out : workspace.grad) + skip);
       },
-      [&](int32_t group, int32_t n) { lanes_->fold(group, n, out, skip, size); });
+      [&](int32_t group, int32_t n) { workers_->reduce(group, n, out, skip, size); });
   const auto damping = static_cast<float>(damping_), own = static_cast<float>(2 / dims_);
   for (size_t j = 0; j < skip; ++j) out[j] = (own + damping) * v[j];
   for (size_t j = skip; j < size; ++j) out[j] += damping * v[j];

@@ -11,7 +11,7 @@ namespace {
 
 class Pcpo final : public Cpo {
  public:
-  explicit Pcpo(ResolvedAgentConfig&& plan) : Cpo(std::move(plan)) {}
+  explicit Pcpo(ResolvedAgentConfig&& resolved) : Cpo(std::move(resolved)) {}
 
  protected:
   bool solve(double c) override {

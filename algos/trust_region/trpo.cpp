@@ -8,16 +8,16 @@
 namespace rdm {
 
 void Trpo::carve(Arena& arena) {
-  PolicyGradient::carve(arena);
-  region_.carve(arena, plan(), nets(), constrained());
+  Agent::carve(arena);
+  region_.carve(arena, resolved(), nets(), constrained());
 }
 
 void Trpo::opened() {
-  region_.open(*this, plan(), rollout(), nets(), lanes(), learner());
+  region_.open(cancel_flag(), resolved(), rollout(), nets(), workers(), learner());
 }
 
 void Trpo::read_live() {
-  PolicyGradient::read_live();
+  Agent::read_live();
   region_.read_live(options());
 }
 

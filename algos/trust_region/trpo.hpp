@@ -1,14 +1,16 @@
 // TRPO (Schulman et al. 2015): one natural-gradient step of the actor in a trust region, then the critics.
+//
+//   y = sqrt(2 delta / x'H x) x, x = H^-1 G;   y is shortened until KL <= delta and the gain >= 0
 #pragma once
-#include "algos/core/policy_gradient.hpp"
+#include "algos/core/agent.hpp"
 #include "algos/first_order/ratio_loss.hpp"
 #include "algos/trust_region/trust_region.hpp"
 
 namespace rdm {
 
-class Trpo : public PolicyGradient {
+class Trpo : public Agent {
  public:
-  explicit Trpo(ResolvedAgentConfig&& plan) : PolicyGradient(std::move(plan)) {}
+  explicit Trpo(ResolvedAgentConfig&& resolved) : Agent(std::move(resolved)) {}
   void carve(Arena& arena) override;
 
  protected:

@@ -6,23 +6,24 @@
 
 namespace rdm {
 
-void TrustRegion::carve(Arena& arena, const ResolvedAgentConfig& plan, const Networks& nets, bool with_cost) {
+void TrustRegion::carve(Arena& arena, const ResolvedAgentConfig& resolved, const Networks& nets,
+                        bool with_cost) {
   size_ = nets.block[Networks::kActor].size;
-  fisher_.carve(arena, plan);
+  fisher_.carve(arena, resolved);
   cg_ = carve_cg_work(arena, size_);
   for (float** v : {&g_, &x_, &step_, &before_}) *v = arena.make<float>(size_);
   if (!with_cost) return;
   for (float** v : {&b_, &p_}) *v = arena.make<float>(size_);
 }
 
-void TrustRegion::open(Agent& agent, const ResolvedAgentConfig& plan, const Rollout& rollout, Networks& nets,
-                       BatchWorkers& lanes, Learner& learner) {
-  agent_ = &agent;
-  plan_ = &plan;
+void TrustRegion::open(CancelFlag& cancel, const ResolvedAgentConfig& resolved, const Rollout& rollout,
+                       Networks& nets, BatchWorkers& workers, Learner& learner) {
+  cancel_ = &cancel;
+  resolved_ = &resolved;
   nets_ = &nets;
   learner_ = &learner;
-  fisher_.open(plan, rollout, nets, lanes);
-  dims_ = plan.options.flag("kl_mean_over_dims") ? plan.config.action_dim : 1;
+  fisher_.open(resolved, rollout, nets, workers);
+  dims_ = resolved.options.flag("kl_mean_over_dims") ? resolved.config.action_dim : 1;
 }
 
 void TrustRegion::read_live(const Options& o) {
@@ -34,7 +35,7 @@ void TrustRegion::read_live(const Options& o) {
 }
 
 void TrustRegion::gradient_of(const PolicyLoss& loss, float sign, float* out) {
-  agent_->check_cancel();
+  cancel_->check();
   learner_->gradient(&loss, false, order_, rows_);
   for (size_t i = 0; i < size_; ++i) out[i] = sign * learner_->gradient()[i];
 }
@@ -42,7 +43,7 @@ void TrustRegion::gradient_of(const PolicyLoss& loss, float sign, float* out) {
 void TrustRegion::solve(const float* b, float* x) {
   conjugate_gradient(
       [&](const float* v, float* out) {
-        agent_->check_cancel();
+        cancel_->check();
         fisher_.multiply(v, out);
       },
       b, cg_, cg_options_, x);

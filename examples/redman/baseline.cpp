@@ -64,7 +64,8 @@ void add_baseline(CLI::App& app, Run& run) {
   command->add_option("--envs,--num-envs", flags->pool.envs, "worlds")->check(CLI::PositiveNumber);
   command->add_option("--threads", flags->pool.threads, "threads; 0: the caller's own");
   command->add_option("--seed", flags->pool.seed, "seed of worlds and random actions");
-  command->add_option("--episodes", flags->episodes, "episodes of each policy")->check(CLI::PositiveNumber);
+  command->add_option("--episodes", flags->episodes, "episodes of each policy")
+      ->check(CLI::Range(1, kMostEpisodes));
   command->add_flag("--markdown", flags->markdown, "the text as a Markdown table");
   command->callback([&run, flags] { run = [flags] { return run_baseline(*flags); }; });
 }

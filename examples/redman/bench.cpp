@@ -1,8 +1,10 @@
 // `bench`: the flags of its parts.
+#include "bench/bench.hpp"
+
 #include <memory>
 
-#include "bench/bench.hpp"
 #include "commands.hpp"
+#include "common/setup.hpp"
 
 namespace tool {
 namespace {
@@ -14,7 +16,9 @@ void add_network_flags(CLI::App& command, int32_t& obs, int32_t& act, std::strin
 }
 
 void add_seconds(CLI::App& command, double& seconds) {
-  command.add_option("--seconds", seconds, "time to measure for")->check(CLI::PositiveNumber);
+  command.add_option("--seconds", seconds, "time to measure for")
+      ->check(CLI::PositiveNumber)
+      ->check(finite_to(86400));
 }
 
 }  // namespace

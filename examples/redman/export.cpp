@@ -78,7 +78,7 @@ void add_export(CLI::App& app, Run& run) {
   command->add_option(
       "--probe", flags->probe,
       "JSON file to write: random observations and this policy's mean actions, to check others by");
-  command->add_option("--probes", flags->probes, "rows of --probe")->check(CLI::PositiveNumber);
+  command->add_option("--probes", flags->probes, "rows of --probe")->check(CLI::Range(1, 100000));
   command->add_option("--seed", flags->seed, "of --probe");
   command->callback([&run, flags] { run = [flags] { return run_export(*flags); }; });
 }

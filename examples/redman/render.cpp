@@ -1,6 +1,7 @@
 // `render`: a picture of a moment, a strip of moments, or a film of an episode.
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 
 #include "commands.hpp"
 #include "common/names.hpp"
@@ -11,6 +12,8 @@
 namespace tool {
 namespace {
 
+constexpr int32_t kMostPixels = 8192;  // a side
+
 struct RenderFlags {
   std::string policy = "hold", size = "640x480", camera = "front", out, video;
   PoolSettings pool;
@@ -20,10 +23,14 @@ struct RenderFlags {
 };
 
 void read_size(RenderFlags& flags) {
-  char x = 0, rest = 0;
-  if (std::sscanf(flags.size.c_str(), "%d%c%d%c", &flags.width, &x, &flags.height, &rest) != 3 || x != 'x' ||
-      flags.width < 1 || flags.height < 1)
-    throw Usage("--size " + flags.size + ": not WIDTHxHEIGHT, such as 640x480");
+  char* end = nullptr;
+  const long width = std::strtol(flags.size.c_str(), &end, 10);
+  const long height = *end == 'x' ? std::strtol(end + 1, &end, 10) : 0;
+  if (*end || width < 1 || height < 1 || width > kMostPixels || height > kMostPixels)
+    throw Usage("--size " + flags.size + ": not WIDTHxHEIGHT, such as 640x480, up to " +
+                std::to_string(kMostPixels));
+  flags.width = static_cast<int32_t>(width);
+  flags.height = static_cast<int32_t>(height);
 }
 
 void check_camera(const std::string& camera, int32_t task) {

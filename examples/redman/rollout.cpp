@@ -97,7 +97,7 @@ void add_rollout(CLI::App& app, Run& run) {
   CLI::Option* task = add_pool_flags(*command, flags->pool, "task; default: the policy's");
   command->add_option("--policy", flags->policy,
                       "policy file, run folder, .demo file, demo, zero, hold or random");
-  command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::PositiveNumber);
+  command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));
   command->add_option("--out", flags->out, "CSV file; default: none");
   add_set_flag(*command, flags->sets);
   command->callback([&run, flags, task] {

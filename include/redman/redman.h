@@ -15,11 +15,15 @@
  *
  * Rules that hold for every function:
  *   - Fallible functions return rdm_result: 0 is good, negative is bad; nothing else is written then, unless
- *     said. They never print, exit, abort or throw. The text of a failure is rdm_pool_error(p),
- *     rdm_agent_error(a), or rdm_last_error() of the calling thread, and names the argument and its range.
+ *     said. They never print, exit, abort or throw. The text of a failure is rdm_last_error() of the calling
+ *     thread, for calls on a pool or an agent also rdm_pool_error(p) or rdm_agent_error(a) (where a call takes
+ *     both: the agent's), and names the argument and its range.
  *   - Handles are made through `out` and ended by a void destroy function that takes NULL.
  *   - A pool and an agent: one thread at a time, not bound to a thread. A policy: immutable, shared freely.
+ *   - fork: in the child, handles with threads of their own (num_threads above 1 and no parallel hook) answer
+ *     STATE to what needs those, and can be destroyed; all others go on as in the parent.
  *   - Structs begin with struct_size = sizeof of your version: set it yourself or through the _init function.
+ *     ARGUMENT for less than the first version had or more than 4096.
  *   - Strings that are returned live as long as their handle (static ones: for ever). UTF-8.
  *   - Arrays are row-major. SI units, radians. Quaternions are (x, y, z, w) here and in observations.
  *   - Same seed, same bytes: for any number of threads; worlds on every x86-64 machine, learners on
@@ -204,7 +208,7 @@ RDM_API rdm_result rdm_robot_joint(int32_t robot, int32_t i, rdm_joint *out);  /
 
 typedef struct rdm_object { /* frozen layout: an object of the throw tasks, by option object=... */
   const char *name;         /* "egg"                                                          */
-  const char *shape;        /* "capsule 0.03 0.01" : kind and sizes in m                      */
+  const char *shape;        /* "capsule r 0.03, straight part 0.02": kind and sizes in m      */
   double mass;              /* kg; hull: of the default points, 500 kg/m3                     */
 } rdm_object;
 RDM_API int32_t rdm_object_count(void); /* number of objects */
@@ -242,11 +246,12 @@ typedef struct rdm_spec {
   int32_t max_steps;         /* control steps of an episode                                               */
   uint64_t layout_hash;      /* of field names, counts and action order: policies carry it                */
   int32_t num_fields;        /* for rdm_pool_field                                                        */
-  int32_t num_shapes;        /* for rdm_pool_shapes                                                       */
+  int32_t num_shapes;        /* for rdm_pool_shape                                                        */
   int32_t num_joints;        /* of all robots                                                             */
   int32_t task;              /* index for rdm_task_at and its like                                        */
 } rdm_spec;
-/* What a pool of this config would be. Makes nothing. */
+/* What a pool of this config would be: OK where rdm_pool_create would be, memory aside, else its error. Makes
+ * the task to ask it, and no world; nothing is kept. */
 RDM_API rdm_result rdm_pool_spec(const rdm_pool_config *c, rdm_spec *io);
 /* Bytes that creation takes: `ours` from the alloc hook, exact; `engines` by the physics engine from the
  * C library, an estimate. Either may be NULL. */
@@ -265,7 +270,7 @@ RDM_API rdm_result rdm_pool_option(const rdm_pool *p, int32_t i, const char **ke
 typedef struct rdm_buffers {
   uint32_t struct_size;      /* in: bytes                                                                 */
   uint32_t reserved;         /* 0                                                                         */
-  float *obs;                /* [num_envs][obs_dim]                                                       */
+  float *obs;                /* [num_envs][obs_dim]; tasks with hands cut each entry at +-5               */
   float *final_obs;          /* [num_envs][obs_dim] last observation where an episode ended, else as obs  */
   float *action;             /* [num_envs][action_dim] in [-1, 1], clipped; the host writes               */
   float *reward;             /* [num_envs]                                                                */
@@ -301,7 +306,8 @@ enum { RDM_BASELINE_ZERO = 0, RDM_BASELINE_HOLD = 1, RDM_BASELINE_RANDOM = 2 };
 RDM_API rdm_result rdm_pool_baseline(rdm_pool *p, int32_t kind);
 
 /* The whole state of world env, exact: a pool of the same task and options that sets it goes on with the same
- * bytes. set_state also rewrites obs and clears the other rows of that world. env -1: all worlds in one block. */
+ * bytes. set_state also rewrites obs and clears the other rows of that world. env -1: all worlds in one block.
+ * FORMAT for bytes that are not whole, of another task or options, or hold what no world can have: nothing changes. */
 RDM_API rdm_result rdm_pool_state_size(const rdm_pool *p, int32_t env, size_t *bytes);
 RDM_API rdm_result rdm_pool_get_state(const rdm_pool *p, int32_t env, void *bytes, size_t capacity, size_t *size);
 RDM_API rdm_result rdm_pool_set_state(rdm_pool *p, int32_t env, const void *bytes, size_t size);
@@ -410,7 +416,9 @@ typedef struct rdm_epoch {    /* one row of the learning curve; means over the l
   double fall_rate;           /* share of episodes that terminated                                        */
   double success_rate;        /* share of episodes with at least one success                              */
   double multiplier[RDM_MAX_COSTS]; /* of each cost, 0 where the algorithm has none                       */
-  double kl;                  /* KL(old || new) of the last pass, summed over action dimensions           */
+  /* KL(old || new), summed over action dimensions. First-order algorithms: the mean over the last pass, of each
+   * minibatch before its step, so 0 after one pass in one step. Trust regions: of the step that was taken. */
+  double kl;
   double entropy;             /* of the policy                                                            */
   double learning_rate;       /* of the actor, used in this epoch                                         */
   double action_std;          /* mean over dimensions                                                     */
@@ -452,7 +460,7 @@ RDM_API rdm_result rdm_agent_policy_file(const rdm_agent *a, const char *path); 
  * STATE inside a horizon. load needs an agent of the same config and changes nothing when it fails. */
 RDM_API rdm_result rdm_agent_save(const rdm_agent *a, void *bytes, size_t capacity, size_t *size);
 RDM_API rdm_result rdm_agent_load(rdm_agent *a, const void *bytes, size_t size);
-/* Agent, pool (may be NULL) and a note of the host's own in one file, replaced atomically. */
+/* Agent, pool (may be NULL) and a note of the host's own, to 2^26 bytes, in one file, replaced atomically. */
 RDM_API rdm_result rdm_checkpoint_write(const char *path, const rdm_agent *a, const rdm_pool *p,
                                         const void *note, size_t note_size);
 /* Reads it back; note gets up to capacity bytes, *note_size is how many there are. Nothing changes on failure. */
@@ -480,7 +488,8 @@ RDM_API rdm_result rdm_policy_get_info(const rdm_policy *p, rdm_policy_info *io)
 RDM_API size_t rdm_policy_scratch(const rdm_policy *p, int32_t rows); /* bytes for act; 0: bad arguments */
 /* action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise [rows][action_dim] are
  * the caller's standard normals, NULL: the mean. scratch: rdm_policy_scratch bytes, 64-byte aligned. No heap, no
- * hidden state: any number of threads, each with its own scratch. */
+ * hidden state: any number of threads, each with its own scratch. ARGUMENT when obs or noise is not finite, or so
+ * large that the network overflows (action is written then, and of no use). */
 RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t rows, const float *noise,
                                   float *action, void *scratch, size_t scratch_bytes);
 /* "actor.0.weight" [out][in], "actor.log_std" or "actor.log_std_bounds", "normalizer.shift|scale|clip", "example.obs|action". */
@@ -489,12 +498,152 @@ RDM_API rdm_result rdm_policy_tensor_read(const rdm_policy *p, const char *name,
 /* OK, or VERSION_MISMATCH with a text that says which field of the spec differs. */
 RDM_API rdm_result rdm_policy_check(const rdm_policy *p, const rdm_spec *spec);
 
-#ifdef RDM_EXPERIMENTAL /* may change in any release */
+#ifdef __cplusplus
+}
+#endif
+#endif /* REDMAN_H */
+
+/* ==== experimental: all below this line may change in any release until version 1 ===========================
+ * #define RDM_EXPERIMENTAL before the #include to see it, in a file that has seen the rest before, too. */
+#if defined(RDM_EXPERIMENTAL) && !defined(REDMAN_H_EXPERIMENTAL)
+#define REDMAN_H_EXPERIMENTAL
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Pushes a shape's carrier during the next step: force at its centre of mass, N, world axes. */
 RDM_API rdm_result rdm_pool_push(rdm_pool *p, int32_t env, int32_t shape, const float force[3]);
-#endif
+
+/* ---- maps: what is occupied, free and unknown in space ------------------------------------------------------ */
+/* Built from scans: point clouds of your own, or of a pool's cameras. Files are those of OctoMap (.bt, .ot).
+ *
+ *   rdm_map_config c;  rdm_map *m;
+ *   rdm_map_config_init(&c, sizeof c);
+ *   c.resolution = 0.02;
+ *   if (rdm_map_create(&m, &c)) puts(rdm_last_error());
+ *   rdm_map_scan(m, pool, 0, "top", 96, 96, NULL, 0, &dropped);   a look of world 0's camera, or
+ *   rdm_map_insert(m, origin, points, count, &dropped);           points of your own sensor
+ *   rdm_map_query(m, points, count, probability);
+ *   rdm_map_destroy(m);
+ *
+ * One thread writes a map at a time; while none does, any number may read. All points are float [3] in m. */
+typedef struct rdm_map rdm_map;
+typedef struct rdm_map_config {
+  uint32_t struct_size;    /* bytes, set by rdm_map_config_init                                           */
+  uint32_t reserved;       /* 0                                                                           */
+  double resolution;       /* side of a voxel, m, 0.001 to 10, default 0.02                               */
+  uint64_t memory;         /* bytes that tree and workspace may take, 2^20 to 2^36, default 2^26          */
+  double max_range;        /* m; longer rays clear their way so far; 0: none is too long; default 0       */
+  double hit;              /* probability of occupied where a ray ends, 0.5 to 0.999, default 0.7         */
+  double miss;             /* the same where one passes, 0.001 to 0.5, default 0.4                        */
+  double low;              /* no probability goes below, 0.001 to 0.5, default 0.1192                     */
+  double high;             /* no probability goes above, 0.5 to 0.999, default 0.971                      */
+  double threshold;        /* occupied from this probability on, low to high, default 0.5                 */
+  const rdm_host *host;    /* hooks for the workspace, copied; NULL: those of rdm_init                    */
+} rdm_map_config;
+typedef struct rdm_map_info {
+  uint32_t struct_size;    /* in: bytes                                                                   */
+  uint32_t full;           /* 1: updates have been dropped since create, clear or load                    */
+  double resolution;       /* m; a load takes the file's                                                  */
+  uint64_t nodes;          /* of the tree                                                                 */
+  uint64_t bytes;          /* of the tree                                                                 */
+  uint64_t bytes_max;      /* memory less the workspace                                                   */
+  uint64_t dropped;        /* voxel updates that found no memory, since create, clear or load             */
+} rdm_map_info;
+typedef struct rdm_voxel { /* frozen layout */
+  float centre[3];         /* m                                                                           */
+  float side;              /* m; a multiple of the resolution where voxels were joined                    */
+} rdm_voxel;
+/* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's. */
+RDM_API rdm_result rdm_map_config_init(rdm_map_config *c, size_t size);
+RDM_API rdm_result rdm_map_create(rdm_map **out, const rdm_map_config *c); /* RANGE outside the bounds */
+RDM_API void rdm_map_destroy(rdm_map *m);                   /* NULL is fine */
+/* Last failure of a call that may change the map; "" at first. Of those that only read, which many threads may
+ * make at a time: rdm_last_error(). */
+RDM_API const char *rdm_map_error(const rdm_map *m);
+RDM_API rdm_result rdm_map_get_info(const rdm_map *m, rdm_map_info *io); /* fills io */
+RDM_API rdm_result rdm_map_clear(rdm_map *m);               /* all is unknown again */
+
+/* One scan: rays from origin [3] to points [count][3]. Each voxel changes once: up where a ray ends, else down where
+ * rays pass. Points that are not finite are left out. A full map grows no more: the call returns OK, *dropped (may
+ * be NULL) says how many voxels were left out, and voxels that exist go on being updated. */
+RDM_API rdm_result rdm_map_insert(rdm_map *m, const float origin[3], const float *points, size_t count,
+                                  uint64_t *dropped);
+/* One scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on one of the num_skip
+ * shapes in skip, or meet nothing, are left out. */
+RDM_API rdm_result rdm_map_scan(rdm_map *m, rdm_pool *p, int32_t env, const char *camera, int32_t w, int32_t h,
+                                const int32_t *skip, int32_t num_skip, uint64_t *dropped);
+
+/* Probability [count] that the voxel of each point [count][3] is occupied; -1: unknown. */
+RDM_API rdm_result rdm_map_query(const rdm_map *m, const float *points, size_t count, float *probability);
+/* Occupied voxels that meet the box: writes up to capacity, *count is how many there are. */
+RDM_API rdm_result rdm_map_box(const rdm_map *m, const float low[3], const float high[3], rdm_voxel *out,
+                               size_t capacity, size_t *count);
+/* *meets is 1 when an occupied voxel meets the turned box: pose [7] (position, quaternion), half sizes half [3]. */
+RDM_API rdm_result rdm_map_meets(const rdm_map *m, const float pose[7], const float half[3], int32_t *meets);
+/* Where the ray enters the first occupied voxel within `range` m: *found is 1 and hit [3] is written. An unknown
+ * voxel ends the ray unless through_unknown is 1. */
+RDM_API rdm_result rdm_map_raycast(const rdm_map *m, const float origin[3], const float direction[3], float range,
+                                   int32_t through_unknown, float hit[3], int32_t *found);
+/* Distance [count] from each point to the nearest point of an occupied voxel, m; `most` if none is so near. */
+RDM_API rdm_result rdm_map_distance(const rdm_map *m, const float *points, size_t count, float most,
+                                    float *distance);
+/* A grid of n[0] x n[1] x n[2] cells of `side` m (each count 1 to 1024) about pose [7], x outermost: what the map
+ * says at their centres: 1 occupied, 0 free, -1 unknown. */
+RDM_API rdm_result rdm_map_grid(const rdm_map *m, const float pose[7], const int32_t n[3], float side, int8_t *out);
+
+/* OctoMap's files: RDM_MAP_BINARY (.bt: occupied or free) and RDM_MAP_FULL (.ot: the probabilities too). */
+enum { RDM_MAP_BINARY = 0, RDM_MAP_FULL = 1 };
+/* The map as the bytes of a file; bytes may be NULL to ask for the size. */
+RDM_API rdm_result rdm_map_save(const rdm_map *m, int32_t format, void *bytes, size_t capacity, size_t *size);
+RDM_API rdm_result rdm_map_save_file(const rdm_map *m, const char *path); /* by its ending; replaced atomically */
+/* Takes the place of what the map holds, resolution included. FORMAT, or MEMORY when it does not fit: unchanged. */
+RDM_API rdm_result rdm_map_load(rdm_map *m, const void *bytes, size_t size);
+RDM_API rdm_result rdm_map_load_file(rdm_map *m, const char *path);       /* NOT_FOUND, FORMAT ... */
+
+/* ---- what the worlds of a pool see, beside rdm_buffers -------------------------------------------------------- */
+/* The option `modality` of every task says what is made in each reset and step ("points", "rgb+depth"); other
+ * options say from which cameras and how large. Rows show the state that obs shows; nothing is kept of the state
+ * before an automatic reset.
+ *
+ *   rdm_option seen[] = {{"modality", "points", 0}, {"points", NULL, 1024}};
+ *   config.options = seen;  config.num_options = 2;  ... rdm_pool_create(&p, &config) ...
+ *   rdm_sensors s = {sizeof s};
+ *   rdm_pool_sensors(p, &s);
+ *   for (...) { rdm_pool_step(p);  use s.points + 3 * s.num_points * env; }
+ */
+typedef struct rdm_sensors {      /* the same addresses until destroy; NULL where the modality is off              */
+  uint32_t struct_size;           /* in: bytes                                                                     */
+  int32_t num_cameras;            /* of rgb, depth and segmentation, in the order of the option `cameras`          */
+  int32_t width;                  /* pixels                                                                        */
+  int32_t height;                 /* pixels                                                                        */
+  int32_t num_points;             /* of a world, option `points`                                                   */
+  int32_t num_voxels;             /* along each side of the local grid, option `voxels`                            */
+  float voxel_size;               /* m                                                                             */
+  int32_t reserved;               /* 0                                                                             */
+  const uint8_t *rgb;             /* [num_envs][num_cameras][height][width][3]                                     */
+  const float *depth;             /* [num_envs][num_cameras][height][width], m along the optical axis, 0: nothing  */
+  const int32_t *segmentation;    /* the same, shape of rdm_pool_shape, -1: nothing                                */
+  const float *points;            /* [num_envs][num_points][3], world, m; planes are left out                      */
+  const int32_t *point_shape;     /* [num_envs][num_points], -1: nothing was seen                                  */
+  const int32_t *point_count;     /* [num_envs] points that differ; the rest repeats them in turn                  */
+  const int8_t *voxels;           /* [num_envs][x][y][z] about the task's object: 1 occupied, 0 free, -1 not seen  */
+} rdm_sensors;
+RDM_API rdm_result rdm_pool_sensors(const rdm_pool *p, rdm_sensors *io); /* fills io */
+/* The cameras that rows stand for: i-th of the pictures (cloud 0) or of points and voxels (cloud 1). RANGE ends. */
+RDM_API rdm_result rdm_pool_sensor_camera(const rdm_pool *p, int32_t cloud, int32_t i, rdm_camera *out);
+
+/* Corners [capacity][3] of shape i, an RDM_HULL, in its own frame, m. Writes up to capacity of them; *count is how
+ * many there are. */
+RDM_API rdm_result rdm_pool_hull(const rdm_pool *p, int32_t i, float *points, int32_t capacity, int32_t *count);
+
+/* `wanted` of points [count][3] that lie furthest from each other: their numbers, in order of choice, to chosen
+ * [wanted]. `start` is the first. Exact. scratch: rdm_sample_scratch(count) bytes, 64-byte aligned; no heap. */
+RDM_API rdm_result rdm_sample_furthest(const float *points, int32_t count, int32_t wanted, int32_t start,
+                                       int32_t *chosen, void *scratch, size_t scratch_bytes);
+RDM_API size_t rdm_sample_scratch(int32_t count); /* bytes; 0: count is outside [1, 2^22] */
 
 #ifdef __cplusplus
 }
 #endif
-#endif
+#endif /* RDM_EXPERIMENTAL */

@@ -1,13 +1,15 @@
-// redman_map.hpp: C++17 over redman_map.h and redman_sense.h, as redman.hpp is over redman.h: the owner of a
-// map, views of what worlds see. May change until version 1.
+// redman_map.hpp: C++17 over the experimental part of redman.h, as redman.hpp is over the rest: the owner of
+// a map, views of what worlds see. May change until version 1.
 //
 //   redman::Map map(redman::map_config(0.02));
 //   map.scan(pool, 0, "top", 96, 96);
 //   if (map.meets(pose, half)) ...
 #ifndef REDMAN_MAP_HPP
 #define REDMAN_MAP_HPP
-#include <redman/redman_map.h>
-#include <redman/redman_sense.h>
+#ifndef RDM_EXPERIMENTAL
+#define RDM_EXPERIMENTAL
+#endif
+#include <redman/redman.h>
 
 #include <redman/redman.hpp>
 

@@ -68,7 +68,7 @@ void Writer::begin_file(const char magic[8], uint32_t version) {
 void Writer::end_file() {
   const size_t file = pop();
   const uint64_t length = at_ - file - kFileHeader;
-  patch(file + 16, &length, 8);
+  patch(file + kFileLengthAt, &length, 8);
 }
 
 void Writer::begin_section(const char tag[4]) {

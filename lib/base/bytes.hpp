@@ -49,6 +49,9 @@ class Writer {
   int depth_ = 0;
 };
 
+// Where a file says how many bytes follow that number.
+inline constexpr size_t kFileLengthAt = 16;
+
 // Reads what Writer wrote. Every way in which the bytes can be wrong is Error(kFormat), a newer version
 // Error(kVersion); the text begins with `what`.
 class Reader {

@@ -1,78 +1,223 @@
 #include "base/file.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <climits>
+#include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
-
-#include "base/error.hpp"
+#include <ctime>
 
 namespace rdm {
 namespace {
 
 struct Descriptor {
-  int fd;
-  ~Descriptor() { close_now(); }
-  int close_now() {
-    const int r = fd >= 0 ? close(fd) : 0;
-    fd = -1;
-    return r;
+  explicit Descriptor(int fd) : fd(fd) {}
+  ~Descriptor() {
+    if (fd >= 0) close(fd);
   }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  const int fd;
 };
+
+// A write beyond the process's file-size limit raises SIGXFSZ, which ends it; for this thread and while this
+// lives it is a failed write (EFBIG) alone. Nothing of the process changes, and a signal that waited before
+// goes on waiting.
+class NoSizeSignal {
+ public:
+  NoSizeSignal() {
+    sigset_t waiting;
+    sigemptyset(&size_);
+    sigaddset(&size_, SIGXFSZ);
+    sigemptyset(&waiting);
+    sigpending(&waiting);
+    ours_ = sigismember(&waiting, SIGXFSZ) == 0 && pthread_sigmask(SIG_BLOCK, &size_, &mask_) == 0;
+  }
+  ~NoSizeSignal() {
+    if (!ours_) return;
+    const int error = errno;
+    sigset_t waiting;
+    sigemptyset(&waiting);
+    sigpending(&waiting);
+    int signal;
+    if (sigismember(&waiting, SIGXFSZ) == 1) sigwait(&size_, &signal);
+    pthread_sigmask(SIG_SETMASK, &mask_, nullptr);
+    errno = error;
+  }
+  NoSizeSignal(const NoSizeSignal&) = delete;
+  NoSizeSignal& operator=(const NoSizeSignal&) = delete;
+
+ private:
+  sigset_t size_, mask_;
+  bool ours_;
+};
+
+[[noreturn]] void too_long_path() {
+  fail(Code::kArgument, "path: longer than %d characters", PATH_MAX);
+}
+[[noreturn]] void refuse(const char* path, const char* what, int why) {
+  fail(Code::kIo, "%s: cannot %s: %s", path, what, std::strerror(why));
+}
+
+// The part of `path` before its last name, with the slash.
+int folder_length(const char* path) {
+  const char* slash = std::strrchr(path, '/');
+  return slash ? static_cast<int>(slash + 1 - path) : 0;
+}
+
+// The file that `path` leads to through links, which need not exist; Error(kIo) when it is there and not a
+// regular file.
+void find_target(const char* path, char target[PATH_MAX]) {
+  if (std::snprintf(target, PATH_MAX, "%s", path) >= PATH_MAX) too_long_path();
+  for (int links = 0; links < 40; ++links) {
+    struct stat st {};
+    if (lstat(target, &st) != 0) {
+      if (errno == ENOENT) return;  // new; or its folder is missing, which shows when it is made
+      refuse(path, "look at it", errno);
+    }
+    if (S_ISREG(st.st_mode)) return;
+    if (!S_ISLNK(st.st_mode))
+      fail(Code::kIo, "%s: not a regular file: folders, devices and pipes are not replaced", path);
+    char aim[PATH_MAX], next[PATH_MAX];
+    const ssize_t n = readlink(target, aim, sizeof aim - 1);
+    if (n < 0) refuse(path, "read the link", errno);
+    aim[n] = '\0';
+    const int folder = aim[0] == '/' ? 0 : folder_length(target);
+    if (std::snprintf(next, sizeof next, "%.*s%s", folder, target, aim) >= PATH_MAX) too_long_path();
+    std::strcpy(target, next);
+  }
+  refuse(path, "follow it", ELOOP);
+}
+
+constexpr const char* kMark = ".tmp-";
+constexpr size_t kDigits = 16;
+
+uint64_t unpredictable() {
+  uint64_t bits;
+  if (getentropy(&bits, sizeof bits) == 0) return bits;
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return static_cast<uint64_t>(now.tv_nsec) << 32 ^ static_cast<uint64_t>(now.tv_sec) << 16 ^
+         static_cast<uint64_t>(getpid());
+}
+
+// Makes <target>.tmp-<hex> and locks it: a locked one is being written, wherever its writer runs, and one
+// without a lock is litter.
+int make_temporary(const char* target, char temporary[PATH_MAX]) {
+  for (int tries = 0; tries < 100; ++tries) {
+    if (std::snprintf(temporary, PATH_MAX, "%s%s%016llx", target, kMark,
+                      static_cast<unsigned long long>(unpredictable())) >= PATH_MAX)
+      too_long_path();
+    const int fd = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (fd < 0 && errno != EEXIST) return -1;
+    if (fd < 0) continue;
+    // a process that sweeps may have come between: then the lock or the name is lost
+    struct stat st {};
+    const bool locked = flock(fd, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+    if (locked && fstat(fd, &st) == 0 && st.st_nlink > 0) return fd;
+    close(fd);
+  }
+  errno = EEXIST;
+  return -1;
+}
+
+// Removes what writers of `target` left that were killed. Best effort.
+void sweep(const char* target) {
+  char folder[PATH_MAX], path[PATH_MAX];
+  const int length = folder_length(target);
+  std::snprintf(folder, sizeof folder, "%.*s", length, target);
+  const char* name = target + length;
+  const size_t named = std::strlen(name), marked = named + std::strlen(kMark);
+  DIR* list = opendir(length ? folder : ".");
+  if (!list) return;
+  while (const dirent* entry = readdir(list)) {
+    const char* other = entry->d_name;
+    if (std::strncmp(other, name, named) != 0 || std::strncmp(other + named, kMark, marked - named) != 0 ||
+        std::strspn(other + marked, "0123456789abcdef") != kDigits || other[marked + kDigits])
+      continue;
+    if (std::snprintf(path, sizeof path, "%s%s", folder, other) >= PATH_MAX) continue;
+    const Descriptor file(open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    struct stat st {};
+    if (file.fd >= 0 && fstat(file.fd, &st) == 0 && S_ISREG(st.st_mode) &&
+        flock(file.fd, LOCK_EX | LOCK_NB) == 0)
+      unlink(path);
+  }
+  closedir(list);
+}
 
 }  // namespace
 
-Vector<unsigned char> read_file(const char* path) {
-  Descriptor f{open(path, O_RDONLY | O_CLOEXEC)};
+Vector<unsigned char> read_file(const char* path, const FileLimits& limits) {
+  // without O_NONBLOCK a pipe would wait for a writer
+  const Descriptor f(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (f.fd < 0)
     fail(errno == ENOENT ? Code::kNotFound : Code::kIo, "%s: cannot open: %s", path, std::strerror(errno));
   struct stat st {};
   if (fstat(f.fd, &st) != 0 || !S_ISREG(st.st_mode)) fail(Code::kIo, "%s: not a regular file", path);
-  Vector<unsigned char> out(static_cast<size_t>(st.st_size));
-  size_t at = 0;
-  while (at < out.size()) {
-    const ssize_t n = read(f.fd, out.data() + at, out.size() - at);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail(Code::kIo, "%s: cannot read: %s", path, std::strerror(errno));
-    if (n == 0) break;
-    at += static_cast<size_t>(n);
+  const auto read_to = [&](unsigned char* out, size_t size) {
+    size_t at = 0;
+    while (at < size) {
+      const ssize_t n = read(f.fd, out + at, size - at);
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) refuse(path, "read", errno);
+      if (n == 0) break;
+      at += static_cast<size_t>(n);
+    }
+    return at;
+  };
+  unsigned char head[64];
+  const auto size = static_cast<uint64_t>(st.st_size);
+  const size_t looked = read_to(head, sizeof head), magic = std::min(limits.magic.size(), looked);
+  if (std::memcmp(head, limits.magic.data(), magic) != 0)
+    fail(Code::kFormat, "%s: wrong magic: not a file of this kind", path);
+  if (const size_t end = limits.length_at + sizeof(uint64_t); limits.length_at > 0 && looked >= end) {
+    uint64_t length;
+    std::memcpy(&length, head + limits.length_at, sizeof length);
+    if (length != size - end)
+      fail(Code::kFormat, "%s: truncated or with a tail: the length does not match", path);
   }
-  out.resize(at);
+  if (size > limits.longest)
+    fail(limits.too_long, "%s: %lld bytes, more than the %zu of any that would be taken here", path,
+         static_cast<long long>(st.st_size), limits.longest);
+  Vector<unsigned char> out(std::max(static_cast<size_t>(size), looked));
+  std::copy_n(head, looked, out.begin());
+  out.resize(looked + read_to(out.data() + looked, out.size() - looked));
   return out;
 }
 
 void write_file(const char* path, const void* data, size_t size) {
-  char temporary[PATH_MAX];
-  if (std::snprintf(temporary, sizeof temporary, "%s.tmp-%d", path, static_cast<int>(getpid())) >=
-      static_cast<int>(sizeof temporary))
-    fail(Code::kArgument, "path: longer than %d characters", PATH_MAX);
-  Descriptor f{open(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
+  char target[PATH_MAX], temporary[PATH_MAX];
+  find_target(path, target);
+  sweep(target);
+  const Descriptor f(make_temporary(target, temporary));
   if (f.fd < 0) fail(Code::kIo, "%s: cannot create: %s", temporary, std::strerror(errno));
   const auto give_up = [&](const char* what) {
     const int why = errno;
     unlink(temporary);
-    fail(Code::kIo, "%s: cannot %s: %s", path, what, std::strerror(why));
+    refuse(path, what, why);
   };
   const auto* p = static_cast<const unsigned char*>(data);
   for (size_t at = 0; at < size;) {
+    const NoSizeSignal quiet;
     const ssize_t n = write(f.fd, p + at, size - at);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) give_up("write");
     at += static_cast<size_t>(n);
   }
   if (fsync(f.fd) != 0 && errno != EINVAL && errno != EROFS) give_up("sync");
-  if (f.close_now() != 0) give_up("close");
-  if (rename(temporary, path) != 0) give_up("rename");
+  if (rename(temporary, target) != 0) give_up("rename");
   char folder[PATH_MAX];
-  std::strncpy(folder, path, sizeof folder - 1);
-  folder[sizeof folder - 1] = '\0';
-  char* slash = std::strrchr(folder, '/');
-  if (slash) *(slash == folder ? slash + 1 : slash) = '\0';
-  const Descriptor d{open(slash ? folder : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  std::snprintf(folder, sizeof folder, "%.*s", folder_length(target), target);
+  const Descriptor d(open(folder[0] ? folder : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (d.fd >= 0) fsync(d.fd);  // best effort: the rename itself is atomic
 }
 

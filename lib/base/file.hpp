@@ -1,16 +1,30 @@
 // Whole files: read one, or replace one so that a kill at any moment leaves the old or the new content.
 #pragma once
 #include <cstddef>
+#include <string_view>
 
+#include "base/error.hpp"
 #include "base/host.hpp"
 
 namespace rdm {
 
-// Error(kNotFound) when there is none, Error(kIo) for any other failure.
-Vector<unsigned char> read_file(const char* path);
+// What a file must be to be read at all: looked at before memory is taken, so that no file, however long it
+// says it is, takes more than its reader can use.
+struct FileLimits {
+  std::string_view magic;  // its first bytes, 48 at most; a shorter file is left to the reader
+  size_t length_at = 0;    // where a u64 says how many bytes follow it; 0: nowhere
+  size_t longest = 0;      // bytes
+  Code too_long = Code::kFormat;
+};
 
-// Writes path.tmp-<pid>, syncs, renames, syncs the folder. On Error(kIo) (full disk, no right) the old
-// file is untouched and the temporary one is gone.
+// Error(kNotFound) when there is none, kFormat when its first bytes are not those, `too_long` beyond the
+// longest size, kIo for any other failure: folders, devices and pipes are refused, and none of them is waited
+// for.
+Vector<unsigned char> read_file(const char* path, const FileLimits& limits);
+
+// Writes <path>.tmp-<16 hex digits>, syncs, renames, syncs the folder. A link stays, what it leads to is
+// replaced. On Error(kIo) (full disk, file-size limit, no right, not a regular file) the old file is
+// untouched and the temporary one is gone; those that killed processes left beside it are removed.
 void write_file(const char* path, const void* data, size_t size);
 
 }  // namespace rdm

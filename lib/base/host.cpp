@@ -3,6 +3,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
+#include <mutex>
 #include <new>
 
 #include "base/error.hpp"
@@ -10,12 +11,15 @@
 
 namespace rdm {
 namespace {
+std::mutex g_mutex;
 HostHooks g_host;
 thread_local const HostHooks* t_scope = nullptr;
 }  // namespace
 
-const HostHooks& host() {
-  return t_scope ? *t_scope : g_host;
+HostHooks host() {
+  if (t_scope) return *t_scope;
+  const std::lock_guard lock(g_mutex);
+  return g_host;
 }
 HostScope::HostScope(const HostHooks& hooks) : hooks_(hooks), outer_(t_scope) {
   t_scope = &hooks_;
@@ -24,6 +28,7 @@ HostScope::~HostScope() {
   t_scope = outer_;
 }
 void set_host(const HostHooks& hooks) {
+  const std::lock_guard lock(g_mutex);
   g_host = hooks;
 }
 

@@ -21,7 +21,8 @@ struct HostHooks {
 
 // The hooks in force: those of the innermost HostScope of this thread, else the process-wide ones.
 // A handle copies them when it is made.
-const HostHooks& host();
+HostHooks host();
+// May run beside host() on other threads: each of them gets the old hooks or the new ones, whole.
 void set_host(const HostHooks& hooks);
 
 // While it lives, containers made on this thread take memory from the hooks of one handle.

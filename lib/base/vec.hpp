@@ -13,8 +13,8 @@ inline constexpr double kPi = 3.14159265358979323846, kDegree = kPi / 180;  // r
 
 struct Vec3 {
   double x = 0, y = 0, z = 0;
-  double& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
-  double operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
+  constexpr double& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
+  constexpr double operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
   Vec3& operator+=(const Vec3& b) { return *this = {x + b.x, y + b.y, z + b.z}; }
   Vec3& operator-=(const Vec3& b) { return *this = {x - b.x, y - b.y, z - b.z}; }
 };

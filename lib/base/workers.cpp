@@ -3,9 +3,8 @@
 #include <unistd.h>
 
 #include <condition_variable>
+#include <exception>
 #include <mutex>
-#include <new>
-#include <system_error>
 #include <thread>
 
 #include "base/error.hpp"
@@ -63,10 +62,11 @@ Workers::Workers(const HostHooks& hooks, int32_t threads) : hooks_(hooks) {
     for (int32_t i = 1; i < width_; ++i)
       shared_->threads[static_cast<size_t>(i - 1)] =
           std::thread([s = shared_, i, w = width_] { s->loop(i, w); });
-  } catch (const std::system_error&) {
+  } catch (const std::exception& e) {
+    // std::system_error: no thread; std::bad_alloc: no memory for one's state
     shared_->end();
     host_delete(hooks_, shared_);
-    fail(Code::kMemory, "num_threads: could not start %d threads", threads);
+    fail(Code::kMemory, "num_threads: could not start %d threads: %s", threads, e.what());
   }
 }
 

@@ -56,7 +56,7 @@ class Task {
   // Error(kFormat) for a per-world struct that no world of this task can have: an index out of range, a
   // number that is not finite. Called for the bytes of a saved state before anything reads them; zeroed bytes
   // (a world that was never reset) and whatever reset, control and judge leave pass.
-  virtual void check_state(const void*) const {}
+  virtual void check_state(const void* state) const = 0;
   virtual void reset(World& world, void* state, Stream& stream) const = 0;
   // Clipped actions [action_dim] to drive targets (and base wrenches) of the next control step.
   virtual void control(World& world, void* state, const float* action) const = 0;

@@ -246,6 +246,13 @@ Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
   return p;
 }
 
+FileLimits Policy::file_limits() {
+  // the largest network, with as much again of its inputs and outputs for the other sections
+  constexpr size_t kNumbers = size_t{kMaxWidth} * (kMaxInputs + kMaxHidden * kMaxWidth) +
+                              8 * size_t{kMaxInputs + kMaxHidden * kMaxWidth};
+  return {{kPolicyMagic, sizeof kPolicyMagic}, kFileLengthAt, kNumbers * sizeof(float)};
+}
+
 void Policy::destroy(Policy* p) {
   if (p) host_delete(p->hooks_, p);
 }

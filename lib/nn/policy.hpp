@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "base/bytes.hpp"
+#include "base/file.hpp"
 #include "nn/mlp.hpp"
 
 namespace rdm {
@@ -40,6 +41,7 @@ class Policy {
   // Copies. Error(kFormat) for anything that is not a whole policy file, kVersion for a newer one.
   static Policy* read(const void* bytes, size_t size, const HostHooks& hooks);
   static void destroy(Policy* p);
+  static FileLimits file_limits();  // of policy files
 
   const PolicyView& view() const { return view_; }
   size_t scratch_bytes(int32_t rows) const;

@@ -129,6 +129,13 @@ int32_t Robot::actuated(int32_t i) const {
   fail(Code::kArgument, "%s: there is no such actuated joint", name);
 }
 
+int32_t Robot::action_of(int32_t link) const {
+  if (link < 0 || link >= links.count || coupled(link)) return -1;
+  int32_t entry = 0;
+  for (int32_t row = 0; row < link; ++row) entry += !coupled(row);
+  return entry;
+}
+
 int32_t Robot::find_link(const char* link) const {
   const char* names[kMaxNames];
   for (int32_t i = 0; i < links.count; ++i) names[i] = links[i].name;

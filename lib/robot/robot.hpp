@@ -49,8 +49,6 @@ struct RobotTip {
   Vec3 p_L;  // the point beyond which nothing of the finger reaches
 };
 
-enum class Side : int32_t { kRight = 0, kLeft = 1 };
-
 template <class T>
 struct Table {
   const T* rows = nullptr;
@@ -63,6 +61,25 @@ template <class T, int32_t N>
 constexpr Table<T> table(const T (&rows)[N]) {
   return {rows, N};
 }
+
+// What a finger of a hand is made of: its rows stand together, from `first` to the link of its tip, and row i
+// of the table of fingers ends in row i of the tips. A role that a finger has not is -1.
+struct RobotFinger {
+  const char* name;  // of its observations, short
+  int32_t first;     // row of its first link
+  int32_t lateral;   // row of the joint that spreads it to a side
+  int32_t proximal;  // row of the joint that bends it at its base
+  int32_t middle;    // row of the next joint that bends it
+  bool thumb = false;
+};
+
+// Two poses that tasks of hands begin with, in joint coordinates and in commands.
+struct HandPoses {
+  Table<double> folded;  // rad, of each link's joint: fingers straight, the thumb across the palm
+  Table<float> closed;   // [num_actuated] commands in [-1, 1]: wrist down, fingers and thumb around 5 cm
+};
+
+enum class Side : int32_t { kRight = 0, kLeft = 1 };
 
 struct Robot {
   const char* name;
@@ -80,11 +97,18 @@ struct Robot {
   Pose X_LF;             // arms: flange in the last link: z out of the arm
   int32_t mirror = -1;   // root axis normal to the mirror plane of a left hand, -1: no sides
 
+  // Of hands; empty for anything else.
+  Table<RobotFinger> fingers;  // the first finger first, as the tips
+  HandPoses poses;
+  Vec3 p_hold;  // in the palm's link: where a thing is that palm and fingers hold
+
   // Rows with a drive of their own, in action order: all links but the coupled ones.
   int32_t num_actuated() const { return links.count - couplings.count; }
   bool coupled(int32_t link) const;
   // Row of the i-th actuated joint.
   int32_t actuated(int32_t i) const;
+  // The other way round: place of a link's joint in action order, -1: none, or no such link.
+  int32_t action_of(int32_t link) const;
   int32_t find_link(const char* name) const;   // Error(kNotFound)
   int32_t find_joint(const char* name) const;  // Error(kNotFound) names the nearest
 };

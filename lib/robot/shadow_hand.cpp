@@ -183,6 +183,15 @@ constexpr RobotTip kTips[] = {
     {5, {0, 0, 0.026}}, {9, {0, 0, 0.026}}, {13, {0, 0, 0.026}}, {18, {0, 0, 0.026}}, {23, {0, 0, 0.0275}},
 };
 
+constexpr RobotFinger kFingers[] = {
+    {"ff", 2, 2, 3, 4},     {"mf", 6, 6, 7, 8},           {"rf", 10, 10, 11, 12},
+    {"lf", 14, 15, 16, 17}, {"th", 19, -1, -1, -1, true},
+};
+constexpr double kFolded[] = {0, 0, 0, 0, 0, 0, 0, 0,     0,   0, 0, 0,
+                              0, 0, 0, 0, 0, 0, 0, -1.04, 1.2, 0, 0, -1.57};
+constexpr float kClosed[] = {0.4f, 0.7f,  0, 0.3f, 0.1f, 0, 0.1f, 0.1f,  0,     0.35f,
+                             0.1f, -0.5f, 0, 0.4f, 0.1f, 1, 0.5f, -0.3f, -0.5f, -0.4f};
+
 // The mount (0.1 kg, 1e-3 kg m2) and the forearm (4 kg, (0.01, 0.01, 0.0075) kg m2, com (0.001, 0.008,
 // 0.29)) as one body.
 constexpr double kReduced = 0.1 * 4.0 / 4.1;  // kg
@@ -213,6 +222,9 @@ extern constinit const Robot kShadowHand = {
     .X_RM = {},
     .X_LF = {},
     .mirror = 1,
+    .fingers = table(kFingers),
+    .poses = {table(kFolded), table(kClosed)},
+    .p_hold = {0, -0.02, 0.08},
 };
 
 }  // namespace rdm

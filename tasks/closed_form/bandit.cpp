@@ -7,8 +7,9 @@
 // limit 1 is met by m = 0.99566 with E r = -1.2587 (m = 1 has cost 1.0042).
 #include <algorithm>
 
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/planar_scene.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {

@@ -1,9 +1,12 @@
 // A point on a line: x' = x + a + noise, reward -(x^2 + 0.1 a^2), cost a^2, start N(0, 1), 20 steps.
 //
+// The point starts anew each episode; positions and displacements are in m.
+//
 // For actions drawn from N(-k x, 0.1^2): without a limit the best k is 0.915, return -1.52626 at cost
 // 1.36366; limit 1: k 0.734456, return -1.583058; limit 0.75: k 0.571281, return -1.760243.
-#include "tasks/planar/planar_scene.hpp"
-#include "tasks/small_worlds.hpp"
+#include "tasks/catalog.hpp"
+#include "tasks/closed_form/sampled_task.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -23,21 +26,19 @@ double normal(Stream& stream) {
   return static_cast<double>(out);
 }
 
-class LqrLine final : public PlanarTask {
+class LqrLine final : public SampledTask<State> {
  public:
   explicit LqrLine(const Options& o)
-      : PlanarTask(PlanarScene(1)
-                       .body("point", ShapeKind::kSphere, {kRadius, 0, 0}, kMarkBlue)
-                       .disc("goal", 2 * kRadius, kMarkGreen, 0, 0)
-                       .build(),
-                   o.integer("max_steps"), {{"position", "m", 1}}),
+      : SampledTask(PlanarScene(1)
+                        .body("point", ShapeKind::kSphere, {kRadius, 0, 0}, kMarkBlue)
+                        .disc("goal", 2 * kRadius, kMarkGreen, 0, 0)
+                        .build(),
+                    o.integer("max_steps"), {{"position", "m", 1}}),
         scale_(o.number("action_scale")),
         noise_(o.number("noise")),
         effort_(o.number("effort")) {}
 
-  int32_t action_dim() const override { return 1; }
   const char* action_order() const override { return "displacement"; }
-  size_t state_bytes() const override { return sizeof(State); }
   void check_state(const void* state) const override {
     const State& s = *static_cast<const State*>(state);
     constexpr double kMaxSquare = kMaxStateNumber * kMaxStateNumber;
@@ -46,37 +47,25 @@ class LqrLine final : public PlanarTask {
     check_numbers("cost", &s.cost, 1, kMaxSquare);
   }
 
-  void reset(World& world, void* state, Stream& stream) const override {
-    State& s = *static_cast<State*>(state);
-    s.noise = Stream(stream.next(), 0, Purpose::kWorldNoise);
-    s.x = normal(s.noise);
-    place(world, s);
-  }
-
-  void control(World& world, void* state, const float* action) const override {
-    State& s = *static_cast<State*>(state);
-    const double a = scale_ * static_cast<double>(action[0]);
-    s.reward = -(s.x * s.x + effort_ * a * a);
-    s.cost = a * a;
-    s.x += a + noise_ * normal(s.noise);
-    place(world, s);
-  }
-
-  Verdict judge(World&, void* state, int32_t) const override {
-    const State& s = *static_cast<State*>(state);
-    Verdict v;
-    v.reward = s.reward;
-    v.cost[0] = v.cost_raw[0] = s.cost;
-    v.success = std::fabs(s.x) <= kNear;
-    return v;
-  }
-
   void observe(const World&, const void* state, float* obs) const override {
     obs[0] = static_cast<float>(static_cast<const State*>(state)->x);
   }
 
  private:
-  static void place(World& world, const State& s) { world.set_body(0, planar_motion({s.x, 0, kRadius}, 0)); }
+  void start(State* s) const override { s->x = normal(s->noise); }
+
+  void take(double action, State* s) const override {
+    const double a = scale_ * action;
+    s->reward = -(s->x * s->x + effort_ * a * a);
+    s->cost = a * a;
+    s->x += a + noise_ * normal(s->noise);
+  }
+
+  void judge_place(const State& s, Verdict* v) const override { v->success = std::fabs(s.x) <= kNear; }
+
+  void place(World& world, const State& s) const override {
+    world.set_body(0, planar_motion({s.x, 0, kRadius}, 0));
+  }
   double scale_, noise_, effort_;
 };
 

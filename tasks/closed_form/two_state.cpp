@@ -3,8 +3,9 @@
 //
 // Without a limit: always a = 1, return 17.912088 at cost 8.329670. Limit 2.5: return 9.687058 with
 // P(a = 1 | 0) = 1 and P(a = 1 | 1) = 0.294079.
-#include "tasks/planar/planar_scene.hpp"
-#include "tasks/small_worlds.hpp"
+#include "tasks/catalog.hpp"
+#include "tasks/closed_form/sampled_task.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -23,52 +24,24 @@ struct State {
   int32_t at, over;
 };
 
-class TwoState final : public PlanarTask {
+class TwoState final : public SampledTask<State> {
  public:
   explicit TwoState(const Options& o)
-      : PlanarTask(PlanarScene(1)
-                       .body("token", ShapeKind::kSphere, {kRadius, 0, 0}, kMarkBlue)
-                       .disc("state_0", 2 * kRadius, kMarkGreen, -1, 0)
-                       .disc("state_1", 2 * kRadius, kMarkRed, 1, 0)
-                       .build(),
-                   o.integer("max_steps"), {{"state", "1", 2}}),
+      : SampledTask(PlanarScene(1)
+                        .body("token", ShapeKind::kSphere, {kRadius, 0, 0}, kMarkBlue)
+                        .disc("state_0", 2 * kRadius, kMarkGreen, -1, 0)
+                        .disc("state_1", 2 * kRadius, kMarkRed, 1, 0)
+                        .build(),
+                    o.integer("max_steps"), {{"state", "1", 2}}),
         end_(o.number("end_probability")) {}
 
-  int32_t action_dim() const override { return 1; }
   const char* action_order() const override { return "choice"; }
-  size_t state_bytes() const override { return sizeof(State); }
   void check_state(const void* state) const override {
     const State& s = *static_cast<const State*>(state);
     check_numbers("reward", &s.reward, 1);
     check_numbers("cost", &s.cost, 1);
     check_integer("at", s.at, 0, 1);
     check_integer("over", s.over, 0, 1);
-  }
-
-  void reset(World& world, void* state, Stream& stream) const override {
-    State& s = *static_cast<State*>(state);
-    s.noise = Stream(stream.next(), 0, Purpose::kWorldNoise);
-    place(world, s);
-  }
-
-  void control(World& world, void* state, const float* action) const override {
-    State& s = *static_cast<State*>(state);
-    const int a = action[0] > 0;
-    s.reward = kReward[s.at][a];
-    s.cost = kCost[s.at][a];
-    s.over = s.noise.uniform() < end_;
-    s.at = s.noise.uniform() < kToOne[s.at][a];
-    place(world, s);
-  }
-
-  Verdict judge(World&, void* state, int32_t) const override {
-    const State& s = *static_cast<State*>(state);
-    Verdict v;
-    v.reward = s.reward;
-    v.cost[0] = v.cost_raw[0] = s.cost;
-    v.success = s.at == 1;
-    v.terminated = s.over != 0;
-    return v;
   }
 
   void observe(const World&, const void* state, float* obs) const override {
@@ -78,7 +51,22 @@ class TwoState final : public PlanarTask {
   }
 
  private:
-  static void place(World& world, const State& s) {
+  void start(State*) const override {}
+
+  void take(double action, State* s) const override {
+    const int a = action > 0;
+    s->reward = kReward[s->at][a];
+    s->cost = kCost[s->at][a];
+    s->over = s->noise.uniform() < end_;
+    s->at = s->noise.uniform() < kToOne[s->at][a];
+  }
+
+  void judge_place(const State& s, Verdict* v) const override {
+    v->success = s.at == 1;
+    v->terminated = s.over != 0;
+  }
+
+  void place(World& world, const State& s) const override {
     world.set_body(0, planar_motion({s.at ? 1.0 : -1.0, 0, kRadius}, 0));
   }
   double end_;

@@ -27,7 +27,7 @@ constexpr OptionSpec kFlyingRows[] = {
                 "of a hand's entries: joints, force, torque (paper) or force, torque, joints (legacy)"),
     number_option("base_damping", 100, 0, 1e4, "damping of a flying hand's links, 1/s"),
     text_option("base_angles", "positive", "positive|signed",
-                "base angles in the observation: in [0, 2 pi) or in [-pi, pi]"),
+                "base angles in the observation: in [0, 2 pi), where the bound of +-5 cuts, or in [-pi, pi]"),
     number_option("base_speed", 2, 0.01, 100, "bound of a base's speed, m/s"),
     number_option("base_spin", 10, 0.1, 1000, "bound of a base's angular speed, rad/s"),
     number_option("base_reach", 0, 0, 10, "how far from its start a base can fly, m; 0: no bound"),
@@ -40,38 +40,38 @@ Vec3 bounded(const Vec3& v, double most) {
 
 }  // namespace
 
-void add_rig_options(const HandControlConfig& plan, OptionTable& table) {
+void add_hand_control_options(const HandControlConfig& config, OptionTable& table) {
   table.add(kRows);
-  table.add(number_option("friction.hand_object", plan.friction, 0, 10,
+  table.add(number_option("friction.hand_object", config.friction, 0, 10,
                           "friction coefficient of hands and object"));
   table.add(kFrictionRows);
-  if (plan.count > 1) {
+  if (config.count > 1) {
     table.add(kPairRows);
     add_left_hand_options(table);
   }
-  if (plan.flying) {
+  if (config.flying) {
     table.add(kFlyingRows);
-    table.add(number_option("transition_scale", plan.transition_scale, 0, 10,
+    table.add(number_option("transition_scale", config.transition_scale, 0, 10,
                             "force of a base's action entry of 1, in 1667 N"));
-    table.add(number_option("orientation_scale", plan.orientation_scale, 0, 10,
+    table.add(number_option("orientation_scale", config.orientation_scale, 0, 10,
                             "torque of a base's action entry of 1, in 16.7 N m"));
   }
   add_sim_options(table);
-  add_hand_options(table);
+  add_hand_options(*config.robot, table);
 }
 
 void set_friction(SceneDef* scene, int32_t a, int32_t b, double mu) {
   scene->friction[a][b].mu = scene->friction[b][a].mu = mu;
 }
 
-SceneDef make_rig_scene(const HandControlConfig& plan, const Options& o, int32_t num_materials) {
+SceneDef make_hand_scene(const HandControlConfig& config, const Options& o, int32_t num_materials) {
   SceneDef s;
   s.gravity = gravity_from(o);
   s.solver = solver_from(o);
-  for (int32_t i = 0; i < plan.count; ++i) {
-    ArticulationDef hand =
-        make_hand(o, i == 0 ? Side::kRight : Side::kLeft, plan.bases[i], i == 0 ? kRightHand : kLeftHand);
-    if (plan.flying) {
+  for (int32_t i = 0; i < config.count; ++i) {
+    ArticulationDef hand = make_hand(*config.robot, o, i == 0 ? Side::kRight : Side::kLeft, config.bases[i],
+                                     i == 0 ? kRightHand : kLeftHand);
+    if (config.flying) {
       hand.free_base = true;
       hand.base_damping = o.number("base_damping");
     }
@@ -89,27 +89,29 @@ SceneDef make_rig_scene(const HandControlConfig& plan, const Options& o, int32_t
     set_friction(&s, hand, kObject, o.number("friction.hand_object"));
     set_friction(&s, hand, kGround, o.number("friction.hand_ground"));
   }
-  if (plan.count > 1) {
+  if (config.count > 1) {
     s.articulations_touch = o.flag("hand_contact");
     set_friction(&s, kRightHand, kLeftHand, o.number("friction.hand_hand"));
   }
   return s;
 }
 
-HandControl::HandControl(const HandControlConfig& plan, const Options& o, const Scene& scene)
-    : count_(plan.count),
-      flying_(plan.flying),
+HandControl::HandControl(const HandControlConfig& config, const Options& o, const Scene& scene)
+    : count_(config.count),
+      flying_(config.flying),
       sensor_(same_name(o.text("sensor"), "contact")),
       average_(o.number("action_average")),
-      start_(plan.start) {
+      start_(config.folded && config.robot->poses.folded.count == config.robot->links.count
+                 ? config.robot->poses.folded.rows
+                 : nullptr) {
   for (int32_t i = 0; i < count_; ++i) {
-    hands_[i] = find_hand(scene, i);
-    bases_[i] = plan.bases[i].p;
+    hands_[i] = find_hand(*config.robot, scene, i);
+    bases_[i] = config.bases[i].p;
   }
+  per_hand_ = num_actions() + (flying_ ? kBaseActions : 0);
   if (!flying_) return;
-  per_hand_ = kFlyingHandActions;
   paper_order_ = same_name(o.text("action_order"), "paper");
-  (paper_order_ ? first_base_ : first_joint_) = paper_order_ ? kHandActions : kBaseActions;
+  (paper_order_ ? first_base_ : first_joint_) = paper_order_ ? num_actions() : kBaseActions;
   signed_angles_ = same_name(o.text("base_angles"), "signed");
   force_ = kSourceStep * 1e5 * o.number("transition_scale");
   torque_ = kSourceStep * 1e3 * o.number("orientation_scale");
@@ -125,43 +127,43 @@ const char* HandControl::action_order() const {
 }
 
 size_t HandControl::state_bytes() const {
-  return static_cast<size_t>(count_) * kHandActions * sizeof(double) +
+  return static_cast<size_t>(count_ * num_actions()) * sizeof(double) +
          static_cast<size_t>(action_dim()) * sizeof(float);
 }
 
-RigState HandControl::state(void* bytes) const {
+HandControlState HandControl::state(void* bytes) const {
   auto* command = static_cast<double*>(bytes);
-  return {command, reinterpret_cast<float*>(command + count_ * kHandActions)};
+  return {command, reinterpret_cast<float*>(command + count_ * num_actions())};
 }
 
 const float* HandControl::action(const void* bytes) const {
-  return reinterpret_cast<const float*>(static_cast<const double*>(bytes) + count_ * kHandActions);
+  return reinterpret_cast<const float*>(static_cast<const double*>(bytes) + count_ * num_actions());
 }
 
 void HandControl::check_state(const void* bytes) const {
-  constexpr double kOne = 1 + 1e-6;  // rounding included
-  const auto commands = static_cast<size_t>(count_) * kHandActions;
+  constexpr double kOne = 1 + 1e-3;  // joints are kept as floats, and a range may be narrow
+  const auto commands = static_cast<size_t>(count_ * num_actions());
   check_numbers("command", static_cast<const double*>(bytes), commands, kOne);
   check_numbers("action", action(bytes), static_cast<size_t>(action_dim()), 1);
 }
 
-void HandControl::reset(double noise, bool literal, World& world, const RigState& state,
+void HandControl::reset(double noise, bool literal, World& world, const HandControlState& state,
                         Stream& stream) const {
   draw_joints({noise, literal, start_}, hands_, count_, world, stream);
   for (int32_t i = 0; i < count_; ++i)
-    for (int32_t k = 0; k < kHandActions; ++k) {
+    for (int32_t k = 0; k < num_actions(); ++k) {
       const Hand& h = hands_[i];
-      state.command[i * kHandActions + k] =
+      state.command[i * num_actions() + k] =
           to_action(h.act_lower[k], h.act_upper[k], world.q()[h.actuated[k]]);
     }
 }
 
-void HandControl::control(World& world, const RigState& state, const float* action) const {
+void HandControl::control(World& world, const HandControlState& state, const float* action) const {
   std::copy_n(action, action_dim(), state.action);
   for (int32_t i = 0; i < count_; ++i) {
-    double* command = state.command + i * kHandActions;
+    double* command = state.command + i * num_actions();
     const float* a = action + joint_entries(i);
-    for (int32_t k = 0; k < kHandActions; ++k)
+    for (int32_t k = 0; k < num_actions(); ++k)
       command[k] = average_ * static_cast<double>(a[k]) + (1 - average_) * command[k];
     command_hand(hands_[i], command, world);
   }
@@ -196,7 +198,7 @@ void HandControl::push_bases(World& world, const float* action) const {
   }
 }
 
-double HandControl::strayed(const World& world) const {
+double HandControl::base_displacement(const World& world) const {
   double most = 0;
   for (int32_t i = 0; flying_ && i < count_; ++i)
     most = std::max(most, norm(world.base(hands_[i].articulation).X.p - bases_[i]));
@@ -213,7 +215,8 @@ HandView HandControl::view(const World& world, const float* action, int32_t i) c
 }
 
 void HandControl::add_fields(FieldTable& table) const {
-  for (int32_t i = 0; i < count_; ++i) add_hand_fields(table, i == 0 ? "right" : "left", flying_);
+  for (int32_t i = 0; i < count_; ++i)
+    add_hand_fields(*hands_[i].robot, table, i == 0 ? "right" : "left", flying_);
 }
 
 float* HandControl::write(const World& world, const float* action, float* out) const {
@@ -224,9 +227,9 @@ float* HandControl::write(const World& world, const float* action, float* out) c
 void HandControl::hold(float* action) const {
   std::fill_n(action, action_dim(), 0.0f);
   for (int32_t i = 0; i < count_; ++i)
-    for (int32_t k = 0; k < kHandActions; ++k) {
+    for (int32_t k = 0; k < num_actions(); ++k) {
       const Hand& h = hands_[i];
-      const double q = std::clamp(start_[h.joint(k)], h.act_lower[k], h.act_upper[k]);
+      const double q = std::clamp(start_ ? start_[h.joint(k)] : 0, h.act_lower[k], h.act_upper[k]);
       action[joint_entries(i) + k] = static_cast<float>(to_action(h.act_lower[k], h.act_upper[k], q));
     }
 }

@@ -1,5 +1,9 @@
 // The hands of a task as one: their part of options and scene, how actions become drive targets and wrenches
 // on flying bases, how they are reset, and their entries of the observation.
+//
+// An action entry a in [-1, 1] of joint i joins a moving average, c_i += average (a - c_i), which is the
+// command; the drive's target is lower + (c_i + 1)/2 (upper - lower). The six base entries are a force and a
+// torque in world axes, a * scale; a base flies through a medium: its speed ends at force / (base_damping m).
 #pragma once
 #include "base/option.hpp"
 #include "base/rng.hpp"
@@ -10,56 +14,58 @@
 namespace rdm {
 
 inline constexpr int kMaxHands = 2;
-inline constexpr int kMaxRigActions = kMaxHands * kFlyingHandActions;
+inline constexpr int kMaxHandActions = kMaxHands * (kMaxHandJoints + kBaseActions);
 
-// The words of one task.
+// What one task sets.
 struct HandControlConfig {
+  const Robot* robot = &kShadowHand;
   int32_t count = 2;      // right, left
   Pose bases[kMaxHands];  // of the mounts, at the start
   bool flying = false;    // bases are free and have six action entries each
-  // Largest force 1e5/60 N and torque 1e3/60 N m times these (tasks section 2.4).
+  // Force of an action entry of 1, in 1e5/60 N, and torque, in 1e3/60 N m: the paper's code applies 1e5 and
+  // 1e3 times these, times its step of 1/60 s.
   double transition_scale = 0, orientation_scale = 0;
-  const double* start = kStraightJoints;  // [kHandJoints] of each hand
-  double friction = 1;                    // hand and object, option friction.hand_object
+  bool folded = false;  // the thumb across the palm at the start, else all joints at 0
+  double friction = 1;  // hand and object, option friction.hand_object
 };
 
-void add_rig_options(const HandControlConfig& plan, OptionTable& table);
+void add_hand_control_options(const HandControlConfig& config, OptionTable& table);
 // A scene of the hands and the ground, with gravity, solver, `num_materials` materials and their frictions.
-SceneDef make_rig_scene(const HandControlConfig& plan, const Options& options,
-                        int32_t num_materials = kOwnMaterial);
+SceneDef make_hand_scene(const HandControlConfig& config, const Options& options,
+                         int32_t num_materials = kOwnMaterial);
 // One entry of the friction table and its mirror image.
 void set_friction(SceneDef* scene, int32_t a, int32_t b, double mu);
 
 // One world's part: places in its task's state.
-struct RigState {
-  double* command;  // [count][kHandActions] of the joints, in [-1, 1], after averaging
+struct HandControlState {
+  double* command;  // [count][num_actions] of the joints, in [-1, 1], after averaging
   float* action;    // [action_dim] as given
 };
 
 class HandControl {
  public:
-  HandControl(const HandControlConfig& plan, const Options& options, const Scene& scene);
+  HandControl(const HandControlConfig& config, const Options& options, const Scene& scene);
 
   int32_t count() const { return count_; }
   const Hand& hand(int32_t i) const { return hands_[i]; }
-  const Hand* hands() const { return hands_; }
   bool flying() const { return flying_; }
+  int32_t num_actions() const { return hands_[0].num_actions; }  // of one hand's joints
   int32_t action_dim() const { return count_ * per_hand_; }
   const char* action_order() const;
   // Where in the action row hand i's joint entries begin, and its base entries (force, then torque).
   int32_t joint_entries(int32_t i) const { return i * per_hand_ + first_joint_; }
   int32_t base_entries(int32_t i) const { return i * per_hand_ + first_base_; }
 
-  // The rig's state as bytes at the end of a task's own.
+  // Its state as bytes at the end of a task's own.
   size_t state_bytes() const;
-  RigState state(void* bytes) const;
+  HandControlState state(void* bytes) const;
   const float* action(const void* bytes) const;
   void check_state(const void* bytes) const;  // of a saved state: Error(kFormat)
 
-  void reset(double noise, bool literal, World& world, const RigState& state, Stream& stream) const;
-  void control(World& world, const RigState& state, const float* action) const;
+  void reset(double noise, bool literal, World& world, const HandControlState& state, Stream& stream) const;
+  void control(World& world, const HandControlState& state, const float* action) const;
   // How far the base that went furthest is from its start, m; 0 for fixed ones.
-  double strayed(const World& world) const;
+  double base_displacement(const World& world) const;
 
   HandView view(const World& world, const float* action, int32_t i) const;
   void add_fields(FieldTable& table) const;
@@ -71,12 +77,12 @@ class HandControl {
   void push_bases(World& world, const float* action) const;
   void slow_base(World& world, int32_t articulation) const;
 
-  int32_t count_, per_hand_ = kHandActions, first_joint_ = 0, first_base_ = 0;
+  int32_t count_, per_hand_, first_joint_ = 0, first_base_ = 0;
   bool flying_, sensor_, paper_order_ = true, signed_angles_ = false;
   double average_;
   double force_ = 0, torque_ = 0;                      // N, N m for an entry of 1
   double most_speed_ = 0, most_spin_ = 0, reach_ = 0;  // m/s, rad/s, m
-  const double* start_;
+  const double* start_;                                // [num_joints] rad, null: all 0
   Hand hands_[kMaxHands];
   Vec3 bases_[kMaxHands];
 };

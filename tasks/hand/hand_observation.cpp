@@ -11,25 +11,6 @@ struct TipForce {
   double scale;
 };
 
-constexpr FieldEntry<HandView> kJoints[] = {
-    {"joint_position", "1", kHandJoints,
-     [](const HandView& v, float* out) {
-       const double* q = v.world.q() + v.hand.first;
-       for (int i = 0; i < kHandJoints; ++i)
-         out[i] = static_cast<float>(to_action(v.hand.lower[i], v.hand.upper[i], q[i]));
-     }},
-    {"joint_velocity", "5 rad/s", kHandJoints,
-     [](const HandView& v, float* out) {
-       const double* qd = v.world.qd() + v.hand.first;
-       for (int i = 0; i < kHandJoints; ++i) out[i] = static_cast<float>(0.2 * qd[i]);
-     }},
-    {"joint_force", "0.1 N m", kHandJoints,
-     [](const HandView& v, float* out) {
-       const double* torque = v.world.torque() + v.hand.first;
-       for (int i = 0; i < kHandJoints; ++i) out[i] = static_cast<float>(10 * torque[i]);
-     }},
-};
-
 constexpr FieldEntry<Motion> kTips[] = {
     {"tip_position", "m", 3, [](const Motion& m, float* out) { put(m.X.p, out); }},
     {"tip_rotation", "1", 4, [](const Motion& m, float* out) { put(m.X.q, out); }},
@@ -48,8 +29,6 @@ constexpr FieldEntry<HandView> kBase[] = {
      [](const HandView& v, float* out) { put(roll_pitch_yaw(v.base->X.q, v.signed_angles), out); }},
 };
 
-constexpr const char* kFingers[kHandTips] = {"ff", "mf", "rf", "lf", "th"};
-
 template <class From, size_t n>
 void add_entries(FieldTable& table, const char* prefix, const char* finger,
                  const FieldEntry<From> (&entries)[n]) {
@@ -62,40 +41,54 @@ void add_entries(FieldTable& table, const char* prefix, const char* finger,
 
 }  // namespace
 
-void add_joint_fields(FieldTable& table, const char* prefix) {
-  add_entries(table, prefix, nullptr, kJoints);
+void add_joint_fields(const Robot& robot, FieldTable& table, const char* prefix) {
+  const int32_t joints = robot.links.count;
+  add_field(table, prefix, "joint_position", "1", joints);
+  add_field(table, prefix, "joint_velocity", "5 rad/s", joints);
+  add_field(table, prefix, "joint_force", "0.1 N m", joints);
 }
 
-void add_tip_fields(FieldTable& table, const char* prefix) {
-  for (const char* finger : kFingers) add_entries(table, prefix, finger, kTips);
-  for (const char* finger : kFingers) add_entries(table, prefix, finger, kSensors);
+void add_tip_fields(const Robot& robot, FieldTable& table, const char* prefix) {
+  for (const RobotFinger& finger : robot.fingers) add_entries(table, prefix, finger.name, kTips);
+  for (const RobotFinger& finger : robot.fingers) add_entries(table, prefix, finger.name, kSensors);
 }
 
-void add_action_field(FieldTable& table, const char* prefix, bool base) {
-  add_field(table, prefix, "action", "1", base ? kFlyingHandActions : kHandActions);
+void add_action_field(const Robot& robot, FieldTable& table, const char* prefix, bool base) {
+  add_field(table, prefix, "action", "1", robot.num_actuated() + (base ? kBaseActions : 0));
 }
 
-void add_hand_fields(FieldTable& table, const char* prefix, bool base) {
-  add_joint_fields(table, prefix);
-  add_tip_fields(table, prefix);
+void add_hand_fields(const Robot& robot, FieldTable& table, const char* prefix, bool base) {
+  add_joint_fields(robot, table, prefix);
+  add_tip_fields(robot, table, prefix);
   if (base) add_entries(table, prefix, nullptr, kBase);
-  add_action_field(table, prefix, base);
+  add_action_field(robot, table, prefix, base);
 }
 
 float* write_joints(const HandView& view, float* out) {
-  return write_fields<kJoints>(view, out);
+  const Hand& hand = view.hand;
+  const int32_t joints = hand.num_joints;
+  const double *q = view.world.q() + hand.first, *qd = view.world.qd() + hand.first,
+               *torque = view.world.torque() + hand.first;
+  for (int32_t i = 0; i < joints; ++i)
+    out[i] = static_cast<float>(to_action(hand.lower[i], hand.upper[i], q[i]));
+  out += joints;
+  for (int32_t i = 0; i < joints; ++i) out[i] = static_cast<float>(0.2 * qd[i]);
+  out += joints;
+  for (int32_t i = 0; i < joints; ++i) out[i] = static_cast<float>(10 * torque[i]);
+  return out + joints;
 }
 
 float* write_tips(const HandView& view, float* out) {
-  for (const int32_t tip : view.hand.tips) out = write_fields<kTips>(view.world.link(tip), out);
+  const Hand& hand = view.hand;
+  for (int32_t i = 0; i < hand.num_tips; ++i) out = write_fields<kTips>(view.world.link(hand.tips[i]), out);
   const double scale = view.sensor ? 10 : 0;
-  for (const int32_t sensor : view.hand.sensors)
-    out = write_fields<kSensors>(TipForce{view.world.sensor(sensor), scale}, out);
+  for (int32_t i = 0; i < hand.num_tips; ++i)
+    out = write_fields<kSensors>(TipForce{view.world.sensor(hand.sensors[i]), scale}, out);
   return out;
 }
 
 float* write_action(const HandView& view, float* out) {
-  return std::copy_n(view.action, view.base ? kFlyingHandActions : kHandActions, out);
+  return std::copy_n(view.action, view.hand.num_actions + (view.base ? kBaseActions : 0), out);
 }
 
 float* write_hand(const HandView& view, float* out) {

@@ -1,4 +1,5 @@
-// What every task of hands shares: the scene, the rig, and where its bytes are in a world's state.
+// What every task of hands shares: the scene, the control of the hands, and where its bytes are in a world's
+// state.
 #pragma once
 #include "env/task.hpp"
 #include "tasks/hand/hand_control.hpp"
@@ -11,33 +12,35 @@ class HandTask : public Task {
   const Scene& scene() const override { return scene_; }
   EngineKind engine() const override { return engine_; }
   int32_t max_steps() const override { return max_steps_; }
-  int32_t action_dim() const override { return rig_.action_dim(); }
+  int32_t action_dim() const override { return hands_.action_dim(); }
   const Vector<FieldSpec>& fields() const override { return fields_; }
-  const char* action_order() const override { return rig_.action_order(); }
-  size_t state_bytes() const override { return own_bytes_ + rig_.state_bytes(); }
+  const char* action_order() const override { return hands_.action_order(); }
+  size_t state_bytes() const override { return own_bytes_ + hands_.state_bytes(); }
   void control(World& world, void* state, const float* action) const override {
-    rig_.control(world, rig_state(state), action);
+    hands_.control(world, control_state(state), action);
   }
   void check_state(const void* state) const final {
     check_own_state(state);
-    rig_.check_state(static_cast<const char*>(state) + own_bytes_);
+    hands_.check_state(static_cast<const char*>(state) + own_bytes_);
   }
   float obs_limit() const override { return 5; }
-  void hold_action(float* action) const override { rig_.hold(action); }
+  void hold_action(float* action) const override { hands_.hold(action); }
 
  protected:
-  // `own_bytes` of a task's own state stand before the rig's, which begin with doubles: Error(kInternal)
-  // unless it is a multiple of 8.
-  HandTask(const HandControlConfig& plan, const Options& options, SceneDef scene, size_t own_bytes);
+  // `own_bytes` of a task's own state stand before those of the hands' control, which begin with doubles:
+  // Error(kInternal) unless it is a multiple of 8.
+  HandTask(const HandControlConfig& config, const Options& options, SceneDef scene, size_t own_bytes);
 
   // check_state of the task's own part.
   virtual void check_own_state(const void* state) const = 0;
 
-  const HandControl& rig() const { return rig_; }
-  RigState rig_state(void* state) const { return rig_.state(static_cast<char*>(state) + own_bytes_); }
+  const HandControl& hands() const { return hands_; }
+  HandControlState control_state(void* state) const {
+    return hands_.state(static_cast<char*>(state) + own_bytes_);
+  }
   // The row of the last step.
   const float* last_action(const void* state) const {
-    return rig_.action(static_cast<const char*>(state) + own_bytes_);
+    return hands_.action(static_cast<const char*>(state) + own_bytes_);
   }
   FieldTable& own_fields() { return fields_; }
 
@@ -46,7 +49,7 @@ class HandTask : public Task {
   int32_t max_steps_;
   size_t own_bytes_;
   Scene scene_;
-  HandControl rig_;
+  HandControl hands_;
   FieldTable fields_;
 };
 

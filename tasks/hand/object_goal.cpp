@@ -24,13 +24,15 @@ constexpr OptionSpec kRows[] = {
     number_option("friction.object_ground", 1, 0, 10, "friction coefficient of object and ground"),
 };
 
-Turn turn_named(const char* name) {
-  return same_name(name, "random") ? Turn::kRandom : same_name(name, "yaw") ? Turn::kYaw : Turn::kFixed;
+StartRotation rotation_named(const char* name) {
+  return same_name(name, "random") ? StartRotation::kRandom
+         : same_name(name, "yaw")  ? StartRotation::kYaw
+                                   : StartRotation::kFixed;
 }
 
-Quat draw_start(Turn turn, Stream& stream) {
-  if (turn == Turn::kRandom) return draw_rotation(stream);
-  return turn == Turn::kYaw ? axis_angle({0, 0, 1}, kPi * stream.signed_unit()) : Quat{};
+Quat draw_start(StartRotation kind, Stream& stream) {
+  if (kind == StartRotation::kRandom) return draw_rotation(stream);
+  return kind == StartRotation::kYaw ? axis_angle({0, 0, 1}, kPi * stream.signed_unit()) : Quat{};
 }
 
 }  // namespace
@@ -52,7 +54,7 @@ void add_object_options(const ObjectPlace& place, OptionTable& table) {
     table.add("goal", kAxes[i], nullptr, number_option("", place.goal[i], -10, 10, "goal position, m"));
   table.add(number_option("start_noise", place.noise, 0, 0.2,
                           "half width of the start position's draw, m per axis"));
-  table.add(text_option("start_rotation", place.turn, "random|yaw|fixed",
+  table.add(text_option("start_rotation", place.start_rotation, "random|yaw|fixed",
                         "rotation of the object at the start; yaw: about the vertical"));
   table.add(kRows);
 }
@@ -62,7 +64,7 @@ ObjectGoal object_goal_from(const Options& o) {
   g.start = {o.number("start.x"), o.number("start.y"), o.number("start.z")};
   g.goal = {o.number("goal.x"), o.number("goal.y"), o.number("goal.z")};
   g.start_noise = o.number("start_noise");
-  g.start_turn = turn_named(o.text("start_rotation"));
+  g.start_rotation = rotation_named(o.text("start_rotation"));
   g.random_goal = same_name(o.text("goal_rotation"), "random");
   g.canonical_rotation = o.flag("canonical_rotation");
   return g;
@@ -88,7 +90,7 @@ void reset_object(const ObjectGoal& goal, World& world, GoalState* state, Stream
   bool clear = false;
   for (int draw = 0; draw < kMaxDraws && !clear; ++draw) {
     for (int i = 0; i < 3; ++i) m.X.p[i] = goal.start[i] + goal.start_noise * stream.signed_unit();
-    m.X.q = draw_start(goal.start_turn, stream);
+    m.X.q = draw_start(goal.start_rotation, stream);
     world.set_body(0, m);
     clear = world.body_overlap(0) <= 0;
   }

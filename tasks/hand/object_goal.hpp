@@ -8,22 +8,22 @@
 
 namespace rdm {
 
-// The words of one task where it differs from the others.
+// What one task sets where it differs from the others.
 struct ObjectPlace {
   Vec3 start, goal;     // m
   double noise = 0.01;  // m, half width of the start's draw
   const char* object = "egg";
-  double mass = 0;              // kg, 0: the object's own
-  const char* turn = "random";  // of start_rotation
+  double mass = 0;  // kg, 0: the object's own
+  const char* start_rotation = "random";
 };
 
-enum class Turn : int32_t { kFixed = 0, kYaw, kRandom };
+enum class StartRotation : int32_t { kFixed = 0, kYaw, kRandom };
 
 // Constant of a task. The object is body 0.
 struct ObjectGoal {
   Vec3 start, goal;
   double start_noise;
-  Turn start_turn;
+  StartRotation start_rotation;
   bool random_goal, canonical_rotation;
 };
 
@@ -47,15 +47,13 @@ void draw_goal(const ObjectGoal& goal, GoalState* state, Stream& stream);
 // draws the goal.
 void reset_object(const ObjectGoal& goal, World& world, GoalState* state, Stream& stream);
 
-// Object rotation times conjugate goal rotation.
+// Object rotation times conjugate goal rotation, the paper's "goal rot - object rot".
 Quat rotation_error(const ObjectGoal& goal, const Quat& rotation, const GoalState& state);
-// Rotation angle of a unit quaternion, rad in [0, pi].
+// Rotation angle of a unit quaternion (w, v), rad in [0, pi]: 2 asin min(|v|, 1), ReDMan's d_r.
 double rotation_angle(const Quat& q);
 
-inline constexpr int kGoalBlock = 24;
-
-// Object pose, velocities, goal pose, rotation error: kGoalBlock numbers (tasks section 3.3). Returns the
-// place behind them.
+// Object pose, velocities, goal pose, rotation error: 24 numbers, ReDMan's table B4 from "object pose" on.
+// Returns the place behind them.
 void add_goal_fields(FieldTable& table);
 float* write_goal(const ObjectGoal& goal, const World& world, const GoalState& state, float* out);
 

@@ -1,8 +1,17 @@
+// Reorientation (ReDMan B.4): an egg in a palm is turned to a drawn rotation, then the next; fingertips
+// should not press.
+//
+//   r = 1/(theta + 0.1) - 0.0002 |a|^2 + 250 [theta <= 0.1]    theta: rotation error, rad
+//   c = [contact force on some fingertip > 0.5 N]
+//
+// The reward is that of Isaac Gym's Shadow Hand, from which the paper takes the task; of the cost the paper
+// says "excessive force" and no number.
 #include "tasks/hand/reorient.hpp"
 
 #include <algorithm>
 #include <iterator>
 
+#include "tasks/catalog.hpp"
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/hand/single_hand.hpp"
 
@@ -14,9 +23,9 @@ constexpr double kTurnSoftness = 0.1;  // rad
 // force.
 constexpr int kSeenNumbers = 15;
 
-const SingleHandConfig kPlan = {{.count = 1, .bases = {{{0, 0, 0.5}, {}}}},
-                                {.start = {0, -0.39, 0.60}, .goal = {0, -0.39, 0.56}, .mass = 0.151},
-                                0.2};
+const SingleHandConfig kConfig = {{.count = 1, .bases = {{{0, 0, 0.5}, {}}}},
+                                  {.start = {0, -0.39, 0.60}, .goal = {0, -0.39, 0.56}, .mass = 0.151},
+                                  0.2};
 
 constexpr OptionSpec kRows[] = {
     number_option("action_price", 0.0002, 0, 1, "reward: times the sum of the action's squares"),
@@ -41,14 +50,14 @@ constexpr CostSpec kCosts[kNumCosts] = {
 };
 
 void add_options(OptionTable& table) {
-  add_single_hand_options(kPlan, table);
+  add_single_hand_options(kConfig, table);
   table.add(kRows);
 }
 
 class Reorient final : public SingleHand {
  public:
   explicit Reorient(const Options& o)
-      : SingleHand(kPlan, o),
+      : SingleHand(kConfig, o),
         price_(o.number("action_price")),
         bonus_(o.number("success_bonus")),
         tolerance_(o.number("success_angle")),
@@ -62,7 +71,7 @@ class Reorient final : public SingleHand {
     const Pose& X = step.world.body(0).X;
     const double theta = rotation_angle(rotation_error(goal(), X.q, step.state->goal));
     double squares = 0;
-    for (int i = 0; i < kHandActions; ++i)
+    for (int i = 0; i < hand().num_actions; ++i)
       squares += static_cast<double>(step.action[i]) * static_cast<double>(step.action[i]);
     v->reward = reorient_reward(theta, squares, price_, bonus_, tolerance_);
     v->success = theta <= tolerance_;
@@ -73,7 +82,7 @@ class Reorient final : public SingleHand {
 
   void judge_force(const World& world, Verdict* v) const {
     double most = 0, number = -1e9;
-    for (int tip = 0; tip < kHandTips; ++tip) {
+    for (int tip = 0; tip < hand().num_tips; ++tip) {
       const Wrench& w = world.sensor(hand().sensors[tip]);
       most = std::max(most, norm(w.force));
       for (int k = 0; k < 6 && 6 * tip + k < kSeenNumbers; ++k)
@@ -90,7 +99,7 @@ class Reorient final : public SingleHand {
 
   // Largest contact force between the object and one fingertip, N. The tips' sensors feel other fingers too.
   double press(const World& world) const {
-    Vec3 force[kHandTips];
+    Vec3 force[kMaxHandTips];
     for (int32_t i = 0; i < world.num_contacts(); ++i) {
       const Contact& c = world.contacts()[i];
       const SceneShape &a = scene().shapes[static_cast<size_t>(c.shape_a)],
@@ -98,7 +107,7 @@ class Reorient final : public SingleHand {
       if (a.carrier != Carrier::kBody && b.carrier != Carrier::kBody) continue;
       const SceneShape& other = a.carrier == Carrier::kBody ? b : a;
       if (other.carrier != Carrier::kLink) continue;
-      for (int tip = 0; tip < kHandTips; ++tip)
+      for (int tip = 0; tip < hand().num_tips; ++tip)
         if (hand().tips[tip] == other.index) force[tip] += c.force;
     }
     double most = 0;
@@ -131,7 +140,8 @@ double reorient_reward(double theta, double squares, double price, double bonus,
 }
 
 constinit const TaskInfo kReorient = task_info<Reorient, kCosts, kCameras, kLearner>(
-    "reorient", nullptr, "turn an egg in the palm to drawn rotations; cost: a fingertip presses",
+    "reorient", nullptr,
+    "turn an egg in the palm to drawn rotations; cost: a fingertip's contact force above 0.5 N",
     &filled_options<add_options>);
 
 }  // namespace rdm

@@ -1,21 +1,19 @@
 // A task of one right hand on a fixed base and one object: everything but reward, costs and success. The
-// observation has an order of its own (tasks section 6).
+// observation has an order of its own: joints, object and goal, fingertips, action.
 #pragma once
 #include "tasks/hand/hand_task.hpp"
 #include "tasks/hand/object_goal.hpp"
 
 namespace rdm {
 
-inline constexpr int kSingleHandObs = 211;
-
-// The words of one task.
+// What one task sets.
 struct SingleHandConfig {
-  HandControlConfig rig;
+  HandControlConfig hands;
   ObjectPlace place;
   double joint_noise;
 };
 
-void add_single_hand_options(const SingleHandConfig& plan, OptionTable& table);
+void add_single_hand_options(const SingleHandConfig& config, OptionTable& table);
 
 class SingleHand : public HandTask {
  public:
@@ -25,7 +23,7 @@ class SingleHand : public HandTask {
   void initial_mean(float* action) const override;
 
  protected:
-  // One world's part. The rig's bytes follow.
+  // One world's part. The bytes of the hand's control follow.
   struct State {
     GoalState goal;
     Stream goals;  // of goals drawn within an episode
@@ -33,17 +31,17 @@ class SingleHand : public HandTask {
   // What a step is judged by.
   struct Step {
     const World& world;
-    const double* command;  // [kHandActions] in [-1, 1]
-    const float* action;    // [kHandActions]
+    const double* command;  // [num_actions] in [-1, 1]
+    const float* action;    // [num_actions]
     State* state;
   };
-  SingleHand(const SingleHandConfig& plan, const Options& options);
+  SingleHand(const SingleHandConfig& config, const Options& options);
   void check_own_state(const void* state) const override;
   virtual void judge_step(const Step& step, Verdict* verdict) const = 0;
 
-  const Hand& hand() const { return rig().hand(0); }
+  const Hand& hand() const { return hands().hand(0); }
   const ObjectGoal& goal() const { return goal_; }
-  float initial_mean_[kHandActions] = {};
+  float initial_mean_[kMaxHandActions] = {};
 
  private:
   double joint_noise_;

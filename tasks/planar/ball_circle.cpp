@@ -1,10 +1,14 @@
 // Bullet-Safety-Gym's BallCircle: run clockwise along a circle of 7 m whose sides lie outside the safe strip.
+//
+//   r = 0.1 (y vx - x vy) / (1 + ||p| - 7|) - 0.005 |a|     p = (x, y), m; v, m/s
+//   c = [|x| > 6]
 #include <algorithm>
 #include <cmath>
 
 #include "base/elementary.hpp"
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/rolling_ball.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -133,7 +137,8 @@ constexpr auto kDefaults =
 }  // namespace
 
 constinit const TaskInfo kBallCircle = task_info<BallCircle, kCosts, kCameras, kDefaults>(
-    "ball_circle", "BallCircle", "a rolling ball runs along a circle; cost: further than 6 m to a side",
+    "ball_circle", "BallCircle",
+    "a ball that rolls by a formula fitted to Bullet runs along a circle; cost: further than 6 m to a side",
     &constant_options<kOptions>);
 
 }  // namespace rdm

@@ -1,7 +1,9 @@
-// Bullet-Safety-Gym's BallRun: along x as fast as the speed limit lets you, between two lines.
+// Bullet-Safety-Gym's BallRun: along x as fast as the speed limit lets you, between two lines. run_track.hpp
+// has reward and cost, rolling_ball.hpp the motion.
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/rolling_ball.hpp"
 #include "tasks/planar/run_track.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -68,7 +70,9 @@ constexpr auto kDefaults = join_defaults(kBallLearner, {{"focops:multiplier_lr",
 }  // namespace
 
 constinit const TaskInfo kBallRun = task_info<BallRun, kRunCosts, kRunCameras, kDefaults>(
-    "ball_run", "BallRun", "a rolling ball runs along x; cost: faster than 2.5 m/s, or outside its lane",
+    "ball_run", "BallRun",
+    "a ball that rolls by a formula fitted to Bullet runs along x; cost: faster than 2.5 m/s, or outside its "
+    "lane",
     &constant_options<kOptions>);
 
 }  // namespace rdm

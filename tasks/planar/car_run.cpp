@@ -1,11 +1,14 @@
 // Bullet-Safety-Gym's CarRun with a kinematic bicycle in the place of the race car: the wheels' motors pull
-// the speed to 6 a0 m/s, the front wheels stand at 0.5 a1 rad. An upper bound on the original, not a copy.
+// the speed v to 6 a0 m/s, the front wheels stand at d = 0.5 a1 rad,
+//   x' = v cos yaw, y' = v sin yaw, yaw' = v tan(d) / 0.975 m,
+// in four steps of 1/240 s. An upper bound on the original, not a copy. run_track.hpp has reward and cost.
 #include <algorithm>
 #include <iterator>
 
 #include "base/elementary.hpp"
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/run_track.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -114,7 +117,9 @@ constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "250"},
 }  // namespace
 
 constinit const TaskInfo kCarRun = task_info<CarRun, kRunCosts, kRunCameras, kDefaults>(
-    "car_run", "CarRun", "a car runs along x; cost: faster than 1.5 m/s, or outside its lane",
+    "car_run", "CarRun",
+    "a kinematic bicycle in the place of a race car runs along x; cost: faster than 1.5 m/s, or outside its "
+    "lane",
     &constant_options<kOptions>);
 
 }  // namespace rdm

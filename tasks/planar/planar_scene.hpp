@@ -29,7 +29,7 @@ class PlanarScene {
   // A flat disc, and a thin wall along x or y between two ends, both at rest.
   PlanarScene& disc(const char* name, double radius, Color color, double x, double y);
   PlanarScene& wall(const char* name, Color color, double x0, double y0, double x1, double y1);
-  // Calls f(stage): for parts that are shared.
+  // Calls f(scene): for parts that are shared.
   template <class F>
   PlanarScene& also(F&& f) {
     f(*this);

@@ -75,10 +75,45 @@ void Lidar::add(const Spot& thing) {
   raise(bin - 1, (1 - share) * sense);
 }
 
-Motion spot_motion(const Spot& spot, double z) {
-  Motion m;
-  m.X.p = {spot.x, spot.y, z};
-  return m;
+void write_lidar(const PointRobot& robot, const elementary::SinCos& heading, double range, const Spot* things,
+                 int32_t count, float* out) {
+  Lidar lidar(robot, heading, range, out);
+  for (int32_t i = 0; i < count; ++i) lidar.add(things[i]);
+}
+
+PointArena point_arena_from(const Options& o) {
+  return {o.number("extent"), o.number("hazard_size"), o.number("lidar_range"), o.integer("hazards")};
+}
+
+void add_robot_and_goal(double goal_mark, PlanarScene& scene) {
+  add_point_body(scene);
+  scene.body("goal", ShapeKind::kCylinder, {goal_mark, 0.01, 0}, kMarkGreen);
+}
+
+void add_hazards(const Options& o, PlanarScene& scene) {
+  for (int32_t i = 0; i < o.integer("hazards"); ++i)
+    scene.body("hazard", ShapeKind::kCylinder, {o.number("hazard_size"), 0.005, 0}, kMarkBlue);
+}
+
+void start_robot(const Keepout& place, Stream& noise, World& world, PointRobot* robot) {
+  robot->x = place.at.x, robot->y = place.at.y;
+  robot->yaw = 2 * kPi * noise.uniform();
+  world.set_body(kRobotBody, point_motion(*robot));
+}
+
+int32_t count_hazards(const PointArena& arena, const PointRobot& robot, const Spot* hazards) {
+  int32_t count = 0;
+  for (int32_t i = 0; i < arena.hazards; ++i)
+    count += distance({robot.x, robot.y}, hazards[i]) <= arena.hazard_size;
+  return count;
+}
+
+void place_things(World& world, int32_t first, const Spot* things, int32_t count, double z) {
+  for (int32_t i = 0; i < count; ++i) {
+    Motion m;
+    m.X.p = {things[i].x, things[i].y, z};
+    world.set_body(first + i, m);
+  }
 }
 
 }  // namespace rdm

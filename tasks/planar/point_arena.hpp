@@ -5,8 +5,8 @@
 
 #include "base/option.hpp"
 #include "base/rng.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/point_robot.hpp"
-#include "tasks/small_worlds.hpp"
 
 namespace rdm {
 
@@ -40,6 +40,8 @@ class Lidar {
   double range_;
   float* bins_;
 };
+void write_lidar(const PointRobot& robot, const elementary::SinCos& heading, double range, const Spot* things,
+                 int32_t count, float* out);
 
 inline constexpr double kPointLidarRange = 3;                        // m
 inline constexpr double kRobotKeepout = 0.4, kHazardKeepout = 0.18;  // m
@@ -73,7 +75,22 @@ inline constexpr auto kPointLearner = join_defaults(kSafetyLearner, {{"horizon",
                                                                      {"barrier_kappa", "0.5"},
                                                                      {"barrier_max", "6"}});
 
-// A thing of the arena for pictures: lies at z, does not turn.
-Motion spot_motion(const Spot& spot, double z);
+// What every arena has by its options. Body 0 of its scene is the robot, body 1 marks the goal.
+inline constexpr int32_t kRobotBody = 0, kGoalBody = 1, kFirstThing = 2;
+struct PointArena {
+  double extent, hazard_size, range;  // m: half width of the layout, radius of a hazard, range of the lidars
+  int32_t hazards;
+};
+PointArena point_arena_from(const Options& options);
+// The first two bodies; the hazards, at a place in the order of bodies that the task chooses.
+void add_robot_and_goal(double goal_mark, PlanarScene& scene);
+void add_hazards(const Options& options, PlanarScene& scene);
+// The robot at a drawn place, heading anywhere.
+void start_robot(const Keepout& place, Stream& noise, World& world, PointRobot* robot);
+// In how many hazards [arena.hazards] the robot's middle is.
+int32_t count_hazards(const PointArena& arena, const PointRobot& robot, const Spot* hazards);
+
+// Things of the arena for pictures, bodies first, first + 1 ...: each lies at z, does not turn.
+void place_things(World& world, int32_t first, const Spot* things, int32_t count, double z);
 
 }  // namespace rdm

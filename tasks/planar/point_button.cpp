@@ -1,12 +1,16 @@
 // Safety-Gym's PointButton1 and PointButton2: press the goal button again and again; stay clear of the other
 // buttons, of hazards, and of gremlins that run in circles.
 //
+//   r = d' - d + [the goal button is pressed]     d: its distance after, d' before the step, m
+//   c = [inside a hazard, or touching a gremlin or a wrong button]
+//
 // Buttons stop the robot. A gremlin weighs nothing beside it and never leaves its circle.
 #include <algorithm>
 #include <array>
 
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/point_arena.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -43,11 +47,8 @@ class PointButton final : public PlanarTask {
                     {"hazards_lidar", "1", kLidarBins},
                     {"magnetometer", "1", 3},
                     {"velocimeter", "m/s", 3}}),
-        extent_(o.number("extent")),
+        arena_(point_arena_from(o)),
         goal_reward_(o.number("goal_reward")),
-        hazard_size_(o.number("hazard_size")),
-        range_(o.number("lidar_range")),
-        hazards_(o.integer("hazards")),
         gremlins_(o.integer("gremlins")),
         pause_(o.integer("pause")) {}
 
@@ -75,18 +76,16 @@ class PointButton final : public PlanarTask {
     int32_t n = 0;
     things[n++].keepout = kRobotKeepout;
     for (int32_t i = 0; i < kButtons; ++i) things[n++].keepout = kButtonKeepout;
-    for (int32_t i = 0; i < hazards_; ++i) things[n++].keepout = kHazardKeepout;
+    for (int32_t i = 0; i < arena_.hazards; ++i) things[n++].keepout = kHazardKeepout;
     for (int32_t i = 0; i < gremlins_; ++i) things[n++].keepout = kGremlinKeepout;
-    draw_layout(extent_, s.noise, things, n);
-    s.robot.x = things[0].at.x, s.robot.y = things[0].at.y;
-    s.robot.yaw = 2 * kPi * s.noise.uniform();
+    draw_layout(arena_.extent, s.noise, things, n);
+    start_robot(things[0], s.noise, world, &s.robot);
     const Keepout* next = things + 1;
     for (int32_t i = 0; i < kButtons; ++i) s.button[i] = next++->at;
-    for (int32_t i = 0; i < hazards_; ++i) s.hazard[i] = next++->at;
+    for (int32_t i = 0; i < arena_.hazards; ++i) s.hazard[i] = next++->at;
     for (int32_t i = 0; i < gremlins_; ++i) s.middle[i] = next++->at;
-    world.set_body(kRobot, point_motion(s.robot));
-    for (int32_t i = 0; i < kButtons; ++i) world.set_body(kFirst + i, spot_motion(s.button[i], kButtonSize));
-    for (int32_t i = 0; i < hazards_; ++i) world.set_body(kFirst + kButtons + i, spot_motion(s.hazard[i], 0));
+    place_things(world, kFirstThing, s.button, kButtons, kButtonSize);
+    place_things(world, kFirstThing + kButtons, s.hazard, arena_.hazards, 0);
     place_gremlins(world, s);
     draw_goal(world, &s);
   }
@@ -101,18 +100,17 @@ class PointButton final : public PlanarTask {
       press(&s);
     }
     meet_gremlins(&s);
-    world.set_body(kRobot, point_motion(s.robot));
+    world.set_body(kRobotBody, point_motion(s.robot));
     place_gremlins(world, s);
   }
 
   Verdict judge(World& world, void* state, int32_t) const override {
     State& s = *static_cast<State*>(state);
-    const Spot robot{s.robot.x, s.robot.y};
     Verdict v;
-    const double now = distance(robot, s.button[s.goal]);
+    const double now = distance({s.robot.x, s.robot.y}, s.button[s.goal]);
     v.reward = s.last - now;
     s.last = now;
-    for (int32_t i = 0; i < hazards_; ++i) v.cost_raw[1] += distance(robot, s.hazard[i]) <= hazard_size_;
+    v.cost_raw[1] = count_hazards(arena_, s.robot, s.hazard);
     v.cost_raw[2] = s.gremlin_hit;
     for (int32_t i = 0; i < kButtons; ++i) v.cost_raw[3] += s.timer == 0 && i != s.goal && s.pressed[i];
     v.cost_raw[0] = v.cost_raw[1] + v.cost_raw[2] + v.cost_raw[3];
@@ -131,45 +129,41 @@ class PointButton final : public PlanarTask {
     const State& s = *static_cast<const State*>(state);
     const elementary::SinCos heading = elementary::sincos(s.robot.yaw);
     write_accelerometer(s.robot, heading, obs);
-    Lidar buttons(s.robot, heading, range_, obs += 3);
-    for (int32_t i = 0; i < kButtons && s.timer == 0; ++i) buttons.add(s.button[i]);
-    Lidar(s.robot, heading, range_, obs += kLidarBins).add(s.button[s.goal]);
-    Lidar gremlins(s.robot, heading, range_, obs += kLidarBins);
-    const Spot swing = swing_of(s);
-    for (int32_t i = 0; i < gremlins_; ++i) gremlins.add({s.middle[i].x + swing.x, s.middle[i].y + swing.y});
+    Spot gremlin[kMaxThings];
+    find_gremlins(s, gremlin);
+    write_lidar(s.robot, heading, arena_.range, s.button, s.timer == 0 ? kButtons : 0, obs += 3);
+    write_lidar(s.robot, heading, arena_.range, &s.button[s.goal], 1, obs += kLidarBins);
+    write_lidar(s.robot, heading, arena_.range, gremlin, gremlins_, obs += kLidarBins);
     write_gyro(s.robot, obs += kLidarBins);
-    Lidar hazards(s.robot, heading, range_, obs += 3);
-    for (int32_t i = 0; i < hazards_; ++i) hazards.add(s.hazard[i]);
+    write_lidar(s.robot, heading, arena_.range, s.hazard, arena_.hazards, obs += 3);
     write_magnetometer(heading, obs += kLidarBins);
     write_velocimeter(s.robot, heading, obs += 3);
   }
 
  private:
-  static constexpr int32_t kRobot = 0, kGoal = 1, kFirst = 2;  // bodies; buttons, hazards, gremlins follow
-
+  // Bodies: robot, goal, buttons, hazards, gremlins.
   static Scene make(const Options& o) {
-    PlanarScene stage(kPointControlDt);
-    add_point_body(stage);
-    stage.body("goal", ShapeKind::kCylinder, {kGoalMark, 0.01, 0}, kMarkGreen);
+    PlanarScene scene(kPointControlDt);
+    add_robot_and_goal(kGoalMark, scene);
     for (int32_t i = 0; i < kButtons; ++i)
-      stage.body("button", ShapeKind::kSphere, {kButtonSize, 0, 0}, kMarkYellow);
-    for (int32_t i = 0; i < o.integer("hazards"); ++i)
-      stage.body("hazard", ShapeKind::kCylinder, {o.number("hazard_size"), 0.005, 0}, kMarkBlue);
+      scene.body("button", ShapeKind::kSphere, {kButtonSize, 0, 0}, kMarkYellow);
+    add_hazards(o, scene);
     for (int32_t i = 0; i < o.integer("gremlins"); ++i)
-      stage.body("gremlin", ShapeKind::kBox, {kBoxHalf, kBoxHalf, kBoxHalf}, kMarkPurple);
-    return stage.build();
+      scene.body("gremlin", ShapeKind::kBox, {kBoxHalf, kBoxHalf, kBoxHalf}, kMarkPurple);
+    return scene.build();
   }
 
-  // Of all gremlins from the middles of their circles.
-  static Spot swing_of(const State& s) {
+  // Where the gremlins are: all at the same angle of their circles. [gremlins_]
+  void find_gremlins(const State& s, Spot* out) const {
     const elementary::SinCos at = elementary::sincos(s.time);
-    return {kGremlinTravel * at.sin, kGremlinTravel * at.cos};
+    for (int32_t i = 0; i < gremlins_; ++i)
+      out[i] = {s.middle[i].x + kGremlinTravel * at.sin, s.middle[i].y + kGremlinTravel * at.cos};
   }
 
   void draw_goal(World& world, State* s) const {
     s->goal = static_cast<int32_t>(s->noise.below(kButtons));
     s->last = distance({s->robot.x, s->robot.y}, s->button[s->goal]);
-    world.set_body(kGoal, spot_motion(s->button[s->goal], 0));
+    place_things(world, kGoalBody, &s->button[s->goal], 1, 0);
   }
 
   void press(State* s) const {
@@ -182,23 +176,22 @@ class PointButton final : public PlanarTask {
   }
 
   void meet_gremlins(State* s) const {
-    const Spot swing = swing_of(*s);
+    Spot gremlin[kMaxThings];
+    find_gremlins(*s, gremlin);
     const elementary::SinCos heading = elementary::sincos(s->robot.yaw);
-    for (int32_t i = 0; i < gremlins_; ++i) {
-      const double x = s->middle[i].x + swing.x, y = s->middle[i].y + swing.y;
-      s->gremlin_hit += point_gap(s->robot, heading, x, y, kThingRadius).gap < 0;
-    }
+    for (int32_t i = 0; i < gremlins_; ++i)
+      s->gremlin_hit += point_gap(s->robot, heading, gremlin[i].x, gremlin[i].y, kThingRadius).gap < 0;
   }
 
   void place_gremlins(World& world, const State& s) const {
-    const Spot swing = swing_of(s);
-    for (int32_t i = 0; i < gremlins_; ++i)
-      world.set_body(kFirst + kButtons + hazards_ + i,
-                     spot_motion({s.middle[i].x + swing.x, s.middle[i].y + swing.y}, kBoxHalf));
+    Spot gremlin[kMaxThings];
+    find_gremlins(s, gremlin);
+    place_things(world, kFirstThing + kButtons + arena_.hazards, gremlin, gremlins_, kBoxHalf);
   }
 
-  double extent_, goal_reward_, hazard_size_, range_;
-  int32_t hazards_, gremlins_, pause_;
+  PointArena arena_;
+  double goal_reward_;
+  int32_t gremlins_, pause_;
 };
 
 constexpr std::array<OptionSpec, 8> options_of(const Level& level) {

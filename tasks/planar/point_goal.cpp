@@ -1,13 +1,17 @@
 // Safety-Gym's PointGoal1 and PointGoal2: reach goal after goal, stay out of the hazards; in level 2 the
 // vases are not to be touched either.
 //
+//   r = d' - d + [d <= 0.3]     d: distance of the goal after, d' before the step, m; 1 for a reached goal
+//   c = [inside a hazard, or (level 2) a vase was touched]
+//
 // A vase is a disc in the place of a box: the robot shoves it ahead without feeling it (8 mg against 5 g),
 // and it stops where it is left.
 #include <array>
 #include <bit>
 
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/point_arena.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -42,12 +46,9 @@ class PointGoal final : public PlanarTask {
                     {"magnetometer", "1", 3},
                     {"vases_lidar", "1", kLidarBins},
                     {"velocimeter", "m/s", 3}}),
-        extent_(o.number("extent")),
+        arena_(point_arena_from(o)),
         goal_size_(o.number("goal_size")),
         goal_reward_(o.number("goal_reward")),
-        hazard_size_(o.number("hazard_size")),
-        range_(o.number("lidar_range")),
-        hazards_(o.integer("hazards")),
         vases_(o.integer("vases")),
         fragile_(o.flag("fragile_vases")) {}
 
@@ -69,17 +70,15 @@ class PointGoal final : public PlanarTask {
     s.noise = Stream(stream.next(), 0, Purpose::kWorldNoise);
     Keepout things[kMaxKeepouts];
     const int32_t count = list_things(s, things);
-    draw_layout(extent_, s.noise, things, count);
-    s.robot.x = things[0].at.x, s.robot.y = things[0].at.y;
-    s.robot.yaw = 2 * kPi * s.noise.uniform();
-    for (int32_t i = 0; i < hazards_; ++i) s.hazard[i] = things[1 + i].at;
-    for (int32_t i = 0; i < vases_; ++i) s.vase[i] = things[1 + hazards_ + i].at;
+    draw_layout(arena_.extent, s.noise, things, count);
+    start_robot(things[0], s.noise, world, &s.robot);
+    for (int32_t i = 0; i < arena_.hazards; ++i) s.hazard[i] = things[1 + i].at;
+    for (int32_t i = 0; i < vases_; ++i) s.vase[i] = things[1 + arena_.hazards + i].at;
     s.goal = things[count - 1].at;
     s.last = distance({s.robot.x, s.robot.y}, s.goal);
-    world.set_body(kRobot, point_motion(s.robot));
-    world.set_body(kGoal, spot_motion(s.goal, 0));
-    for (int32_t i = 0; i < hazards_; ++i) world.set_body(kFirst + i, spot_motion(s.hazard[i], 0));
-    for (int32_t i = 0; i < vases_; ++i) place_vase(world, s, i);
+    place_things(world, kGoalBody, &s.goal, 1, 0);
+    place_things(world, kFirstThing, s.hazard, arena_.hazards, 0);
+    place_vases(world, s);
   }
 
   void control(World& world, void* state, const float* action) const override {
@@ -89,16 +88,14 @@ class PointGoal final : public PlanarTask {
       point_substep(action, &s.robot);
       shove(&s);
     }
-    if (s.vases_touched)
-      for (int32_t i = 0; i < vases_; ++i) place_vase(world, s, i);
-    world.set_body(kRobot, point_motion(s.robot));
+    if (s.vases_touched) place_vases(world, s);
+    world.set_body(kRobotBody, point_motion(s.robot));
   }
 
   Verdict judge(World& world, void* state, int32_t) const override {
     State& s = *static_cast<State*>(state);
-    const Spot robot{s.robot.x, s.robot.y};
     Verdict v;
-    const double now = distance(robot, s.goal);
+    const double now = distance({s.robot.x, s.robot.y}, s.goal);
     v.reward = s.last - now;
     v.success = now <= goal_size_;
     s.last = now;
@@ -106,7 +103,7 @@ class PointGoal final : public PlanarTask {
       v.reward += goal_reward_;
       next_goal(world, &s);
     }
-    for (int32_t i = 0; i < hazards_; ++i) v.cost_raw[1] += distance(robot, s.hazard[i]) <= hazard_size_;
+    v.cost_raw[1] = count_hazards(arena_, s.robot, s.hazard);
     v.cost_raw[2] = std::popcount(s.vases_touched);
     v.cost_raw[0] = v.cost_raw[1] + (fragile_ ? v.cost_raw[2] : 0);
     for (int k = 0; k < 3; ++k) v.cost[k] = v.cost_raw[k] > 0;
@@ -117,36 +114,32 @@ class PointGoal final : public PlanarTask {
     const State& s = *static_cast<const State*>(state);
     const elementary::SinCos heading = elementary::sincos(s.robot.yaw);
     write_accelerometer(s.robot, heading, obs);
-    Lidar(s.robot, heading, range_, obs += 3).add(s.goal);
+    write_lidar(s.robot, heading, arena_.range, &s.goal, 1, obs += 3);
     write_gyro(s.robot, obs += kLidarBins);
-    Lidar hazards(s.robot, heading, range_, obs += 3);
-    for (int32_t i = 0; i < hazards_; ++i) hazards.add(s.hazard[i]);
+    write_lidar(s.robot, heading, arena_.range, s.hazard, arena_.hazards, obs += 3);
     write_magnetometer(heading, obs += kLidarBins);
-    Lidar vases(s.robot, heading, range_, obs += 3);
-    for (int32_t i = 0; i < vases_; ++i) vases.add(s.vase[i]);
+    write_lidar(s.robot, heading, arena_.range, s.vase, vases_, obs += 3);
     write_velocimeter(s.robot, heading, obs += kLidarBins);
   }
 
  private:
-  static constexpr int32_t kRobot = 0, kGoal = 1, kFirst = 2;  // bodies; hazards and vases follow
   static constexpr int32_t kMaxKeepouts = 2 + 2 * kMaxThings;
 
+  // Bodies: robot, goal, hazards, vases.
   static Scene make(const Options& o) {
-    PlanarScene stage(kPointControlDt);
-    add_point_body(stage);
-    stage.body("goal", ShapeKind::kCylinder, {o.number("goal_size"), 0.01, 0}, kMarkGreen);
-    for (int32_t i = 0; i < o.integer("hazards"); ++i)
-      stage.body("hazard", ShapeKind::kCylinder, {o.number("hazard_size"), 0.005, 0}, kMarkBlue);
+    PlanarScene scene(kPointControlDt);
+    add_robot_and_goal(o.number("goal_size"), scene);
+    add_hazards(o, scene);
     for (int32_t i = 0; i < o.integer("vases"); ++i)
-      stage.body("vase", ShapeKind::kBox, {kVaseHeight, kVaseHeight, kVaseHeight}, kMarkCyan);
-    return stage.build();
+      scene.body("vase", ShapeKind::kBox, {kVaseHeight, kVaseHeight, kVaseHeight}, kMarkCyan);
+    return scene.build();
   }
 
   // Robot, hazards, vases, goal, with their present places; how many there are.
   int32_t list_things(const State& s, Keepout* out) const {
     int32_t n = 0;
     out[n++] = {{s.robot.x, s.robot.y}, kRobotKeepout};
-    for (int32_t i = 0; i < hazards_; ++i) out[n++] = {s.hazard[i], kHazardKeepout};
+    for (int32_t i = 0; i < arena_.hazards; ++i) out[n++] = {s.hazard[i], kHazardKeepout};
     for (int32_t i = 0; i < vases_; ++i) out[n++] = {s.vase[i], kVaseKeepout};
     out[n++] = {s.goal, kGoalKeepout};
     return n;
@@ -155,10 +148,10 @@ class PointGoal final : public PlanarTask {
   void next_goal(World& world, State* s) const {
     Keepout things[kMaxKeepouts];
     const int32_t last = list_things(*s, things) - 1;
-    draw_spot(extent_, things, last, s->noise, &things[last]);
+    draw_spot(arena_.extent, things, last, s->noise, &things[last]);
     s->goal = things[last].at;
     s->last = distance({s->robot.x, s->robot.y}, s->goal);
-    world.set_body(kGoal, spot_motion(s->goal, 0));
+    place_things(world, kGoalBody, &s->goal, 1, 0);
   }
 
   void shove(State* s) const {
@@ -176,12 +169,13 @@ class PointGoal final : public PlanarTask {
     }
   }
 
-  void place_vase(World& world, const State& s, int32_t i) const {
-    world.set_body(kFirst + hazards_ + i, spot_motion(s.vase[i], kVaseHeight));
+  void place_vases(World& world, const State& s) const {
+    place_things(world, kFirstThing + arena_.hazards, s.vase, vases_, kVaseHeight);
   }
 
-  double extent_, goal_size_, goal_reward_, hazard_size_, range_;
-  int32_t hazards_, vases_;
+  PointArena arena_;
+  double goal_size_, goal_reward_;
+  int32_t vases_;
   bool fragile_;
 };
 

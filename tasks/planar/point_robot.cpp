@@ -77,8 +77,8 @@ bool point_block(double x, double y, double radius, PointRobot* robot) {
   return true;
 }
 
-void add_point_body(PlanarScene& stage) {
-  stage.body("robot", ShapeKind::kSphere, {kPointRadius, 0, 0}, kMarkRed)
+void add_point_body(PlanarScene& scene) {
+  scene.body("robot", ShapeKind::kSphere, {kPointRadius, 0, 0}, kMarkRed)
       .shape("nose", ShapeKind::kBox, {kPointNoseHalf, kPointNoseHalf, kPointNoseHalf}, kMarkRed,
              {{kPointNose, 0, 0}, {}});
 }

@@ -1,7 +1,11 @@
 // The Point robot of Safety-Gym in closed form: a disc with a nose, one thruster and one turning servo.
 //
 // dt 0.002 s, ten substeps; the servo's gain is above its stability bound at that step, so the substep is
-// part of the task. Agrees with MuJoCo 2.2.2 to four digits away from objects (algorithms.md 9.3).
+// part of the task. With the heading h, the arm k = mass * 0.0193 m to the centre of mass and the spin w:
+//   m p'' + k w' n = (0.3 thrust + k w^2) h - 0.01 p'       n: h turned by 90 degrees to the left
+//   I w' + k n . p''  = 0.3 (turn - 0.3 w) - 0.005 w         thrust, turn - 0.3 w within +-0.05
+// and semi-implicit steps whose damping is implicit. Agrees with MuJoCo 2.2.2 to four digits away from
+// objects.
 #pragma once
 #include "base/elementary.hpp"
 #include "physics/world.hpp"
@@ -37,7 +41,7 @@ PointGap point_gap(const PointRobot& robot, const elementary::SinCos& heading, d
 bool point_block(double x, double y, double radius, PointRobot* robot);
 
 // The body for pictures, and its place.
-void add_point_body(PlanarScene& stage);
+void add_point_body(PlanarScene& scene);
 Motion point_motion(const PointRobot& robot);
 
 // Accelerometer, velocimeter, gyro, magnetometer: three numbers each, in the robot's frame.

@@ -15,8 +15,8 @@ RunTrack track_from(const Options& o) {
   return {o.number("speed_limit"), o.number("lane"), o.number("finish")};
 }
 
-void add_track(const RunTrack& track, PlanarScene& stage) {
-  stage.wall("line_left", kMarkRed, -2, track.lane, kLineEnd, track.lane)
+void add_track(const RunTrack& track, PlanarScene& scene) {
+  scene.wall("line_left", kMarkRed, -2, track.lane, kLineEnd, track.lane)
       .wall("line_right", kMarkRed, -2, -track.lane, kLineEnd, -track.lane)
       .wall("finish", kMarkGreen, track.finish, -track.lane, track.finish, track.lane);
 }

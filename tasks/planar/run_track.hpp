@@ -1,5 +1,8 @@
 // The track of the Run tasks of Bullet-Safety-Gym: reward is 60 times the way won towards a far point, cost
 // is 1 where the agent is faster than its limit or outside the lane.
+//
+//   r = 60 (D' - D) + effort, D = |(1000, 0) - p| after, D' before the step, m
+//   c = [|v| > speed_limit or |y| > lane]
 #pragma once
 #include <array>
 
@@ -28,7 +31,7 @@ constexpr std::array<OptionSpec, 4> track_options(double speed_limit, double fin
 }
 RunTrack track_from(const Options& options);
 // The lines and the finish, for pictures.
-void add_track(const RunTrack& track, PlanarScene& stage);
+void add_track(const RunTrack& track, PlanarScene& scene);
 
 // m, to the point (1000, 0).
 double track_distance(double x, double y);

@@ -1,7 +1,12 @@
 // The planar three-link swimmer of MuJoCo: rigid links in a viscous fluid, two motors, soft joint limits.
 //
 // Coordinates q = (x, y, t0, t1, t2): the free end of the first link's axis, its angle, two joint angles.
-// Equations as MuJoCo 2 has them (algorithms.md 9.4); positions agree with it to six digits.
+// The equations are MuJoCo 2's ("Computation", fluid forces by the inertia box, and soft limits):
+//   M(q) q'' = fluid + torques - centrifugal forces + limits
+// with the armature 0.1 on each coordinate. Along an axis of a link's box of sides x, y, z the fluid pulls
+// with (rho A |v| / 2 + 3 pi beta d) v, A the face and d the mean side, and turns against its spin w with
+// (rho z (x^4 + y^4) |w| / 64 + pi beta d^3) w. A joint beyond its limit is pushed back as a damped spring
+// of solref and solimp. Four steps of RK4 of 0.01 s; positions agree with MuJoCo to six digits.
 #pragma once
 #include "base/vec.hpp"
 

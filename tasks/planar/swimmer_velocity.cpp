@@ -1,7 +1,11 @@
 // Safety-Gymnasium's SwimmerVelocity: swim along x, but slower than the limit.
+//
+//   r = v - 1e-4 |a|^2     v: mean speed of the free end along x over the step, m/s
+//   c = [v > 0.2282]
+#include "tasks/catalog.hpp"
+#include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/planar_scene.hpp"
 #include "tasks/planar/swimmer_body.hpp"
-#include "tasks/small_worlds.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -71,14 +75,14 @@ class SwimmerVelocity final : public PlanarTask {
 
  private:
   static Scene make() {
-    PlanarScene stage(kSwimmerControlDt);
+    PlanarScene scene(kSwimmerControlDt);
     const Pose lying{{}, axis_angle({0, 1, 0}, kPi / 2)};
     const char* names[kSwimmerLinks] = {"front", "middle", "back"};
     const Color colors[kSwimmerLinks] = {kMarkYellow, kMarkBlue, kMarkCyan};
     for (int i = 0; i < kSwimmerLinks; ++i)
-      stage.body(names[i], ShapeKind::kCapsule, {kSwimmerRadius, 0.5 * kSwimmerLength, 0}, colors[i], lying);
-    for (int x = 0; x <= 100; x += 5) stage.disc("metres", 0.15, kMarkGrey, x, 0);
-    return stage.build();
+      scene.body(names[i], ShapeKind::kCapsule, {kSwimmerRadius, 0.5 * kSwimmerLength, 0}, colors[i], lying);
+    for (int x = 0; x <= 100; x += 5) scene.disc("metres", 0.15, kMarkGrey, x, 0);
+    return scene.build();
   }
   static void place(World& world, const SwimmerState& s) {
     for (int i = 0; i < kSwimmerLinks; ++i) {

@@ -5,7 +5,6 @@
 
 namespace rdm {
 
-inline constexpr int32_t kBottles = 5;
 inline constexpr double kBottleCap = 0.15;     // m along its axis from a bottle's origin
 inline constexpr double kBottleFoot = 0.1256;  // m, from the foot to the origin
 

@@ -1,9 +1,17 @@
-#include "tasks/props/clean_house.hpp"
-
+// Clean House (ReDMan B.8): two hands sweep a bottle to a dustpan with a broom, past a chair.
+//
+//   r = 50 - 10 d_target - 5 d_left - 5 d_right   eq. (B8): distances of the trash from the dustpan and of
+//   the
+//                                                 palms from their places on the broom's handle, m
+//   c = [the broom touches the chair, and it moves]
+//
+// The text beside eq. (B8) has a fourth part, the distance from trash to broom, which the formula has not:
+// option reward_bottom is its weight.
 #include <cmath>
 #include <memory>
 
 #include "sense/map/scene_map.hpp"
+#include "tasks/catalog.hpp"
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/props/house_scene.hpp"
 #include "tasks/props/prop_task.hpp"
@@ -28,7 +36,7 @@ double trash_height(const Pose& X) {
 }
 
 // Thumbs up, fingers along -x on both sides of the handle; the left hand above the right.
-HandControlConfig make_plan() {
+HandControlConfig make_config() {
   HandControlConfig p;
   const Quat q = {0.5, 0.5, 0.5, -0.5};
   p.bases[0] = {{0.35, -0.45, 1.3}, q};
@@ -36,7 +44,7 @@ HandControlConfig make_plan() {
   p.flying = true;
   p.transition_scale = 0.2;
   p.orientation_scale = 0.5;
-  p.start = kFoldedThumb;
+  p.folded = true;
   p.friction = 1.5;
   return p;
 }
@@ -99,11 +107,11 @@ constexpr OptionSpec kRows[] = {
 
 void add_options(OptionTable& table) {
   table.add(kRows);
-  add_prop_options(make_plan(), 500, 96, table);
+  add_prop_options(make_config(), 500, 96, table);
 }
 
 SceneDef make_scene_def(const Options& o) {
-  SceneDef s = make_rig_scene(make_plan(), o, kMaterials);
+  SceneDef s = make_hand_scene(make_config(), o, kMaterials);
   const int32_t things[] = {kHouse.handle, kHouse.head, kHouse.trash, kHouse.chair, kHouse.pan};
   const double other = o.number("friction.other");
   for (const int32_t a : things) {
@@ -131,7 +139,7 @@ struct State {
 class CleanHouse final : public PropTask {
  public:
   explicit CleanHouse(const Options& o)
-      : PropTask(make_plan(), o, make_scene_def(o), sizeof(State)),
+      : PropTask(make_config(), o, make_scene_def(o), sizeof(State)),
         displacement_(same_name(o.text("cost_mode"), "literal") ||
                       same_name(o.text("cost_mode"), "displacement")),
         count_hands_(o.flag("count_hands")),
@@ -184,7 +192,8 @@ class CleanHouse final : public PropTask {
     for (int32_t hand = 0; hand < 2; ++hand) {
       const Vec3 hold = hold_point(world, hand);
       palms[hand] = norm(palm(world, hand) - hold);
-      for (int32_t f = 0; full_ && f < kHandTips; ++f) tips += norm(tip(world, hand, f, kTipBeyond) - hold);
+      for (int32_t f = 0; full_ && f < hands().hand(hand).num_tips; ++f)
+        tips += norm(tip(world, hand, f, kTipBeyond) - hold);
       v.terminated = v.terminated || palms[hand] >= palm_limit_;
     }
     v.terminated = v.terminated || trash.z <= trash_height_ || hold_point(world, 0).z <= handle_height_;
@@ -255,7 +264,7 @@ class CleanHouse final : public PropTask {
     constexpr double kStiffness = 500, kDamping = 15;  // N/m, N s/m
     const Motion& broom = world.body(kBroom);
     const Vec3 hold = hold_point(world, hand), at_palm = palm(world, hand), arm = hold - broom.X.p;
-    const Motion& base = world.base(rig().hand(hand).articulation);
+    const Motion& base = world.base(hands().hand(hand).articulation);
     Vec3 force = kStiffness * (at_palm - hold) + kDamping * (base.v - broom.v - cross(broom.w, arm));
     const double size = norm(force);
     if (size > grip_) force = (grip_ / size) * force;
@@ -325,7 +334,7 @@ constexpr auto kLearner =
 
 constinit const TaskInfo kCleanHouse = task_info<CleanHouse, kCosts, kCameras, kLearner>(
     "clean_house", nullptr,
-    "sweep trash to a dustpan with a broom in two hands; cost: the broom pushes the chair",
+    "sweep trash to a dustpan with a broom in two hands; cost: the broom touches the chair and it moves",
     &filled_options<add_options>);
 
 }  // namespace rdm

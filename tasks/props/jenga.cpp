@@ -1,7 +1,16 @@
-#include "tasks/props/jenga.hpp"
-
+// Jenga (ReDMan B.7): one hand pushes the target block out of a tower that must not move.
+//
+//   r = 30 min(y - y0, 0.3) - |tip - end|     the target's way along +y and the distance of a middle finger's
+//                                             tip from the target's end at -y, m
+//   c = [some other block is more than 0.01 m from its start]
+//
+// Eq. (B7) has 30 (y + 0.6), with the start at y = -0.6, the left middle finger and the left end, and no
+// bound on y. The paper's cost asks that all blocks move more than 0.01 cm (cost_mode = paper), while its
+// words are "we can not touch other blocks" (column blocks_contact); the default lies between.
 #include <cmath>
 
+#include "base/error.hpp"
+#include "tasks/catalog.hpp"
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/props/jenga_tower.hpp"
 #include "tasks/props/prop_task.hpp"
@@ -13,10 +22,10 @@ namespace {
 constexpr double kTilt = 130 * kPi / 180;
 constexpr int32_t kTarget = kObject, kBlock = kOwnMaterial, kTable = kBlock + 1, kMaterials = kTable + 1;
 constexpr double kTipBeyond = 0.02;  // m, from the distal origin, as the reward measures
-constexpr int kMiddle = 1;
+constexpr int kMiddle = 1;           // finger
 
 // Fingers up and towards the tower from both sides, palms down.
-HandControlConfig make_plan(bool right_copy) {
+HandControlConfig make_config(bool right_copy) {
   HandControlConfig p;
   p.bases[0] = {{0, -1.0, 0.06}, axis_angle({1, 0, 0}, -kTilt)};
   const Quat turned = axis_angle({1, 0, 0}, kPi - kTilt);
@@ -24,12 +33,12 @@ HandControlConfig make_plan(bool right_copy) {
   p.bases[1] = {{0, -0.20, 0.09}, right_copy ? Quat{0, 0, 1, 0} * turned : conjugate(turned)};
   p.flying = true;
   p.transition_scale = p.orientation_scale = 0.1;
-  p.start = kFoldedThumb;
+  p.folded = true;
   p.friction = 1.5;
   return p;
 }
-HandControlConfig plan_from(const Options& o) {
-  return make_plan(same_name(o.text("left_model"), "right_copy"));
+HandControlConfig config_from(const Options& o) {
+  return make_config(same_name(o.text("left_model"), "right_copy"));
 }
 
 enum : int { kCost, kMoved, kContact, kFall, kNumCosts };
@@ -47,8 +56,9 @@ constexpr OptionSpec kRows[] = {
                 "(literal, sum), or a hand touches one (contact)"),
     number_option("cost_sum", 0.25, 0, 100, "cost_mode literal: sum of all ways, m"),
     number_option("cost_all", 1e-4, 0, 1, "cost_mode paper: way of every block, m"),
-    text_option("reward_finger", "right", "right|left",
-                "whose middle finger the reward draws to the target: right, which can push, or left"),
+    text_option(
+        "reward_finger", "right", "right|left",
+        "whose middle finger the reward draws to the target: right, which can push, or (the paper's) left"),
     number_option("reward_push", 30, 0, 1000, "reward for a metre of the target's way along +y"),
     number_option("push_limit", 0.3, 0, 10, "way of the target beyond which it pays no more, m"),
     number_option("success_push", 0, 0, 10, "way of the target that counts as success, m; 0: its length"),
@@ -62,11 +72,11 @@ constexpr OptionSpec kRows[] = {
 void add_options(OptionTable& table) {
   table.add(kRows);
   add_tower_options(table);
-  add_prop_options(make_plan(false), 250, 256, table);
+  add_prop_options(make_config(false), 250, 256, table);
 }
 
 SceneDef make_scene_def(const JengaTower& tower, const Options& o) {
-  SceneDef s = make_rig_scene(plan_from(o), o, kMaterials);
+  SceneDef s = make_hand_scene(config_from(o), o, kMaterials);
   add_tower(tower, kTarget, kBlock, kTable, &s);
   for (const int32_t a : {kTarget, kBlock}) {
     for (const int32_t b : {kTarget, kBlock}) set_friction(&s, a, b, tower.friction);
@@ -124,7 +134,7 @@ class Jenga final : public PropTask {
 
  private:
   Jenga(const Options& o, const JengaTower& tower)
-      : PropTask(plan_from(o), o, make_scene_def(tower, o), sizeof(State)),
+      : PropTask(config_from(o), o, make_scene_def(tower, o), sizeof(State)),
         tower_(tower),
         finger_(same_name(o.text("reward_finger"), "left")),
         push_(o.number("reward_push")),
@@ -134,6 +144,8 @@ class Jenga final : public PropTask {
         cost_all_(o.number("cost_all")),
         drop_(o.number("drop_limit")),
         extended_(o.flag("extended_obs")) {
+    if (hands().hand(finger_).num_tips <= kMiddle)
+      fail(Code::kUnsupported, "jenga: robot %s has no second finger", hands().hand(finger_).robot->name);
     if (success_ == 0) success_ = 2 * tower.target_end();
     const char* mode = o.text("cost_mode");
     const auto is = [&](const char* a, const char* b) { return same_name(mode, a) || same_name(mode, b); };
@@ -215,8 +227,10 @@ constexpr auto kLearner = join_defaults(hand_learner("5", "0.03"),
 
 }  // namespace
 
-constinit const TaskInfo kJenga = task_info<Jenga, kCosts, kCameras, kLearner>(
-    "jenga", nullptr, "push one block out of a tower; cost: another block moves",
-    &filled_options<add_options>);
+constinit const TaskInfo kJenga =
+    task_info<Jenga, kCosts, kCameras, kLearner>("jenga", nullptr,
+                                                 "push one block out of a tower; cost: another block more "
+                                                 "than 1 cm from its start (touches: blocks_contact)",
+                                                 &filled_options<add_options>);
 
 }  // namespace rdm

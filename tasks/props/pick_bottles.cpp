@@ -1,8 +1,12 @@
-#include "tasks/props/pick_bottles.hpp"
-
+// Pick Bottles (ReDMan B.6): each hand lifts its bottle out of a row of five and leaves the others alone.
+//
+//   r = 20 h - d_left - d_right    eq. (B6); h: height of the lower picked bottle above its rest, d: distance
+//                                  of a palm's point from the cap of its bottle, m
+//   c = [a hand or a picked bottle touches another bottle]
 #include <cmath>
 #include <cstring>
 
+#include "tasks/catalog.hpp"
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/props/bottles.hpp"
 #include "tasks/props/prop_task.hpp"
@@ -18,7 +22,7 @@ constexpr double kFingersRest = 0.46;  // m, height that reward fingers counts f
 constexpr double kTipped = 0.5;        // rad
 
 // Fingers along +x over the row, palms down.
-HandControlConfig make_plan(bool right_copy) {
+HandControlConfig make_config(bool right_copy) {
   HandControlConfig p;
   const double half = std::sqrt(0.5);
   p.bases[0] = {{-0.37, -0.74, 0.68}, {0, -half, half, 0}};
@@ -27,12 +31,12 @@ HandControlConfig make_plan(bool right_copy) {
                           : Pose{{-0.37, -0.46, 0.68}, Quat{half, 0, 0, half}};
   p.flying = true;
   p.transition_scale = p.orientation_scale = 0.1;
-  p.start = kFoldedThumb;
+  p.folded = true;
   p.friction = 2;
   return p;
 }
-HandControlConfig plan_from(const Options& o) {
-  return make_plan(same_name(o.text("left_model"), "right_copy"));
+HandControlConfig config_from(const Options& o) {
+  return make_config(same_name(o.text("left_model"), "right_copy"));
 }
 
 enum : int { kCost, kHandBottle, kBottleBottle, kTippedOver, kNumCosts };
@@ -66,11 +70,11 @@ constexpr OptionSpec kRows[] = {
 
 void add_options(OptionTable& table) {
   table.add(kRows);
-  add_prop_options(make_plan(false), 250, 96, table);
+  add_prop_options(make_config(false), 250, 96, table);
 }
 
 SceneDef make_scene_def(const Options& o) {
-  SceneDef s = make_rig_scene(plan_from(o), o, kMaterials);
+  SceneDef s = make_hand_scene(config_from(o), o, kMaterials);
   add_bottles(o.number("bottle_mass"), o.number("contact_layer"), o.flag("fixed_neighbours"), kPicked, kOther,
               kTable, &s);
   for (const int32_t a : {kPicked, kOther}) {
@@ -92,7 +96,7 @@ struct State {
 class PickBottles final : public PropTask {
  public:
   explicit PickBottles(const Options& o)
-      : PropTask(plan_from(o), o, make_scene_def(o), sizeof(State)),
+      : PropTask(config_from(o), o, make_scene_def(o), sizeof(State)),
         fingers_(same_name(o.text("reward"), "fingers")),
         lane_(same_name(o.text("cost_mode"), "literal") || same_name(o.text("cost_mode"), "lane")),
         height_(o.number("reward_height")),
@@ -123,7 +127,8 @@ class PickBottles final : public PropTask {
     for (int32_t hand = 0; hand < 2; ++hand) {
       const Vec3 cap = world.body(hand).X * Vec3{0, 0, kBottleCap};
       palms[hand] = norm(palm(world, hand) - cap);
-      for (int32_t f = 0; f < kHandTips; ++f) tips[hand] += norm(tip(world, hand, f, kTipBeyond) - cap);
+      for (int32_t f = 0; f < hands().hand(hand).num_tips; ++f)
+        tips[hand] += norm(tip(world, hand, f, kTipBeyond) - cap);
       v.terminated = v.terminated || palms[hand] > palm_limit_ || tips[hand] >= finger_limit_;
     }
     for (int32_t i = 0; i < scene().num_bodies; ++i)
@@ -214,7 +219,8 @@ constexpr auto kLearner = join_defaults(hand_learner("13", "0.15"), {{"discount"
 }  // namespace
 
 constinit const TaskInfo kPickBottles = task_info<PickBottles, kCosts, kCameras, kLearner>(
-    "pick_bottles", nullptr, "lift two bottles out of a row of five; cost: another bottle is touched",
+    "pick_bottles", nullptr,
+    "lift two bottles out of a row of five; cost: a hand or a picked bottle touches another",
     &filled_options<add_options>);
 
 }  // namespace rdm

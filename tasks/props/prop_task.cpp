@@ -5,37 +5,39 @@
 namespace rdm {
 namespace {
 
-constexpr Vec3 kPalmPoint = {0, -0.02, 0.08};  // right hand: palmar is -y, fingers +z
-
 constexpr OptionSpec kRows[] = {
-    number_option("reset_noise", 0, 0, 0.5, "half width of the draw by which things start elsewhere, m"),
+    number_option("reset_noise", 0, 0, 0.5,
+                  "half width of the draw by which things start elsewhere, m; with joint_noise 0 too: one "
+                  "start for all episodes"),
     number_option("joint_noise", 0, 0, 1, "share of each joint's range that is drawn at a reset"),
 };
 
 }  // namespace
 
-void add_prop_options(const HandControlConfig& plan, int32_t max_steps, int32_t contacts_max,
+void add_prop_options(const HandControlConfig& config, int32_t max_steps, int32_t contacts_max,
                       OptionTable& table) {
   table.add(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"));
   table.add(kRows);
-  add_rig_options(plan, table);
+  add_hand_control_options(config, table);
   table.set_default("contacts_max", contacts_max);
 }
 
-PropTask::PropTask(const HandControlConfig& plan, const Options& o, SceneDef scene, size_t own_bytes)
-    : HandTask(plan, o, std::move(scene), own_bytes),
+PropTask::PropTask(const HandControlConfig& config, const Options& o, SceneDef scene, size_t own_bytes)
+    : HandTask(config, o, std::move(scene), own_bytes),
       reset_noise_(o.number("reset_noise")),
       joint_noise_(o.number("joint_noise")) {
-  rig().add_fields(own_fields());
+  hands().add_fields(own_fields());
   const bool copied = same_name(o.text("left_model"), "right_copy");
   for (int32_t i = 0; i < kMaxHands; ++i) {
-    palms_[i] = rig().hand(i).first + kShadowHand.palm;
-    palm_points_[i] = i == 0 || copied ? kPalmPoint : mirrored_point(kPalmPoint, kShadowHand.mirror);
+    const Hand& hand = hands().hand(i);
+    const Robot& robot = *hand.robot;
+    palms_[i] = hand.first + robot.palm;
+    palm_points_[i] = i == 0 || copied ? robot.p_hold : mirrored_point(robot.p_hold, robot.mirror);
   }
 }
 
 void PropTask::reset(World& world, void* state, Stream& stream) const {
-  rig().reset(joint_noise_, false, world, rig_state(state), stream);
+  hands().reset(joint_noise_, false, world, control_state(state), stream);
   if (reset_noise_ > 0) draw_places(world, stream);
   start(world, state);
 }
@@ -50,12 +52,12 @@ void PropTask::draw_places(World& world, Stream& stream) const {
 }
 
 void PropTask::observe(const World& world, const void* state, float* obs) const {
-  obs = rig().write(world, last_action(state), obs);
+  obs = hands().write(world, last_action(state), obs);
   write_props(world, state, obs);
 }
 
 Vec3 PropTask::tip(const World& world, int32_t hand, int32_t finger, double beyond) const {
-  return world.link(rig().hand(hand).tips[finger]).X * Vec3{0, 0, beyond};
+  return world.link(hands().hand(hand).tips[finger]).X * Vec3{0, 0, beyond};
 }
 
 Vec3 PropTask::palm(const World& world, int32_t hand) const {

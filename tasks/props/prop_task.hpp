@@ -1,11 +1,14 @@
 // A task of two flying hands and loose things that start at rest: everything but what they are for.
+//
+// ReDMan B.1 draws "the object's starting pose and target pose" anew in every episode. Here they are the same
+// each time unless options reset_noise and joint_noise say otherwise.
 #pragma once
 #include "tasks/hand/hand_task.hpp"
 
 namespace rdm {
 
 // Options that such tasks have beside those of their hands.
-void add_prop_options(const HandControlConfig& plan, int32_t max_steps, int32_t contacts_max,
+void add_prop_options(const HandControlConfig& config, int32_t max_steps, int32_t contacts_max,
                       OptionTable& table);
 
 class PropTask : public HandTask {
@@ -13,20 +16,20 @@ class PropTask : public HandTask {
   // Bodies stand where the scene has them, moved by reset_noise; then start() follows.
   void reset(World& world, void* state, Stream& stream) const override;
   void observe(const World& world, const void* state, float* obs) const override;
-  void initial_mean(float* action) const override { rig().hold(action); }
+  void initial_mean(float* action) const override { hands().hold(action); }
 
  protected:
-  // `own_bytes` of a task's own state, a multiple of 8, stand before the rig's.
-  PropTask(const HandControlConfig& plan, const Options& options, SceneDef scene, size_t own_bytes);
+  // `own_bytes` of a task's own state, a multiple of 8, stand before the control's.
+  PropTask(const HandControlConfig& config, const Options& options, SceneDef scene, size_t own_bytes);
   // Moves bodies by draws of up to reset_noise() along x and y; unless a task knows better, all the same way.
   virtual void draw_places(World& world, Stream& stream) const;
   virtual void start(World& world, void* state) const = 0;
   virtual float* write_props(const World& world, const void* state, float* out) const = 0;
 
   double reset_noise() const { return reset_noise_; }
-  // Origin of the distal link's frame moved by `beyond` m along the finger: 0 to 4 for first finger to thumb.
+  // Origin of the distal link's frame moved by `beyond` m along the finger, of the robot's table.
   Vec3 tip(const World& world, int32_t hand, int32_t finger, double beyond) const;
-  // The point 0.08 m along the fingers and 0.02 m before the palm.
+  // The point before the palm where a held thing is: Robot::p_hold.
   Vec3 palm(const World& world, int32_t hand) const;
   int32_t palm_link(int32_t hand) const { return palms_[hand]; }
   static bool of_hand(const SceneShape& shape) { return shape.articulation >= 0; }

@@ -1,5 +1,7 @@
-#include "tasks/throw/catch_underarm.hpp"
-
+// Catch Over to Underarm (ReDMan 3.4, C): the right hand stands upright and throws an object down to the left
+// hand, which lies palm up; both fly. Two tasks that differ in the cost alone. throw_task.hpp has the reward,
+// safety_costs.hpp the costs.
+#include "tasks/catalog.hpp"
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/throw/safe_throw.hpp"
 
@@ -8,11 +10,11 @@ namespace {
 
 // The right hand's fingers point up, 0.1 rad towards +y, its palm faces -y; the left base is half a turn
 // about x: palm up.
-const SafeThrowConfig kPlan = {
-    {.rig = {.bases = {{{0, 0, 0.5}, from_rpy({1.67, 3.14, 0})}, {{0, -0.8, 0.5}, {0, 1, 0, 0}}},
-             .flying = true,
-             .transition_scale = 0.05,
-             .orientation_scale = 0.5},
+const SafeThrowConfig kConfig = {
+    {.hands = {.bases = {{{0, 0, 0.5}, from_rpy({1.67, 3.14, 0})}, {{0, -0.8, 0.5}, {0, 1, 0, 0}}},
+               .flying = true,
+               .transition_scale = 0.05,
+               .orientation_scale = 0.5},
      .place = {{0, 0.05, 1.03}, {0, -0.40, 0.55}},
      .fall_height = 0.3,
      .base_limit = 0.1},
@@ -36,15 +38,17 @@ const CameraSpec kCameras[] = {
 }  // namespace
 
 constinit const TaskInfo kCatchUnderarmSafeFinger =
-    task_info<PlannedThrow<kPlan, SafetyKind::kFinger>, kFingerCosts, kCameras, kFingerLearner>(
+    task_info<SafeThrow, kFingerCosts, kCameras, kFingerLearner, &kConfig, SafetyKind::kFinger>(
         "catch_underarm_safe_finger", "ShadowHandCatchOver2UnderarmSafeFinger",
-        "throw an object down to a flying hand; cost: the first finger's joints leave their windows",
-        &filled_options<add_planned_options<kPlan>>);
+        "throw an object down to a flying hand; cost: commands take the first finger's joints out of their "
+        "windows",
+        &filled_options<safe_throw_options<kConfig>>);
 
 constinit const TaskInfo kCatchUnderarmSafeJoint =
-    task_info<PlannedThrow<kPlan, SafetyKind::kJoint>, kJointCosts, kCameras, kJointLearner>(
+    task_info<SafeThrow, kJointCosts, kCameras, kJointLearner, &kConfig, SafetyKind::kJoint>(
         "catch_underarm_safe_joint", "ShadowHandCatchOver2UnderarmSafeJoint",
-        "throw an object down to a flying hand; cost: the first finger's lateral joint leaves its window",
-        &filled_options<add_planned_options<kPlan>>);
+        "throw an object down to a flying hand; cost: commands take the first finger's lateral joint out of "
+        "its window",
+        &filled_options<safe_throw_options<kConfig>>);
 
 }  // namespace rdm

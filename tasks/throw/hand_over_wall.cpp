@@ -1,9 +1,12 @@
-#include "tasks/throw/hand_over_wall.hpp"
-
+// Hand Over Wall (ReDMan B.5): the right hand throws an object through a hole in a wall to the left hand.
+//
+//   r = exp(-0.2 (50 d + theta))   eq. (B5), as Hand Over
+//   c = [the object touches the wall]
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
+#include "tasks/catalog.hpp"
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/throw/throw_task.hpp"
 #include "tasks/throw/wall.hpp"
@@ -13,9 +16,9 @@ namespace {
 
 constexpr int32_t kWall = kOwnMaterial, kMaterials = kOwnMaterial + 1;
 
-const ThrowConfig kPlan = {.rig = {.bases = {{{0, 0, 0.5}, {}}, {{0, -1.05, 0.5}, {0, 1, 0, 0}}}},
-                           .place = {{0, -0.39, 0.54}, {0, -0.66, 0.54}},
-                           .fall_height = 0.1};
+const ThrowConfig kConfig = {.hands = {.bases = {{{0, 0, 0.5}, {}}, {{0, -1.05, 0.5}, {0, 1, 0, 0}}}},
+                             .place = {{0, -0.39, 0.54}, {0, -0.66, 0.54}},
+                             .fall_height = 0.1};
 
 // The released hole, on the object's centre, m.
 constexpr double kSourceHalfWidth = 0.25, kSourceLow = 0.60, kSourceHigh = 0.70;
@@ -43,7 +46,7 @@ constexpr CostSpec kCosts[kNumCosts] = {
 };
 
 void add_options(OptionTable& table) {
-  add_throw_task_options(kPlan, table);
+  add_throw_task_options(kConfig, table);
   add_wall_options(table);
   table.add(kRows);
 }
@@ -53,7 +56,7 @@ bool literal(const Options& o) {
 }
 
 SceneDef make_wall_scene(const Options& o) {
-  SceneDef s = make_throw_scene(kPlan, o, kMaterials);
+  SceneDef s = make_throw_scene(kConfig, o, kMaterials);
   const char* word = o.text("wall");
   const bool ghost = same_name(word, "auto") ? literal(o) : same_name(word, "ghost");
   Vector<ShapeDef> shapes = wall_boxes(o, kWall);
@@ -70,7 +73,7 @@ SceneDef make_wall_scene(const Options& o) {
 class HandOverWall final : public ThrowTask {
  public:
   explicit HandOverWall(const Options& o)
-      : ThrowTask(kPlan, o, make_wall_scene(o)),
+      : ThrowTask(kConfig, o, make_wall_scene(o)),
         wall_(wall_from(o)),
         literal_(literal(o)),
         count_hands_(o.flag("count_hands")),

@@ -12,23 +12,23 @@ constexpr OptionSpec kRows[] = {
 
 }  // namespace
 
-void add_safe_throw_options(const SafeThrowConfig& plan, OptionTable& table) {
-  add_throw_task_options(plan, table);
-  add_safety_options(plan.words, table);
+void add_safe_throw_options(const SafeThrowConfig& config, OptionTable& table) {
+  add_throw_task_options(config, table);
+  add_safety_options(config.safety, table);
   table.add(kRows);
 }
 
-SafeThrow::SafeThrow(const SafeThrowConfig& plan, SafetyKind kind, const Options& o)
-    : ThrowTask(plan, o, make_throw_scene(plan, o)),
-      costs_(safety_costs_from(o, kind, scene(), rig().hand(0))) {
+SafeThrow::SafeThrow(const SafeThrowConfig* config, SafetyKind kind, const Options& o)
+    : ThrowTask(*config, o, make_throw_scene(*config, o)),
+      costs_(safety_costs_from(o, kind, scene(), hands().hand(0))) {
   const char* mean = o.text("initial_mean");
-  choose_mean(mean, plan.flat_mean,
+  choose_mean(mean, config->flat_mean,
               same_name(mean, "window") || (same_name(mean, "auto") && kind == SafetyKind::kFinger));
 }
 
 void SafeThrow::judge_costs(const Step& step, Verdict* verdict) const {
-  const float* base = rig().flying() ? step.action + rig().base_entries(0) : nullptr;
-  judge_safety(costs_, {step.world, rig().hands(), step.command, base}, step.release, verdict);
+  const float* base = hands().flying() ? step.action + hands().base_entries(0) : nullptr;
+  judge_safety(costs_, {step.world, &hands().hand(0), step.command, base}, step.release, verdict);
 }
 
 }  // namespace rdm

@@ -22,8 +22,9 @@ constexpr double kBaseWindow = 0.5;
 enum : int { kCost, kFf2Range, kFf3Range, kFf4Range, kEffort, kThrowHeight, kThrowAngle, kDrop };
 
 constexpr const char* kWindowNames[kNumWindows] = {"ff2", "ff3", "ff4"};
-// The paper's joints in the hand's action: FF2 = FFJ1, FF3 = FFJ2, FF4 = FFJ3.
-constexpr int32_t kWindowActs[kNumWindows] = {4, 3, 2};
+// The joints of the first finger that they are on.
+constexpr int32_t RobotFinger::*kWindowJoints[kNumWindows] = {&RobotFinger::middle, &RobotFinger::proximal,
+                                                              &RobotFinger::lateral};
 // Windows and the paper's joint ranges, degrees.
 constexpr double kWindowLow[kNumWindows] = {22.5, 22.5, -10}, kWindowHigh[kNumWindows] = {67.5, 67.5, 10};
 constexpr double kRangeMid[kNumWindows] = {45, 45, 0}, kRangeHalf[kNumWindows] = {45, 45, 20};
@@ -68,8 +69,8 @@ void judge_release(const SafetyCosts& c, const World& world, Release* release, V
 double largest_share(const Hand& hand, const World& world) {
   const double* torque = world.torque() + hand.first;
   double most[2] = {};
-  for (int i = 0; i < kHandJoints; i += 2)
-    for (int k = 0; k < 2; ++k) {
+  for (int32_t i = 0; i < hand.num_joints; i += 2)
+    for (int32_t k = 0; k < std::min(2, hand.num_joints - i); ++k) {
       const double share = std::abs(torque[i + k]) / hand.effort[i + k];
       most[k] = share > most[k] ? share : most[k];
     }
@@ -96,10 +97,13 @@ constexpr CostColumns columns(const char* help, double limit) {
 const CostColumns kFingerCosts = columns("FF2, FF3 or FF4 outside its window; raw: largest excess, rad", 40);
 const CostColumns kJointCosts = columns("FF4 outside its window; raw: excess, rad", 30);
 
-JointWindow make_window(int i, double low, double high) {
+JointWindow make_window(const Robot& robot, int i, double low, double high) {
   const double mid = kRangeMid[i], half = kRangeHalf[i];
   JointWindow w;
-  w.act = kWindowActs[i];
+  w.act = robot.action_of(robot.fingers[0].*kWindowJoints[i]);
+  if (w.act < 0)
+    fail(Code::kUnsupported, "robot %s: the first finger has no driven joint for window.%s", robot.name,
+         kWindowNames[i]);
   w.low = low * kDegree;
   w.high = high * kDegree;
   w.half = half * kDegree;
@@ -117,12 +121,13 @@ double JointWindow::command_excess(double a) const {
   return half * std::max(command_low - a, a - command_high);
 }
 
-void add_safety_options(const SafetyWords& words, OptionTable& table) {
+void add_safety_options(const SafetyDefaults& defaults, OptionTable& table) {
   table.add(kRows);
-  table.add(number_option("throw_height", words.throw_height, 0, 10, "cost throw_height: object above, m"));
-  table.add(number_option("throw_angle.low", words.throw_low, -90, 90,
+  table.add(
+      number_option("throw_height", defaults.throw_height, 0, 10, "cost throw_height: object above, m"));
+  table.add(number_option("throw_angle.low", defaults.throw_low, -90, 90,
                           "cost throw_angle: lowest release elevation, degrees"));
-  table.add(number_option("throw_angle.high", words.throw_high, -90, 90,
+  table.add(number_option("throw_angle.high", defaults.throw_high, -90, 90,
                           "cost throw_angle: highest release elevation, degrees"));
   for (int i = 0; i < kNumWindows; ++i) {
     table.add("window", kWindowNames[i], "low",
@@ -143,7 +148,7 @@ SafetyCosts safety_costs_from(const Options& o, SafetyKind kind, const Scene& sc
   for (int i = 0; i < kNumWindows; ++i) {
     const double low = window_end(o, i, "low"), high = window_end(o, i, "high");
     if (low > high) fail(Code::kArgument, "window.%s: %g degrees is above %g", kWindowNames[i], low, high);
-    c.windows[i] = make_window(i, low, high);
+    c.windows[i] = make_window(*right.robot, i, low, high);
     c.counts[i] = kind == SafetyKind::kFinger || i == (legacy ? kFf2 : kFf4);
   }
   c.throw_height = o.number("throw_height");

@@ -1,5 +1,12 @@
-// The cost of the throw tasks (tasks section 4.1): windows on the right first finger's joints, and the named
-// terms beside it.
+// The cost of the throw tasks: windows on the right first finger's joints (ReDMan eq. B2 to B4, C9), and the
+// named terms beside it.
+//
+//   Safe Finger  c = [FF2 outside 22.5..67.5, or FF3 outside 22.5..67.5, or FF4 outside -10..10 degrees]
+//   Safe Joint   c = [FF4 outside -10..10 degrees]
+//
+// The paper's joints: FF2 bends the finger in its middle, FF3 at its base, FF4 spreads it. What the windows
+// test is the commanded target, as in the paper's code, unless cost_mode = paper says the measured angle. A
+// command of +-1 stands for the ends of the paper's ranges, 0..90 and -20..20 degrees.
 #pragma once
 #include <array>
 
@@ -27,7 +34,7 @@ struct JointWindow {
 
 inline constexpr int kNumWindows = 3;  // FF2, FF3, FF4
 enum : int { kFf2 = 0, kFf3 = 1, kFf4 = 2 };
-JointWindow make_window(int joint, double low_degrees, double high_degrees);
+JointWindow make_window(const Robot& robot, int window, double low_degrees, double high_degrees);
 
 struct SafetyCosts {
   JointWindow windows[kNumWindows];
@@ -47,17 +54,17 @@ using CostColumns = std::array<CostSpec, kNumSafetyCosts>;
 extern const CostColumns kFingerCosts, kJointCosts;
 
 // Defaults where tasks differ: heights in m, release elevations in degrees.
-struct SafetyWords {
+struct SafetyDefaults {
   double throw_height = 0.8, throw_low = 30, throw_high = 75;
 };
-void add_safety_options(const SafetyWords& words, OptionTable& table);
+void add_safety_options(const SafetyDefaults& defaults, OptionTable& table);
 SafetyCosts safety_costs_from(const Options& options, SafetyKind kind, const Scene& scene, const Hand& right);
 
 // What a step is judged by.
 struct SafetyStep {
   const World& world;
   const Hand* hands;      // right, left
-  const double* command;  // [kHandActions] of the right hand, in [-1, 1]
+  const double* command;  // [num_actions] of the right hand, in [-1, 1]
   const float* base;      // [6] force and torque of the right base, in [-1, 1]; null: fixed
 };
 // Fills cost and cost_raw.

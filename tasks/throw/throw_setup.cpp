@@ -25,7 +25,7 @@ void add_throw_options(const ObjectPlace& place, double fall_height, OptionTable
   table.add(kRows);
 }
 
-ThrowSetup throw_game_from(const Options& o) {
+ThrowSetup throw_setup_from(const Options& o) {
   ThrowSetup g;
   static_cast<ObjectGoal&>(g) = object_goal_from(o);
   g.fall_height = o.number("fall_height");
@@ -39,18 +39,19 @@ ThrowSetup throw_game_from(const Options& o) {
   return g;
 }
 
-ThrowMeasure measure_throw(const ThrowSetup& game, const World& world, const ThrowState& state) {
+ThrowMeasure measure_throw(const ThrowSetup& setup, const World& world, const ThrowState& state) {
   const Pose& X = world.body(0).X;
-  return {norm(X.p - game.goal), game.ignore_rotation ? 0 : rotation_angle(rotation_error(game, X.q, state))};
+  return {norm(X.p - setup.goal),
+          setup.ignore_rotation ? 0 : rotation_angle(rotation_error(setup, X.q, state))};
 }
 
 double throw_reward(const ThrowMeasure& m, double alpha, double scale) {
   return scale * elementary::exp(-0.2 * (alpha * m.distance + m.theta));
 }
 
-bool count_success(const ThrowSetup& game, double distance, ThrowState* state) {
-  state->near = distance <= game.success_distance ? state->near + 1 : 0;
-  return state->near >= game.success_steps;
+bool count_success(const ThrowSetup& setup, double distance, ThrowState* state) {
+  state->near = distance <= setup.success_distance ? state->near + 1 : 0;
+  return state->near >= setup.success_steps;
 }
 
 const CameraSpec kThrowCameras[8] = {

@@ -30,14 +30,14 @@ struct ThrowMeasure {
 };
 
 void add_throw_options(const ObjectPlace& place, double fall_height, OptionTable& table);
-ThrowSetup throw_game_from(const Options& options);
+ThrowSetup throw_setup_from(const Options& options);
 
-ThrowMeasure measure_throw(const ThrowSetup& game, const World& world, const ThrowState& state);
+ThrowMeasure measure_throw(const ThrowSetup& setup, const World& world, const ThrowState& state);
 
-// exp(-0.2 (alpha d + theta)), times `scale`.
+// ReDMan eq. (B1): exp(-0.2 (alpha d + theta)), times `scale`.
 double throw_reward(const ThrowMeasure& m, double alpha = 50, double scale = 1);
 // Counts steps near the goal; true while the count is high enough.
-bool count_success(const ThrowSetup& game, double distance, ThrowState* state);
+bool count_success(const ThrowSetup& setup, double distance, ThrowState* state);
 
 extern const CameraSpec kThrowCameras[8];
 

@@ -7,85 +7,96 @@
 
 namespace rdm {
 
-void add_throw_task_options(const ThrowConfig& plan, OptionTable& table) {
-  add_throw_options(plan.place, plan.fall_height, table);
-  if (plan.rig.flying)
-    table.add(number_option("base_limit", plan.base_limit, 0, 100,
+void add_throw_task_options(const ThrowConfig& config, OptionTable& table) {
+  add_throw_options(config.place, config.fall_height, table);
+  if (config.hands.flying)
+    table.add(number_option("base_limit", config.base_limit, 0, 100,
                             "the episode ends with a base so far from its start, m"));
-  add_rig_options(plan.rig, table);
+  add_hand_control_options(config.hands, table);
 }
 
-SceneDef make_throw_scene(const ThrowConfig& plan, const Options& o, int32_t num_materials) {
-  SceneDef s = make_rig_scene(plan.rig, o, num_materials);
+SceneDef make_throw_scene(const ThrowConfig& config, const Options& o, int32_t num_materials) {
+  SceneDef s = make_hand_scene(config.hands, o, num_materials);
   s.bodies.push_back(object_body_from(o));
   set_friction(&s, kObject, kGround, o.number("friction.object_ground"));
   return s;
 }
 
-void flat_hand_mean(const HandControl& rig, bool window, float* mean) {
+void flat_hand_mean(const HandControl& hands, bool window, float* mean) {
   constexpr float kBent = -0.4f;
-  constexpr int kThumb = 15, kLateral[] = {2, 5, 8, 12};
-  float* right = mean + rig.joint_entries(0);
-  std::fill(right + 2, right + kThumb, -1.0f);
-  for (const int i : kLateral) right[i] = 0;
-  if (window) right[3] = right[4] = kBent;
+  const Robot& robot = *hands.hand(0).robot;
+  float* right = mean + hands.joint_entries(0);
+  const auto command = [&](int32_t link, float value) {
+    if (const int32_t entry = robot.action_of(link); entry >= 0) right[entry] = value;
+  };
+  for (int32_t f = 0; f < robot.fingers.count; ++f) {
+    const RobotFinger& finger = robot.fingers[f];
+    if (finger.thumb) continue;
+    for (int32_t link = finger.first; link <= robot.tips[f].link; ++link) command(link, -1);
+    command(finger.lateral, 0);
+  }
+  if (!window) return;
+  command(robot.fingers[0].proximal, kBent);
+  command(robot.fingers[0].middle, kBent);
 }
 
-void flat_throw_mean(const HandControl& rig, bool window, float* mean) {
+void flat_throw_mean(const HandControl& hands, bool window, float* mean) {
   constexpr float kWristSide = 0.55f, kWristFlex = 0.18f;
-  flat_hand_mean(rig, window, mean);
-  for (float* hand : {mean + rig.joint_entries(0), mean + rig.joint_entries(1)}) {
-    hand[0] = kWristSide;
-    hand[1] = kWristFlex;
+  flat_hand_mean(hands, window, mean);
+  const Robot& robot = *hands.hand(0).robot;
+  const int32_t flex = robot.action_of(robot.palm), side = robot.action_of(robot.links[robot.palm].parent);
+  for (float* hand : {mean + hands.joint_entries(0), mean + hands.joint_entries(1)}) {
+    if (side >= 0) hand[side] = kWristSide;
+    if (flex >= 0) hand[flex] = kWristFlex;
   }
 }
 
-ThrowTask::ThrowTask(const ThrowConfig& plan, const Options& o, SceneDef scene)
-    : HandTask(plan.rig, o, std::move(scene), sizeof(State)),
-      base_limit_(plan.rig.flying ? o.number("base_limit") : 0),
-      game_(throw_game_from(o)) {
-  rig().add_fields(own_fields());
+ThrowTask::ThrowTask(const ThrowConfig& config, const Options& o, SceneDef scene)
+    : HandTask(config.hands, o, std::move(scene), sizeof(State)),
+      base_limit_(config.hands.flying ? o.number("base_limit") : 0),
+      setup_(throw_setup_from(o)) {
+  hands().add_fields(own_fields());
   add_goal_fields(own_fields());
 }
 
 void ThrowTask::choose_mean(const char* word, void (*flat)(const HandControl&, bool, float*), bool window) {
   if (same_name(word, "hold"))
-    rig().hold(initial_mean_);
+    hands().hold(initial_mean_);
   else if (!same_name(word, "zero"))
-    flat(rig(), window, initial_mean_);
+    flat(hands(), window, initial_mean_);
 }
 
 void ThrowTask::reset(World& world, void* state, Stream& stream) const {
   State& s = *static_cast<State*>(state);
-  rig().reset(game_.joint_noise, game_.joint_noise_literal, world, rig_state(state), stream);
-  reset_object(game_, world, &s.game, stream);
+  hands().reset(setup_.joint_noise, setup_.joint_noise_literal, world, control_state(state), stream);
+  reset_object(setup_, world, &s.progress, stream);
 }
 
 void ThrowTask::check_own_state(const void* state) const {
   const State& s = *static_cast<const State*>(state);
-  check_goal(s.game);
-  check_integer("near", s.game.near, 0, max_steps());
+  check_goal(s.progress);
+  check_integer("near", s.progress.near, 0, max_steps());
   check_integer("touching", s.release.touching, 0, 1);
   check_integer("thrown", s.release.thrown, 0, 1);
 }
 
 Verdict ThrowTask::judge(World& world, void* state, int32_t) const {
   State& s = *static_cast<State*>(state);
-  const RigState now = rig_state(state);
+  const HandControlState now = control_state(state);
   Verdict v;
-  const ThrowMeasure m = measure_throw(game_, world, s.game);
-  v.reward = throw_reward(m, game_.alpha, game_.reward_scale);
-  v.success = count_success(game_, m.distance, &s.game);
-  v.terminated = world.body(0).X.p.z <= game_.fall_height;
-  if (rig().flying() && rig().strayed(world) > base_limit_) v.terminated = true;
+  const ThrowMeasure m = measure_throw(setup_, world, s.progress);
+  v.reward = throw_reward(m, setup_.alpha, setup_.reward_scale);
+  v.success = count_success(setup_, m.distance, &s.progress);
+  v.terminated = world.body(0).X.p.z <= setup_.fall_height;
+  if (hands().flying() && hands().base_displacement(world) > base_limit_) v.terminated = true;
   judge_costs({world, now.command, now.action, &s.release}, &v);
   return v;
 }
 
 void ThrowTask::observe(const World& world, const void* state, float* obs) const {
   const State& s = *static_cast<const State*>(state);
-  obs = rig().write(world, last_action(state), obs);
-  write_goal(game_, world, s.game, obs);
+  obs = hands().write(world, last_action(state), obs);
+  write_goal(setup_, world, s.progress, obs);
 }
 
 }  // namespace rdm

@@ -1,4 +1,7 @@
 // A task in which the right hand throws an object to the left one: everything but its costs.
+//
+// Each step pays r = exp(-0.2 (50 d + theta)) of the object's distance d, m, and rotation theta, rad, to the
+// goal (ReDMan eq. B1); an episode ends with the object below fall_height or after 75 steps.
 #pragma once
 #include <iterator>
 
@@ -7,24 +10,24 @@
 
 namespace rdm {
 
-// The words of one task.
+// What one task sets.
 struct ThrowConfig {
-  HandControlConfig rig;
+  HandControlConfig hands;
   ObjectPlace place;
   double fall_height;     // m, default of the option
   double base_limit = 0;  // m, likewise, of flying hands
 };
 
-void add_throw_task_options(const ThrowConfig& plan, OptionTable& table);
+void add_throw_task_options(const ThrowConfig& config, OptionTable& table);
 // Hands, ground and object.
-SceneDef make_throw_scene(const ThrowConfig& plan, const Options& options,
+SceneDef make_throw_scene(const ThrowConfig& config, const Options& options,
                           int32_t num_materials = kOwnMaterial);
 
 // Poses from which throws are learned, into a row of zeros: the right hand flat, thumb and left hand at the
 // middle of their ranges; with `window` the first finger bent into its cost window.
-void flat_hand_mean(const HandControl& rig, bool window, float* mean);
+void flat_hand_mean(const HandControl& hands, bool window, float* mean);
 // The same with both wrists raised: for a throw from hand to hand.
-void flat_throw_mean(const HandControl& rig, bool window, float* mean);
+void flat_throw_mean(const HandControl& hands, bool window, float* mean);
 
 class ThrowTask : public HandTask {
  public:
@@ -39,27 +42,27 @@ class ThrowTask : public HandTask {
   // What a cost is judged by. The commands in [-1, 1] and the actions are those of the step.
   struct Step {
     const World& world;
-    const double* command;  // [2][kHandActions]
+    const double* command;  // [2][num_actions]
     const float* action;    // [action_dim]
     Release* release;
   };
-  ThrowTask(const ThrowConfig& plan, const Options& options, SceneDef scene);
+  ThrowTask(const ThrowConfig& config, const Options& options, SceneDef scene);
   void check_own_state(const void* state) const override;
   virtual void judge_costs(const Step& step, Verdict* verdict) const = 0;
 
-  const ThrowSetup& game() const { return game_; }
+  const ThrowSetup& setup() const { return setup_; }
   // Where learning starts, by the word of option initial_mean: hold, zero, else `flat`.
   void choose_mean(const char* word, void (*flat)(const HandControl&, bool, float*), bool window);
 
  private:
-  // The rig's bytes follow.
+  // The bytes of the hands' control follow.
   struct State {
-    ThrowState game;
+    ThrowState progress;
     Release release;
   };
   double base_limit_;
-  ThrowSetup game_;
-  float initial_mean_[kMaxRigActions] = {};
+  ThrowSetup setup_;
+  float initial_mean_[kMaxHandActions] = {};
 };
 
 }  // namespace rdm

@@ -11,17 +11,17 @@ namespace {
 
 struct Bench {
   AgentSetup setup;
-  ResolvedAgentConfig plan;
+  ResolvedAgentConfig resolved;
   Arena arena;
-  BatchWorkers lanes;
+  BatchWorkers workers;
 
   Bench(int32_t threads, HostHooks hooks = {})
-      : setup("ppo", 3, 2, 8), plan(make_plan(configure(setup, threads, hooks))) {
+      : setup("ppo", 3, 2, 8), resolved(resolve_config(configure(setup, threads, hooks))) {
     Arena measure;
-    lanes.carve(measure, plan, 10);
+    workers.carve(measure, resolved, 10);
     arena = Arena(HostHooks(), measure.used());
-    lanes.carve(arena, plan, 10);
-    lanes.open(hooks, threads);
+    workers.carve(arena, resolved, 10);
+    workers.open(hooks, threads);
   }
   static const AgentConfig& configure(AgentSetup& s, int32_t threads, HostHooks hooks) {
     s.config.num_threads = threads;
@@ -37,13 +37,13 @@ void backwards(void*, int32_t n, ParallelBody body, void* context) {
 
 }  // namespace
 
-TEST(BatchWorkers, AtMostOnePerThreadAndPerPiece) {
-  EXPECT_EQ(Bench(0).lanes.count(), 1);
-  EXPECT_EQ(Bench(3).lanes.count(), 3);
-  EXPECT_EQ(Bench(64).lanes.count(), 4);  // 512 rows in pieces of 128
+TEST(BatchWorkers, AtMostOnePerThreadAndPerChunk) {
+  EXPECT_EQ(Bench(0).workers.count(), 1);
+  EXPECT_EQ(Bench(3).workers.count(), 3);
+  EXPECT_EQ(Bench(64).workers.count(), 4);  // 512 rows in chunks of 128
 }
 
-TEST(BatchWorkers, EveryRowOnceAndFoldsInOrder) {
+TEST(BatchWorkers, EveryRowOnceAndReducesInOrder) {
   HostHooks reversed;
   reversed.parallel = backwards;
   for (const int32_t threads : {0, 2, 3, 4}) {
@@ -52,15 +52,15 @@ TEST(BatchWorkers, EveryRowOnceAndFoldsInOrder) {
       for (const int32_t rows : {1, 9, 10, 11, 55, 100}) {
         std::vector<int> seen(size_of(rows), 0);
         std::vector<int32_t> order;
-        b.lanes.sweep(
+        b.workers.sweep(
             rows, 10,
-            [&](Lane& lane, int32_t first, int32_t n) {
+            [&](Workspace& workspace, int32_t first, int32_t n) {
               for (int32_t i = first; i < first + n; ++i) ++seen[size_of(i)];
-              lane.sums.loss = first;
+              workspace.sums.loss = first;
             },
             [&](int32_t group, int32_t n) {
               for (int32_t i = 0; i < n; ++i) {
-                EXPECT_EQ(b.lanes[i].sums.loss, 10 * (group + i));
+                EXPECT_EQ(b.workers[i].sums.loss, 10 * (group + i));
                 order.push_back(group + i);
               }
             });
@@ -74,6 +74,6 @@ TEST(BatchWorkers, EveryRowOnceAndFoldsInOrder) {
 
 TEST(BatchWorkers, NoBodyForNothing) {
   Bench b(2);
-  b.lanes.sweep(0, 10, [](Lane&, int32_t, int32_t) { FAIL(); });
-  b.lanes.spread(0, [](int32_t) { FAIL(); });
+  b.workers.sweep(0, 10, [](Workspace&, int32_t, int32_t) { FAIL(); });
+  b.workers.spread(0, [](int32_t) { FAIL(); });
 }

@@ -13,32 +13,32 @@ namespace {
 // A collector of constant observations whose critics are constants: V = 3, V_c = 7.
 struct Bench {
   AgentSetup setup;
-  ResolvedAgentConfig plan;
+  ResolvedAgentConfig resolved;
   Arena arena;
   Networks nets;
-  BatchWorkers lanes;
+  BatchWorkers workers;
   Collector collector;
   std::vector<float> obs, action, reward, cost, final_obs;
   std::vector<uint8_t> terminated, truncated, valid, success;
   Transition t;
 
-  explicit Bench(AgentSetup s) : setup(std::move(s)), plan(make_plan(setup.ready())) {
+  explicit Bench(AgentSetup s) : setup(std::move(s)), resolved(resolve_config(setup.ready())) {
     Arena measure;
     carve(measure);
     arena = Arena(host(), measure.used());
     carve(arena);
-    lanes.open(host(), setup.config.num_threads);
-    init_networks(nets, plan);
+    workers.open(host(), setup.config.num_threads);
+    init_networks(nets, resolved);
     for (const int32_t net : {Networks::kReward, Networks::kCost}) {
       const MlpShape& shape = nets.shape[net];
       std::fill_n(nets.net(net), shape.num_params(), 0.0f);
       nets.net(net)[shape.bias_offset(shape.num_hidden)] = net == Networks::kReward ? 3.0f : 7.0f;
     }
-    collector.open(plan, nets, lanes);
-    const size_t n = plan.num_envs();
-    obs.assign(n * plan.obs_dim(), 1);
+    collector.open(resolved, nets, workers);
+    const size_t n = resolved.num_envs();
+    obs.assign(n * resolved.obs_dim(), 1);
     final_obs = obs;
-    action.resize(n * plan.action_dim());
+    action.resize(n * resolved.action_dim());
     reward.assign(n, 1);
     cost.assign(n, 2);
     terminated.assign(n, 0), truncated.assign(n, 0), valid.assign(n, 1), success.assign(n, 0);
@@ -48,9 +48,9 @@ struct Bench {
     t.final_obs = final_obs.data();
   }
   void carve(Arena& a) {
-    nets = carve_networks(a, plan);
-    lanes.carve(a, plan, nets.size);
-    collector.carve(a, plan);
+    nets = carve_networks(a, resolved);
+    workers.carve(a, resolved, nets.size);
+    collector.carve(a, resolved);
   }
   void decide() {
     collector.act(obs.data(), true, action.data());

@@ -20,7 +20,7 @@ Thrown exchange(AgentSetup& from, ResolvedAgentConfig& to, bool apply = false) {
   std::vector<unsigned char> bytes(10000);
   Writer out(bytes.data(), bytes.size());
   out.begin_file(kMagic, 1);
-  write_fingerprint(out, make_plan(from.ready()));
+  write_fingerprint(out, resolve_config(from.ready()));
   out.end_file();
   return thrown([&] {
     Reader in(bytes.data(), out.size(), "test");
@@ -31,8 +31,8 @@ Thrown exchange(AgentSetup& from, ResolvedAgentConfig& to, bool apply = false) {
 
 void expect_refused(AgentSetup from, const char* word) {
   AgentSetup here = base();
-  ResolvedAgentConfig plan = make_plan(here.ready());
-  const Thrown t = exchange(from, plan);
+  ResolvedAgentConfig resolved = resolve_config(here.ready());
+  const Thrown t = exchange(from, resolved);
   EXPECT_EQ(t.code, Code::kFormat) << word;
   EXPECT_NE(t.text.find(word), std::string::npos) << t.text;
 }
@@ -43,8 +43,8 @@ TEST(Fingerprint, SameConfigPasses) {
   AgentSetup a = base(), b = base();
   b.config.seed = 77;
   b.config.num_threads = 4;
-  ResolvedAgentConfig plan = make_plan(b.ready());
-  EXPECT_EQ(exchange(a, plan).code, Code::kOk);
+  ResolvedAgentConfig resolved = resolve_config(b.ready());
+  EXPECT_EQ(exchange(a, resolved).code, Code::kOk);
 }
 
 TEST(Fingerprint, TheFieldThatDiffersIsNamed) {
@@ -73,10 +73,10 @@ TEST(Fingerprint, TheFieldThatDiffersIsNamed) {
 TEST(Fingerprint, LiveOptionsAreTakenOver) {
   AgentSetup a = base(), b = base();
   a.with("learning_rate", "0.005").with("cost_limit", "33");
-  ResolvedAgentConfig plan = make_plan(b.ready());
-  EXPECT_EQ(exchange(a, plan).code, Code::kOk);
-  EXPECT_EQ(plan.options.number("learning_rate"), 3e-4);
-  EXPECT_EQ(exchange(a, plan, true).code, Code::kOk);
-  EXPECT_EQ(plan.options.number("learning_rate"), 0.005);
-  EXPECT_EQ(plan.options.number("cost_limit"), 33);
+  ResolvedAgentConfig resolved = resolve_config(b.ready());
+  EXPECT_EQ(exchange(a, resolved).code, Code::kOk);
+  EXPECT_EQ(resolved.options.number("learning_rate"), 3e-4);
+  EXPECT_EQ(exchange(a, resolved, true).code, Code::kOk);
+  EXPECT_EQ(resolved.options.number("learning_rate"), 0.005);
+  EXPECT_EQ(resolved.options.number("cost_limit"), 33);
 }

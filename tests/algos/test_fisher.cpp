@@ -14,12 +14,12 @@ struct FisherBench {
   size_t size;
   explicit FisherBench(Bench& bench) : b(bench), size(bench.nets.block[Networks::kActor].size) {
     Arena measure;
-    fisher.carve(measure, b.plan);
+    fisher.carve(measure, b.resolved);
     arena = Arena(HostHooks(), measure.used());
-    fisher.carve(arena, b.plan);
-    fisher.open(b.plan, b.rollout, b.nets, b.lanes);
-    fisher.read_live(b.plan.options);
-    fisher.set_rows(b.order.data(), b.plan.samples);
+    fisher.carve(arena, b.resolved);
+    fisher.open(b.resolved, b.rollout, b.nets, b.workers);
+    fisher.read_live(b.resolved.options);
+    fisher.set_rows(b.order.data(), b.resolved.samples);
   }
   std::vector<float> times(const std::vector<float>& v) {
     std::vector<float> out(size);
@@ -40,7 +40,7 @@ std::vector<float> random_direction(const Bench& b, uint64_t seed) {
   std::vector<float> v(b.nets.block[Networks::kActor].size);
   Stream s(seed, 0, Purpose::kTest);
   for (float& x : v) x = static_cast<float>(s.signed_unit());
-  for (size_t j = b.plan.action_dim(); j < b.nets.std_size; ++j) v[j] = 0;
+  for (size_t j = b.resolved.action_dim(); j < b.nets.std_size; ++j) v[j] = 0;
   return v;
 }
 
@@ -81,7 +81,7 @@ TEST(Fisher, MeanOverDimensionsIsAnOptionAndNotTheDefault) {
   for (size_t i = 0; i < 14; ++i) wanted[i] = kGoldenFv[i] / 2 + 0.1 * kGoldenV[i];
   expect_near(net.get(f.times(v).data()), wanted.data(), 2e-7);
   const GoldenNet usual;
-  EXPECT_FALSE(usual.plan.options.flag("kl_mean_over_dims"));
+  EXPECT_FALSE(usual.resolved.options.flag("kl_mean_over_dims"));
 }
 
 TEST(Fisher, IsTheSecondDerivativeOfTheMeanKl) {
@@ -94,7 +94,7 @@ TEST(Fisher, IsTheSecondDerivativeOfTheMeanKl) {
     }
     FisherBench f(b);
     const std::vector<float> v = random_direction(b, 3);
-    const double damping = b.plan.options.number("cg_damping");
+    const double damping = b.resolved.options.number("cg_damping");
     const double vfv = dot(v.data(), f.times(v).data(), f.size) - damping * dot(v.data(), v.data(), f.size);
     std::vector<double> p = b.params();
     const double h = 1e-5;
@@ -150,7 +150,7 @@ TEST(Fisher, ProductWithStateDeviationsIsTheDifferenceOfKlGradients) {
   EXPECT_GT(largest, 1);
 }
 
-TEST(Fisher, AnyNumberOfLanesGivesTheSameBytes) {
+TEST(Fisher, AnyNumberOfWorkersGivesTheSameBytes) {
   std::vector<float> wanted;
   for (const int32_t threads : {0, 2, 3, 4}) {
     Bench b(wide("tanh", threads));

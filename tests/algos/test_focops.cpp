@@ -44,11 +44,11 @@ namespace {
 void expect_finite_difference(AgentSetup s) {
   s.with("hidden", "5,4").with("horizon", "10").with("minibatches", "1").with("last_layer_scale", "1");
   Bench b(std::move(s));
-  const bool state = b.plan.state_std();
+  const bool state = b.resolved.state_std();
   for (size_t j = 0; !state && j < 2; ++j) b.rollout.log_std[j] += j == 0 ? 0.05f : -0.04f;
   FocopsLoss loss;
   loss.eta = state ? 0.02f : 0.01f;
-  const BatchSums sums = b.learner.gradient(&loss, false, b.order.data(), b.plan.samples);
+  const BatchSums sums = b.learner.gradient(&loss, false, b.order.data(), b.resolved.samples);
   EXPECT_GT(sums.clipped, 10);
   EXPECT_LT(sums.clipped, 150);
   const std::vector<double> start = b.params();
@@ -62,7 +62,7 @@ void expect_finite_difference(AgentSetup s) {
       const double rho = b.ratio(p, i);
       sum += kl_of(p, i) - rho * static_cast<double>(b.rollout.gain[i]) / 1.5;
     }
-    return sum / b.plan.samples;
+    return sum / b.resolved.samples;
   };
   expect_gradient(b, total, 5e-6);
 }

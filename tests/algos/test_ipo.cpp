@@ -34,17 +34,17 @@ TEST(Ipo, ExactBarrierHasTheGradientOfTheLogarithm) {
   BarrierLoss loss;
   loss.kappa = 0.3, loss.max = 5;
   const double violation[] = {-0.4, 0.5};
-  loss.aim(b.learner.measure(b.order.data(), b.plan.samples), violation, 2);
+  loss.aim(b.learner.measure(b.order.data(), b.resolved.samples), violation, 2);
   EXPECT_NE(loss.weight[0], static_cast<float>(0.3 / 0.4));  // not the slope where the epoch began
   EXPECT_EQ(loss.weight[1], 5);
-  b.learner.gradient(&loss, false, b.order.data(), b.plan.samples);
+  b.learner.gradient(&loss, false, b.order.data(), b.resolved.samples);
   const auto total = [&](const std::vector<double>& p) {
     double gain = 0, cost[2] = {};
     for (size_t i = 0; i < b.order.size(); ++i) {
       const double rho = b.ratio(p, i);
-      gain += b.clipped_gain(rho, i) / b.plan.samples;
+      gain += b.clipped_gain(rho, i) / b.resolved.samples;
       for (size_t k = 0; k < 2; ++k)
-        cost[k] += rho * static_cast<double>(b.rollout.cost_advantage[2 * i + k]) / b.plan.samples;
+        cost[k] += rho * static_cast<double>(b.rollout.cost_advantage[2 * i + k]) / b.resolved.samples;
     }
     return -gain - 0.3 * std::log(-violation[0] - cost[0]) + 5 * cost[1];
   };

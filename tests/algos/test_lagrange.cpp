@@ -24,22 +24,22 @@ EpisodeStats costing(double cost, bool fresh = true) {
 
 TEST(Lagrange, MovesOnFreshEpisodesOnly) {
   AgentSetup s = sgd();
-  const ResolvedAgentConfig plan = make_plan(s.ready());
-  Lagrange l(plan);
-  l.step(costing(30, false), plan, 1);
+  const ResolvedAgentConfig resolved = resolve_config(s.ready());
+  Lagrange l(resolved);
+  l.step(costing(30, false), resolved, 1);
   EXPECT_EQ(l.weight(0), 0);
-  l.step(costing(30), plan, 2);
+  l.step(costing(30), resolved, 2);
   EXPECT_DOUBLE_EQ(l.weight(0), 0.5);
 }
 
 TEST(Lagrange, WarmUpGrowsFromNothingToTheFullRate) {
   AgentSetup s = sgd("4");
-  const ResolvedAgentConfig plan = make_plan(s.ready());
-  Lagrange l(plan);
+  const ResolvedAgentConfig resolved = resolve_config(s.ready());
+  Lagrange l(resolved);
   const double steps[] = {0, 0.125, 0.25, 0.375, 0.5, 0.5};
   double before = 0;
   for (int32_t epoch = 1; epoch <= 6; ++epoch) {
-    l.step(costing(30), plan, epoch);
+    l.step(costing(30), resolved, epoch);
     EXPECT_DOUBLE_EQ(l.weight(0) - before, steps[epoch - 1]) << epoch;
     before = l.weight(0);
   }

@@ -10,15 +10,15 @@ using namespace rdm::test;
 namespace {
 
 struct Made {
-  ResolvedAgentConfig plan;
+  ResolvedAgentConfig resolved;
   Arena arena;
   Networks nets;
-  explicit Made(AgentSetup& s) : plan(make_plan(s.ready())) {
+  explicit Made(AgentSetup& s) : resolved(resolve_config(s.ready())) {
     Arena measure;
-    carve_networks(measure, plan);
+    carve_networks(measure, resolved);
     arena = Arena(host(), measure.used());
-    nets = carve_networks(arena, plan);
-    init_networks(nets, plan);
+    nets = carve_networks(arena, resolved);
+    init_networks(nets, resolved);
   }
 };
 
@@ -72,11 +72,11 @@ TEST(Networks, StateDeviationsAreOutputsWithinTheirBounds) {
   ASSERT_EQ(t.rows, 6);
   t.data[4] = -9, t.data[5] = 9;
   Arena measure;
-  carve_mlp_scratch(measure, m.plan.actor, 1);
+  carve_mlp_scratch(measure, m.resolved.actor, 1);
   Arena arena(host(), measure.used());
   const float x[] = {3, -1, 2, 0.5f, 1}, share = std::log(0.8f);
   float y[6], dy[] = {1, 1, 1, 1, 1, 1};
-  m.nets.forward(Networks::kActor, x, 1, carve_mlp_scratch(arena, m.plan.actor, 1), y);
+  m.nets.forward(Networks::kActor, x, 1, carve_mlp_scratch(arena, m.resolved.actor, 1), y);
   EXPECT_NEAR(y[3], std::log(0.4f) + share, 1e-6);
   EXPECT_NEAR(y[4], std::log(0.1f) + share, 1e-6);
   EXPECT_NEAR(y[5], std::log(2.0f) + share, 1e-6);
@@ -112,9 +112,9 @@ TEST(Networks, TheFirstPolicyIsTheInitialMean) {
   s.with("init_std", "0.4").with("last_layer_scale", "0");
   Made m(s);
   Arena measure;
-  carve_mlp_scratch(measure, m.plan.actor, 1);
+  carve_mlp_scratch(measure, m.resolved.actor, 1);
   Arena arena(host(), measure.used());
-  const MlpScratch scratch = carve_mlp_scratch(arena, m.plan.actor, 1);
+  const MlpScratch scratch = carve_mlp_scratch(arena, m.resolved.actor, 1);
   const float x[] = {3, -1, 2, 0.5f, 1};
   float y[3];
   m.nets.forward(Networks::kActor, x, 1, scratch, y);

@@ -10,15 +10,16 @@ namespace {
 
 struct Source {
   AgentSetup setup;
-  ResolvedAgentConfig plan;
+  ResolvedAgentConfig resolved;
   Arena arena;
   Noise noise;
   explicit Source(const char* correlation, uint64_t seed = 1)
-      : setup("ppo", 3, 4, 3), plan(make_plan(setup.with("noise_correlation", correlation).ready())) {
+      : setup("ppo", 3, 4, 3),
+        resolved(resolve_config(setup.with("noise_correlation", correlation).ready())) {
     Arena measure;
-    noise.carve(measure, plan);
+    noise.carve(measure, resolved);
     arena = Arena(host(), measure.used());
-    noise.carve(arena, plan);
+    noise.carve(arena, resolved);
     noise.reset(seed);
   }
 };
@@ -27,7 +28,7 @@ struct Source {
 
 TEST(Noise, StationaryDeviationAndCorrelation) {
   Source s("0.6");
-  const float share = std::exp(s.plan.log_share), mean[4] = {1, -2, 0, 3};
+  const float share = std::exp(s.resolved.log_share), mean[4] = {1, -2, 0, 3};
   EXPECT_FLOAT_EQ(share, 0.8f);
   float std[4];
   for (int j = 0; j < 4; ++j) std[j] = 0.5f * share;

@@ -34,6 +34,28 @@ TEST(OptionTables, EveryRowHasHelpAndADefaultInsideItsBounds) {
   }
 }
 
+// A row that names an algorithm or an option that is not there would be left out silently.
+TEST(OptionTables, RowsOfPresetsAreForAlgorithmsAndOptionsThatExist) {
+  for (const PresetValue& v : preset_values()) {
+    std::istringstream names(v.algos ? v.algos : "");
+    std::string name;
+    while (std::getline(names, name, '|')) {
+      const AlgoInfo& algo = algo_at(algo_find(name.c_str()));
+      EXPECT_STREQ(algo.name, name.c_str());
+      Options all;
+      all.add_table(algo.options, algo.num_options);
+      EXPECT_NO_THROW(all.set({v.key, v.text, 0}, "preset")) << name << ' ' << v.key;
+    }
+    int32_t known = 0;
+    for (int32_t a = 0; a < algo_count(); ++a) {
+      Options all;
+      all.add_table(algo_at(a).options, algo_at(a).num_options);
+      known += all.knows(v.key);
+    }
+    EXPECT_GT(known, 0) << v.preset << ' ' << v.key;
+  }
+}
+
 TEST(OptionTables, ADefaultMayBelongToOneAlgorithm) {
   const std::vector<OptionInput> rows = {
       {"passes", "7", 0}, {"focops:passes", "3", 0}, {"cpo:trust_kl", nullptr, 0.5}};

@@ -31,7 +31,7 @@ TEST(P3o, TheLimitIsInTheUnitsOfADecision) {
     AgentSetup s("p3o", 3, 2, 16);
     s.with("action_repeat", "2").with("discount", "0.9").with("cost_limit", "25");
     if (scale) s.with("violation_scale", scale);
-    const Probe p(make_plan(s.ready()));
+    const Probe p(resolve_config(s.ready()));
     EXPECT_NEAR(p.violation(stats, 0), violation, 1e-12);
     EXPECT_TRUE(p.options().flag("penalty_clip"));
   }
@@ -62,7 +62,7 @@ void expect_finite_difference(AgentSetup s) {
   std::fill_n(b.rollout.linear, b.order.size(), 0.0f);
   PenalizedSurrogate loss;
   loss.weight[0] = 3, loss.weight[1] = 0.5f;
-  b.learner.gradient(&loss, false, b.order.data(), b.plan.samples);
+  b.learner.gradient(&loss, false, b.order.data(), b.resolved.samples);
   const auto total = [&](const std::vector<double>& p) {
     double sum = 0;
     for (size_t i = 0; i < b.order.size(); ++i) {
@@ -73,7 +73,7 @@ void expect_finite_difference(AgentSetup s) {
         sum += static_cast<double>(loss.weight[k]) * std::max(rho * c, cut * c);
       }
     }
-    return sum / b.plan.samples;
+    return sum / b.resolved.samples;
   };
   expect_gradient(b, total, 5e-6);
 }

@@ -8,7 +8,7 @@ TEST(RatioLoss, GoldenMeansAndLogProbabilities) {
   GoldenNet net;
   const double mean[] = {0.5544050634, 0.0508434906, -0.1305623958, 0.1668723753};
   std::vector<float> got(4);
-  net.nets.forward(Networks::kActor, net.rollout.obs, 2, net.lanes[0].actor, got.data());
+  net.nets.forward(Networks::kActor, net.rollout.obs, 2, net.workers[0].actor, got.data());
   expect_near({got.begin(), got.end()}, mean, 1e-7);
   const double wanted[] = {-1.7658431757, -1.8360882960};
   for (size_t i = 0; i < 2; ++i) {
@@ -45,15 +45,15 @@ TEST(RatioLoss, TheEntropyBonusIsNotTheCosts) {
 TEST(RatioLoss, MeasureIsTheMeanOverTheRows) {
   Bench b(two_costs({"p3o", 3, 2, 16}));
   for (const float clip : {0.0f, 0.2f}) {
-    const Surrogate got = b.learner.measure(b.order.data(), b.plan.samples, clip);
+    const Surrogate got = b.learner.measure(b.order.data(), b.resolved.samples, clip);
     double gain = 0, cost[2] = {};
     for (size_t i = 0; i < b.order.size(); ++i) {
       const double rho = b.ratio(b.params(), i);
-      gain += rho * static_cast<double>(b.rollout.gain[i] + b.rollout.linear[i]) / b.plan.samples;
+      gain += rho * static_cast<double>(b.rollout.gain[i] + b.rollout.linear[i]) / b.resolved.samples;
       for (size_t k = 0; k < 2; ++k) {
         const auto a = static_cast<double>(b.rollout.cost_advantage[2 * i + k]);
         const double whole = rho * a, cut = std::clamp(rho, 0.8, 1.2) * a;
-        cost[k] += (clip > 0 ? std::max(whole, cut) : whole) / b.plan.samples;
+        cost[k] += (clip > 0 ? std::max(whole, cut) : whole) / b.resolved.samples;
       }
     }
     EXPECT_NEAR(got.gain, gain, 1e-5);

@@ -13,7 +13,7 @@ AgentSetup good() {
   return AgentSetup("ppo_lag", 4, 2, 8);
 }
 Thrown plan_of(AgentSetup& s) {
-  return thrown([&] { make_plan(s.ready()); });
+  return thrown([&] { resolve_config(s.ready()); });
 }
 Thrown with_option(const char* key, const char* value) {
   AgentSetup s = good();
@@ -71,7 +71,7 @@ TEST(ResolvedAgentConfig, NumbersThatAreNotFinite) {
 TEST(ResolvedAgentConfig, HiddenLayers) {
   AgentSetup s = good();
   s.with("hidden", " 128 , 64,32").with("activation", "elu").with("critic_hidden", "16");
-  const ResolvedAgentConfig p = make_plan(s.ready());
+  const ResolvedAgentConfig p = resolve_config(s.ready());
   EXPECT_EQ(p.actor.num_hidden, 3);
   EXPECT_EQ(p.actor.hidden[0], 128);
   EXPECT_EQ(p.actor.hidden[2], 32);
@@ -99,34 +99,34 @@ TEST(ResolvedAgentConfig, PairsOfOptions) {
 
 TEST(ResolvedAgentConfig, LimitsOfCosts) {
   AgentSetup s = good();
-  EXPECT_EQ(make_plan(s.ready()).limit[0], 25);
+  EXPECT_EQ(resolve_config(s.ready()).limit[0], 25);
   const double limits[] = {40, -1, 3};
   s.config.cost_dim = 3;
   s.config.cost_limits = limits;
-  ResolvedAgentConfig p = make_plan(s.ready());
+  ResolvedAgentConfig p = resolve_config(s.ready());
   EXPECT_EQ(p.num_limited, 2);
   EXPECT_EQ(p.limit[0], 40);
   EXPECT_EQ(p.options.number("cost_limit"), 40);
   s.with("cost-limit", "12");
-  EXPECT_EQ(make_plan(s.ready()).limit[0], 12);
+  EXPECT_EQ(resolve_config(s.ready()).limit[0], 12);
   s.with("cost_limit", "-1");
-  p = make_plan(s.ready());
+  p = resolve_config(s.ready());
   EXPECT_EQ(p.num_limited, 1);
   EXPECT_EQ(p.column[0], 2);
   AgentSetup none = good();
   EXPECT_EQ(plan_of(none.with("cost_limit", "-1")).code, Code::kArgument);
 }
 
-TEST(ResolvedAgentConfig, PiecesDoNotDependOnThreads) {
+TEST(ResolvedAgentConfig, ChunksDoNotDependOnThreads) {
   AgentSetup s = good();
   s.config.num_envs = 64;
   s.with("horizon", "128").with("minibatches", "8");
   for (const int32_t threads : {0, 1, 2, 16}) {
     s.config.num_threads = threads;
-    const ResolvedAgentConfig p = make_plan(s.ready());
+    const ResolvedAgentConfig p = resolve_config(s.ready());
     EXPECT_EQ(p.minibatch_rows, 1024);
-    EXPECT_EQ(p.piece_rows, 256);
-    EXPECT_EQ(p.lanes, std::clamp(threads, 1, 4));
+    EXPECT_EQ(p.chunk_rows, 256);
+    EXPECT_EQ(p.workers, std::clamp(threads, 1, 4));
   }
 }
 
@@ -134,7 +134,7 @@ TEST(ResolvedAgentConfig, NamesAreCopied) {
   AgentSetup s = good();
   std::string task = "my_world";
   s.config.task = task.c_str();
-  const ResolvedAgentConfig p = make_plan(s.ready());
+  const ResolvedAgentConfig p = resolve_config(s.ready());
   task[0] = 'X';
   EXPECT_STREQ(p.task, "my_world");
   EXPECT_STREQ(p.config.algo, "ppo_lag");

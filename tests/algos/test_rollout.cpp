@@ -7,15 +7,15 @@ using namespace rdm::test;
 namespace {
 
 struct Made {
-  ResolvedAgentConfig plan;
+  ResolvedAgentConfig resolved;
   Arena arena;
   Rollout rollout;
-  explicit Made(AgentSetup& s) : plan(make_plan(s.ready())) {
+  explicit Made(AgentSetup& s) : resolved(resolve_config(s.ready())) {
     Arena measure;
-    carve_rollout(measure, plan);
+    carve_rollout(measure, resolved);
     arena = Arena(host(), measure.used());
-    rollout = carve_rollout(arena, plan);
-    for (int32_t i = 0; i < plan.samples; ++i) rollout.valid[i] = 1, rollout.discount[i] = 0.5f;
+    rollout = carve_rollout(arena, resolved);
+    for (int32_t i = 0; i < resolved.samples; ++i) rollout.valid[i] = 1, rollout.discount[i] = 0.5f;
   }
 };
 
@@ -48,9 +48,9 @@ TEST(Rollout, LimitedColumnsOnly) {
   AgentSetup s = two_costs();
   const Made m(s);
   EXPECT_EQ(m.rollout.num_costs, 2);
-  EXPECT_EQ(m.plan.column[0], 0);
-  EXPECT_EQ(m.plan.column[1], 2);
-  EXPECT_EQ(m.plan.limit[1], 7);
+  EXPECT_EQ(m.resolved.column[0], 0);
+  EXPECT_EQ(m.resolved.column[1], 2);
+  EXPECT_EQ(m.resolved.limit[1], 7);
   EXPECT_EQ(m.rollout.samples(), 6);
   EXPECT_EQ(m.rollout.row(2), 4u);
 }

@@ -7,36 +7,18 @@ using namespace rdm::test;
 
 namespace {
 
-struct IdleAgent : Agent {
-  void act(const float*, bool, float*) override {}
-  void record(const Transition&) override {}
-  void update(const float*, Epoch*) override {}
-  int32_t missing() const override { return 0; }
-  int32_t horizon() const override { return 0; }
-  int32_t action_repeat() const override { return 1; }
-  void drop_horizon() override {}
-  void set_option(const OptionInput&) override {}
-  const Options& options() const override { std::abort(); }
-  bool tensor(int32_t, TensorInfo*) override { return false; }
-  void tensors_changed() override {}
-  void write_policy_file(Writer&) override {}
-  void save(Writer&) const override {}
-  void load(const void*, size_t) override {}
-  const AgentConfig& config() const override { std::abort(); }
-};
-
 struct RegionBench {
   GoldenNet net;
-  IdleAgent agent;
+  CancelFlag cancel;
   Arena arena;
   TrustRegion region;
   explicit RegionBench(AgentSetup s = GoldenNet::setup("cpo")) : net(std::move(s)) {
     Arena measure;
-    region.carve(measure, net.plan, net.nets, true);
+    region.carve(measure, net.resolved, net.nets, true);
     arena = Arena(HostHooks(), measure.used());
-    region.carve(arena, net.plan, net.nets, true);
-    region.open(agent, net.plan, net.rollout, net.nets, net.lanes, net.learner);
-    region.read_live(net.plan.options);
+    region.carve(arena, net.resolved, net.nets, true);
+    region.open(cancel, net.resolved, net.rollout, net.nets, net.workers, net.learner);
+    region.read_live(net.resolved.options);
     region.linearize(net.order.data(), 2, 0, 1);
   }
 };

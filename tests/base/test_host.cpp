@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/host.hpp"
@@ -116,6 +119,39 @@ TEST(Host, ScopesNestAndBelongToOneThread) {
     EXPECT_EQ(host().user, &b);
   }
   set_host(HostHooks{});
+}
+
+// A plug-in may call rdm_init or rdm_shutdown while another thread makes a handle.
+TEST(Host, HooksAreReadWholeWhileTheyChange) {
+  HostHooks set;
+  set.user = &set;
+  set.alloc = [](void*, size_t, size_t) -> void* { return nullptr; };
+  set.release = [](void*, void*, size_t, size_t) {};
+  set.log = [](void*, int32_t, const char*) {};
+  set.parallel = [](void*, int32_t, ParallelBody, void*) {};
+  std::atomic<bool> stop{false};
+  std::vector<std::thread> writers;
+  for (int k = 0; k < 2; ++k)
+    writers.emplace_back([&] {
+      while (!stop) {
+        set_host(set);
+        set_host(HostHooks{});
+      }
+    });
+  int torn = 0, seen = 0;
+  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
+  while (std::chrono::steady_clock::now() < until) {
+    const HostHooks h = host();
+    const int parts = (h.user != nullptr) + (h.alloc != nullptr) + (h.release != nullptr) +
+                      (h.log != nullptr) + (h.parallel != nullptr);
+    torn += parts != 0 && parts != 5;
+    seen += parts == 5;
+  }
+  stop = true;
+  for (auto& t : writers) t.join();
+  set_host(HostHooks{});
+  EXPECT_EQ(torn, 0);
+  EXPECT_GT(seen, 0);
 }
 
 TEST(Host, VectorsGrowAndDieInTheHooksTheyWereMadeUnder) {

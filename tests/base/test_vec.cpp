@@ -19,6 +19,16 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-14) {
   EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
+// A constant expression may not reach one member from another one's address, so this would not compile with
+// an index past a member: undefined, and optimisers have made wrong contacts of it.
+constexpr bool each_member_by_its_index() {
+  Vec3 v{1, 2, 3};
+  for (int i = 0; i < 3; ++i) v[i] *= 2;
+  const Vec3& w = v;
+  return v.x == 2 && v.y == 4 && v.z == 6 && w[0] == 2 && w[1] == 4 && w[2] == 6;
+}
+static_assert(each_member_by_its_index());
+
 TEST(Vec3, Algebra) {
   const Vec3 a{1, 2, 3}, b{-2, 0.5, 4};
   expect_near(cross(a, b), {6.5, -10, 4.5}, 0);

@@ -67,6 +67,7 @@ class ClockedTask final : public Task {
   const Vector<FieldSpec>& fields() const override { return inner_->fields(); }
   const char* action_order() const override { return inner_->action_order(); }
   size_t state_bytes() const override { return inner_->state_bytes(); }
+  void check_state(const void* state) const override { inner_->check_state(state); }
   void reset(World& world, void* state, Stream& stream) const override {
     inner_->reset(world, state, stream);
   }

@@ -1,7 +1,7 @@
 // Looking into a pool: shapes, poses, contacts, pictures, and the experimental push.
 #define RDM_EXPERIMENTAL
 #include <gtest/gtest.h>
-#include <redman/redman_sense.h>
+#include <redman/redman.h>
 
 #include <cmath>
 #include <cstring>

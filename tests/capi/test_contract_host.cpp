@@ -1,8 +1,8 @@
 // What a host may rely on: exact memory, refusals that leak nothing, its own threads, its floating-point
 // mode.
 #include <sys/wait.h>
-#include <xmmintrin.h>
 
+#include <cfenv>
 #include <thread>
 
 #include "contract.hpp"
@@ -121,15 +121,15 @@ TEST(ContractHost, TheFloatingPointModeIsPutBack) {
   const uint64_t before = hash_of(p);
   ASSERT_EQ(rdm_pool_step(p), RDM_OK);
   const uint64_t nearest = hash_of(p);
-  const unsigned mode = _mm_getcsr();
-  _mm_setcsr((mode & ~0x6000u) | 0x4000u);  // the host rounds up
+  const int mode = std::fegetround();
+  ASSERT_EQ(std::fesetround(FE_UPWARD), 0);  // by the host
   rdm_pool* q = make_pool(pool_config());
   EXPECT_EQ(rdm_pool_reset(q, nullptr, nullptr), RDM_OK);
   const uint64_t reset_up = hash_of(q);
   EXPECT_EQ(rdm_pool_step(q), RDM_OK);
   const uint64_t upward = hash_of(q);
-  EXPECT_EQ(_mm_getcsr() & 0x6000u, 0x4000u);
-  _mm_setcsr(mode);
+  EXPECT_EQ(std::fegetround(), FE_UPWARD);
+  std::fesetround(mode);
   EXPECT_EQ(reset_up, before);
   EXPECT_EQ(upward, nearest);
   rdm_pool_destroy(p);

@@ -1,8 +1,5 @@
 // Sizes of structs: every function that takes one refuses a size that no version of it has, and touches no
 // byte behind it.
-#include <redman/redman_map.h>
-#include <redman/redman_sense.h>
-
 #include <functional>
 
 #include "contract.hpp"

@@ -1,7 +1,5 @@
 // The text of a handle is that of the last call that failed on it, whether the call may change it or only
 // reads.
-#include <redman/redman_sense.h>
-
 #include <functional>
 
 #include "contract.hpp"

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace {
 
@@ -80,6 +81,52 @@ TEST(Library, HooksAreCountedAndPutBack) {
   rdm_agent_destroy(still);
   rdm_agent_destroy(plain);
   rdm_shutdown();  // one too many is harmless
+}
+
+TEST(Library, ARefusedInitSaysWhatWentBefore) {
+  rdm_host host{};
+  host.struct_size = sizeof host;
+  ASSERT_EQ(rdm_init(nullptr), RDM_OK);
+  EXPECT_EQ(rdm_init(&host), RDM_STATE);
+  EXPECT_STREQ(rdm_last_error(), "rdm_init: called before, without hooks; shut down first");
+  rdm_shutdown();
+  ASSERT_EQ(rdm_init(&host), RDM_OK);
+  EXPECT_EQ(rdm_init(&host), RDM_STATE);
+  EXPECT_STREQ(rdm_last_error(), "rdm_init: called before, with hooks; shut down first");
+  rdm_shutdown();
+}
+
+// Hosts with two plug-ins: each counts its own init and shutdown, on threads of its own.
+TEST(Library, InitBesideThreadsThatMakeHandles) {
+  rdm_host host{};
+  host.struct_size = sizeof host;
+  host.alloc = [](void*, size_t bytes, size_t align) -> void* {
+    return std::aligned_alloc(align, (bytes + align - 1) / align * align);
+  };
+  host.release = [](void*, void* p, size_t, size_t) { std::free(p); };
+  std::vector<std::thread> threads;
+  for (int k = 0; k < 2; ++k) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 20000; ++i) {
+        rdm_init(&host);
+        rdm_shutdown();
+      }
+    });
+    threads.emplace_back([] {
+      rdm_agent_config config;
+      rdm_agent_config_init(&config, sizeof config);
+      const rdm_option options[] = {{"hidden", "4", 0}, {"horizon", nullptr, 4}, {"minibatches", nullptr, 1}};
+      config.obs_dim = config.action_dim = config.num_envs = 1;
+      config.options = options;
+      config.num_options = 3;
+      for (int i = 0; i < 1000; ++i) {
+        rdm_agent* agent = nullptr;
+        EXPECT_EQ(rdm_agent_create(&agent, &config), RDM_OK) << rdm_last_error();
+        rdm_agent_destroy(agent);
+      }
+    });
+  }
+  for (auto& t : threads) t.join();
 }
 
 TEST(Library, ErrorTextBelongsToTheThread) {

@@ -1,6 +1,4 @@
 // rdm_map_* through the C ABI: a map of a task's scene from its cameras, and what bad input gets.
-#include <redman/redman_map.h>
-
 #include <cmath>
 
 #include "contract.hpp"

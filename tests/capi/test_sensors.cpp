@@ -1,6 +1,4 @@
 // rdm_pool_sensors and rdm_sample_furthest through the C ABI, on the hands.
-#include <redman/redman_sense.h>
-
 #include <cmath>
 #include <memory>
 #include <set>

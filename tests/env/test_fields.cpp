@@ -103,6 +103,7 @@ class Layout final : public Task {
   const Vector<FieldSpec>& fields() const override { return table; }
   const char* action_order() const override { return order; }
   size_t state_bytes() const override { return 0; }
+  void check_state(const void*) const override {}
   void reset(World&, void*, Stream&) const override {}
   void control(World&, void*, const float*) const override {}
   Verdict judge(World&, void*, int32_t) const override { return {}; }

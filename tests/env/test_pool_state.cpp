@@ -127,6 +127,40 @@ TEST(PoolState, ABadRecordLeavesNoTrace) {
   EXPECT_EQ(a->hash(-1), before);
 }
 
+// The task is asked about its struct while the world runs; an ended world's is zeroed before it is read
+// again.
+TEST(PoolState, ATasksStructIsItsOwnToJudge) {
+  TestPool a("toy_push", 1, {}, mode(Autoreset::kOff));
+  a->reset(nullptr, nullptr);
+  const auto with_steps = [&](int64_t steps) {
+    auto state = a.state();
+    Reader in(state.data(), state.size(), "state");
+    in.begin_file("RDMSTATE", 1);
+    in.need_section("WRLD");
+    const size_t size = in.left();
+    const auto offset = static_cast<size_t>(in.view(size) - state.data());
+    uint64_t world = 0;
+    std::memcpy(&world, state.data() + offset, sizeof world);
+    std::memcpy(state.data() + offset + 8 + world + offsetof(ToyTask::State, steps), &steps, sizeof steps);
+    const uint32_t crc = crc32(state.data() + offset, size);
+    std::memcpy(state.data() + offset - 12, &crc, sizeof crc);
+    return state;
+  };
+  run(a, 2);
+  const uint64_t before = a->hash(0);
+  const auto bad = with_steps(-5);
+  EXPECT_EQ(code_of([&] { a->set_state(0, bad.data(), bad.size()); }), Code::kFormat);
+  EXPECT_NE(std::strstr(last_error(), "steps -5"), nullptr) << last_error();
+  EXPECT_EQ(a->hash(0), before);
+  const auto good = with_steps(7);
+  EXPECT_EQ(code_of([&] { a->set_state(0, good.data(), good.size()); }), Code::kOk);
+  while (!a.ended(0)) run(a, 1);
+  const auto ended = with_steps(-5);
+  EXPECT_EQ(code_of([&] { a->set_state(0, ended.data(), ended.size()); }), Code::kOk);
+  a->reset(nullptr, nullptr);
+  run(a, 1);
+}
+
 TEST(PoolState, SizeIsWhatGetStateWrites) {
   TestPool a("toy_push", 3, {}, mode(Autoreset::kSameStep));
   EXPECT_EQ(a.state(1).size(), a->state_size(1));

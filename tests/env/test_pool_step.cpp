@@ -188,7 +188,7 @@ TEST(PoolStep, ABadActionIsFlaggedAndTheOthersGoOnByteForByte) {
 }
 
 TEST(PoolStep, ADivergedWorldIsFlaggedCountedAndReset) {
-  for (const char* how : {"nan_at", "blast_at"}) {
+  for (const char* how : {"nan_at", "blast_at", "huge_at"}) {
     TestPool p("toy_push", 2, {{how, nullptr, 4}}, mode(Autoreset::kSameStep));
     p->reset(nullptr, nullptr);
     for (int t = 0; t < 3; ++t) p->step(nullptr);

@@ -12,6 +12,8 @@
 #include <functional>
 #include <new>
 
+#include "worlds.hpp"
+
 namespace hard {
 
 inline double now() {
@@ -26,7 +28,7 @@ struct Tally {
   long at = 0;  // the experiment that runs now
   long good = 0, other = 0, bad = 0, crashed = 0, skipped = 0;
   bool ended = false;
-  char note[256] = "";  // the first thing that went wrong
+  char note[512] = "";  // the first thing that went wrong
 
   long run() const { return good + other + bad + crashed; }
   long failed() const { return bad + crashed; }
@@ -38,6 +40,8 @@ struct Tally {
     va_end(list);
   }
 };
+
+inline Tally* running = nullptr;  // of the child that runs
 
 using Experiment = std::function<Outcome(long k, Tally& tally)>;
 
@@ -53,6 +57,8 @@ inline Tally isolate(long first, long last, long stride, double seconds, unsigne
     std::fflush(nullptr);
     const pid_t child = fork();
     if (child == 0) {
+      running = shared;
+      on_broken = [](const char* text) { running->remember("%s", text); };
       alarm(patience);
       const Experiment experiment = make();
       for (; shared->at < last; shared->at += stride) {

@@ -4,6 +4,7 @@
 #include <redman/redman.h>
 
 #include <cmath>
+#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -14,15 +15,29 @@
 
 namespace hard {
 
+// Where the text of a broken promise goes; stderr when it is null.
+inline void (*on_broken)(const char* text) = nullptr;
+
 // Ends the program with a text: a broken promise is a finding.
+[[noreturn]] __attribute__((format(printf, 4, 5))) inline void broken(const char* file, int line,
+                                                                      const char* condition,
+                                                                      const char* format, ...) {
+  char why[400], text[700];
+  va_list list;
+  va_start(list, format);
+  std::vsnprintf(why, sizeof why, format, list);
+  va_end(list);
+  const char* name = std::strrchr(file, '/');
+  std::snprintf(text, sizeof text, "%s:%d: not so: %s: %s", name ? name + 1 : file, line, condition, why);
+  if (on_broken)
+    on_broken(text);
+  else
+    std::fprintf(stderr, "%s\n", text);
+  std::abort();
+}
 #define HARD_REQUIRE(condition, ...)                                               \
   do {                                                                             \
-    if (!(condition)) {                                                            \
-      std::fprintf(stderr, "%s:%d: not so: %s: ", __FILE__, __LINE__, #condition); \
-      std::fprintf(stderr, __VA_ARGS__);                                           \
-      std::fprintf(stderr, "\n");                                                  \
-      std::abort();                                                                \
-    }                                                                              \
+    if (!(condition)) ::hard::broken(__FILE__, __LINE__, #condition, __VA_ARGS__); \
   } while (0)
 
 inline std::string argument(int argc, char** argv, const char* flag, const char* otherwise) {

@@ -102,6 +102,36 @@ TEST(Normalizer, MaskedRowsDoNotCount) {
   });
 }
 
+// Moments of the largest floats, and any that a state may hold, give numbers that a policy file takes.
+TEST(Normalizer, ExtremeMomentsGiveUsableScales) {
+  const float most = std::numeric_limits<float>::max();
+  const auto check = [](const Normalizer& n) {
+    for (int j = 0; j < n.dim; ++j) {
+      EXPECT_TRUE(std::isfinite(n.shift[j])) << n.mean[j];
+      EXPECT_GE(n.scale[j], std::numeric_limits<float>::min()) << n.m2[j];
+      EXPECT_LE(n.scale[j], 100.0f) << n.m2[j];
+    }
+  };
+  for_each_isa([&](const char* isa) {
+    SCOPED_TRACE(isa);
+    OwnedNormalizer owned(3);
+    const float x[] = {most, -most, 1, -most, most, -1, most, most, 0, -most, -most, 0};
+    normalizer_merge(owned.n, x, 4, nullptr, 0);
+    check(owned.n);
+    float y[12];
+    normalizer_apply(owned.n, x, 4, y);
+    for (const float v : y) EXPECT_LE(std::abs(v), 5.0f);
+    for (const double count : {1.5, 2.0, 1e9, 1e18})
+      for (const double mean : {-static_cast<double>(most), 0.0, static_cast<double>(most)})
+        for (const double m2 : {0.0, 1e-300, 1e76, 1e100}) {
+          owned.n.count = count;
+          for (int j = 0; j < 3; ++j) owned.n.mean[j] = mean, owned.n.m2[j] = m2;
+          normalizer_refresh(owned.n);
+          check(owned.n);
+        }
+  });
+}
+
 TEST(Normalizer, UnchangedUntilTwoSamplesAndClippedAlways) {
   for_each_isa([](const char* isa) {
     SCOPED_TRACE(isa);

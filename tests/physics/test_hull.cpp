@@ -103,5 +103,13 @@ TEST(Hull, RefusesWhatIsNoSolid) {
   EXPECT_NE(std::string(last_error()).find("test: point 3"), std::string::npos);
 }
 
+// A moment is a fifth power of a size over a third: of 1e-70 m it is lost in rounding and comes out negative.
+TEST(Hull, RefusesWhatIsTooSmallToWeigh) {
+  for (const double a : {1e-7, 1e-20, 1e-70, 1e-150, 1e-300})
+    EXPECT_EQ(guard([&] { hull_of({{0, 0, 0}, {a, 0, 0}, {0, a, 0}, {0, 0, a}}); }), Code::kArgument) << a;
+  const double a = 1e-5;
+  EXPECT_GT(hull_of({{0, 0, 0}, {a, 0, 0}, {0, a, 0}, {0, 0, a}}).moment[0], 0);
+}
+
 }  // namespace
 }  // namespace rdm

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "articulated.hpp"
 #include "base/error.hpp"
 #include "base/rng.hpp"
 #include "physics/world.hpp"
@@ -22,6 +23,41 @@ TEST(World, SetJointsClampsAndRebuilds) {
   EXPECT_EQ(sim->q()[24 + 4], 0.7);
   EXPECT_EQ(sim->q()[3], 0);
   EXPECT_LT(sim->joint_drift(), 1e-12);
+}
+
+// What is set is saved: a value that no saved state may hold is not taken from a setter either.
+TEST(World, ValuesBeyondTheBoundsOfAStateAreRefusedByEveryEngine) {
+  for (const EngineKind engine : {EngineKind::kOde, EngineKind::kArticulated}) {
+    SceneDef def = test::two_hands_def();
+    def.articulations[0].free_base = true;
+    test::Simulation sim(def, engine);
+    const std::vector<unsigned char> before = test::saved(*sim);
+    const auto refused = [](const auto& call) {
+      try {
+        call();
+      } catch (const Error& e) {
+        return e.code == Code::kArgument;
+      }
+      return false;
+    };
+    for (const double big : {1e6, 1e7, 1e300}) {
+      double still[24] = {}, fast[24] = {};
+      fast[3] = -big;
+      EXPECT_TRUE(refused([&] { sim->set_joints(1, still, fast); })) << big;
+      const Motion motions[] = {{{{big, 0, 0}, {}}, {}, {}},
+                                {{}, {0, -big, 0}, {}},
+                                {{}, {}, {0, 0, big}},
+                                {{{}, {1e200, big * 1e200, 0, 0}}, {}, {}}};
+      for (const Motion& m : motions) {
+        EXPECT_TRUE(refused([&] { sim->set_body(0, m); })) << big;
+        EXPECT_TRUE(refused([&] { sim->set_base(0, m); })) << big;
+      }
+    }
+    EXPECT_EQ(test::saved(*sim), before);
+    test::load(*sim, before);
+    sim->step();
+    EXPECT_EQ(sim->status(), 0u);
+  }
 }
 
 TEST(World, LinkVelocitiesAreTheRatesOfTheirPoses) {

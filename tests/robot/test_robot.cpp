@@ -39,6 +39,51 @@ TEST(Robot, TablesAreSound) {
   }
 }
 
+// Fingers, roles and poses of every robot that has them.
+TEST(Robot, HandsNameTheirFingers) {
+  int hands = 0;
+  for (int32_t r = 0; r < num_robots(); ++r) {
+    const Robot& table = robot(r);
+    if (table.fingers.count == 0) continue;
+    ++hands;
+    EXPECT_GE(table.palm, 0) << table.name;
+    ASSERT_EQ(table.fingers.count, table.tips.count) << table.name;
+    for (int32_t i = 0; i < table.fingers.count; ++i) {
+      const RobotFinger& f = table.fingers[i];
+      EXPECT_GT(f.first, table.palm) << f.name;
+      EXPECT_LE(f.first, table.tips[i].link) << f.name;
+      for (const int32_t role : {f.lateral, f.proximal, f.middle}) {
+        if (role < 0) continue;
+        EXPECT_GE(role, f.first) << f.name;
+        EXPECT_LE(role, table.tips[i].link) << f.name;
+        EXPECT_GE(table.action_of(role), 0) << f.name;
+      }
+      // what stands between a finger's first row and its tip belongs to it
+      for (int32_t link = table.tips[i].link; link > f.first; --link)
+        EXPECT_GE(table.links[link].parent, f.first) << f.name;
+    }
+    const int32_t folded = table.poses.folded.count, closed = table.poses.closed.count;
+    EXPECT_TRUE(folded == 0 || folded == table.links.count) << table.name;
+    EXPECT_TRUE(closed == 0 || closed == table.num_actuated()) << table.name;
+    for (int32_t i = 0; i < folded; ++i) {
+      EXPECT_GE(table.poses.folded[i], table.links[i].lower) << table.links[i].name;
+      EXPECT_LE(table.poses.folded[i], table.links[i].upper) << table.links[i].name;
+    }
+    for (const float command : table.poses.closed) EXPECT_LE(std::abs(command), 1);
+  }
+  EXPECT_GT(hands, 0);
+}
+
+TEST(Robot, ActionsAndLinksAreInverse) {
+  for (int32_t r = 0; r < num_robots(); ++r) {
+    const Robot& table = robot(r);
+    for (int32_t i = 0; i < table.num_actuated(); ++i) EXPECT_EQ(table.action_of(table.actuated(i)), i);
+    for (const RobotCoupling& c : table.couplings) EXPECT_EQ(table.action_of(c.link), -1);
+    EXPECT_EQ(table.action_of(-1), -1);
+    EXPECT_EQ(table.action_of(table.links.count), -1);
+  }
+}
+
 TEST(Robot, NamesGetThePrefix) {
   const ArticulationDef def = make_articulation(kShadowHand, Side::kLeft, {}, "left_");
   EXPECT_TRUE(def.name == "left_shadow_hand");

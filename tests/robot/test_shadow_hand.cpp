@@ -10,7 +10,7 @@ struct Golden {
   const char* link;
   Vec3 zero, bent;
 };
-// Forward kinematics of the task specification: identity base at the origin, metres.
+// Forward kinematics of the released model: identity base at the origin, metres.
 const Golden kGolden[] = {
     {"right_palm", {0, -0.2900, -0.0100}, {0.0068, -0.2893, -0.0100}},
     {"right_ff_distal", {-0.0330, -0.4550, -0.0100}, {-0.0052, -0.4229, 0.0744}},

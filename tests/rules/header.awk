@@ -1,4 +1,4 @@
-# Reads redman.h and the headers beside it, which are experimental as a whole. -v mode=stable|experimental: names of the exported functions of that part;
+# Reads redman.h and the headers beside it. -v mode=stable|experimental: names of the exported functions of that part;
 # mode=layout: a C program that prints size and offsets; mode=docs: functions and fields without comment.
 function strip(text) { gsub(/\/\*[^*]*\*+([^\/*][^*]*\*+)*\//, "", text); return text }
 
@@ -44,10 +44,8 @@ BEGIN {
   }
 }
 { sub(/\r$/, "") }
-FNR == 1 && FILENAME ~ /redman_[a-z]+\.h$/ { part = "experimental"; beside = 1 }
-FNR == 1 && FILENAME !~ /redman_[a-z]+\.h$/ { part = "stable"; beside = 0 }
-/^#ifdef RDM_EXPERIMENTAL/ { part = "experimental" }
-/^#endif/ && !beside { part = "stable" }
+FNR == 1 { part = "stable" }
+/^#if defined\(RDM_EXPERIMENTAL\)/ { part = "experimental" }  # from here to the end of the file
 /^#|^$/ { covered = 0; next }
 in_comment { if (/\*\//) { in_comment = 0; covered = 1 } ; next }
 /^[ \t]*\/\*/ && !/\*\// { in_comment = 1; next }

@@ -1,6 +1,7 @@
 // Furthest-point sampling against the plain quadratic form: the same points in the same order.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -24,7 +25,7 @@ std::vector<int32_t> plain(const Points& p, int32_t wanted, int32_t start) {
       const float* q = &p[3 * static_cast<size_t>(i)];
       const float dx = q[0] - c[0], dy = q[1] - c[1], dz = q[2] - c[2];
       float& d = distance[static_cast<size_t>(i)];
-      d = std::min(d, dx * dx + dy * dy + dz * dz);
+      d = i == chosen.back() ? -1 : std::min(d, dx * dx + dy * dy + dz * dz);
       if (d > distance[static_cast<size_t>(best)]) best = i;
     }
     chosen.push_back(best);
@@ -71,6 +72,17 @@ TEST(Furthest, ChoosesWhatThePlainFormChooses) {
         EXPECT_EQ(bucketed(p, wanted, count / 3), plain(p, wanted, count / 3))
             << "kind " << kind << ", " << wanted << " of " << count;
     }
+}
+
+// Also where all distances are zero: a cloud seen on a single pixel, say.
+TEST(Furthest, NoPointIsChosenTwice) {
+  for (int kind = 0; kind < 5; ++kind)
+    for (const int32_t count : {2, 10, 17, 500}) {
+      auto chosen = bucketed(cloud(kind, count), count, count / 3);
+      std::sort(chosen.begin(), chosen.end());
+      for (int32_t i = 0; i < count; ++i) EXPECT_EQ(chosen[static_cast<size_t>(i)], i) << "kind " << kind;
+    }
+  EXPECT_EQ(bucketed(cloud(3, 10), 5, 3), (std::vector<int32_t>{3, 0, 1, 2, 4}));
 }
 
 TEST(Furthest, CoversBetterThanChance) {

@@ -1,6 +1,9 @@
 // What the tests of the C ABI share: a counting, refusing allocator, small pools and agents, and the check
 // that nothing was printed.
 #pragma once
+#ifndef RDM_EXPERIMENTAL
+#define RDM_EXPERIMENTAL
+#endif
 #include <gtest/gtest.h>
 #include <redman/redman.h>
 #include <unistd.h>

@@ -15,68 +15,68 @@ inline constexpr double kClip = 0.2;
 // Half of the ratios are pushed out of the clip.
 struct Bench {
   AgentSetup setup;
-  ResolvedAgentConfig plan;
+  ResolvedAgentConfig resolved;
   Arena arena;
   Networks nets;
-  BatchWorkers lanes;
+  BatchWorkers workers;
   Rollout rollout;
   Learner learner;
   ClippedSurrogate loss;
   std::vector<int32_t> order;
 
-  explicit Bench(AgentSetup s) : setup(std::move(s)), plan(make_plan(setup.ready())) {
+  explicit Bench(AgentSetup s) : setup(std::move(s)), resolved(resolve_config(setup.ready())) {
     Arena measure;
     carve(measure);
     arena = Arena(host(), measure.used());
     carve(arena);
-    lanes.open(host(), setup.config.num_threads);
-    init_networks(nets, plan);
-    learner.open(plan, rollout, nets, lanes);
-    learner.read_live(plan.options);
+    workers.open(host(), setup.config.num_threads);
+    init_networks(nets, resolved);
+    learner.open(resolved, rollout, nets, workers);
+    learner.read_live(resolved.options);
     loss.clip = static_cast<float>(kClip);
-    order.resize(size_of(plan.samples));
+    order.resize(size_of(resolved.samples));
     std::iota(order.begin(), order.end(), 0);
     fill();
   }
   void carve(Arena& a) {
-    nets = carve_networks(a, plan);
-    lanes.carve(a, plan, nets.size);
-    rollout = carve_rollout(a, plan);
-    learner.carve(a, plan, nets.size);
+    nets = carve_networks(a, resolved);
+    workers.carve(a, resolved, nets.size);
+    rollout = carve_rollout(a, resolved);
+    learner.carve(a, resolved, nets.size);
   }
   void fill() {
     Stream s(5, 0, Purpose::kTest);
-    const size_t n = size_of(plan.samples), a = plan.action_dim();
+    const size_t n = size_of(resolved.samples), a = resolved.action_dim();
     const auto draw = [&](float* x, size_t count) {
       for (size_t i = 0; i < count; ++i) x[i] = static_cast<float>(s.signed_unit());
     };
-    draw(rollout.obs, n * plan.obs_dim());
+    draw(rollout.obs, n * resolved.obs_dim());
     draw(rollout.action, n * a);
     draw(rollout.gain, n);
     draw(rollout.linear, n);
-    draw(rollout.cost_advantage, n * size_of(plan.num_limited));
+    draw(rollout.cost_advantage, n * size_of(resolved.num_limited));
     std::fill_n(rollout.valid, n, uint8_t{1});
     draw(rollout.target, n);
-    draw(rollout.cost_target, n * size_of(plan.num_limited));
+    draw(rollout.cost_target, n * size_of(resolved.num_limited));
     for (size_t i = 0; i < n; ++i) {
       const Head now = head(params(), i);
       for (size_t j = 0; j < a; ++j)
         rollout.mean[i * a + j] = static_cast<float>(now.mean[j] + 0.1 * s.signed_unit());
       for (size_t j = 0; j < a; ++j)
         rollout.log_std_of(i)[j] =
-            static_cast<float>(now.log_std[j] + (plan.state_std() ? 0.1 * s.signed_unit() : 0));
+            static_cast<float>(now.log_std[j] + (resolved.state_std() ? 0.1 * s.signed_unit() : 0));
       const double push = i % 2 ? 0.1 * s.signed_unit() : std::log(1.5) * (i % 4 ? 1 : -1);
       rollout.log_prob[i] = static_cast<float>(log_prob(params(), i) - push);
     }
   }
 
   std::vector<double> params() const { return {nets.params, nets.params + nets.size}; }
-  const float* obs(size_t i) const { return rollout.obs + i * plan.obs_dim(); }
+  const float* obs(size_t i) const { return rollout.obs + i * resolved.obs_dim(); }
 
   // The formulas again, in double.
   std::vector<double> network(const std::vector<double>& p, int32_t net, size_t row) const {
     const MlpShape& shape = nets.shape[net];
-    std::vector<double> h(obs(row), obs(row) + plan.obs_dim());
+    std::vector<double> h(obs(row), obs(row) + resolved.obs_dim());
     for (int32_t l = 0; l < shape.num_layers(); ++l) {
       const double* w = &p[nets.net_offset(net) + shape.weight_offset(l)];
       const double* b = &p[nets.net_offset(net) + shape.bias_offset(l)];
@@ -98,13 +98,13 @@ struct Bench {
     std::vector<double> mean, log_std;
   };
   Head head(const std::vector<double>& p, size_t row) const {
-    const size_t a = plan.action_dim();
+    const size_t a = resolved.action_dim();
     Head h{network(p, Networks::kActor, row), {p.begin(), p.begin() + static_cast<long>(a)}};
     for (size_t j = 0; j < a; ++j) {
-      if (plan.state_std())
+      if (resolved.state_std())
         h.log_std[j] =
             std::clamp(h.mean[a + j], static_cast<double>(nets.std_low), static_cast<double>(nets.std_high));
-      h.log_std[j] += static_cast<double>(plan.log_share);
+      h.log_std[j] += static_cast<double>(resolved.log_share);
     }
     h.mean.resize(a);
     return h;
@@ -133,7 +133,7 @@ struct Bench {
   }
   // The policy that acted at a row.
   Head acted(size_t row) const {
-    const size_t a = plan.action_dim();
+    const size_t a = resolved.action_dim();
     const float *mean = rollout.mean + row * a, *log_std = rollout.log_std_of(row);
     return {{mean, mean + a}, {log_std, log_std + a}};
   }
@@ -142,22 +142,22 @@ struct Bench {
     size_t count = 0;
     for (size_t i = 0; i < order.size(); ++i) {
       const std::vector<double> y = network(params(), Networks::kActor, i);
-      for (size_t j = plan.action_dim(); j < y.size(); ++j)
+      for (size_t j = resolved.action_dim(); j < y.size(); ++j)
         count += y[j] <= static_cast<double>(nets.std_low) || y[j] >= static_cast<double>(nets.std_high);
     }
-    return static_cast<double>(count) / static_cast<double>(order.size() * plan.action_dim());
+    return static_cast<double>(count) / static_cast<double>(order.size() * resolved.action_dim());
   }
   double clipped_gain(double rho, size_t row) const {
     const auto gain = static_cast<double>(rollout.gain[row]);
     return std::min(rho * gain, std::clamp(rho, 1 - kClip, 1 + kClip) * gain);
   }
   double total_loss(const std::vector<double>& p) const {
-    const double n = plan.samples;
+    const double n = resolved.samples;
     double sum = 0;
-    for (size_t i = 0; i < size_of(plan.samples); ++i) {
+    for (size_t i = 0; i < size_of(resolved.samples); ++i) {
       const double rho = ratio(p, i), linear = static_cast<double>(rollout.linear[i]);
       sum -= clipped_gain(rho, i) + rho * linear;
-      for (const double l : head(p, i).log_std) sum -= plan.options.number("entropy") * l;
+      for (const double l : head(p, i).log_std) sum -= resolved.options.number("entropy") * l;
       const double v = network(p, Networks::kReward, i)[0] - static_cast<double>(rollout.target[i]);
       sum += v * v;
       const std::vector<double> c = network(p, Networks::kCost, i);
@@ -168,7 +168,7 @@ struct Bench {
     }
     double penalty = 0;
     for (size_t j = nets.block[Networks::kReward].offset; j < nets.size; ++j)
-      penalty += plan.options.number("critic_l2") * p[j] * p[j];
+      penalty += resolved.options.number("critic_l2") * p[j] * p[j];
     return sum / n + penalty;
   }
 };

@@ -3,6 +3,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -17,7 +18,8 @@ namespace rdm::test {
 inline constexpr int kToyActions = 2, kToyObs = 8, kToyCosts = 2;
 
 // action[0]: push along x; action[1]: the reward. cost: action[0] > 0.5, and 0.25 each step. Ends beyond
-// x = 1 m. Breaks by option: at step `nan_at` an observation is not finite, at `blast_at` the push is not.
+// x = 1 m. Breaks by option: at step `nan_at` an observation is not finite, at `blast_at` the push is not, at
+// `huge_at` the reward is beyond a float.
 class ToyTask final : public Task {
  public:
   struct State {
@@ -31,6 +33,7 @@ class ToyTask final : public Task {
         nan_at_(o.integer("nan_at")),
         blast_at_(o.integer("blast_at")),
         throw_at_(o.integer("throw_at")),
+        huge_at_(o.integer("huge_at")),
         engine_(same_name(o.text("engine"), "ode") ? EngineKind::kOde : static_cast<EngineKind>(99)) {
     SceneDef def;
     def.gravity = {};
@@ -54,6 +57,11 @@ class ToyTask final : public Task {
   const Vector<FieldSpec>& fields() const override { return fields_; }
   const char* action_order() const override { return "push, reward"; }
   size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override {
+    const auto& s = *static_cast<const State*>(state);
+    if (!(std::abs(s.start) <= 0.1) || s.steps < 0 || s.steps > 1000)
+      fail(Code::kFormat, "toy: start %g, steps %lld", s.start, static_cast<long long>(s.steps));
+  }
   void reset(World& world, void* state, Stream& stream) const override {
     auto& s = *static_cast<State*>(state);
     s.start = stream.uniform(-0.1, 0.1);
@@ -73,7 +81,7 @@ class ToyTask final : public Task {
     const auto& s = *static_cast<const State*>(state);
     if (s.steps == throw_at_) fail(Code::kInternal, "the toy throws");
     Verdict v;
-    v.reward = s.action[1];
+    v.reward = s.steps == huge_at_ ? 1e39 : s.action[1];  // finite, but not as a float
     v.cost[0] = s.action[0] > 0.5f;
     v.cost_raw[0] = s.action[0];
     v.cost[1] = v.cost_raw[1] = 0.25;
@@ -92,7 +100,7 @@ class ToyTask final : public Task {
   void initial_mean(float* action) const override { action[0] = action[1] = 0; }
 
  private:
-  int32_t max_steps_, nan_at_, blast_at_, throw_at_;
+  int32_t max_steps_, nan_at_, blast_at_, throw_at_, huge_at_;
   EngineKind engine_;
   Scene scene_;
   FieldTable fields_;
@@ -104,6 +112,7 @@ inline const TaskInfo& toy_info() {
       integer_option("nan_at", -1, -1, 1000, "step whose observation is not finite"),
       integer_option("blast_at", -1, -1, 1000, "step whose push is not finite"),
       integer_option("throw_at", -1, -1, 1000, "step that throws"),
+      integer_option("huge_at", -1, -1, 1000, "step whose reward no float holds"),
       text_option("engine", "ode", "ode|absent", "physics engine"),
   };
   static const CostSpec costs[kToyCosts] = {{"cost", "push above 0.5", 3}, {"step", "each step", -1}};
@@ -114,7 +123,7 @@ inline const TaskInfo& toy_info() {
       "ToyPush",
       "a ball that is pushed",
       [](int32_t* count) -> const OptionSpec* {
-        *count = 5;
+        *count = 6;
         return options;
       },
       costs,

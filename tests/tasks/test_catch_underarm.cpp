@@ -2,7 +2,6 @@
 
 #include "tasks/catalog.hpp"
 #include "tasks/hand/hand_control.hpp"
-#include "tasks/throw/catch_underarm.hpp"
 #include "toy_task.hpp"
 
 namespace rdm::test {
@@ -45,7 +44,7 @@ TEST_F(CatchUnderarm, Layout) {
 }
 
 // The right hand stands up with its palm to -y, the left one lies palm up below.
-TEST_F(CatchUnderarm, HandsStandAsTheSpecificationSays) {
+TEST_F(CatchUnderarm, HandsStandUprightAndPalmUp) {
   TestPool p(kTasks[0], 1, {{"joint_noise", nullptr, 0}, {"start_noise", nullptr, 0}});
   p->reset(nullptr, nullptr);
   const World& w = p->world(0);

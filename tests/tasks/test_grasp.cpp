@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "tasks/catalog.hpp"
-#include "tasks/hand/grasp.hpp"
 #include "toy_task.hpp"
 
 namespace rdm::test {
@@ -108,7 +107,7 @@ TEST_F(GraspTask, InitialMean) {
   for (const float x : a) EXPECT_EQ(x, 0);
 }
 
-// What the specification asks of the default threshold: it tells policies apart.
+// What a threshold is for: it tells policies apart.
 TEST_F(GraspTask, BaselinesDiffer) {
   const auto cost = [](Baseline kind) {
     TestPool p("grasp", 20);

@@ -10,12 +10,12 @@ namespace {
 constexpr const char *kFixed = "hand_over_safe_finger", *kFlying = "catch_underarm_safe_finger";
 constexpr const char* kEngines[] = {"ode", "articulated"};
 
-class HandRigTest : public testing::Test {
+class HandControlTest : public testing::Test {
  protected:
   void SetUp() override { register_builtin_tasks(); }
 };
 
-TEST_F(HandRigTest, ActionsOfFixedAndFlyingHands) {
+TEST_F(HandControlTest, ActionsOfFixedAndFlyingHands) {
   EXPECT_EQ(TestPool(kFixed, 1)->task().action_dim(), 40);
   EXPECT_EQ(TestPool(kFlying, 1)->task().action_dim(), 52);
   EXPECT_EQ(TestPool("grasp", 1)->task().action_dim(), 20);
@@ -39,7 +39,7 @@ Vec3 drift(const World& w, int32_t hand) {
 }
 
 // The terminal speed is force / (base_damping 100/s times the hand's mass).
-TEST_F(HandRigTest, FullForceGivesTheTerminalSpeed) {
+TEST_F(HandControlTest, FullForceGivesTheTerminalSpeed) {
   for (const char* engine : kEngines)
     for (const double scale : {0.05, 0.1}) {
       TestPool p(kFlying, 1,
@@ -59,7 +59,7 @@ TEST_F(HandRigTest, FullForceGivesTheTerminalSpeed) {
     }
 }
 
-TEST_F(HandRigTest, HoldLeavesTheBasesStill) {
+TEST_F(HandControlTest, HoldLeavesTheBasesStill) {
   for (const char* engine : kEngines) {
     TestPool p(kFlying, 1, {{"engine", engine, 0}, {"joint_noise", nullptr, 0}, {"start.x", nullptr, 3}});
     p->reset(nullptr, nullptr);
@@ -76,7 +76,7 @@ TEST_F(HandRigTest, HoldLeavesTheBasesStill) {
   }
 }
 
-TEST_F(HandRigTest, LegacyOrderIsTheSameMotion) {
+TEST_F(HandControlTest, LegacyOrderIsTheSameMotion) {
   const auto run = [](const char* order) {
     TestPool p(kFlying, 1, {{"action_order", order, 0}});
     p->reset(nullptr, nullptr);
@@ -95,7 +95,7 @@ TEST_F(HandRigTest, LegacyOrderIsTheSameMotion) {
             layout_hash(TestPool(kFlying, 1, {{"action_order", "legacy", 0}})->task()));
 }
 
-TEST_F(HandRigTest, ABlowIsSlowedAndTheReachIsKept) {
+TEST_F(HandControlTest, ABlowIsSlowedAndTheReachIsKept) {
   TestPool p(kFlying, 1,
              {{"base_limit", nullptr, 10}, {"base_reach", nullptr, 0.05}, {"start.x", nullptr, 3}});
   p->reset(nullptr, nullptr);
@@ -115,7 +115,7 @@ TEST_F(HandRigTest, ABlowIsSlowedAndTheReachIsKept) {
   EXPECT_LT(p->world(0).base(0).X.p.x, 0.055);
 }
 
-TEST_F(HandRigTest, EffortsAndAnglesOfTheBaseAreOptions) {
+TEST_F(HandControlTest, EffortsAndAnglesOfTheBaseAreOptions) {
   TestPool p(kFlying, 2, {{"base_angles", "signed", 0}});
   p->reset(nullptr, nullptr);
   for (int i = 0; i < 2; ++i)
@@ -123,7 +123,7 @@ TEST_F(HandRigTest, EffortsAndAnglesOfTheBaseAreOptions) {
       for (int k = 0; k < 3; ++k) EXPECT_LE(std::abs(p.obs(i)[at + k]), 3.1416f);
 }
 
-TEST_F(HandRigTest, FrictionsReachThePairs) {
+TEST_F(HandControlTest, FrictionsReachThePairs) {
   TestPool p(kFlying, 1, {{"friction.hand_hand", nullptr, 0.4}, {"friction.hand_ground", nullptr, 0.6}});
   const Scene& scene = p->task().scene();
   const int32_t ground = scene.find_shape("ground"), object = scene.find_shape("object");

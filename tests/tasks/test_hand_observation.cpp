@@ -7,10 +7,10 @@
 namespace rdm::test {
 namespace {
 
-TEST(HandBlock, Layout) {
+TEST(HandObservation, Layout) {
   FieldTable t;
-  add_hand_fields(t, "right");
-  EXPECT_EQ(field_total(t), kHandBlock);
+  add_hand_fields(kShadowHand, t, "right");
+  EXPECT_EQ(field_total(t), 187);
   const struct {
     int32_t offset;
     const char* name;

@@ -4,7 +4,6 @@
 #include "heap_count.hpp"
 #include "tasks/catalog.hpp"
 #include "tasks/hand/hands.hpp"
-#include "tasks/throw/hand_over.hpp"
 #include "toy_task.hpp"
 
 namespace rdm::test {

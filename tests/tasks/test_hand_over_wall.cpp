@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "tasks/catalog.hpp"
-#include "tasks/throw/hand_over_wall.hpp"
 #include "toy_task.hpp"
 
 namespace rdm::test {

@@ -57,7 +57,7 @@ TEST_F(Hands, EachActionEntryMovesItsOwnJoint) {
   }
 }
 
-TEST_F(Hands, JointsAreDrawnAsTheSpecificationSays) {
+TEST_F(Hands, JointsAreDrawnInAShareOfTheirRange) {
   TestPool p("hand_over_safe_finger", 400);
   p->reset(nullptr, nullptr);
   double low[48], high[48];

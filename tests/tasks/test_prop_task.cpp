@@ -17,7 +17,7 @@ Vec3 velocity(const World& world) {
   };
   Vec3 sum = of(world.base(0), scene.def.articulations[0].base);
   double mass = scene.def.articulations[0].base.mass;
-  for (int32_t i = 0; i < kHandJoints; ++i) {
+  for (int32_t i = 0; i < kShadowHand.links.count; ++i) {
     sum += of(world.link(i), scene.link(i).inertia);
     mass += scene.link(i).inertia.mass;
   }
@@ -48,7 +48,7 @@ TEST(PropTask, HandsBeginWithTheThumbFolded) {
   for (const char* task : kTasks) {
     TestPool p(task, 1);
     p->reset(nullptr, nullptr);
-    for (const int first : {0, kHandJoints}) {
+    for (const int first : {0, kShadowHand.links.count}) {
       EXPECT_NEAR(p->world(0).q()[first + 19], -1.04, 1e-6);
       EXPECT_NEAR(p->world(0).q()[first + 20], 1.2, 1e-6);
       EXPECT_NEAR(p->world(0).q()[first + 23], -1.57, 1e-6);
@@ -65,7 +65,7 @@ TEST(PropTask, JointNoiseDrawsTheHands) {
     TestPool p(task, 2, {{"joint_noise", nullptr, 0.05}});
     p->reset(nullptr, nullptr);
     EXPECT_NE(p->world(0).q()[3], p->world(1).q()[3]);
-    EXPECT_NE(p->world(0).q()[3], p->world(0).q()[3 + kHandJoints]);
+    EXPECT_NE(p->world(0).q()[3], p->world(0).q()[3 + kShadowHand.links.count]);
   }
 }
 

@@ -7,6 +7,10 @@
 namespace rdm::test {
 namespace {
 
+JointWindow make_window(int window, double low, double high) {
+  return rdm::make_window(kShadowHand, window, low, high);
+}
+
 enum : int { kCost, kFf2, kFf3, kFf4, kEffort, kHeight, kAngle, kDrop };
 
 // Windows are inclusive: 22.5 and 67.5 degrees are inside, 22.4 and 67.6 are not.
@@ -60,7 +64,7 @@ class SafetyCost : public testing::Test {
 constexpr const char* kFinger = "hand_over_safe_finger";
 constexpr const char* kJoint = "hand_over_safe_joint";
 
-TEST_F(SafetyCost, TestVectorsOfTheSpecification) {
+TEST_F(SafetyCost, CommandsAtAndBeyondTheWindows) {
   EXPECT_EQ(one_step(kFinger, {}, 0.5f, 0.5f, 0.5f)[kCost], 0);
   EXPECT_EQ(one_step(kJoint, {}, 0.5f, 0.5f, 0.5f)[kCost], 0);
   EXPECT_EQ(one_step(kFinger, {}, 0.51f, 0, 0)[kCost], 1);

@@ -17,7 +17,7 @@ class SingleHandTask : public testing::Test {
 TEST_F(SingleHandTask, Layout) {
   for (const char* task : kTasks) {
     TestPool p(task, 1);
-    EXPECT_EQ(p->obs_dim(), kSingleHandObs);
+    EXPECT_EQ(p->obs_dim(), 211);
     EXPECT_EQ(p->task().action_dim(), 20);
     EXPECT_EQ(p->task().max_steps(), 74);
     const struct {

@@ -67,9 +67,9 @@ json 'tasks name summary obs_dim action_dim cost_dim costs limit max_steps contr
       options key default low high help' tasks
 json 'algos name summary params key default low high help' algos
 json 'version abi ode eigen ccd octomap precision compiler' info
-json 'run policy env_steps wall_seconds steps_per_second return cost success_rate cost_limit feasible fall_rate length' \
+json 'run policy env_steps wall_seconds steps_per_second return cost cost_stderr success_rate cost_limit feasible fall_rate length' \
   train --envs 4 --steps 200 --set max_steps=10 --out run
-json 'episodes return_mean return_std cost_mean cost_std success_rate length_mean violation_rate fall_rate
+json 'episodes return_mean return_std return_stderr cost_mean cost_std cost_stderr success_rate length_mean violation_rate fall_rate
       cost_per_step' eval --policy run/policy.rdm --episodes 3
 json 'episodes return_mean cost_mean length_mean fall_rate hash' rollout --policy random --set max_steps=5
 json 'file width height frames frames_per_second' render --step 2 --size 32x24 --out a.png

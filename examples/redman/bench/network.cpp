@@ -1,9 +1,5 @@
-// `bench step`, `bench update`, `bench act`: rates of the three hot paths, measured in this process.
-#include <unistd.h>
-
+// `bench update`, `bench act`: how fast an agent learns from made-up data, and a frozen policy acts.
 #include <chrono>
-#include <cmath>
-#include <fstream>
 #include <memory>
 
 #include "bench/bench.hpp"
@@ -17,38 +13,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double since(Clock::time_point t) {
   return std::chrono::duration<double>(Clock::now() - t).count();
-}
-
-size_t resident_bytes() {
-  std::ifstream in("/proc/self/statm");
-  size_t total = 0, resident = 0;
-  in >> total >> resident;
-  return resident * static_cast<size_t>(sysconf(_SC_PAGESIZE));
-}
-
-void random_steps(redman::Pool& pool, int count) {
-  for (int i = 0; i < count; ++i) {
-    pool.baseline(RDM_BASELINE_RANDOM);
-    pool.step();
-  }
-}
-
-// Resident bytes of a world: what a pool of many adds to a process that has made one already, after episodes
-// have touched its memory.
-double bytes_per_env(PoolSettings settings) {
-  constexpr int32_t kMany = 64;
-  constexpr int kSteps = 20;
-  settings.envs = std::max(settings.threads, 1);
-  redman::Pool first = make_pool(settings, RDM_AUTORESET_SAME_STEP);
-  first.reset();
-  random_steps(first, kSteps);
-  settings.envs = std::max(settings.envs, kMany);
-  const size_t before = resident_bytes();
-  redman::Pool pool = make_pool(settings, RDM_AUTORESET_SAME_STEP);
-  pool.reset();
-  random_steps(pool, kSteps);
-  const size_t after = resident_bytes();
-  return (static_cast<double>(after) - static_cast<double>(before)) / settings.envs;
 }
 
 // Standard-normal-like numbers for fake data: the sum of uniforms, from a plain generator.
@@ -96,51 +60,6 @@ class FakeWorld {
 };
 
 }  // namespace
-
-Report bench_step(StepFlags flags) {
-  apply_sets(flags.sets, flags.pool, nullptr);
-  const double bytes = bytes_per_env(flags.pool);
-  redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_SAME_STEP);
-  pool.reset();
-  const auto begin = Clock::now();
-  do random_steps(pool, 10);
-  while (since(begin) < std::min(1.0, 0.2 * flags.seconds));
-
-  double seconds = 0, drift = 0;
-  int64_t steps = 0, allocations = 0;
-  int chunk = 1;
-  while (seconds < flags.seconds) {
-    const int64_t allocated = allocation_count();
-    const auto clock = Clock::now();
-    random_steps(pool, chunk);
-    const double took = since(clock);
-    allocations += allocation_count() - allocated;
-    seconds += took;
-    steps += chunk;
-    drift = std::max(drift, pool.stats().joint_drift);
-    if (took < 0.02) chunk *= 2;
-  }
-  const double rate = static_cast<double>(steps) * flags.pool.envs / seconds;
-  const double per_step =
-      allocation_count() < 0 ? -1 : static_cast<double>(allocations) / static_cast<double>(steps);
-  const rdm_pool_stats stats = pool.stats();
-  const Json json = {{"task", task_at(pool.spec().task).name},
-                     {"envs", flags.pool.envs},
-                     {"threads", flags.pool.threads},
-                     {"steps_per_second", rate},
-                     {"bytes_per_env", bytes},
-                     {"allocations_per_step", per_step},
-                     {"max_joint_drift_m", drift},
-                     {"contacts_mean", stats.contacts_mean},
-                     {"contacts_max", stats.contacts_max},
-                     {"overflowed", stats.overflowed},
-                     {"diverged", stats.diverged},
-                     {"seconds", seconds}};
-  return {json,
-          format("%.0f control steps/s (%d worlds, %d threads), %.0f kB per world, %g allocations per step, "
-                 "largest joint gap %.3g m\n",
-                 rate, flags.pool.envs, flags.pool.threads, bytes / 1e3, per_step, drift)};
-}
 
 Report bench_update(const UpdateFlags& flags) {
   int32_t envs = 64;

@@ -1,8 +1,12 @@
-// `bench observe`: worlds x frames per second with pictures, points or voxels, beside the same steps without.
+// `bench step`, `bench observe`: control steps under random actions, blind and with pictures, points or
+// voxels.
 #include <redman/redman_sense.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <fstream>
 
 #include "bench/bench.hpp"
 #include "bench/malloc_count.hpp"
@@ -13,6 +17,41 @@ namespace tool {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+double since(Clock::time_point t) {
+  return std::chrono::duration<double>(Clock::now() - t).count();
+}
+
+size_t resident_bytes() {
+  std::ifstream in("/proc/self/statm");
+  size_t total = 0, resident = 0;
+  in >> total >> resident;
+  return resident * static_cast<size_t>(sysconf(_SC_PAGESIZE));
+}
+
+void random_steps(redman::Pool& pool, int count) {
+  for (int i = 0; i < count; ++i) {
+    pool.baseline(RDM_BASELINE_RANDOM);
+    pool.step();
+  }
+}
+
+// Resident bytes of a world: what a pool of many adds to a process that has made one already, after episodes
+// have touched its memory.
+double bytes_per_env(PoolSettings settings) {
+  constexpr int32_t kMany = 64;
+  constexpr int kSteps = 20;
+  settings.envs = std::max(settings.threads, 1);
+  redman::Pool first = make_pool(settings, RDM_AUTORESET_SAME_STEP);
+  first.reset();
+  random_steps(first, kSteps);
+  settings.envs = std::max(settings.envs, kMany);
+  const size_t before = resident_bytes();
+  redman::Pool pool = make_pool(settings, RDM_AUTORESET_SAME_STEP);
+  pool.reset();
+  random_steps(pool, kSteps);
+  const size_t after = resident_bytes();
+  return (static_cast<double>(after) - static_cast<double>(before)) / settings.envs;
+}
 
 struct Rate {
   double per_second = 0, cpu_seconds = 0;  // control steps of one world; processor time of each
@@ -27,11 +66,8 @@ double cpu_seconds() {
 Rate measure(redman::Pool& pool, double seconds) {
   const auto run = [&](int count) {
     const auto begin = Clock::now();
-    for (int i = 0; i < count; ++i) {
-      pool.baseline(RDM_BASELINE_RANDOM);
-      pool.step();
-    }
-    return std::chrono::duration<double>(Clock::now() - begin).count();
+    random_steps(pool, count);
+    return since(begin);
   };
   pool.reset();
   int chunk = 1;
@@ -47,6 +83,51 @@ Rate measure(redman::Pool& pool, double seconds) {
 }
 
 }  // namespace
+
+Report bench_step(StepFlags flags) {
+  apply_sets(flags.sets, flags.pool, nullptr);
+  const double bytes = bytes_per_env(flags.pool);
+  redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_SAME_STEP);
+  pool.reset();
+  const auto begin = Clock::now();
+  do random_steps(pool, 10);
+  while (since(begin) < std::min(1.0, 0.2 * flags.seconds));
+
+  double seconds = 0, drift = 0;
+  int64_t steps = 0, allocations = 0;
+  int chunk = 1;
+  while (seconds < flags.seconds) {
+    const int64_t allocated = allocation_count();
+    const auto clock = Clock::now();
+    random_steps(pool, chunk);
+    const double took = since(clock);
+    allocations += allocation_count() - allocated;
+    seconds += took;
+    steps += chunk;
+    drift = std::max(drift, pool.stats().joint_drift);
+    if (took < 0.02) chunk *= 2;
+  }
+  const double rate = static_cast<double>(steps) * flags.pool.envs / seconds;
+  const double per_step =
+      allocation_count() < 0 ? -1 : static_cast<double>(allocations) / static_cast<double>(steps);
+  const rdm_pool_stats stats = pool.stats();
+  const Json json = {{"task", task_at(pool.spec().task).name},
+                     {"envs", flags.pool.envs},
+                     {"threads", flags.pool.threads},
+                     {"steps_per_second", rate},
+                     {"bytes_per_env", bytes},
+                     {"allocations_per_step", per_step},
+                     {"max_joint_drift_m", drift},
+                     {"contacts_mean", stats.contacts_mean},
+                     {"contacts_max", stats.contacts_max},
+                     {"overflowed", stats.overflowed},
+                     {"diverged", stats.diverged},
+                     {"seconds", seconds}};
+  return {json,
+          format("%.0f control steps/s (%d worlds, %d threads), %.0f kB per world, %g allocations per step, "
+                 "largest joint gap %.3g m\n",
+                 rate, flags.pool.envs, flags.pool.threads, bytes / 1e3, per_step, drift)};
+}
 
 Report bench_observe(ObserveFlags flags) {
   apply_sets(flags.sets, flags.pool, nullptr);

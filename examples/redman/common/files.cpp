@@ -147,6 +147,10 @@ void PreparedFile::give_up(int error) {
   throw Failure("cannot write " + path_ + ": " + std::strerror(error));
 }
 
+void check_replaceable(const std::string& path) {
+  check_target(path, path);
+}
+
 void replace_file(const std::string& path, const std::string& bytes) {
   PreparedFile file(path, bytes);
   file.commit();

@@ -29,6 +29,8 @@ class PreparedFile {
   int file_ = -1;
 };
 
+// Failure when something stands at `path` that is no regular file.
+void check_replaceable(const std::string& path);
 // Both steps at once.
 void replace_file(const std::string& path, const std::string& bytes);
 

@@ -1,6 +1,8 @@
 #include "common/setup.hpp"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdlib>
 
 #include "common/names.hpp"
 #include "common/text.hpp"
@@ -30,6 +32,15 @@ std::pair<std::string, std::string> split_pair(const std::string& text, const ch
   const size_t at = text.find('=');
   if (at == 0 || at == std::string::npos) throw Usage(std::string(flag) + " " + text + ": not key=value");
   return {text.substr(0, at), text.substr(at + 1)};
+}
+
+CLI::Validator finite_to(double most) {
+  return CLI::Validator(
+      [most](const std::string& text) {
+        const double value = std::strtod(text.c_str(), nullptr);
+        return value <= most ? std::string() : text + " is not a number up to " + number_text(most);
+      },
+      "");
 }
 
 std::vector<rdm_option> raw_options(const Options& options) {

@@ -1,12 +1,18 @@
 // From flags to pools and agents: options, cost limits, sizes.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <redman/redman.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/report.hpp"
+
+// CLI11's header is large: only those who read flags include it.
+namespace CLI {
+class App;
+class Option;
+class Validator;
+}  // namespace CLI
 
 namespace tool {
 
@@ -29,6 +35,9 @@ struct AgentSettings {
   std::string algo = "ppo_lag";
   Options options;
 };
+
+// Refuses what is above `most`, and what is no number: CLI11's own checks let nan pass.
+CLI::Validator finite_to(double most);
 
 // Flags that several subcommands share. The first returns --task.
 CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help);

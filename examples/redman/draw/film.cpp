@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "common/files.hpp"
 #include "common/report.hpp"
 #include "common/text.hpp"
 #include "draw/image.hpp"
@@ -25,6 +26,7 @@ bool ends_with(const std::string& s, const std::string& end) {
 Film::Film(const std::string& path, int32_t width, int32_t height, double frames_per_second) : path_(path) {
   const bool gif = ends_with(path, ".gif");
   if (!gif && !ends_with(path, ".mp4")) throw Usage("--video " + path + ": not a .mp4 or .gif file");
+  check_replaceable(path);
   const std::string size = format("%dx%d", width, height), rate = format("%.6g", frames_per_second);
   // one palette for the whole film; an even size is what H.264 needs
   const std::string filter = gif ? "fps=20,split[a][b];[a]palettegen[p];[b][p]paletteuse"

@@ -7,6 +7,8 @@
 
 namespace tool {
 
+inline constexpr int32_t kMostEpisodes = 1'000'000;
+
 struct Episode {
   double ret = 0;            // sum of rewards
   std::vector<double> cost;  // [cost_dim] sums

@@ -103,6 +103,11 @@ void RunFolder::start(const std::string& config, const std::string& header, cons
   new_policy.commit();
 }
 
+void RunFolder::write_policy(const std::string& bytes) const {
+  check();
+  replace_file(policy(), bytes);
+}
+
 size_t RunFolder::append_progress(const std::string& row) const {
   check();
   struct stat s {};

@@ -33,6 +33,8 @@ class RunFolder {
   // Begins a run. What stood in the folder goes when all of this has been written beside it.
   void start(const std::string& config, const std::string& header, const std::string& policy) const;
 
+  void write_policy(const std::string& bytes) const;
+
   // progress.csv: a row is appended whole or not at all; resuming cuts it back to the checkpoint.
   size_t append_progress(const std::string& row) const;  // returns the new length, bytes
   void cut_progress(size_t bytes) const;                 // Failure when it is shorter

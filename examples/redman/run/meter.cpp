@@ -33,13 +33,14 @@ void Meter::show(const rdm_epoch& e) {
   shown_ = now;
   const double rate =
       static_cast<double>(e.env_steps - first_) / std::max(Seconds(now - begin_).count(), 1e-9);
-  const auto left = static_cast<int>(static_cast<double>(std::max<int64_t>(goal_ - e.env_steps, 0)) / rate);
+  const double left = std::min(static_cast<double>(std::max<int64_t>(goal_ - e.env_steps, 0)) / rate, 1e9);
+  const auto seconds_left = static_cast<int>(left);
   const std::string line = format(
       "%3.0f%%  %s steps  return %.2f  cost %.2f  length %.0f  falls %.0f%%  multiplier %.3g  %s steps/s  "
       "%d:%02d left",
       std::min(100.0, 100 * static_cast<double>(e.env_steps) / static_cast<double>(goal_)),
       short_count(static_cast<double>(e.env_steps)).c_str(), e.ret, e.cost[0], e.length, 100 * e.fall_rate,
-      e.multiplier[0], short_count(rate).c_str(), left / 60, left % 60);
+      e.multiplier[0], short_count(rate).c_str(), seconds_left / 60, seconds_left % 60);
   wipe();
   std::fputs(line.c_str(), stderr);
   if (terminal_)

@@ -18,11 +18,6 @@ double finite_or(const Document& value, const char* what, double otherwise) {
 
 }  // namespace
 
-bool Score::better_than(const Score& other) const {
-  if (feasible != other.feasible) return feasible;
-  return feasible ? ret > other.ret : excess < other.excess;
-}
-
 std::string note_bytes(const Note& note) {
   Json json = {{"epoch", note.epoch},
                {"env_steps", note.env_steps},

@@ -7,15 +7,9 @@
 #include <string>
 
 #include "run/progress.hpp"
+#include "run/score.hpp"
 
 namespace tool {
-
-// How good an evaluation was. Feasible before infeasible; feasible by return, infeasible by column costs.
-struct Score {
-  bool feasible = false;
-  double ret = 0, excess = 0;  // excess: sum over limited columns of cost above the limit, as a share of it
-  bool better_than(const Score& other) const;
-};
 
 struct Note {
   int32_t epoch = 0;

@@ -13,9 +13,6 @@
 namespace tool {
 namespace {
 
-// Where the seeds of evaluations during training begin; those of people and reports are smaller.
-constexpr uint64_t kSelectionSeeds = uint64_t{1} << 63;
-
 using Clock = std::chrono::steady_clock;
 double since(Clock::time_point t) {
   return std::chrono::duration<double>(Clock::now() - t).count();
@@ -54,7 +51,7 @@ class SignalScope {
 
 PoolSettings eval_settings(const PoolSettings& train) {
   PoolSettings s = train;
-  s.envs = static_cast<int32_t>(Trainer::kEvalEpisodes);
+  s.envs = static_cast<int32_t>(kSelectionEpisodes);
   return s;
 }
 
@@ -176,25 +173,14 @@ void Trainer::restore() {
   }
 }
 
-// Seeds of their own, which no report and no other run shares: where the best of many is chosen by some
-// episodes, the same ones say too much good of it. Feasible is what keeps its limits by a standard error of
-// the mean: of many noisy evaluations the best one only looks so, if it is allowed to stand on the limit.
 Score Trainer::evaluate(const redman::Bytes& policy, LastEvaluation* last) {
-  std::vector<uint64_t> seeds(kEvalEpisodes);
-  for (size_t i = 0; i < seeds.size(); ++i)
-    seeds[i] = kSelectionSeeds + settings_.pool.seed * kEvalEpisodes + i;
+  std::vector<uint64_t> seeds(kSelectionEpisodes);
+  for (size_t i = 0; i < seeds.size(); ++i) seeds[i] = selection_seed(settings_.pool.seed, i);
   eval_pool_.reset(seeds.data());
   Actor actor(redman::Policy(policy), eval_pool_);
-  const Summary s = summarise(play_episodes(eval_pool_, actor, kEvalEpisodes), limits_);
+  const Summary s = summarise(play_episodes(eval_pool_, actor, kSelectionEpisodes), limits_);
   if (last) *last = {s.return_mean, s.cost_mean.empty() ? 0 : s.cost_mean[0]};
-  Score score{true, s.return_mean, 0};
-  for (size_t k = 0; k < score_limits_.size(); ++k) {
-    if (score_limits_[k] < 0) continue;
-    const double over = s.cost_mean[k] + s.cost_stderr[k] - score_limits_[k];
-    score.feasible = score.feasible && over <= 0;
-    score.excess += std::max(0.0, over) / std::max(score_limits_[k], 1.0);
-  }
-  return score;
+  return score_of(s, score_limits_);
 }
 
 void Trainer::train_epoch(Meter& meter) {
@@ -215,7 +201,7 @@ void Trainer::train_epoch(Meter& meter) {
     if (!best_ || score.better_than(*best_)) {
       best_ = score;
       best_policy_ = std::move(policy);
-      replace_file(folder_->policy(), std::string(best_policy_.begin(), best_policy_.end()));
+      folder_->write_policy({best_policy_.begin(), best_policy_.end()});
     }
     scored_epoch_ = epoch_;
     times.evaluation = since(clock);
@@ -264,7 +250,7 @@ void Trainer::finish() {
   const auto policy = agent_.policy();
   const bool better = !best_ || (scored_epoch_ != epoch_ && evaluate(policy, nullptr).better_than(*best_));
   const redman::Bytes& chosen = better ? policy : best_policy_;
-  replace_file(folder_->policy(), std::string(chosen.begin(), chosen.end()));
+  folder_->write_policy({chosen.begin(), chosen.end()});
 }
 
 double Trainer::steps_per_second() const {

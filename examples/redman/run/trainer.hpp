@@ -12,7 +12,6 @@ namespace tool {
 
 class Trainer {
  public:
-  static constexpr size_t kEvalEpisodes = 20;     // of an evaluation during training
   static constexpr uint64_t kEvalSeed = 1000000;  // the report at the end uses streams of seed + this
 
   // Makes worlds and agent; nothing is written yet.

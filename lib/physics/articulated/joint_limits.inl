@@ -17,9 +17,10 @@
 // spring' with the bound for the saturated and k (edge - q) for the limited: one factorisation. v1 then says
 // which set it should have been with: a linear complementarity problem, solved by pivoting on the set: all
 // contradictions at once (block principal pivoting: Judice and Pires 1994, a basis-exchange of a few passes),
-// after kAllPasses the first contradiction alone (Murty 1974: least index, cannot cycle). Sets last from step
-// to step, so that most substeps need one pass. Where nothing agrees within kSetPasses, and where contacts
-// and sets chase each other (stepper.inl), the most damped set is taken and frozen for the substep.
+// after kAllPasses the first contradiction alone (Murty 1974: least index, which for a positive definite
+// matrix cannot cycle). Sets last from step to step: a substep starts from the last one's. Where nothing
+// agrees within kSetPasses, and where contacts and sets chase each other (stepper.inl), the most damped set
+// is taken and frozen for the substep.
 #pragma once
 #include "physics/articulated/tree_dynamics.inl"
 #include "physics/model/drive.hpp"
@@ -69,7 +70,7 @@ void joint_drives(TreeBatch<L>& t) {
   }
 }
 
-// v1 of the lanes in `lanes` for the present active sets.
+// v1 of the lanes in `lanes` for the present active active.
 template <class L>
 void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
   using V = typename L::V;
@@ -81,14 +82,14 @@ void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
   for (int i = 0; i < tree.num_links; ++i) {
     const LinkModel<L>& model = t.model[i];
     const LinkWork<V>& joint = t.work[i];
-    const PersistentLink<V>& sets = t.state[i];
+    const PersistentLink<V>& active = t.state[i];
     CoordWork<V>& c = t.coord[offset + i];
-    const V free = S(1) - sets.saturated * sets.saturated, on = sets.limited * sets.limited;
+    const V free = S(1) - active.saturated * active.saturated, on = active.limited * active.limited;
     const V limit_gain = on * (t.h * t.limit_stiffness), gain = joint.gain * free + limit_gain;
-    const V edge = L::select(sets.limited < V{}, model.lower, model.upper);
+    const V edge = L::select(active.limited < V{}, model.lower, model.upper);
     t.factor[tree.row[static_cast<size_t>(offset + i)] + tree.depth[static_cast<size_t>(offset + i)]] +=
         t.h * gain;
-    c.dv = t.h * (joint.spring * free + sets.saturated * joint.bound - c.bias - c.qd * gain +
+    c.dv = t.h * (joint.spring * free + active.saturated * joint.bound - c.bias - c.qd * gain +
                   on * t.limit_stiffness * (edge - joint.q));
   }
   factor(t);
@@ -110,26 +111,26 @@ typename L::Mask update_active_set(TreeBatch<L>& t, typename L::Mask lanes, bool
   for (int i = 0; i < tree.num_links; ++i) {
     const LinkModel<L>& model = t.model[i];
     const LinkWork<V>& joint = t.work[i];
-    PersistentLink<V>& sets = t.state[i];
+    PersistentLink<V>& active = t.state[i];
     const V v1 = t.coord[offset + i].v1, torque = joint.spring - joint.gain * v1;
     // never from one end of the bound to the other at once: that kicks
     const V high = L::select(torque > joint.bound, one, zero),
             low = L::select(torque < -joint.bound, V(-one), zero);
     const V saturated = L::select(
-        sets.saturated > zero, L::select(torque >= joint.bound, one, zero),
-        L::select(sets.saturated < zero, L::select(torque <= -joint.bound, V(-one), zero), V(high + low)));
+        active.saturated > zero, L::select(torque >= joint.bound, one, zero),
+        L::select(active.saturated < zero, L::select(torque <= -joint.bound, V(-one), zero), V(high + low)));
     const V next = joint.q + t.h * v1;
     const V below = L::select(next < model.lower, V(-one), zero),
             above = L::select(next > model.upper, one, zero);
     const V limited =
-        L::select(sets.limited < zero, below, L::select(sets.limited > zero, above, V(below + above)));
-    const Mask limit_flips = limited != sets.limited, drive_flips = saturated != sets.saturated;
+        L::select(active.limited < zero, below, L::select(active.limited > zero, above, V(below + above)));
+    const Mask limit_flips = limited != active.limited, drive_flips = saturated != active.saturated;
     Mask flips = (limit_flips | drive_flips) & (lanes & (lanes ^ t.frozen));
     if (single) flips = flips & (flips ^ changed);  // lanes that have not changed yet
     if (L::bits(flips) == 0) continue;
     const Mask drive = single ? Mask(flips & (drive_flips & (limit_flips ^ drive_flips))) : flips;
-    sets.limited = L::select(flips, limited, sets.limited);
-    sets.saturated = L::select(drive, saturated, sets.saturated);
+    active.limited = L::select(flips, limited, active.limited);
+    active.saturated = L::select(drive, saturated, active.saturated);
     changed = changed | flips;
   }
   return changed;
@@ -144,11 +145,11 @@ void damp_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
   const V one = L::all(1), zero{};
   for (int i = 0; i < t.tree->num_links; ++i) {
     const LinkModel<L>& model = t.model[i];
-    PersistentLink<V>& sets = t.state[i];
+    PersistentLink<V>& active = t.state[i];
     const V q = t.work[i].q;
     const V limited = L::select(q < model.lower, V(-one), L::select(q > model.upper, one, zero));
-    sets.saturated = L::select(lanes, zero, sets.saturated);
-    sets.limited = L::select(lanes, limited, sets.limited);
+    active.saturated = L::select(lanes, zero, active.saturated);
+    active.limited = L::select(lanes, limited, active.limited);
   }
 }
 
@@ -179,11 +180,11 @@ void joint_torques(TreeBatch<L>& t, typename L::Scalar weight) {
   for (int i = 0; i < t.tree->num_links; ++i) {
     const LinkModel<L>& model = t.model[i];
     LinkWork<V>& joint = t.work[i];
-    const PersistentLink<V>& sets = t.state[i];
+    const PersistentLink<V>& active = t.state[i];
     const V v1 = t.coord[offset + i].v1;
     const V drive = clamp<L>(V(joint.spring - joint.gain * v1), V(-joint.bound), joint.bound);
-    const V edge = L::select(sets.limited < V{}, model.lower, model.upper);
-    const V limit = sets.limited * sets.limited * t.limit_stiffness * (edge - joint.q - t.h * v1);
+    const V edge = L::select(active.limited < V{}, model.lower, model.upper);
+    const V limit = active.limited * active.limited * t.limit_stiffness * (edge - joint.q - t.h * v1);
     joint.torque += weight * (drive + limit);
   }
 }

@@ -18,6 +18,12 @@
 // past its bound, which changes M and with it every contact. They are solved in turn; a world is open until
 // its sets agree with its contacts' outcome. Rounds 0 and 1 change all contradictions, round 2 the first of
 // each robot alone, then the damped set is frozen and the contacts are solved once more.
+//
+// Numbers. Joint coordinates, bases and bodies are doubles in a world (WorldState); a batch works in S,
+// floats but for the reference, on places relative to each robot's base. A base moves in double, and contact
+// points and free bodies are in double throughout, so that the rounding never depends on where in the
+// world a robot stands. Nothing is summed across lanes: the bytes are those of one lane, whatever shares its
+// batch.
 #pragma once
 #include "physics/articulated/contact_solver.inl"
 #include "physics/articulated/joint_limits.inl"
@@ -157,6 +163,7 @@ void BatchStepper<L>::step(WorldState* const* worlds, int32_t count) {
 
 template <class L>
 void BatchStepper<L>::substep() {
+  // position
   for (int32_t k = 0; k < num_batches_; ++k) {
     link_inertias(batches_[k]);
     shape_poses(batches_[k]);
@@ -165,6 +172,7 @@ void BatchStepper<L>::substep() {
     predict_bodies(*model_, worlds_[w]);
     detect_contacts(w);
   }
+  // acceleration and actuation
   for (int32_t k = 0; k < num_batches_; ++k) {
     TreeBatch<L>& t = batches_[k];
     motion_subspaces(t);
@@ -174,8 +182,10 @@ void BatchStepper<L>::substep() {
     joint_drives(t);
     solve_without_contacts(t);
   }
+  // constraint
   solve_contacts();
   for (int32_t w = 0; w < count_; ++w) contact_forces(w);
+  // integration
   for (int32_t k = 0; k < num_batches_; ++k) {
     TreeBatch<L>& t = batches_[k];
     joint_torques(t, static_cast<S>(1.0 / scene_->def.solver.substeps));
@@ -217,6 +227,7 @@ void BatchStepper<L>::detect_contacts(int32_t world) {
   find_contacts(*model_, collider_, poses, &w);
 }
 
+// In double, from the pose that the lanes have: what the collider asks for once two bounds meet.
 template <class L>
 void BatchStepper<L>::shape_pose(int32_t world, int32_t shape, Vec3* p, Mat3* R) const {
   const Attachment& at = attachments_[shape];
@@ -239,7 +250,8 @@ void BatchStepper<L>::shape_pose(int32_t world, int32_t shape, Vec3* p, Mat3* R)
   for (int r = 0; r < 3; ++r) (*p)[r] += static_cast<double>(L::get(batch->center[k][r], lane));
 }
 
-// Contacts and active sets in turn, until they agree or the rounds are over: then the damped choice.
+// Contacts and active sets in turn, until they agree or the rounds are over: then the damped choice. `open`
+// has a bit for each world that is not done.
 template <class L>
 void BatchStepper<L>::solve_contacts() {
   uint32_t open = 0;
@@ -283,9 +295,13 @@ inline void tangents(const Vec3& n, Vec3* t, Vec3* u) {
   *u = cross(n, *t);
 }
 
-// One side's part of a point's rows: z = D^-1/2 L^-T J^T along the path from the touched link to the root,
-// and its velocity without contacts, taken from the wanted one. `sign` is +1 on a, -1 on b. J_c = n . (s_c +
-// a_c x p).
+// One side's part of a point's rows, and its velocity without contacts, which is taken from the wanted one.
+// `sign` is +1 on a, -1 on b; p the point, axes the normal and the tangents, in double.
+// A body:  J = (n, (p - c) x n), half-solved with sqrt(1/m) and C^-1 R^T.
+// A robot: J has an entry n . (s_c + a_c x p) per coordinate c on the path from the touched link to the root,
+// and
+//          z = D^-1/2 L^-T J^T stays on that path: from the link inward, each entry is taken off those before
+//          it.
 template <class L>
 void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, const Attachment& at,
                                        int32_t world, S sign, const Vec3& p, const Vec3* axes) {
@@ -338,6 +354,7 @@ void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, 
     velocity += z[d] * L::get(c.v1, lane);
   }
   for (int f = 0; f < count; ++f) point->b[f] -= velocity[f];
+  // L^-T, then D^-1/2, into the segments that the path runs through
   int32_t segment = -1;
   typename ContactSolver<S>::Row* rows = nullptr;
   for (int32_t d = depth; d >= 0; --d) {
@@ -354,7 +371,9 @@ void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, 
   }
 }
 
-// The impulses of one world's contacts for the present factors, and the velocities v1 that they give.
+// The impulses of one world's contacts for the present factors, and the velocities v1 that they give. The
+// push-out speed b is erp / h of the depth below the layer, at most `fastest`: a deep overlap, as after a
+// blow, must not turn into a shot.
 template <class L>
 void BatchStepper<L>::solve_contacts_of(int32_t world) {
   WorldState& w = *worlds_[world];
@@ -498,6 +517,8 @@ void BatchStepper<L>::integrate_base(TreeBatch<L>& t) {
 
 // --- Between steps.
 
+// Kinematics and momenta of one articulation from its joint coordinates and base, as if the step before had
+// ended so.
 template <class L>
 void BatchStepper<L>::refresh(WorldState* world, int32_t articulation) {
   worlds_ = &world;
@@ -523,6 +544,7 @@ void BatchStepper<L>::refresh(WorldState* world, int32_t articulation) {
   worlds_ = nullptr;
 }
 
+// A link's motion from its persistent words: joint frame to link frame, base to world.
 template <class L>
 void BatchStepper<L>::read_link(const WorldState& world, int32_t link, Motion* m, Mat3* R) const {
   const int32_t a = scene_->link_articulation[static_cast<size_t>(link)];
@@ -545,6 +567,7 @@ void BatchStepper<L>::read_link(const WorldState& world, int32_t link, Motion* m
 
 // --- Worlds into lanes and back.
 
+// Masks of lanes from sets of worlds, a bit each, and back.
 template <class L>
 typename L::Mask BatchStepper<L>::lanes_of(const TreeBatch<L>& t, uint32_t worlds) const {
   uint32_t bits = 0;
@@ -577,6 +600,8 @@ void BatchStepper<L>::assign(TreeBatch<L>& t, int32_t batch, int32_t count) {
   }
 }
 
+// All that a step reads of its worlds, lane by lane, rounded to S. Lanes without a world read another's and
+// are never written back: they cost nothing and take the same path as that one.
 template <class L>
 void BatchStepper<L>::gather(TreeBatch<L>& t) {
   const Tree& tree = *t.tree;
@@ -665,6 +690,7 @@ void BatchStepper<L>::scatter(TreeBatch<L>& t) {
 
 // --- Memory and constants.
 
+// Segments of the contact solver: those of every member of every tree, then one per body.
 template <class L>
 void BatchStepper<L>::carve(Arena& arena) {
   num_groups_ = static_cast<int32_t>(model_->trees.size());
@@ -716,6 +742,7 @@ void BatchStepper<L>::carve(Arena& arena) {
   contacts_.carve(arena, scene_->def.solver.contacts_max, segments, path);
 }
 
+// The constants of each lane's member. They stay: a lane holds the same member in every step.
 template <class L>
 void BatchStepper<L>::fill_constants(TreeBatch<L>& t, int32_t batch) {
   const SolverDef& solver = scene_->def.solver;
@@ -770,6 +797,7 @@ void BatchStepper<L>::fill_constants(TreeBatch<L>& t, int32_t batch) {
   }
 }
 
+// Which body, or which link's coordinate, moves each shape, where its rows go, and which sensor feels it.
 template <class L>
 void BatchStepper<L>::list_attachments() {
   int32_t segment = 0, word = 0;

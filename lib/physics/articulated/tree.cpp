@@ -140,7 +140,7 @@ Tree make_tree(const Scene& scene, int32_t articulation) {
          tree.num_coords, kMaxCoords);
   if (def.free_base)
     for (int32_t k = 0; k < 6; ++k) add_coord(&tree, k - 1);
-  const int32_t root = def.free_base ? 5 : -1;
+  const int32_t base_coord = def.free_base ? 5 : -1;
   for (const LinkDef& link : def.links) {
     TreeLink t;
     t.parent = link.parent;
@@ -148,7 +148,7 @@ Tree make_tree(const Scene& scene, int32_t articulation) {
     t.prismatic = link.joint.kind == JointKind::kPrismatic;
     t.sensor = link.sensor;
     tree.links.push_back(t);
-    add_coord(&tree, link.parent < 0 ? root : tree.coord(link.parent));
+    add_coord(&tree, link.parent < 0 ? base_coord : tree.coord(link.parent));
   }
   for (const ArticulationShape& s : def.shapes) {
     tree.shape_links.push_back(s.link);

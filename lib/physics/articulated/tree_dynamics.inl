@@ -2,40 +2,38 @@
 // forces, mass matrix, its factors. Featherstone's algorithms (Rigid Body Dynamics Algorithms, 2008; "RBDA"),
 // in the order in which a substep calls them. Part of stepper_v*.cpp.
 //
-// Frames. Everything is in world axes relative to the base's origin O, where a float's digits are best:
-// moving a robot across the room changes no bit. J is a link's joint frame (tree.hpp), P its parent's, c its
+// Frames. Everything is in world axes relative to the base's origin O, where a float's digits are best: where
+// in the room a robot stands does not enter. J is a link's joint frame (tree.hpp), P its parent's, c its
 // centre of mass. A spatial motion is (a, s): angular velocity and the velocity of the body's point at O; a
 // spatial force is (f, n): force and moment about O.
 //
 //   kinematics          R_WJ = R_WP R_PJ Rz(q), p_J = p_P + R_WP p_PJ; w_J = w_P + z qd,
-//                       v_J = v_P + w_P x (p_J - p_P): RBDA 4.3, the first pass of RNEA
+//                       v_J = v_P + w_P x (p_J - p_P): the first pass of RNEA, RBDA 5.3
 //   orientations        the same for quaternions
 //   link_inertias       c and the moments about it in world axes, R I R^T
 //   motion_subspaces    the column of a joint: revolute (z, p_J x z), prismatic (0, z); RBDA 4.4
 //   body_forces         what the momentum of each body, of the last solve, asks of this pose (below)
-//   bias_forces         tau_i = a_i . n_i + s_i . f_i, the forces summed from the tips: the second pass of
-//   RNEA
-//                       (RBDA 5.3)
-//   composite_inertias  M by composite rigid bodies (CRBA, RBDA 6.2): M_ij = S_j . (I_c,i S_i) for ancestors
-//   j,
-//                       with I_c,i the spatial inertia of everything behind joint i: mass m, first moment
-//                       h = m c, second moments J about O; I (a, s) = (p, l), p = m s + a x h, l = J a + h x
-//                       s
-//   factor              M = L^T D L, L a lower unit triangle with M's own sparsity (RBDA 6.5): no fill-in,
-//   and
-//                       O(n depth^2) for n coordinates
+//   bias_forces         the second pass of RNEA, RBDA 5.3: forces summed from the tips, and of a joint
+//                       bias_i = a_i . n_i + s_i . f_i
+//   composite_inertias  the mass matrix by composite rigid bodies (CRBA, RBDA 6.2): M_ij = S_j . (I_i S_i)
+//                       for i and its ancestors j, with I_i the spatial inertia of all that is behind joint
+//                       i: mass m, first moment h = m c, second moments J about O. I (a, s) is the momentum
+//                       p = m s + a x h, l = J a + h x s
+//   factor              M = L^T D L, L a lower unit triangle with M's own sparsity (RBDA 6.5): nothing fills
+//                       in, and n coordinates of depth d cost n d^2
 //   solve               x <- L^-1 D^-1 L^-T x
 //   momenta             the solved rates' momenta, for the next substep
 //
-// Bias by momentum balance. The textbook's bias takes w x I w at the start of the step and gains energy at
-// any step that is not small. Here each body's linear momentum and angular momentum about c of the last
-// solve, p- and L-, are stored as vectors of the world, and the bias is what keeps them:
-//   f = (m v_c(q, qd) - d p-) / h - d (m g + push)        n_c = (I(q) w(q, qd) - d L-) / h - d torque
-// with v_c, w of the *unchanged* joint rates in the *new* pose; then M dv = h (tau - bias) makes the momentum
-// after the step d (p- + h force). d = 1 / (1 + h damping). No Coriolis term is ever written; the difference
-// quotient is it. It stands for the acceleration at the middle between the two poses, though, and is
-// therefore rotated on by kForwardRotation h w. For a free base the sum of what that adds is taken from the
-// base, so that the momentum of the whole robot is exact.
+// Bias by momentum balance. A textbook's bias takes w x I w of the step's start and may gain energy at a step
+// of any size. Here each body's velocity of c and angular momentum about c are stored as the last solve left
+// them (v-, L-: vectors of the world), and the bias is what carries them over into the new pose:
+//   f   = m (v_c(q, qd) - d v-) / h - d (m g + push)
+//   n_c = (I(q) w(q, qd) - d L-) / h - d torque
+// with v_c, w of the rates unchanged since the solve. M dv = h (tau - bias) then leaves each body with
+// d (p- + h (m g + push)) and what the joints add, d = 1 / (1 + h damping). No Coriolis term is written: the
+// difference quotient is it. But it is the one of the middle between the two poses, and is therefore rotated
+// on by kForwardRotation h w. Of a free base's robot, w is taken against the base, and the base takes the
+// reaction, so that the momentum of the whole stays exact.
 #pragma once
 #include "base/simd.hpp"
 #include "physics/articulated/world_state.hpp"

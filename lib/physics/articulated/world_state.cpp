@@ -44,6 +44,7 @@ BodyModel make_body_model(const BodyDef& def, const Scene& scene) {
   return m;
 }
 
+// Of the shapes on free bodies; the capsule axis too, for all that have one.
 void set_body_bounds(const Scene& scene, const WorldState& s, Bound* bounds) {
   for (size_t i = scene.shapes.size(); i-- > 0;) {
     const SceneShape& shape = scene.shapes[i];
@@ -124,6 +125,8 @@ void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::
   }
 }
 
+// The nearest of the last substep's points of the same pair, measured from shape a's centre: points slide
+// with it.
 bool warm_impulse(const WorldState& s, int32_t contact, Vec3* impulse) {
   const WarmPoint& here = s.next_warm[contact];
   float nearest = kWarmReach * kWarmReach;

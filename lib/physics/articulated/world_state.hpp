@@ -6,8 +6,8 @@
 //   predict    v = d_v (v + h (g + f/m))         w = d_w (w + h R I^-1 R^T torque)      without contacts
 //   contacts   v1, w1: what the solver makes of them
 //   integrate  p += h v1,  q <- exp(h w1) q,  then w <- R' I^-1 R'^T L with L = R I R^T w1 of the old pose:
-//              a body that turns freely keeps its angular momentum L, not its angular velocity.
-// d = 1 / (1 + h damping) is implicit damping. R turns the body's axes into world axes.
+//              a body that spins freely keeps its angular momentum L, not its angular velocity.
+// d = 1 / (1 + h damping) is implicit damping. R rotates the body's axes into world axes.
 #pragma once
 #include <cstdint>
 

@@ -26,6 +26,7 @@ constexpr double kFlat = 1e-6;      // of the hull's size: farther from a plane,
 constexpr double kSliver = 1e-4;    // of the hull's size: height of triangles that span no plane
 constexpr double kThinnest = 1e-3;  // of the hull's size: nothing flatter is a solid
 constexpr double kFarthest = 1e3;   // m
+constexpr double kSmallest = 1e-6;  // m: below it the fifth power of a size, a moment, is lost in rounding
 
 // The corners of a polygon among the points of one plane, counterclockwise about n: gift wrapping.
 int32_t wrap(const Vec3* points, const uint8_t* list, int32_t count, const Vec3& n, double flat,
@@ -74,6 +75,8 @@ class Builder {
       hull_.points[i] = points[i];
       size_ = std::max(size_, norm(points[i] - points[0]));
     }
+    if (size_ < kSmallest)
+      fail(Code::kArgument, "%s: the points are too near each other: all lie within %g m", owner, kSmallest);
   }
   Hull make() {
     const int32_t n = hull_.num_points;

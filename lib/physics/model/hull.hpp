@@ -28,8 +28,8 @@ struct Hull {
 };
 
 // Points inside the hull of the others count for nothing. Error(kArgument) where points are not finite, lie
-// in one plane, or so near each other that faces cannot be told apart; Error(kRange) for a count outside [4,
-// kMaxHullPoints] or a point farther than 1e3 m from the origin.
+// in one plane, or so near each other (all within 1e-6 m) that faces cannot be told apart; Error(kRange) for
+// a count outside [4, kMaxHullPoints] or a point farther than 1e3 m from the origin.
 Hull make_hull(const Vec3* points, int32_t count, const char* owner);
 
 // Half sizes of the box about the frame's origin that holds the hull, m.

@@ -29,11 +29,17 @@ class Sampler {
     build(1, 0, count_, 0, buckets_);
   }
 
-  // Takes the point into the chosen ones; returns the one that is then the furthest.
-  int32_t choose(const float* p) {
-    p_ = Float4{p[0], p[1], p[2], 0};
+  int32_t place_of(int32_t point) const {
+    int32_t at = 0;
+    while (s_.index[at] != point || s_.distance[at] < 0) ++at;
+    return at;
+  }
+  // Takes the point at a place into the chosen ones; returns the place of the one that is then the furthest.
+  int32_t choose(int32_t place) {
+    p_ = Float4{s_.x[place], s_.y[place], s_.z[place], 0};
+    s_.distance[place] = -1;  // behind its equals, which are at 0
     update(1);
-    return s_.index[s_.nodes[1].at];
+    return s_.nodes[1].at;
   }
 
  private:
@@ -81,7 +87,8 @@ class Sampler {
   bool in_reach(const Node& node) const {
     const Float4 gap = max(max(node.low - p_, p_ - node.high), splat(0));
     const Float4 square = gap * gap;
-    return square[0] + square[1] + square[2] < node.best;
+    return square[0] + square[1] + square[2] <=
+           node.best;  // equal: the node of a chosen point and its equals
   }
 
   // After a child or a bucket has changed.
@@ -99,22 +106,16 @@ class Sampler {
   void update_bucket(Node& node, int32_t at) {
     const Float4 px = splat(p_[0]), py = splat(p_[1]), pz = splat(p_[2]);
     Float4 most = splat(-1);
-    for (int32_t i = at; i < at + kBucket; i += rdm::kLanes) {
-      const Float4 dx = load(s_.x + i) - px, dy = load(s_.y + i) - py, dz = load(s_.z + i) - pz;
-      const Float4 d = min(load(s_.distance + i), dx * dx + dy * dy + dz * dz);
-      __builtin_memcpy(s_.distance + i, &d, sizeof d);
+    for (int32_t i = at; i < at + kBucket; i += kFloat4Lanes) {
+      const Float4 dx = load4(s_.x + i) - px, dy = load4(s_.y + i) - py, dz = load4(s_.z + i) - pz;
+      const Float4 d = min(load4(s_.distance + i), dx * dx + dy * dy + dz * dz);
+      store4(s_.distance + i, d);
       most = max(most, d);
     }
     node.best = largest(most);
     int32_t i = at;
     while (s_.distance[i] != node.best) ++i;
     node.at = i;
-  }
-
-  static Float4 load(const float* from) {
-    Float4 v;
-    __builtin_memcpy(&v, from, sizeof v);
-    return v;
   }
 
   const FurthestScratch& s_;
@@ -149,7 +150,11 @@ void sample_furthest(const float* points, int32_t count, int32_t wanted, int32_t
   Sampler sampler(scratch, count);
   sampler.build(points);
   chosen[0] = start;
-  for (int32_t i = 1; i < wanted; ++i) chosen[i] = sampler.choose(points + 3 * chosen[i - 1]);
+  int32_t place = sampler.place_of(start);
+  for (int32_t i = 1; i < wanted; ++i) {
+    place = sampler.choose(place);
+    chosen[i] = scratch.index[place];
+  }
 }
 
 }  // namespace rdm

@@ -36,7 +36,7 @@ class KeySet {
   void add(uint64_t key) {
     const uint64_t entry = key | epoch_ << 48;
     const size_t mask = (size_t{1} << bits_) - 1;
-    for (size_t at = key * 0x9e3779b97f4a7c15u >> (64 - bits_);; at = (at + 1) & mask) {
+    for (auto at = static_cast<size_t>(key * 0x9e3779b97f4a7c15u >> (64 - bits_));; at = (at + 1) & mask) {
       if (table_[at] == entry) return;
       if (table_[at] >> 48 == epoch_) continue;
       if (full()) return;

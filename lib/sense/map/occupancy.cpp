@@ -9,7 +9,7 @@
 namespace rdm {
 namespace {
 
-constexpr size_t kMinMemory = 1u << 20, kMaxMemory = size_t{64} << 30;
+constexpr double kMinMemory = 1u << 20, kMaxMemory = 64.0 * (1u << 30);  // bytes; more than 32 bits hold
 // The workspace takes about a quarter of the memory, and never more than this many voxels of a scan.
 constexpr size_t kBytesPerKey = 40, kMaxKeys = 1u << 22;
 
@@ -72,7 +72,7 @@ void Occupancy::clear() {
 }
 
 // One voxel's log-odds; the values above it follow. False, and nothing changes, when it needs memory that is
-// not there.
+// not the map's to take; std::bad_alloc, and nothing changes, when the machine has none.
 bool Occupancy::update(uint64_t packed, float change) {
   const VoxelKey key = unpack(packed);
   MapTree& tree = *tree_;
@@ -92,13 +92,23 @@ bool Occupancy::update(uint64_t packed, float change) {
     const size_t nodes = (found ? 8 : 1) * levels + (path[0] ? 0 : 1);
     if (tree.bytes() + nodes * kNodeBytes + levels * kListBytes > bytes_max_) return false;
     if (!path[0]) path[0] = tree.make_root();
-    for (; d < kMapDepth; ++d) {
-      const unsigned i = MapTree::index(key, d);
-      if (found)
-        tree.split(path[d]);
-      else
-        tree.make_child(path[d], i);
-      path[d + 1] = tree.child(path[d], i);
+    try {
+      for (; d < kMapDepth; ++d) {
+        const unsigned i = MapTree::index(key, d);
+        if (found)
+          tree.split(path[d]);
+        else
+          tree.make_child(path[d], i);
+        path[d + 1] = tree.child(path[d], i);
+      }
+    } catch (...) {  // no memory after all: back to the tree as it was
+      while (--d >= std::max(old, 0))
+        if (found)
+          tree.join(path[d]);
+        else
+          tree.drop_child(path[d], MapTree::index(key, d));
+      if (old < 0) tree.drop_root();
+      throw;
     }
   }
   path[d]->setLogOdds(std::clamp(path[d]->getLogOdds() + change, low_, high_));

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "base/arena.hpp"
+#include "base/file.hpp"
 #include "base/vec.hpp"
 #include "sense/map/key_set.hpp"
 
@@ -79,6 +80,7 @@ class Occupancy {
   // Takes both formats and the file's resolution; on an error (kFormat, or kMemory when the map does not fit)
   // nothing changes.
   void read(const void* bytes, size_t size);
+  FileLimits file_limits() const;  // of files that read() may take: Error(kMemory) beyond
 
   OccupancyInfo info() const;
 

@@ -195,6 +195,12 @@ void Occupancy::write(MapFormat format, Vector<unsigned char>& out) const {
     put_full(*tree_, root, out);
 }
 
+FileLimits Occupancy::file_limits() const {
+  // a node takes five bytes of a full file and up to two of a binary one; the header may hold comments
+  constexpr size_t kHeader = 1u << 16;
+  return {"# Octomap OcTree", 0, bytes_max_ / kNodeBytes * 5 + kHeader, Code::kMemory};
+}
+
 void Occupancy::read(const void* bytes, size_t size) {
   Source in(bytes, size);
   const Header header = read_header(in);

@@ -28,7 +28,8 @@ inline constexpr int kMapDepth = 16;
 // What the C library's allocator gives for a node, and for the list of its children.
 inline constexpr size_t kNodeBytes = 32, kListBytes = 80;
 
-// Every node but the leaves has a list of children; lists are never empty.
+// Every node but the leaves has a list of children; lists are never empty. OctoMap takes memory from operator
+// new: where that is refused, std::bad_alloc leaves the nodes that were there as they were.
 class MapTree : public octomap::OcTree {
  public:
   explicit MapTree(double resolution) : octomap::OcTree(resolution) {}
@@ -41,8 +42,28 @@ class MapTree : public octomap::OcTree {
     return root;
   }
   MapNode* make_child(MapNode* node, unsigned i) {
-    lists_ += !nodeHasChildren(node);
-    return createNodeChild(node, i);
+    const bool first = !nodeHasChildren(node);
+    try {
+      MapNode* made = createNodeChild(node, i);
+      lists_ += first;
+      return made;
+    } catch (...) {
+      if (first) drop_list(node);
+      throw;
+    }
+  }
+  // The child must have none itself.
+  void drop_child(MapNode* node, unsigned i) {
+    deleteNodeChild(node, i);
+    if (nodeHasChildren(node)) return;
+    drop_list(node);
+    --lists_;
+  }
+  void drop_root() {
+    delete root;
+    root = nullptr;
+    --tree_size;
+    size_changed = true;
   }
   // The child, or null.
   MapNode* child(MapNode* node, unsigned i) const {
@@ -52,8 +73,12 @@ class MapTree : public octomap::OcTree {
     return nodeChildExists(node, i) ? getNodeChild(node, i) : nullptr;
   }
   void split(MapNode* node) {
-    expandNode(node);
-    ++lists_;
+    for (unsigned i = 0; i < 8; ++i) try {
+        make_child(node, i)->copyData(*node);
+      } catch (...) {
+        while (i > 0) drop_child(node, --i);
+        throw;
+      }
   }
   bool join(MapNode* node) {
     if (!pruneNode(node)) return false;
@@ -72,6 +97,15 @@ class MapTree : public octomap::OcTree {
   }
 
  private:
+  // OctoMap lets nobody but its own tree at a node's list, and would leak an empty one.
+  struct Opened : MapNode {
+    static auto list() { return &Opened::children; }
+  };
+  static void drop_list(MapNode* node) {
+    auto& list = node->*Opened::list();
+    delete[] list;
+    list = nullptr;
+  }
   size_t lists_ = 0;
 };
 

@@ -22,8 +22,6 @@ namespace {
 
 using hard::Bytes;
 
-constexpr size_t kMostBytes = 1 << 16;
-
 double cpu_seconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -125,7 +123,8 @@ Bytes read_all(const std::string& path) {
   return out;
 }
 
-// Kept for the report of an input that ends the process.
+// An input; kept for the report of an input that ends the process.
+constexpr size_t kMostBytes = 1 << 16;
 Bytes g_input;
 std::string g_target;
 

@@ -1,15 +1,10 @@
-// Tasks with known answers: closed forms, or dynamics that published figures can be held against. They need
-// no physics engine; each computes its own motion.
+// Learner settings of the small worlds: what all of them share, those with a known optimum, and those of
+// published benchmarks.
 #pragma once
 #include "tasks/task_info.hpp"
 
 namespace rdm {
 
-extern const TaskInfo kBandit, kTwoState, kLqrLine;
-extern const TaskInfo kBallRun, kBallCircle, kCarRun, kSwimmerVelocity;
-extern const TaskInfo kPointGoal1, kPointGoal2, kPointButton1, kPointButton2;
-
-// Learner settings that all of them share, those with a known optimum, and those of published benchmarks.
 inline constexpr std::array kSmallLearner = {
     LearnerDefault{"hidden", "64,64"}, LearnerDefault{"activation", "tanh"},
     LearnerDefault{"lr_schedule", "linear"}, LearnerDefault{"multiplier_optimizer", "sgd"},

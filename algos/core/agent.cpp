@@ -1,8 +1,10 @@
-#include "algos/core/policy_gradient.hpp"
+#include "algos/core/agent.hpp"
 
 #include <cstring>
 
+#include "algos/algo_registry.hpp"
 #include "algos/core/fingerprint.hpp"
+#include "algos/core/option_tables.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
@@ -18,50 +20,72 @@ constexpr double kEntropyOfUnit = 1.4189385332046727;  // of a normal with devia
 
 }  // namespace
 
-void Agent::check_cancel() {
-  if (cancelled_.exchange(false, std::memory_order_relaxed)) fail(Code::kCancelled, "cancelled by the host");
+size_t Agent::memory(const AgentConfig& config) {
+  ResolvedAgentConfig resolved = resolve_config(config);
+  const size_t rows = options_bytes(resolved.row->info);
+  const AlgoRow& row = *resolved.row;
+  return row.measure(std::move(resolved)) + rows + Workers::memory(config.hooks, config.num_threads);
 }
 
-void PolicyGradient::carve(Arena& arena) {
-  nets_ = carve_networks(arena, plan_);
-  lanes_.carve(arena, plan_, nets_.size);
-  collector_.carve(arena, plan_);
-  learner_.carve(arena, plan_, nets_.size);
+Agent* Agent::create(const AgentConfig& config) {
+  const HostScope scope(config.hooks);
+  ResolvedAgentConfig resolved = resolve_config(config);
+  const AlgoRow& row = *resolved.row;
+  Agent* agent = row.make(config.hooks, std::move(resolved));
+  try {
+    agent->open(config);
+  } catch (...) {
+    row.end(agent);
+    throw;
+  }
+  return agent;
+}
+
+void Agent::destroy(Agent* a) {
+  if (a) a->resolved().row->end(a);
+}
+
+void Agent::carve(Arena& arena) {
+  nets_ = carve_networks(arena, resolved_);
+  workers_.carve(arena, resolved_, nets_.size);
+  collector_.carve(arena, resolved_);
+  learner_.carve(arena, resolved_, nets_.size);
   char* names = arena.make<char>(static_cast<size_t>(nets_.num_tensors()) * kTensorNameSize);
   names_ = reinterpret_cast<char(*)[kTensorNameSize]>(names);
 }
 
-void PolicyGradient::open(const AgentConfig& config) {
+void Agent::open(const AgentConfig& config) {
   Arena measure;
   carve(measure);
   arena_ = Arena(config.hooks, measure.used());
   carve(arena_);
-  lanes_.open(config.hooks, config.num_threads);
-  collector_.open(plan_, nets_, lanes_);
-  learner_.open(plan_, rollout(), nets_, lanes_);
-  schedule_.reset(plan_.options);
+  workers_.open(config.hooks, config.num_threads);
+  collector_.open(resolved_, nets_, workers_);
+  learner_.open(resolved_, rollout(), nets_, workers_);
+  schedule_.reset(resolved_.options);
   shuffle_ = Stream(config.seed, 0, Purpose::kMinibatch);
-  init_networks(nets_, plan_);
+  init_networks(nets_, resolved_);
   opened();
   read_live();
   TensorInfo t;
   for (int32_t i = 0; find_tensor(nets_, i, names_[i], &t);) ++i;
-  AgentConfig& c = plan_.config;
-  c.task = plan_.task;
+  AgentConfig& c = resolved_.config;
+  c.task = resolved_.task;
   c.defaults = c.options = nullptr;
   c.initial_mean = nullptr;
   c.cost_limits = nullptr;
 }
 
-void PolicyGradient::read_live() {
-  learner_.read_live(plan_.options);
-  schedule_.read_live(plan_.options);
-  if (plan_.num_limited > 0 && plan_.column[0] == 0) plan_.limit[0] = plan_.options.number("cost_limit");
+void Agent::read_live() {
+  learner_.read_live(resolved_.options);
+  schedule_.read_live(resolved_.options);
+  if (resolved_.num_limited > 0 && resolved_.column[0] == 0)
+    resolved_.limit[0] = resolved_.options.number("cost_limit");
 }
 
-void PolicyGradient::set_option(const OptionInput& option) {
+void Agent::set_option(const OptionInput& option) {
   if (!option.key) fail(Code::kArgument, "agent option: the key is NULL");
-  Options& o = plan_.options;
+  Options& o = resolved_.options;
   for (int32_t i = 0; i < o.count(); ++i)
     if (same_name(o.spec(i).key, option.key) && !o.spec(i).live)
       fail(Code::kState, "agent option %s: fixed at creation", o.spec(i).key);
@@ -75,21 +99,21 @@ void PolicyGradient::set_option(const OptionInput& option) {
   read_live();
 }
 
-void PolicyGradient::act(const float* obs, bool sample, float* action) {
+void Agent::act(const float* obs, bool sample, float* action) {
   const FpMode mode;
   collector_.act(obs, sample, action);
 }
 
-void PolicyGradient::record(const Transition& t) {
+void Agent::record(const Transition& t) {
   const FpMode mode;
   collector_.record(t);
 }
 
-void PolicyGradient::update(const float* last_obs, Epoch* out) {
+void Agent::update(const float* last_obs, Epoch* out) {
   const FpMode mode;
   if (missing() > 0) fail(Code::kState, "update: %d decisions are missing in this horizon", missing());
   if (!last_obs) fail(Code::kArgument, "last_obs: NULL");
-  check_rows("last_obs", last_obs, nullptr, plan_.config.num_envs, plan_.obs_dim());
+  check_rows("last_obs", last_obs, nullptr, resolved_.config.num_envs, resolved_.obs_dim());
   try {
     check_cancel();
     valid_rows_ = collector_.estimate(last_obs);
@@ -100,12 +124,12 @@ void PolicyGradient::update(const float* last_obs, Epoch* out) {
     learned_ = Learned();
     learn();
     if (learner_.skipped() > skipped)
-      log(plan_.config.hooks, LogLevel::kWarning, "update: %lld gradients were not finite and left out",
+      log(resolved_.config.hooks, LogLevel::kWarning, "update: %lld gradients were not finite and left out",
           static_cast<long long>(learner_.skipped() - skipped));
     if (learned_.passes > 0) schedule_.adapt(learned_.mean.kl);
     collector_.episodes().mark();
     ++epoch_;
-    schedule_std(nets_, plan_.options, epoch_);
+    schedule_std(nets_, resolved_.options, epoch_);
     if (out) fill_epoch(stats, rate, out);
   } catch (...) {
     drop_horizon();
@@ -114,15 +138,15 @@ void PolicyGradient::update(const float* last_obs, Epoch* out) {
   drop_horizon();
 }
 
-void PolicyGradient::begin_epoch(const EpisodeStats&, int32_t) {
+void Agent::begin_epoch(const EpisodeStats&, int32_t) {
   const Rollout& r = rollout();
   const auto n = static_cast<size_t>(r.samples());
   std::memcpy(r.gain, r.advantage, n * sizeof(float));
   std::memset(r.linear, 0, n * sizeof(float));
 }
 
-BatchSums PolicyGradient::pass(const PolicyLoss* policy) {
-  const int32_t count = valid_rows_, parts = std::min(plan_.options.integer("minibatches"), count);
+BatchSums Agent::pass(const PolicyLoss* policy) {
+  const int32_t count = valid_rows_, parts = std::min(resolved_.options.integer("minibatches"), count);
   const int32_t size = (count + parts - 1) / parts;
   const double rate = schedule_.rate(epoch_);
   int32_t* order = rollout().order;
@@ -139,17 +163,17 @@ BatchSums PolicyGradient::pass(const PolicyLoss* policy) {
   return sums;
 }
 
-double PolicyGradient::violation(const EpisodeStats& stats, int32_t i) const {
-  const double gap = stats.finished > 0 ? stats.charged_cost[plan_.column[i]] - plan_.limit[i] : 0;
-  const char* scale = plan_.options.text("violation_scale");
+double Agent::violation(const EpisodeStats& stats, int32_t i) const {
+  const double gap = stats.finished > 0 ? stats.charged_cost[resolved_.column[i]] - resolved_.limit[i] : 0;
+  const char* scale = resolved_.options.text("violation_scale");
   if (std::strcmp(scale, "raw") == 0) return gap;
   if (std::strcmp(scale, "discount") == 0)
-    return gap * (1 - elementary::pow(plan_.options.number("discount"), plan_.action_repeat));
-  return gap / std::max(1.0, stats.length / plan_.action_repeat);
+    return gap * (1 - elementary::pow(resolved_.options.number("discount"), resolved_.action_repeat));
+  return gap / std::max(1.0, stats.length / resolved_.action_repeat);
 }
 
-void PolicyGradient::learn() {
-  const Options& o = plan_.options;
+void Agent::learn() {
+  const Options& o = resolved_.options;
   const double stop = o.number("early_stop_kl"), count = valid_rows_;
   BatchSums all, last;
   while (valid_rows_ > 0 && learned_.passes < o.integer("passes")) {
@@ -163,8 +187,8 @@ void PolicyGradient::learn() {
   learned_.mean = all.scaled(1 / (count * learned_.passes));
 }
 
-void PolicyGradient::fill_spread(Epoch& e) const {
-  const int32_t dim = plan_.config.action_dim;
+void Agent::fill_spread(Epoch& e) const {
+  const int32_t dim = resolved_.config.action_dim;
   const auto add = [&](const float* log_std, double share, double count) {
     for (int32_t j = 0; j < dim; ++j) {
       const auto l = static_cast<double>(log_std[j]);
@@ -172,7 +196,7 @@ void PolicyGradient::fill_spread(Epoch& e) const {
       e.entropy += (l + share + kEntropyOfUnit) / count;
     }
   };
-  const auto share = static_cast<double>(plan_.log_share);
+  const auto share = static_cast<double>(resolved_.log_share);
   if (!nets_.state_std()) return add(nets_.log_std(), share, 1);
   const Rollout& r = rollout();
   for (int32_t i = 0; i < valid_rows_; ++i)
@@ -180,7 +204,7 @@ void PolicyGradient::fill_spread(Epoch& e) const {
   e.action_std *= elementary::exp(-share);
 }
 
-void PolicyGradient::fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const {
+void Agent::fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const {
   const Rollout& r = rollout();
   Epoch e;
   e.epoch = epoch_;
@@ -192,7 +216,7 @@ void PolicyGradient::fill_epoch(const EpisodeStats& stats, double rate, Epoch* o
   e.length = stats.length;
   e.fall_rate = stats.fall_rate;
   e.success_rate = stats.success_rate;
-  for (int32_t i = 0; i < plan_.num_limited; ++i) e.multiplier[plan_.column[i]] = cost_weight(i);
+  for (int32_t i = 0; i < resolved_.num_limited; ++i) e.multiplier[resolved_.column[i]] = cost_weight(i);
   fill_spread(e);
   e.kl = learned_.last_kl;
   e.learning_rate = rate;
@@ -206,14 +230,14 @@ void PolicyGradient::fill_epoch(const EpisodeStats& stats, double rate, Epoch* o
   *out = e;
 }
 
-bool PolicyGradient::tensor(int32_t index, TensorInfo* out) {
+bool Agent::tensor(int32_t index, TensorInfo* out) {
   char name[kTensorNameSize];
   if (!find_tensor(nets_, index, name, out)) return false;
   out->name = names_[index];
   return true;
 }
 
-void PolicyGradient::visit_state(StateIo& io) {
+void Agent::visit_state(StateIo& io) {
   io.section("COUN");
   io.integer(epoch_, 0, kMaxEpochs);
   io.stream(shuffle_);
@@ -223,33 +247,33 @@ void PolicyGradient::visit_state(StateIo& io) {
   schedule_.visit(io);
 }
 
-void PolicyGradient::save(Writer& out) const {
+void Agent::save(Writer& out) const {
   if (!collector_.idle()) fail(Code::kState, "save: only between epochs; this horizon has begun");
   out.begin_file(kMagic, kVersion);
-  write_fingerprint(out, plan_);
+  write_fingerprint(out, resolved_);
   StateWriter io(out);
   // The listing is shared with load; a StateWriter only reads.
-  const_cast<PolicyGradient*>(this)->visit_state(io);
+  const_cast<Agent*>(this)->visit_state(io);
   io.end();
   out.end_file();
 }
 
-void PolicyGradient::read_state(const void* bytes, size_t size, bool apply) {
+void Agent::read_state(const void* bytes, size_t size, bool apply) {
   Reader in(bytes, size, "agent state");
   in.begin_file(kMagic, kVersion);
-  read_fingerprint(in, plan_, apply);
+  read_fingerprint(in, resolved_, apply);
   if (apply) read_live();
   StateReader io(in, apply);
   visit_state(io);
   io.end();
 }
 
-void PolicyGradient::check_state(const void* bytes, size_t size) {
+void Agent::check_state(const void* bytes, size_t size) {
   if (!bytes) fail(Code::kArgument, "agent state: NULL");
   read_state(bytes, size, false);
 }
 
-void PolicyGradient::load(const void* bytes, size_t size) {
+void Agent::load(const void* bytes, size_t size) {
   check_state(bytes, size);
   read_state(bytes, size, true);
   collector_.after_load();
@@ -257,8 +281,8 @@ void PolicyGradient::load(const void* bytes, size_t size) {
   drop_horizon();
 }
 
-void PolicyGradient::write_policy_file(Writer& out) {
-  const HostScope scope(plan_.config.hooks);
+void Agent::write_policy_file(Writer& out) {
+  const HostScope scope(resolved_.config.hooks);
   const Normalizer& n = collector_.normalizer();
   PolicyView v;
   v.actor = nets_.shape[Networks::kActor];
@@ -270,11 +294,11 @@ void PolicyGradient::write_policy_file(Writer& out) {
   v.shift = n.shift;
   v.scale = n.scale;
   v.clip = collector_.normalizes() ? n.clip : 0;
-  v.action_repeat = plan_.action_repeat;
-  v.noise_correlation = static_cast<float>(plan_.options.number("noise_correlation"));
-  v.control_dt = plan_.config.control_dt;
-  v.layout_hash = plan_.config.layout_hash;
-  std::memcpy(v.task, plan_.task, sizeof v.task);
+  v.action_repeat = resolved_.action_repeat;
+  v.noise_correlation = static_cast<float>(resolved_.options.number("noise_correlation"));
+  v.control_dt = resolved_.config.control_dt;
+  v.layout_hash = resolved_.config.layout_hash;
+  std::memcpy(v.task, resolved_.task, sizeof v.task);
   v.example_obs = n.shift;
   write_policy(out, v);
 }

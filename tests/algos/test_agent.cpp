@@ -55,7 +55,7 @@ bool same_bytes(const std::vector<float>& a, const std::vector<float>& b) {
 
 }  // namespace
 
-TEST(PolicyGradient, SameBytesForAnyThreadsAndAnySchedule) {
+TEST(Agent, SameBytesForAnyThreadsAndAnySchedule) {
   const std::vector<float> wanted = play(lag(), 4);
   for (const float x : wanted) ASSERT_TRUE(std::isfinite(x));
   for (const int32_t threads : {1, 2, 3, 4, 8})
@@ -73,7 +73,7 @@ TEST(PolicyGradient, SameBytesForAnyThreadsAndAnySchedule) {
   EXPECT_FALSE(same_bytes(play(std::move(other), 4), wanted));
 }
 
-TEST(PolicyGradient, ActionsDoNotDependOnThreads) {
+TEST(Agent, ActionsDoNotDependOnThreads) {
   AgentSetup one = lag(), four = lag(4);
   const AgentPtr a = one.make(), b = four.make();
   NoiseWorld v(one.config), w(four.config);
@@ -85,7 +85,7 @@ TEST(PolicyGradient, ActionsDoNotDependOnThreads) {
   }
 }
 
-TEST(PolicyGradient, ResumeEqualsUnbroken) {
+TEST(Agent, ResumeEqualsUnbroken) {
   AgentSetup s = lag();
   const AgentPtr whole = s.make();
   NoiseWorld world(s.config);
@@ -109,7 +109,7 @@ TEST(PolicyGradient, ResumeEqualsUnbroken) {
   EXPECT_EQ(saved(*whole), saved(*resumed));
 }
 
-TEST(PolicyGradient, SaveOnlyBetweenEpochs) {
+TEST(Agent, SaveOnlyBetweenEpochs) {
   AgentSetup s = lag();
   const AgentPtr a = s.make();
   NoiseWorld world(s.config);
@@ -124,7 +124,7 @@ TEST(PolicyGradient, SaveOnlyBetweenEpochs) {
   EXPECT_NO_THROW(saved(*a));
 }
 
-TEST(PolicyGradient, BadBytesChangeNothing) {
+TEST(Agent, BadBytesChangeNothing) {
   AgentSetup s = lag();
   const AgentPtr a = s.make(), b = s.make();
   NoiseWorld world(s.config);
@@ -148,7 +148,7 @@ TEST(PolicyGradient, BadBytesChangeNothing) {
   EXPECT_NE(t.text.find("num_envs"), std::string::npos) << t.text;
 }
 
-TEST(PolicyGradient, NoHeapInActRecordUpdate) {
+TEST(Agent, NoHeapInActRecordUpdate) {
   if (!kHeapIsCounted) GTEST_SKIP() << "the heap is the sanitizer's here";
   for (const int32_t threads : {0, 2}) {
     AgentSetup s = lag(threads);
@@ -163,7 +163,7 @@ TEST(PolicyGradient, NoHeapInActRecordUpdate) {
   }
 }
 
-TEST(PolicyGradient, EpochTellsWhatHappened) {
+TEST(Agent, EpochTellsWhatHappened) {
   AgentSetup s = lag();
   const AgentPtr a = s.make();
   NoiseWorld world(s.config);
@@ -190,14 +190,14 @@ TEST(PolicyGradient, EpochTellsWhatHappened) {
 }
 
 // A regression test of a peer that went through the data in the order in which they were collected.
-TEST(PolicyGradient, EveryPassIsShuffled) {
+TEST(Agent, EveryPassIsShuffled) {
   struct Probe : Ppo {
     using Ppo::Ppo;
     using Ppo::rollout;
   };
   AgentSetup s("ppo", 6, 3, 40);
   s.with("horizon", "12").with("hidden", "8").with("passes", "1");
-  Probe a(make_plan(s.ready()));
+  Probe a(resolve_config(s.ready()));
   a.open(s.config);
   NoiseWorld world(s.config);
   std::vector<std::vector<int32_t>> orders;
@@ -215,7 +215,7 @@ TEST(PolicyGradient, EveryPassIsShuffled) {
   EXPECT_NE(orders[0], orders[1]);
 }
 
-TEST(PolicyGradient, EarlyStopEndsThePasses) {
+TEST(Agent, EarlyStopEndsThePasses) {
   AgentSetup s = lag();
   const AgentPtr a = s.with("passes", "50").with("early_stop_kl", "0.001").make();
   NoiseWorld world(s.config);
@@ -225,7 +225,7 @@ TEST(PolicyGradient, EarlyStopEndsThePasses) {
   EXPECT_GE(e.passes, 1);
 }
 
-TEST(PolicyGradient, OrderOfCalls) {
+TEST(Agent, OrderOfCalls) {
   AgentSetup s = lag();
   const AgentPtr a = s.make();
   NoiseWorld world(s.config);
@@ -242,7 +242,7 @@ TEST(PolicyGradient, OrderOfCalls) {
   EXPECT_EQ(a->missing(), 12);
 }
 
-TEST(PolicyGradient, CancelDropsTheHorizonAndTheAgentGoesOn) {
+TEST(Agent, CancelDropsTheHorizonAndTheAgentGoesOn) {
   AgentSetup s = lag();
   const AgentPtr a = s.make();
   NoiseWorld world(s.config);
@@ -258,7 +258,7 @@ TEST(PolicyGradient, CancelDropsTheHorizonAndTheAgentGoesOn) {
   EXPECT_EQ(e.epoch, 2);
 }
 
-TEST(PolicyGradient, LiveOptions) {
+TEST(Agent, LiveOptions) {
   AgentSetup s = lag();
   const AgentPtr a = s.make();
   a->set_option({"Cost-Limit", "1000", 0});
@@ -280,7 +280,7 @@ TEST(PolicyGradient, LiveOptions) {
   EXPECT_TRUE(same_bytes(parameters(*a), before));
 }
 
-TEST(PolicyGradient, TensorsAreTheNetwork) {
+TEST(Agent, TensorsAreTheNetwork) {
   AgentSetup s = lag();
   const AgentPtr a = s.make();
   TensorInfo t;
@@ -300,7 +300,7 @@ TEST(PolicyGradient, TensorsAreTheNetwork) {
   EXPECT_FLOAT_EQ(t.data[1], std::log(10.0f));
 }
 
-TEST(PolicyGradient, WeightsThatAreNotFiniteAreReportedAndNotSpread) {
+TEST(Agent, WeightsThatAreNotFiniteAreReportedAndNotSpread) {
   AgentSetup s = lag();
   std::string line;
   s.config.hooks.user = &line;
@@ -323,7 +323,7 @@ TEST(PolicyGradient, WeightsThatAreNotFiniteAreReportedAndNotSpread) {
   EXPECT_EQ(broken, 1u);
 }
 
-TEST(PolicyGradient, PolicyFileActsAsTheAgent) {
+TEST(Agent, PolicyFileActsAsTheAgent) {
   AgentSetup s = lag();
   s.config.task = "noise";
   s.config.layout_hash = 1234;
@@ -352,7 +352,7 @@ TEST(PolicyGradient, PolicyFileActsAsTheAgent) {
 }
 
 // At a rate of 0 the policy that is learned is the one that acted: no KL, and a mean advantage of 0.
-TEST(PolicyGradient, StateDeviationsActAsTheyAreLearned) {
+TEST(Agent, StateDeviationsActAsTheyAreLearned) {
   for (const int32_t threads : {0, 2}) {
     AgentSetup s = lag();
     s.config.num_threads = threads;
@@ -377,7 +377,7 @@ TEST(PolicyGradient, StateDeviationsActAsTheyAreLearned) {
 
 // One step per episode, observation -1 or 1; only at 1 does the action matter, and only at 1 does noise cost.
 // The deviations are those of the policy file.
-TEST(PolicyGradient, StateDeviationsFallWhereNoiseCosts) {
+TEST(Agent, StateDeviationsFallWhereNoiseCosts) {
   for (const char* algo : {"ppo_lag", "cpo"}) {
     constexpr int32_t kEnvs = 50;
     AgentSetup s(algo, 1, 1, kEnvs);
@@ -414,7 +414,7 @@ TEST(PolicyGradient, StateDeviationsFallWhereNoiseCosts) {
   }
 }
 
-TEST(PolicyGradient, ConfigIsCopied) {
+TEST(Agent, ConfigIsCopied) {
   const auto a = [] {
     AgentSetup s = lag();
     std::string task = "some_task";
@@ -430,7 +430,7 @@ TEST(PolicyGradient, ConfigIsCopied) {
   EXPECT_EQ(a->config().num_envs, 40);
 }
 
-TEST(PolicyGradient, AHorizonOfDeadRowsTeachesNothing) {
+TEST(Agent, AHorizonOfDeadRowsTeachesNothing) {
   AgentSetup s = lag();
   const AgentPtr a = s.make();
   NoiseWorld world(s.config);

@@ -1,0 +1,66 @@
+// What goes into an agent and comes out of it, and the list of algorithms as others see it.
+#pragma once
+#include <cstdint>
+
+#include "base/option.hpp"
+
+namespace rdm {
+
+inline constexpr int kMaxActions = 1024;
+inline constexpr int kMaxCosts = 16;  // = RDM_MAX_COSTS
+
+// One row of the registry of algorithms.
+struct AlgoInfo {
+  const char* name;
+  const char* summary;
+  const OptionSpec* options;  // the whole table: shared options first, then the algorithm's own
+  int32_t num_options;
+};
+int32_t algo_count();
+const AlgoInfo& algo_at(int32_t index);
+// Error(kNotFound) with the nearest name.
+int32_t algo_find(const char* name);
+
+struct AgentConfig {
+  int32_t obs_dim = 0, action_dim = 0, cost_dim = 1, num_envs = 0, num_threads = 0;
+  const char* algo = "ppo_lag";
+  const char* task = "";
+  uint64_t seed = 0, layout_hash = 0;
+  float control_dt = 0;
+  int32_t max_steps = 0;
+  const float* initial_mean = nullptr;    // [action_dim] or null
+  const OptionInput* defaults = nullptr;  // laid under options; keys of other algorithms are skipped
+  int32_t num_defaults = 0;
+  const OptionInput* options = nullptr;
+  int32_t num_options = 0;
+  const double* cost_limits = nullptr;  // [cost_dim] or null; < 0: none
+  HostHooks hooks;
+};
+
+struct Transition {
+  const float* reward = nullptr;  // [num_envs]
+  const float* cost = nullptr;    // [num_envs][cost_dim]
+  const uint8_t *terminated = nullptr, *truncated = nullptr, *valid = nullptr, *success = nullptr;
+  const float* final_obs = nullptr;  // [num_envs][obs_dim]
+  const int32_t* steps = nullptr;    // [num_envs]
+};
+
+// Field by field the public rdm_epoch, without struct_size.
+struct Epoch {
+  int32_t epoch = 0;
+  int64_t env_steps = 0, episodes = 0;
+  double ret = 0, cost[kMaxCosts] = {}, cost_per_step = 0, length = 0, fall_rate = 0, success_rate = 0;
+  double multiplier[kMaxCosts] = {};
+  double kl = 0, entropy = 0, learning_rate = 0, action_std = 0;
+  double loss_policy = 0, loss_reward_value = 0, loss_cost_value = 0, clip_fraction = 0;
+  double value_reward = 0, value_cost = 0;
+  int32_t passes = 0;
+};
+
+struct TensorInfo {
+  const char* name;
+  int32_t rows, cols;
+  float* data;
+};
+
+}  // namespace rdm

@@ -1,0 +1,44 @@
+# Reads the public header and writes, for the halves that a build leaves out, the functions that say so.
+# -v sim=0|1 -v learn=0|1: which halves there are. A function belongs to a half by its name; one of agents that
+# takes a pool needs both. The two config_init functions are in every build, and what has no half is too.
+function half_of(name, parameters) {
+  if (name ~ /^rdm_(pool|agent)_config_init$/) return ""
+  if (name ~ /^rdm_agent_/ && parameters ~ /rdm_pool/) return sim ? (learn ? "" : "learning") : "simulation"
+  if (name ~ /^rdm_(task|robot|object|pool|map|sample)_/) return sim ? "" : "simulation"
+  if (name ~ /^rdm_(algo|agent|policy|checkpoint)_/) return learn ? "" : "learning"
+  return ""
+}
+
+function body_of(type, half) {
+  if (type == "void") return "{}"
+  if (type == "rdm_result") return "{\n  return left_out(\"" half "\");\n}"
+  if (type ~ /char/) return "{\n  return \"this build was made without the " half " half\";\n}"
+  return "{\n  return 0;\n}"
+}
+
+function declared(text,   type, name, parameters, half) {
+  gsub(/\/\*[^*]*\*+([^\/*][^*]*\*+)*\//, "", text)
+  gsub(/[ \t]+/, " ", text)
+  sub(/^RDM_API /, "", text)
+  sub(/ *;.*/, "", text)
+  match(text, /rdm_[a-z_0-9]+\(/)
+  type = substr(text, 1, RSTART - 1)
+  name = substr(text, RSTART, RLENGTH - 1)
+  parameters = substr(text, RSTART + RLENGTH)
+  sub(/ $/, "", type)
+  half = half_of(name, parameters)
+  if (half != "") print text " " body_of(type, half)
+}
+
+BEGIN {
+  print "// The functions of the halves that this build leaves out: they exist and say so. Written by capi/stubs.awk."
+  print "#include \"capi/abi_call.hpp\"\n\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"\n"
+  print "static rdm_result left_out(const char* half) {"
+  print "  return rdm::capi::call(nullptr, [half] { rdm::capi::left_out(half); });\n}"
+}
+{ sub(/\r$/, "") }
+statement == "" && /^RDM_API/ { statement = " " }
+statement != "" {
+  statement = statement " " $0
+  if (/;/) { sub(/^ */, "", statement); declared(statement); statement = "" }
+}

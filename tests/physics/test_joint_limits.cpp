@@ -1,0 +1,158 @@
+// The drive law is written twice: as the row of ODE's motor (physics/model/drive.cpp) and in the lanes of the
+// articulated engine. Here the two are held against each other.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+#include "base/rng.hpp"
+#include "physics/articulated/world_state.hpp"
+#include "physics/model/drive.hpp"
+// after every header with code
+#include "physics/articulated/joint_limits.inl"
+
+namespace rdm {
+namespace {
+
+using L = Simd<double, 1>;
+
+// Two joints side by side, the second of which may follow the first; unit lanes, no contacts.
+struct TwoJoints {
+  TwoJoints() {
+    tree.num_links = tree.num_coords = 2;
+    for (int i = 0; i < 2; ++i) {
+      tree.links.push_back({});
+      tree.row.push_back(i);
+      tree.depth.push_back(0);
+      tree.path.push_back(static_cast<int16_t>(i));
+    }
+    batch.tree = &tree;
+    batch.model = model;
+    batch.state = state;
+    batch.work = work;
+    batch.coord = coord;
+    batch.mass_matrix = mass_matrix;
+    batch.factor = factor;
+  }
+  void set(int i, const JointDef& joint) {
+    model[i].kp = joint.kp;
+    model[i].kd = joint.kd;
+    model[i].effort = joint.effort;
+    model[i].lower = joint.lower;
+    model[i].upper = joint.upper;
+    model[i].friction = joint.friction;
+    model[i].ratio = joint.ratio;
+    model[i].slack = joint.slack;
+    tree.links[static_cast<size_t>(i)].coupled_to = joint.coupled_to;
+  }
+  void set(const SolverDef& solver) {
+    batch.h = solver.h;
+    batch.inv_h = 1 / solver.h;
+    batch.limit_stiffness = solver.limit_stiffness;
+    batch.spring_only = solver.spring_only_effort;
+  }
+
+  Tree tree;
+  LinkModel<L> model[2] = {};
+  PersistentLink<double> state[2] = {};
+  LinkWork<double> work[2] = {};
+  CoordWork<double> coord[2] = {};
+  double mass_matrix[2] = {1, 1}, factor[2] = {};
+  TreeBatch<L> batch = {};
+};
+
+// What holds the law: the torque that a rate gives, the rate that a substep ends with, and the torque
+// reported.
+TEST(JointLimits, DriveLawIsThatOfTheMotorRow) {
+  Stream random(31, 0, Purpose::kTest);
+  int bounded_drives = 0, rubbing = 0;
+  for (int k = 0; k < 20000; ++k) {
+    SolverDef solver;
+    solver.h = 1.0 / (60 << random.below(4));
+    solver.spring_only_effort = k % 3 == 0;
+    JointDef joint;
+    joint.lower = -1.5;
+    joint.upper = 1.6;
+    joint.kp = 20 * random.uniform();
+    joint.kd = random.uniform();
+    joint.effort = 3 * random.uniform();
+    joint.friction = k % 2 ? 0.1 * random.uniform() : 0;
+    joint.ratio = 1 + 0.2 * random.signed_unit();
+    joint.slack = 0.2 * random.uniform();
+    TwoJoints two;
+    two.set(solver);
+    two.set(0, joint);
+    joint.coupled_to = k % 5 == 0 ? 0 : -1;
+    two.set(1, joint);
+    const double q[2] = {random.signed_unit(), random.signed_unit()},
+                 qd[2] = {5 * random.signed_unit(), (k % 7 ? 5 : 0.1) * random.signed_unit()};
+    const double target = 2 * random.signed_unit(), inertia = 0.001 + 0.1 * random.uniform();
+    for (int i = 0; i < 2; ++i) {
+      two.work[i].q = q[i];
+      two.work[i].target = target;
+      two.coord[i].qd = qd[i];
+      two.mass_matrix[i] = inertia;
+    }
+    joint_drives(two.batch);
+    const double clamped = target < joint.lower ? joint.lower : target > joint.upper ? joint.upper : target;
+    const double wanted =
+        joint.coupled_to < 0 ? clamped : coupled_target(joint, q[1], q[0] + solver.h * qd[0]);
+    const MotorRow row = motor_row(joint, solver, q[1], qd[1], wanted);
+    const LinkWork<double>& drive = two.work[1];
+    ASSERT_NEAR(drive.gain, row.gain, 1e-13 * (1 + row.gain)) << k;
+    ASSERT_NEAR(drive.spring, row.gain * row.velocity, 1e-12 * (1 + std::fabs(drive.spring))) << k;
+    if (!solver.spring_only_effort) {
+      ASSERT_EQ(drive.bound, row.force) << k;
+    }
+    // the substep's end, of a lone inertia
+    solve_without_contacts(two.batch);
+    joint_torques(two.batch, 1.0);
+    const double v1 = two.coord[1].v1, torque = motor_torque(row, v1);
+    ASSERT_NEAR(drive.torque, torque, 1e-11 * (1 + std::fabs(torque))) << k;
+    ASSERT_NEAR(inertia * (v1 - qd[1]), solver.h * torque, 1e-12) << k;
+    bounded_drives += two.state[1].saturated != 0;
+    rubbing += joint.friction > 0 && std::fabs(v1) < kFrictionSpeed;
+  }
+  EXPECT_GT(bounded_drives, 2000);
+  EXPECT_GT(rubbing, 100);
+}
+
+// At an end of the range the limit's spring pushes inward with stiffness times what is beyond, at the angle
+// that the substep ends with, and lets go once nothing is beyond.
+TEST(JointLimits, LimitIsASpringAtTheSubstepsEnd) {
+  Stream random(32, 0, Purpose::kTest);
+  int held = 0;
+  for (int k = 0; k < 5000; ++k) {
+    SolverDef solver;
+    JointDef joint;
+    joint.lower = -0.5;
+    joint.upper = 0.7;
+    TwoJoints two;
+    two.set(solver);
+    two.set(0, joint);
+    two.set(1, joint);
+    const double q = random.signed_unit(), qd = 20 * random.signed_unit(),
+                 inertia = 0.01 + 0.1 * random.uniform();
+    for (int i = 0; i < 2; ++i) {
+      two.work[i].q = q;
+      two.coord[i].qd = qd;
+      two.mass_matrix[i] = inertia;
+    }
+    joint_drives(two.batch);
+    solve_without_contacts(two.batch);
+    joint_torques(two.batch, 1.0);
+    const double next = q + solver.h * two.coord[1].v1;
+    const double beyond = next < joint.lower   ? joint.lower - next
+                          : next > joint.upper ? joint.upper - next
+                                               : 0;
+    ASSERT_NEAR(two.work[1].torque, solver.limit_stiffness * beyond, 1e-9) << k;
+    ASSERT_NEAR(inertia * (two.coord[1].v1 - qd), solver.h * two.work[1].torque, 1e-9) << k;
+    ASSERT_EQ(two.state[1].limited, beyond > 0 ? -1 : beyond < 0 ? 1 : 0) << k;
+    held += beyond != 0;
+  }
+  EXPECT_GT(held, 1000);
+}
+
+}  // namespace
+}  // namespace rdm
