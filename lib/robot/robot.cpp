@@ -4,13 +4,10 @@
 #include <cstring>
 
 #include "base/error.hpp"
-#include "base/option.hpp"
 #include "physics/model/inertia.hpp"
 
 namespace rdm {
 namespace {
-
-constexpr int kMaxNames = 128;
 
 const Robot* const kRobots[] = {&kShadowHand};
 
@@ -91,15 +88,6 @@ void hang(ArticulationDef* def, const Pose& X_BR) {
     if (s.link < 0) s.shape.X_LS = X_BR * s.shape.X_LS;
 }
 
-int32_t find_named(const char* kind, const char* owner, const char* name, const char* const* names,
-                   int32_t count) {
-  for (int32_t i = 0; i < count; ++i)
-    if (same_name(names[i], name)) return i;
-  const int32_t near = nearest_name(name, names, count);
-  fail(Code::kNotFound, "%s: no %s is called %s; nearest is %s", owner, kind, name,
-       near < 0 ? "none" : names[near]);
-}
-
 }  // namespace
 
 Vec3 mirrored_point(const Vec3& p, int32_t axis) {
@@ -136,18 +124,6 @@ int32_t Robot::action_of(int32_t link) const {
   return entry;
 }
 
-int32_t Robot::find_link(const char* link) const {
-  const char* names[kMaxNames];
-  for (int32_t i = 0; i < links.count; ++i) names[i] = links[i].name;
-  return find_named("link", name, link, names, links.count);
-}
-
-int32_t Robot::find_joint(const char* joint) const {
-  const char* names[kMaxNames];
-  for (int32_t i = 0; i < links.count; ++i) names[i] = links[i].joint;
-  return find_named("joint", name, joint, names, links.count);
-}
-
 ArticulationDef make_articulation(const Robot& robot, Side side, const Pose& X_WB, const char* prefix) {
   if (side == Side::kLeft && robot.mirror < 0)
     fail(Code::kUnsupported, "%s: this robot has no left side", robot.name);
@@ -179,12 +155,6 @@ int32_t num_robots() {
 const Robot& robot(int32_t i) {
   if (i < 0 || i >= num_robots()) fail(Code::kArgument, "robot %d does not exist", i);
   return *kRobots[i];
-}
-
-const Robot& find_robot(const char* name) {
-  const char* names[kMaxNames];
-  for (int32_t i = 0; i < num_robots(); ++i) names[i] = kRobots[i]->name;
-  return *kRobots[find_named("robot", "robots", name, names, num_robots())];
 }
 
 }  // namespace rdm

@@ -93,8 +93,6 @@ struct Robot {
   Table<RobotTip> tips;  // in the order of the fingers; they carry the force sensors
   int32_t palm = -1;     // link, -1: none
   Vec3 p_palm;           // centre of the palm's surface, in that link
-  Pose X_RM;             // mount frame in the root frame: z towards the fingers
-  Pose X_LF;             // arms: flange in the last link: z out of the arm
   int32_t mirror = -1;   // root axis normal to the mirror plane of a left hand, -1: no sides
 
   // Of hands; empty for anything else.
@@ -109,8 +107,6 @@ struct Robot {
   int32_t actuated(int32_t i) const;
   // The other way round: place of a link's joint in action order, -1: none, or no such link.
   int32_t action_of(int32_t link) const;
-  int32_t find_link(const char* name) const;   // Error(kNotFound)
-  int32_t find_joint(const char* name) const;  // Error(kNotFound) names the nearest
 };
 
 // The robot at X_WB; every link, joint and shape name gets the prefix ("right_"). A left one is the exact
@@ -126,7 +122,6 @@ Quat mirrored_turn(const Quat& q, int32_t axis);
 // One row for each table in the library.
 int32_t num_robots();
 const Robot& robot(int32_t i);
-const Robot& find_robot(const char* name);  // Error(kNotFound) names the nearest
 
 extern const Robot kShadowHand;
 

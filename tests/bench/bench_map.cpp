@@ -163,13 +163,13 @@ Error2 map_error(Pool& pool, double resolution) {
   double points = 0, free = 0, wrong = 0;
   for (const Scan& s : scans)
     for (size_t i = 0; i < s.points.size(); i += 3, ++points)
-      e.missed += !map->occupied(map->at({s.points[i], s.points[i + 1], s.points[i + 2]}));
+      e.missed += map->at({s.points[i], s.points[i + 1], s.points[i + 2]}) < 0.5f;
   e.missed /= points;
   for (double x = -0.3; x < 0.3; x += 0.011)
     for (double y = -1; y < 0; y += 0.011)
       for (double z = 0.3; z < 0.7; z += 0.011) {
         const float p = map->at({x, y, z});
-        if (p < 0 || map->occupied(p)) continue;
+        if (p < 0 || p >= 0.5f) continue;
         ++free;
         wrong += surface({x, y, z}) < -resolution;
       }

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "env/options/robot.hpp"
+#include "robot_rows.hpp"
 
 namespace rdm {
 namespace {
@@ -39,8 +40,8 @@ TEST(RobotOptions, DefaultsAreTheTables) {
 }
 
 TEST(RobotOptions, ReachJointsAndLinks) {
-  const auto joint = static_cast<size_t>(kShadowHand.find_joint("FFJ2"));
-  const auto link = static_cast<size_t>(kShadowHand.find_link("ff_middle"));
+  const auto joint = static_cast<size_t>(joint_row(kShadowHand, "FFJ2"));
+  const auto link = static_cast<size_t>(link_row(kShadowHand, "ff_middle"));
   const ArticulationDef def = hand_with({{"joint.FFJ2.kp", nullptr, 3},
                                          {"joint.ffj2.kd", nullptr, 0.2},
                                          {"joint.FFJ2.effort", nullptr, 0.4},

@@ -5,15 +5,14 @@
 
 #include "base/error.hpp"
 #include "robot/robot.hpp"
+#include "robot_rows.hpp"
 #include "two_hands.hpp"
 
 namespace rdm {
 namespace {
 
-TEST(Robot, IsFoundByName) {
-  EXPECT_EQ(&find_robot("shadow_hand"), &kShadowHand);
-  EXPECT_EQ(&find_robot("Shadow-Hand"), &kShadowHand);
-  EXPECT_THROW(find_robot("octopus"), Error);
+TEST(Robot, IsFoundByNumber) {
+  EXPECT_EQ(&robot(0), &kShadowHand);
   EXPECT_THROW(robot(-1), Error);
   EXPECT_THROW(robot(num_robots()), Error);
 }
@@ -33,8 +32,8 @@ TEST(Robot, TablesAreSound) {
     }
     EXPECT_GT(std::strlen(table.help), 0u);
     for (int32_t i = 0; i < table.links.count; ++i) {
-      EXPECT_EQ(table.find_joint(table.links[i].joint), i);
-      EXPECT_EQ(table.find_link(table.links[i].name), i);
+      EXPECT_EQ(joint_row(table, table.links[i].joint), i);  // no name stands twice
+      EXPECT_EQ(link_row(table, table.links[i].name), i);
     }
   }
 }
@@ -90,7 +89,6 @@ TEST(Robot, NamesGetThePrefix) {
   EXPECT_TRUE(def.links[0].name == "left_wrist");
   EXPECT_TRUE(def.links[0].joint.name == "left_WRJ1");
   EXPECT_TRUE(def.shapes[0].shape.name == "left_forearm");
-  EXPECT_THROW(kShadowHand.find_joint("FFJ9"), Error);
 }
 
 TEST(Robot, MirrorTwiceIsTheSame) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "robot_rows.hpp"
 #include "two_hands.hpp"
 
 namespace rdm {
@@ -26,15 +27,15 @@ void bent_pose(double* q) {
     q[base + 1] = q[base + 2] = 0.5;
     q[base + 3] = 0.571;
   }
-  q[kShadowHand.find_joint("WRJ1")] = -0.2;
-  q[kShadowHand.find_joint("WRJ0")] = 0.3;
-  q[kShadowHand.find_joint("LFJ4")] = 0.4;
-  q[kShadowHand.find_joint("FFJ3")] = 0.1;
-  q[kShadowHand.find_joint("THJ4")] = 0.5;
-  q[kShadowHand.find_joint("THJ3")] = 0.6;
-  q[kShadowHand.find_joint("THJ2")] = 0.1;
-  q[kShadowHand.find_joint("THJ1")] = -0.2;
-  q[kShadowHand.find_joint("THJ0")] = -0.7;
+  q[joint_row(kShadowHand, "WRJ1")] = -0.2;
+  q[joint_row(kShadowHand, "WRJ0")] = 0.3;
+  q[joint_row(kShadowHand, "LFJ4")] = 0.4;
+  q[joint_row(kShadowHand, "FFJ3")] = 0.1;
+  q[joint_row(kShadowHand, "THJ4")] = 0.5;
+  q[joint_row(kShadowHand, "THJ3")] = 0.6;
+  q[joint_row(kShadowHand, "THJ2")] = 0.1;
+  q[joint_row(kShadowHand, "THJ1")] = -0.2;
+  q[joint_row(kShadowHand, "THJ0")] = -0.7;
 }
 
 SceneDef one_hand(Side side, const Pose& X_WB) {
@@ -124,7 +125,7 @@ TEST(ShadowHand, PalmSideAndThumbSide) {
   const Motion& palm = sim->link(kShadowHand.palm);
   const Vec3 out = rotate(palm.X.q, {0, -1, 0});
   EXPECT_NEAR(out.z, 1, 1e-12);                                              // palm up
-  EXPECT_LT(sim->link(kShadowHand.find_link("th_base")).X.p.x, palm.X.p.x);  // thumb at -x
+  EXPECT_LT(sim->link(link_row(kShadowHand, "th_base")).X.p.x, palm.X.p.x);  // thumb at -x
 }
 
 TEST(ShadowHand, ActuatedJointsAreTheTwentyDriven) {
@@ -144,7 +145,7 @@ TEST(ShadowHand, MassOfTheHand) {
 
 TEST(ShadowHand, CoupledDistalFollowsTheMiddleJoint) {
   test::Simulation sim(one_hand(Side::kRight, {}));
-  sim->target()[kShadowHand.find_joint("FFJ1")] = 0.8;
+  sim->target()[joint_row(kShadowHand, "FFJ1")] = 0.8;
   for (int k = 0; k < 240; ++k) sim->step();
   EXPECT_NEAR(sim->q()[4], 0.8, 0.01);
   EXPECT_NEAR(sim->q()[5], 0.913, 0.142 + 1e-3);

@@ -16,40 +16,19 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
   EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
+// Of two hands that reach from (0, 0, 0.5) and (0, -1, 0.5) towards each other.
+const Camera kFront{"front", {1.1, -0.5, 0.9}, {0, -0.5, 0.5}, kPi / 4},
+    kTop{"top", {0, -0.5, 1.8}, {0, -0.5, 0.5}, kPi / 4},
+    kRight{"right", {0.6, 0.3, 0.9}, {0, -0.4, 0.5}, kPi / 4};
+
 // Image point at which a world point is seen, pixels.
 Vec3 seen_at(const View& view, const Vec3& p_W) {
   const Vec3 p = transpose(view.R_WC) * (p_W - view.eye);
   return {0.5 * view.width + p.x / p.z / view.pixel, 0.5 * view.height + p.y / p.z / view.pixel, p.z};
 }
 
-TEST(Camera, StandardOnesByName) {
-  Camera all[kNumStandardCameras];
-  for (int32_t i = 0; i < kNumStandardCameras; ++i) all[i] = standard_camera(i);
-  const char* names[] = {"front", "top", "right", "left"};
-  for (const char* name : names) {
-    const Camera& c = find_camera(all, kNumStandardCameras, name);
-    EXPECT_TRUE(c.name == name);
-    EXPECT_DOUBLE_EQ(c.fov_y, kPi / 4);
-  }
-  expect_near(find_camera(all, kNumStandardCameras, "front").eye, {1.1, -0.5, 0.9}, 0);
-  expect_near(find_camera(all, kNumStandardCameras, "top").eye, {0, -0.5, 1.8}, 0);
-  // left is right, mirrored in the plane y = -0.5 between the hands.
-  const Camera &right = find_camera(all, 4, "right"), &left = find_camera(all, 4, "left");
-  expect_near(left.eye, {right.eye.x, -1 - right.eye.y, right.eye.z}, 1e-12);
-  expect_near(left.target, {right.target.x, -1 - right.target.y, right.target.z}, 1e-12);
-}
-
-TEST(Camera, UnknownNameListsThoseThereAre) {
-  const Camera all[] = {standard_camera(0), standard_camera(1)};
-  EXPECT_EQ(guard([&] { find_camera(all, 2, "frnt"); }), Code::kNotFound);
-  EXPECT_STREQ(last_error(), "camera: no 'frnt'; there are front, top");
-  EXPECT_EQ(guard([&] { find_camera(nullptr, 0, "x"); }), Code::kNotFound);
-  EXPECT_EQ(guard([] { standard_camera(-1); }), Code::kRange);
-  EXPECT_EQ(guard([] { standard_camera(kNumStandardCameras); }), Code::kRange);
-}
-
 TEST(Camera, FrontHasTheRightHandOnTheRight) {
-  const View view = make_view(standard_camera(0), 640, 480);
+  const View view = make_view(kFront, 640, 480);
   EXPECT_GT(seen_at(view, {0, 0, 0.5}).x, 320);
   EXPECT_LT(seen_at(view, {0, -1, 0.5}).x, 320);
   EXPECT_LT(seen_at(view, {0, -0.5, 0.6}).y, seen_at(view, {0, -0.5, 0.5}).y);
@@ -61,15 +40,14 @@ TEST(Camera, FrontHasTheRightHandOnTheRight) {
 }
 
 TEST(Camera, TopIsFrontTippedOver) {
-  const View view = make_view(standard_camera(1), 64, 64);
+  const View view = make_view(kTop, 64, 64);
   expect_near(view.R_WC.col(2), {0, 0, -1}, 1e-12);
   expect_near(view.R_WC.col(1), {1, 0, 0}, 1e-12);
   EXPECT_GT(seen_at(view, {0, 0, 0.5}).x, 32);
 }
 
 TEST(Camera, FrameIsRightHandedAndLooksAtTheTarget) {
-  const Camera cameras[] = {
-      standard_camera(2), {"odd", {1, 2, 3}, {-4, 0, 7}, 1.2}, {"up", {0, 0, 0}, {0, 0, 2}, 1}};
+  const Camera cameras[] = {kRight, {"odd", {1, 2, 3}, {-4, 0, 7}, 1.2}, {"up", {0, 0, 0}, {0, 0, 2}, 1}};
   for (const Camera& c : cameras) {
     const View view = make_view(c, 33, 17);
     const Vec3 x = view.R_WC.col(0), y = view.R_WC.col(1), z = view.R_WC.col(2);
@@ -91,7 +69,7 @@ TEST(Camera, AngleSpansTheHeight) {
 }
 
 TEST(Camera, RefusesWhatCannotBeSeen) {
-  const Camera good = standard_camera(0);
+  const Camera good = kFront;
   EXPECT_EQ(code_of(good, 1, 1), Code::kOk);
   EXPECT_EQ(code_of(good, kMaxImageSide, kMaxImageSide), Code::kOk);
   for (int32_t side : {0, -1, kMaxImageSide + 1, INT32_MIN, INT32_MAX}) {

@@ -146,6 +146,16 @@ TEST(Cloud, OnePointOfEachVoxel) {
   EXPECT_EQ(have, want);
 }
 
+TEST(Cloud, PointsBeyondTheLatticeOfVoxelsAreNothingSeen) {
+  Scratch scratch(10, Thinning::kVoxel);
+  scratch.s.all.count = 10;
+  for (int i = 0; i < 30; ++i) scratch.s.all.points[i] = 1e9f;
+  const Thinned t = thin(Thinning::kVoxel, 5, scratch);
+  EXPECT_EQ(t.count, 0);
+  EXPECT_EQ(t.points, std::vector<float>(15));
+  EXPECT_EQ(t.shape, std::vector<int32_t>(5, -1));
+}
+
 TEST(Cloud, NothingSeenIsSaid) {
   Scratch scratch(10, Thinning::kFurthest);
   const Thinned t = thin(Thinning::kFurthest, 5, scratch);

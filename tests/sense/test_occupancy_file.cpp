@@ -35,7 +35,7 @@ std::string states(const Occupancy& map) {
     for (double y = -2.1; y < 2.1; y += 0.11)
       for (double z = -2.1; z < 2.1; z += 0.11) {
         const float p = map.at({x, y, z});
-        out += p < 0 ? '?' : map.occupied(p) ? '1' : '0';
+        out += p < 0 ? '?' : occupied(p) ? '1' : '0';
       }
   return out;
 }

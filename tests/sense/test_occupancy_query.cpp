@@ -29,18 +29,18 @@ Vec3 random_point(Stream& stream, double reach) {
 TEST(OccupancyQuery, SurfacesAreOccupiedAndTheWayToThemIsFree) {
   const auto& map = *scanned().map;
   // a voxel may also be passed by many rays of other scans: some surface cells are lost at a grazing angle
-  int occupied = 0, clear = 0, all = 0;
+  int hits = 0, clear = 0, all = 0;
   for (const Vec3& eye : kEyes) {
     const Points points = scan_room(eye);
     for (size_t i = 0; i < points.size(); i += 3) {
       const Vec3 p{points[i], points[i + 1], points[i + 2]};
-      occupied += map.occupied(map.at(p));
+      hits += occupied(map.at(p));
       const float before = map.at(eye + 0.5 * (p - eye));
-      clear += before >= 0 && !map.occupied(before);
+      clear += before >= 0 && !occupied(before);
       ++all;
     }
   }
-  EXPECT_GT(occupied, 0.97 * all);
+  EXPECT_GT(hits, 0.97 * all);
   EXPECT_GT(clear, 0.99 * all);
   EXPECT_EQ(map.at({0, 0, 0}), -1) << "nobody has seen the inside of the ball";
   EXPECT_EQ(map.at({5, 0, 0}), -1);
@@ -79,7 +79,7 @@ TEST(OccupancyQuery, ATurnedBoxMeetsTheVoxelsThatItsPointsLieIn) {
     for (int i = -12; i <= 12 && !inside; ++i)
       for (int j = -6; j <= 6; ++j)
         for (int l = -2; l <= 2; ++l)
-          inside |= s.map->occupied(s.map->at(X * Vec3{i * half.x / 12, j * half.y / 6, l * half.z / 2}));
+          inside |= occupied(s.map->at(X * Vec3{i * half.x / 12, j * half.y / 6, l * half.z / 2}));
     const bool meets = s.map->meets_box(X, half);
     EXPECT_TRUE(meets || !inside);
     met += meets;
@@ -130,10 +130,10 @@ TEST(OccupancyQuery, RaysEndAtTheWallOrTheBall) {
   for (int k = 0; k < 300; ++k) {
     const Vec3 d = normalized(random_point(stream, 1));
     if (!map.cast(kEyes[1], d, 6, true, &hit)) continue;
-    EXPECT_TRUE(map.occupied(map.at(hit + 1e-6 * d)));
+    EXPECT_TRUE(occupied(map.at(hit + 1e-6 * d)));
     EXPECT_LT(map.distance(hit, 1), 1e-9);
     for (double t = 0.01; t < norm(hit - kEyes[1]) - 1e-6; t += 0.01)
-      EXPECT_FALSE(map.occupied(map.at(kEyes[1] + t * d)));
+      EXPECT_FALSE(occupied(map.at(kEyes[1] + t * d)));
   }
   EXPECT_EQ(code_of([&] { map.cast({0, 0, 0}, {0, 0, 0}, 1, true, &hit); }), Code::kArgument);
   EXPECT_EQ(code_of([&] { map.cast({NAN, 0, 0}, {0, 1, 0}, 1, true, &hit); }), Code::kArgument);
@@ -154,7 +154,7 @@ TEST(OccupancyQuery, AGridIsPointQuestionsInATurnedFrame) {
     for (int y = -3; y <= 3; ++y)
       for (int z = -2; z <= 2; ++z, ++at) {
         const float p = map.at(X * Vec3{0.13 * x, 0.13 * y, 0.13 * z});
-        EXPECT_EQ(*at, p < 0 ? -1 : map.occupied(p));
+        EXPECT_EQ(*at, p < 0 ? -1 : occupied(p));
         ++seen[*at + 1];
       }
   EXPECT_GT(seen[0], 0);

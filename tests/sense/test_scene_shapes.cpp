@@ -51,7 +51,7 @@ TEST(SceneShapes, FollowsTheWorld) {
 TEST(SceneShapes, HandsLookLikeHandsFromAbove) {
   test::Simulation sim(test::two_hands_def());
   const std::vector<RenderShape> shapes = gather(*sim);
-  const Picture p = take(shapes, standard_camera(1), 320, 240);
+  const Picture p = take(shapes, {"top", {0, -0.5, 1.8}, {0, -0.5, 0.5}, kPi / 4}, 320, 240);
   struct Blob {
     double x = 0, y = 0;
     int n = 0;

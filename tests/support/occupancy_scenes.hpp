@@ -25,6 +25,11 @@ inline Map make_map(double resolution = 0.05, size_t memory = 64u << 20, double 
   return Map(Occupancy::create(c, {}));
 }
 
+// Whether a probability is at or above the default threshold.
+inline bool occupied(float probability) {
+  return probability >= static_cast<float>(OccupancyConfig{}.threshold);
+}
+
 using Points = std::vector<float>;
 
 // What a sensor at `eye` sees of a room of half size 1.98 m with a ball of radius 0.5 m in its middle: rays

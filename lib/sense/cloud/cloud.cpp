@@ -53,12 +53,6 @@ CloudScratch carve_cloud_scratch(Arena& arena, int32_t max_points, Thinning thin
 void thin_cloud(Thinning thinning, int32_t wanted, double voxel, Stream& stream, CloudScratch& s,
                 Cloud* out) {
   int32_t count = s.all.count;
-  if (count == 0) {
-    std::fill_n(out->points, 3 * static_cast<ptrdiff_t>(wanted), 0.0f);
-    std::fill_n(out->shape, wanted, -1);
-    out->count = 0;
-    return;
-  }
   if (thinning == Thinning::kVoxel) {
     const VoxelLattice lattice(voxel);
     int32_t kept = 0;
@@ -73,6 +67,12 @@ void thin_cloud(Thinning thinning, int32_t wanted, double voxel, Stream& stream,
     count = kept;
   } else {
     for (int32_t i = 0; i < count; ++i) s.chosen[i] = i;
+  }
+  if (count == 0) {  // nothing was seen, or nothing that lies within the lattice of voxels
+    std::fill_n(out->points, 3 * static_cast<ptrdiff_t>(wanted), 0.0f);
+    std::fill_n(out->shape, wanted, -1);
+    out->count = 0;
+    return;
   }
   const int32_t some = std::min(wanted, count);
   if (some < count && thinning == Thinning::kFurthest)

@@ -1,4 +1,8 @@
 // Point clouds out of depth pictures, thinned to a fixed number of points.
+//
+// A pixel (u, v) of depth z is the point eye + z R_WC ((u - w/2) pixel, (v - h/2) pixel, 1) of the world: a
+// pinhole with square pixels (camera.hpp). Thinning keeps the furthest points (furthest.hpp), random ones, or
+// one of each voxel, the first that was seen.
 #pragma once
 #include <cstdint>
 

@@ -53,7 +53,6 @@ class Occupancy {
   // Probability that the voxel of each point [count][3] is occupied; -1: unknown.
   void query(const float* points, size_t count, float* probability) const;
   float at(const Vec3& p) const;
-  bool occupied(float probability) const { return probability >= threshold_; }
   // visit(voxel) for the occupied voxels that meet the box.
   template <class Visit>
   void box(const Vec3& low, const Vec3& high, Visit&& visit) const {
@@ -93,7 +92,7 @@ class Occupancy {
   Arena arena_;
   MapTree* tree_ = nullptr;
   KeySet set_;
-  double max_range_ = 0, threshold_ = 0.5;
+  double max_range_ = 0;
   float hit_ = 0, miss_ = 0, low_ = 0, high_ = 0, threshold_log_ = 0;  // log-odds
   size_t bytes_max_ = 0;
   uint64_t dropped_ = 0;

@@ -1,41 +1,12 @@
 #include "sense/render/camera.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "base/elementary.hpp"
 #include "base/error.hpp"
 
 namespace rdm {
-
-Camera standard_camera(int32_t index) {
-  constexpr double kFov = std::numbers::pi / 4;
-  switch (index) {
-    case 0:
-      return {"front", {1.1, -0.5, 0.9}, {0, -0.5, 0.5}, kFov};
-    case 1:
-      return {"top", {0, -0.5, 1.8}, {0, -0.5, 0.5}, kFov};
-    case 2:
-      return {"right", {0.6, 0.3, 0.9}, {0, -0.4, 0.5}, kFov};
-    case 3:
-      return {"left", {0.6, -1.3, 0.9}, {0, -0.6, 0.5}, kFov};
-  }
-  fail(Code::kRange, "camera: %d is outside [0, %d]", index, kNumStandardCameras - 1);
-}
-
-const Camera& find_camera(const Camera* cameras, int32_t num_cameras, const char* name) {
-  for (int32_t i = 0; i < num_cameras; ++i)
-    if (cameras[i].name == name) return cameras[i];
-  char list[160] = "";
-  size_t used = 0;
-  for (int32_t i = 0; i < num_cameras && used < sizeof list; ++i) {
-    const int n = std::snprintf(list + used, sizeof list - used, i ? ", %s" : "%s", cameras[i].name.text);
-    if (n < 0) break;
-    used += static_cast<size_t>(n);
-  }
-  fail(Code::kNotFound, "camera: no '%.31s'; there are %s", name, num_cameras ? list : "none");
-}
 
 View make_view(const Camera& camera, int32_t width, int32_t height) {
   if (width < 1 || width > kMaxImageSide)

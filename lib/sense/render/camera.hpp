@@ -18,14 +18,6 @@ struct Camera {
   double fov_y = 0;  // vertical field of view, rad, in (0, pi)
 };
 
-// front, top, right and left: the cameras of every task that names none of its own. The hands reach from
-// (0, 0, 0.5) and (0, -1, 0.5) towards each other; front has the right hand on its right.
-inline constexpr int32_t kNumStandardCameras = 4;
-Camera standard_camera(int32_t index);  // [0, kNumStandardCameras), else Error(kRange)
-
-// The first of `cameras` [num_cameras] with that name; Error(kNotFound) lists those there are.
-const Camera& find_camera(const Camera* cameras, int32_t num_cameras, const char* name);
-
 // A camera with a picture size. World z is up in the picture; a camera that looks straight up or down has
 // world -x up, so that `top` is `front` tipped over.
 struct View {
