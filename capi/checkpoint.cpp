@@ -40,9 +40,8 @@ void load_pool(rdm_pool*, const void*, size_t) {
 FileLimits file_limits(const rdm_agent* a, const rdm_pool* p) {
   Writer count(nullptr, 0);
   const bool counted = guard([&] { a->agent->save(count); }) == Code::kOk;  // not inside a horizon
-  Writer worlds(nullptr, 0);
-  if (p) save_pool(p, worlds);
-  const size_t states = (counted ? count.size() : size_t{1} << 28) + worlds.size();
+  if (p) save_pool(p, count);
+  const size_t states = count.size() + (counted ? 0 : size_t{1} << 28);
   return {{kCheckpointMagic, sizeof kCheckpointMagic}, kFileLengthAt, 2 * (kMaxNote + states)};
 }
 

@@ -155,6 +155,10 @@ TEST(Progress, ANameStandsOnce) {
   EXPECT_NE(failure([&] { progress("TotalEnvSteps,Metrics/EpRet,Metrics/EpRet\n1,2,3\n4,5,6\n"); }), "");
   EXPECT_NE(failure([&] { progress(",\n"); }), "");
   EXPECT_TRUE(progress("").empty());
+  std::string wide = "c0";
+  for (int i = 1; i < 2000; ++i) wide += ",c" + std::to_string(i);
+  EXPECT_NE(failure([&] { progress(wide); }), "");
+  EXPECT_TRUE(progress("a,b\n" + std::string(1 << 20, ',') + "\n").at("a").empty());
   spoil("TotalEnvSteps,b,c\n1,2,3\n4,5,6\n", [](const std::string& text) { progress(text); });
 }
 
