@@ -4,7 +4,7 @@
 
 #include "capi/abi_call.hpp"
 #if RDM_WITH_LEARN
-#include "nn/mlp.hpp"
+#include "nn/kernels.hpp"
 #endif
 
 using namespace rdm;

@@ -1,6 +1,8 @@
 #include "base/rng.hpp"
 
 #include <algorithm>
+
+#include "base/cpu.hpp"
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -9,15 +11,6 @@ namespace rdm {
 namespace {
 
 constexpr int kChunk = 8;
-
-bool has_avx2() {
-#if defined(__x86_64__)
-  __builtin_cpu_init();  // a host's static objects may come here before the runtime has
-  return __builtin_cpu_supports("avx2");
-#else
-  return false;
-#endif
-}
 
 }  // namespace
 
@@ -63,7 +56,7 @@ void Stream::chunk(uint64_t, const uint32_t*, float*) const {}
 
 void Stream::signed_units(float* out, int count) {
   int i = 0;
-  if (has_avx2()) {
+  if (cpu().avx2) {
     uint32_t keys[2 * kRounds];
     for (uint32_t r = 0; r < kRounds; ++r) {
       keys[2 * r] = static_cast<uint32_t>(seed_) + r * kW0;

@@ -1,17 +1,99 @@
-// Simd<S, N>: N numbers of type S that go through the same arithmetic, one instruction for all.
+// Vectors of the compiler (GCC's and clang's vector_size) under one roof: Float4, and Simd<S, N> for any
+// width.
 //
 // Only + - * / and square roots, each rounded as IEEE 754 says, with contraction off: a lane's bits depend
-// neither on N nor on the instruction set. Part of stepper_v*.cpp, included after every header with code.
+// neither on N nor on the instruction set. The kernels of lib/nn for AVX2 and AVX-512 (nn/kernels_v3.cpp,
+// _v4) have vectors of their own: their fused multiply-add has other bits, and that is what they are for.
 #pragma once
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
 
 namespace rdm {
+
+// Four floats, for code that is compiled for one instruction set alone.
+inline constexpr int kFloat4Lanes = 4;
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = int32_t __attribute__((vector_size(16)));  // as a mask -1: true, 0: false
+
+[[gnu::always_inline]] inline Float4 splat(float v) {
+  return Float4{v, v, v, v};
+}
+[[gnu::always_inline]] inline Int4 splat_int(int32_t v) {
+  return Int4{v, v, v, v};
+}
+[[gnu::always_inline]] inline Float4 load4(const float* p) {
+  Float4 v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+[[gnu::always_inline]] inline void store4(float* p, Float4 v) {
+  std::memcpy(p, &v, sizeof v);
+}
+[[gnu::always_inline]] inline Float4 select(Int4 m, Float4 a, Float4 b) {
+  return m ? a : b;
+}
+[[gnu::always_inline]] inline Int4 select(Int4 m, Int4 a, Int4 b) {
+  return m ? a : b;
+}
+// Of two operands with a not-a-number, the second is given.
+[[gnu::always_inline]] inline Float4 min(Float4 a, Float4 b) {
+  return a < b ? a : b;
+}
+[[gnu::always_inline]] inline Float4 max(Float4 a, Float4 b) {
+  return a > b ? a : b;
+}
+[[gnu::always_inline]] inline Float4 clamp(Float4 v, float lo, float hi) {
+  return min(max(v, splat(lo)), splat(hi));
+}
+[[gnu::always_inline]] inline Float4 abs(Float4 v) {
+  return max(v, -v);
+}
+[[gnu::always_inline]] inline Float4 sqrt(Float4 v) {
+#if defined(__x86_64__)
+  return _mm_sqrt_ps(v);
+#else
+  return Float4{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
+#endif
+}
+// Lane l's truth in bit l.
+[[gnu::always_inline]] inline uint32_t bits_of(Int4 m) {
+#if defined(__x86_64__)
+  __m128 r;
+  std::memcpy(&r, &m, sizeof r);
+  return static_cast<uint32_t>(_mm_movemask_ps(r));
+#else
+  uint32_t bits = 0;
+  for (int k = 0; k < kFloat4Lanes; ++k) bits |= static_cast<uint32_t>(m[k] != 0) << k;
+  return bits;
+#endif
+}
+[[gnu::always_inline]] inline bool any(Int4 m) {
+  return bits_of(m) != 0;
+}
+[[gnu::always_inline]] inline float largest(Float4 v) {
+  const float a = v[0] > v[1] ? v[0] : v[1], b = v[2] > v[3] ? v[2] : v[3];
+  return a > b ? a : b;
+}
+// Four rows into four columns.
+[[gnu::always_inline]] inline void transpose(Float4 (&r)[4]) {
+  const Float4 a = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5),
+               b = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7);
+  const Float4 c = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5),
+               d = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
+  r[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  r[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  r[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+// N numbers of type S, for code that is compiled once per instruction set: in an unnamed namespace, so that
+// no linker joins two sets' copies. Such a source includes this header after every other one with code.
 namespace {
 
 template <class S, int N>

@@ -4,29 +4,18 @@
 #include <atomic>
 #include <cstring>
 
+#include "base/cpu.hpp"
+
 namespace rdm {
 namespace {
 
 const Kernels* usable_v3() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return kernels_v3();
-#endif
-  return nullptr;
+  return cpu().v3 ? kernels_v3() : nullptr;
 }
-
 const Kernels* usable_v4() {
-#if defined(__x86_64__)
-  if (usable_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-    return kernels_v4();
-#endif
-  return nullptr;
+  return cpu().v4 ? kernels_v4() : nullptr;
 }
-
 const Kernels* best() {
-#if defined(__x86_64__)
-  __builtin_cpu_init();  // a host's static objects may come here before the runtime has
-#endif
   if (const Kernels* k = usable_v4()) return k;
   if (const Kernels* k = usable_v3()) return k;
   return kernels_v2();

@@ -70,8 +70,11 @@ struct Kernels {
   void (*map_exp)(const float* x, size_t n, float* y);
 };
 
-// The table in force; set_kernel_isa changes it.
+// The table in force: chosen once at first use, from what the processor has (base/cpu.hpp), or by
+// set_kernel_isa, which forces a lower one for tests; false if this machine or build has it not.
 const Kernels& kernels();
+const char* kernel_isa();
+bool set_kernel_isa(const char* name);
 
 // Null where this compiler or processor family has none.
 const Kernels* kernels_v2();

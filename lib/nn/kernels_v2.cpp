@@ -1,27 +1,21 @@
 // Kernels for the base instruction set: four lanes, no fused multiply-add.
-#include "nn/kernels.hpp"
-
-#if defined(__SSE2__)
-#include <immintrin.h>
-#else
-#include <cmath>
-#endif
-
 #include <cstring>
+
+#include "base/cpu.hpp"
+#include "base/simd.hpp"
+#include "nn/kernels.hpp"
 
 namespace rdm {
 namespace {
 
-using V = float __attribute__((vector_size(16)));
+using V = Float4;
 using D = double __attribute__((vector_size(16)));
-using VI = int32_t __attribute__((vector_size(16)));
+using VI = Int4;
 constexpr int kLanes = 4, kTileRows = 6, kTileVectors = 2;
-constexpr const char* kIsa = "x86-64-v2";
+constexpr const char* kIsa = kBaseIsa;
 
 inline V load(const float* p) {
-  V v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
+  return load4(p);
 }
 inline V load_part(const float* p, int n) {
   V v{};
@@ -29,30 +23,26 @@ inline V load_part(const float* p, int n) {
   return v;
 }
 inline void store(float* p, V v) {
-  std::memcpy(p, &v, sizeof v);
+  store4(p, v);
 }
 inline void store_part(float* p, V v, int n) {
   for (int i = 0; i < n; ++i) p[i] = v[i];
 }
 inline V all(float s) {
-  return V{s, s, s, s};
+  return splat(s);
 }
 inline V fma(V a, V b, V c) {
   return a * b + c;
 }
 inline V root(V a) {
-#if defined(__SSE2__)
-  return _mm_sqrt_ps(a);
-#else
-  return V{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
-#endif
+  return sqrt(a);
 }
 // Of two operands with a not-a-number, the second is given.
 inline V low(V a, V b) {
-  return a < b ? a : b;
+  return min(a, b);
 }
 inline V high(V a, V b) {
-  return a > b ? a : b;
+  return max(a, b);
 }
 inline V positive(V z, V yes, V no) {
   return z > V{} ? yes : no;
@@ -71,13 +61,8 @@ inline D fma(D a, D b, D c) {
 using Column = V;
 constexpr int kBlock = 4;
 inline void load_columns(const float* from, size_t row, Column (&column)[kBlock]) {
-  const V a = load(from), b = load(from + row), c = load(from + 2 * row), d = load(from + 3 * row);
-  const V ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-  const V ab2 = __builtin_shufflevector(a, b, 2, 6, 3, 7), cd2 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-  column[0] = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
-  column[1] = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-  column[2] = __builtin_shufflevector(ab2, cd2, 0, 1, 4, 5);
-  column[3] = __builtin_shufflevector(ab2, cd2, 2, 3, 6, 7);
+  for (size_t i = 0; i < kBlock; ++i) column[i] = load(from + i * row);
+  transpose(column);
 }
 inline Column load_column(const float* p) {
   return load(p);

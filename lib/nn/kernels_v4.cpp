@@ -1,5 +1,6 @@
 // Kernels for x86-64-v4 (AVX-512). The pragma stands after every header that has code in it, so that no
 // shared inline function is compiled with it.
+#include "base/cpu.hpp"
 #include "nn/kernels.hpp"
 
 #if defined(__x86_64__)
@@ -21,7 +22,7 @@ using V = __m512;
 using D = __m512d;
 using VI = int32_t __attribute__((vector_size(64)));
 constexpr int kLanes = 16, kTileRows = 6, kTileVectors = 4;
-constexpr const char* kIsa = "x86-64-v4";
+constexpr const char* kIsa = kV4Isa;
 
 inline __mmask16 first(int n) {
   return static_cast<__mmask16>((1u << n) - 1u);
@@ -68,34 +69,14 @@ inline D fma(D a, D b, D c) {
   return _mm512_fmadd_pd(a, b, c);
 }
 
-// A block of 8 x 8: column[k] holds from[0..7][k]. The halves are put in place by the loads.
-using Column = __m256;
-constexpr int kBlock = 8;
-inline void load_columns(const float* from, size_t row, Column (&column)[kBlock]) {
-  __m256 r[8], t[8];
-  for (size_t i = 0; i < 4; ++i)
-    for (size_t half = 0; half < 2; ++half)
-      r[i + 4 * half] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(from + i * row + 4 * half)),
-                                             _mm_loadu_ps(from + (i + 4) * row + 4 * half), 1);
-  for (size_t i = 0; i < 8; i += 2) {
-    t[i] = _mm256_unpacklo_ps(r[i], r[i + 1]);
-    t[i + 1] = _mm256_unpackhi_ps(r[i], r[i + 1]);
-  }
-  for (size_t i = 0; i < 8; i += 4)
-    for (size_t j = 0; j < 2; ++j) {
-      column[i + 2 * j] = _mm256_shuffle_ps(t[i + j], t[i + j + 2], 0x44);
-      column[i + 2 * j + 1] = _mm256_shuffle_ps(t[i + j], t[i + j + 2], 0xEE);
-    }
-}
-inline Column load_column(const float* p) {
-  return _mm256_loadu_ps(p);
-}
-inline void store_column(float* p, Column v) {
-  _mm256_storeu_ps(p, v);
-}
-inline Column all_column(float s) {
-  return _mm256_set1_ps(s);
-}
+}  // namespace
+}  // namespace rdm
+
+#include "nn/kernels_block.inl"
+
+namespace rdm {
+namespace {
+
 inline Column fma(Column a, Column b, Column c) {
   return _mm256_fmadd_ps(a, b, c);
 }

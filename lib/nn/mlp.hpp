@@ -60,9 +60,4 @@ void mlp_tangent(const MlpShape& shape, const float* params, const float* direct
 // weights and bias are scaled by last_layer_scale.
 void mlp_init(const MlpShape& shape, Stream& stream, float last_layer_scale, float* params);
 
-// The instruction set that the kernels run on: "x86-64-v2", "x86-64-v3", "x86-64-v4". Chosen once at first
-// use, from what the CPU has. set_kernel_isa forces a lower one (tests); false if this CPU lacks it.
-const char* kernel_isa();
-bool set_kernel_isa(const char* name);
-
 }  // namespace rdm

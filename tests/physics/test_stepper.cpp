@@ -5,6 +5,7 @@
 #include <string>
 
 #include "articulated.hpp"
+#include "base/cpu.hpp"
 #include "physics/articulated/stepper.hpp"
 
 namespace rdm {
@@ -146,13 +147,13 @@ INSTANTIATE_TEST_SUITE_P(, StepperScenes,
 
 TEST_P(StepperScenes, LanesGroupsAndInstructionSetsChangeNoBit) {
   const IsaScope scope;
-  ASSERT_TRUE(set_stepper_isa("x86-64-v2"));
+  ASSERT_TRUE(set_stepper_isa(kBaseIsa));
   const Outcome want = play(GetParam().def(), 1, 0);
   EXPECT_GT(want.contacts, 500);
   std::vector<uint64_t> distinct = want.hashes;
   std::sort(distinct.begin(), distinct.end());
   EXPECT_EQ(std::unique(distinct.begin(), distinct.end()), distinct.end());  // no two worlds do the same
-  for (const char* isa : {"x86-64-v2", "x86-64-v3"}) {
+  for (const char* isa : {kBaseIsa, kV3Isa}) {
     if (!set_stepper_isa(isa)) continue;
     EXPECT_STREQ(stepper_isa(), isa);
     const auto expect_same = [&](int32_t lanes, int32_t together) {

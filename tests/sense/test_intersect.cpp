@@ -112,9 +112,9 @@ TEST(Entry, LanesAreIndependent) {
   const Primitive s = primitive(ShapeKind::kCapsule, {0.03, 0.05, 0});
   Draw draw(9);
   Lanes3 o, d;
-  Vec3 from[kLanes], to[kLanes];
+  Vec3 from[kFloat4Lanes], to[kFloat4Lanes];
   for (int round = 0; round < 50; ++round) {
-    for (int i = 0; i < kLanes; ++i) {
+    for (int i = 0; i < kFloat4Lanes; ++i) {
       from[i] = draw.box(1);
       to[i] = draw.box(0.06) - from[i];
       o.x[i] = static_cast<float>(from[i].x);
@@ -125,7 +125,7 @@ TEST(Entry, LanesAreIndependent) {
       d.z[i] = static_cast<float>(to[i].z);
     }
     const Float4 t = entry(s, o, d);
-    for (int i = 0; i < kLanes; ++i) EXPECT_EQ(t[i], static_cast<float>(enter(s, from[i], to[i])));
+    for (int i = 0; i < kFloat4Lanes; ++i) EXPECT_EQ(t[i], static_cast<float>(enter(s, from[i], to[i])));
   }
 }
 

@@ -103,7 +103,7 @@ TEST(Paint, LightRaysLieInTheDisc) {
     Vec3 mean;
     for (int k = 0; k < count; ++k)
       for (int r = 0; r < kTileSide; ++r)
-        for (int i = 0; i < kLanes; ++i) {
+        for (int i = 0; i < kFloat4Lanes; ++i) {
           const Vec3 l{rays.at[k][r].x[i], rays.at[k][r].y[i], rays.at[k][r].z[i]};
           EXPECT_NEAR(norm(l), 1, 1e-6);
           EXPECT_LE(norm(cross(l, key)), kLightSpread);

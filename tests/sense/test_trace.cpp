@@ -34,7 +34,7 @@ TEST(Trace, RaysAreThoseOfTheView) {
   const PlanarScene stage({});
   const Hits hits = stage.run(true, 8.5f, 4.25f);
   for (int r = 0; r < kTileSide; ++r)
-    for (int i = 0; i < kLanes; ++i) {
+    for (int i = 0; i < kFloat4Lanes; ++i) {
       const Vec3 want = stage.view.R_WC * stage.view.ray_C(8.5 + i, 4.25 + r);
       EXPECT_NEAR(hits.d[r].x[i], want.x, 1e-6);
       EXPECT_NEAR(hits.d[r].y[i], want.y, 1e-6);
@@ -51,7 +51,7 @@ TEST(Trace, StoppingEarlyChangesNothing) {
     for (float x = 0.5f; x < 32; x += kTileSide) {
       const Hits a = stage.run(true, x, y), b = stage.run(false, x, y);
       for (int r = 0; r < kTileSide; ++r)
-        for (int i = 0; i < kLanes; ++i) {
+        for (int i = 0; i < kFloat4Lanes; ++i) {
           EXPECT_EQ(a.t[r][i], b.t[r][i]);
           EXPECT_EQ(a.who[r][i], b.who[r][i]);
           hits += a.who[r][i] > 0;
@@ -71,7 +71,7 @@ TEST(Trace, NearestWinsWhateverTheOrder) {
       for (float x = 0.5f; x < 32; x += kTileSide) {
         const Hits hits = stage.run(true, x, y);
         for (int r = 0; r < kTileSide; ++r)
-          for (int i = 0; i < kLanes; ++i)
+          for (int i = 0; i < kFloat4Lanes; ++i)
             if (hits.who[r][i] >= 0) {
               ++seen[hits.who[r][i]];
               const bool is_front = hits.who[r][i] == front;
@@ -88,7 +88,7 @@ TEST(Trace, OfEqualDepthsTheFirstIsMet) {
   const PlanarScene stage({ball, ball, ball});
   const Hits hits = stage.run(true, 14.5f, 10.5f);
   for (int r = 0; r < kTileSide; ++r)
-    for (int i = 0; i < kLanes; ++i) EXPECT_EQ(hits.who[r][i], 0);
+    for (int i = 0; i < kFloat4Lanes; ++i) EXPECT_EQ(hits.who[r][i], 0);
 }
 
 TEST(Trace, NothingBeyondTheFarLimit) {

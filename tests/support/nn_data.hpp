@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/cpu.hpp"
 #include "base/rng.hpp"
+#include "nn/kernels.hpp"
 #include "nn/mlp.hpp"
 
 inline std::vector<float> random_floats(size_t n, uint64_t seed, float scale = 1) {
@@ -21,7 +23,7 @@ inline std::vector<float> random_floats(size_t n, uint64_t seed, float scale = 1
 template <class Body>
 void for_each_isa(Body body) {
   const std::string best = rdm::kernel_isa();
-  for (const char* isa : {"x86-64-v2", "x86-64-v3", "x86-64-v4"})
+  for (const char* isa : {rdm::kBaseIsa, rdm::kV3Isa, rdm::kV4Isa})
     if (rdm::set_kernel_isa(isa)) body(isa);
   rdm::set_kernel_isa(best.c_str());
 }

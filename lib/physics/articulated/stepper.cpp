@@ -3,18 +3,13 @@
 #include <atomic>
 #include <cstring>
 
+#include "base/cpu.hpp"
+
 namespace rdm {
 namespace {
 
 bool usable(const StepperTable& table) {
-  if (!table.isa) return false;
-#if defined(__x86_64__)
-  if (std::strcmp(table.isa, "x86-64-v3") == 0) {
-    __builtin_cpu_init();  // a host's static objects may come here before the runtime has
-    return __builtin_cpu_supports("avx2");
-  }
-#endif
-  return true;
+  return table.isa && (std::strcmp(table.isa, kV3Isa) != 0 || cpu().avx2);
 }
 
 // 0: the best there is; else an index into the tables, plus 1.

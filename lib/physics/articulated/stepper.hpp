@@ -33,7 +33,8 @@ class Stepper {
 Stepper* make_stepper(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
                       const HostHooks& hooks, Arena& arena);
 
-// "x86-64-v2", "x86-64-v3": what steppers made from now on use; false where this machine or build has it not.
+// kBaseIsa, kV3Isa (base/cpu.hpp): what steppers made from now on use; false where this machine or build has
+// it not.
 bool set_stepper_isa(const char* name);
 const char* stepper_isa();
 

@@ -4,12 +4,13 @@
 #include <cstring>
 #include <type_traits>
 
+#include "base/cpu.hpp"
 #include "physics/articulated/stepper.hpp"
 #include "physics/articulated/stepper.inl"
 #include "physics/model/drive.hpp"
 
 namespace rdm {
 StepperTable steppers_v2() {
-  return stepper_table("x86-64-v2");
+  return stepper_table(kBaseIsa);
 }
 }  // namespace rdm

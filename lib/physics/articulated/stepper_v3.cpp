@@ -5,6 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "base/cpu.hpp"
 #include "physics/articulated/stepper.hpp"
 #include "physics/model/drive.hpp"
 
@@ -21,7 +22,7 @@
 
 namespace rdm {
 StepperTable steppers_v3() {
-  return stepper_table("x86-64-v3");
+  return stepper_table(kV3Isa);
 }
 }  // namespace rdm
 

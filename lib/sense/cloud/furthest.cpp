@@ -106,22 +106,16 @@ class Sampler {
   void update_bucket(Node& node, int32_t at) {
     const Float4 px = splat(p_[0]), py = splat(p_[1]), pz = splat(p_[2]);
     Float4 most = splat(-1);
-    for (int32_t i = at; i < at + kBucket; i += rdm::kLanes) {
-      const Float4 dx = load(s_.x + i) - px, dy = load(s_.y + i) - py, dz = load(s_.z + i) - pz;
-      const Float4 d = min(load(s_.distance + i), dx * dx + dy * dy + dz * dz);
-      __builtin_memcpy(s_.distance + i, &d, sizeof d);
+    for (int32_t i = at; i < at + kBucket; i += kFloat4Lanes) {
+      const Float4 dx = load4(s_.x + i) - px, dy = load4(s_.y + i) - py, dz = load4(s_.z + i) - pz;
+      const Float4 d = min(load4(s_.distance + i), dx * dx + dy * dy + dz * dz);
+      store4(s_.distance + i, d);
       most = max(most, d);
     }
     node.best = largest(most);
     int32_t i = at;
     while (s_.distance[i] != node.best) ++i;
     node.at = i;
-  }
-
-  static Float4 load(const float* from) {
-    Float4 v;
-    __builtin_memcpy(&v, from, sizeof v);
-    return v;
   }
 
   const FurthestScratch& s_;

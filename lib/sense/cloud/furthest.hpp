@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/arena.hpp"
-#include "sense/render/float4.hpp"
+#include "base/simd.hpp"
 
 namespace rdm {
 

@@ -52,18 +52,18 @@ inline Float4 entry_capsule(const Primitive& s, const Lanes3& o, const Lanes3& d
   const float radius = s.size[0], half = s.size[1];
   const Middle m = middle(o, d);
   const Tube k = tube(m, d, radius);
-  const LaneMask meets = k.square >= 0.0f;
+  const Int4 meets = k.square >= 0.0f;
   if (!any(meets)) return splat(kNoHit);
   const Float4 side = (-k.b - sqrt(max(k.square, splat(0)))) / k.a;
   const Float4 z = m.p.z + side * d.z;
   const Float4 end = clamp(z, -half, half);
-  const LaneMask straight = z == end;
+  const Int4 straight = z == end;
   // The ball at the end that the side's point lies beyond.
   const Float4 w = m.p.z - end;
   const Float4 b = k.b + w * d.z;
   const Float4 square = b * b - m.dd * (k.c + w * w);
   const Float4 ball = (-b - sqrt(max(square, splat(0)))) / m.dd;
-  const LaneMask hit = meets & (straight | (square >= 0.0f));
+  const Int4 hit = meets & (straight | (square >= 0.0f));
   return select(hit, m.t + select(straight, side, ball), splat(kNoHit));
 }
 
@@ -71,7 +71,7 @@ inline Float4 entry_cylinder(const Primitive& s, const Lanes3& o, const Lanes3& 
   const float radius = s.size[0], half = s.size[1];
   const Middle m = middle(o, d);
   const Tube k = tube(m, d, radius);
-  const LaneMask meets = k.square >= 0.0f;
+  const Int4 meets = k.square >= 0.0f;
   if (!any(meets)) return splat(kNoHit);
   const Float4 root = sqrt(max(k.square, splat(0)));
   const Float4 inv = 1.0f / not_zero(d.z);
@@ -112,7 +112,7 @@ inline Float4 entry_hull(const Primitive& s, const Lanes3& o, const Lanes3& d) {
 }
 
 inline Float4 entry_plane(const Lanes3& o, const Lanes3& d) {
-  const LaneMask meets = (o.z > 0.0f) & (d.z < 0.0f);
+  const Int4 meets = (o.z > 0.0f) & (d.z < 0.0f);
   return select(meets, o.z / select(meets, -d.z, splat(1)), splat(kNoHit));
 }
 

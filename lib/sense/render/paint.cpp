@@ -21,7 +21,7 @@ Ball ball_about(const Hits* hits, int count) {
   Lanes3 lo = splat(kNoHit, kNoHit, kNoHit), hi = splat(-kNoHit, -kNoHit, -kNoHit);
   for (int k = 0; k < count; ++k)
     for (int r = 0; r < kTileSide; ++r) {
-      const LaneMask hit = hits[k].who[r] >= 0;
+      const Int4 hit = hits[k].who[r] >= 0;
       const Lanes3 p = hits[k].t[r] * hits[k].d[r];
       lo = select(hit, min(lo, p), lo);
       hi = select(hit, max(hi, p), hi);
@@ -64,11 +64,11 @@ int32_t list_near(const Painter& painter, const Ball& ball, int32_t* out) {
 }
 
 // Share of the light's rays of a sample that reach the points p.
-Float4 light_share(const Painter& painter, const IndexList& list, LaneMask who, const Lanes3& p,
-                   const Lanes3& n, int sample, int row) {
+Float4 light_share(const Painter& painter, const IndexList& list, Int4 who, const Lanes3& p, const Lanes3& n,
+                   int sample, int row) {
   const LightRays& lights = painter.lights;
   const int samples = painter.options.samples_per_side * painter.options.samples_per_side;
-  LaneMask left[kMaxRaysPerSample];
+  Int4 left[kMaxRaysPerSample];
   for (int j = 0; j < lights.per_sample; ++j)
     left[j] = (who >= 0) & (dot(n, lights.at[sample + j * samples][row]) > 0.0f);
   Float4 lost = splat(0);
@@ -76,12 +76,12 @@ Float4 light_share(const Painter& painter, const IndexList& list, LaneMask who, 
     const Primitive& s = painter.scratch.primitives[list.at[k]];
     const Lanes3 o = to_shape(s, p);
     // A convex shape throws no shadow on itself; its rounded normals would say so at the edges.
-    const LaneMask other = who != list.at[k];
+    const Int4 other = who != list.at[k];
     for (int j = 0; j < lights.per_sample; ++j) {
-      const LaneMask asked = left[j] & other;
+      const Int4 asked = left[j] & other;
       if (!any(asked)) continue;
       const Float4 t = entry(s, o, rotate_to_shape(s, lights.at[sample + j * samples][row]));
-      const LaneMask dark = asked & (t > kOffSurface) & (t < kNoHit);
+      const Int4 dark = asked & (t > kOffSurface) & (t < kNoHit);
       lost += select(dark, splat(1), splat(0));
       left[j] &= ~dark;
     }
@@ -107,16 +107,16 @@ struct Nearby {
 Lanes3 color_of(const Painter& painter, const Nearby& nearby, const Hits& hits, int r, int sample,
                 float share) {
   const Lanes3 d = hits.d[r];
-  const LaneMask who = hits.who[r], hit = who >= 0;
+  const Int4 who = hits.who[r], hit = who >= 0;
   const Lanes3 behind = background(d);
   if (!any(hit)) return behind;
   const Float4 t = select(hit, hits.t[r], splat(1));
   Surface surface{t * d, d, splat(0, 0, 1), splat(0, 0, 0), splat(1), splat(1)};
-  LaneMask left = hit;
+  Int4 left = hit;
   Float4 fade = splat(0);
-  for (int i = 0; i < kLanes; ++i) {
+  for (int i = 0; i < kFloat4Lanes; ++i) {
     if (!left[i]) continue;
-    const LaneMask same = left & (who == who[i]);
+    const Int4 same = left & (who == who[i]);
     left &= ~same;
     const Primitive& s = painter.scratch.primitives[who[i]];
     const bool plane = s.kind == ShapeKind::kPlane;
@@ -142,7 +142,7 @@ void store(const Painter& painter, const Lanes3 (&sum)[kTileSide], float scale, 
            uint8_t* rgb) {
   const int32_t width = painter.view.width, height = painter.view.height;
   for (int32_t r = 0; r < kTileSide && y + r < height; ++r)
-    for (int32_t i = 0; i < kLanes && x + i < width; ++i) {
+    for (int32_t i = 0; i < kFloat4Lanes && x + i < width; ++i) {
       uint8_t* out =
           rgb + 3 * (static_cast<size_t>(y + r) * static_cast<size_t>(width) + static_cast<size_t>(x + i));
       out[0] = to_srgb(scale * sum[r].x[i]);
@@ -155,7 +155,8 @@ void store(const Painter& painter, const Lanes3 (&sum)[kTileSide], float scale, 
 
 LightRays make_light_rays(int32_t samples_per_side) {
   // Ranks of a 4 x 4 ordered dither: neighbours differ most.
-  constexpr int kRank[kTileSide][kLanes] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+  constexpr int kRank[kTileSide][kFloat4Lanes] = {
+      {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
   constexpr double kGoldenAngle = 2.399963229728653;
   LightRays out;
   const int samples = samples_per_side * samples_per_side;
@@ -165,7 +166,7 @@ LightRays make_light_rays(int32_t samples_per_side) {
   const int count = samples * out.per_sample;
   for (int k = 0; k < count; ++k)
     for (int r = 0; r < kTileSide; ++r)
-      for (int i = 0; i < kLanes; ++i) {
+      for (int i = 0; i < kFloat4Lanes; ++i) {
         const double radius = count > 1 ? std::sqrt((k + 0.5) / count) : 0;
         const double angle = kGoldenAngle * k + kRank[r][i] * (std::numbers::pi / 8);
         const elementary::SinCos turn = elementary::sincos(angle);

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "sense/render/camera.hpp"
-#include "sense/render/float4.hpp"
+#include "sense/render/lanes3.hpp"
 #include "sense/render/render_shape.hpp"
 
 namespace rdm {

@@ -4,8 +4,8 @@
 #pragma once
 #include <cstdint>
 
-#include "sense/render/float4.hpp"
 #include "sense/render/intersect.hpp"
+#include "sense/render/lanes3.hpp"
 
 namespace rdm {
 

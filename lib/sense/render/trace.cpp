@@ -23,10 +23,10 @@ void trace(const Rays& rays, const Primitive* primitives, const IndexList& list,
     const Primitive& s = primitives[list.at[k]];
     if (stop && s.nearest > farthest) break;
     const Lanes3 o = splat(s.o_S[0], s.o_S[1], s.o_S[2]);
-    LaneMask met = splat_int(0);
+    Int4 met = splat_int(0);
     for (int r = 0; r < kTileSide; ++r) {
       const Float4 t = entry(s, o, rotate_to_shape(s, out->d[r]));
-      const LaneMask closer = (t > 0.0f) & (t < out->t[r]);
+      const Int4 closer = (t > 0.0f) & (t < out->t[r]);
       out->t[r] = select(closer, t, out->t[r]);
       out->who[r] = select(closer, splat_int(list.at[k]), out->who[r]);
       met |= closer;

@@ -8,7 +8,7 @@
 namespace rdm {
 
 inline constexpr int kTileSide = 4;  // pixels; a tile's row is one group of lanes
-static_assert(kTileSide == kLanes);
+static_assert(kTileSide == kFloat4Lanes);
 
 // Indices of primitives.
 struct IndexList {
@@ -25,9 +25,9 @@ Rays make_rays(const View& view);
 
 // What the rays of one tile meet, row by row.
 struct Hits {
-  Lanes3 d[kTileSide];      // rays; z of C is 1
-  Float4 t[kTileSide];      // depth, m; kMaxDepth where nothing is met
-  LaneMask who[kTileSide];  // primitive, -1: none
+  Lanes3 d[kTileSide];  // rays; z of C is 1
+  Float4 t[kTileSide];  // depth, m; kMaxDepth where nothing is met
+  Int4 who[kTileSide];  // primitive, -1: none
 };
 
 // Rays through (x + i + dx, y + j + dy), i and j in [0, kTileSide), pixels. `list` is in the order of

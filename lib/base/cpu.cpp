@@ -1,0 +1,25 @@
+#include "base/cpu.hpp"
+
+namespace rdm {
+namespace {
+
+Cpu ask() {
+  Cpu c;
+#if defined(__x86_64__)
+  __builtin_cpu_init();  // a host's static objects may come here before the runtime has
+  c.avx2 = __builtin_cpu_supports("avx2");
+  c.v3 = c.avx2 && __builtin_cpu_supports("fma");
+  c.v4 = c.v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+#endif
+  return c;
+}
+
+}  // namespace
+
+const Cpu& cpu() {
+  static const Cpu asked = ask();
+  return asked;
+}
+
+}  // namespace rdm
