@@ -5,8 +5,7 @@
 //   act, record  `horizon` times: the collector samples a ~ pi_old(. | s) and keeps what followed
 //   update       advantages and targets (collector, gae)
 //                begin_epoch  the algorithm's multipliers, penalties or barriers, from the episodes' costs
-//                J_c
-//                             against their limits; leaves in the rollout what the actor climbs
+//                             J_c against their limits; leaves in the rollout what the actor climbs
 //                learn        passes over shuffled minibatches (policy_loss, learner), or a trust region's
 //                             step; both move the critics too
 //                the Epoch, the schedules, an empty rollout
@@ -70,7 +69,7 @@ class Agent {
   void save(Writer& out) const;         // Error(kState) inside a horizon
   // Error(kFormat, kVersion) unless load would take these bytes; changes nothing.
   void check_state(const void* bytes, size_t size);
-  void load(const void* bytes, size_t size);  // changes nothing when it fails
+  void load(const void* bytes, size_t size);                      // changes nothing when it fails
   const AgentConfig& config() const { return resolved_.config; }  // pointers inside are not valid any more
 
  protected:

@@ -1,5 +1,6 @@
 // Batches cut into chunks of fixed size, several in flight. Chunks are reduced in their order, so sums are
-// the same for any number of workers and any schedule.
+// the same for any number of workers and any schedule: float sums depend on the order of their terms, so the
+// cut depends on the batch alone, never on the threads.
 #pragma once
 #include <memory>
 #include <optional>

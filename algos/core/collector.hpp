@@ -1,4 +1,15 @@
 // The collecting half of an agent: acts, records what followed, estimates advantages.
+//
+//   act       x = clip((obs - shift) scale, +-obs_clip), shift and scale of all observations so far, this one
+//             included; mean = actor(x); action = mean + noise (noise.hpp); V and V_c of x for the advantages
+//   record    r_t, c_t and d_t = discount^steps of the decision; at a truncation the value of the final
+//             observation is added, discounted; at a termination costs may be charged on (terminal_cost)
+//   estimate  V of the last observation closes the paths that still run, then gae.hpp
+//
+// What is learned from and what limits hold for are two things. The cost advantage is of costs discounted
+// like rewards; J_c is an episode's plain sum (Achiam et al. 2017 discount both; the tables of ReDMan and
+// Safety Gym count plain sums). With discount 0.96 a step and four steps a decision, the hands' settings, the
+// gradient looks 7 decisions ahead, the limit over the whole episode. discounted_limit=true discounts both.
 #pragma once
 #include "algos/core/batch_workers.hpp"
 #include "algos/core/episodes.hpp"

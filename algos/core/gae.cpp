@@ -9,15 +9,15 @@ void gae(const GaeColumn& c, const float* discount, const uint8_t* valid, int32_
          double lambda) {
   const auto n = static_cast<size_t>(num_envs), stride = static_cast<size_t>(c.stride);
   for (size_t env = 0; env < n; ++env) {
-    double carry = 0, next = static_cast<double>(c.last_value[env * stride]);
+    double advantage = 0, next = static_cast<double>(c.last_value[env * stride]);
     for (size_t t = static_cast<size_t>(horizon); t-- > 0;) {
       const size_t row = t * n + env, at = row * stride;
       const auto value = static_cast<double>(c.value[at]), d = static_cast<double>(discount[row]);
       // A plain 0 for d keeps a value that is not a number from leaking over the end of a path.
-      const double ahead = d == 0 ? 0 : d * (next + lambda * carry);
-      carry = valid[row] ? static_cast<double>(c.reward[at]) + ahead - value : 0;
-      c.advantage[at] = static_cast<float>(carry);
-      c.target[at] = static_cast<float>(carry + value);
+      const double ahead = d == 0 ? 0 : d * (next + lambda * advantage);
+      advantage = valid[row] ? static_cast<double>(c.reward[at]) + ahead - value : 0;
+      c.advantage[at] = static_cast<float>(advantage);
+      c.target[at] = static_cast<float>(advantage + value);
       next = value;
     }
   }

@@ -1,4 +1,15 @@
-// Generalised advantage estimation and standardisation over a horizon of many environments.
+// Generalised advantage estimation (Schulman et al. 2016, "High-dimensional continuous control using
+// generalized advantage estimation", eq. 16) and standardisation over a horizon of many environments.
+//
+//   delta_t = r_t + d_t V(s_t+1) - V(s_t)
+//   A_t     = delta_t + d_t lambda A_t+1     backwards in t; the critic's target is A_t + V(s_t)
+//
+// d_t: discount^steps of the decision, 0 where a path ended. A path that a time limit cut has d_t V of its
+// final observation in r_t (Collector::record), so it is no end of the task. Rewards and each cost alike,
+// with a lambda of their own.
+//
+// Reward advantages are standardised over the batch, cost advantages only centred (scale_cost_adv=center),
+// for all algorithms: their size against the limit means something. FOCOPS' authors standardise both.
 #pragma once
 #include <cstdint>
 

@@ -1,4 +1,23 @@
 // The learning half of an agent: gradients of batches, cut into chunks and reduced in order, and Adam steps.
+//
+// Of a batch B of N rows the learner follows the gradient of
+//
+//   policy   1/N sum_B L(rho, A) - entropy H(pi)
+//   critics  1/N sum_B (V - target)^2 + l2 |w|^2
+//
+// with L the algorithm's (PolicyLoss), rho = pi(a|s) / pi_old(a|s), V of the reward or of a limited cost,
+// each network with an Adam of its own (Kingma and Ba 2015) behind a bound on its gradient's norm, or one
+// bound for all (joint_grad_norm). With value_clip the squared error is the larger one of V's and of V_old +
+// clip(V - V_old, +-value_clip)'s, as PPO's first code had it; that is no part of the paper.
+//
+// The stages of gradient(): gather the chunk's observations, forward through the actor, loss and its
+// derivatives by mean and log deviation, backward; the same for each critic; chunks' gradients added in
+// order. measure() is the forward half alone: what the policy as it is now would gain, cost and how far it is
+// from the one that acted, KL(old || now). The kl that an Epoch reports is summed in gradient(), so each
+// minibatch's is of before its own step: 0 for one pass over one minibatch.
+//
+// By hand rather than by Eigen: every sum here runs in a fixed order whatever the processor's vectors and the
+// number of threads, which Eigen's products and reductions do not promise; the matrix products are lib/nn's.
 #pragma once
 #include "algos/core/batch_workers.hpp"
 #include "algos/core/networks.hpp"

@@ -48,8 +48,10 @@ inline constexpr std::array kSharedOptions = {
     number_option("cost_lambda", 0.95, 0, 1, "of the cost advantages (GAE)"),
     flag_option("standardize_reward_adv", true, "reward advantage to mean 0 and deviation 1 over the batch"),
     text_option("scale_cost_adv", "center", "center|std",
-                "cost advantages: subtract the mean, or standardise"),
-    flag_option("discounted_limit", false, "limits hold for discounted sums over an episode"),
+                "cost advantages: subtract the mean, or standardise as the authors of FOCOPS do"),
+    flag_option(
+        "discounted_limit", false,
+        "limits hold for discounted sums over an episode, as cost advantages are; else for plain sums"),
     flag_option("terminal_cost", false, "charge a terminated episode's missing steps at its own cost rate"),
     // learning
     integer_option("passes", 10, 1, 10000, "over the data of an epoch"),
@@ -100,8 +102,9 @@ inline constexpr std::array kMultiplierOptions = {
 
 // Where the cost part of a combined advantage stands.
 inline constexpr std::array kSplitOptions = {
-    text_option("cost_loss", "combined", "combined|split",
-                "combined: one clipped advantage (A_r - l A_c)/(1 + l); split: cost part unclipped"),
+    text_option(
+        "cost_loss", "combined", "combined|split",
+        "combined: (A_r - l A_c)/(1 + l), clipped; split: cost part unclipped, as Ray et al. have it"),
 };
 
 // The window alone, for rules without a multiplier.
@@ -117,7 +120,8 @@ inline constexpr std::array kOneCostOptions = {
 
 // The trust region: max G x under x (F + damping I) x / 2 <= trust_kl, F by conjugate gradients.
 inline constexpr std::array kTrustOptions = {
-    number_option("trust_kl", 0.01, 1e-9, 1e3, "bound on the KL of an epoch's policy step", true),
+    number_option("trust_kl", 0.01, 1e-9, 1e3,
+                  "bound on the KL of an epoch's policy step; papers have 0.01 to 0.02", true),
     integer_option("cg_iterations", 15, 1, 1000, "of conjugate gradients, at most", true),
     number_option("cg_tolerance", 1e-6, 0, 1, "residual, relative to the right-hand side, that is enough",
                   true),

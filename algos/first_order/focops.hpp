@@ -1,4 +1,15 @@
-// FOCOPS (Zhang et al. 2020): first-order projection of the optimal nonparametric policy.
+// FOCOPS (Zhang, Vuong and Ross 2020): first-order projection of the optimal nonparametric policy.
+//
+// Within a trust region the best policy under a cost limit has the closed form
+//   pi*(a|s) ~ pi_old(a|s) exp((A_r - nu A_c) / lambda)
+// and the parameters follow the gradient of KL(pi || pi*), for one sample
+//   grad KL(pi || pi_old) - (1 / lambda) grad rho (A_r - nu A_c),   where KL(pi || pi_old) <= eta, else 0;
+// nu climbs by nu <- clip(nu + rate (J_c - limit), 0, nu_max); lambda and eta are fixed (temperature,
+// focops_eta).
+//
+// Departures: the cost advantage is centred, not standardised, as the authors' code has both
+// (scale_cost_adv=std: that); multiplier_divide divides by 1 + nu, as a peer does; of several limited costs
+// the most violated one alone weighs in an epoch, with a nu of its own.
 #pragma once
 #include "algos/core/agent.hpp"
 #include "algos/lagrange/cost_weighted.hpp"

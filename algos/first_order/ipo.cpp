@@ -78,8 +78,9 @@ class Ipo final : public CostWeighted<Ppo, BarrierRule> {
 };
 
 constexpr std::array kBarrierOptions = {
-    text_option("barrier", "epoch", "epoch|exact",
-                "slope at J_c for the whole epoch, or at J_c + L_c as each minibatch has it, never clipped"),
+    text_option(
+        "barrier", "epoch", "epoch|exact",
+        "epoch: slope at J_c for an epoch, nearly a switch; exact: the paper's, at each minibatch's J_c"),
     number_option("barrier_kappa", 0.01, 0, 1e6, "weight of ln(limit - J_c): 1 / m of the paper", true),
     number_option("barrier_max", 1, 0, kHuge, "bound on the barrier's slope, and the slope beyond the limit",
                   true),
@@ -89,6 +90,8 @@ constexpr auto kOptions = with_defaults(join_options(kSharedOptions, kClipOption
                                         {OtherDefault{"violation_scale", 0, "raw"}});
 }  // namespace
 constinit const AlgoRow kIpo = make_algo_row<Ipo>(
-    "ipo", "PPO with a logarithmic barrier before each cost limit (Liu et al. 2020)", kOptions, Costs::kAny);
+    "ipo",
+    "PPO with a cost weight that jumps to 1 at each limit; a barrier with barrier=exact (Liu et al. 2020)",
+    kOptions, Costs::kAny);
 
 }  // namespace rdm

@@ -1,5 +1,16 @@
-// IPO (Liu et al. 2020): a logarithmic barrier before each cost limit, its slope fixed for an epoch (the
-// rule) or exact at every step (the loss).
+// IPO (Liu, Ding and Liu 2020, "IPO: interior-point policy optimization under constraints"): a logarithmic
+// barrier before each cost limit.
+//
+//   max  L_clip(theta) + sum_k kappa ln(limit_k - J_ck(theta)),   kappa = 1 / t of the paper
+//
+// whose gradient is L_clip's less sum_k slope_k grad J_ck, slope = kappa / (limit - J_c).
+//
+// By default this is not the paper's barrier (option barrier=epoch, as a peer has it): the slope is that at
+// the epoch's J_c for the whole epoch, at most barrier_max = 1 and that much beyond the limit, where the
+// logarithm does not exist, and weighs the combined advantage (A_r - sum slope A_c) / (1 + sum slope). With
+// kappa = 0.01 and a limit of 40 the slope is 0.001 at a cost of 30, 0.01 at 39 and 1 above 40: a switch at
+// the limit. README's figures are of this default. barrier=exact is the paper's: its slope is at the J_c that
+// each minibatch estimates for the policy as it is then, the reward is clipped and the cost is not.
 #pragma once
 #include "algos/first_order/p3o.hpp"
 

@@ -59,7 +59,8 @@ void P3o::visit_state(StateIo& io) {
 namespace {
 constexpr std::array kPenaltyOptions = {
     number_option("penalty", 20, 0, 1e6, "kappa, initial weight of the penalty"),
-    number_option("penalty_growth", 1, 1, 10, "factor on kappa per epoch", true),
+    number_option("penalty_growth", 1, 1, 10,
+                  "factor on kappa per epoch; 1: fixed, where the paper has it grow", true),
     number_option("penalty_max", 20, 0, kMaxPenalty, "largest kappa", true),
     flag_option("penalty_clip", true, "clip the cost's ratio too; the peers do not", true),
 };
@@ -67,6 +68,7 @@ constexpr auto kOptions =
     join_options(kSharedOptions, kClipOptions, kPenaltyOptions, kViolationOptions, kWindowOptions);
 }  // namespace
 constinit const AlgoRow kP3o = make_algo_row<P3o>(
-    "p3o", "PPO with an exact penalty on each cost limit (Zhang et al. 2022)", kOptions, Costs::kAny);
+    "p3o", "PPO with an exact penalty of fixed weight on each cost limit (Zhang et al. 2022)", kOptions,
+    Costs::kAny);
 
 }  // namespace rdm

@@ -1,4 +1,15 @@
-// P3O (Zhang et al. 2022): the clipped surrogate with an exact penalty on each cost limit.
+// P3O (Zhang et al. 2022, "Penalized proximal policy optimization for safe reinforcement learning"): the
+// clipped surrogate with an exact penalty on each cost limit,
+//
+//   min  L_r + kappa sum_k max(0, L_ck + violation_k)
+//   L_r = -mean min(rho A_r, clip(rho) A_r),   L_c = mean max(rho A_c, clip(rho) A_c)
+//
+// Exact: with kappa above the multipliers of the constrained problem both have the same solution. So while a
+// minibatch's L_ck + violation_k > 0 the gradient has kappa times the cost's, else nothing of it.
+//
+// Departures: kappa is fixed (penalty 20, 2 in the defaults of throws; penalty_growth and penalty_max: the
+// paper's kappa <- min(growth kappa, max)), and violation = (J_c - limit) / decisions of an episode where the
+// paper has (1 - discount)(J_c - limit) (violation_scale=discount); preset=paper sets both.
 #pragma once
 #include "algos/first_order/ppo.hpp"
 

@@ -1,4 +1,9 @@
-// PPO (Schulman et al. 2017): the clipped surrogate.
+// PPO (Schulman et al. 2017, eq. 7): the clipped surrogate, several passes over shuffled minibatches.
+//
+//   max over theta of the mean of min(rho A, clip(rho, 1 - eps, 1 + eps) A)
+//
+// Around it, none of it in the paper's equation: advantages standardised over the batch, Adam behind a bound
+// on the gradient's norm, a rate that may follow the KL (lr_schedule=kl), passes that may stop early by it.
 #pragma once
 #include "algos/core/agent.hpp"
 #include "algos/first_order/ratio_loss.hpp"

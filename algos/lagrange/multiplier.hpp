@@ -1,4 +1,7 @@
-// The Lagrange multiplier of one cost limit, moved once per epoch by the episode cost J_c.
+// The Lagrange multiplier of one cost limit, moved once per epoch by the episode cost J_c: dual ascent on
+//   min over l >= 0 of  max over theta of  J_r(theta) - l (J_c(theta) - limit)
+// whose derivative by l is the violation (Ray et al. 2019; Altman 1999 for the duality of constrained
+// decision processes). Nothing moves it in an epoch in which no episode ended.
 #pragma once
 #include <cstdint>
 

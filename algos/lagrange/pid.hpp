@@ -1,4 +1,13 @@
-// A PID controller of one cost multiplier (Stooke et al. 2020), one step per epoch.
+// A PID controller of one cost multiplier (Stooke, Achiam and Abbeel 2020, "Responsive safety in
+// reinforcement learning by PID Lagrangian methods", algorithm 2), one step per epoch.
+//
+// Dual ascent is the integral term alone: a multiplier lags a quarter turn behind the cost and both swing.
+// The proportional term answers a violation at once, the derivative damps its rise.
+//
+// Departures, the authors' code among them: the proportional term and the cost that is derived are smoothed
+// (pid_smooth_p, pid_smooth_d), the derivative looks pid_delay epochs back, gains are per unit of cost, not
+// of a cost over its limit: with an episode's cost of tens the defaults of throws have 0.075 of the table's
+// kp and ki.
 #pragma once
 #include <cstdint>
 

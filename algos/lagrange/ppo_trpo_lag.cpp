@@ -31,8 +31,9 @@ constexpr auto kTrpoOptions = with_defaults(
 }  // namespace
 
 constinit const AlgoRow kPpoLag = make_algo_row<CostWeighted<Ppo, Lagrange>>(
-    "ppo_lag", "PPO with a Lagrange multiplier for each cost limit (Ray et al. 2019)", kPpoOptions,
-    Costs::kAny);
+    "ppo_lag",
+    "PPO on one clipped advantage, reward less costs by their Lagrange multipliers (Ray et al. 2019)",
+    kPpoOptions, Costs::kAny);
 constinit const AlgoRow kTrpoLag = make_algo_row<CostWeighted<Trpo, Lagrange>>(
     "trpo_lag", "TRPO with a Lagrange multiplier for each cost limit (Ray et al. 2019)", kTrpoOptions,
     Costs::kAny);

@@ -1,4 +1,14 @@
-// Conjugate gradients for A x = b with a symmetric positive definite A that is only known by its products.
+// Conjugate gradients (Hestenes and Stiefel 1952) for A x = b with a symmetric positive definite A that is
+// only known by its products.
+//
+//   r = d = b, x = 0;  repeat   alpha = r'r / d'A d,  x += alpha d,  r -= alpha A d,
+//                               beta = r'r (new) / r'r (old),  d = r + beta d
+//
+// After k products x minimises |x - A^-1 b| in the metric of A over the first k powers of A on b; ten to
+// fifteen are enough for a natural gradient (Schulman et al. 2015, appendix C).
+//
+// Not Eigen's ConjugateGradient: its float sums run in the order of the processor's vectors, here dot() adds
+// in double in one order, so that a policy is the same on every machine.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -49,11 +59,11 @@ int32_t conjugate_gradient(Multiply&& multiply, const float* b, const CgWork& wo
     multiply(static_cast<const float*>(d), z);
     const double curvature = dot(d, z, n);
     if (!(curvature > 0) || !std::isfinite(curvature)) return k;
-    const auto step = static_cast<float>(rr / curvature);
-    for (size_t i = 0; i < n; ++i) x[i] += step * d[i], r[i] -= step * z[i];
+    const auto alpha = static_cast<float>(rr / curvature);
+    for (size_t i = 0; i < n; ++i) x[i] += alpha * d[i], r[i] -= alpha * z[i];
     const double next = dot(r, r, n);
-    const auto keep = static_cast<float>(next / rr);
-    for (size_t i = 0; i < n; ++i) d[i] = r[i] + keep * d[i];
+    const auto beta = static_cast<float>(next / rr);
+    for (size_t i = 0; i < n; ++i) d[i] = r[i] + beta * d[i];
     rr = next;
   }
   return options.iterations;

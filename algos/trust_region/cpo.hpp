@@ -1,4 +1,10 @@
-// CPO (Achiam et al. 2017): the trust region's step under a linearised cost limit.
+// CPO (Achiam et al. 2017): the trust region's step under a linearised cost limit (cpo_problem.hpp).
+//
+// c = J_c - limit in the units of the cost surrogate, a mean of rho A_c over decisions (option
+// violation_scale: divided by an episode's decisions; the authors' code divides by an episode's length too).
+// The line search wants KL <= delta, the cost surrogate to rise by at most max(-c, 0), and, unless the
+// problem was a recovery, the reward's not to fall (the paper's section 6.1; 6.2 for the recovery). Of
+// several limited costs each epoch follows the most violated one (several_costs=worst); the paper has one.
 #pragma once
 #include "algos/trust_region/trpo.hpp"
 

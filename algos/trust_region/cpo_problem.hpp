@@ -1,7 +1,20 @@
-// The local problem of constrained policy optimisation (Achiam et al. 2017), solved in closed form:
+// The local problem of constrained policy optimisation (Achiam et al. 2017, section 6.1 and theorem 2),
+// solved in closed form:
 //   max G'y  subject to  b'y + c <= 0  and  y'H y / 2 <= delta,
 // G and b ascent gradients of reward and cost surrogate. With x = H^-1 G and p = H^-1 b the solution lies in
 // the span of x and p and needs three numbers: q = G'x, r = G'p = b'x, s = b'p.
+//
+// The paper solves the dual, max over lambda, nu >= 0 of
+//   -(q - 2 r nu + s nu^2) / (2 lambda) + nu c - lambda delta
+// by cases. Here the primal, by geometry in the metric of H, where the region is a ball of radius
+// sqrt(2 delta) and the limit a plane:
+//   room = 2 delta - c^2 / s    squared radius of the disc in which the plane cuts the ball
+//   c >= 0, room < 0            recovery: no feasible point, y = -sqrt(2 delta / s) p (section 6.2)
+//   the free step sqrt(2 delta / q) x is feasible: y is that
+//   else                        y = centre of the disc + its radius along what of x lies in the plane:
+//                               y = -(c / s) p + sqrt(room / (q - r^2 / s)) (x - (r / s) p)
+// and lambda = sqrt((q - r^2 / s) / room), nu = max(0, lambda c + r) / s are the paper's.
+// Two unknowns and square roots: nothing that a linear-algebra library would do.
 #pragma once
 #include <cstdint>
 

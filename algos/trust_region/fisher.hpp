@@ -1,9 +1,16 @@
-// Products with the Fisher matrix of the policy, without forming it.
+// Products with the Fisher matrix of the policy, without forming it (Schulman et al. 2015, appendix C.1).
 //
-// For a Gaussian whose deviation does not depend on the state the Hessian of the mean KL(old || new) at
-// new = old is J' diag(1 / sigma^2) J / N for the network, J the derivative of the mean, and 2 I for the log
-// deviations, with nothing between the two. With std_mode=state it is J' diag(1 / sigma^2, 2) J / N, J the
-// derivative of means and log deviations; where these are at a bound, J is 0.
+// Of two normals in one dimension
+//   KL(old || new) = ln(s / s_old) + (s_old^2 + (m_old - m)^2) / (2 s^2) - 1/2
+// has at new = old the second derivatives 1 / s^2 by m, 2 by ln s, and 0 between the two. So the Hessian of
+// the mean KL over N rows is, with J the derivative of the network's outputs by its parameters,
+//   std_mode=free    J' diag(1 / s^2) J / N for the network, 2 I for the log deviations
+//   std_mode=state   J' diag(1 / s^2, 2) J / N; J is 0 where a deviation is at a bound
+// and F v is one pass forward with tangents (J v), a scaling of the outputs, and one pass back (J').
+//
+// Departures: damping I is added, as all do; the sum is over every fisher_stride-th row (1; 4 in the defaults
+// of throws, for speed); kl_mean_over_dims divides KL and F by the number of actions, as the peers' code
+// does, where the paper sums.
 #pragma once
 #include "algos/core/batch_workers.hpp"
 #include "algos/core/networks.hpp"

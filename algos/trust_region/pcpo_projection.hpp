@@ -1,5 +1,9 @@
-// The projection of projection-based CPO (Yang et al. 2020): a reward step of the whole trust region, then
-// the nearest point of the half-space b'y + c <= 0, in the metric of the KL or of the parameters.
+// The projection of projection-based CPO (Yang et al. 2020, algorithm 1): a reward step of the whole trust
+// region, then the nearest point of the half-space b'y + c <= 0, in the metric L of the KL (L = H) or of the
+// parameters (L = I):
+//   y = a x - max(0, (a b'x + c) / b'L^-1 b) L^-1 b,   a = sqrt(2 delta / q)
+// As a peer does, a line search shortens the step until the KL is within delta (line_search_steps,
+// 100); the paper takes it whole.
 #pragma once
 
 namespace rdm {

@@ -1,4 +1,6 @@
 // TRPO (Schulman et al. 2015): one natural-gradient step of the actor in a trust region, then the critics.
+//
+//   y = sqrt(2 delta / x'H x) x, x = H^-1 G;   y is shortened until KL <= delta and the gain >= 0
 #pragma once
 #include "algos/core/agent.hpp"
 #include "algos/first_order/ratio_loss.hpp"

@@ -1,5 +1,5 @@
-// redman_map.hpp: C++17 over the experimental part of redman.h, as redman.hpp is over the rest: the owner of a
-// map, views of what worlds see. May change until version 1.
+// redman_map.hpp: C++17 over the experimental part of redman.h, as redman.hpp is over the rest: the owner of
+// a map, views of what worlds see. May change until version 1.
 //
 //   redman::Map map(redman::map_config(0.02));
 //   map.scan(pool, 0, "top", 96, 96);

@@ -13,13 +13,6 @@ void gaussian_log_prob_grad(const float* mean, const float* log_std, const float
   kernels().log_prob_grad(mean, log_std, action, dim, scale, dmean, dlog_std);
 }
 
-float gaussian_entropy(const float* log_std, int32_t dim) {
-  constexpr float kHalfLogTwoPiE = 1.41893853320467274178f;
-  float sum = 0;
-  for (int32_t j = 0; j < dim; ++j) sum += log_std[j] + kHalfLogTwoPiE;
-  return sum;
-}
-
 float gaussian_kl(const float* mean0, const float* log_std0, const float* mean1, const float* log_std1,
                   int32_t dim) {
   return kernels().kl(mean0, log_std0, mean1, log_std1, dim);

@@ -13,9 +13,6 @@ float gaussian_log_prob(const float* mean, const float* log_std, const float* ac
 void gaussian_log_prob_grad(const float* mean, const float* log_std, const float* action, int32_t dim,
                             float scale, float* dmean, float* dlog_std);
 
-// Entropy: sum_j log sigma_j + log(2 pi e)/2.
-float gaussian_entropy(const float* log_std, int32_t dim);
-
 // KL(p0 || p1).
 float gaussian_kl(const float* mean0, const float* log_std0, const float* mean1, const float* log_std1,
                   int32_t dim);

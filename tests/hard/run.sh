@@ -12,9 +12,10 @@ export UBSAN_OPTIONS=print_stacktrace=1
 # Inputs of each target are led by coverage for a share of the time, at most so many. Fast targets leave their
 # time to the slow ones. What ends a target stays in $out, with the command that does it again.
 fuzz() {
-  local most=2000000 begin=$SECONDS passed=0 failed=0 targets=() left share log status
-  for t in policy hull tool_run tool_mesh tool_demo agent checkpoint map state options; do
-    [ -x "$bin/fuzz_$t" ] && targets+=("$t")
+  local most=2000000 begin=$SECONDS passed=0 failed=0 targets=() left share log status program length
+  # "state" of the small worlds and of those with an engine: the one steps in microseconds, the other in milliseconds
+  for t in policy hull tool_run tool_mesh tool_demo agent checkpoint map state options state-large; do
+    [ -x "$bin/fuzz_${t%-*}" ] && targets+=("$t")
   done
   left=${#targets[@]}
   [ "$left" -gt 0 ] || { echo "$bin holds no fuzz target: build the target \`hard\`"; return 1; }
@@ -23,11 +24,16 @@ fuzz() {
     share=$(((seconds - (SECONDS - begin)) / left))
     [ "$share" -gt 1 ] || share=1
     left=$((left - 1))
-    mkdir -p "$out/corpus-$t" "$here/corpus/$t"
-    log=$out/$t.log
-    "$bin/fuzz_$t" --seeds "$out/corpus-$t" > /dev/null
-    "$bin/fuzz_$t" -max_total_time="$share" -runs=$most -max_len=32768 -rss_limit_mb=1024 -malloc_limit_mb=1024 \
-      -timeout=20 -print_final_stats=1 -verbosity=1 -artifact_prefix="$out/$t-" "$out/corpus-$t" "$here/corpus/$t" > "$log" 2>&1
+    mkdir -p "$out/corpus-$t" "$here/corpus/${t%-*}"
+    log=$out/$t.log program=$bin/fuzz_${t%-*} length=32768
+    case $t in
+      state) export RDM_FUZZ_WORLDS=small ;;
+      state-large) export RDM_FUZZ_WORLDS=/ length=65536 ;;
+      options | tool_demo | hull) length=2048 ;;
+    esac
+    "$program" --seeds "$out/corpus-$t" > /dev/null
+    "$program" -max_total_time="$share" -runs=$most -max_len=$length -rss_limit_mb=1024 -malloc_limit_mb=1024 \
+      -timeout=20 -print_final_stats=1 -verbosity=1 -artifact_prefix="$out/$t-" "$out/corpus-$t" "$here/corpus/${t%-*}" > "$log" 2>&1
     status=$?
     printf '%-12s %9s %8s %8s %9s\n' "$t" "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")" \
       "$(sed -n 's/.* cov: \([0-9]*\) .*/\1/p' "$log" | tail -n1)" "$(sed -n 's/.* ft: \([0-9]*\) .*/\1/p' "$log" | tail -n1)" \
@@ -36,8 +42,8 @@ fuzz() {
       passed=$((passed + 1))
     else
       failed=$((failed + 1))
-      grep -m3 -E 'not so:|ERROR:|runtime error:|took .* s$|Sanitizer' "$log"
-      sed -n "s|.*Test unit written to \\(.*\\)|again: $bin/fuzz_$t \\1|p" "$log"
+      grep -a -m3 -E 'not so:|ERROR: Addr|ERROR: Leak|runtime error:|took .* s$|SUMMARY' "$log"
+      sed -n "s|.*Test unit written to \\(.*\\)|again: ${RDM_FUZZ_WORLDS:+RDM_FUZZ_WORLDS=$RDM_FUZZ_WORLDS }$program \\1|p" "$log"
     fi
   done
   echo "$passed passed, $failed failed"

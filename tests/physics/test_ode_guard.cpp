@@ -2,9 +2,11 @@
 #include <ode/ode.h>
 
 #include <cstdarg>
+#include <cstdlib>
 #include <thread>
 
 #include "base/error.hpp"
+#include "heap_count.hpp"
 #include "physics/ode/ode_guard.hpp"
 
 namespace rdm {
@@ -69,6 +71,80 @@ TEST(OdeGuard, AHostThatReplacedTheHandlersKeepsThem) {
   }
   EXPECT_EQ(dGetErrorHandler(), host_message);
   dSetErrorHandler(nullptr);
+}
+
+// A host's memory, and how much of it is out.
+int g_blocks = 0;
+bool g_refuses = false;
+void* host_alloc(dsizeint bytes) {
+  if (g_refuses) return nullptr;
+  ++g_blocks;
+  return std::malloc(bytes);
+}
+void* host_realloc(void* block, dsizeint, dsizeint bytes) {
+  return g_refuses ? nullptr : std::realloc(block, bytes);
+}
+void host_free(void* block, dsizeint) {
+  --g_blocks;
+  std::free(block);
+}
+
+TEST(OdeGuard, MemoryIsTheHostsAndARefusalIsThrownInsideOnly) {
+  dSetAllocHandler(host_alloc);
+  dSetReallocHandler(host_realloc);
+  dSetFreeHandler(host_free);
+  {
+    const OdeGuard guard;
+    {
+      const OdeScope scope;
+      void* block = dAlloc(8);
+      EXPECT_EQ(g_blocks, 1);
+      block = dRealloc(block, 8, 16);
+      g_refuses = true;
+      EXPECT_THROW(dAlloc(8), Error);
+      EXPECT_THROW(dRealloc(block, 16, 32), Error);
+      EXPECT_THROW(dWorldCreate(), Error);
+      EXPECT_THROW(dCreateSphere(nullptr, 1), Error);
+      dFree(block, 16);
+      EXPECT_EQ(g_blocks, 0);
+    }
+    EXPECT_EQ(dAlloc(8), nullptr);
+    std::thread([] { EXPECT_EQ(dAlloc(8), nullptr); }).join();
+    g_refuses = false;
+  }
+  EXPECT_EQ(dGetAllocHandler(), host_alloc);
+  EXPECT_EQ(dGetReallocHandler(), host_realloc);
+  EXPECT_EQ(dGetFreeHandler(), host_free);
+  dSetAllocHandler(nullptr);
+  dSetReallocHandler(nullptr);
+  dSetFreeHandler(nullptr);
+}
+
+TEST(OdeGuard, BlocksThatAreLeftAreFreedByPurpose) {
+  if (!kHeapIsCounted) GTEST_SKIP() << "the heap is not ours under sanitizers";
+  const OdeGuard guard;
+  const char one = 0, two = 0;
+  const int64_t before = heap_blocks();
+  {
+    OdeBlocks blocks;
+    {
+      const OdeScope scope(&blocks, &one);
+      void* const returned = dAlloc(8);
+      dAlloc(8);  // lost
+      dFree(returned, 8);
+      const OdeScope inner;  // the same
+      dAlloc(8);
+    }
+    const OdeScope scope(&blocks, &two);
+    void* const kept = dRealloc(dAlloc(8), 8, 4096);
+    dAlloc(8);                                 // lost, to the end
+    EXPECT_EQ(heap_blocks(), before + 4 + 1);  // and their list
+    blocks.release(&one);
+    EXPECT_EQ(heap_blocks(), before + 2 + 1);
+    dFree(kept, 4096);
+    EXPECT_EQ(heap_blocks(), before + 1 + 1);
+  }
+  EXPECT_EQ(heap_blocks(), before);
 }
 
 TEST(OdeGuard, ScopesNest) {

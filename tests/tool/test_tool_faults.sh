@@ -74,9 +74,10 @@ refused '--probes' . export --policy hold --probes 2147483647 --onnx x
 
 # Meshes: coordinates that qhull would overflow on.
 awk 'BEGIN { srand(1); for (i = 0; i < 8; ++i) print "v", rand(), rand(), rand() }' > points.obj
-for scale in 1e155 1e308 1e5 nan inf; do refused "hull --scale $scale" . hull points.obj --scale $scale; done
+for scale in 1e155 1e308 1e5; do refused "hull --scale $scale" farther hull points.obj --scale $scale; done
+for scale in nan inf; do refused "hull --scale $scale" scale hull points.obj --scale $scale; done
 printf 'v 1e200 0 0\nv 0 1e200 0\nv 0 0 1e200\nv 0 0 0\n' > huge.obj
-refused 'a huge mesh' . hull huge.obj
+refused "a huge mesh" farther hull huge.obj
 mkfifo fifo.obj
 refused 'a FIFO as a mesh' 'regular' hull fifo.obj
 

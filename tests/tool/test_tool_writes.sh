@@ -3,9 +3,11 @@
 # and leaves nothing behind; a run goes only when another can begin, and has one trainer at a time.
 . "$(dirname "$0")/tool.sh"
 say() { echo "$*"; failed=1; }
-train() {  # train FLAGS...: a small run
-  "$tool" train --task ball_run --envs 4 --set max_steps=20 --set horizon=50 --set hidden=16,16 --eval-every 2 --checkpoint-every 2 "$@"
+start() {  # start FLAGS...: a small run, in place of this shell, so that a signal reaches it
+  exec "$tool" train --task ball_run --envs 4 --set max_steps=20 --set horizon=50 --set hidden=16,16 --eval-every 2 \
+    --checkpoint-every 2 "$@"
 }
+train() { (start "$@"); }
 train --steps 2000 --out run > out 2> err || { cat err; exit 1; }
 
 # every command that writes a file, with the file as its last argument
@@ -18,7 +20,7 @@ writers() {
   echo "render --task ball_run --size 16x16 --out"
 }
 mkdir taken
-writers | while read -r command; do
+writers | { while read -r command; do
   # FIFOs, folders and devices stay what they are
   mkfifo pipe 2> /dev/null
   [ -c device ] || mknod device c 1 3 2> /dev/null
@@ -50,8 +52,7 @@ writers | while read -r command; do
   ( ulimit -f 0; exec "$tool" $command file ) > /dev/null 2> err && say "$command: a full disk is not noticed"
   [ "$(cat file)" = old ] || say "$command: the old file is gone with the disk full"
   [ -z "$(find . -maxdepth 1 -name 'file.tmp-*')" ] || say "$command left a temporary file"
-  exit $failed
-done || failed=1
+done; exit $failed; } || failed=1
 # the limit is a text, not a signal
 ( ulimit -f 1; exec "$tool" rollout --task ball_run --out big.csv ) > out 2> kept
 [ $? -eq 1 ] && grep -q 'big.csv: File too large' kept || say "a file size limit: $(cat kept)"
@@ -80,17 +81,17 @@ for flags in '--steps 1e15' '--steps 0.5' '--set total_epochs=0' '--set nothing=
   [ "$(sum)" = "$before" ] || { say "--overwrite with $flags spoiled the old run"; break; }
 done
 train --out run --overwrite --set "object=$(printf '\377')" > out 2> err && say "a value that is no UTF-8 was taken"
-( ulimit -f 1; train --steps 1000 --out run --overwrite ) > out 2> err && say "a full disk is not noticed"
+( ulimit -f 1; start --steps 1000 --out run --overwrite ) > out 2> err && say "a full disk is not noticed"
 [ "$(sum)" = "$before" ] || say "--overwrite on a full disk spoiled the old run"
 train --steps 1000 --out run --overwrite > out 2> err || say "--overwrite: $(cat err)"
 [ "$(sum)" != "$before" ] || say "--overwrite did nothing"
 
 # One trainer in a folder at a time; a kill sets it free.
-rows() { wc -l < "$1/progress.csv" 2> /dev/null || echo 0; }
+rows() { { wc -l < "$1/progress.csv"; } 2> /dev/null || echo 0; }
 wait_rows() {  # wait_rows DIR COUNT PID
   while kill -0 "$3" 2> /dev/null && [ "$(rows "$1")" -lt "$2" ]; do sleep 0.02; done
 }
-train --steps 100000000 --out busy > out1 2> err1 &
+start --steps 100000000 --out busy > out1 2> err1 &
 pid=$!
 wait_rows busy 6 $pid
 for flags in '--out busy' '--out busy --overwrite'; do
@@ -107,7 +108,7 @@ wait $pid 2> /dev/null
 awk -F, 'NR > 1 && $1 != NR - 1 { exit 1 }' busy/progress.csv || say "progress.csv has rows of two trainings"
 
 # The folder goes while a run trains in it: a text; with another one in its place nothing is written there.
-train --steps 100000000 --out gone > out1 2> err1 &
+start --steps 100000000 --out gone > out1 2> err1 &
 pid=$!
 wait_rows gone 4 $pid
 mv gone moved
@@ -129,10 +130,19 @@ awk -F, 'NR == 1 { n = NF } NF != n { exit 1 }' full/progress.csv || say "a part
 # Folders that nothing can be written to.
 "$tool" train --task ball_run --steps 400 --out /proc/none > out 2> err && say "a folder in /proc was made"
 [ "$(wc -l < err)" -eq 1 ] || say "/proc: $(cat err)"
-if [ "$(id -u)" -ne 0 ]; then
-  chmod a-w run
-  "$tool" train --resume run --steps 3000 > out 2> err && say "a read-only folder is not noticed"
+powerless() {  # powerless COMMAND...: by one whom permissions bind
+  if [ "$(id -u)" -eq 0 ]; then setpriv --reuid=65534 --regid=65534 --clear-groups "$@"; else "$@"; fi
+}
+cp -r run locked
+chmod 755 .
+chmod -R a+rX,a-w locked
+if powerless "$tool" eval --policy locked --episodes 1 > out 2> err; then
+  cp locked/checkpoint.rdm kept.rdm
+  powerless "$tool" train --resume locked --steps 3000 > out 2> err && say "a read-only folder is not noticed"
   grep -q 'Permission denied' err || say "a read-only folder: $(cat err)"
-  chmod u+w run
+  powerless "$tool" train --task ball_run --steps 400 --overwrite --out locked > out 2> err && say "a read-only run was overwritten"
+  grep -q 'Permission denied' err || say "a read-only folder: $(cat err)"
+  cmp -s kept.rdm locked/checkpoint.rdm || say "a read-only run has another checkpoint"
 fi
+chmod -R u+w locked
 exit $failed

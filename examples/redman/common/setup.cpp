@@ -1,5 +1,6 @@
 #include "common/setup.hpp"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdlib>
 

@@ -1,12 +1,18 @@
 // From flags to pools and agents: options, cost limits, sizes.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <redman/redman.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/report.hpp"
+
+// CLI11's header is large: only those who read flags include it.
+namespace CLI {
+class App;
+class Option;
+class Validator;
+}  // namespace CLI
 
 namespace tool {
 

@@ -57,9 +57,12 @@ void visit(const std::vector<CostColumn>& columns, const Row& row, Add add) {
   add("Time/Total", row.times.total);
 }
 
-std::vector<std::string> split(const std::string& line) {
+constexpr size_t kMostColumns = 1000;
+
+// The cells of a line, at most `most` and one more.
+std::vector<std::string> split(const std::string& line, size_t most) {
   std::vector<std::string> cells;
-  for (size_t at = 0; at <= line.size();) {
+  for (size_t at = 0; at <= line.size() && cells.size() <= most;) {
     const size_t end = std::min(line.find(',', at), line.size());
     cells.push_back(line.substr(at, end - at));
     at = end + 1;
@@ -99,8 +102,10 @@ Columns parse_progress(const char* text, size_t size) {
     const void* found = std::memchr(text + at, '\n', size - at);
     const size_t end = found ? static_cast<size_t>(static_cast<const char*>(found) - text) : size;
     const bool first = at == 0;
-    const auto cells = split(std::string(text + at, end - at));
+    const auto cells = split(std::string(text + at, end - at), first ? kMostColumns : columns.size());
     at = end + 1;
+    if (first && cells.size() > kMostColumns)
+      throw Failure("more than " + std::to_string(kMostColumns) + " columns");
     for (size_t i = 0; first && i < cells.size(); ++i) {
       const auto [column, fresh] = out.try_emplace(cells[i]);
       if (!fresh) throw Failure("two columns have the name '" + cells[i] + "'");

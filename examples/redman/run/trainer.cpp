@@ -229,6 +229,7 @@ void Trainer::run() {
   try {
     train_to_the_end(meter);
   } catch (const std::runtime_error& e) {
+    folder_->check();  // where the folder is gone, that is what went wrong
     if (saved_epoch_ < 1) throw;
     throw Failure(std::string(e.what()) +
                   format("; the checkpoint of epoch %d is kept: go on with train --resume ", saved_epoch_) +

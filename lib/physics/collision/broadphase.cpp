@@ -14,43 +14,32 @@ constexpr float kFar = 1e30f;       // m
 constexpr float kSlack = 1e-5f;     // m, for the rounding of bounds
 constexpr float kFlatness = 1e-6f;  // of two axes that count as parallel
 
-using Lanes = Simd<float, 4>;
-using Four = Lanes::V;
-
-Four load(const float* p) {
-  Four v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
-void store(float* p, Four v) {
-  std::memcpy(p, &v, sizeof v);
-}
-float dot3(Four a, Four b) {
-  const Four p = a * b;
+float dot3(Float4 a, Float4 b) {
+  const Float4 p = a * b;
   return p[0] + p[1] + p[2];
 }
 
-Four clamp_unit(Four x) {
-  const Four one = Lanes::all(1);
+Float4 clamp_unit(Float4 x) {
+  const Float4 one = splat(1.0f);
   x = x < -one ? -one : x;
   return x > one ? one : x;
 }
 
-Four dot(const Four* a, const Four* b) {
+Float4 dot(const Float4* a, const Float4* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 // Squared distances of four pairs of segments p + s u and q + t v, |s|, |t| <= 1, by coordinate. The lines
 // are nearest where d/ds = d/dt = 0 of |p - q + s u - t v|^2; an end takes the place of what lies beyond it.
-Four segment_distance(const Four* p, const Four* u, const Four* q, const Four* v) {
-  const Four tiny = Lanes::all(1e-10f);
-  const Four r[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-  const Four a = dot(u, u) + tiny, e = dot(v, v) + tiny, b = dot(u, v), c = dot(u, r), f = dot(v, r);
-  const Four d = a * e - b * b;
-  const Four s = clamp_unit(d > kFlatness * a * e ? (b * f - c * e) / d : -c / a);
-  const Four t = (b * s + f) / e, inside = clamp_unit(t);
-  const Four s2 = t == inside ? s : clamp_unit((b * inside - c) / a);
-  Four w[3];
+Float4 segment_distance(const Float4* p, const Float4* u, const Float4* q, const Float4* v) {
+  const Float4 tiny = splat(1e-10f);
+  const Float4 r[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+  const Float4 a = dot(u, u) + tiny, e = dot(v, v) + tiny, b = dot(u, v), c = dot(u, r), f = dot(v, r);
+  const Float4 d = a * e - b * b;
+  const Float4 s = clamp_unit(d > kFlatness * a * e ? (b * f - c * e) / d : -c / a);
+  const Float4 t = (b * s + f) / e, inside = clamp_unit(t);
+  const Float4 s2 = t == inside ? s : clamp_unit((b * inside - c) / a);
+  Float4 w[3];
   for (int k = 0; k < 3; ++k) w[k] = r[k] + u[k] * s2 - v[k] * inside;
   return dot(w, w);
 }
@@ -126,21 +115,21 @@ void BroadPhase::update_boxes(const Scene& scene) {
   for (size_t a = 0; a < scene.def.articulations.size(); ++a) {
     const int32_t first = scene.first_shape[a];
     const auto end = first + static_cast<int32_t>(scene.def.articulations[a].shapes.size());
-    Four low = Lanes::all(kFar), high = Lanes::all(-kFar);
+    Float4 low = splat(kFar), high = splat(-kFar);
     for (int32_t i = first; i < end; ++i) {
-      const Four c = load(bounds_[i].center), r = Lanes::all(c[3] + kSlack), x = c - r, y = c + r;
+      const Float4 c = load4(bounds_[i].center), r = splat(c[3] + kSlack), x = c - r, y = c + r;
       low = x < low ? x : low;
       high = y > high ? y : high;
     }
-    store(boxes_[a].low, low);
-    store(boxes_[a].high, high);
+    store4(boxes_[a].low, low);
+    store4(boxes_[a].high, high);
   }
 }
 
 bool BroadPhase::near(const Bound& bound, const Box& box) {
-  const Four c = load(bound.center), zero{};
-  const Four under = load(box.low) - c, over = c - load(box.high);
-  Four d = under > over ? under : over;
+  const Float4 c = load4(bound.center), zero{};
+  const Float4 under = load4(box.low) - c, over = c - load4(box.high);
+  Float4 d = under > over ? under : over;
   d = d > zero ? d : zero;
   return dot3(d, d) < c[3] * c[3];
 }
@@ -167,21 +156,20 @@ void BroadPhase::mark_neighbours(const Scene& scene, int32_t articulation, const
 
 // Bit k: the bounds of pair list[k] meet, or one of them is a plane; four of them.
 uint32_t BroadPhase::near_four(const int32_t* list) const {
-  const float *a[4], *b[4], *u[4], *v[4];
-  Four gap{}, reach{};
+  Float4 p[4], u[4], q[4], v[4], gap{}, reach{};
   for (int k = 0; k < 4; ++k) {
     const Pair& pair = pairs_[list[k]];
+    const Bound &a = bounds_[pair.a], &b = bounds_[pair.b];
     gap[k] = pair.gap;
     reach[k] = pair.reach;
-    a[k] = bounds_[pair.a].center, u[k] = bounds_[pair.a].axis;
-    b[k] = bounds_[pair.b].center, v[k] = bounds_[pair.b].axis;
+    p[k] = load4(a.center), u[k] = load4(a.axis);
+    q[k] = load4(b.center), v[k] = load4(b.axis);
   }
-  Four p[4], q[4], pu[4], qv[4];
-  Lanes::gather(a, 4, p), Lanes::gather(b, 4, q);
-  const Four d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-  if (Lanes::bits(dot(d, d) < reach) == 0) return 0;
-  Lanes::gather(u, 4, pu), Lanes::gather(v, 4, qv);
-  return Lanes::bits(segment_distance(p, pu, q, qv) < gap);
+  transpose(p), transpose(q);
+  const Float4 d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+  if (bits_of(dot(d, d) < reach) == 0) return 0;
+  transpose(u), transpose(v);
+  return bits_of(segment_distance(p, u, q, v) < gap);
 }
 
 void BroadPhase::search(const Scene& scene, Visit visit, void* context) {

@@ -1,15 +1,12 @@
 // Which pairs of a scene may touch at the present poses: most are passed over by bounds alone.
 //
-// Every shape stands in a sphere and, more tightly, in a capsule (a segment c +- u with a radius). Per
-// substep:
+// Every shape stands in a sphere and, more tightly, in a capsule (a segment c +- u with a radius). A search:
 //   1. an axis-aligned box around each articulation's spheres;
 //   2. per run of pairs of one shape with one articulation: the shape's sphere against that box,
-//      |max(low - c, c - high, 0)|^2 < r^2, and that articulation's shapes against the box of the shape's
-//      own;
-//   3. per pair, four at a time: spheres, |c_a - c_b|^2 < (r_a + r_b)^2, then the distance of the two
-//   segments
+//      |max(low - c, c - high, 0)|^2 < r^2, and that articulation's shapes against the box of its own;
+//   3. per pair, four at a time: spheres, |c_a - c_b|^2 < (r_a + r_b)^2, then the distance of the segments
 //      (Ericson, Real-Time Collision Detection, 2005, section 5.1.9). Planes: n . c - d < r.
-// All in floats with a slack for their rounding: a pair that touches is never passed over, so what is found
+// All in floats, with a slack for their rounding: a pair that touches is never passed over, so what is found
 // does not depend on the bounds. A bound with a number missing (NaN) touches nothing.
 #pragma once
 #include "base/arena.hpp"

@@ -5,6 +5,22 @@
 #include <algorithm>
 #include <cmath>
 
+// Support mapping h(d), the point of a solid farthest along d. In the solid's own frame, half sizes s:
+//   sphere     r d/|d|                              capsule   the sphere's, from the end (0, 0, +-s_z)
+//   box        (+-s_x, +-s_y, +-s_z), signs of d    cylinder  (r d_xy/|d_xy|, +-s_z)
+//   ellipsoid  S S d / |S d|, S = diag(s): d . x is largest on |S^-1 x| = 1 where S^-2 x is along d
+//   hull       the corner with the largest d . x
+// In the world h(d) = p + R h_local(R^T d).
+//
+// Overlap. Solids overlap when their Minkowski difference a - b holds the origin; libccd finds that out by
+// portal refinement, from support points alone (MPR: Snethen, XenoCollide, Game Programming Gems 7, 2008).
+// Along a unit n from b into a they overlap by
+//   f(n) = n . (h_b(n) - h_a(-n)),
+// and the depth is the least f over all n; f < 0 for any n shows them apart. For flat faces the portal's
+// normal is that n. For round ones it leans towards the line of centres, and `sharpen` goes downhill in f.
+//
+// Feature: what a solid shows along n, the face whose normal is nearest to n, an edge, or h(n) alone. The
+// manifold is cut out of the features of the two.
 namespace rdm {
 namespace {
 

@@ -5,6 +5,18 @@
 
 #include "physics/collision/thinning.hpp"
 
+// The contact of two convex solids in stages:
+//   1. two round sides (spheres, capsules, sides of cylinders): with r = p_a - p_b, k = u_a . u_b,
+//      a = u_a . r, b = u_b . r the lines p_a + s u_a and p_b + t u_b are nearest at
+//        s = (k b - a) / (1 - k^2),   t = k s + b,
+//      and an end takes the place of what lies beyond it (Ericson, Real-Time Collision Detection, 2005,
+//      section 5.1.9). Where 1 - k^2 is small: the two ends of the stretch side by side.
+//   2. all others: the overlap's normal n and depth (convex.cpp), and what each solid shows along n.
+//   3. if a shown face stands square to n, the other feature is clipped at the sides of that face
+//      (Sutherland and Hodgman, Reentrant polygon clipping, 1974). What is below it counts, with depth
+//      n_face . (p_face - p). It is the reference face of Box2D's manifolds. Else one point, in the middle.
+//   4. at most kManifoldPoints stay (thinning.hpp).
+// Points and normals are in the world; normals point from b into a.
 namespace rdm {
 namespace {
 

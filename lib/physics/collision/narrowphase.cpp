@@ -6,6 +6,10 @@
 #include "physics/ode/ode_convert.hpp"
 #include "physics/ode/ode_guard.hpp"
 
+// Per candidate pair: poses of its two geoms, once per search (`placed_` holds the number of the search that
+// put each there), the points (shapes.cpp: ODE's for spheres, capsules, boxes and planes with each other,
+// ours otherwise), then one Contact per point until the world's contacts_max. Contacts stand in the order of
+// the scene's pairs, whatever the bounds let through: results do not depend on the broad phase.
 namespace rdm {
 
 Collider::~Collider() {

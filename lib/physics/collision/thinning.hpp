@@ -1,6 +1,5 @@
-// Fewer contact points that hold as well: the deepest, then each time the one farthest from all kept, as
-// Bullet's and Jolt's manifolds are reduced. A solver's time goes with the number of points, its stability
-// with their spread.
+// Fewer contact points that hold as well: the deepest, then each time the one farthest from all kept. Physics
+// engines reduce their manifolds so: time goes with the number of points, stability with their spread.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,8 @@
 
 // Faces: a plane through three points is one when all others lie on one side of it. With at most 32 points
 // that is tried for every three; points within kFlat of it belong to the same face, which gift wrapping
-// (Jarvis 1973) puts in order. The result is checked: V - E + F = 2 (Euler) and every edge in two faces, once
-// each way.
+// (Jarvis 1973) puts in order. The result is checked: V - E + F = 2 (Euler), and every edge in two faces,
+// once each way.
 //
 // Weight: the solid is cut into tetrahedra (o, a, b, c) from its corner o. With edges from o, volume
 // V = a . (b x c) / 6, and for uniform density (Tonon, Explicit exact formulas for the 3-D tetrahedron

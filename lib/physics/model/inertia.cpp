@@ -2,7 +2,7 @@
 
 #include "base/eigen.hpp"
 
-// Moments of inertia, Featherstone, Rigid Body Dynamics Algorithms (2008), section 2.13, with I about the
+// Moments of inertia (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 2.13), with I about the
 // centre of mass c:
 //   another frame    I_A = R_AB I_B R_AB^T,  c_A = X_AB c_B
 //   two bodies       c = (m1 c1 + m2 c2) / m,  I = sum_i I_i + m_i (|d_i|^2 1 - d_i d_i^T),  d_i = c_i - c

@@ -1,14 +1,13 @@
-// ODE's process-wide state, kept safe: initialisation, per-thread data, and the handlers for errors and
-// memory.
+// ODE's process-wide state, kept safe: initialisation, per-thread data, its handlers for errors and memory.
 //
 // ODE ends the process after an error handler returns, and uses what its memory handler gives it without a
 // look. So both of ours throw while this thread is in an OdeScope: Error(kPhysics) for a complaint,
-// Error(kMemory) for memory that was refused. Elsewhere a host's own handlers go on working: ours pass on to
-// them.
+// Error(kMemory) for memory that was refused. Elsewhere a host's own handlers go on working: ours pass on.
 //
-// A throw leaves ODE where it was. What its constructors made they take back themselves, but a job of the
-// solver or half of a geom's offset is lost. Where that can happen the scope writes down each block in an
-// OdeBlocks, which frees what is left when the objects are gone.
+// What ODE's constructors had made when one throws they take back themselves. Its solver does not: jobs and
+// working memory are lost to it. There the scope writes down each block in an OdeBlocks, which frees what is
+// left. Everywhere else nobody does: an ODE with atomic operations hands the pose of a geom that went to the
+// next geom of any thread, so that blocks change their owner.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -53,8 +52,8 @@ class OdeBlocks {
 };
 
 // Around every stretch of ODE calls: ODE has this thread's data, its complaints and refused memory are thrown
-// as Error, mere messages are dropped. With `blocks`, what ODE takes is written down there for `purpose`;
-// without, as in the scope around this one.
+// as Error, mere messages are dropped. With `blocks`, what ODE gives back is struck off there, and what it
+// takes is written down if there is a purpose; without, as in the scope around this one.
 class OdeScope {
  public:
   explicit OdeScope(OdeBlocks* blocks = nullptr, const void* purpose = nullptr);

@@ -3,6 +3,7 @@
 
 #include "tasks/catalog.hpp"
 #include "tasks/planar/planar_scene.hpp"
+#include "tasks/state_check.hpp"
 #include "tasks/task_info.hpp"
 
 namespace rdm {
@@ -31,7 +32,8 @@ class FencedWalk final : public PlanarTask {
 
   void check_state(const void* state) const override {
     const State& s = *static_cast<const State*>(state);
-    if (!(std::fabs(s.x) < 1e6 && std::fabs(s.goal) <= 2)) fail(Code::kFormat, "fenced_walk: no such place");
+    check_numbers("x", &s.x, 1);
+    check_numbers("goal", &s.goal, 1, 2);
   }
   void reset(World& world, void* state, Stream& stream) const override {
     State& s = *static_cast<State*>(state);
