@@ -36,12 +36,6 @@ void load_pool(rdm_pool*, const void*, size_t) {
 }
 #endif
 
-size_t pool_size(const rdm_pool* p) {
-  Writer count(nullptr, 0);
-  save_pool(p, count);
-  return count.size();
-}
-
 // What a file may have that is this agent's and this pool's, or those of another configuration like it.
 FileLimits file_limits(const rdm_agent* a, const rdm_pool* p) {
   Writer count(nullptr, 0);
