@@ -88,17 +88,17 @@ struct Robot {
   Inertia root;      // of the root link, in the root frame
   Table<RobotLink> links;
   Table<RobotShape> shapes;
-  Table<RobotPair> self_pairs;
-  Table<RobotCoupling> couplings;
-  Table<RobotTip> tips;  // in the order of the fingers; they carry the force sensors
-  int32_t palm = -1;     // link, -1: none
-  Vec3 p_palm;           // centre of the palm's surface, in that link
-  int32_t mirror = -1;   // root axis normal to the mirror plane of a left hand, -1: no sides
+  Table<RobotPair> self_pairs = {};
+  Table<RobotCoupling> couplings = {};
+  Table<RobotTip> tips = {};  // in the order of the fingers; they carry the force sensors
+  int32_t palm = -1;          // link, -1: none
+  Vec3 p_palm = {};           // centre of the palm's surface, in that link
+  int32_t mirror = -1;        // root axis normal to the mirror plane of a left hand, -1: no sides
 
   // Of hands; empty for anything else.
-  Table<RobotFinger> fingers;  // the first finger first, as the tips
-  HandPoses poses;
-  Vec3 p_hold;  // in the palm's link: where a thing is that palm and fingers hold
+  Table<RobotFinger> fingers = {};  // the first finger first, as the tips
+  HandPoses poses = {};
+  Vec3 p_hold = {};  // in the palm's link: where a thing is that palm and fingers hold
 
   // Rows with a drive of their own, in action order: all links but the coupled ones.
   int32_t num_actuated() const { return links.count - couplings.count; }

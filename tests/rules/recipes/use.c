@@ -3,13 +3,19 @@
 #include <stdio.h>
 #include <string.h>
 
-#define TRY(call) do { if ((call) != RDM_OK) { printf("%s: %s\n", #call, rdm_last_error()); return 1; } } while (0)
+#define TRY(call)                                  \
+  do {                                             \
+    if ((call) != RDM_OK) {                        \
+      printf("%s: %s\n", #call, rdm_last_error()); \
+      return 1;                                    \
+    }                                              \
+  } while (0)
 
 int main(void) {
   rdm_pool_config c;
-  rdm_pool *pool;
+  rdm_pool* pool;
   rdm_agent_config a;
-  rdm_agent *agent;
+  rdm_agent* agent;
   rdm_epoch epoch;
   rdm_robot robot;
   int32_t i, found = 0;
