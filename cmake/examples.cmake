@@ -46,6 +46,7 @@ const CarriedDemo kCarriedDemos[] = {
     target_compile_definitions(redman_tool_parts PRIVATE REDMAN_QHULL=1)
     target_link_libraries(redman_tool_parts PUBLIC Qhull::qhull_r)
   endif()
+  target_link_libraries(redman_tool_parts PUBLIC $<IF:$<BOOL:${REDMAN_SHARED}>,redman,redman_static>)
   add_executable(redman_tool ${PROJECT_SOURCE_DIR}/examples/redman/main.cpp)
   target_link_libraries(redman_tool PRIVATE redman_tool_parts)
   set_target_properties(redman_tool PROPERTIES OUTPUT_NAME redman)
