@@ -98,6 +98,9 @@ void Options::assign(Row& row, const OptionInput& input, const char* owner) cons
     if (!input.text) fail(Code::kArgument, "%s option %s: a text is needed", owner, s.key);
     if (std::strlen(input.text) > static_cast<size_t>(s.longest))
       fail(Code::kRange, "%s option %s: longer than %d characters", owner, s.key, s.longest);
+    if (!is_clean_text(input.text))
+      fail(Code::kArgument, "%s option %s: '%s' is not one line of UTF-8", owner, s.key,
+           Quoted(input.text).text);
     if (!s.choices)
       write(row, input.text);
     else if (!match_choice(s.choices, input.text, row.text))

@@ -36,7 +36,20 @@ size_t character(const unsigned char* p, bool* cut) {
   return n;
 }
 
+// C0, DEL and C1, of the character of n bytes at p.
+bool is_control(const unsigned char* p, size_t n) {
+  return *p < 0x20 || *p == 0x7F || (n == 2 && p[0] == 0xC2 && p[1] < 0xA0);
+}
+
 }  // namespace
+
+bool is_clean_text(const char* text) {
+  bool cut;
+  size_t n;
+  for (const auto* p = reinterpret_cast<const unsigned char*>(text); *p; p += n)
+    if ((n = character(p, &cut)) == 0 || is_control(p, n)) return false;
+  return true;
+}
 
 void clean_text(char* text) {
   auto* p = reinterpret_cast<unsigned char*>(text);
@@ -47,10 +60,9 @@ void clean_text(char* text) {
       *p = '\0';
       return;
     }
-    const bool control = *p < 0x20 || *p == 0x7F || (n == 2 && p[0] == 0xC2 && p[1] < 0xA0);
     if (n == 0)
       *p++ = '?';
-    else if (control)
+    else if (is_control(p, n))
       for (size_t i = 0; i < n; ++i) *p++ = ' ';
     else
       p += n;

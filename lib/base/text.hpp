@@ -11,6 +11,9 @@ namespace rdm {
 // UTF-8 become '?', and a last character that is not whole goes. Never longer than before.
 void clean_text(char* text);
 
+// Whether clean_text would leave the text as it is.
+bool is_clean_text(const char* text);
+
 // Copies `text`, cut before the first character that does not fit with the terminator into `size` >= 1 bytes.
 void copy_text(char* out, size_t size, const char* text);
 

@@ -68,7 +68,7 @@ class World {
   const double* qd() const { return qd_; }
   double* target() { return target_; }
   const double* target() const { return target_; }
-  // Torque that the drive (with the limit spring) gave in each substep, their mean, N m (N).
+  // Drive torque (with the limit spring) by the drive law at the end of each substep, their mean, N m.
   const double* torque() const { return torque_; }
 
   // Sets all joint coordinates of one articulation and rebuilds its links. Values are clamped to range.

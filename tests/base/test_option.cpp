@@ -105,6 +105,14 @@ TEST(Options, FreeTextHasAnEnd) {
   EXPECT_EQ(o.text("note"), fits);
 }
 
+TEST(Options, TextsAreOneLineOfUtf8) {
+  Options o = made();
+  EXPECT_EQ(set(o, "note", "caf\xC3\xA9"), Code::kOk);
+  for (const char* bad : {"fro\xC9t", "\xC3", "two\nlines", "\x1B[31m", "\xC2\x85", "\xED\xA0\x80"})
+    EXPECT_EQ(set(o, "note", bad), Code::kArgument) << bad;
+  EXPECT_STREQ(o.text("note"), "caf\xC3\xA9");
+}
+
 TEST(Options, ALongTextIsKeptWholeAndPrintedCut) {
   Options o = made();
   const std::string fits(200, 'b'), over(201, 'b');

@@ -27,11 +27,11 @@ same() { [ "$(curve "$1")" = "$(curve "$2")" ] && cmp -s "$1/policy.rdm" "$2/pol
 algos=(ppo_lag trpo_lag cppo_pid cpo p3o)
 tasks=(two_state point_goal1)
 steps=16000
-# begin ALGO FOLDER
-begin() {
-  local task=${tasks[$2]} folder=$3
-  "$tool" train --task "$task" --algo "$1" --envs 8 --steps $steps --seed 1 --set max_steps=40 --set hidden=16,16 \
-    --set horizon=16 --eval-every 3 --checkpoint-every 2 --out "$folder"
+# flags ALGO TASK FOLDER: sets `train` to the tool's arguments. The tool is started as a command of its own, not inside a
+# function: a kill then reaches it and not a shell around it.
+flags() {
+  train=(train --task "${tasks[$2]}" --algo "$1" --envs 8 --steps $steps --seed 1 --set max_steps=40 --set hidden=16,16
+    --set horizon=16 --eval-every 3 --checkpoint-every 2 --out "$3")
 }
 
 # How long an undisturbed run takes decides when to kill.
@@ -39,7 +39,8 @@ declare -A took
 for a in "${algos[@]}"; do
   for k in 0 1; do
     start=$(date +%s%N)
-    begin "$a" $k "whole-$a-$k" > /dev/null 2> err || bad "$a does not train: $(tail -n1 err)"
+    flags "$a" $k "whole-$a-$k"
+    "$tool" "${train[@]}" > /dev/null 2> err || bad "$a does not train: $(tail -n1 err)"
     took[$a-$k]=$((($(date +%s%N) - start) / 1000))
   done
 done
@@ -56,7 +57,8 @@ while [ "$n" -lt "$kills" ]; do
     [ "$n" -lt "$kills" ] || break
     if [ ! -f "$run/config.json" ]; then
       rm -rf "$run"
-      begin "$a" $k "$run" > /dev/null 2>&1 &
+      flags "$a" $k "$run"
+      "$tool" "${train[@]}" > /dev/null 2>&1 &
     else
       "$tool" train --resume "$run" > /dev/null 2>&1 &
     fi
@@ -70,7 +72,8 @@ while [ "$n" -lt "$kills" ]; do
   if [ ! -f "$run/config.json" ]; then
     # killed before there was a run: nothing but an empty or missing folder
     rm -rf "$run"
-    begin "$a" $k "$run" > /dev/null 2> err || { bad "$a: cannot begin again: $(tail -n1 err)"; continue; }
+    flags "$a" $k "$run"
+    "$tool" "${train[@]}" > /dev/null 2> err || { bad "$a: cannot begin again: $(tail -n1 err)"; continue; }
   else
     "$tool" train --resume "$run" > /dev/null 2> err || { bad "$a: cannot resume: $(tail -n1 err)"; continue; }
   fi
@@ -119,7 +122,8 @@ wait_rows() {
 # No room left: a file system of its own for root, else a limit on the size of files.
 if [ "$(id -u)" -eq 0 ] && mkdir disk && mount -t tmpfs -o size=600k tmpfs disk 2> /dev/null; then
   mounted=$dir/disk
-  begin ppo_lag 0 disk/run > /dev/null 2>&1 &
+  flags ppo_lag 0 disk/run
+  "$tool" "${train[@]}" > /dev/null 2>&1 &
   pid=$!
   wait_rows disk/run 4 $pid
   head -c 600k /dev/zero > disk/fill 2> /dev/null
@@ -129,14 +133,16 @@ if [ "$(id -u)" -eq 0 ] && mkdir disk && mount -t tmpfs -o size=600k tmpfs disk 
   if [ $status -gt 128 ]; then bad "full disk: signal"; else good; fi
   serves disk/run "full disk"
   head -c 600k /dev/zero > disk/fill 2> /dev/null
-  begin ppo_lag 0 disk/new > /dev/null 2> err
+  flags ppo_lag 0 disk/new
+  "$tool" "${train[@]}" > /dev/null 2> err
   refused "no room for a run" $?
   umount disk && mounted=''
 fi
 size=$(($(stat -c %s whole-ppo_lag-0/checkpoint.rdm) / 2048 + 1))
 (
   ulimit -f $size
-  begin ppo_lag 0 short > /dev/null 2> err
+  flags ppo_lag 0 short
+  "$tool" "${train[@]}" > /dev/null 2> err
 )
 refused "files may have $size kB" $?
 
@@ -144,7 +150,8 @@ refused "files may have $size kB" $?
 mkdir closed
 chmod 555 closed
 if [ "$(id -u)" -ne 0 ]; then
-  begin ppo_lag 0 closed/run > /dev/null 2> err
+  flags ppo_lag 0 closed/run
+  "$tool" "${train[@]}" > /dev/null 2> err
   refused "a folder that may not be written" $?
 elif command -v setpriv > /dev/null; then
   chmod 755 "$dir"
@@ -153,11 +160,13 @@ elif command -v setpriv > /dev/null; then
     ./redman train --task two_state --envs 8 --steps 1000 --out closed/run > /dev/null 2> err
   refused "a folder that may not be written" $?
 fi
-begin ppo_lag 0 /proc/run > /dev/null 2> err
+flags ppo_lag 0 /proc/run
+"$tool" "${train[@]}" > /dev/null 2> err
 refused "a place where nothing can be made" $?
 
 # The folder goes away while the run writes to it.
-begin ppo_lag 0 gone > /dev/null 2> err &
+flags ppo_lag 0 gone
+"$tool" "${train[@]}" > /dev/null 2> err &
 pid=$!
 wait_rows gone 3 $pid
 mv gone elsewhere && rm -rf elsewhere
@@ -165,7 +174,8 @@ wait $pid
 refused "the folder was removed" $?
 
 # Two trainings in one folder.
-begin ppo_lag 0 two > /dev/null 2> err.first &
+flags ppo_lag 0 two
+"$tool" "${train[@]}" > /dev/null 2> err.first &
 pid=$!
 wait_rows two 2 $pid
 "$tool" train --resume two > /dev/null 2> err

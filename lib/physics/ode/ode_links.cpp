@@ -12,12 +12,12 @@
 //              row that takes the bodies' velocities to the joint's rate, the solver looks for lambda with
 //                h J M^-1 J^T lambda + cfm lambda = v* - J v,   |lambda| <= F,
 //              beside the rows that hold the joint together.
-//   solve      ODE's, at most 8 sweeps: lambda is what the bodies got, not yet the drive law's torque.
+//   solve      ODE's, at most 8 sweeps: what the bodies got is not yet that lambda.
 //   integrate  rate qd = a . (w_L - w_P) about the axis a that the solver used; q += h qd, clamped. The
-//              torque lambda is in the joint's feedback, the wrench (f, t) on the child about its centre of
-//              mass c. The rows that hold the joint act at its anchor o and have no moment about a there:
-//                lambda = a . (t + (c - o) x f),   of a slider a . f.
-//   write      every body goes where forward kinematics says: no drift, and o is the link's origin.
+//              torque told is the drive law's at that rate, clip((v* - qd) / cfm, -F, F), which a converged
+//              lambda equals: the sweeps' own lambda dies away while a finger presses (to a quarter within
+//              half a second), because what they leave of the joints' rows is dropped when links are written.
+//   write      every body goes where forward kinematics says: no drift.
 // A universal joint has two such axes, at a right angle.
 namespace rdm {
 namespace {
@@ -60,7 +60,6 @@ void OdeLinks::carve(const Scene& scene, Arena& arena) {
   links_ = arena.make<Link>(static_cast<size_t>(num_links_));
   joints_ = arena.make<Joint>(static_cast<size_t>(num_links_));
   bases_ = arena.make<Link>(scene.def.articulations.size());
-  feedback_ = arena.make<dJointFeedback>(static_cast<size_t>(num_links_));
 }
 
 // A link without shapes whose only child turns about a second axis through the same origin, at a right
@@ -139,7 +138,6 @@ void OdeLinks::make_joint(dWorldID world, int32_t i, const LinkState& state) {
   joint.w_parent = parent_body ? dBodyGetAngularVel(parent_body) : kStill;
   joint.sign = 1;
   joint.cfm = joint.force = -1;
-  joint.carrier = i;
   const Vec3& axis = state.axes[i];
   if (universal) {
     const Vec3& outer = state.axes[first];
@@ -174,7 +172,6 @@ void OdeLinks::make_joint(dWorldID world, int32_t i, const LinkState& state) {
     dJointSetHingeAnchor(joint.id, p.x, p.y, p.z);
     dJointSetHingeAxis(joint.id, axis.x, axis.y, axis.z);
   }
-  dJointSetFeedback(joint.id, &feedback_[i]);
 }
 
 void OdeLinks::make(dWorldID world, const LinkState& state) {
@@ -218,6 +215,7 @@ void OdeLinks::tell(Joint& joint, const MotorRow& row) const {
   }
   joint.cfm = row.cfm;
   joint.force = row.force;
+  joint.motor = row;
 }
 
 void OdeLinks::drive(const LinkState& state) {
@@ -243,16 +241,6 @@ double OdeLinks::rate(const Joint& joint, const Vec3& axis) const {
   return dot(axis, from_ode(joint.w_child) - from_ode(joint.w_parent));
 }
 
-double OdeLinks::torque(const Joint& joint, const LinkState& state, const Vec3& axis) const {
-  const dJointFeedback& feedback = feedback_[joint.carrier];
-  const bool child_first = joint.sign > 0;
-  const Vec3 f = from_ode(child_first ? feedback.f1 : feedback.f2);
-  if (joint.row == Row::kSlider) return dot(axis, f);
-  const Vec3 t = from_ode(child_first ? feedback.t1 : feedback.t2);
-  const Vec3 arm = state.link_R[joint.carrier] * links_[joint.carrier].com;  // from the anchor
-  return dot(axis, t + cross(arm, f));
-}
-
 bool OdeLinks::integrate(const LinkState& state, double weight) {
   const SolverDef& solver = state.scene->def.solver;
   for (int32_t i = 0; i < num_links_; ++i) {
@@ -260,7 +248,7 @@ bool OdeLinks::integrate(const LinkState& state, double weight) {
     const JointDef& def = *joint.def;
     double qd = rate(joint, state.axes[i]);
     if (!(std::fabs(qd) < kRateBound)) return false;
-    state.torque[i] += weight * torque(joint, state, state.axes[i]);
+    state.torque[i] += weight * motor_torque(joint.motor, qd);
     double q = state.q[i] + solver.h * qd;
     const double low = def.lower - solver.limit_margin, high = def.upper + solver.limit_margin;
     if (q < low) {

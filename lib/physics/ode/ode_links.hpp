@@ -37,7 +37,7 @@ class OdeLinks {
 
   // Motor rows for the next substep.
   void drive(const LinkState& state);
-  // Reads rates, adds each drive's torque x weight, integrates and clamps q. False: a rate is out of bounds.
+  // Reads rates, adds each row's torque x weight, integrates and clamps q. False: a rate is out of bounds.
   bool integrate(const LinkState& state, double weight);
   // Motion of a free base from its body.
   void read_base(int32_t articulation, const LinkState& state);
@@ -63,21 +63,18 @@ class OdeLinks {
     Row row;
     double sign;        // of the row's rate against the joint's
     double cfm, force;  // what ODE was told last
-    int32_t other;      // flat link a coupled joint follows, -1
-    int32_t carrier;    // flat link whose body is the child
+    MotorRow motor;
+    int32_t other;  // flat link a coupled joint follows, -1
   };
   bool merges(const Scene& scene, int32_t link) const;
   void make_bodies(dWorldID world, int32_t articulation, const LinkState& state);
   void make_joint(dWorldID world, int32_t link, const LinkState& state);
   void tell(Joint& joint, const MotorRow& row) const;
   double rate(const Joint& joint, const Vec3& axis) const;
-  // What the drive gave in the last solver step, poses being those of its start.
-  double torque(const Joint& joint, const LinkState& state, const Vec3& axis) const;
 
   Link* links_ = nullptr;
   Link* bases_ = nullptr;
   Joint* joints_ = nullptr;
-  dJointFeedback* feedback_ = nullptr;  // [num_links]
   int32_t num_links_ = 0;
 };
 

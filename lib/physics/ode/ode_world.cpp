@@ -514,7 +514,7 @@ size_t OdeWorld::heap_bytes(const Scene& scene) {
   const auto contacts = static_cast<size_t>(scene.def.solver.contacts_max);
   // Measured with the packaged library and rounded up: ODE's objects and, for all contacts in one island,
   // the solver's rows.
-  return 32000 + links * 2900 + bodies * 1200 + scene.shapes.size() * 300 + contacts * 1600;
+  return 32000 + links * 2200 + bodies * 1200 + scene.shapes.size() * 300 + contacts * 1600;
 }
 
 }  // namespace rdm
