@@ -28,9 +28,9 @@
 // threads gives the same bytes.
 #pragma once
 #include "algos/core/cancel.hpp"
-#include "algos/core/collector.hpp"
 #include "algos/core/learner.hpp"
 #include "algos/core/schedule.hpp"
+#include "algos/rollout/collector.hpp"
 
 namespace rdm {
 

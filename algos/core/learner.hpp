@@ -21,7 +21,7 @@
 #pragma once
 #include "algos/core/batch_workers.hpp"
 #include "algos/core/networks.hpp"
-#include "algos/core/rollout.hpp"
+#include "algos/rollout/rollout.hpp"
 
 namespace rdm {
 

@@ -1,8 +1,8 @@
 // The rule of CPPO-PID: one PID controller for each cost limit.
 #pragma once
-#include "algos/core/episodes.hpp"
-#include "algos/core/rollout.hpp"
 #include "algos/lagrange/pid.hpp"
+#include "algos/rollout/episodes.hpp"
+#include "algos/rollout/rollout.hpp"
 
 namespace rdm {
 

@@ -1,9 +1,9 @@
 // The rule of the Lagrangian methods: one multiplier for each cost limit, moved by dual ascent.
 #pragma once
-#include "algos/core/episodes.hpp"
 #include "algos/core/resolved_config.hpp"
-#include "algos/core/rollout.hpp"
 #include "algos/lagrange/multiplier.hpp"
+#include "algos/rollout/episodes.hpp"
+#include "algos/rollout/rollout.hpp"
 
 namespace rdm {
 

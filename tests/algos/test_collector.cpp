@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "agents.hpp"
-#include "algos/core/collector.hpp"
+#include "algos/rollout/collector.hpp"
 #include "nn/gaussian.hpp"
 
 using namespace rdm;

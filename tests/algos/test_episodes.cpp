@@ -1,5 +1,5 @@
 #include "agents.hpp"
-#include "algos/core/episodes.hpp"
+#include "algos/rollout/episodes.hpp"
 
 using namespace rdm;
 using namespace rdm::test;

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "algos/core/gae.hpp"
+#include "algos/rollout/gae.hpp"
 
 using namespace rdm;
 

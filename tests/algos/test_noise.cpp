@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "agents.hpp"
-#include "algos/core/noise.hpp"
+#include "algos/rollout/noise.hpp"
 
 using namespace rdm;
 using namespace rdm::test;

@@ -1,5 +1,5 @@
 #include "agents.hpp"
-#include "algos/core/rollout.hpp"
+#include "algos/rollout/rollout.hpp"
 
 using namespace rdm;
 using namespace rdm::test;

@@ -1,4 +1,4 @@
-#include "algos/core/gae.hpp"
+#include "algos/rollout/gae.hpp"
 
 #include <cmath>
 #include <cstddef>

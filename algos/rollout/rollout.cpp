@@ -1,4 +1,4 @@
-#include "algos/core/rollout.hpp"
+#include "algos/rollout/rollout.hpp"
 
 #include <cstring>
 

@@ -1,4 +1,4 @@
-#include "algos/core/collector.hpp"
+#include "algos/rollout/collector.hpp"
 
 #include <cstring>
 #include <limits>

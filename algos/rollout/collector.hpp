@@ -12,10 +12,10 @@
 // gradient looks 7 decisions ahead, the limit over the whole episode. discounted_limit=true discounts both.
 #pragma once
 #include "algos/core/batch_workers.hpp"
-#include "algos/core/episodes.hpp"
 #include "algos/core/networks.hpp"
-#include "algos/core/noise.hpp"
-#include "algos/core/rollout.hpp"
+#include "algos/rollout/episodes.hpp"
+#include "algos/rollout/noise.hpp"
+#include "algos/rollout/rollout.hpp"
 #include "nn/normalizer.hpp"
 
 namespace rdm {

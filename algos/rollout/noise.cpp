@@ -1,4 +1,4 @@
-#include "algos/core/noise.hpp"
+#include "algos/rollout/noise.hpp"
 
 namespace rdm {
 namespace {

@@ -1,8 +1,8 @@
 // What an epoch collects: one row per decision, sample t of environment e at row t num_envs + e, so that an
 // act writes one block.
 #pragma once
-#include "algos/core/gae.hpp"
 #include "algos/core/resolved_config.hpp"
+#include "algos/rollout/gae.hpp"
 
 namespace rdm {
 

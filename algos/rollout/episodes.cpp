@@ -1,4 +1,4 @@
-#include "algos/core/episodes.hpp"
+#include "algos/rollout/episodes.hpp"
 
 #include <algorithm>
 
