@@ -30,7 +30,7 @@ steps() {
 # What is known: return / cost of the constrained optimum, or of published rows that meet the limit.
 known() {
   case $1 in
-    bandit) echo "optimum -1.25 / 1; free -0.25 / 2" ;;
+    bandit) echo "optimum -1.2587 / 1; free -0.25 / 2" ;;
     two_state) echo "optimum 9.687 / 2.5; free 17.912 / 8.33" ;;
     lqr_line) echo "optimum -1.583 / 1; free -1.526 / 1.364" ;;
     ball_run) echo "best 581.5 / 0, 608.1 / 25; paper 558 to 577 / 0 to 24; free 2132 / 231" ;;
