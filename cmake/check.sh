@@ -30,7 +30,7 @@ case $mode in
   asan | tsan)
     configure "$mode"
     build "$mode"
-    export UBSAN_OPTIONS=print_stacktrace=1
+    export UBSAN_OPTIONS=print_stacktrace=1 TSAN_OPTIONS=suppressions=$PWD/tests/hard/tsan.supp
     run_tests "$mode" -LE 'slow|format'
     ;;
   slow)

@@ -54,7 +54,7 @@ case $part in
   fuzz) fuzz ;;
   refuse) "$bin/hard_refuse" --seconds "$seconds" ;;
   words) ASAN_OPTIONS=detect_leaks=0:handle_abort=0 "$bin/hard_words" --seconds "$seconds" ;;
-  threads) TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1 "$bin/hard_threads" --rounds $((1 + seconds / 60)) ;;
+  threads) TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:suppressions=$here/tsan.supp "$bin/hard_threads" --rounds $((1 + seconds / 60)) ;;
   kills) "$here/kills.sh" "$build/bin/redman" $((seconds > 300 ? 100 : 2 + seconds / 5)) ;;
   soak) "$bin/hard_soak" --seconds "$seconds" --jobs "${REDMAN_HARD_JOBS:-1}" --json "$out/soak.json" ;;
   *) echo "usage: run.sh fuzz|refuse|words|threads|kills|soak SECONDS BUILD"; exit 2 ;;
