@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|coverage|hard [MINUTES]]: installs what the tests need, builds, and runs them.
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|coverage|hard [MINUTES]]: installs what the tests need, builds, and runs them.
 # The last line says how many passed and failed; the exit status is 0 when none failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -78,6 +78,14 @@ case $mode in
       run_tests without-$half -LE slow || exit 1
     done
     ;;
+  clang)
+    # Another compiler at -O3 gives the same bytes: what is undefined shows where optimisers differ.
+    need clang-14
+    configure dev -B build/clang -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14 -DREDMAN_WERROR=OFF \
+      -DREDMAN_TOOL=OFF '-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O3 -g1'
+    cmake --build build/clang -j "$(nproc)" --target test_golden test_stepper test_vec >&2 || die "the build with clang failed: see above"
+    run_tests clang -R '^(test_golden|golden_other_libm|test_stepper|test_vec)$'
+    ;;
   hard)
     # Tries to break the library for an hour (or MINUTES), builds included: tests/hard/README.md. Two lines of work,
     # one for each of two processors; every part gets a share of the time that the builds leave.
@@ -118,5 +126,5 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
-  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|coverage|hard [MINUTES]]" ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|coverage|hard [MINUTES]]" ;;
 esac
