@@ -117,7 +117,7 @@ RDM_API void rdm_shutdown(void); /* the last call puts the default hooks back; h
 enum { RDM_NUMBER = 0, RDM_INTEGER = 1, RDM_FLAG = 2, RDM_TEXT = 3 };
 typedef struct rdm_option { /* frozen layout: one key and its value */
   const char *key;          /* case is ignored and '-' equals '_'                             */
-  const char *text;         /* value as text ("0.5", "true", "egg"); NULL: number is the value */
+  const char *text;         /* value as one line of text ("0.5", "egg"); NULL: number is it   */
   double number;            /* value when text is NULL                                        */
 } rdm_option;
 typedef struct rdm_option_info { /* frozen layout: one row of an option table */
