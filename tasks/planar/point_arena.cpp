@@ -58,7 +58,7 @@ Lidar::Lidar(const PointRobot& robot, const elementary::SinCos& heading, double 
 void Lidar::add(const Spot& thing) {
   const double dx = thing.x - robot_.x, dy = thing.y - robot_.y;
   const double sense = (range_ - std::sqrt(dx * dx + dy * dy)) / range_;
-  if (sense <= 0) return;
+  if (!(sense > 0)) return;  // nothing is seen at a distance that is no number either
   const double along = heading_.cos * dx + heading_.sin * dy, across = heading_.cos * dy - heading_.sin * dx;
   const double turn = elementary::atan2(across, along);
   const double at = (turn < 0 ? turn + 2 * kPi : turn) * (kLidarBins / (2 * kPi));

@@ -24,8 +24,11 @@ float to_float(double v) {
 }  // namespace
 
 void check_point_robot(const PointRobot& r) {
-  const double values[] = {r.x, r.y, r.yaw, r.vx, r.vy, r.w, r.ax, r.ay};
-  check_numbers("robot", values, std::size(values));
+  const double place[] = {r.x, r.y, r.yaw}, rates[] = {r.vx, r.vy, r.w}, accelerations[] = {r.ax, r.ay};
+  check_numbers("robot", place, std::size(place));
+  // thrust and damping leave 1.5 m/s and 3 rad/s; the square of a rate drives the body
+  check_numbers("robot's rates", rates, std::size(rates), 1e3);
+  check_numbers("robot's accelerations", accelerations, std::size(accelerations), 1e6);
 }
 
 void point_substep(const float* action, PointRobot* robot) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/error.hpp"
 #include "tasks/planar/point_robot.hpp"
 
 namespace rdm {
@@ -35,6 +36,18 @@ TEST(PointRobot, GoldenTrajectories) {
       }
     }
   }
+}
+
+// A saved state may hold any rates: what is taken must not run away within a step.
+TEST(PointRobot, RatesThatWouldRunAwayAreNoState) {
+  PointRobot fast{};
+  fast.w = 1e9;
+  EXPECT_THROW(check_point_robot(fast), Error);
+  fast.w = 999;
+  EXPECT_NO_THROW(check_point_robot(fast));
+  const float action[2] = {1, 1};
+  for (int i = 0; i < 100 * kPointSubsteps; ++i) point_substep(action, &fast);
+  EXPECT_TRUE(std::isfinite(fast.x + fast.y + fast.yaw + fast.vx + fast.vy + fast.w));
 }
 
 TEST(PointRobot, MovesAlikeInEveryDirection) {
