@@ -1,8 +1,7 @@
 #include "physics/collision/narrowphase.hpp"
 
-#include <algorithm>
-
 #include "base/error.hpp"
+#include "physics/collision/overlap.hpp"
 #include "physics/ode/ode_convert.hpp"
 #include "physics/ode/ode_guard.hpp"
 
@@ -93,19 +92,9 @@ Collider::Found Collider::collide(const Scene& scene, Poses& poses, Contact* con
 double Collider::overlap(const Scene& scene, Poses& poses, int32_t body) {
   const OdeScope scope;
   ++search_;
-  const auto carries = [&](int32_t shape) {
-    const SceneShape& s = scene.shapes[static_cast<size_t>(shape)];
-    return s.carrier == Carrier::kBody && s.index == body;
-  };
-  double deepest = 0;
-  dContactGeom points[kMaxPairPoints];
-  for (int32_t k = 0; k < static_cast<int32_t>(scene.pairs.size()); ++k) {
-    const ShapePair& pair = scene.pairs[static_cast<size_t>(k)];
-    if (!(carries(pair.a) || carries(pair.b)) || !broad_.near(k)) continue;
-    const int n = touch(poses, pair, kMaxPairPoints, points);
-    for (int i = 0; i < n; ++i) deepest = std::max(deepest, static_cast<double>(points[i].depth));
-  }
-  return deepest;
+  return deepest_overlap(scene, broad_, body, [&](const ShapePair& pair, dContactGeom* points) {
+    return touch(poses, pair, kMaxPairPoints, points);
+  });
 }
 
 }  // namespace rdm

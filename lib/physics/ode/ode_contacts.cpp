@@ -1,7 +1,6 @@
 #include "physics/ode/ode_contacts.hpp"
 
-#include <algorithm>
-
+#include "physics/collision/overlap.hpp"
 #include "physics/ode/ode_convert.hpp"
 
 namespace rdm {
@@ -147,19 +146,9 @@ void OdeContacts::read_forces(int32_t count, Contact* contacts) const {
 
 double OdeContacts::overlap(const Scene& scene, int32_t body) {
   update_bounds();
-  const auto carries = [&](int32_t shape) {
-    const SceneShape& s = scene.shapes[static_cast<size_t>(shape)];
-    return s.carrier == Carrier::kBody && s.index == body;
-  };
-  double deepest = 0;
-  dContactGeom geoms[kMaxPairPoints];
-  for (int32_t k = 0; k < static_cast<int32_t>(scene.pairs.size()); ++k) {
-    const ShapePair& pair = scene.pairs[static_cast<size_t>(k)];
-    if (!(carries(pair.a) || carries(pair.b)) || !broad_.near(k)) continue;
-    const int n = collide_geoms(shapes_[pair.a].geom, shapes_[pair.b].geom, kMaxPairPoints, geoms);
-    for (int i = 0; i < n; ++i) deepest = std::max(deepest, static_cast<double>(geoms[i].depth));
-  }
-  return deepest;
+  return deepest_overlap(scene, broad_, body, [&](const ShapePair& pair, dContactGeom* points) {
+    return collide_geoms(shapes_[pair.a].geom, shapes_[pair.b].geom, kMaxPairPoints, points);
+  });
 }
 
 }  // namespace rdm
