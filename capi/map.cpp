@@ -160,9 +160,8 @@ rdm_result rdm_map_scan(rdm_map* m, rdm_pool* p, int32_t env, const char* camera
     for (size_t i = 0; i < pixels; ++i) {
       const int32_t shape = segmentation[i];
       if (shape < 0 || std::find(skip, skip + num_skip, shape) != skip + num_skip) continue;
-      const auto x = static_cast<double>(i % static_cast<size_t>(w)),
-                 y = static_cast<double>(i / static_cast<size_t>(w));
-      const Vec3 at = view.point(x + 0.5, y + 0.5, depth[i]);
+      const size_t row = i / static_cast<size_t>(w), column = i % static_cast<size_t>(w);
+      const Vec3 at = view.point(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5, depth[i]);
       for (int k = 0; k < 3; ++k) points.push_back(static_cast<float>(at[k]));
     }
     const uint64_t lost = m->map->insert(eye.eye, points.data(), points.size() / 3);

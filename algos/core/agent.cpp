@@ -139,6 +139,10 @@ void Agent::update(const float* last_obs, Epoch* out) {
 }
 
 void Agent::begin_epoch(const EpisodeStats&, int32_t) {
+  follow_reward();
+}
+
+void Agent::follow_reward() {
   const Rollout& r = rollout();
   const auto n = static_cast<size_t>(r.samples());
   std::memcpy(r.gain, r.advantage, n * sizeof(float));

@@ -80,6 +80,8 @@ class Agent {
   // After advantages were estimated, before the policy step: moves multipliers, sets gain and linear of the
   // rollout. Default: the reward advantage. epoch counts from 1.
   virtual void begin_epoch(const EpisodeStats& stats, int32_t epoch);
+  // gain becomes the reward advantage, linear 0.
+  void follow_reward();
   // The steps of policy and critics. Default: passes over shuffled minibatches, stopped early by KL.
   virtual void learn();
   // Before the gradient of each minibatch of the default learn().

@@ -59,7 +59,7 @@ class Ipo final : public CostWeighted<Ppo, BarrierRule> {
     CostWeighted::begin_epoch(stats, epoch);
     known_ = stats.finished > 0;
     if (!exact_) return;
-    Agent::begin_epoch(stats, epoch);
+    follow_reward();
     for (int32_t i = 0; i < resolved().num_limited; ++i)
       violation_[i] = violation(stats, i), loss_.weight[i] = 0;
     if (known_) loss_.aim(Surrogate(), violation_, resolved().num_limited);

@@ -9,10 +9,10 @@ out=$build/hard/found
 mkdir -p "$out"
 export UBSAN_OPTIONS=print_stacktrace=1
 
-# Inputs of each target are led by coverage for a share of the time, at most so many. Fast targets leave their
+# Inputs of each target are led by coverage for a share of the time, at most REDMAN_FUZZ_RUNS of them. Fast targets leave their
 # time to the slow ones. What ends a target stays in $out, with the command that does it again.
 fuzz() {
-  local most=2000000 begin=$SECONDS passed=0 failed=0 targets=() left share log status program length
+  local most=${REDMAN_FUZZ_RUNS:-2000000} begin=$SECONDS passed=0 failed=0 targets=() left share log status program length
   # "state" of the small worlds and of those with an engine: the one steps in microseconds, the other in milliseconds
   for t in policy hull tool_run tool_mesh tool_demo agent checkpoint map state options state-large; do
     [ -x "$bin/fuzz_${t%-*}" ] && targets+=("$t")

@@ -1,6 +1,8 @@
 #include "physics/articulated/articulated_world.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cfloat>
 #include <cmath>
 
@@ -279,7 +281,8 @@ bool persistent_sound(Reader& in, const Scene& scene) {
 }
 
 bool same_motion(const Motion& a, const Motion& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
+  using Words = std::array<uint64_t, sizeof(Motion) / 8>;
+  return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
 }
 
 }  // namespace

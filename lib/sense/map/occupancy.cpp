@@ -340,7 +340,7 @@ bool Occupancy::cast(const Vec3& from, const Vec3& direction, double range, bool
   if (!finite(from) || !(length > 0) || !std::isfinite(length))
     fail(Code::kArgument, "direction: of length %g", length);
   if (!(range > 0)) fail(Code::kRange, "range: %g is not positive", range);
-  const double bound = kKeyCount / 2 * lattice.size;
+  const double bound = VoxelLattice::kMiddle * lattice.size;
   const Vec3 unit = (1 / length) * direction;
   for (int i = 0; i < 3; ++i) {  // up to the border of the lattice
     if (std::abs(from[i]) >= bound) fail(Code::kRange, "from: outside the lattice of %g m", bound);

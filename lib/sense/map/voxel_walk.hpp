@@ -10,18 +10,19 @@ namespace rdm {
 
 // Voxels of side `size`, m, numbered from the corner at -32768 size.
 struct VoxelLattice {
+  static constexpr int32_t kMiddle = kKeyCount / 2;
   double size = 0, inverse = 0;
 
   explicit VoxelLattice(double side) : size(side), inverse(1 / side) {}
   // False outside the lattice and for what is not finite.
   bool key(const Vec3& p, VoxelKey* out) const {
-    const double x = std::floor(p.x * inverse) + kKeyCount / 2, y = std::floor(p.y * inverse) + kKeyCount / 2,
-                 z = std::floor(p.z * inverse) + kKeyCount / 2;
+    const double x = std::floor(p.x * inverse) + kMiddle, y = std::floor(p.y * inverse) + kMiddle,
+                 z = std::floor(p.z * inverse) + kMiddle;
     const bool inside = (x >= 0) & (x < kKeyCount) & (y >= 0) & (y < kKeyCount) & (z >= 0) & (z < kKeyCount);
     if (inside) *out = {{static_cast<int32_t>(x), static_cast<int32_t>(y), static_cast<int32_t>(z)}};
     return inside;
   }
-  double low(int32_t k) const { return (k - kKeyCount / 2) * size; }
+  double low(int32_t k) const { return (k - kMiddle) * size; }
   Vec3 centre(const VoxelKey& key) const {
     return {low(key.k[0]) + 0.5 * size, low(key.k[1]) + 0.5 * size, low(key.k[2]) + 0.5 * size};
   }

@@ -206,8 +206,9 @@ void paint_tile(const Painter& painter, const IndexList& seen, bool flat, int32_
   const int count = side * side;
   const float share = 1 / static_cast<float>(side);
   for (int k = 0; k < count; ++k) {
-    const float dx = share * (static_cast<float>(k % side) + 0.5f),
-                dy = share * (static_cast<float>(k / side) + 0.5f);
+    const int row = k / side, column = k % side;
+    const float dx = share * (static_cast<float>(column) + 0.5f),
+                dy = share * (static_cast<float>(row) + 0.5f);
     trace(painter.rays, primitives, seen, options.cull, fx + dx, fy + dy, &hits[k]);
   }
   look_around(count, 1);

@@ -60,7 +60,9 @@ void one(const unsigned char* data, size_t size) {
   HARD_REQUIRE(rdm_policy_load(&p, policy.data(), policy.size()) == RDM_OK, "a policy does not load: %s",
                rdm_last_error());
   rdm_policy_destroy(p);
-  const rdm_result e = s.agent.epoch();
+  // An epoch takes longer than all the rest: every fourth of what is taken learns one.
+  static unsigned taken = 0;
+  const rdm_result e = ++taken % 4 == 0 ? s.agent.epoch() : RDM_OK;
   if (e != RDM_OK) require_refusal(e);
   HARD_REQUIRE(rdm_agent_load(a, s.trained.data(), s.trained.size()) == RDM_OK, "%s", rdm_last_error());
 }

