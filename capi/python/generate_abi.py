@@ -409,7 +409,7 @@ def record_text(d: Declared) -> str:
     for variable, proto in fields(d):
         if proto or (variable.pointer and variable.type != "const char *"):
             return ""
-        if variable.name in ("struct_size", "reserved"):
+        if variable.name == "struct_size" or variable.name.startswith("reserved"):
             continue
         hint = "str" if variable.base == "char" else RECORD_HINTS.get(SCALARS[variable.base], "int")
         hint = f"tuple[{hint}, ...]" if variable.count else hint
