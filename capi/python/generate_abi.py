@@ -45,7 +45,7 @@ class Variable(NamedTuple):
 
     name: str
     type: str  # "const float *"
-    count: str  # "3" of `float eye[3]`, else ""
+    length: str  # "3" of `float eye[3]`, else ""
     doc: str = ""
 
     @property
@@ -69,6 +69,12 @@ STATEMENT = re.compile(
     r"|typedef[ ]int32_t[ ]rdm_\w+;"
     r"|RDM_API[ ](?P<result>[\w ]+?[ *]+)(?P<function>rdm_\w+)\((?P<parameters>[^)]*)\);"
     r"|(?P<blank>\n[ \t]*(?=\n))|extern[ ]\"C\"[ ]\{|\}|\s+", re.S | re.M | re.X)
+
+
+# kind: the groups of name, body and result
+KINDS = {"constant": ("constant", "value", "blank"), "enum": ("enum", "members", "blank"),
+         "struct": ("struct", "fields", "blank"), "handle": ("handle", "handle", "blank"),
+         "callback": ("callback", "given", "returned"), "function": ("function", "parameters", "result")}
 
 
 def text_of(comment: str) -> str:
@@ -116,26 +122,14 @@ def declarations(text: str) -> Iterator[Declared]:
         if found["blank"] is not None or found["directive"]:
             covering = ""
             continue
-        about = next(name for name in ("constant", "members", "struct", "handle", "callback", "function", "blank")
-                     if found[name] is not None or name == "blank")
+        about = next((kind for kind, (_, body, _) in KINDS.items() if found[body] is not None), "")
+        if not about:  # typedef int32_t rdm_result
+            continue
         if covered not in ("", about):
             covering = ""  # it was of another kind of thing
         covered = about if covering else ""
-        common = {"doc": covering, "experimental": match.start() > experimental_from, "result": ""}
-        if found["constant"]:
-            pending = Declared("constant", found["constant"], found["value"].strip(), **common)
-        elif found["members"] is not None:
-            pending = Declared("enum", found["enum"] or "", found["members"], **common)
-        elif found["struct"]:
-            pending = Declared("struct", found["struct"], found["fields"], **common)
-        elif found["handle"]:
-            pending = Declared("handle", found["handle"], "", **common)
-        elif found["callback"]:
-            common["result"] = found["returned"].strip()
-            pending = Declared("callback", found["callback"], found["given"], **common)
-        elif found["function"]:
-            common["result"] = found["result"].strip()
-            pending = Declared("function", found["function"], found["parameters"], **common)
+        name, body, result = (found[part] or "" for part in KINDS[about])
+        pending = Declared(about, name, body, result.strip(), covering, match.start() > experimental_from)
         end_of_last = match.end()
     if pending:
         yield pending
@@ -153,8 +147,8 @@ def variables(text: str) -> list[Variable]:
         match = re.fullmatch(r"((?:const )?\w+) ?(\**)(\w+)(?:\[(\w+)\])?", " ".join(part.split()))
         if not match:
             raise SystemExit(f"redman.h: not a declaration that this script knows: {part!r}")
-        kind, stars, name, count = match.groups()
-        out.append(Variable(name, f"{kind} {stars}".strip(), count or ""))
+        kind, stars, name, length = match.groups()
+        out.append(Variable(name, f"{kind} {stars}".strip(), length or ""))
     return out
 
 
@@ -206,8 +200,8 @@ def shape_of_field(variable: Variable) -> tuple[str, ...]:
 
 
 def shape_of_argument(variable: Variable, doc: str) -> tuple[str, ...]:
-    if variable.count:
-        return (variable.count,)
+    if variable.length:
+        return (variable.length,)
     match = re.search(rf"\b{variable.name} ?{SHAPE}", doc)
     return shape(match[1]) if match else ()
 
@@ -241,7 +235,7 @@ def prefix_of(names: list[str]) -> str:
 
 
 def ctype(variable: Variable, structs: set[str], callbacks: set[str]) -> str:
-    base, stars = variable.base, variable.type.count("*") + bool(variable.count)
+    base, stars = variable.base, variable.type.count("*") + bool(variable.length)
     if base in callbacks:
         return base
     if stars == 0:
@@ -325,8 +319,8 @@ def generate(text: str) -> str:
     callbacks = {d.name for d in found if d.kind == "callback"}
     out = [HEADER]
     for d in found:
-        if d.kind == "constant" and re.fullmatch(r"\d+", d.body):
-            out.append(f"{d.name} = {d.body}{'  # ' + ' '.join(d.doc.split()) if d.doc else ''}\n")
+        if d.kind == "constant" and d.body.strip().isdecimal():
+            out.append(f"{d.name} = {d.body.strip()}{'  # ' + ' '.join(d.doc.split()) if d.doc else ''}\n")
     out.append("RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH\n\n\n")
     for d in found:
         if d.kind != "enum":
@@ -363,7 +357,7 @@ def generate(text: str) -> str:
         given = parameters(d.body)
         arguments = ", ".join(f'"{v.name}": {ctype(v, structs, callbacks)}' for v in given)
         shaped = {v.name: (DTYPES[v.base], shape_of_argument(v, d.doc)) for v in given
-                  if (v.pointer or v.count) and v.base in DTYPES and shape_of_argument(v, d.doc)}
+                  if (v.pointer or v.length) and v.base in DTYPES and shape_of_argument(v, d.doc)}
         out.append(f'    "{d.name}": Function(\n        {result_type(d.result)}, {{{arguments}}},\n'
                    f'        {rows_text(shaped)}, {d.experimental},\n        {quoted(d.doc, " " * 8)}),\n')
     out.append('''}
@@ -385,9 +379,9 @@ def struct_text(d: Declared, structs: set[str], callbacks: set[str]) -> str:
     for variable, proto in fields(d):
         if proto:
             kind, hint = prototype(proto, structs, callbacks), "Any"
-        elif variable.count:
+        elif variable.length:
             element = SCALARS[variable.base]
-            kind = f"{element} * {variable.count}"
+            kind = f"{element} * {variable.length}"
             hint = "Any"
         else:
             kind = ctype(variable, structs, callbacks)
@@ -412,7 +406,7 @@ def record_text(d: Declared) -> str:
         if variable.name == "struct_size" or variable.name.startswith("reserved"):
             continue
         hint = "str" if variable.base == "char" else RECORD_HINTS.get(SCALARS[variable.base], "int")
-        hint = f"tuple[{hint}, ...]" if variable.count else hint
+        hint = f"tuple[{hint}, ...]" if variable.length else hint
         hint += " | None" if "NULL" in variable.doc and hint == "str" else ""
         doc = " ".join(variable.doc.split())
         lines.append(f"    {variable.name}: {hint}{'  # ' + doc if doc else ''}\n")

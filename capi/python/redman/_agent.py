@@ -12,7 +12,7 @@ import numpy as np
 from . import _abi, _discovery
 from ._error import ArgumentError, Error, NotFoundError, StateError, error_of
 from ._library import Handle, bytes_of, check, encoded, failure, filled, lib, sized, text
-from ._options import Options, Value, option_array, value_of
+from ._options import Options, Value, laid, option_array, value_of
 from ._policy import Policy
 from ._pool import Pool
 from ._rows import Array, FloatArray, address, given
@@ -203,7 +203,7 @@ class Agent:
             key = ctypes.c_char_p()
             shown = ctypes.create_string_buffer(_abi.RDM_TEXT_SIZE)
             self._check(lib.rdm_agent_option(self._a, i, byref(key), shown))
-            out[text(key.value)] = value_of(info, text(shown.value))
+            out[text(key.value)] = value_of(info.kind, text(shown.value))
         return out
 
     def set(self, **options: Value) -> None:
@@ -308,8 +308,7 @@ def _config_of(pool: Pool) -> dict[str, Any]:
     pointed = {name: np.array(np.ctypeslib.as_array(
         ctypes.cast(getattr(config, name), ctypes.POINTER(np.ctypeslib.as_ctypes_type(rows.dtype))),
         (getattr(config, rows.shape[0]),))) for name, rows in _abi.ROWS["rdm_agent_config"].items() if getattr(config, name)}
-    defaults = {text(row.key): row.number if row.text is None else text(row.text)
-                for row in (config.defaults[i] for i in range(config.num_defaults))}
+    defaults = laid(config.defaults[i] for i in range(config.num_defaults))
     return {"obs_dim": config.obs_dim, "action_dim": config.action_dim, "cost_dim": config.cost_dim,
             "num_envs": config.num_envs, "task": text(config.task), "layout_hash": config.layout_hash,
             "control_dt": config.control_dt, "max_steps": config.max_steps, "defaults": defaults,
@@ -331,13 +330,13 @@ def _limits(wanted: CostLimits, usual: Optional[Array], columns: Sequence[str]) 
                 raise NotFoundError(f"cost_limits: no cost {name}; there are {', '.join(columns)}")
             limits[columns.index(name)] = number(limit)
         return limits
-    if np.ndim(wanted) == 0:
+    if isinstance(wanted, (int, float, np.number)):
         limits = limits or [-1.0] * len(columns)
         if not limits:
             raise ArgumentError("cost_limits: there are no costs")
-        limits[0] = number(wanted)  # type: ignore[arg-type]
+        limits[0] = float(wanted)
         return limits
-    listed = [number(limit) for limit in wanted]  # type: ignore[union-attr]
+    listed = [number(limit) for limit in wanted]
     if len(listed) != len(columns):
         raise ArgumentError(f"cost_limits: {len(listed)} limits for {len(columns)} costs")
     return listed

@@ -8,7 +8,7 @@ from typing import Any, Callable, TypeVar
 
 from . import _abi
 from ._library import encoded, filled, check, lib, text
-from ._options import Value, default_of
+from ._options import Value, default_of, laid
 from ._record import Record
 
 R = TypeVar("R", bound=Record)
@@ -54,10 +54,8 @@ class Task(_abi.Task):
         said["costs"] = _records(_abi.Cost, _abi.rdm_cost, lib.rdm_task_cost, self.cost_dim, index)
         said["options"] = _records(Option, _abi.rdm_option_info, lib.rdm_task_option, self.num_options, index)
         said["cameras"] = _records(_abi.Camera, _abi.rdm_camera, lib.rdm_task_camera, self.num_cameras, index)
-        said["defaults"] = {}
-        for i in range(self.num_defaults):
-            row = filled(_abi.rdm_option, lib.rdm_task_default, index, i)
-            said["defaults"][text(row.key)] = row.number if row.text is None else text(row.text)
+        said["defaults"] = laid(
+            filled(_abi.rdm_option, lib.rdm_task_default, index, i) for i in range(self.num_defaults))
 
     def __repr__(self) -> str:
         return f"<Task {self.name}: {self.summary}>"

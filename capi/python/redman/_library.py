@@ -79,7 +79,7 @@ def check(code: int) -> None:
 def sized(kind: type[Struct]) -> Struct:
     """A struct with its struct_size set and everything else 0."""
     value = kind()
-    value.struct_size = ctypes.sizeof(kind)  # type: ignore[attr-defined]
+    value.struct_size = ctypes.sizeof(kind)
     return value
 
 

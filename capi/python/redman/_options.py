@@ -1,7 +1,7 @@
 """Options as a dict: {"object": "egg", "object_mass": 0.05}."""
 from __future__ import annotations
 
-from typing import Any, Mapping, Union
+from typing import Any, Iterable, Mapping, Union
 
 from . import _abi
 from ._library import encoded, text
@@ -25,13 +25,13 @@ def option_array(options: Options) -> Any:
     return array
 
 
-def value_of(info: _abi.rdm_option_info, shown: str) -> Value:
+def value_of(kind: int, shown: str) -> Value:
     """The text of an option as its kind says."""
-    if info.kind == _abi.RDM_TEXT:
+    if kind == _abi.RDM_TEXT:
         return shown
-    if info.kind == _abi.RDM_FLAG:
-        return shown not in ("0", "false", "off", "no")
-    return int(float(shown)) if info.kind == _abi.RDM_INTEGER else float(shown)
+    if kind == _abi.RDM_FLAG:
+        return shown == "true"
+    return int(float(shown)) if kind == _abi.RDM_INTEGER else float(shown)
 
 
 def default_of(info: _abi.rdm_option_info) -> Value:
@@ -41,3 +41,22 @@ def default_of(info: _abi.rdm_option_info) -> Value:
     if info.kind == _abi.RDM_FLAG:
         return bool(info.number)
     return int(info.number) if info.kind == _abi.RDM_INTEGER else info.number
+
+
+def laid(rows: Iterable[_abi.rdm_option]) -> dict[str, Value]:
+    """Rows in the order in which they are laid over each other: the last of a key counts, and where it stands."""
+    out: dict[str, Value] = {}
+    for row in rows:
+        key = text(row.key)
+        out.pop(key, None)
+        out[key] = row.number if row.text is None else _plain(text(row.text))
+    return out
+
+
+def _plain(shown: str) -> Value:
+    """A number where the text is one."""
+    try:
+        number = float(shown)
+    except ValueError:
+        return shown
+    return int(shown) if shown.lstrip("-").isdecimal() else number

@@ -53,8 +53,9 @@ class _Actor:
             return
         due = self._left == 0
         if due.any():
-            decide = self._player.act if isinstance(self._player, Policy) else self._player
-            self._pool.action[due] = np.asarray(decide(self._pool.obs))[due]
+            obs = self._pool.obs
+            decided = self._player.act(obs) if isinstance(self._player, Policy) else self._player(obs)
+            self._pool.action[due] = np.asarray(decided)[due]
             self._left[due] = self._repeat
         self._left -= 1
 

@@ -69,7 +69,7 @@ class Policy:
             size, scratch = self._scratch(rows)
             check(lib.rdm_policy_act(self._handle.value, seen.ctypes.data, rows,
                                      None if drawn is None else drawn.ctypes.data, action.ctypes.data, scratch, size))
-        return action if observed.ndim == 2 else action[0]
+        return action if observed.ndim == 2 else action.reshape(-1)
 
     def _scratch(self, rows: int) -> tuple[int, int]:
         """Size and address of this thread's memory for so many rows."""

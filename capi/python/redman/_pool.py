@@ -386,7 +386,7 @@ class Pool:
             key = ctypes.c_char_p()
             shown = ctypes.create_string_buffer(_abi.RDM_TEXT_SIZE)
             self._check(lib.rdm_pool_option(self._p, i, byref(key), shown))
-            out[text(key.value)] = value_of(info, text(shown.value))
+            out[text(key.value)] = value_of(info.kind, text(shown.value))
         return out
 
     @property
