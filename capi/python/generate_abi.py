@@ -38,6 +38,7 @@ class Declared(NamedTuple):
     result: str  # type of a function's result
     doc: str
     experimental: bool
+    above: str  # the comment above its run, which may tell of its arguments too
 
 
 class Variable(NamedTuple):
@@ -91,7 +92,8 @@ def declarations(text: str) -> Iterator[Declared]:
     start = text.index("#define REDMAN_H")
     experimental_from = text.index("#if defined(RDM_EXPERIMENTAL)")
     pending: Declared | None = None
-    covering = covered = ""  # a comment that stands above, and the kind of what it has told of
+    above = covering = covered = ""  # a comment that stands above, as long as it is the words of what comes, and the
+    # kind of what it has told of
     at = start
     end_of_last = 0
     while at < len(text):
@@ -112,7 +114,8 @@ def declarations(text: str) -> Iterator[Declared]:
                 if pending:
                     yield pending
                     pending = None
-                covering, covered = text_of(found["comment"]), ""
+                above = covering = text_of(found["comment"])
+                covered = ""
             continue
         if kind is None and not match.group().strip():
             continue
@@ -120,7 +123,7 @@ def declarations(text: str) -> Iterator[Declared]:
             yield pending
             pending = None
         if found["blank"] is not None or found["directive"]:
-            covering = ""
+            above = covering = ""
             continue
         about = next((kind for kind, (_, body, _) in KINDS.items() if found[body] is not None), "")
         if not about:  # typedef int32_t rdm_result
@@ -129,7 +132,8 @@ def declarations(text: str) -> Iterator[Declared]:
             covering = ""  # it was of another kind of thing
         covered = about if covering else ""
         name, body, result = (found[part] or "" for part in KINDS[about])
-        pending = Declared(about, name, body, result.strip(), covering, match.start() > experimental_from)
+        pending = Declared(about, name, body, result.strip(), covering,
+                           match.start() > experimental_from, above)
         end_of_last = match.end()
     if pending:
         yield pending
@@ -321,20 +325,22 @@ def generate(text: str) -> str:
     for d in found:
         if d.kind == "constant" and d.body.strip().isdecimal():
             out.append(f"{d.name} = {d.body.strip()}{'  # ' + ' '.join(d.doc.split()) if d.doc else ''}\n")
-    out.append("RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH\n\n\n")
+    numbers = [next(d.body for d in found if d.name == f"RDM_VERSION_{part}") for part in ("MAJOR", "MINOR", "PATCH")]
+    out.append("RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH\n"
+               f'VERSION = "{".".join(number.strip() for number in numbers)}"  # that these types are of\n\n\n')
     for d in found:
         if d.kind != "enum":
             continue
+        if not d.name:
+            raise SystemExit(f"redman.h: an enum without a name: {d.body[:60]!r}")
         rows = members(d)
-        if d.name:
-            prefix = prefix_of([name for name, _, _ in rows])
-            out.append(f"class {camel(d.name)}(enum.IntEnum):\n    {quoted(d.doc or d.name, '    ')}\n\n")
-            out += [f"    {name.removeprefix(prefix)} = {value}{'  # ' + doc if doc else ''}\n" for name, value, doc in rows]
-            out.append("\n\n")
-        else:
-            out += [f"{name} = {value}{'  # ' + doc if doc else ''}\n" for name, value, doc in rows]
-            out.append("\n")
-    out.append("\n")
+        prefix = prefix_of([name for name, _, _ in rows])
+        flags = len(rows) > 1 and all(value > 0 and value & (value - 1) == 0 for _, value, _ in rows)
+        about = text_of(match[0].strip()) if (match := re.match(r"\s*" + COMMENT, d.body, re.S)) else d.doc
+        out.append(f"class {camel(d.name)}(enum.{'IntFlag' if flags else 'IntEnum'}):\n"
+                   f"    {quoted(about or d.name, '    ')}\n\n")
+        out += [f"    {name.removeprefix(prefix)} = {value}{'  # ' + doc if doc else ''}\n" for name, value, doc in rows]
+        out.append("\n\n")
     for d in found:
         if d.kind == "callback":
             out.append(f"{d.name} = {prototype(f'{d.result}({d.body})', structs, callbacks)}\n\n\n")
@@ -356,8 +362,9 @@ def generate(text: str) -> str:
             continue
         given = parameters(d.body)
         arguments = ", ".join(f'"{v.name}": {ctype(v, structs, callbacks)}' for v in given)
-        shaped = {v.name: (DTYPES[v.base], shape_of_argument(v, d.doc)) for v in given
-                  if (v.pointer or v.length) and v.base in DTYPES and shape_of_argument(v, d.doc)}
+        words = f"{d.doc}\n{d.above}"
+        shaped = {v.name: (DTYPES[v.base], shape_of_argument(v, words)) for v in given
+                  if (v.pointer or v.length) and v.base in DTYPES and shape_of_argument(v, words)}
         out.append(f'    "{d.name}": Function(\n        {result_type(d.result)}, {{{arguments}}},\n'
                    f'        {rows_text(shaped)}, {d.experimental},\n        {quoted(d.doc, " " * 8)}),\n')
     out.append('''}

@@ -10,15 +10,16 @@ from typing import Any, Callable, Iterator, Mapping, MutableMapping, Optional, S
 import numpy as np
 
 from . import _abi, _discovery
+from ._abi import ActMode
 from ._error import ArgumentError, Error, NotFoundError, StateError, error_of
 from ._library import Handle, bytes_of, check, encoded, failure, filled, lib, sized, text
-from ._options import Options, Value, laid, option_array, value_of
+from ._options import Options, Value, laid, option_array, read_settings, settings_of
 from ._policy import Policy
 from ._pool import Pool
 from ._rows import Array, FloatArray, address, given
 from ._tensors import Tensors
 
-_MODES = {"sample": _abi.RDM_SAMPLE, "mean": _abi.RDM_MEAN}
+_MODES = {"sample": ActMode.SAMPLE, "mean": ActMode.MEAN}
 CostLimits = Union[None, float, Sequence[Optional[float]], Mapping[str, Optional[float]]]
 
 
@@ -32,7 +33,9 @@ class _AgentTensors(Tensors, MutableMapping[str, FloatArray]):
     def __setitem__(self, name: str, values: Any) -> None:
         self[name]  # an unknown name is told first
         array = np.ascontiguousarray(values, np.float32)
-        check(lib.rdm_agent_tensor_write(self._owner._open(), encoded(name), array.ctypes.data, array.size))
+        with self._owner._lock:
+            check(lib.rdm_agent_tensor_write(self._owner._open(), encoded(name), array.ctypes.data,
+                                             array.size))
 
     def __delitem__(self, name: str) -> None:
         raise TypeError("tensors cannot be deleted")
@@ -47,7 +50,7 @@ class Agent:
         agent = redman.Agent(obs_dim=3, action_dim=1, num_envs=16, options={"horizon": 64})
         action = agent.act(obs)                         # and after the world's step:
         agent.record(reward, cost, terminated, truncated, final_obs)
-        epoch = agent.update(obs)                       # when agent.missing decisions are 0
+        epoch = agent.update(obs)                       # after option horizon such decisions
 
     cost_limits: of column 0, of each column (None: no limit), or by the names of the pool's costs. A pool brings its
     dimensions, its task's defaults for learners, start pose and limits. One thread at a time; others wait.
@@ -198,13 +201,8 @@ class Agent:
     @property
     def options(self) -> dict[str, Value]:
         """All options of the algorithm as this agent has them."""
-        out: dict[str, Value] = {}
-        for i, info in enumerate(self.algo.options.values()):
-            key = ctypes.c_char_p()
-            shown = ctypes.create_string_buffer(_abi.RDM_TEXT_SIZE)
-            self._check(lib.rdm_agent_option(self._a, i, byref(key), shown))
-            out[text(key.value)] = value_of(info.kind, text(shown.value))
-        return out
+        return read_settings(lib.rdm_agent_settings, self._open(),
+                             {key: option.kind for key, option in self.algo.options.items()})
 
     def set(self, **options: Value) -> None:
         """Changes live options: agent.set(learning_rate=1e-4). Keys with dots: agent.set(**{"a.b": 1})."""
@@ -350,8 +348,8 @@ def _created(own: Mapping[str, Any]) -> Handle:
                  "max_steps"):
         setattr(config, name, own[name])
     config.algo, config.task = encoded(own["algo"]), encoded(own["task"])
-    options, defaults = option_array(own["options"]), option_array(own["defaults"])
-    config.options, config.num_options = options, len(options)
+    config.settings = settings_of(own["options"])
+    defaults = option_array(own["defaults"])
     config.defaults, config.num_defaults = defaults, len(defaults)
     arrays = {name: None if own[name] is None else np.ascontiguousarray(own[name], rows.dtype)
               for name, rows in _abi.ROWS["rdm_agent_config"].items()}

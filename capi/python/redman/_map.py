@@ -11,12 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
+from ._abi import MapFormat
 from ._error import ArgumentError, StateError
 from ._library import Handle, bytes_of, check, encoded, failure, filled, lib, sized
 from ._pool import Pool
-from ._rows import Array, FloatArray, address, aligned, given
+from ._rows import Array, FloatArray, address, given
 
-_FORMATS = {"bt": _abi.RDM_MAP_BINARY, "ot": _abi.RDM_MAP_FULL}
+_FORMATS = {"bt": MapFormat.BINARY, "ot": MapFormat.FULL}
 
 
 def _points(points: Any, name: str = "points") -> Array:
@@ -42,7 +43,7 @@ class Map:
         self._config: dict[str, float] = {"resolution": resolution, **config}
         struct = sized(_abi.rdm_map_config)
         check(lib.rdm_map_config_init(byref(struct), ctypes.sizeof(struct)))
-        known = {name for name, _ in struct._fields_} - {"struct_size", "reserved", "reserved2", "host", "error", "error_size"}
+        known = {name for name, _ in struct._fields_} - {"struct_size", "reserved", "host", "error", "error_size", "reserved2"}
         for name, value in self._config.items():
             if name not in known:
                 raise TypeError(f"Map: {name!r} is none of {', '.join(sorted(known))}")
@@ -192,7 +193,7 @@ def sample_furthest(points: Any, wanted: int, start: int = 0) -> npt.NDArray[np.
     rows = _points(points)
     chosen = np.empty(max(wanted, 0), np.int32)
     size = lib.rdm_sample_scratch(len(rows))
-    scratch = aligned(size)
+    scratch = np.empty(size, np.uint8)
     check(lib.rdm_sample_furthest(rows.ctypes.data, len(rows), wanted, start, chosen.ctypes.data,
                                   scratch.ctypes.data, size))
     return chosen

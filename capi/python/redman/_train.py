@@ -21,7 +21,7 @@ from ._agent import Agent, CostLimits, Epoch
 from ._curve import Curve
 from ._error import ArgumentError, FileError, NotFoundError, StateError
 from ._library import check, encoded, lib
-from ._options import Options, Value
+from ._options import Options, Value, shown
 from ._play import Evaluation, evaluate, play, summary
 from ._policy import Policy
 from ._pool import Pool
@@ -222,24 +222,20 @@ class _Folder:
             self.progress_bytes = file.tell()
 
 
-def _shown(value: Value) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)
-
-
 def _config(run: Run, pool: Pool, of_task: dict[str, Value], of_algo: dict[str, Value], steps: int, threads: int,
             eval_every: int, per_epoch: int) -> dict[str, Any]:
     """config.json: what the run was asked for, with the defaults written out."""
     limits = dict(zip(pool.costs, run.agent.cost_limits))
     return {
         "exp_name": f"{run.task}-{run.algo}-seed-{run.seed}", "task": run.task, "algo": run.algo, "seed": run.seed,
-        "set": [f"{key}={_shown(value)}" for key, value in of_task.items()],
-        "set_algo": [f"{key}={_shown(value)}" for key, value in of_algo.items()],
-        "set_cost_limit": [f"{name}={-1.0 if limit is None else limit!r}" for name, limit in limits.items()],
+        "set": [f"{key}={shown(key, value)}" for key, value in of_task.items()],
+        "set_algo": [f"{key}={shown(key, value)}" for key, value in of_algo.items()],
+        "set_cost_limit": [f"{name}={shown(name, -1 if limit is None else limit)}" for name, limit in limits.items()],
         "cost_limits": {name: limit for name, limit in limits.items() if limit is not None},
         "train_cfgs": {"total_steps": steps, "vector_env_nums": pool.num_envs, "threads": threads,
                        "eval_every": eval_every, "checkpoint_every": eval_every},
-        "algo_cfgs": {**{key: _shown(value) for key, value in run.agent.options.items()}, "steps_per_epoch": per_epoch},
-        "env_cfgs": {key: _shown(value) for key, value in pool.options.items()},
+        "algo_cfgs": {**{key: shown(key, value) for key, value in run.agent.options.items()}, "steps_per_epoch": per_epoch},
+        "env_cfgs": {key: shown(key, value) for key, value in pool.options.items()},
         "obs_dim": pool.obs_dim, "action_dim": pool.action_dim, "layout_hash": f"{pool.spec.layout_hash:016x}",
         "build": dict(vars(_discovery.build()))}
 
