@@ -107,6 +107,15 @@ class Rows(unittest.TestCase):
                 with self.assertRaises(redman.ArgumentError):
                     pool.step(wrong)
 
+    def test_an_action_may_be_repeated(self):
+        once, twice = played(), played(options={"action_repeat": 2})
+        self.assertEqual(twice.spec.action_repeat, 2)
+        for pool in (once, twice):
+            pool.reset(seeds=5)
+        once.step(0), (first := once.reward.copy()), once.step(0), twice.step(0)
+        np.testing.assert_array_equal(once.obs, twice.obs)
+        np.testing.assert_allclose(first + once.reward, twice.reward, rtol=1e-6)
+
     def test_masked_steps_leave_the_others(self):
         pool = played()
         before = pool.obs.copy()
@@ -186,6 +195,11 @@ class Shown(unittest.TestCase):
     def test_what_it_is(self):
         pool = played(options={"object": "egg", "object_mass": 0.05})
         self.assertEqual(sum(field.count for field in pool.fields.values()), pool.obs_dim)
+        low, high = pool.bounds
+        self.assertTrue(((low <= pool.obs) & (pool.obs <= high)).all())
+        self.assertTrue(np.isfinite(low).any())
+        self.assertEqual(pool.initial_mean.shape, (40,))
+        self.assertGreater(redman.memory(TASK, 2)[0], redman.memory(TASK, 1)[0])
         self.assertEqual(len(pool.costs), pool.cost_dim)
         self.assertEqual(pool.options["object"], "egg")
         self.assertEqual(pool.options["object_mass"], 0.05)
@@ -250,6 +264,24 @@ class Refused(unittest.TestCase):
                 self.assertLess(caught.exception.code, 0)
                 self.assertNotIn("\n", str(caught.exception))
                 self.assertEqual(pickle.loads(pickle.dumps(caught.exception)).code, caught.exception.code)
+
+    def test_numbers_that_the_abi_would_cut_are_refused(self):
+        pool = redman.Pool("bandit", np.int64(2), seed=np.uint64(3))
+        pool.reset()
+        for call in (lambda: redman.Pool("bandit", num_envs=(1 << 32) + 1), lambda: redman.Pool("bandit", seed=-1),
+                     lambda: redman.Pool("bandit", seed=1 << 64), lambda: redman.Pool("bandit", threads=1 << 40),
+                     lambda: pool.state(1 << 32), lambda: pool.hash(1 << 32), lambda: pool.poses(1 << 32),
+                     lambda: pool.render(0, width=(1 << 32) + 8), lambda: pool.push(1 << 32, 0, (0, 0, 0)),
+                     lambda: redman.Agent(obs_dim=(1 << 32) + 1, action_dim=1), lambda: redman.Map(0.1, memory=1 << 70)):
+            with self.assertRaises(redman.RangeError):
+                call()
+        with self.assertRaises(TypeError):
+            redman.Pool("bandit", num_envs=1.5)
+
+    def test_options_cannot_smuggle_lines(self):
+        for options in ({"modality": "none\npoints=3"}, {"points=3\nvoxels": 2}):
+            with self.assertRaises(redman.Error):
+                redman.Pool("bandit", options=options)
 
     def test_a_closed_pool_says_so(self):
         pool = played()

@@ -5,6 +5,7 @@ import ctypes
 import os
 import threading
 from ctypes import byref, c_size_t
+from queue import SimpleQueue
 from typing import Any, Callable, Iterator, Mapping, MutableMapping, Optional, Sequence, Union
 
 import numpy as np
@@ -12,7 +13,7 @@ import numpy as np
 from . import _abi, _discovery
 from ._abi import ActMode
 from ._error import ArgumentError, Error, NotFoundError, StateError, error_of
-from ._library import Handle, bytes_of, check, encoded, failure, filled, lib, sized, text
+from ._library import Handle, assign, bytes_of, check, encoded, failure, filled, lib, sized, text
 from ._options import Options, Value, laid, option_array, read_settings, settings_of
 from ._policy import Policy
 from ._pool import Pool
@@ -61,7 +62,7 @@ class Agent:
                  obs_dim: Optional[int] = None, action_dim: Optional[int] = None, num_envs: int = 1,
                  cost_dim: int = 1, task: str = "", control_dt: float = 0.0, max_steps: int = 0,
                  layout_hash: int = 0, initial_mean: Any = None) -> None:
-        own: dict[str, Any] = {"algo": algo, "seed": int(seed), "num_threads": int(threads), "options": dict(options or {})}
+        own: dict[str, Any] = {"algo": algo, "seed": seed, "num_threads": threads, "options": dict(options or {})}
         if pool is not None:
             if obs_dim is not None or action_dim is not None:
                 raise ArgumentError("agent: a pool brings its dimensions; give it or them")
@@ -70,17 +71,17 @@ class Agent:
         else:
             if obs_dim is None or action_dim is None:
                 raise ArgumentError("agent: give a pool, or obs_dim and action_dim")
-            own.update(obs_dim=int(obs_dim), action_dim=int(action_dim), num_envs=int(num_envs),
-                       cost_dim=int(cost_dim), task=task, control_dt=float(control_dt), max_steps=int(max_steps),
-                       layout_hash=int(layout_hash), initial_mean=None, defaults={}, cost_limits=None)
-            columns = [f"cost {k}" for k in range(own["cost_dim"])]
+            own.update(obs_dim=obs_dim, action_dim=action_dim, num_envs=num_envs, cost_dim=cost_dim, task=task,
+                       control_dt=float(control_dt), max_steps=max_steps, layout_hash=layout_hash, initial_mean=None,
+                       defaults={}, cost_limits=None)
+            columns = [f"cost {k}" for k in range(cost_dim)]
         if initial_mean is not None:
             own["initial_mean"] = np.broadcast_to(np.asarray(initial_mean, np.float32), own["action_dim"]).copy()
         own["cost_limits"] = _limits(cost_limits, own["cost_limits"], columns)
+        self._lock = threading.RLock()
         self._make(own)
 
     def _make(self, config: dict[str, Any]) -> None:
-        self._lock = threading.RLock()
         self._config = config
         self._handle: Optional[Handle] = _created(config)
         self._a = self._handle.value
@@ -155,34 +156,47 @@ class Agent:
         if threading.current_thread() is not threading.main_thread():
             self._check(call(self._a, *arguments))
             return
+        go: SimpleQueue[None] = SimpleQueue()
         done = threading.Lock()
+        given_up: list[bool] = []
         failed: list[Error] = []
 
         def work() -> None:
+            go.get()
             try:
-                code = call(self._a, *arguments)
+                code = 0 if given_up else call(self._a, *arguments)
                 if code:
                     failed.append(self._fail(code))  # the text is this thread's
             finally:
                 done.release()
 
+        thread = threading.Thread(target=work, name="redman", daemon=True)
         done.acquire()
-        threading.Thread(target=work, name="redman", daemon=True).start()
-        try:
+        try:  # a signal may raise behind each of these
+            thread.start()
+            go.put(None)
             done.acquire()
         except BaseException:
-            lib.rdm_agent_cancel(self._a)
-            while True:
-                try:
-                    done.acquire()
-                    break
-                except BaseException:  # once more: it is ending already
-                    continue
-            if not failed:
-                self._renew()
+            given_up.append(True)  # a thread that has not begun will not
+            if thread.ident is not None:
+                lib.rdm_agent_cancel(self._a)
+                go.put(None)
+                self._wait(done)
+                if not failed:
+                    self._renew()
             raise
         if failed:
             raise failed[0]
+
+    @staticmethod
+    def _wait(done: threading.Lock) -> None:
+        """For the end of a call that was cancelled, which more signals do not hasten."""
+        while True:
+            try:
+                done.acquire()
+                return
+            except BaseException:
+                continue
 
     def _renew(self) -> None:
         """The same agent without the cancel that came too late to be heard."""
@@ -275,6 +289,7 @@ class Agent:
         return {"config": self._config, "state": self.save()}
 
     def __setstate__(self, saved: Mapping[str, Any]) -> None:
+        self._lock = threading.RLock()
         self._make(saved["config"])
         self.load(saved["state"])
 
@@ -344,9 +359,8 @@ def _created(own: Mapping[str, Any]) -> Handle:
     """The agent of a configuration of plain values."""
     config = sized(_abi.rdm_agent_config)
     check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))
-    for name in ("obs_dim", "action_dim", "cost_dim", "num_envs", "num_threads", "seed", "layout_hash", "control_dt",
-                 "max_steps"):
-        setattr(config, name, own[name])
+    assign(config, {name: own[name] for name in ("obs_dim", "action_dim", "cost_dim", "num_envs", "num_threads", "seed",
+                                                 "layout_hash", "control_dt", "max_steps")})
     config.algo, config.task = encoded(own["algo"]), encoded(own["task"])
     config.settings = settings_of(own["options"])
     defaults = option_array(own["defaults"])

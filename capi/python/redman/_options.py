@@ -52,7 +52,7 @@ def read_settings(call: Callable[..., int], handle: Any, kinds: Mapping[str, int
     check(call(handle, None, 0, byref(size)))
     raw = ctypes.create_string_buffer(size.value + 1)
     check(call(handle, raw, len(raw), byref(size)))
-    pairs = (line.split("=", 1) for line in text(raw.value).splitlines())
+    pairs = (line.split("=", 1) for line in text(raw.value).split("\n") if line)
     return {key: value_of(kinds[key], value) for key, value in pairs}
 
 

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from . import _abi, _discovery, _png
 from ._abi import Autoreset, BaselineKind
 from ._error import ArgumentError, Error, StateError
-from ._library import Handle, check, encoded, failure, filled, lib, sized
+from ._library import Handle, assign, check, encoded, failure, filled, int32, lib, sized
 from ._options import Options, Value, read_settings, settings_of
 from ._rows import Array, Borrowed, FloatArray, address, given, made, shape_of
 
@@ -41,7 +41,7 @@ def _struct(own: Mapping[str, Any]) -> _abi.rdm_pool_config:
     config = sized(_abi.rdm_pool_config)
     check(lib.rdm_pool_config_init(byref(config), ctypes.sizeof(config)))
     config.task = encoded(own["task"])
-    config.num_envs, config.seed, config.num_threads = own["num_envs"], own["seed"], own["threads"]
+    assign(config, {"num_envs": own["num_envs"], "seed": own["seed"], "num_threads": own["threads"]})
     config.autoreset = _autoreset(own["autoreset"])
     config.settings = settings_of(own["options"])
     return config
@@ -107,7 +107,7 @@ class Pool:
                  options: Optional[Options] = None) -> None:
         self._lock = threading.RLock()
         self._config: dict[str, Any] = {
-            "task": task, "num_envs": int(num_envs), "seed": int(seed), "threads": int(threads),
+            "task": task, "num_envs": num_envs, "seed": seed, "threads": threads,
             "autoreset": _AUTORESET_NAMES[_autoreset(autoreset)], "options": dict(options or {})}
         config = _struct(self._config)
         self._handle: Optional[Handle] = Handle(lib.rdm_pool_create, lib.rdm_pool_destroy, byref(config))
@@ -273,7 +273,7 @@ class Pool:
         """The whole state of one world, or of all (-1)."""
         with self._lock:
             size = c_size_t()
-            self._check(lib.rdm_pool_state_size(self._p, env, byref(size)))
+            self._check(lib.rdm_pool_state_size(self._p, int32(env, "env"), byref(size)))
             raw = ctypes.create_string_buffer(size.value)
             self._check(lib.rdm_pool_get_state(self._p, env, raw, size, byref(size)))
             return raw.raw
@@ -281,13 +281,13 @@ class Pool:
     def set_state(self, state: bytes, env: int = -1) -> None:
         """Goes on from state(): the same bytes follow. Writes obs anew and clears the other rows of that world."""
         with self._lock:
-            self._check(lib.rdm_pool_set_state(self._p, env, bytes(state), len(state)))
+            self._check(lib.rdm_pool_set_state(self._p, int32(env, "env"), bytes(state), len(state)))
 
     def hash(self, env: int = -1) -> str:
         """The hash of the state as the tool prints it, 16 hexadecimal digits."""
         out = c_uint64()
         with self._lock:
-            self._check(lib.rdm_pool_hash(self._p, env, byref(out)))
+            self._check(lib.rdm_pool_hash(self._p, int32(env, "env"), byref(out)))
         return f"{out.value:016x}"
 
     # ---- what a world shows -----------------------------------------------------------------------------------
@@ -305,6 +305,7 @@ class Pool:
             raise ArgumentError(f"what: {what!r} is none of {', '.join(_PICTURE)}")
         if camera is None:
             camera = next(iter(self.task.cameras), "")
+        env, width, height = int32(env, "env"), int32(width, "width"), int32(height, "height")
         dtype, tail = _PICTURE[what]
         fits = 1 <= width <= 8192 and 1 <= height <= 8192  # if not, the call says so
         out = np.empty((height, width, *tail) if fits else 0, dtype)
@@ -336,13 +337,13 @@ class Pool:
         """[num_shapes][7] position (m) and quaternion (x, y, z, w) of each shape of one world."""
         out = np.empty((self.spec.num_shapes, 7), np.float32)
         with self._lock:
-            self._check(lib.rdm_pool_poses(self._p, env, out.ctypes.data))
+            self._check(lib.rdm_pool_poses(self._p, int32(env, "env"), out.ctypes.data))
         return out
 
     def hull(self, shape: int) -> FloatArray:
         """[count][3] corners of a shape that is a hull, in its own frame, m."""
         count = c_int32()
-        self._check(lib.rdm_pool_hull(self._open(), shape, None, 0, byref(count)))
+        self._check(lib.rdm_pool_hull(self._open(), int32(shape, "shape"), None, 0, byref(count)))
         out = np.empty((count.value, 3), np.float32)
         self._check(lib.rdm_pool_hull(self._p, shape, out.ctypes.data, len(out), byref(count)))
         return out
@@ -354,7 +355,7 @@ class Pool:
         with self._lock:
             while True:
                 rows = out.ctypes.data_as(ctypes.POINTER(_abi.rdm_contact))
-                self._check(lib.rdm_pool_contacts(self._p, env, rows, len(out), byref(count)))
+                self._check(lib.rdm_pool_contacts(self._p, int32(env, "env"), rows, len(out), byref(count)))
                 if count.value <= len(out):
                     return out[:count.value]
                 out = np.empty(count.value, out.dtype)
@@ -368,7 +369,7 @@ class Pool:
             shape = names.index(shape)
         rows = given(force, _abi.FUNCTIONS["rdm_pool_push"].rows["force"], self._lengths, "force")
         with self._lock:
-            self._check(lib.rdm_pool_push(self._p, env, shape, rows.ctypes.data))
+            self._check(lib.rdm_pool_push(self._p, int32(env, "env"), int32(shape, "shape"), rows.ctypes.data))
 
     @property
     def sensors(self) -> Sensors:
