@@ -177,10 +177,10 @@ class Agent:
             go.put(None)
             done.acquire()
         except BaseException:
-            given_up.append(True)  # a thread that has not begun will not
-            if thread.ident is not None:
+            given_up.append(True)
+            go.put(None)
+            if thread.ident is not None:  # else it finds that this was given up
                 lib.rdm_agent_cancel(self._a)
-                go.put(None)
                 self._wait(done)
                 if not failed:
                     self._renew()
