@@ -195,6 +195,43 @@ class Interrupted(unittest.TestCase):
         self.assertEqual(agent.save(), before)
         agent.act(pool.obs)  # the horizon begins anew
 
+    def test_signals_at_any_moment(self):
+        pool = redman.Pool("bandit", 4)
+        pool.reset()
+        agent = redman.Agent(pool, options={"horizon": 1})
+        armed, over = [], threading.Event()
+
+        def hear(*_):
+            if armed:
+                armed.clear()
+                raise KeyboardInterrupt
+
+        def pester():
+            random = np.random.default_rng(1)
+            while not over.wait(random.uniform(0, 0.01)):
+                os.kill(os.getpid(), signal.SIGINT)
+
+        before = signal.signal(signal.SIGINT, hear)
+        thread = threading.Thread(target=pester)
+        thread.start()
+        heard = 0
+        end = time.monotonic() + 3
+        while time.monotonic() < end:
+            try:
+                armed.append(True)
+                while time.monotonic() < end:
+                    agent.rollout(pool)
+            except KeyboardInterrupt:
+                heard += 1
+        armed.clear()
+        over.set()
+        thread.join()
+        signal.signal(signal.SIGINT, before)
+        epochs = agent.rollout(pool).epoch
+        self.assertGreater(heard, 20)
+        self.assertGreater(epochs, heard // 10)
+        self.assertEqual(threading.active_count(), 1)  # nothing waits for ever
+
     def test_a_cancel_that_comes_too_late_is_forgotten(self):
         agent, pool, _ = trained()
         agent.cancel()

@@ -1,9 +1,11 @@
 """Agent: one algorithm that acts and learns, on the worlds of a pool or on a world of your own."""
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import threading
+import time
 from ctypes import byref, c_size_t
 from queue import SimpleQueue
 from typing import Any, Callable, Iterator, Mapping, MutableMapping, Optional, Sequence, Union
@@ -159,6 +161,7 @@ class Agent:
         go: SimpleQueue[None] = SimpleQueue()
         done = threading.Lock()
         given_up: list[bool] = []
+        ended: list[bool] = []
         failed: list[Error] = []
 
         def work() -> None:
@@ -168,6 +171,7 @@ class Agent:
                 if code:
                     failed.append(self._fail(code))  # the text is this thread's
             finally:
+                ended.append(True)
                 done.release()
 
         thread = threading.Thread(target=work, name="redman", daemon=True)
@@ -181,7 +185,7 @@ class Agent:
             go.put(None)
             if thread.ident is not None:  # else it finds that this was given up
                 lib.rdm_agent_cancel(self._a)
-                self._wait(done)
+                self._wait(ended)
                 if not failed:
                     self._renew()
             raise
@@ -189,14 +193,11 @@ class Agent:
             raise failed[0]
 
     @staticmethod
-    def _wait(done: threading.Lock) -> None:
+    def _wait(ended: list[bool]) -> None:
         """For the end of a call that was cancelled, which more signals do not hasten."""
-        while True:
-            try:
-                done.acquire()
-                return
-            except BaseException:
-                continue
+        while not ended:
+            with contextlib.suppress(BaseException):
+                time.sleep(0.001)
 
     def _renew(self) -> None:
         """The same agent without the cancel that came too late to be heard."""
