@@ -12,7 +12,7 @@ struct Case {
 };
 const Case kCases[] = {
     {"hand_over_safe_finger", "max_steps=23"},
-    {"point_goal", "max_steps=17"},
+    {"point_goal1", "max_steps=17"},
     {"two_state", "max_steps=9"},
     {"car_run", "max_steps=11"},
     {"grasp", "max_steps=13"},

@@ -76,9 +76,9 @@ TEST(FieldBounds, OfSomeFields) {
   };
   EXPECT_EQ(bounds("hand_over_safe_finger", "right.joint_velocity"), std::pair(-5.0f, 5.0f));
   EXPECT_EQ(bounds("hand_over_safe_finger", "right.action"), std::pair(-1.0f, 1.0f));
-  EXPECT_EQ(bounds("point_goal", "hazards_lidar"), std::pair(0.0f, 1.0f));
+  EXPECT_EQ(bounds("point_goal1", "hazards_lidar"), std::pair(0.0f, 1.0f));
   EXPECT_EQ(bounds("car_run", "heading"), std::pair(-1.0f, 1.0f));
-  EXPECT_TRUE(std::isnan(bounds("point_goal", "velocimeter").first));
+  EXPECT_TRUE(std::isnan(bounds("point_goal1", "velocimeter").first));
 }
 
 TEST(InitialMean, IsWhatAgentsAreLent) {
