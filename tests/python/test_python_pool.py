@@ -188,7 +188,7 @@ class Shown(unittest.TestCase):
         png = played()._repr_png_()
         self.assertEqual(png[:8], b"\x89PNG\r\n\x1a\n")
         width, height = struct.unpack(">II", png[16:24])
-        self.assertEqual((width, height), (4 * 240, 180))
+        self.assertEqual((width, height), (4 * 240 + 3 * 2, 180))
         size = struct.unpack(">I", png[33:37])[0]
         self.assertEqual(len(zlib.decompress(png[41:41 + size])), height * (3 * width + 1))
 
