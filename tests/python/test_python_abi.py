@@ -1,7 +1,10 @@
 """The generated types are what the headers, the layout file and the symbol lists say."""
 import ctypes
+import importlib.util
+import os
 import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -12,8 +15,6 @@ from redman._library import lib
 TREE = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TREE / "capi" / "python"))
 import generate_abi  # noqa: E402
-
-SCALARS = set(generate_abi.SCALARS) | {"rdm_body"}
 
 
 class Abi(unittest.TestCase):
@@ -74,9 +75,17 @@ class Abi(unittest.TestCase):
         self.assertEqual(_abi.Camera(camera), _abi.Camera(camera))
 
 
+class Types(unittest.TestCase):
+    @unittest.skipUnless(importlib.util.find_spec("mypy"), "no mypy (apt-get install mypy)")
+    def test_mypy_has_nothing_to_say(self):
+        with tempfile.TemporaryDirectory() as cache:
+            run = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", cache, "redman", "generate_abi.py"],
+                                 cwd=TREE / "capi/python", capture_output=True, text=True)
+        self.assertEqual(run.returncode, 0, run.stdout)
+
+
 class Library(unittest.TestCase):
     def imported(self, **environment):
-        import os
         return subprocess.run([sys.executable, "-c", "import redman"], env={**os.environ, **environment},
                               capture_output=True, text=True)
 

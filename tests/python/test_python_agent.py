@@ -113,7 +113,7 @@ class OfAPool(unittest.TestCase):
         self.assertEqual(agent.policy().info.task, TASK)
         self.assertEqual(len(epoch.cost), pool.cost_dim)
         for limits, expected in ((5, [5.0] + [None] * 7), ({"drop": 2}, [40.0] + [None] * 6 + [2.0]),
-                                 ([None, 1, None, None, None, None, None, 3], [None, 1.0] + [None] * 5 + [3.0])):
+                                 (None, [40.0] + [None] * 7), ([None, 1, None, None, None, None, None, 3], [None, 1.0] + [None] * 5 + [3.0])):
             self.assertEqual(redman.Agent(pool, cost_limits=limits).cost_limits, expected)
         with self.assertRaisesRegex(redman.NotFoundError, "drop"):
             redman.Agent(pool, cost_limits={"dropped": 2})
@@ -126,6 +126,9 @@ class OfAPool(unittest.TestCase):
         agent, _, _ = trained()
         agent.set(learning_rate=1e-5)
         self.assertEqual(agent.options["learning_rate"], 1e-5)
+        agent.set(cost_limit=7)
+        self.assertEqual(agent.cost_limits[0], 7)
+        self.assertEqual(copy.deepcopy(agent).cost_limits[0], 7)
         with self.assertRaises(redman.StateError):
             agent.set(horizon=9)
         with self.assertRaises(redman.NotFoundError):

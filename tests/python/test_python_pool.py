@@ -9,6 +9,7 @@ import subprocess
 import threading
 import tracemalloc
 import unittest
+import weakref
 import zlib
 
 import numpy as np
@@ -235,10 +236,15 @@ class Shown(unittest.TestCase):
         self.assertFalse(sensors.points.flags.writeable)
         expected = sensors.points.copy()
         points = sensors.points[1:]
+        handle = weakref.ref(pool._handle)
         pool.close()
         del pool, sensors
         gc.collect()
         np.testing.assert_array_equal(points, expected[1:])
+        self.assertIsNotNone(handle())  # the array has it
+        del points
+        gc.collect()
+        self.assertIsNone(handle())
         self.assertIsNone(redman.Pool("grasp").sensors.points)
 
 

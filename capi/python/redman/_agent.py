@@ -227,11 +227,11 @@ class Agent:
 
     @property
     def cost_limits(self) -> list[Optional[float]]:
-        """The limit of each cost column, None where there is none."""
-        said = self._config["cost_limits"]
-        if said is None:
-            said = [float(self.options["cost_limit"])] + [-1.0] * (self.cost_dim - 1)
-        return [None if limit < 0 else limit for limit in said[:self.cost_dim]]
+        """The limit of each cost column, None where there is none; option cost_limit is that of column 0."""
+        said = list(self._config["cost_limits"] or [-1.0] * self.cost_dim)
+        if said:
+            said[0] = float(self.options.get("cost_limit", said[0]))
+        return [None if limit < 0 else limit for limit in said]
 
     @property
     def tensors(self) -> _AgentTensors:
