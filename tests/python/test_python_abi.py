@@ -77,10 +77,18 @@ class Abi(unittest.TestCase):
 
 class Types(unittest.TestCase):
     @unittest.skipUnless(importlib.util.find_spec("mypy"), "no mypy (apt-get install mypy)")
-    def test_mypy_has_nothing_to_say(self):
-        with tempfile.TemporaryDirectory() as cache:
-            run = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", cache, "redman", "generate_abi.py"],
-                                 cwd=TREE / "capi/python", capture_output=True, text=True)
+    def test_mypy_has_nothing_to_say_of_the_package_and_of_a_user(self):
+        with tempfile.TemporaryDirectory() as folder:
+            user = Path(folder, "user.py")
+            user.write_text("import redman\n"
+                            "pool = redman.Pool('bandit', options={'points': 3})\n"
+                            "pool.step(pool.reset(seeds=[1])[:, :1])\n"
+                            "epoch = redman.Agent(pool, cost_limits={'cost': 1.0}).rollout(pool)\n"
+                            "x: float = epoch.ret\n"
+                            "y: bool = redman.train('bandit', callback=lambda e: e.epoch > 3).evaluate().feasible\n"
+                            "z: str = redman.tasks()['bandit'].options['points'].help\n")
+            run = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", folder, "redman",
+                                  "generate_abi.py", user], cwd=TREE / "capi/python", capture_output=True, text=True)
         self.assertEqual(run.returncode, 0, run.stdout)
 
 
