@@ -6,10 +6,9 @@ import math
 import operator
 import threading
 from ctypes import byref, c_int32, c_size_t, c_uint64
-from typing import Any, Iterator, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Sequence, Union
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _abi, _discovery, _png
 from ._abi import Autoreset, BaselineKind
@@ -17,6 +16,9 @@ from ._error import ArgumentError, Error, StateError
 from ._library import Handle, assign, check, encoded, failure, filled, int32, lib, sized
 from ._options import Options, Value, read_settings, settings_of
 from ._rows import Array, Borrowed, FloatArray, address, given, made, shape_of
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 _AUTORESET = {"samestep": Autoreset.SAME_STEP, "nextstep": Autoreset.NEXT_STEP,
               "off": Autoreset.OFF, "disabled": Autoreset.OFF}

@@ -1,16 +1,19 @@
 """Rows: arrays that the library reads or writes, named and shaped as the header says."""
 from __future__ import annotations
 
-from typing import Any, Iterable, Mapping, Optional
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional
 
 import numpy as np
-import numpy.typing as npt
 
 from ._abi import Rows
 from ._error import ArgumentError
 
-Array = npt.NDArray[Any]
-FloatArray = npt.NDArray[np.float32]
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    Array = npt.NDArray[Any]
+    FloatArray = npt.NDArray[np.float32]
+else:  # numpy.typing alone takes longer to import than redman
+    Array = FloatArray = np.ndarray
 ALIGNMENT = 64
 
 
