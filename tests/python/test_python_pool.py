@@ -225,6 +225,15 @@ class Shown(unittest.TestCase):
         self.assertLess(contacts["shape_a"].max(), len(pool.shapes))
         np.testing.assert_allclose(np.linalg.norm(contacts["normal"], axis=1), 1, rtol=1e-4)
 
+    def test_hulls_have_corners(self):
+        pool = redman.Pool("grasp", options={"object": "hull"})
+        hulls = [i for i, shape in enumerate(pool.shapes) if shape.kind == redman.ShapeKind.HULL]
+        corners = pool.hull(hulls[0])
+        self.assertGreater(len(corners), 3)
+        np.testing.assert_allclose(np.ptp(corners, axis=0) / 2, pool.shapes[hulls[0]].size, rtol=1e-4)
+        with self.assertRaises(redman.Error):
+            pool.hull(0 if 0 not in hulls else 1)
+
     def test_sensors_keep_their_memory(self):
         pool = redman.Pool("grasp", 2, options={"modality": "points+rgb+depth+segmentation+voxels", "points": 64})
         pool.reset()

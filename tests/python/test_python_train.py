@@ -1,4 +1,6 @@
 """train, evaluate, curve: what the command-line tool does, to the byte."""
+import contextlib
+import io
 import json
 import os
 import re
@@ -76,6 +78,15 @@ class AsTheTool(unittest.TestCase):
             self.assertEqual(bytes(redman.Policy.load(folder)), bytes(run.policy))
             self.assertTrue(Path(folder, "checkpoint.rdm").exists())
         self.assertIs(signal.getsignal(signal.SIGINT), signal.default_int_handler)
+
+    def test_progress_goes_to_stderr(self):
+        heard = io.StringIO()
+        with contextlib.redirect_stderr(heard):
+            redman.train("bandit", steps=500, envs=4)
+            redman.train("bandit", steps=1e9, envs=4, callback=lambda epoch: True)
+        lines = heard.getvalue().splitlines()
+        self.assertRegex(lines[-3], "^100%  [0-9]+ steps  return .* 0:00 left$")
+        self.assertRegex(lines[-1], "^stopped at [0-9]+ of 1000000000 steps$")
 
     def test_other_threads_train_too(self):
         runs = []
