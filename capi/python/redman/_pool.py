@@ -24,6 +24,7 @@ _AUTORESET = {"samestep": Autoreset.SAME_STEP, "nextstep": Autoreset.NEXT_STEP,
               "off": Autoreset.OFF, "disabled": Autoreset.OFF}
 _AUTORESET_NAMES = ("same_step", "next_step", "off")
 _BASELINE = {"zero": BaselineKind.ZERO, "hold": BaselineKind.HOLD, "random": BaselineKind.RANDOM}
+_FLOAT = np.dtype(np.float32)
 _PICTURE = {"rgb": ("uint8", (3,)), "depth": ("float32", ()), "segmentation": ("int32", ())}
 
 _step = lib["rdm_pool_step"]  # a function of its own, for the one call that is made a million times
@@ -214,7 +215,10 @@ class Pool:
 
     def _write_action(self, action: Any) -> None:
         try:
-            np.copyto(self._action, action)
+            if type(action) is np.ndarray and action.dtype is _FLOAT:
+                self._action[...] = action  # a third of what copyto takes, and casts nothing here
+            else:
+                np.copyto(self._action, action)
         except (TypeError, ValueError):
             np.copyto(self._action, given(action, _abi.ROWS["rdm_buffers"]["action"], self._lengths, "action"))
 
