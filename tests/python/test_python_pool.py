@@ -53,11 +53,12 @@ class SameWorlds(unittest.TestCase):
     def test_threads_do_not_change_a_bit(self):
         self.assertEqual(len({played(threads=threads).hash() for threads in (0, 1, 2, 4)}), 1)
 
-    def test_an_explicit_seed_repeats_an_episode(self):
+    def test_an_explicit_seed_names_an_episode(self):
         pool = redman.Pool("grasp", 3)
         first = pool.reset(seeds=11).copy()
         pool.baseline("random"), pool.step()
         self.assertTrue((pool.reset(seeds=[11, 12, 13]) == first).all())
+        self.assertTrue((redman.Pool("grasp", 1, seed=12).reset()[0] == first[1]).all())  # in any world of any pool
         self.assertFalse((pool.reset() == first).all())
 
 
