@@ -31,8 +31,8 @@ def played(**arguments):
 class SameWorlds(unittest.TestCase):
     @unittest.skipUnless(os.environ.get("REDMAN_TOOL"), "the command-line tool was not built")
     def test_hashes_are_those_that_the_tool_prints(self):
-        for task, options in ((TASK, {}), ("grasp", {"object_mass": 0.0712345678901234}), ("jenga", {}), ("point_goal1", {}),
-                              ("hand_over_wall", {"object": "tennis_ball"})):
+        for task, options in ((TASK, {}), ("grasp", {"object_mass": 0.0712345678901234}), ("jenga", {}),
+                              ("point_goal1", {}), ("hand_over_wall", {"object": "tennis_ball"})):
             sets = [word for key, value in options.items() for word in ("--set", f"{key}={value}")]
             said = json.loads(subprocess.run(
                 [os.environ["REDMAN_TOOL"], "rollout", "--task", task, "--policy", "random", "--episodes", "3",
@@ -261,7 +261,8 @@ class Shown(unittest.TestCase):
 class Refused(unittest.TestCase):
     def test_errors_say_what_and_are_what_python_expects(self):
         cases = [
-            (lambda: redman.Pool("hand_over_safe_fingr"), redman.NotFoundError, LookupError, "nearest is hand_over_safe_finger"),
+            (lambda: redman.Pool("hand_over_safe_fingr"), redman.NotFoundError, LookupError,
+             "nearest is hand_over_safe_finger"),
             (lambda: redman.Pool("bandit", num_envs=0), redman.RangeError, ValueError, "num_envs"),
             (lambda: redman.Pool("bandit", options={"nope": 1}), redman.NotFoundError, LookupError, "nope"),
             (lambda: redman.Pool("bandit", options={"points": None}), TypeError, TypeError, "points"),
@@ -288,7 +289,8 @@ class Refused(unittest.TestCase):
                      lambda: redman.Pool("bandit", seed=1 << 64), lambda: redman.Pool("bandit", threads=1 << 40),
                      lambda: pool.state(1 << 32), lambda: pool.hash(1 << 32), lambda: pool.poses(1 << 32),
                      lambda: pool.render(0, width=(1 << 32) + 8), lambda: pool.push(1 << 32, 0, (0, 0, 0)),
-                     lambda: redman.Agent(obs_dim=(1 << 32) + 1, action_dim=1), lambda: redman.Map(0.1, memory=1 << 70)):
+                     lambda: redman.Agent(obs_dim=(1 << 32) + 1, action_dim=1),
+                     lambda: redman.Map(0.1, memory=1 << 70)):
             with self.assertRaises(redman.RangeError):
                 call()
         with self.assertRaises(TypeError):

@@ -164,7 +164,8 @@ def _panel(title: str, column: str, curves: Sequence[Curve], limit: Optional[flo
         out.append(f'<path d="M{left} {y_of(limit):.1f}H{right}" stroke="#555" stroke-dasharray="5 4"/>')
     for number, xs, ys in drawn:
         points = " ".join(f"{x:.1f},{y:.1f}" for x, y in zip(x_of(xs), y_of(ys)))
-        out.append(f'<polyline points="{points}" fill="none" stroke="{_COLORS[number % len(_COLORS)]}" stroke-width="1.5"/>')
+        color = _COLORS[number % len(_COLORS)]
+        out.append(f'<polyline points="{points}" fill="none" stroke="{color}" stroke-width="1.5"/>')
     return "".join(out)
 
 
@@ -174,10 +175,11 @@ def draw(curves: Sequence[Curve]) -> str:
     limit = limits.pop() if len(limits) == 1 else None
     width = _LEFT + _WIDTH + _RIGHT
     height = _TOP + _HEIGHT + _BOTTOM + 18 * len(curves)
-    legend = "".join(
-        f'<path d="M{_LEFT} {_TOP + _HEIGHT + _BOTTOM + 18 * i}h24" stroke="{_COLORS[i % len(_COLORS)]}" stroke-width="2"/>'
-        f'<text x="{_LEFT + 32}" y="{_TOP + _HEIGHT + _BOTTOM + 18 * i + 4}">{html.escape(one.label)}</text>'
-        for i, one in enumerate(curves))
+    legend = ""
+    for i, one in enumerate(curves):
+        y = _TOP + _HEIGHT + _BOTTOM + 18 * i
+        legend += (f'<path d="M{_LEFT} {y}h24" stroke="{_COLORS[i % len(_COLORS)]}" stroke-width="2"/>'
+                   f'<text x="{_LEFT + 32}" y="{y + 4}">{html.escape(one.label)}</text>')
     return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * width}" height="{height}" '
             f'font-family="sans-serif" font-size="11" fill="#222"><rect width="100%" height="100%" fill="#fff"/>'
             + _panel("return", "Metrics/EpRet", curves, None, 0)

@@ -45,7 +45,7 @@ class Map:
         self._config: dict[str, float] = {"resolution": resolution, **config}
         struct = sized(_abi.rdm_map_config)
         check(lib.rdm_map_config_init(byref(struct), ctypes.sizeof(struct)))
-        known = {name for name, _ in struct._fields_} - {"struct_size", "reserved", "host", "error", "error_size", "reserved2"}
+        known = {name for name, kind in struct._fields_ if kind is ctypes.c_double} | {"memory"}
         for name, value in self._config.items():
             if name not in known:
                 raise TypeError(f"Map: {name!r} is none of {', '.join(sorted(known))}")

@@ -220,11 +220,12 @@ class Pool:
             else:
                 np.copyto(self._action, action)
         except (TypeError, ValueError):
-            np.copyto(self._action, given(action, _abi.ROWS["rdm_buffers"]["action"], self._lengths, "action"))
+            rows = _abi.ROWS["rdm_buffers"]["action"]
+            np.copyto(self._action, given(action, rows, self._lengths, "action", spread=True))
 
     def _mask(self, mask: Any) -> Optional[Array]:
         return None if mask is None else given(
-            mask, _abi.FUNCTIONS["rdm_pool_reset"].rows["mask"], self._lengths, "mask")
+            mask, _abi.FUNCTIONS["rdm_pool_reset"].rows["mask"], self._lengths, "mask", spread=True)
 
     def reset(self, seeds: Union[None, int, Sequence[int], Array] = None, mask: Any = None) -> FloatArray:
         """Starts new episodes where mask holds (None: everywhere) and returns obs.
@@ -241,7 +242,8 @@ class Pool:
                 listed = [operator.index(seed) for seed in seeds]  # type: ignore[union-attr]
             if any(not 0 <= seed < 1 << 64 for seed in listed):
                 raise ArgumentError("seeds: integers from 0 to 2^64 - 1")
-            rows = given(np.array(listed, np.uint64), _abi.FUNCTIONS["rdm_pool_reset"].rows["seeds"], self._lengths, "seeds")
+            table = _abi.FUNCTIONS["rdm_pool_reset"].rows["seeds"]
+            rows = given(np.array(listed, np.uint64), table, self._lengths, "seeds")
         chosen = self._mask(mask)
         with self._lock:
             self._check(lib.rdm_pool_reset(self._p, address(rows), address(chosen)))

@@ -247,7 +247,8 @@ def _config(run: Run, pool: Pool, of_task: dict[str, Value], of_algo: dict[str, 
         "cost_limits": {name: limit for name, limit in limits.items() if limit is not None},
         "train_cfgs": {"total_steps": steps, "vector_env_nums": pool.num_envs, "threads": threads,
                        "eval_every": eval_every, "checkpoint_every": eval_every},
-        "algo_cfgs": {**{key: shown(key, value) for key, value in run.agent.options.items()}, "steps_per_epoch": per_epoch},
+        "algo_cfgs": {**{key: shown(key, value) for key, value in run.agent.options.items()},
+                      "steps_per_epoch": per_epoch},
         "env_cfgs": {key: shown(key, value) for key, value in pool.options.items()},
         "obs_dim": pool.obs_dim, "action_dim": pool.action_dim, "layout_hash": f"{pool.spec.layout_hash:016x}",
         "build": dict(vars(_discovery.build()))}
@@ -273,8 +274,8 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
 
     steps are control steps of all worlds together; options are those of the task and of the algorithm. Every
     eval_every epochs twenty episodes decide which policy is kept: the best that stays within the limits, else the
-    one that comes nearest. out makes a run folder. callback(epoch) is called after each epoch; a true answer ends the run.
-    The first Ctrl-C ends it after this epoch, and what has been learned is returned; the second at once.
+    one that comes nearest. out makes a run folder. callback(epoch) is called after each epoch; a true answer ends
+    the run. The first Ctrl-C ends it after this epoch, and what has been learned is returned; the second at once.
     """
     goal = int(steps)
     if goal < 1 or goal != steps:
