@@ -58,8 +58,8 @@ class AsTheTool(unittest.TestCase):
     def test_an_algorithm_that_only_records_costs_is_not_judged_by_them(self):
         with tempfile.TemporaryDirectory() as folder:
             run = redman.train(**SMALL, algo="ppo")
-            tool("train", "--task", SMALL["task"], "--algo", "ppo", "--steps", SMALL["steps"], "--seed", 3, "--envs", 16,
-                 "--eval-every", 5, "--out", folder)
+            tool("train", "--task", SMALL["task"], "--algo", "ppo", "--steps", SMALL["steps"], "--seed", 3,
+                 "--envs", 16, "--eval-every", 5, "--out", folder)
             self.assertEqual(bytes(run.policy), Path(folder, "policy.rdm").read_bytes())
 
     def test_a_run_without_a_folder_leaves_nothing(self):
