@@ -1,0 +1,99 @@
+"""What a failed call raises: redman.Error, by its code also the built-in exception that a caller would expect."""
+from __future__ import annotations
+
+from ._abi import ResultCode
+
+
+class Error(Exception):
+    """A failed call: str(error) is the library's line of text, error.code the rdm_result."""
+
+    code: int = ResultCode.INTERNAL
+
+
+class ArgumentError(Error, ValueError):
+    """Not finite, malformed, of the wrong shape."""
+
+    code = ResultCode.ARGUMENT
+
+
+class RangeError(Error, ValueError, IndexError):
+    """Outside the documented bounds, or an index past the end."""
+
+    code = ResultCode.RANGE
+
+
+class StateError(Error, RuntimeError):
+    """Calls in the wrong order."""
+
+    code = ResultCode.STATE
+
+
+class AllocationError(Error, MemoryError):
+    """The allocator refused."""
+
+    code = ResultCode.MEMORY
+
+
+class FileError(Error, OSError):
+    """The file system refused."""
+
+    code = ResultCode.IO
+
+
+class FormatError(Error, ValueError):
+    """Truncated, corrupt or foreign bytes."""
+
+    code = ResultCode.FORMAT
+
+
+class VersionError(Error, ValueError):
+    """A newer file or library, or a policy of another task or options."""
+
+    code = ResultCode.VERSION_MISMATCH
+
+
+class UnsupportedError(Error, NotImplementedError):
+    """Left out of this build, or not defined for this combination."""
+
+    code = ResultCode.UNSUPPORTED
+
+
+class PhysicsError(Error, ArithmeticError):
+    """The physics engine gave up where no world could be flagged."""
+
+    code = ResultCode.PHYSICS
+
+
+class NotFoundError(Error, LookupError):
+    """An unknown name; the text offers the nearest."""
+
+    code = ResultCode.NOT_FOUND
+
+
+class MissingFileError(NotFoundError, FileNotFoundError):
+    """A file that is not there."""
+
+
+class CancelledError(Error, RuntimeError):
+    """Agent.cancel was called; the agent is good."""
+
+    code = ResultCode.CANCELLED
+
+
+class InternalError(Error, RuntimeError):
+    """A defect of redman."""
+
+
+_CLASS_OF = {kind.code: kind for kind in (
+    ArgumentError, RangeError, StateError, AllocationError, FileError, FormatError, VersionError, UnsupportedError,
+    PhysicsError, NotFoundError, CancelledError, InternalError)}
+
+
+def error_of(code: int, text: str) -> Error:
+    """The exception of a failed call."""
+    kind = _CLASS_OF.get(code)
+    if kind is None:  # a code of a later library
+        error: Error = InternalError(text)
+        error.code = code
+        return error
+    return kind(text)
