@@ -1,0 +1,281 @@
+"""Tasks as environments of Gymnasium (0.28 to 1.x).
+
+    import gymnasium, redman.gym
+    env = gymnasium.make("redman/HandOverSafeFinger-v0", render_mode="rgb_array")
+    envs = gymnasium.make_vec("redman/HandOverSafeFinger-v0", num_envs=64, action_repeat="task")
+
+Env is one world, VectorEnv many in one pool, equal bit for bit to Gymnasium's SyncVectorEnv over as many Env. What a step
+cost is in its info: "cost", the task's own (column 0), and "costs" [cost_dim], as cost_names names them; beside them
+"success" and "status" (redman.h, RDM_STATUS_*). An episode is named by its seed alone: world i of reset(seed=s) has
+the episode of an Env with reset(seed=s + i).
+
+Without Gymnasium the two classes have the same methods over spaces of their own, and no id is registered.
+"""
+from __future__ import annotations
+
+from typing import Any, Mapping, Optional, Union
+
+import numpy as np
+
+from . import tasks
+from ._worlds import Center, Seeds, Worlds
+
+try:
+    import gymnasium
+    from gymnasium import Env as _Env
+    from gymnasium.spaces import Box, Dict
+    from gymnasium.vector import VectorEnv as _VectorEnv
+    from gymnasium.vector.utils import batch_space
+except ImportError as error:
+    if getattr(error, "name", None) != "gymnasium":  # it is there, and something that it needs is not
+        raise
+    gymnasium = None
+    from ._spaces import Box, Dict, Env as _Env, VectorEnv as _VectorEnv, batch_space
+
+try:
+    from gymnasium.vector import AutoresetMode
+except ImportError:  # before 1.1
+    AutoresetMode = str
+
+_MODES = {"NextStep": "next_step", "SameStep": "same_step", "Disabled": "off"}
+_OLD = gymnasium is not None and gymnasium.__version__.startswith("0.")
+_FINAL_OBS = "final_observation" if _OLD else "final_obs"
+
+
+class _Named:
+    """What Env and VectorEnv tell of their worlds."""
+
+    worlds: Worlds
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 60}
+
+    def _begin(self, worlds: Worlds, render_mode: Optional[str], named: bool) -> tuple[Any, Any]:
+        """Takes the worlds; the spaces of one of them."""
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f'render_mode: None or "rgb_array", not "{render_mode}"')
+        self.worlds, self.render_mode, self.named = worlds, render_mode, named
+        self.fields, self.cost_names = worlds.fields, worlds.cost_names
+        self.metadata = {"render_modes": ["rgb_array"], "render_fps": max(1, round(1 / worlds.seconds))}
+        low, high = worlds.obs_low, worlds.obs_high
+        obs = Box(low, high, dtype=np.float32) if not named else Dict(
+            {name: Box(low[at], high[at], dtype=np.float32) for name, at in self.fields.items()})
+        return obs, Box(worlds.action_low, worlds.action_high, dtype=np.float32)
+
+    @property
+    def pool(self) -> Any:
+        """The worlds as redman.Pool."""
+        return self.worlds.pool
+
+    @property
+    def cost_limits(self) -> np.ndarray:
+        """[cost_dim] limit on each cost's sum over an episode; NaN: none."""
+        limits = np.array([c.limit for c in self.pool.costs.values()])
+        return np.where(limits < 0, np.nan, limits)
+
+    def _seen(self, rows: np.ndarray) -> Any:
+        return {name: rows[..., at] for name, at in self.fields.items()} if self.named else rows
+
+
+class Env(_Named, _Env):
+    """One world of a task.
+
+    seed: what the first reset() takes that is given none; None draws one from the system.
+    options: of the task, as `redman tasks NAME` prints them.
+    action_repeat: control steps of a step, whose rewards and costs are summed; "task": as the task's learner decides.
+    center: what an action of 0 does: "initial" takes the pose with which the task's learner begins.
+    named: observations are a dict with an entry for each field.
+    """
+
+    def __init__(self, task: str, *, seed: Optional[int] = None, options: Optional[Mapping[str, Any]] = None,
+                 render_mode: Optional[str] = None, camera: Optional[str] = None, width: int = 320, height: int = 240,
+                 action_repeat: Union[int, str] = 1, center: Center = None, named: bool = False) -> None:
+        worlds = Worlds(task, 1, seed=seed, options=options, action_repeat=action_repeat, center=center,
+                        camera=camera, width=width, height=height)
+        self.observation_space, self.action_space = self._begin(worlds, render_mode, named)
+
+    def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, dict]:
+        """A new episode: that of the seed, or the next of the world's own stream. options are not used."""
+        super().reset(seed=seed)
+        self.worlds.reset(seed if seed is None else [seed])
+        return self._seen(self.pool.obs[0].copy()), {}
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict]:
+        """Observation, reward, terminated, truncated, info."""
+        pool = self.pool
+        self.worlds.act(np.asarray(action)[None])
+        pool.step()
+        return (self._seen(pool.obs[0].copy()), float(pool.reward[0]), bool(pool.terminated[0]),
+                bool(pool.truncated[0]), self._info())
+
+    def _info(self) -> dict[str, Any]:
+        pool = self.pool
+        return {"cost": float(pool.cost[0, 0]), "costs": pool.cost[0].copy(), "success": bool(pool.success[0]),
+                "status": int(pool.status[0])}
+
+    def render(self) -> Optional[np.ndarray]:
+        """A picture [height][width][3], or None without a render_mode."""
+        return self.worlds.render() if self.render_mode else None
+
+    def close(self) -> None:
+        self.pool.close()
+        super().close()
+
+
+class VectorEnv(_Named, _VectorEnv):
+    """num_envs worlds of a task, stepped together on `threads` threads. Arguments beside Env's:
+
+    autoreset_mode: "NextStep", "SameStep", "Disabled" or Gymnasium's AutoresetMode; None: as Gymnasium's own has it.
+    copy: False returns the pool's observations, which the next call overwrites.
+
+    In SameStep mode info["cost"] of worlds whose episode ended is in info["final_info"], as Gymnasium has it;
+    the attributes cost [num_envs] and costs [num_envs][cost_dim] are those of the last step in every mode.
+    """
+
+    def __init__(self, task: str, num_envs: int = 1, *, seed: Optional[int] = None,
+                 options: Optional[Mapping[str, Any]] = None, threads: int = 0, autoreset_mode: Any = None,
+                 copy: bool = True, render_mode: Optional[str] = None, camera: Optional[str] = None, width: int = 320,
+                 height: int = 240, action_repeat: Union[int, str] = 1, center: Center = None,
+                 named: bool = False) -> None:
+        mode = getattr(autoreset_mode, "value", autoreset_mode) or ("SameStep" if _OLD else "NextStep")
+        if mode not in _MODES:
+            raise ValueError(f"autoreset_mode: {', '.join(_MODES)}, not {mode}")
+        worlds = Worlds(task, num_envs, seed=seed, autoreset=_MODES[mode], options=options, threads=threads,
+                        action_repeat=action_repeat, center=center, camera=camera, width=width, height=height)
+        obs, action = self._begin(worlds, render_mode, named)
+        if _OLD:
+            _VectorEnv.__init__(self, num_envs, obs, action)
+        else:
+            self.num_envs, self.single_observation_space, self.single_action_space = num_envs, obs, action
+            self.observation_space, self.action_space = batch_space(obs, num_envs), batch_space(action, num_envs)
+        self.mode, self.copy = mode, copy
+        self.metadata["autoreset_mode"] = AutoresetMode(mode)
+        self._ended = np.zeros(num_envs, bool)
+
+    def reset(self, *, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, dict]:
+        """New episodes, everywhere or where options["reset_mask"] [num_envs] is True. seed: s names episode s + i for
+        world i, or a list; where it is None, worlds go on with the streams that they have."""
+        mask = (options or {}).get("reset_mask")
+        if mask is not None and not (isinstance(mask, np.ndarray) and mask.shape == (self.num_envs,)
+                                     and mask.dtype == bool and mask.any()):
+            raise ValueError(f"reset_mask: an array of {self.num_envs} bool, one of them True")
+        self.worlds.reset(seed, mask)
+        self._ended = np.zeros(self.num_envs, bool) if mask is None else self._ended & ~mask
+        return self._observed(), {}
+
+    def step(self, actions: Any) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict]:
+        """Observations, rewards, terminated, truncated, infos."""
+        pool = self.pool
+        self.worlds.act(actions)
+        pool.step()
+        was_ended, self._ended = self._ended, pool.terminated | pool.truncated
+        return (self._observed(), pool.reward.astype(np.float64), pool.terminated.copy(), pool.truncated.copy(),
+                self._infos(was_ended))
+
+    @property
+    def cost(self) -> np.ndarray:
+        """[num_envs] the task's cost of the last step."""
+        return self.pool.cost[:, 0].copy()
+
+    @property
+    def costs(self) -> np.ndarray:
+        """[num_envs][cost_dim] all costs of the last step."""
+        return self.pool.cost.copy()
+
+    def _observed(self) -> Any:
+        return self._seen(self.pool.obs.copy() if self.copy else self.pool.obs)
+
+    def _infos(self, was_ended: np.ndarray) -> dict[str, Any]:
+        """What Gymnasium's SyncVectorEnv makes of the infos of its parts: a reset has none."""
+        infos: dict[str, Any] = {}
+        stepped = np.ones(self.num_envs, bool)
+        if self.mode == "NextStep":
+            stepped = ~was_ended
+        elif self.mode == "SameStep" and self._ended.any():
+            stepped = ~self._ended
+            infos[_FINAL_OBS] = _objects(self.pool.final_obs, self._ended, lambda row: self._seen(row.copy()))
+            infos["final_info"] = self._final_info()
+            infos["_" + _FINAL_OBS], infos["_final_info"] = self._ended.copy(), self._ended.copy()
+        infos.update(self._rows(stepped))
+        return infos
+
+    def _rows(self, where: np.ndarray) -> dict[str, Any]:
+        """The step's info of the worlds where it is; 0 and a mask of False elsewhere."""
+        if not where.any():
+            return {}
+        pool, rows = self.pool, {}
+        for key, values in (("cost", pool.cost[:, 0].astype(np.float64)), ("success", pool.success.copy()),
+                            ("status", pool.status.astype(np.int64))):
+            values[~where] = 0
+            rows[key], rows["_" + key] = values, where.copy()
+        if _OLD:
+            rows["costs"] = _objects(pool.cost, where, np.copy)
+        else:
+            rows["costs"] = np.where(where[:, None], pool.cost, np.float32(0))
+        rows["_costs"] = where.copy()
+        return rows
+
+    def _final_info(self) -> Any:
+        if not _OLD:
+            return self._rows(self._ended)
+        pool = self.pool
+        return _objects(np.arange(self.num_envs), self._ended, lambda i: {
+            "cost": float(pool.cost[i, 0]), "costs": pool.cost[i].copy(), "success": bool(pool.success[i]),
+            "status": int(pool.status[i])})
+
+    def step_async(self, actions: Any) -> None:
+        """With step_wait(), the two halves of a step that wrappers of Gymnasium 0.x call."""
+        self._actions = actions
+
+    def step_wait(self, **_: Any) -> Any:
+        return self.step(self._actions)
+
+    def reset_async(self, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> None:
+        """With reset_wait(), the two halves of a reset that wrappers of Gymnasium 0.x call."""
+
+    def reset_wait(self, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> Any:
+        return self.reset(seed=seed, options=options)
+
+    def render(self) -> Optional[tuple[np.ndarray, ...]]:
+        """A picture of each world, or None without a render_mode."""
+        return tuple(self.worlds.render(i) for i in range(self.num_envs)) if self.render_mode else None
+
+    def close_extras(self, **_: Any) -> None:
+        self.pool.close()
+
+
+def _objects(rows: Any, where: np.ndarray, make: Any) -> np.ndarray:
+    """An array of objects: make(row) where it is, else None."""
+    out = np.full(len(where), None, object)
+    for i in np.flatnonzero(where):
+        out[i] = make(rows[i])
+    return out
+
+
+def camel(task: str) -> str:
+    """hand_over_safe_finger as HandOverSafeFinger."""
+    return "".join(word.capitalize() for word in task.split("_"))
+
+
+def env_id(task: str) -> str:
+    """The id under which Gymnasium has a task."""
+    return f"redman/{camel(task)}-v0"
+
+
+def register() -> None:
+    """Gives Gymnasium an id for every task; importing this module does it."""
+    if gymnasium is None:
+        raise ImportError("redman.gym.register: Gymnasium is not installed; Env and VectorEnv work without it")
+    for task in tasks():
+        if env_id(task) not in gymnasium.registry:
+            gymnasium.register(env_id(task), entry_point="redman.gym:Env", kwargs={"task": task},
+                               vector_entry_point=_vector_entry(task) if _OLD else "redman.gym:VectorEnv")
+
+
+def _vector_entry(task: str) -> Any:
+    """make_vec of Gymnasium 0.x passes on nothing of the spec."""
+    def make(num_envs: int = 1, max_episode_steps: Optional[int] = None, **kwargs: Any) -> VectorEnv:
+        return VectorEnv(task, num_envs, **{k: v for k, v in kwargs.items() if k != "task"})
+    return make
+
+
+if gymnasium is not None:
+    register()
