@@ -39,7 +39,6 @@ except ImportError:  # before 1.1
 
 _MODES = {"NextStep": "next_step", "SameStep": "same_step", "Disabled": "off"}
 _OLD = gymnasium is not None and gymnasium.__version__.startswith("0.")
-_FINAL_OBS = "final_observation" if _OLD else "final_obs"
 
 
 class _Named:
@@ -74,6 +73,12 @@ class _Named:
     def _seen(self, rows: np.ndarray) -> Any:
         return {name: rows[..., at] for name, at in self.fields.items()} if self.named else rows
 
+    def _told(self) -> dict[str, np.ndarray]:
+        """What a step's info has, a row for each world."""
+        pool = self.pool
+        return {"cost": pool.cost[:, 0].astype(np.float64), "costs": pool.cost.copy(), "success": pool.success.copy(),
+                "status": pool.status.astype(np.int64)}
+
 
 class Env(_Named, _Env):
     """One world of a task.
@@ -104,12 +109,7 @@ class Env(_Named, _Env):
         self.worlds.act(np.asarray(action)[None])
         pool.step()
         return (self._seen(pool.obs[0].copy()), float(pool.reward[0]), bool(pool.terminated[0]),
-                bool(pool.truncated[0]), self._info())
-
-    def _info(self) -> dict[str, Any]:
-        pool = self.pool
-        return {"cost": float(pool.cost[0, 0]), "costs": pool.cost[0].copy(), "success": bool(pool.success[0]),
-                "status": int(pool.status[0])}
+                bool(pool.truncated[0]), _of_world(self._told(), 0))
 
     def render(self) -> Optional[np.ndarray]:
         """A picture [height][width][3], or None without a render_mode."""
@@ -129,6 +129,8 @@ class VectorEnv(_Named, _VectorEnv):
     In SameStep mode info["cost"] of worlds whose episode ended is in info["final_info"], as Gymnasium has it;
     the attributes cost [num_envs] and costs [num_envs][cost_dim] are those of the last step in every mode.
     """
+
+    _old = _OLD  # infos as Gymnasium 0.x has them
 
     def __init__(self, task: str, num_envs: int = 1, *, seed: Optional[int] = None,
                  options: Optional[Mapping[str, Any]] = None, threads: int = 0, autoreset_mode: Any = None,
@@ -185,41 +187,32 @@ class VectorEnv(_Named, _VectorEnv):
 
     def _infos(self, was_ended: np.ndarray) -> dict[str, Any]:
         """What Gymnasium's SyncVectorEnv makes of the infos of its parts: a reset has none."""
+        told, ended, stepped = self._told(), self._ended, np.ones(self.num_envs, bool)
         infos: dict[str, Any] = {}
-        stepped = np.ones(self.num_envs, bool)
         if self.mode == "NextStep":
             stepped = ~was_ended
-        elif self.mode == "SameStep" and self._ended.any():
-            stepped = ~self._ended
-            infos[_FINAL_OBS] = _objects(self.pool.final_obs, self._ended, lambda row: self._seen(row.copy()))
-            infos["final_info"] = self._final_info()
-            infos["_" + _FINAL_OBS], infos["_final_info"] = self._ended.copy(), self._ended.copy()
-        infos.update(self._rows(stepped))
+        elif self.mode == "SameStep" and ended.any():
+            stepped = ~ended
+            final_obs = "final_observation" if self._old else "final_obs"
+            final_rows = self.pool.final_obs.copy()
+            infos[final_obs] = _objects(ended, lambda i: self._seen(final_rows[i]))
+            infos["final_info"] = _objects(ended, lambda i: _of_world(told, i)) if self._old else self._rows(told, ended)
+            infos["_" + final_obs], infos["_final_info"] = ended.copy(), ended.copy()
+        infos.update(self._rows(told, stepped))
         return infos
 
-    def _rows(self, where: np.ndarray) -> dict[str, Any]:
-        """The step's info of the worlds where it is; 0 and a mask of False elsewhere."""
-        if not where.any():
-            return {}
-        pool, rows = self.pool, {}
-        for key, values in (("cost", pool.cost[:, 0].astype(np.float64)), ("success", pool.success.copy()),
-                            ("status", pool.status.astype(np.int64))):
-            values[~where] = 0
-            rows[key], rows["_" + key] = values, where.copy()
-        if _OLD:
-            rows["costs"] = _objects(pool.cost, where, np.copy)
-        else:
-            rows["costs"] = np.where(where[:, None], pool.cost, np.float32(0))
-        rows["_costs"] = where.copy()
+    def _rows(self, told: dict[str, np.ndarray], where: np.ndarray) -> dict[str, Any]:
+        """The rows of the worlds where it is, with a mask; 0 elsewhere."""
+        rows: dict[str, Any] = {}
+        for key, values in told.items() if where.any() else ():
+            if self._old and values.ndim > 1:
+                rows[key] = _objects(where, lambda i, values=values: values[i])
+            elif where.all():
+                rows[key] = values
+            else:
+                rows[key] = np.where(where.reshape(-1, *[1] * (values.ndim - 1)), values, values.dtype.type(0))
+            rows["_" + key] = where.copy()
         return rows
-
-    def _final_info(self) -> Any:
-        if not _OLD:
-            return self._rows(self._ended)
-        pool = self.pool
-        return _objects(np.arange(self.num_envs), self._ended, lambda i: {
-            "cost": float(pool.cost[i, 0]), "costs": pool.cost[i].copy(), "success": bool(pool.success[i]),
-            "status": int(pool.status[i])})
 
     def step_async(self, actions: Any) -> None:
         """With step_wait(), the two halves of a step that wrappers of Gymnasium 0.x call."""
@@ -242,11 +235,16 @@ class VectorEnv(_Named, _VectorEnv):
         self.pool.close()
 
 
-def _objects(rows: Any, where: np.ndarray, make: Any) -> np.ndarray:
-    """An array of objects: make(row) where it is, else None."""
+def _of_world(told: dict[str, np.ndarray], i: int) -> dict[str, Any]:
+    """One world's info: numbers, and arrays of those that have several."""
+    return {key: values[i].item() if values.ndim == 1 else values[i] for key, values in told.items()}
+
+
+def _objects(where: np.ndarray, make: Any) -> np.ndarray:
+    """An array of objects: make(world) where it is, else None."""
     out = np.full(len(where), None, object)
     for i in np.flatnonzero(where):
-        out[i] = make(rows[i])
+        out[i] = make(i)
     return out
 
 
