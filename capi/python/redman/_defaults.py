@@ -4,9 +4,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Mapping, Optional
 
-import numpy as np
-
-from . import Pool, algos
+from ._discovery import algos
+from ._pool import Pool
+from ._rows import FloatArray
+from ._worlds import initial_mean
 
 
 @dataclass(frozen=True)
@@ -15,7 +16,7 @@ class Defaults:
 
     task: str
     action_repeat: int  # control steps of a decision
-    center: np.ndarray  # [action_dim] the pose that a new policy commands
+    center: FloatArray  # [action_dim] the pose that a new policy commands
     init_std: float  # of a new policy's actions about it
     discount: float  # of a decision: the task's per control step, to the power of action_repeat
     gae_lambda: float
@@ -34,6 +35,7 @@ class Defaults:
     kl_target: float  # of an update
     clip: float  # of the probability ratio
     max_grad_norm: float
+    trust_kl: float  # of a step that a trust region bounds
     multiplier_lr: float  # of the Lagrange multiplier, per update and unit of cost over the limit
 
 
@@ -41,9 +43,10 @@ def defaults(task: str, options: Optional[Mapping[str, Any]] = None) -> Defaults
     """What a task with such options knows of learning it."""
     with Pool(task, options=options) as pool:
         own = pool.task.defaults
-        known = {key: own.get(key, option.default) for key, option in algos()["ppo_lag"].options.items()}
+        options_of = {**algos()["trpo_lag"].options, **algos()["ppo_lag"].options}
+        known = {key: own.get(key, option.default) for key, option in options_of.items()}
         limits = {name: cost.limit for name, cost in pool.costs.items() if cost.limit >= 0}
-        center, steps = pool.initial_mean(), pool.max_steps
+        center, steps = initial_mean(pool), pool.max_steps
     repeat = int(known["action_repeat"])
     limit = limits.get("cost")
     scale = limit if _flag(known["multiplier_normalized"]) and limit else 1.0
@@ -55,7 +58,7 @@ def defaults(task: str, options: Optional[Mapping[str, Any]] = None) -> Defaults
         num_envs=64, horizon=int(known["horizon"]), episode=-(-steps // repeat), passes=int(known["passes"]),
         minibatches=int(known["minibatches"]), learning_rate=float(known["learning_rate"]),
         kl_target=float(known["kl_target"]), clip=float(known["clip"]), max_grad_norm=float(known["max_grad_norm"]),
-        multiplier_lr=float(known["multiplier_lr"]) / scale)
+        trust_kl=float(known["trust_kl"]), multiplier_lr=float(known["multiplier_lr"]) / scale)
 
 
 def _flag(value: Any) -> bool:

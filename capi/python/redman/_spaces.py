@@ -5,6 +5,8 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ._rows import Array
+
 
 class Box:
     """Arrays between two bounds."""
@@ -21,7 +23,7 @@ class Box:
         """Names the stream of sample()."""
         self._random = np.random.default_rng(seed)
 
-    def sample(self) -> np.ndarray:
+    def sample(self) -> Array:
         """Uniform between bounds; where there is none, normal about 0."""
         bounded = np.isfinite(self.low) & np.isfinite(self.high)
         low, high = np.where(bounded, self.low, 0), np.where(bounded, self.high, 0)
@@ -43,7 +45,7 @@ class Box:
         return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
 
 
-class Dict(dict):
+class Dict(dict[str, Any]):
     """Named spaces."""
 
     def seed(self, seed: Optional[int] = None) -> None:
@@ -92,9 +94,8 @@ class Env:
     def __enter__(self) -> "Env":
         return self
 
-    def __exit__(self, *_: Any) -> bool:
+    def __exit__(self, *_: Any) -> None:
         self.close()
-        return False
 
 
 class VectorEnv(Env):

@@ -5,14 +5,17 @@ pose. An action of a learner is `center` + action, cut to [-1, 1] by the pool; w
 """
 from __future__ import annotations
 
+import ctypes
 import secrets
 from typing import Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
-from . import Pool
+from ._library import check, lib
+from ._pool import Pool
+from ._rows import Array, FloatArray
 
-Center = Union[None, str, Sequence[float], "np.ndarray[Any, Any]"]
+Center = Union[None, str, Sequence[float], Array]
 Seeds = Union[None, int, Sequence[Optional[int]]]
 
 
@@ -33,7 +36,7 @@ class Worlds:
             options["action_repeat"] = 0 if action_repeat == "task" else action_repeat
         self.seed: Seeds = secrets.randbits(63) if seed is None else int(seed)
         self.pool = Pool(task, num_envs=num_envs, seed=self.seed, threads=threads, autoreset=autoreset, options=options)
-        self.picture = {"camera": camera, "width": width, "height": height}
+        self.camera, self.width, self.height = camera, width, height
         self.center = self._center(center)
         reach = np.ones(self.pool.action_dim, np.float32) if self.center is None else 1 + np.abs(self.center)
         self.action_low, self.action_high = -reach, reach
@@ -52,25 +55,30 @@ class Worlds:
     @property
     def seconds(self) -> float:
         """Of a step."""
-        return float(self.pool.control_dt)
+        return float(self.pool.control_dt) * self.pool.spec.action_repeat
 
-    def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        low, high = np.full((2, self.pool.obs_dim), np.inf, np.float32)
-        return -low, high
+    def _bounds(self) -> tuple[FloatArray, FloatArray]:
+        """[obs_dim] each: what observations keep; infinite where nothing is promised."""
+        ends = np.full((2, self.pool.obs_dim), np.nan, np.float32)
+        for i, field in enumerate(self.pool.fields.values()):
+            low, high = ctypes.c_float(), ctypes.c_float()
+            check(lib.rdm_pool_field_bounds(self.pool._p, i, ctypes.byref(low), ctypes.byref(high)))
+            ends[0, field.slice], ends[1, field.slice] = low.value, high.value
+        return np.where(np.isnan(ends[0]), -np.inf, ends[0]), np.where(np.isnan(ends[1]), np.inf, ends[1])
 
-    def _center(self, center: Center) -> Optional[np.ndarray]:
+    def _center(self, center: Center) -> Optional[FloatArray]:
         if center is None:
             return None
         if isinstance(center, str):
             if center != "initial":
                 raise ValueError(f'center: None, "initial" or [{self.pool.action_dim}] numbers, not "{center}"')
-            return self.pool.initial_mean()
+            return initial_mean(self.pool)
         given = np.array(center, np.float32)
         if given.shape != (self.pool.action_dim,) or not np.all(np.abs(given) <= 1):
             raise ValueError(f"center: [{self.pool.action_dim}] numbers in [-1, 1], not {given.shape}")
         return given
 
-    def reset(self, seed: Seeds = None, mask: Optional[np.ndarray] = None) -> None:
+    def reset(self, seed: Seeds = None, mask: Optional[Array] = None) -> None:
         """New episodes where mask says. An int is seed + i for world i; where a list has None, and after a reset
         without seeds, worlds go on with the streams that they have."""
         n = self.pool.num_envs
@@ -80,7 +88,7 @@ class Worlds:
             self.seed = None
         if isinstance(seed, (int, np.integer)):
             seed = [int(seed) + i for i in range(n)]
-        seeds = [None] * n if seed is None else list(seed)
+        seeds: list[Optional[int]] = [None] * n if seed is None else list(seed)
         if len(seeds) != n:
             raise ValueError(f"seed: one for each of {n} worlds, not {len(seeds)}")
         for s in seeds:
@@ -103,6 +111,13 @@ class Worlds:
         else:
             np.add(rows, self.center, out=self.pool.action)
 
-    def render(self, env: int = 0) -> np.ndarray:
+    def render(self, env: int = 0) -> Array:
         """A picture [height][width][3] of a world."""
-        return self.pool.render(env, **self.picture)
+        return self.pool.render(env, self.camera, self.width, self.height)
+
+
+def initial_mean(pool: Pool) -> FloatArray:
+    """[action_dim] the mean action that a new policy of redman's own starts from."""
+    out = np.empty(pool.action_dim, np.float32)
+    check(lib.rdm_pool_initial_mean(pool._p, out.ctypes.data))
+    return out

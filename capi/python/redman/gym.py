@@ -17,7 +17,9 @@ from typing import Any, Mapping, Optional, Union
 
 import numpy as np
 
-from . import tasks
+from ._discovery import tasks
+from ._pool import Pool
+from ._rows import Array
 from ._worlds import Center, Seeds, Worlds
 
 try:
@@ -37,6 +39,7 @@ try:
 except ImportError:  # before 1.1
     AutoresetMode = str
 
+Info = dict[str, Any]
 _MODES = {"NextStep": "next_step", "SameStep": "same_step", "Disabled": "off"}
 _OLD = gymnasium is not None and gymnasium.__version__.startswith("0.")
 
@@ -60,20 +63,20 @@ class _Named:
         return obs, Box(worlds.action_low, worlds.action_high, dtype=np.float32)
 
     @property
-    def pool(self) -> Any:
+    def pool(self) -> Pool:
         """The worlds as redman.Pool."""
         return self.worlds.pool
 
     @property
-    def cost_limits(self) -> np.ndarray:
+    def cost_limits(self) -> Array:
         """[cost_dim] limit on each cost's sum over an episode; NaN: none."""
         limits = np.array([c.limit for c in self.pool.costs.values()])
         return np.where(limits < 0, np.nan, limits)
 
-    def _seen(self, rows: np.ndarray) -> Any:
+    def _seen(self, rows: Array) -> Any:
         return {name: rows[..., at] for name, at in self.fields.items()} if self.named else rows
 
-    def _told(self) -> dict[str, np.ndarray]:
+    def _told(self) -> dict[str, Array]:
         """What a step's info has, a row for each world."""
         pool = self.pool
         return {"cost": pool.cost[:, 0].astype(np.float64), "costs": pool.cost.copy(), "success": pool.success.copy(),
@@ -97,13 +100,13 @@ class Env(_Named, _Env):
                         camera=camera, width=width, height=height)
         self.observation_space, self.action_space = self._begin(worlds, render_mode, named)
 
-    def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, dict]:
+    def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
         """A new episode: that of the seed, or the next of the world's own stream. options are not used."""
         super().reset(seed=seed)
         self.worlds.reset(seed if seed is None else [seed])
         return self._seen(self.pool.obs[0].copy()), {}
 
-    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict]:
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
         """Observation, reward, terminated, truncated, info."""
         pool = self.pool
         self.worlds.act(np.asarray(action)[None])
@@ -111,7 +114,7 @@ class Env(_Named, _Env):
         return (self._seen(pool.obs[0].copy()), float(pool.reward[0]), bool(pool.terminated[0]),
                 bool(pool.truncated[0]), _of_world(self._told(), 0))
 
-    def render(self) -> Optional[np.ndarray]:
+    def render(self) -> Optional[Array]:
         """A picture [height][width][3], or None without a render_mode."""
         return self.worlds.render() if self.render_mode else None
 
@@ -152,7 +155,7 @@ class VectorEnv(_Named, _VectorEnv):
         self.metadata["autoreset_mode"] = AutoresetMode(mode)
         self._ended = np.zeros(num_envs, bool)
 
-    def reset(self, *, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, dict]:
+    def reset(self, *, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
         """New episodes, everywhere or where options["reset_mask"] [num_envs] is True. seed: s names episode s + i for
         world i, or a list; where it is None, worlds go on with the streams that they have."""
         mask = (options or {}).get("reset_mask")
@@ -163,7 +166,7 @@ class VectorEnv(_Named, _VectorEnv):
         self._ended = np.zeros(self.num_envs, bool) if mask is None else self._ended & ~mask
         return self._observed(), {}
 
-    def step(self, actions: Any) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict]:
+    def step(self, actions: Any) -> tuple[Any, Array, Array, Array, Info]:
         """Observations, rewards, terminated, truncated, infos."""
         pool = self.pool
         self.worlds.act(actions)
@@ -173,19 +176,19 @@ class VectorEnv(_Named, _VectorEnv):
                 self._infos(was_ended))
 
     @property
-    def cost(self) -> np.ndarray:
+    def cost(self) -> Array:
         """[num_envs] the task's cost of the last step."""
-        return self.pool.cost[:, 0].copy()
+        return np.array(self.pool.cost[:, 0])
 
     @property
-    def costs(self) -> np.ndarray:
+    def costs(self) -> Array:
         """[num_envs][cost_dim] all costs of the last step."""
-        return self.pool.cost.copy()
+        return np.array(self.pool.cost)
 
     def _observed(self) -> Any:
         return self._seen(self.pool.obs.copy() if self.copy else self.pool.obs)
 
-    def _infos(self, was_ended: np.ndarray) -> dict[str, Any]:
+    def _infos(self, was_ended: Array) -> dict[str, Any]:
         """What Gymnasium's SyncVectorEnv makes of the infos of its parts: a reset has none."""
         told, ended, stepped = self._told(), self._ended, np.ones(self.num_envs, bool)
         infos: dict[str, Any] = {}
@@ -201,7 +204,7 @@ class VectorEnv(_Named, _VectorEnv):
         infos.update(self._rows(told, stepped))
         return infos
 
-    def _rows(self, told: dict[str, np.ndarray], where: np.ndarray) -> dict[str, Any]:
+    def _rows(self, told: dict[str, Array], where: Array) -> dict[str, Any]:
         """The rows of the worlds where it is, with a mask; 0 elsewhere."""
         rows: dict[str, Any] = {}
         for key, values in told.items() if where.any() else ():
@@ -227,7 +230,7 @@ class VectorEnv(_Named, _VectorEnv):
     def reset_wait(self, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> Any:
         return self.reset(seed=seed, options=options)
 
-    def render(self) -> Optional[tuple[np.ndarray, ...]]:
+    def render(self) -> Optional[tuple[Array, ...]]:
         """A picture of each world, or None without a render_mode."""
         return tuple(self.worlds.render(i) for i in range(self.num_envs)) if self.render_mode else None
 
@@ -235,12 +238,12 @@ class VectorEnv(_Named, _VectorEnv):
         self.pool.close()
 
 
-def _of_world(told: dict[str, np.ndarray], i: int) -> dict[str, Any]:
+def _of_world(told: dict[str, Array], i: int) -> dict[str, Any]:
     """One world's info: numbers, and arrays of those that have several."""
     return {key: values[i].item() if values.ndim == 1 else values[i] for key, values in told.items()}
 
 
-def _objects(where: np.ndarray, make: Any) -> np.ndarray:
+def _objects(where: Array, make: Any) -> Array:
     """An array of objects: make(world) where it is, else None."""
     out = np.full(len(where), None, object)
     for i in np.flatnonzero(where):

@@ -15,15 +15,17 @@ from typing import Any, ClassVar, Mapping, Optional, Union
 
 import numpy as np
 
-from . import tasks
 from ._defaults import Defaults, defaults
+from ._discovery import tasks
+from ._rows import Array
 from ._worlds import Center, Worlds
 from .gym import camel
 
 try:
     import torch
     from gymnasium.spaces import Box
-    from omnisafe.algorithms import ALGORITHM2TYPE
+    from omnisafe.algorithms import ALGORITHM2TYPE, registry
+    from omnisafe.algorithms.on_policy import NaturalPG
     from omnisafe.envs.core import CMDP, ENV_REGISTRY
     from omnisafe.envs.safety_isaac_gym_env import SafetyIsaacGymEnv
     from omnisafe.utils.config import get_default_kwargs_yaml
@@ -72,7 +74,7 @@ class Redman(CMDP):
                               action_repeat=action_repeat, center=center, width=width, height=height)
         cameras = list(self._worlds.pool.cameras)
         named = cameras[camera_id] if camera_name is None and camera_id is not None else camera_name
-        self._worlds.picture["camera"] = None if named == "track" and named not in cameras else named
+        self._worlds.camera = None if named == "track" and named not in cameras else named
         self._observation_space = Box(self._worlds.obs_low, self._worlds.obs_high, dtype=np.float32)
         self._action_space = Box(-1, 1, (self._worlds.pool.action_dim,), np.float32)
         self._metadata = {"render_modes": ["rgb_array"], "render_fps": max(1, round(1 / self._worlds.seconds))}
@@ -80,18 +82,18 @@ class Redman(CMDP):
     @property
     def max_episode_steps(self) -> int:
         """Steps of a whole episode."""
-        return self._worlds.max_steps
+        return -(-self._worlds.pool.max_steps // self._worlds.pool.spec.action_repeat)
 
     def set_seed(self, seed: int) -> None:
         """Names the episodes of the next reset: seed + i for world i."""
         self._worlds.seed = int(seed)
 
-    def reset(self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, dict]:
+    def reset(self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, dict[str, Any]]:
         """New episodes everywhere."""
         self._worlds.reset(seed)
         return self._tensor(self._worlds.pool.obs), {}
 
-    def step(self, action: Any) -> tuple[Any, Any, Any, Any, Any, dict]:
+    def step(self, action: Any) -> tuple[Any, ...]:
         """Observation, reward, cost, terminated, truncated, info; rows of one world without the axis of worlds."""
         pool = self._worlds.pool
         self._worlds.act(action.detach().cpu().numpy().reshape(pool.action.shape))
@@ -103,11 +105,11 @@ class Redman(CMDP):
             info["_final_observation"] = torch.from_numpy(ended if self._num_envs > 1 else ended[0:1])
         return (*map(self._tensor, (pool.obs, pool.reward, pool.cost[:, 0], pool.terminated, pool.truncated)), info)
 
-    def _tensor(self, rows: np.ndarray) -> Any:
+    def _tensor(self, rows: Array) -> Any:
         """A copy: OmniSafe keeps tensors of earlier steps."""
         return torch.tensor(rows if self._num_envs > 1 else rows[0], dtype=torch.float32, device=self._device)
 
-    def render(self) -> np.ndarray:
+    def render(self) -> Array:
         """A picture [height][width][3] of the first world."""
         return self._worlds.render()
 
@@ -122,29 +124,28 @@ def configs(task: str, algo: str = "PPOLag", steps: float = 2e6, options: Option
 
     steps: control steps of one world, summed over worlds. Change what the dict holds before it is given.
     """
-    d, worlds = defaults(task, options), num_envs or 64
-    kind = ALGORITHM2TYPE[algo]
-    network = {"hidden_sizes": list(d.hidden), "activation": d.activation, "lr": d.learning_rate}
+    d, worlds, kind = defaults(task, options), num_envs or 64, ALGORITHM2TYPE[algo]
     # An epoch of OmniSafe begins with a reset: whole episodes, or their ends are never seen.
     decisions = worlds * d.episode * max(1, round(d.horizon / d.episode))
-    total = max(1, round(steps / d.action_repeat / decisions)) * decisions
-    wanted = {
-        "train_cfgs": {"vector_env_nums": worlds, "total_steps": total},
+    epochs = max(1, round(steps / (d.action_repeat * decisions)))
+    wanted: dict[str, Any] = {
+        "train_cfgs": {"vector_env_nums": worlds, "total_steps": epochs * decisions},
         "algo_cfgs": {"gamma": d.discount, "cost_gamma": d.discount, "obs_normalize": d.normalize_obs},
         "env_cfgs": {"action_repeat": d.action_repeat, "center": "initial", "options": dict(options or {})},
     }
     if kind == "on-policy":
+        trusts = issubclass(registry.get(algo), NaturalPG)
         wanted["algo_cfgs"].update(
             steps_per_epoch=decisions, update_iters=d.passes, batch_size=decisions // d.minibatches,
-            target_kl=d.kl_target, lam=d.gae_lambda, lam_c=d.gae_lambda, clip=d.clip, max_grad_norm=d.max_grad_norm)
+            target_kl=d.trust_kl if trusts else d.kl_target, lam=d.gae_lambda, lam_c=d.gae_lambda, clip=d.clip,
+            max_grad_norm=d.max_grad_norm)
+        network = {"hidden_sizes": list(d.hidden), "activation": d.activation, "lr": d.learning_rate}
         wanted["model_cfgs"] = {"actor": network, "critic": dict(network), "exploration_noise_anneal": True,
                                 "std_range": [d.init_std, 0.375 * d.init_std]}
     if d.cost_limit is not None:
-        wanted["algo_cfgs"]["cost_limit"] = wanted["lagrange_cfgs"] = {"cost_limit": d.cost_limit}
         wanted["algo_cfgs"]["cost_limit"] = d.cost_limit
-        wanted["lagrange_cfgs"].update(lambda_lr=d.multiplier_lr, lambda_optimizer="SGD")
-    known = get_default_kwargs_yaml(algo, env_id(task), kind).todict()
-    return _known(wanted, known)
+        wanted["lagrange_cfgs"] = {"cost_limit": d.cost_limit, "lambda_lr": d.multiplier_lr, "lambda_optimizer": "SGD"}
+    return _known(wanted, get_default_kwargs_yaml(algo, env_id(task), kind).todict())
 
 
 def _known(wanted: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:

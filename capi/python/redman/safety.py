@@ -14,14 +14,20 @@ from typing import Any, Optional
 
 import numpy as np
 
-from . import gym, tasks
+from . import gym
 from ._defaults import Defaults, defaults
+from ._discovery import tasks
+from ._pool import Pool
+from ._rows import Array
 
 __all__ = ["Defaults", "Env", "VectorEnv", "defaults", "env_id", "register", "unregistered"]
 
 
 class _Told:
-    def _told(self) -> dict[str, np.ndarray]:
+    pool: Pool
+    cost_names: tuple[str, ...]
+
+    def _told(self) -> dict[str, Array]:
         pool = self.pool
         costs = pool.cost.T.astype(np.float64)
         return {"cost_sum": costs[0], **{f"cost_{name}": c for name, c in zip(self.cost_names[1:], costs[1:])},
@@ -31,7 +37,7 @@ class _Told:
 class Env(_Told, gym.Env):
     """One world of a task; arguments as redman.gym.Env."""
 
-    def step(self, action: Any) -> tuple[Any, float, float, bool, bool, dict]:  # type: ignore[override]
+    def step(self, action: Any) -> tuple[Any, float, float, bool, bool, gym.Info]:  # type: ignore[override]
         """Observation, reward, cost, terminated, truncated, info."""
         obs, reward, terminated, truncated, info = super().step(action)
         return obs, reward, info["cost_sum"], terminated, truncated, info
@@ -45,7 +51,7 @@ class VectorEnv(_Told, gym.VectorEnv):
     def __init__(self, task: str, num_envs: int = 1, **kwargs: Any) -> None:
         super().__init__(task, num_envs, autoreset_mode="SameStep", **kwargs)
 
-    def step(self, actions: Any) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict]:  # type: ignore[override]
+    def step(self, actions: Any) -> tuple[Any, Array, Array, Array, Array, gym.Info]:  # type: ignore[override]
         """Observations, rewards, costs, terminated, truncated, infos."""
         obs, reward, terminated, truncated, info = super().step(actions)
         return obs, reward, self.cost.astype(np.float64), terminated, truncated, info

@@ -18,6 +18,8 @@ from typing import Any, Iterable, Mapping, Optional, Union
 import numpy as np
 
 from ._defaults import Defaults, defaults
+from ._pool import Pool
+from ._rows import Array
 from ._worlds import Center, Worlds
 
 try:
@@ -54,23 +56,23 @@ class VecEnv(_VecEnv):
         self.metadata["render_fps"] = max(1, round(1 / self.worlds.seconds))
 
     @property
-    def pool(self) -> Any:
+    def pool(self) -> Pool:
         """The worlds as redman.Pool."""
         return self.worlds.pool
 
-    def reset(self) -> np.ndarray:
+    def reset(self) -> Array:
         """New episodes: those of seed(), else the next of the worlds' own streams. Options are not used."""
         self.worlds.reset(None if all(s is None for s in self._seeds) else self._seeds)
         self._reset_seeds()
         self._reset_options()
-        self.reset_infos = [{} for _ in range(self.num_envs)]
-        return self.pool.obs.copy()
+        self.reset_infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        return np.array(self.pool.obs)
 
-    def step_async(self, actions: np.ndarray) -> None:
+    def step_async(self, actions: Array) -> None:
         """Takes the actions of the step that step_wait makes."""
         self.worlds.act(actions)
 
-    def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
+    def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
         """Observations, rewards, whether episodes ended, infos."""
         pool = self.pool
         pool.step()
@@ -90,7 +92,7 @@ class VecEnv(_VecEnv):
         """Ends the worlds."""
         self.pool.close()
 
-    def get_images(self) -> list[np.ndarray]:
+    def get_images(self) -> list[Array]:
         """A picture [height][width][3] of each world."""
         return [self.worlds.render(i) for i in range(self.num_envs)]
 

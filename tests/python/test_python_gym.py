@@ -490,7 +490,7 @@ class Peers(unittest.TestCase):
                  if inspect.isclass(kind) and issubclass(kind, unittest.TestCase) and name != "Peers"]
         for path in found:
             with self.subTest(path.name):
-                peers.rerun(self, "test_gym", cases, path)
+                peers.rerun(self, "test_python_gym", cases, path)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ stubs.sb3()
 
 import redman
 from redman import gym, sb3
-from test_gym import same
+from test_python_gym import same
 
 
 class Contract(unittest.TestCase):
@@ -145,7 +145,7 @@ class Peers(unittest.TestCase):
             with self.subTest(path.name):  # 2.3 wants Gymnasium 0.28 or 0.29, later ones take 1.x
                 old = path.name.startswith("sb3-2.3")
                 name = next(name for name in (sorted(gyms) if old else sorted(gyms, reverse=True)))
-                peers.rerun(self, "test_sb3", ("Contract", "Defaults", "WithStableBaselines3"), path, gyms[name])
+                peers.rerun(self, "test_python_sb3", ("Contract", "Defaults", "WithStableBaselines3"), path, gyms[name])
 
 
 if __name__ == "__main__":

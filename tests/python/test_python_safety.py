@@ -11,7 +11,7 @@ stubs.safety()
 
 import redman
 from redman import gym, safety
-from test_gym import same
+from test_python_gym import same
 
 
 class Contract(unittest.TestCase):
@@ -105,7 +105,7 @@ class Peers(unittest.TestCase):
         found, gyms = peers.copies("safety-gymnasium"), peers.copies("gymnasium-0.28")
         if not found or not gyms:
             self.skipTest("REDMAN_PEERS names no folder with safety-gymnasium and gymnasium-0.28.1 in it")
-        peers.rerun(self, "test_safety", ("Contract", "WithSafetyGymnasium"), found[-1], gyms[-1])
+        peers.rerun(self, "test_python_safety", ("Contract", "WithSafetyGymnasium"), found[-1], gyms[-1])
 
 
 if __name__ == "__main__":
