@@ -79,7 +79,13 @@ def rerun(test, module, cases, *paths):
     test.assertNotIn("skipped", run.stderr)
 
 
+def installed(name):
+    """Whether a module is there, and is no stub (stubs.py)."""
+    spec = sys.modules[name].__spec__ if name in sys.modules else importlib.util.find_spec(name)
+    return spec is not None
+
+
 def needs(*names):
     """Skips a test where a module is not installed."""
-    missing = [name for name in names if importlib.util.find_spec(name) is None]
+    missing = [name for name in names if not installed(name)]
     return unittest.skipIf(missing, f"{', '.join(missing)}: not installed")

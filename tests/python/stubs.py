@@ -1,16 +1,16 @@
 """What the adapters take from Stable-Baselines3, OmniSafe and Safety-Gymnasium, as small as their contracts allow, for
 where none of them is installed. Each function does nothing where the real one is."""
-import importlib.util
 import sys
 import types
 
 import numpy as np
 
+import peers
 from redman import _spaces
 
 
 def _missing(name):
-    return name not in sys.modules and importlib.util.find_spec(name) is None
+    return name not in sys.modules and not peers.installed(name)
 
 
 def _module(name, **names):

@@ -15,42 +15,26 @@ peers.stand_in()
 
 import redman
 from redman import gym
+from same import same
 
 MODES = ("NextStep", "SameStep", "Disabled")
 TASKS = ("hand_over_safe_finger", "grasp", "bandit", "two_state", "point_goal1")
 SHORT = {"hand_over_safe_finger": 90, "bandit": 6, "lqr_line": 45}  # steps in which episodes end more than once
 
 
-def same(a, b):
-    """Equal in kind, type, shape and every bit."""
-    if isinstance(a, dict):
-        return isinstance(b, dict) and a.keys() == b.keys() and all(same(a[k], b[k]) for k in a)
-    if isinstance(a, np.ndarray):
-        if not isinstance(b, np.ndarray) or a.dtype != b.dtype or a.shape != b.shape:
-            return False
-        return all(map(same, a.flat, b.flat)) if a.dtype == object else a.tobytes() == b.tobytes()
-    if isinstance(a, (tuple, list)):
-        return type(a) is type(b) and len(a) == len(b) and all(map(same, a, b))
-    return type(a) is type(b) and a == b
-
-
 class Rules(unittest.TestCase):
     """What Gymnasium's env_checker asks, line by line, of our classes with or without it."""
 
-    def each(self):
+    def test_spaces(self):
         for task in TASKS:
             with self.subTest(task), gym.Env(task, seed=1) as env:
-                yield env
-
-    def test_spaces(self):
-        for env in self.each():
-            for space, width in ((env.observation_space, env.pool.obs_dim), (env.action_space, env.pool.action_dim)):
-                self.assertEqual((space.shape, space.dtype), ((width,), np.float32))
-                self.assertEqual((space.low.shape, space.high.shape), ((width,), (width,)))
-                self.assertTrue(np.all(space.low < space.high))
-            np.testing.assert_array_equal(env.action_space.low, -1)
-            np.testing.assert_array_equal(env.action_space.high, 1)
-            self.assertIn(env.action_space.sample(), env.action_space)
+                for space, width in ((env.observation_space, env.pool.obs_dim), (env.action_space, env.pool.action_dim)):
+                    self.assertEqual((space.shape, space.dtype), ((width,), np.float32))
+                    self.assertEqual((space.low.shape, space.high.shape), ((width,), (width,)))
+                    self.assertTrue(np.all(space.low < space.high))
+                np.testing.assert_array_equal(env.action_space.low, -1)
+                np.testing.assert_array_equal(env.action_space.high, 1)
+                self.assertIn(env.action_space.sample(), env.action_space)
 
     def test_reset_takes_a_seed_and_options_by_name(self):
         for kind in (gym.Env, gym.VectorEnv):
@@ -62,47 +46,51 @@ class Rules(unittest.TestCase):
             self.assertFalse(hasattr(kind, "seed") and callable(kind.seed) and "redman" in kind.seed.__module__)
 
     def test_reset_gives_an_observation_and_a_dict(self):
-        for env in self.each():
-            result = env.reset()
-            self.assertIs(type(result), tuple)
-            obs, info = result
-            self.assertIn(obs, env.observation_space)
-            self.assertIs(type(info), dict)
-            env.reset(options={})
+        for task in TASKS:
+            with self.subTest(task), gym.Env(task, seed=1) as env:
+                result = env.reset()
+                self.assertIs(type(result), tuple)
+                obs, info = result
+                self.assertIn(obs, env.observation_space)
+                self.assertIs(type(info), dict)
+                env.reset(options={})
 
     def test_a_seed_names_the_episode_and_those_after_it(self):
-        for env in self.each():
-            first, _ = env.reset(seed=123)
-            stream = copy.deepcopy(env.np_random.bit_generator.state)
-            after, _ = env.reset()
-            again, _ = env.reset(seed=123)
-            self.assertTrue(same(first, again))
-            self.assertEqual(stream, env.np_random.bit_generator.state)
-            self.assertTrue(same(after, env.reset()[0]))
-            env.reset(seed=456)
-            self.assertNotEqual(stream, env.np_random.bit_generator.state)
-            if env.pool.task.name == "hand_over_safe_finger":
-                self.assertFalse(same(first, after))
-                self.assertFalse(same(first, env.reset(seed=456)[0]))
+        for task in TASKS:
+            with self.subTest(task), gym.Env(task, seed=1) as env:
+                first, _ = env.reset(seed=123)
+                stream = copy.deepcopy(env.np_random.bit_generator.state)
+                after, _ = env.reset()
+                again, _ = env.reset(seed=123)
+                self.assertTrue(same(first, again))
+                self.assertEqual(stream, env.np_random.bit_generator.state)
+                self.assertTrue(same(after, env.reset()[0]))
+                env.reset(seed=456)
+                self.assertNotEqual(stream, env.np_random.bit_generator.state)
+                if task == "hand_over_safe_finger":
+                    self.assertFalse(same(first, after))
+                    self.assertFalse(same(first, env.reset(seed=456)[0]))
 
     def test_a_step_gives_five_values_of_the_right_types(self):
-        for env in self.each():
-            env.reset(seed=1)
-            result = env.step(env.action_space.sample())
-            self.assertIs(type(result), tuple)
-            obs, reward, terminated, truncated, info = result
-            self.assertIn(obs, env.observation_space)
-            self.assertEqual(list(map(type, (reward, terminated, truncated, info))), [float, bool, bool, dict])
-            self.assertTrue(np.isfinite(reward))
+        for task in TASKS:
+            with self.subTest(task), gym.Env(task, seed=1) as env:
+                env.reset(seed=1)
+                result = env.step(env.action_space.sample())
+                self.assertIs(type(result), tuple)
+                obs, reward, terminated, truncated, info = result
+                self.assertIn(obs, env.observation_space)
+                self.assertEqual(list(map(type, (reward, terminated, truncated, info))), [float, bool, bool, dict])
+                self.assertTrue(np.isfinite(reward))
 
     def test_a_step_is_deterministic(self):
-        for env in self.each():
-            env.action_space.seed(5)
-            action = env.action_space.sample()
-            env.reset(seed=123)
-            one = env.step(action)
-            env.reset(seed=123)
-            self.assertTrue(same(one, env.step(action)))
+        for task in TASKS:
+            with self.subTest(task), gym.Env(task, seed=1) as env:
+                env.action_space.seed(5)
+                action = env.action_space.sample()
+                env.reset(seed=123)
+                one = env.step(action)
+                env.reset(seed=123)
+                self.assertTrue(same(one, env.step(action)))
 
     def test_what_was_given_stays(self):
         with gym.Env("hand_over_safe_finger") as env:
@@ -251,7 +239,7 @@ class Autoreset(unittest.TestCase):
                             self.assertTrue(all(same(a, b) for a, b in zip(final, other[5])))
                         if mode == "Disabled" and ended.any():
                             self.assertTrue(same(envs.reset(options={"reset_mask": ended})[0], loop.reset(None, ended)))
-                    self.assertGreater(ends, 4)
+                    self.assertGreaterEqual(ends, 4)
 
     def test_disabled_refuses_a_step_of_an_ended_world(self):
         with gym.VectorEnv("bandit", 2, autoreset_mode="Disabled") as envs:
@@ -313,7 +301,8 @@ class Decisions(unittest.TestCase):
             pose = about.worlds.center
             self.assertGreater(np.abs(pose).max(), 0.1)
             np.testing.assert_array_equal(about.action_space.low, -about.action_space.high)
-            self.assertTrue(np.all(about.action_space.high + pose >= 1) and np.all(about.action_space.low + pose <= -1))
+            self.assertGreaterEqual((about.action_space.high + pose).min(), 1 - 1e-6)  # the whole range is in reach
+            self.assertLessEqual((about.action_space.low + pose).max(), -1 + 1e-6)
             plain.reset(seed=1)
             about.reset(seed=1)
             self.assertTrue(same(plain.step(pose), about.step(np.zeros_like(pose))))

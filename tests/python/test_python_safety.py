@@ -11,7 +11,7 @@ stubs.safety()
 
 import redman
 from redman import gym, safety
-from test_python_gym import same
+from same import same
 
 
 class Contract(unittest.TestCase):
@@ -50,7 +50,7 @@ class Contract(unittest.TestCase):
                     else:
                         self.assertEqual(info["cost_sum"][i], told["cost_sum"])
                     self.assertTrue(same(obs[i], last))
-            self.assertGreater(ends, 3)
+            self.assertGreaterEqual(ends, 3)
 
     def test_every_task_has_an_id(self):
         from gymnasium.envs.registration import registry

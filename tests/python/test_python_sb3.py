@@ -12,7 +12,7 @@ stubs.sb3()
 
 import redman
 from redman import gym, sb3
-from test_python_gym import same
+from same import same
 
 
 class Contract(unittest.TestCase):
@@ -39,7 +39,7 @@ class Contract(unittest.TestCase):
                     self.assertTrue(same(infos[i]["terminal_observation"], last))
                     last, _ = env.reset()
                 self.assertTrue(same(obs[i], last))
-        self.assertGreater(ends, 3)
+        self.assertGreaterEqual(ends, 3)
 
     def test_seeds_hold_for_one_reset(self):
         vec = sb3.VecEnv("hand_over_safe_finger", 2)

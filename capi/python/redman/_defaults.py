@@ -7,7 +7,6 @@ from typing import Any, Mapping, Optional
 from ._discovery import algos
 from ._pool import Pool
 from ._rows import FloatArray
-from ._worlds import initial_mean
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ def defaults(task: str, options: Optional[Mapping[str, Any]] = None) -> Defaults
         options_of = {**algos()["trpo_lag"].options, **algos()["ppo_lag"].options}
         known = {key: own.get(key, option.default) for key, option in options_of.items()}
         limits = {name: cost.limit for name, cost in pool.costs.items() if cost.limit >= 0}
-        center, steps = initial_mean(pool), pool.max_steps
+        center, steps = pool.initial_mean, pool.max_steps
     repeat = int(known["action_repeat"])
     limit = limits.get("cost")
     scale = limit if _flag(known["multiplier_normalized"]) and limit else 1.0

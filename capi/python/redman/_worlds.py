@@ -5,13 +5,11 @@ pose. An action of a learner is `center` + action, cut to [-1, 1] by the pool; w
 """
 from __future__ import annotations
 
-import ctypes
 import secrets
 from typing import Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
-from ._library import check, lib
 from ._pool import Pool
 from ._rows import Array, FloatArray
 
@@ -40,7 +38,8 @@ class Worlds:
         self.center = self._center(center)
         reach = np.ones(self.pool.action_dim, np.float32) if self.center is None else 1 + np.abs(self.center)
         self.action_low, self.action_high = -reach, reach
-        self.obs_low, self.obs_high = self._bounds()
+        low, self.obs_high = self.pool.bounds
+        self.obs_low = np.where(low == self.obs_high, low - 1, low)  # checkers take no box without width
 
     @property
     def fields(self) -> dict[str, slice]:
@@ -57,22 +56,13 @@ class Worlds:
         """Of a step."""
         return float(self.pool.control_dt) * self.pool.spec.action_repeat
 
-    def _bounds(self) -> tuple[FloatArray, FloatArray]:
-        """[obs_dim] each: what observations keep; infinite where nothing is promised."""
-        ends = np.full((2, self.pool.obs_dim), np.nan, np.float32)
-        for i, field in enumerate(self.pool.fields.values()):
-            low, high = ctypes.c_float(), ctypes.c_float()
-            check(lib.rdm_pool_field_bounds(self.pool._p, i, ctypes.byref(low), ctypes.byref(high)))
-            ends[0, field.slice], ends[1, field.slice] = low.value, high.value
-        return np.where(np.isnan(ends[0]), -np.inf, ends[0]), np.where(np.isnan(ends[1]), np.inf, ends[1])
-
     def _center(self, center: Center) -> Optional[FloatArray]:
         if center is None:
             return None
         if isinstance(center, str):
             if center != "initial":
                 raise ValueError(f'center: None, "initial" or [{self.pool.action_dim}] numbers, not "{center}"')
-            return initial_mean(self.pool)
+            return self.pool.initial_mean
         given = np.array(center, np.float32)
         if given.shape != (self.pool.action_dim,) or not np.all(np.abs(given) <= 1):
             raise ValueError(f"center: [{self.pool.action_dim}] numbers in [-1, 1], not {given.shape}")
@@ -114,10 +104,3 @@ class Worlds:
     def render(self, env: int = 0) -> Array:
         """A picture [height][width][3] of a world."""
         return self.pool.render(env, self.camera, self.width, self.height)
-
-
-def initial_mean(pool: Pool) -> FloatArray:
-    """[action_dim] the mean action that a new policy of redman's own starts from."""
-    out = np.empty(pool.action_dim, np.float32)
-    check(lib.rdm_pool_initial_mean(pool._p, out.ctypes.data))
-    return out

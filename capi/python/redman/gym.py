@@ -235,7 +235,14 @@ class VectorEnv(_Named, _VectorEnv):
         return tuple(self.worlds.render(i) for i in range(self.num_envs)) if self.render_mode else None
 
     def close_extras(self, **_: Any) -> None:
-        self.pool.close()
+        if hasattr(self, "worlds"):  # it is also called for what was never made
+            self.pool.close()
+
+    def __enter__(self) -> VectorEnv:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
 
 def _of_world(told: dict[str, Array], i: int) -> dict[str, Any]:

@@ -5,20 +5,21 @@
                            custom_cfgs=redman.omnisafe.configs("hand_over_safe_finger", steps=2e6))
     agent.learn()
 
-Every task has the id Redman<Task>-v0. The four ids of OmniSafe's tasks on a GPU (ShadowHandOverSafeFinger, ...) are
-answered here too, so that its published settings for them apply as they stand. env_cfgs take `options` of the task,
-`action_repeat`, `center` and `threads`, as redman.gym has them. Cost is the task's own, column 0.
+Every task has the id Redman<Task>-v0, whose steps are the task's own decisions about its start pose. The four ids of
+OmniSafe's tasks on a GPU (ShadowHandOverSafeFinger, ...) are answered here too, with control steps and plain actions, so
+that its published settings for them apply as they stand. register() adds ids with options; so do env_cfgs where an
+algorithm has them. Cost is the task's own, column 0.
 """
 from __future__ import annotations
 
-from typing import Any, ClassVar, Mapping, Optional, Union
+from typing import Any, ClassVar, Mapping, Optional
 
 import numpy as np
 
 from ._defaults import Defaults, defaults
 from ._discovery import tasks
 from ._rows import Array
-from ._worlds import Center, Worlds
+from ._worlds import Worlds
 from .gym import camel
 
 try:
@@ -32,7 +33,7 @@ try:
 except ImportError as error:
     raise ImportError(f"redman.omnisafe needs OmniSafe and what it needs: {error}") from error
 
-__all__ = ["Defaults", "Redman", "configs", "defaults", "env_id"]
+__all__ = ["Defaults", "Redman", "configs", "defaults", "env_id", "register"]
 
 _GPU_TASKS = {
     "ShadowHandOverSafeFinger": "hand_over_safe_finger",
@@ -47,31 +48,34 @@ def env_id(task: str) -> str:
     return f"Redman{camel(task)}-v0"
 
 
-_TASKS = {**{env_id(task): task for task in tasks()}, **{k: v for k, v in _GPU_TASKS.items() if v in tasks()}}
+_Settings = dict[str, Any]
+_DECISIONS: _Settings = {"action_repeat": "task", "center": "initial"}
+_IDS: dict[str, tuple[str, _Settings]] = {
+    **{env_id(task): (task, _DECISIONS) for task in tasks()},
+    **{name: (task, {}) for name, task in _GPU_TASKS.items() if task in tasks()}}
 
 
 class Redman(CMDP):
     """num_envs worlds of a task; an ended episode begins anew in the same step.
 
-    The other arguments are those of redman.gym.VectorEnv; camera_name and camera_id are what OmniSafe's evaluator
-    gives (its default "track" is the task's first camera). Actions are bounded by -1 and 1 about `center` too.
+    settings: options, action_repeat, center, threads, as redman.gym.VectorEnv has them, over those of the id.
+    camera_name and camera_id are what OmniSafe's evaluator gives (its default "track" is the task's first camera).
+    Actions are bounded by -1 and 1 about `center` too.
     """
 
     need_auto_reset_wrapper = False
     need_time_limit_wrapper = False
-    _support_envs: ClassVar[list[str]] = list(_TASKS)
+    _support_envs: ClassVar[list[str]] = list(_IDS)
 
-    def __init__(self, env_id: str, num_envs: int = 1, device: Any = "cpu", *,
-                 options: Optional[Mapping[str, Any]] = None, action_repeat: Union[int, str] = 1,
-                 center: Center = None, threads: int = 0, render_mode: Optional[str] = None,
+    def __init__(self, env_id: str, num_envs: int = 1, device: Any = "cpu", *, render_mode: Optional[str] = None,
                  camera_name: Optional[str] = None, camera_id: Optional[int] = None, width: int = 256,
-                 height: int = 256) -> None:
+                 height: int = 256, **settings: Any) -> None:
         super().__init__(env_id)
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f'render_mode: None or "rgb_array", not "{render_mode}"')
+        task, own = _IDS[env_id]
         self._num_envs, self._device = num_envs, torch.device(device)
-        self._worlds = Worlds(_TASKS[env_id], num_envs, autoreset="same_step", options=options, threads=threads,
-                              action_repeat=action_repeat, center=center, width=width, height=height)
+        self._worlds = Worlds(task, num_envs, autoreset="same_step", width=width, height=height, **{**own, **settings})
         cameras = list(self._worlds.pool.cameras)
         named = cameras[camera_id] if camera_name is None and camera_id is not None else camera_name
         self._worlds.camera = None if named == "track" and named not in cameras else named
@@ -117,21 +121,31 @@ class Redman(CMDP):
         self._worlds.pool.close()
 
 
-def configs(task: str, algo: str = "PPOLag", steps: float = 2e6, options: Optional[Mapping[str, Any]] = None,
-            num_envs: Optional[int] = None) -> dict[str, Any]:
-    """custom_cfgs with which an algorithm of OmniSafe learns a task as redman's own would: its rate of decisions,
-    start pose, first deviation, discount, limit, normalisation, networks and rates, as far as the algorithm has them.
+def register(name: str, task: str, **settings: Any) -> str:
+    """An id of your own for a task with settings: action_repeat and center of the task's own unless given, options,
+    threads. Returns it."""
+    if "/" in name or name in _IDS:
+        raise ValueError(f"{name}: an id without / that is not taken")
+    _IDS[name] = task, {**_DECISIONS, **settings}
+    Redman._support_envs.append(name)  # the registry holds this list
+    return name
 
-    steps: control steps of one world, summed over worlds. Change what the dict holds before it is given.
+
+def configs(task: str, algo: str = "PPOLag", steps: float = 2e6, options: Optional[Mapping[str, Any]] = None,
+            num_envs: int = 64) -> dict[str, Any]:
+    """custom_cfgs with which an algorithm of OmniSafe learns Redman<Task>-v0 as redman's own would: discount of its
+    decisions, first deviation, limit, normalisation, networks and rates, as far as the algorithm has them.
+
+    steps: control steps of one world, summed over worlds. options: of the task; ids with other ones come of
+    register(). Change what the dict holds before it is given.
     """
-    d, worlds, kind = defaults(task, options), num_envs or 64, ALGORITHM2TYPE[algo]
+    d, kind = defaults(task, options), ALGORITHM2TYPE[algo]
     # An epoch of OmniSafe begins with a reset: whole episodes, or their ends are never seen.
-    decisions = worlds * d.episode * max(1, round(d.horizon / d.episode))
+    decisions = num_envs * d.episode * -(-2 * d.horizon // d.episode)
     epochs = max(1, round(steps / (d.action_repeat * decisions)))
     wanted: dict[str, Any] = {
-        "train_cfgs": {"vector_env_nums": worlds, "total_steps": epochs * decisions},
+        "train_cfgs": {"vector_env_nums": num_envs, "total_steps": epochs * decisions},
         "algo_cfgs": {"gamma": d.discount, "cost_gamma": d.discount, "obs_normalize": d.normalize_obs},
-        "env_cfgs": {"action_repeat": d.action_repeat, "center": "initial", "options": dict(options or {})},
     }
     if kind == "on-policy":
         trusts = issubclass(registry.get(algo), NaturalPG)
@@ -150,7 +164,7 @@ def configs(task: str, algo: str = "PPOLag", steps: float = 2e6, options: Option
 
 def _known(wanted: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
     """The settings that an algorithm has."""
-    return {key: _known(value, known[key]) if isinstance(value, dict) and key != "env_cfgs" else value
+    return {key: _known(value, known[key]) if isinstance(value, dict) else value
             for key, value in wanted.items() if key in known}
 
 
