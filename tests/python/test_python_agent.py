@@ -113,7 +113,7 @@ class OfAPool(unittest.TestCase):
         self.assertEqual(agent.policy().info.task, TASK)
         self.assertEqual(len(epoch.cost), pool.cost_dim)
         for limits, expected in ((5, [5.0] + [None] * 7), ({"drop": 2}, [40.0] + [None] * 6 + [2.0]),
-                                 ([None, 1, None, None, None, None, None, 3], [None, 1.0] + [None] * 5 + [3.0])):
+                                 (None, [40.0] + [None] * 7), ([None, 1, None, None, None, None, None, 3], [None, 1.0] + [None] * 5 + [3.0])):
             self.assertEqual(redman.Agent(pool, cost_limits=limits).cost_limits, expected)
         with self.assertRaisesRegex(redman.NotFoundError, "drop"):
             redman.Agent(pool, cost_limits={"dropped": 2})
@@ -126,6 +126,9 @@ class OfAPool(unittest.TestCase):
         agent, _, _ = trained()
         agent.set(learning_rate=1e-5)
         self.assertEqual(agent.options["learning_rate"], 1e-5)
+        agent.set(cost_limit=7)
+        self.assertEqual(agent.cost_limits[0], 7)
+        self.assertEqual(copy.deepcopy(agent).cost_limits[0], 7)
         with self.assertRaises(redman.StateError):
             agent.set(horizon=9)
         with self.assertRaises(redman.NotFoundError):
@@ -194,6 +197,43 @@ class Interrupted(unittest.TestCase):
         short.rollout(pool)
         self.assertEqual(agent.save(), before)
         agent.act(pool.obs)  # the horizon begins anew
+
+    def test_signals_at_any_moment(self):
+        pool = redman.Pool("bandit", 4)
+        pool.reset()
+        agent = redman.Agent(pool, options={"horizon": 1})
+        armed, over = [], threading.Event()
+
+        def hear(*_):
+            if armed:
+                armed.clear()
+                raise KeyboardInterrupt
+
+        def pester():
+            random = np.random.default_rng(1)
+            while not over.wait(random.uniform(0, 0.01)):
+                os.kill(os.getpid(), signal.SIGINT)
+
+        before = signal.signal(signal.SIGINT, hear)
+        thread = threading.Thread(target=pester)
+        thread.start()
+        heard = 0
+        end = time.monotonic() + 3
+        while time.monotonic() < end:
+            try:
+                armed.append(True)
+                while time.monotonic() < end:
+                    agent.rollout(pool)
+            except KeyboardInterrupt:
+                heard += 1
+        armed.clear()
+        over.set()
+        thread.join()
+        signal.signal(signal.SIGINT, before)
+        epochs = agent.rollout(pool).epoch
+        self.assertGreater(heard, 20)
+        self.assertGreater(epochs, heard // 10)
+        self.assertEqual(threading.active_count(), 1)  # nothing waits for ever
 
     def test_a_cancel_that_comes_too_late_is_forgotten(self):
         agent, pool, _ = trained()

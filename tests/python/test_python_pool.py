@@ -9,6 +9,7 @@ import subprocess
 import threading
 import tracemalloc
 import unittest
+import weakref
 import zlib
 
 import numpy as np
@@ -188,7 +189,7 @@ class Shown(unittest.TestCase):
         png = played()._repr_png_()
         self.assertEqual(png[:8], b"\x89PNG\r\n\x1a\n")
         width, height = struct.unpack(">II", png[16:24])
-        self.assertEqual((width, height), (4 * 240, 180))
+        self.assertEqual((width, height), (4 * 240 + 3 * 2, 180))
         size = struct.unpack(">I", png[33:37])[0]
         self.assertEqual(len(zlib.decompress(png[41:41 + size])), height * (3 * width + 1))
 
@@ -235,10 +236,15 @@ class Shown(unittest.TestCase):
         self.assertFalse(sensors.points.flags.writeable)
         expected = sensors.points.copy()
         points = sensors.points[1:]
+        handle = weakref.ref(pool._handle)
         pool.close()
         del pool, sensors
         gc.collect()
         np.testing.assert_array_equal(points, expected[1:])
+        self.assertIsNotNone(handle())  # the array has it
+        del points
+        gc.collect()
+        self.assertIsNone(handle())
         self.assertIsNone(redman.Pool("grasp").sensors.points)
 
 

@@ -1,8 +1,10 @@
 """train, evaluate, curve: what the command-line tool does, to the byte."""
 import json
 import os
+import re
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import unittest
@@ -13,6 +15,7 @@ import numpy as np
 
 import redman
 
+TREE = Path(__file__).resolve().parents[2]
 TOOL = os.environ.get("REDMAN_TOOL")
 SMALL = {"task": "hand_over_safe_finger", "steps": 16000, "seed": 3, "envs": 16, "eval_every": 5, "progress": False}
 
@@ -117,6 +120,18 @@ class Curves(unittest.TestCase):
         tree = xml.etree.ElementTree.fromstring(run._repr_svg_())
         lines = [node for node in tree.iter() if node.tag.endswith("polyline")]
         self.assertEqual(len(lines), 2)
+
+
+class Pages(unittest.TestCase):
+    def test_what_the_pages_show_runs(self):
+        for page in ("README.md", "capi/python/README.md"):
+            blocks = re.findall(r"```python\n(.*?)```", (TREE / page).read_text(encoding="utf-8"), re.S)
+            self.assertTrue(blocks, page)
+            with tempfile.TemporaryDirectory() as folder:
+                for block in blocks:
+                    run = subprocess.run([sys.executable, "-c", block.replace("1e6", "4e3")], cwd=folder,
+                                         capture_output=True, text=True)
+                    self.assertEqual(run.returncode, 0, run.stderr)
 
 
 class Evaluations(unittest.TestCase):

@@ -1,9 +1,11 @@
 """Agent: one algorithm that acts and learns, on the worlds of a pool or on a world of your own."""
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import threading
+import time
 from ctypes import byref, c_size_t
 from queue import SimpleQueue
 from typing import Any, Callable, Iterator, Mapping, MutableMapping, Optional, Sequence, Union
@@ -159,6 +161,7 @@ class Agent:
         go: SimpleQueue[None] = SimpleQueue()
         done = threading.Lock()
         given_up: list[bool] = []
+        ended: list[bool] = []
         failed: list[Error] = []
 
         def work() -> None:
@@ -168,6 +171,7 @@ class Agent:
                 if code:
                     failed.append(self._fail(code))  # the text is this thread's
             finally:
+                ended.append(True)
                 done.release()
 
         thread = threading.Thread(target=work, name="redman", daemon=True)
@@ -177,11 +181,11 @@ class Agent:
             go.put(None)
             done.acquire()
         except BaseException:
-            given_up.append(True)  # a thread that has not begun will not
-            if thread.ident is not None:
+            given_up.append(True)
+            go.put(None)
+            if thread.ident is not None:  # else it finds that this was given up
                 lib.rdm_agent_cancel(self._a)
-                go.put(None)
-                self._wait(done)
+                self._wait(ended)
                 if not failed:
                     self._renew()
             raise
@@ -189,14 +193,11 @@ class Agent:
             raise failed[0]
 
     @staticmethod
-    def _wait(done: threading.Lock) -> None:
+    def _wait(ended: list[bool]) -> None:
         """For the end of a call that was cancelled, which more signals do not hasten."""
-        while True:
-            try:
-                done.acquire()
-                return
-            except BaseException:
-                continue
+        while not ended:
+            with contextlib.suppress(BaseException):
+                time.sleep(0.001)
 
     def _renew(self) -> None:
         """The same agent without the cancel that came too late to be heard."""
@@ -226,11 +227,11 @@ class Agent:
 
     @property
     def cost_limits(self) -> list[Optional[float]]:
-        """The limit of each cost column, None where there is none."""
-        said = self._config["cost_limits"]
-        if said is None:
-            said = [float(self.options["cost_limit"])] + [-1.0] * (self.cost_dim - 1)
-        return [None if limit < 0 else limit for limit in said[:self.cost_dim]]
+        """The limit of each cost column, None where there is none; option cost_limit is that of column 0."""
+        said = list(self._config["cost_limits"] or [-1.0] * self.cost_dim)
+        if said:
+            said[0] = float(self.options.get("cost_limit", said[0]))
+        return [None if limit < 0 else limit for limit in said]
 
     @property
     def tensors(self) -> _AgentTensors:

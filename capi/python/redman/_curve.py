@@ -16,7 +16,7 @@ from ._error import FormatError, MissingFileError
 Column = npt.NDArray[np.float64]
 # Okabe and Ito's colours, told apart by most eyes.
 _COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555")
-_WIDTH, _HEIGHT, _LEFT, _TOP, _RIGHT, _BOTTOM = 300, 190, 56, 30, 14, 38  # of a panel, and around it
+_WIDTH, _HEIGHT, _LEFT, _TOP, _RIGHT, _BOTTOM = 300, 190, 56, 30, 20, 54  # of a panel, and around it
 
 
 class Curve(Mapping[str, Column]):
@@ -140,10 +140,11 @@ def _panel(title: str, column: str, curves: Sequence[Curve], limit: Optional[flo
     values = np.concatenate([y for _, _, y in drawn] + [np.array([limit] if limit is not None else [])])
     steps = np.concatenate([x for _, x, _ in drawn] + [np.zeros(1)])
     ticks = _ticks(float(values.min()), float(values.max())) if len(values) else [0.0, 1.0]
-    across = _ticks(0.0, float(steps.max()))
+    most = max(float(steps.max()), 1.0)
+    across = [x for x in _ticks(0.0, most) if x <= most]
 
     def x_of(x: Any) -> Any:
-        return at + _LEFT + (x - across[0]) / (across[-1] - across[0]) * _WIDTH
+        return at + _LEFT + x / most * _WIDTH
 
     def y_of(y: Any) -> Any:
         return _TOP + _HEIGHT - (y - ticks[0]) / (ticks[-1] - ticks[0]) * _HEIGHT
@@ -155,6 +156,7 @@ def _panel(title: str, column: str, curves: Sequence[Curve], limit: Optional[flo
                    f'<text x="{left - 6}" y="{y_of(y) + 4:.1f}" text-anchor="end">{_number(y)}</text>')
     for x in across:
         out.append(f'<text x="{x_of(x):.1f}" y="{bottom + 16}" text-anchor="middle">{_number(x)}</text>')
+    out.append(f'<text x="{left + _WIDTH / 2}" y="{bottom + 32}" text-anchor="middle">control steps</text>')
     if limit is not None:
         out.append(f'<path d="M{left} {y_of(limit):.1f}H{right}" stroke="#555" stroke-dasharray="5 4"/>')
     for number, xs, ys in drawn:

@@ -320,7 +320,7 @@ class Pool:
             pictures = [self.render(env, width=240, height=180) for env in range(min(4, self.num_envs))]
         except Error:
             return None
-        return _png.encode(np.concatenate(pictures, axis=1))
+        return _png.row(pictures)
 
     @property
     def shapes(self) -> list[_abi.Shape]:
