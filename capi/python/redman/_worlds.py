@@ -34,12 +34,28 @@ class Worlds:
             options["action_repeat"] = 0 if action_repeat == "task" else action_repeat
         self.seed: Seeds = secrets.randbits(63) if seed is None else int(seed)
         self.pool = Pool(task, num_envs=num_envs, seed=self.seed, threads=threads, autoreset=autoreset, options=options)
+        self._take_rows()
         self.camera, self.width, self.height = camera, width, height
         self.center = self._center(center)
         reach = np.ones(self.pool.action_dim, np.float32) if self.center is None else 1 + np.abs(self.center)
         self.action_low, self.action_high = -reach, reach
         low, self.obs_high = self.pool.bounds
         self.obs_low = np.where(low == self.obs_high, low - 1, low)  # checkers take no box without width
+
+    def _take_rows(self) -> None:
+        """The pool's rows, which stay where they are, without a look-up for each."""
+        pool = self.pool
+        self.obs, self.final_obs, self.action, self.reward = pool.obs, pool.final_obs, pool.action, pool.reward
+        self.cost, self.terminated, self.truncated = pool.cost, pool.terminated, pool.truncated
+        self.success, self.status = pool.success, pool.status
+
+    def __getstate__(self) -> dict[str, Any]:
+        rows = ("obs", "final_obs", "action", "reward", "cost", "terminated", "truncated", "success", "status")
+        return {name: value for name, value in self.__dict__.items() if name not in rows}
+
+    def __setstate__(self, saved: dict[str, Any]) -> None:
+        self.__dict__.update(saved)
+        self._take_rows()
 
     @property
     def fields(self) -> dict[str, slice]:
@@ -93,13 +109,19 @@ class Worlds:
 
     def act(self, actions: Any) -> None:
         """Writes a learner's actions [num_envs][action_dim] for the next step."""
-        rows = np.asarray(actions, np.float32)
-        if rows.shape != self.pool.action.shape:
-            raise ValueError(f"action: shape {self.pool.action.shape}, not {rows.shape}")
+        self._write(self.action, np.asarray(actions, np.float32))
+
+    def act_alone(self, action: Any) -> None:
+        """The same for the one world there is: [action_dim]."""
+        self._write(self.action[0], np.asarray(action, np.float32))
+
+    def _write(self, to: FloatArray, rows: FloatArray) -> None:
+        if rows.shape != to.shape:
+            raise ValueError(f"action: shape {to.shape}, not {rows.shape}")
         if self.center is None:
-            self.pool.action[...] = rows
+            to[...] = rows
         else:
-            np.add(rows, self.center, out=self.pool.action)
+            np.add(rows, self.center, out=to)
 
     def render(self, env: int = 0) -> Array:
         """A picture [height][width][3] of a world."""

@@ -17,6 +17,7 @@ from typing import Any, Mapping, Optional, Union
 
 import numpy as np
 
+from ._defaults import Defaults, defaults
 from ._discovery import tasks
 from ._pool import Pool
 from ._rows import Array
@@ -38,6 +39,8 @@ try:
     from gymnasium.vector import AutoresetMode
 except ImportError:  # before 1.1
     AutoresetMode = str
+
+__all__ = ["Defaults", "Env", "VectorEnv", "camel", "defaults", "env_id", "register"]
 
 Info = dict[str, Any]
 _MODES = {"NextStep": "next_step", "SameStep": "same_step", "Disabled": "off"}
@@ -77,10 +80,16 @@ class _Named:
         return {name: rows[..., at] for name, at in self.fields.items()} if self.named else rows
 
     def _told(self) -> dict[str, Array]:
-        """What a step's info has, a row for each world."""
-        pool = self.pool
-        return {"cost": pool.cost[:, 0].astype(np.float64), "costs": pool.cost.copy(), "success": pool.success.copy(),
-                "status": pool.status.astype(np.int64)}
+        """What infos say of a step, a row for each world."""
+        w = self.worlds
+        return {"cost": w.cost[:, 0].astype(np.float64), "costs": w.cost.copy(), "success": w.success.copy(),
+                "status": w.status.astype(np.int64)}
+
+    def _told_of(self, i: int) -> Info:
+        """The same of one world."""
+        w = self.worlds
+        return {"cost": w.cost.item(i, 0), "costs": w.cost[i].copy(), "success": w.success.item(i),
+                "status": w.status.item(i)}
 
 
 class Env(_Named, _Env):
@@ -104,15 +113,15 @@ class Env(_Named, _Env):
         """A new episode: that of the seed, or the next of the world's own stream. options are not used."""
         super().reset(seed=seed)
         self.worlds.reset(seed if seed is None else [seed])
-        return self._seen(self.pool.obs[0].copy()), {}
+        return self._seen(self.worlds.obs[0].copy()), {}
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
         """Observation, reward, terminated, truncated, info."""
-        pool = self.pool
-        self.worlds.act(np.asarray(action)[None])
-        pool.step()
-        return (self._seen(pool.obs[0].copy()), float(pool.reward[0]), bool(pool.terminated[0]),
-                bool(pool.truncated[0]), _of_world(self._told(), 0))
+        w = self.worlds
+        w.act_alone(action)
+        w.pool.step()
+        return (self._seen(w.obs[0].copy()), w.reward.item(0), w.terminated.item(0), w.truncated.item(0),
+                self._told_of(0))
 
     def render(self) -> Optional[Array]:
         """A picture [height][width][3], or None without a render_mode."""
@@ -168,53 +177,57 @@ class VectorEnv(_Named, _VectorEnv):
 
     def step(self, actions: Any) -> tuple[Any, Array, Array, Array, Info]:
         """Observations, rewards, terminated, truncated, infos."""
-        pool = self.pool
-        self.worlds.act(actions)
-        pool.step()
-        was_ended, self._ended = self._ended, pool.terminated | pool.truncated
-        return (self._observed(), pool.reward.astype(np.float64), pool.terminated.copy(), pool.truncated.copy(),
+        w = self.worlds
+        w.act(actions)
+        w.pool.step()
+        was_ended, self._ended = self._ended, w.terminated | w.truncated
+        return (self._observed(), w.reward.astype(np.float64), w.terminated.copy(), w.truncated.copy(),
                 self._infos(was_ended))
 
     @property
     def cost(self) -> Array:
         """[num_envs] the task's cost of the last step."""
-        return np.array(self.pool.cost[:, 0])
+        return np.array(self.worlds.cost[:, 0])
 
     @property
     def costs(self) -> Array:
         """[num_envs][cost_dim] all costs of the last step."""
-        return np.array(self.pool.cost)
+        return np.array(self.worlds.cost)
 
     def _observed(self) -> Any:
-        return self._seen(self.pool.obs.copy() if self.copy else self.pool.obs)
+        return self._seen(self.worlds.obs.copy() if self.copy else self.worlds.obs)
 
     def _infos(self, was_ended: Array) -> dict[str, Any]:
         """What Gymnasium's SyncVectorEnv makes of the infos of its parts: a reset has none."""
-        told, ended, stepped = self._told(), self._ended, np.ones(self.num_envs, bool)
-        infos: dict[str, Any] = {}
+        told, ended = self._told(), self._ended
+        infos: Info = {}
+        absent = None  # worlds whose info is that of a reset
         if self.mode == "NextStep":
-            stepped = ~was_ended
+            absent = was_ended if was_ended.any() else None
         elif self.mode == "SameStep" and ended.any():
-            stepped = ~ended
+            absent = ended
             final_obs = "final_observation" if self._old else "final_obs"
-            final_rows = self.pool.final_obs.copy()
+            final_rows = self.worlds.final_obs.copy()
             infos[final_obs] = _objects(ended, lambda i: self._seen(final_rows[i]))
-            infos["final_info"] = _objects(ended, lambda i: _of_world(told, i)) if self._old else self._rows(told, ended)
+            infos["final_info"] = _objects(ended, self._told_of) if self._old else self._rows(told, ~ended)
             infos["_" + final_obs], infos["_final_info"] = ended.copy(), ended.copy()
-        infos.update(self._rows(told, stepped))
+        infos.update(self._rows(told, absent))
         return infos
 
-    def _rows(self, told: dict[str, Array], where: Array) -> dict[str, Any]:
-        """The rows of the worlds where it is, with a mask; 0 elsewhere."""
-        rows: dict[str, Any] = {}
-        for key, values in told.items() if where.any() else ():
+    def _rows(self, told: dict[str, Array], absent: Optional[Array]) -> Info:
+        """The rows with a mask, 0 where they are absent; nothing where all are."""
+        if absent is not None and absent.all():
+            return {}
+        rows: Info = {}
+        here = np.ones(self.num_envs, bool) if absent is None else ~absent
+        for key, values in told.items():
             if self._old and values.ndim > 1:
-                rows[key] = _objects(where, lambda i, values=values: values[i])
-            elif where.all():
+                rows[key] = _objects(here, lambda i, values=values: values[i])
+            elif absent is None:
                 rows[key] = values
             else:
-                rows[key] = np.where(where.reshape(-1, *[1] * (values.ndim - 1)), values, values.dtype.type(0))
-            rows["_" + key] = where.copy()
+                rows[key] = np.where(here.reshape(-1, *[1] * (values.ndim - 1)), values, values.dtype.type(0))
+            rows["_" + key] = here.copy()
         return rows
 
     def step_async(self, actions: Any) -> None:
@@ -243,11 +256,6 @@ class VectorEnv(_Named, _VectorEnv):
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-
-def _of_world(told: dict[str, Array], i: int) -> dict[str, Any]:
-    """One world's info: numbers, and arrays of those that have several."""
-    return {key: values[i].item() if values.ndim == 1 else values[i] for key, values in told.items()}
 
 
 def _objects(where: Array, make: Any) -> Array:

@@ -95,19 +95,19 @@ class Redman(CMDP):
     def reset(self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, dict[str, Any]]:
         """New episodes everywhere."""
         self._worlds.reset(seed)
-        return self._tensor(self._worlds.pool.obs), {}
+        return self._tensor(self._worlds.obs), {}
 
     def step(self, action: Any) -> tuple[Any, ...]:
         """Observation, reward, cost, terminated, truncated, info; rows of one world without the axis of worlds."""
-        pool = self._worlds.pool
-        self._worlds.act(action.detach().cpu().numpy().reshape(pool.action.shape))
-        pool.step()
+        w = self._worlds
+        w.act(action.detach().cpu().numpy().reshape(w.action.shape))
+        w.pool.step()
         info: dict[str, Any] = {}
-        ended = pool.terminated | pool.truncated
+        ended = w.terminated | w.truncated
         if ended.any():
-            info["final_observation"] = self._tensor(pool.final_obs)
+            info["final_observation"] = self._tensor(w.final_obs)
             info["_final_observation"] = torch.from_numpy(ended if self._num_envs > 1 else ended[0:1])
-        return (*map(self._tensor, (pool.obs, pool.reward, pool.cost[:, 0], pool.terminated, pool.truncated)), info)
+        return (*map(self._tensor, (w.obs, w.reward, w.cost[:, 0], w.terminated, w.truncated)), info)
 
     def _tensor(self, rows: Array) -> Any:
         """A copy: OmniSafe keeps tensors of earlier steps."""

@@ -17,21 +17,27 @@ import numpy as np
 from . import gym
 from ._defaults import Defaults, defaults
 from ._discovery import tasks
-from ._pool import Pool
 from ._rows import Array
+from ._worlds import Worlds
 
 __all__ = ["Defaults", "Env", "VectorEnv", "defaults", "env_id", "register", "unregistered"]
 
 
 class _Told:
-    pool: Pool
+    worlds: Worlds
     cost_names: tuple[str, ...]
 
     def _told(self) -> dict[str, Array]:
-        pool = self.pool
-        costs = pool.cost.T.astype(np.float64)
+        w = self.worlds
+        costs = w.cost.T.astype(np.float64)
         return {"cost_sum": costs[0], **{f"cost_{name}": c for name, c in zip(self.cost_names[1:], costs[1:])},
-                "success": pool.success.copy(), "status": pool.status.astype(np.int64)}
+                "success": w.success.copy(), "status": w.status.astype(np.int64)}
+
+    def _told_of(self, i: int) -> gym.Info:
+        w = self.worlds
+        costs = w.cost[i].tolist()
+        return {"cost_sum": costs[0], **{f"cost_{name}": c for name, c in zip(self.cost_names[1:], costs[1:])},
+                "success": w.success.item(i), "status": w.status.item(i)}
 
 
 class Env(_Told, gym.Env):

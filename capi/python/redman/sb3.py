@@ -74,19 +74,19 @@ class VecEnv(_VecEnv):
 
     def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
         """Observations, rewards, whether episodes ended, infos."""
-        pool = self.pool
-        pool.step()
-        costs, ended = pool.cost.copy(), pool.terminated | pool.truncated
+        w = self.worlds
+        w.pool.step()
+        costs, ended = w.cost.copy(), w.terminated | w.truncated
         infos: list[dict[str, Any]] = [
             {"cost": cost, "costs": row, "success": success, "status": status, "TimeLimit.truncated": cut}
             for cost, row, success, status, cut in zip(
-                costs[:, 0].tolist(), costs, pool.success.tolist(), pool.status.tolist(),
-                (pool.truncated & ~pool.terminated).tolist())]
+                costs[:, 0].tolist(), costs, w.success.tolist(), w.status.tolist(),
+                (w.truncated & ~w.terminated).tolist())]
         for i in np.flatnonzero(ended):
-            infos[i]["terminal_observation"] = pool.final_obs[i].copy()
+            infos[i]["terminal_observation"] = w.final_obs[i].copy()
             self.reset_infos[i] = {}
-        reward = pool.reward - self.penalty * costs[:, 0] if self.penalty else pool.reward.copy()
-        return pool.obs.copy(), reward.astype(np.float32, copy=False), ended, infos
+        reward = w.reward - self.penalty * costs[:, 0] if self.penalty else w.reward.copy()
+        return w.obs.copy(), reward.astype(np.float32, copy=False), ended, infos
 
     def close(self) -> None:
         """Ends the worlds."""
