@@ -1,0 +1,64 @@
+"""What a task knows of learning it, in the words of learners other than redman's own."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Mapping, Optional
+
+from ._discovery import algos
+from ._pool import Pool
+from ._rows import FloatArray
+
+
+@dataclass(frozen=True)
+class Defaults:
+    """Settings with which redman's own PPO-Lagrangian learns a task; a learner steps at its rate of decisions."""
+
+    task: str
+    action_repeat: int  # control steps of a decision
+    center: FloatArray  # [action_dim] the pose that a new policy commands
+    init_std: float  # of a new policy's actions about it
+    discount: float  # of a decision: the task's per control step, to the power of action_repeat
+    gae_lambda: float
+    cost_limit: Optional[float]  # on the sum of "cost" over an episode
+    cost_limits: Mapping[str, float]  # of every cost that has one
+    normalize_obs: bool  # by running mean and deviation
+    obs_clip: float  # bound on them then
+    hidden: tuple[int, ...]  # widths of the networks' hidden layers
+    activation: str  # "tanh", "elu" or "relu"
+    num_envs: int
+    horizon: int  # decisions of each world from one update to the next
+    episode: int  # decisions of a whole episode
+    passes: int  # over the data of an update
+    minibatches: int  # of each pass
+    learning_rate: float
+    kl_target: float  # of an update
+    clip: float  # of the probability ratio
+    max_grad_norm: float
+    trust_kl: float  # of a step that a trust region bounds
+    multiplier_lr: float  # of the Lagrange multiplier, per update and unit of cost over the limit
+
+
+def defaults(task: str, options: Optional[Mapping[str, Any]] = None) -> Defaults:
+    """What a task with such options knows of learning it."""
+    with Pool(task, options=options) as pool:
+        own = pool.task.defaults
+        options_of = {**algos()["trpo_lag"].options, **algos()["ppo_lag"].options}
+        known = {key: own.get(key, option.default) for key, option in options_of.items()}
+        limits = {name: cost.limit for name, cost in pool.costs.items() if cost.limit >= 0}
+        center, steps = pool.initial_mean, pool.max_steps
+    repeat = int(known["action_repeat"])
+    limit = limits.get("cost")
+    scale = limit if _flag(known["multiplier_normalized"]) and limit else 1.0
+    return Defaults(
+        task=task, action_repeat=repeat, center=center, init_std=float(known["init_std"]),
+        discount=float(known["discount"]) ** repeat, gae_lambda=float(known["lambda"]), cost_limit=limit,
+        cost_limits=limits, normalize_obs=_flag(known["normalize_obs"]), obs_clip=float(known["obs_clip"]),
+        hidden=tuple(int(width) for width in str(known["hidden"]).split(",")), activation=str(known["activation"]),
+        num_envs=64, horizon=int(known["horizon"]), episode=-(-steps // repeat), passes=int(known["passes"]),
+        minibatches=int(known["minibatches"]), learning_rate=float(known["learning_rate"]),
+        kl_target=float(known["kl_target"]), clip=float(known["clip"]), max_grad_norm=float(known["max_grad_norm"]),
+        trust_kl=float(known["trust_kl"]), multiplier_lr=float(known["multiplier_lr"]) / scale)
+
+
+def _flag(value: Any) -> bool:
+    return value if isinstance(value, bool) else str(value) in ("1", "true", "on", "yes", "1.0")

@@ -1,0 +1,128 @@
+"""What the adapters share: a pool seen as other libraries see environments.
+
+Bounds of observations and actions, names of entries and costs, seeds as Gymnasium counts them, actions about a start
+pose. An action of a learner is `center` + action, cut to [-1, 1] by the pool; without a center it is the action.
+"""
+from __future__ import annotations
+
+import secrets
+from typing import Any, Mapping, Optional, Sequence, Union
+
+import numpy as np
+
+from ._pool import Pool
+from ._rows import Array, FloatArray
+
+Center = Union[None, str, Sequence[float], Array]
+Seeds = Union[None, int, Sequence[Optional[int]]]
+
+
+class Worlds:
+    """num_envs worlds of a task in one pool.
+
+    seed: what the first reset() takes that is given none; None draws one from the system.
+    action_repeat: control steps of a step, "task" for the rate at which the task's own learner decides.
+    center: action of a learner's 0, "initial" for the pose with which the task's own learner begins, or [action_dim].
+    """
+
+    def __init__(self, task: str, num_envs: int, *, seed: Optional[int] = None, autoreset: str = "off",
+                 options: Optional[Mapping[str, Any]] = None, threads: int = 0,
+                 action_repeat: Union[int, str] = 1, center: Center = None, camera: Optional[str] = None,
+                 width: int = 320, height: int = 240) -> None:
+        options = dict(options or {})
+        if action_repeat != 1:
+            options["action_repeat"] = 0 if action_repeat == "task" else action_repeat
+        self.seed: Seeds = secrets.randbits(63) if seed is None else int(seed)
+        self.pool = Pool(task, num_envs=num_envs, seed=self.seed, threads=threads, autoreset=autoreset, options=options)
+        self._take_rows()
+        self.camera, self.width, self.height = camera, width, height
+        self.center = self._center(center)
+        reach = np.ones(self.pool.action_dim, np.float32) if self.center is None else 1 + np.abs(self.center)
+        self.action_low, self.action_high = -reach, reach
+        low, self.obs_high = self.pool.bounds
+        self.obs_low = np.where(low == self.obs_high, low - 1, low)  # checkers take no box without width
+
+    def _take_rows(self) -> None:
+        """The pool's rows, which stay where they are, without a look-up for each."""
+        pool = self.pool
+        self.obs, self.final_obs, self.action, self.reward = pool.obs, pool.final_obs, pool.action, pool.reward
+        self.cost, self.terminated, self.truncated = pool.cost, pool.terminated, pool.truncated
+        self.success, self.status = pool.success, pool.status
+
+    def __getstate__(self) -> dict[str, Any]:
+        rows = ("obs", "final_obs", "action", "reward", "cost", "terminated", "truncated", "success", "status")
+        return {name: value for name, value in self.__dict__.items() if name not in rows}
+
+    def __setstate__(self, saved: dict[str, Any]) -> None:
+        self.__dict__.update(saved)
+        self._take_rows()
+
+    @property
+    def fields(self) -> dict[str, slice]:
+        """Where each named field of an observation stands."""
+        return {name: field.slice for name, field in self.pool.fields.items()}
+
+    @property
+    def cost_names(self) -> tuple[str, ...]:
+        """Name of each cost column; the first is "cost", the task's."""
+        return tuple(self.pool.costs)
+
+    @property
+    def seconds(self) -> float:
+        """Of a step."""
+        return float(self.pool.control_dt) * self.pool.spec.action_repeat
+
+    def _center(self, center: Center) -> Optional[FloatArray]:
+        if center is None:
+            return None
+        if isinstance(center, str):
+            if center != "initial":
+                raise ValueError(f'center: None, "initial" or [{self.pool.action_dim}] numbers, not "{center}"')
+            return self.pool.initial_mean
+        given = np.array(center, np.float32)
+        if given.shape != (self.pool.action_dim,) or not np.all(np.abs(given) <= 1):
+            raise ValueError(f"center: [{self.pool.action_dim}] numbers in [-1, 1], not {given.shape}")
+        return given
+
+    def reset(self, seed: Seeds = None, mask: Optional[Array] = None) -> None:
+        """New episodes where mask says. An int is seed + i for world i; where a list has None, and after a reset
+        without seeds, worlds go on with the streams that they have."""
+        n = self.pool.num_envs
+        if seed is None:  # the first reset names what is drawn, then worlds go on by themselves
+            seed, self.seed = self.seed, None
+        else:
+            self.seed = None
+        if isinstance(seed, (int, np.integer)):
+            seed = [int(seed) + i for i in range(n)]
+        seeds: list[Optional[int]] = [None] * n if seed is None else list(seed)
+        if len(seeds) != n:
+            raise ValueError(f"seed: one for each of {n} worlds, not {len(seeds)}")
+        for s in seeds:
+            if s is not None and not 0 <= s < 2**64:
+                raise ValueError(f"seed: {s} is outside [0, 2^64)")
+        chosen = np.ones(n, bool) if mask is None else mask
+        named = np.array([s is not None for s in seeds])
+        if np.any(chosen & named):
+            self.pool.reset(np.array([s or 0 for s in seeds], np.uint64), chosen & named)
+        if np.any(chosen & ~named):
+            self.pool.reset(None, chosen & ~named)
+
+    def act(self, actions: Any) -> None:
+        """Writes a learner's actions [num_envs][action_dim] for the next step."""
+        self._write(self.action, np.asarray(actions, np.float32))
+
+    def act_alone(self, action: Any) -> None:
+        """The same for the one world there is: [action_dim]."""
+        self._write(self.action[0], np.asarray(action, np.float32))
+
+    def _write(self, to: FloatArray, rows: FloatArray) -> None:
+        if rows.shape != to.shape:
+            raise ValueError(f"action: shape {to.shape}, not {rows.shape}")
+        if self.center is None:
+            to[...] = rows
+        else:
+            np.add(rows, self.center, out=to)
+
+    def render(self, env: int = 0) -> Array:
+        """A picture [height][width][3] of a world."""
+        return self.pool.render(env, self.camera, self.width, self.height)

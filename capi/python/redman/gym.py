@@ -1,0 +1,297 @@
+"""Tasks as environments of Gymnasium (0.28 to 1.x).
+
+    import gymnasium, redman.gym
+    env = gymnasium.make("redman/HandOverSafeFinger-v0", render_mode="rgb_array")
+    envs = gymnasium.make_vec("redman/HandOverSafeFinger-v0", num_envs=64, action_repeat="task")
+
+Env is one world, VectorEnv many in one pool, equal bit for bit to Gymnasium's SyncVectorEnv over as many Env. What a step
+cost is in its info: "cost", the task's own (column 0), and "costs" [cost_dim], as cost_names names them; beside them
+"success" and "status" (redman.h, RDM_STATUS_*). An episode is named by its seed alone: world i of reset(seed=s) has
+the episode of an Env with reset(seed=s + i).
+
+Without Gymnasium the two classes have the same methods over spaces of their own, and no id is registered.
+"""
+from __future__ import annotations
+
+from typing import Any, Mapping, Optional, Union
+
+import numpy as np
+
+from ._defaults import Defaults, defaults
+from ._discovery import tasks
+from ._pool import Pool
+from ._rows import Array
+from ._worlds import Center, Seeds, Worlds
+
+try:
+    import gymnasium
+    from gymnasium import Env as _Env
+    from gymnasium.spaces import Box, Dict
+    from gymnasium.vector import VectorEnv as _VectorEnv
+    from gymnasium.vector.utils import batch_space
+except ImportError as error:
+    if getattr(error, "name", None) != "gymnasium":  # it is there, and something that it needs is not
+        raise
+    gymnasium = None
+    from ._spaces import Box, Dict, Env as _Env, VectorEnv as _VectorEnv, batch_space
+
+try:
+    from gymnasium.vector import AutoresetMode
+except ImportError:  # before 1.1
+    AutoresetMode = str
+
+__all__ = ["Defaults", "Env", "VectorEnv", "camel", "defaults", "env_id", "register"]
+
+Info = dict[str, Any]
+_MODES = {"NextStep": "next_step", "SameStep": "same_step", "Disabled": "off"}
+_OLD = gymnasium is not None and gymnasium.__version__.startswith("0.")
+
+
+class _Named:
+    """What Env and VectorEnv tell of their worlds."""
+
+    worlds: Worlds
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 60}
+
+    def _begin(self, worlds: Worlds, render_mode: Optional[str], named: bool) -> tuple[Any, Any]:
+        """Takes the worlds; the spaces of one of them."""
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f'render_mode: None or "rgb_array", not "{render_mode}"')
+        self.worlds, self.render_mode, self.named = worlds, render_mode, named
+        self.fields, self.cost_names = worlds.fields, worlds.cost_names
+        self.metadata = {"render_modes": ["rgb_array"], "render_fps": max(1, round(1 / worlds.seconds))}
+        low, high = worlds.obs_low, worlds.obs_high
+        obs = Box(low, high, dtype=np.float32) if not named else Dict(
+            {name: Box(low[at], high[at], dtype=np.float32) for name, at in self.fields.items()})
+        return obs, Box(worlds.action_low, worlds.action_high, dtype=np.float32)
+
+    @property
+    def pool(self) -> Pool:
+        """The worlds as redman.Pool."""
+        return self.worlds.pool
+
+    @property
+    def cost_limits(self) -> Array:
+        """[cost_dim] limit on each cost's sum over an episode; NaN: none."""
+        limits = np.array([c.limit for c in self.pool.costs.values()])
+        return np.where(limits < 0, np.nan, limits)
+
+    def _seen(self, rows: Array) -> Any:
+        return {name: rows[..., at] for name, at in self.fields.items()} if self.named else rows
+
+    def _told(self) -> dict[str, Array]:
+        """What infos say of a step, a row for each world."""
+        w = self.worlds
+        return {"cost": w.cost[:, 0].astype(np.float64), "costs": w.cost.copy(), "success": w.success.copy(),
+                "status": w.status.astype(np.int64)}
+
+    def _told_of(self, i: int) -> Info:
+        """The same of one world."""
+        w = self.worlds
+        return {"cost": w.cost.item(i, 0), "costs": w.cost[i].copy(), "success": w.success.item(i),
+                "status": w.status.item(i)}
+
+
+class Env(_Named, _Env):
+    """One world of a task.
+
+    seed: what the first reset() takes that is given none; None draws one from the system.
+    options: of the task, as `redman tasks NAME` prints them.
+    action_repeat: control steps of a step, whose rewards and costs are summed; "task": as the task's learner decides.
+    center: what an action of 0 does: "initial" takes the pose with which the task's learner begins.
+    named: observations are a dict with an entry for each field.
+    """
+
+    def __init__(self, task: str, *, seed: Optional[int] = None, options: Optional[Mapping[str, Any]] = None,
+                 render_mode: Optional[str] = None, camera: Optional[str] = None, width: int = 320, height: int = 240,
+                 action_repeat: Union[int, str] = 1, center: Center = None, named: bool = False) -> None:
+        worlds = Worlds(task, 1, seed=seed, options=options, action_repeat=action_repeat, center=center,
+                        camera=camera, width=width, height=height)
+        self.observation_space, self.action_space = self._begin(worlds, render_mode, named)
+
+    def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
+        """A new episode: that of the seed, or the next of the world's own stream. options are not used."""
+        super().reset(seed=seed)
+        self.worlds.reset(seed if seed is None else [seed])
+        return self._seen(self.worlds.obs[0].copy()), {}
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
+        """Observation, reward, terminated, truncated, info."""
+        w = self.worlds
+        w.act_alone(action)
+        w.pool.step()
+        return (self._seen(w.obs[0].copy()), w.reward.item(0), w.terminated.item(0), w.truncated.item(0),
+                self._told_of(0))
+
+    def render(self) -> Optional[Array]:
+        """A picture [height][width][3], or None without a render_mode."""
+        return self.worlds.render() if self.render_mode else None
+
+    def close(self) -> None:
+        self.pool.close()
+        super().close()
+
+
+class VectorEnv(_Named, _VectorEnv):
+    """num_envs worlds of a task, stepped together on `threads` threads. Arguments beside Env's:
+
+    autoreset_mode: "NextStep", "SameStep", "Disabled" or Gymnasium's AutoresetMode; None: as Gymnasium's own has it.
+    copy: False returns the pool's observations, which the next call overwrites.
+
+    In SameStep mode info["cost"] of worlds whose episode ended is in info["final_info"], as Gymnasium has it;
+    the attributes cost [num_envs] and costs [num_envs][cost_dim] are those of the last step in every mode.
+    """
+
+    _old = _OLD  # infos as Gymnasium 0.x has them
+
+    def __init__(self, task: str, num_envs: int = 1, *, seed: Optional[int] = None,
+                 options: Optional[Mapping[str, Any]] = None, threads: int = 0, autoreset_mode: Any = None,
+                 copy: bool = True, render_mode: Optional[str] = None, camera: Optional[str] = None, width: int = 320,
+                 height: int = 240, action_repeat: Union[int, str] = 1, center: Center = None,
+                 named: bool = False) -> None:
+        mode = getattr(autoreset_mode, "value", autoreset_mode) or ("SameStep" if _OLD else "NextStep")
+        if mode not in _MODES:
+            raise ValueError(f"autoreset_mode: {', '.join(_MODES)}, not {mode}")
+        worlds = Worlds(task, num_envs, seed=seed, autoreset=_MODES[mode], options=options, threads=threads,
+                        action_repeat=action_repeat, center=center, camera=camera, width=width, height=height)
+        obs, action = self._begin(worlds, render_mode, named)
+        if _OLD:
+            _VectorEnv.__init__(self, num_envs, obs, action)
+        else:
+            self.num_envs, self.single_observation_space, self.single_action_space = num_envs, obs, action
+            self.observation_space, self.action_space = batch_space(obs, num_envs), batch_space(action, num_envs)
+        self.mode, self.copy = mode, copy
+        self.metadata["autoreset_mode"] = AutoresetMode(mode)
+        self._ended = np.zeros(num_envs, bool)
+
+    def reset(self, *, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
+        """New episodes, everywhere or where options["reset_mask"] [num_envs] is True. seed: s names episode s + i for
+        world i, or a list; where it is None, worlds go on with the streams that they have."""
+        mask = (options or {}).get("reset_mask")
+        if mask is not None and not (isinstance(mask, np.ndarray) and mask.shape == (self.num_envs,)
+                                     and mask.dtype == bool and mask.any()):
+            raise ValueError(f"reset_mask: an array of {self.num_envs} bool, one of them True")
+        self.worlds.reset(seed, mask)
+        self._ended = np.zeros(self.num_envs, bool) if mask is None else self._ended & ~mask
+        return self._observed(), {}
+
+    def step(self, actions: Any) -> tuple[Any, Array, Array, Array, Info]:
+        """Observations, rewards, terminated, truncated, infos."""
+        w = self.worlds
+        w.act(actions)
+        w.pool.step()
+        was_ended, self._ended = self._ended, w.terminated | w.truncated
+        return (self._observed(), w.reward.astype(np.float64), w.terminated.copy(), w.truncated.copy(),
+                self._infos(was_ended))
+
+    @property
+    def cost(self) -> Array:
+        """[num_envs] the task's cost of the last step."""
+        return np.array(self.worlds.cost[:, 0])
+
+    @property
+    def costs(self) -> Array:
+        """[num_envs][cost_dim] all costs of the last step."""
+        return np.array(self.worlds.cost)
+
+    def _observed(self) -> Any:
+        return self._seen(self.worlds.obs.copy() if self.copy else self.worlds.obs)
+
+    def _infos(self, was_ended: Array) -> dict[str, Any]:
+        """What Gymnasium's SyncVectorEnv makes of the infos of its parts: a reset has none."""
+        told, ended = self._told(), self._ended
+        infos: Info = {}
+        absent = None  # worlds whose info is that of a reset
+        if self.mode == "NextStep":
+            absent = was_ended if was_ended.any() else None
+        elif self.mode == "SameStep" and ended.any():
+            absent = ended
+            final_obs = "final_observation" if self._old else "final_obs"
+            final_rows = self.worlds.final_obs.copy()
+            infos[final_obs] = _objects(ended, lambda i: self._seen(final_rows[i]))
+            infos["final_info"] = _objects(ended, self._told_of) if self._old else self._rows(told, ~ended)
+            infos["_" + final_obs], infos["_final_info"] = ended.copy(), ended.copy()
+        infos.update(self._rows(told, absent))
+        return infos
+
+    def _rows(self, told: dict[str, Array], absent: Optional[Array]) -> Info:
+        """The rows with a mask, 0 where they are absent; nothing where all are."""
+        if absent is not None and absent.all():
+            return {}
+        rows: Info = {}
+        here = np.ones(self.num_envs, bool) if absent is None else ~absent
+        for key, values in told.items():
+            if self._old and values.ndim > 1:
+                rows[key] = _objects(here, lambda i, values=values: values[i])
+            elif absent is None:
+                rows[key] = values
+            else:
+                rows[key] = np.where(here.reshape(-1, *[1] * (values.ndim - 1)), values, values.dtype.type(0))
+            rows["_" + key] = here.copy()
+        return rows
+
+    def step_async(self, actions: Any) -> None:
+        """With step_wait(), the two halves of a step that wrappers of Gymnasium 0.x call."""
+        self._actions = actions
+
+    def step_wait(self, **_: Any) -> Any:
+        return self.step(self._actions)
+
+    def reset_async(self, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> None:
+        """With reset_wait(), the two halves of a reset that wrappers of Gymnasium 0.x call."""
+
+    def reset_wait(self, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> Any:
+        return self.reset(seed=seed, options=options)
+
+    def render(self) -> Optional[tuple[Array, ...]]:
+        """A picture of each world, or None without a render_mode."""
+        return tuple(self.worlds.render(i) for i in range(self.num_envs)) if self.render_mode else None
+
+    def close_extras(self, **_: Any) -> None:
+        if hasattr(self, "worlds"):  # it is also called for what was never made
+            self.pool.close()
+
+    def __enter__(self) -> VectorEnv:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def _objects(where: Array, make: Any) -> Array:
+    """An array of objects: make(world) where it is, else None."""
+    out = np.full(len(where), None, object)
+    for i in np.flatnonzero(where):
+        out[i] = make(i)
+    return out
+
+
+def camel(task: str) -> str:
+    """hand_over_safe_finger as HandOverSafeFinger."""
+    return "".join(word.capitalize() for word in task.split("_"))
+
+
+def env_id(task: str) -> str:
+    """The id under which Gymnasium has a task."""
+    return f"redman/{camel(task)}-v0"
+
+
+def register() -> None:
+    """Gives Gymnasium an id for every task; importing this module does it."""
+    if gymnasium is None:
+        raise ImportError("redman.gym.register: Gymnasium is not installed; Env and VectorEnv work without it")
+    for task in tasks():
+        if env_id(task) not in gymnasium.registry:
+            gymnasium.register(env_id(task), entry_point="redman.gym:Env", kwargs={"task": task},
+                               vector_entry_point=_vector_entry(task) if _OLD else "redman.gym:VectorEnv")
+
+
+def _vector_entry(task: str) -> Any:
+    """make_vec of Gymnasium 0.x passes on nothing of the spec."""
+    def make(num_envs: int = 1, max_episode_steps: Optional[int] = None, **kwargs: Any) -> VectorEnv:
+        return VectorEnv(task, num_envs, **{k: v for k, v in kwargs.items() if k != "task"})
+    return make
+
+
+if gymnasium is not None:
+    register()

@@ -1,0 +1,172 @@
+"""Tasks as environments of OmniSafe.
+
+    import omnisafe, redman.omnisafe
+    agent = omnisafe.Agent("PPOLag", "RedmanHandOverSafeFinger-v0",
+                           custom_cfgs=redman.omnisafe.configs("hand_over_safe_finger", steps=2e6))
+    agent.learn()
+
+Every task has the id Redman<Task>-v0, whose steps are the task's own decisions about its start pose. The four ids of
+OmniSafe's tasks on a GPU (ShadowHandOverSafeFinger, ...) are answered here too, with control steps and plain actions, so
+that its published settings for them apply as they stand. register() adds ids with options; so do env_cfgs where an
+algorithm has them. Cost is the task's own, column 0.
+"""
+from __future__ import annotations
+
+from typing import Any, ClassVar, Mapping, Optional
+
+import numpy as np
+
+from ._defaults import Defaults, defaults
+from ._discovery import tasks
+from ._rows import Array
+from ._worlds import Worlds
+from .gym import camel
+
+try:
+    import torch
+    from gymnasium.spaces import Box
+    from omnisafe.algorithms import ALGORITHM2TYPE, registry
+    from omnisafe.algorithms.on_policy import NaturalPG
+    from omnisafe.envs.core import CMDP, ENV_REGISTRY
+    from omnisafe.envs.safety_isaac_gym_env import SafetyIsaacGymEnv
+    from omnisafe.utils.config import get_default_kwargs_yaml
+except ImportError as error:
+    raise ImportError(f"redman.omnisafe needs OmniSafe and what it needs: {error}") from error
+
+__all__ = ["Defaults", "Redman", "configs", "defaults", "env_id", "register"]
+
+_GPU_TASKS = {
+    "ShadowHandOverSafeFinger": "hand_over_safe_finger",
+    "ShadowHandOverSafeJoint": "hand_over_safe_joint",
+    "ShadowHandCatchOver2UnderarmSafeFinger": "catch_underarm_safe_finger",
+    "ShadowHandCatchOver2UnderarmSafeJoint": "catch_underarm_safe_joint",
+}
+
+
+def env_id(task: str) -> str:
+    """The id under which OmniSafe has a task."""
+    return f"Redman{camel(task)}-v0"
+
+
+_Settings = dict[str, Any]
+_DECISIONS: _Settings = {"action_repeat": "task", "center": "initial"}
+_IDS: dict[str, tuple[str, _Settings]] = {
+    **{env_id(task): (task, _DECISIONS) for task in tasks()},
+    **{name: (task, {}) for name, task in _GPU_TASKS.items() if task in tasks()}}
+
+
+class Redman(CMDP):
+    """num_envs worlds of a task; an ended episode begins anew in the same step.
+
+    settings: options, action_repeat, center, threads, as redman.gym.VectorEnv has them, over those of the id.
+    camera_name and camera_id are what OmniSafe's evaluator gives (its default "track" is the task's first camera).
+    Actions are bounded by -1 and 1 about `center` too.
+    """
+
+    need_auto_reset_wrapper = False
+    need_time_limit_wrapper = False
+    _support_envs: ClassVar[list[str]] = list(_IDS)
+
+    def __init__(self, env_id: str, num_envs: int = 1, device: Any = "cpu", *, render_mode: Optional[str] = None,
+                 camera_name: Optional[str] = None, camera_id: Optional[int] = None, width: int = 256,
+                 height: int = 256, **settings: Any) -> None:
+        super().__init__(env_id)
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f'render_mode: None or "rgb_array", not "{render_mode}"')
+        task, own = _IDS[env_id]
+        self._num_envs, self._device = num_envs, torch.device(device)
+        self._worlds = Worlds(task, num_envs, autoreset="same_step", width=width, height=height, **{**own, **settings})
+        cameras = list(self._worlds.pool.cameras)
+        named = cameras[camera_id] if camera_name is None and camera_id is not None else camera_name
+        self._worlds.camera = None if named == "track" and named not in cameras else named
+        self._observation_space = Box(self._worlds.obs_low, self._worlds.obs_high, dtype=np.float32)
+        self._action_space = Box(-1, 1, (self._worlds.pool.action_dim,), np.float32)
+        self._metadata = {"render_modes": ["rgb_array"], "render_fps": max(1, round(1 / self._worlds.seconds))}
+
+    @property
+    def max_episode_steps(self) -> int:
+        """Steps of a whole episode."""
+        return -(-self._worlds.pool.max_steps // self._worlds.pool.spec.action_repeat)
+
+    def set_seed(self, seed: int) -> None:
+        """Names the episodes of the next reset: seed + i for world i."""
+        self._worlds.seed = int(seed)
+
+    def reset(self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, dict[str, Any]]:
+        """New episodes everywhere."""
+        self._worlds.reset(seed)
+        return self._tensor(self._worlds.obs), {}
+
+    def step(self, action: Any) -> tuple[Any, ...]:
+        """Observation, reward, cost, terminated, truncated, info; rows of one world without the axis of worlds."""
+        w = self._worlds
+        w.act(action.detach().cpu().numpy().reshape(w.action.shape))
+        w.pool.step()
+        info: dict[str, Any] = {}
+        ended = w.terminated | w.truncated
+        if ended.any():
+            info["final_observation"] = self._tensor(w.final_obs)
+            info["_final_observation"] = torch.from_numpy(ended if self._num_envs > 1 else ended[0:1])
+        return (*map(self._tensor, (w.obs, w.reward, w.cost[:, 0], w.terminated, w.truncated)), info)
+
+    def _tensor(self, rows: Array) -> Any:
+        """A copy: OmniSafe keeps tensors of earlier steps."""
+        return torch.tensor(rows if self._num_envs > 1 else rows[0], dtype=torch.float32, device=self._device)
+
+    def render(self) -> Array:
+        """A picture [height][width][3] of the first world."""
+        return self._worlds.render()
+
+    def close(self) -> None:
+        self._worlds.pool.close()
+
+
+def register(name: str, task: str, **settings: Any) -> str:
+    """An id of your own for a task with settings: action_repeat and center of the task's own unless given, options,
+    threads. Returns it."""
+    if "/" in name or name in _IDS:
+        raise ValueError(f"{name}: an id without / that is not taken")
+    _IDS[name] = task, {**_DECISIONS, **settings}
+    Redman._support_envs.append(name)  # the registry holds this list
+    return name
+
+
+def configs(task: str, algo: str = "PPOLag", steps: float = 2e6, options: Optional[Mapping[str, Any]] = None,
+            num_envs: int = 64) -> dict[str, Any]:
+    """custom_cfgs with which an algorithm of OmniSafe learns Redman<Task>-v0 as redman's own would: discount of its
+    decisions, first deviation, limit, normalisation, networks and rates, as far as the algorithm has them.
+
+    steps: control steps of one world, summed over worlds. options: of the task; ids with other ones come of
+    register(). Change what the dict holds before it is given.
+    """
+    d, kind = defaults(task, options), ALGORITHM2TYPE[algo]
+    # An epoch of OmniSafe begins with a reset: whole episodes, or their ends are never seen.
+    decisions = num_envs * d.episode * -(-2 * d.horizon // d.episode)
+    epochs = max(1, round(steps / (d.action_repeat * decisions)))
+    wanted: dict[str, Any] = {
+        "train_cfgs": {"vector_env_nums": num_envs, "total_steps": epochs * decisions},
+        "algo_cfgs": {"gamma": d.discount, "cost_gamma": d.discount, "obs_normalize": d.normalize_obs},
+    }
+    if kind == "on-policy":
+        trusts = issubclass(registry.get(algo), NaturalPG)
+        wanted["algo_cfgs"].update(
+            steps_per_epoch=decisions, update_iters=d.passes, batch_size=decisions // d.minibatches,
+            target_kl=d.trust_kl if trusts else d.kl_target, lam=d.gae_lambda, lam_c=d.gae_lambda, clip=d.clip,
+            max_grad_norm=d.max_grad_norm)
+        network = {"hidden_sizes": list(d.hidden), "activation": d.activation, "lr": d.learning_rate}
+        wanted["model_cfgs"] = {"actor": network, "critic": dict(network), "exploration_noise_anneal": True,
+                                "std_range": [d.init_std, 0.375 * d.init_std]}
+    if d.cost_limit is not None:
+        wanted["algo_cfgs"]["cost_limit"] = d.cost_limit
+        wanted["lagrange_cfgs"] = {"cost_limit": d.cost_limit, "lambda_lr": d.multiplier_lr, "lambda_optimizer": "SGD"}
+    return _known(wanted, get_default_kwargs_yaml(algo, env_id(task), kind).todict())
+
+
+def _known(wanted: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
+    """The settings that an algorithm has."""
+    return {key: _known(value, known[key]) if isinstance(value, dict) else value
+            for key, value in wanted.items() if key in known}
+
+
+ENV_REGISTRY.unregister(SafetyIsaacGymEnv)
+ENV_REGISTRY.register(Redman)

@@ -1,0 +1,84 @@
+"""Tasks as environments of Safety-Gymnasium: a step gives six values, the cost third.
+
+    import safety_gymnasium, redman.safety
+    env = safety_gymnasium.make("SafetyHandOverSafeFinger-v0")
+    obs, reward, cost, terminated, truncated, info = env.step(action)
+
+info names the costs as Safety-Gymnasium does: cost_sum is the task's own (column 0), cost_<name> every other. Env and
+VectorEnv need Gymnasium alone, or nothing; the ids need Safety-Gymnasium. VectorEnv ends as SafetySyncVectorEnv does:
+a new episode in the same step, info["final_observation"] and info["final_info"].
+"""
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy as np
+
+from . import gym
+from ._defaults import Defaults, defaults
+from ._discovery import tasks
+from ._rows import Array
+from ._worlds import Worlds
+
+__all__ = ["Defaults", "Env", "VectorEnv", "defaults", "env_id", "register", "unregistered"]
+
+
+class _Told:
+    worlds: Worlds
+    cost_names: tuple[str, ...]
+
+    def _told(self) -> dict[str, Array]:
+        w = self.worlds
+        costs = w.cost.T.astype(np.float64)
+        return {"cost_sum": costs[0], **{f"cost_{name}": c for name, c in zip(self.cost_names[1:], costs[1:])},
+                "success": w.success.copy(), "status": w.status.astype(np.int64)}
+
+    def _told_of(self, i: int) -> gym.Info:
+        w = self.worlds
+        costs = w.cost[i].tolist()
+        return {"cost_sum": costs[0], **{f"cost_{name}": c for name, c in zip(self.cost_names[1:], costs[1:])},
+                "success": w.success.item(i), "status": w.status.item(i)}
+
+
+class Env(_Told, gym.Env):
+    """One world of a task; arguments as redman.gym.Env."""
+
+    def step(self, action: Any) -> tuple[Any, float, float, bool, bool, gym.Info]:  # type: ignore[override]
+        """Observation, reward, cost, terminated, truncated, info."""
+        obs, reward, terminated, truncated, info = super().step(action)
+        return obs, reward, info["cost_sum"], terminated, truncated, info
+
+
+class VectorEnv(_Told, gym.VectorEnv):
+    """num_envs worlds of a task in one pool; arguments as redman.gym.VectorEnv but for autoreset_mode."""
+
+    _old = True
+
+    def __init__(self, task: str, num_envs: int = 1, **kwargs: Any) -> None:
+        super().__init__(task, num_envs, autoreset_mode="SameStep", **kwargs)
+
+    def step(self, actions: Any) -> tuple[Any, Array, Array, Array, Array, gym.Info]:  # type: ignore[override]
+        """Observations, rewards, costs, terminated, truncated, infos."""
+        obs, reward, terminated, truncated, info = super().step(actions)
+        return obs, reward, self.cost.astype(np.float64), terminated, truncated, info
+
+
+def env_id(task: str) -> str:
+    """The id under which Safety-Gymnasium has a task."""
+    return f"Safety{gym.camel(task)}-v0"
+
+
+def register() -> None:
+    """Gives Safety-Gymnasium an id for every task; importing this module does it where it can."""
+    import safety_gymnasium
+    from gymnasium.envs.registration import registry
+    for task in tasks():
+        if env_id(task) not in registry:
+            safety_gymnasium.register(id=env_id(task), entry_point="redman.safety:Env", kwargs={"task": task})
+
+
+unregistered: Optional[str] = None  # why there are no ids
+try:
+    register()
+except Exception as error:  # its import runs a simulator's, which fails in ways of its own
+    unregistered = f"Safety-Gymnasium: {type(error).__name__}: {error}"

@@ -1,0 +1,127 @@
+"""What the adapters take from Stable-Baselines3, OmniSafe and Safety-Gymnasium, as small as their contracts allow, for
+where none of them is installed. Each function does nothing where the real one is."""
+import sys
+import types
+
+import numpy as np
+
+import peers
+from redman import _spaces
+
+
+def _missing(name):
+    return name not in sys.modules and not peers.installed(name)
+
+
+def _module(name, **names):
+    parent, _, leaf = name.rpartition(".")
+    module = sys.modules[name] = types.ModuleType(name)
+    module.__path__ = []
+    vars(module).update(names)
+    if parent:
+        if parent not in sys.modules:
+            _module(parent)
+        setattr(sys.modules[parent], leaf, module)
+
+
+def gymnasium():
+    """Spaces and a registry."""
+    if _missing("gymnasium"):
+        _module("gymnasium.spaces", Box=_spaces.Box, Dict=_spaces.Dict)
+        _module("gymnasium.envs.registration", registry={})
+
+
+def sb3():
+    """The base of vectorised environments."""
+    if not _missing("stable_baselines3"):
+        return
+    gymnasium()
+
+    class VecEnv:
+        def __init__(self, num_envs, observation_space, action_space):
+            self.num_envs, self.observation_space, self.action_space = num_envs, observation_space, action_space
+            self.metadata = {"render_modes": []}
+            self._reset_seeds()
+            self._reset_options()
+
+        def _reset_seeds(self):
+            self._seeds = [None] * self.num_envs
+
+        def _reset_options(self):
+            self._options = [{}] * self.num_envs
+
+        def seed(self, seed):
+            self._seeds = [seed + i for i in range(self.num_envs)]
+
+        def step(self, actions):
+            self.step_async(actions)
+            return self.step_wait()
+
+        def _get_indices(self, indices):
+            return range(self.num_envs) if indices is None else [indices] if isinstance(indices, int) else indices
+
+    _module("stable_baselines3.common.vec_env", VecEnv=VecEnv)
+
+
+def safety():
+    """A place to register."""
+    if _missing("safety_gymnasium"):
+        gymnasium()
+        _module("safety_gymnasium", register=lambda **row: sys.modules["gymnasium.envs.registration"].registry.update(
+            {row["id"]: row}))
+
+
+class Tensor(np.ndarray):
+    """A tensor is an array."""
+
+    detach = cpu = lambda self: self
+
+    def numpy(self):
+        return self.view(np.ndarray)
+
+
+def omnisafe():
+    """CMDP, the registry of its classes, and tables of settings."""
+    if _missing("torch"):
+        _module("torch", device=str, float32=np.float32, from_numpy=lambda x: x.view(Tensor),
+                tensor=lambda x, dtype=None, device=None: np.array(x, dtype).view(Tensor))
+    if not _missing("omnisafe"):
+        return
+    gymnasium()
+
+    class CMDP:
+        need_evaluation = True
+
+        def __init__(self, env_id):
+            assert env_id in self._support_envs
+
+        observation_space = property(lambda self: self._observation_space)
+        action_space = property(lambda self: self._action_space)
+        metadata = property(lambda self: self._metadata)
+        num_envs = property(lambda self: self._num_envs)
+
+    class Registry(list):
+        register, unregister = list.append, lambda self, kind: self.remove(kind)
+
+    class NaturalPG:
+        pass
+
+    class Settings(dict):
+        def todict(self):
+            return self
+
+    isaac = type("SafetyIsaacGymEnv", (CMDP,), {})
+    on_policy = {
+        "train_cfgs": {"vector_env_nums": 1, "total_steps": 1}, "env_cfgs": {},
+        "algo_cfgs": dict.fromkeys(("steps_per_epoch", "update_iters", "batch_size", "target_kl", "gamma", "cost_gamma",
+                                    "lam", "lam_c", "clip", "max_grad_norm", "obs_normalize", "steps_per_epoch")),
+        "model_cfgs": {"exploration_noise_anneal": False, "std_range": [0.5, 0.1],
+                       "actor": dict.fromkeys(("hidden_sizes", "activation", "lr")),
+                       "critic": dict.fromkeys(("hidden_sizes", "activation", "lr"))},
+        "lagrange_cfgs": dict.fromkeys(("cost_limit", "lambda_lr", "lambda_optimizer"))}
+    _module("omnisafe.algorithms", ALGORITHM2TYPE={"PPOLag": "on-policy"},
+            registry=types.SimpleNamespace(get={"PPOLag": object}.get))
+    _module("omnisafe.algorithms.on_policy", NaturalPG=NaturalPG)
+    _module("omnisafe.envs.core", CMDP=CMDP, ENV_REGISTRY=Registry([isaac]))
+    _module("omnisafe.envs.safety_isaac_gym_env", SafetyIsaacGymEnv=isaac)
+    _module("omnisafe.utils.config", get_default_kwargs_yaml=lambda algo, env_id, kind: Settings(on_policy))
