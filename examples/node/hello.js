@@ -14,7 +14,7 @@ const redman = {};
 for (const [, name, value] of header.matchAll(/^#define (RDM_\w+) +(\d+)/gm)) redman[name] = Number(value);
 for (const [, list] of header.matchAll(/\benum \w*\s*{([^}]*)}/g)) {
   let next = 0;
-  for (const [, name, value] of list.matchAll(/(\w+)(?: = (-?\d+))?/g)) next = 1 + (redman[name] = Number(value ?? next));
+  for (const [, name, n] of list.matchAll(/(\w+)(?: = (-?\d+))?/g)) next = 1 + (redman[name] = Number(n ?? next));
 }
 koffi.alias('rdm_result', 'int32_t');
 for (const [, name] of header.matchAll(/typedef struct \w+ (\w+);/g)) koffi.opaque(name);
