@@ -41,7 +41,7 @@ static outcome play(const rdm_policy* policy) {
   rdm_buffers rows = {.struct_size = sizeof rows};
   rdm_policy_info info = {.struct_size = sizeof info};
   outcome o = {0, 0, 0};
-  char* block = NULL;
+  void* scratch = NULL;
   size_t size = 0;
   check(rdm_pool_get_spec(pool, &spec));
   check(rdm_pool_buffers(pool, &rows));
@@ -49,10 +49,9 @@ static outcome play(const rdm_policy* policy) {
     check(rdm_policy_check(policy, &spec));
     check(rdm_policy_get_info(policy, &info));
     size = rdm_policy_scratch(policy, 4);
-    block = malloc(size + 64);
-    if (!block) abort();
+    scratch = malloc(size);
+    if (!scratch) abort();
   }
-  void* scratch = block + (64 - (uintptr_t)block % 64);
   for (int t = 0; t < 75; ++t) {
     if (policy && t % info.action_repeat == 0)
       check(rdm_policy_act(policy, rows.obs, 4, NULL, rows.action, scratch, size));
@@ -61,7 +60,7 @@ static outcome play(const rdm_policy* policy) {
     o.cost += rows.cost[0];
   }
   check(rdm_pool_hash(pool, -1, &o.hash));
-  free(block);
+  free(scratch);
   rdm_pool_destroy(pool);
   return o;
 }
