@@ -2,7 +2,8 @@
 //!
 //!     hello POLICY [bench]
 use redman_sys::*;
-use std::ffi::{c_long, c_void, CStr, CString};
+use std::ffi::{CStr, CString};
+use std::os::raw::{c_long, c_void};
 use std::{mem, ptr};
 
 extern "C" {
