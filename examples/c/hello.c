@@ -23,6 +23,7 @@ static rdm_pool* make_pool(const char* task, int32_t num_envs, uint64_t seed) {
   config.task = task;
   config.num_envs = num_envs;
   config.seed = seed;
+  config.autoreset = RDM_AUTORESET_NEXT_STEP; /* ended worlds rest until the next step */
   check(rdm_pool_create(&pool, &config));
   check(rdm_pool_reset(pool, NULL, NULL));
   check(rdm_pool_baseline(pool, RDM_BASELINE_HOLD));

@@ -9,6 +9,7 @@
 static redman::Pool make_pool(const char* task, int32_t num_envs, uint64_t seed) {
   auto config = redman::pool_config(task, num_envs);
   config.seed = seed;
+  config.autoreset = RDM_AUTORESET_NEXT_STEP;  // ended worlds rest until the next step
   redman::Pool pool(config);
   pool.reset();
   pool.baseline(RDM_BASELINE_HOLD);

@@ -1,16 +1,16 @@
 // The program of examples/c in C#, by P/Invoke: structs and functions are written again from redman.h.
-//
 //   mcs -unsafe Hello.cs && mono Hello.exe POLICY [bench]
 using System;
 using System.Runtime.InteropServices;
 using static System.FormattableString;
 
 static unsafe class Hello {
-  const int RDM_OK = 0, RDM_BASELINE_HOLD = 1;
-
+  const int RDM_OK = 0, RDM_AUTORESET_NEXT_STEP = 1, RDM_BASELINE_HOLD = 1;
   // The members that are used here; Size is that of the whole struct.
   [StructLayout(LayoutKind.Sequential, Size = 56)]
-  struct PoolConfig { public uint struct_size; public int num_envs; public byte* task; public ulong seed; }
+  struct PoolConfig {
+    public uint struct_size; public int num_envs; public byte* task; public ulong seed; public int threads, autoreset;
+  }
   [StructLayout(LayoutKind.Sequential, Size = 48)]
   struct Spec { public uint struct_size; }
   [StructLayout(LayoutKind.Sequential, Size = 120)]
@@ -37,9 +37,8 @@ static unsafe class Hello {
                                                          byte[] scratch, UIntPtr scratch_bytes);
   [DllImport("libc")] static extern long clock(); // CPU time of the process, us
 
-  static void Check(int result) {
-    if (result != RDM_OK) throw new Exception(Marshal.PtrToStringAnsi(rdm_last_error())); // UTF-8 on Linux
-  }
+  static string Text => Marshal.PtrToStringAnsi(rdm_last_error()); // UTF-8 on Linux
+  static void Check(int result) { if (result != RDM_OK) throw new Exception(Text); }
 
   // Worlds at the start of their first episode, with actions that hold the start pose.
   static IntPtr MakePool(string task, int num_envs, ulong seed) {
@@ -47,6 +46,7 @@ static unsafe class Hello {
     Check(rdm_pool_config_init(&config, (UIntPtr)sizeof(PoolConfig)));
     config.num_envs = num_envs;
     config.seed = seed;
+    config.autoreset = RDM_AUTORESET_NEXT_STEP; // ended worlds rest until the next step
     fixed (byte* name = System.Text.Encoding.UTF8.GetBytes(task + "\0")) {
       config.task = name;
       Check(rdm_pool_create(out IntPtr pool, &config));

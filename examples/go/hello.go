@@ -40,6 +40,7 @@ func makePool(task string, numEnvs int, seed uint64) *C.rdm_pool {
 	config.task = name
 	config.num_envs = C.int32_t(numEnvs)
 	config.seed = C.uint64_t(seed)
+	config.autoreset = C.RDM_AUTORESET_NEXT_STEP // ended worlds rest until the next step
 	check(C.rdm_pool_create(&pool, &config))
 	check(C.rdm_pool_reset(pool, nil, nil))
 	check(C.rdm_pool_baseline(pool, C.RDM_BASELINE_HOLD))

@@ -1,21 +1,20 @@
 // The program of examples/c in Java, by JNA's direct calls: structs and functions are written again from redman.h.
-//
 //   java -cp /usr/share/java/jna.jar Hello.java POLICY [bench]
 import static java.util.Locale.ROOT;
 import com.sun.jna.*;
 
 class Hello {
-  static final int RDM_OK = 0, RDM_BASELINE_HOLD = 1;
-
+  static final int RDM_OK = 0, RDM_AUTORESET_NEXT_STEP = 1, RDM_BASELINE_HOLD = 1;
   // Structs with the members that are used here; `rest` is what follows.
   @Structure.FieldOrder("struct_size")
   public static abstract class Sized extends Structure {
     public int struct_size;
     @Override public void write() { struct_size = size(); super.write(); }
   }
-  @Structure.FieldOrder({"num_envs", "task", "seed", "rest"})
+  @Structure.FieldOrder({"num_envs", "task", "seed", "num_threads", "autoreset", "rest"})
   public static class PoolConfig extends Sized {
-    public int num_envs; public String task; public long seed; public long[] rest = new long[4];
+    public int num_envs; public String task; public long seed;
+    public int num_threads, autoreset; public long[] rest = new long[3];
   }
   @Structure.FieldOrder("rest")
   public static class Spec extends Sized { public int[] rest = new int[11]; }
@@ -60,6 +59,7 @@ class Hello {
     config.task = task;
     config.num_envs = numEnvs;
     config.seed = seed;
+    config.autoreset = RDM_AUTORESET_NEXT_STEP; // ended worlds rest until the next step
     check(rdm_pool_create(pool, config));
     check(rdm_pool_reset(pool[0], null, null));
     check(rdm_pool_baseline(pool[0], RDM_BASELINE_HOLD));

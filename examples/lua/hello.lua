@@ -31,6 +31,7 @@ local function make_pool(task, num_envs, seed)
   config.task = task -- the local variable keeps the string until the pool has its copy
   config.num_envs = num_envs
   config.seed = seed
+  config.autoreset = redman.RDM_AUTORESET_NEXT_STEP -- ended worlds rest until the next step
   check(redman.rdm_pool_create(out, config))
   local pool = ffi.gc(out[0], redman.rdm_pool_destroy)
   check(redman.rdm_pool_reset(pool, nil, nil))

@@ -49,7 +49,8 @@ function filled(name, call) {
 function makePool(task, numEnvs, seed) {
   const config = {}, out = [null];
   check(redman.rdm_pool_config_init(config, koffi.sizeof('rdm_pool_config')));
-  check(redman.rdm_pool_create(out, { ...config, task, num_envs: numEnvs, seed }));
+  const autoreset = redman.RDM_AUTORESET_NEXT_STEP; // ended worlds rest until the next step
+  check(redman.rdm_pool_create(out, { ...config, task, num_envs: numEnvs, seed, autoreset }));
   check(redman.rdm_pool_reset(out[0], null, null));
   check(redman.rdm_pool_baseline(out[0], redman.RDM_BASELINE_HOLD));
   return out[0];

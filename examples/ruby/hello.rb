@@ -50,6 +50,7 @@ def make_pool(task, num_envs, seed)
   config.task = task # the argument keeps the string until the pool has its copy
   config.num_envs = num_envs
   config.seed = seed
+  config.autoreset = Redman::RDM_AUTORESET_NEXT_STEP # ended worlds rest until the next step
   pool = Redman.written { |out| Redman.rdm_pool_create(out, config) }
   Redman.check Redman.rdm_pool_reset(pool, nil, nil)
   Redman.check Redman.rdm_pool_baseline(pool, Redman::RDM_BASELINE_HOLD)

@@ -44,6 +44,7 @@ impl Pool {
             config.task = task.as_ptr();
             config.num_envs = num_envs;
             config.seed = seed;
+            config.autoreset = RDM_AUTORESET_NEXT_STEP as i32; // ended worlds rest until the next step
             check(rdm_pool_create(&mut pool.handle, &config))?;
             check(rdm_pool_reset(pool.handle, ptr::null(), ptr::null()))?;
             check(rdm_pool_baseline(pool.handle, RDM_BASELINE_HOLD as i32))?;

@@ -5,11 +5,11 @@
 set -u
 root=$1 REDMAN_LIBRARY=$2 WORK=$3 language=$4
 export REDMAN_LIBRARY WORK
-policy=$WORK/run/policy.rdm said=$WORK/$language.txt errors=$WORK/$language.err
+policy=$WORK/run/policy.rdm said=$WORK/$language.txt refused=$WORK/$language.none errors=$WORK/$language.err
 mkdir -p "$WORK"
 
-# printed POLICY: what the program prints, its errors aside.
-printed() { bash "$root/examples/languages.sh" "$language" "$1" > "$said" 2> "$errors"; }
+# printed POLICY FILE: what the program prints goes to FILE.
+printed() { bash "$root/examples/languages.sh" "$language" "$1" > "$2" 2> "$errors"; }
 fail() {
   echo "$language: $*"
   cat "$said" "$errors"
@@ -20,7 +20,7 @@ if [ "$language" = c ]; then
   "$5" train --task hand_over_safe_finger --envs 16 --steps 4000 --out "$WORK/run" --overwrite > /dev/null 2> "$errors" ||
     { cat "$errors"; exit 1; }
 fi
-printed "$policy"
+printed "$policy" "$said"
 case $? in
   0) ;;
   77) cat "$said"; exit 77 ;;
@@ -34,7 +34,6 @@ if [ "$language" = c ]; then
 else
   cmp -s "$said" "$WORK/c.txt" || fail "prints other lines than C, which are: $(cat "$WORK/c.txt")"
 fi
-lines=$(cat "$said")
-if printed "$WORK/none.rdm"; then fail "is content with a policy that is not there"; fi
+if printed "$WORK/none.rdm" "$refused"; then fail "is content with a policy that is not there"; fi
 grep -q 'none\.rdm: cannot open: No such file or directory' "$errors" || fail "does not say what is wrong with the policy"
-echo "$lines"
+cat "$said"
