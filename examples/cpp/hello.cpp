@@ -24,15 +24,11 @@ struct Outcome {
 // 75 steps; policy null: the start pose is held.
 static Outcome play(const redman::Policy* policy) {
   auto pool = make_pool("hand_over_safe_finger", 4, 7);
-  std::vector<char> scratch;
-  if (policy) {
-    policy->check_fits(pool.spec());
-    scratch.resize(policy->scratch_bytes(4));
-  }
+  if (policy) policy->check_fits(pool.spec());
   Outcome o;
   for (int t = 0; t < 75; ++t) {
     if (policy && t % policy->info().action_repeat == 0)
-      policy->act(pool.obs().data(), 4, nullptr, pool.action().data(), scratch.data(), scratch.size());
+      policy->act(pool.obs().data(), 4, nullptr, pool.action().data());
     pool.step();
     o.sum += pool.reward()[0];
     o.cost += pool.cost()[0][0];

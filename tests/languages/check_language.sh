@@ -36,4 +36,9 @@ else
 fi
 if printed "$WORK/none.rdm" "$refused"; then fail "is content with a policy that is not there"; fi
 grep -q 'none\.rdm: cannot open: No such file or directory' "$errors" || fail "does not say what is wrong with the policy"
+# Short programs, and the table of examples/README.md says how short.
+lines=$(cat "$root/examples/$language"/[hH]ello.* | wc -l)
+[ "$lines" -lt 120 ] || fail "has $lines lines"
+[ "$language" = c ] || grep -q "]($language/[hH]ello[.a-z]*) | $lines |" "$root/examples/README.md" ||
+  fail "examples/README.md does not say that the program has $lines lines"
 cat "$said"
