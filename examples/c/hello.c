@@ -69,7 +69,7 @@ static outcome play(const rdm_policy* policy) {
 /* CPU seconds of one step of the pool. */
 static double measure(const char* task, int32_t num_envs, int calls) {
   rdm_pool* pool = make_pool(task, num_envs, 0);
-  for (int t = 0; t < calls / 4; ++t) check(rdm_pool_step(pool)); /* warms up */
+  for (int t = 0; t < calls; ++t) check(rdm_pool_step(pool)); /* warms up */
   const clock_t start = clock();
   for (int t = 0; t < calls; ++t) check(rdm_pool_step(pool));
   const double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;

@@ -40,7 +40,7 @@ static Outcome play(const redman::Policy* policy) {
 // CPU seconds of one step of the pool.
 static double measure(const char* task, int32_t num_envs, int calls) {
   auto pool = make_pool(task, num_envs, 0);
-  for (int t = 0; t < calls / 4; ++t) pool.step();  // warms up
+  for (int t = 0; t < calls; ++t) pool.step();  // warms up
   const std::clock_t start = std::clock();
   for (int t = 0; t < calls; ++t) pool.step();
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / calls;

@@ -80,7 +80,7 @@ func play(policy *C.rdm_policy) (sum, cost float64, hash C.uint64_t) {
 func measure(task string, numEnvs, calls int) float64 {
 	pool := makePool(task, numEnvs, 0)
 	defer C.rdm_pool_destroy(pool)
-	for t := 0; t < calls/4; t++ { // warms up
+	for t := 0; t < calls; t++ { // warms up
 		check(C.rdm_pool_step(pool))
 	}
 	start := C.clock()

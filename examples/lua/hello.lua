@@ -68,7 +68,7 @@ end
 -- CPU seconds of one step of the pool.
 local function measure(task, num_envs, calls)
   local pool = make_pool(task, num_envs, 0)
-  for _ = 1, calls / 4 do check(redman.rdm_pool_step(pool)) end -- warms up
+  for _ = 1, calls do check(redman.rdm_pool_step(pool)) end -- warms up
   local start = ffi.C.clock()
   for _ = 1, calls do check(redman.rdm_pool_step(pool)) end
   return tonumber(ffi.C.clock() - start) * 1e-6 / calls

@@ -87,7 +87,7 @@ function play(policy) {
 // CPU seconds of one step of the pool.
 function measure(task, numEnvs, calls) {
   const pool = makePool(task, numEnvs, 0);
-  for (let t = 0; t < calls / 4; ++t) check(redman.rdm_pool_step(pool)); // warms up
+  for (let t = 0; t < calls; ++t) check(redman.rdm_pool_step(pool)); // warms up
   const start = clock();
   for (let t = 0; t < calls; ++t) check(redman.rdm_pool_step(pool));
   const seconds = (clock() - start) * 1e-6;

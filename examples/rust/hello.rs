@@ -90,7 +90,7 @@ fn play(policy: Option<*const rdm_policy>) -> Result<(f64, f64, u64)> {
 /// CPU seconds of one step of the pool.
 fn measure(task: &str, num_envs: i32, calls: u32) -> Result<f64> {
     let mut pool = Pool::new(task, num_envs, 0)?;
-    (0..calls / 4).try_for_each(|_| pool.step())?; // warms up
+    (0..calls).try_for_each(|_| pool.step())?; // warms up
     let start = unsafe { clock() };
     (0..calls).try_for_each(|_| pool.step())?;
     Ok((unsafe { clock() } - start) as f64 * 1e-6 / calls as f64)
