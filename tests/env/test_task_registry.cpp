@@ -16,7 +16,7 @@ TEST(Registry, RefusesWhatIsNotThere) {
   register_toy();
   for (const char* name : {"toy_pul", "ToyPush-vx", "ToyPush-v", "UnsafetyToyPush", ""}) {
     EXPECT_EQ(code_of([&] { task_find(name); }), Code::kNotFound) << name;
-    const bool near = std::strlen(name) > 0 && std::strlen(name) < 10;
+    const bool near = std::strlen(name) > 0 && std::strlen(name) <= 10;
     EXPECT_EQ(std::strstr(last_error(), "; nearest is toy_push") != nullptr, near) << last_error();
   }
   EXPECT_EQ(code_of([&] { task_find(nullptr); }), Code::kArgument);

@@ -71,7 +71,7 @@ std::string nearest_hint(const std::string& word, const std::vector<std::string>
   if (best == names.end()) return "";
   const size_t common = std::min(word.size(), best->size());
   const bool begins = common >= 3 && folded(word).substr(0, common) == folded(*best).substr(0, common);
-  const bool near = begins || 3 * static_cast<size_t>(far(*best)) <= std::max(word.size(), best->size());
+  const bool near = begins || 3 * static_cast<size_t>(far(*best)) <= std::max(word.size(), best->size()) + 2;
   return near ? "; nearest is " + *best : "";
 }
 

@@ -12,8 +12,8 @@ namespace tool {
 
 // Case is ignored and '-' equals '_'.
 bool same_name(const std::string& a, const std::string& b);
-// "; nearest is NAME" with the entry of `names` that differs least, "" when none is near: a third of its
-// letters at most.
+// "; nearest is NAME" with the entry of `names` that differs least, "" when none is near: as the library's
+// texts.
 std::string nearest_hint(const std::string& word, const std::vector<std::string>& names);
 
 // Index by name; Usage with the nearest known name.
