@@ -56,7 +56,7 @@ case $language in
   node)
     want node "apt-get install nodejs"
     export NODE_PATH=${REDMAN_KOFFI:-$root/build/node_modules}
-    node -e 'require("koffi")' 2> "$work/koffi.log" || skip koffi "npm install koffi, and REDMAN_KOFFI is its node_modules"
+    (cd "$source" && node -e 'require("koffi")') 2> /dev/null || skip koffi "npm install koffi, and REDMAN_KOFFI is its node_modules"
     set -- node "$source/hello.js" "$@"
     ;;
   lua)
