@@ -23,7 +23,6 @@ module Redman
   end
   header.scan(/^RDM_API ([^;]*);/) { |text,| extern text.gsub(/\bconst /, '').gsub(/\s+/, ' ') }
 
-
   def self.check(result)
     raise rdm_last_error.to_s unless result == RDM_OK
   end
