@@ -88,7 +88,7 @@ case $mode in
     ;;
   languages)
     # The program of examples/LANGUAGE in every language: the tools are Debian's, where there are no others.
-    need bindgen luajit libjna-java mono-mcs mono-runtime ruby
+    need bindgen libclang1-14 libclang-common-14-dev luajit libjna-java mono-mcs mono-runtime ruby
     for tool in rustc:rustc go:golang-go javac:default-jdk-headless node:nodejs npm:npm; do
       command -v "${tool%%:*}" > /dev/null || need "${tool#*:}"
     done

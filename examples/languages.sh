@@ -39,7 +39,12 @@ case $language in
     want rustc "apt-get install rustc"
     want bindgen "apt-get install bindgen"
     if stale "$hello" "$source/hello.rs"; then
-      bindgen "$REDMAN_HEADER" --size_t-is-usize --no-prepend-enum-name --allowlist-file '.*/redman\.h' -o "$work/redman_sys.rs"
+      bindgen "$REDMAN_HEADER" --size_t-is-usize --no-prepend-enum-name --allowlist-file '.*/redman\.h' \
+        -o "$work/redman_sys.rs" 2> "$work/bindgen.log" || {
+        ! grep -q 'find.*libclang' "$work/bindgen.log" || skip libclang "apt-get install libclang1-14 libclang-common-14-dev"
+        cat "$work/bindgen.log" >&2
+        exit 1
+      }
       rustc --edition 2021 -O --cap-lints allow --crate-type rlib --out-dir "$work" "$work/redman_sys.rs"
       rustc --edition 2021 -O -D warnings --extern redman_sys="$work/libredman_sys.rlib" -L "$libraries" -l redman \
         "$source/hello.rs" -o "$hello"
