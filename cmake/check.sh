@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|coverage|hard [MINUTES]]: installs what the tests need, builds, and runs them.
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|hard [MINUTES]]: installs what the tests need, builds, and runs them.
 # The last line says how many passed and failed; the exit status is 0 when none failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -86,6 +86,19 @@ case $mode in
     cmake --build build/clang -j "$(nproc)" --target test_golden test_stepper test_vec >&2 || die "the build with clang failed: see above"
     run_tests clang -R '^(test_golden|golden_other_libm|test_stepper|test_vec)$'
     ;;
+  languages)
+    # The program of examples/LANGUAGE in every language: the tools are Debian's, where there are no others.
+    need bindgen libclang1-14 libclang-common-14-dev luajit libjna-java mono-mcs mono-runtime ruby
+    for tool in rustc:rustc go:golang-go javac:default-jdk-headless node:nodejs npm:npm; do
+      command -v "${tool%%:*}" > /dev/null || need "${tool#*:}"
+    done
+    configure dev
+    cmake --build --preset dev -j "$(nproc)" --target redman redman_tool >&2 || die "preset dev could not be built: see above"
+    [ -e build/node_modules/koffi ] || npm install --prefix build --no-audit --no-fund koffi@3 > build/koffi.log 2>&1 ||
+      die "cannot install koffi: $(tail -n1 build/koffi.log)"
+    run_tests dev -L '^languages$' || exit 1
+    ! grep 'Skipped' build/ctest-languages.log || die "all tools are here, and yet the tests above were skipped"
+    ;;
   hard)
     # Tries to break the library for an hour (or MINUTES), builds included: tests/hard/README.md. Two lines of work,
     # one for each of two processors; every part gets a share of the time that the builds leave.
@@ -126,5 +139,5 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
-  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|coverage|hard [MINUTES]]" ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|hard [MINUTES]]" ;;
 esac
