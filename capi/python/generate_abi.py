@@ -1,0 +1,435 @@
+#!/usr/bin/env python3
+"""Writes redman/_abi.py from the public headers: constants, enums, structs, functions, shapes of rows, docstrings.
+
+    python3 generate_abi.py            writes redman/_abi.py
+    python3 generate_abi.py --check    ends with 1 and a word when that file is not what the headers say
+
+It needs no compiler, for the headers are regular: one declaration is `RDM_API type rdm_name(...);`,
+`typedef struct rdm_name { ... } rdm_name;` or `enum rdm_name { ... };`; a comment stands behind what it tells of, or
+above a run of declarations; `[num_envs][obs_dim]` in it is the shape of a row, of a field or of an argument
+that is named before it. What does not parse is an error here, not a function that is left out.
+"""
+from __future__ import annotations
+
+import json
+import re
+import sys
+import textwrap
+from pathlib import Path
+from typing import Iterator, NamedTuple
+
+HERE = Path(__file__).resolve().parent
+INCLUDE = HERE.parents[1] / "include" / "redman"
+OUTPUT = HERE / "redman" / "_abi.py"
+
+SCALARS = {
+    "float": "c_float", "double": "c_double", "size_t": "c_size_t", "rdm_result": "c_int32",
+    **{f"{sign}int{bits}_t": f"c_{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)},
+}
+DTYPES = {"float": "float32", "double": "float64", **{name: name[:-2] for name in SCALARS if name.endswith("_t")}}
+
+
+class Declared(NamedTuple):
+    """One declaration with the comment that tells of it."""
+
+    kind: str  # constant, enum, struct, handle, callback, function
+    name: str
+    body: str  # value, list of members, fields, or parameters
+    result: str  # type of a function's result
+    doc: str
+    experimental: bool
+
+
+class Variable(NamedTuple):
+    """A field or a parameter."""
+
+    name: str
+    type: str  # "const float *"
+    count: str  # "3" of `float eye[3]`, else ""
+    doc: str = ""
+
+    @property
+    def pointer(self) -> bool:
+        return self.type.endswith("*")
+
+    @property
+    def base(self) -> str:
+        return self.type.replace("const ", "").rstrip("* ")
+
+
+COMMENT = r"/\*.*?\*/"
+STATEMENT = re.compile(
+    r"(?P<comment>" + COMMENT + r")"
+    r"|^\#define[ ](?P<constant>RDM_\w+)[ ]+(?P<value>[^\n/]*)"
+    r"|^(?P<directive>\#[^\n]*)"
+    r"|(?:typedef[ ])?enum[ ]*(?P<enum>rdm_\w+)?[ ]*\{(?P<members>.*?)\}[^;{]*;"
+    r"|typedef[ ]struct[ ](?P<struct>rdm_\w+)[ ]\{(?P<fields>.*?)^\}[ ]\w+;"
+    r"|typedef[ ]struct[ ](?P<handle>rdm_\w+)[ ]\w+;"
+    r"|typedef[ ](?P<returned>[\w ]+?[ *]+)\(\*(?P<callback>rdm_\w+)\)\((?P<given>[^)]*)\);"
+    r"|typedef[ ]int32_t[ ]rdm_\w+;"
+    r"|RDM_API[ ](?P<result>[\w ]+?[ *]+)(?P<function>rdm_\w+)\((?P<parameters>[^)]*)\);"
+    r"|(?P<blank>\n[ \t]*(?=\n))|extern[ ]\"C\"[ ]\{|\}|\s+", re.S | re.M | re.X)
+
+
+def text_of(comment: str) -> str:
+    """The words of a C comment; "" for a heading or a rule of dashes."""
+    body = re.sub(r"^/\*+<?|\*+/$", "", comment)
+    if re.match(r"\s*(----|====)", body):
+        return ""
+    return "\n".join(re.sub(r"^\s*\*? ?", "", line).rstrip() for line in body.splitlines()).strip()
+
+
+def declarations(text: str) -> Iterator[Declared]:
+    """All declarations of a header in their order."""
+    # Only what a C++ or a repeated #include sees is left out.
+    start = text.index("#define REDMAN_H")
+    experimental_from = text.index("#if defined(RDM_EXPERIMENTAL)")
+    pending: Declared | None = None
+    covering = covered = ""  # a comment that stands above, and the kind of what it has told of
+    at = start
+    end_of_last = 0
+    while at < len(text):
+        match = STATEMENT.match(text, at)
+        if not match or match.end() == at:
+            line = text.count("\n", 0, at) + 1
+            raise SystemExit(f"redman.h:{line}: not a declaration that this script knows: {text[at:at + 60]!r}")
+        at = match.end()
+        kind = match.lastgroup
+        found = match.groupdict()
+        if found["comment"]:
+            behind = pending is not None and "\n" not in text[end_of_last:match.start()]
+            if behind:
+                assert pending is not None
+                pending = pending._replace(doc=text_of(found["comment"]))
+                covering = ""
+            else:
+                if pending:
+                    yield pending
+                    pending = None
+                covering, covered = text_of(found["comment"]), ""
+            continue
+        if kind is None and not match.group().strip():
+            continue
+        if pending:
+            yield pending
+            pending = None
+        if found["blank"] is not None or found["directive"]:
+            covering = ""
+            continue
+        about = next(name for name in ("constant", "members", "struct", "handle", "callback", "function", "blank")
+                     if found[name] is not None or name == "blank")
+        if covered not in ("", about):
+            covering = ""  # it was of another kind of thing
+        covered = about if covering else ""
+        common = {"doc": covering, "experimental": match.start() > experimental_from, "result": ""}
+        if found["constant"]:
+            pending = Declared("constant", found["constant"], found["value"].strip(), **common)
+        elif found["members"] is not None:
+            pending = Declared("enum", found["enum"] or "", found["members"], **common)
+        elif found["struct"]:
+            pending = Declared("struct", found["struct"], found["fields"], **common)
+        elif found["handle"]:
+            pending = Declared("handle", found["handle"], "", **common)
+        elif found["callback"]:
+            common["result"] = found["returned"].strip()
+            pending = Declared("callback", found["callback"], found["given"], **common)
+        elif found["function"]:
+            common["result"] = found["result"].strip()
+            pending = Declared("function", found["function"], found["parameters"], **common)
+        end_of_last = match.end()
+    if pending:
+        yield pending
+
+
+def variables(text: str) -> list[Variable]:
+    """Of `const char *a, *b` or `float size[3]`."""
+    parts = [part.strip() for part in text.split(",")]
+    first = re.match(r"((?:const )?\w+) ", parts[0])
+    if not first:
+        raise SystemExit(f"redman.h: not a declaration that this script knows: {text!r}")
+    out = []
+    for part in parts:
+        part = part if part is parts[0] else f"{first.group(1)} {part}"
+        match = re.fullmatch(r"((?:const )?\w+) ?(\**)(\w+)(?:\[(\w+)\])?", " ".join(part.split()))
+        if not match:
+            raise SystemExit(f"redman.h: not a declaration that this script knows: {part!r}")
+        kind, stars, name, count = match.groups()
+        out.append(Variable(name, f"{kind} {stars}".strip(), count or ""))
+    return out
+
+
+def parameters(text: str) -> list[Variable]:
+    if text.strip() == "void":
+        return []
+    return [variables(part)[0] for part in text.split(",")]
+
+
+FIELD = re.compile(r"(?P<comment>" + COMMENT + r")|(?P<field>[^;/]+);|\s+", re.S)
+
+
+def fields(struct: Declared) -> list[tuple[Variable, str]]:
+    """Each field with the prototype of a callback, "" for all others."""
+    out: list[tuple[Variable, str]] = []
+    fresh = 0  # fields that a comment behind tells of
+    covering = ""
+    end = 0
+    for match in FIELD.finditer(struct.body):
+        if match["comment"]:
+            doc = text_of(match["comment"])
+            if fresh and "\n" not in struct.body[end:match.start()]:
+                out[-fresh:] = [(variable._replace(doc=doc), proto) for variable, proto in out[-fresh:]]
+            else:
+                covering = doc
+            fresh = 0
+        elif match["field"]:
+            line = " ".join(match["field"].split())
+            hook = re.fullmatch(r"(\w+ \*?)\(\*(\w+)\)\((.*)\)", line)
+            if hook:
+                new = [(Variable(hook[2], "", "", covering), f"{hook[1].strip()}({hook[3]})")]
+            else:
+                new = [(variable._replace(doc=covering), "") for variable in variables(line)]
+            out += new
+            fresh, end, covering = len(new), match.end(), ""
+    return out
+
+
+SHAPE = r"((?:\[[\w* +]+\])+)"
+
+
+def shape(brackets: str) -> tuple[str, ...]:
+    return tuple(re.findall(r"\[([^\]]*)\]", brackets))
+
+
+def shape_of_field(variable: Variable) -> tuple[str, ...]:
+    match = re.match(SHAPE, variable.doc)
+    return shape(match[1]) if match else ()
+
+
+def shape_of_argument(variable: Variable, doc: str) -> tuple[str, ...]:
+    if variable.count:
+        return (variable.count,)
+    match = re.search(rf"\b{variable.name} ?{SHAPE}", doc)
+    return shape(match[1]) if match else ()
+
+
+def camel(name: str) -> str:
+    """ "PoolStats" of rdm_pool_stats."""
+    return "".join(word.capitalize() for word in name.removeprefix("rdm_").split("_"))
+
+
+def members(declared: Declared) -> list[tuple[str, int, str]]:
+    """(name, value, comment) of an enum."""
+    out = []
+    value = -1
+    for match in re.finditer(r"(RDM_\w+)(?: = (-?\w+))?(?:,|\s)*(" + COMMENT + ")?", strip_leading(declared.body), re.S):
+        value = int(match[2], 0) if match[2] else value + 1
+        out.append((match[1], value, " ".join(text_of(match[3] or "").split())))
+    return out
+
+
+def strip_leading(body: str) -> str:
+    return re.sub(r"^\s*" + COMMENT, "", body, flags=re.S)
+
+
+def prefix_of(names: list[str]) -> str:
+    """What all names of an enum share, to an underscore."""
+    shared = names[0]
+    for name in names:
+        while not name.startswith(shared):
+            shared = shared[:-1]
+    return shared[:shared.rindex("_") + 1]
+
+
+def ctype(variable: Variable, structs: set[str], callbacks: set[str]) -> str:
+    base, stars = variable.base, variable.type.count("*") + bool(variable.count)
+    if base in callbacks:
+        return base
+    if stars == 0:
+        return SCALARS[base]
+    if base == "char":
+        return {1: "c_char_p" if variable.type.startswith("const") else "c_void_p", 2: "POINTER(c_char_p)"}[stars]
+    if base in structs:
+        return f"POINTER({base})" if stars == 1 else "c_void_p"
+    return "c_void_p" if stars == 1 else "POINTER(c_void_p)"
+
+
+def prototype(proto: str, structs: set[str], callbacks: set[str]) -> str:
+    result, given = re.fullmatch(r"(.*?)\((.*)\)", proto).groups()  # type: ignore[union-attr]
+    types = [ctype(v, structs, callbacks) for v in parameters(given)]
+    return f"CFUNCTYPE({', '.join([result_type(result), *types])})"
+
+
+def result_type(c: str) -> str:
+    if c == "void":
+        return "None"
+    if c.endswith("*"):
+        return "c_char_p" if "char" in c else "c_void_p"
+    return SCALARS[c]
+
+
+HINTS = {"c_float": "float", "c_double": "float", "c_char_p": "bytes | None", "c_void_p": "int | None"}
+
+
+def quoted(text: str, indent: str) -> str:
+    """A docstring."""
+    text = text.replace("\\", "\\\\").replace('"""', "'''")
+    lines = text.splitlines() or [""]
+    body = f"\n{indent}".join(lines).replace(f"\n{indent}\n", "\n\n")
+    return f'"""{body}{chr(10) + indent if len(lines) > 1 else ""}"""'
+
+
+def rows_text(rows: dict[str, tuple[str, tuple[str, ...]]]) -> str:
+    return "{" + ", ".join(f'"{name}": {row_text(*row)}' for name, row in rows.items()) + "}"
+
+
+def row_text(dtype: str, dims: tuple[str, ...]) -> str:
+    return f'Rows("{dtype}", ({", ".join(map(json.dumps, dims))}{"," if len(dims) == 1 else ""}))'
+
+
+HEADER = '''\
+"""The C ABI for ctypes. Written by generate_abi.py from include/redman: change the headers, not this file."""
+from __future__ import annotations
+
+import enum
+from ctypes import (CDLL, CFUNCTYPE, POINTER, Structure, c_char_p, c_double, c_float, c_int8, c_int32, c_int64,
+                    c_size_t, c_uint8, c_uint32, c_uint64, c_void_p)
+from typing import Any, NamedTuple
+
+from ._record import Record
+
+
+class Rows(NamedTuple):
+    """What a pointer points at: the numpy type and the shape, its lengths by name."""
+
+    dtype: str
+    shape: tuple[str, ...]
+
+
+class Function(NamedTuple):
+    """A function of the library; rows are the arguments that are arrays."""
+
+    result: Any
+    arguments: dict[str, Any]
+    rows: dict[str, Rows]
+    experimental: bool
+    doc: str
+
+
+'''
+
+
+def generate(text: str) -> str:
+    """The module for the text of redman.h."""
+    found = list(declarations(text))
+    structs = {d.name for d in found if d.kind == "struct"}
+    callbacks = {d.name for d in found if d.kind == "callback"}
+    out = [HEADER]
+    for d in found:
+        if d.kind == "constant" and re.fullmatch(r"\d+", d.body):
+            out.append(f"{d.name} = {d.body}{'  # ' + ' '.join(d.doc.split()) if d.doc else ''}\n")
+    out.append("RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH\n\n\n")
+    for d in found:
+        if d.kind != "enum":
+            continue
+        rows = members(d)
+        if d.name:
+            prefix = prefix_of([name for name, _, _ in rows])
+            out.append(f"class {camel(d.name)}(enum.IntEnum):\n    {quoted(d.doc or d.name, '    ')}\n\n")
+            out += [f"    {name.removeprefix(prefix)} = {value}{'  # ' + doc if doc else ''}\n" for name, value, doc in rows]
+            out.append("\n\n")
+        else:
+            out += [f"{name} = {value}{'  # ' + doc if doc else ''}\n" for name, value, doc in rows]
+            out.append("\n")
+    out.append("\n")
+    for d in found:
+        if d.kind == "callback":
+            out.append(f"{d.name} = {prototype(f'{d.result}({d.body})', structs, callbacks)}\n\n\n")
+        elif d.kind == "struct":
+            out.append(struct_text(d, structs, callbacks))
+    out.append("STRUCTS: dict[str, type[Structure]] = {\n")
+    out += [f'    "{d.name}": {d.name},\n' for d in found if d.kind == "struct"]
+    out.append("}\n\n# The rows that fields of structs point at.\nROWS: dict[str, dict[str, Rows]] = {\n")
+    for d in found:
+        if d.kind == "struct":
+            rows_of = {v.name: (DTYPES[v.base], shape_of_field(v)) for v, proto in fields(d)
+                       if not proto and v.pointer and shape_of_field(v) and v.base in DTYPES}
+            if rows_of:
+                inner = ",\n        ".join(f'"{name}": {row_text(*row)}' for name, row in rows_of.items())
+                out.append(f'    "{d.name}": {{\n        {inner},\n    }},\n')
+    out.append("}\n\nFUNCTIONS: dict[str, Function] = {\n")
+    for d in found:
+        if d.kind != "function":
+            continue
+        given = parameters(d.body)
+        arguments = ", ".join(f'"{v.name}": {ctype(v, structs, callbacks)}' for v in given)
+        shaped = {v.name: (DTYPES[v.base], shape_of_argument(v, d.doc)) for v in given
+                  if (v.pointer or v.count) and v.base in DTYPES and shape_of_argument(v, d.doc)}
+        out.append(f'    "{d.name}": Function(\n        {result_type(d.result)}, {{{arguments}}},\n'
+                   f'        {rows_text(shaped)}, {d.experimental},\n        {quoted(d.doc, " " * 8)}),\n')
+    out.append('''}
+
+
+def declare(library: CDLL) -> None:
+    """Gives each function of the loaded library its types."""
+    for name, function in FUNCTIONS.items():
+        symbol = getattr(library, name)
+        symbol.restype = function.result
+        symbol.argtypes = list(function.arguments.values())
+''')
+    return "".join(out)
+
+
+def struct_text(d: Declared, structs: set[str], callbacks: set[str]) -> str:
+    listed, hints = [], []
+    about = [d.doc, ""] if d.doc else []
+    for variable, proto in fields(d):
+        if proto:
+            kind, hint = prototype(proto, structs, callbacks), "Any"
+        elif variable.count:
+            element = SCALARS[variable.base]
+            kind = f"{element} * {variable.count}"
+            hint = "Any"
+        else:
+            kind = ctype(variable, structs, callbacks)
+            hint = HINTS.get(kind, "Any" if kind.startswith("POINTER") or kind in callbacks else "int")
+        listed.append(f'        ("{variable.name}", {kind}),\n')
+        hints.append(f"    {variable.name}: {hint}\n")
+        about += textwrap.wrap(f"{variable.name}: {' '.join(variable.doc.split())}".rstrip(": "), 108,
+                               subsequent_indent="    ")
+    doc = quoted("\n".join(about), "    ")
+    return record_text(d) + f"class {d.name}(Structure):\n    {doc}\n\n{''.join(hints)}    _fields_ = [\n{''.join(listed)}    ]\n\n\n"
+
+
+RECORD_HINTS = {"c_float": "float", "c_double": "float"}
+
+
+def record_text(d: Declared) -> str:
+    """The Record of a struct that holds values alone, "" for one with pointers to more."""
+    lines = []
+    for variable, proto in fields(d):
+        if proto or (variable.pointer and variable.type != "const char *"):
+            return ""
+        if variable.name == "struct_size" or variable.name.startswith("reserved"):
+            continue
+        hint = "str" if variable.base == "char" else RECORD_HINTS.get(SCALARS[variable.base], "int")
+        hint = f"tuple[{hint}, ...]" if variable.count else hint
+        hint += " | None" if "NULL" in variable.doc and hint == "str" else ""
+        doc = " ".join(variable.doc.split())
+        lines.append(f"    {variable.name}: {hint}{'  # ' + doc if doc else ''}\n")
+    about = quoted(d.doc or f"The values of {d.name}.", "    ")
+    return f"class {camel(d.name)}(Record):\n    {about}\n\n{''.join(lines)}\n\n"
+
+
+def main() -> int:
+    text = generate((INCLUDE / "redman.h").read_text(encoding="utf-8"))
+    if "--check" in sys.argv[1:]:
+        if OUTPUT.read_text(encoding="utf-8") == text:
+            return 0
+        print(f"{OUTPUT.name} is not what the headers say: run {Path(__file__).name}", file=sys.stderr)
+        return 1
+    OUTPUT.write_text(text, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

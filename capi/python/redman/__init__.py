@@ -1,0 +1,23 @@
+"""redman: safe dexterous manipulation. Worlds, learners and policies of the library libredman, for numpy.
+
+    import redman
+    pool = redman.Pool("hand_over_safe_finger", num_envs=16)
+    pool.reset()
+    agent = redman.Agent(pool)
+    for _ in range(10):
+        print(agent.rollout(pool))
+    agent.policy().save("policy.rdm")
+"""
+from __future__ import annotations
+
+from ._agent import Agent, Epoch
+from ._discovery import Algo, Field, Option, Robot, Task, algo, algos, build, objects, robots, task, tasks
+from ._error import (AllocationError, ArgumentError, CancelledError, Error, FileError, FormatError, InternalError,
+                     MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError,
+                     VersionError)
+from ._map import Map, sample_furthest
+from ._play import Evaluation, evaluate
+from ._policy import Policy
+from ._pool import SHAPE_KINDS, Pool, Sensors
+
+__version__ = version = build().version

@@ -1,0 +1,1762 @@
+"""The C ABI for ctypes. Written by generate_abi.py from include/redman: change the headers, not this file."""
+from __future__ import annotations
+
+import enum
+from ctypes import (CDLL, CFUNCTYPE, POINTER, Structure, c_char_p, c_double, c_float, c_int8, c_int32, c_int64,
+                    c_size_t, c_uint8, c_uint32, c_uint64, c_void_p)
+from typing import Any, NamedTuple
+
+from ._record import Record
+
+
+class Rows(NamedTuple):
+    """What a pointer points at: the numpy type and the shape, its lengths by name."""
+
+    dtype: str
+    shape: tuple[str, ...]
+
+
+class Function(NamedTuple):
+    """A function of the library; rows are the arguments that are arrays."""
+
+    result: Any
+    arguments: dict[str, Any]
+    rows: dict[str, Rows]
+    experimental: bool
+    doc: str
+
+
+RDM_VERSION_MAJOR = 0
+RDM_VERSION_MINOR = 1
+RDM_VERSION_PATCH = 0
+RDM_ABI = 1  # = SONAME; moves only when an old binary would break
+RDM_MAX_COSTS = 16  # cost columns of a task or an agent
+RDM_TEXT_SIZE = 64  # bytes of an option's text value, terminator included
+RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH
+
+
+RDM_OK = 0
+RDM_ARGUMENT = -1  # NULL, wrong struct_size, not finite, malformed
+RDM_RANGE = -2  # outside the documented bounds; index past the end
+RDM_STATE = -3  # calls in the wrong order
+RDM_MEMORY = -4  # the allocator refused
+RDM_IO = -5  # file system
+RDM_FORMAT = -6  # truncated, corrupt or foreign bytes
+RDM_VERSION_MISMATCH = -7  # newer file, newer struct, other ABI
+RDM_UNSUPPORTED = -8  # left out of this build, or not defined for this combination
+RDM_PHYSICS = -9  # the physics engine gave up where no world could be flagged
+RDM_NOT_FOUND = -10  # unknown name (the text offers the nearest), missing file
+RDM_CANCELLED = -11  # rdm_agent_cancel was called; the handle is good
+RDM_INTERNAL = -99  # a defect of redman
+
+RDM_FEATURE_SIM = 1
+RDM_FEATURE_LEARN = 2
+
+RDM_NUMBER = 0
+RDM_INTEGER = 1
+RDM_FLAG = 2
+RDM_TEXT = 3
+
+RDM_AUTORESET_SAME_STEP = 0
+RDM_AUTORESET_NEXT_STEP = 1
+RDM_AUTORESET_OFF = 2
+
+RDM_STATUS_CONTACTS = 1  # contacts beyond contacts_max were left out
+RDM_STATUS_DIVERGED = 2  # a value was not finite: the episode was truncated
+RDM_STATUS_BAD_ACTION = 4  # the row of actions was not finite: likewise
+
+RDM_BASELINE_ZERO = 0
+RDM_BASELINE_HOLD = 1
+RDM_BASELINE_RANDOM = 2
+
+RDM_SPHERE = 0
+RDM_CAPSULE = 1
+RDM_BOX = 2
+RDM_CYLINDER = 3
+RDM_PLANE = 4
+RDM_ELLIPSOID = 5
+RDM_HULL = 6
+
+RDM_SAMPLE = 0
+RDM_MEAN = 1
+
+RDM_MAP_BINARY = 0
+RDM_MAP_FULL = 1
+
+
+class Build(Record):
+    """The values of rdm_build."""
+
+    abi: int  # RDM_ABI of the library
+    version: str  # "0.1.0"
+    ode: str  # version of ODE, "" without the simulation half
+    eigen: str  # version of Eigen
+    ccd: str  # version of libccd
+    octomap: str  # version of OctoMap
+    precision: str  # of physics and networks: "double physics, float nets"
+    compiler: str  # name and version
+    kernels: str  # instruction set that the networks run on here
+
+
+class rdm_build(Structure):
+    """struct_size: in: bytes
+    abi: RDM_ABI of the library
+    version: "0.1.0"
+    ode: version of ODE, "" without the simulation half
+    eigen: version of Eigen
+    ccd: version of libccd
+    octomap: version of OctoMap
+    precision: of physics and networks: "double physics, float nets"
+    compiler: name and version
+    kernels: instruction set that the networks run on here
+    """
+
+    struct_size: int
+    abi: int
+    version: bytes | None
+    ode: bytes | None
+    eigen: bytes | None
+    ccd: bytes | None
+    octomap: bytes | None
+    precision: bytes | None
+    compiler: bytes | None
+    kernels: bytes | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("abi", c_uint32),
+        ("version", c_char_p),
+        ("ode", c_char_p),
+        ("eigen", c_char_p),
+        ("ccd", c_char_p),
+        ("octomap", c_char_p),
+        ("precision", c_char_p),
+        ("compiler", c_char_p),
+        ("kernels", c_char_p),
+    ]
+
+
+rdm_body = CFUNCTYPE(None, c_void_p, c_int32)
+
+
+class rdm_host(Structure):
+    """struct_size: bytes
+    reserved: 0
+    user: passed back to every hook; may be NULL
+    alloc: `bytes` at a multiple of `align` (a power of two up to 64), or NULL. NULL hook: the C library's.
+    release: required with alloc
+    log: 0 info, 1 warning, 2 error; NULL: silent
+    parallel: Must run body(context, i) once for every i in [0, n), each on one OS thread, and return when all
+        are done; may be serial. NULL: redman's own workers.
+    """
+
+    struct_size: int
+    reserved: int
+    user: int | None
+    alloc: Any
+    release: Any
+    log: Any
+    parallel: Any
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("user", c_void_p),
+        ("alloc", CFUNCTYPE(c_void_p, c_void_p, c_size_t, c_size_t)),
+        ("release", CFUNCTYPE(None, c_void_p, c_void_p, c_size_t, c_size_t)),
+        ("log", CFUNCTYPE(None, c_void_p, c_int32, c_char_p)),
+        ("parallel", CFUNCTYPE(None, c_void_p, c_int32, rdm_body, c_void_p)),
+    ]
+
+
+class Option(Record):
+    """The values of rdm_option."""
+
+    key: str  # case is ignored and '-' equals '_'
+    text: str | None  # value as one line of text ("0.5", "egg"); NULL: number is it
+    number: float  # value when text is NULL
+
+
+class rdm_option(Structure):
+    """key: case is ignored and '-' equals '_'
+    text: value as one line of text ("0.5", "egg"); NULL: number is it
+    number: value when text is NULL
+    """
+
+    key: bytes | None
+    text: bytes | None
+    number: float
+    _fields_ = [
+        ("key", c_char_p),
+        ("text", c_char_p),
+        ("number", c_double),
+    ]
+
+
+class OptionInfo(Record):
+    """The values of rdm_option_info."""
+
+    key: str  # static
+    help: str  # one line, with the unit
+    text: str | None  # default of a text option, else NULL
+    choices: str | None  # allowed words "a|b|c", NULL: any text, or not a text
+    number: float  # default of number, integer, flag
+    low: float  # inclusive bounds
+    high: float  # inclusive bounds
+    kind: int  # RDM_NUMBER, RDM_INTEGER, RDM_FLAG, RDM_TEXT
+    live: int  # flag: rdm_agent_set may change it after creation
+
+
+class rdm_option_info(Structure):
+    """key: static
+    help: one line, with the unit
+    text: default of a text option, else NULL
+    choices: allowed words "a|b|c", NULL: any text, or not a text
+    number: default of number, integer, flag
+    low: inclusive bounds
+    high: inclusive bounds
+    kind: RDM_NUMBER, RDM_INTEGER, RDM_FLAG, RDM_TEXT
+    live: flag: rdm_agent_set may change it after creation
+    """
+
+    key: bytes | None
+    help: bytes | None
+    text: bytes | None
+    choices: bytes | None
+    number: float
+    low: float
+    high: float
+    kind: int
+    live: int
+    _fields_ = [
+        ("key", c_char_p),
+        ("help", c_char_p),
+        ("text", c_char_p),
+        ("choices", c_char_p),
+        ("number", c_double),
+        ("low", c_double),
+        ("high", c_double),
+        ("kind", c_int32),
+        ("live", c_int32),
+    ]
+
+
+class Task(Record):
+    """The values of rdm_task."""
+
+    control_dt: float  # s between steps, default options
+    name: str  # "hand_over_safe_finger"
+    summary: str  # one line
+    obs_dim: int  # count, default options
+    action_dim: int  # count, default options
+    cost_dim: int  # count of cost columns
+    max_steps: int  # control steps of an episode, default options
+    num_fields: int  # for rdm_task_field
+    num_options: int  # for rdm_task_option
+    num_cameras: int  # for rdm_task_camera
+    num_defaults: int  # for rdm_task_default
+
+
+class rdm_task(Structure):
+    """struct_size: in: bytes
+    control_dt: s between steps, default options
+    name: "hand_over_safe_finger"
+    summary: one line
+    obs_dim: count, default options
+    action_dim: count, default options
+    cost_dim: count of cost columns
+    max_steps: control steps of an episode, default options
+    num_fields: for rdm_task_field
+    num_options: for rdm_task_option
+    num_cameras: for rdm_task_camera
+    num_defaults: for rdm_task_default
+    """
+
+    struct_size: int
+    control_dt: float
+    name: bytes | None
+    summary: bytes | None
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    max_steps: int
+    num_fields: int
+    num_options: int
+    num_cameras: int
+    num_defaults: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("control_dt", c_float),
+        ("name", c_char_p),
+        ("summary", c_char_p),
+        ("obs_dim", c_int32),
+        ("action_dim", c_int32),
+        ("cost_dim", c_int32),
+        ("max_steps", c_int32),
+        ("num_fields", c_int32),
+        ("num_options", c_int32),
+        ("num_cameras", c_int32),
+        ("num_defaults", c_int32),
+    ]
+
+
+class Field(Record):
+    """The values of rdm_field."""
+
+    name: str  # "right.joint_position"
+    unit: str  # "rad", "m/s", "1" after scaling ...
+    offset: int  # first entry
+    count: int  # entries
+
+
+class rdm_field(Structure):
+    """name: "right.joint_position"
+    unit: "rad", "m/s", "1" after scaling ...
+    offset: first entry
+    count: entries
+    """
+
+    name: bytes | None
+    unit: bytes | None
+    offset: int
+    count: int
+    _fields_ = [
+        ("name", c_char_p),
+        ("unit", c_char_p),
+        ("offset", c_int32),
+        ("count", c_int32),
+    ]
+
+
+class Cost(Record):
+    """The values of rdm_cost."""
+
+    name: str  # column 0 is "cost", the paper's
+    help: str  # one line
+    limit: float  # default limit on the sum over an episode; < 0: none
+
+
+class rdm_cost(Structure):
+    """name: column 0 is "cost", the paper's
+    help: one line
+    limit: default limit on the sum over an episode; < 0: none
+    """
+
+    name: bytes | None
+    help: bytes | None
+    limit: float
+    _fields_ = [
+        ("name", c_char_p),
+        ("help", c_char_p),
+        ("limit", c_double),
+    ]
+
+
+class Camera(Record):
+    """The values of rdm_camera."""
+
+    name: str  # "front"
+    eye: tuple[float, ...]  # m, world
+    target: tuple[float, ...]  # m, world
+    fov_y: float  # rad, vertical field of view
+
+
+class rdm_camera(Structure):
+    """name: "front"
+    eye: m, world
+    target: m, world
+    fov_y: rad, vertical field of view
+    reserved: 0
+    """
+
+    name: bytes | None
+    eye: Any
+    target: Any
+    fov_y: float
+    reserved: int
+    _fields_ = [
+        ("name", c_char_p),
+        ("eye", c_float * 3),
+        ("target", c_float * 3),
+        ("fov_y", c_float),
+        ("reserved", c_int32),
+    ]
+
+
+class Algo(Record):
+    """The values of rdm_algo."""
+
+    num_options: int  # for rdm_algo_option
+    name: str  # "ppo_lag"
+    summary: str  # one line with the paper
+
+
+class rdm_algo(Structure):
+    """struct_size: in: bytes
+    num_options: for rdm_algo_option
+    name: "ppo_lag"
+    summary: one line with the paper
+    """
+
+    struct_size: int
+    num_options: int
+    name: bytes | None
+    summary: bytes | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_options", c_int32),
+        ("name", c_char_p),
+        ("summary", c_char_p),
+    ]
+
+
+class Robot(Record):
+    """The values of rdm_robot."""
+
+    num_joints: int  # count
+    num_actuated: int  # count of joints with a motor of their own
+    name: str  # "shadow_hand"
+    summary: str  # one line
+
+
+class rdm_robot(Structure):
+    """struct_size: in: bytes
+    num_joints: count
+    num_actuated: count of joints with a motor of their own
+    reserved: 0
+    name: "shadow_hand"
+    summary: one line
+    """
+
+    struct_size: int
+    num_joints: int
+    num_actuated: int
+    reserved: int
+    name: bytes | None
+    summary: bytes | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_joints", c_int32),
+        ("num_actuated", c_int32),
+        ("reserved", c_int32),
+        ("name", c_char_p),
+        ("summary", c_char_p),
+    ]
+
+
+class Joint(Record):
+    """The values of rdm_joint."""
+
+    name: str  # "FFJ2"
+    lower: float  # rad
+    upper: float  # rad
+    kp: float  # N m/rad, 0: coupled
+    kd: float  # N m s/rad
+    effort: float  # N m
+    action: int  # entry of the hand's action, -1: none
+
+
+class rdm_joint(Structure):
+    """name: "FFJ2"
+    lower: rad
+    upper: rad
+    kp: N m/rad, 0: coupled
+    kd: N m s/rad
+    effort: N m
+    action: entry of the hand's action, -1: none
+    reserved: 0
+    """
+
+    name: bytes | None
+    lower: float
+    upper: float
+    kp: float
+    kd: float
+    effort: float
+    action: int
+    reserved: int
+    _fields_ = [
+        ("name", c_char_p),
+        ("lower", c_double),
+        ("upper", c_double),
+        ("kp", c_double),
+        ("kd", c_double),
+        ("effort", c_double),
+        ("action", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
+class Object(Record):
+    """The values of rdm_object."""
+
+    name: str  # "egg"
+    shape: str  # "capsule r 0.03, straight part 0.02": kind and sizes in m
+    mass: float  # kg; hull: of the default points, 500 kg/m3
+
+
+class rdm_object(Structure):
+    """name: "egg"
+    shape: "capsule r 0.03, straight part 0.02": kind and sizes in m
+    mass: kg; hull: of the default points, 500 kg/m3
+    """
+
+    name: bytes | None
+    shape: bytes | None
+    mass: float
+    _fields_ = [
+        ("name", c_char_p),
+        ("shape", c_char_p),
+        ("mass", c_double),
+    ]
+
+
+class rdm_pool_config(Structure):
+    """struct_size: bytes, set by rdm_pool_config_init
+    num_envs: worlds, 1..65536, default 1
+    task: name, required; copied
+    seed: world i draws from stream (seed, i); default 0
+    num_threads: 0 or 1: the caller's only; up to 256; default 0
+    autoreset: RDM_AUTORESET_*, default same step
+    options: [num_options], copied; NULL: none
+    num_options: count, default 0
+    reserved: 0
+    host: hooks of this handle, copied; NULL: those of rdm_init
+    """
+
+    struct_size: int
+    num_envs: int
+    task: bytes | None
+    seed: int
+    num_threads: int
+    autoreset: int
+    options: Any
+    num_options: int
+    reserved: int
+    host: Any
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_envs", c_int32),
+        ("task", c_char_p),
+        ("seed", c_uint64),
+        ("num_threads", c_int32),
+        ("autoreset", c_int32),
+        ("options", POINTER(rdm_option)),
+        ("num_options", c_int32),
+        ("reserved", c_int32),
+        ("host", POINTER(rdm_host)),
+    ]
+
+
+class Spec(Record):
+    """The values of rdm_spec."""
+
+    control_dt: float  # s between steps
+    obs_dim: int  # count
+    action_dim: int  # count
+    cost_dim: int  # count
+    max_steps: int  # control steps of an episode
+    layout_hash: int  # of field names, counts and action order: policies carry it
+    num_fields: int  # for rdm_pool_field
+    num_shapes: int  # for rdm_pool_shape
+    num_joints: int  # of all robots
+    task: int  # index for rdm_task_at and its like
+
+
+class rdm_spec(Structure):
+    """struct_size: in: bytes
+    control_dt: s between steps
+    obs_dim: count
+    action_dim: count
+    cost_dim: count
+    max_steps: control steps of an episode
+    layout_hash: of field names, counts and action order: policies carry it
+    num_fields: for rdm_pool_field
+    num_shapes: for rdm_pool_shape
+    num_joints: of all robots
+    task: index for rdm_task_at and its like
+    """
+
+    struct_size: int
+    control_dt: float
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    max_steps: int
+    layout_hash: int
+    num_fields: int
+    num_shapes: int
+    num_joints: int
+    task: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("control_dt", c_float),
+        ("obs_dim", c_int32),
+        ("action_dim", c_int32),
+        ("cost_dim", c_int32),
+        ("max_steps", c_int32),
+        ("layout_hash", c_uint64),
+        ("num_fields", c_int32),
+        ("num_shapes", c_int32),
+        ("num_joints", c_int32),
+        ("task", c_int32),
+    ]
+
+
+class rdm_buffers(Structure):
+    """Rows of world i begin at i * width; 64-byte aligned; the same addresses until destroy or bind. The
+    library writes them inside reset, step and set_state only.
+
+    struct_size: in: bytes
+    reserved: 0
+    obs: [num_envs][obs_dim]; tasks with hands cut each entry at +-5
+    final_obs: [num_envs][obs_dim] last observation where an episode ended, else as obs
+    action: [num_envs][action_dim] in [-1, 1], clipped; the host writes
+    reward: [num_envs]
+    cost: [num_envs][cost_dim] >= 0; column 0 is the task's paper cost
+    cost_raw: [num_envs][cost_dim] the measured value behind each cost
+    episode_return: [num_envs] sum of rewards; the finished episode's where one ended
+    episode_cost: [num_envs][cost_dim] likewise
+    episode_step: [num_envs] control steps, likewise
+    status: [num_envs] RDM_STATUS_* of the last step
+    terminated: [num_envs] 1: the task ended (a fall)
+    truncated: [num_envs] 1: cut by the time limit or a bad status
+    success: [num_envs] 1: the task's success holds in this step
+    reserved_pointer: NULL
+    """
+
+    struct_size: int
+    reserved: int
+    obs: int | None
+    final_obs: int | None
+    action: int | None
+    reward: int | None
+    cost: int | None
+    cost_raw: int | None
+    episode_return: int | None
+    episode_cost: int | None
+    episode_step: int | None
+    status: int | None
+    terminated: int | None
+    truncated: int | None
+    success: int | None
+    reserved_pointer: int | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("obs", c_void_p),
+        ("final_obs", c_void_p),
+        ("action", c_void_p),
+        ("reward", c_void_p),
+        ("cost", c_void_p),
+        ("cost_raw", c_void_p),
+        ("episode_return", c_void_p),
+        ("episode_cost", c_void_p),
+        ("episode_step", c_void_p),
+        ("status", c_void_p),
+        ("terminated", c_void_p),
+        ("truncated", c_void_p),
+        ("success", c_void_p),
+        ("reserved_pointer", c_void_p),
+    ]
+
+
+class Shape(Record):
+    """The values of rdm_shape."""
+
+    name: str  # "right.ff_distal"
+    size: tuple[float, ...]  # m: radius | radius, half length along z | half sizes (hull: of its box)
+    kind: int  # RDM_SPHERE ... RDM_HULL; plane: the half space below z = 0 of its frame
+    color: tuple[int, ...]  # red, green, blue, 255
+    fixed: int  # flag: never moves
+
+
+class rdm_shape(Structure):
+    """name: "right.ff_distal"
+    size: m: radius | radius, half length along z | half sizes (hull: of its box)
+    kind: RDM_SPHERE ... RDM_HULL; plane: the half space below z = 0 of its frame
+    color: red, green, blue, 255
+    fixed: flag: never moves
+    """
+
+    name: bytes | None
+    size: Any
+    kind: int
+    color: Any
+    fixed: int
+    _fields_ = [
+        ("name", c_char_p),
+        ("size", c_float * 3),
+        ("kind", c_int32),
+        ("color", c_uint8 * 4),
+        ("fixed", c_int32),
+    ]
+
+
+class Contact(Record):
+    """The values of rdm_contact."""
+
+    shape_a: int  # for rdm_pool_shape
+    shape_b: int  # for rdm_pool_shape
+    position: tuple[float, ...]  # m
+    normal: tuple[float, ...]  # unit, from b into a
+    force: tuple[float, ...]  # N, on a
+    depth: float  # m
+
+
+class rdm_contact(Structure):
+    """shape_a: for rdm_pool_shape
+    shape_b: for rdm_pool_shape
+    position: m
+    normal: unit, from b into a
+    force: N, on a
+    depth: m
+    """
+
+    shape_a: int
+    shape_b: int
+    position: Any
+    normal: Any
+    force: Any
+    depth: float
+    _fields_ = [
+        ("shape_a", c_int32),
+        ("shape_b", c_int32),
+        ("position", c_float * 3),
+        ("normal", c_float * 3),
+        ("force", c_float * 3),
+        ("depth", c_float),
+    ]
+
+
+class PoolStats(Record):
+    """The values of rdm_pool_stats."""
+
+    contacts_max: int  # largest number of contacts in a substep's list since create, all worlds
+    contacts_mean: float  # mean of the same
+    joint_drift: float  # m, largest gap of any joint now, all worlds
+    steps: int  # control steps of one world, summed over worlds
+    diverged: int  # worlds flagged RDM_STATUS_DIVERGED so far
+    overflowed: int  # steps flagged RDM_STATUS_CONTACTS so far
+
+
+class rdm_pool_stats(Structure):
+    """struct_size: in: bytes
+    contacts_max: largest number of contacts in a substep's list since create, all worlds
+    contacts_mean: mean of the same
+    joint_drift: m, largest gap of any joint now, all worlds
+    steps: control steps of one world, summed over worlds
+    diverged: worlds flagged RDM_STATUS_DIVERGED so far
+    overflowed: steps flagged RDM_STATUS_CONTACTS so far
+    """
+
+    struct_size: int
+    contacts_max: int
+    contacts_mean: float
+    joint_drift: float
+    steps: int
+    diverged: int
+    overflowed: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("contacts_max", c_int32),
+        ("contacts_mean", c_double),
+        ("joint_drift", c_double),
+        ("steps", c_int64),
+        ("diverged", c_int64),
+        ("overflowed", c_int64),
+    ]
+
+
+class rdm_agent_config(Structure):
+    """struct_size: bytes, set by rdm_agent_config_init
+    obs_dim: count, 1..16384, required
+    action_dim: count, 1..1024, required
+    cost_dim: cost columns recorded, 0..RDM_MAX_COSTS, default 1
+    num_envs: rows per act, 1..65536, required
+    num_threads: 0 or 1: the caller's only; up to 256; default 0
+    algo: "ppo", "ppo_lag"; copied; default "ppo_lag"
+    task: kept in policy files, "" for a host's own environment; copied
+    seed: of weights, noise, shuffling; default 0
+    layout_hash: kept in policy files; 0: unknown
+    control_dt: s, kept in policy files; 0: unknown
+    max_steps: control steps of an episode, for terminal_cost; 0: unknown
+    initial_mean: [action_dim] mean action of the new policy, copied; NULL: 0
+    defaults: [num_defaults] laid under options (a task's); "algo:key" is for one algo
+    options: [num_options] the caller's; NULL: none
+    num_defaults: count, default 0
+    num_options: count, default 0
+    cost_limits: [cost_dim] on the sum over an episode, < 0: none; NULL: option cost_limit for column 0
+    host: hooks of this handle, copied; NULL: those of rdm_init
+    """
+
+    struct_size: int
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    num_envs: int
+    num_threads: int
+    algo: bytes | None
+    task: bytes | None
+    seed: int
+    layout_hash: int
+    control_dt: float
+    max_steps: int
+    initial_mean: int | None
+    defaults: Any
+    options: Any
+    num_defaults: int
+    num_options: int
+    cost_limits: int | None
+    host: Any
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("obs_dim", c_int32),
+        ("action_dim", c_int32),
+        ("cost_dim", c_int32),
+        ("num_envs", c_int32),
+        ("num_threads", c_int32),
+        ("algo", c_char_p),
+        ("task", c_char_p),
+        ("seed", c_uint64),
+        ("layout_hash", c_uint64),
+        ("control_dt", c_float),
+        ("max_steps", c_int32),
+        ("initial_mean", c_void_p),
+        ("defaults", POINTER(rdm_option)),
+        ("options", POINTER(rdm_option)),
+        ("num_defaults", c_int32),
+        ("num_options", c_int32),
+        ("cost_limits", c_void_p),
+        ("host", POINTER(rdm_host)),
+    ]
+
+
+class rdm_transition(Structure):
+    """struct_size: bytes
+    reserved: 0
+    reward: [num_envs] summed over the decision, required
+    cost: [num_envs][cost_dim] likewise; NULL only if cost_dim is 0
+    terminated: [num_envs] NULL: none
+    truncated: [num_envs] NULL: none
+    final_obs: [num_envs][obs_dim] read where truncated; NULL: truncation has value 0
+    valid: [num_envs] 0: a dead transition, not learned from; NULL: all valid
+    success: [num_envs] for the statistics; NULL: none
+    steps: [num_envs] control steps in this decision; NULL: action_repeat
+    """
+
+    struct_size: int
+    reserved: int
+    reward: int | None
+    cost: int | None
+    terminated: int | None
+    truncated: int | None
+    final_obs: int | None
+    valid: int | None
+    success: int | None
+    steps: int | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("reward", c_void_p),
+        ("cost", c_void_p),
+        ("terminated", c_void_p),
+        ("truncated", c_void_p),
+        ("final_obs", c_void_p),
+        ("valid", c_void_p),
+        ("success", c_void_p),
+        ("steps", c_void_p),
+    ]
+
+
+class Epoch(Record):
+    """The values of rdm_epoch."""
+
+    epoch: int  # count from 1
+    env_steps: int  # control steps so far, all environments
+    episodes: int  # finished so far
+    ret: float  # sum of rewards of an episode
+    cost: tuple[float, ...]  # sum of each cost column of an episode
+    cost_per_step: float  # column 0, per control step
+    length: float  # control steps of an episode
+    fall_rate: float  # share of episodes that terminated
+    success_rate: float  # share of episodes with at least one success
+    multiplier: tuple[float, ...]  # of each cost, 0 where the algorithm has none
+    kl: float  # KL(old || new), summed over action dimensions. First-order algorithms: the mean over the last pass, of each minibatch before its step, so 0 after one pass in one step. Trust regions: of the step that was taken.
+    entropy: float  # of the policy
+    learning_rate: float  # of the actor, used in this epoch
+    action_std: float  # mean over dimensions
+    loss_policy: float  # mean over minibatches
+    loss_reward_value: float  # mean squared error
+    loss_cost_value: float  # mean squared error
+    clip_fraction: float  # share of samples whose ratio was clipped
+    value_reward: float  # mean prediction over the batch
+    value_cost: float  # mean prediction over the batch
+    passes: int  # over the data, fewer after an early stop
+
+
+class rdm_epoch(Structure):
+    """struct_size: in: bytes
+    epoch: count from 1
+    env_steps: control steps so far, all environments
+    episodes: finished so far
+    ret: sum of rewards of an episode
+    cost: sum of each cost column of an episode
+    cost_per_step: column 0, per control step
+    length: control steps of an episode
+    fall_rate: share of episodes that terminated
+    success_rate: share of episodes with at least one success
+    multiplier: of each cost, 0 where the algorithm has none
+    kl: KL(old || new), summed over action dimensions. First-order algorithms: the mean over the last pass, of
+        each minibatch before its step, so 0 after one pass in one step. Trust regions: of the step that was
+        taken.
+    entropy: of the policy
+    learning_rate: of the actor, used in this epoch
+    action_std: mean over dimensions
+    loss_policy: mean over minibatches
+    loss_reward_value: mean squared error
+    loss_cost_value: mean squared error
+    clip_fraction: share of samples whose ratio was clipped
+    value_reward: mean prediction over the batch
+    value_cost: mean prediction over the batch
+    passes: over the data, fewer after an early stop
+    reserved: 0
+    """
+
+    struct_size: int
+    epoch: int
+    env_steps: int
+    episodes: int
+    ret: float
+    cost: Any
+    cost_per_step: float
+    length: float
+    fall_rate: float
+    success_rate: float
+    multiplier: Any
+    kl: float
+    entropy: float
+    learning_rate: float
+    action_std: float
+    loss_policy: float
+    loss_reward_value: float
+    loss_cost_value: float
+    clip_fraction: float
+    value_reward: float
+    value_cost: float
+    passes: int
+    reserved: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("epoch", c_int32),
+        ("env_steps", c_int64),
+        ("episodes", c_int64),
+        ("ret", c_double),
+        ("cost", c_double * RDM_MAX_COSTS),
+        ("cost_per_step", c_double),
+        ("length", c_double),
+        ("fall_rate", c_double),
+        ("success_rate", c_double),
+        ("multiplier", c_double * RDM_MAX_COSTS),
+        ("kl", c_double),
+        ("entropy", c_double),
+        ("learning_rate", c_double),
+        ("action_std", c_double),
+        ("loss_policy", c_double),
+        ("loss_reward_value", c_double),
+        ("loss_cost_value", c_double),
+        ("clip_fraction", c_double),
+        ("value_reward", c_double),
+        ("value_cost", c_double),
+        ("passes", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
+class Tensor(Record):
+    """The values of rdm_tensor."""
+
+    name: str  # "actor.0.weight", "actor.log_std", "reward_critic.1.bias"
+    rows: int  # row-major; cols 1 for vectors
+    cols: int  # row-major; cols 1 for vectors
+
+
+class rdm_tensor(Structure):
+    """name: "actor.0.weight", "actor.log_std", "reward_critic.1.bias"
+    rows: row-major; cols 1 for vectors
+    cols: row-major; cols 1 for vectors
+    """
+
+    name: bytes | None
+    rows: int
+    cols: int
+    _fields_ = [
+        ("name", c_char_p),
+        ("rows", c_int32),
+        ("cols", c_int32),
+    ]
+
+
+class PolicyInfo(Record):
+    """The values of rdm_policy_info."""
+
+    obs_dim: int  # count
+    action_dim: int  # count
+    action_repeat: int  # control steps to hold each action
+    control_dt: float  # s, 0: unknown
+    noise_correlation: float  # AR(1) coefficient of the noise it was trained with
+    layout_hash: int  # 0: unknown
+    num_params: int  # of the network
+    task: str  # "" for a host's own environment
+    activation: str  # of the hidden layers: "tanh", "elu", "relu"; static
+
+
+class rdm_policy_info(Structure):
+    """struct_size: in: bytes
+    obs_dim: count
+    action_dim: count
+    action_repeat: control steps to hold each action
+    control_dt: s, 0: unknown
+    noise_correlation: AR(1) coefficient of the noise it was trained with
+    layout_hash: 0: unknown
+    num_params: of the network
+    task: "" for a host's own environment
+    activation: of the hidden layers: "tanh", "elu", "relu"; static
+    """
+
+    struct_size: int
+    obs_dim: int
+    action_dim: int
+    action_repeat: int
+    control_dt: float
+    noise_correlation: float
+    layout_hash: int
+    num_params: int
+    task: bytes | None
+    activation: bytes | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("obs_dim", c_int32),
+        ("action_dim", c_int32),
+        ("action_repeat", c_int32),
+        ("control_dt", c_float),
+        ("noise_correlation", c_float),
+        ("layout_hash", c_uint64),
+        ("num_params", c_uint64),
+        ("task", c_char_p),
+        ("activation", c_char_p),
+    ]
+
+
+class rdm_map_config(Structure):
+    """struct_size: bytes, set by rdm_map_config_init
+    reserved: 0
+    resolution: side of a voxel, m, 0.001 to 10, default 0.02
+    memory: bytes that tree and workspace may take, 2^20 to 2^36, default 2^26
+    max_range: m; longer rays clear their way so far; 0: none is too long; default 0
+    hit: probability of occupied where a ray ends, 0.5 to 0.999, default 0.7
+    miss: the same where one passes, 0.001 to 0.5, default 0.4
+    low: no probability goes below, 0.001 to 0.5, default 0.1192
+    high: no probability goes above, 0.5 to 0.999, default 0.971
+    threshold: occupied from this probability on, low to high, default 0.5
+    host: hooks for the workspace, copied; NULL: those of rdm_init
+    """
+
+    struct_size: int
+    reserved: int
+    resolution: float
+    memory: int
+    max_range: float
+    hit: float
+    miss: float
+    low: float
+    high: float
+    threshold: float
+    host: Any
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("resolution", c_double),
+        ("memory", c_uint64),
+        ("max_range", c_double),
+        ("hit", c_double),
+        ("miss", c_double),
+        ("low", c_double),
+        ("high", c_double),
+        ("threshold", c_double),
+        ("host", POINTER(rdm_host)),
+    ]
+
+
+class MapInfo(Record):
+    """The values of rdm_map_info."""
+
+    full: int  # 1: updates have been dropped since create, clear or load
+    resolution: float  # m; a load takes the file's
+    nodes: int  # of the tree
+    bytes: int  # of the tree
+    bytes_max: int  # memory less the workspace
+    dropped: int  # voxel updates that found no memory, since create, clear or load
+
+
+class rdm_map_info(Structure):
+    """struct_size: in: bytes
+    full: 1: updates have been dropped since create, clear or load
+    resolution: m; a load takes the file's
+    nodes: of the tree
+    bytes: of the tree
+    bytes_max: memory less the workspace
+    dropped: voxel updates that found no memory, since create, clear or load
+    """
+
+    struct_size: int
+    full: int
+    resolution: float
+    nodes: int
+    bytes: int
+    bytes_max: int
+    dropped: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("full", c_uint32),
+        ("resolution", c_double),
+        ("nodes", c_uint64),
+        ("bytes", c_uint64),
+        ("bytes_max", c_uint64),
+        ("dropped", c_uint64),
+    ]
+
+
+class Voxel(Record):
+    """The values of rdm_voxel."""
+
+    centre: tuple[float, ...]  # m
+    side: float  # m; a multiple of the resolution where voxels were joined
+
+
+class rdm_voxel(Structure):
+    """centre: m
+    side: m; a multiple of the resolution where voxels were joined
+    """
+
+    centre: Any
+    side: float
+    _fields_ = [
+        ("centre", c_float * 3),
+        ("side", c_float),
+    ]
+
+
+class rdm_sensors(Structure):
+    """The option `modality` of every task says what is made in each reset and step ("points", "rgb+depth"); other
+    options say from which cameras and how large. Rows show the state that obs shows; nothing is kept of the state
+    before an automatic reset.
+
+      rdm_option seen[] = {{"modality", "points", 0}, {"points", NULL, 1024}};
+      config.options = seen;  config.num_options = 2;  ... rdm_pool_create(&p, &config) ...
+      rdm_sensors s = {sizeof s};
+      rdm_pool_sensors(p, &s);
+      for (...) { rdm_pool_step(p);  use s.points + 3 * s.num_points * env; }
+
+    struct_size: in: bytes
+    num_cameras: of rgb, depth and segmentation, in the order of the option `cameras`
+    width: pixels
+    height: pixels
+    num_points: of a world, option `points`
+    num_voxels: along each side of the local grid, option `voxels`
+    voxel_size: m
+    reserved: 0
+    rgb: [num_envs][num_cameras][height][width][3]
+    depth: [num_envs][num_cameras][height][width], m along the optical axis, 0: nothing
+    segmentation: the same, shape of rdm_pool_shape, -1: nothing
+    points: [num_envs][num_points][3], world, m; planes are left out
+    point_shape: [num_envs][num_points], -1: nothing was seen
+    point_count: [num_envs] points that differ; the rest repeats them in turn
+    voxels: [num_envs][x][y][z] about the task's object: 1 occupied, 0 free, -1 not seen
+    """
+
+    struct_size: int
+    num_cameras: int
+    width: int
+    height: int
+    num_points: int
+    num_voxels: int
+    voxel_size: float
+    reserved: int
+    rgb: int | None
+    depth: int | None
+    segmentation: int | None
+    points: int | None
+    point_shape: int | None
+    point_count: int | None
+    voxels: int | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_cameras", c_int32),
+        ("width", c_int32),
+        ("height", c_int32),
+        ("num_points", c_int32),
+        ("num_voxels", c_int32),
+        ("voxel_size", c_float),
+        ("reserved", c_int32),
+        ("rgb", c_void_p),
+        ("depth", c_void_p),
+        ("segmentation", c_void_p),
+        ("points", c_void_p),
+        ("point_shape", c_void_p),
+        ("point_count", c_void_p),
+        ("voxels", c_void_p),
+    ]
+
+
+STRUCTS: dict[str, type[Structure]] = {
+    "rdm_build": rdm_build,
+    "rdm_host": rdm_host,
+    "rdm_option": rdm_option,
+    "rdm_option_info": rdm_option_info,
+    "rdm_task": rdm_task,
+    "rdm_field": rdm_field,
+    "rdm_cost": rdm_cost,
+    "rdm_camera": rdm_camera,
+    "rdm_algo": rdm_algo,
+    "rdm_robot": rdm_robot,
+    "rdm_joint": rdm_joint,
+    "rdm_object": rdm_object,
+    "rdm_pool_config": rdm_pool_config,
+    "rdm_spec": rdm_spec,
+    "rdm_buffers": rdm_buffers,
+    "rdm_shape": rdm_shape,
+    "rdm_contact": rdm_contact,
+    "rdm_pool_stats": rdm_pool_stats,
+    "rdm_agent_config": rdm_agent_config,
+    "rdm_transition": rdm_transition,
+    "rdm_epoch": rdm_epoch,
+    "rdm_tensor": rdm_tensor,
+    "rdm_policy_info": rdm_policy_info,
+    "rdm_map_config": rdm_map_config,
+    "rdm_map_info": rdm_map_info,
+    "rdm_voxel": rdm_voxel,
+    "rdm_sensors": rdm_sensors,
+}
+
+# The rows that fields of structs point at.
+ROWS: dict[str, dict[str, Rows]] = {
+    "rdm_buffers": {
+        "obs": Rows("float32", ("num_envs", "obs_dim")),
+        "final_obs": Rows("float32", ("num_envs", "obs_dim")),
+        "action": Rows("float32", ("num_envs", "action_dim")),
+        "reward": Rows("float32", ("num_envs",)),
+        "cost": Rows("float32", ("num_envs", "cost_dim")),
+        "cost_raw": Rows("float32", ("num_envs", "cost_dim")),
+        "episode_return": Rows("float32", ("num_envs",)),
+        "episode_cost": Rows("float32", ("num_envs", "cost_dim")),
+        "episode_step": Rows("int32", ("num_envs",)),
+        "status": Rows("uint32", ("num_envs",)),
+        "terminated": Rows("uint8", ("num_envs",)),
+        "truncated": Rows("uint8", ("num_envs",)),
+        "success": Rows("uint8", ("num_envs",)),
+    },
+    "rdm_agent_config": {
+        "initial_mean": Rows("float32", ("action_dim",)),
+        "cost_limits": Rows("float64", ("cost_dim",)),
+    },
+    "rdm_transition": {
+        "reward": Rows("float32", ("num_envs",)),
+        "cost": Rows("float32", ("num_envs", "cost_dim")),
+        "terminated": Rows("uint8", ("num_envs",)),
+        "truncated": Rows("uint8", ("num_envs",)),
+        "final_obs": Rows("float32", ("num_envs", "obs_dim")),
+        "valid": Rows("uint8", ("num_envs",)),
+        "success": Rows("uint8", ("num_envs",)),
+        "steps": Rows("int32", ("num_envs",)),
+    },
+    "rdm_sensors": {
+        "rgb": Rows("uint8", ("num_envs", "num_cameras", "height", "width", "3")),
+        "depth": Rows("float32", ("num_envs", "num_cameras", "height", "width")),
+        "points": Rows("float32", ("num_envs", "num_points", "3")),
+        "point_shape": Rows("int32", ("num_envs", "num_points")),
+        "point_count": Rows("int32", ("num_envs",)),
+        "voxels": Rows("int8", ("num_envs", "x", "y", "z")),
+    },
+}
+
+FUNCTIONS: dict[str, Function] = {
+    "rdm_result_string": Function(
+        c_char_p, {"r": c_int32},
+        {}, False,
+        """static, never NULL, also for unknown values"""),
+    "rdm_last_error": Function(
+        c_char_p, {},
+        {}, False,
+        """This thread's last failure, one line; valid until its next failing rdm call; stale after a success."""),
+    "rdm_version": Function(
+        c_uint32, {},
+        {}, False,
+        """RDM_VERSION of the library that runs"""),
+    "rdm_features": Function(
+        c_uint32, {},
+        {}, False,
+        """RDM_FEATURE_*: which halves this build has"""),
+    "rdm_check_abi": Function(
+        c_int32, {"abi": c_uint32, "version": c_uint32},
+        {}, False,
+        """VERSION_MISMATCH unless the library has this ABI and at least this version."""),
+    "rdm_build_info": Function(
+        c_int32, {"io": POINTER(rdm_build)},
+        {}, False,
+        """fills io; strings are static"""),
+    "rdm_init": Function(
+        c_int32, {"host": POINTER(rdm_host)},
+        {}, False,
+        """Process-wide hooks for handles made later, whose configs give none. Counted; NULL: defaults. Optional."""),
+    "rdm_shutdown": Function(
+        None, {},
+        {}, False,
+        """the last call puts the default hooks back; handles stay valid"""),
+    "rdm_task_count": Function(
+        c_int32, {},
+        {}, False,
+        """number of tasks; 0 without the simulation half"""),
+    "rdm_task_at": Function(
+        c_int32, {"index": c_int32, "io": POINTER(rdm_task)},
+        {}, False,
+        """RANGE past the end"""),
+    "rdm_task_find": Function(
+        c_int32, {"name": c_char_p, "index": c_void_p},
+        {}, False,
+        """NOT_FOUND: nearest in the text"""),
+    "rdm_task_field": Function(
+        c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_field)},
+        {}, False,
+        """default options"""),
+    "rdm_task_cost": Function(
+        c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_cost)},
+        {}, False,
+        """i < cost_dim"""),
+    "rdm_task_option": Function(
+        c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_option_info)},
+        {}, False,
+        """i < num_options"""),
+    "rdm_task_camera": Function(
+        c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_camera)},
+        {}, False,
+        """i < num_cameras"""),
+    "rdm_task_default": Function(
+        c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_option)},
+        {}, False,
+        """i < num_defaults"""),
+    "rdm_algo_count": Function(
+        c_int32, {},
+        {}, False,
+        """number of algorithms; 0 without the learning half"""),
+    "rdm_algo_at": Function(
+        c_int32, {"index": c_int32, "io": POINTER(rdm_algo)},
+        {}, False,
+        """RANGE past the end"""),
+    "rdm_algo_find": Function(
+        c_int32, {"name": c_char_p, "index": c_void_p},
+        {}, False,
+        """NOT_FOUND: nearest in the text"""),
+    "rdm_algo_option": Function(
+        c_int32, {"algo": c_int32, "i": c_int32, "out": POINTER(rdm_option_info)},
+        {}, False,
+        """i < num_options"""),
+    "rdm_robot_count": Function(
+        c_int32, {},
+        {}, False,
+        """number of robot descriptions"""),
+    "rdm_robot_at": Function(
+        c_int32, {"index": c_int32, "io": POINTER(rdm_robot)},
+        {}, False,
+        """RANGE past the end"""),
+    "rdm_robot_joint": Function(
+        c_int32, {"robot": c_int32, "i": c_int32, "out": POINTER(rdm_joint)},
+        {}, False,
+        """i < num_joints"""),
+    "rdm_object_count": Function(
+        c_int32, {},
+        {}, False,
+        """number of objects"""),
+    "rdm_object_at": Function(
+        c_int32, {"index": c_int32, "out": POINTER(rdm_object)},
+        {}, False,
+        """RANGE past the end"""),
+    "rdm_pool_config_init": Function(
+        c_int32, {"c": POINTER(rdm_pool_config), "size": c_size_t},
+        {}, False,
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
+    "rdm_pool_spec": Function(
+        c_int32, {"c": POINTER(rdm_pool_config), "io": POINTER(rdm_spec)},
+        {}, False,
+        """What a pool of this config would be: OK where rdm_pool_create would be, memory aside, else its error. Makes
+        the task to ask it, and no world; nothing is kept.
+        """),
+    "rdm_pool_memory": Function(
+        c_int32, {"c": POINTER(rdm_pool_config), "ours": c_void_p, "engines": c_void_p},
+        {}, False,
+        """Bytes that creation takes: `ours` from the alloc hook, exact; `engines` by the physics engine from the
+        C library, an estimate. Either may be NULL.
+        """),
+    "rdm_pool_create": Function(
+        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_pool_config)},
+        {}, False,
+        """Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step."""),
+    "rdm_pool_destroy": Function(
+        None, {"p": c_void_p},
+        {}, False,
+        """NULL is fine"""),
+    "rdm_pool_error": Function(
+        c_char_p, {"p": c_void_p},
+        {}, False,
+        """last failure on this handle; "" at first"""),
+    "rdm_pool_get_spec": Function(
+        c_int32, {"p": c_void_p, "io": POINTER(rdm_spec)},
+        {}, False,
+        """as rdm_pool_spec, of a pool"""),
+    "rdm_pool_field": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_field)},
+        {}, False,
+        """i < num_fields"""),
+    "rdm_pool_option": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
+        {}, False,
+        """Option i of the task as this pool has it: key (static) and the value as text [RDM_TEXT_SIZE]."""),
+    "rdm_pool_buffers": Function(
+        c_int32, {"p": c_void_p, "io": POINTER(rdm_buffers)},
+        {}, False,
+        """borrowed pointers"""),
+    "rdm_pool_bind": Function(
+        c_int32, {"p": c_void_p, "b": POINTER(rdm_buffers)},
+        {}, False,
+        """Non-NULL pointers of b take the place of the pool's (sizes as above, at least 4-byte aligned; they must
+        outlive the pool or the next bind); NULL ones keep what is there. Contents are copied over.
+        """),
+    "rdm_pool_reset": Function(
+        c_int32, {"p": c_void_p, "seeds": c_void_p, "mask": c_void_p},
+        {"seeds": Rows("uint64", ("num_envs",)), "mask": Rows("uint8", ("num_envs",))}, False,
+        """Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new streams;
+        NULL: go on with the worlds' own, which after create is (config.seed, i). Costs are 0 afterwards.
+        """),
+    "rdm_pool_step": Function(
+        c_int32, {"p": c_void_p},
+        {}, False,
+        """One control step of every world: reads action, writes all the rest. STATE before the first reset, and with
+        autoreset off while an ended world was not reset. Worlds that diverge or get an action that is not finite
+        are truncated and flagged, with reward and cost 0 in that step; the call returns OK.
+        """),
+    "rdm_pool_step_masked": Function(
+        c_int32, {"p": c_void_p, "mask": c_void_p},
+        {"mask": Rows("uint8", ("num_envs",))}, False,
+        """The same for worlds whose mask [num_envs] is not 0; rows of the others do not change."""),
+    "rdm_pool_baseline": Function(
+        c_int32, {"p": c_void_p, "kind": c_int32},
+        {}, False,
+        """Fills the action buffer: all 0 (the middle of each joint's range), the nominal start pose, or uniform in
+        [-1, 1] from the stream (seed, world, policy).
+        """),
+    "rdm_pool_state_size": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p},
+        {}, False,
+        """The whole state of world env, exact: a pool of the same task and options that sets it goes on with the same
+        bytes. set_state also rewrites obs and clears the other rows of that world. env -1: all worlds in one block.
+        FORMAT for bytes that are not whole, of another task or options, or hold what no world can have: nothing changes.
+        """),
+    "rdm_pool_get_state": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, False,
+        """The whole state of world env, exact: a pool of the same task and options that sets it goes on with the same
+        bytes. set_state also rewrites obs and clears the other rows of that world. env -1: all worlds in one block.
+        FORMAT for bytes that are not whole, of another task or options, or hold what no world can have: nothing changes.
+        """),
+    "rdm_pool_set_state": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p, "size": c_size_t},
+        {}, False,
+        """The whole state of world env, exact: a pool of the same task and options that sets it goes on with the same
+        bytes. set_state also rewrites obs and clears the other rows of that world. env -1: all worlds in one block.
+        FORMAT for bytes that are not whole, of another task or options, or hold what no world can have: nothing changes.
+        """),
+    "rdm_pool_hash": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "hash": c_void_p},
+        {}, False,
+        """of the state; -1: all"""),
+    "rdm_pool_shape": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_shape)},
+        {}, False,
+        """i < num_shapes"""),
+    "rdm_pool_poses": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "pose": c_void_p},
+        {"pose": Rows("float32", ("num_shapes", "7"))}, False,
+        """pose [num_shapes][7]: position (m), quaternion (x, y, z, w); world frame of that world."""),
+    "rdm_pool_contacts": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "out": POINTER(rdm_contact), "capacity": c_int32, "count": c_void_p},
+        {}, False,
+        """Writes up to capacity contacts; *count is how many there are."""),
+    "rdm_pool_render": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "rgb": c_void_p, "depth": c_void_p, "segmentation": c_void_p},
+        {"rgb": Rows("uint8", ("h", "w", "3")), "depth": Rows("float32", ("h", "w")), "segmentation": Rows("int32", ("h", "w"))}, False,
+        """A picture of world env. camera: a name of the task's. rgb [h][w][3], depth [h][w] (m along the optical
+        axis, 0: nothing hit), segmentation [h][w] (shape, -1: nothing); each may be NULL. 1 <= w, h <= 8192.
+        """),
+    "rdm_pool_get_stats": Function(
+        c_int32, {"p": c_void_p, "io": POINTER(rdm_pool_stats)},
+        {}, False,
+        """fills io"""),
+    "rdm_agent_config_init": Function(
+        c_int32, {"c": POINTER(rdm_agent_config), "size": c_size_t},
+        {}, False,
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
+    "rdm_agent_config_for_pool": Function(
+        c_int32, {"c": POINTER(rdm_agent_config), "p": c_void_p},
+        {}, False,
+        """Sets dims, num_envs, task, layout_hash, control_dt, max_steps, defaults, initial_mean and cost_limits from a pool.
+        Pointers are borrowed from the pool.
+        """),
+    "rdm_agent_memory": Function(
+        c_int32, {"c": POINTER(rdm_agent_config), "bytes": c_void_p},
+        {}, False,
+        """Bytes that creation takes from the alloc hook, exact."""),
+    "rdm_agent_create": Function(
+        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_agent_config)},
+        {}, False,
+        """Makes the agent; the config's arrays are copied."""),
+    "rdm_agent_destroy": Function(
+        None, {"a": c_void_p},
+        {}, False,
+        """NULL is fine"""),
+    "rdm_agent_error": Function(
+        c_char_p, {"a": c_void_p},
+        {}, False,
+        """last failure on this handle; "" at first"""),
+    "rdm_agent_act": Function(
+        c_int32, {"a": c_void_p, "obs": c_void_p, "mode": c_int32, "action": c_void_p},
+        {"obs": Rows("float32", ("num_envs", "obs_dim")), "action": Rows("float32", ("num_envs", "action_dim"))}, False,
+        """action [num_envs][action_dim]: a sample (it is remembered, and record must follow) or the mean of the policy
+        for obs [num_envs][obs_dim] (nothing is remembered). One call is one decision: hold the action for the option
+        action_repeat control steps. Samples are not clipped.
+        """),
+    "rdm_agent_record": Function(
+        c_int32, {"a": c_void_p, "t": POINTER(rdm_transition)},
+        {}, False,
+        """STATE unless a sampled act came before, or when the horizon is full."""),
+    "rdm_agent_update": Function(
+        c_int32, {"a": c_void_p, "last_obs": c_void_p, "io": POINTER(rdm_epoch)},
+        {"last_obs": Rows("float32", ("num_envs", "obs_dim"))}, False,
+        """Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL. STATE when
+        the horizon is not full, CANCELLED after rdm_agent_cancel (the horizon is dropped).
+        """),
+    "rdm_agent_rollout": Function(
+        c_int32, {"a": c_void_p, "p": c_void_p, "io": POINTER(rdm_epoch)},
+        {}, False,
+        """One epoch natively: act, step (action_repeat times), record until the horizon is full, then update. The pool
+        must have been reset and must not have autoreset off; dims and num_envs must agree.
+        """),
+    "rdm_agent_cancel": Function(
+        None, {"a": c_void_p},
+        {}, False,
+        """Async-signal-safe, from any thread: the running or next rollout or update returns CANCELLED."""),
+    "rdm_agent_set": Function(
+        c_int32, {"a": c_void_p, "option": POINTER(rdm_option)},
+        {}, False,
+        """Changes a live option. NOT_FOUND, RANGE, or STATE when it is not live."""),
+    "rdm_agent_option": Function(
+        c_int32, {"a": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
+        {}, False,
+        """Option i of the algorithm as this agent has it: key (static) and the value as text [RDM_TEXT_SIZE]."""),
+    "rdm_agent_tensor": Function(
+        c_int32, {"a": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},
+        {}, False,
+        """RANGE ends the list"""),
+    "rdm_agent_tensor_read": Function(
+        c_int32, {"a": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
+        {}, False,
+        """Copies the named tensor out or in; count must be rows * cols. NOT_FOUND, RANGE."""),
+    "rdm_agent_tensor_write": Function(
+        c_int32, {"a": c_void_p, "name": c_char_p, "values": c_void_p, "count": c_size_t},
+        {}, False,
+        """Copies the named tensor out or in; count must be rows * cols. NOT_FOUND, RANGE."""),
+    "rdm_agent_policy": Function(
+        c_int32, {"a": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, False,
+        """The frozen policy as the bytes of a policy file. bytes may be NULL to ask for the size."""),
+    "rdm_agent_policy_file": Function(
+        c_int32, {"a": c_void_p, "path": c_char_p},
+        {}, False,
+        """replaced atomically"""),
+    "rdm_agent_save": Function(
+        c_int32, {"a": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, False,
+        """All state of the agent (networks, optimiser, multipliers, normaliser, streams, counters), between epochs:
+        STATE inside a horizon. load needs an agent of the same config and changes nothing when it fails.
+        """),
+    "rdm_agent_load": Function(
+        c_int32, {"a": c_void_p, "bytes": c_void_p, "size": c_size_t},
+        {}, False,
+        """All state of the agent (networks, optimiser, multipliers, normaliser, streams, counters), between epochs:
+        STATE inside a horizon. load needs an agent of the same config and changes nothing when it fails.
+        """),
+    "rdm_checkpoint_write": Function(
+        c_int32, {"path": c_char_p, "a": c_void_p, "p": c_void_p, "note": c_void_p, "note_size": c_size_t},
+        {}, False,
+        """Agent, pool (may be NULL) and a note of the host's own, to 2^26 bytes, in one file, replaced atomically."""),
+    "rdm_checkpoint_read": Function(
+        c_int32, {"path": c_char_p, "a": c_void_p, "p": c_void_p, "note": c_void_p, "capacity": c_size_t, "note_size": c_void_p},
+        {}, False,
+        """Reads it back; note gets up to capacity bytes, *note_size is how many there are. Nothing changes on failure."""),
+    "rdm_policy_load": Function(
+        c_int32, {"out": POINTER(c_void_p), "bytes": c_void_p, "size": c_size_t},
+        {}, False,
+        """copies"""),
+    "rdm_policy_load_file": Function(
+        c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
+        {}, False,
+        """NOT_FOUND, FORMAT ..."""),
+    "rdm_policy_destroy": Function(
+        None, {"p": c_void_p},
+        {}, False,
+        """NULL is fine"""),
+    "rdm_policy_get_info": Function(
+        c_int32, {"p": c_void_p, "io": POINTER(rdm_policy_info)},
+        {}, False,
+        """fills io"""),
+    "rdm_policy_scratch": Function(
+        c_size_t, {"p": c_void_p, "rows": c_int32},
+        {}, False,
+        """bytes for act; 0: bad arguments"""),
+    "rdm_policy_act": Function(
+        c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
+        {"obs": Rows("float32", ("rows", "obs_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim"))}, False,
+        """action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise [rows][action_dim] are
+        the caller's standard normals, NULL: the mean. scratch: rdm_policy_scratch bytes, 64-byte aligned. No heap, no
+        hidden state: any number of threads, each with its own scratch. ARGUMENT when obs or noise is not finite, or so
+        large that the network overflows (action is written then, and of no use).
+        """),
+    "rdm_policy_tensor": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},
+        {}, False,
+        """RANGE ends the list"""),
+    "rdm_policy_tensor_read": Function(
+        c_int32, {"p": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
+        {}, False,
+        """NOT_FOUND, RANGE"""),
+    "rdm_policy_check": Function(
+        c_int32, {"p": c_void_p, "spec": POINTER(rdm_spec)},
+        {}, False,
+        """OK, or VERSION_MISMATCH with a text that says which field of the spec differs."""),
+    "rdm_pool_push": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "shape": c_int32, "force": c_void_p},
+        {"force": Rows("float32", ("3",))}, True,
+        """Pushes a shape's carrier during the next step: force at its centre of mass, N, world axes."""),
+    "rdm_map_config_init": Function(
+        c_int32, {"c": POINTER(rdm_map_config), "size": c_size_t},
+        {}, True,
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
+    "rdm_map_create": Function(
+        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_map_config)},
+        {}, True,
+        """RANGE outside the bounds"""),
+    "rdm_map_destroy": Function(
+        None, {"m": c_void_p},
+        {}, True,
+        """NULL is fine"""),
+    "rdm_map_error": Function(
+        c_char_p, {"m": c_void_p},
+        {}, True,
+        """Last failure of a call that may change the map; "" at first. Of those that only read, which many threads may
+        make at a time: rdm_last_error().
+        """),
+    "rdm_map_get_info": Function(
+        c_int32, {"m": c_void_p, "io": POINTER(rdm_map_info)},
+        {}, True,
+        """fills io"""),
+    "rdm_map_clear": Function(
+        c_int32, {"m": c_void_p},
+        {}, True,
+        """all is unknown again"""),
+    "rdm_map_insert": Function(
+        c_int32, {"m": c_void_p, "origin": c_void_p, "points": c_void_p, "count": c_size_t, "dropped": c_void_p},
+        {"origin": Rows("float32", ("3",)), "points": Rows("float32", ("count", "3"))}, True,
+        """One scan: rays from origin [3] to points [count][3]. Each voxel changes once: up where a ray ends, else down where
+        rays pass. Points that are not finite are left out. A full map grows no more: the call returns OK, *dropped (may
+        be NULL) says how many voxels were left out, and voxels that exist go on being updated.
+        """),
+    "rdm_map_scan": Function(
+        c_int32, {"m": c_void_p, "p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "skip": c_void_p, "num_skip": c_int32, "dropped": c_void_p},
+        {}, True,
+        """One scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on one of the num_skip
+        shapes in skip, or meet nothing, are left out.
+        """),
+    "rdm_map_query": Function(
+        c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "probability": c_void_p},
+        {}, True,
+        """Probability [count] that the voxel of each point [count][3] is occupied; -1: unknown."""),
+    "rdm_map_box": Function(
+        c_int32, {"m": c_void_p, "low": c_void_p, "high": c_void_p, "out": POINTER(rdm_voxel), "capacity": c_size_t, "count": c_void_p},
+        {"low": Rows("float32", ("3",)), "high": Rows("float32", ("3",))}, True,
+        """Occupied voxels that meet the box: writes up to capacity, *count is how many there are."""),
+    "rdm_map_meets": Function(
+        c_int32, {"m": c_void_p, "pose": c_void_p, "half": c_void_p, "meets": c_void_p},
+        {"pose": Rows("float32", ("7",)), "half": Rows("float32", ("3",))}, True,
+        """meets is 1 when an occupied voxel meets the turned box: pose [7] (position, quaternion), half sizes half [3]."""),
+    "rdm_map_raycast": Function(
+        c_int32, {"m": c_void_p, "origin": c_void_p, "direction": c_void_p, "range": c_float, "through_unknown": c_int32, "hit": c_void_p, "found": c_void_p},
+        {"origin": Rows("float32", ("3",)), "direction": Rows("float32", ("3",)), "hit": Rows("float32", ("3",))}, True,
+        """Where the ray enters the first occupied voxel within `range` m: *found is 1 and hit [3] is written. An unknown
+        voxel ends the ray unless through_unknown is 1.
+        """),
+    "rdm_map_distance": Function(
+        c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "most": c_float, "distance": c_void_p},
+        {}, True,
+        """Distance [count] from each point to the nearest point of an occupied voxel, m; `most` if none is so near."""),
+    "rdm_map_grid": Function(
+        c_int32, {"m": c_void_p, "pose": c_void_p, "n": c_void_p, "side": c_float, "out": c_void_p},
+        {"pose": Rows("float32", ("7",)), "n": Rows("int32", ("3",))}, True,
+        """A grid of n[0] x n[1] x n[2] cells of `side` m (each count 1 to 1024) about pose [7], x outermost: what the map
+        says at their centres: 1 occupied, 0 free, -1 unknown.
+        """),
+    "rdm_map_save": Function(
+        c_int32, {"m": c_void_p, "format": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, True,
+        """The map as the bytes of a file; bytes may be NULL to ask for the size."""),
+    "rdm_map_save_file": Function(
+        c_int32, {"m": c_void_p, "path": c_char_p},
+        {}, True,
+        """by its ending; replaced atomically"""),
+    "rdm_map_load": Function(
+        c_int32, {"m": c_void_p, "bytes": c_void_p, "size": c_size_t},
+        {}, True,
+        """Takes the place of what the map holds, resolution included. FORMAT, or MEMORY when it does not fit: unchanged."""),
+    "rdm_map_load_file": Function(
+        c_int32, {"m": c_void_p, "path": c_char_p},
+        {}, True,
+        """NOT_FOUND, FORMAT ..."""),
+    "rdm_pool_sensors": Function(
+        c_int32, {"p": c_void_p, "io": POINTER(rdm_sensors)},
+        {}, True,
+        """fills io"""),
+    "rdm_pool_sensor_camera": Function(
+        c_int32, {"p": c_void_p, "cloud": c_int32, "i": c_int32, "out": POINTER(rdm_camera)},
+        {}, True,
+        """The cameras that rows stand for: i-th of the pictures (cloud 0) or of points and voxels (cloud 1). RANGE ends."""),
+    "rdm_pool_hull": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "points": c_void_p, "capacity": c_int32, "count": c_void_p},
+        {}, True,
+        """Corners [capacity][3] of shape i, an RDM_HULL, in its own frame, m. Writes up to capacity of them; *count is how
+        many there are.
+        """),
+    "rdm_sample_furthest": Function(
+        c_int32, {"points": c_void_p, "count": c_int32, "wanted": c_int32, "start": c_int32, "chosen": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
+        {"points": Rows("float32", ("count", "3"))}, True,
+        """`wanted` of points [count][3] that lie furthest from each other: their numbers, in order of choice, to chosen
+        [wanted]. `start` is the first. Exact. scratch: rdm_sample_scratch(count) bytes, 64-byte aligned; no heap.
+        """),
+    "rdm_sample_scratch": Function(
+        c_size_t, {"count": c_int32},
+        {}, True,
+        """bytes; 0: count is outside [1, 2^22]"""),
+}
+
+
+def declare(library: CDLL) -> None:
+    """Gives each function of the loaded library its types."""
+    for name, function in FUNCTIONS.items():
+        symbol = getattr(library, name)
+        symbol.restype = function.result
+        symbol.argtypes = list(function.arguments.values())

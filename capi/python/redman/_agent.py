@@ -1,0 +1,361 @@
+"""Agent: one algorithm that acts and learns, on the worlds of a pool or on a world of your own."""
+from __future__ import annotations
+
+import ctypes
+import os
+import threading
+from ctypes import byref, c_size_t
+from typing import Any, Callable, Iterator, Mapping, MutableMapping, Optional, Sequence, Union
+
+import numpy as np
+
+from . import _abi, _discovery
+from ._error import ArgumentError, Error, NotFoundError, StateError, error_of
+from ._library import Handle, bytes_of, check, encoded, failure, filled, lib, sized, text
+from ._options import Options, Value, option_array, value_of
+from ._policy import Policy
+from ._pool import Pool
+from ._rows import Array, FloatArray, address, given
+from ._tensors import Tensors
+
+_MODES = {"sample": _abi.RDM_SAMPLE, "mean": _abi.RDM_MEAN}
+CostLimits = Union[None, float, Sequence[Optional[float]], Mapping[str, Optional[float]]]
+
+
+class Epoch(_abi.Epoch):
+    """One row of the learning curve; means over the last 100 finished episodes."""
+
+
+class _AgentTensors(Tensors, MutableMapping[str, FloatArray]):
+    """The parameters of an agent: reading copies out, assignment copies in."""
+
+    def __setitem__(self, name: str, values: Any) -> None:
+        self[name]  # an unknown name is told first
+        array = np.ascontiguousarray(values, np.float32)
+        check(lib.rdm_agent_tensor_write(self._owner._open(), encoded(name), array.ctypes.data, array.size))
+
+    def __delitem__(self, name: str) -> None:
+        raise TypeError("tensors cannot be deleted")
+
+
+class Agent:
+    """Learns from a pool, or from rows of any origin.
+
+        agent = redman.Agent(pool, algo="ppo_lag", seed=1, cost_limits=40)
+        epoch = agent.rollout(pool)                     # act, step and record for a horizon, then update
+
+        agent = redman.Agent(obs_dim=3, action_dim=1, num_envs=16, options={"horizon": 64})
+        action = agent.act(obs)                         # and after the world's step:
+        agent.record(reward, cost, terminated, truncated, final_obs)
+        epoch = agent.update(obs)                       # when agent.missing decisions are 0
+
+    cost_limits: of column 0, of each column (None: no limit), or by the names of the pool's costs. A pool brings its
+    dimensions, its task's defaults for learners, start pose and limits. One thread at a time; others wait.
+    """
+
+    def __init__(self, pool: Optional[Pool] = None, algo: str = "ppo_lag", seed: int = 0, threads: int = 0,
+                 options: Optional[Options] = None, cost_limits: CostLimits = None, *,
+                 obs_dim: Optional[int] = None, action_dim: Optional[int] = None, num_envs: int = 1,
+                 cost_dim: int = 1, task: str = "", control_dt: float = 0.0, max_steps: int = 0,
+                 layout_hash: int = 0, initial_mean: Any = None) -> None:
+        own: dict[str, Any] = {"algo": algo, "seed": int(seed), "num_threads": int(threads), "options": dict(options or {})}
+        if pool is not None:
+            if obs_dim is not None or action_dim is not None:
+                raise ArgumentError("agent: a pool brings its dimensions; give it or them")
+            own.update(_config_of(pool))
+            columns: Sequence[str] = list(pool.costs)
+        else:
+            if obs_dim is None or action_dim is None:
+                raise ArgumentError("agent: give a pool, or obs_dim and action_dim")
+            own.update(obs_dim=int(obs_dim), action_dim=int(action_dim), num_envs=int(num_envs),
+                       cost_dim=int(cost_dim), task=task, control_dt=float(control_dt), max_steps=int(max_steps),
+                       layout_hash=int(layout_hash), initial_mean=None, defaults={}, cost_limits=None)
+            columns = [f"cost {k}" for k in range(own["cost_dim"])]
+        if initial_mean is not None:
+            own["initial_mean"] = np.broadcast_to(np.asarray(initial_mean, np.float32), own["action_dim"]).copy()
+        own["cost_limits"] = _limits(cost_limits, own["cost_limits"], columns)
+        self._make(own)
+
+    def _make(self, config: dict[str, Any]) -> None:
+        self._lock = threading.RLock()
+        self._config = config
+        self._handle: Optional[Handle] = _created(config)
+        self._a = self._handle.value
+        self.algo: _discovery.Algo = _discovery.algo(config["algo"])
+        self.obs_dim, self.action_dim = int(config["obs_dim"]), int(config["action_dim"])
+        self.cost_dim, self.num_envs = int(config["cost_dim"]), int(config["num_envs"])
+        self._lengths = {name: int(config[name]) for name in ("obs_dim", "action_dim", "cost_dim", "num_envs")}
+
+    # ---- learning ---------------------------------------------------------------------------------------------
+
+    def act(self, obs: Any, mode: str = "sample", out: Optional[FloatArray] = None) -> FloatArray:
+        """Actions [num_envs][action_dim] for obs [num_envs][obs_dim]: a sample, which record must follow, or the mean.
+
+        One call is one decision, to be held for option action_repeat control steps. Samples are not clipped.
+        """
+        if mode not in _MODES:
+            raise ArgumentError(f"mode: {mode!r} is none of {', '.join(_MODES)}")
+        rows = self._given("rdm_agent_act", "obs", obs)
+        action = np.empty((self.num_envs, self.action_dim), np.float32) if out is None else out
+        direct = action.dtype == np.float32 and action.flags.c_contiguous and action.size == self.num_envs * self.action_dim
+        target = action if direct else np.empty((self.num_envs, self.action_dim), np.float32)
+        with self._lock:
+            self._check(lib.rdm_agent_act(self._a, rows.ctypes.data, _MODES[mode], target.ctypes.data))
+        if not direct:
+            action[...] = target
+        return action
+
+    def record(self, reward: Any, cost: Any = None, terminated: Any = None, truncated: Any = None,
+               final_obs: Any = None, valid: Any = None, success: Any = None, steps: Any = None) -> None:
+        """What followed the last sampled actions, a row per world; what is None is as rdm_transition says.
+
+        reward and cost are sums over the decision, final_obs is read where truncated, steps are control steps.
+        """
+        said = {"reward": reward, "cost": cost, "terminated": terminated, "truncated": truncated,
+                "final_obs": final_obs, "valid": valid, "success": success, "steps": steps}
+        if cost is not None and self.cost_dim == 1 and np.ndim(cost) == 1:
+            said["cost"] = np.reshape(cost, (-1, 1))
+        table = _abi.ROWS["rdm_transition"]
+        rows = {name: given(value, table[name], self._lengths, name)
+                for name, value in said.items() if value is not None}
+        transition = sized(_abi.rdm_transition)
+        for name, array in rows.items():
+            setattr(transition, name, array.ctypes.data)
+        with self._lock:
+            self._check(lib.rdm_agent_record(self._a, byref(transition)))
+
+    def update(self, last_obs: Any) -> Epoch:
+        """Learns from a full horizon; last_obs follows the last record."""
+        rows = self._given("rdm_agent_update", "last_obs", last_obs)
+        epoch = sized(_abi.rdm_epoch)
+        with self._lock:
+            self._run(lib.rdm_agent_update, rows.ctypes.data, byref(epoch))
+        return self._epoch(epoch)
+
+    def rollout(self, pool: Pool) -> Epoch:
+        """One epoch natively: act, step and record until the horizon is full, then update.
+
+        The pool must have been reset and must not have autoreset off. Ctrl-C ends it early: this horizon is dropped,
+        KeyboardInterrupt is raised, agent and pool are good.
+        """
+        epoch = sized(_abi.rdm_epoch)
+        with self._lock, pool._lock:
+            self._run(lib.rdm_agent_rollout, pool._open(), byref(epoch))
+        return self._epoch(epoch)
+
+    def cancel(self) -> None:
+        """From any thread: the running or next rollout or update raises CancelledError."""
+        lib.rdm_agent_cancel(self._a)
+
+    def _run(self, call: Callable[..., int], *arguments: Any) -> None:
+        """A long call. In the main thread it runs beside it, which hears signals meanwhile."""
+        if threading.current_thread() is not threading.main_thread():
+            self._check(call(self._a, *arguments))
+            return
+        done = threading.Lock()
+        failed: list[Error] = []
+
+        def work() -> None:
+            try:
+                code = call(self._a, *arguments)
+                if code:
+                    failed.append(self._fail(code))  # the text is this thread's
+            finally:
+                done.release()
+
+        done.acquire()
+        threading.Thread(target=work, name="redman", daemon=True).start()
+        try:
+            done.acquire()
+        except BaseException:
+            lib.rdm_agent_cancel(self._a)
+            while True:
+                try:
+                    done.acquire()
+                    break
+                except BaseException:  # once more: it is ending already
+                    continue
+            if not failed:
+                self._renew()
+            raise
+        if failed:
+            raise failed[0]
+
+    def _renew(self) -> None:
+        """The same agent without the cancel that came too late to be heard."""
+        state = self.save()
+        self._make(self._config)
+        self.load(state)
+
+    def _epoch(self, struct: _abi.rdm_epoch) -> Epoch:
+        epoch = Epoch(struct)
+        columns = slice(0, max(self.cost_dim, 1))
+        shorter: Epoch = epoch.replaced(cost=epoch.cost[columns], multiplier=epoch.multiplier[columns])
+        return shorter
+
+    # ---- what it is -------------------------------------------------------------------------------------------
+
+    @property
+    def options(self) -> dict[str, Value]:
+        """All options of the algorithm as this agent has them."""
+        out: dict[str, Value] = {}
+        for i, info in enumerate(self.algo.options.values()):
+            key = ctypes.c_char_p()
+            shown = ctypes.create_string_buffer(_abi.RDM_TEXT_SIZE)
+            self._check(lib.rdm_agent_option(self._a, i, byref(key), shown))
+            out[text(key.value)] = value_of(info, text(shown.value))
+        return out
+
+    def set(self, **options: Value) -> None:
+        """Changes live options: agent.set(learning_rate=1e-4). Keys with dots: agent.set(**{"a.b": 1})."""
+        for row in option_array(options):
+            with self._lock:
+                self._check(lib.rdm_agent_set(self._a, byref(row)))
+
+    @property
+    def cost_limits(self) -> list[Optional[float]]:
+        """The limit of each cost column, None where there is none."""
+        said = self._config["cost_limits"]
+        if said is None:
+            said = [float(self.options["cost_limit"])] + [-1.0] * (self.cost_dim - 1)
+        return [None if limit < 0 else limit for limit in said[:self.cost_dim]]
+
+    @property
+    def tensors(self) -> _AgentTensors:
+        """The parameters by name: agent.tensors["actor.log_std"][...] is a copy, assignment writes."""
+        return _AgentTensors(self, lib.rdm_agent_tensor, lib.rdm_agent_tensor_read)
+
+    def policy(self) -> Policy:
+        """The frozen policy as it is now."""
+        with self._lock:
+            return Policy(bytes_of(lib.rdm_agent_policy, self._open()))
+
+    # ---- state ------------------------------------------------------------------------------------------------
+
+    def save(self) -> bytes:
+        """All state, between epochs: networks, optimiser, multipliers, normaliser, streams, counters."""
+        with self._lock:
+            return bytes_of(lib.rdm_agent_save, self._open())
+
+    def load(self, state: bytes) -> None:
+        """Goes on from save() of an agent of the same configuration; nothing changes when it fails."""
+        with self._lock:
+            self._check(lib.rdm_agent_load(self._a, bytes(state), len(state)))
+
+    def write_checkpoint(self, path: Union[str, os.PathLike[str]], pool: Optional[Pool] = None,
+                         note: bytes = b"") -> None:
+        """Agent, pool and a note of your own in one file, replaced atomically."""
+        with self._lock:
+            self._check(lib.rdm_checkpoint_write(encoded(path), self._a, None if pool is None else pool._open(),
+                                                 bytes(note), len(note)))
+
+    def read_checkpoint(self, path: Union[str, os.PathLike[str]], pool: Optional[Pool] = None) -> bytes:
+        """Goes on from write_checkpoint, and returns its note; nothing changes when it fails."""
+        size = c_size_t()
+        with self._lock:
+            raw = ctypes.create_string_buffer(1)
+            while True:
+                self._check(lib.rdm_checkpoint_read(encoded(path), self._a, None if pool is None else pool._open(),
+                                                    raw, len(raw), byref(size)))
+                if size.value <= len(raw):
+                    return raw.raw[:size.value]
+                raw = ctypes.create_string_buffer(size.value)
+
+    def close(self) -> None:
+        """Ends the agent. A second call does nothing."""
+        with self._lock:
+            self._handle = None
+            self._a = None
+
+    def __enter__(self) -> Agent:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"config": self._config, "state": self.save()}
+
+    def __setstate__(self, saved: Mapping[str, Any]) -> None:
+        self._make(saved["config"])
+        self.load(saved["state"])
+
+    def __repr__(self) -> str:
+        closed = ", closed" if self._a is None else ""
+        return f"<Agent {self.algo.name}: {self.num_envs} rows of {self.obs_dim} to {self.action_dim}{closed}>"
+
+    def _given(self, function: str, name: str, value: Any) -> Array:
+        return given(value, _abi.FUNCTIONS[function].rows[name], self._lengths, name)
+
+    def _open(self) -> int:
+        if self._a is None:
+            raise StateError("agent: it was closed")
+        return self._a
+
+    def _fail(self, code: int) -> Error:
+        return StateError("agent: it was closed") if self._a is None else failure(code)
+
+    def _check(self, code: int) -> None:
+        if code:
+            raise self._fail(code)
+
+
+def _config_of(pool: Pool) -> dict[str, Any]:
+    """What rdm_agent_config_for_pool says, as plain values."""
+    config = sized(_abi.rdm_agent_config)
+    check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))
+    check(lib.rdm_agent_config_for_pool(byref(config), pool._open()))
+    pointed = {name: np.array(np.ctypeslib.as_array(
+        ctypes.cast(getattr(config, name), ctypes.POINTER(np.ctypeslib.as_ctypes_type(rows.dtype))),
+        (getattr(config, rows.shape[0]),))) for name, rows in _abi.ROWS["rdm_agent_config"].items() if getattr(config, name)}
+    defaults = {text(row.key): row.number if row.text is None else text(row.text)
+                for row in (config.defaults[i] for i in range(config.num_defaults))}
+    return {"obs_dim": config.obs_dim, "action_dim": config.action_dim, "cost_dim": config.cost_dim,
+            "num_envs": config.num_envs, "task": text(config.task), "layout_hash": config.layout_hash,
+            "control_dt": config.control_dt, "max_steps": config.max_steps, "defaults": defaults,
+            "initial_mean": pointed.get("initial_mean"), "cost_limits": pointed.get("cost_limits")}
+
+
+def _limits(wanted: CostLimits, usual: Optional[Array], columns: Sequence[str]) -> Optional[list[float]]:
+    """A limit for each column, below 0 for none; None leaves column 0 to option cost_limit."""
+    def number(limit: Optional[float]) -> float:
+        return -1.0 if limit is None else float(limit)
+
+    limits = None if usual is None else [float(limit) for limit in usual]
+    if wanted is None:
+        return limits
+    if isinstance(wanted, Mapping):
+        limits = limits or [-1.0] * len(columns)
+        for name, limit in wanted.items():
+            if name not in columns:
+                raise NotFoundError(f"cost_limits: no cost {name}; there are {', '.join(columns)}")
+            limits[columns.index(name)] = number(limit)
+        return limits
+    if np.ndim(wanted) == 0:
+        limits = limits or [-1.0] * len(columns)
+        if not limits:
+            raise ArgumentError("cost_limits: there are no costs")
+        limits[0] = number(wanted)  # type: ignore[arg-type]
+        return limits
+    listed = [number(limit) for limit in wanted]  # type: ignore[union-attr]
+    if len(listed) != len(columns):
+        raise ArgumentError(f"cost_limits: {len(listed)} limits for {len(columns)} costs")
+    return listed
+
+
+def _created(own: Mapping[str, Any]) -> Handle:
+    """The agent of a configuration of plain values."""
+    config = sized(_abi.rdm_agent_config)
+    check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))
+    for name in ("obs_dim", "action_dim", "cost_dim", "num_envs", "num_threads", "seed", "layout_hash", "control_dt",
+                 "max_steps"):
+        setattr(config, name, own[name])
+    config.algo, config.task = encoded(own["algo"]), encoded(own["task"])
+    options, defaults = option_array(own["options"]), option_array(own["defaults"])
+    config.options, config.num_options = options, len(options)
+    config.defaults, config.num_defaults = defaults, len(defaults)
+    arrays = {name: None if own[name] is None else np.ascontiguousarray(own[name], rows.dtype)
+              for name, rows in _abi.ROWS["rdm_agent_config"].items()}
+    for name, array in arrays.items():
+        setattr(config, name, address(array))
+    return Handle(lib.rdm_agent_create, lib.rdm_agent_destroy, byref(config))

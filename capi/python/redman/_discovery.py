@@ -1,0 +1,140 @@
+"""What exists: tasks, algorithms, robots, objects, each with all that the library says of it."""
+from __future__ import annotations
+
+import ctypes
+from ctypes import byref, c_int32
+from functools import lru_cache
+from typing import Any, Callable, TypeVar
+
+from . import _abi
+from ._library import encoded, filled, check, lib, text
+from ._options import Value, default_of
+from ._record import Record
+
+R = TypeVar("R", bound=Record)
+
+
+class Option(_abi.OptionInfo):
+    """One row of an option table; default is as its kind says: a text, a number or a flag."""
+
+    default: Value
+
+    def __init__(self, struct: _abi.rdm_option_info) -> None:
+        super().__init__(struct)
+        self.__dict__["default"] = default_of(struct)
+
+
+class Field(_abi.Field):
+    """A run of observation entries: obs[:, field.slice]."""
+
+    @property
+    def slice(self) -> slice:
+        return slice(self.offset, self.offset + self.count)
+
+
+def _records(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., int], count: int, *before: Any) -> dict[str, R]:
+    """name -> record for all i that call(*before, i, &struct) knows."""
+    rows = (kind(filled(struct, call, *before, i)) for i in range(count))
+    return {getattr(row, "name", "") or getattr(row, "key"): row for row in rows}
+
+
+class Task(_abi.Task):
+    """A task with its default options; fields, costs, options and cameras by name, in their order."""
+
+    fields: dict[str, Field]
+    costs: dict[str, _abi.Cost]
+    options: dict[str, Option]
+    cameras: dict[str, _abi.Camera]
+    defaults: dict[str, Value]  # of learner options: rdm_task_default
+
+    def __init__(self, index: int) -> None:
+        super().__init__(filled(_abi.rdm_task, lib.rdm_task_at, index))
+        said = self.__dict__
+        said["fields"] = _records(Field, _abi.rdm_field, lib.rdm_task_field, self.num_fields, index)
+        said["costs"] = _records(_abi.Cost, _abi.rdm_cost, lib.rdm_task_cost, self.cost_dim, index)
+        said["options"] = _records(Option, _abi.rdm_option_info, lib.rdm_task_option, self.num_options, index)
+        said["cameras"] = _records(_abi.Camera, _abi.rdm_camera, lib.rdm_task_camera, self.num_cameras, index)
+        said["defaults"] = {}
+        for i in range(self.num_defaults):
+            row = filled(_abi.rdm_option, lib.rdm_task_default, index, i)
+            said["defaults"][text(row.key)] = row.number if row.text is None else text(row.text)
+
+    def __repr__(self) -> str:
+        return f"<Task {self.name}: {self.summary}>"
+
+
+class Algo(_abi.Algo):
+    """A learner with its options by name."""
+
+    options: dict[str, Option]
+
+    def __init__(self, index: int) -> None:
+        super().__init__(filled(_abi.rdm_algo, lib.rdm_algo_at, index))
+        self.__dict__["options"] = _records(
+            Option, _abi.rdm_option_info, lib.rdm_algo_option, self.num_options, index)
+
+    def __repr__(self) -> str:
+        return f"<Algo {self.name}: {self.summary}>"
+
+
+class Robot(_abi.Robot):
+    """A robot description with its joints by name."""
+
+    joints: dict[str, _abi.Joint]
+
+    def __init__(self, index: int) -> None:
+        super().__init__(filled(_abi.rdm_robot, lib.rdm_robot_at, index))
+        self.__dict__["joints"] = _records(
+            _abi.Joint, _abi.rdm_joint, lib.rdm_robot_joint, self.num_joints, index)
+
+
+@lru_cache(maxsize=None)
+def task_at(index: int) -> Task:
+    return Task(index)
+
+
+@lru_cache(maxsize=None)
+def algo_at(index: int) -> Algo:
+    return Algo(index)
+
+
+def find(call: Callable[..., int], name: str) -> int:
+    """The index of a task or an algorithm by its name."""
+    index = c_int32()
+    check(call(encoded(name), byref(index)))
+    return index.value
+
+
+def tasks() -> dict[str, Task]:
+    """All tasks by name; empty without the simulation half."""
+    return {task.name: task for task in map(task_at, range(lib.rdm_task_count()))}
+
+
+def algos() -> dict[str, Algo]:
+    """All learners by name; empty without the learning half."""
+    return {algo.name: algo for algo in map(algo_at, range(lib.rdm_algo_count()))}
+
+
+def task(name: str) -> Task:
+    """One task; case is ignored and '-' equals '_'. NotFoundError offers the nearest name."""
+    return task_at(find(lib.rdm_task_find, name))
+
+
+def algo(name: str) -> Algo:
+    """One learner, found as task() finds."""
+    return algo_at(find(lib.rdm_algo_find, name))
+
+
+def robots() -> dict[str, Robot]:
+    """All robot descriptions by name."""
+    return {robot.name: robot for robot in map(Robot, range(lib.rdm_robot_count()))}
+
+
+def objects() -> dict[str, _abi.Object]:
+    """The objects of the throw tasks, for option object."""
+    return _records(_abi.Object, _abi.rdm_object, lib.rdm_object_at, lib.rdm_object_count())
+
+
+def build() -> _abi.Build:
+    """Version and build of the library that runs."""
+    return _abi.Build(filled(_abi.rdm_build, lib.rdm_build_info))

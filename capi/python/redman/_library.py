@@ -1,0 +1,116 @@
+"""Finds and loads the shared library, and calls it: failures become exceptions, texts become str."""
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from ctypes import byref, c_size_t
+from pathlib import Path
+from typing import Any, Callable, TypeVar
+
+from . import _abi
+from ._error import Error, error_of
+
+Struct = TypeVar("Struct", bound=ctypes.Structure)
+
+
+def _candidates() -> list[str]:
+    """Where the library may be, the most particular place first."""
+    named = os.environ.get("REDMAN_LIBRARY")
+    if named:
+        return [named]
+    here = Path(__file__).resolve().parent
+    places = [here]  # a wheel
+    if len(here.parents) > 2 and (here.parents[2] / "include" / "redman" / "redman.h").is_file():  # the project's tree
+        places += [here.parents[2] / "build" / preset for preset in ("release", "dev")]
+    suffix = "dylib" if sys.platform == "darwin" else "so"
+    found = [str(path) for place in places for path in sorted(place.glob(f"libredman.{suffix}*"))[:1]]
+    return found + [f"libredman.so.{_abi.RDM_ABI}"]
+
+
+def _load() -> ctypes.CDLL:
+    tried = []
+    for path in _candidates():
+        try:
+            library = ctypes.CDLL(path)
+        except OSError as error:
+            tried.append(str(error))
+            continue
+        try:
+            _abi.declare(library)
+        except AttributeError as error:
+            tried.append(f"{path}: older than this package ({error})")
+            continue
+        if library.rdm_check_abi(_abi.RDM_ABI, _abi.RDM_VERSION):
+            tried.append(f"{path}: {library.rdm_last_error().decode(errors='replace')}")
+            continue
+        return library
+    raise ImportError("redman: no shared library: " + "; ".join(tried) +
+                      ". Set REDMAN_LIBRARY to the path of libredman.so")
+
+
+lib = _load()
+
+
+def text(value: bytes | None) -> str:
+    """A text of the library; "" for NULL."""
+    return "" if value is None else value.decode("utf-8", errors="replace")
+
+
+def encoded(value: str | os.PathLike[str]) -> bytes:
+    """A text or a path for the library."""
+    raw = os.fsencode(value)
+    if b"\0" in raw:
+        raise ValueError("a text with a zero byte in it")
+    return raw
+
+
+def failure(code: int) -> Error:
+    """The exception of the call that has just failed on this thread."""
+    return error_of(code, text(lib.rdm_last_error()))
+
+
+def check(code: int) -> None:
+    """Raises unless code is RDM_OK."""
+    if code:
+        raise failure(code)
+
+
+def sized(kind: type[Struct]) -> Struct:
+    """A struct with its struct_size set and everything else 0."""
+    value = kind()
+    value.struct_size = ctypes.sizeof(kind)  # type: ignore[attr-defined]
+    return value
+
+
+def filled(kind: type[Struct], call: Callable[..., int], *before: Any) -> Struct:
+    """The struct that call(*before, &struct) fills."""
+    value = sized(kind) if kind._fields_[0][0] == "struct_size" else kind()
+    check(call(*before, byref(value)))
+    return value
+
+
+def bytes_of(call: Callable[..., int], *before: Any) -> bytes:
+    """The bytes that call(*before, bytes, capacity, &size) writes, asked for their size first."""
+    size = c_size_t()
+    check(call(*before, None, 0, byref(size)))
+    raw = ctypes.create_string_buffer(max(size.value, 1))
+    check(call(*before, raw, size.value, byref(size)))
+    return raw.raw[:size.value]
+
+
+class Handle:
+    """Owns what a create function made: ends it when the last one who needs it goes."""
+
+    __slots__ = ("value", "_destroy", "__weakref__")
+
+    def __init__(self, create: Callable[..., int], destroy: Callable[[Any], None], *arguments: Any) -> None:
+        self.value: int | None = None
+        self._destroy = destroy
+        out = ctypes.c_void_p()
+        check(create(byref(out), *arguments))
+        self.value = out.value
+
+    def __del__(self) -> None:
+        if self.value is not None:
+            self._destroy(self.value)

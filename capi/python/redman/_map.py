@@ -1,0 +1,198 @@
+"""Map: what is occupied, free and unknown in space. Experimental, as its part of redman.h is."""
+from __future__ import annotations
+
+import ctypes
+import os
+import threading
+from ctypes import byref, c_int32, c_size_t, c_uint64
+from typing import Any, Mapping, Optional, Sequence, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _abi
+from ._error import ArgumentError, StateError
+from ._library import Handle, bytes_of, check, encoded, failure, filled, lib, sized
+from ._pool import Pool
+from ._rows import Array, FloatArray, address, aligned, given
+
+_FORMATS = {"bt": _abi.RDM_MAP_BINARY, "ot": _abi.RDM_MAP_FULL}
+
+
+def _points(points: Any, name: str = "points") -> Array:
+    rows = np.ascontiguousarray(points, np.float32)
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise ArgumentError(f"{name}: shape {rows.shape} does not fit (count, 3)")
+    return rows
+
+
+class Map:
+    """An occupancy map made of scans: point clouds of your own, or looks of a pool's cameras.
+
+        m = redman.Map(resolution=0.02)
+        m.scan(pool, env=0, camera="top", width=96, height=96)
+        m.insert(origin, points)
+        m.query(points)                     # probability of occupied, -1 where unknown
+
+    Points are in m. Other fields of rdm_map_config are keywords: memory, max_range, hit, miss, low, high, threshold.
+    """
+
+    def __init__(self, resolution: float = 0.02, **config: float) -> None:
+        self._lock = threading.RLock()
+        self._config: dict[str, float] = {"resolution": resolution, **config}
+        struct = sized(_abi.rdm_map_config)
+        check(lib.rdm_map_config_init(byref(struct), ctypes.sizeof(struct)))
+        known = {name for name, _ in struct._fields_} - {"struct_size", "reserved", "reserved2", "host", "error", "error_size"}
+        for name, value in self._config.items():
+            if name not in known:
+                raise TypeError(f"Map: {name!r} is none of {', '.join(sorted(known))}")
+            setattr(struct, name, value)
+        self._handle: Optional[Handle] = Handle(lib.rdm_map_create, lib.rdm_map_destroy, byref(struct))
+        self._m = self._handle.value
+
+    def insert(self, origin: Sequence[float], points: Any) -> int:
+        """One scan: rays from origin to points. Returns how many voxels a full map left out."""
+        rows, at = _points(points), self._given("rdm_map_insert", "origin", origin)
+        dropped = c_uint64()
+        with self._lock:
+            self._check(lib.rdm_map_insert(self._m, at.ctypes.data, rows.ctypes.data, len(rows), byref(dropped)))
+        return dropped.value
+
+    def scan(self, pool: Pool, env: int = 0, camera: Optional[str] = None, width: int = 96, height: int = 96,
+             skip: Sequence[int] = ()) -> int:
+        """One scan by a camera of the pool's task; rays that end on a shape in skip are left out."""
+        left = np.ascontiguousarray(skip, np.int32)
+        dropped = c_uint64()
+        name = next(iter(pool.cameras), "") if camera is None else camera
+        with self._lock, pool._lock:
+            self._check(lib.rdm_map_scan(self._m, pool._open(), env, encoded(name), width, height,
+                                         address(left) if len(left) else None, len(left), byref(dropped)))
+        return dropped.value
+
+    def query(self, points: Any) -> FloatArray:
+        """[count] probability that the voxel of each point is occupied; -1: unknown."""
+        rows = _points(points)
+        out = np.empty(len(rows), np.float32)
+        self._check(lib.rdm_map_query(self._open(), rows.ctypes.data, len(rows), out.ctypes.data))
+        return out
+
+    def box(self, low: Sequence[float], high: Sequence[float]) -> Array:
+        """Occupied voxels that meet the box: rows of centre [3] and side, m."""
+        corners = [self._given("rdm_map_box", name, value) for name, value in (("low", low), ("high", high))]
+        out = np.empty(0, np.dtype(_abi.rdm_voxel))
+        count = c_size_t()
+        while True:
+            rows = out.ctypes.data_as(ctypes.POINTER(_abi.rdm_voxel))
+            self._check(lib.rdm_map_box(self._open(), *(c.ctypes.data for c in corners), rows, len(out), byref(count)))
+            if count.value <= len(out):
+                return out[:count.value]
+            out = np.empty(count.value, out.dtype)
+
+    def meets(self, pose: Sequence[float], half: Sequence[float]) -> bool:
+        """Whether an occupied voxel meets the turned box of half sizes half: pose is position and quaternion."""
+        meets = c_int32()
+        self._check(lib.rdm_map_meets(self._open(), self._given("rdm_map_meets", "pose", pose).ctypes.data,
+                                      self._given("rdm_map_meets", "half", half).ctypes.data, byref(meets)))
+        return bool(meets.value)
+
+    def raycast(self, origin: Sequence[float], direction: Sequence[float], range: float,
+                through_unknown: bool = False) -> Optional[FloatArray]:
+        """Where the ray enters the first occupied voxel within range, m; None: nowhere."""
+        rays = [self._given("rdm_map_raycast", name, value)
+                for name, value in (("origin", origin), ("direction", direction))]
+        hit = np.empty(3, np.float32)
+        found = c_int32()
+        self._check(lib.rdm_map_raycast(self._open(), *(row.ctypes.data for row in rays), range, int(through_unknown),
+                                        hit.ctypes.data, byref(found)))
+        return hit if found.value else None
+
+    def distance(self, points: Any, most: float) -> FloatArray:
+        """[count] distance from each point to the nearest occupied voxel, m; most where none is so near."""
+        rows = _points(points)
+        out = np.empty(len(rows), np.float32)
+        self._check(lib.rdm_map_distance(self._open(), rows.ctypes.data, len(rows), most, out.ctypes.data))
+        return out
+
+    def grid(self, pose: Sequence[float], n: Sequence[int], side: float) -> npt.NDArray[np.int8]:
+        """[n0][n1][n2] cells of side m about pose: 1 occupied, 0 free, -1 unknown."""
+        counts = self._given("rdm_map_grid", "n", n)
+        fits = all(1 <= count <= 1024 for count in counts)  # if not, the call says so
+        out = np.empty(tuple(counts) if fits else 0, np.int8)
+        self._check(lib.rdm_map_grid(self._open(), self._given("rdm_map_grid", "pose", pose).ctypes.data,
+                                     counts.ctypes.data, side, out.ctypes.data))
+        return out
+
+    def clear(self) -> None:
+        """All is unknown again."""
+        with self._lock:
+            self._check(lib.rdm_map_clear(self._m))
+
+    @property
+    def info(self) -> _abi.MapInfo:
+        """Resolution, nodes and bytes."""
+        return _abi.MapInfo(filled(_abi.rdm_map_info, lib.rdm_map_get_info, self._open()))
+
+    def save(self, format: str = "ot") -> bytes:
+        """The bytes of an OctoMap file: "ot" with probabilities, "bt" occupied or free."""
+        if format not in _FORMATS:
+            raise ArgumentError(f"format: {format!r} is none of {', '.join(_FORMATS)}")
+        return bytes_of(lib.rdm_map_save, self._open(), _FORMATS[format])
+
+    def load(self, data: bytes) -> None:
+        """What a file's bytes hold takes the place of what the map holds."""
+        with self._lock:
+            self._check(lib.rdm_map_load(self._m, bytes(data), len(data)))
+
+    def save_file(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Writes .bt or .ot, by its ending, whole or not at all."""
+        self._check(lib.rdm_map_save_file(self._open(), encoded(path)))
+
+    def load_file(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Reads .bt or .ot."""
+        with self._lock:
+            self._check(lib.rdm_map_load_file(self._m, encoded(path)))
+
+    def close(self) -> None:
+        """Ends the map. A second call does nothing."""
+        with self._lock:
+            self._handle = None
+            self._m = None
+
+    def __enter__(self) -> Map:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"config": self._config, "map": self.save()}
+
+    def __setstate__(self, saved: Mapping[str, Any]) -> None:
+        Map.__init__(self, **saved["config"])
+        self.load(saved["map"])
+
+    def __repr__(self) -> str:
+        return "<Map, closed>" if self._m is None else f"<Map of {self.info.resolution} m: {self.info.nodes} nodes>"
+
+    def _given(self, function: str, name: str, value: Any) -> Array:
+        return given(value, _abi.FUNCTIONS[function].rows[name], {}, name)
+
+    def _open(self) -> int:
+        if self._m is None:
+            raise StateError("map: it was closed")
+        return self._m
+
+    def _check(self, code: int) -> None:
+        if code:
+            raise StateError("map: it was closed") if self._m is None else failure(code)
+
+
+def sample_furthest(points: Any, wanted: int, start: int = 0) -> npt.NDArray[np.int32]:
+    """Numbers of `wanted` of points [count][3] that lie furthest from each other, in order of choice."""
+    rows = _points(points)
+    chosen = np.empty(max(wanted, 0), np.int32)
+    size = lib.rdm_sample_scratch(len(rows))
+    scratch = aligned(size)
+    check(lib.rdm_sample_furthest(rows.ctypes.data, len(rows), wanted, start, chosen.ctypes.data,
+                                  scratch.ctypes.data, size))
+    return chosen

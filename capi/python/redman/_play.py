@@ -1,0 +1,158 @@
+"""Whole episodes of a policy: how good it is, and what it looks like."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Callable, Optional, Sequence, Union
+
+import numpy as np
+
+from . import _png
+from ._error import ArgumentError, Error
+from ._options import Options
+from ._policy import Policy
+from ._pool import Pool
+from ._rows import Array, FloatArray
+
+Player = Union[Policy, str, Callable[[FloatArray], Any]]
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Means over whole episodes; costs are a number for each column."""
+
+    episodes: int
+    return_mean: float
+    return_std: float
+    cost_mean: list[float]
+    cost_std: list[float]
+    length_mean: float
+    success_rate: float  # share of episodes with at least one success
+    fall_rate: float  # share of episodes that terminated
+    violation_rate: float  # share of episodes over a limit
+    cost_limits: list[Optional[float]]
+
+    @property
+    def feasible(self) -> bool:
+        """No mean cost is above its limit."""
+        return all(limit is None or mean <= limit for mean, limit in zip(self.cost_mean, self.cost_limits))
+
+
+class _Actor:
+    """Writes the pool's actions: the policy's decisions, each held as long as it was trained to."""
+
+    def __init__(self, player: Player, pool: Pool) -> None:
+        self._player, self._pool = player, pool
+        self._repeat = player.info.action_repeat if isinstance(player, Policy) else 1
+        if isinstance(player, Policy):
+            player.check(pool)
+        self._left = np.zeros(pool.num_envs, np.int64)  # control steps that the action of each world is still held
+
+    def act(self) -> None:
+        if isinstance(self._player, str):
+            self._pool.baseline(self._player)
+            return
+        due = self._left == 0
+        if due.any():
+            decide = self._player.act if isinstance(self._player, Policy) else self._player
+            self._pool.action[due] = np.asarray(decide(self._pool.obs))[due]
+            self._left[due] = self._repeat
+        self._left -= 1
+
+    def restart(self, worlds: Array) -> None:
+        self._left[worlds] = 0
+
+
+def limits_of(pool: Pool, wanted: Optional[Sequence[Optional[float]]]) -> list[Optional[float]]:
+    """The wanted limits, or the task's own."""
+    if wanted is not None:
+        return list(wanted)
+    return [None if cost.limit < 0 else cost.limit for cost in pool.costs.values()]
+
+
+def play(pool: Pool, player: Player, episodes: int) -> list[dict[str, Any]]:
+    """Each episode's return, costs, length, fall and success; the pool's autoreset is off, and it was just reset."""
+    n = pool.num_envs
+    actor = _Actor(player, pool)
+    number = np.arange(n)
+    playing = number < episodes
+    success = np.zeros(n, np.bool_)
+    out: list[dict[str, Any]] = [{} for _ in range(episodes)]
+    while playing.any():
+        actor.act()
+        pool.step(mask=playing)
+        success |= pool.success & playing
+        ended = (pool.terminated | pool.truncated) & playing
+        if not ended.any():
+            continue
+        for i in np.flatnonzero(ended):
+            out[number[i]] = {"return": float(pool.episode_return[i]), "cost": pool.episode_cost[i].astype(np.float64),
+                              "length": int(pool.episode_step[i]), "fall": bool(pool.terminated[i]),
+                              "success": bool(success[i])}
+            number[i] += n
+        success[ended] = False
+        playing = number < episodes
+        again = ended & playing
+        if again.any():
+            pool.reset(mask=again)
+            actor.restart(again)
+    return out
+
+
+def evaluate(player: Player, task: Optional[str] = None, episodes: int = 100, num_envs: int = 16, seed: int = 0,
+             threads: int = 0, options: Optional[Options] = None,
+             cost_limits: Optional[Sequence[Optional[float]]] = None) -> Evaluation:
+    """How good a policy, a baseline ("zero", "hold", "random") or a function of obs rows is, over whole episodes.
+
+    The same episodes as `redman eval` plays for the same seed and number of worlds.
+    """
+    if task is None:
+        if not isinstance(player, Policy) or not player.info.task:
+            raise ArgumentError("evaluate: say which task")
+        task = player.info.task
+    if episodes < 1:
+        raise ArgumentError("episodes: 1 or more")
+    with Pool(task, min(num_envs, episodes), seed, threads, autoreset="off", options=options) as pool:
+        pool.reset()
+        return summary(play(pool, player, episodes), limits_of(pool, cost_limits))
+
+
+def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]]) -> Evaluation:
+    """Means of episodes."""
+    returns = np.array([episode["return"] for episode in played])
+    costs = np.array([episode["cost"] for episode in played])
+    over = np.zeros(len(played), np.bool_)
+    for k, limit in enumerate(limits):
+        if limit is not None:
+            over |= costs[:, k] > limit
+
+    def share(values: Any) -> float:
+        return float(np.mean(values))
+
+    return Evaluation(
+        episodes=len(played), return_mean=share(returns), return_std=float(returns.std()),
+        cost_mean=costs.mean(axis=0).tolist(), cost_std=costs.std(axis=0).tolist(),
+        length_mean=share([episode["length"] for episode in played]),
+        success_rate=share([episode["success"] for episode in played]),
+        fall_rate=share([episode["fall"] for episode in played]), violation_rate=share(over),
+        cost_limits=list(limits))
+
+
+def strip(policy: Policy, frames: int = 6, width: int = 200, height: int = 200) -> Optional[bytes]:
+    """A PNG of moments of an episode, side by side; None where the task cannot be made or shown."""
+    if not policy.info.task:
+        return None
+    try:
+        with Pool(policy.info.task, autoreset="off") as pool:
+            pool.reset()
+            actor = _Actor(policy, pool)
+            pictures = [pool.render(width=width, height=height)]
+            step = 0
+            while len(pictures) < frames and not (pool.terminated[0] or pool.truncated[0]):
+                actor.act()
+                pool.step()
+                step += 1
+                if step * (frames - 1) >= len(pictures) * pool.max_steps:
+                    pictures.append(pool.render(width=width, height=height))
+            return _png.encode(np.concatenate(pictures, axis=1))
+    except Error:
+        return None

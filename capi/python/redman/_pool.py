@@ -1,0 +1,429 @@
+"""Pool: worlds of one task, stepped together."""
+from __future__ import annotations
+
+import ctypes
+import operator
+import threading
+from ctypes import byref, c_int32, c_size_t, c_uint64
+from typing import Any, Iterator, Mapping, Optional, Sequence, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _abi, _discovery, _png
+from ._error import ArgumentError, Error, StateError
+from ._library import Handle, check, encoded, failure, filled, lib, sized, text
+from ._options import Options, Value, option_array, value_of
+from ._rows import Array, Borrowed, FloatArray, address, given, made, shape_of
+
+_AUTORESET = {"samestep": _abi.RDM_AUTORESET_SAME_STEP, "nextstep": _abi.RDM_AUTORESET_NEXT_STEP,
+              "off": _abi.RDM_AUTORESET_OFF, "disabled": _abi.RDM_AUTORESET_OFF}
+_AUTORESET_NAMES = ("same_step", "next_step", "off")
+_BASELINE = {"zero": _abi.RDM_BASELINE_ZERO, "hold": _abi.RDM_BASELINE_HOLD, "random": _abi.RDM_BASELINE_RANDOM}
+_PICTURE = {"rgb": ("uint8", (3,)), "depth": ("float32", ()), "segmentation": ("int32", ())}
+SHAPE_KINDS = ("sphere", "capsule", "box", "cylinder", "plane", "ellipsoid", "hull")
+
+_step = lib["rdm_pool_step"]  # a function of its own, for the one call that is made a million times
+_step.argtypes = [ctypes.c_void_p]
+
+
+def _autoreset(mode: object) -> int:
+    """same_step, next_step, off; also Gymnasium's SameStep, NextStep, Disabled and its enum."""
+    named = str(getattr(mode, "value", mode)).lower().replace("_", "").replace("-", "")
+    if named not in _AUTORESET:
+        raise ArgumentError(f"autoreset: {mode!r} is none of same_step, next_step, off")
+    return _AUTORESET[named]
+
+
+class Sensors:
+    """What worlds see (option modality): arrays of the library's memory, None where a modality is off."""
+
+    rgb: Optional[npt.NDArray[np.uint8]]
+    depth: Optional[FloatArray]
+    segmentation: Optional[npt.NDArray[np.int32]]
+    points: Optional[FloatArray]
+    point_shape: Optional[npt.NDArray[np.int32]]
+    point_count: Optional[npt.NDArray[np.int32]]
+    voxels: Optional[npt.NDArray[np.int8]]
+    voxel_size: float
+    cameras: list[_abi.Camera]  # of the pictures
+    cloud_cameras: list[_abi.Camera]  # of points and voxels
+
+    def __init__(self, handle: Handle, num_envs: int) -> None:
+        s = filled(_abi.rdm_sensors, lib.rdm_pool_sensors, handle.value)
+        self.voxel_size = s.voxel_size
+        lengths = {"num_envs": num_envs, "num_cameras": s.num_cameras, "height": s.height, "width": s.width,
+                   "num_points": s.num_points, "num_voxels": s.num_voxels, "x": s.num_voxels, "y": s.num_voxels,
+                   "z": s.num_voxels}
+        table = dict(_abi.ROWS["rdm_sensors"])
+        table.setdefault("segmentation", table["depth"]._replace(dtype="int32"))
+        for name, rows in table.items():
+            at = getattr(s, name)
+            setattr(self, name, Borrowed(at, rows.dtype, shape_of(rows, lengths), handle).array() if at else None)
+        self.cameras, self.cloud_cameras = (list(self._cameras(handle, cloud)) for cloud in (0, 1))
+
+    @staticmethod
+    def _cameras(handle: Handle, cloud: int) -> Iterator[_abi.Camera]:
+        row = _abi.rdm_camera()
+        i = 0
+        while not lib.rdm_pool_sensor_camera(handle.value, cloud, i, byref(row)):
+            yield _abi.Camera(row)
+            i += 1
+
+
+class Pool:
+    """N worlds of one task.
+
+        pool = redman.Pool("hand_over_safe_finger", num_envs=16, seed=7)
+        pool.reset()
+        for _ in range(75):
+            pool.baseline("hold")           # or write pool.action, or pool.step(action)
+            pool.step()
+        print(pool.episode_return, pool.cost)
+
+    Rows (obs, action, reward, cost, ...) are views of one memory that reset and step write: copy what is to stay.
+    They outlive the pool. One thread at a time uses a pool; others wait. Options are a dict (`pool.options` has all).
+    """
+
+    def __init__(self, task: str, num_envs: int = 1, seed: int = 0, threads: int = 0, autoreset: object = "same_step",
+                 options: Optional[Options] = None) -> None:
+        self._lock = threading.RLock()
+        self._config: dict[str, Any] = {
+            "task": task, "num_envs": int(num_envs), "seed": int(seed), "threads": int(threads),
+            "autoreset": _AUTORESET_NAMES[_autoreset(autoreset)], "options": dict(options or {})}
+        config = sized(_abi.rdm_pool_config)
+        check(lib.rdm_pool_config_init(byref(config), ctypes.sizeof(config)))
+        config.task = encoded(task)
+        config.num_envs = num_envs
+        config.seed = seed
+        config.num_threads = threads
+        config.autoreset = _autoreset(autoreset)
+        array = option_array(options or {})
+        config.options, config.num_options = array, len(array)
+        self._handle: Optional[Handle] = Handle(lib.rdm_pool_create, lib.rdm_pool_destroy, byref(config))
+        self._p = self._handle.value
+        self._spec = filled(_abi.rdm_spec, lib.rdm_pool_get_spec, self._p)
+        self.spec = _abi.Spec(self._spec)
+        self.task: _discovery.Task = _discovery.task_at(self.spec.task)
+        self.num_envs = config.num_envs
+        self.obs_dim, self.action_dim, self.cost_dim = self.spec.obs_dim, self.spec.action_dim, self.spec.cost_dim
+        self.max_steps, self.control_dt = self.spec.max_steps, self.spec.control_dt
+        self._lengths = {"num_envs": self.num_envs, "obs_dim": self.obs_dim, "action_dim": self.action_dim,
+                         "cost_dim": self.cost_dim}
+        self._rows = made(_abi.ROWS["rdm_buffers"], self._lengths)
+        buffers = sized(_abi.rdm_buffers)
+        for name, array in self._rows.items():
+            setattr(buffers, name, array.ctypes.data)
+        check(lib.rdm_pool_bind(self._p, byref(buffers)))
+        self._action = self._rows["action"]
+        self._obs = self._rows["obs"]
+
+    # ---- rows -------------------------------------------------------------------------------------------------
+
+    @property
+    def obs(self) -> FloatArray:
+        """[num_envs][obs_dim] what the worlds are in now."""
+        return self._obs
+
+    @property
+    def final_obs(self) -> FloatArray:
+        """[num_envs][obs_dim] the last observation where an episode ended, else as obs."""
+        return self._rows["final_obs"]
+
+    @property
+    def action(self) -> FloatArray:
+        """[num_envs][action_dim] in [-1, 1], to be written; assignment copies."""
+        return self._action
+
+    @action.setter
+    def action(self, value: Any) -> None:
+        self._write_action(value)
+
+    @property
+    def reward(self) -> FloatArray:
+        """[num_envs]"""
+        return self._rows["reward"]
+
+    @property
+    def cost(self) -> FloatArray:
+        """[num_envs][cost_dim] not below 0; column 0 is the task's own cost."""
+        return self._rows["cost"]
+
+    @property
+    def cost_raw(self) -> FloatArray:
+        """[num_envs][cost_dim] the measured value behind each cost."""
+        return self._rows["cost_raw"]
+
+    @property
+    def episode_return(self) -> FloatArray:
+        """[num_envs] sum of rewards; the finished episode's where one ended."""
+        return self._rows["episode_return"]
+
+    @property
+    def episode_cost(self) -> FloatArray:
+        """[num_envs][cost_dim] likewise."""
+        return self._rows["episode_cost"]
+
+    @property
+    def episode_step(self) -> npt.NDArray[np.int32]:
+        """[num_envs] control steps, likewise."""
+        return self._rows["episode_step"]
+
+    @property
+    def status(self) -> npt.NDArray[np.uint32]:
+        """[num_envs] bits of the last step: 1 contacts were left out, 2 diverged, 4 bad action."""
+        return self._rows["status"]
+
+    @property
+    def terminated(self) -> npt.NDArray[np.bool_]:
+        """[num_envs] the task ended (a fall)."""
+        return self._rows["terminated"].view(np.bool_)
+
+    @property
+    def truncated(self) -> npt.NDArray[np.bool_]:
+        """[num_envs] cut by the time limit or a bad status."""
+        return self._rows["truncated"].view(np.bool_)
+
+    @property
+    def success(self) -> npt.NDArray[np.bool_]:
+        """[num_envs] the task's success holds in this step."""
+        return self._rows["success"].view(np.bool_)
+
+    # ---- stepping ---------------------------------------------------------------------------------------------
+
+    def _fail(self, code: int) -> Error:
+        if self._p is None:
+            return StateError("pool: it was closed")
+        return failure(code)
+
+    def _check(self, code: int) -> None:
+        if code:
+            raise self._fail(code)
+
+    def _write_action(self, action: Any) -> None:
+        try:
+            np.copyto(self._action, action)
+        except (TypeError, ValueError):
+            np.copyto(self._action, given(action, _abi.ROWS["rdm_buffers"]["action"], self._lengths, "action"))
+
+    def _mask(self, mask: Any) -> Optional[Array]:
+        return None if mask is None else given(
+            mask, _abi.FUNCTIONS["rdm_pool_reset"].rows["mask"], self._lengths, "mask")
+
+    def reset(self, seeds: Union[None, int, Sequence[int], Array] = None, mask: Any = None) -> FloatArray:
+        """Starts new episodes where mask holds (None: everywhere) and returns obs.
+
+        seeds name the episodes, one for each world; a single one stands for seed, seed + 1, ... None goes on with
+        the worlds' own streams.
+        """
+        rows = None
+        if seeds is not None:
+            try:
+                first = operator.index(seeds)  # type: ignore[arg-type]
+                listed = list(range(first, first + self.num_envs))
+            except TypeError:
+                listed = [operator.index(seed) for seed in seeds]  # type: ignore[union-attr]
+            if any(not 0 <= seed < 1 << 64 for seed in listed):
+                raise ArgumentError("seeds: integers from 0 to 2^64 - 1")
+            rows = given(np.array(listed, np.uint64), _abi.FUNCTIONS["rdm_pool_reset"].rows["seeds"], self._lengths, "seeds")
+        chosen = self._mask(mask)
+        with self._lock:
+            self._check(lib.rdm_pool_reset(self._p, address(rows), address(chosen)))
+        return self._obs
+
+    def step(self, action: Any = None, mask: Any = None) -> FloatArray:
+        """One control step of every world (of those where mask holds); returns obs.
+
+        action is written to pool.action first; None takes what stands there.
+        """
+        if action is not None and action is not self._action:
+            self._write_action(action)
+        if mask is None:
+            with self._lock:
+                code = _step(self._p)
+        else:
+            chosen = self._mask(mask)
+            with self._lock:
+                code = lib.rdm_pool_step_masked(self._p, address(chosen))
+        if code:
+            raise self._fail(code)
+        return self._obs
+
+    def baseline(self, kind: str = "hold") -> FloatArray:
+        """Fills pool.action by a policy that learns nothing, "zero", "hold" or "random", and returns it."""
+        if kind not in _BASELINE:
+            raise ArgumentError(f"baseline: {kind!r} is none of {', '.join(_BASELINE)}")
+        with self._lock:
+            self._check(lib.rdm_pool_baseline(self._p, _BASELINE[kind]))
+        return self._action
+
+    # ---- state ------------------------------------------------------------------------------------------------
+
+    def state(self, env: int = -1) -> bytes:
+        """The whole state of one world, or of all (-1)."""
+        with self._lock:
+            size = c_size_t()
+            self._check(lib.rdm_pool_state_size(self._p, env, byref(size)))
+            raw = ctypes.create_string_buffer(size.value)
+            self._check(lib.rdm_pool_get_state(self._p, env, raw, size, byref(size)))
+            return raw.raw
+
+    def set_state(self, state: bytes, env: int = -1) -> None:
+        """Goes on from state(): the same bytes follow. Writes obs anew and clears the other rows of that world."""
+        with self._lock:
+            self._check(lib.rdm_pool_set_state(self._p, env, bytes(state), len(state)))
+
+    def hash(self, env: int = -1) -> str:
+        """The hash of the state as the tool prints it, 16 hexadecimal digits."""
+        out = c_uint64()
+        with self._lock:
+            self._check(lib.rdm_pool_hash(self._p, env, byref(out)))
+        return f"{out.value:016x}"
+
+    # ---- what a world shows -----------------------------------------------------------------------------------
+
+    @property
+    def cameras(self) -> dict[str, _abi.Camera]:
+        """The task's cameras by name."""
+        return dict(self.task.cameras)
+
+    def render(self, env: int = 0, camera: Optional[str] = None, width: int = 320, height: int = 240,
+               what: str = "rgb") -> Array:
+        """A picture of one world: rgb [height][width][3] bytes; depth [height][width] in m, 0 where nothing is;
+        segmentation [height][width], the number of a shape or -1. camera None: the task's first."""
+        if what not in _PICTURE:
+            raise ArgumentError(f"what: {what!r} is none of {', '.join(_PICTURE)}")
+        if camera is None:
+            camera = next(iter(self.task.cameras), "")
+        dtype, tail = _PICTURE[what]
+        fits = 1 <= width <= 8192 and 1 <= height <= 8192  # if not, the call says so
+        out = np.empty((height, width, *tail) if fits else 0, dtype)
+        with self._lock:
+            self._check(lib.rdm_pool_render(self._p, env, encoded(camera), width, height,
+                                            *(out.ctypes.data if name == what else None for name in _PICTURE)))
+        return out
+
+    def _repr_png_(self) -> Optional[bytes]:
+        """Up to four worlds side by side, for a notebook."""
+        try:
+            pictures = [self.render(env, width=240, height=180) for env in range(min(4, self.num_envs))]
+        except Error:
+            return None
+        return _png.encode(np.concatenate(pictures, axis=1))
+
+    @property
+    def shapes(self) -> list[_abi.Shape]:
+        """What the scene is made of, the same for all worlds; kind is an index of SHAPE_KINDS."""
+        return [_abi.Shape(filled(_abi.rdm_shape, lib.rdm_pool_shape, self._open(), i))
+                for i in range(self.spec.num_shapes)]
+
+    def _open(self) -> int:
+        if self._p is None:
+            raise self._fail(0)
+        return self._p
+
+    def poses(self, env: int = 0) -> FloatArray:
+        """[num_shapes][7] position (m) and quaternion (x, y, z, w) of each shape of one world."""
+        out = np.empty((self.spec.num_shapes, 7), np.float32)
+        with self._lock:
+            self._check(lib.rdm_pool_poses(self._p, env, out.ctypes.data))
+        return out
+
+    def contacts(self, env: int = 0) -> Array:
+        """Contact points of the last substep: rows of shape_a, shape_b, position, normal, force, depth."""
+        out = np.empty(0, np.dtype(_abi.rdm_contact))
+        count = c_int32()
+        with self._lock:
+            while True:
+                rows = out.ctypes.data_as(ctypes.POINTER(_abi.rdm_contact))
+                self._check(lib.rdm_pool_contacts(self._p, env, rows, len(out), byref(count)))
+                if count.value <= len(out):
+                    return out[:count.value]
+                out = np.empty(count.value, out.dtype)
+
+    def push(self, env: int, shape: Union[int, str], force: Sequence[float]) -> None:
+        """Pushes a shape's carrier during the next step: force in N at its centre of mass, world axes."""
+        if isinstance(shape, str):
+            names = [row.name for row in self.shapes]
+            if shape not in names:
+                raise ArgumentError(f"shape: {shape!r} is none of this scene's")
+            shape = names.index(shape)
+        rows = given(force, _abi.FUNCTIONS["rdm_pool_push"].rows["force"], self._lengths, "force")
+        with self._lock:
+            self._check(lib.rdm_pool_push(self._p, env, shape, rows.ctypes.data))
+
+    @property
+    def sensors(self) -> Sensors:
+        """Pictures, clouds and voxels (option modality): arrays of the library's own memory, which they keep."""
+        self._open()
+        assert self._handle is not None
+        return Sensors(self._handle, self.num_envs)
+
+    @property
+    def stats(self) -> _abi.PoolStats:
+        """Contacts, drift and bad worlds so far."""
+        return _abi.PoolStats(filled(_abi.rdm_pool_stats, lib.rdm_pool_get_stats, self._open()))
+
+    # ---- what it is -------------------------------------------------------------------------------------------
+
+    @property
+    def fields(self) -> dict[str, _discovery.Field]:
+        """What each entry of obs means, with this pool's options."""
+        rows = (_discovery.Field(filled(_abi.rdm_field, lib.rdm_pool_field, self._open(), i))
+                for i in range(self.spec.num_fields))
+        return {row.name: row for row in rows}
+
+    @property
+    def costs(self) -> dict[str, _abi.Cost]:
+        """What each column of cost means."""
+        return dict(self.task.costs)
+
+    @property
+    def options(self) -> dict[str, Value]:
+        """All options of the task as this pool has them."""
+        out: dict[str, Value] = {}
+        for i, info in enumerate(self.task.options.values()):
+            key = ctypes.c_char_p()
+            shown = ctypes.create_string_buffer(_abi.RDM_TEXT_SIZE)
+            self._check(lib.rdm_pool_option(self._p, i, byref(key), shown))
+            out[text(key.value)] = value_of(info, text(shown.value))
+        return out
+
+    @property
+    def autoreset(self) -> str:
+        """same_step, next_step or off."""
+        return str(self._config["autoreset"])
+
+    def close(self) -> None:
+        """Ends the worlds; rows and sensor arrays that were taken stay good. A second call does nothing."""
+        with self._lock:
+            self._handle = None
+            self._p = None
+
+    def __enter__(self) -> Pool:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<Pool {self.task.name}: {self.num_envs} worlds{', closed' if self._p is None else ''}>"
+
+    # ---- copies -----------------------------------------------------------------------------------------------
+
+    def __getstate__(self) -> dict[str, Any]:
+        with self._lock:
+            self._open()
+            try:
+                state = self.state()
+            except StateError:  # not reset yet
+                state = None
+            return {"config": self._config, "state": state,
+                    "rows": {name: array.copy() for name, array in self._rows.items()}}
+
+    def __setstate__(self, saved: Mapping[str, Any]) -> None:
+        Pool.__init__(self, **saved["config"])
+        if saved["state"] is not None:
+            self.set_state(saved["state"])
+        for name, array in saved["rows"].items():
+            self._rows[name][...] = array

@@ -1,0 +1,39 @@
+"""Records: what the library fills in a struct, as plain Python values."""
+from __future__ import annotations
+
+import ctypes
+from typing import Any
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, bytes):
+        return value.decode("utf-8", errors="replace")
+    return tuple(value) if isinstance(value, ctypes.Array) else value
+
+
+class Record:
+    """Values of a struct by name, not to be changed: texts are str, arrays are tuples, a NULL text is None."""
+
+    def __init__(self, struct: ctypes.Structure) -> None:
+        for kind in type(self).__mro__:
+            for name in kind.__dict__.get("__annotations__", ()):
+                if hasattr(struct, name):
+                    self.__dict__[name] = _plain(getattr(struct, name))
+
+    def replaced(self, **values: Any) -> Any:
+        """A copy with other values."""
+        copy = object.__new__(type(self))
+        copy.__dict__.update(self.__dict__, **values)
+        return copy
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"{type(self).__name__}.{name} is what the library said; it cannot be set")
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and self.__dict__ == other.__dict__
+
+    def __hash__(self) -> int:
+        return hash((type(self), repr(self)))
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self.__dict__.items())})"
