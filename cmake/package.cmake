@@ -24,7 +24,7 @@ endif()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "${REDMAN_CONTACT}")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "safe dexterous manipulation in a C library")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # every package has its own
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
@@ -33,13 +33,13 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_ALL runtime dev tools)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/packaging/debian/finish.cmake)
 set(RDM_DEBIAN ${PROJECT_BINARY_DIR}/debian)
-set(version ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 set(library libredman${RDM_ABI})
+math(EXPR next "${PROJECT_VERSION_MINOR} + 1")
+set(next ${PROJECT_VERSION_MAJOR}.${next})
 
 # rdm_deb(component package section SUMMARY text DEPENDS list TEXT long description)
 function(rdm_deb component package section)
@@ -51,34 +51,28 @@ function(rdm_deb component package section)
   set(CPACK_DEBIAN_${upper}_DESCRIPTION "${arg_SUMMARY}\n${arg_TEXT}" PARENT_SCOPE)
   set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA "${arg_CONTROL}" PARENT_SCOPE)
 endfunction()
-set(text "Two 24-joint hands throw, catch, grasp and use things in worlds that are stepped together; ten\nsafe learners act on \
-rewards and costs; a frozen policy runs on a machine that has nothing else.\nThe same seed gives the same bytes for any \
+set(text "Two 24-joint hands throw, catch, grasp and use things in worlds that\nare stepped together, ten safe learners act \
+on rewards and costs, and\na frozen policy runs on a machine that has nothing else. The same\nseed gives the same bytes for any \
 number of threads.")
 rdm_deb(runtime ${library} libs SUMMARY "safe dexterous manipulation (shared library)" TEXT "${text}"
         CONTROL ${RDM_DEBIAN}/symbols ${RDM_DEBIAN}/shlibs ${RDM_DEBIAN}/triggers)
 rdm_deb(dev libredman-dev libdevel SUMMARY "safe dexterous manipulation (headers, static library)" TEXT "${text}\n.\nThis \
-package is for those who build programs against it, from C, C++ or a binding."
-        DEPENDS "${library} (= ${version}), libode-dev, libccd-dev, liboctomap-dev")
+package is for those who build programs against it."
+        DEPENDS "${library} (= ${PROJECT_VERSION}), libode-dev, libccd-dev, liboctomap-dev")
 rdm_deb(tools redman science SUMMARY "train, evaluate and look at safe dexterous manipulation" TEXT "${text}\n.\nThis package \
-holds the command-line tool, its manual and its scripted demonstrations."
-        DEPENDS "${library} (= ${version})")
+holds the command-line tool, its manual and\nits scripted demonstrations."
+        DEPENDS "${library} (= ${PROJECT_VERSION})")
 if(REDMAN_PYTHON_DIR)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
   rdm_deb(python python3-redman python SUMMARY "safe dexterous manipulation (Python 3)" TEXT "${text}\n.\nThis package holds \
-the Python module, with environments for Gymnasium and its like."
-          DEPENDS "${library} (>= ${PROJECT_VERSION}), ${library} (<< ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}.9999), python3, python3-numpy"
+the Python module, with environments for\nGymnasium and its like."
+          DEPENDS "${library} (>= ${PROJECT_VERSION}), ${library} (<< ${next}~), python3, python3-numpy"
           CONTROL ${PROJECT_SOURCE_DIR}/cmake/packaging/debian/postinst ${PROJECT_SOURCE_DIR}/cmake/packaging/debian/prerm)
 endif()
-foreach(component runtime dev tools)
-  string(TOUPPER ${component} upper)
-  set(CPACK_DEBIAN_${upper}_PACKAGE_SHLIBDEPS ON)
-endforeach()
-set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_MULTIARCH same)
-set(CPACK_DEBIAN_DEV_PACKAGE_MULTIARCH same)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)  # the library's are asked for in finish.cmake: cpack would add scripts
 
-# dpkg-shlibdeps, for the tool, and apt, for everybody, read in these what the library promises.
+# What the library promises to programs, and that the loader's cache must know it.
 file(WRITE ${RDM_DEBIAN}/shlibs "libredman ${RDM_ABI} ${library} (>= ${PROJECT_VERSION})\n")
 file(WRITE ${RDM_DEBIAN}/triggers "activate-noawait ldconfig\n")
 include(CPack)

@@ -1,0 +1,85 @@
+# The header as Doxygen wants to read it; its comments stay plain for everybody else. A comment above a declaration is
+# its text, and that of the ones that follow without a comment of their own, up to an empty line; one behind it too;
+# "---- title ----" opens a section.
+function open_section(title, rest,   name) {
+  name = tolower(title)
+  gsub(/[^a-z0-9]+/, "_", name)
+  if (section) print "/** @} */"
+  section = 1
+  print "/** @defgroup " name " " title
+  print " * " rest " */"
+  print "/** @{ */"
+}
+# One whole comment above something: kept for those that follow, with examples marked as code.
+function document(text,   n, i, line, code, out, empty) {
+  sub(/^\/\*+ */, "", text)
+  sub(/ *\*\/ *$/, "", text)
+  n = split(text, lines, "\n")
+  out = FNR == ended && first ? "@file\n" : ""
+  for (i = 1; i <= n; ++i) {
+    line = lines[i]
+    sub(/^ *\* ?/, "", line)
+    if (i > 1 && empty && line ~ /^  +[^- ]/ && !code) { out = out "@code\n"; code = 1 }
+    if (code && line == "") { out = out "@endcode\n"; code = 0 }
+    out = out line "\n"
+    empty = line == ""
+  }
+  if (code) out = out "@endcode\n"
+  gsub(/</, "\\<", out)
+  kept = "/** " out "*/"
+  used = 0
+}
+function above() {  # before a declaration without a comment of its own, or the first one under a comment
+  if (kept != "") print kept
+  used = 1
+}
+BEGIN { first = 1 }
+{ sub(/\r$/, "") }
+comment != "" {
+  comment = comment "\n" $0
+  if (/\*\//) { ended = FNR; document(comment); comment = ""; if (first) { print kept; kept = ""; first = 0 } }
+  next
+}
+/^\/\* (----|====) / {
+  title = $0
+  sub(/^\/\* [-=]+ /, "", title)
+  sub(/ [-=]*( \*\/)?$/, "", title)
+  rest = ""
+  if (title ~ /: /) { rest = title; sub(/^[^:]*: /, "", rest); sub(/:.*/, "", title) }
+  open_section(title, rest)
+  kept = ""
+  in_title = !/\*\//
+  next
+}
+in_title { in_title = !/\*\//; next }
+/^[ \t]*\/\*/ && !/\*\// { comment = $0; next }
+/^[ \t]*\/\*.*\*\/[ \t]*$/ { ended = FNR; document($0); next }
+/^$/ { kept = ""; print; next }
+/^#ifdef __cplusplus|^#if.*RDM_EXPERIMENTAL/ { kept = ""; if (section && depth == 0) { print "/** @} */"; section = 0 } print; next }
+{
+  behind = ""
+  if (match($0, /\/\*.*\*\//)) {
+    behind = substr($0, RSTART, RLENGTH)
+    $0 = substr($0, 1, RSTART - 1) substr($0, RSTART + RLENGTH)
+    sub(/^\/\*+ */, "", behind)
+    sub(/ *\*\/$/, "", behind)
+    gsub(/</, "\\<", behind)
+  }
+  starts = /^(RDM_API|typedef|enum|#define)/ || (depth > 0 && !/^}/)
+  if (statement) starts = 0
+  if (starts && /\{ *$/) {  # what stands behind the brace of a struct or enum is about all of it
+    if (behind != "") print "/** " behind " */"; else above()
+    kept = ""
+    print
+    depth = 1
+    next
+  }
+  if (starts) {
+    if (behind == "" || !used) above()
+    if (behind != "") kept = ""
+  }
+  if (/^}/) { depth = 0; kept = "" }
+  if (/^RDM_API/ || (depth && /\(\*/)) statement = 1
+  if (statement && /;/) statement = 0
+  print $0 (behind != "" ? " /**< " behind " */" : "")
+}
