@@ -35,8 +35,7 @@ int32_t algo_find(const char* name) {
     names[i] = kRows[i]->info.name;
     if (same_name(names[i], name)) return i;
   }
-  fail(Code::kNotFound, "algo %s: unknown; nearest is %s", Quoted(name).text,
-       names[nearest_name(name, names, algo_count())]);
+  fail(Code::kNotFound, "algo %s: unknown%s", Quoted(name).text, Nearest(name, names, algo_count()).text);
 }
 
 }  // namespace rdm

@@ -15,6 +15,22 @@ HostHooks hooks_from(const rdm_host* host) {
   return out;
 }
 
+const char* name_of(Tag tag) {
+  switch (tag) {
+    case Tag::kPool:
+      return "pool";
+    case Tag::kAgent:
+      return "agent";
+    case Tag::kPolicy:
+      return "policy";
+    case Tag::kMap:
+      return "map";
+    case Tag::kNone:
+      break;
+  }
+  return nullptr;
+}
+
 rdm_option_info describe(const OptionSpec& s) {
   return {s.key,
           s.help,
@@ -25,6 +41,27 @@ rdm_option_info describe(const OptionSpec& s) {
           s.high,
           static_cast<int32_t>(s.kind),
           s.live ? 1 : 0};
+}
+
+void give_settings(const Options& options, char* text, size_t capacity, size_t* size) {
+  need(size, "size");
+  const size_t length = options.print_lines(nullptr, 0);
+  if (text && capacity <= length)
+    fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, length + 1);
+  if (text) options.print_lines(text, capacity);
+  *size = length;
+}
+
+void give_option(const Options& options, int32_t i, const char** key, char* text, const char* settings_call) {
+  need(key, "key");
+  need(text, "text");
+  need_index(i, options.count(), "i");
+  char value[RDM_TEXT_SIZE];
+  if (!options.print(i, value))
+    fail(Code::kRange, "option %s: its text is longer than %d bytes; %s has it whole", options.spec(i).key,
+         RDM_TEXT_SIZE - 1, settings_call);
+  *key = options.spec(i).key;
+  std::strcpy(text, value);
 }
 
 Vector<OptionInput> read_options(const rdm_option* options, int32_t count, const char* name) {

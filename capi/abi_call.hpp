@@ -1,15 +1,20 @@
-// What all of the shim shares: the barrier between C++ and C, and structs that grow.
+// What all of the shim shares: the barrier between C++ and C, handles, and structs that grow.
 #pragma once
 #include <algorithm>
 #include <cstring>
 
+#include "base/arena.hpp"
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
 #include "base/host.hpp"
 #include "base/option.hpp"
+#include "base/text.hpp"
 #include "redman/redman.h"
 
 namespace rdm::capi {
+
+// No struct of any version is larger: a size above it was never set.
+inline constexpr size_t kMaxStructSize = 4096;
 
 // Runs f under the library's floating-point mode; a failure goes to this thread's text and, if given, to
 // the handle's.
@@ -21,17 +26,67 @@ rdm_result call(char* handle_text, F&& f) noexcept {
   return static_cast<rdm_result>(code);
 }
 
+// The same for a call that takes a config: a failure's text goes to config.error too, where there is one.
+template <class Config, class F>
+rdm_result call_with(const Config* c, char* handle_text, F&& f) noexcept {
+  const rdm_result r = call(handle_text, f);
+  if (r == RDM_OK || !c) return r;
+  constexpr size_t end = offsetof(Config, error_size) + sizeof c->error_size;
+  if (c->struct_size < end || c->struct_size > kMaxStructSize || !c->error || c->error_size < 1) return r;
+  copy_text(c->error, static_cast<size_t>(c->error_size), last_error());
+  return r;
+}
+template <class Config, class F>
+rdm_result call_with(const Config* c, F&& f) noexcept {
+  return call_with(c, nullptr, f);
+}
+template <class Config>
+void check_error(const Config& c) {
+  if (c.error && c.error_size < 1)
+    fail(Code::kRange, "config.error_size: %d is less than 1, but error is set", c.error_size);
+}
+
+// The first word of what a handle points to: its kind, or 0 when it was destroyed.
+enum class Tag : uint32_t {
+  kNone = 0,
+  kPool = 0x6c6f6f70,
+  kAgent = 0x6e656761,
+  kPolicy = 0x796c6f70,
+  kMap = 0x2070616d
+};
+const char* name_of(Tag tag);  // "pool"; NULL for what is no tag
+
 inline void need(const void* p, const char* name) {
   if (!p) fail(Code::kArgument, "%s is NULL", name);
+}
+template <class Handle>
+bool is_handle(const Handle* h) {
+  return h && h->tag == Handle::kTag;
+}
+template <class Handle>
+void need_handle(const Handle* h) {
+  const char* name = name_of(Handle::kTag);
+  need(h, name);
+  if (h->tag == Handle::kTag) return;
+  const char* other = name_of(h->tag);
+  fail(Code::kArgument, "%s: not a %s, %s%s", name, name,
+       other ? "but a handle of kind " : "or one that was destroyed", other ? other : "");
+}
+// Where a handle keeps the text of its last failure; NULL for what is no such handle.
+template <class Handle>
+char* text_of(Handle* h) {
+  return is_handle(h) ? h->error : nullptr;
+}
+// Before the memory goes: whoever comes with the handle once more is told.
+template <class Handle>
+void retire(Handle* h) {
+  *const_cast<volatile Tag*>(&h->tag) = Tag::kNone;
 }
 inline void need_index(int64_t i, int64_t count, const char* name) {
   if (i < 0 || i >= count)
     fail(Code::kRange, "%s: %lld is outside [0, %lld)", name, static_cast<long long>(i),
          static_cast<long long>(count));
 }
-
-// No struct of any version is larger: a size above it was never set.
-inline constexpr size_t kMaxStructSize = 4096;
 
 inline void check_size(size_t size, size_t first_size, const char* name, const char* member) {
   if (size < first_size) fail(Code::kArgument, "%s%s: %zu is less than %zu", name, member, size, first_size);
@@ -61,12 +116,15 @@ void check_out(const T* io, size_t first_size, const char* name) {
   check_size(io->struct_size, first_size, name, ".struct_size");
 }
 
-// Writes as much of `value` as the caller's struct holds; struct_size stays the caller's.
+// Writes as much of `value` as the caller's struct holds; struct_size stays the caller's, and what a newer
+// caller's has beyond is zeroed.
 template <class T>
 void write_struct(T* io, T value, size_t first_size, const char* name) {
   check_out(io, first_size, name);
   value.struct_size = io->struct_size;
-  std::memcpy(io, &value, std::min<size_t>(io->struct_size, sizeof(T)));
+  const size_t size = io->struct_size;
+  std::memcpy(io, &value, std::min(size, sizeof(T)));
+  if (size > sizeof(T)) std::memset(reinterpret_cast<unsigned char*>(io) + sizeof(T), 0, size - sizeof(T));
 }
 
 // Defaults into the first `size` bytes of the caller's struct; beyond them nothing is touched.
@@ -79,10 +137,29 @@ void init_struct(T* out, size_t size, size_t first_size, T value, const char* na
   if (size > sizeof(T)) std::memset(reinterpret_cast<unsigned char*>(out) + sizeof(T), 0, size - sizeof(T));
 }
 
+// What rdm_policy_scratch and its like ask for beyond the `bytes` that are used, for any address to do.
+inline constexpr size_t kScratchSlack = Arena::kAlign - 1;
+inline void* aligned_scratch(void* scratch, size_t size, size_t bytes) {
+  const size_t skip = (Arena::kAlign - reinterpret_cast<uintptr_t>(scratch) % Arena::kAlign) % Arena::kAlign;
+  if (size < skip + bytes)
+    fail(Code::kRange, "scratch_bytes: %zu, %zu are needed", size, bytes + kScratchSlack);
+  return static_cast<unsigned char*>(scratch) + skip;
+}
+
+// Sizes of structs that have grown, as they were at first.
+inline constexpr size_t kFirstSpecSize = offsetof(rdm_spec, action_repeat);
+inline constexpr size_t kFirstAgentConfigSize = offsetof(rdm_agent_config, settings);
+
 // Hooks of a handle: the config's, else the process's.
 HostHooks hooks_from(const rdm_host* host);
 
 rdm_option_info describe(const OptionSpec& spec);
+
+// Text of any length for (text, capacity, size): NULL asks for the size alone, which is without the
+// terminator.
+void give_settings(const Options& options, char* text, size_t capacity, size_t* size);
+// Option i for (key, text [RDM_TEXT_SIZE]).
+void give_option(const Options& options, int32_t i, const char** key, char* text, const char* settings_call);
 
 // Public options as the library takes them; the strings stay the caller's. Error(kArgument) for a NULL list
 // with a count, Error(kRange) for a count outside [0, 4096].

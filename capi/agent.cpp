@@ -12,7 +12,7 @@ rdm_result rdm_agent_config_init(rdm_agent_config* c, size_t size) {
     d.cost_dim = 1;
     d.algo = "ppo_lag";
     d.task = "";
-    init_struct(c, size, sizeof(rdm_agent_config), d, "c");
+    init_struct(c, size, kFirstAgentConfigSize, d, "c");
   });
 }
 
@@ -26,7 +26,8 @@ struct Config {
 };
 
 void read_config(const rdm_agent_config* c, Config* out) {
-  const auto in = read_struct(c, sizeof(rdm_agent_config), rdm_agent_config{}, "config");
+  const auto in = read_struct(c, kFirstAgentConfigSize, rdm_agent_config{}, "config");
+  check_error(in);
   AgentConfig& a = out->agent;
   need(in.algo, "config.algo");
   a.hooks = hooks_from(in.host);
@@ -49,6 +50,7 @@ void read_config(const rdm_agent_config* c, Config* out) {
   a.num_defaults = in.num_defaults;
   a.options = out->options.data();
   a.num_options = in.num_options;
+  a.settings = in.settings;
 }
 
 DecisionBuffers carve_decision(Arena& arena, const AgentConfig& c) {
@@ -82,7 +84,7 @@ void emit(void* bytes, size_t capacity, size_t* size, F&& write) {
 }  // namespace
 
 rdm_result rdm_agent_memory(const rdm_agent_config* c, size_t* bytes) {
-  return call(nullptr, [&] {
+  return call_with(c, [&] {
     need(bytes, "bytes");
     Config config;
     read_config(c, &config);
@@ -94,7 +96,7 @@ rdm_result rdm_agent_memory(const rdm_agent_config* c, size_t* bytes) {
 }
 
 rdm_result rdm_agent_create(rdm_agent** out, const rdm_agent_config* c) {
-  return call(nullptr, [&] {
+  return call_with(c, [&] {
     need(out, "out");
     Config config;
     read_config(c, &config);
@@ -117,18 +119,19 @@ rdm_result rdm_agent_create(rdm_agent** out, const rdm_agent_config* c) {
 }
 
 void rdm_agent_destroy(rdm_agent* a) {
-  if (!a) return;
+  if (!is_handle(a)) return;
   Agent::destroy(a->agent);
+  retire(a);
   host_delete(a->hooks, a);
 }
 
 const char* rdm_agent_error(const rdm_agent* a) {
-  return a ? a->error : "agent is NULL";
+  return is_handle(a) ? a->error : "agent: NULL, not an agent, or destroyed";
 }
 
 rdm_result rdm_agent_act(rdm_agent* a, const float* obs, int32_t mode, float* action) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
+  return call(text_of(a), [&] {
+    need_handle(a);
     need(obs, "obs");
     need(action, "action");
     if (mode != RDM_SAMPLE && mode != RDM_MEAN)
@@ -138,8 +141,8 @@ rdm_result rdm_agent_act(rdm_agent* a, const float* obs, int32_t mode, float* ac
 }
 
 rdm_result rdm_agent_record(rdm_agent* a, const rdm_transition* t) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
+  return call(text_of(a), [&] {
+    need_handle(a);
     const auto in = read_struct(t, sizeof(rdm_transition), rdm_transition{}, "transition");
     need(in.reward, "transition.reward");
     if (a->agent->config().cost_dim > 0) need(in.cost, "transition.cost");
@@ -185,8 +188,8 @@ void write_epoch(rdm_epoch* io, const Epoch& e) {
 }  // namespace rdm::capi
 
 rdm_result rdm_agent_update(rdm_agent* a, const float* last_obs, rdm_epoch* io) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
+  return call(text_of(a), [&] {
+    need_handle(a);
     need(last_obs, "last_obs");
     if (io) check_out(io, sizeof(rdm_epoch), "io");
     Epoch e;
@@ -196,12 +199,12 @@ rdm_result rdm_agent_update(rdm_agent* a, const float* last_obs, rdm_epoch* io) 
 }
 
 void rdm_agent_cancel(rdm_agent* a) {
-  if (a) a->agent->cancel();
+  if (is_handle(a)) a->agent->cancel();
 }
 
 rdm_result rdm_agent_set(rdm_agent* a, const rdm_option* option) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
+  return call(text_of(a), [&] {
+    need_handle(a);
     need(option, "option");
     need(option->key, "option.key");
     a->agent->set_option({option->key, option->text, option->number});
@@ -209,20 +212,22 @@ rdm_result rdm_agent_set(rdm_agent* a, const rdm_option* option) {
 }
 
 rdm_result rdm_agent_option(const rdm_agent* a, int32_t i, const char** key, char* text) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
-    need(key, "key");
-    need(text, "text");
-    const Options& o = a->agent->options();
-    need_index(i, o.count(), "i");
-    *key = o.spec(i).key;
-    o.print(i, text);
+  return call(text_of(a), [&] {
+    need_handle(a);
+    give_option(a->agent->options(), i, key, text, "rdm_agent_settings");
+  });
+}
+
+rdm_result rdm_agent_settings(const rdm_agent* a, char* text, size_t capacity, size_t* size) {
+  return call(text_of(a), [&] {
+    need_handle(a);
+    give_settings(a->agent->options(), text, capacity, size);
   });
 }
 
 rdm_result rdm_agent_tensor(const rdm_agent* a, int32_t i, rdm_tensor* out) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
+  return call(text_of(a), [&] {
+    need_handle(a);
     need(out, "out");
     TensorInfo t;
     if (i < 0 || !a->agent->tensor(i, &t)) fail(Code::kRange, "i: %d is past the end of the tensors", i);
@@ -243,15 +248,14 @@ TensorInfo find_tensor(Agent& agent, const char* name, size_t count) {
     }
     names.push_back(t.name);
   }
-  const int32_t near = nearest_name(name, names.data(), static_cast<int32_t>(names.size()));
-  fail(Code::kNotFound, "tensor %s: unknown; nearest is %s", Quoted(name).text,
-       names[static_cast<size_t>(near)]);
+  fail(Code::kNotFound, "tensor %s: unknown%s", Quoted(name).text,
+       Nearest(name, names.data(), static_cast<int32_t>(names.size())).text);
 }
 }  // namespace
 
 rdm_result rdm_agent_tensor_read(const rdm_agent* a, const char* name, float* out, size_t count) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
+  return call(text_of(a), [&] {
+    need_handle(a);
     need(out, "out");
     const TensorInfo t = find_tensor(*a->agent, name, count);
     std::copy(t.data, t.data + count, out);
@@ -259,8 +263,8 @@ rdm_result rdm_agent_tensor_read(const rdm_agent* a, const char* name, float* ou
 }
 
 rdm_result rdm_agent_tensor_write(rdm_agent* a, const char* name, const float* values, size_t count) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
+  return call(text_of(a), [&] {
+    need_handle(a);
     need(values, "values");
     const TensorInfo t = find_tensor(*a->agent, name, count);
     for (size_t i = 0; i < count; ++i)
@@ -271,15 +275,15 @@ rdm_result rdm_agent_tensor_write(rdm_agent* a, const char* name, const float* v
 }
 
 rdm_result rdm_agent_policy(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
+  return call(text_of(a), [&] {
+    need_handle(a);
     emit(bytes, capacity, size, [&](Writer& w) { a->agent->write_policy_file(w); });
   });
 }
 
 rdm_result rdm_agent_policy_file(const rdm_agent* a, const char* path) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
+  return call(text_of(a), [&] {
+    need_handle(a);
     need(path, "path");
     Writer count(nullptr, 0);
     a->agent->write_policy_file(count);
@@ -291,15 +295,15 @@ rdm_result rdm_agent_policy_file(const rdm_agent* a, const char* path) {
 }
 
 rdm_result rdm_agent_save(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
+  return call(text_of(a), [&] {
+    need_handle(a);
     emit(bytes, capacity, size, [&](Writer& w) { a->agent->save(w); });
   });
 }
 
 rdm_result rdm_agent_load(rdm_agent* a, const void* bytes, size_t size) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
+  return call(text_of(a), [&] {
+    need_handle(a);
     need(bytes, "bytes");
     a->agent->load(bytes, size);
   });

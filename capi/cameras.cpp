@@ -10,7 +10,7 @@ using namespace rdm::capi;
 namespace {
 
 World& world_of(const rdm_pool* p, int32_t env) {
-  need(p, "pool");
+  need_handle(p);
   need_index(env, p->pool->config().num_envs, "env");
   return p->pool->world(env);
 }
@@ -29,8 +29,8 @@ Camera rdm::capi::task_camera(int32_t task, const char* name) {
 }
 
 rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
+  return call(text_of(p), [&] {
+    need_handle(p);
     need(out, "out");
     const auto& shapes = p->pool->task().scene().shapes;
     need_index(i, static_cast<int64_t>(shapes.size()), "i");
@@ -47,8 +47,8 @@ rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {
 }
 
 rdm_result rdm_pool_hull(const rdm_pool* p, int32_t i, float* points, int32_t capacity, int32_t* count) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
+  return call(text_of(p), [&] {
+    need_handle(p);
     need(count, "count");
     const Scene& scene = p->pool->task().scene();
     need_index(i, static_cast<int64_t>(scene.shapes.size()), "i");
@@ -62,7 +62,7 @@ rdm_result rdm_pool_hull(const rdm_pool* p, int32_t i, float* points, int32_t ca
 }
 
 rdm_result rdm_pool_poses(const rdm_pool* p, int32_t env, float* pose) {
-  return call(p ? p->error : nullptr, [&] {
+  return call(text_of(p), [&] {
     const World& world = world_of(p, env);
     need(pose, "pose");
     const auto count = static_cast<int32_t>(world.scene().shapes.size());
@@ -77,7 +77,7 @@ rdm_result rdm_pool_poses(const rdm_pool* p, int32_t env, float* pose) {
 
 rdm_result rdm_pool_contacts(const rdm_pool* p, int32_t env, rdm_contact* out, int32_t capacity,
                              int32_t* count) {
-  return call(p ? p->error : nullptr, [&] {
+  return call(text_of(p), [&] {
     const World& world = world_of(p, env);
     need(count, "count");
     if (capacity < 0) fail(Code::kRange, "capacity: %d is negative", capacity);
@@ -99,7 +99,7 @@ rdm_result rdm_pool_contacts(const rdm_pool* p, int32_t env, rdm_contact* out, i
 
 rdm_result rdm_pool_render(rdm_pool* p, int32_t env, const char* camera, int32_t w, int32_t h, uint8_t* rgb,
                            float* depth, int32_t* segmentation) {
-  return call(p ? p->error : nullptr, [&] {
+  return call(text_of(p), [&] {
     const World& world = world_of(p, env);
     const Camera eye = task_camera(p->pool->task_index(), camera);
     const int32_t count = gather_shapes(world, p->shapes);
@@ -116,7 +116,7 @@ rdm_result rdm_pool_render(rdm_pool* p, int32_t env, const char* camera, int32_t
 }
 
 rdm_result rdm_pool_push(rdm_pool* p, int32_t env, int32_t shape, const float force[3]) {
-  return call(p ? p->error : nullptr, [&] {
+  return call(text_of(p), [&] {
     World& world = world_of(p, env);
     need(force, "force");
     const auto& shapes = world.scene().shapes;

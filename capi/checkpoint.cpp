@@ -22,9 +22,11 @@ void section(Writer& w, const char tag[4], F&& body) {
 // The pool's part; a build without the simulation half has none to save.
 #if RDM_WITH_SIM
 void save_pool(const rdm_pool* p, Writer& out) {
+  need_handle(p);
   p->pool->get_state(-1, out);
 }
 void load_pool(rdm_pool* p, const void* bytes, size_t size) {
+  need_handle(p);
   p->pool->set_state(-1, bytes, size);
 }
 #else
@@ -58,9 +60,9 @@ void write_checkpoint(Writer& w, const Agent& agent, const rdm_pool* pool, const
 
 rdm_result rdm_checkpoint_write(const char* path, const rdm_agent* a, const rdm_pool* p, const void* note,
                                 size_t note_size) {
-  return call(a ? a->error : nullptr, [&] {
+  return call(text_of(a), [&] {
     need(path, "path");
-    need(a, "agent");
+    need_handle(a);
     if (note_size) need(note, "note");
     if (note_size > kMaxNote) fail(Code::kRange, "note_size: %zu is above %zu", note_size, kMaxNote);
     Writer count(nullptr, 0);
@@ -74,9 +76,9 @@ rdm_result rdm_checkpoint_write(const char* path, const rdm_agent* a, const rdm_
 
 rdm_result rdm_checkpoint_read(const char* path, rdm_agent* a, rdm_pool* p, void* note, size_t capacity,
                                size_t* note_size) {
-  return call(a ? a->error : nullptr, [&] {
+  return call(text_of(a), [&] {
     need(path, "path");
-    need(a, "agent");
+    need_handle(a);
     need(note_size, "note_size");
     if (capacity) need(note, "note");
     const auto file = read_file(path, file_limits(a, p));

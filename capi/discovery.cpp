@@ -1,10 +1,12 @@
 // What exists: tasks, algorithms, robots, objects, and their tables.
 #include "capi/handles.hpp"
 #if RDM_WITH_SIM
+#include <array>
 #include <map>
 #include <mutex>
 #include <vector>
 
+#include "env/options/repeat.hpp"
 #include "robot/robot.hpp"
 #include "tasks/catalog.hpp"
 #include "tasks/throw/throw_objects.hpp"
@@ -22,19 +24,30 @@ const TaskInfo& info_at(int32_t index) {
   return task_at(index);
 }
 
+struct OptionTableView {
+  const OptionSpec* rows;
+  int32_t count;
+};
+// A task's own, and those that every task has.
+std::array<OptionTableView, 3> tables_of(const TaskInfo& info) {
+  std::array<OptionTableView, 3> t;
+  t[0].rows = info.options(&t[0].count);
+  t[1].rows = sense_options(&t[1].count);
+  t[2].rows = repeat_options(&t[2].count);
+  return t;
+}
+
 // What a task with its default options has.
 struct Described {
   rdm_task task{};
   std::vector<Name> names;  // of the fields
   std::vector<rdm_field> fields;
+  std::vector<std::array<float, 2>> bounds;  // of each
 };
 
 Described describe(const TaskInfo& info) {
   Options options;
-  int32_t count = 0, seen = 0;
-  const OptionSpec *own = info.options(&count), *sense = sense_options(&seen);
-  options.add_table(own, count);
-  options.add_table(sense, seen);
+  for (const OptionTableView& table : tables_of(info)) options.add_table(table.rows, table.count);
   const TaskHandle task = make_task(info, options, host());
   Described d;
   d.task.control_dt = static_cast<float>(task->scene().control_dt());
@@ -45,12 +58,14 @@ Described describe(const TaskInfo& info) {
   d.task.cost_dim = info.num_costs;
   d.task.max_steps = task->max_steps();
   d.task.num_fields = static_cast<int32_t>(task->fields().size());
-  d.task.num_options = count + seen;
+  d.task.num_options = options.count();
   d.task.num_cameras = info.num_cameras;
   d.task.num_defaults = info.num_defaults;
   for (int32_t i = 0; i < d.task.num_fields; ++i) {
     d.names.push_back(task->fields()[static_cast<size_t>(i)].name);
     d.fields.push_back(field_of(*task, i));
+    const FieldSpec f = bounded_field(*task, i);
+    d.bounds.push_back({f.low, f.high});
   }
   for (size_t i = 0; i < d.fields.size(); ++i) d.fields[i].name = d.names[i].text;
   return d;
@@ -107,6 +122,17 @@ rdm_result rdm_task_field(int32_t task, int32_t i, rdm_field* out) {
   });
 }
 
+rdm_result rdm_task_field_bounds(int32_t task, int32_t i, float* low, float* high) {
+  return call(nullptr, [&] {
+    need(low, "low");
+    need(high, "high");
+    const Described& d = described(task);
+    need_index(i, d.task.num_fields, "i");
+    *low = d.bounds[static_cast<size_t>(i)][0];
+    *high = d.bounds[static_cast<size_t>(i)][1];
+  });
+}
+
 rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost* out) {
   return call(nullptr, [&] {
     need(out, "out");
@@ -119,11 +145,14 @@ rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost* out) {
 rdm_result rdm_task_option(int32_t task, int32_t i, rdm_option_info* out) {
   return call(nullptr, [&] {
     need(out, "out");
-    int32_t count = 0, seen = 0;
-    const OptionSpec* specs = info_at(task).options(&count);
-    const OptionSpec* sense = sense_options(&seen);
-    need_index(i, count + seen, "i");
-    *out = describe(i < count ? specs[i] : sense[i - count]);
+    const auto tables = tables_of(info_at(task));
+    int32_t count = 0;
+    for (const OptionTableView& t : tables) count += t.count;
+    need_index(i, count, "i");
+    for (const OptionTableView& t : tables) {
+      if (i >= 0 && i < t.count) *out = describe(t.rows[i]);
+      i -= t.count;
+    }
   });
 }
 

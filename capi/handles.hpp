@@ -13,13 +13,16 @@
 
 #if RDM_WITH_SIM
 struct rdm_pool {
+  static constexpr rdm::capi::Tag kTag = rdm::capi::Tag::kPool;
+  rdm::capi::Tag tag = kTag;
   rdm::HostHooks hooks;
   mutable char error[rdm::kErrorTextSize] = "";  // also of calls that only read
   rdm::Pool* pool = nullptr;
   rdm::Arena arena;                // the arrays below
   rdm_option* defaults = nullptr;  // [num_defaults] of the agent, for rdm_agent_config_for_pool
-  float* initial_mean = nullptr;   // [action_dim]
-  double* cost_limits = nullptr;   // [cost_dim]
+  int32_t num_defaults = 0;
+  float* initial_mean = nullptr;  // [action_dim]
+  double* cost_limits = nullptr;  // [cost_dim]
   rdm::RaycastScratch raycast;
   rdm::RenderShape* shapes = nullptr;  // [num_shapes]
 };
@@ -43,6 +46,8 @@ struct DecisionBuffers {
 };
 
 struct rdm_agent {
+  static constexpr rdm::capi::Tag kTag = rdm::capi::Tag::kAgent;
+  rdm::capi::Tag tag = kTag;
   rdm::HostHooks hooks;
   mutable char error[rdm::kErrorTextSize] = "";  // also of calls that only read
   rdm::Agent* agent = nullptr;

@@ -11,12 +11,16 @@ using namespace rdm;
 using namespace rdm::capi;
 
 struct rdm_map {
+  static constexpr Tag kTag = Tag::kMap;
+  Tag tag = kTag;
   HostHooks hooks;
   char error[kErrorTextSize] = "";
   Occupancy* map = nullptr;
 };
 
 namespace {
+
+constexpr size_t kFirstSize = offsetof(rdm_map_config, error);  // of a config
 
 rdm_map_config default_config() {
   const OccupancyConfig d;
@@ -54,10 +58,6 @@ void need_points(const float* points, size_t count, const char* name) {
   if (count > SIZE_MAX / 16) fail(Code::kRange, "count: %zu is too many", count);
 }
 
-char* text_of(rdm_map* m) {
-  return m ? m->error : nullptr;
-}
-
 MapFormat format_of(const char* path) {
   const size_t n = std::strlen(path);
   if (n >= 3 && same_name(path + n - 3, ".bt")) return MapFormat::kBinary;
@@ -68,13 +68,14 @@ MapFormat format_of(const char* path) {
 }  // namespace
 
 rdm_result rdm_map_config_init(rdm_map_config* c, size_t size) {
-  return call(nullptr, [&] { init_struct(c, size, sizeof(rdm_map_config), default_config(), "c"); });
+  return call(nullptr, [&] { init_struct(c, size, kFirstSize, default_config(), "c"); });
 }
 
 rdm_result rdm_map_create(rdm_map** out, const rdm_map_config* c) {
-  return call(nullptr, [&] {
+  return call_with(c, [&] {
     need(out, "out");
-    const auto in = read_struct(c, sizeof(rdm_map_config), default_config(), "c");
+    const auto in = read_struct(c, kFirstSize, default_config(), "config");
+    check_error(in);
     OccupancyConfig config;
     config.resolution = in.resolution;
     config.memory = in.memory;
@@ -98,18 +99,19 @@ rdm_result rdm_map_create(rdm_map** out, const rdm_map_config* c) {
 }
 
 void rdm_map_destroy(rdm_map* m) {
-  if (!m) return;
+  if (!is_handle(m)) return;
   Occupancy::destroy(m->map);
+  retire(m);
   host_delete(m->hooks, m);
 }
 
 const char* rdm_map_error(const rdm_map* m) {
-  return m ? m->error : "map is NULL";
+  return is_handle(m) ? m->error : "map: NULL, not a map, or destroyed";
 }
 
 rdm_result rdm_map_get_info(const rdm_map* m, rdm_map_info* io) {
   return call(nullptr, [&] {
-    need(m, "map");
+    need_handle(m);
     const OccupancyInfo i = m->map->info();
     rdm_map_info out{};
     out.full = i.dropped > 0;
@@ -124,7 +126,7 @@ rdm_result rdm_map_get_info(const rdm_map* m, rdm_map_info* io) {
 
 rdm_result rdm_map_clear(rdm_map* m) {
   return call(text_of(m), [&] {
-    need(m, "map");
+    need_handle(m);
     m->map->clear();
   });
 }
@@ -132,7 +134,7 @@ rdm_result rdm_map_clear(rdm_map* m) {
 rdm_result rdm_map_insert(rdm_map* m, const float origin[3], const float* points, size_t count,
                           uint64_t* dropped) {
   return call(text_of(m), [&] {
-    need(m, "map");
+    need_handle(m);
     need(origin, "origin");
     need_points(points, count, "points");
     const uint64_t lost = m->map->insert(to_vec(origin), points, count);
@@ -143,8 +145,8 @@ rdm_result rdm_map_insert(rdm_map* m, const float origin[3], const float* points
 rdm_result rdm_map_scan(rdm_map* m, rdm_pool* p, int32_t env, const char* camera, int32_t w, int32_t h,
                         const int32_t* skip, int32_t num_skip, uint64_t* dropped) {
   return call(text_of(m), [&] {
-    need(m, "map");
-    need(p, "pool");
+    need_handle(m);
+    need_handle(p);
     need_index(env, p->pool->config().num_envs, "env");
     if (num_skip < 0) fail(Code::kRange, "num_skip: %d is negative", num_skip);
     if (num_skip > 0) need(skip, "skip");
@@ -172,7 +174,7 @@ rdm_result rdm_map_scan(rdm_map* m, rdm_pool* p, int32_t env, const char* camera
 
 rdm_result rdm_map_query(const rdm_map* m, const float* points, size_t count, float* probability) {
   return call(nullptr, [&] {
-    need(m, "map");
+    need_handle(m);
     need_points(points, count, "points");
     if (count > 0) need(probability, "probability");
     m->map->query(points, count, probability);
@@ -182,7 +184,7 @@ rdm_result rdm_map_query(const rdm_map* m, const float* points, size_t count, fl
 rdm_result rdm_map_box(const rdm_map* m, const float low[3], const float high[3], rdm_voxel* out,
                        size_t capacity, size_t* count) {
   return call(nullptr, [&] {
-    need(m, "map");
+    need_handle(m);
     need(low, "low");
     need(high, "high");
     need(count, "count");
@@ -203,7 +205,7 @@ rdm_result rdm_map_box(const rdm_map* m, const float low[3], const float high[3]
 
 rdm_result rdm_map_meets(const rdm_map* m, const float pose[7], const float half[3], int32_t* meets) {
   return call(nullptr, [&] {
-    need(m, "map");
+    need_handle(m);
     need(pose, "pose");
     need(half, "half");
     need(meets, "meets");
@@ -217,7 +219,7 @@ rdm_result rdm_map_meets(const rdm_map* m, const float pose[7], const float half
 rdm_result rdm_map_raycast(const rdm_map* m, const float origin[3], const float direction[3], float range,
                            int32_t through_unknown, float hit[3], int32_t* found) {
   return call(nullptr, [&] {
-    need(m, "map");
+    need_handle(m);
     need(origin, "origin");
     need(direction, "direction");
     need(hit, "hit");
@@ -231,7 +233,7 @@ rdm_result rdm_map_raycast(const rdm_map* m, const float origin[3], const float 
 rdm_result rdm_map_distance(const rdm_map* m, const float* points, size_t count, float most,
                             float* distance) {
   return call(nullptr, [&] {
-    need(m, "map");
+    need_handle(m);
     need_points(points, count, "points");
     if (count > 0) need(distance, "distance");
     if (!(most > 0 && most <= 1e6f))
@@ -243,7 +245,7 @@ rdm_result rdm_map_distance(const rdm_map* m, const float* points, size_t count,
 
 rdm_result rdm_map_grid(const rdm_map* m, const float pose[7], const int32_t n[3], float side, int8_t* out) {
   return call(nullptr, [&] {
-    need(m, "map");
+    need_handle(m);
     need(pose, "pose");
     need(n, "n");
     need(out, "out");
@@ -257,7 +259,7 @@ rdm_result rdm_map_grid(const rdm_map* m, const float pose[7], const int32_t n[3
 
 rdm_result rdm_map_save(const rdm_map* m, int32_t format, void* bytes, size_t capacity, size_t* size) {
   return call(nullptr, [&] {
-    need(m, "map");
+    need_handle(m);
     need(size, "size");
     if (format != RDM_MAP_BINARY && format != RDM_MAP_FULL)
       fail(Code::kRange, "format: %d is outside [0, 1]", format);
@@ -273,7 +275,7 @@ rdm_result rdm_map_save(const rdm_map* m, int32_t format, void* bytes, size_t ca
 
 rdm_result rdm_map_save_file(const rdm_map* m, const char* path) {
   return call(nullptr, [&] {
-    need(m, "map");
+    need_handle(m);
     need(path, "path");
     const HostScope scope(m->hooks);
     Vector<unsigned char> file;
@@ -284,7 +286,7 @@ rdm_result rdm_map_save_file(const rdm_map* m, const char* path) {
 
 rdm_result rdm_map_load(rdm_map* m, const void* bytes, size_t size) {
   return call(text_of(m), [&] {
-    need(m, "map");
+    need_handle(m);
     need(bytes, "bytes");
     m->map->read(bytes, size);
   });
@@ -292,7 +294,7 @@ rdm_result rdm_map_load(rdm_map* m, const void* bytes, size_t size) {
 
 rdm_result rdm_map_load_file(rdm_map* m, const char* path) {
   return call(text_of(m), [&] {
-    need(m, "map");
+    need_handle(m);
     need(path, "path");
     const HostScope scope(m->hooks);
     const auto file = read_file(path, m->map->file_limits());

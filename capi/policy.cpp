@@ -10,6 +10,8 @@ using namespace rdm;
 using namespace rdm::capi;
 
 struct rdm_policy {
+  static constexpr Tag kTag = Tag::kPolicy;
+  Tag tag = kTag;
   HostHooks hooks;
   Policy* policy = nullptr;
 };
@@ -110,14 +112,15 @@ rdm_result rdm_policy_load_file(rdm_policy** out, const char* path) {
 }
 
 void rdm_policy_destroy(rdm_policy* p) {
-  if (!p) return;
+  if (!is_handle(p)) return;
   Policy::destroy(p->policy);
+  retire(p);
   host_delete(p->hooks, p);
 }
 
 rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
   return call(nullptr, [&] {
-    need(p, "policy");
+    need_handle(p);
     const PolicyView& v = p->policy->view();
     rdm_policy_info info{};
     info.obs_dim = v.actor.in;
@@ -134,21 +137,18 @@ rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
 }
 
 size_t rdm_policy_scratch(const rdm_policy* p, int32_t rows) {
-  return p && rows > 0 ? p->policy->scratch_bytes(rows) : 0;
+  return is_handle(p) && rows > 0 ? p->policy->scratch_bytes(rows) + kScratchSlack : 0;
 }
 
 rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, const float* noise,
                           float* action, void* scratch, size_t scratch_bytes) {
   return call(nullptr, [&] {
-    need(p, "policy");
+    need_handle(p);
     need(obs, "obs");
     need(action, "action");
     need(scratch, "scratch");
     if (rows < 1) fail(Code::kRange, "rows: %d is less than 1", rows);
-    const size_t bytes = p->policy->scratch_bytes(rows);
-    if (scratch_bytes < bytes) fail(Code::kRange, "scratch_bytes: %zu, %zu are needed", scratch_bytes, bytes);
-    if (reinterpret_cast<uintptr_t>(scratch) % Arena::kAlign)
-      fail(Code::kArgument, "scratch is not %zu-byte aligned", Arena::kAlign);
+    scratch = aligned_scratch(scratch, scratch_bytes, p->policy->scratch_bytes(rows));
     const PolicyView& v = p->policy->view();
     need_finite(obs, rows, v.actor.in, "obs");
     if (noise) need_finite(noise, rows, v.action_dim(), "noise");
@@ -159,7 +159,7 @@ rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, c
 
 rdm_result rdm_policy_tensor(const rdm_policy* p, int32_t i, rdm_tensor* out) {
   return call(nullptr, [&] {
-    need(p, "policy");
+    need_handle(p);
     need(out, "out");
     PolicyTensor t;
     if (!tensor_at(p->policy->view(), i, &t)) fail(Code::kRange, "i: %d is past the end of the tensors", i);
@@ -169,7 +169,7 @@ rdm_result rdm_policy_tensor(const rdm_policy* p, int32_t i, rdm_tensor* out) {
 
 rdm_result rdm_policy_tensor_read(const rdm_policy* p, const char* name, float* out, size_t count) {
   return call(nullptr, [&] {
-    need(p, "policy");
+    need_handle(p);
     need(name, "name");
     need(out, "out");
     Vector<const char*> names;
@@ -183,16 +183,15 @@ rdm_result rdm_policy_tensor_read(const rdm_policy* p, const char* name, float* 
       }
       names.push_back(t.name);
     }
-    const int32_t near = nearest_name(name, names.data(), static_cast<int32_t>(names.size()));
-    fail(Code::kNotFound, "tensor %s: unknown; nearest is %s", Quoted(name).text,
-         names[static_cast<size_t>(near)]);
+    fail(Code::kNotFound, "tensor %s: unknown%s", Quoted(name).text,
+         Nearest(name, names.data(), static_cast<int32_t>(names.size())).text);
   });
 }
 
 rdm_result rdm_policy_check(const rdm_policy* p, const rdm_spec* spec) {
   return call(nullptr, [&] {
-    need(p, "policy");
-    const auto s = read_struct(spec, sizeof(rdm_spec), rdm_spec{}, "spec");
+    need_handle(p);
+    const auto s = read_struct(spec, kFirstSpecSize, rdm_spec{}, "spec");
     const PolicyView& v = p->policy->view();
     if (v.actor.in != s.obs_dim)
       fail(Code::kVersion, "obs_dim: the policy has %d, the task %d", v.actor.in, s.obs_dim);

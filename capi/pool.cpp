@@ -8,11 +8,15 @@
 using namespace rdm;
 using namespace rdm::capi;
 
+namespace {
+constexpr size_t kFirstConfigSize = offsetof(rdm_pool_config, settings);
+}
+
 rdm_result rdm_pool_config_init(rdm_pool_config* c, size_t size) {
   return call(nullptr, [&] {
     rdm_pool_config d{};
     d.num_envs = 1;
-    init_struct(c, size, sizeof(rdm_pool_config), d, "c");
+    init_struct(c, size, kFirstConfigSize, d, "c");
   });
 }
 
@@ -26,7 +30,8 @@ struct Config {
 
 void read_config(const rdm_pool_config* c, Config* out) {
   register_builtin_tasks();
-  const auto in = read_struct(c, sizeof(rdm_pool_config), rdm_pool_config{}, "config");
+  const auto in = read_struct(c, kFirstConfigSize, rdm_pool_config{}, "config");
+  check_error(in);
   need(in.task, "config.task");
   PoolConfig& p = out->pool;
   p.hooks = hooks_from(in.host);
@@ -40,9 +45,10 @@ void read_config(const rdm_pool_config* c, Config* out) {
   out->options = read_options(in.options, in.num_options, "options");
   p.options = out->options.data();
   p.num_options = in.num_options;
+  p.settings = in.settings;
 }
 
-rdm_spec spec_of(const Task& task, int32_t index) {
+rdm_spec spec_of(const Task& task, int32_t index, int32_t repeat) {
   rdm_spec s{};
   s.control_dt = static_cast<float>(task.scene().control_dt());
   s.obs_dim = obs_dim(task);
@@ -54,12 +60,13 @@ rdm_spec spec_of(const Task& task, int32_t index) {
   s.num_shapes = static_cast<int32_t>(task.scene().shapes.size());
   s.num_joints = task.scene().num_links;
   s.task = index;
+  s.action_repeat = repeat;
   return s;
 }
 
 // The arrays that rdm_agent_config_for_pool lends out, and what pictures are made in.
 void carve(Arena& arena, const Task& task, const TaskInfo& info, rdm_pool* p) {
-  p->defaults = arena.make<rdm_option>(static_cast<size_t>(info.num_defaults));
+  p->defaults = arena.make<rdm_option>(static_cast<size_t>(info.num_defaults) + 1);
   p->initial_mean = arena.make<float>(static_cast<size_t>(task.action_dim()));
   p->cost_limits = arena.make<double>(static_cast<size_t>(info.num_costs));
   const auto shapes = task.scene().shapes.size();
@@ -76,6 +83,18 @@ size_t side_bytes(const PoolConfig& config) {
   return measure.used();
 }
 
+// The task's, with a decision rate that a pool can keep which does `repeat` control steps at a time.
+int32_t fill_defaults(const TaskInfo& info, int32_t repeat, rdm_option* out) {
+  int32_t n = 0;
+  for (int32_t i = 0; i < info.num_defaults; ++i)
+    if (repeat == 1 || !same_name(info.defaults[i].key, "action_repeat"))
+      out[n++] = {info.defaults[i].key, info.defaults[i].value, 0};
+  const int32_t own = decision_steps(info);
+  if (repeat > 1)
+    out[n++] = {"action_repeat", nullptr, static_cast<double>(own % repeat == 0 ? own : repeat)};
+  return n;
+}
+
 void fill_side(rdm_pool* p) {
   const Task& task = p->pool->task();
   const TaskInfo& info = task_at(p->pool->task_index());
@@ -83,8 +102,7 @@ void fill_side(rdm_pool* p) {
   carve(measure, task, info, p);
   p->arena = Arena(p->hooks, measure.used());
   carve(p->arena, task, info, p);
-  for (int32_t i = 0; i < info.num_defaults; ++i)
-    p->defaults[i] = {info.defaults[i].key, info.defaults[i].value, 0};
+  p->num_defaults = fill_defaults(info, p->pool->repeat(), p->defaults);
   task.initial_mean(p->initial_mean);
   // only column 0 is limited unless the host says otherwise
   for (int32_t i = 0; i < info.num_costs; ++i) p->cost_limits[i] = i == 0 ? info.costs[0].limit : -1;
@@ -93,18 +111,18 @@ void fill_side(rdm_pool* p) {
 }  // namespace
 
 rdm_result rdm_pool_spec(const rdm_pool_config* c, rdm_spec* io) {
-  return call(nullptr, [&] {
-    check_out(io, sizeof(rdm_spec), "io");
+  return call_with(c, [&] {
+    check_out(io, kFirstSpecSize, "io");
     Config config;
     read_config(c, &config);
     const HostScope scope(config.pool.hooks);
     const ResolvedPoolConfig plan(config.pool);
-    write_struct(io, spec_of(*plan.task, plan.task_index), sizeof(rdm_spec), "io");
+    write_struct(io, spec_of(*plan.task, plan.task_index, plan.repeat), kFirstSpecSize, "io");
   });
 }
 
 rdm_result rdm_pool_memory(const rdm_pool_config* c, size_t* ours, size_t* engines) {
-  return call(nullptr, [&] {
+  return call_with(c, [&] {
     Config config;
     read_config(c, &config);
     size_t a = 0, b = 0;
@@ -115,7 +133,7 @@ rdm_result rdm_pool_memory(const rdm_pool_config* c, size_t* ours, size_t* engin
 }
 
 rdm_result rdm_pool_create(rdm_pool** out, const rdm_pool_config* c) {
-  return call(nullptr, [&] {
+  return call_with(c, [&] {
     need(out, "out");
     Config config;
     read_config(c, &config);
@@ -134,20 +152,22 @@ rdm_result rdm_pool_create(rdm_pool** out, const rdm_pool_config* c) {
 }
 
 void rdm_pool_destroy(rdm_pool* p) {
-  if (!p) return;
+  if (!is_handle(p)) return;
   const FpMode mode;
   if (p->pool) Pool::destroy(p->pool);
+  retire(p);
   host_delete(p->hooks, p);
 }
 
 const char* rdm_pool_error(const rdm_pool* p) {
-  return p ? p->error : "pool is NULL";
+  return is_handle(p) ? p->error : "pool: NULL, not a pool, or destroyed";
 }
 
 rdm_result rdm_pool_get_spec(const rdm_pool* p, rdm_spec* io) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
-    write_struct(io, spec_of(p->pool->task(), p->pool->task_index()), sizeof(rdm_spec), "io");
+  return call(text_of(p), [&] {
+    need_handle(p);
+    write_struct(io, spec_of(p->pool->task(), p->pool->task_index(), p->pool->repeat()), kFirstSpecSize,
+                 "io");
   });
 }
 
@@ -161,28 +181,51 @@ rdm_field rdm::capi::field_of(const Task& task, int32_t i) {
 }
 
 rdm_result rdm_pool_field(const rdm_pool* p, int32_t i, rdm_field* out) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
+  return call(text_of(p), [&] {
+    need_handle(p);
     need(out, "out");
     *out = field_of(p->pool->task(), i);
   });
 }
 
 rdm_result rdm_pool_option(const rdm_pool* p, int32_t i, const char** key, char* text) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
-    need(key, "key");
-    need(text, "text");
-    const Options& o = p->pool->options();
-    need_index(i, o.count(), "i");
-    *key = o.spec(i).key;
-    o.print(i, text);
+  return call(text_of(p), [&] {
+    need_handle(p);
+    give_option(p->pool->options(), i, key, text, "rdm_pool_settings");
+  });
+}
+
+rdm_result rdm_pool_settings(const rdm_pool* p, char* text, size_t capacity, size_t* size) {
+  return call(text_of(p), [&] {
+    need_handle(p);
+    give_settings(p->pool->options(), text, capacity, size);
+  });
+}
+
+rdm_result rdm_pool_field_bounds(const rdm_pool* p, int32_t i, float* low, float* high) {
+  return call(text_of(p), [&] {
+    need_handle(p);
+    need(low, "low");
+    need(high, "high");
+    const Task& task = p->pool->task();
+    need_index(i, static_cast<int64_t>(task.fields().size()), "i");
+    const FieldSpec f = bounded_field(task, i);
+    *low = f.low;
+    *high = f.high;
+  });
+}
+
+rdm_result rdm_pool_initial_mean(const rdm_pool* p, float* action) {
+  return call(text_of(p), [&] {
+    need_handle(p);
+    need(action, "action");
+    std::copy_n(p->initial_mean, p->pool->task().action_dim(), action);
   });
 }
 
 rdm_result rdm_pool_buffers(const rdm_pool* p, rdm_buffers* io) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
+  return call(text_of(p), [&] {
+    need_handle(p);
     const Buffers& b = p->pool->buffers();
     rdm_buffers out{};
     out.obs = b.obs;
@@ -203,8 +246,8 @@ rdm_result rdm_pool_buffers(const rdm_pool* p, rdm_buffers* io) {
 }
 
 rdm_result rdm_pool_bind(rdm_pool* p, const rdm_buffers* b) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
+  return call(text_of(p), [&] {
+    need_handle(p);
     const auto in = read_struct(b, sizeof(rdm_buffers), rdm_buffers{}, "b");
     const auto aligned = [](const void* q, const char* name) {
       if (reinterpret_cast<uintptr_t>(q) % 4) fail(Code::kArgument, "b.%s is not 4-byte aligned", name);
@@ -238,30 +281,30 @@ rdm_result rdm_pool_bind(rdm_pool* p, const rdm_buffers* b) {
 }
 
 rdm_result rdm_pool_reset(rdm_pool* p, const uint64_t* seeds, const uint8_t* mask) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
+  return call(text_of(p), [&] {
+    need_handle(p);
     p->pool->reset(seeds, mask);
   });
 }
 
 rdm_result rdm_pool_step(rdm_pool* p) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
+  return call(text_of(p), [&] {
+    need_handle(p);
     p->pool->step(nullptr);
   });
 }
 
 rdm_result rdm_pool_step_masked(rdm_pool* p, const uint8_t* mask) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
+  return call(text_of(p), [&] {
+    need_handle(p);
     need(mask, "mask");
     p->pool->step(mask);
   });
 }
 
 rdm_result rdm_pool_baseline(rdm_pool* p, int32_t kind) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
+  return call(text_of(p), [&] {
+    need_handle(p);
     if (kind < RDM_BASELINE_ZERO || kind > RDM_BASELINE_RANDOM)
       fail(Code::kRange, "kind: %d is outside [0, 2]", kind);
     p->pool->baseline(static_cast<Baseline>(kind));
@@ -270,14 +313,14 @@ rdm_result rdm_pool_baseline(rdm_pool* p, int32_t kind) {
 
 namespace {
 void check_env(const rdm_pool* p, int32_t env, bool all_allowed) {
-  need(p, "pool");
+  need_handle(p);
   if (env == -1 && all_allowed) return;
   need_index(env, p->pool->config().num_envs, "env");
 }
 }  // namespace
 
 rdm_result rdm_pool_state_size(const rdm_pool* p, int32_t env, size_t* bytes) {
-  return call(p ? p->error : nullptr, [&] {
+  return call(text_of(p), [&] {
     check_env(p, env, true);
     need(bytes, "bytes");
     *bytes = p->pool->state_size(env);
@@ -285,7 +328,7 @@ rdm_result rdm_pool_state_size(const rdm_pool* p, int32_t env, size_t* bytes) {
 }
 
 rdm_result rdm_pool_get_state(const rdm_pool* p, int32_t env, void* bytes, size_t capacity, size_t* size) {
-  return call(p ? p->error : nullptr, [&] {
+  return call(text_of(p), [&] {
     check_env(p, env, true);
     need(bytes, "bytes");
     need(size, "size");
@@ -298,7 +341,7 @@ rdm_result rdm_pool_get_state(const rdm_pool* p, int32_t env, void* bytes, size_
 }
 
 rdm_result rdm_pool_set_state(rdm_pool* p, int32_t env, const void* bytes, size_t size) {
-  return call(p ? p->error : nullptr, [&] {
+  return call(text_of(p), [&] {
     check_env(p, env, true);
     need(bytes, "bytes");
     p->pool->set_state(env, bytes, size);
@@ -306,7 +349,7 @@ rdm_result rdm_pool_set_state(rdm_pool* p, int32_t env, const void* bytes, size_
 }
 
 rdm_result rdm_pool_hash(const rdm_pool* p, int32_t env, uint64_t* hash) {
-  return call(p ? p->error : nullptr, [&] {
+  return call(text_of(p), [&] {
     check_env(p, env, true);
     need(hash, "hash");
     *hash = p->pool->hash(env);
@@ -314,8 +357,8 @@ rdm_result rdm_pool_hash(const rdm_pool* p, int32_t env, uint64_t* hash) {
 }
 
 rdm_result rdm_pool_get_stats(const rdm_pool* p, rdm_pool_stats* io) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
+  return call(text_of(p), [&] {
+    need_handle(p);
     check_out(io, sizeof(rdm_pool_stats), "io");
     const PoolStats s = p->pool->stats();
     rdm_pool_stats out{};

@@ -7,7 +7,7 @@ using namespace rdm::capi;
 
 namespace {
 
-void check_match(const AgentConfig& a, const Pool& p) {
+void check_match(const AgentConfig& a, int32_t repeat, const Pool& p) {
   const auto same = [](int32_t agent, int32_t pool, const char* what) {
     if (agent != pool) fail(Code::kArgument, "%s: the agent has %d, the pool %d", what, agent, pool);
   };
@@ -17,9 +17,12 @@ void check_match(const AgentConfig& a, const Pool& p) {
   same(a.cost_dim, p.cost_dim(), "cost_dim");
   if (p.config().autoreset == Autoreset::kOff)
     fail(Code::kState, "pool: its autoreset is off, so a rollout would stop at the first end of an episode");
+  if (repeat % p.repeat() != 0)
+    fail(Code::kArgument, "action_repeat: the agent's is %d, no multiple of the pool's %d", repeat,
+         p.repeat());
 }
 
-// One decision: the action in the pool's buffer is held for `repeat` control steps; a world whose episode
+// One decision: the action in the pool's buffer is held for `repeat` steps of the pool; a world whose episode
 // ends sits out the rest, so that every world has the same number of decisions.
 void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat) {
   const Buffers& b = pool.buffers();
@@ -43,7 +46,7 @@ void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat) {
       if (d.valid[i]) {
         d.reward[i] += b.reward[i];
         for (size_t k = 0; k < costs; ++k) d.cost[i * costs + k] += b.cost[i * costs + k];
-        ++d.steps[i];
+        d.steps[i] += pool.taken(static_cast<int32_t>(i));
         d.success[i] |= b.success[i];
       }
       if (b.terminated[i] || b.truncated[i] || !d.valid[i]) d.mask[i] = 0;
@@ -54,7 +57,7 @@ void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat) {
 }
 
 void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
-  check_match(agent.config(), pool);
+  check_match(agent.config(), agent.action_repeat(), pool);
   if (agent.missing() != agent.horizon())
     fail(Code::kState, "agent: a horizon was begun by hand: finish it with record and update");
   const Buffers& b = pool.buffers();
@@ -71,7 +74,7 @@ void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
     while (agent.missing() > 0) {
       agent.check_cancel();
       agent.act(b.obs, true, b.action);
-      hold_action(pool, d, agent.action_repeat());
+      hold_action(pool, d, agent.action_repeat() / pool.repeat());
       agent.record(t);
     }
     agent.update(b.obs, out);
@@ -84,9 +87,9 @@ void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
 }  // namespace
 
 rdm_result rdm_agent_rollout(rdm_agent* a, rdm_pool* p, rdm_epoch* io) {
-  return call(a ? a->error : nullptr, [&] {
-    need(a, "agent");
-    need(p, "pool");
+  return call(text_of(a), [&] {
+    need_handle(a);
+    need_handle(p);
     if (io) check_out(io, sizeof(rdm_epoch), "io");
     Epoch e;
     rollout(*a->agent, *p->pool, a->decision, &e);
@@ -95,9 +98,9 @@ rdm_result rdm_agent_rollout(rdm_agent* a, rdm_pool* p, rdm_epoch* io) {
 }
 
 rdm_result rdm_agent_config_for_pool(rdm_agent_config* c, const rdm_pool* p) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
-    auto config = read_struct(c, sizeof(rdm_agent_config), rdm_agent_config{}, "config");
+  return call_with(c, text_of(p), [&] {
+    need_handle(p);
+    auto config = read_struct(c, kFirstAgentConfigSize, rdm_agent_config{}, "config");
     const Pool& pool = *p->pool;
     config.obs_dim = pool.obs_dim();
     config.action_dim = pool.task().action_dim();
@@ -109,9 +112,9 @@ rdm_result rdm_agent_config_for_pool(rdm_agent_config* c, const rdm_pool* p) {
     config.max_steps = pool.task().max_steps();
     config.initial_mean = p->initial_mean;
     config.defaults = p->defaults;
-    config.num_defaults = task_at(pool.task_index()).num_defaults;
+    config.num_defaults = p->num_defaults;
     config.cost_limits = p->cost_limits;
-    write_struct(c, config, sizeof(rdm_agent_config), "config");
+    write_struct(c, config, kFirstAgentConfigSize, "config");
   });
 }
 

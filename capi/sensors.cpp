@@ -10,8 +10,8 @@ using namespace rdm;
 using namespace rdm::capi;
 
 rdm_result rdm_pool_sensors(const rdm_pool* p, rdm_sensors* io) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
+  return call(text_of(p), [&] {
+    need_handle(p);
     const SenseConfig& c = p->pool->sense();
     const SenseBuffers& b = p->pool->sensed();
     rdm_sensors s{};
@@ -33,8 +33,8 @@ rdm_result rdm_pool_sensors(const rdm_pool* p, rdm_sensors* io) {
 }
 
 rdm_result rdm_pool_sensor_camera(const rdm_pool* p, int32_t cloud, int32_t i, rdm_camera* out) {
-  return call(p ? p->error : nullptr, [&] {
-    need(p, "pool");
+  return call(text_of(p), [&] {
+    need_handle(p);
     need(out, "out");
     if (cloud < 0 || cloud > 1) fail(Code::kRange, "cloud: %d is outside [0, 1]", cloud);
     const SenseConfig& c = p->pool->sense();
@@ -53,7 +53,7 @@ size_t sampling_bytes(int32_t count) {
 }  // namespace
 
 size_t rdm_sample_scratch(int32_t count) {
-  return count < 1 || count > kMaxCloud ? 0 : sampling_bytes(count);
+  return count < 1 || count > kMaxCloud ? 0 : sampling_bytes(count) + kScratchSlack;
 }
 
 rdm_result rdm_sample_furthest(const float* points, int32_t count, int32_t wanted, int32_t start,
@@ -64,9 +64,7 @@ rdm_result rdm_sample_furthest(const float* points, int32_t count, int32_t wante
     need(scratch, "scratch");
     if (count < 1 || count > kMaxCloud) fail(Code::kRange, "count: %d is outside [1, %d]", count, kMaxCloud);
     const size_t bytes = sampling_bytes(count);
-    if (scratch_bytes < bytes) fail(Code::kRange, "scratch_bytes: %zu, %zu are needed", scratch_bytes, bytes);
-    if (reinterpret_cast<uintptr_t>(scratch) % Arena::kAlign)
-      fail(Code::kArgument, "scratch is not %zu-byte aligned", Arena::kAlign);
+    scratch = aligned_scratch(scratch, scratch_bytes, bytes);
     for (int64_t i = 0; i < 3 * int64_t{count}; ++i)
       if (!std::isfinite(points[i]))
         fail(Code::kArgument, "points: entry %lld is not finite", static_cast<long long>(i));

@@ -9,8 +9,9 @@ function half_of(name, parameters) {
   return ""
 }
 
-function body_of(type, half) {
+function body_of(type, half, parameters) {
   if (type == "void") return "{}"
+  if (type == "rdm_result" && parameters ~ /const rdm_[a-z]+_config \*c/) return "{\n  return left_out(\"" half "\", c);\n}"
   if (type == "rdm_result") return "{\n  return left_out(\"" half "\");\n}"
   if (type ~ /char/) return "{\n  return \"this build was made without the " half " half\";\n}"
   return "{\n  return 0;\n}"
@@ -27,7 +28,7 @@ function declared(text,   type, name, parameters, half) {
   parameters = substr(text, RSTART + RLENGTH)
   sub(/ $/, "", type)
   half = half_of(name, parameters)
-  if (half != "") print text " " body_of(type, half)
+  if (half != "") print text " " body_of(type, half, parameters)
 }
 
 BEGIN {
@@ -35,6 +36,8 @@ BEGIN {
   print "#include \"capi/abi_call.hpp\"\n\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"\n"
   print "static rdm_result left_out(const char* half) {"
   print "  return rdm::capi::call(nullptr, [half] { rdm::capi::left_out(half); });\n}"
+  print "template <class Config>\nstatic rdm_result left_out(const char* half, const Config* c) {"
+  print "  return rdm::capi::call_with(c, [half] { rdm::capi::left_out(half); });\n}"
 }
 { sub(/\r$/, "") }
 statement == "" && /^RDM_API/ { statement = " " }

@@ -72,6 +72,7 @@ void Agent::open(const AgentConfig& config) {
   AgentConfig& c = resolved_.config;
   c.task = resolved_.task;
   c.defaults = c.options = nullptr;
+  c.settings = nullptr;
   c.initial_mean = nullptr;
   c.cost_limits = nullptr;
 }

@@ -33,6 +33,7 @@ struct AgentConfig {
   int32_t num_defaults = 0;
   const OptionInput* options = nullptr;
   int32_t num_options = 0;
+  const char* settings = nullptr;       // lines key=value, laid over the options; null: none
   const double* cost_limits = nullptr;  // [cost_dim] or null; < 0: none
   HostHooks hooks;
 };

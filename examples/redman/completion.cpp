@@ -129,7 +129,7 @@ std::string bash_script(const std::vector<Command>& commands) {
          "  esac\n  case \" $values \" in\n    *\" $before \"*)\n      words=\n      case $before in\n" +
          choices +
          "      esac\n      ;;\n  esac\n"
-         "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n"
+         "  COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
          "}\n"
          "complete -o default -F _redman redman\n";
 }

@@ -13,11 +13,12 @@ thread_local char t_text[kErrorTextSize] = "";
 void fail(Code code, const char* format, ...) {
   Error e;
   e.code = code;
+  char raw[kErrorTextSize + 4];  // a character that is cut here does not fit into the text either
   va_list args;
   va_start(args, format);
-  std::vsnprintf(e.text, sizeof e.text, format, args);
+  std::vsnprintf(raw, sizeof raw, format, args);
   va_end(args);
-  clean_text(e.text);
+  clean_text(e.text, sizeof e.text, raw);
   throw e;
 }
 
@@ -26,8 +27,7 @@ const char* last_error() {
 }
 
 void set_last_error(const char* text) {
-  copy_text(t_text, sizeof t_text, text);
-  clean_text(t_text);
+  clean_text(t_text, sizeof t_text, text);
 }
 
 const char* code_string(int32_t code) {

@@ -57,12 +57,12 @@ void host_release(const HostHooks& hooks, void* p, size_t bytes, size_t align) n
 
 void log(const HostHooks& hooks, LogLevel level, const char* format, ...) {
   if (!hooks.log) return;
-  char line[512];
+  char raw[512 + 4], line[512];  // a character that is cut in the first does not fit into the second
   va_list args;
   va_start(args, format);
-  std::vsnprintf(line, sizeof line, format, args);
+  std::vsnprintf(raw, sizeof raw, format, args);
   va_end(args);
-  clean_text(line);
+  clean_text(line, sizeof line, raw);
   hooks.log(hooks.user, static_cast<int32_t>(level), line);
 }
 

@@ -34,6 +34,42 @@ int edit_distance(const char* a, const char* b) {
   return row[m];
 }
 
+// Nine digits where they are enough, else as few as read back exactly.
+void print_number(double v, char* out) {
+  char* const last = out + kOptionTextSize - 1;
+  const char* end = std::to_chars(out, last, v, std::chars_format::general, 9).ptr;
+  double back = 0;
+  std::from_chars(out, end, back);
+  if (back != v) end = std::to_chars(out, last, v).ptr;
+  out[end - out] = '\0';
+}
+
+bool is_near(const char* name, const char* known, int distance) {
+  const size_t a = std::strlen(name), b = std::strlen(known), common = std::min(a, b);
+  if (3 * static_cast<size_t>(distance) <= std::max(a, b)) return true;
+  size_t same = 0;
+  while (same < common && fold(name[same]) == fold(known[same])) ++same;
+  return same == common && common >= 3;
+}
+
+// The line from `begin` to `end` as key and value, blanks about them cut off; false when it is empty.
+bool split_line(const char* begin, const char* end, Vector<char>* key, Vector<char>* value) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  const auto trimmed = [&](const char* from, const char* to, Vector<char>* out) {
+    while (from < to && blank(*from)) ++from;
+    while (from < to && blank(to[-1])) --to;
+    out->assign(from, to);
+    out->push_back('\0');
+  };
+  trimmed(begin, end, key);
+  if (key->size() == 1) return false;
+  const char* equals = std::find(begin, end, '=');
+  if (equals == end) fail(Code::kArgument, "'%s' is not key=value", Quoted(key->data()).text);
+  trimmed(begin, equals, key);
+  trimmed(equals + 1, end, value);
+  return true;
+}
+
 // True when `word` is one of the '|'-separated `choices`; out gets the spelling of the list.
 bool match_choice(const char* choices, const char* word, char* out) {
   for (const char* p = choices; *p;) {
@@ -65,7 +101,12 @@ int32_t nearest_name(const char* name, const char* const* names, int32_t count) 
     const int d = edit_distance(name, names[i]);
     if (d < least) least = d, best = i;
   }
-  return best;
+  return best >= 0 && is_near(name, names[best], least) ? best : -1;
+}
+
+Nearest::Nearest(const char* name, const char* const* names, int32_t count) {
+  const int32_t near = nearest_name(name, names, count);
+  std::snprintf(text, sizeof text, "%s%s", near >= 0 ? "; nearest is " : "", near >= 0 ? names[near] : "");
 }
 
 int32_t Options::find(const char* key) const {
@@ -84,12 +125,17 @@ void Options::add_table(const OptionSpec* specs, int32_t count) {
 }
 
 void Options::write(Row& row, const char* text) {
-  const size_t size = std::strlen(text) + 1;
-  if (size <= sizeof row.text)
-    row.long_text.clear();
-  else
-    row.long_text.assign(text, text + size);
-  copy_text(row.text, sizeof row.text, text);
+  while (*text == ' ') ++text;
+  size_t length = std::strlen(text);
+  while (length > 0 && text[length - 1] == ' ') --length;
+  row.long_text.clear();
+  if (length >= sizeof row.text) {
+    row.long_text.assign(text, text + length);
+    row.long_text.push_back('\0');
+    text = row.long_text.data();
+    length = sizeof row.text - 1;
+  }
+  copy_text(row.text, length + 1, text);
 }
 
 void Options::assign(Row& row, const OptionInput& input, const char* owner) const {
@@ -135,13 +181,27 @@ void Options::set(const OptionInput& input, const char* owner) {
   if (i < 0) {
     Vector<const char*> keys;
     for (const Row& r : rows_) keys.push_back(r.spec->key);
-    const int32_t near = nearest_name(input.key, keys.data(), static_cast<int32_t>(keys.size()));
-    fail(Code::kNotFound, "%s option %s: unknown%s%s", owner, Quoted(input.key).text,
-         near >= 0 ? "; nearest is " : "", near >= 0 ? keys[static_cast<size_t>(near)] : "");
+    fail(Code::kNotFound, "%s option %s: unknown%s", owner, Quoted(input.key).text,
+         Nearest(input.key, keys.data(), static_cast<int32_t>(keys.size())).text);
   }
   Row& row = rows_[static_cast<size_t>(i)];
   assign(row, input, owner);
   row.given = true;
+}
+
+void Options::set_lines(const char* lines, const char* owner) {
+  Vector<char> key, value;
+  int32_t number = 0;
+  for (const char* at = lines; at && *at;) {
+    const char* end = at + std::strcspn(at, "\n");
+    ++number;
+    try {
+      if (split_line(at, end, &key, &value)) set({key.data(), value.data(), 0}, owner);
+    } catch (const Error& e) {
+      fail(e.code, "settings line %d: %s", number, e.text);
+    }
+    at = *end ? end + 1 : end;
+  }
 }
 
 const Options::Row& Options::need(const char* key, OptionKind kind) const {
@@ -169,14 +229,39 @@ bool Options::given(const char* key) const {
   return i >= 0 && rows_[static_cast<size_t>(i)].given;
 }
 
-void Options::print(int32_t i, char* out) const {
+bool Options::print(int32_t i, char* out) const {
   const Row& r = rows_[static_cast<size_t>(i)];
   if (r.spec->kind == OptionKind::kText)
     copy_text(out, kOptionTextSize, r.text);
   else if (r.spec->kind == OptionKind::kFlag)
     std::snprintf(out, kOptionTextSize, "%s", r.number != 0 ? "true" : "false");
   else
-    *std::to_chars(out, out + kOptionTextSize - 1, r.number, std::chars_format::general, 9).ptr = '\0';
+    print_number(r.number, out);
+  return r.long_text.empty();
+}
+
+size_t Options::print_lines(char* out, size_t capacity) const {
+  size_t length = 0;
+  for (const bool writes : {false, true}) {
+    if (writes && length >= capacity) break;
+    char* at = out;
+    const auto put = [&](const char* text, size_t n) {
+      if (writes)
+        at = std::copy_n(text, n, at);
+      else
+        length += n;
+    };
+    for (int32_t i = 0; i < count(); ++i) {
+      char text[kOptionTextSize];
+      const char* value = print(i, text) ? text : rows_[static_cast<size_t>(i)].long_text.data();
+      put(spec(i).key, std::strlen(spec(i).key));
+      put("=", 1);
+      put(value, std::strlen(value));
+      put("\n", 1);
+    }
+    if (writes) *at = '\0';
+  }
+  return length;
 }
 
 void Options::set_default(const char* key, double number) {

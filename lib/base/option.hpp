@@ -57,6 +57,9 @@ class Options {
   void reserve(int32_t rows) { rows_.reserve(static_cast<size_t>(rows)); }
   static size_t bytes(int32_t rows) { return static_cast<size_t>(rows) * sizeof(Row); }
   void set(const OptionInput& input, const char* owner);
+  // Lines key=value; spaces about either, '\r' and empty lines do not count. NULL: none. The errors of set,
+  // with the number of the line; kArgument for a line without '='.
+  void set_lines(const char* lines, const char* owner);
   bool knows(const char* key) const { return find(key) >= 0; }
 
   double number(const char* key) const;
@@ -67,8 +70,12 @@ class Options {
 
   int32_t count() const { return static_cast<int32_t>(rows_.size()); }
   const OptionSpec& spec(int32_t i) const { return *rows_[static_cast<size_t>(i)].spec; }
-  // Current value as text ("0.5", "true", "egg"), cut to the kOptionTextSize bytes of the buffer.
-  void print(int32_t i, char* out) const;
+  // Current value as text ("0.5", "true", "egg") of kOptionTextSize bytes, which reads back exactly. False
+  // for a text that is longer: it is cut.
+  bool print(int32_t i, char* out) const;
+  // All values as lines for set_lines, into at most `capacity` bytes (none when it is less than all need);
+  // the length without terminator.
+  size_t print_lines(char* out, size_t capacity) const;
   // Changes the default of one key (a task's or an algorithm's own default); bounds are checked.
   void set_default(const char* key, double number);
   void set_default(const char* key, const char* text);
@@ -83,14 +90,21 @@ class Options {
   };
   int32_t find(const char* key) const;
   const Row& need(const char* key, OptionKind kind) const;
-  static void write(Row& row, const char* text);
+  static void write(Row& row, const char* text);  // without the spaces at its ends
   void assign(Row& row, const OptionInput& input, const char* owner) const;
   Vector<Row> rows_;
 };
 
 // Keys and names match without regard to case, and '-' equals '_'.
 bool same_name(const char* a, const char* b);
-// Index of the nearest name by edit distance, -1 when the list is empty.
+// Index of the nearest name by edit distance, -1 when none is near: a third of its letters differ at most, or
+// one of both begins with the other (three letters or more).
 int32_t nearest_name(const char* name, const char* const* names, int32_t count);
+
+// What an error text says of a name that is unknown: "; nearest is ppo_lag", or "" when none is near.
+struct Nearest {
+  Nearest(const char* name, const char* const* names, int32_t count);
+  char text[2 * kOptionTextSize];
+};
 
 }  // namespace rdm

@@ -54,6 +54,7 @@ class Stream {
     }
   }
   uint64_t counter() const { return counter_; }
+  uint32_t world() const { return world_; }
 
  private:
   static constexpr uint32_t kM0 = 0xD2511F53u, kM1 = 0xCD9E8D57u, kW0 = 0x9E3779B9u, kW1 = 0xBB67AE85u;

@@ -1,6 +1,7 @@
 #include "base/text.hpp"
 
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 
 namespace rdm {
@@ -51,22 +52,25 @@ bool is_clean_text(const char* text) {
   return true;
 }
 
-void clean_text(char* text) {
-  auto* p = reinterpret_cast<unsigned char*>(text);
+bool clean_text(char* out, size_t size, const char* text) {
+  const auto* p = reinterpret_cast<const unsigned char*>(text);
+  size_t left = size - 1;
+  bool cut;
   while (*p) {
-    bool cut;
-    const size_t n = character(p, &cut);
-    if (cut) {
-      *p = '\0';
-      return;
-    }
+    const size_t n = character(p, &cut), room = n ? n : 4;
+    if (room > left) break;
     if (n == 0)
-      *p++ = '?';
+      std::snprintf(out, room + 1, "\\x%02x", static_cast<unsigned>(*p));
     else if (is_control(p, n))
-      for (size_t i = 0; i < n; ++i) *p++ = ' ';
+      std::memset(out, ' ', n);
     else
-      p += n;
+      std::memcpy(out, p, n);
+    p += n ? n : 1;
+    out += room;
+    left -= room;
   }
+  *out = '\0';
+  return *p == '\0';
 }
 
 void copy_text(char* out, size_t size, const char* text) {
@@ -86,9 +90,7 @@ void copy_text(char* out, size_t size, const char* text) {
 
 Quoted::Quoted(const char* name) {
   if (!name) name = "NULL";
-  copy_text(text, sizeof text - 3, name);
-  if (name[std::strlen(text)]) std::strcat(text, "...");
-  clean_text(text);
+  if (!clean_text(text, sizeof text - 3, name)) std::strcat(text, "...");
 }
 
 }  // namespace rdm

@@ -7,9 +7,10 @@
 
 namespace rdm {
 
-// In place: control characters (C0, DEL, C1: line ends and ESC among them) become spaces, bytes that are no
-// UTF-8 become '?', and a last character that is not whole goes. Never longer than before.
-void clean_text(char* text);
+// Copies `text` into `size` >= 1 bytes, terminator included: control characters (C0, DEL, C1: line ends and
+// ESC among them) become spaces, bytes that are no UTF-8 are written as \xNN. Cut before the first character
+// or \xNN that does not fit; false where that was so.
+bool clean_text(char* out, size_t size, const char* text);
 
 // Whether clean_text would leave the text as it is.
 bool is_clean_text(const char* text);
@@ -17,7 +18,8 @@ bool is_clean_text(const char* text);
 // Copies `text`, cut before the first character that does not fit with the terminator into `size` >= 1 bytes.
 void copy_text(char* out, size_t size, const char* text);
 
-// A name for an error text, at most 64 bytes of it: fail(code, "task %s: unknown", Quoted(name).text).
+// A name for an error text, cleaned and at most 64 bytes of it: fail(code, "task %s: unknown",
+// Quoted(name).text).
 struct Quoted {
   explicit Quoted(const char* name);  // NULL: "NULL"
   char text[64 + 3 + 1];              // "..." where the name was cut

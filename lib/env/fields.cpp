@@ -19,12 +19,13 @@ constexpr int32_t kInfinity = 0x7F800000;  // and above: not a number
 
 }  // namespace
 
-void add_field(FieldTable& table, const char* prefix, const char* name, const char* unit, int32_t count) {
+void add_field(FieldTable& table, const char* prefix, const char* name, const char* unit, int32_t count,
+               float low, float high) {
   char full[2 * kNameSize];
   std::snprintf(full, sizeof full, "%s%s%s", prefix ? prefix : "", prefix ? "." : "", name);
   if (std::strlen(full) >= kNameSize) fail(Code::kInternal, "field %s: the name is too long", full);
   if (count < 1) fail(Code::kInternal, "field %s: count %d", full, count);
-  table.push_back({Name(full), unit, count});
+  table.push_back({Name(full), unit, count, low, high});
 }
 
 int32_t field_total(const FieldTable& table) {
@@ -56,6 +57,15 @@ bool clip_action(const float* row, int32_t count, float* out) {
 
 int32_t obs_dim(const Task& task) {
   return field_total(task.fields());
+}
+
+FieldSpec bounded_field(const Task& task, int32_t i) {
+  FieldSpec f = task.fields()[static_cast<size_t>(i)];
+  const float limit = task.obs_limit();
+  if (limit == std::numeric_limits<float>::infinity()) return f;
+  f.low = f.low > -limit ? f.low : -limit;
+  f.high = f.high < limit ? f.high : limit;
+  return f;
 }
 
 uint64_t layout_hash(const Task& task) {

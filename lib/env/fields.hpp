@@ -14,8 +14,9 @@ namespace rdm {
 using FieldTable = Vector<FieldSpec>;
 
 // Appends "prefix.name" (or "name" when the prefix is null). `unit` must be static: what the stored number
-// 1 stands for ("m", "5 rad/s", "1" for a pure number).
-void add_field(FieldTable& table, const char* prefix, const char* name, const char* unit, int32_t count);
+// 1 stands for ("m", "5 rad/s", "1" for a pure number). `low` and `high` are what no entry ever leaves.
+void add_field(FieldTable& table, const char* prefix, const char* name, const char* unit, int32_t count,
+               float low = kUnbounded, float high = kUnbounded);
 
 int32_t field_total(const FieldTable& table);
 

@@ -95,7 +95,7 @@ void Pool::Impl::build() {
       s.task_state = arena.make<unsigned char>(task->state_bytes());
       s.world = World::create(task->engine(), task->scene(), arena, config.hooks, partner);
       if (!partner) partner = s.world;
-      name_streams(i, config.seed);
+      name_streams(i, config.seed, static_cast<uint32_t>(i));
     }
   }
   group_size =
@@ -109,11 +109,11 @@ void Pool::Impl::build() {
   workers = host_new<Workers>(config.hooks, config.hooks, config.num_threads);
 }
 
-void Pool::Impl::name_streams(int32_t env, uint64_t seed) {
+void Pool::Impl::name_streams(int32_t env, uint64_t seed, uint32_t number) {
   Episode& e = slots[env].episode;
   e.seed = seed;
-  e.reset = Stream(seed, static_cast<uint32_t>(env), Purpose::kReset);
-  e.policy = Stream(seed, static_cast<uint32_t>(env), Purpose::kRandomPolicy);
+  e.reset = Stream(seed, number, Purpose::kReset);
+  e.policy = Stream(seed, number, Purpose::kRandomPolicy);
 }
 
 Pool::Impl::~Impl() {
@@ -208,6 +208,12 @@ int32_t Pool::obs_dim() const {
 }
 int32_t Pool::cost_dim() const {
   return impl_->cost_dim;
+}
+int32_t Pool::repeat() const {
+  return impl_->repeat;
+}
+int32_t Pool::taken(int32_t env) const {
+  return impl_->slots[env].taken;
 }
 const Buffers& Pool::buffers() const {
   return impl_->buffers;

@@ -20,6 +20,7 @@ struct PoolConfig {
   Autoreset autoreset = Autoreset::kSameStep;
   const OptionInput* options = nullptr;
   int32_t num_options = 0;
+  const char* settings = nullptr;  // lines key=value, laid over the options
   int32_t group_size = 0;  // worlds that the engine steps together, at most; 0: as many as it likes to
   HostHooks hooks;
 };
@@ -54,11 +55,14 @@ class Pool {
   const PoolConfig& config() const;  // pointers inside are not valid any more
   int32_t obs_dim() const;
   int32_t cost_dim() const;
+  int32_t repeat() const;            // control steps of one step, at most
+  int32_t taken(int32_t env) const;  // control steps of the world's last step; 0: it was a reset
   const Buffers& buffers() const;
   const SenseConfig& sense() const;
   const SenseBuffers& sensed() const;  // written by reset and step
   void bind(const Buffers& host);      // non-null pointers take over; contents are copied
 
+  // A seed that is given names the streams alone, as of the only world of a pool.
   void reset(const uint64_t* seeds, const uint8_t* mask);
   void step(const uint8_t* mask);  // null: all
   void baseline(Baseline kind);

@@ -35,6 +35,8 @@ struct Slot {
   void* task_state;
   Episode episode;
   Counters counters;
+  int32_t taken;  // control steps of the last step
+  bool goes_on;   // a further control step of this step would be of the same episode
 };
 
 inline constexpr int32_t kMaxGroup = 16;
@@ -73,7 +75,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   static Carved carve_rows(const ResolvedPoolConfig& plan, Arena& arena);
   static size_t arena_bytes(const ResolvedPoolConfig& plan);
   void build();
-  void name_streams(int32_t env, uint64_t seed);
+  void name_streams(int32_t env, uint64_t seed, uint32_t number);
 
   // --- stepping
   void check_ready(const uint8_t* mask) const;
@@ -81,7 +83,10 @@ struct Pool::Impl : ResolvedPoolConfig {
   void clear_rows(int32_t env);                 // reward, costs, flags, status, sums; final_obs becomes obs
   bool observe(int32_t env, float* row) const;  // false: an entry is not finite
   void see(int32_t env, Block& block);          // pictures, points and voxels
-  // A step in three parts, so that the engine can take several worlds at once: all that comes before it, the
+  // A control step of the block's worlds for which wanted(env).
+  template <class F>
+  void control_step(int32_t begin, int32_t end, Block& block, F&& wanted);
+  // It has three parts, so that the engine can take several worlds at once: all that comes before it, the
   // engine and what comes behind for all that wait, and what comes behind for one world.
   void start_step(int32_t env, Block& block);
   void step_group(Block& block);

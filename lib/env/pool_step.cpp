@@ -25,7 +25,7 @@ void Pool::reset(const uint64_t* seeds, const uint8_t* mask) {
   const FpMode mode;
   Impl& m = *impl_;
   m.each_world(mask, [&](int32_t env, Block& block) {
-    if (seeds) m.name_streams(env, seeds[env]);
+    if (seeds) m.name_streams(env, seeds[env], 0);
     m.begin_episode(env);
     m.clear_rows(env);
     m.see(env, block);
@@ -37,16 +37,15 @@ void Pool::step(const uint8_t* mask) {
   Impl& m = *impl_;
   m.check_ready(mask);
   m.each_block([&](int32_t begin, int32_t end, Block& block) {
-    block.waiting = 0;
-    for (int32_t env = begin; env < end; ++env) {
-      if (mask && !mask[env]) continue;
-      block.attempt(env, [&] { m.start_step(env, block); });
-      if (block.waiting == m.group_size) m.step_group(block);
-    }
-    m.step_group(block);
+    const auto named = [&](int32_t env) { return !mask || mask[env]; };
+    for (int32_t env = begin; env < end; ++env)
+      if (named(env)) m.slots[env].taken = 0;
+    m.control_step(begin, end, block, named);
+    for (int32_t r = 1; r < m.repeat; ++r)
+      m.control_step(begin, end, block, [&](int32_t env) { return named(env) && m.slots[env].goes_on; });
     if (!m.sense.any()) return;
     for (int32_t env = begin; env < end; ++env)
-      if (!mask || mask[env]) block.attempt(env, [&] { m.see(env, block); });
+      if (named(env)) block.attempt(env, [&] { m.see(env, block); });
   });
 }
 
@@ -112,8 +111,8 @@ void Pool::Impl::see(int32_t env, Block& block) {
   const uint64_t moment =
       0x9e3779b97f4a7c15u * (s.episode.reset.counter() + static_cast<uint64_t>(s.episode.step));
   sense_world(sense, *s.world, task->focus(*s.world, s.task_state),
-              Stream(s.episode.seed + moment, static_cast<uint32_t>(env), Purpose::kSense), block.sense,
-              sensed, static_cast<size_t>(env));
+              Stream(s.episode.seed + moment, s.episode.reset.world(), Purpose::kSense), block.sense, sensed,
+              static_cast<size_t>(env));
 }
 
 void Pool::Impl::clear_rows(int32_t env) {
@@ -128,8 +127,20 @@ void Pool::Impl::clear_rows(int32_t env) {
   buffers.terminated[env] = buffers.truncated[env] = buffers.success[env] = 0;
 }
 
+template <class F>
+void Pool::Impl::control_step(int32_t begin, int32_t end, Block& block, F&& wanted) {
+  block.waiting = 0;
+  for (int32_t env = begin; env < end; ++env) {
+    if (!wanted(env)) continue;
+    block.attempt(env, [&] { start_step(env, block); });
+    if (block.waiting == group_size) step_group(block);
+  }
+  step_group(block);
+}
+
 void Pool::Impl::start_step(int32_t env, Block& block) {
   Slot& s = slots[env];
+  s.goes_on = false;
   if (s.episode.phase == Phase::kEnded) {  // next-step mode: this step only resets
     begin_episode(env);
     clear_rows(env);
@@ -176,28 +187,34 @@ void Pool::Impl::lose_step(int32_t env, uint32_t status) {
 void Pool::Impl::close_step(int32_t env, const Verdict& verdict, uint32_t status, bool lost) {
   Episode& e = slots[env].episode;
   ++e.step;
+  ++slots[env].taken;
   e.terminated = verdict.terminated;
   e.truncated = lost || (!verdict.terminated && e.step >= task->max_steps());
   write_verdict(env, verdict, status);
-  if (!e.terminated && !e.truncated) return;
+  slots[env].goes_on = !e.terminated && !e.truncated;
+  if (slots[env].goes_on) return;
   e.phase = Phase::kEnded;
   if (config.autoreset == Autoreset::kSameStep) begin_episode(env);
 }
 
 void Pool::Impl::write_verdict(int32_t env, const Verdict& verdict, uint32_t status) {
   Episode& e = slots[env].episode;
+  const bool first = slots[env].taken == 1;  // of the control steps of this step
+  const auto add = [&](float& sum, double value) {
+    sum = first ? static_cast<float>(value) : sum + static_cast<float>(value);
+  };
   e.sum_reward += verdict.reward;
-  buffers.reward[env] = static_cast<float>(verdict.reward);
+  add(buffers.reward[env], verdict.reward);
   buffers.episode_return[env] = static_cast<float>(e.sum_reward);
   for (int32_t k = 0; k < cost_dim; ++k) {
     e.sum_cost[k] += verdict.cost[k];
-    cost_row(buffers.cost, env)[k] = static_cast<float>(verdict.cost[k]);
+    add(cost_row(buffers.cost, env)[k], verdict.cost[k]);
     cost_row(buffers.cost_raw, env)[k] = static_cast<float>(verdict.cost_raw[k]);
     cost_row(buffers.episode_cost, env)[k] = static_cast<float>(e.sum_cost[k]);
   }
   buffers.episode_step[env] = e.step;
-  buffers.status[env] = status;
-  buffers.success[env] = verdict.success;
+  buffers.status[env] = first ? status : buffers.status[env] | status;
+  buffers.success[env] = verdict.success || (!first && buffers.success[env]);
   buffers.terminated[env] = e.terminated;
   buffers.truncated[env] = e.truncated;
 }

@@ -40,7 +40,10 @@ void read_options(const PoolConfig& config, const TaskInfo& info, Options* out) 
   out->add_table(specs, count);
   specs = sense_options(&count);
   out->add_table(specs, count);
+  specs = repeat_options(&count);
+  out->add_table(specs, count);
   for (int32_t i = 0; i < config.num_options; ++i) out->set(config.options[i], info.name);
+  out->set_lines(config.settings, info.name);
 }
 
 }  // namespace
@@ -59,8 +62,10 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
   info = &task_at(task_index);
   config.task = info->name;
   config.options = nullptr;
+  config.settings = nullptr;
   read_options(c, *info, &options);
   sense = sense_from(options, *info);
+  repeat = repeat_from(options, *info);
   options_hash = hash_options(*info, options);
   task = make_task(*info, options, config.hooks);
   obs_dim = rdm::obs_dim(*task);

@@ -1,6 +1,7 @@
 // A pool's config made concrete: its task made, its options laid in, its sizes known. What a spec, a measure
 // and a pool have in common, so that none of them accepts what another refuses.
 #pragma once
+#include "env/options/repeat.hpp"
 #include "env/options/sense.hpp"
 #include "env/pool.hpp"
 #include "env/task.hpp"
@@ -12,11 +13,12 @@ struct ResolvedPoolConfig {
   // made.
   explicit ResolvedPoolConfig(const PoolConfig& c);
 
-  PoolConfig config;  // its options are laid in: the list is gone
+  PoolConfig config;  // its options are laid in: list and lines are gone
   Options options;
   int32_t task_index = -1;
   const TaskInfo* info = nullptr;
   SenseConfig sense;
+  int32_t repeat = 1;         // control steps of one step
   uint64_t options_hash = 0;  // task name and every option's value
   TaskHandle task;
   int32_t obs_dim = 0, action_dim = 0, cost_dim = 0;

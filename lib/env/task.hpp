@@ -15,10 +15,13 @@ namespace rdm {
 
 inline constexpr int kMaxTaskCosts = 16;
 
+inline constexpr float kUnbounded = std::numeric_limits<float>::quiet_NaN();
 struct FieldSpec {
   Name name;
   const char* unit;  // static
   int32_t count;
+  // what no entry ever leaves; kUnbounded: nothing but the task's obs_limit
+  float low = kUnbounded, high = kUnbounded;
 };
 struct CostSpec {
   const char* name;
@@ -103,6 +106,7 @@ const TaskInfo& task_at(int32_t index);
 int32_t task_find(const char* name);  // Error(kNotFound) with the nearest name; aliases count
 
 int32_t obs_dim(const Task& task);
-uint64_t layout_hash(const Task& task);  // field names, counts, action order, action count
+FieldSpec bounded_field(const Task& task, int32_t i);  // its bounds within obs_limit; kUnbounded: none
+uint64_t layout_hash(const Task& task);                // field names, counts, action order, action count
 
 }  // namespace rdm

@@ -62,9 +62,7 @@ int32_t task_find(const char* name) {
   if (i >= 0) return i;
   const char* names[kMaxTasks];
   for (int32_t k = 0; k < g_count; ++k) names[k] = g_tasks[k]->name;
-  const int32_t near = nearest_name(name, names, g_count);
-  fail(Code::kNotFound, "task %s: unknown%s%s", Quoted(name).text, near >= 0 ? "; nearest is " : "",
-       near >= 0 ? names[near] : "");
+  fail(Code::kNotFound, "task %s: unknown%s", Quoted(name).text, Nearest(name, names, g_count).text);
 }
 
 Vec3 Task::focus(const World& world, const void*) const {

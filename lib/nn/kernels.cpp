@@ -49,8 +49,8 @@ bool set_kernel_isa(const char* name) {
   return false;
 }
 
-size_t gemm_pack_floats(int32_t n, int32_t k) {
-  const auto columns = static_cast<size_t>(std::min((n + 15) / 16 * 16, kPackColumns));
+size_t gemm_pack_floats(int32_t n, int32_t k, int32_t pack_columns) {
+  const auto columns = static_cast<size_t>(std::min((n + 15) / 16 * 16, pack_columns));
   return columns * static_cast<size_t>(std::min(k, kPackDepth));
 }
 

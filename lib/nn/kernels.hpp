@@ -16,6 +16,12 @@
 
 namespace rdm {
 
+// Columns and depth of B that are packed at a time. Fewer columns change no entry of the product; what they
+// save in memory they cost in passes over A, which few rows do not mind.
+inline constexpr int32_t kPackColumns = 512, kPackStep = 64, kPackDepth = 256;
+// Up to so many rows B is not packed at all when A's rows and B's columns lie in order in memory.
+inline constexpr int32_t kSkinnyRows = 4;
+
 // C = A B, or C += A B, then optionally + bias[j], an activation, or a product with an activation's slope.
 struct GemmArgs {
   int32_t m = 0, n = 0, k = 0;
@@ -29,12 +35,10 @@ struct GemmArgs {
   bool activate = false;            // C = act(C)
   const float* slope_of = nullptr;  // [m][n] values of act or null: C *= act' there
   Activation activation = Activation::kTanh;
-  float* packed = nullptr;  // gemm_pack_floats(n, k) floats
+  int32_t pack_columns = kPackColumns;  // of B at a time, a multiple of kPackStep
+  float* packed = nullptr;              // gemm_pack_floats(n, k, pack_columns) floats
 };
-
-// Columns and depth of B that are packed at a time.
-inline constexpr int32_t kPackColumns = 512, kPackDepth = 256;
-size_t gemm_pack_floats(int32_t n, int32_t k);
+size_t gemm_pack_floats(int32_t n, int32_t k, int32_t pack_columns = kPackColumns);
 
 struct AdamArgs {
   size_t size;

@@ -7,8 +7,8 @@ namespace rdm {
 namespace {
 
 constexpr int kPanel = kLanes * kTileVectors;
+static_assert(kPackStep % kPanel == 0);
 constexpr int32_t kDotColumns = 3;   // up to here dot products along k beat padded panels
-constexpr int32_t kSkinnyRows = 4;   // up to here B is not worth packing when its columns lie in order
 constexpr int32_t kInPlaceRows = 2;  // up to here B is not worth packing when its rows lie in order
 
 inline int32_t less_of(int32_t a, int32_t b) {
@@ -255,8 +255,8 @@ void skinny_product(const GemmArgs& g) {
 template <bool kColumns>
 void blocked_product(const GemmArgs& g) {
   const bool in_place = g.b_col == 1 && g.m <= kInPlaceRows;
-  for (int32_t j0 = 0; j0 < g.n; j0 += kPackColumns) {
-    const int32_t n = less_of(kPackColumns, g.n - j0);
+  for (int32_t j0 = 0; j0 < g.n; j0 += g.pack_columns) {
+    const int32_t n = less_of(g.pack_columns, g.n - j0);
     for (int32_t k0 = 0; k0 < g.k; k0 += kPackDepth) {
       const int32_t k = less_of(kPackDepth, g.k - k0);
       const bool add = g.add || k0 > 0, last = k0 + k == g.k;

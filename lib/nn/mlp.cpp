@@ -14,15 +14,15 @@ size_t sz(int32_t n) {
   return static_cast<size_t>(n);
 }
 
-size_t forward_pack_floats(const MlpShape& shape) {
+size_t forward_pack_floats(const MlpShape& shape, int32_t columns) {
   size_t most = 0;
   for (int32_t l = 0; l < shape.num_layers(); ++l)
-    most = std::max(most, gemm_pack_floats(shape.layer_out(l), shape.layer_in(l)));
+    most = std::max(most, gemm_pack_floats(shape.layer_out(l), shape.layer_in(l), columns));
   return most;
 }
 
 size_t pack_floats(const MlpShape& shape, int32_t rows) {
-  size_t most = forward_pack_floats(shape);
+  size_t most = forward_pack_floats(shape, kPackColumns);
   for (int32_t l = 0; l < shape.num_layers(); ++l)
     most = std::max({most, gemm_pack_floats(shape.layer_in(l), shape.layer_out(l)),
                      gemm_pack_floats(shape.layer_in(l), rows)});
@@ -75,7 +75,8 @@ MlpScratch cut_forward_scratch(ScratchCutter& cutter, const MlpShape& shape, int
   for (int32_t l = 0; l < shape.num_hidden; ++l) widest[l & 1] = std::max(widest[l & 1], shape.hidden[l]);
   float* const rows_of[2] = {cutter.make(sz(rows) * sz(widest[0])), cutter.make(sz(rows) * sz(widest[1]))};
   for (int32_t l = 0; l < shape.num_hidden; ++l) s.activation[l] = rows_of[l & 1];
-  s.packed = cutter.make(forward_pack_floats(shape));
+  s.pack_columns = std::min(rows / kSkinnyRows * kPackStep, kPackColumns);
+  s.packed = cutter.make(rows > kSkinnyRows ? forward_pack_floats(shape, s.pack_columns) : 0);
   return s;
 }
 
@@ -88,6 +89,7 @@ void mlp_forward(const MlpShape& shape, const float* params, const float* x, int
     GemmArgs g = times_weights(shape, l, params + shape.weight_offset(l), x, rows, z, scratch.packed);
     g.bias = params + shape.bias_offset(l);
     g.activate = !last;
+    if (scratch.pack_columns > 0) g.pack_columns = scratch.pack_columns;
     kernel.gemm(g);
     x = z;
   }

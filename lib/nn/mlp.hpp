@@ -38,6 +38,7 @@ struct MlpScratch {
   int32_t rows = 0;
   float* activation[kMaxHidden + 1] = {};  // [rows][layer_out(l)], hidden layers after their activation
   float* delta[2] = {};                    // [rows][widest layer], ping and pong
+  int32_t pack_columns = 0;                // of a matrix product at a time; 0: as many as are fastest
   float* packed = nullptr;                 // panels of the matrix products
 };
 MlpScratch carve_mlp_scratch(Arena& arena, const MlpShape& shape, int32_t rows);

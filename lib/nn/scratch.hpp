@@ -24,7 +24,7 @@ class ScratchCutter {
   size_t used_ = 0;
 };
 
-// Scratch that is enough for mlp_forward alone: layers two apart share their rows.
+// Scratch that is enough for mlp_forward alone: layers two apart share their rows, and few rows pack little.
 MlpScratch cut_forward_scratch(ScratchCutter& cutter, const MlpShape& shape, int32_t rows);
 
 // The first 64-byte boundary at or after p.

@@ -39,9 +39,8 @@ LinkDef& find(ArticulationDef* def, const char* kind, const char* prefix, const 
     if (same_name(full, name) || same_name(bare, name)) return link;
     if (count < kMaxLinks) names[count++] = bare;
   }
-  const int32_t near = nearest_name(name, names, count);
-  fail(Code::kNotFound, "%s: no %s is called %s; nearest is %s", def->name.text, kind, name,
-       near < 0 ? "none" : names[near]);
+  fail(Code::kNotFound, "%s: no %s is called %s%s", def->name.text, kind, name,
+       Nearest(name, names, count).text);
 }
 
 void need_value(const char* owner, double value) {

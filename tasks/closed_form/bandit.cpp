@@ -26,7 +26,7 @@ struct State {
 class Bandit final : public PlanarTask {
  public:
   explicit Bandit(const Options& o)
-      : PlanarTask(make(o.number("target")), 1, {{"constant", "1", 1}}),
+      : PlanarTask(make(o.number("target")), 1, {{"constant", "1", 1, 1, 1}}),
         target_(o.number("target")),
         scale_(o.number("action_scale")) {}
 

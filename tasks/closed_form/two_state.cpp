@@ -32,7 +32,7 @@ class TwoState final : public SampledTask<State> {
                         .disc("state_0", 2 * kRadius, kMarkGreen, -1, 0)
                         .disc("state_1", 2 * kRadius, kMarkRed, 1, 0)
                         .build(),
-                    o.integer("max_steps"), {{"state", "1", 2}}),
+                    o.integer("max_steps"), {{"state", "1", 2, 0, 1}}),
         end_(o.number("end_probability")) {}
 
   const char* action_order() const override { return "choice"; }

@@ -54,7 +54,7 @@ void add_tip_fields(const Robot& robot, FieldTable& table, const char* prefix) {
 }
 
 void add_action_field(const Robot& robot, FieldTable& table, const char* prefix, bool base) {
-  add_field(table, prefix, "action", "1", robot.num_actuated() + (base ? kBaseActions : 0));
+  add_field(table, prefix, "action", "1", robot.num_actuated() + (base ? kBaseActions : 0), -1, 1);
 }
 
 void add_hand_fields(const Robot& robot, FieldTable& table, const char* prefix, bool base) {

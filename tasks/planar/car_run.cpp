@@ -41,7 +41,7 @@ class CarRun final : public PlanarTask {
             o.integer("max_steps"),
             {{"position", "10 m", 2},
              {"velocity", "m/s", 2},
-             {"heading", "1", 2},
+             {"heading", "1", 2, -1, 1},
              {"turn_rate", "10 rad/s", 1}}),
         track_(track_from(o)) {}
 

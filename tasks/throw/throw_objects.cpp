@@ -91,8 +91,7 @@ const ThrowObject& throw_object_named(const char* name) {
     if (same_name(kObjects[i].name, name)) return kObjects[i];
     names[i] = kObjects[i].name;
   }
-  fail(Code::kNotFound, "object %s: unknown; nearest is %s", Quoted(name).text,
-       names[nearest_name(name, names, kCount)]);
+  fail(Code::kNotFound, "object %s: unknown%s", Quoted(name).text, Nearest(name, names, kCount).text);
 }
 
 const char* throw_object_choices() {

@@ -9,9 +9,7 @@ export PKG_CONFIG_PATH
 # shellcheck disable=SC2046
 "$cc" -std=c99 "$source" -o "$out/use_shared" $(pkg-config --cflags --libs redman)
 LD_LIBRARY_PATH=$prefix/$libdir "$out/use_shared"
-# Our archive by its name, what it needs by pkg-config.
 # shellcheck disable=SC2046
-"$cc" -std=c99 "$source" $(pkg-config --cflags redman) -o "$out/use_static" \
-  "$prefix/$libdir/libredman.a" $(pkg-config --static --libs redman | sed 's/-lredman//')
+"$cc" -std=c99 "$source" -o "$out/use_static" $(pkg-config --cflags --libs redman-static)
 "$out/use_static"
 ! ldd "$out/use_static" | grep -q libredman

@@ -1,6 +1,6 @@
 #!/bin/sh
-# What the header declares, what the checked-in lists name and what the shared library exports are the
-# same. Arguments: the project's root and the shared library.
+# What the header declares, what the checked-in lists name and what the shared library exports, each list as a
+# version node of its own, are the same. Arguments: the project's root and the shared library.
 set -u
 root=$1 library=$2
 work=$(mktemp -d) || exit 1
@@ -15,7 +15,11 @@ for part in stable experimental; do
   awk -v mode=$part -f "$root/tests/rules/header.awk" "$root"/include/redman/*.h | LC_ALL=C sort > "$work/$part.declared"
   same "declared as $part in the headers (<) and listed in $list (>)" "$work/$part.declared" "$work/$part.listed"
 done
-nm -D --defined-only "$library" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | LC_ALL=C sort > "$work/exported"
-LC_ALL=C sort "$work/stable.listed" "$work/experimental.listed" > "$work/listed"
+# Each list is a version node of its own.
+abi=$(sed -n 's/^#define RDM_ABI *\([0-9]*\).*/\1/p' "$root/include/redman/redman.h")
+sed "s/$/@@REDMAN_$abi/" "$work/stable.listed" > "$work/nodes"
+sed 's/$/@@REDMAN_EXPERIMENTAL/' "$work/experimental.listed" >> "$work/nodes"
+LC_ALL=C sort "$work/nodes" > "$work/listed"
+nm -D --defined-only "$library" | awk '$2 != "A" { print $3 }' | LC_ALL=C sort > "$work/exported"
 same "exported (<) and listed (>)" "$work/exported" "$work/listed"
 exit $status

@@ -13,8 +13,8 @@ minor=${version#*.}
 next=${version%%.*}.$((${minor%%.*} + 1))~
 {
   echo "$(basename "$(readlink -f "$library")" ".${version}" | sed "s/\$/.${package##*[a-z]}/") $package #MINVER#"
-  echo "* Build-Depends-Package: libredman-dev"
   echo "| $package (>= $version), $package (<< $next)"
+  echo "* Build-Depends-Package: libredman-dev"
   nm -D --with-symbol-versions --defined-only "$library" | awk '{ sub("@@", "@", $3); print $2, $3 }' | LC_ALL=C sort -k 2 |
     while read -r kind symbol; do
       [ "$kind" = A ] && symbol=$symbol@${symbol%@*}

@@ -78,9 +78,8 @@ const CameraSpec& camera_spec(const TaskInfo& task, const char* name) {
   const CameraSpec* c = look(task.cameras, task.num_cameras);
   if (!c) c = look(kCloudCameras, static_cast<int32_t>(std::size(kCloudCameras)));
   if (c) return *c;
-  const int32_t near = nearest_name(name, names.data(), static_cast<int32_t>(names.size()));
-  fail(Code::kNotFound, "camera %s: unknown; nearest is %s", Quoted(name).text,
-       names[static_cast<size_t>(near)]);
+  fail(Code::kNotFound, "camera %s: unknown%s", Quoted(name).text,
+       Nearest(name, names.data(), static_cast<int32_t>(names.size())).text);
 }
 
 Camera camera_of(const TaskInfo& task, const char* name) {
@@ -106,9 +105,8 @@ SenseConfig sense_from(const Options& options, const TaskInfo& task) {
       *words[i].flag = true;
       return;
     }
-    const int32_t near = nearest_name(word, names, static_cast<int32_t>(std::size(words)));
-    fail(Code::kArgument, "modality %s: unknown; nearest is %s", Quoted(word).text,
-         names[static_cast<size_t>(near)]);
+    fail(Code::kArgument, "modality %s: unknown%s", Quoted(word).text,
+         Nearest(word, names, static_cast<int32_t>(std::size(words))).text);
   });
   if (c.pictures()) {
     c.num_cameras = read_cameras(options.text("cameras"), task, "cameras", c.cameras);
