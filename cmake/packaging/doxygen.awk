@@ -10,28 +10,34 @@ function open_section(title, rest,   name) {
   print " * " rest " */"
   print "/** @{ */"
 }
+function escaped(text) {
+  gsub(/\\/, "\\\\\\\\", text)
+  gsub(/</, "\\<", text)
+  return text
+}
 # One whole comment above something: kept for those that follow, with examples marked as code.
 function document(text,   n, i, line, code, out, empty) {
-  sub(/^\/\*+ */, "", text)
+  sub(/^[ \t]*\/\*+ */, "", text)
   sub(/ *\*\/ *$/, "", text)
   n = split(text, lines, "\n")
   out = FNR == ended && first ? "@file\n" : ""
   for (i = 1; i <= n; ++i) {
     line = lines[i]
-    sub(/^ *\* ?/, "", line)
+    sub(/^[ \t]*\*? ?/, "", line)
     if (i > 1 && empty && line ~ /^  +[^- ]/ && !code) { out = out "@code\n"; code = 1 }
     if (code && line == "") { out = out "@endcode\n"; code = 0 }
-    out = out line "\n"
+    out = out (code ? line : escaped(line)) "\n"
     empty = line == ""
   }
   if (code) out = out "@endcode\n"
-  gsub(/</, "\\<", out)
   kept = "/** " out "*/"
-  used = 0
+  used = ""
 }
-function above() {  # before a declaration without a comment of its own, or the first one under a comment
+# Before a declaration without a comment of its own, or the first one under a comment; the run ends with its kind.
+function above(kind) {
+  if (used && kind != used) kept = ""
   if (kept != "") print kept
-  used = 1
+  used = kind
 }
 BEGIN { first = 1 }
 { sub(/\r$/, "") }
@@ -56,6 +62,8 @@ in_title { in_title = !/\*\//; next }
 /^[ \t]*\/\*.*\*\/[ \t]*$/ { ended = FNR; document($0); next }
 /^$/ { kept = ""; print; next }
 /^#ifdef __cplusplus|^#if.*RDM_EXPERIMENTAL/ { kept = ""; if (section && depth == 0) { print "/** @} */"; section = 0 } print; next }
+in_behind { in_behind = !/\*\//; print escaped($0); next }
+/[;,] *\/\*/ && !/\*\// { in_behind = 1; kept = ""; sub(/\/\*/, "/**<"); print; next }
 {
   behind = ""
   if (match($0, /\/\*.*\*\//)) {
@@ -63,23 +71,34 @@ in_title { in_title = !/\*\//; next }
     $0 = substr($0, 1, RSTART - 1) substr($0, RSTART + RLENGTH)
     sub(/^\/\*+ */, "", behind)
     sub(/ *\*\/$/, "", behind)
-    gsub(/</, "\\<", behind)
+    behind = escaped(behind)
   }
   starts = /^(RDM_API|typedef|enum|#define)/ || (depth > 0 && !/^}/)
   if (statement) starts = 0
+  if (/^enum.*};/ && behind != "") { print "/** " behind " */"; print; kept = ""; next }
   if (starts && /\{ *$/) {  # what stands behind the brace of a struct or enum is about all of it
-    if (behind != "") print "/** " behind " */"; else above()
+    if (behind != "") print "/** " behind " */"; else above("struct")
     kept = ""
     print
     depth = 1
     next
   }
   if (starts) {
-    if (behind == "" || !used) above()
+    if (behind == "" || !used) above(depth ? "field" : $1)
     if (behind != "") kept = ""
   }
   if (/^}/) { depth = 0; kept = "" }
   if (/^RDM_API/ || (depth && /\(\*/)) statement = 1
   if (statement && /;/) statement = 0
+  # `double low, high;` is two fields.
+  if (depth == 1 && !statement && behind != "" && match($0, /^ *[a-z_0-9]+ [a-z_0-9]+, [a-z_0-9]+;/)) {
+    type = $1
+    list = $0
+    sub(/^ *[a-z_0-9]+ /, "", list)
+    sub(/;.*/, "", list)
+    n = split(list, names, ", ")
+    for (i = 1; i <= n; ++i) print "  " type " " names[i] "; /**< " behind " */"
+    next
+  }
   print $0 (behind != "" ? " /**< " behind " */" : "")
 }

@@ -1,6 +1,7 @@
 #!/bin/sh
 # manual.sh TOOL FOLDER: every subcommand and every flag that the tool's help names stands in its manual page and in the
-# completions, and bash completes with them. FOLDER is what the target `manual` made.
+# completions, and bash completes with them. FOLDER is what the target
+# `manual` made; without help2man it has no pages.
 set -u
 tool=$1 folder=$2
 status=0

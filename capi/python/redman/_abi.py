@@ -26,62 +26,98 @@ class Function(NamedTuple):
     doc: str
 
 
-RDM_VERSION_MAJOR = 0
-RDM_VERSION_MINOR = 1
-RDM_VERSION_PATCH = 0
+RDM_VERSION_MAJOR = 0  # Of this header; that of the library is rdm_version().
+RDM_VERSION_MINOR = 1  # Of this header; that of the library is rdm_version().
+RDM_VERSION_PATCH = 0  # Of this header; that of the library is rdm_version().
 RDM_ABI = 1  # = SONAME; moves only when an old binary would break
 RDM_MAX_COSTS = 16  # cost columns of a task or an agent
 RDM_TEXT_SIZE = 64  # bytes of an option's text value, terminator included
 RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH
 
 
-RDM_OK = 0
-RDM_ARGUMENT = -1  # NULL, wrong struct_size, not finite, malformed
-RDM_RANGE = -2  # outside the documented bounds; index past the end
-RDM_STATE = -3  # calls in the wrong order
-RDM_MEMORY = -4  # the allocator refused
-RDM_IO = -5  # file system
-RDM_FORMAT = -6  # truncated, corrupt or foreign bytes
-RDM_VERSION_MISMATCH = -7  # newer file, newer struct, other ABI
-RDM_UNSUPPORTED = -8  # left out of this build, or not defined for this combination
-RDM_PHYSICS = -9  # the physics engine gave up where no world could be flagged
-RDM_NOT_FOUND = -10  # unknown name (the text offers the nearest), missing file
-RDM_CANCELLED = -11  # rdm_agent_cancel was called; the handle is good
-RDM_INTERNAL = -99  # a defect of redman
+class ResultCode(enum.IntEnum):
+    """frozen values; positive ones are reserved"""
 
-RDM_FEATURE_SIM = 1
-RDM_FEATURE_LEARN = 2
+    OK = 0
+    ARGUMENT = -1  # NULL, wrong struct_size, not finite, malformed
+    RANGE = -2  # outside the documented bounds; index past the end
+    STATE = -3  # calls in the wrong order
+    MEMORY = -4  # the allocator refused
+    IO = -5  # file system
+    FORMAT = -6  # truncated, corrupt or foreign bytes
+    VERSION_MISMATCH = -7  # newer file, newer struct, other ABI
+    UNSUPPORTED = -8  # left out of this build, or not defined for this combination
+    PHYSICS = -9  # the physics engine gave up where no world could be flagged
+    NOT_FOUND = -10  # unknown name (the text offers the nearest), missing file
+    CANCELLED = -11  # rdm_agent_cancel was called; the handle is good
+    INTERNAL = -99  # a defect of redman
 
-RDM_NUMBER = 0
-RDM_INTEGER = 1
-RDM_FLAG = 2
-RDM_TEXT = 3
 
-RDM_AUTORESET_SAME_STEP = 0
-RDM_AUTORESET_NEXT_STEP = 1
-RDM_AUTORESET_OFF = 2
+class Feature(enum.IntEnum):
+    """halves of the library"""
 
-RDM_STATUS_CONTACTS = 1  # contacts beyond contacts_max were left out
-RDM_STATUS_DIVERGED = 2  # a value was not finite: the episode was truncated
-RDM_STATUS_BAD_ACTION = 4  # the row of actions was not finite: likewise
+    SIM = 1
+    LEARN = 2
 
-RDM_BASELINE_ZERO = 0
-RDM_BASELINE_HOLD = 1
-RDM_BASELINE_RANDOM = 2
 
-RDM_SPHERE = 0
-RDM_CAPSULE = 1
-RDM_BOX = 2
-RDM_CYLINDER = 3
-RDM_PLANE = 4
-RDM_ELLIPSOID = 5
-RDM_HULL = 6
+class OptionKind(enum.IntEnum):
+    """of an option"""
 
-RDM_SAMPLE = 0
-RDM_MEAN = 1
+    NUMBER = 0
+    INTEGER = 1
+    FLAG = 2
+    TEXT = 3
 
-RDM_MAP_BINARY = 0
-RDM_MAP_FULL = 1
+
+class Autoreset(enum.IntEnum):
+    """When a world begins again by itself: in the step that ended its episode, in the next, or never."""
+
+    SAME_STEP = 0
+    NEXT_STEP = 1
+    OFF = 2
+
+
+class Status(enum.IntEnum):
+    """When a world begins again by itself: in the step that ended its episode, in the next, or never."""
+
+    CONTACTS = 1  # contacts beyond contacts_max were left out
+    DIVERGED = 2  # a value was not finite: the episode was truncated
+    BAD_ACTION = 4  # the row of actions was not finite: likewise
+
+
+class BaselineKind(enum.IntEnum):
+    """actions that nobody learned"""
+
+    ZERO = 0
+    HOLD = 1
+    RANDOM = 2
+
+
+class ShapeKind(enum.IntEnum):
+    """rdm_shape_kind"""
+
+    SPHERE = 0
+    CAPSULE = 1
+    BOX = 2
+    CYLINDER = 3
+    PLANE = 4
+    ELLIPSOID = 5
+    HULL = 6
+
+
+class ActMode(enum.IntEnum):
+    """of rdm_agent_act"""
+
+    SAMPLE = 0
+    MEAN = 1
+
+
+class MapFormat(enum.IntEnum):
+    """OctoMap's files: RDM_MAP_BINARY (.bt: occupied or free) and RDM_MAP_FULL (.ot: the probabilities too)."""
+
+    BINARY = 0
+    FULL = 1
+
 
 
 class Build(Record):
@@ -513,13 +549,17 @@ class rdm_pool_config(Structure):
     """struct_size: bytes, set by rdm_pool_config_init
     num_envs: worlds, 1..65536, default 1
     task: name, required; copied
-    seed: world i draws from stream (seed, i); default 0
+    seed: world i draws from stream (seed, i), until a reset names another
     num_threads: 0 or 1: the caller's only; up to 256; default 0
     autoreset: RDM_AUTORESET_*, default same step
     options: [num_options], copied; NULL: none
     num_options: count, default 0
     reserved: 0
     host: hooks of this handle, copied; NULL: those of rdm_init
+    settings: options as lines key=value, laid over `options`, copied; NULL: none
+    error: [error_size] the text of a failing call that takes this config; NULL
+    error_size: bytes, terminator included; what is longer is cut
+    reserved2: 0
     """
 
     struct_size: int
@@ -532,6 +572,10 @@ class rdm_pool_config(Structure):
     num_options: int
     reserved: int
     host: Any
+    settings: bytes | None
+    error: int | None
+    error_size: int
+    reserved2: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("num_envs", c_int32),
@@ -543,6 +587,10 @@ class rdm_pool_config(Structure):
         ("num_options", c_int32),
         ("reserved", c_int32),
         ("host", POINTER(rdm_host)),
+        ("settings", c_char_p),
+        ("error", c_void_p),
+        ("error_size", c_int32),
+        ("reserved2", c_int32),
     ]
 
 
@@ -559,6 +607,7 @@ class Spec(Record):
     num_shapes: int  # for rdm_pool_shape
     num_joints: int  # of all robots
     task: int  # index for rdm_task_at and its like
+    action_repeat: int  # control steps in one rdm_pool_step: option action_repeat
 
 
 class rdm_spec(Structure):
@@ -573,6 +622,8 @@ class rdm_spec(Structure):
     num_shapes: for rdm_pool_shape
     num_joints: of all robots
     task: index for rdm_task_at and its like
+    action_repeat: control steps in one rdm_pool_step: option action_repeat
+    reserved: 0
     """
 
     struct_size: int
@@ -586,6 +637,8 @@ class rdm_spec(Structure):
     num_shapes: int
     num_joints: int
     task: int
+    action_repeat: int
+    reserved: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("control_dt", c_float),
@@ -598,6 +651,8 @@ class rdm_spec(Structure):
         ("num_shapes", c_int32),
         ("num_joints", c_int32),
         ("task", c_int32),
+        ("action_repeat", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -786,6 +841,10 @@ class rdm_agent_config(Structure):
     num_options: count, default 0
     cost_limits: [cost_dim] on the sum over an episode, < 0: none; NULL: option cost_limit for column 0
     host: hooks of this handle, copied; NULL: those of rdm_init
+    settings: options as lines key=value, laid over `options`, copied; NULL: none
+    error: [error_size] the text of a failing call that takes this config; NULL
+    error_size: bytes, terminator included; what is longer is cut
+    reserved2: 0
     """
 
     struct_size: int
@@ -807,6 +866,10 @@ class rdm_agent_config(Structure):
     num_options: int
     cost_limits: int | None
     host: Any
+    settings: bytes | None
+    error: int | None
+    error_size: int
+    reserved2: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("obs_dim", c_int32),
@@ -827,6 +890,10 @@ class rdm_agent_config(Structure):
         ("num_options", c_int32),
         ("cost_limits", c_void_p),
         ("host", POINTER(rdm_host)),
+        ("settings", c_char_p),
+        ("error", c_void_p),
+        ("error_size", c_int32),
+        ("reserved2", c_int32),
     ]
 
 
@@ -1058,6 +1125,9 @@ class rdm_map_config(Structure):
     high: no probability goes above, 0.5 to 0.999, default 0.971
     threshold: occupied from this probability on, low to high, default 0.5
     host: hooks for the workspace, copied; NULL: those of rdm_init
+    error: [error_size] the text of a failing call that takes this config; NULL
+    error_size: bytes, terminator included; what is longer is cut
+    reserved2: 0
     """
 
     struct_size: int
@@ -1071,6 +1141,9 @@ class rdm_map_config(Structure):
     high: float
     threshold: float
     host: Any
+    error: int | None
+    error_size: int
+    reserved2: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
@@ -1083,6 +1156,9 @@ class rdm_map_config(Structure):
         ("high", c_double),
         ("threshold", c_double),
         ("host", POINTER(rdm_host)),
+        ("error", c_void_p),
+        ("error_size", c_int32),
+        ("reserved2", c_int32),
     ]
 
 
@@ -1152,7 +1228,7 @@ class rdm_sensors(Structure):
 
       rdm_option seen[] = {{"modality", "points", 0}, {"points", NULL, 1024}};
       config.options = seen;  config.num_options = 2;  ... rdm_pool_create(&p, &config) ...
-      rdm_sensors s = {sizeof s};
+      rdm_sensors s = {.struct_size = sizeof s};
       rdm_pool_sensors(p, &s);
       for (...) { rdm_pool_step(p);  use s.points + 3 * s.num_points * env; }
 
@@ -1166,11 +1242,12 @@ class rdm_sensors(Structure):
     reserved: 0
     rgb: [num_envs][num_cameras][height][width][3]
     depth: [num_envs][num_cameras][height][width], m along the optical axis, 0: nothing
-    segmentation: the same, shape of rdm_pool_shape, -1: nothing
+    segmentation: [num_envs][num_cameras][height][width], shape of rdm_pool_shape, -1: nothing
     points: [num_envs][num_points][3], world, m; planes are left out
     point_shape: [num_envs][num_points], -1: nothing was seen
     point_count: [num_envs] points that differ; the rest repeats them in turn
-    voxels: [num_envs][x][y][z] about the task's object: 1 occupied, 0 free, -1 not seen
+    voxels: [num_envs][num_voxels][num_voxels][num_voxels] (x, y, z) about the task's object: 1 occupied, 0
+        free, -1 not seen
     """
 
     struct_size: int
@@ -1271,10 +1348,11 @@ ROWS: dict[str, dict[str, Rows]] = {
     "rdm_sensors": {
         "rgb": Rows("uint8", ("num_envs", "num_cameras", "height", "width", "3")),
         "depth": Rows("float32", ("num_envs", "num_cameras", "height", "width")),
+        "segmentation": Rows("int32", ("num_envs", "num_cameras", "height", "width")),
         "points": Rows("float32", ("num_envs", "num_points", "3")),
         "point_shape": Rows("int32", ("num_envs", "num_points")),
         "point_count": Rows("int32", ("num_envs",)),
-        "voxels": Rows("int8", ("num_envs", "x", "y", "z")),
+        "voxels": Rows("int8", ("num_envs", "num_voxels", "num_voxels", "num_voxels")),
     },
 }
 
@@ -1286,7 +1364,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_last_error": Function(
         c_char_p, {},
         {}, False,
-        """This thread's last failure, one line; valid until its next failing rdm call; stale after a success."""),
+        """This OS thread's last failure, one line; valid until its next failing rdm call; stale after a success. Runtimes that
+        move calls between threads (Go, asynchronous FFI) read config.error, rdm_pool_error and their like instead.
+        """),
     "rdm_version": Function(
         c_uint32, {},
         {}, False,
@@ -1327,6 +1407,10 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_field)},
         {}, False,
         """default options"""),
+    "rdm_task_field_bounds": Function(
+        c_int32, {"task": c_int32, "i": c_int32, "low": c_void_p, "high": c_void_p},
+        {}, False,
+        """Bounds *low and *high that every entry of field i keeps, default options; NAN: none."""),
     "rdm_task_cost": Function(
         c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_cost)},
         {}, False,
@@ -1415,10 +1499,24 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_field)},
         {}, False,
         """i < num_fields"""),
+    "rdm_pool_field_bounds": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "low": c_void_p, "high": c_void_p},
+        {}, False,
+        """Bounds *low and *high that every entry of field i keeps; NAN: none."""),
+    "rdm_pool_initial_mean": Function(
+        c_int32, {"p": c_void_p, "action": c_void_p},
+        {"action": Rows("float32", ("action_dim",))}, False,
+        """Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of RDM_BASELINE_HOLD."""),
     "rdm_pool_option": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
-        """Option i of the task as this pool has it: key (static) and the value as text [RDM_TEXT_SIZE]."""),
+        """Option i of the task as this pool has it: key (static) and the value as text [RDM_TEXT_SIZE], which reads back
+        exactly. RANGE for a text that is longer: rdm_pool_settings has it.
+        """),
+    "rdm_pool_settings": Function(
+        c_int32, {"p": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, False,
+        """All options as text [capacity] of lines key=value: given as settings they make the same pool again."""),
     "rdm_pool_buffers": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_buffers)},
         {}, False,
@@ -1432,8 +1530,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_reset": Function(
         c_int32, {"p": c_void_p, "seeds": c_void_p, "mask": c_void_p},
         {"seeds": Rows("uint64", ("num_envs",)), "mask": Rows("uint8", ("num_envs",))}, False,
-        """Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new streams;
-        NULL: go on with the worlds' own, which after create is (config.seed, i). Costs are 0 afterwards.
+        """Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new streams: the seed
+        alone, whatever the world's number, so that seed s gives what a pool of one world created with seed s has. NULL: go
+        on with the worlds' own, which after create is (config.seed, i). Costs are 0 afterwards.
         """),
     "rdm_pool_step": Function(
         c_int32, {"p": c_void_p},
@@ -1441,6 +1540,9 @@ FUNCTIONS: dict[str, Function] = {
         """One control step of every world: reads action, writes all the rest. STATE before the first reset, and with
         autoreset off while an ended world was not reset. Worlds that diverge or get an action that is not finite
         are truncated and flagged, with reward and cost 0 in that step; the call returns OK.
+        With option action_repeat it is that many control steps with the same action, or as many as the episode has left:
+        reward and cost are sums over them, success is set if any had it, status has the bits of all, the other rows are
+        those after the last.
         """),
     "rdm_pool_step_masked": Function(
         c_int32, {"p": c_void_p, "mask": c_void_p},
@@ -1462,17 +1564,11 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_get_state": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
-        """The whole state of world env, exact: a pool of the same task and options that sets it goes on with the same
-        bytes. set_state also rewrites obs and clears the other rows of that world. env -1: all worlds in one block.
-        FORMAT for bytes that are not whole, of another task or options, or hold what no world can have: nothing changes.
-        """),
+        """to bytes [capacity]; *size is how many there are"""),
     "rdm_pool_set_state": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p, "size": c_size_t},
         {}, False,
-        """The whole state of world env, exact: a pool of the same task and options that sets it goes on with the same
-        bytes. set_state also rewrites obs and clears the other rows of that world. env -1: all worlds in one block.
-        FORMAT for bytes that are not whole, of another task or options, or hold what no world can have: nothing changes.
-        """),
+        """of bytes [size]"""),
     "rdm_pool_hash": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "hash": c_void_p},
         {}, False,
@@ -1488,7 +1584,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_contacts": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "out": POINTER(rdm_contact), "capacity": c_int32, "count": c_void_p},
         {}, False,
-        """Writes up to capacity contacts; *count is how many there are."""),
+        """Writes up to capacity contacts to out [capacity]; *count is how many there are."""),
     "rdm_pool_render": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "rgb": c_void_p, "depth": c_void_p, "segmentation": c_void_p},
         {"rgb": Rows("uint8", ("h", "w", "3")), "depth": Rows("float32", ("h", "w")), "segmentation": Rows("int32", ("h", "w"))}, False,
@@ -1545,8 +1641,10 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_rollout": Function(
         c_int32, {"a": c_void_p, "p": c_void_p, "io": POINTER(rdm_epoch)},
         {}, False,
-        """One epoch natively: act, step (action_repeat times), record until the horizon is full, then update. The pool
-        must have been reset and must not have autoreset off; dims and num_envs must agree.
+        """One epoch natively: act, step (action_repeat control steps), record until the horizon is full, then update. The
+        pool must have been reset and must not have autoreset off; dims and num_envs must agree. A pool that repeats
+        actions itself takes as many steps at a time: the agent's action_repeat must be a multiple of the pool's, as the
+        defaults are that rdm_agent_config_for_pool sets.
         """),
     "rdm_agent_cancel": Function(
         None, {"a": c_void_p},
@@ -1559,23 +1657,29 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_option": Function(
         c_int32, {"a": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
-        """Option i of the algorithm as this agent has it: key (static) and the value as text [RDM_TEXT_SIZE]."""),
+        """Option i of the algorithm as this agent has it: key (static) and the value as text [RDM_TEXT_SIZE], which reads
+        back exactly. RANGE for a text that is longer: rdm_agent_settings has it.
+        """),
+    "rdm_agent_settings": Function(
+        c_int32, {"a": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, False,
+        """All options as text [capacity] of lines key=value: given as settings they make an agent of the same options."""),
     "rdm_agent_tensor": Function(
         c_int32, {"a": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},
         {}, False,
         """RANGE ends the list"""),
     "rdm_agent_tensor_read": Function(
         c_int32, {"a": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
-        {}, False,
-        """Copies the named tensor out or in; count must be rows * cols. NOT_FOUND, RANGE."""),
+        {"out": Rows("float32", ("count",))}, False,
+        """Copies the named tensor to out [count] or from values [count]; count must be rows * cols. NOT_FOUND, RANGE."""),
     "rdm_agent_tensor_write": Function(
         c_int32, {"a": c_void_p, "name": c_char_p, "values": c_void_p, "count": c_size_t},
-        {}, False,
-        """Copies the named tensor out or in; count must be rows * cols. NOT_FOUND, RANGE."""),
+        {"values": Rows("float32", ("count",))}, False,
+        """Copies the named tensor to out [count] or from values [count]; count must be rows * cols. NOT_FOUND, RANGE."""),
     "rdm_agent_policy": Function(
         c_int32, {"a": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
-        """The frozen policy as the bytes of a policy file. bytes may be NULL to ask for the size."""),
+        """The frozen policy as the bytes [capacity] of a policy file; NULL asks for the size."""),
     "rdm_agent_policy_file": Function(
         c_int32, {"a": c_void_p, "path": c_char_p},
         {}, False,
@@ -1583,27 +1687,25 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_save": Function(
         c_int32, {"a": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
-        """All state of the agent (networks, optimiser, multipliers, normaliser, streams, counters), between epochs:
-        STATE inside a horizon. load needs an agent of the same config and changes nothing when it fails.
-        """),
+        """to bytes [capacity]; NULL asks for the size"""),
     "rdm_agent_load": Function(
         c_int32, {"a": c_void_p, "bytes": c_void_p, "size": c_size_t},
         {}, False,
-        """All state of the agent (networks, optimiser, multipliers, normaliser, streams, counters), between epochs:
-        STATE inside a horizon. load needs an agent of the same config and changes nothing when it fails.
-        """),
+        """of bytes [size]"""),
     "rdm_checkpoint_write": Function(
         c_int32, {"path": c_char_p, "a": c_void_p, "p": c_void_p, "note": c_void_p, "note_size": c_size_t},
         {}, False,
-        """Agent, pool (may be NULL) and a note of the host's own, to 2^26 bytes, in one file, replaced atomically."""),
+        """Agent, pool (may be NULL) and a note [note_size] of the host's own, to 2^26 bytes, in one file, replaced
+        atomically.
+        """),
     "rdm_checkpoint_read": Function(
         c_int32, {"path": c_char_p, "a": c_void_p, "p": c_void_p, "note": c_void_p, "capacity": c_size_t, "note_size": c_void_p},
         {}, False,
-        """Reads it back; note gets up to capacity bytes, *note_size is how many there are. Nothing changes on failure."""),
+        """Reads it back; note [capacity] gets as many bytes, *note_size is how many there are. Nothing changes on failure."""),
     "rdm_policy_load": Function(
         c_int32, {"out": POINTER(c_void_p), "bytes": c_void_p, "size": c_size_t},
         {}, False,
-        """copies"""),
+        """copies bytes [size]"""),
     "rdm_policy_load_file": Function(
         c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
         {}, False,
@@ -1619,23 +1721,25 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_policy_scratch": Function(
         c_size_t, {"p": c_void_p, "rows": c_int32},
         {}, False,
-        """bytes for act; 0: bad arguments"""),
+        """bytes for act, at any address; 0: bad arguments"""),
     "rdm_policy_act": Function(
         c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
         {"obs": Rows("float32", ("rows", "obs_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim"))}, False,
         """action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise [rows][action_dim] are
-        the caller's standard normals, NULL: the mean. scratch: rdm_policy_scratch bytes, 64-byte aligned. No heap, no
-        hidden state: any number of threads, each with its own scratch. ARGUMENT when obs or noise is not finite, or so
-        large that the network overflows (action is written then, and of no use).
+        the caller's standard normals, NULL: the mean. scratch [scratch_bytes]: rdm_policy_scratch bytes or more, aligned
+        in any way. No heap, no hidden state: any number of threads, each with its own scratch. ARGUMENT when obs or noise
+        is not finite, or so large that the network overflows (action is written then, and of no use).
         """),
     "rdm_policy_tensor": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},
         {}, False,
-        """RANGE ends the list"""),
+        """"actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
+        "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list.
+        """),
     "rdm_policy_tensor_read": Function(
         c_int32, {"p": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
-        {}, False,
-        """NOT_FOUND, RANGE"""),
+        {"out": Rows("float32", ("count",))}, False,
+        """Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE."""),
     "rdm_policy_check": Function(
         c_int32, {"p": c_void_p, "spec": POINTER(rdm_spec)},
         {}, False,
@@ -1643,7 +1747,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_push": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "shape": c_int32, "force": c_void_p},
         {"force": Rows("float32", ("3",))}, True,
-        """Pushes a shape's carrier during the next step: force at its centre of mass, N, world axes."""),
+        """Pushes a shape's carrier during the next step: force [3] at its centre of mass, N, world axes."""),
     "rdm_map_config_init": Function(
         c_int32, {"c": POINTER(rdm_map_config), "size": c_size_t},
         {}, True,
@@ -1679,18 +1783,20 @@ FUNCTIONS: dict[str, Function] = {
         """),
     "rdm_map_scan": Function(
         c_int32, {"m": c_void_p, "p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "skip": c_void_p, "num_skip": c_int32, "dropped": c_void_p},
-        {}, True,
+        {"skip": Rows("int32", ("num_skip",))}, True,
         """One scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on one of the num_skip
-        shapes in skip, or meet nothing, are left out.
+        shapes in skip [num_skip], or meet nothing, are left out. *dropped as above.
         """),
     "rdm_map_query": Function(
         c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "probability": c_void_p},
-        {}, True,
-        """Probability [count] that the voxel of each point [count][3] is occupied; -1: unknown."""),
+        {"points": Rows("float32", ("count", "3")), "probability": Rows("float32", ("count",))}, True,
+        """probability [count] that the voxel of each of points [count][3] is occupied; -1: unknown."""),
     "rdm_map_box": Function(
         c_int32, {"m": c_void_p, "low": c_void_p, "high": c_void_p, "out": POINTER(rdm_voxel), "capacity": c_size_t, "count": c_void_p},
         {"low": Rows("float32", ("3",)), "high": Rows("float32", ("3",))}, True,
-        """Occupied voxels that meet the box: writes up to capacity, *count is how many there are."""),
+        """Occupied voxels that meet the box from low [3] to high [3]: writes up to capacity to out [capacity], *count is how
+        many there are.
+        """),
     "rdm_map_meets": Function(
         c_int32, {"m": c_void_p, "pose": c_void_p, "half": c_void_p, "meets": c_void_p},
         {"pose": Rows("float32", ("7",)), "half": Rows("float32", ("3",))}, True,
@@ -1698,23 +1804,25 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_map_raycast": Function(
         c_int32, {"m": c_void_p, "origin": c_void_p, "direction": c_void_p, "range": c_float, "through_unknown": c_int32, "hit": c_void_p, "found": c_void_p},
         {"origin": Rows("float32", ("3",)), "direction": Rows("float32", ("3",)), "hit": Rows("float32", ("3",))}, True,
-        """Where the ray enters the first occupied voxel within `range` m: *found is 1 and hit [3] is written. An unknown
-        voxel ends the ray unless through_unknown is 1.
+        """Where the ray from origin [3] along direction [3] enters the first occupied voxel within `range` m: *found is 1 and
+        hit [3] is written. An unknown voxel ends the ray unless through_unknown is 1.
         """),
     "rdm_map_distance": Function(
         c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "most": c_float, "distance": c_void_p},
-        {}, True,
-        """Distance [count] from each point to the nearest point of an occupied voxel, m; `most` if none is so near."""),
+        {"points": Rows("float32", ("count", "3")), "distance": Rows("float32", ("count",))}, True,
+        """distance [count] from each of points [count][3] to the nearest point of an occupied voxel, m; `most` if none is so
+        near.
+        """),
     "rdm_map_grid": Function(
         c_int32, {"m": c_void_p, "pose": c_void_p, "n": c_void_p, "side": c_float, "out": c_void_p},
-        {"pose": Rows("float32", ("7",)), "n": Rows("int32", ("3",))}, True,
-        """A grid of n[0] x n[1] x n[2] cells of `side` m (each count 1 to 1024) about pose [7], x outermost: what the map
-        says at their centres: 1 occupied, 0 free, -1 unknown.
+        {"pose": Rows("float32", ("7",)), "n": Rows("int32", ("3",)), "out": Rows("int8", ("n0", "n1", "n2"))}, True,
+        """A grid of counts n [3] of cells of `side` m (each count 1 to 1024) about pose [7]: what the map says at their
+        centres, out [n0][n1][n2], x outermost: 1 occupied, 0 free, -1 unknown.
         """),
     "rdm_map_save": Function(
         c_int32, {"m": c_void_p, "format": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
-        """The map as the bytes of a file; bytes may be NULL to ask for the size."""),
+        """The map as the bytes [capacity] of a file; NULL asks for the size."""),
     "rdm_map_save_file": Function(
         c_int32, {"m": c_void_p, "path": c_char_p},
         {}, True,
@@ -1722,7 +1830,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_map_load": Function(
         c_int32, {"m": c_void_p, "bytes": c_void_p, "size": c_size_t},
         {}, True,
-        """Takes the place of what the map holds, resolution included. FORMAT, or MEMORY when it does not fit: unchanged."""),
+        """bytes [size] of a file take the place of what the map holds, resolution included. FORMAT, or MEMORY when it does not fit: unchanged."""),
     "rdm_map_load_file": Function(
         c_int32, {"m": c_void_p, "path": c_char_p},
         {}, True,
@@ -1737,20 +1845,21 @@ FUNCTIONS: dict[str, Function] = {
         """The cameras that rows stand for: i-th of the pictures (cloud 0) or of points and voxels (cloud 1). RANGE ends."""),
     "rdm_pool_hull": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "points": c_void_p, "capacity": c_int32, "count": c_void_p},
-        {}, True,
-        """Corners [capacity][3] of shape i, an RDM_HULL, in its own frame, m. Writes up to capacity of them; *count is how
-        many there are.
+        {"points": Rows("float32", ("capacity", "3"))}, True,
+        """Corners, points [capacity][3], of shape i, an RDM_HULL, in its own frame, m. Writes up to capacity of them; *count
+        is how many there are.
         """),
     "rdm_sample_furthest": Function(
         c_int32, {"points": c_void_p, "count": c_int32, "wanted": c_int32, "start": c_int32, "chosen": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
         {"points": Rows("float32", ("count", "3"))}, True,
         """`wanted` of points [count][3] that lie furthest from each other: their numbers, in order of choice, to chosen
-        [wanted]. `start` is the first. Exact. scratch: rdm_sample_scratch(count) bytes, 64-byte aligned; no heap.
+        [wanted]. `start` is the first. Exact. scratch [scratch_bytes]: rdm_sample_scratch bytes or more, aligned in any
+        way; no heap.
         """),
     "rdm_sample_scratch": Function(
         c_size_t, {"count": c_int32},
         {}, True,
-        """bytes; 0: count is outside [1, 2^22]"""),
+        """bytes, at any address; 0: count is outside [1, 2^22]"""),
 }
 
 
