@@ -93,9 +93,10 @@ RDM_API const char *rdm_result_string(rdm_result r); /* static, never NULL, also
 RDM_API const char *rdm_last_error(void);
 
 /* ---- version and build -------------------------------------------------------------------------------- */
-enum rdm_feature { RDM_FEATURE_SIM = 1, RDM_FEATURE_LEARN = 2 }; /* halves of the library */
+/* The halves of the library: worlds, learners; and frozen policies, which a build may have without the learners. */
+enum rdm_feature { RDM_FEATURE_SIM = 1, RDM_FEATURE_LEARN = 2, RDM_FEATURE_POLICY = 4 };
 RDM_API uint32_t rdm_version(void);  /* RDM_VERSION of the library that runs */
-RDM_API uint32_t rdm_features(void); /* RDM_FEATURE_*: which halves this build has */
+RDM_API uint32_t rdm_features(void); /* RDM_FEATURE_*: what this build has */
 /* VERSION_MISMATCH unless the library has this ABI and at least this version. */
 RDM_API rdm_result rdm_check_abi(uint32_t abi, uint32_t version);
 typedef struct rdm_build { /* what this library was made of */
