@@ -68,9 +68,8 @@ void need_handle(const Handle* h) {
   const char* name = name_of(Handle::kTag);
   need(h, name);
   if (h->tag == Handle::kTag) return;
-  const char* other = name_of(h->tag);
-  fail(Code::kArgument, "%s: not a %s, %s%s", name, name,
-       other ? "but a handle of kind " : "or one that was destroyed", other ? other : "");
+  if (const char* other = name_of(h->tag)) fail(Code::kArgument, "%s: the handle is of kind %s", name, other);
+  fail(Code::kArgument, "%s: no handle of this kind, or one that was destroyed", name);
 }
 // Where a handle keeps the text of its last failure; NULL for what is no such handle.
 template <class Handle>
@@ -140,10 +139,10 @@ void init_struct(T* out, size_t size, size_t first_size, T value, const char* na
 // What rdm_policy_scratch and its like ask for beyond the `bytes` that are used, for any address to do.
 inline constexpr size_t kScratchSlack = Arena::kAlign - 1;
 inline void* aligned_scratch(void* scratch, size_t size, size_t bytes) {
-  const size_t skip = (Arena::kAlign - reinterpret_cast<uintptr_t>(scratch) % Arena::kAlign) % Arena::kAlign;
-  if (size < skip + bytes)
+  if (size < bytes + kScratchSlack)
     fail(Code::kRange, "scratch_bytes: %zu, %zu are needed", size, bytes + kScratchSlack);
-  return static_cast<unsigned char*>(scratch) + skip;
+  const auto at = reinterpret_cast<uintptr_t>(scratch);
+  return static_cast<unsigned char*>(scratch) + (Arena::kAlign - at % Arena::kAlign) % Arena::kAlign;
 }
 
 // Sizes of structs that have grown, as they were at first.

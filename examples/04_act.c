@@ -64,16 +64,16 @@ int main(int argc, char** argv) {
     return 1;
   }
 
-  /* One block: scratch first, since it must lie at a multiple of 64, then the two rows. */
+  /* All memory in one block: the two rows, then scratch. */
   const size_t scratch_size = rdm_policy_scratch(policy, 1);
-  char* block = calloc(1, scratch_size + 64 + sizeof(float) * (size_t)(info.obs_dim + info.action_dim));
-  if (!block) {
+  float* obs = calloc(1, sizeof(float) * (size_t)(info.obs_dim + info.action_dim) + scratch_size);
+  if (!obs) {
     fprintf(stderr, "04_act: out of memory\n");
     rdm_policy_destroy(policy);
     return 1;
   }
-  char* scratch = block + (64 - (size_t)((uintptr_t)block % 64)) % 64;
-  float *obs = (float*)(void*)(scratch + scratch_size), *action = obs + info.obs_dim;
+  float* action = obs + info.obs_dim;
+  void* scratch = action + info.action_dim;
 
   /* From here on nothing asks for memory. NULL noise: the mean action, as a controller wants it. */
   int status = 0;
@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
   else
     printf("%d observations to %d actions, %zu bytes of scratch, %d calls; first action %.4f\n",
            (int)info.obs_dim, (int)info.action_dim, scratch_size, calls, (double)action[0]);
-  free(block);
+  free(obs);
   rdm_policy_destroy(policy);
   return status;
 }

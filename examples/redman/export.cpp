@@ -1,6 +1,5 @@
 // `export`: a policy as a file for other programs.
 #include <cmath>
-#include <cstdlib>
 
 #include "commands.hpp"
 #include "common/files.hpp"
@@ -36,9 +35,7 @@ Json probe_json(const redman::Policy& policy, const Network& network, const Expo
     const float x = signed_unit(random) * (i / in % 10 == 9 ? 30.0f : 2.0f);
     obs[i] = shift ? shift->values[i % in] + x / scale->values[i % in] : x;
   }
-  const size_t bytes = (policy.scratch_bytes(flags.probes) + 63) / 64 * 64;
-  const std::unique_ptr<void, decltype(&std::free)> scratch(std::aligned_alloc(64, bytes), std::free);
-  policy.act(obs.data(), flags.probes, nullptr, action.data(), scratch.get(), bytes);
+  policy.act(obs.data(), flags.probes, nullptr, action.data());
   return {{"rows", flags.probes},
           {"obs_dim", network.obs_dim},
           {"action_dim", network.action_dim},

@@ -1,4 +1,5 @@
 // `tasks`, `algos` and `info`: what there is, straight from the library's discovery.
+#include <cmath>
 #include <redman/redman.hpp>
 
 #include "commands.hpp"
@@ -22,13 +23,24 @@ Json task_json(int32_t index) {
   Json costs = Json::array(), fields = Json::array();
   for (const rdm_cost& c : task_costs(index))
     costs.push_back({{"name", c.name}, {"limit", c.limit < 0 ? Json() : Json(c.limit)}, {"help", c.help}});
-  for (const rdm_field& f : task_fields(index))
-    fields.push_back({{"name", f.name}, {"unit", f.unit}, {"offset", f.offset}, {"count", f.count}});
+  const auto number = [](float x) { return std::isnan(x) ? Json() : Json(x); };
+  for (const rdm_field& f : task_fields(index)) {
+    const auto [low, high] = task_field_bounds(index, static_cast<int32_t>(fields.size()));
+    fields.push_back({{"name", f.name},
+                      {"unit", f.unit},
+                      {"offset", f.offset},
+                      {"count", f.count},
+                      {"low", number(low)},
+                      {"high", number(high)}});
+  }
+  Json defaults = Json::object();
+  for (const rdm_option& o : task_defaults(index)) defaults[o.key] = o.text;
   return {{"name", t.name},           {"summary", t.summary},
           {"obs_dim", t.obs_dim},     {"action_dim", t.action_dim},
           {"cost_dim", t.cost_dim},   {"costs", costs},
           {"max_steps", t.max_steps}, {"control_dt", t.control_dt},
-          {"fields", fields},         {"options", options_json(task_options(index))}};
+          {"fields", fields},         {"options", options_json(task_options(index))},
+          {"defaults", defaults},     {"initial_mean", task_initial_mean(index)}};
 }
 
 std::string task_text(int32_t index) {

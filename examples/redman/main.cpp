@@ -65,7 +65,7 @@ std::string usage_text(const CLI::App& app, const CLI::ParseError& error, const 
   for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(sub->get_name());
   if (first[0] != '-' && std::find(names.begin(), names.end(), first) == names.end())
-    return "subcommand " + first + ": unknown; nearest is " + nearest_name(first, names);
+    return "subcommand " + first + ": unknown" + nearest_hint(first, names);
   return text + (app.get_subcommands().empty() ? "; see redman --help" : "; see redman " + first + " --help");
 }
 

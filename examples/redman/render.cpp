@@ -41,7 +41,7 @@ void check_camera(const std::string& camera, int32_t task) {
     if (same_name(camera, c.name)) return;
     names.push_back(c.name);
   }
-  throw Usage("--camera " + camera + ": unknown; nearest is " + nearest_name(camera, names));
+  throw Usage("--camera " + camera + ": unknown" + nearest_hint(camera, names));
 }
 
 // One world played from the seed: the same episode each time.

@@ -82,6 +82,17 @@ T* made(rdm_result (*create)(T**, Args...), Args... args) {
 
 using Bytes = std::vector<unsigned char>;
 
+// A text of the library's that is asked for its size first: rdm_pool_settings, rdm_agent_settings.
+template <class T>
+std::string text_of(rdm_result (*write)(const T*, char*, size_t, size_t*), const T* handle) {
+  size_t size = 0;
+  check(write(handle, nullptr, 0, &size));
+  std::string text(size + 1, '\0');
+  check(write(handle, text.data(), text.size(), &size));
+  text.resize(size);
+  return text;
+}
+
 // A struct with struct_size set and everything else 0.
 template <class T>
 T sized() {
@@ -90,12 +101,14 @@ T sized() {
   return value;
 }
 
-// The defaults of rdm_pool_config_init with a task and a number of worlds. `task` is borrowed.
-inline rdm_pool_config pool_config(const char* task, int32_t num_envs = 1) {
+// The defaults of rdm_pool_config_init with a task, a number of worlds and options as lines key=value. `task`
+// and `settings` are borrowed.
+inline rdm_pool_config pool_config(const char* task, int32_t num_envs = 1, const char* settings = nullptr) {
   rdm_pool_config c;
   check(rdm_pool_config_init(&c, sizeof c));
   c.task = task;
   c.num_envs = num_envs;
+  c.settings = settings;
   return c;
 }
 
@@ -146,6 +159,13 @@ class Pool {
     uint64_t h = 0;
     check(rdm_pool_hash(get(), env, &h));
     return h;
+  }
+  // All options as lines key=value: as pool_config's settings they make the same pool.
+  std::string settings() const { return text_of(rdm_pool_settings, static_cast<const rdm_pool*>(get())); }
+  std::vector<float> initial_mean() const {
+    std::vector<float> mean(static_cast<size_t>(spec_.action_dim));
+    check(rdm_pool_initial_mean(get(), mean.data()));
+    return mean;
   }
   rdm_pool_stats stats() const {
     auto s = sized<rdm_pool_stats>();
@@ -203,6 +223,7 @@ class Agent {
     return e;
   }
   void cancel() noexcept { rdm_agent_cancel(get()); }
+  std::string settings() const { return text_of(rdm_agent_settings, static_cast<const rdm_agent*>(get())); }
   // The bytes of a policy file.
   Bytes policy() const { return bytes_of(rdm_agent_policy); }
   Bytes save() const { return bytes_of(rdm_agent_save); }
@@ -219,7 +240,7 @@ class Agent {
   Handle<rdm_agent, rdm_agent_destroy> handle_;
 };
 
-// A policy may be shared between threads; each thread needs scratch memory of its own.
+// A policy may be shared between threads; each thread needs scratch memory of its own, at any address.
 class Policy {
  public:
   explicit Policy(const char* path) : Policy(made(rdm_policy_load_file, path)) {}
@@ -231,6 +252,11 @@ class Policy {
   void act(const float* obs, int32_t rows, const float* noise, float* action, void* scratch,
            size_t scratch_bytes) const {
     check(rdm_policy_act(get(), obs, rows, noise, action, scratch, scratch_bytes));
+  }
+  // The same with scratch from the heap, for who does not count calls.
+  void act(const float* obs, int32_t rows, const float* noise, float* action) const {
+    Bytes scratch(scratch_bytes(rows));
+    act(obs, rows, noise, action, scratch.data(), scratch.size());
   }
   std::vector<rdm_tensor> tensors() const {
     std::vector<rdm_tensor> out;

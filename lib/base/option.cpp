@@ -46,7 +46,7 @@ void print_number(double v, char* out) {
 
 bool is_near(const char* name, const char* known, int distance) {
   const size_t a = std::strlen(name), b = std::strlen(known), common = std::min(a, b);
-  if (3 * static_cast<size_t>(distance) <= std::max(a, b)) return true;
+  if (3 * static_cast<size_t>(distance) <= std::max(a, b) + 2) return true;
   size_t same = 0;
   while (same < common && fold(name[same]) == fold(known[same])) ++same;
   return same == common && common >= 3;

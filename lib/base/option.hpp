@@ -97,7 +97,7 @@ class Options {
 
 // Keys and names match without regard to case, and '-' equals '_'.
 bool same_name(const char* a, const char* b);
-// Index of the nearest name by edit distance, -1 when none is near: a third of its letters differ at most, or
+// Index of the nearest name by edit distance, -1 when none is near: about a third of its letters differ, or
 // one of both begins with the other (three letters or more).
 int32_t nearest_name(const char* name, const char* const* names, int32_t count);
 

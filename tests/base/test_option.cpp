@@ -2,6 +2,7 @@
 
 #include <clocale>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <string>
 
@@ -187,6 +188,66 @@ TEST(Options, PrintReadsBack) {
   EXPECT_EQ(o.number("gamma"), 0.123456789);
 }
 
+TEST(Options, NumbersAreAsShortAsReadsBackExactly) {
+  Options o = made();
+  for (const double value : {0.0512345678901234, 1.0 / 3, 0.1, 1e-7, 0.1 + 0.2}) {
+    set(o, "gamma", nullptr, value);
+    const std::string text = printed(o, 0);
+    EXPECT_EQ(std::stod(text), value) << text;
+    EXPECT_LE(text.size(), 20u);
+  }
+  EXPECT_EQ(printed(o, 0), "0.30000000000000004");
+  set(o, "gamma", nullptr, 0.1);
+  EXPECT_EQ(printed(o, 0), "0.1");
+}
+
+TEST(Options, LinesAreLaidOverWhatWasGiven) {
+  Options o = made();
+  set(o, "gamma", nullptr, 0.5);
+  o.set_lines("  gamma =\t0.25\r\n\n   \r\nObject=ball\nnote = a = b \nminibatches=8", "task");
+  EXPECT_EQ(o.number("gamma"), 0.25);
+  EXPECT_STREQ(o.text("object"), "ball");
+  EXPECT_STREQ(o.text("note"), "a = b");
+  EXPECT_EQ(o.integer("minibatches"), 8);
+  o.set_lines("gamma=0.1\ngamma=0.2\n", "task");
+  EXPECT_EQ(o.number("gamma"), 0.2);
+  o.set_lines("note=", "task");
+  EXPECT_STREQ(o.text("note"), "");
+  o.set_lines(nullptr, "task");
+  o.set_lines("", "task");
+}
+
+TEST(Options, ErrorsOfLinesSayWhichLine) {
+  Options o = made();
+  EXPECT_EQ(guard([&] { o.set_lines("gamma=0.1\n\ngama=1", "task"); }), Code::kNotFound);
+  EXPECT_STREQ(last_error(), "settings line 3: task option gama: unknown; nearest is gamma");
+  EXPECT_EQ(guard([&] { o.set_lines("\nnonsense\n", "task"); }), Code::kArgument);
+  EXPECT_STREQ(last_error(), "settings line 2: 'nonsense' is not key=value");
+  EXPECT_EQ(guard([&] { o.set_lines("gamma=2", "task"); }), Code::kRange);
+  EXPECT_EQ(guard([&] { o.set_lines("gamma=", "task"); }), Code::kArgument);
+  EXPECT_EQ(guard([&] { o.set_lines("=1", "task"); }), Code::kNotFound);
+}
+
+TEST(Options, LinesReadBackWhole) {
+  Options o = made();
+  o.set_lines(("points=  " + std::string(150, 'p') + " \ngamma=0.0512345678901234\nnote= x y ").c_str(),
+              "task");
+  const size_t length = o.print_lines(nullptr, 0);
+  std::string text(length + 1, '#'), less(length, '#');
+  EXPECT_EQ(o.print_lines(less.data(), length), length);
+  EXPECT_EQ(less, std::string(length, '#'));
+  EXPECT_EQ(o.print_lines(text.data(), length + 1), length);
+  EXPECT_EQ(std::strlen(text.c_str()), length);
+  Options back = made();
+  back.set_lines(text.c_str(), "task");
+  EXPECT_EQ(back.number("gamma"), 0.0512345678901234);
+  EXPECT_EQ(back.text("points"), std::string(150, 'p'));
+  EXPECT_STREQ(back.text("note"), "x y");
+  std::string again(length + 1, '#');
+  back.print_lines(again.data(), length + 1);
+  EXPECT_EQ(again, text);
+}
+
 TEST(Options, DecimalPointInEveryLocale) {
   const char* before = std::setlocale(LC_NUMERIC, nullptr);
   const std::string keep = before ? before : "C";
@@ -206,7 +267,12 @@ TEST(NearestName, ByEditDistance) {
   EXPECT_EQ(nearest_name("ppolag", names, 4), 1);
   EXPECT_EQ(nearest_name("TRPO", names, 4), 2);
   EXPECT_EQ(nearest_name("trpoo", names, 4), 2);
-  EXPECT_EQ(nearest_name("c", names, 4), 3);
+  EXPECT_EQ(nearest_name("cp", names, 4), 3);
+  EXPECT_EQ(nearest_name("ppo_l", names, 4), 1);  // that begins with it
+  for (const char* far : {"c", "nonsense", "xyz", "", "a_name_that_is_far_longer_than_any"})
+    EXPECT_EQ(nearest_name(far, names, 4), -1) << far;
+  EXPECT_STREQ(Nearest("ppolag", names, 4).text, "; nearest is ppo_lag");
+  EXPECT_STREQ(Nearest("nonsense", names, 4).text, "");
   EXPECT_EQ(nearest_name("x", names, 0), -1);
 }
 

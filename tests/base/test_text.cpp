@@ -9,9 +9,10 @@
 namespace rdm {
 namespace {
 
-std::string cleaned(std::string s) {
-  clean_text(s.data());
-  return s.c_str();
+std::string cleaned(const std::string& s) {
+  char out[64];
+  EXPECT_TRUE(clean_text(out, sizeof out, s.c_str()));
+  return out;
 }
 
 TEST(Text, GoodTextStays) {
@@ -24,16 +25,27 @@ TEST(Text, ControlCharactersBecomeSpaces) {
   EXPECT_EQ(cleaned("a\u0080b\u009bc\u00a0"), "a  b  c\u00a0");  // C1, then the first character beyond
 }
 
-TEST(Text, ForeignBytesAreReplacedOneByOne) {
-  EXPECT_EQ(cleaned("\xff\xfez"), "??z");
-  EXPECT_EQ(cleaned("\xc0\xafz"), "??z");                 // overlong
-  EXPECT_EQ(cleaned("\xe0\x9f\xbfz"), "???z");            // overlong
-  EXPECT_EQ(cleaned("\xed\xa0\x80z"), "???z");            // a surrogate
-  EXPECT_EQ(cleaned("\xf4\x90\x80\x80\xf5z"), "?????z");  // above U+10FFFF
-  EXPECT_EQ(cleaned("\xc3 \xe2\x82 \x80z"), "? ?? ?z");   // not whole, in the middle
-  EXPECT_EQ(cleaned("x\xc3"), "x");                       // not whole, at the end
-  EXPECT_EQ(cleaned("x\xe2\x82"), "x");
-  EXPECT_EQ(cleaned("x\xf0\x9f\xa4"), "x");
+TEST(Text, ForeignBytesAreWrittenOneByOne) {
+  EXPECT_EQ(cleaned("\xff\xfez"), R"(\xff\xfez)");
+  EXPECT_EQ(cleaned("\xc0\xafz"), R"(\xc0\xafz)");                          // overlong
+  EXPECT_EQ(cleaned("\xe0\x9f\xbfz"), R"(\xe0\x9f\xbfz)");                  // overlong
+  EXPECT_EQ(cleaned("\xed\xa0\x80z"), R"(\xed\xa0\x80z)");                  // a surrogate
+  EXPECT_EQ(cleaned("\xf4\x90\x80\x80\xf5z"), R"(\xf4\x90\x80\x80\xf5z)");  // above U+10FFFF
+  EXPECT_EQ(cleaned("\xc3 \xe2\x82 \x80z"), R"(\xc3 \xe2\x82 \x80z)");      // not whole, in the middle
+  EXPECT_EQ(cleaned("x\xc3"), R"(x\xc3)");                                  // not whole, at the end
+  EXPECT_EQ(cleaned("x\xe2\x82"), R"(x\xe2\x82)");
+}
+
+TEST(Text, CleanTextIsCutBetweenCharacters) {
+  const std::string text = "a\u00e9\xffz";  // 1 + 2 + 4 + 1 bytes
+  const size_t whole[] = {0, 1, 1, 3, 3, 3, 3, 7, 8, 8};
+  for (size_t room = 0; room < std::size(whole); ++room) {
+    char out[16];
+    std::memset(out, 'x', sizeof out);
+    EXPECT_EQ(clean_text(out, room + 1, text.c_str()), room >= 8) << room;
+    EXPECT_EQ(std::string(out), std::string("a\u00e9\\xffz").substr(0, whole[room])) << room;
+    EXPECT_EQ(out[room + 1], 'x') << room;
+  }
 }
 
 TEST(Text, CopiesAreCutBetweenCharacters) {

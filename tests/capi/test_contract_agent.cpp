@@ -143,7 +143,8 @@ TEST(ContractAgent, APolicyNeverGivesWhatIsNotANumber) {
     rdm_policy* p = nullptr;
     ASSERT_EQ(rdm_policy_load(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
     const size_t size = rdm_policy_scratch(p, 2);
-    void* scratch = std::aligned_alloc(64, (size + 63) / 64 * 64);
+    std::vector<unsigned char> memory(size);
+    void* scratch = memory.data();
     const float clean[6] = {};
     float action[4];
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(), HUGE_VALF, -HUGE_VALF}) {
@@ -169,7 +170,6 @@ TEST(ContractAgent, APolicyNeverGivesWhatIsNotANumber) {
       for (const float x : action) EXPECT_TRUE(r || std::abs(x) <= 1) << x;
     }
     EXPECT_EQ(rdm_policy_act(p, clean, 2, nullptr, action, scratch, size), RDM_OK);
-    std::free(scratch);
     rdm_policy_destroy(p);
   }
 }
@@ -235,15 +235,20 @@ TEST(ContractAgent, CorruptPoliciesAreRefused) {
   EXPECT_EQ(rdm_policy_load_file(&p, "no/such/file.rdm"), RDM_NOT_FOUND);
   ASSERT_EQ(rdm_policy_load(&p, good.data(), good.size()), RDM_OK) << rdm_last_error();
   const size_t bytes = rdm_policy_scratch(p, 4);
-  void* scratch = nullptr;
-  ASSERT_EQ(posix_memalign(&scratch, 64, bytes), 0);
-  const float obs[12] = {};
-  float action[8];
+  std::vector<unsigned char> memory(bytes + 64);
+  void* scratch = memory.data();
+  const float obs[12] = {1, -2, 0.5f};
+  float action[8], other[8];
   EXPECT_EQ(rdm_policy_act(p, obs, 0, nullptr, action, scratch, bytes), RDM_RANGE);
   EXPECT_EQ(rdm_policy_act(p, obs, 4, nullptr, action, scratch, bytes - 1), RDM_RANGE);
-  EXPECT_EQ(rdm_policy_act(p, obs, 4, nullptr, action, static_cast<char*>(scratch) + 4, bytes), RDM_ARGUMENT);
   EXPECT_EQ(rdm_policy_act(p, obs, 4, nullptr, action, scratch, bytes), RDM_OK);
-  std::free(scratch);
+  for (size_t shift = 1; shift < 64; ++shift) {  // at any address, within its bytes
+    std::fill(memory.begin(), memory.end(), uint8_t{0x5a});
+    EXPECT_EQ(rdm_policy_act(p, obs, 4, nullptr, other, memory.data() + shift, bytes), RDM_OK);
+    EXPECT_EQ(std::memcmp(action, other, sizeof action), 0);
+    for (size_t i = 0; i < shift; ++i) EXPECT_EQ(memory[i], 0x5a);
+    for (size_t i = shift + bytes; i < memory.size(); ++i) EXPECT_EQ(memory[i], 0x5a);
+  }
   rdm_policy_destroy(p);
   rdm_agent_destroy(a);
 }

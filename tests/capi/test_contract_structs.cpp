@@ -150,15 +150,37 @@ TEST_F(Structs, InitFunctionsFillNoMoreThanAStructCanHave) {
   tried(
       "rdm_pool_config_init",
       [](void* c, size_t n) { return rdm_pool_config_init(static_cast<rdm_pool_config*>(c), n); },
-      sizeof(rdm_pool_config));
+      offsetof(rdm_pool_config, settings));
   tried(
       "rdm_agent_config_init",
       [](void* c, size_t n) { return rdm_agent_config_init(static_cast<rdm_agent_config*>(c), n); },
-      sizeof(rdm_agent_config));
+      offsetof(rdm_agent_config, settings));
   tried(
       "rdm_map_config_init",
       [](void* c, size_t n) { return rdm_map_config_init(static_cast<rdm_map_config*>(c), n); },
-      sizeof(rdm_map_config));
+      offsetof(rdm_map_config, error));
+}
+
+// What a newer caller's struct has and this library does not know is 0, not what stood there.
+TEST_F(Structs, TailsOfNewerCallersAreZeroed) {
+  const auto zeroed = [](const char* name, auto value, auto&& call) {
+    SCOPED_TRACE(name);
+    Roomy<decltype(value)> out;
+    std::memset(out.bytes, 0x5a, sizeof out.bytes);
+    out.get()->struct_size = sizeof value + 24;
+    ASSERT_EQ(call(out.get()), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(out.get()->struct_size, sizeof value + 24);
+    for (size_t i = sizeof value; i < sizeof value + 24; ++i) EXPECT_EQ(out.bytes[i], 0) << i;
+    EXPECT_EQ(out.bytes[sizeof value + 24], 0x5a);
+  };
+  zeroed("rdm_build", rdm_build{}, [](auto* io) { return rdm_build_info(io); });
+  zeroed("rdm_task", rdm_task{}, [](auto* io) { return rdm_task_at(0, io); });
+  zeroed("rdm_spec", rdm_spec{}, [&](auto* io) { return rdm_pool_get_spec(pool_, io); });
+  zeroed("rdm_buffers", rdm_buffers{}, [&](auto* io) { return rdm_pool_buffers(pool_, io); });
+  zeroed("rdm_pool_stats", rdm_pool_stats{}, [&](auto* io) { return rdm_pool_get_stats(pool_, io); });
+  zeroed("rdm_policy_info", rdm_policy_info{}, [&](auto* io) { return rdm_policy_get_info(policy_, io); });
+  zeroed("rdm_map_info", rdm_map_info{}, [&](auto* io) { return rdm_map_get_info(map_, io); });
+  zeroed("rdm_sensors", rdm_sensors{}, [&](auto* io) { return rdm_pool_sensors(pool_, io); });
 }
 
 }  // namespace

@@ -109,14 +109,22 @@ TEST(RedmanHpp, AgentLearnsFromAPoolAndItsPolicyActs) {
   EXPECT_NE(agent.policy(), file);
   agent.load(state);
   EXPECT_EQ(agent.policy(), file);
+  EXPECT_NE(agent.settings().find("hidden=8,8\n"), std::string::npos);
+  EXPECT_EQ(pool.initial_mean(),
+            std::vector<float>(config.initial_mean, config.initial_mean + config.action_dim));
+  const std::string settings = pool.settings();
+  const redman::Pool same(redman::pool_config(kTask, 1, settings.c_str()));
+  EXPECT_EQ(same.settings(), settings);
 
   const redman::Policy policy(file);
   policy.check_fits(pool.spec());
   EXPECT_STREQ(policy.info().task, kTask);
-  alignas(64) unsigned char scratch[65536];
-  ASSERT_LE(policy.scratch_bytes(2), sizeof scratch);
   std::vector<float> by_policy(2 * pool.action().width()), by_agent(by_policy.size());
-  policy.act(pool.obs().data(), 2, nullptr, by_policy.data(), scratch, sizeof scratch);
+  policy.act(pool.obs().data(), 2, nullptr, by_policy.data());
+  std::vector<float> again(by_policy.size());
+  redman::Bytes scratch(policy.scratch_bytes(2));
+  policy.act(pool.obs().data(), 2, nullptr, again.data(), scratch.data(), scratch.size());
+  EXPECT_EQ(again, by_policy);
   agent.act(pool.obs().data(), RDM_MEAN, by_agent.data());
   for (size_t i = 0; i < by_agent.size(); ++i)
     EXPECT_NEAR(by_policy[i], std::min(1.0f, std::max(-1.0f, by_agent[i])), 1e-5f) << i;

@@ -171,20 +171,22 @@ TEST(Sensors, HostsSampleTheirOwnClouds) {
   int32_t chosen[4];
   const size_t bytes = rdm_sample_scratch(4);
   ASSERT_GT(bytes, 0u);
-  const std::unique_ptr<void, decltype(&std::free)> scratch(std::aligned_alloc(64, (bytes + 63) / 64 * 64),
-                                                            std::free);
-  ASSERT_EQ(rdm_sample_furthest(points, 4, 4, 0, chosen, scratch.get(), bytes), RDM_OK) << rdm_last_error();
+  std::vector<unsigned char> memory(bytes + 64);
+  unsigned char* scratch = memory.data();
+  for (size_t shift = 0; shift < 64; ++shift)  // at any address
+    ASSERT_EQ(rdm_sample_furthest(points, 4, 4, 0, chosen, scratch + shift, bytes), RDM_OK)
+        << rdm_last_error();
   EXPECT_EQ(chosen[0], 0);
   EXPECT_EQ(chosen[1], 1);
   EXPECT_EQ(chosen[2], 2);
   EXPECT_EQ(chosen[3], 3);
   const float nan[] = {0, NAN, 0};
-  EXPECT_EQ(rdm_sample_furthest(nan, 1, 1, 0, chosen, scratch.get(), bytes), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_sample_furthest(nullptr, 1, 1, 0, chosen, scratch.get(), bytes), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_sample_furthest(points, 4, 5, 0, chosen, scratch.get(), bytes), RDM_RANGE);
-  EXPECT_EQ(rdm_sample_furthest(points, 4, 1, 4, chosen, scratch.get(), bytes), RDM_RANGE);
-  EXPECT_EQ(rdm_sample_furthest(points, 4, 1, 0, chosen, scratch.get(), bytes - 1), RDM_RANGE);
-  EXPECT_EQ(rdm_sample_furthest(points, 0, 1, 0, chosen, scratch.get(), bytes), RDM_RANGE);
+  EXPECT_EQ(rdm_sample_furthest(nan, 1, 1, 0, chosen, scratch, bytes), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_sample_furthest(nullptr, 1, 1, 0, chosen, scratch, bytes), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_sample_furthest(points, 4, 5, 0, chosen, scratch, bytes), RDM_RANGE);
+  EXPECT_EQ(rdm_sample_furthest(points, 4, 1, 4, chosen, scratch, bytes), RDM_RANGE);
+  EXPECT_EQ(rdm_sample_furthest(points, 4, 1, 0, chosen, scratch, bytes - 1), RDM_RANGE);
+  EXPECT_EQ(rdm_sample_furthest(points, 0, 1, 0, chosen, scratch, bytes), RDM_RANGE);
   EXPECT_EQ(rdm_sample_scratch(0), 0u);
   EXPECT_EQ(rdm_sample_scratch(1 << 30), 0u);
 }

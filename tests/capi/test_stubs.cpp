@@ -31,6 +31,11 @@ TEST(Halves, SimulationIsThereOrSaysThatItIsNot) {
   EXPECT_NE(std::string(rdm_last_error()).find("simulation"), std::string::npos) << rdm_last_error();
   EXPECT_EQ(pool, nullptr);
   EXPECT_EQ(rdm_pool_memory(&config, &ours, &engines), RDM_UNSUPPORTED);
+  char text[64] = "";
+  config.error = text;
+  config.error_size = sizeof text;
+  EXPECT_EQ(rdm_pool_create(&pool, &config), RDM_UNSUPPORTED);
+  EXPECT_STREQ(text, "this build was made without the simulation half");
   EXPECT_EQ(rdm_pool_step(nullptr), RDM_UNSUPPORTED);
   EXPECT_EQ(rdm_pool_render(nullptr, 0, "front", 8, 8, nullptr, nullptr, nullptr), RDM_UNSUPPORTED);
   rdm_pool_destroy(nullptr);

@@ -293,22 +293,28 @@ TEST(PoolStep, MaskedWorldsStandStill) {
   EXPECT_EQ(p.cost(1)[1], 0);
 }
 
-TEST(PoolStep, ResetWithASeedIsCreateWithIt) {
-  TestPool a("toy_push", 3, {}, mode(Autoreset::kSameStep, 7)),
-      b("toy_push", 3, {}, mode(Autoreset::kSameStep, 1));
-  a->reset(nullptr, nullptr);
-  b->reset(nullptr, nullptr);
-  EXPECT_NE(a->hash(-1), b->hash(-1));
-  b.action(0)[0] = 1;
-  for (int t = 0; t < 5; ++t) b->step(nullptr);
-  b->baseline(Baseline::kRandom);
-  const uint64_t seeds[] = {7, 7, 7};
-  b->reset(seeds, nullptr);
-  EXPECT_EQ(a->hash(-1), b->hash(-1));
-  a->baseline(Baseline::kRandom);
-  b->baseline(Baseline::kRandom);
-  EXPECT_EQ(row(a.rows().action), row(b.rows().action));
-  EXPECT_NE(a.obs(0)[0], a.obs(1)[0]);
+TEST(PoolStep, ASeedNamesWhatThePoolOfOneWorldCreatedWithItHas) {
+  TestPool one("toy_push", 1, {}, mode(Autoreset::kSameStep, 7)),
+      many("toy_push", 3, {}, mode(Autoreset::kSameStep, 1));
+  many->reset(nullptr, nullptr);
+  EXPECT_NE(many.obs(0)[0], many.obs(1)[0]);
+  many.action(0)[0] = 1;
+  for (int t = 0; t < 5; ++t) many->step(nullptr);
+  many->baseline(Baseline::kRandom);
+  const uint64_t seeds[] = {8, 7, 7};
+  many->reset(seeds, nullptr);
+  // and goes on with: the second episode is drawn from the same stream
+  for (int episode = 0; episode < 2; ++episode) {
+    one->reset(nullptr, nullptr);
+    if (episode > 0) many->reset(nullptr, nullptr);
+    EXPECT_EQ(many->hash(1), one->hash(0));
+    EXPECT_EQ(many->hash(2), one->hash(0));
+    EXPECT_NE(many->hash(0), one->hash(0));
+    one->baseline(Baseline::kRandom);
+    many->baseline(Baseline::kRandom);
+    for (const int world : {1, 2})
+      for (int k = 0; k < kToyActions; ++k) EXPECT_EQ(many.action(world)[k], one.action(0)[k]);
+  }
 }
 
 TEST(PoolStep, ResetClearsAllRows) {

@@ -76,9 +76,8 @@ void one_policy(int rounds) {
   for (size_t i = 0; i < obs.size(); ++i) obs[i] = static_cast<float>(i % 5) * 0.3f;
   const auto act = [&](float* action) {
     const size_t n = rdm_policy_scratch(p, rows);
-    void* scratch = std::aligned_alloc(64, (n + 63) / 64 * 64);
-    must(rdm_policy_act(p, obs.data(), rows, nullptr, action, scratch, n));
-    std::free(scratch);
+    std::vector<unsigned char> scratch(n);
+    must(rdm_policy_act(p, obs.data(), rows, nullptr, action, scratch.data(), n));
   };
   act(expected.data());
   in_threads(8, [&](int) {

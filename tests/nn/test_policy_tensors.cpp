@@ -108,13 +108,13 @@ TEST_P(PolicyTensors, AreTheWholePolicy) {
       count += values.size();
   EXPECT_EQ(count, p.info.num_params);
 
-  const size_t bytes = (rdm_policy_scratch(p.policy, 1) + 63) / 64 * 64;
-  const std::unique_ptr<void, decltype(&std::free)> scratch(std::aligned_alloc(64, bytes), std::free);
+  std::vector<unsigned char> scratch(rdm_policy_scratch(p.policy, 1));
   for (int k = 0; k < 50; ++k) {
     std::vector<float> obs(5), action(3);
     for (size_t i = 0; i < 5; ++i)
       obs[i] = 3 + 2 * std::sin(static_cast<float>(k) * 1.7f + static_cast<float>(3 * i));
-    ASSERT_EQ(rdm_policy_act(p.policy, obs.data(), 1, nullptr, action.data(), scratch.get(), bytes), RDM_OK);
+    ASSERT_EQ(rdm_policy_act(p.policy, obs.data(), 1, nullptr, action.data(), scratch.data(), scratch.size()),
+              RDM_OK);
     const auto want = p.act(obs);
     for (size_t j = 0; j < 3; ++j) EXPECT_NEAR(action[j], want[j], 1e-6);
   }

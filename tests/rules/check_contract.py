@@ -10,13 +10,14 @@ import sys
 
 HANDLES = {"rdm_pool", "rdm_agent", "rdm_policy", "rdm_map"}
 INTEGERS = {"int32_t", "uint32_t", "int64_t", "uint64_t", "size_t"}
+LENGTHS = {"capacity", "scratch_bytes", "note_size", "num_skip", "wanted"}  # arguments that say how long another is
 SHAPE = r"((?:\[[^\]\[]+\])+)"
 WORD = re.compile(r"[A-Za-z_]\w*")
 
 
 def flat(comment):
     """A comment's words in one line."""
-    return " ".join(re.sub(r"^\s*\*", " ", line) for line in comment.splitlines()).strip()
+    return " ".join(" ".join(re.sub(r"^\s*\*", " ", line) for line in comment.splitlines()).split())
 
 
 class Header:
@@ -124,12 +125,16 @@ def main(root):
                 kind = classify(where, part, shape and shape.group(1), comment, header.member_names, True)
                 counts[kind] = counts.get(kind, 0) + 1
     for function, arguments, comment in header.functions:
-        names = {Header.name_of(a) for a in arguments} | header.member_names
+        names, sized = {Header.name_of(a) for a in arguments} | header.member_names, set()
         for argument in arguments:
             name = Header.name_of(argument)
             shape = re.search(rf"(?<![\w*]){name} {SHAPE}", comment)
             kind = classify(f"{function}: {name}", argument, shape and shape.group(1), comment, names, False)
             counts[kind] = counts.get(kind, 0) + 1
+            sized.update(WORD.findall(shape.group(1)) if shape else [])
+        plain = {Header.name_of(a) for a in arguments if "*" not in a}
+        for name in sorted(plain & LENGTHS - sized):
+            wrong.append(f"{function}: no array has the shape [{name}]")
     for name, body in header.enums:
         if not name:
             wrong.append(f"an enum has no name: {' '.join(body.split())[:60]}")

@@ -27,9 +27,9 @@ refused() {
 # Names that are no UTF-8, that are cut inside a character, that steer terminals.
 long=$(awk 'BEGIN { for (i = 0; i < 40; ++i) printf "\303\251" }')
 for name in "$byte" "x$long" "a$byte$long" "${escape}[31mred" "$(printf '\302\233')31m"; do
-  for command in tasks algos; do refused "$command with a strange name" 'nearest is' $command "$name"; done
+  for command in tasks algos; do refused "$command with a strange name" unknown $command "$name"; done
   for flag in --task --policy; do refused "eval with a strange $flag" . eval $flag "$name"; done
-  refused 'a strange algorithm' 'nearest is' train --algo "$name" --out r
+  refused 'a strange algorithm' unknown train --algo "$name" --out r
   refused 'a strange option' . train --set "$name=1" --out r
   refused 'a strange value' . train --set "object=$name" --out r
   refused 'a strange camera list' . train --task grasp --set "cameras=$name" --out r

@@ -30,6 +30,7 @@ expect 2 'redman train --help' train --no-such-flag 3
 expect 2 'nearest is hand_over_safe_finger' train --task hand_over_safe_fingr
 expect 2 'nearest is ppo_lag' train --algo ppo_lagg
 expect 2 'nearest is hidden' train --set hiden=3
+expect 2 'has option nonsense_of_all$' train --set nonsense_of_all=3
 expect 2 'not key=value' train --set hidden
 expect 2 'outside' train --set clip=-1
 expect 2 'not a number' train --cost-limit many
@@ -64,7 +65,8 @@ json() {
 }
 
 json 'tasks name summary obs_dim action_dim cost_dim costs limit max_steps control_dt fields unit offset count
-      options key default low high help' tasks
+      options key default low high help defaults initial_mean' tasks
+json 'defaults initial_mean action_repeat discount' tasks hand_over_safe_finger
 json 'algos name summary params key default low high help' algos
 json 'version abi ode eigen ccd octomap precision compiler' info
 json 'run policy env_steps wall_seconds steps_per_second return cost cost_stderr success_rate cost_limit feasible fall_rate length' \

@@ -1,6 +1,5 @@
 // `bench update`, `bench act`: how fast an agent learns from made-up data, and a frozen policy acts.
 #include <chrono>
-#include <memory>
 
 #include "bench/bench.hpp"
 #include "bench/malloc_count.hpp"
@@ -131,11 +130,9 @@ Report bench_act(const ActFlags& flags) {
       action(rows * static_cast<size_t>(flags.act));
   Noise noise;
   for (float& x : obs) x = noise.normal();
-  const size_t scratch_bytes = (policy.scratch_bytes(flags.rows) + 63) / 64 * 64;
-  const std::unique_ptr<void, decltype(&std::free)> scratch(std::aligned_alloc(64, scratch_bytes),
-                                                            &std::free);
+  redman::Bytes scratch(policy.scratch_bytes(flags.rows));
   const auto act = [&] {
-    policy.act(obs.data(), flags.rows, nullptr, action.data(), scratch.get(), scratch_bytes);
+    policy.act(obs.data(), flags.rows, nullptr, action.data(), scratch.data(), scratch.size());
   };
   act();
 

@@ -64,12 +64,15 @@ bool same_name(const std::string& a, const std::string& b) {
   return folded(a) == folded(b);
 }
 
-std::string nearest_name(const std::string& word, const std::vector<std::string>& names) {
-  const auto nearer = [&](const std::string& a, const std::string& b) {
-    return edit_distance(folded(word), folded(a)) < edit_distance(folded(word), folded(b));
-  };
+std::string nearest_hint(const std::string& word, const std::vector<std::string>& names) {
+  const auto far = [&](const std::string& name) { return edit_distance(folded(word), folded(name)); };
+  const auto nearer = [&](const std::string& a, const std::string& b) { return far(a) < far(b); };
   const auto best = std::min_element(names.begin(), names.end(), nearer);
-  return best == names.end() ? "" : *best;
+  if (best == names.end()) return "";
+  const size_t common = std::min(word.size(), best->size());
+  const bool begins = common >= 3 && folded(word).substr(0, common) == folded(*best).substr(0, common);
+  const bool near = begins || 3 * static_cast<size_t>(far(*best)) <= std::max(word.size(), best->size()) + 2;
+  return near ? "; nearest is " + *best : "";
 }
 
 int32_t find_task(const std::string& name) {
@@ -99,6 +102,21 @@ std::vector<rdm_field> task_fields(int32_t task) {
 std::vector<rdm_cost> task_costs(int32_t task) {
   return collect<rdm_cost>(task_at(task).cost_dim,
                            [&](int32_t i, rdm_cost* out) { return rdm_task_cost(task, i, out); });
+}
+
+std::vector<rdm_option> task_defaults(int32_t task) {
+  return collect<rdm_option>(task_at(task).num_defaults,
+                             [&](int32_t i, rdm_option* out) { return rdm_task_default(task, i, out); });
+}
+
+std::pair<float, float> task_field_bounds(int32_t task, int32_t i) {
+  std::pair<float, float> bounds;
+  redman::check(rdm_task_field_bounds(task, i, &bounds.first, &bounds.second));
+  return bounds;
+}
+
+std::vector<float> task_initial_mean(int32_t task) {
+  return redman::Pool(redman::pool_config(task_at(task).name)).initial_mean();
 }
 
 std::vector<rdm_option_info> task_options(int32_t task) {

@@ -3,6 +3,7 @@
 #include <redman/redman.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/report.hpp"
@@ -11,8 +12,9 @@ namespace tool {
 
 // Case is ignored and '-' equals '_'.
 bool same_name(const std::string& a, const std::string& b);
-// The entry of `names` with the least edit distance; "" for an empty list.
-std::string nearest_name(const std::string& word, const std::vector<std::string>& names);
+// "; nearest is NAME" with the entry of `names` that differs least, "" when none is near: as the library's
+// texts.
+std::string nearest_hint(const std::string& word, const std::vector<std::string>& names);
 
 // Index by name; Usage with the nearest known name.
 int32_t find_task(const std::string& name);
@@ -22,6 +24,11 @@ rdm_algo algo_at(int32_t index);
 
 std::vector<rdm_field> task_fields(int32_t task);
 std::vector<rdm_cost> task_costs(int32_t task);
+// The task's own defaults of agent options, and the mean action of its new policies.
+std::vector<rdm_option> task_defaults(int32_t task);
+std::vector<float> task_initial_mean(int32_t task);
+// What no entry of field i ever leaves; NAN: no bound.
+std::pair<float, float> task_field_bounds(int32_t task, int32_t i);
 std::vector<rdm_option_info> task_options(int32_t task);
 std::vector<rdm_option_info> algo_options(int32_t algo);
 bool has_option(const std::vector<rdm_option_info>& table, const std::string& key);

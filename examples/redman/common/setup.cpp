@@ -78,7 +78,10 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
   for (const std::string& text : sets) {
     const auto pair = split_pair(text, "--set");
     if (printable(text) != text) throw Usage("--set " + text + ": control characters, or not UTF-8");
-    const bool of_task = has_option(task_table, pair.first), of_algo = has_option(algo_table, pair.first);
+    const bool of_algo = has_option(algo_table, pair.first);
+    // how often an agent decides is the agent's: a pool that repeats would only show less of its worlds
+    const bool of_task =
+        has_option(task_table, pair.first) && !(of_algo && same_name(pair.first, "action_repeat"));
     if (of_task) pool.options.push_back(pair);
     if (of_algo) agent->options.push_back(pair);
     if (of_task || of_algo) continue;
@@ -88,8 +91,7 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
     const std::string owner =
         agent ? "neither task " + pool.task + " nor algorithm " + agent->algo + " has option "
               : "task " + pool.task + " has no option ";
-    throw Usage("--set " + text + ": " + owner + pair.first + "; nearest is " +
-                nearest_name(pair.first, keys));
+    throw Usage("--set " + text + ": " + owner + pair.first + nearest_hint(pair.first, keys));
   }
 }
 
@@ -134,8 +136,7 @@ std::vector<double> cost_limits(const redman::Pool& pool, const std::vector<std:
       if (same_name(name, costs[i].name)) column = i;
     }
     if (column == costs.size())
-      throw Usage("--cost-limit " + text + ": no cost column " + name + "; nearest is " +
-                  nearest_name(name, names));
+      throw Usage("--cost-limit " + text + ": no cost column " + name + nearest_hint(name, names));
     limits[column] = limit_number(value, text);
   }
   return limits;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 
 #include "common/files.hpp"
 #include "common/names.hpp"
@@ -94,9 +93,8 @@ Actor::Actor(redman::Policy policy, const redman::Pool& pool) : policy_(std::mov
 void Actor::prepare(const redman::Pool& pool) {
   if (!policy_) return;
   const size_t n = pool.num_envs(), width = pool.action().width();
-  scratch_bytes_ = (policy_->scratch_bytes(static_cast<int32_t>(n)) + 63) / 64 * 64;
-  scratch_.reset(std::aligned_alloc(64, scratch_bytes_));
-  if (!scratch_) throw std::bad_alloc();
+  scratch_.resize(policy_->scratch_bytes(static_cast<int32_t>(n)));
+  repeat_ = std::max(1, policy_->info().action_repeat / pool.spec().action_repeat);
   hold_.assign(n, 0);
   due_.reserve(n);
   obs_.resize(n * pool.obs().width());
@@ -132,7 +130,7 @@ void Actor::act(redman::Pool& pool, const uint8_t* mask) {
   for (size_t i = 0; i < pool.num_envs(); ++i) {
     if (mask && !mask[i]) continue;
     if (hold_[i]-- > 0) continue;
-    hold_[i] = policy_->info().action_repeat - 1;
+    hold_[i] = repeat_ - 1;
     due_.push_back(i);
   }
   if (due_.empty()) return;
@@ -150,7 +148,7 @@ void Actor::act(redman::Pool& pool, const uint8_t* mask) {
     fresh_[i] = 0;
   }
   policy_->act(obs_.data(), static_cast<int32_t>(due_.size()), stochastic_ ? noise_.data() : nullptr,
-               action_.data(), scratch_.get(), scratch_bytes_);
+               action_.data(), scratch_.data(), scratch_.size());
   for (size_t k = 0; k < due_.size(); ++k)
     std::copy_n(action_.data() + k * width, width, pool.action()[due_[k]].begin());
 }

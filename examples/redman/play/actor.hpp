@@ -1,7 +1,5 @@
 // Who acts in a pool: a policy file, a demonstration, or one of the baselines zero, hold, random.
 #pragma once
-#include <cstdlib>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -41,9 +39,6 @@ class Actor {
   void act(redman::Pool& pool, const uint8_t* mask = nullptr);
 
  private:
-  struct Free {
-    void operator()(void* p) const { std::free(p); }
-  };
   void prepare(const redman::Pool& pool);
   float normal();
 
@@ -52,13 +47,13 @@ class Actor {
   std::optional<Demo> demo_;
   bool stochastic_ = false;
   uint64_t random_ = 0;
-  std::vector<int32_t> hold_;                // [num_envs] control steps until the next decision
+  int32_t repeat_ = 1;                       // steps of the pool for a decision
+  std::vector<int32_t> hold_;                // [num_envs] of these, until the next one
   std::vector<size_t> due_;                  // worlds that decide now
   std::vector<float> obs_, action_, noise_;  // rows of those worlds
   std::vector<float> memory_;                // [num_envs][action_dim] correlated noise
   std::vector<uint8_t> fresh_;               // [num_envs] the memory is to be drawn anew
-  std::unique_ptr<void, Free> scratch_;
-  size_t scratch_bytes_ = 0;
+  redman::Bytes scratch_;
 };
 
 }  // namespace tool

@@ -1,6 +1,7 @@
 #include "run/config.hpp"
 
 #include <cmath>
+#include <sstream>
 
 #include "common/json.hpp"
 #include "common/names.hpp"
@@ -27,15 +28,13 @@ Options from_sets(const std::vector<std::string>& sets, const char* member) {
   return out;
 }
 
-// Every option as it stands, by index until the list ends.
-template <class Get>
-Json values_json(int32_t count, Get get) {
+// Every option as it stands, of lines key=value.
+Json values_json(const std::string& settings) {
   Json out = Json::object();
-  for (int32_t i = 0; i < count; ++i) {
-    const char* key = nullptr;
-    char text[RDM_TEXT_SIZE];
-    redman::check(get(i, &key, text));
-    out[key] = text;
+  std::istringstream lines(settings);
+  for (std::string line; std::getline(lines, line);) {
+    const size_t equals = line.find('=');
+    out[line.substr(0, equals)] = line.substr(equals + 1);
   }
   return out;
 }
@@ -51,9 +50,7 @@ std::string config_text(const RunSettings& s, const redman::Pool& pool, const re
   for (size_t i = 0; i < costs.size(); ++i)
     if (limits[i] >= 0) limit_values[costs[i].name] = limits[i];
 
-  Json algo_cfgs = values_json(algo_at(algo).num_options, [&](int32_t i, const char** key, char* text) {
-    return rdm_agent_option(agent.get(), i, key, text);
-  });
+  Json algo_cfgs = values_json(agent.settings());
   algo_cfgs["steps_per_epoch"] = steps_per_epoch;
   const Json json = {
       {"exp_name", format("%s-%s-seed-%llu", task_name.c_str(), algo_name.c_str(),
@@ -72,10 +69,7 @@ std::string config_text(const RunSettings& s, const redman::Pool& pool, const re
         {"eval_every", s.eval_every},
         {"checkpoint_every", s.checkpoint_every}}},
       {"algo_cfgs", algo_cfgs},
-      {"env_cfgs", values_json(task_at(task).num_options,
-                               [&](int32_t i, const char** key, char* text) {
-                                 return rdm_pool_option(pool.get(), i, key, text);
-                               })},
+      {"env_cfgs", values_json(pool.settings())},
       {"obs_dim", pool.spec().obs_dim},
       {"action_dim", pool.spec().action_dim},
       {"layout_hash", format("%016llx", static_cast<unsigned long long>(pool.spec().layout_hash))},

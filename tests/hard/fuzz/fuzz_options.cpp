@@ -1,5 +1,6 @@
-// Options as text, for every task and algorithm: lines "key=value". What the asking call takes can be made,
-// in the memory that it named.
+// Options as text, for every task and algorithm: lines "key=value", as a list and as config.settings. What
+// the asking call takes can be made, in the memory that it named; what it answers for its settings is taken
+// again.
 #include "fuzz.hpp"
 
 namespace hard {
@@ -10,8 +11,8 @@ constexpr size_t kMostOptions = 8, kMostMemory = 32 << 20;
 struct Lines {
   std::vector<std::string> keys, values;
   std::vector<rdm_option> options;
-  Lines(const unsigned char* data, size_t size) {
-    const std::string text(reinterpret_cast<const char*>(data), size);
+  std::string text;
+  Lines(const unsigned char* data, size_t size) : text(reinterpret_cast<const char*>(data), size) {
     for (size_t at = 0; at < text.size() && keys.size() < kMostOptions;) {
       const size_t end = std::min(text.find('\n', at), text.size());
       const std::string line = text.substr(at, end - at);
@@ -32,6 +33,27 @@ struct Lines {
   }
 };
 
+// Every second time as one text.
+template <class Config>
+void give(const Lines& lines, Config& c) {
+  static unsigned n = 0;
+  if (++n % 2 == 0) {
+    c.settings = lines.text.c_str();
+  } else {
+    c.options = lines.options.data();
+    c.num_options = static_cast<int32_t>(lines.options.size());
+  }
+}
+
+template <class Handle>
+std::string settings_of(rdm_result (*ask)(const Handle*, char*, size_t, size_t*), const Handle* h) {
+  size_t size = 0;
+  HARD_REQUIRE(ask(h, nullptr, 0, &size) == RDM_OK, "%s", rdm_last_error());
+  std::string out(size + 1, '\0');
+  HARD_REQUIRE(ask(h, out.data(), out.size(), &size) == RDM_OK, "%s", rdm_last_error());
+  return out;
+}
+
 // Making takes longer than asking: of what is taken, every fourth is made.
 bool make_it() {
   static unsigned n = 0;
@@ -46,8 +68,7 @@ void ask_task(const World& w, Lines& lines) {
   rdm_pool_config c;
   rdm_pool_config_init(&c, sizeof c);
   c.task = w.task.c_str();
-  c.options = lines.options.data();
-  c.num_options = static_cast<int32_t>(lines.options.size());
+  give(lines, c);
   rdm_spec spec{};
   spec.struct_size = sizeof spec;
   const rdm_result r = rdm_pool_spec(&c, &spec);
@@ -65,6 +86,11 @@ void ask_task(const World& w, Lines& lines) {
   char text[RDM_TEXT_SIZE];
   for (int32_t i = 0; rdm_pool_option(p, i, &key, text) == RDM_OK; ++i)
     HARD_REQUIRE(good_text(text), "option %s", key);
+  const std::string settings = settings_of<rdm_pool>(rdm_pool_settings, p);
+  c.options = nullptr;
+  c.num_options = 0;
+  c.settings = settings.c_str();
+  HARD_REQUIRE(rdm_pool_spec(&c, &spec) == RDM_OK, "its own settings: %s", rdm_last_error());
   rdm_pool_destroy(p);
 }
 
@@ -75,8 +101,7 @@ void ask_algo(const std::string& algo, Lines& lines) {
   c.obs_dim = 2;
   c.action_dim = 1;
   c.num_envs = 2;
-  c.options = lines.options.data();
-  c.num_options = static_cast<int32_t>(lines.options.size());
+  give(lines, c);
   size_t bytes = 0;
   const rdm_result r = rdm_agent_memory(&c, &bytes);
   if (r != RDM_OK) return require_refusal(r);
@@ -89,6 +114,11 @@ void ask_algo(const std::string& algo, Lines& lines) {
   char text[RDM_TEXT_SIZE];
   for (int32_t i = 0; rdm_agent_option(a, i, &key, text) == RDM_OK; ++i)
     HARD_REQUIRE(good_text(text), "option %s", key);
+  const std::string settings = settings_of<rdm_agent>(rdm_agent_settings, a);
+  c.options = nullptr;
+  c.num_options = 0;
+  c.settings = settings.c_str();
+  HARD_REQUIRE(rdm_agent_memory(&c, &bytes) == RDM_OK, "its own settings: %s", rdm_last_error());
   rdm_agent_destroy(a);
 }
 

@@ -37,7 +37,7 @@ void one(const unsigned char* data, size_t size) {
   for (size_t i = 0; i < obs.size(); ++i) obs[i] = static_cast<float>(i % 7) - 3;
   const size_t bytes = rdm_policy_scratch(p, rows);
   HARD_REQUIRE(bytes > 0 && bytes < (1u << 28), "%zu bytes of scratch", bytes);
-  void* scratch = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
+  void* scratch = std::malloc(bytes);
   for (const float* e : {static_cast<const float*>(nullptr), static_cast<const float*>(noise.data())}) {
     const rdm_result act = rdm_policy_act(p, obs.data(), rows, e, action.data(), scratch, bytes);
     if (act != RDM_OK) require_refusal(act);

@@ -1,0 +1,210 @@
+// A handle of another kind, or one that was destroyed, is an error and no crash.
+#include <array>
+#include <functional>
+
+#include "contract.hpp"
+
+namespace {
+
+// Memory that is released but never given to anybody else, so that reading it once more is defined.
+struct KeepingHost {
+  std::vector<void*> kept;
+  rdm_host hooks{sizeof(rdm_host), 0, this, alloc, release, nullptr, nullptr};
+  static void* alloc(void* user, size_t bytes, size_t align) {
+    void* p = nullptr;
+    if (posix_memalign(&p, align, bytes) != 0) return nullptr;
+    static_cast<KeepingHost*>(user)->kept.push_back(p);
+    return p;
+  }
+  static void release(void*, void*, size_t, size_t) {}
+  ~KeepingHost() {
+    for (void* p : kept) std::free(p);
+  }
+};
+
+struct Handles {
+  KeepingHost host;
+  rdm_pool* pool = nullptr;
+  rdm_agent* agent = nullptr;
+  rdm_policy* policy = nullptr;
+  rdm_map* map = nullptr;
+
+  Handles() {
+    rdm_pool_config p = pool_config(1);
+    p.task = "bandit";
+    p.host = &host.hooks;
+    pool = make_pool(p);
+    rdm_agent_config a = agent_config();
+    a.host = &host.hooks;
+    agent = make_agent(a);
+    const auto file = policy_bytes(agent);
+    EXPECT_EQ(rdm_init(&host.hooks), RDM_OK);
+    EXPECT_EQ(rdm_policy_load(&policy, file.data(), file.size()), RDM_OK);
+    rdm_shutdown();
+    rdm_map_config m;
+    EXPECT_EQ(rdm_map_config_init(&m, sizeof m), RDM_OK);
+    m.host = &host.hooks;
+    EXPECT_EQ(rdm_map_create(&map, &m), RDM_OK);
+  }
+  ~Handles() {
+    rdm_pool_destroy(pool);
+    rdm_agent_destroy(agent);
+    rdm_policy_destroy(policy);
+    rdm_map_destroy(map);
+  }
+};
+
+// Every call of a kind with `h` in the place of its handle; other arguments are good ones.
+using Call = std::function<rdm_result(void* h, Handles& good)>;
+char g_bytes[1 << 16];
+size_t g_size;
+float g_floats[4096];
+int32_t g_number;
+uint64_t g_hash;
+const char* g_key;
+template <class T>
+T* sized() {
+  static T value;
+  value = T{};
+  value.struct_size = sizeof value;
+  return &value;
+}
+template <class T>
+T* plain() {
+  static T value;
+  return &value;
+}
+
+#define POOL static_cast<rdm_pool*>(h)
+#define AGENT static_cast<rdm_agent*>(h)
+#define POLICY static_cast<rdm_policy*>(h)
+#define MAP static_cast<rdm_map*>(h)
+#define CALL(expression)                     \
+  [](void* h, Handles& good) -> rdm_result { \
+    (void)h, (void)good;                     \
+    return expression;                       \
+  }
+
+const std::vector<Call> kPoolCalls = {
+    CALL(rdm_pool_get_spec(POOL, sized<rdm_spec>())),
+    CALL(rdm_pool_field(POOL, 0, plain<rdm_field>())),
+    CALL(rdm_pool_field_bounds(POOL, 0, g_floats, g_floats + 1)),
+    CALL(rdm_pool_initial_mean(POOL, g_floats)),
+    CALL(rdm_pool_option(POOL, 0, &g_key, g_bytes)),
+    CALL(rdm_pool_settings(POOL, nullptr, 0, &g_size)),
+    CALL(rdm_pool_buffers(POOL, sized<rdm_buffers>())),
+    CALL(rdm_pool_bind(POOL, sized<rdm_buffers>())),
+    CALL(rdm_pool_reset(POOL, nullptr, nullptr)),
+    CALL(rdm_pool_step(POOL)),
+    CALL(rdm_pool_step_masked(POOL, reinterpret_cast<const uint8_t*>(g_bytes))),
+    CALL(rdm_pool_baseline(POOL, 0)),
+    CALL(rdm_pool_state_size(POOL, 0, &g_size)),
+    CALL(rdm_pool_get_state(POOL, 0, g_bytes, sizeof g_bytes, &g_size)),
+    CALL(rdm_pool_set_state(POOL, 0, g_bytes, 8)),
+    CALL(rdm_pool_hash(POOL, 0, &g_hash)),
+    CALL(rdm_pool_shape(POOL, 0, plain<rdm_shape>())),
+    CALL(rdm_pool_poses(POOL, 0, g_floats)),
+    CALL(rdm_pool_contacts(POOL, 0, nullptr, 0, &g_number)),
+    CALL(rdm_pool_render(POOL, 0, "front", 8, 8, nullptr, g_floats, nullptr)),
+    CALL(rdm_pool_get_stats(POOL, sized<rdm_pool_stats>())),
+    CALL(rdm_pool_push(POOL, 0, 0, g_floats)),
+    CALL(rdm_pool_sensors(POOL, sized<rdm_sensors>())),
+    CALL(rdm_pool_sensor_camera(POOL, 0, 0, plain<rdm_camera>())),
+    CALL(rdm_pool_hull(POOL, 0, nullptr, 0, &g_number)),
+    CALL(rdm_agent_config_for_pool(sized<rdm_agent_config>(), POOL)),
+    CALL(rdm_agent_rollout(good.agent, POOL, nullptr)),
+    CALL(rdm_map_scan(good.map, POOL, 0, "front", 8, 8, nullptr, 0, nullptr)),
+    CALL(rdm_checkpoint_write("/no/such/folder/file", good.agent, POOL, nullptr, 0)),
+};
+const std::vector<Call> kAgentCalls = {
+    CALL(rdm_agent_act(AGENT, g_floats, RDM_MEAN, g_floats + 100)),
+    CALL(rdm_agent_record(AGENT, sized<rdm_transition>())),
+    CALL(rdm_agent_update(AGENT, g_floats, nullptr)),
+    CALL(rdm_agent_rollout(AGENT, good.pool, nullptr)),
+    CALL(rdm_agent_set(AGENT, plain<rdm_option>())),
+    CALL(rdm_agent_option(AGENT, 0, &g_key, g_bytes)),
+    CALL(rdm_agent_settings(AGENT, nullptr, 0, &g_size)),
+    CALL(rdm_agent_tensor(AGENT, 0, plain<rdm_tensor>())),
+    CALL(rdm_agent_tensor_read(AGENT, "actor.0.weight", g_floats, 24)),
+    CALL(rdm_agent_tensor_write(AGENT, "actor.0.weight", g_floats, 24)),
+    CALL(rdm_agent_policy(AGENT, nullptr, 0, &g_size)),
+    CALL(rdm_agent_policy_file(AGENT, "/no/such/folder/file")),
+    CALL(rdm_agent_save(AGENT, nullptr, 0, &g_size)),
+    CALL(rdm_agent_load(AGENT, g_bytes, 8)),
+    CALL(rdm_checkpoint_write("/no/such/folder/file", AGENT, nullptr, nullptr, 0)),
+    CALL(rdm_checkpoint_read("/no/such/folder/file", AGENT, nullptr, nullptr, 0, &g_size)),
+};
+const std::vector<Call> kPolicyCalls = {
+    CALL(rdm_policy_get_info(POLICY, sized<rdm_policy_info>())),
+    CALL(rdm_policy_act(POLICY, g_floats, 1, nullptr, g_floats + 100, g_bytes, sizeof g_bytes)),
+    CALL(rdm_policy_tensor(POLICY, 0, plain<rdm_tensor>())),
+    CALL(rdm_policy_tensor_read(POLICY, "actor.0.weight", g_floats, 24)),
+    CALL(rdm_policy_check(POLICY, sized<rdm_spec>())),
+};
+const std::vector<Call> kMapCalls = {
+    CALL(rdm_map_get_info(MAP, sized<rdm_map_info>())),
+    CALL(rdm_map_clear(MAP)),
+    CALL(rdm_map_insert(MAP, g_floats, g_floats, 1, nullptr)),
+    CALL(rdm_map_scan(MAP, good.pool, 0, "front", 8, 8, nullptr, 0, nullptr)),
+    CALL(rdm_map_query(MAP, g_floats, 1, g_floats + 100)),
+    CALL(rdm_map_box(MAP, g_floats, g_floats, nullptr, 0, &g_size)),
+    CALL(rdm_map_meets(MAP, g_floats, g_floats, &g_number)),
+    CALL(rdm_map_raycast(MAP, g_floats, g_floats, 1, 0, g_floats + 100, &g_number)),
+    CALL(rdm_map_distance(MAP, g_floats, 1, 1, g_floats + 100)),
+    CALL(rdm_map_grid(MAP, g_floats, plain<std::array<int32_t, 3>>()->data(), 1,
+                      reinterpret_cast<int8_t*>(g_bytes))),
+    CALL(rdm_map_save(MAP, 0, nullptr, 0, &g_size)),
+    CALL(rdm_map_save_file(MAP, "/no/such/folder/file.bt")),
+    CALL(rdm_map_load(MAP, g_bytes, 8)),
+    CALL(rdm_map_load_file(MAP, "/no/such/folder/file.bt")),
+};
+
+void expect_refused(const std::vector<Call>& calls, void* h, Handles& good, const char* text) {
+  for (size_t i = 0; i < calls.size(); ++i) {
+    EXPECT_EQ(calls[i](h, good), RDM_ARGUMENT) << "call " << i;
+    EXPECT_NE(std::strstr(rdm_last_error(), text), nullptr) << "call " << i << ": " << rdm_last_error();
+  }
+}
+
+TEST(Handles, OfAnotherKindAreNamed) {
+  Handles good;
+  EXPECT_EQ(rdm_pool_step(reinterpret_cast<rdm_pool*>(good.agent)), RDM_ARGUMENT);
+  EXPECT_STREQ(rdm_agent_error(good.agent), "");  // whose own text stays what it was
+  expect_refused(kPoolCalls, good.agent, good, "pool: the handle is of kind agent");
+  expect_refused(kAgentCalls, good.pool, good, "agent: the handle is of kind pool");
+  expect_refused(kPolicyCalls, good.map, good, "policy: the handle is of kind map");
+  expect_refused(kMapCalls, good.policy, good, "map: the handle is of kind policy");
+}
+
+TEST(Handles, ThatWereDestroyedAreRefused) {
+  Handles good, ended;
+  rdm_pool_destroy(ended.pool);
+  rdm_agent_destroy(ended.agent);
+  rdm_policy_destroy(ended.policy);
+  rdm_map_destroy(ended.map);
+  expect_refused(kPoolCalls, ended.pool, good, "destroyed");
+  expect_refused(kAgentCalls, ended.agent, good, "destroyed");
+  expect_refused(kPolicyCalls, ended.policy, good, "destroyed");
+  expect_refused(kMapCalls, ended.map, good, "destroyed");
+  EXPECT_NE(std::strstr(rdm_pool_error(ended.pool), "destroyed"), nullptr);
+  EXPECT_NE(std::strstr(rdm_agent_error(ended.agent), "destroyed"), nullptr);
+  EXPECT_NE(std::strstr(rdm_map_error(ended.map), "destroyed"), nullptr);
+  EXPECT_EQ(rdm_policy_scratch(ended.policy, 1), 0u);
+  rdm_agent_cancel(ended.agent);
+}  // and are destroyed a second time here
+
+TEST(Handles, OfAnotherKindAreNotDestroyed) {
+  Handles good;
+  rdm_pool_destroy(reinterpret_cast<rdm_pool*>(good.agent));
+  rdm_agent_destroy(reinterpret_cast<rdm_agent*>(good.pool));
+  rdm_policy_destroy(reinterpret_cast<rdm_policy*>(good.map));
+  rdm_map_destroy(reinterpret_cast<rdm_map*>(good.policy));
+  EXPECT_EQ(rdm_pool_reset(good.pool, nullptr, nullptr), RDM_OK);
+  EXPECT_EQ(feed_epoch(good.agent), RDM_OK);
+  EXPECT_EQ(rdm_map_clear(good.map), RDM_OK);
+  auto* info = sized<rdm_policy_info>();
+  EXPECT_EQ(rdm_policy_get_info(good.policy, info), RDM_OK);
+  EXPECT_EQ(info->obs_dim, 3);
+}
+
+}  // namespace
