@@ -38,6 +38,7 @@ class Declared(NamedTuple):
     result: str  # type of a function's result
     doc: str
     experimental: bool
+    above: str  # the comment above its run, which may tell of its arguments too
 
 
 class Variable(NamedTuple):
@@ -45,7 +46,7 @@ class Variable(NamedTuple):
 
     name: str
     type: str  # "const float *"
-    count: str  # "3" of `float eye[3]`, else ""
+    length: str  # "3" of `float eye[3]`, else ""
     doc: str = ""
 
     @property
@@ -71,6 +72,12 @@ STATEMENT = re.compile(
     r"|(?P<blank>\n[ \t]*(?=\n))|extern[ ]\"C\"[ ]\{|\}|\s+", re.S | re.M | re.X)
 
 
+# kind: the groups of name, body and result
+KINDS = {"constant": ("constant", "value", "blank"), "enum": ("enum", "members", "blank"),
+         "struct": ("struct", "fields", "blank"), "handle": ("handle", "handle", "blank"),
+         "callback": ("callback", "given", "returned"), "function": ("function", "parameters", "result")}
+
+
 def text_of(comment: str) -> str:
     """The words of a C comment; "" for a heading or a rule of dashes."""
     body = re.sub(r"^/\*+<?|\*+/$", "", comment)
@@ -85,7 +92,8 @@ def declarations(text: str) -> Iterator[Declared]:
     start = text.index("#define REDMAN_H")
     experimental_from = text.index("#if defined(RDM_EXPERIMENTAL)")
     pending: Declared | None = None
-    covering = covered = ""  # a comment that stands above, and the kind of what it has told of
+    above = covering = covered = ""  # a comment that stands above, as long as it is the words of what comes, and the
+    # kind of what it has told of
     at = start
     end_of_last = 0
     while at < len(text):
@@ -106,7 +114,8 @@ def declarations(text: str) -> Iterator[Declared]:
                 if pending:
                     yield pending
                     pending = None
-                covering, covered = text_of(found["comment"]), ""
+                above = covering = text_of(found["comment"])
+                covered = ""
             continue
         if kind is None and not match.group().strip():
             continue
@@ -114,28 +123,17 @@ def declarations(text: str) -> Iterator[Declared]:
             yield pending
             pending = None
         if found["blank"] is not None or found["directive"]:
-            covering = ""
+            above = covering = ""
             continue
-        about = next(name for name in ("constant", "members", "struct", "handle", "callback", "function", "blank")
-                     if found[name] is not None or name == "blank")
+        about = next((kind for kind, (_, body, _) in KINDS.items() if found[body] is not None), "")
+        if not about:  # typedef int32_t rdm_result
+            continue
         if covered not in ("", about):
             covering = ""  # it was of another kind of thing
         covered = about if covering else ""
-        common = {"doc": covering, "experimental": match.start() > experimental_from, "result": ""}
-        if found["constant"]:
-            pending = Declared("constant", found["constant"], found["value"].strip(), **common)
-        elif found["members"] is not None:
-            pending = Declared("enum", found["enum"] or "", found["members"], **common)
-        elif found["struct"]:
-            pending = Declared("struct", found["struct"], found["fields"], **common)
-        elif found["handle"]:
-            pending = Declared("handle", found["handle"], "", **common)
-        elif found["callback"]:
-            common["result"] = found["returned"].strip()
-            pending = Declared("callback", found["callback"], found["given"], **common)
-        elif found["function"]:
-            common["result"] = found["result"].strip()
-            pending = Declared("function", found["function"], found["parameters"], **common)
+        name, body, result = (found[part] or "" for part in KINDS[about])
+        pending = Declared(about, name, body, result.strip(), covering,
+                           match.start() > experimental_from, above)
         end_of_last = match.end()
     if pending:
         yield pending
@@ -153,8 +151,8 @@ def variables(text: str) -> list[Variable]:
         match = re.fullmatch(r"((?:const )?\w+) ?(\**)(\w+)(?:\[(\w+)\])?", " ".join(part.split()))
         if not match:
             raise SystemExit(f"redman.h: not a declaration that this script knows: {part!r}")
-        kind, stars, name, count = match.groups()
-        out.append(Variable(name, f"{kind} {stars}".strip(), count or ""))
+        kind, stars, name, length = match.groups()
+        out.append(Variable(name, f"{kind} {stars}".strip(), length or ""))
     return out
 
 
@@ -206,8 +204,8 @@ def shape_of_field(variable: Variable) -> tuple[str, ...]:
 
 
 def shape_of_argument(variable: Variable, doc: str) -> tuple[str, ...]:
-    if variable.count:
-        return (variable.count,)
+    if variable.length:
+        return (variable.length,)
     match = re.search(rf"\b{variable.name} ?{SHAPE}", doc)
     return shape(match[1]) if match else ()
 
@@ -241,7 +239,7 @@ def prefix_of(names: list[str]) -> str:
 
 
 def ctype(variable: Variable, structs: set[str], callbacks: set[str]) -> str:
-    base, stars = variable.base, variable.type.count("*") + bool(variable.count)
+    base, stars = variable.base, variable.type.count("*") + bool(variable.length)
     if base in callbacks:
         return base
     if stars == 0:
@@ -325,22 +323,24 @@ def generate(text: str) -> str:
     callbacks = {d.name for d in found if d.kind == "callback"}
     out = [HEADER]
     for d in found:
-        if d.kind == "constant" and re.fullmatch(r"\d+", d.body):
-            out.append(f"{d.name} = {d.body}{'  # ' + ' '.join(d.doc.split()) if d.doc else ''}\n")
-    out.append("RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH\n\n\n")
+        if d.kind == "constant" and d.body.strip().isdecimal():
+            out.append(f"{d.name} = {d.body.strip()}{'  # ' + ' '.join(d.doc.split()) if d.doc else ''}\n")
+    numbers = [next(d.body for d in found if d.name == f"RDM_VERSION_{part}") for part in ("MAJOR", "MINOR", "PATCH")]
+    out.append("RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH\n"
+               f'VERSION = "{".".join(number.strip() for number in numbers)}"  # that these types are of\n\n\n')
     for d in found:
         if d.kind != "enum":
             continue
+        if not d.name:
+            raise SystemExit(f"redman.h: an enum without a name: {d.body[:60]!r}")
         rows = members(d)
-        if d.name:
-            prefix = prefix_of([name for name, _, _ in rows])
-            out.append(f"class {camel(d.name)}(enum.IntEnum):\n    {quoted(d.doc or d.name, '    ')}\n\n")
-            out += [f"    {name.removeprefix(prefix)} = {value}{'  # ' + doc if doc else ''}\n" for name, value, doc in rows]
-            out.append("\n\n")
-        else:
-            out += [f"{name} = {value}{'  # ' + doc if doc else ''}\n" for name, value, doc in rows]
-            out.append("\n")
-    out.append("\n")
+        prefix = prefix_of([name for name, _, _ in rows])
+        flags = len(rows) > 1 and all(value > 0 and value & (value - 1) == 0 for _, value, _ in rows)
+        about = text_of(match[0].strip()) if (match := re.match(r"\s*" + COMMENT, d.body, re.S)) else d.doc
+        out.append(f"class {camel(d.name)}(enum.{'IntFlag' if flags else 'IntEnum'}):\n"
+                   f"    {quoted(about or d.name, '    ')}\n\n")
+        out += [f"    {name.removeprefix(prefix)} = {value}{'  # ' + doc if doc else ''}\n" for name, value, doc in rows]
+        out.append("\n\n")
     for d in found:
         if d.kind == "callback":
             out.append(f"{d.name} = {prototype(f'{d.result}({d.body})', structs, callbacks)}\n\n\n")
@@ -362,8 +362,9 @@ def generate(text: str) -> str:
             continue
         given = parameters(d.body)
         arguments = ", ".join(f'"{v.name}": {ctype(v, structs, callbacks)}' for v in given)
-        shaped = {v.name: (DTYPES[v.base], shape_of_argument(v, d.doc)) for v in given
-                  if (v.pointer or v.count) and v.base in DTYPES and shape_of_argument(v, d.doc)}
+        words = f"{d.doc}\n{d.above}"
+        shaped = {v.name: (DTYPES[v.base], shape_of_argument(v, words)) for v in given
+                  if (v.pointer or v.length) and v.base in DTYPES and shape_of_argument(v, words)}
         out.append(f'    "{d.name}": Function(\n        {result_type(d.result)}, {{{arguments}}},\n'
                    f'        {rows_text(shaped)}, {d.experimental},\n        {quoted(d.doc, " " * 8)}),\n')
     out.append('''}
@@ -385,9 +386,9 @@ def struct_text(d: Declared, structs: set[str], callbacks: set[str]) -> str:
     for variable, proto in fields(d):
         if proto:
             kind, hint = prototype(proto, structs, callbacks), "Any"
-        elif variable.count:
+        elif variable.length:
             element = SCALARS[variable.base]
-            kind = f"{element} * {variable.count}"
+            kind = f"{element} * {variable.length}"
             hint = "Any"
         else:
             kind = ctype(variable, structs, callbacks)
@@ -412,7 +413,7 @@ def record_text(d: Declared) -> str:
         if variable.name == "struct_size" or variable.name.startswith("reserved"):
             continue
         hint = "str" if variable.base == "char" else RECORD_HINTS.get(SCALARS[variable.base], "int")
-        hint = f"tuple[{hint}, ...]" if variable.count else hint
+        hint = f"tuple[{hint}, ...]" if variable.length else hint
         hint += " | None" if "NULL" in variable.doc and hint == "str" else ""
         doc = " ".join(variable.doc.split())
         lines.append(f"    {variable.name}: {hint}{'  # ' + doc if doc else ''}\n")

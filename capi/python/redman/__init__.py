@@ -10,7 +10,9 @@
 """
 from __future__ import annotations
 
+from ._abi import Autoreset, BaselineKind, OptionKind, ResultCode, ShapeKind, Status
 from ._agent import Agent, Epoch
+from ._curve import Curve, Curves, curve
 from ._discovery import Algo, Field, Option, Robot, Task, algo, algos, build, objects, robots, task, tasks
 from ._error import (AllocationError, ArgumentError, CancelledError, Error, FileError, FormatError, InternalError,
                      MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError,
@@ -18,6 +20,7 @@ from ._error import (AllocationError, ArgumentError, CancelledError, Error, File
 from ._map import Map, sample_furthest
 from ._play import Evaluation, evaluate
 from ._policy import Policy
-from ._pool import SHAPE_KINDS, Pool, Sensors
+from ._pool import Pool, Sensors, memory
+from ._train import Run, train
 
 __version__ = version = build().version

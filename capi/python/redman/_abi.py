@@ -33,10 +33,11 @@ RDM_ABI = 1  # = SONAME; moves only when an old binary would break
 RDM_MAX_COSTS = 16  # cost columns of a task or an agent
 RDM_TEXT_SIZE = 64  # bytes of an option's text value, terminator included
 RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH
+VERSION = "0.1.0"  # that these types are of
 
 
 class ResultCode(enum.IntEnum):
-    """frozen values; positive ones are reserved"""
+    """values of rdm_result"""
 
     OK = 0
     ARGUMENT = -1  # NULL, wrong struct_size, not finite, malformed
@@ -53,11 +54,12 @@ class ResultCode(enum.IntEnum):
     INTERNAL = -99  # a defect of redman
 
 
-class Feature(enum.IntEnum):
-    """halves of the library"""
+class Feature(enum.IntFlag):
+    """The halves of the library: worlds, learners; and frozen policies, which a build may have without the learners."""
 
     SIM = 1
     LEARN = 2
+    POLICY = 4
 
 
 class OptionKind(enum.IntEnum):
@@ -77,8 +79,8 @@ class Autoreset(enum.IntEnum):
     OFF = 2
 
 
-class Status(enum.IntEnum):
-    """When a world begins again by itself: in the step that ended its episode, in the next, or never."""
+class Status(enum.IntFlag):
+    """bits of rdm_buffers.status"""
 
     CONTACTS = 1  # contacts beyond contacts_max were left out
     DIVERGED = 2  # a value was not finite: the episode was truncated
@@ -94,7 +96,7 @@ class BaselineKind(enum.IntEnum):
 
 
 class ShapeKind(enum.IntEnum):
-    """rdm_shape_kind"""
+    """of rdm_shape"""
 
     SPHERE = 0
     CAPSULE = 1
@@ -117,7 +119,6 @@ class MapFormat(enum.IntEnum):
 
     BINARY = 0
     FULL = 1
-
 
 
 class Build(Record):
@@ -1374,7 +1375,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_features": Function(
         c_uint32, {},
         {}, False,
-        """RDM_FEATURE_*: which halves this build has"""),
+        """RDM_FEATURE_*: what this build has"""),
     "rdm_check_abi": Function(
         c_int32, {"abi": c_uint32, "version": c_uint32},
         {}, False,

@@ -1,24 +1,28 @@
 """Agent: one algorithm that acts and learns, on the worlds of a pool or on a world of your own."""
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import threading
+import time
 from ctypes import byref, c_size_t
+from queue import SimpleQueue
 from typing import Any, Callable, Iterator, Mapping, MutableMapping, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _abi, _discovery
+from ._abi import ActMode
 from ._error import ArgumentError, Error, NotFoundError, StateError, error_of
-from ._library import Handle, bytes_of, check, encoded, failure, filled, lib, sized, text
-from ._options import Options, Value, option_array, value_of
+from ._library import Handle, assign, bytes_of, check, encoded, failure, filled, lib, sized, text
+from ._options import Options, Value, laid, option_array, read_settings, settings_of
 from ._policy import Policy
 from ._pool import Pool
 from ._rows import Array, FloatArray, address, given
 from ._tensors import Tensors
 
-_MODES = {"sample": _abi.RDM_SAMPLE, "mean": _abi.RDM_MEAN}
+_MODES = {"sample": ActMode.SAMPLE, "mean": ActMode.MEAN}
 CostLimits = Union[None, float, Sequence[Optional[float]], Mapping[str, Optional[float]]]
 
 
@@ -32,7 +36,9 @@ class _AgentTensors(Tensors, MutableMapping[str, FloatArray]):
     def __setitem__(self, name: str, values: Any) -> None:
         self[name]  # an unknown name is told first
         array = np.ascontiguousarray(values, np.float32)
-        check(lib.rdm_agent_tensor_write(self._owner._open(), encoded(name), array.ctypes.data, array.size))
+        with self._owner._lock:
+            check(lib.rdm_agent_tensor_write(self._owner._open(), encoded(name), array.ctypes.data,
+                                             array.size))
 
     def __delitem__(self, name: str) -> None:
         raise TypeError("tensors cannot be deleted")
@@ -47,7 +53,7 @@ class Agent:
         agent = redman.Agent(obs_dim=3, action_dim=1, num_envs=16, options={"horizon": 64})
         action = agent.act(obs)                         # and after the world's step:
         agent.record(reward, cost, terminated, truncated, final_obs)
-        epoch = agent.update(obs)                       # when agent.missing decisions are 0
+        epoch = agent.update(obs)                       # after option horizon such decisions
 
     cost_limits: of column 0, of each column (None: no limit), or by the names of the pool's costs. A pool brings its
     dimensions, its task's defaults for learners, start pose and limits. One thread at a time; others wait.
@@ -58,7 +64,7 @@ class Agent:
                  obs_dim: Optional[int] = None, action_dim: Optional[int] = None, num_envs: int = 1,
                  cost_dim: int = 1, task: str = "", control_dt: float = 0.0, max_steps: int = 0,
                  layout_hash: int = 0, initial_mean: Any = None) -> None:
-        own: dict[str, Any] = {"algo": algo, "seed": int(seed), "num_threads": int(threads), "options": dict(options or {})}
+        own: dict[str, Any] = {"algo": algo, "seed": seed, "num_threads": threads, "options": dict(options or {})}
         if pool is not None:
             if obs_dim is not None or action_dim is not None:
                 raise ArgumentError("agent: a pool brings its dimensions; give it or them")
@@ -67,17 +73,17 @@ class Agent:
         else:
             if obs_dim is None or action_dim is None:
                 raise ArgumentError("agent: give a pool, or obs_dim and action_dim")
-            own.update(obs_dim=int(obs_dim), action_dim=int(action_dim), num_envs=int(num_envs),
-                       cost_dim=int(cost_dim), task=task, control_dt=float(control_dt), max_steps=int(max_steps),
-                       layout_hash=int(layout_hash), initial_mean=None, defaults={}, cost_limits=None)
-            columns = [f"cost {k}" for k in range(own["cost_dim"])]
+            own.update(obs_dim=obs_dim, action_dim=action_dim, num_envs=num_envs, cost_dim=cost_dim, task=task,
+                       control_dt=float(control_dt), max_steps=max_steps, layout_hash=layout_hash, initial_mean=None,
+                       defaults={}, cost_limits=None)
+            columns = [f"cost {k}" for k in range(cost_dim)]
         if initial_mean is not None:
             own["initial_mean"] = np.broadcast_to(np.asarray(initial_mean, np.float32), own["action_dim"]).copy()
         own["cost_limits"] = _limits(cost_limits, own["cost_limits"], columns)
+        self._lock = threading.RLock()
         self._make(own)
 
     def _make(self, config: dict[str, Any]) -> None:
-        self._lock = threading.RLock()
         self._config = config
         self._handle: Optional[Handle] = _created(config)
         self._a = self._handle.value
@@ -152,34 +158,46 @@ class Agent:
         if threading.current_thread() is not threading.main_thread():
             self._check(call(self._a, *arguments))
             return
+        go: SimpleQueue[None] = SimpleQueue()
         done = threading.Lock()
+        given_up: list[bool] = []
+        ended: list[bool] = []
         failed: list[Error] = []
 
         def work() -> None:
+            go.get()
             try:
-                code = call(self._a, *arguments)
+                code = 0 if given_up else call(self._a, *arguments)
                 if code:
                     failed.append(self._fail(code))  # the text is this thread's
             finally:
+                ended.append(True)
                 done.release()
 
+        thread = threading.Thread(target=work, name="redman", daemon=True)
         done.acquire()
-        threading.Thread(target=work, name="redman", daemon=True).start()
-        try:
+        try:  # a signal may raise behind each of these
+            thread.start()
+            go.put(None)
             done.acquire()
         except BaseException:
-            lib.rdm_agent_cancel(self._a)
-            while True:
-                try:
-                    done.acquire()
-                    break
-                except BaseException:  # once more: it is ending already
-                    continue
-            if not failed:
-                self._renew()
+            given_up.append(True)
+            go.put(None)
+            if thread.ident is not None:  # else it finds that this was given up
+                lib.rdm_agent_cancel(self._a)
+                self._wait(ended)
+                if not failed:
+                    self._renew()
             raise
         if failed:
             raise failed[0]
+
+    @staticmethod
+    def _wait(ended: list[bool]) -> None:
+        """For the end of a call that was cancelled, which more signals do not hasten."""
+        while not ended:
+            with contextlib.suppress(BaseException):
+                time.sleep(0.001)
 
     def _renew(self) -> None:
         """The same agent without the cancel that came too late to be heard."""
@@ -198,13 +216,8 @@ class Agent:
     @property
     def options(self) -> dict[str, Value]:
         """All options of the algorithm as this agent has them."""
-        out: dict[str, Value] = {}
-        for i, info in enumerate(self.algo.options.values()):
-            key = ctypes.c_char_p()
-            shown = ctypes.create_string_buffer(_abi.RDM_TEXT_SIZE)
-            self._check(lib.rdm_agent_option(self._a, i, byref(key), shown))
-            out[text(key.value)] = value_of(info, text(shown.value))
-        return out
+        return read_settings(lib.rdm_agent_settings, self._open(),
+                             {key: option.kind for key, option in self.algo.options.items()})
 
     def set(self, **options: Value) -> None:
         """Changes live options: agent.set(learning_rate=1e-4). Keys with dots: agent.set(**{"a.b": 1})."""
@@ -214,11 +227,11 @@ class Agent:
 
     @property
     def cost_limits(self) -> list[Optional[float]]:
-        """The limit of each cost column, None where there is none."""
-        said = self._config["cost_limits"]
-        if said is None:
-            said = [float(self.options["cost_limit"])] + [-1.0] * (self.cost_dim - 1)
-        return [None if limit < 0 else limit for limit in said[:self.cost_dim]]
+        """The limit of each cost column, None where there is none; option cost_limit is that of column 0."""
+        said = list(self._config["cost_limits"] or [-1.0] * self.cost_dim)
+        if said:
+            said[0] = float(self.options.get("cost_limit", said[0]))
+        return [None if limit < 0 else limit for limit in said]
 
     @property
     def tensors(self) -> _AgentTensors:
@@ -277,6 +290,7 @@ class Agent:
         return {"config": self._config, "state": self.save()}
 
     def __setstate__(self, saved: Mapping[str, Any]) -> None:
+        self._lock = threading.RLock()
         self._make(saved["config"])
         self.load(saved["state"])
 
@@ -308,8 +322,7 @@ def _config_of(pool: Pool) -> dict[str, Any]:
     pointed = {name: np.array(np.ctypeslib.as_array(
         ctypes.cast(getattr(config, name), ctypes.POINTER(np.ctypeslib.as_ctypes_type(rows.dtype))),
         (getattr(config, rows.shape[0]),))) for name, rows in _abi.ROWS["rdm_agent_config"].items() if getattr(config, name)}
-    defaults = {text(row.key): row.number if row.text is None else text(row.text)
-                for row in (config.defaults[i] for i in range(config.num_defaults))}
+    defaults = laid(config.defaults[i] for i in range(config.num_defaults))
     return {"obs_dim": config.obs_dim, "action_dim": config.action_dim, "cost_dim": config.cost_dim,
             "num_envs": config.num_envs, "task": text(config.task), "layout_hash": config.layout_hash,
             "control_dt": config.control_dt, "max_steps": config.max_steps, "defaults": defaults,
@@ -331,13 +344,13 @@ def _limits(wanted: CostLimits, usual: Optional[Array], columns: Sequence[str]) 
                 raise NotFoundError(f"cost_limits: no cost {name}; there are {', '.join(columns)}")
             limits[columns.index(name)] = number(limit)
         return limits
-    if np.ndim(wanted) == 0:
+    if isinstance(wanted, (int, float, np.number)):
         limits = limits or [-1.0] * len(columns)
         if not limits:
             raise ArgumentError("cost_limits: there are no costs")
-        limits[0] = number(wanted)  # type: ignore[arg-type]
+        limits[0] = float(wanted)
         return limits
-    listed = [number(limit) for limit in wanted]  # type: ignore[union-attr]
+    listed = [number(limit) for limit in wanted]
     if len(listed) != len(columns):
         raise ArgumentError(f"cost_limits: {len(listed)} limits for {len(columns)} costs")
     return listed
@@ -347,12 +360,11 @@ def _created(own: Mapping[str, Any]) -> Handle:
     """The agent of a configuration of plain values."""
     config = sized(_abi.rdm_agent_config)
     check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))
-    for name in ("obs_dim", "action_dim", "cost_dim", "num_envs", "num_threads", "seed", "layout_hash", "control_dt",
-                 "max_steps"):
-        setattr(config, name, own[name])
+    assign(config, {name: own[name] for name in ("obs_dim", "action_dim", "cost_dim", "num_envs", "num_threads", "seed",
+                                                 "layout_hash", "control_dt", "max_steps")})
     config.algo, config.task = encoded(own["algo"]), encoded(own["task"])
-    options, defaults = option_array(own["options"]), option_array(own["defaults"])
-    config.options, config.num_options = options, len(options)
+    config.settings = settings_of(own["options"])
+    defaults = option_array(own["defaults"])
     config.defaults, config.num_defaults = defaults, len(defaults)
     arrays = {name: None if own[name] is None else np.ascontiguousarray(own[name], rows.dtype)
               for name, rows in _abi.ROWS["rdm_agent_config"].items()}

@@ -2,13 +2,14 @@
 from __future__ import annotations
 
 import ctypes
-from ctypes import byref, c_int32
+import math
+from ctypes import byref, c_float, c_int32
 from functools import lru_cache
 from typing import Any, Callable, TypeVar
 
 from . import _abi
 from ._library import encoded, filled, check, lib, text
-from ._options import Value, default_of
+from ._options import Value, default_of, laid
 from ._record import Record
 
 R = TypeVar("R", bound=Record)
@@ -25,11 +26,29 @@ class Option(_abi.OptionInfo):
 
 
 class Field(_abi.Field):
-    """A run of observation entries: obs[:, field.slice]."""
+    """A run of observation entries, obs[:, field.slice], and the bounds that they keep; nan: none."""
+
+    low: float
+    high: float
+
+    def __init__(self, struct: _abi.rdm_field, low: float = math.nan, high: float = math.nan) -> None:
+        super().__init__(struct)
+        self.__dict__.update(low=low, high=high)
 
     @property
     def slice(self) -> slice:
         return slice(self.offset, self.offset + self.count)
+
+
+def fields_of(owner: int, count: int, field: Callable[..., int], bounds: Callable[..., int]) -> dict[str, Field]:
+    """All fields of a task or a pool by name."""
+    out = {}
+    low, high = c_float(), c_float()
+    for i in range(count):
+        struct = filled(_abi.rdm_field, field, owner, i)
+        check(bounds(owner, i, byref(low), byref(high)))
+        out[text(struct.name)] = Field(struct, low.value, high.value)
+    return out
 
 
 def _records(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., int], count: int, *before: Any) -> dict[str, R]:
@@ -50,14 +69,12 @@ class Task(_abi.Task):
     def __init__(self, index: int) -> None:
         super().__init__(filled(_abi.rdm_task, lib.rdm_task_at, index))
         said = self.__dict__
-        said["fields"] = _records(Field, _abi.rdm_field, lib.rdm_task_field, self.num_fields, index)
+        said["fields"] = fields_of(index, self.num_fields, lib.rdm_task_field, lib.rdm_task_field_bounds)
         said["costs"] = _records(_abi.Cost, _abi.rdm_cost, lib.rdm_task_cost, self.cost_dim, index)
         said["options"] = _records(Option, _abi.rdm_option_info, lib.rdm_task_option, self.num_options, index)
         said["cameras"] = _records(_abi.Camera, _abi.rdm_camera, lib.rdm_task_camera, self.num_cameras, index)
-        said["defaults"] = {}
-        for i in range(self.num_defaults):
-            row = filled(_abi.rdm_option, lib.rdm_task_default, index, i)
-            said["defaults"][text(row.key)] = row.number if row.text is None else text(row.text)
+        said["defaults"] = laid(
+            filled(_abi.rdm_option, lib.rdm_task_default, index, i) for i in range(self.num_defaults))
 
     def __repr__(self) -> str:
         return f"<Task {self.name}: {self.summary}>"

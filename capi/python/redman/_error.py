@@ -1,73 +1,73 @@
 """What a failed call raises: redman.Error, by its code also the built-in exception that a caller would expect."""
 from __future__ import annotations
 
-from . import _abi
+from ._abi import ResultCode
 
 
 class Error(Exception):
     """A failed call: str(error) is the library's line of text, error.code the rdm_result."""
 
-    code: int = _abi.RDM_INTERNAL
+    code: int = ResultCode.INTERNAL
 
 
 class ArgumentError(Error, ValueError):
     """Not finite, malformed, of the wrong shape."""
 
-    code = _abi.RDM_ARGUMENT
+    code = ResultCode.ARGUMENT
 
 
 class RangeError(Error, ValueError, IndexError):
     """Outside the documented bounds, or an index past the end."""
 
-    code = _abi.RDM_RANGE
+    code = ResultCode.RANGE
 
 
 class StateError(Error, RuntimeError):
     """Calls in the wrong order."""
 
-    code = _abi.RDM_STATE
+    code = ResultCode.STATE
 
 
 class AllocationError(Error, MemoryError):
     """The allocator refused."""
 
-    code = _abi.RDM_MEMORY
+    code = ResultCode.MEMORY
 
 
 class FileError(Error, OSError):
     """The file system refused."""
 
-    code = _abi.RDM_IO
+    code = ResultCode.IO
 
 
 class FormatError(Error, ValueError):
     """Truncated, corrupt or foreign bytes."""
 
-    code = _abi.RDM_FORMAT
+    code = ResultCode.FORMAT
 
 
 class VersionError(Error, ValueError):
     """A newer file or library, or a policy of another task or options."""
 
-    code = _abi.RDM_VERSION_MISMATCH
+    code = ResultCode.VERSION_MISMATCH
 
 
 class UnsupportedError(Error, NotImplementedError):
     """Left out of this build, or not defined for this combination."""
 
-    code = _abi.RDM_UNSUPPORTED
+    code = ResultCode.UNSUPPORTED
 
 
 class PhysicsError(Error, ArithmeticError):
     """The physics engine gave up where no world could be flagged."""
 
-    code = _abi.RDM_PHYSICS
+    code = ResultCode.PHYSICS
 
 
 class NotFoundError(Error, LookupError):
     """An unknown name; the text offers the nearest."""
 
-    code = _abi.RDM_NOT_FOUND
+    code = ResultCode.NOT_FOUND
 
 
 class MissingFileError(NotFoundError, FileNotFoundError):
@@ -77,7 +77,7 @@ class MissingFileError(NotFoundError, FileNotFoundError):
 class CancelledError(Error, RuntimeError):
     """Agent.cancel was called; the agent is good."""
 
-    code = _abi.RDM_CANCELLED
+    code = ResultCode.CANCELLED
 
 
 class InternalError(Error, RuntimeError):

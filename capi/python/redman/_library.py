@@ -2,14 +2,15 @@
 from __future__ import annotations
 
 import ctypes
+import operator
 import os
 import sys
 from ctypes import byref, c_size_t
 from pathlib import Path
-from typing import Any, Callable, TypeVar
+from typing import Any, Callable, Mapping, TypeVar
 
 from . import _abi
-from ._error import Error, error_of
+from ._error import Error, RangeError, error_of
 
 Struct = TypeVar("Struct", bound=ctypes.Structure)
 
@@ -79,8 +80,25 @@ def check(code: int) -> None:
 def sized(kind: type[Struct]) -> Struct:
     """A struct with its struct_size set and everything else 0."""
     value = kind()
-    value.struct_size = ctypes.sizeof(kind)  # type: ignore[attr-defined]
+    value.struct_size = ctypes.sizeof(kind)
     return value
+
+
+def int32(value: Any, name: str) -> int:
+    """An integer argument; ctypes alone would cut off what does not fit."""
+    number = operator.index(value)
+    if not -(1 << 31) <= number < 1 << 31:
+        raise RangeError(f"{name}: {number} is no 32-bit integer")
+    return number
+
+
+def assign(struct: ctypes.Structure, values: Mapping[str, Any]) -> None:
+    """Sets fields; an integer that does not fit is refused."""
+    for name, value in values.items():
+        number = value if isinstance(value, float) else operator.index(value)
+        setattr(struct, name, number)
+        if getattr(struct, name) != number and not isinstance(value, float):
+            raise RangeError(f"{name}: {number} is outside of its range")
 
 
 def filled(kind: type[Struct], call: Callable[..., int], *before: Any) -> Struct:

@@ -11,12 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
+from ._abi import MapFormat
 from ._error import ArgumentError, StateError
-from ._library import Handle, bytes_of, check, encoded, failure, filled, lib, sized
+from ._library import Handle, assign, bytes_of, check, encoded, failure, filled, int32, lib, sized
 from ._pool import Pool
-from ._rows import Array, FloatArray, address, aligned, given
+from ._rows import Array, FloatArray, address, given
 
-_FORMATS = {"bt": _abi.RDM_MAP_BINARY, "ot": _abi.RDM_MAP_FULL}
+_FORMATS = {"bt": MapFormat.BINARY, "ot": MapFormat.FULL}
 
 
 def _points(points: Any, name: str = "points") -> Array:
@@ -42,11 +43,14 @@ class Map:
         self._config: dict[str, float] = {"resolution": resolution, **config}
         struct = sized(_abi.rdm_map_config)
         check(lib.rdm_map_config_init(byref(struct), ctypes.sizeof(struct)))
-        known = {name for name, _ in struct._fields_} - {"struct_size", "reserved", "reserved2", "host", "error", "error_size"}
+        known = {name for name, _ in struct._fields_} - {"struct_size", "reserved", "host", "error", "error_size", "reserved2"}
         for name, value in self._config.items():
             if name not in known:
                 raise TypeError(f"Map: {name!r} is none of {', '.join(sorted(known))}")
-            setattr(struct, name, value)
+            if name == "memory":
+                assign(struct, {name: value})
+            else:
+                setattr(struct, name, float(value))
         self._handle: Optional[Handle] = Handle(lib.rdm_map_create, lib.rdm_map_destroy, byref(struct))
         self._m = self._handle.value
 
@@ -64,6 +68,7 @@ class Map:
         left = np.ascontiguousarray(skip, np.int32)
         dropped = c_uint64()
         name = next(iter(pool.cameras), "") if camera is None else camera
+        env, width, height = int32(env, "env"), int32(width, "width"), int32(height, "height")
         with self._lock, pool._lock:
             self._check(lib.rdm_map_scan(self._m, pool._open(), env, encoded(name), width, height,
                                          address(left) if len(left) else None, len(left), byref(dropped)))
@@ -190,9 +195,10 @@ class Map:
 def sample_furthest(points: Any, wanted: int, start: int = 0) -> npt.NDArray[np.int32]:
     """Numbers of `wanted` of points [count][3] that lie furthest from each other, in order of choice."""
     rows = _points(points)
+    wanted, start = int32(wanted, "wanted"), int32(start, "start")
     chosen = np.empty(max(wanted, 0), np.int32)
     size = lib.rdm_sample_scratch(len(rows))
-    scratch = aligned(size)
+    scratch = np.empty(size, np.uint8)
     check(lib.rdm_sample_furthest(rows.ctypes.data, len(rows), wanted, start, chosen.ctypes.data,
                                   scratch.ctypes.data, size))
     return chosen

@@ -1,43 +1,93 @@
 """Options as a dict: {"object": "egg", "object_mass": 0.05}."""
 from __future__ import annotations
 
-from typing import Any, Mapping, Union
+import ctypes
+from ctypes import byref, c_size_t
+from typing import Any, Callable, Iterable, Mapping, Union
 
 from . import _abi
-from ._library import encoded, text
+from ._abi import OptionKind
+from ._error import ArgumentError
+from ._library import check, encoded, text
 
 Value = Union[str, float, int, bool]
 Options = Mapping[str, Value]
 
 
+def shown(key: str, value: Value) -> str:
+    """A value as the library reads it, exact: true, 0.1, 16, egg."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"option {key}: a number, a flag or a text, not {type(value).__name__}") from None
+    return repr(number)[:-2] if repr(number).endswith(".0") else repr(number)
+
+
+def settings_of(options: Options) -> bytes:
+    """The lines key=value of a config."""
+    lines = []
+    for key, value in options.items():
+        line = f"{key}={shown(key, value)}"
+        if "\n" in line or "=" in key:
+            raise ArgumentError(f"option {key!r}: a key without '=', a value of one line")
+        lines.append(line)
+    return encoded("\n".join(lines))
+
+
 def option_array(options: Options) -> Any:
-    """[len(options)] rdm_option, for a config; it holds its texts."""
+    """[len(options)] rdm_option; it holds its texts."""
     array = (_abi.rdm_option * len(options))()
     for row, (key, value) in zip(array, options.items()):
-        row.key = encoded(key)
-        if isinstance(value, str):
-            row.text = encoded(value)
-        else:
-            try:
-                row.number = float(value)
-            except (TypeError, ValueError):
-                raise TypeError(f"option {key}: a number, a flag or a text, not {type(value).__name__}") from None
+        row.key, row.text = encoded(key), encoded(shown(key, value))
     return array
 
 
-def value_of(info: _abi.rdm_option_info, shown: str) -> Value:
+def read_settings(call: Callable[..., int], handle: Any, kinds: Mapping[str, int]) -> dict[str, Value]:
+    """All options of a pool or an agent, as call(handle, text, capacity, &size) writes them."""
+    size = c_size_t()
+    check(call(handle, None, 0, byref(size)))
+    raw = ctypes.create_string_buffer(size.value + 1)
+    check(call(handle, raw, len(raw), byref(size)))
+    pairs = (line.split("=", 1) for line in text(raw.value).split("\n") if line)
+    return {key: value_of(kinds[key], value) for key, value in pairs}
+
+
+def value_of(kind: int, said: str) -> Value:
     """The text of an option as its kind says."""
-    if info.kind == _abi.RDM_TEXT:
-        return shown
-    if info.kind == _abi.RDM_FLAG:
-        return shown not in ("0", "false", "off", "no")
-    return int(float(shown)) if info.kind == _abi.RDM_INTEGER else float(shown)
+    if kind == OptionKind.TEXT:
+        return said
+    if kind == OptionKind.FLAG:
+        return said == "true"
+    return int(float(said)) if kind == OptionKind.INTEGER else float(said)
 
 
 def default_of(info: _abi.rdm_option_info) -> Value:
     """The default of an option as its kind says."""
-    if info.kind == _abi.RDM_TEXT:
+    if info.kind == OptionKind.TEXT:
         return text(info.text)
-    if info.kind == _abi.RDM_FLAG:
+    if info.kind == OptionKind.FLAG:
         return bool(info.number)
-    return int(info.number) if info.kind == _abi.RDM_INTEGER else info.number
+    return int(info.number) if info.kind == OptionKind.INTEGER else info.number
+
+
+def laid(rows: Iterable[_abi.rdm_option]) -> dict[str, Value]:
+    """Rows in the order in which they are laid over each other: the last of a key counts, and where it stands."""
+    out: dict[str, Value] = {}
+    for row in rows:
+        key = text(row.key)
+        out.pop(key, None)
+        out[key] = row.number if row.text is None else _plain(text(row.text))
+    return out
+
+
+def _plain(said: str) -> Value:
+    """A number where the text is one."""
+    try:
+        number = float(said)
+    except ValueError:
+        return said
+    return int(said) if said.lstrip("-").isdecimal() else number

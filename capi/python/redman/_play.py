@@ -53,8 +53,9 @@ class _Actor:
             return
         due = self._left == 0
         if due.any():
-            decide = self._player.act if isinstance(self._player, Policy) else self._player
-            self._pool.action[due] = np.asarray(decide(self._pool.obs))[due]
+            obs = self._pool.obs
+            decided = self._player.act(obs) if isinstance(self._player, Policy) else self._player(obs)
+            self._pool.action[due] = np.asarray(decided)[due]
             self._left[due] = self._repeat
         self._left -= 1
 
@@ -137,7 +138,7 @@ def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]])
         cost_limits=list(limits))
 
 
-def strip(policy: Policy, frames: int = 6, width: int = 200, height: int = 200) -> Optional[bytes]:
+def strip(policy: Policy, frames: int = 6, width: int = 240, height: int = 180) -> Optional[bytes]:
     """A PNG of moments of an episode, side by side; None where the task cannot be made or shown."""
     if not policy.info.task:
         return None
@@ -153,6 +154,6 @@ def strip(policy: Policy, frames: int = 6, width: int = 200, height: int = 200) 
                 step += 1
                 if step * (frames - 1) >= len(pictures) * pool.max_steps:
                     pictures.append(pool.render(width=width, height=height))
-            return _png.encode(np.concatenate(pictures, axis=1))
+            return _png.row(pictures)
     except Error:
         return None

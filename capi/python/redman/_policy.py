@@ -12,7 +12,7 @@ from . import _abi
 from ._error import ArgumentError, FileError, MissingFileError
 from ._library import Handle, check, filled, lib
 from ._pool import Pool
-from ._rows import FloatArray, aligned, given
+from ._rows import FloatArray, given
 from ._tensors import Tensors
 
 
@@ -69,13 +69,13 @@ class Policy:
             size, scratch = self._scratch(rows)
             check(lib.rdm_policy_act(self._handle.value, seen.ctypes.data, rows,
                                      None if drawn is None else drawn.ctypes.data, action.ctypes.data, scratch, size))
-        return action if observed.ndim == 2 else action[0]
+        return action if observed.ndim == 2 else action.reshape(-1)
 
     def _scratch(self, rows: int) -> tuple[int, int]:
         """Size and address of this thread's memory for so many rows."""
         if getattr(self._local, "rows", None) != rows:
             size = lib.rdm_policy_scratch(self._handle.value, rows)
-            self._local.memory = aligned(size)
+            self._local.memory = np.empty(size, np.uint8)
             self._local.rows, self._local.scratch = rows, (size, self._local.memory.ctypes.data)
         found: tuple[int, int] = self._local.scratch
         return found

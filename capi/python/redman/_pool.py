@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import operator
 import threading
 from ctypes import byref, c_int32, c_size_t, c_uint64
@@ -11,17 +12,17 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi, _discovery, _png
+from ._abi import Autoreset, BaselineKind
 from ._error import ArgumentError, Error, StateError
-from ._library import Handle, check, encoded, failure, filled, lib, sized, text
-from ._options import Options, Value, option_array, value_of
+from ._library import Handle, assign, check, encoded, failure, filled, int32, lib, sized
+from ._options import Options, Value, read_settings, settings_of
 from ._rows import Array, Borrowed, FloatArray, address, given, made, shape_of
 
-_AUTORESET = {"samestep": _abi.RDM_AUTORESET_SAME_STEP, "nextstep": _abi.RDM_AUTORESET_NEXT_STEP,
-              "off": _abi.RDM_AUTORESET_OFF, "disabled": _abi.RDM_AUTORESET_OFF}
+_AUTORESET = {"samestep": Autoreset.SAME_STEP, "nextstep": Autoreset.NEXT_STEP,
+              "off": Autoreset.OFF, "disabled": Autoreset.OFF}
 _AUTORESET_NAMES = ("same_step", "next_step", "off")
-_BASELINE = {"zero": _abi.RDM_BASELINE_ZERO, "hold": _abi.RDM_BASELINE_HOLD, "random": _abi.RDM_BASELINE_RANDOM}
+_BASELINE = {"zero": BaselineKind.ZERO, "hold": BaselineKind.HOLD, "random": BaselineKind.RANDOM}
 _PICTURE = {"rgb": ("uint8", (3,)), "depth": ("float32", ()), "segmentation": ("int32", ())}
-SHAPE_KINDS = ("sphere", "capsule", "box", "cylinder", "plane", "ellipsoid", "hull")
 
 _step = lib["rdm_pool_step"]  # a function of its own, for the one call that is made a million times
 _step.argtypes = [ctypes.c_void_p]
@@ -33,6 +34,26 @@ def _autoreset(mode: object) -> int:
     if named not in _AUTORESET:
         raise ArgumentError(f"autoreset: {mode!r} is none of same_step, next_step, off")
     return _AUTORESET[named]
+
+
+def _struct(own: Mapping[str, Any]) -> _abi.rdm_pool_config:
+    """The config of plain values."""
+    config = sized(_abi.rdm_pool_config)
+    check(lib.rdm_pool_config_init(byref(config), ctypes.sizeof(config)))
+    config.task = encoded(own["task"])
+    assign(config, {"num_envs": own["num_envs"], "seed": own["seed"], "num_threads": own["threads"]})
+    config.autoreset = _autoreset(own["autoreset"])
+    config.settings = settings_of(own["options"])
+    return config
+
+
+def memory(task: str, num_envs: int = 1, options: Optional[Options] = None) -> tuple[int, int]:
+    """Bytes that a pool would take: by the library, exact, and by the physics engine, an estimate."""
+    config = _struct({"task": task, "num_envs": num_envs, "seed": 0, "threads": 0, "autoreset": "same_step",
+                      "options": dict(options or {})})
+    ours, engines = c_size_t(), c_size_t()
+    check(lib.rdm_pool_memory(byref(config), byref(ours), byref(engines)))
+    return ours.value, engines.value
 
 
 class Sensors:
@@ -53,11 +74,8 @@ class Sensors:
         s = filled(_abi.rdm_sensors, lib.rdm_pool_sensors, handle.value)
         self.voxel_size = s.voxel_size
         lengths = {"num_envs": num_envs, "num_cameras": s.num_cameras, "height": s.height, "width": s.width,
-                   "num_points": s.num_points, "num_voxels": s.num_voxels, "x": s.num_voxels, "y": s.num_voxels,
-                   "z": s.num_voxels}
-        table = dict(_abi.ROWS["rdm_sensors"])
-        table.setdefault("segmentation", table["depth"]._replace(dtype="int32"))
-        for name, rows in table.items():
+                   "num_points": s.num_points, "num_voxels": s.num_voxels}
+        for name, rows in _abi.ROWS["rdm_sensors"].items():
             at = getattr(s, name)
             setattr(self, name, Borrowed(at, rows.dtype, shape_of(rows, lengths), handle).array() if at else None)
         self.cameras, self.cloud_cameras = (list(self._cameras(handle, cloud)) for cloud in (0, 1))
@@ -89,17 +107,9 @@ class Pool:
                  options: Optional[Options] = None) -> None:
         self._lock = threading.RLock()
         self._config: dict[str, Any] = {
-            "task": task, "num_envs": int(num_envs), "seed": int(seed), "threads": int(threads),
+            "task": task, "num_envs": num_envs, "seed": seed, "threads": threads,
             "autoreset": _AUTORESET_NAMES[_autoreset(autoreset)], "options": dict(options or {})}
-        config = sized(_abi.rdm_pool_config)
-        check(lib.rdm_pool_config_init(byref(config), ctypes.sizeof(config)))
-        config.task = encoded(task)
-        config.num_envs = num_envs
-        config.seed = seed
-        config.num_threads = threads
-        config.autoreset = _autoreset(autoreset)
-        array = option_array(options or {})
-        config.options, config.num_options = array, len(array)
+        config = _struct(self._config)
         self._handle: Optional[Handle] = Handle(lib.rdm_pool_create, lib.rdm_pool_destroy, byref(config))
         self._p = self._handle.value
         self._spec = filled(_abi.rdm_spec, lib.rdm_pool_get_spec, self._p)
@@ -263,7 +273,7 @@ class Pool:
         """The whole state of one world, or of all (-1)."""
         with self._lock:
             size = c_size_t()
-            self._check(lib.rdm_pool_state_size(self._p, env, byref(size)))
+            self._check(lib.rdm_pool_state_size(self._p, int32(env, "env"), byref(size)))
             raw = ctypes.create_string_buffer(size.value)
             self._check(lib.rdm_pool_get_state(self._p, env, raw, size, byref(size)))
             return raw.raw
@@ -271,13 +281,13 @@ class Pool:
     def set_state(self, state: bytes, env: int = -1) -> None:
         """Goes on from state(): the same bytes follow. Writes obs anew and clears the other rows of that world."""
         with self._lock:
-            self._check(lib.rdm_pool_set_state(self._p, env, bytes(state), len(state)))
+            self._check(lib.rdm_pool_set_state(self._p, int32(env, "env"), bytes(state), len(state)))
 
     def hash(self, env: int = -1) -> str:
         """The hash of the state as the tool prints it, 16 hexadecimal digits."""
         out = c_uint64()
         with self._lock:
-            self._check(lib.rdm_pool_hash(self._p, env, byref(out)))
+            self._check(lib.rdm_pool_hash(self._p, int32(env, "env"), byref(out)))
         return f"{out.value:016x}"
 
     # ---- what a world shows -----------------------------------------------------------------------------------
@@ -295,6 +305,7 @@ class Pool:
             raise ArgumentError(f"what: {what!r} is none of {', '.join(_PICTURE)}")
         if camera is None:
             camera = next(iter(self.task.cameras), "")
+        env, width, height = int32(env, "env"), int32(width, "width"), int32(height, "height")
         dtype, tail = _PICTURE[what]
         fits = 1 <= width <= 8192 and 1 <= height <= 8192  # if not, the call says so
         out = np.empty((height, width, *tail) if fits else 0, dtype)
@@ -309,11 +320,11 @@ class Pool:
             pictures = [self.render(env, width=240, height=180) for env in range(min(4, self.num_envs))]
         except Error:
             return None
-        return _png.encode(np.concatenate(pictures, axis=1))
+        return _png.row(pictures)
 
     @property
     def shapes(self) -> list[_abi.Shape]:
-        """What the scene is made of, the same for all worlds; kind is an index of SHAPE_KINDS."""
+        """What the scene is made of, the same for all worlds; kind is a redman.ShapeKind."""
         return [_abi.Shape(filled(_abi.rdm_shape, lib.rdm_pool_shape, self._open(), i))
                 for i in range(self.spec.num_shapes)]
 
@@ -326,7 +337,15 @@ class Pool:
         """[num_shapes][7] position (m) and quaternion (x, y, z, w) of each shape of one world."""
         out = np.empty((self.spec.num_shapes, 7), np.float32)
         with self._lock:
-            self._check(lib.rdm_pool_poses(self._p, env, out.ctypes.data))
+            self._check(lib.rdm_pool_poses(self._p, int32(env, "env"), out.ctypes.data))
+        return out
+
+    def hull(self, shape: int) -> FloatArray:
+        """[count][3] corners of a shape that is a hull, in its own frame, m."""
+        count = c_int32()
+        self._check(lib.rdm_pool_hull(self._open(), int32(shape, "shape"), None, 0, byref(count)))
+        out = np.empty((count.value, 3), np.float32)
+        self._check(lib.rdm_pool_hull(self._p, shape, out.ctypes.data, len(out), byref(count)))
         return out
 
     def contacts(self, env: int = 0) -> Array:
@@ -336,7 +355,7 @@ class Pool:
         with self._lock:
             while True:
                 rows = out.ctypes.data_as(ctypes.POINTER(_abi.rdm_contact))
-                self._check(lib.rdm_pool_contacts(self._p, env, rows, len(out), byref(count)))
+                self._check(lib.rdm_pool_contacts(self._p, int32(env, "env"), rows, len(out), byref(count)))
                 if count.value <= len(out):
                     return out[:count.value]
                 out = np.empty(count.value, out.dtype)
@@ -350,7 +369,7 @@ class Pool:
             shape = names.index(shape)
         rows = given(force, _abi.FUNCTIONS["rdm_pool_push"].rows["force"], self._lengths, "force")
         with self._lock:
-            self._check(lib.rdm_pool_push(self._p, env, shape, rows.ctypes.data))
+            self._check(lib.rdm_pool_push(self._p, int32(env, "env"), int32(shape, "shape"), rows.ctypes.data))
 
     @property
     def sensors(self) -> Sensors:
@@ -369,9 +388,25 @@ class Pool:
     @property
     def fields(self) -> dict[str, _discovery.Field]:
         """What each entry of obs means, with this pool's options."""
-        rows = (_discovery.Field(filled(_abi.rdm_field, lib.rdm_pool_field, self._open(), i))
-                for i in range(self.spec.num_fields))
-        return {row.name: row for row in rows}
+        return _discovery.fields_of(self._open(), self.spec.num_fields, lib.rdm_pool_field, lib.rdm_pool_field_bounds)
+
+    @property
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """Lowest and highest value of each entry of an observation, infinite where there is no bound."""
+        low, high = np.full(self.obs_dim, -np.inf, np.float32), np.full(self.obs_dim, np.inf, np.float32)
+        for field in self.fields.values():
+            if not math.isnan(field.low):
+                low[field.slice] = field.low
+            if not math.isnan(field.high):
+                high[field.slice] = field.high
+        return low, high
+
+    @property
+    def initial_mean(self) -> FloatArray:
+        """[action_dim] the mean action that a new policy starts from: the task's start pose."""
+        out = np.empty(self.action_dim, np.float32)
+        self._check(lib.rdm_pool_initial_mean(self._p, out.ctypes.data))
+        return out
 
     @property
     def costs(self) -> dict[str, _abi.Cost]:
@@ -381,13 +416,8 @@ class Pool:
     @property
     def options(self) -> dict[str, Value]:
         """All options of the task as this pool has them."""
-        out: dict[str, Value] = {}
-        for i, info in enumerate(self.task.options.values()):
-            key = ctypes.c_char_p()
-            shown = ctypes.create_string_buffer(_abi.RDM_TEXT_SIZE)
-            self._check(lib.rdm_pool_option(self._p, i, byref(key), shown))
-            out[text(key.value)] = value_of(info, text(shown.value))
-        return out
+        return read_settings(lib.rdm_pool_settings, self._open(),
+                             {key: option.kind for key, option in self.task.options.items()})
 
     @property
     def autoreset(self) -> str:

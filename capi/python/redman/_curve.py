@@ -1,0 +1,181 @@
+"""Learning curves: the columns of progress.csv, drawn as SVG without any other library."""
+from __future__ import annotations
+
+import json
+import math
+import os
+from pathlib import Path
+from typing import Any, Iterable, Iterator, Mapping, Optional, Sequence, Union
+from xml.sax.saxutils import escape
+
+import numpy as np
+import numpy.typing as npt
+
+from ._error import FormatError, MissingFileError
+
+Column = npt.NDArray[np.float64]
+# Okabe and Ito's colours, told apart by most eyes.
+_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555")
+_WIDTH, _HEIGHT, _LEFT, _TOP, _RIGHT, _BOTTOM = 300, 190, 56, 30, 20, 54  # of a panel, and around it
+
+
+class Curve(Mapping[str, Column]):
+    """Columns by name ("TotalEnvSteps", "Metrics/EpRet", ...), a row for each epoch; draws itself in a notebook."""
+
+    def __init__(self, columns: Mapping[str, Any], label: str = "", limit: Optional[float] = None) -> None:
+        self._columns = {name: np.asarray(values, np.float64) for name, values in columns.items()}
+        self.label = label
+        self.limit = limit  # of the first cost
+
+    def __getitem__(self, name: str) -> Column:
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    @property
+    def steps(self) -> Column:
+        """Control steps so far, all worlds."""
+        return self["TotalEnvSteps"]
+
+    @property
+    def returns(self) -> Column:
+        """Mean return of the last episodes."""
+        return self["Metrics/EpRet"]
+
+    @property
+    def costs(self) -> Column:
+        """Mean cost of the last episodes, column 0."""
+        return self["Metrics/EpCost"]
+
+    def _repr_svg_(self) -> str:
+        return draw([self])
+
+    def save(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Writes the picture as an SVG file."""
+        Path(path).write_text(self._repr_svg_(), encoding="utf-8")
+
+    def __repr__(self) -> str:
+        return f"<Curve {self.label}: {len(self.steps)} epochs>"
+
+
+class Curves(Sequence[Curve]):
+    """Several runs in one picture."""
+
+    def __init__(self, curves: Iterable[Curve]) -> None:
+        self._curves = list(curves)
+
+    def __getitem__(self, i: Any) -> Any:
+        return self._curves[i]
+
+    def __len__(self) -> int:
+        return len(self._curves)
+
+    def _repr_svg_(self) -> str:
+        return draw(self._curves)
+
+    def save(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Writes the picture as an SVG file."""
+        Path(path).write_text(self._repr_svg_(), encoding="utf-8")
+
+
+def read(folder: Union[str, os.PathLike[str]]) -> Curve:
+    """The curve of one run folder. A row that a kill left unfinished is left out."""
+    path = Path(folder)
+    try:
+        lines = (path / "progress.csv").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError as error:
+        raise MissingFileError(f"{path} is no run folder: progress.csv: {error.strerror}") from None
+    names = lines[0].split(",") if lines else []
+    if "TotalEnvSteps" not in names:
+        raise FormatError(f"{path}/progress.csv: no column TotalEnvSteps")
+    rows = [cells for cells in (line.split(",") for line in lines[1:]) if len(cells) == len(names)]
+    try:
+        table = np.array(rows, dtype=np.float64).reshape(len(rows), len(names))
+    except ValueError as error:
+        raise FormatError(f"{path}/progress.csv: {error}") from None
+    label, limit = path.name, None
+    try:
+        config = json.loads((path / "config.json").read_text(encoding="utf-8"))
+        label = f"{config['task']} {config['algo']} seed {config['seed']}"
+        limit = config["cost_limits"].get("cost")
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        pass  # the columns alone are a curve too
+    return Curve({name: table[:, i] for i, name in enumerate(names)}, label, limit)
+
+
+def curve(*folders: Union[str, os.PathLike[str]]) -> Union[Curve, Curves]:
+    """The curve of a run folder, or several in one picture."""
+    curves = [read(folder) for folder in folders]
+    return curves[0] if len(curves) == 1 else Curves(curves)
+
+
+def _ticks(low: float, high: float) -> list[float]:
+    """About five round numbers that span low to high."""
+    if not high > low:
+        low, high = low - 0.5, high + 0.5
+    raw = (high - low) / 5
+    power = 10.0 ** math.floor(math.log10(raw))
+    step = next(factor * power for factor in (1, 2, 5, 10) if raw <= factor * power)
+    first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
+    return [i * step for i in range(first, last + 1)]
+
+
+def _number(value: float) -> str:
+    for size, unit in ((1e9, " G"), (1e6, " M"), (1e3, " k")):
+        if abs(value) >= size:
+            return f"{value / size:g}{unit}"
+    return f"{value:g}"
+
+
+def _panel(title: str, column: str, curves: Sequence[Curve], limit: Optional[float], at: float) -> str:
+    drawn = []
+    for number, one in enumerate(curves):
+        if column in one:
+            good = np.isfinite(one[column]) & np.isfinite(one.steps)
+            drawn.append((number, one.steps[good], one[column][good]))
+    values = np.concatenate([y for _, _, y in drawn] + [np.array([limit] if limit is not None else [])])
+    steps = np.concatenate([x for _, x, _ in drawn] + [np.zeros(1)])
+    ticks = _ticks(float(values.min()), float(values.max())) if len(values) else [0.0, 1.0]
+    most = max(float(steps.max()), 1.0)
+    across = [x for x in _ticks(0.0, most) if x <= most]
+
+    def x_of(x: Any) -> Any:
+        return at + _LEFT + x / most * _WIDTH
+
+    def y_of(y: Any) -> Any:
+        return _TOP + _HEIGHT - (y - ticks[0]) / (ticks[-1] - ticks[0]) * _HEIGHT
+
+    left, right, bottom = at + _LEFT, at + _LEFT + _WIDTH, _TOP + _HEIGHT
+    out = [f'<text x="{left}" y="{_TOP - 10}" font-weight="bold">{escape(title)}</text>']
+    for y in ticks:
+        out.append(f'<path d="M{left} {y_of(y):.1f}H{right}" stroke="#ddd"/>'
+                   f'<text x="{left - 6}" y="{y_of(y) + 4:.1f}" text-anchor="end">{_number(y)}</text>')
+    for x in across:
+        out.append(f'<text x="{x_of(x):.1f}" y="{bottom + 16}" text-anchor="middle">{_number(x)}</text>')
+    out.append(f'<text x="{left + _WIDTH / 2}" y="{bottom + 32}" text-anchor="middle">control steps</text>')
+    if limit is not None:
+        out.append(f'<path d="M{left} {y_of(limit):.1f}H{right}" stroke="#555" stroke-dasharray="5 4"/>')
+    for number, xs, ys in drawn:
+        points = " ".join(f"{x:.1f},{y:.1f}" for x, y in zip(x_of(xs), y_of(ys)))
+        out.append(f'<polyline points="{points}" fill="none" stroke="{_COLORS[number % len(_COLORS)]}" stroke-width="1.5"/>')
+    return "".join(out)
+
+
+def draw(curves: Sequence[Curve]) -> str:
+    """Return and cost over control steps as an SVG; the dashed line is the limit."""
+    limits = {one.limit for one in curves}
+    limit = limits.pop() if len(limits) == 1 else None
+    width = _LEFT + _WIDTH + _RIGHT
+    height = _TOP + _HEIGHT + _BOTTOM + 18 * len(curves)
+    legend = "".join(
+        f'<path d="M{_LEFT} {_TOP + _HEIGHT + _BOTTOM + 18 * i}h24" stroke="{_COLORS[i % len(_COLORS)]}" stroke-width="2"/>'
+        f'<text x="{_LEFT + 32}" y="{_TOP + _HEIGHT + _BOTTOM + 18 * i + 4}">{escape(one.label)}</text>'
+        for i, one in enumerate(curves))
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * width}" height="{height}" '
+            f'font-family="sans-serif" font-size="11" fill="#222"><rect width="100%" height="100%" fill="#fff"/>'
+            + _panel("return", "Metrics/EpRet", curves, None, 0)
+            + _panel("cost", "Metrics/EpCost", curves, limit, width) + legend + "</svg>")

@@ -1,0 +1,342 @@
+"""train: a run from first step to kept policy, with the run folder of the command-line tool."""
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import json
+import math
+import os
+import signal
+import sys
+import threading
+import time
+from ctypes import byref
+from pathlib import Path
+from typing import Any, Callable, Iterator, NamedTuple, Optional, Union
+
+import numpy as np
+
+from . import _abi, _discovery
+from ._agent import Agent, CostLimits, Epoch
+from ._curve import Curve
+from ._error import ArgumentError, FileError, NotFoundError, StateError
+from ._library import check, encoded, lib
+from ._options import Options, Value, shown
+from ._play import Evaluation, evaluate, play, summary
+from ._policy import Policy
+from ._pool import Pool
+
+_SELECTION_EPISODES = 20  # of an evaluation during training
+_REPORT_SEED = 1_000_000  # reports play the episodes of seed + this
+Callback = Callable[[Epoch], Any]
+
+
+class _Score(NamedTuple):
+    """How good an evaluation was; the greater the better."""
+
+    feasible: bool
+    excess: float  # minus the sum of limited costs above their limits, as shares of them
+    ret: float
+
+
+def _score(e: Evaluation) -> _Score:
+    """A cost counts as its mean and a standard error of it: the best of many noisy evaluations is one that came out
+    too low."""
+    feasible, excess = True, 0.0
+    for mean, deviation, limit in zip(e.cost_mean, e.cost_std, e.cost_limits):
+        if limit is not None:
+            over = mean + deviation / math.sqrt(e.episodes - 1) - limit
+            feasible = feasible and over <= 0
+            excess += max(0.0, over) / max(limit, 1.0)
+    return _Score(feasible, 0.0 if feasible else -excess, e.return_mean)
+
+
+class Run:
+    """A finished run: policy (the best feasible one), curve, agent (its last state), folder, env_steps, seconds."""
+
+    def __init__(self, task: str, algo: str, seed: int, options: dict[str, Value], agent: Agent) -> None:
+        self.task, self.algo, self.seed, self.options, self.agent = task, algo, seed, options, agent
+        self.policy: Policy = agent.policy()
+        self.folder: Optional[Path] = None
+        self.env_steps = 0
+        self.seconds = 0.0
+        self.interrupted = False
+        self._rows: dict[str, list[float]] = {}
+
+    @property
+    def curve(self) -> Curve:
+        """Progress of the epochs."""
+        return Curve(self._rows, f"{self.task} {self.algo} seed {self.seed}", self.agent.cost_limits[0])
+
+    def evaluate(self, episodes: int = 100, num_envs: int = 16) -> Evaluation:
+        """The policy on episodes that it was not chosen by."""
+        return evaluate(self.policy, self.task, episodes, num_envs, self.seed + _REPORT_SEED, options=self.options,
+                        cost_limits=self.agent.cost_limits)
+
+    def _repr_svg_(self) -> str:
+        return self.curve._repr_svg_()
+
+    def __repr__(self) -> str:
+        return f"<Run {self.task} {self.algo} seed {self.seed}: {self.env_steps} steps in {self.seconds:.0f} s>"
+
+
+def _folded(key: str) -> str:
+    return key.lower().replace("-", "_")
+
+
+def split_options(task: str, algo: str, options: Options) -> tuple[dict[str, Value], dict[str, Value]]:
+    """Options of the task and those of the algorithm; a key of both goes to both."""
+    of_task, of_algo = ({_folded(key) for key in table}
+                        for table in (_discovery.task(task).options, _discovery.algo(algo).options))
+    for key in options:
+        if _folded(key) not in of_task | of_algo:
+            raise NotFoundError(f"option {key}: neither task {task} nor algorithm {algo} has it")
+    return ({key: value for key, value in options.items() if _folded(key) in of_task},
+            {key: value for key, value in options.items() if _folded(key) in of_algo})
+
+
+def _handles_costs(algo: str, columns: int) -> bool:
+    """An algorithm that handles costs refuses to work without a limit."""
+    config = _abi.rdm_agent_config()
+    check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))
+    none = np.full(columns, -1.0)
+    config.obs_dim = config.action_dim = config.num_envs = 1
+    config.cost_dim, config.algo, config.cost_limits = columns, encoded(algo), none.ctypes.data
+    size = ctypes.c_size_t()
+    return bool(lib.rdm_agent_memory(byref(config), byref(size)))
+
+
+class _Meter:
+    """One line of progress on stderr: rewritten on a terminal and in a notebook, else one every ten seconds."""
+
+    def __init__(self, goal: int) -> None:
+        self._goal, self._begin, self._shown = goal, time.monotonic(), 0.0
+        self._live = sys.stderr.isatty() or "ipykernel" in sys.modules
+
+    def show(self, e: Epoch) -> None:
+        now = time.monotonic()
+        last = e.env_steps >= self._goal
+        if not last and now - self._shown < (0.2 if self._live else 10):
+            return
+        self._shown = now
+        rate = e.env_steps / max(now - self._begin, 1e-9)
+        left = int(max(self._goal - e.env_steps, 0) / max(rate, 1e-9))
+        line = (f"{min(100, 100 * e.env_steps / self._goal):3.0f}%  {e.env_steps} steps  return {e.ret:.2f}  "
+                f"cost {e.cost[0]:.2f}  length {e.length:.0f}  falls {100 * e.fall_rate:.0f}%  {rate:.0f} steps/s  "
+                f"{left // 60}:{left % 60:02d} left")
+        sys.stderr.write(f"\r{line}\x1b[K" + ("\n" if last else "") if self._live else f"{line}\n")
+        sys.stderr.flush()
+
+
+@contextlib.contextmanager
+def _ends_after_epoch() -> Iterator[list[int]]:
+    """The first Ctrl-C is counted, the next raise KeyboardInterrupt as ever."""
+    heard: list[int] = []
+    own = (threading.current_thread() is threading.main_thread()
+           and signal.getsignal(signal.SIGINT) is signal.default_int_handler)
+
+    def hear(number: int, frame: Any) -> None:
+        heard.append(number)
+        if len(heard) > 1:
+            signal.default_int_handler(number, frame)
+
+    if own:
+        signal.signal(signal.SIGINT, hear)
+    try:
+        yield heard
+    finally:
+        if own:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _row(e: Epoch, costs: list[str], limits: list[Optional[float]], steps: int, tested: tuple[float, float],
+         times: tuple[float, float, float]) -> dict[str, float]:
+    """A row of progress.csv."""
+    def episodic(value: float) -> float:
+        return value if e.episodes > 0 else math.nan
+
+    def named(text: str, k: int) -> str:
+        return text if k == 0 else f"{text}/{costs[k]}"
+
+    row: dict[str, float] = {"Train/Epoch": e.epoch, "Train/TotalSteps": e.env_steps, "TotalEnvSteps": e.env_steps,
+                             "Metrics/EpRet": episodic(e.ret)}
+    row.update((named("Metrics/EpCost", k), episodic(e.cost[k])) for k in range(len(costs)))
+    row.update({"Metrics/EpLen": episodic(e.length), "Metrics/FallRate": episodic(e.fall_rate),
+                "Metrics/SuccessRate": episodic(e.success_rate), "Metrics/CostPerStep": episodic(e.cost_per_step),
+                "Metrics/Episodes": e.episodes})
+    row.update((named("Metrics/LagrangeMultiplier", k), e.multiplier[k]) for k in range(len(costs))
+               if k == 0 or limits[k] is not None)
+    row.update({
+        "Train/KL": e.kl, "Train/LR": e.learning_rate, "Train/Entropy": e.entropy, "Train/PolicyStd": e.action_std,
+        "Train/ClipFraction": e.clip_fraction, "Train/StopIter": e.passes, "Loss/Loss_pi": e.loss_policy,
+        "Loss/Loss_reward_critic": e.loss_reward_value, "Loss/Loss_cost_critic": e.loss_cost_value,
+        "Value/reward": e.value_reward, "Value/cost": e.value_cost, "Metrics/TestEpRet": tested[0],
+        "Metrics/TestEpCost": tested[1], "Time/Epoch": times[0], "Time/Evaluation": times[1],
+        "Time/FPS": steps / times[0], "Time/Total": times[2]})
+    return row
+
+
+class _Folder:
+    """A run folder that `redman eval`, `plot` and `train --resume` take: whole files or none, locked while it is
+    written."""
+
+    def __init__(self, path: Union[str, os.PathLike[str]], overwrite: bool) -> None:
+        self.path = Path(path)
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            self._lock = os.open(self.path, os.O_RDONLY)
+        except OSError as error:
+            raise FileError(f"cannot make folder {self.path}: {error.strerror}") from None
+        try:
+            import fcntl
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            self.close()
+            raise StateError(f"another process is training in {self.path}") from None
+        except (ImportError, OSError):
+            pass  # a system or a file system without locks
+        if (self.path / "config.json").exists() and not overwrite:
+            self.close()
+            raise StateError(f"{self.path} holds a run already: say overwrite=True, or another folder")
+        self.progress_bytes = 0
+
+    def close(self) -> None:
+        os.close(self._lock)
+
+    def write(self, name: str, data: bytes) -> None:
+        temporary = self.path / f"{name}.part"
+        temporary.write_bytes(data)
+        os.replace(temporary, self.path / name)
+
+    def begin(self, config: dict[str, Any], header: str, policy: bytes) -> None:
+        for old in ("checkpoint.rdm", "config.json"):
+            with contextlib.suppress(FileNotFoundError):
+                (self.path / old).unlink()
+        self.write("progress.csv", f"{header}\n".encode())
+        self.write("policy.rdm", policy)
+        self.write("config.json", (json.dumps(config, indent=2) + "\n").encode())
+
+    def append(self, row: str) -> None:
+        with open(self.path / "progress.csv", "ab") as file:
+            file.write(f"{row}\n".encode())
+            self.progress_bytes = file.tell()
+
+
+def _config(run: Run, pool: Pool, of_task: dict[str, Value], of_algo: dict[str, Value], steps: int, threads: int,
+            eval_every: int, per_epoch: int) -> dict[str, Any]:
+    """config.json: what the run was asked for, with the defaults written out."""
+    limits = dict(zip(pool.costs, run.agent.cost_limits))
+    return {
+        "exp_name": f"{run.task}-{run.algo}-seed-{run.seed}", "task": run.task, "algo": run.algo, "seed": run.seed,
+        "set": [f"{key}={shown(key, value)}" for key, value in of_task.items()],
+        "set_algo": [f"{key}={shown(key, value)}" for key, value in of_algo.items()],
+        "set_cost_limit": [f"{name}={shown(name, -1 if limit is None else limit)}" for name, limit in limits.items()],
+        "cost_limits": {name: limit for name, limit in limits.items() if limit is not None},
+        "train_cfgs": {"total_steps": steps, "vector_env_nums": pool.num_envs, "threads": threads,
+                       "eval_every": eval_every, "checkpoint_every": eval_every},
+        "algo_cfgs": {**{key: shown(key, value) for key, value in run.agent.options.items()}, "steps_per_epoch": per_epoch},
+        "env_cfgs": {key: shown(key, value) for key, value in pool.options.items()},
+        "obs_dim": pool.obs_dim, "action_dim": pool.action_dim, "layout_hash": f"{pool.spec.layout_hash:016x}",
+        "build": dict(vars(_discovery.build()))}
+
+
+def _note(e: Epoch, folder: _Folder, seconds: float, tested: tuple[float, float], best: Optional[_Score],
+          policy: Policy) -> bytes:
+    """What a checkpoint says beside the states: a line of JSON, then the best policy."""
+    said: dict[str, Any] = {"epoch": e.epoch, "env_steps": e.env_steps, "progress_bytes": folder.progress_bytes,
+                            "seconds": seconds}
+    if best is None:
+        return f"{json.dumps(said)}\n".encode()
+    said["last"] = list(tested)
+    said["best"] = [best.feasible, best.ret, -best.excess]
+    return f"{json.dumps(said)}\n".encode() + bytes(policy)
+
+
+def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, envs: int = 64, threads: int = 0,
+          options: Optional[Options] = None, cost_limits: CostLimits = None,
+          out: Union[None, str, os.PathLike[str]] = None, callback: Optional[Callback] = None, eval_every: int = 10,
+          progress: bool = True, overwrite: bool = False) -> Run:
+    """Trains a policy on a task, as `redman train` does: the same arguments give the same policy.
+
+    steps are control steps of all worlds together; options are those of the task and of the algorithm. Every
+    eval_every epochs twenty episodes decide which policy is kept: the best that stays within the limits, else the
+    one that comes nearest. out makes a run folder. callback(epoch) is called after each epoch; a true answer ends the run.
+    The first Ctrl-C ends it after this epoch, and what has been learned is returned; the second at once.
+    """
+    goal = int(steps)
+    if goal < 1 or goal != steps:
+        raise ArgumentError(f"steps: {steps} is not a whole number above 0")
+    if eval_every < 1:
+        raise ArgumentError("eval_every: 1 or more")
+    asked = dict(options or {})
+    for key in [key for key in asked if _folded(key) == "cost_limit"]:
+        cost_limits = float(asked.pop(key)) if cost_limits is None else cost_limits
+    of_task, of_algo = split_options(task, algo, asked)
+    pool = Pool(task, envs, seed, threads, options=of_task)
+    judge = Pool(task, _SELECTION_EPISODES, seed, threads, autoreset="off", options=of_task)
+    agent = Agent(pool, algo, seed, threads, of_algo, cost_limits)
+    run = Run(pool.task.name, agent.algo.name, seed, of_task, agent)
+    settings = agent.options
+    per_epoch = envs * int(settings["horizon"]) * int(settings["action_repeat"])
+    pool.reset()
+    if "total_epochs" not in map(_folded, of_algo):  # a rate that falls to 0 does so over this run
+        agent.set(total_epochs=max(1, math.ceil(goal / per_epoch)))
+    limits = agent.cost_limits
+    counted = limits if _handles_costs(run.algo, pool.cost_dim) else [None] * len(limits)
+    seeds = [1 << 63 | (seed * _SELECTION_EPISODES + i) % (1 << 63) for i in range(_SELECTION_EPISODES)]
+    names = list(pool.costs)
+    meter = _Meter(goal) if progress else None
+    best: Optional[_Score] = None
+    tested = (math.nan, math.nan)
+    epoch: Optional[Epoch] = None
+
+    def judged(policy: Policy) -> tuple[_Score, tuple[float, float]]:
+        judge.reset(seeds)
+        e = summary(play(judge, policy, _SELECTION_EPISODES), counted)
+        return _score(e), (e.return_mean, e.cost_mean[0] if e.cost_mean else 0.0)
+
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(judge)
+        stack.enter_context(pool)
+        folder = None if out is None else _Folder(out, overwrite)
+        if folder:
+            stack.callback(folder.close)
+            run.folder = folder.path
+            blank = _row(Epoch(_abi.rdm_epoch()), names, limits, 0, tested, (1.0, 0.0, 0.0))
+            folder.begin(_config(run, pool, of_task, of_algo, goal, threads, eval_every, per_epoch), ",".join(blank),
+                         bytes(run.policy))
+        heard = stack.enter_context(_ends_after_epoch())
+        stopped = False
+        while run.env_steps < goal and not stopped:
+            began = time.perf_counter()
+            epoch = agent.rollout(pool)
+            learned = time.perf_counter() - began
+            evaluated = 0.0
+            if epoch.epoch % eval_every == 0:
+                policy = agent.policy()
+                score, tested = judged(policy)
+                if best is None or score > best:
+                    best, run.policy = score, policy
+                    if folder:
+                        folder.write("policy.rdm", bytes(policy))
+                evaluated = time.perf_counter() - began - learned
+            run.seconds += time.perf_counter() - began
+            row = _row(epoch, names, limits, epoch.env_steps - run.env_steps, tested, (learned, evaluated, run.seconds))
+            run.env_steps = epoch.env_steps
+            for name, value in row.items():
+                run._rows.setdefault(name, []).append(value)
+            stopped = bool(heard) or bool(callback and callback(epoch))
+            if folder:
+                folder.append(",".join("nan" if math.isnan(value) else f"{value:.9g}" for value in row.values()))
+                if epoch.epoch % eval_every == 0 or stopped or run.env_steps >= goal:
+                    agent.write_checkpoint(folder.path / "checkpoint.rdm", pool,
+                                           _note(epoch, folder, run.seconds, tested, best, run.policy))
+            if meter:
+                meter.show(epoch)
+        run.interrupted = run.env_steps < goal
+        last = agent.policy()
+        if epoch and (best is None or epoch.epoch % eval_every and judged(last)[0] > best):
+            run.policy = last
+        if folder:
+            folder.write("policy.rdm", bytes(run.policy))
+    return run

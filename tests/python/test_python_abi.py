@@ -1,0 +1,104 @@
+"""The generated types are what the headers, the layout file and the symbol lists say."""
+import ctypes
+import importlib.util
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import redman
+from redman import _abi
+from redman._library import lib
+
+TREE = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TREE / "capi" / "python"))
+import generate_abi  # noqa: E402
+
+
+class Abi(unittest.TestCase):
+    def test_generating_again_gives_the_committed_file(self):
+        again = generate_abi.generate((TREE / "include/redman/redman.h").read_text(encoding="utf-8"))
+        self.assertEqual(again, generate_abi.OUTPUT.read_text(encoding="utf-8"), "run capi/python/generate_abi.py")
+
+    def test_structs_have_the_recorded_layout(self):
+        recorded = (TREE / "capi/layout.golden").read_text().split("\n")
+        ours = []
+        for name, struct in _abi.STRUCTS.items():
+            for field, _ in struct._fields_:
+                place = getattr(struct, field)
+                ours.append(f"{name}.{field} {place.offset} {place.size}")
+            ours.append(f"{name} {ctypes.sizeof(struct)}")
+        self.assertEqual(sorted(line for line in recorded if line), sorted(ours))
+
+    def test_every_exported_function_has_a_signature_and_words(self):
+        for part, experimental in (("redman", False), ("redman_experimental", True)):
+            listed = (TREE / f"capi/{part}.symbols").read_text().split()
+            ours = [name for name, f in _abi.FUNCTIONS.items() if f.experimental == experimental]
+            self.assertEqual(sorted(listed), sorted(ours))
+        for name, function in _abi.FUNCTIONS.items():
+            self.assertTrue(function.doc, name)
+            self.assertEqual(getattr(lib, name).argtypes, list(function.arguments.values()), name)
+
+    def test_a_function_or_member_that_is_added_to_the_header_arrives(self):
+        header = (TREE / "include/redman/redman.h").read_text(encoding="utf-8")
+        header = header.replace("} rdm_camera;", "  float roll[2]; /* [2] rad */\n} rdm_camera;")
+        header = header.replace("RDM_API uint32_t rdm_features(void);",
+                                "/* Adds row [n] to out [n][2]. */\n"
+                                "RDM_API rdm_result rdm_new(const double *row, int32_t n, float *out);\n"
+                                "RDM_API uint32_t rdm_features(void);")
+        scope = {"__name__": "redman._abi", "__package__": "redman"}
+        exec(compile(generate_abi.generate(header), "new", "exec"), scope)
+        self.assertEqual(ctypes.sizeof(scope["rdm_camera"]), ctypes.sizeof(_abi.rdm_camera) + 8)
+        new = scope["FUNCTIONS"]["rdm_new"]
+        self.assertEqual({name: (rows.dtype, rows.shape) for name, rows in new.rows.items()},
+                         {"row": ("float64", ("n",)), "out": ("float32", ("n", "2"))})
+        self.assertEqual(new.doc, "Adds row [n] to out [n][2].")
+        with self.assertRaisesRegex(SystemExit, "not a declaration"):
+            generate_abi.generate(header.replace("RDM_API uint32_t rdm_version(void);", "RDM_API what is this;"))
+
+    def test_every_row_of_the_header_has_a_shape(self):
+        for struct in ("rdm_buffers", "rdm_transition", "rdm_sensors"):
+            pointers = [name for name, kind in _abi.STRUCTS[struct]._fields_
+                        if kind is ctypes.c_void_p and name != "reserved_pointer"]
+            self.assertEqual(sorted(pointers), sorted(_abi.ROWS[struct]), struct)
+
+    def test_records_hold_what_the_structs_hold(self):
+        build = redman.build()
+        self.assertEqual(build.version, redman.version)
+        self.assertEqual(build.abi, _abi.RDM_ABI)
+        with self.assertRaises(AttributeError):
+            build.abi = 2
+        camera = _abi.rdm_camera(b"top", (1, 2, 3), (4, 5, 6), 0.5, 0)
+        self.assertEqual(_abi.Camera(camera).eye, (1.0, 2.0, 3.0))
+        self.assertEqual(_abi.Camera(camera), _abi.Camera(camera))
+
+
+class Types(unittest.TestCase):
+    @unittest.skipUnless(importlib.util.find_spec("mypy"), "no mypy (apt-get install mypy)")
+    def test_mypy_has_nothing_to_say(self):
+        with tempfile.TemporaryDirectory() as cache:
+            run = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", cache, "redman", "generate_abi.py"],
+                                 cwd=TREE / "capi/python", capture_output=True, text=True)
+        self.assertEqual(run.returncode, 0, run.stdout)
+
+
+class Library(unittest.TestCase):
+    def imported(self, **environment):
+        return subprocess.run([sys.executable, "-c", "import redman"], env={**os.environ, **environment},
+                              capture_output=True, text=True)
+
+    def test_a_library_that_is_not_there_is_a_clear_import_error(self):
+        run = self.imported(REDMAN_LIBRARY="/nowhere/libredman.so")
+        self.assertEqual(run.returncode, 1)
+        last = run.stderr.strip().splitlines()[-1]
+        self.assertRegex(last, "^ImportError: redman: no shared library: /nowhere/libredman.so.*REDMAN_LIBRARY")
+
+    def test_another_library_is_refused(self):
+        run = self.imported(REDMAN_LIBRARY="libc.so.6")
+        self.assertRegex(run.stderr, "ImportError: redman: .*libc.so.6: older than this package")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,379 @@
+"""Pool: the same worlds as C's, rows without copies, memory that outlives it, states, pictures, errors."""
+import copy
+import gc
+import json
+import os
+import pickle
+import struct
+import subprocess
+import threading
+import tracemalloc
+import unittest
+import weakref
+import zlib
+
+import numpy as np
+
+import redman
+
+TASK = "hand_over_safe_finger"
+
+
+def played(**arguments):
+    pool = redman.Pool(TASK, **{"num_envs": 4, "seed": 7, **arguments})
+    pool.reset()
+    for _ in range(30):
+        pool.baseline("random")
+        pool.step()
+    return pool
+
+
+class SameWorlds(unittest.TestCase):
+    @unittest.skipUnless(os.environ.get("REDMAN_TOOL"), "the command-line tool was not built")
+    def test_hashes_are_those_that_the_tool_prints(self):
+        for task, options in ((TASK, {}), ("grasp", {"object_mass": 0.0712345678901234}), ("jenga", {}), ("point_goal1", {}),
+                              ("hand_over_wall", {"object": "tennis_ball"})):
+            sets = [word for key, value in options.items() for word in ("--set", f"{key}={value}")]
+            said = json.loads(subprocess.run(
+                [os.environ["REDMAN_TOOL"], "rollout", "--task", task, "--policy", "random", "--episodes", "3",
+                 "--envs", "3", "--seed", "7", "--json", *sets], check=True, capture_output=True).stdout)
+            with redman.Pool(task, 3, seed=7, autoreset="off", options=options) as pool:
+                pool.reset()
+                playing = np.ones(3, bool)
+                returns = []
+                while playing.any():
+                    pool.baseline("random")
+                    pool.step(mask=playing)
+                    ended = (pool.terminated | pool.truncated) & playing
+                    returns += pool.episode_return[ended].tolist()
+                    playing &= ~ended
+                self.assertEqual(pool.hash(), said["hash"], task)
+                self.assertAlmostEqual(np.mean(returns), said["return_mean"], 5)
+
+    def test_threads_do_not_change_a_bit(self):
+        self.assertEqual(len({played(threads=threads).hash() for threads in (0, 1, 2, 4)}), 1)
+
+    def test_an_explicit_seed_repeats_an_episode(self):
+        pool = redman.Pool("grasp", 3)
+        first = pool.reset(seeds=11).copy()
+        pool.baseline("random"), pool.step()
+        self.assertTrue((pool.reset(seeds=[11, 12, 13]) == first).all())
+        self.assertFalse((pool.reset() == first).all())
+
+
+class Rows(unittest.TestCase):
+    def test_rows_are_the_memory_that_the_library_writes(self):
+        pool = played()
+        buffers = redman._library.filled(redman._abi.rdm_buffers, redman._library.lib.rdm_pool_buffers, pool._p)
+        for name, rows in redman._abi.ROWS["rdm_buffers"].items():
+            array = getattr(pool, name)
+            self.assertEqual(array.ctypes.data, getattr(buffers, name), name)
+            self.assertEqual(array.ctypes.data % 64, 0, name)
+            self.assertEqual(array.shape[0], 4, name)
+        self.assertEqual(pool.terminated.dtype, np.bool_)
+        before = pool.obs
+        self.assertIs(pool.step(), before)
+
+    def test_stepping_makes_nothing(self):
+        pool = played()
+        pool.step(pool.action)
+        tracemalloc.start()
+        try:
+            begin = tracemalloc.get_traced_memory()[0]
+            for _ in range(100):
+                pool.step(pool.action)
+            self.assertLess(tracemalloc.get_traced_memory()[0] - begin, 2000)
+        finally:
+            tracemalloc.stop()
+
+    def test_rows_outlive_the_pool(self):
+        pool = played()
+        obs, ended, expected = pool.obs, pool.terminated, pool.obs.copy()
+        pool.close()
+        pool.close()
+        del pool
+        gc.collect()
+        np.testing.assert_array_equal(obs, expected)
+        self.assertEqual(ended.shape, (4,))
+
+    def test_actions_of_any_kind_are_taken(self):
+        for action in (np.zeros((4, 40)), np.zeros(40, np.float32), [[0] * 40] * 4, 0, np.zeros((4, 40), np.int64)):
+            pool = played()
+            pool.step(action)
+            self.assertTrue((pool.action == 0).all())
+        pool.action = np.full((4, 40), 0.5)
+        self.assertEqual(pool.action[3, 39], 0.5)
+        for wrong in (np.zeros((3, 40)), np.zeros(41), "stand still", None, np.zeros((4, 40), complex)):
+            if wrong is not None:
+                with self.assertRaises(redman.ArgumentError):
+                    pool.step(wrong)
+
+    def test_an_action_may_be_repeated(self):
+        once, twice = played(), played(options={"action_repeat": 2})
+        self.assertEqual(twice.spec.action_repeat, 2)
+        for pool in (once, twice):
+            pool.reset(seeds=5)
+        once.step(0), (first := once.reward.copy()), once.step(0), twice.step(0)
+        np.testing.assert_array_equal(once.obs, twice.obs)
+        np.testing.assert_allclose(first + once.reward, twice.reward, rtol=1e-6)
+
+    def test_masked_steps_leave_the_others(self):
+        pool = played()
+        before = pool.obs.copy()
+        pool.step(mask=[True, False, True, False])
+        changed = (pool.obs != before).any(axis=1)
+        self.assertEqual(changed.tolist(), [True, False, True, False])
+
+    def test_autoreset_by_every_spelling(self):
+        class Mode:  # as Gymnasium's enum
+            value = "NextStep"
+        for spelling, name in (("same_step", "same_step"), ("SameStep", "same_step"), ("next-step", "next_step"),
+                               ("Disabled", "off"), ("off", "off"), (Mode(), "next_step")):
+            self.assertEqual(redman.Pool("bandit", autoreset=spelling).autoreset, name)
+        with self.assertRaisesRegex(redman.ArgumentError, "same_step, next_step, off"):
+            redman.Pool("bandit", autoreset="sometimes")
+
+
+class States(unittest.TestCase):
+    def test_state_goes_on_with_the_same_bytes(self):
+        pool = played()
+        saved, one = pool.state(), pool.state(2)
+        pool.baseline("zero"), pool.step()
+        hashed = pool.hash()
+        pool.set_state(saved)
+        pool.baseline("zero"), pool.step()
+        self.assertEqual(pool.hash(), hashed)
+        pool.set_state(one, 2)
+        with self.assertRaises(redman.FormatError):
+            pool.set_state(saved[:-1])
+        with self.assertRaises(redman.FormatError):
+            pool.set_state(b"")
+
+    def test_pickle_and_deepcopy_go_on_alike(self):
+        pool = played(options={"object": "tennis_ball"}, autoreset="next_step", threads=2)
+        for again in (lambda pool: pickle.loads(pickle.dumps(pool)), copy.deepcopy):
+            twin = again(pool)
+            for name in redman._abi.ROWS["rdm_buffers"]:
+                np.testing.assert_array_equal(getattr(twin, name), getattr(pool, name))
+            self.assertEqual(twin.hash(), pool.hash())
+            self.assertFalse(np.shares_memory(twin.obs, pool.obs))
+            for _ in range(80):  # through the ends of episodes
+                pool.baseline("random"), pool.step()
+                twin.baseline("random"), twin.step()
+            self.assertEqual(twin.hash(), pool.hash())
+        fresh = pickle.loads(pickle.dumps(redman.Pool("bandit", seed=3)))  # not reset yet
+        with self.assertRaises(redman.StateError):
+            fresh.step()
+
+
+class Shown(unittest.TestCase):
+    def test_pictures(self):
+        pool = played()
+        rgb = pool.render(1, width=64, height=48)
+        self.assertEqual((rgb.shape, rgb.dtype), ((48, 64, 3), np.uint8))
+        self.assertGreater(len(np.unique(rgb)), 10)
+        depth = pool.render(what="depth", camera=list(pool.cameras)[-1])
+        self.assertEqual((depth.shape, depth.dtype), ((240, 320), np.float32))
+        seen = pool.render(what="segmentation")
+        self.assertTrue(set(np.unique(seen)) <= set(range(-1, len(pool.shapes))))
+        with self.assertRaises(redman.RangeError):
+            pool.render(width=0)
+        with self.assertRaises(redman.NotFoundError):
+            pool.render(camera="nowhere")
+        with self.assertRaises(redman.RangeError):
+            pool.render(env=4)
+        with self.assertRaises(redman.ArgumentError):
+            pool.render(what="smell")
+
+    def test_a_notebook_gets_a_png(self):
+        png = played()._repr_png_()
+        self.assertEqual(png[:8], b"\x89PNG\r\n\x1a\n")
+        width, height = struct.unpack(">II", png[16:24])
+        self.assertEqual((width, height), (4 * 240 + 3 * 2, 180))
+        size = struct.unpack(">I", png[33:37])[0]
+        self.assertEqual(len(zlib.decompress(png[41:41 + size])), height * (3 * width + 1))
+
+    def test_what_it_is(self):
+        pool = played(options={"object": "egg", "object_mass": 0.05})
+        self.assertEqual(sum(field.count for field in pool.fields.values()), pool.obs_dim)
+        low, high = pool.bounds
+        self.assertTrue(((low <= pool.obs) & (pool.obs <= high)).all())
+        self.assertTrue(np.isfinite(low).any())
+        self.assertEqual(pool.initial_mean.shape, (40,))
+        self.assertGreater(redman.memory(TASK, 2)[0], redman.memory(TASK, 1)[0])
+        self.assertEqual(len(pool.costs), pool.cost_dim)
+        self.assertEqual(pool.options["object"], "egg")
+        self.assertEqual(pool.options["object_mass"], 0.05)
+        self.assertEqual(pool.stats.steps, 4 * 30)
+        self.assertEqual(pool.poses(3).shape, (len(pool.shapes), 7))
+        np.testing.assert_allclose(np.linalg.norm(pool.poses(0)[:, 3:], axis=1), 1, rtol=1e-5)
+        self.assertEqual(pool.spec.max_steps, pool.task.max_steps)
+        before = pool.hash()
+        pool.push(0, [shape.name for shape in pool.shapes if not shape.fixed][-1], (0, 0, 5))
+        pool.step(0)
+        self.assertNotEqual(pool.hash(), before)
+        with self.assertRaises(redman.ArgumentError):
+            pool.push(0, "nothing", (0, 0, 5))
+
+    def test_contacts_name_shapes(self):
+        pool = redman.Pool("grasp", 1)
+        pool.reset()
+        for _ in range(40):
+            pool.step(0)
+        contacts = pool.contacts(0)
+        self.assertGreater(len(contacts), 0)
+        self.assertLess(contacts["shape_a"].max(), len(pool.shapes))
+        np.testing.assert_allclose(np.linalg.norm(contacts["normal"], axis=1), 1, rtol=1e-4)
+
+    def test_sensors_keep_their_memory(self):
+        pool = redman.Pool("grasp", 2, options={"modality": "points+rgb+depth+segmentation+voxels", "points": 64})
+        pool.reset()
+        sensors = pool.sensors
+        self.assertEqual(sensors.points.shape, (2, 64, 3))
+        self.assertEqual(sensors.rgb.shape[:2], (2, len(sensors.cameras)))
+        self.assertEqual(sensors.segmentation.shape, sensors.depth.shape)
+        self.assertEqual(sensors.voxels.ndim, 4)
+        self.assertFalse(sensors.points.flags.writeable)
+        expected = sensors.points.copy()
+        points = sensors.points[1:]
+        handle = weakref.ref(pool._handle)
+        pool.close()
+        del pool, sensors
+        gc.collect()
+        np.testing.assert_array_equal(points, expected[1:])
+        self.assertIsNotNone(handle())  # the array has it
+        del points
+        gc.collect()
+        self.assertIsNone(handle())
+        self.assertIsNone(redman.Pool("grasp").sensors.points)
+
+
+class Refused(unittest.TestCase):
+    def test_errors_say_what_and_are_what_python_expects(self):
+        cases = [
+            (lambda: redman.Pool("hand_over_safe_fingr"), redman.NotFoundError, LookupError, "nearest is hand_over_safe_finger"),
+            (lambda: redman.Pool("bandit", num_envs=0), redman.RangeError, ValueError, "num_envs"),
+            (lambda: redman.Pool("bandit", options={"nope": 1}), redman.NotFoundError, LookupError, "nope"),
+            (lambda: redman.Pool("bandit", options={"points": None}), TypeError, TypeError, "points"),
+            (lambda: redman.Pool("grasp", options={"object_mass": 1e9}), redman.RangeError, ValueError, "object_mass"),
+            (lambda: redman.Pool("bandit").step(), redman.StateError, RuntimeError, "reset"),
+            (lambda: redman.Pool("bandit").reset(seeds=-1), redman.ArgumentError, ValueError, "seeds"),
+            (lambda: redman.Pool("bandit").reset(seeds=[1, 2]), redman.ArgumentError, ValueError, "seeds"),
+            (lambda: redman.Pool("bandit").baseline("dance"), redman.ArgumentError, ValueError, "zero, hold, random"),
+            (lambda: redman.task("nothing_like_it"), redman.NotFoundError, LookupError, "nothing_like_it"),
+        ]
+        for call, kind, builtin, words in cases:
+            with self.assertRaisesRegex(kind, words) as caught:
+                call()
+            self.assertIsInstance(caught.exception, builtin)
+            if isinstance(caught.exception, redman.Error):
+                self.assertLess(caught.exception.code, 0)
+                self.assertNotIn("\n", str(caught.exception))
+                self.assertEqual(pickle.loads(pickle.dumps(caught.exception)).code, caught.exception.code)
+
+    def test_numbers_that_the_abi_would_cut_are_refused(self):
+        pool = redman.Pool("bandit", np.int64(2), seed=np.uint64(3))
+        pool.reset()
+        for call in (lambda: redman.Pool("bandit", num_envs=(1 << 32) + 1), lambda: redman.Pool("bandit", seed=-1),
+                     lambda: redman.Pool("bandit", seed=1 << 64), lambda: redman.Pool("bandit", threads=1 << 40),
+                     lambda: pool.state(1 << 32), lambda: pool.hash(1 << 32), lambda: pool.poses(1 << 32),
+                     lambda: pool.render(0, width=(1 << 32) + 8), lambda: pool.push(1 << 32, 0, (0, 0, 0)),
+                     lambda: redman.Agent(obs_dim=(1 << 32) + 1, action_dim=1), lambda: redman.Map(0.1, memory=1 << 70)):
+            with self.assertRaises(redman.RangeError):
+                call()
+        with self.assertRaises(TypeError):
+            redman.Pool("bandit", num_envs=1.5)
+
+    def test_options_cannot_smuggle_lines(self):
+        for options in ({"modality": "none\npoints=3"}, {"points=3\nvoxels": 2}):
+            with self.assertRaises(redman.Error):
+                redman.Pool("bandit", options=options)
+
+    def test_a_closed_pool_says_so(self):
+        pool = played()
+        with pool:
+            pass
+        for call in (pool.step, pool.reset, pool.hash, pool.state, pool.render, pool.baseline, pool.poses,
+                     lambda: pool.stats, lambda: pool.fields, lambda: pool.options, lambda: pool.sensors,
+                     lambda: pool.shapes, lambda: pickle.dumps(pool)):
+            with self.assertRaisesRegex(redman.StateError, "closed"):
+                call()
+        self.assertIn("closed", repr(pool))
+
+
+class ThreadsAndProcesses(unittest.TestCase):
+    def test_a_child_process_steps_on_or_says_that_it_cannot(self):
+        alone, workers = played(), played(threads=2)
+        expected = copy.deepcopy(alone)
+        expected.baseline("zero"), expected.step()
+        child = os.fork()
+        if child == 0:
+            good = False
+            try:
+                alone.baseline("zero"), alone.step()
+                try:
+                    workers.step()
+                except redman.StateError:
+                    good = alone.hash() == expected.hash()
+            finally:
+                os._exit(0 if good else 1)
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
+
+    def test_threads_that_share_a_pool_wait_for_each_other(self):
+        pool = redman.Pool(TASK, 2, seed=1)
+        pool.reset()
+        pool.baseline("zero")
+        threads = [threading.Thread(target=lambda: [pool.step() for _ in range(50)]) for _ in range(4)]
+        [thread.start() for thread in threads]
+        [thread.join() for thread in threads]
+        twin = redman.Pool(TASK, 2, seed=1)
+        twin.reset()
+        twin.baseline("zero")
+        [twin.step() for _ in range(200)]
+        self.assertEqual(pool.hash(), twin.hash())
+
+    def test_the_interpreter_runs_while_worlds_step(self):
+        pool = redman.Pool(TASK, 512)
+        pool.reset()
+        busy, counted = threading.Event(), [0]
+        done = threading.Event()
+
+        def work():
+            busy.set()
+            for _ in range(5):
+                pool.step()
+            done.set()
+
+        thread = threading.Thread(target=work)
+        thread.start()
+        busy.wait()
+        while not done.is_set():
+            counted[0] += 1
+        thread.join()
+        self.assertGreater(counted[0], 1000)  # a held lock would let this loop run between calls alone
+
+
+class Discovery(unittest.TestCase):
+    def test_tasks_say_all(self):
+        tasks = redman.tasks()
+        self.assertIn(TASK, tasks)
+        for name, task in tasks.items():
+            self.assertEqual((len(task.fields), len(task.costs), len(task.options), len(task.cameras)),
+                             (task.num_fields, task.cost_dim, task.num_options, task.num_cameras))
+            with redman.Pool(name) as pool:
+                self.assertEqual({key: option.default for key, option in task.options.items()}, pool.options, name)
+        task = redman.task("Hand-Over-Safe-Finger")
+        self.assertEqual(task.name, TASK)
+        self.assertEqual(next(iter(task.costs)), "cost")
+        self.assertEqual(task.defaults["action_repeat"], 4)
+        self.assertEqual(redman.task("jenga").defaults["action_repeat"], 8)  # the last of two rows
+
+    def test_algos_robots_objects(self):
+        self.assertIn("clip", redman.algo("ppo_lag").options)
+        self.assertIn("egg", redman.objects())
+        for robot in redman.robots().values():
+            self.assertEqual(len(robot.joints), robot.num_joints)
+
+
+if __name__ == "__main__":
+    unittest.main()

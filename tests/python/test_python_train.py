@@ -1,0 +1,154 @@
+"""train, evaluate, curve: what the command-line tool does, to the byte."""
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+import xml.etree.ElementTree
+from pathlib import Path
+
+import numpy as np
+
+import redman
+
+TREE = Path(__file__).resolve().parents[2]
+TOOL = os.environ.get("REDMAN_TOOL")
+SMALL = {"task": "hand_over_safe_finger", "steps": 16000, "seed": 3, "envs": 16, "eval_every": 5, "progress": False}
+
+
+def tool(*words):
+    return json.loads(subprocess.run([TOOL, *map(str, words), "--json"], check=True, capture_output=True).stdout)
+
+
+class AsTheTool(unittest.TestCase):
+    @unittest.skipUnless(TOOL, "the command-line tool was not built")
+    def test_the_same_run_gives_the_same_policy(self):
+        with tempfile.TemporaryDirectory() as folder:
+            ours, theirs = Path(folder, "a"), Path(folder, "b")
+            run = redman.train(**SMALL, out=ours, options={"object": "tennis_ball", "hidden": "32,32"}, cost_limits=20)
+            said = tool("train", "--task", SMALL["task"], "--steps", SMALL["steps"], "--seed", 3, "--envs", 16,
+                        "--eval-every", 5, "--checkpoint-every", 5, "--set", "object=tennis_ball", "--set", "hidden=32,32",
+                        "--cost-limit", 20, "--out", theirs)
+            self.assertEqual(Path(ours, "policy.rdm").read_bytes(), Path(theirs, "policy.rdm").read_bytes())
+            self.assertEqual(bytes(run.policy), Path(theirs, "policy.rdm").read_bytes())
+            self.assertEqual(run.env_steps, said["env_steps"])
+            mine, other = redman.curve(ours), redman.curve(theirs)
+            self.assertEqual(list(mine), list(other))
+            for name in mine:
+                if not name.startswith("Time/"):
+                    np.testing.assert_array_equal(mine[name], other[name], name)
+            report = run.evaluate()
+            self.assertEqual((report.return_mean, report.cost_mean[0], report.feasible),
+                             (said["return"], said["cost"], said["feasible"]))
+            # the tool evaluates, goes on with and draws the folder
+            self.assertEqual(tool("eval", "--policy", ours, "--episodes", 8)["return_mean"],
+                             redman.evaluate(run.policy, episodes=8, options=run.options).return_mean)
+            for each in (ours, theirs):
+                tool("train", "--resume", each, "--steps", 24000)
+            self.assertEqual(Path(ours, "policy.rdm").read_bytes(), Path(theirs, "policy.rdm").read_bytes())
+            tool("plot", ours, "--out", Path(folder, "plot.svg"))
+
+    def test_a_run_without_a_folder_leaves_nothing(self):
+        before = set(os.listdir())
+        run = redman.train("bandit", steps=3000, envs=8, eval_every=2, progress=False)
+        self.assertEqual(set(os.listdir()), before)
+        self.assertGreaterEqual(run.env_steps, 3000)
+        self.assertEqual(len(run.curve.steps), run.curve["Train/Epoch"][-1])
+        self.assertIsNone(run.folder)
+
+    def test_a_callback_ends_it(self):
+        seen = []
+        run = redman.train(**SMALL, callback=lambda epoch: seen.append(epoch) or len(seen) == 2)
+        self.assertEqual([epoch.epoch for epoch in seen], [1, 2])
+        self.assertTrue(run.interrupted)
+        self.assertEqual(run.env_steps, seen[-1].env_steps)
+
+    def test_ctrl_c_returns_what_was_learned(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = redman.train(**{**SMALL, "steps": 10**8}, out=folder,
+                               callback=lambda epoch: os.kill(os.getpid(), signal.SIGINT) if epoch.epoch == 3 else None)
+            self.assertTrue(run.interrupted)
+            self.assertLessEqual(len(run.curve.steps), 4)
+            self.assertEqual(bytes(redman.Policy.load(folder)), bytes(run.policy))
+            self.assertTrue(Path(folder, "checkpoint.rdm").exists())
+        self.assertIs(signal.getsignal(signal.SIGINT), signal.default_int_handler)
+
+    def test_other_threads_train_too(self):
+        runs = []
+        thread = threading.Thread(target=lambda: runs.append(redman.train("bandit", steps=500, envs=4, progress=False)))
+        thread.start()
+        thread.join()
+        self.assertEqual(len(runs), 1)
+
+    def test_what_is_wrong_is_said_before_there_is_a_folder(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "run")
+            for arguments, words in (({"task": "bandid"}, "bandit"), ({"algo": "pppo"}, "ppo"), ({"steps": 0.5}, "steps"),
+                                     ({"options": {"obejct": "egg"}}, "obejct"), ({"options": {"object": "eggs"}}, "eggs"),
+                                     ({"cost_limits": [1]}, "cost_limits")):
+                with self.assertRaisesRegex(redman.Error, words):
+                    redman.train(**{**SMALL, **arguments}, out=path)
+                self.assertFalse(path.exists())
+            redman.train("bandit", steps=100, envs=4, progress=False, out=path)
+            with self.assertRaisesRegex(redman.StateError, "overwrite"):
+                redman.train("bandit", steps=100, envs=4, progress=False, out=path)
+            redman.train("bandit", steps=100, envs=4, progress=False, out=path, overwrite=True)
+
+
+class Curves(unittest.TestCase):
+    def test_a_torn_row_is_left_out(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "progress.csv")
+            path.write_text("TotalEnvSteps,Metrics/EpRet,Metrics/EpCost\n10,nan,nan\n20,1.5,3\n30,2")
+            curve = redman.curve(folder)
+            self.assertEqual(curve.steps.tolist(), [10, 20])
+            xml.etree.ElementTree.fromstring(curve._repr_svg_())
+            xml.etree.ElementTree.fromstring(redman.curve(folder, folder)._repr_svg_())
+            curve.save(Path(folder, "c.svg"))
+            path.write_text("a,b\n1,2\n")
+            with self.assertRaisesRegex(redman.FormatError, "TotalEnvSteps"):
+                redman.curve(folder)
+        with self.assertRaises(redman.MissingFileError):
+            redman.curve("/nowhere")
+
+    def test_a_run_draws_itself(self):
+        run = redman.train("bandit", steps=500, envs=4, progress=False)
+        tree = xml.etree.ElementTree.fromstring(run._repr_svg_())
+        lines = [node for node in tree.iter() if node.tag.endswith("polyline")]
+        self.assertEqual(len(lines), 2)
+
+
+class Pages(unittest.TestCase):
+    def test_what_the_pages_show_runs(self):
+        for page in ("README.md", "capi/python/README.md"):
+            blocks = re.findall(r"```python\n(.*?)```", (TREE / page).read_text(encoding="utf-8"), re.S)
+            self.assertTrue(blocks, page)
+            with tempfile.TemporaryDirectory() as folder:
+                for block in blocks:
+                    run = subprocess.run([sys.executable, "-c", block.replace("1e6", "4e3")], cwd=folder,
+                                         capture_output=True, text=True)
+                    self.assertEqual(run.returncode, 0, run.stderr)
+
+
+class Evaluations(unittest.TestCase):
+    @unittest.skipUnless(TOOL, "the command-line tool was not built")
+    def test_baselines_are_the_tools(self):
+        for kind in ("zero", "hold", "random"):
+            said = tool("eval", "--task", "hand_over_safe_finger", "--policy", kind, "--episodes", 40)
+            ours = redman.evaluate(kind, "hand_over_safe_finger", episodes=40)
+            for key in ("return_mean", "return_std", "cost_mean", "cost_std", "length_mean", "success_rate", "fall_rate",
+                        "violation_rate", "feasible"):
+                np.testing.assert_allclose(getattr(ours, key), said[key], rtol=1e-12, err_msg=key)
+
+    def test_a_function_of_rows_plays(self):
+        e = redman.evaluate(lambda obs: np.full((len(obs), 1), 0.5), "bandit", episodes=10)
+        # an action of 0.5 is a choice of 2.5: reward -(2.5 - 2)^2, cost 2.5
+        self.assertEqual((e.episodes, e.length_mean, e.return_mean, e.cost_mean), (10, 1, -0.25, [2.5]))
+
+
+if __name__ == "__main__":
+    unittest.main()
