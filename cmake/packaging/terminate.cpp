@@ -1,5 +1,5 @@
-// Takes the place of the C++ runtime's handler, which writes what was thrown and for that carries a demangler (50 kB of a
-// library that carries the runtime). Nothing is thrown across the C ABI, so nobody reads it.
+// Takes the place of the C++ runtime's handler, which writes what was thrown and for that carries a demangler
+// (50 kB of a library that carries the runtime). Nothing is thrown across the C ABI, so nobody reads it.
 #include <cstdlib>
 #include <exception>
 
