@@ -20,7 +20,7 @@ function document(text,   n, i, line, code, out, empty) {
   sub(/^[ \t]*\/\*+ */, "", text)
   sub(/ *\*\/ *$/, "", text)
   n = split(text, lines, "\n")
-  out = FNR == ended && first ? "@file\n" : ""
+  out = !first ? "" : FILENAME ~ /redman\.h$/ ? "@mainpage\n" : "@file\n"
   for (i = 1; i <= n; ++i) {
     line = lines[i]
     sub(/^[ \t]*\*? ?/, "", line)
@@ -39,11 +39,18 @@ function above(kind) {
   if (kept != "") print kept
   used = kind
 }
+function title_page() {  # the first comment is about the file; that of redman.h is the manual
+  if (!first) return
+  print kept
+  if (kept ~ /@mainpage/) print "/** @file\n * All of the C interface. */"
+  kept = ""
+  first = 0
+}
 BEGIN { first = 1 }
 { sub(/\r$/, "") }
 comment != "" {
   comment = comment "\n" $0
-  if (/\*\//) { ended = FNR; document(comment); comment = ""; if (first) { print kept; kept = ""; first = 0 } }
+  if (/\*\//) { document(comment); comment = ""; title_page() }
   next
 }
 /^\/\* (----|====) / {
@@ -59,7 +66,7 @@ comment != "" {
 }
 in_title { in_title = !/\*\//; next }
 /^[ \t]*\/\*/ && !/\*\// { comment = $0; next }
-/^[ \t]*\/\*.*\*\/[ \t]*$/ { ended = FNR; document($0); next }
+/^[ \t]*\/\*.*\*\/[ \t]*$/ { document($0); title_page(); next }
 /^$/ { kept = ""; print; next }
 /^#ifdef __cplusplus|^#if.*RDM_EXPERIMENTAL/ { kept = ""; if (section && depth == 0) { print "/** @} */"; section = 0 } print; next }
 in_behind { in_behind = !/\*\//; print escaped($0); next }

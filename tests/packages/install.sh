@@ -11,7 +11,7 @@ wrong() { echo "$*"; status=1; }
 mv "$prefix.first" "$prefix"
 for file in $(find "$prefix" -type f); do
   for path in "$prefix" "$(realpath "$build")"; do
-    if grep -qF -- "$path" "$file"; then wrong "$file names $path"; fi
+    if grep -qIF -- "$path" "$file"; then wrong "$file names $path"; fi
   done
 done
 [ -n "$(find "$prefix" -name 'redman.1')" ] || [ ! -e "$build/manual/man1" ] || wrong "no manual page was installed"
