@@ -88,21 +88,17 @@ def text_of(comment: str) -> str:
 
 def declarations(text: str) -> Iterator[Declared]:
     """All declarations of a header in their order."""
-    # Only what a C++ or a repeated #include sees is left out.
-    start = text.index("#define REDMAN_H")
-    experimental_from = text.index("#if defined(RDM_EXPERIMENTAL)")
+    experimental_from = text.find("#if defined(RDM_EXPERIMENTAL)")
     pending: Declared | None = None
-    above = covering = covered = ""  # a comment that stands above, as long as it is the words of what comes, and the
-    # kind of what it has told of
-    at = start
-    end_of_last = 0
+    above = ""  # the comment above the run of declarations
+    covering = covered = ""  # the same while it is what tells of them, and the kind of what it has told of
+    at = end_of_last = 0
     while at < len(text):
         match = STATEMENT.match(text, at)
         if not match or match.end() == at:
             line = text.count("\n", 0, at) + 1
-            raise SystemExit(f"redman.h:{line}: not a declaration that this script knows: {text[at:at + 60]!r}")
+            raise SystemExit(f"headers, line {line}: not a declaration that this script knows: {text[at:at + 60]!r}")
         at = match.end()
-        kind = match.lastgroup
         found = match.groupdict()
         if found["comment"]:
             behind = pending is not None and "\n" not in text[end_of_last:match.start()]
@@ -117,7 +113,7 @@ def declarations(text: str) -> Iterator[Declared]:
                 above = covering = text_of(found["comment"])
                 covered = ""
             continue
-        if kind is None and not match.group().strip():
+        if match.lastgroup is None:
             continue
         if pending:
             yield pending
@@ -133,7 +129,7 @@ def declarations(text: str) -> Iterator[Declared]:
         covered = about if covering else ""
         name, body, result = (found[part] or "" for part in KINDS[about])
         pending = Declared(about, name, body, result.strip(), covering,
-                           match.start() > experimental_from, above)
+                           0 <= experimental_from < match.start(), above)
         end_of_last = match.end()
     if pending:
         yield pending
@@ -144,13 +140,13 @@ def variables(text: str) -> list[Variable]:
     parts = [part.strip() for part in text.split(",")]
     first = re.match(r"((?:const )?\w+) ", parts[0])
     if not first:
-        raise SystemExit(f"redman.h: not a declaration that this script knows: {text!r}")
+        raise SystemExit(f"headers: not a declaration that this script knows: {text!r}")
     out = []
     for part in parts:
         part = part if part is parts[0] else f"{first.group(1)} {part}"
         match = re.fullmatch(r"((?:const )?\w+) ?(\**)(\w+)(?:\[(\w+)\])?", " ".join(part.split()))
         if not match:
-            raise SystemExit(f"redman.h: not a declaration that this script knows: {part!r}")
+            raise SystemExit(f"headers: not a declaration that this script knows: {part!r}")
         kind, stars, name, length = match.groups()
         out.append(Variable(name, f"{kind} {stars}".strip(), length or ""))
     return out
@@ -219,14 +215,11 @@ def members(declared: Declared) -> list[tuple[str, int, str]]:
     """(name, value, comment) of an enum."""
     out = []
     value = -1
-    for match in re.finditer(r"(RDM_\w+)(?: = (-?\w+))?(?:,|\s)*(" + COMMENT + ")?", strip_leading(declared.body), re.S):
+    body = re.sub(r"^\s*" + COMMENT, "", declared.body, flags=re.S)
+    for match in re.finditer(r"(RDM_\w+)(?: = (-?\w+))?(?:,|\s)*(" + COMMENT + ")?", body, re.S):
         value = int(match[2], 0) if match[2] else value + 1
         out.append((match[1], value, " ".join(text_of(match[3] or "").split())))
     return out
-
-
-def strip_leading(body: str) -> str:
-    return re.sub(r"^\s*" + COMMENT, "", body, flags=re.S)
 
 
 def prefix_of(names: list[str]) -> str:
@@ -316,8 +309,14 @@ class Function(NamedTuple):
 '''
 
 
+def headers() -> str:
+    """The text of all public headers, redman.h first."""
+    paths = sorted(INCLUDE.glob("*.h"), key=lambda path: (path.name != "redman.h", path.name))
+    return "\n".join(path.read_text(encoding="utf-8") for path in paths)
+
+
 def generate(text: str) -> str:
-    """The module for the text of redman.h."""
+    """The module for the text of the headers."""
     found = list(declarations(text))
     structs = {d.name for d in found if d.kind == "struct"}
     callbacks = {d.name for d in found if d.kind == "callback"}
@@ -332,14 +331,15 @@ def generate(text: str) -> str:
         if d.kind != "enum":
             continue
         if not d.name:
-            raise SystemExit(f"redman.h: an enum without a name: {d.body[:60]!r}")
+            raise SystemExit(f"headers: an enum without a name: {d.body[:60]!r}")
         rows = members(d)
         prefix = prefix_of([name for name, _, _ in rows])
         flags = len(rows) > 1 and all(value > 0 and value & (value - 1) == 0 for _, value, _ in rows)
         about = text_of(match[0].strip()) if (match := re.match(r"\s*" + COMMENT, d.body, re.S)) else d.doc
         out.append(f"class {camel(d.name)}(enum.{'IntFlag' if flags else 'IntEnum'}):\n"
                    f"    {quoted(about or d.name, '    ')}\n\n")
-        out += [f"    {name.removeprefix(prefix)} = {value}{'  # ' + doc if doc else ''}\n" for name, value, doc in rows]
+        out += [f"    {name.removeprefix(prefix)} = {value}{'  # ' + doc if doc else ''}\n"
+                for name, value, doc in rows]
         out.append("\n\n")
     for d in found:
         if d.kind == "callback":
@@ -398,7 +398,8 @@ def struct_text(d: Declared, structs: set[str], callbacks: set[str]) -> str:
         about += textwrap.wrap(f"{variable.name}: {' '.join(variable.doc.split())}".rstrip(": "), 108,
                                subsequent_indent="    ")
     doc = quoted("\n".join(about), "    ")
-    return record_text(d) + f"class {d.name}(Structure):\n    {doc}\n\n{''.join(hints)}    _fields_ = [\n{''.join(listed)}    ]\n\n\n"
+    return (f"{record_text(d)}class {d.name}(Structure):\n    {doc}\n\n{''.join(hints)}"
+            f"    _fields_ = [\n{''.join(listed)}    ]\n\n\n")
 
 
 RECORD_HINTS = {"c_float": "float", "c_double": "float"}
@@ -422,7 +423,7 @@ def record_text(d: Declared) -> str:
 
 
 def main() -> int:
-    text = generate((INCLUDE / "redman.h").read_text(encoding="utf-8"))
+    text = generate(headers())
     if "--check" in sys.argv[1:]:
         if OUTPUT.read_text(encoding="utf-8") == text:
             return 0

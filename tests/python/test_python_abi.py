@@ -19,7 +19,7 @@ import generate_abi  # noqa: E402
 
 class Abi(unittest.TestCase):
     def test_generating_again_gives_the_committed_file(self):
-        again = generate_abi.generate((TREE / "include/redman/redman.h").read_text(encoding="utf-8"))
+        again = generate_abi.generate(generate_abi.headers())
         self.assertEqual(again, generate_abi.OUTPUT.read_text(encoding="utf-8"), "run capi/python/generate_abi.py")
 
     def test_structs_have_the_recorded_layout(self):
@@ -42,7 +42,7 @@ class Abi(unittest.TestCase):
             self.assertEqual(getattr(lib, name).argtypes, list(function.arguments.values()), name)
 
     def test_a_function_or_member_that_is_added_to_the_header_arrives(self):
-        header = (TREE / "include/redman/redman.h").read_text(encoding="utf-8")
+        header = generate_abi.headers()
         header = header.replace("} rdm_camera;", "  float roll[2]; /* [2] rad */\n} rdm_camera;")
         header = header.replace("RDM_API uint32_t rdm_features(void);",
                                 "/* Adds row [n] to out [n][2]. */\n"
@@ -77,10 +77,18 @@ class Abi(unittest.TestCase):
 
 class Types(unittest.TestCase):
     @unittest.skipUnless(importlib.util.find_spec("mypy"), "no mypy (apt-get install mypy)")
-    def test_mypy_has_nothing_to_say(self):
-        with tempfile.TemporaryDirectory() as cache:
-            run = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", cache, "redman", "generate_abi.py"],
-                                 cwd=TREE / "capi/python", capture_output=True, text=True)
+    def test_mypy_has_nothing_to_say_of_the_package_and_of_a_user(self):
+        with tempfile.TemporaryDirectory() as folder:
+            user = Path(folder, "user.py")
+            user.write_text("import redman\n"
+                            "pool = redman.Pool('bandit', options={'points': 3})\n"
+                            "pool.step(pool.reset(seeds=[1])[:, :1])\n"
+                            "epoch = redman.Agent(pool, cost_limits={'cost': 1.0}).rollout(pool)\n"
+                            "x: float = epoch.ret\n"
+                            "y: bool = redman.train('bandit', callback=lambda e: e.epoch > 3).evaluate().feasible\n"
+                            "z: str = redman.tasks()['bandit'].options['points'].help\n")
+            run = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", folder, "redman",
+                                  "generate_abi.py", user], cwd=TREE / "capi/python", capture_output=True, text=True)
         self.assertEqual(run.returncode, 0, run.stdout)
 
 

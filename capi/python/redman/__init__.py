@@ -24,3 +24,12 @@ from ._pool import Pool, Sensors, memory
 from ._train import Run, train
 
 __version__ = version = build().version
+
+__all__ = [
+    "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "CancelledError", "Curve",
+    "Curves", "Epoch", "Error", "Evaluation", "Field", "FileError", "FormatError", "InternalError", "Map",
+    "MissingFileError", "NotFoundError", "Option", "OptionKind", "PhysicsError", "Policy", "Pool", "RangeError",
+    "ResultCode", "Robot", "Run", "Sensors", "ShapeKind", "StateError", "Status", "Task", "UnsupportedError",
+    "VersionError", "__version__", "algo", "algos", "build", "curve", "evaluate", "memory", "objects", "robots",
+    "sample_furthest", "task", "tasks", "train", "version",
+]
