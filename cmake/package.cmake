@@ -62,12 +62,13 @@ package is for those who build programs against it."
 rdm_deb(tools redman science SUMMARY "train, evaluate and look at safe dexterous manipulation" TEXT "${text}\n.\nThis package \
 holds the command-line tool, its manual and\nits scripted demonstrations."
         DEPENDS "${library} (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS ffmpeg)  # films
 if(REDMAN_PYTHON_DIR)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
   rdm_deb(python python3-redman python SUMMARY "safe dexterous manipulation (Python 3)" TEXT "${text}\n.\nThis package holds \
 the Python module, with environments for\nGymnasium and its like."
-          DEPENDS "${library} (>= ${PROJECT_VERSION}), ${library} (<< ${next}~), python3, python3-numpy"
+          DEPENDS "${library} (>= ${PROJECT_VERSION}), ${library} (<< ${next}~), python3:any (>= 3.9~), python3-numpy"
           CONTROL ${PROJECT_SOURCE_DIR}/cmake/packaging/debian/postinst ${PROJECT_SOURCE_DIR}/cmake/packaging/debian/prerm)
 endif()
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)  # the library's are asked for in finish.cmake: cpack would add scripts
