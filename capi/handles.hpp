@@ -8,6 +8,8 @@
 #endif
 #if RDM_WITH_LEARN
 #include "algos/core/agent.hpp"
+#endif
+#if RDM_WITH_POLICY
 #include "nn/policy.hpp"
 #endif
 

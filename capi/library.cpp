@@ -3,7 +3,7 @@
 #include <mutex>
 
 #include "capi/abi_call.hpp"
-#if RDM_WITH_LEARN
+#if RDM_WITH_POLICY
 #include "nn/kernels.hpp"
 #endif
 
@@ -32,6 +32,7 @@ uint32_t rdm_features(void) {
   uint32_t f = 0;
   if (RDM_WITH_SIM) f |= RDM_FEATURE_SIM;
   if (RDM_WITH_LEARN) f |= RDM_FEATURE_LEARN;
+  if (RDM_WITH_POLICY) f |= RDM_FEATURE_POLICY;
   return f;
 }
 
@@ -59,7 +60,7 @@ rdm_result rdm_build_info(rdm_build* io) {
 #else
     b.compiler = "gcc " __VERSION__;
 #endif
-#if RDM_WITH_LEARN
+#if RDM_WITH_POLICY
     b.kernels = kernel_isa();
 #else
     b.kernels = "";

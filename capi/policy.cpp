@@ -5,7 +5,7 @@
 #include "base/text.hpp"
 #include "capi/handles.hpp"
 
-#if RDM_WITH_LEARN
+#if RDM_WITH_POLICY
 using namespace rdm;
 using namespace rdm::capi;
 

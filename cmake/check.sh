@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|hard [MINUTES]]: installs what the tests need, builds, and runs them.
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|hard [MINUTES]]: installs what the tests need, builds, and runs them.
 # The last line says how many passed and failed; the exit status is 0 when none failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -20,7 +20,7 @@ run_tests() {
 }
 
 # shellcheck disable=SC2086
-need $build_packages libgtest-dev clang-format-14 octomap-tools python3 python3-numpy mypy
+need $build_packages libgtest-dev clang-format-14 octomap-tools python3 python3-numpy mypy help2man
 case $mode in
   dev)
     configure dev
@@ -99,6 +99,43 @@ case $mode in
     run_tests dev -L '^languages$' || exit 1
     ! grep 'Skipped' build/ctest-languages.log || die "all tools are here, and yet the tests above were skipped"
     ;;
+  packages)
+    # .deb files, lintian, a wheel, each used in a Debian root that has nothing else (as root: debootstrap); the reference; the
+    # ABI; a runner of policies alone.
+    need debootstrap lintian doxygen abigail-tools patchelf python3-pip python3-setuptools python3-wheel
+    configure package
+    build package
+    rm -rf build/package/packages
+    (cd build/package && cpack > cpack.log 2>&1) || { tail -n 5 build/package/cpack.log; die "cpack failed"; }
+    wheel=$(bash cmake/wheel.sh build/package) || exit 1
+    configure small
+    build small
+    passed=0 failed=0
+    # part NAME COMMAND...: counts the command, or what its last line counts.
+    part() {
+      local name=$1 out=build/packages-$1.log
+      shift
+      "$@" > "$out" 2>&1
+      local status=$? last
+      last=$(tail -n1 "$out")
+      case $last in
+        *[0-9]' passed, '*' failed') passed=$((passed + ${last%% passed*})) last=${last#*passed, } failed=$((failed + ${last%% failed*})) ;;
+        *) if [ $status -eq 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); fi ;;
+      esac
+      echo "== $name"
+      cat "$out"
+    }
+    part lintian lintian --fail-on error,warning build/package/packages/*.deb
+    part deb bash tests/packages/deb.sh build/package/packages build/package/bin/redman
+    part wheel bash tests/packages/wheel.sh "$wheel" build/package/bin/redman
+    part reference cmake --build build/package --target docs
+    part abi sh tests/packages/abi.sh . cc
+    part manual sh tests/packages/manual.sh build/package/bin/redman build/package/manual
+    part small sh tests/packages/small.sh build/small build/package
+    ls -l build/package/packages/*.deb "$wheel" | awk '{ print $5, $9 }'
+    echo "$passed passed, $failed failed"
+    [ "$failed" -eq 0 ]
+    ;;
   hard)
     # Tries to break the library for an hour (or MINUTES), builds included: tests/hard/README.md. Two lines of work,
     # one for each of two processors; every part gets a share of the time that the builds leave.
@@ -139,5 +176,5 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
-  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|hard [MINUTES]]" ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|hard [MINUTES]]" ;;
 esac

@@ -54,6 +54,6 @@ function(rdm_summary)
     set(tool "no (not found:${RDM_TOOL_MISSING})")
   endif()
   message(STATUS "redman ${PROJECT_VERSION}, ABI ${RDM_ABI}, ${CMAKE_BUILD_TYPE} ${REDMAN_SANITIZE}:"
-                 " simulator ${REDMAN_SIM}, learner ${REDMAN_LEARN}, shared ${REDMAN_SHARED},"
+                 " simulator ${REDMAN_SIM}, learner ${REDMAN_LEARN}, policies ${REDMAN_POLICY}, shared ${REDMAN_SHARED},"
                  " tests ${REDMAN_TESTS}, examples ${REDMAN_EXAMPLES}, tool ${tool};${versions}")
 endfunction()

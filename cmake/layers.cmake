@@ -18,8 +18,19 @@ if(REDMAN_COVERAGE)
   target_link_options(rdm_flags INTERFACE --coverage)
 endif()
 
-set(RDM_SIM_ROWS physics robot sense env tasks)
-set(RDM_LEARN_ROWS nn algos)
+set(RDM_OFF_ROWS "")  # of what is switched off
+if(NOT REDMAN_SIM)
+  list(APPEND RDM_OFF_ROWS physics robot sense env tasks)
+endif()
+if(NOT REDMAN_LEARN)
+  list(APPEND RDM_OFF_ROWS algos)
+endif()
+if(NOT REDMAN_POLICY)
+  list(APPEND RDM_OFF_ROWS nn)
+  if(REDMAN_LEARN)
+    message(FATAL_ERROR "REDMAN_LEARN=ON needs REDMAN_POLICY=ON")
+  endif()
+endif()
 set(RDM_ROWS "")
 
 # The source file, written from the public header, with the functions of the halves that are left out.
@@ -28,7 +39,7 @@ function(rdm_stubs out)
   set(file ${PROJECT_BINARY_DIR}/stubs.cpp)
   set(awk ${PROJECT_SOURCE_DIR}/capi/stubs.awk)
   add_custom_command(OUTPUT ${file} DEPENDS ${RDM_HEADER} ${awk} VERBATIM
-    COMMAND sh -c "'${RDM_AWK}' -v sim=$<BOOL:${REDMAN_SIM}> -v learn=$<BOOL:${REDMAN_LEARN}> -f '${awk}' '${RDM_HEADER}' > '${file}'")
+    COMMAND sh -c "'${RDM_AWK}' -v sim=$<BOOL:${REDMAN_SIM}> -v learn=$<BOOL:${REDMAN_LEARN}> -v policy=$<BOOL:${REDMAN_POLICY}> -f '${awk}' '${RDM_HEADER}' > '${file}'")
   set(${out} ${file} PARENT_SCOPE)
 endfunction()
 
@@ -38,7 +49,7 @@ function(rdm_layer name folder)
   cmake_parse_arguments(arg "" "" "SEES;LINKS" ${ARGN})
   list(JOIN arg_SEES " " sees)
   set(RDM_TABLE "${RDM_TABLE}${name} ${folder} ${sees}\n" PARENT_SCOPE)
-  if((name IN_LIST RDM_SIM_ROWS AND NOT REDMAN_SIM) OR (name IN_LIST RDM_LEARN_ROWS AND NOT REDMAN_LEARN))
+  if(name IN_LIST RDM_OFF_ROWS)
     return()
   endif()
   set(RDM_ROWS ${RDM_ROWS} ${name} PARENT_SCOPE)
@@ -64,6 +75,7 @@ function(rdm_layer name folder)
     target_include_directories(rdm_capi PRIVATE ${PROJECT_SOURCE_DIR}/include)
     target_compile_definitions(rdm_capi PRIVATE RDM_EXPERIMENTAL
       RDM_WITH_SIM=$<BOOL:${REDMAN_SIM}> RDM_WITH_LEARN=$<BOOL:${REDMAN_LEARN}>
+      RDM_WITH_POLICY=$<BOOL:${REDMAN_POLICY}>
       RDM_ODE_VERSION="${RDM_VERSION_TEXT_ODE}" RDM_CCD_VERSION="${RDM_VERSION_TEXT_CCD}"
       RDM_EIGEN_VERSION="${RDM_VERSION_TEXT_EIGEN}" RDM_OCTOMAP_VERSION="${RDM_VERSION_TEXT_OCTOMAP}")
   endif()

@@ -22,5 +22,6 @@ void add_info(CLI::App& app, Run& run);
 void add_export(CLI::App& app, Run& run);
 void add_plot(CLI::App& app, Run& run);
 void add_hull(CLI::App& app, Run& run);
+void add_completion(CLI::App& app, Run& run);
 
 }  // namespace tool

@@ -78,6 +78,10 @@ void work(CLI::App& app, Run& run, const Arguments& arguments) {
   } catch (const CLI::CallForHelp&) {
     const std::string text = app.help();  // of the subcommand, if there is one
     print_result({{{"help", text}}, text + '\n'}, arguments.json);
+  } catch (const CLI::CallForVersion&) {
+    const Json build = build_json();
+    const std::string version = build["version"];
+    print_result({{{"version", version}, {"abi", build["abi"]}}, "redman " + version + '\n'}, arguments.json);
   } catch (const CLI::CallForAllHelp&) {
     const std::string text = app.help("", CLI::AppFormatMode::All);
     print_result({{{"help", text}}, text + '\n'}, arguments.json);
@@ -105,6 +109,8 @@ int run_tool(int argc, char** argv) {
   add_export(app, run);
   add_hull(app, run);
   add_info(app, run);
+  add_completion(app, run);
+  app.set_version_flag("--version", "", "Print the version and exit");
   app.set_help_all_flag("--help-all", "Help of every subcommand");
   try {
     work(app, run, arguments);

@@ -61,6 +61,7 @@
 extern "C" {
 #endif
 
+/* Of this header; that of the library is rdm_version(). */
 #define RDM_VERSION_MAJOR 0
 #define RDM_VERSION_MINOR 1
 #define RDM_VERSION_PATCH 0
@@ -71,7 +72,7 @@ extern "C" {
 
 /* ---- results ------------------------------------------------------------------------------------------ */
 typedef int32_t rdm_result; /* frozen values; positive ones are reserved */
-enum rdm_result_code {
+enum rdm_result_code { /* values of rdm_result */
   RDM_OK = 0,
   RDM_ARGUMENT = -1,    /* NULL, wrong struct_size, not finite, malformed                        */
   RDM_RANGE = -2,       /* outside the documented bounds; index past the end                     */
@@ -92,12 +93,13 @@ RDM_API const char *rdm_result_string(rdm_result r); /* static, never NULL, also
 RDM_API const char *rdm_last_error(void);
 
 /* ---- version and build -------------------------------------------------------------------------------- */
-enum rdm_feature { RDM_FEATURE_SIM = 1, RDM_FEATURE_LEARN = 2 };
+/* The halves of the library: worlds, learners; and frozen policies, which a build may have without the learners. */
+enum rdm_feature { RDM_FEATURE_SIM = 1, RDM_FEATURE_LEARN = 2, RDM_FEATURE_POLICY = 4 };
 RDM_API uint32_t rdm_version(void);  /* RDM_VERSION of the library that runs */
-RDM_API uint32_t rdm_features(void); /* RDM_FEATURE_*: which halves this build has */
+RDM_API uint32_t rdm_features(void); /* RDM_FEATURE_*: what this build has */
 /* VERSION_MISMATCH unless the library has this ABI and at least this version. */
 RDM_API rdm_result rdm_check_abi(uint32_t abi, uint32_t version);
-typedef struct rdm_build {
+typedef struct rdm_build { /* what this library was made of */
   uint32_t struct_size;   /* in: bytes                                              */
   uint32_t abi;           /* RDM_ABI of the library                                 */
   const char *version;    /* "0.1.0"                                                */
@@ -112,8 +114,8 @@ typedef struct rdm_build {
 RDM_API rdm_result rdm_build_info(rdm_build *io); /* fills io; strings are static */
 
 /* ---- host hooks --------------------------------------------------------------------------------------- */
-typedef void (*rdm_body)(void *context, int32_t index);
-typedef struct rdm_host {
+typedef void (*rdm_body)(void *context, int32_t index); /* one piece of parallel work */
+typedef struct rdm_host { /* what a host gives in the place of the C library and of our threads */
   uint32_t struct_size;   /* bytes                                                                     */
   uint32_t reserved;      /* 0                                                                         */
   void *user;             /* passed back to every hook; may be NULL                                    */
@@ -130,7 +132,7 @@ RDM_API rdm_result rdm_init(const rdm_host *host);
 RDM_API void rdm_shutdown(void); /* the last call puts the default hooks back; handles stay valid */
 
 /* ---- options ------------------------------------------------------------------------------------------ */
-enum rdm_option_kind { RDM_NUMBER = 0, RDM_INTEGER = 1, RDM_FLAG = 2, RDM_TEXT = 3 };
+enum rdm_option_kind { RDM_NUMBER = 0, RDM_INTEGER = 1, RDM_FLAG = 2, RDM_TEXT = 3 }; /* of an option */
 typedef struct rdm_option { /* frozen layout: one key and its value */
   const char *key;          /* case is ignored and '-' equals '_'                             */
   const char *text;         /* value as one line of text ("0.5", "egg"); NULL: number is it   */
@@ -151,7 +153,7 @@ typedef struct rdm_option_info { /* frozen layout: one row of an option table */
  * the line. A NULL is none. */
 
 /* ---- discovery: what exists, and what every number in a row means --------------------------------------- */
-typedef struct rdm_task {
+typedef struct rdm_task { /* a task with its default options */
   uint32_t struct_size;     /* in: bytes                                                      */
   float control_dt;         /* s between steps, default options                               */
   const char *name;         /* "hand_over_safe_finger"                                        */
@@ -195,7 +197,7 @@ RDM_API rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera *out);  /
 /* The task's own defaults of agent options, to be given as rdm_agent_config.defaults. */
 RDM_API rdm_result rdm_task_default(int32_t task, int32_t i, rdm_option *out); /* i < num_defaults */
 
-typedef struct rdm_algo {
+typedef struct rdm_algo { /* an algorithm */
   uint32_t struct_size;     /* in: bytes                                                      */
   int32_t num_options;      /* for rdm_algo_option                                            */
   const char *name;         /* "ppo_lag"                                                      */
@@ -206,7 +208,7 @@ RDM_API rdm_result rdm_algo_at(int32_t index, rdm_algo *io);                   /
 RDM_API rdm_result rdm_algo_find(const char *name, int32_t *index);            /* NOT_FOUND: nearest in the text */
 RDM_API rdm_result rdm_algo_option(int32_t algo, int32_t i, rdm_option_info *out); /* i < num_options */
 
-typedef struct rdm_robot {
+typedef struct rdm_robot { /* a robot description */
   uint32_t struct_size;     /* in: bytes                                                      */
   int32_t num_joints;       /* count                                                          */
   int32_t num_actuated;     /* count of joints with a motor of their own                      */
@@ -236,14 +238,15 @@ RDM_API int32_t rdm_object_count(void); /* number of objects */
 RDM_API rdm_result rdm_object_at(int32_t index, rdm_object *out);              /* RANGE past the end */
 
 /* ---- pool: worlds of one task, stepped together ----------------------------------------------------------- */
-typedef struct rdm_pool rdm_pool;
+typedef struct rdm_pool rdm_pool; /* handle */
+/* When a world begins again by itself: in the step that ended its episode, in the next, or never. */
 enum rdm_autoreset { RDM_AUTORESET_SAME_STEP = 0, RDM_AUTORESET_NEXT_STEP = 1, RDM_AUTORESET_OFF = 2 };
 enum rdm_status {                  /* bits of rdm_buffers.status */
   RDM_STATUS_CONTACTS = 1,         /* contacts beyond contacts_max were left out              */
   RDM_STATUS_DIVERGED = 2,         /* a value was not finite: the episode was truncated       */
   RDM_STATUS_BAD_ACTION = 4        /* the row of actions was not finite: likewise             */
 };
-typedef struct rdm_pool_config {
+typedef struct rdm_pool_config { /* what a pool is made from */
   uint32_t struct_size;      /* bytes, set by rdm_pool_config_init                                        */
   int32_t num_envs;          /* worlds, 1..65536, default 1                                               */
   const char *task;          /* name, required; copied                                                    */
@@ -262,7 +265,7 @@ typedef struct rdm_pool_config {
 /* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's. */
 RDM_API rdm_result rdm_pool_config_init(rdm_pool_config *c, size_t size);
 
-typedef struct rdm_spec {
+typedef struct rdm_spec { /* sizes of a pool's rows; what a policy is checked against */
   uint32_t struct_size;      /* in: bytes                                                                 */
   float control_dt;          /* s between steps                                                           */
   int32_t obs_dim;           /* count                                                                     */
@@ -338,7 +341,7 @@ RDM_API rdm_result rdm_pool_step(rdm_pool *p);
 /* The same for worlds whose mask [num_envs] is not 0; rows of the others do not change. */
 RDM_API rdm_result rdm_pool_step_masked(rdm_pool *p, const uint8_t *mask);
 
-enum rdm_baseline_kind { RDM_BASELINE_ZERO = 0, RDM_BASELINE_HOLD = 1, RDM_BASELINE_RANDOM = 2 };
+enum rdm_baseline_kind { RDM_BASELINE_ZERO = 0, RDM_BASELINE_HOLD = 1, RDM_BASELINE_RANDOM = 2 }; /* actions that nobody learned */
 /* Fills the action buffer: all 0 (the middle of each joint's range), the nominal start pose, or uniform in
  * [-1, 1] from the stream (seed, world, policy). */
 RDM_API rdm_result rdm_pool_baseline(rdm_pool *p, int32_t kind);
@@ -352,7 +355,7 @@ RDM_API rdm_result rdm_pool_get_state(const rdm_pool *p, int32_t env, void *byte
 RDM_API rdm_result rdm_pool_set_state(rdm_pool *p, int32_t env, const void *bytes, size_t size); /* of bytes [size] */
 RDM_API rdm_result rdm_pool_hash(const rdm_pool *p, int32_t env, uint64_t *hash); /* of the state; -1: all */
 
-enum rdm_shape_kind {
+enum rdm_shape_kind { /* of rdm_shape */
   RDM_SPHERE = 0, RDM_CAPSULE = 1, RDM_BOX = 2, RDM_CYLINDER = 3, RDM_PLANE = 4, RDM_ELLIPSOID = 5, RDM_HULL = 6
 };
 typedef struct rdm_shape {   /* frozen layout: what the scene is made of, the same for all worlds */
@@ -379,7 +382,7 @@ RDM_API rdm_result rdm_pool_contacts(const rdm_pool *p, int32_t env, rdm_contact
  * axis, 0: nothing hit), segmentation [h][w] (shape, -1: nothing); each may be NULL. 1 <= w, h <= 8192. */
 RDM_API rdm_result rdm_pool_render(rdm_pool *p, int32_t env, const char *camera, int32_t w, int32_t h,
                                    uint8_t *rgb, float *depth, int32_t *segmentation);
-typedef struct rdm_pool_stats {
+typedef struct rdm_pool_stats { /* counts since create */
   uint32_t struct_size;      /* in: bytes                                                                 */
   int32_t contacts_max;      /* largest number of contacts in a substep's list since create, all worlds   */
   double contacts_mean;      /* mean of the same                                                          */
@@ -391,9 +394,9 @@ typedef struct rdm_pool_stats {
 RDM_API rdm_result rdm_pool_get_stats(const rdm_pool *p, rdm_pool_stats *io); /* fills io */
 
 /* ---- agent: one algorithm that acts and learns ---------------------------------------------------------------- */
-typedef struct rdm_agent rdm_agent;
-enum rdm_act_mode { RDM_SAMPLE = 0, RDM_MEAN = 1 };
-typedef struct rdm_agent_config {
+typedef struct rdm_agent rdm_agent; /* handle */
+enum rdm_act_mode { RDM_SAMPLE = 0, RDM_MEAN = 1 }; /* of rdm_agent_act */
+typedef struct rdm_agent_config { /* what an agent is made from */
   uint32_t struct_size;       /* bytes, set by rdm_agent_config_init                                      */
   int32_t obs_dim;            /* count, 1..16384, required                                                */
   int32_t action_dim;         /* count, 1..1024, required                                                 */
@@ -520,8 +523,8 @@ RDM_API rdm_result rdm_checkpoint_read(const char *path, rdm_agent *a, rdm_pool 
                                        size_t *note_size);
 
 /* ---- policy: the frozen network -------------------------------------------------------------------------------- */
-typedef struct rdm_policy rdm_policy;
-typedef struct rdm_policy_info {
+typedef struct rdm_policy rdm_policy; /* handle */
+typedef struct rdm_policy_info { /* what a policy file tells of its network */
   uint32_t struct_size;       /* in: bytes                                                                */
   int32_t obs_dim;            /* count                                                                    */
   int32_t action_dim;         /* count                                                                    */
@@ -581,8 +584,8 @@ RDM_API rdm_result rdm_pool_push(rdm_pool *p, int32_t env, int32_t shape, const 
  *   rdm_map_destroy(m);
  *
  * One thread writes a map at a time; while none does, any number may read. All points are float [3] in m. */
-typedef struct rdm_map rdm_map;
-typedef struct rdm_map_config {
+typedef struct rdm_map rdm_map; /* handle */
+typedef struct rdm_map_config { /* what a map is made from */
   uint32_t struct_size;    /* bytes, set by rdm_map_config_init                                           */
   uint32_t reserved;       /* 0                                                                           */
   double resolution;       /* side of a voxel, m, 0.001 to 10, default 0.02                               */
@@ -598,7 +601,7 @@ typedef struct rdm_map_config {
   int32_t error_size;      /* bytes, terminator included; what is longer is cut                           */
   int32_t reserved2;       /* 0                                                                           */
 } rdm_map_config;
-typedef struct rdm_map_info {
+typedef struct rdm_map_info { /* how full a map is */
   uint32_t struct_size;    /* in: bytes                                                                   */
   uint32_t full;           /* 1: updates have been dropped since create, clear or load                    */
   double resolution;       /* m; a load takes the file's                                                  */

@@ -6,14 +6,19 @@
 
 #include "base/cpu.hpp"
 
+#ifndef RDM_WIDEST_KERNELS
+#define RDM_WIDEST_KERNELS 4
+#endif
+
 namespace rdm {
 namespace {
 
+// What is wider than the build's widest is not even linked.
 const Kernels* usable_v3() {
-  return cpu().v3 ? kernels_v3() : nullptr;
+  return RDM_WIDEST_KERNELS >= 3 && cpu().v3 ? kernels_v3() : nullptr;
 }
 const Kernels* usable_v4() {
-  return cpu().v4 ? kernels_v4() : nullptr;
+  return RDM_WIDEST_KERNELS >= 4 && cpu().v4 ? kernels_v4() : nullptr;
 }
 const Kernels* best() {
   if (const Kernels* k = usable_v4()) return k;

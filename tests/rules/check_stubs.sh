@@ -12,7 +12,7 @@ LC_ALL=C sort -o "$work/all" "$work/all"
 for halves in '0 0' '0 1' '1 0' '1 1'; do
   set -- $halves
   name=$1$2
-  awk -v sim="$1" -v learn="$2" -f "$root/capi/stubs.awk" "$root/include/redman/redman.h" > "$work/$name.cpp"
+  awk -v sim="$1" -v learn="$2" -v policy="$2" -f "$root/capi/stubs.awk" "$root/include/redman/redman.h" > "$work/$name.cpp"
   sed -n 's/^[a-z].*[ *]\(rdm_[a-z_0-9]*\)(.*{.*/\1/p' "$work/$name.cpp" | grep -v '^rdm_result$' |
     LC_ALL=C sort > "$work/$name"
   [ "$name" = 11 ] && continue

@@ -26,9 +26,9 @@ class Function(NamedTuple):
     doc: str
 
 
-RDM_VERSION_MAJOR = 0
-RDM_VERSION_MINOR = 1
-RDM_VERSION_PATCH = 0
+RDM_VERSION_MAJOR = 0  # Of this header; that of the library is rdm_version().
+RDM_VERSION_MINOR = 1  # Of this header; that of the library is rdm_version().
+RDM_VERSION_PATCH = 0  # Of this header; that of the library is rdm_version().
 RDM_ABI = 1  # = SONAME; moves only when an old binary would break
 RDM_MAX_COSTS = 16  # cost columns of a task or an agent
 RDM_TEXT_SIZE = 64  # bytes of an option's text value, terminator included
@@ -37,7 +37,7 @@ VERSION = "0.1.0"  # that these types are of
 
 
 class ResultCode(enum.IntEnum):
-    """frozen values; positive ones are reserved"""
+    """values of rdm_result"""
 
     OK = 0
     ARGUMENT = -1  # NULL, wrong struct_size, not finite, malformed
@@ -55,14 +55,15 @@ class ResultCode(enum.IntEnum):
 
 
 class Feature(enum.IntFlag):
-    """rdm_feature"""
+    """The halves of the library: worlds, learners; and frozen policies, which a build may have without the learners."""
 
     SIM = 1
     LEARN = 2
+    POLICY = 4
 
 
 class OptionKind(enum.IntEnum):
-    """rdm_option_kind"""
+    """of an option"""
 
     NUMBER = 0
     INTEGER = 1
@@ -71,7 +72,7 @@ class OptionKind(enum.IntEnum):
 
 
 class Autoreset(enum.IntEnum):
-    """rdm_autoreset"""
+    """When a world begins again by itself: in the step that ended its episode, in the next, or never."""
 
     SAME_STEP = 0
     NEXT_STEP = 1
@@ -87,7 +88,7 @@ class Status(enum.IntFlag):
 
 
 class BaselineKind(enum.IntEnum):
-    """rdm_baseline_kind"""
+    """actions that nobody learned"""
 
     ZERO = 0
     HOLD = 1
@@ -95,7 +96,7 @@ class BaselineKind(enum.IntEnum):
 
 
 class ShapeKind(enum.IntEnum):
-    """rdm_shape_kind"""
+    """of rdm_shape"""
 
     SPHERE = 0
     CAPSULE = 1
@@ -107,7 +108,7 @@ class ShapeKind(enum.IntEnum):
 
 
 class ActMode(enum.IntEnum):
-    """rdm_act_mode"""
+    """of rdm_agent_act"""
 
     SAMPLE = 0
     MEAN = 1
@@ -1374,7 +1375,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_features": Function(
         c_uint32, {},
         {}, False,
-        """RDM_FEATURE_*: which halves this build has"""),
+        """RDM_FEATURE_*: what this build has"""),
     "rdm_check_abi": Function(
         c_int32, {"abi": c_uint32, "version": c_uint32},
         {}, False,
