@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|coverage|hard [MINUTES]]: installs what the tests need, builds, and runs them.
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|embedded|coverage|hard [MINUTES]]: installs what the tests need, builds, and runs them.
 # The last line says how many passed and failed; the exit status is 0 when none failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -86,6 +86,13 @@ case $mode in
     cmake --build build/clang -j "$(nproc)" --target test_golden test_stepper test_vec >&2 || die "the build with clang failed: see above"
     run_tests clang -R '^(test_golden|golden_other_libm|test_stepper|test_vec)$'
     ;;
+  embedded)
+    # Policies as C source, on this machine and on Cortex-M processors under qemu, with a table of what they take.
+    need clang-14 gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm valgrind
+    configure dev
+    cmake --build --preset dev -j "$(nproc)" --target redman_tool >&2 || die "the tool could not be built: see above"
+    run_tests dev -V -R '^test_tool_(export_c|embedded)$'
+    ;;
   hard)
     # Tries to break the library for an hour (or MINUTES), builds included: tests/hard/README.md. Two lines of work,
     # one for each of two processors; every part gets a share of the time that the builds leave.
@@ -126,5 +133,5 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
-  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|coverage|hard [MINUTES]]" ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|embedded|coverage|hard [MINUTES]]" ;;
 esac
