@@ -52,7 +52,8 @@ Report run_export(const ExportFlags& flags) {
     throw Usage("export: nothing to write; give --c FILE, --onnx FILE, --safetensors FILE or --probe FILE");
   if (flags.name_given) check_c_name(flags.name);
   const ActorChoice choice = choose_actor(flags.policy);
-  if (choice.file.empty()) throw Usage("--policy " + flags.policy + ": a baseline is no network");
+  if (choice.file.empty() || choice.recording)
+    throw Usage("--policy " + flags.policy + ": it is no network; give a policy file or a run folder");
   const redman::Policy policy(choice.file.c_str());
   const Network network(policy);
   Json json = {{"policy", choice.file}};

@@ -133,15 +133,19 @@ ArrayShape parse_npy(const char* bytes, size_t size, size_t* begin) {
   Literal text(std::string(bytes + kHead, length));
   ArrayShape out;
   text.need("{");
+  unsigned seen = 0;  // a bit a key
   for (int i = 0; i < 3; ++i) {
     if (text.take("'descr'")) {
+      seen |= 1;
       text.need(":");
       out.type = text.quoted();
     } else if (text.take("'fortran_order'")) {
+      seen |= 2;
       text.need(":");
       if (!text.take("False")) throw Failure("an array is in the order of Fortran");
     } else {
       text.need("'shape'");
+      seen |= 4;
       text.need(":");
       text.need("(");
       while (text.digit() && out.shape.size() < kMostShape) {
@@ -153,6 +157,7 @@ ArrayShape parse_npy(const char* bytes, size_t size, size_t* begin) {
     if (!text.take(",")) break;
   }
   text.need("}");
+  if (seen != 7) throw Failure("not an array of numpy: its header is not whole");
   if (out.item_bytes() == 0) throw Failure("an array's type is not known");
   if (out.bytes() != size - *begin) throw Failure("an array is not as long as it says");
   return out;
