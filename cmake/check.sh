@@ -136,6 +136,13 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
+  embedded)
+    # Policies as C source, on this machine and on Cortex-M processors under qemu, with a table of what they take.
+    need clang-14 gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm valgrind
+    configure dev
+    cmake --build --preset dev -j "$(nproc)" --target redman_tool >&2 || die "the tool could not be built: see above"
+    run_tests dev -V -R '^test_tool_(export_c|embedded)$'
+    ;;
   hard)
     # Tries to break the library for an hour (or MINUTES), builds included: tests/hard/README.md. Two lines of work,
     # one for each of two processors; every part gets a share of the time that the builds leave.

@@ -41,7 +41,7 @@ const CarriedDemo kCarriedDemos[] = {
   list(REMOVE_ITEM sources ${PROJECT_SOURCE_DIR}/examples/redman/main.cpp)
   add_library(redman_tool_parts STATIC ${sources} ${CMAKE_CURRENT_BINARY_DIR}/demos.cpp)
   target_include_directories(redman_tool_parts PUBLIC ${PROJECT_SOURCE_DIR}/examples/redman)
-  target_link_libraries(redman_tool_parts PUBLIC CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG)
+  target_link_libraries(redman_tool_parts PUBLIC CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG ZLIB::ZLIB)
   if(TARGET Qhull::qhull_r)
     target_compile_definitions(redman_tool_parts PRIVATE REDMAN_QHULL=1)
     target_link_libraries(redman_tool_parts PUBLIC Qhull::qhull_r)

@@ -1,53 +1,59 @@
 // `export`: a policy as a file for other programs.
-#include <cmath>
-
 #include "commands.hpp"
 #include "common/files.hpp"
 #include "common/text.hpp"
-#include "network/network.hpp"
+#include "network/c_source.hpp"
+#include "network/probe.hpp"
 #include "play/actor.hpp"
 
 namespace tool {
 namespace {
 
 struct ExportFlags {
-  std::string policy, onnx, safetensors, probe;
+  std::string policy, onnx, safetensors, c, name, probe;
+  bool int8 = false, name_given = false;
   int32_t probes = 1000;
   uint64_t seed = 0;
 };
 
-// Plain uniform numbers: splitmix64.
-float signed_unit(uint64_t& state) {
-  uint64_t z = state += 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return static_cast<float>((z ^ (z >> 31)) >> 40) * 0x1p-23f - 1;
-}
-
-// Random observations and what the policy does: the normaliser's range, and every tenth row far outside it.
+// Random observations and what the policy does.
 Json probe_json(const redman::Policy& policy, const Network& network, const ExportFlags& flags) {
-  const auto rows = static_cast<size_t>(flags.probes), in = static_cast<size_t>(network.obs_dim),
-             out = static_cast<size_t>(network.action_dim);
-  const NamedTensor *shift = network.find("normalizer.shift"), *scale = network.find("normalizer.scale");
-  std::vector<float> obs(rows * in), action(rows * out);
-  uint64_t random = flags.seed;
-  for (size_t i = 0; i < rows * in; ++i) {
-    const float x = signed_unit(random) * (i / in % 10 == 9 ? 30.0f : 2.0f);
-    obs[i] = shift ? shift->values[i % in] + x / scale->values[i % in] : x;
-  }
-  policy.act(obs.data(), flags.probes, nullptr, action.data());
+  const auto obs = probe_observations(network, static_cast<size_t>(flags.probes), flags.seed);
   return {{"rows", flags.probes},
           {"obs_dim", network.obs_dim},
           {"action_dim", network.action_dim},
           {"obs", obs},
-          {"action", action}};
+          {"action", mean_actions(policy, obs)}};
+}
+
+// What the observation is made of, as the policy's task has it with the options of its run; empty when that
+// is not the layout that the policy knows.
+std::vector<ObsField> fields_of(const redman::Policy& policy, const ActorChoice& choice) {
+  std::vector<ObsField> fields;
+  try {
+    PoolSettings settings;
+    settings.task = policy.info().task;
+    settings.options = choice.options;
+    const redman::Pool pool = make_pool(settings, RDM_AUTORESET_OFF);
+    if (pool.spec().layout_hash != policy.info().layout_hash) return {};
+    for (int32_t i = 0; i < pool.spec().num_fields; ++i) {
+      rdm_field f;
+      redman::check(rdm_pool_field(pool.get(), i, &f));
+      fields.push_back({f.name, f.unit, f.offset, f.count});
+    }
+  } catch (const Usage&) {  // a host's own environment, or a task that is not here
+    return {};
+  }
+  return fields;
 }
 
 Report run_export(const ExportFlags& flags) {
-  if (flags.onnx.empty() && flags.safetensors.empty() && flags.probe.empty())
-    throw Usage("export: nothing to write; give --onnx FILE, --safetensors FILE or --probe FILE");
+  if (flags.onnx.empty() && flags.safetensors.empty() && flags.c.empty() && flags.probe.empty())
+    throw Usage("export: nothing to write; give --c FILE, --onnx FILE, --safetensors FILE or --probe FILE");
+  if (flags.name_given) check_c_name(flags.name);
   const ActorChoice choice = choose_actor(flags.policy);
-  if (choice.file.empty()) throw Usage("--policy " + flags.policy + ": a baseline is no network");
+  if (choice.file.empty() || choice.recording)
+    throw Usage("--policy " + flags.policy + ": it is no network; give a policy file or a run folder");
   const redman::Policy policy(choice.file.c_str());
   const Network network(policy);
   Json json = {{"policy", choice.file}};
@@ -60,6 +66,20 @@ Report run_export(const ExportFlags& flags) {
   };
   if (!flags.onnx.empty()) write("onnx", flags.onnx, onnx_bytes(network));
   if (!flags.safetensors.empty()) write("safetensors", flags.safetensors, safetensors_bytes(network));
+  if (!flags.c.empty()) {
+    const std::string name = flags.name_given ? flags.name : c_name_of(policy.info().task);
+    const CSource source = c_source(policy, network, name, fields_of(policy, choice), flags.int8);
+    write("c", flags.c, source.text);
+    json["file"] = flags.c;
+    json["bytes"] = source.text.size();
+    json["name"] = name;
+    if (flags.int8) {
+      json["largest_error"] = source.largest_error;
+      json["rms_error"] = source.rms_error;
+      text += format("8-bit weights: actions differ by %.2g at most, %.2g in root mean square\n",
+                     source.largest_error, source.rms_error);
+    }
+  }
   if (!flags.probe.empty()) write("probe", flags.probe, probe_json(policy, network, flags).dump());
   return {json, text};
 }
@@ -68,8 +88,14 @@ Report run_export(const ExportFlags& flags) {
 
 void add_export(CLI::App& app, Run& run) {
   auto flags = std::make_shared<ExportFlags>();
-  CLI::App* command = app.add_subcommand("export", "Write a policy as ONNX or safetensors");
+  CLI::App* command = app.add_subcommand("export", "Write a policy as C source, ONNX or safetensors");
   command->add_option("--policy", flags->policy, "policy file or run folder")->required();
+  CLI::Option* c = command->add_option("--c", flags->c,
+                                       "C99 file to write: one function that needs no heap and no library");
+  CLI::Option* name =
+      command->add_option("--name", flags->name, "begins the names in the C file; default: the task")
+          ->needs(c);
+  command->add_flag("--int8", flags->int8, "weights of the C file in 8 bits")->needs(c);
   command->add_option("--onnx", flags->onnx, "ONNX file to write: normaliser, network and clip in one graph");
   command->add_option("--safetensors", flags->safetensors, "safetensors file to write");
   command->add_option(
@@ -77,7 +103,10 @@ void add_export(CLI::App& app, Run& run) {
       "JSON file to write: random observations and this policy's mean actions, to check others by");
   command->add_option("--probes", flags->probes, "rows of --probe")->check(CLI::Range(1, 100000));
   command->add_option("--seed", flags->seed, "of --probe");
-  command->callback([&run, flags] { run = [flags] { return run_export(*flags); }; });
+  command->callback([&run, flags, name] {
+    flags->name_given = name->count() > 0;
+    run = [flags] { return run_export(*flags); };
+  });
 }
 
 }  // namespace tool

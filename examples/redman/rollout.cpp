@@ -1,4 +1,4 @@
-// `rollout`: plays episodes and writes what happened, a row per control step.
+// `rollout`: plays episodes and writes what happened, control step by control step.
 #include <memory>
 
 #include "commands.hpp"
@@ -6,16 +6,19 @@
 #include "common/names.hpp"
 #include "common/text.hpp"
 #include "play/episodes.hpp"
+#include "record/recorder.hpp"
+#include "record/recording.hpp"
 
 namespace tool {
 namespace {
 
 struct RolloutFlags {
-  std::string policy = "hold", out;
+  std::string policy = "hold", out, record;
   PoolSettings pool;
   std::vector<std::string> sets;
   int32_t episodes = 1;
-  bool task_given = false;
+  bool states = false;  // in the record
+  bool task_given = false, envs_given = false, seed_given = false, episodes_given = false;
 };
 
 // Rows of one CSV file, kept per episode so that the file is in order of episodes for any number of worlds.
@@ -57,22 +60,46 @@ class StepTable {
   std::vector<int32_t> steps_;     // [episodes]
 };
 
+// What a recording was played with, for what no flag says.
+void adopt_recording(const Recording& r, RolloutFlags& flags) {
+  const auto count = static_cast<int32_t>(r.episodes());
+  if (flags.seed_given)
+    throw Usage("--seed: a recorded rollout begins where it was recorded; it goes without a seed");
+  if (!flags.envs_given) flags.pool.envs = r.pool.envs;
+  if (!flags.episodes_given) flags.episodes = count;
+  if (flags.episodes > count)
+    throw Usage(format("--episodes %d: %s has %d", flags.episodes, flags.policy.c_str(), count));
+}
+
 Report run_rollout(RolloutFlags flags) {
   const ActorChoice choice = choose_actor(flags.policy);
+  if (choice.recording) adopt_recording(*choice.recording, flags);
   adopt_task(choice, flags.task_given, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
   flags.pool.envs = std::min(flags.pool.envs, flags.episodes);
   redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_OFF);
   Actor actor(choice, pool);
+  const auto episodes = static_cast<size_t>(flags.episodes);
   std::unique_ptr<StepTable> table;
-  if (!flags.out.empty()) table = std::make_unique<StepTable>(pool, static_cast<size_t>(flags.episodes));
-  StepObserver observer;
-  if (table) observer = [&](size_t env, size_t episode) { table->add(pool, env, episode); };
+  std::unique_ptr<Recorder> recorder;
+  if (!flags.out.empty()) table = std::make_unique<StepTable>(pool, episodes);
+  if (!flags.record.empty())
+    recorder = std::make_unique<Recorder>(flags.record, pool, episodes, flags.states);
+  const auto after = [&](size_t env, size_t episode) {
+    if (table) table->add(pool, env, episode);
+    if (recorder) recorder->after(env, episode);
+  };
+  StepObserver before;
+  if (recorder) before = [&](size_t env, size_t episode) { recorder->before(env, episode); };
   pool.reset();
   const auto limits = cost_limits(pool, {});
-  const Summary s =
-      summarise(play_episodes(pool, actor, static_cast<size_t>(flags.episodes), observer), limits);
+  const Summary s = summarise(play_episodes(pool, actor, episodes, after, before), limits);
+  actor.check_ends();
   if (table) replace_file(flags.out, table->text());
+  // a recording of a replay says who acted at first, so that it can be replayed in turn
+  const RecordNote note{choice.recording ? choice.recording->policy : flags.policy, flags.pool.options,
+                        flags.pool.seed};
+  const uint64_t steps = recorder ? recorder->finish(note) : 0;
 
   const std::string hash = format("%016llx", static_cast<unsigned long long>(pool.hash()));
   Json json = {{"task", task_at(pool.spec().task).name}, {"episodes", flags.episodes},
@@ -86,6 +113,13 @@ Report run_rollout(RolloutFlags flags) {
     json["file"] = flags.out;
     text += "wrote " + flags.out + '\n';
   }
+  if (recorder) {
+    if (table) json["table"] = flags.out;
+    json["file"] = flags.record;
+    json["steps"] = steps;
+    text += format("wrote %s, %llu steps\n", flags.record.c_str(), static_cast<unsigned long long>(steps));
+  }
+  if (choice.recording) json["recorded_hash"] = choice.recording->hash;
   return {json, text};
 }
 
@@ -93,15 +127,25 @@ Report run_rollout(RolloutFlags flags) {
 
 void add_rollout(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RolloutFlags>();
-  CLI::App* command = app.add_subcommand("rollout", "Play episodes and write a CSV row per control step");
+  CLI::App* command = app.add_subcommand("rollout", "Play episodes and write what happened");
   CLI::Option* task = add_pool_flags(*command, flags->pool, "task; default: the policy's");
   command->add_option("--policy", flags->policy,
-                      "policy file, run folder, .demo file, demo, zero, hold or random");
-  command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));
-  command->add_option("--out", flags->out, "CSV file; default: none");
+                      "policy file, run folder, .demo file, recorded .npz file, demo, zero, hold or random");
+  CLI::Option* episodes =
+      command->add_option("--episodes", flags->episodes, "episodes; default: 1, or as recorded")
+          ->check(CLI::Range(1, kMostEpisodes));
+  command->add_option("--out", flags->out, "CSV file: rewards, costs and what is observed of the object");
+  CLI::Option* record = command->add_option(
+      "--record", flags->record,
+      "all of every step: arrays of numpy (.npz), which --policy plays again, or named columns (.csv)");
+  command->add_flag("--record-states", flags->states, "the worlds' state before each step too")
+      ->needs(record);
   add_set_flag(*command, flags->sets);
-  command->callback([&run, flags, task] {
+  command->callback([&run, flags, task, episodes, command] {
     flags->task_given = task->count() > 0;
+    flags->episodes_given = episodes->count() > 0;
+    flags->envs_given = command->count("--envs") > 0;
+    flags->seed_given = command->count("--seed") > 0;
     run = [flags] { return run_rollout(*flags); };
   });
 }

@@ -17,6 +17,8 @@ writers() {
   echo "export --policy run --safetensors"
   echo "export --policy run --probes 10 --probe"
   echo "rollout --task ball_run --set max_steps=3 --out"
+  echo "rollout --task ball_run --set max_steps=3 --record"
+  echo "export --policy run --c"
   echo "render --task ball_run --size 16x16 --out"
 }
 mkdir taken

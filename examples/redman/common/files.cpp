@@ -50,6 +50,29 @@ uint64_t random_number() {
   return out;
 }
 
+// 0, or what went wrong.
+int write_all(int file, uint64_t offset, const void* bytes, size_t size) {
+  for (size_t done = 0; done < size;) {
+    const ssize_t n =
+        pwrite(file, static_cast<const char*>(bytes) + done, size - done, static_cast<off_t>(offset + done));
+    if (n < 0 && errno != EINTR) return errno;
+    if (n > 0) done += static_cast<size_t>(n);
+  }
+  return 0;
+}
+
+// Null, or what went wrong.
+const char* read_all(int file, uint64_t offset, void* to, size_t size) {
+  for (size_t done = 0; done < size;) {
+    const ssize_t n =
+        pread(file, static_cast<char*>(to) + done, size - done, static_cast<off_t>(offset + done));
+    if (n < 0 && errno != EINTR) return std::strerror(errno);
+    if (n == 0) return "it ends too early";
+    if (n > 0) done += static_cast<size_t>(n);
+  }
+  return nullptr;
+}
+
 // A process of that number may live elsewhere, with a file system in common: it holds a lock on its file.
 bool is_abandoned(const std::string& temporary, const char* process) {
   const long pid = std::strtol(process, nullptr, 10);
@@ -100,8 +123,7 @@ std::string read_file(const std::string& path, size_t most) {
   return bytes;
 }
 
-PreparedFile::PreparedFile(const std::string& path, const std::string& bytes)
-    : path_(path), target_(target_of(path)) {
+PreparedFile::PreparedFile(const std::string& path) : path_(path), target_(target_of(path)) {
   check_target(path_, target_);
   sweep_temporaries(target_, false);
   do {
@@ -112,12 +134,11 @@ PreparedFile::PreparedFile(const std::string& path, const std::string& bytes)
   } while (file_ < 0 && errno == EEXIST);
   if (file_ < 0) give_up(errno);
   flock(file_, LOCK_EX | LOCK_NB);  // best effort: says that the writer lives
-  for (size_t done = 0; done < bytes.size();) {
-    const ssize_t n = write(file_, bytes.data() + done, bytes.size() - done);
-    if (n < 0 && errno != EINTR) give_up(errno);
-    if (n > 0) done += static_cast<size_t>(n);
-  }
-  if (fsync(file_) != 0) give_up(errno);
+}
+
+PreparedFile::PreparedFile(const std::string& path, const std::string& bytes) : PreparedFile(path) {
+  write(bytes.data(), bytes.size());
+  sync();
 }
 
 PreparedFile::~PreparedFile() {
@@ -126,7 +147,24 @@ PreparedFile::~PreparedFile() {
   close(file_);
 }
 
+void PreparedFile::write(const void* bytes, size_t size) {
+  write_at(size_, bytes, size);
+  size_ += size;
+}
+
+void PreparedFile::write_at(uint64_t offset, const void* bytes, size_t size) {
+  synced_ = false;
+  const int error = write_all(file_, offset, bytes, size);
+  if (error) give_up(error);
+}
+
+void PreparedFile::sync() {
+  if (!synced_ && fsync(file_) != 0) give_up(errno);
+  synced_ = true;
+}
+
 void PreparedFile::commit() {
+  sync();
   check_target(path_, target_);
   if (std::rename(temporary_.c_str(), target_.c_str()) != 0) give_up(errno);
   close(file_);
@@ -145,6 +183,56 @@ void PreparedFile::give_up(int error) {
     file_ = -1;
   }
   throw Failure("cannot write " + path_ + ": " + std::strerror(error));
+}
+
+ScratchFile::ScratchFile(const std::string& beside) : path_(beside) {
+  const std::string target = target_of(beside), folder = fs::path(target).parent_path().string();
+  file_ = open(folder.empty() ? "." : folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
+  if (file_ >= 0) return;
+  // a file system without such files: one whose name goes at once
+  const std::string name =
+      target + kTemporary +
+      format("%d-%016llx", static_cast<int>(getpid()), static_cast<unsigned long long>(random_number()));
+  file_ = open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+  if (file_ < 0) throw Failure("cannot write " + path_ + ": " + std::strerror(errno));
+  unlink(name.c_str());
+}
+
+ScratchFile::~ScratchFile() {
+  close(file_);
+}
+
+void ScratchFile::write(const std::string& bytes) {
+  const int error = write_all(file_, size_, bytes.data(), bytes.size());
+  if (error) throw Failure("cannot write " + path_ + ": " + std::strerror(error));
+  size_ += bytes.size();
+}
+
+void ScratchFile::read(uint64_t offset, void* to, size_t size) const {
+  const char* problem = read_all(file_, offset, to, size);
+  if (problem) throw Failure("cannot write " + path_ + ": " + problem);
+}
+
+OpenFile::OpenFile(const std::string& path) : path_(path) {
+  file_ = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);  // a FIFO is not waited for
+  struct stat s {};
+  const bool found = file_ >= 0 && fstat(file_, &s) == 0;
+  if (found && S_ISREG(s.st_mode)) {
+    size_ = static_cast<uint64_t>(s.st_size);
+    return;
+  }
+  const std::string problem = found ? "it is not a regular file" : std::strerror(errno);
+  if (file_ >= 0) close(file_);
+  throw Failure("cannot read " + path + ": " + problem);
+}
+
+OpenFile::~OpenFile() {
+  close(file_);
+}
+
+void OpenFile::read(uint64_t offset, void* to, size_t size) const {
+  const char* problem = read_all(file_, offset, to, size);
+  if (problem) throw Failure("cannot read " + path_ + ": " + problem);
 }
 
 void check_replaceable(const std::string& path) {

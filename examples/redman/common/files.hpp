@@ -1,6 +1,7 @@
 // Whole files, read and replaced.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace tool {
@@ -10,23 +11,64 @@ bool is_folder(const std::string& path);
 // Failure when it cannot be read, is no regular file or is longer than `most` bytes.
 std::string read_file(const std::string& path, size_t most = size_t{1} << 28);
 
-// A file's new content, written and synced beside it: nothing is lost until commit() puts it in its place, in
-// one move. Where a symbolic link stands, the file that it leads to is replaced; what is no regular file (a
-// device, a FIFO, a folder) is refused. A kill leaves the old or the new content, and perhaps a temporary
+// A file's new content, written beside it: nothing is lost until commit() syncs it and puts it in its place,
+// in one move. Where a symbolic link stands, the file that it leads to is replaced; what is no regular file
+// (a device, a FIFO, a folder) is refused. A kill leaves the old or the new content, and perhaps a temporary
 // file
 // "<name>.tmp-<process>-<random>", which the next writer of the same file sweeps.
 class PreparedFile {
  public:
-  PreparedFile(const std::string& path, const std::string& bytes);  // Failure when it cannot be written
+  explicit PreparedFile(const std::string& path);  // empty; Failure when it cannot be written
+  PreparedFile(const std::string& path, const std::string& bytes);  // written and synced
   ~PreparedFile();
   PreparedFile(const PreparedFile&) = delete;
   PreparedFile& operator=(const PreparedFile&) = delete;
+  void write(const void* bytes, size_t size);                      // at the end
+  void write_at(uint64_t offset, const void* bytes, size_t size);  // over what was written
+  uint64_t size() const { return size_; }
   void commit();
 
  private:
   [[noreturn]] void give_up(int error);
+  void sync();
   std::string path_, target_, temporary_;
   int file_ = -1;
+  uint64_t size_ = 0;
+  bool synced_ = false;
+};
+
+// Bytes that wait on the disk of a file that is to be made; nobody else sees them, and they go with the
+// process.
+class ScratchFile {
+ public:
+  explicit ScratchFile(const std::string& beside);  // Failure when its folder cannot be written to
+  ~ScratchFile();
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+  void write(const std::string& bytes);  // at the end
+  void read(uint64_t offset, void* to, size_t size) const;
+  uint64_t size() const { return size_; }
+
+ private:
+  std::string path_;
+  int file_ = -1;
+  uint64_t size_ = 0;
+};
+
+// A regular file, read in parts. Failure when it cannot be.
+class OpenFile {
+ public:
+  explicit OpenFile(const std::string& path);
+  ~OpenFile();
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  uint64_t size() const { return size_; }
+  void read(uint64_t offset, void* to, size_t size) const;
+
+ private:
+  std::string path_;
+  int file_ = -1;
+  uint64_t size_ = 0;
 };
 
 // Failure when something stands at `path` that is no regular file.

@@ -5,6 +5,7 @@
 
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "record/recording.hpp"
 #include "run/folder.hpp"
 
 namespace tool {
@@ -16,12 +17,16 @@ redman::Policy load(const std::string& file) {
   if (!file_exists(file))
     throw Failure(
         "policy " + file +
-        ": no such file; give a policy file, a run folder, a .demo file, demo, zero, hold or random");
+        ": no such file; give a policy file, a run folder, a .demo or .npz file, demo, zero, hold or random");
   try {
     return redman::Policy(file.c_str());
   } catch (const redman::Error& e) {
     throw Failure("policy " + file + ": " + e.what());
   }
+}
+
+bool ends_with(const std::string& word, const std::string& ending) {
+  return word.size() > ending.size() && word.substr(word.size() - ending.size()) == ending;
 }
 
 uint64_t mixed(uint64_t x) {
@@ -38,8 +43,7 @@ ActorChoice choose_actor(const std::string& word) {
   for (int32_t i = 0; i < 3; ++i)
     if (same_name(word, kBaselines[i])) choice.baseline = i;
   if (choice.baseline >= 0) return choice;
-  const std::string ending = ".demo";
-  const bool script = word.size() > ending.size() && word.substr(word.size() - ending.size()) == ending;
+  const bool script = ends_with(word, ".demo");
   choice.demo = script || same_name(word, "demo");
   if (script) {
     const std::string text = read_file(word, kMostDemoBytes);
@@ -48,6 +52,14 @@ ActorChoice choose_actor(const std::string& word) {
     choice.options = choice.script->options;
   }
   if (choice.demo) return choice;
+  if (ends_with(word, ".npz")) {
+    auto recording = std::make_shared<Recording>(read_recording(word));
+    choice.file = word;
+    choice.task = recording->pool.task;
+    choice.options = recording->pool.options;
+    choice.recording = std::move(recording);
+    return choice;
+  }
   choice.file = is_folder(word) ? word + "/policy.rdm" : word;
   choice.task = load(choice.file).info().task;
   const std::string folder = run_folder_of(choice.file);
@@ -61,6 +73,11 @@ ActorChoice choose_actor(const std::string& word) {
 }
 
 void adopt_task(const ActorChoice& choice, bool task_given, PoolSettings& pool) {
+  if (choice.recording) {
+    if (task_given && !same_name(pool.task, choice.task))
+      throw Failure(choice.file + " was recorded in task " + choice.task + ", not in " + pool.task);
+    pool.seed = choice.recording->pool.seed;
+  }
   if (!task_given && !choice.task.empty()) pool.task = choice.task;
   if (choice.demo && !choice.script) {
     const Options own = builtin_demo(pool.task).options;
@@ -74,7 +91,18 @@ Actor::Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic, uin
     : baseline_(choice.baseline), stochastic_(stochastic), random_(mixed(seed)) {
   if (choice.demo)
     demo_.emplace(choice.script ? *choice.script : builtin_demo(task_at(pool.spec().task).name), pool);
-  if (!choice.file.empty()) {
+  if (choice.recording) {
+    recording_ = choice.recording;
+    file_ = choice.file;
+    const size_t n = pool.num_envs(), width = pool.action().width();
+    if (recording_->action_dim != width)
+      throw Failure(file_ + " does not fit: it has " + std::to_string(recording_->action_dim) +
+                    " actions, the task " + std::to_string(width));
+    played_.assign(n, 0);
+    for (size_t i = 0; i < n; ++i) episode_.push_back(i);
+    // what it played drew from the worlds' streams, which are part of their states
+    if (same_name(recording_->policy, kBaselines[RDM_BASELINE_RANDOM])) baseline_ = RDM_BASELINE_RANDOM;
+  } else if (!choice.file.empty()) {
     policy_ = load(choice.file);
     try {
       policy_->check_fits(pool.spec());
@@ -106,10 +134,50 @@ void Actor::prepare(const redman::Pool& pool) {
 
 void Actor::restart(const uint8_t* mask) {
   if (demo_) demo_->restart(mask);
+  for (size_t i = 0; i < played_.size(); ++i) {
+    if ((mask && !mask[i]) || played_[i] == 0) continue;
+    if (played_[i] != recording_->length(episode_[i])) throw Failure(went_elsewhere(i));
+    episode_[i] += played_.size();
+    played_[i] = 0;
+  }
   for (size_t i = 0; i < hold_.size(); ++i) {
     if (mask && !mask[i]) continue;
     hold_[i] = 0;
     fresh_[i] = 1;
+  }
+}
+
+std::string Actor::went_elsewhere(size_t env) const {
+  return file_ + ": episode " + std::to_string(episode_[env]) + " has " +
+         std::to_string(recording_->length(episode_[env])) +
+         " steps, and did not end there: recorded by another version, or with other options";
+}
+
+void Actor::check_ends() const {
+  for (size_t i = 0; i < played_.size(); ++i)
+    if (played_[i] && played_[i] != recording_->length(episode_[i])) throw Failure(went_elsewhere(i));
+}
+
+void Actor::replay(redman::Pool& pool, const uint8_t* mask) {
+  if (baseline_ >= 0) pool.baseline(baseline_);
+  const Recording& r = *recording_;
+  for (size_t i = 0; i < pool.num_envs(); ++i) {
+    if (mask && !mask[i]) continue;
+    const size_t e = episode_[i];
+    if (e >= r.episodes())
+      throw Failure(file_ + " has " + std::to_string(r.episodes()) +
+                    " episodes, and no more are to be had of it");
+    if (played_[i] == 0) {
+      const char* state = r.state.data() + e * r.state_bytes;
+      try {
+        pool.set_state(redman::Bytes(state, state + r.state_bytes), static_cast<int32_t>(i));
+      } catch (const redman::Error& error) {
+        throw Failure(file_ + " does not fit: " + error.what());
+      }
+    }
+    if (played_[i] == r.length(e)) throw Failure(went_elsewhere(i));
+    std::copy_n(r.action.data() + (r.begin[e] + played_[i]++) * r.action_dim, r.action_dim,
+                pool.action()[i].begin());
   }
 }
 
@@ -122,6 +190,7 @@ float Actor::normal() {
 
 void Actor::act(redman::Pool& pool, const uint8_t* mask) {
   if (demo_) return demo_->act(pool, mask);
+  if (recording_) return replay(pool, mask);
   if (!policy_) {
     pool.baseline(baseline_);
     return;

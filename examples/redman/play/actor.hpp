@@ -1,4 +1,5 @@
-// Who acts in a pool: a policy file, a demonstration, or one of the baselines zero, hold, random.
+// Who acts in a pool: a policy file, a demonstration, a recorded rollout, or one of the baselines zero, hold,
+// random.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,27 +9,31 @@
 
 namespace tool {
 
+struct Recording;
+
 // What a `--policy` word stands for.
 struct ActorChoice {
   std::string file;       // of a policy, else ""
   int32_t baseline = -1;  // RDM_BASELINE_*
   bool demo = false;      // the script, or without one the task's own
   std::optional<DemoScript> script;
+  std::shared_ptr<const Recording> recording;
   std::string task;                 // that the policy learned; "" unknown
   Options options;                  // of the task, when the policy stands in a run folder
   std::vector<std::string> limits;  // --cost-limit of that run
 };
-// zero, hold, random, demo, a .demo file, a policy file or a run folder. Failure when the file cannot be read
-// as a policy.
+// zero, hold, random, demo, a .demo file, an .npz file of a rollout, a policy file or a run folder. Failure
+// when the file cannot be read as what it is.
 ActorChoice choose_actor(const std::string& word);
 
 // Lays what the policy knows about its task under the flags: the task's name when `task_given` is false, and
-// the options of its run when the tasks agree.
+// the options of its run when the tasks agree. A recording brings its seed, and plays its own task alone.
 void adopt_task(const ActorChoice& choice, bool task_given, PoolSettings& pool);
 
 class Actor {
  public:
-  // Failure when the policy does not fit the pool's observations and actions.
+  // Failure when the policy does not fit the pool's observations and actions. A recording's episode e is
+  // played as the pool's episode e, each from its recorded start.
   Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic = false, uint64_t seed = 0);
   Actor(redman::Policy policy, const redman::Pool& pool);
 
@@ -37,14 +42,21 @@ class Actor {
   // Fills the action rows of the worlds in the mask: a decision every action_repeat control steps, held
   // between.
   void act(redman::Pool& pool, const uint8_t* mask = nullptr);
+  // Failure when an episode of a recording did not end where it ended when it was recorded.
+  void check_ends() const;
 
  private:
   void prepare(const redman::Pool& pool);
+  void replay(redman::Pool& pool, const uint8_t* mask);
+  std::string went_elsewhere(size_t env) const;
   float normal();
 
   int32_t baseline_ = -1;
   std::optional<redman::Policy> policy_;
   std::optional<Demo> demo_;
+  std::shared_ptr<const Recording> recording_;
+  std::string file_;                      // of the recording
+  std::vector<size_t> episode_, played_;  // [num_envs] of the recording, and its steps so far
   bool stochastic_ = false;
   uint64_t random_ = 0;
   int32_t repeat_ = 1;                       // steps of the pool for a decision

@@ -24,8 +24,8 @@ double standard_error(double deviation, size_t count) {
 
 }  // namespace
 
-std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t count,
-                                   const StepObserver& observer) {
+std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t count, const StepObserver& after,
+                                   const StepObserver& before) {
   const size_t n = pool.num_envs();
   std::vector<Episode> episodes(count);
   std::vector<uint8_t> playing(n), ended(n);
@@ -40,13 +40,15 @@ std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t coun
   actor.restart();
   while (any(playing)) {
     actor.act(pool, playing.data());
+    for (size_t i = 0; before && i < n; ++i)
+      if (playing[i]) before(i, episode[i]);
     pool.step(playing.data());
     for (size_t i = 0; i < n; ++i) {
       ended[i] = 0;
       if (!playing[i]) continue;
       Episode& e = episodes[episode[i]];
       e.success |= pool.success()[i] != 0;
-      if (observer) observer(i, episode[i]);
+      if (after) after(i, episode[i]);
       if (!pool.terminated()[i] && !pool.truncated()[i]) continue;
       e.ret = static_cast<double>(pool.episode_return()[i]);
       e.cost.assign(pool.episode_cost()[i].begin(), pool.episode_cost()[i].end());

@@ -17,13 +17,14 @@ struct Episode {
   bool success = false;      // the task's success held at least once
 };
 
-// Called after each control step of world `env` in its episode number `episode`.
+// Called around each control step of world `env` in its episode number `episode`.
 using StepObserver = std::function<void(size_t env, size_t episode)>;
 
 // Plays `count` episodes in a pool without autoreset that was just reset. Episode e is played by world
-// e mod num_envs; a world that has done its share rests. The result does not depend on threads.
+// e mod num_envs; a world that has done its share rests. The result does not depend on threads. `before`
+// finds the actions in the pool, `after` what came of them.
 std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t count,
-                                   const StepObserver& observer = {});
+                                   const StepObserver& after = {}, const StepObserver& before = {});
 
 struct Summary {
   double return_mean = 0, return_std = 0, length_mean = 0, fall_rate = 0, success_rate = 0;

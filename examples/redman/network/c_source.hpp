@@ -1,0 +1,26 @@
+// A policy as one C99 file that needs nothing: no heap, no library. What the file holds, it says at its head.
+#pragma once
+#include "network/network.hpp"
+
+namespace tool {
+
+struct ObsField {
+  std::string name, unit;
+  int32_t offset = 0, count = 0;  // entries
+};
+
+struct CSource {
+  std::string text;
+  double largest_error = 0, rms_error = 0;  // of int8 weights: actions, against the policy's own
+};
+
+// `name` begins every symbol. `fields` say what the observation is made of; may be empty.
+CSource c_source(const redman::Policy& policy, const Network& network, const std::string& name,
+                 const std::vector<ObsField>& fields, bool int8);
+
+// "hand_over_act" and its like can be made of it. Usage if not.
+void check_c_name(const std::string& name);
+// The nearest such name to a task's.
+std::string c_name_of(const std::string& task);
+
+}  // namespace tool

@@ -1,0 +1,258 @@
+// The text of a policy's C file, but for its numbers. Words in capitals are put in: NAME, OBS_DIM, ...
+#pragma once
+
+namespace tool {
+
+inline constexpr const char* kHead =
+    R"(/* Policy of TASK, exported by redman VERSION. C99 and C++; no heap, no library, no state: call it from
+ * any thread. STACK bytes of stack and a little.
+ *
+ *   float obs[NAME_obs_dim], action[NAME_action_dim];
+ *   NAME_act(obs, action);
+ *
+ * One decision, to be held for RATE: the mean action, clipped to [-1, 1].
+ * Every action is NaN when an observation is not finite, or the network overflows on it: test one for
+ * action == action before it moves anything.
+ *
+ * With REDMAN_POLICY_HEADER defined this file declares only. With REDMAN_POLICY_TEST it is a program: status 0
+ * when the actions are the policy's, 1 when not, 2 when a number is not what was exported, 3 when an
+ * observation that is not finite is taken.
+ *
+ * Network: SHAPE. Weights: WEIGHTS.
+ * Layout of observations and actions: LAYOUT.
+)";
+
+inline constexpr const char* kDeclarations = R"( */
+#ifndef NAME_DECLARED
+#define NAME_DECLARED
+enum { NAME_obs_dim = OBS_DIM, NAME_action_dim = ACTION_DIM, NAME_action_repeat = REPEAT };
+#ifdef __cplusplus
+extern "C" {
+#endif
+void NAME_act(const float *obs, float *action); /* [NAME_obs_dim], [NAME_action_dim] */
+#ifdef __cplusplus
+}
+#endif
+#endif
+
+#if !defined(REDMAN_POLICY_HEADER) && !defined(NAME_DEFINED)
+#define NAME_DEFINED
+#include <stdint.h>
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
+#error "-ffast-math and -Ofast take away what tells NaN from numbers"
+#endif
+
+)";
+
+inline constexpr const char* kFma = R"(
+/* x y + z, rounded once, as redman itself has it: actions then are the same bytes. Where there is no such
+ * instruction a double holds the product; where that is slow, twice rounded has to do, 1e-6 from there. */
+static float NAME_fma(float x, float y, float z) {
+#if defined(__FP_FAST_FMAF)
+  return __builtin_fmaf(x, y, z);
+#elif defined(__SSE2__) || defined(_M_X64)
+  return (float)((double)x * (double)y + (double)z);
+#else
+  return x * y + z;
+#endif
+}
+)";
+
+inline constexpr const char* kTanh = R"(
+/* x P(x^2) / Q(x^2), relative error 2e-8 before rounding. */
+static float NAME_tanh(float x) {
+  float u, p, q;
+  x = x < -9.011f ? -9.011f : x > 9.011f ? 9.011f : x;
+  u = x * x;
+  p = NAME_fma(1.33350530617804e-08f, u, 2.0594981833710335e-05f);
+  p = NAME_fma(p, u, 0.0034947325475513935f);
+  p = NAME_fma(p, u, 0.13380305469036102f);
+  p = NAME_fma(p, u, 1.0f);
+  q = NAME_fma(7.768549039610662e-07f, u, 0.00032842348446138203f);
+  q = NAME_fma(q, u, 0.025873728096485138f);
+  q = NAME_fma(q, u, 0.4671362042427063f);
+  q = NAME_fma(q, u, 1.0f);
+  x = x * p / q;
+  return x < -1.0f ? -1.0f : x > 1.0f ? 1.0f : x;
+}
+)";
+
+inline constexpr const char* kActivateTanh = R"(
+static float NAME_activation(float z) { return NAME_tanh(z); }
+)";
+
+inline constexpr const char* kElu = R"(
+/* z, and e^z - 1 below 0. */
+static float NAME_activation(float z) {
+  float t;
+  if (z > 0.0f) return z;
+  t = NAME_tanh(z * 0.5f);
+  return (t + t) / (1.0f - t);
+}
+)";
+
+inline constexpr const char* kRelu = R"(
+static float NAME_activation(float z) { return z < 0.0f ? 0.0f : z; }
+)";
+
+inline constexpr const char* kActivate = R"(
+static void NAME_activate(float *x, int n) {
+  int i;
+  for (i = 0; i < n; ++i) x[i] = NAME_activation(x[i]);
+}
+)";
+
+inline constexpr const char* kLayerFloat = R"(
+/* y [out] = W x + bias; weight [out / 4][in][4]. */
+static void NAME_layer(const float *weight, const float *bias, const float *x, int in, int out, float *y) {
+  int i, k;
+  for (i = 0; i < out; i += 4) {
+    float a = 0.0f, b = 0.0f, c = 0.0f, d = 0.0f;
+    for (k = 0; k < in; ++k, weight += 4) {
+      a = NAME_fma(x[k], weight[0], a);
+      b = NAME_fma(x[k], weight[1], b);
+      c = NAME_fma(x[k], weight[2], c);
+      d = NAME_fma(x[k], weight[3], d);
+    }
+    y[i] = a + bias[i];
+    y[i + 1] = b + bias[i + 1];
+    y[i + 2] = c + bias[i + 2];
+    y[i + 3] = d + bias[i + 3];
+  }
+}
+)";
+
+inline constexpr const char* kLayerInt8 = R"(
+/* y [out] = W x + bias; weight [out / 4][in][4], each row times its scale. x is rounded to integers so small that
+ * 32 bits hold the sums. */
+static void NAME_layer(const int8_t *weight, const float *scale, const float *bias, const float *x, int in, int out,
+                       float *y) {
+  int16_t q[WIDEST];
+  const int32_t most = INT32_MAX / 127 / in;
+  const float limit = most < 32767 ? (float)most : 32767.0f;
+  float largest = 0.0f, unit, per;
+  int i, k;
+  for (k = 0; k < in; ++k) {
+    const float size = x[k] < 0.0f ? -x[k] : x[k];
+    if (size > largest) largest = size;
+  }
+  unit = largest / limit;
+  per = largest > 0.0f ? limit / largest : 0.0f;
+  for (k = 0; k < in; ++k) {
+    const float v = NAME_fma(x[k], per, x[k] < 0.0f ? -0.5f : 0.5f);
+    q[k] = (int16_t)(v > limit ? limit : v > -limit ? v : -limit);
+  }
+  for (i = 0; i < out; i += 4) {
+    int32_t a = 0, b = 0, c = 0, d = 0;
+    for (k = 0; k < in; ++k, weight += 4) {
+      a += weight[0] * q[k];
+      b += weight[1] * q[k];
+      c += weight[2] * q[k];
+      d += weight[3] * q[k];
+    }
+    y[i] = NAME_fma((float)a, unit * scale[i], bias[i]);
+    y[i + 1] = NAME_fma((float)b, unit * scale[i + 1], bias[i + 1]);
+    y[i + 2] = NAME_fma((float)c, unit * scale[i + 2], bias[i + 2]);
+    y[i + 3] = NAME_fma((float)d, unit * scale[i + 3], bias[i + 3]);
+  }
+}
+)";
+
+inline constexpr const char* kActHead = R"(
+void NAME_act(const float *obs, float *action) {
+  float front[FRONT], back[BACK];
+  float fault = 0.0f; /* NaN once something is not finite */
+  int i;
+  for (i = 0; i < NAME_obs_dim; ++i) {
+)";
+
+inline constexpr const char* kNormalise = R"(    const float z = (obs[i] - NAME_shift[i]) * NAME_scale[i];
+    front[i] = z < -CLIP ? -CLIP : z > CLIP ? CLIP : z;
+    fault += obs[i] - obs[i];
+  }
+)";
+
+inline constexpr const char* kTake = R"(    front[i] = obs[i];
+    fault += obs[i] - obs[i];
+  }
+)";
+
+inline constexpr const char* kActTail = R"(  for (i = 0; i < NAME_action_dim; ++i) {
+    const float a = LAST[i];
+    action[i] = a < -1.0f ? -1.0f : a > 1.0f ? 1.0f : a;
+    fault += action[i] - action[i];
+  }
+  for (i = 0; i < NAME_action_dim; ++i) action[i] += fault;
+}
+)";
+
+inline constexpr const char* kTestHead = R"(
+#ifdef REDMAN_POLICY_TEST
+#include <string.h>
+
+/* An observation, and the policy's own actions on it and on those that are drawn. */
+)";
+
+inline constexpr const char* kSumFloats = R"(
+static uint32_t NAME_sum_floats(uint32_t sum, const float *x, int n) {
+  int i;
+  for (i = 0; i < n; ++i) {
+    uint32_t bits;
+    memcpy(&bits, &x[i], sizeof bits);
+    sum = (sum ^ bits) * 16777619u;
+  }
+  return sum;
+}
+)";
+
+inline constexpr const char* kSumBytes = R"(
+static uint32_t NAME_sum_bytes(uint32_t sum, const int8_t *x, int n) {
+  int i;
+  for (i = 0; i < n; ++i) sum = (sum ^ (uint8_t)x[i]) * 16777619u;
+  return sum;
+}
+)";
+
+inline constexpr const char* kDraw = R"(
+static void NAME_draw(int row, uint32_t *random, float *obs) {
+  const float spread = row + 1 < ROWS ? SPREAD : FAR;
+  int i;
+  for (i = 0; i < NAME_obs_dim; ++i) {
+    float u;
+    *random = *random * 1664525u + 1013904223u;
+    u = spread * ((float)(*random >> 8) * 1.1920929e-07f - 1.0f);
+    obs[i] = row == 0 ? NAME_example_obs[i] : DRAWN;
+  }
+}
+)";
+
+inline constexpr const char* kTestMain = R"(
+int main(void) {
+  static float obs[NAME_obs_dim], action[NAME_action_dim];
+  const float tolerance = TOLERANCE, huge = 3e38f;
+  uint32_t sum = 2166136261u, random = 1;
+  int row, i;
+SUMS  if (sum != CHECKSUM) return 2;
+  for (row = 0; row < ROWS; ++row) {
+    if (row == 1) random = 1;
+    NAME_draw(row, &random, obs);
+    NAME_act(obs, action);
+    for (i = 0; i < NAME_action_dim; ++i) {
+      const float gap = action[i] - NAME_expected[row * NAME_action_dim + i];
+      if (!(gap <= tolerance && gap >= -tolerance)) return 1;
+    }
+  }
+  obs[NAME_obs_dim - 1] = huge * huge;
+  for (row = 0; row < 2; ++row) {
+    NAME_act(obs, action);
+    for (i = 0; i < NAME_action_dim; ++i)
+      if (action[i] == action[i]) return 3;
+    obs[NAME_obs_dim - 1] -= obs[NAME_obs_dim - 1];
+  }
+  return 0;
+}
+#endif
+#endif
+)";
+
+}  // namespace tool

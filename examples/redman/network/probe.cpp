@@ -1,0 +1,43 @@
+#include "network/probe.hpp"
+
+#include <cstdlib>
+#include <memory>
+#include <new>
+
+namespace tool {
+namespace {
+
+// Plain uniform numbers: splitmix64.
+float signed_unit(uint64_t& state) {
+  uint64_t z = state += 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return static_cast<float>((z ^ (z >> 31)) >> 40) * 0x1p-23f - 1;
+}
+
+}  // namespace
+
+std::vector<float> probe_observations(const Network& network, size_t rows, uint64_t seed) {
+  const auto in = static_cast<size_t>(network.obs_dim);
+  const NamedTensor *shift = network.find("normalizer.shift"), *scale = network.find("normalizer.scale");
+  std::vector<float> obs(rows * in);
+  for (size_t i = 0; i < obs.size(); ++i) {
+    const float x = signed_unit(seed) * (i / in % 10 == 9 ? 30.0f : 2.0f);
+    obs[i] = shift ? shift->values[i % in] + x / scale->values[i % in] : x;
+  }
+  return obs;
+}
+
+std::vector<float> mean_actions(const redman::Policy& policy, const std::vector<float>& obs) {
+  const rdm_policy_info& info = policy.info();
+  const size_t rows = obs.size() / static_cast<size_t>(info.obs_dim);
+  const auto count = static_cast<int32_t>(rows);
+  std::vector<float> action(rows * static_cast<size_t>(info.action_dim));
+  const size_t bytes = (policy.scratch_bytes(count) + 63) / 64 * 64;
+  const std::unique_ptr<void, decltype(&std::free)> scratch(std::aligned_alloc(64, bytes), std::free);
+  if (!scratch) throw std::bad_alloc();
+  policy.act(obs.data(), count, nullptr, action.data(), scratch.get(), bytes);
+  return action;
+}
+
+}  // namespace tool

@@ -1,0 +1,221 @@
+// Signatures and fields are those of PKWARE's application note (APPNOTE.TXT), section 4.3.
+#include "record/zip.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "common/report.hpp"
+
+namespace tool {
+namespace {
+
+constexpr uint32_t kLocal = 0x04034b50, kCentral = 0x02014b50, kEnd = 0x06054b50, kEnd64 = 0x06064b50,
+                   kLocator64 = 0x07064b50;
+constexpr uint32_t kFull = 0xffffffff;  // the value stands in the 64-bit form
+constexpr uint16_t kFull16 = 0xffff, kExtra64 = 1, kOld = 20, kNew = 45, kDeflated = 8;
+constexpr uint16_t kDate = 1 << 5 | 1;  // 1980-01-01: the same rollout gives the same bytes
+constexpr size_t kEndBytes = 22, kEnd64Bytes = 56, kLocatorBytes = 20, kCentralBytes = 46, kLocalBytes = 30;
+constexpr size_t kMostDirectory = size_t{1} << 20;
+constexpr uint64_t kMostRatio = 1100;  // deflate packs no tighter
+
+class Bytes {
+ public:
+  template <class T>
+  Bytes& add(T value) {
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);  // little-endian, as the machine is
+    return *this;
+  }
+  Bytes& add(const std::string& text) {
+    bytes_ += text;
+    return *this;
+  }
+  const std::string& text() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+uint32_t low32(uint64_t v) {
+  return v >= kFull ? kFull : static_cast<uint32_t>(v);
+}
+
+// Little-endian; Failure past the end.
+template <class T>
+T value_at(const std::string& bytes, size_t at) {
+  T value;
+  if (at > bytes.size() || bytes.size() - at < sizeof value)
+    throw Failure("an archive's directory is cut off");
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+uint32_t checksum_of(uint32_t before, const void* bytes, size_t size) {
+  return static_cast<uint32_t>(crc32_z(before, static_cast<const Bytef*>(bytes), size));
+}
+
+std::string inflated(const std::string& packed, uint64_t size) {
+  std::string out(size, '\0');
+  z_stream z{};
+  if (inflateInit2(&z, -MAX_WBITS) != Z_OK) throw Failure("zlib gives up");
+  constexpr size_t kPart = size_t{1} << 30;  // its counters have 32 bits
+  size_t in = 0, done = 0;
+  int state = Z_OK;
+  while (state == Z_OK) {
+    const size_t give = std::min(kPart, packed.size() - in), room = std::min(kPart, out.size() - done);
+    z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + in));
+    z.next_out = reinterpret_cast<Bytef*>(out.data() + done);
+    z.avail_in = static_cast<uInt>(give);
+    z.avail_out = static_cast<uInt>(room);
+    state = inflate(&z, Z_NO_FLUSH);
+    in += give - z.avail_in;
+    done += room - z.avail_out;
+    if (state == Z_OK && give == z.avail_in && room == z.avail_out) break;
+  }
+  inflateEnd(&z);
+  if (state != Z_STREAM_END || done != size) throw Failure("a packed array is spoiled");
+  return out;
+}
+
+}  // namespace
+
+void ZipWriter::begin(const std::string& name, uint64_t size) {
+  close_member();
+  const bool wide = size >= kFull;
+  Bytes head;
+  head.add(kLocal).add(wide ? kNew : kOld).add(uint16_t{0}).add(uint16_t{0}).add(uint16_t{0}).add(kDate);
+  head.add(uint32_t{0}).add(low32(size)).add(low32(size));
+  head.add(static_cast<uint16_t>(name.size())).add(static_cast<uint16_t>(wide ? 20 : 0)).add(name);
+  if (wide) head.add(kExtra64).add(uint16_t{16}).add(size).add(size);
+  members_.push_back({name, size, file_.size(), 0});
+  file_.write(head.text().data(), head.text().size());
+}
+
+void ZipWriter::write(const void* bytes, size_t size) {
+  members_.back().checksum = checksum_of(members_.back().checksum, bytes, size);
+  file_.write(bytes, size);
+}
+
+void ZipWriter::close_member() {
+  if (members_.empty()) return;
+  const Member& m = members_.back();
+  file_.write_at(m.offset + 14, &m.checksum, sizeof m.checksum);
+}
+
+void ZipWriter::finish() {
+  close_member();
+  const uint64_t begin = file_.size();
+  Bytes all;
+  for (const Member& m : members_) {
+    Bytes extra;
+    if (m.size >= kFull) extra.add(m.size).add(m.size);
+    if (m.offset >= kFull) extra.add(m.offset);
+    const auto length = static_cast<uint16_t>(extra.text().size());
+    const uint16_t version = length ? kNew : kOld;
+    all.add(kCentral).add(version).add(version).add(uint16_t{0}).add(uint16_t{0}).add(uint16_t{0}).add(kDate);
+    all.add(m.checksum).add(low32(m.size)).add(low32(m.size)).add(static_cast<uint16_t>(m.name.size()));
+    all.add(static_cast<uint16_t>(length ? length + 4 : 0))
+        .add(uint16_t{0})
+        .add(uint16_t{0})
+        .add(uint16_t{0});
+    all.add(uint32_t{0}).add(low32(m.offset)).add(m.name);
+    if (length) all.add(kExtra64).add(length).add(extra.text());
+  }
+  const uint64_t size = all.text().size(), count = members_.size();
+  if (begin + size >= kFull) {
+    all.add(kEnd64).add(uint64_t{kEnd64Bytes - 12}).add(kNew).add(kNew).add(uint32_t{0}).add(uint32_t{0});
+    all.add(count).add(count).add(size).add(begin);
+    all.add(kLocator64).add(uint32_t{0}).add(begin + size).add(uint32_t{1});
+  }
+  all.add(kEnd).add(uint16_t{0}).add(uint16_t{0}).add(static_cast<uint16_t>(count));
+  all.add(static_cast<uint16_t>(count)).add(low32(size)).add(low32(begin)).add(uint16_t{0});
+  file_.write(all.text().data(), all.text().size());
+}
+
+ZipReader::ZipReader(uint64_t size, Read read) : size_(size), read_(std::move(read)) {
+  // the end stands before a comment of up to 65,535 bytes, and after the 64-bit form of itself
+  const auto tail_bytes = static_cast<size_t>(std::min<uint64_t>(size, kFull16 + kEndBytes));
+  std::string tail(tail_bytes, '\0');
+  read_(size - tail_bytes, tail.data(), tail_bytes);
+  constexpr uint32_t kSignature = kEnd;
+  const size_t end = tail.rfind(std::string(reinterpret_cast<const char*>(&kSignature), 4));
+  if (end == std::string::npos || tail.size() - end < kEndBytes) throw Failure("not a whole archive (.npz)");
+  uint64_t count = value_at<uint16_t>(tail, end + 10), bytes = value_at<uint32_t>(tail, end + 12),
+           begin = value_at<uint32_t>(tail, end + 16);
+  if (end >= kLocatorBytes && value_at<uint32_t>(tail, end - kLocatorBytes) == kLocator64) {
+    const auto at = value_at<uint64_t>(tail, end - kLocatorBytes + 8);
+    if (at > size || size - at < kEnd64Bytes) throw Failure("an archive's directory is cut off");
+    std::string wide(kEnd64Bytes, '\0');
+    read_(at, wide.data(), wide.size());
+    count = value_at<uint64_t>(wide, 32);
+    bytes = value_at<uint64_t>(wide, 40);
+    begin = value_at<uint64_t>(wide, 48);
+  }
+  if (bytes > kMostDirectory || begin > size || size - begin < bytes)
+    throw Failure("an archive's directory is cut off");
+  std::string directory(static_cast<size_t>(bytes), '\0');
+  read_(begin, directory.data(), directory.size());
+  size_t at = 0;
+  for (uint64_t i = 0; i < count; ++i) add_member(directory, at);
+}
+
+void ZipReader::add_member(const std::string& directory, size_t& at) {
+  if (value_at<uint32_t>(directory, at) != kCentral) throw Failure("an archive's directory is spoiled");
+  Member m;
+  const auto flags = value_at<uint16_t>(directory, at + 8), method = value_at<uint16_t>(directory, at + 10);
+  m.deflated = method == kDeflated;
+  m.checksum = value_at<uint32_t>(directory, at + 16);
+  m.packed = value_at<uint32_t>(directory, at + 20);
+  m.size = value_at<uint32_t>(directory, at + 24);
+  const size_t name = value_at<uint16_t>(directory, at + 28), extra = value_at<uint16_t>(directory, at + 30),
+               comment = value_at<uint16_t>(directory, at + 32);
+  m.offset = value_at<uint32_t>(directory, at + 42);
+  at += kCentralBytes;
+  if (directory.size() - at < name + extra + comment) throw Failure("an archive's directory is cut off");
+  m.name = directory.substr(at, name);
+  const size_t end = at + name + extra;
+  for (size_t e = at + name; end - e >= 4;) {
+    const auto id = value_at<uint16_t>(directory, e), length = value_at<uint16_t>(directory, e + 2);
+    if (length > end - e - 4) throw Failure("an archive's directory is spoiled");
+    size_t field = e + 4;
+    for (uint64_t* value : {&m.size, &m.packed, &m.offset}) {
+      if (id != kExtra64 || *value != kFull || field + 8 > e + 4 + length) continue;
+      *value = value_at<uint64_t>(directory, field);
+      field += 8;
+    }
+    e += 4u + length;
+  }
+  at = end + comment;
+  if ((flags & 1) || (method != 0 && !m.deflated))
+    throw Failure("member " + m.name + " is packed in a way that is not known");
+  if (m.packed > size_ || (m.deflated ? m.size / kMostRatio > m.packed : m.size != m.packed))
+    throw Failure("member " + m.name + " is cut off");
+  members_.push_back(std::move(m));
+}
+
+bool ZipReader::has(const std::string& name) const {
+  return std::any_of(members_.begin(), members_.end(), [&](const Member& m) { return m.name == name; });
+}
+
+std::string ZipReader::member(const std::string& name, uint64_t most) const {
+  const auto found =
+      std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.name == name; });
+  if (found == members_.end()) throw Failure("it holds no " + name);
+  const Member& m = *found;
+  if (m.size > most) throw Failure("member " + name + " has more than " + std::to_string(most) + " bytes");
+  if (m.offset > size_ || size_ - m.offset < kLocalBytes) throw Failure("member " + name + " is cut off");
+  std::string head(kLocalBytes, '\0');
+  read_(m.offset, head.data(), head.size());
+  if (value_at<uint32_t>(head, 0) != kLocal) throw Failure("member " + name + " is not where it should be");
+  const uint64_t begin = m.offset + kLocalBytes + value_at<uint16_t>(head, 26) + value_at<uint16_t>(head, 28);
+  if (begin > size_ || size_ - begin < m.packed) throw Failure("member " + name + " is cut off");
+  std::string bytes(static_cast<size_t>(m.packed), '\0');
+  read_(begin, bytes.data(), bytes.size());
+  if (m.deflated) bytes = inflated(bytes, m.size);
+  if (checksum_of(0, bytes.data(), bytes.size()) != m.checksum)
+    throw Failure("member " + name + " is spoiled");
+  return bytes;
+}
+
+}  // namespace tool

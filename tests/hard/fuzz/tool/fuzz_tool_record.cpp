@@ -1,0 +1,66 @@
+// Recorded rollouts: what is read has as many actions and states as its episodes say.
+#include <unistd.h>
+#include <zlib.h>
+
+#include "../fuzz.hpp"
+#include "common/files.hpp"
+#include "common/report.hpp"
+#include "record/recorder.hpp"
+#include "record/recording.hpp"
+
+namespace hard {
+
+std::vector<Bytes> seeds() {
+  std::vector<Bytes> out;
+  for (const bool states : {false, true}) {
+    const std::string path = "fuzz_tool_record-" + std::to_string(getpid()) + ".npz";
+    auto config = redman::pool_config("bandit");
+    config.autoreset = RDM_AUTORESET_OFF;
+    redman::Pool pool(config);
+    tool::Recorder recorder(path, pool, 1, states);
+    pool.reset();
+    recorder.before(0, 0);
+    pool.step();
+    recorder.after(0, 0);
+    recorder.finish({"hold", {{"max_steps", "1"}}, 7});
+    out.push_back(bytes_of(tool::read_file(path)));
+    unlink(path.c_str());
+  }
+  return out;
+}
+// The directory's checksums become those of the bytes that stand in the members.
+void whole(unsigned char* data, size_t size) {
+  const auto word = [&](size_t at) {
+    uint32_t v = 0;
+    if (at + sizeof v <= size) std::memcpy(&v, data + at, sizeof v);
+    return v;
+  };
+  for (size_t at = 0; at + 46 <= size; ++at) {
+    if (word(at) != 0x02014b50) continue;
+    const size_t local = word(at + 42), length = word(at + 20);
+    if (local + 30 > size) continue;
+    const size_t begin = local + 30 + (word(local + 26) & 0xffff) + (word(local + 28) & 0xffff);
+    if (begin > size || length > size - begin) continue;
+    const auto checksum = static_cast<uint32_t>(crc32_z(0, data + begin, length));
+    std::memcpy(data + at + 16, &checksum, sizeof checksum);
+  }
+}
+size_t fixed_bytes() {
+  return 0;
+}
+
+void one(const unsigned char* data, size_t size) {
+  try {
+    const tool::Recording r =
+        tool::parse_recording(tool::ZipReader(size, [&](uint64_t at, void* to, size_t count) {
+          HARD_REQUIRE(at <= size && count <= size - at, "a read past the end");
+          std::memcpy(to, data + at, count);
+        }));
+    HARD_REQUIRE(r.episodes() >= 1 && r.state.size() == r.episodes() * r.state_bytes, "states are missing");
+    HARD_REQUIRE(r.action.size() == r.begin.back() * r.action_dim, "actions are missing");
+  } catch (const tool::Failure& e) {
+    HARD_REQUIRE(*e.what(), "no text");
+  }
+}
+
+}  // namespace hard

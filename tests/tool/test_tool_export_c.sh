@@ -1,0 +1,105 @@
+#!/bin/sh
+# test_tool_export_c.sh TOOL: policies as C source, by every compiler that is here: no warning, the same actions as the
+# library's on 1,000 observations, a self-test that passes and notices what is changed.
+. "$(dirname "$0")/tool.sh"
+say() { echo "$*"; failed=1; }
+strict='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wmissing-prototypes -Werror'
+compilers=
+for compiler in cc clang; do command -v $compiler > /dev/null && compilers="$compilers $compiler"; done
+[ -n "$compilers" ] || { echo "skipped: there is no C compiler"; exit 77; }
+
+# policy NAME FLAGS...: a small run, exported twice
+policy() {
+  name=$1
+  shift
+  "$tool" train --envs 4 --steps 512 --set max_steps=20 --set horizon=8 "$@" --out "$name" > out 2> err || { cat err; exit 1; }
+  "$tool" export --policy "$name/policy.rdm" --c "$name.c" --name "$name" --probe "$name.json" --probes 1000 --json > "$name.out" ||
+    say "$name: no export"
+  "$tool" export --policy "$name" --c "${name}_8.c" --name "${name}_8" --int8 --json > "${name}_8.out" || say "$name: no int8 export"
+  grep -q "\"file\":\"$name.c\",\"bytes\":$(stat -c %s "$name.c")," "$name.out" || say "$name: $(cat "$name.out")"
+  # the numbers of the probe, one a line
+  part() { sed "s/.*\"$1\":\\[*//; s/[]},].*//" "$name.json"; echo; }
+  list() { sed "s/.*\"$1\":\\[//; s/\\].*//" "$name.json" | tr , '\n'; echo; }
+  { part rows; list obs; list action; } > "$name.txt"
+}
+# status FILE WANT WHAT: the self-test's
+status() {
+  cc -std=c99 -O1 -w -DREDMAN_POLICY_TEST "$1" -o self || { say "$3: does not compile"; return; }
+  ./self
+  got=$?
+  [ $got -eq "$2" ] || say "$3: the self-test answers $got, not $2"
+}
+# compared NAME LIMIT FLAGS...: the largest difference is within the limit, and all bytes are the same for 0
+compared() {
+  file=$1 base=${1%_8} limit=$2
+  shift 2
+  cc -std=c99 "$@" "-DNAME=$file" "-DPOLICY=\"$dir/$file.c\"" "$here/c_source/compare.c" "$file.c" -o compare -lm &&
+    ./compare "$base.txt" > found || { say "$file: nothing was compared"; return; }
+  awk -v limit="$limit" '{ exit !($1 <= limit) }' found || say "$file $*: $(cat found), the limit is $limit"
+}
+stated() { sed "s/.*\"$1\":\\([0-9.e+-]*\\).*/\\1/" "$2"; }
+
+checked=0
+check() {
+  policy "$@"
+  name=$1
+  for file in "$name.c" "${name}_8.c"; do
+    for compiler in $compilers; do
+      for macro in REDMAN_POLICY_TEST REDMAN_POLICY_HEADER NONE; do
+        # shellcheck disable=SC2086
+        $compiler -std=c99 -Os $strict -D$macro -c "$file" -o object || say "$file: $compiler warns"
+      done
+    done
+    if command -v c++ > /dev/null; then
+      for dialect in 11 20; do
+        c++ -x c++ -std=c++$dialect -Os -Wall -Wextra -Wpedantic -Wconversion -Werror -DREDMAN_POLICY_TEST -c "$file" -o object ||
+          say "$file: c++$dialect warns"
+      done
+    fi
+    status "$file" 0 "$file"
+    # any number that is changed is noticed, and a policy that takes what is no number
+    for table in weight_0 bias_1; do
+      awk -v table="_$table[" '{ if (on) { sub(/^  -?/, "&1"); on = 0 } if (index($0, table) && /^static const/) on = 1; print }' \
+        "$file" > changed.c
+      cmp -s "$file" changed.c && say "$file: nothing was changed in $table"
+      status changed.c 2 "$file, $table changed"
+    done
+    sed 's/fault += obs.*/;/; s/fault += action.*/;/' "$file" > changed.c
+    status changed.c 3 "$file without its fault"
+    sed 's/const float a = \([a-z]*\)\[i\];/const float a = 0.9f * \1[i];/' "$file" > changed.c
+    status changed.c 1 "$file with other actions"
+    nm -u object | grep -vE 'memcpy|__stack_chk_fail|_GLOBAL_OFFSET_TABLE_' > calls && say "$file calls $(cat calls)"
+  done
+  compared "$name" 1e-6 -Os
+  error=$(stated largest_error "${name}_8.out")
+  compared "${name}_8" "$(awk -v e="$error" 'BEGIN { print e + 1e-5 }')" -Os
+  awk -v e="$error" '{ exit !($1 > 0 && e < 0.1) }' found || say "${name}_8: $(cat found), stated $error"
+  grep -q 'differ from' "${name}_8.c" || say "${name}_8: its error is not in it"
+  checked=$((checked + 1))
+}
+check tanh --set hidden=64,64 --set activation=tanh
+check elu --set hidden=128,64,32 --set activation=elu
+check relu --set hidden=30 --set activation=relu
+check bare --set hidden=16,17 --set normalize_obs=false
+check state --set hidden=16,16 --set std_mode=state
+check ball --task ball_run --set hidden=16,16
+[ $checked -eq 6 ] || say "$checked policies"
+
+# several policies in one program, by one file or by several
+printf '#include "%s"\n#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' tanh.c elu_8.c elu_8.c > both.c
+# shellcheck disable=SC2086
+cc -std=c99 $strict both.c bare.c state_8.c -o both || say "policies do not live beside each other"
+cc -std=c99 -Ofast -c tanh.c -o object 2> err && say "-Ofast is taken"
+grep -q 'ffast-math' err || say "-Ofast: $(cat err)"
+
+# names
+"$tool" export --policy tanh --c own.c --json > out && grep -q '"name":"hand_over_safe_finger"' out || say "$(cat out)"
+grep -q 'right.joint_position' own.c || say "the observation's fields are not said"
+for bad in 1a a-b 'a b' '' _a a__b 'a;b' "$(printf '%064d' 0 | tr 0 a)" 'é'; do
+  "$tool" export --policy tanh --c bad.c --name "$bad" > out 2> err
+  [ $? -eq 2 ] && [ "$(wc -l < err)" -eq 1 ] || say "--name $bad: $(cat err)"
+done
+"$tool" export --policy tanh --onnx x --int8 > out 2> err
+[ $? -eq 2 ] || say "--int8 without --c"
+[ ! -e bad.c ] || say "a file with a bad name was written"
+exit $failed
