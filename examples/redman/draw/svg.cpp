@@ -25,23 +25,6 @@ constexpr double kPanelWidth = 330, kPanelHeight = 210;                         
 constexpr double kLeft = 58, kRight = 16, kTop = 34, kBottom = 36, kMargin = 14;  // around it
 constexpr double kTitleHeight = 34, kLegendHeight = 24, kLegendWidth = 9;         // the last: of a letter
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : printable(text)) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   void add(double v) {
@@ -102,7 +85,7 @@ class PanelDrawing {
 
   std::string text(bool with_x_label, const std::string& x_label) const {
     std::string out = format("<text class=\"title\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", left_, top_ - 12,
-                             escaped(panel_.title).c_str());
+                             html_text(panel_.title).c_str());
     out += grid();
     for (const Series& s : panel_.series) out += band(s);
     for (const Level& l : panel_.levels)
@@ -111,7 +94,7 @@ class PanelDrawing {
     for (const Series& s : panel_.series) out += line(s);
     if (with_x_label)
       out += format("<text class=\"label\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", left_ + kPanelWidth / 2,
-                    top_ + kPanelHeight + 33, escaped(x_label).c_str());
+                    top_ + kPanelHeight + 33, html_text(x_label).c_str());
     return out;
   }
 
@@ -185,7 +168,7 @@ std::string draw_legend(const std::vector<LegendEntry>& legend, double width, do
     out += format(
         "<line class=\"line\" stroke=\"%s\"%s x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\"/>"
         "<text class=\"legend\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-        color(e.color), dash(e.color), x, x + 22, y, y, x + 29, y + 4, escaped(e.label).c_str());
+        color(e.color), dash(e.color), x, x + 22, y, y, x + 29, y + 4, html_text(e.label).c_str());
     x += space;
   }
   return out;
@@ -216,7 +199,7 @@ std::string draw_chart(const std::string& title, const std::vector<Panel>& panel
       ".level{stroke-width:1.5;stroke-dasharray:6 4}</style>\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
   out += format("<text class=\"head\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", kMargin + kLeft, kMargin + 18,
-                escaped(title).c_str());
+                html_text(title).c_str());
   out += legend_text;
   for (size_t i = 0; i < panels.size(); ++i) {
     const double left = kMargin + static_cast<double>(i % columns) * cell_width + kLeft;
