@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|coverage|hard [MINUTES]]: installs what the tests need, builds, and runs them.
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|coverage|pages|hard [MINUTES]]: installs what the tests need, builds, and runs them.
 # The last line says how many passed and failed; the exit status is 0 when none failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -21,6 +21,8 @@ run_tests() {
 
 # shellcheck disable=SC2086
 need $build_packages libgtest-dev clang-format-14 octomap-tools
+# shellcheck disable=SC2086
+want $viewer_packages
 case $mode in
   dev)
     configure dev
@@ -86,6 +88,15 @@ case $mode in
     cmake --build build/clang -j "$(nproc)" --target test_golden test_stepper test_vec >&2 || die "the build with clang failed: see above"
     run_tests clang -R '^(test_golden|golden_other_libm|test_stepper|test_vec)$'
     ;;
+  pages)
+    # Pages and glTF files in headless Chromium and other viewers; build/pages keeps them and what they look like.
+    need chromium nodejs fonts-dejavu-core
+    command -v npm > /dev/null || need npm
+    configure dev
+    cmake --build --preset dev -j "$(nproc)" --target redman_tool test_tool_solid >&2 || die "preset dev could not be built: see above"
+    mkdir -p build/pages
+    PAGES=$PWD/build/pages run_tests dev -R '^test_tool_(pages|events|solid)$'
+    ;;
   hard)
     # Tries to break the library for an hour (or MINUTES), builds included: tests/hard/README.md. Two lines of work,
     # one for each of two processors; every part gets a share of the time that the builds leave.
@@ -126,5 +137,5 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
-  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|coverage|hard [MINUTES]]" ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|coverage|pages|hard [MINUTES]]" ;;
 esac

@@ -38,8 +38,8 @@ const CarriedDemo kCarriedDemos[] = {
 }
 ")
   # And the pages it makes, with the library that draws them: npm's or Debian's three, one minified classic script.
-  find_file(RDM_THREE three.min.js NO_DEFAULT_PATH PATHS ${PROJECT_SOURCE_DIR}/build/npm/node_modules/three/build
-            ${PROJECT_SOURCE_DIR}/node_modules/three/build /usr/share/javascript/three)
+  find_file(RDM_THREE three.min.js NO_DEFAULT_PATH PATHS ${CMAKE_CURRENT_BINARY_DIR}/npm/node_modules/three/build
+            /usr/share/javascript/three)
   set(three "${RDM_THREE}")
   if(NOT REDMAN_VIEWER STREQUAL "AUTO")
     set(three "${REDMAN_VIEWER}")
@@ -47,9 +47,13 @@ const CarriedDemo kCarriedDemos[] = {
   file(GLOB pages CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/redman/web/*.html ${PROJECT_SOURCE_DIR}/examples/redman/web/*.js)
   set(RDM_WEB "")
   if(three)
+    if(NOT EXISTS "${three}")
+      message(FATAL_ERROR "REDMAN_VIEWER=${REDMAN_VIEWER}: no such file; give AUTO, OFF or a three.min.js (Debian: libjs-three)")
+    endif()
+    set(RDM_VIEWER "${three}")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${three})
     file(READ "${three}" text)
     string(APPEND RDM_WEB "    {\"three\", R\"web(${text})web\"},\n")
-    set(RDM_VIEWER_FOUND TRUE)
   endif()
   foreach(page ${pages})
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${page})

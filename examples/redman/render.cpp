@@ -1,15 +1,12 @@
 // `render`: a picture of a moment, a strip of moments, a film of an episode, or its playback in 3D.
-#include <chrono>
-#include <cmath>
 #include <cstdlib>
 
 #include "commands.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
 #include "common/text.hpp"
-#include "draw/image.hpp"
-#include "play/actor.hpp"
 #include "play/playback.hpp"
+#include "play/scene.hpp"
 #include "web/glb.hpp"
 #include "web/page.hpp"
 
@@ -37,79 +34,15 @@ void read_size(RenderFlags& flags) {
   flags.height = static_cast<int32_t>(height);
 }
 
-void check_camera(const std::string& camera, int32_t task) {
-  std::vector<std::string> names;
-  for (int32_t i = 0; i < task_at(task).num_cameras; ++i) {
-    rdm_camera c;
-    redman::check(rdm_task_camera(task, i, &c));
-    if (same_name(camera, c.name)) return;
-    names.push_back(c.name);
-  }
-  throw Usage("--camera " + camera + ": unknown; nearest is " + nearest_name(camera, names));
-}
-
-// One world played from the seed: the same episode each time.
-class Scene {
- public:
-  Scene(const RenderFlags& flags, const ActorChoice& choice)
-      : flags_(flags), pool_(make_pool(flags.pool, RDM_AUTORESET_OFF)), actor_(choice, pool_) {
-    check_camera(flags.camera, pool_.spec().task);
-    pool_.reset();
-    actor_.restart();
-  }
-  const redman::Pool& pool() const { return pool_; }
-  int32_t step() const { return step_; }
-  // False, and nothing happens, when the episode is over.
-  bool advance() {
-    if (pool_.terminated()[0] || pool_.truncated()[0]) return false;
-    actor_.act(pool_);
-    pool_.step();
-    ++step_;
-    return true;
-  }
-  void advance_to(int32_t step) {
-    while (step_ < step && advance()) {
-    }
-  }
-  Image picture() {
-    using Clock = std::chrono::steady_clock;
-    const auto begin = Clock::now();
-    Image image{flags_.width, flags_.height, {}};
-    image.rgb = as_usage([&] { return pool_.render(0, flags_.camera.c_str(), flags_.width, flags_.height); });
-    seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
-    ++frames_;
-    return image;
-  }
-  int32_t frames() const { return frames_; }
-  double seconds() const { return seconds_; }  // spent in pictures
-
- private:
-  const RenderFlags& flags_;
-  redman::Pool pool_;
-  Actor actor_;
-  int32_t step_ = 0, frames_ = 0;
-  double seconds_ = 0;
-};
-
-int32_t last_step(const RenderFlags& flags, const ActorChoice& choice) {
-  Scene scene(flags, choice);
-  scene.advance_to(flags.to >= 0 ? flags.to : scene.pool().spec().max_steps);
-  return scene.step();
+Scene scene_of(const RenderFlags& flags, const ActorChoice& choice) {
+  return {flags.pool, choice, flags.camera, flags.width, flags.height};
 }
 
 Image draw(const RenderFlags& flags, const ActorChoice& choice, Scene& scene) {
-  if (flags.strip < 1) {
-    scene.advance_to(flags.step);
-    return scene.picture();
-  }
-  const int32_t last = last_step(flags, choice), first = std::min(flags.from, last);
-  std::vector<Image> moments;
-  for (int32_t i = 0; i < flags.strip; ++i) {
-    const double share = flags.strip > 1 ? static_cast<double>(i) / (flags.strip - 1) : 0.5;
-    scene.advance_to(first + static_cast<int32_t>(std::lround(share * (last - first))));
-    moments.push_back(scene.picture());
-  }
-  return side_by_side(moments);
+  if (flags.strip > 0)
+    return draw_strip(scene, flags.strip, flags.from, last_step(scene_of(flags, choice), flags.to));
+  scene.advance_to(flags.step);
+  return scene.picture();
 }
 
 void film(const RenderFlags& flags, Scene& scene) {
@@ -122,7 +55,7 @@ void film(const RenderFlags& flags, Scene& scene) {
 }
 
 Playback record(const RenderFlags& flags, const ActorChoice& choice) {
-  Scene scene(flags, choice);
+  Scene scene = scene_of(flags, choice);
   scene.advance_to(flags.from);
   Playback playback = begin_playback(scene.pool(), cost_limits(scene.pool(), choice.limits));
   playback.actor = flags.policy;
@@ -150,7 +83,7 @@ Report run_render(RenderFlags flags) {
   int32_t width = flags.width;
   std::vector<std::string> files;
   if (pictures) {
-    Scene scene(flags, choice);
+    Scene scene = scene_of(flags, choice);
     const Image image = draw(flags, choice, scene);
     write_png(flags.out, image);
     width = image.width;
@@ -159,7 +92,7 @@ Report run_render(RenderFlags flags) {
     files.push_back(flags.out);
   }
   if (!flags.video.empty()) {
-    Scene scene(flags, choice);
+    Scene scene = scene_of(flags, choice);
     film(flags, scene);
     frames += scene.frames();
     seconds += scene.seconds();

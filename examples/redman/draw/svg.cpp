@@ -83,6 +83,7 @@ class PanelDrawing {
     y_ = widened(y, &y_step_);
   }
 
+  const Range& x() const { return x_; }
   std::string text(bool with_x_label, const std::string& x_label) const {
     std::string out = format("<text class=\"title\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", left_, top_ - 12,
                              html_text(panel_.title).c_str());
@@ -131,7 +132,8 @@ class PanelDrawing {
       back = format("L%.1f %.1f", at_x(s.x[i]), at_y(shown(s.low[i]))) + back;
     }
     if (forth.empty()) return "";
-    return format("<path class=\"band\" fill=\"%s\" d=\"", color(s.color)) + forth + back + "Z\"/>\n";
+    return format("<path class=\"band s%zu\" fill=\"%s\" d=\"", s.color, color(s.color)) + forth + back +
+           "Z\"/>\n";
   }
 
   std::string line(const Series& s) const {
@@ -143,8 +145,8 @@ class PanelDrawing {
       pen = good;
     }
     if (path.empty()) return "";
-    return format("<path class=\"line\" stroke=\"%s\"%s d=\"", color(s.color), dash(s.color)) + path +
-           "\"/>\n";
+    return format("<path class=\"line s%zu\" stroke=\"%s\"%s d=\"", s.color, color(s.color), dash(s.color)) +
+           path + "\"/>\n";
   }
 
   const Panel& panel_;
@@ -175,6 +177,21 @@ std::string draw_legend(const std::vector<LegendEntry>& legend, double width, do
 }
 
 }  // namespace
+
+const char* palette_color(size_t index) {
+  return color(index);
+}
+
+std::string draw_panel(const Panel& panel, const std::string& x_label) {
+  const PanelDrawing drawing(panel, kLeft, kTop);
+  return format(
+             "<svg class=\"chart\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" "
+             "data-left=\"%.0f\" "
+             "data-width=\"%.0f\" data-low=\"%.9g\" data-high=\"%.9g\">\n",
+             kLeft + kPanelWidth + kRight, kTop + kPanelHeight + kBottom, kLeft, kPanelWidth, drawing.x().low,
+             drawing.x().high) +
+         drawing.text(true, x_label) + "</svg>\n";
+}
 
 std::string draw_chart(const std::string& title, const std::vector<Panel>& panels, size_t columns,
                        const std::string& x_label, const std::vector<LegendEntry>& legend) {

@@ -109,7 +109,7 @@
   }
 
   $('follow-box').hidden = !scene || scene.travel < 0.5;
-  if (scene && scene.travel > 2) {
+  if (scene && scene.travel > 10) {  // it leaves what the cameras see
     $('follow').checked = true;
     scene.setFollow(true);
   }

@@ -18,7 +18,7 @@ function readGlb(bytes) {
 
 // three answers alike from r111 (Debian's) on, but for colours and the unit of lights.
 function makeRenderer(canvas) {
-  const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+  const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
   if (!('outputColorSpace' in renderer)) {
     renderer.gammaOutput = true;
     renderer.gammaFactor = 2.2;
@@ -30,15 +30,15 @@ function makeRenderer(canvas) {
 const lightUnit = () => (parseInt(THREE.REVISION) >= 155 ? Math.PI : 1);
 
 // A checkered floor that fades into the distance; squares of `square` m.
-function makeFloor(color, square) {
+function makeFloor(square) {
   const tile = document.createElement('canvas');
-  tile.width = tile.height = 64;
+  tile.width = tile.height = 256;
   const paint = tile.getContext('2d');
   paint.fillStyle = '#ffffff';
-  paint.fillRect(0, 0, 64, 64);
+  paint.fillRect(0, 0, 256, 256);
   paint.fillStyle = '#dcdcdc';
-  paint.fillRect(0, 0, 32, 32);
-  paint.fillRect(32, 32, 32, 32);
+  paint.fillRect(0, 0, 128, 128);
+  paint.fillRect(128, 128, 128, 128);
   const texture = new THREE.CanvasTexture(tile);
   if ('colorSpace' in texture) texture.colorSpace = 'srgb';
   else texture.encoding = THREE.sRGBEncoding;
@@ -46,10 +46,8 @@ function makeFloor(color, square) {
   texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
   texture.repeat.set(size / (2 * square), size / (2 * square));
   texture.anisotropy = 8;
-  const floor = new THREE.Mesh(new (THREE.PlaneBufferGeometry || THREE.PlaneGeometry)(size, size),
-                               new THREE.MeshStandardMaterial({ color, map: texture, roughness: 0.95, metalness: 0 }));
-  floor.receiveShadow = true;
-  return floor;
+  return new THREE.Mesh(new (THREE.PlaneBufferGeometry || THREE.PlaneGeometry)(size, size),
+                        new THREE.MeshStandardMaterial({ map: texture, roughness: 0.95, metalness: 0 }));
 }
 
 // show(frame) poses everything (frames may be fractions), look({eye, target, fov_y}) places the camera,
@@ -74,18 +72,22 @@ function openScene(canvas, bytes, contacts) {
   const low = new THREE.Vector3(Infinity, Infinity, Infinity), high = low.clone().negate();
   const solid = json.nodes.filter(n => n.mesh !== undefined && !(n.extras && n.extras.plane));
   for (const n of solid) {
-    const at = new THREE.Vector3().fromArray(n.translation);
-    low.min(at);
-    high.max(at);
+    const g = geometries[n.mesh], at = new THREE.Vector3().fromArray(n.translation);
+    g.computeBoundingSphere();
+    low.min(at.clone().subScalar(g.boundingSphere.radius));
+    high.max(at.clone().addScalar(g.boundingSphere.radius));
   }
   const extent = solid.length ? Math.max(0.3, high.distanceTo(low)) : 1;
   const square = extent < 4 ? 0.1 : Math.pow(10, Math.floor(Math.log10(extent / 4)));
 
+  const floors = [];
   const objects = json.nodes.map(n => {
     if (n.mesh === undefined) return null;
     const plane = n.extras && n.extras.plane, part = json.meshes[n.mesh].primitives[0], c = colors[part.material];
-    const o = plane ? makeFloor(new THREE.Color(c[0], c[1], c[2]), square) : new THREE.Mesh(geometries[n.mesh], materials[part.material]);
-    if (!plane) o.castShadow = o.receiveShadow = true;
+    const o = plane ? makeFloor(square) : new THREE.Mesh(geometries[n.mesh], materials[part.material]);
+    o.receiveShadow = true;
+    if (plane) floors.push({ material: o.material, color: new THREE.Color(c[0], c[1], c[2]) });
+    else o.castShadow = true;
     o.name = n.name;
     o.position.fromArray(n.translation);
     o.quaternion.fromArray(n.rotation);
@@ -99,15 +101,15 @@ function openScene(canvas, bytes, contacts) {
       t[target.path] = array(clip.samplers[sampler].output);
     }
 
-  const sky = new THREE.HemisphereLight('#f2f6ff', '#8a8178', 0.62 * lightUnit());
+  const sky = new THREE.HemisphereLight('#f2f6ff', '#8a8178', 0.58 * lightUnit());
   sky.position.set(0, 0, 1);
-  const key = new THREE.DirectionalLight('#fff4e6', 0.72 * lightUnit());
+  const key = new THREE.DirectionalLight('#fff4e6', 0.82 * lightUnit());
   key.castShadow = true;
   key.shadow.mapSize.set(2048, 2048);
   key.shadow.bias = -0.0004;
   if ('normalBias' in key.shadow) key.shadow.normalBias = 0.002 * extent;
   key.shadow.radius = 3;
-  const reach = 0.75 * Math.min(extent, 12);
+  const reach = 0.65 * Math.min(extent, 12);
   Object.assign(key.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1 * reach, far: 8 * reach });
   world.add(sky, key, key.target);
 
@@ -240,7 +242,8 @@ function openScene(canvas, bytes, contacts) {
   const dark = matchMedia('(prefers-color-scheme: dark)');
   function paintSky() {
     const color = getComputedStyle(document.documentElement).getPropertyValue('--sky').trim();
-    world.fog = new THREE.Fog(color, 6 * extent, 22 * extent);
+    world.fog = new THREE.Fog(color, 4 * extent, 16 * extent);
+    for (const f of floors) f.material.color.copy(f.color).multiplyScalar(dark.matches ? 0.3 : 1);
     dirty = true;
   }
   (dark.addEventListener ? dark.addEventListener('change', paintSky) : dark.addListener(paintSky));
