@@ -10,6 +10,7 @@
 namespace tool {
 namespace {
 
+constexpr double kMostSteps = 9007199254740992, kMostScalar = 3e38;
 constexpr const char* kName = "events.out.tfevents.";
 
 std::string little_endian(uint64_t value, int bytes) {
@@ -66,10 +67,12 @@ std::string event_row(const std::string& header, const std::string& row, int64_t
     const auto found = columns.find(name);
     return found == columns.end() || found->second.empty() ? std::nan("") : found->second[0];
   };
-  if (std::isnan(value("TotalEnvSteps"))) return "";
+  const double steps = value("TotalEnvSteps");
+  if (!(steps >= 0 && steps <= kMostSteps)) return "";
   Message summary;
   for (const auto& [name, cells] : columns) {
-    if (name == "TotalEnvSteps" || name == "Train/TotalSteps" || std::isnan(cells[0])) continue;
+    if (name == "TotalEnvSteps" || name == "Train/TotalSteps" || !(std::abs(cells[0]) <= kMostScalar))
+      continue;
     Message scalar;
     scalar.text(1, name);
     scalar.number(2, static_cast<float>(cells[0]));
@@ -78,7 +81,7 @@ std::string event_row(const std::string& header, const std::string& row, int64_t
   const double total = value("Time/Total");
   Message event;
   event.wide(1, static_cast<double>(unix_seconds) + (std::isnan(total) ? 0 : total));
-  event.integer(2, static_cast<int64_t>(value("TotalEnvSteps")));
+  event.integer(2, static_cast<int64_t>(steps));
   event.message(5, summary);
   return record(event);
 }

@@ -23,7 +23,10 @@ function openCurves(box, curves, frames, seek) {
       high = Math.max(high, c.sum[k]);
       most = Math.max(most, Math.abs(c.step[k]));
     }
-    if (high - low < 1e-9) high = low + 1;
+    if (high - low < 1e-9) {  // nothing happens here
+      high = low + 1;
+      figure.classList.add('flat');
+    }
     return { c, figure, value, canvas, low, high, most };
   });
 
