@@ -38,7 +38,7 @@ const CarriedDemo kCarriedDemos[] = {
 }
 ")
   # And the pages it makes, with the library that draws them: npm's or Debian's three, one minified classic script.
-  find_file(RDM_THREE three.min.js NO_DEFAULT_PATH PATHS ${CMAKE_CURRENT_BINARY_DIR}/npm/node_modules/three/build
+  find_file(RDM_THREE three.min.js NO_DEFAULT_PATH PATHS ${CMAKE_CURRENT_BINARY_DIR}/viewers/node_modules/three/build
             /usr/share/javascript/three)
   set(three "${RDM_THREE}")
   if(NOT REDMAN_VIEWER STREQUAL "AUTO")

@@ -75,14 +75,14 @@ grep -q 'last tenth of training, exploration included' quick.html || say "a repo
 "$tool" report taken > out 2> err && say "a folder without runs was taken"
 
 # others judge
-modules=$(dirname "$(dirname "$tool")")/npm
+modules=$(dirname "$(dirname "$tool")")/viewers
 reason=
 if ! command -v node > /dev/null; then
   reason="there is no node"
 elif [ ! -d "$modules/node_modules/gltf-validator" ] || [ ! -d "$modules/node_modules/three" ]; then
   mkdir -p "$modules"
   npm install --ignore-scripts --no-audit --no-fund --no-save --loglevel=error --prefix "$modules" gltf-validator@2.0.0-dev.3.10 \
-    three@0.160.1 onnxruntime-node@1.30.0 > npm.log 2>&1 < /dev/null || reason="npm cannot install gltf-validator and three"
+    three@0.160.1 > npm.log 2>&1 < /dev/null || reason="npm cannot install gltf-validator and three"
 fi
 if [ -z "$reason" ]; then
   node "$here/gltf_validate.cjs" "$modules" "$pages"/*.glb || failed=1
