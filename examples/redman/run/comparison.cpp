@@ -34,9 +34,12 @@ std::string value_of(const FlatConfig& config, const std::string& key) {
   return found == config.end() ? "" : found->second;
 }
 
-// "learning_rate" of "algo_cfgs.learning_rate".
+// "learning_rate" of "algo_cfgs.learning_rate", "limit" of "cost_limits.cost", "drop limit" of
+// "cost_limits.drop".
 std::string short_key(const std::string& key) {
-  return key.substr(key.find('.') + 1);
+  const std::string name = key.substr(key.find('.') + 1), limits = "cost_limits.";
+  if (key.compare(0, limits.size(), limits) != 0) return name;
+  return name == "cost" ? "limit" : name + " limit";
 }
 
 }  // namespace

@@ -117,8 +117,11 @@ FlatConfig parse_flat_config(const char* text, size_t size) {
   for (const char* part : {"train_cfgs", "algo_cfgs", "env_cfgs", "cost_limits"}) {
     if (!json.contains(part)) continue;
     for (const auto& [key, value] : object_at(json, part).items())
-      out[std::string(part) + '.' + key] = value.is_string() ? value.get<std::string>() : value.dump();
+      out[std::string(part) + '.' + key] = value.is_string()         ? value.get<std::string>()
+                                           : value.is_number_float() ? number_text(value.get<double>())
+                                                                     : value.dump();
   }
+  if (out.count("cost_limits.cost") > 0) out.erase("algo_cfgs.cost_limit");  // the same
   out.erase("train_cfgs.threads");
   out.erase("train_cfgs.tensorboard");
   out["task"] = text_at(json, "task");

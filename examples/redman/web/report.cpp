@@ -18,6 +18,11 @@ double short_number(double v) {
   return std::strtod(format("%.5g", v).c_str(), nullptr);
 }
 
+// Four digits, and none behind the point of what is large.
+std::string short_text(double v) {
+  return std::abs(v) >= 1000 ? format("%.0f", v) : format("%.4g", v);
+}
+
 // Mean and deviation of value(item): "12.3 &plusmn; 0.4".
 template <class Items, class Value>
 std::string spread(const Items& items, Value value) {
@@ -25,7 +30,7 @@ std::string spread(const Items& items, Value value) {
   const auto n = static_cast<double>(items.size());
   for (const auto& i : items) sum += value(i);
   for (const auto& i : items) squares += std::pow(value(i) - sum / n, 2);
-  std::string out = format("%.4g", sum / n);
+  std::string out = short_text(sum / n);
   if (items.size() > 1) out += format(" <small>&plusmn; %.2g</small>", std::sqrt(squares / n));
   return out;
 }
@@ -72,7 +77,9 @@ std::string rank_row(const Configuration& c, size_t place) {
   out += cell(per_cent(mean.success)) + cell(per_cent(mean.falls)) + cell(format("%.0f", mean.length));
   out += cell(spread(ends, [](const TrainingEnd& e) { return e.ret; }) + " @ " +
               spread(ends, [](const TrainingEnd& e) { return e.cost; }));
-  out += cell(spread(ends, [](const TrainingEnd& e) { return 100 * e.over; }) + " %");
+  double over = 0;
+  for (const TrainingEnd& e : ends) over += e.over / static_cast<double>(ends.size());
+  out += cell(per_cent(over));
   double steps = 0, seconds = 0;
   for (const TrainingEnd& e : ends) {
     steps = std::max(steps, e.steps);
