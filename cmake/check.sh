@@ -21,6 +21,8 @@ run_tests() {
 
 # shellcheck disable=SC2086
 need $build_packages libgtest-dev clang-format-14 octomap-tools python3 python3-numpy mypy help2man
+# shellcheck disable=SC2086
+want $viewer_packages
 case $mode in
   dev)
     configure dev
@@ -142,6 +144,15 @@ case $mode in
     configure dev
     cmake --build --preset dev -j "$(nproc)" --target redman_tool >&2 || die "the tool could not be built: see above"
     run_tests dev -V -R '^test_tool_(export_c|embedded)$'
+    ;;
+  pages)
+    # Pages and glTF files in headless Chromium and other viewers; build/pages keeps them and what they look like.
+    need chromium nodejs fonts-dejavu-core
+    command -v npm > /dev/null || need npm
+    configure dev
+    cmake --build --preset dev -j "$(nproc)" --target redman_tool test_tool_solid >&2 || die "preset dev could not be built: see above"
+    mkdir -p build/pages
+    PAGES=$PWD/build/pages run_tests dev -R '^test_tool_(pages|events|solid)$'
     ;;
   hard)
     # Tries to break the library for an hour (or MINUTES), builds included: tests/hard/README.md. Two lines of work,

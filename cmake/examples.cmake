@@ -37,9 +37,42 @@ const CarriedDemo kCarriedDemos[] = {
 };
 }
 ")
+  # And the pages it makes, with the library that draws them: npm's or Debian's three, one minified classic script.
+  find_file(RDM_THREE three.min.js NO_DEFAULT_PATH PATHS ${CMAKE_CURRENT_BINARY_DIR}/viewers/node_modules/three/build
+            /usr/share/javascript/three)
+  set(three "${RDM_THREE}")
+  if(NOT REDMAN_VIEWER STREQUAL "AUTO")
+    set(three "${REDMAN_VIEWER}")
+  endif()
+  file(GLOB pages CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/redman/web/*.html ${PROJECT_SOURCE_DIR}/examples/redman/web/*.js)
+  set(RDM_WEB "")
+  if(three)
+    if(NOT EXISTS "${three}")
+      message(FATAL_ERROR "REDMAN_VIEWER=${REDMAN_VIEWER}: no such file; give AUTO, OFF or a three.min.js (Debian: libjs-three)")
+    endif()
+    set(RDM_VIEWER "${three}")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${three})
+    file(READ "${three}" text)
+    string(APPEND RDM_WEB "    {\"three\", R\"web(${text})web\"},\n")
+  endif()
+  foreach(page ${pages})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${page})
+    get_filename_component(name ${page} NAME)
+    file(READ ${page} text)
+    string(APPEND RDM_WEB "    {\"${name}\", R\"web(${text})web\"},\n")
+  endforeach()
+  set(web ${CMAKE_CURRENT_BINARY_DIR}/web_assets.cpp)
+  file(WRITE ${web}.new "#include \"web/page.hpp\"
+namespace tool {
+const WebAsset kWebAssets[] = {
+${RDM_WEB}    {nullptr, nullptr},
+};
+}
+")
+  file(COPY_FILE ${web}.new ${web} ONLY_IF_DIFFERENT)
   # Everything but main is a library too, for tests of its parsers.
   list(REMOVE_ITEM sources ${PROJECT_SOURCE_DIR}/examples/redman/main.cpp)
-  add_library(redman_tool_parts STATIC ${sources} ${CMAKE_CURRENT_BINARY_DIR}/demos.cpp)
+  add_library(redman_tool_parts STATIC ${sources} ${CMAKE_CURRENT_BINARY_DIR}/demos.cpp ${web})
   target_include_directories(redman_tool_parts PUBLIC ${PROJECT_SOURCE_DIR}/examples/redman)
   target_link_libraries(redman_tool_parts PUBLIC CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG ZLIB::ZLIB)
   if(TARGET Qhull::qhull_r)

@@ -3,6 +3,7 @@
 # shellcheck disable=SC2034
 build_packages="g++ cmake ninja-build pkg-config libode-dev libccd-dev libeigen3-dev liboctomap-dev
                 libcli11-dev nlohmann-json3-dev libpng-dev libqhull-dev"
+viewer_packages="libjs-three"  # what `redman render --html` puts into its pages
 
 die() {
   echo "$(basename "$0"): $*" >&2
@@ -36,6 +37,11 @@ need() {
       die "cannot install$missing: $(grep -m1 -E '^E: |^sudo: ' "$log" || tail -n1 "$log")"
   fi
   rm -f "$log"
+}
+
+# want PACKAGE...: the same of what a build can do without.
+want() {
+  (need "$@") || echo "going on without: $*" >&2
 }
 
 # configure PRESET [options...]; build PRESET: quiet unless they fail.

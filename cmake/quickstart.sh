@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # From a fresh clone to a trained policy: installs what is missing, builds, trains for about a minute on two cores,
-# evaluates beside a random policy, and draws a strip of pictures. A second call rebuilds what changed.
+# evaluates beside a random policy, draws a strip of pictures and writes a page that plays an episode. A second call rebuilds what changed.
 set -eu
 cd "$(dirname "$0")/.."
 . cmake/packages.sh
@@ -24,6 +24,8 @@ text() {
 part "packages"
 # shellcheck disable=SC2086
 need $build_packages
+# shellcheck disable=SC2086
+want $viewer_packages
 part "building"
 configure release
 build release
@@ -35,6 +37,8 @@ agent=$("$redman" eval --task "$task" --policy "$policy" --episodes 100 --seed 1
 random=$("$redman" rollout --task "$task" --policy random --episodes 100 --seed 1000 --json)
 part "drawing"
 picture=$(text file "$("$redman" render --task "$task" --policy "$policy" --strip 6 --from 6 --to 36 --camera close --size 320x240 --out "$run/strip.png" --json)")
+page="none: $("$redman" render --task "$task" --policy "$policy" --camera close --html "$run/episode.html" 2>&1 > /dev/null)" &&
+  page=$run/episode.html
 part "done"
 
 row() { # row NAME JSON
@@ -49,3 +53,4 @@ echo
 echo "run folder  $(text run "$trained")"
 echo "policy      $policy"
 echo "picture     $picture"
+echo "playback    $page"

@@ -21,6 +21,7 @@ void add_bench(CLI::App& app, Run& run);
 void add_info(CLI::App& app, Run& run);
 void add_export(CLI::App& app, Run& run);
 void add_plot(CLI::App& app, Run& run);
+void add_report(CLI::App& app, Run& run);
 void add_hull(CLI::App& app, Run& run);
 void add_completion(CLI::App& app, Run& run);
 

@@ -106,6 +106,7 @@ int run_tool(int argc, char** argv) {
   add_render(app, run);
   add_bench(app, run);
   add_plot(app, run);
+  add_report(app, run);
   add_export(app, run);
   add_hull(app, run);
   add_info(app, run);

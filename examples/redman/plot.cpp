@@ -7,6 +7,7 @@
 #include "common/files.hpp"
 #include "common/text.hpp"
 #include "draw/svg.hpp"
+#include "run/curves.hpp"
 #include "run/run_data.hpp"
 
 namespace tool {
@@ -38,55 +39,12 @@ std::vector<Group> make_groups(const std::vector<const RunData*>& runs, bool eac
   return groups;
 }
 
-// y at x on the line through the points; NaN outside of them.
-double interpolate(const std::vector<double>& xs, const std::vector<double>& ys, double x) {
-  const auto after = std::lower_bound(xs.begin(), xs.end(), x);
-  if (after == xs.end()) return std::nan("");
-  const auto i = static_cast<size_t>(after - xs.begin());
-  if (xs[i] == x || i == 0) return xs[i] == x ? ys[i] : std::nan("");
-  return ys[i - 1] + (ys[i] - ys[i - 1]) * (x - xs[i - 1]) / (xs[i] - xs[i - 1]);
-}
-
-Series single_line(const RunData& run, const std::string& column, size_t color) {
-  return {color, run.column("TotalEnvSteps"), run.column(column), {}, {}};
-}
-
-// Mean and standard deviation, as far as all runs of the group go.
-Series mean_line(const Group& group, const std::string& column, size_t color) {
-  constexpr int kPoints = 120;
-  double last = group.runs[0]->column("TotalEnvSteps").back();
-  for (const RunData* run : group.runs) last = std::min(last, run->column("TotalEnvSteps").back());
-  Series s;
-  s.color = color;
-  for (int i = 1; i <= kPoints; ++i) {
-    const double x = last * i / kPoints;
-    double sum = 0, squares = 0, n = 0;
-    for (const RunData* run : group.runs) {
-      if (run->column(column).empty()) continue;
-      const double y = interpolate(run->column("TotalEnvSteps"), run->column(column), x);
-      if (!std::isfinite(y)) continue;
-      sum += y;
-      squares += y * y;
-      n += 1;
-    }
-    const double mean = n > 0 ? sum / n : std::nan(""),
-                 std = std::sqrt(std::max(0.0, squares / n - mean * mean));
-    s.x.push_back(x);
-    s.y.push_back(mean);
-    s.low.push_back(mean - std);
-    s.high.push_back(mean + std);
-  }
-  return s;
-}
-
 Panel make_panel(const std::string& title, const std::string& column, const std::vector<Group>& groups,
                  bool share = false) {
   Panel panel;
   panel.title = title;
   panel.share = share;
-  for (const Group& g : groups)
-    panel.series.push_back(g.runs.size() == 1 ? single_line(*g.runs[0], column, g.color)
-                                              : mean_line(g, column, g.color));
+  for (const Group& g : groups) panel.series.push_back(curve_of(g.runs, column, g.color));
   return panel;
 }
 

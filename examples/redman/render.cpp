@@ -1,13 +1,14 @@
-// `render`: a picture of a moment, a strip of moments, or a film of an episode.
-#include <chrono>
-#include <cmath>
+// `render`: a picture of a moment, a strip of moments, a film of an episode, or its playback in 3D.
 #include <cstdlib>
 
 #include "commands.hpp"
+#include "common/files.hpp"
 #include "common/names.hpp"
 #include "common/text.hpp"
-#include "draw/image.hpp"
-#include "play/actor.hpp"
+#include "play/playback.hpp"
+#include "play/scene.hpp"
+#include "web/glb.hpp"
+#include "web/page.hpp"
 
 namespace tool {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 constexpr int32_t kMostPixels = 8192;  // a side
 
 struct RenderFlags {
-  std::string policy = "hold", size = "640x480", camera = "front", out, video;
+  std::string policy = "hold", size = "640x480", camera = "front", out, video, html, glb;
   PoolSettings pool;
   std::vector<std::string> sets;
   int32_t step = 0, strip = 0, from = 0, to = -1, width = 0, height = 0;
@@ -33,79 +34,15 @@ void read_size(RenderFlags& flags) {
   flags.height = static_cast<int32_t>(height);
 }
 
-void check_camera(const std::string& camera, int32_t task) {
-  std::vector<std::string> names;
-  for (int32_t i = 0; i < task_at(task).num_cameras; ++i) {
-    rdm_camera c;
-    redman::check(rdm_task_camera(task, i, &c));
-    if (same_name(camera, c.name)) return;
-    names.push_back(c.name);
-  }
-  throw Usage("--camera " + camera + ": unknown" + nearest_hint(camera, names));
-}
-
-// One world played from the seed: the same episode each time.
-class Scene {
- public:
-  Scene(const RenderFlags& flags, const ActorChoice& choice)
-      : flags_(flags), pool_(make_pool(flags.pool, RDM_AUTORESET_OFF)), actor_(choice, pool_) {
-    check_camera(flags.camera, pool_.spec().task);
-    pool_.reset();
-    actor_.restart();
-  }
-  const redman::Pool& pool() const { return pool_; }
-  int32_t step() const { return step_; }
-  // False, and nothing happens, when the episode is over.
-  bool advance() {
-    if (pool_.terminated()[0] || pool_.truncated()[0]) return false;
-    actor_.act(pool_);
-    pool_.step();
-    ++step_;
-    return true;
-  }
-  void advance_to(int32_t step) {
-    while (step_ < step && advance()) {
-    }
-  }
-  Image picture() {
-    using Clock = std::chrono::steady_clock;
-    const auto begin = Clock::now();
-    Image image{flags_.width, flags_.height, {}};
-    image.rgb = as_usage([&] { return pool_.render(0, flags_.camera.c_str(), flags_.width, flags_.height); });
-    seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
-    ++frames_;
-    return image;
-  }
-  int32_t frames() const { return frames_; }
-  double seconds() const { return seconds_; }  // spent in pictures
-
- private:
-  const RenderFlags& flags_;
-  redman::Pool pool_;
-  Actor actor_;
-  int32_t step_ = 0, frames_ = 0;
-  double seconds_ = 0;
-};
-
-int32_t last_step(const RenderFlags& flags, const ActorChoice& choice) {
-  Scene scene(flags, choice);
-  scene.advance_to(flags.to >= 0 ? flags.to : scene.pool().spec().max_steps);
-  return scene.step();
+Scene scene_of(const RenderFlags& flags, const ActorChoice& choice) {
+  return {flags.pool, choice, flags.camera, flags.width, flags.height};
 }
 
 Image draw(const RenderFlags& flags, const ActorChoice& choice, Scene& scene) {
-  if (flags.strip < 1) {
-    scene.advance_to(flags.step);
-    return scene.picture();
-  }
-  const int32_t last = last_step(flags, choice), first = std::min(flags.from, last);
-  std::vector<Image> moments;
-  for (int32_t i = 0; i < flags.strip; ++i) {
-    const double share = flags.strip > 1 ? static_cast<double>(i) / (flags.strip - 1) : 0.5;
-    scene.advance_to(first + static_cast<int32_t>(std::lround(share * (last - first))));
-    moments.push_back(scene.picture());
-  }
-  return side_by_side(moments);
+  if (flags.strip > 0)
+    return draw_strip(scene, flags.strip, flags.from, last_step(scene_of(flags, choice), flags.to));
+  scene.advance_to(flags.step);
+  return scene.picture();
 }
 
 void film(const RenderFlags& flags, Scene& scene) {
@@ -117,41 +54,75 @@ void film(const RenderFlags& flags, Scene& scene) {
   film.finish();
 }
 
+Playback record(const RenderFlags& flags, const ActorChoice& choice) {
+  Scene scene = scene_of(flags, choice);
+  scene.advance_to(flags.from);
+  Playback playback = begin_playback(scene.pool(), cost_limits(scene.pool(), choice.limits));
+  playback.actor = flags.policy;
+  playback.seed = flags.pool.seed;
+  do {
+    add_frame(playback, scene.pool());
+  } while ((flags.to < 0 || scene.step() < flags.to) && scene.advance());
+  return playback;
+}
+
 Report run_render(RenderFlags flags) {
   read_size(flags);
+  if (!flags.html.empty()) check_viewer();
+  for (const std::string& file : {flags.html, flags.glb})
+    if (!file.empty()) check_replaceable(file);
   const ActorChoice choice = choose_actor(flags.policy);
   adopt_task(choice, flags.task_given, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
-  const bool only_video = !flags.video.empty() && flags.out.empty() && flags.strip == 0 && !flags.step_given;
+  const bool plays = !flags.video.empty() || !flags.html.empty() || !flags.glb.empty();
+  const bool pictures = !plays || !flags.out.empty() || flags.strip > 0 || flags.step_given;
   if (flags.out.empty()) flags.out = "render.png";
   Json json;
   int32_t frames = 0;
   double seconds = 0;
   int32_t width = flags.width;
-  if (!only_video) {
-    Scene scene(flags, choice);
+  std::vector<std::string> files;
+  if (pictures) {
+    Scene scene = scene_of(flags, choice);
     const Image image = draw(flags, choice, scene);
     write_png(flags.out, image);
     width = image.width;
     frames += scene.frames();
     seconds += scene.seconds();
+    files.push_back(flags.out);
   }
   if (!flags.video.empty()) {
-    Scene scene(flags, choice);
+    Scene scene = scene_of(flags, choice);
     film(flags, scene);
     frames += scene.frames();
     seconds += scene.seconds();
+    files.push_back(json["video"] = flags.video);
   }
-  json["file"] = only_video ? flags.video : flags.out;
-  if (!flags.video.empty()) json["video"] = flags.video;
-  json["width"] = width;
-  json["height"] = flags.height;
-  json["frames"] = frames;
-  json["frames_per_second"] = frames / std::max(seconds, 1e-9);
-  std::string text = format("%dx%d pixels, %d pictures at %.1f per second\n", width, flags.height, frames,
-                            frames / std::max(seconds, 1e-9));
-  if (!only_video) text += "wrote " + flags.out + '\n';
-  if (!flags.video.empty()) text += "wrote " + flags.video + '\n';
+  std::string text;
+  if (frames > 0)
+    text = format("%dx%d pixels, %d pictures at %.1f per second\n", width, flags.height, frames,
+                  frames / std::max(seconds, 1e-9));
+  if (!flags.html.empty() || !flags.glb.empty()) {
+    const Playback playback = record(flags, choice);
+    if (!flags.html.empty()) {
+      replace_file(flags.html, playback_page(playback, flags.camera));
+      files.push_back(json["html"] = flags.html);
+    }
+    if (!flags.glb.empty()) {
+      replace_file(flags.glb, glb_bytes(playback));
+      files.push_back(json["glb"] = flags.glb);
+    }
+    text += format("%zu frames of playback, %zu shapes\n", playback.frames, playback.bodies.size());
+    if (frames == 0) json["frames"] = playback.frames;
+  }
+  json["file"] = files.front();
+  if (frames > 0) {
+    json["width"] = width;
+    json["height"] = flags.height;
+    json["frames"] = frames;
+    json["frames_per_second"] = frames / std::max(seconds, 1e-9);
+  }
+  for (const std::string& file : files) text += "wrote " + file + '\n';
   return {json, text};
 }
 
@@ -160,7 +131,7 @@ Report run_render(RenderFlags flags) {
 void add_render(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RenderFlags>();
   CLI::App* command =
-      app.add_subcommand("render", "Draw a moment, a strip of moments or a film of an episode");
+      app.add_subcommand("render", "Draw a moment, a strip of moments, a film or a playback of an episode");
   CLI::Option* task = command->add_option("--task", flags->pool.task, "task; default: the policy's");
   command->add_option("--policy", flags->policy,
                       "policy file, run folder, .demo file, demo, zero, hold or random");
@@ -170,15 +141,20 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option("--strip", flags->strip, "so many moments of the episode side by side")
       ->check(CLI::Range(1, 64))
       ->excludes(step);
-  command->add_option("--from", flags->from, "first step of the strip and the film")
+  command->add_option("--from", flags->from, "first step of the strip, the film and the playback")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--to", flags->to, "last step of the strip and the film; default: the episode's end")
+  command
+      ->add_option("--to", flags->to,
+                   "last step of the strip, the film and the playback; default: the episode's end")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--size", flags->size, "pixels of one picture")->type_name("WxH");
   command->add_option("--camera", flags->camera, "camera of the task");
   command->add_option("--out", flags->out, "PNG file; default render.png");
   command->add_option("--video", flags->video,
                       "film of the episode, .mp4 or .gif, made by the program ffmpeg");
+  command->add_option("--html", flags->html,
+                      "page with the episode in 3D, to turn, play and scrub, above its reward and costs");
+  command->add_option("--glb", flags->glb, "the episode as binary glTF, an animation for 3D viewers");
   add_set_flag(*command, flags->sets);
   command->callback([&run, flags, task, step] {
     flags->task_given = task->count() > 0;

@@ -83,7 +83,9 @@ json 'samples_per_second allocations_per_update bytes' \
   bench update --obs 8 --act 2 --hidden 16,16 --samples 256 --minibatch 64 --seconds 0.01
 json 'actions_per_second' bench act --obs 8 --act 2 --hidden 16,16 --seconds 0.01
 json 'file' plot run --out curve.svg
-for file in a.png b.png curve.svg run/config.json run/progress.csv run/policy.rdm run/checkpoint.rdm; do
+json 'file frames' render --to 3 --glb c.glb
+json 'file runs ranking feasible' report run --episodes 2 --strip 0 --html report.html
+for file in a.png b.png curve.svg c.glb report.html run/config.json run/progress.csv run/policy.rdm run/checkpoint.rdm; do
   [ -s "$file" ] || { echo "$file was not written"; failed=1; }
 done
 

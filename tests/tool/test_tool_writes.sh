@@ -20,6 +20,8 @@ writers() {
   echo "rollout --task ball_run --set max_steps=3 --record"
   echo "export --policy run --c"
   echo "render --task ball_run --size 16x16 --out"
+  echo "render --task ball_run --set max_steps=3 --glb"
+  echo "report run --episodes 0 --strip 0 --html"
 }
 mkdir taken
 writers | { while read -r command; do
@@ -122,7 +124,7 @@ wait $pid
 
 # The disk fills up while a run trains: a text, the last checkpoint and whole rows stay, and the run can go on.
 train --steps 2000 --out full > /dev/null 2> err || say "$(cat err)"
-size=$(($(stat -c %s full/progress.csv) / 512 + 4))
+size=$(($(cat full/events.* | wc -c) / 512 + 4))
 ( ulimit -f $size; "$tool" train --resume full --steps 100000000 ) > out 2> err && say "a full disk is not noticed"
 grep -q 'cannot write.*: File too large; the checkpoint of epoch [0-9]* is kept' err || say "a full disk: $(cat err)"
 awk -F, 'NR == 1 { n = NF } NF != n { exit 1 }' full/progress.csv || say "a part of a row was left"

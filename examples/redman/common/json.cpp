@@ -66,6 +66,12 @@ uint64_t seed_at(const Document& object, const char* key) {
   return value.get<uint64_t>();
 }
 
+bool flag_at(const Document& object, const char* key) {
+  const Document& value = member(object, key);
+  if (!value.is_boolean()) throw Failure(std::string(key) + ": not true or false");
+  return value.get<bool>();
+}
+
 double number_of(const Document& value, const std::string& what, double low, double high) {
   if (!value.is_number()) throw Failure(what + ": not a number");
   const auto number = value.get<double>();

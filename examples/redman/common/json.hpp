@@ -22,6 +22,7 @@ Document parse_json(const char* text, size_t size);
 const Document& object_at(const Document& object, const char* key);
 int64_t integer_at(const Document& object, const char* key, int64_t low, int64_t high);
 uint64_t seed_at(const Document& object, const char* key);
+bool flag_at(const Document& object, const char* key);
 double number_at(const Document& object, const char* key, double low, double high);
 // Without control characters, and no longer than `most` bytes.
 std::string text_at(const Document& object, const char* key, size_t most = 4096);

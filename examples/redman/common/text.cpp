@@ -77,6 +77,23 @@ std::string printable(const std::string& text) {
   return out;
 }
 
+std::string html_text(const std::string& text) {
+  std::string out;
+  for (const char c : printable(text)) {
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '&')
+      out += "&amp;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
 std::string short_count(double value) {
   const double size = std::abs(value);
   if (size >= 1e6) return format("%.3gM", value / 1e6);

@@ -15,6 +15,8 @@ std::string number_text(double value);
 // UTF-8 become U+FFFD.
 std::string printable(const std::string& text);
 bool is_utf8(const std::string& text);
+// The same where HTML and SVG may have it, between tags and in quotes.
+std::string html_text(const std::string& text);
 
 // "1.2k", "3.5M": a count for progress lines and axes.
 std::string short_count(double value);

@@ -14,6 +14,8 @@ struct Image {
 // Equal heights, left to right, with a thin white line between them inside the given sizes.
 Image side_by_side(const std::vector<Image>& images);
 
+// The bytes of a PNG file.
+std::string png_bytes(const Image& image);
 // Replaces the file atomically. Failure when it cannot be written.
 void write_png(const std::string& path, const Image& image);
 

@@ -28,7 +28,7 @@ Image side_by_side(const std::vector<Image>& images) {
   return out;
 }
 
-void write_png(const std::string& path, const Image& image) {
+std::string png_bytes(const Image& image) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
@@ -37,9 +37,13 @@ void write_png(const std::string& path, const Image& image) {
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::string bytes(size, '\0');
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr))
-    throw Failure("cannot make the picture " + path + ": " + png.message);
+    throw Failure(std::string("cannot make a picture: ") + png.message);
   bytes.resize(size);
-  replace_file(path, bytes);
+  return bytes;
+}
+
+void write_png(const std::string& path, const Image& image) {
+  replace_file(path, png_bytes(image));
 }
 
 }  // namespace tool

@@ -25,23 +25,6 @@ constexpr double kPanelWidth = 330, kPanelHeight = 210;                         
 constexpr double kLeft = 58, kRight = 16, kTop = 34, kBottom = 36, kMargin = 14;  // around it
 constexpr double kTitleHeight = 34, kLegendHeight = 24, kLegendWidth = 9;         // the last: of a letter
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : printable(text)) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   void add(double v) {
@@ -100,9 +83,10 @@ class PanelDrawing {
     y_ = widened(y, &y_step_);
   }
 
+  const Range& x() const { return x_; }
   std::string text(bool with_x_label, const std::string& x_label) const {
     std::string out = format("<text class=\"title\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", left_, top_ - 12,
-                             escaped(panel_.title).c_str());
+                             html_text(panel_.title).c_str());
     out += grid();
     for (const Series& s : panel_.series) out += band(s);
     for (const Level& l : panel_.levels)
@@ -111,7 +95,7 @@ class PanelDrawing {
     for (const Series& s : panel_.series) out += line(s);
     if (with_x_label)
       out += format("<text class=\"label\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", left_ + kPanelWidth / 2,
-                    top_ + kPanelHeight + 33, escaped(x_label).c_str());
+                    top_ + kPanelHeight + 33, html_text(x_label).c_str());
     return out;
   }
 
@@ -148,7 +132,8 @@ class PanelDrawing {
       back = format("L%.1f %.1f", at_x(s.x[i]), at_y(shown(s.low[i]))) + back;
     }
     if (forth.empty()) return "";
-    return format("<path class=\"band\" fill=\"%s\" d=\"", color(s.color)) + forth + back + "Z\"/>\n";
+    return format("<path class=\"band s%zu\" fill=\"%s\" d=\"", s.color, color(s.color)) + forth + back +
+           "Z\"/>\n";
   }
 
   std::string line(const Series& s) const {
@@ -160,8 +145,8 @@ class PanelDrawing {
       pen = good;
     }
     if (path.empty()) return "";
-    return format("<path class=\"line\" stroke=\"%s\"%s d=\"", color(s.color), dash(s.color)) + path +
-           "\"/>\n";
+    return format("<path class=\"line s%zu\" stroke=\"%s\"%s d=\"", s.color, color(s.color), dash(s.color)) +
+           path + "\"/>\n";
   }
 
   const Panel& panel_;
@@ -185,13 +170,28 @@ std::string draw_legend(const std::vector<LegendEntry>& legend, double width, do
     out += format(
         "<line class=\"line\" stroke=\"%s\"%s x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\"/>"
         "<text class=\"legend\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-        color(e.color), dash(e.color), x, x + 22, y, y, x + 29, y + 4, escaped(e.label).c_str());
+        color(e.color), dash(e.color), x, x + 22, y, y, x + 29, y + 4, html_text(e.label).c_str());
     x += space;
   }
   return out;
 }
 
 }  // namespace
+
+const char* palette_color(size_t index) {
+  return color(index);
+}
+
+std::string draw_panel(const Panel& panel, const std::string& x_label) {
+  const PanelDrawing drawing(panel, kLeft, kTop);
+  return format(
+             "<svg class=\"chart\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" "
+             "data-left=\"%.0f\" "
+             "data-width=\"%.0f\" data-low=\"%.9g\" data-high=\"%.9g\">\n",
+             kLeft + kPanelWidth + kRight, kTop + kPanelHeight + kBottom, kLeft, kPanelWidth, drawing.x().low,
+             drawing.x().high) +
+         drawing.text(true, x_label) + "</svg>\n";
+}
 
 std::string draw_chart(const std::string& title, const std::vector<Panel>& panels, size_t columns,
                        const std::string& x_label, const std::vector<LegendEntry>& legend) {
@@ -216,7 +216,7 @@ std::string draw_chart(const std::string& title, const std::vector<Panel>& panel
       ".level{stroke-width:1.5;stroke-dasharray:6 4}</style>\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
   out += format("<text class=\"head\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", kMargin + kLeft, kMargin + 18,
-                escaped(title).c_str());
+                html_text(title).c_str());
   out += legend_text;
   for (size_t i = 0; i < panels.size(); ++i) {
     const double left = kMargin + static_cast<double>(i % columns) * cell_width + kLeft;

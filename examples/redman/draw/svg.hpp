@@ -35,4 +35,10 @@ struct LegendEntry {
 std::string draw_chart(const std::string& title, const std::vector<Panel>& panels, size_t columns,
                        const std::string& x_label, const std::vector<LegendEntry>& legend);
 
+// One panel as an <svg class="chart"> element for a page, whose style sheet has the classes of draw_chart's;
+// where the plotting area is and what x it spans stand in its attributes data-left, -width, -low, -high.
+std::string draw_panel(const Panel& panel, const std::string& x_label);
+// Of the palette: "#0072b2".
+const char* palette_color(size_t index);
+
 }  // namespace tool

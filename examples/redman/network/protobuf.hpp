@@ -1,4 +1,4 @@
-// Protocol Buffers, the writing half: just what an ONNX file needs.
+// Protocol Buffers, the writing half: just what ONNX and event files need.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -16,6 +16,12 @@ class Message {
   void number(uint32_t field, float value) {
     key(field, 5);
     char bytes[sizeof value];  // little-endian, as the machine is
+    std::memcpy(bytes, &value, sizeof value);
+    bytes_.append(bytes, sizeof value);
+  }
+  void wide(uint32_t field, double value) {
+    key(field, 1);
+    char bytes[sizeof value];
     std::memcpy(bytes, &value, sizeof value);
     bytes_.append(bytes, sizeof value);
   }

@@ -67,7 +67,8 @@ std::string config_text(const RunSettings& s, const redman::Pool& pool, const re
         {"vector_env_nums", s.pool.envs},
         {"threads", s.pool.threads},
         {"eval_every", s.eval_every},
-        {"checkpoint_every", s.checkpoint_every}}},
+        {"checkpoint_every", s.checkpoint_every},
+        {"tensorboard", s.events}}},
       {"algo_cfgs", algo_cfgs},
       {"env_cfgs", values_json(pool.settings())},
       {"obs_dim", pool.spec().obs_dim},
@@ -92,6 +93,7 @@ RunSettings parse_config(const char* text, size_t size) {
   s.steps = integer_at(train, "total_steps", 1, kMostExact);
   s.eval_every = static_cast<int32_t>(integer_at(train, "eval_every", 1, INT32_MAX));
   s.checkpoint_every = static_cast<int32_t>(integer_at(train, "checkpoint_every", 1, INT32_MAX));
+  if (train.contains("tensorboard")) s.events = flag_at(train, "tensorboard");
   return s;
 }
 
@@ -101,6 +103,24 @@ RunLabel parse_label(const char* text, size_t size) {
   const Document& limits = object_at(json, "cost_limits");
   if (limits.contains("cost")) label.limit = number_at(limits, "cost", -kMostLimit, kMostLimit);
   return label;
+}
+
+FlatConfig parse_flat_config(const char* text, size_t size) {
+  const Document json = parse_json(text, size);
+  FlatConfig out;
+  for (const char* part : {"train_cfgs", "algo_cfgs", "env_cfgs", "cost_limits"}) {
+    if (!json.contains(part)) continue;
+    for (const auto& [key, value] : object_at(json, part).items())
+      out[std::string(part) + '.' + key] = value.is_string()         ? value.get<std::string>()
+                                           : value.is_number_float() ? number_text(value.get<double>())
+                                                                     : value.dump();
+  }
+  if (out.count("cost_limits.cost") > 0) out.erase("algo_cfgs.cost_limit");  // the same
+  out.erase("train_cfgs.threads");
+  out.erase("train_cfgs.tensorboard");
+  out["task"] = text_at(json, "task");
+  out["algo"] = text_at(json, "algo");
+  return out;
 }
 
 }  // namespace tool

@@ -1,6 +1,7 @@
 // config.json: what a run was asked for, with the defaults written out.
 #pragma once
 #include <cstddef>
+#include <map>
 #include <string>
 
 #include "common/setup.hpp"
@@ -15,6 +16,7 @@ struct RunSettings {
   int64_t steps = 1000000;          // control steps, all worlds
   int32_t eval_every = 10;          // epochs
   int32_t checkpoint_every = 10;    // epochs
+  bool events = true;               // an event file for TensorBoard
 };
 
 // The text of the file. `pool` and `agent` say what the options came to; limits [cost_dim].
@@ -32,5 +34,10 @@ struct RunLabel {
   double limit = -1;  // of column 0, < 0: none
 };
 RunLabel parse_label(const char* text, size_t size);
+
+// Everything that two runs may differ in, "algo_cfgs.clip" as text: without the seed, threads, the build and
+// what is written out elsewhere.
+using FlatConfig = std::map<std::string, std::string>;
+FlatConfig parse_flat_config(const char* text, size_t size);
 
 }  // namespace tool

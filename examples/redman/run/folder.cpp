@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
@@ -15,6 +17,7 @@
 #include "common/json.hpp"
 #include "common/names.hpp"
 #include "common/text.hpp"
+#include "run/events.hpp"
 
 namespace tool {
 namespace {
@@ -37,14 +40,27 @@ int lock_folder(const std::string& path) {
   throw Failure("another process is training in " + path + ": wait for it or stop it, or give another --out");
 }
 
-// progress.csv for writing; -1, and errno says why.
-int open_progress(const std::string& path, struct stat* s) {
+// A file that grows, for writing; -1, and errno says why.
+int open_growing(const std::string& path, struct stat* s) {
   const int f = ::open(path.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (f < 0) return f;
   if (fstat(f, s) == 0 && S_ISREG(s->st_mode)) return f;
   close(f);
   errno = EINVAL;
   return -1;
+}
+
+// All of it or nothing. Returns the new length.
+size_t append_whole(const std::string& path, const std::string& bytes) {
+  struct stat s {};
+  const int f = open_growing(path, &s);
+  const ssize_t wrote = f < 0 ? -1 : ::write(f, bytes.data(), bytes.size());
+  const int error = wrote < 0 ? errno : ENOSPC;
+  const bool good = wrote == static_cast<ssize_t>(bytes.size());
+  const bool cut = good || f < 0 || ftruncate(f, s.st_size) == 0;  // a part of a row is none
+  if (f >= 0) close(f);
+  if (!good || !cut) throw Failure("cannot write " + path + ": " + std::strerror(error));
+  return static_cast<size_t>(s.st_size) + bytes.size();
 }
 
 }  // namespace
@@ -70,7 +86,11 @@ RunFolder RunFolder::go_on(const std::string& path) {
 }
 
 RunFolder::RunFolder(RunFolder&& other) noexcept
-    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+    : path_(std::move(other.path_)),
+      header_(std::move(other.header_)),
+      events_(std::move(other.events_)),
+      begun_(other.begun_),
+      lock_(std::exchange(other.lock_, -1)) {}
 
 RunFolder::~RunFolder() {
   if (lock_ >= 0) close(lock_);
@@ -90,7 +110,8 @@ std::string RunFolder::default_path(const RunSettings& settings) {
   return free_path;
 }
 
-void RunFolder::start(const std::string& config, const std::string& header, const std::string& policy) const {
+void RunFolder::start(const std::string& config, const std::string& header, const std::string& policy,
+                      bool with_events) {
   for (const std::string& file : {this->config(), progress(), this->policy(), checkpoint()})
     sweep_temporaries(file, true);
   PreparedFile new_config(this->config(), config), new_progress(progress(), header + '\n'),
@@ -98,9 +119,11 @@ void RunFolder::start(const std::string& config, const std::string& header, cons
   // the checkpoint first: a kill in between must not leave it beside another run's files
   if (unlink(checkpoint().c_str()) != 0 && errno != ENOENT)
     throw Failure("cannot remove " + checkpoint() + ": " + std::strerror(errno));
+  for (const std::string& name : event_files()) unlink(file(name.c_str()).c_str());
   new_config.commit();
   new_progress.commit();
   new_policy.commit();
+  if (with_events) write_events(header + '\n');
 }
 
 void RunFolder::write_policy(const std::string& bytes) const {
@@ -110,29 +133,54 @@ void RunFolder::write_policy(const std::string& bytes) const {
 
 size_t RunFolder::append_progress(const std::string& row) const {
   check();
-  struct stat s {};
-  const int f = open_progress(progress(), &s);
-  const std::string line = row + '\n';
-  const ssize_t wrote = f < 0 ? -1 : ::write(f, line.data(), line.size());
-  const int error = wrote < 0 ? errno : ENOSPC;
-  const bool good = wrote == static_cast<ssize_t>(line.size());
-  const bool cut = good || f < 0 || ftruncate(f, s.st_size) == 0;  // a part of a row is none
-  if (f >= 0) close(f);
-  if (!good || !cut) throw Failure("cannot write " + progress() + ": " + std::strerror(error));
-  return static_cast<size_t>(s.st_size) + line.size();
+  const size_t size = append_whole(progress(), row + '\n');
+  if (!events_.empty()) append_whole(file(events_.c_str()), event_row(header_, row, begun_));
+  return size;
 }
 
-void RunFolder::cut_progress(size_t bytes) const {
+void RunFolder::cut_progress(size_t bytes, bool with_events) {
   struct stat s {};
-  const int f = open_progress(progress(), &s);
+  const int f = open_growing(progress(), &s);
   const bool opened = f >= 0, enough = opened && static_cast<size_t>(s.st_size) >= bytes;
   const bool good = enough && ftruncate(f, static_cast<off_t>(bytes)) == 0;
   const int error = errno;
   if (opened) close(f);
-  if (good) return;
   if (opened && !enough)
     throw Failure(progress() + " is shorter than the checkpoint says; start the run anew");
-  throw Failure("cannot shorten " + progress() + ": " + std::strerror(error));
+  if (!good) throw Failure("cannot shorten " + progress() + ": " + std::strerror(error));
+  if (with_events) write_events(read_file(progress()));
+}
+
+std::vector<std::string> RunFolder::event_files() const {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator at(path_, error); !error && at != fs::directory_iterator(); at.increment(error))
+    if (is_event_file(at->path().filename().string())) names.push_back(at->path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// Into the file that is there, which a reader may be following; else into a new one.
+void RunFolder::write_events(const std::string& progress) {
+  header_ = progress.substr(0, progress.find('\n'));
+  begun_ = std::time(nullptr);
+  events_ = event_file_name(begun_);
+  for (const std::string& name : event_files()) {
+    if (name.find(".tmp-") != std::string::npos) unlink(file(name.c_str()).c_str());  // of a killed writer
+    const int64_t said = std::strtoll(name.c_str() + name.find("tfevents.") + 9, nullptr, 10);
+    if (name != event_file_name(said)) continue;
+    begun_ = said;
+    events_ = name;
+  }
+  const std::string path = file(events_.c_str()), bytes = event_bytes(progress, begun_);
+  if (!file_exists(path)) return replace_file(path, bytes);
+  struct stat s {};
+  const int f = open_growing(path, &s);
+  const bool emptied = f >= 0 && ftruncate(f, 0) == 0;
+  const int error = errno;
+  if (f >= 0) close(f);
+  if (!emptied) throw Failure("cannot write " + path + ": " + std::strerror(error));
+  append_whole(path, bytes);
 }
 
 void RunFolder::check() const {

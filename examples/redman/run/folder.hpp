@@ -1,8 +1,9 @@
-// A run folder: config.json, progress.csv, policy.rdm, checkpoint.rdm. A kill at any moment leaves one that
-// can be read and continued.
+// A run folder: config.json, progress.csv, policy.rdm, checkpoint.rdm, and progress.csv as an event file for
+// TensorBoard. A kill at any moment leaves one that can be read and continued.
 #pragma once
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "run/config.hpp"
 
@@ -31,19 +32,26 @@ class RunFolder {
   std::string progress() const { return file("progress.csv"); }
 
   // Begins a run. What stood in the folder goes when all of this has been written beside it.
-  void start(const std::string& config, const std::string& header, const std::string& policy) const;
+  void start(const std::string& config, const std::string& header, const std::string& policy,
+             bool with_events);
 
   void write_policy(const std::string& bytes) const;
 
-  // progress.csv: a row is appended whole or not at all; resuming cuts it back to the checkpoint.
+  // progress.csv: a row is appended whole or not at all; resuming cuts it back to the checkpoint. The event
+  // file follows it.
   size_t append_progress(const std::string& row) const;  // returns the new length, bytes
-  void cut_progress(size_t bytes) const;                 // Failure when it is shorter
+  void cut_progress(size_t bytes, bool with_events);     // Failure when it is shorter
   // Failure when the folder was removed, or another one stands in its place.
   void check() const;
 
  private:
   RunFolder(std::string path, int lock) : path_(std::move(path)), lock_(lock) {}
+  std::vector<std::string> event_files() const;  // names, in order
+  void write_events(const std::string& progress);
+
   std::string path_;
+  std::string header_, events_;  // of progress.csv; the event file's name, "" without one
+  int64_t begun_ = 0;            // unix seconds, as that name says
   int lock_;  // the open folder; the kernel lets its lock go when the process ends, however it does
 };
 

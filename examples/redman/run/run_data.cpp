@@ -35,6 +35,7 @@ RunData read_run(const std::string& path) {
   RunData run;
   try {
     static_cast<RunLabel&>(run) = parse_label(label.data(), label.size());
+    run.config = parse_flat_config(label.data(), label.size());
   } catch (const Failure& e) {
     throw Failure(config + " is not a run's configuration: " + e.what());
   }

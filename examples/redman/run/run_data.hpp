@@ -10,6 +10,7 @@ namespace tool {
 
 struct RunData : RunLabel {
   std::string path;
+  FlatConfig config;
   Columns columns;                                                   // of progress.csv
   const std::vector<double>& column(const std::string& name) const;  // empty when there is none
 };

@@ -104,7 +104,8 @@ void Trainer::begin(RunFolder folder) {
   folder_.emplace(std::move(folder));
   const auto policy = agent_.policy();
   folder_->start(config_text(settings_, pool_, agent_, limits_, steps_per_epoch()),
-                 curve_header(cost_columns(pool_.spec().task, limits_)), {policy.begin(), policy.end()});
+                 curve_header(cost_columns(pool_.spec().task, limits_)), {policy.begin(), policy.end()},
+                 settings_.events);
 }
 
 void Trainer::resume(RunFolder folder) {
@@ -115,7 +116,7 @@ void Trainer::resume(RunFolder folder) {
   folder_.emplace(std::move(folder));
   restore();
   plan_schedule();
-  folder_->cut_progress(progress_bytes_);
+  folder_->cut_progress(progress_bytes_, settings_.events);
   replace_file(folder_->config(), config_text(settings_, pool_, agent_, limits_, steps_per_epoch()));
 }
 

@@ -3,6 +3,7 @@
 #include "../fuzz.hpp"
 #include "common/report.hpp"
 #include "run/config.hpp"
+#include "run/events.hpp"
 #include "run/note.hpp"
 #include "run/progress.hpp"
 
@@ -50,6 +51,7 @@ void one(const unsigned char* data, size_t size) {
       case 1: {
         const tool::RunLabel l = tool::parse_label(text, size - 1);
         HARD_REQUIRE(std::isfinite(l.limit), "limit %g", l.limit);
+        HARD_REQUIRE(tool::parse_flat_config(text, size - 1).at("task") == l.task, "another task");
         break;
       }
       case 2: {
@@ -65,6 +67,8 @@ void one(const unsigned char* data, size_t size) {
           HARD_REQUIRE(rows == SIZE_MAX || rows == column.size(), "columns of different lengths");
           rows = column.size();
         }
+        const std::string events = tool::event_bytes(std::string(text, size - 1), 0);
+        HARD_REQUIRE(events.rfind(tool::event_head(0), 0) == 0, "no head");
       }
     }
   } catch (const tool::Failure& e) {

@@ -1,0 +1,79 @@
+#include "play/playback.hpp"
+
+#include <algorithm>
+
+// rdm_pool_hull; the header gives its experimental part to a file that has seen the rest before, too
+#define RDM_EXPERIMENTAL
+#include <redman/redman.h>
+
+#include "common/names.hpp"
+
+namespace tool {
+namespace {
+
+Body body_at(const redman::Pool& pool, int32_t index) {
+  rdm_shape shape;
+  redman::check(rdm_pool_shape(pool.get(), index, &shape));
+  Body body;
+  body.name = shape.name;
+  body.kind = shape.kind;
+  std::copy_n(shape.size, 3, body.size);
+  std::copy_n(shape.color, 3, body.color);
+  if (shape.kind != RDM_HULL) return body;
+  int32_t count = 0;
+  redman::check(rdm_pool_hull(pool.get(), index, nullptr, 0, &count));
+  body.corners.resize(static_cast<size_t>(count) * 3);
+  redman::check(rdm_pool_hull(pool.get(), index, body.corners.data(), count, &count));
+  return body;
+}
+
+template <class T>
+void append(std::vector<T>& all, const redman::View<T>& row) {
+  all.insert(all.end(), row.begin(), row.end());
+}
+
+}  // namespace
+
+bool Playback::moves(size_t body) const {
+  for (size_t k = 1; k < frames; ++k)
+    if (!std::equal(pose(k, body), pose(k, body) + 7, pose(0, body))) return true;
+  return false;
+}
+
+Playback begin_playback(const redman::Pool& pool, const std::vector<double>& limits) {
+  const rdm_spec& spec = pool.spec();
+  Playback out;
+  out.task = task_at(spec.task).name;
+  out.summary = task_at(spec.task).summary;
+  out.control_dt = static_cast<double>(spec.control_dt);
+  out.first_step = pool.buffers().episode_step[0];
+  for (int32_t i = 0; i < spec.num_shapes; ++i) out.bodies.push_back(body_at(pool, i));
+  for (int32_t i = 0; i < task_at(spec.task).num_cameras; ++i) {
+    out.cameras.emplace_back();
+    redman::check(rdm_task_camera(spec.task, i, &out.cameras.back()));
+  }
+  for (const rdm_cost& c : task_costs(spec.task))
+    out.costs.push_back({c.name, c.help, limits[out.costs.size()]});
+  return out;
+}
+
+void add_frame(Playback& p, const redman::Pool& pool) {
+  p.poses.resize(p.poses.size() + p.bodies.size() * 7);
+  if (!p.bodies.empty())
+    redman::check(rdm_pool_poses(pool.get(), 0, p.poses.data() + p.frames * p.bodies.size() * 7));
+  p.reward.push_back(pool.reward()[0]);
+  p.episode_return.push_back(pool.episode_return()[0]);
+  append(p.cost, pool.cost()[0]);
+  append(p.episode_cost, pool.episode_cost()[0]);
+  p.success.push_back(pool.success()[0]);
+  int32_t count = 0;
+  redman::check(rdm_pool_contacts(pool.get(), 0, nullptr, 0, &count));
+  const size_t before = p.contacts.size();
+  p.contacts.resize(before + static_cast<size_t>(count));
+  redman::check(rdm_pool_contacts(pool.get(), 0, p.contacts.data() + before, count, &count));
+  p.contacts_end.push_back(p.contacts.size());
+  p.terminated = pool.terminated()[0] != 0;
+  ++p.frames;
+}
+
+}  // namespace tool

@@ -1,0 +1,76 @@
+#include "play/scene.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "common/names.hpp"
+
+namespace tool {
+namespace {
+
+void check_camera(const std::string& camera, int32_t task) {
+  std::vector<std::string> names;
+  for (int32_t i = 0; i < task_at(task).num_cameras; ++i) {
+    rdm_camera c;
+    redman::check(rdm_task_camera(task, i, &c));
+    if (same_name(camera, c.name)) return;
+    names.push_back(c.name);
+  }
+  throw Usage("--camera " + camera + ": unknown" + nearest_hint(camera, names));
+}
+
+}  // namespace
+
+Scene::Scene(const PoolSettings& settings, const ActorChoice& choice, std::string camera, int32_t width,
+             int32_t height)
+    : pool_(make_pool(settings, RDM_AUTORESET_OFF)),
+      actor_(choice, pool_),
+      camera_(std::move(camera)),
+      width_(width),
+      height_(height) {
+  check_camera(camera_, pool_.spec().task);
+  pool_.reset();
+  actor_.restart();
+}
+
+bool Scene::advance() {
+  if (pool_.terminated()[0] || pool_.truncated()[0]) return false;
+  actor_.act(pool_);
+  pool_.step();
+  ++step_;
+  return true;
+}
+
+void Scene::advance_to(int32_t step) {
+  while (step_ < step && advance()) {
+  }
+}
+
+Image Scene::picture() {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  Image image{width_, height_, {}};
+  image.rgb = as_usage([&] { return pool_.render(0, camera_.c_str(), width_, height_); });
+  seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
+  ++frames_;
+  return image;
+}
+
+Image draw_strip(Scene& scene, int32_t moments, int32_t first, int32_t last) {
+  first = std::min(first, last);
+  std::vector<Image> images;
+  for (int32_t i = 0; i < moments; ++i) {
+    const double share = moments > 1 ? static_cast<double>(i) / (moments - 1) : 0.5;
+    scene.advance_to(first + static_cast<int32_t>(std::lround(share * (last - first))));
+    images.push_back(scene.picture());
+  }
+  return side_by_side(images);
+}
+
+int32_t last_step(Scene scene, int32_t to) {
+  scene.advance_to(to >= 0 ? to : scene.pool().spec().max_steps);
+  return scene.step();
+}
+
+}  // namespace tool

@@ -1,0 +1,35 @@
+// One world played from the seed, and pictures of it: the same episode each time.
+#pragma once
+#include "draw/image.hpp"
+#include "play/actor.hpp"
+
+namespace tool {
+
+class Scene {
+ public:
+  // Usage with the nearest name when the task has no such camera.
+  Scene(const PoolSettings& settings, const ActorChoice& choice, std::string camera, int32_t width,
+        int32_t height);
+  const redman::Pool& pool() const { return pool_; }
+  int32_t step() const { return step_; }
+  // False, and nothing happens, when the episode is over.
+  bool advance();
+  void advance_to(int32_t step);
+  Image picture();  // by the camera
+  int32_t frames() const { return frames_; }
+  double seconds() const { return seconds_; }  // spent in pictures
+
+ private:
+  redman::Pool pool_;
+  Actor actor_;
+  std::string camera_;
+  int32_t width_, height_, step_ = 0, frames_ = 0;
+  double seconds_ = 0;
+};
+
+// `moments` pictures at even distances from step `first` to step `last`, side by side.
+Image draw_strip(Scene& scene, int32_t moments, int32_t first, int32_t last);
+// The step at which the episode ends, or `to` if that is sooner (-1: never).
+int32_t last_step(Scene scene, int32_t to);
+
+}  // namespace tool

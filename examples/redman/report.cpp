@@ -1,0 +1,181 @@
+// `report`: a page that compares run folders.
+#include "web/report.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "commands.hpp"
+#include "common/files.hpp"
+#include "common/names.hpp"
+#include "common/text.hpp"
+#include "play/evaluate.hpp"
+#include "play/scene.hpp"
+#include "run/trainer.hpp"
+
+namespace tool {
+namespace {
+
+struct ReportFlags {
+  std::vector<std::string> folders;
+  std::string html = "report.html";
+  int32_t episodes = kEvalEpisodes, strip = 6, threads = 0;
+};
+
+// The worlds of a run's report, as `train` makes them at its end.
+PoolSettings report_worlds(const RunData& run, int32_t threads) {
+  PoolSettings settings = run_settings(run.path).pool;
+  settings.seed += Trainer::kEvalSeed;
+  settings.envs = kEvalEnvs;
+  settings.threads = threads;
+  return settings;
+}
+
+Outcome evaluated(const RunData& run, const ReportFlags& flags) {
+  const ActorChoice choice = choose_actor(run.path);
+  const Evaluation e = evaluate(choice, report_worlds(run, flags.threads), run_settings(run.path).limits,
+                                flags.episodes, false);
+  Outcome o{true, e.summary.return_mean, e.summary.success_rate, e.summary.fall_rate, e.summary.length_mean,
+            {}};
+  for (size_t k = 0; k < e.costs.size(); ++k)
+    o.costs.push_back({e.costs[k], e.limits[k], e.summary.cost_mean[k]});
+  return o;
+}
+
+// "close" where the task has it, else its first camera, "" without any.
+std::string camera_of(int32_t task) {
+  std::string first;
+  for (int32_t i = 0; i < task_at(task).num_cameras; ++i) {
+    rdm_camera c;
+    redman::check(rdm_task_camera(task, i, &c));
+    if (i == 0) first = c.name;
+    if (same_name(c.name, "close")) return c.name;
+  }
+  return first;
+}
+
+// Of the best of a configuration's runs.
+Strip strip_of(const Configuration& c, const ReportFlags& flags) {
+  size_t best = 0;
+  for (size_t i = 1; i < c.runs.size(); ++i)
+    if (c.outcomes[i].score().better_than(c.outcomes[best].score())) best = i;
+  const RunData& run = *c.runs[best];
+  const std::string camera = camera_of(find_task(run.task));
+  if (camera.empty()) return {};
+  PoolSettings settings = report_worlds(run, 0);
+  settings.envs = 1;
+  const ActorChoice choice = choose_actor(run.path);
+  constexpr int32_t kWidth = 260, kHeight = 195;
+  const int32_t last = last_step(Scene(settings, choice, camera, kWidth, kHeight), -1);
+  Scene scene(settings, choice, camera, kWidth, kHeight);
+  Strip strip{png_bytes(draw_strip(scene, flags.strip, 0, last)), ""};
+  const redman::Pool& pool = scene.pool();
+  strip.caption =
+      format(", seed %llu: %d steps, return %.4g, cost %.4g", static_cast<unsigned long long>(run.seed), last,
+             static_cast<double>(pool.episode_return()[0]),
+             pool.spec().cost_dim > 0 ? static_cast<double>(pool.episode_cost()[0][0]) : 0.0);
+  return strip;
+}
+
+// What can be done of a task's report; what cannot is a note in it.
+TaskReport report_of(const std::vector<const RunData*>& runs, const ReportFlags& flags) {
+  TaskReport t;
+  t.task = runs[0]->task;
+  t.episodes = flags.episodes;
+  try {
+    t.summary = task_at(find_task(t.task)).summary;
+  } catch (const Usage& e) {
+    t.notes.push_back(e.what());
+  }
+  t.configurations = group_runs(runs);
+  for (Configuration& c : t.configurations)
+    for (const RunData* run : c.runs) {
+      c.outcomes.push_back(training_outcome(*run));
+      if (flags.episodes < 1) continue;
+      try {
+        c.outcomes.back() = evaluated(*run, flags);
+      } catch (const std::runtime_error& e) {
+        t.notes.push_back(run->path + " was not evaluated: " + e.what());
+      }
+    }
+  rank(t.configurations);
+  for (const Configuration& c : t.configurations) {
+    t.strips.emplace_back();
+    if (flags.strip < 1) continue;
+    try {
+      t.strips.back() = strip_of(c, flags);
+    } catch (const std::runtime_error& e) {
+      t.notes.push_back(c.label + " has no pictures: " + e.what());
+    }
+  }
+  return t;
+}
+
+Json ranking_json(const TaskReport& t) {
+  Json out = Json::array();
+  for (const Configuration& c : t.configurations) {
+    const Outcome mean = c.mean();
+    Json costs = Json::object();
+    for (const CostOutcome& cost : mean.costs) costs[cost.name] = cost.mean;
+    out.push_back({{"task", t.task},
+                   {"configuration", c.label},
+                   {"runs", c.runs.size()},
+                   {"feasible", mean.score().feasible},
+                   {"evaluated", mean.evaluated},
+                   {"return", mean.ret},
+                   {"cost", costs}});
+  }
+  return out;
+}
+
+Report run_report(const ReportFlags& flags) {
+  check_replaceable(flags.html);
+  std::vector<RunData> runs;
+  for (const std::string& folder : flags.folders)
+    for (const std::string& path : find_runs(folder)) runs.push_back(read_run(path));
+  std::vector<std::string> tasks;
+  for (const RunData& run : runs)
+    if (std::find(tasks.begin(), tasks.end(), run.task) == tasks.end()) tasks.push_back(run.task);
+  std::vector<TaskReport> reports;
+  Json json = {{"file", flags.html}, {"runs", runs.size()}, {"ranking", Json::array()}};
+  std::string text;
+  for (const std::string& task : tasks) {
+    std::vector<const RunData*> own;
+    for (const RunData& run : runs)
+      if (run.task == task) own.push_back(&run);
+    reports.push_back(report_of(own, flags));
+    Table table({task, "runs", "limits", "return", "cost"});
+    for (const Json& row : ranking_json(reports.back())) {
+      json["ranking"].push_back(row);
+      table.add({row["configuration"].get<std::string>(), std::to_string(row["runs"].get<size_t>()),
+                 row["feasible"].get<bool>() ? "within" : "over", format("%.4g", row["return"].get<double>()),
+                 row["cost"].contains("cost") ? format("%.4g", row["cost"]["cost"].get<double>()) : "-"});
+    }
+    text += table.text() + '\n';
+  }
+  replace_file(flags.html, report_page(reports));
+  return {json, text + "wrote " + flags.html + '\n'};
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<ReportFlags>();
+  CLI::App* command = app.add_subcommand(
+      "report", "Compare run folders on a page: ranking, curves, configurations, pictures");
+  command
+      ->add_option(
+          "folders", flags->folders,
+          "run folders, or folders of them; runs that differ in the seed alone are one configuration")
+      ->required();
+  command->add_option("--html", flags->html, "page to write; default report.html");
+  command
+      ->add_option("--episodes", flags->episodes,
+                   "fresh episodes that evaluate each run; 0: its training alone")
+      ->check(CLI::Range(0, kMostEpisodes));
+  command->add_option("--strip", flags->strip, "moments of an episode of each configuration; 0: no pictures")
+      ->check(CLI::Range(0, 64));
+  command->add_option("--threads", flags->threads, "threads; 0: the caller's own");
+  command->callback([&run, flags] { run = [flags] { return run_report(*flags); }; });
+}
+
+}  // namespace tool
