@@ -20,7 +20,7 @@ run_tests() {
 }
 
 # shellcheck disable=SC2086
-need $build_packages libgtest-dev clang-format-14 octomap-tools python3 python3-numpy
+need $build_packages libgtest-dev clang-format-14 octomap-tools python3 python3-numpy mypy
 case $mode in
   dev)
     configure dev

@@ -90,8 +90,8 @@ def declarations(text: str) -> Iterator[Declared]:
     """All declarations of a header in their order."""
     experimental_from = text.find("#if defined(RDM_EXPERIMENTAL)")
     pending: Declared | None = None
-    above = covering = covered = ""  # a comment that stands above, as long as it is the words of what comes, and the
-    # kind of what it has told of
+    above = ""  # the comment above the run of declarations
+    covering = covered = ""  # the same while it is what tells of them, and the kind of what it has told of
     at = end_of_last = 0
     while at < len(text):
         match = STATEMENT.match(text, at)
@@ -99,7 +99,6 @@ def declarations(text: str) -> Iterator[Declared]:
             line = text.count("\n", 0, at) + 1
             raise SystemExit(f"headers, line {line}: not a declaration that this script knows: {text[at:at + 60]!r}")
         at = match.end()
-        kind = match.lastgroup
         found = match.groupdict()
         if found["comment"]:
             behind = pending is not None and "\n" not in text[end_of_last:match.start()]
@@ -114,7 +113,7 @@ def declarations(text: str) -> Iterator[Declared]:
                 above = covering = text_of(found["comment"])
                 covered = ""
             continue
-        if kind is None and not match.group().strip():
+        if match.lastgroup is None:
             continue
         if pending:
             yield pending
@@ -216,14 +215,11 @@ def members(declared: Declared) -> list[tuple[str, int, str]]:
     """(name, value, comment) of an enum."""
     out = []
     value = -1
-    for match in re.finditer(r"(RDM_\w+)(?: = (-?\w+))?(?:,|\s)*(" + COMMENT + ")?", strip_leading(declared.body), re.S):
+    body = re.sub(r"^\s*" + COMMENT, "", declared.body, flags=re.S)
+    for match in re.finditer(r"(RDM_\w+)(?: = (-?\w+))?(?:,|\s)*(" + COMMENT + ")?", body, re.S):
         value = int(match[2], 0) if match[2] else value + 1
         out.append((match[1], value, " ".join(text_of(match[3] or "").split())))
     return out
-
-
-def strip_leading(body: str) -> str:
-    return re.sub(r"^\s*" + COMMENT, "", body, flags=re.S)
 
 
 def prefix_of(names: list[str]) -> str:
@@ -342,7 +338,8 @@ def generate(text: str) -> str:
         about = text_of(match[0].strip()) if (match := re.match(r"\s*" + COMMENT, d.body, re.S)) else d.doc
         out.append(f"class {camel(d.name)}(enum.{'IntFlag' if flags else 'IntEnum'}):\n"
                    f"    {quoted(about or d.name, '    ')}\n\n")
-        out += [f"    {name.removeprefix(prefix)} = {value}{'  # ' + doc if doc else ''}\n" for name, value, doc in rows]
+        out += [f"    {name.removeprefix(prefix)} = {value}{'  # ' + doc if doc else ''}\n"
+                for name, value, doc in rows]
         out.append("\n\n")
     for d in found:
         if d.kind == "callback":
@@ -401,7 +398,8 @@ def struct_text(d: Declared, structs: set[str], callbacks: set[str]) -> str:
         about += textwrap.wrap(f"{variable.name}: {' '.join(variable.doc.split())}".rstrip(": "), 108,
                                subsequent_indent="    ")
     doc = quoted("\n".join(about), "    ")
-    return record_text(d) + f"class {d.name}(Structure):\n    {doc}\n\n{''.join(hints)}    _fields_ = [\n{''.join(listed)}    ]\n\n\n"
+    return (f"{record_text(d)}class {d.name}(Structure):\n    {doc}\n\n{''.join(hints)}"
+            f"    _fields_ = [\n{''.join(listed)}    ]\n\n\n")
 
 
 RECORD_HINTS = {"c_float": "float", "c_double": "float"}

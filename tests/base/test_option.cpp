@@ -268,7 +268,8 @@ TEST(NearestName, ByEditDistance) {
   EXPECT_EQ(nearest_name("TRPO", names, 4), 2);
   EXPECT_EQ(nearest_name("trpoo", names, 4), 2);
   EXPECT_EQ(nearest_name("cp", names, 4), 3);
-  EXPECT_EQ(nearest_name("ppo_l", names, 4), 1);  // that begins with it
+  const char* longer[] = {"bandit", "hand_over_safe_finger"};
+  EXPECT_EQ(nearest_name("hand_over", longer, 2), 1);  // it begins so
   for (const char* far : {"c", "nonsense", "xyz", "", "a_name_that_is_far_longer_than_any"})
     EXPECT_EQ(nearest_name(far, names, 4), -1) << far;
   EXPECT_STREQ(Nearest("ppolag", names, 4).text, "; nearest is ppo_lag");

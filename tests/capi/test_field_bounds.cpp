@@ -71,7 +71,9 @@ TEST(FieldBounds, OfSomeFields) {
     rdm_field field;
     float low = 0, high = 0;
     for (int32_t i = 0; rdm_task_field(index, i, &field) == RDM_OK; ++i)
-      if (std::string(field.name) == wanted) EXPECT_EQ(rdm_task_field_bounds(index, i, &low, &high), RDM_OK);
+      if (std::string(field.name) == wanted) {
+        EXPECT_EQ(rdm_task_field_bounds(index, i, &low, &high), RDM_OK);
+      }
     return std::pair(low, high);
   };
   EXPECT_EQ(bounds("hand_over_safe_finger", "right.joint_velocity"), std::pair(-5.0f, 5.0f));

@@ -113,7 +113,8 @@ class OfAPool(unittest.TestCase):
         self.assertEqual(agent.policy().info.task, TASK)
         self.assertEqual(len(epoch.cost), pool.cost_dim)
         for limits, expected in ((5, [5.0] + [None] * 7), ({"drop": 2}, [40.0] + [None] * 6 + [2.0]),
-                                 (None, [40.0] + [None] * 7), ([None, 1, None, None, None, None, None, 3], [None, 1.0] + [None] * 5 + [3.0])):
+                                 (None, [40.0] + [None] * 7),
+                                 ([None, 1, None, None, None, None, None, 3], [None, 1.0] + [None] * 5 + [3.0])):
             self.assertEqual(redman.Agent(pool, cost_limits=limits).cost_limits, expected)
         with self.assertRaisesRegex(redman.NotFoundError, "drop"):
             redman.Agent(pool, cost_limits={"dropped": 2})

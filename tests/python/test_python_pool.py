@@ -31,8 +31,8 @@ def played(**arguments):
 class SameWorlds(unittest.TestCase):
     @unittest.skipUnless(os.environ.get("REDMAN_TOOL"), "the command-line tool was not built")
     def test_hashes_are_those_that_the_tool_prints(self):
-        for task, options in ((TASK, {}), ("grasp", {"object_mass": 0.0712345678901234}), ("jenga", {}), ("point_goal1", {}),
-                              ("hand_over_wall", {"object": "tennis_ball"})):
+        for task, options in ((TASK, {}), ("grasp", {"object_mass": 0.0712345678901234}), ("jenga", {}),
+                              ("point_goal1", {}), ("hand_over_wall", {"object": "tennis_ball"})):
             sets = [word for key, value in options.items() for word in ("--set", f"{key}={value}")]
             said = json.loads(subprocess.run(
                 [os.environ["REDMAN_TOOL"], "rollout", "--task", task, "--policy", "random", "--episodes", "3",
@@ -53,11 +53,12 @@ class SameWorlds(unittest.TestCase):
     def test_threads_do_not_change_a_bit(self):
         self.assertEqual(len({played(threads=threads).hash() for threads in (0, 1, 2, 4)}), 1)
 
-    def test_an_explicit_seed_repeats_an_episode(self):
+    def test_an_explicit_seed_names_an_episode(self):
         pool = redman.Pool("grasp", 3)
         first = pool.reset(seeds=11).copy()
         pool.baseline("random"), pool.step()
         self.assertTrue((pool.reset(seeds=[11, 12, 13]) == first).all())
+        self.assertTrue((redman.Pool("grasp", 1, seed=12).reset()[0] == first[1]).all())  # in any world of any pool
         self.assertFalse((pool.reset() == first).all())
 
 
@@ -225,6 +226,15 @@ class Shown(unittest.TestCase):
         self.assertLess(contacts["shape_a"].max(), len(pool.shapes))
         np.testing.assert_allclose(np.linalg.norm(contacts["normal"], axis=1), 1, rtol=1e-4)
 
+    def test_hulls_have_corners(self):
+        pool = redman.Pool("grasp", options={"object": "hull"})
+        hulls = [i for i, shape in enumerate(pool.shapes) if shape.kind == redman.ShapeKind.HULL]
+        corners = pool.hull(hulls[0])
+        self.assertGreater(len(corners), 3)
+        np.testing.assert_allclose(np.ptp(corners, axis=0) / 2, pool.shapes[hulls[0]].size, rtol=1e-4)
+        with self.assertRaises(redman.Error):
+            pool.hull(0 if 0 not in hulls else 1)
+
     def test_sensors_keep_their_memory(self):
         pool = redman.Pool("grasp", 2, options={"modality": "points+rgb+depth+segmentation+voxels", "points": 64})
         pool.reset()
@@ -251,7 +261,8 @@ class Shown(unittest.TestCase):
 class Refused(unittest.TestCase):
     def test_errors_say_what_and_are_what_python_expects(self):
         cases = [
-            (lambda: redman.Pool("hand_over_safe_fingr"), redman.NotFoundError, LookupError, "nearest is hand_over_safe_finger"),
+            (lambda: redman.Pool("hand_over_safe_fingr"), redman.NotFoundError, LookupError,
+             "nearest is hand_over_safe_finger"),
             (lambda: redman.Pool("bandit", num_envs=0), redman.RangeError, ValueError, "num_envs"),
             (lambda: redman.Pool("bandit", options={"nope": 1}), redman.NotFoundError, LookupError, "nope"),
             (lambda: redman.Pool("bandit", options={"points": None}), TypeError, TypeError, "points"),
@@ -278,7 +289,8 @@ class Refused(unittest.TestCase):
                      lambda: redman.Pool("bandit", seed=1 << 64), lambda: redman.Pool("bandit", threads=1 << 40),
                      lambda: pool.state(1 << 32), lambda: pool.hash(1 << 32), lambda: pool.poses(1 << 32),
                      lambda: pool.render(0, width=(1 << 32) + 8), lambda: pool.push(1 << 32, 0, (0, 0, 0)),
-                     lambda: redman.Agent(obs_dim=(1 << 32) + 1, action_dim=1), lambda: redman.Map(0.1, memory=1 << 70)):
+                     lambda: redman.Agent(obs_dim=(1 << 32) + 1, action_dim=1),
+                     lambda: redman.Map(0.1, memory=1 << 70)):
             with self.assertRaises(redman.RangeError):
                 call()
         with self.assertRaises(TypeError):

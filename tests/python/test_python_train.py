@@ -1,4 +1,6 @@
 """train, evaluate, curve: what the command-line tool does, to the byte."""
+import contextlib
+import io
 import json
 import os
 import re
@@ -31,8 +33,8 @@ class AsTheTool(unittest.TestCase):
             ours, theirs = Path(folder, "a"), Path(folder, "b")
             run = redman.train(**SMALL, out=ours, options={"object": "tennis_ball", "hidden": "32,32"}, cost_limits=20)
             said = tool("train", "--task", SMALL["task"], "--steps", SMALL["steps"], "--seed", 3, "--envs", 16,
-                        "--eval-every", 5, "--checkpoint-every", 5, "--set", "object=tennis_ball", "--set", "hidden=32,32",
-                        "--cost-limit", 20, "--out", theirs)
+                        "--eval-every", 5, "--checkpoint-every", 5, "--set", "object=tennis_ball",
+                        "--set", "hidden=32,32", "--cost-limit", 20, "--out", theirs)
             self.assertEqual(Path(ours, "policy.rdm").read_bytes(), Path(theirs, "policy.rdm").read_bytes())
             self.assertEqual(bytes(run.policy), Path(theirs, "policy.rdm").read_bytes())
             self.assertEqual(run.env_steps, said["env_steps"])
@@ -51,6 +53,14 @@ class AsTheTool(unittest.TestCase):
                 tool("train", "--resume", each, "--steps", 24000)
             self.assertEqual(Path(ours, "policy.rdm").read_bytes(), Path(theirs, "policy.rdm").read_bytes())
             tool("plot", ours, "--out", Path(folder, "plot.svg"))
+
+    @unittest.skipUnless(TOOL, "the command-line tool was not built")
+    def test_an_algorithm_that_only_records_costs_is_not_judged_by_them(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = redman.train(**SMALL, algo="ppo")
+            tool("train", "--task", SMALL["task"], "--algo", "ppo", "--steps", SMALL["steps"], "--seed", 3,
+                 "--envs", 16, "--eval-every", 5, "--out", folder)
+            self.assertEqual(bytes(run.policy), Path(folder, "policy.rdm").read_bytes())
 
     def test_a_run_without_a_folder_leaves_nothing(self):
         before = set(os.listdir())
@@ -77,6 +87,15 @@ class AsTheTool(unittest.TestCase):
             self.assertTrue(Path(folder, "checkpoint.rdm").exists())
         self.assertIs(signal.getsignal(signal.SIGINT), signal.default_int_handler)
 
+    def test_progress_goes_to_stderr(self):
+        heard = io.StringIO()
+        with contextlib.redirect_stderr(heard):
+            redman.train("bandit", steps=500, envs=4)
+            redman.train("bandit", steps=1e9, envs=4, callback=lambda epoch: True)
+        lines = heard.getvalue().splitlines()
+        self.assertRegex(lines[-3], "^100%  [0-9]+ steps  return .* 0:00 left$")
+        self.assertRegex(lines[-1], "^stopped at [0-9]+ of 1000000000 steps$")
+
     def test_other_threads_train_too(self):
         runs = []
         thread = threading.Thread(target=lambda: runs.append(redman.train("bandit", steps=500, envs=4, progress=False)))
@@ -87,9 +106,10 @@ class AsTheTool(unittest.TestCase):
     def test_what_is_wrong_is_said_before_there_is_a_folder(self):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "run")
-            for arguments, words in (({"task": "bandid"}, "bandit"), ({"algo": "pppo"}, "ppo"), ({"steps": 0.5}, "steps"),
-                                     ({"options": {"obejct": "egg"}}, "obejct"), ({"options": {"object": "eggs"}}, "eggs"),
-                                     ({"cost_limits": [1]}, "cost_limits")):
+            for arguments, words in (
+                    ({"task": "bandid"}, "bandit"), ({"algo": "pppo"}, "ppo"), ({"steps": 0.5}, "steps"),
+                    ({"options": {"obejct": "egg"}}, "obejct"), ({"options": {"object": "eggs"}}, "eggs"),
+                    ({"cost_limits": [1]}, "cost_limits")):
                 with self.assertRaisesRegex(redman.Error, words):
                     redman.train(**{**SMALL, **arguments}, out=path)
                 self.assertFalse(path.exists())
@@ -140,8 +160,8 @@ class Evaluations(unittest.TestCase):
         for kind in ("zero", "hold", "random"):
             said = tool("eval", "--task", "hand_over_safe_finger", "--policy", kind, "--episodes", 40)
             ours = redman.evaluate(kind, "hand_over_safe_finger", episodes=40)
-            for key in ("return_mean", "return_std", "cost_mean", "cost_std", "length_mean", "success_rate", "fall_rate",
-                        "violation_rate", "feasible"):
+            for key in ("return_mean", "return_std", "cost_mean", "cost_std", "length_mean", "success_rate",
+                        "fall_rate", "violation_rate", "feasible"):
                 np.testing.assert_allclose(getattr(ours, key), said[key], rtol=1e-12, err_msg=key)
 
     def test_a_function_of_rows_plays(self):

@@ -17,7 +17,7 @@ WORD = re.compile(r"[A-Za-z_]\w*")
 
 def flat(comment):
     """A comment's words in one line."""
-    return " ".join(re.sub(r"^\s*\*", " ", line) for line in comment.splitlines()).strip()
+    return " ".join(" ".join(re.sub(r"^\s*\*", " ", line) for line in comment.splitlines()).split())
 
 
 class Header:
@@ -125,15 +125,15 @@ def main(root):
                 kind = classify(where, part, shape and shape.group(1), comment, header.member_names, True)
                 counts[kind] = counts.get(kind, 0) + 1
     for function, arguments, comment in header.functions:
-        own = {Header.name_of(a) for a in arguments}
-        names, sized = own | header.member_names, set()
+        names, sized = {Header.name_of(a) for a in arguments} | header.member_names, set()
         for argument in arguments:
             name = Header.name_of(argument)
             shape = re.search(rf"(?<![\w*]){name} {SHAPE}", comment)
             kind = classify(f"{function}: {name}", argument, shape and shape.group(1), comment, names, False)
             counts[kind] = counts.get(kind, 0) + 1
             sized.update(WORD.findall(shape.group(1)) if shape else [])
-        for name in sorted(own & LENGTHS - sized):
+        plain = {Header.name_of(a) for a in arguments if "*" not in a}
+        for name in sorted(plain & LENGTHS - sized):
             wrong.append(f"{function}: no array has the shape [{name}]")
     for name, body in header.enums:
         if not name:

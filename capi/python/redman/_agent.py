@@ -102,9 +102,10 @@ class Agent:
         if mode not in _MODES:
             raise ArgumentError(f"mode: {mode!r} is none of {', '.join(_MODES)}")
         rows = self._given("rdm_agent_act", "obs", obs)
-        action = np.empty((self.num_envs, self.action_dim), np.float32) if out is None else out
-        direct = action.dtype == np.float32 and action.flags.c_contiguous and action.size == self.num_envs * self.action_dim
-        target = action if direct else np.empty((self.num_envs, self.action_dim), np.float32)
+        shape = (self.num_envs, self.action_dim)
+        action = np.empty(shape, np.float32) if out is None else out
+        direct = action.shape == shape and action.dtype == np.float32 and action.flags.c_contiguous
+        target = action if direct else np.empty(shape, np.float32)
         with self._lock:
             self._check(lib.rdm_agent_act(self._a, rows.ctypes.data, _MODES[mode], target.ctypes.data))
         if not direct:
@@ -119,8 +120,6 @@ class Agent:
         """
         said = {"reward": reward, "cost": cost, "terminated": terminated, "truncated": truncated,
                 "final_obs": final_obs, "valid": valid, "success": success, "steps": steps}
-        if cost is not None and self.cost_dim == 1 and np.ndim(cost) == 1:
-            said["cost"] = np.reshape(cost, (-1, 1))
         table = _abi.ROWS["rdm_transition"]
         rows = {name: given(value, table[name], self._lengths, name)
                 for name, value in said.items() if value is not None}
@@ -319,9 +318,12 @@ def _config_of(pool: Pool) -> dict[str, Any]:
     config = sized(_abi.rdm_agent_config)
     check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))
     check(lib.rdm_agent_config_for_pool(byref(config), pool._open()))
-    pointed = {name: np.array(np.ctypeslib.as_array(
-        ctypes.cast(getattr(config, name), ctypes.POINTER(np.ctypeslib.as_ctypes_type(rows.dtype))),
-        (getattr(config, rows.shape[0]),))) for name, rows in _abi.ROWS["rdm_agent_config"].items() if getattr(config, name)}
+    pointed: dict[str, Array] = {}
+    for name, rows in _abi.ROWS["rdm_agent_config"].items():
+        if getattr(config, name):
+            kind = np.ctypeslib.as_ctypes_type(rows.dtype)
+            at = ctypes.cast(getattr(config, name), ctypes.POINTER(kind))
+            pointed[name] = np.array(at[:getattr(config, rows.shape[0])], rows.dtype)
     defaults = laid(config.defaults[i] for i in range(config.num_defaults))
     return {"obs_dim": config.obs_dim, "action_dim": config.action_dim, "cost_dim": config.cost_dim,
             "num_envs": config.num_envs, "task": text(config.task), "layout_hash": config.layout_hash,

@@ -1,19 +1,22 @@
 """Learning curves: the columns of progress.csv, drawn as SVG without any other library."""
 from __future__ import annotations
 
+import html
 import json
 import math
 import os
 from pathlib import Path
-from typing import Any, Iterable, Iterator, Mapping, Optional, Sequence, Union
-from xml.sax.saxutils import escape
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, Optional, Sequence, Union
 
 import numpy as np
-import numpy.typing as npt
 
 from ._error import FormatError, MissingFileError
 
-Column = npt.NDArray[np.float64]
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    Column = npt.NDArray[np.float64]
+else:
+    Column = np.ndarray
 # Okabe and Ito's colours, told apart by most eyes.
 _COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555")
 _WIDTH, _HEIGHT, _LEFT, _TOP, _RIGHT, _BOTTOM = 300, 190, 56, 30, 20, 54  # of a panel, and around it
@@ -150,7 +153,7 @@ def _panel(title: str, column: str, curves: Sequence[Curve], limit: Optional[flo
         return _TOP + _HEIGHT - (y - ticks[0]) / (ticks[-1] - ticks[0]) * _HEIGHT
 
     left, right, bottom = at + _LEFT, at + _LEFT + _WIDTH, _TOP + _HEIGHT
-    out = [f'<text x="{left}" y="{_TOP - 10}" font-weight="bold">{escape(title)}</text>']
+    out = [f'<text x="{left}" y="{_TOP - 10}" font-weight="bold">{html.escape(title)}</text>']
     for y in ticks:
         out.append(f'<path d="M{left} {y_of(y):.1f}H{right}" stroke="#ddd"/>'
                    f'<text x="{left - 6}" y="{y_of(y) + 4:.1f}" text-anchor="end">{_number(y)}</text>')
@@ -161,7 +164,8 @@ def _panel(title: str, column: str, curves: Sequence[Curve], limit: Optional[flo
         out.append(f'<path d="M{left} {y_of(limit):.1f}H{right}" stroke="#555" stroke-dasharray="5 4"/>')
     for number, xs, ys in drawn:
         points = " ".join(f"{x:.1f},{y:.1f}" for x, y in zip(x_of(xs), y_of(ys)))
-        out.append(f'<polyline points="{points}" fill="none" stroke="{_COLORS[number % len(_COLORS)]}" stroke-width="1.5"/>')
+        color = _COLORS[number % len(_COLORS)]
+        out.append(f'<polyline points="{points}" fill="none" stroke="{color}" stroke-width="1.5"/>')
     return "".join(out)
 
 
@@ -171,10 +175,11 @@ def draw(curves: Sequence[Curve]) -> str:
     limit = limits.pop() if len(limits) == 1 else None
     width = _LEFT + _WIDTH + _RIGHT
     height = _TOP + _HEIGHT + _BOTTOM + 18 * len(curves)
-    legend = "".join(
-        f'<path d="M{_LEFT} {_TOP + _HEIGHT + _BOTTOM + 18 * i}h24" stroke="{_COLORS[i % len(_COLORS)]}" stroke-width="2"/>'
-        f'<text x="{_LEFT + 32}" y="{_TOP + _HEIGHT + _BOTTOM + 18 * i + 4}">{escape(one.label)}</text>'
-        for i, one in enumerate(curves))
+    legend = ""
+    for i, one in enumerate(curves):
+        y = _TOP + _HEIGHT + _BOTTOM + 18 * i
+        legend += (f'<path d="M{_LEFT} {y}h24" stroke="{_COLORS[i % len(_COLORS)]}" stroke-width="2"/>'
+                   f'<text x="{_LEFT + 32}" y="{y + 4}">{html.escape(one.label)}</text>')
     return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * width}" height="{height}" '
             f'font-family="sans-serif" font-size="11" fill="#222"><rect width="100%" height="100%" fill="#fff"/>'
             + _panel("return", "Metrics/EpRet", curves, None, 0)

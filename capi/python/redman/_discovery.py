@@ -51,7 +51,8 @@ def fields_of(owner: int, count: int, field: Callable[..., int], bounds: Callabl
     return out
 
 
-def _records(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., int], count: int, *before: Any) -> dict[str, R]:
+def _records(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., int], count: int,
+             *before: Any) -> dict[str, R]:
     """name -> record for all i that call(*before, i, &struct) knows."""
     rows = (kind(filled(struct, call, *before, i)) for i in range(count))
     return {getattr(row, "name", "") or getattr(row, "key"): row for row in rows}

@@ -5,10 +5,9 @@ import ctypes
 import os
 import threading
 from ctypes import byref, c_int32, c_size_t, c_uint64
-from typing import Any, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _abi
 from ._abi import MapFormat
@@ -16,6 +15,9 @@ from ._error import ArgumentError, StateError
 from ._library import Handle, assign, bytes_of, check, encoded, failure, filled, int32, lib, sized
 from ._pool import Pool
 from ._rows import Array, FloatArray, address, given
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 _FORMATS = {"bt": MapFormat.BINARY, "ot": MapFormat.FULL}
 
@@ -43,7 +45,7 @@ class Map:
         self._config: dict[str, float] = {"resolution": resolution, **config}
         struct = sized(_abi.rdm_map_config)
         check(lib.rdm_map_config_init(byref(struct), ctypes.sizeof(struct)))
-        known = {name for name, _ in struct._fields_} - {"struct_size", "reserved", "host", "error", "error_size", "reserved2"}
+        known = {name for name, kind in struct._fields_ if kind is ctypes.c_double} | {"memory"}
         for name, value in self._config.items():
             if name not in known:
                 raise TypeError(f"Map: {name!r} is none of {', '.join(sorted(known))}")

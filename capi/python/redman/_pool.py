@@ -6,10 +6,9 @@ import math
 import operator
 import threading
 from ctypes import byref, c_int32, c_size_t, c_uint64
-from typing import Any, Iterator, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Sequence, Union
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _abi, _discovery, _png
 from ._abi import Autoreset, BaselineKind
@@ -18,10 +17,14 @@ from ._library import Handle, assign, check, encoded, failure, filled, int32, li
 from ._options import Options, Value, read_settings, settings_of
 from ._rows import Array, Borrowed, FloatArray, address, given, made, shape_of
 
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
 _AUTORESET = {"samestep": Autoreset.SAME_STEP, "nextstep": Autoreset.NEXT_STEP,
               "off": Autoreset.OFF, "disabled": Autoreset.OFF}
 _AUTORESET_NAMES = ("same_step", "next_step", "off")
 _BASELINE = {"zero": BaselineKind.ZERO, "hold": BaselineKind.HOLD, "random": BaselineKind.RANDOM}
+_FLOAT = np.dtype(np.float32)
 _PICTURE = {"rgb": ("uint8", (3,)), "depth": ("float32", ()), "segmentation": ("int32", ())}
 
 _step = lib["rdm_pool_step"]  # a function of its own, for the one call that is made a million times
@@ -212,13 +215,17 @@ class Pool:
 
     def _write_action(self, action: Any) -> None:
         try:
-            np.copyto(self._action, action)
+            if type(action) is np.ndarray and action.dtype is _FLOAT:
+                self._action[...] = action  # a third of what copyto takes, and casts nothing here
+            else:
+                np.copyto(self._action, action)
         except (TypeError, ValueError):
-            np.copyto(self._action, given(action, _abi.ROWS["rdm_buffers"]["action"], self._lengths, "action"))
+            rows = _abi.ROWS["rdm_buffers"]["action"]
+            np.copyto(self._action, given(action, rows, self._lengths, "action", spread=True))
 
     def _mask(self, mask: Any) -> Optional[Array]:
         return None if mask is None else given(
-            mask, _abi.FUNCTIONS["rdm_pool_reset"].rows["mask"], self._lengths, "mask")
+            mask, _abi.FUNCTIONS["rdm_pool_reset"].rows["mask"], self._lengths, "mask", spread=True)
 
     def reset(self, seeds: Union[None, int, Sequence[int], Array] = None, mask: Any = None) -> FloatArray:
         """Starts new episodes where mask holds (None: everywhere) and returns obs.
@@ -235,7 +242,8 @@ class Pool:
                 listed = [operator.index(seed) for seed in seeds]  # type: ignore[union-attr]
             if any(not 0 <= seed < 1 << 64 for seed in listed):
                 raise ArgumentError("seeds: integers from 0 to 2^64 - 1")
-            rows = given(np.array(listed, np.uint64), _abi.FUNCTIONS["rdm_pool_reset"].rows["seeds"], self._lengths, "seeds")
+            table = _abi.FUNCTIONS["rdm_pool_reset"].rows["seeds"]
+            rows = given(np.array(listed, np.uint64), table, self._lengths, "seeds")
         chosen = self._mask(mask)
         with self._lock:
             self._check(lib.rdm_pool_reset(self._p, address(rows), address(chosen)))

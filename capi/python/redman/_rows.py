@@ -1,16 +1,19 @@
 """Rows: arrays that the library reads or writes, named and shaped as the header says."""
 from __future__ import annotations
 
-from typing import Any, Iterable, Mapping, Optional
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional
 
 import numpy as np
-import numpy.typing as npt
 
 from ._abi import Rows
 from ._error import ArgumentError
 
-Array = npt.NDArray[Any]
-FloatArray = npt.NDArray[np.float32]
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    Array = npt.NDArray[Any]
+    FloatArray = npt.NDArray[np.float32]
+else:  # numpy.typing alone takes longer to import than redman
+    Array = FloatArray = np.ndarray
 ALIGNMENT = 64
 
 
@@ -28,7 +31,8 @@ def aligned(size: int) -> npt.NDArray[np.uint8]:
 
 def made(table: Mapping[str, Rows], lengths: Mapping[str, int]) -> dict[str, Array]:
     """Zeroed arrays for all rows of a struct, in one block, each aligned."""
-    sizes = {name: np.dtype(rows.dtype).itemsize * int(np.prod(shape_of(rows, lengths))) for name, rows in table.items()}
+    sizes = {name: np.dtype(rows.dtype).itemsize * int(np.prod(shape_of(rows, lengths)))
+             for name, rows in table.items()}
     steps = {name: -(-size // ALIGNMENT) * ALIGNMENT for name, size in sizes.items()}
     block = aligned(sum(steps.values()))
     out: dict[str, Array] = {}
@@ -39,26 +43,39 @@ def made(table: Mapping[str, Rows], lengths: Mapping[str, int]) -> dict[str, Arr
     return out
 
 
-def given(value: Any, rows: Rows, lengths: Mapping[str, int], name: str) -> Array:
-    """The caller's array as the library reads it: no copy where type, shape and order are already right."""
+def given(value: Any, rows: Rows, lengths: Mapping[str, int], name: str, spread: bool = False) -> Array:
+    """The caller's array as the library reads it: no copy where type, shape and order are already right.
+
+    Lengths of 1 may be left out: [n] for [n][1], a number for [1]. With spread it is repeated along what it lacks.
+    """
     shape = shape_of(rows, lengths)
-    array = np.asarray(value)
-    if array.dtype != rows.dtype:
-        if array.dtype == np.bool_ and rows.dtype == "uint8":
-            array = array.view(np.uint8)
-        elif np.can_cast(array.dtype, rows.dtype, "same_kind") or array.dtype.kind in "iu" and rows.dtype in ("uint64", "int32", "uint8"):
-            changed = array.astype(rows.dtype)
-            if array.dtype.kind in "iu" and not np.array_equal(changed, array):
-                raise ArgumentError(f"{name}: a value that {rows.dtype} cannot hold")
-            array = changed
-        else:
-            raise ArgumentError(f"{name}: an array of {rows.dtype}, not of {array.dtype}")
+    array = _cast(np.asarray(value), np.dtype(rows.dtype), name)
     if array.shape != shape:
-        try:
-            array = np.broadcast_to(array, shape)
-        except ValueError:
-            raise ArgumentError(f"{name}: shape {array.shape} does not fit {shape}") from None
+        if [length for length in array.shape if length != 1] == [length for length in shape if length != 1]:
+            array = array.reshape(shape)
+        else:
+            try:
+                array = np.broadcast_to(array, shape if spread else array.shape)
+            except ValueError:
+                pass
+        if array.shape != shape:
+            raise ArgumentError(f"{name}: shape {np.shape(value)} does not fit {shape}")
     return np.ascontiguousarray(array)
+
+
+def _cast(array: Array, dtype: np.dtype[Any], name: str) -> Array:
+    """The array in another type that can hold its values."""
+    if array.dtype == dtype:
+        return array
+    if array.dtype == np.bool_ and dtype == np.uint8:
+        return array.view(np.uint8)
+    whole = array.dtype.kind in "iu" and dtype.kind in "iu"
+    if not whole and not np.can_cast(array.dtype, dtype, "same_kind"):
+        raise ArgumentError(f"{name}: an array of {dtype}, not of {array.dtype}")
+    changed = array.astype(dtype)
+    if whole and not np.array_equal(changed, array):
+        raise ArgumentError(f"{name}: a value that {dtype} cannot hold")
+    return changed
 
 
 def address(array: Optional[Array]) -> Optional[int]:

@@ -111,6 +111,7 @@ class _Meter:
 
     def __init__(self, goal: int) -> None:
         self._goal, self._begin, self._shown = goal, time.monotonic(), 0.0
+        self._width = 0  # of the line that stands there
         self._live = sys.stderr.isatty() or "ipykernel" in sys.modules
 
     def show(self, e: Epoch) -> None:
@@ -124,7 +125,19 @@ class _Meter:
         line = (f"{min(100, 100 * e.env_steps / self._goal):3.0f}%  {e.env_steps} steps  return {e.ret:.2f}  "
                 f"cost {e.cost[0]:.2f}  length {e.length:.0f}  falls {100 * e.fall_rate:.0f}%  {rate:.0f} steps/s  "
                 f"{left // 60}:{left % 60:02d} left")
-        sys.stderr.write(f"\r{line}\x1b[K" + ("\n" if last else "") if self._live else f"{line}\n")
+        self._say(f"\r{line:<{self._width}}" if self._live else f"{line}\n")
+        self._width = len(line) if self._live else 0
+
+    def end(self, run: Run) -> None:
+        """Leaves the line, and says so when the run is not over."""
+        self._say("\n" if self._width else "")
+        if run.interrupted:
+            further = f"; go on with redman train --resume {run.folder}" if run.folder else ""
+            self._say(f"stopped at {run.env_steps} of {self._goal} steps{further}\n")
+
+    @staticmethod
+    def _say(text: str) -> None:
+        sys.stderr.write(text)
         sys.stderr.flush()
 
 
@@ -234,7 +247,8 @@ def _config(run: Run, pool: Pool, of_task: dict[str, Value], of_algo: dict[str, 
         "cost_limits": {name: limit for name, limit in limits.items() if limit is not None},
         "train_cfgs": {"total_steps": steps, "vector_env_nums": pool.num_envs, "threads": threads,
                        "eval_every": eval_every, "checkpoint_every": eval_every},
-        "algo_cfgs": {**{key: shown(key, value) for key, value in run.agent.options.items()}, "steps_per_epoch": per_epoch},
+        "algo_cfgs": {**{key: shown(key, value) for key, value in run.agent.options.items()},
+                      "steps_per_epoch": per_epoch},
         "env_cfgs": {key: shown(key, value) for key, value in pool.options.items()},
         "obs_dim": pool.obs_dim, "action_dim": pool.action_dim, "layout_hash": f"{pool.spec.layout_hash:016x}",
         "build": dict(vars(_discovery.build()))}
@@ -260,8 +274,8 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
 
     steps are control steps of all worlds together; options are those of the task and of the algorithm. Every
     eval_every epochs twenty episodes decide which policy is kept: the best that stays within the limits, else the
-    one that comes nearest. out makes a run folder. callback(epoch) is called after each epoch; a true answer ends the run.
-    The first Ctrl-C ends it after this epoch, and what has been learned is returned; the second at once.
+    one that comes nearest. out makes a run folder. callback(epoch) is called after each epoch; a true answer ends
+    the run. The first Ctrl-C ends it after this epoch, and what has been learned is returned; the second at once.
     """
     goal = int(steps)
     if goal < 1 or goal != steps:
@@ -334,6 +348,8 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
             if meter:
                 meter.show(epoch)
         run.interrupted = run.env_steps < goal
+        if meter:
+            meter.end(run)
         last = agent.policy()
         if epoch and (best is None or epoch.epoch % eval_every and judged(last)[0] > best):
             run.policy = last
