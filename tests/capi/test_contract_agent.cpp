@@ -235,6 +235,7 @@ TEST(ContractAgent, CorruptPoliciesAreRefused) {
   EXPECT_EQ(rdm_policy_load_file(&p, "no/such/file.rdm"), RDM_NOT_FOUND);
   ASSERT_EQ(rdm_policy_load(&p, good.data(), good.size()), RDM_OK) << rdm_last_error();
   const size_t bytes = rdm_policy_scratch(p, 4);
+  EXPECT_LT(rdm_policy_scratch(p, 1), 512u);  // a row's numbers, and no panel of weights
   std::vector<unsigned char> memory(bytes + 64);
   void* scratch = memory.data();
   const float obs[12] = {1, -2, 0.5f};
