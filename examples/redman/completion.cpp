@@ -74,14 +74,18 @@ void collect(const CLI::App& app, const std::vector<std::string>& path, std::vec
   }
 }
 
-// For a word in single quotes; `also` are characters that a backslash must stand before.
-std::string in_quotes(const std::string& text, const std::string& also = "") {
+// As it stands between single quotes; `also` are characters that a backslash must stand before.
+std::string escaped(const std::string& text, const std::string& also = "") {
   std::string out;
   for (const char c : text) {
     if (also.find(c) != std::string::npos) out += '\\';
     out += c == '\'' ? std::string("'\\''") : std::string(1, c == '\n' ? ' ' : c);
   }
-  return '\'' + out + '\'';
+  return out;
+}
+
+std::string in_quotes(const std::string& text) {
+  return '\'' + escaped(text) + '\'';
 }
 
 std::string head(const char* first, const char* shell, const char* how) {
@@ -149,7 +153,7 @@ std::string zsh_script(const std::vector<Command>& commands) {
     out += "  " + in_quotes(joined(c.path)) + ")\n    _arguments";
     for (const Flag& f : c.flags)
       for (const std::string& name : f.names)
-        out += " \\\n      " + in_quotes('*' + name) + in_quotes('[' + f.help + ']', ":") +
+        out += " \\\n      " + in_quotes('*' + name) + "'[" + escaped(f.help, "[]:") + "]'" +
                (f.takes_value ? f.words.empty() ? "':value:_files'" : in_quotes(":value:(" + f.words + ')')
                               : "");
     std::vector<std::string> words = c.children;

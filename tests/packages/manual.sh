@@ -1,7 +1,6 @@
 #!/bin/sh
 # manual.sh TOOL FOLDER: every subcommand and every flag that the tool's help names stands in its manual page and in the
-# completions, and bash completes with them. FOLDER is what the target
-# `manual` made; without help2man it has no pages.
+# completions, and shells complete with them. FOLDER is what the target `manual` made; without help2man it has no pages.
 set -u
 tool=$1 folder=$2
 status=0
@@ -63,6 +62,12 @@ for shell in zsh fish; do
   command -v $shell > /dev/null || { echo "no $shell here: its script is not read by it"; continue; }
   "$shell" -n "$folder/$shell/"*redman* || lacks "$shell cannot read its script"
 done
+if command -v fish > /dev/null; then
+  for pair in 'redman tr=train' 'redman bench step --ta=--task' 'redman train --algo fo=focops'; do
+    fish --no-config -c "source $folder/fish/redman.fish; complete -C '${pair%%=*}'" | grep -q "^${pair#*=}" ||
+      lacks "fish does not complete '${pair%%=*}' with ${pair#*=}"
+  done
+fi
 [ "$flags" -gt 100 ] || lacks "only $flags flags were looked at"
 echo "$flags flags of $(echo "$list" | wc -l) commands, $pages manual pages"
 exit $status

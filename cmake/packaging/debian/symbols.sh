@@ -3,6 +3,7 @@
 # DUMPS/redman-<release>.abi has it first, else from VERSION; those of the experimental node for VERSION's minor release.
 set -eu
 library=$1 package=$2 version=$3 dumps=$4 out=$5
+[ -f "$library" ] || { echo "$library: no such library" >&2; exit 1; }
 since() {
   for dump in $(ls "$dumps"/redman-*.abi 2> /dev/null | sort -V); do
     if grep -q "elf-symbol name='$1'" "$dump"; then basename "$dump" .abi | sed 's/^redman-//'; return; fi
