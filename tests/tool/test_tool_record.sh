@@ -35,6 +35,8 @@ hand='--task hand_over_safe_finger --set max_steps=12'
 replay trained --policy run --envs 4 --episodes 9 --seed 18446744073709551615
 replay falls --task hand_over_safe_finger --policy hold --envs 3 --episodes 12
 awk -F'"length_mean":' '{ exit !($2 + 0 < 75) }' falls.out || say "no episode fell: all have one length"
+hull='0.03,0,0;-0.03,0,0;0,0.03,0;0,-0.03,0;0,0,0.04;0,0,-0.04;0.01,0.01,0.03'
+replay hull --task hand_over_safe_finger --policy random --set object=hull --set "hull=$hull" --set max_steps=5 --episodes 2
 grep -q "\"file\":\"random.npz\",\"steps\":84" random.out || say "$(cat random.out)"
 # any number of worlds plays each episode as it was
 "$tool" rollout --policy random.npz --envs 1 --json > one.out || say "one world does not replay three"

@@ -145,10 +145,10 @@ static void NAME_layer(const int8_t *weight, const float *scale, const float *bi
   for (i = 0; i < out; i += 4) {
     int32_t a = 0, b = 0, c = 0, d = 0;
     for (k = 0; k < in; ++k, weight += 4) {
-      a += weight[0] * q[k];
-      b += weight[1] * q[k];
-      c += weight[2] * q[k];
-      d += weight[3] * q[k];
+      a += (int32_t)weight[0] * q[k];
+      b += (int32_t)weight[1] * q[k];
+      c += (int32_t)weight[2] * q[k];
+      d += (int32_t)weight[3] * q[k];
     }
     y[i] = NAME_fma((float)a, unit * scale[i], bias[i]);
     y[i + 1] = NAME_fma((float)b, unit * scale[i + 1], bias[i + 1]);

@@ -184,11 +184,13 @@ std::string Recorder::metadata(const RecordNote& note, uint64_t steps) const {
     const double limit = limits[costs.size()];
     costs.push_back({{"name", c.name}, {"help", c.help}, {"limit", limit < 0 ? Json() : Json(limit)}});
   }
-  for (int32_t i = 0; i < task_at(spec.task).num_options; ++i) {
+  int32_t index = 0;
+  for (const rdm_option_info& o : task_options(spec.task)) {
     const char* key = nullptr;
     char text[RDM_TEXT_SIZE];
-    redman::check(rdm_pool_option(pool_.get(), i, &key, text));
-    options[key] = text;
+    if (rdm_pool_option(pool_.get(), index++, &key, text) == RDM_OK) options[o.key] = text;
+    for (const auto& [name, value] : note.options)  // a longer text than that call gives
+      if (same_name(name, o.key) && value.size() >= sizeof text) options[o.key] = value;
   }
   for (const auto& [key, value] : note.options) set.push_back(key + "=" + value);
   for (const Column& c : columns_) arrays[c.name] = c.help;

@@ -40,6 +40,10 @@ for name in "random hold demo trained falls".split():
     assert np.abs(a["obs"]).max() > 0 and np.ptp(a["obs"], axis=0).max() > 0, name
     assert meta["control_dt"] > 0 and meta["fields"][0]["unit"], name
 
+meta = json.loads(np.load("hull.npz")["metadata"].item())
+assert len(meta["options"]["hull"]) > 64 and "hull=" + meta["options"]["hull"] in meta["set"], meta["options"]
+assert meta["options"]["max_steps"] == "5"
+
 # what an action did is in the next observation: the hands' observations hold the last action
 a = dict(np.load("random.npz"))
 meta = json.loads(a["metadata"].item())
