@@ -109,7 +109,7 @@ function openScene(canvas, bytes, contacts) {
   key.shadow.bias = -0.0004;
   if ('normalBias' in key.shadow) key.shadow.normalBias = 0.002 * extent;
   key.shadow.radius = 3;
-  const reach = 0.65 * Math.min(extent, 12);
+  const reach = 0.85 * Math.min(extent, 12);
   Object.assign(key.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1 * reach, far: 8 * reach });
   world.add(sky, key, key.target);
 
