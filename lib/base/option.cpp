@@ -99,9 +99,9 @@ int32_t nearest_name(const char* name, const char* const* names, int32_t count) 
   int least = 1 << 30;
   for (int32_t i = 0; i < count; ++i) {
     const int d = edit_distance(name, names[i]);
-    if (d < least) least = d, best = i;
+    if (d < least && is_near(name, names[i], d)) least = d, best = i;
   }
-  return best >= 0 && is_near(name, names[best], least) ? best : -1;
+  return best;
 }
 
 Nearest::Nearest(const char* name, const char* const* names, int32_t count) {

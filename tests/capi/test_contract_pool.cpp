@@ -50,7 +50,7 @@ TEST(ContractPool, StructsGrowAtTheEnd) {
   std::memset(&g, 0xAB, sizeof g);
   EXPECT_EQ(rdm_pool_config_init(&g.c, sizeof g.c), RDM_OK);
   EXPECT_EQ(g.tail, 0xABABABABABABABABull);  // bytes beyond the given size are the caller's
-  EXPECT_EQ(rdm_pool_config_init(&g.c, sizeof g.c - 1), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_config_init(&g.c, offsetof(rdm_pool_config, settings) - 1), RDM_ARGUMENT);
   EXPECT_EQ(rdm_pool_config_init(&g.c, sizeof g), RDM_OK);
   EXPECT_EQ(g.tail, 0u);
   g.c.task = "hand_over_safe_finger";

@@ -35,7 +35,7 @@ TEST(Library, BuildInfoFillsNoMoreThanItsCallerHas) {
   newer.build.struct_size = sizeof newer;
   ASSERT_EQ(rdm_build_info(&newer.build), RDM_OK);
   EXPECT_EQ(newer.build.struct_size, sizeof newer);
-  EXPECT_EQ(newer.more, 0x5555555555555555u);
+  EXPECT_EQ(newer.more, 0u);  // what this library does not know is not what stood there
   const std::string want = std::to_string(RDM_VERSION_MAJOR) + "." + std::to_string(RDM_VERSION_MINOR) + "." +
                            std::to_string(RDM_VERSION_PATCH);
   EXPECT_EQ(newer.build.version, want);

@@ -72,11 +72,11 @@ TEST_P(EveryTask, RandomStepsStayFiniteAndSlow) {
 }
 
 TEST_P(EveryTask, ThreadsSeedsAndRestartsGiveTheSameBytes) {
-  const auto hash = [&](int32_t threads, uint64_t created, bool reseed) {
+  const auto hashes = [&](int32_t threads, uint64_t created, bool reseed, int32_t worlds = 5) {
     PoolConfig c;
     c.num_threads = threads;
     c.seed = created;
-    TestPool p(task(), 5, options({{"max_steps", nullptr, 25}}), c);
+    TestPool p(task(), worlds, options({{"max_steps", nullptr, 25}}), c);
     p->reset(nullptr, nullptr);
     if (reseed) {
       run(p, 30);
@@ -84,12 +84,15 @@ TEST_P(EveryTask, ThreadsSeedsAndRestartsGiveTheSameBytes) {
       p->reset(seeds, nullptr);
     }
     run(p, 60);
-    return p->hash(-1);
+    std::vector<uint64_t> out;
+    for (int32_t i = 0; i < worlds; ++i) out.push_back(p->hash(i));
+    return out;
   };
-  const uint64_t expected = hash(0, 6, false);
-  for (const int32_t threads : {1, 2, 4}) EXPECT_EQ(hash(threads, 6, false), expected) << threads;
-  EXPECT_EQ(hash(0, 99, true), expected);
-  EXPECT_NE(hash(0, 7, false), expected);
+  const auto expected = hashes(0, 6, false);
+  for (const int32_t threads : {1, 2, 4}) EXPECT_EQ(hashes(threads, 6, false), expected) << threads;
+  EXPECT_NE(hashes(0, 7, false), expected);
+  // a seed alone names the episodes: those of a pool of one world
+  EXPECT_EQ(hashes(0, 99, true), std::vector<uint64_t>(5, hashes(0, 6, false, 1)[0]));
 }
 
 TEST_P(EveryTask, ASavedPoolGoesOnInAnother) {

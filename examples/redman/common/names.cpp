@@ -65,14 +65,16 @@ bool same_name(const std::string& a, const std::string& b) {
 }
 
 std::string nearest_hint(const std::string& word, const std::vector<std::string>& names) {
-  const auto far = [&](const std::string& name) { return edit_distance(folded(word), folded(name)); };
-  const auto nearer = [&](const std::string& a, const std::string& b) { return far(a) < far(b); };
-  const auto best = std::min_element(names.begin(), names.end(), nearer);
-  if (best == names.end()) return "";
-  const size_t common = std::min(word.size(), best->size());
-  const bool begins = common >= 3 && folded(word).substr(0, common) == folded(*best).substr(0, common);
-  const bool near = begins || 3 * static_cast<size_t>(far(*best)) <= std::max(word.size(), best->size()) + 2;
-  return near ? "; nearest is " + *best : "";
+  std::string best;
+  size_t least = SIZE_MAX;
+  for (const std::string& name : names) {
+    const size_t distance = edit_distance(folded(word), folded(name)),
+                 common = std::min(word.size(), name.size());
+    const bool begins = common >= 3 && folded(word).substr(0, common) == folded(name).substr(0, common);
+    const bool near = begins || 3 * distance <= std::max(word.size(), name.size()) + 2;
+    if (near && distance < least) least = distance, best = name;
+  }
+  return best.empty() ? "" : "; nearest is " + best;
 }
 
 int32_t find_task(const std::string& name) {
