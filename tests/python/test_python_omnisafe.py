@@ -89,6 +89,8 @@ class Contract(unittest.TestCase):
         self.assertEqual((rows % (64 * 19), c["train_cfgs"]["total_steps"] % rows), (0, 0))
         self.assertLess(abs(c["train_cfgs"]["total_steps"] * 4 - 2e6), 2 * rows)
         self.assertNotIn("cost_limit", algo)  # PPOLag has none there
+        self.assertEqual(omnisafe.configs("hand_over_safe_finger", options={"object": "ball"})["env_cfgs"],
+                         {"options": {"object": "ball"}})
 
     def test_an_id_with_options(self):
         name = omnisafe.register("RedmanBall-v0", "hand_over_safe_finger", options={"object": "ball"}, action_repeat=2)

@@ -43,7 +43,7 @@ def defaults(task: str, options: Optional[Mapping[str, Any]] = None) -> Defaults
     with Pool(task, options=options) as pool:
         own = pool.task.defaults
         options_of = {**algos()["trpo_lag"].options, **algos()["ppo_lag"].options}
-        known = {key: own.get(key, option.default) for key, option in options_of.items()}
+        known = {key: own.get(f"ppo_lag:{key}", own.get(key, option.default)) for key, option in options_of.items()}
         limits = {name: cost.limit for name, cost in pool.costs.items() if cost.limit >= 0}
         center, steps = pool.initial_mean, pool.max_steps
     repeat = int(known["action_repeat"])
@@ -53,7 +53,7 @@ def defaults(task: str, options: Optional[Mapping[str, Any]] = None) -> Defaults
         task=task, action_repeat=repeat, center=center, init_std=float(known["init_std"]),
         discount=float(known["discount"]) ** repeat, gae_lambda=float(known["lambda"]), cost_limit=limit,
         cost_limits=limits, normalize_obs=_flag(known["normalize_obs"]), obs_clip=float(known["obs_clip"]),
-        hidden=tuple(int(width) for width in str(known["hidden"]).split(",")), activation=str(known["activation"]),
+        hidden=tuple(int(width) for width in str(known["hidden"]).split(",") if width), activation=str(known["activation"]),
         num_envs=64, horizon=int(known["horizon"]), episode=-(-steps // repeat), passes=int(known["passes"]),
         minibatches=int(known["minibatches"]), learning_rate=float(known["learning_rate"]),
         kl_target=float(known["kl_target"]), clip=float(known["clip"]), max_grad_norm=float(known["max_grad_norm"]),

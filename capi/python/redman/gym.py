@@ -162,7 +162,7 @@ class VectorEnv(_Named, _VectorEnv):
             self.observation_space, self.action_space = batch_space(obs, num_envs), batch_space(action, num_envs)
         self.mode, self.copy = mode, copy
         self.metadata["autoreset_mode"] = AutoresetMode(mode)
-        self._ended = np.zeros(num_envs, bool)
+        self._ended, self._all = np.zeros(num_envs, bool), np.ones(num_envs, bool)
 
     def reset(self, *, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
         """New episodes, everywhere or where options["reset_mask"] [num_envs] is True. seed: s names episode s + i for
@@ -219,7 +219,7 @@ class VectorEnv(_Named, _VectorEnv):
         if absent is not None and absent.all():
             return {}
         rows: Info = {}
-        here = np.ones(self.num_envs, bool) if absent is None else ~absent
+        here = self._all if absent is None else ~absent
         for key, values in told.items():
             if self._old and values.ndim > 1:
                 rows[key] = _objects(here, lambda i, values=values: values[i])

@@ -136,8 +136,8 @@ def configs(task: str, algo: str = "PPOLag", steps: float = 2e6, options: Option
     """custom_cfgs with which an algorithm of OmniSafe learns Redman<Task>-v0 as redman's own would: discount of its
     decisions, first deviation, limit, normalisation, networks and rates, as far as the algorithm has them.
 
-    steps: control steps of one world, summed over worlds. options: of the task; ids with other ones come of
-    register(). Change what the dict holds before it is given.
+    steps: control steps of one world, summed over worlds. options: of the task; where an algorithm has no env_cfgs to
+    take them, give it an id of register() with the same. Change what the dict holds before it is given.
     """
     d, kind = defaults(task, options), ALGORITHM2TYPE[algo]
     # An epoch of OmniSafe begins with a reset: whole episodes, or their ends are never seen.
@@ -147,6 +147,8 @@ def configs(task: str, algo: str = "PPOLag", steps: float = 2e6, options: Option
         "train_cfgs": {"vector_env_nums": num_envs, "total_steps": epochs * decisions},
         "algo_cfgs": {"gamma": d.discount, "cost_gamma": d.discount, "obs_normalize": d.normalize_obs},
     }
+    if options:
+        wanted["env_cfgs"] = {"options": dict(options)}
     if kind == "on-policy":
         trusts = issubclass(registry.get(algo), NaturalPG)
         wanted["algo_cfgs"].update(
@@ -164,7 +166,7 @@ def configs(task: str, algo: str = "PPOLag", steps: float = 2e6, options: Option
 
 def _known(wanted: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
     """The settings that an algorithm has."""
-    return {key: _known(value, known[key]) if isinstance(value, dict) else value
+    return {key: _known(value, known[key]) if isinstance(value, dict) and key != "env_cfgs" else value
             for key, value in wanted.items() if key in known}
 
 
