@@ -17,7 +17,8 @@ for name in $needs; do
 done
 echo "libredman.so: $bytes bytes, needs $needs"
 
-"$full/bin/redman" train --task hand_over_safe_finger --envs 16 --steps 12000 --seed 0 --set hidden=128,128 --out "$work/run" --json > /dev/null 2>&1
+"$full/bin/redman" train --task hand_over_safe_finger --envs 16 --steps 12000 --seed 0 --set hidden=128,128 --out "$work/run" > "$work/log" 2>&1 ||
+  { cat "$work/log"; exit 1; }
 policy=$work/run/policy.rdm
 # runner NAME LIBRARIES...
 runner() {
