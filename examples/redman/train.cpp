@@ -125,8 +125,8 @@ void add_train(CLI::App& app, Run& run) {
   add_set_flag(*command, flags->sets);
   others.push_back(command->get_option("--cost-limit"));
   others.push_back(command->get_option("--set"));
-  others.push_back(command->add_flag("--tensorboard,!--no-tensorboard", r.events,
-                                     "progress.csv as an event file for TensorBoard, too; on by default"));
+  others.push_back(command->add_flag(
+      "--no-tensorboard", [&r](int64_t) { r.events = false; }, "no event file of the curve for TensorBoard"));
   others.push_back(
       command->add_flag("--overwrite", flags->overwrite, "begin again in a folder that holds a run"));
   command->add_option("--resume", flags->resume, "run folder to go on with, from its last checkpoint");

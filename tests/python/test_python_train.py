@@ -1,5 +1,6 @@
 """train, evaluate, curve: what the command-line tool does, to the byte."""
 import contextlib
+import importlib.util
 import io
 import json
 import os
@@ -149,6 +150,8 @@ class Pages(unittest.TestCase):
             self.assertTrue(blocks, page)
             with tempfile.TemporaryDirectory() as folder:
                 for block in blocks:
+                    if "import gymnasium" in block and importlib.util.find_spec("gymnasium") is None:
+                        continue  # the tests of the adapters run it where a copy is
                     run = subprocess.run([sys.executable, "-c", block.replace("1e6", "4e3")], cwd=folder,
                                          capture_output=True, text=True)
                     self.assertEqual(run.returncode, 0, run.stderr)
