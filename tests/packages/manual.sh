@@ -53,17 +53,23 @@ completes() {
 }
 completes train redman tr
 completes --task redman train --ta
-completes hand_over_wall redman eval --policy zero --task hand_over_w
-completes focops redman train --algo fo
 completes observe redman bench ob
 completes --modality redman bench observe --mo
-completes clean_house redman tasks cl
+# Names are of the halves that this build has.
+algos=$("$tool" algos | grep -c '^ *focops ')
+if "$tool" tasks | grep -q '^ *clean_house '; then
+  completes hand_over_wall redman eval --policy zero --task hand_over_w
+  completes clean_house redman tasks cl
+fi
+[ "$algos" -eq 0 ] || completes focops redman train --algo fo
 for shell in zsh fish; do
   command -v $shell > /dev/null || { echo "no $shell here: its script is not read by it"; continue; }
   "$shell" -n "$folder/$shell/"*redman* || lacks "$shell cannot read its script"
 done
 if command -v fish > /dev/null; then
-  for pair in 'redman tr=train' 'redman bench step --ta=--task' 'redman train --algo fo=focops'; do
+  set -- 'redman tr=train' 'redman bench step --ta=--task'
+  [ "$algos" -eq 0 ] || set -- "$@" 'redman train --algo fo=focops'
+  for pair in "$@"; do
     fish --no-config -c "source $folder/fish/redman.fish; complete -C '${pair%%=*}'" | grep -q "^${pair#*=}" ||
       lacks "fish does not complete '${pair%%=*}' with ${pair#*=}"
   done
