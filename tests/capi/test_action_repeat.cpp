@@ -1,6 +1,8 @@
 // A pool that repeats actions does what a loop of masked steps around one that does not would do, and an
 // agent learns the same from both.
 #include <algorithm>
+#include <cstdlib>
+#include <cstring>
 
 #include "contract.hpp"
 
@@ -187,6 +189,42 @@ TEST(ActionRepeat, ZeroIsTheTasksOwnRate) {
     spec.struct_size = sizeof spec;
     ASSERT_EQ(rdm_pool_spec(&c, &spec), RDM_OK);
     EXPECT_EQ(spec.action_repeat, rate);
+  }
+}
+
+// The rate at which the agent that a task's defaults make decides, where no pool repeats.
+double rate_of_agent(rdm_pool* pool) {
+  rdm_agent_config c;
+  EXPECT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+  EXPECT_EQ(rdm_agent_config_for_pool(&c, pool), RDM_OK);
+  c.settings = "hidden=8,8";
+  rdm_agent* a = make_agent(c);
+  const char* key = "";
+  char text[RDM_TEXT_SIZE] = "";
+  for (int32_t i = 0; std::strcmp(key, "action_repeat") != 0; ++i)
+    if (rdm_agent_option(a, i, &key, text) != RDM_OK) {
+      ADD_FAILURE() << rdm_last_error();
+      break;
+    }
+  rdm_agent_destroy(a);
+  return std::atof(text);
+}
+
+TEST(ActionRepeat, ZeroIsTheRateOfEveryTasksAgent) {
+  for (int32_t i = 0; i < rdm_task_count(); ++i) {
+    rdm_task task{};
+    task.struct_size = sizeof task;
+    ASSERT_EQ(rdm_task_at(i, &task), RDM_OK);
+    rdm_pool_config c = pool_config(1);
+    c.task = task.name;
+    rdm_pool* pool = nullptr;
+    ASSERT_EQ(rdm_pool_create(&pool, &c), RDM_OK) << task.name;
+    c.settings = "action_repeat=0";
+    rdm_spec spec{};
+    spec.struct_size = sizeof spec;
+    ASSERT_EQ(rdm_pool_spec(&c, &spec), RDM_OK) << task.name;
+    EXPECT_EQ(spec.action_repeat, rate_of_agent(pool)) << task.name;
+    rdm_pool_destroy(pool);
   }
 }
 

@@ -25,7 +25,8 @@ int32_t repeat_from(const Options& options, const TaskInfo& task) {
 }
 
 int32_t decision_steps(const TaskInfo& task) {
-  for (int32_t i = 0; i < task.num_defaults; ++i)
+  // A task's own default stands behind those of its family, and the later one wins.
+  for (int32_t i = task.num_defaults - 1; i >= 0; --i)
     if (same_name(task.defaults[i].key, kKey)) return std::atoi(task.defaults[i].value);
   return 1;
 }
