@@ -19,17 +19,23 @@ foreach(source ${sources})
   list(APPEND RDM_EXAMPLES ${name})
 endforeach()
 
+# rdm_carry(out tag NAME|NAME_WE files...): a row {"name", R"tag(text)tag"} of a C++ table for each file.
+function(rdm_carry out tag part)
+  set(rows "")
+  foreach(file ${ARGN})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    get_filename_component(name ${file} ${part})
+    file(READ ${file} text)
+    string(APPEND rows "    {\"${name}\", R\"${tag}(${text})${tag}\"},\n")
+  endforeach()
+  set(${out} "${rows}" PARENT_SCOPE)
+endfunction()
+
 file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/redman/*.cpp)
 if(sources AND NOT REDMAN_TOOL STREQUAL "OFF" AND NOT RDM_TOOL_MISSING)
   # The tool carries the demonstrations.
   file(GLOB demos CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/demos/*.demo)
-  set(RDM_DEMOS "")
-  foreach(demo ${demos})
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${demo})
-    get_filename_component(name ${demo} NAME_WE)
-    file(READ ${demo} text)
-    string(APPEND RDM_DEMOS "    {\"${name}\", R\"demo(${text})demo\"},\n")
-  endforeach()
+  rdm_carry(RDM_DEMOS demo NAME_WE ${demos})
   file(CONFIGURE OUTPUT demos.cpp @ONLY CONTENT "#include \"demo/script.hpp\"
 namespace tool {
 const CarriedDemo kCarriedDemos[] = {
@@ -55,12 +61,8 @@ const CarriedDemo kCarriedDemos[] = {
     file(READ "${three}" text)
     string(APPEND RDM_WEB "    {\"three\", R\"web(${text})web\"},\n")
   endif()
-  foreach(page ${pages})
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${page})
-    get_filename_component(name ${page} NAME)
-    file(READ ${page} text)
-    string(APPEND RDM_WEB "    {\"${name}\", R\"web(${text})web\"},\n")
-  endforeach()
+  rdm_carry(carried web NAME ${pages})
+  string(APPEND RDM_WEB "${carried}")
   set(web ${CMAKE_CURRENT_BINARY_DIR}/web_assets.cpp)
   file(WRITE ${web}.new "#include \"web/page.hpp\"
 namespace tool {
