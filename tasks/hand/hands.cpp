@@ -51,7 +51,7 @@ Hand find_hand(const Robot& robot, const Scene& scene, int32_t articulation) {
   if (robot.links.count > kMaxHandJoints || robot.tips.count > kMaxHandTips)
     fail(Code::kUnsupported, "robot %s: %d joints and %d fingertips, a hand has at most %d and %d",
          robot.name, robot.links.count, robot.tips.count, kMaxHandJoints, kMaxHandTips);
-  if (robot.tips.count == 0 || robot.fingers.count != robot.tips.count || robot.palm < 0)
+  if (robot.tips.count == 0 || robot.fingers.count != robot.tips.count || robot.palm == kNoLink)
     fail(Code::kUnsupported, "robot %s: a hand has a palm, and a tip for each finger", robot.name);
   Hand h;
   h.robot = &robot;

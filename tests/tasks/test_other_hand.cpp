@@ -215,7 +215,7 @@ TEST_F(OtherHand, RolesComeFromTheRobot) {
 
 TEST_F(OtherHand, WhatIsNoHandIsRefused) {
   Robot no_palm = three_fingers();
-  no_palm.palm = -1;
+  no_palm.palm = kNoLink;
   Robot no_fingers = three_fingers();
   no_fingers.fingers = {};
   TestPool p("one_made_up_hand", 1);
