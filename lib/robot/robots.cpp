@@ -108,7 +108,7 @@ int32_t add_robot(const Robot& robot) {
   {
     const std::lock_guard<std::mutex> hold(g_lock);
     for (const char* name : {robot.name, robot.alias})
-      if (name && find(name) >= 0) taken = name;
+      if (name && !taken && find(name) >= 0) taken = name;
     if (!taken && g_num_added < kMaxRobots) {
       g_added[g_num_added] = {copy, hooks, 1, true};
       return kNumOwn + g_num_added++;
