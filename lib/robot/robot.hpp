@@ -146,6 +146,14 @@ struct Robot {
   int32_t actuated(int32_t i) const;
   // The other way round: place of a link's joint in action order, -1: none, or no such link.
   int32_t action_of(int32_t link) const;
+  // The same of the joint that leads it, where it follows another.
+  int32_t leading_action(int32_t link) const;
+  // The palm's own joint and that of the link before it, which a hand with a wrist has: rows, else -1.
+  int32_t wrist_flexion() const { return palm >= arm_links ? palm : -1; }
+  int32_t wrist_deviation() const {
+    const int32_t link = wrist_flexion() < 0 ? -1 : links[palm].parent;
+    return link >= arm_links ? link : -1;
+  }
 
  private:
   bool follows(int32_t link) const;  // coupled, or driven by another's command
