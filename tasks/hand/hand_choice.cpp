@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "env/options/robot.hpp"
 #include "robot/kinematics.hpp"
 #include "robot/mounted.hpp"
@@ -28,12 +29,15 @@ constexpr OptionSpec kRows[] = {
 constexpr OptionSpec kArmRows[] = {
     text_option("arm_base", "auto", nullptr,
                 "where an arm's base is: x y z (m) and yaw (degrees); auto: behind the hand, within reach"),
+    text_option("arm_pose", "auto", nullptr,
+                "an arm's joints at the start, rad; auto: those that bring the hand to its place", 255),
     number_option("adapter", 0, 0, 0.5, "thickness of the plate between flange and hand, m"),
     number_option("mount_yaw", 0, -360, 360, "turn of a hand about its arm's flange, degrees"),
 };
 
 const char* const kSideKeys[kMaxHands][2] = {{"right.hand", "right.arm"}, {"left.hand", "left.arm"}};
 const char* const kBaseKeys[kMaxHands] = {"right.arm_base", "left.arm_base"};
+const char* const kPoseKeys[kMaxHands] = {"right.arm_pose", "left.arm_pose"};
 const char* const kKeys[2] = {"hand", "arm"};
 
 // The name for hand i: its own key's, else the common one's. `text` gives the value of a key.
@@ -65,19 +69,31 @@ Pose palm_in_base(const Robot& robot, Side side, bool folded) {
   return robot.X_BR * palm_frame(left.robot(), q);
 }
 
-// "x y z yaw": m and degrees, separated by blanks or commas.
-Pose read_base(const char* key, const char* text) {
-  double v[4];
+// `count` numbers, separated by blanks or commas.
+void read_numbers(const char* key, const char* text, int32_t count, double* out) {
   const char *at = text, *const end = text + std::strlen(text);
-  for (int i = 0; i < 4; ++i) {
+  for (int32_t i = 0; i < count; ++i) {
     while (at < end && (*at == ' ' || (i > 0 && *at == ','))) ++at;
-    const auto [next, error] = std::from_chars(at, end, v[i]);
-    if (error != std::errc() || !(std::abs(v[i]) <= 1000))
-      fail(Code::kArgument, "%s: '%s' is neither auto nor four numbers x y z yaw", key, text);
+    const auto [next, error] = std::from_chars(at, end, out[i]);
+    if (error != std::errc() || !(std::abs(out[i]) <= 1000))
+      fail(Code::kArgument, "%s: '%s' is neither auto nor %d numbers", key, Quoted(text).text, count);
     at = next;
   }
-  if (at != end) fail(Code::kArgument, "%s: '%s' is neither auto nor four numbers x y z yaw", key, text);
+  if (at != end)
+    fail(Code::kArgument, "%s: '%s' is neither auto nor %d numbers", key, Quoted(text).text, count);
+}
+
+// "x y z yaw": m and degrees.
+Pose read_base(const char* key, const char* text) {
+  double v[4];
+  read_numbers(key, text, 4, v);
   return {{v[0], v[1], v[2]}, axis_angle({0, 0, 1}, v[3] * kDegree)};
+}
+
+// The text for hand i: its own key's, else the common one's.
+const char* own_text(const Options& o, const char* own, const char* common) {
+  const char* text = o.text(own);
+  return *text ? text : o.text(common);
 }
 
 // Angles for a base that is given: from home, and from home with one joint after the other at a quarter of
@@ -109,11 +125,17 @@ void mount(const Options& o, int32_t i, const char* name, ChosenHand* out) {
   RobotCopy both = make_mounted(arm, left ? mirrored.robot() : hand, mounting);
   const Pose X_WR = out->X_WB * hand.X_BR;
   const Pose X_WF = X_WR * inverse(mounted_root(left ? mirrored.robot() : hand, mounting));
-  const char* base = o.text(kBaseKeys[i]);
-  if (!*base) base = o.text("arm_base");
+  const char *base = own_text(o, kBaseKeys[i], "arm_base"), *pose = own_text(o, kPoseKeys[i], "arm_pose");
   double q[kMaxRobotLinks];
-  if (!same_name(base, "auto")) {
-    out->X_WB = read_base(kBaseKeys[i], base);
+  const bool placed = !same_name(base, "auto");
+  if (placed) out->X_WB = read_base(kBaseKeys[i], base);
+  if (!same_name(pose, "auto")) {
+    read_numbers(kPoseKeys[i], pose, arm.links.count, q);
+    for (int32_t k = 0; k < arm.links.count; ++k)
+      q[k] = std::clamp(q[k], arm.links[k].lower, arm.links[k].upper);
+    // without a place of its own it stands where that pose brings the hand to its place
+    if (!placed) out->X_WB = X_WF * inverse(flange_pose(arm, q));
+  } else if (placed) {
     if (!reach_from(arm, inverse(out->X_WB) * X_WF, q))
       fail(Code::kUnsupported,
            "%s: from there %s does not bring the %s hand to its place, its flange to (%.3g, %.3g, %.3g)",
@@ -146,6 +168,8 @@ void add_hand_choice_options(const HandControlConfig& config, OptionTable& table
     table.add(
         choosing(text_option(kSideKeys[i][1], "", nullptr, "the same for this hand alone; empty: as arm")));
     table.add(text_option(kBaseKeys[i], "", nullptr, "the same for this hand alone; empty: as arm_base"));
+    table.add(
+        text_option(kPoseKeys[i], "", nullptr, "the same for this hand alone; empty: as arm_pose", 255));
   }
   table.add(kArmRows);
   for (int32_t i = 0; i < config.count; ++i) {
@@ -169,11 +193,12 @@ ChosenHand choose_hand(const HandControlConfig& config, const Options& o, int32_
     fail(Code::kUnsupported, "%s: robot %s is no hand", kSideKeys[i][0], robot.name);
   const bool copied = i > 0 && same_name(o.text("left_model"), "right_copy");
   out.side = i == 0 || copied ? Side::kRight : Side::kLeft;
-  out.X_WB = config.bases[i];
+  const bool armed = !same_name(arm, kNone);
+  out.X_WB = armed && config.armed_bases ? config.armed_bases[i] : config.bases[i];
   if (!out.own)
-    out.X_WB = config.bases[i] * palm_in_base(*config.robot, out.side, config.folded) *
+    out.X_WB = out.X_WB * palm_in_base(*config.robot, out.side, config.folded) *
                inverse(palm_in_base(robot, out.side, config.folded));
-  if (!same_name(arm, kNone)) mount(o, i, arm, &out);
+  if (armed) mount(o, i, arm, &out);
   return out;
 }
 
