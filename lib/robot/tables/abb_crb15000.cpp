@@ -41,12 +41,11 @@ constexpr RobotShape kShapes[] = {
     box(5, "link_6", {0.0163, 0.0513, 0.0515}, {-0.0163, 0.0004, -0.0001}, kEnd),
 };
 
-// Rows of kShapes.
+// Rows of kShapes that may touch.
 constexpr int32_t kBaseShape = 0, kLink1 = 1, kLink2 = 2, kLink3 = 3, kLink4 = 4, kLink5 = 5, kLink6 = 6;
 constexpr RobotPair kPairs[] = {
-    {kBaseShape, kLink3}, {kBaseShape, kLink4}, {kBaseShape, kLink5}, {kBaseShape, kLink6},
-    {kLink1, kLink4},     {kLink1, kLink5},     {kLink1, kLink6},     {kLink2, kLink4},
-    {kLink2, kLink5},     {kLink2, kLink6},     {kLink4, kLink6},
+    {kBaseShape, kLink3}, {kBaseShape, kLink4}, {kBaseShape, kLink5}, {kBaseShape, kLink6}, {kLink1, kLink4},
+    {kLink1, kLink5},     {kLink1, kLink6},     {kLink2, kLink4},     {kLink2, kLink5},     {kLink2, kLink6},
 };
 
 }  // namespace

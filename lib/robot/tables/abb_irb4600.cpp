@@ -2,8 +2,9 @@
 //
 // Frames: root base_link on the floor, z up, x ahead; all link frames are parallel at q = 0. The flange's z
 // is x of link_6. Kinematics and limits are those of abb_experimental (Apache-2.0); shapes are fits to its
-// collision meshes. Ours: the data sheet's mass shared out by mesh volume, moments of the shapes, efforts of
-// about twice the static need, gains. Take its dynamics as plausible only.
+// collision meshes, link_6 a disc that ends at the flange. Ours: the data sheet's mass shared out by mesh
+// volume, moments of the shapes, efforts of about twice the static need, gains. Take its dynamics as
+// plausible only.
 #include "robot/tables/rows.hpp"
 
 namespace rdm {
@@ -40,10 +41,10 @@ constexpr RobotShape kShapes[] = {
     capsule(2, "link_3", 0.2557, 0.0681, {0.0489, 0.0469, 0.0938}, kArm, kAlongX),
     capsule(3, "link_4", 0.1251, 0.2661, {0.7016, -0.0045, -0.0018}, kArm, kAlongX),
     capsule(4, "link_5", 0.0814, 0.0053, {0.0002, -0.0024, -0.0003}, kArm, kAlongX),
-    capsule(5, "link_6", 0.0587, 0.0067, {-0.0155, -0.0002, 0.0006}, kEnd),
+    cylinder(5, "link_6", 0.0587, 0.0155, {-0.0155, -0.0002, 0.0006}, kEnd, kAlongX),
 };
 
-// Rows of kShapes.
+// Rows of kShapes that may touch.
 constexpr int32_t kBaseShape = 0, kLink1 = 1, kLink2 = 2, kLink3 = 3, kLink4 = 4, kLink5 = 5, kLink6 = 6;
 constexpr RobotPair kPairs[] = {
     {kBaseShape, kLink2}, {kBaseShape, kLink3}, {kBaseShape, kLink4}, {kBaseShape, kLink5},

@@ -91,14 +91,12 @@ constexpr RobotShape kShapes[] = {
     capsule(15, "th_tip", 0.012, 0.008, {0, 0, 0.035}, kTip),
 };
 
-// Rows of kShapes.
+// Rows of kShapes that may touch.
 constexpr int32_t kPalm = 0, kFfBase = 1, kFfProx = 2, kFfMed = 3, kFfDist = 4, kFfTip = 5, kMfBase = 6,
                   kMfProx = 7, kMfMed = 8, kMfDist = 9, kMfTip = 10, kRfBase = 11, kRfProx = 12, kRfMed = 13,
                   kRfDist = 14, kRfTip = 15, kThBase = 16, kThProx = 17, kThMed = 18, kThDist = 19,
                   kThTip = 20;
 
-// Those that may touch: what came nearer than 5 mm in 5,000 poses, without neighbours and what always
-// overlaps.
 constexpr RobotPair kPairs[] = {
     {kPalm, kFfProx},   {kPalm, kFfTip},    {kPalm, kMfTip},    {kPalm, kRfProx},   {kPalm, kRfTip},
     {kPalm, kThMed},    {kPalm, kThDist},   {kPalm, kThTip},    {kFfBase, kThDist}, {kFfBase, kThTip},

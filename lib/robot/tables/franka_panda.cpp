@@ -65,14 +65,14 @@ constexpr RobotShape kShapes[] = {
             {0.653281, -0.270598, 0.653281, 0.270598}),
 };
 
-// Rows of kShapes.
-constexpr int32_t kBaseShape = 0, kLink1 = 1, kLink2 = 2, kLink3 = 3, kLink5 = 5, kLink52 = 6, kLink6 = 7,
-                  kLink7 = 8, kLink72 = 9;
+// Rows of kShapes that may touch.
+constexpr int32_t kBaseShape = 0, kLink1 = 1, kLink2 = 2, kLink5 = 5, kLink52 = 6, kLink6 = 7, kLink7 = 8,
+                  kLink72 = 9;
 constexpr RobotPair kPairs[] = {
     {kBaseShape, kLink5},  {kBaseShape, kLink52}, {kBaseShape, kLink6}, {kBaseShape, kLink7},
-    {kBaseShape, kLink72}, {kLink1, kLink3},      {kLink1, kLink5},     {kLink1, kLink52},
-    {kLink1, kLink6},      {kLink1, kLink7},      {kLink1, kLink72},    {kLink2, kLink52},
-    {kLink2, kLink6},      {kLink2, kLink7},      {kLink2, kLink72},    {kLink52, kLink72},
+    {kBaseShape, kLink72}, {kLink1, kLink5},      {kLink1, kLink52},    {kLink1, kLink6},
+    {kLink1, kLink7},      {kLink1, kLink72},     {kLink2, kLink52},    {kLink2, kLink6},
+    {kLink2, kLink7},      {kLink2, kLink72},     {kLink52, kLink72},
 };
 
 constexpr double kHome[] = {0, -kQuarter / 2, 0, -1.5 * kQuarter, 0, kQuarter, kQuarter / 2};

@@ -43,10 +43,10 @@ constexpr RobotShape kShapes[] = {
     capsule(2, "link_3_2", 0.0316, 0.0483, {0.0002, 0.1533, -0.0116}, kArm, kAlongY),
     capsule(3, "link_4", 0.0327, 0.0266, {0, -0.0133, -0.0351}, kArm, {0.965765, -0.259412, 0.001556, 0}),
     capsule(4, "link_5", 0.0327, 0.0266, {0, -0.0133, -0.0351}, kArm, {0.965765, -0.259412, 0.001556, 0}),
-    capsule(5, "link_6", 0.0315, 0.001, {0, 0, -0.004}, kEnd),
+    cylinder(5, "link_6", 0.0325, 0.0023, {0, 0, -0.004}, kEnd),
 };
 
-// Rows of kShapes.
+// Rows of kShapes that may touch.
 constexpr int32_t kBaseShape = 0, kLink1 = 1, kLink2 = 2, kLink4 = 5, kLink5 = 6, kLink6 = 7;
 constexpr RobotPair kPairs[] = {
     {kBaseShape, kLink4}, {kBaseShape, kLink5}, {kBaseShape, kLink6}, {kLink1, kLink5},

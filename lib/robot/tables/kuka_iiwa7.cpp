@@ -4,7 +4,7 @@
 // higher, where the paper fixes its hand). Kinematics, limits, masses and moments are those of iiwa_stack
 // (BSD-2-Clause); efforts are the manufacturer's figures and velocities those of dex-urdf (MIT), as the
 // source holds placeholders; gains are those of the iiwa 14 in MuJoCo (BSD-3-Clause). Shapes are fits to the
-// meshes. The source's damping of 0.5 N m s/rad is in the drives' 200.
+// meshes, link_7 a disc that ends at the flange. The source's damping of 0.5 N m s/rad is in the drives' 200.
 #include "robot/tables/rows.hpp"
 
 namespace rdm {
@@ -46,14 +46,16 @@ constexpr RobotShape kShapes[] = {
     capsule(4, "link_5", 0.07, 0.0261, {-0.0009, 0.0177, 0.0182}, kArm, {0.89933, -0.436523, -0.025564, 0}),
     box(4, "link_5_2", {0.051, 0.0237, 0.0686}, {0.0002, 0.0751, 0.1713}, kArm),
     capsule(5, "link_6", 0.0712, 0.0291, {-0.0006, -0.0011, 0.057}, kArm, kAlongY),
-    capsule(6, "link_7", 0.0545, 0.0033, {0.0004, 0.0015, 0.0237}, kEnd, kAlongX),
+    cylinder(6, "link_7", 0.0545, 0.0213, {0.0004, 0.0015, 0.0237}, kEnd),
 };
 
-// Rows of kShapes.
+// Rows of kShapes that may touch.
 constexpr int32_t kBaseShape = 0, kLink5 = 5, kLink52 = 6, kLink6 = 7, kLink7 = 8;
 constexpr RobotPair kPairs[] = {
-    {kBaseShape, kLink5}, {kBaseShape, kLink52}, {kBaseShape, kLink6},
-    {kBaseShape, kLink7}, {kLink52, kLink7},
+    {kBaseShape, kLink5},
+    {kBaseShape, kLink52},
+    {kBaseShape, kLink6},
+    {kBaseShape, kLink7},
 };
 
 constexpr double kHome[] = {0, 0.785398, 0, -1.5708, 0, 0, 0};

@@ -78,13 +78,11 @@ constexpr RobotShape kShapes[] = {
     distal_shape(10, "middle_distal"),
 };
 
-// Rows of kShapes.
+// Rows of kShapes that may touch.
 constexpr int32_t kPalm = 0, kMiddleRoot = 1, kF1Root = 2, kF1Proximal = 3, kF1Middle = 4, kF1Distal = 5,
                   kF2Root = 6, kF2Proximal = 7, kF2Middle = 8, kF2Distal = 9, kMiddleProximal = 10,
                   kMiddleMiddle = 11, kMiddleDistal = 12;
 
-// Those that may touch: what came nearer than 5 mm in 5,000 poses, without neighbours and what always
-// overlaps.
 constexpr RobotPair kPairs[] = {
     {kPalm, kF1Middle},
     {kPalm, kF1Distal},

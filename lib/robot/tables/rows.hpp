@@ -1,4 +1,8 @@
 // Short ways to write the rows of a robot's tables.
+//
+// Pairs that may touch were found by sampling: those that came nearer than 5 mm in 5,000 random poses inside
+// the limits. Left out are neighbours, and what overlaps only because shapes are fitted fat: in more than half
+// of the poses, at the start pose, or across a short link.
 #pragma once
 #include "robot/robot.hpp"
 
@@ -55,6 +59,10 @@ constexpr RobotShape sphere(int32_t link, const char* name, double radius, Vec3 
 constexpr RobotShape capsule(int32_t link, const char* name, double radius, double half, Vec3 p, Color c,
                              Quat q = {}) {
   return {link, name, ShapeKind::kCapsule, {radius, half, 0}, p, q, {c.r, c.g, c.b}};
+}
+constexpr RobotShape cylinder(int32_t link, const char* name, double radius, double half, Vec3 p, Color c,
+                              Quat q = {}) {
+  return {link, name, ShapeKind::kCylinder, {radius, half, 0}, p, q, {c.r, c.g, c.b}};
 }
 constexpr RobotShape box(int32_t link, const char* name, Vec3 half, Vec3 p, Color c, Quat q = {}) {
   return {link, name, ShapeKind::kBox, half, p, q, {c.r, c.g, c.b}};

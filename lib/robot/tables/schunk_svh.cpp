@@ -127,15 +127,13 @@ constexpr RobotShape kShapes[] = {
     capsule_x(19, "th_distal", 0.0102, 0.0077, {0.0095, 0.001, 0}, kTip),
 };
 
-// Rows of kShapes.
+// Rows of kShapes that may touch.
 constexpr int32_t kWrist = 1, kPalm = 2, kPalmTop = 3, kMfKnuckle = 4, kPalmFold = 5, kFfProximal = 8,
                   kFfMiddle = 9, kFfDistal = 10, kMfProximal = 11, kMfMiddle = 12, kMfDistal = 13,
                   kRfKnuckle = 14, kRfProximal = 15, kRfMiddle = 16, kRfDistal = 17, kLfKnuckle = 18,
                   kLfProximal = 19, kLfMiddle = 20, kLfDistal = 21, kThProximal = 25, kThMiddle = 26,
                   kThDistal = 27;
 
-// Those that may touch: what came nearer than 5 mm in 5,000 poses, without neighbours and what always
-// overlaps.
 constexpr RobotPair kPairs[] = {
     {kWrist, kThProximal},      {kPalm, kRfKnuckle},        {kPalm, kThDistal},
     {kPalmTop, kRfKnuckle},     {kPalmTop, kRfProximal},    {kPalmTop, kThMiddle},

@@ -56,7 +56,7 @@ constexpr RobotShape kShapes[] = {
     box(5, "link6", {0.0374, 0.0445, 0.014}, {0, -0.0071, -0.014}, kEnd),
 };
 
-// Rows of kShapes.
+// Rows of kShapes that may touch.
 constexpr int32_t kBaseShape = 0, kLink1 = 1, kLink2 = 2, kLink22 = 3, kLink3 = 4, kLink4 = 6, kLink42 = 7,
                   kLink5 = 8, kLink52 = 9, kLink6 = 10;
 constexpr RobotPair kPairs[] = {
