@@ -88,9 +88,8 @@ TEST(Robots, StandWhereTheyCanStand) {
       EXPECT_LT(before, 0.02) << robot->name;
       // what is coupled agrees in the folded pose
       for (const RobotCoupling& c : robot->couplings)
-        if (robot->poses.folded.count)
-          EXPECT_NEAR(robot->poses.folded[c.link], c.ratio * robot->poses.folded[c.other], c.slack + 1e-4)
-              << robot->links[c.link].joint;
+        EXPECT_NEAR(robot->poses.folded[c.link], c.ratio * robot->poses.folded[c.other], c.slack + 1e-4)
+            << robot->links[c.link].joint;
     } else {
       EXPECT_EQ(robot->flange, robot->links.count - 1) << robot->name;
     }
