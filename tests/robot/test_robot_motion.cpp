@@ -63,6 +63,29 @@ TEST(RobotMotion, EveryRobotHoldsItsStartPose) {
   });
 }
 
+// With its weight and nothing but its drives: it comes to rest, kp times the sag is the torque, and no drive
+// is at its bound, though a Shadow Hand (5 kg) is more than small arms are made for.
+TEST(RobotMotion, DrivesBearTheWeight) {
+  for_all([](const Robot& robot) {
+    SceneDef def = scene_of(robot);
+    def.articulations[0].gravity = true;
+    test::Simulation sim(std::move(def), EngineKind::kArticulated);
+    const std::vector<double> q = start_of(robot), still(q.size());
+    sim->set_joints(0, q.data(), still.data());
+    for (size_t i = 0; i < q.size(); ++i) sim->target()[i] = q[i];
+    for (int k = 0; k < 240; ++k) sim->step();
+    for (size_t i = 0; i < q.size(); ++i) {
+      const RobotLink& l = robot.links[static_cast<int32_t>(i)];
+      EXPECT_LT(std::abs(sim->q()[i] - q[i]), 0.15) << robot.name << " " << l.joint;
+      EXPECT_LT(std::abs(sim->torque()[i]), 0.9 * l.effort) << robot.name << " " << l.joint;
+      if (!robot.coupled(static_cast<int32_t>(i)))  // a tendon hangs in its slack
+      {
+        EXPECT_LT(std::abs(sim->qd()[i]), 0.01) << robot.name << " " << l.joint;
+      }
+    }
+  });
+}
+
 // What a host's commands do to the targets: the joint's range or its curve, no faster than the drive's
 // velocity.
 class Commands {

@@ -260,6 +260,28 @@ TEST(RobotPoses, LeftHandsAreMirrorImages) {
   EXPECT_EQ(sided, 5);
 }
 
+// Two ways to a left hand: the articulation's, and the table's.
+TEST(RobotPoses, LeftArticulationsAreThoseOfLeftTables) {
+  for (const auto& [name, g] : golden().robots) {
+    const Robot& robot = own(name);
+    if (robot.mirror < 0 || norm(robot.X_BR.p) > 0 || robot.X_BR.q.w != 1) continue;
+    const RobotCopy copy = make_mirrored(robot);
+    const ArticulationDef a = make_articulation(robot, Side::kLeft, {}, ""),
+                          b = make_articulation(copy.robot(), Side::kRight, {}, "");
+    ASSERT_EQ(a.links.size(), b.links.size());
+    EXPECT_LT(norm(a.base.com - b.base.com), 1e-12) << name;
+    for (size_t i = 0; i < a.links.size(); ++i) {
+      expect_near(a.links[i].X_PL, b.links[i].X_PL, a.links[i].name.text);
+      EXPECT_LT(norm(a.links[i].joint.axis - b.links[i].joint.axis), 1e-12) << a.links[i].name.text;
+      for (int k = 0; k < 6; ++k)
+        EXPECT_NEAR(a.links[i].inertia.moment[k], b.links[i].inertia.moment[k], 1e-15)
+            << a.links[i].name.text;
+    }
+    for (size_t i = 0; i < a.shapes.size(); ++i)
+      expect_near(a.shapes[i].shape.X_LS, b.shapes[i].shape.X_LS, a.shapes[i].shape.name.text);
+  }
+}
+
 TEST(RobotPoses, ThumbsOfBothSidesAreOnOppositeSides) {
   for (const char* name : {"shadow_hand", "allegro_hand", "schunk_svh"}) {
     const Robot& right = own(name);
