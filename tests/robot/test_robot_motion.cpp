@@ -78,8 +78,7 @@ TEST(RobotMotion, DrivesBearTheWeight) {
       const RobotLink& l = robot.links[static_cast<int32_t>(i)];
       EXPECT_LT(std::abs(sim->q()[i] - q[i]), 0.15) << robot.name << " " << l.joint;
       EXPECT_LT(std::abs(sim->torque()[i]), 0.9 * l.effort) << robot.name << " " << l.joint;
-      if (!robot.coupled(static_cast<int32_t>(i)))  // a tendon hangs in its slack
-      {
+      if (!robot.coupled(static_cast<int32_t>(i))) {  // a tendon hangs in its slack
         EXPECT_LT(std::abs(sim->qd()[i]), 0.01) << robot.name << " " << l.joint;
       }
     }

@@ -1,8 +1,8 @@
 // Short ways to write the rows of a robot's tables.
 //
 // Pairs that may touch were found by sampling: those that came nearer than 5 mm in 5,000 random poses inside
-// the limits. Left out are neighbours, and what overlaps only because shapes are fitted fat: in more than half
-// of the poses, at the start pose, or across a short link.
+// the limits. Left out are neighbours, and what overlaps only because shapes are fitted fat: in more than
+// half of the poses, at the start pose, or across a short link.
 #pragma once
 #include "robot/robot.hpp"
 
