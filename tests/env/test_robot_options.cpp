@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "base/error.hpp"
 #include "env/options/robot.hpp"
 #include "robot_rows.hpp"
@@ -82,8 +84,8 @@ TEST(RobotOptions, HaveRoomForTheNamesOfEveryRobot) {
        {&kAllegroHand, &kSchunkSvh, &kBarrettBh282, &kRobotiq3f, &kFrankaPanda, &kAbbIrb4600, &kKinovaJaco2,
         &kKukaIiwa7, &kXarm6, &kAbbCrb15000, &kUr5e, &kUr10e}) {
     OptionTable table;
-    add_robot_options(*robot, table);
-    EXPECT_EQ(table.count(), robot->links.count * 6 + 4) << robot->name;
+    add_robot_rows(*robot, table);
+    EXPECT_EQ(table.count(), robot->links.count * 6) << robot->name;
     Options o;
     o.add_table(table.rows(), table.count());
     const RobotLink& last = robot->links[robot->links.count - 1];
