@@ -14,8 +14,8 @@ namespace {
 
 using namespace rows;
 
-// Joints with a motor, joints of long chains that follow one, and the fingertips'.
-constexpr double kSpeed = 1;
+// Joints with a motor, and those that follow one.
+constexpr double kSpeed = 1;  // rad/s
 constexpr Drive driven(double effort) {
   return {5, 0.2, effort, kSpeed};
 }
@@ -164,12 +164,21 @@ constexpr RobotPair kPairs[] = {
 };
 
 constexpr RobotCoupling kCouplings[] = {
-    {0, 16, 1, 0},                              // the palm folds as the thumb opposes
-    {1, 12, 0.5, 0},      {8, 12, 0.5, 0},      // first and ring finger spread half as much as the little one
-    {4, 3, 1.045, 0},     {7, 6, 1.0454, 0},    //
-    {10, 9, 1.3588, 0},   {11, 9, 1.42093, 0},  // a ring finger has one motor
-    {14, 13, 1.3588, 0},  {15, 13, 1.42307, 0},  // and so have the little finger
-    {18, 17, 1.01511, 0}, {19, 17, 1.44889, 0},  // and the thumb's flexion
+    // the palm folds as the thumb opposes
+    {0, 16, 1, 0},
+    // first and ring finger spread half as much as the little one
+    {1, 12, 0.5, 0},
+    {8, 12, 0.5, 0},
+    // fingertips of the first two fingers
+    {4, 3, 1.045, 0},
+    {7, 6, 1.0454, 0},
+    // ring finger, little finger and the thumb's flexion have one motor each
+    {10, 9, 1.3588, 0},
+    {11, 9, 1.42093, 0},
+    {14, 13, 1.3588, 0},
+    {15, 13, 1.42307, 0},
+    {18, 17, 1.01511, 0},
+    {19, 17, 1.44889, 0},
 };
 // Thumb flexion and opposition; first finger distal and proximal; middle finger distal and proximal; ring;
 // little; spread.
@@ -212,7 +221,7 @@ extern constinit const Robot kSchunkSvh = {
     .X_RM = {{0, 0, -0.032}, {}},
     .fingers = table(kFingers),
     .poses = {table(kFolded), table(kClosed)},
-    .p_hold = {0.0194, 0.0, 0.09},
+    .p_hold = {0.0194, 0, 0.09},
 };
 
 }  // namespace rdm

@@ -3,8 +3,8 @@
 // Frames: the manufacturer's, root base_link_inertia, z up, which is the controller's base frame (base_link
 // turned by half about z): at home the arm looks along y. Kinematics, limits, masses and moments are those of
 // the manufacturer's description (BSD-3-Clause); gains and armature those of its MuJoCo model (BSD-3-Clause).
-// Shapes are fits to the meshes of the former, the end link's a disc that ends at the flange. Ours: ten and
-// five times the source's damping of the wrists, with which one that comes free would turn at 100 rad/s.
+// Shapes are fits to the meshes of the former, the end link's a disc that ends at the flange. Ours: ten
+// times the source's damping of the wrists, with which one that comes free would turn at 100 rad/s.
 #include "robot/tables/rows.hpp"
 
 namespace rdm {
