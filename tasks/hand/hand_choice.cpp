@@ -40,13 +40,6 @@ const char* const kBaseKeys[kMaxHands] = {"right.arm_base", "left.arm_base"};
 const char* const kPoseKeys[kMaxHands] = {"right.arm_pose", "left.arm_pose"};
 const char* const kKeys[2] = {"hand", "arm"};
 
-// The name for hand i: its own key's, else the common one's. `text` gives the value of a key.
-template <class F>
-const char* chosen_name(int32_t i, int what, F&& text) {
-  const char* own = text(kSideKeys[i][what]);
-  return *own ? own : text(kKeys[what]);
-}
-
 void add_rows(const HandControlConfig& config, const char* hand, const char* arm, OptionTable& table) {
   const auto add = [&](const char* name) {
     if (same_name(name, kNone)) return;
@@ -67,6 +60,19 @@ Pose palm_in_base(const Robot& robot, Side side, bool folded) {
   if (side == Side::kRight) return robot.X_BR * palm_frame(robot, q);
   const RobotCopy left = make_mirrored(robot);
   return robot.X_BR * palm_frame(left.robot(), q);
+}
+
+// How far beyond the holding point the fingers go, m.
+double finger_length(const Robot& robot) {
+  double q[kMaxRobotLinks];
+  for (int32_t i = 0; i < robot.links.count; ++i)
+    q[i] = std::clamp(0.0, robot.links[i].lower, robot.links[i].upper);
+  const Pose X_HR = inverse(palm_frame(robot, q));
+  double most = 0;
+  for (int32_t f = 0; f < robot.fingers.count; ++f)
+    if (!robot.fingers[f].thumb)
+      most = std::max(most, (X_HR * (link_pose(robot, q, robot.tips[f].link) * robot.tips[f].p_L)).z);
+  return most;
 }
 
 // `count` numbers, separated by blanks or commas.
@@ -115,6 +121,13 @@ bool reach_from(const Robot& arm, const Pose& X_RF, double* q) {
   return false;
 }
 
+// From where an arm comes to a hand with this palm: from behind the fingers, or where those point up or down
+// from behind the palm.
+Vec3 side_of_arm(const Pose& X_WH) {
+  const Vec3 behind = -rotate(X_WH.q, {0, 0, 1}), back = rotate(X_WH.q, {0, 1, 0});
+  return behind.x * behind.x + behind.y * behind.y > 0.25 ? behind : back;
+}
+
 void mount(const Options& o, int32_t i, const char* name, ChosenHand* out) {
   const RobotRef ref(find_robot(name));
   const Robot &arm = *ref, &hand = out->robot();
@@ -140,7 +153,8 @@ void mount(const Options& o, int32_t i, const char* name, ChosenHand* out) {
       fail(Code::kUnsupported,
            "%s: from there %s does not bring the %s hand to its place, its flange to (%.3g, %.3g, %.3g)",
            kBaseKeys[i], arm.name, kSideNames[i], X_WF.p.x, X_WF.p.y, X_WF.p.z);
-  } else if (!place_arm(arm, X_WF, &out->X_WB, q)) {
+  } else if (!place_arm(arm, X_WF, side_of_arm(out->X_WB * palm_in_base(hand, out->side, false)), &out->X_WB,
+                        q)) {
     fail(Code::kUnsupported, "%s: no place was found from which %s reaches (%.3g, %.3g, %.3g); give one",
          kBaseKeys[i], arm.name, X_WF.p.x, X_WF.p.y, X_WF.p.z);
   }
@@ -162,27 +176,32 @@ void add_hand_choice_options(const HandControlConfig& config, OptionTable& table
   table.add(
       choosing(text_option("hand", config.robot->name, nullptr, "the robot that each hand is, by name")));
   table.add(kRows);
+  const auto side = [&](int32_t i) { return config.sides ? config.sides[i] : HandDefault{"", "", "", ""}; };
   for (int32_t i = 0; i < config.count; ++i) {
+    const HandDefault d = side(i);
+    table.add(choosing(
+        text_option(kSideKeys[i][0], d.hand, nullptr, "the same for this hand alone; empty: as hand")));
+    table.add(choosing(
+        text_option(kSideKeys[i][1], d.arm, nullptr, "the same for this hand alone; empty: as arm")));
     table.add(
-        choosing(text_option(kSideKeys[i][0], "", nullptr, "the same for this hand alone; empty: as hand")));
-    table.add(
-        choosing(text_option(kSideKeys[i][1], "", nullptr, "the same for this hand alone; empty: as arm")));
-    table.add(text_option(kBaseKeys[i], "", nullptr, "the same for this hand alone; empty: as arm_base"));
-    table.add(
-        text_option(kPoseKeys[i], "", nullptr, "the same for this hand alone; empty: as arm_pose", 255));
+        text_option(kBaseKeys[i], d.arm_base, nullptr, "the same for this hand alone; empty: as arm_base"));
+    table.add(text_option(kPoseKeys[i], d.arm_pose, nullptr,
+                          "the same for this hand alone; empty: as arm_pose", 255));
   }
   table.add(kArmRows);
-  for (int32_t i = 0; i < config.count; ++i) {
-    const auto text = [&](const char* key) { return table.choice(key); };
-    const char *hand = chosen_name(i, 0, text), *arm = chosen_name(i, 1, text);
-    add_rows(config, *hand ? hand : config.robot->name, *arm ? arm : kNone, table);
-  }
+  // the host's word for this side, the task's, the host's for both, the task's robot
+  const auto chosen = [&](int32_t i, int what, const char* own, const char* otherwise) {
+    for (const char* name : {table.choice(kSideKeys[i][what]), own, table.choice(kKeys[what])})
+      if (*name) return name;
+    return otherwise;
+  };
+  for (int32_t i = 0; i < config.count; ++i)
+    add_rows(config, chosen(i, 0, side(i).hand, config.robot->name), chosen(i, 1, side(i).arm, kNone), table);
   add_robot_scales(table);
 }
 
 ChosenHand choose_hand(const HandControlConfig& config, const Options& o, int32_t i) {
-  const auto text = [&](const char* key) { return o.text(key); };
-  const char *name = chosen_name(i, 0, text), *arm = chosen_name(i, 1, text);
+  const char *name = own_text(o, kSideKeys[i][0], kKeys[0]), *arm = own_text(o, kSideKeys[i][1], kKeys[1]);
   ChosenHand out;
   if (same_name(name, config.robot->name))
     out.own = config.robot;
@@ -195,9 +214,12 @@ ChosenHand choose_hand(const HandControlConfig& config, const Options& o, int32_
   out.side = i == 0 || copied ? Side::kRight : Side::kLeft;
   const bool armed = !same_name(arm, kNone);
   out.X_WB = armed && config.armed_bases ? config.armed_bases[i] : config.bases[i];
-  if (!out.own)
-    out.X_WB = out.X_WB * palm_in_base(*config.robot, out.side, config.folded) *
+  if (!out.own) {
+    const double longer = finger_length(robot) - finger_length(*config.robot);
+    const Pose back = {{0, 0, config.facing ? -std::max(longer, 0.0) : 0}, {}};
+    out.X_WB = out.X_WB * palm_in_base(*config.robot, out.side, config.folded) * back *
                inverse(palm_in_base(robot, out.side, config.folded));
+  }
   if (armed) mount(o, i, arm, &out);
   return out;
 }

@@ -188,7 +188,7 @@ constexpr Vec3 kTipPoint = {0.014, 0, 0};
 constexpr RobotTip kTips[] = {
     {4, kTipPoint}, {7, kTipPoint}, {11, kTipPoint}, {15, kTipPoint}, {19, {0.0275, 0, 0}}};
 constexpr RobotFinger kFingers[] = {
-    {"ff", 1, -1, 2, 3},    {"mf", 5, -1, 5, 6},          {"rf", 8, -1, 9, -1},
+    {"ff", 1, 1, 2, 3},     {"mf", 5, -1, 5, 6},          {"rf", 8, 8, 9, -1},
     {"lf", 12, 12, 13, -1}, {"th", 16, 16, 17, -1, true},
 };
 
