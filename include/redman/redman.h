@@ -135,15 +135,16 @@ RDM_API void rdm_shutdown(void); /* the last call puts the default hooks back; h
 enum rdm_option_kind { RDM_NUMBER = 0, RDM_INTEGER = 1, RDM_FLAG = 2, RDM_TEXT = 3 }; /* of an option */
 typedef struct rdm_option { /* frozen layout: one key and its value */
   const char *key;          /* case is ignored and '-' equals '_'                             */
-  const char *text;         /* value as one line of text ("0.5", "egg"); NULL: number is it   */
+  const char *text;         /* value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number is it */
   double number;            /* value when text is NULL                                        */
 } rdm_option;
 typedef struct rdm_option_info { /* frozen layout: one row of an option table */
-  const char *key;          /* static                                                         */
+  const char *key;          /* static; its last word FIELD: any name of a field, or a pattern with '*' */
   const char *help;         /* one line, with the unit                                        */
-  const char *text;         /* default of a text option, else NULL                            */
-  const char *choices;      /* allowed words "a|b|c", NULL: any text, or not a text           */
-  double number;            /* default of number, integer, flag                               */
+  const char *text;         /* default of a text option, or of a number that is a range, else NULL */
+  const char *choices;      /* text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range
+                             * "0.7..1.3" too, which each world draws from at a reset; else NULL */
+  double number;            /* default of number, integer, flag; of a range its middle        */
   double low, high;         /* inclusive bounds                                               */
   int32_t kind;             /* RDM_NUMBER, RDM_INTEGER, RDM_FLAG, RDM_TEXT                    */
   int32_t live;             /* flag: rdm_agent_set may change it after creation               */
@@ -296,8 +297,9 @@ RDM_API rdm_result rdm_pool_field(const rdm_pool *p, int32_t i, rdm_field *out);
 RDM_API rdm_result rdm_pool_field_bounds(const rdm_pool *p, int32_t i, float *low, float *high);
 /* Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of RDM_BASELINE_HOLD. */
 RDM_API rdm_result rdm_pool_initial_mean(const rdm_pool *p, float *action);
-/* Option i of the task as this pool has it: key (static) and the value as text [RDM_TEXT_SIZE], which reads back
- * exactly. RANGE for a text that is longer: rdm_pool_settings has it. */
+/* Option i of the task as this pool has it: key and the value as text [RDM_TEXT_SIZE], which reads back exactly. RANGE
+ * for a text that is longer: rdm_pool_settings has it. Behind the task's num_options come keys with a FIELD that were
+ * set, in order; RANGE ends them. */
 RDM_API rdm_result rdm_pool_option(const rdm_pool *p, int32_t i, const char **key, char *text);
 /* All options as text [capacity] of lines key=value: given as settings they make the same pool again. */
 RDM_API rdm_result rdm_pool_settings(const rdm_pool *p, char *text, size_t capacity, size_t *size);

@@ -22,11 +22,9 @@ uint64_t hash_options(const TaskInfo& info, const Options& options) {
       const char* text = options.text(spec.key);
       hash = hash_bytes(text, std::strlen(text) + 1, hash);
     } else {
-      double value = 0;
-      if (spec.kind == OptionKind::kNumber) value = options.number(spec.key);
-      if (spec.kind == OptionKind::kInteger) value = options.integer(spec.key);
-      if (spec.kind == OptionKind::kFlag) value = options.flag(spec.key);
-      hash = hash_bytes(&value, sizeof value, hash);
+      const OptionRange value = options.range(i);
+      hash = hash_bytes(&value.low, sizeof value.low, hash);
+      if (value.drawn()) hash = hash_bytes(&value.high, sizeof value.high, hash);
     }
   }
   return hash;

@@ -208,13 +208,13 @@ class Option(Record):
     """The values of rdm_option."""
 
     key: str  # case is ignored and '-' equals '_'
-    text: str | None  # value as one line of text ("0.5", "egg"); NULL: number is it
+    text: str | None  # value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number is it
     number: float  # value when text is NULL
 
 
 class rdm_option(Structure):
     """key: case is ignored and '-' equals '_'
-    text: value as one line of text ("0.5", "egg"); NULL: number is it
+    text: value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number is it
     number: value when text is NULL
     """
 
@@ -231,11 +231,11 @@ class rdm_option(Structure):
 class OptionInfo(Record):
     """The values of rdm_option_info."""
 
-    key: str  # static
+    key: str  # static; its last word FIELD: any name of a field, or a pattern with '*'
     help: str  # one line, with the unit
-    text: str | None  # default of a text option, else NULL
-    choices: str | None  # allowed words "a|b|c", NULL: any text, or not a text
-    number: float  # default of number, integer, flag
+    text: str | None  # default of a text option, or of a number that is a range, else NULL
+    choices: str | None  # text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range "0.7..1.3" too, which each world draws from at a reset; else NULL
+    number: float  # default of number, integer, flag; of a range its middle
     low: float  # inclusive bounds
     high: float  # inclusive bounds
     kind: int  # RDM_NUMBER, RDM_INTEGER, RDM_FLAG, RDM_TEXT
@@ -243,11 +243,12 @@ class OptionInfo(Record):
 
 
 class rdm_option_info(Structure):
-    """key: static
+    """key: static; its last word FIELD: any name of a field, or a pattern with '*'
     help: one line, with the unit
-    text: default of a text option, else NULL
-    choices: allowed words "a|b|c", NULL: any text, or not a text
-    number: default of number, integer, flag
+    text: default of a text option, or of a number that is a range, else NULL
+    choices: text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range "0.7..1.3" too,
+        which each world draws from at a reset; else NULL
+    number: default of number, integer, flag; of a range its middle
     low: inclusive bounds
     high: inclusive bounds
     kind: RDM_NUMBER, RDM_INTEGER, RDM_FLAG, RDM_TEXT
@@ -1511,8 +1512,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_option": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
-        """Option i of the task as this pool has it: key (static) and the value as text [RDM_TEXT_SIZE], which reads back
-        exactly. RANGE for a text that is longer: rdm_pool_settings has it.
+        """Option i of the task as this pool has it: key and the value as text [RDM_TEXT_SIZE], which reads back exactly. RANGE
+        for a text that is longer: rdm_pool_settings has it. Behind the task's num_options come keys with a FIELD that were
+        set, in order; RANGE ends them.
         """),
     "rdm_pool_settings": Function(
         c_int32, {"p": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
