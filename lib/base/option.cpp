@@ -12,6 +12,8 @@
 namespace rdm {
 namespace {
 
+constexpr char kAnyName[] = ".FIELD";
+
 char fold(char c) {
   if (c == '-') return '_';
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -133,6 +135,23 @@ bool same_name(const char* a, const char* b) {
   return *a == *b;
 }
 
+bool name_matches(const char* pattern, const char* name) {
+  const char *star = nullptr, *from = nullptr;  // the last '*', and the name behind what it stands for
+  while (*name) {
+    if (*pattern == '*') {
+      star = pattern++, from = name;
+    } else if (*pattern && fold(*pattern) == fold(*name)) {
+      ++pattern, ++name;
+    } else if (star) {
+      pattern = star + 1, name = ++from;
+    } else {
+      return false;
+    }
+  }
+  while (*pattern == '*') ++pattern;
+  return !*pattern;
+}
+
 int32_t nearest_name(const char* name, const char* const* names, int32_t count) {
   int32_t best = -1;
   int least = 1 << 30;
@@ -146,6 +165,12 @@ int32_t nearest_name(const char* name, const char* const* names, int32_t count) 
 Nearest::Nearest(const char* name, const char* const* names, int32_t count) {
   const int32_t near = nearest_name(name, names, count);
   std::snprintf(text, sizeof text, "%s%s", near >= 0 ? "; nearest is " : "", near >= 0 ? names[near] : "");
+}
+
+size_t Options::held_bytes() const {
+  size_t bytes = rows_.capacity() * sizeof(Row);
+  for (const Row& r : rows_) bytes += r.long_text.capacity() + r.own_key.capacity();
+  return bytes;
 }
 
 int32_t Options::find(const char* key) const {
@@ -188,7 +213,9 @@ void Options::write(Row& row, const char* text) {
   size_t length = std::strlen(text);
   while (length > 0 && text[length - 1] == ' ') --length;
   row.long_text.clear();
+  row.long_text.shrink_to_fit();
   if (length >= sizeof row.text) {
+    row.long_text.reserve(length + 1);  // held_bytes depends on what is set alone, not on how often
     row.long_text.assign(text, text + length);
     row.long_text.push_back('\0');
     text = row.long_text.data();
@@ -235,8 +262,14 @@ void Options::set(const OptionInput& input, const char* owner) {
   if (i < 0) {
     Vector<const char*> keys;
     for (const Row& r : rows_) keys.push_back(key_of(r));
-    fail(Code::kNotFound, "%s option %s: unknown%s", owner, Quoted(input.key).text,
-         Nearest(input.key, keys.data(), static_cast<int32_t>(keys.size())).text);
+    const auto count = static_cast<int32_t>(keys.size());
+    Nearest near(input.key, keys.data(), count);
+    if (const char* dot = std::strchr(input.key, '.'); dot && !*near.text) {  // perhaps of an open row
+      Vector<char> word(input.key, dot);
+      word.insert(word.end(), kAnyName, kAnyName + sizeof kAnyName);
+      near = Nearest(word.data(), keys.data(), count);
+    }
+    fail(Code::kNotFound, "%s option %s: unknown%s", owner, Quoted(input.key).text, near.text);
   }
   Row& row = rows_[static_cast<size_t>(i)];
   assign(row, input, owner);

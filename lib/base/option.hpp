@@ -86,9 +86,9 @@ class Options {
   // kArgument for a value that cannot be read or is not finite. Later duplicates win; of an open row, the key
   // that was set last is the last row.
   void add_table(const OptionSpec* specs, int32_t count);
-  // Makes room for `rows` rows in all: one block of bytes(rows) from the host.
+  // Makes room for `rows` rows in all: one block from the host.
   void reserve(int32_t rows) { rows_.reserve(static_cast<size_t>(rows)); }
-  static size_t bytes(int32_t rows) { return static_cast<size_t>(rows) * sizeof(Row); }
+  size_t held_bytes() const;  // from the host
   void set(const OptionInput& input, const char* owner);
   // Lines key=value; spaces about either, '\r' and empty lines do not count. NULL: none. The errors of set,
   // with the number of the line; kArgument for a line without '='.
@@ -144,6 +144,8 @@ class Options {
 
 // Keys and names match without regard to case, and '-' equals '_'.
 bool same_name(const char* a, const char* b);
+// As same_name, where every '*' of the pattern stands for any letters or none.
+bool name_matches(const char* pattern, const char* name);
 // Index of the nearest name by edit distance, -1 when none is near: about a third of its letters differ, or
 // one of both begins with the other (three letters or more).
 int32_t nearest_name(const char* name, const char* const* names, int32_t count);

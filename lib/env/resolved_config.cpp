@@ -27,7 +27,7 @@ uint64_t hash_options(const TaskInfo& info, const Options& options) {
       if (value.drawn()) hash = hash_bytes(&value.high, sizeof value.high, hash);
     }
   }
-  return hash;
+  return hash_disturbance(options, hash);
 }
 
 void read_options(const PoolConfig& config, const TaskInfo& info, Options* out) {
@@ -39,6 +39,8 @@ void read_options(const PoolConfig& config, const TaskInfo& info, Options* out) 
   specs = sense_options(&count);
   out->add_table(specs, count);
   specs = repeat_options(&count);
+  out->add_table(specs, count);
+  specs = disturb_options(&count);
   out->add_table(specs, count);
   for (int32_t i = 0; i < config.num_options; ++i) out->set(config.options[i], info.name);
   out->set_lines(config.settings, info.name);
@@ -66,6 +68,7 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
   repeat = repeat_from(options, *info);
   options_hash = hash_options(*info, options);
   task = make_task(*info, options, config.hooks);
+  disturbance = disturbance_from(options, *task, info->name);
   obs_dim = rdm::obs_dim(*task);
   action_dim = task->action_dim();
   cost_dim = info->num_costs;
