@@ -21,7 +21,7 @@ def shown(key: str, value: Union[Value, tuple[float, float]]) -> str:
         return value
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, (tuple, list)) and len(value) == 2:
+    if isinstance(value, tuple):
         return "..".join(shown(key, bound) for bound in value)
     try:
         number = float(value)

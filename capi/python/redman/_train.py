@@ -71,7 +71,7 @@ class Run:
     def evaluate(self, episodes: int = 100, num_envs: int = 16) -> Evaluation:
         """The policy on episodes that it was not chosen by."""
         return evaluate(self.policy, self.task, episodes, num_envs, self.seed + _REPORT_SEED, options=self.options,
-                        cost_limits=self.agent.cost_limits)
+                        cost_limits=self.agent.cost_limits, magnitudes=learns_magnitudes(self.agent))
 
     def _repr_svg_(self) -> str:
         return self.curve._repr_svg_()
@@ -88,11 +88,20 @@ def split_options(task: str, algo: str, options: Options) -> tuple[dict[str, Val
     """Options of the task and those of the algorithm; a key of both goes to both."""
     of_task, of_algo = ({_folded(key) for key in table}
                         for table in (_discovery.task(task).options, _discovery.algo(algo).options))
+
+    def is_of_task(key: str) -> bool:
+        return _folded(key) in of_task or _folded(key.split(".", 1)[0] + ".FIELD") in of_task
+
     for key in options:
-        if _folded(key) not in of_task | of_algo:
+        if not is_of_task(key) and _folded(key) not in of_algo:
             raise NotFoundError(f"option {key}: neither task {task} nor algorithm {algo} has it")
-    return ({key: value for key, value in options.items() if _folded(key) in of_task},
+    return ({key: value for key, value in options.items() if is_of_task(key)},
             {key: value for key, value in options.items() if _folded(key) in of_algo})
+
+
+def learns_magnitudes(agent: Agent) -> bool:
+    """Its costs are sums of cost_raw, and its limits in that unit."""
+    return agent.options["cost_signal"] == "raw"
 
 
 def _handles_costs(algo: str, columns: int) -> bool:
@@ -306,7 +315,7 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
 
     def judged(policy: Policy) -> tuple[_Score, tuple[float, float]]:
         judge.reset(seeds)
-        e = summary(play(judge, policy, _SELECTION_EPISODES), counted)
+        e = summary(play(judge, policy, _SELECTION_EPISODES, learns_magnitudes(agent)), counted)
         return _score(e), (e.return_mean, e.cost_mean[0] if e.cost_mean else 0.0)
 
     with contextlib.ExitStack() as stack:
