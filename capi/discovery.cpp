@@ -8,7 +8,7 @@
 
 #include "env/options/disturb.hpp"
 #include "env/options/repeat.hpp"
-#include "robot/robot.hpp"
+#include "robot/robots.hpp"
 #include "tasks/catalog.hpp"
 #include "tasks/throw/throw_objects.hpp"
 #endif
@@ -32,7 +32,7 @@ struct OptionTableView {
 // A task's own, and those that every task has.
 std::array<OptionTableView, 4> tables_of(const TaskInfo& info) {
   std::array<OptionTableView, 4> t;
-  t[0].rows = info.options(&t[0].count);
+  t[0].rows = info.options(&t[0].count, nullptr);
   t[1].rows = sense_options(&t[1].count);
   t[2].rows = repeat_options(&t[2].count);
   t[3].rows = disturb_options(&t[3].count);
@@ -194,8 +194,8 @@ int32_t rdm_robot_count(void) {
 rdm_result rdm_robot_at(int32_t index, rdm_robot* io) {
   return call(nullptr, [&] {
     check_out(io, sizeof(rdm_robot), "io");
-    need_index(index, num_robots(), "index");
-    const Robot& r = robot(index);
+    const RobotRef ref(index);
+    const Robot& r = *ref;
     rdm_robot o{};
     o.num_joints = r.links.count;
     o.num_actuated = r.num_actuated();
@@ -208,8 +208,8 @@ rdm_result rdm_robot_at(int32_t index, rdm_robot* io) {
 rdm_result rdm_robot_joint(int32_t robot_index, int32_t i, rdm_joint* out) {
   return call(nullptr, [&] {
     need(out, "out");
-    need_index(robot_index, num_robots(), "robot");
-    const Robot& r = robot(robot_index);
+    const RobotRef ref(robot_index);
+    const Robot& r = *ref;
     need_index(i, r.links.count, "i");
     const RobotLink& l = r.links[i];
     rdm_joint o{};

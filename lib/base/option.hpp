@@ -27,6 +27,7 @@ struct OptionSpec {
   int32_t longest = 63;  // characters of a text
   bool range = false;    // a number or integer that may be given as "a..b"
   bool open = false;     // what stands behind the last '.' of the key is any name
+  bool chooses = false;  // what other rows the table has follows from it
 };
 
 constexpr OptionSpec number_option(const char* key, double value, double low, double high, const char* help,
@@ -93,6 +94,9 @@ class Options {
   // Lines key=value; spaces about either, '\r' and empty lines do not count. NULL: none. The errors of set,
   // with the number of the line; kArgument for a line without '='.
   void set_lines(const char* lines, const char* owner);
+  // The same for what a host gives, but for keys that are unknown: those are left for another table.
+  void set_known(const OptionInput* inputs, int32_t count, const char* lines, const char* owner);
+  bool chosen() const;  // a row that chooses others was given
   bool knows(const char* key) const { return find(key) >= 0; }
 
   // Of a range the middle, for an integer rounded down: what stands where nothing is drawn.
@@ -121,6 +125,7 @@ class Options {
   void set_default(const char* key, const char* text);
 
  private:
+  void each_line(const char* lines, const char* owner, bool known);
   struct Row {
     const OptionSpec* spec;
     OptionRange value;

@@ -1,5 +1,7 @@
 #include "robot/robot.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 
@@ -8,8 +10,6 @@
 
 namespace rdm {
 namespace {
-
-const Robot* const kRobots[] = {&kShadowHand};
 
 Name joined(const char* prefix, const char* name) {
   char text[2 * kNameSize];
@@ -23,20 +23,11 @@ void tint(uint8_t* color) {
   color[2] = static_cast<uint8_t>(color[2] + (255 - color[2]) / 6);
 }
 
-Inertia mirrored_inertia(const Inertia& inertia, int32_t axis) {
-  Inertia out = inertia;
-  out.com = mirrored_point(inertia.com, axis);
-  // Products of inertia with the mirrored axis change sign: xy, xz, yz are rows 3, 4, 5.
-  constexpr int kProducts[3][2] = {{3, 4}, {3, 5}, {4, 5}};
-  for (const int k : kProducts[axis]) out.moment[k] = -inertia.moment[k];
-  return out;
-}
-
 LinkDef make_link(const Robot& robot, const RobotLink& row, const char* prefix) {
   LinkDef link;
   link.name = joined(prefix, row.name);
   link.parent = row.parent;
-  link.X_PL = {row.p_PL, from_rpy(row.rpy_PL)};
+  link.X_PL = {row.p_PL, from_rpy(row.rpy_PL) * row.q_PL};
   link.inertia.mass = row.mass;
   link.inertia.com = row.com;
   std::memcpy(link.inertia.moment, row.moment, sizeof row.moment);
@@ -105,23 +96,82 @@ Quat mirrored_turn(const Quat& q, int32_t axis) {
   return {q.w, v.x, v.y, v.z};
 }
 
+Inertia mirrored_inertia(const Inertia& inertia, int32_t axis) {
+  Inertia out = inertia;
+  out.com = mirrored_point(inertia.com, axis);
+  // Products of inertia with the mirrored axis change sign: xy, xz, yz are rows 3, 4, 5.
+  constexpr int kProducts[3][2] = {{3, 4}, {3, 5}, {4, 5}};
+  for (const int k : kProducts[axis]) out.moment[k] = -inertia.moment[k];
+  return out;
+}
+
+double RobotCurve::at(double a) const {
+  int32_t k = 1;
+  while (k < knots - 1 && a > command[k]) ++k;
+  const double share = std::clamp((a - command[k - 1]) / (command[k] - command[k - 1]), 0.0, 1.0);
+  return angle[k - 1] + share * (angle[k] - angle[k - 1]);
+}
+
+double RobotCurve::inverse(double q) const {
+  double best = command[0], off = std::fabs(angle[0] - q);
+  for (int32_t k = 1; k < knots; ++k) {
+    const double rise = angle[k] - angle[k - 1];
+    const double share = rise != 0 ? std::clamp((q - angle[k - 1]) / rise, 0.0, 1.0) : 0;
+    const double a = command[k - 1] + share * (command[k] - command[k - 1]);
+    const double d = std::fabs(at(a) - q);
+    if (d < off) best = a, off = d;
+  }
+  return best;
+}
+
 bool Robot::coupled(int32_t link) const {
   for (const RobotCoupling& c : couplings)
     if (c.link == link) return true;
   return false;
 }
 
+const RobotCurve* Robot::curve(int32_t link) const {
+  for (const RobotCurve& c : curves)
+    if (c.link == link) return &c;
+  return nullptr;
+}
+
+bool Robot::follows(int32_t link) const {
+  const RobotCurve* c = curve(link);
+  return coupled(link) || (c && c->driver != link);
+}
+
+int32_t Robot::num_actuated() const {
+  if (commands.count > 0) return commands.count;
+  int32_t n = 0;
+  for (int32_t row = 0; row < links.count; ++row) n += !follows(row);
+  return n;
+}
+
 int32_t Robot::actuated(int32_t i) const {
-  for (int32_t row = 0; row < links.count; ++row)
-    if (!coupled(row) && i-- == 0) return row;
+  if (i >= 0 && i < commands.count) return commands[i];
+  if (commands.count == 0)
+    for (int32_t row = 0; row < links.count; ++row)
+      if (!follows(row) && i-- == 0) return row;
   fail(Code::kArgument, "%s: there is no such actuated joint", name);
 }
 
 int32_t Robot::action_of(int32_t link) const {
-  if (link < 0 || link >= links.count || coupled(link)) return -1;
+  if (link < 0 || link >= links.count || follows(link)) return -1;
+  if (commands.count > 0) {
+    const int32_t* at = std::find(commands.begin(), commands.end(), link);
+    return at == commands.end() ? -1 : static_cast<int32_t>(at - commands.begin());
+  }
   int32_t entry = 0;
-  for (int32_t row = 0; row < link; ++row) entry += !coupled(row);
+  for (int32_t row = 0; row < link; ++row) entry += !follows(row);
   return entry;
+}
+
+int32_t Robot::leading_action(int32_t link) const {
+  for (const RobotCoupling& c : couplings)
+    if (c.link == link) return action_of(c.other);
+  const RobotCurve* c = curve(link);
+  return action_of(c ? c->driver : link);
 }
 
 ArticulationDef make_articulation(const Robot& robot, Side side, const Pose& X_WB, const char* prefix) {
@@ -146,15 +196,6 @@ ArticulationDef make_articulation(const Robot& robot, Side side, const Pose& X_W
   if (side == Side::kLeft) mirror(&def, robot.mirror);
   hang(&def, robot.X_BR);
   return def;
-}
-
-int32_t num_robots() {
-  return static_cast<int32_t>(sizeof kRobots / sizeof kRobots[0]);
-}
-
-const Robot& robot(int32_t i) {
-  if (i < 0 || i >= num_robots()) fail(Code::kArgument, "robot %d does not exist", i);
-  return *kRobots[i];
 }
 
 }  // namespace rdm

@@ -210,6 +210,8 @@ constexpr Inertia root_inertia() {
 extern constinit const Robot kShadowHand = {
     .name = "shadow_hand",
     .help = "Shadow Hand, five fingers, 24 joints of which 20 are driven",
+    .kind = RobotKind::kHand,
+    .alias = "shadow",
     .X_BR = {{}, {0, 0, -kQuarter, kQuarter}},
     .root = root_inertia(),
     .links = table(kLinks),

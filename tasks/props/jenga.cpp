@@ -75,8 +75,8 @@ void add_options(OptionTable& table) {
   add_prop_options(make_config(false), 250, 256, table);
 }
 
-SceneDef make_scene_def(const JengaTower& tower, const Options& o) {
-  SceneDef s = make_hand_scene(config_from(o), o, kMaterials);
+HandScene make_scene_def(const JengaTower& tower, const Options& o) {
+  HandScene s = make_hand_scene(config_from(o), o, kMaterials);
   add_tower(tower, kTarget, kBlock, kTable, &s);
   for (const int32_t a : {kTarget, kBlock}) {
     for (const int32_t b : {kTarget, kBlock}) set_friction(&s, a, b, tower.friction);

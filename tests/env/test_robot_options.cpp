@@ -10,7 +10,8 @@ namespace {
 Options robot_options(std::initializer_list<OptionInput> inputs) {
   static const OptionTable table = [] {
     OptionTable t;
-    add_robot_options(kShadowHand, t);
+    add_robot_rows(kShadowHand, t);
+    add_robot_scales(t);
     return t;
   }();
   Options o;

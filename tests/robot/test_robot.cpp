@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
-#include "robot/robot.hpp"
+#include "robot/robots.hpp"
 #include "robot_rows.hpp"
 #include "two_hands.hpp"
 
@@ -12,14 +12,15 @@ namespace rdm {
 namespace {
 
 TEST(Robot, IsFoundByNumber) {
-  EXPECT_EQ(&robot(0), &kShadowHand);
-  EXPECT_THROW(robot(-1), Error);
-  EXPECT_THROW(robot(num_robots()), Error);
+  EXPECT_EQ(&*RobotRef(0), &kShadowHand);
+  EXPECT_THROW(RobotRef{-1}, Error);
+  EXPECT_THROW(RobotRef{num_robots()}, Error);
 }
 
 TEST(Robot, TablesAreSound) {
   for (int32_t r = 0; r < num_robots(); ++r) {
-    const Robot& table = robot(r);
+    const RobotRef ref(r);
+    const Robot& table = *ref;
     SceneDef def;
     def.articulations.push_back(make_articulation(table, Side::kRight, {}, ""));
     def.articulations[0].free_base = true;
@@ -42,10 +43,11 @@ TEST(Robot, TablesAreSound) {
 TEST(Robot, HandsNameTheirFingers) {
   int hands = 0;
   for (int32_t r = 0; r < num_robots(); ++r) {
-    const Robot& table = robot(r);
+    const RobotRef ref(r);
+    const Robot& table = *ref;
     if (table.fingers.count == 0) continue;
     ++hands;
-    EXPECT_GE(table.palm, 0) << table.name;
+    EXPECT_NE(table.palm, kNoLink) << table.name;
     ASSERT_EQ(table.fingers.count, table.tips.count) << table.name;
     for (int32_t i = 0; i < table.fingers.count; ++i) {
       const RobotFinger& f = table.fingers[i];
@@ -75,7 +77,8 @@ TEST(Robot, HandsNameTheirFingers) {
 
 TEST(Robot, ActionsAndLinksAreInverse) {
   for (int32_t r = 0; r < num_robots(); ++r) {
-    const Robot& table = robot(r);
+    const RobotRef ref(r);
+    const Robot& table = *ref;
     for (int32_t i = 0; i < table.num_actuated(); ++i) EXPECT_EQ(table.action_of(table.actuated(i)), i);
     for (const RobotCoupling& c : table.couplings) EXPECT_EQ(table.action_of(c.link), -1);
     EXPECT_EQ(table.action_of(-1), -1);

@@ -32,6 +32,8 @@ RDM_VERSION_PATCH = 0  # Of this header; that of the library is rdm_version().
 RDM_ABI = 1  # = SONAME; moves only when an old binary would break
 RDM_MAX_COSTS = 16  # cost columns of a task or an agent
 RDM_TEXT_SIZE = 64  # bytes of an option's text value, terminator included
+RDM_ROBOT_LINKS = 64  # links of a robot, at most
+RDM_ROBOT_KNOTS = 4  # of a curve, at most
 RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH
 VERSION = "0.1.0"  # that these types are of
 
@@ -112,6 +114,28 @@ class ActMode(enum.IntEnum):
 
     SAMPLE = 0
     MEAN = 1
+
+
+class RobotKind(enum.IntEnum):
+    """of a robot"""
+
+    OTHER = 0
+    HAND = 1
+    ARM = 2
+
+
+class JointKind(enum.IntEnum):
+    """of a joint"""
+
+    REVOLUTE = 0
+    PRISMATIC = 1
+
+
+class RobotRow(enum.IntEnum):
+    """in the place of a row of links"""
+
+    ROOT_LINK = -1
+    NO_LINK = -2
 
 
 class MapFormat(enum.IntEnum):
@@ -1131,6 +1155,375 @@ class rdm_policy_info(Structure):
     ]
 
 
+class RobotLink(Record):
+    """The values of rdm_robot_link."""
+
+    name: str  # of the link, unique
+    joint: str  # of the joint, unique
+    parent: int  # an earlier row, RDM_ROOT_LINK
+    kind: int  # RDM_REVOLUTE, RDM_PRISMATIC
+    p: tuple[float, ...]  # position in the parent's frame with the joint at 0
+    q: tuple[float, ...]  # rotation, unit
+    axis: tuple[float, ...]  # in the link's own frame, unit
+    lower: float  # range, below upper
+    upper: float  # range
+    velocity: float  # how fast the drive's target may move; 0: at once
+    kp: float  # drive: effort kp (target - q) - kd rate
+    kd: float  # drive
+    effort: float  # bound of the drive's effort, N m (N)
+    armature: float  # inertia added about the axis, kg m2; revolute joints alone
+    friction: float  # dry friction, N m (N)
+    mass: float  # 0 with moments of 0: none
+    com: tuple[float, ...]  # centre of mass in the link's frame
+    moment: tuple[float, ...]  # xx yy zz xy xz yz about com, axes of the link
+
+
+class rdm_robot_link(Structure):
+    """name: of the link, unique
+    joint: of the joint, unique
+    parent: an earlier row, RDM_ROOT_LINK
+    kind: RDM_REVOLUTE, RDM_PRISMATIC
+    p: position in the parent's frame with the joint at 0
+    q: rotation, unit
+    axis: in the link's own frame, unit
+    lower: range, below upper
+    upper: range
+    velocity: how fast the drive's target may move; 0: at once
+    kp: drive: effort kp (target - q) - kd rate
+    kd: drive
+    effort: bound of the drive's effort, N m (N)
+    armature: inertia added about the axis, kg m2; revolute joints alone
+    friction: dry friction, N m (N)
+    mass: 0 with moments of 0: none
+    com: centre of mass in the link's frame
+    moment: xx yy zz xy xz yz about com, axes of the link
+    """
+
+    name: bytes | None
+    joint: bytes | None
+    parent: int
+    kind: int
+    p: Any
+    q: Any
+    axis: Any
+    lower: float
+    upper: float
+    velocity: float
+    kp: float
+    kd: float
+    effort: float
+    armature: float
+    friction: float
+    mass: float
+    com: Any
+    moment: Any
+    _fields_ = [
+        ("name", c_char_p),
+        ("joint", c_char_p),
+        ("parent", c_int32),
+        ("kind", c_int32),
+        ("p", c_double * 3),
+        ("q", c_double * 4),
+        ("axis", c_double * 3),
+        ("lower", c_double),
+        ("upper", c_double),
+        ("velocity", c_double),
+        ("kp", c_double),
+        ("kd", c_double),
+        ("effort", c_double),
+        ("armature", c_double),
+        ("friction", c_double),
+        ("mass", c_double),
+        ("com", c_double * 3),
+        ("moment", c_double * 6),
+    ]
+
+
+class RobotShape(Record):
+    """The values of rdm_robot_shape."""
+
+    name: str  # unique
+    link: int  # row, RDM_ROOT_LINK
+    kind: int  # RDM_SPHERE, RDM_CAPSULE, RDM_BOX, RDM_CYLINDER, RDM_ELLIPSOID
+    size: tuple[float, ...]  # as rdm_shape, m
+    p: tuple[float, ...]  # position in the link's frame, m
+    q: tuple[float, ...]  # rotation, unit
+    color: tuple[int, ...]  # red, green, blue, 255
+
+
+class rdm_robot_shape(Structure):
+    """name: unique
+    link: row, RDM_ROOT_LINK
+    kind: RDM_SPHERE, RDM_CAPSULE, RDM_BOX, RDM_CYLINDER, RDM_ELLIPSOID
+    size: as rdm_shape, m
+    p: position in the link's frame, m
+    q: rotation, unit
+    color: red, green, blue, 255
+    reserved: 0
+    """
+
+    name: bytes | None
+    link: int
+    kind: int
+    size: Any
+    p: Any
+    q: Any
+    color: Any
+    reserved: Any
+    _fields_ = [
+        ("name", c_char_p),
+        ("link", c_int32),
+        ("kind", c_int32),
+        ("size", c_double * 3),
+        ("p", c_double * 3),
+        ("q", c_double * 4),
+        ("color", c_uint8 * 4),
+        ("reserved", c_uint8 * 4),
+    ]
+
+
+class RobotPair(Record):
+    """The values of rdm_robot_pair."""
+
+    a: int  # rows of shapes
+    b: int  # rows of shapes
+
+
+class rdm_robot_pair(Structure):
+    """a: rows of shapes
+    b: rows of shapes
+    """
+
+    a: int
+    b: int
+    _fields_ = [
+        ("a", c_int32),
+        ("b", c_int32),
+    ]
+
+
+class RobotCoupling(Record):
+    """The values of rdm_robot_coupling."""
+
+    link: int  # row whose joint follows
+    other: int  # row whose joint leads; itself no follower
+    ratio: float  # q = ratio q_other
+    slack: float  # rad: within it the joint goes freely
+
+
+class rdm_robot_coupling(Structure):
+    """link: row whose joint follows
+    other: row whose joint leads; itself no follower
+    ratio: q = ratio q_other
+    slack: rad: within it the joint goes freely
+    """
+
+    link: int
+    other: int
+    ratio: float
+    slack: float
+    _fields_ = [
+        ("link", c_int32),
+        ("other", c_int32),
+        ("ratio", c_double),
+        ("slack", c_double),
+    ]
+
+
+class RobotCurve(Record):
+    """The values of rdm_robot_curve."""
+
+    link: int  # row
+    driver: int  # row whose command it is: the same, or that of the motor
+    num_knots: int  # 2 to RDM_ROBOT_KNOTS
+    command: tuple[float, ...]  # ascending
+    angle: tuple[float, ...]  # in the joint's range, rad (m)
+
+
+class rdm_robot_curve(Structure):
+    """link: row
+    driver: row whose command it is: the same, or that of the motor
+    num_knots: 2 to RDM_ROBOT_KNOTS
+    reserved: 0
+    command: ascending
+    angle: in the joint's range, rad (m)
+    """
+
+    link: int
+    driver: int
+    num_knots: int
+    reserved: int
+    command: Any
+    angle: Any
+    _fields_ = [
+        ("link", c_int32),
+        ("driver", c_int32),
+        ("num_knots", c_int32),
+        ("reserved", c_int32),
+        ("command", c_double * 4),
+        ("angle", c_double * 4),
+    ]
+
+
+class RobotFinger(Record):
+    """The values of rdm_robot_finger."""
+
+    name: str  # short: it begins the names of its observations
+    first: int  # row of its first link
+    tip: int  # row of its last; it carries the force sensor
+    lateral: int  # row of the joint that spreads it to a side, -1: none
+    proximal: int  # row of the joint that bends it at its base, -1: none
+    middle: int  # row of the next joint that bends it, -1: none
+    thumb: int  # flag
+    p_tip: tuple[float, ...]  # its end, in the frame of `tip`, m
+
+
+class rdm_robot_finger(Structure):
+    """name: short: it begins the names of its observations
+    first: row of its first link
+    tip: row of its last; it carries the force sensor
+    lateral: row of the joint that spreads it to a side, -1: none
+    proximal: row of the joint that bends it at its base, -1: none
+    middle: row of the next joint that bends it, -1: none
+    thumb: flag
+    p_tip: its end, in the frame of `tip`, m
+    """
+
+    name: bytes | None
+    first: int
+    tip: int
+    lateral: int
+    proximal: int
+    middle: int
+    thumb: int
+    p_tip: Any
+    _fields_ = [
+        ("name", c_char_p),
+        ("first", c_int32),
+        ("tip", c_int32),
+        ("lateral", c_int32),
+        ("proximal", c_int32),
+        ("middle", c_int32),
+        ("thumb", c_int32),
+        ("p_tip", c_double * 3),
+    ]
+
+
+class rdm_robot_def(Structure):
+    """struct_size: bytes, set by rdm_robot_def_init
+    kind: RDM_ROBOT_*
+    name: letters, digits, '_', '-', '+'; at most 25
+    alias: another name; NULL
+    summary: one line; NULL: none
+    links: [num_links] a parent before its children
+    shapes: [num_shapes] NULL with num_shapes 0
+    pairs: [num_pairs] NULL with num_pairs 0; num_pairs -1: all but neighbours
+    couplings: [num_couplings] NULL with num_couplings 0
+    curves: [num_curves] NULL with num_curves 0
+    commands: [num_commands] rows in the order of actions; NULL: all but the followers, by row
+    fingers: [num_fingers] the first finger first; NULL with num_fingers 0
+    home: [num_links] start pose, rad (m); NULL: 0, or the limit nearest to it
+    folded: [num_links] of a hand: fingers straight, thumb across the palm; NULL
+    closed: [num_commands] of a hand: commands that close it around 5 cm; NULL
+    num_links: 1 to RDM_ROBOT_LINKS
+    num_shapes: count
+    num_pairs: count
+    num_couplings: count
+    num_curves: count
+    num_commands: count
+    num_fingers: count
+    mirror: root axis (0, 1, 2) normal to the plane that a left one is mirrored in; -1: none
+    root_mass: of the root link, kg
+    root_com: in the root frame, m
+    root_moment: as rdm_robot_link.moment
+    mount_p: of hands: the frame, z to the fingers, that comes onto an arm's flange; in the root frame
+    mount_q: rotation
+    flange_p: of arms: the frame, z out of the arm, that carries a hand; in flange_link's frame
+    flange_q: rotation
+    flange_link: row, RDM_NO_LINK
+    palm_link: row, RDM_ROOT_LINK, RDM_NO_LINK
+    palm_p: centre of the palm's surface, in palm_link's frame, m
+    palm_normal: unit: out of the palm
+    palm_fingers: unit: the way the fingers point; of a gripper any in the palm's plane
+    hold_p: where a thing is that the hand holds, in palm_link's frame, m
+    """
+
+    struct_size: int
+    kind: int
+    name: bytes | None
+    alias: bytes | None
+    summary: bytes | None
+    links: Any
+    shapes: Any
+    pairs: Any
+    couplings: Any
+    curves: Any
+    commands: int | None
+    fingers: Any
+    home: int | None
+    folded: int | None
+    closed: int | None
+    num_links: int
+    num_shapes: int
+    num_pairs: int
+    num_couplings: int
+    num_curves: int
+    num_commands: int
+    num_fingers: int
+    mirror: int
+    root_mass: float
+    root_com: Any
+    root_moment: Any
+    mount_p: Any
+    mount_q: Any
+    flange_p: Any
+    flange_q: Any
+    flange_link: int
+    palm_link: int
+    palm_p: Any
+    palm_normal: Any
+    palm_fingers: Any
+    hold_p: Any
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_int32),
+        ("name", c_char_p),
+        ("alias", c_char_p),
+        ("summary", c_char_p),
+        ("links", POINTER(rdm_robot_link)),
+        ("shapes", POINTER(rdm_robot_shape)),
+        ("pairs", POINTER(rdm_robot_pair)),
+        ("couplings", POINTER(rdm_robot_coupling)),
+        ("curves", POINTER(rdm_robot_curve)),
+        ("commands", c_void_p),
+        ("fingers", POINTER(rdm_robot_finger)),
+        ("home", c_void_p),
+        ("folded", c_void_p),
+        ("closed", c_void_p),
+        ("num_links", c_int32),
+        ("num_shapes", c_int32),
+        ("num_pairs", c_int32),
+        ("num_couplings", c_int32),
+        ("num_curves", c_int32),
+        ("num_commands", c_int32),
+        ("num_fingers", c_int32),
+        ("mirror", c_int32),
+        ("root_mass", c_double),
+        ("root_com", c_double * 3),
+        ("root_moment", c_double * 6),
+        ("mount_p", c_double * 3),
+        ("mount_q", c_double * 4),
+        ("flange_p", c_double * 3),
+        ("flange_q", c_double * 4),
+        ("flange_link", c_int32),
+        ("palm_link", c_int32),
+        ("palm_p", c_double * 3),
+        ("palm_normal", c_double * 3),
+        ("palm_fingers", c_double * 3),
+        ("hold_p", c_double * 3),
+    ]
+
+
 class rdm_map_config(Structure):
     """struct_size: bytes, set by rdm_map_config_init
     reserved: 0
@@ -1326,6 +1719,13 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_epoch": rdm_epoch,
     "rdm_tensor": rdm_tensor,
     "rdm_policy_info": rdm_policy_info,
+    "rdm_robot_link": rdm_robot_link,
+    "rdm_robot_shape": rdm_robot_shape,
+    "rdm_robot_pair": rdm_robot_pair,
+    "rdm_robot_coupling": rdm_robot_coupling,
+    "rdm_robot_curve": rdm_robot_curve,
+    "rdm_robot_finger": rdm_robot_finger,
+    "rdm_robot_def": rdm_robot_def,
     "rdm_map_config": rdm_map_config,
     "rdm_map_info": rdm_map_info,
     "rdm_voxel": rdm_voxel,
@@ -1362,6 +1762,12 @@ ROWS: dict[str, dict[str, Rows]] = {
         "valid": Rows("uint8", ("num_envs",)),
         "success": Rows("uint8", ("num_envs",)),
         "steps": Rows("int32", ("num_envs",)),
+    },
+    "rdm_robot_def": {
+        "commands": Rows("int32", ("num_commands",)),
+        "home": Rows("float64", ("num_links",)),
+        "folded": Rows("float64", ("num_links",)),
+        "closed": Rows("float32", ("num_commands",)),
     },
     "rdm_sensors": {
         "rgb": Rows("uint8", ("num_envs", "num_cameras", "height", "width", "3")),
@@ -1774,6 +2180,76 @@ FUNCTIONS: dict[str, Function] = {
         {"columns": Rows("int32", ("capacity",))}, True,
         """Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up to capacity of them
         to columns [capacity]; *count is how many there are.
+        """),
+    "rdm_robot_def_init": Function(
+        c_int32, {"def": POINTER(rdm_robot_def), "size": c_size_t},
+        {}, True,
+        """defaults into the first `size` bytes"""),
+    "rdm_robot_create": Function(
+        c_int32, {"out": c_void_p, "def": POINTER(rdm_robot_def)},
+        {}, True,
+        """Adds a robot under a number that no other gets; *out is for rdm_robot_at and what follows here. ARGUMENT, RANGE: the
+        text names the row; a name that is taken is an ARGUMENT. Moments must be positive and keep the triangle rule.
+        """),
+    "rdm_robot_remove": Function(
+        c_int32, {"robot": c_int32},
+        {}, True,
+        """Pools that use it keep it. ARGUMENT for the library's own."""),
+    "rdm_robot_find": Function(
+        c_int32, {"name": c_char_p, "index": c_void_p},
+        {}, True,
+        """name or alias; NOT_FOUND: nearest in the text"""),
+    "rdm_robot_mount": Function(
+        c_int32, {"out": c_void_p, "name": c_char_p, "arm": c_int32, "hand": c_int32, "yaw": c_double, "adapter": c_double, "left": c_int32},
+        {}, True,
+        """A hand on an arm as a robot of its own, under `name`: its root and the arm's last link are one body. The hand is turned by
+        `yaw` (rad) about the flange's z and stands off by `adapter` (m); left: its mirror image. UNSUPPORTED: no arm, no hand.
+        """),
+    "rdm_robot_get": Function(
+        c_int32, {"robot": c_int32, "io": POINTER(rdm_robot_def)},
+        {}, True,
+        """What rdm_robot_create took, but for the arrays, which are NULL here; texts live as long as the robot."""),
+    "rdm_robot_link_at": Function(
+        c_int32, {"robot": c_int32, "i": c_int32, "out": POINTER(rdm_robot_link)},
+        {}, True,
+        """i < num_links"""),
+    "rdm_robot_shape_at": Function(
+        c_int32, {"robot": c_int32, "i": c_int32, "out": POINTER(rdm_robot_shape)},
+        {}, True,
+        """i < num_shapes"""),
+    "rdm_robot_pair_at": Function(
+        c_int32, {"robot": c_int32, "i": c_int32, "out": POINTER(rdm_robot_pair)},
+        {}, True,
+        """i < num_pairs"""),
+    "rdm_robot_coupling_at": Function(
+        c_int32, {"robot": c_int32, "i": c_int32, "out": POINTER(rdm_robot_coupling)},
+        {}, True,
+        """i < num_couplings"""),
+    "rdm_robot_curve_at": Function(
+        c_int32, {"robot": c_int32, "i": c_int32, "out": POINTER(rdm_robot_curve)},
+        {}, True,
+        """i < num_curves"""),
+    "rdm_robot_finger_at": Function(
+        c_int32, {"robot": c_int32, "i": c_int32, "out": POINTER(rdm_robot_finger)},
+        {}, True,
+        """i < num_fingers"""),
+    "rdm_robot_poses_of": Function(
+        c_int32, {"robot": c_int32, "commands": c_void_p, "home": c_void_p, "folded": c_void_p, "closed": c_void_p},
+        {"commands": Rows("int32", ("num_commands",)), "home": Rows("float64", ("num_links",)), "folded": Rows("float64", ("num_links",)), "closed": Rows("float32", ("num_commands",))}, True,
+        """Numbers of the robot's poses and commands: commands [num_commands], home [num_links], folded [num_links] and
+        closed [num_commands] may be NULL. The counts are those of rdm_robot_get; folded and closed are 0 where it has none.
+        """),
+    "rdm_robot_kinematics": Function(
+        c_int32, {"robot": c_int32, "q": c_void_p, "poses": c_void_p, "flange": c_void_p, "tips": c_void_p, "palm": c_void_p},
+        {"q": Rows("float64", ("num_links",)), "poses": Rows("float64", ("num_links", "7")), "flange": Rows("float64", ("7",)), "tips": Rows("float64", ("num_fingers", "3")), "palm": Rows("float64", ("7",))}, True,
+        """For joints q [num_links], in the root frame: poses [num_links][7] of the links, position (m) and quaternion. flange [7],
+        tips [num_fingers][3] and palm [7] (origin at hold_p, y into the palm, z as the fingers point) may be NULL.
+        """),
+    "rdm_robot_reach": Function(
+        c_int32, {"robot": c_int32, "pose": c_void_p, "q": c_void_p, "found": c_void_p},
+        {"pose": Rows("float64", ("7",)), "q": Rows("float64", ("num_links",))}, True,
+        """Joints q [num_links], from where they are, to where the arm's flange has pose [7] in the root frame. *found is 0 when the
+        least squares end elsewhere. UNSUPPORTED: no flange.
         """),
     "rdm_map_config_init": Function(
         c_int32, {"c": POINTER(rdm_map_config), "size": c_size_t},

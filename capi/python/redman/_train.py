@@ -84,7 +84,7 @@ def _folded(key: str) -> str:
     return key.lower().replace("-", "_")
 
 
-def split_options(task: str, algo: str, options: Options) -> tuple[dict[str, Value], dict[str, Value]]:
+def split_options(task: str, algo: str, options: Mapping[str, Value]) -> tuple[dict[str, Value], dict[str, Value]]:
     """Options of the task and those of the algorithm; a key of both goes to both."""
     of_task, of_algo = ({_folded(key) for key in table}
                         for table in (_discovery.task(task).options, _discovery.algo(algo).options))
@@ -291,7 +291,8 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
         raise ArgumentError(f"steps: {steps} is not a whole number above 0")
     if eval_every < 1:
         raise ArgumentError("eval_every: 1 or more")
-    asked = dict(options or {})
+    asked: dict[str, Value] = {key: shown(key, value) if isinstance(value, tuple) else value
+                               for key, value in (options or {}).items()}
     for key in [key for key in asked if _folded(key) == "cost_limit"]:
         cost_limits = float(asked.pop(key)) if cost_limits is None else cost_limits
     of_task, of_algo = split_options(task, algo, asked)

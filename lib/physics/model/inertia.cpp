@@ -60,6 +60,11 @@ bool positive_definite(const Mat3& a) {
   return to_eigen(a).llt().info() == Eigen::Success;
 }
 
+Vec3 principal_moments(const Mat3& a) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(to_eigen(a), Eigen::EigenvaluesOnly);
+  return to_vec3(solver.eigenvalues());
+}
+
 Inertia sphere_inertia(double mass, double radius) {
   const double i = 0.4 * mass * radius * radius;
   return diagonal(mass, i, i, i);

@@ -15,6 +15,7 @@ Inertia transformed(const Inertia& inertia, const Pose& X_AB);
 Inertia combined(const Inertia& a, const Inertia& b);
 
 bool positive_definite(const Mat3& symmetric);
+Vec3 principal_moments(const Mat3& symmetric);  // ascending
 
 // Solid bodies of uniform density with the total mass, com at the origin.
 Inertia sphere_inertia(double mass, double radius);

@@ -1,0 +1,163 @@
+#include "robot/kinematics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/eigen.hpp"
+#include "base/elementary.hpp"
+#include "base/error.hpp"
+
+namespace rdm {
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Jacobian =
+    Eigen::Matrix<double, 6, kMaxRobotLinks>;  // columns of joints that do not move the flange are 0
+
+constexpr int kIterations = 80;
+constexpr double kClose = 1e-6;    // m, rad
+constexpr double kSteepest = 0.5;  // rad, m of one iteration
+
+Pose joint_motion(const RobotLink& l, double q) {
+  return l.kind == JointKind::kPrismatic ? Pose{q * l.axis, {}} : Pose{{}, axis_angle(l.axis, q)};
+}
+
+// As a vector along the axis of the turn that remains, 2 sin of half its angle long.
+Vec3 turn_between(const Quat& to, const Quat& from) {
+  const Quat d = to * conjugate(from);
+  const double sign = d.w < 0 ? -2 : 2;
+  return {sign * d.x, sign * d.y, sign * d.z};
+}
+
+struct Reach {
+  const Robot& robot;
+  Pose X_RL[kMaxRobotLinks];
+  Pose X_RF;
+  Jacobian J;
+
+  void update(const double* q) {
+    link_poses(robot, q, X_RL);
+    X_RF = robot.flange == kRootLink ? robot.X_LF : X_RL[robot.flange] * robot.X_LF;
+    J.leftCols(robot.links.count).setZero();
+    for (int32_t i = robot.flange; i >= 0; i = robot.links[i].parent) {
+      const Vec3 axis = rotate(X_RL[i].q, robot.links[i].axis);
+      const bool slides = robot.links[i].kind == JointKind::kPrismatic;
+      const Vec3 linear = slides ? axis : cross(axis, X_RF.p - X_RL[i].p);
+      const Vec3 angular = slides ? Vec3{} : axis;
+      J.col(i) << linear.x, linear.y, linear.z, angular.x, angular.y, angular.z;
+    }
+  }
+  Matrix6 square() const {
+    Matrix6 a = Matrix6::Zero();
+    for (int32_t i = 0; i < robot.links.count; ++i) a += J.col(i) * J.col(i).transpose();
+    return a;
+  }
+};
+
+// How well a pose can go on from where it is: the least room to a joint's limit, in its range, times the
+// manipulability (Yoshikawa 1985) with lengths in units of `length`.
+double dexterity(Reach* reach, const double* q, double length) {
+  reach->update(q);
+  double room = 0.15;  // more is no better
+  const Robot& robot = reach->robot;
+  for (int32_t i = 0; i < robot.links.count; ++i) {
+    const RobotLink& l = robot.links[i];
+    room = std::min({room, (q[i] - l.lower) / (l.upper - l.lower), (l.upper - q[i]) / (l.upper - l.lower)});
+  }
+  reach->J.topRows(3) /= length;
+  const double square = reach->square().determinant();
+  return room * std::sqrt(std::max(square, 0.0));
+}
+
+}  // namespace
+
+void link_poses(const Robot& robot, const double* q, Pose* X_RL) {
+  for (int32_t i = 0; i < robot.links.count; ++i) {
+    const RobotLink& l = robot.links[i];
+    const Pose X_PL = Pose{l.p_PL, from_rpy(l.rpy_PL) * l.q_PL} * joint_motion(l, q[i]);
+    X_RL[i] = l.parent < 0 ? X_PL : X_RL[l.parent] * X_PL;
+  }
+}
+
+Pose link_pose(const Robot& robot, const double* q, int32_t link) {
+  Pose X_RL[kMaxRobotLinks];
+  link_poses(robot, q, X_RL);
+  return link < 0 ? Pose{} : X_RL[link];
+}
+
+Pose flange_pose(const Robot& robot, const double* q) {
+  return link_pose(robot, q, robot.flange) * robot.X_LF;
+}
+
+Pose palm_frame(const Robot& robot, const double* q) {
+  const Vec3 z = robot.z_palm, y = -robot.n_palm, x = cross(y, z);
+  const Mat3 R = {{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z}};
+  return link_pose(robot, q, robot.palm) * Pose{robot.p_hold, to_quat(R)};
+}
+
+bool solve_reach(const Robot& robot, const Pose& X_RF, double* q) {
+  Reach reach{robot, {}, {}, {}};
+  for (int k = 0; k <= kIterations; ++k) {
+    reach.update(q);
+    const Vec3 dp = X_RF.p - reach.X_RF.p, dw = turn_between(X_RF.q, reach.X_RF.q);
+    Vector6 e;
+    e << dp.x, dp.y, dp.z, dw.x, dw.y, dw.z;
+    const double square = e.squaredNorm();
+    if (square < kClose * kClose) return true;
+    if (k == kIterations) break;
+    Matrix6 a = reach.square();
+    a.diagonal().array() += 0.5 * square + 1e-9;
+    const Vector6 y = a.llt().solve(e);
+    double most = 0, step[kMaxRobotLinks];
+    for (int32_t i = 0; i < robot.links.count; ++i) {
+      step[i] = reach.J.col(i).dot(y);
+      most = std::max(most, std::fabs(step[i]));
+    }
+    const double share = most > kSteepest ? kSteepest / most : 1;
+    for (int32_t i = 0; i < robot.links.count; ++i)
+      q[i] = std::clamp(q[i] + share * step[i], robot.links[i].lower, robot.links[i].upper);
+  }
+  return false;
+}
+
+double arm_length(const Robot& robot) {
+  double length = norm(robot.X_LF.p);
+  for (int32_t i = robot.flange; i >= 0 && robot.links[i].parent >= 0; i = robot.links[i].parent)
+    length += norm(robot.links[i].p_PL);
+  return length;
+}
+
+bool place_arm(const Robot& arm, const Pose& X_WF, Pose* X_WB, double* q) {
+  constexpr double kTurns[] = {0, 0.25 * kPi, -0.25 * kPi, 0.5 * kPi, -0.5 * kPi};
+  constexpr double kAway[] = {0.45, 0.35, 0.55, 0.65}, kBelow[] = {0.2, 0.35, 0.05, 0.5, -0.1};
+  const double length = arm_length(arm);
+  const Vec3 z = rotate(X_WF.q, {0, 0, 1});
+  // where the flange comes from; one that looks straight up or down is come to along -x
+  const double level = std::sqrt(z.x * z.x + z.y * z.y);
+  const double from = level > 0.2 ? elementary::atan2(-z.y, -z.x) : kPi;
+  Reach reach{arm, {}, {}, {}};
+  double best = 0;
+  for (const double turn : kTurns)
+    for (const double away : kAway)
+      for (const double below : kBelow) {
+        const elementary::SinCos a = elementary::sincos(from + turn);
+        Pose base;
+        base.p = X_WF.p + Vec3{away * length * a.cos, away * length * a.sin, -below * length};
+        base.p.z = std::max(base.p.z, 0.0);
+        base.q = axis_angle({0, 0, 1}, from + turn + kPi);  // x of the base towards the flange
+        double pose[kMaxRobotLinks];
+        for (int32_t i = 0; i < arm.links.count; ++i) pose[i] = arm.home.count ? arm.home[i] : 0;
+        if (!solve_reach(arm, inverse(base) * X_WF, pose)) continue;
+        const double score = dexterity(&reach, pose, length);
+        const bool above = std::all_of(reach.X_RL, reach.X_RL + arm.links.count,
+                                       [&](const Pose& X) { return (base * X).p.z > 0.03; });
+        if (!above || score <= best) continue;
+        best = score;
+        *X_WB = base;
+        std::copy_n(pose, arm.links.count, q);
+      }
+  return best > 0;
+}
+
+}  // namespace rdm

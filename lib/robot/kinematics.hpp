@@ -1,0 +1,33 @@
+// Where a robot's links are, and which joint angles bring a flange to a place.
+//
+// Frames: R the root of a robot's tables, L a link, F the flange. The inverse is by damped least squares
+// (Wampler 1986; Nakamura and Hanafusa 1986): with the pose error e, m and rad, and the Jacobian J of the
+// flange,
+//   dq = J' (J J' + lambda^2 1)^-1 e,   q := clamp(q + dq),   lambda^2 = |e|^2 / 2 + 1e-9 (Sugihara 2011).
+#pragma once
+#include "robot/robot.hpp"
+
+namespace rdm {
+
+// Poses of all links in the root frame, [links]; q [links], rad (m).
+void link_poses(const Robot& robot, const double* q, Pose* X_RL);
+// Of one link; kRootLink: the identity.
+Pose link_pose(const Robot& robot, const double* q, int32_t link);
+Pose flange_pose(const Robot& robot, const double* q);
+// Where its hand is in the root frame: origin at the holding point, y into the back of the palm, z as the
+// fingers point. Any two hands that are put with these frames on one another hold a thing at the same place.
+Pose palm_frame(const Robot& robot, const double* q);
+
+// Angles within the limits for which the flange is at X_RF, beginning at q [links], which is overwritten.
+// False when it ends more than 1e-6 m or rad off; then q is where it ended.
+bool solve_reach(const Robot& robot, const Pose& X_RF, double* q);
+
+// Length of the arm, stretched, from the first joint's axis to the flange, m: an upper bound of its reach.
+double arm_length(const Robot& robot);
+
+// A place for an arm's base from which its flange reaches X_WF: upright, not below z = 0, behind the flange,
+// far from joint limits and singular poses. `q` [links] is its pose there. False when no such place was
+// found.
+bool place_arm(const Robot& arm, const Pose& X_WF, Pose* X_WB, double* q);
+
+}  // namespace rdm
