@@ -219,7 +219,8 @@ int32_t Pool::taken(int32_t env) const {
   return impl_->slots[env].taken;
 }
 double Pool::magnitude(int32_t env, int32_t cost) const {
-  return impl_->slots[env].magnitude[cost];
+  if (impl_->repeat > 1) return impl_->slots[env].magnitude[cost];
+  return std::max(static_cast<double>(impl_->cost_row(impl_->buffers.cost_raw, env)[cost]), 0.0);
 }
 const Buffers& Pool::buffers() const {
   return impl_->buffers;

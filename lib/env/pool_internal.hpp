@@ -37,9 +37,10 @@ struct Slot {
   Episode episode;
   Counters counters;
   WorldDisturbance disturbance;
-  int32_t taken;                    // control steps of the last step
-  double magnitude[kMaxTaskCosts];  // sums over these of cost_raw where it is above 0
-  bool goes_on;                     // a further control step of this step would be of the same episode
+  int32_t taken;  // control steps of the last step
+  double
+      magnitude[kMaxTaskCosts];  // with option action_repeat: sums over these of cost_raw where it is above 0
+  bool goes_on;                  // a further control step of this step would be of the same episode
 };
 
 inline constexpr int32_t kMaxGroup = 16;

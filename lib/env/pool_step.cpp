@@ -223,9 +223,10 @@ void Pool::Impl::write_verdict(int32_t env, const Verdict& verdict, uint32_t sta
     e.sum_cost[k] += verdict.cost[k];
     add(cost_row(buffers.cost, env)[k], verdict.cost[k]);
     cost_row(buffers.cost_raw, env)[k] = static_cast<float>(verdict.cost_raw[k]);
+    cost_row(buffers.episode_cost, env)[k] = static_cast<float>(e.sum_cost[k]);
+    if (repeat == 1) continue;  // the row of cost_raw is all that there is
     double& magnitude = slots[env].magnitude[k];
     magnitude = (first ? 0 : magnitude) + std::max(verdict.cost_raw[k], 0.0);
-    cost_row(buffers.episode_cost, env)[k] = static_cast<float>(e.sum_cost[k]);
   }
   buffers.episode_step[env] = e.step;
   buffers.status[env] = first ? status : buffers.status[env] | status;
