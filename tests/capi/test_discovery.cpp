@@ -24,7 +24,8 @@ void check_option(const rdm_option_info& o, const char* owner) {
     EXPECT_TRUE(!o.choices || choices.find(std::string("|") + o.text + "|") != std::string::npos) << choices;
     return;
   }
-  EXPECT_EQ(o.text, nullptr);
+  EXPECT_STREQ(o.choices ? o.choices : "a..b", "a..b");
+  EXPECT_TRUE(!o.text || (o.choices && std::strstr(o.text, ".."))) << o.text;
   EXPECT_LE(o.low, o.number);
   EXPECT_LE(o.number, o.high);
   EXPECT_TRUE(o.kind != RDM_FLAG || (o.low == 0 && o.high == 1));
