@@ -3,7 +3,7 @@
 //
 // The law, per joint, with q and qd of the substep's start and v1 the rate at its end:
 //   drive  tau = spring - gain v1                    inside +-bound, else the bound (saturated = +-1)
-//          spring = kp (target - q),  gain = h kp + kd + friction / max(|qd|, kFrictionSpeed)
+//          spring = kp (target - q) + feedforward,  gain = h kp + kd + friction / max(|qd|, kFrictionSpeed)
 //          which is kp (target - (q + h v1)) - kd v1 and Coulomb friction as a secant: implicit PD, the same
 //          as physics/model/drive.hpp's motor row (target rate spring / gain, softness 1 / gain, force bound)
 //   limit  tau = k (edge - q - h v1)                 while q + h v1 is beyond the edge (limited = +-1)
@@ -55,6 +55,10 @@ void joint_drives(TreeBatch<L>& t) {
     }
     target = clamp<L>(target, model.lower, model.upper);
     V kp = model.kp, bound = model.effort, spring = kp * (target - joint.q);
+    if (t.feedforward) {  // a zero changes no bit
+      const V& extra = t.feedforward[i];
+      spring = L::select(extra != V{}, V(spring + extra), spring);
+    }
     if (t.spring_only) {
       const V size = L::select(spring < V{}, V(-spring), spring);
       const V share = L::select(size > bound, V(bound / size), L::all(1));

@@ -9,8 +9,6 @@
 namespace rdm {
 namespace {
 
-constexpr int32_t kMaxCoords = 512;  // of one tree
-
 // The smallest rotation from z to the unit vector `axis`.
 Mat3 rotation_from_z(const Vec3& a) {
   if (a.z < -0.999999) return {{1, 0, 0, 0, -1, 0, 0, 0, -1}};
@@ -31,15 +29,6 @@ bool is_isotropic(const Inertia& inertia) {
 bool is_massless(const Inertia& inertia) {
   return inertia.mass == 0 &&
          std::all_of(inertia.moment, inertia.moment + 6, [](double m) { return m == 0; });
-}
-
-// The same inertia in axes rotated by R_LJ; an isotropic one keeps its very numbers.
-Inertia rotated(const Inertia& inertia, const Mat3& R_LJ) {
-  Inertia out = inertia;
-  const Mat3 R_JL = transpose(R_LJ);
-  out.com = R_JL * inertia.com;
-  if (!is_isotropic(inertia)) set_moment(&out, R_JL * moment_matrix(inertia) * R_LJ);
-  return out;
 }
 
 TreeMember make_member(const Scene& scene, int32_t articulation) {
@@ -67,7 +56,7 @@ TreeMember make_member(const Scene& scene, int32_t articulation) {
       out.R_PJ = Mat3{};
       out.q_PJ = {out.q_PJ.w > 0 ? 1.0 : -1.0, 0, 0, 0};
     }
-    out.inertia = rotated(link.inertia, out.R_LJ);
+    out.inertia = in_joint_axes(link.inertia, out.R_LJ);
     out.joint = link.joint;
     member.links.push_back(out);
   }
@@ -91,7 +80,8 @@ bool same_shape_of_tree(const Scene& scene, const Tree& tree, int32_t articulati
     const LinkDef& link = def.links[i];
     const TreeLink& other = tree.links[i];
     if (link.parent != other.parent || (link.joint.kind == JointKind::kPrismatic) != other.prismatic ||
-        link.joint.coupled_to != other.coupled_to || link.sensor != other.sensor)
+        link.joint.coupled_to != other.coupled_to || link.sensor != other.sensor ||
+        link.weightless != other.weightless)
       return false;
   }
   return true;
@@ -147,6 +137,7 @@ Tree make_tree(const Scene& scene, int32_t articulation) {
     t.coupled_to = link.joint.coupled_to;
     t.prismatic = link.joint.kind == JointKind::kPrismatic;
     t.sensor = link.sensor;
+    t.weightless = link.weightless;
     tree.links.push_back(t);
     add_coord(&tree, link.parent < 0 ? base_coord : tree.coord(link.parent));
   }
@@ -188,6 +179,14 @@ void find_shortcuts(Tree* tree) {
 }
 
 }  // namespace
+
+Inertia in_joint_axes(const Inertia& inertia, const Mat3& R_LJ) {
+  Inertia out = inertia;
+  const Mat3 R_JL = transpose(R_LJ);
+  out.com = R_JL * inertia.com;
+  if (!is_isotropic(inertia)) set_moment(&out, R_JL * moment_matrix(inertia) * R_LJ);
+  return out;
+}
 
 Vector<Tree> make_trees(const Scene& scene) {
   Vector<Tree> trees;
