@@ -772,7 +772,6 @@ void BatchStepper<L>::fill_constants(TreeBatch<L>& t, int32_t batch) {
   const Tree& tree = *t.tree;
   t.h = static_cast<S>(solver.h);
   t.inv_h = static_cast<S>(1 / solver.h);
-  t.limit_stiffness = static_cast<S>(solver.limit_stiffness);
   t.spring_only = solver.spring_only_effort;
   assign(t, batch, group_size_);
   if (tree.free_base)
@@ -804,6 +803,7 @@ void BatchStepper<L>::fill_constants(TreeBatch<L>& t, int32_t batch) {
       put(&b.upper, l, joint.upper);
       put(&b.ratio, l, joint.ratio);
       put(&b.slack, l, joint.slack);
+      put(&b.limit_stiffness, l, link.limit_stiffness);
     }
     for (size_t k = 0; k < m.shapes.size(); ++k) {
       const ShapeDef& def = scene_->shapes[static_cast<size_t>(m.first_shape) + k].def;

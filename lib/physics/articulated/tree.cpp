@@ -31,6 +31,35 @@ bool is_massless(const Inertia& inertia) {
          std::all_of(inertia.moment, inertia.moment + 6, [](double m) { return m == 0; });
 }
 
+// The solver's stiffness gives way to heavy links: a joint of inertia I that runs into its end at rate v goes
+// beyond by about v h / (1 + h^2 k / I). From kHeavy on, k is kStiff I / h^2, with I the most that the joint
+// may carry in any pose (kg m2, kg).
+constexpr double kHeavy = 0.05, kStiff = 10;
+
+void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* member) {
+  const SolverDef& solver = scene.def.solver;
+  const auto count = def.links.size();
+  Vector<double> carried(count);
+  for (size_t k = 0; k < count; ++k) {
+    const Inertia& inertia = def.links[k].inertia;
+    const double moment = inertia.moment[0] + inertia.moment[1] + inertia.moment[2];
+    double reach = norm(inertia.com);
+    for (auto i = static_cast<int32_t>(k); i >= 0;) {
+      const LinkDef& link = def.links[static_cast<size_t>(i)];
+      const bool slides = link.joint.kind == JointKind::kPrismatic;
+      carried[static_cast<size_t>(i)] += slides ? inertia.mass : inertia.mass * reach * reach + moment;
+      reach += norm(link.X_PL.p);
+      if (slides) reach += std::max(std::fabs(link.joint.lower), std::fabs(link.joint.upper));
+      i = link.parent;
+    }
+  }
+  for (size_t i = 0; i < count; ++i) {
+    double k = solver.limit_stiffness;
+    if (k > 0 && carried[i] > kHeavy) k = std::max(k, kStiff * carried[i] / (solver.h * solver.h));
+    member->links[i].limit_stiffness = k;
+  }
+}
+
 TreeMember make_member(const Scene& scene, int32_t articulation) {
   const ArticulationDef& def = scene.def.articulations[static_cast<size_t>(articulation)];
   TreeMember member;
@@ -60,6 +89,7 @@ TreeMember make_member(const Scene& scene, int32_t articulation) {
     out.joint = link.joint;
     member.links.push_back(out);
   }
+  set_limits(scene, def, &member);
   for (const ArticulationShape& s : def.shapes) {
     const Mat3 R_JL = s.link < 0 ? Mat3{} : transpose(member.links[static_cast<size_t>(s.link)].R_LJ);
     member.shapes.push_back({R_JL * to_matrix(s.shape.X_LS.q), R_JL * s.shape.X_LS.p});

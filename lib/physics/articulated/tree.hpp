@@ -38,6 +38,7 @@ struct MemberLink {
   Quat q_PJ, q_LJ;  // the same two rotations; their signs make link quaternions continuous in the coordinates
   Inertia inertia;  // in joint axes
   JointDef joint;
+  double limit_stiffness;  // N m/rad (N/m) of the joint's ends
 };
 
 struct TreeShape {

@@ -50,7 +50,7 @@ template <class L>
 struct LinkModel : LinkConstants<typename L::V> {
   using V = typename L::V;
   V R_PJ[9], q_PJ[4], p_PJ[3], com[3];
-  V lower, upper, ratio, slack;
+  V lower, upper, ratio, slack, limit_stiffness;
 };
 
 // One substep's values, per link.
@@ -82,7 +82,7 @@ struct TreeBatch : BaseConstants<typename L::V> {
   using Mask = typename L::Mask;
 
   const Tree* tree;
-  S h, inv_h, limit_stiffness;
+  S h, inv_h;
   bool spring_only, any_push;
   Mask frozen;  // lanes whose active sets stay for this substep
   V base_R[9], base_q[4], base_com[3];
