@@ -293,6 +293,33 @@ TEST(HeavyArm, FollowsMovingTargetsAndComesBackFromAPush) {
   EXPECT_LT(worst, 0.02);
 }
 
+// Contacts give way to a force, by what scenes say: contact_cfm h / erp.
+TEST(HeavyArm, PressesOnTheGround) {
+  SceneDef def;
+  def.solver.contact_cfm = 1e-6;
+  def.articulations = {heavy_arm(0)};
+  def.statics.push_back(test::make_plane());
+  test::Simulation sim(def, kEngine);
+  const double start[6] = {0, 1.3, 0.5, 0, 0.5, 0}, still[6] = {};
+  sim->set_joints(0, start, still);
+  for (int32_t i = 0; i < 6; ++i) sim->target()[i] = start[i];
+  sim->target()[1] = 2.2;  // far below the ground
+  double force = 0, depth = 0;
+  for (int k = 0; k < 600; ++k) {
+    sim->step();
+    ASSERT_EQ(sim->status(), 0u);
+    if (k < 300) continue;
+    force = 0;
+    for (int32_t c = 0; c < sim->num_contacts(); ++c) {
+      force += sim->contacts()[c].force.z;
+      depth = std::max(depth, sim->contacts()[c].depth);
+    }
+    EXPECT_GT(force, 4500) << k;  // the effort's bound over the lever, and the weight
+    for (int32_t i = 0; i < 6; ++i) EXPECT_LT(std::fabs(sim->qd()[i]), 1e-3) << k;
+  }
+  EXPECT_LT(depth, def.solver.contact_layer + 1e-3);
+}
+
 // What a passive arm conserves: energy, to the order of the substep.
 TEST(HeavyArm, FreeFallKeepsItsEnergy) {
   SceneDef def;

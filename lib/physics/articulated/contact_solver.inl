@@ -7,8 +7,10 @@
 //   normal    0 <= n   complementary to   J_n v1 + softness n >= b,  b = erp (depth - layer) / h, bounded
 //   friction  |(t, u)| <= mu n, and J_t v1 = J_u v1 = 0 unless on the cone's edge, there against the slip
 // b is the push-out speed of Baumgarte's stabilisation, softness = cfm / h (Catto, Soft Constraints, GDC
-// 2011). A cone and not a pyramid: sliding is opposed along the slip, and the angle at which a body starts to
-// slide does not depend on its heading.
+// 2011). Under a steady force F a contact so gives way by F cfm h / erp beyond the layer, and it holds no
+// more than F = contact_max_speed / cfm: 4 kN as scenes come; arms that press harder want a smaller cfm. A
+// cone and not a pyramid: sliding is opposed along the slip, and the angle at which a body starts to slide
+// does not depend on its heading.
 //
 // Half solve. M = L^T D L (tree_dynamics.inl), so M^-1 = Z^T Z with Z = D^-1/2 L^-T. A contact row is stored
 // as z = Z J^T (MuJoCo's mj_solveM2), for a free body as sqrt(1/m) J_v and C^-1 R^T J_w (I = C C^T). Then
