@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "mounted.hpp"
+#include "large_robots.hpp"
 #include "physics/articulated/tree.hpp"
 #include "physics/gravity_torques.hpp"
 #include "quality_bodies.hpp"
