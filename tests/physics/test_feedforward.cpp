@@ -314,5 +314,29 @@ TEST_P(Feedforward, WeightlessLinksDoNotFallWithTheirArm) {
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(floats->q()[i], 0, 1e-9) << i;
 }
 
+// Engine ode makes one body of two links whose axes meet; not where one of them alone has weight.
+TEST(WeightlessLinks, ShareNoBodyWithAHeavyOne) {
+  SceneDef def;
+  ArticulationDef a;
+  a.gravity = true;
+  a.links.push_back(make_link(-1, {}, {1, 0, 0}, 0.5, {0, 0.1, 0}));
+  a.links.push_back(make_link(0, {}, {0, 1, 0}, 0.5, {0.1, 0, 0}));
+  a.links[0].weightless = true;
+  for (LinkDef& link : a.links) {
+    link.X_PL = {};
+    link.joint.kp = link.joint.kd = 0;
+  }
+  def.articulations.push_back(a);
+  def.solver.exact = true;
+  test::Simulation world(def, EngineKind::kArticulated), ode(def, EngineKind::kOde);
+  for (int k = 0; k < 5; ++k) {
+    world->step();
+    ode->step();
+  }
+  EXPECT_GT(world->qd()[1], 1);
+  EXPECT_NEAR(world->qd()[0], 0, 1e-3);  // its own mass would turn it
+  for (int i = 0; i < 2; ++i) EXPECT_NEAR(ode->qd()[i], world->qd()[i], 0.03 * world->qd()[1]) << i;
+}
+
 }  // namespace
 }  // namespace rdm

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cfloat>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 
 #include "base/error.hpp"
 #include "physics/limits.hpp"
@@ -129,19 +131,20 @@ template <class S>
 void ArticulatedWorld::own_constants_of(const TreeMember& member) {
   S* to = static_cast<S*>(state_.constants) + first_constant(*scene_, member.articulation);
   bool heavier = false;
-  const auto put = [&](const auto& record, size_t first_mass, size_t masses) {
+  const auto put = [&](const auto& record, size_t mass_at) {
     double from[sizeof record / sizeof(double)];
     std::memcpy(from, &record, sizeof record);
+    const size_t mass = mass_at / sizeof(double), end = mass + 7;  // mass and moments
     for (size_t k = 0; k < std::size(from); ++k) {
       const S x = static_cast<S>(from[k]);
-      heavier |= k >= first_mass && k < first_mass + masses && to[k] != x;
+      heavier |= k >= mass && k < end && to[k] != x;
       to[k] = x;
     }
     to += std::size(from);
   };
-  put(base_constants(shared_->model, member, &dynamics_), 5, 7);
+  put(base_constants(shared_->model, member, &dynamics_), offsetof(BaseConstants<double>, base_mass));
   for (int32_t i = 0; i < static_cast<int32_t>(member.links.size()); ++i)
-    put(link_constants(shared_->model, member, i, &dynamics_), 0, 7);
+    put(link_constants(shared_->model, member, i, &dynamics_), offsetof(LinkConstants<double>, mass));
   heavier_[member.articulation] = heavier;
 }
 
