@@ -85,13 +85,15 @@ Options read_options(const rdm_import_options* in) {
       refuse(RDM_RANGE, "options.kind: %d is outside [-1, 2]", o.kind);
     if (o.skip_meshes != 0 && o.skip_meshes != 1)
       refuse(RDM_RANGE, "options.skip_meshes: %d is outside [0, 1]", o.skip_meshes);
-    if (o.reserved != 0) refuse(RDM_ARGUMENT, "options.reserved is not 0");
+    if (o.mend_inertia != 0 && o.mend_inertia != 1)
+      refuse(RDM_RANGE, "options.mend_inertia: %d is outside [0, 1]", o.mend_inertia);
   }
   Options out;
   const auto text = [](const char* t) { return std::string(t ? t : ""); };
   out.format = o.format;
   out.kind = o.kind;
   out.skip_meshes = o.skip_meshes != 0;
+  out.mend_inertia = o.mend_inertia != 0;
   out.name = text(o.name);
   out.folder = text(o.folder);
   if (!out.folder.empty() && out.folder.back() != '/') out.folder += '/';
@@ -103,6 +105,33 @@ Options read_options(const rdm_import_options* in) {
   out.mount = text(o.mount);
   out.flange = text(o.flange);
   return out;
+}
+
+// What rdm_robot_create says of it, but that nothing is added: under a name that is taken the robot is looked
+// at, and then refused for its name alone.
+void try_create(rdm_robot_def def) {
+  rdm_robot taken{};
+  taken.struct_size = sizeof taken;
+  if (const rdm_result r = rdm_robot_at(0, &taken)) refuse(r, "%s", rdm_last_error());
+  const std::string name = def.name ? def.name : "";
+  const rdm_robot_def asked = def;
+  def.name = taken.name;
+  def.alias = nullptr;
+  int32_t robot = -1;
+  const rdm_result r = rdm_robot_create(&robot, &def);
+  std::string text = rdm_last_error();
+  const std::string head = std::string("robot ") + taken.name + ": ";
+  if (text != head + "the name is taken") {
+    if (text.compare(0, head.size(), head) == 0) text.replace(0, head.size(), "robot " + clean(name) + ": ");
+    refuse(r ? r : RDM_INTERNAL, "%s", text.c_str());
+  }
+  // Names are looked at before the rows are, so that a wrong one is told first.
+  def.name = asked.name;
+  def.num_links = 0;
+  (void)rdm_robot_create(&robot, &def);
+  text = rdm_last_error();
+  if (text.find("the name is") != std::string::npos || text.find("a name is made of") != std::string::npos)
+    refuse(RDM_ARGUMENT, "%s", text.c_str());
 }
 
 void read(const std::string& bytes, const Options& options, Draft* out) {
@@ -119,6 +148,7 @@ void read(const std::string& bytes, const Options& options, Draft* out) {
     read_urdf(bytes, options, out);
   else
     read_robot(bytes, options, out);
+  try_create(out->def);
 }
 
 void give(rdm_import** out, std::unique_ptr<rdm_import> made) {
@@ -255,20 +285,7 @@ rdm_result rdm_import_note_at(const rdm_import* i, int32_t n, rdm_import_note* o
 rdm_result rdm_import_check(rdm_import* i) {
   return call(nullptr, [&] {
     need_handle(i);
-    // Under a name that nobody has, so that one which is there can be checked too.
-    rdm_robot_def def = i->draft.def;
-    const std::string trial =
-        format("check_%llx", static_cast<unsigned long long>(reinterpret_cast<uintptr_t>(i)));
-    def.name = trial.c_str();
-    def.alias = nullptr;
-    int32_t robot = -1;
-    if (const rdm_result r = rdm_robot_create(&robot, &def)) {
-      std::string text = rdm_last_error();
-      const size_t at = text.find(trial);
-      if (at != std::string::npos) text.replace(at, trial.size(), i->draft.def.name);
-      refuse(r, "%s", text.c_str());
-    }
-    rdm_robot_remove(robot);
+    try_create(i->draft.def);
     check_robot(&i->draft);
   });
 }

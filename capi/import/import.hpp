@@ -65,7 +65,7 @@ struct Draft {
 // Options with every text in a string; what is NULL is not `given`.
 struct Options {
   int32_t format = RDM_IMPORT_AUTO, kind = -1;
-  bool skip_meshes = false;
+  bool skip_meshes = false, mend_inertia = false;
   std::string name, folder, packages, root, palm, tips, mount, flange;
   bool has_folder = false;
   std::string file;  // as it is named in texts

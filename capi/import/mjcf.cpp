@@ -196,8 +196,8 @@ struct Reader {
       if (!counts) return;
     }
     if (kind == "plane" || kind == "hfield" || kind == "sdf") {
-      out->note(RDM_NOTE_DROPPED, e.line, "geom %s: type %s%s", clean(name).c_str(), clean(kind).c_str(),
-                in_file(e).c_str());
+      out->note(RDM_NOTE_DROPPED, e.line, "geom%s%s: type %s%s", *name ? " " : "", clean(name).c_str(),
+                clean(kind).c_str(), in_file(e).c_str());
       return;
     }
     Primitive p;
@@ -277,7 +277,9 @@ struct Reader {
       back_to.q = normalized({n[1], n[2], n[3], n[0]});
     }
     for (V3& v : mesh.points) v = back(back_to) * V3{scale.x * v.x, scale.y * v.y, scale.z * v.z};
-    return &(fits[&asset] = {around(mesh.points), solid(mesh)});
+    const Primitive hull = around(mesh.points);
+    const Mass filled = solid(mesh);
+    return &(fits[&asset] = {hull, filled.mass > 0 ? filled : solid(hull)});
   }
   std::map<const Element*, std::pair<Primitive, Mass>> fits;
 
@@ -394,11 +396,7 @@ struct Reader {
       }
     }
     bounded(&m);
-    try {
-      check_mass(e, m.mass, m.moment);
-    } catch (const Refusal& r) {
-      refuse_at(r.code, e, "body %s: %s", name.c_str(), r.text.substr((where(e) + ": ").size()).c_str());
-    }
+    check_mass(e, "body " + name, options.mend_inertia, &m, out);
     return X * m;
   }
   void bounded(Mass* m) const {

@@ -168,7 +168,12 @@ struct Builder {
       l.mass = m.mass;
       put(m.com, l.com);
       give_moment(m.moment, l.moment);
-      if (m.mass > 0) continue;
+      if (m.mass > 0) {
+        const auto p = principal(m.moment, nullptr);
+        if (!(*std::min_element(p.begin(), p.end()) > 0))
+          refuse_at(RDM_ARGUMENT, *bodies[r]->element, "it moves, and its moments of inertia are 0");
+        continue;
+      }
       const bool carries =
           std::any_of(out->links.begin(), out->links.end(),
                       [&](const rdm_robot_link& other) { return other.parent == static_cast<int32_t>(r); });
@@ -244,6 +249,13 @@ struct Builder {
       const JointIn& j = *joints[r];
       rdm_robot_link& l = out->links[r];
       l.effort = j.effort;
+      if (!(l.effort > 0))  // what leads it pulls it
+        for (const rdm_robot_coupling& c : out->couplings)
+          if (c.link == static_cast<int32_t>(r) && joints[static_cast<size_t>(c.other)]->effort > 0) {
+            l.effort = joints[static_cast<size_t>(c.other)]->effort;
+            out->note(RDM_NOTE_GUESSED, j.element->line,
+                      "joint %s: effort %.4g, as the joint has that leads it", l.joint, l.effort);
+          }
       if (!(l.effort > 0)) {  // twice the weight of what it carries at arm's length
         double load = 0;
         for (size_t k = 0; k < out->links.size(); ++k)
@@ -336,17 +348,24 @@ struct Builder {
 
 }  // namespace
 
-void check_mass(const Element& e, double mass, const M3& moment) {
-  if (!(mass > 0)) refuse_at(RDM_RANGE, e, "the mass %g is not above 0", mass);
-  const auto p = principal(moment, nullptr);
+void check_mass(const Element& e, const std::string& what, bool mend, Mass* m, Draft* out) {
+  if (!(m->mass > 0)) refuse_at(RDM_RANGE, e, "%s: the mass %g is not above 0", what.c_str(), m->mass);
+  M3 axes{};
+  const auto p = principal(m->moment, &axes);
   const double least = *std::min_element(p.begin(), p.end()), sum = p[0] + p[1] + p[2],
                most = *std::max_element(p.begin(), p.end());
-  if (!(least > 0))
-    refuse_at(RDM_ARGUMENT, e, "the principal moments of inertia %g, %g, %g are not all above 0", p[0], p[1],
-              p[2]);
-  if (sum - most < most * (1 - 1e-6))
-    refuse_at(RDM_ARGUMENT, e, "the principal moments of inertia %g, %g, %g break the triangle rule", p[0],
-              p[1], p[2]);
+  if (most == 0 && least == 0) return;  // a point
+  const double lacks = std::max({0.0, 2 * most - sum, 1e-3 * most - least});
+  const bool positive = least > 0, triangle = sum - most >= most * (1 - 1e-6);
+  if (positive && triangle) return;
+  if (!mend)
+    refuse_at(RDM_ARGUMENT, e, "%s: the principal moments of inertia %g, %g, %g %s", what.c_str(), p[0], p[1],
+              p[2], positive ? "break the triangle rule" : "are not all above 0");
+  if (!(most > 0)) refuse_at(RDM_ARGUMENT, e, "%s: no moment of inertia is above 0", what.c_str());
+  for (size_t k = 0; k < 3; ++k) m->moment[k][k] += lacks;
+  out->note(RDM_NOTE_CHANGED, e.line,
+            "%s: principal moments %g, %g, %g break the triangle rule: %g was added to each", what.c_str(),
+            p[0], p[1], p[2], lacks);
 }
 
 Primitive primitive_of(const rdm_robot_shape& s) {

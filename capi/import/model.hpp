@@ -68,8 +68,9 @@ struct Place {
 };
 using Places = std::map<std::string, Place>;  // by name in the file, and by the name it got
 
-// Refuses what breaks the triangle rule, is not positive, or has a mass that is not.
-void check_mass(const Element& e, double mass, const M3& moment);
+// Refuses a mass that is not above 0, moments that are negative or break the triangle rule; `mend` adds to each what they
+// lack, with a note. Moments that are all 0 are a point's. `what` is the link, for the text.
+void check_mass(const Element& e, const std::string& what, bool mend, Mass* m, Draft* out);
 
 void build(const Model& model, const Options& options, Draft* out);
 // Kind, palm, fingers, mount, flange and poses, as far as options do not say them.

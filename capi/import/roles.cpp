@@ -20,7 +20,7 @@ struct Guess {
   const Options& options;
   Draft* out;
   std::vector<int32_t> ends;
-  std::vector<Pose> poses;       // at home
+  std::vector<Pose> poses;       // with the joints at 0
   int32_t fork = RDM_ROOT_LINK;  // the last row that all ends hang on
   int32_t stem = 0;              // joints up to it
 
@@ -40,7 +40,9 @@ struct Guess {
   }
 
   void find_ends() {
-    poses = link_poses(*out, home_of(*out));
+    std::vector<double> straight;
+    for (const rdm_robot_link& l : out->links) straight.push_back(std::clamp(0.0, l.lower, l.upper));
+    poses = link_poses(*out, straight);
     const auto count = static_cast<int32_t>(out->links.size());
     for (int32_t r = 0; r < count; ++r) {
       const bool carries = std::any_of(out->links.begin(), out->links.end(),
@@ -96,7 +98,7 @@ struct Guess {
     std::string name;
     int32_t first, tip;
     V3 p_tip;
-    V3 root, end;  // at home, in the root frame
+    V3 root, end;  // with the joints at 0, in the root frame
     bool thumb = false;
   };
   std::vector<Finger> fingers;
@@ -255,13 +257,12 @@ struct Guess {
           std::any_of(taken.begin(), taken.end(), [&](const std::string& t) { return same_name(t, f.name); }))
         f.name = "finger" + std::to_string(i + 1);
       taken.push_back(f.name);
-      out->note(RDM_NOTE_GUESSED, 0, "%s %s: %s to %s, its end at %.4g %.4g %.4g",
-                f.thumb ? "thumb" : "finger", f.name.c_str(), name(f.first), name(f.tip), f.p_tip.x,
-                f.p_tip.y, f.p_tip.z);
+      out->note(RDM_NOTE_GUESSED, 0, "finger %s%s: %s to %s, its end at %.4g %.4g %.4g", f.name.c_str(),
+                f.thumb ? ", the thumb" : "", name(f.first), name(f.tip), f.p_tip.x, f.p_tip.y, f.p_tip.z);
     }
   }
 
-  // The way joint `row` moves a point at home when it grows, in the root frame.
+  // The way joint `row` moves a point when it grows from 0, in the root frame.
   V3 motion(int32_t row, V3 point) const {
     const Pose& X = poses[static_cast<size_t>(row)];
     const V3 axis = X.q * vec(out->links[static_cast<size_t>(row)].axis);

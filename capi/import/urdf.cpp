@@ -116,20 +116,11 @@ struct Reader {
       out->note(RDM_NOTE_CHANGED, mass->line, "link %s has no mass", clean(l.find("name")->value).c_str());
       return out_mass;
     }
-    if (!(m > 0))
-      refuse_at(RDM_RANGE, *mass, "link %s: the mass %g is not above 0", clean(l.find("name")->value).c_str(),
-                m);
-    check_named(*inertia, l, m, moment);
-    return X * Mass{m, {}, moment};
-  }
-  static void check_named(const Element& e, const Element& l, double m, const M3& moment) {
-    try {
-      check_mass(e, m, moment);
-    } catch (const Refusal& r) {
-      const std::string head = where(e) + ": ";
-      refuse_at(r.code, e, "link %s: %s", clean(l.find("name")->value).c_str(),
-                r.text.substr(head.size()).c_str());
-    }
+    const std::string what = "link " + clean(l.find("name")->value);
+    if (!(m > 0)) refuse_at(RDM_RANGE, *mass, "%s: the mass %g is not above 0", what.c_str(), m);
+    Mass read{m, {}, moment};
+    check_mass(*inertia, what, options.mend_inertia, &read, out);
+    return X * read;
   }
 
   void add_shapes(const Element& l, BodyIn* body) {

@@ -56,7 +56,7 @@ typedef struct rdm_import_options { /* how a file is read; what a .robot file sa
   const char *flange;      /* link or site, "none"; NULL: guessed                                         */
   char *error;             /* [error_size] the text of a failing call that takes these options; NULL      */
   int32_t error_size;      /* bytes, terminator included; what is longer is cut                           */
-  int32_t reserved;        /* 0                                                                           */
+  int32_t mend_inertia;    /* flag: moments that break the triangle rule are raised with a note, else refused */
 } rdm_import_options;
 typedef struct rdm_import_note { /* frozen layout; texts live as long as the handle */
   int32_t kind;            /* RDM_NOTE_*                                                                  */
