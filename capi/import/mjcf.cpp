@@ -190,9 +190,9 @@ struct Reader {
     const char* name = e.find("name") ? e.find("name")->value.c_str() : "";
     if (visual) {
       for (const Attribute& a : e.attributes) a.read = true;
-      out->note(RDM_NOTE_DROPPED, e.line, "geom %s%s: seen alone (contype and conaffinity 0)%s",
-                clean(name).c_str(), mesh_name ? (" mesh " + clean(*mesh_name)).c_str() : "",
-                in_file(e).c_str());
+      out->note(RDM_NOTE_DROPPED, e.line, "geom%s%s%s: seen alone (contype and conaffinity 0)%s",
+                *name ? " " : "", clean(name).c_str(),
+                mesh_name ? (" mesh " + clean(*mesh_name)).c_str() : "", in_file(e).c_str());
       if (!counts) return;
     }
     if (kind == "plane" || kind == "hfield" || kind == "sdf") {
