@@ -68,8 +68,8 @@ struct Place {
 };
 using Places = std::map<std::string, Place>;  // by name in the file, and by the name it got
 
-// Refuses a mass that is not above 0, moments that are negative or break the triangle rule; `mend` adds to each what they
-// lack, with a note. Moments that are all 0 are a point's. `what` is the link, for the text.
+// Refuses a mass that is not above 0, moments that are negative or break the triangle rule; `mend` adds to
+// each what they lack, with a note. Moments that are all 0 are a point's. `what` is the link, for the text.
 void check_mass(const Element& e, const std::string& what, bool mend, Mass* m, Draft* out);
 
 void build(const Model& model, const Options& options, Draft* out);

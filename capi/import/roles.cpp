@@ -6,7 +6,7 @@
 // apart.
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
+#include <charconv>
 
 #include "model.hpp"
 
@@ -338,13 +338,13 @@ struct Guess {
     rdm_robot_def& d = out->def;
     Pose X;
     if (!options.mount.empty()) {
-      const char* c = options.mount.c_str();
+      const char *c = options.mount.data(), *end = c + options.mount.size();
       double v[6];
       int k = 0;
       for (; k < 6; ++k) {
-        char* after = nullptr;
-        v[k] = std::strtod(c, &after);
-        if (after == c || !(std::abs(v[k]) < 1e3)) break;
+        while (c != end && (*c == ' ' || *c == ',')) ++c;
+        const auto [after, error] = std::from_chars(c, end, v[k]);
+        if (error != std::errc() || !(std::abs(v[k]) < 1e3)) break;
         c = after;
       }
       if (k == 6) {
