@@ -1,10 +1,19 @@
 // The .robot file: TOML, one key for each member of rdm_robot_def and its rows, rows named instead of
 // numbered. Numbers are the shortest text that reads back to the same bits. A key that is left out is 0,
 // "none" or what rdm_robot_def_init gives.
+namespace {
+struct ParserFault {};  // what the parser takes to be impossible is not: it must not end the process
+[[noreturn]] void parser_fault() {
+  throw ParserFault{};
+}
+}  // namespace
+#undef NDEBUG
+#define TOML_ASSERT(condition) ((condition) ? static_cast<void>(0) : parser_fault())
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 1
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdarg>
@@ -594,6 +603,8 @@ void read_robot(const std::string& bytes, const Options& options, Draft* out) {
     file = toml::parse(std::string_view(bytes));
   } catch (const toml::parse_error& e) {
     refuse(RDM_FORMAT, "line %d: %s", line_of(e.source()), clean(std::string(e.description()), 200).c_str());
+  } catch (const ParserFault&) {
+    refuse(RDM_FORMAT, "line %ld: no TOML", std::count(bytes.begin(), bytes.end(), '\n') + 1);
   }
   RobotReader reader{file, out};
   reader.read(options);
