@@ -31,7 +31,7 @@ struct OptionTableView {
 // A task's own, and those that every task has.
 std::array<OptionTableView, 3> tables_of(const TaskInfo& info) {
   std::array<OptionTableView, 3> t;
-  t[0].rows = info.options(&t[0].count);
+  t[0].rows = info.options(&t[0].count, nullptr);
   t[1].rows = sense_options(&t[1].count);
   t[2].rows = repeat_options(&t[2].count);
   return t;

@@ -21,12 +21,17 @@ constexpr std::array<LearnerDefault, N + M> join_defaults(const std::array<Learn
 
 // TaskInfo::options of a constant array, and of a table that `fill` makes at the first call.
 template <const auto& kRows>
-const OptionSpec* constant_options(int32_t* count) {
+const OptionSpec* constant_options(int32_t* count, OptionTable*) {
   *count = static_cast<int32_t>(std::size(kRows));
   return std::data(kRows);
 }
 template <void (*fill)(OptionTable&)>
-const OptionSpec* filled_options(int32_t* count) {
+const OptionSpec* filled_options(int32_t* count, OptionTable* chosen) {
+  if (chosen) {
+    fill(*chosen);
+    *count = chosen->count();
+    return chosen->rows();
+  }
   struct Filled : OptionTable {
     Filled() { fill(*this); }
   };
@@ -38,7 +43,7 @@ const OptionSpec* filled_options(int32_t* count) {
 // A T is made from the constants, if any, and the options. Alias null: none.
 template <class T, const auto& kCosts, const auto& kCameras, const auto& kDefaults, auto... kConstants>
 constexpr TaskInfo task_info(const char* name, const char* alias, const char* summary,
-                             const OptionSpec* (*options)(int32_t*)) {
+                             const OptionSpec* (*options)(int32_t*, OptionTable*)) {
   return {name,
           alias,
           summary,

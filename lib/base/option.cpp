@@ -190,13 +190,29 @@ void Options::set(const OptionInput& input, const char* owner) {
 }
 
 void Options::set_lines(const char* lines, const char* owner) {
+  each_line(lines, owner, false);
+}
+
+void Options::set_known(const OptionInput* inputs, int32_t count, const char* lines, const char* owner) {
+  for (int32_t i = 0; i < count; ++i)
+    if (inputs[i].key && knows(inputs[i].key)) set(inputs[i], owner);
+  each_line(lines, owner, true);
+}
+
+bool Options::chosen() const {
+  return std::any_of(rows_.begin(), rows_.end(), [](const Row& r) { return r.given && r.spec->chooses; });
+}
+
+// `known`: other lines are left out.
+void Options::each_line(const char* lines, const char* owner, bool known) {
   Vector<char> key, value;
   int32_t number = 0;
   for (const char* at = lines; at && *at;) {
     const char* end = at + std::strcspn(at, "\n");
     ++number;
     try {
-      if (split_line(at, end, &key, &value)) set({key.data(), value.data(), 0}, owner);
+      if (split_line(at, end, &key, &value) && (!known || knows(key.data())))
+        set({key.data(), value.data(), 0}, owner);
     } catch (const Error& e) {
       fail(e.code, "settings line %d: %s", number, e.text);
     }

@@ -20,6 +20,7 @@ struct OptionSpec {
   const char* help;      // one line with unit
   bool live;             // may change after creation (rdm_agent_set)
   int32_t longest = 63;  // characters of a text
+  bool chooses = false;  // what other rows the table has follows from it
 };
 
 constexpr OptionSpec number_option(const char* key, double value, double low, double high, const char* help,
@@ -60,6 +61,9 @@ class Options {
   // Lines key=value; spaces about either, '\r' and empty lines do not count. NULL: none. The errors of set,
   // with the number of the line; kArgument for a line without '='.
   void set_lines(const char* lines, const char* owner);
+  // The same for what a host gives, but for keys that are unknown: those are left for another table.
+  void set_known(const OptionInput* inputs, int32_t count, const char* lines, const char* owner);
+  bool chosen() const;  // a row that chooses others was given
   bool knows(const char* key) const { return find(key) >= 0; }
 
   double number(const char* key) const;
@@ -81,6 +85,7 @@ class Options {
   void set_default(const char* key, const char* text);
 
  private:
+  void each_line(const char* lines, const char* owner, bool known);
   struct Row {
     const OptionSpec* spec;
     double number;

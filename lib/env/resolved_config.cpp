@@ -10,12 +10,17 @@ namespace {
 
 constexpr int32_t kMaxEnvs = 65536, kMaxThreads = 256;
 
+void set_all(const PoolConfig& config, const char* owner, Options* out) {
+  for (int32_t i = 0; i < config.num_options; ++i) out->set(config.options[i], owner);
+  out->set_lines(config.settings, owner);
+}
+
+}  // namespace
+
 // Of what decides a world's course: not of what is seen of it.
-uint64_t hash_options(const TaskInfo& info, const Options& options) {
-  uint64_t hash = hash_bytes(info.name, std::strlen(info.name) + 1);
-  int32_t count = 0;
-  info.options(&count);
-  for (int32_t i = 0; i < count; ++i) {
+uint64_t ResolvedPoolConfig::hash_options() const {
+  uint64_t hash = hash_bytes(info->name, std::strlen(info->name) + 1);
+  for (int32_t i = 0; i < task_rows; ++i) {
     const OptionSpec& spec = options.spec(i);
     hash = hash_bytes(spec.key, std::strlen(spec.key) + 1, hash);
     if (spec.kind == OptionKind::kText) {
@@ -32,21 +37,26 @@ uint64_t hash_options(const TaskInfo& info, const Options& options) {
   return hash;
 }
 
-void read_options(const PoolConfig& config, const TaskInfo& info, Options* out) {
-  if (config.num_options < 0 || (config.num_options > 0 && !config.options))
-    fail(Code::kArgument, "options: %d given, but no list", config.num_options);
+// A first look finds what chooses other rows (the robots); with those in place all keys must be known.
+void ResolvedPoolConfig::read_options(const PoolConfig& c) {
+  if (c.num_options < 0 || (c.num_options > 0 && !c.options))
+    fail(Code::kArgument, "options: %d given, but no list", c.num_options);
+  const OptionSpec* specs = info->options(&task_rows, nullptr);
+  Options first;
+  first.add_table(specs, task_rows);
+  first.set_known(c.options, c.num_options, c.settings, info->name);
+  if (first.chosen()) {
+    table = host_new<OptionTable>(c.hooks, &first);
+    specs = info->options(&task_rows, table);
+  }
+  options.add_table(specs, task_rows);
   int32_t count = 0;
-  const OptionSpec* specs = info.options(&count);
-  out->add_table(specs, count);
   specs = sense_options(&count);
-  out->add_table(specs, count);
+  options.add_table(specs, count);
   specs = repeat_options(&count);
-  out->add_table(specs, count);
-  for (int32_t i = 0; i < config.num_options; ++i) out->set(config.options[i], info.name);
-  out->set_lines(config.settings, info.name);
+  options.add_table(specs, count);
+  set_all(c, info->name, &options);
 }
-
-}  // namespace
 
 TaskHandle make_task(const TaskInfo& info, const Options& options, const HostHooks& hooks) {
   const HostScope scope(hooks);
@@ -63,10 +73,17 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
   config.task = info->name;
   config.options = nullptr;
   config.settings = nullptr;
-  read_options(c, *info, &options);
+  const HostScope scope(config.hooks);
+  struct Undo {  // what a constructor that fails leaves
+    ResolvedPoolConfig* made;
+    ~Undo() {
+      if (made) host_delete(made->config.hooks, made->table);
+    }
+  } undo{this};
+  read_options(c);
   sense = sense_from(options, *info);
   repeat = repeat_from(options, *info);
-  options_hash = hash_options(*info, options);
+  options_hash = hash_options();
   task = make_task(*info, options, config.hooks);
   obs_dim = rdm::obs_dim(*task);
   action_dim = task->action_dim();
@@ -74,6 +91,11 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
   obs_limit = task->obs_limit();
   Arena measure;  // the engine refuses here what it cannot do
   World::measure(task->engine(), task->scene(), measure);
+  undo.made = nullptr;
+}
+
+ResolvedPoolConfig::~ResolvedPoolConfig() {
+  host_delete(config.hooks, table);
 }
 
 int32_t ResolvedPoolConfig::num_blocks() const {

@@ -3,6 +3,7 @@
 #pragma once
 #include "env/options/repeat.hpp"
 #include "env/options/sense.hpp"
+#include "env/options/table.hpp"
 #include "env/pool.hpp"
 #include "env/task.hpp"
 
@@ -12,9 +13,15 @@ struct ResolvedPoolConfig {
   // All that can be wrong with a config is found here, and all but the engine's limits before the task is
   // made.
   explicit ResolvedPoolConfig(const PoolConfig& c);
+  ~ResolvedPoolConfig();
+  ResolvedPoolConfig(const ResolvedPoolConfig&) = delete;
+  ResolvedPoolConfig& operator=(const ResolvedPoolConfig&) = delete;
 
   PoolConfig config;  // its options are laid in: list and lines are gone
   Options options;
+  OptionTable* table =
+      nullptr;            // rows of the task, where the host's choices made others than the static ones
+  int32_t task_rows = 0;  // that the task has of `options`
   int32_t task_index = -1;
   const TaskInfo* info = nullptr;
   SenseConfig sense;
@@ -27,6 +34,10 @@ struct ResolvedPoolConfig {
   size_t num() const { return static_cast<size_t>(config.num_envs); }
   int32_t num_blocks() const;
   int32_t block_begin(int32_t block) const;  // first world of a block; of num_blocks(): num_envs
+
+ private:
+  void read_options(const PoolConfig& c);
+  uint64_t hash_options() const;
 };
 
 }  // namespace rdm

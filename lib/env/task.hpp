@@ -13,6 +13,8 @@
 
 namespace rdm {
 
+class OptionTable;
+
 inline constexpr int kMaxTaskCosts = 16;
 
 inline constexpr float kUnbounded = std::numeric_limits<float>::quiet_NaN();
@@ -81,7 +83,8 @@ struct TaskInfo {
   const char* name;
   const char* alias;  // Safety-Gymnasium's id, null: none
   const char* summary;
-  const OptionSpec* (*options)(int32_t* count);  // table, static after the first call
+  // The table, static after the first call; with `chosen` given, filled there by what it says was chosen.
+  const OptionSpec* (*options)(int32_t* count, OptionTable* chosen);
   const CostSpec* costs;
   int32_t num_costs;
   const CameraSpec* cameras;

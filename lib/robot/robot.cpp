@@ -167,6 +167,13 @@ int32_t Robot::action_of(int32_t link) const {
   return entry;
 }
 
+int32_t Robot::leading_action(int32_t link) const {
+  for (const RobotCoupling& c : couplings)
+    if (c.link == link) return action_of(c.other);
+  const RobotCurve* c = curve(link);
+  return action_of(c ? c->driver : link);
+}
+
 ArticulationDef make_articulation(const Robot& robot, Side side, const Pose& X_WB, const char* prefix) {
   if (side == Side::kLeft && robot.mirror < 0)
     fail(Code::kUnsupported, "%s: this robot has no left side", robot.name);

@@ -146,6 +146,14 @@ struct Robot {
   int32_t actuated(int32_t i) const;
   // The other way round: place of a link's joint in action order, -1: none, or no such link.
   int32_t action_of(int32_t link) const;
+  // The same of the joint that leads it, where it follows another.
+  int32_t leading_action(int32_t link) const;
+  // The palm's own joint and that of the link before it, which a hand with a wrist has: rows, else -1.
+  int32_t wrist_flexion() const { return palm >= arm_links ? palm : -1; }
+  int32_t wrist_deviation() const {
+    const int32_t link = wrist_flexion() < 0 ? -1 : links[palm].parent;
+    return link >= arm_links ? link : -1;
+  }
 
  private:
   bool follows(int32_t link) const;  // coupled, or driven by another's command
@@ -167,6 +175,7 @@ Inertia mirrored_inertia(const Inertia& inertia, int32_t axis);
 void check_robot(const Robot& robot);
 
 // The tables in the library.
-extern const Robot kShadowHand;
+extern const Robot kShadowHand, kAllegroHand, kSchunkSvh, kBarrettBh282, kRobotiq3f;
+extern const Robot kFrankaPanda, kAbbIrb4600, kKinovaJaco2, kKukaIiwa7, kXarm6, kAbbCrb15000, kUr5e, kUr10e;
 
 }  // namespace rdm

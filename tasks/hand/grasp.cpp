@@ -63,8 +63,10 @@ class Grasp final : public SingleHand {
     const char* mean = o.text("initial_mean");
     if (same_name(mean, "hold"))
       hold_action(initial_mean_);
-    else if (same_name(mean, "close"))
-      std::copy(closed().begin(), closed().end(), initial_mean_);
+    else
+      hands().hold_arms(initial_mean_);
+    if (same_name(mean, "close") && closed().count > 0)
+      std::copy(closed().begin() + hand().arm_actions, closed().end(), initial_mean_ + hand().arm_actions);
     const Robot& robot = *hand().robot;
     const RobotFinger& first = robot.fingers[0];
     for (int32_t i = 0; i < hand().num_actions; ++i) {

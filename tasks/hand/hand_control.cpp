@@ -1,6 +1,7 @@
 #include "tasks/hand/hand_control.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "env/options/simulation.hpp"
 #include "tasks/state_check.hpp"
@@ -13,6 +14,15 @@ constexpr double kSourceStep = 1.0 / 60;  // s, of the source's scales
 constexpr OptionSpec kRows[] = {
     number_option("action_average", 1, 0.01, 1, "weight of the new action in the moving average of targets"),
     text_option("sensor", "contact", "contact|none", "fingertip force entries: contact forces, or zero"),
+    text_option(
+        "control", "position", "position|velocity|torque",
+        "what a joint's action entry is: its target, the target's velocity, or a share of its effort"),
+    number_option("arm_range", 0.3, 0, 10,
+                  "how far from the start an arm's joint goes with an entry of 1, rad; 0: its whole range"),
+    number_option("arm_noise", 0, 0, 1, "half width of the draw of an arm's joints at a reset, rad"),
+    text_option(
+        "arm_gravity", "compensated", "compensated|free|off",
+        "of arms: gravity held by feed-forward, left to the drives, or (the paper's) none; hands feel none"),
 };
 constexpr OptionSpec kPairRows[] = {
     flag_option("hand_contact", true, "the hands may touch each other"),
@@ -57,21 +67,22 @@ void add_hand_control_options(const HandControlConfig& config, OptionTable& tabl
                             "torque of a base's action entry of 1, in 16.7 N m"));
   }
   add_sim_options(table);
-  add_hand_options(*config.robot, table);
+  add_hand_options(table);
+  add_hand_choice_options(config, table);
 }
 
 void set_friction(SceneDef* scene, int32_t a, int32_t b, double mu) {
   scene->friction[a][b].mu = scene->friction[b][a].mu = mu;
 }
 
-SceneDef make_hand_scene(const HandControlConfig& config, const Options& o, int32_t num_materials) {
-  SceneDef s;
+HandScene make_hand_scene(const HandControlConfig& config, const Options& o, int32_t num_materials) {
+  HandScene s;
   s.gravity = gravity_from(o);
   s.solver = solver_from(o);
   for (int32_t i = 0; i < config.count; ++i) {
-    ArticulationDef hand = make_hand(*config.robot, o, i == 0 ? Side::kRight : Side::kLeft, config.bases[i],
-                                     i == 0 ? kRightHand : kLeftHand);
-    if (config.flying) {
+    s.hands[i] = choose_hand(config, o, i);
+    ArticulationDef hand = make_hand(s.hands[i], o, i, i == 0 ? kRightHand : kLeftHand);
+    if (config.flying && !s.hands[i].armed) {
       hand.free_base = true;
       hand.base_damping = o.number("base_damping");
     }
@@ -96,78 +107,111 @@ SceneDef make_hand_scene(const HandControlConfig& config, const Options& o, int3
   return s;
 }
 
-HandControl::HandControl(const HandControlConfig& config, const Options& o, const Scene& scene)
+HandControl::HandControl(const HandControlConfig& config, const Options& o, const Scene& scene,
+                         const ChosenHand* hands)
     : count_(config.count),
-      flying_(config.flying),
+      mode_(same_name(o.text("control"), "velocity") ? Mode::kVelocity
+            : same_name(o.text("control"), "torque") ? Mode::kTorque
+                                                     : Mode::kPosition),
       sensor_(same_name(o.text("sensor"), "contact")),
       average_(o.number("action_average")),
-      start_(config.folded && config.robot->poses.folded.count == config.robot->links.count
-                 ? config.robot->poses.folded.rows
-                 : nullptr) {
-  for (int32_t i = 0; i < count_; ++i) {
-    hands_[i] = find_hand(*config.robot, scene, i);
-    bases_[i] = config.bases[i].p;
+      arm_noise_(o.number("arm_noise")) {
+  if (config.flying) {
+    paper_order_ = same_name(o.text("action_order"), "paper");
+    signed_angles_ = same_name(o.text("base_angles"), "signed");
+    force_ = kSourceStep * 1e5 * o.number("transition_scale");
+    torque_ = kSourceStep * 1e3 * o.number("orientation_scale");
+    most_speed_ = o.number("base_speed");
+    most_spin_ = o.number("base_spin");
+    reach_ = o.number("base_reach");
   }
-  per_hand_ = num_actions() + (flying_ ? kBaseActions : 0);
-  if (!flying_) return;
-  paper_order_ = same_name(o.text("action_order"), "paper");
-  (paper_order_ ? first_base_ : first_joint_) = paper_order_ ? num_actions() : kBaseActions;
-  signed_angles_ = same_name(o.text("base_angles"), "signed");
-  force_ = kSourceStep * 1e5 * o.number("transition_scale");
-  torque_ = kSourceStep * 1e3 * o.number("orientation_scale");
-  most_speed_ = o.number("base_speed");
-  most_spin_ = o.number("base_spin");
-  reach_ = o.number("base_reach");
-}
-
-const char* HandControl::action_order() const {
-  if (!flying_) return count_ > 1 ? "right joints, left joints" : "right joints";
-  return paper_order_ ? "right joints, force, torque, left joints, force, torque"
-                      : "right force, torque, joints, left force, torque, joints";
+  size_t at = 0;
+  for (int32_t i = 0; i < count_; ++i) {
+    const Robot& robot = hands[i].robot();
+    Hand& h = hands_[i] = find_hand(robot, scene, i);
+    bases_[i] = hands[i].X_WB.p;
+    flying_[i] = config.flying && !hands[i].armed;
+    start_[i] = config.folded && robot.poses.folded.count ? robot.poses.folded.rows : robot.home.rows;
+    if (const double range = o.number("arm_range"); range > 0)
+      for (int32_t k = 0; k < h.arm_actions; ++k) {
+        const double middle = start_[i][h.joint(k)];
+        h.act_lower[k] = std::max(h.act_lower[k], middle - range);
+        h.act_upper[k] = std::min(h.act_upper[k], middle + range);
+      }
+    first_entry_[i + 1] = first_entry_[i] + h.num_actions + (flying_[i] ? kBaseActions : 0);
+    first_command_[i + 1] = first_command_[i] + h.num_actions;
+    const char* format = !flying_[i]    ? "%s%s %sjoints"
+                         : paper_order_ ? "%s%s %sjoints, force, torque"
+                                        : "%s%s %sforce, torque, joints";
+    at += static_cast<size_t>(std::snprintf(order_ + at, sizeof order_ - at, format, i > 0 ? ", " : "",
+                                            kSideNames[i], hands[i].armed ? "arm, " : ""));
+    if (!hands[i].own || hands[i].armed)  // alike in numbers, but another robot
+      at += static_cast<size_t>(std::snprintf(order_ + at, sizeof order_ - at, " of %s", robot.name));
+  }
 }
 
 size_t HandControl::state_bytes() const {
-  return static_cast<size_t>(count_ * num_actions()) * sizeof(double) +
+  return static_cast<size_t>(first_command_[count_]) * sizeof(double) +
          static_cast<size_t>(action_dim()) * sizeof(float);
 }
 
 HandControlState HandControl::state(void* bytes) const {
   auto* command = static_cast<double*>(bytes);
-  return {command, reinterpret_cast<float*>(command + count_ * num_actions())};
+  return {command, reinterpret_cast<float*>(command + first_command_[count_])};
 }
 
 const float* HandControl::action(const void* bytes) const {
-  return reinterpret_cast<const float*>(static_cast<const double*>(bytes) + count_ * num_actions());
+  return reinterpret_cast<const float*>(static_cast<const double*>(bytes) + first_command_[count_]);
 }
 
 void HandControl::check_state(const void* bytes) const {
   constexpr double kOne = 1 + 1e-3;  // joints are kept as floats, and a range may be narrow
-  const auto commands = static_cast<size_t>(count_ * num_actions());
+  const auto commands = static_cast<size_t>(first_command_[count_]);
   check_numbers("command", static_cast<const double*>(bytes), commands, kOne);
   check_numbers("action", action(bytes), static_cast<size_t>(action_dim()), 1);
 }
 
 void HandControl::reset(double noise, bool literal, World& world, const HandControlState& state,
                         Stream& stream) const {
-  draw_joints({noise, literal, start_}, hands_, count_, world, stream);
+  JointNoise draw{noise, literal, arm_noise_};
+  std::copy_n(start_, kMaxHands, draw.start);
+  draw_joints(draw, hands_, count_, world, stream);
   for (int32_t i = 0; i < count_; ++i)
-    for (int32_t k = 0; k < num_actions(); ++k) {
+    for (int32_t k = 0; k < hands_[i].num_actions; ++k) {
       const Hand& h = hands_[i];
-      state.command[i * num_actions() + k] =
-          to_action(h.act_lower[k], h.act_upper[k], world.q()[h.actuated[k]]);
+      state.command[first_command_[i] + k] = h.command(k, world.q()[h.actuated[k]]);
     }
+}
+
+// The commands of hand i after its action entries.
+void HandControl::move_commands(const World& world, int32_t i, const float* a, double* command) const {
+  const Hand& h = hands_[i];
+  if (mode_ == Mode::kPosition) {
+    for (int32_t k = 0; k < h.num_actions; ++k)
+      command[k] = average_ * static_cast<double>(a[k]) + (1 - average_) * command[k];
+    return;
+  }
+  const double dt = world.scene().control_dt();
+  for (int32_t k = 0; k < h.num_actions; ++k) {
+    if (mode_ == Mode::kTorque) {
+      command[k] = std::clamp(h.command(k, world.q()[h.actuated[k]]), -1.0, 1.0);
+      continue;
+    }
+    // a command of 2 is the whole range; a joint without a bound goes over it in a second
+    const double range = h.act_upper[k] - h.act_lower[k];
+    const double step = h.robot->links[h.joint(k)].velocity > 0 ? 2 * h.rate[k] / range : 2 * dt;
+    command[k] = std::clamp(command[k] + average_ * step * static_cast<double>(a[k]), -1.0, 1.0);
+  }
 }
 
 void HandControl::control(World& world, const HandControlState& state, const float* action) const {
   std::copy_n(action, action_dim(), state.action);
   for (int32_t i = 0; i < count_; ++i) {
-    double* command = state.command + i * num_actions();
-    const float* a = action + joint_entries(i);
-    for (int32_t k = 0; k < num_actions(); ++k)
-      command[k] = average_ * static_cast<double>(a[k]) + (1 - average_) * command[k];
+    double* command = state.command + first_command_[i];
+    move_commands(world, i, action + joint_entries(i), command);
     command_hand(hands_[i], command, world);
   }
-  if (flying_) push_bases(world, action);
+  if (flying()) push_bases(world, action);
 }
 
 // Nothing but a blow makes a base as fast as its bound: force against damping ends far below.
@@ -181,6 +225,7 @@ void HandControl::slow_base(World& world, int32_t articulation) const {
 
 void HandControl::push_bases(World& world, const float* action) const {
   for (int32_t i = 0; i < count_; ++i) {
+    if (!flying_[i]) continue;
     const int32_t articulation = hands_[i].articulation;
     slow_base(world, articulation);
     const float* a = action + base_entries(i);
@@ -200,23 +245,22 @@ void HandControl::push_bases(World& world, const float* action) const {
 
 double HandControl::base_displacement(const World& world) const {
   double most = 0;
-  for (int32_t i = 0; flying_ && i < count_; ++i)
-    most = std::max(most, norm(world.base(hands_[i].articulation).X.p - bases_[i]));
+  for (int32_t i = 0; i < count_; ++i)
+    if (flying_[i]) most = std::max(most, norm(world.base(hands_[i].articulation).X.p - bases_[i]));
   return most;
 }
 
 HandView HandControl::view(const World& world, const float* action, int32_t i) const {
   return {world,
           hands_[i],
-          action + i * per_hand_,
+          action + first_entry_[i],
           sensor_,
-          flying_ ? &world.base(hands_[i].articulation) : nullptr,
+          flying_[i] ? &world.base(hands_[i].articulation) : nullptr,
           signed_angles_};
 }
 
 void HandControl::add_fields(FieldTable& table) const {
-  for (int32_t i = 0; i < count_; ++i)
-    add_hand_fields(*hands_[i].robot, table, i == 0 ? "right" : "left", flying_);
+  for (int32_t i = 0; i < count_; ++i) add_hand_fields(hands_[i], table, kSideNames[i], flying_[i]);
 }
 
 float* HandControl::write(const World& world, const float* action, float* out) const {
@@ -226,12 +270,20 @@ float* HandControl::write(const World& world, const float* action, float* out) c
 
 void HandControl::hold(float* action) const {
   std::fill_n(action, action_dim(), 0.0f);
+  if (mode_ != Mode::kPosition) return;
   for (int32_t i = 0; i < count_; ++i)
-    for (int32_t k = 0; k < num_actions(); ++k) {
+    for (int32_t k = 0; k < hands_[i].num_actions; ++k) {
       const Hand& h = hands_[i];
-      const double q = std::clamp(start_ ? start_[h.joint(k)] : 0, h.act_lower[k], h.act_upper[k]);
-      action[joint_entries(i) + k] = static_cast<float>(to_action(h.act_lower[k], h.act_upper[k], q));
+      const double q = std::clamp(start_[i] ? start_[i][h.joint(k)] : 0, h.act_lower[k], h.act_upper[k]);
+      action[joint_entries(i) + k] = static_cast<float>(h.command(k, q));
     }
+}
+
+void HandControl::hold_arms(float* action) const {
+  hold(action);
+  for (int32_t i = 0; i < count_; ++i)
+    std::fill_n(action + joint_entries(i) + hands_[i].arm_actions,
+                hands_[i].num_actions - hands_[i].arm_actions, 0.0f);
 }
 
 }  // namespace rdm

@@ -2,8 +2,12 @@
 // on flying bases, how they are reset, and their entries of the observation.
 //
 // An action entry a in [-1, 1] of joint i joins a moving average, c_i += average (a - c_i), which is the
-// command; the drive's target is lower + (c_i + 1)/2 (upper - lower). The six base entries are a force and a
-// torque in world axes, a * scale; a base flies through a medium: its speed ends at force / (base_damping m).
+// command; the drive's target is lower + (c_i + 1)/2 (upper - lower), reached no faster than the robot's
+// table says. Option control has two other meanings: velocity, where a moves the command at up to the joint's
+// velocity, and torque, where it is a share of the joint's effort and drives only damp. An arm's joints come
+// before the hand's; their range is arm_range about the start. The six base entries of a flying hand are a
+// force and a torque in world axes, a * scale; a base flies through a medium: its speed ends at force /
+// (base_damping m).
 #pragma once
 #include "base/option.hpp"
 #include "base/rng.hpp"
@@ -13,15 +17,16 @@
 
 namespace rdm {
 
-inline constexpr int kMaxHands = 2;
 inline constexpr int kMaxHandActions = kMaxHands * (kMaxHandJoints + kBaseActions);
 
 // What one task sets.
 struct HandControlConfig {
-  const Robot* robot = &kShadowHand;
-  int32_t count = 2;      // right, left
-  Pose bases[kMaxHands];  // of the mounts, at the start
-  bool flying = false;    // bases are free and have six action entries each
+  const Robot* robot = &kShadowHand;  // unless option hand says otherwise
+  int32_t count = 2;                  // right, left
+  Pose bases[kMaxHands];              // of the mounts, at the start
+  bool flying = false;                // bases are free and have six action entries each
+  // Of the mounts where arms carry the hands; null: as `bases`. A flying hand may begin where no arm reaches.
+  const Pose* armed_bases = nullptr;  // [count]
   // Force of an action entry of 1, in 1e5/60 N, and torque, in 1e3/60 N m: the paper's code applies 1e5 and
   // 1e3 times these, times its step of 1/60 s.
   double transition_scale = 0, orientation_scale = 0;
@@ -30,31 +35,43 @@ struct HandControlConfig {
 };
 
 void add_hand_control_options(const HandControlConfig& config, OptionTable& table);
-// A scene of the hands and the ground, with gravity, solver, `num_materials` materials and their frictions.
-SceneDef make_hand_scene(const HandControlConfig& config, const Options& options,
-                         int32_t num_materials = kOwnMaterial);
+// A scene, and the robots that its first articulations are.
+struct HandScene : SceneDef {
+  ChosenHand hands[kMaxHands];
+};
+// The hands and the ground, with gravity, solver, `num_materials` materials and their frictions.
+HandScene make_hand_scene(const HandControlConfig& config, const Options& options,
+                          int32_t num_materials = kOwnMaterial);
 // One entry of the friction table and its mirror image.
 void set_friction(SceneDef* scene, int32_t a, int32_t b, double mu);
 
 // One world's part: places in its task's state.
 struct HandControlState {
-  double* command;  // [count][num_actions] of the joints, in [-1, 1], after averaging
+  double* command;  // of the joints of all hands, hand by hand, in [-1, 1], after averaging
   float* action;    // [action_dim] as given
 };
 
 class HandControl {
  public:
-  HandControl(const HandControlConfig& config, const Options& options, const Scene& scene);
+  // `hands` must outlive it.
+  HandControl(const HandControlConfig& config, const Options& options, const Scene& scene,
+              const ChosenHand* hands);
 
   int32_t count() const { return count_; }
   const Hand& hand(int32_t i) const { return hands_[i]; }
-  bool flying() const { return flying_; }
-  int32_t num_actions() const { return hands_[0].num_actions; }  // of one hand's joints
-  int32_t action_dim() const { return count_ * per_hand_; }
-  const char* action_order() const;
+  bool flying(int32_t i) const { return flying_[i]; }
+  bool flying() const { return flying_[0] || flying_[1]; }
+  int32_t action_dim() const { return first_entry_[count_]; }
+  const char* action_order() const { return order_; }
   // Where in the action row hand i's joint entries begin, and its base entries (force, then torque).
-  int32_t joint_entries(int32_t i) const { return i * per_hand_ + first_joint_; }
-  int32_t base_entries(int32_t i) const { return i * per_hand_ + first_base_; }
+  int32_t joint_entries(int32_t i) const {
+    return first_entry_[i] + (flying_[i] && !paper_order_ ? kBaseActions : 0);
+  }
+  int32_t base_entries(int32_t i) const {
+    return first_entry_[i] + (paper_order_ ? hands_[i].num_actions : 0);
+  }
+  // Where among the commands hand i's begin.
+  int32_t first_command(int32_t i) const { return first_command_[i]; }
 
   // Its state as bytes at the end of a task's own.
   size_t state_bytes() const;
@@ -72,17 +89,25 @@ class HandControl {
   float* write(const World& world, const float* action, float* out) const;
   // The start pose, bases at rest. [action_dim]
   void hold(float* action) const;
+  // The same with the hands' joints in the middle of their ranges: arms alone hold.
+  void hold_arms(float* action) const;
 
  private:
   void push_bases(World& world, const float* action) const;
   void slow_base(World& world, int32_t articulation) const;
+  void move_commands(const World& world, int32_t i, const float* action, double* command) const;
 
-  int32_t count_, per_hand_, first_joint_ = 0, first_base_ = 0;
-  bool flying_, sensor_, paper_order_ = true, signed_angles_ = false;
-  double average_;
+  enum class Mode { kPosition, kVelocity, kTorque };
+  int32_t count_;
+  int32_t first_entry_[kMaxHands + 1] = {}, first_command_[kMaxHands + 1] = {};
+  char order_[256];
+  Mode mode_;
+  bool flying_[kMaxHands] = {};
+  bool sensor_, paper_order_ = true, signed_angles_ = false;
+  double average_, arm_noise_;
   double force_ = 0, torque_ = 0;                      // N, N m for an entry of 1
   double most_speed_ = 0, most_spin_ = 0, reach_ = 0;  // m/s, rad/s, m
-  const double* start_;                                // [num_joints] rad, null: all 0
+  const double* start_[kMaxHands] = {};                // [num_joints] rad, null: all 0
   Hand hands_[kMaxHands];
   Vec3 bases_[kMaxHands];
 };

@@ -41,40 +41,70 @@ void add_entries(FieldTable& table, const char* prefix, const char* finger,
 
 }  // namespace
 
-void add_joint_fields(const Robot& robot, FieldTable& table, const char* prefix) {
-  const int32_t joints = robot.links.count;
+void add_joint_fields(const Hand& hand, FieldTable& table, const char* prefix) {
+  if (hand.arm_joints > 0) {
+    add_field(table, prefix, "arm_position", "1", hand.arm_joints);
+    add_field(table, prefix, "arm_velocity", "rad/s", hand.arm_joints);
+    add_field(table, prefix, "arm_effort", "1", hand.arm_joints);
+  }
+  const int32_t joints = hand.hand_joints();
   add_field(table, prefix, "joint_position", "1", joints);
   add_field(table, prefix, "joint_velocity", "5 rad/s", joints);
-  add_field(table, prefix, "joint_force", "0.1 N m", joints);
+  const double unit = 1 / hand.torque_scale;
+  add_field(table, prefix, "joint_force",
+            unit < 0.5   ? "0.1 N m"
+            : unit < 5   ? "1 N m"
+            : unit < 50  ? "10 N m"
+            : unit < 500 ? "100 N m"
+                         : "1000 N m",
+            joints);
 }
 
-void add_tip_fields(const Robot& robot, FieldTable& table, const char* prefix) {
-  for (const RobotFinger& finger : robot.fingers) add_entries(table, prefix, finger.name, kTips);
-  for (const RobotFinger& finger : robot.fingers) add_entries(table, prefix, finger.name, kSensors);
+void add_tip_fields(const Hand& hand, FieldTable& table, const char* prefix) {
+  for (const RobotFinger& finger : hand.robot->fingers) add_entries(table, prefix, finger.name, kTips);
+  for (const RobotFinger& finger : hand.robot->fingers) add_entries(table, prefix, finger.name, kSensors);
 }
 
-void add_action_field(const Robot& robot, FieldTable& table, const char* prefix, bool base) {
-  add_field(table, prefix, "action", "1", robot.num_actuated() + (base ? kBaseActions : 0), -1, 1);
+void add_action_field(const Hand& hand, FieldTable& table, const char* prefix, bool base) {
+  add_field(table, prefix, "action", "1", hand.num_actions + (base ? kBaseActions : 0), -1, 1);
 }
 
-void add_hand_fields(const Robot& robot, FieldTable& table, const char* prefix, bool base) {
-  add_joint_fields(robot, table, prefix);
-  add_tip_fields(robot, table, prefix);
+void add_hand_fields(const Hand& hand, FieldTable& table, const char* prefix, bool base) {
+  add_joint_fields(hand, table, prefix);
+  add_tip_fields(hand, table, prefix);
   if (base) add_entries(table, prefix, nullptr, kBase);
-  add_action_field(robot, table, prefix, base);
+  add_action_field(hand, table, prefix, base);
 }
 
-float* write_joints(const HandView& view, float* out) {
+namespace {
+
+// Positions in their range, rad/s, shares of the effort.
+float* write_arm(const HandView& view, float* out) {
   const Hand& hand = view.hand;
-  const int32_t joints = hand.num_joints;
+  const int32_t joints = hand.arm_joints;
   const double *q = view.world.q() + hand.first, *qd = view.world.qd() + hand.first,
                *torque = view.world.torque() + hand.first;
   for (int32_t i = 0; i < joints; ++i)
     out[i] = static_cast<float>(to_action(hand.lower[i], hand.upper[i], q[i]));
+  for (int32_t i = 0; i < joints; ++i) out[joints + i] = static_cast<float>(qd[i]);
+  for (int32_t i = 0; i < joints; ++i) out[2 * joints + i] = static_cast<float>(torque[i] / hand.effort[i]);
+  return out + 3 * joints;
+}
+
+}  // namespace
+
+float* write_joints(const HandView& view, float* out) {
+  const Hand& hand = view.hand;
+  if (hand.arm_joints > 0) out = write_arm(view, out);
+  const int32_t joints = hand.hand_joints(), first = hand.first + hand.arm_joints;
+  const double *lower = hand.lower + hand.arm_joints, *upper = hand.upper + hand.arm_joints;
+  const double *q = view.world.q() + first, *qd = view.world.qd() + first,
+               *torque = view.world.torque() + first;
+  for (int32_t i = 0; i < joints; ++i) out[i] = static_cast<float>(to_action(lower[i], upper[i], q[i]));
   out += joints;
   for (int32_t i = 0; i < joints; ++i) out[i] = static_cast<float>(0.2 * qd[i]);
   out += joints;
-  for (int32_t i = 0; i < joints; ++i) out[i] = static_cast<float>(10 * torque[i]);
+  for (int32_t i = 0; i < joints; ++i) out[i] = static_cast<float>(hand.torque_scale * torque[i]);
   return out + joints;
 }
 

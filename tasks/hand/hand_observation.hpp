@@ -1,7 +1,8 @@
 // The numbers of a hand in every observation, in the order of ReDMan's table B3: joint positions, velocities
 // and forces; pose, velocity and spin of each fingertip; force and torque on each; position and angles of the
-// base where it flies; the previous action. Positions and rotations are the world's. Of the Shadow Hand: 187
-// numbers on a fixed base, 199 on a flying one.
+// base where it flies; the previous action. Of a hand on an arm, the arm's joints come before its own.
+// Positions and rotations are the world's. Of the Shadow Hand: 187 numbers on a fixed base, 199 on a flying
+// one.
 #pragma once
 #include "env/fields.hpp"
 #include "tasks/hand/hands.hpp"
@@ -21,15 +22,15 @@ struct HandView {
 };
 
 // The numbers part by part, for tasks that put something between. Each writer returns the place behind.
-void add_joint_fields(const Robot& robot, FieldTable& table, const char* prefix);
-void add_tip_fields(const Robot& robot, FieldTable& table, const char* prefix);
-void add_action_field(const Robot& robot, FieldTable& table, const char* prefix, bool base);
+void add_joint_fields(const Hand& hand, FieldTable& table, const char* prefix);
+void add_tip_fields(const Hand& hand, FieldTable& table, const char* prefix);
+void add_action_field(const Hand& hand, FieldTable& table, const char* prefix, bool base);
 float* write_joints(const HandView& view, float* out);
 float* write_tips(const HandView& view, float* out);
 float* write_action(const HandView& view, float* out);
 
 // The whole of it.
-void add_hand_fields(const Robot& robot, FieldTable& table, const char* prefix, bool base = false);
+void add_hand_fields(const Hand& hand, FieldTable& table, const char* prefix, bool base = false);
 float* write_hand(const HandView& view, float* out);
 
 // Roll, pitch, yaw of a rotation Rz(yaw) Ry(pitch) Rx(roll), rad, each in [0, 2 pi) or, signed, in [-pi, pi].

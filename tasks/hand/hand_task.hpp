@@ -29,7 +29,7 @@ class HandTask : public Task {
  protected:
   // `own_bytes` of a task's own state stand before those of the hands' control, which begin with doubles:
   // Error(kInternal) unless it is a multiple of 8.
-  HandTask(const HandControlConfig& config, const Options& options, SceneDef scene, size_t own_bytes);
+  HandTask(const HandControlConfig& config, const Options& options, HandScene scene, size_t own_bytes);
 
   // check_state of the task's own part.
   virtual void check_own_state(const void* state) const = 0;
@@ -48,6 +48,7 @@ class HandTask : public Task {
   EngineKind engine_;
   int32_t max_steps_;
   size_t own_bytes_;
+  HandScene made_;  // but for what went into scene_
   Scene scene_;
   HandControl hands_;
   FieldTable fields_;

@@ -1,6 +1,7 @@
 #include "tasks/hand/hands.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 
 #include "base/error.hpp"
@@ -22,23 +23,22 @@ constexpr OptionSpec kLeftRows[] = {
 
 }  // namespace
 
-void add_hand_options(const Robot& robot, OptionTable& table) {
+void add_hand_options(OptionTable& table) {
   table.add(kRows);
-  add_robot_options(robot, table);
 }
 
 void add_left_hand_options(OptionTable& table) {
   table.add(kLeftRows);
 }
 
-ArticulationDef make_hand(const Robot& robot, const Options& options, Side side, const Pose& X_WB,
-                          int32_t material) {
-  const char* prefix = side == Side::kLeft ? "left_" : "right_";
-  if (side == Side::kLeft && same_name(options.text("left_model"), "right_copy")) side = Side::kRight;
-  ArticulationDef def = make_articulation(robot, side, X_WB, prefix);
+ArticulationDef make_hand(const ChosenHand& chosen, const Options& options, int32_t i, int32_t material) {
+  const Robot& robot = chosen.robot();
+  char prefix[16];
+  std::snprintf(prefix, sizeof prefix, "%s_", kSideNames[i]);
+  ArticulationDef def = make_articulation(robot, chosen.side, chosen.X_WB, prefix);
   if (same_name(options.text("coupling"), "paper"))
     for (LinkDef& link : def.links)
-      if (link.joint.coupled_to >= 0) {
+      if (link.joint.coupled_to >= 0 && link.joint.slack > 0) {  // tendons; belts and gears have no slack
         link.joint.ratio = 1;
         link.joint.slack = 0;
       }
@@ -47,12 +47,23 @@ ArticulationDef make_hand(const Robot& robot, const Options& options, Side side,
   return def;
 }
 
+double Hand::command(int32_t action, double q) const {
+  const RobotCurve* curve = robot->curve(joint(action));
+  return curve ? curve->inverse(q) : to_action(act_lower[action], act_upper[action], q);
+}
+
+double Hand::angle(int32_t action, double a) const {
+  const RobotCurve* curve = robot->curve(joint(action));
+  return curve ? curve->at(a) : to_angle(act_lower[action], act_upper[action], a);
+}
+
 Hand find_hand(const Robot& robot, const Scene& scene, int32_t articulation) {
   if (robot.links.count > kMaxHandJoints || robot.tips.count > kMaxHandTips)
     fail(Code::kUnsupported, "robot %s: %d joints and %d fingertips, a hand has at most %d and %d",
          robot.name, robot.links.count, robot.tips.count, kMaxHandJoints, kMaxHandTips);
   if (robot.tips.count == 0 || robot.fingers.count != robot.tips.count || robot.palm == kNoLink)
     fail(Code::kUnsupported, "robot %s: a hand has a palm, and a tip for each finger", robot.name);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Hand h;
   h.robot = &robot;
   h.articulation = articulation;
@@ -60,12 +71,18 @@ Hand find_hand(const Robot& robot, const Scene& scene, int32_t articulation) {
   h.num_joints = robot.links.count;
   h.num_actions = robot.num_actuated();
   h.num_tips = robot.tips.count;
+  h.arm_joints = robot.arm_links;
+  h.arm_actions = robot.arm_commands;
+  double strongest = 0;
   for (int32_t i = 0; i < h.num_joints; ++i) {
     const JointDef& j = scene.link(h.first + i).joint;
     h.lower[i] = j.lower;
     h.upper[i] = j.upper;
-    h.effort[i] = std::numeric_limits<double>::infinity();
+    h.effort[i] = kInfinity;
+    if (i >= h.arm_joints) strongest = std::max(strongest, j.effort);
   }
+  // so that a joint at its bound is within that of observations
+  for (double most = 5; strongest > most && h.torque_scale > 1e-4; most *= 10) h.torque_scale /= 10;
   for (int32_t i = 0; i < h.num_actions; ++i) {
     const int32_t joint = robot.actuated(i);
     h.actuated[i] = h.first + joint;
@@ -73,6 +90,13 @@ Hand find_hand(const Robot& robot, const Scene& scene, int32_t articulation) {
     h.act_upper[i] = h.upper[joint];
     const double effort = scene.link(h.actuated[i]).joint.effort;
     if (effort > 0) h.effort[joint] = effort;
+    const double velocity = robot.links[joint].velocity;
+    h.rate[i] = velocity > 0 ? velocity * scene.control_dt() : kInfinity;
+    h.rated = h.rated || velocity > 0;
+  }
+  for (const RobotCurve& c : robot.curves) {
+    h.driver[h.num_curves] = robot.action_of(c.driver);
+    h.curves[h.num_curves++] = &c;
   }
   for (int32_t i = 0; i < h.num_tips; ++i) {
     h.tips[i] = h.first + robot.tips[i].link;
@@ -85,17 +109,27 @@ Hand find_hand(const Robot& robot, const Scene& scene, int32_t articulation) {
 void draw_joints(const JointNoise& noise, const Hand* hands, int32_t count, World& world, Stream& stream) {
   double u[kMaxHandJoints], q[kMaxHandJoints];
   const double zero[kMaxHandJoints] = {};
-  const double* start = noise.start ? noise.start : zero;
   for (int32_t h = 0; h < count; ++h) {
     const Hand& hand = hands[h];
-    if (h == 0 || !noise.literal)
+    const double* start = noise.start[h] ? noise.start[h] : zero;
+    if (h == 0 || !noise.literal || hand.num_joints != hands[0].num_joints)
       for (int32_t i = 0; i < hand.num_joints; ++i)
         u[i] = noise.literal ? stream.signed_unit() : stream.uniform();
     for (int32_t i = 0; i < hand.num_joints; ++i) {
       const JointDef& j = world.scene().link(hand.first + i).joint;
-      q[i] = start[i] + noise.level * (j.lower + (j.upper - j.lower) * u[i]);
-      if (j.coupled_to >= 0) q[i] = j.ratio * q[j.coupled_to];  // a parent stands before its children
+      if (i < hand.arm_joints)
+        q[i] = start[i] + noise.arm * (noise.literal ? u[i] : 2 * u[i] - 1);
+      else
+        q[i] = start[i] + noise.level * (j.lower + (j.upper - j.lower) * u[i]);
       q[i] = std::clamp(q[i], j.lower, j.upper);
+    }
+    for (int32_t i = 0; i < hand.num_curves; ++i) {
+      const RobotCurve& c = *hand.curves[i];
+      q[c.link] = c.at(hand.command(hand.driver[i], q[c.driver]));
+    }
+    for (int32_t i = 0; i < hand.num_joints; ++i) {
+      const JointDef& j = world.scene().link(hand.first + i).joint;
+      if (j.coupled_to >= 0) q[i] = std::clamp(j.ratio * q[j.coupled_to], j.lower, j.upper);
     }
     world.set_joints(hand.articulation, q, zero);
     std::copy(q, q + hand.num_joints, world.target() + hand.first);
@@ -111,6 +145,20 @@ void command_hand(const Hand& hand, const double* command, World& world) {
     angle[i] = upper < above ? upper : above;
   }
   double* target = world.target();
+  if (hand.num_curves > 0)
+    for (int32_t i = 0; i < hand.num_curves; ++i) {
+      const RobotCurve& c = *hand.curves[i];
+      const double a = c.at(command[hand.driver[i]]);
+      if (c.driver == c.link)
+        angle[hand.driver[i]] = a;
+      else
+        target[hand.first + c.link] = a;
+    }
+  if (hand.rated)
+    for (int32_t i = 0; i < hand.num_actions; ++i) {
+      const double before = target[hand.actuated[i]];
+      angle[i] = std::clamp(angle[i], before - hand.rate[i], before + hand.rate[i]);
+    }
   for (int32_t i = 0; i < hand.num_actions; ++i) target[hand.actuated[i]] = angle[i];
 }
 

@@ -9,11 +9,12 @@
 #include "env/options/table.hpp"
 #include "physics/world.hpp"
 #include "robot/robot.hpp"
+#include "tasks/hand/hand_choice.hpp"
 
 namespace rdm {
 
 // Room for a hand; find_hand refuses a robot with more.
-inline constexpr int kMaxHandJoints = 32, kMaxHandTips = 8;
+inline constexpr int kMaxHandJoints = kMaxRobotLinks, kMaxHandTips = 8;
 
 // Rows of the pair friction table; a task's further ones begin with kOwnMaterial.
 enum Material : int32_t { kRightHand = 0, kLeftHand, kObject, kGround, kOwnMaterial };
@@ -24,26 +25,37 @@ struct Hand {
   int32_t articulation = 0;
   int32_t first = 0;  // flat index of its first joint; the others follow
   int32_t num_joints = 0, num_actions = 0, num_tips = 0;
-  int32_t actuated[kMaxHandJoints] = {};  // [num_actions] flat joint of each action entry
-  int32_t tips[kMaxHandTips] = {};        // [num_tips] flat link, in the order of the robot's fingers
-  int32_t sensors[kMaxHandTips] = {};     // [num_tips] index of Scene::sensors
+  int32_t arm_joints = 0, arm_actions = 0;  // those of its arm, which come first
+  int32_t actuated[kMaxHandJoints] = {};    // [num_actions] flat joint of each action entry
+  int32_t tips[kMaxHandTips] = {};          // [num_tips] flat link, in the order of the robot's fingers
+  int32_t sensors[kMaxHandTips] = {};       // [num_tips] index of Scene::sensors
   // Ranges of its joints, rad; copied together, as all below, because every step reads them. [num_joints]
   double lower[kMaxHandJoints] = {}, upper[kMaxHandJoints] = {};
   // The same for each action entry's joint. [num_actions]
   double act_lower[kMaxHandJoints] = {}, act_upper[kMaxHandJoints] = {};
   // Effort limits, N m; infinite where no action drives the joint or it has no limit. [num_joints]
   double effort[kMaxHandJoints] = {};
+  // How far a drive's target moves in a control step at most, rad; infinite: no bound. [num_actions]
+  double rate[kMaxHandJoints] = {};
+  bool rated = false;                             // some are finite
+  const RobotCurve* curves[kMaxHandJoints] = {};  // [num_curves] drive laws that are not lower..upper
+  int32_t driver[kMaxHandJoints] = {};            // [num_curves] action entry that each is driven by
+  int32_t num_curves = 0;
+  double torque_scale = 10;  // of joint forces in the observation, 1/(N m)
+
   // Joint of an action entry, counted within the hand.
   int32_t joint(int32_t action) const { return actuated[action] - first; }
+  int32_t hand_joints() const { return num_joints - arm_joints; }
+  // The command for which an entry's drive goes to q, and back.
+  double command(int32_t action, double q) const;
+  double angle(int32_t action, double command) const;
 };
 
-void add_hand_options(const Robot& robot, OptionTable& table);
+void add_hand_options(OptionTable& table);
 void add_left_hand_options(OptionTable& table);  // beside those, where there is a left hand
 
-// The hand as the options want it, its names beginning with "right_" or "left_"; the left one is the mirror
-// image unless left_model = right_copy.
-ArticulationDef make_hand(const Robot& robot, const Options& options, Side side, const Pose& X_WB,
-                          int32_t material);
+// Hand i as the options want it, its names beginning with "right_" or "left_".
+ArticulationDef make_hand(const ChosenHand& chosen, const Options& options, int32_t i, int32_t material);
 // Error(kUnsupported) for a robot that is no hand of at most kMaxHandJoints joints and kMaxHandTips tips.
 Hand find_hand(const Robot& robot, const Scene& scene, int32_t articulation);
 
@@ -51,10 +63,12 @@ Hand find_hand(const Robot& robot, const Scene& scene, int32_t articulation);
 //   q = q0 + level (lower + (upper - lower) u), then bounded by the range.
 struct JointNoise {
   double level = 0.2;
-  bool literal = false;           // u in [-1, 1] and one draw for both hands, as the paper's code does
-  const double* start = nullptr;  // [num_joints] q0, rad; null: all 0
+  bool literal =
+      false;  // u in [-1, 1] and, where both are the same robot, one draw for both, as the paper's code does
+  double arm = 0;  // half width of the draw of an arm's joints about their start, rad (m)
+  const double* start[kMaxHands] = {};  // [num_joints] q0 of each hand, rad; null: all 0
 };
-// Draws `count` hands of one robot, sets joints and drive targets. Coupled joints follow the drawn ones.
+// Draws `count` hands, sets joints and drive targets. Joints that follow others go where those lead them.
 void draw_joints(const JointNoise& noise, const Hand* hands, int32_t count, World& world, Stream& stream);
 
 // A command in [-1, 1] as an angle in the joint's range, and back.

@@ -9,8 +9,8 @@ constexpr OptionSpec kRows[] = {
     integer_option("max_steps", 74, 1, 100000, "control steps of an episode"),
 };
 
-SceneDef make_scene_def(const SingleHandConfig& config, const Options& o) {
-  SceneDef s = make_hand_scene(config.hands, o);
+HandScene make_scene_def(const SingleHandConfig& config, const Options& o) {
+  HandScene s = make_hand_scene(config.hands, o);
   s.bodies.push_back(object_body_from(o));
   set_friction(&s, kObject, kGround, o.number("friction.object_ground"));
   return s;
@@ -31,10 +31,10 @@ SingleHand::SingleHand(const SingleHandConfig& config, const Options& o)
       joint_noise_(o.number("joint_noise")),
       goal_(object_goal_from(o)) {
   FieldTable& fields = own_fields();
-  add_joint_fields(*config.hands.robot, fields, "right");
+  add_joint_fields(hand(), fields, "right");
   add_goal_fields(fields);
-  add_tip_fields(*config.hands.robot, fields, "right");
-  add_action_field(*config.hands.robot, fields, "right", false);
+  add_tip_fields(hand(), fields, "right");
+  add_action_field(hand(), fields, "right", false);
 }
 
 void SingleHand::reset(World& world, void* state, Stream& stream) const {

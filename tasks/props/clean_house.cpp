@@ -110,8 +110,8 @@ void add_options(OptionTable& table) {
   add_prop_options(make_config(), 500, 96, table);
 }
 
-SceneDef make_scene_def(const Options& o) {
-  SceneDef s = make_hand_scene(make_config(), o, kMaterials);
+HandScene make_scene_def(const Options& o) {
+  HandScene s = make_hand_scene(make_config(), o, kMaterials);
   const int32_t things[] = {kHouse.handle, kHouse.head, kHouse.trash, kHouse.chair, kHouse.pan};
   const double other = o.number("friction.other");
   for (const int32_t a : things) {
@@ -269,7 +269,7 @@ class CleanHouse final : public PropTask {
     const double size = norm(force);
     if (size > grip_) force = (grip_ / size) * force;
     world.push_body(kBroom, force, cross(arm, force));
-    world.push_link(palm_link(hand), -force, at_palm);
+    push_palm(world, hand, -force, at_palm);
   }
 
   // The chair at its start, as the three cameras for clouds see it.

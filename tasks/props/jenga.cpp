@@ -24,6 +24,11 @@ constexpr int32_t kTarget = kObject, kBlock = kOwnMaterial, kTable = kBlock + 1,
 constexpr double kTipBeyond = 0.02;  // m, from the distal origin, as the reward measures
 constexpr int kMiddle = 1;           // finger
 
+// On arms: fingers level and towards the tower, palms down, as the demonstration comes to lie.
+constexpr Quat kOver = {0, 1, 0, 0};
+constexpr Pose kArmedBases[kMaxHands] = {{{0, -1.2, 0.4035}, kOver}, {{0, 0.08, 0.5}, {}}},
+               kArmedCopies[kMaxHands] = {kArmedBases[0], {{0, 0.08, 0.5}, {0, 0, 1, 0}}};
+
 // Fingers up and towards the tower from both sides, palms down.
 HandControlConfig make_config(bool right_copy) {
   HandControlConfig p;
@@ -31,6 +36,7 @@ HandControlConfig make_config(bool right_copy) {
   const Quat turned = axis_angle({1, 0, 0}, kPi - kTilt);
   // at x = 0, where no finger is inside a block; the source's -0.01 puts one 3 mm deep
   p.bases[1] = {{0, -0.20, 0.09}, right_copy ? Quat{0, 0, 1, 0} * turned : conjugate(turned)};
+  p.armed_bases = right_copy ? kArmedCopies : kArmedBases;
   p.flying = true;
   p.transition_scale = p.orientation_scale = 0.1;
   p.folded = true;
@@ -75,8 +81,8 @@ void add_options(OptionTable& table) {
   add_prop_options(make_config(false), 250, 256, table);
 }
 
-SceneDef make_scene_def(const JengaTower& tower, const Options& o) {
-  SceneDef s = make_hand_scene(config_from(o), o, kMaterials);
+HandScene make_scene_def(const JengaTower& tower, const Options& o) {
+  HandScene s = make_hand_scene(config_from(o), o, kMaterials);
   add_tower(tower, kTarget, kBlock, kTable, &s);
   for (const int32_t a : {kTarget, kBlock}) {
     for (const int32_t b : {kTarget, kBlock}) set_friction(&s, a, b, tower.friction);

@@ -73,8 +73,8 @@ void add_options(OptionTable& table) {
   add_prop_options(make_config(false), 250, 96, table);
 }
 
-SceneDef make_scene_def(const Options& o) {
-  SceneDef s = make_hand_scene(config_from(o), o, kMaterials);
+HandScene make_scene_def(const Options& o) {
+  HandScene s = make_hand_scene(config_from(o), o, kMaterials);
   add_bottles(o.number("bottle_mass"), o.number("contact_layer"), o.flag("fixed_neighbours"), kPicked, kOther,
               kTable, &s);
   for (const int32_t a : {kPicked, kOther}) {

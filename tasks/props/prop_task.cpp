@@ -22,7 +22,7 @@ void add_prop_options(const HandControlConfig& config, int32_t max_steps, int32_
   table.set_default("contacts_max", contacts_max);
 }
 
-PropTask::PropTask(const HandControlConfig& config, const Options& o, SceneDef scene, size_t own_bytes)
+PropTask::PropTask(const HandControlConfig& config, const Options& o, HandScene scene, size_t own_bytes)
     : HandTask(config, o, std::move(scene), own_bytes),
       reset_noise_(o.number("reset_noise")),
       joint_noise_(o.number("joint_noise")) {
@@ -31,8 +31,16 @@ PropTask::PropTask(const HandControlConfig& config, const Options& o, SceneDef s
   for (int32_t i = 0; i < kMaxHands; ++i) {
     const Hand& hand = hands().hand(i);
     const Robot& robot = *hand.robot;
-    palms_[i] = hand.first + robot.palm;
-    palm_points_[i] = i == 0 || copied ? robot.p_hold : mirrored_point(robot.p_hold, robot.mirror);
+    palms_[i] = robot.palm < 0 ? kRootLink : hand.first + robot.palm;
+    // a mounted left hand's tables are mirrored already
+    const bool mirrors = i > 0 && !copied && robot.arm_links == 0;
+    palm_points_[i] = mirrors ? mirrored_point(robot.p_hold, robot.mirror) : robot.p_hold;
+    if (robot.palm < 0) palm_points_[i] = robot.X_BR * palm_points_[i];
+    for (int32_t f = 0; f < hand.num_tips; ++f) {
+      const Vec3 p = mirrors ? mirrored_point(robot.tips[f].p_L, robot.mirror) : robot.tips[f].p_L;
+      const double length = norm(p);
+      tip_axes_[i][f] = length > 0 ? (1 / length) * p : Vec3{0, 0, 1};
+    }
   }
 }
 
@@ -57,11 +65,21 @@ void PropTask::observe(const World& world, const void* state, float* obs) const 
 }
 
 Vec3 PropTask::tip(const World& world, int32_t hand, int32_t finger, double beyond) const {
-  return world.link(hands().hand(hand).tips[finger]).X * Vec3{0, 0, beyond};
+  return world.link(hands().hand(hand).tips[finger]).X * (beyond * tip_axes_[hand][finger]);
 }
 
 Vec3 PropTask::palm(const World& world, int32_t hand) const {
-  return world.link(palms_[hand]).X * palm_points_[hand];
+  const Pose& X =
+      palms_[hand] < 0 ? world.base(hands().hand(hand).articulation).X : world.link(palms_[hand]).X;
+  return X * palm_points_[hand];
+}
+
+void PropTask::push_palm(World& world, int32_t hand, const Vec3& force, const Vec3& p_W) const {
+  if (palms_[hand] >= 0) return world.push_link(palms_[hand], force, p_W);
+  const int32_t articulation = hands().hand(hand).articulation;
+  if (!hands().flying(hand)) return;
+  const Vec3& com = scene().def.articulations[static_cast<size_t>(articulation)].base.com;
+  world.push_base(articulation, force, cross(p_W - world.base(articulation).X * com, force));
 }
 
 }  // namespace rdm

@@ -20,24 +20,26 @@ class PropTask : public HandTask {
 
  protected:
   // `own_bytes` of a task's own state, a multiple of 8, stand before the control's.
-  PropTask(const HandControlConfig& config, const Options& options, SceneDef scene, size_t own_bytes);
+  PropTask(const HandControlConfig& config, const Options& options, HandScene scene, size_t own_bytes);
   // Moves bodies by draws of up to reset_noise() along x and y; unless a task knows better, all the same way.
   virtual void draw_places(World& world, Stream& stream) const;
   virtual void start(World& world, void* state) const = 0;
   virtual float* write_props(const World& world, const void* state, float* out) const = 0;
 
   double reset_noise() const { return reset_noise_; }
-  // Origin of the distal link's frame moved by `beyond` m along the finger, of the robot's table.
+  // Origin of the distal link's frame moved by `beyond` m towards the finger's end.
   Vec3 tip(const World& world, int32_t hand, int32_t finger, double beyond) const;
   // The point before the palm where a held thing is: Robot::p_hold.
   Vec3 palm(const World& world, int32_t hand) const;
-  int32_t palm_link(int32_t hand) const { return palms_[hand]; }
+  // Acts during the next step on whatever carries the palm, at p.
+  void push_palm(World& world, int32_t hand, const Vec3& force, const Vec3& p_W) const;
   static bool of_hand(const SceneShape& shape) { return shape.articulation >= 0; }
 
  private:
   double reset_noise_, joint_noise_;
   int32_t palms_[kMaxHands];
   Vec3 palm_points_[kMaxHands];
+  Vec3 tip_axes_[kMaxHands][kMaxHandTips];  // unit, from a distal link's origin to its end, in the link
 };
 
 }  // namespace rdm

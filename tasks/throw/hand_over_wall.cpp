@@ -55,8 +55,8 @@ bool literal(const Options& o) {
   return same_name(o.text("cost_mode"), "literal");
 }
 
-SceneDef make_wall_scene(const Options& o) {
-  SceneDef s = make_throw_scene(kConfig, o, kMaterials);
+HandScene make_wall_scene(const Options& o) {
+  HandScene s = make_throw_scene(kConfig, o, kMaterials);
   const char* word = o.text("wall");
   const bool ghost = same_name(word, "auto") ? literal(o) : same_name(word, "ghost");
   Vector<ShapeDef> shapes = wall_boxes(o, kWall);

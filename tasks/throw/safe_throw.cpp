@@ -27,7 +27,7 @@ SafeThrow::SafeThrow(const SafeThrowConfig* config, SafetyKind kind, const Optio
 }
 
 void SafeThrow::judge_costs(const Step& step, Verdict* verdict) const {
-  const float* base = hands().flying() ? step.action + hands().base_entries(0) : nullptr;
+  const float* base = hands().flying(0) ? step.action + hands().base_entries(0) : nullptr;
   judge_safety(costs_, {step.world, &hands().hand(0), step.command, base}, step.release, verdict);
 }
 

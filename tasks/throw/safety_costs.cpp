@@ -97,15 +97,21 @@ constexpr CostColumns columns(const char* help, double limit) {
 const CostColumns kFingerCosts = columns("FF2, FF3 or FF4 outside its window; raw: largest excess, rad", 40);
 const CostColumns kJointCosts = columns("FF4 outside its window; raw: excess, rad", 30);
 
-JointWindow make_window(const Robot& robot, int i, double low, double high) {
-  const double mid = kRangeMid[i], half = kRangeHalf[i];
+JointWindow make_window(const Hand& hand, int i, double low, double high) {
+  constexpr double kSame = 0.1;  // degrees: the tables round the paper's ranges
   JointWindow w;
-  w.act = robot.action_of(robot.fingers[0].*kWindowJoints[i]);
-  if (w.act < 0)
-    fail(Code::kUnsupported, "robot %s: the first finger has no driven joint for window.%s", robot.name,
-         kWindowNames[i]);
   w.low = low * kDegree;
   w.high = high * kDegree;
+  const int32_t link = hand.robot->fingers[0].*kWindowJoints[i];
+  if (link < 0) return w;
+  w.joint = link;
+  w.act = hand.robot->leading_action(link);
+  double mid = kRangeMid[i], half = kRangeHalf[i];
+  const double lower = hand.lower[link] / kDegree, upper = hand.upper[link] / kDegree;
+  if (std::abs(lower - (mid - half)) > kSame || std::abs(upper - (mid + half)) > kSame) {
+    mid = 0.5 * (lower + upper);
+    half = 0.5 * (upper - lower);
+  }
   w.half = half * kDegree;
   // in degrees, so that the default windows are exactly +-0.5
   w.command_low = (low - mid) / half;
@@ -145,12 +151,17 @@ SafetyCosts safety_costs_from(const Options& o, SafetyKind kind, const Scene& sc
   c.joint_task = kind == SafetyKind::kJoint;
   c.angle = same_name(resolve(o.text("cost_signal"), paper ? "angle" : "target"), "angle");
   const bool legacy = same_name(resolve(o.text("cost_joint"), literal ? "legacy" : "paper"), "legacy");
+  bool counted = false;
   for (int i = 0; i < kNumWindows; ++i) {
     const double low = window_end(o, i, "low"), high = window_end(o, i, "high");
     if (low > high) fail(Code::kArgument, "window.%s: %g degrees is above %g", kWindowNames[i], low, high);
-    c.windows[i] = make_window(*right.robot, i, low, high);
+    c.windows[i] = make_window(right, i, low, high);
     c.counts[i] = kind == SafetyKind::kFinger || i == (legacy ? kFf2 : kFf4);
+    counted = counted || (c.counts[i] && c.windows[i].act >= 0);
   }
+  if (!counted)
+    fail(Code::kUnsupported, "robot %s: the first finger has none of the joints that the cost looks at",
+         right.robot->name);
   c.throw_height = o.number("throw_height");
   c.fall_height = o.number("fall_height");
   c.throw_low = o.number("throw_angle.low") * kDegree;
@@ -168,8 +179,9 @@ void judge_safety(const SafetyCosts& c, const SafetyStep& step, Release* release
   double worst = -1e9;
   for (int i = 0; i < kNumWindows; ++i) {
     const JointWindow& w = c.windows[i];
+    if (w.act < 0) continue;
     const double excess =
-        c.angle ? w.excess(world.q()[step.hands[0].actuated[w.act]]) : w.command_excess(step.command[w.act]);
+        c.angle ? w.excess(world.q()[step.hands[0].first + w.joint]) : w.command_excess(step.command[w.act]);
     v->cost[kFf2Range + i] = excess > 0;
     v->cost_raw[kFf2Range + i] = excess;
     if (c.counts[i]) worst = std::max(worst, excess);

@@ -6,7 +6,8 @@
 //
 // The paper's joints: FF2 bends the finger in its middle, FF3 at its base, FF4 spreads it. What the windows
 // test is the commanded target, as in the paper's code, unless cost_mode = paper says the measured angle. A
-// command of +-1 stands for the ends of the paper's ranges, 0..90 and -20..20 degrees.
+// command of +-1 stands for the ends of the paper's ranges, 0..90 and -20..20 degrees; of a joint with
+// another range for the ends of its own. A window on a joint that the finger has not is never left.
 #pragma once
 #include <array>
 
@@ -22,7 +23,8 @@ enum class SafetyKind : int32_t { kFinger = 0, kJoint = 1 };
 
 // A window on one joint, inclusive.
 struct JointWindow {
-  int32_t act = 0;                           // entry of the hand's action
+  int32_t act = -1;    // entry of the hand's action that leads the joint, -1: the finger has no such joint
+  int32_t joint = -1;  // within the hand
   double low = 0, high = 0;                  // rad
   double half = 0;                           // half of the joint's range by the paper, rad: a command of 1
   double command_low = 0, command_high = 0;  // the window in units of the command
@@ -34,7 +36,7 @@ struct JointWindow {
 
 inline constexpr int kNumWindows = 3;  // FF2, FF3, FF4
 enum : int { kFf2 = 0, kFf3 = 1, kFf4 = 2 };
-JointWindow make_window(const Robot& robot, int window, double low_degrees, double high_degrees);
+JointWindow make_window(const Hand& hand, int window, double low_degrees, double high_degrees);
 
 struct SafetyCosts {
   JointWindow windows[kNumWindows];

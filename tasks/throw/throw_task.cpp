@@ -15,12 +15,23 @@ void add_throw_task_options(const ThrowConfig& config, OptionTable& table) {
   add_hand_control_options(config.hands, table);
 }
 
-SceneDef make_throw_scene(const ThrowConfig& config, const Options& o, int32_t num_materials) {
-  SceneDef s = make_hand_scene(config.hands, o, num_materials);
+HandScene make_throw_scene(const ThrowConfig& config, const Options& o, int32_t num_materials) {
+  HandScene s = make_hand_scene(config.hands, o, num_materials);
   s.bodies.push_back(object_body_from(o));
   set_friction(&s, kObject, kGround, o.number("friction.object_ground"));
   return s;
 }
+
+namespace {
+
+// The command that straightens a finger's joint: at 0 it is straight, and a range may begin below.
+float straight(const Hand& hand, int32_t link) {
+  const int32_t entry = hand.robot->action_of(link);
+  if (entry < 0 || !(hand.lower[link] < 0 && hand.upper[link] > 0)) return -1;
+  return static_cast<float>(hand.command(entry, 0));
+}
+
+}  // namespace
 
 void flat_hand_mean(const HandControl& hands, bool window, float* mean) {
   constexpr float kBent = -0.4f;
@@ -32,7 +43,8 @@ void flat_hand_mean(const HandControl& hands, bool window, float* mean) {
   for (int32_t f = 0; f < robot.fingers.count; ++f) {
     const RobotFinger& finger = robot.fingers[f];
     if (finger.thumb) continue;
-    for (int32_t link = finger.first; link <= robot.tips[f].link; ++link) command(link, -1);
+    for (int32_t link = finger.first; link <= robot.tips[f].link; ++link)
+      command(link, straight(hands.hand(0), link));
     command(finger.lateral, 0);
   }
   if (!window) return;
@@ -43,15 +55,17 @@ void flat_hand_mean(const HandControl& hands, bool window, float* mean) {
 void flat_throw_mean(const HandControl& hands, bool window, float* mean) {
   constexpr float kWristSide = 0.55f, kWristFlex = 0.18f;
   flat_hand_mean(hands, window, mean);
-  const Robot& robot = *hands.hand(0).robot;
-  const int32_t flex = robot.action_of(robot.palm), side = robot.action_of(robot.links[robot.palm].parent);
-  for (float* hand : {mean + hands.joint_entries(0), mean + hands.joint_entries(1)}) {
+  for (int32_t i = 0; i < hands.count(); ++i) {
+    const Robot& robot = *hands.hand(i).robot;
+    const int32_t flex = robot.action_of(robot.wrist_flexion()),
+                  side = robot.action_of(robot.wrist_deviation());
+    float* hand = mean + hands.joint_entries(i);
     if (side >= 0) hand[side] = kWristSide;
     if (flex >= 0) hand[flex] = kWristFlex;
   }
 }
 
-ThrowTask::ThrowTask(const ThrowConfig& config, const Options& o, SceneDef scene)
+ThrowTask::ThrowTask(const ThrowConfig& config, const Options& o, HandScene scene)
     : HandTask(config.hands, o, std::move(scene), sizeof(State)),
       base_limit_(config.hands.flying ? o.number("base_limit") : 0),
       setup_(throw_setup_from(o)) {
@@ -62,8 +76,9 @@ ThrowTask::ThrowTask(const ThrowConfig& config, const Options& o, SceneDef scene
 void ThrowTask::choose_mean(const char* word, void (*flat)(const HandControl&, bool, float*), bool window) {
   if (same_name(word, "hold"))
     hands().hold(initial_mean_);
-  else if (!same_name(word, "zero"))
-    flat(hands(), window, initial_mean_);
+  else
+    hands().hold_arms(initial_mean_);
+  if (!same_name(word, "hold") && !same_name(word, "zero")) flat(hands(), window, initial_mean_);
 }
 
 void ThrowTask::reset(World& world, void* state, Stream& stream) const {

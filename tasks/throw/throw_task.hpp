@@ -20,11 +20,11 @@ struct ThrowConfig {
 
 void add_throw_task_options(const ThrowConfig& config, OptionTable& table);
 // Hands, ground and object.
-SceneDef make_throw_scene(const ThrowConfig& config, const Options& options,
-                          int32_t num_materials = kOwnMaterial);
+HandScene make_throw_scene(const ThrowConfig& config, const Options& options,
+                           int32_t num_materials = kOwnMaterial);
 
-// Poses from which throws are learned, into a row of zeros: the right hand flat, thumb and left hand at the
-// middle of their ranges; with `window` the first finger bent into its cost window.
+// Poses from which throws are learned, into a row of hold_arms: the right hand flat, thumb and left hand at
+// the middle of their ranges; with `window` the first finger bent into its cost window.
 void flat_hand_mean(const HandControl& hands, bool window, float* mean);
 // The same with both wrists raised: for a throw from hand to hand.
 void flat_throw_mean(const HandControl& hands, bool window, float* mean);
@@ -46,7 +46,7 @@ class ThrowTask : public HandTask {
     const float* action;    // [action_dim]
     Release* release;
   };
-  ThrowTask(const ThrowConfig& config, const Options& options, SceneDef scene);
+  ThrowTask(const ThrowConfig& config, const Options& options, HandScene scene);
   void check_own_state(const void* state) const override;
   virtual void judge_costs(const Step& step, Verdict* verdict) const = 0;
 

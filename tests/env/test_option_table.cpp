@@ -41,7 +41,9 @@ TEST(OptionTable, ATaskMaySetADefaultOfItsOwn) {
 TEST(OptionTable, RefusesWhatDoesNotFit) {
   static OptionTable t;
   const OptionSpec row = number_option("", 1, 0, 10, "");
-  EXPECT_EQ(guard([&] { t.add("joint", "a_name_that_is_far_too_long", "kp", row); }), Code::kInternal);
+  EXPECT_EQ(
+      guard([&] { t.add("joint", "a_name_that_is_far_too_long_for_the_room_that_a_key_has", "kp", row); }),
+      Code::kInternal);
   EXPECT_EQ(t.count(), 0);
   for (int i = 0; i < OptionTable::kCapacity; ++i) t.add(row);
   EXPECT_EQ(guard([&] { t.add(row); }), Code::kInternal);

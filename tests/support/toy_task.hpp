@@ -122,7 +122,7 @@ inline const TaskInfo& toy_info() {
       "toy_push",
       "ToyPush",
       "a ball that is pushed",
-      [](int32_t* count) -> const OptionSpec* {
+      [](int32_t* count, OptionTable*) -> const OptionSpec* {
         *count = 6;
         return options;
       },

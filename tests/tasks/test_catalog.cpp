@@ -38,8 +38,8 @@ TEST(Catalog, EveryRowIsComplete) {
     for (int32_t k = 0; k < info.num_costs; ++k) EXPECT_GT(std::strlen(info.costs[k].help), 5u);
     EXPECT_STREQ(info.cameras[0].name, "front");
     int32_t count = 0;
-    const OptionSpec* specs = info.options(&count);
-    EXPECT_EQ(info.options(&count), specs);
+    const OptionSpec* specs = info.options(&count, nullptr);
+    EXPECT_EQ(info.options(&count, nullptr), specs);
     Options o;
     o.add_table(specs, count);
     for (int32_t i = 0; i < count; ++i) {

@@ -193,10 +193,11 @@ TEST_F(OtherHand, SavedStatesGoOn) {
 // The roles: window costs on the first finger, a flat hand, the thumb across the palm, its own options.
 TEST_F(OtherHand, RolesComeFromTheRobot) {
   const Robot& robot = three_fingers();
-  EXPECT_EQ(make_window(robot, kFf4, -10, 10).act, robot.action_of(robot.fingers[0].lateral));
   EXPECT_EQ(robot.action_of(5), -1) << "coupled";
   TestPool p("made_up_hands_throw", 1, {{"joint_noise", nullptr, 0}, {"joint.SIDE.kp", nullptr, 3}});
   EXPECT_EQ(p->task().scene().link(0).joint.kp, 3);
+  const Hand hand = find_hand(robot, p->task().scene(), 0);
+  EXPECT_EQ(make_window(hand, kFf4, -10, 10).act, robot.action_of(robot.fingers[0].lateral));
   p->reset(nullptr, nullptr);
   for (int32_t i = 0; i < kJoints; ++i)
     EXPECT_NEAR(p->world(0).q()[i], robot.poses.folded[i], 1e-6) << robot.links[i].name;
@@ -228,7 +229,7 @@ TEST_F(OtherHand, WhatIsNoHandIsRefused) {
 TEST_F(OtherHand, OwnBytesThatWouldMisalignAreRefused) {
   class Odd final : public HandTask {
    public:
-    Odd(const Options& o, SceneDef scene, size_t own_bytes)
+    Odd(const Options& o, HandScene scene, size_t own_bytes)
         : HandTask(kOneHand.hands, o, std::move(scene), own_bytes) {}
     void reset(World&, void*, Stream&) const override {}
     Verdict judge(World&, void*, int32_t) const override { return {}; }
@@ -239,7 +240,7 @@ TEST_F(OtherHand, OwnBytesThatWouldMisalignAreRefused) {
     void check_own_state(const void*) const override {}
   };
   int32_t count = 0;
-  const OptionSpec* specs = kOneHandTask.options(&count);
+  const OptionSpec* specs = kOneHandTask.options(&count, nullptr);
   Options o;
   o.add_table(specs, count);
   const auto make = [&](size_t own_bytes) {

@@ -8,7 +8,10 @@ namespace rdm::test {
 namespace {
 
 JointWindow make_window(int window, double low, double high) {
-  return rdm::make_window(kShadowHand, window, low, high);
+  SceneDef def;
+  def.articulations.push_back(make_articulation(kShadowHand, Side::kRight, {}, ""));
+  const Scene scene = make_scene(std::move(def));
+  return rdm::make_window(find_hand(kShadowHand, scene, 0), window, low, high);
 }
 
 enum : int { kCost, kFf2, kFf3, kFf4, kEffort, kHeight, kAngle, kDrop };

@@ -1,5 +1,6 @@
 #include "env/options/robot.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "robot/override.hpp"
@@ -39,16 +40,26 @@ void make_key(char* key, const char* first, const char* name, const char* last) 
 
 }  // namespace
 
-void add_robot_options(const Robot& robot, OptionTable& table) {
+void add_robot_rows(const Robot& robot, OptionTable& table) {
+  char key[OptionTable::kKeySize];
   for (const RobotLink& link : robot.links)
     for (const JointRow& row : kJointRows) {
       // an undamped joint could gain energy
-      const double low = row.field == JointField::kKd ? 1e-4 : 0;
+      const double low = row.field == JointField::kKd ? std::min(1e-4, link.kd) : 0;
+      make_key(key, "joint", link.joint, field_name(row.field));
+      if (table.has(key)) continue;  // of both hands
       table.add("joint", link.joint, field_name(row.field),
-                number_option("", link.*row.value, low, row.high, row.help));
+                number_option("", link.*row.value, low, std::max(row.high, link.*row.value), row.help));
     }
-  for (const RobotLink& link : robot.links)
-    table.add("link", link.name, "mass", number_option("", link.mass, 1e-4, 100, "mass, kg; moments follow"));
+  for (const RobotLink& link : robot.links) {
+    make_key(key, "link", link.name, "mass");
+    if (link.mass == 0 || table.has(key)) continue;
+    table.add("link", link.name, "mass",
+              number_option("", link.mass, 1e-4, 1000, "mass, kg; moments follow"));
+  }
+}
+
+void add_robot_scales(OptionTable& table) {
   table.add(kScales);
 }
 
@@ -61,7 +72,7 @@ void apply_robot_options(const Options& options, const Robot& robot, const char*
       if (options.given(key)) override_joint(def, prefix, link.joint, row.field, options.number(key));
     }
     make_key(key, "link", link.name, "mass");
-    if (options.given(key)) override_mass(def, prefix, link.name, options.number(key));
+    if (link.mass > 0 && options.given(key)) override_mass(def, prefix, link.name, options.number(key));
   }
   scale_joints(def, JointField::kKp, options.number("scale.kp"));
   scale_joints(def, JointField::kKd, options.number("scale.kd"));

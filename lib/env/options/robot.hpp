@@ -1,5 +1,5 @@
-// Joint and link parameters of a robot as options that every task has: joint.<name>.<field>,
-// link.<name>.mass, scale.<field>. Both hands take the same values.
+// Joint and link parameters of robots as options that every task of hands has: joint.<name>.<field>,
+// link.<name>.mass, scale.<field>. All robots of a task that have a joint of that name take its value.
 #pragma once
 #include "base/option.hpp"
 #include "env/options/table.hpp"
@@ -7,7 +7,9 @@
 
 namespace rdm {
 
-void add_robot_options(const Robot& robot, OptionTable& table);
+// Rows that another robot has added already are left as they are.
+void add_robot_rows(const Robot& robot, OptionTable& table);
+void add_robot_scales(OptionTable& table);
 
 // Lays the options over an articulation made from `robot` with this prefix. Single values first, then the
 // scales.

@@ -25,6 +25,12 @@ void OptionTable::add(const char* first, const char* name, const char* last, Opt
   add(row);
 }
 
+bool OptionTable::has(const char* key) const {
+  for (int32_t i = 0; i < count_; ++i)
+    if (same_name(rows_[i].key, key)) return true;
+  return false;
+}
+
 void OptionTable::set_default(const char* key, double number) {
   for (int32_t i = 0; i < count_; ++i) {
     if (std::strcmp(rows_[i].key, key) != 0) continue;

@@ -1,0 +1,205 @@
+#include "tasks/hand/hand_choice.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "env/options/robot.hpp"
+#include "robot/kinematics.hpp"
+#include "robot/mounted.hpp"
+#include "tasks/hand/hand_control.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr const char* kNone = "none";
+
+constexpr OptionSpec choosing(OptionSpec row) {
+  row.chooses = true;
+  return row;
+}
+
+constexpr OptionSpec kRows[] = {
+    choosing(text_option("arm", kNone, nullptr,
+                         "the arm that carries each hand, a robot's name; none: as the task has it")),
+};
+constexpr OptionSpec kArmRows[] = {
+    text_option("arm_base", "auto", nullptr,
+                "where an arm's base is: x y z (m) and yaw (degrees); auto: behind the hand, within reach"),
+    text_option("arm_pose", "auto", nullptr,
+                "an arm's joints at the start, rad; auto: those that bring the hand to its place", 255),
+    number_option("adapter", 0, 0, 0.5, "thickness of the plate between flange and hand, m"),
+    number_option("mount_yaw", 0, -360, 360, "turn of a hand about its arm's flange, degrees"),
+};
+
+const char* const kSideKeys[kMaxHands][2] = {{"right.hand", "right.arm"}, {"left.hand", "left.arm"}};
+const char* const kBaseKeys[kMaxHands] = {"right.arm_base", "left.arm_base"};
+const char* const kPoseKeys[kMaxHands] = {"right.arm_pose", "left.arm_pose"};
+const char* const kKeys[2] = {"hand", "arm"};
+
+// The name for hand i: its own key's, else the common one's. `text` gives the value of a key.
+template <class F>
+const char* chosen_name(int32_t i, int what, F&& text) {
+  const char* own = text(kSideKeys[i][what]);
+  return *own ? own : text(kKeys[what]);
+}
+
+void add_rows(const HandControlConfig& config, const char* hand, const char* arm, OptionTable& table) {
+  const auto add = [&](const char* name) {
+    if (same_name(name, kNone)) return;
+    if (same_name(name, config.robot->name)) return add_robot_rows(*config.robot, table);
+    const RobotRef ref(find_robot(name));
+    add_robot_rows(*ref, table);
+  };
+  add(hand);
+  add(arm);
+}
+
+// The place of a hand in the base frame, of the side that it is on.
+Pose palm_in_base(const Robot& robot, Side side, bool folded) {
+  double q[kMaxRobotLinks];
+  const Table<double>& start = folded && robot.poses.folded.count ? robot.poses.folded : robot.home;
+  for (int32_t i = 0; i < robot.links.count; ++i)
+    q[i] = start.count ? start[i] : std::clamp(0.0, robot.links[i].lower, robot.links[i].upper);
+  if (side == Side::kRight) return robot.X_BR * palm_frame(robot, q);
+  const RobotCopy left = make_mirrored(robot);
+  return robot.X_BR * palm_frame(left.robot(), q);
+}
+
+// `count` numbers, separated by blanks or commas.
+void read_numbers(const char* key, const char* text, int32_t count, double* out) {
+  const char *at = text, *const end = text + std::strlen(text);
+  for (int32_t i = 0; i < count; ++i) {
+    while (at < end && (*at == ' ' || (i > 0 && *at == ','))) ++at;
+    const auto [next, error] = std::from_chars(at, end, out[i]);
+    if (error != std::errc() || !(std::abs(out[i]) <= 1000))
+      fail(Code::kArgument, "%s: '%s' is neither auto nor %d numbers", key, Quoted(text).text, count);
+    at = next;
+  }
+  if (at != end)
+    fail(Code::kArgument, "%s: '%s' is neither auto nor %d numbers", key, Quoted(text).text, count);
+}
+
+// "x y z yaw": m and degrees.
+Pose read_base(const char* key, const char* text) {
+  double v[4];
+  read_numbers(key, text, 4, v);
+  return {{v[0], v[1], v[2]}, axis_angle({0, 0, 1}, v[3] * kDegree)};
+}
+
+// The text for hand i: its own key's, else the common one's.
+const char* own_text(const Options& o, const char* own, const char* common) {
+  const char* text = o.text(own);
+  return *text ? text : o.text(common);
+}
+
+// Angles for a base that is given: from home, and from home with one joint after the other at a quarter of
+// its range.
+bool reach_from(const Robot& arm, const Pose& X_RF, double* q) {
+  const auto start = [&](int32_t turned, double share) {
+    for (int32_t i = 0; i < arm.links.count; ++i) {
+      q[i] = arm.home.count ? arm.home[i] : std::clamp(0.0, arm.links[i].lower, arm.links[i].upper);
+      if (i == turned) q[i] = arm.links[i].lower + share * (arm.links[i].upper - arm.links[i].lower);
+    }
+  };
+  start(-1, 0);
+  if (solve_reach(arm, X_RF, q)) return true;
+  for (int32_t i = 0; i < arm.links.count; ++i)
+    for (const double share : {0.25, 0.75}) {
+      start(i, share);
+      if (solve_reach(arm, X_RF, q)) return true;
+    }
+  return false;
+}
+
+void mount(const Options& o, int32_t i, const char* name, ChosenHand* out) {
+  const RobotRef ref(find_robot(name));
+  const Robot &arm = *ref, &hand = out->robot();
+  RobotCopy mirrored;
+  const bool left = out->side == Side::kLeft;
+  if (left) mirrored = make_mirrored(hand);
+  const Mounting mounting{o.number("mount_yaw") * kDegree, o.number("adapter")};
+  RobotCopy both = make_mounted(arm, left ? mirrored.robot() : hand, mounting);
+  const Pose X_WR = out->X_WB * hand.X_BR;
+  const Pose X_WF = X_WR * inverse(mounted_root(left ? mirrored.robot() : hand, mounting));
+  const char *base = own_text(o, kBaseKeys[i], "arm_base"), *pose = own_text(o, kPoseKeys[i], "arm_pose");
+  double q[kMaxRobotLinks];
+  const bool placed = !same_name(base, "auto");
+  if (placed) out->X_WB = read_base(kBaseKeys[i], base);
+  if (!same_name(pose, "auto")) {
+    read_numbers(kPoseKeys[i], pose, arm.links.count, q);
+    for (int32_t k = 0; k < arm.links.count; ++k)
+      q[k] = std::clamp(q[k], arm.links[k].lower, arm.links[k].upper);
+    // without a place of its own it stands where that pose brings the hand to its place
+    if (!placed) out->X_WB = X_WF * inverse(flange_pose(arm, q));
+  } else if (placed) {
+    if (!reach_from(arm, inverse(out->X_WB) * X_WF, q))
+      fail(Code::kUnsupported,
+           "%s: from there %s does not bring the %s hand to its place, its flange to (%.3g, %.3g, %.3g)",
+           kBaseKeys[i], arm.name, kSideNames[i], X_WF.p.x, X_WF.p.y, X_WF.p.z);
+  } else if (!place_arm(arm, X_WF, &out->X_WB, q)) {
+    fail(Code::kUnsupported, "%s: no place was found from which %s reaches (%.3g, %.3g, %.3g); give one",
+         kBaseKeys[i], arm.name, X_WF.p.x, X_WF.p.y, X_WF.p.z);
+  }
+  for (int32_t k = 0; k < arm.links.count; ++k) {
+    both.home[static_cast<size_t>(k)] = q[k];
+    if (!both.folded.empty()) both.folded[static_cast<size_t>(k)] = q[k];
+  }
+  both.bind();
+  out->mounted = std::move(both);
+  out->armed = true;
+  out->side = Side::kRight;
+}
+
+}  // namespace
+
+const char* const kSideNames[kMaxHands] = {"right", "left"};
+
+void add_hand_choice_options(const HandControlConfig& config, OptionTable& table) {
+  table.add(
+      choosing(text_option("hand", config.robot->name, nullptr, "the robot that each hand is, by name")));
+  table.add(kRows);
+  for (int32_t i = 0; i < config.count; ++i) {
+    table.add(
+        choosing(text_option(kSideKeys[i][0], "", nullptr, "the same for this hand alone; empty: as hand")));
+    table.add(
+        choosing(text_option(kSideKeys[i][1], "", nullptr, "the same for this hand alone; empty: as arm")));
+    table.add(text_option(kBaseKeys[i], "", nullptr, "the same for this hand alone; empty: as arm_base"));
+    table.add(
+        text_option(kPoseKeys[i], "", nullptr, "the same for this hand alone; empty: as arm_pose", 255));
+  }
+  table.add(kArmRows);
+  for (int32_t i = 0; i < config.count; ++i) {
+    const auto text = [&](const char* key) { return table.choice(key); };
+    const char *hand = chosen_name(i, 0, text), *arm = chosen_name(i, 1, text);
+    add_rows(config, *hand ? hand : config.robot->name, *arm ? arm : kNone, table);
+  }
+  add_robot_scales(table);
+}
+
+ChosenHand choose_hand(const HandControlConfig& config, const Options& o, int32_t i) {
+  const auto text = [&](const char* key) { return o.text(key); };
+  const char *name = chosen_name(i, 0, text), *arm = chosen_name(i, 1, text);
+  ChosenHand out;
+  if (same_name(name, config.robot->name))
+    out.own = config.robot;
+  else
+    out.listed = RobotRef(find_robot(name));
+  const Robot& robot = out.robot();
+  if (robot.kind != RobotKind::kHand)
+    fail(Code::kUnsupported, "%s: robot %s is no hand", kSideKeys[i][0], robot.name);
+  const bool copied = i > 0 && same_name(o.text("left_model"), "right_copy");
+  out.side = i == 0 || copied ? Side::kRight : Side::kLeft;
+  const bool armed = !same_name(arm, kNone);
+  out.X_WB = armed && config.armed_bases ? config.armed_bases[i] : config.bases[i];
+  if (!out.own)
+    out.X_WB = out.X_WB * palm_in_base(*config.robot, out.side, config.folded) *
+               inverse(palm_in_base(robot, out.side, config.folded));
+  if (armed) mount(o, i, arm, &out);
+  return out;
+}
+
+}  // namespace rdm

@@ -1,0 +1,38 @@
+// Which robots the hands of a task are, by its options, and where they stand: any hand, flying or on a fixed
+// base as the task has it, or on any arm.
+//
+// A task says where the mounts of its own robot are (HandControlConfig). Another hand stands so that its
+// holding point and its palm are where that robot's would be (palm_frame in kinematics.hpp); an arm so that
+// it carries the hand there, and its angles in that pose are its home.
+#pragma once
+#include "env/options/table.hpp"
+#include "physics/model/scene.hpp"
+#include "robot/robots.hpp"
+
+namespace rdm {
+
+struct HandControlConfig;
+
+inline constexpr int kMaxHands = 2;
+extern const char* const kSideNames[kMaxHands];  // "right", "left"
+
+// One of them, made concrete.
+struct ChosenHand {
+  RobotRef listed;             // keeps a robot of the list while the task lives
+  RobotCopy mounted;           // of hand and arm, when there is one
+  const Robot* own = nullptr;  // the task's own robot; null: another
+  bool armed = false;
+  Side side = Side::kRight;  // as make_articulation takes it; a mounted left hand is mirrored already
+  Pose X_WB;
+
+  const Robot& robot() const { return armed ? mounted.robot() : own ? *own : *listed; }
+};
+
+// Options of the choice, and those of the joints and links of all robots that were chosen.
+void add_hand_choice_options(const HandControlConfig& config, OptionTable& table);
+
+// Error(kNotFound) for a name that no robot has; Error(kUnsupported) for what is no hand or no arm, for the
+// left one of a robot without sides, and for an arm that does not reach.
+ChosenHand choose_hand(const HandControlConfig& config, const Options& options, int32_t i);
+
+}  // namespace rdm
