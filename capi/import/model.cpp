@@ -7,6 +7,7 @@
 namespace rdm::import {
 namespace {
 
+constexpr size_t kMostRows = 4096;    // of shapes, of pairs: so too
 constexpr size_t kLongestName = 25;   // what rdm_robot_create takes
 constexpr double kReachAngle = 0.2;   // rad off the target where kp gives the whole effort
 constexpr double kReachSlide = 0.02;  // m
@@ -194,6 +195,8 @@ struct Builder {
     for (size_t b = 0; b < in.bodies.size(); ++b) {
       int32_t count = 0;
       for (const ShapeIn& s : in.bodies[b].shapes) {
+        if (out->shapes.size() == kMostRows)
+          refuse_at(RDM_RANGE, *s.element, "more than %zu shapes", kMostRows);
         rdm_robot_shape o{};
         const Place& at = of_body[b];
         const Pose X = at.X * s.shape.X;
@@ -317,7 +320,7 @@ struct Builder {
         y.X = pose_of(poses, lb) * y.X;
         if (touch(x, y))
           ++overlapping[{std::min(la, lb), std::max(la, lb)}];
-        else if (out->pairs.size() < kMostPairs)
+        else if (out->pairs.size() < kMostRows)
           out->pairs.push_back({static_cast<int32_t>(a), static_cast<int32_t>(b)});
         else
           ++left_out;
@@ -329,9 +332,8 @@ struct Builder {
       out->note(RDM_NOTE_CHANGED, 0, "%s and %s overlap at home: %d pair%s of shapes may not touch",
                 name(pair.first), name(pair.second), count, count == 1 ? "" : "s");
     if (left_out)
-      out->note(RDM_NOTE_CHANGED, 0, "%zu pairs of shapes beyond %zu may not touch", left_out, kMostPairs);
+      out->note(RDM_NOTE_CHANGED, 0, "%zu pairs of shapes beyond %zu may not touch", left_out, kMostRows);
   }
-  static constexpr size_t kMostPairs = 4096;  // of rdm_robot_create
   size_t left_out = 0;
 
   void add_home() {

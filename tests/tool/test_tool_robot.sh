@@ -48,5 +48,5 @@ refused 'robot shadow_hand: the name is taken' robots --robot one.robot
 # Loaded before the task is made.
 "$tool" robot "$files/hand.urdf" --name own_hand --out own.robot > out 2>&1 || say "$(cat out)"
 "$tool" robots --robot own.robot | grep -q '^own_hand *hand *8 ' || say "robots --robot: $("$tool" robots --robot own.robot 2>&1)"
-"$tool" rollout --task hand_over_safe_finger --policy hold --episodes 1 --robot own.robot > out 2>&1 || say "rollout --robot: $(cat out)"
+"$tool" rollout --task grasp --policy hold --episodes 1 --robot own.robot --set hand=own_hand > out 2>&1 || say "rollout --robot: $(cat out)"
 exit $failed
