@@ -128,33 +128,63 @@ double arm_length(const Robot& robot) {
   return length;
 }
 
+namespace {
+
+// One look at places for an arm's base around the flange, in polar coordinates, in units of the arm's length.
+struct Places {
+  int32_t starts;  // from how many poses the arm is sent there
+  int32_t num_away, num_below;
+  double away[6], below[8];
+};
+constexpr Places kNear = {1, 4, 5, {0.45, 0.35, 0.55, 0.65}, {0.2, 0.35, 0.05, 0.5, -0.1}};
+// A large arm may have to stand far off, or on a pedestal and reach down.
+constexpr Places kFar = {
+    3, 6, 8, {0.3, 0.4, 0.5, 0.6, 0.7, 0.8}, {0.5, 0.3, 0.1, 0, -0.1, -0.25, -0.4, -0.55}};
+
+// Home, and the same with the arm's second and third joint at other parts of their ranges.
+void start_pose(const Robot& arm, int32_t start, double* q) {
+  constexpr double kShares[2][2] = {{0.7, 0.3}, {0.3, 0.7}};
+  for (int32_t i = 0; i < arm.links.count; ++i) {
+    const RobotLink& l = arm.links[i];
+    q[i] = arm.home.count ? arm.home[i] : std::clamp(0.0, l.lower, l.upper);
+    if (start > 0 && (i == 1 || i == 2)) q[i] = l.lower + kShares[start - 1][i - 1] * (l.upper - l.lower);
+  }
+}
+
+}  // namespace
+
 bool place_arm(const Robot& arm, const Pose& X_WF, const Vec3& from, Pose* X_WB, double* q) {
   constexpr double kTurns[] = {0, 0.25 * kPi, -0.25 * kPi, 0.5 * kPi, -0.5 * kPi};
-  constexpr double kAway[] = {0.45, 0.35, 0.55, 0.65}, kBelow[] = {0.2, 0.35, 0.05, 0.5, -0.1};
   const double length = arm_length(arm);
   const double side = elementary::atan2(from.y, from.x);
   Reach reach{arm, {}, {}, {}};
   double best = 0;
-  for (const double turn : kTurns)
-    for (const double away : kAway)
-      for (const double below : kBelow) {
-        const elementary::SinCos a = elementary::sincos(side + turn);
-        Pose base;
-        base.p = X_WF.p + Vec3{away * length * a.cos, away * length * a.sin, -below * length};
-        base.p.z = std::max(base.p.z, 0.0);
-        base.q = axis_angle({0, 0, 1}, side + turn + kPi);  // x of the base towards the flange
-        double pose[kMaxRobotLinks];
-        for (int32_t i = 0; i < arm.links.count; ++i) pose[i] = arm.home.count ? arm.home[i] : 0;
-        if (!solve_reach(arm, inverse(base) * X_WF, pose)) continue;
-        const double score = dexterity(&reach, pose, length) * (1.2 + elementary::sincos(turn).cos);
-        const bool above = std::all_of(reach.X_RL, reach.X_RL + arm.links.count,
-                                       [&](const Pose& X) { return (base * X).p.z > 0.03; });
-        if (!above || score <= best) continue;
-        best = score;
-        *X_WB = base;
-        std::copy_n(pose, arm.links.count, q);
-      }
-  return best > 0;
+  const auto look = [&](double turn, double away, double below, int32_t start) {
+    const elementary::SinCos a = elementary::sincos(side + turn);
+    Pose base;
+    base.p = X_WF.p + Vec3{away * length * a.cos, away * length * a.sin, -below * length};
+    base.p.z = std::max(base.p.z, 0.0);
+    base.q = axis_angle({0, 0, 1}, side + turn + kPi);  // x of the base towards the flange
+    double pose[kMaxRobotLinks];
+    start_pose(arm, start, pose);
+    if (!solve_reach(arm, inverse(base) * X_WF, pose)) return;
+    const double score = dexterity(&reach, pose, length) * (1.2 + elementary::sincos(turn).cos);
+    const bool above = std::all_of(reach.X_RL, reach.X_RL + arm.links.count,
+                                   [&](const Pose& X) { return (base * X).p.z > 0.03; });
+    if (!above || score <= best) return;
+    best = score;
+    *X_WB = base;
+    std::copy_n(pose, arm.links.count, q);
+  };
+  for (const Places& places : {kNear, kFar}) {
+    for (const double turn : kTurns)
+      for (int32_t i = 0; i < places.num_away; ++i)
+        for (int32_t k = 0; k < places.num_below; ++k)
+          for (int32_t start = 0; start < places.starts; ++start)
+            look(turn, places.away[i], places.below[k], start);
+    if (best > 0) return true;
+  }
+  return false;
 }
 
 }  // namespace rdm

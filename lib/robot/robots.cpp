@@ -95,10 +95,13 @@ int32_t find_robot(const char* name) {
   const std::lock_guard<std::mutex> hold(g_lock);
   const int32_t i = find(name);
   if (i >= 0) return i;
-  const char* names[kNumOwn + kMaxRobots];
+  const char* names[2 * (kNumOwn + kMaxRobots)];
   int32_t count = 0;
-  for (int32_t k = 0; k < kNumOwn + g_num_added; ++k)
-    if (listed(k)) names[count++] = at(k)->name;
+  for (int32_t k = 0; k < kNumOwn + g_num_added; ++k) {
+    if (!listed(k)) continue;
+    names[count++] = at(k)->name;
+    if (at(k)->alias) names[count++] = at(k)->alias;
+  }
   fail(Code::kNotFound, "robot %s: unknown%s", Quoted(name).text, Nearest(name, names, count).text);
 }
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include "tasks/catalog.hpp"
 #include "tasks/hand/hand_observation.hpp"
@@ -9,7 +10,10 @@ namespace {
 
 TEST(HandObservation, Layout) {
   FieldTable t;
-  add_hand_fields(kShadowHand, t, "right");
+  SceneDef def;
+  def.articulations.push_back(make_articulation(kShadowHand, Side::kRight, {}, ""));
+  const Scene scene = make_scene(std::move(def));
+  add_hand_fields(find_hand(kShadowHand, scene, 0), t, "right");
   EXPECT_EQ(field_total(t), 187);
   const struct {
     int32_t offset;
