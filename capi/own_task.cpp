@@ -97,8 +97,10 @@ class BuiltTask final : public Task {
       rdm_scene* scene;
       ~Retire() { retire(scene); }
     } retired{&scene_};
-    own.run("build", [&] { return own.def.build(own.def.user, &scene_, instance_.data()); });
-    complete_scene(&scene_);
+    own.run("build", [&] {
+      const rdm_result r = own.def.build(own.def.user, &scene_, instance_.data());
+      return r != RDM_OK ? r : call_inside([&] { complete_scene(&scene_); });
+    });
     if (field_total(scene_.fields) > kMostEntries)
       fail(Code::kRange, "task %s: the fields have %d entries, at most %d", own.def.name,
            field_total(scene_.fields), kMostEntries);

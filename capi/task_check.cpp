@@ -22,9 +22,9 @@ using namespace rdm::capi;
 
 namespace {
 
-constexpr int32_t kEpisodes = 3, kMostSteps = 100;   // of the functions alone
-constexpr int32_t kPoolSteps = 60, kPoolWorlds = 4;  // of pools
-constexpr size_t kGuard = 256;                       // bytes before and behind what is written
+constexpr int32_t kEpisodes = 3, kMostSteps = 100, kRestores = 5;  // of the functions alone
+constexpr int32_t kPoolSteps = 60, kPoolWorlds = 4;                // of pools
+constexpr size_t kGuard = 256;                                     // bytes before and behind what is written
 constexpr unsigned char kGuardByte = 0xa5;
 constexpr uint32_t kUnwritten = 0x7fc5a5a5;  // a float that is no number
 
@@ -274,10 +274,8 @@ void check_functions(const ResolvedPoolConfig& plan) {
   Stage one(plan, &heap), two(plan, &heap), other(plan, &heap);
   for (int32_t e = 0; e < kEpisodes; ++e) {
     const auto seed = static_cast<uint64_t>(11 + e);
-    const auto world_of = [](int32_t i) { return static_cast<uint32_t>(i); };
     // a world of another seed steps in between: nothing of it may be seen
-    Stream actions(seed, world_of(0), Purpose::kTest), same = actions,
-                                                       others(seed, world_of(1), Purpose::kTest);
+    Stream actions(seed, 0, Purpose::kTest), same = actions, others(seed, 1, Purpose::kTest);
     one.trace.clear();
     two.trace.clear();
     other.trace.clear();
@@ -293,18 +291,20 @@ void check_functions(const ResolvedPoolConfig& plan) {
     for (goes_on = true; goes_on && two.steps() < kMostSteps;) goes_on = two.step(same);
     compare(plan.info->name, one.trace, two.trace, "for the same seed");
 
-    // from a third of the way on, in another world
-    const int32_t length = one.steps(), half = length / 3;
-    Stream start(seed, world_of(0), Purpose::kTest);
-    one.reset(seed);
-    while (one.steps() < half) one.step(start);
-    Stream again = start;
-    two.take(one);
-    one.trace.clear();
-    two.trace.clear();
-    for (goes_on = true; goes_on && one.steps() < length;) goes_on = one.step(start);
-    for (goes_on = true; goes_on && two.steps() < length;) goes_on = two.step(again);
-    compare(plan.info->name, one.trace, two.trace, "after save and restore");
+    // from some places on, in another world
+    const int32_t length = one.steps();
+    for (int32_t k = 1; k < kRestores && length > 1; ++k) {
+      Stream start(seed, 0, Purpose::kTest);
+      one.reset(seed);
+      while (one.steps() < length * k / kRestores) one.step(start);
+      Stream again = start;
+      two.take(one);
+      one.trace.clear();
+      two.trace.clear();
+      for (goes_on = true; goes_on && one.steps() < length;) goes_on = one.step(start);
+      for (goes_on = true; goes_on && two.steps() < length;) goes_on = two.step(again);
+      compare(plan.info->name, one.trace, two.trace, "after save and restore");
+    }
   }
   for (size_t i = 0; i < 5; ++i)
     if (heap.calls[i] >= 16 && heap.grown[i] > heap.calls[i] * 9 / 10)
