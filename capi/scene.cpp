@@ -324,11 +324,12 @@ rdm_result rdm_scene_set_friction(rdm_scene* scene, const char* a, const char* b
     need(a, "a");
     need(b, "b");
     const int32_t i = find_material(*scene, a), k = find_material(*scene, b);
-    if (mu != RDM_PASSES && !(mu >= 0 && mu <= 1000))
+    const bool passes = mu == static_cast<double>(RDM_PASSES);
+    if (!passes && !(mu >= 0 && mu <= 1000))
       fail(Code::kRange, "mu: %g is neither RDM_PASSES nor within [0, 1000]", mu);
     Friction f;
-    f.passes = mu == RDM_PASSES;
-    if (!f.passes) f.mu = mu;
+    f.passes = passes;
+    if (!passes) f.mu = mu;
     scene->def.friction[i][k] = scene->def.friction[k][i] = f;
   });
 }
@@ -353,8 +354,8 @@ rdm_result rdm_scene_add_robot(rdm_scene* scene, const rdm_scene_robot* robot, i
       fail(Code::kRange, "robot %s: more than %d", in.name, kMostThings);
     PlacedRobot placed;
     placed.name = in.name;
-    if (in.def) {
-      const RobotCopy described = robot_from(in.def);
+    if (in.own) {
+      const RobotCopy described = robot_from(in.own);
       check_robot(described.robot());
       placed.own = RobotCopy(described.robot());
       placed.of_scene = true;

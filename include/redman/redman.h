@@ -774,7 +774,7 @@ typedef struct rdm_body_def { /* a free body; its frame is at its centre of mass
 typedef struct rdm_scene_robot { /* a robot in a scene: one of the list, or a tree of its own (a drawer, a door) */
   uint32_t struct_size;    /* bytes                                                                       */
   int32_t robot;           /* of rdm_robot_find                                                           */
-  const rdm_robot_def *def;   /* a robot of this scene alone, in the place of `robot`; NULL               */
+  const rdm_robot_def *own; /* a robot of this scene alone, in the place of `robot`; NULL                 */
   const char *name;        /* begins, with '_', the names of its links, joints and shapes; unique         */
   const char *material;    /* of its shapes; NULL: "default"                                              */
   double p[3];             /* its base at the start, m                                                    */
@@ -795,11 +795,11 @@ enum rdm_scene_part { /* what rdm_scene_find looks for; numbers count from 0 in 
 /* Value of the pool's option `key`: *value of a number, integer or flag, *text of a text. NOT_FOUND, ARGUMENT. */
 RDM_API rdm_result rdm_scene_number(rdm_scene *scene, const char *key, double *value);
 RDM_API rdm_result rdm_scene_text(rdm_scene *scene, const char *key, const char **text);
+enum rdm_friction { RDM_PASSES = -1 }; /* in the place of a coefficient */
 /* What is added gets the next number. A friction is that of two materials, or of one with itself; 1 unless
  * said; RDM_PASSES: they go through each other. Gravity [3] is in the place of the option's. The texts of errors name the
  * thing; all is STATE after the first find, touch or joint. */
-#define RDM_PASSES -1
-RDM_API rdm_result rdm_scene_add_material(rdm_scene *scene, const char *name); /* 15 beside "default" */
+RDM_API rdm_result rdm_scene_add_material(rdm_scene *scene, const char *name); /* "default" is one, 15 more */
 RDM_API rdm_result rdm_scene_set_friction(rdm_scene *scene, const char *a, const char *b, double mu); /* 0 or more */
 RDM_API rdm_result rdm_scene_set_gravity(rdm_scene *scene, const double gravity[3]); /* m/s2 */
 RDM_API rdm_result rdm_scene_add_robot(rdm_scene *scene, const rdm_scene_robot *robot, int32_t *index); /* index: NULL */

@@ -1,5 +1,6 @@
 // A task of a host's own is a task: pools, threads, states, sensors, learners and discovery hold for it, and
 // it stays while a pool has it.
+#include <gtest/gtest.h>
 #include <redman/redman.h>
 
 #include <thread>

@@ -1,4 +1,5 @@
 // rdm_task_check names the first promise that a task breaks; tasks that keep them pass.
+#include <gtest/gtest.h>
 #include <redman/redman.h>
 
 #include "own_task.hpp"

@@ -1,5 +1,6 @@
 // What a malformed description, scene or call in a world gets: an error that names the thing and its range.
 // The table is printed.
+#include <gtest/gtest.h>
 #include <redman/redman.h>
 
 #include <functional>

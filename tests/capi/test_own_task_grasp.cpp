@@ -1,5 +1,6 @@
 // One of the library's own tasks, written with the public header alone, has the same bytes: rows, rewards,
 // costs, hashes.
+#include <gtest/gtest.h>
 #include <redman/redman.h>
 
 #include "own_grasp.hpp"

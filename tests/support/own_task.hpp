@@ -2,11 +2,12 @@
 // with a fault where one is asked for.
 #pragma once
 #define RDM_EXPERIMENTAL
-#include <gtest/gtest.h>
 #include <redman/redman.h>
 
 #include <atomic>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -92,7 +93,7 @@ inline rdm_result ball_build(void* user, rdm_scene* scene, void* instance) {
   if (r == RDM_OK) r = rdm_robot_def_init(&d, sizeof d);
   d.name = "pusher", d.links = &link, d.num_links = 1, d.shapes = &plate, d.num_shapes = 1;
   rdm_scene_robot robot{};
-  robot.struct_size = sizeof robot, robot.def = &d, robot.name = "paddle", robot.p[2] = 0.06;
+  robot.struct_size = sizeof robot, robot.own = &d, robot.name = "paddle", robot.p[2] = 0.06;
   if (r == RDM_OK) r = rdm_scene_add_robot(scene, &robot, &ids->paddle);
   rdm_shape_def sphere{};
   sphere.kind = RDM_SPHERE, sphere.size[0] = 0.05, sphere.material = "rubber";
@@ -245,6 +246,9 @@ inline rdm_result ball_observe(void* user, const void* instance, const rdm_world
 inline rdm_result ball_check_state(void*, const void*, const void* state) {
   const auto* s = static_cast<const BallState*>(state);
   if (!(std::fabs(s->start) <= 1)) return rdm_fail(RDM_FORMAT, "start is not within +-1");
+  for (const float a : s->action)
+    if (!(std::fabs(a) <= 1)) return rdm_fail(RDM_FORMAT, "an action is not within +-1");
+  if (s->steps < 0) return rdm_fail(RDM_FORMAT, "steps are below 0");
   return RDM_OK;
 }
 
@@ -267,7 +271,7 @@ struct BallTask {
 
   explicit BallTask(const char* name, Fault fault = Fault::kNone) {
     user.fault = fault;
-    EXPECT_EQ(rdm_task_def_init(&def, sizeof def), RDM_OK);
+    rdm_task_def_init(&def, sizeof def);
     def.name = name;
     def.summary = "push a ball with a paddle";
     def.max_steps = 40;
@@ -299,11 +303,11 @@ struct BallTask {
 class Registered {
  public:
   explicit Registered(const rdm_task_def& def) {
-    EXPECT_EQ(rdm_task_register(&task_, &def), RDM_OK) << rdm_last_error();
+    if (rdm_task_register(&task_, &def) == RDM_OK) return;
+    std::fprintf(stderr, "%s\n", rdm_last_error());
+    std::abort();
   }
-  ~Registered() {
-    if (task_ >= 0) rdm_task_remove(task_);
-  }
+  ~Registered() { rdm_task_remove(task_); }
   Registered(const Registered&) = delete;
   Registered& operator=(const Registered&) = delete;
   int32_t index() const { return task_; }

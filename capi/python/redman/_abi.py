@@ -149,6 +149,12 @@ class ScenePart(enum.IntEnum):
     SENSOR = 5  # the link of a fingertip, for rdm_world_sensor
 
 
+class Friction(enum.IntEnum):
+    """in the place of a coefficient"""
+
+    PASSES = -1
+
+
 class MapFormat(enum.IntEnum):
     """OctoMap's files: RDM_MAP_BINARY (.bt: occupied or free) and RDM_MAP_FULL (.ot: the probabilities too)."""
 
@@ -1601,7 +1607,7 @@ class rdm_body_def(Structure):
 class rdm_scene_robot(Structure):
     """struct_size: bytes
     robot: of rdm_robot_find
-    def: a robot of this scene alone, in the place of `robot`; NULL
+    own: a robot of this scene alone, in the place of `robot`; NULL
     name: begins, with '_', the names of its links, joints and shapes; unique
     material: of its shapes; NULL: "default"
     p: its base at the start, m
@@ -1615,7 +1621,7 @@ class rdm_scene_robot(Structure):
 
     struct_size: int
     robot: int
-    def: Any
+    own: Any
     name: bytes | None
     material: bytes | None
     p: Any
@@ -1628,7 +1634,7 @@ class rdm_scene_robot(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
         ("robot", c_int32),
-        ("def", POINTER(rdm_robot_def)),
+        ("own", POINTER(rdm_robot_def)),
         ("name", c_char_p),
         ("material", c_char_p),
         ("p", c_double * 3),
@@ -1795,7 +1801,7 @@ class rdm_field_def(Structure):
 class rdm_task_def(Structure):
     """struct_size: bytes, set by rdm_task_def_init
     max_steps: control steps of an episode: default of the option max_steps; default 100
-    name: letters, digits, '_', '-'; at most 40
+    name: letters, digits, '_', '-', '.'; at most 40
     summary: one line; NULL: none
     fields: [num_fields] of an observation, in order
     costs: [num_costs] column 0 is the one that learners limit
@@ -2642,27 +2648,27 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_scene_add_material": Function(
         c_int32, {"scene": c_void_p, "name": c_char_p},
         {}, True,
-        """15 beside "default""""),
+        """"default" is one, 15 more"""),
     "rdm_scene_set_friction": Function(
         c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "mu": c_double},
         {}, True,
-        """"""),
+        """0 or more"""),
     "rdm_scene_set_gravity": Function(
         c_int32, {"scene": c_void_p, "gravity": c_void_p},
         {"gravity": Rows("float64", ("3",))}, True,
-        """"""),
+        """m/s2"""),
     "rdm_scene_add_robot": Function(
         c_int32, {"scene": c_void_p, "robot": POINTER(rdm_scene_robot), "index": c_void_p},
         {}, True,
-        """"""),
+        """index: NULL"""),
     "rdm_scene_add_body": Function(
         c_int32, {"scene": c_void_p, "body": POINTER(rdm_body_def), "index": c_void_p},
         {}, True,
-        """"""),
+        """index: NULL"""),
     "rdm_scene_add_static": Function(
         c_int32, {"scene": c_void_p, "shape": POINTER(rdm_shape_def)},
         {}, True,
-        """"""),
+        """stands still"""),
     "rdm_scene_set_field": Function(
         c_int32, {"scene": c_void_p, "field": c_char_p, "count": c_int32},
         {}, True,
@@ -2726,7 +2732,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_world_overlap": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "depth": c_void_p},
         {}, True,
-        """depth (m) by which a body at its present place is within something that it may touch; 0: it is clear."""),
+        """By *depth (m) a body at its present place is within something that it may touch; 0: it is clear."""),
     "rdm_world_set_body": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "motion": POINTER(rdm_motion)},
         {}, True,
@@ -2740,7 +2746,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_world_set_joints": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "q": c_void_p, "qd": c_void_p, "n": c_int32},
         {"q": Rows("float64", ("n",)), "qd": Rows("float64", ("n",))}, True,
-        """"""),
+        """all n"""),
     "rdm_world_set_targets": Function(
         c_int32, {"world": c_void_p, "first": c_int32, "targets": c_void_p, "n": c_int32},
         {"targets": Rows("float64", ("n",))}, True,
@@ -2805,9 +2811,9 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"task": c_char_p, "settings": c_char_p, "error": c_void_p, "error_size": c_int32},
         {}, True,
         """Tries what a task promises, any task: the same bytes for the same seed, any threads and after save and restore, rows within
-        their fields and bounds, costs of 0 or more, nothing written past a state or a row, no heap in a step. OK, or the error of
-        making a pool, or UNSUPPORTED: the text names the function, the step and the entry where a promise broke first; it goes to
-        error [error_size] too, NULL: not. `settings` as in rdm_pool_config; NULL: none. A second or so.
+        their fields and bounds, costs of 0 or more, nothing written past a state or a row, no memory left behind. OK, or the error
+        of making a pool, or ARGUMENT: the text names the function, the step and the entry where a promise broke first; it goes to
+        error [error_size] too, NULL: not. `settings` as in rdm_pool_config; NULL: none. Seconds.
         """),
     "rdm_map_config_init": Function(
         c_int32, {"c": POINTER(rdm_map_config), "size": c_size_t},
