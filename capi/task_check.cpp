@@ -293,7 +293,7 @@ void check_functions(const ResolvedPoolConfig& plan) {
 
     // from some places on, in another world
     const int32_t length = one.steps();
-    for (int32_t k = 1; k < kRestores && length > 1; ++k) {
+    for (int32_t k = 0; k < kRestores && length > 1; ++k) {
       Stream start(seed, 0, Purpose::kTest);
       one.reset(seed);
       while (one.steps() < length * k / kRestores) one.step(start);
