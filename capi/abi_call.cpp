@@ -46,14 +46,8 @@ const char* name_of(Tag tag) {
 }
 
 rdm_option_info describe(const OptionSpec& s) {
-  return {s.key,
-          s.help,
-          s.kind == OptionKind::kText ? s.text : nullptr,
-          s.choices,
-          s.number,
-          s.low,
-          s.high,
-          static_cast<int32_t>(s.kind),
+  return {s.key,         s.help, s.text, s.range ? "a..b" : s.choices,
+          s.number,      s.low,  s.high, static_cast<int32_t>(s.kind),
           s.live ? 1 : 0};
 }
 
@@ -72,9 +66,9 @@ void give_option(const Options& options, int32_t i, const char** key, char* text
   need_index(i, options.count(), "i");
   char value[RDM_TEXT_SIZE];
   if (!options.print(i, value))
-    fail(Code::kRange, "option %s: its text is longer than %d bytes; %s has it whole", options.spec(i).key,
+    fail(Code::kRange, "option %s: its text is longer than %d bytes; %s has it whole", options.key(i),
          RDM_TEXT_SIZE - 1, settings_call);
-  *key = options.spec(i).key;
+  *key = options.key(i);
   std::strcpy(text, value);
 }
 

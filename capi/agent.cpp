@@ -23,6 +23,7 @@ namespace {
 struct Config {
   AgentConfig agent;
   Vector<OptionInput> defaults, options;
+  Vector<ObsField> fields;
 };
 
 void read_config(const rdm_agent_config* c, Config* out) {
@@ -51,6 +52,13 @@ void read_config(const rdm_agent_config* c, Config* out) {
   a.options = out->options.data();
   a.num_options = in.num_options;
   a.settings = in.settings;
+  if (in.num_fields < 0 || in.num_fields > 4096)
+    fail(Code::kRange, "config.num_fields: %d is outside [0, 4096]", in.num_fields);
+  if (in.num_fields > 0) need(in.fields, "config.fields");
+  for (int32_t i = 0; i < in.num_fields; ++i)
+    out->fields.push_back({in.fields[i].name, in.fields[i].offset, in.fields[i].count});
+  a.fields = out->fields.data();
+  a.num_fields = in.num_fields;
 }
 
 DecisionBuffers carve_decision(Arena& arena, const AgentConfig& c) {
@@ -183,7 +191,8 @@ void write_epoch(rdm_epoch* io, const Epoch& e) {
   out.value_reward = e.value_reward;
   out.value_cost = e.value_cost;
   out.passes = e.passes;
-  write_struct(io, out, sizeof(rdm_epoch), "io");
+  out.cost_signal = e.cost_signal;
+  write_struct(io, out, kFirstEpochSize, "io");
 }
 }  // namespace rdm::capi
 
@@ -191,7 +200,7 @@ rdm_result rdm_agent_update(rdm_agent* a, const float* last_obs, rdm_epoch* io) 
   return call(text_of(a), [&] {
     need_handle(a);
     need(last_obs, "last_obs");
-    if (io) check_out(io, sizeof(rdm_epoch), "io");
+    if (io) check_out(io, kFirstEpochSize, "io");
     Epoch e;
     a->agent->update(last_obs, &e);
     if (io) write_epoch(io, e);

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <vector>
 
+#include "env/options/disturb.hpp"
 #include "env/options/repeat.hpp"
 #include "robot/robots.hpp"
 #include "tasks/catalog.hpp"
@@ -29,11 +30,12 @@ struct OptionTableView {
   int32_t count;
 };
 // A task's own, and those that every task has.
-std::array<OptionTableView, 3> tables_of(const TaskInfo& info) {
-  std::array<OptionTableView, 3> t;
+std::array<OptionTableView, 4> tables_of(const TaskInfo& info) {
+  std::array<OptionTableView, 4> t;
   t[0].rows = task_options(info, &t[0].count);
   t[1].rows = sense_options(&t[1].count);
   t[2].rows = repeat_options(&t[2].count);
+  t[3].rows = disturb_options(&t[3].count);
   return t;
 }
 

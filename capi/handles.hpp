@@ -26,6 +26,7 @@ struct rdm_pool {
   int32_t num_defaults = 0;
   float* initial_mean = nullptr;  // [action_dim]
   double* cost_limits = nullptr;  // [cost_dim]
+  rdm_field* fields = nullptr;    // [number of fields]
   rdm::RaycastScratch raycast;
   rdm::RenderShape* shapes = nullptr;  // [num_shapes]
 };

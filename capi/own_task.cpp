@@ -303,14 +303,22 @@ void OwnTask::take_options() {
     for (const OptionSpec& other : options_)
       if (same_name(other.key, o.key)) fail(Code::kArgument, "%s: %s is there twice", key.text, o.key);
     if (same_name(o.key, "max_steps")) fail(Code::kArgument, "%s: max_steps is def.max_steps", key.text);
-    OptionSpec made{};
+    OptionSpec made = number_option("", 0, 0, 0, "");
     if (row) {
       made = *row;
     } else {
       need_text(o.help, RowName("options", i, "help").text);
+      const bool ranged = o.choices && kind != OptionKind::kText;
+      if (ranged && (std::strcmp(o.choices, "a..b") != 0 || kind == OptionKind::kFlag))
+        fail(Code::kArgument, "def.options[%d].choices of %s: a number or integer has a..b or NULL", i,
+             o.key);
       if (o.choices) need_text(o.choices, RowName("options", i, "choices").text);
-      made = {texts_.keep(o.key),  kind, 0, o.low, o.high, nullptr, texts_.keep(o.choices),
-              texts_.keep(o.help), false};
+      made.key = texts_.keep(o.key);
+      made.kind = kind;
+      made.low = o.low, made.high = o.high;
+      made.choices = ranged ? nullptr : texts_.keep(o.choices);
+      made.help = texts_.keep(o.help);
+      made.range = ranged;
       if (kind == OptionKind::kFlag) made.low = 0, made.high = 1;
       if (kind != OptionKind::kText && !(made.low < made.high))
         fail(Code::kRange, "def.options[%d]: low %g of %s is not below high %g", i, o.low, o.key, o.high);

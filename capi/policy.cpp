@@ -46,7 +46,23 @@ struct PolicyTensor {
   const char* name;  // static
   const float* data;
   int32_t rows, cols;
+  // of a policy that sees a part of the row: `data` has but the seen ones of cols (rows, where that is 1)
+  bool part = false;
+  float unseen = 0;  // what stands for the others
 };
+
+// All that the tensor is, [rows][cols].
+void copy_tensor(const PolicyView& v, const PolicyTensor& t, float* out) {
+  const size_t size = static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols);
+  if (!t.part) {
+    std::copy(t.data, t.data + size, out);
+    return;
+  }
+  std::fill_n(out, size, t.unseen);
+  const auto seen = static_cast<size_t>(v.actor.in), row = static_cast<size_t>(v.obs_dim());
+  for (size_t r = 0; r < size / row; ++r)
+    for (size_t i = 0; i < seen; ++i) out[r * row + static_cast<size_t>(v.columns[i])] = t.data[r * seen + i];
+}
 
 // The i-th block of numbers of a policy file; false past the end.
 bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
@@ -59,19 +75,22 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
   if (i < 0) return false;
   if (i < 2 * s.num_layers()) {
     const int32_t l = i / 2;
+    const bool part = l == 0 && v.columns;
     if (i % 2)
       *out = {kBiases[l], v.params + s.bias_offset(l), s.layer_out(l), 1};
     else
-      *out = {kWeights[l], v.params + s.weight_offset(l), s.layer_out(l), s.layer_in(l)};
+      *out = {kWeights[l], v.params + s.weight_offset(l), s.layer_out(l), part ? v.obs_dim() : s.layer_in(l),
+              part};
     return true;
   }
   const PolicyTensor std_bounds = {"actor.log_std_bounds", v.std_bounds, 2, 1};
   const PolicyTensor always[] = {
       v.state_std ? std_bounds : PolicyTensor{"actor.log_std", v.log_std, s.out, 1},
-      {"example.obs", v.example_obs, s.in, 1},
+      {"example.obs", v.example_obs, v.obs_dim(), 1},
       {"example.action", v.example_action, v.action_dim(), 1}};
-  const PolicyTensor normalizer[] = {{"normalizer.shift", v.shift, s.in, 1},
-                                     {"normalizer.scale", v.scale, s.in, 1},
+  const bool part = v.columns != nullptr;
+  const PolicyTensor normalizer[] = {{"normalizer.shift", v.shift, v.obs_dim(), 1, part},
+                                     {"normalizer.scale", v.scale, v.obs_dim(), 1, part, 1},
                                      {"normalizer.clip", &v.clip, 1, 1}};
   const auto rest = static_cast<size_t>(i - 2 * s.num_layers());
   if (rest < std::size(always))
@@ -123,7 +142,7 @@ rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
     need_handle(p);
     const PolicyView& v = p->policy->view();
     rdm_policy_info info{};
-    info.obs_dim = v.actor.in;
+    info.obs_dim = v.obs_dim();
     info.action_dim = v.action_dim();
     info.action_repeat = v.action_repeat;
     info.control_dt = v.control_dt;
@@ -150,7 +169,7 @@ rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, c
     if (rows < 1) fail(Code::kRange, "rows: %d is less than 1", rows);
     scratch = aligned_scratch(scratch, scratch_bytes, p->policy->scratch_bytes(rows));
     const PolicyView& v = p->policy->view();
-    need_finite(obs, rows, v.actor.in, "obs");
+    need_finite(obs, rows, v.obs_dim(), "obs");
     if (noise) need_finite(noise, rows, v.action_dim(), "noise");
     p->policy->act(obs, rows, noise, action, scratch);
     need_finite(action, rows, v.action_dim(), "action: the network overflows on these observations");
@@ -178,7 +197,7 @@ rdm_result rdm_policy_tensor_read(const rdm_policy* p, const char* name, float* 
       if (std::strcmp(t.name, name) == 0) {
         const size_t size = static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols);
         if (count != size) fail(Code::kRange, "count: %s has %zu values, not %zu", name, size, count);
-        std::copy(t.data, t.data + size, out);
+        copy_tensor(p->policy->view(), t, out);
         return;
       }
       names.push_back(t.name);
@@ -188,13 +207,25 @@ rdm_result rdm_policy_tensor_read(const rdm_policy* p, const char* name, float* 
   });
 }
 
+rdm_result rdm_policy_columns(const rdm_policy* p, int32_t* columns, int32_t capacity, int32_t* count) {
+  return call(nullptr, [&] {
+    need_handle(p);
+    need(count, "count");
+    if (capacity < 0) fail(Code::kRange, "capacity: %d is negative", capacity);
+    if (capacity > 0) need(columns, "columns");
+    const PolicyView& v = p->policy->view();
+    for (int32_t i = 0; i < std::min(capacity, v.actor.in); ++i) columns[i] = v.columns ? v.columns[i] : i;
+    *count = v.actor.in;
+  });
+}
+
 rdm_result rdm_policy_check(const rdm_policy* p, const rdm_spec* spec) {
   return call(nullptr, [&] {
     need_handle(p);
     const auto s = read_struct(spec, kFirstSpecSize, rdm_spec{}, "spec");
     const PolicyView& v = p->policy->view();
-    if (v.actor.in != s.obs_dim)
-      fail(Code::kVersion, "obs_dim: the policy has %d, the task %d", v.actor.in, s.obs_dim);
+    if (v.obs_dim() != s.obs_dim)
+      fail(Code::kVersion, "obs_dim: the policy has %d, the task %d", v.obs_dim(), s.obs_dim);
     if (v.action_dim() != s.action_dim)
       fail(Code::kVersion, "action_dim: the policy has %d, the task %d", v.action_dim(), s.action_dim);
     if (v.layout_hash && s.layout_hash && v.layout_hash != s.layout_hash)

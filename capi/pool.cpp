@@ -69,6 +69,7 @@ void carve(Arena& arena, const Task& task, const TaskInfo& info, rdm_pool* p) {
   p->defaults = arena.make<rdm_option>(static_cast<size_t>(info.num_defaults) + 1);
   p->initial_mean = arena.make<float>(static_cast<size_t>(task.action_dim()));
   p->cost_limits = arena.make<double>(static_cast<size_t>(info.num_costs));
+  p->fields = arena.make<rdm_field>(task.fields().size());
   const auto shapes = task.scene().shapes.size();
   p->shapes = arena.make<RenderShape>(shapes);
   p->raycast = carve_raycast_scratch(arena, static_cast<int32_t>(shapes));
@@ -104,6 +105,7 @@ void fill_side(rdm_pool* p) {
   carve(p->arena, task, info, p);
   p->num_defaults = fill_defaults(info, p->pool->repeat(), p->defaults);
   task.initial_mean(p->initial_mean);
+  for (size_t i = 0; i < task.fields().size(); ++i) p->fields[i] = field_of(task, static_cast<int32_t>(i));
   // only column 0 is limited unless the host says otherwise
   for (int32_t i = 0; i < info.num_costs; ++i) p->cost_limits[i] = i == 0 ? info.costs[0].limit : -1;
 }

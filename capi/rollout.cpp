@@ -24,7 +24,7 @@ void check_match(const AgentConfig& a, int32_t repeat, const Pool& p) {
 
 // One decision: the action in the pool's buffer is held for `repeat` steps of the pool; a world whose episode
 // ends sits out the rest, so that every world has the same number of decisions.
-void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat) {
+void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat, bool raw_costs) {
   const Buffers& b = pool.buffers();
   const auto n = static_cast<size_t>(pool.config().num_envs);
   const auto costs = static_cast<size_t>(pool.cost_dim());
@@ -45,7 +45,10 @@ void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat) {
       if (!d.mask[i]) continue;
       if (d.valid[i]) {
         d.reward[i] += b.reward[i];
-        for (size_t k = 0; k < costs; ++k) d.cost[i * costs + k] += b.cost[i * costs + k];
+        for (size_t k = 0; k < costs; ++k)
+          d.cost[i * costs + k] +=
+              raw_costs ? static_cast<float>(pool.magnitude(static_cast<int32_t>(i), static_cast<int32_t>(k)))
+                        : b.cost[i * costs + k];
         d.steps[i] += pool.taken(static_cast<int32_t>(i));
         d.success[i] |= b.success[i];
       }
@@ -74,7 +77,7 @@ void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
     while (agent.missing() > 0) {
       agent.check_cancel();
       agent.act(b.obs, true, b.action);
-      hold_action(pool, d, agent.action_repeat() / pool.repeat());
+      hold_action(pool, d, agent.action_repeat() / pool.repeat(), agent.raw_costs());
       agent.record(t);
     }
     agent.update(b.obs, out);
@@ -90,7 +93,7 @@ rdm_result rdm_agent_rollout(rdm_agent* a, rdm_pool* p, rdm_epoch* io) {
   return call(text_of(a), [&] {
     need_handle(a);
     need_handle(p);
-    if (io) check_out(io, sizeof(rdm_epoch), "io");
+    if (io) check_out(io, kFirstEpochSize, "io");
     Epoch e;
     rollout(*a->agent, *p->pool, a->decision, &e);
     if (io) write_epoch(io, e);
@@ -114,6 +117,8 @@ rdm_result rdm_agent_config_for_pool(rdm_agent_config* c, const rdm_pool* p) {
     config.defaults = p->defaults;
     config.num_defaults = p->num_defaults;
     config.cost_limits = p->cost_limits;
+    config.fields = p->fields;
+    config.num_fields = static_cast<int32_t>(pool.task().fields().size());
     write_struct(c, config, kFirstAgentConfigSize, "config");
   });
 }

@@ -305,6 +305,25 @@ rdm_result rdm_scene_text(rdm_scene* scene, const char* key, const char** text) 
   });
 }
 
+rdm_result rdm_scene_range(rdm_scene* scene, const char* key, double* low, double* high) {
+  return call_inside([&] {
+    need_handle(scene);
+    need(key, "key");
+    need(low, "low");
+    need(high, "high");
+    const OptionRange range = scene->options->range(key);
+    *low = range.low;
+    *high = range.high;
+  });
+}
+
+rdm_result rdm_scene_set_feedforward(rdm_scene* scene) {
+  return call_inside([&] {
+    need_open(scene);
+    scene->def.feedforward = true;
+  });
+}
+
 rdm_result rdm_scene_add_material(rdm_scene* scene, const char* name) {
   return call_inside([&] {
     need_open(scene);

@@ -3,6 +3,9 @@
 #include <cmath>
 
 #include "capi/own_task.hpp"
+#if RDM_WITH_SIM
+#include "physics/gravity_torques.hpp"
+#endif
 
 #if RDM_WITH_SIM
 using namespace rdm;
@@ -63,6 +66,11 @@ void need_free_base(const World& w, int32_t robot) {
 void need_numbers(const double* x, int32_t n, int32_t wanted, const char* name) {
   if (n != wanted) fail(Code::kRange, "n: %d %s, the robot has %d", n, name, wanted);
   need(x, name);
+}
+
+void need_joints(const World& w, int32_t first, int32_t n) {
+  if (n < 0 || first < 0 || n > w.scene().num_links - first)
+    fail(Code::kRange, "first, n: %d joints from %d on, of %d", n, first, w.scene().num_links);
 }
 
 template <class F>
@@ -225,8 +233,7 @@ rdm_result rdm_world_set_joints(rdm_world* world, int32_t robot, const double* q
 rdm_result rdm_world_set_targets(rdm_world* world, int32_t first, const double* targets, int32_t n) {
   return call_inside([&] {
     World& w = change(world);
-    if (n < 0 || first < 0 || n > w.scene().num_links - first)
-      fail(Code::kRange, "first, n: joints %d to %d of %d", first, first + n - 1, w.scene().num_links);
+    need_joints(w, first, n);
     if (n > 0) need(targets, "targets");
     for (int32_t i = 0; i < n; ++i)
       if (!bounded(targets[i], kStateBound))
@@ -253,6 +260,30 @@ rdm_result rdm_world_command(rdm_world* world, int32_t robot, const double* comm
       target[c.joint] = std::clamp(a, before - c.rate, before + c.rate);
     }
     for (const PlacedRobot::Follower& f : r.followers) target[f.joint] = f.curve->at(commands[f.command]);
+  });
+}
+
+rdm_result rdm_world_set_feedforward(rdm_world* world, int32_t first, const double* efforts, int32_t n) {
+  return call_inside([&] {
+    World& w = change(world);
+    if (!w.feedforward())
+      fail(Code::kState, "world: its scene has no feed-forward, rdm_scene_set_feedforward");
+    need_joints(w, first, n);
+    if (n > 0) need(efforts, "efforts");
+    for (int32_t i = 0; i < n; ++i)
+      if (!bounded(efforts[i], kFeedforwardBound))
+        fail(Code::kArgument, "efforts[%d] is not finite or beyond %g", i, kFeedforwardBound);
+    std::copy_n(efforts, n, w.feedforward() + first);
+  });
+}
+
+rdm_result rdm_world_gravity(const rdm_world* world, int32_t robot, double* efforts, int32_t n) {
+  return call_inside([&] {
+    const World& w = look(world);
+    need_robot(w, robot);
+    const auto links = w.scene().def.articulations[static_cast<size_t>(robot)].links.size();
+    need_numbers(efforts, n, static_cast<int32_t>(links), "efforts");
+    gravity_torques(w, robot, efforts);
   });
 }
 

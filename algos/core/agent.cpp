@@ -22,9 +22,11 @@ constexpr double kEntropyOfUnit = 1.4189385332046727;  // of a normal with devia
 
 size_t Agent::memory(const AgentConfig& config) {
   ResolvedAgentConfig resolved = resolve_config(config);
-  const size_t rows = options_bytes(resolved.row->info);
   const AlgoRow& row = *resolved.row;
-  return row.measure(std::move(resolved)) + rows + Workers::memory(config.hooks, config.num_threads);
+  const size_t held =
+      resolved.options.held_bytes() +
+      (resolved.actor_columns.capacity() + resolved.critic_columns.capacity()) * sizeof(int32_t);
+  return row.measure(std::move(resolved)) + held + Workers::memory(config.hooks, config.num_threads);
 }
 
 Agent* Agent::create(const AgentConfig& config) {
@@ -75,6 +77,7 @@ void Agent::open(const AgentConfig& config) {
   c.settings = nullptr;
   c.initial_mean = nullptr;
   c.cost_limits = nullptr;
+  c.fields = nullptr;
 }
 
 void Agent::read_live() {
@@ -98,6 +101,10 @@ void Agent::set_option(const OptionInput& option) {
          limit < 0 ? "without" : "with");
   }
   read_live();
+}
+
+bool Agent::raw_costs() const {
+  return std::strcmp(resolved_.options.text("cost_signal"), "raw") == 0;
 }
 
 void Agent::act(const float* obs, bool sample, float* action) {
@@ -232,6 +239,7 @@ void Agent::fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const
   e.value_reward = masked_mean(r.value, 1, r.valid, r.samples());
   if (r.num_costs > 0) e.value_cost = masked_mean(r.cost_value, r.num_costs, r.valid, r.samples());
   e.passes = learned_.passes;
+  e.cost_signal = raw_costs();
   *out = e;
 }
 
@@ -291,6 +299,8 @@ void Agent::write_policy_file(Writer& out) {
   const Normalizer& n = collector_.normalizer();
   PolicyView v;
   v.actor = nets_.shape[Networks::kActor];
+  v.columns = nets_.columns[Networks::kActor];
+  v.row_dim = nets_.obs_dim;
   v.params = nets_.net(Networks::kActor);
   if (nets_.state_std())
     v.state_std = true, v.std_bounds[0] = nets_.std_low, v.std_bounds[1] = nets_.std_high;
@@ -298,6 +308,13 @@ void Agent::write_policy_file(Writer& out) {
     v.log_std = nets_.log_std();
   v.shift = n.shift;
   v.scale = n.scale;
+  Vector<float> seen(v.columns ? 2 * static_cast<size_t>(v.actor.in) : 0);
+  if (v.columns) {
+    float* const scale = seen.data() + v.actor.in;
+    pick_columns(n.shift, 1, n.dim, v.columns, v.actor.in, seen.data());
+    pick_columns(n.scale, 1, n.dim, v.columns, v.actor.in, scale);
+    v.shift = seen.data(), v.scale = scale;
+  }
   v.clip = collector_.normalizes() ? n.clip : 0;
   v.action_repeat = resolved_.action_repeat;
   v.noise_correlation = static_cast<float>(resolved_.options.number("noise_correlation"));

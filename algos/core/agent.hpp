@@ -55,6 +55,8 @@ class Agent {
   int32_t missing() const { return collector_.missing(); }
   int32_t horizon() const { return resolved_.horizon; }
   int32_t action_repeat() const { return resolved_.action_repeat; }
+  // Rollouts take magnitudes in the place of costs: option cost_signal.
+  bool raw_costs() const;
   void drop_horizon() { collector_.drop(); }  // after a cancel: forget what was collected
   void cancel() { cancel_.set(); }            // from any thread or signal handler
   // Error(kCancelled) once after cancel().

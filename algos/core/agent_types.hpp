@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 
+#include "algos/core/columns.hpp"
 #include "base/option.hpp"
 
 namespace rdm {
@@ -35,6 +36,8 @@ struct AgentConfig {
   int32_t num_options = 0;
   const char* settings = nullptr;       // lines key=value, laid over the options; null: none
   const double* cost_limits = nullptr;  // [cost_dim] or null; < 0: none
+  const ObsField* fields = nullptr;     // [num_fields] parts of a row, or null: no names
+  int32_t num_fields = 0;
   HostHooks hooks;
 };
 
@@ -56,6 +59,7 @@ struct Epoch {
   double loss_policy = 0, loss_reward_value = 0, loss_cost_value = 0, clip_fraction = 0;
   double value_reward = 0, value_cost = 0;
   int32_t passes = 0;
+  int32_t cost_signal = 0;  // 1: costs are magnitudes
 };
 
 struct TensorInfo {

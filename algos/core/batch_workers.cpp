@@ -7,7 +7,7 @@ namespace {
 
 // Scratch for `wide` also serves `narrow`.
 bool covers(const MlpShape& wide, const MlpShape& narrow) {
-  if (wide.num_hidden != narrow.num_hidden || wide.out < narrow.out) return false;
+  if (wide.num_hidden != narrow.num_hidden || wide.out < narrow.out || wide.in < narrow.in) return false;
   for (int32_t l = 0; l < wide.num_hidden; ++l)
     if (wide.hidden[l] < narrow.hidden[l]) return false;
   return true;
@@ -22,6 +22,11 @@ Workspace carve_workspace(Arena& arena, const ResolvedAgentConfig& resolved, siz
   workspace.critic = covers(resolved.actor, resolved.cost_critic)
                          ? workspace.actor
                          : carve_mlp_scratch(arena, resolved.cost_critic, workspace.rows);
+  const auto pick = [&](const Vector<int32_t>& columns, MlpScratch& scratch) {
+    if (!columns.empty() && !scratch.picked) scratch.picked = arena.make<float>(rows * columns.size());
+  };
+  pick(resolved.actor_columns, workspace.actor);
+  pick(resolved.critic_columns, workspace.critic);
   workspace.obs = arena.make<float>(rows * resolved.obs_dim());
   workspace.out = arena.make<float>(rows * widest);
   workspace.dout = arena.make<float>(rows * widest);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "algos/core/option_tables.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 
@@ -46,7 +47,7 @@ void list_fields(const ResolvedAgentConfig& resolved, Field* out) {
 
 void read_option(Reader& in, Options& o, int32_t i, bool apply) {
   const OptionSpec& s = o.spec(i);
-  char key[kOptionTextSize], text[kOptionTextSize];
+  char key[kOptionTextSize], text[kLongestObs + 1];
   in.text(key, sizeof key);
   in.text(text, sizeof text);
   const auto number = in.value<double>();

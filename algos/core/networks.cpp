@@ -50,6 +50,10 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   n.shape[Networks::kActor] = resolved.actor;
   n.shape[Networks::kReward] = resolved.reward_critic;
   n.shape[Networks::kCost] = resolved.cost_critic;
+  const auto list = [](const Vector<int32_t>& columns) { return columns.empty() ? nullptr : columns.data(); };
+  n.columns[Networks::kActor] = list(resolved.actor_columns);
+  n.columns[Networks::kReward] = n.columns[Networks::kCost] = list(resolved.critic_columns);
+  n.obs_dim = resolved.config.obs_dim;
   n.count = resolved.num_limited > 0 ? 3 : 2;
   n.action_dim = resolved.config.action_dim;
   n.std_size = resolved.state_std() ? 0 : (resolved.action_dim() + 15) / 16 * 16;

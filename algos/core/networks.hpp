@@ -19,6 +19,8 @@ struct Block {
 struct Networks {
   enum Index { kActor, kReward, kCost };
   MlpShape shape[3];
+  const int32_t* columns[3] = {};  // [shape.in] entries of a row that the network sees; null: all
+  int32_t obs_dim = 0;             // of a row
   Block block[3];
   int32_t count = 0;    // 2 without cost critic
   size_t size = 0;      // of params
@@ -33,15 +35,22 @@ struct Networks {
   float* log_std() const { return params; }
   size_t net_offset(int32_t i) const { return block[i].offset + (i == kActor ? std_size : 0); }
   float* net(int32_t i) const { return params + net_offset(i); }
-  // y = network i of x, and the gradient of its block, grad laid out as params. The actor's log deviations
-  // are those of the innovation, within their bounds.
+  // y = network i of the rows x [rows][obs_dim], and the gradient of its block, grad laid out as params; x
+  // and scratch as in the forward pass before. The actor's log deviations are those of the innovation, within
+  // their bounds.
   void forward(int32_t i, const float* x, int32_t rows, const MlpScratch& scratch, float* y) const {
-    mlp_forward(shape[i], net(i), x, rows, scratch, y);
+    if (columns[i]) pick_columns(x, rows, obs_dim, columns[i], shape[i].in, scratch.picked);
+    mlp_forward(shape[i], net(i), seen(i, x, scratch), rows, scratch, y);
     if (i == kActor && state_std()) bound_std(rows, y);
   }
   void backward(int32_t i, const float* x, int32_t rows, const MlpScratch& scratch, const float* dy,
                 float* grad) const {
-    mlp_backward(shape[i], net(i), x, rows, scratch, dy, grad + net_offset(i));
+    mlp_backward(shape[i], net(i), seen(i, x, scratch), rows, scratch, dy, grad + net_offset(i));
+  }
+  // dy along a direction of the network's parameters, likewise.
+  void tangent(int32_t i, const float* direction, const float* x, int32_t rows, const MlpScratch& scratch,
+               float* dy) const {
+    mlp_tangent(shape[i], net(i), direction, seen(i, x, scratch), rows, scratch, dy);
   }
   // dy of the actor's outputs y: nothing where a deviation is at its bound.
   void gate_std(const float* y, int32_t rows, float* dy) const;
@@ -49,6 +58,9 @@ struct Networks {
   void visit(StateIo& io);
 
  private:
+  const float* seen(int32_t i, const float* x, const MlpScratch& scratch) const {
+    return columns[i] ? scratch.picked : x;
+  }
   void bound_std(int32_t rows, float* y) const;
 };
 Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved);

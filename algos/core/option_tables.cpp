@@ -180,10 +180,6 @@ std::span<const PresetValue> preset_values() {
   return kPresetValues;
 }
 
-size_t options_bytes(const AlgoInfo& algo) {
-  return Options::bytes(algo.num_options);
-}
-
 Options read_options(const AgentConfig& config, const AlgoInfo& algo) {
   const HostScope scope(config.hooks);
   Options o;

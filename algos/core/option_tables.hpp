@@ -8,6 +8,7 @@
 
 namespace rdm {
 
+inline constexpr int32_t kLongestObs = 1023;  // characters of actor_obs, critic_obs
 inline constexpr double kHuge = 1e12, kMaxMultiplier = kHuge, kMaxLearningRate = 10;
 
 // What every algorithm understands.
@@ -20,6 +21,10 @@ inline constexpr std::array kSharedOptions = {
     text_option("critic_hidden", "", nullptr, "the same for the critics; empty: as hidden"),
     text_option("activation", "tanh", "tanh|elu|relu", "of the hidden layers"),
     number_option("last_layer_scale", 0.01, 0, 100, "factor on the actor's initial last layer"),
+    text_option("actor_obs", "*", nullptr,
+                "what the actor sees: fields by commas, with '*', !less; or state, proprioception, touch",
+                kLongestObs),
+    text_option("critic_obs", "*", nullptr, "what the critics see, in the same words", kLongestObs),
     // collecting
     integer_option("horizon", 128, 1, 1 << 20, "decisions of each environment per epoch"),
     integer_option("action_repeat", 1, 1, 10000, "control steps for which a decision's action is held"),
@@ -78,6 +83,8 @@ inline constexpr std::array kSharedOptions = {
     number_option("critic_l2", 1e-3, 0, 1e3, "weight of the critics' squared parameters", true),
     // costs
     number_option("cost_limit", 25, -1, kHuge, "limit on column 0's sum over an episode; < 0: none", true),
+    text_option("cost_signal", "flag", "flag|raw",
+                "what rollouts take as cost: the pool's, or cost_raw above 0; limits are in its unit"),
 };
 
 // The clipped surrogate.
@@ -183,8 +190,7 @@ std::span<const PresetValue> preset_values();
 
 // The values for one agent: table, then config.defaults, then the preset, then config.options. A default
 // that only other algorithms know, or of the form "algorithm:key" for another, is skipped; an option is not.
-// Takes memory from the hooks of the config once, options_bytes in all.
+// Takes memory from the hooks of the config, once and for each long text.
 Options read_options(const AgentConfig& config, const AlgoInfo& algo);
-size_t options_bytes(const AlgoInfo& algo);
 
 }  // namespace rdm

@@ -42,6 +42,15 @@ void check_config(const AgentConfig& c) {
     fail(Code::kRange, "task: longer than %d characters", kOptionTextSize - 1);
   for (int32_t i = 0; c.initial_mean && i < c.action_dim; ++i)
     if (!std::isfinite(c.initial_mean[i])) fail(Code::kArgument, "initial_mean[%d] is not finite", i);
+  check_range("num_fields", c.num_fields, 0, 4096);
+  if (c.num_fields && !c.fields) fail(Code::kArgument, "fields: NULL with num_fields %d", c.num_fields);
+  for (int32_t i = 0; i < c.num_fields; ++i) {
+    const ObsField& f = c.fields[i];
+    if (!f.name) fail(Code::kArgument, "fields[%d]: the name is NULL", i);
+    if (f.offset < 0 || f.count < 1 || f.offset > c.obs_dim - f.count)
+      fail(Code::kRange, "fields[%d]: entries %d to %lld are not within obs_dim %d", i, f.offset,
+           static_cast<long long>(f.offset) + f.count, c.obs_dim);
+  }
   for (int32_t i = 0; c.cost_limits && i < c.cost_dim; ++i)
     if (!std::isfinite(c.cost_limits[i])) fail(Code::kArgument, "cost_limits[%d] is not finite", i);
 }
@@ -103,9 +112,18 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
   const Options& o = resolved.options;
   const char* critic = *o.text("critic_hidden") ? "critic_hidden" : "hidden";
   const int32_t outputs = std::strcmp(o.text("std_mode"), "state") == 0 ? 2 : 1;
-  resolved.actor = parse_shape(o, "hidden", c.obs_dim, outputs * c.action_dim);
-  resolved.reward_critic = parse_shape(o, critic, c.obs_dim, 1);
-  resolved.cost_critic = parse_shape(o, critic, c.obs_dim, std::max(resolved.num_limited, 1));
+  const auto columns = [&](const char* key) {
+    return select_columns(key, o.text(key), c.fields, c.num_fields, c.obs_dim);
+  };
+  const auto inputs = [&](const Vector<int32_t>& seen) {
+    return seen.empty() ? c.obs_dim : static_cast<int32_t>(seen.size());
+  };
+  resolved.actor_columns = columns("actor_obs");
+  resolved.critic_columns = columns("critic_obs");
+  const int32_t actor_in = inputs(resolved.actor_columns), critic_in = inputs(resolved.critic_columns);
+  resolved.actor = parse_shape(o, "hidden", actor_in, outputs * c.action_dim);
+  resolved.reward_critic = parse_shape(o, critic, critic_in, 1);
+  resolved.cost_critic = parse_shape(o, critic, critic_in, std::max(resolved.num_limited, 1));
   check_mlp_shape(resolved.actor);
   check_mlp_shape(resolved.reward_critic);
 }

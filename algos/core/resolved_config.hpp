@@ -20,9 +20,11 @@ struct ResolvedAgentConfig {
   const AlgoRow* row;
 
   MlpShape actor, reward_critic, cost_critic;  // cost_critic.out = num_limited
-  int32_t num_limited = 0;                     // limited cost columns; 0 for algorithms without costs
-  int32_t column[kMaxCosts] = {};              // [num_limited] column of each
-  double limit[kMaxCosts] = {};                // [num_limited]
+  // Entries of the row that these see, ascending; empty: all.
+  Vector<int32_t> actor_columns, critic_columns;
+  int32_t num_limited = 0;         // limited cost columns; 0 for algorithms without costs
+  int32_t column[kMaxCosts] = {};  // [num_limited] column of each
+  double limit[kMaxCosts] = {};    // [num_limited]
 
   int32_t horizon = 0, action_repeat = 0;
   int32_t samples = 0;         // num_envs * horizon

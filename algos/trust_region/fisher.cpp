@@ -49,18 +49,16 @@ void Fisher::weigh(const float* y, int32_t n, float* dy) const {
 }
 
 void Fisher::multiply(const float* v, float* out) {
-  const MlpShape& shape = nets_->shape[Networks::kActor];
-  const float* net = nets_->net(Networks::kActor);
   const size_t skip = nets_->std_size, size = nets_->block[Networks::kActor].size;
   workers_->sweep(
       rows_, resolved_->chunk_rows,
       [&](Workspace& workspace, int32_t first, int32_t n) {
         gather_obs(*rollout_, order_ + first * stride_, stride_, n, workspace.obs);
         nets_->forward(Networks::kActor, workspace.obs, n, workspace.actor, workspace.out);
-        mlp_tangent(shape, net, v + skip, workspace.obs, n, workspace.actor, workspace.dout);
+        nets_->tangent(Networks::kActor, v + skip, workspace.obs, n, workspace.actor, workspace.dout);
         weigh(workspace.out, n, workspace.dout);
-        mlp_backward(shape, net, workspace.obs, n, workspace.actor, workspace.dout,
-                     (first == 0 ? out : workspace.grad) + skip);
+        nets_->backward(Networks::kActor, workspace.obs, n, workspace.actor, workspace.dout,
+                        first == 0 ? out : workspace.grad);
       },
       [&](int32_t group, int32_t n) { workers_->reduce(group, n, out, skip, size); });
   const auto damping = static_cast<float>(damping_), own = static_cast<float>(2 / dims_);

@@ -15,7 +15,9 @@ Evaluation evaluate(const ActorChoice& choice, PoolSettings settings, const std:
   for (const rdm_cost& c : task_costs(pool.spec().task)) out.costs.push_back(c.name);
   Actor actor(choice, pool, stochastic, settings.seed);
   pool.reset();
-  out.summary = summarise(play_episodes(pool, actor, static_cast<size_t>(episodes)), out.limits);
+  out.magnitudes = settings.magnitudes;
+  out.summary = summarise(
+      play_episodes(pool, actor, static_cast<size_t>(episodes), {}, {}, settings.magnitudes), out.limits);
   return out;
 }
 
@@ -31,6 +33,7 @@ Json evaluation_json(const Evaluation& e, int32_t episodes) {
           {"success_rate", s.success_rate},
           {"length_mean", s.length_mean},
           {"cost_limits", e.limits},
+          {"cost_signal", e.magnitudes ? "raw" : "flag"},
           {"violation_rate", s.violation_rate},
           {"fall_rate", s.fall_rate},
           {"cost_per_step", s.cost_per_step},
@@ -58,7 +61,8 @@ std::string evaluation_text(const Evaluation& e, int32_t episodes) {
                e.limits[k] < 0 ? "-" : number_text(e.limits[k])});
   return text + costs.text() +
          format("episodes over a limit: %.1f%%; cost per step: %.4f\n", 100 * s.violation_rate,
-                s.cost_per_step);
+                s.cost_per_step) +
+         (e.magnitudes ? "costs are magnitudes: sums of cost_raw (cost_signal=raw)\n" : "");
 }
 
 Report run_eval(EvalFlags flags) {

@@ -25,6 +25,7 @@ struct ReportFlags {
 PoolSettings report_worlds(const RunData& run, int32_t threads) {
   PoolSettings settings = run_settings(run.path).pool;
   settings.seed += Trainer::kEvalSeed;
+  settings.magnitudes = learns_magnitudes(run_settings(run.path).agent);
   settings.envs = kEvalEnvs;
   settings.threads = threads;
   return settings;

@@ -69,6 +69,7 @@ Report run_train(const TrainFlags& flags) {
   PoolSettings settings = run.pool;
   settings.seed += Trainer::kEvalSeed;
   settings.envs = kEvalEnvs;
+  settings.magnitudes = learns_magnitudes(run.agent);
   const ActorChoice choice = choose_actor(trainer.folder().policy());
   const Evaluation e = evaluate(choice, settings, run.limits, kEvalEpisodes, false);
   const Summary& s = e.summary;
@@ -84,6 +85,7 @@ Report run_train(const TrainFlags& flags) {
                      {"cost_stderr", s.cost_stderr},
                      {"success_rate", s.success_rate},
                      {"cost_limit", limit < 0 ? Json() : Json(limit)},
+                     {"cost_signal", e.magnitudes ? "raw" : "flag"},
                      {"feasible", safe},
                      {"fall_rate", s.fall_rate},
                      {"length", s.length_mean},
@@ -93,10 +95,12 @@ Report run_train(const TrainFlags& flags) {
   text += format("steps    %lld in %.1f s, %.0f steps/s\n", static_cast<long long>(trainer.env_steps()),
                  trainer.seconds(), trainer.steps_per_second());
   text += format(
-      "policy over %d episodes: return %.3f, cost %.3f (limit %s), %s; success %.0f%%, falls %.0f%%, length "
+      "policy over %d episodes: return %.3f, cost %.3f%s (limit %s), %s; success %.0f%%, falls %.0f%%, "
+      "length "
       "%.0f\n",
-      kEvalEpisodes, s.return_mean, cost, limit < 0 ? "none" : number_text(limit).c_str(),
-      safe ? "feasible" : "not feasible", 100 * s.success_rate, 100 * s.fall_rate, s.length_mean);
+      kEvalEpisodes, s.return_mean, cost, e.magnitudes ? " in magnitudes" : "",
+      limit < 0 ? "none" : number_text(limit).c_str(), safe ? "feasible" : "not feasible",
+      100 * s.success_rate, 100 * s.fall_rate, s.length_mean);
   return {json, text};
 }
 

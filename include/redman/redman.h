@@ -135,15 +135,16 @@ RDM_API void rdm_shutdown(void); /* the last call puts the default hooks back; h
 enum rdm_option_kind { RDM_NUMBER = 0, RDM_INTEGER = 1, RDM_FLAG = 2, RDM_TEXT = 3 }; /* of an option */
 typedef struct rdm_option { /* frozen layout: one key and its value */
   const char *key;          /* case is ignored and '-' equals '_'                             */
-  const char *text;         /* value as one line of text ("0.5", "egg"); NULL: number is it   */
+  const char *text;         /* value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number is it */
   double number;            /* value when text is NULL                                        */
 } rdm_option;
 typedef struct rdm_option_info { /* frozen layout: one row of an option table */
-  const char *key;          /* static                                                         */
+  const char *key;          /* static; its last word FIELD: any name of a field, or a pattern with '*' */
   const char *help;         /* one line, with the unit                                        */
-  const char *text;         /* default of a text option, else NULL                            */
-  const char *choices;      /* allowed words "a|b|c", NULL: any text, or not a text           */
-  double number;            /* default of number, integer, flag                               */
+  const char *text;         /* default of a text option, or of a number that is a range, else NULL */
+  const char *choices;      /* text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range
+                             * "0.7..1.3" too, which each world draws from at a reset; else NULL */
+  double number;            /* default of number, integer, flag; of a range its middle        */
   double low, high;         /* inclusive bounds                                               */
   int32_t kind;             /* RDM_NUMBER, RDM_INTEGER, RDM_FLAG, RDM_TEXT                    */
   int32_t live;             /* flag: rdm_agent_set may change it after creation               */
@@ -296,8 +297,9 @@ RDM_API rdm_result rdm_pool_field(const rdm_pool *p, int32_t i, rdm_field *out);
 RDM_API rdm_result rdm_pool_field_bounds(const rdm_pool *p, int32_t i, float *low, float *high);
 /* Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of RDM_BASELINE_HOLD. */
 RDM_API rdm_result rdm_pool_initial_mean(const rdm_pool *p, float *action);
-/* Option i of the task as this pool has it: key (static) and the value as text [RDM_TEXT_SIZE], which reads back
- * exactly. RANGE for a text that is longer: rdm_pool_settings has it. */
+/* Option i of the task as this pool has it: key and the value as text [RDM_TEXT_SIZE], which reads back exactly. RANGE
+ * for a text that is longer: rdm_pool_settings has it. Behind the task's num_options come keys with a FIELD that were
+ * set, in order; RANGE ends them. */
 RDM_API rdm_result rdm_pool_option(const rdm_pool *p, int32_t i, const char **key, char *text);
 /* All options as text [capacity] of lines key=value: given as settings they make the same pool again. */
 RDM_API rdm_result rdm_pool_settings(const rdm_pool *p, char *text, size_t capacity, size_t *size);
@@ -420,11 +422,14 @@ typedef struct rdm_agent_config { /* what an agent is made from */
   char *error;                /* [error_size] the text of a failing call that takes this config; NULL     */
   int32_t error_size;         /* bytes, terminator included; what is longer is cut                        */
   int32_t reserved2;          /* 0                                                                        */
+  const rdm_field *fields;    /* [num_fields] parts of a row of obs, for actor_obs and critic_obs, copied; NULL: none */
+  int32_t num_fields;         /* count, 0..4096, default 0                                                */
+  int32_t reserved3;          /* 0                                                                        */
 } rdm_agent_config;
 /* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's. */
 RDM_API rdm_result rdm_agent_config_init(rdm_agent_config *c, size_t size);
-/* Sets dims, num_envs, task, layout_hash, control_dt, max_steps, defaults, initial_mean and cost_limits from a pool.
- * Pointers are borrowed from the pool. */
+/* Sets dims, num_envs, task, layout_hash, control_dt, max_steps, defaults, initial_mean, cost_limits and fields from a
+ * pool. Pointers are borrowed from the pool. */
 RDM_API rdm_result rdm_agent_config_for_pool(rdm_agent_config *c, const rdm_pool *p);
 /* Bytes that creation takes from the alloc hook, exact. */
 RDM_API rdm_result rdm_agent_memory(const rdm_agent_config *c, size_t *bytes);
@@ -458,7 +463,7 @@ typedef struct rdm_epoch {    /* one row of the learning curve; means over the l
   int64_t env_steps;          /* control steps so far, all environments                                   */
   int64_t episodes;           /* finished so far                                                          */
   double ret;                 /* sum of rewards of an episode                                             */
-  double cost[RDM_MAX_COSTS]; /* sum of each cost column of an episode                                    */
+  double cost[RDM_MAX_COSTS]; /* sum of each cost column of an episode, of what cost_signal says          */
   double cost_per_step;       /* column 0, per control step                                               */
   double length;              /* control steps of an episode                                              */
   double fall_rate;           /* share of episodes that terminated                                        */
@@ -478,6 +483,8 @@ typedef struct rdm_epoch {    /* one row of the learning curve; means over the l
   double value_cost;          /* mean prediction over the batch                                           */
   int32_t passes;             /* over the data, fewer after an early stop                                 */
   int32_t reserved;           /* 0                                                                        */
+  int32_t cost_signal;        /* costs are sums of 0: costs, 1: their magnitudes (option cost_signal=raw) */
+  int32_t reserved2;          /* 0                                                                        */
 } rdm_epoch;
 /* Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL. STATE when
  * the horizon is not full, CANCELLED after rdm_agent_cancel (the horizon is dropped). */
@@ -485,7 +492,8 @@ RDM_API rdm_result rdm_agent_update(rdm_agent *a, const float *last_obs, rdm_epo
 /* One epoch natively: act, step (action_repeat control steps), record until the horizon is full, then update. The
  * pool must have been reset and must not have autoreset off; dims and num_envs must agree. A pool that repeats
  * actions itself takes as many steps at a time: the agent's action_repeat must be a multiple of the pool's, as the
- * defaults are that rdm_agent_config_for_pool sets. */
+ * defaults are that rdm_agent_config_for_pool sets. With the agent's option cost_signal=raw the costs are sums over
+ * control steps of cost_raw where that is above 0. */
 RDM_API rdm_result rdm_agent_rollout(rdm_agent *a, rdm_pool *p, rdm_epoch *io);
 /* Async-signal-safe, from any thread: the running or next rollout or update returns CANCELLED. */
 RDM_API void rdm_agent_cancel(rdm_agent *a);
@@ -548,7 +556,8 @@ RDM_API size_t rdm_policy_scratch(const rdm_policy *p, int32_t rows); /* bytes f
 RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t rows, const float *noise,
                                   float *action, void *scratch, size_t scratch_bytes);
 /* "actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
- * "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. */
+ * "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows of obs_dim: a
+ * weight of an entry that the policy does not see is 0. */
 RDM_API rdm_result rdm_policy_tensor(const rdm_policy *p, int32_t i, rdm_tensor *out);
 /* Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE. */
 RDM_API rdm_result rdm_policy_tensor_read(const rdm_policy *p, const char *name, float *out, size_t count);
@@ -570,6 +579,10 @@ extern "C" {
 
 /* Pushes a shape's carrier during the next step: force [3] at its centre of mass, N, world axes. */
 RDM_API rdm_result rdm_pool_push(rdm_pool *p, int32_t env, int32_t shape, const float force[3]);
+
+/* Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up to capacity of them
+ * to columns [capacity]; *count is how many there are. */
+RDM_API rdm_result rdm_policy_columns(const rdm_policy *p, int32_t *columns, int32_t capacity, int32_t *count);
 
 /* ---- robots of your own -------------------------------------------------------------------------------------- */
 /* A robot is a tree of links on a root, as plain arrays; the library's own are described in the same way
@@ -795,6 +808,8 @@ enum rdm_scene_part { /* what rdm_scene_find looks for; numbers count from 0 in 
 /* Value of the pool's option `key`: *value of a number, integer or flag, *text of a text. NOT_FOUND, ARGUMENT. */
 RDM_API rdm_result rdm_scene_number(rdm_scene *scene, const char *key, double *value);
 RDM_API rdm_result rdm_scene_text(rdm_scene *scene, const char *key, const char **text);
+/* Bounds *low and *high of a number or integer whose row takes a range (choices "a..b"), for reset to draw from; equal: a number. */
+RDM_API rdm_result rdm_scene_range(rdm_scene *scene, const char *key, double *low, double *high);
 enum rdm_friction { RDM_PASSES = -1 }; /* in the place of a coefficient */
 /* What is added gets the next number. A friction is that of two materials, or of one with itself; 1 unless
  * said; RDM_PASSES: they go through each other. Gravity [3] is in the place of the option's. The texts of errors name the
@@ -802,6 +817,7 @@ enum rdm_friction { RDM_PASSES = -1 }; /* in the place of a coefficient */
 RDM_API rdm_result rdm_scene_add_material(rdm_scene *scene, const char *name); /* "default" is one, 15 more */
 RDM_API rdm_result rdm_scene_set_friction(rdm_scene *scene, const char *a, const char *b, double mu); /* 0 or more */
 RDM_API rdm_result rdm_scene_set_gravity(rdm_scene *scene, const double gravity[3]); /* m/s2 */
+RDM_API rdm_result rdm_scene_set_feedforward(rdm_scene *scene); /* worlds take rdm_world_set_feedforward */
 RDM_API rdm_result rdm_scene_add_robot(rdm_scene *scene, const rdm_scene_robot *robot, int32_t *index); /* index: NULL */
 RDM_API rdm_result rdm_scene_add_body(rdm_scene *scene, const rdm_body_def *body, int32_t *index); /* index: NULL */
 RDM_API rdm_result rdm_scene_add_static(rdm_scene *scene, const rdm_shape_def *shape); /* stands still */
@@ -856,6 +872,10 @@ RDM_API rdm_result rdm_world_set_joints(rdm_world *world, int32_t robot, const d
  * robot, which become targets as its description says: ranges or curves, no faster than its joints' velocity. */
 RDM_API rdm_result rdm_world_set_targets(rdm_world *world, int32_t first, const double *targets, int32_t n);
 RDM_API rdm_result rdm_world_command(rdm_world *world, int32_t robot, const double *commands, int32_t n);
+/* Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again; STATE unless the scene has
+ * them. rdm_world_gravity gives those that hold a robot of n joints against gravity where it is. */
+RDM_API rdm_result rdm_world_set_feedforward(rdm_world *world, int32_t first, const double *efforts, int32_t n);
+RDM_API rdm_result rdm_world_gravity(const rdm_world *world, int32_t robot, double *efforts, int32_t n);
 /* Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N m); of a link at `point` [3]. */
 RDM_API rdm_result rdm_world_push_body(rdm_world *world, int32_t body, const double force[3], const double torque[3]);
 RDM_API rdm_result rdm_world_push_base(rdm_world *world, int32_t robot, const double force[3], const double torque[3]);

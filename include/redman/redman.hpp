@@ -127,6 +127,7 @@ class Pool {
   Rows<float> obs() const { return table(buffers_.obs, spec_.obs_dim); }
   Rows<float> action() const { return table(buffers_.action, spec_.action_dim); }
   Rows<float> cost() const { return table(buffers_.cost, spec_.cost_dim); }
+  Rows<float> cost_raw() const { return table(buffers_.cost_raw, spec_.cost_dim); }
   Rows<float> episode_cost() const { return table(buffers_.episode_cost, spec_.cost_dim); }
   View<float> reward() const { return {buffers_.reward, num_envs_}; }
   View<float> episode_return() const { return {buffers_.episode_return, num_envs_}; }

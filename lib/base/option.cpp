@@ -12,6 +12,8 @@
 namespace rdm {
 namespace {
 
+constexpr char kAnyName[] = ".FIELD";
+
 char fold(char c) {
   if (c == '-') return '_';
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -44,6 +46,15 @@ void print_number(double v, char* out) {
   out[end - out] = '\0';
 }
 
+void print_range(const OptionRange& v, char* out) {
+  print_number(v.low, out);
+  if (!v.drawn()) return;
+  char high[kOptionTextSize];
+  print_number(v.high, high);
+  const size_t at = std::strlen(out);
+  std::snprintf(out + at, kOptionTextSize - at, "..%s", high);  // 24 characters a number at most
+}
+
 bool is_near(const char* name, const char* known, int distance) {
   const size_t a = std::strlen(name), b = std::strlen(known), common = std::min(a, b);
   if (3 * static_cast<size_t>(distance) <= std::max(a, b) + 2) return true;
@@ -70,6 +81,36 @@ bool split_line(const char* begin, const char* end, Vector<char>* key, Vector<ch
   return true;
 }
 
+// Of a number, integer or flag; not strtod: a host may have set a locale with a decimal comma.
+bool read_number(const char* begin, const char* end, double* out) {
+  if (begin < end && *begin == '+') ++begin;
+  const auto [stop, error] = std::from_chars(begin, end, *out);
+  return error == std::errc() && stop == end;
+}
+
+// A text as the value of a number, integer or flag: "0.5", "true", "0.7..1.3".
+void read_value(const OptionSpec& s, const char* key, const char* text, const char* owner, OptionRange* out) {
+  const char *end = text + std::strlen(text), *dots = std::strstr(text, "..");
+  bool good = false;
+  if (s.kind == OptionKind::kFlag && (same_name(text, "true") || same_name(text, "on"))) {
+    out->low = 1, good = true;
+  } else if (s.kind == OptionKind::kFlag && (same_name(text, "false") || same_name(text, "off"))) {
+    out->low = 0, good = true;
+  } else if (!dots) {
+    good = read_number(text, end, &out->low);
+  } else {
+    const char *first_end = dots, *second = dots + 2;
+    while (first_end > text && first_end[-1] == ' ') --first_end;
+    while (*second == ' ') ++second;
+    good = read_number(text, first_end, &out->low) && read_number(second, end, &out->high);
+    if (good && !s.range) fail(Code::kArgument, "%s option %s: takes one number, no range", owner, key);
+  }
+  if (!good)
+    fail(Code::kArgument, "%s option %s: '%s' is not a number%s", owner, key, Quoted(text).text,
+         s.range ? " or a range a..b" : "");
+  if (!dots) out->high = out->low;
+}
+
 // True when `word` is one of the '|'-separated `choices`; out gets the spelling of the list.
 bool match_choice(const char* choices, const char* word, char* out) {
   for (const char* p = choices; *p;) {
@@ -94,6 +135,23 @@ bool same_name(const char* a, const char* b) {
   return *a == *b;
 }
 
+bool name_matches(const char* pattern, const char* name) {
+  const char *star = nullptr, *from = nullptr;  // the last '*', and the name behind what it stands for
+  while (*name) {
+    if (*pattern == '*') {
+      star = pattern++, from = name;
+    } else if (*pattern && fold(*pattern) == fold(*name)) {
+      ++pattern, ++name;
+    } else if (star) {
+      pattern = star + 1, name = ++from;
+    } else {
+      return false;
+    }
+  }
+  while (*pattern == '*') ++pattern;
+  return !*pattern;
+}
+
 int32_t nearest_name(const char* name, const char* const* names, int32_t count) {
   int32_t best = -1;
   int least = 1 << 30;
@@ -109,17 +167,43 @@ Nearest::Nearest(const char* name, const char* const* names, int32_t count) {
   std::snprintf(text, sizeof text, "%s%s", near >= 0 ? "; nearest is " : "", near >= 0 ? names[near] : "");
 }
 
+size_t Options::held_bytes() const {
+  size_t bytes = rows_.capacity() * sizeof(Row);
+  for (const Row& r : rows_) bytes += r.long_text.capacity() + r.own_key.capacity();
+  return bytes;
+}
+
 int32_t Options::find(const char* key) const {
   for (size_t i = 0; i < rows_.size(); ++i)
-    if (same_name(rows_[i].spec->key, key)) return static_cast<int32_t>(i);
+    if (same_name(key_of(rows_[i]), key)) return static_cast<int32_t>(i);
   return -1;
+}
+
+// The open row that this key is one of: up to the last '.' of the row's key they agree.
+const OptionSpec* Options::find_open(const char* key) const {
+  for (const Row& r : rows_) {
+    if (!r.spec->open || !r.own_key.empty()) continue;
+    const size_t n = static_cast<size_t>(std::strrchr(r.spec->key, '.') - r.spec->key) + 1;
+    size_t same = 0;
+    while (same < n && fold(key[same]) == fold(r.spec->key[same])) ++same;
+    if (same == n && key[n]) return r.spec;
+  }
+  return nullptr;
+}
+
+const char* Options::open_name(int32_t i) const {
+  const Row& r = row(i);
+  return r.own_key.empty() ? nullptr : r.own_key.data() + (std::strrchr(r.spec->key, '.') - r.spec->key) + 1;
 }
 
 void Options::add_table(const OptionSpec* specs, int32_t count) {
   for (int32_t i = 0; i < count; ++i) {
     if (find(specs[i].key) >= 0) fail(Code::kInternal, "option %s is declared twice", specs[i].key);
-    Row row{&specs[i], specs[i].number, "", {}, false};
-    if (specs[i].text) write(row, specs[i].text);
+    Row row{&specs[i], {specs[i].number, specs[i].number}, "", {}, {}, false};
+    if (specs[i].text && specs[i].kind == OptionKind::kText)
+      write(row, specs[i].text);
+    else if (specs[i].text)
+      assign(row, {specs[i].key, specs[i].text, 0}, "default");
     rows_.push_back(row);
   }
 }
@@ -129,7 +213,9 @@ void Options::write(Row& row, const char* text) {
   size_t length = std::strlen(text);
   while (length > 0 && text[length - 1] == ' ') --length;
   row.long_text.clear();
+  row.long_text.shrink_to_fit();
   if (length >= sizeof row.text) {
+    row.long_text.reserve(length + 1);  // held_bytes depends on what is set alone, not on how often
     row.long_text.assign(text, text + length);
     row.long_text.push_back('\0');
     text = row.long_text.data();
@@ -140,53 +226,72 @@ void Options::write(Row& row, const char* text) {
 
 void Options::assign(Row& row, const OptionInput& input, const char* owner) const {
   const OptionSpec& s = *row.spec;
+  const char* key = key_of(row);
   if (s.kind == OptionKind::kText) {
-    if (!input.text) fail(Code::kArgument, "%s option %s: a text is needed", owner, s.key);
+    if (!input.text) fail(Code::kArgument, "%s option %s: a text is needed", owner, key);
     if (std::strlen(input.text) > static_cast<size_t>(s.longest))
-      fail(Code::kRange, "%s option %s: longer than %d characters", owner, s.key, s.longest);
+      fail(Code::kRange, "%s option %s: longer than %d characters", owner, key, s.longest);
     if (!is_clean_text(input.text))
-      fail(Code::kArgument, "%s option %s: '%s' is not one line of UTF-8", owner, s.key,
+      fail(Code::kArgument, "%s option %s: '%s' is not one line of UTF-8", owner, key,
            Quoted(input.text).text);
     if (!s.choices)
       write(row, input.text);
     else if (!match_choice(s.choices, input.text, row.text))
-      fail(Code::kRange, "%s option %s: '%s' is not one of %s", owner, s.key, Quoted(input.text).text,
+      fail(Code::kRange, "%s option %s: '%s' is not one of %s", owner, key, Quoted(input.text).text,
            s.choices);
     return;
   }
-  double v = input.number;
-  if (input.text) {
-    // Not strtod: a host may have set a locale with a decimal comma.
-    const char* begin = input.text + (input.text[0] == '+' ? 1 : 0);
-    const char* stop = input.text + std::strlen(input.text);
-    const auto [end, error] = std::from_chars(begin, stop, v);
-    if (s.kind == OptionKind::kFlag && (same_name(input.text, "true") || same_name(input.text, "on")))
-      v = 1;
-    else if (s.kind == OptionKind::kFlag && (same_name(input.text, "false") || same_name(input.text, "off")))
-      v = 0;
-    else if (error != std::errc() || end != stop)
-      fail(Code::kArgument, "%s option %s: '%s' is not a number", owner, s.key, Quoted(input.text).text);
+  OptionRange v{input.number, input.number};
+  if (input.text) read_value(s, key, input.text, owner, &v);
+  for (const double x : {v.low, v.high}) {
+    if (!std::isfinite(x)) fail(Code::kArgument, "%s option %s: the value is not finite", owner, key);
+    if (x < s.low || x > s.high)
+      fail(Code::kRange, "%s option %s: %.9g is outside [%.9g, %.9g]", owner, key, x, s.low, s.high);
+    if (s.kind != OptionKind::kNumber && x != std::floor(x))
+      fail(Code::kRange, "%s option %s: %.9g is not a whole number", owner, key, x);
   }
-  if (!std::isfinite(v)) fail(Code::kArgument, "%s option %s: the value is not finite", owner, s.key);
-  if (v < s.low || v > s.high)
-    fail(Code::kRange, "%s option %s: %.9g is outside [%.9g, %.9g]", owner, s.key, v, s.low, s.high);
-  if (s.kind != OptionKind::kNumber && v != std::floor(v))
-    fail(Code::kRange, "%s option %s: %.9g is not a whole number", owner, s.key, v);
-  row.number = v;
+  if (v.low > v.high)
+    fail(Code::kRange, "%s option %s: the range %.9g..%.9g begins above its end", owner, key, v.low, v.high);
+  row.value = v;
 }
 
 void Options::set(const OptionInput& input, const char* owner) {
   if (!input.key) fail(Code::kArgument, "%s option: the key is NULL", owner);
+  if (const OptionSpec* open = find_open(input.key)) return set_open(*open, input, owner);
   const int32_t i = find(input.key);
   if (i < 0) {
     Vector<const char*> keys;
-    for (const Row& r : rows_) keys.push_back(r.spec->key);
-    fail(Code::kNotFound, "%s option %s: unknown%s", owner, Quoted(input.key).text,
-         Nearest(input.key, keys.data(), static_cast<int32_t>(keys.size())).text);
+    for (const Row& r : rows_) keys.push_back(key_of(r));
+    const auto count = static_cast<int32_t>(keys.size());
+    Nearest near(input.key, keys.data(), count);
+    if (const char* dot = std::strchr(input.key, '.'); dot && !*near.text) {  // perhaps of an open row
+      Vector<char> word(input.key, dot);
+      word.insert(word.end(), kAnyName, kAnyName + sizeof kAnyName);
+      near = Nearest(word.data(), keys.data(), count);
+    }
+    fail(Code::kNotFound, "%s option %s: unknown%s", owner, Quoted(input.key).text, near.text);
   }
   Row& row = rows_[static_cast<size_t>(i)];
   assign(row, input, owner);
   row.given = true;
+}
+
+// What is set last stands last, whatever was set for the same name before.
+void Options::set_open(const OptionSpec& spec, const OptionInput& input, const char* owner) {
+  if (std::strlen(input.key) >= kOptionTextSize)
+    fail(Code::kRange, "%s option %s: longer than %d characters", owner, Quoted(input.key).text,
+         kOptionTextSize - 1);
+  if (!is_clean_text(input.key) || std::strchr(input.key, '='))
+    fail(Code::kArgument, "%s option %s: not a key", owner, Quoted(input.key).text);
+  Row row{&spec, {}, "", {}, {}, true};
+  row.own_key.assign(input.key, input.key + std::strlen(input.key) + 1);
+  assign(row, input, owner);
+  // the declared row itself, as lists of all options have it
+  if (same_name(input.key, spec.key) && row.value.low == spec.number && !row.value.drawn()) return;
+  for (size_t i = 0; i < rows_.size(); ++i)
+    if (!rows_[i].own_key.empty() && same_name(rows_[i].own_key.data(), input.key))
+      rows_.erase(rows_.begin() + static_cast<ptrdiff_t>(i--));
+  rows_.push_back(row);
 }
 
 void Options::set_lines(const char* lines, const char* owner) {
@@ -228,13 +333,19 @@ const Options::Row& Options::need(const char* key, OptionKind kind) const {
 }
 
 double Options::number(const char* key) const {
-  return need(key, OptionKind::kNumber).number;
+  return need(key, OptionKind::kNumber).value.middle();
 }
 int32_t Options::integer(const char* key) const {
-  return static_cast<int32_t>(need(key, OptionKind::kInteger).number);
+  return static_cast<int32_t>(std::floor(need(key, OptionKind::kInteger).value.middle()));
+}
+OptionRange Options::range(const char* key) const {
+  const int32_t i = find(key);
+  return need(key,
+              i >= 0 && spec(i).kind == OptionKind::kInteger ? OptionKind::kInteger : OptionKind::kNumber)
+      .value;
 }
 bool Options::flag(const char* key) const {
-  return need(key, OptionKind::kFlag).number != 0;
+  return need(key, OptionKind::kFlag).value.low != 0;
 }
 const char* Options::text(const char* key) const {
   const Row& row = need(key, OptionKind::kText);
@@ -250,9 +361,9 @@ bool Options::print(int32_t i, char* out) const {
   if (r.spec->kind == OptionKind::kText)
     copy_text(out, kOptionTextSize, r.text);
   else if (r.spec->kind == OptionKind::kFlag)
-    std::snprintf(out, kOptionTextSize, "%s", r.number != 0 ? "true" : "false");
+    std::snprintf(out, kOptionTextSize, "%s", r.value.low != 0 ? "true" : "false");
   else
-    print_number(r.number, out);
+    print_range(r.value, out);
   return r.long_text.empty();
 }
 
@@ -268,9 +379,10 @@ size_t Options::print_lines(char* out, size_t capacity) const {
         length += n;
     };
     for (int32_t i = 0; i < count(); ++i) {
+      if (spec(i).open && !open_name(i)) continue;
       char text[kOptionTextSize];
       const char* value = print(i, text) ? text : rows_[static_cast<size_t>(i)].long_text.data();
-      put(spec(i).key, std::strlen(spec(i).key));
+      put(key(i), std::strlen(key(i)));
       put("=", 1);
       put(value, std::strlen(value));
       put("\n", 1);

@@ -1,9 +1,14 @@
 // Typed options by string key: declared once in a table with default, bounds and help, given by a host as
 // a list, read back as values. Discovery, `--help` and the README print the same table.
+//
+// A number or integer that is declared as a range takes "0.7..1.3" too: what a world draws for itself at each
+// reset. An open row "noise.FIELD" declares the keys "noise.NAME" for every NAME; whoever reads them says
+// which names there are.
 #pragma once
 #include <cstdint>
 
 #include "base/host.hpp"
+#include "base/rng.hpp"
 
 namespace rdm {
 
@@ -15,11 +20,13 @@ struct OptionSpec {
   OptionKind kind;
   double number;         // default of number, integer and flag
   double low, high;      // bounds, inclusive; unused for text
-  const char* text;      // default of a text option, else null
+  const char* text;      // default of a text option; of a row that takes a range a default "a..b", else null
   const char* choices;   // text: allowed words separated by '|', or null for free text
   const char* help;      // one line with unit
   bool live;             // may change after creation (rdm_agent_set)
   int32_t longest = 63;  // characters of a text
+  bool range = false;    // a number or integer that may be given as "a..b"
+  bool open = false;     // what stands behind the last '.' of the key is any name
   bool chooses = false;  // what other rows the table has follows from it
 };
 
@@ -39,9 +46,34 @@ constexpr OptionSpec text_option(const char* key, const char* value, const char*
                                  int32_t longest = kOptionTextSize - 1) {
   return {key, OptionKind::kText, 0, 0, 0, value, choices, help, false, longest};
 }
+// The row, which then takes "a..b" as well: drawable(number_option("object_mass", 0.1, 0, 1, "kg")).
+constexpr OptionSpec drawable(OptionSpec row) {
+  row.range = true;
+  return row;
+}
+// The row of a key such as "noise.FIELD", whose last word stands for any name.
+constexpr OptionSpec open_option(OptionSpec row) {
+  row.open = true;
+  return row;
+}
+
+// The value of a number or integer: one number, or the bounds between which each world draws its own.
+struct OptionRange {
+  double low = 0, high = 0;
+  bool drawn() const { return low != high; }
+  double middle() const { return drawn() ? low + (high - low) / 2 : low; }
+  // Uniform in [low, high); a single number takes nothing from the stream.
+  double draw(Stream& stream) const { return drawn() ? stream.uniform(low, high) : low; }
+  // Of an integer: uniform over low, low + 1, ... high.
+  int32_t draw_integer(Stream& stream) const {
+    const auto first = static_cast<int32_t>(low);
+    return drawn() ? first + static_cast<int32_t>(stream.below(static_cast<uint32_t>(high - low) + 1))
+                   : first;
+  }
+};
 
 // What a host gives: either a number (number, integer, flag) or a text. A text for a numeric option is
-// parsed ("0.5", "true").
+// parsed ("0.5", "true", "0.7..1.3").
 struct OptionInput {
   const char* key;
   const char* text;  // null: use number
@@ -52,11 +84,12 @@ struct OptionInput {
 class Options {
  public:
   // Error(kNotFound) with the nearest key for an unknown key, kRange outside the bounds or the choices,
-  // kArgument for a value that cannot be read or is not finite. Later duplicates win.
+  // kArgument for a value that cannot be read or is not finite. Later duplicates win; of an open row, the key
+  // that was set last is the last row.
   void add_table(const OptionSpec* specs, int32_t count);
-  // Makes room for `rows` rows in all: one block of bytes(rows) from the host.
+  // Makes room for `rows` rows in all: one block from the host.
   void reserve(int32_t rows) { rows_.reserve(static_cast<size_t>(rows)); }
-  static size_t bytes(int32_t rows) { return static_cast<size_t>(rows) * sizeof(Row); }
+  size_t held_bytes() const;  // from the host
   void set(const OptionInput& input, const char* owner);
   // Lines key=value; spaces about either, '\r' and empty lines do not count. NULL: none. The errors of set,
   // with the number of the line; kArgument for a line without '='.
@@ -66,16 +99,23 @@ class Options {
   bool chosen() const;  // a row that chooses others was given
   bool knows(const char* key) const { return find(key) >= 0; }
 
+  // Of a range the middle, for an integer rounded down: what stands where nothing is drawn.
   double number(const char* key) const;
   int32_t integer(const char* key) const;
+  OptionRange range(const char* key) const;  // of a number or integer, {x, x} for a single one
   bool flag(const char* key) const;
   const char* text(const char* key) const;
   bool given(const char* key) const;  // set by the host, not the default
 
+  // Rows of the tables in order, then the keys of open rows that were set.
   int32_t count() const { return static_cast<int32_t>(rows_.size()); }
-  const OptionSpec& spec(int32_t i) const { return *rows_[static_cast<size_t>(i)].spec; }
-  // Current value as text ("0.5", "true", "egg") of kOptionTextSize bytes, which reads back exactly. False
-  // for a text that is longer: it is cut.
+  const OptionSpec& spec(int32_t i) const { return *row(i).spec; }
+  const char* key(int32_t i) const { return key_of(row(i)); }
+  // For a key of an open row the name that it was set for ("noise.tip_force": "tip_force"), else null.
+  const char* open_name(int32_t i) const;
+  OptionRange range(int32_t i) const { return row(i).value; }
+  // Current value as text ("0.5", "0.7..1.3", "egg") of kOptionTextSize bytes, which reads back exactly.
+  // False for a text that is longer: it is cut.
   bool print(int32_t i, char* out) const;
   // All values as lines for set_lines, into at most `capacity` bytes (none when it is less than all need);
   // the length without terminator.
@@ -88,12 +128,19 @@ class Options {
   void each_line(const char* lines, const char* owner, bool known);
   struct Row {
     const OptionSpec* spec;
-    double number;
+    OptionRange value;
     char text[kOptionTextSize];
     Vector<char> long_text;  // in place of `text`, where that is too short
+    Vector<char> own_key;    // of an open row's key that was set, else empty
     bool given;
   };
+  const Row& row(int32_t i) const { return rows_[static_cast<size_t>(i)]; }
+  static const char* key_of(const Row& row) {
+    return row.own_key.empty() ? row.spec->key : row.own_key.data();
+  }
   int32_t find(const char* key) const;
+  const OptionSpec* find_open(const char* key) const;
+  void set_open(const OptionSpec& spec, const OptionInput& input, const char* owner);
   const Row& need(const char* key, OptionKind kind) const;
   static void write(Row& row, const char* text);  // without the spaces at its ends
   void assign(Row& row, const OptionInput& input, const char* owner) const;
@@ -102,6 +149,8 @@ class Options {
 
 // Keys and names match without regard to case, and '-' equals '_'.
 bool same_name(const char* a, const char* b);
+// As same_name, where every '*' of the pattern stands for any letters or none.
+bool name_matches(const char* pattern, const char* name);
 // Index of the nearest name by edit distance, -1 when none is near: about a third of its letters differ, or
 // one of both begins with the other (three letters or more).
 int32_t nearest_name(const char* name, const char* const* names, int32_t count);

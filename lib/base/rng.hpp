@@ -19,7 +19,8 @@ enum class Purpose : uint32_t {
   kRandomPolicy = 5,  // uniform actions of the `random` baseline
   kSense = 6,         // sampling of point clouds
   kTest = 7,
-  kWorldNoise = 8,  // what a world draws within an episode
+  kWorldNoise = 8,   // what a world draws within an episode
+  kDisturbance = 9,  // noise, delays and drop-out of what an agent sees and does
 };
 
 class Stream {

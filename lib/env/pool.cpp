@@ -75,6 +75,7 @@ size_t Pool::Impl::arena_bytes(const ResolvedPoolConfig& plan) {
   carve_rows(plan, rows);
   for (const bool partnered : {false, true}) {
     world[partnered].make<unsigned char>(plan.task->state_bytes());
+    WorldDisturbance().carve(world[partnered], plan.disturbance, *plan.task);
     World::measure(plan.task->engine(), plan.task->scene(), world[partnered], partnered);
   }
   const auto blocks = static_cast<size_t>(plan.num_blocks());
@@ -93,6 +94,7 @@ void Pool::Impl::build() {
     for (int32_t i = block_begin(b); i < block_begin(b + 1); ++i) {
       Slot& s = slots[i];
       s.task_state = arena.make<unsigned char>(task->state_bytes());
+      s.disturbance.carve(arena, disturbance, *task);
       s.world = World::create(task->engine(), task->scene(), arena, config.hooks, partner);
       if (!partner) partner = s.world;
       name_streams(i, config.seed, static_cast<uint32_t>(i));
@@ -114,6 +116,7 @@ void Pool::Impl::name_streams(int32_t env, uint64_t seed, uint32_t number) {
   e.seed = seed;
   e.reset = Stream(seed, number, Purpose::kReset);
   e.policy = Stream(seed, number, Purpose::kRandomPolicy);
+  slots[env].disturbance.name(seed, number);
 }
 
 Pool::Impl::~Impl() {
@@ -214,6 +217,10 @@ int32_t Pool::repeat() const {
 }
 int32_t Pool::taken(int32_t env) const {
   return impl_->slots[env].taken;
+}
+double Pool::magnitude(int32_t env, int32_t cost) const {
+  if (impl_->repeat > 1) return impl_->slots[env].magnitude[cost];
+  return std::max(static_cast<double>(impl_->cost_row(impl_->buffers.cost_raw, env)[cost]), 0.0);
 }
 const Buffers& Pool::buffers() const {
   return impl_->buffers;

@@ -57,6 +57,8 @@ class Pool {
   int32_t cost_dim() const;
   int32_t repeat() const;            // control steps of one step, at most
   int32_t taken(int32_t env) const;  // control steps of the world's last step; 0: it was a reset
+  // Sum over these of a cost's measured value where it is above 0.
+  double magnitude(int32_t env, int32_t cost) const;
   const Buffers& buffers() const;
   const SenseConfig& sense() const;
   const SenseBuffers& sensed() const;  // written by reset and step

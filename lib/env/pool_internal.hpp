@@ -2,6 +2,7 @@
 #pragma once
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
+#include "env/disturbance.hpp"
 #include "env/observer.hpp"
 #include "env/resolved_config.hpp"
 
@@ -35,8 +36,11 @@ struct Slot {
   void* task_state;
   Episode episode;
   Counters counters;
+  WorldDisturbance disturbance;
   int32_t taken;  // control steps of the last step
-  bool goes_on;   // a further control step of this step would be of the same episode
+  double
+      magnitude[kMaxTaskCosts];  // with option action_repeat: sums over these of cost_raw where it is above 0
+  bool goes_on;                  // a further control step of this step would be of the same episode
 };
 
 inline constexpr int32_t kMaxGroup = 16;
@@ -79,10 +83,11 @@ struct Pool::Impl : ResolvedPoolConfig {
 
   // --- stepping
   void check_ready(const uint8_t* mask) const;
-  void begin_episode(int32_t env);              // resets world, streams go on, writes obs
-  void clear_rows(int32_t env);                 // reward, costs, flags, status, sums; final_obs becomes obs
-  bool observe(int32_t env, float* row) const;  // false: an entry is not finite
-  void see(int32_t env, Block& block);          // pictures, points and voxels
+  void begin_episode(int32_t env);  // resets world, streams go on, writes obs
+  void clear_rows(int32_t env);     // reward, costs, flags, status, sums; final_obs becomes obs
+  // What is shown of control step `step`, 0 at a reset; false: an entry is not finite.
+  bool observe(int32_t env, int32_t step, float* row);
+  void see(int32_t env, Block& block);  // pictures, points and voxels
   // A control step of the block's worlds for which wanted(env).
   template <class F>
   void control_step(int32_t begin, int32_t end, Block& block, F&& wanted);
@@ -93,6 +98,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   void finish_step(int32_t env);
   void lose_step(int32_t env, uint32_t status);
   void close_step(int32_t env, const Verdict& verdict, uint32_t status, bool lost);
+  bool costs_end(const Verdict& verdict) const;  // option end_on_cost
   void write_verdict(int32_t env, const Verdict& verdict, uint32_t status);
   // f(begin, end, block) for every block, f(env, block) for every world, on the workers. Both rethrow the
   // error of the lowest world when all is done.

@@ -1,7 +1,7 @@
 // Saving, restoring and hashing worlds.
 //
 // A state is a file of two sections: HEAD says what it belongs to, WRLD holds one record a world: length,
-// world, task struct, episode, observation row.
+// world, task struct, episode, observation row, and what the world's disturbances remember, where it has any.
 #include <cmath>
 #include <cstdio>
 
@@ -81,6 +81,7 @@ void Pool::Impl::write_world(int32_t env, Writer& out) const {
   out.bytes(s.task_state, task->state_bytes());
   write_episode(s.episode, cost_dim, out);
   out.bytes(obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
+  if (disturbance.any()) s.disturbance.write(out);
 }
 
 void Pool::Impl::read_world(int32_t env, Reader& in) {
@@ -93,6 +94,7 @@ void Pool::Impl::read_world(int32_t env, Reader& in) {
   in.bytes(s.task_state, task->state_bytes());
   read_episode(in, cost_dim, &s.episode);
   in.bytes(obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
+  if (disturbance.any()) s.disturbance.read(in);
 }
 
 // The world's own part is checked by its load.
@@ -100,7 +102,10 @@ void Pool::Impl::check_world(int32_t env) const {
   const Slot& s = slots[env];
   check_episode(s.episode, cost_dim, task->max_steps());
   // of a world that is not running, the next reset zeroes the struct before anything reads it
-  if (s.episode.phase == Phase::kRunning) task->check_state(s.task_state);
+  if (s.episode.phase == Phase::kRunning) {
+    task->check_state(s.task_state);
+    if (disturbance.any()) s.disturbance.check(disturbance);
+  }
   const float* row = obs(env);
   for (int32_t i = 0; i < obs_dim; ++i)
     if (!std::isfinite(row[i]) || std::abs(row[i]) > obs_limit)

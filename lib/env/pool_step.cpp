@@ -95,12 +95,16 @@ void Pool::Impl::begin_episode(int32_t env) {
   e.sum_reward = 0;
   for (double& sum : e.sum_cost) sum = 0;
   task->reset(*s.world, s.task_state, e.reset);
-  observe(env, obs(env));
+  if (disturbance.any()) s.disturbance.begin(disturbance, *task);
+  observe(env, 0, obs(env));
 }
 
-bool Pool::Impl::observe(int32_t env, float* row) const {
-  const Slot& s = slots[env];
+bool Pool::Impl::observe(int32_t env, int32_t step, float* row) {
+  Slot& s = slots[env];
   task->observe(*s.world, s.task_state, row);
+  const bool good = clip_row(row, obs_dim, obs_limit);
+  if (disturbance.fields.empty() || !good) return good;
+  s.disturbance.show(disturbance, step, row);
   return clip_row(row, obs_dim, obs_limit);
 }
 
@@ -145,6 +149,8 @@ void Pool::Impl::start_step(int32_t env, Block& block) {
     begin_episode(env);
     clear_rows(env);
   } else if (clip_action(action(env), action_dim, block.action)) {
+    if (disturbance.delays_actions())
+      s.disturbance.delay_action(disturbance, s.episode.step, action_dim, block.action);
     task->control(*s.world, s.task_state, block.action);
     block.group[block.waiting] = s.world;
     block.member[block.waiting++] = env;
@@ -170,11 +176,18 @@ void Pool::Impl::finish_step(int32_t env) {
   ++c.steps;
   c.overflowed += (status & kStatusContactOverflow) != 0;
   if (status & kStatusDiverged) return lose_step(env, status);
-  const Verdict verdict = task->judge(*s.world, s.task_state, s.episode.step + 1);
-  if (!observe(env, final_obs(env)) || !sound(verdict, cost_dim))
+  Verdict verdict = task->judge(*s.world, s.task_state, s.episode.step + 1);
+  if (disturbance.end_on_cost && costs_end(verdict)) verdict.terminated = true;
+  if (!observe(env, s.episode.step + 1, final_obs(env)) || !sound(verdict, cost_dim))
     return lose_step(env, status | kStatusDiverged);
   std::memcpy(obs(env), final_obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
   close_step(env, verdict, status, false);
+}
+
+bool Pool::Impl::costs_end(const Verdict& verdict) const {
+  for (int32_t k = 0; k < cost_dim; ++k)
+    if (verdict.cost[k] != 0 && (k == 0 || info->costs[k].limit >= 0)) return true;
+  return false;
 }
 
 void Pool::Impl::lose_step(int32_t env, uint32_t status) {
@@ -211,6 +224,9 @@ void Pool::Impl::write_verdict(int32_t env, const Verdict& verdict, uint32_t sta
     add(cost_row(buffers.cost, env)[k], verdict.cost[k]);
     cost_row(buffers.cost_raw, env)[k] = static_cast<float>(verdict.cost_raw[k]);
     cost_row(buffers.episode_cost, env)[k] = static_cast<float>(e.sum_cost[k]);
+    if (repeat == 1) continue;  // the row of cost_raw is all that there is
+    double& magnitude = slots[env].magnitude[k];
+    magnitude = (first ? 0 : magnitude) + std::max(verdict.cost_raw[k], 0.0);
   }
   buffers.episode_step[env] = e.step;
   buffers.status[env] = first ? status : buffers.status[env] | status;

@@ -27,14 +27,12 @@ uint64_t ResolvedPoolConfig::hash_options() const {
       const char* text = options.text(spec.key);
       hash = hash_bytes(text, std::strlen(text) + 1, hash);
     } else {
-      double value = 0;
-      if (spec.kind == OptionKind::kNumber) value = options.number(spec.key);
-      if (spec.kind == OptionKind::kInteger) value = options.integer(spec.key);
-      if (spec.kind == OptionKind::kFlag) value = options.flag(spec.key);
-      hash = hash_bytes(&value, sizeof value, hash);
+      const OptionRange value = options.range(i);
+      hash = hash_bytes(&value.low, sizeof value.low, hash);
+      if (value.drawn()) hash = hash_bytes(&value.high, sizeof value.high, hash);
     }
   }
-  return hash;
+  return hash_disturbance(options, hash);
 }
 
 // A first look finds what chooses other rows (the robots); with those in place all keys must be known.
@@ -54,6 +52,8 @@ void ResolvedPoolConfig::read_options(const PoolConfig& c) {
   specs = sense_options(&count);
   options.add_table(specs, count);
   specs = repeat_options(&count);
+  options.add_table(specs, count);
+  specs = disturb_options(&count);
   options.add_table(specs, count);
   set_all(c, info->name, &options);
 }
@@ -98,6 +98,7 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
     const size_t bytes = task->state_bytes();
     options_hash = hash_bytes(&bytes, sizeof bytes, options_hash);
   }
+  disturbance = disturbance_from(options, *task, info->name);
   obs_dim = rdm::obs_dim(*task);
   action_dim = task->action_dim();
   cost_dim = info->num_costs;

@@ -1,6 +1,7 @@
 // A pool's config made concrete: its task made, its options laid in, its sizes known. What a spec, a measure
 // and a pool have in common, so that none of them accepts what another refuses.
 #pragma once
+#include "env/options/disturb.hpp"
 #include "env/options/repeat.hpp"
 #include "env/options/sense.hpp"
 #include "env/options/table.hpp"
@@ -10,8 +11,8 @@
 namespace rdm {
 
 struct ResolvedPoolConfig {
-  // All that can be wrong with a config is found here, and all but the engine's limits before the task is
-  // made.
+  // All that can be wrong with a config is found here, and all but the engine's limits and names of fields
+  // before the task is made.
   explicit ResolvedPoolConfig(const PoolConfig& c);
   ~ResolvedPoolConfig();
   ResolvedPoolConfig(const ResolvedPoolConfig&) = delete;
@@ -29,6 +30,7 @@ struct ResolvedPoolConfig {
   int32_t repeat = 1;         // control steps of one step
   uint64_t options_hash = 0;  // task name and every option's value
   TaskHandle task;
+  Disturbance disturbance;
   int32_t obs_dim = 0, action_dim = 0, cost_dim = 0;
   float obs_limit = 0;
 

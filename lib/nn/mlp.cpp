@@ -80,6 +80,12 @@ MlpScratch cut_forward_scratch(ScratchCutter& cutter, const MlpShape& shape, int
   return s;
 }
 
+void pick_columns(const float* x, int32_t rows, int32_t width, const int32_t* columns, int32_t count,
+                  float* y) {
+  for (size_t r = 0; r < sz(rows); ++r, x += width, y += count)
+    for (int32_t i = 0; i < count; ++i) y[i] = x[columns[i]];
+}
+
 void mlp_forward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
                  const MlpScratch& scratch, float* y) {
   const Kernels& kernel = kernels();

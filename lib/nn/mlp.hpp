@@ -40,8 +40,13 @@ struct MlpScratch {
   float* delta[2] = {};                    // [rows][widest layer], ping and pong
   int32_t pack_columns = 0;                // of a matrix product at a time; 0: as many as are fastest
   float* packed = nullptr;                 // panels of the matrix products
+  float* picked = nullptr;                 // [rows][in], of a caller whose rows are wider than the network
 };
 MlpScratch carve_mlp_scratch(Arena& arena, const MlpShape& shape, int32_t rows);
+
+// y [rows][count] of the listed entries of x [rows][width].
+void pick_columns(const float* x, int32_t rows, int32_t width, const int32_t* columns, int32_t count,
+                  float* y);
 
 // y = net(x). x [rows][in], y [rows][out]; hidden activations stay in the scratch for the backward pass.
 void mlp_forward(const MlpShape& shape, const float* params, const float* x, int32_t rows,

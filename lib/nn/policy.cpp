@@ -80,12 +80,16 @@ void act_view(const PolicyView& v, const float* obs, int32_t rows, const float* 
               void* scratch) {
   const Kernels& kernel = kernels();
   const ActScratch s = cut_act_scratch(v, rows, scratch);
-  const size_t in = sz(v.actor.in), out = sz(v.action_dim());
+  const size_t in = sz(v.obs_dim()), out = sz(v.action_dim());
   for (int32_t at = 0; at < rows; at += s.mlp.rows) {
     const int32_t n = std::min(s.mlp.rows, rows - at);
     const float* x = obs + sz(at) * in;
     const float* e = noise ? noise + sz(at) * out : nullptr;
     float* a = action + sz(at) * out;
+    if (v.columns) {
+      pick_columns(x, n, v.obs_dim(), v.columns, v.actor.in, s.obs);
+      x = s.obs;
+    }
     if (v.clip > 0) {
       kernel.normalize(x, n, v.actor.in, v.shift, v.scale, v.clip, s.obs);
       x = s.obs;
@@ -143,20 +147,58 @@ void read_head(Reader& in, PolicyView& v) {
     bad("the deviation's bounds are out of range");
 }
 
+// Ranges [begin, end) of entries, ascending and apart from each other.
+void write_columns(Writer& out, const PolicyView& v) {
+  const int32_t count = v.actor.in;
+  const auto each_range = [&](auto&& f) {
+    for (int32_t i = 0, end = 0; i < count; i = end) {
+      for (end = i + 1; end < count && v.columns[end] == v.columns[end - 1] + 1;) ++end;
+      f(v.columns[i], v.columns[end - 1] + 1);
+    }
+  };
+  int32_t ranges = 0;
+  each_range([&](int32_t, int32_t) { ++ranges; });
+  out.begin_section("COLS");
+  out.value(v.row_dim);
+  out.value(ranges);
+  each_range([&](int32_t begin, int32_t end) {
+    out.value(begin);
+    out.value(end);
+  });
+  out.end_section();
+}
+
+void read_columns(Reader& in, PolicyView& v, Vector<int32_t>* columns) {
+  in.need_section("COLS");
+  v.row_dim = in.value<int32_t>();
+  if (v.row_dim <= v.actor.in || v.row_dim > kMaxInputs) bad("the observation's size is out of range");
+  const auto ranges = in.value<int32_t>();
+  if (ranges < 1 || ranges > v.actor.in) bad("the ranges of entries are no such ranges");
+  for (int32_t k = 0, last = -1; k < ranges; ++k) {
+    const auto begin = in.value<int32_t>(), end = in.value<int32_t>();
+    if (begin <= last || end <= begin || end > v.row_dim) bad("the ranges of entries are no such ranges");
+    for (int32_t i = begin; i < end; ++i) columns->push_back(i);
+    last = end;
+  }
+  in.expect_end();
+  if (columns->size() != sz(v.actor.in)) bad("the ranges of entries are not as many as the network's inputs");
+  v.columns = columns->data();
+}
+
 }  // namespace
 
 void write_policy(Writer& out, const PolicyView& view) {
   const MlpShape& shape = view.actor;
-  const size_t n_in = sz(shape.in), n_out = sz(view.action_dim());
-  Vector<float> obs(n_in), action(n_out);
-  if (view.example_obs) std::copy_n(view.example_obs, n_in, obs.begin());
+  const size_t n_in = sz(shape.in), n_row = sz(view.obs_dim()), n_out = sz(view.action_dim());
+  Vector<float> obs(n_row), action(n_out);
+  if (view.example_obs) std::copy_n(view.example_obs, n_row, obs.begin());
   if (view.example_obs && view.example_action) {
     std::copy_n(view.example_action, n_out, action.begin());
   } else {
     Vector<float> memory(cut_act_scratch(view, 1, nullptr).bytes / sizeof(float) + Arena::kAlign);
     act_view(view, obs.data(), 1, nullptr, action.data(), align_scratch(memory.data()));
   }
-  out.begin_file(kPolicyMagic, view.state_std ? kPolicyVersion : 1);
+  out.begin_file(kPolicyMagic, view.columns ? 3 : view.state_std ? 2 : 1);
   out.begin_section("META");
   out.value(view.clip);
   out.value(view.action_repeat);
@@ -178,6 +220,7 @@ void write_policy(Writer& out, const PolicyView& view) {
     out.value(view.std_bounds[1]);
     out.end_section();
   }
+  if (view.columns) write_columns(out, view);
   out.begin_section("WGTS");
   write_floats(out, view.params, shape.num_params());
   if (!view.state_std) write_floats(out, view.log_std, n_out);
@@ -189,7 +232,7 @@ void write_policy(Writer& out, const PolicyView& view) {
   }
   out.end_section();
   out.begin_section("EXMP");
-  write_floats(out, obs.data(), n_in);
+  write_floats(out, obs.data(), n_row);
   write_floats(out, action.data(), n_out);
   out.end_section();
   out.end_file();
@@ -202,6 +245,9 @@ Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
   read_meta(in, v);
   read_arch(in, v.actor);
   if (version > 1) read_head(in, v);
+  Vector<int32_t> columns;
+  if (version > 2) read_columns(in, v, &columns);
+  const size_t n_row = sz(v.obs_dim());
   const size_t n_in = sz(v.actor.in), n_out = sz(v.action_dim()), n_params = v.actor.num_params();
   const size_t n_std = v.state_std ? 0 : n_out;
   in.need_section("WGTS");
@@ -217,15 +263,19 @@ Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
     if (!(v_j > 0)) bad("a scale of the normaliser is not positive");
   }
   in.need_section("EXMP");
-  const unsigned char *obs = view_floats(in, n_in), *action = view_floats(in, n_out);
+  const unsigned char *obs = view_floats(in, n_row), *action = view_floats(in, n_out);
   in.expect_end();
 
   const auto carve = [&](Arena& arena) {
+    if (!columns.empty()) {
+      auto* kept = arena.make<int32_t>(n_in);
+      v.columns = kept ? std::copy_n(columns.data(), n_in, kept) - n_in : columns.data();
+    }
     v.params = keep(arena, params, n_params);
     v.log_std = n_std ? keep(arena, log_std, n_std) : nullptr;
     v.shift = n_norm ? keep(arena, shift, n_in) : nullptr;
     v.scale = n_norm ? keep(arena, scale, n_in) : nullptr;
-    v.example_obs = keep(arena, obs, n_in);
+    v.example_obs = keep(arena, obs, n_row);
     v.example_action = keep(arena, action, n_out);
     float* check = arena.make<float>(n_out);
     auto* scratch = arena.make<unsigned char>(cut_act_scratch(v, 1, nullptr).bytes);

@@ -1,6 +1,7 @@
 // The frozen policy: normaliser, actor network, action scale; runs on a machine that has nothing else.
 // Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC". Version 2 is written for a policy
-// whose deviation depends on the state, which version 1 does not know.
+// whose deviation depends on the state, version 3 for one that sees a part of the observation alone: versions
+// before do not know these.
 #pragma once
 #include <cstdint>
 
@@ -11,11 +12,14 @@
 namespace rdm {
 
 inline constexpr char kPolicyMagic[8] = {'R', 'D', 'M', 'P', 'O', 'L', 'I', 'C'};
-inline constexpr uint32_t kPolicyVersion = 2;
+inline constexpr uint32_t kPolicyVersion = 3;
 
 // Everything that a policy file holds, as views of memory that somebody else owns.
 struct PolicyView {
-  MlpShape actor;                      // out: action_dim, or with state_std twice that, log deviations last
+  MlpShape
+      actor;  // in: entries that it sees; out: action_dim, or with state_std twice that, log deviations last
+  const int32_t* columns = nullptr;    // [actor.in] entries of the row, ascending; null: all of them
+  int32_t row_dim = 0;                 // with columns: entries of a row
   const float* params = nullptr;       // [actor.num_params()]
   const float* log_std = nullptr;      // [action_dim], null with state_std
   bool state_std = false;              // the network gives the log deviations
@@ -28,9 +32,10 @@ struct PolicyView {
   float control_dt = 0;                // s, 0 unknown
   uint64_t layout_hash = 0;            // of the observation and action layout, 0 unknown
   char task[64] = "";                  // "" for a host's own environment
-  const float* example_obs = nullptr;  // [actor.in], null: zeros are written
+  const float* example_obs = nullptr;  // [obs_dim()], null: zeros are written
   const float* example_action = nullptr;  // [action_dim], the mean action for it; a load checks it
 
+  int32_t obs_dim() const { return columns ? row_dim : actor.in; }
   int32_t action_dim() const { return state_std ? actor.out / 2 : actor.out; }
 };
 void write_policy(Writer& out, const PolicyView& view);

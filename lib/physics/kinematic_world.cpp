@@ -13,6 +13,7 @@ namespace {
 
 KinematicWorld::KinematicWorld(const Scene& scene, Arena& arena) : World(scene, arena) {
   if (!scene.def.articulations.empty()) refuse("articulation");
+  if (scene.def.adjustable) refuse("adjustable");
 }
 
 void KinematicWorld::set_base(int32_t, const Motion&) {

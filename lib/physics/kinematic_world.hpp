@@ -8,7 +8,7 @@ namespace rdm {
 
 class KinematicWorld final : public World {
  public:
-  // Error(kUnsupported) for a scene with articulations.
+  // Error(kUnsupported) for a scene with articulations, or an adjustable one.
   KinematicWorld(const Scene& scene, Arena& arena);
 
   EngineKind engine() const override { return EngineKind::kKinematic; }

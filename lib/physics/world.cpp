@@ -76,7 +76,17 @@ void World::carve(Arena& arena) {
   sensors_ = arena.make<Wrench>(scene_->sensors.size());
   touched_ = arena.make<uint8_t>(scene_->pairs.size());
   fresh_ = arena.make<uint8_t>(links);
+  if (scene_->def.feedforward) feedforward_ = arena.make<double>(links);
+  if (scene_->def.adjustable) {
+    dynamics_.carve(*scene_, arena);
+    edited_.carve(*scene_, arena);
+    sized_ = arena.make<SizedShape>(static_cast<size_t>(scene_->num_body_shapes));
+    size_t hulls = 0;
+    for (const SceneShape& s : scene_->shapes) hulls += s.carrier == Carrier::kBody && s.hull >= 0;
+    hulls_ = arena.make<Hull>(hulls);
+  }
   if (arena.measuring()) return;
+  size_shapes();
   for (size_t a = 0; a < bases; ++a) {
     const ArticulationDef& def = scene_->def.articulations[a];
     bases_[a] = {def.X_WB, {}, {}};
@@ -87,6 +97,53 @@ void World::carve(Arena& arena) {
     q_[i] = target_[i] = std::clamp(0.0, joint.lower, joint.upper);
   }
   for (size_t i = 0; i < scene_->def.bodies.size(); ++i) bodies_[i] = {scene_->def.bodies[i].X_WB, {}, {}};
+}
+
+void World::size_shapes() {
+  if (!sized_) return;
+  Hull* hull = hulls_;
+  for (int32_t i = 0; i < scene_->num_body_shapes; ++i) {
+    const SceneShape& s = scene_->shapes[static_cast<size_t>(scene_->first_body_shape + i)];
+    const double factor = dynamics_.bodies[s.index].size;
+    sized_[i] = {factor * s.def.size, factor * s.def.X_LS.p, factor, nullptr};
+    if (s.hull < 0) continue;
+    scale_hull(*scene_->hull_of(s), factor, hull);
+    sized_[i].hull = hull++;
+  }
+}
+
+Dynamics& World::edit_dynamics() {
+  if (!scene_->def.adjustable) fail(Code::kState, "dynamics: the scene is not adjustable");
+  edited_.copy(dynamics_);
+  return edited_;
+}
+
+void World::set_dynamics(const Dynamics& dynamics) {
+  if (!scene_->def.adjustable) fail(Code::kState, "dynamics: the scene is not adjustable");
+  dynamics.check(*scene_);
+  dynamics_.copy(dynamics);
+  size_shapes();
+  dynamics_changed();
+}
+
+void World::save_extras(Writer& out) const {
+  if (feedforward_) out.bytes(feedforward_, sizeof(double) * static_cast<size_t>(scene_->num_links));
+  if (scene_->def.adjustable) dynamics_.save(out);
+}
+
+void World::load_extras(Reader& in) {
+  if (feedforward_) in.bytes(feedforward_, sizeof(double) * static_cast<size_t>(scene_->num_links));
+  if (!scene_->def.adjustable) return;
+  dynamics_.load(in);
+  size_shapes();
+}
+
+bool World::sound_extras(Reader& in, const Scene& scene) {
+  bool good = true;
+  if (scene.def.feedforward)
+    for (int32_t i = 0; i < scene.num_links; ++i) good &= bounded(in.value<double>(), kFeedforwardBound);
+  if (scene.def.adjustable) good &= Dynamics::sound(in, scene);
+  return good;
 }
 
 void World::step_together(World* const* worlds, int32_t count) {
@@ -179,6 +236,7 @@ Pose World::shape_pose(int32_t shape) const {
     case Carrier::kLink:
       return link(s.index).X * s.def.X_LS;
     case Carrier::kBody:
+      if (const SizedShape* own = sized(shape)) return bodies_[s.index].X * Pose{own->p, s.def.X_LS.q};
       return bodies_[s.index].X * s.def.X_LS;
     case Carrier::kBase:
       return bases_[s.articulation].X * s.def.X_LS;
@@ -186,6 +244,16 @@ Pose World::shape_pose(int32_t shape) const {
       break;
   }
   return s.def.X_LS;
+}
+
+Vec3 World::shape_size(int32_t shape) const {
+  const SizedShape* own = sized(shape);
+  return own ? own->size : scene_->shapes[static_cast<size_t>(shape)].def.size;
+}
+
+const Hull* World::shape_hull(int32_t shape) const {
+  const SizedShape* own = sized(shape);
+  return own ? own->hull : scene_->hull_of(scene_->shapes[static_cast<size_t>(shape)]);
 }
 
 }  // namespace rdm

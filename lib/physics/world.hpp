@@ -8,6 +8,7 @@
 #include "base/arena.hpp"
 #include "base/bytes.hpp"
 #include "physics/limits.hpp"
+#include "physics/model/dynamics.hpp"
 #include "physics/model/scene.hpp"
 
 namespace rdm {
@@ -34,6 +35,14 @@ struct Contact {
 
 struct Wrench {
   Vec3 force, torque;
+};
+
+// A shape of a body in a world where the body has a size of its own.
+struct SizedShape {
+  Vec3 size;  // as ShapeDef::size
+  Vec3 p;     // place in the body's frame
+  double size_factor = 1;
+  const Hull* hull = nullptr;
 };
 
 class World {
@@ -68,12 +77,28 @@ class World {
   const double* qd() const { return qd_; }
   double* target() { return target_; }
   const double* target() const { return target_; }
+  // Torque added to each drive's spring, N m (N), [num_links]; it lasts until it is written again:
+  //   torque = clamp(kp (target - q) - kd qd + feedforward, +-effort)
+  // Null unless the scene asks for it. A step takes one that is not finite or beyond kFeedforwardBound for 0
+  // and marks the world.
+  double* feedforward() { return feedforward_; }
+  const double* feedforward() const { return feedforward_; }
   // Drive torque (with the limit spring) by the drive law at the end of each substep, their mean, N m.
   const double* torque() const { return torque_; }
 
   // Sets all joint coordinates of one articulation and rebuilds its links. Values are clamped to range.
   // Error(kArgument) for a value that is not finite, a rate beyond kRateBound.
   void set_joints(int32_t articulation, const double* q, const double* qd);
+
+  // Factors on the scene's constants that hold in this world alone, all 1 at first; null unless the scene is
+  // adjustable.
+  const Dynamics* dynamics() const { return scene_->def.adjustable ? &dynamics_ : nullptr; }
+  // A copy of them in this world's memory, to be changed and given to set_dynamics. Only of adjustable
+  // scenes.
+  Dynamics& edit_dynamics();
+  // From the next step on; joints, bases and bodies keep their places and velocities. Error(kState) where the
+  // scene is not adjustable, else as Dynamics::check; the world then stays as it was.
+  void set_dynamics(const Dynamics& dynamics);
 
   const Motion& link(int32_t i) const {  // [num_links]
     if (!fresh_[i]) fetch_link(i);
@@ -86,6 +111,9 @@ class World {
   // Moves a free base; its links follow with their joint coordinates. Error(kState) for a fixed base.
   virtual void set_base(int32_t articulation, const Motion& m) = 0;
   Pose shape_pose(int32_t shape) const;
+  // As ShapeDef::size and Scene::hull_of, in this world.
+  Vec3 shape_size(int32_t shape) const;
+  const Hull* shape_hull(int32_t shape) const;
 
   // Acts during the next step only; world axes; at the centre of mass of the body, or at p of the link.
   virtual void push_body(int32_t i, const Vec3& force, const Vec3& torque) = 0;
@@ -123,11 +151,24 @@ class World {
   virtual void fetch_link(int32_t) const {}
   // Called after q_, qd_ or bases_ changed outside of step.
   virtual void links_changed(int32_t articulation) = 0;
+  // Called after dynamics_ changed.
+  virtual void dynamics_changed() {}
+  // The sizes of shapes by dynamics_.
+  void size_shapes();
+  // Null where the shape has the scene's own size.
+  const SizedShape* sized(int32_t shape) const {
+    const int32_t i = shape - scene_->first_body_shape;
+    return sized_ && i >= 0 && i < scene_->num_body_shapes ? sized_ + i : nullptr;
+  }
   virtual void step_group(World* const* worlds, int32_t count);
   // What set_body and set_base take, with a unit quaternion; the text of the error begins with `call`.
   static Motion checked_motion(const char* call, int32_t index, const Motion& m);
   // A motion of a loaded state.
   static bool sound(const Motion& m);
+  // What a scene asks for beside them, saved behind everything else.
+  void save_extras(Writer& out) const;
+  void load_extras(Reader& in);
+  static bool sound_extras(Reader& in, const Scene& scene);
   // Reads status, q, qd, target, torque and sensors, in which every engine's state agrees; false where one
   // of them is not finite or out of range.
   static bool sound_rows(Reader& in, const Scene& scene);
@@ -140,6 +181,10 @@ class World {
   Contact* contacts_ = nullptr;
   Wrench* sensors_ = nullptr;
   uint8_t *touched_ = nullptr, *fresh_ = nullptr;
+  double* feedforward_ = nullptr;
+  Dynamics dynamics_, edited_;
+  SizedShape* sized_ = nullptr;  // [num_body_shapes]
+  Hull* hulls_ = nullptr;        // of those that are hulls, in order
   int32_t num_contacts_ = 0;
   uint32_t status_ = 0;
 };

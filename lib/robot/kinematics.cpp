@@ -128,28 +128,25 @@ double arm_length(const Robot& robot) {
   return length;
 }
 
-bool place_arm(const Robot& arm, const Pose& X_WF, Pose* X_WB, double* q) {
+bool place_arm(const Robot& arm, const Pose& X_WF, const Vec3& from, Pose* X_WB, double* q) {
   constexpr double kTurns[] = {0, 0.25 * kPi, -0.25 * kPi, 0.5 * kPi, -0.5 * kPi};
   constexpr double kAway[] = {0.45, 0.35, 0.55, 0.65}, kBelow[] = {0.2, 0.35, 0.05, 0.5, -0.1};
   const double length = arm_length(arm);
-  const Vec3 z = rotate(X_WF.q, {0, 0, 1});
-  // where the flange comes from; one that looks straight up or down is come to along -x
-  const double level = std::sqrt(z.x * z.x + z.y * z.y);
-  const double from = level > 0.2 ? elementary::atan2(-z.y, -z.x) : kPi;
+  const double side = elementary::atan2(from.y, from.x);
   Reach reach{arm, {}, {}, {}};
   double best = 0;
   for (const double turn : kTurns)
     for (const double away : kAway)
       for (const double below : kBelow) {
-        const elementary::SinCos a = elementary::sincos(from + turn);
+        const elementary::SinCos a = elementary::sincos(side + turn);
         Pose base;
         base.p = X_WF.p + Vec3{away * length * a.cos, away * length * a.sin, -below * length};
         base.p.z = std::max(base.p.z, 0.0);
-        base.q = axis_angle({0, 0, 1}, from + turn + kPi);  // x of the base towards the flange
+        base.q = axis_angle({0, 0, 1}, side + turn + kPi);  // x of the base towards the flange
         double pose[kMaxRobotLinks];
         for (int32_t i = 0; i < arm.links.count; ++i) pose[i] = arm.home.count ? arm.home[i] : 0;
         if (!solve_reach(arm, inverse(base) * X_WF, pose)) continue;
-        const double score = dexterity(&reach, pose, length);
+        const double score = dexterity(&reach, pose, length) * (1.2 + elementary::sincos(turn).cos);
         const bool above = std::all_of(reach.X_RL, reach.X_RL + arm.links.count,
                                        [&](const Pose& X) { return (base * X).p.z > 0.03; });
         if (!above || score <= best) continue;

@@ -25,9 +25,9 @@ bool solve_reach(const Robot& robot, const Pose& X_RF, double* q);
 // Length of the arm, stretched, from the first joint's axis to the flange, m: an upper bound of its reach.
 double arm_length(const Robot& robot);
 
-// A place for an arm's base from which its flange reaches X_WF: upright, not below z = 0, behind the flange,
-// far from joint limits and singular poses. `q` [links] is its pose there. False when no such place was
-// found.
-bool place_arm(const Robot& arm, const Pose& X_WF, Pose* X_WB, double* q);
+// A place for an arm's base from which its flange reaches X_WF: upright, not below z = 0, if it can be on the
+// side of `from` (its level part counts, of any length), far from joint limits and singular poses. `q`
+// [links] is its pose there. False when no such place was found.
+bool place_arm(const Robot& arm, const Pose& X_WF, const Vec3& from, Pose* X_WB, double* q);
 
 }  // namespace rdm

@@ -1,6 +1,7 @@
 #include "robot/mounted.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "base/error.hpp"
@@ -23,6 +24,18 @@ void set_inertia(RobotLink* l, const Inertia& inertia) {
   l->mass = inertia.mass;
   l->com = inertia.com;
   std::copy_n(inertia.moment, 6, l->moment);
+}
+
+// The mirror image of a frame is left-handed; of a mount z must stay what it is, out of the arm, so that of x
+// and y the one is turned back that lies more along the mirror's normal.
+Quat mirrored_mount(const Quat& q, int32_t axis) {
+  Vec3 normal;
+  normal[axis] = 1;
+  const Vec3 n = rotate(conjugate(q), normal);
+  const Quat back = std::fabs(n.x) > std::fabs(n.y) ? Quat{0, 1, 0, 0} : Quat{0, 0, 1, 0};
+  Quat half = {0, 0, 0, 0};  // a reflection is a half turn and an inversion; two inversions are nothing
+  (axis == 0 ? half.x : axis == 1 ? half.y : half.z) = 1;
+  return half * q * back;
 }
 
 // As many joints as `robot` has: its own or zeros within the limits.
@@ -212,7 +225,7 @@ RobotCopy make_mirrored(const Robot& robot) {
   r.n_palm = mirrored_point(robot.n_palm, axis);
   r.z_palm = mirrored_point(robot.z_palm, axis);
   r.p_hold = mirrored_point(robot.p_hold, axis);
-  r.X_RM = mirror(robot.X_RM);
+  r.X_RM = {mirrored_point(robot.X_RM.p, axis), mirrored_mount(robot.X_RM.q, axis)};
   r.X_LF = mirror(robot.X_LF);
   return out;
 }

@@ -175,6 +175,7 @@ Inertia mirrored_inertia(const Inertia& inertia, int32_t axis);
 void check_robot(const Robot& robot);
 
 // The tables in the library.
-extern const Robot kShadowHand;
+extern const Robot kShadowHand, kAllegroHand, kSchunkSvh, kBarrettBh282, kRobotiq3f;
+extern const Robot kFrankaPanda, kAbbIrb4600, kKinovaJaco2, kKukaIiwa7, kXarm6, kAbbCrb15000, kUr5e, kUr10e;
 
 }  // namespace rdm

@@ -10,11 +10,11 @@ int32_t gather_shapes(const World& world, RenderShape* out) {
     const ShapeDef& def = from.def;
     RenderShape& shape = out[i];
     shape.kind = def.kind;
-    shape.size = def.size;
+    shape.size = world.shape_size(i);
     shape.X_WS = world.shape_pose(i);
     for (int k = 0; k < 3; ++k) shape.color[k] = def.color[k];
     shape.id = i;
-    shape.hull = scene.hull_of(from);
+    shape.hull = world.shape_hull(i);
   }
   return count;
 }

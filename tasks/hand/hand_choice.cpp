@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "env/options/robot.hpp"
 #include "robot/kinematics.hpp"
 #include "robot/mounted.hpp"
@@ -28,20 +29,16 @@ constexpr OptionSpec kRows[] = {
 constexpr OptionSpec kArmRows[] = {
     text_option("arm_base", "auto", nullptr,
                 "where an arm's base is: x y z (m) and yaw (degrees); auto: behind the hand, within reach"),
+    text_option("arm_pose", "auto", nullptr,
+                "an arm's joints at the start, rad; auto: those that bring the hand to its place", 255),
     number_option("adapter", 0, 0, 0.5, "thickness of the plate between flange and hand, m"),
     number_option("mount_yaw", 0, -360, 360, "turn of a hand about its arm's flange, degrees"),
 };
 
 const char* const kSideKeys[kMaxHands][2] = {{"right.hand", "right.arm"}, {"left.hand", "left.arm"}};
 const char* const kBaseKeys[kMaxHands] = {"right.arm_base", "left.arm_base"};
+const char* const kPoseKeys[kMaxHands] = {"right.arm_pose", "left.arm_pose"};
 const char* const kKeys[2] = {"hand", "arm"};
-
-// The name for hand i: its own key's, else the common one's. `text` gives the value of a key.
-template <class F>
-const char* chosen_name(int32_t i, int what, F&& text) {
-  const char* own = text(kSideKeys[i][what]);
-  return *own ? own : text(kKeys[what]);
-}
 
 void add_rows(const HandControlConfig& config, const char* hand, const char* arm, OptionTable& table) {
   const auto add = [&](const char* name) {
@@ -65,19 +62,44 @@ Pose palm_in_base(const Robot& robot, Side side, bool folded) {
   return robot.X_BR * palm_frame(left.robot(), q);
 }
 
-// "x y z yaw": m and degrees, separated by blanks or commas.
-Pose read_base(const char* key, const char* text) {
-  double v[4];
+// How far beyond the holding point the fingers go, m.
+double finger_length(const Robot& robot) {
+  double q[kMaxRobotLinks];
+  for (int32_t i = 0; i < robot.links.count; ++i)
+    q[i] = std::clamp(0.0, robot.links[i].lower, robot.links[i].upper);
+  const Pose X_HR = inverse(palm_frame(robot, q));
+  double most = 0;
+  for (int32_t f = 0; f < robot.fingers.count; ++f)
+    if (!robot.fingers[f].thumb)
+      most = std::max(most, (X_HR * (link_pose(robot, q, robot.tips[f].link) * robot.tips[f].p_L)).z);
+  return most;
+}
+
+// `count` numbers, separated by blanks or commas.
+void read_numbers(const char* key, const char* text, int32_t count, double* out) {
   const char *at = text, *const end = text + std::strlen(text);
-  for (int i = 0; i < 4; ++i) {
+  for (int32_t i = 0; i < count; ++i) {
     while (at < end && (*at == ' ' || (i > 0 && *at == ','))) ++at;
-    const auto [next, error] = std::from_chars(at, end, v[i]);
-    if (error != std::errc() || !(std::abs(v[i]) <= 1000))
-      fail(Code::kArgument, "%s: '%s' is neither auto nor four numbers x y z yaw", key, text);
+    const auto [next, error] = std::from_chars(at, end, out[i]);
+    if (error != std::errc() || !(std::abs(out[i]) <= 1000))
+      fail(Code::kArgument, "%s: '%s' is neither auto nor %d numbers", key, Quoted(text).text, count);
     at = next;
   }
-  if (at != end) fail(Code::kArgument, "%s: '%s' is neither auto nor four numbers x y z yaw", key, text);
+  if (at != end)
+    fail(Code::kArgument, "%s: '%s' is neither auto nor %d numbers", key, Quoted(text).text, count);
+}
+
+// "x y z yaw": m and degrees.
+Pose read_base(const char* key, const char* text) {
+  double v[4];
+  read_numbers(key, text, 4, v);
   return {{v[0], v[1], v[2]}, axis_angle({0, 0, 1}, v[3] * kDegree)};
+}
+
+// The text for hand i: its own key's, else the common one's.
+const char* own_text(const Options& o, const char* own, const char* common) {
+  const char* text = o.text(own);
+  return *text ? text : o.text(common);
 }
 
 // Angles for a base that is given: from home, and from home with one joint after the other at a quarter of
@@ -99,6 +121,13 @@ bool reach_from(const Robot& arm, const Pose& X_RF, double* q) {
   return false;
 }
 
+// From where an arm comes to a hand with this palm: from behind the fingers, or where those point up or down
+// from behind the palm.
+Vec3 side_of_arm(const Pose& X_WH) {
+  const Vec3 behind = -rotate(X_WH.q, {0, 0, 1}), back = rotate(X_WH.q, {0, 1, 0});
+  return behind.x * behind.x + behind.y * behind.y > 0.25 ? behind : back;
+}
+
 void mount(const Options& o, int32_t i, const char* name, ChosenHand* out) {
   const RobotRef ref(find_robot(name));
   const Robot &arm = *ref, &hand = out->robot();
@@ -109,16 +138,23 @@ void mount(const Options& o, int32_t i, const char* name, ChosenHand* out) {
   RobotCopy both = make_mounted(arm, left ? mirrored.robot() : hand, mounting);
   const Pose X_WR = out->X_WB * hand.X_BR;
   const Pose X_WF = X_WR * inverse(mounted_root(left ? mirrored.robot() : hand, mounting));
-  const char* base = o.text(kBaseKeys[i]);
-  if (!*base) base = o.text("arm_base");
+  const char *base = own_text(o, kBaseKeys[i], "arm_base"), *pose = own_text(o, kPoseKeys[i], "arm_pose");
   double q[kMaxRobotLinks];
-  if (!same_name(base, "auto")) {
-    out->X_WB = read_base(kBaseKeys[i], base);
+  const bool placed = !same_name(base, "auto");
+  if (placed) out->X_WB = read_base(kBaseKeys[i], base);
+  if (!same_name(pose, "auto")) {
+    read_numbers(kPoseKeys[i], pose, arm.links.count, q);
+    for (int32_t k = 0; k < arm.links.count; ++k)
+      q[k] = std::clamp(q[k], arm.links[k].lower, arm.links[k].upper);
+    // without a place of its own it stands where that pose brings the hand to its place
+    if (!placed) out->X_WB = X_WF * inverse(flange_pose(arm, q));
+  } else if (placed) {
     if (!reach_from(arm, inverse(out->X_WB) * X_WF, q))
       fail(Code::kUnsupported,
            "%s: from there %s does not bring the %s hand to its place, its flange to (%.3g, %.3g, %.3g)",
            kBaseKeys[i], arm.name, kSideNames[i], X_WF.p.x, X_WF.p.y, X_WF.p.z);
-  } else if (!place_arm(arm, X_WF, &out->X_WB, q)) {
+  } else if (!place_arm(arm, X_WF, side_of_arm(out->X_WB * palm_in_base(hand, out->side, false)), &out->X_WB,
+                        q)) {
     fail(Code::kUnsupported, "%s: no place was found from which %s reaches (%.3g, %.3g, %.3g); give one",
          kBaseKeys[i], arm.name, X_WF.p.x, X_WF.p.y, X_WF.p.z);
   }
@@ -140,25 +176,32 @@ void add_hand_choice_options(const HandControlConfig& config, OptionTable& table
   table.add(
       choosing(text_option("hand", config.robot->name, nullptr, "the robot that each hand is, by name")));
   table.add(kRows);
+  const auto side = [&](int32_t i) { return config.sides ? config.sides[i] : HandDefault{"", "", "", ""}; };
   for (int32_t i = 0; i < config.count; ++i) {
+    const HandDefault d = side(i);
+    table.add(choosing(
+        text_option(kSideKeys[i][0], d.hand, nullptr, "the same for this hand alone; empty: as hand")));
+    table.add(choosing(
+        text_option(kSideKeys[i][1], d.arm, nullptr, "the same for this hand alone; empty: as arm")));
     table.add(
-        choosing(text_option(kSideKeys[i][0], "", nullptr, "the same for this hand alone; empty: as hand")));
-    table.add(
-        choosing(text_option(kSideKeys[i][1], "", nullptr, "the same for this hand alone; empty: as arm")));
-    table.add(text_option(kBaseKeys[i], "", nullptr, "the same for this hand alone; empty: as arm_base"));
+        text_option(kBaseKeys[i], d.arm_base, nullptr, "the same for this hand alone; empty: as arm_base"));
+    table.add(text_option(kPoseKeys[i], d.arm_pose, nullptr,
+                          "the same for this hand alone; empty: as arm_pose", 255));
   }
   table.add(kArmRows);
-  for (int32_t i = 0; i < config.count; ++i) {
-    const auto text = [&](const char* key) { return table.choice(key); };
-    const char *hand = chosen_name(i, 0, text), *arm = chosen_name(i, 1, text);
-    add_rows(config, *hand ? hand : config.robot->name, *arm ? arm : kNone, table);
-  }
+  // the host's word for this side, the task's, the host's for both, the task's robot
+  const auto chosen = [&](int32_t i, int what, const char* own, const char* otherwise) {
+    for (const char* name : {table.choice(kSideKeys[i][what]), own, table.choice(kKeys[what])})
+      if (*name) return name;
+    return otherwise;
+  };
+  for (int32_t i = 0; i < config.count; ++i)
+    add_rows(config, chosen(i, 0, side(i).hand, config.robot->name), chosen(i, 1, side(i).arm, kNone), table);
   add_robot_scales(table);
 }
 
 ChosenHand choose_hand(const HandControlConfig& config, const Options& o, int32_t i) {
-  const auto text = [&](const char* key) { return o.text(key); };
-  const char *name = chosen_name(i, 0, text), *arm = chosen_name(i, 1, text);
+  const char *name = own_text(o, kSideKeys[i][0], kKeys[0]), *arm = own_text(o, kSideKeys[i][1], kKeys[1]);
   ChosenHand out;
   if (same_name(name, config.robot->name))
     out.own = config.robot;
@@ -169,11 +212,15 @@ ChosenHand choose_hand(const HandControlConfig& config, const Options& o, int32_
     fail(Code::kUnsupported, "%s: robot %s is no hand", kSideKeys[i][0], robot.name);
   const bool copied = i > 0 && same_name(o.text("left_model"), "right_copy");
   out.side = i == 0 || copied ? Side::kRight : Side::kLeft;
-  out.X_WB = config.bases[i];
-  if (!out.own)
-    out.X_WB = config.bases[i] * palm_in_base(*config.robot, out.side, config.folded) *
+  const bool armed = !same_name(arm, kNone);
+  out.X_WB = armed && config.armed_bases ? config.armed_bases[i] : config.bases[i];
+  if (!out.own) {
+    const double longer = finger_length(robot) - finger_length(*config.robot);
+    const Pose back = {{0, 0, config.facing ? -std::max(longer, 0.0) : 0}, {}};
+    out.X_WB = out.X_WB * palm_in_base(*config.robot, out.side, config.folded) * back *
                inverse(palm_in_base(robot, out.side, config.folded));
-  if (!same_name(arm, kNone)) mount(o, i, arm, &out);
+  }
+  if (armed) mount(o, i, arm, &out);
   return out;
 }
 

@@ -16,6 +16,12 @@ struct HandControlConfig;
 inline constexpr int kMaxHands = 2;
 extern const char* const kSideNames[kMaxHands];  // "right", "left"
 
+// What a task or a preset of it has in the place of the empty texts of one side's options; "": as the common
+// ones.
+struct HandDefault {
+  const char *hand, *arm, *arm_base, *arm_pose;
+};
+
 // One of them, made concrete.
 struct ChosenHand {
   RobotRef listed;             // keeps a robot of the list while the task lives

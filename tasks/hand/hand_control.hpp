@@ -25,6 +25,10 @@ struct HandControlConfig {
   int32_t count = 2;                  // right, left
   Pose bases[kMaxHands];              // of the mounts, at the start
   bool flying = false;                // bases are free and have six action entries each
+  // Of the mounts where arms carry the hands; null: as `bases`. A flying hand may begin where no arm reaches.
+  const Pose* armed_bases = nullptr;   // [count]
+  const HandDefault* sides = nullptr;  // [count] null: none
+  bool facing = false;                 // fingertips towards each other: hands with longer fingers stand back
   // Force of an action entry of 1, in 1e5/60 N, and torque, in 1e3/60 N m: the paper's code applies 1e5 and
   // 1e3 times these, times its step of 1/60 s.
   double transition_scale = 0, orientation_scale = 0;

@@ -24,13 +24,26 @@ constexpr int32_t kTarget = kObject, kBlock = kOwnMaterial, kTable = kBlock + 1,
 constexpr double kTipBeyond = 0.02;  // m, from the distal origin, as the reward measures
 constexpr int kMiddle = 1;           // finger
 
+// On arms: fingers level and towards the tower, palms down, as the demonstration comes to lie.
+constexpr Quat kOver = {0, 1, 0, 0};
+constexpr Pose kArmedBases[kMaxHands] = {{{0, -1.2, 0.4035}, kOver}, {{0, 0.08, 0.5}, {}}},
+               kArmedCopies[kMaxHands] = {kArmedBases[0], {{0, 0.08, 0.5}, {0, 0, 1, 0}}};
+
+// The pair of the paper's code (shadow_hand_allegro_hand_arm_jenga); what it calls left is at -y and pushes,
+// right here. Its bases, 0.5 m from the tower, would have both hands in it: these stand as other arms do.
+constexpr HandDefault kPaperPair[kMaxHands] = {{"shadow_hand", "kuka_iiwa7", "", ""},
+                                               {"allegro_hand", "xarm6", "", ""}};
+
 // Fingers up and towards the tower from both sides, palms down.
-HandControlConfig make_config(bool right_copy) {
+HandControlConfig make_config(bool right_copy, bool paper_pair) {
   HandControlConfig p;
   p.bases[0] = {{0, -1.0, 0.06}, axis_angle({1, 0, 0}, -kTilt)};
   const Quat turned = axis_angle({1, 0, 0}, kPi - kTilt);
   // at x = 0, where no finger is inside a block; the source's -0.01 puts one 3 mm deep
   p.bases[1] = {{0, -0.20, 0.09}, right_copy ? Quat{0, 0, 1, 0} * turned : conjugate(turned)};
+  if (paper_pair) p.sides = kPaperPair;
+  p.armed_bases = right_copy ? kArmedCopies : kArmedBases;
+  p.facing = true;
   p.flying = true;
   p.transition_scale = p.orientation_scale = 0.1;
   p.folded = true;
@@ -38,7 +51,7 @@ HandControlConfig make_config(bool right_copy) {
   return p;
 }
 HandControlConfig config_from(const Options& o) {
-  return make_config(same_name(o.text("left_model"), "right_copy"));
+  return make_config(same_name(o.text("left_model"), "right_copy"), same_name(o.text("pair"), "paper"));
 }
 
 enum : int { kCost, kMoved, kContact, kFall, kNumCosts };
@@ -72,7 +85,13 @@ constexpr OptionSpec kRows[] = {
 void add_options(OptionTable& table) {
   table.add(kRows);
   add_tower_options(table);
-  add_prop_options(make_config(false), 250, 256, table);
+  OptionSpec pair = text_option(
+      "pair", "own", "own|paper",
+      "whose words of hand and arm are empty: the common ones (own), or Shadow on iiwa 7, which pushes, and "
+      "Allegro on xArm 6 (paper)");
+  pair.chooses = true;
+  table.add(pair);
+  add_prop_options(make_config(false, same_name(table.choice("pair"), "paper")), 250, 256, table);
 }
 
 HandScene make_scene_def(const JengaTower& tower, const Options& o) {

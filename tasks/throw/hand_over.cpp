@@ -9,11 +9,12 @@ namespace rdm {
 namespace {
 
 // The left base is half a turn about x: palm up again.
-const SafeThrowConfig kConfig = {{.hands = {.bases = {{{0, 0, 0.5}, {}}, {{0, -1, 0.5}, {0, 1, 0, 0}}}},
-                                  .place = {{0, -0.39, 0.54}, {0, -0.64, 0.54}},
-                                  .fall_height = 0.2},
-                                 &flat_throw_mean,
-                                 {}};
+const SafeThrowConfig kConfig = {
+    {.hands = {.bases = {{{0, 0, 0.5}, {}}, {{0, -1, 0.5}, {0, 1, 0, 0}}}, .facing = true},
+     .place = {{0, -0.39, 0.54}, {0, -0.64, 0.54}},
+     .fall_height = 0.2},
+    &flat_throw_mean,
+    {}};
 
 constexpr auto kFingerLearner = throw_learner("40"), kJointLearner = throw_learner("30");
 

@@ -21,11 +21,28 @@ constexpr OptionSpec kTable[] = {
     number_option("learning_rate", 1e-3, 1e-8, 1, "Adam step", true),
     text_option("points", "0,0,0", nullptr, "a long text", 200),
 };
+constexpr OptionSpec kRanges[] = {
+    drawable(number_option("mass", 0.1, 1e-3, 10, "kg")),
+    drawable(integer_option("delay", 0, 0, 16, "steps")),
+    open_option(drawable(number_option("noise.FIELD", 0, 0, 100, "deviation"))),
+    {"friction", OptionKind::kNumber, 1, 0, 10, "0.5..1.5", nullptr, "a default that is drawn", false, 63,
+     true},
+};
 
 Options made() {
   Options o;
   o.add_table(kTable, 7);
   return o;
+}
+Options drawn() {
+  Options o;
+  o.add_table(kRanges, 4);
+  return o;
+}
+std::string lines(const Options& o) {
+  std::string text(o.print_lines(nullptr, 0), '#');
+  o.print_lines(text.data(), text.size() + 1);
+  return text;
 }
 Code set(Options& o, const char* key, const char* text, double number = 0) {
   return guard([&] { o.set({key, text, number}, "task"); });
@@ -246,6 +263,122 @@ TEST(Options, LinesReadBackWhole) {
   std::string again(length + 1, '#');
   back.print_lines(again.data(), length + 1);
   EXPECT_EQ(again, text);
+}
+
+TEST(Options, ARangeIsTwoNumbersInOneText) {
+  Options o = drawn();
+  EXPECT_FALSE(o.range("mass").drawn());
+  EXPECT_EQ(o.range("mass").low, 0.1);
+  EXPECT_EQ(o.range("mass").high, 0.1);
+  struct Case {
+    const char* text;
+    double low, high;
+  };
+  const Case cases[] = {{"0.7..1.3", 0.7, 1.3},    {"1..3", 1, 3},         {"1e-2..1e0", 0.01, 1},
+                        {"0.5 .. +2", 0.5, 2},     {".25...5", 0.25, 0.5}, {"0.001..10", 0.001, 10},
+                        {"0.25..0.25", 0.25, 0.25}};
+  for (const Case& c : cases) {
+    EXPECT_EQ(set(o, "mass", c.text), Code::kOk) << c.text;
+    EXPECT_EQ(o.range("mass").low, c.low) << c.text;
+    EXPECT_EQ(o.range("mass").high, c.high) << c.text;
+    EXPECT_DOUBLE_EQ(o.number("mass"), (c.low + c.high) / 2) << c.text;
+  }
+  EXPECT_EQ(printed(o, 0), "0.25");
+  EXPECT_EQ(set(o, "delay", "2..5"), Code::kOk);
+  EXPECT_EQ(o.integer("delay"), 3);
+  EXPECT_EQ(set(o, "delay", nullptr, 4), Code::kOk);
+  EXPECT_FALSE(o.range("delay").drawn());
+  EXPECT_EQ(o.integer("delay"), 4);
+}
+
+TEST(Options, ARangeThatIsNoneIsAnError) {
+  Options o = drawn();
+  for (const char* bad : {"..", "1..", "..1", "1..x", "x..1", "0.1..0.2..0.3", "1. .2", "nan..1", "1..inf"})
+    EXPECT_EQ(set(o, "mass", bad), Code::kArgument) << bad;
+  EXPECT_EQ(set(o, "mass", "1.3..0.7"), Code::kRange);
+  EXPECT_STREQ(last_error(), "task option mass: the range 1.3..0.7 begins above its end");
+  EXPECT_EQ(set(o, "mass", "0..1"), Code::kRange);
+  EXPECT_STREQ(last_error(), "task option mass: 0 is outside [0.001, 10]");
+  EXPECT_EQ(set(o, "mass", "1..11"), Code::kRange);
+  EXPECT_EQ(set(o, "delay", "1..2.5"), Code::kRange);
+  EXPECT_EQ(o.range("mass").high, 0.1);
+  Options plain = made();
+  EXPECT_EQ(set(plain, "gamma", "0.1..0.2"), Code::kArgument);
+  EXPECT_STREQ(last_error(), "task option gamma: takes one number, no range");
+  EXPECT_EQ(set(plain, "reset_noise", "0..1"), Code::kArgument);
+}
+
+TEST(Options, RangesReadBack) {
+  Options o = drawn();
+  EXPECT_EQ(printed(o, 3), "0.5..1.5");
+  EXPECT_FALSE(o.given("friction"));
+  set(o, "mass", "0.0512345678901234..0.30000000000000004");
+  set(o, "delay", "1..3");
+  EXPECT_EQ(lines(o), "mass=0.0512345678901234..0.30000000000000004\ndelay=1..3\nfriction=0.5..1.5\n");
+  Options back = drawn();
+  back.set_lines(lines(o).c_str(), "task");
+  EXPECT_EQ(lines(back), lines(o));
+  EXPECT_EQ(back.range("mass").low, 0.0512345678901234);
+  EXPECT_EQ(back.range("mass").high, 0.1 + 0.2);
+  set(o, "mass", "-0x", 0);
+  o.set_default("mass", "0.2..0.4");  // it was given
+  EXPECT_EQ(o.range("mass").high, 0.1 + 0.2);
+  back.set_default("friction", "0.9..1.1");
+  EXPECT_EQ(drawn().range("friction").low, 0.5);
+}
+
+TEST(Options, ARangeIsDrawnFromItsStreamASingleNumberIsNot) {
+  Options o = drawn();
+  Stream stream(1, 0, Purpose::kTest);
+  EXPECT_EQ(o.range("mass").draw(stream), 0.1);
+  EXPECT_EQ(o.range("delay").draw_integer(stream), 0);
+  EXPECT_EQ(stream.counter(), 0u);
+  set(o, "mass", "0.7..1.3");
+  set(o, "delay", "2..4");
+  int32_t seen[5] = {};
+  double sum = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double x = o.range("mass").draw(stream);
+    ASSERT_TRUE(x >= 0.7 && x < 1.3);
+    sum += x;
+    const int32_t k = o.range("delay").draw_integer(stream);
+    ASSERT_TRUE(k >= 2 && k <= 4);
+    ++seen[k];
+  }
+  EXPECT_NEAR(sum / 3000, 1, 0.02);
+  for (int k = 2; k <= 4; ++k) EXPECT_NEAR(seen[k], 1000, 150) << k;
+}
+
+TEST(Options, AnOpenRowTakesAnyName) {
+  Options o = drawn();
+  EXPECT_EQ(set(o, "noise.tip", "0.1..0.2"), Code::kOk);
+  EXPECT_EQ(set(o, "Noise.right.*_tip_*", nullptr, 3), Code::kOk);
+  ASSERT_EQ(o.count(), 6);
+  EXPECT_STREQ(o.key(4), "noise.tip");
+  EXPECT_STREQ(o.open_name(4), "tip");
+  EXPECT_STREQ(o.open_name(5), "right.*_tip_*");
+  EXPECT_EQ(o.open_name(2), nullptr);
+  EXPECT_EQ(o.range(4).high, 0.2);
+  EXPECT_EQ(o.range(5).low, 3);
+  EXPECT_TRUE(o.given("noise.tip"));
+  EXPECT_EQ(set(o, "noise.tip", nullptr, 101), Code::kRange);
+  EXPECT_STREQ(last_error(), "task option noise.tip: 101 is outside [0, 100]");
+  EXPECT_EQ(set(o, "noise.", nullptr, 1), Code::kNotFound);
+  EXPECT_EQ(set(o, "noise", nullptr, 1), Code::kNotFound);
+  EXPECT_EQ(set(o, "noisy.tip", nullptr, 1), Code::kNotFound);
+  EXPECT_EQ(set(o, ("noise." + std::string(60, 'x')).c_str(), nullptr, 1), Code::kRange);
+  EXPECT_EQ(set(o, "noise.a\nb", nullptr, 1), Code::kArgument);
+  EXPECT_EQ(set(o, "noise.a=b", nullptr, 1), Code::kArgument);
+  EXPECT_EQ(o.count(), 6);
+}
+
+TEST(Options, OfOpenKeysTheLastLineIsTheLastRow) {
+  Options o = drawn();
+  o.set_lines("noise.a=1\nnoise.*=2\nnoise.a=3\nnoise.FIELD=0\nnoise.b=4", "task");
+  EXPECT_EQ(lines(o), "mass=0.1\ndelay=0\nfriction=0.5..1.5\nnoise.*=2\nnoise.a=3\nnoise.b=4\n");
+  Options back = drawn();
+  back.set_lines(lines(o).c_str(), "task");
+  EXPECT_EQ(lines(back), lines(o));
 }
 
 TEST(Options, DecimalPointInEveryLocale) {

@@ -177,7 +177,8 @@ TEST(Robots, AHandOnAnArmIsARobot) {
   ASSERT_EQ(rdm_robot_kinematics(both, q.data(), poses.data(), nullptr, tips.data(), nullptr), RDM_OK);
   ASSERT_EQ(rdm_robot_kinematics(0, q.data(), hand_poses.data(), nullptr, hand_tips.data(), nullptr), RDM_OK);
   for (size_t i = 0; i < own.fingers.size(); ++i) {
-    const double x = hand_tips[3 * i], y = hand_tips[3 * i + 1], z = hand_tips[3 * i + 2];
+    const double x = hand_tips[3 * i] - hand.def.mount_p[0], y = hand_tips[3 * i + 1] - hand.def.mount_p[1],
+                 z = hand_tips[3 * i + 2] - hand.def.mount_p[2];
     EXPECT_NEAR(tips[3 * i], std::cos(0.3) * x - std::sin(0.3) * y, 1e-12);
     EXPECT_NEAR(tips[3 * i + 1], std::sin(0.3) * x + std::cos(0.3) * y, 1e-12);
     EXPECT_NEAR(tips[3 * i + 2], 0.5 + 0.4 + 0.02 + z, 1e-12);

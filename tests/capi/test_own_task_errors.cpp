@@ -219,7 +219,7 @@ TEST(OwnTaskErrors, OfScenes) {
          s.num_points = 4;
          s.points = flat;
        })},
-      {RDM_RANGE, "robot: -1 is outside [0, 1)", with_robot([](auto& r) { r.robot = -1; })},
+      {RDM_RANGE, "robot: -1 is outside [0, 13)", with_robot([](auto& r) { r.robot = -1; })},
       {RDM_ARGUMENT, "robot.name is NULL", with_robot([](auto& r) { r.name = nullptr; })},
       {RDM_ARGUMENT, "scene: the name hand is taken", with_robot([](auto& r) { r.name = "hand"; })},
       {RDM_ARGUMENT, "robot.struct_size: 3 is less than 112", with_robot([](auto& r) { r.struct_size = 3; })},
@@ -309,7 +309,7 @@ TEST(OwnTaskErrors, OfCallsInAWorld) {
          q[2] = NAN;
          return rdm_world_set_joints(w, 0, q, nullptr, 24);
        }},
-      {RDM_RANGE, "first, n: joints 20 to 29 of 24",
+      {RDM_RANGE, "first, n: 10 joints from 20 on, of 24",
        [](auto* w) { return rdm_world_set_targets(w, 20, x, 10); }},
       {RDM_ARGUMENT, "targets[0] is not finite or beyond 1e+06",
        [](auto* w) { return rdm_world_set_targets(w, 0, nan, 1); }},

@@ -31,6 +31,8 @@ struct CountedHost {
 TEST(PoolMemory, IsExact) {
   register_toy();
   register_builtin_tasks();
+  constexpr const char* kDisturbed =
+      "noise.*position=0.01\nbias.*position=0.1..0.2\ndelay.*action=1..7\ndropout.*=0.1\naction_delay=3";
   for (const char* task : {"toy_push", "hand_over_safe_finger"})
     for (const int32_t envs : {1, 5})
       for (const int32_t threads : {0, 3}) {
@@ -40,6 +42,7 @@ TEST(PoolMemory, IsExact) {
         c.num_envs = envs;
         c.num_threads = threads;
         c.hooks = host.hooks();
+        c.settings = threads ? kDisturbed : nullptr;
         size_t ours = 0, engines = 0;
         Pool::memory(c, &ours, &engines);
         EXPECT_EQ(host.live, 0u);
@@ -60,6 +63,7 @@ TEST(PoolMemory, ARefusalAtAnyPlaceLosesNothing) {
   PoolConfig c;
   c.task = "toy_push";
   c.num_envs = 2;
+  c.settings = "noise.*=0.1\ndelay.ball.*=2";
   c.hooks = host.hooks();
   for (size_t at = 0;; ++at) {
     host.calls = 0;

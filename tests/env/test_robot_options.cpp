@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "base/error.hpp"
 #include "env/options/robot.hpp"
 #include "robot_rows.hpp"
@@ -75,6 +77,21 @@ TEST(RobotOptions, ScalesMultiplyTheSingleValues) {
 TEST(RobotOptions, DampingStaysAboveZero) {
   EXPECT_EQ(guard([] { robot_options({{"joint.FFJ2.kd", nullptr, 0}}); }), Code::kRange);
   EXPECT_EQ(guard([] { robot_options({{"joint.FFJ9.kd", nullptr, 1}}); }), Code::kNotFound);
+}
+
+TEST(RobotOptions, HaveRoomForTheNamesOfEveryRobot) {
+  for (const Robot* robot :
+       {&kAllegroHand, &kSchunkSvh, &kBarrettBh282, &kRobotiq3f, &kFrankaPanda, &kAbbIrb4600, &kKinovaJaco2,
+        &kKukaIiwa7, &kXarm6, &kAbbCrb15000, &kUr5e, &kUr10e}) {
+    OptionTable table;
+    add_robot_rows(*robot, table);
+    EXPECT_EQ(table.count(), robot->links.count * 6) << robot->name;
+    Options o;
+    o.add_table(table.rows(), table.count());
+    const RobotLink& last = robot->links[robot->links.count - 1];
+    const std::string key = std::string("joint.") + last.joint + ".armature";
+    EXPECT_EQ(o.number(key.c_str()), last.armature) << key;
+  }
 }
 
 }  // namespace

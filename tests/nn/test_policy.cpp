@@ -219,6 +219,66 @@ TEST(Policy, OnlyDeviationsOfTheStateNeedTheNewVersion) {
   EXPECT_EQ(code_of(Made(make_shape(3, {2}, 3), 5, true).bytes()), Code::kFormat);
 }
 
+// Of a row of 9 entries the policy sees 1, 2, 3, 5 and 8.
+TEST(Policy, APartOfTheRowNeedsTheNewestVersion) {
+  constexpr int32_t kColumns[] = {1, 2, 3, 5, 8};
+  for (const bool state : {false, true}) {
+    Made made(make_shape(5, {4}, 2), 5, state), plain(make_shape(5, {4}, 2), 5, state);
+    made.view.columns = kColumns;
+    made.view.row_dim = 9;
+    const std::vector<float> row = random_floats(9, 11);
+    made.view.example_obs = row.data();
+    const Bytes b = made.bytes();
+    EXPECT_EQ(b[8], 3);
+    const Owned p = read(b);
+    ASSERT_EQ(p->view().obs_dim(), 9);
+    EXPECT_EQ(std::memcmp(p->view().columns, kColumns, sizeof kColumns), 0);
+    EXPECT_EQ(std::memcmp(p->view().example_obs, row.data(), 36), 0);
+    Writer again(nullptr, 0);
+    write_policy(again, p->view());
+    EXPECT_EQ(again.size(), b.size());
+    // as the policy that gets these entries alone
+    const Owned narrow = read(plain.bytes());
+    const std::vector<float> rows = random_floats(300 * 9, 12);
+    std::vector<float> seen;
+    for (size_t r = 0; r < 300; ++r)
+      for (const int32_t c : kColumns) seen.push_back(rows[r * 9 + static_cast<size_t>(c)]);
+    EXPECT_EQ(act(*p, rows.data(), 300, nullptr), act(*narrow, seen.data(), 300, nullptr));
+  }
+}
+
+TEST(Policy, RangesOfEntriesThatAreNone) {
+  constexpr int32_t kColumns[] = {1, 2, 3, 5, 8};
+  Made made(make_shape(5, {4}, 2));
+  made.view.columns = kColumns;
+  made.view.row_dim = 9;
+  made.obs = random_floats(9, 11);
+  made.view.example_obs = made.obs.data();
+  const Bytes b = made.bytes();
+  // entries of a row, ranges, then begin and end of each: [1, 4) [5, 6) [8, 9)
+  struct Case {
+    int at;
+    int32_t value;
+  };
+  for (const Case& c :
+       {Case{0, 8}, {0, 5}, {0, 0}, {0, -1}, {0, 65537}, {1, 0}, {1, -1}, {1, 2}, {1, 4},  {1, 6}, {2, -1},
+        {2, 0},     {2, 4}, {3, 1}, {3, 3},  {4, 4},     {4, 6}, {4, 2},  {5, 8}, {7, 10}, {7, 8}}) {
+    Bytes bad = b;
+    size_t size = 0;
+    unsigned char* at = section(bad, "COLS", &size);
+    ASSERT_EQ(size, 8u * 4);
+    put(at + 4 * c.at, c.value);
+    seal(bad);
+    EXPECT_EQ(code_of(bad), Code::kFormat) << c.at << ' ' << c.value;
+  }
+  for (size_t i = 0; i < b.size() * 8; ++i) {
+    Bytes flipped = b;
+    flipped[i / 8] = static_cast<unsigned char>(flipped[i / 8] ^ (1u << (i % 8)));
+    const Code code = code_of(flipped);
+    EXPECT_TRUE(code == Code::kFormat || (code == Code::kVersion && i / 32 == 2)) << "bit " << i;
+  }
+}
+
 TEST(Policy, ARowDoesNotDependOnItsBatch) {
   for_each_isa([](const char* isa) {
     SCOPED_TRACE(isa);

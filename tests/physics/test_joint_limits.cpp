@@ -49,7 +49,7 @@ struct TwoJoints {
   void set(const SolverDef& solver) {
     batch.h = solver.h;
     batch.inv_h = 1 / solver.h;
-    batch.limit_stiffness = solver.limit_stiffness;
+    for (LinkModel<L>& m : model) m.limit_stiffness = solver.limit_stiffness;
     batch.spring_only = solver.spring_only_effort;
   }
 
@@ -58,7 +58,7 @@ struct TwoJoints {
   PersistentLink<double> state[2] = {};
   LinkWork<double> work[2] = {};
   CoordWork<double> coord[2] = {};
-  double mass_matrix[2] = {1, 1}, factor[2] = {};
+  double mass_matrix[2] = {1, 1}, factor[2] = {}, feedforward[2] = {};
   TreeBatch<L> batch = {};
 };
 
@@ -94,11 +94,14 @@ TEST(JointLimits, DriveLawIsThatOfTheMotorRow) {
       two.coord[i].qd = qd[i];
       two.mass_matrix[i] = inertia;
     }
+    two.feedforward[1] = random.uniform(-2, 2);
+    two.batch.feedforward = k % 2 ? two.feedforward : nullptr;
     joint_drives(two.batch);
     const double clamped = target < joint.lower ? joint.lower : target > joint.upper ? joint.upper : target;
     const double wanted =
         joint.coupled_to < 0 ? clamped : coupled_target(joint, q[1], q[0] + solver.h * qd[0]);
-    const MotorRow row = motor_row(joint, solver, q[1], qd[1], wanted);
+    const double extra = two.batch.feedforward ? two.feedforward[1] : 0;
+    const MotorRow row = motor_row(joint, solver, q[1], qd[1], wanted, extra);
     const LinkWork<double>& drive = two.work[1];
     ASSERT_NEAR(drive.gain, row.gain, 1e-13 * (1 + row.gain)) << k;
     ASSERT_NEAR(drive.spring, row.gain * row.velocity, 1e-12 * (1 + std::fabs(drive.spring))) << k;

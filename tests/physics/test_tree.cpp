@@ -131,6 +131,7 @@ TEST(Tree, EveryDifferenceOfBuildMakesATreeOfItsOwn) {
   EXPECT_EQ(trees_with([](ArticulationDef& a) { a.links[3].joint.kp *= 2; }), 1u);
   EXPECT_EQ(trees_with([](ArticulationDef& a) { a.free_base = true; }), 2u);
   EXPECT_EQ(trees_with([](ArticulationDef& a) { a.links[4].sensor = true; }), 2u);
+  EXPECT_EQ(trees_with([](ArticulationDef& a) { a.links[4].weightless = true; }), 2u);
   EXPECT_EQ(trees_with([](ArticulationDef& a) { a.links[5].joint.coupled_to = -1; }), 2u);
   EXPECT_EQ(trees_with([](ArticulationDef& a) { a.links[7].parent = 2; }), 2u);
   EXPECT_EQ(trees_with([](ArticulationDef& a) { a.links[7].joint.kind = JointKind::kPrismatic; }), 2u);
@@ -183,6 +184,24 @@ TEST(Tree, ShortcutsHoldForAllMembersOrNone) {
   EXPECT_FALSE(link(2).massless);
   def.articulations[1].links[2].inertia = {};
   EXPECT_TRUE(link(2).massless);
+}
+
+TEST(Tree, HeavyJointsHaveStifferEnds) {
+  SceneDef def = test::two_hands_def();
+  for (const MemberLink& link : make_trees(make_scene(def))[0].members[0].links)
+    EXPECT_EQ(link.limit_stiffness, 100);
+  def = chain(8);
+  const auto links = make_trees(make_scene(def))[0].members[0].links;
+  // all stretched out, the moment about the first axis
+  double moment = 0;
+  for (int i = 0; i < 8; ++i) moment += 0.1 * 0.01 * i * i;
+  const double h2 = def.solver.h * def.solver.h;
+  EXPECT_GT(links[0].limit_stiffness, 10 * moment / h2);
+  EXPECT_LT(links[0].limit_stiffness, 20 * moment / h2);
+  for (size_t i = 1; i < 8; ++i) EXPECT_LE(links[i].limit_stiffness, links[i - 1].limit_stiffness);
+  EXPECT_EQ(links[7].limit_stiffness, 100);
+  def.solver.limit_stiffness = 0;
+  EXPECT_EQ(make_trees(make_scene(def))[0].members[0].links[0].limit_stiffness, 0);
 }
 
 TEST(Tree, ALinkNeedsInertiaSomewhereBehindIt) {

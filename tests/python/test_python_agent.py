@@ -50,6 +50,42 @@ class Pendulum:
         return reward, np.abs(torque) > 1.5, self.age == 100
 
 
+class PartsOfARow(unittest.TestCase):
+    def test_an_actor_that_sees_a_part(self):
+        with redman.Pool("grasp", 4) as pool:
+            pool.reset()
+            agent = redman.Agent(pool, options={"horizon": 8, "actor_obs": "proprioception", "critic_obs": "*"})
+            agent.rollout(pool)
+            policy = agent.policy()
+            seen = [i for name, f in pool.fields.items() if name.startswith("right.")
+                    and not name.endswith(("tip_force", "tip_torque")) for i in range(f.offset, f.offset + f.count)]
+            self.assertEqual(policy.columns.tolist(), seen)
+            obs = np.array(pool.obs)
+            shown = policy.act(obs)
+            obs[:, [i for i in range(pool.obs_dim) if i not in seen]] += 1
+            np.testing.assert_array_equal(policy.act(obs), shown)
+            twin = pickle.loads(pickle.dumps(agent))
+            self.assertEqual(bytes(twin.policy()), bytes(policy))
+
+    def test_rows_of_ones_own(self):
+        fields = {"angle": (0, 2), "speed": (2, 1)}
+        agent = redman.Agent(obs_dim=3, action_dim=1, num_envs=4, fields=fields, options={"actor_obs": "speed"})
+        self.assertEqual(agent.policy().columns.tolist(), [2])
+        with self.assertRaises(redman.NotFoundError):
+            redman.Agent(obs_dim=3, action_dim=1, num_envs=4, fields=fields, options={"actor_obs": "sped"})
+
+    def test_costs_that_are_magnitudes(self):
+        said = {}
+        for signal in ("flag", "raw"):
+            with redman.Pool("ball_circle", 4, options={"max_steps": 20}) as pool:
+                pool.reset()
+                agent = redman.Agent(pool, options={"horizon": 40, "cost_signal": signal}, cost_limits=3)
+                epoch = agent.rollout(pool)
+                said[signal] = (epoch.cost_signal, epoch.cost[0])
+        self.assertEqual([said[s][0] for s in ("flag", "raw")], [0, 1])
+        self.assertGreater(said["raw"][1], said["flag"][1])
+
+
 class OwnWorld(unittest.TestCase):
     def test_a_pendulum_is_learned(self):
         world = Pendulum()

@@ -57,7 +57,7 @@ TEST(Robot, HandsNameTheirFingers) {
         if (role < 0) continue;
         EXPECT_GE(role, f.first) << f.name;
         EXPECT_LE(role, table.tips[i].link) << f.name;
-        EXPECT_GE(table.action_of(role), 0) << f.name;
+        EXPECT_GE(table.leading_action(role), 0) << f.name;
       }
       // what stands between a finger's first row and its tip belongs to it
       for (int32_t link = table.tips[i].link; link > f.first; --link)

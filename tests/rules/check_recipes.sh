@@ -35,7 +35,7 @@ recipe() {
 }
 recipe tasks/README.md "A task" tasks/closed_form fenced_walk task.cpp kFencedWalk TaskInfo
 recipe algos/README.md "An algorithm" algos/lagrange crpo algorithm.cpp kCrpo AlgoRow
-recipe lib/README.md "A robot" lib/robot one_finger robot.cpp kOneFinger Robot
+recipe lib/README.md "A robot" lib/robot/tables one_finger robot.cpp kOneFinger Robot
 [ $status -eq 0 ] || exit 1
 
 objects=

@@ -46,6 +46,21 @@ TEST(SceneShapes, FollowsTheWorld) {
   EXPECT_LT(moved, static_cast<int>(before.size()));
 }
 
+TEST(SceneShapes, AreOfTheSizeThatTheWorldGivesThem) {
+  SceneDef def = test::two_hands_def();
+  def.adjustable = true;
+  test::Simulation sim(def, EngineKind::kArticulated);
+  const std::vector<RenderShape> before = gather(*sim);
+  Dynamics& factors = sim->edit_dynamics();
+  factors.bodies[0].size = 1.5;
+  sim->set_dynamics(factors);
+  const std::vector<RenderShape> after = gather(*sim);
+  for (size_t i = 0; i < before.size(); ++i) {
+    const double factor = sim.scene().shapes[i].carrier == Carrier::kBody ? 1.5 : 1;
+    EXPECT_EQ(norm(after[i].size - factor * before[i].size), 0) << i;
+  }
+}
+
 // What a viewer of `top` must see: two hands, each the other's mirror image, fingers towards each other,
 // thumbs on the same side, and the ball over the right one.
 TEST(SceneShapes, HandsLookLikeHandsFromAbove) {

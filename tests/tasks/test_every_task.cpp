@@ -20,7 +20,7 @@ std::vector<Case> all_cases() {
   std::vector<Case> out;
   for (int32_t i = 0; i < task_count(); ++i) {
     int32_t count = 0;
-    const OptionSpec* specs = task_at(i).options(&count);
+    const OptionSpec* specs = task_at(i).options(&count, nullptr);
     if (std::none_of(specs, specs + count, [](const OptionSpec& o) { return same_name(o.key, "engine"); }))
       continue;
     for (const char* engine : {"ode", "articulated"}) out.push_back({task_at(i).name, engine});

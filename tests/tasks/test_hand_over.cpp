@@ -260,7 +260,7 @@ TEST_F(HandOver, AllocatesNothing) {
 
 TEST_F(HandOver, EveryObjectRuns) {
   int32_t count = 0;
-  const OptionSpec* specs = task_at(task_find(kFinger)).options(&count);
+  const OptionSpec* specs = task_at(task_find(kFinger)).options(&count, nullptr);
   const char* choices = nullptr;
   for (int32_t i = 0; i < count; ++i)
     if (same_name(specs[i].key, "object")) choices = specs[i].choices;

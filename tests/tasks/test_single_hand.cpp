@@ -72,7 +72,7 @@ TEST_F(SingleHandTask, OnlyTimeEndsAQuietEpisode) {
 TEST_F(SingleHandTask, LeftHandsHaveNoOptions) {
   for (const char* task : kTasks) {
     int32_t count = 0;
-    const OptionSpec* specs = task_at(task_find(task)).options(&count);
+    const OptionSpec* specs = task_at(task_find(task)).options(&count, nullptr);
     for (int32_t i = 0; i < count; ++i) {
       EXPECT_STRNE(specs[i].key, "left_model");
       EXPECT_STRNE(specs[i].key, "friction.hand_hand");

@@ -48,7 +48,7 @@ class TaskContract : public testing::TestWithParam<std::string> {
   Options options() const {
     Options o;
     int32_t count = 0;
-    const OptionSpec* specs = info().options(&count);
+    const OptionSpec* specs = info().options(&count, nullptr);
     o.add_table(specs, count);
     return o;
   }

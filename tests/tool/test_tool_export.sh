@@ -30,10 +30,11 @@ policy elu --set hidden=128,64,32 --set activation=elu
 policy relu --set hidden=32 --set activation=relu
 policy bare --set hidden=16,16 --set normalize_obs=false
 policy state --set hidden=16,16 --set std_mode=state
+policy part --set hidden=16,16 --set 'actor_obs=proprioception,object.*' --set 'critic_obs=!goal.*'
 
 command -v python3 > /dev/null && python3 - "$dir" << 'EOF' || failed=1
 import json, math, struct, sys
-for name in "tanh elu relu bare state".split():
+for name in "tanh elu relu bare state part".split():
     data = open(f"{sys.argv[1]}/{name}.safetensors", "rb").read()
     (n,) = struct.unpack("<Q", data[:8])
     head = json.loads(data[8:8 + n])

@@ -82,8 +82,9 @@ check elu --set hidden=128,64,32 --set activation=elu
 check relu --set hidden=30 --set activation=relu
 check bare --set hidden=16,17 --set normalize_obs=false
 check state --set hidden=16,16 --set std_mode=state
+check part --set hidden=16,16 --set 'actor_obs=proprioception,object.*'
 check ball --task ball_run --set hidden=16,16
-[ $checked -eq 6 ] || say "$checked policies"
+[ $checked -eq 7 ] || say "$checked policies"
 
 # several policies in one program, by one file or by several
 printf '#include "%s"\n#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' tanh.c elu_8.c elu_8.c > both.c

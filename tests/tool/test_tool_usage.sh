@@ -33,6 +33,10 @@ expect 2 'nearest is hidden' train --set hiden=3
 expect 2 'has option nonsense_of_all$' train --set nonsense_of_all=3
 expect 2 'not key=value' train --set hidden
 expect 2 'outside' train --set clip=-1
+expect 0 '' rollout --task grasp --policy zero --set max_steps=2 --set 'noise.*_tip_*=0.01..0.02' --set action_delay=1..3
+expect 2 'nearest is object.position' rollout --task grasp --policy zero --set noise.object.positon=0.1
+expect 2 'takes one number, no range' rollout --task grasp --policy zero --set frequency=30..60
+expect 2 'names no field of the observation; nearest is object.spin' train --task grasp --set actor_obs=object.spn
 expect 2 'not a number' train --cost-limit many
 expect 2 'nearest is drop' train --cost-limit dropp=1
 expect 2 'envs' rollout --envs 0
@@ -88,6 +92,15 @@ json 'file runs ranking feasible' report run --episodes 2 --strip 0 --html repor
 for file in a.png b.png curve.svg c.glb report.html run/config.json run/progress.csv run/policy.rdm run/checkpoint.rdm; do
   [ -s "$file" ] || { echo "$file was not written"; failed=1; }
 done
+
+# A run that learned magnitudes is judged by magnitudes, wherever it is met again.
+signal() { grep -q "\"cost_signal\":\"$1\"" out || { echo "costs that are not $1: $(cat out)"; failed=1; }; }
+json cost train --task ball_circle --envs 4 --steps 400 --set max_steps=20 --set cost_signal=raw --out raw
+signal raw
+json cost_mean eval --policy raw --episodes 3
+signal raw
+json cost_mean eval --task ball_circle --policy zero --episodes 3
+signal flag
 
 # Failures keep the promise of --json too, and a folder that holds a run is not written over.
 "$tool" train --task nothing --json > out 2> err

@@ -249,13 +249,13 @@ class Option(Record):
     """The values of rdm_option."""
 
     key: str  # case is ignored and '-' equals '_'
-    text: str | None  # value as one line of text ("0.5", "egg"); NULL: number is it
+    text: str | None  # value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number is it
     number: float  # value when text is NULL
 
 
 class rdm_option(Structure):
     """key: case is ignored and '-' equals '_'
-    text: value as one line of text ("0.5", "egg"); NULL: number is it
+    text: value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number is it
     number: value when text is NULL
     """
 
@@ -272,11 +272,11 @@ class rdm_option(Structure):
 class OptionInfo(Record):
     """The values of rdm_option_info."""
 
-    key: str  # static
+    key: str  # static; its last word FIELD: any name of a field, or a pattern with '*'
     help: str  # one line, with the unit
-    text: str | None  # default of a text option, else NULL
-    choices: str | None  # allowed words "a|b|c", NULL: any text, or not a text
-    number: float  # default of number, integer, flag
+    text: str | None  # default of a text option, or of a number that is a range, else NULL
+    choices: str | None  # text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range "0.7..1.3" too, which each world draws from at a reset; else NULL
+    number: float  # default of number, integer, flag; of a range its middle
     low: float  # inclusive bounds
     high: float  # inclusive bounds
     kind: int  # RDM_NUMBER, RDM_INTEGER, RDM_FLAG, RDM_TEXT
@@ -284,11 +284,12 @@ class OptionInfo(Record):
 
 
 class rdm_option_info(Structure):
-    """key: static
+    """key: static; its last word FIELD: any name of a field, or a pattern with '*'
     help: one line, with the unit
-    text: default of a text option, else NULL
-    choices: allowed words "a|b|c", NULL: any text, or not a text
-    number: default of number, integer, flag
+    text: default of a text option, or of a number that is a range, else NULL
+    choices: text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range "0.7..1.3" too,
+        which each world draws from at a reset; else NULL
+    number: default of number, integer, flag; of a range its middle
     low: inclusive bounds
     high: inclusive bounds
     kind: RDM_NUMBER, RDM_INTEGER, RDM_FLAG, RDM_TEXT
@@ -887,6 +888,9 @@ class rdm_agent_config(Structure):
     error: [error_size] the text of a failing call that takes this config; NULL
     error_size: bytes, terminator included; what is longer is cut
     reserved2: 0
+    fields: [num_fields] parts of a row of obs, for actor_obs and critic_obs, copied; NULL: none
+    num_fields: count, 0..4096, default 0
+    reserved3: 0
     """
 
     struct_size: int
@@ -912,6 +916,9 @@ class rdm_agent_config(Structure):
     error: int | None
     error_size: int
     reserved2: int
+    fields: Any
+    num_fields: int
+    reserved3: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("obs_dim", c_int32),
@@ -936,6 +943,9 @@ class rdm_agent_config(Structure):
         ("error", c_void_p),
         ("error_size", c_int32),
         ("reserved2", c_int32),
+        ("fields", POINTER(rdm_field)),
+        ("num_fields", c_int32),
+        ("reserved3", c_int32),
     ]
 
 
@@ -983,7 +993,7 @@ class Epoch(Record):
     env_steps: int  # control steps so far, all environments
     episodes: int  # finished so far
     ret: float  # sum of rewards of an episode
-    cost: tuple[float, ...]  # sum of each cost column of an episode
+    cost: tuple[float, ...]  # sum of each cost column of an episode, of what cost_signal says
     cost_per_step: float  # column 0, per control step
     length: float  # control steps of an episode
     fall_rate: float  # share of episodes that terminated
@@ -1000,6 +1010,7 @@ class Epoch(Record):
     value_reward: float  # mean prediction over the batch
     value_cost: float  # mean prediction over the batch
     passes: int  # over the data, fewer after an early stop
+    cost_signal: int  # costs are sums of 0: costs, 1: their magnitudes (option cost_signal=raw)
 
 
 class rdm_epoch(Structure):
@@ -1008,7 +1019,7 @@ class rdm_epoch(Structure):
     env_steps: control steps so far, all environments
     episodes: finished so far
     ret: sum of rewards of an episode
-    cost: sum of each cost column of an episode
+    cost: sum of each cost column of an episode, of what cost_signal says
     cost_per_step: column 0, per control step
     length: control steps of an episode
     fall_rate: share of episodes that terminated
@@ -1028,6 +1039,8 @@ class rdm_epoch(Structure):
     value_cost: mean prediction over the batch
     passes: over the data, fewer after an early stop
     reserved: 0
+    cost_signal: costs are sums of 0: costs, 1: their magnitudes (option cost_signal=raw)
+    reserved2: 0
     """
 
     struct_size: int
@@ -1053,6 +1066,8 @@ class rdm_epoch(Structure):
     value_cost: float
     passes: int
     reserved: int
+    cost_signal: int
+    reserved2: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("epoch", c_int32),
@@ -1077,6 +1092,8 @@ class rdm_epoch(Structure):
         ("value_cost", c_double),
         ("passes", c_int32),
         ("reserved", c_int32),
+        ("cost_signal", c_int32),
+        ("reserved2", c_int32),
     ]
 
 
@@ -2325,8 +2342,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_option": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
-        """Option i of the task as this pool has it: key (static) and the value as text [RDM_TEXT_SIZE], which reads back
-        exactly. RANGE for a text that is longer: rdm_pool_settings has it.
+        """Option i of the task as this pool has it: key and the value as text [RDM_TEXT_SIZE], which reads back exactly. RANGE
+        for a text that is longer: rdm_pool_settings has it. Behind the task's num_options come keys with a FIELD that were
+        set, in order; RANGE ends them.
         """),
     "rdm_pool_settings": Function(
         c_int32, {"p": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
@@ -2417,8 +2435,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_config_for_pool": Function(
         c_int32, {"c": POINTER(rdm_agent_config), "p": c_void_p},
         {}, False,
-        """Sets dims, num_envs, task, layout_hash, control_dt, max_steps, defaults, initial_mean and cost_limits from a pool.
-        Pointers are borrowed from the pool.
+        """Sets dims, num_envs, task, layout_hash, control_dt, max_steps, defaults, initial_mean, cost_limits and fields from a
+        pool. Pointers are borrowed from the pool.
         """),
     "rdm_agent_memory": Function(
         c_int32, {"c": POINTER(rdm_agent_config), "bytes": c_void_p},
@@ -2459,7 +2477,8 @@ FUNCTIONS: dict[str, Function] = {
         """One epoch natively: act, step (action_repeat control steps), record until the horizon is full, then update. The
         pool must have been reset and must not have autoreset off; dims and num_envs must agree. A pool that repeats
         actions itself takes as many steps at a time: the agent's action_repeat must be a multiple of the pool's, as the
-        defaults are that rdm_agent_config_for_pool sets.
+        defaults are that rdm_agent_config_for_pool sets. With the agent's option cost_signal=raw the costs are sums over
+        control steps of cost_raw where that is above 0.
         """),
     "rdm_agent_cancel": Function(
         None, {"a": c_void_p},
@@ -2549,7 +2568,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},
         {}, False,
         """"actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
-        "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list.
+        "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows of obs_dim: a
+        weight of an entry that the policy does not see is 0.
         """),
     "rdm_policy_tensor_read": Function(
         c_int32, {"p": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
@@ -2563,6 +2583,12 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "env": c_int32, "shape": c_int32, "force": c_void_p},
         {"force": Rows("float32", ("3",))}, True,
         """Pushes a shape's carrier during the next step: force [3] at its centre of mass, N, world axes."""),
+    "rdm_policy_columns": Function(
+        c_int32, {"p": c_void_p, "columns": c_void_p, "capacity": c_int32, "count": c_void_p},
+        {"columns": Rows("int32", ("capacity",))}, True,
+        """Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up to capacity of them
+        to columns [capacity]; *count is how many there are.
+        """),
     "rdm_robot_def_init": Function(
         c_int32, {"def": POINTER(rdm_robot_def), "size": c_size_t},
         {}, True,
@@ -2645,6 +2671,10 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"scene": c_void_p, "key": c_char_p, "text": POINTER(c_char_p)},
         {}, True,
         """Value of the pool's option `key`: *value of a number, integer or flag, *text of a text. NOT_FOUND, ARGUMENT."""),
+    "rdm_scene_range": Function(
+        c_int32, {"scene": c_void_p, "key": c_char_p, "low": c_void_p, "high": c_void_p},
+        {}, True,
+        """Bounds *low and *high of a number or integer whose row takes a range (choices "a..b"), for reset to draw from; equal: a number."""),
     "rdm_scene_add_material": Function(
         c_int32, {"scene": c_void_p, "name": c_char_p},
         {}, True,
@@ -2657,6 +2687,10 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"scene": c_void_p, "gravity": c_void_p},
         {"gravity": Rows("float64", ("3",))}, True,
         """m/s2"""),
+    "rdm_scene_set_feedforward": Function(
+        c_int32, {"scene": c_void_p},
+        {}, True,
+        """worlds take rdm_world_set_feedforward"""),
     "rdm_scene_add_robot": Function(
         c_int32, {"scene": c_void_p, "robot": POINTER(rdm_scene_robot), "index": c_void_p},
         {}, True,
@@ -2758,6 +2792,18 @@ FUNCTIONS: dict[str, Function] = {
         {"commands": Rows("float64", ("n",))}, True,
         """What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n] in [-1, 1] of all n commands of a
         robot, which become targets as its description says: ranges or curves, no faster than its joints' velocity.
+        """),
+    "rdm_world_set_feedforward": Function(
+        c_int32, {"world": c_void_p, "first": c_int32, "efforts": c_void_p, "n": c_int32},
+        {"efforts": Rows("float64", ("n",))}, True,
+        """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again; STATE unless the scene has
+        them. rdm_world_gravity gives those that hold a robot of n joints against gravity where it is.
+        """),
+    "rdm_world_gravity": Function(
+        c_int32, {"world": c_void_p, "robot": c_int32, "efforts": c_void_p, "n": c_int32},
+        {"efforts": Rows("float64", ("n",))}, True,
+        """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again; STATE unless the scene has
+        them. rdm_world_gravity gives those that hold a robot of n joints against gravity where it is.
         """),
     "rdm_world_push_body": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "force": c_void_p, "torque": c_void_p},

@@ -56,14 +56,16 @@ class Agent:
         epoch = agent.update(obs)                       # after option horizon such decisions
 
     cost_limits: of column 0, of each column (None: no limit), or by the names of the pool's costs. A pool brings its
-    dimensions, its task's defaults for learners, start pose and limits. One thread at a time; others wait.
+    dimensions, its task's defaults for learners, start pose and limits; fields, {name: (offset, count)}, name the parts
+    of other rows for actor_obs and critic_obs. One thread at a time; others wait.
     """
 
     def __init__(self, pool: Optional[Pool] = None, algo: str = "ppo_lag", seed: int = 0, threads: int = 0,
                  options: Optional[Options] = None, cost_limits: CostLimits = None, *,
                  obs_dim: Optional[int] = None, action_dim: Optional[int] = None, num_envs: int = 1,
                  cost_dim: int = 1, task: str = "", control_dt: float = 0.0, max_steps: int = 0,
-                 layout_hash: int = 0, initial_mean: Any = None) -> None:
+                 layout_hash: int = 0, initial_mean: Any = None,
+                 fields: Optional[Mapping[str, tuple[int, int]]] = None) -> None:
         own: dict[str, Any] = {"algo": algo, "seed": seed, "num_threads": threads, "options": dict(options or {})}
         if pool is not None:
             if obs_dim is not None or action_dim is not None:
@@ -75,7 +77,7 @@ class Agent:
                 raise ArgumentError("agent: give a pool, or obs_dim and action_dim")
             own.update(obs_dim=obs_dim, action_dim=action_dim, num_envs=num_envs, cost_dim=cost_dim, task=task,
                        control_dt=float(control_dt), max_steps=max_steps, layout_hash=layout_hash, initial_mean=None,
-                       defaults={}, cost_limits=None)
+                       defaults={}, cost_limits=None, fields=dict(fields or {}))
             columns = [f"cost {k}" for k in range(cost_dim)]
         if initial_mean is not None:
             own["initial_mean"] = np.broadcast_to(np.asarray(initial_mean, np.float32), own["action_dim"]).copy()
@@ -328,7 +330,8 @@ def _config_of(pool: Pool) -> dict[str, Any]:
     return {"obs_dim": config.obs_dim, "action_dim": config.action_dim, "cost_dim": config.cost_dim,
             "num_envs": config.num_envs, "task": text(config.task), "layout_hash": config.layout_hash,
             "control_dt": config.control_dt, "max_steps": config.max_steps, "defaults": defaults,
-            "initial_mean": pointed.get("initial_mean"), "cost_limits": pointed.get("cost_limits")}
+            "initial_mean": pointed.get("initial_mean"), "cost_limits": pointed.get("cost_limits"),
+            "fields": {text(f.name): (f.offset, f.count) for f in config.fields[:config.num_fields]}}
 
 
 def _limits(wanted: CostLimits, usual: Optional[Array], columns: Sequence[str]) -> Optional[list[float]]:
@@ -372,4 +375,8 @@ def _created(own: Mapping[str, Any]) -> Handle:
               for name, rows in _abi.ROWS["rdm_agent_config"].items()}
     for name, array in arrays.items():
         setattr(config, name, address(array))
+    fields = (_abi.rdm_field * len(own["fields"]))()
+    for field, (name, (offset, count)) in zip(fields, own["fields"].items()):
+        field.name, field.offset, field.count = encoded(name), offset, count
+    config.fields, config.num_fields = fields, len(fields)
     return Handle(lib.rdm_agent_create, lib.rdm_agent_destroy, byref(config))

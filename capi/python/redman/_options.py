@@ -1,4 +1,4 @@
-"""Options as a dict: {"object": "egg", "object_mass": 0.05}."""
+"""Options as a dict: {"object": "egg", "object_mass": 0.05, "friction": (0.7, 1.3)}."""
 from __future__ import annotations
 
 import ctypes
@@ -11,15 +11,18 @@ from ._error import ArgumentError
 from ._library import check, encoded, text
 
 Value = Union[str, float, int, bool]
-Options = Mapping[str, Value]
+# A pair is a range, from which each world draws at a reset; it is read back as a text.
+Options = Mapping[str, Union[Value, tuple[float, float]]]
 
 
-def shown(key: str, value: Value) -> str:
-    """A value as the library reads it, exact: true, 0.1, 16, egg."""
+def shown(key: str, value: Union[Value, tuple[float, float]]) -> str:
+    """A value as the library reads it, exact: true, 0.1, 16, egg, 0.7..1.3."""
     if isinstance(value, str):
         return value
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, tuple):
+        return "..".join(shown(key, bound) for bound in value)
     try:
         number = float(value)
     except (TypeError, ValueError):
@@ -53,7 +56,12 @@ def read_settings(call: Callable[..., int], handle: Any, kinds: Mapping[str, int
     raw = ctypes.create_string_buffer(size.value + 1)
     check(call(handle, raw, len(raw), byref(size)))
     pairs = (line.split("=", 1) for line in text(raw.value).split("\n") if line)
-    return {key: value_of(kinds[key], value) for key, value in pairs}
+    return {key: value_of(kind_of(key, kinds), value) for key, value in pairs}
+
+
+def kind_of(key: str, kinds: Mapping[str, int]) -> int:
+    """What an option's value is; noise.right.tip_force is one of noise.FIELD."""
+    return kinds[key] if key in kinds else kinds[key.split(".", 1)[0] + ".FIELD"]
 
 
 def value_of(kind: int, said: str) -> Value:
@@ -62,6 +70,8 @@ def value_of(kind: int, said: str) -> Value:
         return said
     if kind == OptionKind.FLAG:
         return said == "true"
+    if ".." in said:
+        return said
     return int(float(said)) if kind == OptionKind.INTEGER else float(said)
 
 
@@ -71,6 +81,8 @@ def default_of(info: _abi.rdm_option_info) -> Value:
         return text(info.text)
     if info.kind == OptionKind.FLAG:
         return bool(info.number)
+    if info.text is not None:
+        return value_of(info.kind, text(info.text))
     return int(info.number) if info.kind == OptionKind.INTEGER else info.number
 
 

@@ -70,27 +70,32 @@ def limits_of(pool: Pool, wanted: Optional[Sequence[Optional[float]]]) -> list[O
     return [None if cost.limit < 0 else cost.limit for cost in pool.costs.values()]
 
 
-def play(pool: Pool, player: Player, episodes: int) -> list[dict[str, Any]]:
-    """Each episode's return, costs, length, fall and success; the pool's autoreset is off, and it was just reset."""
+def play(pool: Pool, player: Player, episodes: int, magnitudes: bool = False) -> list[dict[str, Any]]:
+    """Each episode's return, costs, length, fall and success; the pool's autoreset is off, and it was just reset. With
+    magnitudes costs are sums of cost_raw where it is above 0, as an agent with cost_signal=raw learns them."""
     n = pool.num_envs
     actor = _Actor(player, pool)
     number = np.arange(n)
     playing = number < episodes
     success = np.zeros(n, np.bool_)
+    raw = np.zeros((n, pool.cost_dim))
     out: list[dict[str, Any]] = [{} for _ in range(episodes)]
     while playing.any():
         actor.act()
         pool.step(mask=playing)
         success |= pool.success & playing
+        raw += np.maximum(pool.cost_raw, 0) * playing[:, None]
         ended = (pool.terminated | pool.truncated) & playing
         if not ended.any():
             continue
         for i in np.flatnonzero(ended):
-            out[number[i]] = {"return": float(pool.episode_return[i]), "cost": pool.episode_cost[i].astype(np.float64),
+            cost = raw[i].copy() if magnitudes else pool.episode_cost[i].astype(np.float64)
+            out[number[i]] = {"return": float(pool.episode_return[i]), "cost": cost,
                               "length": int(pool.episode_step[i]), "fall": bool(pool.terminated[i]),
                               "success": bool(success[i])}
             number[i] += n
         success[ended] = False
+        raw[ended] = 0
         playing = number < episodes
         again = ended & playing
         if again.any():
@@ -101,10 +106,11 @@ def play(pool: Pool, player: Player, episodes: int) -> list[dict[str, Any]]:
 
 def evaluate(player: Player, task: Optional[str] = None, episodes: int = 100, num_envs: int = 16, seed: int = 0,
              threads: int = 0, options: Optional[Options] = None,
-             cost_limits: Optional[Sequence[Optional[float]]] = None) -> Evaluation:
+             cost_limits: Optional[Sequence[Optional[float]]] = None, magnitudes: bool = False) -> Evaluation:
     """How good a policy, a baseline ("zero", "hold", "random") or a function of obs rows is, over whole episodes.
 
-    The same episodes as `redman eval` plays for the same seed and number of worlds.
+    The same episodes as `redman eval` plays for the same seed and number of worlds. With magnitudes costs are sums of
+    cost_raw where it is above 0, as an agent with cost_signal=raw learns them.
     """
     if task is None:
         if not isinstance(player, Policy) or not player.info.task:
@@ -114,7 +120,7 @@ def evaluate(player: Player, task: Optional[str] = None, episodes: int = 100, nu
         raise ArgumentError("episodes: 1 or more")
     with Pool(task, min(num_envs, episodes), seed, threads, autoreset="off", options=options) as pool:
         pool.reset()
-        return summary(play(pool, player, episodes), limits_of(pool, cost_limits))
+        return summary(play(pool, player, episodes, magnitudes), limits_of(pool, cost_limits))
 
 
 def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]]) -> Evaluation:

@@ -1,6 +1,7 @@
 """Policy: the frozen network."""
 from __future__ import annotations
 
+import ctypes
 import os
 import threading
 from pathlib import Path
@@ -12,7 +13,7 @@ from . import _abi
 from ._error import ArgumentError, FileError, MissingFileError
 from ._library import Handle, check, filled, lib
 from ._pool import Pool
-from ._rows import FloatArray, given
+from ._rows import Array, FloatArray, given
 from ._tensors import Tensors
 
 
@@ -83,6 +84,14 @@ class Policy:
     def check(self, pool: Pool) -> None:
         """VersionError, which says what differs, unless the policy fits the pool's task and options."""
         check(lib.rdm_policy_check(self._open(), pool._spec))
+
+    @property
+    def columns(self) -> Array:
+        """Which entries of a row the policy sees, ascending: all, but for option actor_obs of its agent."""
+        out = np.empty(self.info.obs_dim, np.int32)
+        count = ctypes.c_int32()
+        check(lib.rdm_policy_columns(self._open(), out.ctypes.data, len(out), ctypes.byref(count)))
+        return out[:count.value]
 
     @property
     def tensors(self) -> Tensors:

@@ -12,7 +12,7 @@ import threading
 import time
 from ctypes import byref
 from pathlib import Path
-from typing import Any, Callable, Iterator, NamedTuple, Optional, Union
+from typing import Any, Callable, Iterator, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 
@@ -71,7 +71,7 @@ class Run:
     def evaluate(self, episodes: int = 100, num_envs: int = 16) -> Evaluation:
         """The policy on episodes that it was not chosen by."""
         return evaluate(self.policy, self.task, episodes, num_envs, self.seed + _REPORT_SEED, options=self.options,
-                        cost_limits=self.agent.cost_limits)
+                        cost_limits=self.agent.cost_limits, magnitudes=learns_magnitudes(self.agent))
 
     def _repr_svg_(self) -> str:
         return self.curve._repr_svg_()
@@ -84,15 +84,24 @@ def _folded(key: str) -> str:
     return key.lower().replace("-", "_")
 
 
-def split_options(task: str, algo: str, options: Options) -> tuple[dict[str, Value], dict[str, Value]]:
+def split_options(task: str, algo: str, options: Mapping[str, Value]) -> tuple[dict[str, Value], dict[str, Value]]:
     """Options of the task and those of the algorithm; a key of both goes to both."""
     of_task, of_algo = ({_folded(key) for key in table}
                         for table in (_discovery.task(task).options, _discovery.algo(algo).options))
+
+    def is_of_task(key: str) -> bool:
+        return _folded(key) in of_task or _folded(key.split(".", 1)[0] + ".FIELD") in of_task
+
     for key in options:
-        if _folded(key) not in of_task | of_algo:
+        if not is_of_task(key) and _folded(key) not in of_algo:
             raise NotFoundError(f"option {key}: neither task {task} nor algorithm {algo} has it")
-    return ({key: value for key, value in options.items() if _folded(key) in of_task},
+    return ({key: value for key, value in options.items() if is_of_task(key)},
             {key: value for key, value in options.items() if _folded(key) in of_algo})
+
+
+def learns_magnitudes(agent: Agent) -> bool:
+    """Its costs are sums of cost_raw, and its limits in that unit."""
+    return agent.options["cost_signal"] == "raw"
 
 
 def _handles_costs(algo: str, columns: int) -> bool:
@@ -282,7 +291,8 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
         raise ArgumentError(f"steps: {steps} is not a whole number above 0")
     if eval_every < 1:
         raise ArgumentError("eval_every: 1 or more")
-    asked = dict(options or {})
+    asked: dict[str, Value] = {key: shown(key, value) if isinstance(value, tuple) else value
+                               for key, value in (options or {}).items()}
     for key in [key for key in asked if _folded(key) == "cost_limit"]:
         cost_limits = float(asked.pop(key)) if cost_limits is None else cost_limits
     of_task, of_algo = split_options(task, algo, asked)
@@ -306,7 +316,7 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
 
     def judged(policy: Policy) -> tuple[_Score, tuple[float, float]]:
         judge.reset(seeds)
-        e = summary(play(judge, policy, _SELECTION_EPISODES), counted)
+        e = summary(play(judge, policy, _SELECTION_EPISODES, learns_magnitudes(agent)), counted)
         return _score(e), (e.return_mean, e.cost_mean[0] if e.cost_mean else 0.0)
 
     with contextlib.ExitStack() as stack:

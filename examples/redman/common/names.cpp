@@ -46,7 +46,7 @@ std::vector<T> collect(int32_t count, Get get) {
 }
 
 Json default_json(const rdm_option_info& o) {
-  if (o.kind == RDM_TEXT) return o.text ? o.text : "";
+  if (o.kind == RDM_TEXT || o.text) return o.text ? o.text : "";
   if (o.kind == RDM_FLAG) return o.number != 0;
   if (o.kind == RDM_INTEGER) return static_cast<int64_t>(o.number);
   return o.number;
@@ -55,7 +55,7 @@ Json default_json(const rdm_option_info& o) {
 std::string bounds_text(const rdm_option_info& o) {
   if (o.kind == RDM_TEXT) return o.choices ? o.choices : "text";
   if (o.kind == RDM_FLAG) return "true|false";
-  return number_text(o.low) + " .. " + number_text(o.high);
+  return number_text(o.low) + " .. " + number_text(o.high) + (o.choices ? ", or a range" : "");
 }
 
 }  // namespace
@@ -134,7 +134,13 @@ std::vector<rdm_option_info> algo_options(int32_t algo) {
 }
 
 bool has_option(const std::vector<rdm_option_info>& table, const std::string& key) {
-  return std::any_of(table.begin(), table.end(), [&](const auto& o) { return same_name(o.key, key); });
+  return std::any_of(table.begin(), table.end(), [&](const auto& o) {
+    const std::string known = o.key;  // "noise.tip_force" is one of "noise.FIELD"
+    const size_t dot = known.rfind('.') + 1;
+    const bool open = dot > 0 && known.substr(dot) == "FIELD";
+    return same_name(known, key) ||
+           (open && key.size() > dot && same_name(known.substr(0, dot), key.substr(0, dot)));
+  });
 }
 
 Json build_json() {
@@ -156,6 +162,7 @@ Json options_json(const std::vector<rdm_option_info>& table) {
                 {"help", o.help},
                 {"live", o.live != 0}};
     if (text && o.choices) row["choices"] = o.choices;
+    if (!text && o.choices) row["range"] = true;
     out.push_back(row);
   }
   return out;
@@ -164,7 +171,8 @@ Json options_json(const std::vector<rdm_option_info>& table) {
 std::string options_text(const std::vector<rdm_option_info>& table) {
   Table out({"option", "default", "values", "meaning"});
   for (const rdm_option_info& o : table) {
-    const std::string value = o.kind == RDM_TEXT   ? (o.text ? o.text : "")
+    const std::string value = o.text               ? o.text
+                              : o.kind == RDM_TEXT ? ""
                               : o.kind == RDM_FLAG ? (o.number != 0 ? "true" : "false")
                                                    : number_text(o.number);
     out.add({o.key, value, bounds_text(o), o.help});

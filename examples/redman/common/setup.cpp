@@ -57,6 +57,13 @@ CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* t
   return task;
 }
 
+bool learns_magnitudes(const AgentSettings& agent) {
+  bool raw = false;
+  for (const auto& [key, value] : agent.options)
+    if (same_name(key, "cost_signal")) raw = same_name(value, "raw");
+  return raw;
+}
+
 void add_set_flag(CLI::App& command, std::vector<std::string>& sets) {
   command.add_option("--set", sets, "key=value of the task or the algorithm; repeatable")
       ->allow_extra_args(false)

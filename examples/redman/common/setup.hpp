@@ -29,12 +29,15 @@ struct PoolSettings {
   int32_t envs = 1, threads = 0;
   uint64_t seed = 0;
   Options options;  // of the task
+  // Evaluations count what an agent with cost_signal=raw learns: sums of cost_raw where it is above 0.
+  bool magnitudes = false;
 };
 
 struct AgentSettings {
   std::string algo = "ppo_lag";
   Options options;
 };
+bool learns_magnitudes(const AgentSettings& agent);
 
 // Refuses what is above `most`, and what is no number: CLI11's own checks let nan pass.
 CLI::Validator finite_to(double most);

@@ -68,6 +68,7 @@ ActorChoice choose_actor(const std::string& word) {
   if (same_name(run.pool.task, choice.task)) {
     choice.options = run.pool.options;
     choice.limits = run.limits;
+    choice.magnitudes = learns_magnitudes(run.agent);
   }
   return choice;
 }
@@ -83,8 +84,9 @@ void adopt_task(const ActorChoice& choice, bool task_given, PoolSettings& pool) 
     const Options own = builtin_demo(pool.task).options;
     pool.options.insert(pool.options.begin(), own.begin(), own.end());
   }
-  if (same_name(pool.task, choice.task))
-    pool.options.insert(pool.options.begin(), choice.options.begin(), choice.options.end());
+  if (!same_name(pool.task, choice.task)) return;
+  pool.options.insert(pool.options.begin(), choice.options.begin(), choice.options.end());
+  pool.magnitudes = choice.magnitudes;
 }
 
 Actor::Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic, uint64_t seed)

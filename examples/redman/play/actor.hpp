@@ -21,6 +21,7 @@ struct ActorChoice {
   std::string task;                 // that the policy learned; "" unknown
   Options options;                  // of the task, when the policy stands in a run folder
   std::vector<std::string> limits;  // --cost-limit of that run
+  bool magnitudes = false;          // which are on magnitudes
 };
 // zero, hold, random, demo, a .demo file, an .npz file of a rollout, a policy file or a run folder. Failure
 // when the file cannot be read as what it is.

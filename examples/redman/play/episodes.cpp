@@ -22,10 +22,16 @@ double standard_error(double deviation, size_t count) {
   return count > 1 ? deviation / std::sqrt(static_cast<double>(count - 1)) : std::nan("");
 }
 
+template <class Row>
+void add_magnitudes(const Row& raw, std::vector<double>& sums) {
+  sums.resize(raw.size());
+  for (size_t k = 0; k < sums.size(); ++k) sums[k] += std::max(static_cast<double>(raw[k]), 0.0);
+}
+
 }  // namespace
 
 std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t count, const StepObserver& after,
-                                   const StepObserver& before) {
+                                   const StepObserver& before, bool magnitudes) {
   const size_t n = pool.num_envs();
   std::vector<Episode> episodes(count);
   std::vector<uint8_t> playing(n), ended(n);
@@ -48,10 +54,11 @@ std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t coun
       if (!playing[i]) continue;
       Episode& e = episodes[episode[i]];
       e.success |= pool.success()[i] != 0;
+      if (magnitudes) add_magnitudes(pool.cost_raw()[i], e.cost);
       if (after) after(i, episode[i]);
       if (!pool.terminated()[i] && !pool.truncated()[i]) continue;
       e.ret = static_cast<double>(pool.episode_return()[i]);
-      e.cost.assign(pool.episode_cost()[i].begin(), pool.episode_cost()[i].end());
+      if (!magnitudes) e.cost.assign(pool.episode_cost()[i].begin(), pool.episode_cost()[i].end());
       e.length = pool.buffers().episode_step[i];
       e.terminated = pool.terminated()[i] != 0;
       episode[i] += n;

@@ -22,9 +22,11 @@ using StepObserver = std::function<void(size_t env, size_t episode)>;
 
 // Plays `count` episodes in a pool without autoreset that was just reset. Episode e is played by world
 // e mod num_envs; a world that has done its share rests. The result does not depend on threads. `before`
-// finds the actions in the pool, `after` what came of them.
+// finds the actions in the pool, `after` what came of them. With `magnitudes` costs are sums of cost_raw
+// where it is above 0, as an agent with cost_signal=raw learns them.
 std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t count,
-                                   const StepObserver& after = {}, const StepObserver& before = {});
+                                   const StepObserver& after = {}, const StepObserver& before = {},
+                                   bool magnitudes = false);
 
 struct Summary {
   double return_mean = 0, return_std = 0, length_mean = 0, fall_rate = 0, success_rate = 0;

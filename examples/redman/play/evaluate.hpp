@@ -9,6 +9,7 @@ struct Evaluation {
   std::vector<double> limits;  // [cost_dim], < 0: none
   std::vector<std::string> costs;
   Summary summary;
+  bool magnitudes = false;  // what costs are sums of
 };
 
 inline constexpr int32_t kEvalEnvs = 16, kEvalEpisodes = 100;

@@ -179,7 +179,9 @@ Score Trainer::evaluate(const redman::Bytes& policy, LastEvaluation* last) {
   for (size_t i = 0; i < seeds.size(); ++i) seeds[i] = selection_seed(settings_.pool.seed, i);
   eval_pool_.reset(seeds.data());
   Actor actor(redman::Policy(policy), eval_pool_);
-  const Summary s = summarise(play_episodes(eval_pool_, actor, kSelectionEpisodes), limits_);
+  const bool magnitudes = learns_magnitudes(settings_.agent);
+  const Summary s =
+      summarise(play_episodes(eval_pool_, actor, kSelectionEpisodes, {}, {}, magnitudes), limits_);
   if (last) *last = {s.return_mean, s.cost_mean.empty() ? 0 : s.cost_mean[0]};
   return score_of(s, score_limits_);
 }

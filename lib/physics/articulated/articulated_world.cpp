@@ -5,6 +5,8 @@
 #include <bit>
 #include <cfloat>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 
 #include "base/error.hpp"
 #include "physics/limits.hpp"
@@ -62,6 +64,15 @@ ArticulatedWorld::ArticulatedWorld(const Scene& scene, Arena& arena, Articulated
   state_.next_warm = arena.make<WarmPoint>(contacts);
   state_.start_bodies = arena.make<Motion>(bodies);
   state_.start_bases = arena.make<Motion>(bases);
+  state_.feedforward = feedforward_;
+  if (scene.def.adjustable) {
+    const size_t number = scene.def.solver.double_precision ? sizeof(double) : sizeof(float);
+    state_.constants = arena.make<unsigned char>(number * first_constant(scene, static_cast<int32_t>(bases)));
+    state_.dynamics = &dynamics_;
+    state_.sized = sized_;
+    own_models_ = arena.make<BodyModel>(bodies);
+    heavier_ = arena.make<uint8_t>(bases);
+  }
   try {
     make_shared(arena, partner, partnered);
   } catch (...) {  // no destructor runs
@@ -69,6 +80,8 @@ ArticulatedWorld::ArticulatedWorld(const Scene& scene, Arena& arena, Articulated
     throw;
   }
   if (arena.measuring()) return;
+  state_.body_models = own_models_ ? own_models_ : shared_->model.bodies.data();
+  own_constants();
   for (int32_t i = 0; i < scene.num_bodies; ++i) set_body(i, bodies_[i]);
   for (int32_t a = 0; a < static_cast<int32_t>(bases); ++a) links_changed(a);
 }
@@ -112,6 +125,45 @@ void ArticulatedWorld::release_shared() {
   if (shared_->group && shared_->group != shared_->alone) shared_->group->end(hooks);
   if (shared_->alone) shared_->alone->end(hooks);
   host_delete(hooks, shared_);
+}
+
+template <class S>
+void ArticulatedWorld::own_constants_of(const TreeMember& member) {
+  S* to = static_cast<S*>(state_.constants) + first_constant(*scene_, member.articulation);
+  bool heavier = false;
+  const auto put = [&](const auto& record, size_t mass_at) {
+    double from[sizeof record / sizeof(double)];
+    std::memcpy(from, &record, sizeof record);
+    const size_t mass = mass_at / sizeof(double), end = mass + 7;  // mass and moments
+    for (size_t k = 0; k < std::size(from); ++k) {
+      const S x = static_cast<S>(from[k]);
+      heavier |= k >= mass && k < end && to[k] != x;
+      to[k] = x;
+    }
+    to += std::size(from);
+  };
+  put(base_constants(shared_->model, member, &dynamics_), offsetof(BaseConstants<double>, base_mass));
+  for (int32_t i = 0; i < static_cast<int32_t>(member.links.size()); ++i)
+    put(link_constants(shared_->model, member, i, &dynamics_), offsetof(LinkConstants<double>, mass));
+  heavier_[member.articulation] = heavier;
+}
+
+void ArticulatedWorld::own_constants() {
+  if (!state_.constants) return;
+  for (const Tree& tree : shared_->model.trees)
+    for (const TreeMember& member : tree.members)
+      if (scene_->def.solver.double_precision)
+        own_constants_of<double>(member);
+      else
+        own_constants_of<float>(member);
+  for (int32_t i = 0; i < scene_->num_bodies; ++i) own_models_[i] = body_model(*scene_, i, &dynamics_);
+}
+
+// Momenta are stored, not only velocities: those of links that are heavier now are made anew.
+void ArticulatedWorld::dynamics_changed() {
+  own_constants();
+  for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a)
+    if (heavier_[a]) links_changed(a);
 }
 
 // Joint coordinates or the base were set: the persistent words follow.
@@ -228,13 +280,15 @@ double ArticulatedWorld::body_overlap(int32_t body) {
     if (!scene_->moves(s)) continue;
     const Pose X_WS = shape_pose(static_cast<int32_t>(i));
     set_bound(s, X_WS.p, to_matrix(X_WS.q), &bounds[i]);
+    if (const SizedShape* own = sized(static_cast<int32_t>(i))) size_bound(s, own->size_factor, &bounds[i]);
   }
   RestingPoses poses(*this);
+  poses.sized = sized_;
   return shared_->collider.overlap(*scene_, poses, body);
 }
 
 // --- Saving and loading. A state is the tag, the scene's counts, the rows that every engine has, bases,
-// bodies, the persistent words and the impulses of the last contacts.
+// bodies, the persistent words, the impulses of the last contacts, and what the scene asks for beside them.
 
 namespace {
 
@@ -309,6 +363,7 @@ void ArticulatedWorld::check_state(Reader in) const {
     good &= pair >= 0 && (pair < static_cast<int32_t>(scene_->pairs.size()) || pair == 0);
     good &= words_within<float>(in, 6, kMomentumBound);
   }
+  good &= sound_extras(in, *scene_);
   if (!good) fail(Code::kFormat, "world state: a number is not finite or out of range");
 }
 
@@ -329,6 +384,7 @@ void ArticulatedWorld::save(Writer& out) const {
   const WarmPoint none{};
   for (int32_t i = 0; i < scene_->def.solver.contacts_max; ++i)
     out.value(i < state_.num_warm ? state_.warm[i] : none);
+  save_extras(out);
 }
 
 void ArticulatedWorld::load(Reader& in) {
@@ -344,6 +400,8 @@ void ArticulatedWorld::load(Reader& in) {
   in.bytes(state_.persistent, persistent_bytes(*scene_));
   state_.num_warm = in.value<int32_t>();
   in.bytes(state_.warm, static_cast<size_t>(scene_->def.solver.contacts_max) * sizeof(WarmPoint));
+  load_extras(in);
+  own_constants();
   for (size_t a = 0; a < bases; ++a) base_R_[a] = to_matrix(bases_[a].X.q);
   for (size_t i = 0; i < bodies; ++i) state_.free_bodies[i].R = to_matrix(bodies_[i].X.q);
   for (size_t i = 0; i < links; ++i) fresh_[i] = 0;

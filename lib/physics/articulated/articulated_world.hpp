@@ -44,9 +44,14 @@ class ArticulatedWorld final : public World {
 
  private:
   void links_changed(int32_t articulation) override;
+  void dynamics_changed() override;
   void step_group(World* const* worlds, int32_t count) override;
   void fetch_link(int32_t i) const override;
   void make_shared(Arena& arena, ArticulatedWorld* partner, bool partnered);
+  // state_'s constants and body models by dynamics_; marks articulations of which a mass is another now.
+  void own_constants();
+  template <class S>
+  void own_constants_of(const TreeMember& member);
   void release_shared();
   void check_state(Reader in) const;
   void end_step();
@@ -54,7 +59,9 @@ class ArticulatedWorld final : public World {
 
   OdeGuard guard_;
   ArticulatedShared* shared_ = nullptr;
-  WorldState state_ = {};  // this world's arrays, as a stepper takes them
+  WorldState state_ = {};            // this world's arrays, as a stepper takes them
+  BodyModel* own_models_ = nullptr;  // [num_bodies]
+  uint8_t* heavier_ = nullptr;       // [articulations] a mass changed since the momenta were made
 };
 
 }  // namespace rdm

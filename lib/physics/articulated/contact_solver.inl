@@ -7,8 +7,10 @@
 //   normal    0 <= n   complementary to   J_n v1 + softness n >= b,  b = erp (depth - layer) / h, bounded
 //   friction  |(t, u)| <= mu n, and J_t v1 = J_u v1 = 0 unless on the cone's edge, there against the slip
 // b is the push-out speed of Baumgarte's stabilisation, softness = cfm / h (Catto, Soft Constraints, GDC
-// 2011). A cone and not a pyramid: sliding is opposed along the slip, and the angle at which a body starts to
-// slide does not depend on its heading.
+// 2011). Under a steady force F a contact so gives way by F cfm h / erp beyond the layer, and it holds no
+// more than F = contact_max_speed / cfm: 4 kN as scenes come; arms that press harder want a smaller cfm. A
+// cone and not a pyramid: sliding is opposed along the slip, and the angle at which a body starts to slide
+// does not depend on its heading.
 //
 // Half solve. M = L^T D L (tree_dynamics.inl), so M^-1 = Z^T Z with Z = D^-1/2 L^-T. A contact row is stored
 // as z = Z J^T (MuJoCo's mj_solveM2), for a free body as sqrt(1/m) J_v and C^-1 R^T J_w (I = C C^T). Then
@@ -149,8 +151,12 @@ void ContactSolver<S>::prepare(Point* p) {
     }
     return reduce(r);
   };
+  // Along a direction in which neither side can move (an arm's first link on its base pressed onto the
+  // ground) no impulse changes anything: none is given. 1/kg; the heaviest arm is far above.
+  constexpr S kImmovable = S(1e-6);
+  const auto inverse = [](S a) { return a > kImmovable ? 1 / a : S(0); };
   p->A[0] = product(0, 0);
-  p->inv_n = 1 / (p->A[0] + p->softness);
+  p->inv_n = p->A[0] > kImmovable ? 1 / (p->A[0] + p->softness) : S(0);
   if (p->axes == 1) return;
   p->A[1] = product(1, 1);
   p->A[2] = product(2, 2);
@@ -158,9 +164,9 @@ void ContactSolver<S>::prepare(Point* p) {
   p->A[4] = product(0, 2);
   p->A[5] = product(1, 2);
   const S larger = p->A[1] > p->A[2] ? p->A[1] : p->A[2], coupling = p->A[5] < 0 ? -p->A[5] : p->A[5];
-  p->inv_t = 1 / (larger + coupling);
+  p->inv_t = inverse(larger + coupling);
   const S determinant = p->A[1] * p->A[2] - p->A[5] * p->A[5];
-  if (determinant > S(1e-6) * larger * larger) {
+  if (larger > kImmovable && determinant > S(1e-6) * larger * larger) {
     const S d = 1 / determinant;
     p->inv_tangents[0] = p->A[2] * d;
     p->inv_tangents[1] = p->A[1] * d;

@@ -3,13 +3,15 @@
 //
 // The law, per joint, with q and qd of the substep's start and v1 the rate at its end:
 //   drive  tau = spring - gain v1                    inside +-bound, else the bound (saturated = +-1)
-//          spring = kp (target - q),  gain = h kp + kd + friction / max(|qd|, kFrictionSpeed)
+//          spring = kp (target - q) + feedforward,  gain = h kp + kd + friction / max(|qd|, kFrictionSpeed)
 //          which is kp (target - (q + h v1)) - kd v1 and Coulomb friction as a secant: implicit PD, the same
 //          as physics/model/drive.hpp's motor row (target rate spring / gain, softness 1 / gain, force bound)
 //   limit  tau = k (edge - q - h v1)                 while q + h v1 is beyond the edge (limited = +-1)
-// A coupled joint's target is its own q, clamped to ratio times the other joint's angle as qd will have it
-// at the substep's end, -+ slack. With spring_only_effort the bound scales the spring, kp with it; damping
-// stays outside.
+// k is the solver's for light links, and grows with what a heavy joint carries (tree.cpp): past the margin a
+// joint is stopped by decree, all others keeping their rates, which feeds energy to a chain that a soft limit
+// let there. A coupled joint's target is its own q, clamped to ratio times the other joint's angle as qd will
+// have it at the substep's end, -+ slack. With spring_only_effort the bound scales the spring, kp with it;
+// damping stays outside.
 //
 // A step. Both laws are linear in v1 for a given active set (who is saturated, who is at a limit), so that
 //   (M + h G) (v1 - qd) = h (spring' - bias - G qd),  G = diag(gain of those not saturated + h k of the
@@ -55,6 +57,10 @@ void joint_drives(TreeBatch<L>& t) {
     }
     target = clamp<L>(target, model.lower, model.upper);
     V kp = model.kp, bound = model.effort, spring = kp * (target - joint.q);
+    if (t.feedforward) {  // a zero changes no bit
+      const V& extra = t.feedforward[i];
+      spring = L::select(extra != V{}, V(spring + extra), spring);
+    }
     if (t.spring_only) {
       const V size = L::select(spring < V{}, V(-spring), spring);
       const V share = L::select(size > bound, V(bound / size), L::all(1));
@@ -85,12 +91,12 @@ void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
     const PersistentLink<V>& active = t.state[i];
     CoordWork<V>& c = t.coord[offset + i];
     const V free = S(1) - active.saturated * active.saturated, on = active.limited * active.limited;
-    const V limit_gain = on * (t.h * t.limit_stiffness), gain = joint.gain * free + limit_gain;
+    const V limit_gain = on * (t.h * model.limit_stiffness), gain = joint.gain * free + limit_gain;
     const V edge = L::select(active.limited < V{}, model.lower, model.upper);
     t.factor[tree.row[static_cast<size_t>(offset + i)] + tree.depth[static_cast<size_t>(offset + i)]] +=
         t.h * gain;
     c.dv = t.h * (joint.spring * free + active.saturated * joint.bound - c.bias - c.qd * gain +
-                  on * t.limit_stiffness * (edge - joint.q));
+                  on * model.limit_stiffness * (edge - joint.q));
   }
   factor(t);
   solve(t);
@@ -184,7 +190,7 @@ void joint_torques(TreeBatch<L>& t, typename L::Scalar weight) {
     const V v1 = t.coord[offset + i].v1;
     const V drive = clamp<L>(V(joint.spring - joint.gain * v1), V(-joint.bound), joint.bound);
     const V edge = L::select(active.limited < V{}, model.lower, model.upper);
-    const V limit = active.limited * active.limited * t.limit_stiffness * (edge - joint.q - t.h * v1);
+    const V limit = active.limited * active.limited * model.limit_stiffness * (edge - joint.q - t.h * v1);
     joint.torque += weight * (drive + limit);
   }
 }

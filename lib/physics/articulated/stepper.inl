@@ -76,7 +76,7 @@ class BatchStepper final : public Stepper {
   };
   // Exact shape poses of one world, for the collider.
   struct WorldPoses final : Collider::Poses {
-    WorldPoses(const BatchStepper* s, int32_t i) : stepper(s), index(i) {}
+    WorldPoses(const BatchStepper* s, int32_t i) : stepper(s), index(i) { sized = s->worlds_[i]->sized; }
     void place(int32_t shape, Vec3* p, Mat3* R) override { stepper->shape_pose(index, shape, p, R); }
     const BatchStepper* stepper;
     int32_t index;
@@ -108,6 +108,7 @@ class BatchStepper final : public Stepper {
   uint32_t worlds_of(const TreeBatch<L>& t, Mask lanes) const;
   void assign(TreeBatch<L>& t, int32_t batch, int32_t count);
   void gather(TreeBatch<L>& t);
+  void gather_constants(TreeBatch<L>& t);
   void gather_pushes(TreeBatch<L>& t);
   void gather_base(TreeBatch<L>& t, int lane);
   void scatter(TreeBatch<L>& t);
@@ -235,7 +236,8 @@ void BatchStepper<L>::shape_pose(int32_t world, int32_t shape, Vec3* p, Mat3* R)
   if (at.kind == Attachment::kBody) {
     const Pose& X_BS = scene_->shapes[static_cast<size_t>(shape)].def.X_LS;
     const Mat3& R_WB = w.free_bodies[at.body].R;
-    *p = w.bodies[at.body].X.p + R_WB * X_BS.p;
+    const Vec3& p_BS = w.sized ? w.sized[shape - scene_->first_body_shape].p : X_BS.p;
+    *p = w.bodies[at.body].X.p + R_WB * p_BS;
     *R = R_WB * to_matrix(X_BS.q);
     return;
   }
@@ -309,7 +311,7 @@ void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, 
   const int count = point->axes;
   if (at.kind == Attachment::kBody) {
     const FreeBody& body = w.free_bodies[at.body];
-    const double sqrt_inv_mass = model_->bodies[static_cast<size_t>(at.body)].sqrt_inv_mass;
+    const double sqrt_inv_mass = w.body_models[at.body].sqrt_inv_mass;
     const Vec3 arm = p - w.bodies[at.body].X.p;
     auto* rows = contacts_.segment_rows(point, at.first_segment);
     for (int f = 0; f < count; ++f) {
@@ -385,7 +387,8 @@ void BatchStepper<L>::solve_contacts_of(int32_t world) {
   for (size_t a = 0; a < scene_->def.articulations.size(); ++a) touched_[a] = 0;
   for (int32_t i = 0; i < count; ++i) {
     const Contact& contact = w.contacts[i];
-    const double mu = scene_->pairs[static_cast<size_t>(w.contact_pairs[i])].mu;
+    const ShapePair& pair = scene_->pairs[static_cast<size_t>(w.contact_pairs[i])];
+    const double mu = w.dynamics ? w.dynamics->mu(*scene_, pair) : pair.mu;
     auto& point = contacts_.add(static_cast<S>(mu), softness);
     Vec3 axes[3] = {contact.n, {}, {}};
     tangents(contact.n, &axes[1], &axes[2]);
@@ -439,7 +442,7 @@ void BatchStepper<L>::apply_impulses(int32_t world) {
   for (int32_t i = 0; i < scene_->num_bodies; ++i) {
     FreeBody& body = w.free_bodies[i];
     const auto& sum = contacts_.sum[body_segment_[i]];
-    const double sqrt_inv_mass = model_->bodies[static_cast<size_t>(i)].sqrt_inv_mass;
+    const double sqrt_inv_mass = w.body_models[i].sqrt_inv_mass;
     const Vec3 linear{static_cast<double>(sum[0]), static_cast<double>(sum[1]), static_cast<double>(sum[2])},
         angular{static_cast<double>(sum[3]), static_cast<double>(sum[4]), static_cast<double>(sum[5])};
     body.v1 = body.v + sqrt_inv_mass * linear;
@@ -626,12 +629,31 @@ void BatchStepper<L>::gather(TreeBatch<L>& t) {
       L::set(&t.coord[offset + i].qd, l, static_cast<S>(qd[i]));
       L::set(&t.work[i].target, l, static_cast<S>(target[i]));
     }
+    for (int32_t i = 0; t.feedforward && i < tree.num_links; ++i)
+      L::set(&t.feedforward[i], l, static_cast<S>(world.feedforward[member.first_link + i]));
   }
   L::gather(from, kBase, words(&t.base_state));
   for (const S*& f : from) f += kBase;
   L::gather(from, kLink * tree.num_links, words(t.state));
   for (int32_t i = 0; i < tree.num_links; ++i) t.work[i].torque = V{};
+  if (scene_->def.adjustable) gather_constants(t);
   gather_pushes(t);
+}
+
+// What worlds have of their own in place of the scene's constants.
+template <class L>
+void BatchStepper<L>::gather_constants(TreeBatch<L>& t) {
+  constexpr int kOfBase = static_cast<int>(kBaseConstants), kOfLink = static_cast<int>(kLinkConstants);
+  const S* from[L::kCount];
+  for (int l = 0; l < L::kCount; ++l)
+    from[l] = static_cast<const S*>(worlds_[t.world[l]]->constants) +
+              first_constant(*scene_, member_of(t, l).articulation);
+  L::gather(from, kOfBase, words(static_cast<BaseConstants<V>*>(&t)));
+  for (const S*& f : from) f += kOfBase;
+  for (int32_t i = 0; i < t.tree->num_links; ++i) {
+    L::gather(from, kOfLink, words(static_cast<LinkConstants<V>*>(&t.model[i])));
+    for (const S*& f : from) f += kOfLink;
+  }
 }
 
 template <class L>
@@ -724,6 +746,7 @@ void BatchStepper<L>::carve(Arena& arena) {
       t.coord = arena.make<CoordWork<V>>(static_cast<size_t>(tree.num_coords));
       t.mass_matrix = arena.make<V>(tree.path.size());
       t.factor = arena.make<V>(tree.path.size());
+      if (scene_->def.feedforward) t.feedforward = arena.make<V>(links);
       t.shape_p = arena.make<V[3]>(shapes);
       t.shape_a = arena.make<V[3]>(shapes);
       t.center = arena.make<V[3]>(shapes);
@@ -749,7 +772,6 @@ void BatchStepper<L>::fill_constants(TreeBatch<L>& t, int32_t batch) {
   const Tree& tree = *t.tree;
   t.h = static_cast<S>(solver.h);
   t.inv_h = static_cast<S>(1 / solver.h);
-  t.limit_stiffness = static_cast<S>(solver.limit_stiffness);
   t.spring_only = solver.spring_only_effort;
   assign(t, batch, group_size_);
   if (tree.free_base)
@@ -760,12 +782,13 @@ void BatchStepper<L>::fill_constants(TreeBatch<L>& t, int32_t batch) {
   const auto put = [](V* v, int lane, double x) { L::set(v, lane, static_cast<S>(x)); };
   for (int l = 0; l < L::kCount; ++l) {
     const TreeMember& m = member_of(t, l);
-    for (int r = 0; r < 3; ++r) put(&t.gravity[r], l, m.gravity[r]);
-    put(&t.linear_damping, l, 1 / (1 + solver.h * m.base_damping));
-    put(&t.angular_damping, l, 1 / (1 + solver.h * m.base_damping));
-    put(&t.base_mass, l, m.base.mass);
+    const auto put_words = [&](V* to, const auto& record) {
+      double from[sizeof record / sizeof(double)];
+      std::memcpy(from, &record, sizeof record);
+      for (size_t k = 0; k < std::size(from); ++k) put(to + k, l, from[k]);
+    };
+    put_words(words(static_cast<BaseConstants<V>*>(&t)), base_constants(*model_, m, nullptr));
     for (int r = 0; r < 3; ++r) put(&t.base_com[r], l, m.base.com[r]);
-    for (int k = 0; k < 6; ++k) put(&t.base_moment[k], l, m.base.moment[k]);
     for (int32_t i = 0; i < tree.num_links; ++i) {
       const MemberLink& link = m.links[static_cast<size_t>(i)];
       const JointDef& joint = link.joint;
@@ -775,17 +798,12 @@ void BatchStepper<L>::fill_constants(TreeBatch<L>& t, int32_t batch) {
       for (int k = 0; k < 4; ++k) put(&b.q_PJ[k], l, q_PJ[k]);
       for (int r = 0; r < 3; ++r) put(&b.p_PJ[r], l, link.p_PJ[r]);
       for (int r = 0; r < 3; ++r) put(&b.com[r], l, link.inertia.com[r]);
-      for (int k = 0; k < 6; ++k) put(&b.moment[k], l, link.inertia.moment[k]);
-      put(&b.mass, l, link.inertia.mass);
-      put(&b.kp, l, joint.kp);
-      put(&b.kd, l, joint.kd);
-      put(&b.effort, l, joint.effort);
+      put_words(words(static_cast<LinkConstants<V>*>(&b)), link_constants(*model_, m, i, nullptr));
       put(&b.lower, l, joint.lower);
       put(&b.upper, l, joint.upper);
-      put(&b.armature, l, joint.armature);
-      put(&b.friction, l, joint.friction);
       put(&b.ratio, l, joint.ratio);
       put(&b.slack, l, joint.slack);
+      put(&b.limit_stiffness, l, link.limit_stiffness);
     }
     for (size_t k = 0; k < m.shapes.size(); ++k) {
       const ShapeDef& def = scene_->shapes[static_cast<size_t>(m.first_shape) + k].def;

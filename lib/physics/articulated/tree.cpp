@@ -9,8 +9,6 @@
 namespace rdm {
 namespace {
 
-constexpr int32_t kMaxCoords = 512;  // of one tree
-
 // The smallest rotation from z to the unit vector `axis`.
 Mat3 rotation_from_z(const Vec3& a) {
   if (a.z < -0.999999) return {{1, 0, 0, 0, -1, 0, 0, 0, -1}};
@@ -33,13 +31,33 @@ bool is_massless(const Inertia& inertia) {
          std::all_of(inertia.moment, inertia.moment + 6, [](double m) { return m == 0; });
 }
 
-// The same inertia in axes rotated by R_LJ; an isotropic one keeps its very numbers.
-Inertia rotated(const Inertia& inertia, const Mat3& R_LJ) {
-  Inertia out = inertia;
-  const Mat3 R_JL = transpose(R_LJ);
-  out.com = R_JL * inertia.com;
-  if (!is_isotropic(inertia)) set_moment(&out, R_JL * moment_matrix(inertia) * R_LJ);
-  return out;
+// The solver's stiffness gives way to heavy links: a joint of inertia I that runs into its end at rate v goes
+// beyond by about v h / (1 + h^2 k / I). From kHeavy on, k is kStiff I / h^2, with I the most that the joint
+// may carry in any pose (kg m2, kg).
+constexpr double kHeavy = 0.05, kStiff = 10;
+
+void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* member) {
+  const SolverDef& solver = scene.def.solver;
+  const auto count = def.links.size();
+  Vector<double> carried(count);
+  for (size_t k = 0; k < count; ++k) {
+    const Inertia& inertia = def.links[k].inertia;
+    const double moment = inertia.moment[0] + inertia.moment[1] + inertia.moment[2];
+    double reach = norm(inertia.com);
+    for (auto i = static_cast<int32_t>(k); i >= 0;) {
+      const LinkDef& link = def.links[static_cast<size_t>(i)];
+      const bool slides = link.joint.kind == JointKind::kPrismatic;
+      carried[static_cast<size_t>(i)] += slides ? inertia.mass : inertia.mass * reach * reach + moment;
+      reach += norm(link.X_PL.p);
+      if (slides) reach += std::max(std::fabs(link.joint.lower), std::fabs(link.joint.upper));
+      i = link.parent;
+    }
+  }
+  for (size_t i = 0; i < count; ++i) {
+    double k = solver.limit_stiffness;
+    if (k > 0 && carried[i] > kHeavy) k = std::max(k, kStiff * carried[i] / (solver.h * solver.h));
+    member->links[i].limit_stiffness = k;
+  }
 }
 
 TreeMember make_member(const Scene& scene, int32_t articulation) {
@@ -67,10 +85,11 @@ TreeMember make_member(const Scene& scene, int32_t articulation) {
       out.R_PJ = Mat3{};
       out.q_PJ = {out.q_PJ.w > 0 ? 1.0 : -1.0, 0, 0, 0};
     }
-    out.inertia = rotated(link.inertia, out.R_LJ);
+    out.inertia = in_joint_axes(link.inertia, out.R_LJ);
     out.joint = link.joint;
     member.links.push_back(out);
   }
+  set_limits(scene, def, &member);
   for (const ArticulationShape& s : def.shapes) {
     const Mat3 R_JL = s.link < 0 ? Mat3{} : transpose(member.links[static_cast<size_t>(s.link)].R_LJ);
     member.shapes.push_back({R_JL * to_matrix(s.shape.X_LS.q), R_JL * s.shape.X_LS.p});
@@ -91,7 +110,8 @@ bool same_shape_of_tree(const Scene& scene, const Tree& tree, int32_t articulati
     const LinkDef& link = def.links[i];
     const TreeLink& other = tree.links[i];
     if (link.parent != other.parent || (link.joint.kind == JointKind::kPrismatic) != other.prismatic ||
-        link.joint.coupled_to != other.coupled_to || link.sensor != other.sensor)
+        link.joint.coupled_to != other.coupled_to || link.sensor != other.sensor ||
+        link.weightless != other.weightless)
       return false;
   }
   return true;
@@ -147,6 +167,7 @@ Tree make_tree(const Scene& scene, int32_t articulation) {
     t.coupled_to = link.joint.coupled_to;
     t.prismatic = link.joint.kind == JointKind::kPrismatic;
     t.sensor = link.sensor;
+    t.weightless = link.weightless;
     tree.links.push_back(t);
     add_coord(&tree, link.parent < 0 ? base_coord : tree.coord(link.parent));
   }
@@ -188,6 +209,14 @@ void find_shortcuts(Tree* tree) {
 }
 
 }  // namespace
+
+Inertia in_joint_axes(const Inertia& inertia, const Mat3& R_LJ) {
+  Inertia out = inertia;
+  const Mat3 R_JL = transpose(R_LJ);
+  out.com = R_JL * inertia.com;
+  if (!is_isotropic(inertia)) set_moment(&out, R_JL * moment_matrix(inertia) * R_LJ);
+  return out;
+}
 
 Vector<Tree> make_trees(const Scene& scene) {
   Vector<Tree> trees;

@@ -27,6 +27,7 @@ struct TreeLink {
   bool isotropic = false;  // the moments are the same about every axis
   bool massless = false;   // neither mass nor moments
   bool sensor = false;
+  bool weightless = false;
 };
 
 // What differs from member to member, per link.
@@ -37,6 +38,7 @@ struct MemberLink {
   Quat q_PJ, q_LJ;  // the same two rotations; their signs make link quaternions continuous in the coordinates
   Inertia inertia;  // in joint axes
   JointDef joint;
+  double limit_stiffness;  // N m/rad (N/m) of the joint's ends
 };
 
 struct TreeShape {
@@ -82,7 +84,10 @@ struct Tree {
   int32_t coord(int32_t link) const { return link + (free_base ? 6 : 0); }
 };
 
-// Every articulation of the scene, in order of first appearance. Error(kUnsupported): too many coordinates.
+// A link's inertia in axes rotated by R_LJ; an isotropic one keeps its very numbers.
+Inertia in_joint_axes(const Inertia& inertia, const Mat3& R_LJ);
+
+// Every articulation of the scene, in order of first appearance. Error(kUnsupported): more than kMaxCoords.
 Vector<Tree> make_trees(const Scene& scene);
 
 }  // namespace rdm

@@ -27,7 +27,7 @@
 // Bias by momentum balance. A textbook's bias takes w x I w of the step's start and may gain energy at a step
 // of any size. Here each body's velocity of c and angular momentum about c are stored as the last solve left
 // them (v-, L-: vectors of the world), and the bias is what carries them over into the new pose:
-//   f   = m (v_c(q, qd) - d v-) / h - d (m g + push)
+//   f   = m (v_c(q, qd) - d v-) / h - d (m g + push)          g = 0 of weightless links
 //   n_c = (I(q) w(q, qd) - d L-) / h - d torque
 // with v_c, w of the rates unchanged since the solve. M dv = h (tau - bias) then leaves each body with
 // d (p- + h (m g + push)) and what the joints add, d = 1 / (1 + h damping). No Coriolis term is written: the
@@ -45,12 +45,12 @@ namespace {
 // middle to the step's end; at 0 a free swing loses energy fast.
 constexpr double kForwardRotation = 0.4;
 
-// What never changes, per link: JointDef and Inertia by lanes.
+// What no step changes, per link: JointDef and Inertia by lanes.
 template <class L>
-struct LinkModel {
+struct LinkModel : LinkConstants<typename L::V> {
   using V = typename L::V;
-  V R_PJ[9], q_PJ[4], p_PJ[3], com[3], mass, moment[6];
-  V kp, kd, effort, lower, upper, armature, friction, ratio, slack;
+  V R_PJ[9], q_PJ[4], p_PJ[3], com[3];
+  V lower, upper, ratio, slack, limit_stiffness;
 };
 
 // One substep's values, per link.
@@ -76,17 +76,16 @@ struct CoordWork {
 
 // The robots of one batch. Arrays are by link, coordinate or shape; a number of each is a V, by lane.
 template <class L>
-struct TreeBatch {
+struct TreeBatch : BaseConstants<typename L::V> {
   using S = typename L::Scalar;
   using V = typename L::V;
   using Mask = typename L::Mask;
 
   const Tree* tree;
-  S h, inv_h, limit_stiffness;
+  S h, inv_h;
   bool spring_only, any_push;
-  Mask frozen;                                    // lanes whose active sets stay for this substep
-  V gravity[3], linear_damping, angular_damping;  // factors of implicit damping, 1 without
-  V base_R[9], base_q[4], base_mass, base_com[3], base_moment[6];
+  Mask frozen;  // lanes whose active sets stay for this substep
+  V base_R[9], base_q[4], base_com[3];
   PersistentBase<V> base_state;
   LinkWork<V> base;
   LinkModel<L>* model;  // [num_links], as all of these
@@ -94,6 +93,7 @@ struct TreeBatch {
   LinkWork<V>* work;
   CoordWork<V>* coord;
   V *mass_matrix, *factor;  // rows as in Tree::path
+  V* feedforward;           // [num_links]; null: none
   // Shapes: place and half axis (of capsules) in their link's joint frame, and both in world axes from the
   // base's origin.
   V (*shape_p)[3], (*shape_a)[3], (*center)[3], (*axis)[3];
@@ -341,8 +341,8 @@ void motion_subspaces(TreeBatch<L>& t) {
 template <class L, class V>
 [[gnu::always_inline]] inline void body_force(const TreeBatch<L>& t, const V* v, const V* w, const V* arm,
                                               const V* linear, const V* angular, const V& mass,
-                                              bool isotropic, const V* relative_w, V* reaction,
-                                              LinkWork<V>* b) {
+                                              const V* gravity, bool isotropic, const V* relative_w,
+                                              V* reaction, LinkWork<V>* b) {
   using S = typename L::Scalar;
   V w_x_arm[3], spin[3], dv[3], dn[3];
   const V* c = b->c;
@@ -376,7 +376,7 @@ template <class L, class V>
       }
     }
   }
-  for (int r = 0; r < 3; ++r) b->f[r] = mass * (dv[r] - t.linear_damping * t.gravity[r]);
+  for (int r = 0; r < 3; ++r) b->f[r] = mass * (dv[r] - t.linear_damping * gravity[r]);
   if (t.any_push)
     for (int r = 0; r < 3; ++r) {
       b->f[r] -= t.linear_damping * b->push[r];
@@ -405,6 +405,7 @@ void body_forces(TreeBatch<L>& t) {
   using V = typename L::V;
   const Tree& tree = *t.tree;
   V reaction[6] = {}, base_w[3] = {};
+  const V weightless[3] = {};
   if (tree.free_base)
     for (int k = 0; k < 3; ++k) base_w[k] = t.coord[3 + k].qd;
   for (int i = 0; i < tree.num_links; ++i) {
@@ -419,14 +420,15 @@ void body_forces(TreeBatch<L>& t) {
     V arm[3], relative_w[3];
     for (int r = 0; r < 3; ++r) arm[r] = b.c[r] - self.P[r];
     for (int r = 0; r < 3; ++r) relative_w[r] = tree.free_base ? self.w[r] - base_w[r] : self.w[r];
-    body_force<L>(t, self.v, self.w, arm, self.linear, self.angular, t.model[i].mass, link.isotropic,
-                  relative_w, tree.free_base ? reaction : nullptr, &b);
+    body_force<L>(t, self.v, self.w, arm, self.linear, self.angular, t.model[i].mass,
+                  link.weightless ? weightless : t.gravity, link.isotropic, relative_w,
+                  tree.free_base ? reaction : nullptr, &b);
   }
   if (!tree.free_base) return;
   V v[3];
   for (int k = 0; k < 3; ++k) v[k] = t.coord[k].qd;
-  body_force<L>(t, v, base_w, t.base.c, t.base_state.linear, t.base_state.angular, t.base_mass, false,
-                static_cast<const V*>(nullptr), static_cast<V*>(nullptr), &t.base);
+  body_force<L>(t, v, base_w, t.base.c, t.base_state.linear, t.base_state.angular, t.base_mass, t.gravity,
+                false, static_cast<const V*>(nullptr), static_cast<V*>(nullptr), &t.base);
   for (int r = 0; r < 3; ++r) {  // the base takes the reaction: momentum is kept
     t.base.f[r] -= reaction[r];
     t.base.n[r] -= reaction[3 + r];

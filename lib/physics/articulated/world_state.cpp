@@ -30,29 +30,17 @@ Mat3 inverse_cholesky(const Mat3& a) {
   return b;
 }
 
-BodyModel make_body_model(const BodyDef& def, const Scene& scene) {
-  const double h = scene.def.solver.h;
-  BodyModel m;
-  m.inv_mass = 1 / def.inertia.mass;
-  m.sqrt_inv_mass = std::sqrt(m.inv_mass);
-  m.moment = moment_matrix(def.inertia);
-  m.inv_sqrt_moment = inverse_cholesky(m.moment);
-  m.inv_moment = transpose(m.inv_sqrt_moment) * m.inv_sqrt_moment;
-  m.linear = 1 / (1 + h * def.linear_damping);
-  m.angular = 1 / (1 + h * def.angular_damping);
-  if (def.gravity) m.gravity = scene.def.gravity;
-  return m;
-}
-
 // Of the shapes on free bodies; the capsule axis too, for all that have one.
 void set_body_bounds(const Scene& scene, const WorldState& s, Bound* bounds) {
-  for (size_t i = scene.shapes.size(); i-- > 0;) {
-    const SceneShape& shape = scene.shapes[i];
-    if (shape.carrier == Carrier::kStatic) continue;
-    if (shape.carrier != Carrier::kBody) break;  // bodies stand after all articulations
+  for (int32_t i = 0; i < scene.num_body_shapes; ++i) {
+    const int32_t at = scene.first_body_shape + i;
+    const SceneShape& shape = scene.shapes[static_cast<size_t>(at)];
     const Mat3& R_WB = s.free_bodies[shape.index].R;
     const Pose& X_BS = shape.def.X_LS;
-    set_bound(shape, s.bodies[shape.index].X.p + R_WB * X_BS.p, R_WB * to_matrix(X_BS.q), &bounds[i]);
+    const SizedShape* own = s.sized ? s.sized + i : nullptr;
+    set_bound(shape, s.bodies[shape.index].X.p + R_WB * (own ? own->p : X_BS.p), R_WB * to_matrix(X_BS.q),
+              &bounds[at]);
+    if (own) size_bound(shape, own->size_factor, &bounds[at]);
   }
 }
 
@@ -62,8 +50,59 @@ ArticulatedModel make_articulated_model(const Scene& scene) {
   ArticulatedModel model;
   model.scene = &scene;
   model.trees = make_trees(scene);
-  for (const BodyDef& body : scene.def.bodies) model.bodies.push_back(make_body_model(body, scene));
+  for (int32_t i = 0; i < scene.num_bodies; ++i) model.bodies.push_back(body_model(scene, i, nullptr));
   return model;
+}
+
+BodyModel body_model(const Scene& scene, int32_t body, const Dynamics* dynamics) {
+  const BodyDef& def = scene.def.bodies[static_cast<size_t>(body)];
+  const BodyFactors factors = dynamics ? dynamics->bodies[body] : BodyFactors{};
+  const Inertia inertia = dynamics ? dynamics->body_inertia(scene, body) : def.inertia;
+  const double h = scene.def.solver.h;
+  BodyModel m;
+  m.inv_mass = 1 / inertia.mass;
+  m.sqrt_inv_mass = std::sqrt(m.inv_mass);
+  m.moment = moment_matrix(inertia);
+  m.inv_sqrt_moment = inverse_cholesky(m.moment);
+  m.inv_moment = transpose(m.inv_sqrt_moment) * m.inv_sqrt_moment;
+  m.linear = 1 / (1 + h * (factors.linear_damping * def.linear_damping));
+  m.angular = 1 / (1 + h * (factors.angular_damping * def.angular_damping));
+  if (def.gravity) m.gravity = dynamics ? dynamics->gravity * scene.def.gravity : scene.def.gravity;
+  return m;
+}
+
+BaseConstants<double> base_constants(const ArticulatedModel& model, const TreeMember& member,
+                                     const Dynamics* dynamics) {
+  const Scene& scene = *model.scene;
+  const int32_t a = member.articulation;
+  const Inertia base = dynamics ? dynamics->base_inertia(scene, a) : member.base;
+  const Vec3 gravity = dynamics ? dynamics->gravity * member.gravity : member.gravity;
+  const double damping = dynamics ? dynamics->bases[a].damping * member.base_damping : member.base_damping;
+  BaseConstants<double> out;
+  for (int r = 0; r < 3; ++r) out.gravity[r] = gravity[r];
+  out.linear_damping = out.angular_damping = 1 / (1 + scene.def.solver.h * damping);
+  out.base_mass = base.mass;
+  for (int k = 0; k < 6; ++k) out.base_moment[k] = base.moment[k];
+  return out;
+}
+
+LinkConstants<double> link_constants(const ArticulatedModel& model, const TreeMember& member, int32_t link,
+                                     const Dynamics* dynamics) {
+  const MemberLink& from = member.links[static_cast<size_t>(link)];
+  const int32_t flat = member.first_link + link;
+  const LinkFactors factors = dynamics ? dynamics->links[flat] : LinkFactors{};
+  const Inertia inertia =
+      dynamics ? in_joint_axes(dynamics->link_inertia(*model.scene, flat), from.R_LJ) : from.inertia;
+  const JointDef& joint = from.joint;
+  LinkConstants<double> out;
+  out.mass = inertia.mass;
+  for (int k = 0; k < 6; ++k) out.moment[k] = inertia.moment[k];
+  out.kp = factors.kp * joint.kp;
+  out.kd = factors.kd * joint.kd;
+  out.effort = factors.effort * joint.effort;
+  out.friction = factors.friction * joint.friction;
+  out.armature = joint.armature;
+  return out;
 }
 
 void begin_step(const ArticulatedModel& model, WorldState* s) {
@@ -76,6 +115,11 @@ void begin_step(const ArticulatedModel& model, WorldState* s) {
     s->target[i] = s->q[i];
     s->status |= kStatusDiverged;
   }
+  for (int32_t i = 0; s->feedforward && i < scene.num_links; ++i) {
+    if (bounded(s->feedforward[i], kFeedforwardBound)) continue;
+    s->feedforward[i] = 0;
+    s->status |= kStatusDiverged;
+  }
   for (size_t i = 0; i < scene.sensors.size(); ++i) s->sensors[i] = {};
   std::memset(s->touched, 0, scene.pairs.size());
   std::copy_n(s->bodies, scene.num_bodies, s->start_bodies);
@@ -86,7 +130,7 @@ void predict_bodies(const ArticulatedModel& model, WorldState* s) {
   const double h = model.scene->def.solver.h;
   const Wrench* pushes = s->body_pushes(*model.scene);
   for (int32_t i = 0; i < model.scene->num_bodies; ++i) {
-    const BodyModel& constants = model.bodies[static_cast<size_t>(i)];
+    const BodyModel& constants = s->body_models[i];
     const Motion& m = s->bodies[i];
     FreeBody& body = s->free_bodies[i];
     const Mat3 R_BW = transpose(body.R);
@@ -107,6 +151,13 @@ void set_bound(const SceneShape& shape, const Vec3& p, const Mat3& R, Bound* bou
     bound->center[k] = static_cast<float>(p[k]);
     bound->axis[k] = static_cast<float>(axis[k]);
   }
+}
+
+void size_bound(const SceneShape& shape, double factor, Bound* bound) {
+  const Capsule capsule = capsule_around(shape);
+  bound->center[3] = static_cast<float>(factor * shape.radius);
+  bound->axis[3] = static_cast<float>(factor * capsule.radius);
+  for (int k = 0; k < 3; ++k) bound->axis[k] *= static_cast<float>(factor);
 }
 
 void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses, WorldState* s) {
@@ -155,7 +206,7 @@ void store_impulses(WorldState* s) {
 void integrate_bodies(const ArticulatedModel& model, WorldState* s) {
   const double h = model.scene->def.solver.h;
   for (int32_t i = 0; i < model.scene->num_bodies; ++i) {
-    const BodyModel& constants = model.bodies[static_cast<size_t>(i)];
+    const BodyModel& constants = s->body_models[i];
     FreeBody& body = s->free_bodies[i];
     Motion& m = s->bodies[i];
     m.v = body.v1;

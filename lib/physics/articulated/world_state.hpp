@@ -35,6 +35,37 @@ struct ArticulatedModel {
 };
 ArticulatedModel make_articulated_model(const Scene& scene);
 
+// The constants of a link and of an articulation that a world may have of its own (model/dynamics.hpp), as V:
+// one number per lane, or a plain number as an adjustable world stores it. In joint axes.
+template <class V>
+struct LinkConstants {
+  V mass, moment[6], kp, kd, effort, friction, armature;
+};
+template <class V>
+struct BaseConstants {
+  V gravity[3], linear_damping, angular_damping;  // factors of implicit damping, 1 without
+  V base_mass, base_moment[6];                    // of a free base
+};
+inline constexpr size_t kLinkConstants = sizeof(LinkConstants<float>) / sizeof(float),
+                        kBaseConstants = sizeof(BaseConstants<float>) / sizeof(float);
+static_assert(kLinkConstants == 12 && kBaseConstants == 12, "three registers of four");
+
+// Where those of an articulation begin in WorldState::constants, in numbers; past the last, how many there
+// are.
+inline size_t first_constant(const Scene& scene, int32_t articulation) {
+  const auto a = static_cast<size_t>(articulation);
+  const int32_t link = a < scene.link_offset.size() ? scene.link_offset[a] : scene.num_links;
+  return kBaseConstants * a + kLinkConstants * static_cast<size_t>(link);
+}
+
+// Of one articulation: the scene's (no dynamics), or those with a world's factors on them.
+BaseConstants<double> base_constants(const ArticulatedModel& model, const TreeMember& member,
+                                     const Dynamics* dynamics);
+LinkConstants<double> link_constants(const ArticulatedModel& model, const TreeMember& member, int32_t link,
+                                     const Dynamics* dynamics);
+// Of a free body.
+BodyModel body_model(const Scene& scene, int32_t body, const Dynamics* dynamics);
+
 // State of a link and of a base that lasts from step to step beside the joint coordinates, as V: one number
 // per lane, or a plain number as a world stores it. Velocities are in world axes, relative places from the
 // base's origin. `saturated` and `limited` are the active set of the drives and joint limits: -1 at the lower
@@ -81,10 +112,17 @@ struct WorldState {
   WarmPoint* warm;   // [contacts_max], num_warm of the last substep
   int32_t num_warm;
 
+  // what it has of its own; null where all is the scene's
+  const Dynamics* dynamics;
+  void* constants;          // [articulations]: BaseConstants, then LinkConstants per link; float or double
+  const SizedShape* sized;  // [num_body_shapes]
+  const BodyModel* body_models;  // [num_bodies], the scene's or its own
+
   // what is done to it
-  double* target;  // [num_links]
-  Wrench* pushes;  // [num_links + articulations + num_bodies] at the centre of mass, world axes
-  bool pushed;     // any of them
+  double* target;       // [num_links]
+  double* feedforward;  // [num_links]; null: none
+  Wrench* pushes;       // [num_links + articulations + num_bodies] at the centre of mass, world axes
+  bool pushed;          // any of them
 
   // of the substep
   FreeBody* free_bodies;   // [num_bodies]
@@ -119,5 +157,7 @@ void store_impulses(WorldState* s);
 void integrate_bodies(const ArticulatedModel& model, WorldState* s);  // by v1, w1
 
 void set_bound(const SceneShape& shape, const Vec3& p, const Mat3& R, Bound* bound);
+// A bound that set_bound has set, and its radii, for a shape of another size.
+void size_bound(const SceneShape& shape, double factor, Bound* bound);
 
 }  // namespace rdm

@@ -31,7 +31,8 @@ Float4 dot(const Float4* a, const Float4* b) {
 
 // Squared distances of four pairs of segments p + s u and q + t v, |s|, |t| <= 1, by coordinate. The lines
 // are nearest where d/ds = d/dt = 0 of |p - q + s u - t v|^2; an end takes the place of what lies beyond it.
-Float4 segment_distance(const Float4* p, const Float4* u, const Float4* q, const Float4* v) {
+[[gnu::always_inline]] inline Float4 segment_distance(const Float4* p, const Float4* u, const Float4* q,
+                                                      const Float4* v) {
   const Float4 tiny = splat(1e-10f);
   const Float4 r[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
   const Float4 a = dot(u, u) + tiny, e = dot(v, v) + tiny, b = dot(u, v), c = dot(u, r), f = dot(v, r);
@@ -83,6 +84,7 @@ void BroadPhase::carve(const Scene& scene, Arena& arena) {
 }
 
 void BroadPhase::make(const Scene& scene) {
+  sized_ = scene.def.adjustable;
   for (size_t i = 0; i < scene.shapes.size(); ++i) {
     const SceneShape& s = scene.shapes[i];
     const Pose X_WS = rest_pose(scene, s);
@@ -154,14 +156,23 @@ void BroadPhase::mark_neighbours(const Scene& scene, int32_t articulation, const
     neighbours_[i] = near(bounds_[i], box);
 }
 
-// Bit k: the bounds of pair list[k] meet, or one of them is a plane; four of them.
 uint32_t BroadPhase::near_four(const int32_t* list) const {
+  return sized_ ? near_four_of<true>(list) : near_four_of<false>(list);
+}
+
+template <bool kSized>
+uint32_t BroadPhase::near_four_of(const int32_t* list) const {
   Float4 p[4], u[4], q[4], v[4], gap{}, reach{};
   for (int k = 0; k < 4; ++k) {
     const Pair& pair = pairs_[list[k]];
     const Bound &a = bounds_[pair.a], &b = bounds_[pair.b];
     gap[k] = pair.gap;
     reach[k] = pair.reach;
+    if (kSized && pair.plane < 0) {
+      const float narrow = a.axis[3] + b.axis[3] + kSlack, wide = a.center[3] + b.center[3] + kSlack;
+      gap[k] = narrow * narrow;
+      reach[k] = wide * wide;
+    }
     p[k] = load4(a.center), u[k] = load4(a.axis);
     q[k] = load4(b.center), v[k] = load4(b.axis);
   }

@@ -39,7 +39,8 @@ class BroadPhase {
   // Bounds of shapes at rest, and radii of all.
   void make(const Scene& scene);
 
-  // [shapes]. Centres and axes of shapes that move are the caller's to set before each search.
+  // [shapes]. Centres and axes of shapes that move are the caller's to set before each search; of an
+  // adjustable scene the radii of bodies' shapes too.
   Bound* bounds() { return bounds_; }
 
   // Calls visit for each pair that may touch, in the order of Scene::pairs.
@@ -64,6 +65,10 @@ class BroadPhase {
   void mark_neighbours(const Scene& scene, int32_t articulation, const Box& box);
   uint32_t near_four(const int32_t* list) const;
   bool on_plane(const Pair& pair) const;
+  // Bit k: the bounds of pair list[k] meet, or one of them is a plane; four of them. kSized: the radii are
+  // the bounds' own, not those the pairs were made with.
+  template <bool kSized>
+  uint32_t near_four_of(const int32_t* list) const;
   static bool near(const Bound& bound, const Box& box);
 
   Bound* bounds_ = nullptr;
@@ -71,6 +76,7 @@ class BroadPhase {
   Plane* planes_ = nullptr;
   Box* boxes_ = nullptr;           // [articulations]
   uint8_t* neighbours_ = nullptr;  // [shapes] near the other articulation of a run
+  bool sized_ = false;             // worlds have bodies of their own size
 };
 
 }  // namespace rdm

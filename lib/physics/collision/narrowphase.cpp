@@ -19,6 +19,7 @@ Collider::~Collider() {
 
 void Collider::carve(const Scene& scene, Arena& arena) {
   num_shapes_ = static_cast<int32_t>(scene.shapes.size());
+  first_body_shape_ = scene.first_body_shape;
   geoms_ = arena.make<Geom>(scene.shapes.size());
   broad_.carve(scene, arena);
   placed_ = arena.make<uint32_t>(scene.shapes.size());
@@ -41,6 +42,10 @@ void Collider::put(Poses& poses, int32_t shape) {
   Vec3 p;
   Mat3 R;
   poses.place(shape, &p, &R);
+  if (poses.sized && shape >= first_body_shape_) {
+    const SizedShape& own = poses.sized[shape - first_body_shape_];
+    resize_geom(&geoms_[shape], own.size, own.hull);
+  }
   dMatrix3 r;
   to_ode(R, r);
   dGeomSetRotation(geoms_[shape].id, r);

@@ -18,6 +18,7 @@ class Collider {
    public:
     virtual ~Poses() = default;
     virtual void place(int32_t shape, Vec3* p_WS, Mat3* R_WS) = 0;
+    const SizedShape* sized = nullptr;  // [num_body_shapes] of the world; null: the scene's sizes
   };
   struct Found {
     int32_t count;
@@ -33,7 +34,8 @@ class Collider {
   void carve(const Scene& scene, Arena& arena);
   void make(const Scene& scene);
 
-  // [shapes]; those of shapes at rest are in place.
+  // [shapes]; those of shapes at rest are in place. Of an adjustable scene the caller sets the radii of
+  // bodies' shapes too.
   Bound* bounds() { return broad_.bounds(); }
 
   // Contact points in the order of the pairs, without force; `pairs` [contacts_max] gets each point's pair;
@@ -62,7 +64,7 @@ class Collider {
   uint32_t* placed_ = nullptr;  // [shapes] the last search that put the geom in place
   uint8_t* moves_ = nullptr;
   uint32_t search_ = 0;
-  int32_t num_shapes_ = 0;
+  int32_t num_shapes_ = 0, first_body_shape_ = 0;
 };
 
 }  // namespace rdm

@@ -60,6 +60,32 @@ Geom make_geom(const ShapeDef& shape, const Hull* hull, const Pose& X_WS) {
   return geom;
 }
 
+void resize_geom(Geom* geom, const Vec3& size, const Hull* hull) {
+  geom->hull = hull;
+  if (norm(size - geom->size) == 0) return;
+  geom->size = size;
+  switch (geom->kind) {
+    case ShapeKind::kSphere:
+      dGeomSphereSetRadius(geom->id, size.x);
+      return;
+    case ShapeKind::kCapsule:
+      dGeomCapsuleSetParams(geom->id, size.x, 2 * size.y);
+      return;
+    case ShapeKind::kBox:
+      dGeomBoxSetLengths(geom->id, 2 * size.x, 2 * size.y, 2 * size.z);
+      return;
+    case ShapeKind::kCylinder:
+      dGeomCylinderSetParams(geom->id, size.x, 2 * size.y);
+      return;
+    case ShapeKind::kEllipsoid:
+    case ShapeKind::kHull:
+      dGeomSphereSetRadius(geom->id, norm(size));
+      return;
+    case ShapeKind::kPlane:
+      return;
+  }
+}
+
 int collide_geoms(const Geom& a, const Geom& b, int most, dContactGeom* out) {
   if (!is_ours(a) && !is_ours(b)) {
     // Two boxes have no more points; asked for fewer, ODE would choose them by an arc tangent of the C

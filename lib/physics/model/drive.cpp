@@ -12,10 +12,11 @@ double coupled_target(const JointDef& joint, double q, double q_other) {
   return std::clamp(near, joint.lower, joint.upper);
 }
 
-MotorRow motor_row(const JointDef& joint, const SolverDef& solver, double q, double qd, double target) {
+MotorRow motor_row(const JointDef& joint, const SolverDef& solver, double q, double qd, double target,
+                   double feedforward) {
   double kp = joint.kp, force = joint.effort;
   const double kd = joint.kd + joint.friction / std::max(std::fabs(qd), kFrictionSpeed);
-  double spring = kp * (target - q);
+  double spring = kp * (target - q) + feedforward;
   if (solver.spring_only_effort) {
     if (std::fabs(spring) > force) {
       const double share = force / std::fabs(spring);
@@ -25,6 +26,7 @@ MotorRow motor_row(const JointDef& joint, const SolverDef& solver, double q, dou
     force = std::numeric_limits<double>::infinity();
   }
   double gain = solver.h * kp + kd;
+  if (gain <= 0 && spring != 0) gain = kLeastGain;
   const double beyond = q < joint.lower ? joint.lower - q : q > joint.upper ? joint.upper - q : 0;
   if (beyond != 0 && solver.limit_stiffness > 0) {
     const double limited = spring + solver.limit_stiffness * beyond;

@@ -2,7 +2,8 @@
 //
 // A row pulls the joint's rate towards `velocity` with softness `cfm` and at most `force`. With
 // D = h kp + kd, velocity = kp (target - q) / D and cfm = 1 / D the row's impulse is that of the PD law at
-// the end of the substep: stable at any gain.
+// the end of the substep: stable at any gain. A feed-forward torque F adds to the spring: velocity = (kp
+// (target - q) + F) / D; where there is no gain to divide by, kLeastGain stands in.
 #pragma once
 #include "physics/model/scene.hpp"
 
@@ -19,12 +20,14 @@ struct MotorRow {
 double coupled_target(const JointDef& joint, double q, double q_other);
 
 // The limit spring replaces the drive only where it drives inward faster; it may add kLimitForce.
-MotorRow motor_row(const JointDef& joint, const SolverDef& solver, double q, double qd, double target);
+MotorRow motor_row(const JointDef& joint, const SolverDef& solver, double q, double qd, double target,
+                   double feedforward = 0);
 
 // Torque that the row's law gives at the rate the substep ended with.
 double motor_torque(const MotorRow& row, double qd_after);
 
 inline constexpr double kLimitForce = 10;      // N m
+inline constexpr double kLeastGain = 1e-6;     // N m s/rad: of a drive that is a torque alone
 inline constexpr double kFrictionSpeed = 0.1;  // rad/s below which dry friction acts as viscous
 
 }  // namespace rdm

@@ -208,6 +208,15 @@ Hull make_hull(const Vec3* points, int32_t count, const char* owner) {
   return Builder(points, count, owner).make();
 }
 
+void scale_hull(const Hull& hull, double factor, Hull* out) {
+  *out = hull;
+  for (int32_t i = 0; i < hull.num_points; ++i) out->points[i] = factor * hull.points[i];
+  for (int32_t i = 0; i < hull.num_faces; ++i) out->faces[i].offset = factor * hull.faces[i].offset;
+  out->volume = factor * factor * factor * hull.volume;
+  out->com = factor * hull.com;
+  for (int i = 0; i < 6; ++i) out->moment[i] = factor * factor * hull.moment[i];
+}
+
 Vec3 half_box(const Hull& hull) {
   Vec3 half;
   for (int32_t i = 0; i < hull.num_points; ++i)

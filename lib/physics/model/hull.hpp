@@ -32,6 +32,9 @@ struct Hull {
 // a count outside [4, kMaxHullPoints] or a point farther than 1e3 m from the origin.
 Hull make_hull(const Vec3* points, int32_t count, const char* owner);
 
+// The hull `factor` times as large about its frame's origin.
+void scale_hull(const Hull& hull, double factor, Hull* out);
+
 // Half sizes of the box about the frame's origin that holds the hull, m.
 Vec3 half_box(const Hull& hull);
 

@@ -121,6 +121,11 @@ void check_articulation(ArticulationDef* a, int32_t num_materials) {
     check_inertia(link.inertia, true, link.name.text);
     check_joint(&link.joint, i, num_links);
   }
+  for (const LinkDef& link : a->links)
+    if (const int32_t other = link.joint.coupled_to;
+        other >= 0 && a->links[static_cast<size_t>(other)].joint.coupled_to >= 0)
+      fail(Code::kArgument, "%s: coupled_to %d is a joint that is coupled itself", link.joint.name.text,
+           other);
   for (ArticulationShape& s : a->shapes) {
     if (s.link < -1 || s.link >= num_links)
       fail(Code::kArgument, "%s: link %d does not exist", s.shape.name.text, s.link);
@@ -214,10 +219,12 @@ void flatten(Scene* scene) {
       add_shape(scene, s.shape, s.link < 0 ? Carrier::kBase : Carrier::kLink,
                 s.link < 0 ? -1 : offset + s.link, a);
   }
+  scene->first_body_shape = static_cast<int32_t>(scene->shapes.size());
   for (const BodyDef& body : scene->def.bodies) {
     for (const ShapeDef& shape : body.shapes) add_shape(scene, shape, Carrier::kBody, scene->num_bodies, -1);
     ++scene->num_bodies;
   }
+  scene->num_body_shapes = static_cast<int32_t>(scene->shapes.size()) - scene->first_body_shape;
   for (const ShapeDef& shape : scene->def.statics) add_shape(scene, shape, Carrier::kStatic, -1, -1);
 }
 

@@ -58,7 +58,7 @@ struct JointDef {
   double armature = 0;          // added inertia about the axis, kg m2; revolute only
   double friction = 0;          // dry friction torque
   // A coupled joint has no target of its own: it is driven to clamp(q, ratio q_other -+ slack).
-  int32_t coupled_to = -1;  // link index in the same articulation, -1: none
+  int32_t coupled_to = -1;  // link of the same articulation, before or behind, not coupled itself; -1: none
   double ratio = 1, slack = 0;
 };
 
@@ -74,7 +74,8 @@ struct LinkDef {
   Pose X_PL;            // link frame in the parent's frame at q = 0
   Inertia inertia;
   JointDef joint;
-  bool sensor = false;  // contact force and torque on it are summed and reported
+  bool sensor = false;      // contact force and torque on it are summed and reported
+  bool weightless = false;  // feels no gravity, though its articulation does
 };
 
 struct ArticulationShape {
@@ -88,7 +89,7 @@ struct ArticulationDef {
   bool free_base = false;
   Inertia base;             // of a free base
   double base_damping = 0;  // 1/s on linear and angular velocity of every link of a free-base robot
-  bool gravity = false;
+  bool gravity = false;     // on base and links, but for those that are weightless
   Vector<LinkDef> links;
   Vector<ArticulationShape> shapes;
   Vector<std::pair<int32_t, int32_t>> self_pairs;  // shape indices within `shapes` that may touch
@@ -122,7 +123,7 @@ struct SolverDef {
   int32_t contacts_per_pair = 4;    // 1..8
   int32_t contacts_max = 36;        // per world and substep, 1..4096; more raise kStatusContactOverflow
   double limit_margin = 5e-3;       // rad beyond a joint's range before it is clamped
-  double limit_stiffness = 100;     // N m/rad of the soft limit
+  double limit_stiffness = 100;     // N m/rad of the soft limit; engine articulated: of light joints, 0: none
   double link_armature = 3e-5;      // kg m2 about the joint axis of links under 1e-4 kg m2 (engine ode)
   bool spring_only_effort = false;  // true: effort bounds the spring alone, damping stays outside
   bool exact = false;               // engine ode: the O(n^3) solver, slow; the reference of tests
@@ -145,7 +146,12 @@ struct SceneDef {
   int32_t num_materials = 1;
   Friction friction[kMaxMaterials][kMaxMaterials];
   bool articulations_touch = true;  // shapes of different articulations may (friction by material)
+  bool feedforward = false;         // worlds have World::feedforward, a torque added to every drive
+  bool adjustable = false;          // worlds have World::dynamics, factors on these constants (dynamics.hpp)
 };
+
+// Of one articulation: links, and six for a free base.
+inline constexpr int32_t kMaxCoords = 512;
 
 // Where a shape of the flattened scene sits. The base of an articulation may be fixed or free.
 enum class Carrier : int32_t { kStatic = 0, kLink = 1, kBody = 2, kBase = 3 };
@@ -187,6 +193,8 @@ struct PairRun {
 struct Scene {
   SceneDef def;
   int32_t num_links = 0, num_bodies = 0;
+  int32_t first_body_shape = 0;  // shapes of bodies stand in one run
+  int32_t num_body_shapes = 0;
   Vector<int32_t> link_offset;        // per articulation
   Vector<int32_t> link_articulation;  // per link
   Vector<int32_t> first_shape;        // per articulation

@@ -77,6 +77,7 @@ bool OdeLinks::merges(const Scene& scene, int32_t link) const {
     if (shape.carrier == Carrier::kLink && shape.index == link) return false;
   const LinkFrame &a = frames[static_cast<size_t>(link)], &b = frames[static_cast<size_t>(child)];
   if (a.prismatic || b.prismatic || norm(b.p_PL) != 0 || scene.link(link).sensor) return false;
+  if (scene.link(link).weightless != scene.link(child).weightless) return false;
   const bool parent_merges = a.parent >= 0 && !links_[a.parent].owner;
   return !parent_merges && std::fabs(dot(a.axis, rotate(b.q_PL, b.axis))) < 1e-9;
 }
@@ -113,7 +114,7 @@ void OdeLinks::make_bodies(dWorldID world, int32_t articulation, const LinkState
     links_[i].own_share = own / trace(inertia);
     links_[i].com = inertia.com;
     links_[i].body = make_body(world, inertia);
-    dBodySetGravityMode(links_[i].body, def.gravity);
+    dBodySetGravityMode(links_[i].body, def.gravity && !link.weightless);
     if (universal) links_[parent].body = links_[i].body;
   }
 }
@@ -225,7 +226,8 @@ void OdeLinks::drive(const LinkState& state) {
     const JointDef& def = *joint.def;
     const double goal = joint.other >= 0 ? coupled_target(def, state.q[i], state.q[joint.other])
                                          : std::clamp(state.target[i], def.lower, def.upper);
-    tell(joint, motor_row(def, solver, state.q[i], state.qd[i], goal));
+    const double extra = state.feedforward ? state.feedforward[i] : 0;
+    tell(joint, motor_row(def, solver, state.q[i], state.qd[i], goal, extra));
   }
 }
 

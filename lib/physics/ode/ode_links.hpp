@@ -15,6 +15,7 @@ namespace rdm {
 struct LinkState {
   const Scene* scene;
   double *q, *qd, *target, *torque;
+  const double* feedforward;  // null: none
   Motion *links, *bases;
   Mat3 *link_R, *base_R;
   Vec3* axes;

@@ -40,6 +40,8 @@ OdeWorld::OdeWorld(const Scene& scene, Arena& arena, OdeWorld* partner) : World(
   sensor_of_link_ = arena.make<int32_t>(links);
   num_forces_ = static_cast<int32_t>(links + scene.def.articulations.size() + bodies);
   forces_ = arena.make<Force>(static_cast<size_t>(num_forces_));
+  if (scene.def.adjustable)
+    fail(Code::kUnsupported, "adjustable: engine ode takes the scene's constants alone");
   if (scene.def.solver.iterations > kMaxOdeIterations)
     fail(Code::kRange, "iterations: engine ode takes at most %d, not %d", kMaxOdeIterations,
          scene.def.solver.iterations);
@@ -165,7 +167,8 @@ void OdeWorld::make_forces() {
     const double damping = def.free_base ? def.base_damping : 0;
     dMass mass;
     dBodyGetMass(tree_.body(i), &mass);
-    set_force(force, tree_.body(i), damping, damping * tree_.own_share(i), mass.mass, def.gravity);
+    set_force(force, tree_.body(i), damping, damping * tree_.own_share(i), mass.mass,
+              def.gravity && !scene_->link(i).weightless);
     const int32_t next = i + 1;
     // Both links of a universal joint push the same body; only one of them may damp it.
     if (next < scene_->num_links && tree_.body(next) == tree_.body(i)) {
@@ -402,6 +405,11 @@ void OdeWorld::step() {
     target_[i] = q_[i];
     status_ |= kStatusDiverged;
   }
+  for (int32_t i = 0; feedforward_ && i < scene_->num_links; ++i) {
+    if (bounded(feedforward_[i], kFeedforwardBound)) continue;
+    feedforward_[i] = 0;
+    status_ |= kStatusDiverged;
+  }
   for (size_t i = 0; i < scene_->sensors.size(); ++i) sensors_[i] = {};
   for (size_t i = 0; i < scene_->pairs.size(); ++i) touched_[i] = 0;
   const int32_t substeps = scene_->def.solver.substeps;
@@ -460,6 +468,7 @@ void OdeWorld::save(Writer& out) const {
   for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a)
     if (tree_.base(a)) save_body(out, tree_.base(a));
   for (int32_t i = 0; i < scene_->num_bodies; ++i) save_body(out, body_ids_[i]);
+  save_extras(out);
 }
 
 // Reads a whole state without taking any of it. Error(kFormat) for one that no step leads to.
@@ -471,6 +480,7 @@ void OdeWorld::check_state(Reader in) const {
   for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a)
     count += tree_.base(a) ? 1 : 0;
   for (int32_t i = 0; i < count; ++i) good &= sound_body(in.value<BodyState>());
+  good &= sound_extras(in, *scene_);
   if (!good) fail(Code::kFormat, "world state: a number is not finite or out of range");
 }
 
@@ -501,6 +511,7 @@ void OdeWorld::load(Reader& in) {
     load_body(in, body_ids_[i]);
     read_body(i);
   }
+  load_extras(in);
   num_contacts_ = 0;
   for (size_t i = 0; i < scene_->pairs.size(); ++i) touched_[i] = 0;
   for (int32_t i = 0; i < num_forces_; ++i) {

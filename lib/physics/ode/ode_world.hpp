@@ -47,7 +47,7 @@ class OdeWorld final : public World {
   };
 
   LinkState state() const {
-    return {scene_, q_, qd_, target_, torque_, links_, bases_, link_R_, base_R_, axes_};
+    return {scene_, q_, qd_, target_, torque_, feedforward_, links_, bases_, link_R_, base_R_, axes_};
   }
   void links_changed(int32_t articulation) override;
   void put_base(int32_t articulation, const Motion& m);

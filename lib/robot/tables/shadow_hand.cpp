@@ -222,6 +222,7 @@ extern constinit const Robot kShadowHand = {
     .palm = 1,
     .p_palm = {0.011, -0.0111, 0.038},
     .mirror = 1,
+    .X_RM = {{0, 0.01, 0}, {}},  // the forearm's
     .fingers = table(kFingers),
     .poses = {table(kFolded), table(kClosed)},
     .p_hold = {0, -0.02, 0.08},

@@ -1,0 +1,25 @@
+// Which entries of an observation a network sees: options actor_obs and critic_obs.
+//
+// A list of words separated by commas, read from the left: a field's name or a pattern with '*' adds entries,
+// with '!' before it takes them away; a list that begins so has all at first. Three words are lists by
+// themselves where no field has their name: state is all, proprioception what the robot's own joints, bases
+// and last action tell (of small worlds the inertial sensors), touch that and the fingertips' forces.
+#pragma once
+#include <cstdint>
+
+#include "base/host.hpp"
+
+namespace rdm {
+
+// A part of an observation row.
+struct ObsField {
+  const char* name;
+  int32_t offset, count;
+};
+
+// The columns, ascending; empty when they are all of [0, obs_dim). Error(kNotFound) for a word that names
+// nothing, kArgument when nothing is left, or for names without fields.
+Vector<int32_t> select_columns(const char* key, const char* list, const ObsField* fields, int32_t num_fields,
+                               int32_t obs_dim);
+
+}  // namespace rdm

@@ -1,0 +1,99 @@
+#include "env/options/disturb.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+
+#include "base/error.hpp"
+#include "base/hash.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr OptionSpec kRows[] = {
+    open_option(drawable(number_option("noise.FIELD", 0, 0, 1000,
+                                       "deviation of normal noise on the field's entries, new in each "
+                                       "control step; in the field's unit, cut "
+                                       "at its bounds; FIELD: a field, or several by '*', later lines win"))),
+    open_option(drawable(number_option(
+        "bias.FIELD", 0, 0, 1000,
+        "each entry of the field is off by what is drawn from +-this at a reset; in the field's unit"))),
+    open_option(
+        drawable(integer_option("delay.FIELD", 0, 0, kMaxDelay,
+                                "control steps by which the field is late; the reset's value before"))),
+    open_option(
+        drawable(number_option("dropout.FIELD", 0, 0, 1,
+                               "probability in a control step that the field stays as it was shown last"))),
+    drawable(integer_option("action_delay", 0, 0, kMaxDelay,
+                            "control steps by which actions are late; the hold action before the first")),
+    flag_option("end_on_cost", false,
+                "a cost that is not 0, of column 0 or of one with a limit, ends the episode"),
+};
+
+OptionRange FieldDisturbance::*member_of(const OptionSpec& spec) {
+  constexpr OptionRange FieldDisturbance::*kMembers[] = {&FieldDisturbance::noise, &FieldDisturbance::bias,
+                                                         &FieldDisturbance::delay,
+                                                         &FieldDisturbance::dropout};
+  return &spec >= kRows && &spec < kRows + std::size(kMembers) ? kMembers[&spec - kRows] : nullptr;
+}
+
+[[noreturn]] void unknown(const char* owner, const char* key, const char* name, const Task& task) {
+  Vector<const char*> names;
+  for (const FieldSpec& f : task.fields()) names.push_back(f.name.text);
+  fail(Code::kNotFound, "%s option %s: no field of the observation has this name%s", owner, key,
+       Nearest(name, names.data(), static_cast<int32_t>(names.size())).text);
+}
+
+}  // namespace
+
+const OptionSpec* disturb_options(int32_t* count) {
+  *count = static_cast<int32_t>(std::size(kRows));
+  return kRows;
+}
+
+Disturbance disturbance_from(const Options& options, const Task& task, const char* owner) {
+  Disturbance d;
+  d.action_delay = options.range("action_delay");
+  d.end_on_cost = options.flag("end_on_cost");
+  Vector<FieldDisturbance> all;
+  for (int32_t i = 0, offset = 0; i < static_cast<int32_t>(task.fields().size()); ++i) {
+    const FieldSpec f = bounded_field(task, i);
+    FieldDisturbance x;
+    x.offset = offset, x.count = f.count, x.low = f.low, x.high = f.high;
+    all.push_back(x);
+    offset += f.count;
+  }
+  for (int32_t i = 0; i < options.count(); ++i) {
+    const char* name = options.open_name(i);
+    const auto member = name ? member_of(options.spec(i)) : nullptr;
+    if (!member) continue;
+    bool found = false;
+    for (size_t k = 0; k < all.size(); ++k) {
+      if (!name_matches(name, task.fields()[k].name.text)) continue;
+      all[k].*member = options.range(i);
+      found = true;
+    }
+    if (!found) unknown(owner, options.key(i), name, task);
+  }
+  const auto still = [](const FieldDisturbance& f) {
+    return f.noise.high <= 0 && f.bias.high <= 0 && f.delay.high <= 0 && f.dropout.high <= 0;
+  };
+  all.erase(std::remove_if(all.begin(), all.end(), still), all.end());
+  if (!all.empty()) d.fields.assign(all.begin(), all.end());
+  return d;
+}
+
+uint64_t hash_disturbance(const Options& options, uint64_t hash) {
+  for (int32_t i = 0; i < options.count(); ++i) {
+    const OptionSpec& spec = options.spec(i);
+    if (&spec < kRows || &spec >= kRows + std::size(kRows)) continue;
+    const OptionRange value = options.range(i);
+    if (!options.open_name(i) && value.low == spec.number && !value.drawn()) continue;
+    hash = hash_bytes(options.key(i), std::strlen(options.key(i)) + 1, hash);
+    hash = hash_bytes(&value.low, sizeof value.low, hash);
+    hash = hash_bytes(&value.high, sizeof value.high, hash);
+  }
+  return hash;
+}
+
+}  // namespace rdm
