@@ -290,6 +290,95 @@ TEST(OwnTask, CountsFollowFromOptions) {
   EXPECT_EQ(mean[1], 0.5f);
 }
 
+TEST(OwnTask, OptionsMayBeRanges) {
+  BallTask t("own_ranges");
+  t.options[0].choices = "a..b";
+  t.def.build = [](void* user, rdm_scene* scene, void* instance) {
+    double low = 0, high = 0;
+    rdm_result r = rdm_scene_range(scene, "push", &low, &high);
+    if (r == RDM_OK && (low != 0.5 || high != 2)) r = rdm_fail(RDM_RANGE, "not the range that was given");
+    return r != RDM_OK ? r : ball_build(user, scene, instance);
+  };
+  const Registered made(t.def);
+  Rows rows("own_ranges", 1, 0, "push=0.5..2");
+  rdm_option_info option;
+  ASSERT_EQ(rdm_task_option(made.index(), 0, &option), RDM_OK);
+  EXPECT_STREQ(option.choices, "a..b");
+  rdm_pool_config c;
+  rdm_pool_config_init(&c, sizeof c);
+  c.task = "own_ranges";
+  rdm_pool* p = nullptr;
+  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_RANGE);
+  EXPECT_STREQ(rdm_last_error(), "task own_ranges: build: not the range that was given");
+}
+
+// An arm with weight, whose drives are too soft for it: by its gravity as feed-forward it stays where it is.
+struct Arm {
+  bool held = false;
+  int32_t joints = 0;
+  double home[RDM_ROBOT_LINKS] = {};
+};
+
+rdm_result arm_build(void* user, rdm_scene* scene, void*) {
+  auto* arm = static_cast<Arm*>(user);
+  rdm_scene_robot robot{};
+  robot.struct_size = sizeof robot, robot.name = "arm", robot.gravity = 1;
+  rdm_robot_def d;
+  rdm_robot_def_init(&d, sizeof d);
+  rdm_result r = rdm_robot_find("ur5e", &robot.robot);
+  if (r == RDM_OK) r = rdm_robot_get(robot.robot, &d);
+  if (r == RDM_OK) r = rdm_robot_poses_of(robot.robot, nullptr, arm->home, nullptr, nullptr);
+  arm->joints = d.num_links;
+  if (r == RDM_OK) r = rdm_scene_add_robot(scene, &robot, nullptr);
+  return r != RDM_OK ? r : rdm_scene_set_feedforward(scene);
+}
+
+TEST(OwnTask, AnArmIsHeldByFeedForward) {
+  static const rdm_field_def field = {"one", "1", 1, 0, 0, 0};
+  static const rdm_cost cost = {"sag", "0; raw: how far a joint is from home, rad", -1};
+  double sag[2];
+  for (const bool held : {false, true}) {
+    Arm arm;
+    arm.held = held;
+    rdm_task_def d;
+    rdm_task_def_init(&d, sizeof d);
+    d.name = "own_arm", d.fields = &field, d.num_fields = 1, d.costs = &cost, d.num_costs = 1,
+    d.action_dim = 1;
+    d.max_steps = 1000, d.user = &arm, d.build = arm_build;
+    d.reset = [](void* user, const void*, rdm_world* world, void*, rdm_random*) {
+      const auto* a = static_cast<const Arm*>(user);
+      return rdm_world_set_joints(world, 0, a->home, nullptr, a->joints);
+    };
+    d.control = [](void* user, const void*, rdm_world* world, void*, const float*) {
+      const auto* a = static_cast<const Arm*>(user);
+      double efforts[RDM_ROBOT_LINKS];
+      const rdm_result r = rdm_world_gravity(world, 0, efforts, a->joints);
+      return r != RDM_OK || !a->held ? r : rdm_world_set_feedforward(world, 0, efforts, a->joints);
+    };
+    d.judge = [](void* user, const void*, rdm_world* world, void*, int32_t, rdm_verdict* out) {
+      const auto* a = static_cast<const Arm*>(user);
+      rdm_joints joints{};
+      joints.struct_size = sizeof joints;
+      const rdm_result r = rdm_world_joints(world, &joints);
+      for (int32_t i = 0; i < a->joints; ++i)
+        out->cost_raw[0] = std::max(out->cost_raw[0], std::fabs(joints.q[i] - a->home[i]));
+      return r;
+    };
+    d.observe = [](void*, const void*, const rdm_world*, const void*, float* obs) -> rdm_result {
+      obs[0] = 0;
+      return RDM_OK;
+    };
+    const Registered made(d);
+    Rows rows("own_arm", 1);
+    rows.step(120);
+    sag[held] = static_cast<double>(rows.b.cost_raw[0]);
+    EXPECT_EQ(rdm_task_check("own_arm", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+  }
+  std::printf("sag of an arm after 2 s: %.3g rad, held %.3g rad\n", sag[0], sag[1]);
+  EXPECT_GT(sag[0], 10 * sag[1]);
+  EXPECT_LT(sag[1], 2e-3);
+}
+
 TEST(OwnTask, ManyThreadsAddAndRemove) {
   std::vector<std::thread> threads;
   for (int k = 0; k < 4; ++k)
