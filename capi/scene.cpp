@@ -241,8 +241,11 @@ Vector<const char*> names_of(const rdm_scene& scene, int32_t part) {
     case RDM_SCENE_SENSOR:
       for (const int32_t link : s.sensors) names.push_back(s.link(link).name.text);
       break;
+    case RDM_SCENE_MATERIAL:
+      for (const Name& n : scene.materials) names.push_back(n.text);
+      break;
     default:
-      fail(Code::kRange, "part: %d is outside [0, 5]", part);
+      fail(Code::kRange, "part: %d is outside [0, 6]", part);
   }
   return names;
 }
@@ -321,6 +324,13 @@ rdm_result rdm_scene_set_feedforward(rdm_scene* scene) {
   return call_inside([&] {
     need_open(scene);
     scene->def.feedforward = true;
+  });
+}
+
+rdm_result rdm_scene_set_adjustable(rdm_scene* scene) {
+  return call_inside([&] {
+    need_open(scene);
+    scene->def.adjustable = true;
   });
 }
 
@@ -487,7 +497,7 @@ rdm_result rdm_scene_find(rdm_scene* scene, int32_t part, const char* name, int3
     const Vector<const char*> names = names_of(*scene, part);
     const int32_t i = find_name(
         names, [](const char* n) { return n; }, name);
-    constexpr const char* kParts[] = {"robot", "body", "link", "joint", "shape", "sensor"};
+    constexpr const char* kParts[] = {"robot", "body", "link", "joint", "shape", "sensor", "material"};
     if (i < 0) fail_unknown(kParts[part], name, names);
     *index = i;
   });

@@ -73,6 +73,44 @@ void need_joints(const World& w, int32_t first, int32_t n) {
     fail(Code::kRange, "first, n: %d joints from %d on, of %d", n, first, w.scene().num_links);
 }
 
+double* place_of(const rdm_factor& f, int64_t materials, Dynamics* d) {
+  const auto link = [&] { return need_index(f.index, d->num_links, "link"), &d->links[f.index]; };
+  const auto base = [&] { return need_index(f.index, d->num_bases, "robot"), &d->bases[f.index]; };
+  const auto body = [&] { return need_index(f.index, d->num_bodies, "body"), &d->bodies[f.index]; };
+  switch (f.what) {
+    case RDM_SCALE_GRAVITY:
+      return &d->gravity;
+    case RDM_SCALE_LINK_MASS:
+      return &link()->mass;
+    case RDM_SCALE_LINK_KP:
+      return &link()->kp;
+    case RDM_SCALE_LINK_KD:
+      return &link()->kd;
+    case RDM_SCALE_LINK_EFFORT:
+      return &link()->effort;
+    case RDM_SCALE_LINK_FRICTION:
+      return &link()->friction;
+    case RDM_SCALE_BASE_MASS:
+      return &base()->mass;
+    case RDM_SCALE_BASE_DAMPING:
+      return &base()->damping;
+    case RDM_SCALE_BODY_MASS:
+      return &body()->mass;
+    case RDM_SCALE_BODY_SIZE:
+      return &body()->size;
+    case RDM_SCALE_BODY_LINEAR_DAMPING:
+      return &body()->linear_damping;
+    case RDM_SCALE_BODY_ANGULAR_DAMPING:
+      return &body()->angular_damping;
+    case RDM_SCALE_FRICTION:
+      need_index(f.index, materials, "index");
+      need_index(f.other, materials, "other");
+      return &d->friction[Dynamics::friction_index(f.index, f.other)];
+    default:
+      fail(Code::kRange, "what: %d is outside [0, 12]", f.what);
+  }
+}
+
 template <class F>
 auto draw(rdm_random* random, F&& f) -> decltype(f(std::declval<Stream&>())) {
   if (!random) return 0;
@@ -284,6 +322,19 @@ rdm_result rdm_world_gravity(const rdm_world* world, int32_t robot, double* effo
     const auto links = w.scene().def.articulations[static_cast<size_t>(robot)].links.size();
     need_numbers(efforts, n, static_cast<int32_t>(links), "efforts");
     gravity_torques(w, robot, efforts);
+  });
+}
+
+rdm_result rdm_world_scale(rdm_world* world, const rdm_factor* factors, int32_t count) {
+  return call_inside([&] {
+    World& w = change(world);
+    if (!w.dynamics()) fail(Code::kState, "world: its scene is not adjustable, rdm_scene_set_adjustable");
+    if (count < 0) fail(Code::kRange, "count: %d is negative", count);
+    if (count > 0) need(factors, "factors");
+    Dynamics& d = w.edit_dynamics();
+    const auto materials = static_cast<int64_t>(world->scene->materials.size());
+    for (int32_t i = 0; i < count; ++i) *place_of(factors[i], materials, &d) = factors[i].factor;
+    w.set_dynamics(d);
   });
 }
 

@@ -803,7 +803,8 @@ enum rdm_scene_part { /* what rdm_scene_find looks for; numbers count from 0 in 
   RDM_SCENE_LINK = 2,   /* of all robots, robot by robot; joint i moves link i */
   RDM_SCENE_JOINT = 3,
   RDM_SCENE_SHAPE = 4,  /* as rdm_pool_shape: robots, bodies, those that stand still */
-  RDM_SCENE_SENSOR = 5  /* the link of a fingertip, for rdm_world_sensor */
+  RDM_SCENE_SENSOR = 5, /* the link of a fingertip, for rdm_world_sensor */
+  RDM_SCENE_MATERIAL = 6 /* "default" is 0 */
 };
 /* Value of the pool's option `key`: *value of a number, integer or flag, *text of a text. NOT_FOUND, ARGUMENT. */
 RDM_API rdm_result rdm_scene_number(rdm_scene *scene, const char *key, double *value);
@@ -818,6 +819,7 @@ RDM_API rdm_result rdm_scene_add_material(rdm_scene *scene, const char *name); /
 RDM_API rdm_result rdm_scene_set_friction(rdm_scene *scene, const char *a, const char *b, double mu); /* 0 or more */
 RDM_API rdm_result rdm_scene_set_gravity(rdm_scene *scene, const double gravity[3]); /* m/s2 */
 RDM_API rdm_result rdm_scene_set_feedforward(rdm_scene *scene); /* worlds take rdm_world_set_feedforward */
+RDM_API rdm_result rdm_scene_set_adjustable(rdm_scene *scene);  /* worlds take rdm_world_scale */
 RDM_API rdm_result rdm_scene_add_robot(rdm_scene *scene, const rdm_scene_robot *robot, int32_t *index); /* index: NULL */
 RDM_API rdm_result rdm_scene_add_body(rdm_scene *scene, const rdm_body_def *body, int32_t *index); /* index: NULL */
 RDM_API rdm_result rdm_scene_add_static(rdm_scene *scene, const rdm_shape_def *shape); /* stands still */
@@ -876,6 +878,27 @@ RDM_API rdm_result rdm_world_command(rdm_world *world, int32_t robot, const doub
  * them. rdm_world_gravity gives those that hold a robot of n joints against gravity where it is. */
 RDM_API rdm_result rdm_world_set_feedforward(rdm_world *world, int32_t first, const double *efforts, int32_t n);
 RDM_API rdm_result rdm_world_gravity(const rdm_world *world, int32_t robot, double *efforts, int32_t n);
+enum rdm_scale { /* what a factor is on, and in brackets its bounds */
+  RDM_SCALE_GRAVITY = 0,        /* [-10, 10] */
+  RDM_SCALE_LINK_MASS = 1,      /* [0.001, 1000], moments with it; index: link */
+  RDM_SCALE_LINK_KP = 2, RDM_SCALE_LINK_KD = 3, RDM_SCALE_LINK_EFFORT = 4, RDM_SCALE_LINK_FRICTION = 5, /* [0, 1000] */
+  RDM_SCALE_BASE_MASS = 6,      /* [0.001, 1000] of a free base; index: robot */
+  RDM_SCALE_BASE_DAMPING = 7,   /* [0, 1000] of all links of a robot with a free base */
+  RDM_SCALE_BODY_MASS = 8,      /* [0.001, 1000], moments with it; index: body */
+  RDM_SCALE_BODY_SIZE = 9,      /* [0.05, 20] of all its shapes, moments with the square */
+  RDM_SCALE_BODY_LINEAR_DAMPING = 10, RDM_SCALE_BODY_ANGULAR_DAMPING = 11, /* [0, 1000] */
+  RDM_SCALE_FRICTION = 12       /* [0, 1000] of two materials, index and other */
+};
+typedef struct rdm_factor { /* frozen layout: on a constant of the scene, in one world */
+  int32_t what;            /* RDM_SCALE_*                                                                 */
+  int32_t index;           /* of the thing                                                                */
+  int32_t other;           /* the second material of a friction                                           */
+  int32_t reserved;        /* 0                                                                           */
+  double factor;           /* times the scene's value                                                     */
+} rdm_factor;
+/* Lays factors [count] over those that the world has, all 1 at the start of an episode; reset may draw them. All are taken
+ * or none. STATE unless the scene is adjustable. */
+RDM_API rdm_result rdm_world_scale(rdm_world *world, const rdm_factor *factors, int32_t count);
 /* Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N m); of a link at `point` [3]. */
 RDM_API rdm_result rdm_world_push_body(rdm_world *world, int32_t body, const double force[3], const double torque[3]);
 RDM_API rdm_result rdm_world_push_base(rdm_world *world, int32_t robot, const double force[3], const double torque[3]);

@@ -312,6 +312,61 @@ TEST(OwnTask, OptionsMayBeRanges) {
   EXPECT_STREQ(rdm_last_error(), "task own_ranges: build: not the range that was given");
 }
 
+// A world with factors goes as one of a scene with the products.
+TEST(OwnTask, WorldsHaveConstantsOfTheirOwn) {
+  static double factor = 1;  // given to the world, or to the scene
+  static bool by_world = false;
+  uint64_t bytes[3] = {};
+  for (const int way : {0, 1, 2}) {  // as it is; by the scene; by the world
+    factor = way == 0 ? 1 : 2;
+    by_world = way == 2;
+    BallTask t("own_scaled");
+    t.def.build = [](void*, rdm_scene* scene, void* instance) {
+      auto* ids = static_cast<BallIds*>(instance);
+      rdm_shape_def sphere{};
+      sphere.kind = RDM_SPHERE, sphere.size[0] = 0.05;
+      rdm_body_def ball{};
+      ball.struct_size = sizeof ball, ball.name = "ball", ball.shapes = &sphere, ball.num_shapes = 1;
+      ball.mass = 0.5 * (by_world ? 1 : factor), ball.p[2] = 0.05;
+      rdm_shape_def ground{};
+      ground.name = "ground", ground.kind = RDM_PLANE;
+      rdm_result r = rdm_scene_set_adjustable(scene);
+      if (r == RDM_OK) r = rdm_scene_add_body(scene, &ball, &ids->ball);
+      return r != RDM_OK ? r : rdm_scene_add_static(scene, &ground);
+    };
+    t.def.reset = [](void*, const void* instance, rdm_world* world, void*, rdm_random*) {
+      const rdm_factor bad = {RDM_SCALE_BODY_MASS, 1, 0, 0, 2};
+      const rdm_factor f[] = {
+          {RDM_SCALE_BODY_MASS, static_cast<const BallIds*>(instance)->ball, 0, 0, factor},
+          {RDM_SCALE_FRICTION, 0, 0, 0, 1}};
+      EXPECT_EQ(rdm_world_scale(world, &bad, 1), RDM_RANGE);
+      return by_world ? rdm_world_scale(world, f, 2) : static_cast<rdm_result>(RDM_OK);
+    };
+    t.def.control = [](void*, const void* instance, rdm_world* world, void*, const float* action) {
+      const double force[3] = {static_cast<double>(action[0]), 0, 0}, none[3] = {0, 0, 0};
+      return rdm_world_push_body(world, static_cast<const BallIds*>(instance)->ball, force, none);
+    };
+    t.def.judge = [](void*, const void*, rdm_world*, void*, int32_t, rdm_verdict*) -> rdm_result {
+      return RDM_OK;
+    };
+    t.def.observe = [](void*, const void* instance, const rdm_world* world, const void*, float* obs) {
+      rdm_motion m;
+      const rdm_result r = rdm_world_body(world, static_cast<const BallIds*>(instance)->ball, &m);
+      for (int i = 0; i < kBallObs; ++i) obs[i] = i < 3 ? static_cast<float>(m.p[i]) : 0;
+      return r;
+    };
+    const Registered made(t.def);
+    Rows rows("own_scaled", 1);
+    rows.step(30);
+    uint32_t x = 0;
+    std::memcpy(&x, rows.b.obs, sizeof x);
+    bytes[way] = x;
+    if (by_world) EXPECT_EQ(rdm_task_check("own_scaled", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+  }
+  EXPECT_NE(bytes[0], bytes[1]);
+  EXPECT_EQ(bytes[2], bytes[1]);
+}
+
 // An arm with weight, whose drives are too soft for it: by its gravity as feed-forward it stays where it is.
 struct Arm {
   bool held = false;

@@ -241,9 +241,9 @@ TEST(OwnTaskErrors, OfScenes) {
          int32_t i;
          return rdm_scene_find(s, RDM_SCENE_BODY, "bal", &i);
        })},
-      {RDM_RANGE, "part: 6 is outside [0, 5]", after([](auto* s) {
+      {RDM_RANGE, "part: 7 is outside [0, 6]", after([](auto* s) {
          int32_t i;
-         return rdm_scene_find(s, 6, "ball", &i);
+         return rdm_scene_find(s, 7, "ball", &i);
        })},
       {RDM_NOT_FOUND, "b cub*: unknown", after([](auto* s) {
          int32_t i;
@@ -319,6 +319,8 @@ TEST(OwnTaskErrors, OfCallsInAWorld) {
       {RDM_STATE, "world: its scene has no feed-forward, rdm_scene_set_feedforward",
        [](auto* w) { return rdm_world_set_feedforward(w, 0, x, 1); }},
       {RDM_RANGE, "n: 2 efforts, the robot has 24", [](auto* w) { return rdm_world_gravity(w, 0, x, 2); }},
+      {RDM_STATE, "world: its scene is not adjustable, rdm_scene_set_adjustable",
+       [](auto* w) { return rdm_world_scale(w, nullptr, 0); }},
       {RDM_ARGUMENT, "force is not finite", [](auto* w) { return rdm_world_push_body(w, 0, nan, zero); }},
       {RDM_ARGUMENT, "point is not finite", [](auto* w) { return rdm_world_push_link(w, 0, zero, nan); }},
       {RDM_RANGE, "capacity: -1 is negative",

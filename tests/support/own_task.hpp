@@ -248,7 +248,7 @@ inline rdm_result ball_check_state(void*, const void*, const void* state) {
   if (!(std::fabs(s->start) <= 1)) return rdm_fail(RDM_FORMAT, "start is not within +-1");
   for (const float a : s->action)
     if (!(std::fabs(a) <= 1)) return rdm_fail(RDM_FORMAT, "an action is not within +-1");
-  if (s->steps < 0) return rdm_fail(RDM_FORMAT, "steps are below 0");
+  if (s->steps < 0 || s->steps > 1000000) return rdm_fail(RDM_FORMAT, "steps are outside [0, 1e6]");
   return RDM_OK;
 }
 

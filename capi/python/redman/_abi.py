@@ -147,12 +147,31 @@ class ScenePart(enum.IntEnum):
     JOINT = 3
     SHAPE = 4  # as rdm_pool_shape: robots, bodies, those that stand still
     SENSOR = 5  # the link of a fingertip, for rdm_world_sensor
+    MATERIAL = 6  # "default" is 0
 
 
 class Friction(enum.IntEnum):
     """in the place of a coefficient"""
 
     PASSES = -1
+
+
+class Scale(enum.IntEnum):
+    """what a factor is on, and in brackets its bounds"""
+
+    GRAVITY = 0  # [-10, 10]
+    LINK_MASS = 1  # [0.001, 1000], moments with it; index: link
+    LINK_KP = 2
+    LINK_KD = 3
+    LINK_EFFORT = 4
+    LINK_FRICTION = 5  # [0, 1000]
+    BASE_MASS = 6  # [0.001, 1000] of a free base; index: robot
+    BASE_DAMPING = 7  # [0, 1000] of all links of a robot with a free base
+    BODY_MASS = 8  # [0.001, 1000], moments with it; index: body
+    BODY_SIZE = 9  # [0.05, 20] of all its shapes, moments with the square
+    BODY_LINEAR_DAMPING = 10
+    BODY_ANGULAR_DAMPING = 11  # [0, 1000]
+    FRICTION = 12  # [0, 1000] of two materials, index and other
 
 
 class MapFormat(enum.IntEnum):
@@ -1720,6 +1739,37 @@ class rdm_motion(Structure):
     ]
 
 
+class Factor(Record):
+    """The values of rdm_factor."""
+
+    what: int  # RDM_SCALE_*
+    index: int  # of the thing
+    other: int  # the second material of a friction
+    factor: float  # times the scene's value
+
+
+class rdm_factor(Structure):
+    """what: RDM_SCALE_*
+    index: of the thing
+    other: the second material of a friction
+    reserved: 0
+    factor: times the scene's value
+    """
+
+    what: int
+    index: int
+    other: int
+    reserved: int
+    factor: float
+    _fields_ = [
+        ("what", c_int32),
+        ("index", c_int32),
+        ("other", c_int32),
+        ("reserved", c_int32),
+        ("factor", c_double),
+    ]
+
+
 class Random(Record):
     """The values of rdm_random."""
 
@@ -2117,6 +2167,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_scene_robot": rdm_scene_robot,
     "rdm_joints": rdm_joints,
     "rdm_motion": rdm_motion,
+    "rdm_factor": rdm_factor,
     "rdm_random": rdm_random,
     "rdm_verdict": rdm_verdict,
     "rdm_field_def": rdm_field_def,
@@ -2691,6 +2742,10 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"scene": c_void_p},
         {}, True,
         """worlds take rdm_world_set_feedforward"""),
+    "rdm_scene_set_adjustable": Function(
+        c_int32, {"scene": c_void_p},
+        {}, True,
+        """worlds take rdm_world_scale"""),
     "rdm_scene_add_robot": Function(
         c_int32, {"scene": c_void_p, "robot": POINTER(rdm_scene_robot), "index": c_void_p},
         {}, True,
@@ -2804,6 +2859,12 @@ FUNCTIONS: dict[str, Function] = {
         {"efforts": Rows("float64", ("n",))}, True,
         """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again; STATE unless the scene has
         them. rdm_world_gravity gives those that hold a robot of n joints against gravity where it is.
+        """),
+    "rdm_world_scale": Function(
+        c_int32, {"world": c_void_p, "factors": POINTER(rdm_factor), "count": c_int32},
+        {}, True,
+        """Lays factors [count] over those that the world has, all 1 at the start of an episode; reset may draw them. All are taken
+        or none. STATE unless the scene is adjustable.
         """),
     "rdm_world_push_body": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "force": c_void_p, "torque": c_void_p},
