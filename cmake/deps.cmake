@@ -18,6 +18,22 @@ if(REDMAN_SIM)
   set(RDM_VERSION_TEXT_OCTOMAP ${octomap_VERSION})
 endif()
 
+# Packages of the importers, never of the library.
+set(RDM_IMPORT_MISSING "")
+if(REDMAN_SIM AND NOT REDMAN_IMPORT STREQUAL "OFF")
+  find_package(tinyxml2 QUIET)
+  find_path(RDM_TOML toml++/toml.h)  # headers alone are used
+  if(NOT tinyxml2_FOUND)
+    string(APPEND RDM_IMPORT_MISSING " tinyxml2")
+  endif()
+  if(NOT RDM_TOML)
+    string(APPEND RDM_IMPORT_MISSING " toml++")
+  endif()
+  if(RDM_IMPORT_MISSING AND NOT REDMAN_IMPORT STREQUAL "AUTO")
+    message(FATAL_ERROR "REDMAN_IMPORT=ON, but these packages were not found:${RDM_IMPORT_MISSING}")
+  endif()
+endif()
+
 # Packages of the command-line tool, never of the library.
 if(REDMAN_EXAMPLES AND NOT REDMAN_TOOL STREQUAL "OFF")
   find_package(CLI11 QUIET)
@@ -56,7 +72,13 @@ function(rdm_summary)
   elseif(RDM_TOOL_MISSING)
     set(tool "no (not found:${RDM_TOOL_MISSING})")
   endif()
+  set(import "no")
+  if(TARGET redman_import_static)
+    set(import "yes")
+  elseif(RDM_IMPORT_MISSING)
+    set(import "no (not found:${RDM_IMPORT_MISSING})")
+  endif()
   message(STATUS "redman ${PROJECT_VERSION}, ABI ${RDM_ABI}, ${CMAKE_BUILD_TYPE} ${REDMAN_SANITIZE}:"
                  " simulator ${REDMAN_SIM}, learner ${REDMAN_LEARN}, policies ${REDMAN_POLICY}, shared ${REDMAN_SHARED},"
-                 " tests ${REDMAN_TESTS}, examples ${REDMAN_EXAMPLES}, tool ${tool}, viewer ${RDM_VIEWER};${versions}")
+                 " tests ${REDMAN_TESTS}, examples ${REDMAN_EXAMPLES}, importers ${import}, tool ${tool}, viewer ${RDM_VIEWER};${versions}")
 endfunction()

@@ -1,7 +1,11 @@
 # What a distribution gets: headers, both libraries, a CMake package, a pkg-config file, the tool.
 include(CMakePackageConfigHelpers)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/redman)
-install(DIRECTORY include/redman DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+set(without "")
+if(NOT TARGET redman_import_static)
+  set(without PATTERN redman_import.h EXCLUDE)
+endif()
+install(DIRECTORY include/redman DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev ${without})
 if(REDMAN_SHARED)
   install(TARGETS redman EXPORT redmanShared
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT dev)
@@ -9,6 +13,18 @@ if(REDMAN_SHARED)
 endif()
 install(TARGETS redman_static EXPORT redmanStatic ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 install(EXPORT redmanStatic NAMESPACE redman:: DESTINATION ${package} COMPONENT dev)
+if(TARGET redman_import_static)
+  install(TARGETS redman_import_static EXPORT redmanImportStatic ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
+  install(EXPORT redmanImportStatic NAMESPACE redman:: DESTINATION ${package} COMPONENT dev)
+  if(REDMAN_SHARED)
+    if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+      set_target_properties(redman_import PROPERTIES INSTALL_RPATH "$ORIGIN")  # redman lies beside it
+    endif()
+    install(TARGETS redman_import EXPORT redmanImport
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT import NAMELINK_COMPONENT dev)
+    install(EXPORT redmanImport NAMESPACE redman:: DESTINATION ${package} COMPONENT dev)
+  endif()
+endif()
 if(TARGET redman_tool)
   # The tool finds the library beside it wherever the prefix is; the loader knows /usr by itself.
   if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
@@ -28,6 +44,7 @@ write_basic_package_version_file(redmanConfigVersion.cmake COMPATIBILITY ${compa
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/redmanConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/redmanConfigVersion.cmake
         DESTINATION ${package} COMPONENT dev)
 
+set(RDM_PC_NAME redman)
 set(RDM_PC_REQUIRES "")
 if(REDMAN_SIM)
   set(RDM_PC_REQUIRES "ode ccd")
@@ -43,3 +60,9 @@ set(RDM_PC_LINKS "Requires: ${RDM_PC_REQUIRES}\nLibs: \${libdir}/libredman.a -ls
 configure_file(cmake/redman.pc.in redman-static.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/redman.pc ${CMAKE_CURRENT_BINARY_DIR}/redman-static.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+if(TARGET redman_import)
+  set(RDM_PC_NAME redman_import)
+  set(RDM_PC_LINKS "Requires: redman\nLibs: -L\${libdir} -lredman_import")
+  configure_file(cmake/redman.pc.in redman_import.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/redman_import.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+endif()

@@ -62,6 +62,17 @@ package is for those who build programs against it."
 rdm_deb(tools redman science SUMMARY "train, evaluate and look at safe dexterous manipulation" TEXT "${text}\n.\nThis package \
 holds the command-line tool, its manual and\nits scripted demonstrations."
         DEPENDS "${library} (= ${PROJECT_VERSION})")
+if(TARGET redman_import)
+  set(import libredman-import${RDM_ABI})
+  list(APPEND CPACK_COMPONENTS_ALL import)
+  rdm_deb(import ${import} libs SUMMARY "safe dexterous manipulation (robots out of files)" TEXT "${text}\n.\nThis package \
+holds the library that reads robots: URDF, MJCF\nand redman's own text."
+          DEPENDS "${library} (= ${PROJECT_VERSION})" CONTROL ${RDM_DEBIAN}/import/shlibs ${RDM_DEBIAN}/triggers)
+  set(CPACK_DEBIAN_IMPORT_PACKAGE_SHLIBDEPS ON)
+  string(APPEND CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS ", ${import} (= ${PROJECT_VERSION})")
+  string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", ${import} (= ${PROJECT_VERSION}), libtinyxml2-dev")
+  file(WRITE ${RDM_DEBIAN}/import/shlibs "libredman_import ${RDM_ABI} ${import} (>= ${PROJECT_VERSION})\n")
+endif()
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS ffmpeg)  # films
 if(REDMAN_PYTHON_DIR)
   list(APPEND CPACK_COMPONENTS_ALL python)

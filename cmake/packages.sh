@@ -2,7 +2,7 @@
 # Sourced by the scripts of this folder: Debian packages on demand, and the words to stop with.
 # shellcheck disable=SC2034
 build_packages="g++ cmake ninja-build pkg-config libode-dev libccd-dev libeigen3-dev liboctomap-dev
-                libcli11-dev nlohmann-json3-dev libpng-dev libqhull-dev"
+                libcli11-dev nlohmann-json3-dev libpng-dev libqhull-dev libtinyxml2-dev libtomlplusplus-dev"
 viewer_packages="libjs-three"  # what `redman render --html` puts into its pages
 
 die() {

@@ -2,6 +2,7 @@
 // the demonstration where the tool carries one.
 #include "commands.hpp"
 #include "common/names.hpp"
+#include "common/robots.hpp"
 #include "common/text.hpp"
 #include "play/actor.hpp"
 #include "play/evaluate.hpp"
@@ -63,6 +64,7 @@ void add_baseline(CLI::App& app, Run& run) {
       ->allow_extra_args(false);
   command->add_option("--envs,--num-envs", flags->pool.envs, "worlds")->check(CLI::PositiveNumber);
   command->add_option("--threads", flags->pool.threads, "threads; 0: the caller's own");
+  add_robot_flag(*command);
   command->add_option("--seed", flags->pool.seed, "seed of worlds and random actions");
   command->add_option("--episodes", flags->episodes, "episodes of each policy")
       ->check(CLI::Range(1, kMostEpisodes));

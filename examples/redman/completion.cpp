@@ -44,9 +44,20 @@ std::string algo_words() {
   return joined(names);
 }
 
-std::string value_words(const std::string& name) {
+std::string robot_words() {
+  std::vector<std::string> names;
+  for (int32_t i = 0; i < rdm_robot_count(); ++i) {
+    auto robot = redman::sized<rdm_robot>();
+    if (rdm_robot_at(i, &robot) == RDM_OK) names.emplace_back(robot.name);
+  }
+  return joined(names);
+}
+
+std::string value_words(const std::string& name, bool positional) {
   if (name == "task" || name == "tasks") return task_words();
   if (name == "algo" || name == "algos") return algo_words();
+  if (name == "robot" && positional) return robot_words();
+  if (name == "kind") return "hand arm other";
   if (name == "policy") return "zero hold random demo";
   if (name == "completion") return "bash zsh fish";
   return "";
@@ -56,12 +67,13 @@ Flag flag_of(const CLI::Option& option) {
   Flag flag{{}, option.get_description(), option.get_items_expected_max() > 0, ""};
   for (const std::string& name : option.get_lnames()) flag.names.push_back("--" + name);
   for (const std::string& name : option.get_snames()) flag.names.push_back("-" + name);
-  if (flag.takes_value) flag.words = value_words(option.get_lnames().empty() ? "" : option.get_lnames()[0]);
+  if (flag.takes_value)
+    flag.words = value_words(option.get_lnames().empty() ? "" : option.get_lnames()[0], false);
   return flag;
 }
 
 void collect(const CLI::App& app, const std::vector<std::string>& path, std::vector<Command>& out) {
-  Command command{path, app.get_description(), {}, {}, value_words(path.empty() ? "" : path.back())};
+  Command command{path, app.get_description(), {}, {}, value_words(path.empty() ? "" : path.back(), true)};
   for (const CLI::Option* option : app.get_options())
     if (!option->get_positional() || !option->get_lnames().empty()) command.flags.push_back(flag_of(*option));
   command.flags.push_back({{"--json"}, "one JSON object on one line", false, ""});

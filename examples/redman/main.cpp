@@ -102,6 +102,8 @@ int run_tool(int argc, char** argv) {
   Run run;
   add_tasks(app, run);
   add_algos(app, run);
+  add_robots(app, run);
+  add_robot(app, run);
   add_train(app, run);
   add_eval(app, run);
   add_baseline(app, run);

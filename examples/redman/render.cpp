@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/robots.hpp"
 #include "common/text.hpp"
 #include "play/playback.hpp"
 #include "play/scene.hpp"
@@ -135,6 +136,7 @@ void add_render(CLI::App& app, Run& run) {
   CLI::Option* task = command->add_option("--task", flags->pool.task, "task; default: the policy's");
   command->add_option("--policy", flags->policy,
                       "policy file, run folder, .demo file, demo, zero, hold or random");
+  add_robot_flag(*command);
   command->add_option("--seed", flags->pool.seed, "seed of the episode");
   CLI::Option* step = command->add_option("--step", flags->step, "control step to draw; 0: the start")
                           ->check(CLI::NonNegativeNumber);

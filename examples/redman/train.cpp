@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "common/json.hpp"
 #include "common/names.hpp"
+#include "common/robots.hpp"
 #include "common/text.hpp"
 #include "play/evaluate.hpp"
 #include "run/trainer.hpp"
@@ -128,6 +129,7 @@ void add_train(CLI::App& app, Run& run) {
   add_cost_limit_flag(*command, r.limits);
   add_set_flag(*command, flags->sets);
   others.push_back(command->get_option("--cost-limit"));
+  add_robot_flag(*command);
   others.push_back(command->get_option("--set"));
   others.push_back(command->add_flag(
       "--no-tensorboard", [&r](int64_t) { r.events = false; }, "no event file of the curve for TensorBoard"));

@@ -105,7 +105,11 @@ class Options {
   OptionRange range(const char* key) const;  // of a number or integer, {x, x} for a single one
   bool flag(const char* key) const;
   const char* text(const char* key) const;
-  bool given(const char* key) const;  // set by the host, not the default
+  bool given(const char* key) const;                  // set by the host, not the default
+  const OptionSpec* spec_of(const char* key) const {  // null: unknown
+    const int32_t i = find(key);
+    return i < 0 ? nullptr : row(i).spec;
+  }
 
   // Rows of the tables in order, then the keys of open rows that were set.
   int32_t count() const { return static_cast<int32_t>(rows_.size()); }

@@ -1,9 +1,11 @@
 #include "tasks/hand/hand_control.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "env/options/simulation.hpp"
+#include "physics/gravity_torques.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -26,16 +28,16 @@ constexpr OptionSpec kRows[] = {
 };
 constexpr OptionSpec kPairRows[] = {
     flag_option("hand_contact", true, "the hands may touch each other"),
-    number_option("friction.hand_hand", 0, 0, 10, "friction coefficient of one hand and the other"),
+    drawable(number_option("friction.hand_hand", 0, 0, 10, "friction coefficient of one hand and the other")),
 };
 constexpr OptionSpec kFrictionRows[] = {
-    number_option("friction.hand_self", 0, 0, 10, "friction coefficient inside one hand"),
-    number_option("friction.hand_ground", 1, 0, 10, "friction coefficient of hand and ground"),
+    drawable(number_option("friction.hand_self", 0, 0, 10, "friction coefficient inside one hand")),
+    drawable(number_option("friction.hand_ground", 1, 0, 10, "friction coefficient of hand and ground")),
 };
 constexpr OptionSpec kFlyingRows[] = {
     text_option("action_order", "paper", "paper|legacy",
                 "of a hand's entries: joints, force, torque (paper) or force, torque, joints (legacy)"),
-    number_option("base_damping", 100, 0, 1e4, "damping of a flying hand's links, 1/s"),
+    drawable(number_option("base_damping", 100, 0, 1e4, "damping of a flying hand's links, 1/s")),
     text_option("base_angles", "positive", "positive|signed",
                 "base angles in the observation: in [0, 2 pi), where the bound of +-5 cuts, or in [-pi, pi]"),
     number_option("base_speed", 2, 0.01, 100, "bound of a base's speed, m/s"),
@@ -52,8 +54,8 @@ Vec3 bounded(const Vec3& v, double most) {
 
 void add_hand_control_options(const HandControlConfig& config, OptionTable& table) {
   table.add(kRows);
-  table.add(number_option("friction.hand_object", config.friction, 0, 10,
-                          "friction coefficient of hands and object"));
+  table.add(drawable(number_option("friction.hand_object", config.friction, 0, 10,
+                                   "friction coefficient of hands and object")));
   table.add(kFrictionRows);
   if (config.count > 1) {
     table.add(kPairRows);
@@ -66,6 +68,7 @@ void add_hand_control_options(const HandControlConfig& config, OptionTable& tabl
     table.add(number_option("orientation_scale", config.orientation_scale, 0, 10,
                             "torque of a base's action entry of 1, in 16.7 N m"));
   }
+  add_level_options(table);
   add_sim_options(table);
   add_hand_options(table);
   add_hand_choice_options(config, table);
@@ -75,16 +78,46 @@ void set_friction(SceneDef* scene, int32_t a, int32_t b, double mu) {
   scene->friction[a][b].mu = scene->friction[b][a].mu = mu;
 }
 
+void set_friction(HandScene* scene, int32_t a, int32_t b, const Options& options, const char* key) {
+  set_friction(scene, a, b, options.number(key));
+  scene->draws.add(options, key, Drawn::kFriction, a, b);
+}
+
+namespace {
+
+// What option control and the weight of an arm ask of the drives of hand i.
+void set_drives(const Options& o, const ChosenHand& hand, ArticulationDef* def, SceneDef* scene) {
+  const Robot& robot = hand.robot();
+  if (same_name(o.text("control"), "torque")) {  // drives only damp
+    scene->feedforward = true;
+    for (int32_t k = 0; k < robot.num_actuated(); ++k)
+      def->links[static_cast<size_t>(robot.actuated(k))].joint.kp = 0;
+  }
+  if (!hand.armed || same_name(o.text("arm_gravity"), "off")) return;
+  def->gravity = true;
+  scene->feedforward = scene->feedforward || same_name(o.text("arm_gravity"), "compensated");
+  // the hand, and the link that its root is one body with
+  for (int32_t i = 0; i < robot.links.count; ++i)
+    def->links[static_cast<size_t>(i)].weightless = i >= robot.arm_links || i == robot.flange;
+}
+
+}  // namespace
+
 HandScene make_hand_scene(const HandControlConfig& config, const Options& o, int32_t num_materials) {
   HandScene s;
   s.gravity = gravity_from(o);
+  s.draws.add(o, "gravity", Drawn::kGravity);
   s.solver = solver_from(o);
+  int32_t links = 0;
   for (int32_t i = 0; i < config.count; ++i) {
     s.hands[i] = choose_hand(config, o, i);
-    ArticulationDef hand = make_hand(s.hands[i], o, i, i == 0 ? kRightHand : kLeftHand);
+    ArticulationDef hand = make_hand(s.hands[i], o, i, links, i == 0 ? kRightHand : kLeftHand, &s.draws);
+    links += s.hands[i].robot().links.count;
+    set_drives(o, s.hands[i], &hand, &s);
     if (config.flying && !s.hands[i].armed) {
       hand.free_base = true;
       hand.base_damping = o.number("base_damping");
+      s.draws.add(o, "base_damping", Drawn::kBaseDamping, i);
     }
     s.articulations.push_back(hand);
   }
@@ -96,26 +129,28 @@ HandScene make_hand_scene(const HandControlConfig& config, const Options& o, int
   s.statics.push_back(ground);
   s.num_materials = num_materials;
   for (const int32_t hand : {kRightHand, kLeftHand}) {
-    set_friction(&s, hand, hand, o.number("friction.hand_self"));
-    set_friction(&s, hand, kObject, o.number("friction.hand_object"));
-    set_friction(&s, hand, kGround, o.number("friction.hand_ground"));
+    set_friction(&s, hand, hand, o, "friction.hand_self");
+    set_friction(&s, hand, kObject, o, "friction.hand_object");
+    set_friction(&s, hand, kGround, o, "friction.hand_ground");
   }
   if (config.count > 1) {
     s.articulations_touch = o.flag("hand_contact");
-    set_friction(&s, kRightHand, kLeftHand, o.number("friction.hand_hand"));
+    set_friction(&s, kRightHand, kLeftHand, o, "friction.hand_hand");
   }
   return s;
 }
 
 HandControl::HandControl(const HandControlConfig& config, const Options& o, const Scene& scene,
-                         const ChosenHand* hands)
+                         const HandScene& made)
     : count_(config.count),
       mode_(same_name(o.text("control"), "velocity") ? Mode::kVelocity
             : same_name(o.text("control"), "torque") ? Mode::kTorque
                                                      : Mode::kPosition),
       sensor_(same_name(o.text("sensor"), "contact")),
       average_(o.number("action_average")),
-      arm_noise_(o.number("arm_noise")) {
+      arm_noise_(o.number("arm_noise")),
+      draws_(&made.draws) {
+  const ChosenHand* hands = made.hands;
   if (config.flying) {
     paper_order_ = same_name(o.text("action_order"), "paper");
     signed_angles_ = same_name(o.text("base_angles"), "signed");
@@ -131,6 +166,7 @@ HandControl::HandControl(const HandControlConfig& config, const Options& o, cons
     Hand& h = hands_[i] = find_hand(robot, scene, i);
     bases_[i] = hands[i].X_WB.p;
     flying_[i] = config.flying && !hands[i].armed;
+    compensated_[i] = hands[i].armed && same_name(o.text("arm_gravity"), "compensated");
     start_[i] = config.folded && robot.poses.folded.count ? robot.poses.folded.rows : robot.home.rows;
     if (const double range = o.number("arm_range"); range > 0)
       for (int32_t k = 0; k < h.arm_actions; ++k) {
@@ -173,6 +209,7 @@ void HandControl::check_state(const void* bytes) const {
 
 void HandControl::reset(double noise, bool literal, World& world, const HandControlState& state,
                         Stream& stream) const {
+  draws_->apply(world, stream);
   JointNoise draw{noise, literal, arm_noise_};
   std::copy_n(start_, kMaxHands, draw.start);
   draw_joints(draw, hands_, count_, world, stream);
@@ -204,12 +241,24 @@ void HandControl::move_commands(const World& world, int32_t i, const float* a, d
   }
 }
 
+void HandControl::feed_forward(World& world, int32_t i, const float* a) const {
+  const Hand& h = hands_[i];
+  double torque[kMaxHandJoints] = {};
+  if (compensated_[i]) gravity_torques(world, h.articulation, torque);
+  if (mode_ == Mode::kTorque)
+    for (int32_t k = 0; k < h.num_actions; ++k)
+      if (const double effort = h.effort[h.joint(k)]; std::isfinite(effort))
+        torque[h.joint(k)] += effort * static_cast<double>(a[k]);
+  std::copy_n(torque, h.num_joints, world.feedforward() + h.first);
+}
+
 void HandControl::control(World& world, const HandControlState& state, const float* action) const {
   std::copy_n(action, action_dim(), state.action);
   for (int32_t i = 0; i < count_; ++i) {
     double* command = state.command + first_command_[i];
     move_commands(world, i, action + joint_entries(i), command);
     command_hand(hands_[i], command, world);
+    if (world.feedforward()) feed_forward(world, i, action + joint_entries(i));
   }
   if (flying()) push_bases(world, action);
 }

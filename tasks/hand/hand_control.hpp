@@ -40,12 +40,15 @@ void add_hand_control_options(const HandControlConfig& config, OptionTable& tabl
 // A scene, and the robots that its first articulations are.
 struct HandScene : SceneDef {
   ChosenHand hands[kMaxHands];
+  DynamicsDraws draws;
 };
 // The hands and the ground, with gravity, solver, `num_materials` materials and their frictions.
 HandScene make_hand_scene(const HandControlConfig& config, const Options& options,
                           int32_t num_materials = kOwnMaterial);
 // One entry of the friction table and its mirror image.
 void set_friction(SceneDef* scene, int32_t a, int32_t b, double mu);
+// By an option, whose range is drawn.
+void set_friction(HandScene* scene, int32_t a, int32_t b, const Options& options, const char* key);
 
 // One world's part: places in its task's state.
 struct HandControlState {
@@ -55,9 +58,9 @@ struct HandControlState {
 
 class HandControl {
  public:
-  // `hands` must outlive it.
+  // `made`, of which `scene` is made, must outlive it.
   HandControl(const HandControlConfig& config, const Options& options, const Scene& scene,
-              const ChosenHand* hands);
+              const HandScene& made);
 
   int32_t count() const { return count_; }
   const Hand& hand(int32_t i) const { return hands_[i]; }
@@ -97,6 +100,7 @@ class HandControl {
  private:
   void push_bases(World& world, const float* action) const;
   void slow_base(World& world, int32_t articulation) const;
+  void feed_forward(World& world, int32_t i, const float* action) const;
   void move_commands(const World& world, int32_t i, const float* action, double* command) const;
 
   enum class Mode { kPosition, kVelocity, kTorque };
@@ -105,8 +109,10 @@ class HandControl {
   char order_[256];
   Mode mode_;
   bool flying_[kMaxHands] = {};
+  bool compensated_[kMaxHands] = {};  // gravity, by feed-forward
   bool sensor_, paper_order_ = true, signed_angles_ = false;
   double average_, arm_noise_;
+  const DynamicsDraws* draws_;
   double force_ = 0, torque_ = 0;                      // N, N m for an entry of 1
   double most_speed_ = 0, most_spin_ = 0, reach_ = 0;  // m/s, rad/s, m
   const double* start_[kMaxHands] = {};                // [num_joints] rad, null: all 0

@@ -7,13 +7,22 @@
 
 namespace rdm {
 
+namespace {
+
+SceneDef adjusted(HandScene* made) {
+  made->adjustable = made->adjustable || !made->draws.empty();
+  return std::move(static_cast<SceneDef&>(*made));
+}
+
+}  // namespace
+
 HandTask::HandTask(const HandControlConfig& config, const Options& o, HandScene scene, size_t own_bytes)
     : engine_(engine_from(o)),
       max_steps_(o.integer("max_steps")),
       own_bytes_(own_bytes),
       made_(std::move(scene)),
-      scene_(make_scene(std::move(static_cast<SceneDef&>(made_)))),
-      hands_(config, o, scene_, made_.hands) {
+      scene_(make_scene(adjusted(&made_))),
+      hands_(config, o, scene_, made_) {
   if (own_bytes % alignof(double) != 0)
     fail(Code::kInternal, "hand task: %zu bytes of its own state are not a multiple of %zu", own_bytes,
          alignof(double));

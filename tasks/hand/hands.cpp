@@ -31,7 +31,8 @@ void add_left_hand_options(OptionTable& table) {
   table.add(kLeftRows);
 }
 
-ArticulationDef make_hand(const ChosenHand& chosen, const Options& options, int32_t i, int32_t material) {
+ArticulationDef make_hand(const ChosenHand& chosen, const Options& options, int32_t i, int32_t first,
+                          int32_t material, DynamicsDraws* draws) {
   const Robot& robot = chosen.robot();
   char prefix[16];
   std::snprintf(prefix, sizeof prefix, "%s_", kSideNames[i]);
@@ -42,7 +43,7 @@ ArticulationDef make_hand(const ChosenHand& chosen, const Options& options, int3
         link.joint.ratio = 1;
         link.joint.slack = 0;
       }
-  apply_robot_options(options, robot, prefix, &def);
+  apply_robot_options(options, robot, prefix, i, first, &def, draws);
   set_material(&def, material);
   return def;
 }

@@ -6,6 +6,7 @@
 #pragma once
 #include "base/option.hpp"
 #include "base/rng.hpp"
+#include "env/dynamics_draw.hpp"
 #include "env/options/table.hpp"
 #include "physics/world.hpp"
 #include "robot/robot.hpp"
@@ -55,7 +56,9 @@ void add_hand_options(OptionTable& table);
 void add_left_hand_options(OptionTable& table);  // beside those, where there is a left hand
 
 // Hand i as the options want it, its names beginning with "right_" or "left_".
-ArticulationDef make_hand(const ChosenHand& chosen, const Options& options, int32_t i, int32_t material);
+// Its joints begin at flat link `first`.
+ArticulationDef make_hand(const ChosenHand& chosen, const Options& options, int32_t i, int32_t first,
+                          int32_t material, DynamicsDraws* draws);
 // Error(kUnsupported) for a robot that is no hand of at most kMaxHandJoints joints and kMaxHandTips tips.
 Hand find_hand(const Robot& robot, const Scene& scene, int32_t articulation);
 

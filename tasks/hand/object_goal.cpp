@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/elementary.hpp"
-#include "tasks/hand/hands.hpp"
+#include "tasks/hand/hand_control.hpp"
 #include "tasks/state_check.hpp"
 #include "tasks/throw/throw_objects.hpp"
 
@@ -18,10 +18,11 @@ constexpr int kMaxRaises = 100;
 
 constexpr OptionSpec kRows[] = {
     text_option("goal_rotation", "random", "random|fixed", "rotation of the goal, redrawn at each reset"),
-    number_option("object_damping", 0.1, 0, 100,
-                  "angular damping of the object, 1/s; stands for rolling friction"),
+    drawable(number_option("object_damping", 0.1, 0, 100,
+                           "angular damping of the object, 1/s; stands for rolling friction")),
+    drawable(number_option("object_scale", 1, 0.1, 10, "factor on the object's size; its mass stays")),
     flag_option("canonical_rotation", false, "rotation error with w >= 0 in the observation"),
-    number_option("friction.object_ground", 1, 0, 10, "friction coefficient of object and ground"),
+    drawable(number_option("friction.object_ground", 1, 0, 10, "friction coefficient of object and ground")),
 };
 
 StartRotation rotation_named(const char* name) {
@@ -46,7 +47,7 @@ void add_object_options(const ObjectPlace& place, OptionTable& table) {
   table.add(text_option("hull", kOctahedron, nullptr,
                         "points of object=hull, m, at most 32: x,y,z;x,y,z;... (redman hull makes them)",
                         kHullTextSize - 1));
-  table.add(number_option("object_mass", place.mass, 0, 10, "mass of the object, kg; 0: its own"));
+  table.add(drawable(number_option("object_mass", place.mass, 0, 10, "mass of the object, kg; 0: its own")));
   constexpr const char* kAxes[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i)
     table.add("start", kAxes[i], nullptr, number_option("", place.start[i], -10, 10, "start position, m"));
@@ -70,10 +71,24 @@ ObjectGoal object_goal_from(const Options& o) {
   return g;
 }
 
-BodyDef object_body_from(const Options& o) {
+void add_object(const Options& o, HandScene* scene) {
   const Pose start{object_goal_from(o).start, {}};
-  return make_throw_body(throw_object_named(o.text("object")), o.number("object_mass"),
-                         o.number("object_damping"), kObject, start, o.text("hull"));
+  BodyDef body = make_throw_body(throw_object_named(o.text("object")), o.number("object_mass"),
+                                 o.number("object_damping"), kObject, start, o.text("hull"));
+  if (const double size = o.number("object_scale"); size != 1) {
+    for (ShapeDef& shape : body.shapes) {
+      shape.size = size * shape.size;
+      shape.X_LS.p = size * shape.X_LS.p;
+      for (Vec3& p : shape.points) p = size * p;
+    }
+    for (double& m : body.inertia.moment) m *= size * size;
+  }
+  const auto index = static_cast<int32_t>(scene->bodies.size());
+  scene->bodies.push_back(body);
+  scene->draws.add(o, "object_mass", Drawn::kBodyMass, index);
+  scene->draws.add(o, "object_damping", Drawn::kBodyDamping, index);
+  scene->draws.add(o, "object_scale", Drawn::kBodySize, index);
+  set_friction(scene, kObject, kGround, o, "friction.object_ground");
 }
 
 Quat draw_rotation(Stream& stream) {

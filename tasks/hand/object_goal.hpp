@@ -8,6 +8,8 @@
 
 namespace rdm {
 
+struct HandScene;
+
 // What one task sets where it differs from the others.
 struct ObjectPlace {
   Vec3 start, goal;     // m
@@ -36,8 +38,9 @@ void check_goal(const GoalState& state);  // of a saved state: Error(kFormat)
 
 void add_object_options(const ObjectPlace& place, OptionTable& table);
 ObjectGoal object_goal_from(const Options& options);
-// The object at its nominal start, of material kObject.
-BodyDef object_body_from(const Options& options);
+// The object at its nominal start, of material kObject, with its friction on the ground, as the scene's next
+// body.
+void add_object(const Options& options, HandScene* scene);
 
 // Rx(pi u1) Ry(pi u2), u in [-1, 1): the tasks' "random rotation", not uniform on SO(3).
 Quat draw_rotation(Stream& stream);

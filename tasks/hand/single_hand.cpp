@@ -11,8 +11,7 @@ constexpr OptionSpec kRows[] = {
 
 HandScene make_scene_def(const SingleHandConfig& config, const Options& o) {
   HandScene s = make_hand_scene(config.hands, o);
-  s.bodies.push_back(object_body_from(o));
-  set_friction(&s, kObject, kGround, o.number("friction.object_ground"));
+  add_object(o, &s);
   return s;
 }
 

@@ -98,11 +98,14 @@ constexpr OptionSpec kRows[] = {
     number_option("chair_mass", 4, 0.1, 100, "mass of the chair, kg"),
     flag_option("grip_assist", false, "soft ball joints hold the handle in both palms"),
     number_option("grip_force", 50, 0, 1000, "bound of a grip_assist joint's force, N"),
-    number_option("friction.head_floor", 0.2, 0, 10, "friction coefficient of broom head and floor"),
-    number_option("friction.head_trash", 0.6, 0, 10, "friction coefficient of broom head and trash"),
-    number_option("friction.trash_floor", 0.3, 0, 10, "friction coefficient of trash and floor"),
-    number_option("friction.chair_floor", 0.3, 0, 10, "friction coefficient of chair and floor"),
-    number_option("friction.other", 0.5, 0, 10, "friction coefficient of all other pairs of things"),
+    drawable(
+        number_option("friction.head_floor", 0.2, 0, 10, "friction coefficient of broom head and floor")),
+    drawable(
+        number_option("friction.head_trash", 0.6, 0, 10, "friction coefficient of broom head and trash")),
+    drawable(number_option("friction.trash_floor", 0.3, 0, 10, "friction coefficient of trash and floor")),
+    drawable(number_option("friction.chair_floor", 0.3, 0, 10, "friction coefficient of chair and floor")),
+    drawable(
+        number_option("friction.other", 0.5, 0, 10, "friction coefficient of all other pairs of things")),
 };
 
 void add_options(OptionTable& table) {
@@ -120,10 +123,10 @@ HandScene make_scene_def(const Options& o) {
     if (a == kHouse.handle) continue;
     for (const int32_t hand : {kRightHand, kLeftHand}) set_friction(&s, hand, a, other);
   }
-  set_friction(&s, kHouse.head, kGround, o.number("friction.head_floor"));
-  set_friction(&s, kHouse.head, kHouse.trash, o.number("friction.head_trash"));
-  set_friction(&s, kHouse.trash, kGround, o.number("friction.trash_floor"));
-  set_friction(&s, kHouse.chair, kGround, o.number("friction.chair_floor"));
+  set_friction(&s, kHouse.head, kGround, o, "friction.head_floor");
+  set_friction(&s, kHouse.head, kHouse.trash, o, "friction.head_trash");
+  set_friction(&s, kHouse.trash, kGround, o, "friction.trash_floor");
+  set_friction(&s, kHouse.chair, kGround, o, "friction.chair_floor");
   HouseDef house;
   house.trash_mass = o.number("trash_mass");
   house.chair_mass = o.number("chair_mass");

@@ -77,9 +77,9 @@ constexpr OptionSpec kRows[] = {
     number_option("success_push", 0, 0, 10, "way of the target that counts as success, m; 0: its length"),
     number_option("drop_limit", 0.01, 0, 10, "the episode ends when all blocks are moved in z by more, m"),
     flag_option("extended_obs", false, "positions of all blocks at the end of the observation"),
-    number_option("friction.block_table", 0.5, 0, 10, "friction coefficient of blocks and table"),
-    number_option("friction.hand_block", 0.5, 0, 10, "friction coefficient of hands and blocks"),
-    number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table"),
+    drawable(number_option("friction.block_table", 0.5, 0, 10, "friction coefficient of blocks and table")),
+    drawable(number_option("friction.hand_block", 0.5, 0, 10, "friction coefficient of hands and blocks")),
+    drawable(number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table")),
 };
 
 void add_options(OptionTable& table) {
@@ -99,12 +99,12 @@ HandScene make_scene_def(const JengaTower& tower, const Options& o) {
   add_tower(tower, kTarget, kBlock, kTable, &s);
   for (const int32_t a : {kTarget, kBlock}) {
     for (const int32_t b : {kTarget, kBlock}) set_friction(&s, a, b, tower.friction);
-    set_friction(&s, a, kTable, o.number("friction.block_table"));
-    set_friction(&s, a, kGround, o.number("friction.block_table"));
+    set_friction(&s, a, kTable, o, "friction.block_table");
+    set_friction(&s, a, kGround, o, "friction.block_table");
   }
   for (const int32_t hand : {kRightHand, kLeftHand}) {
-    set_friction(&s, hand, kBlock, o.number("friction.hand_block"));
-    set_friction(&s, hand, kTable, o.number("friction.hand_table"));
+    set_friction(&s, hand, kBlock, o, "friction.hand_block");
+    set_friction(&s, hand, kTable, o, "friction.hand_table");
   }
   return s;
 }

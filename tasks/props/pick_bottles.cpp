@@ -62,10 +62,11 @@ constexpr OptionSpec kRows[] = {
     number_option("palm_limit", 0.25, 0, 10, "the episode ends when a palm is farther from its cap, m"),
     number_option("bottle_mass", 0.06, 0.001, 10, "mass of a bottle, kg; a full one has 0.5"),
     flag_option("fixed_neighbours", false, "the bottles that stay cannot be moved"),
-    number_option("friction.hand_other", 0.1, 0, 10, "friction coefficient of hands and bottles that stay"),
-    number_option("friction.bottle_table", 0.5, 0, 10, "friction coefficient of bottles and table"),
-    number_option("friction.bottle_bottle", 0.1, 0, 10, "friction coefficient of two bottles"),
-    number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table"),
+    drawable(number_option("friction.hand_other", 0.1, 0, 10,
+                           "friction coefficient of hands and bottles that stay")),
+    drawable(number_option("friction.bottle_table", 0.5, 0, 10, "friction coefficient of bottles and table")),
+    drawable(number_option("friction.bottle_bottle", 0.1, 0, 10, "friction coefficient of two bottles")),
+    drawable(number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table")),
 };
 
 void add_options(OptionTable& table) {
@@ -78,13 +79,13 @@ HandScene make_scene_def(const Options& o) {
   add_bottles(o.number("bottle_mass"), o.number("contact_layer"), o.flag("fixed_neighbours"), kPicked, kOther,
               kTable, &s);
   for (const int32_t a : {kPicked, kOther}) {
-    for (const int32_t b : {kPicked, kOther}) set_friction(&s, a, b, o.number("friction.bottle_bottle"));
-    set_friction(&s, a, kTable, o.number("friction.bottle_table"));
-    set_friction(&s, a, kGround, o.number("friction.bottle_table"));
+    for (const int32_t b : {kPicked, kOther}) set_friction(&s, a, b, o, "friction.bottle_bottle");
+    set_friction(&s, a, kTable, o, "friction.bottle_table");
+    set_friction(&s, a, kGround, o, "friction.bottle_table");
   }
   for (const int32_t hand : {kRightHand, kLeftHand}) {
-    set_friction(&s, hand, kOther, o.number("friction.hand_other"));
-    set_friction(&s, hand, kTable, o.number("friction.hand_table"));
+    set_friction(&s, hand, kOther, o, "friction.hand_other");
+    set_friction(&s, hand, kTable, o, "friction.hand_table");
   }
   return s;
 }

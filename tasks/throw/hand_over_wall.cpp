@@ -31,7 +31,8 @@ constexpr OptionSpec kRows[] = {
     text_option("wall", "auto", "auto|solid|ghost",
                 "solid, or (ghost) nothing touches it; auto: ghost where cost_mode is literal"),
     flag_option("count_hands", false, "hands that touch the wall cost too"),
-    number_option("friction.wall", 0.5, 0, 10, "friction coefficient of the wall with hands and object"),
+    drawable(
+        number_option("friction.wall", 0.5, 0, 10, "friction coefficient of the wall with hands and object")),
     number_option("throw_height", 0.8, 0, 10, "cost throw_height: object above, m"),
     text_option("initial_mean", "auto", "auto|flat|hold|zero",
                 "start of a new policy: right hand flat, the hold action, or 0; auto: flat"),
@@ -66,7 +67,7 @@ HandScene make_wall_scene(const Options& o) {
     s.statics.push_back(shape);
   }
   for (const int32_t other : {kRightHand, kLeftHand, kObject})
-    set_friction(&s, kWall, other, o.number("friction.wall"));
+    set_friction(&s, kWall, other, o, "friction.wall");
   return s;
 }
 

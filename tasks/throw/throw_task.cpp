@@ -17,8 +17,7 @@ void add_throw_task_options(const ThrowConfig& config, OptionTable& table) {
 
 HandScene make_throw_scene(const ThrowConfig& config, const Options& o, int32_t num_materials) {
   HandScene s = make_hand_scene(config.hands, o, num_materials);
-  s.bodies.push_back(object_body_from(o));
-  set_friction(&s, kObject, kGround, o.number("friction.object_ground"));
+  add_object(o, &s);
   return s;
 }
 

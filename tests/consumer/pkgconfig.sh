@@ -13,3 +13,8 @@ LD_LIBRARY_PATH=$prefix/$libdir "$out/use_shared"
 "$cc" -std=c99 "$source" -o "$out/use_static" $(pkg-config --cflags --libs redman-static)
 "$out/use_static"
 ! ldd "$out/use_static" | grep -q libredman
+if pkg-config --exists redman_import; then
+  # shellcheck disable=SC2046
+  "$cc" -std=c99 "$(dirname "$0")/use_import.c" -o "$out/use_import" $(pkg-config --cflags --libs redman_import)
+  LD_LIBRARY_PATH=$prefix/$libdir "$out/use_import"
+fi

@@ -24,13 +24,14 @@ Options robot_options(std::initializer_list<OptionInput> inputs) {
 
 ArticulationDef hand_with(std::initializer_list<OptionInput> inputs) {
   ArticulationDef def = make_articulation(kShadowHand, Side::kLeft, {}, "left_");
-  apply_robot_options(robot_options(inputs), kShadowHand, "left_", &def);
+  DynamicsDraws draws;
+  apply_robot_options(robot_options(inputs), kShadowHand, "left_", 0, 0, &def, &draws);
   return def;
 }
 
 TEST(RobotOptions, DefaultsAreTheTables) {
   const Options o = robot_options({});
-  EXPECT_EQ(o.count(), 24 * 5 + 24 + 4);
+  EXPECT_EQ(o.count(), 24 * 5 + 24 + 5);
   EXPECT_EQ(o.number("joint.WRJ1.kp"), 5);
   EXPECT_EQ(o.number("joint.FFJ1.effort"), 0.7245);
   EXPECT_EQ(o.number("link.palm.mass"), 0.3);

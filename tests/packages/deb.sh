@@ -29,6 +29,6 @@ check "the loader's cache has the library" in_root 'ldconfig -p | grep libredman
 check "an example of the -dev package" in_root \
   'cd /tmp; cc -std=c99 /usr/share/doc/redman/examples/01_step.c $(pkg-config --cflags --libs redman) && ./a.out'
 check "all is gone after apt-get purge" in_root \
-  'apt-get -qq purge -y redman libredman-dev python3-redman libredman1 > /dev/null 2>&1; rm -rf /packages /tmp/*
+  'apt-get -qq purge -y redman libredman-dev libredman-import1 python3-redman libredman1 > /dev/null 2>&1; rm -rf /packages /tmp/*
    left=$(find / -xdev -name "*redman*" ! -path "/proc/*" ! -path "/var/log/*" ! -path "/var/cache/*"); echo "$left"; test -z "$left"'
 finish

@@ -27,10 +27,17 @@ bad=$(
       capi) rows="$rows|redman" ;;
     esac
     # shellcheck disable=SC2046
-    includes $(sources "$folder") |
+    includes $(sources "$folder" | grep -v '^capi/import/') |
       grep -vE " (\"($rows)/([a-z0-9_]+/)*[a-z0-9_]+\.(hpp|inl|h)\"|<[a-z0-9_]+>|<($posix|$third)>)\$" |
       grep -vE '^(lib/sense/map/occupancy[a-z_]*\.[ch]pp <octomap/.*>|lib/base/eigen\.hpp <Eigen/[A-Za-z]+>)$' | sed "s/ /: $name may not include /"
   done < "$table"
+
+  # The importers stand on the public header, and on each other.
+  # shellcheck disable=SC2046
+  includes $(sources capi/import) | grep -vE " (<[a-z0-9_]+>|<($posix|redman/redman_import\.h|tinyxml2\.h|toml\+\+/toml\.h)>)\$" |
+    while read -r file target; do
+      [ -f "capi/import/$(echo "$target" | tr -d '"')" ] || echo "$file: an importer may not include $target"
+    done
 
   # shellcheck disable=SC2046
   includes $(sources include) | grep -vE ' (<[a-z0-9_]+(\.h)?>|<redman/redman[a-z_]*\.h>)$' |

@@ -57,7 +57,8 @@ class Redman(ConanFile):
         toolchain = CMakeToolchain(self)
         toolchain.cache_variables.update({
             "REDMAN_SIM": bool(self.options.sim), "REDMAN_LEARN": bool(self.options.learn), "REDMAN_POLICY": True,
-            "REDMAN_SHARED": bool(self.options.shared), "REDMAN_TESTS": False, "REDMAN_EXAMPLES": False})
+            "REDMAN_SHARED": bool(self.options.shared), "REDMAN_TESTS": False, "REDMAN_EXAMPLES": False,
+            "REDMAN_IMPORT": "OFF"})
         toolchain.generate()
         CMakeDeps(self).generate()
         pkg_config = PkgConfigDeps(self)

@@ -4,6 +4,7 @@ get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE
 vcpkg_check_features(OUT_FEATURE_OPTIONS features FEATURES
   sim REDMAN_SIM
   learn REDMAN_LEARN
+  import REDMAN_IMPORT
   tool REDMAN_EXAMPLES
 )
 string(COMPARE EQUAL "${VCPKG_LIBRARY_LINKAGE}" "dynamic" shared)

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "common/names.hpp"
+#include "common/robots.hpp"
 #include "common/text.hpp"
 
 namespace tool {
@@ -54,6 +55,7 @@ CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* t
   command.add_option("--envs,--num-envs", pool.envs, "worlds");
   command.add_option("--threads", pool.threads, "threads; 0: the caller's own");
   command.add_option("--seed", pool.seed, "seed");
+  add_robot_flag(command);
   return task;
 }
 

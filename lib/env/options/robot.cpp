@@ -23,11 +23,15 @@ constexpr JointRow kJointRows[] = {
     {JointField::kArmature, &RobotLink::armature, 1, "inertia added about the axis, kg m2"},
 };
 
+// What a range of each joint field draws; an armature stays what it is.
+constexpr Drawn kDrawnFields[] = {Drawn::kLinkKp, Drawn::kLinkKd, Drawn::kLinkEffort, Drawn::kLinkFriction};
+
 constexpr OptionSpec kScales[] = {
-    number_option("scale.kp", 1, 0, 100, "factor on the stiffness of all drives"),
-    number_option("scale.kd", 1, 0.01, 100, "factor on the damping of all drives"),
-    number_option("scale.mass", 1, 0.1, 100, "factor on all link masses and moments"),
-    number_option("scale.friction", 1, 0, 100, "factor on the dry friction of all joints"),
+    drawable(number_option("scale.effort", 1, 0.01, 100, "factor on the effort bounds of all drives")),
+    drawable(number_option("scale.kp", 1, 0, 100, "factor on the stiffness of all drives")),
+    drawable(number_option("scale.kd", 1, 0.01, 100, "factor on the damping of all drives")),
+    drawable(number_option("scale.mass", 1, 0.1, 100, "factor on all link masses and moments")),
+    drawable(number_option("scale.friction", 1, 0, 100, "factor on the dry friction of all joints")),
 };
 
 const char* field_name(JointField field) {
@@ -48,14 +52,16 @@ void add_robot_rows(const Robot& robot, OptionTable& table) {
       const double low = row.field == JointField::kKd ? std::min(1e-4, link.kd) : 0;
       make_key(key, "joint", link.joint, field_name(row.field));
       if (table.has(key)) continue;  // of both hands
-      table.add("joint", link.joint, field_name(row.field),
-                number_option("", link.*row.value, low, std::max(row.high, link.*row.value), row.help));
+      OptionSpec spec =
+          number_option("", link.*row.value, low, std::max(row.high, link.*row.value), row.help);
+      spec.range = row.field != JointField::kArmature;
+      table.add("joint", link.joint, field_name(row.field), spec);
     }
   for (const RobotLink& link : robot.links) {
     make_key(key, "link", link.name, "mass");
     if (link.mass == 0 || table.has(key)) continue;
     table.add("link", link.name, "mass",
-              number_option("", link.mass, 1e-4, 1000, "mass, kg; moments follow"));
+              drawable(number_option("", link.mass, 1e-4, 1000, "mass, kg; moments follow")));
   }
 }
 
@@ -63,21 +69,34 @@ void add_robot_scales(OptionTable& table) {
   table.add(kScales);
 }
 
-void apply_robot_options(const Options& options, const Robot& robot, const char* prefix,
-                         ArticulationDef* def) {
+void apply_robot_options(const Options& options, const Robot& robot, const char* prefix, int32_t index,
+                         int32_t first, ArticulationDef* def, DynamicsDraws* draws) {
   char key[OptionTable::kKeySize];
-  for (const RobotLink& link : robot.links) {
+  for (int32_t i = 0; i < robot.links.count; ++i) {
+    const RobotLink& link = robot.links[i];
     for (const JointRow& row : kJointRows) {
       make_key(key, "joint", link.joint, field_name(row.field));
-      if (options.given(key)) override_joint(def, prefix, link.joint, row.field, options.number(key));
+      if (!options.given(key)) continue;
+      override_joint(def, prefix, link.joint, row.field, options.number(key));
+      if (row.field != JointField::kArmature)
+        draws->add(options, key, kDrawnFields[static_cast<int>(row.field)], first + i);
     }
     make_key(key, "link", link.name, "mass");
-    if (link.mass > 0 && options.given(key)) override_mass(def, prefix, link.name, options.number(key));
+    if (link.mass == 0 || !options.given(key)) continue;
+    override_mass(def, prefix, link.name, options.number(key));
+    draws->add(options, key, Drawn::kLinkMass, first + i);
   }
   scale_joints(def, JointField::kKp, options.number("scale.kp"));
   scale_joints(def, JointField::kKd, options.number("scale.kd"));
   scale_joints(def, JointField::kFriction, options.number("scale.friction"));
+  scale_joints(def, JointField::kEffort, options.number("scale.effort"));
   scale_mass(def, options.number("scale.mass"));
+  draws->add(options, "scale.kp", Drawn::kLinkKp, first, robot.links.count);
+  draws->add(options, "scale.kd", Drawn::kLinkKd, first, robot.links.count);
+  draws->add(options, "scale.friction", Drawn::kLinkFriction, first, robot.links.count);
+  draws->add(options, "scale.effort", Drawn::kLinkEffort, first, robot.links.count);
+  draws->add(options, "scale.mass", Drawn::kLinkMass, first, robot.links.count);
+  draws->add(options, "scale.mass", Drawn::kBaseMass, index);
 }
 
 }  // namespace rdm

@@ -10,7 +10,7 @@ constexpr OptionSpec kRows[] = {
     integer_option("substeps", 2, 1, 16, "physics substeps per control step"),
     integer_option("iterations", 8, 1, 1000,
                    "solver iterations per substep, at most; engine ode takes 8 at most"),
-    number_option("gravity", 9.81, 0, 100, "acceleration along -z, m/s2; hands do not feel it"),
+    drawable(number_option("gravity", 9.81, 0, 100, "acceleration along -z, m/s2; hands do not feel it")),
     number_option("relaxation", 1.3, 0.1, 1.9, "over-relaxation factor of the solver"),
     number_option("erp", 0.8, 0, 1, "share of a joint error that one substep corrects"),
     number_option("cfm", 1e-9, 0, 1, "softness of joint constraints"),

@@ -1,0 +1,310 @@
+// redman_import.h, carried out: one barrier, handles with a tag, texts of the thread.
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <new>
+
+#include "import.hpp"
+
+using namespace rdm::import;
+
+struct rdm_import {
+  static constexpr uint32_t kTag = 0x6f706d69;
+  uint32_t tag = kTag;
+  Draft draft;
+};
+
+namespace {
+
+constexpr size_t kTextSize = 512;
+constexpr size_t kMaxStruct = 4096;
+thread_local char t_error[kTextSize] = "";
+
+void keep_error(const std::string& text) {
+  const std::string line = clean(text, kTextSize - 4);
+  std::memcpy(t_error, line.c_str(), line.size() + 1);
+}
+
+template <class F>
+rdm_result call(const rdm_import_options* options, F&& f) noexcept {
+  rdm_result code = RDM_OK;
+  try {
+    try {
+      f();
+      return RDM_OK;
+    } catch (const Refusal& r) {
+      code = r.code;
+      keep_error(r.text);
+    }
+  } catch (const std::bad_alloc&) {
+    code = RDM_MEMORY;
+    std::strcpy(t_error, "out of memory");
+  } catch (...) {
+    code = RDM_INTERNAL;
+    std::strcpy(t_error, "internal error: unexpected exception");
+  }
+  constexpr size_t end = offsetof(rdm_import_options, error_size) + sizeof options->error_size;
+  if (options && options->struct_size >= end && options->struct_size <= kMaxStruct && options->error &&
+      options->error_size > 0) {
+    const size_t size = std::min(std::strlen(t_error), static_cast<size_t>(options->error_size) - 1);
+    std::memcpy(options->error, t_error, size);
+    options->error[size] = 0;
+  }
+  return code;
+}
+
+void need(const void* p, const char* name) {
+  if (!p) refuse(RDM_ARGUMENT, "%s is NULL", name);
+}
+void need_handle(const rdm_import* i) {
+  need(i, "import");
+  if (i->tag != rdm_import::kTag)
+    refuse(RDM_ARGUMENT, "import: no handle of this kind, or one that was destroyed");
+}
+
+rdm_import_options defaults() {
+  rdm_import_options o{};
+  o.kind = -1;
+  return o;
+}
+
+Options read_options(const rdm_import_options* in) {
+  rdm_import_options o = defaults();
+  if (in) {
+    constexpr size_t first = sizeof o;
+    if (in->struct_size < first || in->struct_size > kMaxStruct)
+      refuse(RDM_ARGUMENT, "options.struct_size: %u is outside [%zu, %zu]; set it by rdm_import_options_init",
+             in->struct_size, first, kMaxStruct);
+    std::memcpy(&o, in, first);
+    if (o.error && o.error_size < 1)
+      refuse(RDM_RANGE, "options.error_size: %d is less than 1, but error is set", o.error_size);
+    if (o.format < RDM_IMPORT_AUTO || o.format > RDM_IMPORT_ROBOT)
+      refuse(RDM_RANGE, "options.format: %d is outside [0, 3]", o.format);
+    if (o.kind < -1 || o.kind > RDM_ROBOT_ARM)
+      refuse(RDM_RANGE, "options.kind: %d is outside [-1, 2]", o.kind);
+    if (o.skip_meshes != 0 && o.skip_meshes != 1)
+      refuse(RDM_RANGE, "options.skip_meshes: %d is outside [0, 1]", o.skip_meshes);
+    if (o.mend_inertia != 0 && o.mend_inertia != 1)
+      refuse(RDM_RANGE, "options.mend_inertia: %d is outside [0, 1]", o.mend_inertia);
+  }
+  Options out;
+  const auto text = [](const char* t) { return std::string(t ? t : ""); };
+  out.format = o.format;
+  out.kind = o.kind;
+  out.skip_meshes = o.skip_meshes != 0;
+  out.mend_inertia = o.mend_inertia != 0;
+  out.name = text(o.name);
+  out.folder = text(o.folder);
+  if (!out.folder.empty() && out.folder.back() != '/') out.folder += '/';
+  out.has_folder = o.folder != nullptr;
+  out.packages = text(o.packages);
+  out.root = text(o.root);
+  out.palm = text(o.palm);
+  out.tips = text(o.tips);
+  out.mount = text(o.mount);
+  out.flange = text(o.flange);
+  return out;
+}
+
+// What rdm_robot_create says of it, but that nothing is added: under a name that is taken the robot is looked
+// at, and then refused for its name alone.
+void try_create(rdm_robot_def def) {
+  rdm_robot taken{};
+  taken.struct_size = sizeof taken;
+  if (const rdm_result r = rdm_robot_at(0, &taken)) refuse(r, "%s", rdm_last_error());
+  const std::string name = def.name ? def.name : "";
+  const rdm_robot_def asked = def;
+  def.name = taken.name;
+  def.alias = nullptr;
+  int32_t robot = -1;
+  const rdm_result r = rdm_robot_create(&robot, &def);
+  std::string text = rdm_last_error();
+  const std::string head = std::string("robot ") + taken.name + ": ";
+  if (text != head + "the name is taken") {
+    if (text.compare(0, head.size(), head) == 0) text.replace(0, head.size(), "robot " + clean(name) + ": ");
+    refuse(r ? r : RDM_INTERNAL, "%s", text.c_str());
+  }
+  // Names are looked at before the rows are, so that a wrong one is told first.
+  def.name = asked.name;
+  def.num_links = 0;
+  (void)rdm_robot_create(&robot, &def);
+  text = rdm_last_error();
+  if (text.find("the name is") != std::string::npos || text.find("a name is made of") != std::string::npos)
+    refuse(RDM_ARGUMENT, "%s", text.c_str());
+}
+
+void read(const std::string& bytes, const Options& options, Draft* out) {
+  int32_t format = options.format;
+  if (format == RDM_IMPORT_AUTO) {
+    const std::string element = first_element(bytes);
+    format = element == "mujoco" || element == "mujocoinclude" ? RDM_IMPORT_MJCF
+             : element.empty()                                 ? RDM_IMPORT_ROBOT
+                                                               : RDM_IMPORT_URDF;
+  }
+  if (format == RDM_IMPORT_MJCF)
+    read_mjcf(bytes, options, out);
+  else if (format == RDM_IMPORT_URDF)
+    read_urdf(bytes, options, out);
+  else
+    read_robot(bytes, options, out);
+  try_create(out->def);
+}
+
+void give(rdm_import** out, std::unique_ptr<rdm_import> made) {
+  *out = made.release();
+}
+
+template <class T, class F>
+void get_rows(int32_t robot, int32_t count, std::vector<T>* rows, F&& at) {
+  rows->resize(static_cast<size_t>(count));
+  for (int32_t i = 0; i < count; ++i)
+    if (const rdm_result r = at(robot, i, rows->data() + i)) refuse(r, "%s", rdm_last_error());
+}
+
+void read_built(int32_t robot, Draft* d) {
+  if (const rdm_result r = rdm_robot_get(robot, &d->def)) refuse(r, "%s", rdm_last_error());
+  rdm_robot_def& def = d->def;
+  get_rows(robot, def.num_links, &d->links, rdm_robot_link_at);
+  get_rows(robot, def.num_shapes, &d->shapes, rdm_robot_shape_at);
+  get_rows(robot, def.num_pairs, &d->pairs, rdm_robot_pair_at);
+  get_rows(robot, def.num_couplings, &d->couplings, rdm_robot_coupling_at);
+  get_rows(robot, def.num_curves, &d->curves, rdm_robot_curve_at);
+  get_rows(robot, def.num_fingers, &d->fingers, rdm_robot_finger_at);
+  d->commands.resize(static_cast<size_t>(def.num_commands));
+  d->closed.resize(d->commands.size());
+  d->home.resize(d->links.size());
+  d->folded.resize(d->links.size());
+  if (const rdm_result r =
+          rdm_robot_poses_of(robot, d->commands.data(), d->home.data(), d->folded.data(), d->closed.data()))
+    refuse(r, "%s", rdm_last_error());
+  // 0 where it has none
+  const auto none = [](const auto& v) {
+    return std::all_of(v.begin(), v.end(), [](auto x) { return x == 0; });
+  };
+  if (none(d->folded) && none(d->closed)) d->folded.clear(), d->closed.clear();
+  // Texts belong to the robot, which may go before the handle does.
+  const auto keep = [&](const char*& text) {
+    if (text) text = d->keep(text);
+  };
+  keep(def.name), keep(def.alias), keep(def.summary);
+  for (rdm_robot_link& l : d->links) keep(l.name), keep(l.joint);
+  for (rdm_robot_shape& s : d->shapes) keep(s.name);
+  for (rdm_robot_finger& f : d->fingers) keep(f.name);
+  d->bind();
+}
+
+}  // namespace
+
+rdm_result rdm_import_options_init(rdm_import_options* options, size_t size) {
+  return call(nullptr, [&] {
+    need(options, "options");
+    if (size < sizeof *options || size > kMaxStruct)
+      refuse(RDM_ARGUMENT, "size: %zu is outside [%zu, %zu]", size, sizeof *options, kMaxStruct);
+    std::memset(static_cast<void*>(options), 0, size);
+    rdm_import_options o = defaults();
+    o.struct_size = static_cast<uint32_t>(size);
+    std::memcpy(options, &o, sizeof o);
+  });
+}
+
+rdm_result rdm_import_file(rdm_import** out, const char* path, const rdm_import_options* options) {
+  return call(options, [&] {
+    need(out, "out");
+    need(path, "path");
+    Options o = read_options(options);
+    if (!o.has_folder) o.folder = folder_of(path), o.has_folder = true;
+    const std::string bytes = read_file(path);
+    auto made = std::make_unique<rdm_import>();
+    try {
+      read(bytes, o, &made->draft);
+    } catch (const Refusal& r) {
+      refuse(r.code, "%s: %s", clean(path, 160).c_str(), r.text.c_str());
+    }
+    give(out, std::move(made));
+  });
+}
+
+rdm_result rdm_import_text(rdm_import** out, const void* bytes, size_t size,
+                           const rdm_import_options* options) {
+  return call(options, [&] {
+    need(out, "out");
+    if (size > 0) need(bytes, "bytes");
+    if (size > kMostBytes) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostBytes);
+    const Options o = read_options(options);
+    auto made = std::make_unique<rdm_import>();
+    read(std::string(static_cast<const char*>(bytes), size), o, &made->draft);
+    give(out, std::move(made));
+  });
+}
+
+rdm_result rdm_import_robot(rdm_import** out, int32_t robot) {
+  return call(nullptr, [&] {
+    need(out, "out");
+    auto made = std::make_unique<rdm_import>();
+    read_built(robot, &made->draft);
+    give(out, std::move(made));
+  });
+}
+
+void rdm_import_destroy(rdm_import* i) {
+  if (!i || i->tag != rdm_import::kTag) return;
+  *const_cast<volatile uint32_t*>(&i->tag) = 0;
+  delete i;
+}
+
+rdm_result rdm_import_def(const rdm_import* i, rdm_robot_def* io) {
+  return call(nullptr, [&] {
+    need_handle(i);
+    need(io, "io");
+    if (io->struct_size < sizeof *io || io->struct_size > kMaxStruct)
+      refuse(RDM_ARGUMENT, "io.struct_size: %u is outside [%zu, %zu]; set it by rdm_robot_def_init",
+             io->struct_size, sizeof *io, kMaxStruct);
+    const uint32_t size = io->struct_size;
+    std::memset(static_cast<void*>(io), 0, size);
+    *io = i->draft.def;
+    io->struct_size = size;
+  });
+}
+
+int32_t rdm_import_note_count(const rdm_import* i) {
+  return i && i->tag == rdm_import::kTag ? static_cast<int32_t>(i->draft.notes.size()) : 0;
+}
+
+rdm_result rdm_import_note_at(const rdm_import* i, int32_t n, rdm_import_note* out) {
+  return call(nullptr, [&] {
+    need_handle(i);
+    need(out, "out");
+    const int32_t count = rdm_import_note_count(i);
+    if (n < 0 || n >= count) refuse(RDM_RANGE, "n: %d is outside [0, %d)", n, count);
+    const Note& note = i->draft.notes[static_cast<size_t>(n)];
+    *out = {note.kind, note.line, note.text.c_str()};
+  });
+}
+
+rdm_result rdm_import_check(rdm_import* i) {
+  return call(nullptr, [&] {
+    need_handle(i);
+    try_create(i->draft.def);
+    check_robot(&i->draft);
+  });
+}
+
+rdm_result rdm_import_write(const rdm_robot_def* def, char* text, size_t capacity, size_t* size) {
+  return call(nullptr, [&] {
+    need(def, "def");
+    need(size, "size");
+    if (def->struct_size < sizeof *def || def->struct_size > kMaxStruct)
+      refuse(RDM_ARGUMENT, "def.struct_size: %u is outside [%zu, %zu]; set it by rdm_robot_def_init",
+             def->struct_size, sizeof *def, kMaxStruct);
+    const std::string out = write_robot(*def);
+    if (text && capacity < out.size() + 1)
+      refuse(RDM_RANGE, "capacity: %zu is outside [%zu, ...]", capacity, out.size() + 1);
+    *size = out.size();
+    if (text) std::memcpy(text, out.c_str(), out.size() + 1);
+  });
+}
+
+const char* rdm_import_error(void) {
+  return t_error;
+}

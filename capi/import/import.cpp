@@ -1,0 +1,175 @@
+#include "import.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+namespace rdm::import {
+namespace {
+
+std::string vformat(const char* pattern, va_list list) {
+  va_list again;
+  va_copy(again, list);
+  const int size = std::vsnprintf(nullptr, 0, pattern, list);
+  std::string out(static_cast<size_t>(std::max(size, 0)) + 1, '\0');
+  std::vsnprintf(out.data(), out.size(), pattern, again);
+  va_end(again);
+  out.pop_back();
+  return out;
+}
+
+// Bytes of the character at `c`, 0: none of UTF-8, or a control character.
+size_t character(const unsigned char* c, size_t left) {
+  if (c[0] < 0x80) return c[0] >= 0x20 && c[0] != 0x7f ? 1 : 0;
+  const size_t n = c[0] >= 0xf0 ? 4 : c[0] >= 0xe0 ? 3 : 2;
+  if (c[0] < 0xc2 || c[0] > 0xf4 || n > left) return 0;
+  for (size_t k = 1; k < n; ++k)
+    if ((c[k] & 0xc0) != 0x80) return 0;
+  if ((c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xed && c[1] > 0x9f) || (c[0] == 0xf0 && c[1] < 0x90) ||
+      (c[0] == 0xf4 && c[1] > 0x8f) || (c[0] == 0xc2 && c[1] < 0xa0))
+    return 0;
+  return n;
+}
+
+char folded(char c) {
+  return c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
+
+// Levenshtein's distance.
+size_t distance(const std::string& a, const std::string& b) {
+  std::vector<size_t> row(b.size() + 1);
+  for (size_t k = 0; k < row.size(); ++k) row[k] = k;
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t corner = row[0]++;
+    for (size_t k = 0; k < b.size(); ++k) {
+      const size_t change = corner + (folded(a[i]) == folded(b[k]) ? 0 : 1);
+      corner = row[k + 1];
+      row[k + 1] = std::min({row[k] + 1, row[k + 1] + 1, change});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string format(const char* pattern, ...) {
+  va_list list;
+  va_start(list, pattern);
+  std::string out = vformat(pattern, list);
+  va_end(list);
+  return out;
+}
+
+void refuse(rdm_result code, const char* pattern, ...) {
+  va_list list;
+  va_start(list, pattern);
+  std::string text = vformat(pattern, list);
+  va_end(list);
+  throw Refusal{code, std::move(text)};
+}
+
+std::string clean(const std::string& text, size_t most) {
+  std::string out;
+  for (size_t at = 0; at < text.size();) {
+    const auto* c = reinterpret_cast<const unsigned char*>(text.data()) + at;
+    const size_t n = character(c, text.size() - at);
+    std::string next = text.substr(at, std::max<size_t>(n, 1));
+    if (n == 0) next = *c < 0x20 || *c == 0x7f ? std::string(" ") : format("\\x%02x", *c);
+    if (out.size() + next.size() > most) return out + "...";
+    out += next;
+    at += std::max<size_t>(n, 1);
+  }
+  return out;
+}
+
+bool same_name(const std::string& a, const std::string& b) {
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return folded(x) == folded(y); });
+}
+
+std::string nearest_hint(const std::string& word, const std::vector<std::string>& names) {
+  const std::string* best = nullptr;
+  size_t least = 0;
+  for (const std::string& name : names) {
+    const size_t d = distance(word.substr(0, 64), name.substr(0, 64));
+    if (!best || d < least) best = &name, least = d;
+  }
+  if (!best || least > std::max<size_t>(2, best->size() / 2)) return "";
+  return "; nearest is " + clean(*best);
+}
+
+bool file_exists(const std::string& path) {
+  struct stat s;
+  return ::stat(path.c_str(), &s) == 0 && S_ISREG(s.st_mode);
+}
+
+std::string folder_of(const std::string& path) {
+  const size_t slash = path.rfind('/');
+  return slash == std::string::npos ? "" : path.substr(0, slash + 1);
+}
+
+std::string read_file(const std::string& path) {
+  const std::string name = clean(path, 160);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"), std::fclose);
+  if (!file)
+    refuse(errno == ENOENT ? RDM_NOT_FOUND : RDM_IO, "%s: cannot be opened: %s", name.c_str(),
+           std::strerror(errno));
+  struct stat s;
+  if (::fstat(::fileno(file.get()), &s) != 0 || !S_ISREG(s.st_mode))
+    refuse(RDM_IO, "%s: no regular file", name.c_str());
+  std::string out;
+  char part[1 << 16];
+  while (const size_t n = std::fread(part, 1, sizeof part, file.get())) {
+    if (out.size() + n > kMostBytes) refuse(RDM_RANGE, "%s: more than %zu bytes", name.c_str(), kMostBytes);
+    out.append(part, n);
+  }
+  if (std::ferror(file.get())) refuse(RDM_IO, "%s: cannot be read", name.c_str());
+  return out;
+}
+
+Draft::Draft() {
+  rdm_robot_def_init(&def, sizeof def);
+}
+
+const char* Draft::keep(std::string text) {
+  texts.push_back(std::move(text));
+  return texts.back().c_str();
+}
+
+void Draft::bind() {
+  const auto give = [](const auto& rows, auto* array, int32_t* count) {
+    *array = rows.empty() ? nullptr : rows.data();
+    if (count) *count = static_cast<int32_t>(rows.size());
+  };
+  give(links, &def.links, &def.num_links);
+  give(shapes, &def.shapes, &def.num_shapes);
+  give(pairs, &def.pairs, &def.num_pairs);
+  if (all_pairs) def.pairs = nullptr, def.num_pairs = -1;
+  give(couplings, &def.couplings, &def.num_couplings);
+  give(curves, &def.curves, &def.num_curves);
+  give(commands, &def.commands, &def.num_commands);
+  give(fingers, &def.fingers, &def.num_fingers);
+  give(home, &def.home, nullptr);
+  give(folded, &def.folded, nullptr);
+  give(closed, &def.closed, nullptr);
+}
+
+void Draft::note(int32_t kind, int32_t line, const char* pattern, ...) {
+  if (notes.size() == kMostNotes) {
+    notes.push_back({kind, 0, "more was found than is listed here"});
+    return;
+  }
+  if (notes.size() > kMostNotes) return;
+  va_list list;
+  va_start(list, pattern);
+  notes.push_back({kind, line, clean(vformat(pattern, list), 400)});
+  va_end(list);
+}
+
+}  // namespace rdm::import

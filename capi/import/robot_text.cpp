@@ -1,0 +1,613 @@
+// The .robot file: TOML, one key for each member of rdm_robot_def and its rows, rows named instead of
+// numbered. Numbers are the shortest text that reads back to the same bits. A key that is left out is 0,
+// "none" or what rdm_robot_def_init gives.
+namespace {
+struct ParserFault {};  // what the parser takes to be impossible is not: it must not end the process
+[[noreturn]] void parser_fault() {
+  throw ParserFault{};
+}
+}  // namespace
+#undef NDEBUG
+#define TOML_ASSERT(condition) ((condition) ? static_cast<void>(0) : parser_fault())
+#define TOML_HEADER_ONLY 1
+#define TOML_EXCEPTIONS 1
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdarg>
+#include <cstring>
+#include <initializer_list>
+#include <limits>
+#include <sstream>
+
+#include "import.hpp"
+
+namespace rdm::import {
+namespace {
+
+constexpr int kFormat = 1;
+constexpr const char* kKinds[] = {"other", "hand", "arm"};
+constexpr const char* kJoints[] = {"revolute", "prismatic"};
+constexpr struct {
+  const char* name;
+  int32_t kind;
+} kShapes[] = {{"sphere", RDM_SPHERE},
+               {"capsule", RDM_CAPSULE},
+               {"box", RDM_BOX},
+               {"cylinder", RDM_CYLINDER},
+               {"ellipsoid", RDM_ELLIPSOID}};
+constexpr const char* kRoot = "root";
+
+// ---- writing ----
+template <class T>
+std::string number_text(T x) {
+  if (std::isnan(x)) return std::signbit(x) ? "-nan" : "nan";
+  if (std::isinf(x)) return x < 0 ? "-inf" : "inf";
+  char text[40];
+  const auto end = std::to_chars(text, text + sizeof text, x).ptr;
+  std::string out(text, end);
+  if (out.find_first_of(".e") == std::string::npos) out += ".0";
+  return out;
+}
+
+struct Writer {
+  const rdm_robot_def& d;
+  std::string out;
+
+  std::string quoted(const char* text) const {
+    std::string s = "\"";
+    for (const char* c = text; *c; ++c) {
+      const auto byte = static_cast<unsigned char>(*c);
+      if (*c == '"' || *c == '\\')
+        s += '\\', s += *c;
+      else if (byte < 0x20 || byte == 0x7f)
+        s += format("\\u%04X", byte);
+      else
+        s += *c;
+    }
+    return s + '"';
+  }
+  void line(const char* key, const std::string& value) { out += std::string(key) + " = " + value + '\n'; }
+  template <class T>
+  static std::string list(const T* x, int32_t count) {
+    std::string s = "[";
+    for (int32_t i = 0; i < count; ++i) s += (i ? ", " : "") + number_text(x[i]);
+    return s + ']';
+  }
+  // What differs from its default alone: files stay short, and nothing is lost.
+  void number(const char* key, double x) {
+    if (x != 0 || std::signbit(x)) line(key, number_text(x));
+  }
+  void numbers(const char* key, const double* x, int32_t count, const double* otherwise = nullptr) {
+    bool differs = false;
+    for (int32_t i = 0; i < count; ++i) {
+      const double o = otherwise ? otherwise[i] : 0;
+      differs = differs || x[i] != o || std::signbit(x[i]) != std::signbit(o);
+    }
+    if (differs) line(key, list(x, count));
+  }
+  void turn(const char* key, const double* q) {
+    static constexpr double kNone[4] = {0, 0, 0, 1};
+    numbers(key, q, 4, kNone);
+  }
+  std::string link(int32_t row, const char* what) const {
+    if (row == RDM_ROOT_LINK) return quoted(kRoot);
+    if (row < 0 || row >= d.num_links)
+      refuse(RDM_ARGUMENT, "def: %s: row %d of links is not there", what, row);
+    return quoted(d.links[row].name);
+  }
+  std::string shape(int32_t row) const {
+    if (row < 0 || row >= d.num_shapes) refuse(RDM_ARGUMENT, "def.pairs: row %d of shapes is not there", row);
+    return quoted(d.shapes[row].name);
+  }
+
+  // Rows are referred to by name: each must have one of its own, and none may be the root's.
+  void check() const {
+    const auto rows = [](const void* array, int32_t count, const char* what) {
+      if (count < 0 || count > 4096) refuse(RDM_RANGE, "def.num_%s: %d is outside [0, 4096]", what, count);
+      if (count > 0 && !array) refuse(RDM_ARGUMENT, "def.%s is NULL with num_%s %d", what, what, count);
+    };
+    rows(d.links, d.num_links, "links");
+    if (d.num_links < 1) refuse(RDM_RANGE, "def.num_links: 0 is outside [1, %d]", RDM_ROBOT_LINKS);
+    rows(d.shapes, d.num_shapes, "shapes");
+    rows(d.pairs, std::max(d.num_pairs, 0), "pairs");
+    rows(d.couplings, d.num_couplings, "couplings");
+    rows(d.curves, d.num_curves, "curves");
+    rows(d.commands, d.num_commands, "commands");
+    rows(d.fingers, d.num_fingers, "fingers");
+    if (!d.name) refuse(RDM_ARGUMENT, "def.name is NULL");
+    if (d.kind < 0 || d.kind > 2) refuse(RDM_RANGE, "def.kind: %d is outside [0, 2]", d.kind);
+    for (int32_t i = 0; i < d.num_links; ++i) {
+      const rdm_robot_link& l = d.links[i];
+      if (!l.name || !l.joint) refuse(RDM_ARGUMENT, "def.links: row %d has no name", i);
+      if (l.kind < 0 || l.kind > 1)
+        refuse(RDM_RANGE, "def.links: kind %d of %s is outside [0, 1]", l.kind, clean(l.name).c_str());
+      if (same_name(l.name, kRoot)) refuse(RDM_ARGUMENT, "def.links: row %d is called root", i);
+      for (int32_t k = 0; k < i; ++k)
+        if (same_name(d.links[k].name, l.name))
+          refuse(RDM_ARGUMENT, "def.links: %s stands twice", clean(l.name).c_str());
+    }
+    for (int32_t i = 0; i < d.num_shapes; ++i) {
+      if (!d.shapes[i].name) refuse(RDM_ARGUMENT, "def.shapes: row %d has no name", i);
+      if (d.num_pairs > 0)
+        for (int32_t k = 0; k < i; ++k)
+          if (same_name(d.shapes[k].name, d.shapes[i].name))
+            refuse(RDM_ARGUMENT, "def.shapes: %s stands twice", clean(d.shapes[i].name).c_str());
+    }
+    for (int32_t i = 0; i < d.num_fingers; ++i)
+      if (!d.fingers[i].name) refuse(RDM_ARGUMENT, "def.fingers: row %d has no name", i);
+    for (int32_t i = 0; i < d.num_curves; ++i)
+      if (d.curves[i].num_knots < 0 || d.curves[i].num_knots > RDM_ROBOT_KNOTS)
+        refuse(RDM_RANGE, "def.curves: num_knots %d is outside [2, %d]", d.curves[i].num_knots,
+               RDM_ROBOT_KNOTS);
+  }
+
+  std::string write() {
+    check();
+    const int32_t n = d.num_links;
+    out =
+        "# A robot of redman: m, kg, s, rad, N; quaternions are x, y, z, w. What is left out is 0 or none.\n";
+    line("format", std::to_string(kFormat));
+    line("name", quoted(d.name));
+    if (d.alias) line("alias", quoted(d.alias));
+    if (d.summary) line("summary", quoted(d.summary));
+    line("kind", quoted(kKinds[d.kind]));
+    if (d.mirror >= 0 && d.mirror < 3) line("mirror", quoted(format("%c", "xyz"[d.mirror]).c_str()));
+    if (d.home) line("home", list(d.home, n));
+    if (d.folded) line("folded", list(d.folded, n));
+    if (d.commands) {
+      std::string s = "[";
+      for (int32_t i = 0; i < d.num_commands; ++i) s += (i ? ", " : "") + link(d.commands[i], "commands");
+      line("commands", s + ']');
+    }
+    if (d.closed) line("closed", list(d.closed, num_commands(d)));
+    if (d.num_pairs < 0) {
+      line("pairs", quoted("all"));
+    } else if (d.num_pairs > 0) {
+      out += "pairs = [\n";
+      for (int32_t i = 0; i < d.num_pairs; ++i)
+        out += "  [" + shape(d.pairs[i].a) + ", " + shape(d.pairs[i].b) + "],\n";
+      out += "]\n";
+    }
+    out += "\n[root]\n";
+    number("mass", d.root_mass);
+    numbers("com", d.root_com, 3);
+    numbers("moment", d.root_moment, 6);
+    out += "\n[mount]\n";
+    numbers("p", d.mount_p, 3);
+    turn("q", d.mount_q);
+    out += "\n[flange]\n";
+    if (d.flange_link != RDM_NO_LINK) line("link", link(d.flange_link, "flange_link"));
+    numbers("p", d.flange_p, 3);
+    turn("q", d.flange_q);
+    out += "\n[palm]\n";
+    static constexpr double kNormal[3] = {0, -1, 0}, kWay[3] = {0, 0, 1};
+    if (d.palm_link != RDM_NO_LINK) line("link", link(d.palm_link, "palm_link"));
+    numbers("p", d.palm_p, 3);
+    numbers("normal", d.palm_normal, 3, kNormal);
+    numbers("fingers", d.palm_fingers, 3, kWay);
+    numbers("hold", d.hold_p, 3);
+    for (int32_t i = 0; i < n; ++i) write_link(d.links[i]);
+    for (int32_t i = 0; i < d.num_shapes; ++i) write_shape(d.shapes[i]);
+    for (int32_t i = 0; i < d.num_couplings; ++i) {
+      const rdm_robot_coupling& c = d.couplings[i];
+      out += "\n[[coupling]]\n";
+      line("link", link(c.link, "couplings"));
+      line("other", link(c.other, "couplings"));
+      number("ratio", c.ratio);
+      number("slack", c.slack);
+    }
+    for (int32_t i = 0; i < d.num_curves; ++i) {
+      const rdm_robot_curve& c = d.curves[i];
+      out += "\n[[curve]]\n";
+      line("link", link(c.link, "curves"));
+      line("driver", link(c.driver, "curves"));
+      line("command", list(c.command, c.num_knots));
+      line("angle", list(c.angle, c.num_knots));
+    }
+    for (int32_t i = 0; i < d.num_fingers; ++i) {
+      const rdm_robot_finger& f = d.fingers[i];
+      out += "\n[[finger]]\n";
+      line("name", quoted(f.name));
+      line("first", link(f.first, "fingers"));
+      line("tip", link(f.tip, "fingers"));
+      if (f.lateral != -1) line("lateral", link(f.lateral, "fingers"));
+      if (f.proximal != -1) line("proximal", link(f.proximal, "fingers"));
+      if (f.middle != -1) line("middle", link(f.middle, "fingers"));
+      if (f.thumb) line("thumb", "true");
+      numbers("p_tip", f.p_tip, 3);
+    }
+    return out;
+  }
+  // Commands of rdm_robot_create when there is no list: rows that follow no other and have no other's curve.
+  static int32_t num_commands(const rdm_robot_def& d) {
+    if (d.commands) return d.num_commands;
+    int32_t count = 0;
+    for (int32_t i = 0; i < d.num_links; ++i) {
+      bool follows = false;
+      for (int32_t k = 0; k < d.num_couplings; ++k) follows = follows || d.couplings[k].link == i;
+      for (int32_t k = 0; k < d.num_curves; ++k)
+        follows = follows || (d.curves[k].link == i && d.curves[k].driver != i);
+      count += follows ? 0 : 1;
+    }
+    return count;
+  }
+  void write_link(const rdm_robot_link& l) {
+    out += "\n[[link]]\n";
+    line("name", quoted(l.name));
+    line("joint", quoted(l.joint));
+    line("parent", link(l.parent, "parent"));
+    line("kind", quoted(kJoints[l.kind]));
+    numbers("p", l.p, 3);
+    turn("q", l.q);
+    numbers("axis", l.axis, 3);
+    line("range", list(&l.lower, 2));
+    static_assert(offsetof(rdm_robot_link, upper) == offsetof(rdm_robot_link, lower) + sizeof l.lower);
+    number("velocity", l.velocity);
+    number("kp", l.kp);
+    number("kd", l.kd);
+    number("effort", l.effort);
+    number("armature", l.armature);
+    number("friction", l.friction);
+    number("mass", l.mass);
+    numbers("com", l.com, 3);
+    numbers("moment", l.moment, 6);
+  }
+  void write_shape(const rdm_robot_shape& s) {
+    out += "\n[[shape]]\n";
+    line("name", quoted(s.name));
+    line("link", link(s.link, "shapes"));
+    const char* kind = nullptr;
+    for (const auto& k : kShapes)
+      if (k.kind == s.kind) kind = k.name;
+    if (!kind)
+      refuse(RDM_RANGE, "def.shapes: kind %d of %s is none of a robot", s.kind, clean(s.name).c_str());
+    line("kind", quoted(kind));
+    numbers("size", s.size, 3);
+    numbers("p", s.p, 3);
+    turn("q", s.q);
+    line("color", format("[%d, %d, %d]", s.color[0], s.color[1], s.color[2]));
+  }
+};
+
+// ---- reading ----
+int line_of(const toml::source_region& s) {
+  return static_cast<int>(s.begin.line);
+}
+int line_of(const toml::node& n) {
+  return line_of(n.source());
+}
+
+struct Table {
+  const toml::table& t;
+  std::string what;  // "link knee"
+
+  [[noreturn]] [[gnu::format(printf, 4, 5)]] void bad(rdm_result code, int line, const char* pattern,
+                                                      ...) const {
+    char text[400];
+    va_list list;
+    va_start(list, pattern);
+    std::vsnprintf(text, sizeof text, pattern, list);
+    va_end(list);
+    refuse(code, "line %d: %s%s%s", line, what.c_str(), what.empty() ? "" : ": ", text);
+  }
+  void only(std::initializer_list<const char*> known) const {
+    for (const auto& [key, value] : t) {
+      const std::string name(key.str());
+      bool found = false;
+      std::vector<std::string> names;
+      for (const char* k : known) found = found || name == k, names.emplace_back(k);
+      if (!found)
+        bad(RDM_FORMAT, line_of(key.source()), "%s is no key%s", clean(name).c_str(),
+            nearest_hint(name, names).c_str());
+    }
+  }
+  const toml::node* find(const char* key) const { return t.get(key); }
+  const toml::node& need(const char* key) const {
+    const toml::node* n = find(key);
+    if (!n) bad(RDM_FORMAT, line_of(t), "no %s", key);
+    return *n;
+  }
+  double as_number(const toml::node& n, const char* key) const {
+    if (const auto* x = n.as_floating_point()) return x->get();
+    if (const auto* x = n.as_integer())
+      if (std::abs(static_cast<double>(x->get())) <= 9007199254740992.0) return static_cast<double>(x->get());
+    bad(RDM_FORMAT, line_of(n), "%s is no number", key);
+  }
+  void number(const char* key, double* out) const {
+    if (const toml::node* n = find(key)) *out = as_number(*n, key);
+  }
+  std::vector<double> list(const toml::node& n, const char* key, size_t least, size_t most) const {
+    const toml::array* a = n.as_array();
+    if (!a || a->size() < least || a->size() > most)
+      bad(RDM_FORMAT, line_of(n),
+          least == most ? "%s is no list of %zu numbers" : "%s is no list of %zu to %zu numbers", key, least,
+          most);
+    std::vector<double> out;
+    for (const toml::node& x : *a) out.push_back(as_number(x, key));
+    return out;
+  }
+  void numbers(const char* key, double* out, size_t count) const {
+    if (const toml::node* n = find(key)) {
+      const auto x = list(*n, key, count, count);
+      std::copy(x.begin(), x.end(), out);
+    }
+  }
+  std::string as_text(const toml::node& n, const char* key) const {
+    if (const auto* x = n.as_string()) {
+      if (x->get().find('\0') != std::string::npos) bad(RDM_FORMAT, line_of(n), "%s has a 0 in it", key);
+      return x->get();
+    }
+    bad(RDM_FORMAT, line_of(n), "%s is no text", key);
+  }
+  int32_t choice(const char* key, const char* const* names, int32_t count, int32_t otherwise) const {
+    const toml::node* n = find(key);
+    if (!n) return otherwise;
+    const std::string text = as_text(*n, key);
+    std::vector<std::string> all;
+    for (int32_t i = 0; i < count; ++i) {
+      if (text == names[i]) return i;
+      all.emplace_back(names[i]);
+    }
+    bad(RDM_FORMAT, line_of(*n), "%s: %s is not known%s", key, clean(text).c_str(),
+        nearest_hint(text, all).c_str());
+  }
+};
+
+struct RobotReader {
+  const toml::table& file;
+  Draft* out;
+  Table top{file, ""};
+
+  int32_t link(const Table& t, const char* key, const toml::node& n) const {
+    const std::string text = t.as_text(n, key);
+    if (text == kRoot) return RDM_ROOT_LINK;
+    std::vector<std::string> names{kRoot};
+    for (size_t i = 0; i < out->links.size(); ++i) {
+      if (text == out->links[i].name) return static_cast<int32_t>(i);
+      names.emplace_back(out->links[i].name);
+    }
+    t.bad(RDM_NOT_FOUND, line_of(n), "%s: there is no link %s before it%s", key, clean(text).c_str(),
+          nearest_hint(text, names).c_str());
+  }
+  int32_t link_or(const Table& t, const char* key, int32_t otherwise) const {
+    const toml::node* n = t.find(key);
+    return n ? link(t, key, *n) : otherwise;
+  }
+  std::vector<Table> rows(const char* key) const {
+    std::vector<Table> all;
+    const toml::node* n = file.get(key);
+    if (!n) return all;
+    const toml::array* a = n->as_array();
+    if (!a) top.bad(RDM_FORMAT, line_of(*n), "%s is written as [[%s]]", key, key);
+    if (a->size() > 4096) top.bad(RDM_RANGE, line_of(*n), "more than 4096 rows of %s", key);
+    for (const toml::node& x : *a) {
+      const toml::table* t = x.as_table();
+      if (!t) top.bad(RDM_FORMAT, line_of(x), "%s is written as [[%s]]", key, key);
+      std::string what = key;
+      for (const char* naming : {"name", "link"})
+        if (const toml::node* name = t->get(naming); name && name->is_string()) {
+          what += ' ' + clean(name->as_string()->get());
+          break;
+        }
+      all.push_back({*t, what});
+    }
+    return all;
+  }
+  Table section(const char* key) const {
+    static const toml::table kEmpty;
+    const toml::node* n = file.get(key);
+    if (!n) return {kEmpty, key};
+    if (!n->is_table()) top.bad(RDM_FORMAT, line_of(*n), "%s is written as [%s]", key, key);
+    return {*n->as_table(), key};
+  }
+  const char* name(const Table& t, const char* key) { return out->keep(t.as_text(t.need(key), key)); }
+
+  void read_links() {
+    for (const Table& t : rows("link")) {
+      t.only({"name", "joint", "parent", "kind", "p", "q", "axis", "range", "velocity", "kp", "kd", "effort",
+              "armature", "friction", "mass", "com", "moment"});
+      if (out->links.size() == RDM_ROBOT_LINKS)
+        t.bad(RDM_RANGE, line_of(t.t), "more than %d links", RDM_ROBOT_LINKS);
+      rdm_robot_link l{};
+      l.name = name(t, "name");
+      l.joint = name(t, "joint");
+      l.parent = link(t, "parent", t.need("parent"));
+      l.kind = t.choice("kind", kJoints, 2, 0);
+      l.q[3] = 1;
+      t.numbers("p", l.p, 3);
+      t.numbers("q", l.q, 4);
+      t.need("axis");
+      t.numbers("axis", l.axis, 3);
+      const auto range = t.list(t.need("range"), "range", 2, 2);
+      l.lower = range[0], l.upper = range[1];
+      t.number("velocity", &l.velocity);
+      t.number("kp", &l.kp);
+      t.number("kd", &l.kd);
+      t.number("effort", &l.effort);
+      t.number("armature", &l.armature);
+      t.number("friction", &l.friction);
+      t.number("mass", &l.mass);
+      t.numbers("com", l.com, 3);
+      t.numbers("moment", l.moment, 6);
+      out->links.push_back(l);
+    }
+    if (out->links.empty()) top.bad(RDM_FORMAT, 1, "no [[link]]");
+  }
+  void read_shapes() {
+    for (const Table& t : rows("shape")) {
+      t.only({"name", "link", "kind", "size", "p", "q", "color"});
+      rdm_robot_shape s{};
+      s.name = name(t, "name");
+      s.link = link(t, "link", t.need("link"));
+      const char* names[5];
+      for (size_t i = 0; i < 5; ++i) names[i] = kShapes[i].name;
+      t.need("kind");
+      s.kind = kShapes[static_cast<size_t>(t.choice("kind", names, 5, 0))].kind;
+      const auto size = t.list(t.need("size"), "size", 1, 3);
+      std::copy(size.begin(), size.end(), s.size);
+      s.q[3] = 1;
+      t.numbers("p", s.p, 3);
+      t.numbers("q", s.q, 4);
+      const toml::node* color = t.find("color");
+      const auto c = color ? t.list(*color, "color", 3, 3) : std::vector<double>{178, 178, 184};
+      for (size_t k = 0; k < 3; ++k) {
+        if (!(c[k] >= 0 && c[k] <= 255))
+          t.bad(RDM_RANGE, line_of(*color), "color: %g is outside [0, 255]", c[k]);
+        s.color[k] = static_cast<uint8_t>(c[k]);
+      }
+      s.color[3] = 255;
+      out->shapes.push_back(s);
+    }
+  }
+  int32_t shape(const toml::node& n) const {
+    const std::string text = top.as_text(n, "pairs");
+    std::vector<std::string> names;
+    for (size_t i = 0; i < out->shapes.size(); ++i) {
+      if (text == out->shapes[i].name) return static_cast<int32_t>(i);
+      names.emplace_back(out->shapes[i].name);
+    }
+    top.bad(RDM_NOT_FOUND, line_of(n), "pairs: there is no shape %s%s", clean(text).c_str(),
+            nearest_hint(text, names).c_str());
+  }
+  void read_pairs() {
+    const toml::node* n = file.get("pairs");
+    if (!n) return;
+    if (n->is_string() && n->as_string()->get() == "all") {
+      out->all_pairs = true;
+      return;
+    }
+    const toml::array* a = n->as_array();
+    if (!a || a->size() > 4096)
+      top.bad(RDM_FORMAT, line_of(*n), "pairs is neither \"all\" nor a list of at most 4096 pairs of shapes");
+    for (const toml::node& x : *a) {
+      const toml::array* pair = x.as_array();
+      if (!pair || pair->size() != 2) top.bad(RDM_FORMAT, line_of(x), "pairs: not two shapes");
+      out->pairs.push_back({shape(*pair->get(0)), shape(*pair->get(1))});
+    }
+  }
+  void read_rows() {
+    for (const Table& t : rows("coupling")) {
+      t.only({"link", "other", "ratio", "slack"});
+      rdm_robot_coupling c{};
+      c.link = link(t, "link", t.need("link"));
+      c.other = link(t, "other", t.need("other"));
+      t.number("ratio", &c.ratio);
+      t.number("slack", &c.slack);
+      out->couplings.push_back(c);
+    }
+    for (const Table& t : rows("curve")) {
+      t.only({"link", "driver", "command", "angle"});
+      rdm_robot_curve c{};
+      c.link = link(t, "link", t.need("link"));
+      c.driver = link_or(t, "driver", c.link);
+      const auto command = t.list(t.need("command"), "command", 0, RDM_ROBOT_KNOTS);
+      const auto angle = t.list(t.need("angle"), "angle", command.size(), command.size());
+      c.num_knots = static_cast<int32_t>(command.size());
+      std::copy(command.begin(), command.end(), c.command);
+      std::copy(angle.begin(), angle.end(), c.angle);
+      out->curves.push_back(c);
+    }
+    for (const Table& t : rows("finger")) {
+      t.only({"name", "first", "tip", "lateral", "proximal", "middle", "thumb", "p_tip"});
+      rdm_robot_finger f{};
+      f.name = name(t, "name");
+      f.first = link(t, "first", t.need("first"));
+      f.tip = link(t, "tip", t.need("tip"));
+      f.lateral = link_or(t, "lateral", -1);
+      f.proximal = link_or(t, "proximal", -1);
+      f.middle = link_or(t, "middle", -1);
+      if (const toml::node* n = t.find("thumb")) {
+        if (!n->is_boolean()) t.bad(RDM_FORMAT, line_of(*n), "thumb is neither true nor false");
+        f.thumb = n->as_boolean()->get();
+      }
+      t.numbers("p_tip", f.p_tip, 3);
+      out->fingers.push_back(f);
+    }
+    if (const toml::node* n = file.get("commands")) {
+      const toml::array* a = n->as_array();
+      if (!a) top.bad(RDM_FORMAT, line_of(*n), "commands is no list of links");
+      for (const toml::node& x : *a) out->commands.push_back(link(top, "commands", x));
+    }
+  }
+  void read_parts() {
+    rdm_robot_def& d = out->def;
+    const Table root = section("root"), mount = section("mount"), flange = section("flange"),
+                palm = section("palm");
+    root.only({"mass", "com", "moment"});
+    root.number("mass", &d.root_mass);
+    root.numbers("com", d.root_com, 3);
+    root.numbers("moment", d.root_moment, 6);
+    mount.only({"p", "q"});
+    mount.numbers("p", d.mount_p, 3);
+    mount.numbers("q", d.mount_q, 4);
+    flange.only({"link", "p", "q"});
+    d.flange_link = link_or(flange, "link", RDM_NO_LINK);
+    flange.numbers("p", d.flange_p, 3);
+    flange.numbers("q", d.flange_q, 4);
+    palm.only({"link", "p", "normal", "fingers", "hold"});
+    d.palm_link = link_or(palm, "link", RDM_NO_LINK);
+    palm.numbers("p", d.palm_p, 3);
+    palm.numbers("normal", d.palm_normal, 3);
+    palm.numbers("fingers", d.palm_fingers, 3);
+    palm.numbers("hold", d.hold_p, 3);
+  }
+  void read_poses() {
+    const size_t n = out->links.size();
+    if (const toml::node* x = file.get("home")) out->home = top.list(*x, "home", n, n);
+    if (const toml::node* x = file.get("folded")) out->folded = top.list(*x, "folded", n, n);
+    if (const toml::node* x = file.get("closed")) {
+      out->bind();
+      const auto count = static_cast<size_t>(Writer::num_commands(out->def));
+      for (const double v : top.list(*x, "closed", count, count))
+        out->closed.push_back(static_cast<float>(v));
+    }
+  }
+
+  void read(const Options& options) {
+    top.only({"format", "name",     "alias",  "summary",  "kind",  "mirror", "home",
+              "folded", "commands", "closed", "pairs",    "root",  "mount",  "flange",
+              "palm",   "link",     "shape",  "coupling", "curve", "finger"});
+    if (const toml::node* n = file.get("format"))
+      if (!n->is_integer() || n->as_integer()->get() != kFormat)
+        top.bad(RDM_VERSION_MISMATCH, line_of(*n), "format: this library reads %d", kFormat);
+    rdm_robot_def& d = out->def;
+    d.name = options.name.empty() ? name(top, "name") : out->keep(options.name);
+    if (file.get("alias")) d.alias = name(top, "alias");
+    if (file.get("summary")) d.summary = name(top, "summary");
+    d.kind = options.kind >= 0 ? options.kind : top.choice("kind", kKinds, 3, 0);
+    static constexpr const char* kAxes[] = {"x", "y", "z"};
+    d.mirror = top.choice("mirror", kAxes, 3, -1);
+    read_links();
+    read_shapes();
+    read_pairs();
+    read_rows();
+    read_parts();
+    read_poses();
+    out->bind();
+  }
+};
+
+}  // namespace
+
+std::string write_robot(const rdm_robot_def& def) {
+  Writer writer{def, {}};
+  return writer.write();
+}
+
+void read_robot(const std::string& bytes, const Options& options, Draft* out) {
+  toml::table file;
+  try {
+    file = toml::parse(std::string_view(bytes));
+  } catch (const toml::parse_error& e) {
+    refuse(RDM_FORMAT, "line %d: %s", line_of(e.source()), clean(std::string(e.description()), 200).c_str());
+  } catch (const ParserFault&) {
+    refuse(RDM_FORMAT, "line %ld: no TOML", std::count(bytes.begin(), bytes.end(), '\n') + 1);
+  }
+  RobotReader reader{file, out};
+  reader.read(options);
+}
+
+}  // namespace rdm::import

@@ -1,0 +1,322 @@
+#include "shapes.hpp"
+
+#include <charconv>
+#include <cstring>
+#include <limits>
+
+namespace rdm::import {
+namespace {
+
+constexpr size_t kMostPoints = 2000000;
+constexpr size_t kStlHeader = 84, kStlFacet = 50;  // bytes
+
+V3 support(int32_t kind, V3 s, V3 d) {
+  const double n = norm(d);
+  if (n == 0) return {};
+  const auto sign = [](double x) { return x < 0 ? -1.0 : 1.0; };
+  const V3 u = (1 / n) * d;
+  if (kind == RDM_SPHERE) return s.x * u;
+  if (kind == RDM_CAPSULE) return s.x * u + V3{0, 0, sign(d.z) * s.y};
+  if (kind == RDM_BOX) return {sign(d.x) * s.x, sign(d.y) * s.y, sign(d.z) * s.z};
+  if (kind == RDM_CYLINDER) {
+    const double r = std::sqrt(d.x * d.x + d.y * d.y);
+    return {r > 0 ? s.x * d.x / r : 0, r > 0 ? s.x * d.y / r : 0, sign(d.z) * s.y};
+  }
+  const V3 e{s.x * d.x, s.y * d.y, s.z * d.z};  // ellipsoid
+  const double m = norm(e);
+  return m > 0 ? V3{s.x * e.x / m, s.y * e.y / m, s.z * e.z / m} : V3{};
+}
+
+// The simplex about the origin, newest first: true when it holds it; else the way to go on.
+bool next_simplex(std::vector<V3>& s, V3& way) {
+  const auto toward = [](V3 a, V3 b) { return dot(a, b) > 0; };
+  const V3 a = s[0], ao = -1 * a;
+  if (s.size() == 2) {
+    const V3 ab = s[1] - a;
+    if (toward(ab, ao)) {
+      way = cross(cross(ab, ao), ab);
+    } else {
+      s = {a};
+      way = ao;
+    }
+    return false;
+  }
+  if (s.size() == 3) {
+    const V3 b = s[1], c = s[2], ab = b - a, ac = c - a, n = cross(ab, ac);
+    if (toward(cross(n, ac), ao)) {
+      if (toward(ac, ao)) {
+        s = {a, c};
+        way = cross(cross(ac, ao), ac);
+        return false;
+      }
+      s = {a, b};
+      return next_simplex(s, way);
+    }
+    if (toward(cross(ab, n), ao)) {
+      s = {a, b};
+      return next_simplex(s, way);
+    }
+    if (toward(n, ao)) {
+      way = n;
+    } else {
+      s = {a, c, b};
+      way = -1 * n;
+    }
+    return false;
+  }
+  const V3 b = s[1], c = s[2], d = s[3];
+  const auto face = [&](V3 x, V3 y) {
+    s = {a, x, y};
+    return next_simplex(s, way);
+  };
+  if (toward(cross(b - a, c - a), ao)) return face(b, c);
+  if (toward(cross(c - a, d - a), ao)) return face(c, d);
+  if (toward(cross(d - a, b - a), ao)) return face(d, b);
+  return true;
+}
+
+// Half sizes and middle of the box around the points, along the columns of `axes`.
+Primitive box_along(const std::vector<V3>& points, const M3& axes) {
+  V3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  const Turn q = turn_of(axes);
+  for (const V3& p : points) {
+    const V3 r = back(q) * p;
+    for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], r[k]), high[k] = std::max(high[k], r[k]);
+  }
+  Primitive out{RDM_BOX, 0.5 * (high - low), {q * (0.5 * (low + high)), q}};
+  for (int k = 0; k < 3; ++k) out.size[k] = std::max(out.size[k], 1e-4);
+  return out;
+}
+
+double lines_number(const char*& c, const char* end, size_t line) {
+  while (c != end && (*c == ' ' || *c == '\t')) ++c;
+  if (c != end && *c == '+') ++c;
+  double x = 0;
+  const auto [after, error] = std::from_chars(c, end, x);
+  if (error != std::errc() || !(std::abs(x) <= 1e6))
+    refuse(RDM_FORMAT, "line %zu: a corner needs three numbers", line);
+  c = after;
+  return x;
+}
+
+Mesh parse_lines(const std::string& bytes, bool obj) {
+  Mesh out;
+  size_t number = 0;
+  for (size_t at = 0; at < bytes.size();) {
+    const size_t stop = std::min(bytes.find('\n', at), bytes.size());
+    const char *c = bytes.data() + at, *end = bytes.data() + stop;
+    at = stop + 1;
+    ++number;
+    while (c != end && (*c == ' ' || *c == '\t')) ++c;
+    const std::string_view line(c, static_cast<size_t>(end - c));
+    const auto is = [&](std::string_view word) {
+      return line.size() > word.size() && line.substr(0, word.size()) == word &&
+             (line[word.size()] == ' ' || line[word.size()] == '\t');
+    };
+    if (is(obj ? "v" : "vertex")) {
+      c += obj ? 1 : 6;
+      V3 p;
+      for (int k = 0; k < 3; ++k) p[k] = lines_number(c, end, number);
+      if (out.points.size() == kMostPoints) refuse(RDM_RANGE, "more than %zu corners", kMostPoints);
+      out.points.push_back(p);
+      const auto n = static_cast<uint32_t>(out.points.size());
+      if (!obj && n % 3 == 0) out.faces.push_back({n - 3, n - 2, n - 1});
+    } else if (obj && is("f")) {
+      ++c;
+      std::vector<uint32_t> corners;
+      while (true) {
+        while (c != end && (*c == ' ' || *c == '\t')) ++c;
+        long long i = 0;
+        const auto [after, error] = std::from_chars(c, end, i);
+        if (error != std::errc()) break;
+        i = i < 0 ? static_cast<long long>(out.points.size()) + i : i - 1;
+        if (i < 0 || i >= static_cast<long long>(out.points.size()))
+          refuse(RDM_FORMAT, "line %zu: a face of a corner that is not there", number);
+        corners.push_back(static_cast<uint32_t>(i));
+        c = after;
+        while (c != end && *c != ' ' && *c != '\t') ++c;
+        if (out.faces.size() + corners.size() > 3 * kMostPoints) refuse(RDM_RANGE, "too many faces");
+      }
+      for (size_t k = 2; k < corners.size(); ++k)
+        out.faces.push_back({corners[0], corners[k - 1], corners[k]});
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+V3 farthest(const Primitive& s, V3 way) {
+  return s.X * support(s.kind, s.size, back(s.X.q) * way);
+}
+
+bool touch(const Primitive& a, const Primitive& b) {
+  const auto corner = [&](V3 way) { return farthest(a, way) - farthest(b, -1 * way); };
+  V3 way = b.X.p - a.X.p;
+  if (norm(way) < 1e-12) return true;
+  std::vector<V3> s{corner(way)};
+  way = -1 * s[0];
+  for (int k = 0; k < 64; ++k) {
+    if (norm(way) < 1e-15) return true;
+    const V3 p = corner(way);
+    if (dot(p, way) <= 0) return false;
+    s.insert(s.begin(), p);
+    if (next_simplex(s, way)) return true;
+  }
+  return true;  // they graze
+}
+
+double volume_of(const Primitive& s) {
+  const V3& r = s.size;
+  switch (s.kind) {
+    case RDM_SPHERE:
+      return 4.0 / 3 * M_PI * r.x * r.x * r.x;
+    case RDM_CAPSULE:
+      return M_PI * r.x * r.x * (2 * r.y + 4.0 / 3 * r.x);
+    case RDM_CYLINDER:
+      return M_PI * r.x * r.x * 2 * r.y;
+    case RDM_BOX:
+      return 8 * r.x * r.y * r.z;
+    default:
+      return 4.0 / 3 * M_PI * r.x * r.y * r.z;
+  }
+}
+
+Mass solid(const Primitive& s) {
+  Mass out;
+  const V3& r = s.size;
+  out.mass = volume_of(s);
+  V3 m;  // moments per mass
+  if (s.kind == RDM_BOX) {
+    m = 1.0 / 3 * V3{r.y * r.y + r.z * r.z, r.x * r.x + r.z * r.z, r.x * r.x + r.y * r.y};
+  } else if (s.kind == RDM_CYLINDER) {
+    const double across = r.x * r.x / 4 + r.y * r.y / 3;
+    m = {across, across, r.x * r.x / 2};
+  } else if (s.kind == RDM_CAPSULE) {
+    const double ball = 4.0 / 3 * r.x / (2 * r.y + 4.0 / 3 * r.x), rod = 1 - ball;
+    const double across =
+        rod * (r.x * r.x / 4 + r.y * r.y / 3) + ball * (0.4 * r.x * r.x + r.y * r.y + 0.75 * r.x * r.y);
+    m = {across, across, rod * r.x * r.x / 2 + ball * 0.4 * r.x * r.x};
+  } else {
+    const V3 e = s.kind == RDM_SPHERE ? V3{r.x, r.x, r.x} : r;
+    m = 0.2 * V3{e.y * e.y + e.z * e.z, e.x * e.x + e.z * e.z, e.x * e.x + e.y * e.y};
+  }
+  for (size_t k = 0; k < 3; ++k) out.moment[k][k] = out.mass * m[static_cast<int>(k)];
+  return s.X * out;
+}
+
+Mesh parse_mesh(const std::string& bytes, bool obj) {
+  Mesh out;
+  uint32_t facets = 0;
+  if (bytes.size() >= kStlHeader)
+    std::memcpy(&facets, bytes.data() + kStlHeader - sizeof facets, sizeof facets);
+  if (obj || bytes.size() < kStlHeader ||
+      bytes.size() != kStlHeader + kStlFacet * static_cast<size_t>(facets)) {
+    out = parse_lines(bytes, obj);
+  } else {
+    if (3 * static_cast<size_t>(facets) > kMostPoints)
+      refuse(RDM_RANGE, "more than %zu corners", kMostPoints);
+    for (uint32_t f = 0; f < facets; ++f) {
+      float n[12];  // normal, then three corners
+      std::memcpy(n, bytes.data() + kStlHeader + kStlFacet * static_cast<size_t>(f), sizeof n);
+      for (int k = 3; k < 12; ++k)
+        if (!(std::abs(n[k]) <= 1e6f))
+          refuse(RDM_FORMAT, "facet %u: a corner is not finite, or beyond 1e6", f + 1);
+      for (int k = 3; k < 12; k += 3) out.points.push_back({n[k], n[k + 1], n[k + 2]});
+      out.faces.push_back({3 * f, 3 * f + 1, 3 * f + 2});
+    }
+  }
+  if (out.points.empty()) refuse(RDM_FORMAT, "no corners in it");
+  return out;
+}
+
+Mesh read_mesh(const std::string& path) {
+  std::string ending = path.substr(std::min(path.rfind('.'), path.size()));
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (ending != ".stl" && ending != ".obj")
+    refuse(RDM_UNSUPPORTED, "%s: meshes are read from .stl and .obj", clean(path, 160).c_str());
+  const std::string bytes = read_file(path);
+  try {
+    return parse_mesh(bytes, ending == ".obj");
+  } catch (const Refusal& r) {
+    refuse(r.code, "%s: %s", clean(path, 160).c_str(), r.text.c_str());
+  }
+}
+
+Primitive around(const std::vector<V3>& points) {
+  V3 mean;
+  for (const V3& p : points) mean = mean + p;
+  mean = (1 / static_cast<double>(points.size())) * mean;
+  M3 spread{}, axes{};
+  for (const V3& p : points) {
+    const V3 r = p - mean;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) spread[static_cast<size_t>(i)][static_cast<size_t>(j)] += r[i] * r[j];
+  }
+  principal(spread, &axes);
+  const Primitive straight = box_along(points, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}),
+                  along = box_along(points, axes);
+  // A turned box has to be clearly the smaller one: most parts are drawn along their axes.
+  Primitive best = volume_of(along) < 0.95 * volume_of(straight) ? along : straight;
+  const Primitive box = best;
+  const auto take = [&](const Primitive& other) {
+    if (volume_of(other) < volume_of(best)) best = other;
+  };
+  Primitive ball{RDM_SPHERE, {}, {box.X.p, {}}};
+  for (const V3& p : points) ball.size.x = std::max(ball.size.x, norm(p - box.X.p));
+  take(ball);
+  for (int axis = 0; axis < 3; ++axis) {
+    V3 along_axis;
+    along_axis[axis] = 1;
+    Primitive capsule{RDM_CAPSULE, {}, {box.X.p, box.X.q * turn_between({0, 0, 1}, along_axis)}};
+    const V3 way = capsule.X.q * V3{0, 0, 1};
+    for (const V3& p : points) {
+      const V3 r = p - box.X.p;
+      capsule.size.x = std::max(capsule.size.x, norm(r - dot(r, way) * way));
+    }
+    const double radius = std::max(capsule.size.x, 1e-4);
+    for (const V3& p : points) {
+      const V3 r = p - box.X.p;
+      const double t = dot(r, way), d = norm(r - t * way);
+      capsule.size.y =
+          std::max(capsule.size.y, std::abs(t) - std::sqrt(std::max(radius * radius - d * d, 0.0)));
+    }
+    capsule.size = {radius, std::max(capsule.size.y, 1e-4), 0};
+    take(capsule);
+  }
+  best.size.x = std::max(best.size.x, 1e-4);
+  return best;
+}
+
+Mass solid(const Mesh& mesh) {
+  // Tetrahedra from the origin; second moments about it, then shifted to the centre.
+  double volume = 0;
+  V3 first;
+  M3 second{};  // integral of r r^T
+  for (const auto& f : mesh.faces) {
+    const V3 a = mesh.points[f[0]], b = mesh.points[f[1]], c = mesh.points[f[2]], sum = a + b + c;
+    const double v = dot(a, cross(b, c)) / 6;
+    volume += v;
+    first = first + (v / 4) * sum;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        second[static_cast<size_t>(i)][static_cast<size_t>(j)] +=
+            v / 20 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + sum[i] * sum[j]);
+  }
+  if (volume < 0) {
+    volume = -volume, first = -1 * first;
+    for (auto& row : second)
+      for (double& x : row) x = -x;
+  }
+  if (!(volume > 1e-18)) return {};
+  Mass out{volume, (1 / volume) * first, {}};
+  const double trace = second[0][0] + second[1][1] + second[2][2];
+  for (size_t i = 0; i < 3; ++i)
+    for (size_t j = 0; j < 3; ++j) out.moment[i][j] = (i == j ? trace : 0) - second[i][j];
+  const M3 shift = point_moment(volume, out.com);
+  for (size_t i = 0; i < 3; ++i)
+    for (size_t j = 0; j < 3; ++j) out.moment[i][j] -= shift[i][j];
+  return out;
+}
+
+}  // namespace rdm::import

@@ -1,0 +1,288 @@
+// URDF. Links are bodies, joints hang them together; what is fixed is merged by build().
+#include <algorithm>
+#include <cmath>
+
+#include "meshes.hpp"
+#include "xml.hpp"
+
+namespace rdm::import {
+namespace {
+
+struct Reader {
+  Reader(const Element& file, const Options& given, Draft* draft) : robot(file), options(given), out(draft) {}
+  const Element& robot;
+  const Options& options;
+  Draft* out;
+  Meshes meshes{options, out};
+  Model model;
+  std::map<std::string, const Element*> links;
+  struct Joint {
+    const Element* element;
+    std::string name, type, parent, child;
+  };
+  std::vector<Joint> joints;
+  std::map<std::string, size_t> above;  // joint whose child the link is
+
+  static std::string needed(const Element& e, const char* attribute) {
+    const std::string* text = e.get(attribute);
+    if (!text || text->empty()) refuse_at(RDM_FORMAT, e, "no %s", attribute);
+    return *text;
+  }
+  static double given(const Element& e, const char* attribute, double otherwise) {
+    const std::string* text = e.get(attribute);
+    return text ? number(e, attribute, *text) : otherwise;
+  }
+  static Pose origin_of(const Element& e) {
+    Pose X;
+    if (const Element* o = e.child("origin")) {
+      if (const std::string* xyz = o->get("xyz")) X.p = vector3(*o, "xyz", *xyz);
+      if (const std::string* rpy = o->get("rpy")) X.q = from_rpy(vector3(*o, "rpy", *rpy));
+    }
+    return X;
+  }
+
+  void find_links() {
+    for (const Element* e : robot.all("link")) {
+      if (!links.emplace(needed(*e, "name"), e).second) refuse_at(RDM_ARGUMENT, *e, "it stands twice");
+    }
+    if (links.empty()) refuse_at(RDM_FORMAT, robot, "no link");
+  }
+  const Element& link(const Element& joint, const char* which, const std::string& name) const {
+    const auto found = links.find(name);
+    if (found != links.end()) return *found->second;
+    std::vector<std::string> names;
+    for (const auto& [known, e] : links) names.push_back(known);
+    refuse_at(RDM_NOT_FOUND, joint, "%s %s: there is no such link%s", which, clean(name).c_str(),
+              nearest_hint(name, names).c_str());
+  }
+
+  void find_joints() {
+    std::map<std::string, const Element*> names;
+    for (const Element* e : robot.all("joint")) {
+      Joint j{e, needed(*e, "name"), needed(*e, "type"), "", ""};
+      for (const char* which : {"parent", "child"}) {
+        const Element* end = e->child(which);
+        if (!end) refuse_at(RDM_FORMAT, *e, "no %s", which);
+        const std::string name = needed(*end, "link");
+        link(*e, which, name);
+        (which[0] == 'p' ? j.parent : j.child) = name;
+      }
+      if (!names.emplace(j.name, e).second) refuse_at(RDM_ARGUMENT, *e, "it stands twice");
+      const auto [other, first] = above.emplace(j.child, joints.size());
+      if (!first)
+        refuse_at(RDM_ARGUMENT, *e, "link %s has two parents: joint %s of line %d too",
+                  clean(j.child).c_str(), clean(joints[other->second].name).c_str(),
+                  joints[other->second].element->line);
+      joints.push_back(j);
+    }
+  }
+
+  std::string find_root() const {
+    if (!options.root.empty()) {
+      if (links.count(options.root)) return options.root;
+      std::vector<std::string> names;
+      for (const auto& [known, e] : links) names.push_back(known);
+      refuse(RDM_NOT_FOUND, "options.root: there is no link %s%s", clean(options.root).c_str(),
+             nearest_hint(options.root, names).c_str());
+    }
+    const Element* root = nullptr;
+    for (const auto& child : robot.children)
+      if (child->tag == "link" && !above.count(child->find("name")->value)) {
+        if (root)
+          refuse_at(RDM_ARGUMENT, *child,
+                    "no joint carries it, nor %s of line %d: options.root says which is taken",
+                    where(*root).substr(where(*root).find(": ") + 2).c_str(), root->line);
+        root = child.get();
+      }
+    if (!root) refuse_at(RDM_ARGUMENT, *joints[0].element, "the joints form a loop: every link has a parent");
+    return root->find("name")->value;
+  }
+
+  Mass mass_of(const Element& l) {
+    Mass out_mass;
+    const Element* inertial = l.child("inertial");
+    if (!inertial) return out_mass;
+    const Element *mass = inertial->child("mass"), *inertia = inertial->child("inertia");
+    if (!mass) refuse_at(RDM_FORMAT, *inertial, "link %s has no mass", clean(l.find("name")->value).c_str());
+    if (!inertia)
+      refuse_at(RDM_FORMAT, *inertial, "link %s has no inertia", clean(l.find("name")->value).c_str());
+    const Pose X = origin_of(*inertial);
+    const double m = number(*mass, "value", needed(*mass, "value"));
+    double i[6];
+    const char* const keys[6] = {"ixx", "iyy", "izz", "ixy", "ixz", "iyz"};
+    for (int k = 0; k < 6; ++k) i[k] = given(*inertia, keys[k], 0);
+    const M3 moment{{{i[0], i[3], i[4]}, {i[3], i[1], i[5]}, {i[4], i[5], i[2]}}};
+    if (m == 0 && std::all_of(i, i + 6, [](double x) { return x == 0; })) {
+      out->note(RDM_NOTE_CHANGED, mass->line, "link %s has no mass", clean(l.find("name")->value).c_str());
+      return out_mass;
+    }
+    const std::string what = "link " + clean(l.find("name")->value);
+    if (!(m > 0)) refuse_at(RDM_RANGE, *mass, "%s: the mass %g is not above 0", what.c_str(), m);
+    Mass read{m, {}, moment};
+    check_mass(*inertia, what, options.mend_inertia, &read, out);
+    return X * read;
+  }
+
+  void add_shapes(const Element& l, BodyIn* body) {
+    for (const Element* c : l.all("collision")) {
+      ShapeIn s;
+      s.element = c;
+      if (const std::string* name = c->get("name")) s.name = *name;
+      const Pose X = origin_of(*c);
+      const Element* geometry = c->child("geometry");
+      if (!geometry) refuse_at(RDM_FORMAT, *c, "link %s: no geometry", clean(body->name).c_str());
+      const Element* g = nullptr;
+      for (const char* kind : {"box", "cylinder", "sphere", "capsule", "mesh"})
+        if (!g) g = geometry->child(kind);
+      if (!g)
+        refuse_at(RDM_UNSUPPORTED, *geometry, "link %s: neither box, cylinder, sphere, capsule nor mesh",
+                  clean(body->name).c_str());
+      Primitive& p = s.shape;
+      const auto size = [&](const char* key) {
+        const double x = number(*g, key, needed(*g, key));
+        if (!(x > 0))
+          refuse_at(RDM_RANGE, *g, "link %s: %s %g is not above 0", clean(body->name).c_str(), key, x);
+        return x;
+      };
+      if (g->tag == "box") {
+        const V3 sides = vector3(*g, "size", needed(*g, "size"));
+        for (int k = 0; k < 3; ++k)
+          if (!(sides[k] > 0))
+            refuse_at(RDM_RANGE, *g, "link %s: size %g is not above 0", clean(body->name).c_str(), sides[k]);
+        p = {RDM_BOX, 0.5 * sides, X};
+      } else if (g->tag == "mesh") {
+        const std::string file = needed(*g, "filename");
+        V3 scale{1, 1, 1};
+        if (const std::string* text = g->get("scale")) scale = vector3(*g, "scale", *text);
+        const Mesh* mesh = meshes.find(*g, file);
+        if (!mesh) continue;
+        std::vector<V3> points = mesh->points;
+        for (V3& v : points) v = {scale.x * v.x, scale.y * v.y, scale.z * v.z};
+        p = around(points);
+        p.X = X * p.X;
+        out->note(RDM_NOTE_CHANGED, g->line, "mesh %s is %s", clean(file).c_str(),
+                  p.kind == RDM_BOX       ? "a box"
+                  : p.kind == RDM_CAPSULE ? "a capsule"
+                                          : "a sphere");
+      } else {
+        p = {RDM_SPHERE, {size("radius"), 0, 0}, X};
+        if (g->tag != "sphere")
+          p = {g->tag == "cylinder" ? RDM_CYLINDER : RDM_CAPSULE, {p.size.x, size("length") / 2, 0}, X};
+      }
+      body->shapes.push_back(s);
+    }
+  }
+
+  JointIn moving(const Joint& j) {
+    JointIn o;
+    o.name = j.name;
+    o.element = j.element;
+    o.slides = j.type == "prismatic";
+    o.axis = {1, 0, 0};
+    if (const Element* axis = j.element->child("axis")) {
+      o.axis = vector3(*axis, "xyz", needed(*axis, "xyz"));
+      if (norm(o.axis) < 1e-6) refuse_at(RDM_ARGUMENT, *j.element, "its axis is 0");
+      o.axis = unit(o.axis);
+    }
+    const Element* limit = j.element->child("limit");
+    const bool continuous = j.type == "continuous";
+    if (!limit && !continuous) refuse_at(RDM_FORMAT, *j.element, "no limit");
+    if (continuous) {
+      o.lower = -2 * M_PI, o.upper = 2 * M_PI;
+      out->note(RDM_NOTE_CHANGED, j.element->line, "joint %s turns without end: its range is +-2 pi",
+                clean(j.name).c_str());
+    } else {
+      o.lower = given(*limit, "lower", 0);
+      o.upper = given(*limit, "upper", 0);
+      if (!(o.lower < o.upper))
+        refuse_at(RDM_RANGE, *limit, "joint %s: the range [%g, %g] is empty", clean(j.name).c_str(), o.lower,
+                  o.upper);
+    }
+    if (limit) {
+      o.effort = given(*limit, "effort", -1);
+      o.velocity = std::max(given(*limit, "velocity", 0), 0.0);
+    }
+    if (const Element* dynamics = j.element->child("dynamics")) {
+      o.damping = std::max(given(*dynamics, "damping", 0), 0.0);
+      o.friction = std::max(given(*dynamics, "friction", 0), 0.0);
+    }
+    if (const Element* mimic = j.element->child("mimic"))
+      model.couplings.push_back({j.name, needed(*mimic, "joint"), given(*mimic, "multiplier", 1),
+                                 given(*mimic, "offset", 0), 0, mimic});
+    return o;
+  }
+
+  // The link and what hangs on it, in the order of the joints.
+  void add(const std::string& name, int parent, const Joint* joint, int depth) {
+    if (depth > 200) refuse_at(RDM_RANGE, *joint->element, "more than 200 links in a chain");
+    const Element& l = *links.at(name);
+    BodyIn body;
+    body.name = name;
+    body.element = &l;
+    body.parent = parent;
+    if (joint) {
+      body.X = origin_of(*joint->element);
+      if (joint->type == "revolute" || joint->type == "continuous" || joint->type == "prismatic") {
+        body.joints.push_back(moving(*joint));
+      } else if (joint->type == "floating" && parent == 0) {
+        out->note(RDM_NOTE_DROPPED, joint->element->line, "joint %s: floating, taken as fixed",
+                  clean(joint->name).c_str());
+      } else if (joint->type != "fixed") {
+        refuse_at(RDM_UNSUPPORTED, *joint->element,
+                  "type %s: neither revolute, continuous, prismatic nor fixed", clean(joint->type).c_str());
+      } else {  // said of fixed joints without a meaning
+        for (const char* tag : {"axis", "limit", "dynamics"})
+          if (const Element* e = joint->element->child(tag)) mark(*e);
+      }
+    }
+    body.mass = mass_of(l);
+    add_shapes(l, &body);
+    model.bodies.push_back(std::move(body));
+    const int self = static_cast<int>(model.bodies.size()) - 1;
+    for (const Joint& j : joints)
+      if (j.parent == name) add(j.child, self, &j, depth + 1);
+  }
+  void mark(const Element& e) {
+    for (const Attribute& a : e.attributes) a.read = true;
+    for (const auto& c : e.children) c->seen = true, mark(*c);
+  }
+
+  void read() {
+    robot.get("name");
+    model.name = robot.find("name") ? robot.find("name")->value : "";
+    find_links();
+    find_joints();
+    const std::string root = find_root();
+    add(root, -1, nullptr, 0);
+    if (options.root.empty() && model.bodies.size() != links.size()) {
+      for (const auto& [name, e] : links)
+        if (std::none_of(model.bodies.begin(), model.bodies.end(),
+                         [&](const BodyIn& b) { return b.name == name; }))
+          refuse_at(RDM_ARGUMENT, *e, "it hangs in a loop of joints, not on the root %s",
+                    clean(root).c_str());
+    }
+    if (!options.root.empty())
+      for (const auto& [name, e] : links)
+        if (std::none_of(model.bodies.begin(), model.bodies.end(),
+                         [&](const BodyIn& b) { return b.name == name; })) {
+          out->note(RDM_NOTE_DROPPED, e->line, "link %s: not below options.root", clean(name).c_str());
+          mark(*e);
+        }
+  }
+};
+
+}  // namespace
+
+void read_urdf(const std::string& bytes, const Options& options, Draft* out) {
+  const auto robot = parse_xml(bytes, options, false);
+  if (robot->tag != "robot") refuse_at(RDM_FORMAT, *robot, "no URDF: the first element is not robot");
+  for (const auto& child : robot->children)
+    if (child->tag.find(':') != std::string::npos && child->tag.rfind("xacro:", 0) == 0)
+      refuse_at(RDM_UNSUPPORTED, *child, "xacro is not read: expand the file with the xacro tool first");
+  Reader reader(*robot, options, out);
+  reader.read();
+  list_dropped(*robot, out);
+  build(reader.model, options, out);
+}
+
+}  // namespace rdm::import

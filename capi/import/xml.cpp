@@ -1,0 +1,198 @@
+#include "xml.hpp"
+
+#include <tinyxml2.h>
+
+#include <charconv>
+#include <cstdarg>
+#include <cstring>
+
+namespace rdm::import {
+namespace {
+
+constexpr size_t kMostElements = 200000;
+constexpr int kMostIncludes = 16;  // deep
+
+struct Parser {
+  const Options& options;
+  bool includes;
+  size_t count = 0;
+
+  std::unique_ptr<Element> copy(const tinyxml2::XMLElement& x, const std::string& file, int depth) {
+    if (++count > kMostElements)
+      refuse(RDM_RANGE, "line %d: more than %zu elements", x.GetLineNum(), kMostElements);
+    auto e = std::make_unique<Element>();
+    e->tag = x.Name();
+    e->file = file;
+    e->line = x.GetLineNum();
+    for (const auto* a = x.FirstAttribute(); a; a = a->Next())
+      e->attributes.push_back({a->Name(), a->Value(), false});
+    for (const auto* c = x.FirstChildElement(); c; c = c->NextSiblingElement()) {
+      if (includes && std::strcmp(c->Name(), "include") == 0)
+        include(*c, file, depth, e.get());
+      else
+        e->children.push_back(copy(*c, file, depth));
+    }
+    return e;
+  }
+
+  void include(const tinyxml2::XMLElement& x, const std::string& file, int depth, Element* into) {
+    const char* name = x.Attribute("file");
+    const std::string at =
+        format("line %d%s%s: include", x.GetLineNum(), file.empty() ? "" : " of ", clean(file).c_str());
+    if (!name || !*name) refuse(RDM_FORMAT, "%s: no file", at.c_str());
+    if (!options.has_folder)
+      refuse(RDM_NOT_FOUND, "%s: %s: a text alone has no folder to look in", at.c_str(), clean(name).c_str());
+    if (depth >= kMostIncludes) refuse(RDM_RANGE, "%s: more than %d deep", at.c_str(), kMostIncludes);
+    std::string bytes;
+    try {
+      bytes = read_file(name[0] == '/' ? std::string(name) : options.folder + name);
+    } catch (const Refusal& r) {
+      refuse(r.code, "%s: %s", at.c_str(), r.text.c_str());
+    }
+    auto root = parse(bytes, name, depth + 1);
+    for (auto& child : root->children) into->children.push_back(std::move(child));
+  }
+
+  std::unique_ptr<Element> parse(const std::string& bytes, const std::string& file, int depth) {
+    tinyxml2::XMLDocument document;
+    const auto result = document.Parse(bytes.data(), bytes.size());
+    const std::string of = file.empty() ? "" : " of " + clean(file);
+    if (result != tinyxml2::XML_SUCCESS)
+      refuse(RDM_FORMAT, "line %d%s: no XML: %s", document.ErrorLineNum(), of.c_str(), document.ErrorName());
+    const auto* root = document.RootElement();
+    if (!root) refuse(RDM_FORMAT, "line 1%s: no element", of.c_str());
+    return copy(*root, file, depth);
+  }
+};
+
+void list(const Element& e, bool root, Draft* out) {
+  const auto in = e.file.empty() ? std::string() : " (in " + clean(e.file) + ")";
+  if (!root && !e.seen) {
+    const Attribute* name = e.find("name");
+    if (!name) name = e.find("joint");
+    if (!name) name = e.find("class");
+    out->note(RDM_NOTE_DROPPED, e.line, "%s%s%s%s", clean(e.tag).c_str(), name ? " " : "",
+              name ? clean(name->value).c_str() : "", in.c_str());
+    return;
+  }
+  std::string unread;
+  for (const Attribute& a : e.attributes)
+    if (!a.read && a.name != "name" && a.name.rfind("xmlns", 0) != 0)
+      unread += (unread.empty() ? "" : ", ") + clean(a.name) + "=\"" + clean(a.value, 40) + '"';
+  const Attribute* name = e.find("name");
+  if (!unread.empty())
+    out->note(RDM_NOTE_DROPPED, e.line, "%s%s%s: %s%s", clean(e.tag).c_str(), name ? " " : "",
+              name ? clean(name->value).c_str() : "", unread.c_str(), in.c_str());
+  for (const auto& child : e.children) list(*child, false, out);
+}
+
+}  // namespace
+
+const Attribute* Element::find(const char* name) const {
+  for (const Attribute& a : attributes)
+    if (a.name == name) return &a;
+  return nullptr;
+}
+
+const std::string* Element::get(const char* name) const {
+  const Attribute* a = find(name);
+  if (!a) return nullptr;
+  a->read = true;
+  return &a->value;
+}
+
+std::vector<const Element*> Element::all(const char* name) const {
+  std::vector<const Element*> out;
+  for (const auto& c : children)
+    if (c->tag == name) c->seen = true, out.push_back(c.get());
+  return out;
+}
+
+const Element* Element::child(const char* name) const {
+  for (const auto& c : children)
+    if (c->tag == name) {
+      c->seen = true;
+      return c.get();
+    }
+  return nullptr;
+}
+
+std::unique_ptr<Element> parse_xml(const std::string& bytes, const Options& options, bool includes) {
+  Parser parser{options, includes};
+  return parser.parse(bytes, "", 0);
+}
+
+std::string first_element(const std::string& bytes) {
+  size_t at = 0;
+  const auto skip = [&](const char* begin, const char* end) {
+    if (bytes.compare(at, std::strlen(begin), begin) != 0) return false;
+    const size_t found = bytes.find(end, at + std::strlen(begin));
+    at = found == std::string::npos ? bytes.size() : found + std::strlen(end);
+    return true;
+  };
+  if (bytes.compare(0, 3, "\xef\xbb\xbf") == 0) at = 3;
+  for (;;) {
+    at = bytes.find_first_not_of(" \t\r\n", at);
+    if (at == std::string::npos || bytes[at] != '<') return "";
+    if (skip("<?", "?>") || skip("<!--", "-->") || skip("<!", ">")) continue;
+    const size_t end = bytes.find_first_of(" \t\r\n/>", at + 1);
+    return bytes.substr(at + 1, end == std::string::npos ? end : end - at - 1);
+  }
+}
+
+std::string where(const Element& e) {
+  std::string out = format("line %d", e.line);
+  if (!e.file.empty()) out += " of " + clean(e.file);
+  out += ": " + clean(e.tag);
+  if (const Attribute* name = e.find("name")) out += ' ' + clean(name->value);
+  return out;
+}
+
+void refuse_at(rdm_result code, const Element& e, const char* pattern, ...) {
+  char text[512];
+  va_list list;
+  va_start(list, pattern);
+  std::vsnprintf(text, sizeof text, pattern, list);
+  va_end(list);
+  refuse(code, "%s: %s", where(e).c_str(), text);
+}
+
+std::vector<double> numbers(const Element& e, const char* attribute, const std::string& text, size_t least,
+                            size_t most) {
+  std::vector<double> out;
+  const char *c = text.data(), *end = c + text.size();
+  const auto space = [](char x) { return x == ' ' || x == '\t' || x == '\n' || x == '\r' || x == ','; };
+  while (true) {
+    while (c != end && space(*c)) ++c;
+    if (c == end) break;
+    if (*c == '+' && c + 1 != end && c[1] != '-') ++c;
+    double value = 0;
+    const auto [after, error] = std::from_chars(c, end, value);
+    if (error != std::errc() || (after != end && !space(*after)) || !(std::abs(value) <= 1e9))
+      refuse_at(RDM_FORMAT, e, "%s: %s is no number", attribute, clean(text).c_str());
+    out.push_back(value);
+    c = after;
+    if (out.size() > most) break;
+  }
+  if (out.size() < least || out.size() > most) {
+    const std::string range = least == most ? format("%zu", least) : format("%zu to %zu", least, most);
+    refuse_at(RDM_FORMAT, e, "%s: %s is not %s number%s", attribute, clean(text).c_str(), range.c_str(),
+              most == 1 ? "" : "s");
+  }
+  return out;
+}
+
+double number(const Element& e, const char* attribute, const std::string& text) {
+  return numbers(e, attribute, text, 1, 1)[0];
+}
+
+V3 vector3(const Element& e, const char* attribute, const std::string& text) {
+  const auto n = numbers(e, attribute, text, 3, 3);
+  return {n[0], n[1], n[2]};
+}
+
+void list_dropped(const Element& root, Draft* out) {
+  list(root, true, out);
+}
+
+}  // namespace rdm::import

@@ -1,0 +1,121 @@
+#include "common/robots.hpp"
+
+#include <CLI/CLI.hpp>
+#include <redman/redman.hpp>
+
+#include "common/files.hpp"
+#include "common/names.hpp"
+#include "common/report.hpp"
+
+namespace tool {
+
+#ifdef REDMAN_IMPORT
+namespace {
+
+int32_t place_of(const std::string& word, const std::vector<std::string>& words, const char* flag) {
+  for (size_t i = 0; i < words.size(); ++i)
+    if (same_name(word, words[i])) return static_cast<int32_t>(i);
+  throw Usage(std::string(flag) + ' ' + word + ": unknown" + nearest_hint(word, words));
+}
+
+}  // namespace
+
+void ImportDelete::operator()(rdm_import* i) const {
+  rdm_import_destroy(i);
+}
+
+Import import_robot(const std::string& file, const ImportFlags& flags) {
+  rdm_import_options o;
+  rdm_import_options_init(&o, sizeof o);
+  o.format = place_of(flags.format, {"auto", "urdf", "mjcf", "robot"}, "--format");
+  if (!flags.kind.empty()) o.kind = place_of(flags.kind, {"other", "hand", "arm"}, "--kind");
+  o.skip_meshes = flags.skip_meshes;
+  o.mend_inertia = flags.mend_inertia;
+  const auto text = [](const std::string& s) { return s.empty() ? nullptr : s.c_str(); };
+  o.name = text(flags.name);
+  o.packages = text(flags.packages);
+  o.root = text(flags.root);
+  o.palm = text(flags.palm);
+  o.tips = text(flags.tips);
+  o.mount = text(flags.mount);
+  o.flange = text(flags.flange);
+  rdm_import* made = nullptr;
+  int32_t known = -1;
+  if (!file_exists(file) && file.find('/') == std::string::npos &&
+      rdm_robot_find(file.c_str(), &known) == RDM_OK) {
+    if (rdm_import_robot(&made, known) != RDM_OK) throw Failure(rdm_import_error());
+    return Import(made);
+  }
+  const rdm_result r = rdm_import_file(&made, file.c_str(), &o);
+  if (r == RDM_NOT_FOUND && !file_exists(file)) {
+    std::vector<std::string> names;
+    for (int32_t i = 0; i < rdm_robot_count(); ++i) {
+      auto robot = redman::sized<rdm_robot>();
+      if (rdm_robot_at(i, &robot) == RDM_OK) names.emplace_back(robot.name);
+    }
+    throw Failure(file + ": no file, and no robot of that name" + nearest_hint(file, names));
+  }
+  if (r != RDM_OK) throw Failure(rdm_import_error());
+  return Import(made);
+}
+
+rdm_robot_def def_of(const Import& import) {
+  rdm_robot_def def;
+  rdm_robot_def_init(&def, sizeof def);
+  if (rdm_import_def(import.get(), &def) != RDM_OK) throw Failure(rdm_import_error());
+  return def;
+}
+
+int32_t load_robot(const std::string& file) {
+  const Import import = import_robot(file, {});
+  const rdm_robot_def def = def_of(import);
+  int32_t robot = -1;
+  if (rdm_robot_create(&robot, &def) != RDM_OK) throw Failure(file + ": " + rdm_last_error());
+  return robot;
+}
+
+std::string robot_text(const rdm_robot_def& def) {
+  size_t size = 0;
+  if (rdm_import_write(&def, nullptr, 0, &size) != RDM_OK) throw Failure(rdm_import_error());
+  std::string text(size + 1, '\0');
+  if (rdm_import_write(&def, text.data(), text.size(), &size) != RDM_OK) throw Failure(rdm_import_error());
+  text.pop_back();
+  return text;
+}
+#else
+namespace {
+[[noreturn]] void without() {
+  throw Failure(
+      "this tool was built without the readers of robots; install libtinyxml2-dev and libtomlplusplus-dev "
+      "and "
+      "configure with -DREDMAN_IMPORT=ON");
+}
+}  // namespace
+void ImportDelete::operator()(rdm_import*) const {}
+Import import_robot(const std::string&, const ImportFlags&) {
+  without();
+}
+rdm_robot_def def_of(const Import&) {
+  without();
+}
+int32_t load_robot(const std::string&) {
+  without();
+}
+std::string robot_text(const rdm_robot_def&) {
+  without();
+}
+#endif
+
+void add_robot_flag(CLI::App& command) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--robot",
+          [](const std::vector<std::string>& files) {
+            for (const std::string& file : files) load_robot(file);
+          },
+          "a robot's file (.robot, URDF, MJCF), for --set hand=NAME, arm=NAME; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+}
+
+}  // namespace tool

@@ -1,0 +1,123 @@
+#include "env/dynamics_draw.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr OptionSpec kRows[] = {
+    integer_option("level", 0, 0, 3,
+                   "masses, gains, efforts, damping and friction that are drawn for each world at a reset: "
+                   "within 0, 10, "
+                   "20 or 30 % of what they are, but for options that are given"),
+};
+constexpr double kSpread[] = {0, 0.1, 0.2, 0.3};
+constexpr const char* kLevelled[] = {"scale.mass",
+                                     "scale.kp",
+                                     "scale.kd",
+                                     "scale.effort",
+                                     "scale.friction",
+                                     "object_mass",
+                                     "object_damping",
+                                     "friction.hand_object",
+                                     "friction.object_ground"};
+
+bool levelled(const char* key) {
+  return std::any_of(std::begin(kLevelled), std::end(kLevelled),
+                     [&](const char* k) { return same_name(k, key); });
+}
+
+OptionRange factor_of(const Options& o, const char* key) {
+  if (!o.given(key)) {
+    const double spread = levelled(key) && o.knows("level") ? kSpread[o.integer("level")] : 0;
+    return {1 - spread, 1 + spread};
+  }
+  const OptionRange range = o.range(key);
+  if (!range.drawn()) return {1, 1};
+  const double middle = range.middle();
+  if (!(middle > 0))
+    fail(Code::kRange, "option %s: the middle of a range that is drawn must be above 0", key);
+  return {range.low / middle, range.high / middle};
+}
+
+}  // namespace
+
+void add_level_options(OptionTable& table) {
+  table.add(kRows);
+}
+
+void DynamicsDraws::add(const Options& options, const char* key, Drawn what, int32_t first, int32_t count) {
+  const OptionRange factor = factor_of(options, key);
+  if (!factor.drawn()) return;
+  const OptionSpec* spec = options.spec_of(key);
+  const auto at = std::find(specs_.begin(), specs_.end(), spec);
+  const auto option = static_cast<int32_t>(at - specs_.begin());
+  if (at == specs_.end()) {
+    specs_.push_back(spec);
+    options_.push_back(factor);
+  }
+  rows_.push_back({what, first, count, option});
+}
+
+void DynamicsDraws::apply(World& world, Stream& stream) const {
+  if (rows_.empty()) return;
+  Dynamics& d = world.edit_dynamics();
+  d.reset();
+  constexpr size_t kMost = 64;  // factors kept at a time: rows of one option stand near each other
+  double factors[kMost];
+  for (size_t begin = 0; begin < options_.size(); begin += kMost) {
+    const size_t end = std::min(begin + kMost, options_.size());
+    for (size_t i = begin; i < end; ++i) factors[i - begin] = options_[i].draw(stream);
+    for (const Row& row : rows_) {
+      const auto option = static_cast<size_t>(row.option);
+      if (option < begin || option >= end) continue;
+      const double f = factors[option - begin];
+      const auto links = [&](double LinkFactors::*member) {
+        for (int32_t i = row.first; i < row.first + row.count; ++i) d.links[i].*member *= f;
+      };
+      switch (row.what) {
+        case Drawn::kLinkMass:
+          links(&LinkFactors::mass);
+          break;
+        case Drawn::kLinkKp:
+          links(&LinkFactors::kp);
+          break;
+        case Drawn::kLinkKd:
+          links(&LinkFactors::kd);
+          break;
+        case Drawn::kLinkEffort:
+          links(&LinkFactors::effort);
+          break;
+        case Drawn::kLinkFriction:
+          links(&LinkFactors::friction);
+          break;
+        case Drawn::kBaseMass:
+          for (int32_t i = row.first; i < row.first + row.count; ++i) d.bases[i].mass *= f;
+          break;
+        case Drawn::kBaseDamping:
+          for (int32_t i = row.first; i < row.first + row.count; ++i) d.bases[i].damping *= f;
+          break;
+        case Drawn::kBodyMass:
+          for (int32_t i = row.first; i < row.first + row.count; ++i) d.bodies[i].mass *= f;
+          break;
+        case Drawn::kBodySize:
+          for (int32_t i = row.first; i < row.first + row.count; ++i) d.bodies[i].size *= f;
+          break;
+        case Drawn::kBodyDamping:
+          for (int32_t i = row.first; i < row.first + row.count; ++i) d.bodies[i].angular_damping *= f;
+          break;
+        case Drawn::kFriction:
+          d.friction[Dynamics::friction_index(row.first, row.count)] *= f;
+          break;
+        case Drawn::kGravity:
+          d.gravity *= f;
+          break;
+      }
+    }
+  }
+  world.set_dynamics(d);
+}
+
+}  // namespace rdm

@@ -1,0 +1,54 @@
+// Dynamics that each world draws for itself at a reset (domain randomisation; Tobin et al. 2017, Peng et al.
+// 2018).
+//
+// A task builds its scene from the middles of the ranges that its options name; a draw is a factor on what
+// was built from one option, uniform in [low / middle, high / middle]. All that one option set takes the same
+// factor.
+#pragma once
+#include "base/option.hpp"
+#include "base/rng.hpp"
+#include "env/options/table.hpp"
+#include "physics/world.hpp"
+
+namespace rdm {
+
+// What of the scene a factor is for, and which rows of it.
+enum class Drawn : int32_t {
+  kLinkMass,  // flat links
+  kLinkKp,    // and so on
+  kLinkKd,
+  kLinkEffort,
+  kLinkFriction,
+  kBaseMass,  // articulations
+  kBaseDamping,
+  kBodyMass,  // bodies
+  kBodySize,
+  kBodyDamping,  // angular
+  kFriction,     // first and count are the two materials
+  kGravity       // no rows
+};
+
+// The options that level draws unless they are given.
+void add_level_options(OptionTable& table);
+
+class DynamicsDraws {
+ public:
+  // The factor's range for an option: of a range that was given, else of its level; nothing is added when it
+  // is 1. Error(kRange) for a range whose middle is 0, or that a factor may not have.
+  void add(const Options& options, const char* key, Drawn what, int32_t first = 0, int32_t count = 1);
+  bool empty() const { return rows_.empty(); }
+  // A factor for each option, in the order in which they were first added, from `stream`; then the world's
+  // dynamics.
+  void apply(World& world, Stream& stream) const;
+
+ private:
+  struct Row {
+    Drawn what;
+    int32_t first, count, option;
+  };
+  Vector<Row> rows_;
+  Vector<OptionRange> options_;  // of factors
+  Vector<const OptionSpec*> specs_;
+};
+
+}  // namespace rdm
