@@ -138,6 +138,7 @@ class BuiltTask final : public Task {
   void reset(World& world, void* state, Stream& stream) const override {
     const rdm_task_def& d = own_.def;
     rdm_world w(&world, &scene_, false);
+    scene_.draws.apply(world, stream);
     auto random = std::bit_cast<rdm_random>(stream);
     own_.run("reset", [&] { return d.reset(d.user, instance_.data(), &w, state, &random); });
     stream = std::bit_cast<Stream>(random);
@@ -333,6 +334,7 @@ void OwnTask::take_options() {
       made.text = texts_.keep(o.text);
     } else {
       made.number = o.number;
+      made.text = nullptr;
       if (!(o.number >= made.low && o.number <= made.high) ||
           (kind != OptionKind::kNumber && o.number != std::floor(o.number)))
         fail(Code::kRange, "def.options[%d].number: %g of %s is outside [%g, %g], or no integer", i, o.number,

@@ -4,6 +4,7 @@
 #include "capi/handles.hpp"
 
 #if RDM_WITH_SIM
+#include "env/dynamics_draw.hpp"
 #include "env/fields.hpp"
 #include "robot/robots.hpp"
 
@@ -114,6 +115,7 @@ struct rdm_scene {
   rdm::Vector<rdm::capi::TouchGroup> groups;
   rdm::FieldTable fields;
   rdm::Vector<float> hold, mean;  // [action_dim]
+  rdm::DynamicsDraws draws;       // of the options that every task has
 };
 
 namespace rdm::capi {

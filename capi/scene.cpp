@@ -256,6 +256,8 @@ void rdm::capi::begin_scene(const OwnTask& own, const Options& options, rdm_scen
   scene->options = &options;
   scene->def.gravity = gravity_from(options);
   scene->def.solver = solver_from(options);
+  scene->draws.add(options, "gravity", Drawn::kGravity);
+  scene->def.adjustable = !scene->draws.empty();
   scene->materials.push_back("default");
   scene->fields = own.fields;
   scene->hold = own.hold;
@@ -370,6 +372,7 @@ rdm_result rdm_scene_set_gravity(rdm_scene* scene, const double gravity[3]) {
     const Vec3 g = vec(gravity);
     if (!(norm(g) <= 1000)) fail(Code::kRange, "gravity: not finite, or above 1000 m/s2");
     scene->def.gravity = g;
+    scene->draws = {};
   });
 }
 

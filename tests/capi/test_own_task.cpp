@@ -310,6 +310,13 @@ TEST(OwnTask, OptionsMayBeRanges) {
   rdm_pool* p = nullptr;
   EXPECT_EQ(rdm_pool_create(&p, &c), RDM_RANGE);
   EXPECT_STREQ(rdm_last_error(), "task own_ranges: build: not the range that was given");
+  // of an option that every task has, each world draws by itself
+  Rows heavy("own_ranges", 2, 0, "push=0.5..2\ngravity=5..15"), plain("own_ranges", 2, 0, "push=0.5..2");
+  heavy.step(20);
+  plain.step(20);
+  EXPECT_NE(heavy.b.obs[2], plain.b.obs[2]);
+  EXPECT_EQ(rdm_task_check("own_ranges", "push=0.5..2\ngravity=5..15", nullptr, 0), RDM_OK)
+      << rdm_last_error();
 }
 
 // A world with factors goes as one of a scene with the products.
