@@ -181,24 +181,6 @@ class MapFormat(enum.IntEnum):
     FULL = 1
 
 
-class ImportFormat(enum.IntEnum):
-    """of a file; AUTO looks at the first element"""
-
-    AUTO = 0
-    URDF = 1
-    MJCF = 2
-    ROBOT = 3
-
-
-class NoteKind(enum.IntEnum):
-    """of a note"""
-
-    DROPPED = 0  # stands in the file, not in the robot
-    CHANGED = 1  # stands in the robot in another form
-    GUESSED = 2  # does not stand in the file
-    CHECK = 3  # found by rdm_import_check
-
-
 class Build(Record):
     """The values of rdm_build."""
 
@@ -2149,82 +2131,6 @@ class rdm_sensors(Structure):
     ]
 
 
-class rdm_import_options(Structure):
-    """struct_size: bytes, set by rdm_import_options_init
-    format: RDM_IMPORT_*
-    kind: RDM_ROBOT_*, -1: guessed; default -1
-    skip_meshes: flag: meshes that cannot be read are dropped with a note, else refused
-    name: of the robot; NULL: the file's
-    folder: where the names of a text's meshes begin; NULL: that of the file, or none
-    packages: folder that holds the folders of package://; NULL: searched above the file
-    root: link (body) whose subtree is taken, "world" for all of an MJCF file; NULL
-    palm: link; NULL: guessed
-    tips: links or sites, "a,b,c", one for each finger; NULL: guessed
-    mount: link or site, or "x y z roll pitch yaw" in the root frame; NULL: guessed
-    flange: link or site, "none"; NULL: guessed
-    error: [error_size] the text of a failing call that takes these options; NULL
-    error_size: bytes, terminator included; what is longer is cut
-    mend_inertia: flag: moments that break the triangle rule are raised with a note, else refused
-    """
-
-    struct_size: int
-    format: int
-    kind: int
-    skip_meshes: int
-    name: bytes | None
-    folder: bytes | None
-    packages: bytes | None
-    root: bytes | None
-    palm: bytes | None
-    tips: bytes | None
-    mount: bytes | None
-    flange: bytes | None
-    error: int | None
-    error_size: int
-    mend_inertia: int
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("format", c_int32),
-        ("kind", c_int32),
-        ("skip_meshes", c_int32),
-        ("name", c_char_p),
-        ("folder", c_char_p),
-        ("packages", c_char_p),
-        ("root", c_char_p),
-        ("palm", c_char_p),
-        ("tips", c_char_p),
-        ("mount", c_char_p),
-        ("flange", c_char_p),
-        ("error", c_void_p),
-        ("error_size", c_int32),
-        ("mend_inertia", c_int32),
-    ]
-
-
-class ImportNote(Record):
-    """The values of rdm_import_note."""
-
-    kind: int  # RDM_NOTE_*
-    line: int  # of the file, from 1; 0: of none
-    text: str  # one line, with the element and, in an included file, its name
-
-
-class rdm_import_note(Structure):
-    """kind: RDM_NOTE_*
-    line: of the file, from 1; 0: of none
-    text: one line, with the element and, in an included file, its name
-    """
-
-    kind: int
-    line: int
-    text: bytes | None
-    _fields_ = [
-        ("kind", c_int32),
-        ("line", c_int32),
-        ("text", c_char_p),
-    ]
-
-
 STRUCTS: dict[str, type[Structure]] = {
     "rdm_build": rdm_build,
     "rdm_host": rdm_host,
@@ -2270,8 +2176,6 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_map_info": rdm_map_info,
     "rdm_voxel": rdm_voxel,
     "rdm_sensors": rdm_sensors,
-    "rdm_import_options": rdm_import_options,
-    "rdm_import_note": rdm_import_note,
 }
 
 # The rows that fields of structs point at.
@@ -3130,55 +3034,6 @@ FUNCTIONS: dict[str, Function] = {
         c_size_t, {"count": c_int32},
         {}, True,
         """bytes, at any address; 0: count is outside [1, 2^22]"""),
-    "rdm_import_options_init": Function(
-        c_int32, {"options": POINTER(rdm_import_options), "size": c_size_t},
-        {}, True,
-        """Fills the first `size` bytes with defaults."""),
-    "rdm_import_file": Function(
-        c_int32, {"out": POINTER(c_void_p), "path": c_char_p, "options": POINTER(rdm_import_options)},
-        {}, True,
-        """Reads a file; options may be NULL. NOT_FOUND, IO; FORMAT: malformed, with its line; ARGUMENT, RANGE: a robot that cannot
-        be, with line and element; UNSUPPORTED: an element that would change the robot and is not read.
-        """),
-    "rdm_import_text": Function(
-        c_int32, {"out": POINTER(c_void_p), "bytes": c_void_p, "size": c_size_t, "options": POINTER(rdm_import_options)},
-        {}, True,
-        """The same for bytes [size] of a file. Without options.folder it has neither meshes nor includes."""),
-    "rdm_import_robot": Function(
-        c_int32, {"out": POINTER(c_void_p), "robot": c_int32},
-        {}, True,
-        """A robot that is there, the library's own too, as a handle that can be written."""),
-    "rdm_import_destroy": Function(
-        None, {"i": c_void_p},
-        {}, True,
-        """NULL is fine"""),
-    "rdm_import_def": Function(
-        c_int32, {"i": c_void_p, "io": POINTER(rdm_robot_def)},
-        {}, True,
-        """What rdm_robot_create takes; texts and arrays live as long as the handle."""),
-    "rdm_import_note_count": Function(
-        c_int32, {"i": c_void_p},
-        {}, True,
-        """0 for what is no handle"""),
-    "rdm_import_note_at": Function(
-        c_int32, {"i": c_void_p, "n": c_int32, "out": POINTER(rdm_import_note)},
-        {}, True,
-        """n < the count"""),
-    "rdm_import_check": Function(
-        c_int32, {"i": c_void_p},
-        {}, True,
-        """Tries the robot alone and adds notes of kind CHECK: shapes that touch at home or while one joint sweeps its range, joints
-        that do not come to rest at home or do not reach the ends of their range within 2 s (weightless, own drives, no contacts).
-        Fails as rdm_robot_create would.
-        """),
-    "rdm_import_write": Function(
-        c_int32, {"def": POINTER(rdm_robot_def), "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
-        {}, True,
-        """The robot as a .robot file, text [capacity]; read back it is the same to the last bit. ARGUMENT: a row names none."""),
-    "rdm_import_error": Function(
-        c_char_p, {},
-        {}, True,
-        """This thread's last failure in this library, one line; valid until its next failing call."""),
 }
 
 
