@@ -15,6 +15,16 @@ HostHooks hooks_from(const rdm_host* host) {
   return out;
 }
 
+namespace {
+thread_local bool t_failed = false;
+}
+void note_failure(bool failed) {
+  t_failed = failed;
+}
+bool failure_noted() {
+  return t_failed;
+}
+
 const char* name_of(Tag tag) {
   switch (tag) {
     case Tag::kPool:
@@ -25,6 +35,10 @@ const char* name_of(Tag tag) {
       return "policy";
     case Tag::kMap:
       return "map";
+    case Tag::kScene:
+      return "scene";
+    case Tag::kWorld:
+      return "world";
     case Tag::kNone:
       break;
   }

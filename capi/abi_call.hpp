@@ -46,13 +46,26 @@ void check_error(const Config& c) {
     fail(Code::kRange, "config.error_size: %d is less than 1, but error is set", c.error_size);
 }
 
+// For functions that a host calls within its own ones: the library's floating-point mode is set already, and
+// whoever called the host wants to know whether the thread's text is of a failure in there.
+void note_failure(bool failed);
+bool failure_noted();
+template <class F>
+rdm_result call_inside(F&& f) noexcept {
+  const Code code = guard(f);
+  if (code != Code::kOk) note_failure(true);
+  return static_cast<rdm_result>(code);
+}
+
 // The first word of what a handle points to: its kind, or 0 when it was destroyed.
 enum class Tag : uint32_t {
   kNone = 0,
   kPool = 0x6c6f6f70,
   kAgent = 0x6e656761,
   kPolicy = 0x796c6f70,
-  kMap = 0x2070616d
+  kMap = 0x2070616d,
+  kScene = 0x6e656373,
+  kWorld = 0x6c726f77
 };
 const char* name_of(Tag tag);  // "pool"; NULL for what is no tag
 

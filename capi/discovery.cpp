@@ -3,6 +3,7 @@
 #if RDM_WITH_SIM
 #include <array>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <vector>
 
@@ -19,10 +20,9 @@ using namespace rdm::capi;
 #if RDM_WITH_SIM
 namespace {
 
-const TaskInfo& info_at(int32_t index) {
+TaskRef ref_at(int32_t index) {
   register_builtin_tasks();
-  need_index(index, task_count(), "task");
-  return task_at(index);
+  return TaskRef(index);
 }
 
 struct OptionTableView {
@@ -32,7 +32,7 @@ struct OptionTableView {
 // A task's own, and those that every task has.
 std::array<OptionTableView, 4> tables_of(const TaskInfo& info) {
   std::array<OptionTableView, 4> t;
-  t[0].rows = info.options(&t[0].count, nullptr);
+  t[0].rows = task_options(info, &t[0].count);
   t[1].rows = sense_options(&t[1].count);
   t[2].rows = repeat_options(&t[2].count);
   t[3].rows = disturb_options(&t[3].count);
@@ -73,22 +73,36 @@ Described describe(const TaskInfo& info) {
   return d;
 }
 
-// Made when it is first asked for and kept for the life of the process: its names are handed out.
-const Described& described(int32_t index) {
-  static std::mutex mutex;
-  static auto* const known = new std::map<int32_t, Described>;
-  const TaskInfo& info = info_at(index);
+// Made when it is first asked for and kept as long as the task is listed: its names are handed out.
+struct Known {
+  std::mutex mutex;
+  std::map<int32_t, std::shared_ptr<const Described>> tasks;
+};
+Known& known() {
+  static auto* const all = new Known;
+  return *all;
+}
+
+std::shared_ptr<const Described> described(int32_t index) {
+  const TaskRef info = ref_at(index);
+  Known& k = known();
   {
-    const std::lock_guard lock(mutex);
-    const auto it = known->find(index);
-    if (it != known->end()) return it->second;
+    const std::lock_guard lock(k.mutex);
+    const auto it = k.tasks.find(index);
+    if (it != k.tasks.end()) return it->second;
   }
-  Described made = describe(info);  // takes a while, and may call the host
-  const std::lock_guard lock(mutex);
-  return known->try_emplace(index, std::move(made)).first->second;
+  auto made = std::make_shared<const Described>(describe(*info));  // takes a while, and may call the host
+  const std::lock_guard lock(k.mutex);
+  return k.tasks.try_emplace(index, std::move(made)).first->second;
 }
 
 }  // namespace
+
+void rdm::capi::forget_task(int32_t index) {
+  Known& k = known();
+  const std::lock_guard lock(k.mutex);
+  k.tasks.erase(index);
+}
 
 int32_t rdm_task_count(void) {
   int32_t n = 0;
@@ -102,7 +116,7 @@ int32_t rdm_task_count(void) {
 rdm_result rdm_task_at(int32_t index, rdm_task* io) {
   return call(nullptr, [&] {
     check_out(io, sizeof(rdm_task), "io");
-    write_struct(io, described(index).task, sizeof(rdm_task), "io");
+    write_struct(io, described(index)->task, sizeof(rdm_task), "io");
   });
 }
 
@@ -118,9 +132,9 @@ rdm_result rdm_task_find(const char* name, int32_t* index) {
 rdm_result rdm_task_field(int32_t task, int32_t i, rdm_field* out) {
   return call(nullptr, [&] {
     need(out, "out");
-    const Described& d = described(task);
-    need_index(i, d.task.num_fields, "i");
-    *out = d.fields[static_cast<size_t>(i)];
+    const auto d = described(task);
+    need_index(i, d->task.num_fields, "i");
+    *out = d->fields[static_cast<size_t>(i)];
   });
 }
 
@@ -128,17 +142,18 @@ rdm_result rdm_task_field_bounds(int32_t task, int32_t i, float* low, float* hig
   return call(nullptr, [&] {
     need(low, "low");
     need(high, "high");
-    const Described& d = described(task);
-    need_index(i, d.task.num_fields, "i");
-    *low = d.bounds[static_cast<size_t>(i)][0];
-    *high = d.bounds[static_cast<size_t>(i)][1];
+    const auto d = described(task);
+    need_index(i, d->task.num_fields, "i");
+    *low = d->bounds[static_cast<size_t>(i)][0];
+    *high = d->bounds[static_cast<size_t>(i)][1];
   });
 }
 
 rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost* out) {
   return call(nullptr, [&] {
     need(out, "out");
-    const TaskInfo& info = info_at(task);
+    const TaskRef ref = ref_at(task);
+    const TaskInfo& info = *ref;
     need_index(i, info.num_costs, "i");
     *out = {info.costs[i].name, info.costs[i].help, info.costs[i].limit};
   });
@@ -147,7 +162,8 @@ rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost* out) {
 rdm_result rdm_task_option(int32_t task, int32_t i, rdm_option_info* out) {
   return call(nullptr, [&] {
     need(out, "out");
-    const auto tables = tables_of(info_at(task));
+    const TaskRef info = ref_at(task);
+    const auto tables = tables_of(*info);
     int32_t count = 0;
     for (const OptionTableView& t : tables) count += t.count;
     need_index(i, count, "i");
@@ -172,7 +188,8 @@ rdm_camera rdm::capi::describe(const CameraSpec& c) {
 rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera* out) {
   return call(nullptr, [&] {
     need(out, "out");
-    const TaskInfo& info = info_at(task);
+    const TaskRef ref = ref_at(task);
+    const TaskInfo& info = *ref;
     need_index(i, info.num_cameras, "i");
     *out = describe(info.cameras[i]);
   });
@@ -181,7 +198,8 @@ rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera* out) {
 rdm_result rdm_task_default(int32_t task, int32_t i, rdm_option* out) {
   return call(nullptr, [&] {
     need(out, "out");
-    const TaskInfo& info = info_at(task);
+    const TaskRef ref = ref_at(task);
+    const TaskInfo& info = *ref;
     need_index(i, info.num_defaults, "i");
     *out = {info.defaults[i].key, info.defaults[i].value, 0};
   });

@@ -4,6 +4,7 @@
 #include "capi/abi_call.hpp"
 #if RDM_WITH_SIM
 #include "env/pool.hpp"
+#include "robot/robot_copy.hpp"
 #include "sense/render/raycast.hpp"
 #endif
 #if RDM_WITH_LEARN
@@ -36,6 +37,10 @@ Camera task_camera(int32_t task, const char* name);
 rdm_camera describe(const CameraSpec& c);
 // Field i of a task's observation; Error(kRange) past the end.
 rdm_field field_of(const Task& task, int32_t i);
+// What a host says of a robot; check_robot has not seen it.
+RobotCopy robot_from(const rdm_robot_def* def);
+// Discovery drops what it knows of a task that was removed.
+void forget_task(int32_t index);
 }  // namespace rdm::capi
 #endif
 

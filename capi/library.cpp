@@ -1,7 +1,9 @@
 // Version, build, results, and process-wide hooks.
+#include <cmath>
 #include <cstdio>
 #include <mutex>
 
+#include "base/vec.hpp"
 #include "capi/abi_call.hpp"
 #if RDM_WITH_POLICY
 #include "nn/kernels.hpp"
@@ -25,6 +27,28 @@ const char* rdm_result_string(rdm_result r) {
 const char* rdm_last_error(void) {
   return last_error();
 }
+rdm_result rdm_fail(rdm_result code, const char* text) {
+  return call_inside([&] {
+    need(text, "text");
+    if ((code > static_cast<rdm_result>(RDM_ARGUMENT) || code < static_cast<rdm_result>(RDM_CANCELLED)) &&
+        code != static_cast<rdm_result>(RDM_INTERNAL))
+      fail(Code::kRange, "code: %d is no error; the text was: %s", code, text);
+    fail(static_cast<Code>(code), "%s", text);
+  });
+}
+
+rdm_result rdm_rotation(const double axis[3], double angle, double q[4]) {
+  return call_inside([&] {
+    need(axis, "axis");
+    need(q, "q");
+    const Vec3 a{axis[0], axis[1], axis[2]};
+    if (!finite(a) || !(std::fabs(norm(a) - 1) < 1e-4)) fail(Code::kArgument, "axis is no unit vector");
+    if (!std::isfinite(angle)) fail(Code::kArgument, "angle is not finite");
+    const Quat turn = axis_angle(a, angle);
+    q[0] = turn.x, q[1] = turn.y, q[2] = turn.z, q[3] = turn.w;
+  });
+}
+
 uint32_t rdm_version(void) {
   return RDM_VERSION;
 }

@@ -104,7 +104,26 @@ void add_all_pairs(RobotCopy* r) {
     }
 }
 
-RobotCopy read_def(const rdm_robot_def* def) {
+const RobotLink& link_at(const Robot& r, int32_t i) {
+  need_index(i, r.links.count, "i");
+  return r.links[i];
+}
+
+// [links] `q`, or zeros within the limits.
+void give_pose(const Robot& r, const Table<double>& q, bool or_zero, double* out) {
+  for (int32_t i = 0; out && i < r.links.count; ++i)
+    out[i] = q.count ? q[i] : or_zero ? 0 : std::clamp(0.0, r.links[i].lower, r.links[i].upper);
+}
+
+void need_finite(const double* x, int32_t count, const char* name) {
+  need(x, name);
+  for (int32_t i = 0; i < count; ++i)
+    if (!std::isfinite(x[i])) fail(Code::kArgument, "%s[%d] is not finite", name, i);
+}
+
+}  // namespace
+
+RobotCopy rdm::capi::robot_from(const rdm_robot_def* def) {
   const auto in = read_struct(def, kFirstSize, default_def(), "def");
   need_rows(in.links, in.num_links, RDM_ROBOT_LINKS, "links");
   need_rows(in.shapes, in.num_shapes, kMostRows, "shapes");
@@ -158,25 +177,6 @@ RobotCopy read_def(const rdm_robot_def* def) {
   return r;
 }
 
-const RobotLink& link_at(const Robot& r, int32_t i) {
-  need_index(i, r.links.count, "i");
-  return r.links[i];
-}
-
-// [links] `q`, or zeros within the limits.
-void give_pose(const Robot& r, const Table<double>& q, bool or_zero, double* out) {
-  for (int32_t i = 0; out && i < r.links.count; ++i)
-    out[i] = q.count ? q[i] : or_zero ? 0 : std::clamp(0.0, r.links[i].lower, r.links[i].upper);
-}
-
-void need_finite(const double* x, int32_t count, const char* name) {
-  need(x, name);
-  for (int32_t i = 0; i < count; ++i)
-    if (!std::isfinite(x[i])) fail(Code::kArgument, "%s[%d] is not finite", name, i);
-}
-
-}  // namespace
-
 rdm_result rdm_robot_def_init(rdm_robot_def* def, size_t size) {
   return call(nullptr, [&] { init_struct(def, size, kFirstSize, default_def(), "def"); });
 }
@@ -184,7 +184,7 @@ rdm_result rdm_robot_def_init(rdm_robot_def* def, size_t size) {
 rdm_result rdm_robot_create(int32_t* out, const rdm_robot_def* def) {
   return call(nullptr, [&] {
     need(out, "out");
-    *out = add_robot(read_def(def).robot());
+    *out = add_robot(robot_from(def).robot());
   });
 }
 

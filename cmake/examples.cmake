@@ -76,7 +76,7 @@ ${RDM_WEB}    {nullptr, nullptr},
   list(REMOVE_ITEM sources ${PROJECT_SOURCE_DIR}/examples/redman/main.cpp)
   add_library(redman_tool_parts STATIC ${sources} ${CMAKE_CURRENT_BINARY_DIR}/demos.cpp ${web})
   target_include_directories(redman_tool_parts PUBLIC ${PROJECT_SOURCE_DIR}/examples/redman)
-  target_link_libraries(redman_tool_parts PUBLIC CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG ZLIB::ZLIB)
+  target_link_libraries(redman_tool_parts PUBLIC CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG ZLIB::ZLIB ${CMAKE_DL_LIBS})
   if(TARGET Qhull::qhull_r)
     target_compile_definitions(redman_tool_parts PRIVATE REDMAN_QHULL=1)
     target_link_libraries(redman_tool_parts PUBLIC Qhull::qhull_r)

@@ -310,8 +310,9 @@ class Function(NamedTuple):
 
 
 def headers() -> str:
-    """The text of all public headers, redman.h first."""
-    paths = sorted(INCLUDE.glob("*.h"), key=lambda path: (path.name != "redman.h", path.name))
+    """The text of the public headers of libredman, redman.h first; the importers are a library of their own."""
+    paths = sorted((path for path in INCLUDE.glob("*.h") if path.name != "redman_import.h"),
+                   key=lambda path: (path.name != "redman.h", path.name))
     return "\n".join(path.read_text(encoding="utf-8") for path in paths)
 
 

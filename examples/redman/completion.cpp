@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "common/names.hpp"
+#include "common/plugin.hpp"
 #include "common/text.hpp"
 
 namespace tool {
@@ -76,6 +77,7 @@ void collect(const CLI::App& app, const std::vector<std::string>& path, std::vec
   for (const CLI::Option* option : app.get_options())
     if (!option->get_positional() || !option->get_lnames().empty()) command.flags.push_back(flag_of(*option));
   command.flags.push_back({{"--json"}, "one JSON object on one line", false, ""});
+  if (!path.empty()) command.flags.push_back({{"--plugin"}, kPluginHelp, true, ""});
   const auto children = app.get_subcommands([](const CLI::App*) { return true; });
   for (const CLI::App* child : children) command.children.push_back(child->get_name());
   out.push_back(command);

@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "common/names.hpp"
+#include "common/plugin.hpp"
 #include "common/text.hpp"
 
 namespace {
@@ -19,10 +20,11 @@ using namespace tool;
 
 struct Arguments {
   std::vector<std::string> words;
+  std::vector<std::string> plugins;
   bool json = false;
 };
 
-// --json may stand anywhere, and flags may be written with underscores or capitals.
+// --json and --plugin may stand anywhere, and flags may be written with underscores or capitals.
 Arguments read_arguments(int argc, char** argv) {
   Arguments out;
   for (int i = 1; i < argc; ++i) {
@@ -73,6 +75,7 @@ std::string usage_text(const CLI::App& app, const CLI::ParseError& error, const 
 void work(CLI::App& app, Run& run, const Arguments& arguments) {
   try {
     redman::check(rdm_check_abi(RDM_ABI, RDM_VERSION));
+    load_plugins(arguments.plugins);
     app.parse(std::vector<std::string>(arguments.words.rbegin(), arguments.words.rend()));
     print_result(run(), arguments.json);
   } catch (const CLI::CallForHelp&) {
@@ -89,7 +92,7 @@ void work(CLI::App& app, Run& run, const Arguments& arguments) {
 }
 
 int run_tool(int argc, char** argv) {
-  const Arguments arguments = read_arguments(argc, argv);
+  Arguments arguments = read_arguments(argc, argv);
   const bool json = arguments.json;
 
   CLI::App app("Safe dexterous manipulation: simulate, train, evaluate, look.", "redman");
@@ -115,7 +118,10 @@ int run_tool(int argc, char** argv) {
   add_completion(app, run);
   app.set_version_flag("--version", "", "Print the version and exit");
   app.set_help_all_flag("--help-all", "Help of every subcommand");
+  std::vector<std::string> plugins;  // for the help; they are taken before
+  app.add_option("--plugin", plugins, kPluginHelp)->type_name("FILE");
   try {
+    arguments.plugins = take_plugins(arguments.words);
     work(app, run, arguments);
     return 0;
   } catch (const CLI::ParseError& e) {

@@ -39,13 +39,13 @@ uint64_t ResolvedPoolConfig::hash_options() const {
 void ResolvedPoolConfig::read_options(const PoolConfig& c) {
   if (c.num_options < 0 || (c.num_options > 0 && !c.options))
     fail(Code::kArgument, "options: %d given, but no list", c.num_options);
-  const OptionSpec* specs = info->options(&task_rows, nullptr);
+  const OptionSpec* specs = task_options(*info, &task_rows);
   Options first;
   first.add_table(specs, task_rows);
   first.set_known(c.options, c.num_options, c.settings, info->name);
   if (first.chosen()) {
     table = host_new<OptionTable>(c.hooks, &first);
-    specs = info->options(&task_rows, table);
+    specs = task_options(*info, &task_rows, table);
   }
   options.add_table(specs, task_rows);
   int32_t count = 0;
@@ -60,7 +60,15 @@ void ResolvedPoolConfig::read_options(const PoolConfig& c) {
 
 TaskHandle make_task(const TaskInfo& info, const Options& options, const HostHooks& hooks) {
   const HostScope scope(hooks);
-  return {info.make(options, hooks), {&info, hooks}};
+  return {info.source ? info.source->make(options, hooks) : info.make(options, hooks), {&info, hooks}};
+}
+
+void EndTask::operator()(Task* task) const {
+  info->source ? info->source->destroy(task, hooks) : info->destroy(task, hooks);
+}
+
+const OptionSpec* task_options(const TaskInfo& info, int32_t* count, OptionTable* chosen) {
+  return info.source ? info.source->options(count) : info.options(count, chosen);
 }
 
 ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
@@ -69,7 +77,8 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
   if (c.num_threads < 0 || c.num_threads > kMaxThreads)
     fail(Code::kRange, "num_threads: %d is outside [0, %d]", c.num_threads, kMaxThreads);
   task_index = task_find(c.task);
-  info = &task_at(task_index);
+  ref = TaskRef(task_index);
+  info = &*ref;
   config.task = info->name;
   config.options = nullptr;
   config.settings = nullptr;
@@ -85,6 +94,10 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
   repeat = repeat_from(options, *info);
   options_hash = hash_options();
   task = make_task(*info, options, config.hooks);
+  if (info->source) {  // another task may have its name by now
+    const size_t bytes = task->state_bytes();
+    options_hash = hash_bytes(&bytes, sizeof bytes, options_hash);
+  }
   disturbance = disturbance_from(options, *task, info->name);
   obs_dim = rdm::obs_dim(*task);
   action_dim = task->action_dim();

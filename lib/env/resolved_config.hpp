@@ -24,6 +24,7 @@ struct ResolvedPoolConfig {
       nullptr;            // rows of the task, where the host's choices made others than the static ones
   int32_t task_rows = 0;  // that the task has of `options`
   int32_t task_index = -1;
+  TaskRef ref;  // keeps a task that a host may remove
   const TaskInfo* info = nullptr;
   SenseConfig sense;
   int32_t repeat = 1;         // control steps of one step

@@ -78,7 +78,20 @@ class Task {
   virtual void initial_mean(float* action) const = 0;
 };
 
-// One row of the registry: static data.
+// What stands behind a row that was added while the program runs, in the place of its three functions.
+class TaskSource {
+ public:
+  virtual const struct TaskInfo& info() const = 0;
+  virtual const OptionSpec* options(int32_t* count) const = 0;
+  virtual Task* make(const Options& options, const HostHooks& hooks) const = 0;
+  virtual void destroy(Task* task, const HostHooks& hooks) const = 0;
+  virtual void end() noexcept = 0;  // it was removed and its last user is gone
+
+ protected:
+  ~TaskSource() = default;
+};
+
+// One row of the registry: static data, but for rows with a source.
 struct TaskInfo {
   const char* name;
   const char* alias;  // Safety-Gymnasium's id, null: none
@@ -93,20 +106,47 @@ struct TaskInfo {
   int32_t num_defaults;
   Task* (*make)(const Options& options, const HostHooks& hooks);
   void (*destroy)(Task* task, const HostHooks& hooks);
+  TaskSource* source = nullptr;  // of a row that was added
 };
 // Ends a task that make made with the same hooks.
 struct EndTask {
   const TaskInfo* info = nullptr;
   HostHooks hooks;
-  void operator()(Task* task) const { info->destroy(task, hooks); }
+  void operator()(Task* task) const;
 };
 using TaskHandle = std::unique_ptr<Task, EndTask>;
 TaskHandle make_task(const TaskInfo& info, const Options& options, const HostHooks& hooks);
+const OptionSpec* task_options(const TaskInfo& info, int32_t* count, OptionTable* chosen = nullptr);
 
-void register_task(const TaskInfo& info);  // before the first pool; static data
-int32_t task_count();
-const TaskInfo& task_at(int32_t index);
-int32_t task_find(const char* name);  // Error(kNotFound) with the nearest name; aliases count
+// The rows by number and by name. Any number of threads may look while others add and remove; a number is
+// never given twice.
+inline constexpr int32_t kMaxTasks = 1024;  // in the life of a process
+void register_task(const TaskInfo& info);   // static data
+// Error(kArgument) for a name that is taken, Error(kRange) for more than kMaxTasks; the source is then the
+// caller's still.
+int32_t add_task(TaskSource* source);
+void remove_task(int32_t index);         // who holds a reference keeps it; Error(kArgument) for a static one
+int32_t task_count();                    // numbers that were given; those of removed tasks count
+const TaskInfo& task_at(int32_t index);  // of an added task: as long as someone holds a reference
+int32_t task_find(const char* name);     // Error(kNotFound) with the nearest name; aliases count
+
+// While it lives, the task stays.
+class TaskRef {
+ public:
+  TaskRef() = default;
+  explicit TaskRef(int32_t index);  // Error(kRange); Error(kNotFound): it was removed
+  TaskRef(const TaskRef&) = delete;
+  TaskRef& operator=(const TaskRef&) = delete;
+  TaskRef(TaskRef&& other) noexcept;
+  TaskRef& operator=(TaskRef&& other) noexcept;
+  ~TaskRef();
+  const TaskInfo& operator*() const { return *info_; }
+  const TaskInfo* operator->() const { return info_; }
+
+ private:
+  int32_t index_ = -1;  // of an added one
+  const TaskInfo* info_ = nullptr;
+};
 
 int32_t obs_dim(const Task& task);
 FieldSpec bounded_field(const Task& task, int32_t i);  // its bounds within obs_limit; kUnbounded: none

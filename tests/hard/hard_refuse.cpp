@@ -191,6 +191,15 @@ std::vector<Case> all_cases() {
                    },
                    clear});
   }
+  out.push_back({"task register", nothing,
+                 [](const rdm_host*) {
+                   static rdm::test::BallTask own("own_refused");
+                   int32_t task = -1;
+                   const rdm_result r = rdm_task_register(&task, &own.def);
+                   if (r == RDM_OK) rdm_task_remove(task);
+                   return r;
+                 },
+                 clear});
   const std::vector<World> worlds = all_worlds();
   for (const World& w : worlds) {
     if (w.task != "grasp" && w.task != "two_state") continue;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "own_task.hpp"
 #include "records.hpp"
 
 namespace hard {
@@ -53,7 +54,10 @@ struct World {
   std::string name() const { return engine.empty() ? task : task + "/" + engine; }
 };
 
+// Of the library's tasks, and of one through callbacks.
 inline std::vector<World> all_worlds() {
+  static rdm::test::BallTask own("own_ball");
+  static const rdm::test::Registered registered(own.def);
   std::vector<World> out;
   for (int32_t i = 0; i < rdm_task_count(); ++i) {
     rdm_task t{};

@@ -30,7 +30,7 @@ class Abi(unittest.TestCase):
                 place = getattr(struct, field)
                 ours.append(f"{name}.{field} {place.offset} {place.size}")
             ours.append(f"{name} {ctypes.sizeof(struct)}")
-        self.assertEqual(sorted(line for line in recorded if line), sorted(ours))
+        self.assertEqual(sorted(line for line in recorded if line and not line.startswith("rdm_import_")), sorted(ours))
 
     def test_every_exported_function_has_a_signature_and_words(self):
         for part, experimental in (("redman", False), ("redman_experimental", True)):

@@ -138,6 +138,42 @@ class RobotRow(enum.IntEnum):
     NO_LINK = -2
 
 
+class ScenePart(enum.IntEnum):
+    """what rdm_scene_find looks for; numbers count from 0 in the order of adding"""
+
+    ROBOT = 0
+    BODY = 1
+    LINK = 2  # of all robots, robot by robot; joint i moves link i
+    JOINT = 3
+    SHAPE = 4  # as rdm_pool_shape: robots, bodies, those that stand still
+    SENSOR = 5  # the link of a fingertip, for rdm_world_sensor
+    MATERIAL = 6  # "default" is 0
+
+
+class Friction(enum.IntEnum):
+    """in the place of a coefficient"""
+
+    PASSES = -1
+
+
+class Scale(enum.IntEnum):
+    """what a factor is on, and in brackets its bounds"""
+
+    GRAVITY = 0  # [-10, 10]
+    LINK_MASS = 1  # [0.001, 1000], moments with it; index: link
+    LINK_KP = 2
+    LINK_KD = 3
+    LINK_EFFORT = 4
+    LINK_FRICTION = 5  # [0, 1000]
+    BASE_MASS = 6  # [0.001, 1000] of a free base; index: robot
+    BASE_DAMPING = 7  # [0, 1000] of all links of a robot with a free base
+    BODY_MASS = 8  # [0.001, 1000], moments with it; index: body
+    BODY_SIZE = 9  # [0.05, 20] of all its shapes, moments with the square
+    BODY_LINEAR_DAMPING = 10
+    BODY_ANGULAR_DAMPING = 11  # [0, 1000]
+    FRICTION = 12  # [0, 1000] of two materials, index and other
+
+
 class MapFormat(enum.IntEnum):
     """OctoMap's files: RDM_MAP_BINARY (.bt: occupied or free) and RDM_MAP_FULL (.ot: the probabilities too)."""
 
@@ -1524,6 +1560,406 @@ class rdm_robot_def(Structure):
     ]
 
 
+class rdm_shape_def(Structure):
+    """name: unique in the scene; NULL: that of the body
+    material: of rdm_scene_add_material; NULL: "default"
+    points: [num_points][3] of an RDM_HULL: 4 to 32 points, m; else NULL
+    num_points: count
+    kind: RDM_SPHERE ... RDM_HULL; an RDM_PLANE stands still
+    size: as rdm_shape, m; of a hull unused
+    p: position in the frame of the body, or in the world, m
+    q: rotation; all 0: none
+    color: red, green, blue, 255; all 0: grey
+    seen_only: flag: nothing touches it
+    """
+
+    name: bytes | None
+    material: bytes | None
+    points: int | None
+    num_points: int
+    kind: int
+    size: Any
+    p: Any
+    q: Any
+    color: Any
+    seen_only: int
+    _fields_ = [
+        ("name", c_char_p),
+        ("material", c_char_p),
+        ("points", c_void_p),
+        ("num_points", c_int32),
+        ("kind", c_int32),
+        ("size", c_double * 3),
+        ("p", c_double * 3),
+        ("q", c_double * 4),
+        ("color", c_uint8 * 4),
+        ("seen_only", c_int32),
+    ]
+
+
+class rdm_body_def(Structure):
+    """struct_size: bytes
+    num_shapes: count
+    name: unique among bodies and robots
+    shapes: [num_shapes] 1 or more
+    p: position at the start, m
+    q: rotation; all 0: none
+    mass: kg
+    moment: xx yy zz xy xz yz, kg m2; all 0: of the shapes, solid, of one density
+    linear_damping: 1/s
+    angular_damping: 1/s; stands for rolling friction
+    weightless: flag: feels no gravity
+    reserved: 0
+    """
+
+    struct_size: int
+    num_shapes: int
+    name: bytes | None
+    shapes: Any
+    p: Any
+    q: Any
+    mass: float
+    moment: Any
+    linear_damping: float
+    angular_damping: float
+    weightless: int
+    reserved: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_shapes", c_int32),
+        ("name", c_char_p),
+        ("shapes", POINTER(rdm_shape_def)),
+        ("p", c_double * 3),
+        ("q", c_double * 4),
+        ("mass", c_double),
+        ("moment", c_double * 6),
+        ("linear_damping", c_double),
+        ("angular_damping", c_double),
+        ("weightless", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
+class rdm_scene_robot(Structure):
+    """struct_size: bytes
+    robot: of rdm_robot_find
+    own: a robot of this scene alone, in the place of `robot`; NULL
+    name: begins, with '_', the names of its links, joints and shapes; unique
+    material: of its shapes; NULL: "default"
+    p: its base at the start, m
+    q: rotation; all 0: none
+    base_damping: of a free base: of all links, 1/s
+    free_base: flag: the base moves
+    left: flag: the mirror image
+    gravity: flag: its links feel gravity
+    reserved: 0
+    """
+
+    struct_size: int
+    robot: int
+    own: Any
+    name: bytes | None
+    material: bytes | None
+    p: Any
+    q: Any
+    base_damping: float
+    free_base: int
+    left: int
+    gravity: int
+    reserved: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("robot", c_int32),
+        ("own", POINTER(rdm_robot_def)),
+        ("name", c_char_p),
+        ("material", c_char_p),
+        ("p", c_double * 3),
+        ("q", c_double * 4),
+        ("base_damping", c_double),
+        ("free_base", c_int32),
+        ("left", c_int32),
+        ("gravity", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
+class rdm_joints(Structure):
+    """struct_size: in: bytes
+    count: of joints
+    control_dt: s of a control step
+    q: [count] rad (m)
+    qd: [count] rad/s (m/s)
+    target: [count] what the drives go for
+    torque: [count] of the drives, mean over the step, N m (N)
+    """
+
+    struct_size: int
+    count: int
+    control_dt: float
+    q: int | None
+    qd: int | None
+    target: int | None
+    torque: int | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("count", c_int32),
+        ("control_dt", c_double),
+        ("q", c_void_p),
+        ("qd", c_void_p),
+        ("target", c_void_p),
+        ("torque", c_void_p),
+    ]
+
+
+class Motion(Record):
+    """The values of rdm_motion."""
+
+    p: tuple[float, ...]  # m
+    q: tuple[float, ...]  # rotation
+    v: tuple[float, ...]  # velocity of the frame's origin, m/s
+    w: tuple[float, ...]  # angular velocity, world axes, rad/s
+
+
+class rdm_motion(Structure):
+    """p: m
+    q: rotation
+    v: velocity of the frame's origin, m/s
+    w: angular velocity, world axes, rad/s
+    """
+
+    p: Any
+    q: Any
+    v: Any
+    w: Any
+    _fields_ = [
+        ("p", c_double * 3),
+        ("q", c_double * 4),
+        ("v", c_double * 3),
+        ("w", c_double * 3),
+    ]
+
+
+class Factor(Record):
+    """The values of rdm_factor."""
+
+    what: int  # RDM_SCALE_*
+    index: int  # of the thing
+    other: int  # the second material of a friction
+    factor: float  # times the scene's value
+
+
+class rdm_factor(Structure):
+    """what: RDM_SCALE_*
+    index: of the thing
+    other: the second material of a friction
+    reserved: 0
+    factor: times the scene's value
+    """
+
+    what: int
+    index: int
+    other: int
+    reserved: int
+    factor: float
+    _fields_ = [
+        ("what", c_int32),
+        ("index", c_int32),
+        ("other", c_int32),
+        ("reserved", c_int32),
+        ("factor", c_double),
+    ]
+
+
+class Random(Record):
+    """The values of rdm_random."""
+
+    seed: int  # its name
+    counter: int  # draws so far
+    world: int  # its name
+    purpose: int  # its name
+
+
+class rdm_random(Structure):
+    """seed: its name
+    counter: draws so far
+    world: its name
+    purpose: its name
+    """
+
+    seed: int
+    counter: int
+    world: int
+    purpose: int
+    _fields_ = [
+        ("seed", c_uint64),
+        ("counter", c_uint64),
+        ("world", c_uint32),
+        ("purpose", c_uint32),
+    ]
+
+
+class Verdict(Record):
+    """The values of rdm_verdict."""
+
+    reward: float  # of the step
+    cost: tuple[float, ...]  # each column of the step, 0 or more
+    cost_raw: tuple[float, ...]  # the measured value behind each
+    terminated: int  # flag: the episode ends here
+    success: int  # flag
+
+
+class rdm_verdict(Structure):
+    """reward: of the step
+    cost: each column of the step, 0 or more
+    cost_raw: the measured value behind each
+    terminated: flag: the episode ends here
+    success: flag
+    """
+
+    reward: float
+    cost: Any
+    cost_raw: Any
+    terminated: int
+    success: int
+    _fields_ = [
+        ("reward", c_double),
+        ("cost", c_double * RDM_MAX_COSTS),
+        ("cost_raw", c_double * RDM_MAX_COSTS),
+        ("terminated", c_int32),
+        ("success", c_int32),
+    ]
+
+
+class FieldDef(Record):
+    """The values of rdm_field_def."""
+
+    name: str  # unique, at most 31 characters: "cup.position"
+    unit: str  # of a stored 1: "m", "5 rad/s", "1"
+    count: int  # entries
+    low: float  # what no entry leaves; low equal to high: none but obs_limit
+    high: float  # likewise
+
+
+class rdm_field_def(Structure):
+    """name: unique, at most 31 characters: "cup.position"
+    unit: of a stored 1: "m", "5 rad/s", "1"
+    count: entries
+    low: what no entry leaves; low equal to high: none but obs_limit
+    high: likewise
+    reserved: 0
+    """
+
+    name: bytes | None
+    unit: bytes | None
+    count: int
+    low: float
+    high: float
+    reserved: int
+    _fields_ = [
+        ("name", c_char_p),
+        ("unit", c_char_p),
+        ("count", c_int32),
+        ("low", c_float),
+        ("high", c_float),
+        ("reserved", c_int32),
+    ]
+
+
+class rdm_task_def(Structure):
+    """struct_size: bytes, set by rdm_task_def_init
+    max_steps: control steps of an episode: default of the option max_steps; default 100
+    name: letters, digits, '_', '-', '.'; at most 40
+    summary: one line; NULL: none
+    fields: [num_fields] of an observation, in order
+    costs: [num_costs] column 0 is the one that learners limit
+    options: [num_options] rows, and defaults of its own for those that every task has
+    cameras: [num_cameras] NULL with num_cameras 0: "front", made for the origin
+    defaults: [num_defaults] of agent options; NULL with num_defaults 0
+    num_fields: 1 or more
+    num_costs: 1 to RDM_MAX_COSTS
+    num_options: count
+    num_cameras: count
+    num_defaults: count
+    action_dim: 1 to 1024
+    hold: [action_dim] the action that holds still; NULL: 0
+    mean: [action_dim] that a new policy starts from; NULL: 0
+    action_order: what the entries are, for the layout hash; NULL: "action"
+    obs_limit: every observation entry is cut at +- this; 0: none
+    state_bytes: of a world's own state, to 2^20
+    instance_bytes: of what build leaves for the others, to 2^24
+    user: passed to all; may be NULL
+    build: makes the scene, and the constants of this pool. Required
+    reset: starts an episode, the world is as it was built. Required
+    control: before a step: from the clipped action to targets and pushes. Required
+    judge: after a step, `step` counts from 1: reward, costs and the end. Required
+    observe: writes all entries of the observation, after reset and after judge. Required
+    check_state: FORMAT for a saved state that no world can have: indices out of range, numbers that are not
+        finite. NULL: all are good
+    release: called once, when the task was removed and its last pool is gone. NULL: none
+    """
+
+    struct_size: int
+    max_steps: int
+    name: bytes | None
+    summary: bytes | None
+    fields: Any
+    costs: Any
+    options: Any
+    cameras: Any
+    defaults: Any
+    num_fields: int
+    num_costs: int
+    num_options: int
+    num_cameras: int
+    num_defaults: int
+    action_dim: int
+    hold: int | None
+    mean: int | None
+    action_order: bytes | None
+    obs_limit: float
+    state_bytes: int
+    instance_bytes: int
+    user: int | None
+    build: Any
+    reset: Any
+    control: Any
+    judge: Any
+    observe: Any
+    check_state: Any
+    release: Any
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("max_steps", c_int32),
+        ("name", c_char_p),
+        ("summary", c_char_p),
+        ("fields", POINTER(rdm_field_def)),
+        ("costs", POINTER(rdm_cost)),
+        ("options", POINTER(rdm_option_info)),
+        ("cameras", POINTER(rdm_camera)),
+        ("defaults", POINTER(rdm_option)),
+        ("num_fields", c_int32),
+        ("num_costs", c_int32),
+        ("num_options", c_int32),
+        ("num_cameras", c_int32),
+        ("num_defaults", c_int32),
+        ("action_dim", c_int32),
+        ("hold", c_void_p),
+        ("mean", c_void_p),
+        ("action_order", c_char_p),
+        ("obs_limit", c_double),
+        ("state_bytes", c_uint64),
+        ("instance_bytes", c_uint64),
+        ("user", c_void_p),
+        ("build", CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p)),
+        ("reset", CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p, c_void_p, POINTER(rdm_random))),
+        ("control", CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p, c_void_p, c_void_p)),
+        ("judge", CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p, c_void_p, c_int32, POINTER(rdm_verdict))),
+        ("observe", CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p, c_void_p, c_void_p)),
+        ("check_state", CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p)),
+        ("release", CFUNCTYPE(None, c_void_p)),
+    ]
+
+
 class rdm_map_config(Structure):
     """struct_size: bytes, set by rdm_map_config_init
     reserved: 0
@@ -1726,6 +2162,16 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_robot_curve": rdm_robot_curve,
     "rdm_robot_finger": rdm_robot_finger,
     "rdm_robot_def": rdm_robot_def,
+    "rdm_shape_def": rdm_shape_def,
+    "rdm_body_def": rdm_body_def,
+    "rdm_scene_robot": rdm_scene_robot,
+    "rdm_joints": rdm_joints,
+    "rdm_motion": rdm_motion,
+    "rdm_factor": rdm_factor,
+    "rdm_random": rdm_random,
+    "rdm_verdict": rdm_verdict,
+    "rdm_field_def": rdm_field_def,
+    "rdm_task_def": rdm_task_def,
     "rdm_map_config": rdm_map_config,
     "rdm_map_info": rdm_map_info,
     "rdm_voxel": rdm_voxel,
@@ -1768,6 +2214,19 @@ ROWS: dict[str, dict[str, Rows]] = {
         "home": Rows("float64", ("num_links",)),
         "folded": Rows("float64", ("num_links",)),
         "closed": Rows("float32", ("num_commands",)),
+    },
+    "rdm_shape_def": {
+        "points": Rows("float64", ("num_points", "3")),
+    },
+    "rdm_joints": {
+        "q": Rows("float64", ("count",)),
+        "qd": Rows("float64", ("count",)),
+        "target": Rows("float64", ("count",)),
+        "torque": Rows("float64", ("count",)),
+    },
+    "rdm_task_def": {
+        "hold": Rows("float32", ("action_dim",)),
+        "mean": Rows("float32", ("action_dim",)),
     },
     "rdm_sensors": {
         "rgb": Rows("uint8", ("num_envs", "num_cameras", "height", "width", "3")),
@@ -2250,6 +2709,218 @@ FUNCTIONS: dict[str, Function] = {
         {"pose": Rows("float64", ("7",)), "q": Rows("float64", ("num_links",))}, True,
         """Joints q [num_links], from where they are, to where the arm's flange has pose [7] in the root frame. *found is 0 when the
         least squares end elsewhere. UNSUPPORTED: no flange.
+        """),
+    "rdm_fail": Function(
+        c_int32, {"code": c_int32, "text": c_char_p},
+        {}, True,
+        """Sets rdm_last_error of this thread to `text` and returns `code`."""),
+    "rdm_scene_number": Function(
+        c_int32, {"scene": c_void_p, "key": c_char_p, "value": c_void_p},
+        {}, True,
+        """Value of the pool's option `key`: *value of a number, integer or flag, *text of a text. NOT_FOUND, ARGUMENT."""),
+    "rdm_scene_text": Function(
+        c_int32, {"scene": c_void_p, "key": c_char_p, "text": POINTER(c_char_p)},
+        {}, True,
+        """Value of the pool's option `key`: *value of a number, integer or flag, *text of a text. NOT_FOUND, ARGUMENT."""),
+    "rdm_scene_range": Function(
+        c_int32, {"scene": c_void_p, "key": c_char_p, "low": c_void_p, "high": c_void_p},
+        {}, True,
+        """Bounds *low and *high of a number or integer whose row takes a range (choices "a..b"), for reset to draw from; equal: a number."""),
+    "rdm_scene_add_material": Function(
+        c_int32, {"scene": c_void_p, "name": c_char_p},
+        {}, True,
+        """"default" is one, 15 more"""),
+    "rdm_scene_set_friction": Function(
+        c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "mu": c_double},
+        {}, True,
+        """0 or more"""),
+    "rdm_scene_set_gravity": Function(
+        c_int32, {"scene": c_void_p, "gravity": c_void_p},
+        {"gravity": Rows("float64", ("3",))}, True,
+        """m/s2"""),
+    "rdm_scene_set_feedforward": Function(
+        c_int32, {"scene": c_void_p},
+        {}, True,
+        """worlds take rdm_world_set_feedforward"""),
+    "rdm_scene_set_adjustable": Function(
+        c_int32, {"scene": c_void_p},
+        {}, True,
+        """worlds take rdm_world_scale"""),
+    "rdm_scene_add_robot": Function(
+        c_int32, {"scene": c_void_p, "robot": POINTER(rdm_scene_robot), "index": c_void_p},
+        {}, True,
+        """index: NULL"""),
+    "rdm_scene_add_body": Function(
+        c_int32, {"scene": c_void_p, "body": POINTER(rdm_body_def), "index": c_void_p},
+        {}, True,
+        """index: NULL"""),
+    "rdm_scene_add_static": Function(
+        c_int32, {"scene": c_void_p, "shape": POINTER(rdm_shape_def)},
+        {}, True,
+        """stands still"""),
+    "rdm_scene_set_field": Function(
+        c_int32, {"scene": c_void_p, "field": c_char_p, "count": c_int32},
+        {}, True,
+        """For a task whose numbers follow from its options: another count for a field, in the order of rdm_task_def.fields; another
+        count of actions, with hold [count] and mean [count] as in rdm_task_def (NULL: 0).
+        """),
+    "rdm_scene_set_actions": Function(
+        c_int32, {"scene": c_void_p, "count": c_int32, "hold": c_void_p, "mean": c_void_p},
+        {"hold": Rows("float32", ("count",)), "mean": Rows("float32", ("count",))}, True,
+        """For a task whose numbers follow from its options: another count for a field, in the order of rdm_task_def.fields; another
+        count of actions, with hold [count] and mean [count] as in rdm_task_def (NULL: 0).
+        """),
+    "rdm_scene_find": Function(
+        c_int32, {"scene": c_void_p, "part": c_int32, "name": c_char_p, "index": c_void_p},
+        {}, True,
+        """NOT_FOUND: nearest"""),
+    "rdm_scene_joint": Function(
+        c_int32, {"scene": c_void_p, "i": c_int32, "out": POINTER(rdm_joint)},
+        {}, True,
+        """action: its robot's command, -1"""),
+    "rdm_scene_touch": Function(
+        c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "group": c_void_p},
+        {}, True,
+        """group, for rdm_world_touch: all contacts of a shape of `a` with one of `b`, each the name of a shape, body or robot, or a
+        pattern of such names with '*' and '?'. NOT_FOUND where nothing has it.
+        """),
+    "rdm_world_joints": Function(
+        c_int32, {"world": c_void_p, "io": POINTER(rdm_joints)},
+        {}, True,
+        """fills io"""),
+    "rdm_world_link": Function(
+        c_int32, {"world": c_void_p, "link": c_int32, "out": POINTER(rdm_motion)},
+        {}, True,
+        """of its joint's frame"""),
+    "rdm_world_base": Function(
+        c_int32, {"world": c_void_p, "robot": c_int32, "out": POINTER(rdm_motion)},
+        {}, True,
+        """of its base"""),
+    "rdm_world_body": Function(
+        c_int32, {"world": c_void_p, "body": c_int32, "out": POINTER(rdm_motion)},
+        {}, True,
+        """of its centre of mass"""),
+    "rdm_world_shape": Function(
+        c_int32, {"world": c_void_p, "shape": c_int32, "pose": c_void_p},
+        {"pose": Rows("float64", ("7",))}, True,
+        """position, rotation"""),
+    "rdm_world_sensor": Function(
+        c_int32, {"world": c_void_p, "sensor": c_int32, "force": c_void_p, "torque": c_void_p},
+        {"force": Rows("float64", ("3",)), "torque": Rows("float64", ("3",))}, True,
+        """Contact force [3] (N) and torque [3] (N m) on a fingertip, mean over the step, in the link's frame, about its origin."""),
+    "rdm_world_touch": Function(
+        c_int32, {"world": c_void_p, "group": c_int32, "pairs": c_void_p, "force": c_void_p},
+        {}, True,
+        """pairs is how many pairs of a group's shapes touched in the step; *force (N) the sum of the group's contact forces in its
+        last substep. Either may be NULL.
+        """),
+    "rdm_world_contacts": Function(
+        c_int32, {"world": c_void_p, "out": POINTER(rdm_contact), "capacity": c_int32, "count": c_void_p},
+        {}, True,
+        """Contacts of the last substep to out [capacity]; *count is how many there are."""),
+    "rdm_world_overlap": Function(
+        c_int32, {"world": c_void_p, "body": c_int32, "depth": c_void_p},
+        {}, True,
+        """By *depth (m) a body at its present place is within something that it may touch; 0: it is clear."""),
+    "rdm_world_set_body": Function(
+        c_int32, {"world": c_void_p, "body": c_int32, "motion": POINTER(rdm_motion)},
+        {}, True,
+        """Places for what moves freely; joints q [n] and rates qd [n] (NULL: 0) of a robot of n joints, within their ranges, and with
+        them the targets of its drives.
+        """),
+    "rdm_world_set_base": Function(
+        c_int32, {"world": c_void_p, "robot": c_int32, "motion": POINTER(rdm_motion)},
+        {}, True,
+        """STATE: it is fixed"""),
+    "rdm_world_set_joints": Function(
+        c_int32, {"world": c_void_p, "robot": c_int32, "q": c_void_p, "qd": c_void_p, "n": c_int32},
+        {"q": Rows("float64", ("n",)), "qd": Rows("float64", ("n",))}, True,
+        """all n"""),
+    "rdm_world_set_targets": Function(
+        c_int32, {"world": c_void_p, "first": c_int32, "targets": c_void_p, "n": c_int32},
+        {"targets": Rows("float64", ("n",))}, True,
+        """What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n] in [-1, 1] of all n commands of a
+        robot, which become targets as its description says: ranges or curves, no faster than its joints' velocity.
+        """),
+    "rdm_world_command": Function(
+        c_int32, {"world": c_void_p, "robot": c_int32, "commands": c_void_p, "n": c_int32},
+        {"commands": Rows("float64", ("n",))}, True,
+        """What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n] in [-1, 1] of all n commands of a
+        robot, which become targets as its description says: ranges or curves, no faster than its joints' velocity.
+        """),
+    "rdm_world_set_feedforward": Function(
+        c_int32, {"world": c_void_p, "first": c_int32, "efforts": c_void_p, "n": c_int32},
+        {"efforts": Rows("float64", ("n",))}, True,
+        """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again; STATE unless the scene has
+        them. rdm_world_gravity gives those that hold a robot of n joints against gravity where it is.
+        """),
+    "rdm_world_gravity": Function(
+        c_int32, {"world": c_void_p, "robot": c_int32, "efforts": c_void_p, "n": c_int32},
+        {"efforts": Rows("float64", ("n",))}, True,
+        """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again; STATE unless the scene has
+        them. rdm_world_gravity gives those that hold a robot of n joints against gravity where it is.
+        """),
+    "rdm_world_scale": Function(
+        c_int32, {"world": c_void_p, "factors": POINTER(rdm_factor), "count": c_int32},
+        {}, True,
+        """Lays factors [count] over those that the world has, all 1 at the start of an episode; reset may draw them. All are taken
+        or none. STATE unless the scene is adjustable.
+        """),
+    "rdm_world_push_body": Function(
+        c_int32, {"world": c_void_p, "body": c_int32, "force": c_void_p, "torque": c_void_p},
+        {"force": Rows("float64", ("3",)), "torque": Rows("float64", ("3",))}, True,
+        """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N m); of a link at `point` [3]."""),
+    "rdm_world_push_base": Function(
+        c_int32, {"world": c_void_p, "robot": c_int32, "force": c_void_p, "torque": c_void_p},
+        {"force": Rows("float64", ("3",)), "torque": Rows("float64", ("3",))}, True,
+        """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N m); of a link at `point` [3]."""),
+    "rdm_world_push_link": Function(
+        c_int32, {"world": c_void_p, "link": c_int32, "force": c_void_p, "point": c_void_p},
+        {"force": Rows("float64", ("3",)), "point": Rows("float64", ("3",))}, True,
+        """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N m); of a link at `point` [3]."""),
+    "rdm_random_bits": Function(
+        c_uint64, {"random": POINTER(rdm_random)},
+        {}, True,
+        """Draws from the stream; 0 without one. The same numbers on every machine."""),
+    "rdm_random_uniform": Function(
+        c_double, {"random": POINTER(rdm_random), "low": c_double, "high": c_double},
+        {}, True,
+        """in [low, high)"""),
+    "rdm_random_normal": Function(
+        c_double, {"random": POINTER(rdm_random)},
+        {}, True,
+        """mean 0, deviation 1"""),
+    "rdm_random_split": Function(
+        c_int32, {"random": POINTER(rdm_random), "out": POINTER(rdm_random)},
+        {}, True,
+        """Another stream to *out, for draws within an episode: reset makes it and keeps it in the state."""),
+    "rdm_rotation": Function(
+        c_int32, {"axis": c_void_p, "angle": c_double, "q": c_void_p},
+        {"axis": Rows("float64", ("3",)), "q": Rows("float64", ("4",))}, True,
+        """The turn by `angle` (rad) about the unit vector axis [3] to q [4]: the same bits on every machine, where those of a C library's
+        sine are not.
+        """),
+    "rdm_task_def_init": Function(
+        c_int32, {"def": POINTER(rdm_task_def), "size": c_size_t},
+        {}, True,
+        """defaults into the first `size` bytes"""),
+    "rdm_task_register": Function(
+        c_int32, {"out": c_void_p, "def": POINTER(rdm_task_def)},
+        {}, True,
+        """Adds a task under a number that no other gets, *out for rdm_task_at and its like. ARGUMENT, RANGE: the text names the row;
+        a name that is taken is an ARGUMENT. Tasks belong to the process; any number of threads may look meanwhile.
+        """),
+    "rdm_task_remove": Function(
+        c_int32, {"task": c_int32},
+        {}, True,
+        """Pools that have it keep it. ARGUMENT for the library's own."""),
+    "rdm_task_check": Function(
+        c_int32, {"task": c_char_p, "settings": c_char_p, "error": c_void_p, "error_size": c_int32},
+        {}, True,
+        """Tries what a task promises, any task: the same bytes for the same seed, any threads and after save and restore, rows within
+        their fields and bounds, costs of 0 or more, nothing written past a state or a row, no memory left behind. OK, or the error
+        of making a pool, or ARGUMENT: the text names the function, the step and the entry where a promise broke first; it goes to
+        error [error_size] too, NULL: not. `settings` as in rdm_pool_config; NULL: none. Seconds.
         """),
     "rdm_map_config_init": Function(
         c_int32, {"c": POINTER(rdm_map_config), "size": c_size_t},

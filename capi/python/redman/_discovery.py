@@ -5,9 +5,10 @@ import ctypes
 import math
 from ctypes import byref, c_float, c_int32
 from functools import lru_cache
-from typing import Any, Callable, TypeVar
+from typing import Any, Callable, Iterator, TypeVar
 
 from . import _abi
+from ._error import NotFoundError
 from ._library import encoded, filled, check, lib, text
 from ._options import Value, default_of, laid
 from ._record import Record
@@ -123,9 +124,18 @@ def find(call: Callable[..., int], name: str) -> int:
     return index.value
 
 
+def _listed(at: Callable[[int], R], count: int) -> Iterator[R]:
+    """Those of the numbers 0 to count that were not removed since."""
+    for index in range(count):
+        try:
+            yield at(index)
+        except NotFoundError:
+            pass
+
+
 def tasks() -> dict[str, Task]:
     """All tasks by name; empty without the simulation half."""
-    return {task.name: task for task in map(task_at, range(lib.rdm_task_count()))}
+    return {task.name: task for task in _listed(task_at, lib.rdm_task_count())}
 
 
 def algos() -> dict[str, Algo]:
@@ -145,7 +155,7 @@ def algo(name: str) -> Algo:
 
 def robots() -> dict[str, Robot]:
     """All robot descriptions by name."""
-    return {robot.name: robot for robot in map(Robot, range(lib.rdm_robot_count()))}
+    return {robot.name: robot for robot in _listed(Robot, lib.rdm_robot_count())}
 
 
 def objects() -> dict[str, _abi.Object]:

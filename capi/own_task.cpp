@@ -1,0 +1,457 @@
+// rdm_task_register and its like: a host's description becomes a row of the registry, its functions a Task.
+#include "capi/own_task.hpp"
+
+#if RDM_WITH_SIM
+#include <bit>
+#include <cmath>
+#include <cstdio>
+
+#include "base/text.hpp"
+#include "env/options/simulation.hpp"
+#include "env/options/table.hpp"
+#include "tasks/catalog.hpp"
+
+using namespace rdm;
+using namespace rdm::capi;
+
+static_assert(kMaxTaskCosts == RDM_MAX_COSTS);
+static_assert(sizeof(rdm_random) == sizeof(Stream));
+
+namespace {
+
+constexpr size_t kFirstSize = sizeof(rdm_task_def);
+constexpr int32_t kMostRows = 512, kMostActions = 1024, kMostSteps = 100000;
+constexpr size_t kLongestName = 40;
+constexpr uint64_t kMostState = uint64_t{1} << 20, kMostInstance = uint64_t{1} << 24;
+
+rdm_task_def default_def() {
+  rdm_task_def d{};
+  d.max_steps = 100;
+  return d;
+}
+
+// The rows that every task of a world with an engine has.
+const OptionTable& simulation_rows() {
+  struct Filled : OptionTable {
+    Filled() { add_sim_options(*this); }
+  };
+  static const Filled table;
+  return table;
+}
+
+void need_rows(const void* rows, int32_t count, int32_t least, const char* name) {
+  if (count < least || count > kMostRows)
+    fail(Code::kRange, "def.num_%s: %d is outside [%d, %d]", name, count, least, kMostRows);
+  if (count > 0 && !rows) fail(Code::kArgument, "def.%s is NULL with num_%s %d", name, name, count);
+}
+
+void need_name(const char* name, const char* what, size_t longest) {
+  if (!name) fail(Code::kArgument, "%s is NULL", what);
+  const size_t length = std::strlen(name);
+  if (length < 1 || length > longest)
+    fail(Code::kRange, "%s: %s has not 1 to %zu characters", what, Quoted(name).text, longest);
+  for (const char* at = name; *at; ++at)
+    if (!((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z') || (*at >= '0' && *at <= '9') ||
+          std::strchr("_-.", *at)))
+      fail(Code::kArgument, "%s: %s has other characters than letters, digits, '_', '-', '.'", what,
+           Quoted(name).text);
+}
+
+void need_text(const char* text, const char* what) {
+  if (!text) fail(Code::kArgument, "%s is NULL", what);
+  if (!is_clean_text(text)) fail(Code::kArgument, "%s: control characters, or not UTF-8", what);
+}
+
+struct RowName {  // "def.costs[2]" and a member
+  RowName(const char* rows, int32_t i, const char* member) {
+    std::snprintf(text, sizeof text, "def.%s[%d].%s", rows, i, member);
+  }
+  char text[64];
+};
+
+const char* kind_name(OptionKind kind) {
+  constexpr const char* kNames[] = {"RDM_NUMBER", "RDM_INTEGER", "RDM_FLAG", "RDM_TEXT"};
+  return kNames[static_cast<int32_t>(kind)];
+}
+
+bool among(const char* word, const char* choices) {
+  const size_t length = std::strlen(word);
+  for (const char* at = choices;; ++at) {
+    const size_t n = std::strcspn(at, "|");
+    if (n == length && std::memcmp(at, word, n) == 0) return true;
+    at += n;
+    if (!*at) return false;
+  }
+}
+
+// A task of one pool: what its functions are called with.
+class BuiltTask final : public Task {
+ public:
+  BuiltTask(const OwnTask& own, const Options& o)
+      : own_(own),
+        engine_(engine_from(o)),
+        max_steps_(o.integer("max_steps")),
+        instance_(own.def.instance_bytes / sizeof(std::max_align_t) + 1) {
+    begin_scene(own, o, &scene_);
+    struct Retire {
+      rdm_scene* scene;
+      ~Retire() { retire(scene); }
+    } retired{&scene_};
+    own.run("build", [&] {
+      const rdm_result r = own.def.build(own.def.user, &scene_, instance_.data());
+      return r != RDM_OK ? r : call_inside([&] { complete_scene(&scene_); });
+    });
+    if (field_total(scene_.fields) > kMostEntries)
+      fail(Code::kRange, "task %s: the fields have %d entries, at most %d", own.def.name,
+           field_total(scene_.fields), kMostEntries);
+    scene_.options = nullptr;
+  }
+
+  const Scene& scene() const override { return scene_.scene; }
+  EngineKind engine() const override { return engine_; }
+  int32_t max_steps() const override { return max_steps_; }
+  int32_t action_dim() const override { return static_cast<int32_t>(scene_.hold.size()); }
+  const Vector<FieldSpec>& fields() const override { return scene_.fields; }
+  const char* action_order() const override { return own_.def.action_order; }
+  size_t state_bytes() const override { return static_cast<size_t>(own_.def.state_bytes); }
+  float obs_limit() const override {
+    return own_.def.obs_limit > 0 ? static_cast<float>(own_.def.obs_limit)
+                                  : std::numeric_limits<float>::infinity();
+  }
+  void hold_action(float* action) const override {
+    std::copy(scene_.hold.begin(), scene_.hold.end(), action);
+  }
+  void initial_mean(float* action) const override {
+    std::copy(scene_.mean.begin(), scene_.mean.end(), action);
+  }
+
+  void check_state(const void* state) const override {
+    const rdm_task_def& d = own_.def;
+    if (!d.check_state) return;
+    try {
+      own_.run("check_state", [&] { return d.check_state(d.user, instance_.data(), state); });
+    } catch (Error& e) {
+      e.code = Code::kFormat;
+      throw;
+    }
+  }
+  void reset(World& world, void* state, Stream& stream) const override {
+    const rdm_task_def& d = own_.def;
+    rdm_world w(&world, &scene_, false);
+    scene_.draws.apply(world, stream);
+    auto random = std::bit_cast<rdm_random>(stream);
+    own_.run("reset", [&] { return d.reset(d.user, instance_.data(), &w, state, &random); });
+    stream = std::bit_cast<Stream>(random);
+  }
+  void control(World& world, void* state, const float* action) const override {
+    const rdm_task_def& d = own_.def;
+    rdm_world w(&world, &scene_, false);
+    own_.run("control", [&] { return d.control(d.user, instance_.data(), &w, state, action); });
+  }
+  Verdict judge(World& world, void* state, int32_t step) const override {
+    const rdm_task_def& d = own_.def;
+    rdm_world w(&world, &scene_, false);
+    rdm_verdict out{};
+    own_.run("judge", [&] { return d.judge(d.user, instance_.data(), &w, state, step, &out); });
+    Verdict v;
+    v.reward = out.reward;
+    for (int32_t k = 0; k < d.num_costs; ++k) {
+      if (out.cost[k] < 0)
+        fail(Code::kRange, "task %s: judge: cost %s is %g, less than 0", d.name, own_.info().costs[k].name,
+             out.cost[k]);
+      v.cost[k] = out.cost[k];
+      v.cost_raw[k] = out.cost_raw[k];
+    }
+    v.terminated = out.terminated != 0;
+    v.success = out.success != 0;
+    return v;
+  }
+  void observe(const World& world, const void* state, float* obs) const override {
+    const rdm_task_def& d = own_.def;
+    const rdm_world w(const_cast<World*>(&world), &scene_, true);
+    own_.run("observe", [&] { return d.observe(d.user, instance_.data(), &w, state, obs); });
+  }
+
+ private:
+  const OwnTask& own_;
+  EngineKind engine_;
+  int32_t max_steps_;
+  rdm_scene scene_;
+  Vector<std::max_align_t> instance_;  // zeroed
+};
+
+}  // namespace
+
+const char* TextStore::keep(const char* text) {
+  if (!text) return nullptr;
+  texts_.emplace_back(text, text + std::strlen(text) + 1);
+  return texts_.back().data();
+}
+
+void rdm::capi::check_action_dim(int32_t count, const char* name) {
+  if (count < 1 || count > kMostActions)
+    fail(Code::kRange, "%s: %d is outside [1, %d]", name, count, kMostActions);
+}
+
+void rdm::capi::copy_actions(const float* in, int32_t count, const char* name, Vector<float>* out) {
+  out->assign(static_cast<size_t>(count), 0.0f);
+  for (int32_t i = 0; in && i < count; ++i) {
+    if (!(std::fabs(in[i]) <= 1))
+      fail(Code::kRange, "%s[%d]: %g is outside [-1, 1]", name, i, static_cast<double>(in[i]));
+    (*out)[static_cast<size_t>(i)] = in[i];
+  }
+}
+
+OwnTask::OwnTask(const rdm_task_def& d, const HostHooks& hooks) : def(d), hooks_(hooks) {
+  need_name(d.name, "def.name", kLongestName);
+  def.name = texts_.keep(d.name);
+  if (d.summary) need_text(d.summary, "def.summary");
+  def.summary = texts_.keep(d.summary ? d.summary : "");
+  if (d.action_order) need_text(d.action_order, "def.action_order");
+  def.action_order = texts_.keep(d.action_order ? d.action_order : "action");
+  if (d.max_steps < 1 || d.max_steps > kMostSteps)
+    fail(Code::kRange, "def.max_steps: %d is outside [1, %d]", d.max_steps, kMostSteps);
+  if (!(d.obs_limit >= 0 && d.obs_limit <= 1e30))
+    fail(Code::kRange, "def.obs_limit: %g is outside [0, 1e30]", d.obs_limit);
+  if (d.state_bytes > kMostState)
+    fail(Code::kRange, "def.state_bytes: %llu is above %llu", static_cast<unsigned long long>(d.state_bytes),
+         static_cast<unsigned long long>(kMostState));
+  if (d.instance_bytes > kMostInstance)
+    fail(Code::kRange, "def.instance_bytes: %llu is above %llu",
+         static_cast<unsigned long long>(d.instance_bytes), static_cast<unsigned long long>(kMostInstance));
+  const auto required = [](bool given, const char* name) {
+    if (!given) fail(Code::kArgument, "def.%s is NULL", name);
+  };
+  required(d.build, "build");
+  required(d.reset, "reset");
+  required(d.control, "control");
+  required(d.judge, "judge");
+  required(d.observe, "observe");
+  take_fields();
+  take_costs();
+  take_options();
+  take_cameras();
+  take_defaults();
+  take_actions();
+  info_.name = def.name;
+  info_.summary = def.summary;
+  info_.costs = costs_.data();
+  info_.num_costs = def.num_costs;
+  info_.cameras = cameras_.data();
+  info_.num_cameras = static_cast<int32_t>(cameras_.size());
+  info_.defaults = defaults_.data();
+  info_.num_defaults = static_cast<int32_t>(defaults_.size());
+  info_.source = this;
+}
+
+void OwnTask::take_fields() {
+  need_rows(def.fields, def.num_fields, 1, "fields");
+  int64_t total = 0;
+  for (int32_t i = 0; i < def.num_fields; ++i) {
+    const rdm_field_def& f = def.fields[i];
+    need_name(f.name, RowName("fields", i, "name").text, kNameSize - 1);
+    need_text(f.unit, RowName("fields", i, "unit").text);
+    if (f.count < 1 || f.count > kMostEntries)
+      fail(Code::kRange, "def.fields[%d].count: %d of %s is outside [1, %d]", i, f.count, f.name,
+           kMostEntries);
+    total += f.count;
+    const bool bounded = f.low != f.high;
+    if (bounded && !(f.low < f.high))
+      fail(Code::kRange, "def.fields[%d]: low %g of %s is not below high %g", i, static_cast<double>(f.low),
+           f.name, static_cast<double>(f.high));
+    for (const FieldSpec& other : fields)
+      if (other.name == f.name) fail(Code::kArgument, "def.fields[%d].name: %s is there twice", i, f.name);
+    fields.push_back({Name(f.name), texts_.keep(f.unit), f.count, bounded ? f.low : kUnbounded,
+                      bounded ? f.high : kUnbounded});
+  }
+  if (total > kMostEntries)
+    fail(Code::kRange, "def.fields: %lld entries, at most %d", static_cast<long long>(total), kMostEntries);
+}
+
+void OwnTask::take_costs() {
+  need_rows(def.costs, def.num_costs, 1, "costs");
+  if (def.num_costs > kMaxTaskCosts)
+    fail(Code::kRange, "def.num_costs: %d is outside [1, %d]", def.num_costs, kMaxTaskCosts);
+  for (int32_t i = 0; i < def.num_costs; ++i) {
+    const rdm_cost& c = def.costs[i];
+    need_name(c.name, RowName("costs", i, "name").text, kNameSize - 1);
+    if (c.help) need_text(c.help, RowName("costs", i, "help").text);
+    if (!std::isfinite(c.limit)) fail(Code::kArgument, "def.costs[%d].limit of %s is not finite", i, c.name);
+    for (const CostSpec& other : costs_)
+      if (same_name(other.name, c.name))
+        fail(Code::kArgument, "def.costs[%d].name: %s is there twice", i, c.name);
+    costs_.push_back({texts_.keep(c.name), texts_.keep(c.help ? c.help : ""), c.limit});
+  }
+}
+
+void OwnTask::take_options() {
+  need_rows(def.options, def.num_options, 0, "options");
+  const OptionTable& shared = simulation_rows();
+  Vector<OptionSpec> tail(shared.rows(), shared.rows() + shared.count());
+  for (int32_t i = 0; i < def.num_options; ++i) {
+    const rdm_option_info& o = def.options[i];
+    const RowName key("options", i, "key");
+    need_name(o.key, key.text, OptionTable::kKeySize - 1);
+    if (o.kind < RDM_NUMBER || o.kind > RDM_TEXT)
+      fail(Code::kRange, "def.options[%d].kind: %d of %s is outside [0, 3]", i, o.kind, o.key);
+    const auto kind = static_cast<OptionKind>(o.kind);
+    OptionSpec* row = nullptr;
+    for (OptionSpec& r : tail)
+      if (same_name(r.key, o.key)) row = &r;
+    if (row && row->kind != kind)
+      fail(Code::kArgument, "def.options[%d].kind: %s, which every task has, is an %s", i, row->key,
+           kind_name(row->kind));
+    for (const OptionSpec& other : options_)
+      if (same_name(other.key, o.key)) fail(Code::kArgument, "%s: %s is there twice", key.text, o.key);
+    if (same_name(o.key, "max_steps")) fail(Code::kArgument, "%s: max_steps is def.max_steps", key.text);
+    OptionSpec made = number_option("", 0, 0, 0, "");
+    if (row) {
+      made = *row;
+    } else {
+      need_text(o.help, RowName("options", i, "help").text);
+      const bool ranged = o.choices && kind != OptionKind::kText;
+      if (ranged && (std::strcmp(o.choices, "a..b") != 0 || kind == OptionKind::kFlag))
+        fail(Code::kArgument, "def.options[%d].choices of %s: a number or integer has a..b or NULL", i,
+             o.key);
+      if (o.choices) need_text(o.choices, RowName("options", i, "choices").text);
+      made.key = texts_.keep(o.key);
+      made.kind = kind;
+      made.low = o.low, made.high = o.high;
+      made.choices = ranged ? nullptr : texts_.keep(o.choices);
+      made.help = texts_.keep(o.help);
+      made.range = ranged;
+      if (kind == OptionKind::kFlag) made.low = 0, made.high = 1;
+      if (kind != OptionKind::kText && !(made.low < made.high))
+        fail(Code::kRange, "def.options[%d]: low %g of %s is not below high %g", i, o.low, o.key, o.high);
+    }
+    if (kind == OptionKind::kText) {
+      need_text(o.text, RowName("options", i, "text").text);
+      if (std::strlen(o.text) > static_cast<size_t>(made.longest))
+        fail(Code::kRange, "def.options[%d].text of %s is longer than %d", i, o.key, made.longest);
+      if (made.choices && !among(o.text, made.choices))
+        fail(Code::kRange, "def.options[%d].text: %s of %s is none of %s", i, Quoted(o.text).text, o.key,
+             made.choices);
+      made.text = texts_.keep(o.text);
+    } else {
+      made.number = o.number;
+      made.text = nullptr;
+      if (!(o.number >= made.low && o.number <= made.high) ||
+          (kind != OptionKind::kNumber && o.number != std::floor(o.number)))
+        fail(Code::kRange, "def.options[%d].number: %g of %s is outside [%g, %g], or no integer", i, o.number,
+             o.key, made.low, made.high);
+    }
+    if (row)
+      *row = made;
+    else
+      options_.push_back(made);
+  }
+  options_.push_back(
+      integer_option("max_steps", def.max_steps, 1, kMostSteps, "control steps of an episode"));
+  options_.insert(options_.end(), tail.begin(), tail.end());
+}
+
+void OwnTask::take_cameras() {
+  need_rows(def.cameras, def.num_cameras, 0, "cameras");
+  for (int32_t i = 0; i < def.num_cameras; ++i) {
+    const rdm_camera& c = def.cameras[i];
+    need_name(c.name, RowName("cameras", i, "name").text, kNameSize - 1);
+    CameraSpec spec{nullptr, {}, {}, static_cast<double>(c.fov_y)};
+    for (int k = 0; k < 3; ++k) {
+      spec.eye[k] = static_cast<double>(c.eye[k]);
+      spec.target[k] = static_cast<double>(c.target[k]);
+    }
+    if (!finite(spec.eye) || !finite(spec.target) || !(norm(spec.eye - spec.target) > 0))
+      fail(Code::kArgument, "def.cameras[%d]: %s does not look from one place to another", i, c.name);
+    if (!(spec.fov_y > 0.01 && spec.fov_y < 3))
+      fail(Code::kRange, "def.cameras[%d].fov_y: %g of %s is outside [0.01, 3]", i, spec.fov_y, c.name);
+    for (const CameraSpec& other : cameras_)
+      if (same_name(other.name, c.name))
+        fail(Code::kArgument, "def.cameras[%d].name: %s is there twice", i, c.name);
+    spec.name = texts_.keep(c.name);
+    cameras_.push_back(spec);
+  }
+  if (cameras_.empty()) cameras_.push_back({"front", {0.7, -0.7, 0.6}, {}, 45 * kDegree});
+}
+
+void OwnTask::take_defaults() {
+  need_rows(def.defaults, def.num_defaults, 0, "defaults");
+  for (int32_t i = 0; i < def.num_defaults; ++i) {
+    const rdm_option& d = def.defaults[i];
+    need_text(d.key, RowName("defaults", i, "key").text);
+    char number[kOptionTextSize];
+    const char* text = d.text;
+    if (!text) {
+      if (!std::isfinite(d.number))
+        fail(Code::kArgument, "def.defaults[%d].number of %s is not finite", i, d.key);
+      std::snprintf(number, sizeof number, "%.17g", d.number);
+      text = number;
+    }
+    need_text(text, RowName("defaults", i, "text").text);
+    const char* key = texts_.keep(d.key);
+    defaults_.push_back({key, texts_.keep(text)});
+  }
+}
+
+void OwnTask::take_actions() {
+  check_action_dim(def.action_dim, "def.action_dim");
+  copy_actions(def.hold, def.action_dim, "def.hold", &hold);
+  copy_actions(def.mean, def.action_dim, "def.mean", &mean);
+}
+
+const OptionSpec* OwnTask::options(int32_t* count) const {
+  *count = static_cast<int32_t>(options_.size());
+  return options_.data();
+}
+
+Task* OwnTask::make(const Options& options, const HostHooks& hooks) const {
+  const HostScope scope(hooks);
+  return host_new<BuiltTask>(hooks, *this, options);
+}
+
+void OwnTask::destroy(Task* task, const HostHooks& hooks) const {
+  host_delete(hooks, static_cast<BuiltTask*>(task));
+}
+
+void OwnTask::end() noexcept {
+  const auto release = def.release;
+  void* const user = def.user;
+  host_delete(hooks_, this);
+  if (release) release(user);
+}
+
+void OwnTask::blame(const char* function, rdm_result r, bool thrown) const {
+  if (thrown) fail(Code::kInternal, "task %s: %s: an exception came out of it", def.name, function);
+  if (r > 0 || (r < static_cast<rdm_result>(RDM_CANCELLED) && r != static_cast<rdm_result>(RDM_INTERNAL)))
+    fail(Code::kArgument, "task %s: %s: it returned %d, which is no rdm_result", def.name, function, r);
+  char text[kErrorTextSize];
+  copy_text(text, sizeof text, failure_noted() ? last_error() : code_string(r));
+  fail(static_cast<Code>(r), "task %s: %s: %s", def.name, function, text);
+}
+
+rdm_result rdm_task_def_init(rdm_task_def* def, size_t size) {
+  return call(nullptr, [&] { init_struct(def, size, kFirstSize, default_def(), "def"); });
+}
+
+rdm_result rdm_task_register(int32_t* out, const rdm_task_def* def) {
+  return call(nullptr, [&] {
+    need(out, "out");
+    register_builtin_tasks();
+    const auto in = read_struct(def, kFirstSize, default_def(), "def");
+    const HostHooks hooks = host();
+    OwnTask* own = host_new<OwnTask>(hooks, in, hooks);
+    try {
+      *out = add_task(own);
+    } catch (...) {
+      host_delete(hooks, own);
+      throw;
+    }
+  });
+}
+
+rdm_result rdm_task_remove(int32_t task) {
+  return call(nullptr, [&] {
+    remove_task(task);
+    forget_task(task);
+  });
+}
+#endif

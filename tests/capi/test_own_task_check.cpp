@@ -1,0 +1,90 @@
+// rdm_task_check names the first promise that a task breaks; tasks that keep them pass.
+#include <gtest/gtest.h>
+#include <redman/redman.h>
+
+#include "own_task.hpp"
+
+namespace rdm::test {
+namespace {
+
+TEST(TaskCheck, GoodTasksPass) {
+  BallTask t("check_good");
+  const Registered made(t.def);
+  EXPECT_EQ(rdm_task_check("check_good", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_task_check("check_good", "push=2\nengine=ode", nullptr, 0), RDM_OK) << rdm_last_error();
+  for (int32_t i = 0; i < rdm_task_count(); ++i) {
+    rdm_task task{};
+    task.struct_size = sizeof task;
+    ASSERT_EQ(rdm_task_at(i, &task), RDM_OK);
+    EXPECT_EQ(rdm_task_check(task.name, nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+  }
+}
+
+TEST(TaskCheck, ATaskThatCannotBeMadeIsItsError) {
+  char text[80] = "";
+  EXPECT_EQ(rdm_task_check("grasb", nullptr, text, sizeof text), RDM_NOT_FOUND);
+  EXPECT_STREQ(text, "task grasb: unknown; nearest is grasp");
+  EXPECT_EQ(rdm_task_check(nullptr, nullptr, nullptr, 0), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_task_check("grasp", "objekt=egg", nullptr, 0), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_task_check("grasp", nullptr, text, 0), RDM_RANGE);
+}
+
+struct Broken {
+  Fault fault;
+  const char* text;  // what follows "task broken: "
+};
+
+// Filled by the faults of tests/support/own_task.hpp, printed as the table of messages.
+const Broken kBroken[] = {
+    {Fault::kBuildFails, "build: the ball is too large"},
+    {Fault::kBuildReturnsNonsense, "build: it returned 7, which is no rdm_result"},
+    {Fault::kBuildThrows, "build: an exception came out of it"},
+    {Fault::kResetHidden, "reset: the state is another one for the same seed; step 0"},
+    {Fault::kResetFails, "reset: call not allowed in this state; step 0"},
+    {Fault::kStatePast, "control: it writes past the end of its state, byte 50 of 48; step 1"},
+    {Fault::kStateBefore, "control: it writes before its state; step 1"},
+    {Fault::kRowPast, "observe: it writes past the end of the row of observations, byte 36 of 36; step 0"},
+    {Fault::kRowShort, "observe: entry 1 of field action is not written; step 0"},
+    {Fault::kRowNan, "observe: entry 1 of field ball.velocity is not finite; step 2"},
+    {Fault::kRowBound, "observe: entry 1 of field action is 1.5, outside [-1, 1]; step 0"},
+    {Fault::kObserveState, "observe: it changes its state; step 0"},
+    {Fault::kObserveCounts, "observe: called twice it writes other numbers; step 0"},
+    {Fault::kObserveSets, "observe: world: observe changes nothing; step 0"},
+    {Fault::kControlAction, "control: it changes the action; step 1"},
+    {Fault::kControlNan, "control: targets[0] is not finite or beyond 1e+06; step 1"},
+    {Fault::kControlTouches, "after save and restore; step"},
+    {Fault::kJudgeNan, "judge: the reward is not finite; step 3"},
+    {Fault::kJudgeRawNan, "judge: the raw value of cost speed is not finite; step 1"},
+    {Fault::kJudgeNegative, "judge: cost speed is -0.5, less than 0; step 1"},
+    {Fault::kJudgeHidden, "judge: its verdict is another one for the same seed; step"},
+    {Fault::kStateOutside, "check_state: start is not within +-1; step 5"},
+    {Fault::kStateElsewhere, "for the same seed; step"},
+    {Fault::kHoldFlies, "with the hold action world 0 diverges; step 1"},
+};
+
+TEST(TaskCheck, TheFirstBrokenPromiseIsNamed) {
+  for (const Broken& broken : kBroken) {
+    BallTask t("broken", broken.fault);
+    const Registered made(t.def);
+    char text[256] = "";
+    EXPECT_NE(rdm_task_check("broken", nullptr, text, sizeof text), RDM_OK) << broken.text;
+    EXPECT_NE(std::string(text).find(broken.text), std::string::npos) << text << "\nexpected " << broken.text;
+    EXPECT_EQ(std::string(text).rfind("task broken: ", 0), 0u) << text;
+    EXPECT_STREQ(rdm_last_error(), text);
+    std::printf("%s\n", text);
+  }
+}
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST(TaskCheck, MemoryThatIsLeftBehindIsNamed) {
+  BallTask t("leaks", Fault::kJudgeLeaks);
+  t.user.leaked.reserve(100000);
+  const Registered made(t.def);
+  EXPECT_EQ(rdm_task_check("leaks", nullptr, nullptr, 0), RDM_ARGUMENT);
+  EXPECT_NE(std::strstr(rdm_last_error(), "judge: it leaves memory behind"), nullptr) << rdm_last_error();
+  std::printf("%s\n", rdm_last_error());
+}
+#endif
+
+}  // namespace
+}  // namespace rdm::test

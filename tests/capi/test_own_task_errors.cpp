@@ -1,0 +1,402 @@
+// What a malformed description, scene or call in a world gets: an error that names the thing and its range.
+// The table is printed.
+#include <gtest/gtest.h>
+#include <redman/redman.h>
+
+#include <functional>
+
+#include "own_task.hpp"
+
+namespace rdm::test {
+namespace {
+
+void expect_text(rdm_result r, rdm_result wanted, const std::string& text) {
+  EXPECT_EQ(r, wanted) << text;
+  EXPECT_EQ(std::string(rdm_last_error()), text);
+  std::printf("%4d  %s\n", r, rdm_last_error());
+}
+
+struct BadDef {
+  rdm_result code;
+  const char* text;
+  std::function<void(BallTask&)> change;
+};
+
+TEST(OwnTaskErrors, OfDescriptions) {
+  static const float far[2] = {2, 0};
+  const BadDef rows[] = {
+      {RDM_ARGUMENT, "def.name is NULL", [](auto& t) { t.def.name = nullptr; }},
+      {RDM_RANGE, "def.name:  has not 1 to 40 characters", [](auto& t) { t.def.name = ""; }},
+      {RDM_ARGUMENT, "def.name: a b has other characters than letters, digits, '_', '-', '.'",
+       [](auto& t) { t.def.name = "a b"; }},
+      {RDM_ARGUMENT, "task grasp: the name is taken", [](auto& t) { t.def.name = "grasp"; }},
+      {RDM_RANGE, "def.max_steps: 0 is outside [1, 100000]", [](auto& t) { t.def.max_steps = 0; }},
+      {RDM_RANGE, "def.action_dim: 1025 is outside [1, 1024]", [](auto& t) { t.def.action_dim = 1025; }},
+      {RDM_RANGE, "def.obs_limit: -1 is outside [0, 1e30]", [](auto& t) { t.def.obs_limit = -1; }},
+      {RDM_RANGE, "def.state_bytes: 1048577 is above 1048576",
+       [](auto& t) { t.def.state_bytes = (1 << 20) + 1; }},
+      {RDM_RANGE, "def.instance_bytes: 16777217 is above 16777216",
+       [](auto& t) { t.def.instance_bytes = (1 << 24) + 1; }},
+      {RDM_ARGUMENT, "def.build is NULL", [](auto& t) { t.def.build = nullptr; }},
+      {RDM_ARGUMENT, "def.observe is NULL", [](auto& t) { t.def.observe = nullptr; }},
+      {RDM_RANGE, "def.hold[0]: 2 is outside [-1, 1]", [](auto& t) { t.def.hold = far; }},
+      {RDM_RANGE, "def.num_fields: 0 is outside [1, 512]", [](auto& t) { t.def.num_fields = 0; }},
+      {RDM_ARGUMENT, "def.fields is NULL with num_fields 4", [](auto& t) { t.def.fields = nullptr; }},
+      {RDM_ARGUMENT, "def.fields[1].name: ball.position is there twice",
+       [](auto& t) { t.fields[1].name = "ball.position"; }},
+      {RDM_ARGUMENT, "def.fields[0].unit is NULL", [](auto& t) { t.fields[0].unit = nullptr; }},
+      {RDM_RANGE, "def.fields[2].count: 0 of paddle.position is outside [1, 16384]",
+       [](auto& t) { t.fields[2].count = 0; }},
+      {RDM_RANGE, "def.fields[2]: low 1 of paddle.position is not below high -1",
+       [](auto& t) { t.fields[2].low = 1, t.fields[2].high = -1; }},
+      {RDM_RANGE, "def.num_costs: 0 is outside [1, 512]", [](auto& t) { t.def.num_costs = 0; }},
+      {RDM_ARGUMENT, "def.costs[1].name: touch is there twice", [](auto& t) { t.costs[1].name = "touch"; }},
+      {RDM_ARGUMENT, "def.costs[0].limit of touch is not finite", [](auto& t) { t.costs[0].limit = NAN; }},
+      {RDM_ARGUMENT, "def.options[1].key: push is there twice", [](auto& t) { t.options[1].key = "push"; }},
+      {RDM_ARGUMENT, "def.options[0].help is NULL", [](auto& t) { t.options[0].help = nullptr; }},
+      {RDM_RANGE, "def.options[0].number: 11 of push is outside [0, 10], or no integer",
+       [](auto& t) { t.options[0].number = 11; }},
+      {RDM_ARGUMENT, "def.options[0].choices of push: a number or integer has a..b or NULL",
+       [](auto& t) { t.options[0].choices = "1|2"; }},
+      {RDM_RANGE, "def.options[1].text: cross of mood is none of calm|wild",
+       [](auto& t) { t.options[1].text = "cross"; }},
+      {RDM_RANGE, "def.options[0].kind: 9 of push is outside [0, 3]", [](auto& t) { t.options[0].kind = 9; }},
+      {RDM_ARGUMENT, "def.options[2].kind: frequency, which every task has, is an RDM_NUMBER",
+       [](auto& t) { t.options[2].kind = RDM_TEXT; }},
+      {RDM_RANGE, "def.options[2].number: 5 of frequency is outside [10, 1000], or no integer",
+       [](auto& t) { t.options[2].number = 5; }},
+      {RDM_ARGUMENT, "def.options[0].key: max_steps is def.max_steps",
+       [](auto& t) { t.options[0].key = "max_steps"; }},
+      {RDM_RANGE, "def.cameras[0].fov_y: 0 of front is outside [0.01, 3]",
+       [](auto& t) { t.cameras[0].fov_y = 0; }},
+      {RDM_ARGUMENT, "def.cameras[0]: front does not look from one place to another",
+       [](auto& t) { std::copy_n(t.cameras[0].eye, 3, t.cameras[0].target); }},
+      {RDM_ARGUMENT, "def.defaults[0].key is NULL", [](auto& t) { t.defaults[0].key = nullptr; }},
+  };
+  const int32_t count = rdm_task_count();
+  for (const BadDef& row : rows) {
+    BallTask t("bad_def");
+    row.change(t);
+    int32_t task = -5;
+    expect_text(rdm_task_register(&task, &t.def), row.code, row.text);
+    EXPECT_EQ(task, -5);
+  }
+  EXPECT_EQ(rdm_task_count(), count);
+  BallTask t("bad_def");
+  EXPECT_EQ(rdm_task_register(nullptr, &t.def), RDM_ARGUMENT);
+  int32_t task = -1;
+  EXPECT_EQ(rdm_task_register(&task, nullptr), RDM_ARGUMENT);
+  t.def.struct_size = 8;
+  EXPECT_EQ(rdm_task_register(&task, &t.def), RDM_ARGUMENT);
+}
+
+// A task whose build or reset is what a row says; the others do nothing.
+struct Scripted {
+  std::function<rdm_result(rdm_scene*)> build;
+  std::function<rdm_result(rdm_world*)> reset;
+};
+
+rdm_result simple_scene(rdm_scene* scene) {
+  rdm_shape_def ball{};
+  ball.kind = RDM_SPHERE, ball.size[0] = 0.05;
+  rdm_body_def body{};
+  body.struct_size = sizeof body, body.name = "ball", body.shapes = &ball, body.num_shapes = 1, body.mass = 1;
+  if (const rdm_result r = rdm_scene_add_body(scene, &body, nullptr)) return r;
+  rdm_scene_robot hand{};
+  hand.struct_size = sizeof hand, hand.name = "hand", hand.p[2] = 1;
+  if (const rdm_result r = rdm_robot_find("shadow_hand", &hand.robot)) return r;
+  return rdm_scene_add_robot(scene, &hand, nullptr);
+}
+
+rdm_result try_task(Scripted* script) {
+  static const rdm_field_def field = {"one", "1", 1, 0, 0, 0};
+  static const rdm_cost cost = {"cost", "none", -1};
+  rdm_task_def d;
+  rdm_task_def_init(&d, sizeof d);
+  d.name = "t", d.fields = &field, d.num_fields = 1, d.costs = &cost, d.num_costs = 1, d.action_dim = 1;
+  d.user = script;
+  d.build = [](void* user, rdm_scene* scene, void*) { return static_cast<Scripted*>(user)->build(scene); };
+  d.reset = [](void* user, const void*, rdm_world* world, void*, rdm_random*) -> rdm_result {
+    const auto& f = static_cast<Scripted*>(user)->reset;
+    return f ? f(world) : static_cast<rdm_result>(RDM_OK);
+  };
+  d.control = [](void*, const void*, rdm_world*, void*, const float*) -> rdm_result { return RDM_OK; };
+  d.judge = [](void*, const void*, rdm_world*, void*, int32_t, rdm_verdict*) -> rdm_result { return RDM_OK; };
+  d.observe = [](void*, const void*, const rdm_world*, const void*, float* obs) -> rdm_result {
+    obs[0] = 0;
+    return RDM_OK;
+  };
+  const Registered made(d);
+  rdm_pool_config c;
+  rdm_pool_config_init(&c, sizeof c);
+  c.task = "t";
+  rdm_pool* p = nullptr;
+  rdm_result r = rdm_pool_create(&p, &c);
+  if (r == RDM_OK) r = rdm_pool_reset(p, nullptr, nullptr);
+  rdm_pool_destroy(p);
+  return r;
+}
+
+struct BadScene {
+  rdm_result code;
+  const char* text;  // after "task t: build: "
+  std::function<rdm_result(rdm_scene*)> build;
+};
+
+// A body of one shape after simple_scene.
+std::function<rdm_result(rdm_scene*)> with_body(std::function<void(rdm_body_def&, rdm_shape_def&)> change) {
+  return [change](rdm_scene* scene) {
+    if (const rdm_result r = simple_scene(scene)) return r;
+    rdm_shape_def box{};
+    box.kind = RDM_BOX, box.size[0] = box.size[1] = box.size[2] = 0.05;
+    rdm_body_def cup{};
+    cup.struct_size = sizeof cup, cup.name = "cup", cup.shapes = &box, cup.num_shapes = 1, cup.mass = 0.1;
+    change(cup, box);
+    return rdm_scene_add_body(scene, &cup, nullptr);
+  };
+}
+std::function<rdm_result(rdm_scene*)> with_robot(std::function<void(rdm_scene_robot&)> change) {
+  return [change](rdm_scene* scene) {
+    if (const rdm_result r = simple_scene(scene)) return r;
+    rdm_scene_robot hand{};
+    hand.struct_size = sizeof hand, hand.name = "other", hand.p[0] = 1;
+    rdm_robot_find("shadow_hand", &hand.robot);
+    change(hand);
+    return rdm_scene_add_robot(scene, &hand, nullptr);
+  };
+}
+std::function<rdm_result(rdm_scene*)> after(std::function<rdm_result(rdm_scene*)> f) {
+  return [f](rdm_scene* scene) {
+    const rdm_result r = simple_scene(scene);
+    return r != RDM_OK ? r : f(scene);
+  };
+}
+
+TEST(OwnTaskErrors, OfScenes) {
+  static const double flat[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+  const auto add_static = [](const char* name) {
+    return after([name](rdm_scene* s) {
+      rdm_shape_def ground{};
+      ground.name = name, ground.kind = RDM_PLANE;
+      return rdm_scene_add_static(s, &ground);
+    });
+  };
+  const BadScene rows[] = {
+      {RDM_ARGUMENT, "scene: nothing in it can move", [](rdm_scene*) -> rdm_result { return RDM_OK; }},
+      {RDM_ARGUMENT, "scene: the name ball is taken", with_body([](auto& b, auto&) { b.name = "ball"; })},
+      {RDM_ARGUMENT, "shape ball is there twice", with_body([](auto&, auto& s) { s.name = "ball"; })},
+      {RDM_ARGUMENT, "body.name is NULL", with_body([](auto& b, auto&) { b.name = nullptr; })},
+      {RDM_RANGE, "body cup: mass 0 is not above 0 and up to 1e6",
+       with_body([](auto& b, auto&) { b.mass = 0; })},
+      {RDM_RANGE, "body cup: num_shapes: 0 is outside [1, 256]",
+       with_body([](auto& b, auto&) { b.num_shapes = 0; })},
+      {RDM_ARGUMENT,
+       "body cup: its shapes' centre of mass is at (0, 0, 0.1), not at the origin: move them, or give "
+       "moments",
+       with_body([](auto&, auto& s) { s.p[2] = 0.1; })},
+      {RDM_RANGE, "shape cup: a size or its place is not within bounds",
+       with_body([](auto&, auto& s) { s.size[1] = 0; })},
+      {RDM_RANGE, "cup: half size 0 is outside [1e-06, 1000]", with_body([](auto& b, auto& s) {
+         s.size[1] = 0;
+         b.moment[0] = b.moment[1] = b.moment[2] = 1;
+       })},
+      {RDM_ARGUMENT, "cup: moment of inertia is not positive definite",
+       with_body([](auto& b, auto&) { b.moment[0] = -1; })},
+      {RDM_ARGUMENT, "cup: the quaternion is not a unit one", with_body([](auto& b, auto&) { b.q[0] = 2; })},
+      {RDM_ARGUMENT, "cup: position is not finite", with_body([](auto& b, auto&) { b.p[0] = NAN; })},
+      {RDM_RANGE, "cup: linear_damping -1 is outside [0, 1e+06]",
+       with_body([](auto& b, auto&) { b.linear_damping = -1; })},
+      {RDM_NOT_FOUND, "material ruber: unknown", with_body([](auto&, auto& s) { s.material = "ruber"; })},
+      {RDM_ARGUMENT, "shape cup: kind 4 makes no body",
+       with_body([](auto&, auto& s) { s.kind = RDM_PLANE; })},
+      {RDM_ARGUMENT, "shape cup: kind 12 makes no body", with_body([](auto&, auto& s) { s.kind = 12; })},
+      {RDM_RANGE, "shape cup: num_points: 0 is outside [4, 32]",
+       with_body([](auto&, auto& s) { s.kind = RDM_HULL; })},
+      {RDM_ARGUMENT, "shape cup: points is NULL", with_body([](auto&, auto& s) {
+         s.kind = RDM_HULL;
+         s.num_points = 4;
+       })},
+      {RDM_ARGUMENT, "cup: the points are in one plane or too near each other", with_body([](auto&, auto& s) {
+         s.kind = RDM_HULL;
+         s.num_points = 4;
+         s.points = flat;
+       })},
+      {RDM_RANGE, "robot: -1 is outside [0, 13)", with_robot([](auto& r) { r.robot = -1; })},
+      {RDM_ARGUMENT, "robot.name is NULL", with_robot([](auto& r) { r.name = nullptr; })},
+      {RDM_ARGUMENT, "scene: the name hand is taken", with_robot([](auto& r) { r.name = "hand"; })},
+      {RDM_ARGUMENT, "robot.struct_size: 3 is less than 112", with_robot([](auto& r) { r.struct_size = 3; })},
+      {RDM_RANGE, "other: base_damping -1 is outside [0, 1e+06]",
+       with_robot([](auto& r) { r.base_damping = -1; })},
+      {RDM_ARGUMENT, "material clay is there twice", after([](auto* s) {
+         rdm_scene_add_material(s, "clay");
+         return rdm_scene_add_material(s, "clay");
+       })},
+      {RDM_NOT_FOUND, "material clay: unknown",
+       after([](auto* s) { return rdm_scene_set_friction(s, "clay", "default", 1); })},
+      {RDM_RANGE, "mu: -2 is neither RDM_PASSES nor within [0, 1000]",
+       after([](auto* s) { return rdm_scene_set_friction(s, "default", "default", -2); })},
+      {RDM_ARGUMENT, "shape.name is NULL", add_static(nullptr)},
+      {RDM_ARGUMENT, "shape ball is there twice", add_static("ball")},
+      {RDM_NOT_FOUND, "body bal: unknown; nearest is ball", after([](auto* s) {
+         int32_t i;
+         return rdm_scene_find(s, RDM_SCENE_BODY, "bal", &i);
+       })},
+      {RDM_RANGE, "part: 7 is outside [0, 6]", after([](auto* s) {
+         int32_t i;
+         return rdm_scene_find(s, 7, "ball", &i);
+       })},
+      {RDM_NOT_FOUND, "b cub*: unknown", after([](auto* s) {
+         int32_t i;
+         return rdm_scene_touch(s, "hand*", "cub*", &i);
+       })},
+      {RDM_STATE, "scene: it is complete: nothing is added or set after the first find, touch or joint",
+       after([](auto* s) {
+         int32_t i;
+         rdm_scene_find(s, RDM_SCENE_BODY, "ball", &i);
+         return rdm_scene_add_material(s, "late");
+       })},
+      {RDM_NOT_FOUND, "field two: unknown", after([](auto* s) { return rdm_scene_set_field(s, "two", 2); })},
+      {RDM_RANGE, "count: 0 is outside [1, 1024]",
+       after([](auto* s) { return rdm_scene_set_actions(s, 0, nullptr, nullptr); })},
+      {RDM_ARGUMENT, "option engine is a text: rdm_scene_text has it", after([](auto* s) {
+         double x;
+         return rdm_scene_number(s, "engine", &x);
+       })},
+      {RDM_STATE, "call not allowed in this state", after([](auto*) -> rdm_result { return RDM_STATE; })},
+  };
+  for (const BadScene& row : rows) {
+    Scripted script{row.build, nullptr};
+    expect_text(try_task(&script), row.code, std::string("task t: build: ") + row.text);
+  }
+}
+
+struct BadCall {
+  rdm_result code;
+  const char* text;
+  std::function<rdm_result(rdm_world*)> reset;
+};
+
+TEST(OwnTaskErrors, OfCallsInAWorld) {
+  static rdm_motion out;
+  static double x[64];
+  static const double nan[3] = {NAN, 0, 0}, zero[3] = {0, 0, 0};
+  const BadCall rows[] = {
+      {RDM_RANGE, "body: 1 is outside [0, 1)", [](auto* w) { return rdm_world_body(w, 1, &out); }},
+      {RDM_RANGE, "link: -1 is outside [0, 24)", [](auto* w) { return rdm_world_link(w, -1, &out); }},
+      {RDM_RANGE, "robot: 1 is outside [0, 1)", [](auto* w) { return rdm_world_base(w, 1, &out); }},
+      {RDM_RANGE, "shape: 500 is outside", [](auto* w) { return rdm_world_shape(w, 500, x); }},
+      {RDM_RANGE, "sensor: 5 is outside [0, 5)", [](auto* w) { return rdm_world_sensor(w, 5, x, x); }},
+      {RDM_RANGE, "group: 0 is outside [0, 0)",
+       [](auto* w) { return rdm_world_touch(w, 0, nullptr, nullptr); }},
+      {RDM_ARGUMENT, "out is NULL", [](auto* w) { return rdm_world_body(w, 0, nullptr); }},
+      {RDM_ARGUMENT, "set_body: motion 0 has no unit quaternion",
+       [](auto* w) {
+         const rdm_motion m{};
+         return rdm_world_set_body(w, 0, &m);
+       }},
+      {RDM_ARGUMENT, "set_body: motion 0 is not finite or beyond 1e+06",
+       [](auto* w) {
+         rdm_motion m{};
+         m.q[3] = 1, m.v[1] = NAN;
+         return rdm_world_set_body(w, 0, &m);
+       }},
+      {RDM_STATE, "robot hand: its base is fixed", [](auto* w) { return rdm_world_set_base(w, 0, &out); }},
+      {RDM_STATE, "robot hand: its base is fixed",
+       [](auto* w) { return rdm_world_push_base(w, 0, zero, zero); }},
+      {RDM_RANGE, "n: 3 q, the robot has 24",
+       [](auto* w) { return rdm_world_set_joints(w, 0, x, nullptr, 3); }},
+      {RDM_ARGUMENT, "set_joints: joint 2 is not finite or faster than 1e+06",
+       [](auto* w) {
+         double q[24] = {};
+         q[2] = NAN;
+         return rdm_world_set_joints(w, 0, q, nullptr, 24);
+       }},
+      {RDM_RANGE, "first, n: 10 joints from 20 on, of 24",
+       [](auto* w) { return rdm_world_set_targets(w, 20, x, 10); }},
+      {RDM_ARGUMENT, "targets[0] is not finite or beyond 1e+06",
+       [](auto* w) { return rdm_world_set_targets(w, 0, nan, 1); }},
+      {RDM_RANGE, "n: 24 commands, the robot has 20", [](auto* w) { return rdm_world_command(w, 0, x, 24); }},
+      {RDM_STATE, "world: its scene has no feed-forward, rdm_scene_set_feedforward",
+       [](auto* w) { return rdm_world_set_feedforward(w, 0, x, 1); }},
+      {RDM_RANGE, "n: 2 efforts, the robot has 24", [](auto* w) { return rdm_world_gravity(w, 0, x, 2); }},
+      {RDM_STATE, "world: its scene is not adjustable, rdm_scene_set_adjustable",
+       [](auto* w) { return rdm_world_scale(w, nullptr, 0); }},
+      {RDM_ARGUMENT, "force is not finite", [](auto* w) { return rdm_world_push_body(w, 0, nan, zero); }},
+      {RDM_ARGUMENT, "point is not finite", [](auto* w) { return rdm_world_push_link(w, 0, zero, nan); }},
+      {RDM_RANGE, "capacity: -1 is negative",
+       [](auto* w) {
+         int32_t n;
+         return rdm_world_contacts(w, nullptr, -1, &n);
+       }},
+      {RDM_ARGUMENT, "io.struct_size: 0 is less than 48",
+       [](auto* w) {
+         rdm_joints j{};
+         return rdm_world_joints(w, &j);
+       }},
+      {RDM_FORMAT, "of my own", [](auto*) { return rdm_fail(RDM_FORMAT, "of my own"); }},
+      {RDM_RANGE, "code: 0 is no error; the text was: fine", [](auto*) { return rdm_fail(RDM_OK, "fine"); }},
+  };
+  for (const BadCall& row : rows) {
+    Scripted script{simple_scene, row.reset};
+    EXPECT_EQ(try_task(&script), row.code);
+    const std::string wanted = std::string("task t: reset: ") + row.text;
+    EXPECT_EQ(std::string(rdm_last_error()).substr(0, wanted.size()), wanted);
+    std::printf("%s\n", rdm_last_error());
+  }
+}
+
+// A handle that outlives its call is told so, as far as its memory is still there.
+TEST(OwnTaskErrors, HandlesOutsideOfTheirCall) {
+  rdm_motion out;
+  int32_t i = 0;
+  EXPECT_EQ(rdm_world_body(nullptr, 0, &out), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_scene_find(nullptr, 0, "x", &i), RDM_ARGUMENT);
+  static rdm_result late = RDM_OK;
+  Scripted script;
+  rdm_scene* kept = nullptr;
+  script.build = [&](rdm_scene* s) {
+    kept = s;
+    return simple_scene(s);
+  };
+  script.reset = [&](rdm_world* w) {
+    late = rdm_scene_find(kept, RDM_SCENE_BODY, "ball", &i);
+    EXPECT_EQ(rdm_scene_find(reinterpret_cast<rdm_scene*>(w), RDM_SCENE_BODY, "ball", &i), RDM_ARGUMENT);
+    EXPECT_NE(std::strstr(rdm_last_error(), "of kind world"), nullptr);
+    return static_cast<rdm_result>(RDM_OK);
+  };
+  EXPECT_EQ(try_task(&script), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(late, RDM_ARGUMENT);
+}
+
+TEST(OwnTaskErrors, RandomNumbers) {
+  EXPECT_EQ(rdm_random_bits(nullptr), 0u);
+  EXPECT_EQ(rdm_random_uniform(nullptr, 1, 2), 0);
+  EXPECT_EQ(rdm_random_split(nullptr, nullptr), RDM_ARGUMENT);
+  rdm_random a{5, 0, 1, 1}, b = a, c;
+  for (int i = 0; i < 100; ++i) {
+    const double x = rdm_random_uniform(&a, -2, 3);
+    EXPECT_GE(x, -2);
+    EXPECT_LT(x, 3);
+    EXPECT_EQ(x, rdm_random_uniform(&b, -2, 3));
+  }
+  EXPECT_EQ(a.counter, 100u);
+  double sum = 0, square = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const double x = rdm_random_normal(&a);
+    sum += x, square += x * x;
+  }
+  EXPECT_NEAR(sum / 10000, 0, 0.05);
+  EXPECT_NEAR(square / 10000, 1, 0.05);
+  ASSERT_EQ(rdm_random_split(&b, &c), RDM_OK);
+  EXPECT_NE(rdm_random_bits(&b), rdm_random_bits(&c));
+  const double z[3] = {0, 0, 1}, none[3] = {0, 0, 0};
+  double q[4];
+  ASSERT_EQ(rdm_rotation(z, 1.5, q), RDM_OK);
+  EXPECT_NEAR(q[2], std::sin(0.75), 1e-15);
+  EXPECT_NEAR(q[3], std::cos(0.75), 1e-15);
+  EXPECT_EQ(rdm_rotation(none, 1, q), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_rotation(z, NAN, q), RDM_ARGUMENT);
+}
+
+}  // namespace
+}  // namespace rdm::test
