@@ -110,6 +110,7 @@ class Selection {
 
 Vector<int32_t> select_columns(const char* key, const char* list, const ObsField* fields, int32_t num_fields,
                                int32_t obs_dim) {
+  if (std::strcmp(list, "*") == 0) return {};  // as most do: no memory
   Selection selection(key, fields, num_fields, obs_dim);
   bool first = true;
   each_word(list, [&](const char* word) {
