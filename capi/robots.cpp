@@ -112,7 +112,7 @@ const RobotLink& link_at(const Robot& r, int32_t i) {
 // [links] `q`, or zeros within the limits.
 void give_pose(const Robot& r, const Table<double>& q, bool or_zero, double* out) {
   for (int32_t i = 0; out && i < r.links.count; ++i)
-    out[i] = q.count ? q[i] : or_zero ? 0 : std::clamp(0.0, r.links[i].lower, r.links[i].upper);
+    out[i] = or_zero && q.count == 0 ? 0 : start_angle(r, q, i);
 }
 
 void need_finite(const double* x, int32_t count, const char* name) {
@@ -262,7 +262,7 @@ rdm_result rdm_robot_link_at(int32_t robot, int32_t i, rdm_robot_link* out) {
     o.parent = l.parent;
     o.kind = static_cast<int32_t>(l.kind);
     put(l.p_PL, o.p);
-    put(from_rpy(l.rpy_PL) * l.q_PL, o.q);
+    put(link_frame(l).q, o.q);
     put(l.axis, o.axis);
     o.lower = l.lower;
     o.upper = l.upper;

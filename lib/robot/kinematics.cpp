@@ -72,10 +72,18 @@ double dexterity(Reach* reach, const double* q, double length) {
 
 }  // namespace
 
+Pose link_frame(const RobotLink& link) {
+  return {link.p_PL, from_rpy(link.rpy_PL) * link.q_PL};
+}
+
+double start_angle(const Robot& robot, const Table<double>& q, int32_t link) {
+  return q.count ? q[link] : std::clamp(0.0, robot.links[link].lower, robot.links[link].upper);
+}
+
 void link_poses(const Robot& robot, const double* q, Pose* X_RL) {
   for (int32_t i = 0; i < robot.links.count; ++i) {
     const RobotLink& l = robot.links[i];
-    const Pose X_PL = Pose{l.p_PL, from_rpy(l.rpy_PL) * l.q_PL} * joint_motion(l, q[i]);
+    const Pose X_PL = link_frame(l) * joint_motion(l, q[i]);
     X_RL[i] = l.parent < 0 ? X_PL : X_RL[l.parent] * X_PL;
   }
 }
@@ -146,7 +154,7 @@ void start_pose(const Robot& arm, int32_t start, double* q) {
   constexpr double kShares[2][2] = {{0.7, 0.3}, {0.3, 0.7}};
   for (int32_t i = 0; i < arm.links.count; ++i) {
     const RobotLink& l = arm.links[i];
-    q[i] = arm.home.count ? arm.home[i] : std::clamp(0.0, l.lower, l.upper);
+    q[i] = start_angle(arm, arm.home, i);
     if (start > 0 && (i == 1 || i == 2)) q[i] = l.lower + kShares[start - 1][i - 1] * (l.upper - l.lower);
   }
 }

@@ -9,6 +9,11 @@
 
 namespace rdm {
 
+// A link's frame in its parent's with the joint at 0.
+Pose link_frame(const RobotLink& link);
+// Where a joint is at the start: in the pose `q`, or where that is empty at 0, or the limit nearest to it.
+double start_angle(const Robot& robot, const Table<double>& q, int32_t link);
+
 // Poses of all links in the root frame, [links]; q [links], rad (m).
 void link_poses(const Robot& robot, const double* q, Pose* X_RL);
 // Of one link; kRootLink: the identity.

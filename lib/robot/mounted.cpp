@@ -40,8 +40,7 @@ Quat mirrored_mount(const Quat& q, int32_t axis) {
 
 // As many joints as `robot` has: its own or zeros within the limits.
 void add_pose(const Robot& robot, const Table<double>& q, Vector<double>* out) {
-  for (int32_t i = 0; i < robot.links.count; ++i)
-    out->push_back(q.count ? q[i] : std::clamp(0.0, robot.links[i].lower, robot.links[i].upper));
+  for (int32_t i = 0; i < robot.links.count; ++i) out->push_back(start_angle(robot, q, i));
 }
 
 // Joins two robots' rows: those of the second get other numbers, parents and perhaps names.
@@ -82,7 +81,7 @@ class Joiner {
     }
     for (RobotLink row : hand_.links) {
       if (row.parent < 0) {
-        const Pose X = X_LR_ * Pose{row.p_PL, from_rpy(row.rpy_PL) * row.q_PL};
+        const Pose X = X_LR_ * link_frame(row);
         row.p_PL = X.p;
         row.rpy_PL = {};
         row.q_PL = X.q;
@@ -206,7 +205,7 @@ RobotCopy make_mirrored(const Robot& robot) {
     return Pose{mirrored_point(X.p, axis), mirrored_turn(X.q, axis)};
   };
   for (RobotLink& l : out.links) {
-    const Pose X = mirror({l.p_PL, from_rpy(l.rpy_PL) * l.q_PL});
+    const Pose X = mirror(link_frame(l));
     l.p_PL = X.p;
     l.rpy_PL = {};
     l.q_PL = X.q;

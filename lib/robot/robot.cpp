@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "physics/model/inertia.hpp"
+#include "robot/kinematics.hpp"
 
 namespace rdm {
 namespace {
@@ -27,7 +28,7 @@ LinkDef make_link(const Robot& robot, const RobotLink& row, const char* prefix) 
   LinkDef link;
   link.name = joined(prefix, row.name);
   link.parent = row.parent;
-  link.X_PL = {row.p_PL, from_rpy(row.rpy_PL) * row.q_PL};
+  link.X_PL = link_frame(row);
   link.inertia.mass = row.mass;
   link.inertia.com = row.com;
   std::memcpy(link.inertia.moment, row.moment, sizeof row.moment);

@@ -55,8 +55,7 @@ void add_rows(const HandControlConfig& config, const char* hand, const char* arm
 Pose palm_in_base(const Robot& robot, Side side, bool folded) {
   double q[kMaxRobotLinks];
   const Table<double>& start = folded && robot.poses.folded.count ? robot.poses.folded : robot.home;
-  for (int32_t i = 0; i < robot.links.count; ++i)
-    q[i] = start.count ? start[i] : std::clamp(0.0, robot.links[i].lower, robot.links[i].upper);
+  for (int32_t i = 0; i < robot.links.count; ++i) q[i] = start_angle(robot, start, i);
   if (side == Side::kRight) return robot.X_BR * palm_frame(robot, q);
   const RobotCopy left = make_mirrored(robot);
   return robot.X_BR * palm_frame(left.robot(), q);
@@ -65,8 +64,7 @@ Pose palm_in_base(const Robot& robot, Side side, bool folded) {
 // How far beyond the holding point the fingers go, m.
 double finger_length(const Robot& robot) {
   double q[kMaxRobotLinks];
-  for (int32_t i = 0; i < robot.links.count; ++i)
-    q[i] = std::clamp(0.0, robot.links[i].lower, robot.links[i].upper);
+  for (int32_t i = 0; i < robot.links.count; ++i) q[i] = start_angle(robot, {}, i);
   const Pose X_HR = inverse(palm_frame(robot, q));
   double most = 0;
   for (int32_t f = 0; f < robot.fingers.count; ++f)
@@ -107,7 +105,7 @@ const char* own_text(const Options& o, const char* own, const char* common) {
 bool reach_from(const Robot& arm, const Pose& X_RF, double* q) {
   const auto start = [&](int32_t turned, double share) {
     for (int32_t i = 0; i < arm.links.count; ++i) {
-      q[i] = arm.home.count ? arm.home[i] : std::clamp(0.0, arm.links[i].lower, arm.links[i].upper);
+      q[i] = start_angle(arm, arm.home, i);
       if (i == turned) q[i] = arm.links[i].lower + share * (arm.links[i].upper - arm.links[i].lower);
     }
   };
