@@ -292,6 +292,10 @@ struct Guess {
       last_root = f.root;
     }
     way = unit(way);
+    // A gripper closes between its thumb and the middle of the others.
+    if (gripper && count > 1)
+      for (const Finger& f : fingers)
+        if (f.thumb) last_root = f.root, first_root = (1.0 / (count - 1)) * (count * centre - f.root);
     V3 across = first_root - last_root;
     across = unit(across - dot(across, way) * way,
                   unit(cross(way, std::abs(way.x) < 0.7 ? V3{1, 0, 0} : V3{0, 1, 0})));

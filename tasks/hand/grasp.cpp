@@ -21,7 +21,8 @@ const SingleHandConfig kConfig = {{.count = 1, .bases = {{{0, 0, 0.1}, {0, 0, 1,
                                    .goal = {0, -0.4, 0.1},
                                    .noise = 0.001,
                                    .object = "cube",
-                                   .start_rotation = "yaw"},
+                                   .start_rotation = "yaw",
+                                   .standing = true},
                                   0};
 
 constexpr OptionSpec kRows[] = {

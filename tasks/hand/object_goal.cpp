@@ -15,6 +15,7 @@ constexpr int kMaxDraws = 100;
 constexpr const char* kOctahedron = "0.035,0,0;-0.035,0,0;0,0.035,0;0,-0.035,0;0,0,0.035;0,0,-0.035";
 constexpr double kRaise = 0.005;  // m a time, when no draw was clear
 constexpr int kMaxRaises = 100;
+constexpr int kRings = 20, kPlaces = 8;  // aside: circles kRaise apart, places on each
 
 constexpr OptionSpec kRows[] = {
     text_option("goal_rotation", "random", "random|fixed", "rotation of the goal, redrawn at each reset"),
@@ -109,10 +110,19 @@ void reset_object(const ObjectGoal& goal, World& world, GoalState* state, Stream
     world.set_body(0, m);
     clear = world.body_overlap(0) <= 0;
   }
-  for (int raise = 0; raise < kMaxRaises && !clear; ++raise) {
-    m.X.p.z += kRaise;
+  const auto tried_at = [&](const Vec3& p) {
+    m.X.p = p;
     world.set_body(0, m);
     clear = world.body_overlap(0) <= 0;
+  };
+  const Vec3 p = m.X.p;
+  if (goal.standing) {
+    for (int k = 0; k < kRings * kPlaces && !clear; ++k) {
+      const double r = kRaise * (1 + k / kPlaces), angle = 2 * kPi / kPlaces * (k % kPlaces);
+      tried_at(p + Vec3{r * elementary::cos(angle), r * elementary::sin(angle), 0});
+    }
+  } else {
+    for (int raise = 0; raise < kMaxRaises && !clear; ++raise) tried_at(m.X.p + Vec3{0, 0, kRaise});
   }
   draw_goal(goal, state, stream);
 }

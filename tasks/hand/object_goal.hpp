@@ -17,6 +17,7 @@ struct ObjectPlace {
   const char* object = "egg";
   double mass = 0;  // kg, 0: the object's own
   const char* start_rotation = "random";
+  bool standing = false;  // on the ground: a start that is not clear is moved aside instead of raised
 };
 
 enum class StartRotation : int32_t { kFixed = 0, kYaw, kRandom };
@@ -27,6 +28,7 @@ struct ObjectGoal {
   double start_noise;
   StartRotation start_rotation;
   bool random_goal, canonical_rotation;
+  bool standing = false;  // ObjectPlace::standing
 };
 
 // One world's part of it.
@@ -46,8 +48,8 @@ void add_object(const Options& options, HandScene* scene);
 Quat draw_rotation(Stream& stream);
 void draw_goal(const ObjectGoal& goal, GoalState* state, Stream& stream);
 
-// Puts body 0 at a drawn start that is clear of everything, redrawn up to 100 times and then raised, and
-// draws the goal.
+// Puts body 0 at a drawn start that is clear of everything, redrawn up to 100 times and then raised or moved
+// aside in growing rings, and draws the goal.
 void reset_object(const ObjectGoal& goal, World& world, GoalState* state, Stream& stream);
 
 // Object rotation times conjugate goal rotation, the paper's "goal rot - object rot".

@@ -29,6 +29,7 @@ SingleHand::SingleHand(const SingleHandConfig& config, const Options& o)
     : HandTask(config.hands, o, make_scene_def(config, o), sizeof(State)),
       joint_noise_(o.number("joint_noise")),
       goal_(object_goal_from(o)) {
+  goal_.standing = config.place.standing;
   FieldTable& fields = own_fields();
   add_joint_fields(hand(), fields, "right");
   add_goal_fields(fields);

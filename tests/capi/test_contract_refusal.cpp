@@ -9,6 +9,7 @@ struct Case {
   const char* engine;
   int32_t threads;
 };
+void PrintTo(const Case& c, std::ostream* out) { *out << c.engine << ", " << c.threads << " threads"; }
 
 class ContractRefusal : public testing::TestWithParam<Case> {
  protected:

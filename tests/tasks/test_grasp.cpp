@@ -125,5 +125,23 @@ TEST_F(GraspTask, BaselinesDiffer) {
   EXPECT_LT(cost(Baseline::kRandom), 40);
 }
 
+// A finger of the gripper stands where the cube would: it is put beside, still on the ground, not on top.
+TEST_F(GraspTask, AnOccupiedPlaceMovesTheCubeAside) {
+  TestPool p("grasp", 1,
+             {{"hand", "robotiq", 0},
+              {"arm", "ur5e", 0},
+              {"start.x", nullptr, 0.036},
+              {"start.y", nullptr, -0.461},
+              {"start_noise", nullptr, 0}});
+  p->reset(nullptr, nullptr);
+  World& world = const_cast<World&>(p->world(0));
+  const Vec3 at = world.body(0).X.p;
+  EXPECT_EQ(at.z, 0.026);
+  EXPECT_LE(world.body_overlap(0), 0);
+  const double aside = std::hypot(at.x - 0.036, at.y + 0.461);
+  EXPECT_GT(aside, 0.004);
+  EXPECT_LT(aside, 0.1);
+}
+
 }  // namespace
 }  // namespace rdm::test
