@@ -2,9 +2,10 @@
 // reason, everything that is written stays finite. Random actions, worlds reset in turn at every hundredth
 // step.
 //
-//   hard_soak [--steps N] [--seconds S] [--jobs J] [--only TEXT] [--json FILE]
-// N control steps of one world, summed over worlds, for each task (1e7), or what fits into S seconds for all
-// tasks together, J of them at a time (2). The slowest tasks come first.
+//   hard_soak [--steps N] [--seconds S] [--jobs J] [--only TEXT] [--pairs TASK] [--json FILE]
+// --pairs: TASK with every hand on every arm. N control steps of one world, summed over worlds, for each task
+// (1e7), or what fits into S seconds for all tasks together, J of them at a time (2). The slowest tasks come
+// first.
 #include <fstream>
 
 #include "isolate.hpp"
@@ -23,7 +24,7 @@ struct Soak {
   long diverged = 0, overflowed = 0;
   int contacts_max = 0;
   double contacts_mean = 0, drift = 0, seconds = 0;
-  long resident = 0, growth = 0;
+  long resident = 0, growth = 0, world = 0;  // bytes; world: of one, its share of the pool
   bool done = false;
   char note[256] = "";
 };
@@ -40,6 +41,9 @@ void soak(const World& w, long steps, double seconds, Soak& out) {
   PoolOf pool;
   HARD_REQUIRE(pool.make(w, kEnvs) == RDM_OK, "%s", rdm_last_error());
   HARD_REQUIRE(rdm_pool_reset(pool.handle, nullptr, nullptr) == RDM_OK, "%s", rdm_last_error());
+  size_t ours = 0, engines = 0;
+  HARD_REQUIRE(rdm_pool_memory(&pool.config, &ours, &engines) == RDM_OK, "%s", rdm_last_error());
+  out.world = static_cast<long>((ours + engines) / kEnvs);
   const double begin = now();
   long warm = 0, t = 0;
   const auto share = [&] {
@@ -88,8 +92,9 @@ int main(int argc, char** argv) {
   const double seconds = std::atof(argument(argc, argv, "--seconds", "0").c_str());
   const int jobs = std::max(1, std::atoi(argument(argc, argv, "--jobs", "2").c_str()));
   const std::string only = argument(argc, argv, "--only", ""), json = argument(argc, argv, "--json", "");
+  const std::string pairs = argument(argc, argv, "--pairs", "");
   std::vector<World> worlds;
-  for (const World& w : all_worlds())
+  for (const World& w : pairs.empty() ? all_worlds() : all_pairs(pairs))
     if (w.engine != "ode" && w.name().find(only) != std::string::npos) worlds.push_back(w);
   if (worlds.empty()) return 2;
   // rates decide the order and, with a bound on time, the shares: half of it by need, half the same for all
@@ -136,17 +141,19 @@ int main(int argc, char** argv) {
     ++ended;
   }
   long passed = 0, failed = 0;
-  std::printf("%-36s %10s %8s %9s %9s %8s %9s %8s %9s %9s %8s\n", "soak", "steps", "resets", "episodes",
-              "diverged", "cut off", "contacts", "mean", "drift mm", "MB", "grew kB");
+  std::printf("%-36s %10s %8s %9s %9s %8s %9s %8s %9s %9s %8s %8s %8s\n", "soak", "steps", "resets",
+              "episodes", "diverged", "cut off", "contacts", "mean", "drift mm", "MB", "grew kB", "steps/s",
+              "kB each");
   std::string text = "[";
   for (size_t i : order) {
     const Soak& s = g_soak[i];
     (s.done ? passed : failed) += 1;
     const std::string name = worlds[i].name();
-    std::printf("%-36s %10ld %8ld %9ld %9ld %8ld %9d %8.2f %9.4f %9.1f %8.0f%s%s\n", name.c_str(), s.steps,
-                s.resets, s.episodes, s.diverged, s.overflowed, s.contacts_max, s.contacts_mean,
+    std::printf("%-36s %10ld %8ld %9ld %9ld %8ld %9d %8.2f %9.4f %9.1f %8.0f %8.0f %8.0f%s%s\n", name.c_str(),
+                s.steps, s.resets, s.episodes, s.diverged, s.overflowed, s.contacts_max, s.contacts_mean,
                 1e3 * s.drift, static_cast<double>(s.resident) / 1048576,
-                static_cast<double>(s.growth) / 1024, s.done ? "" : "  ",
+                static_cast<double>(s.growth) / 1024, static_cast<double>(s.steps) / s.seconds,
+                static_cast<double>(s.world) / 1024, s.done ? "" : "  ",
                 s.done    ? ""
                 : *s.note ? s.note
                           : "died");
@@ -155,9 +162,11 @@ int main(int argc, char** argv) {
         row, sizeof row,
         "%s\n {\"task\": \"%s\", \"steps\": %ld, \"resets\": %ld, \"episodes\": %ld, \"diverged\": %ld, "
         "\"overflowed\": %ld, \"contacts_max\": %d, \"contacts_mean\": %.3f, \"joint_drift\": %.3g, "
-        "\"resident_bytes\": %ld, \"growth_bytes\": %ld, \"seconds\": %.1f, \"ok\": %s}",
+        "\"resident_bytes\": %ld, \"growth_bytes\": %ld, \"world_bytes\": %ld, \"seconds\": %.1f, \"ok\": "
+        "%s}",
         text.size() > 1 ? "," : "", name.c_str(), s.steps, s.resets, s.episodes, s.diverged, s.overflowed,
-        s.contacts_max, s.contacts_mean, s.drift, s.resident, s.growth, s.seconds, s.done ? "true" : "false");
+        s.contacts_max, s.contacts_mean, s.drift, s.resident, s.growth, s.world, s.seconds,
+        s.done ? "true" : "false");
     text += row;
   }
   if (!json.empty()) std::ofstream(json) << text << "\n]\n";

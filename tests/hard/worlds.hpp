@@ -51,7 +51,8 @@ inline std::string argument(int argc, char** argv, const char* flag, const char*
 struct World {
   std::string task, engine;
   int32_t index = 0, max_steps = 0;
-  std::string name() const { return engine.empty() ? task : task + "/" + engine; }
+  std::string settings = {}, title = {};  // options as text; a name that says them
+  std::string name() const { return !title.empty() ? title : engine.empty() ? task : task + "/" + engine; }
 };
 
 // Of the library's tasks, and of one through callbacks.
@@ -77,6 +78,24 @@ inline std::vector<World> all_worlds() {
     }
     if (!has_engine) out.push_back({t.name, "", i, t.max_steps});
   }
+  return out;
+}
+
+// A task with every hand on every arm.
+inline std::vector<World> all_pairs(const std::string& task) {
+  std::vector<World> out;
+  int32_t index = 0;
+  HARD_REQUIRE(rdm_task_find(task.c_str(), &index) == RDM_OK, "%s", rdm_last_error());
+  std::vector<std::string> of[3];
+  for (int32_t i = 0; i < rdm_robot_count(); ++i) {
+    rdm_robot_def d{};
+    d.struct_size = sizeof d;
+    HARD_REQUIRE(rdm_robot_get(i, &d) == RDM_OK, "%s", rdm_last_error());
+    of[d.kind].push_back(d.name);
+  }
+  for (const std::string& hand : of[RDM_ROBOT_HAND])
+    for (const std::string& arm : of[RDM_ROBOT_ARM])
+      out.push_back({task, "", index, 0, "hand=" + hand + "\narm=" + arm, hand + "+" + arm});
   return out;
 }
 
@@ -108,6 +127,7 @@ struct PoolOf {
     config.host = host;
     config.options = options_.data();
     config.num_options = static_cast<int32_t>(options_.size());
+    config.settings = world_.settings.c_str();
     num_envs = envs;
   }
   rdm_result create() {
