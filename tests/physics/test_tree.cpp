@@ -188,8 +188,8 @@ TEST(Tree, ShortcutsHoldForAllMembersOrNone) {
 
 TEST(Tree, HeavyJointsHaveStifferEnds) {
   SceneDef def = test::two_hands_def();
-  for (const MemberLink& link : make_trees(make_scene(def))[0].members[0].links)
-    EXPECT_EQ(link.limit_stiffness, 100);
+  const auto hands = make_trees(make_scene(def))[0].members[0].links;
+  for (const MemberLink& link : hands) EXPECT_EQ(link.limit_stiffness, 100);
   def = chain(8);
   const auto links = make_trees(make_scene(def))[0].members[0].links;
   // all stretched out, the moment about the first axis

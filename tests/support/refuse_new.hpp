@@ -54,3 +54,22 @@ void operator delete(void* p, std::align_val_t) noexcept {
 void operator delete(void* p, size_t, std::align_val_t) noexcept {
   give_back(p);
 }
+// Arrays too: a sanitizer's own would not come here.
+void* operator new[](size_t size) {
+  return take_new(size, 1);
+}
+void* operator new[](size_t size, std::align_val_t align) {
+  return take_new(size, static_cast<size_t>(align));
+}
+void operator delete[](void* p) noexcept {
+  give_back(p);
+}
+void operator delete[](void* p, size_t) noexcept {
+  give_back(p);
+}
+void operator delete[](void* p, std::align_val_t) noexcept {
+  give_back(p);
+}
+void operator delete[](void* p, size_t, std::align_val_t) noexcept {
+  give_back(p);
+}
