@@ -145,8 +145,7 @@ struct Places {
   int32_t num_turns, num_away, num_below;
   double away[6], below[8];
 };
-constexpr double kTurns[] = {0,          0.25 * kPi, -0.25 * kPi, 0.5 * kPi,
-                             -0.5 * kPi, 0.75 * kPi, -0.75 * kPi, kPi};
+constexpr double kTurns[] = {0, 0.25 * kPi, -0.25 * kPi, 0.5 * kPi, -0.5 * kPi, 0.75 * kPi, -0.75 * kPi, kPi};
 constexpr Places kNear = {1, 5, 4, 5, {0.45, 0.35, 0.55, 0.65}, {0.2, 0.35, 0.05, 0.5, -0.1}};
 // A large arm may have to stand far off, or on a pedestal and reach down.
 constexpr Places kWide = {

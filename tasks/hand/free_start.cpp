@@ -9,9 +9,9 @@
 namespace rdm {
 namespace {
 
-constexpr double kRoom = 0.04;    // m, more is no better
-constexpr double kTouch = 0.002;  // m, of parts of one robot: nearer counts as touching
-constexpr double kDeep = 0.002;   // m, from which a hand stands in a thing and not at it
+constexpr double kRoom = 0.04;                    // m, more is no better
+constexpr double kTouch = 0.002;                  // m, of parts of one robot: nearer counts as touching
+constexpr double kDeep = 0.002;                   // m, from which a hand stands in a thing and not at it
 constexpr double kStep = 0.005, kFarthest = 0.3;  // m, of a hand's way back
 constexpr size_t kMostPlaces = 24;                // of each arm, for pairs
 
@@ -67,16 +67,13 @@ class Room {
     for (size_t s = 0; s < scene_.shapes.size(); ++s) {
       const SceneShape& shape = scene_.shapes[s];
       if (shape.articulation != i) continue;
-      poses_[s] =
-          (shape.carrier == Carrier::kLink ? X_WL[shape.index - first] : X_WB) * shape.def.X_LS;
+      poses_[s] = (shape.carrier == Carrier::kLink ? X_WL[shape.index - first] : X_WB) * shape.def.X_LS;
     }
   }
   // Of the hand alone, without its arm, to anything else; less than 0: that deep.
   double hand_gap(int32_t i, double most) const { return gap(of_hand_[i], most); }
   // Of the arm to anything but the other arm.
-  double arm_gap(int32_t i) const {
-    return gap(of_itself_[i], kTouch) < kTouch ? 0 : gap(of_arm_[i], kRoom);
-  }
+  double arm_gap(int32_t i) const { return gap(of_itself_[i], kTouch) < kTouch ? 0 : gap(of_arm_[i], kRoom); }
   double gap_between_arms() const { return gap(of_both_, kRoom); }
 
  private:
@@ -295,8 +292,7 @@ void free_start(const HandControlConfig& config, HandScene* s) {
     if (!free) free = place_arms(arms, count, wide, s, &room);
   for (int32_t n = 0; n < count && !free; ++n)
     if (ChosenHand& hand = s->hands[arms[n]]; hand.X_WB.p.z < 0) hand.X_WB.p -= back[arms[n]];
-  for (int32_t i = 0; i < config.count; ++i)
-    s->articulations[static_cast<size_t>(i)].X_WB = s->hands[i].X_WB;
+  for (int32_t i = 0; i < config.count; ++i) s->articulations[static_cast<size_t>(i)].X_WB = s->hands[i].X_WB;
 }
 
 }  // namespace rdm
