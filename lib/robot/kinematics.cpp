@@ -6,6 +6,7 @@
 #include "base/eigen.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
+#include "physics/collision/convex.hpp"
 
 namespace rdm {
 namespace {
@@ -141,13 +142,16 @@ namespace {
 // One look at places for an arm's base around the flange, in polar coordinates, in units of the arm's length.
 struct Places {
   int32_t starts;  // from how many poses the arm is sent there
-  int32_t num_away, num_below;
+  int32_t num_turns, num_away, num_below;
   double away[6], below[8];
 };
-constexpr Places kNear = {1, 4, 5, {0.45, 0.35, 0.55, 0.65}, {0.2, 0.35, 0.05, 0.5, -0.1}};
+constexpr double kTurns[] = {0, 0.25 * kPi, -0.25 * kPi, 0.5 * kPi, -0.5 * kPi, 0.75 * kPi, -0.75 * kPi, kPi};
+constexpr Places kNear = {1, 5, 4, 5, {0.45, 0.35, 0.55, 0.65}, {0.2, 0.35, 0.05, 0.5, -0.1}};
 // A large arm may have to stand far off, or on a pedestal and reach down.
-constexpr Places kFar = {
-    3, 6, 8, {0.3, 0.4, 0.5, 0.6, 0.7, 0.8}, {0.5, 0.3, 0.1, 0, -0.1, -0.25, -0.4, -0.55}};
+constexpr Places kWide = {
+    3, 8, 6, 8, {0.3, 0.4, 0.5, 0.6, 0.7, 0.8}, {0.5, 0.3, 0.1, 0, -0.1, -0.25, -0.4, -0.55}};
+constexpr double kLowest = 0.03;  // m, of a link's frame
+constexpr double kGap = 0.002;    // m, of what turns and the ground
 
 // Home, and the same with the arm's second and third joint at other parts of their ranges.
 void start_pose(const Robot& arm, int32_t start, double* q) {
@@ -159,38 +163,90 @@ void start_pose(const Robot& arm, int32_t start, double* q) {
   }
 }
 
+// How high the base is at least: the first link, which turns about the vertical, does not scrape the ground.
+double standing_height(const Robot& arm) {
+  if (arm.links.count == 0 || std::fabs(rotate(link_frame(arm.links[0]).q, arm.links[0].axis).z) < 0.999)
+    return 0;
+  const Pose X_BL = arm.X_BR * link_frame(arm.links[0]);
+  double lowest = kGap;
+  for (const RobotShape& s : arm.shapes) {
+    if (s.link != 0 || s.kind == ShapeKind::kPlane || s.kind == ShapeKind::kHull) continue;
+    const Pose X_BS = X_BL * Pose{s.p, s.q};
+    const Convex solid{s.kind, s.size, X_BS.p, to_matrix(X_BS.q), nullptr};
+    lowest = std::min(lowest, farthest(solid, {0, 0, -1}).z);
+  }
+  return kGap - lowest;
+}
+
+void best_first(Vector<ArmPlace>* places) {
+  std::stable_sort(places->begin(), places->end(),
+                   [](const ArmPlace& a, const ArmPlace& b) { return a.score > b.score; });
+}
+
+bool above_ground(const Robot& arm, const Reach& reach, const Pose& X_WB) {
+  return std::all_of(reach.X_RL, reach.X_RL + arm.links.count,
+                     [&](const Pose& X) { return (X_WB * X).p.z > kLowest; });
+}
+
 }  // namespace
 
-bool place_arm(const Robot& arm, const Pose& X_WF, const Vec3& from, Pose* X_WB, double* q) {
-  constexpr double kTurns[] = {0, 0.25 * kPi, -0.25 * kPi, 0.5 * kPi, -0.5 * kPi};
-  const double length = arm_length(arm);
+Vector<ArmPlace> arm_places(const Robot& arm, const Pose& X_WF, const Vec3& from, bool wide) {
+  const Places& places = wide ? kWide : kNear;
+  const double length = arm_length(arm), height = standing_height(arm);
   const double side = elementary::atan2(from.y, from.x);
   Reach reach{arm, {}, {}, {}};
-  double best = 0;
+  Vector<ArmPlace> out;
   const auto look = [&](double turn, double away, double below, int32_t start) {
     const elementary::SinCos a = elementary::sincos(side + turn);
-    Pose base;
-    base.p = X_WF.p + Vec3{away * length * a.cos, away * length * a.sin, -below * length};
-    base.p.z = std::max(base.p.z, 0.0);
-    base.q = axis_angle({0, 0, 1}, side + turn + kPi);  // x of the base towards the flange
-    double pose[kMaxRobotLinks];
-    start_pose(arm, start, pose);
-    if (!solve_reach(arm, inverse(base) * X_WF, pose)) return;
-    const double score = dexterity(&reach, pose, length) * (1.2 + elementary::sincos(turn).cos);
-    const bool above = std::all_of(reach.X_RL, reach.X_RL + arm.links.count,
-                                   [&](const Pose& X) { return (base * X).p.z > 0.03; });
-    if (!above || score <= best) return;
-    best = score;
-    *X_WB = base;
-    std::copy_n(pose, arm.links.count, q);
+    ArmPlace place{};
+    place.X_WB.p = X_WF.p + Vec3{away * length * a.cos, away * length * a.sin, -below * length};
+    place.X_WB.p.z = std::max(place.X_WB.p.z, height);
+    place.X_WB.q = axis_angle({0, 0, 1}, side + turn + kPi);  // x of the base towards the flange
+    start_pose(arm, start, place.q);
+    if (!solve_reach(arm, inverse(place.X_WB) * X_WF, place.q)) return;
+    place.score = dexterity(&reach, place.q, length) * (1.2 + elementary::sincos(turn).cos);
+    if (place.score > 0 && above_ground(arm, reach, place.X_WB)) out.push_back(place);
   };
-  for (const Places& places : {kNear, kFar}) {
-    for (const double turn : kTurns)
-      for (int32_t i = 0; i < places.num_away; ++i)
-        for (int32_t k = 0; k < places.num_below; ++k)
-          for (int32_t start = 0; start < places.starts; ++start)
-            look(turn, places.away[i], places.below[k], start);
-    if (best > 0) return true;
+  for (int32_t turn = 0; turn < places.num_turns; ++turn)
+    for (int32_t i = 0; i < places.num_away; ++i)
+      for (int32_t k = 0; k < places.num_below; ++k)
+        for (int32_t start = 0; start < places.starts; ++start)
+          look(kTurns[turn], places.away[i], places.below[k], start);
+  best_first(&out);
+  return out;
+}
+
+Vector<ArmPlace> arm_poses(const Robot& arm, const Pose& X_WF, const Pose& X_WB) {
+  const Pose X_RF = inverse(X_WB) * X_WF;
+  const double length = arm_length(arm);
+  Reach reach{arm, {}, {}, {}};
+  Vector<ArmPlace> out;
+  const auto look = [&](int32_t turned, double share) {
+    ArmPlace place{};
+    place.X_WB = X_WB;
+    start_pose(arm, 0, place.q);
+    if (turned >= 0) {
+      const RobotLink& l = arm.links[turned];
+      place.q[turned] = l.lower + share * (l.upper - l.lower);
+    }
+    if (!solve_reach(arm, X_RF, place.q)) return;
+    place.score = dexterity(&reach, place.q, length);
+    out.push_back(place);
+  };
+  look(-1, 0);
+  for (int32_t i = 0; i < arm.links.count; ++i)
+    for (const double share : {0.25, 0.75}) look(i, share);
+  best_first(&out);
+  return out;
+}
+
+bool place_arm(const Robot& arm, const Pose& X_WF, const Vec3& from, Pose* X_WB, double* q) {
+  for (const bool wide : {false, true}) {
+    const Vector<ArmPlace> places = arm_places(arm, X_WF, from, wide);
+    if (places.empty()) continue;
+    *X_WB = places[0].X_WB;
+    std::copy_n(places[0].q, arm.links.count, q);
+    return true;
   }
   return false;
 }

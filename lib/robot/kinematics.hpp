@@ -5,6 +5,7 @@
 // flange,
 //   dq = J' (J J' + lambda^2 1)^-1 e,   q := clamp(q + dq),   lambda^2 = |e|^2 / 2 + 1e-9 (Sugihara 2011).
 #pragma once
+#include "base/host.hpp"
 #include "robot/robot.hpp"
 
 namespace rdm {
@@ -30,9 +31,20 @@ bool solve_reach(const Robot& robot, const Pose& X_RF, double* q);
 // Length of the arm, stretched, from the first joint's axis to the flange, m: an upper bound of its reach.
 double arm_length(const Robot& robot);
 
-// A place for an arm's base from which its flange reaches X_WF: upright, not below z = 0, if it can be on the
-// side of `from` (its level part counts, of any length), far from joint limits and singular poses. `q`
-// [links] is its pose there. False when no such place was found.
+// A place for an arm's base, and its pose there.
+struct ArmPlace {
+  Pose X_WB;
+  double score;              // the higher the farther from joint limits and singular poses, and the nearer
+                             // to the side that was asked for
+  double q[kMaxRobotLinks];  // [links] rad (m)
+};
+// Places from which an arm's flange reaches X_WF, the best first: upright, on the ground z = 0 or above, if
+// it can be on the side of `from` (its level part counts, of any length). wide: also far off, behind the hand
+// and from other poses, about ten times as many looks.
+Vector<ArmPlace> arm_places(const Robot& arm, const Pose& X_WF, const Vec3& from, bool wide);
+// The same for a base that stands at X_WB already: poses that reach, the best first.
+Vector<ArmPlace> arm_poses(const Robot& arm, const Pose& X_WF, const Pose& X_WB);
+// The best of the places nearby, or where there is none of all. False when no place was found.
 bool place_arm(const Robot& arm, const Pose& X_WF, const Vec3& from, Pose* X_WB, double* q);
 
 }  // namespace rdm

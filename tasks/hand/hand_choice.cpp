@@ -40,15 +40,16 @@ const char* const kBaseKeys[kMaxHands] = {"right.arm_base", "left.arm_base"};
 const char* const kPoseKeys[kMaxHands] = {"right.arm_pose", "left.arm_pose"};
 const char* const kKeys[2] = {"hand", "arm"};
 
-void add_rows(const HandControlConfig& config, const char* hand, const char* arm, OptionTable& table) {
-  const auto add = [&](const char* name) {
-    if (same_name(name, kNone)) return;
-    if (same_name(name, config.robot->name)) return add_robot_rows(*config.robot, table);
-    const RobotRef ref(find_robot(name));
-    add_robot_rows(*ref, table);
-  };
-  add(hand);
-  add(arm);
+// Rows of a robot; the number of shapes that it has beside those of the task's own.
+int32_t add_rows(const HandControlConfig& config, const char* name, OptionTable& table) {
+  if (same_name(name, kNone)) return 0;
+  if (same_name(name, config.robot->name)) {
+    add_robot_rows(*config.robot, table);
+    return 0;
+  }
+  const RobotRef ref(find_robot(name));
+  add_robot_rows(*ref, table);
+  return ref->shapes.count;
 }
 
 // The place of a hand in the base frame, of the side that it is on.
@@ -100,25 +101,6 @@ const char* own_text(const Options& o, const char* own, const char* common) {
   return *text ? text : o.text(common);
 }
 
-// Angles for a base that is given: from home, and from home with one joint after the other at a quarter of
-// its range.
-bool reach_from(const Robot& arm, const Pose& X_RF, double* q) {
-  const auto start = [&](int32_t turned, double share) {
-    for (int32_t i = 0; i < arm.links.count; ++i) {
-      q[i] = start_angle(arm, arm.home, i);
-      if (i == turned) q[i] = arm.links[i].lower + share * (arm.links[i].upper - arm.links[i].lower);
-    }
-  };
-  start(-1, 0);
-  if (solve_reach(arm, X_RF, q)) return true;
-  for (int32_t i = 0; i < arm.links.count; ++i)
-    for (const double share : {0.25, 0.75}) {
-      start(i, share);
-      if (solve_reach(arm, X_RF, q)) return true;
-    }
-  return false;
-}
-
 // From where an arm comes to a hand with this palm: from behind the fingers, or where those point up or down
 // from behind the palm.
 Vec3 side_of_arm(const Pose& X_WH) {
@@ -127,8 +109,8 @@ Vec3 side_of_arm(const Pose& X_WH) {
 }
 
 void mount(const Options& o, int32_t i, const char* name, ChosenHand* out) {
-  const RobotRef ref(find_robot(name));
-  const Robot &arm = *ref, &hand = out->robot();
+  out->arm = RobotRef(find_robot(name));
+  const Robot &arm = *out->arm, &hand = out->robot();
   RobotCopy mirrored;
   const bool left = out->side == Side::kLeft;
   if (left) mirrored = make_mirrored(hand);
@@ -137,40 +119,50 @@ void mount(const Options& o, int32_t i, const char* name, ChosenHand* out) {
   const Pose X_WR = out->X_WB * hand.X_BR;
   const Pose X_WF = X_WR * inverse(mounted_root(left ? mirrored.robot() : hand, mounting));
   const char *base = own_text(o, kBaseKeys[i], "arm_base"), *pose = own_text(o, kPoseKeys[i], "arm_pose");
+  out->X_WF = X_WF;
+  out->from = side_of_arm(out->X_WB * palm_in_base(hand, out->side, false));
+  out->given = !same_name(base, "auto");
+  out->chosen = same_name(pose, "auto");
+  Pose X_WB = out->X_WB;
   double q[kMaxRobotLinks];
-  const bool placed = !same_name(base, "auto");
-  if (placed) out->X_WB = read_base(kBaseKeys[i], base);
-  if (!same_name(pose, "auto")) {
+  if (out->given) X_WB = read_base(kBaseKeys[i], base);
+  if (!out->chosen) {
     read_numbers(kPoseKeys[i], pose, arm.links.count, q);
     for (int32_t k = 0; k < arm.links.count; ++k)
       q[k] = std::clamp(q[k], arm.links[k].lower, arm.links[k].upper);
     // without a place of its own it stands where that pose brings the hand to its place
-    if (!placed) out->X_WB = X_WF * inverse(flange_pose(arm, q));
-  } else if (placed) {
-    if (!reach_from(arm, inverse(out->X_WB) * X_WF, q))
+    if (!out->given) X_WB = X_WF * inverse(flange_pose(arm, q));
+  } else if (out->given) {
+    const Vector<ArmPlace> poses = arm_poses(arm, X_WF, X_WB);
+    if (poses.empty())
       fail(Code::kUnsupported,
            "%s: from there %s does not bring the %s hand to its place, its flange to (%.3g, %.3g, %.3g)",
            kBaseKeys[i], arm.name, kSideNames[i], X_WF.p.x, X_WF.p.y, X_WF.p.z);
-  } else if (!place_arm(arm, X_WF, side_of_arm(out->X_WB * palm_in_base(hand, out->side, false)), &out->X_WB,
-                        q)) {
+    std::copy_n(poses[0].q, arm.links.count, q);
+  } else if (!place_arm(arm, X_WF, out->from, &X_WB, q)) {
     fail(Code::kUnsupported, "%s: no place was found from which %s reaches (%.3g, %.3g, %.3g); give one",
          kBaseKeys[i], arm.name, X_WF.p.x, X_WF.p.y, X_WF.p.z);
   }
-  for (int32_t k = 0; k < arm.links.count; ++k) {
-    both.home[static_cast<size_t>(k)] = q[k];
-    if (!both.folded.empty()) both.folded[static_cast<size_t>(k)] = q[k];
-  }
-  both.bind();
   out->mounted = std::move(both);
   out->armed = true;
   out->side = Side::kRight;
+  set_arm(X_WB, q, out);
 }
 
 }  // namespace
 
 const char* const kSideNames[kMaxHands] = {"right", "left"};
 
-void add_hand_choice_options(const HandControlConfig& config, OptionTable& table) {
+void set_arm(const Pose& X_WB, const double* q, ChosenHand* hand) {
+  hand->X_WB = X_WB;
+  for (int32_t k = 0; k < hand->arm->links.count; ++k) {
+    hand->mounted.home[static_cast<size_t>(k)] = q[k];
+    if (!hand->mounted.folded.empty()) hand->mounted.folded[static_cast<size_t>(k)] = q[k];
+  }
+  hand->mounted.bind();
+}
+
+int32_t add_hand_choice_options(const HandControlConfig& config, OptionTable& table) {
   table.add(
       choosing(text_option("hand", config.robot->name, nullptr, "the robot that each hand is, by name")));
   table.add(kRows);
@@ -193,9 +185,13 @@ void add_hand_choice_options(const HandControlConfig& config, OptionTable& table
       if (*name) return name;
     return otherwise;
   };
-  for (int32_t i = 0; i < config.count; ++i)
-    add_rows(config, chosen(i, 0, side(i).hand, config.robot->name), chosen(i, 1, side(i).arm, kNone), table);
+  int32_t shapes = 0;
+  for (int32_t i = 0; i < config.count; ++i) {
+    shapes += add_rows(config, chosen(i, 0, side(i).hand, config.robot->name), table);
+    shapes += add_rows(config, chosen(i, 1, side(i).arm, kNone), table);
+  }
   add_robot_scales(table);
+  return shapes;
 }
 
 ChosenHand choose_hand(const HandControlConfig& config, const Options& o, int32_t i) {

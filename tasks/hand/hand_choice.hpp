@@ -30,15 +30,24 @@ struct ChosenHand {
   bool armed = false;
   Side side = Side::kRight;  // as make_articulation takes it; a mounted left hand is mirrored already
   Pose X_WB;
+  RobotRef arm;         // of the list, when there is one
+  bool chosen = false;  // the arm's pose is not the host's word
+  bool given = false;   // the arm's base is
+  Pose X_WF;            // where the arm's flange is at the start
+  Vec3 from;            // from where the arm comes to it
 
   const Robot& robot() const { return armed ? mounted.robot() : own ? *own : *listed; }
 };
 
-// Options of the choice, and those of the joints and links of all robots that were chosen.
-void add_hand_choice_options(const HandControlConfig& config, OptionTable& table);
+// Options of the choice, and those of the joints and links of all robots that were chosen. Returns the number
+// of shapes of those that are not the task's own.
+int32_t add_hand_choice_options(const HandControlConfig& config, OptionTable& table);
 
 // Error(kNotFound) for a name that no robot has; Error(kUnsupported) for what is no hand or no arm, for the
 // left one of a robot without sides, and for an arm that does not reach.
 ChosenHand choose_hand(const HandControlConfig& config, const Options& options, int32_t i);
+
+// The arm stands at X_WB and begins with these angles [arm_links], rad.
+void set_arm(const Pose& X_WB, const double* q, ChosenHand* hand);
 
 }  // namespace rdm

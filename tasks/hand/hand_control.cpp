@@ -11,6 +11,7 @@
 namespace rdm {
 namespace {
 
+constexpr int32_t kContactsEach = 4;      // that a shape of another robot may add
 constexpr double kSourceStep = 1.0 / 60;  // s, of the source's scales
 
 constexpr OptionSpec kRows[] = {
@@ -52,7 +53,7 @@ Vec3 bounded(const Vec3& v, double most) {
 
 }  // namespace
 
-void add_hand_control_options(const HandControlConfig& config, OptionTable& table) {
+void add_hand_control_options(const HandControlConfig& config, OptionTable& table, int32_t contacts_max) {
   table.add(kRows);
   table.add(drawable(number_option("friction.hand_object", config.friction, 0, 10,
                                    "friction coefficient of hands and object")));
@@ -71,7 +72,8 @@ void add_hand_control_options(const HandControlConfig& config, OptionTable& tabl
   add_level_options(table);
   add_sim_options(table);
   add_hand_options(table);
-  add_hand_choice_options(config, table);
+  const int32_t shapes = add_hand_choice_options(config, table);
+  table.set_default("contacts_max", contacts_max + kContactsEach * shapes);
 }
 
 void set_friction(SceneDef* scene, int32_t a, int32_t b, double mu) {

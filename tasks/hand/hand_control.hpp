@@ -36,7 +36,8 @@ struct HandControlConfig {
   double friction = 1;  // hand and object, option friction.hand_object
 };
 
-void add_hand_control_options(const HandControlConfig& config, OptionTable& table);
+// contacts_max: the default with the task's own robots; others may need more.
+void add_hand_control_options(const HandControlConfig& config, OptionTable& table, int32_t contacts_max = 36);
 // A scene, and the robots that its first articulations are.
 struct HandScene : SceneDef {
   ChosenHand hands[kMaxHands];

@@ -4,10 +4,16 @@
 
 #include "base/error.hpp"
 #include "env/options/simulation.hpp"
+#include "tasks/hand/free_start.hpp"
 
 namespace rdm {
 
 namespace {
+
+HandScene freed(const HandControlConfig& config, HandScene made) {
+  free_start(config, &made);
+  return made;
+}
 
 SceneDef adjusted(HandScene* made) {
   made->adjustable = made->adjustable || !made->draws.empty();
@@ -20,7 +26,7 @@ HandTask::HandTask(const HandControlConfig& config, const Options& o, HandScene 
     : engine_(engine_from(o)),
       max_steps_(o.integer("max_steps")),
       own_bytes_(own_bytes),
-      made_(std::move(scene)),
+      made_(freed(config, std::move(scene))),
       scene_(make_scene(adjusted(&made_))),
       hands_(config, o, scene_, made_) {
   if (own_bytes % alignof(double) != 0)

@@ -137,7 +137,7 @@ class Jenga final : public PropTask {
   }
 
   void start(World& world, void* state) const override {
-    for (int i = 0; i <= kJengaBlocks; ++i) static_cast<State*>(state)->start[i] = world.body(i).X.p;
+    for (int i = 0; i <= tower_.blocks; ++i) static_cast<State*>(state)->start[i] = world.body(i).X.p;
   }
 
   float* write_props(const World& world, const void*, float* out) const override {
@@ -147,7 +147,7 @@ class Jenga final : public PropTask {
     put(m.v, out + 7);
     put(m.w, out + 10, 0.2);
     out += 13;
-    for (int i = 1; extended_ && i <= kJengaBlocks; ++i, out += 3) put(world.body(i).X.p, out);
+    for (int i = 1; extended_ && i <= tower_.blocks; ++i, out += 3) put(world.body(i).X.p, out);
     return out;
   }
 
@@ -179,14 +179,14 @@ class Jenga final : public PropTask {
     add_field(table, "target", "rotation", "1", 4);
     add_field(table, "target", "velocity", "m/s", 3);
     add_field(table, "target", "spin", "5 rad/s", 3);
-    if (extended_) add_field(table, "blocks", "position", "m", 3 * kJengaBlocks);
+    if (extended_ && tower.blocks > 0) add_field(table, "blocks", "position", "m", 3 * tower.blocks);
   }
 
   // True when the whole tower has come down.
   bool judge_costs(const World& world, const State& s, Verdict* v) const {
-    double longest = 0, shortest = 1e9, sum = 0, deepest = 0;
-    bool all_dropped = true;
-    for (int i = 1; i <= kJengaBlocks; ++i) {
+    double longest = 0, shortest = tower_.blocks > 0 ? 1e9 : 0, sum = 0, deepest = 0;
+    bool all_dropped = tower_.blocks > 0;
+    for (int i = 1; i <= tower_.blocks; ++i) {
       const Vec3 way = world.body(i).X.p - s.start[i];
       const double length = norm(way);
       longest = std::max(longest, length);

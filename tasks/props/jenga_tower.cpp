@@ -14,6 +14,7 @@ constexpr Vec3 kTableHalf = {0.15, 0.189, 0.01};
 constexpr OptionSpec kRows[] = {
     text_option("preset", "redman", "redman|real",
                 "blocks of 0.26 x 0.04 x 0.04 m in pairs, or (real) of 0.075 x 0.025 x 0.015 m in threes"),
+    text_option("tower", "on", "on|off", "off: no blocks, the target alone lies on the table"),
     number_option("block_mass", 0, 0, 10, "mass of a block, kg; 0: the preset's; the target's follows"),
     number_option("friction.block_block", -1, -1, 10,
                   "friction coefficient of two blocks; -1: the preset's, 0.05 or (real) 0.4"),
@@ -75,6 +76,10 @@ JengaTower jenga_tower_from(const Options& o) {
   t.table_half = kTableHalf;
   const double sink = o.number("contact_layer");
   (same_name(o.text("preset"), "real") ? build_real : build_redman)(sink, &t);
+  if (same_name(o.text("tower"), "off")) {
+    t.blocks = 0;
+    t.place[0].z = row_height(0, 2 * t.half[0].z, sink);
+  }
   if (const double mass = o.number("block_mass"); mass > 0) {
     const double scale = mass / t.mass[1];
     for (double& m : t.mass) m *= scale;
@@ -85,7 +90,7 @@ JengaTower jenga_tower_from(const Options& o) {
 }
 
 void add_tower(const JengaTower& tower, int32_t target, int32_t block, int32_t table, SceneDef* scene) {
-  for (int i = 0; i < 1 + kJengaBlocks; ++i) {
+  for (int i = 0; i < 1 + tower.blocks; ++i) {
     BodyDef body;
     char name[kNameSize] = "target";
     if (i > 0) std::snprintf(name, sizeof name, "block_%d", i);

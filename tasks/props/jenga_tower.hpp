@@ -10,6 +10,7 @@ inline constexpr int32_t kJengaBlocks = 16;  // without the target
 
 // Sizes and places of one tower. Body 0 is the target, bodies 1 to 16 are the blocks, from the table up.
 struct JengaTower {
+  int32_t blocks = kJengaBlocks;                   // that there are; 0: the target lies on the table
   Vec3 table, table_half;                          // centre and half sizes, m
   Vec3 half[1 + kJengaBlocks];                     // m; no block is turned
   Vec3 place[1 + kJengaBlocks];                    // at rest, m

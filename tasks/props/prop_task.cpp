@@ -18,8 +18,7 @@ void add_prop_options(const HandControlConfig& config, int32_t max_steps, int32_
                       OptionTable& table) {
   table.add(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"));
   table.add(kRows);
-  add_hand_control_options(config, table);
-  table.set_default("contacts_max", contacts_max);
+  add_hand_control_options(config, table, contacts_max);
 }
 
 PropTask::PropTask(const HandControlConfig& config, const Options& o, HandScene scene, size_t own_bytes)

@@ -14,46 +14,18 @@ namespace {
 constexpr double kSoon = 1e-6;  // s
 constexpr double kPi = 3.14159265358979323846;
 
-// Where each action entry stands, by name.
-struct EntryNames {
-  std::vector<std::string> names;    // [action_dim]
-  std::vector<double> lower, upper;  // rad; 0, 0 for a base's entries
-};
-
-EntryNames entry_names(const redman::Pool& pool) {
-  EntryNames out;
-  rdm_robot robot{};
-  robot.struct_size = sizeof robot;
-  redman::check(rdm_robot_at(0, &robot));
-  std::vector<std::string> joints(static_cast<size_t>(robot.num_actuated));
-  std::vector<double> lower(joints.size()), upper(joints.size());
-  for (int32_t i = 0; i < robot.num_joints; ++i) {
-    rdm_joint j{};
-    redman::check(rdm_robot_joint(0, i, &j));
-    if (j.action < 0) continue;
-    const auto k = static_cast<size_t>(j.action);
-    joints[k] = j.name;
-    lower[k] = j.lower;
-    upper[k] = j.upper;
-  }
-  const size_t width = pool.action().width();
+// The hands of a pool in the order of its action row.
+std::vector<DemoHand> hands_of(const redman::Pool& pool) {
+  const Options settings = settings_of(pool);
   bool two = false;
   for (int32_t i = 0; i < pool.spec().num_fields; ++i) {
     rdm_field f;
     redman::check(rdm_pool_field(pool.get(), i, &f));
     two = two || std::string(f.name).rfind("left.", 0) == 0;
   }
-  const size_t per_hand = two ? width / 2 : width;
-  constexpr const char* kBase[] = {"x", "y", "z", "rx", "ry", "rz"};
-  for (const char* side : {"right.", "left."}) {
-    if (!two && side[0] == 'l') break;
-    for (size_t k = 0; k < per_hand; ++k) {
-      const bool joint = k < joints.size();
-      out.names.push_back(side + (joint ? joints[k] : std::string(kBase[(k - joints.size()) % 6])));
-      out.lower.push_back(joint ? lower[k] : 0);
-      out.upper.push_back(joint ? upper[k] : 0);
-    }
-  }
+  std::vector<DemoHand> out;
+  out.emplace_back(pool, settings, 0, 0);
+  if (two) out.emplace_back(pool, settings, 1, out[0].entries().size());
   return out;
 }
 
@@ -98,21 +70,30 @@ int32_t need_field(const DemoScript& script, int line, const redman::Pool& pool,
 }  // namespace
 
 Demo::Demo(const DemoScript& script, redman::Pool& pool)
-    : dt_(static_cast<double>(pool.spec().control_dt)), worlds_(pool.num_envs()) {
-  const EntryNames entries = entry_names(pool);
+    : file_(script.file),
+      dt_(static_cast<double>(pool.spec().control_dt)),
+      hands_(hands_of(pool)),
+      worlds_(pool.num_envs()) {
+  std::vector<DemoHand::Entry> entries;
+  for (const DemoHand& hand : hands_)
+    entries.insert(entries.end(), hand.entries().begin(), hand.entries().end());
+  entries.resize(std::min(entries.size(), pool.action().width()));
   for (const DemoScript::Phase& p : script.phases) {
-    Phase phase{p.seconds, {}, {}};
+    Phase phase{p.seconds, {}, {}, {}};
     for (const DemoScript::Condition& c : p.until)
       phase.until.push_back(
           {need_field(script, c.line, pool, c.field), c.below, static_cast<float>(c.value)});
     for (const DemoScript::Command& c : p.commands) {
       Command out{{}, {}, c.follows, c.at, c.over, c.gain, c.limit, c.value, -1, -1, memory_};
-      for (size_t k = 0; k < entries.names.size(); ++k) {
-        if (!matches(c.entry, entries.names[k])) continue;
+      for (size_t k = 0; k < entries.size(); ++k) {
+        const std::vector<std::string>& names = entries[k].names;
+        if (std::none_of(names.begin(), names.end(),
+                         [&](const std::string& name) { return matches(c.entry, name); }))
+          continue;
         double v = c.value;
         if (c.degrees) {
-          const double lower = entries.lower[k], upper = entries.upper[k];
-          if (!(upper > lower)) bad(script, c.line, entries.names[k] + " takes no degrees");
+          const double lower = entries[k].lower, upper = entries[k].upper;
+          if (!(upper > lower)) bad(script, c.line, names[0] + " takes no degrees");
           v = (2 * c.value * kPi / 180 - upper - lower) / (upper - lower);
         }
         out.entries.push_back(static_cast<int32_t>(k));
@@ -125,6 +106,22 @@ Demo::Demo(const DemoScript& script, redman::Pool& pool)
       }
       memory_ += out.entries.size();
       phase.commands.push_back(out);
+    }
+    for (const DemoScript::Motion& m : p.motions) {
+      Motion out{m.left ? 1u : 0u, -1, {}, m.turned, m.at, m.over, motions_++, m.line};
+      const char* side = m.left ? "left" : "right";
+      if (out.hand >= hands_.size()) bad(script, m.line, std::string("the task has no hand on the ") + side);
+      const DemoHand& hand = hands_[out.hand];
+      out.finger = hand.point(m.point);
+      if (out.finger < -1) bad(script, m.line, std::string("the ") + side + " hand has no " + m.point);
+      if (!hand.hindrance().empty())
+        bad(script, m.line,
+            std::string("the ") + side + " hand cannot be told where to go: " + hand.hindrance());
+      std::copy_n(m.p, 3, out.to.p);
+      double turn[3];
+      for (int k = 0; k < 3; ++k) turn[k] = m.turn[k] * kPi / 180;
+      turn_of(turn, out.to.q);
+      phase.motions.push_back(out);
     }
     phases_.push_back(phase);
   }
@@ -140,6 +137,8 @@ void Demo::restart(const uint8_t* mask) {
     worlds_[i].step = 0;
     worlds_[i].value = hold_;
     worlds_[i].from.assign(memory_, std::nanf(""));
+    worlds_[i].starts.assign(motions_, {});
+    worlds_[i].started.assign(motions_, 0);
   }
 }
 
@@ -174,7 +173,23 @@ void Demo::run(World& w, const float* obs, float* action) const {
       value = from + static_cast<float>(share) * (c.values[k] - from);
     }
   }
+  for (const Motion& m : phases_[w.phase].motions) move(w, t, m);
   std::copy(w.value.begin(), w.value.end(), action);
+}
+
+// Slowly at both ends of its time.
+void Demo::move(World& w, double t, const Motion& m) const {
+  if (t < m.at - kSoon) return;
+  const DemoHand& hand = hands_[m.hand];
+  if (!w.started[m.memory]) {
+    w.started[m.memory] = 1;
+    w.starts[m.memory] = hand.place(w.value.data(), m.finger);
+  }
+  const double u = m.over > 0 ? std::min(1.0, (t + dt_ - m.at) / m.over) : 1;
+  Place to = m.to;
+  if (!m.turned) std::copy_n(w.starts[m.memory].q, 4, to.q);
+  if (!hand.reach(between(w.starts[m.memory], to, u * u * (3 - 2 * u)), m.finger, w.value.data()))
+    throw Failure(format("demo %s, line %d: the arm does not reach that far", file_.c_str(), m.line));
 }
 
 void Demo::act(redman::Pool& pool, const uint8_t* mask) {

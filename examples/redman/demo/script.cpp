@@ -1,6 +1,7 @@
 // Reading the text of a demonstration.
 #include "demo/script.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -8,6 +9,7 @@
 
 #include "common/names.hpp"
 #include "common/text.hpp"
+#include "demo/hand.hpp"
 
 namespace tool {
 namespace {
@@ -109,11 +111,53 @@ DemoScript::Command read_command(Line& line, const std::string& entry) {
   return c;
 }
 
-// Null when the tool carries none.
-const char* carried_text(const std::string& task) {
-  for (const CarriedDemo* c = kCarriedDemos; c->task; ++c)
-    if (same_name(task, c->task)) return c->text;
-  return nullptr;
+// right.palm = X Y Z [turned RX RY RZ] [at T] [over T]
+DemoScript::Motion read_motion(Line& line, const std::string& word, size_t dot) {
+  DemoScript::Motion m;
+  m.line = line.number();
+  m.left = word.substr(0, dot) == "left";
+  m.point = word.substr(dot + 1);
+  if (!line.take("=")) line.bad("expected '=' after " + word);
+  for (double& x : m.p) x = line.number("a place in m, x y z");
+  while (!line.empty()) {
+    if (line.take("turned")) {
+      m.turned = true;
+      for (double& x : m.turn) x = line.number("three turns in degrees");
+    } else if (line.take("at")) {
+      m.at = line.number_from_zero("a time in s");
+    } else if (line.take("over")) {
+      m.over = line.number_from_zero("a time in s");
+    } else {
+      line.end();
+    }
+  }
+  return m;
+}
+
+// The palm, or a fingertip, of one side; else it is an entry.
+bool names_point(const std::string& word, size_t* dot) {
+  *dot = word.find('.');
+  const std::string side = word.substr(0, *dot);
+  if (*dot == std::string::npos || (side != "right" && side != "left")) return false;
+  const std::string point = word.substr(*dot + 1);
+  return point == "palm" || (point.size() > 4 && point.substr(point.size() - 4) == "_tip");
+}
+
+// Scripts that the tool carries for a task.
+std::vector<DemoScript> carried(const std::string& task) {
+  std::vector<DemoScript> out;
+  for (const CarriedDemo* c = kCarriedDemos; c->name; ++c) {
+    if (!same_name(std::string(c->name).substr(0, task.size()), task)) continue;
+    DemoScript script = parse_demo(c->text, std::strlen(c->text), c->name + std::string(".demo"));
+    if (same_name(script.task, task)) out.push_back(std::move(script));
+  }
+  return out;
+}
+
+bool holds(const Options& when, const Options& options) {
+  return std::all_of(when.begin(), when.end(), [&](const auto& pair) {
+    return same_name(option_of(options, pair.first), pair.second);
+  });
 }
 
 }  // namespace
@@ -131,11 +175,12 @@ DemoScript parse_demo(const char* text, size_t size, const std::string& file) {
     const std::string word = line.word("a word");
     if (word == "task") {
       script.task = line.word("the task's name");
-    } else if (word == "set") {
+    } else if (word == "set" || word == "when") {
       const std::string pair = line.word("key=value");
       const size_t equals = pair.find('=');
       if (equals == 0 || equals == std::string::npos) line.bad("'" + pair + "' is not key=value");
       script.options.emplace_back(pair.substr(0, equals), pair.substr(equals + 1));
+      if (word == "when") script.when.push_back(script.options.back());
     } else if (word == "phase") {
       script.phases.emplace_back();
       script.phases.back().name = line.word("the phase's name");
@@ -145,6 +190,8 @@ DemoScript parse_demo(const char* text, size_t size, const std::string& file) {
       script.phases.back().seconds = line.number_from_zero("a time in s");
     } else if (word == "until") {
       script.phases.back().until.push_back(read_condition(line));
+    } else if (size_t dot = 0; names_point(word, &dot)) {
+      script.phases.back().motions.push_back(read_motion(line, word, dot));
     } else {
       script.phases.back().commands.push_back(read_command(line, word));
     }
@@ -156,13 +203,18 @@ DemoScript parse_demo(const char* text, size_t size, const std::string& file) {
 }
 
 bool has_builtin_demo(const std::string& task) {
-  return carried_text(task) != nullptr;
+  return !carried(task_at(find_task(task)).name).empty();
 }
 
-DemoScript builtin_demo(const std::string& task) {
+DemoScript builtin_demo(const std::string& task, const Options& options) {
   const std::string name = task_at(find_task(task)).name;
-  if (const char* text = carried_text(name)) return parse_demo(text, std::strlen(text), name + ".demo");
-  throw Failure("policy demo: there is no demonstration of " + name + "; write one, and give its file");
+  std::vector<DemoScript> scripts = carried(name);
+  DemoScript* best = nullptr;
+  for (DemoScript& script : scripts)
+    if (holds(script.when, options) && (!best || script.when.size() > best->when.size())) best = &script;
+  if (!best)
+    throw Failure("policy demo: there is no demonstration of " + name + "; write one, and give its file");
+  return std::move(*best);
 }
 
 }  // namespace tool

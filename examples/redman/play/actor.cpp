@@ -81,7 +81,7 @@ void adopt_task(const ActorChoice& choice, bool task_given, PoolSettings& pool) 
   }
   if (!task_given && !choice.task.empty()) pool.task = choice.task;
   if (choice.demo && !choice.script) {
-    const Options own = builtin_demo(pool.task).options;
+    const Options own = builtin_demo(pool.task, pool.options).options;
     pool.options.insert(pool.options.begin(), own.begin(), own.end());
   }
   if (!same_name(pool.task, choice.task)) return;
@@ -92,7 +92,9 @@ void adopt_task(const ActorChoice& choice, bool task_given, PoolSettings& pool) 
 Actor::Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic, uint64_t seed)
     : baseline_(choice.baseline), stochastic_(stochastic), random_(mixed(seed)) {
   if (choice.demo)
-    demo_.emplace(choice.script ? *choice.script : builtin_demo(task_at(pool.spec().task).name), pool);
+    demo_.emplace(
+        choice.script ? *choice.script : builtin_demo(task_at(pool.spec().task).name, settings_of(pool)),
+        pool);
   if (choice.recording) {
     recording_ = choice.recording;
     file_ = choice.file;

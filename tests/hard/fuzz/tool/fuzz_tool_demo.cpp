@@ -8,7 +8,7 @@ namespace hard {
 
 std::vector<Bytes> seeds() {
   std::vector<Bytes> out;
-  for (const tool::CarriedDemo* d = tool::kCarriedDemos; d->task; ++d) {
+  for (const tool::CarriedDemo* d = tool::kCarriedDemos; d->name; ++d) {
     const std::string text = d->text;
     out.push_back(bytes_of(text.substr(0, 2000)));
   }
