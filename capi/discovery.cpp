@@ -11,7 +11,6 @@
 #include "env/options/repeat.hpp"
 #include "robot/robots.hpp"
 #include "tasks/catalog.hpp"
-#include "tasks/throw/throw_objects.hpp"
 #endif
 
 using namespace rdm;
@@ -241,19 +240,6 @@ rdm_result rdm_robot_joint(int32_t robot_index, int32_t i, rdm_joint* out) {
     for (int32_t k = 0; k < r.num_actuated(); ++k)
       if (r.actuated(k) == i) o.action = k;
     *out = o;
-  });
-}
-
-int32_t rdm_object_count(void) {
-  return throw_object_count();
-}
-
-rdm_result rdm_object_at(int32_t index, rdm_object* out) {
-  return call(nullptr, [&] {
-    need(out, "out");
-    need_index(index, throw_object_count(), "index");
-    const ThrowObject& o = throw_object_at(index);
-    *out = {o.name, o.shape_text, o.mass};
   });
 }
 #endif

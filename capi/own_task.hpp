@@ -109,6 +109,7 @@ struct rdm_scene {
   const rdm::Options* options = nullptr;
   rdm::SceneDef def;  // gone into `scene` when that is made
   rdm::Vector<rdm::Name> materials;
+  rdm::Vector<double> frictions;  // of materials that objects brought; -1 of others, as long as materials
   rdm::Vector<rdm::capi::PlacedRobot> robots;
   bool complete = false;
   rdm::Scene scene;

@@ -131,7 +131,9 @@ RobotCopy rdm::capi::robot_from(const rdm_robot_def* def) {
   if (in.num_pairs < -1) fail(Code::kRange, "def.num_pairs: %d is outside [-1, %d]", in.num_pairs, kMostRows);
   need_rows(in.couplings, in.num_couplings, RDM_ROBOT_LINKS, "couplings");
   need_rows(in.curves, in.num_curves, RDM_ROBOT_LINKS, "curves");
-  need_rows(in.commands, in.num_commands, RDM_ROBOT_LINKS, "commands");
+  if (in.num_commands < -1)
+    fail(Code::kRange, "def.num_commands: %d is outside [-1, %d]", in.num_commands, RDM_ROBOT_LINKS);
+  need_rows(in.commands, std::max(in.num_commands, 0), RDM_ROBOT_LINKS, "commands");
   need_rows(in.fingers, in.num_fingers, RDM_ROBOT_LINKS, "fingers");
   RobotCopy r;
   for (int32_t i = 0; i < in.num_links; ++i) r.links.push_back(link_of(in.links[i]));
@@ -143,7 +145,7 @@ RobotCopy rdm::capi::robot_from(const rdm_robot_def* def) {
     r.couplings.push_back({c.link, c.other, c.ratio, c.slack});
   }
   for (int32_t i = 0; i < in.num_curves; ++i) r.curves.push_back(curve_of(in.curves[i]));
-  r.commands.assign(in.commands, in.commands + in.num_commands);
+  r.commands.assign(in.commands, in.commands + std::max(in.num_commands, 0));
   for (int32_t i = 0; i < in.num_fingers; ++i) {
     const rdm_robot_finger& f = in.fingers[i];
     r.tips.push_back({f.tip, vec(f.p_tip)});
@@ -152,6 +154,7 @@ RobotCopy rdm::capi::robot_from(const rdm_robot_def* def) {
   if (in.home) r.home.assign(in.home, in.home + in.num_links);
   if (in.folded) r.folded.assign(in.folded, in.folded + in.num_links);
   Robot& o = r.bind();
+  o.passive = in.num_commands < 0;
   if (in.closed) {
     r.closed.assign(in.closed, in.closed + std::clamp(o.num_actuated(), 0, RDM_ROBOT_LINKS));
     r.bind();
@@ -231,7 +234,7 @@ rdm_result rdm_robot_get(int32_t robot, rdm_robot_def* io) {
     d.num_pairs = r.self_pairs.count;
     d.num_couplings = r.couplings.count;
     d.num_curves = r.curves.count;
-    d.num_commands = r.num_actuated();
+    d.num_commands = r.passive ? -1 : r.num_actuated();
     d.num_fingers = r.fingers.count;
     d.mirror = r.mirror;
     d.root_mass = r.root.mass;

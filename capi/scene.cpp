@@ -7,6 +7,7 @@
 
 #if RDM_WITH_SIM
 #include "env/options/simulation.hpp"
+#include "objects/objects.hpp"
 #include "physics/model/inertia.hpp"
 
 using namespace rdm;
@@ -16,7 +17,8 @@ namespace {
 
 constexpr size_t kFirstBodySize = sizeof(rdm_body_def), kFirstRobotSize = sizeof(rdm_scene_robot);
 constexpr int32_t kMostShapes = 256, kMostThings = 1024;
-constexpr double kCentred = 1e-6;  // m
+constexpr double kCentred = 1e-6;   // m
+constexpr double kNoFriction = -1;  // of a material that no object brought
 
 Vec3 vec(const double v[3]) {
   return {v[0], v[1], v[2]};
@@ -95,52 +97,9 @@ ShapeDef read_shape(const rdm_scene& scene, const rdm_shape_def& in, const char*
   return s;
 }
 
-struct Solid {
-  double volume;
-  Inertia unit;  // of 1 kg, in the shape's frame
-};
-
-Solid solid_of(const ShapeDef& s) {
-  const Vec3& d = s.size;
-  switch (s.kind) {
-    case ShapeKind::kSphere:
-      return {4 * kPi / 3 * d.x * d.x * d.x, sphere_inertia(1, d.x)};
-    case ShapeKind::kCapsule:
-      return {kPi * d.x * d.x * (2 * d.y + 4 * d.x / 3), capsule_inertia(1, d.x, d.y)};
-    case ShapeKind::kBox:
-      return {8 * d.x * d.y * d.z, box_inertia(1, d)};
-    case ShapeKind::kCylinder:
-      return {2 * kPi * d.x * d.x * d.y, cylinder_inertia(1, d.x, d.y)};
-    case ShapeKind::kEllipsoid:
-      return {4 * kPi / 3 * d.x * d.y * d.z, ellipsoid_inertia(1, d)};
-    case ShapeKind::kHull: {
-      const Hull hull = make_hull(s.points.data(), static_cast<int32_t>(s.points.size()), s.name.text);
-      return {hull.volume, hull_inertia(1, hull)};
-    }
-    case ShapeKind::kPlane:
-      break;
-  }
-  fail(Code::kArgument, "shape %s: kind %d makes no body", s.name.text, static_cast<int>(s.kind));
-}
-
 // Of all shapes, solid and of one density; where two overlap, both count.
 Inertia inertia_of(const BodyDef& body, double mass) {
-  Inertia sum;
-  double volume = 0;
-  for (const ShapeDef& s : body.shapes) {
-    Solid solid = solid_of(s);
-    if (!(solid.volume > 0 && solid.volume < 1e12) || !finite(s.X_LS.p))
-      fail(Code::kRange, "shape %s: a size or its place is not within bounds", s.name.text);
-    volume += solid.volume;
-    solid.unit.mass *= solid.volume;
-    for (double& m : solid.unit.moment) m *= solid.volume;
-    Pose X = s.X_LS;
-    X.q = normalized(X.q);
-    const Inertia placed = transformed(solid.unit, X);
-    sum = sum.mass > 0 ? combined(sum, placed) : placed;
-  }
-  sum.mass = mass;
-  for (double& m : sum.moment) m *= mass / volume;
+  Inertia sum = shapes_inertia(body.shapes.data(), static_cast<int32_t>(body.shapes.size()), mass);
   if (norm(sum.com) > kCentred)
     fail(
         Code::kArgument,
@@ -149,6 +108,25 @@ Inertia inertia_of(const BodyDef& body, double mass) {
         body.name.text, sum.com.x, sum.com.y, sum.com.z);
   sum.com = {};
   return sum;
+}
+
+// The scene's material of that name, or a new one with its friction on all that are there.
+int32_t material_of(rdm_scene* scene, const ObjectMaterial& own) {
+  const int32_t known = find_name(
+      scene->materials, [](const Name& n) { return n.text; }, own.name);
+  if (known >= 0) return known;
+  const auto added = static_cast<int32_t>(scene->materials.size());
+  if (added == kMaxMaterials)
+    fail(Code::kRange, "material %s: more than %d", Quoted(own.name).text, kMaxMaterials);
+  scene->materials.push_back(own.name);
+  scene->frictions.push_back(own.friction);
+  for (int32_t i = 0; i <= added; ++i) {
+    const double other = scene->frictions[static_cast<size_t>(i)];
+    Friction f;
+    f.mu = other < 0 ? own.friction : std::min(own.friction, other);
+    scene->def.friction[i][added] = scene->def.friction[added][i] = f;
+  }
+  return added;
 }
 
 void place_robot(rdm_scene* scene, PlacedRobot* placed, int32_t articulation) {
@@ -259,6 +237,7 @@ void rdm::capi::begin_scene(const OwnTask& own, const Options& options, rdm_scen
   scene->draws.add(options, "gravity", Drawn::kGravity);
   scene->def.adjustable = !scene->draws.empty();
   scene->materials.push_back("default");
+  scene->frictions.push_back(kNoFriction);
   scene->fields = own.fields;
   scene->hold = own.hold;
   scene->mean = own.mean;
@@ -346,6 +325,7 @@ rdm_result rdm_scene_add_material(rdm_scene* scene, const char* name) {
     if (scene->materials.size() == kMaxMaterials)
       fail(Code::kRange, "material %s: more than %d", Quoted(name).text, kMaxMaterials);
     scene->materials.push_back(name);
+    scene->frictions.push_back(kNoFriction);
   });
 }
 
@@ -446,6 +426,25 @@ rdm_result rdm_scene_add_body(rdm_scene* scene, const rdm_body_def* body, int32_
       b.inertia = inertia_of(b, in.mass);
     }
     scene->def.bodies.push_back(std::move(b));
+    if (index) *index = static_cast<int32_t>(scene->def.bodies.size()) - 1;
+  });
+}
+
+rdm_result rdm_scene_add_object(rdm_scene* scene, int32_t object, const char* name, const double p[3],
+                                const double q[4], double scale, int32_t* index) {
+  return call_inside([&] {
+    need_open(scene);
+    const ObjectRef ref(object);
+    need_name(name, "name");
+    need_new_name(*scene, name);
+    need(p, "p");
+    need(q, "q");
+    if (!(scale >= 0.05 && scale <= 20)) fail(Code::kRange, "scale: %g is outside [0.05, 20]", scale);
+    if (scene->def.bodies.size() == kMostThings)
+      fail(Code::kRange, "body %s: more than %d", name, kMostThings);
+    const Pose X_WB{vec(p), quat(q)};
+    scene->def.bodies.push_back(
+        make_object_body(*ref, name, X_WB, 0, scale, material_of(scene, ref->material)));
     if (index) *index = static_cast<int32_t>(scene->def.bodies.size()) - 1;
   });
 }

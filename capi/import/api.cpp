@@ -171,7 +171,8 @@ void read_built(int32_t robot, Draft* d) {
   get_rows(robot, def.num_couplings, &d->couplings, rdm_robot_coupling_at);
   get_rows(robot, def.num_curves, &d->curves, rdm_robot_curve_at);
   get_rows(robot, def.num_fingers, &d->fingers, rdm_robot_finger_at);
-  d->commands.resize(static_cast<size_t>(def.num_commands));
+  d->passive = def.num_commands < 0;
+  d->commands.resize(static_cast<size_t>(std::max(def.num_commands, 0)));
   d->closed.resize(d->commands.size());
   d->home.resize(d->links.size());
   d->folded.resize(d->links.size());

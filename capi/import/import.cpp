@@ -154,6 +154,7 @@ void Draft::bind() {
   give(couplings, &def.couplings, &def.num_couplings);
   give(curves, &def.curves, &def.num_curves);
   give(commands, &def.commands, &def.num_commands);
+  if (passive) def.commands = nullptr, def.num_commands = -1;
   give(fingers, &def.fingers, &def.num_fingers);
   give(home, &def.home, nullptr);
   give(folded, &def.folded, nullptr);

@@ -50,6 +50,7 @@ struct Draft {
   std::vector<double> home, folded;
   std::vector<float> closed;
   bool all_pairs = false;  // all but neighbours, whatever `pairs` holds
+  bool passive = false;    // nothing is commanded
   rdm_robot_def def{};     // its scalars; arrays and counts by bind()
 
   std::vector<Note> notes;

@@ -115,7 +115,7 @@ struct Writer {
     rows(d.pairs, std::max(d.num_pairs, 0), "pairs");
     rows(d.couplings, d.num_couplings, "couplings");
     rows(d.curves, d.num_curves, "curves");
-    rows(d.commands, d.num_commands, "commands");
+    rows(d.commands, std::max(d.num_commands, 0), "commands");
     rows(d.fingers, d.num_fingers, "fingers");
     if (!d.name) refuse(RDM_ARGUMENT, "def.name is NULL");
     if (d.kind < 0 || d.kind > 2) refuse(RDM_RANGE, "def.kind: %d is outside [0, 2]", d.kind);
@@ -157,7 +157,9 @@ struct Writer {
     if (d.mirror >= 0 && d.mirror < 3) line("mirror", quoted(format("%c", "xyz"[d.mirror]).c_str()));
     if (d.home) line("home", list(d.home, n));
     if (d.folded) line("folded", list(d.folded, n));
-    if (d.commands) {
+    if (d.num_commands < 0) {
+      line("commands", quoted("none"));
+    } else if (d.commands) {
       std::string s = "[";
       for (int32_t i = 0; i < d.num_commands; ++i) s += (i ? ", " : "") + link(d.commands[i], "commands");
       line("commands", s + ']');
@@ -223,6 +225,7 @@ struct Writer {
   }
   // Commands of rdm_robot_create when there is no list: rows that follow no other and have no other's curve.
   static int32_t num_commands(const rdm_robot_def& d) {
+    if (d.num_commands < 0) return 0;
     if (d.commands) return d.num_commands;
     int32_t count = 0;
     for (int32_t i = 0; i < d.num_links; ++i) {
@@ -528,8 +531,13 @@ struct RobotReader {
     }
     if (const toml::node* n = file.get("commands")) {
       const toml::array* a = n->as_array();
-      if (!a) top.bad(RDM_FORMAT, line_of(*n), "commands is no list of links");
-      for (const toml::node& x : *a) out->commands.push_back(link(top, "commands", x));
+      out->passive = n->value<std::string>() == "none";
+      if (!a && !out->passive)
+        top.bad(RDM_FORMAT, line_of(*n), "commands is neither a list of links nor \"none\"");
+      for (size_t i = 0; a && i < a->size(); ++i) {
+        const toml::node& x = (*a)[i];
+        out->commands.push_back(link(top, "commands", x));
+      }
     }
   }
   void read_parts() {

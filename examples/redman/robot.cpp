@@ -73,7 +73,10 @@ Report show_robot(const RobotFlags& flags) {
                format("%.4g", l.effort), format("%.4g", l.mass)});
   }
   int32_t driven = def.num_commands;
-  if (driven == 0) driven = def.num_links - def.num_couplings;
+  if (driven < 0)
+    driven = 0;
+  else if (driven == 0)
+    driven = def.num_links - def.num_couplings;
   for (int32_t i = 0; i < def.num_curves && def.num_commands == 0; ++i)
     if (def.curves[i].driver != def.curves[i].link) --driven;
   text += format("%s: %s, %d joints, %d driven, %d shapes, %.4g kg\n\n", def.name,

@@ -230,13 +230,13 @@ RDM_API int32_t rdm_robot_count(void); /* number of robot descriptions */
 RDM_API rdm_result rdm_robot_at(int32_t index, rdm_robot *io);                 /* RANGE past the end */
 RDM_API rdm_result rdm_robot_joint(int32_t robot, int32_t i, rdm_joint *out);  /* i < num_joints */
 
-typedef struct rdm_object { /* frozen layout: an object of the throw tasks, by option object=... */
+typedef struct rdm_object { /* frozen layout: a thing by name, for option object=... */
   const char *name;         /* "egg"                                                          */
   const char *shape;        /* "capsule r 0.03, straight part 0.02": kind and sizes in m      */
   double mass;              /* kg; hull: of the default points, 500 kg/m3                     */
 } rdm_object;
-RDM_API int32_t rdm_object_count(void); /* number of objects */
-RDM_API rdm_result rdm_object_at(int32_t index, rdm_object *out);              /* RANGE past the end */
+RDM_API int32_t rdm_object_count(void); /* number of objects, those that were removed too */
+RDM_API rdm_result rdm_object_at(int32_t index, rdm_object *out);              /* RANGE past the end; NOT_FOUND: removed */
 
 /* ---- pool: worlds of one task, stepped together ----------------------------------------------------------- */
 typedef struct rdm_pool rdm_pool; /* handle */
@@ -681,7 +681,7 @@ typedef struct rdm_robot_def { /* a whole robot; the arrays are copied by rdm_ro
   int32_t num_pairs;       /* count                                                                       */
   int32_t num_couplings;   /* count                                                                       */
   int32_t num_curves;      /* count                                                                       */
-  int32_t num_commands;    /* count                                                                       */
+  int32_t num_commands;    /* count; -1: none, springs hold joints at home (of RDM_ROBOT_OTHER: a door, scissors) */
   int32_t num_fingers;     /* count                                                                       */
   int32_t mirror;          /* root axis (0, 1, 2) normal to the plane that a left one is mirrored in; -1: none */
   double root_mass;        /* of the root link, kg                                                        */
@@ -728,6 +728,54 @@ RDM_API rdm_result rdm_robot_kinematics(int32_t robot, const double *q, double *
  * least squares end elsewhere. UNSUPPORTED: no flange. */
 RDM_API rdm_result rdm_robot_reach(int32_t robot, const double pose[7], double *q, int32_t *found);
 
+/* ---- objects: a catalogue of everyday things, and your own ------------------------------------------------------ */
+/* An object is shapes, a mass, its moments and the friction of its surface, by name: option object=NAME of the tasks of hands,
+ * rdm_scene_add_object in a scene. Those of the YCB set are found by their number too ("025_mug"), with or without it.
+ *
+ *   rdm_object_def d;  int32_t object;
+ *   rdm_shape_def s = {.kind = RDM_BOX, .size = {0.02, 0.03, 0.06}};
+ *   rdm_object_def_init(&d, sizeof d);
+ *   d.name = "my_box";  d.shapes = &s;  d.num_shapes = 1;  d.mass = 0.2;
+ *   if (rdm_object_create(&object, &d)) puts(rdm_last_error());
+ */
+typedef struct rdm_shape_def { /* frozen layout: a shape of a body or an object, or one that stands still */
+  const char *name;        /* unique in the scene; NULL: that of the body. Of an object unused            */
+  const char *material;    /* of rdm_scene_add_material; NULL: "default". Of an object unused             */
+  const double *points;    /* [num_points][3] of an RDM_HULL: 4 to 32 points, m; else NULL                */
+  int32_t num_points;      /* count                                                                       */
+  int32_t kind;            /* RDM_SPHERE ... RDM_HULL; an RDM_PLANE stands still                          */
+  double size[3];          /* as rdm_shape, m; of a hull unused                                           */
+  double p[3];             /* position in the frame of the body, or in the world, m                       */
+  double q[4];             /* rotation; all 0: none                                                       */
+  uint8_t color[4];        /* red, green, blue, 255; all 0: grey                                          */
+  int32_t seen_only;       /* flag: nothing touches it                                                    */
+} rdm_shape_def;
+#define RDM_OBJECT_SHAPES 64
+typedef struct rdm_object_def { /* a whole object; rdm_object_create copies it with its shapes */
+  uint32_t struct_size;    /* bytes, set by rdm_object_def_init                                           */
+  int32_t num_shapes;      /* 1 to RDM_OBJECT_SHAPES                                                      */
+  const char *name;        /* letters, digits, '_', '-', '+'; at most 25                                  */
+  const char *alias;       /* another name; NULL                                                          */
+  const char *summary;     /* one line; NULL: none                                                        */
+  const char *material;    /* what its surface is: a name for scenes; NULL: "object"                      */
+  const rdm_shape_def *shapes; /* [num_shapes] in any one frame: a body's is at its centre of mass, axes stay */
+  double mass;             /* kg, 1e-6 to 1000                                                            */
+  double moment[6];        /* xx yy zz xy xz yz, kg m2, the frame's origin then is the centre of mass; all 0: of the
+                            * shapes, solid, of one density; where two overlap, both count                */
+  double friction;         /* coefficient of its surface on dry things, 0 to 10; default 0.5              */
+} rdm_object_def;
+RDM_API rdm_result rdm_object_def_init(rdm_object_def *def, size_t size); /* defaults into the first `size` bytes */
+RDM_API rdm_result rdm_object_find(const char *name, int32_t *index); /* name or alias; NOT_FOUND: nearest in the text */
+/* What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which are NULL here; texts
+ * live as long as the object. Shape i < num_shapes is in the frame at the centre of mass. */
+RDM_API rdm_result rdm_object_get(int32_t object, rdm_object_def *io);
+RDM_API rdm_result rdm_object_shape_at(int32_t object, int32_t i, rdm_shape_def *out);
+/* Adds an object under a number that no other gets, *out for rdm_object_at and what is here. ARGUMENT, RANGE: the text names
+ * the row; a name that is taken is an ARGUMENT. Objects belong to the process; any number of threads may look meanwhile. */
+RDM_API rdm_result rdm_object_create(int32_t *out, const rdm_object_def *def);
+/* Pools that have it keep it. ARGUMENT for the library's own. */
+RDM_API rdm_result rdm_object_remove(int32_t object);
+
 /* ---- tasks of your own --------------------------------------------------------------------------------------- */
 /* A task is a description and functions that the library calls: `build` for each pool that is made, to make the scene of
  * its worlds; the others in the resets and control steps of a world. Registered, it is a task like the library's own for
@@ -758,18 +806,6 @@ typedef struct rdm_world rdm_world; /* handle, within a call of the others: one 
 /* Sets rdm_last_error of this thread to `text` and returns `code`. */
 RDM_API rdm_result rdm_fail(rdm_result code, const char *text);
 
-typedef struct rdm_shape_def { /* frozen layout: a shape of a body, or one that stands still */
-  const char *name;        /* unique in the scene; NULL: that of the body                                 */
-  const char *material;    /* of rdm_scene_add_material; NULL: "default"                                  */
-  const double *points;    /* [num_points][3] of an RDM_HULL: 4 to 32 points, m; else NULL                */
-  int32_t num_points;      /* count                                                                       */
-  int32_t kind;            /* RDM_SPHERE ... RDM_HULL; an RDM_PLANE stands still                          */
-  double size[3];          /* as rdm_shape, m; of a hull unused                                           */
-  double p[3];             /* position in the frame of the body, or in the world, m                       */
-  double q[4];             /* rotation; all 0: none                                                       */
-  uint8_t color[4];        /* red, green, blue, 255; all 0: grey                                          */
-  int32_t seen_only;       /* flag: nothing touches it                                                    */
-} rdm_shape_def;
 typedef struct rdm_body_def { /* a free body; its frame is at its centre of mass */
   uint32_t struct_size;    /* bytes                                                                       */
   int32_t num_shapes;      /* count                                                                       */
@@ -822,6 +858,11 @@ RDM_API rdm_result rdm_scene_set_feedforward(rdm_scene *scene); /* worlds take r
 RDM_API rdm_result rdm_scene_set_adjustable(rdm_scene *scene);  /* worlds take rdm_world_scale */
 RDM_API rdm_result rdm_scene_add_robot(rdm_scene *scene, const rdm_scene_robot *robot, int32_t *index); /* index: NULL */
 RDM_API rdm_result rdm_scene_add_body(rdm_scene *scene, const rdm_body_def *body, int32_t *index); /* index: NULL */
+/* An object at the pose p [3] (m), q [4] (all 0: none) of its centre of mass, as the body and first shape `name` (others:
+ * name_1, name_2 ...), `scale` times as large, 0.05 to 20, its mass as it is; index: NULL. Its material is one of the scene: a
+ * new one rubs on each that is there with the object's friction, on another object's with the lower of the two. */
+RDM_API rdm_result rdm_scene_add_object(rdm_scene *scene, int32_t object, const char *name, const double p[3], const double q[4],
+                                        double scale, int32_t *index);
 RDM_API rdm_result rdm_scene_add_static(rdm_scene *scene, const rdm_shape_def *shape); /* stands still */
 /* For a task whose numbers follow from its options: another count for a field, in the order of rdm_task_def.fields; another
  * count of actions, with hold [count] and mean [count] as in rdm_task_def (NULL: 0). */

@@ -202,6 +202,10 @@ struct Check {
       for (int32_t k = 0; k < i; ++k)
         if (robot.curves[k].link == c.link) bad(Code::kArgument, "%s has two curves", Quoted(row).text);
     }
+    if (robot.passive && (robot.commands.count > 0 || robot.curves.count > 0))
+      bad(Code::kArgument, "it takes no commands, but has rows of commands or curves");
+    if (robot.passive && robot.kind != RobotKind::kOther)
+      bad(Code::kArgument, "a hand or an arm takes commands");
     for (int32_t i = 0; i < robot.commands.count; ++i) {
       index(robot.commands[i], 0, n, "commands", "link");
       if (robot.action_of(robot.commands[i]) != i)

@@ -143,6 +143,7 @@ bool Robot::follows(int32_t link) const {
 }
 
 int32_t Robot::num_actuated() const {
+  if (passive) return 0;
   if (commands.count > 0) return commands.count;
   int32_t n = 0;
   for (int32_t row = 0; row < links.count; ++row) n += !follows(row);
@@ -151,14 +152,14 @@ int32_t Robot::num_actuated() const {
 
 int32_t Robot::actuated(int32_t i) const {
   if (i >= 0 && i < commands.count) return commands[i];
-  if (commands.count == 0)
+  if (commands.count == 0 && !passive)
     for (int32_t row = 0; row < links.count; ++row)
       if (!follows(row) && i-- == 0) return row;
   fail(Code::kArgument, "%s: there is no such actuated joint", name);
 }
 
 int32_t Robot::action_of(int32_t link) const {
-  if (link < 0 || link >= links.count || follows(link)) return -1;
+  if (link < 0 || link >= links.count || follows(link) || passive) return -1;
   if (commands.count > 0) {
     const int32_t* at = std::find(commands.begin(), commands.end(), link);
     return at == commands.end() ? -1 : static_cast<int32_t>(at - commands.begin());

@@ -5,6 +5,7 @@
 #pragma once
 #include <cstdint>
 
+#include "base/table.hpp"
 #include "physics/model/scene.hpp"
 
 namespace rdm {
@@ -65,19 +66,6 @@ struct RobotTip {
   Vec3 p_L;  // the point beyond which nothing of the finger reaches
 };
 
-template <class T>
-struct Table {
-  const T* rows = nullptr;
-  int32_t count = 0;
-  const T* begin() const { return rows; }
-  const T* end() const { return rows + count; }
-  const T& operator[](int32_t i) const { return rows[i]; }
-};
-template <class T, int32_t N>
-constexpr Table<T> table(const T (&rows)[N]) {
-  return {rows, N};
-}
-
 // What a finger of a hand is made of: its rows stand together, from `first` to the link of its tip, and row i
 // of the table of fingers ends in row i of the tips. A role that a finger has not is -1.
 struct RobotFinger {
@@ -117,6 +105,7 @@ struct Robot {
   // Links with a command of their own, in action order; empty: all but the coupled and the driven ones, in
   // the order of their rows.
   Table<int32_t> commands = {};
+  bool passive = false;       // nothing is commanded: springs of its joints hold to `home`
   Table<double> home = {};    // [links] rad, where it stands at the start; empty: all 0
   Table<RobotTip> tips = {};  // in the order of the fingers; they carry the force sensors
   int32_t palm = kNoLink;     // link or kRootLink
@@ -177,5 +166,6 @@ void check_robot(const Robot& robot);
 // The tables in the library.
 extern const Robot kShadowHand, kAllegroHand, kSchunkSvh, kBarrettBh282, kRobotiq3f;
 extern const Robot kFrankaPanda, kAbbIrb4600, kKinovaJaco2, kKukaIiwa7, kXarm6, kAbbCrb15000, kUr5e, kUr10e;
+extern const Robot kDrawer, kDoor, kScrewBottle, kScissors, kTap;  // articulated objects
 
 }  // namespace rdm

@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "base/elementary.hpp"
+#include "objects/hull_text.hpp"
+#include "objects/objects.hpp"
 #include "tasks/hand/hand_control.hpp"
 #include "tasks/state_check.hpp"
-#include "tasks/throw/throw_objects.hpp"
 
 namespace rdm {
 namespace {
@@ -23,6 +24,9 @@ constexpr OptionSpec kRows[] = {
                            "angular damping of the object, 1/s; stands for rolling friction")),
     drawable(number_option("object_scale", 1, 0.1, 10, "factor on the object's size; its mass stays")),
     flag_option("canonical_rotation", false, "rotation error with w >= 0 in the observation"),
+    flag_option(
+        "own_friction", false,
+        "the friction that the object's surface has, for friction.hand_object and friction.object_ground"),
     drawable(number_option("friction.object_ground", 1, 0, 10, "friction coefficient of object and ground")),
 };
 
@@ -44,7 +48,8 @@ void check_goal(const GoalState& state) {
 }
 
 void add_object_options(const ObjectPlace& place, OptionTable& table) {
-  table.add(text_option("object", place.object, throw_object_choices(), "what is handled"));
+  table.add(
+      text_option("object", place.object, nullptr, "what is handled, an object's name (redman objects)"));
   table.add(text_option("hull", kOctahedron, nullptr,
                         "points of object=hull, m, at most 32: x,y,z;x,y,z;... (redman hull makes them)",
                         kHullTextSize - 1));
@@ -74,22 +79,21 @@ ObjectGoal object_goal_from(const Options& o) {
 
 void add_object(const Options& o, HandScene* scene) {
   const Pose start{object_goal_from(o).start, {}};
-  BodyDef body = make_throw_body(throw_object_named(o.text("object")), o.number("object_mass"),
-                                 o.number("object_damping"), kObject, start, o.text("hull"));
-  if (const double size = o.number("object_scale"); size != 1) {
-    for (ShapeDef& shape : body.shapes) {
-      shape.size = size * shape.size;
-      shape.X_LS.p = size * shape.X_LS.p;
-      for (Vec3& p : shape.points) p = size * p;
-    }
-    for (double& m : body.inertia.moment) m *= size * size;
-  }
+  const double mass = o.number("object_mass"), scale = o.number("object_scale");
+  const ObjectRef object(find_object(o.text("object")));
+  BodyDef body = same_name(object->name, "hull")
+                     ? make_hull_body(o.text("hull"), "object", start, mass, scale, kObject)
+                     : make_object_body(*object, "object", start, mass, scale, kObject);
+  body.angular_damping = o.number("object_damping");
   const auto index = static_cast<int32_t>(scene->bodies.size());
   scene->bodies.push_back(body);
   scene->draws.add(o, "object_mass", Drawn::kBodyMass, index);
   scene->draws.add(o, "object_damping", Drawn::kBodyDamping, index);
   scene->draws.add(o, "object_scale", Drawn::kBodySize, index);
   set_friction(scene, kObject, kGround, o, "friction.object_ground");
+  if (!o.flag("own_friction")) return;
+  for (const int32_t other : {kRightHand, kLeftHand, kGround})
+    set_friction(scene, kObject, other, object->material.friction);
 }
 
 Quat draw_rotation(Stream& stream) {

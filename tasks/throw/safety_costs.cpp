@@ -167,9 +167,8 @@ SafetyCosts safety_costs_from(const Options& o, SafetyKind kind, const Scene& sc
   c.throw_low = o.number("throw_angle.low") * kDegree;
   c.throw_high = o.number("throw_angle.high") * kDegree;
   c.release_speed = o.number("release_speed");
-  const SceneShape* object = &scene.shapes[static_cast<size_t>(scene.find_shape("object"))];
   c.right_pairs = pairs_between(
-      scene, [&](const SceneShape& x) { return &x == object; },
+      scene, [](const SceneShape& x) { return x.carrier == Carrier::kBody && x.index == 0; },
       [&](const SceneShape& x) { return x.articulation == right.articulation; });
   return c;
 }

@@ -38,7 +38,7 @@ struct Described {
     rows(&couplings, def.num_couplings, rdm_robot_coupling_at);
     rows(&curves, def.num_curves, rdm_robot_curve_at);
     rows(&fingers, def.num_fingers, rdm_robot_finger_at);
-    commands.resize(static_cast<size_t>(def.num_commands));
+    commands.resize(static_cast<size_t>(std::max(def.num_commands, 0)));
     closed.resize(commands.size());
     home.resize(links.size());
     folded.resize(links.size());

@@ -1,6 +1,7 @@
 #include "physics/model/inertia.hpp"
 
 #include "base/eigen.hpp"
+#include "base/error.hpp"
 
 // Moments of inertia (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 2.13), with I about the
 // centre of mass c:
@@ -22,6 +23,34 @@ Inertia diagonal(double mass, double xx, double yy, double zz) {
   out.mass = mass;
   out.moment[0] = xx, out.moment[1] = yy, out.moment[2] = zz;
   return out;
+}
+
+struct Solid {
+  double volume;
+  Inertia unit;  // of 1 kg, in the shape's frame
+};
+
+Solid solid_of(const ShapeDef& s) {
+  const Vec3& d = s.size;
+  switch (s.kind) {
+    case ShapeKind::kSphere:
+      return {4 * kPi / 3 * d.x * d.x * d.x, sphere_inertia(1, d.x)};
+    case ShapeKind::kCapsule:
+      return {kPi * d.x * d.x * (2 * d.y + 4 * d.x / 3), capsule_inertia(1, d.x, d.y)};
+    case ShapeKind::kBox:
+      return {8 * d.x * d.y * d.z, box_inertia(1, d)};
+    case ShapeKind::kCylinder:
+      return {2 * kPi * d.x * d.x * d.y, cylinder_inertia(1, d.x, d.y)};
+    case ShapeKind::kEllipsoid:
+      return {4 * kPi / 3 * d.x * d.y * d.z, ellipsoid_inertia(1, d)};
+    case ShapeKind::kHull: {
+      const Hull hull = make_hull(s.points.data(), static_cast<int32_t>(s.points.size()), s.name.text);
+      return {hull.volume, hull_inertia(1, hull)};
+    }
+    case ShapeKind::kPlane:
+      break;
+  }
+  fail(Code::kArgument, "shape %s: kind %d makes no body", s.name.text, static_cast<int>(s.kind));
 }
 
 }  // namespace
@@ -99,6 +128,27 @@ Inertia hull_inertia(double mass, const Hull& hull) {
   out.com = hull.com;
   for (int i = 0; i < 6; ++i) out.moment[i] = mass * hull.moment[i];
   return out;
+}
+
+Inertia shapes_inertia(const ShapeDef* shapes, int32_t count, double mass) {
+  Inertia sum;
+  double volume = 0;
+  for (int32_t i = 0; i < count; ++i) {
+    const ShapeDef& s = shapes[i];
+    Solid solid = solid_of(s);
+    if (!(solid.volume > 0 && solid.volume < 1e12) || !finite(s.X_LS.p))
+      fail(Code::kRange, "shape %s: a size or its place is not within bounds", s.name.text);
+    volume += solid.volume;
+    solid.unit.mass *= solid.volume;
+    for (double& m : solid.unit.moment) m *= solid.volume;
+    Pose X = s.X_LS;
+    X.q = normalized(X.q);
+    const Inertia placed = transformed(solid.unit, X);
+    sum = sum.mass > 0 ? combined(sum, placed) : placed;
+  }
+  sum.mass = mass;
+  for (double& m : sum.moment) m *= mass / volume;
+  return sum;
 }
 
 }  // namespace rdm

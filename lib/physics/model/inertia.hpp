@@ -25,4 +25,9 @@ Inertia cylinder_inertia(double mass, double radius, double half_length);  // al
 Inertia ellipsoid_inertia(double mass, const Vec3& half);
 Inertia hull_inertia(double mass, const Hull& hull);  // com where it is in the hull's frame
 
+// Shapes welded where they stand, solid and of one density, with the total mass; where two overlap, both
+// count. Error(kRange) for a size or place out of bounds, Error(kArgument) for a plane; with the shape's
+// name.
+Inertia shapes_inertia(const ShapeDef* shapes, int32_t count, double mass);
+
 }  // namespace rdm

@@ -2,8 +2,8 @@
 // that hold all of its corners, and moments that a solid can have.
 #include "base/error.hpp"
 #include "fuzz.hpp"
+#include "objects/hull_text.hpp"
 #include "physics/model/hull.hpp"
-#include "tasks/throw/throw_objects.hpp"
 
 namespace hard {
 

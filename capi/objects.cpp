@@ -1,0 +1,136 @@
+// rdm_object_*: the catalogue of objects, and those that a host describes.
+#include "capi/handles.hpp"
+
+#if RDM_WITH_SIM
+#include "objects/objects.hpp"
+
+using namespace rdm;
+using namespace rdm::capi;
+
+static_assert(RDM_OBJECT_SHAPES == kMaxObjectShapes);
+
+namespace {
+
+constexpr size_t kFirstSize = sizeof(rdm_object_def);
+constexpr uint8_t kGrey = 200;
+
+rdm_object_def default_def() {
+  rdm_object_def d{};
+  d.friction = 0.5;
+  return d;
+}
+
+// `points` takes a hull's.
+ObjectShape shape_of(const rdm_shape_def& in, int32_t i, Vector<Vec3>* points) {
+  ObjectShape s{};
+  s.kind = static_cast<ShapeKind>(in.kind);
+  s.size = {in.size[0], in.size[1], in.size[2]};
+  s.p = {in.p[0], in.p[1], in.p[2]};
+  const bool none = in.q[0] == 0 && in.q[1] == 0 && in.q[2] == 0 && in.q[3] == 0;
+  if (!none) s.q = {in.q[3], in.q[0], in.q[1], in.q[2]};
+  const bool grey = !(in.color[0] || in.color[1] || in.color[2] || in.color[3]);
+  for (int k = 0; k < 3; ++k) s.color[k] = grey ? kGrey : in.color[k];
+  s.collides = in.seen_only == 0;
+  if (in.kind != RDM_HULL) return s;
+  s.size = {};
+  if (in.num_points < 4 || in.num_points > kMaxHullPoints)
+    fail(Code::kRange, "def.shapes[%d].num_points: %d is outside [4, %d]", i, in.num_points, kMaxHullPoints);
+  if (!in.points) fail(Code::kArgument, "def.shapes[%d].points is NULL", i);
+  for (int32_t k = 0; k < in.num_points; ++k)
+    points->push_back({in.points[3 * k], in.points[3 * k + 1], in.points[3 * k + 2]});
+  s.points = {points->data(), in.num_points};
+  return s;
+}
+
+}  // namespace
+
+int32_t rdm_object_count(void) {
+  return num_objects();
+}
+
+rdm_result rdm_object_at(int32_t index, rdm_object* out) {
+  return call(nullptr, [&] {
+    need(out, "out");
+    const ObjectRef object(index);
+    *out = {object->name, object->shape_text, object->mass};
+  });
+}
+
+rdm_result rdm_object_def_init(rdm_object_def* def, size_t size) {
+  return call(nullptr, [&] { init_struct(def, size, kFirstSize, default_def(), "def"); });
+}
+
+rdm_result rdm_object_find(const char* name, int32_t* index) {
+  return call(nullptr, [&] {
+    need(name, "name");
+    need(index, "index");
+    *index = find_object(name);
+  });
+}
+
+rdm_result rdm_object_get(int32_t object, rdm_object_def* io) {
+  return call(nullptr, [&] {
+    check_out(io, kFirstSize, "io");
+    const ObjectRef ref(object);
+    rdm_object_def d = default_def();
+    d.num_shapes = ref->shapes.count;
+    d.name = ref->name;
+    d.alias = ref->alias;
+    d.summary = ref->help;
+    d.material = ref->material.name;
+    d.friction = ref->material.friction;
+    d.mass = ref->mass;
+    std::copy_n(object_inertia(*ref).moment, 6, d.moment);
+    write_struct(io, d, kFirstSize, "io");
+  });
+}
+
+rdm_result rdm_object_shape_at(int32_t object, int32_t i, rdm_shape_def* out) {
+  return call(nullptr, [&] {
+    need(out, "out");
+    const ObjectRef ref(object);
+    need_index(i, ref->shapes.count, "i");
+    const ObjectShape& s = ref->shapes[i];
+    const Vec3 p = s.p - object_inertia(*ref).com;
+    const Quat q = normalized(s.q);
+    rdm_shape_def o{};
+    o.kind = static_cast<int32_t>(s.kind);
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    o.points = s.points.count ? &s.points[0].x : nullptr;
+    o.num_points = s.points.count;
+    for (int k = 0; k < 3; ++k) o.size[k] = s.size[k], o.p[k] = p[k];
+    o.q[0] = q.x, o.q[1] = q.y, o.q[2] = q.z, o.q[3] = q.w;
+    std::copy_n(s.color, 3, o.color);
+    o.color[3] = 255;
+    o.seen_only = !s.collides;
+    *out = o;
+  });
+}
+
+rdm_result rdm_object_create(int32_t* out, const rdm_object_def* def) {
+  return call(nullptr, [&] {
+    need(out, "out");
+    const auto in = read_struct(def, kFirstSize, default_def(), "def");
+    if (in.num_shapes < 1 || in.num_shapes > RDM_OBJECT_SHAPES)
+      fail(Code::kRange, "def.num_shapes: %d is outside [1, %d]", in.num_shapes, RDM_OBJECT_SHAPES);
+    need(in.shapes, "def.shapes");
+    Vector<Vector<Vec3>> points(static_cast<size_t>(in.num_shapes));
+    Vector<ObjectShape> shapes;
+    for (int32_t i = 0; i < in.num_shapes; ++i)
+      shapes.push_back(shape_of(in.shapes[i], i, &points[static_cast<size_t>(i)]));
+    Object o{};
+    o.name = in.name;
+    o.alias = in.alias;
+    o.help = in.summary;
+    o.material = {in.material ? in.material : "object", in.friction};
+    o.mass = in.mass;
+    o.shapes = {shapes.data(), in.num_shapes};
+    std::copy_n(in.moment, 6, o.moment);
+    *out = add_object(o);
+  });
+}
+
+rdm_result rdm_object_remove(int32_t object) {
+  return call(nullptr, [&] { remove_object(object); });
+}
+#endif
