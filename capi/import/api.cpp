@@ -155,44 +155,15 @@ void give(rdm_import** out, std::unique_ptr<rdm_import> made) {
   *out = made.release();
 }
 
-template <class T, class F>
-void get_rows(int32_t robot, int32_t count, std::vector<T>* rows, F&& at) {
-  rows->resize(static_cast<size_t>(count));
-  for (int32_t i = 0; i < count; ++i)
-    if (const rdm_result r = at(robot, i, rows->data() + i)) refuse(r, "%s", rdm_last_error());
-}
+constexpr size_t kLongestPath = 120;  // of a name in a text
 
-void read_built(int32_t robot, Draft* d) {
-  if (const rdm_result r = rdm_robot_get(robot, &d->def)) refuse(r, "%s", rdm_last_error());
-  rdm_robot_def& def = d->def;
-  get_rows(robot, def.num_links, &d->links, rdm_robot_link_at);
-  get_rows(robot, def.num_shapes, &d->shapes, rdm_robot_shape_at);
-  get_rows(robot, def.num_pairs, &d->pairs, rdm_robot_pair_at);
-  get_rows(robot, def.num_couplings, &d->couplings, rdm_robot_coupling_at);
-  get_rows(robot, def.num_curves, &d->curves, rdm_robot_curve_at);
-  get_rows(robot, def.num_fingers, &d->fingers, rdm_robot_finger_at);
-  d->passive = def.num_commands < 0;
-  d->commands.resize(static_cast<size_t>(std::max(def.num_commands, 0)));
-  d->closed.resize(d->commands.size());
-  d->home.resize(d->links.size());
-  d->folded.resize(d->links.size());
-  if (const rdm_result r =
-          rdm_robot_poses_of(robot, d->commands.data(), d->home.data(), d->folded.data(), d->closed.data()))
-    refuse(r, "%s", rdm_last_error());
-  // 0 where it has none
-  const auto none = [](const auto& v) {
-    return std::all_of(v.begin(), v.end(), [](auto x) { return x == 0; });
-  };
-  if (none(d->folded) && none(d->closed)) d->folded.clear(), d->closed.clear();
-  // Texts belong to the robot, which may go before the handle does.
-  const auto keep = [&](const char*& text) {
-    if (text) text = d->keep(text);
-  };
-  keep(def.name), keep(def.alias), keep(def.summary);
-  for (rdm_robot_link& l : d->links) keep(l.name), keep(l.joint);
-  for (rdm_robot_shape& s : d->shapes) keep(s.name);
-  for (rdm_robot_finger& f : d->fingers) keep(f.name);
-  d->bind();
+int32_t read_named_task(const std::string& bytes, const std::string& file) {
+  try {
+    return read_task(bytes, file);
+  } catch (const Refusal& r) {
+    if (file.empty()) throw;
+    throw Refusal{r.code, file + ": " + r.text};
+  }
 }
 
 }  // namespace
@@ -303,6 +274,24 @@ rdm_result rdm_import_write(const rdm_robot_def* def, char* text, size_t capacit
       refuse(RDM_RANGE, "capacity: %zu is outside [%zu, ...]", capacity, out.size() + 1);
     *size = out.size();
     if (text) std::memcpy(text, out.c_str(), out.size() + 1);
+  });
+}
+
+rdm_result rdm_import_task(int32_t* task, const char* path) {
+  return call(nullptr, [&] {
+    need(task, "task");
+    need(path, "path");
+    *task = read_named_task(read_file(path), clean(path, kLongestPath));
+  });
+}
+
+rdm_result rdm_import_task_text(int32_t* task, const void* bytes, size_t size, const char* file) {
+  return call(nullptr, [&] {
+    need(task, "task");
+    if (size > 0) need(bytes, "bytes");
+    if (size > kMostBytes) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostBytes);
+    *task = read_named_task(std::string(static_cast<const char*>(bytes), size),
+                            file ? clean(file, kLongestPath) : "");
   });
 }
 

@@ -56,6 +56,13 @@ size_t distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+template <class T, class F>
+void get_rows(int32_t robot, int32_t count, std::vector<T>* rows, F&& at) {
+  rows->resize(static_cast<size_t>(count));
+  for (int32_t i = 0; i < count; ++i)
+    if (const rdm_result r = at(robot, i, rows->data() + i)) refuse(r, "%s", rdm_last_error());
+}
+
 }  // namespace
 
 std::string format(const char* pattern, ...) {
@@ -171,6 +178,39 @@ void Draft::note(int32_t kind, int32_t line, const char* pattern, ...) {
   va_start(list, pattern);
   notes.push_back({kind, line, clean(vformat(pattern, list), 400)});
   va_end(list);
+}
+
+void read_built(int32_t robot, Draft* d) {
+  if (const rdm_result r = rdm_robot_get(robot, &d->def)) refuse(r, "%s", rdm_last_error());
+  rdm_robot_def& def = d->def;
+  get_rows(robot, def.num_links, &d->links, rdm_robot_link_at);
+  get_rows(robot, def.num_shapes, &d->shapes, rdm_robot_shape_at);
+  get_rows(robot, def.num_pairs, &d->pairs, rdm_robot_pair_at);
+  get_rows(robot, def.num_couplings, &d->couplings, rdm_robot_coupling_at);
+  get_rows(robot, def.num_curves, &d->curves, rdm_robot_curve_at);
+  get_rows(robot, def.num_fingers, &d->fingers, rdm_robot_finger_at);
+  d->passive = def.num_commands < 0;
+  d->commands.resize(static_cast<size_t>(std::max(def.num_commands, 0)));
+  d->closed.resize(d->commands.size());
+  d->home.resize(d->links.size());
+  d->folded.resize(d->links.size());
+  if (const rdm_result r =
+          rdm_robot_poses_of(robot, d->commands.data(), d->home.data(), d->folded.data(), d->closed.data()))
+    refuse(r, "%s", rdm_last_error());
+  // 0 where it has none
+  const auto none = [](const auto& v) {
+    return std::all_of(v.begin(), v.end(), [](auto x) { return x == 0; });
+  };
+  if (none(d->folded) && none(d->closed)) d->folded.clear(), d->closed.clear();
+  // Texts belong to the robot, which may go before the handle does.
+  const auto keep = [&](const char*& text) {
+    if (text) text = d->keep(text);
+  };
+  keep(def.name), keep(def.alias), keep(def.summary);
+  for (rdm_robot_link& l : d->links) keep(l.name), keep(l.joint);
+  for (rdm_robot_shape& s : d->shapes) keep(s.name);
+  for (rdm_robot_finger& f : d->fingers) keep(f.name);
+  d->bind();
 }
 
 }  // namespace rdm::import

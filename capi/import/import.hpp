@@ -76,6 +76,10 @@ void read_urdf(const std::string& bytes, const Options& options, Draft* out);
 void read_mjcf(const std::string& bytes, const Options& options, Draft* out);
 void read_robot(const std::string& bytes, const Options& options, Draft* out);
 std::string write_robot(const rdm_robot_def& def);
+// A robot that is there, with all its rows.
+void read_built(int32_t robot, Draft* out);
+// Registers the task that the bytes describe; its number. `file` is how texts name it.
+int32_t read_task(const std::string& bytes, const std::string& file);
 // Whether the bytes begin with an element, and which: "robot", "mujoco"; "" for what is no XML.
 std::string first_element(const std::string& bytes);
 

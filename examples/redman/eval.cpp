@@ -86,7 +86,8 @@ void add_eval(CLI::App& app, Run& run) {
   command->add_option(
       "--policy", flags->policy,
       "policy file, run folder, .demo file, demo, zero, hold or random; a run's task options come with it");
-  CLI::Option* task = add_pool_flags(*command, flags->pool, "task; default: the policy's");
+  CLI::Option* task =
+      add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
   command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));
   command->add_flag("--stochastic", flags->stochastic, "sample actions instead of taking the mean");
   add_cost_limit_flag(*command, flags->limits);

@@ -4,7 +4,6 @@
 #include "commands.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
-#include "common/robots.hpp"
 #include "common/text.hpp"
 #include "play/playback.hpp"
 #include "play/scene.hpp"
@@ -133,10 +132,10 @@ void add_render(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RenderFlags>();
   CLI::App* command =
       app.add_subcommand("render", "Draw a moment, a strip of moments, a film or a playback of an episode");
-  CLI::Option* task = command->add_option("--task", flags->pool.task, "task; default: the policy's");
+  CLI::Option* task =
+      add_task_flag(*command, flags->pool.task, "--task", "task, or its file; default: the policy's");
   command->add_option("--policy", flags->policy,
                       "policy file, run folder, .demo file, demo, zero, hold or random");
-  add_robot_flag(*command);
   command->add_option("--seed", flags->pool.seed, "seed of the episode");
   CLI::Option* step = command->add_option("--step", flags->step, "control step to draw; 0: the start")
                           ->check(CLI::NonNegativeNumber);

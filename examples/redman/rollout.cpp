@@ -128,7 +128,8 @@ Report run_rollout(RolloutFlags flags) {
 void add_rollout(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RolloutFlags>();
   CLI::App* command = app.add_subcommand("rollout", "Play episodes and write what happened");
-  CLI::Option* task = add_pool_flags(*command, flags->pool, "task; default: the policy's");
+  CLI::Option* task =
+      add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
   command->add_option("--policy", flags->policy,
                       "policy file, run folder, .demo file, recorded .npz file, demo, zero, hold or random");
   CLI::Option* episodes =

@@ -4,7 +4,6 @@
 #include "commands.hpp"
 #include "common/json.hpp"
 #include "common/names.hpp"
-#include "common/robots.hpp"
 #include "common/text.hpp"
 #include "play/evaluate.hpp"
 #include "run/trainer.hpp"
@@ -42,6 +41,7 @@ Trainer begin(TrainFlags flags) {
   take_limit_from_sets(flags.sets, run.limits);
   apply_sets(flags.sets, run.pool, &run.agent);
   run.steps = whole_steps(flags.steps);
+  run.own = own_files(task_at(find_task(run.pool.task)).name);
   Trainer trainer(run);  // a wrong value throws here or below, before there is a folder
   trainer.prepare();
   trainer.begin(
@@ -113,7 +113,7 @@ void add_train(CLI::App& app, Run& run) {
   r.pool.envs = 64;
   CLI::App* command = app.add_subcommand("train", "Train a policy into a run folder, or go on with one");
   std::vector<CLI::Option*> others = {
-      command->add_option("--task,--env-id", r.pool.task, "task"),
+      add_task_flag(*command, r.pool.task, "--task,--env-id", "task, or its file (.task)"),
       command->add_option("--algo", r.agent.algo, "algorithm"),
       command->add_option("--envs,--num-envs", r.pool.envs, "worlds"),
       command->add_option("--seed", r.pool.seed, "seed of worlds, weights and noise"),
@@ -129,7 +129,6 @@ void add_train(CLI::App& app, Run& run) {
   add_cost_limit_flag(*command, r.limits);
   add_set_flag(*command, flags->sets);
   others.push_back(command->get_option("--cost-limit"));
-  add_robot_flag(*command);
   others.push_back(command->get_option("--set"));
   others.push_back(command->add_flag(
       "--no-tensorboard", [&r](int64_t) { r.events = false; }, "no event file of the curve for TensorBoard"));

@@ -1,4 +1,4 @@
-/* redman_import.h: robots out of files, a library of its own (redman_import) beside redman. Experimental.
+/* redman_import.h: robots and tasks out of files, a library of its own (redman_import) beside redman. Experimental.
  *
  * URDF, the kinematic subset of MJCF, and redman's own text format (.robot: TOML, 1:1 with rdm_robot_def) become an
  * rdm_robot_def; what a file holds beyond that is listed, each element with its line.
@@ -83,6 +83,12 @@ RDM_API rdm_result rdm_import_note_at(const rdm_import *i, int32_t n, rdm_import
 RDM_API rdm_result rdm_import_check(rdm_import *i);
 /* The robot as a .robot file, text [capacity]; read back it is the same to the last bit. ARGUMENT: a row names none. */
 RDM_API rdm_result rdm_import_write(const rdm_robot_def *def, char *text, size_t capacity, size_t *size);
+/* A task out of a .task file: its scene, observation, rewards and costs as text (TOML, 1:1 with rdm_task_def and what rdm_scene_*
+ * takes, and lists of terms in the place of functions). Registered under the name that it says; *task is for rdm_task_at and
+ * rdm_task_remove. A world with its default options was made, reset and stepped before. The codes of rdm_import_file. */
+RDM_API rdm_result rdm_import_task(int32_t *task, const char *path);
+/* The same for bytes [size]; `file` begins the texts of errors, NULL: nothing does. */
+RDM_API rdm_result rdm_import_task_text(int32_t *task, const void *bytes, size_t size, const char *file);
 /* This thread's last failure in this library, one line; valid until its next failing call. */
 RDM_API const char *rdm_import_error(void);
 

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <redman/redman.hpp>
 
+#include "common/task_files.hpp"
 #include "common/text.hpp"
 
 namespace tool {
@@ -78,7 +79,7 @@ std::string nearest_hint(const std::string& word, const std::vector<std::string>
 }
 
 int32_t find_task(const std::string& name) {
-  return find(rdm_task_find, name);
+  return find(rdm_task_find, task_name(name));
 }
 int32_t find_algo(const std::string& name) {
   return find(rdm_algo_find, name);

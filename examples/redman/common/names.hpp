@@ -16,7 +16,7 @@ bool same_name(const std::string& a, const std::string& b);
 // texts.
 std::string nearest_hint(const std::string& word, const std::vector<std::string>& names);
 
-// Index by name; Usage with the nearest known name.
+// Index by name, of a task by its file too; Usage with the nearest known name.
 int32_t find_task(const std::string& name);
 int32_t find_algo(const std::string& name);
 rdm_task task_at(int32_t index);

@@ -6,6 +6,7 @@
 #include "common/files.hpp"
 #include "common/names.hpp"
 #include "common/report.hpp"
+#include "common/task_files.hpp"
 
 namespace tool {
 
@@ -66,12 +67,30 @@ rdm_robot_def def_of(const Import& import) {
   return def;
 }
 
-int32_t load_robot(const std::string& file) {
-  const Import import = import_robot(file, {});
+namespace {
+
+int32_t add_robot(const Import& import, const std::string& where) {
   const rdm_robot_def def = def_of(import);
   int32_t robot = -1;
-  if (rdm_robot_create(&robot, &def) != RDM_OK) throw Failure(file + ": " + rdm_last_error());
+  if (rdm_robot_create(&robot, &def) != RDM_OK) throw Failure(where + ": " + rdm_last_error());
+  remember_robot(def.name, robot_text(def));
   return robot;
+}
+
+}  // namespace
+
+int32_t load_robot(const std::string& file) {
+  return add_robot(import_robot(file, {}), file);
+}
+
+int32_t load_robot_text(const std::string& text, const std::string& where) {
+  rdm_import_options o;
+  rdm_import_options_init(&o, sizeof o);
+  o.format = RDM_IMPORT_ROBOT;
+  rdm_import* made = nullptr;
+  if (rdm_import_text(&made, text.data(), text.size(), &o) != RDM_OK)
+    throw Failure(where + ": " + rdm_import_error());
+  return add_robot(Import(made), where);
 }
 
 std::string robot_text(const rdm_robot_def& def) {
@@ -99,6 +118,9 @@ rdm_robot_def def_of(const Import&) {
   without();
 }
 int32_t load_robot(const std::string&) {
+  without();
+}
+int32_t load_robot_text(const std::string&, const std::string&) {
   without();
 }
 std::string robot_text(const rdm_robot_def&) {

@@ -30,6 +30,8 @@ Import import_robot(const std::string& file, const ImportFlags& flags);
 rdm_robot_def def_of(const Import& import);
 // The file's robot, added to those of the process; 0 and up.
 int32_t load_robot(const std::string& file);
+// The same of a .robot file's text; `where` begins what is wrong with it.
+int32_t load_robot_text(const std::string& text, const std::string& where);
 // As a .robot file.
 std::string robot_text(const rdm_robot_def& def);
 

@@ -6,6 +6,7 @@
 
 #include "common/names.hpp"
 #include "common/robots.hpp"
+#include "common/task_files.hpp"
 #include "common/text.hpp"
 
 namespace tool {
@@ -50,12 +51,22 @@ std::vector<rdm_option> raw_options(const Options& options) {
   return raw;
 }
 
+CLI::Option* add_task_flag(CLI::App& command, std::string& task, const char* names, const char* help) {
+  add_robot_flag(command);  // before: the task may be made of it
+  return command.add_option(names, task, help)
+      ->transform(CLI::Validator(
+          [](std::string& word) {
+            word = task_name(word);
+            return std::string();
+          },
+          ""));
+}
+
 CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help) {
-  CLI::Option* task = command.add_option("--task,--env-id", pool.task, task_help);
+  CLI::Option* task = add_task_flag(command, pool.task, "--task,--env-id", task_help);
   command.add_option("--envs,--num-envs", pool.envs, "worlds");
   command.add_option("--threads", pool.threads, "threads; 0: the caller's own");
   command.add_option("--seed", pool.seed, "seed");
-  add_robot_flag(command);
   return task;
 }
 

@@ -1,6 +1,7 @@
 #include "run/config.hpp"
 
 #include <cmath>
+#include <functional>
 #include <sstream>
 
 #include "common/json.hpp"
@@ -52,30 +53,35 @@ std::string config_text(const RunSettings& s, const redman::Pool& pool, const re
 
   Json algo_cfgs = values_json(agent.settings());
   algo_cfgs["steps_per_epoch"] = steps_per_epoch;
-  const Json json = {
-      {"exp_name", format("%s-%s-seed-%llu", task_name.c_str(), algo_name.c_str(),
-                          static_cast<unsigned long long>(s.pool.seed))},
-      {"task", task_name},
-      {"algo", algo_name},
-      {"seed", s.pool.seed},
-      {"set", as_sets(s.pool.options)},
-      {"set_algo", as_sets(s.agent.options)},
-      {"set_cost_limit", s.limits},
-      {"cost_limits", limit_values},
-      {"train_cfgs",
-       {{"total_steps", s.steps},
-        {"vector_env_nums", s.pool.envs},
-        {"threads", s.pool.threads},
-        {"eval_every", s.eval_every},
-        {"checkpoint_every", s.checkpoint_every},
-        {"tensorboard", s.events}}},
-      {"algo_cfgs", algo_cfgs},
-      {"env_cfgs", values_json(pool.settings())},
-      {"obs_dim", pool.spec().obs_dim},
-      {"action_dim", pool.spec().action_dim},
-      {"layout_hash", format("%016llx", static_cast<unsigned long long>(pool.spec().layout_hash))},
-      {"build", build_json()}};
-  return json_text(json, 2) + '\n';
+  Json json = {{"exp_name", format("%s-%s-seed-%llu", task_name.c_str(), algo_name.c_str(),
+                                   static_cast<unsigned long long>(s.pool.seed))},
+               {"task", task_name},
+               {"algo", algo_name},
+               {"seed", s.pool.seed},
+               {"set", as_sets(s.pool.options)},
+               {"set_algo", as_sets(s.agent.options)},
+               {"set_cost_limit", s.limits},
+               {"cost_limits", limit_values},
+               {"train_cfgs",
+                {{"total_steps", s.steps},
+                 {"vector_env_nums", s.pool.envs},
+                 {"threads", s.pool.threads},
+                 {"eval_every", s.eval_every},
+                 {"checkpoint_every", s.checkpoint_every},
+                 {"tensorboard", s.events}}},
+               {"algo_cfgs", algo_cfgs},
+               {"env_cfgs", values_json(pool.settings())},
+               {"obs_dim", pool.spec().obs_dim},
+               {"action_dim", pool.spec().action_dim},
+               {"layout_hash", format("%016llx", static_cast<unsigned long long>(pool.spec().layout_hash))},
+               {"build", build_json()}};
+  if (!s.own.task.empty()) json["task_file"] = s.own.task;
+  if (!s.own.robots.empty()) json["robot_files"] = s.own.robots;
+  std::string text = json_text(json, 2) + '\n';
+  if (text.size() > kMostJsonBytes)
+    throw Failure(format("a run's config.json has room for %zu bytes: its robots and task take %zu",
+                         kMostJsonBytes, text.size()));
+  return text;
 }
 
 RunSettings parse_config(const char* text, size_t size) {
@@ -93,6 +99,12 @@ RunSettings parse_config(const char* text, size_t size) {
   s.steps = integer_at(train, "total_steps", 1, kMostExact);
   s.eval_every = static_cast<int32_t>(integer_at(train, "eval_every", 1, INT32_MAX));
   s.checkpoint_every = static_cast<int32_t>(integer_at(train, "checkpoint_every", 1, INT32_MAX));
+  if (json.contains("task_file")) s.own.task = text_at(json, "task_file", kMostJsonBytes);
+  if (json.contains("robot_files")) {
+    const Document& robots = object_at(json, "robot_files");
+    for (const auto& [name, text] : robots.items())
+      s.own.robots[name] = text_at(robots, name.c_str(), kMostJsonBytes);
+  }
   if (train.contains("tensorboard")) s.events = flag_at(train, "tensorboard");
   return s;
 }
@@ -119,6 +131,8 @@ FlatConfig parse_flat_config(const char* text, size_t size) {
   out.erase("train_cfgs.threads");
   out.erase("train_cfgs.tensorboard");
   out["task"] = text_at(json, "task");
+  if (json.contains("task_file"))
+    out["task_file"] = format("%zx", std::hash<std::string>()(text_at(json, "task_file", kMostJsonBytes)));
   out["algo"] = text_at(json, "algo");
   return out;
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/setup.hpp"
+#include "common/task_files.hpp"
 
 namespace tool {
 
@@ -17,6 +18,7 @@ struct RunSettings {
   int32_t eval_every = 10;          // epochs
   int32_t checkpoint_every = 10;    // epochs
   bool events = true;               // an event file for TensorBoard
+  OwnFiles own;
 };
 
 // The text of the file. `pool` and `agent` say what the options came to; limits [cost_dim].

@@ -193,11 +193,14 @@ void RunFolder::check() const {
 
 RunSettings run_settings(const std::string& folder) {
   const std::string path = folder + "/config.json", text = read_file(path, kMostJsonBytes);
+  RunSettings run;
   try {
-    return parse_config(text.data(), text.size());
+    run = parse_config(text.data(), text.size());
   } catch (const Failure& e) {
     throw Failure(path + " is not a run's configuration: " + e.what());
   }
+  load_own_files(run.pool.task, run.own, path);
+  return run;
 }
 
 std::string run_folder_of(const std::string& file) {
