@@ -1,0 +1,167 @@
+#include "toml_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+
+namespace rdm::import {
+
+void parser_fault() {
+  throw ParserFault{};
+}
+
+toml::table parse_toml(const std::string& bytes) {
+  try {
+    return toml::parse(std::string_view(bytes));
+  } catch (const toml::parse_error& e) {
+    refuse(RDM_FORMAT, "line %d: %s", line_of(e.source()), clean(std::string(e.description()), 200).c_str());
+  } catch (const ParserFault&) {
+    refuse(RDM_FORMAT, "line %ld: no TOML", std::count(bytes.begin(), bytes.end(), '\n') + 1);
+  }
+}
+
+void Table::bad(rdm_result code, int line, const char* pattern, ...) const {
+  char text[400];
+  va_list list;
+  va_start(list, pattern);
+  std::vsnprintf(text, sizeof text, pattern, list);
+  va_end(list);
+  refuse(code, "line %d: %s%s%s", line, what.c_str(), what.empty() ? "" : ": ", text);
+}
+
+void Table::only(const std::vector<const char*>& known) const {
+  for (const auto& [key, value] : t) {
+    const std::string name(key.str());
+    bool found = false;
+    std::vector<std::string> names;
+    for (const char* k : known) found = found || name == k, names.emplace_back(k);
+    if (!found)
+      bad(RDM_FORMAT, line_of(key.source()), "%s is no key%s", clean(name).c_str(),
+          nearest_hint(name, names).c_str());
+  }
+}
+
+const toml::node& Table::need(const char* key) const {
+  const toml::node* n = find(key);
+  if (!n) bad(RDM_FORMAT, line_of(t), "no %s", key);
+  return *n;
+}
+
+double Table::as_number(const toml::node& n, const char* key) const {
+  if (const auto* x = n.as_floating_point()) return x->get();
+  if (const auto* x = n.as_integer())
+    if (std::abs(static_cast<double>(x->get())) <= 9007199254740992.0) return static_cast<double>(x->get());
+  if (const auto* x = n.as_string(); x && lookup && x->get().size() > 1 && x->get()[0] == '$') {
+    try {
+      return lookup->number(x->get().substr(1));
+    } catch (const Refusal& r) {
+      bad(r.code, line_of(n), "%s: %s", key, r.text.c_str());
+    }
+  }
+  bad(RDM_FORMAT, line_of(n), "%s is no number", key);
+}
+
+int32_t Table::integer(const char* key, int32_t otherwise, int32_t low, int32_t high) const {
+  const toml::node* n = find(key);
+  if (!n) return otherwise;
+  const double x = as_number(*n, key);
+  if (!(x >= low && x <= high) || x != std::floor(x))
+    bad(RDM_RANGE, line_of(*n), "%s: %g is no whole number of [%d, %d]", key, x, low, high);
+  return static_cast<int32_t>(x);
+}
+
+bool Table::flag(const char* key, bool otherwise) const {
+  const toml::node* n = find(key);
+  if (!n) return otherwise;
+  if (const auto* x = n->as_boolean()) return x->get();
+  if (const auto* x = n->as_string(); x && lookup && x->get().size() > 1 && x->get()[0] == '$')
+    return as_number(*n, key) != 0;
+  bad(RDM_FORMAT, line_of(*n), "%s is neither true nor false", key);
+}
+
+std::vector<double> Table::list(const toml::node& n, const char* key, size_t least, size_t most) const {
+  const toml::array* a = n.as_array();
+  if (!a || a->size() < least || a->size() > most)
+    bad(RDM_FORMAT, line_of(n),
+        least == most ? "%s is no list of %zu numbers" : "%s is no list of %zu to %zu numbers", key, least,
+        most);
+  std::vector<double> out;
+  for (const toml::node& x : *a) out.push_back(as_number(x, key));
+  return out;
+}
+
+std::string Table::as_text(const toml::node& n, const char* key) const {
+  const auto* x = n.as_string();
+  if (!x) bad(RDM_FORMAT, line_of(n), "%s is no text", key);
+  if (x->get().find('\0') != std::string::npos) bad(RDM_FORMAT, line_of(n), "%s has a 0 in it", key);
+  if (!lookup || x->get().size() < 2 || x->get()[0] != '$') return x->get();
+  try {
+    return lookup->text(x->get().substr(1));
+  } catch (const Refusal& r) {
+    bad(r.code, line_of(n), "%s: %s", key, r.text.c_str());
+  }
+}
+
+int32_t Table::choice(const char* key, const char* const* names, int32_t count, int32_t otherwise) const {
+  const toml::node* n = find(key);
+  if (!n) return otherwise;
+  const std::string text = as_text(*n, key);
+  std::vector<std::string> all;
+  for (int32_t i = 0; i < count; ++i) {
+    if (text == names[i]) return i;
+    all.emplace_back(names[i]);
+  }
+  bad(RDM_FORMAT, line_of(*n), "%s: %s is not known%s", key, clean(text).c_str(),
+      nearest_hint(text, all).c_str());
+}
+
+std::vector<Table> Table::rows(const char* key) const {
+  std::vector<Table> all;
+  const toml::node* n = find(key);
+  if (!n) return all;
+  const toml::array* a = n->as_array();
+  if (!a) bad(RDM_FORMAT, line_of(*n), "%s is written as [[%s]]", key, key);
+  if (a->size() > kMostRows) bad(RDM_RANGE, line_of(*n), "more than %zu rows of %s", kMostRows, key);
+  for (const toml::node& x : *a) {
+    const toml::table* row = x.as_table();
+    if (!row) bad(RDM_FORMAT, line_of(x), "%s is written as [[%s]]", key, key);
+    std::string name = what.empty() ? key : what + ": " + key;
+    for (const char* naming : {"name", "link", "term"})
+      if (const toml::node* given = row->get(naming); given && given->is_string()) {
+        name += ' ' + clean(given->as_string()->get());
+        break;
+      }
+    all.push_back({*row, name, lookup});
+  }
+  return all;
+}
+
+Table Table::section(const char* key) const {
+  static const toml::table kEmpty;
+  const toml::node* n = find(key);
+  const std::string name = what.empty() ? key : what + ": " + key;
+  if (!n) return {kEmpty, name, lookup};
+  if (!n->is_table()) bad(RDM_FORMAT, line_of(*n), "%s is written as [%s]", key, key);
+  return {*n->as_table(), name, lookup};
+}
+
+int32_t shape_kind(const Table& t, int32_t count) {
+  const char* names[std::size(kShapes)];
+  for (size_t i = 0; i < std::size(kShapes); ++i) names[i] = kShapes[i].name;
+  t.need("kind");
+  return kShapes[static_cast<size_t>(t.choice("kind", names, count, 0))].kind;
+}
+
+bool read_color(const Table& t, uint8_t color[4]) {
+  const toml::node* n = t.find("color");
+  if (!n) return false;
+  const auto c = t.list(*n, "color", 3, 3);
+  for (size_t k = 0; k < 3; ++k) {
+    if (!(c[k] >= 0 && c[k] <= 255)) t.bad(RDM_RANGE, line_of(*n), "color: %g is outside [0, 255]", c[k]);
+    color[k] = static_cast<uint8_t>(c[k]);
+  }
+  color[3] = 255;
+  return true;
+}
+
+}  // namespace rdm::import
