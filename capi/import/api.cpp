@@ -13,6 +13,7 @@ struct rdm_import {
   static constexpr uint32_t kTag = 0x6f706d69;
   uint32_t tag = kTag;
   Draft draft;
+  std::unique_ptr<ObjectDraft> object;  // in the place of a robot
 };
 
 namespace {
@@ -61,6 +62,11 @@ void need_handle(const rdm_import* i) {
   need(i, "import");
   if (i->tag != rdm_import::kTag)
     refuse(RDM_ARGUMENT, "import: no handle of this kind, or one that was destroyed");
+}
+
+void need_robot(const rdm_import* i) {
+  need_handle(i);
+  if (i->object) refuse(RDM_ARGUMENT, "import: it is an object, no robot");
 }
 
 rdm_import_options defaults() {
@@ -227,7 +233,7 @@ void rdm_import_destroy(rdm_import* i) {
 
 rdm_result rdm_import_def(const rdm_import* i, rdm_robot_def* io) {
   return call(nullptr, [&] {
-    need_handle(i);
+    need_robot(i);
     need(io, "io");
     if (io->struct_size < sizeof *io || io->struct_size > kMaxStruct)
       refuse(RDM_ARGUMENT, "io.struct_size: %u is outside [%zu, %zu]; set it by rdm_robot_def_init",
@@ -256,7 +262,7 @@ rdm_result rdm_import_note_at(const rdm_import* i, int32_t n, rdm_import_note* o
 
 rdm_result rdm_import_check(rdm_import* i) {
   return call(nullptr, [&] {
-    need_handle(i);
+    need_robot(i);
     try_create(i->draft.def);
     check_robot(&i->draft);
   });
@@ -292,6 +298,105 @@ rdm_result rdm_import_task_text(int32_t* task, const void* bytes, size_t size, c
     if (size > kMostBytes) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostBytes);
     *task = read_named_task(std::string(static_cast<const char*>(bytes), size),
                             file ? clean(file, kLongestPath) : "");
+  });
+}
+
+namespace {
+
+// What rdm_object_create says of it, but that nothing is added: under a name that is taken it is looked at,
+// and then refused for its name alone.
+void try_object(rdm_object_def def) {
+  rdm_object taken{};
+  if (const rdm_result r = rdm_object_at(0, &taken)) refuse(r, "%s", rdm_last_error());
+  const rdm_object_def asked = def;
+  int32_t object = -1;
+  def.mass = -1;  // names are looked at before the mass is
+  (void)rdm_object_create(&object, &def);
+  if (!std::strstr(rdm_last_error(), ": mass -1 ")) {
+    def = asked;
+    refuse(rdm_object_create(&object, &def), "%s", rdm_last_error());
+  }
+  def = asked;
+  def.name = taken.name;
+  def.alias = nullptr;
+  const rdm_result r = rdm_object_create(&object, &def);
+  std::string text = rdm_last_error();
+  const std::string head = std::string("object ") + taken.name + ": ";
+  if (text == head + "the name is taken") return;
+  if (text.compare(0, head.size(), head) == 0)
+    text.replace(0, head.size(), "object " + clean(asked.name) + ": ");
+  refuse(r ? r : RDM_INTERNAL, "%s", text.c_str());
+}
+
+rdm_import* made_object(const std::string& bytes) {
+  auto made = std::make_unique<rdm_import>();
+  made->object = std::make_unique<ObjectDraft>();
+  read_object(bytes, made->object.get());
+  try_object(made->object->def);
+  return made.release();
+}
+
+}  // namespace
+
+rdm_result rdm_import_object_file(rdm_import** out, const char* path) {
+  return call(nullptr, [&] {
+    need(out, "out");
+    need(path, "path");
+    const std::string bytes = read_file(path);
+    try {
+      *out = made_object(bytes);
+    } catch (const Refusal& r) {
+      refuse(r.code, "%s: %s", clean(path, 160).c_str(), r.text.c_str());
+    }
+  });
+}
+
+rdm_result rdm_import_object_text(rdm_import** out, const void* bytes, size_t size) {
+  return call(nullptr, [&] {
+    need(out, "out");
+    if (size > 0) need(bytes, "bytes");
+    if (size > kMostBytes) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostBytes);
+    *out = made_object(std::string(static_cast<const char*>(bytes), size));
+  });
+}
+
+rdm_result rdm_import_object(rdm_import** out, int32_t object) {
+  return call(nullptr, [&] {
+    need(out, "out");
+    auto made = std::make_unique<rdm_import>();
+    made->object = std::make_unique<ObjectDraft>();
+    read_built_object(object, made->object.get());
+    *out = made.release();
+  });
+}
+
+rdm_result rdm_import_object_def(const rdm_import* i, rdm_object_def* io) {
+  return call(nullptr, [&] {
+    need_handle(i);
+    if (!i->object) refuse(RDM_ARGUMENT, "import: it is a robot, no object");
+    need(io, "io");
+    if (io->struct_size < sizeof *io || io->struct_size > kMaxStruct)
+      refuse(RDM_ARGUMENT, "io.struct_size: %u is outside [%zu, %zu]; set it by rdm_object_def_init",
+             io->struct_size, sizeof *io, kMaxStruct);
+    const uint32_t size = io->struct_size;
+    std::memset(static_cast<void*>(io), 0, size);
+    *io = i->object->def;
+    io->struct_size = size;
+  });
+}
+
+rdm_result rdm_import_object_write(const rdm_object_def* def, char* text, size_t capacity, size_t* size) {
+  return call(nullptr, [&] {
+    need(def, "def");
+    need(size, "size");
+    if (def->struct_size < sizeof *def || def->struct_size > kMaxStruct)
+      refuse(RDM_ARGUMENT, "def.struct_size: %u is outside [%zu, %zu]; set it by rdm_object_def_init",
+             def->struct_size, sizeof *def, kMaxStruct);
+    const std::string out = write_object(*def);
+    if (text && capacity < out.size() + 1)
+      refuse(RDM_RANGE, "capacity: %zu is outside [%zu, ...]", capacity, out.size() + 1);
+    *size = out.size();
+    if (text) std::memcpy(text, out.c_str(), out.size() + 1);
   });
 }
 

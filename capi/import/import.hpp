@@ -63,6 +63,24 @@ struct Draft {
   [[gnu::format(printf, 4, 5)]] void note(int32_t kind, int32_t line, const char* pattern, ...);
 };
 
+// The same of an rdm_object_def.
+struct ObjectDraft {
+  std::deque<std::string> texts;
+  std::deque<std::vector<double>> points;
+  std::vector<rdm_shape_def> shapes;
+  rdm_object_def def{};
+
+  ObjectDraft();
+  ObjectDraft(const ObjectDraft&) = delete;
+  ObjectDraft& operator=(const ObjectDraft&) = delete;
+  const char* keep(std::string text);
+  void bind();
+};
+void read_object(const std::string& bytes, ObjectDraft* out);
+// An object that is there.
+void read_built_object(int32_t object, ObjectDraft* out);
+std::string write_object(const rdm_object_def& def);
+
 // Options with every text in a string; what is NULL is not `given`.
 struct Options {
   int32_t format = RDM_IMPORT_AUTO, kind = -1;

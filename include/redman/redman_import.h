@@ -89,6 +89,15 @@ RDM_API rdm_result rdm_import_write(const rdm_robot_def *def, char *text, size_t
 RDM_API rdm_result rdm_import_task(int32_t *task, const char *path);
 /* The same for bytes [size]; `file` begins the texts of errors, NULL: nothing does. */
 RDM_API rdm_result rdm_import_task_text(int32_t *task, const void *bytes, size_t size, const char *file);
+/* Objects: an .object file (TOML, 1:1 with rdm_object_def; rows [[shape]]) as a handle for the call below, or bytes [size] of one,
+ * or an object that is there. FORMAT with the line; ARGUMENT, RANGE as rdm_object_create. */
+RDM_API rdm_result rdm_import_object_file(rdm_import **out, const char *path);
+RDM_API rdm_result rdm_import_object_text(rdm_import **out, const void *bytes, size_t size);
+RDM_API rdm_result rdm_import_object(rdm_import **out, int32_t object);
+/* What rdm_object_create takes; texts and arrays live as long as the handle. */
+RDM_API rdm_result rdm_import_object_def(const rdm_import *i, rdm_object_def *io);
+/* The object as an .object file, text [capacity]; read back it is the same to the last bit. */
+RDM_API rdm_result rdm_import_object_write(const rdm_object_def *def, char *text, size_t capacity, size_t *size);
 /* This thread's last failure in this library, one line; valid until its next failing call. */
 RDM_API const char *rdm_import_error(void);
 

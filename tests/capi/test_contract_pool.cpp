@@ -96,7 +96,7 @@ TEST(ContractPool, BadConfigsSayWhatIsWrong) {
   c.options = &o;
   expect(c, RDM_NOT_FOUND, "object");
   o = {"object", "piano", 0};
-  expect(c, RDM_RANGE, "piano");
+  expect(c, RDM_NOT_FOUND, "piano");
   o = {"object", nullptr, 3};
   expect(c, RDM_ARGUMENT, "object");
   o = {"max_steps", nullptr, 1e9};

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "heap_count.hpp"
+#include "objects/objects.hpp"
 #include "tasks/catalog.hpp"
 #include "tasks/hand/hands.hpp"
 #include "toy_task.hpp"
@@ -259,17 +260,9 @@ TEST_F(HandOver, AllocatesNothing) {
 }
 
 TEST_F(HandOver, EveryObjectRuns) {
-  int32_t count = 0;
-  const OptionSpec* specs = task_at(task_find(kFinger)).options(&count, nullptr);
-  const char* choices = nullptr;
-  for (int32_t i = 0; i < count; ++i)
-    if (same_name(specs[i].key, "object")) choices = specs[i].choices;
-  ASSERT_NE(choices, nullptr);
-  std::string list = choices;
-  for (size_t at = 0; at < list.size();) {
-    const size_t end = std::min(list.find('|', at), list.size());
-    const std::string name = list.substr(at, end - at);
-    at = end + 1;
+  for (int32_t k = 0; k < num_objects(); ++k) {
+    const ObjectRef object(k);
+    const std::string name = object->name;
     TestPool p(kFinger, 4, {{"object", name.c_str(), 0}});
     p->reset(nullptr, nullptr);
     for (int t = 0; t < 80; ++t) {

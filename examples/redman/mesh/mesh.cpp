@@ -1,9 +1,12 @@
 #include "mesh/mesh.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <map>
+#include <utility>
 
 #include "common/files.hpp"
 #include "common/report.hpp"
@@ -78,19 +81,138 @@ std::vector<Point> parse_mesh(const char* bytes, size_t size, MeshKind kind) {
   return out;
 }
 
-std::vector<Point> mesh_points(const std::string& path) {
+namespace {
+
+// Faces of an .obj: each `f` line's corners, counted from 1, or from the end where they are negative.
+void obj_faces(const char* bytes, size_t size, Mesh* out) {
+  constexpr const char* kSpace = " \t\r\v\f";
+  std::string line;
+  size_t number = 0;
+  int64_t before = 0;  // vertices so far
+  for (size_t at = 0; at < size;) {
+    const void* found = std::memchr(bytes + at, '\n', size - at);
+    const size_t end = found ? static_cast<size_t>(static_cast<const char*>(found) - bytes) : size;
+    line.assign(bytes + at, end - at);
+    at = end + 1;
+    ++number;
+    const char* c = line.c_str() + std::strspn(line.c_str(), kSpace);
+    if (c[0] == 'v' && std::strchr(kSpace, c[1]) && c[1]) ++before;
+    if (c[0] != 'f' || !c[1] || !std::strchr(kSpace, c[1])) continue;
+    std::vector<uint32_t> corners;
+    for (c += 1 + std::strspn(c + 1, kSpace); *c; c += std::strspn(c, kSpace)) {
+      char* after = nullptr;
+      int64_t i = std::strtoll(c, &after, 10);
+      if (after == c) break;
+      if (i < 0) i += before + 1;
+      if (i < 1 || i > static_cast<int64_t>(out->points.size()))
+        throw Failure("line " + std::to_string(number) + ": a face names a vertex that is not there");
+      corners.push_back(static_cast<uint32_t>(i - 1));
+      c = after + std::strcspn(after, kSpace);
+    }
+    if (corners.size() < 3) throw Failure("line " + std::to_string(number) + ": a face needs three vertices");
+    for (size_t k = 2; k < corners.size(); ++k)
+      out->faces.push_back({corners[0], corners[k - 1], corners[k]});
+  }
+}
+
+MeshKind kind_of(const std::string& path) {
   const auto ends = [&](const char* with) {
     const size_t n = std::strlen(with);
     return path.size() >= n && path.compare(path.size() - n, n, with) == 0;
   };
   const bool obj = ends(".obj") || ends(".OBJ");
   if (!obj && !ends(".stl") && !ends(".STL")) throw Usage(path + ": neither .obj nor .stl");
+  return obj ? MeshKind::kObj : MeshKind::kStl;
+}
+
+template <class F>
+auto parsed(const std::string& path, F&& parse) {
+  const MeshKind kind = kind_of(path);
   const std::string bytes = read_file(path);
   try {
-    return parse_mesh(bytes.data(), bytes.size(), obj ? MeshKind::kObj : MeshKind::kStl);
+    return parse(bytes.data(), bytes.size(), kind);
   } catch (const Failure& e) {
     throw Failure(path + ": " + e.what());
   }
+}
+
+}  // namespace
+
+Mesh parse_faces(const char* bytes, size_t size, MeshKind kind) {
+  const std::vector<Point> corners = parse_mesh(bytes, size, kind);
+  Mesh out;
+  std::map<Point, uint32_t> known;
+  std::vector<uint32_t> place;
+  for (const Point& p : corners) {
+    const auto [at, added] = known.emplace(p, static_cast<uint32_t>(out.points.size()));
+    if (added) out.points.push_back(p);
+    place.push_back(at->second);
+  }
+  if (kind == MeshKind::kObj) {
+    Mesh numbered;
+    numbered.points = corners;
+    obj_faces(bytes, size, &numbered);
+    out.faces = std::move(numbered.faces);
+    for (auto& face : out.faces)
+      for (uint32_t& i : face) i = place[i];
+  } else {
+    if (corners.size() % 3 != 0) throw Failure("its vertices are not three for each facet");
+    for (size_t i = 0; i < corners.size(); i += 3)
+      out.faces.push_back({place[i], place[i + 1], place[i + 2]});
+  }
+  // facets without a surface
+  const auto flat = [](const auto& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; };
+  out.faces.erase(std::remove_if(out.faces.begin(), out.faces.end(), flat), out.faces.end());
+  return out;
+}
+
+std::vector<Point> mesh_points(const std::string& path) {
+  return parsed(path, parse_mesh);
+}
+
+Mesh mesh_of(const std::string& path) {
+  return parsed(path, parse_faces);
+}
+
+// Tetrahedra from the origin to each face: V = a . (b x c) / 6, and over each (Tonon 2004)
+//   int x dV = V/4 (a + b + c),   int x x' dV = V/20 (a a' + b b' + c c' + s s'),  s = a + b + c.
+MeshMass mass_of(const Mesh& mesh) {
+  std::map<std::pair<uint32_t, uint32_t>, int> edges;  // once each way
+  for (const auto& f : mesh.faces)
+    for (size_t k = 0; k < 3; ++k)
+      if (++edges[{f[k], f[(k + 1) % 3]}] > 1) return {};
+  for (const auto& [edge, count] : edges)
+    if (edges.find({edge.second, edge.first}) == edges.end()) return {};
+  MeshMass out;
+  Point first{};
+  double second[6] = {};  // int x x', as moments are ordered
+  constexpr size_t kRow[6] = {0, 1, 2, 0, 0, 1}, kColumn[6] = {0, 1, 2, 1, 2, 2};
+  for (const auto& f : mesh.faces) {
+    const Point &a = mesh.points[f[0]], &b = mesh.points[f[1]], &c = mesh.points[f[2]];
+    const double v = (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                      a[2] * (b[0] * c[1] - b[1] * c[0])) /
+                     6;
+    out.volume += v;
+    const Point s = {a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]};
+    for (size_t k = 0; k < 3; ++k) first[k] += v / 4 * s[k];
+    for (size_t k = 0; k < 6; ++k) {
+      const size_t i = kRow[k], j = kColumn[k];
+      second[k] += v / 20 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s[i] * s[j]);
+    }
+  }
+  if (!(std::abs(out.volume) > 0)) return {};
+  for (size_t k = 0; k < 3; ++k) out.centre[k] = first[k] / out.volume;
+  for (size_t k = 0; k < 6; ++k) second[k] -= out.volume * out.centre[kRow[k]] * out.centre[kColumn[k]];
+  const double sign = out.volume < 0 ? -1 : 1;  // faces that look inwards
+  out.volume *= sign;
+  for (double& x : second) x *= sign;
+  out.moment = {second[1] + second[2],
+                second[0] + second[2],
+                second[0] + second[1],
+                -second[3],
+                -second[4],
+                -second[5]};
+  return out;
 }
 
 }  // namespace tool

@@ -1,7 +1,8 @@
-// The points of a mesh file.
+// The points of a mesh file, its faces, and what a solid of its form weighs.
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,22 @@ inline constexpr size_t kMostMeshPoints = 4'000'000;
 std::vector<Point> parse_mesh(const char* bytes, size_t size, MeshKind kind);
 // Of a file whose name ends in .obj or .stl; Usage when it does not.
 std::vector<Point> mesh_points(const std::string& path);
+
+struct Mesh {
+  std::vector<Point> points;  // each once
+  std::vector<std::array<uint32_t, 3>> faces;
+};
+// The same with its faces; what has more than three corners is cut into triangles from its first.
+Mesh parse_faces(const char* bytes, size_t size, MeshKind kind);
+Mesh mesh_of(const std::string& path);
+
+// Of density 1, in the unit of the file: volume, centre, moments xx yy zz xy xz yz about the centre. The
+// volume is 0 for a mesh that is not closed: an edge that is not in two faces, once each way.
+struct MeshMass {
+  double volume = 0;
+  Point centre{};
+  std::array<double, 6> moment{};
+};
+MeshMass mass_of(const Mesh& mesh);
 
 }  // namespace tool

@@ -1,0 +1,90 @@
+#include "common/objects.hpp"
+
+#include <CLI/CLI.hpp>
+#include <redman/redman.hpp>
+
+#include "common/files.hpp"
+#include "common/names.hpp"
+#include "common/report.hpp"
+
+namespace tool {
+
+std::vector<std::string> object_names() {
+  std::vector<std::string> names;
+  for (int32_t i = 0; i < rdm_object_count(); ++i) {
+    rdm_object object;  // one that was removed leaves its number
+    if (rdm_object_at(i, &object) == RDM_OK) names.emplace_back(object.name);
+  }
+  return names;
+}
+
+#ifdef REDMAN_IMPORT
+Import import_object(const std::string& file) {
+  rdm_import* made = nullptr;
+  int32_t known = -1;
+  if (!file_exists(file) && file.find('/') == std::string::npos) {
+    if (rdm_object_find(file.c_str(), &known) != RDM_OK)
+      throw Failure(file + ": no file, and no object of that name" + nearest_hint(file, object_names()));
+    if (rdm_import_object(&made, known) != RDM_OK) throw Failure(rdm_import_error());
+  } else if (rdm_import_object_file(&made, file.c_str()) != RDM_OK) {
+    throw Failure(rdm_import_error());
+  }
+  return Import(made);
+}
+
+rdm_object_def object_def_of(const Import& import) {
+  rdm_object_def def;
+  rdm_object_def_init(&def, sizeof def);
+  if (rdm_import_object_def(import.get(), &def) != RDM_OK) throw Failure(rdm_import_error());
+  return def;
+}
+
+std::string object_text(const rdm_object_def& def) {
+  size_t size = 0;
+  if (rdm_import_object_write(&def, nullptr, 0, &size) != RDM_OK) throw Failure(rdm_import_error());
+  std::string text(size + 1, '\0');
+  if (rdm_import_object_write(&def, text.data(), text.size(), &size) != RDM_OK)
+    throw Failure(rdm_import_error());
+  text.pop_back();
+  return text;
+}
+#else
+namespace {
+[[noreturn]] void without() {
+  throw Failure(
+      "this tool was built without the readers of objects; install libtinyxml2-dev and libtomlplusplus-dev "
+      "and configure with -DREDMAN_IMPORT=ON");
+}
+}  // namespace
+Import import_object(const std::string&) {
+  without();
+}
+rdm_object_def object_def_of(const Import&) {
+  without();
+}
+std::string object_text(const rdm_object_def&) {
+  without();
+}
+#endif
+
+int32_t load_object(const std::string& file) {
+  const Import import = import_object(file);
+  const rdm_object_def def = object_def_of(import);
+  int32_t object = -1;
+  if (rdm_object_create(&object, &def) != RDM_OK) throw Failure(file + ": " + rdm_last_error());
+  return object;
+}
+
+void add_object_flag(CLI::App& command) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--object",
+          [](const std::vector<std::string>& files) {
+            for (const std::string& file : files) load_object(file);
+          },
+          "an object's file (.object, by redman object), for --set object=NAME; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+}
+
+}  // namespace tool

@@ -1,0 +1,25 @@
+// Objects of the tool's user: .object files that become objects of the library, by --object or `redman
+// object`.
+#pragma once
+#include <redman/redman_import.h>
+
+#include <string>
+#include <vector>
+
+#include "common/robots.hpp"
+
+namespace tool {
+
+// Failure with line and key. Or, for the name of an object that is there and no file, that object.
+Import import_object(const std::string& file);
+rdm_object_def object_def_of(const Import& import);
+// The file's object, added to those of the process; 0 and up.
+int32_t load_object(const std::string& file);
+// As an .object file.
+std::string object_text(const rdm_object_def& def);
+std::vector<std::string> object_names();
+
+// --object FILE, repeatable: loads them while the command line is read, before any task is made.
+void add_object_flag(CLI::App& command);
+
+}  // namespace tool
