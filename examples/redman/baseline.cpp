@@ -39,7 +39,7 @@ Report run_baseline(const BaselineFlags& flags) {
       PoolSettings pool = flags.pool;
       pool.task = task;
       const ActorChoice choice = choose_actor(policy);
-      adopt_task(choice, true, pool);
+      adopt_task(choice, true, {}, pool);
       const Evaluation e = evaluate(choice, pool, {}, flags.episodes, false);
       const Summary& s = e.summary;
       Json row = {{"task", task}, {"policy", policy}};

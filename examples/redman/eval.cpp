@@ -67,7 +67,7 @@ std::string evaluation_text(const Evaluation& e, int32_t episodes) {
 
 Report run_eval(EvalFlags flags) {
   const ActorChoice choice = choose_actor(flags.policy);
-  adopt_task(choice, flags.task_given, flags.pool);
+  adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
   std::vector<std::string> limits = choice.limits;
   limits.insert(limits.end(), flags.limits.begin(), flags.limits.end());

@@ -72,7 +72,7 @@ Report run_render(RenderFlags flags) {
   for (const std::string& file : {flags.html, flags.glb})
     if (!file.empty()) check_replaceable(file);
   const ActorChoice choice = choose_actor(flags.policy);
-  adopt_task(choice, flags.task_given, flags.pool);
+  adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
   const bool plays = !flags.video.empty() || !flags.html.empty() || !flags.glb.empty();
   const bool pictures = !plays || !flags.out.empty() || flags.strip > 0 || flags.step_given;

@@ -74,7 +74,7 @@ void adopt_recording(const Recording& r, RolloutFlags& flags) {
 Report run_rollout(RolloutFlags flags) {
   const ActorChoice choice = choose_actor(flags.policy);
   if (choice.recording) adopt_recording(*choice.recording, flags);
-  adopt_task(choice, flags.task_given, flags.pool);
+  adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
   flags.pool.envs = std::min(flags.pool.envs, flags.episodes);
   redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_OFF);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/eigen.hpp"
 #include "base/elementary.hpp"
@@ -145,23 +146,32 @@ struct Places {
   int32_t num_turns, num_away, num_below;
   double away[6], below[8];
 };
+constexpr double kLowest = 0.03;  // m, of a link's frame
+constexpr double kGap = 0.002;    // m, of what turns and the ground
+
+// Home, and the same with one or two joints at other parts of their ranges: elbow and wrist the other way.
+struct Start {
+  int32_t joints[2];
+  double shares[2];
+};
+constexpr Start kStarts[] = {
+    {{-1, -1}, {}}, {{1, 2}, {0.7, 0.3}}, {{1, 2}, {0.3, 0.7}}, {{4, -1}, {0.25}}, {{4, -1}, {0.75}}};
+void start_pose(const Robot& arm, int32_t start, double* q) {
+  for (int32_t i = 0; i < arm.links.count; ++i) q[i] = start_angle(arm, arm.home, i);
+  for (int k = 0; k < 2; ++k) {
+    const int32_t i = kStarts[start].joints[k];
+    if (i < 0 || i >= arm.links.count) continue;
+    const RobotLink& l = arm.links[i];
+    q[i] = l.lower + kStarts[start].shares[k] * (l.upper - l.lower);
+  }
+}
+
 constexpr double kTurns[] = {0, 0.25 * kPi, -0.25 * kPi, 0.5 * kPi, -0.5 * kPi, 0.75 * kPi, -0.75 * kPi, kPi};
 constexpr Places kNear = {1, 5, 4, 5, {0.45, 0.35, 0.55, 0.65}, {0.2, 0.35, 0.05, 0.5, -0.1}};
 // A large arm may have to stand far off, or on a pedestal and reach down.
 constexpr Places kWide = {
-    3, 8, 6, 8, {0.3, 0.4, 0.5, 0.6, 0.7, 0.8}, {0.5, 0.3, 0.1, 0, -0.1, -0.25, -0.4, -0.55}};
-constexpr double kLowest = 0.03;  // m, of a link's frame
-constexpr double kGap = 0.002;    // m, of what turns and the ground
-
-// Home, and the same with the arm's second and third joint at other parts of their ranges.
-void start_pose(const Robot& arm, int32_t start, double* q) {
-  constexpr double kShares[2][2] = {{0.7, 0.3}, {0.3, 0.7}};
-  for (int32_t i = 0; i < arm.links.count; ++i) {
-    const RobotLink& l = arm.links[i];
-    q[i] = start_angle(arm, arm.home, i);
-    if (start > 0 && (i == 1 || i == 2)) q[i] = l.lower + kShares[start - 1][i - 1] * (l.upper - l.lower);
-  }
-}
+    static_cast<int32_t>(std::size(kStarts)),    8, 6, 8, {0.3, 0.4, 0.5, 0.6, 0.7, 0.8},
+    {0.5, 0.3, 0.1, 0, -0.1, -0.25, -0.4, -0.55}};
 
 // How high the base is at least: the first link, which turns about the vertical, does not scrape the ground.
 double standing_height(const Robot& arm) {

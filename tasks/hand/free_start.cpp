@@ -29,7 +29,9 @@ Convex solid_of(const Scene& scene, const SceneShape& shape, const Pose& X_WS, d
 class Room {
  public:
   Room(const HandControlConfig& config, const HandScene& made)
-      : scene_(make_scene(static_cast<const SceneDef&>(made))), poses_(scene_.shapes.size()) {
+      : scene_(make_scene(static_cast<const SceneDef&>(made))),
+        poses_(scene_.shapes.size()),
+        things_stand_(config.things_stand) {
     for (size_t i = 0; i < scene_.shapes.size(); ++i) {
       const SceneShape& s = scene_.shapes[i];
       if (s.carrier == Carrier::kStatic) poses_[i] = s.def.X_LS;
@@ -117,7 +119,7 @@ class Room {
       of_both_.push_back(pair);
     } else if (arm_a || arm_b) {
       if (!stands_on(a, b)) of_arm_[arm_a ? a.articulation : b.articulation].push_back(pair);
-    } else {
+    } else if (things_stand_ || (a.carrier != Carrier::kBody && b.carrier != Carrier::kBody)) {
       if (a.articulation >= 0) of_hand_[a.articulation].push_back(pair);
       if (b.articulation >= 0) of_hand_[b.articulation].push_back(pair);
     }
@@ -169,6 +171,7 @@ class Room {
 
   const Scene scene_;
   Vector<Pose> poses_;  // of shapes, in the world
+  const bool things_stand_;
   const ChosenHand* hands_[kMaxHands] = {};
   double q_[kMaxHands][kMaxRobotLinks] = {};
   // Pairs of shapes: of a hand and anything else; of its arm and anything but itself and the other arm; of
@@ -282,6 +285,7 @@ void free_start(const HandControlConfig& config, HandScene* s) {
       back[i] = way_back(i, hand, &room);
       hand.X_WB.p += back[i];
       hand.X_WF.p += back[i];
+      free = free && (!hand.armed || dot(back[i], back[i]) == 0);
     }
     if (!hand.armed || !hand.chosen) continue;
     arms[count++] = i;

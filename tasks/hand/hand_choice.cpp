@@ -40,10 +40,15 @@ const char* const kBaseKeys[kMaxHands] = {"right.arm_base", "left.arm_base"};
 const char* const kPoseKeys[kMaxHands] = {"right.arm_pose", "left.arm_pose"};
 const char* const kKeys[2] = {"hand", "arm"};
 
+// By its name or the shorter one.
+bool is_own(const HandControlConfig& config, const char* name) {
+  return same_name(name, config.robot->name) || (config.robot->alias && same_name(name, config.robot->alias));
+}
+
 // Rows of a robot; the number of shapes that it has beside those of the task's own.
 int32_t add_rows(const HandControlConfig& config, const char* name, OptionTable& table) {
   if (same_name(name, kNone)) return 0;
-  if (same_name(name, config.robot->name)) {
+  if (is_own(config, name)) {
     add_robot_rows(*config.robot, table);
     return 0;
   }
@@ -197,7 +202,7 @@ int32_t add_hand_choice_options(const HandControlConfig& config, OptionTable& ta
 ChosenHand choose_hand(const HandControlConfig& config, const Options& o, int32_t i) {
   const char *name = own_text(o, kSideKeys[i][0], kKeys[0]), *arm = own_text(o, kSideKeys[i][1], kKeys[1]);
   ChosenHand out;
-  if (same_name(name, config.robot->name))
+  if (is_own(config, name))
     out.own = config.robot;
   else
     out.listed = RobotRef(find_robot(name));

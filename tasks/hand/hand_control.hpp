@@ -32,8 +32,9 @@ struct HandControlConfig {
   // Force of an action entry of 1, in 1e5/60 N, and torque, in 1e3/60 N m: the paper's code applies 1e5 and
   // 1e3 times these, times its step of 1/60 s.
   double transition_scale = 0, orientation_scale = 0;
-  bool folded = false;  // the thumb across the palm at the start, else all joints at 0
-  double friction = 1;  // hand and object, option friction.hand_object
+  bool things_stand = false;  // bodies begin where the scene has them: hands keep out of them
+  bool folded = false;        // the thumb across the palm at the start, else all joints at 0
+  double friction = 1;        // hand and object, option friction.hand_object
 };
 
 // contacts_max: the default with the task's own robots; others may need more.

@@ -42,6 +42,7 @@ HandControlConfig make_config() {
   p.bases[0] = {{0.35, -0.45, 1.3}, q};
   p.bases[1] = {{0.35, -0.59, 1.6}, q};
   p.flying = true;
+  p.things_stand = true;
   p.transition_scale = 0.2;
   p.orientation_scale = 0.5;
   p.folded = true;

@@ -45,6 +45,7 @@ HandControlConfig make_config(bool right_copy, bool paper_pair) {
   p.armed_bases = right_copy ? kArmedCopies : kArmedBases;
   p.facing = true;
   p.flying = true;
+  p.things_stand = true;
   p.transition_scale = p.orientation_scale = 0.1;
   p.folded = true;
   p.friction = 1.5;

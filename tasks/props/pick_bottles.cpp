@@ -30,6 +30,7 @@ HandControlConfig make_config(bool right_copy) {
   p.bases[1] = right_copy ? Pose{{-0.37, -0.54, 0.68}, p.bases[0].q}
                           : Pose{{-0.37, -0.46, 0.68}, Quat{half, 0, 0, half}};
   p.flying = true;
+  p.things_stand = true;
   p.transition_scale = p.orientation_scale = 0.1;
   p.folded = true;
   p.friction = 2;

@@ -165,5 +165,25 @@ TEST_F(Jenga, ThereIsRoomForItsContacts) {
   }
 }
 
+// tower=off: the target lies on the table, and no block costs anything.
+TEST_F(Jenga, WithoutItsTower) {
+  for (const char* mode : {"default", "paper", "literal", "contact"}) {
+    TestPool p(
+        kTask, 1,
+        {{"tower", "off", 0}, {"cost_mode", mode, 0}, {"extended_obs", nullptr, 1}, {"pair", "paper", 0}});
+    p->reset(nullptr, nullptr);
+    ASSERT_EQ(p->task().scene().num_bodies, 1);
+    const Vec3 before = p->world(0).body(0).X.p;
+    for (int t = 0; t < 30; ++t) {
+      p->baseline(Baseline::kHold);
+      p->step(nullptr);
+      EXPECT_EQ(p.rows().cost[0], 0) << mode;
+      EXPECT_EQ(p.rows().terminated[0], 0) << mode;
+    }
+    EXPECT_LT(norm(p->world(0).body(0).X.p - before), 1e-3);
+    EXPECT_NEAR(before.z, 0.2557, 1e-3);
+  }
+}
+
 }  // namespace
 }  // namespace rdm::test

@@ -184,6 +184,37 @@ TEST(Demo, RefusesNumbersThatNoHandCanFollow) {
         [](const std::string& text) { demo(text); });
 }
 
+TEST(Demo, ReadsWhereAPalmShallBe) {
+  const std::string head = "task jenga\nwhen pair=paper\nphase a\n";
+  const std::string line = "left.ff_tip = 0.1 -2 3e-1 turned 90 0 -180 at 0.5 over 2\n";
+  const DemoScript script = demo(head + "right.palm = 0 0 1\n" + line);
+  ASSERT_EQ(script.phases[0].motions.size(), 2u);
+  EXPECT_TRUE(script.phases[0].commands.empty());
+  const DemoScript::Motion &palm = script.phases[0].motions[0], &tip = script.phases[0].motions[1];
+  EXPECT_EQ(palm.point, "palm");
+  EXPECT_FALSE(palm.left || palm.turned);
+  EXPECT_EQ(tip.point, "ff_tip");
+  EXPECT_TRUE(tip.left && tip.turned);
+  EXPECT_EQ(tip.p[1], -2);
+  EXPECT_EQ(tip.turn[2], -180);
+  EXPECT_EQ(tip.at, 0.5);
+  EXPECT_EQ(tip.over, 2);
+  EXPECT_EQ(script.when, script.options);
+  for (const auto& [old, bad] :
+       {std::pair("0.1 -2", "0.1 nan"), std::pair("0.1 -2 3e-1", "0.1 -2"), std::pair("at 0.5", "at -1"),
+        std::pair("over 2", "over"), std::pair("turned 90", "turned"), std::pair("over 2", "under 2")})
+    EXPECT_NE(failure([&] { demo(head + replaced(line, old, bad)); }).find("line 4"), std::string::npos)
+        << bad;
+}
+
+TEST(Demo, OptionsChooseTheScript) {
+  EXPECT_EQ(builtin_demo("jenga", {}).file, "jenga.demo");
+  EXPECT_EQ(builtin_demo("jenga", {{"pair", "own"}}).file, "jenga.demo");
+  EXPECT_EQ(builtin_demo("jenga", {{"pair", "own"}, {"pair", "paper"}}).file, "jenga_paper.demo");
+  EXPECT_TRUE(has_builtin_demo("jenga"));
+  EXPECT_FALSE(has_builtin_demo("bandit"));
+}
+
 std::vector<Point> mesh(const std::string& bytes, MeshKind kind) {
   return parse_mesh(bytes.data(), bytes.size(), kind);
 }

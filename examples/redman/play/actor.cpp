@@ -73,7 +73,8 @@ ActorChoice choose_actor(const std::string& word) {
   return choice;
 }
 
-void adopt_task(const ActorChoice& choice, bool task_given, PoolSettings& pool) {
+void adopt_task(const ActorChoice& choice, bool task_given, const std::vector<std::string>& sets,
+                PoolSettings& pool) {
   if (choice.recording) {
     if (task_given && !same_name(pool.task, choice.task))
       throw Failure(choice.file + " was recorded in task " + choice.task + ", not in " + pool.task);
@@ -81,7 +82,9 @@ void adopt_task(const ActorChoice& choice, bool task_given, PoolSettings& pool) 
   }
   if (!task_given && !choice.task.empty()) pool.task = choice.task;
   if (choice.demo && !choice.script) {
-    const Options own = builtin_demo(pool.task, pool.options).options;
+    Options given = pool.options;
+    for (const std::string& set : sets) given.push_back(split_pair(set, "--set"));
+    const Options own = builtin_demo(pool.task, given).options;
     pool.options.insert(pool.options.begin(), own.begin(), own.end());
   }
   if (!same_name(pool.task, choice.task)) return;

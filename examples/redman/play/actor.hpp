@@ -29,7 +29,9 @@ ActorChoice choose_actor(const std::string& word);
 
 // Lays what the policy knows about its task under the flags: the task's name when `task_given` is false, and
 // the options of its run when the tasks agree. A recording brings its seed, and plays its own task alone.
-void adopt_task(const ActorChoice& choice, bool task_given, PoolSettings& pool);
+// `sets` are those that will be laid over all that: they choose among the demonstrations of a task.
+void adopt_task(const ActorChoice& choice, bool task_given, const std::vector<std::string>& sets,
+                PoolSettings& pool);
 
 class Actor {
  public:
