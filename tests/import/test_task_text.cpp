@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+extern "C" rdm_result redman_plugin(void);  // of examples/07_own_task.c
+
 namespace {
 
 const std::string kScenes = RDM_TEST_DATA "/../examples/scenes/";
@@ -425,21 +427,35 @@ const char kPress[] =
     "[[cost]]\nname = \"touch\"\nterm = \"touch\"\na = \"hand\"\nb = \"cup\"\nlimit = 5\n"
     "[[success]]\nterm = \"joint\"\njoint = \"button_spring\"\nfrom = 0\nto = -0.01\nabove = 0.8\n";
 
-TEST(TaskText, ThePressTaskIsThatOfTheSeventhExample) {
-  const Task task(kPress);
-  Pool pool("press_text", 2);
-  EXPECT_EQ(pool.spec.action_dim, 20);
-  EXPECT_EQ(pool.spec.obs_dim, 2 * 25 + 3);
-  for (int i = 0; i < 20; ++i) {
-    pool.random_step();
-    const float* obs = pool.b.obs;
-    const double pressed = static_cast<double>(obs[24]) / -0.01;
-    // The reward, from shapes that the pool shows: frames of the tip and of the cap.
-    EXPECT_LE(pool.reward(), pressed + 1e-6);
-    EXPECT_EQ(pool.b.success[0], pressed > 0.8);
-    EXPECT_NEAR(static_cast<double>(obs[50 + 1]), -0.43, 0.2);
+TEST(TaskText, IsTheTaskThatTheSeventhExampleWritesInC) {
+  std::string text = kPress, start = "start = [";
+  for (int i = 0; i < 24; ++i) start += i ? ", \"0..0.1\"" : "\"0..0.1\"";
+  const std::string hand = "robot = \"shadow_hand\"\n";
+  text.insert(text.find(hand), start + "]\n");
+  const Task task(text);
+  ASSERT_EQ(redman_plugin(), RDM_OK) << rdm_last_error();
+  Pool told("press_text", 3), written("press", 3);
+  ASSERT_EQ(told.spec.action_dim, written.spec.action_dim);
+  ASSERT_EQ(told.spec.obs_dim, written.spec.obs_dim);
+  const auto same_rows = [&] {
+    for (int32_t i = 0; i < 3 * told.spec.obs_dim; ++i) ASSERT_EQ(told.b.obs[i], written.b.obs[i]) << i;
+  };
+  same_rows();
+  for (int step = 0; step < 40; ++step) {
+    told.random_step();
+    std::copy_n(told.b.action, 3 * told.spec.action_dim, written.b.action);
+    ASSERT_EQ(rdm_pool_step(written.pool), RDM_OK) << rdm_last_error();
+    same_rows();
+    for (int32_t e = 0; e < 3; ++e) {
+      EXPECT_NEAR(told.b.reward[e], written.b.reward[e], 1e-6) << step;
+      EXPECT_EQ(told.b.cost[e], written.b.cost[e]);
+      EXPECT_EQ(told.b.cost_raw[e], written.b.cost_raw[e]);
+    }
   }
   EXPECT_EQ(rdm_task_check("press_text", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+  int32_t press = -1;
+  ASSERT_EQ(rdm_task_find("press", &press), RDM_OK);
+  EXPECT_EQ(rdm_task_remove(press), RDM_OK);
 }
 
 TEST(TaskText, FilesThatShipKeepWhatATaskPromises) {
