@@ -32,7 +32,7 @@ run eval --policy run --episodes 2 --json
 grep -q '"task":"own_press"' out || say "eval: $(cat out)"
 run render --policy run --size 64x48 --out own.png
 run train --resume run --steps 1024
-run report run --out report.html
+run report run --html report.html --episodes 2 --strip 0
 run rollout --task press.task --policy hold --episodes 1 --set max_steps=5
 
 expect() { # expect TEXT ARGUMENTS...: one line with the text
