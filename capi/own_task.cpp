@@ -91,7 +91,7 @@ class BuiltTask final : public Task {
       : own_(own),
         engine_(engine_from(o)),
         max_steps_(o.integer("max_steps")),
-        instance_(own.def.instance_bytes / sizeof(std::max_align_t) + 1) {
+        instance_(own.def.instance_bytes / sizeof(Block) + 1) {
     begin_scene(own, o, &scene_);
     struct Retire {
       rdm_scene* scene;
@@ -173,11 +173,14 @@ class BuiltTask final : public Task {
   }
 
  private:
+  struct alignas(std::max_align_t) Block {  // bytes alone: of a max_align_t the padding is not zeroed
+    unsigned char bytes[alignof(std::max_align_t)];
+  };
   const OwnTask& own_;
   EngineKind engine_;
   int32_t max_steps_;
   rdm_scene scene_;
-  Vector<std::max_align_t> instance_;  // zeroed
+  Vector<Block> instance_;  // zeroed
 };
 
 }  // namespace

@@ -57,6 +57,15 @@ int32_t find_name(const Rows& rows, NameOf&& name_of, const char* name) {
        Nearest(name, names.data(), static_cast<int32_t>(names.size())).text);
 }
 
+const OptionSpec& find_option(const Options& options, const char* key) {
+  Vector<const char*> names;
+  for (int32_t i = 0; i < options.count(); ++i) {
+    if (same_name(options.spec(i).key, key)) return options.spec(i);
+    names.push_back(options.spec(i).key);
+  }
+  fail_unknown("option", key, names);
+}
+
 int32_t find_material(const rdm_scene& scene, const char* name) {
   if (!name) return 0;
   const auto text = [](const Name& n) { return n.text; };
@@ -260,23 +269,19 @@ rdm_result rdm_scene_number(rdm_scene* scene, const char* key, double* value) {
     need(key, "key");
     need(value, "value");
     const Options& o = *scene->options;
-    for (int32_t i = 0; i < o.count(); ++i) {
-      if (!same_name(o.spec(i).key, key)) continue;
-      switch (o.spec(i).kind) {
-        case OptionKind::kNumber:
-          *value = o.number(key);
-          return;
-        case OptionKind::kInteger:
-          *value = o.integer(key);
-          return;
-        case OptionKind::kFlag:
-          *value = o.flag(key);
-          return;
-        case OptionKind::kText:
-          fail(Code::kArgument, "option %s is a text: rdm_scene_text has it", key);
-      }
+    switch (find_option(o, key).kind) {
+      case OptionKind::kNumber:
+        *value = o.number(key);
+        return;
+      case OptionKind::kInteger:
+        *value = o.integer(key);
+        return;
+      case OptionKind::kFlag:
+        *value = o.flag(key);
+        return;
+      case OptionKind::kText:
+        fail(Code::kArgument, "option %s is a text: rdm_scene_text has it", key);
     }
-    o.number(key);  // NOT_FOUND with the nearest
   });
 }
 
@@ -285,6 +290,8 @@ rdm_result rdm_scene_text(rdm_scene* scene, const char* key, const char** text) 
     need_handle(scene);
     need(key, "key");
     need(text, "text");
+    if (find_option(*scene->options, key).kind != OptionKind::kText)
+      fail(Code::kArgument, "option %s is no text: rdm_scene_number has it", key);
     *text = scene->options->text(key);
   });
 }
@@ -295,6 +302,9 @@ rdm_result rdm_scene_range(rdm_scene* scene, const char* key, double* low, doubl
     need(key, "key");
     need(low, "low");
     need(high, "high");
+    const OptionSpec& spec = find_option(*scene->options, key);
+    if (spec.kind != OptionKind::kNumber && spec.kind != OptionKind::kInteger)
+      fail(Code::kArgument, "option %s is neither number nor integer", key);
     const OptionRange range = scene->options->range(key);
     *low = range.low;
     *high = range.high;

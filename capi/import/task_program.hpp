@@ -121,7 +121,7 @@ struct Program {
   Span start[kMostTaskJoints];  // of the joints, in the order of the scene
   Span noise[kMostTaskJoints];
   double rest[kMostTaskJoints];  // what drives go for at first, NAN: where the joint is
-  double lower[kMostTaskJoints], upper[kMostTaskJoints];
+  double lower[kMostTaskJoints], upper[kMostTaskJoints];  // that no start leaves
   Command commands[kMostTaskActions];
   Joint joints[kMostListed];  // that terms name
   int32_t num_joints, reserved2;

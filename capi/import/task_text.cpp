@@ -778,12 +778,13 @@ class Builder {
       const int32_t j = player.joint + i;
       rdm_joint info;
       check(t, line_of(t.t), rdm_scene_joint(scene_, j, &info));
-      p_.lower[j] = info.lower;
-      p_.upper[j] = info.upper;
       p_.rest[j] = rest[static_cast<size_t>(i)].low;
-      if (start[i].low < info.lower - 1e-9 || start[i].high > info.upper + 1e-9)
+      const double beyond = 0.1 * (info.upper - info.lower);  // against a stop
+      if (!(start[i].low >= info.lower - beyond && start[i].high <= info.upper + beyond))
         t.bad(RDM_RANGE, line_of(t.t), "start: %g..%g of %s is outside [%g, %g]", start[i].low, start[i].high,
               info.name, info.lower, info.upper);
+      p_.lower[j] = std::min(info.lower, start[i].low);
+      p_.upper[j] = std::max(info.upper, start[i].high);
     }
     controls(part, index < num_robots(), &player);
     // a free base

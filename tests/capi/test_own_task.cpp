@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <redman/redman.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "env/pool.hpp"
@@ -288,6 +289,21 @@ TEST(OwnTask, CountsFollowFromOptions) {
   float mean[2] = {};
   ASSERT_EQ(rdm_pool_initial_mean(two.pool, mean), RDM_OK);
   EXPECT_EQ(mean[1], 0.5f);
+}
+
+TEST(OwnTask, AnInstanceIsZeroedToTheLastByte) {
+  BallTask t("own_zeroed");
+  t.def.instance_bytes = 8192;
+  t.def.build = [](void* user, rdm_scene* scene, void* instance) {
+    const auto* bytes = static_cast<const unsigned char*>(instance);
+    if (std::any_of(bytes, bytes + 8192, [](unsigned char b) { return b != 0; }))
+      return rdm_fail(RDM_INTERNAL, "not zeroed");
+    const rdm_result r = ball_build(user, scene, instance);
+    std::memset(static_cast<unsigned char*>(instance) + sizeof(BallIds), 0xa5, 8192 - sizeof(BallIds));
+    return r;  // what is freed now is what the next one is made of
+  };
+  const Registered made(t.def);
+  for (int i = 0; i < 4; ++i) Rows rows("own_zeroed", 1);
 }
 
 TEST(OwnTask, OptionsMayBeRanges) {

@@ -262,6 +262,22 @@ TEST(OwnTaskErrors, OfScenes) {
          double x;
          return rdm_scene_number(s, "engine", &x);
        })},
+      {RDM_NOT_FOUND, "option gravty: unknown; nearest is gravity", after([](auto* s) {
+         double x;
+         return rdm_scene_number(s, "gravty", &x);
+       })},
+      {RDM_NOT_FOUND, "option gravty: unknown; nearest is gravity", after([](auto* s) {
+         double low, high;
+         return rdm_scene_range(s, "gravty", &low, &high);
+       })},
+      {RDM_ARGUMENT, "option engine is neither number nor integer", after([](auto* s) {
+         double low, high;
+         return rdm_scene_range(s, "engine", &low, &high);
+       })},
+      {RDM_ARGUMENT, "option gravity is no text: rdm_scene_number has it", after([](auto* s) {
+         const char* text;
+         return rdm_scene_text(s, "gravity", &text);
+       })},
       {RDM_STATE, "call not allowed in this state", after([](auto*) -> rdm_result { return RDM_STATE; })},
   };
   for (const BadScene& row : rows) {

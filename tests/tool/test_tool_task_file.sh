@@ -1,0 +1,53 @@
+#!/bin/sh
+# test_tool_task_file.sh TOOL: --task takes a file; a run keeps the texts of its task and robots, and goes on without them.
+. "$(dirname "$0")/tool.sh"
+say() { echo "$*"; failed=1; }
+cp "$here/../../examples/scenes/press.task" press.task
+
+"$tool" tasks press.task > out 2> err
+if grep -q "without the reader" err; then
+  echo "no importers in this tool"
+  exit 77
+fi
+grep -q '^press_button: ' out || say "tasks press.task: $(cat out err)"
+grep -q 'cup_mass' out || say "its own option is not listed: $(cat out)"
+
+run() { # run ARGUMENTS...: must be good
+  "$tool" "$@" > out 2> err || say "redman $*: $(cat err)"
+}
+run rollout --task press.task --policy hold --episodes 3 --envs 2 --threads 1 --set max_steps=20 --json
+sed 's/.*"hash":"\{0,1\}\([0-9a-f]*\).*/\1/' out > one
+run rollout --task press.task --policy hold --episodes 3 --envs 2 --threads 2 --set max_steps=20 --json
+sed 's/.*"hash":"\{0,1\}\([0-9a-f]*\).*/\1/' out > two
+grep -q '^[0-9a-f]\{8,\}$' one || say "no hash: $(cat one)"
+cmp one two || say "the hash depends on threads"
+
+# A run remembers what it was made of: the files may go.
+"$tool" robot "$here/../import/hand.urdf" --name own_hand --out own.robot > out 2>&1 || say "$(cat out)"
+sed 's/^hand = "allegro"/hand = "own_hand"/; s/^name = "press_button"/name = "own_press"/; s/right\.ff/right.index/
+s/^start = .*//; s/^drive = .*//; s/^reach = .*//' press.task > own.task
+run train --robot own.robot --task own.task --steps 512 --envs 4 --set horizon=32 --set hidden=8 --set max_steps=20 --out run --no-tensorboard
+rm -f own.task own.robot
+run eval --policy run --episodes 2 --json
+grep -q '"task":"own_press"' out || say "eval: $(cat out)"
+run render --policy run --size 64x48 --out own.png
+run train --resume run --steps 1024
+run report run --html report.html --episodes 2 --strip 0
+run rollout --task press.task --policy hold --episodes 1 --set max_steps=5
+
+expect() { # expect TEXT ARGUMENTS...: one line with the text
+  text=$1
+  shift
+  "$tool" "$@" > out 2> err && say "redman $* was not refused"
+  grep -qF -- "$text" err || say "redman $*: '$(cat err)', expected '$text'"
+  [ "$(wc -l < err)" -eq 1 ] || say "redman $*: more than one line: $(cat err)"
+}
+line=$(grep -n '^mass = "$cup_mass"' press.task | cut -d: -f1)
+sed 's/"$cup_mass"/"$cup_mas"/' press.task > bad.task
+expect "bad.task: line $line: body cup: mass: option cup_mas: unknown; nearest is cup_mass" train --task bad.task
+expect 'missing.task' eval --task missing.task
+expect 'task own_press: unknown' eval --task own_press
+# Another task of the same name is not taken for it.
+sed 's/own_press/press_button/g' run/config.json > config && cp config run/config.json
+expect 'its task press_button is another than the one of that name that is loaded' eval --task press.task --policy run
+exit $failed
