@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/objects.hpp"
 #include "common/robots.hpp"
 #include "common/text.hpp"
 #include "play/playback.hpp"
@@ -137,6 +138,7 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option("--policy", flags->policy,
                       "policy file, run folder, .demo file, demo, zero, hold or random");
   add_robot_flag(*command);
+  add_object_flag(*command);
   command->add_option("--seed", flags->pool.seed, "seed of the episode");
   CLI::Option* step = command->add_option("--step", flags->step, "control step to draw; 0: the start")
                           ->check(CLI::NonNegativeNumber);

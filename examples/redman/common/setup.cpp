@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "common/names.hpp"
+#include "common/objects.hpp"
 #include "common/robots.hpp"
 #include "common/text.hpp"
 
@@ -56,6 +57,7 @@ CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* t
   command.add_option("--threads", pool.threads, "threads; 0: the caller's own");
   command.add_option("--seed", pool.seed, "seed");
   add_robot_flag(command);
+  add_object_flag(command);
   return task;
 }
 
