@@ -54,6 +54,13 @@ if(REDMAN_EXAMPLES AND NOT REDMAN_TOOL STREQUAL "OFF")
       message(FATAL_ERROR "REDMAN_QHULL=ON, but Qhull was not found")
     endif()
   endif()
+  if(NOT REDMAN_HACD STREQUAL "OFF")  # of Bullet's extras
+    find_path(RDM_HACD_INCLUDE hacdHACD.h PATH_SUFFIXES bullet/HACD)
+    find_library(RDM_HACD_LIBRARY HACD)
+    if(NOT (RDM_HACD_INCLUDE AND RDM_HACD_LIBRARY) AND NOT REDMAN_HACD STREQUAL "AUTO")
+      message(FATAL_ERROR "REDMAN_HACD=ON, but HACD was not found (Debian: libbullet-extras-dev)")
+    endif()
+  endif()
 endif()
 
 function(rdm_summary)

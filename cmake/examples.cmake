@@ -88,6 +88,11 @@ ${RDM_WEB}    {nullptr, nullptr},
     target_compile_definitions(redman_tool_parts PRIVATE REDMAN_QHULL=1)
     target_link_libraries(redman_tool_parts PUBLIC Qhull::qhull_r)
   endif()
+  if(RDM_HACD_INCLUDE AND RDM_HACD_LIBRARY AND NOT REDMAN_HACD STREQUAL "OFF")
+    set_source_files_properties(${PROJECT_SOURCE_DIR}/examples/redman/mesh/parts.cpp PROPERTIES
+      COMPILE_DEFINITIONS REDMAN_HACD=1 COMPILE_OPTIONS "-isystem;${RDM_HACD_INCLUDE}")
+    target_link_libraries(redman_tool_parts PUBLIC ${RDM_HACD_LIBRARY})
+  endif()
   if(TARGET redman_import_static)
     target_compile_definitions(redman_tool_parts PRIVATE REDMAN_IMPORT=1)
     target_link_libraries(redman_tool_parts PUBLIC redman_import$<$<NOT:$<BOOL:${REDMAN_SHARED}>>:_static>)

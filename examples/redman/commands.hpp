@@ -25,6 +25,8 @@ void add_report(CLI::App& app, Run& run);
 void add_hull(CLI::App& app, Run& run);
 void add_robots(CLI::App& app, Run& run);
 void add_robot(CLI::App& app, Run& run);
+void add_objects(CLI::App& app, Run& run);
+void add_object(CLI::App& app, Run& run);
 void add_completion(CLI::App& app, Run& run);
 
 }  // namespace tool

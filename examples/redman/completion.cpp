@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "common/names.hpp"
+#include "common/objects.hpp"
 #include "common/plugin.hpp"
 #include "common/text.hpp"
 
@@ -57,6 +58,7 @@ std::string value_words(const std::string& name, bool positional) {
   if (name == "task" || name == "tasks") return task_words();
   if (name == "algo" || name == "algos") return algo_words();
   if (name == "robot" && positional) return robot_words();
+  if (name == "object" && positional) return joined(object_names());
   if (name == "kind") return "hand arm other";
   if (name == "policy") return "zero hold random demo";
   if (name == "completion") return "bash zsh fish";

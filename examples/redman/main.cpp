@@ -104,6 +104,8 @@ int run_tool(int argc, char** argv) {
   add_algos(app, run);
   add_robots(app, run);
   add_robot(app, run);
+  add_objects(app, run);
+  add_object(app, run);
   add_train(app, run);
   add_eval(app, run);
   add_baseline(app, run);

@@ -1,10 +1,14 @@
 #!/bin/sh
-# test_tool_readme.sh TOOL: the tables of tasks, algorithms and robots in README.md are what the tool prints.
+# test_tool_readme.sh TOOL: the tables of tasks, algorithms and robots in README.md, and of objects in lib/objects/README.md, are
+# what the tool prints.
 set -u
 tool=$(realpath "$1")
 readme=$(dirname "$0")/../../README.md
 [ -f "$readme" ] || { echo "there is no README.md"; exit 1; }
 lost=$({ "$tool" tasks --markdown && "$tool" algos --markdown && "$tool" robots --markdown; } | grep -v '^|---' | while IFS= read -r line; do
   grep -qxF -- "$line" "$readme" || echo "README.md has no line: $line"
+done)
+lost=$lost$("$tool" objects --markdown | grep -v '^|---' | while IFS= read -r line; do
+  grep -qxF -- "$line" "${readme%README.md}lib/objects/README.md" || echo "lib/objects/README.md has no line: $line"
 done)
 [ -z "$lost" ] || { echo "$lost"; exit 1; }

@@ -34,6 +34,7 @@ RDM_MAX_COSTS = 16  # cost columns of a task or an agent
 RDM_TEXT_SIZE = 64  # bytes of an option's text value, terminator included
 RDM_ROBOT_LINKS = 64  # links of a robot, at most
 RDM_ROBOT_KNOTS = 4  # of a curve, at most
+RDM_OBJECT_SHAPES = 64
 RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH
 VERSION = "0.1.0"  # that these types are of
 
@@ -1466,7 +1467,7 @@ class rdm_robot_def(Structure):
     num_pairs: count
     num_couplings: count
     num_curves: count
-    num_commands: count
+    num_commands: count; -1: none, springs hold joints at home (of RDM_ROBOT_OTHER: a door, scissors)
     num_fingers: count
     mirror: root axis (0, 1, 2) normal to the plane that a left one is mirrored in; -1: none
     root_mass: of the root link, kg
@@ -1561,8 +1562,17 @@ class rdm_robot_def(Structure):
 
 
 class rdm_shape_def(Structure):
-    """name: unique in the scene; NULL: that of the body
-    material: of rdm_scene_add_material; NULL: "default"
+    """An object is shapes, a mass, its moments and the friction of its surface, by name: option object=NAME of the tasks of hands,
+    rdm_scene_add_object in a scene. Those of the YCB set are found by their number too ("025_mug"), with or without it.
+
+      rdm_object_def d;  int32_t object;
+      rdm_shape_def s = {.kind = RDM_BOX, .size = {0.02, 0.03, 0.06}};
+      rdm_object_def_init(&d, sizeof d);
+      d.name = "my_box";  d.shapes = &s;  d.num_shapes = 1;  d.mass = 0.2;
+      if (rdm_object_create(&object, &d)) puts(rdm_last_error());
+
+    name: unique in the scene; NULL: that of the body. Of an object unused
+    material: of rdm_scene_add_material; NULL: "default". Of an object unused
     points: [num_points][3] of an RDM_HULL: 4 to 32 points, m; else NULL
     num_points: count
     kind: RDM_SPHERE ... RDM_HULL; an RDM_PLANE stands still
@@ -1594,6 +1604,44 @@ class rdm_shape_def(Structure):
         ("q", c_double * 4),
         ("color", c_uint8 * 4),
         ("seen_only", c_int32),
+    ]
+
+
+class rdm_object_def(Structure):
+    """struct_size: bytes, set by rdm_object_def_init
+    num_shapes: 1 to RDM_OBJECT_SHAPES
+    name: letters, digits, '_', '-', '+'; at most 25
+    alias: another name; NULL
+    summary: one line; NULL: none
+    material: what its surface is: a name for scenes; NULL: "object"
+    shapes: [num_shapes] in any one frame: a body's is at its centre of mass, axes stay
+    mass: kg, 1e-6 to 1000
+    moment: xx yy zz xy xz yz, kg m2, the frame's origin then is the centre of mass; all 0: of the shapes,
+        solid, of one density; where two overlap, both count
+    friction: coefficient of its surface on dry things, 0 to 10; default 0.5
+    """
+
+    struct_size: int
+    num_shapes: int
+    name: bytes | None
+    alias: bytes | None
+    summary: bytes | None
+    material: bytes | None
+    shapes: Any
+    mass: float
+    moment: Any
+    friction: float
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_shapes", c_int32),
+        ("name", c_char_p),
+        ("alias", c_char_p),
+        ("summary", c_char_p),
+        ("material", c_char_p),
+        ("shapes", POINTER(rdm_shape_def)),
+        ("mass", c_double),
+        ("moment", c_double * 6),
+        ("friction", c_double),
     ]
 
 
@@ -2163,6 +2211,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_robot_finger": rdm_robot_finger,
     "rdm_robot_def": rdm_robot_def,
     "rdm_shape_def": rdm_shape_def,
+    "rdm_object_def": rdm_object_def,
     "rdm_body_def": rdm_body_def,
     "rdm_scene_robot": rdm_scene_robot,
     "rdm_joints": rdm_joints,
@@ -2341,11 +2390,11 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_object_count": Function(
         c_int32, {},
         {}, False,
-        """number of objects"""),
+        """number of objects, those that were removed too"""),
     "rdm_object_at": Function(
         c_int32, {"index": c_int32, "out": POINTER(rdm_object)},
         {}, False,
-        """RANGE past the end"""),
+        """RANGE past the end; NOT_FOUND: removed"""),
     "rdm_pool_config_init": Function(
         c_int32, {"c": POINTER(rdm_pool_config), "size": c_size_t},
         {}, False,
@@ -2710,6 +2759,36 @@ FUNCTIONS: dict[str, Function] = {
         """Joints q [num_links], from where they are, to where the arm's flange has pose [7] in the root frame. *found is 0 when the
         least squares end elsewhere. UNSUPPORTED: no flange.
         """),
+    "rdm_object_def_init": Function(
+        c_int32, {"def": POINTER(rdm_object_def), "size": c_size_t},
+        {}, True,
+        """defaults into the first `size` bytes"""),
+    "rdm_object_find": Function(
+        c_int32, {"name": c_char_p, "index": c_void_p},
+        {}, True,
+        """name or alias; NOT_FOUND: nearest in the text"""),
+    "rdm_object_get": Function(
+        c_int32, {"object": c_int32, "io": POINTER(rdm_object_def)},
+        {}, True,
+        """What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which are NULL here; texts
+        live as long as the object. Shape i < num_shapes is in the frame at the centre of mass.
+        """),
+    "rdm_object_shape_at": Function(
+        c_int32, {"object": c_int32, "i": c_int32, "out": POINTER(rdm_shape_def)},
+        {}, True,
+        """What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which are NULL here; texts
+        live as long as the object. Shape i < num_shapes is in the frame at the centre of mass.
+        """),
+    "rdm_object_create": Function(
+        c_int32, {"out": c_void_p, "def": POINTER(rdm_object_def)},
+        {}, True,
+        """Adds an object under a number that no other gets, *out for rdm_object_at and what is here. ARGUMENT, RANGE: the text names
+        the row; a name that is taken is an ARGUMENT. Objects belong to the process; any number of threads may look meanwhile.
+        """),
+    "rdm_object_remove": Function(
+        c_int32, {"object": c_int32},
+        {}, True,
+        """Pools that have it keep it. ARGUMENT for the library's own."""),
     "rdm_fail": Function(
         c_int32, {"code": c_int32, "text": c_char_p},
         {}, True,
@@ -2754,6 +2833,13 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"scene": c_void_p, "body": POINTER(rdm_body_def), "index": c_void_p},
         {}, True,
         """index: NULL"""),
+    "rdm_scene_add_object": Function(
+        c_int32, {"scene": c_void_p, "object": c_int32, "name": c_char_p, "p": c_void_p, "q": c_void_p, "scale": c_double, "index": c_void_p},
+        {"p": Rows("float64", ("3",)), "q": Rows("float64", ("4",))}, True,
+        """An object at the pose p [3] (m), q [4] (all 0: none) of its centre of mass, as the body and first shape `name` (others:
+        name_1, name_2 ...), `scale` times as large, 0.05 to 20, its mass as it is; index: NULL. Its material is one of the scene: a
+        new one rubs on each that is there with the object's friction, on another object's with the lower of the two.
+        """),
     "rdm_scene_add_static": Function(
         c_int32, {"scene": c_void_p, "shape": POINTER(rdm_shape_def)},
         {}, True,

@@ -6,6 +6,7 @@
 #include "common/files.hpp"
 #include "common/names.hpp"
 #include "common/report.hpp"
+#include "common/task_files.hpp"
 
 namespace tool {
 
@@ -67,12 +68,30 @@ std::string object_text(const rdm_object_def&) {
 }
 #endif
 
-int32_t load_object(const std::string& file) {
-  const Import import = import_object(file);
+namespace {
+int32_t add_object(const Import& import, const std::string& where) {
   const rdm_object_def def = object_def_of(import);
   int32_t object = -1;
-  if (rdm_object_create(&object, &def) != RDM_OK) throw Failure(file + ": " + rdm_last_error());
+  if (rdm_object_create(&object, &def) != RDM_OK) throw Failure(where + ": " + rdm_last_error());
+  remember_object(def.name, object_text(def));
   return object;
+}
+}  // namespace
+
+int32_t load_object(const std::string& file) {
+  return add_object(import_object(file), file);
+}
+
+int32_t load_object_text(const std::string& text, const std::string& where) {
+#ifdef REDMAN_IMPORT
+  rdm_import* made = nullptr;
+  if (rdm_import_object_text(&made, text.data(), text.size()) != RDM_OK)
+    throw Failure(where + ": " + rdm_import_error());
+  return add_object(Import(made), where);
+#else
+  (void)text;
+  return load_object(where);
+#endif
 }
 
 void add_object_flag(CLI::App& command) {

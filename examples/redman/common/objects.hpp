@@ -15,6 +15,7 @@ Import import_object(const std::string& file);
 rdm_object_def object_def_of(const Import& import);
 // The file's object, added to those of the process; 0 and up.
 int32_t load_object(const std::string& file);
+int32_t load_object_text(const std::string& text, const std::string& where);  // of an .object file
 // As an .object file.
 std::string object_text(const rdm_object_def& def);
 std::vector<std::string> object_names();

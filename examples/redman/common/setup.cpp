@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "common/names.hpp"
+#include "common/objects.hpp"
 #include "common/robots.hpp"
 #include "common/task_files.hpp"
 #include "common/text.hpp"
@@ -52,7 +53,8 @@ std::vector<rdm_option> raw_options(const Options& options) {
 }
 
 CLI::Option* add_task_flag(CLI::App& command, std::string& task, const char* names, const char* help) {
-  add_robot_flag(command);  // before: the task may be made of it
+  add_robot_flag(command);  // before: the task may be made of them
+  add_object_flag(command);
   return command.add_option(names, task, help)
       ->transform(CLI::Validator(
           [](std::string& word) {

@@ -43,7 +43,7 @@ bool learns_magnitudes(const AgentSettings& agent);
 CLI::Validator finite_to(double most);
 
 // Flags that several subcommands share. The first returns --task.
-// --robot and --task (which it returns): names, or files of one's own.
+// --robot, --object and --task (which it returns): names, or files of one's own.
 CLI::Option* add_task_flag(CLI::App& command, std::string& task, const char* names, const char* help);
 CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help);
 void add_set_flag(CLI::App& command, std::vector<std::string>& sets);

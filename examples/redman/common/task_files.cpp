@@ -4,6 +4,7 @@
 
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/objects.hpp"
 #include "common/robots.hpp"
 #include "common/text.hpp"
 
@@ -13,9 +14,10 @@ namespace {
 constexpr size_t kMostBytes = size_t{1} << 18;  // several fit into a config.json
 
 struct Loaded {
-  std::map<std::string, std::string> tasks;   // text by name
-  std::map<std::string, std::string> files;   // name by path
-  std::map<std::string, std::string> robots;  // text by name
+  std::map<std::string, std::string> tasks;    // text by name
+  std::map<std::string, std::string> files;    // name by path
+  std::map<std::string, std::string> robots;   // text by name
+  std::map<std::string, std::string> objects;  // text by name
 };
 Loaded& loaded() {
   static Loaded all;
@@ -62,9 +64,13 @@ void remember_robot(const std::string& name, const std::string& text) {
   loaded().robots[name] = text;
 }
 
+void remember_object(const std::string& name, const std::string& text) {
+  loaded().objects[name] = text;
+}
+
 OwnFiles own_files(const std::string& task) {
   const auto found = loaded().tasks.find(task);
-  return {found == loaded().tasks.end() ? "" : found->second, loaded().robots};
+  return {found == loaded().tasks.end() ? "" : found->second, loaded().robots, loaded().objects};
 }
 
 void load_own_files(const std::string& task, const OwnFiles& files, const std::string& where) {
@@ -75,6 +81,13 @@ void load_own_files(const std::string& task, const OwnFiles& files, const std::s
     if (rdm_robot_find(name.c_str(), &index) == RDM_OK)
       throw Failure(where + ": its robot " + name + " is another than the one of that name that is loaded");
     load_robot_text(text, where);
+  }
+  for (const auto& [name, text] : files.objects) {
+    const auto known = loaded().objects.find(name);
+    if (known != loaded().objects.end() && known->second == text) continue;
+    if (rdm_object_find(name.c_str(), &index) == RDM_OK)
+      throw Failure(where + ": its object " + name + " is another than the one of that name that is loaded");
+    load_object_text(text, where);
   }
   if (files.task.empty()) return;
   const auto known = loaded().tasks.find(task);

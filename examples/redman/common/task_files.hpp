@@ -1,4 +1,4 @@
-// Tasks and robots that came out of files of the tool's user, and what a run folder keeps of them.
+// Tasks, robots and objects that came out of files of the tool's user, and what a run folder keeps of them.
 #pragma once
 #include <map>
 #include <string>
@@ -9,8 +9,9 @@ namespace tool {
 
 // Files that a run needs beside the library: kept in its config.json, so that nothing has to be given again.
 struct OwnFiles {
-  std::string task;                           // text of the .task file, "" of a task of the library
-  std::map<std::string, std::string> robots;  // .robot texts by name
+  std::string task;                            // text of the .task file, "" of a task of the library
+  std::map<std::string, std::string> robots;   // .robot texts by name
+  std::map<std::string, std::string> objects;  // .object texts by name
 };
 
 // Where --task takes a task's name it takes the file of one: "FILE.task".
@@ -21,6 +22,7 @@ std::string task_of_file(const std::string& file);
 std::string task_name(const std::string& word);
 
 void remember_robot(const std::string& name, const std::string& text);
+void remember_object(const std::string& name, const std::string& text);
 // What the task of that name needs of what was loaded.
 OwnFiles own_files(const std::string& task);
 // Loads what is not there yet. Failure, which begins with `where`, when a name stands for something else.

@@ -77,6 +77,7 @@ std::string config_text(const RunSettings& s, const redman::Pool& pool, const re
                {"build", build_json()}};
   if (!s.own.task.empty()) json["task_file"] = s.own.task;
   if (!s.own.robots.empty()) json["robot_files"] = s.own.robots;
+  if (!s.own.objects.empty()) json["object_files"] = s.own.objects;
   std::string text = json_text(json, 2) + '\n';
   if (text.size() > kMostJsonBytes)
     throw Failure(format("a run's config.json has room for %zu bytes: its robots and task take %zu",
@@ -100,11 +101,14 @@ RunSettings parse_config(const char* text, size_t size) {
   s.eval_every = static_cast<int32_t>(integer_at(train, "eval_every", 1, INT32_MAX));
   s.checkpoint_every = static_cast<int32_t>(integer_at(train, "checkpoint_every", 1, INT32_MAX));
   if (json.contains("task_file")) s.own.task = text_at(json, "task_file", kMostJsonBytes);
-  if (json.contains("robot_files")) {
-    const Document& robots = object_at(json, "robot_files");
-    for (const auto& [name, text] : robots.items())
-      s.own.robots[name] = text_at(robots, name.c_str(), kMostJsonBytes);
-  }
+  const auto texts = [&](const char* key, std::map<std::string, std::string>* out) {
+    if (!json.contains(key)) return;
+    const Document& files = object_at(json, key);
+    for (const auto& [name, text] : files.items())
+      (*out)[name] = text_at(files, name.c_str(), kMostJsonBytes);
+  };
+  texts("robot_files", &s.own.robots);
+  texts("object_files", &s.own.objects);
   if (train.contains("tensorboard")) s.events = flag_at(train, "tensorboard");
   return s;
 }

@@ -16,14 +16,14 @@ constexpr ObjectShape kTunaFishCan[] = {cylinder(0.0425, 0.033, {}, {60, 120, 18
 constexpr ObjectShape kPuddingBox[] = {box(0.035, 0.11, 0.089, {}, {130, 80, 60})};
 constexpr ObjectShape kGelatinBox[] = {box(0.028, 0.085, 0.073, {}, {200, 70, 80})};
 
-// An arc of 100 degrees in its plane, 36 mm thick in the middle; its ends are 190 mm apart.
+// An arc in its plane, 36 mm thick in the middle, its ends 190 mm apart.
 constexpr ObjectShape kBanana[] = {
-    rod({-0.074, 0.0145, 0}, {-0.05, -0.012, 0}, 0.0145, kYellow),
-    rod({-0.05, -0.012, 0}, {-0.018, -0.0265, 0}, 0.0175, kYellow),
+    rod({-0.08, 0.016, 0}, {-0.052, -0.012, 0}, 0.0145, kYellow),
+    rod({-0.052, -0.012, 0}, {-0.018, -0.0265, 0}, 0.0175, kYellow),
     rod({-0.018, -0.0265, 0}, {0.018, -0.0265, 0}, 0.018, kYellow),
-    rod({0.018, -0.0265, 0}, {0.05, -0.012, 0}, 0.0175, kYellow),
-    rod({0.05, -0.012, 0}, {0.074, 0.0145, 0}, 0.0145, kYellow),
-    rod({0.074, 0.0145, 0}, {0.0895, 0.035, 0}, 0.0055, kBrown),
+    rod({0.018, -0.0265, 0}, {0.052, -0.012, 0}, 0.0175, kYellow),
+    rod({0.052, -0.012, 0}, {0.078, 0.014, 0}, 0.0145, kYellow),
+    rod({0.078, 0.014, 0}, {0.09, 0.032, 0}, 0.0055, kBrown),
 };
 constexpr Turned<4> kStrawberryForm({{0.006, -0.0275}, {0.0175, -0.008}, {0.0219, 0.0135}, {0.013, 0.0275}});
 constexpr ObjectShape kStrawberry[] = {hull(kStrawberryForm.points, {}, {200, 40, 50})};

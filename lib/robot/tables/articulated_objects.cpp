@@ -1,9 +1,10 @@
 // Things that move and are no robots: a drawer, a door, a bottle with a screw cap, scissors, a tap.
 //
-// Nothing drives them: a joint has dry friction, which holds it where it was left, a little damping, and of a
-// door's handle a spring. Frames: z up, x out of the front, to whom handles them; joints at 0 are closed.
-// Sizes and masses are round figures of such things (K); moments are those of solid boxes (D). What slides or
-// turns in a guide does not touch it: the joint and its ends are the guide.
+// Nothing drives them: a joint has dry friction, which holds it where it was left but for creep below
+// kFrictionSpeed, a little damping, and of a door's handle a spring. Frames: z up, x out of the front, to
+// whom handles them; joints at 0 are closed. Sizes and masses are round figures of such things (K); moments
+// are those of solid boxes (D). What slides or turns in a guide does not touch it: the joint and its ends are
+// the guide.
 #include "robot/tables/rows.hpp"
 
 namespace rdm {
@@ -109,7 +110,7 @@ constexpr RobotLink kTapLinks[] = {
     turning("collar", "mix", -1, {0, 0, 0.15}, {}, kZ, {-0.9, 0.9}, slab(0.1, {0, 0, 0.01}, 0.04, 0.04, 0.02),
             {0, 0.01, 20, 0, 0, 0.15}),
     turning("lever", "lift", 0, {0, 0, 0.02}, {}, {0, -1, 0}, {0, 0.6},
-            slab(0.12, {0.04, 0, 0.012}, 0.12, 0.02, 0.012), {0, 0.01, 20, 0, 0, 0.2}),
+            slab(0.08, {0.012, 0, 0.012}, 0.1, 0.02, 0.012), {0, 0.01, 20, 0, 0, 0.2}),
 };
 constexpr RobotShape kTapShapes[] = {
     cylinder(-1, "foot", 0.028, 0.004, {0, 0, 0.004}, kSteel),

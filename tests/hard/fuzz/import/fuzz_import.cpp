@@ -1,5 +1,5 @@
 // Robots' files: URDF, MJCF and text. What is read can be made, written, and read back to the same text; what
-// is not is refused with a text. The first byte says as what the rest is read.
+// is not is refused with a text. And objects as text. The first byte says as what the rest is read.
 #include <redman/redman_import.h>
 
 #include <cstring>
@@ -51,6 +51,37 @@ rdm_robot_def def_of(const rdm_import* i) {
   return def;
 }
 
+// What the first byte says for an .object file, behind the formats of robots.
+constexpr int kObject = RDM_IMPORT_ROBOT + 1;
+
+std::string written(const rdm_import* i) {
+  rdm_object_def def;
+  rdm_object_def_init(&def, sizeof def);
+  HARD_REQUIRE(rdm_import_object_def(i, &def) == RDM_OK, "%s", rdm_import_error());
+  size_t size = 0;
+  HARD_REQUIRE(rdm_import_object_write(&def, nullptr, 0, &size) == RDM_OK, "%s", rdm_import_error());
+  std::string text(size + 1, '\0');
+  HARD_REQUIRE(rdm_import_object_write(&def, text.data(), text.size(), &size) == RDM_OK, "%s",
+               rdm_import_error());
+  text.pop_back();
+  return text;
+}
+
+void one_object(const unsigned char* data, size_t size) {
+  rdm_import *i = nullptr, *again = nullptr;
+  const rdm_result r = rdm_import_object_text(&i, data, size);
+  if (r != RDM_OK) {
+    HARD_REQUIRE(i == nullptr && rdm_import_error()[0] != 0 && r != RDM_INTERNAL, "%d %s", r,
+                 rdm_import_error());
+    return;
+  }
+  const std::string text = written(i);
+  HARD_REQUIRE(rdm_import_object_text(&again, text.data(), text.size()) == RDM_OK, "%s", rdm_import_error());
+  HARD_REQUIRE(written(again) == text, "an object does not read back");
+  rdm_import_destroy(again);
+  rdm_import_destroy(i);
+}
+
 }  // namespace
 
 std::vector<Bytes> seeds() {
@@ -60,6 +91,14 @@ std::vector<Bytes> seeds() {
     rdm_import* i = nullptr;
     HARD_REQUIRE(rdm_import_text(&i, text, std::strlen(text), nullptr) == RDM_OK, "%s", rdm_import_error());
     out.push_back(with_pick(RDM_IMPORT_ROBOT, bytes_of(written(def_of(i)))));
+    rdm_import_destroy(i);
+  }
+  for (const char* name : {"mug_with_handle", "banana"}) {
+    int32_t object = -1;
+    rdm_import* i = nullptr;
+    HARD_REQUIRE(rdm_object_find(name, &object) == RDM_OK && rdm_import_object(&i, object) == RDM_OK, "%s",
+                 name);
+    out.push_back(with_pick(kObject, bytes_of(written(i))));
     rdm_import_destroy(i);
   }
   return out;
@@ -72,7 +111,9 @@ size_t fixed_bytes() {
 void one(const unsigned char* data, size_t size) {
   rdm_import_options o;
   rdm_import_options_init(&o, sizeof o);
-  o.format = static_cast<int32_t>(pick(data, size, 4));
+  const int format = static_cast<int>(pick(data, size, 5));
+  if (format == kObject) return one_object(size ? data + 1 : data, size ? size - 1 : 0);
+  o.format = format;
   o.skip_meshes = o.mend_inertia = size > 0 && data[0] >= 128;
   rdm_import* i = nullptr;
   const rdm_result r = rdm_import_text(&i, size ? data + 1 : data, size ? size - 1 : 0, &o);

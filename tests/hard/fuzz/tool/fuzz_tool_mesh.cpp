@@ -29,12 +29,16 @@ void one(const unsigned char* data, size_t size) {
   if (size == 0) return;
   const char* text = reinterpret_cast<const char*>(data + 1);
   try {
-    const auto points = tool::parse_mesh(
-        text, size - 1, pick(data, size, 2) == 0 ? tool::MeshKind::kObj : tool::MeshKind::kStl);
+    const tool::MeshKind kind = pick(data, size, 2) == 0 ? tool::MeshKind::kObj : tool::MeshKind::kStl;
+    const auto points = tool::parse_mesh(text, size - 1, kind);
     HARD_REQUIRE(!points.empty() && points.size() <= size, "%zu points of %zu bytes", points.size(), size);
     for (const tool::Point& p : points)
       HARD_REQUIRE(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]),
                    "a point is not finite");
+    const tool::Mesh mesh = tool::parse_faces(text, size - 1, kind);
+    for (const auto& face : mesh.faces)
+      for (const uint32_t i : face) HARD_REQUIRE(i < mesh.points.size(), "a face without a point");
+    HARD_REQUIRE(!(tool::mass_of(mesh).volume < 0), "a volume below 0");
   } catch (const tool::Failure& e) {
     HARD_REQUIRE(*e.what(), "no text");
   }

@@ -1,0 +1,227 @@
+// `objects` and `object`: the catalogue, and meshes and files that become objects.
+#include "common/objects.hpp"
+
+#include <redman/redman_import.h>
+
+#include <cmath>
+#include <memory>
+#include <redman/redman.hpp>
+
+#include "commands.hpp"
+#include "common/files.hpp"
+#include "common/text.hpp"
+#include "draw/sheet.hpp"
+#include "mesh/hulls.hpp"
+#include "mesh/parts.hpp"
+
+namespace tool {
+namespace {
+
+constexpr double kFarthest = 100;  // m, what rdm_object_create takes
+
+struct ObjectsFlags {
+  bool markdown = false;
+  std::string sheet;
+  int32_t side = 180, columns = 10;
+};
+
+Report list_objects(const ObjectsFlags& flags) {
+  Json all = Json::array();
+  Table table({"object", "shape", "mass", "friction", "surface", "summary"});
+  for (int32_t i = 0; i < rdm_object_count(); ++i) {
+    rdm_object object;
+    rdm_object_def def;
+    rdm_object_def_init(&def, sizeof def);
+    // An object that was removed leaves its number.
+    if (rdm_object_at(i, &object) != RDM_OK || rdm_object_get(i, &def) != RDM_OK) continue;
+    all.push_back({{"name", object.name},
+                   {"alias", def.alias ? Json(def.alias) : Json()},
+                   {"shape", object.shape},
+                   {"shapes", def.num_shapes},
+                   {"mass", object.mass},
+                   {"moment", std::vector<double>(def.moment, def.moment + 6)},
+                   {"friction", def.friction},
+                   {"material", def.material},
+                   {"summary", def.summary}});
+    table.add({flags.markdown ? format("`%s`", object.name) : object.name, object.shape,
+               format("%.4g kg", object.mass), format("%.3g", def.friction), def.material, def.summary});
+  }
+  Json json = {{"objects", all}};
+  std::string text = flags.markdown ? table.markdown() : table.text();
+  if (!flags.sheet.empty()) {
+    const Sheet sheet = draw_sheet(flags.side, flags.columns);
+    write_png(flags.sheet, sheet.image);
+    json["file"] = flags.sheet;
+    json["columns"] = sheet.columns;
+    json["pictures"] = sheet.names;
+    text = "";
+    for (size_t i = 0; i < sheet.names.size(); ++i)
+      text += sheet.names[i] + ((i + 1) % static_cast<size_t>(sheet.columns) ? "  " : "\n");
+    text += "\nwrote " + flags.sheet + '\n';
+  }
+  return {json, text};
+}
+
+struct ObjectFlags {
+  std::string file, out, name, material = "plastic";
+  int32_t parts = 1, points = 32;
+  double mass = 0, friction = 0.5, scale = 1;
+  bool given = false;  // one of those that are of a mesh alone
+};
+
+bool is_mesh(const std::string& file) {
+  for (const char* ending : {".stl", ".STL", ".obj", ".OBJ"})
+    if (file.size() > 4 && file.compare(file.size() - 4, 4, ending) == 0) return true;
+  return false;
+}
+
+// "cup" of "/tmp/my cup.stl" becomes "my_cup".
+std::string name_of(const std::string& file) {
+  const size_t slash = file.find_last_of('/');
+  std::string name = file.substr(slash == std::string::npos ? 0 : slash + 1);
+  name.erase(name.find_last_of('.'));
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-' && c != '+') c = '_';
+  return name.substr(0, 25);
+}
+
+std::string size_text(const rdm_shape_def& s) {
+  if (s.kind == RDM_HULL) return format("%d points", s.num_points);
+  const int count = s.kind == RDM_SPHERE ? 1 : s.kind == RDM_CAPSULE || s.kind == RDM_CYLINDER ? 2 : 3;
+  std::string text;
+  for (int i = 0; i < count; ++i) text += format(i ? " x %.4g" : "%.4g", s.size[i]);
+  return text;
+}
+
+// Writes it where it is asked for, and says what it is.
+Report show(const rdm_object_def& def, const ObjectFlags& flags, Json json, const std::string& how) {
+  static constexpr const char* kKinds[] = {"sphere", "capsule",   "box", "cylinder",
+                                           "plane",  "ellipsoid", "hull"};
+  Table table({"shape", "size", "place"});
+  for (int32_t i = 0; i < def.num_shapes; ++i) {
+    const rdm_shape_def& s = def.shapes[i];
+    table.add({kKinds[s.kind], size_text(s), format("%.4f %.4f %.4f", s.p[0], s.p[1], s.p[2])});
+  }
+  std::string text = format("%s: %.4g kg, %s, friction %.3g\n", def.name, def.mass,
+                            def.material ? def.material : "object", def.friction) +
+                     how + '\n' + table.text();
+  json["name"] = def.name;
+  json["mass"] = def.mass;
+  json["moment"] = std::vector<double>(def.moment, def.moment + 6);
+  json["friction"] = def.friction;
+  json["shapes"] = def.num_shapes;
+  if (!flags.out.empty()) {
+    replace_file(flags.out, object_text(def));
+    json["file"] = flags.out;
+    text += "\nwritten to " + flags.out + '\n';
+  }
+  return {json, text};
+}
+
+// Hulls of the parts, in the mesh's own frame; mass and moments of the mesh where it is closed.
+Report object_of_mesh(const ObjectFlags& flags) {
+  if (!(flags.mass > 0)) throw Usage("--mass: a mesh needs one, above 0 kg");
+  Mesh mesh = mesh_of(flags.file);
+  for (Point& p : mesh.points)
+    for (double& x : p) {
+      x *= flags.scale;
+      if (!(std::abs(x) <= kFarthest))
+        throw Failure(flags.file +
+                      format(": with --scale a vertex is farther than %g m from the origin", kFarthest));
+    }
+  const MeshMass whole = mass_of(mesh);
+  const bool closed = whole.volume > 0;
+  std::vector<std::vector<double>> points;
+  std::vector<rdm_shape_def> shapes;
+  double volume = 0, error = 0;
+  for (const auto& part : parts_of(mesh, flags.parts, flags.file)) {
+    const FewHull few = few_hull(part, static_cast<size_t>(flags.points), flags.file);
+    std::vector<double>& out = points.emplace_back();
+    for (const Point& p : few.hull.corners)
+      for (size_t k = 0; k < 3; ++k) out.push_back(p[k] - (closed ? whole.centre[k] : 0));
+    volume += few.hull.volume;
+    error = std::max(error, few.error);
+  }
+  for (const auto& p : points) {
+    rdm_shape_def s{};
+    s.kind = RDM_HULL;
+    s.points = p.data();
+    s.num_points = static_cast<int32_t>(p.size() / 3);
+    s.q[3] = 1;
+    shapes.push_back(s);
+  }
+  const std::string name = flags.name.empty() ? name_of(flags.file) : flags.name;
+  const std::string summary =
+      format("%zu convex part%s of a mesh", shapes.size(), shapes.size() == 1 ? "" : "s");
+  rdm_object_def def;
+  rdm_object_def_init(&def, sizeof def);
+  def.name = name.c_str();
+  def.summary = summary.c_str();
+  def.material = flags.material.c_str();
+  def.friction = flags.friction;
+  def.mass = flags.mass;
+  def.shapes = shapes.data();
+  def.num_shapes = static_cast<int32_t>(shapes.size());
+  if (closed)
+    for (size_t k = 0; k < 6; ++k) def.moment[k] = whole.moment[k] * flags.mass / whole.volume;
+  int32_t object = -1;  // what the library says of it
+  if (rdm_object_create(&object, &def) != RDM_OK) throw Failure(flags.file + ": " + rdm_last_error());
+  const std::string how =
+      closed ? format("moments of the closed mesh, %.6g m3; the parts have %.6g m3", whole.volume, volume)
+             : format("moments of the parts, %.6g m3: the mesh is not closed", volume);
+  const Json json = {{"closed", closed},
+                     {"volume_m3", closed ? whole.volume : volume},
+                     {"parts_m3", volume},
+                     {"error_m", error},
+                     {"parts", shapes.size()}};
+  return show(def, flags, json, how + format("; corners left out stand out by %.3g m\n", error));
+}
+
+Report run_object(const ObjectFlags& flags) {
+  if (is_mesh(flags.file)) return object_of_mesh(flags);
+  if (flags.given)
+    throw Usage(
+        flags.file +
+        ": --parts, --points, --mass, --friction, --material, --scale and --name are of a mesh (.stl, .obj)");
+  const Import import = import_object(flags.file);
+  return show(object_def_of(import), flags, Json::object(), "");
+}
+
+}  // namespace
+
+void add_objects(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<ObjectsFlags>();
+  CLI::App* command = app.add_subcommand("objects", "List the objects that --set object=NAME takes");
+  command->add_flag("--markdown", flags->markdown, "print the table of the README");
+  command->add_option("--sheet", flags->sheet, "PNG file: a picture of each, and of articulated ones");
+  command->add_option("--side", flags->side, "pixels of a picture's side")->check(CLI::Range(16, 1024));
+  command->add_option("--columns", flags->columns, "pictures in a row")->check(CLI::Range(1, 100));
+  add_object_flag(*command);
+  command->callback([&run, flags] { run = [flags] { return list_objects(*flags); }; });
+}
+
+void add_object(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<ObjectFlags>();
+  CLI::App* command =
+      app.add_subcommand("object", "Make an object of a mesh, or show one: its shapes, mass and moments");
+  command->add_option("file", flags->file, ".stl, .obj or .object file, or an object's name")->required();
+  std::vector<CLI::Option*> of_mesh = {
+      command->add_option("--parts", flags->parts, "at most so many convex parts; 1: one hull")
+          ->check(CLI::Range(1, RDM_OBJECT_SHAPES)),
+      command->add_option("--points", flags->points, "at most so many corners of each")
+          ->check(CLI::Range(4, 32)),
+      command->add_option("--mass", flags->mass, "kg")->check(CLI::PositiveNumber),
+      command->add_option("--friction", flags->friction, "coefficient of its surface")
+          ->check(CLI::Range(0.0, 10.0)),
+      command->add_option("--material", flags->material, "name of its surface"),
+      command->add_option("--scale", flags->scale, "m per unit of the file")->check(CLI::PositiveNumber),
+      command->add_option("--name", flags->name, "name of the object; default: the file's"),
+  };
+  command->add_option("--out", flags->out, "write it as an .object file");
+  command->callback([&run, flags, of_mesh] {
+    for (const CLI::Option* option : of_mesh) flags->given = flags->given || option->count() > 0;
+    run = [flags] { return run_object(*flags); };
+  });
+}
+
+}  // namespace tool
