@@ -661,7 +661,34 @@ class Builder {
     t.numbers("p", s->p, 3);
     read_turn(t, s->q);
   }
+  // Where a body begins, drawn or not; `add` puts it into the scene.
+  template <class F>
+  void place_body(const Table& t, F&& add) {
+    Draw d{};
+    double p[3] = {}, q[4] = {};
+    bool moves = read_drawn(t, d.p, d.turn, d.q, p, q);
+    moves = spans(t, "v", d.v, 3) || moves;
+    moves = spans(t, "w", d.w, 3) || moves;
+    d.apart = t.flag("apart", true);
+    check(t, line_of(t.t), add(p, q, &d.body));
+    if (moves) *take(t, p_.draws, &p_.num_draws, kMostDraws, "bodies that are drawn") = d;
+  }
+  // One of the catalogue, or the host's: shapes, mass and friction are its own.
+  void add_object(const Table& t) {
+    t.only({"name", "object", "scale", "p", "q", "rpy", "v", "w", "apart"});
+    const std::string name = t.as_text(t.need("name"), "name");
+    const toml::node& word = t.need("object");
+    int32_t object = -1;
+    check(t, line_of(word), rdm_object_find(t.as_text(word, "object").c_str(), &object));
+    double scale = 1;
+    t.number("scale", &scale);
+    place_body(t, [&](const double* p, const double* q, int32_t* index) {
+      return rdm_scene_add_object(scene_, object, name.c_str(), p, q, scale, index);
+    });
+    names_.push_back(name);
+  }
   void add_body(const Table& t) {
+    if (t.find("object")) return add_object(t);
     t.only({"name", "mass", "moment", "p", "q", "rpy", "v", "w", "apart", "linear_damping", "angular_damping",
             "weightless", "shape", "kind", "size", "points", "material", "color", "seen_only"});
     rdm_body_def b{};
@@ -692,13 +719,11 @@ class Builder {
     }
     b.shapes = shapes.rows.data();
     b.num_shapes = static_cast<int32_t>(shapes.rows.size());
-    Draw d{};
-    bool moves = read_drawn(t, d.p, d.turn, d.q, b.p, b.q);
-    moves = spans(t, "v", d.v, 3) || moves;
-    moves = spans(t, "w", d.w, 3) || moves;
-    d.apart = t.flag("apart", true);
-    check(t, line_of(t.t), rdm_scene_add_body(scene_, &b, &d.body));
-    if (moves) *take(t, p_.draws, &p_.num_draws, kMostDraws, "bodies that are drawn") = d;
+    place_body(t, [&](const double* p, const double* q, int32_t* index) {
+      std::copy_n(p, 3, b.p);
+      std::copy_n(q, 4, b.q);
+      return rdm_scene_add_body(scene_, &b, index);
+    });
   }
   void add_static(const Table& t) {
     t.only({"name", "kind", "size", "points", "p", "q", "rpy", "material", "color", "seen_only"});

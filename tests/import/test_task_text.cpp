@@ -289,6 +289,29 @@ TEST(TaskText, FallEnds) {
   EXPECT_NEAR(pool.reward(), -3, 1e-6);
 }
 
+// A mug of the catalogue rests on the table; twice as large its middle is twice as high.
+TEST(TaskText, BodiesAreObjectsOfTheCatalogue) {
+  const auto settled = [](const char* scale) {
+    const Task task(with(std::string("[[body]]\nname = \"cup\"\nobject = \"025_mug\"\np = [1, 1, 0.1]\n") +
+                         scale +
+                         "[[observe]]\nname = \"x\"\nterm = \"height\"\na = \"cup\"\n"
+                         "[[observe]]\nname = \"f\"\nterm = \"force\"\na = \"cup\"\nb = \"table\"\n"));
+    Pool pool("text_test");
+    for (int i = 0; i < 100; ++i) pool.step();
+    rdm_object_def mug{};
+    mug.struct_size = sizeof mug;
+    int32_t index = -1;
+    EXPECT_EQ(rdm_object_find("mug", &index), RDM_OK);
+    EXPECT_EQ(rdm_object_get(index, &mug), RDM_OK);
+    EXPECT_NEAR(pool.number("f"), mug.mass * 9.81, 0.02 * mug.mass * 9.81);
+    return pool.number("x");
+  };
+  const double height = settled("");
+  EXPECT_GT(height, 0.02);
+  EXPECT_LT(height, 0.06);
+  EXPECT_NEAR(settled("scale = 2\n"), 2 * height, 0.002);
+}
+
 TEST(TaskText, ResetsDraw) {
   std::string text = watch("term = \"position\"\na = \"ball\"\n");
   text.replace(text.find("\"$far\""), 6, "\"-0.25..0.25\"");
@@ -339,6 +362,9 @@ TEST(TaskText, RefusalsNameLineAndKey) {
            {"mass = 1\n", "mass = \"$mas\"\n", "line 22: tree cart: link box: mass: option mas: unknown"},
            {"kind = \"sphere\"", "kind = \"ball\"", "line 31: body ball: kind: ball is not known"},
            {"mass = 0.5", "mass = -1", "line 29: body ball: body ball: mass -1 is not above 0"},
+           {"kind = \"sphere\"\nsize = [0.04]\nmass = 0.5", "object = \"mugg\"",
+            "line 31: body ball: object: mugg is unknown"},
+           {"kind = \"sphere\"", "object = \"mug\"", "line 32: body ball: size is no key"},
            {"\"$far\"", "\"$fer\"", "line 34: body ball: p: option fer: unknown; nearest is far"},
            {"\"$far\"", "\"1..0\"", "line 34: body ball: p: 1..0 is no range \"a..b\" with a <= b"},
            {"\"$far\"", "\"1..2x\"", "line 34: body ball: p: 1..2x is no range"},
