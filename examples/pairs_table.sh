@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # A table of speeds: every hand on every arm, one in `grasp` and two in Jenga's scene without its tower, and the
-# paper's pair there, under random actions on one core.
+# paper's pair there, under random actions, in steps per second of one core's time.
 #   bash examples/pairs_table.sh
-# Environment: REDMAN (the tool), HANDS, ARMS, SECONDS_EACH (of one measurement; 1). Other work on the machine shows.
+# Environment: REDMAN (the tool), HANDS, ARMS, SECONDS_EACH (of one measurement; 1).
 set -eu
 # shellcheck source=examples/runs.sh
 . "$(dirname "$0")/runs.sh"
@@ -17,7 +17,7 @@ bench() {  # TASK KEY=VALUE...: rate and kB of a world
   for pair in "$@"; do set+=(--set "$pair"); done
   "$redman" bench step --task "$task" --threads 0 --seconds "${SECONDS_EACH:-1}" --json "${set[@]}" > "$part"
   [ "$(value diverged "$part") $(value overflowed "$part")" = "0 0" ] || echo "$task $*: diverged or overflowed" >&2
-  printf "%.0f | %.0f" "$(value steps_per_second "$part")" \
+  printf "%.0f | %.0f" "$(value steps_per_cpu_second "$part")" \
     "$(awk -v b="$(value bytes_per_env "$part")" 'BEGIN { print b / 1e3 }')"
 }
 

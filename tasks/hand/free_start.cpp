@@ -31,7 +31,8 @@ class Room {
   Room(const HandControlConfig& config, const HandScene& made)
       : scene_(make_scene(static_cast<const SceneDef&>(made))),
         poses_(scene_.shapes.size()),
-        things_stand_(config.things_stand) {
+        things_stand_(config.things_stand),
+        count_(config.count) {
     for (size_t i = 0; i < scene_.shapes.size(); ++i) {
       const SceneShape& s = scene_.shapes[i];
       if (s.carrier == Carrier::kStatic) poses_[i] = s.def.X_LS;
@@ -48,29 +49,16 @@ class Room {
       follow(robot, q_[i]);
       place(i, hand.X_WB, nullptr);
     }
+    for (size_t a = static_cast<size_t>(config.count); a < scene_.def.articulations.size(); ++a)
+      put(static_cast<int32_t>(a), scene_.def.articulations[a].X_WB, nullptr);
     for (const ShapePair& pair : scene_.pairs) sort({pair.a, pair.b});
     add_base_pairs();
   }
 
   // Puts robot i there; q [arm_links] of its arm, null: as before.
   void place(int32_t i, const Pose& X_WB, const double* q) {
-    const auto a = static_cast<size_t>(i);
     if (q) std::copy_n(q, hands_[i]->robot().arm_links, q_[i]);
-    const int32_t first = scene_.link_offset[a];
-    const auto links = static_cast<int32_t>(scene_.def.articulations[a].links.size());
-    Pose X_WL[kMaxRobotLinks];
-    for (int32_t k = 0; k < links; ++k) {
-      const LinkDef& l = scene_.link(first + k);
-      const Pose motion = l.joint.kind == JointKind::kPrismatic
-                              ? Pose{q_[i][k] * l.joint.axis, {}}
-                              : Pose{{}, axis_angle(l.joint.axis, q_[i][k])};
-      X_WL[k] = (l.parent < 0 ? X_WB : X_WL[l.parent]) * l.X_PL * motion;
-    }
-    for (size_t s = 0; s < scene_.shapes.size(); ++s) {
-      const SceneShape& shape = scene_.shapes[s];
-      if (shape.articulation != i) continue;
-      poses_[s] = (shape.carrier == Carrier::kLink ? X_WL[shape.index - first] : X_WB) * shape.def.X_LS;
-    }
+    put(i, X_WB, q_[i]);
   }
   // Of the hand alone, without its arm, to anything else; less than 0: that deep.
   double hand_gap(int32_t i, double most) const { return gap(of_hand_[i], most); }
@@ -80,7 +68,7 @@ class Room {
 
  private:
   bool of_arm(const SceneShape& s, int32_t shape) const {
-    if (s.articulation < 0) return false;
+    if (hand_of(s) < 0) return false;
     const ChosenHand& hand = *hands_[s.articulation];
     return hand.armed &&
            shape - scene_.first_shape[static_cast<size_t>(s.articulation)] < hand.arm->shapes.count;
@@ -106,12 +94,36 @@ class Room {
       q[c.link] = std::clamp(c.ratio * q[c.other], robot.links[c.link].lower, robot.links[c.link].upper);
   }
 
+  // An articulation whose joints are at q, null: 0.
+  void put(int32_t articulation, const Pose& X_WB, const double* q) {
+    const auto a = static_cast<size_t>(articulation);
+    const int32_t first = scene_.link_offset[a];
+    links_.resize(scene_.def.articulations[a].links.size());
+    for (size_t k = 0; k < links_.size(); ++k) {
+      const LinkDef& l = scene_.def.articulations[a].links[k];
+      const double angle = q ? q[k] : 0;
+      const Pose motion = l.joint.kind == JointKind::kPrismatic ? Pose{angle * l.joint.axis, {}}
+                                                                : Pose{{}, axis_angle(l.joint.axis, angle)};
+      links_[k] = (l.parent < 0 ? X_WB : links_[static_cast<size_t>(l.parent)]) * l.X_PL * motion;
+    }
+    for (size_t s = 0; s < scene_.shapes.size(); ++s) {
+      const SceneShape& shape = scene_.shapes[s];
+      if (shape.articulation != articulation) continue;
+      const Pose& X_WL =
+          shape.carrier == Carrier::kLink ? links_[static_cast<size_t>(shape.index - first)] : X_WB;
+      poses_[s] = X_WL * shape.def.X_LS;
+    }
+  }
+
+  // Whose hand a shape belongs to, -1: none's, a thing's.
+  int32_t hand_of(const SceneShape& s) const { return s.articulation < count_ ? s.articulation : -1; }
   const SceneShape& shape(int32_t i) const { return scene_.shapes[static_cast<size_t>(i)]; }
 
   void sort(const Pair& pair) {
     const SceneShape &a = shape(pair.a), &b = shape(pair.b);
     const bool arm_a = of_arm(a, pair.a), arm_b = of_arm(b, pair.b);
     if (a.articulation >= 0 && a.articulation == b.articulation) {
+      if (hand_of(a) < 0) return;
       // what the flange carries is one piece at the start
       const bool one_piece = (!arm_a || on_flange(a)) && (!arm_b || on_flange(b));
       if (!one_piece) of_itself_[a.articulation].push_back(pair);
@@ -120,8 +132,8 @@ class Room {
     } else if (arm_a || arm_b) {
       if (!stands_on(a, b)) of_arm_[arm_a ? a.articulation : b.articulation].push_back(pair);
     } else if (things_stand_ || (a.carrier != Carrier::kBody && b.carrier != Carrier::kBody)) {
-      if (a.articulation >= 0) of_hand_[a.articulation].push_back(pair);
-      if (b.articulation >= 0) of_hand_[b.articulation].push_back(pair);
+      for (const SceneShape* s : {&a, &b})
+        if (const int32_t hand = hand_of(*s); hand >= 0) of_hand_[hand].push_back(pair);
     }
   }
   // A base, and its first link, which turns above it, on the ground.
@@ -171,7 +183,9 @@ class Room {
 
   const Scene scene_;
   Vector<Pose> poses_;  // of shapes, in the world
+  Vector<Pose> links_;  // of the articulation that is being put somewhere
   const bool things_stand_;
+  const int32_t count_;  // of hands, the first articulations
   const ChosenHand* hands_[kMaxHands] = {};
   double q_[kMaxHands][kMaxRobotLinks] = {};
   // Pairs of shapes: of a hand and anything else; of its arm and anything but itself and the other arm; of

@@ -382,6 +382,22 @@ TEST(RobotPoses, ArmsFindAPlaceForTheirBase) {
         EXPECT_LT(q[i], arm.links[i].upper) << name;
       }
     }
+    // all that it may choose from, the best first; and poses for a base that stands already
+    const Pose& X_WF = flanges[1];
+    for (const bool wide : {false, true}) {
+      const Vector<ArmPlace> places = arm_places(arm, X_WF, {0, -1, 0}, wide);
+      ASSERT_FALSE(places.empty()) << name;
+      for (size_t i = 0; i < places.size(); ++i) {
+        EXPECT_LT(norm((places[i].X_WB * flange_pose(arm, places[i].q)).p - X_WF.p), 2e-6) << name;
+        EXPECT_LE(places[i].score, places[i > 0 ? i - 1 : 0].score) << name;
+      }
+      for (const ArmPlace& pose : arm_poses(arm, X_WF, places[0].X_WB)) {
+        EXPECT_LT(norm((pose.X_WB * flange_pose(arm, pose.q)).p - X_WF.p), 2e-6) << name;
+        EXPECT_EQ(norm(pose.X_WB.p - places[0].X_WB.p), 0) << name;
+      }
+      EXPECT_FALSE(arm_poses(arm, X_WF, places[0].X_WB).empty()) << name;
+    }
+    EXPECT_TRUE(arm_poses(arm, X_WF, {{9, 9, 0}, {}}).empty()) << name;
     Pose X_WB;
     double q[kMaxRobotLinks];
     EXPECT_FALSE(place_arm(arm, {{0, 0, -50}, ahead}, {}, &X_WB, q)) << name;  // a base under the ground

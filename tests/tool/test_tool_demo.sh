@@ -37,6 +37,27 @@ for seed in 1 2; do
   done
 done
 
+# A hand throws as well from an arm, which holds its pose.
+"$tool" rollout --task hand_over_safe_finger --set arm=ur5e --policy demo --episodes 20 --envs 10 --json > out || failed=1
+sed -n 's/.*"success_rate":\([0-9.]*\).*/\1/p' out | awk '{ found = $1 > 0.6 } END { exit !found }' ||
+  { echo "hand over from arms: $(cat out)"; failed=1; }
+
+# Roles name the joints of any hand.
+cat > roles.demo <<'SCRIPT'
+task grasp
+set hand=allegro
+set arm=ur5e
+set arm_range=0
+phase close
+  right.first.proximal = 40deg over 0.2
+  right.*.middle = 30deg
+  right.thumb.lateral = 60deg
+SCRIPT
+"$tool" rollout --policy roles.demo > out 2> err || { echo "roles: $(cat err)"; failed=1; }
+sed 's/first.proximal/first.elbow/' roles.demo > elbow.demo
+"$tool" rollout --policy elbow.demo > out 2> err && { echo 'an elbow of a finger was taken'; failed=1; }
+grep -q 'no action right.first.elbow' err || { echo "elbow: $(cat err)"; failed=1; }
+
 t='task grasp'
 bad "no line 'task NAME'" 'phase a'
 bad 'no phase' "$t"

@@ -80,7 +80,7 @@ json 'episodes return_mean return_std return_stderr cost_mean cost_std cost_stde
 json 'episodes return_mean cost_mean length_mean fall_rate hash' rollout --policy random --set max_steps=5
 json 'file width height frames frames_per_second' render --step 2 --size 32x24 --out a.png
 json 'file width height frames frames_per_second' render --strip 3 --size 32x24 --out b.png --to 4
-json 'task envs threads steps_per_second bytes_per_env allocations_per_step max_joint_drift_m contacts_mean
+json 'task envs threads steps_per_second steps_per_cpu_second bytes_per_env allocations_per_step max_joint_drift_m contacts_mean
       contacts_max overflowed diverged' \
   bench step --envs 2 --seconds 0.05
 json 'samples_per_second allocations_per_update bytes' \

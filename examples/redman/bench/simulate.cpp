@@ -93,13 +93,15 @@ Report bench_step(StepFlags flags) {
   do random_steps(pool, 10);
   while (since(begin) < std::min(1.0, 0.2 * flags.seconds));
 
-  double seconds = 0, drift = 0;
+  double seconds = 0, cpu = 0, drift = 0;
   int64_t steps = 0, allocations = 0;
   int chunk = 1;
   while (seconds < flags.seconds) {
     const int64_t allocated = allocation_count();
     const auto clock = Clock::now();
+    const double cpu_before = cpu_seconds();
     random_steps(pool, chunk);
+    cpu += cpu_seconds() - cpu_before;
     const double took = since(clock);
     allocations += allocation_count() - allocated;
     seconds += took;
@@ -115,6 +117,7 @@ Report bench_step(StepFlags flags) {
                      {"envs", flags.pool.envs},
                      {"threads", flags.pool.threads},
                      {"steps_per_second", rate},
+                     {"steps_per_cpu_second", rate * seconds / std::max(cpu, 1e-9)},
                      {"bytes_per_env", bytes},
                      {"allocations_per_step", per_step},
                      {"max_joint_drift_m", drift},
