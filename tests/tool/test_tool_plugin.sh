@@ -34,6 +34,8 @@ grep -q '^[0-9a-fx]\{8,\}$' one || { echo "no hash: $(cat one)"; failed=1; }
 cmp one two || { echo "the hash depends on threads"; failed=1; }
 run train --task press --steps 1024 --envs 4 --set horizon=64 --set hidden=8 --out run --plugin press.so
 run eval --policy run --episodes 2 --plugin press.so
+"$tool" eval --policy run --episodes 2 > out 2> err && { echo "a run's plugin was loaded unasked"; failed=1; }
+grep -q 'task press is that of a plugin: give --plugin ./press.so' err || { echo "no hint: $(cat err)"; failed=1; }
 run render --task press --policy hold --size 64x48 --out press.png --plugin press.so
 run rollout --task press --policy hold --record press.npz --plugin press.so
 

@@ -4,6 +4,7 @@
 #include <redman/redman.h>
 
 #include "common/report.hpp"
+#include "common/task_files.hpp"
 
 namespace tool {
 namespace {
@@ -31,6 +32,7 @@ void load_plugin(const std::string& file) {
   if (!plugin) throw Usage(owner + "it has no function redman_plugin");
   if (const rdm_result r = plugin(); r != RDM_OK)
     throw Usage(owner + "redman_plugin: " + rdm_result_string(r) + ": " + rdm_last_error());
+  remember_plugin(path);
 }
 
 }  // namespace

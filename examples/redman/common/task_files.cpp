@@ -14,6 +14,7 @@ namespace {
 constexpr size_t kMostBytes = size_t{1} << 18;  // several fit into a config.json
 
 struct Loaded {
+  std::vector<std::string> plugins;
   std::map<std::string, std::string> tasks;    // text by name
   std::map<std::string, std::string> files;    // name by path
   std::map<std::string, std::string> robots;   // text by name
@@ -60,6 +61,10 @@ std::string task_name(const std::string& word) {
   return is_task_file(word) ? task_of_file(word) : word;
 }
 
+void remember_plugin(const std::string& path) {
+  loaded().plugins.push_back(path);
+}
+
 void remember_robot(const std::string& name, const std::string& text) {
   loaded().robots[name] = text;
 }
@@ -70,11 +75,14 @@ void remember_object(const std::string& name, const std::string& text) {
 
 OwnFiles own_files(const std::string& task) {
   const auto found = loaded().tasks.find(task);
-  return {found == loaded().tasks.end() ? "" : found->second, loaded().robots, loaded().objects};
+  return {loaded().plugins, found == loaded().tasks.end() ? "" : found->second, loaded().robots,
+          loaded().objects};
 }
 
 void load_own_files(const std::string& task, const OwnFiles& files, const std::string& where) {
   int32_t index = -1;
+  if (files.task.empty() && !files.plugins.empty() && rdm_task_find(task.c_str(), &index) != RDM_OK)
+    throw Failure(where + ": task " + task + " is that of a plugin: give --plugin " + files.plugins.back());
   for (const auto& [name, text] : files.robots) {
     const auto known = loaded().robots.find(name);
     if (known != loaded().robots.end() && known->second == text) continue;

@@ -2,6 +2,7 @@
 #pragma once
 #include <map>
 #include <string>
+#include <vector>
 
 #include "common/report.hpp"
 
@@ -9,6 +10,7 @@ namespace tool {
 
 // Files that a run needs beside the library: kept in its config.json, so that nothing has to be given again.
 struct OwnFiles {
+  std::vector<std::string> plugins;            // paths alone: code is not run because a run\'s folder says so
   std::string task;                            // text of the .task file, "" of a task of the library
   std::map<std::string, std::string> robots;   // .robot texts by name
   std::map<std::string, std::string> objects;  // .object texts by name
@@ -21,6 +23,7 @@ std::string task_of_file(const std::string& file);
 // The word, or the name of the task in the file that it names.
 std::string task_name(const std::string& word);
 
+void remember_plugin(const std::string& path);
 void remember_robot(const std::string& name, const std::string& text);
 void remember_object(const std::string& name, const std::string& text);
 // What the task of that name needs of what was loaded.

@@ -75,6 +75,7 @@ std::string config_text(const RunSettings& s, const redman::Pool& pool, const re
                {"action_dim", pool.spec().action_dim},
                {"layout_hash", format("%016llx", static_cast<unsigned long long>(pool.spec().layout_hash))},
                {"build", build_json()}};
+  if (!s.own.plugins.empty()) json["plugins"] = s.own.plugins;
   if (!s.own.task.empty()) json["task_file"] = s.own.task;
   if (!s.own.robots.empty()) json["robot_files"] = s.own.robots;
   if (!s.own.objects.empty()) json["object_files"] = s.own.objects;
@@ -100,6 +101,7 @@ RunSettings parse_config(const char* text, size_t size) {
   s.steps = integer_at(train, "total_steps", 1, kMostExact);
   s.eval_every = static_cast<int32_t>(integer_at(train, "eval_every", 1, INT32_MAX));
   s.checkpoint_every = static_cast<int32_t>(integer_at(train, "checkpoint_every", 1, INT32_MAX));
+  if (json.contains("plugins")) s.own.plugins = texts_at(json, "plugins");
   if (json.contains("task_file")) s.own.task = text_at(json, "task_file", kMostJsonBytes);
   const auto texts = [&](const char* key, std::map<std::string, std::string>* out) {
     if (!json.contains(key)) return;
