@@ -1,18 +1,6 @@
 // The .robot file: TOML, one key for each member of rdm_robot_def and its rows, rows named instead of
 // numbered. Numbers are the shortest text that reads back to the same bits. A key that is left out is 0,
 // "none" or what rdm_robot_def_init gives.
-namespace {
-struct ParserFault {};  // what the parser takes to be impossible is not: it must not end the process
-[[noreturn]] void parser_fault() {
-  throw ParserFault{};
-}
-}  // namespace
-#undef NDEBUG
-#define TOML_ASSERT(condition) ((condition) ? static_cast<void>(0) : parser_fault())
-#define TOML_HEADER_ONLY 1
-#define TOML_EXCEPTIONS 1
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -20,9 +8,8 @@ struct ParserFault {};  // what the parser takes to be impossible is not: it mus
 #include <cstring>
 #include <initializer_list>
 #include <limits>
-#include <sstream>
 
-#include "import.hpp"
+#include "toml_text.hpp"
 
 namespace rdm::import {
 namespace {
@@ -30,15 +17,8 @@ namespace {
 constexpr int kFormat = 1;
 constexpr const char* kKinds[] = {"other", "hand", "arm"};
 constexpr const char* kJoints[] = {"revolute", "prismatic"};
-constexpr struct {
-  const char* name;
-  int32_t kind;
-} kShapes[] = {{"sphere", RDM_SPHERE},
-               {"capsule", RDM_CAPSULE},
-               {"box", RDM_BOX},
-               {"cylinder", RDM_CYLINDER},
-               {"ellipsoid", RDM_ELLIPSOID}};
 constexpr const char* kRoot = "root";
+constexpr uint8_t kGrey[] = {178, 178, 184, 255};
 
 // ---- writing ----
 template <class T>
@@ -263,8 +243,8 @@ struct Writer {
     line("name", quoted(s.name));
     line("link", link(s.link, "shapes"));
     const char* kind = nullptr;
-    for (const auto& k : kShapes)
-      if (k.kind == s.kind) kind = k.name;
+    for (int32_t k = 0; k < kRobotShapes; ++k)
+      if (kShapes[k].kind == s.kind) kind = kShapes[k].name;
     if (!kind)
       refuse(RDM_RANGE, "def.shapes: kind %d of %s is none of a robot", s.kind, clean(s.name).c_str());
     line("kind", quoted(kind));
@@ -276,93 +256,9 @@ struct Writer {
 };
 
 // ---- reading ----
-int line_of(const toml::source_region& s) {
-  return static_cast<int>(s.begin.line);
-}
-int line_of(const toml::node& n) {
-  return line_of(n.source());
-}
-
-struct Table {
-  const toml::table& t;
-  std::string what;  // "link knee"
-
-  [[noreturn]] [[gnu::format(printf, 4, 5)]] void bad(rdm_result code, int line, const char* pattern,
-                                                      ...) const {
-    char text[400];
-    va_list list;
-    va_start(list, pattern);
-    std::vsnprintf(text, sizeof text, pattern, list);
-    va_end(list);
-    refuse(code, "line %d: %s%s%s", line, what.c_str(), what.empty() ? "" : ": ", text);
-  }
-  void only(std::initializer_list<const char*> known) const {
-    for (const auto& [key, value] : t) {
-      const std::string name(key.str());
-      bool found = false;
-      std::vector<std::string> names;
-      for (const char* k : known) found = found || name == k, names.emplace_back(k);
-      if (!found)
-        bad(RDM_FORMAT, line_of(key.source()), "%s is no key%s", clean(name).c_str(),
-            nearest_hint(name, names).c_str());
-    }
-  }
-  const toml::node* find(const char* key) const { return t.get(key); }
-  const toml::node& need(const char* key) const {
-    const toml::node* n = find(key);
-    if (!n) bad(RDM_FORMAT, line_of(t), "no %s", key);
-    return *n;
-  }
-  double as_number(const toml::node& n, const char* key) const {
-    if (const auto* x = n.as_floating_point()) return x->get();
-    if (const auto* x = n.as_integer())
-      if (std::abs(static_cast<double>(x->get())) <= 9007199254740992.0) return static_cast<double>(x->get());
-    bad(RDM_FORMAT, line_of(n), "%s is no number", key);
-  }
-  void number(const char* key, double* out) const {
-    if (const toml::node* n = find(key)) *out = as_number(*n, key);
-  }
-  std::vector<double> list(const toml::node& n, const char* key, size_t least, size_t most) const {
-    const toml::array* a = n.as_array();
-    if (!a || a->size() < least || a->size() > most)
-      bad(RDM_FORMAT, line_of(n),
-          least == most ? "%s is no list of %zu numbers" : "%s is no list of %zu to %zu numbers", key, least,
-          most);
-    std::vector<double> out;
-    for (const toml::node& x : *a) out.push_back(as_number(x, key));
-    return out;
-  }
-  void numbers(const char* key, double* out, size_t count) const {
-    if (const toml::node* n = find(key)) {
-      const auto x = list(*n, key, count, count);
-      std::copy(x.begin(), x.end(), out);
-    }
-  }
-  std::string as_text(const toml::node& n, const char* key) const {
-    if (const auto* x = n.as_string()) {
-      if (x->get().find('\0') != std::string::npos) bad(RDM_FORMAT, line_of(n), "%s has a 0 in it", key);
-      return x->get();
-    }
-    bad(RDM_FORMAT, line_of(n), "%s is no text", key);
-  }
-  int32_t choice(const char* key, const char* const* names, int32_t count, int32_t otherwise) const {
-    const toml::node* n = find(key);
-    if (!n) return otherwise;
-    const std::string text = as_text(*n, key);
-    std::vector<std::string> all;
-    for (int32_t i = 0; i < count; ++i) {
-      if (text == names[i]) return i;
-      all.emplace_back(names[i]);
-    }
-    bad(RDM_FORMAT, line_of(*n), "%s: %s is not known%s", key, clean(text).c_str(),
-        nearest_hint(text, all).c_str());
-  }
-};
-
 struct RobotReader {
-  const toml::table& file;
+  const Table& top;
   Draft* out;
-  Table top{file, ""};
 
   int32_t link(const Table& t, const char* key, const toml::node& n) const {
     const std::string text = t.as_text(n, key);
@@ -379,37 +275,10 @@ struct RobotReader {
     const toml::node* n = t.find(key);
     return n ? link(t, key, *n) : otherwise;
   }
-  std::vector<Table> rows(const char* key) const {
-    std::vector<Table> all;
-    const toml::node* n = file.get(key);
-    if (!n) return all;
-    const toml::array* a = n->as_array();
-    if (!a) top.bad(RDM_FORMAT, line_of(*n), "%s is written as [[%s]]", key, key);
-    if (a->size() > 4096) top.bad(RDM_RANGE, line_of(*n), "more than 4096 rows of %s", key);
-    for (const toml::node& x : *a) {
-      const toml::table* t = x.as_table();
-      if (!t) top.bad(RDM_FORMAT, line_of(x), "%s is written as [[%s]]", key, key);
-      std::string what = key;
-      for (const char* naming : {"name", "link"})
-        if (const toml::node* name = t->get(naming); name && name->is_string()) {
-          what += ' ' + clean(name->as_string()->get());
-          break;
-        }
-      all.push_back({*t, what});
-    }
-    return all;
-  }
-  Table section(const char* key) const {
-    static const toml::table kEmpty;
-    const toml::node* n = file.get(key);
-    if (!n) return {kEmpty, key};
-    if (!n->is_table()) top.bad(RDM_FORMAT, line_of(*n), "%s is written as [%s]", key, key);
-    return {*n->as_table(), key};
-  }
   const char* name(const Table& t, const char* key) { return out->keep(t.as_text(t.need(key), key)); }
 
   void read_links() {
-    for (const Table& t : rows("link")) {
+    for (const Table& t : top.rows("link")) {
       t.only({"name", "joint", "parent", "kind", "p", "q", "axis", "range", "velocity", "kp", "kd", "effort",
               "armature", "friction", "mass", "com", "moment"});
       if (out->links.size() == RDM_ROBOT_LINKS)
@@ -437,31 +306,22 @@ struct RobotReader {
       t.numbers("moment", l.moment, 6);
       out->links.push_back(l);
     }
-    if (out->links.empty()) top.bad(RDM_FORMAT, 1, "no [[link]]");
+    if (out->links.empty()) top.bad(RDM_FORMAT, line_of(top.t), "no [[link]]");
   }
   void read_shapes() {
-    for (const Table& t : rows("shape")) {
+    for (const Table& t : top.rows("shape")) {
       t.only({"name", "link", "kind", "size", "p", "q", "color"});
       rdm_robot_shape s{};
       s.name = name(t, "name");
       s.link = link(t, "link", t.need("link"));
-      const char* names[5];
-      for (size_t i = 0; i < 5; ++i) names[i] = kShapes[i].name;
-      t.need("kind");
-      s.kind = kShapes[static_cast<size_t>(t.choice("kind", names, 5, 0))].kind;
+      s.kind = shape_kind(t, kRobotShapes);
       const auto size = t.list(t.need("size"), "size", 1, 3);
       std::copy(size.begin(), size.end(), s.size);
       s.q[3] = 1;
       t.numbers("p", s.p, 3);
       t.numbers("q", s.q, 4);
-      const toml::node* color = t.find("color");
-      const auto c = color ? t.list(*color, "color", 3, 3) : std::vector<double>{178, 178, 184};
-      for (size_t k = 0; k < 3; ++k) {
-        if (!(c[k] >= 0 && c[k] <= 255))
-          t.bad(RDM_RANGE, line_of(*color), "color: %g is outside [0, 255]", c[k]);
-        s.color[k] = static_cast<uint8_t>(c[k]);
-      }
-      s.color[3] = 255;
+      std::copy_n(kGrey, 4, s.color);
+      read_color(t, s.color);
       out->shapes.push_back(s);
     }
   }
@@ -476,7 +336,7 @@ struct RobotReader {
             nearest_hint(text, names).c_str());
   }
   void read_pairs() {
-    const toml::node* n = file.get("pairs");
+    const toml::node* n = top.find("pairs");
     if (!n) return;
     if (n->is_string() && n->as_string()->get() == "all") {
       out->all_pairs = true;
@@ -492,7 +352,7 @@ struct RobotReader {
     }
   }
   void read_rows() {
-    for (const Table& t : rows("coupling")) {
+    for (const Table& t : top.rows("coupling")) {
       t.only({"link", "other", "ratio", "slack"});
       rdm_robot_coupling c{};
       c.link = link(t, "link", t.need("link"));
@@ -501,7 +361,7 @@ struct RobotReader {
       t.number("slack", &c.slack);
       out->couplings.push_back(c);
     }
-    for (const Table& t : rows("curve")) {
+    for (const Table& t : top.rows("curve")) {
       t.only({"link", "driver", "command", "angle"});
       rdm_robot_curve c{};
       c.link = link(t, "link", t.need("link"));
@@ -513,7 +373,7 @@ struct RobotReader {
       std::copy(angle.begin(), angle.end(), c.angle);
       out->curves.push_back(c);
     }
-    for (const Table& t : rows("finger")) {
+    for (const Table& t : top.rows("finger")) {
       t.only({"name", "first", "tip", "lateral", "proximal", "middle", "thumb", "p_tip"});
       rdm_robot_finger f{};
       f.name = name(t, "name");
@@ -522,14 +382,11 @@ struct RobotReader {
       f.lateral = link_or(t, "lateral", -1);
       f.proximal = link_or(t, "proximal", -1);
       f.middle = link_or(t, "middle", -1);
-      if (const toml::node* n = t.find("thumb")) {
-        if (!n->is_boolean()) t.bad(RDM_FORMAT, line_of(*n), "thumb is neither true nor false");
-        f.thumb = n->as_boolean()->get();
-      }
+      f.thumb = t.flag("thumb");
       t.numbers("p_tip", f.p_tip, 3);
       out->fingers.push_back(f);
     }
-    if (const toml::node* n = file.get("commands")) {
+    if (const toml::node* n = top.find("commands")) {
       const toml::array* a = n->as_array();
       out->passive = n->value<std::string>() == "none";
       if (!a && !out->passive)
@@ -542,8 +399,8 @@ struct RobotReader {
   }
   void read_parts() {
     rdm_robot_def& d = out->def;
-    const Table root = section("root"), mount = section("mount"), flange = section("flange"),
-                palm = section("palm");
+    const Table root = top.section("root"), mount = top.section("mount"), flange = top.section("flange"),
+                palm = top.section("palm");
     root.only({"mass", "com", "moment"});
     root.number("mass", &d.root_mass);
     root.numbers("com", d.root_com, 3);
@@ -564,9 +421,9 @@ struct RobotReader {
   }
   void read_poses() {
     const size_t n = out->links.size();
-    if (const toml::node* x = file.get("home")) out->home = top.list(*x, "home", n, n);
-    if (const toml::node* x = file.get("folded")) out->folded = top.list(*x, "folded", n, n);
-    if (const toml::node* x = file.get("closed")) {
+    if (const toml::node* x = top.find("home")) out->home = top.list(*x, "home", n, n);
+    if (const toml::node* x = top.find("folded")) out->folded = top.list(*x, "folded", n, n);
+    if (const toml::node* x = top.find("closed")) {
       out->bind();
       const auto count = static_cast<size_t>(Writer::num_commands(out->def));
       for (const double v : top.list(*x, "closed", count, count))
@@ -574,17 +431,19 @@ struct RobotReader {
     }
   }
 
-  void read(const Options& options) {
-    top.only({"format", "name",     "alias",  "summary",  "kind",  "mirror", "home",
-              "folded", "commands", "closed", "pairs",    "root",  "mount",  "flange",
-              "palm",   "link",     "shape",  "coupling", "curve", "finger"});
-    if (const toml::node* n = file.get("format"))
+  void read(const std::vector<const char*>& others, const Options& options) {
+    std::vector<const char*> known = {"format", "name",     "alias",  "summary",  "kind",  "mirror", "home",
+                                      "folded", "commands", "closed", "pairs",    "root",  "mount",  "flange",
+                                      "palm",   "link",     "shape",  "coupling", "curve", "finger"};
+    known.insert(known.end(), others.begin(), others.end());
+    top.only(known);
+    if (const toml::node* n = top.find("format"))
       if (!n->is_integer() || n->as_integer()->get() != kFormat)
         top.bad(RDM_VERSION_MISMATCH, line_of(*n), "format: this library reads %d", kFormat);
     rdm_robot_def& d = out->def;
     d.name = options.name.empty() ? name(top, "name") : out->keep(options.name);
-    if (file.get("alias")) d.alias = name(top, "alias");
-    if (file.get("summary")) d.summary = name(top, "summary");
+    if (top.find("alias")) d.alias = name(top, "alias");
+    if (top.find("summary")) d.summary = name(top, "summary");
     d.kind = options.kind >= 0 ? options.kind : top.choice("kind", kKinds, 3, 0);
     static constexpr const char* kAxes[] = {"x", "y", "z"};
     d.mirror = top.choice("mirror", kAxes, 3, -1);
@@ -605,17 +464,15 @@ std::string write_robot(const rdm_robot_def& def) {
   return writer.write();
 }
 
-void read_robot(const std::string& bytes, const Options& options, Draft* out) {
-  toml::table file;
-  try {
-    file = toml::parse(std::string_view(bytes));
-  } catch (const toml::parse_error& e) {
-    refuse(RDM_FORMAT, "line %d: %s", line_of(e.source()), clean(std::string(e.description()), 200).c_str());
-  } catch (const ParserFault&) {
-    refuse(RDM_FORMAT, "line %ld: no TOML", std::count(bytes.begin(), bytes.end(), '\n') + 1);
-  }
+void read_robot_table(const Table& file, const std::vector<const char*>& others, const Options& options,
+                      Draft* out) {
   RobotReader reader{file, out};
-  reader.read(options);
+  reader.read(others, options);
+}
+
+void read_robot(const std::string& bytes, const Options& options, Draft* out) {
+  const toml::table file = parse_toml(bytes);
+  read_robot_table({file, ""}, {}, options, out);
 }
 
 }  // namespace rdm::import
