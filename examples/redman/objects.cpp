@@ -133,14 +133,34 @@ Report object_of_mesh(const ObjectFlags& flags) {
   const bool closed = whole.volume > 0;
   std::vector<std::vector<double>> points;
   std::vector<rdm_shape_def> shapes;
-  double volume = 0, error = 0;
-  for (const auto& part : parts_of(mesh, flags.parts, flags.file)) {
-    const FewHull few = few_hull(part, static_cast<size_t>(flags.points), flags.file);
+  std::vector<Hull> hulls;
+  double volume = 0;
+  const auto parts = parts_of(mesh, flags.parts, flags.file);
+  for (const auto& part : parts) {
+    try {
+      hulls.push_back(few_hull(part, static_cast<size_t>(flags.points), flags.file).hull);
+    } catch (const Failure&) {  // a flat patch belongs to its neighbours
+      if (parts.size() == 1) throw;
+      continue;
+    }
     std::vector<double>& out = points.emplace_back();
-    for (const Point& p : few.hull.corners)
+    for (const Point& p : hulls.back().corners)
       for (size_t k = 0; k < 3; ++k) out.push_back(p[k] - (closed ? whole.centre[k] : 0));
-    volume += few.hull.volume;
-    error = std::max(error, few.error);
+    volume += hulls.back().volume;
+  }
+  if (hulls.empty()) throw Failure(flags.file + ": its parts are flat");
+  if (hulls.size() > RDM_OBJECT_SHAPES)
+    throw Failure(flags.file +
+                  format(": it fell into %zu parts, more than %d", hulls.size(), RDM_OBJECT_SHAPES));
+  double error = 0;  // how far the mesh stands out of all parts
+  for (const Point& p : mesh.points) {
+    double least = kFarthest;
+    for (const Hull& hull : hulls) {
+      double out = 0;
+      for (const Plane& plane : hull.planes) out = std::max(out, beyond(plane, p));
+      least = std::min(least, out);
+    }
+    error = std::max(error, least);
   }
   for (const auto& p : points) {
     rdm_shape_def s{};
@@ -174,7 +194,7 @@ Report object_of_mesh(const ObjectFlags& flags) {
                      {"parts_m3", volume},
                      {"error_m", error},
                      {"parts", shapes.size()}};
-  return show(def, flags, json, how + format("; corners left out stand out by %.3g m\n", error));
+  return show(def, flags, json, how + format("; the mesh stands out of them by up to %.3g m\n", error));
 }
 
 Report run_object(const ObjectFlags& flags) {

@@ -272,4 +272,33 @@ TEST(Robots, PairsAreAllButNeighbours) {
   EXPECT_EQ(rdm_robot_pair_at(robot, 3, pair), RDM_RANGE);
 }
 
+TEST(Robots, MayTakeNoCommands) {
+  Robots own;
+  int32_t door = -1;
+  ASSERT_EQ(rdm_robot_find("door", &door), RDM_OK);
+  Described d(door);
+  EXPECT_EQ(d.def.num_commands, -1);
+  EXPECT_EQ(d.def.kind, RDM_ROBOT_OTHER);
+  d.def.name = "my_door";
+  const int32_t made = own.create(d.def);
+  rdm_robot robot{};
+  robot.struct_size = sizeof robot;
+  ASSERT_EQ(rdm_robot_at(made, &robot), RDM_OK);
+  EXPECT_EQ(robot.num_actuated, 0);
+  EXPECT_EQ(robot.num_joints, 2);
+  rdm_joint joint;
+  ASSERT_EQ(rdm_robot_joint(made, 1, &joint), RDM_OK);
+  EXPECT_EQ(joint.action, -1);
+  EXPECT_GT(joint.kp, 0);  // its spring
+  int32_t robot_index = -1;
+  d.def.name = "another_door";
+  d.def.num_commands = -2;
+  EXPECT_EQ(rdm_robot_create(&robot_index, &d.def), RDM_RANGE);
+  EXPECT_NE(std::strstr(rdm_last_error(), "num_commands: -2"), nullptr);
+  d.def.num_commands = -1;
+  d.def.kind = RDM_ROBOT_ARM;
+  EXPECT_EQ(rdm_robot_create(&robot_index, &d.def), RDM_ARGUMENT);
+  EXPECT_NE(std::strstr(rdm_last_error(), "takes commands"), nullptr) << rdm_last_error();
+}
+
 }  // namespace

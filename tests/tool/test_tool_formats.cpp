@@ -237,6 +237,53 @@ TEST(Mesh, ReadsVerticesOrSaysWhereNone) {
   spoil("solid a\nvertex 1 2 3\n", [](const std::string& text) { mesh(text, MeshKind::kStl); });
 }
 
+Mesh faces(const std::string& bytes, MeshKind kind) {
+  return parse_faces(bytes.data(), bytes.size(), kind);
+}
+
+TEST(Mesh, FacesNameVerticesThatAreThere) {
+  // a square of four corners, counted from the end; a corner that stands twice is one
+  const Mesh square =
+      faces("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 0\nf -4/1 -3/2/3 -2//1 -5\nf 5 2 3\n", MeshKind::kObj);
+  EXPECT_EQ(square.points.size(), 4u);
+  ASSERT_EQ(square.faces.size(), 3u);
+  EXPECT_EQ(square.faces[0], (std::array<uint32_t, 3>{1, 2, 3}));
+  EXPECT_EQ(square.faces[1], (std::array<uint32_t, 3>{1, 3, 0}));
+  EXPECT_EQ(square.faces[2], (std::array<uint32_t, 3>{0, 1, 2}));
+  EXPECT_NE(failure([] { faces("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 4\n", MeshKind::kObj); }).find("line 4"),
+            std::string::npos);
+  EXPECT_NE(failure([] { faces("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 0\n", MeshKind::kObj); }).find("line 4"),
+            std::string::npos);
+  EXPECT_NE(failure([] { faces("v 0 0 0\nv 1 0 0\nf 1 2\n", MeshKind::kObj); }).find("line 3"),
+            std::string::npos);
+  EXPECT_NE(
+      failure([] { faces("vertex 0 0 0\nvertex 1 0 0\n", MeshKind::kStl); }).find("three for each facet"),
+      std::string::npos);
+  EXPECT_TRUE(
+      faces("vertex 0 0 0\nvertex 1 0 0\nvertex 0 0 0\n", MeshKind::kStl).faces.empty());  // no surface
+}
+
+// A tetrahedron of edge 1 along the axes, away from the origin: V = 1/6, moments as Tonon gives them.
+TEST(Mesh, ClosedOnesWeighAsTheirSolid) {
+  std::string text;
+  const double p[4][3] = {{5, 0, 0}, {6, 0, 0}, {5, 1, 0}, {5, 0, 1}};
+  for (const auto& v : p)
+    text += "v " + std::to_string(v[0]) + ' ' + std::to_string(v[1]) + ' ' + std::to_string(v[2]) + '\n';
+  const std::string closed = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n",
+                    inside_out = "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+  for (const std::string& f : {closed, inside_out}) {
+    const MeshMass m = mass_of(faces(text + f, MeshKind::kObj));
+    EXPECT_NEAR(m.volume, 1.0 / 6, 1e-12);
+    EXPECT_NEAR(m.centre[0], 5.25, 1e-12);
+    EXPECT_NEAR(m.centre[2], 0.25, 1e-12);
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(m.moment[k], 1.0 / 80, 1e-12);
+    for (size_t k = 3; k < 6; ++k) EXPECT_NEAR(m.moment[k], 1.0 / 480, 1e-12);
+  }
+  for (const char* open :
+       {"f 1 3 2\nf 1 2 4\nf 1 4 3\n", "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 4 3\n", "", "f 1 2 3\nf 1 3 2\n"})
+    EXPECT_EQ(mass_of(faces(text + open, MeshKind::kObj)).volume, 0) << open;
+}
+
 TEST(Text, NothingButTextReachesTheTerminal) {
   EXPECT_EQ(printable("a\tb\n\xc3\xa9\xe2\x82\xac\xf0\x9f\x98\x80"),
             "a\tb\n\xc3\xa9\xe2\x82\xac\xf0\x9f\x98\x80");

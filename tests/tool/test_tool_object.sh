@@ -6,7 +6,7 @@ number() { awk -v key="\"$1\":" '{ i = index($0, key); if (i) { v = substr($0, i
 near() { awk -v a="$1" -v b="$2" -v e="$3" 'BEGIN { d = a - b; exit !(d <= e && -d <= e) }'; }
 
 "$tool" objects --markdown | grep -q '^| `banana` |' || say "objects --markdown"
-"$tool" objects --json > row && [ "$(grep -o '"name":' row | wc -l)" -ge 80 ] || say "objects --json"
+"$tool" objects --json > row && [ "$(grep -o '"name":' row | wc -l)" -ge 70 ] || say "objects --json"
 "$tool" objects --sheet sheet.png --side 16 --columns 12 --json > row || say "no sheet"
 grep -q '"columns":12' row && grep -q '"door"' row || say "sheet: $(cat row)"
 [ "$(head -c 4 sheet.png | tail -c 3)" = PNG ] || say "sheet.png is no picture"
@@ -64,8 +64,9 @@ near "$(sed 's/.*"moment":\[[^,]*,[^,]*,//; s/,.*//' row)" 2.93333e-5 1e-9 || sa
 if grep -q "without HACD" err; then
   echo "no HACD in this tool: one part alone was tried"
 else
-  grep -q '"parts":2' row || say "parts: $(cat row err)"
-  near "$(number parts_m3 row)" 2.4e-5 2e-6 || say "parts: $(cat row err)"
+  [ "$(number parts row)" -ge 2 ] || say "parts: $(cat row err)"
+  near "$(number parts_m3 row)" 2.58e-5 1.8e-6 || say "parts: $(cat row err)"  # they overlap where they meet
+  near "$(number error_m row)" 0 1e-5 || say "parts: $(cat row err)"
   "$tool" rollout --task hand_over_safe_finger --policy hold --episodes 1 --object ell.object --set object=ell > out 2>&1 ||
     say "not thrown: $(cat out)"
 fi

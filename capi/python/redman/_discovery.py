@@ -159,8 +159,9 @@ def robots() -> dict[str, Robot]:
 
 
 def objects() -> dict[str, _abi.Object]:
-    """The objects of the throw tasks, for option object."""
-    return _records(_abi.Object, _abi.rdm_object, lib.rdm_object_at, lib.rdm_object_count())
+    """All objects by name, for option object."""
+    return {thing.name: thing for thing in _listed(
+        lambda index: _abi.Object(filled(_abi.rdm_object, lib.rdm_object_at, index)), lib.rdm_object_count())}
 
 
 def build() -> _abi.Build:

@@ -7,8 +7,9 @@
 
 namespace tool {
 
-// The corners of at most `most` parts; their hulls cover the mesh. most 1: the mesh itself. Failure, which
-// begins with `what`, where it cannot be cut, or a tool without the library.
+// The points of about `most` parts of its surface, some of which may be flat; their hulls together have every
+// vertex. most 1: the mesh itself. Failure, which begins with `what`, where it cannot be cut, or a tool
+// without the library.
 std::vector<std::vector<Point>> parts_of(const Mesh& mesh, int32_t most, const std::string& what);
 
 }  // namespace tool
