@@ -10,7 +10,7 @@ namespace tool {
 
 // Files that a run needs beside the library: kept in its config.json, so that nothing has to be given again.
 struct OwnFiles {
-  std::vector<std::string> plugins;            // paths alone: code is not run because a run\'s folder says so
+  std::vector<std::string> plugins;            // paths alone: code is not run because a run's folder says so
   std::string task;                            // text of the .task file, "" of a task of the library
   std::map<std::string, std::string> robots;   // .robot texts by name
   std::map<std::string, std::string> objects;  // .object texts by name
