@@ -20,12 +20,12 @@ struct Exception {
 };
 constexpr Exception kExceptions[] = {
     {"", "allegro", "panda", "th_proximal", "the folded thumb lies 0.4 mm deep in the flange's collar"},
-    // forearm and wrist of a 2.5 m arm do not fit between the ground and a hand 0.5 m above it that looks up
-    {"grasp", "", "irb4600", "link_4", "the hand looks up"},
-    {"hand_over_safe_finger", "robotiq", "irb4600", "link_", "the gripper looks up"},
-    {"catch_underarm_safe_finger", "robotiq", "irb4600", "link_", "the gripper looks up"},
-    {"hand_over_wall", "robotiq", "irb4600", "link_", "the gripper looks up"},
-    {"reorient", "robotiq", "irb4600", "link_3", "the gripper looks up"},
+    // forearm and wrist of a 2.5 m arm do not fit between the ground and the hand
+    {"grasp", "", "irb4600", "link_4", "the hand lies 0.1 m above the ground"},
+    {"hand_over_safe_finger", "robotiq", "irb4600", "link_", "the gripper looks up, 0.5 m above it"},
+    {"catch_underarm_safe_finger", "robotiq", "irb4600", "link_", "the gripper looks up, 0.5 m above it"},
+    {"hand_over_wall", "robotiq", "irb4600", "link_", "the gripper looks up, 0.5 m above it"},
+    {"reorient", "robotiq", "irb4600", "link_3", "the gripper looks up, 0.5 m above it"},
 };
 
 bool excepted(const std::string& task, const std::string& hand, const std::string& arm,

@@ -211,6 +211,7 @@ TEST(Demo, OptionsChooseTheScript) {
   EXPECT_EQ(builtin_demo("jenga", {}).file, "jenga.demo");
   EXPECT_EQ(builtin_demo("jenga", {{"pair", "own"}}).file, "jenga.demo");
   EXPECT_EQ(builtin_demo("jenga", {{"pair", "own"}, {"pair", "paper"}}).file, "jenga_paper.demo");
+  EXPECT_EQ(builtin_demo("grasp", {{"hand", "allegro_hand"}}).file, "grasp_allegro.demo");
   EXPECT_TRUE(has_builtin_demo("jenga"));
   EXPECT_FALSE(has_builtin_demo("bandit"));
 }

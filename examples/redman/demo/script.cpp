@@ -154,9 +154,16 @@ std::vector<DemoScript> carried(const std::string& task) {
   return out;
 }
 
+// Robots have a shorter name too.
+bool same_value(const std::string& a, const std::string& b) {
+  int32_t i = -1, k = -1;
+  return same_name(a, b) || (!a.empty() && rdm_robot_find(a.c_str(), &i) == RDM_OK &&
+                             rdm_robot_find(b.c_str(), &k) == RDM_OK && i == k);
+}
+
 bool holds(const Options& when, const Options& options) {
   return std::all_of(when.begin(), when.end(), [&](const auto& pair) {
-    return same_name(option_of(options, pair.first), pair.second);
+    return same_value(option_of(options, pair.first), pair.second);
   });
 }
 
