@@ -126,5 +126,36 @@ TEST_F(ObjectReset, YawTurnsAboutTheVertical) {
   EXPECT_GT(high, 2);
 }
 
+// The lowest and highest coefficient between the object and what it touches.
+std::pair<double, double> frictions(const std::vector<OptionInput>& options) {
+  TestPool p("grasp", 1, options);
+  const Scene& scene = p->task().scene();
+  double low = 1e9, high = -1;
+  for (const ShapePair& pair : scene.pairs)
+    for (const int32_t i : {pair.a, pair.b})
+      if (scene.shapes[static_cast<size_t>(i)].carrier == Carrier::kBody)
+        low = std::min(low, pair.mu), high = std::max(high, pair.mu);
+  return {low, high};
+}
+
+TEST_F(ObjectReset, SurfacesHaveTheFrictionOfTheTaskOrTheirOwn) {
+  EXPECT_EQ(frictions({{"object", "banana", 0}}), std::pair(0.75, 1.0));
+  EXPECT_EQ(frictions({{"object", "banana", 0}, {"own_friction", "true", 0}}), std::pair(0.4, 0.4));
+  EXPECT_EQ(frictions({{"object", "racquetball", 0}, {"own_friction", "true", 0}}), std::pair(0.9, 0.9));
+}
+
+TEST_F(ObjectReset, EveryShapeOfTheObjectIsTouched) {
+  TestPool p("hand_over_safe_finger", 1, {{"object", "025_mug", 0}, {"object_scale", nullptr, 1.5}});
+  const Scene& scene = p->task().scene();
+  EXPECT_EQ(scene.num_body_shapes, 12);
+  std::vector<int> pairs(scene.shapes.size());
+  for (const ShapePair& pair : scene.pairs)
+    ++pairs[static_cast<size_t>(pair.a)], ++pairs[static_cast<size_t>(pair.b)];
+  for (int32_t i = 0; i < 12; ++i)
+    EXPECT_EQ(pairs[static_cast<size_t>(scene.first_body_shape + i)],
+              pairs[static_cast<size_t>(scene.first_body_shape)]);
+  EXPECT_EQ(scene.def.bodies[0].inertia.mass, 0.118);
+}
+
 }  // namespace
 }  // namespace rdm::test
