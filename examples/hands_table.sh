@@ -14,12 +14,12 @@ mkdir -p "$out"
 # NAME TASK STEPS SETTINGS: grasp asks for a wrist, so these hands are on an arm.
 rows="hand_over.allegro hand_over_safe_finger 3e6 hand=allegro
 hand_over.shadow_allegro hand_over_safe_finger 3e6 right.hand=shadow,left.hand=allegro
-hand_over.allegro.ur5e hand_over_safe_finger 3e6 hand=allegro,arm=ur5e
-hand_over.shadow_allegro.ur5e hand_over_safe_finger 3e6 right.hand=shadow,left.hand=allegro,arm=ur5e
-grasp.allegro.ur5e grasp 2e6 hand=allegro,arm=ur5e
-grasp.svh.ur5e grasp 2e6 hand=svh,arm=ur5e
-grasp.barrett.ur5e grasp 2e6 hand=barrett,arm=ur5e
-grasp.robotiq.ur5e grasp 2e6 hand=robotiq,arm=ur5e"
+hand_over.allegro.ur5e hand_over_safe_finger 3e6 hand=allegro,arm=ur5e,arm_range=0.1
+hand_over.shadow_allegro.ur5e hand_over_safe_finger 3e6 right.hand=shadow,left.hand=allegro,arm=ur5e,arm_range=0.1
+grasp.allegro.ur5e grasp 1.5e6 hand=allegro,arm=ur5e
+grasp.svh.ur5e grasp 1.5e6 hand=svh,arm=ur5e
+grasp.barrett.ur5e grasp 1.5e6 hand=barrett,arm=ur5e
+grasp.robotiq.ur5e grasp 1.5e6 hand=robotiq,arm=ur5e"
 # Mass of the cube (71 g) and friction: as the task has them, and drawn within 30 % of that.
 plain="object_mass=0.071,friction.hand_object=0.75,friction.object_ground=1,friction.hand_ground=1"
 drawn="object_mass=0.0497..0.0923,friction.hand_object=0.525..0.975,friction.object_ground=0.7..1.3,friction.hand_ground=0.7..1.3"

@@ -72,6 +72,20 @@ TEST(Config, ReadsItsMembers) {
   EXPECT_EQ(parse_label(kConfig.data(), kConfig.size()).limit, 25);
 }
 
+TEST(Config, KeepsTheTextsOfFiles) {
+  const std::string files =
+      R"("task_file": "[task]\tname\r\n", "robot_files": {"a": "x = 1\n"}, "plugins": ["./p.so"], )";
+  const RunSettings s = config(replaced(kConfig, "\"algo\"", files + "\"algo\""));
+  EXPECT_EQ(s.own.task, "[task]\tname\r\n");
+  ASSERT_EQ(s.own.robots.size(), 1u);
+  EXPECT_EQ(s.own.robots.at("a"), "x = 1\n");
+  ASSERT_EQ(s.own.plugins.size(), 1u);
+  for (const char* bad :
+       {"\"task_file\": 3, ", "\"robot_files\": {\"a\": []}, ", "\"robot_files\": [], ", "\"plugins\": 1, "})
+    EXPECT_NE(failure([&] { config(replaced(kConfig, "\"algo\"", bad + std::string("\"algo\""))); }), "")
+        << bad;
+}
+
 TEST(Config, RefusesNumbersThatNothingCanBeDoneWith) {
   for (const char* bad : {"0", "-1", "2147483648", "1e300", "2.5", "true", "null", "\"2\"", "[]",
                           "99999999999999999999", "18446744073709551615"}) {

@@ -3,6 +3,7 @@
 . "$(dirname "$0")/tool.sh"
 say() { echo "$*"; failed=1; }
 cp "$here/../../examples/scenes/press.task" press.task
+printf '#\ttabs and carriage returns are kept\r\n' >> press.task
 
 "$tool" tasks press.task > out 2> err
 if grep -q "without the reader" err; then

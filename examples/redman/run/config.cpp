@@ -29,6 +29,13 @@ Options from_sets(const std::vector<std::string>& sets, const char* member) {
   return out;
 }
 
+// A file's text as it was, tabs and all: who reads it judges it.
+std::string file_at(const Document& object, const std::string& key) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_string()) throw Failure(key + ": not a text");
+  return found->get<std::string>();
+}
+
 // Every option as it stands, of lines key=value.
 Json values_json(const std::string& settings) {
   Json out = Json::object();
@@ -102,12 +109,11 @@ RunSettings parse_config(const char* text, size_t size) {
   s.eval_every = static_cast<int32_t>(integer_at(train, "eval_every", 1, INT32_MAX));
   s.checkpoint_every = static_cast<int32_t>(integer_at(train, "checkpoint_every", 1, INT32_MAX));
   if (json.contains("plugins")) s.own.plugins = texts_at(json, "plugins");
-  if (json.contains("task_file")) s.own.task = text_at(json, "task_file", kMostJsonBytes);
+  if (json.contains("task_file")) s.own.task = file_at(json, "task_file");
   const auto texts = [&](const char* key, std::map<std::string, std::string>* out) {
     if (!json.contains(key)) return;
     const Document& files = object_at(json, key);
-    for (const auto& [name, text] : files.items())
-      (*out)[name] = text_at(files, name.c_str(), kMostJsonBytes);
+    for (const auto& [name, text] : files.items()) (*out)[name] = file_at(files, name);
   };
   texts("robot_files", &s.own.robots);
   texts("object_files", &s.own.objects);
@@ -138,7 +144,7 @@ FlatConfig parse_flat_config(const char* text, size_t size) {
   out.erase("train_cfgs.tensorboard");
   out["task"] = text_at(json, "task");
   if (json.contains("task_file"))
-    out["task_file"] = format("%zx", std::hash<std::string>()(text_at(json, "task_file", kMostJsonBytes)));
+    out["task_file"] = format("%zx", std::hash<std::string>()(file_at(json, "task_file")));
   out["algo"] = text_at(json, "algo");
   return out;
 }
