@@ -42,6 +42,28 @@ ObjectShape shape_of(const rdm_shape_def& in, int32_t i, Vector<Vec3>* points) {
   return s;
 }
 
+// The object that a caller describes, for the time of `then`.
+template <class F>
+void with_object(const rdm_object_def* def, F&& then) {
+  const auto in = read_struct(def, kFirstSize, default_def(), "def");
+  if (in.num_shapes < 1 || in.num_shapes > RDM_OBJECT_SHAPES)
+    fail(Code::kRange, "def.num_shapes: %d is outside [1, %d]", in.num_shapes, RDM_OBJECT_SHAPES);
+  need(in.shapes, "def.shapes");
+  Vector<Vector<Vec3>> points(static_cast<size_t>(in.num_shapes));
+  Vector<ObjectShape> shapes;
+  for (int32_t i = 0; i < in.num_shapes; ++i)
+    shapes.push_back(shape_of(in.shapes[i], i, &points[static_cast<size_t>(i)]));
+  Object o{};
+  o.name = in.name;
+  o.alias = in.alias;
+  o.help = in.summary;
+  o.material = {in.material ? in.material : "object", in.friction};
+  o.mass = in.mass;
+  o.shapes = {shapes.data(), in.num_shapes};
+  std::copy_n(in.moment, 6, o.moment);
+  then(o);
+}
+
 }  // namespace
 
 int32_t rdm_object_count(void) {
@@ -107,26 +129,14 @@ rdm_result rdm_object_shape_at(int32_t object, int32_t i, rdm_shape_def* out) {
   });
 }
 
+rdm_result rdm_object_check(const rdm_object_def* def) {
+  return call(nullptr, [&] { with_object(def, check_object); });
+}
+
 rdm_result rdm_object_create(int32_t* out, const rdm_object_def* def) {
   return call(nullptr, [&] {
     need(out, "out");
-    const auto in = read_struct(def, kFirstSize, default_def(), "def");
-    if (in.num_shapes < 1 || in.num_shapes > RDM_OBJECT_SHAPES)
-      fail(Code::kRange, "def.num_shapes: %d is outside [1, %d]", in.num_shapes, RDM_OBJECT_SHAPES);
-    need(in.shapes, "def.shapes");
-    Vector<Vector<Vec3>> points(static_cast<size_t>(in.num_shapes));
-    Vector<ObjectShape> shapes;
-    for (int32_t i = 0; i < in.num_shapes; ++i)
-      shapes.push_back(shape_of(in.shapes[i], i, &points[static_cast<size_t>(i)]));
-    Object o{};
-    o.name = in.name;
-    o.alias = in.alias;
-    o.help = in.summary;
-    o.material = {in.material ? in.material : "object", in.friction};
-    o.mass = in.mass;
-    o.shapes = {shapes.data(), in.num_shapes};
-    std::copy_n(in.moment, 6, o.moment);
-    *out = add_object(o);
+    with_object(def, [&](const Object& o) { *out = add_object(o); });
   });
 }
 

@@ -53,11 +53,13 @@ settings() { local IFS=,; for s in $1; do printf -- '--set %s ' "$s"; done; }
   wait
 }
 
-# each KEY FILE...: the numbers of several runs, their mean first.
+# each KEY LIMIT FILE...: the numbers of several runs, their mean first; those over the limit are marked.
 each() {
-  local key=$1
-  shift
-  for f in "$@"; do value "$key" "$f"; done | awk '{ s += $1; t = t (NR > 1 ? ", " : "") sprintf("%.4g", $1) } END { printf "%.4g (%s)", s / NR, t }'
+  local key=$1 limit=$2
+  shift 2
+  for f in "$@"; do value "$key" "$f"; done |
+    awk -v limit="$limit" '{ s += $1; t = t (NR > 1 ? ", " : "") sprintf("%.4g", $1) (limit != "" && $1 > limit + 0 ? "!" : "") }
+      END { printf "%.4g (%s)", s / NR, t }'
 }
 percent() {
   local key=$1
@@ -70,7 +72,8 @@ echo "|---|---|---|---|---|---|"
 while read -r name task steps text; do
   files=()
   for seed in $seeds; do files+=("$out/$name.$seed.json"); done
-  echo "| \`$task\` | \`${text//,/ }\` | $(each return "${files[@]}") | $(each cost "${files[@]}") ($(value cost_limit "${files[0]}"))" \
+  limit=$(value cost_limit "${files[0]}")
+  echo "| \`$task\` | \`${text//,/ }\` | $(each return "" "${files[@]}") | $(each cost "$limit" "${files[@]}") ($limit)" \
     "| $(percent success_rate "${files[@]}") | $(percent fall_rate "${files[@]}") |"
 done <<< "$rows"
 echo
@@ -81,7 +84,7 @@ for kind in plain drawn; do
   for where in plain drawn; do
     files=()
     for seed in $seeds; do files+=("$out/$kind.$seed.$where.json"); done
-    line="$line | $(each return_mean "${files[@]}"), $(each cost_mean "${files[@]}"), $(percent success_rate "${files[@]}")"
+    line="$line | $(each return_mean "" "${files[@]}"), $(each cost_mean 25 "${files[@]}"), $(percent success_rate "${files[@]}")"
   done
   echo "$line |"
 done

@@ -303,36 +303,11 @@ rdm_result rdm_import_task_text(int32_t* task, const void* bytes, size_t size, c
 
 namespace {
 
-// What rdm_object_create says of it, but that nothing is added: under a name that is taken it is looked at,
-// and then refused for its name alone.
-void try_object(rdm_object_def def) {
-  rdm_object taken{};
-  if (const rdm_result r = rdm_object_at(0, &taken)) refuse(r, "%s", rdm_last_error());
-  const rdm_object_def asked = def;
-  int32_t object = -1;
-  def.mass = -1;  // names are looked at before the mass is
-  (void)rdm_object_create(&object, &def);
-  if (!std::strstr(rdm_last_error(), ": mass -1 ")) {
-    def = asked;
-    refuse(rdm_object_create(&object, &def), "%s", rdm_last_error());
-  }
-  def = asked;
-  def.name = taken.name;
-  def.alias = nullptr;
-  const rdm_result r = rdm_object_create(&object, &def);
-  std::string text = rdm_last_error();
-  const std::string head = std::string("object ") + taken.name + ": ";
-  if (text == head + "the name is taken") return;
-  if (text.compare(0, head.size(), head) == 0)
-    text.replace(0, head.size(), "object " + clean(asked.name) + ": ");
-  refuse(r ? r : RDM_INTERNAL, "%s", text.c_str());
-}
-
 rdm_import* made_object(const std::string& bytes) {
   auto made = std::make_unique<rdm_import>();
   made->object = std::make_unique<ObjectDraft>();
   read_object(bytes, made->object.get());
-  try_object(made->object->def);
+  if (const rdm_result r = rdm_object_check(&made->object->def)) refuse(r, "%s", rdm_last_error());
   return made.release();
 }
 

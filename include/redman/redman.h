@@ -773,6 +773,8 @@ RDM_API rdm_result rdm_object_shape_at(int32_t object, int32_t i, rdm_shape_def 
 /* Adds an object under a number that no other gets, *out for rdm_object_at and what is here. ARGUMENT, RANGE: the text names
  * the row; a name that is taken is an ARGUMENT. Objects belong to the process; any number of threads may look meanwhile. */
 RDM_API rdm_result rdm_object_create(int32_t *out, const rdm_object_def *def);
+/* What rdm_object_create would say of it, but for a name that is taken; adds nothing. */
+RDM_API rdm_result rdm_object_check(const rdm_object_def *def);
 /* Pools that have it keep it. ARGUMENT for the library's own. */
 RDM_API rdm_result rdm_object_remove(int32_t object);
 

@@ -295,4 +295,21 @@ TEST(Objects, StandInAScene) {
   EXPECT_EQ(rdm_task_remove(task), RDM_OK);
 }
 
+// An object is looked at without being added, under a name that is taken too.
+TEST(OwnObjects, CheckAddsNothing) {
+  rdm_shape_def box{};
+  box.kind = RDM_BOX;
+  std::fill_n(box.size, 3, 0.02);
+  rdm_object_def d;
+  rdm_object_def_init(&d, sizeof d);
+  d.name = "egg", d.shapes = &box, d.num_shapes = 1, d.mass = 0.1;
+  const int32_t count = rdm_object_count();
+  EXPECT_EQ(rdm_object_check(&d), RDM_OK) << rdm_last_error();
+  d.mass = -1;
+  EXPECT_EQ(rdm_object_check(&d), RDM_ARGUMENT);
+  EXPECT_NE(std::string(rdm_last_error()).find("mass -1"), std::string::npos) << rdm_last_error();
+  EXPECT_EQ(rdm_object_check(nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_object_count(), count);
+}
+
 }  // namespace

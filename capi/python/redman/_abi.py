@@ -2785,6 +2785,10 @@ FUNCTIONS: dict[str, Function] = {
         """Adds an object under a number that no other gets, *out for rdm_object_at and what is here. ARGUMENT, RANGE: the text names
         the row; a name that is taken is an ARGUMENT. Objects belong to the process; any number of threads may look meanwhile.
         """),
+    "rdm_object_check": Function(
+        c_int32, {"def": POINTER(rdm_object_def)},
+        {}, True,
+        """What rdm_object_create would say of it, but for a name that is taken; adds nothing."""),
     "rdm_object_remove": Function(
         c_int32, {"object": c_int32},
         {}, True,
