@@ -306,7 +306,7 @@ TEST(OwnObjects, CheckAddsNothing) {
   const int32_t count = rdm_object_count();
   EXPECT_EQ(rdm_object_check(&d), RDM_OK) << rdm_last_error();
   d.mass = -1;
-  EXPECT_EQ(rdm_object_check(&d), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_object_check(&d), RDM_RANGE);
   EXPECT_NE(std::string(rdm_last_error()).find("mass -1"), std::string::npos) << rdm_last_error();
   EXPECT_EQ(rdm_object_check(nullptr), RDM_ARGUMENT);
   EXPECT_EQ(rdm_object_count(), count);

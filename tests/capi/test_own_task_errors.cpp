@@ -221,7 +221,7 @@ TEST(OwnTaskErrors, OfScenes) {
          s.num_points = 4;
          s.points = flat;
        })},
-      {RDM_RANGE, "robot: -1 is outside [0, 13)", with_robot([](auto& r) { r.robot = -1; })},
+      {RDM_RANGE, "robot: -1 is outside [0, 18)", with_robot([](auto& r) { r.robot = -1; })},
       {RDM_ARGUMENT, "robot.name is NULL", with_robot([](auto& r) { r.name = nullptr; })},
       {RDM_ARGUMENT, "scene: the name hand is taken", with_robot([](auto& r) { r.name = "hand"; })},
       {RDM_ARGUMENT, "robot.struct_size: 3 is less than 112", with_robot([](auto& r) { r.struct_size = 3; })},
