@@ -750,7 +750,7 @@ typedef struct rdm_shape_def { /* frozen layout: a shape of a body or an object,
   uint8_t color[4];        /* red, green, blue, 255; all 0: grey                                          */
   int32_t seen_only;       /* flag: nothing touches it                                                    */
 } rdm_shape_def;
-#define RDM_OBJECT_SHAPES 64
+#define RDM_OBJECT_SHAPES 64 /* most shapes of an object */
 typedef struct rdm_object_def { /* a whole object; rdm_object_create copies it with its shapes */
   uint32_t struct_size;    /* bytes, set by rdm_object_def_init                                           */
   int32_t num_shapes;      /* 1 to RDM_OBJECT_SHAPES                                                      */

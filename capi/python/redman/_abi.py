@@ -34,7 +34,7 @@ RDM_MAX_COSTS = 16  # cost columns of a task or an agent
 RDM_TEXT_SIZE = 64  # bytes of an option's text value, terminator included
 RDM_ROBOT_LINKS = 64  # links of a robot, at most
 RDM_ROBOT_KNOTS = 4  # of a curve, at most
-RDM_OBJECT_SHAPES = 64
+RDM_OBJECT_SHAPES = 64  # most shapes of an object
 RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH
 VERSION = "0.1.0"  # that these types are of
 
