@@ -9,7 +9,9 @@ struct Case {
   const char* engine;
   int32_t threads;
 };
-void PrintTo(const Case& c, std::ostream* out) { *out << c.engine << ", " << c.threads << " threads"; }
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.engine << ", " << c.threads << " threads";
+}
 
 class ContractRefusal : public testing::TestWithParam<Case> {
  protected:
