@@ -35,6 +35,8 @@ const char* name_of(Tag tag) {
       return "policy";
     case Tag::kMap:
       return "map";
+    case Tag::kRecording:
+      return "recording";
     case Tag::kScene:
       return "scene";
     case Tag::kWorld:

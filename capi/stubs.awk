@@ -3,6 +3,7 @@
 # takes a pool needs both. The two config_init functions are in every build, and what has no half is too.
 function half_of(name, parameters) {
   if (name ~ /^rdm_(pool|agent)_config_init$/) return ""
+  if (name ~ /^rdm_recording_/) return sim || parameters !~ /rdm_pool/ ? "" : "simulation"
   if (name ~ /^rdm_agent_/ && parameters ~ /rdm_pool/) return sim ? (learn ? "" : "learning") : "simulation"
   if (name ~ /^rdm_(task|robot|object|pool|map|sample|scene|world|random)_/) return sim ? "" : "simulation"
   if (name ~ /^rdm_policy_/) return policy ? "" : "learning"
