@@ -235,4 +235,14 @@ rdm_result rdm_policy_check(const rdm_policy* p, const rdm_spec* spec) {
            static_cast<double>(v.control_dt), static_cast<double>(s.control_dt));
   });
 }
+
+#if RDM_WITH_LEARN
+rdm_result rdm_agent_load_policy(rdm_agent* a, const rdm_policy* p, double samples) {
+  return call(text_of(a), [&] {
+    need_handle(a);
+    need_handle(p);
+    a->agent->load_policy(p->policy->view(), samples);
+  });
+}
+#endif
 #endif

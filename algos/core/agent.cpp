@@ -64,6 +64,9 @@ void Agent::open(const AgentConfig& config) {
   workers_.open(config.hooks, config.num_threads);
   collector_.open(resolved_, nets_, workers_);
   learner_.open(resolved_, rollout(), nets_, workers_);
+  regression_.open(resolved_, collector_, nets_, workers_);
+  imitation_.open(resolved_, regression_);
+  learner_.imitate(&imitation_);
   schedule_.reset(resolved_.options);
   shuffle_ = Stream(config.seed, 0, Purpose::kMinibatch);
   init_networks(nets_, resolved_);
@@ -82,6 +85,8 @@ void Agent::open(const AgentConfig& config) {
 
 void Agent::read_live() {
   learner_.read_live(resolved_.options);
+  imitation_.read_live(resolved_.options);
+  warm_epochs_ = resolved_.options.integer("warm_epochs");
   schedule_.read_live(resolved_.options);
   if (resolved_.num_limited > 0 && resolved_.column[0] == 0)
     resolved_.limit[0] = resolved_.options.number("cost_limit");
@@ -109,6 +114,8 @@ bool Agent::raw_costs() const {
 
 void Agent::act(const float* obs, bool sample, float* action) {
   const FpMode mode;
+  if (sample && imitation_.wanted() && !imitation_.has_rows())
+    fail(Code::kState, "act: option imitation needs a recording: rdm_agent_set_recording comes first");
   collector_.act(obs, sample, action);
 }
 
@@ -126,18 +133,25 @@ void Agent::update(const float* last_obs, Epoch* out) {
     check_cancel();
     valid_rows_ = collector_.estimate(last_obs);
     const EpisodeStats stats = collector_.episodes().stats();
-    begin_epoch(stats, epoch_ + 1);
-    const double rate = schedule_.rate(epoch_);
+    const bool warm = warming();
+    imitation_.begin_epoch(std::max(0, epoch_ - warm_epochs_));
+    if (!warm) begin_epoch(stats, epoch_ + 1);
+    const double rate = warm ? 0 : schedule_.rate(epoch_);
     const int64_t skipped = learner_.skipped();
     learned_ = Learned();
-    learn();
+    if (warm) {
+      warm_up();
+    } else {
+      imitation_.draw(valid_rows_);
+      learn();
+    }
     if (learner_.skipped() > skipped)
       log(resolved_.config.hooks, LogLevel::kWarning, "update: %lld gradients were not finite and left out",
           static_cast<long long>(learner_.skipped() - skipped));
-    if (learned_.passes > 0) schedule_.adapt(learned_.mean.kl);
+    if (learned_.passes > 0 && !warm) schedule_.adapt(learned_.mean.kl);
     collector_.episodes().mark();
     ++epoch_;
-    schedule_std(nets_, resolved_.options, epoch_);
+    if (!warm) schedule_std(nets_, resolved_.options, epoch_);
     if (out) fill_epoch(stats, rate, out);
   } catch (...) {
     drop_horizon();
@@ -168,7 +182,10 @@ BatchSums Agent::pass(const PolicyLoss* policy) {
   for (int32_t first = 0; first < count; first += size) {
     check_cancel();
     const int32_t rows = std::min(size, count - first);
-    if (policy) begin_minibatch(order + first, rows);
+    if (policy) {
+      begin_minibatch(order + first, rows);
+      imitation_.draw(rows);
+    }
     sums += learner_.gradient(policy, true, order + first, rows);
     learner_.step(rate, schedule_.change(epoch_));
   }
@@ -197,6 +214,77 @@ void Agent::learn() {
   if (learned_.passes == 0) return;
   learned_.last_kl = last.kl / count;
   learned_.mean = all.scaled(1 / (count * learned_.passes));
+}
+
+// Passes that move the critics alone.
+void Agent::warm_up() {
+  BatchSums all;
+  for (; valid_rows_ > 0 && learned_.passes < resolved_.options.integer("passes"); ++learned_.passes)
+    all += pass(nullptr);
+  if (learned_.passes > 0)
+    learned_.mean = all.scaled(1 / (static_cast<double>(valid_rows_) * learned_.passes));
+}
+
+void Agent::need_idle(const char* call) const {
+  if (!collector_.idle()) fail(Code::kState, "%s: only between epochs; this horizon has begun", call);
+}
+
+CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {
+  const FpMode mode;
+  const HostScope scope(resolved_.config.hooks);
+  need_idle("clone");
+  check_cancel();
+  return clone_actor(resolved_, demo, how, regression_, nets_, collector_.normalizer(), cancel_);
+}
+
+void Agent::set_recording(const DemoRows& demo, uint64_t mark) {
+  need_idle("set_recording");
+  imitation_.set(demo, mark, resolved_.config.hooks);
+}
+
+void Agent::load_policy(const PolicyView& p, double samples) {
+  const FpMode mode;
+  need_idle("load_policy");
+  if (!(samples >= 2 && samples <= 1e12)) fail(Code::kRange, "samples: %g is outside [2, 1e12]", samples);
+  const AgentConfig& c = resolved_.config;
+  const MlpShape& actor = nets_.shape[Networks::kActor];
+  const auto differ = [](const char* what) {
+    fail(Code::kArgument, "policy: %s differs from the agent's", what);
+  };
+  if (p.obs_dim() != c.obs_dim) differ("obs_dim");
+  if (p.action_dim() != c.action_dim) differ("action_dim");
+  if (p.layout_hash && c.layout_hash && p.layout_hash != c.layout_hash) differ("layout_hash");
+  if (p.state_std != nets_.state_std()) differ("std_mode");
+  if (p.actor.num_hidden != actor.num_hidden ||
+      !std::equal(actor.hidden, actor.hidden + actor.num_hidden, p.actor.hidden))
+    differ("hidden");
+  if (p.actor.activation != actor.activation) differ("activation");
+  const int32_t* columns = nets_.columns[Networks::kActor];
+  if (p.actor.in != actor.in || (p.columns != nullptr) != (columns != nullptr) ||
+      (columns && !std::equal(columns, columns + actor.in, p.columns)))
+    differ("actor_obs");
+  Normalizer& n = collector_.normalizer();
+  if ((p.clip > 0) != collector_.normalizes() || (p.clip > 0 && p.clip != n.clip))
+    differ("normalize_obs, or obs_clip,");
+
+  std::copy_n(p.params, actor.num_params(), nets_.net(Networks::kActor));
+  if (!nets_.state_std()) std::copy_n(p.log_std, nets_.action_dim, nets_.log_std());
+  clamp_log_std(nets_);
+  Adam& adam = nets_.block[Networks::kActor].adam;
+  std::fill_n(adam.m, adam.size, 0.0f);
+  std::fill_n(adam.v, adam.size, 0.0f);
+  adam.t = 0;
+  if (!collector_.normalizes()) return;
+  n.count = samples;
+  std::fill_n(n.mean, n.dim, 0.0);
+  std::fill_n(n.m2, n.dim, samples - 1);  // of entries that the policy does not see: as they are
+  for (int32_t i = 0; i < actor.in; ++i) {
+    const int32_t at = columns ? columns[i] : i;
+    const double std = 1 / static_cast<double>(p.scale[i]);  // in double: refresh finds the same float
+    n.mean[at] = static_cast<double>(p.shift[i]);
+    n.m2[at] = std * std * (samples - 1);
+  }
+  normalizer_refresh(n);
 }
 
 void Agent::fill_spread(Epoch& e) const {
@@ -258,6 +346,7 @@ void Agent::visit_state(StateIo& io) {
   collector_.visit(io);
   learner_.visit(io);
   schedule_.visit(io);
+  imitation_.visit(io);
 }
 
 void Agent::save(Writer& out) const {

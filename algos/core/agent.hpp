@@ -19,6 +19,7 @@
 //   Collector     the Rollout, normalisers, noise, episodes; only it writes them, but for gain, linear (the
 //                 algorithm) and order (the passes)
 //   Learner       the gradient that a step follows
+//   Imitation    the rows that it is held near: a recording's, copied when it is set, outside of the arena
 //   TrustRegion, rules of an algorithm: what they carve or hold themselves
 // A part begins in four steps: carve (arrays, twice: to measure and for good), open (pointers to other parts,
 // options that are fixed), opened (an algorithm's own parts), read_live (options that may change; again after
@@ -30,9 +31,13 @@
 #include "algos/core/cancel.hpp"
 #include "algos/core/learner.hpp"
 #include "algos/core/schedule.hpp"
+#include "algos/imitation/clone.hpp"
+#include "algos/imitation/imitation.hpp"
 #include "algos/rollout/collector.hpp"
 
 namespace rdm {
+
+struct PolicyView;
 
 class Agent {
  public:
@@ -67,6 +72,14 @@ class Agent {
   bool tensor(int32_t index, TensorInfo* out);      // false past the end
   void tensors_changed() { clamp_log_std(nets_); }  // after a write through TensorInfo::data
 
+  // Between epochs; Error(kState) inside a horizon.
+  CloneReport clone(const DemoRows& demo, const CloneOptions& how);
+  // Copies the rows for the imitation term; mark: their fingerprint. rows 0: none.
+  void set_recording(const DemoRows& demo, uint64_t mark);
+  // Actor and statistics become a frozen policy's, which count for so many samples; Error(kArgument) names
+  // what differs, and nothing changes.
+  void load_policy(const PolicyView& policy, double samples);
+
   void write_policy_file(Writer& out);  // const but for scratch
   void save(Writer& out) const;         // Error(kState) inside a horizon
   // Error(kFormat, kVersion) unless load would take these bytes; changes nothing.
@@ -93,6 +106,8 @@ class Agent {
   // One pass over the valid rows in shuffled minibatches: a step of the critics and, unless null, of the
   // policy for each.
   BatchSums pass(const PolicyLoss* policy);
+  // The first epochs, in which the critics learn alone.
+  bool warming() const { return epoch_ < warm_epochs_; }
   // Copies live options to where they are used.
   virtual void read_live();
   virtual void visit_state(StateIo& io);
@@ -120,6 +135,8 @@ class Agent {
   const Rollout& rollout() const { return collector_.rollout(); }
 
  private:
+  void warm_up();
+  void need_idle(const char* call) const;
   // action_std and entropy: of the policy now, or with std_mode=state as it was on the epoch's data.
   void fill_spread(Epoch& e) const;
   void fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const;
@@ -134,7 +151,9 @@ class Agent {
   RateSchedule schedule_;
   Stream shuffle_;
   Learned learned_;
-  int32_t epoch_ = 0, valid_rows_ = 0;
+  int32_t epoch_ = 0, valid_rows_ = 0, warm_epochs_ = 0;
+  Regression regression_;
+  Imitation imitation_;
   char (*names_)[kTensorNameSize] = nullptr;  // of the tensors
 };
 

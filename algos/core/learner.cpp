@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "algos/imitation/imitation.hpp"
 #include "algos/trust_region/conjugate_gradient.hpp"
 #include "base/elementary.hpp"
 #include "nn/gaussian.hpp"
@@ -78,6 +79,8 @@ BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const int32_
         workers_->reduce(group, n, grad_, begin_, end_);
       });
   add_penalties(policy);
+  if (policy && policy->explores() && imitation_ && imitation_->active())
+    sums.loss += rows * imitation_->add_gradient(grad_);
   return sums;
 }
 
@@ -119,6 +122,10 @@ double Learner::critic_gradient(Workspace& workspace, Networks::Index net, const
     }
   nets_->backward(net, workspace.obs, rows, workspace.critic, workspace.dout, grad);
   return loss;
+}
+
+double Learner::imitation() const {
+  return imitation_ ? imitation_->term() : 0;
 }
 
 void Learner::add_penalties(const PolicyLoss* policy) {

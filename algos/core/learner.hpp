@@ -2,7 +2,7 @@
 //
 // Of a batch B of N rows the learner follows the gradient of
 //
-//   policy   1/N sum_B L(rho, A) - entropy H(pi)
+//   policy   1/N sum_B L(rho, A) - entropy H(pi) + the imitation term (imitation/imitation.hpp)
 //   critics  1/N sum_B (V - target)^2 + l2 |w|^2
 //
 // with L the algorithm's (PolicyLoss), rho = pi(a|s) / pi_old(a|s), V of the reward or of a limited cost,
@@ -24,6 +24,8 @@
 #include "algos/rollout/rollout.hpp"
 
 namespace rdm {
+
+class Imitation;
 
 // A chunk of a batch as a policy loss sees it. Row i of its means is mean_step i further on, of its
 // deviations std_step i: 0 where one serves all.
@@ -49,7 +51,7 @@ class PolicyLoss {
  public:
   // Runs on any thread and must not throw.
   virtual void add(const PolicyChunk& chunk) const = 0;
-  // The entropy bonus belongs to this loss.
+  // The entropy bonus and the imitation term belong to this loss.
   virtual bool explores() const { return true; }
 
  protected:
@@ -71,6 +73,10 @@ class Learner {
   // Adam steps along what the last gradient computed; actor_share: actor_rate over its first value, which the
   // critics may follow. A network whose gradient is not finite stays as it is.
   void step(double actor_rate, double actor_share = 1);
+
+  // The policy's loss has this term too, where it is active; null: none.
+  void imitate(const Imitation* term) { imitation_ = term; }
+  double imitation() const;
 
   // Of the policy as it is now, over the listed rows. clip > 0: each sample's cost is
   // max(rho A_c, clip(rho, 1 - clip, 1 + clip) A_c), so that only a fall of the cost can be hidden.
@@ -104,6 +110,7 @@ class Learner {
   float value_clip_ = 0;
   double critic_rate_ = 0, entropy_ = 0, max_norm_ = 0, critic_l2_ = 0;
   int64_t skipped_ = 0;
+  const Imitation* imitation_ = nullptr;
 };
 
 }  // namespace rdm

@@ -81,6 +81,12 @@ inline constexpr std::array kSharedOptions = {
     number_option("value_clip", 0, 0, 1e6,
                   "bound on a value's change from the one that acted, in the critics' loss; 0: none", true),
     number_option("critic_l2", 1e-3, 0, 1e3, "weight of the critics' squared parameters", true),
+    // demonstrations
+    integer_option("warm_epochs", 0, 0, 1 << 30,
+                   "first epochs in which the critics learn alone: actor and multipliers stay", true),
+    number_option("imitation", 0, 0, 1e6,
+                  "weight of staying near a recording (rdm_agent_set_recording); 0: none", true),
+    number_option("imitation_decay", 0.99, 0, 1, "factor on that weight per epoch", true),
     // costs
     number_option("cost_limit", 25, -1, kHuge, "limit on column 0's sum over an episode; < 0: none", true),
     text_option("cost_signal", "flag", "flag|raw",

@@ -41,6 +41,9 @@ class Collector {
   Episodes& episodes() { return episodes_; }
   const Episodes& episodes() const { return episodes_; }
   const Normalizer& normalizer() const { return normalizer_; }
+  Normalizer& normalizer() { return normalizer_; }
+  // The rows as networks see them: obs, or with normalize_obs memory [rows][obs_dim], which may be obs.
+  const float* normalized(const float* obs, int32_t rows, float* memory) const;
   bool normalizes() const { return normalize_; }
   int64_t env_steps() const { return env_steps_; }
   void visit(StateIo& io);
@@ -49,7 +52,6 @@ class Collector {
   }
 
  private:
-  const float* normalized(const float* obs, int32_t rows, float* memory) const;
   void values(const Workspace& workspace, const float* x, int32_t rows, float* value,
               float* cost_value) const;
   void act_rows(const Workspace& workspace, const float* obs, int32_t first, int32_t rows, float* action);

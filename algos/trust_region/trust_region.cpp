@@ -76,6 +76,13 @@ void TrustRegion::set_step(double along_x, double along_p, double along_b) {
   }
 }
 
+// The gain is less the imitation term, as its gradient is.
+Surrogate TrustRegion::measure() {
+  Surrogate s = learner_->measure(order_, rows_);
+  s.gain -= learner_->imitation();
+  return s;
+}
+
 void TrustRegion::save() {
   std::memcpy(before_, nets_->params, size_ * sizeof(float));
 }

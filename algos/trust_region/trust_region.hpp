@@ -68,7 +68,7 @@ class TrustRegion {
   void save();
   void restore();
   void move(double f);
-  Surrogate measure() { return learner_->measure(order_, rows_); }
+  Surrogate measure();
 
   CancelFlag* cancel_ = nullptr;
   const ResolvedAgentConfig* resolved_ = nullptr;

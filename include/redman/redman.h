@@ -1303,7 +1303,7 @@ RDM_API rdm_result rdm_agent_load_policy(rdm_agent *a, const rdm_policy *p, doub
 /* Worlds begin an episode, with probability `share` (0 to 1), at a state of the recording, drawn from a stream of their own: all
  * other draws are what they are without. Such an episode has the steps that are left; sums begin at 0. States are copied, and
  * each is tried: FORMAT, and nothing changes. r NULL: the states of the last call, with another share; 0 at first. The
- * streams and the share are part of the pool's state, which loads only beside the same states. */
+ * streams and the share are part of the state of all worlds (env -1), which loads only beside the same states. */
 RDM_API rdm_result rdm_pool_set_starts(rdm_pool *p, const rdm_recording *r, double share);
 
 #ifdef __cplusplus

@@ -141,8 +141,9 @@ void WorldDisturbance::write(Writer& out) const {
   out.bytes(numbers_, sz(count_) * sizeof *numbers_);
 }
 
-void WorldDisturbance::read(Reader& in) {
-  stream_ = in.value<Stream>();
+void WorldDisturbance::read(Reader& in, bool keep_stream) {
+  const auto stream = in.value<Stream>();
+  if (!keep_stream) stream_ = stream;
   in.bytes(numbers_, sz(count_) * sizeof *numbers_);
 }
 

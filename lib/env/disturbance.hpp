@@ -25,7 +25,7 @@ class WorldDisturbance {
   void delay_action(const Disturbance& plan, int32_t step, int32_t action_dim, float* action);
 
   void write(Writer& out) const;
-  void read(Reader& in);
+  void read(Reader& in, bool keep_stream = false);
   // Error(kFormat) for numbers that no world has that was reset.
   void check(const Disturbance& plan) const;
 

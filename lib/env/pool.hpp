@@ -67,6 +67,11 @@ class Pool {
   // A seed that is given names the streams alone, as of the only world of a pool.
   void reset(const uint64_t* seeds, const uint8_t* mask);
   void step(const uint8_t* mask);  // null: all
+  // Episodes begin, with probability `share`, at one of `count` states of single worlds, each of so many
+  // bytes; they are copied. Error(kFormat) where one is no running world's of this pool: nothing changes.
+  // mark tells such sets apart. count -1: the states stay.
+  void set_starts(const unsigned char* states, size_t state_bytes, int64_t count, uint64_t mark,
+                  double share);
   void baseline(Baseline kind);
 
   size_t state_size(int32_t env) const;

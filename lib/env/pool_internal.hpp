@@ -31,12 +31,22 @@ struct Counters {
 };
 
 // All that belongs to world i beside its buffer rows.
+// Where episodes may begin, beside the task's own start.
+struct Starts {
+  Vector<unsigned char> records;  // [count][record_bytes] as write_world has them
+  size_t record_bytes = 0;
+  int64_t count = 0;
+  uint64_t mark = 0;
+  double share = 0;
+};
+
 struct Slot {
   World* world;
   void* task_state;
   Episode episode;
   Counters counters;
   WorldDisturbance disturbance;
+  Stream start;   // whether and where in Starts an episode begins
   int32_t taken;  // control steps of the last step
   double
       magnitude[kMaxTaskCosts];  // with option action_repeat: sums over these of cost_raw where it is above 0
@@ -83,8 +93,9 @@ struct Pool::Impl : ResolvedPoolConfig {
 
   // --- stepping
   void check_ready(const uint8_t* mask) const;
-  void begin_episode(int32_t env);  // resets world, streams go on, writes obs
-  void clear_rows(int32_t env);     // reward, costs, flags, status, sums; final_obs becomes obs
+  void begin_episode(int32_t env);   // resets world, streams go on, writes obs
+  void begin_at_start(int32_t env);  // an episode that has begun, perhaps at one of `starts`
+  void clear_rows(int32_t env);      // reward, costs, flags, status, sums; final_obs becomes obs
   // What is shown of control step `step`, 0 at a reset; false: an entry is not finite.
   bool observe(int32_t env, int32_t step, float* row);
   void see(int32_t env, Block& block);  // pictures, points and voxels
@@ -108,8 +119,11 @@ struct Pool::Impl : ResolvedPoolConfig {
   void each_world(const uint8_t* mask, F&& f);
 
   // --- state
+  // Error(kFormat) unless the bytes are a state of so many worlds of this pool; then the worlds can be read.
+  void open_state(Reader& in, int32_t worlds) const;
   void write_world(int32_t env, Writer& out) const;
-  void read_world(int32_t env, Reader& in);
+  // keep_streams: those of the disturbances stay the world's own.
+  void read_world(int32_t env, Reader& in, bool keep_streams = false);
   void check_world(int32_t env) const;  // Error(kFormat) when what was read makes no sense
 
   float* obs(int32_t env) const { return buffers.obs + env * static_cast<ptrdiff_t>(obs_dim); }
@@ -126,6 +140,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   Block* blocks = nullptr;            // [num_blocks]
   unsigned char* pristine = nullptr;  // a world's state before anything happened: what a reset starts from
   size_t pristine_size = 0;
+  Starts starts;
   int32_t group_size = 1;  // worlds that the engine takes together, at most
   Workers* workers = nullptr;
 };

@@ -84,7 +84,7 @@ void Pool::Impl::write_world(int32_t env, Writer& out) const {
   if (disturbance.any()) s.disturbance.write(out);
 }
 
-void Pool::Impl::read_world(int32_t env, Reader& in) {
+void Pool::Impl::read_world(int32_t env, Reader& in, bool keep_streams) {
   Slot& s = slots[env];
   const auto size = in.value<uint64_t>();
   if (size > in.left()) fail(Code::kFormat, "state: truncated");
@@ -94,7 +94,7 @@ void Pool::Impl::read_world(int32_t env, Reader& in) {
   in.bytes(s.task_state, task->state_bytes());
   read_episode(in, cost_dim, &s.episode);
   in.bytes(obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
-  if (disturbance.any()) s.disturbance.read(in);
+  if (disturbance.any()) s.disturbance.read(in, keep_streams);
 }
 
 // The world's own part is checked by its load.
@@ -134,7 +134,32 @@ void Pool::get_state(int32_t env, Writer& out) const {
   out.begin_section("WRLD");
   for (int32_t i = range.begin; i < range.end; ++i) m.write_world(i, out);
   out.end_section();
+  if (env < 0 && m.starts.count > 0) {
+    out.begin_section("STRT");
+    out.value(m.starts.mark);
+    out.value(m.starts.share);
+    for (int32_t i = range.begin; i < range.end; ++i) out.value(m.slots[i].start);
+    out.end_section();
+  }
   out.end_file();
+}
+
+void Pool::Impl::open_state(Reader& in, int32_t worlds) const {
+  in.begin_file(kMagic, kVersion);
+  in.need_section("HEAD");
+  char name[kTextSize];
+  in.text(name, sizeof name);
+  if (!same_name(name, info->name))
+    fail(Code::kFormat, "state: of task %s, the pool has %s", name, info->name);
+  if (in.value<int32_t>() != static_cast<int32_t>(slots[0].world->engine()))
+    fail(Code::kFormat, "state: of another physics engine");
+  if (in.value<uint64_t>() != options_hash)
+    fail(Code::kFormat, "state: of a pool of task %s with other options", info->name);
+  if (in.value<uint64_t>() != layout_hash(*task)) fail(Code::kFormat, "state: of another layout");
+  if (const auto count = in.value<int32_t>(); count != worlds)
+    fail(Code::kFormat, "state: it holds %d worlds, %d are to be set", count, worlds);
+  in.expect_end();
+  in.need_section("WRLD");
 }
 
 void Pool::set_state(int32_t env, const void* bytes, size_t size) {
@@ -143,22 +168,23 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
   const HostScope scope(m.config.hooks);
   const Range range = range_of(env, m.config.num_envs);
   Reader in(bytes, size, "state");
-  in.begin_file(kMagic, kVersion);
-  in.need_section("HEAD");
-  char name[kTextSize];
-  in.text(name, sizeof name);
-  if (!same_name(name, m.info->name))
-    fail(Code::kFormat, "state: of task %s, the pool has %s", name, m.info->name);
-  if (in.value<int32_t>() != static_cast<int32_t>(m.slots[0].world->engine()))
-    fail(Code::kFormat, "state: of another physics engine");
-  if (in.value<uint64_t>() != m.options_hash)
-    fail(Code::kFormat, "state: of a pool of task %s with other options", m.info->name);
-  if (in.value<uint64_t>() != layout_hash(*m.task)) fail(Code::kFormat, "state: of another layout");
-  const auto count = in.value<int32_t>();
-  if (count != range.count())
-    fail(Code::kFormat, "state: it holds %d worlds, %d are to be set", count, range.count());
-  in.expect_end();
-  in.need_section("WRLD");
+  m.open_state(in, range.count());
+  Reader drawn(bytes, size, "state");
+  double share = m.starts.share;
+  bool with_starts = false;
+  if (env < 0) {
+    drawn.begin_file(kMagic, kVersion);
+    with_starts = drawn.find_section("STRT");
+    if (with_starts) {
+      if (drawn.value<uint64_t>() != m.starts.mark)
+        fail(Code::kFormat,
+             "state: its episodes begin at states of a recording that is not this pool's; set those first");
+      share = drawn.value<double>();
+      if (!(share >= 0 && share <= 1)) fail(Code::kFormat, "state: a share of starts of %g", share);
+      if (drawn.left() != sizeof(Stream) * m.num())
+        fail(Code::kFormat, "state: not a stream of starts for each world");
+    }
+  }
 
   // a record that turns out bad half-way must leave no trace
   Writer need(nullptr, 0);
@@ -183,7 +209,9 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
     // the flags of an ended world that waits for its reset belong to its state; all else is of a step
     m.buffers.terminated[i] = m.slots[i].episode.terminated;
     m.buffers.truncated[i] = m.slots[i].episode.truncated;
+    if (with_starts) m.slots[i].start = drawn.value<Stream>();
   }
+  m.starts.share = share;
 }
 
 uint64_t Pool::hash(int32_t env) const {

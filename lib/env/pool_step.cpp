@@ -97,6 +97,7 @@ void Pool::Impl::begin_episode(int32_t env) {
   task->reset(*s.world, s.task_state, e.reset);
   if (disturbance.any()) s.disturbance.begin(disturbance, *task);
   observe(env, 0, obs(env));
+  if (starts.share > 0) begin_at_start(env);
 }
 
 bool Pool::Impl::observe(int32_t env, int32_t step, float* row) {

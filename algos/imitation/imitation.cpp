@@ -1,0 +1,61 @@
+#include "algos/imitation/imitation.hpp"
+
+#include "base/elementary.hpp"
+
+namespace rdm {
+
+void Imitation::open(const ResolvedAgentConfig& resolved, const Regression& regression) {
+  resolved_ = &resolved;
+  regression_ = &regression;
+  stream_ = Stream(resolved.config.seed, 0, Purpose::kImitation);
+}
+
+void Imitation::read_live(const Options& options) {
+  base_ = options.number("imitation");
+  decay_ = options.number("imitation_decay");
+}
+
+void Imitation::set(const DemoRows& demo, uint64_t mark, const HostHooks& hooks) {
+  const HostScope scope(hooks);
+  const auto n = static_cast<size_t>(demo.rows);
+  Vector<float> obs(demo.obs, demo.obs + n * resolved_->obs_dim());
+  Vector<float> label(demo.label, demo.label + n * resolved_->action_dim());
+  Vector<int32_t> order(n ? static_cast<size_t>(resolved_->samples) : 0);
+  obs_ = std::move(obs), label_ = std::move(label), order_ = std::move(order);
+  demo_ = {demo.rows, obs_.data(), label_.data(), nullptr};
+  mark_ = n ? mark : 0;
+  rows_ = 0;
+}
+
+void Imitation::begin_epoch(int32_t done) {
+  weight_ = has_rows() ? base_ * elementary::pow(decay_, done) : 0;
+  rows_ = 0;
+}
+
+void Imitation::draw(int32_t rows) {
+  if (!(weight_ > 0)) return;
+  rows_ = std::min({rows, demo_.rows, resolved_->samples});
+  const auto count = static_cast<uint32_t>(demo_.rows);
+  for (int32_t i = 0; i < rows_; ++i)
+    order_[static_cast<size_t>(i)] = static_cast<int32_t>(stream_.below(count));
+}
+
+double Imitation::add_gradient(float* grad) const {
+  return weight_ * regression_->gradient(demo_, order_.data(), rows_, true, weight_, true, grad);
+}
+
+double Imitation::term() const {
+  return active() ? weight_ * regression_->loss(demo_, order_.data(), rows_, true) : 0;
+}
+
+void Imitation::visit(StateIo& io) {
+  io.section("IMIT");
+  auto mark = static_cast<int64_t>(mark_);
+  const int64_t there = io.integer(mark, INT64_MIN, INT64_MAX);
+  io.require(there == static_cast<int64_t>(mark_),
+             mark_ ? "the mark of another recording than the agent's"
+                   : "the mark of a recording: rdm_agent_set_recording comes first");
+  io.stream(stream_);
+}
+
+}  // namespace rdm

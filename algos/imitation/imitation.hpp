@@ -1,0 +1,47 @@
+// An imitation term that fades, beside any algorithm's loss of the policy (Rajeswaran et al. 2018, DAPG):
+//
+//   loss + w decay^k L,   k epochs since the actor began to learn, L as in regression.hpp with 1 / sigma^2
+//
+// L is of rows drawn anew for each minibatch, as many as it has, or as there are; a trust region draws once
+// an epoch, and its line search sees the term too. DAPG weighs the whole log-likelihood by the largest
+// advantage; here advantages are standardised, and sigma is left to the algorithm: at deviations of a few
+// hundredths the likelihood's pull on sigma would open it.
+#pragma once
+#include "algos/imitation/regression.hpp"
+
+namespace rdm {
+
+class Imitation {
+ public:
+  void open(const ResolvedAgentConfig& resolved, const Regression& regression);
+  void read_live(const Options& options);
+
+  // Copies the rows; rows 0: none. The mark tells recordings apart.
+  void set(const DemoRows& demo, uint64_t mark, const HostHooks& hooks);
+  bool has_rows() const { return demo_.rows > 0; }
+  bool wanted() const { return base_ > 0; }
+
+  // The weight of an epoch, `done` ones after the actor began to learn.
+  void begin_epoch(int32_t done);
+  bool active() const { return weight_ > 0 && rows_ > 0; }
+  void draw(int32_t rows);  // for a batch of so many
+  // Adds the term's gradient to the actor's block of grad; returns the term.
+  double add_gradient(float* grad) const;
+  double term() const;  // 0 unless active
+
+  // Error(kFormat) for a state that was saved beside other rows.
+  void visit(StateIo& io);
+
+ private:
+  const ResolvedAgentConfig* resolved_ = nullptr;
+  const Regression* regression_ = nullptr;
+  Vector<float> obs_, label_;
+  Vector<int32_t> order_;  // [samples of an epoch]
+  DemoRows demo_;
+  uint64_t mark_ = 0;
+  Stream stream_;
+  double base_ = 0, decay_ = 1, weight_ = 0;
+  int32_t rows_ = 0;  // drawn
+};
+
+}  // namespace rdm

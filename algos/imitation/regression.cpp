@@ -1,0 +1,82 @@
+#include "algos/imitation/regression.hpp"
+
+#include <cstring>
+
+#include "base/elementary.hpp"
+
+namespace rdm {
+
+void Regression::open(const ResolvedAgentConfig& resolved, const Collector& collector, const Networks& nets,
+                      BatchWorkers& workers) {
+  resolved_ = &resolved;
+  collector_ = &collector;
+  nets_ = &nets;
+  workers_ = &workers;
+}
+
+double Regression::chunk(const Workspace& workspace, const DemoRows& demo, const int32_t* order, int32_t rows,
+                         bool precise, float scale, float* grad) const {
+  const size_t width = resolved_->obs_dim(), dim = resolved_->action_dim();
+  const auto out = static_cast<size_t>(nets_->shape[Networks::kActor].out);
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
+    std::memcpy(workspace.obs + i * width, demo.obs + static_cast<size_t>(order[i]) * width,
+                width * sizeof(float));
+  const float* x = collector_->normalized(workspace.obs, rows, workspace.obs);
+  nets_->forward(Networks::kActor, x, rows, workspace.actor, workspace.out);
+  float precision[kMaxActions];
+  std::fill_n(precision, dim, 1.0f);
+  double sum = 0;
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
+    const float *mean = workspace.out + i * out, *label = demo.label + static_cast<size_t>(order[i]) * dim;
+    float* dmean = workspace.dout + i * out;
+    for (size_t j = 0; precise && j < dim && (i == 0 || nets_->state_std()); ++j) {
+      const float l = nets_->state_std() ? mean[dim + j] : nets_->log_std()[j] + resolved_->log_share;
+      precision[j] = static_cast<float>(elementary::exp(-2 * static_cast<double>(l)));
+    }
+    for (size_t j = 0; j < dim; ++j) {
+      const float error = mean[j] - std::clamp(label[j], -1.0f, 1.0f), pull = precision[j] * error;
+      dmean[j] = scale * pull;
+      sum += static_cast<double>(pull) * static_cast<double>(error);
+    }
+    for (size_t j = dim; j < out; ++j) dmean[j] = 0;
+  }
+  if (!grad) return sum;
+  std::memset(grad, 0, nets_->std_size * sizeof(float));
+  nets_->backward(Networks::kActor, x, rows, workspace.actor, workspace.dout, grad);
+  return sum;
+}
+
+double Regression::gradient(const DemoRows& demo, const int32_t* order, int32_t rows, bool precise,
+                            double weight, bool add, float* grad) const {
+  const auto scale = static_cast<float>(weight / rows);
+  const size_t end = nets_->block[Networks::kReward].offset;
+  double sum = 0;
+  workers_->sweep(
+      rows, resolved_->chunk_rows,
+      [&](Workspace& workspace, int32_t first, int32_t n) {
+        float* to = first == 0 && !add ? grad : workspace.grad;
+        workspace.sums = BatchSums();
+        workspace.sums.loss = chunk(workspace, demo, order + first, n, precise, scale, to);
+      },
+      [&](int32_t group, int32_t n) {
+        for (int32_t i = 0; i < n; ++i) sum += (*workers_)[i].sums.loss;
+        workers_->reduce(add ? group + 1 : group, n, grad, 0, end);  // of group 0 the first is there already
+      });
+  return sum / (2.0 * rows);
+}
+
+double Regression::loss(const DemoRows& demo, const int32_t* order, int32_t rows, bool precise) const {
+  double sum = 0;
+  workers_->sweep(
+      rows, resolved_->chunk_rows,
+      [&](Workspace& workspace, int32_t first, int32_t n) {
+        workspace.sums = BatchSums();
+        workspace.sums.loss = chunk(workspace, demo, order + first, n, precise, 0, nullptr);
+      },
+      [&](int32_t, int32_t n) {
+        for (int32_t i = 0; i < n; ++i) sum += (*workers_)[i].sums.loss;
+      });
+  return sum / (2.0 * rows);
+}
+
+}  // namespace rdm

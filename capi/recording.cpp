@@ -1,0 +1,385 @@
+// rdm_recording_*: trajectories as data, and what agents and pools take of them.
+#include "record/recording.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "base/file.hpp"
+#include "capi/handles.hpp"
+#if RDM_WITH_SIM
+#include "env/fields.hpp"
+#endif
+
+using namespace rdm;
+using namespace rdm::capi;
+
+struct rdm_recording {
+  static constexpr Tag kTag = Tag::kRecording;
+  Tag tag = kTag;
+  HostHooks hooks;
+  char error[kErrorTextSize] = "";
+  Recording* recording = nullptr;
+};
+
+namespace {
+
+constexpr size_t kLongestFile = size_t{1} << 40;
+
+rdm_recording_config default_config() {
+  rdm_recording_config c{};
+  c.task = "";
+  c.state_stride = 8;
+  return c;
+}
+
+rdm_clone_config default_clone() {
+  rdm_clone_config c{};
+  c.epochs = 30;
+  c.batch_rows = 512;
+  c.patience = 5;
+  c.learning_rate = 1e-3;
+  c.learning_rate_end = 1e-5;
+  c.validation = 0.1;
+  c.feed_normalizer = 1;
+  return c;
+}
+
+// `make` gives the recording, under the hooks.
+template <class F>
+void open_handle(rdm_recording** out, const HostHooks& hooks, F&& make) {
+  const HostScope scope(hooks);
+  rdm_recording* r = host_new<rdm_recording>(hooks);
+  r->hooks = hooks;
+  try {
+    r->recording = make();
+  } catch (...) {
+    host_delete(hooks, r);
+    throw;
+  }
+  *out = r;
+}
+
+// A call that changes a recording: its memory is its own hooks'.
+template <class F>
+rdm_result change(rdm_recording* r, F&& f) {
+  return call(text_of(r), [&] {
+    need_handle(r);
+    const HostScope scope(r->hooks);
+    f(*r->recording);
+  });
+}
+
+}  // namespace
+
+rdm_result rdm_recording_config_init(rdm_recording_config* c, size_t size) {
+  return call(nullptr, [&] { init_struct(c, size, sizeof(rdm_recording_config), default_config(), "c"); });
+}
+
+rdm_result rdm_clone_config_init(rdm_clone_config* how, size_t size) {
+  return call(nullptr, [&] { init_struct(how, size, sizeof(rdm_clone_config), default_clone(), "how"); });
+}
+
+rdm_result rdm_recording_create(rdm_recording** out, const rdm_recording_config* c) {
+  return call_with(c, [&] {
+    need(out, "out");
+    const auto in = read_struct(c, sizeof(rdm_recording_config), default_config(), "config");
+    check_error(in);
+    RecordingSpec spec;
+    spec.obs_dim = in.obs_dim;
+    spec.action_dim = in.action_dim;
+    spec.cost_dim = in.cost_dim;
+    spec.layout_hash = in.layout_hash;
+    spec.state_bytes = in.state_bytes;
+    spec.state_stride = in.state_stride;
+    const char* task = in.task ? in.task : "";
+    if (std::strlen(task) >= sizeof spec.task || !is_clean_text(task))
+      fail(Code::kRange, "config.task: longer than %zu characters, or not one line of UTF-8",
+           sizeof spec.task - 1);
+    std::strcpy(spec.task, task);
+    const HostHooks hooks = hooks_from(in.host);
+    open_handle(out, hooks, [&] { return host_new<Recording>(hooks, spec, in.capacity); });
+  });
+}
+
+void rdm_recording_destroy(rdm_recording* r) {
+  if (!is_handle(r)) return;
+  host_delete(r->hooks, r->recording);
+  retire(r);
+  host_delete(r->hooks, r);
+}
+
+const char* rdm_recording_error(const rdm_recording* r) {
+  return is_handle(r) ? r->error : "recording: NULL, not a recording, or destroyed";
+}
+
+rdm_result rdm_recording_get_info(const rdm_recording* r, rdm_recording_info* io) {
+  return call(nullptr, [&] {
+    need_handle(r);
+    const Recording& x = *r->recording;
+    rdm_recording_info out{};
+    out.obs_dim = x.spec().obs_dim;
+    out.action_dim = x.spec().action_dim;
+    out.cost_dim = x.spec().cost_dim;
+    out.rows = x.rows();
+    out.episodes = x.episodes();
+    out.num_states = x.num_states();
+    out.state_bytes = x.spec().state_bytes;
+    out.layout_hash = x.spec().layout_hash;
+    out.fingerprint = x.fingerprint();
+    out.task = x.spec().task;
+    write_struct(io, out, sizeof(rdm_recording_info), "io");
+  });
+}
+
+rdm_result rdm_recording_get_rows(const rdm_recording* r, rdm_recording_rows* io) {
+  return call(nullptr, [&] {
+    need_handle(r);
+    const RecordingRows v = r->recording->view();
+    rdm_recording_rows out{};
+    out.rows = v.rows;
+    out.obs = v.obs;
+    out.action = v.action;
+    out.label = v.label;
+    out.reward = v.reward;
+    out.cost = v.cost;
+    out.terminated = v.terminated;
+    out.truncated = v.truncated;
+    out.success = v.success;
+    out.episode = v.episode;
+    out.num_states = v.num_states;
+    out.state_row = v.state_row;
+    out.state = v.state;
+    write_struct(io, out, sizeof(rdm_recording_rows), "io");
+  });
+}
+
+rdm_result rdm_recording_append(rdm_recording* r, const rdm_recording_rows* rows) {
+  return change(r, [&](Recording& x) {
+    const auto in = read_struct(rows, sizeof(rdm_recording_rows), rdm_recording_rows{}, "rows");
+    RecordingRows v;
+    v.rows = in.rows;
+    v.obs = in.obs;
+    v.action = in.action;
+    v.label = in.label;
+    v.reward = in.reward;
+    v.cost = in.cost;
+    v.terminated = in.terminated;
+    v.truncated = in.truncated;
+    v.success = in.success;
+    v.episode = in.episode;
+    v.num_states = in.num_states;
+    v.state_row = in.state_row;
+    v.state = in.state;
+    x.append(v);
+  });
+}
+
+rdm_result rdm_recording_append_all(rdm_recording* r, const rdm_recording* other) {
+  return change(r, [&](Recording& x) {
+    need_handle(other);
+    x.append_all(*other->recording);
+  });
+}
+
+rdm_result rdm_recording_filter(rdm_recording* r, int32_t need_success, const double* max_cost,
+                                int64_t* dropped) {
+  return change(r, [&](Recording& x) {
+    if (need_success != 0 && need_success != 1)
+      fail(Code::kRange, "need_success: %d is not 0 or 1", need_success);
+    for (int32_t k = 0; max_cost && k < x.spec().cost_dim; ++k)
+      if (std::isnan(max_cost[k])) fail(Code::kArgument, "max_cost[%d] is not a number", k);
+    const int64_t count = x.filter(need_success != 0, max_cost);
+    if (dropped) *dropped = count;
+  });
+}
+
+rdm_result rdm_recording_clear(rdm_recording* r) {
+  return change(r, [&](Recording& x) { x.clear(); });
+}
+
+rdm_result rdm_recording_save_file(const rdm_recording* r, const char* path) {
+  return call(nullptr, [&] {
+    need_handle(r);
+    need(path, "path");
+    const HostScope scope(r->hooks);
+    Vector<unsigned char> file;
+    r->recording->write(file);
+    write_file(path, file.data(), file.size());
+  });
+}
+
+rdm_result rdm_recording_load_file(rdm_recording** out, const char* path) {
+  return call(nullptr, [&] {
+    need(out, "out");
+    need(path, "path");
+    const HostHooks hooks = host();
+    const auto file = read_file(path, {{"PK\x03\x04", 4}, 0, kLongestFile});
+    open_handle(out, hooks, [&] { return Recording::read(file.data(), file.size(), hooks); });
+  });
+}
+
+#if RDM_WITH_SIM
+rdm_result rdm_recording_config_for_pool(rdm_recording_config* c, const rdm_pool* p) {
+  return call_with(c, text_of(p), [&] {
+    need_handle(p);
+    auto config = read_struct(c, sizeof(rdm_recording_config), default_config(), "config");
+    const Pool& pool = *p->pool;
+    config.obs_dim = pool.obs_dim();
+    config.action_dim = pool.task().action_dim();
+    config.cost_dim = pool.cost_dim();
+    config.task = task_at(pool.task_index()).name;
+    config.layout_hash = layout_hash(pool.task());
+    config.state_bytes = pool.state_size(0);
+    write_struct(c, config, sizeof(rdm_recording_config), "config");
+  });
+}
+
+namespace {
+
+void check_match(const RecordingSpec& r, const Pool& p) {
+  const auto same = [](int32_t recording, int32_t pool, const char* what) {
+    if (recording != pool)
+      fail(Code::kArgument, "%s: the recording has %d, the pool %d", what, recording, pool);
+  };
+  same(r.obs_dim, p.obs_dim(), "obs_dim");
+  same(r.action_dim, p.task().action_dim(), "action_dim");
+  same(r.cost_dim, p.cost_dim(), "cost_dim");
+  if (r.layout_hash && r.layout_hash != layout_hash(p.task()))
+    fail(Code::kArgument, "layout_hash: the recording's differs from the pool's");
+}
+
+void check_rows(const char* name, const float* x, int32_t env, size_t width) {
+  for (size_t j = 0; x && j < width; ++j)
+    if (!std::isfinite(x[static_cast<size_t>(env) * width + j]))
+      fail(Code::kArgument, "%s: row %d is not finite", name, env);
+}
+
+// What a step of the pool would only reset gets no row.
+bool resets(const Pool& p, int32_t env) {
+  const Buffers& b = p.buffers();
+  return p.config().autoreset == Autoreset::kNextStep && (b.terminated[env] || b.truncated[env]);
+}
+
+}  // namespace
+
+rdm_result rdm_recording_begin_step(rdm_recording* r, const rdm_pool* p, const float* label,
+                                    const uint8_t* mask) {
+  return change(r, [&](Recording& x) {
+    need_handle(p);
+    const Pool& pool = *p->pool;
+    check_match(x.spec(), pool);
+    const Buffers& b = pool.buffers();
+    const int32_t n = pool.config().num_envs;
+    const auto obs = static_cast<size_t>(x.spec().obs_dim),
+               actions = static_cast<size_t>(x.spec().action_dim);
+    const auto taken = [&](int32_t i) { return (!mask || mask[i]) && !resets(pool, i); };
+    for (int32_t i = 0; i < n; ++i) {
+      if (!taken(i)) continue;
+      check_rows("action", b.action, i, actions);
+      check_rows("label", label, i, actions);
+      if (const size_t size = x.spec().state_bytes ? pool.state_size(i) : 0; size != x.spec().state_bytes)
+        fail(Code::kArgument, "state_bytes: the recording has %zu, world %d %zu", x.spec().state_bytes, i,
+             size);
+    }
+    x.make_room(p, n);
+    for (int32_t i = 0; i < n; ++i) {
+      if (!taken(i)) continue;
+      const auto row = static_cast<size_t>(i);
+      x.begin_row(i, b.obs + row * obs, b.action + row * actions, label ? label + row * actions : nullptr);
+      if (!x.state_due(i)) continue;
+      Writer out(x.add_state(i), x.spec().state_bytes);
+      pool.get_state(i, out);
+    }
+  });
+}
+
+rdm_result rdm_recording_end_step(rdm_recording* r, const rdm_pool* p, const uint8_t* mask) {
+  return change(r, [&](Recording& x) {
+    need_handle(p);
+    const Pool& pool = *p->pool;
+    if (!x.follows(p)) fail(Code::kState, "end_step: no begin_step of this pool came before");
+    const Buffers& b = pool.buffers();
+    const auto costs = static_cast<size_t>(x.spec().cost_dim);
+    for (int32_t i = 0; i < pool.config().num_envs; ++i)
+      if (!mask || mask[i])
+        x.end_row(i, b.reward[i], b.cost + static_cast<size_t>(i) * costs, b.terminated[i], b.truncated[i],
+                  b.success[i]);
+  });
+}
+
+rdm_result rdm_pool_set_starts(rdm_pool* p, const rdm_recording* r, double share) {
+  return call(text_of(p), [&] {
+    need_handle(p);
+    if (!r) return p->pool->set_starts(nullptr, 0, -1, 0, share);
+    need_handle(r);
+    const Recording& x = *r->recording;
+    check_match(x.spec(), *p->pool);
+    p->pool->set_starts(x.view().state, x.spec().state_bytes, x.num_states(), x.state_fingerprint(), share);
+  });
+}
+#endif
+
+#if RDM_WITH_LEARN
+namespace {
+
+DemoRows demo_rows(const Recording& x, const AgentConfig& a) {
+  const RecordingSpec& s = x.spec();
+  if (s.obs_dim != a.obs_dim || s.action_dim != a.action_dim)
+    fail(Code::kArgument, "recording: its rows have %d observations and %d actions, the agent's %d and %d",
+         s.obs_dim, s.action_dim, a.obs_dim, a.action_dim);
+  if (s.layout_hash && a.layout_hash && s.layout_hash != a.layout_hash)
+    fail(Code::kArgument, "recording: of another layout than the agent's");
+  if (x.rows() > INT32_MAX / 2)
+    fail(Code::kRange, "recording: %lld rows are more than 2^30", static_cast<long long>(x.rows()));
+  const RecordingRows v = x.view();
+  return {static_cast<int32_t>(v.rows), v.obs, v.label, v.episode};
+}
+
+}  // namespace
+
+rdm_result rdm_agent_clone(rdm_agent* a, const rdm_recording* r, const rdm_clone_config* how,
+                           rdm_clone_report* io) {
+  return call(text_of(a), [&] {
+    need_handle(a);
+    need_handle(r);
+    const auto in =
+        how ? read_struct(how, sizeof(rdm_clone_config), default_clone(), "how") : default_clone();
+    if (io) check_out(io, sizeof(rdm_clone_report), "io");
+    if (in.feed_normalizer != 0 && in.feed_normalizer != 1)
+      fail(Code::kRange, "how.feed_normalizer: %d is not 0 or 1", in.feed_normalizer);
+    CloneOptions o;
+    o.epochs = in.epochs;
+    o.batch_rows = in.batch_rows;
+    o.patience = in.patience;
+    o.learning_rate = in.learning_rate;
+    o.learning_rate_end = in.learning_rate_end;
+    o.validation = in.validation;
+    o.action_std = in.action_std;
+    o.seed = in.seed;
+    o.feed_normalizer = in.feed_normalizer != 0;
+    o.capacity = in.capacity;
+    o.train_loss = in.train_loss;
+    o.validation_loss = in.validation_loss;
+    const CloneReport report = a->agent->clone(demo_rows(*r->recording, a->agent->config()), o);
+    if (!io) return;
+    rdm_clone_report out{};
+    out.epochs = report.epochs;
+    out.best_epoch = report.best_epoch;
+    out.stopped = report.stopped;
+    out.train_rows = report.train_rows;
+    out.validation_rows = report.validation_rows;
+    out.train_loss = report.train_loss;
+    out.validation_loss = report.validation_loss;
+    write_struct(io, out, sizeof(rdm_clone_report), "io");
+  });
+}
+
+rdm_result rdm_agent_set_recording(rdm_agent* a, const rdm_recording* r) {
+  return call(text_of(a), [&] {
+    need_handle(a);
+    if (!r) return a->agent->set_recording({}, 0);
+    need_handle(r);
+    a->agent->set_recording(demo_rows(*r->recording, a->agent->config()), r->recording->fingerprint());
+  });
+}
+#endif

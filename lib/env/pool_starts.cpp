@@ -1,0 +1,74 @@
+// Episodes that begin at the states of a recording.
+//
+// The reset comes first, with all that it draws, so that other episodes are what they are without; then the
+// world, the task's struct, the disturbances' memory and the observation become those of the record. Streams
+// stay the world's own, and its sums begin at 0; the step is the record's, so the episode has what is left.
+#include <cstring>
+
+#include "base/bytes.hpp"
+#include "env/pool_internal.hpp"
+
+namespace rdm {
+
+void Pool::set_starts(const unsigned char* states, size_t state_bytes, int64_t count, uint64_t mark,
+                      double share) {
+  const FpMode mode;
+  Impl& m = *impl_;
+  const HostScope scope(m.config.hooks);
+  if (!(share >= 0 && share <= 1)) fail(Code::kRange, "share: %g is outside [0, 1]", share);
+  if (share > 0 && (count < 0 ? m.starts.count : count) == 0)
+    fail(Code::kArgument, "share: %g, but there are no states to begin at", share);
+  if (count < 0) {
+    m.starts.share = share;
+    return;
+  }
+  Starts next;
+  next.count = count, next.mark = mark, next.share = share;
+  Writer need(nullptr, 0);
+  m.write_world(0, need);
+  Vector<unsigned char> backup(need.size());
+  Writer keep(backup.data(), backup.size());
+  m.write_world(0, keep);
+  const auto restore = [&] {
+    Reader old(backup.data(), backup.size(), "state");
+    m.read_world(0, old);
+  };
+  int64_t i = 0;
+  try {
+    for (; i < count; ++i) {
+      Reader in(states + static_cast<size_t>(i) * state_bytes, state_bytes, "state");
+      m.open_state(in, 1);
+      const size_t size = in.left();
+      if (i == 0) next.record_bytes = size, next.records.reserve(static_cast<size_t>(count) * size);
+      if (size != next.record_bytes) fail(Code::kFormat, "state: its record has another length");
+      const unsigned char* record = in.view(size);
+      Reader world(record, size, "state");
+      m.read_world(0, world);
+      m.check_world(0);
+      if (m.slots[0].episode.phase != Phase::kRunning) fail(Code::kFormat, "state: of no running episode");
+      next.records.insert(next.records.end(), record, record + size);
+    }
+  } catch (const Error& e) {
+    restore();
+    fail(e.code, "state %lld of the recording: %s", static_cast<long long>(i), e.text);
+  } catch (...) {
+    restore();
+    throw;
+  }
+  restore();
+  m.starts = std::move(next);
+}
+
+void Pool::Impl::begin_at_start(int32_t env) {
+  Slot& s = slots[env];
+  if (!(s.start.uniform() < starts.share)) return;
+  const size_t at = s.start.below(static_cast<uint32_t>(starts.count));
+  Reader in(starts.records.data() + at * starts.record_bytes, starts.record_bytes, "state");
+  const Episode own = s.episode;
+  read_world(env, in, true);
+  const int32_t step = s.episode.step;
+  s.episode = own;
+  s.episode.step = step;
+}
+
+}  // namespace rdm
