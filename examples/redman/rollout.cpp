@@ -1,4 +1,5 @@
 // `rollout`: plays episodes and writes what happened, control step by control step.
+#include <algorithm>
 #include <memory>
 
 #include "commands.hpp"
@@ -8,6 +9,7 @@
 #include "play/episodes.hpp"
 #include "record/recorder.hpp"
 #include "record/recording.hpp"
+#include "teach/noise.hpp"
 
 namespace tool {
 namespace {
@@ -18,6 +20,7 @@ struct RolloutFlags {
   std::vector<std::string> sets;
   int32_t episodes = 1;
   bool states = false;  // in the record
+  double noise = 0;     // mean deviation of what is added to actions
   bool task_given = false, envs_given = false, seed_given = false, episodes_given = false;
 };
 
@@ -84,13 +87,27 @@ Report run_rollout(RolloutFlags flags) {
   std::unique_ptr<Recorder> recorder;
   if (!flags.out.empty()) table = std::make_unique<StepTable>(pool, episodes);
   if (!flags.record.empty())
-    recorder = std::make_unique<Recorder>(flags.record, pool, episodes, flags.states);
+    recorder = std::make_unique<Recorder>(flags.record, pool, episodes, flags.states, flags.noise > 0);
+  const size_t width = pool.action().width();
+  std::vector<float> meant(pool.num_envs() * width);  // a policy's is held for several steps, noise is not
   const auto after = [&](size_t env, size_t episode) {
+    if (flags.noise > 0) std::copy_n(meant.data() + env * width, width, pool.action()[env].begin());
     if (table) table->add(pool, env, episode);
     if (recorder) recorder->after(env, episode);
   };
-  StepObserver before;
-  if (recorder) before = [&](size_t env, size_t episode) { recorder->before(env, episode); };
+  ActionNoise noise(pool.num_envs(), width, flags.noise, flags.pool.seed);
+  StepObserver before = [&](size_t env, size_t episode) {
+    if (recorder) recorder->label(env);
+    if (flags.noise > 0) {
+      noise.draw(env);
+      std::copy_n(pool.action()[env].begin(), width, meant.data() + env * width);
+      for (size_t j = 0; j < width; ++j) {
+        float& a = pool.action()[env][j];
+        a = std::clamp(a + noise.row(env)[j], -1.0f, 1.0f);
+      }
+    }
+    if (recorder) recorder->before(env, episode);
+  };
   pool.reset();
   const auto limits = cost_limits(pool, {});
   const Summary s = summarise(play_episodes(pool, actor, episodes, after, before), limits);
@@ -141,6 +158,10 @@ void add_rollout(CLI::App& app, Run& run) {
       "all of every step: arrays of numpy (.npz), which --policy plays again, or named columns (.csv)");
   command->add_flag("--record-states", flags->states, "the worlds' state before each step too")
       ->needs(record);
+  command
+      ->add_option("--noise", flags->noise,
+                   "mean deviation of noise on the actions; a record keeps them without it too, as label")
+      ->check(CLI::Range(0.0, 10.0));
   add_set_flag(*command, flags->sets);
   command->callback([&run, flags, task, episodes, command] {
     flags->task_given = task->count() > 0;

@@ -15,7 +15,8 @@ struct TrainFlags {
   RunSettings run;
   double steps = 1e6;
   std::vector<std::string> sets;
-  std::string out, resume;
+  std::string out, resume, start_share = "0";
+  bool teach_given = false;
   bool steps_given = false, threads_given = false, others_given = false, overwrite = false;
 };
 
@@ -36,11 +37,33 @@ int64_t whole_steps(double steps) {
   return static_cast<int64_t>(steps);
 }
 
+// "0.7" or "0.7..0".
+void parse_shares(const std::string& text, TeachSettings& teach) {
+  const size_t dots = text.find("..");
+  const auto share = [&](const std::string& part) {
+    char* end = nullptr;
+    const double v = std::strtod(part.c_str(), &end);
+    if (part.empty() || *end || !(v >= 0 && v <= 1))
+      throw Usage("--start-share " + text + ": not a share of 0 to 1, or two as 0.7..0");
+    return v;
+  };
+  teach.start_share = share(text.substr(0, dots));
+  teach.start_share_end = dots == std::string::npos ? teach.start_share : share(text.substr(dots + 2));
+}
+
 Trainer begin(TrainFlags flags) {
   RunSettings& run = flags.run;
   take_limit_from_sets(flags.sets, run.limits);
   apply_sets(flags.sets, run.pool, &run.agent);
   run.steps = whole_steps(flags.steps);
+  if (run.teach.asked()) {
+    parse_shares(flags.start_share, run.teach);
+    adopt_teacher(run.teach, true, flags.sets, run.pool);
+    const Options options = taught_options(run.teach);
+    run.agent.options.insert(run.agent.options.begin(), options.begin(), options.end());
+  } else if (flags.teach_given) {
+    throw Usage("flags of a teacher without --from");
+  }
   run.own = own_files(task_at(find_task(run.pool.task)).name);
   Trainer trainer(run);  // a wrong value throws here or below, before there is a folder
   trainer.prepare();
@@ -76,21 +99,28 @@ Report run_train(const TrainFlags& flags) {
   const Summary& s = e.summary;
   const bool safe = feasible(s, e.limits);
   const double cost = s.cost_mean.empty() ? 0 : s.cost_mean[0], limit = e.limits.empty() ? -1 : e.limits[0];
-  const Json json = {{"run", trainer.folder().path()},
-                     {"policy", trainer.folder().policy()},
-                     {"env_steps", trainer.env_steps()},
-                     {"wall_seconds", trainer.seconds()},
-                     {"steps_per_second", trainer.steps_per_second()},
-                     {"return", s.return_mean},
-                     {"cost", cost},
-                     {"cost_stderr", s.cost_stderr},
-                     {"success_rate", s.success_rate},
-                     {"cost_limit", limit < 0 ? Json() : Json(limit)},
-                     {"cost_signal", e.magnitudes ? "raw" : "flag"},
-                     {"feasible", safe},
-                     {"fall_rate", s.fall_rate},
-                     {"length", s.length_mean},
-                     {"interrupted", trainer.interrupted()}};
+  Json json = {{"run", trainer.folder().path()},
+               {"policy", trainer.folder().policy()},
+               {"env_steps", trainer.env_steps()},
+               {"wall_seconds", trainer.seconds()},
+               {"steps_per_second", trainer.steps_per_second()},
+               {"return", s.return_mean},
+               {"cost", cost},
+               {"cost_stderr", s.cost_stderr},
+               {"success_rate", s.success_rate},
+               {"cost_limit", limit < 0 ? Json() : Json(limit)},
+               {"cost_signal", e.magnitudes ? "raw" : "flag"},
+               {"feasible", safe},
+               {"fall_rate", s.fall_rate},
+               {"length", s.length_mean},
+               {"interrupted", trainer.interrupted()}};
+  if (trainer.taught().cloned) {
+    const rdm_clone_report& c = trainer.taught().report;
+    json["clone"] = {{"rows", c.train_rows},
+                     {"epochs", c.epochs},
+                     {"loss", c.train_loss},
+                     {"validation_loss", c.validation_loss}};
+  }
   std::string text = format("run      %s\npolicy   %s\n", trainer.folder().path().c_str(),
                             trainer.folder().policy().c_str());
   text += format("steps    %lld in %.1f s, %.0f steps/s\n", static_cast<long long>(trainer.env_steps()),
@@ -103,6 +133,45 @@ Report run_train(const TrainFlags& flags) {
       limit < 0 ? "none" : number_text(limit).c_str(), safe ? "feasible" : "not feasible",
       100 * s.success_rate, 100 * s.fall_rate, s.length_mean);
   return {json, text};
+}
+
+}  // namespace
+
+namespace {
+
+std::vector<CLI::Option*> add_teach_flags(CLI::App& command, RunSettings& run, std::string& start_share) {
+  TeachSettings& t = run.teach;
+  command.add_option(
+      "--from", t.from,
+      "learn from this first: demo, a .demo or .npz file (clone it), a policy file or run folder "
+      "(begin with it)");
+  return {
+      command.add_option("--demo-decisions", t.decisions, "of the teacher, each world")
+          ->check(CLI::Range(1, 1 << 24)),
+      command.add_option("--noise", t.noise, "mean deviation of what is added to the teacher's actions")
+          ->check(CLI::Range(0.0, 10.0)),
+      command.add_flag("--success-only", t.success_only, "leave out episodes of the teacher without success"),
+      command.add_option("--clone-epochs", t.clone_epochs, "passes over the teacher's rows, at most")
+          ->check(CLI::Range(1, 100000)),
+      command
+          .add_option("--clone-patience", t.clone_patience,
+                      "passes without a better validation loss that end cloning; 0: none do")
+          ->check(CLI::Range(0, 100000)),
+      command.add_option("--clone-rate", t.clone_rate, "Adam's rate while cloning")
+          ->check(CLI::Range(0.0, 10.0)),
+      command.add_option("--validation", t.validation, "share of the rows held back")
+          ->check(CLI::Range(0.0, 0.9)),
+      command
+          .add_option(
+              "--dagger", t.dagger,
+              "rounds in which the student acts too and the teacher labels; a policy is a teacher then")
+          ->check(CLI::Range(0, 1000)),
+      command.add_option("--beta", t.beta, "the teacher's share of decisions in round k of those is beta^k")
+          ->check(CLI::Range(0.0, 1.0)),
+      command.add_option(
+          "--start-share", start_share,
+          "share of episodes that begin at a state of the recording: 0.7, or 0.7..0 over the run"),
+      command.add_option("--save-recording", run.save_recording, "file (.npz) for what the teacher showed")};
 }
 
 }  // namespace
@@ -134,8 +203,12 @@ void add_train(CLI::App& app, Run& run) {
       "--no-tensorboard", [&r](int64_t) { r.events = false; }, "no event file of the curve for TensorBoard"));
   others.push_back(
       command->add_flag("--overwrite", flags->overwrite, "begin again in a folder that holds a run"));
+  const std::vector<CLI::Option*> taught = add_teach_flags(*command, r, flags->start_share);
+  others.push_back(command->get_option("--from"));
+  others.insert(others.end(), taught.begin(), taught.end());
   command->add_option("--resume", flags->resume, "run folder to go on with, from its last checkpoint");
-  command->callback([&run, flags, threads, steps, others] {
+  command->callback([&run, flags, threads, steps, others, taught] {
+    for (const CLI::Option* o : taught) flags->teach_given |= o->count() > 0;
     flags->threads_given = threads->count() > 0;
     flags->steps_given = steps->count() > 0;
     for (const CLI::Option* o : others) flags->others_given |= o->count() > 0;

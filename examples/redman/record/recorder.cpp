@@ -81,7 +81,8 @@ void Recorder::add(const char* name, const char* help, const T* rows, std::vecto
   columns_.push_back({name, kType<T>, help, std::move(shape), rows, count * sizeof(T), before, of_episode});
 }
 
-Recorder::Recorder(const std::string& path, const redman::Pool& pool, size_t episodes, bool states)
+Recorder::Recorder(const std::string& path, const redman::Pool& pool, size_t episodes, bool states,
+                   bool labels)
     : pool_(pool),
       table_(ends_with(path, ".csv")),
       states_(states),
@@ -104,6 +105,8 @@ Recorder::Recorder(const std::string& path, const redman::Pool& pool, size_t epi
   add("env", "world that played it", env_.data(), {}, true);
   add("obs", "observation before the action", b.obs, {obs}, true);
   add("action", "as it was given, in [-1, 1]", b.action, {action}, true);
+  label_.resize(labels ? n * static_cast<size_t>(action) : 0);
+  if (labels) add("label", "the action before noise", label_.data(), {action}, true);
   add("reward", "of the step", b.reward, {}, false);
   add("cost", "of the step, by column", b.cost, {costs}, false);
   add("cost_raw", "the measured value behind each cost", b.cost_raw, {costs}, false);
@@ -130,6 +133,12 @@ void Recorder::take(size_t env, bool before, bool of_episode) {
     if (column.before != before || column.of_episode != of_episode) continue;
     waiting_[env][c].append(static_cast<const char*>(column.rows) + env * column.bytes, column.bytes);
   }
+}
+
+void Recorder::label(size_t env) {
+  if (!label_.empty())
+    std::copy(pool_.action()[env].begin(), pool_.action()[env].end(),
+              label_.data() + env * pool_.action().width());
 }
 
 void Recorder::before(size_t env, size_t episode) {
@@ -219,6 +228,10 @@ void Recorder::write_arrays(const RecordNote& note, uint64_t steps) {
   ZipWriter zip(file_);
   const std::string text = metadata(note, steps);
   write_array(zip, "metadata", text_shape(text), text_bytes(text));
+  // what rdm_recording_load_file wants to know
+  const std::string task = task_at(pool_.spec().task).name;
+  write_array(zip, "task", {"|S" + std::to_string(task.size()), {}}, task);
+  write_array(zip, "layout_hash", {"<u8", {}}, bytes_of(std::vector<uint64_t>{pool_.spec().layout_hash}));
   write_array(zip, "seed", {"<u8", {}}, bytes_of(std::vector<uint64_t>{note.seed}));
   std::vector<int64_t> begin;
   for (const Span& e : episodes_) begin.push_back(static_cast<int64_t>(e.first));
@@ -252,8 +265,8 @@ void Recorder::write_table() {
       }
     } else if (c.name == "cost" || c.name == "cost_raw") {
       for (const rdm_cost& cost : task_costs(pool_.spec().task)) out += ',' + cell(c.name + '.' + cost.name);
-    } else if (c.name == "action") {
-      for (uint64_t k = 0; k < c.shape[0]; ++k) out += format(",action[%" PRIu64 "]", k);
+    } else if (c.name == "action" || c.name == "label") {
+      for (uint64_t k = 0; k < c.shape[0]; ++k) out += ',' + c.name + format("[%" PRIu64 "]", k);
     } else {
       out += ',' + c.name;
     }

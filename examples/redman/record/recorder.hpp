@@ -24,7 +24,11 @@ class Recorder {
   // For the file of this name: named columns of text where it ends in .csv, else arrays of numpy (.npz).
   // `states`: the world's state before each step too. Failure when the file cannot be written. Borrows the
   // pool.
-  Recorder(const std::string& path, const redman::Pool& pool, size_t episodes, bool states);
+  // `labels`: the action before noise, as label() finds it.
+  Recorder(const std::string& path, const redman::Pool& pool, size_t episodes, bool states,
+           bool labels = false);
+
+  void label(size_t env);  // the actions that were meant stand in the pool
 
   void before(size_t env, size_t episode);  // the actions stand in the pool, the step is to come
   void after(size_t env, size_t episode);   // the step is done
@@ -60,6 +64,7 @@ class Recorder {
   ScratchFile scratch_;
   size_t state_bytes_ = 0;
   std::vector<int32_t> env_, episode_, step_;  // [num_envs]
+  std::vector<float> label_;                   // [num_envs][action_dim]
   std::vector<uint8_t> state_, start_;         // [num_envs][state_bytes]
   std::vector<Column> columns_;
   std::vector<std::vector<std::string>> waiting_;  // [num_envs][columns] of the episode that is played

@@ -49,6 +49,42 @@ Json values_json(const std::string& settings) {
 
 }  // namespace
 
+namespace {
+
+Json teach_json(const TeachSettings& t) {
+  return {{"from", t.from},
+          {"decisions", t.decisions},
+          {"noise", t.noise},
+          {"success_only", t.success_only},
+          {"clone_epochs", t.clone_epochs},
+          {"clone_patience", t.clone_patience},
+          {"clone_rate", t.clone_rate},
+          {"validation", t.validation},
+          {"dagger", t.dagger},
+          {"beta", t.beta},
+          {"start_share", t.start_share},
+          {"start_share_end", t.start_share_end}};
+}
+
+TeachSettings parse_teach(const Document& json) {
+  TeachSettings t;
+  t.from = text_at(json, "from");
+  t.decisions = static_cast<int32_t>(integer_at(json, "decisions", 1, 1 << 24));
+  t.noise = number_at(json, "noise", 0, 10);
+  t.success_only = flag_at(json, "success_only");
+  t.clone_epochs = static_cast<int32_t>(integer_at(json, "clone_epochs", 1, 100000));
+  t.clone_patience = static_cast<int32_t>(integer_at(json, "clone_patience", 0, 100000));
+  t.clone_rate = number_at(json, "clone_rate", 0, 10);
+  t.validation = number_at(json, "validation", 0, 0.9);
+  t.dagger = static_cast<int32_t>(integer_at(json, "dagger", 0, 1000));
+  t.beta = number_at(json, "beta", 0, 1);
+  t.start_share = number_at(json, "start_share", 0, 1);
+  t.start_share_end = number_at(json, "start_share_end", 0, 1);
+  return t;
+}
+
+}  // namespace
+
 std::string config_text(const RunSettings& s, const redman::Pool& pool, const redman::Agent& agent,
                         const std::vector<double>& limits, int64_t steps_per_epoch) {
   const int32_t task = pool.spec().task, algo = find_algo(s.agent.algo);
@@ -86,6 +122,7 @@ std::string config_text(const RunSettings& s, const redman::Pool& pool, const re
   if (!s.own.task.empty()) json["task_file"] = s.own.task;
   if (!s.own.robots.empty()) json["robot_files"] = s.own.robots;
   if (!s.own.objects.empty()) json["object_files"] = s.own.objects;
+  if (s.teach.asked()) json["teach_cfgs"] = teach_json(s.teach);
   std::string text = json_text(json, 2) + '\n';
   if (text.size() > kMostJsonBytes)
     throw Failure(format("a run's config.json has room for %zu bytes: its robots and task take %zu",
@@ -115,6 +152,7 @@ RunSettings parse_config(const char* text, size_t size) {
     const Document& files = object_at(json, key);
     for (const auto& [name, text] : files.items()) (*out)[name] = file_at(files, name);
   };
+  if (json.contains("teach_cfgs")) s.teach = parse_teach(object_at(json, "teach_cfgs"));
   texts("robot_files", &s.own.robots);
   texts("object_files", &s.own.objects);
   if (train.contains("tensorboard")) s.events = flag_at(train, "tensorboard");
@@ -132,7 +170,7 @@ RunLabel parse_label(const char* text, size_t size) {
 FlatConfig parse_flat_config(const char* text, size_t size) {
   const Document json = parse_json(text, size);
   FlatConfig out;
-  for (const char* part : {"train_cfgs", "algo_cfgs", "env_cfgs", "cost_limits"}) {
+  for (const char* part : {"train_cfgs", "algo_cfgs", "env_cfgs", "cost_limits", "teach_cfgs"}) {
     if (!json.contains(part)) continue;
     for (const auto& [key, value] : object_at(json, part).items())
       out[std::string(part) + '.' + key] = value.is_string()         ? value.get<std::string>()

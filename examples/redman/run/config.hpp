@@ -6,6 +6,7 @@
 
 #include "common/setup.hpp"
 #include "common/task_files.hpp"
+#include "teach/settings.hpp"
 
 namespace tool {
 
@@ -19,6 +20,8 @@ struct RunSettings {
   int32_t checkpoint_every = 10;    // epochs
   bool events = true;               // an event file for TensorBoard
   OwnFiles own;
+  TeachSettings teach;         // `from` "": nobody teaches
+  std::string save_recording;  // file for what the teacher showed, "": none; not kept
 };
 
 // The text of the file. `pool` and `agent` say what the options came to; limits [cost_dim].

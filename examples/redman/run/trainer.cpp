@@ -96,8 +96,34 @@ Trainer::Trainer(RunSettings settings)
 }
 
 void Trainer::prepare() {
+  learn_from_teacher();
   pool_.reset();
   plan_schedule();
+}
+
+// The same each time, so that a run that goes on has what it needs of it.
+void Trainer::learn_from_teacher() {
+  taught_ = teach(settings_.teach, settings_.pool, agent_, static_cast<int32_t>(option("action_repeat")),
+                  settings_.save_recording);
+  const rdm_recording* recording = taught_.recording.get();
+  if (!recording) return;
+  if (wants_imitation()) redman::check(rdm_agent_set_recording(agent_.get(), recording));
+  if (settings_.teach.start_share > 0 || settings_.teach.start_share_end > 0)
+    as_usage(
+        [&] { redman::check(rdm_pool_set_starts(pool_.get(), recording, settings_.teach.start_share)); });
+}
+
+bool Trainer::wants_imitation() const {
+  return std::strtod(agent_option(agent_, settings_.agent.algo, "imitation").c_str(), nullptr) > 0;
+}
+
+// The share of starts goes from its first value to its last in step with the run.
+void Trainer::draw_starts() {
+  const TeachSettings& t = settings_.teach;
+  if (!taught_.recording || !(t.start_share > 0 || t.start_share_end > 0)) return;
+  const double done = std::min(1.0, static_cast<double>(env_steps_) / static_cast<double>(settings_.steps));
+  redman::check(
+      rdm_pool_set_starts(pool_.get(), nullptr, t.start_share + done * (t.start_share_end - t.start_share)));
 }
 
 void Trainer::begin(RunFolder folder) {
@@ -114,16 +140,19 @@ void Trainer::resume(RunFolder folder) {
     return begin(std::move(folder));
   }
   folder_.emplace(std::move(folder));
+  const TeachSettings& t = settings_.teach;
+  if (t.asked() && (wants_imitation() || t.start_share > 0 || t.start_share_end > 0)) learn_from_teacher();
   restore();
   plan_schedule();
   folder_->cut_progress(progress_bytes_, settings_.events);
   replace_file(folder_->config(), config_text(settings_, pool_, agent_, limits_, steps_per_epoch()));
 }
 
+int64_t Trainer::option(const char* key) const {
+  return std::strtoll(agent_option(agent_, settings_.agent.algo, key).c_str(), nullptr, 10);
+}
+
 int64_t Trainer::steps_per_epoch() const {
-  const auto option = [&](const char* key) {
-    return std::strtoll(agent_option(agent_, settings_.agent.algo, key).c_str(), nullptr, 10);
-  };
   return settings_.pool.envs * option("horizon") * option("action_repeat");
 }
 
@@ -189,6 +218,7 @@ Score Trainer::evaluate(const redman::Bytes& policy, LastEvaluation* last) {
 void Trainer::train_epoch(Meter& meter) {
   auto clock = Clock::now();
   const auto begin = clock;
+  draw_starts();
   const rdm_epoch e = agent_.rollout(pool_);
   EpochTimes times;
   times.epoch = since(clock);

@@ -7,6 +7,7 @@
 #include "run/meter.hpp"
 #include "run/note.hpp"
 #include "run/progress.hpp"
+#include "teach/teacher.hpp"
 
 namespace tool {
 
@@ -32,12 +33,17 @@ class Trainer {
   int64_t env_steps() const { return env_steps_; }
   bool interrupted() const { return interrupted_; }
   double seconds() const { return seconds_; }  // of this process, evaluations included
-  double steps_per_second() const;             // of this process, collecting and learning
+  const Taught& taught() const { return taught_; }
+  double steps_per_second() const;  // of this process, collecting and learning
 
  private:
   void restore();
   void plan_schedule();
-  int64_t steps_per_epoch() const;  // at most: worlds rest from an episode's end to the next decision
+  void learn_from_teacher();
+  void draw_starts();
+  bool wants_imitation() const;
+  int64_t option(const char* key) const;  // of the agent, as it stands
+  int64_t steps_per_epoch() const;        // at most: worlds rest from an episode's end to the next decision
   void train_epoch(Meter& meter);
   void train_to_the_end(Meter& meter);
   Score evaluate(const redman::Bytes& policy, LastEvaluation* last);
@@ -64,6 +70,7 @@ class Trainer {
   int64_t own_steps_ = 0;
   double own_seconds_ = 0, seconds_ = 0;
   bool interrupted_ = false;
+  Taught taught_;
 };
 
 }  // namespace tool

@@ -1,0 +1,38 @@
+#include "teach/noise.hpp"
+
+#include <cmath>
+
+namespace tool {
+namespace {
+
+uint64_t mixed(uint64_t x) {
+  x += 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+}  // namespace
+
+ActionNoise::ActionNoise(size_t worlds, size_t width, double mean, uint64_t seed)
+    : width_(width), counter_(mixed(seed)), noise_(worlds * width) {
+  for (size_t i = 0; i < worlds; ++i) {
+    const double u = uniform();
+    deviation_.push_back(i % 4 == 0 ? 0 : 2 * mean * u);
+  }
+}
+
+double ActionNoise::uniform() {
+  return static_cast<double>(mixed(counter_++) >> 11) * 0x1p-53;
+}
+
+// By Box and Muller; the library's own distributions would differ between compilers.
+void ActionNoise::draw(size_t world) {
+  for (size_t j = 0; j < width_; ++j) {
+    const double radius = std::sqrt(-2 * std::log(1 - uniform())),
+                 angle = 2 * 3.14159265358979323846 * uniform();
+    noise_[world * width_ + j] = static_cast<float>(deviation_[world] * radius * std::cos(angle));
+  }
+}
+
+}  // namespace tool

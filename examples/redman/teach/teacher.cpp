@@ -1,0 +1,219 @@
+#include "teach/teacher.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "common/names.hpp"
+#include "common/text.hpp"
+#include "teach/noise.hpp"
+
+namespace tool {
+namespace {
+
+constexpr uint64_t kTeachSeed = 3000000;   // the teacher's worlds draw from seed + this + the round
+constexpr double kPolicySamples = 100000;  // that a policy's statistics of observations count for
+
+bool is_file(const std::string& word) {
+  return word.size() > 4 && same_name(word.substr(word.size() - 4), ".npz");
+}
+
+RecordingHandle open_recording(const std::string& path) {
+  rdm_recording* r = nullptr;
+  if (rdm_recording_load_file(&r, path.c_str()) != RDM_OK) throw Failure(path + ": " + rdm_last_error());
+  return RecordingHandle(r);
+}
+
+RecordingHandle new_recording(const redman::Pool& pool, int64_t rows) {
+  rdm_recording_config c;
+  redman::check(rdm_recording_config_init(&c, sizeof c));
+  redman::check(rdm_recording_config_for_pool(&c, pool.get()));
+  c.capacity = rows;
+  return RecordingHandle(redman::made(rdm_recording_create, static_cast<const rdm_recording_config*>(&c)));
+}
+
+// What episodes of a round came to.
+struct RoundMeans {
+  double ret = 0, cost = 0;
+  int32_t episodes = 0, successes = 0;
+};
+
+// The teacher, and in the rounds of DAgger the student, in worlds that only they see.
+class Lesson {
+ public:
+  Lesson(const TeachSettings& settings, const PoolSettings& pool, const ActorChoice& teacher, int32_t repeat,
+         uint64_t seed)
+      : settings_(settings),
+        pool_(make_pool(pool, RDM_AUTORESET_SAME_STEP)),
+        teacher_(teacher, pool_),
+        noise_(pool_.num_envs(), pool_.action().width(), settings.noise, seed),
+        steps_(std::max(1, repeat / pool_.spec().action_repeat)),
+        live_(pool_.num_envs()),
+        over_(pool_.num_envs()),
+        won_(pool_.num_envs(), 0),
+        meant_(pool_.num_envs() * pool_.action().width(), 0) {
+    redman::check(rdm_pool_reset(pool_.get(), nullptr, nullptr));
+    teacher_.restart();
+  }
+  redman::Pool& pool() { return pool_; }
+
+  // A decision of each world: the teacher's with noise, with probability beta, else the student's mean.
+  void decide(rdm_recording* recording, const redman::Policy* student, double beta, RoundMeans* means) {
+    const size_t n = pool_.num_envs(), width = pool_.action().width();
+    std::vector<float> label(n * width), held(n * width);
+    std::fill(live_.begin(), live_.end(), 1);
+    for (int32_t k = 0; k < steps_; ++k) {
+      // its clock goes on, whoever acts; and it may hold what it meant before
+      std::copy_n(meant_.data(), n * width, pool_.action().data());
+      teacher_.act(pool_, live_.data());
+      std::copy_n(pool_.action().data(), n * width, meant_.data());
+      if (k == 0) {
+        label = meant_;
+        choose(label, student, beta, held);
+      }
+      std::copy_n(held.data(), n * width, pool_.action().data());
+      if (k == 0) redman::check(rdm_recording_begin_step(recording, pool_.get(), label.data(), nullptr));
+      pool_.step(live_.data());
+      redman::check(rdm_recording_end_step(recording, pool_.get(), live_.data()));
+      for (size_t i = 0; i < n; ++i) count(i, means);
+    }
+    for (size_t i = 0; i < n; ++i) over_[i] = !live_[i];
+    teacher_.restart(over_.data());
+  }
+
+ private:
+  void choose(const std::vector<float>& label, const redman::Policy* student, double beta,
+              std::vector<float>& held) {
+    const size_t n = pool_.num_envs(), width = pool_.action().width();
+    if (student) student->act(pool_.obs().data(), static_cast<int32_t>(n), nullptr, held.data());
+    for (size_t i = 0; i < n; ++i) {
+      noise_.draw(i);
+      const bool taught = !student || noise_.uniform() < beta;
+      for (size_t j = 0; taught && j < width; ++j) held[i * width + j] = label[i * width + j];
+      for (size_t j = 0; j < width; ++j) {
+        float& a = held[i * width + j];
+        a = std::clamp(a + noise_.row(i)[j], -1.0f, 1.0f);
+      }
+    }
+  }
+  void count(size_t i, RoundMeans* means) {
+    if (!live_[i]) return;
+    won_[i] |= pool_.success()[i];
+    if (!pool_.terminated()[i] && !pool_.truncated()[i]) return;
+    live_[i] = 0;
+    means->ret += static_cast<double>(pool_.episode_return()[i]);
+    if (pool_.episode_cost().width() > 0) means->cost += static_cast<double>(pool_.episode_cost()[i][0]);
+    means->successes += won_[i];
+    ++means->episodes;
+    won_[i] = 0;
+  }
+
+  const TeachSettings& settings_;
+  redman::Pool pool_;
+  Actor teacher_;
+  ActionNoise noise_;
+  int32_t steps_;
+  std::vector<uint8_t> live_, over_, won_;
+  std::vector<float> meant_;  // [num_envs][action_dim] the teacher's last actions
+};
+
+rdm_clone_report clone(const TeachSettings& s, redman::Agent& agent, const rdm_recording* recording,
+                       uint64_t seed) {
+  rdm_clone_config how;
+  redman::check(rdm_clone_config_init(&how, sizeof how));
+  how.epochs = s.clone_epochs;
+  how.patience = s.clone_patience;
+  how.learning_rate = s.clone_rate;
+  how.learning_rate_end = s.clone_rate / 100;
+  how.validation = s.validation;
+  how.seed = seed;
+  auto report = redman::sized<rdm_clone_report>();
+  as_usage([&] { redman::check(rdm_agent_clone(agent.get(), recording, &how, &report)); });
+  std::fprintf(stderr, "cloned %lld rows in %d epochs: loss %.5f, held back %.5f\n",
+               static_cast<long long>(report.train_rows), report.epochs, report.train_loss,
+               report.validation_loss);
+  return report;
+}
+
+// Rows of episodes without success go.
+void drop_failures(rdm_recording* recording) {
+  int64_t dropped = 0;
+  redman::check(rdm_recording_filter(recording, 1, nullptr, &dropped));
+  auto info = redman::sized<rdm_recording_info>();
+  redman::check(rdm_recording_get_info(recording, &info));
+  if (info.rows == 0) throw Failure("--success-only: no episode of the teacher's succeeded");
+}
+
+void load_policy(const std::string& word, const redman::Pool& pool, redman::Agent& agent) {
+  const ActorChoice choice = choose_actor(word);
+  const redman::Policy policy(choice.file.c_str());
+  policy.check_fits(pool.spec());
+  if (rdm_agent_load_policy(agent.get(), policy.get(), kPolicySamples) != RDM_OK)
+    throw Failure("--from " + word + ": " + rdm_agent_error(agent.get()));
+}
+
+}  // namespace
+
+Options taught_options(const TeachSettings& s) {
+  if (!s.asked()) return {};
+  return {{"init_std", "0.03"},  {"learning_rate", "1e-9"}, {"critic_learning_rate", "1e-3"},
+          {"lr_schedule", "kl"}, {"kl_target", "0.02"},     {"lr_min", "1e-9"},
+          {"warm_epochs", "10"}};
+}
+
+void adopt_teacher(const TeachSettings& s, bool task_given, const std::vector<std::string>& sets,
+                   PoolSettings& pool) {
+  if (!s.asked() || is_file(s.from)) return;
+  adopt_task(choose_actor(s.from), task_given, sets, pool);
+  pool.magnitudes = false;
+}
+
+Taught teach(const TeachSettings& s, const PoolSettings& settings, redman::Agent& agent, int32_t repeat,
+             const std::string& save) {
+  Taught out;
+  if (!s.asked()) return out;
+  if (is_file(s.from)) {
+    out.recording = open_recording(s.from);
+    if (s.success_only) drop_failures(out.recording.get());
+    out.report = clone(s, agent, out.recording.get(), settings.seed);
+    out.cloned = true;
+    return out;
+  }
+  const ActorChoice teacher = choose_actor(s.from);
+  if (teacher.baseline >= 0) throw Usage("--from " + s.from + ": nothing is to be learned from that");
+  if (!teacher.demo && s.dagger == 0) {
+    load_policy(s.from, make_pool(settings, RDM_AUTORESET_OFF), agent);
+    std::fprintf(stderr, "begins with the policy %s\n", printable(s.from).c_str());
+    return out;
+  }
+  for (int32_t round = 0; round <= s.dagger; ++round) {
+    const uint64_t seed = settings.seed + kTeachSeed + static_cast<uint64_t>(round);
+    PoolSettings own = settings;
+    own.seed = seed;
+    Lesson lesson(s, own, teacher, repeat, seed);
+    const int64_t rows = int64_t{settings.envs} * s.decisions;
+    RecordingHandle fresh = new_recording(lesson.pool(), rows);
+    const redman::Bytes bytes = round > 0 ? agent.policy() : redman::Bytes();
+    const std::unique_ptr<redman::Policy> student =
+        round > 0 ? std::make_unique<redman::Policy>(bytes) : nullptr;
+    RoundMeans means;
+    for (int32_t d = 0; d < s.decisions; ++d)
+      lesson.decide(fresh.get(), student.get(), std::pow(s.beta, round), &means);
+    const double n = std::max(1, means.episodes);
+    std::fprintf(stderr, "%s: %d episodes, return %.1f, cost %.2f, success %.0f%%\n",
+                 round ? format("DAgger round %d", round).c_str() : "teacher", means.episodes, means.ret / n,
+                 means.cost / n, 100 * means.successes / n);
+    if (s.success_only) drop_failures(fresh.get());
+    if (round == 0)
+      out.recording = std::move(fresh);
+    else
+      redman::check(rdm_recording_append_all(out.recording.get(), fresh.get()));
+    out.report = clone(s, agent, out.recording.get(), settings.seed + static_cast<uint64_t>(round));
+  }
+  out.cloned = true;
+  if (!save.empty() && rdm_recording_save_file(out.recording.get(), save.c_str()) != RDM_OK)
+    throw Failure("--save-recording: " + std::string(rdm_last_error()));
+  return out;
+}
+
+}  // namespace tool

@@ -1,0 +1,42 @@
+// Learning from a teacher before learning from rewards: what `train --from` does.
+//
+// A teacher (a demonstration's script, or a policy) acts in worlds of its own. Its actions are carried out
+// with noise, which takes the worlds off its path, while the labels stay clean: so the clone sees how to come
+// back. The student's actor is fitted to the labels; with rounds of DAgger (Ross et al. 2011) the student
+// then acts for a growing share of decisions, the teacher labels what it finds, and the student is fitted to
+// all of it again.
+#pragma once
+#ifndef RDM_EXPERIMENTAL
+#define RDM_EXPERIMENTAL
+#endif
+#include <redman/redman.h>
+
+#include "play/actor.hpp"
+#include "teach/settings.hpp"
+
+namespace tool {
+
+using RecordingHandle = redman::Handle<rdm_recording, rdm_recording_destroy>;
+
+// A recording, and what it was.
+struct Taught {
+  RecordingHandle recording;
+  rdm_clone_report report = redman::sized<rdm_clone_report>();
+  bool cloned = false;
+};
+
+// Options of the algorithm that keep what was taught: small deviations, critics first, an actor's rate that
+// climbs from next to nothing. To be laid under the user's own.
+Options taught_options(const TeachSettings& settings);
+
+// Fills the agent: by its teacher's labels, or where `from` is a policy and there are no rounds of DAgger, by
+// that policy itself. `repeat`: control steps of a decision of the agent. `save`: a file for the recording,
+// "": none. Progress goes to stderr.
+Taught teach(const TeachSettings& settings, const PoolSettings& pool, redman::Agent& agent, int32_t repeat,
+             const std::string& save);
+
+// What the task's options must be for the teacher, under those of the run.
+void adopt_teacher(const TeachSettings& settings, bool task_given, const std::vector<std::string>& sets,
+                   PoolSettings& pool);
+
+}  // namespace tool
