@@ -16,7 +16,7 @@ struct TrainFlags {
   double steps = 1e6;
   std::vector<std::string> sets;
   std::string out, resume, start_share = "0";
-  bool teach_given = false;
+  bool teach_given = false, task_given = false;
   bool steps_given = false, threads_given = false, others_given = false, overwrite = false;
 };
 
@@ -54,11 +54,13 @@ void parse_shares(const std::string& text, TeachSettings& teach) {
 Trainer begin(TrainFlags flags) {
   RunSettings& run = flags.run;
   take_limit_from_sets(flags.sets, run.limits);
+  if (run.teach.asked()) {
+    parse_shares(flags.start_share, run.teach);
+    adopt_teacher(run.teach, flags.task_given, flags.sets, run.pool);
+  }
   apply_sets(flags.sets, run.pool, &run.agent);
   run.steps = whole_steps(flags.steps);
   if (run.teach.asked()) {
-    parse_shares(flags.start_share, run.teach);
-    adopt_teacher(run.teach, true, flags.sets, run.pool);
     const Options options = taught_options(run.teach);
     run.agent.options.insert(run.agent.options.begin(), options.begin(), options.end());
   } else if (flags.teach_given) {
@@ -208,6 +210,7 @@ void add_train(CLI::App& app, Run& run) {
   others.insert(others.end(), taught.begin(), taught.end());
   command->add_option("--resume", flags->resume, "run folder to go on with, from its last checkpoint");
   command->callback([&run, flags, threads, steps, others, taught] {
+    flags->task_given = others.front()->count() > 0;
     for (const CLI::Option* o : taught) flags->teach_given |= o->count() > 0;
     flags->threads_given = threads->count() > 0;
     flags->steps_given = steps->count() > 0;

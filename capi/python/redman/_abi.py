@@ -2179,6 +2179,247 @@ class rdm_sensors(Structure):
     ]
 
 
+class rdm_recording_config(Structure):
+    """struct_size: bytes, set by rdm_recording_config_init
+    obs_dim: count, 1..16384, required
+    action_dim: count, 1..1024, required
+    cost_dim: count, 0..RDM_MAX_COSTS, default 0
+    task: kept in files, "" for a host's own environment; to 63 bytes, copied; default ""
+    layout_hash: kept in files; 0: unknown
+    state_bytes: of one world's state, to 2^30; 0: no states are kept; default 0
+    capacity: rows, 0..2^40, for which memory is taken at once; more grow; default 0
+    state_stride: begin_step keeps the state of every n-th row of an episode, 1..2^30, default 8
+    error_size: bytes of error, terminator included; what is longer is cut
+    error: [error_size] the text of a failing call that takes this config; NULL
+    host: hooks of this handle, copied; NULL: those of rdm_init
+    """
+
+    struct_size: int
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    task: bytes | None
+    layout_hash: int
+    state_bytes: int
+    capacity: int
+    state_stride: int
+    error_size: int
+    error: int | None
+    host: Any
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("obs_dim", c_int32),
+        ("action_dim", c_int32),
+        ("cost_dim", c_int32),
+        ("task", c_char_p),
+        ("layout_hash", c_uint64),
+        ("state_bytes", c_uint64),
+        ("capacity", c_int64),
+        ("state_stride", c_int32),
+        ("error_size", c_int32),
+        ("error", c_void_p),
+        ("host", POINTER(rdm_host)),
+    ]
+
+
+class RecordingInfo(Record):
+    """The values of rdm_recording_info."""
+
+    obs_dim: int  # count
+    action_dim: int  # count
+    cost_dim: int  # count
+    rows: int  # count
+    episodes: int  # count, those that have not ended too
+    num_states: int  # count
+    state_bytes: int  # of each
+    layout_hash: int  # 0: unknown
+    fingerprint: int  # of obs and label of all rows; what an agent that uses them is resumed by
+    task: str  # "" for a host's own environment
+
+
+class rdm_recording_info(Structure):
+    """struct_size: in: bytes
+    obs_dim: count
+    action_dim: count
+    cost_dim: count
+    rows: count
+    episodes: count, those that have not ended too
+    num_states: count
+    state_bytes: of each
+    layout_hash: 0: unknown
+    fingerprint: of obs and label of all rows; what an agent that uses them is resumed by
+    task: "" for a host's own environment
+    """
+
+    struct_size: int
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    rows: int
+    episodes: int
+    num_states: int
+    state_bytes: int
+    layout_hash: int
+    fingerprint: int
+    task: bytes | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("obs_dim", c_int32),
+        ("action_dim", c_int32),
+        ("cost_dim", c_int32),
+        ("rows", c_int64),
+        ("episodes", c_int64),
+        ("num_states", c_int64),
+        ("state_bytes", c_uint64),
+        ("layout_hash", c_uint64),
+        ("fingerprint", c_uint64),
+        ("task", c_char_p),
+    ]
+
+
+class rdm_recording_rows(Structure):
+    """Rows in the order in which they came; those of an episode are in time, those of several may stand in turn.
+
+    struct_size: in: bytes
+    reserved: 0
+    rows: count
+    obs: [rows][obs_dim] before the action
+    action: [rows][action_dim] that was done
+    label: [rows][action_dim] that the teacher meant; to append, NULL: as action
+    reward: [rows] to append, NULL: 0
+    cost: [rows][cost_dim] to append, NULL: 0
+    terminated: [rows] to append, NULL: none
+    truncated: [rows] to append, NULL: none
+    success: [rows] to append, NULL: none
+    episode: [rows] number of its episode from 0; to append, NULL: each end begins one
+    num_states: count
+    state_row: [num_states] row before which the world had the state, ascending
+    state: [num_states][state_bytes] what rdm_pool_set_state takes
+    """
+
+    struct_size: int
+    reserved: int
+    rows: int
+    obs: int | None
+    action: int | None
+    label: int | None
+    reward: int | None
+    cost: int | None
+    terminated: int | None
+    truncated: int | None
+    success: int | None
+    episode: int | None
+    num_states: int
+    state_row: int | None
+    state: int | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("rows", c_int64),
+        ("obs", c_void_p),
+        ("action", c_void_p),
+        ("label", c_void_p),
+        ("reward", c_void_p),
+        ("cost", c_void_p),
+        ("terminated", c_void_p),
+        ("truncated", c_void_p),
+        ("success", c_void_p),
+        ("episode", c_void_p),
+        ("num_states", c_int64),
+        ("state_row", c_void_p),
+        ("state", c_void_p),
+    ]
+
+
+class rdm_clone_config(Structure):
+    """struct_size: bytes, set by rdm_clone_config_init
+    epochs: passes over the rows, at most, 1..100000, default 30
+    batch_rows: of a minibatch, 1..2^20, default 512
+    patience: epochs without a better validation loss that end it, 0: never; default 5
+    learning_rate: Adam's, in the first epoch, 0..10, default 1e-3
+    learning_rate_end: in the last, linear between, 0..10, default 1e-5
+    validation: share of the rows that are not learned from, whole episodes, 0..0.9, default 0.1
+    action_std: deviation of the actor's actions afterwards; 0: as it is; default 0
+    seed: of shuffling and of the choice for validation, default 0
+    feed_normalizer: flag: the statistics of observations become the recording's first, default 1
+    capacity: entries of the two below
+    train_loss: [capacity] of each epoch, mean squared error of an entry; NULL: not wanted
+    validation_loss: [capacity] likewise, after it
+    """
+
+    struct_size: int
+    epochs: int
+    batch_rows: int
+    patience: int
+    learning_rate: float
+    learning_rate_end: float
+    validation: float
+    action_std: float
+    seed: int
+    feed_normalizer: int
+    capacity: int
+    train_loss: int | None
+    validation_loss: int | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("epochs", c_int32),
+        ("batch_rows", c_int32),
+        ("patience", c_int32),
+        ("learning_rate", c_double),
+        ("learning_rate_end", c_double),
+        ("validation", c_double),
+        ("action_std", c_double),
+        ("seed", c_uint64),
+        ("feed_normalizer", c_int32),
+        ("capacity", c_int32),
+        ("train_loss", c_void_p),
+        ("validation_loss", c_void_p),
+    ]
+
+
+class CloneReport(Record):
+    """The values of rdm_clone_report."""
+
+    epochs: int  # that were run
+    best_epoch: int  # from 1: whose weights were kept; without validation the last one's
+    stopped: int  # flag: it ended early
+    train_rows: int  # count
+    validation_rows: int  # count
+    train_loss: float  # of the best epoch, mean squared error of an entry
+    validation_loss: float  # likewise, 0 without validation
+
+
+class rdm_clone_report(Structure):
+    """struct_size: in: bytes
+    epochs: that were run
+    best_epoch: from 1: whose weights were kept; without validation the last one's
+    stopped: flag: it ended early
+    train_rows: count
+    validation_rows: count
+    train_loss: of the best epoch, mean squared error of an entry
+    validation_loss: likewise, 0 without validation
+    """
+
+    struct_size: int
+    epochs: int
+    best_epoch: int
+    stopped: int
+    train_rows: int
+    validation_rows: int
+    train_loss: float
+    validation_loss: float
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("epochs", c_int32),
+        ("best_epoch", c_int32),
+        ("stopped", c_int32),
+        ("train_rows", c_int64),
+        ("validation_rows", c_int64),
+        ("train_loss", c_double),
+        ("validation_loss", c_double),
+    ]
+
+
 STRUCTS: dict[str, type[Structure]] = {
     "rdm_build": rdm_build,
     "rdm_host": rdm_host,
@@ -2225,6 +2466,11 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_map_info": rdm_map_info,
     "rdm_voxel": rdm_voxel,
     "rdm_sensors": rdm_sensors,
+    "rdm_recording_config": rdm_recording_config,
+    "rdm_recording_info": rdm_recording_info,
+    "rdm_recording_rows": rdm_recording_rows,
+    "rdm_clone_config": rdm_clone_config,
+    "rdm_clone_report": rdm_clone_report,
 }
 
 # The rows that fields of structs point at.
@@ -2285,6 +2531,23 @@ ROWS: dict[str, dict[str, Rows]] = {
         "point_shape": Rows("int32", ("num_envs", "num_points")),
         "point_count": Rows("int32", ("num_envs",)),
         "voxels": Rows("int8", ("num_envs", "num_voxels", "num_voxels", "num_voxels")),
+    },
+    "rdm_recording_rows": {
+        "obs": Rows("float32", ("rows", "obs_dim")),
+        "action": Rows("float32", ("rows", "action_dim")),
+        "label": Rows("float32", ("rows", "action_dim")),
+        "reward": Rows("float32", ("rows",)),
+        "cost": Rows("float32", ("rows", "cost_dim")),
+        "terminated": Rows("uint8", ("rows",)),
+        "truncated": Rows("uint8", ("rows",)),
+        "success": Rows("uint8", ("rows",)),
+        "episode": Rows("int64", ("rows",)),
+        "state_row": Rows("int64", ("num_states",)),
+        "state": Rows("uint8", ("num_states", "state_bytes")),
+    },
+    "rdm_clone_config": {
+        "train_loss": Rows("float64", ("capacity",)),
+        "validation_loss": Rows("float64", ("capacity",)),
     },
 }
 
@@ -3124,6 +3387,117 @@ FUNCTIONS: dict[str, Function] = {
         c_size_t, {"count": c_int32},
         {}, True,
         """bytes, at any address; 0: count is outside [1, 2^22]"""),
+    "rdm_recording_config_init": Function(
+        c_int32, {"c": POINTER(rdm_recording_config), "size": c_size_t},
+        {}, True,
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
+    "rdm_recording_config_for_pool": Function(
+        c_int32, {"c": POINTER(rdm_recording_config), "p": c_void_p},
+        {}, True,
+        """Sets dims, task, layout_hash and state_bytes from a pool. Pointers are borrowed from the pool."""),
+    "rdm_recording_create": Function(
+        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_recording_config)},
+        {}, True,
+        """empty"""),
+    "rdm_recording_destroy": Function(
+        None, {"r": c_void_p},
+        {}, True,
+        """NULL is fine"""),
+    "rdm_recording_error": Function(
+        c_char_p, {"r": c_void_p},
+        {}, True,
+        """Last failure of a call that may change it; "" at first. Of those that only read: rdm_last_error()."""),
+    "rdm_recording_get_info": Function(
+        c_int32, {"r": c_void_p, "io": POINTER(rdm_recording_info)},
+        {}, True,
+        """fills io"""),
+    "rdm_recording_get_rows": Function(
+        c_int32, {"r": c_void_p, "io": POINTER(rdm_recording_rows)},
+        {}, True,
+        """Borrowed pointers, until the next call that changes the recording."""),
+    "rdm_recording_append": Function(
+        c_int32, {"r": c_void_p, "rows": POINTER(rdm_recording_rows)},
+        {}, True,
+        """Adds rows of a host's own; their episodes are numbered behind those that are there. ARGUMENT for numbers that are not
+        finite, flags that are not 0 or 1, episodes or states out of order: nothing changes.
+        """),
+    "rdm_recording_append_all": Function(
+        c_int32, {"r": c_void_p, "other": c_void_p},
+        {}, True,
+        """Adds all of another one with the same dims, layout_hash and state_bytes."""),
+    "rdm_recording_begin_step": Function(
+        c_int32, {"r": c_void_p, "p": c_void_p, "label": c_void_p, "mask": c_void_p},
+        {"label": Rows("float32", ("num_envs", "action_dim")), "mask": Rows("uint8", ("num_envs",))}, True,
+        """Around rdm_pool_step, for worlds whose mask [num_envs] is not 0 (NULL: all): begin_step adds a row with the pool's obs and
+        action, and label [num_envs][action_dim] (NULL: as the action); actions and labels are cut to [-1, 1]. end_step adds the
+        step's reward, costs and flags to it; several steps between two begin_step make one row, of sums. A world that ended
+        begins an episode with its next row; one that a pool with next-step autoreset is about to reset gets none. A
+        recording follows one pool at a time: another one begins new episodes.
+        """),
+    "rdm_recording_end_step": Function(
+        c_int32, {"r": c_void_p, "p": c_void_p, "mask": c_void_p},
+        {"mask": Rows("uint8", ("num_envs",))}, True,
+        """Around rdm_pool_step, for worlds whose mask [num_envs] is not 0 (NULL: all): begin_step adds a row with the pool's obs and
+        action, and label [num_envs][action_dim] (NULL: as the action); actions and labels are cut to [-1, 1]. end_step adds the
+        step's reward, costs and flags to it; several steps between two begin_step make one row, of sums. A world that ended
+        begins an episode with its next row; one that a pool with next-step autoreset is about to reset gets none. A
+        recording follows one pool at a time: another one begins new episodes.
+        """),
+    "rdm_recording_filter": Function(
+        c_int32, {"r": c_void_p, "need_success": c_int32, "max_cost": c_void_p, "dropped": c_void_p},
+        {"max_cost": Rows("float64", ("cost_dim",))}, True,
+        """Drops whole episodes: with need_success 1 those without a success, those whose sum of a cost is above its
+        max_cost [cost_dim] (NULL, or a negative number: any). *dropped (may be NULL) says how many. The others are numbered anew;
+        episodes that still run are closed.
+        """),
+    "rdm_recording_clear": Function(
+        c_int32, {"r": c_void_p},
+        {}, True,
+        """no rows; memory stays"""),
+    "rdm_recording_save_file": Function(
+        c_int32, {"r": c_void_p, "path": c_char_p},
+        {}, True,
+        """A file of arrays, .npz, that numpy.load opens: obs, action, label, reward, cost, terminated, truncated, success, episode,
+        state_row, state; task, layout_hash, format. Replaced atomically.
+        """),
+    "rdm_recording_load_file": Function(
+        c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
+        {}, True,
+        """Makes one of such a file, also as numpy.savez writes it, or of one that `redman rollout --record` wrote. NOT_FOUND; FORMAT when a
+        checksum, a shape or a number is wrong, VERSION_MISMATCH for a newer one.
+        """),
+    "rdm_clone_config_init": Function(
+        c_int32, {"how": POINTER(rdm_clone_config), "size": c_size_t},
+        {}, True,
+        """defaults into the first `size` bytes"""),
+    "rdm_agent_clone": Function(
+        c_int32, {"a": c_void_p, "r": c_void_p, "how": POINTER(rdm_clone_config), "io": POINTER(rdm_clone_report)},
+        {}, True,
+        """Behaviour cloning: the actor's mean is fitted to the labels by Adam on minibatches, and the weights with the least validation
+        loss are kept; critics and multipliers stay, and the actor's optimiser begins anew. Between epochs of the agent: STATE
+        inside a horizon. how NULL: defaults; io may be NULL. CANCELLED after rdm_agent_cancel: weights and statistics as before.
+        """),
+    "rdm_agent_set_recording": Function(
+        c_int32, {"a": c_void_p, "r": c_void_p},
+        {}, True,
+        """The rows that the options `imitation` and `imitation_decay` hold the actor near; obs and label are copied. NULL: none. A
+        state that was saved with some loads only beside the same ones.
+        """),
+    "rdm_agent_load_policy": Function(
+        c_int32, {"a": c_void_p, "p": c_void_p, "samples": c_double},
+        {}, True,
+        """Warm start: the actor, its deviation and the statistics of observations become the policy's, which count for `samples` (2 to
+        10^12) observations; its optimiser begins anew. STATE inside a horizon; ARGUMENT where layout, hidden layers, activation,
+        std_mode, actor_obs or normalize_obs differ: the text says which, and nothing changes.
+        """),
+    "rdm_pool_set_starts": Function(
+        c_int32, {"p": c_void_p, "r": c_void_p, "share": c_double},
+        {}, True,
+        """Worlds begin an episode, with probability `share` (0 to 1), at a state of the recording, drawn from a stream of their own: all
+        other draws are what they are without. Such an episode has the steps that are left; sums begin at 0. States are copied, and
+        each is tried: FORMAT, and nothing changes. r NULL: the states of the last call, with another share; 0 at first. The
+        streams and the share are part of the state of all worlds (env -1), which loads only beside the same states.
+        """),
 }
 
 

@@ -163,9 +163,14 @@ Options taught_options(const TeachSettings& s) {
 
 void adopt_teacher(const TeachSettings& s, bool task_given, const std::vector<std::string>& sets,
                    PoolSettings& pool) {
-  if (!s.asked() || is_file(s.from)) return;
+  if (is_file(s.from)) {
+    const RecordingHandle recording = open_recording(s.from);
+    auto info = redman::sized<rdm_recording_info>();
+    redman::check(rdm_recording_get_info(recording.get(), &info));
+    if (!task_given && *info.task) pool.task = info.task;
+    return;
+  }
   adopt_task(choose_actor(s.from), task_given, sets, pool);
-  pool.magnitudes = false;
 }
 
 Taught teach(const TeachSettings& s, const PoolSettings& settings, redman::Agent& agent, int32_t repeat,
