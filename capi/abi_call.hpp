@@ -64,6 +64,7 @@ enum class Tag : uint32_t {
   kAgent = 0x6e656761,
   kPolicy = 0x796c6f70,
   kMap = 0x2070616d,
+  kPlanner = 0x6e616c70,
   kScene = 0x6e656373,
   kWorld = 0x6c726f77
 };

@@ -127,7 +127,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   Block* blocks = nullptr;            // [num_blocks]
   unsigned char* pristine = nullptr;  // a world's state before anything happened: what a reset starts from
   size_t pristine_size = 0;
-  uint64_t layout = 0;      // layout_hash of the task
+  uint64_t layout = 0;     // layout_hash of the task
   int32_t group_size = 1;  // worlds that the engine takes together, at most
   Workers* workers = nullptr;
 };
