@@ -624,10 +624,12 @@ typedef struct rdm_planner_config { /* what a planner is made from */
                               * thread's use while one plans; NULL: none                                  */
   const rdm_option *options; /* [num_options] as rdm_planner_option_at lists them, copied; NULL: none     */
   int32_t num_options;       /* count, default 0                                                          */
-  int32_t error_size;        /* bytes, terminator included; what is longer is cut                         */
+  int32_t reserved;          /* 0                                                                         */
   const rdm_host *host;      /* hooks of this handle, copied; NULL: those of rdm_init                     */
   const char *settings;      /* options as lines key=value, laid over `options`, copied; NULL: none       */
   char *error;               /* [error_size] the text of a failing call that takes this config; NULL      */
+  int32_t error_size;        /* bytes, terminator included; what is longer is cut                         */
+  int32_t reserved2;         /* 0                                                                         */
 } rdm_planner_config;
 typedef struct rdm_planner_spec { /* sizes of a planner */
   uint32_t struct_size;      /* in: bytes                                                                 */

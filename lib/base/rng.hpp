@@ -21,7 +21,6 @@ enum class Purpose : uint32_t {
   kTest = 7,
   kWorldNoise = 8,   // what a world draws within an episode
   kDisturbance = 9,  // noise, delays and drop-out of what an agent sees and does
-  kPlan = 16,        // noise that a planner tries around its plan
 };
 
 class Stream {

@@ -139,7 +139,7 @@ void Planner::carve(Arena& arena) {
 }
 
 Planner::Planner(const PlannerConfig& c)
-    : hooks_(c.hooks), policy_(c.policy), critic_(c.critic), stream_(c.seed, 0, Purpose::kPlan) {
+    : hooks_(c.hooks), policy_(c.policy), critic_(c.critic), stream_(c.seed, 0, Purpose::kPolicyNoise) {
   const HostScope scope(hooks_);
   read_options(c);
   try {

@@ -1205,10 +1205,12 @@ class rdm_planner_config(Structure):
         thread's use while one plans; NULL: none
     options: [num_options] as rdm_planner_option_at lists them, copied; NULL: none
     num_options: count, default 0
-    error_size: bytes, terminator included; what is longer is cut
+    reserved: 0
     host: hooks of this handle, copied; NULL: those of rdm_init
     settings: options as lines key=value, laid over `options`, copied; NULL: none
     error: [error_size] the text of a failing call that takes this config; NULL
+    error_size: bytes, terminator included; what is longer is cut
+    reserved2: 0
     """
 
     struct_size: int
@@ -1221,10 +1223,12 @@ class rdm_planner_config(Structure):
     agent: int | None
     options: Any
     num_options: int
-    error_size: int
+    reserved: int
     host: Any
     settings: bytes | None
     error: int | None
+    error_size: int
+    reserved2: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("num_threads", c_int32),
@@ -1236,10 +1240,12 @@ class rdm_planner_config(Structure):
         ("agent", c_void_p),
         ("options", POINTER(rdm_option)),
         ("num_options", c_int32),
-        ("error_size", c_int32),
+        ("reserved", c_int32),
         ("host", POINTER(rdm_host)),
         ("settings", c_char_p),
         ("error", c_void_p),
+        ("error_size", c_int32),
+        ("reserved2", c_int32),
     ]
 
 
