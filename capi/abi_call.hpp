@@ -65,6 +65,7 @@ enum class Tag : uint32_t {
   kPolicy = 0x796c6f70,
   kMap = 0x2070616d,
   kRecording = 0x64636572,
+  kPlanner = 0x6e616c70,
   kScene = 0x6e656373,
   kWorld = 0x6c726f77
 };

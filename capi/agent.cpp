@@ -19,6 +19,8 @@ rdm_result rdm_agent_config_init(rdm_agent_config* c, size_t size) {
 #if RDM_WITH_LEARN
 namespace {
 
+constexpr int32_t kMaxValueRows = 1 << 24;  // of rdm_agent_values
+
 // A public config as the library takes it, with the option lists that it points to.
 struct Config {
   AgentConfig agent;
@@ -164,6 +166,29 @@ rdm_result rdm_agent_record(rdm_agent* a, const rdm_transition* t) {
     x.final_obs = in.final_obs;
     x.steps = in.steps;
     a->agent->record(x);
+  });
+}
+
+rdm_result rdm_agent_values(const rdm_agent* a, const float* obs, int32_t rows, float* value, float* cost) {
+  return call(text_of(a), [&] {
+    need_handle(a);
+    need(obs, "obs");
+    need(value, "value");
+    if (rows < 1 || rows > kMaxValueRows)
+      fail(Code::kRange, "rows: %d is outside [1, %d]", rows, kMaxValueRows);
+    const Agent& agent = *a->agent;
+    const auto n = static_cast<size_t>(rows);
+    check_rows("obs", obs, nullptr, rows, static_cast<size_t>(agent.config().obs_dim));
+    const HostScope scope(a->hooks);
+    Vector<float> limited(n * static_cast<size_t>(agent.num_limited()));
+    agent.values(obs, rows, value, limited.data());
+    if (!cost) return;
+    std::fill_n(cost, n * RDM_MAX_COSTS, 0.0f);
+    const auto count = static_cast<size_t>(agent.num_limited());
+    for (size_t i = 0; i < n; ++i)
+      for (size_t k = 0; k < count; ++k)
+        cost[i * RDM_MAX_COSTS + static_cast<size_t>(agent.limited_column(static_cast<int32_t>(k)))] =
+            limited[i * count + k];
   });
 }
 

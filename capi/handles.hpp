@@ -68,3 +68,17 @@ namespace rdm::capi {
 void write_epoch(rdm_epoch* io, const Epoch& e);
 }  // namespace rdm::capi
 #endif
+
+#if RDM_WITH_POLICY
+struct rdm_policy {
+  static constexpr rdm::capi::Tag kTag = rdm::capi::Tag::kPolicy;
+  rdm::capi::Tag tag = kTag;
+  rdm::HostHooks hooks;
+  rdm::Policy* policy = nullptr;
+};
+
+namespace rdm::capi {
+// As rdm_policy_check; the struct is read already.
+void check_policy(const PolicyView& v, const rdm_spec& spec);
+}  // namespace rdm::capi
+#endif

@@ -9,13 +9,6 @@
 using namespace rdm;
 using namespace rdm::capi;
 
-struct rdm_policy {
-  static constexpr Tag kTag = Tag::kPolicy;
-  Tag tag = kTag;
-  HostHooks hooks;
-  Policy* policy = nullptr;
-};
-
 namespace {
 void make(rdm_policy** out, const void* bytes, size_t size) {
   const HostHooks hooks = host();
@@ -219,20 +212,22 @@ rdm_result rdm_policy_columns(const rdm_policy* p, int32_t* columns, int32_t cap
   });
 }
 
+void rdm::capi::check_policy(const PolicyView& v, const rdm_spec& s) {
+  if (v.obs_dim() != s.obs_dim)
+    fail(Code::kVersion, "obs_dim: the policy has %d, the task %d", v.obs_dim(), s.obs_dim);
+  if (v.action_dim() != s.action_dim)
+    fail(Code::kVersion, "action_dim: the policy has %d, the task %d", v.action_dim(), s.action_dim);
+  if (v.layout_hash && s.layout_hash && v.layout_hash != s.layout_hash)
+    fail(Code::kVersion, "layout_hash: the policy learned another layout of observations or actions");
+  if (v.control_dt > 0 && s.control_dt > 0 && std::abs(v.control_dt - s.control_dt) > 1e-6f)
+    fail(Code::kVersion, "control_dt: the policy has %g s, the task %g s", static_cast<double>(v.control_dt),
+         static_cast<double>(s.control_dt));
+}
+
 rdm_result rdm_policy_check(const rdm_policy* p, const rdm_spec* spec) {
   return call(nullptr, [&] {
     need_handle(p);
-    const auto s = read_struct(spec, kFirstSpecSize, rdm_spec{}, "spec");
-    const PolicyView& v = p->policy->view();
-    if (v.obs_dim() != s.obs_dim)
-      fail(Code::kVersion, "obs_dim: the policy has %d, the task %d", v.obs_dim(), s.obs_dim);
-    if (v.action_dim() != s.action_dim)
-      fail(Code::kVersion, "action_dim: the policy has %d, the task %d", v.action_dim(), s.action_dim);
-    if (v.layout_hash && s.layout_hash && v.layout_hash != s.layout_hash)
-      fail(Code::kVersion, "layout_hash: the policy learned another layout of observations or actions");
-    if (v.control_dt > 0 && s.control_dt > 0 && std::abs(v.control_dt - s.control_dt) > 1e-6f)
-      fail(Code::kVersion, "control_dt: the policy has %g s, the task %g s",
-           static_cast<double>(v.control_dt), static_cast<double>(s.control_dt));
+    check_policy(p->policy->view(), read_struct(spec, kFirstSpecSize, rdm_spec{}, "spec"));
   });
 }
 

@@ -358,6 +358,17 @@ rdm_result rdm_pool_hash(const rdm_pool* p, int32_t env, uint64_t* hash) {
   });
 }
 
+rdm_result rdm_pool_copy(rdm_pool* dst, int32_t dst_env, const rdm_pool* src, int32_t src_env) {
+  return call(text_of(dst), [&] {
+    need_handle(dst);
+    need_handle(src);
+    const int32_t worlds = dst->pool->config().num_envs;
+    if (dst_env < -1 || dst_env >= worlds)
+      fail(Code::kRange, "dst_env: %d is outside [-1, %d)", dst_env, worlds);
+    dst->pool->copy(dst_env, *src->pool, src_env);
+  });
+}
+
 rdm_result rdm_pool_get_stats(const rdm_pool* p, rdm_pool_stats* io) {
   return call(text_of(p), [&] {
     need_handle(p);

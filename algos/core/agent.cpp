@@ -119,6 +119,15 @@ void Agent::act(const float* obs, bool sample, float* action) {
   collector_.act(obs, sample, action);
 }
 
+void Agent::values(const float* obs, int32_t rows, float* value, float* cost) const {
+  const Options& o = resolved_.options;
+  for (const char* key : {"normalize_reward", "normalize_cost"})
+    if (o.flag(key)) fail(Code::kUnsupported, "agent: with %s its critics have no fixed unit", key);
+  collector_.value_rows(obs, rows, value, cost);
+  const auto factor = static_cast<float>(o.number("reward_factor"));
+  for (int32_t i = 0; i < rows; ++i) value[i] /= factor;
+}
+
 void Agent::record(const Transition& t) {
   const FpMode mode;
   collector_.record(t);

@@ -54,6 +54,13 @@ class Agent {
 
   void act(const float* obs, bool sample, float* action);
   void record(const Transition& t);
+  // As the critics see any rows, in the units of rewards and costs: value [rows] and cost
+  // [rows][num_limited()], of the cost columns limited_column(i). Error(kUnsupported) where those are scaled
+  // by what was seen.
+  void values(const float* obs, int32_t rows, float* value, float* cost) const;
+  int32_t num_limited() const { return resolved_.num_limited; }
+  int32_t limited_column(int32_t i) const { return resolved_.column[i]; }
+  double discount() const { return resolved_.options.number("discount"); }
   // After a cancel the parameters are those of the last finished minibatch.
   void update(const float* last_obs, Epoch* out);
   // Decisions still missing in this horizon; 0: update is due.

@@ -145,6 +145,17 @@ void Collector::act(const float* obs, bool sample, float* action) {
   if (sample) pending_ = true;
 }
 
+void Collector::value_rows(const float* obs, int32_t rows, float* value, float* cost_value) const {
+  if (rows < 1) return;
+  const size_t dim = resolved_->obs_dim(), costs = static_cast<size_t>(resolved_->num_limited);
+  const int32_t share = std::min((rows + workers_->count() - 1) / workers_->count(), resolved_->chunk_rows);
+  workers_->sweep(rows, share, [&](const Workspace& workspace, int32_t first, int32_t n) {
+    const auto at = static_cast<size_t>(first);
+    const float* x = normalized(obs + at * dim, n, workspace.obs);
+    values(workspace, x, n, value + at, cost_value + at * costs);
+  });
+}
+
 void Collector::check(const Transition& t) const {
   const AgentConfig& c = resolved_->config;
   if (!t.reward) fail(Code::kArgument, "reward: NULL");

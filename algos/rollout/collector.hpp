@@ -28,6 +28,8 @@ class Collector {
 
   void act(const float* obs, bool sample, float* action);
   void record(const Transition& t);
+  // What the critics say of any rows obs [rows][obs_dim]: value [rows], cost_value [rows][num_limited].
+  void value_rows(const float* obs, int32_t rows, float* value, float* cost_value) const;
   // Decisions still missing in this horizon.
   int32_t missing() const { return rollout_.horizon - rollout_.filled; }
   // Nothing is collected and no act waits for its record.

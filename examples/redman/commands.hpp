@@ -16,6 +16,7 @@ void add_train(CLI::App& app, Run& run);
 void add_eval(CLI::App& app, Run& run);
 void add_baseline(CLI::App& app, Run& run);
 void add_rollout(CLI::App& app, Run& run);
+void add_plan(CLI::App& app, Run& run);
 void add_render(CLI::App& app, Run& run);
 void add_bench(CLI::App& app, Run& run);
 void add_info(CLI::App& app, Run& run);

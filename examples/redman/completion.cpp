@@ -60,7 +60,7 @@ std::string value_words(const std::string& name, bool positional) {
   if (name == "robot" && positional) return robot_words();
   if (name == "object" && positional) return joined(object_names());
   if (name == "kind") return "hand arm other";
-  if (name == "policy") return "zero hold random demo";
+  if (name == "policy") return "zero hold random demo plan";
   if (name == "completion") return "bash zsh fish";
   return "";
 }

@@ -66,12 +66,11 @@ std::string evaluation_text(const Evaluation& e, int32_t episodes) {
 }
 
 Report run_eval(EvalFlags flags) {
-  const ActorChoice choice = choose_actor(flags.policy);
+  ActorChoice choice = choose_actor(flags.policy);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
-  std::vector<std::string> limits = choice.limits;
-  limits.insert(limits.end(), flags.limits.begin(), flags.limits.end());
-  const Evaluation e = evaluate(choice, flags.pool, limits, flags.episodes, flags.stochastic);
+  choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
+  const Evaluation e = evaluate(choice, flags.pool, choice.limits, flags.episodes, flags.stochastic);
   Json json = {{"policy", flags.policy}, {"task", task_at(find_task(flags.pool.task)).name}};
   json.update(evaluation_json(e, flags.episodes));
   return {json, evaluation_text(e, flags.episodes)};
@@ -83,9 +82,9 @@ void add_eval(CLI::App& app, Run& run) {
   auto flags = std::make_shared<EvalFlags>();
   flags->pool.envs = kEvalEnvs;
   CLI::App* command = app.add_subcommand("eval", "Evaluate a policy over whole episodes");
-  command->add_option(
-      "--policy", flags->policy,
-      "policy file, run folder, .demo file, demo, zero, hold or random; a run's task options come with it");
+  command->add_option("--policy", flags->policy,
+                      "policy file, run folder, .demo file, plan, demo, zero, hold or random; a run's task "
+                      "options come with it");
   CLI::Option* task =
       add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
   command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));

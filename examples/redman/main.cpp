@@ -110,6 +110,7 @@ int run_tool(int argc, char** argv) {
   add_eval(app, run);
   add_baseline(app, run);
   add_rollout(app, run);
+  add_plan(app, run);
   add_render(app, run);
   add_bench(app, run);
   add_plot(app, run);

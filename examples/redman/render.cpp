@@ -135,7 +135,7 @@ void add_render(CLI::App& app, Run& run) {
   CLI::Option* task =
       add_task_flag(*command, flags->pool.task, "--task", "task, or its file; default: the policy's");
   command->add_option("--policy", flags->policy,
-                      "policy file, run folder, .demo file, demo, zero, hold or random");
+                      "policy file, run folder, .demo file, plan, demo, zero, hold or random");
   command->add_option("--seed", flags->pool.seed, "seed of the episode");
   CLI::Option* step = command->add_option("--step", flags->step, "control step to draw; 0: the start")
                           ->check(CLI::NonNegativeNumber);

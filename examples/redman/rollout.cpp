@@ -147,8 +147,9 @@ void add_rollout(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("rollout", "Play episodes and write what happened");
   CLI::Option* task =
       add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
-  command->add_option("--policy", flags->policy,
-                      "policy file, run folder, .demo file, recorded .npz file, demo, zero, hold or random");
+  command->add_option(
+      "--policy", flags->policy,
+      "policy file, run folder, .demo file, recorded .npz file, plan, demo, zero, hold or random");
   CLI::Option* episodes =
       command->add_option("--episodes", flags->episodes, "episodes; default: 1, or as recorded")
           ->check(CLI::Range(1, kMostEpisodes));

@@ -147,6 +147,11 @@ void WorldDisturbance::read(Reader& in, bool keep_stream) {
   in.bytes(numbers_, sz(count_) * sizeof *numbers_);
 }
 
+void WorldDisturbance::copy(const WorldDisturbance& other) {
+  stream_ = other.stream_;
+  std::copy_n(other.numbers_, count_, numbers_);
+}
+
 void WorldDisturbance::check(const Disturbance& plan) const {
   require(finite(numbers_, count_));
   Cursor at{numbers_};

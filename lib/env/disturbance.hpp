@@ -26,6 +26,7 @@ class WorldDisturbance {
 
   void write(Writer& out) const;
   void read(Reader& in, bool keep_stream = false);
+  void copy(const WorldDisturbance& other);  // of the same plan and task
   // Error(kFormat) for numbers that no world has that was reset.
   void check(const Disturbance& plan) const;
 

@@ -108,6 +108,7 @@ void Pool::Impl::build() {
   pristine = static_cast<unsigned char*>(host_alloc(config.hooks, pristine_size, Arena::kAlign));
   Writer out(pristine, pristine_size);
   slots[0].world->save(out);
+  layout = layout_hash(*task);
   workers = host_new<Workers>(config.hooks, config.hooks, config.num_threads);
 }
 
@@ -222,6 +223,15 @@ int32_t Pool::taken(int32_t env) const {
 double Pool::magnitude(int32_t env, int32_t cost) const {
   if (impl_->repeat > 1) return impl_->slots[env].magnitude[cost];
   return std::max(static_cast<double>(impl_->cost_row(impl_->buffers.cost_raw, env)[cost]), 0.0);
+}
+bool Pool::running(int32_t env) const {
+  return impl_->slots[env].episode.phase == Phase::kRunning;
+}
+int32_t Pool::episode_step(int32_t env) const {
+  return impl_->slots[env].episode.step;
+}
+double Pool::spent(int32_t env, int32_t cost) const {
+  return impl_->slots[env].episode.sum_cost[cost];
 }
 const Buffers& Pool::buffers() const {
   return impl_->buffers;

@@ -78,6 +78,14 @@ class Pool {
   void get_state(int32_t env, Writer& out) const;               // env -1: all
   void set_state(int32_t env, const void* bytes, size_t size);  // all checks before any change
   uint64_t hash(int32_t env) const;
+  // World `env` (-1: every one) becomes world `source` of a pool of the same task and options, which may be
+  // this one: what set_state(get_state) does, with the rows of the last step too. Error(kArgument) for a pool
+  // that differs, Error(kRange) for a world that is not there. No heap use.
+  void copy(int32_t env, const Pool& from, int32_t source);
+  // Of the episode that runs in a world: control steps so far, sum of a cost; false: none runs.
+  bool running(int32_t env) const;
+  int32_t episode_step(int32_t env) const;
+  double spent(int32_t env, int32_t cost) const;
 
   World& world(int32_t env);
   const World& world(int32_t env) const;

@@ -124,6 +124,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   void write_world(int32_t env, Writer& out) const;
   // keep_streams: those of the disturbances stay the world's own.
   void read_world(int32_t env, Reader& in, bool keep_streams = false);
+  void copy_world(int32_t env, const Impl& from, int32_t source);
   void check_world(int32_t env) const;  // Error(kFormat) when what was read makes no sense
 
   float* obs(int32_t env) const { return buffers.obs + env * static_cast<ptrdiff_t>(obs_dim); }
@@ -141,6 +142,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   unsigned char* pristine = nullptr;  // a world's state before anything happened: what a reset starts from
   size_t pristine_size = 0;
   Starts starts;
+  uint64_t layout = 0;     // layout_hash of the task
   int32_t group_size = 1;  // worlds that the engine takes together, at most
   Workers* workers = nullptr;
 };

@@ -1,9 +1,13 @@
 // Saving, restoring and hashing worlds.
 //
+// A copy moves the same parts as memory, and nothing is checked: what a pool has is sound.
+//
 // A state is a file of two sections: HEAD says what it belongs to, WRLD holds one record a world: length,
 // world, task struct, episode, observation row, and what the world's disturbances remember, where it has any.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 
 #include "base/bytes.hpp"
 #include "base/hash.hpp"
@@ -15,6 +19,7 @@ namespace {
 constexpr char kMagic[8] = {'R', 'D', 'M', 'S', 'T', 'A', 'T', 'E'};
 constexpr uint32_t kVersion = 1;
 constexpr size_t kTextSize = 64;
+constexpr int32_t kFewCopies = 16;  // made sooner than other threads wake up
 
 struct Range {
   int32_t begin, end;
@@ -212,6 +217,55 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
     if (with_starts) m.slots[i].start = drawn.value<Stream>();
   }
   m.starts.share = share;
+}
+
+void Pool::Impl::copy_world(int32_t env, const Impl& from, int32_t source) {
+  Slot& to = slots[env];
+  const Slot& s = from.slots[source];
+  if (&to == &s) return;
+  to.world->copy(*s.world);
+  std::memcpy(to.task_state, s.task_state, task->state_bytes());
+  to.episode = s.episode;
+  if (disturbance.any()) to.disturbance.copy(s.disturbance);
+  to.taken = s.taken;
+  to.goes_on = s.goes_on;
+  std::copy_n(s.magnitude, cost_dim, to.magnitude);
+  std::copy_n(from.obs(source), obs_dim, obs(env));
+  std::copy_n(from.final_obs(source), obs_dim, final_obs(env));
+  const auto cost = [&](float* mine, const float* theirs) {
+    std::copy_n(theirs + source * static_cast<ptrdiff_t>(cost_dim), cost_dim, cost_row(mine, env));
+  };
+  cost(buffers.cost, from.buffers.cost);
+  cost(buffers.cost_raw, from.buffers.cost_raw);
+  cost(buffers.episode_cost, from.buffers.episode_cost);
+  buffers.reward[env] = from.buffers.reward[source];
+  buffers.episode_return[env] = from.buffers.episode_return[source];
+  buffers.episode_step[env] = from.buffers.episode_step[source];
+  buffers.status[env] = from.buffers.status[source];
+  buffers.terminated[env] = from.buffers.terminated[source];
+  buffers.truncated[env] = from.buffers.truncated[source];
+  buffers.success[env] = from.buffers.success[source];
+}
+
+void Pool::copy(int32_t env, const Pool& from, int32_t source) {
+  const FpMode mode;
+  Impl& m = *impl_;
+  const Impl& f = *from.impl_;
+  const Range range = range_of(env, m.config.num_envs);
+  if (source < 0 || source >= f.config.num_envs)
+    fail(Code::kRange, "src_env: %d is outside [0, %d)", source, f.config.num_envs);
+  if (m.info != f.info)
+    fail(Code::kArgument, "src: a pool of task %s, dst has %s", f.info->name, m.info->name);
+  if (m.slots[0].world->engine() != f.slots[0].world->engine())
+    fail(Code::kArgument, "src: a pool of another physics engine");
+  if (m.options_hash != f.options_hash)
+    fail(Code::kArgument, "src: a pool of task %s with other options", m.info->name);
+  if (m.layout != f.layout) fail(Code::kArgument, "src: a pool of another layout");
+  if (range.count() < kFewCopies) {
+    for (int32_t i = range.begin; i < range.end; ++i) m.copy_world(i, f, source);
+    return;
+  }
+  m.each_world(nullptr, [&](int32_t i, Block&) { m.copy_world(i, f, source); });
 }
 
 uint64_t Pool::hash(int32_t env) const {

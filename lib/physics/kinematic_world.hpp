@@ -23,6 +23,7 @@ class KinematicWorld final : public World {
   double joint_drift() const override { return 0; }
   void save(Writer& out) const override;
   void load(Reader& in) override;
+  void copy(const World& other) override { copy_rows(other); }
 
  private:
   void links_changed(int32_t) override {}

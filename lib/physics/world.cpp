@@ -146,6 +146,26 @@ bool World::sound_extras(Reader& in, const Scene& scene) {
   return good;
 }
 
+bool World::copy_rows(const World& other) {
+  const auto links = static_cast<size_t>(scene_->num_links);
+  status_ = other.status_;
+  std::copy_n(other.q_, links, q_);
+  std::copy_n(other.qd_, links, qd_);
+  std::copy_n(other.target_, links, target_);
+  std::copy_n(other.torque_, links, torque_);
+  std::copy_n(other.sensors_, scene_->sensors.size(), sensors_);
+  std::copy_n(other.bases_, scene_->def.articulations.size(), bases_);
+  std::copy_n(other.base_R_, scene_->def.articulations.size(), base_R_);
+  std::copy_n(other.bodies_, scene_->num_bodies, bodies_);
+  if (feedforward_) std::copy_n(other.feedforward_, links, feedforward_);
+  std::fill_n(touched_, scene_->pairs.size(), uint8_t{0});
+  num_contacts_ = 0;
+  if (!scene_->def.adjustable || dynamics_.same(other.dynamics_)) return false;
+  dynamics_.copy(other.dynamics_);
+  size_shapes();
+  return true;
+}
+
 void World::step_together(World* const* worlds, int32_t count) {
   if (count > 0) worlds[0]->step_group(worlds, count);
 }

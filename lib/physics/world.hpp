@@ -141,6 +141,9 @@ class World {
   // load: Error(kFormat) where a number is not finite or out of its range; the world then stays as it was.
   virtual void save(Writer& out) const = 0;
   virtual void load(Reader& in) = 0;
+  // What load(save(other)) does, as plain memory: `other` is a world of the same engine and of an equal
+  // scene.
+  virtual void copy(const World& other) = 0;
 
  protected:
   World(const Scene& scene, Arena& arena);
@@ -169,6 +172,9 @@ class World {
   void save_extras(Writer& out) const;
   void load_extras(Reader& in);
   static bool sound_extras(Reader& in, const Scene& scene);
+  // The rows in which every engine's state agrees, bases and bodies, and what the scene asks for; true:
+  // factors of dynamics_ changed, sizes of shapes with them.
+  bool copy_rows(const World& other);
   // Reads status, q, qd, target, torque and sensors, in which every engine's state agrees; false where one
   // of them is not finite or out of range.
   static bool sound_rows(Reader& in, const Scene& scene);

@@ -108,6 +108,16 @@ TEST_F(Structs, ThatGoInHaveASizeThatCanBe) {
     rdm_map_destroy(m);
     return r;
   });
+  rdm_planner_config pc{};
+  ASSERT_EQ(rdm_planner_config_init(&pc, sizeof pc), RDM_OK);
+  pc.pool = pool_;
+  pc.settings = "samples=2\nhorizon=2";
+  sizes<rdm_planner_config>("rdm_planner_create", pc, [&](rdm_planner_config* c) {
+    rdm_planner* planner = nullptr;
+    const rdm_result r = rdm_planner_create(&planner, c);
+    rdm_planner_destroy(planner);
+    return r;
+  });
 }
 
 TEST_F(Structs, ThatComeOutHaveASizeThatCanBe) {
@@ -159,6 +169,10 @@ TEST_F(Structs, InitFunctionsFillNoMoreThanAStructCanHave) {
       "rdm_map_config_init",
       [](void* c, size_t n) { return rdm_map_config_init(static_cast<rdm_map_config*>(c), n); },
       offsetof(rdm_map_config, error));
+  tried(
+      "rdm_planner_config_init",
+      [](void* c, size_t n) { return rdm_planner_config_init(static_cast<rdm_planner_config*>(c), n); },
+      sizeof(rdm_planner_config));
 }
 
 // What a newer caller's struct has and this library does not know is 0, not what stood there.

@@ -28,6 +28,7 @@ struct Handles {
   rdm_agent* agent = nullptr;
   rdm_policy* policy = nullptr;
   rdm_map* map = nullptr;
+  rdm_planner* planner = nullptr;
 
   Handles() {
     rdm_pool_config p = pool_config(1);
@@ -45,12 +46,19 @@ struct Handles {
     EXPECT_EQ(rdm_map_config_init(&m, sizeof m), RDM_OK);
     m.host = &host.hooks;
     EXPECT_EQ(rdm_map_create(&map, &m), RDM_OK);
+    rdm_planner_config n;
+    EXPECT_EQ(rdm_planner_config_init(&n, sizeof n), RDM_OK);
+    n.pool = pool;
+    n.settings = "samples=2\nhorizon=2";
+    n.host = &host.hooks;
+    EXPECT_EQ(rdm_planner_create(&planner, &n), RDM_OK);
   }
   ~Handles() {
     rdm_pool_destroy(pool);
     rdm_agent_destroy(agent);
     rdm_policy_destroy(policy);
     rdm_map_destroy(map);
+    rdm_planner_destroy(planner);
   }
 };
 
@@ -79,6 +87,7 @@ T* plain() {
 #define AGENT static_cast<rdm_agent*>(h)
 #define POLICY static_cast<rdm_policy*>(h)
 #define MAP static_cast<rdm_map*>(h)
+#define PLANNER static_cast<rdm_planner*>(h)
 #define CALL(expression)                     \
   [](void* h, Handles& good) -> rdm_result { \
     (void)h, (void)good;                     \
@@ -108,6 +117,9 @@ const std::vector<Call> kPoolCalls = {
     CALL(rdm_pool_render(POOL, 0, "front", 8, 8, nullptr, g_floats, nullptr)),
     CALL(rdm_pool_get_stats(POOL, sized<rdm_pool_stats>())),
     CALL(rdm_pool_push(POOL, 0, 0, g_floats)),
+    CALL(rdm_pool_copy(POOL, 0, good.pool, 0)),
+    CALL(rdm_pool_copy(good.pool, 0, POOL, 0)),
+    CALL(rdm_planner_act(good.planner, POOL, 0, g_floats, nullptr)),
     CALL(rdm_pool_sensors(POOL, sized<rdm_sensors>())),
     CALL(rdm_pool_sensor_camera(POOL, 0, 0, plain<rdm_camera>())),
     CALL(rdm_pool_hull(POOL, 0, nullptr, 0, &g_number)),
@@ -124,6 +136,7 @@ const std::vector<Call> kAgentCalls = {
     CALL(rdm_agent_set(AGENT, plain<rdm_option>())),
     CALL(rdm_agent_option(AGENT, 0, &g_key, g_bytes)),
     CALL(rdm_agent_settings(AGENT, nullptr, 0, &g_size)),
+    CALL(rdm_agent_values(AGENT, g_floats, 1, g_floats + 100, nullptr)),
     CALL(rdm_agent_tensor(AGENT, 0, plain<rdm_tensor>())),
     CALL(rdm_agent_tensor_read(AGENT, "actor.0.weight", g_floats, 24)),
     CALL(rdm_agent_tensor_write(AGENT, "actor.0.weight", g_floats, 24)),
@@ -159,6 +172,17 @@ const std::vector<Call> kMapCalls = {
     CALL(rdm_map_load_file(MAP, "/no/such/folder/file.bt")),
 };
 
+const std::vector<Call> kPlannerCalls = {
+    CALL(rdm_planner_get_spec(PLANNER, sized<rdm_planner_spec>())),
+    CALL(rdm_planner_settings(PLANNER, nullptr, 0, &g_size)),
+    CALL(rdm_planner_act(PLANNER, good.pool, 0, g_floats, nullptr)),
+    CALL(rdm_planner_reset(PLANNER)),
+    CALL(rdm_planner_get_plan(PLANNER, g_floats)),
+    CALL(rdm_planner_set_plan(PLANNER, g_floats)),
+    CALL(rdm_planner_write_state(PLANNER, nullptr, 0, &g_size)),
+    CALL(rdm_planner_read_state(PLANNER, g_bytes, 8)),
+};
+
 void expect_refused(const std::vector<Call>& calls, void* h, Handles& good, const char* text) {
   for (size_t i = 0; i < calls.size(); ++i) {
     EXPECT_EQ(calls[i](h, good), RDM_ARGUMENT) << "call " << i;
@@ -174,6 +198,7 @@ TEST(Handles, OfAnotherKindAreNamed) {
   expect_refused(kAgentCalls, good.pool, good, "agent: the handle is of kind pool");
   expect_refused(kPolicyCalls, good.map, good, "policy: the handle is of kind map");
   expect_refused(kMapCalls, good.policy, good, "map: the handle is of kind policy");
+  expect_refused(kPlannerCalls, good.pool, good, "planner: the handle is of kind pool");
 }
 
 TEST(Handles, ThatWereDestroyedAreRefused) {
@@ -182,13 +207,16 @@ TEST(Handles, ThatWereDestroyedAreRefused) {
   rdm_agent_destroy(ended.agent);
   rdm_policy_destroy(ended.policy);
   rdm_map_destroy(ended.map);
+  rdm_planner_destroy(ended.planner);
   expect_refused(kPoolCalls, ended.pool, good, "destroyed");
   expect_refused(kAgentCalls, ended.agent, good, "destroyed");
   expect_refused(kPolicyCalls, ended.policy, good, "destroyed");
   expect_refused(kMapCalls, ended.map, good, "destroyed");
+  expect_refused(kPlannerCalls, ended.planner, good, "destroyed");
   EXPECT_NE(std::strstr(rdm_pool_error(ended.pool), "destroyed"), nullptr);
   EXPECT_NE(std::strstr(rdm_agent_error(ended.agent), "destroyed"), nullptr);
   EXPECT_NE(std::strstr(rdm_map_error(ended.map), "destroyed"), nullptr);
+  EXPECT_NE(std::strstr(rdm_planner_error(ended.planner), "destroyed"), nullptr);
   EXPECT_EQ(rdm_policy_scratch(ended.policy, 1), 0u);
   rdm_agent_cancel(ended.agent);
 }  // and are destroyed a second time here
@@ -199,9 +227,11 @@ TEST(Handles, OfAnotherKindAreNotDestroyed) {
   rdm_agent_destroy(reinterpret_cast<rdm_agent*>(good.pool));
   rdm_policy_destroy(reinterpret_cast<rdm_policy*>(good.map));
   rdm_map_destroy(reinterpret_cast<rdm_map*>(good.policy));
+  rdm_planner_destroy(reinterpret_cast<rdm_planner*>(good.pool));
   EXPECT_EQ(rdm_pool_reset(good.pool, nullptr, nullptr), RDM_OK);
   EXPECT_EQ(feed_epoch(good.agent), RDM_OK);
   EXPECT_EQ(rdm_map_clear(good.map), RDM_OK);
+  EXPECT_EQ(rdm_planner_reset(good.planner), RDM_OK);
   auto* info = sized<rdm_policy_info>();
   EXPECT_EQ(rdm_policy_get_info(good.policy, info), RDM_OK);
   EXPECT_EQ(info->obs_dim, 3);

@@ -1192,6 +1192,140 @@ class rdm_policy_info(Structure):
     ]
 
 
+class rdm_planner_config(Structure):
+    """struct_size: bytes, set by rdm_planner_config_init
+    num_threads: of the rollouts; 0: as many as the pool has; default 0
+    pool: rollouts have its task and options; required; not kept
+    seed: of the noise; default 0
+    noise: [action_dim] standard deviation of each entry, 0 to 10, copied; NULL: option noise
+    cost_limits: [cost_dim] on the sum over an episode, < 0: none, copied; NULL: the task's on column 0
+    policy: proposes: sample 0 of the first iteration is its rollout, the others add noise to that; must outlive
+        the planner; NULL: none
+    agent: its critic values states at the horizon's end; must outlive the planner, and not be in another
+        thread's use while one plans; NULL: none
+    options: [num_options] as rdm_planner_option_at lists them, copied; NULL: none
+    num_options: count, default 0
+    reserved: 0
+    host: hooks of this handle, copied; NULL: those of rdm_init
+    settings: options as lines key=value, laid over `options`, copied; NULL: none
+    error: [error_size] the text of a failing call that takes this config; NULL
+    error_size: bytes, terminator included; what is longer is cut
+    reserved2: 0
+    """
+
+    struct_size: int
+    num_threads: int
+    pool: int | None
+    seed: int
+    noise: int | None
+    cost_limits: int | None
+    policy: int | None
+    agent: int | None
+    options: Any
+    num_options: int
+    reserved: int
+    host: Any
+    settings: bytes | None
+    error: int | None
+    error_size: int
+    reserved2: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_threads", c_int32),
+        ("pool", c_void_p),
+        ("seed", c_uint64),
+        ("noise", c_void_p),
+        ("cost_limits", c_void_p),
+        ("policy", c_void_p),
+        ("agent", c_void_p),
+        ("options", POINTER(rdm_option)),
+        ("num_options", c_int32),
+        ("reserved", c_int32),
+        ("host", POINTER(rdm_host)),
+        ("settings", c_char_p),
+        ("error", c_void_p),
+        ("error_size", c_int32),
+        ("reserved2", c_int32),
+    ]
+
+
+class PlannerSpec(Record):
+    """The values of rdm_planner_spec."""
+
+    samples: int  # worlds rolled out in an iteration
+    horizon: int  # steps of the pool
+    knots: int  # of the noise, the horizon at most
+    action_dim: int  # count
+    cost_dim: int  # count
+
+
+class rdm_planner_spec(Structure):
+    """struct_size: in: bytes
+    samples: worlds rolled out in an iteration
+    horizon: steps of the pool
+    knots: of the noise, the horizon at most
+    action_dim: count
+    cost_dim: count
+    """
+
+    struct_size: int
+    samples: int
+    horizon: int
+    knots: int
+    action_dim: int
+    cost_dim: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("samples", c_int32),
+        ("horizon", c_int32),
+        ("knots", c_int32),
+        ("action_dim", c_int32),
+        ("cost_dim", c_int32),
+    ]
+
+
+class PlanInfo(Record):
+    """The values of rdm_plan_info."""
+
+    planned: int  # 1; 0: the plan was followed (option replan), the rest is 0
+    best: int  # sample that is best in the last iteration
+    ret: float  # of that sample: discounted sum of rewards, and the critic's value
+    cost: tuple[float, ...]  # of that sample, sums of each column
+    feasible_share: float  # of the last iteration's samples: within what the limits leave
+    steps: int  # control steps of all rollouts
+
+
+class rdm_plan_info(Structure):
+    """struct_size: in: bytes
+    planned: 1; 0: the plan was followed (option replan), the rest is 0
+    best: sample that is best in the last iteration
+    reserved: 0
+    ret: of that sample: discounted sum of rewards, and the critic's value
+    cost: of that sample, sums of each column
+    feasible_share: of the last iteration's samples: within what the limits leave
+    steps: control steps of all rollouts
+    """
+
+    struct_size: int
+    planned: int
+    best: int
+    reserved: int
+    ret: float
+    cost: Any
+    feasible_share: float
+    steps: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("planned", c_int32),
+        ("best", c_int32),
+        ("reserved", c_int32),
+        ("ret", c_double),
+        ("cost", c_double * RDM_MAX_COSTS),
+        ("feasible_share", c_double),
+        ("steps", c_int64),
+    ]
+
+
 class RobotLink(Record):
     """The values of rdm_robot_link."""
 
@@ -2444,6 +2578,9 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_epoch": rdm_epoch,
     "rdm_tensor": rdm_tensor,
     "rdm_policy_info": rdm_policy_info,
+    "rdm_planner_config": rdm_planner_config,
+    "rdm_planner_spec": rdm_planner_spec,
+    "rdm_plan_info": rdm_plan_info,
     "rdm_robot_link": rdm_robot_link,
     "rdm_robot_shape": rdm_robot_shape,
     "rdm_robot_pair": rdm_robot_pair,
@@ -2503,6 +2640,10 @@ ROWS: dict[str, dict[str, Rows]] = {
         "valid": Rows("uint8", ("num_envs",)),
         "success": Rows("uint8", ("num_envs",)),
         "steps": Rows("int32", ("num_envs",)),
+    },
+    "rdm_planner_config": {
+        "noise": Rows("float32", ("action_dim",)),
+        "cost_limits": Rows("float64", ("cost_dim",)),
     },
     "rdm_robot_def": {
         "commands": Rows("int32", ("num_commands",)),
@@ -2952,6 +3093,84 @@ FUNCTIONS: dict[str, Function] = {
         """Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up to capacity of them
         to columns [capacity]; *count is how many there are.
         """),
+    "rdm_pool_copy": Function(
+        c_int32, {"dst": c_void_p, "dst_env": c_int32, "src": c_void_p, "src_env": c_int32},
+        {}, True,
+        """World dst_env of dst (-1: all of them) becomes what world src_env of src is, at the price of copying memory: afterwards
+        it goes on with the bytes that set_state(get_state) would give, and its rows (but action, and those of rdm_sensors)
+        are the other's. Pools of the same task and options, of any sizes, threads and seeds; src may be dst. ARGUMENT for
+        pools that differ, RANGE for worlds that are not there: nothing changes. No heap.
+        """),
+    "rdm_agent_values": Function(
+        c_int32, {"a": c_void_p, "obs": c_void_p, "rows": c_int32, "value": c_void_p, "cost": c_void_p},
+        {"obs": Rows("float32", ("rows", "obs_dim")), "value": Rows("float32", ("rows",)), "cost": Rows("float32", ("rows", "RDM_MAX_COSTS"))}, True,
+        """What the agent's critics say of obs [rows][obs_dim], for any number of rows: value [rows], the discounted sum of rewards
+        to come, and the same of the cost columns that it limits, cost [rows][RDM_MAX_COSTS] by column, others 0; cost may be
+        NULL. UNSUPPORTED with options normalize_reward or normalize_cost, which leave critics no unit.
+        """),
+    "rdm_planner_config_init": Function(
+        c_int32, {"c": POINTER(rdm_planner_config), "size": c_size_t},
+        {}, True,
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
+    "rdm_planner_create": Function(
+        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_planner_config)},
+        {}, True,
+        """Makes the planner and its worlds. ARGUMENT, RANGE, NOT_FOUND name what is wrong; VERSION_MISMATCH for a policy that
+        does not fit the pool, UNSUPPORTED for an agent whose critics have no unit (rdm_agent_values).
+        """),
+    "rdm_planner_destroy": Function(
+        None, {"planner": c_void_p},
+        {}, True,
+        """NULL is fine"""),
+    "rdm_planner_error": Function(
+        c_char_p, {"planner": c_void_p},
+        {}, True,
+        """last failure on this handle; "" at first"""),
+    "rdm_planner_get_spec": Function(
+        c_int32, {"planner": c_void_p, "io": POINTER(rdm_planner_spec)},
+        {}, True,
+        """fills io"""),
+    "rdm_planner_option_at": Function(
+        c_int32, {"i": c_int32, "out": POINTER(rdm_option_info)},
+        {}, True,
+        """Option i of planners: method, samples, horizon, knots, interpolation, noise, elites, temperature, iterations, costs, and
+        others. RANGE past the end.
+        """),
+    "rdm_planner_settings": Function(
+        c_int32, {"planner": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, True,
+        """All options as text [capacity] of lines key=value: given as settings they make a planner of the same options."""),
+    "rdm_planner_act": Function(
+        c_int32, {"planner": c_void_p, "pool": c_void_p, "env": c_int32, "action": c_void_p, "io": POINTER(rdm_plan_info)},
+        {"action": Rows("float32", ("action_dim",))}, True,
+        """Plans from the state that world env of the pool is in now, and writes the plan's first action to action [action_dim]. The
+        pool is only read; it has the task and options of the one that the planner was made for, else ARGUMENT. io may be NULL.
+        STATE where no episode runs. No heap.
+        """),
+    "rdm_planner_reset": Function(
+        c_int32, {"planner": c_void_p},
+        {}, True,
+        """Forgets the plan; the noise goes on. The next plan begins at rdm_pool_initial_mean, or the policy's rollout."""),
+    "rdm_planner_get_plan": Function(
+        c_int32, {"planner": c_void_p, "plan": c_void_p},
+        {"plan": Rows("float32", ("horizon", "action_dim"))}, True,
+        """The plan as it is to plan [horizon][action_dim]: row 0 is the action that rdm_planner_act gave."""),
+    "rdm_planner_set_plan": Function(
+        c_int32, {"planner": c_void_p, "plan": c_void_p},
+        {"plan": Rows("float32", ("horizon", "action_dim"))}, True,
+        """The next call begins at plan [horizon][action_dim], cut to [-1, 1], not shifted. ARGUMENT for entries that are not
+        finite. With a policy it is tried as sample 1.
+        """),
+    "rdm_planner_write_state": Function(
+        c_int32, {"planner": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, True,
+        """Plan, noise and counters as bytes [capacity]; NULL asks for the size. A planner of the same task, options, noise and limits
+        that reads them goes on with the same bytes.
+        """),
+    "rdm_planner_read_state": Function(
+        c_int32, {"planner": c_void_p, "bytes": c_void_p, "size": c_size_t},
+        {}, True,
+        """Of bytes [size]. FORMAT for bytes that are not whole, or of another planner: nothing changes."""),
     "rdm_robot_def_init": Function(
         c_int32, {"def": POINTER(rdm_robot_def), "size": c_size_t},
         {}, True,

@@ -1,10 +1,12 @@
 #include "play/actor.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "play/plan_word.hpp"
 #include "record/recording.hpp"
 #include "run/folder.hpp"
 
@@ -15,9 +17,9 @@ constexpr const char* kBaselines[] = {"zero", "hold", "random"};  // by RDM_BASE
 
 redman::Policy load(const std::string& file) {
   if (!file_exists(file))
-    throw Failure(
-        "policy " + file +
-        ": no such file; give a policy file, a run folder, a .demo or .npz file, demo, zero, hold or random");
+    throw Failure("policy " + file +
+                  ": no such file; give a policy file, a run folder, a .demo or .npz file, plan, demo, zero, "
+                  "hold or random");
   try {
     return redman::Policy(file.c_str());
   } catch (const redman::Error& e) {
@@ -40,6 +42,16 @@ uint64_t mixed(uint64_t x) {
 
 ActorChoice choose_actor(const std::string& word) {
   ActorChoice choice;
+  PlanWord plan;
+  if (read_plan_word(word, &plan)) {
+    if (!plan.policy.empty()) choice = choose_actor(plan.policy);
+    if (!plan.policy.empty() && (choice.file.empty() || choice.recording || choice.plan))
+      throw Failure("policy " + plan.policy +
+                    ": a planner's proposals come from a policy file or a run folder");
+    choice.plan = true;
+    choice.plan_settings = plan.settings;
+    return choice;
+  }
   for (int32_t i = 0; i < 3; ++i)
     if (same_name(word, kBaselines[i])) choice.baseline = i;
   if (choice.baseline >= 0) return choice;
@@ -98,6 +110,10 @@ Actor::Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic, uin
     demo_.emplace(
         choice.script ? *choice.script : builtin_demo(task_at(pool.spec().task).name, settings_of(pool)),
         pool);
+  if (choice.plan) {
+    make_planners(choice, pool, seed);
+    return;
+  }
   if (choice.recording) {
     recording_ = choice.recording;
     file_ = choice.file;
@@ -125,6 +141,29 @@ Actor::Actor(redman::Policy policy, const redman::Pool& pool) : policy_(std::mov
   prepare(pool);
 }
 
+void Actor::make_planners(const ActorChoice& choice, const redman::Pool& pool, uint64_t seed) {
+  if (!choice.file.empty()) proposer_ = load(choice.file);
+  const std::vector<double> limits = cost_limits(pool, choice.limits);
+  for (size_t i = 0; i < pool.num_envs(); ++i) {
+    auto config = redman::planner_config(pool, choice.plan_settings.c_str());
+    config.seed = mixed(seed + i);
+    config.cost_limits = limits.data();
+    config.policy = proposer_ ? proposer_->get() : nullptr;
+    planners_.push_back(as_usage([&] { return redman::Planner(config); }));
+  }
+}
+
+void Actor::plan(redman::Pool& pool, const uint8_t* mask) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  for (size_t i = 0; i < planners_.size(); ++i) {
+    if (mask && !mask[i]) continue;
+    planning_.steps += planners_[i].act(pool, static_cast<int32_t>(i), pool.action()[i].data()).steps;
+    ++planning_.calls;
+  }
+  planning_.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
 void Actor::prepare(const redman::Pool& pool) {
   if (!policy_) return;
   const size_t n = pool.num_envs(), width = pool.action().width();
@@ -141,6 +180,8 @@ void Actor::prepare(const redman::Pool& pool) {
 
 void Actor::restart(const uint8_t* mask) {
   if (demo_) demo_->restart(mask);
+  for (size_t i = 0; i < planners_.size(); ++i)
+    if (!mask || mask[i]) planners_[i].reset();
   for (size_t i = 0; i < played_.size(); ++i) {
     if ((mask && !mask[i]) || played_[i] == 0) continue;
     if (played_[i] != recording_->length(episode_[i])) throw Failure(went_elsewhere(i));
@@ -198,6 +239,7 @@ float Actor::normal() {
 void Actor::act(redman::Pool& pool, const uint8_t* mask) {
   if (demo_) return demo_->act(pool, mask);
   if (recording_) return replay(pool, mask);
+  if (!planners_.empty()) return plan(pool, mask);
   if (!policy_) {
     pool.baseline(baseline_);
     return;

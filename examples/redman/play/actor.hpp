@@ -1,7 +1,8 @@
-// Who acts in a pool: a policy file, a demonstration, a recorded rollout, or one of the baselines zero, hold,
-// random.
+// Who acts in a pool: a policy file, a planner, a demonstration, a recorded rollout, or one of the baselines
+// zero, hold, random.
 #pragma once
 #include <optional>
+#include <redman/redman_plan.hpp>
 #include <string>
 
 #include "common/setup.hpp"
@@ -13,7 +14,9 @@ struct Recording;
 
 // What a `--policy` word stands for.
 struct ActorChoice {
-  std::string file;       // of a policy, else ""
+  std::string file;   // of a policy, else ""
+  bool plan = false;  // a planner; `file` proposes, if there is one
+  std::string plan_settings;
   int32_t baseline = -1;  // RDM_BASELINE_*
   bool demo = false;      // the script, or without one the task's own
   std::optional<DemoScript> script;
@@ -23,8 +26,8 @@ struct ActorChoice {
   std::vector<std::string> limits;  // --cost-limit of that run
   bool magnitudes = false;          // which are on magnitudes
 };
-// zero, hold, random, demo, a .demo file, an .npz file of a rollout, a policy file or a run folder. Failure
-// when the file cannot be read as what it is.
+// zero, hold, random, demo, plan (play/plan_word.hpp), a .demo file, an .npz file of a rollout, a policy file
+// or a run folder. Failure when the file cannot be read as what it is.
 ActorChoice choose_actor(const std::string& word);
 
 // Lays what the policy knows about its task under the flags: the task's name when `task_given` is false, and
@@ -32,6 +35,12 @@ ActorChoice choose_actor(const std::string& word);
 // `sets` are those that will be laid over all that: they choose among the demonstrations of a task.
 void adopt_task(const ActorChoice& choice, bool task_given, const std::vector<std::string>& sets,
                 PoolSettings& pool);
+
+// What planning took.
+struct PlanningCost {
+  double seconds = 0;
+  int64_t calls = 0, steps = 0;  // actions; control steps of the rollouts
+};
 
 class Actor {
  public:
@@ -47,8 +56,11 @@ class Actor {
   void act(redman::Pool& pool, const uint8_t* mask = nullptr);
   // Failure when an episode of a recording did not end where it ended when it was recorded.
   void check_ends() const;
+  const PlanningCost& planning() const { return planning_; }
 
  private:
+  void make_planners(const ActorChoice& choice, const redman::Pool& pool, uint64_t seed);
+  void plan(redman::Pool& pool, const uint8_t* mask);
   void prepare(const redman::Pool& pool);
   void replay(redman::Pool& pool, const uint8_t* mask);
   std::string went_elsewhere(size_t env) const;
@@ -56,6 +68,9 @@ class Actor {
 
   int32_t baseline_ = -1;
   std::optional<redman::Policy> policy_;
+  std::optional<redman::Policy> proposer_;  // outlives the planners
+  std::vector<redman::Planner> planners_;   // [num_envs]
+  PlanningCost planning_;
   std::optional<Demo> demo_;
   std::shared_ptr<const Recording> recording_;
   std::string file_;                      // of the recording

@@ -246,6 +246,10 @@ void ArticulatedWorld::end_step() {
   num_contacts_ = state_.num_contacts;
   std::memset(fresh_, 0, static_cast<size_t>(scene_->num_links));
   if (state_.diverged) recover();
+  clear_pushes();
+}
+
+void ArticulatedWorld::clear_pushes() {
   if (!state_.pushed) return;
   state_.pushed = false;
   std::fill_n(state_.pushes,
@@ -409,6 +413,18 @@ void ArticulatedWorld::load(Reader& in) {
   for (size_t i = 0; i < links + bases + bodies; ++i) state_.pushes[i] = {};
   num_contacts_ = 0;
   state_.pushed = false;
+}
+
+void ArticulatedWorld::copy(const World& world) {
+  if (&world == this) return;
+  const auto& other = static_cast<const ArticulatedWorld&>(world);
+  if (copy_rows(other)) own_constants();
+  std::memcpy(state_.persistent, other.state_.persistent, persistent_bytes(*scene_));
+  state_.num_warm = other.state_.num_warm;
+  std::copy_n(other.state_.warm, state_.num_warm, state_.warm);
+  for (int32_t i = 0; i < scene_->num_bodies; ++i) state_.free_bodies[i].R = other.state_.free_bodies[i].R;
+  std::fill_n(fresh_, scene_->num_links, uint8_t{0});
+  clear_pushes();
 }
 
 size_t ArticulatedWorld::heap_bytes(const Scene& scene) {

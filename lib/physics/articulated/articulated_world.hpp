@@ -41,6 +41,7 @@ class ArticulatedWorld final : public World {
   double joint_drift() const override { return 0; }
   void save(Writer& out) const override;
   void load(Reader& in) override;
+  void copy(const World& other) override;
 
  private:
   void links_changed(int32_t articulation) override;
@@ -55,6 +56,7 @@ class ArticulatedWorld final : public World {
   void release_shared();
   void check_state(Reader in) const;
   void end_step();
+  void clear_pushes();
   void recover();
 
   OdeGuard guard_;

@@ -1,6 +1,7 @@
 #include "physics/model/dynamics.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "base/error.hpp"
 
@@ -78,6 +79,15 @@ void Dynamics::copy(const Dynamics& other) {
   std::copy_n(other.bases, num_bases, bases);
   std::copy_n(other.bodies, num_bodies, bodies);
   std::copy_n(other.friction, num_friction, friction);
+}
+
+bool Dynamics::same(const Dynamics& other) const {
+  const auto equal = [](const auto* a, const auto* b, int32_t count) {
+    return std::memcmp(a, b, sizeof *a * static_cast<size_t>(count)) == 0;
+  };
+  return gravity == other.gravity && equal(links, other.links, num_links) &&
+         equal(bases, other.bases, num_bases) && equal(bodies, other.bodies, num_bodies) &&
+         equal(friction, other.friction, num_friction);
 }
 
 void Dynamics::check(const Scene& scene) const {

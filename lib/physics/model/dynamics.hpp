@@ -43,6 +43,7 @@ struct Dynamics {
   void reset();
   // Takes what another record of the same scene has.
   void copy(const Dynamics& other);
+  bool same(const Dynamics& other) const;  // likewise
   // Of two materials, in either order.
   static int32_t friction_index(int32_t a, int32_t b) {
     return a > b ? a * (a + 1) / 2 + b : b * (b + 1) / 2 + a;

@@ -520,6 +520,34 @@ void OdeWorld::load(Reader& in) {
   }
 }
 
+void OdeWorld::copy(const World& world) {
+  if (&world == this) return;
+  const auto& other = static_cast<const OdeWorld&>(world);
+  const OdeScope scope;
+  copy_rows(other);
+  const auto copy_body = [](dBodyID to, dBodyID from) {
+    write_pose(to, from_ode(dBodyGetPosition(from)), quat_from_ode(dBodyGetQuaternion(from)),
+               mat_from_ode(dBodyGetRotation(from)));
+    write_velocity(to, from_ode(dBodyGetLinearVel(from)), from_ode(dBodyGetAngularVel(from)));
+  };
+  for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a) {
+    if (tree_.base(a)) {
+      copy_body(tree_.base(a), other.tree_.base(a));
+      tree_.read_base(a, state());
+    }
+    rebuild(a);
+    tree_.write(a, state());
+  }
+  for (int32_t i = 0; i < scene_->num_bodies; ++i) {
+    copy_body(body_ids_[i], other.body_ids_[i]);
+    read_body(i);
+  }
+  for (int32_t i = 0; i < num_forces_; ++i) {
+    forces_[i].push = {};
+    forces_[i].pushed = false;
+  }
+}
+
 size_t OdeWorld::heap_bytes(const Scene& scene) {
   const auto links = static_cast<size_t>(scene.num_links), bodies = static_cast<size_t>(scene.num_bodies);
   const auto contacts = static_cast<size_t>(scene.def.solver.contacts_max);

@@ -34,6 +34,7 @@ class OdeWorld final : public World {
   double joint_drift() const override;
   void save(Writer& out) const override;
   void load(Reader& in) override;
+  void copy(const World& other) override;
 
  private:
   // One ODE body: what acts on it besides gravity and joints. Factors are those of implicit damping,

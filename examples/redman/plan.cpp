@@ -1,0 +1,104 @@
+// `plan`: episodes by planning, and what they come to.
+#include <algorithm>
+#include <memory>
+
+#include "commands.hpp"
+#include "common/names.hpp"
+#include "common/text.hpp"
+#include "play/evaluate.hpp"
+#include "play/plan_word.hpp"
+#include "record/recorder.hpp"
+
+namespace tool {
+namespace {
+
+struct PlanFlags {
+  std::string policy, record;
+  PoolSettings pool;
+  std::vector<std::string> sets, plans, limits;
+  int32_t episodes = 1;
+  bool task_given = false, states = false;
+};
+
+Report run_plan(PlanFlags flags) {
+  Options options;
+  for (const std::string& text : flags.plans) options.push_back(split_pair(text, "--plan"));
+  const std::string word = plan_word(options, flags.policy);
+  ActorChoice choice = choose_actor(word);
+  adopt_task(choice, flags.task_given, flags.sets, flags.pool);
+  apply_sets(flags.sets, flags.pool, nullptr);
+  choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
+  flags.pool.envs = std::min(flags.pool.envs, flags.episodes);
+  redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_OFF);
+  Evaluation e;
+  e.limits = cost_limits(pool, choice.limits);
+  for (const rdm_cost& c : task_costs(pool.spec().task)) e.costs.push_back(c.name);
+  Actor actor(choice, pool, false, flags.pool.seed);
+  const auto episodes = static_cast<size_t>(flags.episodes);
+  std::unique_ptr<Recorder> recorder;
+  if (!flags.record.empty())
+    recorder = std::make_unique<Recorder>(flags.record, pool, episodes, flags.states);
+  StepObserver before, after;
+  if (recorder) before = [&](size_t env, size_t episode) { recorder->before(env, episode); };
+  if (recorder) after = [&](size_t env, size_t episode) { recorder->after(env, episode); };
+  pool.reset();
+  const std::vector<Episode> played = play_episodes(pool, actor, episodes, after, before);
+  e.summary = summarise(played, e.limits);
+  const Summary& s = e.summary;
+  const double ms = actor.planning().calls > 0
+                        ? 1e3 * actor.planning().seconds / static_cast<double>(actor.planning().calls)
+                        : 0;
+  Json json = {{"task", task_at(pool.spec().task).name}, {"policy", word}};
+  json.update(evaluation_json(e, flags.episodes));
+  json["ms_per_action"] = ms;
+  json["steps_per_action"] = static_cast<double>(actor.planning().steps) /
+                             static_cast<double>(std::max<int64_t>(actor.planning().calls, 1));
+  std::string costs;
+  for (size_t k = 0; k < e.costs.size(); ++k)
+    costs += format("%s%s %.3f%s", k ? ", " : "", e.costs[k].c_str(), s.cost_mean[k],
+                    e.limits[k] < 0 ? "" : (" (limit " + number_text(e.limits[k]) + ")").c_str());
+  std::string text = format(
+      "%d episodes: return %.3f +- %.3f, %s\nlength %.1f, falls %.1f%%, success %.1f%%, %.2f ms per action\n",
+      flags.episodes, s.return_mean, s.return_std, costs.c_str(), s.length_mean, 100 * s.fall_rate,
+      100 * s.success_rate, ms);
+  if (recorder) {
+    json["file"] = flags.record;
+    json["steps"] = recorder->finish({word, flags.pool.options, flags.pool.seed});
+    text += "wrote " + flags.record + '\n';
+  }
+  return {json, text};
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, Run& run) {
+  auto flags = std::make_shared<PlanFlags>();
+  CLI::App* command =
+      app.add_subcommand("plan", "Act by planning: roll many worlds out, take what went best");
+  CLI::Option* task =
+      add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
+  command->add_option("--policy", flags->policy, "policy file or run folder that proposes; default: none");
+  command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));
+  for (const rdm_option_info& row : planner_options()) {
+    const std::string key = row.key;
+    if (key != "method" && key != "samples" && key != "horizon" && key != "iterations") continue;
+    command->add_option_function<std::string>(
+        "--" + key, [flags, key](const std::string& value) { flags->plans.push_back(key + '=' + value); },
+        row.help);
+  }
+  command->add_option("--plan", flags->plans, "key=value of the planner; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  add_cost_limit_flag(*command, flags->limits);
+  CLI::Option* record = command->add_option("--record", flags->record,
+                                            "all of every step, as `rollout --record`: .npz or .csv");
+  command->add_flag("--record-states", flags->states, "the worlds' state before each step too")
+      ->needs(record);
+  add_set_flag(*command, flags->sets);
+  command->callback([&run, flags, task] {
+    flags->task_given = task->count() > 0;
+    run = [flags] { return run_plan(*flags); };
+  });
+}
+
+}  // namespace tool

@@ -1,0 +1,51 @@
+#include "play/plan_word.hpp"
+
+#include <redman/redman_sense.h>
+
+#include "common/names.hpp"
+#include "common/setup.hpp"
+
+namespace tool {
+
+std::vector<rdm_option_info> planner_options() {
+  std::vector<rdm_option_info> out;
+  rdm_option_info row;
+  for (int32_t i = 0; rdm_planner_option_at(i, &row) == RDM_OK; ++i) out.push_back(row);
+  return out;
+}
+
+bool read_plan_word(const std::string& word, PlanWord* out) {
+  const size_t colon = word.find(':');
+  if (!same_name(word.substr(0, colon), "plan")) return false;
+  const auto table = planner_options();
+  for (size_t at = colon; at != std::string::npos;) {
+    const size_t end = word.find(',', at + 1);
+    const std::string item = word.substr(at + 1, end == std::string::npos ? end : end - at - 1);
+    const auto [key, value] = split_pair(item, "--policy plan:");
+    if (same_name(key, "policy")) {
+      out->policy = value;
+    } else if (has_option(table, key)) {
+      out->settings += key + '=' + value + '\n';
+    } else {
+      std::vector<std::string> keys = {"policy"};
+      for (const rdm_option_info& row : table) keys.push_back(row.key);
+      throw Usage("--policy " + word + ": planners have no option " + key + nearest_hint(key, keys));
+    }
+    at = end;
+  }
+  return true;
+}
+
+std::string plan_word(const std::vector<std::pair<std::string, std::string>>& options,
+                      const std::string& policy) {
+  std::string word = "plan", between = ":";
+  const auto add = [&](const std::string& key, const std::string& value) {
+    word += between + key + '=' + value;
+    between = ",";
+  };
+  for (const auto& [key, value] : options) add(key, value);
+  if (!policy.empty()) add("policy", policy);
+  return word;
+}
+
+}  // namespace tool

@@ -1,0 +1,435 @@
+#include "plan/planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <new>
+
+#include "base/error.hpp"
+#include "base/fpmode.hpp"
+#include "base/hash.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr char kMagic[8] = {'R', 'D', 'M', 'P', 'L', 'A', 'N', 'R'};
+constexpr uint32_t kVersion = 1;
+constexpr int32_t kMaxSamples = 65536, kMaxHorizon = 10000;
+constexpr double kMaxNoise = 10;
+constexpr int64_t kMaxNumbers = int64_t{1} << 28;  // of an array
+
+constexpr OptionSpec kRows[] = {
+    text_option("method", "predictive", "predictive|cem|mppi",
+                "how the plan moves: to the best sample, the elites' mean, or a mean weighted by return"),
+    integer_option("samples", 64, 1, kMaxSamples, "worlds that are rolled out in each iteration"),
+    integer_option("horizon", 16, 1, kMaxHorizon, "steps of the pool that a plan looks ahead"),
+    integer_option("knots", 4, 1, kMaxHorizon, "values of the noise over a plan, the horizon at most"),
+    text_option("interpolation", "linear", "zero|linear|cubic", "of the noise between knots"),
+    number_option("noise", 0.2, 0, kMaxNoise, "standard deviation of the noise, in units of the action"),
+    number_option("noise_min", 0.02, 0, kMaxNoise, "cem: the deviation of elites counts as this at least"),
+    integer_option("elites", 8, 1, kMaxSamples, "cem: best samples that the plan is the mean of"),
+    number_option("temperature", 0.2, 1e-6, 1e6, "mppi: in standard deviations of the samples' returns"),
+    integer_option("iterations", 1, 1, 1000,
+                   "times that samples are rolled out and the plan moves, in a call"),
+    flag_option("warm_start", true, "the next plan begins at this one, shifted by a step"),
+    integer_option("replan", 1, 1, kMaxHorizon, "calls from plan to plan; between them the plan is followed"),
+    text_option("choice", "mean", "mean|best", "cem, mppi: act by the mean, or by the last iteration's best"),
+    number_option("discount", 1, 0, 1, "of rewards, for each step of the pool"),
+    text_option("costs", "feasible", "feasible|multiplier|ignore",
+                "plans within the budgets first, or return less multiplier times costs, or return alone"),
+    number_option("multiplier", 1, 0, 1e9, "of each limited cost, with costs=multiplier"),
+    text_option("budget", "rest", "rest|share",
+                "what a plan may cost: all that the episode has left, or the horizon's share of it"),
+    flag_option("terminal_cost", false, "the cost critic's values count as costs to come"),
+};
+
+size_t sz(int32_t n) {
+  return static_cast<size_t>(n);
+}
+float clip_unit(float x) {
+  return std::clamp(x, -1.0f, 1.0f);
+}
+
+}  // namespace
+
+const OptionSpec* planner_options(int32_t* count) {
+  *count = static_cast<int32_t>(std::size(kRows));
+  return kRows;
+}
+
+void Planner::read_options(const PlannerConfig& c) {
+  options_.add_table(kRows, static_cast<int32_t>(std::size(kRows)));
+  for (int32_t i = 0; i < c.num_options; ++i) options_.set(c.options[i], "planner");
+  options_.set_lines(c.settings, "planner");
+  const auto is = [&](const char* key, const char* word) { return same_name(options_.text(key), word); };
+  method_ = is("method", "cem")    ? PlanMethod::kCem
+            : is("method", "mppi") ? PlanMethod::kMppi
+                                   : PlanMethod::kPredictive;
+  samples_ = options_.integer("samples");
+  horizon_ = options_.integer("horizon");
+  knots_ = std::min(options_.integer("knots"), horizon_);
+  elites_ = std::min(options_.integer("elites"), samples_);
+  iterations_ = options_.integer("iterations");
+  replan_ = options_.integer("replan");
+  if (replan_ > horizon_) fail(Code::kRange, "replan: %d is above the horizon, %d", replan_, horizon_);
+  temperature_ = options_.number("temperature");
+  discount_ = options_.number("discount");
+  noise_floor_ = options_.number("noise_min");
+  warm_ = options_.flag("warm_start");
+  best_only_ = method_ == PlanMethod::kPredictive || is("choice", "best");
+  share_ = is("budget", "share");
+  terminal_cost_ = options_.flag("terminal_cost");
+  rule_.rule = is("costs", "multiplier") ? CostRule::kMultiplier
+               : is("costs", "ignore")   ? CostRule::kIgnore
+                                         : CostRule::kFeasible;
+  rule_.multiplier = options_.number("multiplier");
+}
+
+void Planner::make_rollouts(const PlannerConfig& c) {
+  const Pool& pool = *c.pool;
+  const TaskInfo& info = task_at(pool.task_index());
+  // no pictures: a plan is judged by rewards and costs
+  constexpr char kBlind[] = "modality=state\n";
+  Vector<char> settings(pool.options().print_lines(nullptr, 0) + sizeof kBlind + 1);
+  const size_t length = pool.options().print_lines(settings.data(), settings.size());
+  settings[length] = '\n';
+  std::memcpy(settings.data() + length + 1, kBlind, sizeof kBlind);
+  PoolConfig rollouts;
+  rollouts.num_envs = samples_;
+  rollouts.num_threads = c.num_threads > 0 ? c.num_threads : pool.config().num_threads;
+  rollouts.task = info.name;
+  rollouts.autoreset = Autoreset::kOff;
+  rollouts.settings = settings.data();
+  rollouts.hooks = hooks_;
+  rollouts_ = Pool::create(rollouts);
+  action_dim_ = pool.task().action_dim();
+  cost_dim_ = pool.cost_dim();
+  rule_.num_costs = cost_dim_;
+  for (int32_t k = 0; k < cost_dim_; ++k) {
+    limit_[k] = c.cost_limits ? c.cost_limits[k] : k == 0 ? info.costs[0].limit : -1;
+    if (std::isnan(limit_[k])) fail(Code::kArgument, "cost_limits: entry %d is not a number", k);
+  }
+}
+
+void Planner::carve(Arena& arena) {
+  if (int64_t{samples_} * knots_ * action_dim_ > kMaxNumbers || int64_t{horizon_} * action_dim_ > kMaxNumbers)
+    fail(Code::kRange, "samples: %d times %d knots times %d actions are above %lld", samples_, knots_,
+         action_dim_, static_cast<long long>(kMaxNumbers));
+  const size_t n = sz(samples_), dim = sz(action_dim_), plan = sz(horizon_) * dim, width = sz(knots_) * dim;
+  rows_ = arena.make<KnotRow>(sz(horizon_));
+  start_ = arena.make<float>(dim);
+  noise_std_ = arena.make<float>(dim);
+  floor_ = arena.make<float>(width);
+  sigma_ = arena.make<float>(width);
+  plan_ = arena.make<float>(plan);
+  centre_ = arena.make<float>(plan);
+  next_ = arena.make<float>(plan);
+  noise_ = arena.make<float>(n * width);
+  weights_ = arena.make<double>(n);
+  sum_ = arena.make<double>(dim);
+  value_ = arena.make<float>(critic_ ? n : 0);
+  cost_value_ = arena.make<float>(critic_ ? n * sz(critic_->num_costs()) : 0);
+  last_ = arena.make<float>(dim);
+  row_ = arena.make<float>(dim);
+  alive_ = arena.make<uint8_t>(n);
+  courses_ = arena.make<Course>(n);
+  standings_ = arena.make<Standing>(n);
+  order_ = arena.make<int32_t>(n);
+}
+
+Planner::Planner(const PlannerConfig& c)
+    : hooks_(c.hooks), policy_(c.policy), critic_(c.critic), stream_(c.seed, 0, Purpose::kPolicyNoise) {
+  const HostScope scope(hooks_);
+  read_options(c);
+  try {
+    make_rollouts(c);
+    Arena measure;
+    carve(measure);
+    arena_ = Arena(hooks_, measure.used());
+    carve(arena_);
+    for (int32_t j = 0; j < action_dim_; ++j) {
+      const double noise = c.noise ? static_cast<double>(c.noise[j]) : options_.number("noise");
+      if (!(noise >= 0 && noise <= kMaxNoise))
+        fail(Code::kRange, "noise: entry %d is outside [0, %g]", j, kMaxNoise);
+      noise_std_[j] = static_cast<float>(noise);
+      for (int32_t k = 0; k < knots_; ++k)
+        floor_[sz(k) * sz(action_dim_) + sz(j)] = static_cast<float>(std::min(noise_floor_, noise));
+    }
+  } catch (...) {
+    Pool::destroy(rollouts_);
+    throw;
+  }
+  const auto kind = same_name(options_.text("interpolation"), "zero")    ? Interpolation::kZero
+                    : same_name(options_.text("interpolation"), "cubic") ? Interpolation::kCubic
+                                                                         : Interpolation::kLinear;
+  for (int32_t t = 0; t < horizon_; ++t) rows_[t] = knot_row(kind, knots_, horizon_, t);
+  rollouts_->task().initial_mean(start_);
+  for (int32_t j = 0; j < action_dim_; ++j) start_[j] = clip_unit(start_[j]);
+  forget();
+}
+
+Planner::~Planner() {
+  Pool::destroy(rollouts_);
+}
+
+Planner* Planner::create(const PlannerConfig& config) {
+  const FpMode mode;
+  return host_new<Planner>(config.hooks, config);
+}
+
+void Planner::destroy(Planner* p) {
+  if (!p) return;
+  const HostHooks hooks = p->hooks_;
+  const HostScope scope(hooks);
+  host_delete(hooks, p);
+}
+
+void Planner::start_plan(float* plan) const {
+  for (int32_t t = 0; t < horizon_; ++t) std::copy_n(start_, action_dim_, plan + sz(t) * sz(action_dim_));
+}
+
+void Planner::forget() {
+  planned_ = given_ = false;
+  since_ = 0;
+  start_plan(plan_);
+  std::fill_n(last_, action_dim_, 0.0f);
+}
+
+void Planner::set_plan(const float* plan) {
+  const size_t count = sz(horizon_) * sz(action_dim_);
+  for (size_t i = 0; i < count; ++i)
+    if (!std::isfinite(plan[i])) fail(Code::kArgument, "plan: entry %zu is not finite", i);
+  for (size_t i = 0; i < count; ++i) plan_[i] = clip_unit(plan[i]);
+  planned_ = true;
+  given_ = false;
+}
+
+// The last action stays.
+void Planner::shift_plan() {
+  const size_t dim = sz(action_dim_);
+  std::memmove(plan_, plan_ + dim, (sz(horizon_) - 1) * dim * sizeof *plan_);
+}
+
+void Planner::set_budgets(const Pool& pool, int32_t env) {
+  const double left = pool.task().max_steps() - pool.episode_step(env);
+  const double share = share_ ? std::min(1.0, horizon_ * pool.repeat() / left) : 1.0;
+  for (int32_t k = 0; k < cost_dim_; ++k)
+    rule_.budget[k] = limit_[k] < 0 ? -1 : share * std::max(limit_[k] - pool.spent(env, k), 0.0);
+}
+
+void Planner::propose(const Pool& pool, int32_t env) {
+  rollouts_->copy(0, pool, env);
+  const Buffers& b = rollouts_->buffers();
+  const int32_t steps = std::max(1, policy_->repeat() / pool.repeat());
+  // decisions fall where they would if the policy acted alone
+  const int32_t phase = pool.episode_step(env) / pool.repeat();
+  std::fill_n(alive_, samples_, uint8_t{0});
+  alive_[0] = 1;
+  for (int32_t t = 0; t < horizon_; ++t) {
+    float* action = centre_ + sz(t) * sz(action_dim_);
+    const float* before = t > 0 ? action - action_dim_ : last_;
+    const bool due = (phase + t) % steps == 0 || (t == 0 && !planned_);
+    if (!alive_[0] || !due)
+      std::copy_n(before, action_dim_, action);
+    else
+      policy_->act(b.obs, action);
+    for (int32_t j = 0; j < action_dim_; ++j)  // a network that overflows proposes nothing
+      action[j] = std::isfinite(action[j]) ? clip_unit(action[j]) : before[j];
+    if (!alive_[0] || t + 1 == horizon_) continue;
+    std::copy_n(action, action_dim_, b.action);
+    rollouts_->step(alive_);
+    steps_ += rollouts_->taken(0);
+    alive_[0] = !b.terminated[0] && !b.truncated[0];
+  }
+}
+
+void Planner::draw_noise() {
+  const int32_t width = knots_ * action_dim_;
+  stream_.normals(noise_, samples_ * width);
+  for (int32_t i = 0; i < samples_; ++i) {
+    float* e = noise_ + sz(i) * sz(width);
+    if (i == 0 || (i == 1 && foreign_))
+      std::fill_n(e, width, 0.0f);
+    else
+      for (int32_t j = 0; j < width; ++j) e[j] *= sigma_[j];
+  }
+}
+
+void Planner::sample_action(int32_t sample, int32_t step, float* action) const {
+  const size_t dim = sz(action_dim_), at = sz(step) * dim;
+  if (sample == 1 && foreign_) {
+    std::copy_n(plan_ + at, dim, action);
+    return;
+  }
+  const KnotRow& row = rows_[step];
+  std::copy_n(centre_ + at, dim, action);
+  for (int32_t k = 0; sample > 0 && k < row.count; ++k) {
+    const float* e = noise_ + (sz(sample) * sz(knots_) + sz(row.first + k)) * dim;
+    for (size_t j = 0; j < dim; ++j) action[j] += row.weight[k] * e[j];
+  }
+  for (size_t j = 0; j < dim; ++j) action[j] = clip_unit(action[j]);
+}
+
+void Planner::roll_out(const Pool& pool, int32_t env) {
+  rollouts_->copy(-1, pool, env);
+  const Buffers& b = rollouts_->buffers();
+  std::fill_n(alive_, samples_, uint8_t{1});
+  std::fill_n(courses_, samples_, Course{});
+  double discount = 1;
+  int32_t alive = samples_;
+  for (int32_t t = 0; t < horizon_ && alive > 0; ++t, discount *= discount_) {
+    for (int32_t i = 0; i < samples_; ++i)
+      if (alive_[i]) sample_action(i, t, b.action + sz(i) * sz(action_dim_));
+    rollouts_->step(alive_);
+    for (int32_t i = 0; i < samples_; ++i) {
+      if (!alive_[i]) continue;
+      Course& c = courses_[i];
+      steps_ += rollouts_->taken(i);
+      c.ret += discount * static_cast<double>(b.reward[i]);
+      for (int32_t k = 0; k < cost_dim_; ++k)
+        c.cost[k] += static_cast<double>(b.cost[sz(i) * sz(cost_dim_) + sz(k)]);
+      if (!b.terminated[i] && !b.truncated[i]) continue;
+      c.lost = (b.status[i] & (kStatusDiverged | kStatusBadAction)) != 0;
+      alive_[i] = 0;
+      --alive;
+    }
+  }
+  if (critic_ && alive > 0) add_terminal(discount);
+}
+
+void Planner::add_terminal(double discount) {
+  critic_->values(rollouts_->buffers().obs, samples_, value_, cost_value_);
+  const int32_t costs = critic_->num_costs();
+  for (int32_t i = 0; i < samples_; ++i) {
+    if (!alive_[i]) continue;
+    courses_[i].ret += discount * static_cast<double>(value_[i]);
+    for (int32_t k = 0; terminal_cost_ && k < costs; ++k)
+      courses_[i].cost[critic_->column(k)] +=
+          std::max(0.0, static_cast<double>(cost_value_[sz(i) * sz(costs) + sz(k)]));
+  }
+}
+
+void Planner::move_centre() {
+  for (int32_t i = 0; i < samples_; ++i) standings_[i] = standing(courses_[i], rule_);
+  rank_courses(standings_, samples_, order_);
+  std::fill_n(weights_, samples_, 0.0);
+  if (best_only_)
+    weights_[order_[0]] = 1;
+  else if (method_ == PlanMethod::kMppi)
+    path_integral_weights(standings_, samples_, temperature_, weights_);
+  else
+    for (int32_t e = 0; e < elites_; ++e) weights_[order_[e]] = 1.0 / elites_;
+  if (method_ == PlanMethod::kCem)
+    elite_deviation(noise_, order_, elites_, knots_ * action_dim_, floor_, sigma_);
+  for (int32_t t = 0; t < horizon_; ++t) {
+    std::fill_n(sum_, action_dim_, 0.0);
+    for (int32_t i = 0; i < samples_; ++i) {
+      if (weights_[i] == 0) continue;
+      sample_action(i, t, row_);
+      for (int32_t j = 0; j < action_dim_; ++j) sum_[j] += weights_[i] * static_cast<double>(row_[j]);
+    }
+    for (int32_t j = 0; j < action_dim_; ++j)
+      next_[sz(t) * sz(action_dim_) + sz(j)] = clip_unit(static_cast<float>(sum_[j]));
+  }
+  std::swap(centre_, next_);
+}
+
+void Planner::act(const Pool& pool, int32_t env, float* action, PlanInfo* info) {
+  const FpMode mode;
+  if (!pool.running(env)) fail(Code::kState, "act: no episode runs in world %d; reset it first", env);
+  const size_t count = sz(horizon_) * sz(action_dim_);
+  PlanInfo out;
+  steps_ = 0;
+  const bool follow = planned_ && given_ && since_ + 1 < replan_;
+  if (!follow) rollouts_->copy(0, pool, env);  // a pool that does not fit changes nothing
+  if (given_) shift_plan();
+  given_ = false;
+  if (!follow) {
+    if (!warm_) start_plan(plan_);
+    set_budgets(pool, env);
+    for (int32_t k = 0; k < knots_; ++k)
+      std::copy_n(noise_std_, action_dim_, sigma_ + sz(k) * sz(action_dim_));
+    foreign_ = policy_ && planned_ && warm_;
+    if (policy_)
+      propose(pool, env);
+    else
+      std::copy_n(plan_, count, centre_);
+    for (int32_t i = 0; i < iterations_; ++i, foreign_ = false) {
+      draw_noise();
+      roll_out(pool, env);
+      move_centre();
+    }
+    std::copy_n(centre_, count, plan_);
+    planned_ = true;
+    out.planned = true;
+    out.best_sample = order_[0];
+    out.best = courses_[order_[0]];
+    int32_t feasible = 0;
+    for (int32_t i = 0; i < samples_; ++i) feasible += !courses_[i].lost && within(courses_[i], rule_);
+    out.feasible_share = static_cast<double>(feasible) / samples_;
+    out.steps = steps_;
+  }
+  since_ = follow ? since_ + 1 : 0;
+  given_ = true;
+  std::copy_n(plan_, action_dim_, last_);
+  std::copy_n(plan_, action_dim_, action);
+  if (info) *info = out;
+}
+
+// What has to agree for a state to be gone on with.
+uint64_t Planner::fingerprint() const {
+  Vector<char> lines(options_.print_lines(nullptr, 0) + 1);
+  const size_t length = options_.print_lines(lines.data(), lines.size());
+  uint64_t hash = hash_bytes(lines.data(), length);
+  hash = hash_bytes(noise_std_, sz(action_dim_) * sizeof *noise_std_, hash);
+  hash = hash_bytes(limit_, sz(cost_dim_) * sizeof *limit_, hash);
+  const uint64_t layout = layout_hash(rollouts_->task());
+  return hash_bytes(&layout, sizeof layout, hash);
+}
+
+void Planner::write_state(Writer& out) const {
+  const HostScope scope(hooks_);
+  const size_t dim = sz(action_dim_);
+  out.begin_file(kMagic, kVersion);
+  out.begin_section("HEAD");
+  out.value(fingerprint());
+  out.end_section();
+  out.begin_section("PLAN");
+  out.value(stream_);
+  out.value(static_cast<uint8_t>(planned_));
+  out.value(static_cast<uint8_t>(given_));
+  out.value(since_);
+  out.bytes(last_, dim * sizeof *last_);
+  out.bytes(plan_, sz(horizon_) * dim * sizeof *plan_);
+  out.end_section();
+  out.end_file();
+}
+
+void Planner::read_state(const void* bytes, size_t size) {
+  const HostScope scope(hooks_);
+  const size_t dim = sz(action_dim_);
+  Reader in(bytes, size, "planner state");
+  in.begin_file(kMagic, kVersion);
+  in.need_section("HEAD");
+  if (in.value<uint64_t>() != fingerprint())
+    fail(Code::kFormat, "planner state: of a planner of another task or other options");
+  in.expect_end();
+  in.need_section("PLAN");
+  const auto stream = in.value<Stream>();
+  const auto planned = in.value<uint8_t>(), given = in.value<uint8_t>();
+  const auto since = in.value<int32_t>();
+  bool good = planned <= 1 && given <= planned && since >= 0 && since < replan_;
+  Reader rows = in;
+  for (size_t i = 0; i < (1 + sz(horizon_)) * dim; ++i) good &= std::abs(rows.value<float>()) <= 1;
+  rows.expect_end();
+  if (!good) fail(Code::kFormat, "planner state: a number is out of range");
+  in.bytes(last_, dim * sizeof *last_);
+  in.bytes(plan_, sz(horizon_) * dim * sizeof *plan_);
+  stream_ = stream;
+  planned_ = planned != 0;
+  given_ = given != 0;
+  since_ = since;
+}
+
+}  // namespace rdm

@@ -1,0 +1,146 @@
+// Planning by sampling: from a world's present state many worlds are rolled out under noisy plans, and the
+// plan moves to what went best. Mirrors rdm_planner_*.
+//
+// A plan is an action for each of the next H steps of the pool. One call of act, with sample i's actions
+//   a_i(t) = clip(c(t) + sum_k B_k(t) e_ik, -1, 1),   e_ik ~ N(0, s_k), e_0 = 0     B: knots.hpp
+// about the centre c: the plan of the call before, shifted by one step, or with a policy the actions of that
+// policy's rollout, where the shifted plan is sample 1. Each iteration rolls all samples out and moves c:
+//   predictive   the actions of the best (predictive sampling, Howell et al. 2022)
+//   mppi         sum_i w_i a_i(t), w by return (ranking.hpp)
+//   cem          the mean of the elites' a_i(t); s_k becomes the deviation of their e_ik
+// The world is its own model: rollouts know what it will draw. The sum of a rollout ends where its episode
+// does; one that is still running at H adds the critic's value.
+#pragma once
+#include "env/pool.hpp"
+#include "plan/knots.hpp"
+#include "plan/ranking.hpp"
+
+namespace rdm {
+
+enum class PlanMethod : int32_t { kPredictive = 0, kCem = 1, kMppi = 2 };
+
+const OptionSpec* planner_options(int32_t* count);
+
+// Who proposes actions, one row at a time, and how good a state is; each a view of what somebody else owns.
+class PlanPolicy {
+ public:
+  virtual void act(const float* obs, float* action) = 0;
+  virtual int32_t repeat() const = 0;  // control steps that it holds an action
+
+ protected:
+  ~PlanPolicy() = default;
+};
+class PlanCritic {
+ public:
+  // value [rows] and cost [rows][num_costs()] of obs [rows][obs_dim].
+  virtual void values(const float* obs, int32_t rows, float* value, float* cost) = 0;
+  virtual int32_t num_costs() const = 0;
+  virtual int32_t column(int32_t i) const = 0;
+
+ protected:
+  ~PlanCritic() = default;
+};
+
+struct PlannerConfig {
+  const Pool* pool = nullptr;           // whose task and options the rollouts have; not kept
+  int32_t num_threads = 0;              // of the rollouts; 0: as many as the pool's
+  uint64_t seed = 0;                    // of the noise
+  const float* noise = nullptr;         // [action_dim] deviations; null: option noise
+  const double* cost_limits = nullptr;  // [cost_dim] of an episode, < 0: none; null: the task's on column 0
+  const OptionInput* options = nullptr;
+  int32_t num_options = 0;
+  const char* settings = nullptr;
+  PlanPolicy* policy = nullptr;  // both outlive the planner; null: none
+  PlanCritic* critic = nullptr;
+  HostHooks hooks;
+};
+
+struct PlanInfo {
+  Course best;                // of the last iteration
+  int32_t best_sample = 0;    // its number
+  double feasible_share = 0;  // of the last iteration's samples
+  bool planned = false;       // false: the plan was followed (option replan)
+  int64_t steps = 0;          // that the rollouts took
+};
+
+class Planner {
+ public:
+  static Planner* create(const PlannerConfig& config);
+  static void destroy(Planner* p);
+
+  // Plans from the present state of a world and gives the first action of the plan. Error(kState) where no
+  // episode runs, else as Pool::copy. No heap use.
+  void act(const Pool& pool, int32_t env, float* action, PlanInfo* info);
+  void forget();  // the plan: the next call starts anew; the noise goes on
+  // [horizon][action_dim]; row 0 is the action that act gave. What set_plan takes is the next call's own, not
+  // shifted; entries are clipped. Error(kArgument) for one that is not finite.
+  const float* plan() const { return plan_; }
+  void set_plan(const float* plan);
+
+  int32_t horizon() const { return horizon_; }
+  int32_t samples() const { return samples_; }
+  int32_t knots() const { return knots_; }
+  int32_t action_dim() const { return action_dim_; }
+  int32_t cost_dim() const { return cost_dim_; }
+  const Options& options() const { return options_; }
+
+  // Plan, noise and counters: a planner of the same options that reads them goes on with the same bytes.
+  void write_state(Writer& out) const;
+  void read_state(const void* bytes, size_t size);  // Error(kFormat): unchanged
+
+  ~Planner();
+  Planner(const PlannerConfig& config);
+
+ private:
+  void read_options(const PlannerConfig& config);
+  void make_rollouts(const PlannerConfig& config);
+  void carve(Arena& arena);
+  uint64_t fingerprint() const;
+
+  void start_plan(float* plan) const;
+  void shift_plan();
+  void set_budgets(const Pool& pool, int32_t env);
+  // The policy's rollout from the state of `env`: its actions become the centre.
+  void propose(const Pool& pool, int32_t env);
+  void draw_noise();
+  void sample_action(int32_t sample, int32_t step, float* action) const;
+  void roll_out(const Pool& pool, int32_t env);
+  void add_terminal(double discount);
+  void move_centre();
+
+  HostHooks hooks_;
+  Options options_;
+  PlanMethod method_ = PlanMethod::kPredictive;
+  CourseRule rule_;
+  bool share_ = false, warm_ = true, best_only_ = false, terminal_cost_ = false;
+  int32_t samples_ = 0, horizon_ = 0, knots_ = 0, elites_ = 0, iterations_ = 1, replan_ = 1;
+  double temperature_ = 1, discount_ = 1, noise_floor_ = 0;
+  double limit_[kMaxTaskCosts] = {};  // of an episode, < 0: none
+  PlanPolicy* policy_ = nullptr;
+  PlanCritic* critic_ = nullptr;
+
+  Pool* rollouts_ = nullptr;  // [samples] worlds
+  int32_t action_dim_ = 0, cost_dim_ = 0;
+  int64_t steps_ = 0;
+
+  Arena arena_;
+  KnotRow* rows_ = nullptr;                                      // [horizon]
+  float *start_ = nullptr, *noise_std_ = nullptr;                // [action_dim]
+  float *floor_ = nullptr, *sigma_ = nullptr;                    // [knots][action_dim]
+  float *plan_ = nullptr, *centre_ = nullptr, *next_ = nullptr;  // [horizon][action_dim]
+  float* noise_ = nullptr;                                       // [samples][knots][action_dim]
+  double *weights_ = nullptr, *sum_ = nullptr;                   // [samples], [action_dim]
+  float *value_ = nullptr, *cost_value_ = nullptr;               // [samples], [samples][critic's costs]
+  float *last_ = nullptr, *row_ = nullptr;                       // [action_dim] given last; scratch
+  uint8_t* alive_ = nullptr;                                     // [samples]
+  Course* courses_ = nullptr;                                    // [samples]
+  Standing* standings_ = nullptr;                                // [samples]
+  int32_t* order_ = nullptr;                                     // [samples]
+
+  Stream stream_;
+  bool planned_ = false, given_ = false;  // there is a plan; its first row was given, so it is shifted next
+  bool foreign_ = false;                  // sample 1 is the plan, not noise about the centre
+  int32_t since_ = 0;                     // calls since it was made
+};
+
+}  // namespace rdm
