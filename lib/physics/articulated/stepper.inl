@@ -13,6 +13,7 @@
 //                  without contacts                                                        joint_limits.inl
 //   constraint     contact impulses, in turn with the active set                           contact_solver.inl
 //   integration    semi-implicit Euler: q += h v1; bases, bodies; kinematics of the next substep
+// Bodies that sleep (sleep.hpp) take no part in any of it.
 //
 // Contacts and active sets depend on each other: an impulse may push a joint against its limit or a drive
 // past its bound, which changes M and with it every contact. They are solved in turn; a world is open until
@@ -27,6 +28,7 @@
 #pragma once
 #include "physics/articulated/contact_solver.inl"
 #include "physics/articulated/joint_limits.inl"
+#include "physics/articulated/sleep.hpp"
 #include "physics/articulated/stepper.hpp"
 
 namespace rdm {
@@ -149,7 +151,10 @@ template <class L>
 void BatchStepper<L>::step(WorldState* const* worlds, int32_t count) {
   worlds_ = worlds;
   count_ = count;
-  for (int32_t w = 0; w < count; ++w) begin_step(*model_, worlds[w]);
+  for (int32_t w = 0; w < count; ++w) {
+    begin_step(*model_, worlds[w]);
+    begin_sleepers(*model_, worlds[w]);
+  }
   for (int32_t k = 0; k < num_batches_; ++k) {
     assign(batches_[k], k, count);
     gather(batches_[k]);
@@ -198,6 +203,7 @@ void BatchStepper<L>::substep() {
   for (int32_t w = 0; w < count_; ++w) {
     store_impulses(worlds_[w]);
     integrate_bodies(*model_, worlds_[w]);
+    fall_asleep(*model_, worlds_[w]);
   }
 }
 
@@ -440,6 +446,7 @@ void BatchStepper<L>::apply_impulses(int32_t world) {
     }
   }
   for (int32_t i = 0; i < scene_->num_bodies; ++i) {
+    if (w.asleep(i)) continue;
     FreeBody& body = w.free_bodies[i];
     const auto& sum = contacts_.sum[body_segment_[i]];
     const double sqrt_inv_mass = w.body_models[i].sqrt_inv_mass;
