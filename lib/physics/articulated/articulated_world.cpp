@@ -368,8 +368,7 @@ bool same_motion(const Motion& a, const Motion& b) {
 // Reads a whole state without taking any of it. Error(kFormat) for one this world could not go on from.
 void ArticulatedWorld::check_state(Reader in) const {
   const SolverDef& solver = scene_->def.solver;
-  if (in.value<int32_t>() != tag())
-    fail(Code::kFormat, "world state: it is of another engine");
+  if (in.value<int32_t>() != tag()) fail(Code::kFormat, "world state: it is of another engine");
   if (in.value<int32_t>() != scene_->num_links || in.value<int32_t>() != scene_->num_bodies)
     fail(Code::kFormat, "world state: it is of another scene");
   bool good = sound_rows(in, *scene_);

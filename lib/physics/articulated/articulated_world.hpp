@@ -2,8 +2,9 @@
 // contact solver for all. ODE finds the contact points and nothing else.
 //
 // The state is the joint coordinates, each link's momentum as it was solved, the drives' active sets, the
-// free bodies, which of them sleep, and the last contacts' impulses. The arithmetic is a Stepper's, which steps several worlds at a
-// time and is shared by the worlds of one worker: a world hands it its WorldState and is never called back.
+// free bodies, which of them sleep, and the last contacts' impulses. The arithmetic is a Stepper's, which
+// steps several worlds at a time and is shared by the worlds of one worker: a world hands it its WorldState
+// and is never called back.
 #pragma once
 #include "physics/articulated/sleep.hpp"
 #include "physics/articulated/stepper.hpp"

@@ -216,8 +216,7 @@ void fall_asleep(const ArticulatedModel& model, WorldState* s) {
       s->island_marks[a->index] |= b->carrier == Carrier::kStatic ? kSupported : kRestless;
     }
   }
-  for (int32_t i = 0; i < scene.num_bodies; ++i)
-    s->island_marks[root(i)] |= s->island_marks[i];
+  for (int32_t i = 0; i < scene.num_bodies; ++i) s->island_marks[root(i)] |= s->island_marks[i];
   for (int32_t i = 0; i < scene.num_bodies; ++i) {
     const int32_t island = root(i);
     if (s->asleep(i) || s->island_marks[island] != kSupported) continue;

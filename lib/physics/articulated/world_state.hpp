@@ -158,10 +158,10 @@ struct WorldState {
   int32_t num_kept, num_asleep;
   int32_t *searched, *resting;  // [listed pairs] those with a side awake; the others
   int32_t num_searched, num_resting;
-  bool lists_fresh;      // lists and kept points are of the present sleepers
-  bool only_kept;        // contacts are the kept points, in their places
-  Bound* body_bounds;    // [num_body_shapes]
-  int32_t* parent;       // [num_bodies] working memory of islands
+  bool lists_fresh;       // lists and kept points are of the present sleepers
+  bool only_kept;         // contacts are the kept points, in their places
+  Bound* body_bounds;     // [num_body_shapes]
+  int32_t* parent;        // [num_bodies] working memory of islands
   uint8_t* island_marks;  // [num_bodies]
 
   // what comes out of the step
