@@ -185,8 +185,8 @@ void BatchStepper<L>::substep() {
     shape_poses(batches_[k]);
   }
   for (int32_t w = 0; w < count_; ++w) {
-    predict_bodies(*model_, worlds_[w]);
     detect_contacts(w);
+    predict_bodies(*model_, worlds_[w]);  // of those that a contact has woken too
   }
   // acceleration and actuation
   for (int32_t k = 0; k < num_batches_; ++k) {
