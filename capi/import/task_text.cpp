@@ -37,7 +37,10 @@ constexpr const char* kShared[] = {"engine",
                                    "link_armature",
                                    "effort_bounds",
                                    "precision",
-                                   "lanes"};
+                                   "lanes",
+                                   "sleep_time",
+                                   "sleep_speed",
+                                   "sleep_spin"};
 
 struct TextTask {
   std::string file;

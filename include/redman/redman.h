@@ -377,7 +377,7 @@ typedef struct rdm_contact { /* frozen layout: one contact point of the last sub
   float force[3];            /* N, on a                                                                   */
   float depth;               /* m                                                                         */
 } rdm_contact;
-/* Writes up to capacity contacts to out [capacity]; *count is how many there are. */
+/* Writes up to capacity contacts to out [capacity], of things asleep as they fell asleep; *count is how many there are. */
 RDM_API rdm_result rdm_pool_contacts(const rdm_pool *p, int32_t env, rdm_contact *out, int32_t capacity,
                                      int32_t *count);
 /* A picture of world env. camera: a name of the task's. rgb [h][w][3], depth [h][w] (m along the optical
@@ -1001,7 +1001,7 @@ RDM_API rdm_result rdm_world_sensor(const rdm_world *world, int32_t sensor, doub
 /* *pairs is how many pairs of a group's shapes touched in the step; *force (N) the sum of the group's contact forces in its
  * last substep. Either may be NULL. */
 RDM_API rdm_result rdm_world_touch(const rdm_world *world, int32_t group, int32_t *pairs, double *force);
-/* Contacts of the last substep to out [capacity]; *count is how many there are. */
+/* Contacts of the last substep to out [capacity], of things asleep as they fell asleep; *count is how many there are. */
 RDM_API rdm_result rdm_world_contacts(const rdm_world *world, rdm_contact *out, int32_t capacity, int32_t *count);
 /* By *depth (m) a body at its present place is within something that it may touch; 0: it is clear. */
 RDM_API rdm_result rdm_world_overlap(rdm_world *world, int32_t body, double *depth);

@@ -59,6 +59,16 @@ Experiment piled(const char* name, Run run, Rows (*rows)(const R&)) {
           }};
 }
 
+// One of which only the articulated engine knows: bodies fall asleep.
+template <class R, class Run>
+Experiment sleeping(const char* name, Run run, Rows (*rows)(const R&)) {
+  return {name, [=](Column column) -> std::optional<Rows> {
+            if (column.engine != EngineKind::kArticulated) return std::nullopt;
+            column.solver.sleep_time = 0.25;
+            return rows(run(column));
+          }};
+}
+
 Rows sag_rows(const Sag& s, const Sag& r) {
   return {{"wrist_rad", s.joint[0]},
           {"wrist_ratio", s.joint[0] / r.joint[0]},
@@ -203,6 +213,9 @@ std::vector<Experiment> all_experiments() {
       absolute("hinge", hinge, hinge_rows),
       absolute("fall", fall, fall_rows),
       piled("jenga", jenga, jenga_rows),
+      sleeping(
+          "stack_10_asleep", [](const Column& c) { return stack(c, 10); }, pile_rows),
+      sleeping("jenga_asleep", jenga, jenga_rows),
   };
 }
 

@@ -37,6 +37,9 @@ TEST(SimOptions, DefaultsAreTheSolversOwn) {
   EXPECT_EQ(s.link_armature, d.link_armature);
   EXPECT_EQ(s.spring_only_effort, d.spring_only_effort);
   EXPECT_EQ(s.exact, d.exact);
+  EXPECT_EQ(s.sleep_time, d.sleep_time);
+  EXPECT_EQ(s.sleep_speed, d.sleep_speed);
+  EXPECT_EQ(s.sleep_spin, d.sleep_spin);
   EXPECT_EQ(engine_from(sim_options({})), EngineKind::kArticulated);
   EXPECT_EQ(gravity_from(sim_options({})).z, -9.81);
 }
@@ -60,6 +63,9 @@ TEST(SimOptions, EachReachesTheSolver) {
                                  {"link_armature", nullptr, 1e-5},
                                  {"effort_bounds", "spring", 0},
                                  {"exact_solver", "true", 0},
+                                 {"sleep_time", nullptr, 0.5},
+                                 {"sleep_speed", nullptr, 0.002},
+                                 {"sleep_spin", nullptr, 0.03},
                                  {"engine", "ode", 0}});
   const SolverDef s = solver_from(o);
   EXPECT_DOUBLE_EQ(s.h, 1.0 / 120);
@@ -79,6 +85,9 @@ TEST(SimOptions, EachReachesTheSolver) {
   EXPECT_EQ(s.link_armature, 1e-5);
   EXPECT_TRUE(s.spring_only_effort);
   EXPECT_TRUE(s.exact);
+  EXPECT_EQ(s.sleep_time, 0.5);
+  EXPECT_EQ(s.sleep_speed, 0.002);
+  EXPECT_EQ(s.sleep_spin, 0.03);
   EXPECT_EQ(engine_from(o), EngineKind::kOde);
   EXPECT_EQ(gravity_from(o).z, -1.62);
 }

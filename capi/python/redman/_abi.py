@@ -2921,7 +2921,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_contacts": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "out": POINTER(rdm_contact), "capacity": c_int32, "count": c_void_p},
         {}, False,
-        """Writes up to capacity contacts to out [capacity]; *count is how many there are."""),
+        """Writes up to capacity contacts to out [capacity], of things asleep as they fell asleep; *count is how many there are."""),
     "rdm_pool_render": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "rgb": c_void_p, "depth": c_void_p, "segmentation": c_void_p},
         {"rgb": Rows("uint8", ("h", "w", "3")), "depth": Rows("float32", ("h", "w")), "segmentation": Rows("int32", ("h", "w"))}, False,
@@ -3389,7 +3389,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_world_contacts": Function(
         c_int32, {"world": c_void_p, "out": POINTER(rdm_contact), "capacity": c_int32, "count": c_void_p},
         {}, True,
-        """Contacts of the last substep to out [capacity]; *count is how many there are."""),
+        """Contacts of the last substep to out [capacity], of things asleep as they fell asleep; *count is how many there are."""),
     "rdm_world_overlap": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "depth": c_void_p},
         {}, True,

@@ -30,6 +30,10 @@ constexpr OptionSpec kRows[] = {
                 "engine articulated: arithmetic; double is a reference, half as fast"),
     text_option("lanes", "auto", "auto|1|4|8",
                 "engine articulated: numbers computed at a time; the results are the same"),
+    number_option("sleep_time", 0, 0, 100,
+                  "engine articulated: things that were slow for so long sleep until touched, s; 0: never"),
+    number_option("sleep_speed", 0.01, 0, 10, "speed below which a thing is slow, m/s"),
+    number_option("sleep_spin", 0.25, 0, 100, "angular speed below which a thing is slow, rad/s"),
     flag_option("exact_solver", false, "engine ode: the direct solver, slow; a reference"),
 };
 
@@ -65,6 +69,9 @@ SolverDef solver_from(const Options& o) {
   s.double_precision = same_name(o.text("precision"), "double");
   const char* lanes = o.text("lanes");
   s.lanes = same_name(lanes, "auto") ? 0 : lanes[0] - '0';
+  s.sleep_time = o.number("sleep_time");
+  s.sleep_speed = o.number("sleep_speed");
+  s.sleep_spin = o.number("sleep_spin");
   return s;
 }
 

@@ -62,6 +62,8 @@ ArticulatedWorld::ArticulatedWorld(const Scene& scene, Arena& arena, Articulated
   state_.impulses = arena.make<Vec3>(contacts);
   state_.warm = arena.make<WarmPoint>(contacts);
   state_.next_warm = arena.make<WarmPoint>(contacts);
+  state_.match = arena.make<int32_t>(contacts);
+  carve_sleep(arena);
   state_.start_bodies = arena.make<Motion>(bodies);
   state_.start_bases = arena.make<Motion>(bases);
   state_.feedforward = feedforward_;
@@ -84,6 +86,24 @@ ArticulatedWorld::ArticulatedWorld(const Scene& scene, Arena& arena, Articulated
   own_constants();
   for (int32_t i = 0; i < scene.num_bodies; ++i) set_body(i, bodies_[i]);
   for (int32_t a = 0; a < static_cast<int32_t>(bases); ++a) links_changed(a);
+}
+
+void ArticulatedWorld::carve_sleep(Arena& arena) {
+  const auto bodies = static_cast<size_t>(scene_->num_bodies),
+             contacts = static_cast<size_t>(scene_->def.solver.contacts_max);
+  if (!sleeps()) return;
+  state_.sleep = arena.make<BodySleep>(bodies);
+  state_.kept = arena.make<Contact>(contacts);
+  state_.kept_pairs = arena.make<int32_t>(contacts);
+  state_.kept_warm = arena.make<WarmPoint>(contacts);
+  size_t listed = 0;
+  for (const PairRun& run : scene_->runs) listed += run.shape < 0 ? static_cast<size_t>(run.count) : 0;
+  state_.searched = arena.make<int32_t>(listed);
+  state_.resting = arena.make<int32_t>(listed);
+  state_.body_bounds = arena.make<Bound>(static_cast<size_t>(scene_->num_body_shapes));
+  state_.parent = arena.make<int32_t>(bodies);
+  state_.island_marks = arena.make<uint8_t>(bodies);
+  if (!arena.measuring()) wake_all(*scene_, &state_);
 }
 
 void ArticulatedWorld::make_shared(Arena& arena, ArticulatedWorld* partner, bool partnered) {
@@ -162,6 +182,7 @@ void ArticulatedWorld::own_constants() {
 // Momenta are stored, not only velocities: those of links that are heavier now are made anew.
 void ArticulatedWorld::dynamics_changed() {
   own_constants();
+  wake_all(*scene_, &state_);
   for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a)
     if (heavier_[a]) links_changed(a);
 }
@@ -189,6 +210,7 @@ void ArticulatedWorld::fetch_link(int32_t i) const {
 void ArticulatedWorld::set_body(int32_t i, const Motion& m) {
   bodies_[i] = checked_motion("set_body", i, m);
   state_.free_bodies[i].R = to_matrix(bodies_[i].X.q);
+  wake(*scene_, i, &state_);
 }
 
 void ArticulatedWorld::set_base(int32_t articulation, const Motion& m) {
@@ -230,7 +252,8 @@ void ArticulatedWorld::push_body(int32_t i, const Vec3& force, const Vec3& torqu
 // Back to the poses at the step's start, at rest: the world stays usable and is still marked.
 void ArticulatedWorld::recover() {
   status_ |= kStatusDiverged;
-  num_contacts_ = state_.num_warm = 0;
+  num_contacts_ = state_.num_warm = state_.num_kept = 0;
+  wake_all(*scene_, &state_);
   for (int32_t i = 0; i < scene_->num_bodies; ++i) set_body(i, {state_.start_bodies[i].X, {}, {}});
   for (int32_t i = 0; i < scene_->num_links; ++i) qd_[i] = torque_[i] = 0;
   for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a) {
@@ -243,7 +266,7 @@ void ArticulatedWorld::recover() {
 
 void ArticulatedWorld::end_step() {
   status_ = state_.status;
-  num_contacts_ = state_.num_contacts;
+  num_contacts_ = report_contacts(&state_);
   std::memset(fresh_, 0, static_cast<size_t>(scene_->num_links));
   if (state_.diverged) recover();
   clear_pushes();
@@ -292,7 +315,8 @@ double ArticulatedWorld::body_overlap(int32_t body) {
 }
 
 // --- Saving and loading. A state is the tag, the scene's counts, the rows that every engine has, bases,
-// bodies, the persistent words, the impulses of the last contacts, and what the scene asks for beside them.
+// bodies, the persistent words, the impulses of the last contacts, who sleeps where bodies may, and what the
+// scene asks for beside them.
 
 namespace {
 
@@ -348,8 +372,7 @@ bool same_motion(const Motion& a, const Motion& b) {
 // Reads a whole state without taking any of it. Error(kFormat) for one this world could not go on from.
 void ArticulatedWorld::check_state(Reader in) const {
   const SolverDef& solver = scene_->def.solver;
-  if (in.value<int32_t>() != kTag + (solver.double_precision ? 1 : 0))
-    fail(Code::kFormat, "world state: it is of another engine");
+  if (in.value<int32_t>() != tag()) fail(Code::kFormat, "world state: it is of another engine");
   if (in.value<int32_t>() != scene_->num_links || in.value<int32_t>() != scene_->num_bodies)
     fail(Code::kFormat, "world state: it is of another scene");
   bool good = sound_rows(in, *scene_);
@@ -357,23 +380,50 @@ void ArticulatedWorld::check_state(Reader in) const {
     const auto base = in.value<Motion>();
     good &= scene_->def.articulations[a].free_base ? sound(base) : same_motion(base, bases_[a]);
   }
+  const Reader bodies = in;
   for (int32_t i = 0; i < scene_->num_bodies; ++i) good &= sound(in.value<Motion>());
   good &=
       solver.double_precision ? persistent_sound<double>(in, *scene_) : persistent_sound<float>(in, *scene_);
   const auto num_warm = in.value<int32_t>();
   good &= num_warm >= 0 && num_warm <= solver.contacts_max;
+  int32_t last = 0;
   for (int32_t i = 0; i < solver.contacts_max; ++i) {
     const auto pair = in.value<int32_t>();
     good &= pair >= 0 && (pair < static_cast<int32_t>(scene_->pairs.size()) || pair == 0);
+    good &= i >= num_warm || pair >= last;  // in the order of the pairs
+    last = pair;
     good &= words_within<float>(in, 6, kMomentumBound);
   }
+  good &= !sleeps() || sleep_sound(in, bodies);
   good &= sound_extras(in, *scene_);
   if (!good) fail(Code::kFormat, "world state: a number is not finite or out of range");
 }
 
+// Islands are named by their lowest body, quiet times are in range, and who sleeps stands still.
+bool ArticulatedWorld::sleep_sound(Reader& in, Reader bodies) const {
+  const int32_t most = shared_->model.sleep_substeps;
+  Reader rows = in;
+  bool good = true;
+  for (int32_t i = 0; i < scene_->num_bodies; ++i) {
+    const auto row = in.value<BodySleep>();
+    const auto m = bodies.value<Motion>();
+    good &= row.quiet >= 0 && row.quiet <= most && row.island >= kAwake && row.island <= i;
+    if (!good) return false;
+    if (row.island == kAwake) continue;
+    Reader first = rows;
+    first.view(static_cast<size_t>(row.island) * sizeof(BodySleep));
+    good &= first.value<BodySleep>().island == row.island && row.quiet == most;
+    good &= dot(m.v, m.v) == 0 && dot(m.w, m.w) == 0;
+  }
+  return good;
+}
+
+int32_t ArticulatedWorld::tag() const {
+  return kTag + (scene_->def.solver.double_precision ? 1 : 0) + (sleeps() ? 2 : 0);
+}
+
 void ArticulatedWorld::save(Writer& out) const {
-  const bool wide = scene_->def.solver.double_precision;
-  out.value(kTag + (wide ? 1 : 0));
+  out.value(tag());
   out.value(scene_->num_links);
   out.value(scene_->num_bodies);
   out.value(status_);
@@ -384,10 +434,11 @@ void ArticulatedWorld::save(Writer& out) const {
   out.bytes(bodies_, static_cast<size_t>(scene_->num_bodies) * sizeof(Motion));
   out.bytes(state_.persistent, persistent_bytes(*scene_));
   // as many points as there can be, so that the size never changes
-  out.value(state_.num_warm);
-  const WarmPoint none{};
-  for (int32_t i = 0; i < scene_->def.solver.contacts_max; ++i)
-    out.value(i < state_.num_warm ? state_.warm[i] : none);
+  const int32_t num_warm = state_.num_kept > 0 ? all_warm(state_, state_.next_warm) : state_.num_warm;
+  const WarmPoint *warm = state_.num_kept > 0 ? state_.next_warm : state_.warm, none{};
+  out.value(num_warm);
+  for (int32_t i = 0; i < scene_->def.solver.contacts_max; ++i) out.value(i < num_warm ? warm[i] : none);
+  if (sleeps()) out.bytes(state_.sleep, static_cast<size_t>(scene_->num_bodies) * sizeof(BodySleep));
   save_extras(out);
 }
 
@@ -404,6 +455,7 @@ void ArticulatedWorld::load(Reader& in) {
   in.bytes(state_.persistent, persistent_bytes(*scene_));
   state_.num_warm = in.value<int32_t>();
   in.bytes(state_.warm, static_cast<size_t>(scene_->def.solver.contacts_max) * sizeof(WarmPoint));
+  if (sleeps()) in.bytes(state_.sleep, bodies * sizeof(BodySleep));
   load_extras(in);
   own_constants();
   for (size_t a = 0; a < bases; ++a) base_R_[a] = to_matrix(bases_[a].X.q);
@@ -413,6 +465,7 @@ void ArticulatedWorld::load(Reader& in) {
   for (size_t i = 0; i < links + bases + bodies; ++i) state_.pushes[i] = {};
   num_contacts_ = 0;
   state_.pushed = false;
+  forget_kept(*scene_, &state_);
 }
 
 void ArticulatedWorld::copy(const World& world) {

@@ -2,9 +2,11 @@
 // contact solver for all. ODE finds the contact points and nothing else.
 //
 // The state is the joint coordinates, each link's momentum as it was solved, the drives' active sets, the
-// free bodies and the last contacts' impulses. The arithmetic is a Stepper's, which steps several worlds at a
-// time and is shared by the worlds of one worker: a world hands it its WorldState and is never called back.
+// free bodies, which of them sleep, and the last contacts' impulses. The arithmetic is a Stepper's, which
+// steps several worlds at a time and is shared by the worlds of one worker: a world hands it its WorldState
+// and is never called back.
 #pragma once
+#include "physics/articulated/sleep.hpp"
 #include "physics/articulated/stepper.hpp"
 #include "physics/articulated/world_state.hpp"
 #include "physics/collision/narrowphase.hpp"
@@ -54,6 +56,10 @@ class ArticulatedWorld final : public World {
   template <class S>
   void own_constants_of(const TreeMember& member);
   void release_shared();
+  bool sleeps() const { return scene_->def.solver.sleep_time > 0 && scene_->num_bodies > 0; }
+  void carve_sleep(Arena& arena);
+  bool sleep_sound(Reader& in, Reader bodies) const;
+  int32_t tag() const;
   void check_state(Reader in) const;
   void end_step();
   void clear_pushes();

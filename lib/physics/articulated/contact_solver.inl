@@ -25,7 +25,8 @@
 // it stands; else one gradient step of length 1 / (max(A_tt, A_uu) + |A_tu|), a bound on the largest
 // eigenvalue, and radial projection onto the cone.
 //
-// Sweeps visit the points in the order of the scene's pairs, start from the last substep's impulses (warm
+// Sweeps visit first the pairs of free bodies of a pile, if there are many (wide_contacts.inl), then all
+// other points in the order of the scene's pairs; they start from the last substep's impulses (warm
 // start), and from kConjugateFrom points on are accelerated by the non-smooth non-linear conjugate gradient
 // method of Silcowitz-Hansen, Niebe and Erleben (2010): a sweep's change d_k is the negative gradient, the
 // next search direction p_k = d_k + beta p_(k-1) with beta = |d_k|^2 / |d_(k-1)|^2 (Fletcher and Reeves),
@@ -38,6 +39,7 @@
 
 #include "base/arena.hpp"
 #include "physics/articulated/tree.hpp"
+#include "physics/articulated/wide_contacts.inl"
 
 namespace rdm {
 namespace {
@@ -71,26 +73,34 @@ struct ContactSolver {
   S (*delta)[3] = nullptr;                                        // [max_points]
   S (*point_direction)[3] = nullptr;
   int32_t count = 0, num_segments = 0, most_segments = 0;  // most_segments: of a point
+  WideContacts<S> wide;                                    // points of piles, beside the others
+  S softness = 0;
 
-  void carve(Arena& arena, int32_t max_points, int32_t segment_count, int32_t path_segments) {
+  // The last `bodies` segments are those of the free bodies.
+  void carve(Arena& arena, int32_t max_points, int32_t segment_count, int32_t path_segments, int32_t bodies) {
     const auto n = static_cast<size_t>(max_points), k = static_cast<size_t>(2 * path_segments);
     most_segments = 2 * path_segments;
     num_segments = segment_count;
     points = arena.make<Point>(n);
     rows = arena.make<Row>(n * k * 3);
     segments = arena.make<int32_t>(n * k);
-    sum = arena.make<Row>(static_cast<size_t>(segment_count));
+    sum = arena.make<Row>(static_cast<size_t>(segment_count) + 1);  // the last for what is at rest: stays 0
     previous = arena.make<Row>(static_cast<size_t>(segment_count));
     direction = arena.make<Row>(static_cast<size_t>(segment_count));
     delta = arena.make<S[3]>(n);
     point_direction = arena.make<S[3]>(n);
+    wide.carve(arena, max_points, bodies);
+    wide.first_segment = segment_count - bodies;
+    wide.rest = segment_count;
   }
 
-  void begin() {
+  void begin(S contact_softness) {
     count = 0;
-    for (int32_t s = 0; s < num_segments; ++s) sum[s] = Row{};
+    softness = contact_softness;
+    for (int32_t s = 0; s <= num_segments; ++s) sum[s] = Row{};
+    wide.begin();
   }
-  Point& add(S mu, S softness) {
+  Point& add(S mu) {
     Point& p = points[count];
     p = Point{};
     p.mu = mu;
@@ -139,6 +149,13 @@ struct ContactSolver {
     out[2] = b[0] + b[1];
   }
   S sweep(S* impulse_square);
+  S sweep_all(S* impulse_square) {
+    if (wide.count == 0) return sweep(impulse_square);
+    S rest = 0;
+    const S delta_square = wide.sweep(softness, sum, impulse_square), more = sweep(&rest);
+    *impulse_square += rest;
+    return delta_square + more;
+  }
 };
 
 template <class S>
@@ -253,9 +270,10 @@ template <class S>
 void ContactSolver<S>::solve(int32_t iterations) {
   S impulse_square = 0;  // sum of squared impulses
   // weight travels from point to point, one sweep each: stacks get more
-  const S tolerance = count > kStack ? S(kStackTolerance) : S(kTolerance);
-  iterations = std::clamp(3 * count / 4, iterations, kStackFactor * iterations);
-  if (count < kConjugateFrom) {
+  const int32_t all = count + wide.count;
+  const S tolerance = all > kStack ? S(kStackTolerance) : S(kTolerance);
+  iterations = std::clamp(3 * all / 4, iterations, kStackFactor * iterations);
+  if (all < kConjugateFrom) {
     for (int32_t k = 0; k < iterations; ++k) {
       const S delta_square = sweep(&impulse_square);
       if (delta_square <= tolerance * impulse_square) return;
@@ -266,12 +284,13 @@ void ContactSolver<S>::solve(int32_t iterations) {
     for (int32_t s = 0; s < num_segments; ++s) direction[s] = Row{};
     for (int32_t i = 0; i < count; ++i)
       for (int f = 0; f < 3; ++f) point_direction[i][f] = 0;
+    wide.restart();
   };
   restart();
   S last_square = 0;
   for (int32_t k = 0; k < iterations; ++k) {
     for (int32_t s = 0; s < num_segments; ++s) previous[s] = sum[s];
-    const S delta_square = sweep(&impulse_square);
+    const S delta_square = sweep_all(&impulse_square);
     if (delta_square <= tolerance * impulse_square || k + 1 == iterations) return;
     const S beta = k ? delta_square / last_square : S(0);
     last_square = delta_square;
@@ -289,6 +308,7 @@ void ContactSolver<S>::solve(int32_t iterations) {
         points[i].impulse[f] += beta * point_direction[i][f];
         point_direction[i][f] = beta * point_direction[i][f] + delta[i][f];
       }
+    wide.accelerate(beta);
   }
 }
 

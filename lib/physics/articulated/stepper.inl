@@ -13,6 +13,7 @@
 //                  without contacts                                                        joint_limits.inl
 //   constraint     contact impulses, in turn with the active set                           contact_solver.inl
 //   integration    semi-implicit Euler: q += h v1; bases, bodies; kinematics of the next substep
+// Bodies that sleep (sleep.hpp) take no part in any of it.
 //
 // Contacts and active sets depend on each other: an impulse may push a joint against its limit or a drive
 // past its bound, which changes M and with it every contact. They are solved in turn; a world is open until
@@ -27,6 +28,7 @@
 #pragma once
 #include "physics/articulated/contact_solver.inl"
 #include "physics/articulated/joint_limits.inl"
+#include "physics/articulated/sleep.hpp"
 #include "physics/articulated/stepper.hpp"
 
 namespace rdm {
@@ -117,9 +119,19 @@ class BatchStepper final : public Stepper {
   void detect_contacts(int32_t world);
   void shape_pose(int32_t world, int32_t shape, Vec3* p, Mat3* R) const;
   void solve_contacts();
-  void solve_contacts_of(int32_t world);
+  void solve_contacts_of(int32_t world, bool again);
   void add_contact_rows(typename ContactSolver<S>::Point* point, const Attachment& at, int32_t world, S sign,
                         const Vec3& p, const Vec3* axes);
+  bool is_free(const Contact& contact) const {
+    return attachments_[contact.shape_a].kind == Attachment::kBody &&
+           (attachments_[contact.shape_b].kind == Attachment::kBody ||
+            attachments_[contact.shape_b].kind == Attachment::kStatic);
+  }
+  double push_out_speed(const Contact& contact) const;
+  double friction(const WorldState& w, int32_t pair) const;
+  bool add_piles(int32_t world, bool again);
+  void add_pile_points(int32_t world, bool again, typename WideContacts<S>::Group* group);
+  void read_pile_impulses(int32_t world);
   void apply_impulses(int32_t world);
   void contact_forces(int32_t world);
   void integrate(TreeBatch<L>& t);
@@ -149,7 +161,10 @@ template <class L>
 void BatchStepper<L>::step(WorldState* const* worlds, int32_t count) {
   worlds_ = worlds;
   count_ = count;
-  for (int32_t w = 0; w < count; ++w) begin_step(*model_, worlds[w]);
+  for (int32_t w = 0; w < count; ++w) {
+    begin_step(*model_, worlds[w]);
+    begin_sleepers(*model_, worlds[w]);
+  }
   for (int32_t k = 0; k < num_batches_; ++k) {
     assign(batches_[k], k, count);
     gather(batches_[k]);
@@ -170,8 +185,8 @@ void BatchStepper<L>::substep() {
     shape_poses(batches_[k]);
   }
   for (int32_t w = 0; w < count_; ++w) {
-    predict_bodies(*model_, worlds_[w]);
     detect_contacts(w);
+    predict_bodies(*model_, worlds_[w]);  // of those that a contact has woken too
   }
   // acceleration and actuation
   for (int32_t k = 0; k < num_batches_; ++k) {
@@ -198,6 +213,7 @@ void BatchStepper<L>::substep() {
   for (int32_t w = 0; w < count_; ++w) {
     store_impulses(worlds_[w]);
     integrate_bodies(*model_, worlds_[w]);
+    fall_asleep(*model_, worlds_[w]);
   }
 }
 
@@ -270,7 +286,7 @@ void BatchStepper<L>::solve_contacts() {
       for (int32_t c = 0; c < batches_[k].tree->num_coords; ++c)
         batches_[k].coord[c].inv_sqrt_d = L::root(batches_[k].coord[c].inv_d);
     for (int32_t w = 0; w < count_; ++w)
-      if (open >> w & 1) solve_contacts_of(w);
+      if (open >> w & 1) solve_contacts_of(w, round > 0);
     if (round > kContactRounds) return;
     uint32_t changed = 0;
     for (int32_t k = 0; k < num_batches_; ++k) {
@@ -373,48 +389,192 @@ void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, 
   }
 }
 
-// The impulses of one world's contacts for the present factors, and the velocities v1 that they give. The
-// push-out speed b is erp / h of the depth below the layer, at most `fastest`: a deep overlap, as after a
-// blow, must not turn into a shot.
+// erp / h of the depth below the layer, at most `fastest`: a deep overlap, as after a blow, must not turn
+// into a shot.
 template <class L>
-void BatchStepper<L>::solve_contacts_of(int32_t world) {
-  WorldState& w = *worlds_[world];
+double BatchStepper<L>::push_out_speed(const Contact& contact) const {
   const SolverDef& solver = scene_->def.solver;
   const double fastest = solver.contact_max_speed > 0 ? solver.contact_max_speed : kArticulatedContactSpeed;
-  const S softness = static_cast<S>(solver.contact_cfm / solver.h);
+  return std::min(std::max(contact.depth - solver.contact_layer, 0.0) * solver.contact_erp / solver.h,
+                  fastest);
+}
+
+template <class L>
+double BatchStepper<L>::friction(const WorldState& w, int32_t index) const {
+  const ShapePair& pair = scene_->pairs[static_cast<size_t>(index)];
+  return w.dynamics ? w.dynamics->mu(*scene_, pair) : pair.mu;
+}
+
+// The impulses of one world's contacts for the present factors, and the velocities v1 that they give.
+// `again`: not for the first time in this substep.
+template <class L>
+void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
+  WorldState& w = *worlds_[world];
+  const SolverDef& solver = scene_->def.solver;
   const int32_t count = w.num_contacts;
-  contacts_.begin();
+  contacts_.begin(static_cast<S>(solver.contact_cfm / solver.h));
   for (size_t a = 0; a < scene_->def.articulations.size(); ++a) touched_[a] = 0;
+  const bool piles = add_piles(world, again);
   for (int32_t i = 0; i < count; ++i) {
     const Contact& contact = w.contacts[i];
-    const ShapePair& pair = scene_->pairs[static_cast<size_t>(w.contact_pairs[i])];
-    const double mu = w.dynamics ? w.dynamics->mu(*scene_, pair) : pair.mu;
-    auto& point = contacts_.add(static_cast<S>(mu), softness);
+    if (piles && is_free(contact)) continue;
+    auto& point = contacts_.add(static_cast<S>(friction(w, w.contact_pairs[i])));
     Vec3 axes[3] = {contact.n, {}, {}};
     tangents(contact.n, &axes[1], &axes[2]);
-    const double push_out =
-        std::max(contact.depth - solver.contact_layer, 0.0) * solver.contact_erp / solver.h;
-    point.b[0] = static_cast<S>(std::min(push_out, fastest));
+    point.b[0] = static_cast<S>(push_out_speed(contact));
     add_contact_rows(&point, attachments_[contact.shape_a], world, S(1), contact.p, axes);
     add_contact_rows(&point, attachments_[contact.shape_b], world, S(-1), contact.p, axes);
     contacts_.prepare(&point);
     Vec3 last;
-    if (!warm_impulse(w, i, &last)) continue;
+    if (piles && again)
+      last = w.impulses[i];
+    else if (!warm_impulse(w, i, &last))
+      continue;
     S start[3];
     for (int f = 0; f < 3; ++f) start[f] = static_cast<S>(dot(last, axes[f]));
     start[0] = start[0] < 0 ? S(0) : start[0];
     contacts_.warm_start(&point, start);
   }
   contacts_.solve(solver.iterations);
-  for (int32_t i = 0; i < count; ++i) {
+  for (int32_t i = 0, k = 0; i < count; ++i) {
+    if (piles && is_free(w.contacts[i])) continue;
     const Vec3& n = w.contacts[i].n;
     Vec3 t, u;
     tangents(n, &t, &u);
-    const auto& impulse = contacts_.points[i].impulse;
+    const auto& impulse = contacts_.points[k++].impulse;
     w.impulses[i] = static_cast<double>(impulse[0]) * n + static_cast<double>(impulse[1]) * t +
                     static_cast<double>(impulse[2]) * u;
   }
+  if (piles) read_pile_impulses(world);
   apply_impulses(world);
+}
+
+// The pairs of free bodies with each other and with static shapes into lanes, if there are enough of them.
+template <class L>
+bool BatchStepper<L>::add_piles(int32_t world, bool again) {
+  const WorldState& w = *worlds_[world];
+  auto& wide = contacts_.wide;
+  if (!wide.points || w.num_contacts < kWideFrom) return false;
+  int32_t free = 0;
+  for (int32_t i = 0; i < w.num_contacts; ++i) free += is_free(w.contacts[i]);
+  if (free < kWideFrom) return false;
+  for (int32_t i = 0, end = 0; i < w.num_contacts; i = end) {
+    while (end < w.num_contacts && w.contact_pairs[end] == w.contact_pairs[i]) ++end;
+    if (is_free(w.contacts[i]))
+      wide.add(i, end - i, attachments_[w.contacts[i].shape_a].body,
+               attachments_[w.contacts[i].shape_b].body);
+  }
+  wide.number_points();
+  for (int32_t g = 0; g < wide.num_groups; ++g) add_pile_points(world, again, &wide.groups[g]);
+  wide.warm_start(contacts_.sum);
+  return true;
+}
+
+// Rows, wanted velocities and starts of a group's points. Lanes without one get an axis and no mass.
+template <class L>
+void BatchStepper<L>::add_pile_points(int32_t world, bool again, typename WideContacts<S>::Group* group) {
+  using W = typename WideContacts<S>::L;
+  using WV = typename W::V;
+  const WorldState& w = *worlds_[world];
+  auto& wide = contacts_.wide;
+  struct Side {
+    WV root[9], v[3], w[3];  // C^-1 R^T, velocities without contacts
+  };
+  Side a{}, b{};
+  const auto put = [](WV* v, int lane, double x) { W::set(v, lane, static_cast<S>(x)); };
+  const auto put_body = [&](Side* side, WV* sqrt_mass, int lane, int32_t i) {
+    if (i < 0) return;
+    const FreeBody& body = w.free_bodies[i];
+    for (int k = 0; k < 9; ++k) put(&side->root[k], lane, body.inv_sqrt_inertia.m[k]);
+    for (int r = 0; r < 3; ++r) {
+      put(&side->v[r], lane, body.v[r]);
+      put(&side->w[r], lane, body.w[r]);
+    }
+    put(sqrt_mass, lane, w.body_models[i].sqrt_inv_mass);
+  };
+  for (int l = 0; l < group->lanes; ++l) {
+    put_body(&a, &group->sqrt_mass_a, l, group->body_a[l]);
+    put_body(&b, &group->sqrt_mass_b, l, group->body_b[l]);
+    put(&group->mu, l, friction(w, w.contact_pairs[group->first[l]]));
+  }
+  const auto dot3 = [](const WV* x, const WV* y) { return (x[0] * y[0] + x[1] * y[1]) + x[2] * y[2]; };
+  const auto cross3 = [](const WV* x, const WV* y, WV* out) {
+    out[0] = x[1] * y[2] - x[2] * y[1];
+    out[1] = x[2] * y[0] - x[0] * y[2];
+    out[2] = x[0] * y[1] - x[1] * y[0];
+  };
+  for (int32_t k = 0; k < group->most; ++k) {
+    auto& p = wide.points[group->first_point + k];
+    WV arm_a[3] = {}, arm_b[3] = {}, last[3] = {}, push_out{};
+    WV* n = p.axis[0];
+    n[0] = n[1] = WV{};
+    n[2] = W::all(S(1));
+    for (int l = 0; l < group->lanes; ++l) {
+      if (k >= group->count[l]) continue;
+      const int32_t i = group->first[l] + k;
+      const Contact& contact = w.contacts[i];
+      const Vec3 to_a = contact.p - w.bodies[group->body_a[l]].X.p;
+      const Vec3 to_b = group->body_b[l] < 0 ? Vec3{} : contact.p - w.bodies[group->body_b[l]].X.p;
+      Vec3 start;
+      if (again)
+        start = w.impulses[i];
+      else
+        warm_impulse(w, i, &start);
+      put(&push_out, l, push_out_speed(contact));
+      for (int r = 0; r < 3; ++r) {
+        put(&n[r], l, contact.n[r]);
+        put(&arm_a[r], l, to_a[r]);
+        put(&arm_b[r], l, to_b[r]);
+        put(&last[r], l, start[r]);
+      }
+    }
+    // as tangents()
+    const auto steep = n[2] * n[2] > S(0.5);
+    const WV one = W::all(S(1)), none{};
+    const WV inv = one / W::root(n[1] * n[1] + W::select(steep, n[2] * n[2], n[0] * n[0]));
+    p.axis[1][0] = W::select(steep, none, -n[1] * inv);
+    p.axis[1][1] = W::select(steep, -n[2], n[0]) * inv;
+    p.axis[1][2] = W::select(steep, n[1] * inv, none);
+    cross3(n, p.axis[1], p.axis[2]);
+    for (int f = 0; f < 3; ++f) {
+      WV moment_a[3], moment_b[3];
+      cross3(arm_a, p.axis[f], moment_a);
+      cross3(arm_b, p.axis[f], moment_b);
+      WV slip[3];
+      for (int r = 0; r < 3; ++r) {
+        p.turn_a[f][r] = dot3(&a.root[3 * r], moment_a);
+        p.turn_b[f][r] = -dot3(&b.root[3 * r], moment_b);
+        slip[r] = a.v[r] - b.v[r];
+      }
+      p.b[f] = -(dot3(p.axis[f], slip) + dot3(moment_a, a.w) - dot3(moment_b, b.w));
+      p.impulse[f] = dot3(last, p.axis[f]);
+      if (f > 0) p.impulse[f] = W::select(group->mu > none, p.impulse[f], none);
+    }
+    p.b[0] += push_out;
+    p.impulse[0] = W::select(p.impulse[0] < none, none, p.impulse[0]);
+    wide.prepare(*group, &p, contacts_.softness);
+    // a lane that has no such point
+    for (int l = 0; l < group->lanes; ++l)
+      if (k >= group->count[l]) wide.clear(&p, l);
+  }
+}
+
+template <class L>
+void BatchStepper<L>::read_pile_impulses(int32_t world) {
+  WorldState& w = *worlds_[world];
+  const auto& wide = contacts_.wide;
+  for (int32_t g = 0; g < wide.num_groups; ++g) {
+    const auto& group = wide.groups[g];
+    for (int l = 0; l < group.lanes; ++l)
+      for (int32_t k = 0; k < group.count[l]; ++k) {
+        const auto& p = wide.points[group.first_point + k];
+        Vec3& out = w.impulses[group.first[l] + k];
+        out = {};
+        for (int f = 0; f < 3; ++f)
+          for (int r = 0; r < 3; ++r)
+            out[r] += static_cast<double>(p.axis[f][r][l]) * static_cast<double>(p.impulse[f][l]);
+      }
+  }
 }
 
 // v1 += L^-1 D^-1/2 sum for the robots, and the like for bodies.
@@ -440,6 +600,7 @@ void BatchStepper<L>::apply_impulses(int32_t world) {
     }
   }
   for (int32_t i = 0; i < scene_->num_bodies; ++i) {
+    if (w.asleep(i)) continue;
     FreeBody& body = w.free_bodies[i];
     const auto& sum = contacts_.sum[body_segment_[i]];
     const double sqrt_inv_mass = w.body_models[i].sqrt_inv_mass;
@@ -762,7 +923,7 @@ void BatchStepper<L>::carve(Arena& arena) {
   path_ = arena.make<S>(4 * static_cast<size_t>(most_coords));
   R_JL_ = arena.make<Mat3>(static_cast<size_t>(scene_->num_links));
   q_JL_ = arena.make<Quat>(static_cast<size_t>(scene_->num_links));
-  contacts_.carve(arena, scene_->def.solver.contacts_max, segments, path);
+  contacts_.carve(arena, scene_->def.solver.contacts_max, segments, path, scene_->num_bodies);
 }
 
 // The constants of each lane's member. They stay: a lane holds the same member in every step.

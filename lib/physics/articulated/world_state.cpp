@@ -11,8 +11,6 @@
 namespace rdm {
 namespace {
 
-constexpr float kWarmReach = 0.02f;  // m between two substeps' points that count as one
-
 // C^-1 for C C^T = a, C a lower triangle (Cholesky), by forward substitution.
 Mat3 inverse_cholesky(const Mat3& a) {
   Mat3 c;
@@ -30,20 +28,6 @@ Mat3 inverse_cholesky(const Mat3& a) {
   return b;
 }
 
-// Of the shapes on free bodies; the capsule axis too, for all that have one.
-void set_body_bounds(const Scene& scene, const WorldState& s, Bound* bounds) {
-  for (int32_t i = 0; i < scene.num_body_shapes; ++i) {
-    const int32_t at = scene.first_body_shape + i;
-    const SceneShape& shape = scene.shapes[static_cast<size_t>(at)];
-    const Mat3& R_WB = s.free_bodies[shape.index].R;
-    const Pose& X_BS = shape.def.X_LS;
-    const SizedShape* own = s.sized ? s.sized + i : nullptr;
-    set_bound(shape, s.bodies[shape.index].X.p + R_WB * (own ? own->p : X_BS.p), R_WB * to_matrix(X_BS.q),
-              &bounds[at]);
-    if (own) size_bound(shape, own->size_factor, &bounds[at]);
-  }
-}
-
 }  // namespace
 
 ArticulatedModel make_articulated_model(const Scene& scene) {
@@ -51,6 +35,22 @@ ArticulatedModel make_articulated_model(const Scene& scene) {
   model.scene = &scene;
   model.trees = make_trees(scene);
   for (int32_t i = 0; i < scene.num_bodies; ++i) model.bodies.push_back(body_model(scene, i, nullptr));
+  const SolverDef& solver = scene.def.solver;
+  if (solver.sleep_time == 0 || scene.num_bodies == 0) return model;
+  model.sleep_substeps = std::max(1, static_cast<int32_t>(std::lround(solver.sleep_time / solver.h)));
+  model.all_listed = true;
+  const auto side = [&](int32_t shape) {
+    const SceneShape& s = scene.shapes[static_cast<size_t>(shape)];
+    if (s.carrier == Carrier::kBody) return s.index;
+    return s.carrier == Carrier::kStatic ? ListedPair::kStatic : ListedPair::kArticulation;
+  };
+  for (const PairRun& run : scene.runs) {
+    if (run.shape >= 0) model.all_listed = false;
+    for (int32_t k = run.first; run.shape < 0 && k < run.first + run.count; ++k) {
+      const ShapePair& pair = scene.pairs[static_cast<size_t>(k)];
+      model.listed_pairs.push_back({k, side(pair.a), side(pair.b)});
+    }
+  }
   return model;
 }
 
@@ -130,6 +130,7 @@ void predict_bodies(const ArticulatedModel& model, WorldState* s) {
   const double h = model.scene->def.solver.h;
   const Wrench* pushes = s->body_pushes(*model.scene);
   for (int32_t i = 0; i < model.scene->num_bodies; ++i) {
+    if (s->asleep(i)) continue;
     const BodyModel& constants = s->body_models[i];
     const Motion& m = s->bodies[i];
     FreeBody& body = s->free_bodies[i];
@@ -160,39 +161,10 @@ void size_bound(const SceneShape& shape, double factor, Bound* bound) {
   for (int k = 0; k < 3; ++k) bound->axis[k] *= static_cast<float>(factor);
 }
 
-void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses, WorldState* s) {
-  Bound* bounds = collider->bounds();
-  set_body_bounds(*model.scene, *s, bounds);
-  const Collider::Found found =
-      collider->collide(*model.scene, poses, s->contacts, s->contact_pairs, s->touched);
-  s->num_contacts = found.count;
-  if (found.failed) s->diverged = true;
-  if (found.overflow) s->status |= kStatusContactOverflow;
-  for (int32_t i = 0; i < s->num_contacts; ++i) {
-    const float* center = bounds[s->contacts[i].shape_a].center;
-    s->next_warm[i].pair = s->contact_pairs[i];
-    for (int k = 0; k < 3; ++k)
-      s->next_warm[i].p[k] = static_cast<float>(s->contacts[i].p[k] - static_cast<double>(center[k]));
-  }
-}
-
-// The nearest of the last substep's points of the same pair, measured from shape a's centre: points slide
-// with it.
 bool warm_impulse(const WorldState& s, int32_t contact, Vec3* impulse) {
-  const WarmPoint& here = s.next_warm[contact];
-  float nearest = kWarmReach * kWarmReach;
-  const WarmPoint* found = nullptr;
-  for (int32_t i = 0; i < s.num_warm; ++i) {
-    if (s.warm[i].pair != here.pair) continue;
-    float square = 0;
-    for (int k = 0; k < 3; ++k) square += (s.warm[i].p[k] - here.p[k]) * (s.warm[i].p[k] - here.p[k]);
-    if (!(square < nearest)) continue;
-    nearest = square;
-    found = &s.warm[i];
-  }
-  if (!found) return false;
-  *impulse = {static_cast<double>(found->impulse[0]), static_cast<double>(found->impulse[1]),
-              static_cast<double>(found->impulse[2])};
+  if (s.match[contact] < 0) return false;
+  const float* found = s.warm[s.match[contact]].impulse;
+  *impulse = {static_cast<double>(found[0]), static_cast<double>(found[1]), static_cast<double>(found[2])};
   return true;
 }
 
@@ -206,6 +178,7 @@ void store_impulses(WorldState* s) {
 void integrate_bodies(const ArticulatedModel& model, WorldState* s) {
   const double h = model.scene->def.solver.h;
   for (int32_t i = 0; i < model.scene->num_bodies; ++i) {
+    if (s->asleep(i)) continue;
     const BodyModel& constants = s->body_models[i];
     FreeBody& body = s->free_bodies[i];
     Motion& m = s->bodies[i];

@@ -27,11 +27,21 @@ struct BodyModel {
   Vec3 gravity;            // m/s2
 };
 
+// A pair of a run without an articulation: which body each shape is on.
+struct ListedPair {
+  static constexpr int32_t kStatic = -1, kArticulation = -2;
+  int32_t pair, a, b;
+};
+
 // Made once for all worlds of a worker and only read afterwards.
 struct ArticulatedModel {
   const Scene* scene = nullptr;
   Vector<Tree> trees;
   Vector<BodyModel> bodies;  // [num_bodies]
+  // where bodies fall asleep (sleep.hpp)
+  int32_t sleep_substeps = 0;  // so long they are quiet before; 0: never
+  Vector<ListedPair> listed_pairs;
+  bool all_listed = false;  // those are all pairs
 };
 ArticulatedModel make_articulated_model(const Scene& scene);
 
@@ -101,6 +111,13 @@ struct WarmPoint {
   float impulse[3];  // world, N s
 };
 
+// Whether a body sleeps (sleep.hpp).
+struct BodySleep {
+  int32_t island;  // the lowest body of those it sleeps with; kAwake
+  int32_t quiet;   // substeps in a row, up to those after which it may sleep
+};
+inline constexpr int32_t kAwake = -1;
+
 // One world's data. The arrays belong to the world.
 struct WorldState {
   // what lasts
@@ -111,6 +128,7 @@ struct WorldState {
   void* persistent;  // [articulations]: PersistentBase, then PersistentLink per link; float or double
   WarmPoint* warm;   // [contacts_max], num_warm of the last substep
   int32_t num_warm;
+  BodySleep* sleep;  // [num_bodies]; null, and all of sleep below: no body ever falls asleep
 
   // what it has of its own; null where all is the scene's
   const Dynamics* dynamics;
@@ -130,7 +148,21 @@ struct WorldState {
   int32_t* contact_pairs;  // [contacts_max] index of Scene::pairs
   Vec3* impulses;          // [contacts_max] on shape a, N s
   WarmPoint* next_warm;    // [contacts_max] this substep's points
+  int32_t* match;          // [contacts_max] their nearest in `warm`, -1: none
   int32_t num_contacts;
+
+  // of sleep
+  Contact* kept;         // [contacts_max] num_kept points among the sleeping, in the order of their pairs
+  int32_t* kept_pairs;   // [contacts_max]
+  WarmPoint* kept_warm;  // [contacts_max]
+  int32_t num_kept, num_asleep;
+  int32_t *searched, *resting;  // [listed pairs] those with a side awake; the others
+  int32_t num_searched, num_resting;
+  bool lists_fresh;       // lists and kept points are of the present sleepers
+  bool only_kept;         // contacts are the kept points, in their places
+  Bound* body_bounds;     // [num_body_shapes]
+  int32_t* parent;        // [num_bodies] working memory of islands
+  uint8_t* island_marks;  // [num_bodies]
 
   // what comes out of the step
   double* torque;    // [num_links] mean over the substeps
@@ -140,6 +172,7 @@ struct WorldState {
   bool diverged;  // the step's numbers are not to be used: the world goes back to the poses below
   Motion *start_bodies, *start_bases;  // [num_bodies], [articulations] as the step began
 
+  bool asleep(int32_t body) const { return sleep && sleep[body].island != kAwake; }
   const Wrench* base_pushes(const Scene& scene) const { return pushes + scene.num_links; }
   const Wrench* body_pushes(const Scene& scene) const {
     return base_pushes(scene) + scene.def.articulations.size();
@@ -149,8 +182,6 @@ struct WorldState {
 // Outputs to zero, the start's poses stored. A target that is not finite marks the world and holds the joint.
 void begin_step(const ArticulatedModel& model, WorldState* s);
 void predict_bodies(const ArticulatedModel& model, WorldState* s);
-// Contact points of the present poses. The collider's bounds of all shapes of trees are set by the caller.
-void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses, WorldState* s);
 // Impulse on shape a that the last substep gave at a point like this one; false: none.
 bool warm_impulse(const WorldState& s, int32_t contact, Vec3* impulse);
 void store_impulses(WorldState* s);

@@ -81,6 +81,7 @@ void BroadPhase::carve(const Scene& scene, Arena& arena) {
   planes_ = arena.make<Plane>(static_cast<size_t>(planes));
   boxes_ = arena.make<Box>(scene.def.articulations.size());
   neighbours_ = arena.make<uint8_t>(scene.shapes.size());
+  marks_ = arena.make<uint8_t>(scene.def.articulations.size() * static_cast<size_t>(scene.num_body_shapes));
 }
 
 void BroadPhase::make(const Scene& scene) {
@@ -102,11 +103,16 @@ void BroadPhase::make(const Scene& scene) {
     const ShapePair& pair = scene.pairs[k];
     const float reach = bounds_[pair.a].axis[3] + bounds_[pair.b].axis[3] + kSlack;
     const float spheres = bounds_[pair.a].center[3] + bounds_[pair.b].center[3] + kSlack;
-    pairs_[k] = {pair.a, pair.b, reach * reach, spheres * spheres, -1};
+    const SceneShape &x = scene.shapes[static_cast<size_t>(pair.a)],
+                     &y = scene.shapes[static_cast<size_t>(pair.b)];
+    const int32_t mark = x.articulation >= 0 && y.carrier == Carrier::kBody
+                             ? x.articulation * scene.num_body_shapes + pair.b - scene.first_body_shape
+                             : -1;
+    pairs_[k] = {pair.a, pair.b, reach * reach, spheres * spheres, -1, mark};
     if (pair.reach >= 0) continue;
     const auto before = std::count_if(scene.shapes.begin(), scene.shapes.begin() + pair.b,
                                       [](const SceneShape& s) { return s.radius < 0; });
-    pairs_[k] = {pair.a, pair.b, kFar, kFar, static_cast<int32_t>(before)};
+    pairs_[k] = {pair.a, pair.b, kFar, kFar, static_cast<int32_t>(before), -1};
     const Pose X_WS = rest_pose(scene, scene.shapes[static_cast<size_t>(pair.b)]);
     const Vec3 n = rotate(X_WS.q, {0, 0, 1});
     planes_[before] = {n, rdm::dot(n, X_WS.p)};
@@ -183,9 +189,39 @@ uint32_t BroadPhase::near_four_of(const int32_t* list) const {
   return bits_of(segment_distance(p, u, q, v) < gap);
 }
 
-void BroadPhase::search(const Scene& scene, Visit visit, void* context) {
+// The free bodies' shapes that are near an articulation's box.
+void BroadPhase::mark_bodies(const Scene& scene) {
+  uint8_t* mark = marks_;
+  for (size_t a = 0; a < scene.def.articulations.size(); ++a)
+    for (int32_t i = 0; i < scene.num_body_shapes; ++i)
+      *mark++ = near(bounds_[scene.first_body_shape + i], boxes_[a]);
+}
+
+// Of at most kBatch pairs: all tests before any of the collisions, so that they overlap in the machine. The
+// list is filled up to a multiple of four.
+void BroadPhase::visit_near(int32_t* list, int32_t count, Visit visit, void* context) const {
+  for (int32_t k = count; k % 4 != 0; ++k) list[k] = list[0];
+  uint64_t bits = 0;
+  for (int32_t k = 0; k < count; k += 4) bits |= uint64_t{near_four(list + k)} << k;
+  if (count < kBatch) bits &= (uint64_t{1} << count) - 1;
+  for (; bits != 0; bits &= bits - 1)
+    if (const int32_t pair = list[std::countr_zero(bits)]; pairs_[pair].plane < 0 || on_plane(pairs_[pair]))
+      visit(context, pair);
+}
+
+void BroadPhase::search_listed(const PairList& listed, Visit visit, void* context) {
+  for (int32_t at = 0; at < listed.count;) {
+    int32_t list[kBatch + 3], count = 0;
+    while (at < listed.count && count < kBatch) list[count++] = listed.pairs[at++];
+    visit_near(list, count, visit, context);
+  }
+}
+
+void BroadPhase::search(const Scene& scene, const PairList* listed, Visit visit, void* context) {
   update_boxes(scene);
+  mark_bodies(scene);
   int32_t marked[2] = {-1, -1};  // the articulations that neighbours_ is about
+  int32_t at = 0;                // in the list
   for (const PairRun& run : scene.runs) {
     if (run.shape >= 0 && !near(bounds_[run.shape], boxes_[run.articulation])) continue;
     const int32_t owner = run.shape < 0 ? -1 : scene.shapes[static_cast<size_t>(run.shape)].articulation;
@@ -194,19 +230,21 @@ void BroadPhase::search(const Scene& scene, Visit visit, void* context) {
       marked[1] = run.articulation;
       mark_neighbours(scene, run.articulation, boxes_[owner]);
     }
-    for (int32_t first = run.first, end = run.first + run.count; first < end;) {
-      // all tests of a batch before any of its collisions: they overlap in the machine
+    const int32_t end = run.first + run.count;
+    if (listed && run.shape < 0) {
+      while (at < listed->count && listed->pairs[at] < end) {
+        int32_t list[kBatch + 3], count = 0;
+        for (; at < listed->count && listed->pairs[at] < end && count < kBatch; ++at)
+          if (!passed_over(listed->pairs[at])) list[count++] = listed->pairs[at];
+        visit_near(list, count, visit, context);
+      }
+      continue;
+    }
+    for (int32_t first = run.first; first < end;) {
       int32_t list[kBatch + 3], count = 0;
       for (; first < end && count < kBatch; ++first)
-        if (owner < 0 || neighbours_[pairs_[first].b]) list[count++] = first;
-      for (int32_t k = count; k % 4 != 0; ++k) list[k] = list[0];
-      uint64_t bits = 0;
-      for (int32_t k = 0; k < count; k += 4) bits |= uint64_t{near_four(list + k)} << k;
-      if (count < kBatch) bits &= (uint64_t{1} << count) - 1;
-      for (; bits != 0; bits &= bits - 1)
-        if (const int32_t pair = list[std::countr_zero(bits)];
-            pairs_[pair].plane < 0 || on_plane(pairs_[pair]))
-          visit(context, pair);
+        if (owner < 0 ? !passed_over(first) : neighbours_[pairs_[first].b] != 0) list[count++] = first;
+      visit_near(list, count, visit, context);
     }
   }
 }

@@ -4,7 +4,8 @@
 //   1. an axis-aligned box around each articulation's spheres;
 //   2. per run of pairs of one shape with one articulation: the shape's sphere against that box,
 //      |max(low - c, c - high, 0)|^2 < r^2, and that articulation's shapes against the box of its own;
-//   3. per pair, four at a time: spheres, |c_a - c_b|^2 < (r_a + r_b)^2, then the distance of the segments
+//   3. of pairs of a link with a free body: the body's sphere against the box of the link's articulation;
+//   4. per pair, four at a time: spheres, |c_a - c_b|^2 < (r_a + r_b)^2, then the distance of the segments
 //      (Ericson, Real-Time Collision Detection, 2005, section 5.1.9). Planes: n . c - d < r.
 // All in floats, with a slack for their rounding: a pair that touches is never passed over, so what is found
 // does not depend on the bounds. A bound with a number missing (NaN) touches nothing.
@@ -21,6 +22,13 @@ struct Capsule {
   double radius;
 };
 Capsule capsule_around(const SceneShape& shape);
+
+// Which pairs of runs without an articulation to search: indices of Scene::pairs, ascending. A search skips
+// the others.
+struct PairList {
+  const int32_t* pairs;
+  int32_t count;
+};
 
 // Where a shape is, roughly: inside its capsule. World, m.
 struct Bound {
@@ -43,8 +51,10 @@ class BroadPhase {
   // adjustable scene the radii of bodies' shapes too.
   Bound* bounds() { return bounds_; }
 
-  // Calls visit for each pair that may touch, in the order of Scene::pairs.
-  void search(const Scene& scene, Visit visit, void* context);
+  // Calls visit for each pair that may touch, in the order of Scene::pairs; null: of all pairs.
+  void search(const Scene& scene, const PairList* listed, Visit visit, void* context);
+  // Of the listed ones alone.
+  void search_listed(const PairList& listed, Visit visit, void* context);
   // For a single pair.
   bool near(int32_t pair) const;
 
@@ -53,6 +63,7 @@ class BroadPhase {
     int32_t a, b;
     float gap, reach;  // m2, squares of the sums of the bounds' capsule and sphere radii
     int32_t plane;     // index of planes_ when b is one: only its own test counts; else -1
+    int32_t mark;      // index of marks_ when a is an articulation's and b a body's; else -1
   };
   struct Plane {
     Vec3 n;
@@ -63,6 +74,9 @@ class BroadPhase {
   };
   void update_boxes(const Scene& scene);
   void mark_neighbours(const Scene& scene, int32_t articulation, const Box& box);
+  void mark_bodies(const Scene& scene);
+  bool passed_over(int32_t pair) const { return pairs_[pair].mark >= 0 && !marks_[pairs_[pair].mark]; }
+  void visit_near(int32_t* list, int32_t count, Visit visit, void* context) const;
   uint32_t near_four(const int32_t* list) const;
   bool on_plane(const Pair& pair) const;
   // Bit k: the bounds of pair list[k] meet, or one of them is a plane; four of them. kSized: the radii are
@@ -76,6 +90,7 @@ class BroadPhase {
   Plane* planes_ = nullptr;
   Box* boxes_ = nullptr;           // [articulations]
   uint8_t* neighbours_ = nullptr;  // [shapes] near the other articulation of a run
+  uint8_t* marks_ = nullptr;       // [articulations][body shapes] the body's shape is near the articulation
   bool sized_ = false;             // worlds have bodies of their own size
 };
 

@@ -76,22 +76,34 @@ void Collider::add_points(const Search& search, int32_t index) {
   }
 }
 
-Collider::Found Collider::collide(const Scene& scene, Poses& poses, Contact* contacts, int32_t* pairs,
-                                  uint8_t* touched) {
+template <class Walk>
+Collider::Found Collider::search(const Search& search, Walk walk) {
   ++search_;
-  Found found = {0, false, false};
-  Search search = {this, scene, poses, contacts, pairs, touched, &found};
-  const auto visit = [](void* context, int32_t pair) {
-    const auto* s = static_cast<Search*>(context);
-    s->self->add_points(*s, pair);
-  };
+  *search.found = {0, false, false};
   try {
     const OdeScope scope;
-    broad_.search(scene, visit, &search);
+    walk([](void* context, int32_t pair) {
+      const auto* s = static_cast<const Search*>(context);
+      s->self->add_points(*s, pair);
+    });
   } catch (const Error&) {
-    found.failed = true;
+    search.found->failed = true;
   }
-  return found;
+  return *search.found;
+}
+
+Collider::Found Collider::collide(const Scene& scene, Poses& poses, const PairList* listed, Contact* contacts,
+                                  int32_t* pairs, uint8_t* touched) {
+  Found found;
+  Search context = {this, scene, poses, contacts, pairs, touched, &found};
+  return search(context, [&](BroadPhase::Visit visit) { broad_.search(scene, listed, visit, &context); });
+}
+
+Collider::Found Collider::collide_listed(const Scene& scene, Poses& poses, const PairList& listed,
+                                         Contact* contacts, int32_t* pairs, uint8_t* touched) {
+  Found found;
+  Search context = {this, scene, poses, contacts, pairs, touched, &found};
+  return search(context, [&](BroadPhase::Visit visit) { broad_.search_listed(listed, visit, &context); });
 }
 
 double Collider::overlap(const Scene& scene, Poses& poses, int32_t body) {

@@ -39,8 +39,12 @@ class Collider {
   Bound* bounds() { return broad_.bounds(); }
 
   // Contact points in the order of the pairs, without force; `pairs` [contacts_max] gets each point's pair;
-  // touched[] is only set. Never throws.
-  Found collide(const Scene& scene, Poses& poses, Contact* contacts, int32_t* pairs, uint8_t* touched);
+  // touched[] is only set. Of runs without an articulation those of `listed` alone, null: all. Never throws.
+  Found collide(const Scene& scene, Poses& poses, const PairList* listed, Contact* contacts, int32_t* pairs,
+                uint8_t* touched);
+  // Of the listed pairs and no others.
+  Found collide_listed(const Scene& scene, Poses& poses, const PairList& listed, Contact* contacts,
+                       int32_t* pairs, uint8_t* touched);
   // Deepest overlap of a body's shapes with all that it may touch, m.
   double overlap(const Scene& scene, Poses& poses, int32_t body);
 
@@ -55,6 +59,8 @@ class Collider {
     uint8_t* touched;
     Found* found;
   };
+  template <class Walk>
+  Found search(const Search& search, Walk walk);
   int touch(Poses& poses, const ShapePair& pair, int most, dContactGeom* out);
   void add_points(const Search& search, int32_t pair);
   void put(Poses& poses, int32_t shape);

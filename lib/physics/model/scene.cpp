@@ -42,6 +42,9 @@ void check_solver(const SolverDef& s) {
   need(s.limit_margin, 0, 0.1, "solver", "limit_margin");
   need(s.limit_stiffness, 0, 1e6, "solver", "limit_stiffness");
   need(s.link_armature, 0, 1, "solver", "link_armature");
+  need(s.sleep_time, 0, 100, "solver", "sleep_time");
+  need(s.sleep_speed, 0, 10, "solver", "sleep_speed");
+  need(s.sleep_spin, 0, 100, "solver", "sleep_spin");
   if (s.lanes != 0 && s.lanes != 1 && s.lanes != 4 && s.lanes != 8)
     fail(Code::kRange, "solver: lanes: %d is none of 0, 1, 4, 8", s.lanes);
 }

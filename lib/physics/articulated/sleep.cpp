@@ -1,0 +1,297 @@
+#include "physics/articulated/sleep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace rdm {
+namespace {
+
+constexpr float kWarmReach = 0.02f;  // m between two substeps' points that count as one
+
+bool is_push(const Wrench& push) {
+  return dot(push.force, push.force) > 0 || dot(push.torque, push.torque) > 0;
+}
+
+// Of the shapes on free bodies; the capsule axis too, for all that have one.
+void set_body_bounds(const Scene& scene, const WorldState& s, Bound* bounds) {
+  for (int32_t i = 0; i < scene.num_body_shapes; ++i) {
+    const int32_t at = scene.first_body_shape + i;
+    const SceneShape& shape = scene.shapes[static_cast<size_t>(at)];
+    if (s.lists_fresh && s.asleep(shape.index)) {  // where it was
+      bounds[at] = s.body_bounds[i];
+      continue;
+    }
+    const Mat3& R_WB = s.free_bodies[shape.index].R;
+    const Pose& X_BS = shape.def.X_LS;
+    const SizedShape* own = s.sized ? s.sized + i : nullptr;
+    set_bound(shape, s.bodies[shape.index].X.p + R_WB * (own ? own->p : X_BS.p), R_WB * to_matrix(X_BS.q),
+              &bounds[at]);
+    if (own) size_bound(shape, own->size_factor, &bounds[at]);
+    if (s.sleep) s.body_bounds[i] = bounds[at];
+  }
+}
+
+// Where each point is on its shape a, for now and the next substep.
+void place_points(const Contact* contacts, const int32_t* pairs, int32_t count, const Bound* bounds,
+                  WarmPoint* out) {
+  for (int32_t i = 0; i < count; ++i) {
+    const float* center = bounds[contacts[i].shape_a].center;
+    out[i].pair = pairs[i];
+    for (int k = 0; k < 3; ++k)
+      out[i].p[k] = static_cast<float>(contacts[i].p[k] - static_cast<double>(center[k]));
+  }
+}
+
+// For each point the nearest of the last substep's points of the same pair, measured from shape a's centre
+// (points slide with it); -1: none. Both lists are in the order of the pairs.
+void match_points(const WarmPoint* now, int32_t count, const WarmPoint* before, int32_t num_before,
+                  int32_t* match) {
+  int32_t first = 0;
+  for (int32_t i = 0; i < count; ++i) {
+    const WarmPoint& here = now[i];
+    while (first < num_before && before[first].pair < here.pair) ++first;
+    float nearest = kWarmReach * kWarmReach;
+    match[i] = -1;
+    for (int32_t k = first; k < num_before && before[k].pair == here.pair; ++k) {
+      float square = 0;
+      for (int r = 0; r < 3; ++r) square += (before[k].p[r] - here.p[r]) * (before[k].p[r] - here.p[r]);
+      if (!(square < nearest)) continue;
+      nearest = square;
+      match[i] = k;
+    }
+  }
+}
+
+// Kept points are points like all others again.
+void release_kept(WorldState* s) {
+  if (s->num_kept == 0) return;
+  s->num_warm = all_warm(*s, s->next_warm);
+  std::swap(s->warm, s->next_warm);
+  s->num_kept = 0;
+}
+
+// Every body that sleeps with `body` under another name takes that of the lower one.
+void unite(const Scene& scene, int32_t a, int32_t b, WorldState* s) {
+  const auto [low, high] = std::minmax({s->sleep[a].island, s->sleep[b].island});
+  for (int32_t i = 0; low != high && i < scene.num_bodies; ++i)
+    if (s->sleep[i].island == high) s->sleep[i].island = low;
+}
+
+// The lists of pairs by who sleeps, and the points of pairs where both sides are at rest. False: there is no
+// room for them all.
+bool sort_pairs(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses, WorldState* s) {
+  const Scene& scene = *model.scene;
+  release_kept(s);
+  s->lists_fresh = true;
+  s->only_kept = false;
+  s->num_searched = s->num_resting = 0;
+  const auto rests = [&](int32_t side) {
+    return side == ListedPair::kStatic || (side >= 0 && s->asleep(side));
+  };
+  for (const ListedPair& pair : model.listed_pairs) {
+    if (s->num_asleep > 0 && rests(pair.a) && rests(pair.b))
+      s->resting[s->num_resting++] = pair.pair;
+    else
+      s->searched[s->num_searched++] = pair.pair;
+  }
+  if (s->num_resting == 0) return true;
+  const Collider::Found found = collider->collide_listed(scene, poses, {s->resting, s->num_resting}, s->kept,
+                                                         s->kept_pairs, s->touched);
+  if (found.failed) s->diverged = true;
+  // those of the others that stay
+  const auto stays = [&](int32_t i, int32_t* at) {
+    while (*at < s->num_resting && s->resting[*at] < s->warm[i].pair) ++*at;
+    return *at == s->num_resting || s->resting[*at] != s->warm[i].pair;
+  };
+  int32_t left = 0;
+  for (int32_t i = 0, at = 0; i < s->num_warm; ++i) left += stays(i, &at);
+  if (found.overflow || found.count + left > scene.def.solver.contacts_max) return false;
+  place_points(s->kept, s->kept_pairs, found.count, collider->bounds(), s->kept_warm);
+  match_points(s->kept_warm, found.count, s->warm, s->num_warm, s->match);
+  const double inv_h = 1 / scene.def.solver.h;
+  for (int32_t i = 0; i < found.count; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const float impulse = s->match[i] < 0 ? 0 : s->warm[s->match[i]].impulse[k];
+      s->kept_warm[i].impulse[k] = impulse;
+      s->kept[i].force[k] = inv_h * static_cast<double>(impulse);
+    }
+    const int32_t a = scene.shapes[static_cast<size_t>(s->kept[i].shape_a)].index,
+                  b = scene.shapes[static_cast<size_t>(s->kept[i].shape_b)].index;
+    if (b >= 0) unite(scene, a, b, s);
+  }
+  s->num_kept = found.count;
+  left = 0;
+  for (int32_t i = 0, at = 0; i < s->num_warm; ++i)
+    if (stays(i, &at)) s->warm[left++] = s->warm[i];
+  s->num_warm = left;
+  return true;
+}
+
+// True if something moving touches something asleep, which it no longer is.
+bool wake_touched(const Scene& scene, WorldState* s, int32_t count) {
+  bool any = false;
+  for (int32_t i = 0; i < count; ++i)
+    for (const int32_t shape : {s->contacts[i].shape_a, s->contacts[i].shape_b}) {
+      const SceneShape& of = scene.shapes[static_cast<size_t>(shape)];
+      if (of.carrier != Carrier::kBody || !s->asleep(of.index)) continue;
+      wake(scene, of.index, s);
+      any = true;
+    }
+  return any;
+}
+
+}  // namespace
+
+void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses, WorldState* s) {
+  const Scene& scene = *model.scene;
+  Bound* bounds = collider->bounds();
+  set_body_bounds(scene, *s, bounds);
+  Collider::Found found{};
+  for (;;) {
+    if (s->sleep && !s->lists_fresh && !sort_pairs(model, collider, poses, s)) {
+      wake_all(scene, s);
+      continue;
+    }
+    const PairList listed = {s->searched, s->num_searched};
+    const bool nothing = s->sleep && listed.count == 0 && model.all_listed;
+    found = nothing ? Collider::Found{}
+                    : collider->collide(scene, poses, s->sleep ? &listed : nullptr, s->contacts,
+                                        s->contact_pairs, s->touched);
+    if (!s->sleep || s->num_asleep == 0) break;
+    if (found.overflow || found.count + s->num_kept > scene.def.solver.contacts_max) {
+      wake_all(scene, s);
+      continue;
+    }
+    if (!wake_touched(scene, s, found.count)) break;
+  }
+  s->num_contacts = found.count;
+  if (found.count > 0) s->only_kept = false;
+  if (found.failed) s->diverged = true;
+  if (found.overflow) s->status |= kStatusContactOverflow;
+  place_points(s->contacts, s->contact_pairs, found.count, bounds, s->next_warm);
+  match_points(s->next_warm, found.count, s->warm, s->num_warm, s->match);
+}
+
+void fall_asleep(const ArticulatedModel& model, WorldState* s) {
+  const Scene& scene = *model.scene;
+  if (!s->sleep || s->num_asleep == scene.num_bodies) return;
+  const SolverDef& solver = scene.def.solver;
+  const Wrench* pushes = s->body_pushes(scene);
+  bool any = false;
+  for (int32_t i = 0; i < scene.num_bodies; ++i) {
+    if (s->asleep(i)) continue;
+    const Motion& m = s->bodies[i];
+    const Vec3& g = s->body_models[i].gravity;
+    const bool quiet = dot(m.v, m.v) < solver.sleep_speed * solver.sleep_speed &&
+                       dot(m.w, m.w) < solver.sleep_spin * solver.sleep_spin && dot(g, g) > 0 &&
+                       !(s->pushed && is_push(pushes[i]));
+    int32_t& count = s->sleep[i].quiet;
+    count = quiet ? std::min(count + 1, model.sleep_substeps) : 0;
+    any |= count == model.sleep_substeps;
+  }
+  if (!any || s->diverged || (s->status & kStatusContactOverflow) != 0) return;
+  // islands by their lowest body: a parent is never above its child
+  constexpr uint8_t kRestless = 1, kSupported = 2;
+  int32_t* parent = s->parent;
+  for (int32_t i = 0; i < scene.num_bodies; ++i) {
+    parent[i] = i;
+    s->island_marks[i] = !s->asleep(i) && s->sleep[i].quiet < model.sleep_substeps ? kRestless : 0;
+  }
+  const auto root = [&](int32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  const auto side = [&](int32_t shape) -> const SceneShape& {
+    return scene.shapes[static_cast<size_t>(shape)];
+  };
+  for (int32_t i = 0; i < s->num_contacts; ++i) {
+    const SceneShape *a = &side(s->contacts[i].shape_a), *b = &side(s->contacts[i].shape_b);
+    if (a->carrier != Carrier::kBody) std::swap(a, b);
+    if (a->carrier != Carrier::kBody) continue;
+    if (b->carrier == Carrier::kBody) {
+      const int32_t x = root(a->index), y = root(b->index), low = std::min(x, y), high = std::max(x, y);
+      parent[high] = low;
+    } else {
+      s->island_marks[a->index] |= b->carrier == Carrier::kStatic ? kSupported : kRestless;
+    }
+  }
+  for (int32_t i = 0; i < scene.num_bodies; ++i) s->island_marks[root(i)] |= s->island_marks[i];
+  for (int32_t i = 0; i < scene.num_bodies; ++i) {
+    const int32_t island = root(i);
+    if (s->asleep(i) || s->island_marks[island] != kSupported) continue;
+    s->sleep[i].island = island;
+    Motion& m = s->bodies[i];
+    m.v = m.w = {};
+    FreeBody& body = s->free_bodies[i];
+    body.v = body.w = body.v1 = body.w1 = {};
+    ++s->num_asleep;
+    s->lists_fresh = false;
+  }
+}
+
+void begin_sleepers(const ArticulatedModel& model, WorldState* s) {
+  if (!s->sleep || s->num_asleep == 0) return;
+  const Wrench* pushes = s->body_pushes(*model.scene);
+  for (int32_t i = 0; s->pushed && i < model.scene->num_bodies; ++i)
+    if (is_push(pushes[i])) wake(*model.scene, i, s);
+  for (int32_t i = 0; s->lists_fresh && i < s->num_kept; ++i) s->touched[s->kept_pairs[i]] = 1;
+}
+
+int32_t report_contacts(WorldState* s) {
+  if (s->num_kept == 0) return s->num_contacts;
+  const int32_t total = s->num_contacts + s->num_kept;
+  if (s->only_kept) return total;
+  int32_t moving = s->num_contacts - 1, kept = s->num_kept - 1;
+  for (int32_t to = total - 1; kept >= 0; --to) {
+    const bool later = moving >= 0 && s->contact_pairs[moving] > s->kept_pairs[kept];
+    s->contacts[to] = later ? s->contacts[moving] : s->kept[kept];
+    s->contact_pairs[to] = later ? s->contact_pairs[moving] : s->kept_pairs[kept];
+    --(later ? moving : kept);
+  }
+  s->only_kept = s->num_contacts == 0;
+  return total;
+}
+
+void wake(const Scene& scene, int32_t body, WorldState* s) {
+  if (!s->sleep) return;
+  const int32_t island = s->sleep[body].island;
+  s->sleep[body].quiet = 0;
+  if (island == kAwake) return;
+  for (int32_t i = 0; i < scene.num_bodies; ++i) {
+    if (s->sleep[i].island != island) continue;
+    s->sleep[i] = {kAwake, 0};
+    --s->num_asleep;
+  }
+  s->lists_fresh = false;
+}
+
+void wake_all(const Scene& scene, WorldState* s) {
+  if (!s->sleep) return;
+  for (int32_t i = 0; i < scene.num_bodies; ++i) s->sleep[i] = {kAwake, 0};
+  s->num_asleep = 0;
+  s->lists_fresh = false;
+}
+
+void forget_kept(const Scene& scene, WorldState* s) {
+  if (!s->sleep) return;
+  s->num_kept = s->num_asleep = 0;
+  s->lists_fresh = s->only_kept = false;
+  for (int32_t i = 0; i < scene.num_bodies; ++i) {
+    if (!s->asleep(i)) continue;
+    ++s->num_asleep;
+    FreeBody& body = s->free_bodies[i];
+    body.v = body.w = body.v1 = body.w1 = {};
+  }
+}
+
+int32_t all_warm(const WorldState& s, WarmPoint* out) {
+  int32_t i = 0, k = 0, count = 0;
+  while (i < s.num_warm || k < s.num_kept) {
+    const bool moving = k == s.num_kept || (i < s.num_warm && s.warm[i].pair < s.kept_warm[k].pair);
+    out[count++] = moving ? s.warm[i++] : s.kept_warm[k++];
+  }
+  return count;
+}
+
+}  // namespace rdm
