@@ -26,6 +26,15 @@ constexpr const TaskInfo* kTasks[] = {
     &kPointGoal2,
     &kPointButton1,
     &kPointButton2,
+    &kCarCircle,
+    &kDroneRun,
+    &kDroneCircle,
+    &kBallGather,
+    &kCarGather,
+    &kDroneGather,
+    &kBallReach,
+    &kCarReach,
+    &kDroneReach,
 };
 
 }  // namespace

@@ -35,6 +35,8 @@ class PlanarScene {
     f(*this);
     return *this;
   }
+  // What it is so far, for parts that an engine moves.
+  SceneDef& def() { return def_; }
   Scene build() { return make_scene(std::move(def_)); }
 
  private:
@@ -56,6 +58,8 @@ class PlanarTask : public Task {
 
  protected:
   PlanarTask(Scene&& scene, int32_t max_steps, std::initializer_list<FieldSpec> fields);
+  // One more field of the row; for constructors.
+  void add(const FieldSpec& field);
 
  private:
   Scene scene_;
