@@ -35,6 +35,9 @@ constexpr const TaskInfo* kTasks[] = {
     &kBallReach,
     &kCarReach,
     &kDroneReach,
+    &kHopperVelocity,
+    &kWalker2dVelocity,
+    &kAntVelocity,
 };
 
 }  // namespace

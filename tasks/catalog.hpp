@@ -34,6 +34,9 @@ extern const TaskInfo kDroneGather;
 extern const TaskInfo kBallReach;
 extern const TaskInfo kCarReach;
 extern const TaskInfo kDroneReach;
+extern const TaskInfo kHopperVelocity;
+extern const TaskInfo kWalker2dVelocity;
+extern const TaskInfo kAntVelocity;
 
 // Puts them into the registry. Once per process, from any thread; further calls do nothing.
 void register_builtin_tasks();
