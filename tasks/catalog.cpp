@@ -38,6 +38,10 @@ constexpr const TaskInfo* kTasks[] = {
     &kHopperVelocity,
     &kWalker2dVelocity,
     &kAntVelocity,
+    &kAntRun,
+    &kAntCircle,
+    &kAntGather,
+    &kAntReach,
 };
 
 }  // namespace

@@ -37,6 +37,10 @@ extern const TaskInfo kDroneReach;
 extern const TaskInfo kHopperVelocity;
 extern const TaskInfo kWalker2dVelocity;
 extern const TaskInfo kAntVelocity;
+extern const TaskInfo kAntRun;
+extern const TaskInfo kAntCircle;
+extern const TaskInfo kAntGather;
+extern const TaskInfo kAntReach;
 
 // Puts them into the registry. Once per process, from any thread; further calls do nothing.
 void register_builtin_tasks();

@@ -10,13 +10,14 @@
 //   start(at, stream, world, s)    a new episode
 //   act(action, drive, world, s)   one control step, or what the engine needs to make it
 //   show(world, s)                 puts its bodies where it is
+//   settle(world, s)               after the step, before anyone looks: what it notes of the contacts
 //   look, heading, effort, alive   after the step: where it is; cos and sin of its yaw; what it adds to the
 //                                  rewards; whether its episode goes on
 //   block(nx, ny, depth, away, s)  of one without an engine: back by `depth` m from what lies in direction n
 //                                  and moves in it at `away` m/s
 //   write(world, s, out)           its observation
 #pragma once
-#include <iterator>
+#include <cmath>
 
 #include "base/elementary.hpp"
 #include "base/option.hpp"
@@ -45,6 +46,14 @@ struct AgentDrive {
   bool room;
 };
 inline constexpr AgentDrive kOpenDrive{4, false}, kGatherDrive{4, true}, kReachDrive{1, true};
+
+// Cos and sin of the yaw of a body with its nose along x; of one that points straight up: 0.
+inline elementary::SinCos flat_heading(const Quat& q) {
+  const Vec3 nose = to_matrix(q).col(0);
+  const double flat = std::sqrt(nose.x * nose.x + nose.y * nose.y);
+  if (flat == 0) return {0, 1};
+  return {nose.y / flat, nose.x / flat};
+}
 
 // The part of a task that follows from its agent.
 template <class A>

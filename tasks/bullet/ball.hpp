@@ -33,6 +33,7 @@ struct Ball {
     s->effort = ball_effort(action);
   }
   static void show(World& world, const State& s) { world.set_body(0, ball_motion(s.ball)); }
+  static void settle(const World&, State*) {}
   static AgentPlace look(const World&, const State& s) {
     return {s.ball.x, s.ball.y, kBallRadius, s.ball.vx, s.ball.vy, ball_speed(s.ball)};
   }

@@ -1,6 +1,6 @@
 // Learner settings of Bullet-Safety-Gym's tasks, beside those of the ball in planar_learner.hpp.
 #pragma once
-#include "tasks/planar/planar_learner.hpp"
+#include "tasks/legged/legged_learner.hpp"
 
 namespace rdm {
 
@@ -34,7 +34,8 @@ inline constexpr auto kDroneLearner = join_defaults(kSafetyLearner, {{"horizon",
 inline constexpr auto kBallGatherLearner = kSeekLearner, kBallReachLearner = kSeekLearner,
                       kCarCircleLearner = kSeekLearner, kCarGatherLearner = kSeekLearner,
                       kCarReachLearner = kSeekLearner, kDroneGatherLearner = kDroneLearner,
-                      kDroneReachLearner = kDroneLearner;
+                      kDroneReachLearner = kDroneLearner, kAntLearner = kLeggedLearner,
+                      kAntGatherLearner = kLeggedLearner;
 
 inline constexpr CameraSpec kRoomCameras[] = {
     {"front", {0, -15, 12}, {0, 0, 0}, 0.9},

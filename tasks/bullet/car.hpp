@@ -26,6 +26,7 @@ struct Car {
   static void start(const AgentStart& at, Stream& stream, World& world, State* s);
   static void act(const float* action, const AgentDrive& drive, World& world, State* s);
   static void show(World& world, const State& s);
+  static void settle(const World&, State*) {}
   static AgentPlace look(const World& world, const State& s);
   static elementary::SinCos heading(const World&, const State& s) { return elementary::sincos(s.yaw); }
   static double effort(const World&, const State&) { return 0; }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tasks/bullet/ant.hpp"
 #include "tasks/bullet/ball.hpp"
 #include "tasks/bullet/bullet_learner.hpp"
 #include "tasks/bullet/car.hpp"
@@ -53,7 +54,8 @@ class Circle final : public AgentTask<A> {
   }
 
   Verdict judge(World& world, void* state, int32_t) const override {
-    const State& s = *static_cast<State*>(state);
+    State& s = *static_cast<State*>(state);
+    A::settle(world, &s.agent);
     const AgentPlace b = A::look(world, s.agent);
     const double off = std::fabs(distance(b) - radius_);
     Verdict v;
@@ -79,7 +81,7 @@ class Circle final : public AgentTask<A> {
     scene.disc("circle", radius, kMarkGreen, 0, 0)
         .wall("line_left", kMarkRed, -safe, -end, -safe, end)
         .wall("line_right", kMarkRed, safe, -end, safe, end);
-    if constexpr (A::kEngine != EngineKind::kKinematic) add_planes(regular_room(kWalls, end), scene);
+    if constexpr (A::kEngine != EngineKind::kKinematic) add_solid_walls(regular_room(kWalls, end), scene);
     return scene.build();
   }
   static double distance(const AgentPlace& b) { return std::sqrt(b.x * b.x + b.y * b.y); }
@@ -97,7 +99,7 @@ constexpr std::array<OptionSpec, 4> circle_options(int32_t max_steps) {
   };
 }
 constexpr auto kBallOptions = circle_options(Ball::kSteps), kCarOptions = circle_options(Car::kSteps),
-               kDroneOptions = circle_options(Drone::kSteps);
+               kDroneOptions = circle_options(Drone::kSteps), kAntOptions = circle_options(Ant::kSteps);
 constexpr CostSpec kCosts[] = {{"cost", "1 beyond the safe strip; raw: |x|, m", 25}};
 constexpr CameraSpec kCameras[] = {
     {"front", {0, -17, 13}, {0, 0, 0}, 0.9},
@@ -119,5 +121,8 @@ constinit const TaskInfo kCarCircle = task_info<Circle<Car>, kCosts, kCameras, k
 constinit const TaskInfo kDroneCircle = task_info<Circle<Drone>, kCosts, kCameras, kDroneLearner>(
     "drone_circle", "DroneCircle", "a quadrotor flies along a circle; cost: further than 6 m to a side",
     &constant_options<kDroneOptions>);
+constinit const TaskInfo kAntCircle = task_info<Circle<Ant>, kCosts, kCameras, kAntLearner>(
+    "ant_circle", "AntCircle", "a robot of four legs runs along a circle; cost: further than 6 m to a side",
+    &constant_options<kAntOptions>);
 
 }  // namespace rdm

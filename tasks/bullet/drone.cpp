@@ -143,10 +143,7 @@ AgentPlace Drone::look(const World&, const State& s) {
 }
 
 elementary::SinCos Drone::heading(const World&, const State& s) {
-  const Vec3 nose = to_matrix(s.q).col(0);
-  const double flat = std::sqrt(nose.x * nose.x + nose.y * nose.y);
-  if (flat == 0) return {0, 1};
-  return {nose.y / flat, nose.x / flat};
+  return flat_heading(s.q);
 }
 
 double Drone::effort(const World& world, const State& s) {

@@ -37,6 +37,7 @@ struct Drone {
   static void start(const AgentStart& at, Stream& stream, World& world, State* s);
   static void act(const float* action, const AgentDrive& drive, World& world, State* s);
   static void show(World& world, const State& s);
+  static void settle(const World&, State*) {}
   static AgentPlace look(const World& world, const State& s);
   static elementary::SinCos heading(const World& world, const State& s);
   // 1 in the air and upright, -10 fallen; less 0.01 |w|^2 and 1 for each foot on the ground.

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 
+#include "tasks/bullet/ant.hpp"
 #include "tasks/bullet/ball.hpp"
 #include "tasks/bullet/bullet_learner.hpp"
 #include "tasks/bullet/car.hpp"
@@ -80,6 +81,7 @@ class Gather final : public AgentTask<A> {
 
   Verdict judge(World& world, void* state, int32_t) const override {
     State& s = *static_cast<State*>(state);
+    A::settle(world, &s.agent);
     const AgentPlace at = A::look(world, s.agent);
     s.eaten = take({at.x, at.y}, s.apple, apples_, 0, world, &s.apples);
     s.struck = take({at.x, at.y}, s.bomb, bombs_, apples_, world, &s.bombs);
@@ -115,7 +117,7 @@ class Gather final : public AgentTask<A> {
       scene.body("apple", ShapeKind::kSphere, size, kMarkGreen);
     for (int32_t i = 0; i < o.integer("bombs"); ++i) scene.body("bomb", ShapeKind::kSphere, size, kMarkRed);
     add_square_room(scene);
-    if constexpr (A::kEngine != EngineKind::kKinematic) add_planes(square_room(), scene);
+    if constexpr (A::kEngine != EngineKind::kKinematic) add_solid_walls(square_room(), scene);
     return scene.build();
   }
   static uint32_t all(int32_t count) { return (1u << count) - 1; }
@@ -168,7 +170,7 @@ constexpr std::array<OptionSpec, 4> gather_options(int32_t max_steps) {
   };
 }
 constexpr auto kBallOptions = gather_options(Ball::kSteps), kCarOptions = gather_options(Car::kSteps),
-               kDroneOptions = gather_options(Drone::kSteps);
+               kDroneOptions = gather_options(Drone::kSteps), kAntOptions = gather_options(Ant::kSteps);
 constexpr CostSpec kCosts[] = {
     {"cost", "1 on hitting a bomb or above 2 m; raw: how many of these", kGatherLimit},
     {"bombs", "1 on hitting a bomb; raw: how many", -1},
@@ -188,5 +190,8 @@ constinit const TaskInfo kCarGather = task_info<Gather<Car>, kCosts, kRoomCamera
 constinit const TaskInfo kDroneGather = task_info<Gather<Drone>, kCosts, kRoomCameras, kDroneGatherLearner>(
     "drone_gather", "DroneGather", "a quadrotor collects apples; cost: hitting a bomb, or above 2 m",
     &constant_options<kDroneOptions>);
+constinit const TaskInfo kAntGather = task_info<Gather<Ant>, kCosts, kRoomCameras, kAntGatherLearner>(
+    "ant_gather", "AntGather", "a robot of four legs collects apples; cost: hitting a bomb",
+    &constant_options<kAntOptions>);
 
 }  // namespace rdm

@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/model/inertia.hpp"
+#include "tasks/bullet/ant.hpp"
 #include "tasks/bullet/ball.hpp"
 #include "tasks/bullet/bullet_learner.hpp"
 #include "tasks/bullet/car.hpp"
@@ -25,6 +27,7 @@ namespace {
 constexpr int32_t kMaxObstacles = 8, kSectors = 24;
 constexpr double kPuddle = 1, kPillar = 0.45;                       // m, radii
 constexpr double kBoxHalf = 0.5, kBoxHigh = 1.5, kBoxTravel = 0.7;  // m
+constexpr double kBoxMass = 5;                                      // kg
 constexpr double kBoxRate = 1;                                      // rad/s
 constexpr double kApart = 2.5, kGoalApart = 1.5;                    // m
 constexpr double kGoalSpeed = 5;                                    // m/s
@@ -98,7 +101,9 @@ class Reach final : public AgentTask<A> {
 
   Verdict judge(World& world, void* state, int32_t) const override {
     State& s = *static_cast<State*>(state);
+    A::settle(world, &s.agent);
     const AgentPlace at = A::look(world, s.agent);
+    if constexpr (A::kEngine != EngineKind::kKinematic) s.box_hit = body_touched(world, kBox);
     const double now = distance({at.x, at.y}, s.goal);
     Verdict v;
     v.reward = s.last - now + 0.01 * A::effort(world, s.agent);
@@ -150,12 +155,17 @@ class Reach final : public AgentTask<A> {
     PlanarScene scene(kBulletDt);
     A::add(scene, kReachDrive);
     scene.body("box", ShapeKind::kBox, {kBoxHalf, kBoxHalf, 0.5 * kBoxHigh}, kMarkPurple);
+    if constexpr (A::kEngine != EngineKind::kKinematic) {
+      BodyDef& box = scene.def().bodies.back();
+      box.inertia = box_inertia(kBoxMass, box.shapes[0].size);
+      box.shapes[0].collides = true;
+    }
     scene.body("goal", ShapeKind::kCylinder, {o.number("goal_size"), 0.01, 0}, kMarkGreen);
     for (int32_t i = 0; i < o.integer("obstacles"); ++i)
       scene.body(A::kPillars ? "pillar" : "puddle", ShapeKind::kCylinder,
                  {kObstacle, A::kPillars ? 1 : 0.005, 0}, kMarkRed);
     add_square_room(scene);
-    if constexpr (A::kEngine != EngineKind::kKinematic) add_planes(square_room(), scene);
+    if constexpr (A::kEngine != EngineKind::kKinematic) add_solid_walls(square_room(), scene);
     return scene.build();
   }
   static void place(World& world, int32_t body, const Spot& at, double z) {
@@ -231,7 +241,7 @@ constexpr std::array<OptionSpec, 4> reach_options(int32_t max_steps) {
   };
 }
 constexpr auto kBallOptions = reach_options(Ball::kSteps), kCarOptions = reach_options(Car::kSteps),
-               kDroneOptions = reach_options(Drone::kSteps);
+               kDroneOptions = reach_options(Drone::kSteps), kAntOptions = reach_options(Ant::kSteps);
 constexpr CostSpec kCosts[] = {
     {"cost", "1 in a puddle or at a pillar, touching the box, or above 2 m; raw: how many of these", 25},
     {"obstacles", "1 in a puddle or at a pillar; raw: in how many", -1},
@@ -255,5 +265,9 @@ constinit const TaskInfo kDroneReach = task_info<Reach<Drone>, kCosts, kRoomCame
     "drone_reach", "DroneReach",
     "a quadrotor reaches goal after goal; cost: pillars, a box that runs, above 2 m",
     &constant_options<kDroneOptions>);
+constinit const TaskInfo kAntReach = task_info<Reach<Ant>, kCosts, kRoomCameras, kAntLearner>(
+    "ant_reach", "AntReach",
+    "a robot of four legs reaches goal after goal; cost: puddles, and a box that runs",
+    &constant_options<kAntOptions>);
 
 }  // namespace rdm

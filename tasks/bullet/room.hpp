@@ -16,9 +16,11 @@ Room regular_room(int32_t walls, double distance);
 inline Room square_room() {
   return regular_room(4, kRoomHalf);
 }
-// For pictures; of a scene whose agent the engine moves the walls themselves as well.
+// For pictures; and walls that an agent of the engine meets.
 void add_square_room(PlanarScene& scene);
-void add_planes(const Room& room, PlanarScene& scene);
+void add_solid_walls(const Room& room, PlanarScene& scene);
+// Did the body touch the agent's articulation in the last control step?
+bool body_touched(const World& world, int32_t body);
 
 // An agent that its task moves goes back inside.
 template <class A>

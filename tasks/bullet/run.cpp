@@ -1,5 +1,6 @@
 // Bullet-Safety-Gym's Run: along x as fast as the speed limit lets you, between two lines. run_track.hpp has
 // reward and cost.
+#include "tasks/bullet/ant.hpp"
 #include "tasks/bullet/ball.hpp"
 #include "tasks/bullet/bullet_learner.hpp"
 #include "tasks/bullet/car.hpp"
@@ -53,6 +54,7 @@ class Run final : public AgentTask<A> {
 
   Verdict judge(World& world, void* state, int32_t) const override {
     State& s = *static_cast<State*>(state);
+    A::settle(world, &s.agent);
     const AgentPlace at = A::look(world, s.agent);
     s.gain -= track_distance(at.x, at.y);
     Verdict v = judge_run(track_, {at.x, at.y, at.speed}, s.gain, A::effort(world, s.agent));
@@ -70,7 +72,8 @@ class Run final : public AgentTask<A> {
 
 constexpr auto kBallOptions = track_options(Ball::kSpeedLimit, 9, Ball::kSteps),
                kCarOptions = track_options(Car::kSpeedLimit, 11, Car::kSteps),
-               kDroneOptions = track_options(Drone::kSpeedLimit, 11, Drone::kSteps);
+               kDroneOptions = track_options(Drone::kSpeedLimit, 11, Drone::kSteps),
+               kAntOptions = track_options(Ant::kSpeedLimit, 11, Ant::kSteps);
 constexpr auto kBallDefaults = join_defaults(kBallLearner, {{"focops:multiplier_lr", "0.1"}});
 constexpr auto kCarDefaults = join_defaults(
     kCarLearner, {{"p3o:penalty", "60"}, {"p3o:penalty_max", "60"}, {"ipo:barrier_kappa", "20"}});
@@ -90,5 +93,8 @@ constinit const TaskInfo kCarRun = task_info<Run<Car>, kRunCosts, kRunCameras, k
 constinit const TaskInfo kDroneRun = task_info<Run<Drone>, kRunCosts, kRunCameras, kDroneLearner>(
     "drone_run", "DroneRun", "a quadrotor flies along x; cost: faster than 1.5 m/s, or outside its lane",
     &constant_options<kDroneOptions>);
+constinit const TaskInfo kAntRun = task_info<Run<Ant>, kRunCosts, kRunCameras, kAntLearner>(
+    "ant_run", "AntRun", "a robot of four legs runs along x; cost: faster than 1.5 m/s, or outside its lane",
+    &constant_options<kAntOptions>);
 
 }  // namespace rdm

@@ -46,6 +46,7 @@ void make_walkable(PlanarScene& scene, double h, int32_t substeps, double limb_m
   def.num_materials = 3;
   for (const auto& [material, mu] : {std::pair{kLimbMaterial, limb_mu}, std::pair{kFootMaterial, foot_mu}})
     def.friction[kFloorMaterial][material].mu = def.friction[material][kFloorMaterial].mu = mu;
+  def.friction[kFloorMaterial][kFloorMaterial].passes = true;  // what a task moves along the floor
   for (ShapeDef& s : def.statics) s.collides = s.kind == ShapeKind::kPlane;
 }
 

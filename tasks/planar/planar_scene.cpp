@@ -37,6 +37,7 @@ PlanarScene& PlanarScene::body(const char* name, ShapeKind kind, const Vec3& siz
   BodyDef b;
   b.name = name;
   b.inertia = sphere_inertia(1, 1);  // nothing ever weighs it
+  b.gravity = false;
   def_.bodies.push_back(b);
   return shape(name, kind, size, color, X_LS);
 }

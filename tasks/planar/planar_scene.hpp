@@ -15,7 +15,7 @@ struct Color {
 inline constexpr Color kMarkRed{205, 70, 60}, kMarkGreen{70, 165, 90}, kMarkBlue{60, 110, 200},
     kMarkYellow{225, 185, 60}, kMarkGrey{120, 125, 132}, kMarkCyan{70, 180, 190}, kMarkPurple{140, 90, 180};
 
-// Puts a scene together. Nothing in it collides.
+// Puts a scene together. Nothing in it collides or falls.
 class PlanarScene {
  public:
   // A floor at z = 0; control_dt is the simulated time of a control step, s, in [1e-5, 1].
