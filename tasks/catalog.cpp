@@ -26,6 +26,22 @@ constexpr const TaskInfo* kTasks[] = {
     &kPointGoal2,
     &kPointButton1,
     &kPointButton2,
+    &kCarCircle,
+    &kDroneRun,
+    &kDroneCircle,
+    &kBallGather,
+    &kCarGather,
+    &kDroneGather,
+    &kBallReach,
+    &kCarReach,
+    &kDroneReach,
+    &kHopperVelocity,
+    &kWalker2dVelocity,
+    &kAntVelocity,
+    &kAntRun,
+    &kAntCircle,
+    &kAntGather,
+    &kAntReach,
 };
 
 }  // namespace

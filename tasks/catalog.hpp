@@ -25,6 +25,22 @@ extern const TaskInfo kPointGoal1;
 extern const TaskInfo kPointGoal2;
 extern const TaskInfo kPointButton1;
 extern const TaskInfo kPointButton2;
+extern const TaskInfo kCarCircle;
+extern const TaskInfo kDroneRun;
+extern const TaskInfo kDroneCircle;
+extern const TaskInfo kBallGather;
+extern const TaskInfo kCarGather;
+extern const TaskInfo kDroneGather;
+extern const TaskInfo kBallReach;
+extern const TaskInfo kCarReach;
+extern const TaskInfo kDroneReach;
+extern const TaskInfo kHopperVelocity;
+extern const TaskInfo kWalker2dVelocity;
+extern const TaskInfo kAntVelocity;
+extern const TaskInfo kAntRun;
+extern const TaskInfo kAntCircle;
+extern const TaskInfo kAntGather;
+extern const TaskInfo kAntReach;
 
 // Puts them into the registry. Once per process, from any thread; further calls do nothing.
 void register_builtin_tasks();

@@ -37,6 +37,7 @@ PlanarScene& PlanarScene::body(const char* name, ShapeKind kind, const Vec3& siz
   BodyDef b;
   b.name = name;
   b.inertia = sphere_inertia(1, 1);  // nothing ever weighs it
+  b.gravity = false;
   def_.bodies.push_back(b);
   return shape(name, kind, size, color, X_LS);
 }
@@ -69,7 +70,11 @@ Motion planar_motion(const Vec3& p, double yaw, double vx, double vy, double rat
 
 PlanarTask::PlanarTask(Scene&& scene, int32_t max_steps, std::initializer_list<FieldSpec> fields)
     : scene_(std::move(scene)), max_steps_(max_steps) {
-  for (const FieldSpec& f : fields) add_field(fields_, nullptr, f.name.text, f.unit, f.count, f.low, f.high);
+  for (const FieldSpec& f : fields) add(f);
+}
+
+void PlanarTask::add(const FieldSpec& f) {
+  add_field(fields_, nullptr, f.name.text, f.unit, f.count, f.low, f.high);
 }
 
 void PlanarTask::hold_action(float* action) const {

@@ -15,7 +15,7 @@ struct Color {
 inline constexpr Color kMarkRed{205, 70, 60}, kMarkGreen{70, 165, 90}, kMarkBlue{60, 110, 200},
     kMarkYellow{225, 185, 60}, kMarkGrey{120, 125, 132}, kMarkCyan{70, 180, 190}, kMarkPurple{140, 90, 180};
 
-// Puts a scene together. Nothing in it collides.
+// Puts a scene together. Nothing in it collides or falls.
 class PlanarScene {
  public:
   // A floor at z = 0; control_dt is the simulated time of a control step, s, in [1e-5, 1].
@@ -35,6 +35,8 @@ class PlanarScene {
     f(*this);
     return *this;
   }
+  // What it is so far, for parts that an engine moves.
+  SceneDef& def() { return def_; }
   Scene build() { return make_scene(std::move(def_)); }
 
  private:
@@ -56,6 +58,8 @@ class PlanarTask : public Task {
 
  protected:
   PlanarTask(Scene&& scene, int32_t max_steps, std::initializer_list<FieldSpec> fields);
+  // One more field of the row; for constructors.
+  void add(const FieldSpec& field);
 
  private:
   Scene scene_;

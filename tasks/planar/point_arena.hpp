@@ -1,31 +1,13 @@
-// What the Point tasks of Safety-Gym share: places drawn apart from each other, the lidar, the arena's
-// things.
+// What the Point tasks of Safety-Gym share: the lidar, the arena's things.
 #pragma once
 #include <cstdint>
 
 #include "base/option.hpp"
-#include "base/rng.hpp"
+#include "tasks/planar/layout.hpp"
 #include "tasks/planar/planar_learner.hpp"
 #include "tasks/planar/point_robot.hpp"
 
 namespace rdm {
-
-struct Spot {
-  double x, y;  // m
-};
-double distance(const Spot& a, const Spot& b);
-void check_spots(const char* what, const Spot* spots, int32_t count);  // of a saved state: Error(kFormat)
-
-// A thing keeps others away by the sum of the two distances.
-struct Keepout {
-  Spot at;
-  double keepout;  // m
-};
-// A place in the square |x|, |y| <= extent - keepout that is clear of `others`. After 100 draws the last one
-// stands, whatever it touches: false.
-bool draw_spot(double extent, const Keepout* others, int32_t count, Stream& stream, Keepout* out);
-// All places of a layout, one after the other; drawn anew up to 100 times when one found no place.
-void draw_layout(double extent, Stream& stream, Keepout* things, int32_t count);
 
 // Bins of 22.5 degrees, counted from straight ahead to the left; 1 is touching, 0 out of range.
 inline constexpr int kLidarBins = 16;

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "small_world.hpp"
-#include "tasks/planar/rolling_ball.hpp"
+#include "tasks/bullet/rolling_ball.hpp"
 
 namespace rdm::test {
 namespace {

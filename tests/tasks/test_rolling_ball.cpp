@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tasks/planar/rolling_ball.hpp"
+#include "tasks/bullet/rolling_ball.hpp"
 
 namespace rdm {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tasks/planar/run_track.hpp"
+#include "tasks/bullet/run_track.hpp"
 
 namespace rdm {
 namespace {

@@ -1,4 +1,4 @@
-#include "tasks/planar/run_track.hpp"
+#include "tasks/bullet/run_track.hpp"
 
 #include <cmath>
 

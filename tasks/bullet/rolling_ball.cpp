@@ -1,4 +1,4 @@
-#include "tasks/planar/rolling_ball.hpp"
+#include "tasks/bullet/rolling_ball.hpp"
 
 #include <cmath>
 
@@ -7,10 +7,8 @@
 namespace rdm {
 namespace {
 
-constexpr int kSubsteps = 4;
-constexpr double kStep = kBallControlDt / kSubsteps;  // s
-constexpr double kForce = 3.5;                        // N
-constexpr double kInertia = 0.42;                     // kg: 0.3 and 0.03 kg m2 / (0.5 m)^2
+constexpr double kForce = 3.5;     // N
+constexpr double kInertia = 0.42;  // kg: 0.3 and 0.03 kg m2 / (0.5 m)^2
 constexpr double kLinearDrag = 0.012, kAngularDrag = 0.0024, kRollingFriction = 0.1413;
 
 double drag(double v) {  // N
@@ -29,20 +27,21 @@ double ball_speed(const RollingBall& b) {
   return std::sqrt(b.vx * b.vx + b.vy * b.vy);
 }
 
-void roll(const float* action, RollingBall* ball) {
-  const double push_x = kForce / kInertia * kStep * static_cast<double>(action[0]);
-  const double push_y = kForce / kInertia * kStep * static_cast<double>(action[1]);
+void roll(const float* action, RollingBall* ball, int32_t substeps) {
+  const double step = kBallControlDt / substeps;
+  const double push_x = kForce / kInertia * step * static_cast<double>(action[0]);
+  const double push_y = kForce / kInertia * step * static_cast<double>(action[1]);
   RollingBall b = *ball;
-  for (int i = 0; i < kSubsteps; ++i) {
-    const double loss = drag(ball_speed(b)) / kInertia * kStep;
+  for (int i = 0; i < substeps; ++i) {
+    const double loss = drag(ball_speed(b)) / kInertia * step;
     b.vx += push_x;
     b.vy += push_y;
     const double v = ball_speed(b);
     const double left = v > loss ? 1 - loss / v : 0;
     b.vx *= left;
     b.vy *= left;
-    b.x += kStep * b.vx;
-    b.y += kStep * b.vy;
+    b.x += step * b.vx;
+    b.y += step * b.vy;
   }
   *ball = b;
 }

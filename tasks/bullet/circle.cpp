@@ -1,0 +1,128 @@
+// Bullet-Safety-Gym's Circle: run clockwise along a circle of 7 m whose sides lie outside the safe strip.
+//
+//   r = 0.1 (y vx - x vy) / (1 + ||p| - 7|) + 0.01 effort    p = (x, y), m; v, m/s; effort: the agent's own
+//   c = [|x| > 6]
+#include <algorithm>
+#include <cmath>
+
+#include "tasks/bullet/ant.hpp"
+#include "tasks/bullet/ball.hpp"
+#include "tasks/bullet/bullet_learner.hpp"
+#include "tasks/bullet/car.hpp"
+#include "tasks/bullet/drone.hpp"
+#include "tasks/bullet/room.hpp"
+#include "tasks/catalog.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kStartInner = 2, kStartOuter = 4;  // m
+constexpr int32_t kWalls = 8;
+constexpr double kOnCircle = 1;  // m
+
+template <class A>
+class Circle final : public AgentTask<A> {
+  struct State {
+    typename A::State agent;
+  };
+
+ public:
+  explicit Circle(const Options& o)
+      : AgentTask<A>(make(o), o.integer("max_steps"), {{"circle_distance", "10 m", 1}}),
+        radius_(o.number("radius")),
+        safe_(o.number("safe_x")),
+        room_(regular_room(kWalls, o.number("wall"))) {}
+
+  size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override { A::check(static_cast<const State*>(state)->agent); }
+
+  // Uniform over the ring, by area, and along the circle the way that is rewarded.
+  void reset(World& world, void* state, Stream& stream) const override {
+    State& s = *static_cast<State*>(state);
+    constexpr double kInner2 = kStartInner * kStartInner, kOuter2 = kStartOuter * kStartOuter;
+    const double r = std::sqrt(stream.uniform(kInner2, kOuter2)), angle = stream.uniform(0, 2 * kPi);
+    const elementary::SinCos at = elementary::sincos(angle);
+    A::start({r * at.cos, r * at.sin, angle - 0.5 * kPi}, stream, world, &s.agent);
+    A::show(world, s.agent);
+  }
+
+  void control(World& world, void* state, const float* action) const override {
+    State& s = *static_cast<State*>(state);
+    A::act(action, kOpenDrive, world, &s.agent);
+    if constexpr (A::kEngine == EngineKind::kKinematic) keep_inside<A>(room_, world, &s.agent);
+    A::show(world, s.agent);
+  }
+
+  Verdict judge(World& world, void* state, int32_t) const override {
+    State& s = *static_cast<State*>(state);
+    A::settle(world, &s.agent);
+    const AgentPlace b = A::look(world, s.agent);
+    const double off = std::fabs(distance(b) - radius_);
+    Verdict v;
+    v.reward = 0.1 * (b.y * b.vx - b.x * b.vy) / (1 + off) + 0.01 * A::effort(world, s.agent);
+    v.cost_raw[0] = std::fabs(b.x);
+    v.cost[0] = v.cost_raw[0] > safe_;
+    v.success = off <= kOnCircle;
+    v.terminated = !A::alive(world, s.agent);
+    return v;
+  }
+
+  void observe(const World& world, const void* state, float* obs) const override {
+    const State& s = *static_cast<const State*>(state);
+    A::write(world, s.agent, obs);
+    obs[AgentTask<A>::kAgentObs] = static_cast<float>(0.1 * (distance(A::look(world, s.agent)) - radius_));
+  }
+
+ private:
+  static Scene make(const Options& o) {
+    const double safe = o.number("safe_x"), radius = o.number("radius"), end = o.number("wall");
+    PlanarScene scene(kBulletDt);
+    A::add(scene, kOpenDrive);
+    scene.disc("circle", radius, kMarkGreen, 0, 0)
+        .wall("line_left", kMarkRed, -safe, -end, -safe, end)
+        .wall("line_right", kMarkRed, safe, -end, safe, end);
+    if constexpr (A::kEngine != EngineKind::kKinematic) add_solid_walls(regular_room(kWalls, end), scene);
+    return scene.build();
+  }
+  static double distance(const AgentPlace& b) { return std::sqrt(b.x * b.x + b.y * b.y); }
+
+  double radius_, safe_;
+  Room room_;
+};
+
+constexpr std::array<OptionSpec, 4> circle_options(int32_t max_steps) {
+  return {
+      number_option("radius", 7, 1, 100, "radius of the circle, m"),
+      number_option("safe_x", 6, 0.1, 100, "a step with |x| beyond this costs 1, m"),
+      number_option("wall", 12, 5, 1000, "distance of the eight walls from the middle, m"),
+      integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"),
+  };
+}
+constexpr auto kBallOptions = circle_options(Ball::kSteps), kCarOptions = circle_options(Car::kSteps),
+               kDroneOptions = circle_options(Drone::kSteps), kAntOptions = circle_options(Ant::kSteps);
+constexpr CostSpec kCosts[] = {{"cost", "1 beyond the safe strip; raw: |x|, m", 25}};
+constexpr CameraSpec kCameras[] = {
+    {"front", {0, -17, 13}, {0, 0, 0}, 0.9},
+    {"top", {0, -0.01, 20}, {0, 0, 0}, 0.9},
+};
+constexpr auto kBallDefaults =
+    join_defaults(kBallLearner, {{"focops:multiplier_lr", "0.4"}, {"ipo:barrier_kappa", "5"}});
+
+}  // namespace
+
+constinit const TaskInfo kBallCircle = task_info<Circle<Ball>, kCosts, kCameras, kBallDefaults>(
+    "ball_circle", "BallCircle",
+    "a ball that rolls by a formula fitted to Bullet runs along a circle; cost: further than 6 m to a side",
+    &constant_options<kBallOptions>);
+constinit const TaskInfo kCarCircle = task_info<Circle<Car>, kCosts, kCameras, kCarCircleLearner>(
+    "car_circle", "CarCircle",
+    "a kinematic bicycle in the place of a race car runs along a circle; cost: further than 6 m to a side",
+    &constant_options<kCarOptions>);
+constinit const TaskInfo kDroneCircle = task_info<Circle<Drone>, kCosts, kCameras, kDroneLearner>(
+    "drone_circle", "DroneCircle", "a quadrotor flies along a circle; cost: further than 6 m to a side",
+    &constant_options<kDroneOptions>);
+constinit const TaskInfo kAntCircle = task_info<Circle<Ant>, kCosts, kCameras, kAntLearner>(
+    "ant_circle", "AntCircle", "a robot of four legs runs along a circle; cost: further than 6 m to a side",
+    &constant_options<kAntOptions>);
+
+}  // namespace rdm

@@ -1,0 +1,177 @@
+// Safety-Gymnasium's AntVelocity: walk along x, but slower than the limit.
+//
+//   r = vx + 1 - 0.5 |a|^2 - 5e-4 |clip(f, -1, 1)|^2     vx: mean speed of the torso over the step, m/s
+//   c = [|(vx, vy)| > 2.6222]
+//
+// f are the contact torques about each body's frame and forces, world axes, in the last substep: N m, N. The
+// episode ends when the torso is outside 0.2 to 1 m. walker_scene.hpp says what differs from MuJoCo; a leg's
+// fixed part and the torso are one body here, so the row of the first stays 0.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "env/fields.hpp"
+#include "tasks/catalog.hpp"
+#include "tasks/legged/ant_body.hpp"
+#include "tasks/legged/legged_learner.hpp"
+#include "tasks/state_check.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kStep = 0.01;  // s
+constexpr int32_t kSubsteps = 5;
+constexpr double kLowest = 0.2, kHighest = 1;  // m
+constexpr AntRange kRange{30 * kDegree, 30 * kDegree, 70 * kDegree, 150};
+constexpr double kBent = 1;  // rad, of ankles at the start
+constexpr double kMu = 1;
+constexpr int32_t kForces = 6 * kAntBodies;
+
+struct State {
+  double x, y;  // m, of the torso before the step
+  double effort;
+  float force[kForces];  // torque, force of each body, cut at +-1
+};
+
+class AntVelocity final : public PlanarTask {
+ public:
+  explicit AntVelocity(const Options& o)
+      : PlanarTask(make(), o.integer("max_steps"),
+                   {{"height", "m", 1},
+                    {"rotation", "1", 4, -1, 1},
+                    {"joint_position", "rad", kAntJoints},
+                    {"velocity", "m/s", 3},
+                    {"spin", "rad/s", 3},
+                    {"joint_velocity", "rad/s", kAntJoints},
+                    {"contact_force", "1", kForces, -1, 1}}),
+        limit_(o.number("speed_limit")),
+        effort_weight_(o.number("effort_weight")),
+        contact_weight_(o.number("contact_weight")),
+        healthy_reward_(o.number("healthy_reward")),
+        noise_(o.number("reset_noise")) {}
+
+  EngineKind engine() const override { return EngineKind::kArticulated; }
+  int32_t action_dim() const override { return kAntJoints; }
+  const char* action_order() const override { return kAntOrder; }
+  size_t state_bytes() const override { return sizeof(State); }
+  void check_state(const void* state) const override {
+    const State& s = *static_cast<const State*>(state);
+    const double values[] = {s.x, s.y, s.effort};
+    check_numbers("ant", values, std::size(values));
+    check_numbers("forces", s.force, kForces, 1);
+  }
+
+  void reset(World& world, void* state, Stream& stream) const override {
+    Pose X{{0, 0, kAntHeight}, {}};
+    double q[kAntJoints], qd[kAntJoints];
+    float rates[6 + kAntJoints];
+    const auto noise = [&] { return noise_ * stream.signed_unit(); };
+    X.p = X.p + Vec3{noise(), noise(), noise()};
+    X.q = normalized(Quat{1 + noise(), noise(), noise(), noise()});
+    for (int32_t i = 0; i < kAntJoints; ++i) q[i] = (i % 2 == 0 ? 0 : kBent * ankle_side(i / 2)) + noise();
+    stream.normals(rates, 6 + kAntJoints);
+    const auto rate = [&](int32_t i) { return noise_ * static_cast<double>(rates[i]); };
+    for (int32_t i = 0; i < kAntJoints; ++i) qd[i] = rate(6 + i);
+    set_ant(world, X, {rate(0), rate(1), rate(2)}, rotate(X.q, {rate(3), rate(4), rate(5)}), q, qd);
+    *static_cast<State*>(state) = {};
+  }
+
+  void control(World& world, void* state, const float* action) const override {
+    State& s = *static_cast<State*>(state);
+    const Vec3& at = world.base(0).X.p;
+    s.x = at.x, s.y = at.y;
+    s.effort = 0;
+    for (int32_t i = 0; i < kAntJoints; ++i)
+      s.effort += static_cast<double>(action[i]) * static_cast<double>(action[i]);
+    drive_ant(world, action, kRange.gear);
+  }
+
+  Verdict judge(World& world, void* state, int32_t) const override {
+    State& s = *static_cast<State*>(state);
+    const Vec3& at = world.base(0).X.p;
+    const double vx = (at.x - s.x) / scene().control_dt(), vy = (at.y - s.y) / scene().control_dt();
+    const double speed = std::sqrt(vx * vx + vy * vy), contact = feel(world, &s);
+    const bool healthy = at.z > kLowest && at.z < kHighest;
+    Verdict v;
+    v.reward = vx + healthy_reward_ * healthy - effort_weight_ * s.effort - contact_weight_ * contact;
+    v.cost_raw[0] = speed;
+    v.cost[0] = speed > limit_;
+    v.success = healthy && vx > 0.5 * limit_ && speed <= limit_;
+    v.terminated = !healthy;
+    return v;
+  }
+
+  void observe(const World& world, const void* state, float* obs) const override {
+    const State& s = *static_cast<const State*>(state);
+    const Motion& base = world.base(0);
+    const Quat& q = base.X.q;
+    *obs++ = static_cast<float>(base.X.p.z);
+    for (const double value : {q.w, q.x, q.y, q.z}) *obs++ = static_cast<float>(value);
+    for (int32_t i = 0; i < kAntJoints; ++i) *obs++ = static_cast<float>(world.q()[i]);
+    put(base.v, obs);
+    put(rotate(conjugate(q), base.w), obs + 3);  // in the torso's axes
+    obs += 6;
+    for (int32_t i = 0; i < kAntJoints; ++i) *obs++ = static_cast<float>(world.qd()[i]);
+    std::copy_n(s.force, kForces, obs);
+  }
+
+ private:
+  static Scene make() {
+    PlanarScene scene(kStep * kSubsteps);
+    make_walkable(scene, kStep, kSubsteps, kMu, kMu);
+    add_ant(kRange, scene);
+    for (int x = 0; x <= 100; x += 2) scene.disc("metres", 0.15, kMarkGrey, x, 0);
+    return scene.build();
+  }
+
+  // Sums the contacts of the last substep by body, cuts them; the sum of their squares.
+  double feel(const World& world, State* s) const {
+    double sum[kForces] = {};
+    const auto join = [&](int32_t shape, const Vec3& p, const Vec3& force) {
+      const SceneShape& at = scene().shapes[static_cast<size_t>(shape)];
+      const int32_t body = std::max(0, ant_body(at));
+      const Vec3 origin = body == 0 ? Vec3{} : body == 1 ? world.base(0).X.p : world.link(at.index).X.p;
+      const Vec3 torque = cross(p - origin, force);
+      for (int k = 0; k < 3; ++k) {
+        sum[6 * body + k] += torque[k];
+        sum[6 * body + 3 + k] += force[k];
+      }
+    };
+    for (int32_t i = 0; i < world.num_contacts(); ++i) {
+      const Contact& c = world.contacts()[i];
+      join(c.shape_a, c.p, c.force);
+      join(c.shape_b, c.p, -c.force);
+    }
+    double squares = 0;
+    for (int32_t i = 0; i < kForces; ++i) {
+      const double cut = std::clamp(sum[i], -1.0, 1.0);
+      s->force[i] = static_cast<float>(cut);
+      squares += cut * cut;
+    }
+    return squares;
+  }
+
+  double limit_, effort_weight_, contact_weight_, healthy_reward_, noise_;
+};
+
+constexpr OptionSpec kOptions[] = {
+    number_option("speed_limit", 2.6222, 0, 100, "speed in the plane above which a step costs 1, m/s"),
+    number_option("effort_weight", 0.5, 0, 10, "weight of the squared action in the reward"),
+    number_option("contact_weight", 5e-4, 0, 10, "weight of the squared contact forces in the reward"),
+    number_option("healthy_reward", 1, 0, 100, "reward of each step"),
+    number_option("reset_noise", 0.1, 0, 0.2, "of the start's draw: uniform in places, normal in rates"),
+    integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"),
+};
+constexpr CostSpec kCosts[] = {{"cost", "1 above the speed limit; raw: speed in the plane, m/s", 25}};
+constexpr CameraSpec kCameras[] = {
+    {"front", {2, -6, 3}, {2, 0, 0.4}, 0.9},
+    {"top", {2, -0.01, 8}, {2, 0, 0}, 0.9},
+};
+
+}  // namespace
+
+constinit const TaskInfo kAntVelocity = task_info<AntVelocity, kCosts, kCameras, kLeggedLearner>(
+    "ant_velocity", "AntVelocity", "a robot of four legs walks along x; cost: faster than 2.6222 m/s",
+    &constant_options<kOptions>);
+
+}  // namespace rdm
