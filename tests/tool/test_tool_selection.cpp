@@ -56,7 +56,7 @@ TEST(Selection, AMeanOnTheLimitIsNotFeasible) {
 TEST(Selection, EpisodesAreOfNoReportAndNoOtherRun) {
   std::set<uint64_t> seen;
   for (uint64_t run = 0; run < 50; ++run)
-    for (size_t i = 0; i < kSelectionEpisodes; ++i) {
+    for (size_t i = 0; i < kSelectionEpisodes * (1 + kConfirmations); ++i) {
       const uint64_t seed = selection_seed(run, i);
       EXPECT_GE(seed, uint64_t{1} << 63);
       EXPECT_TRUE(seen.insert(seed).second);

@@ -22,7 +22,7 @@ Score score_of(const Summary& s, const std::vector<double>& limits) {
 
 uint64_t selection_seed(uint64_t run_seed, size_t episode) {
   constexpr uint64_t kFirst = uint64_t{1} << 63;
-  return kFirst | (run_seed * kSelectionEpisodes + episode);
+  return kFirst | (run_seed * (kSelectionEpisodes * (1 + kConfirmations)) + episode);
 }
 
 }  // namespace tool

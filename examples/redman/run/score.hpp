@@ -7,7 +7,9 @@
 
 namespace tool {
 
-inline constexpr size_t kSelectionEpisodes = 20;  // of an evaluation during training
+// Of an evaluation during training; a policy that looks better than the best so far plays as many again
+// kConfirmations times, and those alone say whether it is.
+inline constexpr size_t kSelectionEpisodes = 20, kConfirmations = 4;
 
 // How good an evaluation was. Feasible before infeasible; feasible by return, infeasible by column costs.
 struct Score {
@@ -21,8 +23,9 @@ struct Score {
 // 0: none.
 Score score_of(const Summary& summary, const std::vector<double>& limits);
 
-// The seed of an episode that policies of a run are chosen by. No report and no other run plays it: what the
-// best of many is chosen by says too much good of it. Seeds of people and reports are below all of these.
+// The seed of an episode that policies of a run are chosen by: kSelectionEpisodes to look, then those that
+// confirm. No report and no other run plays it: what the best of many is chosen by says too much good of it.
+// Seeds of people and reports are below all of these.
 uint64_t selection_seed(uint64_t run_seed, size_t episode);
 
 }  // namespace tool

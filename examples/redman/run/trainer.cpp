@@ -203,16 +203,28 @@ void Trainer::restore() {
   }
 }
 
-Score Trainer::evaluate(const redman::Bytes& policy, LastEvaluation* last) {
+// Round 0 of the episodes that policies are chosen by is played by all, the others by those that look good.
+std::vector<Episode> Trainer::play(Actor& actor, size_t round) {
   std::vector<uint64_t> seeds(kSelectionEpisodes);
-  for (size_t i = 0; i < seeds.size(); ++i) seeds[i] = selection_seed(settings_.pool.seed, i);
+  for (size_t i = 0; i < seeds.size(); ++i)
+    seeds[i] = selection_seed(settings_.pool.seed, round * kSelectionEpisodes + i);
   eval_pool_.reset(seeds.data());
+  return play_episodes(eval_pool_, actor, kSelectionEpisodes, {}, {}, learns_magnitudes(settings_.agent));
+}
+
+bool Trainer::compete(const redman::Bytes& policy, LastEvaluation* last) {
   Actor actor(redman::Policy(policy), eval_pool_);
-  const bool magnitudes = learns_magnitudes(settings_.agent);
-  const Summary s =
-      summarise(play_episodes(eval_pool_, actor, kSelectionEpisodes, {}, {}, magnitudes), limits_);
-  if (last) *last = {s.return_mean, s.cost_mean.empty() ? 0 : s.cost_mean[0]};
-  return score_of(s, score_limits_);
+  const Summary look = summarise(play(actor, 0), limits_);
+  if (last) *last = {look.return_mean, look.cost_mean.empty() ? 0 : look.cost_mean[0]};
+  if (best_ && !score_of(look, score_limits_).better_than(*best_)) return false;
+  std::vector<Episode> episodes;
+  for (size_t round = 1; round <= kConfirmations; ++round)
+    for (Episode& e : play(actor, round)) episodes.push_back(std::move(e));
+  const Score score = score_of(summarise(episodes, limits_), score_limits_);
+  if (best_ && !score.better_than(*best_)) return false;
+  best_ = score;
+  best_policy_ = policy;
+  return true;
 }
 
 void Trainer::train_epoch(Meter& meter) {
@@ -229,13 +241,7 @@ void Trainer::train_epoch(Meter& meter) {
   own_seconds_ += times.epoch;
   if (epoch_ % settings_.eval_every == 0) {
     clock = Clock::now();
-    auto policy = agent_.policy();
-    const Score score = evaluate(policy, &last_);
-    if (!best_ || score.better_than(*best_)) {
-      best_ = score;
-      best_policy_ = std::move(policy);
-      folder_->write_policy({best_policy_.begin(), best_policy_.end()});
-    }
+    if (compete(agent_.policy(), &last_)) folder_->write_policy({best_policy_.begin(), best_policy_.end()});
     scored_epoch_ = epoch_;
     times.evaluation = since(clock);
   }
@@ -281,10 +287,8 @@ void Trainer::run() {
 // later must not depend on where it was stopped.
 void Trainer::finish() {
   if (epoch_ == 0) return;
-  const auto policy = agent_.policy();
-  const bool better = !best_ || (scored_epoch_ != epoch_ && evaluate(policy, nullptr).better_than(*best_));
-  const redman::Bytes& chosen = better ? policy : best_policy_;
-  folder_->write_policy({chosen.begin(), chosen.end()});
+  if (scored_epoch_ != epoch_) compete(agent_.policy(), nullptr);
+  folder_->write_policy({best_policy_.begin(), best_policy_.end()});
 }
 
 double Trainer::steps_per_second() const {

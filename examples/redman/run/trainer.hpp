@@ -46,7 +46,9 @@ class Trainer {
   int64_t steps_per_epoch() const;        // at most: worlds rest from an episode's end to the next decision
   void train_epoch(Meter& meter);
   void train_to_the_end(Meter& meter);
-  Score evaluate(const redman::Bytes& policy, LastEvaluation* last);
+  // Whether a policy is better than the best so far, which it then replaces; `last`: how it looked.
+  bool compete(const redman::Bytes& policy, LastEvaluation* last);
+  std::vector<Episode> play(Actor& actor, size_t round);
   void save();
   void finish();
 
