@@ -18,7 +18,7 @@ hand_over.allegro.ur5e hand_over_safe_finger 3e6 hand=allegro,arm=ur5e,arm_range
 hand_over.shadow_allegro.ur5e hand_over_safe_finger 3e6 right.hand=shadow,left.hand=allegro,arm=ur5e,arm_range=0.1
 grasp.allegro.ur5e grasp 1.5e6 hand=allegro,arm=ur5e
 grasp.svh.ur5e grasp 1.5e6 hand=svh,arm=ur5e
-grasp.barrett.ur5e grasp 1.5e6 hand=barrett,arm=ur5e
+grasp.barrett.ur5e grasp 3e6 hand=barrett,arm=ur5e
 grasp.robotiq.ur5e grasp 1.5e6 hand=robotiq,arm=ur5e"
 # Mass of the cube (71 g) and friction: as the task has them, and drawn within 30 % of that.
 plain="object_mass=0.071,friction.hand_object=0.75,friction.object_ground=1,friction.hand_ground=1"
@@ -73,7 +73,7 @@ while read -r name task steps text; do
   files=()
   for seed in $seeds; do files+=("$out/$name.$seed.json"); done
   limit=$(value cost_limit "${files[0]}")
-  echo "| \`$task\` | \`${text//,/ }\` | $(each return "" "${files[@]}") | $(each cost "$limit" "${files[@]}") ($limit)" \
+  echo "| \`$task\` | \`${text//,/ }\` | $(each return "" "${files[@]}") | $(each cost "$limit" "${files[@]}") (${limit%.0})" \
     "| $(percent success_rate "${files[@]}") | $(percent fall_rate "${files[@]}") |"
 done <<< "$rows"
 echo
