@@ -477,9 +477,10 @@ TEST(Proposals, APolicyAloneActsAsItDoesWithoutAPlanner) {
   std::vector<unsigned char> scratch(rdm_policy_scratch(policy.get(), 1));
   for (int i = 0; i < 3 * info.action_repeat; ++i) {
     act(planner, pool, b.action);
-    if (i % info.action_repeat == 0)
+    if (i % info.action_repeat == 0) {
       ASSERT_EQ(rdm_policy_act(policy.get(), t.obs, 1, nullptr, t.action, scratch.data(), scratch.size()),
                 RDM_OK);
+    }
     for (int32_t j = 0; j < info.action_dim; ++j) ASSERT_EQ(b.action[j], t.action[j]) << i << ' ' << j;
     ASSERT_EQ(rdm_pool_step(pool.get()), RDM_OK);
     ASSERT_EQ(rdm_pool_step(twin.get()), RDM_OK);
@@ -674,7 +675,9 @@ TEST(PlannerMemory, NoHeapAfterTheFirstCallAndAllOfItGoesBack) {
       ASSERT_EQ(rdm_pool_step(pool.get()), RDM_OK);
     }
     EXPECT_EQ(host.calls, calls);
-    if (kHeapIsCounted) EXPECT_EQ(heap_count(), heap);
+    if (kHeapIsCounted) {
+      EXPECT_EQ(heap_count(), heap);
+    }
     EXPECT_GT(host.live, 0u);
   }
   EXPECT_EQ(host.live, 0u);
