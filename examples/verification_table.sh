@@ -14,7 +14,8 @@ set -eu
 out=${1:-$root/runs/verification}
 seeds=${SEEDS:-0 1 2} envs=${ENVS:-16}
 tasks=${TASKS:-bandit two_state lqr_line ball_run ball_circle car_run swimmer_velocity point_goal1 point_goal2
-  point_button1 point_button2}
+  point_button1 point_button2 car_circle drone_run drone_circle ball_gather car_gather drone_gather ball_reach car_reach
+  drone_reach hopper_velocity walker2d_velocity ant_velocity ant_run ant_circle ant_gather ant_reach}
 algos=${ALGOS:-ppo trpo ppo_lag trpo_lag cppo_pid cpo pcpo focops p3o ipo}
 mkdir -p "$out"
 
@@ -22,7 +23,7 @@ steps() {
   case $1 in
     bandit) echo 300000 ;;
     two_state | lqr_line | ball_run) echo 600000 ;;
-    ball_circle | car_run | swimmer_velocity) echo 1000000 ;;
+    ball_circle | car_run | car_circle | swimmer_velocity | *_gather | *_reach) echo 1000000 ;;
     *) echo 3000000 ;;
   esac
 }
@@ -41,6 +42,22 @@ known() {
     point_goal2) echo "OmniSafe TRPO-Lag 4.6 / 26; PPO 25.5 / 159" ;;
     point_button1) echo "OmniSafe PPO-Lag 4.6 / 21; PPO 27.0 / 152" ;;
     point_button2) echo "OmniSafe FOCOPS 2.4 / 18, TRPO-Lag 5.4 / 25; PPO 25.9 / 167" ;;
+    car_circle) echo "paper PPO-Lag 428 / 5, FOCOPS 536 / 20, TRPO-Lag 596 / 24 (the rows of the ball)" ;;
+    drone_run) echo "paper PPO-Lag 729 / 21, FOCOPS 732 / 13 (the rows of the car)" ;;
+    drone_circle) echo "paper PPO-Lag 337 / 16, IPO 872 / 24, TRPO-Lag 810 / 24" ;;
+    ball_gather) echo "paper PPO-Lag 19.6 / 0.4, P3O 21.8 / 0.43, CPO 24.2 / 0.58" ;;
+    car_gather) echo "paper PPO-Lag 9.2 / 0.4, P3O 9.6 / 0.4, CPO 23.1 / 1.04" ;;
+    drone_gather) echo "paper PPO-Lag 5.0 / 1.28, TRPO-Lag 7.3 / 0.85, CPO 8.3 / 1.08" ;;
+    ball_reach) echo "paper PPO-Lag 16.4 / 21, TRPO-Lag 22.3 / 24, CPO 36.3 / 53" ;;
+    car_reach) echo "paper PPO-Lag 0.6 / 35, TRPO-Lag 1.9 / 24, CPO 8.7 / 44" ;;
+    drone_reach) echo "paper PPO-Lag 6.5 / 19, CPO 23.1 / 20, TRPO-Lag 20.2 / 22" ;;
+    hopper_velocity) echo "paper (its cost is the speed) PPO-Lag 1075, FOCOPS 1079, CPO 161" ;;
+    walker2d_velocity) echo "paper (its cost is the speed) PPO-Lag 1084, FOCOPS 1165, CPO 551" ;;
+    ant_velocity) echo "paper (its cost is the speed) PPO-Lag 1009, FOCOPS 1035, CPO 1030" ;;
+    ant_run) echo "paper PPO-Lag 2139 / 11, TRPO-Lag 2274 / 24, FOCOPS 2261 / 17" ;;
+    ant_circle) echo "paper PPO-Lag 197 / 19, CPPO-PID 750 / 19, IPO 756 / 26" ;;
+    ant_gather) echo "paper PPO-Lag 1.5 / 0.2, P3O 2.5 / 0.2, FOCOPS 10.1 / 1.1" ;;
+    ant_reach) echo "the paper repeats the rows of the ball" ;;
   esac
 }
 

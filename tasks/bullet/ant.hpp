@@ -23,7 +23,7 @@ struct Ant {
                                            {"velocity", "3.333 m/s", 3},
                                            {"rotation", "1", 4, -1, 1},
                                            {"spin", "6.667 rad/s", 3},
-                                           {"joints", "2; 20 rad/s", 2 * kAntJoints},
+                                           {"joints", "2, 20 rad/s", 2 * kAntJoints},
                                            {"feet", "1", kAntLegs, 0, 1}};
   static constexpr double kSpeedLimit = 1.5, kSize = 0.5;
   static constexpr bool kPillars = false;

@@ -1,0 +1,118 @@
+// The ant, MuJoCo's and Bullet's.
+#include <cmath>
+#include <string>
+
+#include "small_world.hpp"
+#include "tasks/bullet/ant.hpp"
+
+namespace rdm::test {
+namespace {
+
+const ArticulationDef& robot_of(SmallWorld& w) {
+  return w.pool()->task().scene().def.articulations[0];
+}
+
+TEST(Ant, WeighsWhatItShould) {
+  for (const char* task : {"ant_velocity", "ant_run"}) {
+    SmallWorld w(task);
+    double mass = robot_of(w).base.mass;
+    for (const LinkDef& link : robot_of(w).links) mass += link.inertia.mass;
+    EXPECT_NEAR(mass, 0.91088, 1e-4);
+  }
+}
+
+TEST(Ant, RowsAreAsLongAsPublished) {
+  const std::pair<const char*, int> rows[] = {
+      {"ant_velocity", 111}, {"ant_run", 33}, {"ant_circle", 34}, {"ant_gather", 65}, {"ant_reach", 83}};
+  for (const auto& [task, count] : rows) EXPECT_EQ(SmallWorld(task).pool()->obs_dim(), count) << task;
+}
+
+TEST(Ant, StandsWithoutAnAction) {
+  for (const char* task : {"ant_velocity", "ant_run", "ant_gather", "ant_reach"}) {
+    SmallWorld w(task);
+    for (int i = 0; i < 200; ++i) {
+      w.step({0, 0, 0, 0, 0, 0, 0, 0});
+      ASSERT_FALSE(w.terminated()) << task << " " << i;
+    }
+    const Motion& base = w.pool()->world(0).base(0);
+    EXPECT_LT(norm(base.v), 0.02) << task;
+    EXPECT_GT(base.X.p.z, 0.3) << task;
+  }
+}
+
+TEST(Ant, VelocityIsPaidByTheFormula) {
+  SmallWorld w("ant_velocity");
+  double contacts = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 from = w.pool()->world(0).base(0).X.p;
+    w.pool()->baseline(Baseline::kRandom);
+    double effort = 0, squares = 0;
+    for (int k = 0; k < 8; ++k) effort += std::pow(static_cast<double>(w.pool().action(0)[k]), 2);
+    w.pool()->step(nullptr);
+    if (w.terminated()) continue;
+    for (int k = 27; k < 111; ++k) {
+      const double f = static_cast<double>(w.obs(k));
+      ASSERT_LE(std::fabs(f), 1);
+      squares += f * f;
+    }
+    const Vec3 d = w.pool()->world(0).base(0).X.p - from;
+    ASSERT_NEAR(static_cast<double>(w.reward()), d.x / 0.05 + 1 - 0.5 * effort - 5e-4 * squares, 1e-4);
+    ASSERT_EQ(w.cost(), std::hypot(d.x, d.y) / 0.05 > 2.6222);
+    contacts += squares;
+  }
+  EXPECT_GT(contacts, 0);
+}
+
+TEST(Ant, RunIsPaidByTheWayAndItsEffort) {
+  SmallWorld w("ant_run");
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 from = w.pool()->world(0).base(0).X.p;
+    w.pool()->baseline(Baseline::kRandom);
+    double action[8];
+    for (int k = 0; k < 8; ++k) action[k] = static_cast<double>(w.pool().action(0)[k]);
+    w.pool()->step(nullptr);
+    if (w.terminated()) continue;
+    const World& world = w.pool()->world(0);
+    const Vec3 at = world.base(0).X.p;
+    double power = 0, square = 0, ends = 0;
+    for (int k = 0; k < 8; ++k) {
+      power += std::fabs(action[k] * 0.1 * world.qd()[k]) / 8;
+      square += action[k] * action[k] / 8;
+      ends += std::fabs(static_cast<double>(w.obs(13 + 2 * k))) > 0.5 * 0.99;
+    }
+    const double gain = std::hypot(1000 - from.x, from.y) - std::hypot(1000 - at.x, at.y);
+    ASSERT_NEAR(static_cast<double>(w.reward()), 60 * gain - 2 * power - 0.1 * square - 0.1 * ends + 1, 2e-3);
+    const Vec3 v = world.base(0).v;
+    ASSERT_EQ(w.cost(), std::hypot(v.x, v.y) > 1.5 || std::fabs(at.y) > 2);
+  }
+}
+
+// A foot reads 1 where its leg touched the floor.
+TEST(Ant, FeetFeelTheFloor) {
+  SmallWorld w("ant_run");
+  for (int k = 29; k < 33; ++k) EXPECT_EQ(w.obs(k), 0);
+  for (int i = 0; i < 100; ++i) w.step({0, 0, 0, 0, 0, 0, 0, 0});
+  for (int k = 29; k < 33; ++k) EXPECT_EQ(w.obs(k), 1);
+}
+
+TEST(Ant, TheBoxOfReachPushesIt) {
+  SmallWorld w("ant_reach", {{"max_steps", nullptr, 3000}});
+  World& world = w.pool()->world(0);
+  for (int i = 0; i < 60; ++i) w.step({0, 0, 0, 0, 0, 0, 0, 0});
+  EXPECT_EQ(w.cost(2), 0);
+  // into the circle of the box
+  Motion m = world.base(0);
+  const Vec3 box = w.body(0);
+  m.X.p = {box.x + 0.9, box.y, m.X.p.z};
+  m.v = m.w = {};
+  world.set_base(0, m);
+  bool hit = false;
+  for (int i = 0; i < 400 && !w.terminated(); ++i) {
+    w.step({0, 0, 0, 0, 0, 0, 0, 0});
+    hit |= w.cost(2) > 0;
+  }
+  EXPECT_TRUE(hit);
+}
+
+}  // namespace
+}  // namespace rdm::test
