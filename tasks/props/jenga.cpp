@@ -93,6 +93,7 @@ void add_options(OptionTable& table) {
   pair.chooses = true;
   table.add(pair);
   add_prop_options(make_config(false, same_name(table.choice("pair"), "paper")), 250, 256, table);
+  table.set_default("sleep_time", 0.25);
 }
 
 HandScene make_scene_def(const JengaTower& tower, const Options& o) {

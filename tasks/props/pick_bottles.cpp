@@ -73,6 +73,7 @@ constexpr OptionSpec kRows[] = {
 void add_options(OptionTable& table) {
   table.add(kRows);
   add_prop_options(make_config(false), 250, 96, table);
+  table.set_default("sleep_time", 0.25);
 }
 
 HandScene make_scene_def(const Options& o) {

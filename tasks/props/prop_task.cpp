@@ -5,8 +5,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kSleepTime = 0.25;  // s
-
 constexpr OptionSpec kRows[] = {
     number_option("reset_noise", 0, 0, 0.5,
                   "half width of the draw by which things start elsewhere, m; with joint_noise 0 too: one "
@@ -21,7 +19,6 @@ void add_prop_options(const HandControlConfig& config, int32_t max_steps, int32_
   table.add(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"));
   table.add(kRows);
   add_hand_control_options(config, table, contacts_max);
-  table.set_default("sleep_time", kSleepTime);
 }
 
 PropTask::PropTask(const HandControlConfig& config, const Options& o, HandScene scene, size_t own_bytes)
