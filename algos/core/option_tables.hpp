@@ -85,7 +85,7 @@ inline constexpr std::array kSharedOptions = {
     integer_option("warm_epochs", 0, 0, 1 << 30,
                    "first epochs in which the critics learn alone: actor and multipliers stay", true),
     number_option("imitation", 0, 0, 1e6,
-                  "weight of staying near a recording (rdm_agent_set_recording); 0: none", true),
+                  "weight of staying near a recording (rdm_agent_set_recording); 0: none"),
     number_option("imitation_decay", 0.99, 0, 1, "factor on that weight per epoch", true),
     // costs
     number_option("cost_limit", 25, -1, kHuge, "limit on column 0's sum over an episode; < 0: none", true),

@@ -257,6 +257,11 @@ uint64_t NpzReader::read_member(uint64_t at, uint64_t end) {
     }
     e += 4u + length;
   }
+  // a member whose name is spoiled would be one that is missing: both places say it
+  const uint64_t local = m.offset + kLocalBytes;
+  if (local > size_ || size_ - local < name || value<uint16_t>(m.offset + 26) != name ||
+      std::memcmp(data_ + local, data_ + at, static_cast<size_t>(name)) != 0)
+    bad("the archive's directory is spoiled");
   members_.push_back(m);
   return stop + comment;
 }

@@ -339,9 +339,9 @@ TEST(LoadPolicy, SaysWhatDiffers) {
   const auto refused = [&](AgentSetup s, const char* word) {
     const AgentPtr a = s.make();
     const auto before = saved(*a);
-    const Error e = thrown([&] { a->load_policy(policy->view(), 1000); });
+    const Thrown e = thrown([&] { a->load_policy(policy->view(), 1000); });
     EXPECT_EQ(e.code, Code::kArgument);
-    EXPECT_NE(std::strstr(e.text, word), nullptr) << e.text;
+    EXPECT_NE(e.text.find(word), std::string::npos) << e.text;
     EXPECT_EQ(saved(*a), before);
   };
   refused(setup().with("hidden", "16"), "hidden");

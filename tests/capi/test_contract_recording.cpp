@@ -286,7 +286,9 @@ TEST(ContractRecording, AHostWithoutPool) {
   EXPECT_EQ(info_of(o.r).rows, 300);
   EXPECT_GT(host.live, 300u * 7 * 4);
 
-  rdm_agent* a = make_agent(agent_config());
+  rdm_agent_config ac = agent_config();
+  ac.settings = "imitation=0.5";
+  rdm_agent* a = make_agent(ac);
   rdm_clone_config how;
   ASSERT_EQ(rdm_clone_config_init(&how, sizeof how), RDM_OK);
   how.epochs = 200, how.batch_rows = 32, how.patience = 0, how.learning_rate = 1e-2;
@@ -301,8 +303,6 @@ TEST(ContractRecording, AHostWithoutPool) {
   for (int i = 0; i < 8; ++i) EXPECT_NEAR(out[i], action[static_cast<size_t>(i)], 0.15f);
 
   ASSERT_EQ(rdm_agent_set_recording(a, o.r), RDM_OK) << rdm_agent_error(a);
-  const rdm_option weight = {"imitation", nullptr, 0.5};
-  ASSERT_EQ(rdm_agent_set(a, &weight), RDM_OK);
   EXPECT_EQ(feed_epoch(a), RDM_OK);
   // the rows were copied
   rdm_recording_destroy(o.r);

@@ -66,5 +66,5 @@ refused 1 'no such file' --from nobody.rdm
 refused 2 'nothing is to be learned' --from zero
 refused 2 'without --from' --noise 0.1
 refused 2 'start-share' --from demo --start-share 2
-refused 1 'hand_over\|observations\|layout' --task ball_run --from shown.npz
+refused 2 'observations' --task ball_run --from shown.npz
 exit $failed

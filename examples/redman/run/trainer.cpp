@@ -106,11 +106,18 @@ void Trainer::learn_from_teacher() {
   taught_ = teach(settings_.teach, settings_.pool, agent_, static_cast<int32_t>(option("action_repeat")),
                   settings_.save_recording);
   const rdm_recording* recording = taught_.recording.get();
+  if (!recording && (wants_imitation() || wants_starts()))
+    throw Usage("--start-share, imitation: a recording is needed: --from demo, a .npz file, or --dagger");
   if (!recording) return;
   if (wants_imitation()) redman::check(rdm_agent_set_recording(agent_.get(), recording));
-  if (settings_.teach.start_share > 0 || settings_.teach.start_share_end > 0)
+  if (wants_starts())
     as_usage(
         [&] { redman::check(rdm_pool_set_starts(pool_.get(), recording, settings_.teach.start_share)); });
+  taught_.recording.reset();  // copies were taken
+}
+
+bool Trainer::wants_starts() const {
+  return settings_.teach.start_share > 0 || settings_.teach.start_share_end > 0;
 }
 
 bool Trainer::wants_imitation() const {
@@ -120,7 +127,7 @@ bool Trainer::wants_imitation() const {
 // The share of starts goes from its first value to its last in step with the run.
 void Trainer::draw_starts() {
   const TeachSettings& t = settings_.teach;
-  if (!taught_.recording || !(t.start_share > 0 || t.start_share_end > 0)) return;
+  if (!wants_starts()) return;
   const double done = std::min(1.0, static_cast<double>(env_steps_) / static_cast<double>(settings_.steps));
   redman::check(
       rdm_pool_set_starts(pool_.get(), nullptr, t.start_share + done * (t.start_share_end - t.start_share)));
@@ -140,8 +147,7 @@ void Trainer::resume(RunFolder folder) {
     return begin(std::move(folder));
   }
   folder_.emplace(std::move(folder));
-  const TeachSettings& t = settings_.teach;
-  if (t.asked() && (wants_imitation() || t.start_share > 0 || t.start_share_end > 0)) learn_from_teacher();
+  if (wants_imitation() || wants_starts()) learn_from_teacher();
   restore();
   plan_schedule();
   folder_->cut_progress(progress_bytes_, settings_.events);

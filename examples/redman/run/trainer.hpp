@@ -42,6 +42,7 @@ class Trainer {
   void learn_from_teacher();
   void draw_starts();
   bool wants_imitation() const;
+  bool wants_starts() const;
   int64_t option(const char* key) const;  // of the agent, as it stands
   int64_t steps_per_epoch() const;        // at most: worlds rest from an episode's end to the next decision
   void train_epoch(Meter& meter);

@@ -156,9 +156,10 @@ void load_policy(const std::string& word, const redman::Pool& pool, redman::Agen
 
 Options taught_options(const TeachSettings& s) {
   if (!s.asked()) return {};
-  return {{"init_std", "0.03"},  {"learning_rate", "1e-9"}, {"critic_learning_rate", "1e-3"},
-          {"lr_schedule", "kl"}, {"kl_target", "0.02"},     {"lr_min", "1e-9"},
-          {"warm_epochs", "10"}};
+  return {{"std_min", "0.01"},       {"init_std", "0.03"},
+          {"learning_rate", "1e-9"}, {"critic_learning_rate", "1e-3"},
+          {"lr_schedule", "kl"},     {"kl_target", "0.02"},
+          {"lr_min", "1e-9"},        {"warm_epochs", "10"}};
 }
 
 void adopt_teacher(const TeachSettings& s, bool task_given, const std::vector<std::string>& sets,
