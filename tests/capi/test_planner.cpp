@@ -116,18 +116,25 @@ double start_of(const Pool& pool) {
 }
 
 TEST(Plans, AreNearTheOptimumByEveryMethod) {
-  for (const char* method : {"method=predictive\niterations=3", "method=cem\niterations=4\nelites=6",
-                             "method=mppi\niterations=4\ntemperature=0.1"})
+  struct Case {
+    const char* settings;
+    double slack;  // what the last noise costs
+  };
+  for (const Case& test : {Case{"method=predictive\nnoise=0.05", 0.15},
+                           {"method=cem\nnoise=0.2\nelites=16\nnoise_min=0.002", 0.02},
+                           {"method=mppi\nnoise=0.05\ntemperature=0.1", 0.02}})
     for (const char* interpolation : {"zero", "linear", "cubic"})
       for (const uint64_t seed : {1, 2, 3}) {
         const Pool pool = pool_of("lqr_line", kLine, 1, seed);
         const double x0 = start_of(pool), best = optimum(x0);
-        const std::string settings = std::string(method) + "\ninterpolation=" + interpolation +
-                                     "\nhorizon=6\nknots=6\nnoise=0.15\ncosts=ignore";
+        const std::string settings =
+            std::string(test.settings) + "\ninterpolation=" + interpolation +
+            "\nsamples=128\niterations=8\nhorizon=6\ncosts=ignore\nknots=" +
+            (std::string(interpolation) == "zero" ? "6" : "4");  // its pieces must be single steps
         const Played played = play(pool, planner_of(pool, settings.c_str()));
-        EXPECT_GE(played.ret, best * 1.1 - 0.01) << settings << " seed " << seed << ", x0 " << x0;
+        EXPECT_GE(played.ret, 1.05 * best - test.slack) << settings << " seed " << seed << ", x0 " << x0;
         EXPECT_LE(played.ret, best + 1e-4);
-        EXPECT_LT(-20 * x0 * x0, played.ret);  // by zero
+        EXPECT_LT(-20 * x0 * x0, 1.05 * best - test.slack);  // by zero
       }
 }
 
@@ -135,8 +142,8 @@ TEST(Plans, KeepTheLimitWhereReturnWouldBreakIt) {
   for (const uint64_t seed : {1, 2, 3, 5}) {
     Pool pool = pool_of("lqr_line", kLine, 1, seed);
     const double x0 = start_of(pool), limit = 0.3 * x0 * x0;  // the optimum moves at once: 0.83 x0^2
-    rdm_planner_config c =
-        config_of(pool, "method=cem\niterations=4\nhorizon=8\nknots=8\nnoise=0.1\nnoise_min=0.003");
+    rdm_planner_config c = config_of(
+        pool, "method=cem\niterations=8\nsamples=128\nhorizon=8\nknots=8\nnoise=0.04\nnoise_min=0.002");
     c.cost_limits = &limit;
     const Played kept = play(pool, planner_of(c));
     EXPECT_LE(kept.cost, limit) << seed;
@@ -193,7 +200,6 @@ TEST(Methods, PredictiveSamplingTakesTheBest) {
   EXPECT_EQ(info.best, best);
   EXPECT_NEAR(info.ret, expected.ret[best], 1e-5);
   EXPECT_EQ(action, expected.action[best]);
-  EXPECT_EQ(info.feasible_share, 1);
   EXPECT_EQ(info.steps, 12);
 }
 

@@ -18,9 +18,10 @@ std::vector<Case> cases() {
   std::vector<Case> out;
   for (const std::string& task : task_names()) out.push_back({task, ""});
   for (const char* task : {"hand_over_safe_finger", "grasp", "jenga"}) out.push_back({task, "engine=ode"});
-  out.push_back({"grasp",
-                 "object_mass=0.05..0.2\nobject_size=0.8..1.2\nnoise.object.*=0.01\ndelay.*_tip_*=1..3\n"
-                 "action_delay=2\ndropout.*=0.1"});
+  out.push_back(
+      {"grasp",
+       "object_mass=0.05..0.2\nobject_scale=0.8..1.2\nnoise.object.position=0.01\ndelay.*_tip_*=1..3\n"
+       "action_delay=2\ndropout.*=0.1"});
   out.push_back({"hand_over_safe_finger", "action_repeat=4\nmax_steps=30"});
   return out;
 }
