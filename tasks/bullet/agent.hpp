@@ -40,7 +40,7 @@ struct AgentStart {
 struct AgentPlace {
   double x, y, z, vx, vy, speed;  // m; m/s, speed in the plane
 };
-// Substeps of a control step; in the rooms of Gather and Reach car and ant have motors of their own.
+// Substeps of a control step; in the rooms of Gather and Reach the car has motors of its own.
 struct AgentDrive {
   int32_t substeps;
   bool room;

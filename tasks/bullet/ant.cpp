@@ -9,16 +9,9 @@ namespace rdm {
 namespace {
 
 constexpr AntRange kRange{40 * kDegree, 30 * kDegree, 100 * kDegree, 250};
-constexpr double kRoomMotors = 4;                       // in rooms they are that much stronger
 constexpr double kMu = 0.8, kLowest = 0.26;             // of plane and ant, multiplied; m
 constexpr double kStartBend = 0.5 * kPi, kNoise = 0.1;  // rad, of ankles
 constexpr double kRateScale = 0.1, kEnd = 0.99;
-
-AntRange range_of(const AgentDrive& drive) {
-  AntRange range = kRange;
-  if (drive.room) range.gear *= kRoomMotors;
-  return range;
-}
 
 // In [-1, 1] over the joint's range.
 double relative(const World& world, int32_t joint) {
@@ -30,7 +23,7 @@ double relative(const World& world, int32_t joint) {
 
 void Ant::add(PlanarScene& scene, const AgentDrive& drive) {
   make_walkable(scene, kBulletDt / drive.substeps, drive.substeps, kMu, kMu);
-  add_ant(range_of(drive), scene);
+  add_ant(kRange, scene);
 }
 
 void Ant::check(const State& s) {
@@ -46,9 +39,9 @@ void Ant::start(const AgentStart& at, Stream& stream, World& world, State* s) {
   set_ant(world, {{at.x, at.y, kAntHeight}, axis_angle({0, 0, 1}, at.yaw)}, {}, {}, q, qd);
 }
 
-void Ant::act(const float* action, const AgentDrive& drive, World& world, State* s) {
+void Ant::act(const float* action, const AgentDrive&, World& world, State* s) {
   for (int32_t i = 0; i < kAntJoints; ++i) s->action[i] = action[i];
-  drive_ant(world, action, range_of(drive).gear);
+  drive_ant(world, action, kRange.gear);
 }
 
 void Ant::settle(const World& world, State* s) {

@@ -23,7 +23,7 @@ void add_square_room(PlanarScene& scene) {
 }
 
 void add_solid_walls(const Room& room, PlanarScene& scene) {
-  constexpr double kThick = 0.5, kHigh = 0.5;  // m, half sizes
+  constexpr double kThick = 0.5, kHigh = 2;  // m, half sizes
   const double half = room.distance * elementary::sin(kPi / room.walls) / elementary::cos(kPi / room.walls);
   for (int32_t k = 0; k < room.walls; ++k) {
     const double far = room.distance + kThick;

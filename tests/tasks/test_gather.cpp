@@ -62,7 +62,9 @@ TEST(Gather, ApplesPayBombsCostAndTheLastAppleEndsIt) {
     for (int i = 1; i <= 2 * kThings; ++i) {
       const bool hit = was[i] && std::hypot(at[i].x - now.x, at[i].y - now.y) < 1;
       (i <= kThings ? apples : bombs) += hit;
-      if (!w.terminated()) ASSERT_EQ(there(w, i), was[i] && !hit);
+      if (!w.terminated()) {
+        ASSERT_EQ(there(w, i), was[i] && !hit);
+      }
     }
     ASSERT_EQ(w.reward(), static_cast<float>(10 * apples));
     ASSERT_EQ(w.cost(), bombs > 0);

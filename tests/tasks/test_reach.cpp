@@ -60,7 +60,10 @@ TEST(Reach, RewardAndCostsFollowTheFormula) {
     const double x = std::max(0.0, std::fabs(w.body(kBox).x - now.x) - 0.5),
                  y = std::max(0.0, std::fabs(w.body(kBox).y - now.y) - 0.5);
     ASSERT_EQ(w.cost(1), puddles > 0);
-    if (std::hypot(x, y) > 0.502) ASSERT_EQ(w.cost(2), 0);  // it is pushed off before it is seen
+    // it is pushed off before it is seen
+    if (std::hypot(x, y) > 0.502) {
+      ASSERT_EQ(w.cost(2), 0);
+    }
     ASSERT_GE(std::hypot(x, y), 0.5 - 1e-9);
     ASSERT_EQ(w.cost(), w.cost(1) + w.cost(2) > 0);
     reached += there, wet += puddles > 0, boxed += w.cost(2) > 0;
