@@ -46,34 +46,36 @@ TEST(Gather, RowsAreAsLongAsPublished) {
 
 // Every apple, one after the other: 10 each, bombs cost 1 and are gone, the last apple ends the episode.
 TEST(Gather, ApplesPayBombsCostAndTheLastAppleEndsIt) {
-  SmallWorld w("ball_gather", {{"max_steps", nullptr, 20000}});
-  int eaten = 0, struck = 0, steps = 0;
-  for (; steps < 19999; ++steps) {
-    int next = 0;
-    for (int i = 1; i <= kThings; ++i)
-      if (there(w, i) && (next == 0 || far(w, i) < far(w, next))) next = i;
-    bool was[2 * kThings + 1];
-    Vec3 at[2 * kThings + 1];
-    for (int i = 1; i <= 2 * kThings; ++i) was[i] = there(w, i), at[i] = w.body(i);
-    push_to(w, w.body(next));
-    const Vec3 now = {10 * static_cast<double>(w.pool().final_obs(0)[0]),
-                      10 * static_cast<double>(w.pool().final_obs(0)[1]), 0};
-    int apples = 0, bombs = 0;
-    for (int i = 1; i <= 2 * kThings; ++i) {
-      const bool hit = was[i] && std::hypot(at[i].x - now.x, at[i].y - now.y) < 1;
-      (i <= kThings ? apples : bombs) += hit;
-      if (!w.terminated()) {
-        ASSERT_EQ(there(w, i), was[i] && !hit);
+  int struck = 0;
+  for (uint64_t seed = 0; seed < 8; ++seed) {
+    SmallWorld w("ball_gather", {{"max_steps", nullptr, 20000}}, 1, seed);
+    int eaten = 0;
+    for (int step = 0; step < 19999 && !w.terminated(); ++step) {
+      int next = 0;
+      for (int i = 1; i <= kThings; ++i)
+        if (there(w, i) && (next == 0 || far(w, i) < far(w, next))) next = i;
+      bool was[2 * kThings + 1];
+      Vec3 at[2 * kThings + 1];
+      for (int i = 1; i <= 2 * kThings; ++i) was[i] = there(w, i), at[i] = w.body(i);
+      push_to(w, w.body(next));
+      const Vec3 now = {10 * static_cast<double>(w.pool().final_obs(0)[0]),
+                        10 * static_cast<double>(w.pool().final_obs(0)[1]), 0};
+      int apples = 0, bombs = 0;
+      for (int i = 1; i <= 2 * kThings; ++i) {
+        const bool hit = was[i] && std::hypot(at[i].x - now.x, at[i].y - now.y) < 1;
+        (i <= kThings ? apples : bombs) += hit;
+        if (!w.terminated()) {
+          ASSERT_EQ(there(w, i), was[i] && !hit);
+        }
       }
+      ASSERT_EQ(w.reward(), static_cast<float>(10 * apples));
+      ASSERT_EQ(w.cost(), bombs > 0);
+      ASSERT_EQ(w.success(), apples > 0);
+      eaten += apples, struck += bombs;
     }
-    ASSERT_EQ(w.reward(), static_cast<float>(10 * apples));
-    ASSERT_EQ(w.cost(), bombs > 0);
-    ASSERT_EQ(w.success(), apples > 0);
-    eaten += apples, struck += bombs;
-    if (w.terminated()) break;
+    EXPECT_TRUE(w.terminated());
+    EXPECT_EQ(eaten, kThings);
   }
-  EXPECT_TRUE(w.terminated());
-  EXPECT_EQ(eaten, kThings);
   EXPECT_GT(struck, 0);
 }
 
