@@ -8,7 +8,7 @@
 #include "common/text.hpp"
 #include "play/episodes.hpp"
 #include "record/recorder.hpp"
-#include "record/recording.hpp"
+#include "record/recorded_rollout.hpp"
 #include "teach/noise.hpp"
 
 namespace tool {

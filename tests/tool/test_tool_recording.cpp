@@ -7,7 +7,7 @@
 #include "common/report.hpp"
 #include "record/npy.hpp"
 #include "record/recorder.hpp"
-#include "record/recording.hpp"
+#include "record/recorded_rollout.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include "common/files.hpp"
 #include "common/names.hpp"
 #include "play/plan_word.hpp"
-#include "record/recording.hpp"
+#include "record/recorded_rollout.hpp"
 #include "run/folder.hpp"
 
 namespace tool {

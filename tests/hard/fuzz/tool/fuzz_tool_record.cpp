@@ -6,7 +6,7 @@
 #include "common/files.hpp"
 #include "common/report.hpp"
 #include "record/recorder.hpp"
-#include "record/recording.hpp"
+#include "record/recorded_rollout.hpp"
 
 namespace hard {
 

@@ -1,4 +1,4 @@
-#include "record/recording.hpp"
+#include "record/recorded_rollout.hpp"
 
 #include <cstring>
 
