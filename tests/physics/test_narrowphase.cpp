@@ -99,7 +99,7 @@ class Rig final : public Collider::Poses {
   Collider::Found collide() {
     asked_.assign(geoms_.size(), 0);
     touched_.assign(scene_.pairs.size(), 0);
-    return collider_.collide(scene_, *this, contacts_.data(), pairs_.data(), touched_.data());
+    return collider_.collide(scene_, *this, nullptr, contacts_.data(), pairs_.data(), touched_.data());
   }
   double overlap(int32_t body) {
     asked_.assign(geoms_.size(), 0);
