@@ -97,7 +97,9 @@ struct WideContacts {
   }
 
  private:
-  [[gnu::always_inline]] static V dot3(const V* a, const V* b) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
+  [[gnu::always_inline]] static V dot3(const V* a, const V* b) {
+    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+  }
   static S total(const V& v) { return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7])); }
   [[gnu::always_inline]] static V larger(const V& a, const V& b) { return L::select(a > b, a, b); }
 };
