@@ -108,7 +108,7 @@ CloneReport clone_actor(const ResolvedAgentConfig& resolved, const DemoRows& dem
   Vector<float> best(nets.params, nets.params + actor.size), grad(nets.size), m(actor.size), v(actor.size);
   Adam adam;
   adam.size = actor.size, adam.m = m.data(), adam.v = v.data();
-  Stream stream(how.seed, 0, Purpose{12});
+  Stream stream(how.seed, 0, Purpose::kClone);
   const double dim = static_cast<double>(resolved.action_dim());
   CloneReport out;
   try {

@@ -7,7 +7,7 @@ namespace rdm {
 void Imitation::open(const ResolvedAgentConfig& resolved, const Regression& regression) {
   resolved_ = &resolved;
   regression_ = &regression;
-  stream_ = Stream(resolved.config.seed, 0, Purpose{11});
+  stream_ = Stream(resolved.config.seed, 0, Purpose::kImitation);
 }
 
 void Imitation::read_live(const Options& options) {

@@ -21,6 +21,9 @@ enum class Purpose : uint32_t {
   kTest = 7,
   kWorldNoise = 8,   // what a world draws within an episode
   kDisturbance = 9,  // noise, delays and drop-out of what an agent sees and does
+  kStart = 10,       // whether and where in a recording an episode begins
+  kImitation = 11,   // rows of a recording beside a minibatch
+  kClone = 12,       // what is held back for validation, and shuffling
 };
 
 class Stream {

@@ -118,7 +118,7 @@ void Pool::Impl::name_streams(int32_t env, uint64_t seed, uint32_t number) {
   e.reset = Stream(seed, number, Purpose::kReset);
   e.policy = Stream(seed, number, Purpose::kRandomPolicy);
   slots[env].disturbance.name(seed, number);
-  slots[env].start = Stream(seed, number, Purpose{10});
+  slots[env].start = Stream(seed, number, Purpose::kStart);
 }
 
 Pool::Impl::~Impl() {

@@ -203,6 +203,8 @@ std::string Recorder::metadata(const RecordNote& note, uint64_t steps) const {
   }
   for (const auto& [key, value] : note.options) set.push_back(key + "=" + value);
   for (const Column& c : columns_) arrays[c.name] = c.help;
+  arrays["task"] = "name, UTF-8";
+  arrays["layout_hash"] = "of the fields of obs and the order of action";
   arrays["episode_begin"] = "row of each episode's first step, and the number of steps";
   const Json json = {{"format", "redman rollout 1"},
                      {"task", task_at(spec.task).name},
