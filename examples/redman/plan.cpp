@@ -15,13 +15,14 @@ namespace {
 struct PlanFlags {
   std::string policy, record;
   PoolSettings pool;
-  std::vector<std::string> sets, plans, limits;
+  std::vector<std::string> sets, plans, own, limits;  // own: options of planners that are flags
   int32_t episodes = 1;
   bool task_given = false, states = false;
 };
 
 Report run_plan(PlanFlags flags) {
   Options options;
+  for (const std::string& text : flags.own) options.push_back(split_pair(text, "--plan"));
   for (const std::string& text : flags.plans) options.push_back(split_pair(text, "--plan"));
   const std::string word = plan_word(options, flags.policy);
   ActorChoice choice = choose_actor(word);
@@ -83,7 +84,7 @@ void add_plan(CLI::App& app, Run& run) {
     const std::string key = row.key;
     if (key != "method" && key != "samples" && key != "horizon" && key != "iterations") continue;
     command->add_option_function<std::string>(
-        "--" + key, [flags, key](const std::string& value) { flags->plans.push_back(key + '=' + value); },
+        "--" + key, [flags, key](const std::string& value) { flags->own.push_back(key + '=' + value); },
         row.help);
   }
   command->add_option("--plan", flags->plans, "key=value of the planner; repeatable")
