@@ -4,7 +4,7 @@
 //   State                          of one world, plain; joins the task's own struct, first in it
 //   kEngine, kActions, kActionOrder, kFields (AgentField[]), kSteps (of an episode), kSpeedLimit (m/s),
 //   kSize (m, radius of the disc that collides), kPillars (obstacles of Reach stand up), kBodies (of the
-//   scene that are the agent), kSummary ("a ball ...", begins the texts of its tasks)
+//   scene that are the agent)
 //   add(scene, drive)              its bodies, first of all in the scene
 //   check(state)                   of a saved state: Error(kFormat)
 //   start(at, stream, world, s)    a new episode

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kTorso = 0.25, kLimb = 0.08;  // m, radii
 constexpr double kJoint = 0.2, kShin = 0.4;    // m, along x and y: from torso to hip to ankle; of the shin
-constexpr double kDensity = 5, kMu = 1;        // kg/m3
+constexpr double kDensity = 5;                 // kg/m3
 constexpr double kDamping = 1, kArmature = 1;  // N m s/rad, kg m2
 constexpr double kX[kAntLegs] = {1, -1, -1, 1}, kY[kAntLegs] = {1, 1, -1, -1};
 constexpr const char* kFixed[kAntLegs] = {"leg_1", "leg_2", "leg_3", "leg_4"};
