@@ -135,6 +135,32 @@ TEST_P(PoolCopy, FillsAPoolFromOneOfItsOwnWorlds) {
   }
 }
 
+// A tower that has fallen asleep, copied, sleeps and wakes as the restored one does.
+TEST(PoolCopyOfSleepers, GoOnWithTheBytesOfASavedState) {
+  const Case test{"jenga", ""};
+  Worlds from(test, 1, 0, 1), copied(test, 1, 0, 2), restored(test, 1, 0, 3);
+  ASSERT_TRUE(from.pool && copied.pool && restored.pool);
+  const auto hold = [](const Worlds& w, int steps) {
+    for (int i = 0; i < steps; ++i) {
+      ASSERT_EQ(rdm_pool_baseline(w.pool, RDM_BASELINE_HOLD), RDM_OK);
+      ASSERT_EQ(rdm_pool_step(w.pool), RDM_OK);
+    }
+  };
+  hold(from, 120);
+  hold(copied, 20);
+  const std::vector<unsigned char> state = from.state(0);
+  ASSERT_EQ(rdm_pool_set_state(restored.pool, 0, state.data(), state.size()), RDM_OK);
+  ASSERT_EQ(rdm_pool_copy(copied.pool, 0, from.pool, 0), RDM_OK);
+  EXPECT_EQ(copied.state(0), state);
+  for (Worlds* w : {&from, &copied, &restored}) hold(*w, 20);
+  EXPECT_EQ(copied.hash(0), from.hash(0));
+  EXPECT_EQ(copied.hash(0), restored.hash(0));
+  for (int i = 0; i < 60; ++i)
+    for (Worlds* w : {&from, &copied, &restored}) w->step(0, actions(i));
+  EXPECT_EQ(copied.hash(0), from.hash(0));
+  EXPECT_EQ(copied.hash(0), restored.hash(0));
+}
+
 INSTANTIATE_TEST_SUITE_P(EveryTask, PoolCopy, testing::ValuesIn(cases()), [](const auto& info) {
   std::string name = info.param.task + "_" + std::to_string(info.index);
   std::replace(name.begin(), name.end(), '-', '_');

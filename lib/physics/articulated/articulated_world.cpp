@@ -473,11 +473,12 @@ void ArticulatedWorld::copy(const World& world) {
   const auto& other = static_cast<const ArticulatedWorld&>(world);
   if (copy_rows(other)) own_constants();
   std::memcpy(state_.persistent, other.state_.persistent, persistent_bytes(*scene_));
-  state_.num_warm = other.state_.num_warm;
-  std::copy_n(other.state_.warm, state_.num_warm, state_.warm);
+  state_.num_warm = all_warm(other.state_, state_.warm);
+  if (sleeps()) std::copy_n(other.state_.sleep, scene_->num_bodies, state_.sleep);
   for (int32_t i = 0; i < scene_->num_bodies; ++i) state_.free_bodies[i].R = other.state_.free_bodies[i].R;
   std::fill_n(fresh_, scene_->num_links, uint8_t{0});
   clear_pushes();
+  forget_kept(*scene_, &state_);
 }
 
 size_t ArticulatedWorld::heap_bytes(const Scene& scene) {
