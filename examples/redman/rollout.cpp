@@ -7,8 +7,8 @@
 #include "common/names.hpp"
 #include "common/text.hpp"
 #include "play/episodes.hpp"
-#include "record/recorder.hpp"
 #include "record/recorded_rollout.hpp"
+#include "record/recorder.hpp"
 #include "teach/noise.hpp"
 
 namespace tool {

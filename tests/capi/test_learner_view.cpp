@@ -133,10 +133,13 @@ TEST(LearnerView, PresetsFitEveryTaskWithARobot) {
     ASSERT_EQ(rdm_pool_field(p, 0, &f), RDM_OK);
     const std::string first = f.name;
     const bool hands = first == "right.joint_position", sensors = first == "accelerometer";
+    bool joints = false;
+    for (int i = 0; rdm_pool_field(p, i, &f) == RDM_OK; ++i)
+      joints |= std::string(f.name) == "joint_position";
     int32_t counts[3] = {};
     const char* presets[] = {"state", "touch", "proprioception"};
     for (int k = 0; k < 3; ++k) {
-      const bool known = k == 0 || hands || sensors || first == "joint_position";
+      const bool known = k == 0 || hands || sensors || joints;
       rdm_agent* a = agent_of(p, std::string("actor_obs=") + presets[k], known ? RDM_OK : RDM_NOT_FOUND);
       if (!a) continue;
       rdm_policy* policy = policy_of(a);

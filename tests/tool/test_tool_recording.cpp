@@ -6,8 +6,8 @@
 
 #include "common/report.hpp"
 #include "record/npy.hpp"
-#include "record/recorder.hpp"
 #include "record/recorded_rollout.hpp"
+#include "record/recorder.hpp"
 
 namespace {
 

@@ -26,7 +26,9 @@ from ._play import Evaluation, evaluate, play, summary
 from ._policy import Policy
 from ._pool import Pool
 
-_SELECTION_EPISODES = 20  # of an evaluation during training
+# Of an evaluation during training; a policy that looks better than the best so far plays as many again
+# _CONFIRMATIONS times, and those alone say whether it is.
+_SELECTION_EPISODES, _CONFIRMATIONS = 20, 4
 _REPORT_SEED = 1_000_000  # reports play the episodes of seed + this
 Callback = Callable[[Epoch], Any]
 
@@ -282,8 +284,8 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
     """Trains a policy on a task, as `redman train` does: the same arguments give the same policy.
 
     steps are control steps of all worlds together; options are those of the task and of the algorithm. Every
-    eval_every epochs twenty episodes decide which policy is kept: the best that stays within the limits, else the
-    one that comes nearest. out makes a run folder. callback(epoch) is called after each epoch; a true answer ends
+    eval_every epochs twenty episodes, and eighty more where those look good, decide which policy is kept: the best that
+    stays within the limits, else the one that comes nearest. out makes a run folder. callback(epoch) is called after each epoch; a true answer ends
     the run. The first Ctrl-C ends it after this epoch, and what has been learned is returned; the second at once.
     """
     goal = int(steps)
@@ -307,17 +309,28 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
         agent.set(total_epochs=max(1, math.ceil(goal / per_epoch)))
     limits = agent.cost_limits
     counted = limits if _handles_costs(run.algo, pool.cost_dim) else [None] * len(limits)
-    seeds = [1 << 63 | (seed * _SELECTION_EPISODES + i) % (1 << 63) for i in range(_SELECTION_EPISODES)]
+    first_seed = seed * _SELECTION_EPISODES * (1 + _CONFIRMATIONS)
     names = list(pool.costs)
     meter = _Meter(goal) if progress else None
     best: Optional[_Score] = None
     tested = (math.nan, math.nan)
     epoch: Optional[Epoch] = None
 
-    def judged(policy: Policy) -> tuple[_Score, tuple[float, float]]:
-        judge.reset(seeds)
-        e = summary(play(judge, policy, _SELECTION_EPISODES, learns_magnitudes(agent)), counted)
-        return _score(e), (e.return_mean, e.cost_mean[0] if e.cost_mean else 0.0)
+    def played(policy: Policy, number: int) -> list[dict[str, Any]]:
+        first = first_seed + number * _SELECTION_EPISODES
+        judge.reset([1 << 63 | (first + i) % (1 << 63) for i in range(_SELECTION_EPISODES)])
+        return play(judge, policy, _SELECTION_EPISODES, learns_magnitudes(agent))
+
+    def compete(policy: Policy) -> tuple[float, float]:
+        """How it looked; a policy that is better than the best so far takes its place."""
+        nonlocal best
+        look = summary(played(policy, 0), counted)
+        if best is None or _score(look) > best:
+            episodes = [e for number in range(1, 1 + _CONFIRMATIONS) for e in played(policy, number)]
+            score = _score(summary(episodes, counted))
+            if best is None or score > best:
+                best, run.policy = score, policy
+        return look.return_mean, look.cost_mean[0] if look.cost_mean else 0.0
 
     with contextlib.ExitStack() as stack:
         stack.enter_context(judge)
@@ -337,12 +350,10 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
             learned = time.perf_counter() - began
             evaluated = 0.0
             if epoch.epoch % eval_every == 0:
-                policy = agent.policy()
-                score, tested = judged(policy)
-                if best is None or score > best:
-                    best, run.policy = score, policy
-                    if folder:
-                        folder.write("policy.rdm", bytes(policy))
+                kept = run.policy
+                tested = compete(agent.policy())
+                if folder and run.policy is not kept:
+                    folder.write("policy.rdm", bytes(run.policy))
                 evaluated = time.perf_counter() - began - learned
             run.seconds += time.perf_counter() - began
             row = _row(epoch, names, limits, epoch.env_steps - run.env_steps, tested, (learned, evaluated, run.seconds))
@@ -360,9 +371,8 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
         run.interrupted = run.env_steps < goal
         if meter:
             meter.end(run)
-        last = agent.policy()
-        if epoch and (best is None or epoch.epoch % eval_every and judged(last)[0] > best):
-            run.policy = last
+        if epoch and epoch.epoch % eval_every:
+            compete(agent.policy())
         if folder:
             folder.write("policy.rdm", bytes(run.policy))
     return run

@@ -5,8 +5,8 @@
 #include "../fuzz.hpp"
 #include "common/files.hpp"
 #include "common/report.hpp"
-#include "record/recorder.hpp"
 #include "record/recorded_rollout.hpp"
+#include "record/recorder.hpp"
 
 namespace hard {
 
