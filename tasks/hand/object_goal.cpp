@@ -122,7 +122,8 @@ void reset_object(const ObjectGoal& goal, World& world, GoalState* state, Stream
   const Vec3 p = m.X.p;
   if (goal.standing) {
     for (int k = 0; k < kRings * kPlaces && !clear; ++k) {
-      const double r = kRaise * (1 + k / kPlaces), angle = 2 * kPi / kPlaces * (k % kPlaces);
+      const int ring = k / kPlaces;
+      const double r = kRaise * (1 + ring), angle = 2 * kPi / kPlaces * (k % kPlaces);
       tried_at(p + Vec3{r * elementary::cos(angle), r * elementary::sin(angle), 0});
     }
   } else {
