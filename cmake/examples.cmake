@@ -26,6 +26,10 @@ foreach(source ${sources})
   list(APPEND RDM_EXAMPLES ${name})
 endforeach()
 
+# Policies that are there a second after the build, where an installed tool has them too.
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/redman)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/examples/policies ${PROJECT_BINARY_DIR}/share/redman/policies SYMBOLIC)
+
 # rdm_carry(out tag NAME|NAME_WE files...): a row {"name", R"tag(text)tag"} of a C++ table for each file.
 function(rdm_carry out tag part)
   set(rows "")

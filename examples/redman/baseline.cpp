@@ -1,17 +1,21 @@
 // `baseline`: what policies without learning get, so that every learning figure has its floor beside it, and
-// the demonstration where the tool carries one.
+// the demonstration where the tool carries one; or what the policies that come with the tool get.
+#include <algorithm>
+
 #include "commands.hpp"
 #include "common/names.hpp"
 #include "common/robots.hpp"
 #include "common/text.hpp"
 #include "play/actor.hpp"
 #include "play/evaluate.hpp"
+#include "play/trained.hpp"
 
 namespace tool {
 namespace {
 
 struct BaselineFlags {
-  std::vector<std::string> tasks;  // empty: all
+  std::vector<std::string> tasks;     // empty: all
+  std::vector<std::string> policies;  // empty: those that learn nothing
   PoolSettings pool;
   int32_t episodes = kEvalEpisodes;
   bool markdown = false;
@@ -25,9 +29,19 @@ std::vector<std::string> chosen_tasks(const BaselineFlags& flags) {
   return names;
 }
 
-std::vector<std::string> policies_of(const std::string& task) {
-  std::vector<std::string> names = {"zero", "hold", "random"};
-  if (has_builtin_demo(task)) names.push_back("demo");
+// Of the words asked for, or all but `trained`: those that the task has.
+std::vector<std::string> policies_of(const std::string& task, const BaselineFlags& flags) {
+  const auto trained = trained_tasks();
+  std::vector<std::string> names;
+  for (const char* name : {"zero", "hold", "random", "demo", "trained"}) {
+    const auto asked = [&](const std::string& word) { return same_name(word, name); };
+    const bool learned = same_name(name, "trained");
+    if (flags.policies.empty() ? learned : std::none_of(flags.policies.begin(), flags.policies.end(), asked))
+      continue;
+    if (same_name(name, "demo") && !has_builtin_demo(task)) continue;
+    if (learned && std::find(trained.begin(), trained.end(), task) == trained.end()) continue;
+    names.push_back(name);
+  }
   return names;
 }
 
@@ -35,10 +49,10 @@ Report run_baseline(const BaselineFlags& flags) {
   Json rows = Json::array();
   Table table({"task", "policy", "return", "cost", "limit", "length", "success"});
   for (const std::string& task : chosen_tasks(flags))
-    for (const std::string& policy : policies_of(task)) {
+    for (const std::string& policy : policies_of(task, flags)) {
       PoolSettings pool = flags.pool;
       pool.task = task;
-      const ActorChoice choice = choose_actor(policy);
+      const ActorChoice choice = choose_actor(policy, task);
       adopt_task(choice, true, {}, pool);
       const Evaluation e = evaluate(choice, pool, {}, flags.episodes, false);
       const Summary& s = e.summary;
@@ -58,10 +72,16 @@ Report run_baseline(const BaselineFlags& flags) {
 void add_baseline(CLI::App& app, Run& run) {
   auto flags = std::make_shared<BaselineFlags>();
   flags->pool.envs = kEvalEnvs;
-  CLI::App* command = app.add_subcommand(
-      "baseline", "Evaluate zero, hold and random actions, and demonstrations, on every task");
+  CLI::App* command = app.add_subcommand("baseline",
+                                         "Evaluate policies that learn nothing, demonstrations, and those "
+                                         "that come with the tool, on every task");
   command->add_option("--task,--env-id", flags->tasks, "task; repeatable; default: all")
       ->allow_extra_args(false);
+  command
+      ->add_option("--policy", flags->policies,
+                   "zero, hold, random, demo or trained; repeatable; default: all but trained")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"zero", "hold", "random", "demo", "trained"}, CLI::ignore_case));
   command->add_option("--envs,--num-envs", flags->pool.envs, "worlds")->check(CLI::PositiveNumber);
   command->add_option("--threads", flags->pool.threads, "threads; 0: the caller's own");
   add_robot_flag(*command);

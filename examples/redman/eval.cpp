@@ -66,7 +66,7 @@ std::string evaluation_text(const Evaluation& e, int32_t episodes) {
 }
 
 Report run_eval(EvalFlags flags) {
-  ActorChoice choice = choose_actor(flags.policy);
+  ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
   choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
@@ -83,7 +83,7 @@ void add_eval(CLI::App& app, Run& run) {
   flags->pool.envs = kEvalEnvs;
   CLI::App* command = app.add_subcommand("eval", "Evaluate a policy over whole episodes");
   command->add_option("--policy", flags->policy,
-                      "policy file, run folder, .demo file, plan, demo, zero, hold or random; a run's task "
+                      "policy file, run folder, .demo file, trained, plan, demo, zero, hold or random; a run's task "
                       "options come with it");
   CLI::Option* task =
       add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");

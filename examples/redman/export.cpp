@@ -53,7 +53,8 @@ Report run_export(const ExportFlags& flags) {
   if (flags.name_given) check_c_name(flags.name);
   const ActorChoice choice = choose_actor(flags.policy);
   if (choice.file.empty() || choice.recording)
-    throw Usage("--policy " + flags.policy + ": it is no network; give a policy file or a run folder");
+    throw Usage("--policy " + flags.policy +
+                ": it is no network; give a policy file, a run folder or trained:TASK");
   const redman::Policy policy(choice.file.c_str());
   const Network network(policy);
   Json json = {{"policy", choice.file}};
@@ -89,7 +90,7 @@ Report run_export(const ExportFlags& flags) {
 void add_export(CLI::App& app, Run& run) {
   auto flags = std::make_shared<ExportFlags>();
   CLI::App* command = app.add_subcommand("export", "Write a policy as C source, ONNX or safetensors");
-  command->add_option("--policy", flags->policy, "policy file or run folder")->required();
+  command->add_option("--policy", flags->policy, "policy file, run folder, or trained:TASK")->required();
   CLI::Option* c = command->add_option("--c", flags->c,
                                        "C99 file to write: one function that needs no heap and no library");
   CLI::Option* name =

@@ -25,7 +25,7 @@ Report run_plan(PlanFlags flags) {
   for (const std::string& text : flags.own) options.push_back(split_pair(text, "--plan"));
   for (const std::string& text : flags.plans) options.push_back(split_pair(text, "--plan"));
   const std::string word = plan_word(options, flags.policy);
-  ActorChoice choice = choose_actor(word);
+  ActorChoice choice = choose_actor(word, flags.pool.task);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
   choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
@@ -78,7 +78,7 @@ void add_plan(CLI::App& app, Run& run) {
       app.add_subcommand("plan", "Act by planning: roll many worlds out, take what went best");
   CLI::Option* task =
       add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
-  command->add_option("--policy", flags->policy, "policy file or run folder that proposes; default: none");
+  command->add_option("--policy", flags->policy, "policy file, run folder or trained, that proposes; default: none");
   command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));
   for (const rdm_option_info& row : planner_options()) {
     const std::string key = row.key;

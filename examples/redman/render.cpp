@@ -71,7 +71,7 @@ Report run_render(RenderFlags flags) {
   if (!flags.html.empty()) check_viewer();
   for (const std::string& file : {flags.html, flags.glb})
     if (!file.empty()) check_replaceable(file);
-  const ActorChoice choice = choose_actor(flags.policy);
+  const ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
   const bool plays = !flags.video.empty() || !flags.html.empty() || !flags.glb.empty();
@@ -135,7 +135,7 @@ void add_render(CLI::App& app, Run& run) {
   CLI::Option* task =
       add_task_flag(*command, flags->pool.task, "--task", "task, or its file; default: the policy's");
   command->add_option("--policy", flags->policy,
-                      "policy file, run folder, .demo file, plan, demo, zero, hold or random");
+                      "policy file, run folder, .demo file, trained, plan, demo, zero, hold or random");
   command->add_option("--seed", flags->pool.seed, "seed of the episode");
   CLI::Option* step = command->add_option("--step", flags->step, "control step to draw; 0: the start")
                           ->check(CLI::NonNegativeNumber);

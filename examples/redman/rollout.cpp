@@ -75,7 +75,7 @@ void adopt_recording(const Recording& r, RolloutFlags& flags) {
 }
 
 Report run_rollout(RolloutFlags flags) {
-  const ActorChoice choice = choose_actor(flags.policy);
+  const ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
   if (choice.recording) adopt_recording(*choice.recording, flags);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
@@ -149,7 +149,7 @@ void add_rollout(CLI::App& app, Run& run) {
       add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
   command->add_option(
       "--policy", flags->policy,
-      "policy file, run folder, .demo file, recorded .npz file, plan, demo, zero, hold or random");
+      "policy file, run folder, .demo file, recorded .npz file, trained, plan, demo, zero, hold or random");
   CLI::Option* episodes =
       command->add_option("--episodes", flags->episodes, "episodes; default: 1, or as recorded")
           ->check(CLI::Range(1, kMostEpisodes));

@@ -145,7 +145,7 @@ std::vector<CLI::Option*> add_teach_flags(CLI::App& command, RunSettings& run, s
   TeachSettings& t = run.teach;
   command.add_option(
       "--from", t.from,
-      "learn from this first: demo, a .demo or .npz file (clone it), a policy file or run folder "
+      "learn from this first: demo, a .demo or .npz file (clone it), trained, a policy file or run folder "
       "(begin with it)");
   return {
       command.add_option("--demo-decisions", t.decisions, "of the teacher, each world")

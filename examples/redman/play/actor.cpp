@@ -7,6 +7,7 @@
 #include "common/files.hpp"
 #include "common/names.hpp"
 #include "play/plan_word.hpp"
+#include "play/trained.hpp"
 #include "record/recorded_rollout.hpp"
 #include "run/folder.hpp"
 
@@ -18,8 +19,8 @@ constexpr const char* kBaselines[] = {"zero", "hold", "random"};  // by RDM_BASE
 redman::Policy load(const std::string& file) {
   if (!file_exists(file))
     throw Failure("policy " + file +
-                  ": no such file; give a policy file, a run folder, a .demo or .npz file, plan, demo, zero, "
-                  "hold or random");
+                  ": no such file; give a policy file, a run folder, a .demo or .npz file, trained, plan, "
+                  "demo, zero, hold or random");
   try {
     return redman::Policy(file.c_str());
   } catch (const redman::Error& e) {
@@ -40,11 +41,13 @@ uint64_t mixed(uint64_t x) {
 
 }  // namespace
 
-ActorChoice choose_actor(const std::string& word) {
+ActorChoice choose_actor(const std::string& word, const std::string& task) {
   ActorChoice choice;
+  std::string own = task;
+  if (read_trained_word(word, &own)) return choose_actor(trained_policy(own));
   PlanWord plan;
   if (read_plan_word(word, &plan)) {
-    if (!plan.policy.empty()) choice = choose_actor(plan.policy);
+    if (!plan.policy.empty()) choice = choose_actor(plan.policy, task);
     if (!plan.policy.empty() && (choice.file.empty() || choice.recording || choice.plan))
       throw Failure("policy " + plan.policy +
                     ": a planner's proposals come from a policy file or a run folder");

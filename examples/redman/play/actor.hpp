@@ -26,9 +26,10 @@ struct ActorChoice {
   std::vector<std::string> limits;  // --cost-limit of that run
   bool magnitudes = false;          // which are on magnitudes
 };
-// zero, hold, random, demo, plan (play/plan_word.hpp), a .demo file, an .npz file of a rollout, a policy file
-// or a run folder. Failure when the file cannot be read as what it is.
-ActorChoice choose_actor(const std::string& word);
+// zero, hold, random, demo, trained (of `task`, play/trained.hpp), plan (play/plan_word.hpp), a .demo file,
+// an .npz file of a rollout, a policy file or a run folder. Failure when the file cannot be read as what it
+// is.
+ActorChoice choose_actor(const std::string& word, const std::string& task = "");
 
 // Lays what the policy knows about its task under the flags: the task's name when `task_given` is false, and
 // the options of its run when the tasks agree. A recording brings its seed, and plays its own task alone.

@@ -144,12 +144,11 @@ void drop_failures(rdm_recording* recording) {
   if (info.rows == 0) throw Failure("--success-only: no episode of the teacher's succeeded");
 }
 
-void load_policy(const std::string& word, const redman::Pool& pool, redman::Agent& agent) {
-  const ActorChoice choice = choose_actor(word);
-  const redman::Policy policy(choice.file.c_str());
+void load_policy(const std::string& file, const redman::Pool& pool, redman::Agent& agent) {
+  const redman::Policy policy(file.c_str());
   policy.check_fits(pool.spec());
   if (rdm_agent_load_policy(agent.get(), policy.get(), kPolicySamples) != RDM_OK)
-    throw Failure("--from " + word + ": " + rdm_agent_error(agent.get()));
+    throw Failure("--from " + file + ": " + rdm_agent_error(agent.get()));
 }
 
 }  // namespace
@@ -171,7 +170,7 @@ void adopt_teacher(const TeachSettings& s, bool task_given, const std::vector<st
     if (!task_given && *info.task) pool.task = info.task;
     return;
   }
-  adopt_task(choose_actor(s.from), task_given, sets, pool);
+  adopt_task(choose_actor(s.from, pool.task), task_given, sets, pool);
 }
 
 Taught teach(const TeachSettings& s, const PoolSettings& settings, redman::Agent& agent, int32_t repeat,
@@ -185,10 +184,10 @@ Taught teach(const TeachSettings& s, const PoolSettings& settings, redman::Agent
     out.cloned = true;
     return out;
   }
-  const ActorChoice teacher = choose_actor(s.from);
+  const ActorChoice teacher = choose_actor(s.from, settings.task);
   if (teacher.baseline >= 0) throw Usage("--from " + s.from + ": nothing is to be learned from that");
   if (!teacher.demo && s.dagger == 0) {
-    load_policy(s.from, make_pool(settings, RDM_AUTORESET_OFF), agent);
+    load_policy(teacher.file, make_pool(settings, RDM_AUTORESET_OFF), agent);
     std::fprintf(stderr, "begins with the policy %s\n", printable(s.from).c_str());
     return out;
   }
