@@ -1,0 +1,129 @@
+#!/usr/bin/env bash
+# The tables of examples/paper_tables.sh out of the runs that it kept, without running anything:
+#   bash examples/paper_report.sh [RESULTS]   RESULTS: the folder with runs.csv, default examples/results
+# writes RESULTS/table1.md, fig7.md, second.md and claims.md.
+set -eu
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+results=${1:-$root/examples/results}
+
+# means PART: one line for each task and algorithm: task algo limit seeds steps return cost falls success sampled_return
+# sampled_cost sampled_over train_return train_cost train_over train_swing wall returns costs seeds_over feasible
+# second_limit second_cost
+means() {
+  awk -F, -v part="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+    $at["part"] == part { k = $at["task"] SUBSEP $at["algorithm"]
+      if (!(k in n)) { order[++count] = k; limit[k] = $at["limit"] + 0 }
+      i = ++n[k]; split("env_steps return cost falls success sampled_return sampled_cost sampled_over train_return train_cost train_over train_swing wall_seconds", key, " ")
+      for (j = 1; j <= 13; ++j) sum[k, j] += $at[key[j]]
+      second[k] = $at["second_limit"]; more[k] += $at["second_cost"]
+      over = limit[k] >= 0 && $at["cost"] > limit[k]; overs[k] += over
+      each[k] = each[k] (i > 1 ? "," : "") number($at["return"]); costs[k] = costs[k] (i > 1 ? "," : "") number($at["cost"]) (over ? "!" : "") }
+    function number(x) { return sprintf(x >= 1e4 ? "%.0f" : x >= 1e3 ? "%.0f" : "%.3g", x) }
+    END { for (c = 1; c <= count; ++c) { k = order[c]; split(k, name, SUBSEP); m = n[k]
+      printf "%s %s %s %d", name[1], name[2], limit[k], m
+      for (j = 1; j <= 13; ++j) printf " %.6g", sum[k, j] / m
+      printf " %s %s %d %d %s %.3g\n", each[k], costs[k], overs[k] + 0, limit[k] < 0 || sum[k, 3] / m <= limit[k],
+        second[k] == "" ? "-" : second[k], more[k] / m } }' "$results/runs.csv"
+}
+
+# The paper's Table 1 as TASK ALGO RETURN COST.
+published() {
+  local task
+  paste -d ' ' <(for task in cpo trpo_lag ppo_lag p3o pcpo focops cppo_pid ipo; do echo "$task"; done) - <<'T' |
+4.57 32.41 6.18 29.54 21.63 34.72 2.68 29.3
+3.62 36.02 3.83 10.77 4.55 15.6 3.37 33.13
+17.4 27.69 22.44 71.15 25.5 65.56 24.11 64.39
+21.93 40.54 21.9 31.34 22.72 47.3 20.09 55.84
+3.08 70.15 3.08 70.15 0.3 3.22 0.26 5.0
+13.89 39.68 19.79 33.45 18.95 38.57 4.1 32.54
+3.63 29.41 5.21 28.54 0.31 3.28 3.81 32.6
+3.12 69.23 3.01 69.21 0.27 4.18 0.32 5.24
+T
+    while read -r algo a b c d e f g h; do
+      echo "hand_over_safe_finger $algo $a $b"
+      echo "hand_over_safe_joint $algo $c $d"
+      echo "catch_underarm_safe_finger $algo $e $f"
+      echo "catch_underarm_safe_joint $algo $g $h"
+    done
+}
+
+order="hand_over_safe_finger hand_over_safe_joint catch_underarm_safe_finger catch_underarm_safe_joint grasp reorient
+  hand_over_wall jenga pick_bottles clean_house"
+
+# table PART: Markdown, feasible first, by the return of the mean action; the policy with its noise, and training.
+table() {
+  local task
+  echo "| task (limit) | algorithm | return (each seed) | cost (each seed) | second cost (limit) | falls | success | sampled | episodes over | training's last tenth | epochs over | steps | wall s | published |"
+  echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+  for task in $order; do
+    { published | sed 's/^/P /'; means "$1" | awk -v t="$task" '$1 == t' | sort -k21,21nr -k6,6nr; } |
+      awk '$1 == "P" { known[$2, $3] = $4 " @ " $5; next }
+        function number(x) { return sprintf(x >= 1e3 ? "%.0f" : "%.3g", x) }
+        { gsub(",", ", ", $18); gsub(",", ", ", $19)
+          printf "| `%s` (%s) | `%s` | %s", $1, $3 < 0 ? "-" : $3, $2, number($6); if ($4 > 1) printf " (%s)", $18
+          printf " | %s%s", number($7), $21 ? "" : "!"; if ($4 > 1) printf " (%s)", $19
+          if ($22 == "-") printf " | "; else printf " | %s (%s)", $23, $22
+          printf " | %.0f %% | %.0f %% | %s @ %s | %.0f %% | %s @ %s | %.0f %% | %.2g M | %.0f | %s |\n", 100 * $8, 100 * $9, number($10),
+            number($11), 100 * $12, number($13), number($14), 100 * $15, $5 / 1e6, $17, (($1, $2) in known) ? known[$1, $2] : "" }'
+  done
+}
+
+note() {
+  cat <<'T'
+
+Feasible first, by return. `return`, `cost`: the mean action, 100 fresh episodes of each seed, policy chosen on others by a
+standard error within the limit; `!`: over it. `sampled`: the same policy with its noise, `episodes over`: of those, over a limit. `training`: the
+policy of that moment with its noise; `epochs over`: whose mean cost was over the limit. `published`: the paper's Table 1, 100 M steps.
+T
+}
+
+claims() {
+  { means table1 | sed 's/^/T /'; means fig7 | sed 's/^/F /'; } | awk '
+    { k = $2 SUBSEP $3; ret[k] = $7; cost[k] = $8; limit[k] = $4; tcost[k] = $15; over[k] = $16; swing[k] = $17; ok[k] = $22; sret[k] = $11; scost[k] = $12; there[k] = 1; from[k] = $1 }
+    function at(task, algo) { return task SUBSEP algo }
+    function row(name, verdict, figures) { printf "| %s | %s | %s |\n", name, verdict, figures }
+    function all(verdicts) { return verdicts ~ /0/ ? (verdicts ~ /1/ ? "in part" : "contradicted") : (verdicts == "" ? "not measured" : "yes") }
+    END {
+      nt = split("hand_over_safe_finger hand_over_safe_joint catch_underarm_safe_finger catch_underarm_safe_joint", throws, " ")
+      na = split("cpo trpo_lag ppo_lag p3o pcpo focops cppo_pid ipo", algos, " ")
+      print "| the paper says | here | figures |"; print "|---|---|---|"
+      v = f = ""
+      for (i = 1; i <= nt; ++i) { k = at(throws[i], "cpo"); if (!there[k]) continue
+        v = v (tcost[k] <= limit[k] && cost[k] <= limit[k] ? 1 : 0)
+        f = f sprintf("%s%s: %.1f, in training %.1f of %d", f == "" ? "" : "; ", throws[i], cost[k], tcost[k], limit[k]) }
+      row("CPO ends within the limit in all four throws", all(v), f)
+      v = f = ""
+      for (i = 2; i <= nt; i += 2) { best = ""
+        for (j = 1; j <= na; ++j) { k = at(throws[i], algos[j]); if (there[k] && ok[k] && (best == "" || ret[k] > ret[at(throws[i], best)])) best = algos[j] }
+        k = at(throws[i], "ppo_lag"); if (best == "" || !there[k]) continue
+        v = v (best == "ppo_lag" ? 1 : 0)
+        f = f sprintf("%s%s: %s %.1f @ %.1f, ppo_lag %.1f @ %.1f", f == "" ? "" : "; ", throws[i], best, ret[at(throws[i], best)], cost[at(throws[i], best)], ret[k], cost[k]) }
+      row("PPO-Lag has the most return in Safe Joint (there above the limit)", all(v), f)
+      v = f = ""
+      n = split("jenga pick_bottles", props, " ")
+      for (i = 1; i <= n; ++i) { a = at(props[i], "ppo_lag"); b = at(props[i], "ppo"); if (!there[a] || !there[b]) continue
+        v = v (ret[a] > 1.5 * ret[b] ? 1 : 0)
+        f = f sprintf("%s%s: PPO-Lag %.0f @ %.0f, PPO %.0f @ %.0f", f == "" ? "" : "; ", props[i], ret[a], cost[a], ret[b], cost[b]) }
+      row("PPO-Lag is far ahead of PPO in return in Jenga and Pick Bottles", all(v), f)
+      v = f = ""
+      for (i = 1; i <= nt; ++i) { a = at(throws[i], "focops"); b = at(throws[i], "ppo_lag"); if (!there[a] || !there[b]) continue
+        v = v (swing[a] > 1.25 * swing[b] ? 1 : 0)
+        f = f sprintf("%s%s: %.2f, PPO-Lag %.2f", f == "" ? "" : "; ", throws[i], swing[a], swing[b]) }
+      row("The cost of FOCOPS oscillates (standard deviation of an epoch'"'"'s cost over the second half of training)", all(v), f)
+      v = f = ""
+      for (i = 1; i <= nt; ++i) { a = at(throws[i], "cppo_pid"); b = at(throws[i], "ppo_lag"); if (!there[a] || !there[b]) continue
+        v = v (swing[a] < swing[b] ? 1 : 0)
+        f = f sprintf("%s%s: %.2f, PPO-Lag %.2f", f == "" ? "" : "; ", throws[i], swing[a], swing[b]) }
+      row("PID damps that oscillation", all(v), f)
+      v = f = ""
+      for (i = 1; i <= nt; ++i) { k = at(throws[i], "ipo"); if (!there[k]) continue
+        v = v (tcost[k] > limit[k] || cost[k] > limit[k] ? 1 : 0)
+        f = f sprintf("%s%s: %.1f @ %.1f, in training %.1f of %d", f == "" ? "" : "; ", throws[i], ret[k], cost[k], tcost[k], limit[k]) }
+      row("IPO needs a start within the limit (these start above it in the finger tasks, at it or below in the joint ones)", all(v), f)
+    }'
+}
+
+{ echo "# Table 1"; echo; table table1; note; } > "$results/table1.md"
+{ echo "# Fig. 7"; echo; table fig7; note; } > "$results/fig7.md"
+{ echo "# With a second limit"; echo; table second; note; } > "$results/second.md"
+{ echo "# What the paper says of its algorithms"; echo; claims; } > "$results/claims.md"

@@ -1,0 +1,170 @@
+#!/usr/bin/env bash
+# The paper's experiments, measured again: Table 1 and Fig. 6 (eight algorithms on the four throws with costs of the
+# robot's state), Fig. 7 (six tasks with costs of the environment's state), rows with a second cost, and what the
+# paper claims of its algorithms. Finished runs are kept and stopped ones go on, so the script can be stopped and
+# called again: seed after seed, so that the tables are whole, if thin, as early as can be.
+#   bash examples/paper_tables.sh [OUT] [RESULTS]   OUT: folder of the runs, default runs/paper
+#                                                   RESULTS: what is kept of them, default examples/results
+# Environment: REDMAN (the tool), PARTS ("table1 fig7 second": what is trained), SEEDS ("0 1 2"), JOBS (runs at once,
+# one thread each; 2), STEPS (control steps; else 10 million of a throw, and by task in Fig. 7), LONG (algorithms
+# that have the paper's 100 million steps with the first seed; ""), LONG_TASKS (the four throws), TASKS, ALGOS (those
+# of a part that are wanted).
+#
+# RESULTS/runs.csv has a row for each run: its command, seed, steps, wall time; the mean action and the policy with its
+# noise over 100 fresh episodes each; the last tenth of training. RESULTS/runs/NAME is its configuration and its
+# training, a hundredth in each row; `redman plot` draws it. RESULTS/*.md are the tables, feasible first (made by
+# examples/paper_report.sh out of runs.csv), RESULTS/*.svg the curves.
+set -eu
+# shellcheck source=examples/runs.sh
+. "$(dirname "$0")/runs.sh"
+out=${1:-$root/runs/paper} results=${2:-$root/examples/results}
+parts=${PARTS:-table1 fig7 second} seeds=${SEEDS:-0 1 2}
+throws="hand_over_safe_finger hand_over_safe_joint catch_underarm_safe_finger catch_underarm_safe_joint"
+props="grasp reorient hand_over_wall jenga pick_bottles clean_house"
+eight="cpo trpo_lag ppo_lag p3o pcpo focops cppo_pid ipo"
+mkdir -p "$out" "$results/runs"
+
+steps() {
+  case $1 in
+    jenga) echo 1500000 ;;
+    hand_over_wall) echo 12000000 ;;
+    pick_bottles | clean_house) echo 2000000 ;;
+    grasp | reorient) echo 3000000 ;;
+    *) echo 10000000 ;;
+  esac
+}
+
+# algos PART TASK: Table 1 has eight; Fig. 7 PPO and PPO-Lag, and every algorithm on grasp and jenga.
+algos() {
+  case $1.$2 in
+    table1.*) echo "$eight" ;;
+    fig7.grasp | fig7.jenga) echo "ppo ppo_lag focops cppo_pid p3o trpo trpo_lag cpo pcpo ipo" ;;
+    fig7.*) echo "ppo ppo_lag" ;;
+    second.*) echo "ppo_lag cpo p3o" ;;
+  esac
+}
+
+# second TASK: the flags of its rows with a second cost.
+second() {
+  case $1 in
+    hand_over_*) echo "--cost-limit effort=1" ;;
+    catch_*) echo "--cost-limit throw_height=1" ;;
+    jenga) echo "--cost-limit blocks_contact=60" ;;
+  esac
+}
+
+wanted() { case " ${2:-$1} " in *" $1 "*) ;; *) return 1 ;; esac }
+
+# One line for each run: NAME PART TASK ALGO SEED STEPS FLAGS...
+rows() {
+  local first=${seeds%% *} seed part task algo tasks
+  for seed in $seeds; do for part in $parts; do
+    case $part in table1) tasks=$throws ;; fig7) tasks=$props ;; *) tasks="hand_over_safe_finger catch_underarm_safe_finger jenga" ;; esac
+    for task in $tasks; do
+      wanted "$task" "${TASKS:-}" || continue
+      for algo in $(algos "$part" "$task"); do
+        wanted "$algo" "${ALGOS:-}" || continue
+        case $part in
+          second) echo "$task.$algo.second.$seed second $task $algo $seed ${STEPS:-$(steps "$task")} $(second "$task")" ;;
+          *) echo "$task.$algo.$seed $part $task $algo $seed ${STEPS:-$(steps "$task")}" ;;
+        esac
+      done
+    done
+  done; done
+  for task in ${LONG_TASKS:-$throws}; do for algo in ${LONG:-}; do
+    echo "$task.$algo.long.$first long $task $algo $first 100000000"
+  done; done
+}
+
+run_one() {  # a row
+  local name=$1 part=$2 task=$3 algo=$4 seed=$5 n=$6
+  shift 6
+  if trained "$out/$name" --task "$task" --algo "$algo" --seed "$seed" --steps "$n" --no-tensorboard "$@" &&
+    sampled "$out/$name" "$seed" &&
+    { [ "$part" != second ] || kept "$out/$name.mean.json" eval --policy "$out/$name" --episodes 100 --seed $((1000000 + seed)); }; then
+    return
+  fi
+  echo "$name failed: see $out/$name.log" >&2
+}
+
+rows | {
+  while read -r -a row; do
+    wait_turn
+    run_one "${row[@]}" < /dev/null &
+  done
+  wait
+}
+
+# ---- what is kept
+
+# condensed CSV: a hundredth of training in a row, under the names of progress.csv.
+condensed() {
+  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i
+      n = split("Metrics/EpRet Metrics/EpCost Metrics/EpLen Metrics/FallRate Metrics/SuccessRate Metrics/LagrangeMultiplier", key, " ")
+      head = "TotalEnvSteps,Time/Total"; for (k = 1; k <= n; ++k) head = head "," key[k]
+      print head; next }
+    { ++rows; steps[rows] = $at["TotalEnvSteps"]; time[rows] = $at["Time/Total"]
+      for (k = 1; k <= n; ++k) v[rows, k] = $at[key[k]] }
+    END { for (b = 1; b <= 100; ++b) { from = int((b - 1) * rows / 100) + 1; to = int(b * rows / 100); if (to < from) continue
+      printf "%.0f,%.1f", steps[to], time[to]
+      for (k = 1; k <= n; ++k) { s = 0; m = 0
+        for (i = from; i <= to; ++i) if (v[i, k] ~ /^[-+0-9.]/) { s += v[i, k]; ++m }
+        printf m ? ",%.5g" : ",nan", m ? s / m : 0 }
+      print "" } }' "$1"
+}
+
+# last_tenth CSV LIMIT: cost and return of the last tenth of training, share of its epochs over the limit, and how far
+# the cost swings: its standard deviation over the second half of training.
+last_tenth() {
+  awk -F, -v limit="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == "Metrics/EpRet") r = i; if ($i == "Metrics/EpCost") c = i } next }
+    { ret[NR] = $r; cost[NR] = $c }
+    END { first = NR - int((NR - 1) / 10) + 1; if (first > NR) first = NR
+      for (i = first; i <= NR; ++i) { a += ret[i]; b += cost[i]; over += limit >= 0 && cost[i] > limit }
+      half = int(NR / 2) + 1
+      for (i = half; i <= NR; ++i) { s += cost[i]; q += cost[i] * cost[i] }
+      n = NR - first + 1; m = NR - half + 1; d = q / m - (s / m) * (s / m)
+      printf "%.4f,%.4f,%.4f,%.4f", a / n, b / n, over / n, sqrt(d > 0 ? d : 0) }' "$1"
+}
+
+# of_second FILE: limit and mean cost of the second column that has a limit, of an evaluation; "," without one.
+of_second() {
+  [ -s "$1" ] || { echo ,; return; }
+  { sed -n 's/.*"cost_limits":\[\([^]]*\)\].*/\1/p' "$1"; sed -n 's/.*"cost_mean":\[\([^]]*\)\].*/\1/p' "$1"; } |
+    awk -F, 'NR == 1 { for (i = 2; i <= NF; ++i) if ($i >= 0) k = i; limit = $k } NR == 2 { print k ? limit "," $k : "," }'
+}
+
+header="name,part,task,algorithm,seed,limit,return,cost,cost_stderr,falls,success,length,sampled_return,sampled_cost,sampled_over,train_return,train_cost,train_over,train_swing,env_steps,wall_seconds,second_limit,second_cost,flags"
+rows | while read -r name part task algo seed n flags; do
+  f=$out/$name.json s=$out/$name.sampled.json
+  if [ ! -s "$f" ] || [ ! -s "$s" ]; then continue; fi
+  limit=$(value cost_limit "$f")
+  case $limit in [0-9]*) ;; *) limit=-1 ;; esac
+  mkdir -p "$results/runs/$name"
+  condensed "$out/$name/progress.csv" > "$results/runs/$name/progress.csv"
+  cp "$out/$name/config.json" "$results/runs/$name/config.json"
+  tail=$(last_tenth "$out/$name/progress.csv" "$limit")
+  echo "$name,$part,$task,$algo,$seed,$limit,$(value return "$f"),$(value cost "$f"),$(value cost_stderr "$f"),$(value fall_rate "$f"),$(value success_rate "$f"),$(value length "$f"),$(value return_mean "$s"),$(value cost_mean "$s"),$(value violation_rate "$s"),$tail,$(value env_steps "$f"),$(value wall_seconds "$f"),$(of_second "$out/$name.mean.json"),$flags"
+done > "$results/runs.csv.new"
+# runs of other calls stay
+{
+  echo "$header"
+  {
+    cat "$results/runs.csv.new"
+    if [ -s "$results/runs.csv" ]; then
+      awk -F, 'NR == FNR { seen[$1] = 1; next } FNR > 1 && !($1 in seen)' "$results/runs.csv.new" "$results/runs.csv"
+    fi
+  } | sort
+} > "$results/runs.csv.part"
+rm "$results/runs.csv.new"
+mv "$results/runs.csv.part" "$results/runs.csv"
+bash "$root/examples/paper_report.sh" "$results"
+
+# drawn PART PICTURE: the curves of all runs of a part that are kept.
+drawn() {
+  local list
+  list=$(awk -F, -v p="$1" -v at="$results/runs/" '$2 == p { print at $1 }' "$results/runs.csv")
+  # shellcheck disable=SC2086
+  [ -z "$list" ] || "$redman" plot $list --out "$results/$2" > /dev/null
+}
+drawn table1 fig6.svg
+drawn fig7 fig7.svg
