@@ -22,7 +22,7 @@ means() {
     END { for (c = 1; c <= count; ++c) { k = order[c]; split(k, name, SUBSEP); m = n[k]
       printf "%s %s %s %d", name[1], name[2], limit[k], m
       for (j = 1; j <= 13; ++j) printf " %.6g", sum[k, j] / m
-      printf " %s %s %d %d %s %.3g\n", each[k], costs[k], overs[k] + 0, limit[k] < 0 || sum[k, 3] / m <= limit[k],
+      printf " %s %s %d %d %s %.3g\n", each[k], costs[k], overs[k] + 0, (limit[k] < 0 || sum[k, 3] / m <= limit[k]) && (second[k] == "" || more[k] / m <= second[k]),
         second[k] == "" ? "-" : second[k], more[k] / m } }' "$results/runs.csv"
 }
 
