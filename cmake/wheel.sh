@@ -19,6 +19,7 @@ module=$stage/redman
 find "$module" -name __pycache__ -prune -exec rm -r {} +
 soname=$(readelf -d "$build/libredman.so" | sed -n 's/.*(SONAME).*\[\(.*\)\]/\1/p')
 cp -L "$build/libredman.so" "$module/$soname"
+cp -r examples/policies "$module/policies"
 strip --strip-unneeded "$module/$soname"  # not after patchelf, which strip does not understand
 
 # What every Linux has: the list of the manylinux policies, as far as we come near it.

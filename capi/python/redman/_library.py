@@ -53,6 +53,19 @@ def _load() -> ctypes.CDLL:
 lib = _load()
 
 
+def policy_folders() -> list[Path]:
+    """Where the policies that come with redman may be: in a wheel, in the project's tree, beside an installed library."""
+    here = Path(__file__).resolve().parent
+    library = Path(lib._name)
+    beside = library.resolve().parent.parent if library.is_absolute() else Path(sys.prefix)
+    places = [here / "policies"]
+    if len(here.parents) > 2 and (here.parents[2] / "include" / "redman" / "redman.h").is_file():
+        places.append(here.parents[2] / "examples" / "policies")
+    places += [prefix / "share" / "redman" / "policies"
+               for prefix in (beside, beside.parent, Path("/usr/local"), Path("/usr"))]
+    return places
+
+
 def text(value: bytes | None) -> str:
     """A text of the library; "" for NULL."""
     return "" if value is None else value.decode("utf-8", errors="replace")

@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _abi
 from ._error import ArgumentError, FileError, MissingFileError
-from ._library import Handle, check, filled, lib
+from ._library import Handle, check, filled, lib, policy_folders
 from ._pool import Pool
 from ._rows import Array, FloatArray, given
 from ._tensors import Tensors
@@ -44,6 +44,15 @@ class Policy:
             raise MissingFileError(f"policy {path}: there is no such file") from None
         except OSError as error:
             raise FileError(f"policy {path}: {error.strerror}") from None
+
+    @classmethod
+    def trained(cls, task: str) -> Policy:
+        """Of the policies that come with redman, that of a task: the one of `redman eval --policy trained`."""
+        name = task.lower().replace("-", "_")
+        for folder in policy_folders():
+            if (folder / f"{name}.rdm").is_file():
+                return cls.load(folder / f"{name}.rdm")
+        raise MissingFileError(f"policy of {task}: none in " + ", ".join(str(folder) for folder in policy_folders()))
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes the policy file, whole or not at all."""
