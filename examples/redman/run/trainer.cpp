@@ -113,7 +113,7 @@ void Trainer::learn_from_teacher() {
   if (wants_starts())
     as_usage(
         [&] { redman::check(rdm_pool_set_starts(pool_.get(), recording, settings_.teach.start_share)); });
-  taught_.recording.reset();  // copies were taken
+  taught_.recording = {};  // copies were taken
 }
 
 bool Trainer::wants_starts() const {

@@ -18,18 +18,12 @@ bool is_file(const std::string& word) {
   return word.size() > 4 && same_name(word.substr(word.size() - 4), ".npz");
 }
 
-RecordingHandle open_recording(const std::string& path) {
-  rdm_recording* r = nullptr;
-  if (rdm_recording_load_file(&r, path.c_str()) != RDM_OK) throw Failure(path + ": " + rdm_last_error());
-  return RecordingHandle(r);
-}
-
-RecordingHandle new_recording(const redman::Pool& pool, int64_t rows) {
-  rdm_recording_config c;
-  redman::check(rdm_recording_config_init(&c, sizeof c));
-  redman::check(rdm_recording_config_for_pool(&c, pool.get()));
-  c.capacity = rows;
-  return RecordingHandle(redman::made(rdm_recording_create, static_cast<const rdm_recording_config*>(&c)));
+redman::Recording open_recording(const std::string& path) {
+  try {
+    return redman::Recording(path.c_str());
+  } catch (const redman::Error& e) {
+    throw Failure(path + ": " + e.what());
+  }
 }
 
 // What episodes of a round came to.
@@ -58,7 +52,7 @@ class Lesson {
   redman::Pool& pool() { return pool_; }
 
   // A decision of each world: the teacher's with noise, with probability beta, else the student's mean.
-  void decide(rdm_recording* recording, const redman::Policy* student, double beta, RoundMeans* means) {
+  void decide(redman::Recording& recording, const redman::Policy* student, double beta, RoundMeans* means) {
     const size_t n = pool_.num_envs(), width = pool_.action().width();
     std::vector<float> label(n * width), held(n * width);
     std::fill(live_.begin(), live_.end(), 1);
@@ -72,9 +66,9 @@ class Lesson {
         choose(label, student, beta, held);
       }
       std::copy_n(held.data(), n * width, pool_.action().data());
-      if (k == 0) redman::check(rdm_recording_begin_step(recording, pool_.get(), label.data(), nullptr));
+      if (k == 0) recording.begin_step(pool_, label.data());
       pool_.step(live_.data());
-      redman::check(rdm_recording_end_step(recording, pool_.get(), live_.data()));
+      recording.end_step(pool_, live_.data());
       for (size_t i = 0; i < n; ++i) count(i, means);
     }
     for (size_t i = 0; i < n; ++i) over_[i] = !live_[i];
@@ -117,18 +111,16 @@ class Lesson {
   std::vector<float> meant_;  // [num_envs][action_dim] the teacher's last actions
 };
 
-rdm_clone_report clone(const TeachSettings& s, redman::Agent& agent, const rdm_recording* recording,
+rdm_clone_report clone(const TeachSettings& s, redman::Agent& agent, const redman::Recording& recording,
                        uint64_t seed) {
-  rdm_clone_config how;
-  redman::check(rdm_clone_config_init(&how, sizeof how));
+  rdm_clone_config how = redman::clone_config();
   how.epochs = s.clone_epochs;
   how.patience = s.clone_patience;
   how.learning_rate = s.clone_rate;
   how.learning_rate_end = s.clone_rate / 100;
   how.validation = s.validation;
   how.seed = seed;
-  auto report = redman::sized<rdm_clone_report>();
-  as_usage([&] { redman::check(rdm_agent_clone(agent.get(), recording, &how, &report)); });
+  const rdm_clone_report report = as_usage([&] { return redman::clone(agent, recording, how); });
   std::fprintf(stderr, "cloned %lld rows in %d epochs: loss %.5f, held back %.5f\n",
                static_cast<long long>(report.train_rows), report.epochs, report.train_loss,
                report.validation_loss);
@@ -136,12 +128,9 @@ rdm_clone_report clone(const TeachSettings& s, redman::Agent& agent, const rdm_r
 }
 
 // Rows of episodes without success go.
-void drop_failures(rdm_recording* recording) {
-  int64_t dropped = 0;
-  redman::check(rdm_recording_filter(recording, 1, nullptr, &dropped));
-  auto info = redman::sized<rdm_recording_info>();
-  redman::check(rdm_recording_get_info(recording, &info));
-  if (info.rows == 0) throw Failure("--success-only: no episode of the teacher's succeeded");
+void drop_failures(redman::Recording& recording) {
+  recording.filter(true);
+  if (recording.info().rows == 0) throw Failure("--success-only: no episode of the teacher's succeeded");
 }
 
 void load_policy(const std::string& file, const redman::Pool& pool, redman::Agent& agent) {
@@ -164,9 +153,8 @@ Options taught_options(const TeachSettings& s) {
 void adopt_teacher(const TeachSettings& s, bool task_given, const std::vector<std::string>& sets,
                    PoolSettings& pool) {
   if (is_file(s.from)) {
-    const RecordingHandle recording = open_recording(s.from);
-    auto info = redman::sized<rdm_recording_info>();
-    redman::check(rdm_recording_get_info(recording.get(), &info));
+    const redman::Recording recording = open_recording(s.from);
+    const rdm_recording_info info = recording.info();
     if (!task_given && *info.task) pool.task = info.task;
     return;
   }
@@ -179,8 +167,8 @@ Taught teach(const TeachSettings& s, const PoolSettings& settings, redman::Agent
   if (!s.asked()) return out;
   if (is_file(s.from)) {
     out.recording = open_recording(s.from);
-    if (s.success_only) drop_failures(out.recording.get());
-    out.report = clone(s, agent, out.recording.get(), settings.seed);
+    if (s.success_only) drop_failures(out.recording);
+    out.report = clone(s, agent, out.recording, settings.seed);
     out.cloned = true;
     return out;
   }
@@ -197,23 +185,23 @@ Taught teach(const TeachSettings& s, const PoolSettings& settings, redman::Agent
     own.seed = seed;
     Lesson lesson(s, own, teacher, repeat, seed);
     const int64_t rows = int64_t{settings.envs} * s.decisions;
-    RecordingHandle fresh = new_recording(lesson.pool(), rows);
+    redman::Recording fresh(lesson.pool(), rows);
     const redman::Bytes bytes = round > 0 ? agent.policy() : redman::Bytes();
     const std::unique_ptr<redman::Policy> student =
         round > 0 ? std::make_unique<redman::Policy>(bytes) : nullptr;
     RoundMeans means;
     for (int32_t d = 0; d < s.decisions; ++d)
-      lesson.decide(fresh.get(), student.get(), std::pow(s.beta, round), &means);
+      lesson.decide(fresh, student.get(), std::pow(s.beta, round), &means);
     const double n = std::max(1, means.episodes);
     std::fprintf(stderr, "%s: %d episodes, return %.1f, cost %.2f, success %.0f%%\n",
                  round ? format("DAgger round %d", round).c_str() : "teacher", means.episodes, means.ret / n,
                  means.cost / n, 100 * means.successes / n);
-    if (s.success_only) drop_failures(fresh.get());
+    if (s.success_only) drop_failures(fresh);
     if (round == 0)
       out.recording = std::move(fresh);
     else
-      redman::check(rdm_recording_append_all(out.recording.get(), fresh.get()));
-    out.report = clone(s, agent, out.recording.get(), settings.seed + static_cast<uint64_t>(round));
+      out.recording.append(fresh);
+    out.report = clone(s, agent, out.recording, settings.seed + static_cast<uint64_t>(round));
   }
   out.cloned = true;
   if (!save.empty() && rdm_recording_save_file(out.recording.get(), save.c_str()) != RDM_OK)

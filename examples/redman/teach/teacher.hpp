@@ -6,21 +6,16 @@
 // then acts for a growing share of decisions, the teacher labels what it finds, and the student is fitted to
 // all of it again.
 #pragma once
-#ifndef RDM_EXPERIMENTAL
-#define RDM_EXPERIMENTAL
-#endif
-#include <redman/redman.h>
+#include <redman/redman_record.hpp>
 
 #include "play/actor.hpp"
 #include "teach/settings.hpp"
 
 namespace tool {
 
-using RecordingHandle = redman::Handle<rdm_recording, rdm_recording_destroy>;
-
 // A recording, and what it was.
 struct Taught {
-  RecordingHandle recording;
+  redman::Recording recording;
   rdm_clone_report report = redman::sized<rdm_clone_report>();
   bool cloned = false;
 };
