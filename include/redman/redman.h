@@ -1336,8 +1336,8 @@ typedef struct rdm_recording_rows {
 } rdm_recording_rows;
 /* Borrowed pointers, until the next call that changes the recording. */
 RDM_API rdm_result rdm_recording_get_rows(const rdm_recording *r, rdm_recording_rows *io);
-/* Adds rows of a host's own; their episodes are numbered behind those that are there. ARGUMENT for numbers that are not
- * finite, flags that are not 0 or 1, episodes or states out of order: nothing changes. */
+/* Adds rows of a host's own; their episodes are numbered behind those that are there, actions and labels are cut to
+ * [-1, 1]. ARGUMENT for numbers that are not finite, flags that are not 0 or 1, episodes or states out of order: nothing changes. */
 RDM_API rdm_result rdm_recording_append(rdm_recording *r, const rdm_recording_rows *rows);
 /* Adds all of another one with the same dims, layout_hash and state_bytes. */
 RDM_API rdm_result rdm_recording_append_all(rdm_recording *r, const rdm_recording *other);

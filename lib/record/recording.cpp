@@ -151,6 +151,8 @@ void Recording::append(const RecordingRows& in) {
   add(obs_, in.obs, n * obs_dim());
   add(action_, in.action, n * action_dim());
   add(label_, in.label ? in.label : in.action, n * action_dim());
+  for (auto* v : {&action_, &label_})
+    for (size_t k = before * action_dim(); k < v->size(); ++k) (*v)[k] = cut_unit((*v)[k]);
   add(reward_, in.reward, n);
   add(cost_, in.cost, n * cost_dim());
   add(terminated_, in.terminated, n);

@@ -313,6 +313,27 @@ TEST(ContractRecording, AHostWithoutPool) {
   rdm_agent_destroy(a);
 }
 
+TEST(ContractRecording, ActionsAndLabelsOfAHostAreCut) {
+  rdm_recording_config c;
+  ASSERT_EQ(rdm_recording_config_init(&c, sizeof c), RDM_OK);
+  c.obs_dim = 1, c.action_dim = 2;
+  Owned o;
+  ASSERT_EQ(rdm_recording_create(&o.r, &c), RDM_OK) << rdm_last_error();
+  const float obs[1] = {7}, action[2] = {-3, 0.5f}, label[2] = {1e30f, -1};
+  rdm_recording_rows v{};
+  v.struct_size = sizeof v;
+  v.rows = 1, v.obs = obs, v.action = action, v.label = label;
+  ASSERT_EQ(rdm_recording_append(o.r, &v), RDM_OK) << rdm_recording_error(o.r);
+  rdm_recording_rows back{};
+  back.struct_size = sizeof back;
+  ASSERT_EQ(rdm_recording_get_rows(o.r, &back), RDM_OK);
+  EXPECT_EQ(back.obs[0], 7);
+  EXPECT_EQ(back.action[0], -1);
+  EXPECT_EQ(back.action[1], 0.5f);
+  EXPECT_EQ(back.label[0], 1);
+  EXPECT_EQ(back.label[1], -1);
+}
+
 TEST(ContractRecording, RefusedMemoryLosesNothing) {
   Worlds w;
   CountingHost host;

@@ -14,7 +14,7 @@ export UBSAN_OPTIONS=print_stacktrace=1
 fuzz() {
   local most=${REDMAN_FUZZ_RUNS:-2000000} begin=$SECONDS passed=0 failed=0 targets=() left share log status program length
   # "state" of the small worlds and of those with an engine: the one steps in microseconds, the other in milliseconds
-  for t in policy hull tool_run tool_mesh tool_demo tool_record agent checkpoint map state options state-large; do
+  for t in policy hull tool_run tool_mesh tool_demo tool_record recording agent checkpoint map state options state-large; do
     [ -x "$bin/fuzz_${t%-*}" ] && targets+=("$t")
   done
   left=${#targets[@]}
