@@ -8,13 +8,14 @@ results=${1:-$root/examples/results}
 
 # means PART: one line for each task and algorithm: task algo limit seeds steps return cost falls success sampled_return
 # sampled_cost sampled_over train_return train_cost train_over train_swing wall returns costs seeds_over feasible
-# second_limit second_cost
+# second_limit second_cost seconds_to_half
 means() {
   awk -F, -v part="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
     $at["part"] == part { k = $at["task"] SUBSEP $at["algorithm"]
       if (!(k in n)) { order[++count] = k; limit[k] = $at["limit"] + 0 }
       i = ++n[k]; split("env_steps return cost falls success sampled_return sampled_cost sampled_over train_return train_cost train_over train_swing wall_seconds", key, " ")
       for (j = 1; j <= 13; ++j) sum[k, j] += $at[key[j]]
+      if ($at["seconds_to_half"] != "") { half[k] += $at["seconds_to_half"]; ++halves[k] }
       second[k] = $at["second_limit"]; more[k] += $at["second_cost"]
       over = limit[k] >= 0 && $at["cost"] > limit[k]; overs[k] += over
       each[k] = each[k] (i > 1 ? "," : "") number($at["return"]); costs[k] = costs[k] (i > 1 ? "," : "") number($at["cost"]) (over ? "!" : "") }
@@ -22,8 +23,8 @@ means() {
     END { for (c = 1; c <= count; ++c) { k = order[c]; split(k, name, SUBSEP); m = n[k]
       printf "%s %s %s %d", name[1], name[2], limit[k], m
       for (j = 1; j <= 13; ++j) printf " %.6g", sum[k, j] / m
-      printf " %s %s %d %d %s %.3g\n", each[k], costs[k], overs[k] + 0, (limit[k] < 0 || sum[k, 3] / m <= limit[k]) && (second[k] == "" || more[k] / m <= second[k]),
-        second[k] == "" ? "-" : second[k], more[k] / m } }' "$results/runs.csv"
+      printf " %s %s %d %d %s %.3g %s\n", each[k], costs[k], overs[k] + 0, (limit[k] < 0 || sum[k, 3] / m <= limit[k]) && (second[k] == "" || more[k] / m <= second[k]),
+        second[k] == "" ? "-" : second[k], more[k] / m, halves[k] ? half[k] / halves[k] : "-" } }' "$results/runs.csv"
 }
 
 # The paper's Table 1 as TASK ALGO RETURN COST.
@@ -53,8 +54,8 @@ order="hand_over_safe_finger hand_over_safe_joint catch_underarm_safe_finger cat
 # table PART: Markdown, feasible first, by the return of the mean action; the policy with its noise, and training.
 table() {
   local task
-  echo "| task (limit) | algorithm | return (each seed) | cost (each seed) | second cost (limit) | falls | success | sampled | episodes over | training's last tenth | epochs over | steps | wall s | published |"
-  echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+  echo "| task (limit) | algorithm | return (each seed) | cost (each seed) | second cost (limit) | falls | success | sampled | episodes over | training's last tenth | epochs over | steps | wall s | half succeed after, s | published |"
+  echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
   for task in $order; do
     { published | sed 's/^/P /'; means "$1" | awk -v t="$task" '$1 == t' | sort -k21,21nr -k6,6nr; } |
       awk '$1 == "P" { known[$2, $3] = $4 " @ " $5; next }
@@ -63,8 +64,8 @@ table() {
           printf "| `%s` (%s) | `%s` | %s", $1, $3 < 0 ? "-" : $3, $2, number($6); if ($4 > 1) printf " (%s)", $18
           printf " | %s%s", number($7), $21 ? "" : "!"; if ($4 > 1) printf " (%s)", $19
           if ($22 == "-") printf " | "; else printf " | %s (%s)", $23, $22
-          printf " | %.0f %% | %.0f %% | %s @ %s | %.0f %% | %s @ %s | %.0f %% | %.2g M | %.0f | %s |\n", 100 * $8, 100 * $9, number($10),
-            number($11), 100 * $12, number($13), number($14), 100 * $15, $5 / 1e6, $17, (($1, $2) in known) ? known[$1, $2] : "" }'
+          printf " | %.0f %% | %.0f %% | %s @ %s | %.0f %% | %s @ %s | %.0f %% | %.2g M | %.0f | %s | %s |\n", 100 * $8, 100 * $9, number($10),
+            number($11), 100 * $12, number($13), number($14), 100 * $15, $5 / 1e6, $17, $24 == "-" ? "" : sprintf("%.0f", $24), (($1, $2) in known) ? known[$1, $2] : "" }'
   done
 }
 
@@ -73,7 +74,7 @@ note() {
 
 Feasible first, by return. `return`, `cost`: the mean action, 100 fresh episodes of each seed, policy chosen on others by a
 standard error within the limit; `!`: over it. `sampled`: the same policy with its noise, `episodes over`: of those, over a limit. `training`: the
-policy of that moment with its noise; `epochs over`: whose mean cost was over the limit. `published`: the paper's Table 1, 100 M steps.
+policy of that moment with its noise; `half succeed after`: seconds of training, one thread; `epochs over`: whose mean cost was over the limit. `published`: the paper's Table 1, 100 M steps.
 T
 }
 

@@ -126,6 +126,12 @@ last_tenth() {
       printf "%.4f,%.4f,%.4f,%.4f", a / n, b / n, over / n, sqrt(d > 0 ? d : 0) }' "$1"
 }
 
+# reached CSV: seconds of training until half of the episodes of an epoch, noise and all, were a success; "" never.
+reached() {
+  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+    $at["Metrics/SuccessRate"] >= 0.5 && $at["Metrics/SuccessRate"] ~ /^[0-9.]/ { printf "%.0f", $at["Time/Total"]; exit }' "$1"
+}
+
 # of_second FILE: limit and mean cost of the second column that has a limit, of an evaluation; "," without one.
 of_second() {
   [ -s "$1" ] || { echo ,; return; }
@@ -133,7 +139,7 @@ of_second() {
     awk -F, 'NR == 1 { for (i = 2; i <= NF; ++i) if ($i >= 0) k = i; limit = $k } NR == 2 { print k ? limit "," $k : "," }'
 }
 
-header="name,part,task,algorithm,seed,limit,return,cost,cost_stderr,falls,success,length,sampled_return,sampled_cost,sampled_over,train_return,train_cost,train_over,train_swing,env_steps,wall_seconds,second_limit,second_cost,flags"
+header="name,part,task,algorithm,seed,limit,return,cost,cost_stderr,falls,success,length,sampled_return,sampled_cost,sampled_over,train_return,train_cost,train_over,train_swing,env_steps,wall_seconds,seconds_to_half,second_limit,second_cost,flags"
 rows | while read -r name part task algo seed n flags; do
   f=$out/$name.json s=$out/$name.sampled.json
   if [ ! -s "$f" ] || [ ! -s "$s" ]; then continue; fi
@@ -143,7 +149,7 @@ rows | while read -r name part task algo seed n flags; do
   condensed "$out/$name/progress.csv" > "$results/runs/$name/progress.csv"
   cp "$out/$name/config.json" "$results/runs/$name/config.json"
   tail=$(last_tenth "$out/$name/progress.csv" "$limit")
-  echo "$name,$part,$task,$algo,$seed,$limit,$(value return "$f"),$(value cost "$f"),$(value cost_stderr "$f"),$(value fall_rate "$f"),$(value success_rate "$f"),$(value length "$f"),$(value return_mean "$s"),$(value cost_mean "$s"),$(value violation_rate "$s"),$tail,$(value env_steps "$f"),$(value wall_seconds "$f"),$(of_second "$out/$name.mean.json"),$flags"
+  echo "$name,$part,$task,$algo,$seed,$limit,$(value return "$f"),$(value cost "$f"),$(value cost_stderr "$f"),$(value fall_rate "$f"),$(value success_rate "$f"),$(value length "$f"),$(value return_mean "$s"),$(value cost_mean "$s"),$(value violation_rate "$s"),$tail,$(value env_steps "$f"),$(value wall_seconds "$f"),$(reached "$out/$name/progress.csv"),$(of_second "$out/$name.mean.json"),$flags"
 done > "$results/runs.csv.new"
 # runs of other calls stay
 {
