@@ -31,6 +31,7 @@ Json evaluation_json(const Evaluation& e, int32_t episodes) {
           {"cost_std", s.cost_std},
           {"cost_stderr", s.cost_stderr},
           {"success_rate", s.success_rate},
+          {"success_steps_mean", s.success_steps},
           {"length_mean", s.length_mean},
           {"cost_limits", e.limits},
           {"cost_signal", e.magnitudes ? "raw" : "flag"},
@@ -38,6 +39,21 @@ Json evaluation_json(const Evaluation& e, int32_t episodes) {
           {"fall_rate", s.fall_rate},
           {"cost_per_step", s.cost_per_step},
           {"feasible", feasible(s, e.limits)}};
+}
+
+std::string evaluation_text(const Evaluation& e, int32_t episodes) {
+  const Summary& s = e.summary;
+  std::string text = format(
+      "%d episodes: return %.3f +- %.3f, length %.1f, success %.1f%% (%.2f steps), falls %.1f%%\n", episodes,
+      s.return_mean, s.return_std, s.length_mean, 100 * s.success_rate, s.success_steps, 100 * s.fall_rate);
+  Table costs({"cost", "mean", "std", "limit"});
+  for (size_t k = 0; k < e.costs.size(); ++k)
+    costs.add({e.costs[k], format("%.3f", s.cost_mean[k]), format("%.3f", s.cost_std[k]),
+               e.limits[k] < 0 ? "-" : number_text(e.limits[k])});
+  return text + costs.text() +
+         format("episodes over a limit: %.1f%%; cost per step: %.4f\n", 100 * s.violation_rate,
+                s.cost_per_step) +
+         (e.magnitudes ? "costs are magnitudes: sums of cost_raw (cost_signal=raw)\n" : "");
 }
 
 namespace {
@@ -49,21 +65,6 @@ struct EvalFlags {
   int32_t episodes = kEvalEpisodes;
   bool stochastic = false, task_given = false;
 };
-
-std::string evaluation_text(const Evaluation& e, int32_t episodes) {
-  const Summary& s = e.summary;
-  std::string text =
-      format("%d episodes: return %.3f +- %.3f, length %.1f, success %.1f%%, falls %.1f%%\n", episodes,
-             s.return_mean, s.return_std, s.length_mean, 100 * s.success_rate, 100 * s.fall_rate);
-  Table costs({"cost", "mean", "std", "limit"});
-  for (size_t k = 0; k < e.costs.size(); ++k)
-    costs.add({e.costs[k], format("%.3f", s.cost_mean[k]), format("%.3f", s.cost_std[k]),
-               e.limits[k] < 0 ? "-" : number_text(e.limits[k])});
-  return text + costs.text() +
-         format("episodes over a limit: %.1f%%; cost per step: %.4f\n", 100 * s.violation_rate,
-                s.cost_per_step) +
-         (e.magnitudes ? "costs are magnitudes: sums of cost_raw (cost_signal=raw)\n" : "");
-}
 
 Report run_eval(EvalFlags flags) {
   ActorChoice choice = choose_actor(flags.policy, flags.pool.task);

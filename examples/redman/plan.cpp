@@ -13,7 +13,7 @@ namespace tool {
 namespace {
 
 struct PlanFlags {
-  std::string policy, record;
+  std::string policy, critic, record;
   PoolSettings pool;
   std::vector<std::string> sets, plans, own, limits;  // own: options of planners that are flags
   int32_t episodes = 1;
@@ -24,7 +24,7 @@ Report run_plan(PlanFlags flags) {
   Options options;
   for (const std::string& text : flags.own) options.push_back(split_pair(text, "--plan"));
   for (const std::string& text : flags.plans) options.push_back(split_pair(text, "--plan"));
-  const std::string word = plan_word(options, flags.policy);
+  const std::string word = plan_word(options, flags.policy, flags.critic);
   ActorChoice choice = choose_actor(word, flags.pool.task);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
@@ -45,7 +45,6 @@ Report run_plan(PlanFlags flags) {
   pool.reset();
   const std::vector<Episode> played = play_episodes(pool, actor, episodes, after, before);
   e.summary = summarise(played, e.limits);
-  const Summary& s = e.summary;
   const double ms = actor.planning().calls > 0
                         ? 1e3 * actor.planning().seconds / static_cast<double>(actor.planning().calls)
                         : 0;
@@ -54,14 +53,7 @@ Report run_plan(PlanFlags flags) {
   json["ms_per_action"] = ms;
   json["steps_per_action"] = static_cast<double>(actor.planning().steps) /
                              static_cast<double>(std::max<int64_t>(actor.planning().calls, 1));
-  std::string costs;
-  for (size_t k = 0; k < e.costs.size(); ++k)
-    costs += format("%s%s %.3f%s", k ? ", " : "", e.costs[k].c_str(), s.cost_mean[k],
-                    e.limits[k] < 0 ? "" : (" (limit " + number_text(e.limits[k]) + ")").c_str());
-  std::string text = format(
-      "%d episodes: return %.3f +- %.3f, %s\nlength %.1f, falls %.1f%%, success %.1f%%, %.2f ms per action\n",
-      flags.episodes, s.return_mean, s.return_std, costs.c_str(), s.length_mean, 100 * s.fall_rate,
-      100 * s.success_rate, ms);
+  std::string text = evaluation_text(e, flags.episodes) + format("%.2f ms per action\n", ms);
   if (recorder) {
     json["file"] = flags.record;
     json["steps"] = recorder->finish({word, flags.pool.options, flags.pool.seed});
@@ -78,7 +70,10 @@ void add_plan(CLI::App& app, Run& run) {
       app.add_subcommand("plan", "Act by planning: roll many worlds out, take what went best");
   CLI::Option* task =
       add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
-  command->add_option("--policy", flags->policy, "policy file, run folder or trained, that proposes; default: none");
+  command->add_option("--policy", flags->policy,
+                      "policy file, run folder or trained, that proposes; default: none");
+  command->add_option("--critic", flags->critic,
+                      "run folder whose critic values where a plan ends; default: none");
   command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));
   for (const rdm_option_info& row : planner_options()) {
     const std::string key = row.key;

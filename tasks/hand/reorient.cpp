@@ -4,6 +4,8 @@
 //   r = 1/(theta + 0.1) - 0.0002 |a|^2 + 250 [theta <= 0.1]    theta: rotation error, rad
 //   c = [contact force on some fingertip > 0.5 N]
 //
+// and with turn_reward K, which leads where the above does not, K (theta before - theta).
+//
 // The reward is that of Isaac Gym's Shadow Hand, from which the paper takes the task; of the cost the paper
 // says "excessive force" and no number.
 #include "tasks/hand/reorient.hpp"
@@ -29,6 +31,9 @@ const SingleHandConfig kConfig = {{.count = 1, .bases = {{{0, 0, 0.5}, {}}}},
 
 constexpr OptionSpec kRows[] = {
     number_option("action_price", 0.0002, 0, 1, "reward: times the sum of the action's squares"),
+    number_option("turn_reward", 0, 0, 1000,
+                  "reward per rad that the rotation error shrinks in a step, less the same where it grows; "
+                  "not the paper's, for training"),
     number_option("success_bonus", 250, 0, 1e6, "reward at the goal rotation"),
     number_option("success_angle", 0.1, 0, 3.2, "rotation error that counts as success, rad"),
     number_option("fall_distance", 0.4, 0.01, 100,
@@ -59,6 +64,7 @@ class Reorient final : public SingleHand {
   explicit Reorient(const Options& o)
       : SingleHand(kConfig, o),
         price_(o.number("action_price")),
+        turn_reward_(o.number("turn_reward")),
         bonus_(o.number("success_bonus")),
         tolerance_(o.number("success_angle")),
         fall_distance_(o.number("fall_distance")),
@@ -69,15 +75,17 @@ class Reorient final : public SingleHand {
  private:
   void judge_step(const Step& step, Verdict* v) const override {
     const Pose& X = step.world.body(0).X;
-    const double theta = rotation_angle(rotation_error(goal(), X.q, step.state->goal));
+    const double theta = turn_left(step.world, *step.state);
     double squares = 0;
     for (int i = 0; i < hand().num_actions; ++i)
       squares += static_cast<double>(step.action[i]) * static_cast<double>(step.action[i]);
-    v->reward = reorient_reward(theta, squares, price_, bonus_, tolerance_);
+    v->reward = reorient_reward(theta, squares, price_, bonus_, tolerance_) +
+                turn_reward_ * (step.state->turn - theta);
     v->success = theta <= tolerance_;
     v->terminated = norm(X.p - goal().goal) >= fall_distance_;
     judge_force(step.world, v);
     if (v->success) draw_goal(goal(), &step.state->goal, step.state->goals);
+    step.state->turn = v->success ? turn_left(step.world, *step.state) : theta;
   }
 
   void judge_force(const World& world, Verdict* v) const {
@@ -115,7 +123,7 @@ class Reorient final : public SingleHand {
     return most;
   }
 
-  double price_, bonus_, tolerance_, fall_distance_, threshold_;
+  double price_, turn_reward_, bonus_, tolerance_, fall_distance_, threshold_;
   bool literal_, object_only_;
 };
 

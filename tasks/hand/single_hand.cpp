@@ -2,8 +2,12 @@
 
 #include <algorithm>
 
+#include "tasks/state_check.hpp"
+
 namespace rdm {
 namespace {
+
+constexpr double kMaxTurn = 3.2;  // rad, just above pi
 
 constexpr OptionSpec kRows[] = {
     integer_option("max_steps", 74, 1, 100000, "control steps of an episode"),
@@ -42,10 +46,17 @@ void SingleHand::reset(World& world, void* state, Stream& stream) const {
   hands().reset(joint_noise_, false, world, control_state(state), stream);
   reset_object(goal_, world, &s.goal, stream);
   s.goals = Stream(stream.next(), 0, Purpose::kReset);
+  s.turn = turn_left(world, s);
+}
+
+double SingleHand::turn_left(const World& world, const State& state) const {
+  return rotation_angle(rotation_error(goal_, world.body(0).X.q, state.goal));
 }
 
 void SingleHand::check_own_state(const void* state) const {
-  check_goal(static_cast<const State*>(state)->goal);
+  const State& s = *static_cast<const State*>(state);
+  check_goal(s.goal);
+  check_numbers("turn", &s.turn, 1, kMaxTurn);
 }
 
 Verdict SingleHand::judge(World& world, void* state, int32_t) const {

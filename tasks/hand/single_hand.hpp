@@ -27,6 +27,7 @@ class SingleHand : public HandTask {
   struct State {
     GoalState goal;
     Stream goals;  // of goals drawn within an episode
+    double turn;   // rotation error after the last step, rad
   };
   // What a step is judged by.
   struct Step {
@@ -38,6 +39,8 @@ class SingleHand : public HandTask {
   SingleHand(const SingleHandConfig& config, const Options& options);
   void check_own_state(const void* state) const override;
   virtual void judge_step(const Step& step, Verdict* verdict) const = 0;
+
+  double turn_left(const World& world, const State& state) const;  // rotation error, rad
 
   const Hand& hand() const { return hands().hand(0); }
   const ObjectGoal& goal() const { return goal_; }

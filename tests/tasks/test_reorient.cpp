@@ -58,6 +58,38 @@ TEST_F(ReorientTask, SuccessDrawsANewGoal) {
   }
 }
 
+// What turn_reward adds is the turn made in the step: over an episode without a goal, the first rotation
+// error less the last; from a new goal on it counts the error to that one.
+TEST_F(ReorientTask, ATurnTowardsTheGoalPaysWhereItIsAskedFor) {
+  constexpr double kPay = 20;
+  TestPool plain("reorient", 1, {{"gravity", nullptr, 0}}),
+      paid("reorient", 1, {{"gravity", nullptr, 0}, {"turn_reward", nullptr, kPay}});
+  const auto turn = [&](const Quat& rotation) {  // both objects, by hand
+    Motion m;
+    m.X = {{0, -0.39, 0.62}, rotation};
+    for (TestPool* p : {&plain, &paid}) {
+      (*p)->world(0).set_body(0, m);
+      (*p)->baseline(Baseline::kHold);
+      (*p)->step(nullptr);
+    }
+    return static_cast<double>(paid.rows().reward[0]) - static_cast<double>(plain.rows().reward[0]);
+  };
+  const auto left = [&] { return rotation_angle(quat(plain.obs(0) + 92)); };
+  plain->reset(nullptr, nullptr);
+  paid->reset(nullptr, nullptr);
+  for (const double angle : {0.9, 0.4, 1.3}) {
+    const double before = left();
+    const Quat goal = quat(plain.obs(0) + 88);
+    EXPECT_NEAR(turn(axis_angle({0, 0, 1}, angle) * goal), kPay * (before - angle), 1e-3);
+    EXPECT_NEAR(left(), angle, 1e-4);
+  }
+  EXPECT_GT(turn(quat(plain.obs(0) + 88)), kPay * 1.29);
+  ASSERT_TRUE(paid.rows().success[0]);
+  const double before = left();
+  EXPECT_GT(before, 0.2);
+  EXPECT_NEAR(turn(axis_angle({1, 0, 0}, 0.5) * quat(plain.obs(0) + 88)), kPay * (before - 0.5), 1e-3);
+}
+
 TEST_F(ReorientTask, EndsFarFromTheGoal) {
   TestPool p("reorient", 1, {{"gravity", nullptr, 0}});
   p->reset(nullptr, nullptr);

@@ -15,7 +15,7 @@ line="--task lqr_line --method cem --iterations 3 --horizon 8 --plan knots=8 --p
 # shellcheck disable=SC2086
 "$tool" plan $line --episodes 4 --seed 3 --json > one || exit 1
 check 'not one line' test "$(wc -l < one)" -eq 1
-for key in return_mean cost_mean fall_rate success_rate ms_per_action steps_per_action feasible; do
+for key in return_mean cost_mean fall_rate success_rate success_steps_mean ms_per_action steps_per_action feasible; do
   check "no $key" grep -q "\"$key\":" one
 done
 "$tool" eval --task lqr_line --policy zero --episodes 4 --envs 1 --seed 3 --json > zero || exit 1
@@ -45,6 +45,22 @@ check 'the record ends elsewhere' grep -q "\"recorded_hash\":$hash" replay
 check 'a policy alone acts otherwise in a planner' \
   test "$(number return_mean proposed)" = "$(number return_mean alone)"
 
+# a run's critic values the end: a plan of one step sees further by it
+short="--horizon 1 --samples 64 --plan noise=0.3 --plan discount=0.9 --episodes 20 --seed 5"
+# shellcheck disable=SC2086
+"$tool" plan --task lqr_line $short --json > blind || exit 1
+# shellcheck disable=SC2086
+"$tool" plan --task lqr_line --critic runs/line $short --json > valued || { cat valued; exit 1; }
+check 'the critic is not asked' test "$(number return_mean blind)" != "$(number return_mean valued)"
+grep -q '"policy":"plan:.*critic=runs/line"' valued || { echo 'the word lacks the critic'; failed=1; }
+# the text of plan is that of eval
+# shellcheck disable=SC2086
+"$tool" plan $line --episodes 4 --seed 3 > plan.txt
+"$tool" eval --task lqr_line --envs 1 --seed 3 --episodes 4 \
+  --policy plan:method=cem,iterations=3,horizon=8,knots=8,noise=0.1 > eval.txt
+grep -v 'ms per action' plan.txt > text
+check 'texts of plan and eval differ' cmp text eval.txt
+
 refused() {  # refused STATUS TEXT ARGUMENTS...
   status=$1 text=$2
   shift 2
@@ -57,5 +73,7 @@ refused 2 'nearest is samples' plan --task lqr_line --plan sampels=3
 refused 2 'method' plan --task lqr_line --method guess
 refused 2 'not key=value' plan --task lqr_line --plan samples
 refused 2 'nearest is horizon' eval --task lqr_line --policy plan:horizn=3
+refused 1 'learned task lqr_line' plan --task bandit --critic runs/line
+refused 1 'config.json' plan --task lqr_line --critic nowhere
 refused 1 'policy file or a run folder' plan --task lqr_line --policy zero
 exit $failed

@@ -28,6 +28,21 @@ redman::Policy load(const std::string& file) {
   }
 }
 
+// The agent of a run as its last checkpoint has it.
+redman::Agent trained_agent(const std::string& folder, const redman::Pool& pool) {
+  const RunSettings run = run_settings(folder);
+  const std::string task = task_at(pool.spec().task).name, file = folder + "/checkpoint.rdm";
+  if (!same_name(run.pool.task, task))
+    throw Failure("critic " + folder + " learned task " + run.pool.task + ", not " + task);
+  const redman::Pool own = make_pool(run.pool, RDM_AUTORESET_SAME_STEP);
+  redman::Agent agent =
+      make_agent(run.agent, own, cost_limits(own, run.limits), run.pool.seed, run.pool.threads);
+  size_t note = 0;
+  if (rdm_checkpoint_read(file.c_str(), agent.get(), nullptr, nullptr, 0, &note) != RDM_OK)
+    throw Failure("critic " + folder + ": cannot read " + file + ": " + rdm_last_error());
+  return agent;
+}
+
 bool ends_with(const std::string& word, const std::string& ending) {
   return word.size() > ending.size() && word.substr(word.size() - ending.size()) == ending;
 }
@@ -53,6 +68,7 @@ ActorChoice choose_actor(const std::string& word, const std::string& task) {
                     ": a planner's proposals come from a policy file or a run folder");
     choice.plan = true;
     choice.plan_settings = plan.settings;
+    choice.critic = plan.critic;
     return choice;
   }
   for (int32_t i = 0; i < 3; ++i)
@@ -146,12 +162,14 @@ Actor::Actor(redman::Policy policy, const redman::Pool& pool) : policy_(std::mov
 
 void Actor::make_planners(const ActorChoice& choice, const redman::Pool& pool, uint64_t seed) {
   if (!choice.file.empty()) proposer_ = load(choice.file);
+  if (!choice.critic.empty()) critic_ = trained_agent(choice.critic, pool);
   const std::vector<double> limits = cost_limits(pool, choice.limits);
   for (size_t i = 0; i < pool.num_envs(); ++i) {
     auto config = redman::planner_config(pool, choice.plan_settings.c_str());
     config.seed = mixed(seed + i);
     config.cost_limits = limits.data();
     config.policy = proposer_ ? proposer_->get() : nullptr;
+    config.agent = critic_ ? critic_->get() : nullptr;
     planners_.push_back(as_usage([&] { return redman::Planner(config); }));
   }
 }

@@ -17,6 +17,7 @@ struct ActorChoice {
   std::string file;   // of a policy, else ""
   bool plan = false;  // a planner; `file` proposes, if there is one
   std::string plan_settings;
+  std::string critic;     // of a planner: a run folder, else ""
   int32_t baseline = -1;  // RDM_BASELINE_*
   bool demo = false;      // the script, or without one the task's own
   std::optional<DemoScript> script;
@@ -69,8 +70,9 @@ class Actor {
 
   int32_t baseline_ = -1;
   std::optional<redman::Policy> policy_;
-  std::optional<redman::Policy> proposer_;  // outlives the planners
-  std::vector<redman::Planner> planners_;   // [num_envs]
+  std::optional<redman::Policy> proposer_;  // these two outlive the planners
+  std::optional<redman::Agent> critic_;
+  std::vector<redman::Planner> planners_;  // [num_envs]
   PlanningCost planning_;
   std::optional<Demo> demo_;
   std::shared_ptr<const Recording> recording_;

@@ -53,7 +53,7 @@ std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t coun
       ended[i] = 0;
       if (!playing[i]) continue;
       Episode& e = episodes[episode[i]];
-      e.success |= pool.success()[i] != 0;
+      e.success_steps += pool.success()[i] != 0;
       if (magnitudes) add_magnitudes(pool.cost_raw()[i], e.cost);
       if (after) after(i, episode[i]);
       if (!pool.terminated()[i] && !pool.truncated()[i]) continue;
@@ -78,7 +78,8 @@ Summary summarise(const std::vector<Episode>& episodes, const std::vector<double
   s.return_stderr = standard_error(s.return_std, episodes.size());
   s.length_mean = spread(episodes, [](const Episode& e) { return e.length; }).first;
   s.fall_rate = spread(episodes, [](const Episode& e) { return e.terminated ? 1 : 0; }).first;
-  s.success_rate = spread(episodes, [](const Episode& e) { return e.success ? 1 : 0; }).first;
+  s.success_rate = spread(episodes, [](const Episode& e) { return e.success_steps > 0 ? 1 : 0; }).first;
+  s.success_steps = spread(episodes, [](const Episode& e) { return e.success_steps; }).first;
   for (size_t k = 0; k < limits.size(); ++k) {
     const auto [mean, std] = spread(episodes, [k](const Episode& e) { return e.cost[k]; });
     s.cost_mean.push_back(mean);

@@ -10,11 +10,11 @@ namespace tool {
 inline constexpr int32_t kMostEpisodes = 1'000'000;
 
 struct Episode {
-  double ret = 0;            // sum of rewards
-  std::vector<double> cost;  // [cost_dim] sums
-  int32_t length = 0;        // control steps
-  bool terminated = false;   // a fall
-  bool success = false;      // the task's success held at least once
+  double ret = 0;             // sum of rewards
+  std::vector<double> cost;   // [cost_dim] sums
+  int32_t length = 0;         // control steps
+  bool terminated = false;    // a fall
+  int32_t success_steps = 0;  // in which the task's success held; of reorient: goals
 };
 
 // Called around each control step of world `env` in its episode number `episode`.
@@ -29,7 +29,9 @@ std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t coun
                                    bool magnitudes = false);
 
 struct Summary {
-  double return_mean = 0, return_std = 0, length_mean = 0, fall_rate = 0, success_rate = 0;
+  double return_mean = 0, return_std = 0, length_mean = 0, fall_rate = 0;
+  double success_rate = 0;    // share of episodes with success at least once
+  double success_steps = 0;   // of an episode
   double violation_rate = 0;  // share of episodes over a limit
   double cost_per_step = 0;   // column 0
   double return_stderr = 0;   // of return_mean; so below

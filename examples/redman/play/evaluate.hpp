@@ -17,7 +17,8 @@ inline constexpr int32_t kEvalEnvs = 16, kEvalEpisodes = 100;
 // `limits` are texts of --cost-limit. settings.envs is lowered to the number of episodes.
 Evaluation evaluate(const ActorChoice& choice, PoolSettings settings, const std::vector<std::string>& limits,
                     int32_t episodes, bool stochastic);
-// Its keys, as `eval` and `baseline` print them.
+// Its keys, as `eval`, `plan` and `baseline` print them, and its text.
 Json evaluation_json(const Evaluation& e, int32_t episodes);
+std::string evaluation_text(const Evaluation& e, int32_t episodes);
 
 }  // namespace tool

@@ -24,10 +24,12 @@ bool read_plan_word(const std::string& word, PlanWord* out) {
     const auto [key, value] = split_pair(item, "--policy plan:");
     if (same_name(key, "policy")) {
       out->policy = value;
+    } else if (same_name(key, "critic")) {
+      out->critic = value;
     } else if (has_option(table, key)) {
       out->settings += key + '=' + value + '\n';
     } else {
-      std::vector<std::string> keys = {"policy"};
+      std::vector<std::string> keys = {"policy", "critic"};
       for (const rdm_option_info& row : table) keys.push_back(row.key);
       throw Usage("--policy " + word + ": planners have no option " + key + nearest_hint(key, keys));
     }
@@ -37,7 +39,7 @@ bool read_plan_word(const std::string& word, PlanWord* out) {
 }
 
 std::string plan_word(const std::vector<std::pair<std::string, std::string>>& options,
-                      const std::string& policy) {
+                      const std::string& policy, const std::string& critic) {
   std::string word = "plan", between = ":";
   const auto add = [&](const std::string& key, const std::string& value) {
     word += between + key + '=' + value;
@@ -45,6 +47,7 @@ std::string plan_word(const std::vector<std::pair<std::string, std::string>>& op
   };
   for (const auto& [key, value] : options) add(key, value);
   if (!policy.empty()) add("policy", policy);
+  if (!critic.empty()) add("critic", critic);
   return word;
 }
 
