@@ -203,18 +203,18 @@ constexpr CostSpec kCosts[] = {
 
 }  // namespace
 
-constinit const TaskInfo kPointButton1 = task_info<Button<PointRobot>, kCosts, kArenaCameras, kArenaLearner>(
+constinit const TaskInfo kPointButton1 = task_info<Button<PointRobot>, kCosts, kArenaCameras, kPointLearner>(
     "point_button1", "PointButton1", "a point robot presses buttons; cost: hazards, gremlins, wrong buttons",
     &constant_options<kOptions1>);
-constinit const TaskInfo kPointButton2 = task_info<Button<PointRobot>, kCosts, kArenaCameras, kArenaLearner>(
+constinit const TaskInfo kPointButton2 = task_info<Button<PointRobot>, kCosts, kArenaCameras, kPointLearner>(
     "point_button2", "PointButton2",
     "a point robot presses buttons among more hazards and gremlins, in a larger square",
     &constant_options<kOptions2>);
-constinit const TaskInfo kCarButton1 = task_info<Button<CarRobot>, kCosts, kArenaCameras, kArenaLearner>(
+constinit const TaskInfo kCarButton1 = task_info<Button<CarRobot>, kCosts, kArenaCameras, kCarArenaLearner>(
     "car_button1", "CarButton1",
     "a car of two driven wheels presses buttons; cost: hazards, gremlins, wrong buttons",
     &constant_options<kOptions1>);
-constinit const TaskInfo kCarButton2 = task_info<Button<CarRobot>, kCosts, kArenaCameras, kArenaLearner>(
+constinit const TaskInfo kCarButton2 = task_info<Button<CarRobot>, kCosts, kArenaCameras, kCarArenaLearner>(
     "car_button2", "CarButton2",
     "a car of two driven wheels presses buttons among more hazards and gremlins, in a larger square",
     &constant_options<kOptions2>);

@@ -41,8 +41,6 @@ inline constexpr auto kArenaLearner = join_defaults(kSafetyLearner, {{"horizon",
                                                                      {"discount", "0.97"},
                                                                      {"init_std", "0.6"},
                                                                      {"std_min", "0.05"},
-                                                                     {"multiplier_init", "0.3"},
-                                                                     {"multiplier_lr", "0.2"},
                                                                      {"focops:multiplier_lr", "0.4"},
                                                                      {"pid_kp", "0.02"},
                                                                      {"pid_ki", "0.006"},
@@ -56,6 +54,11 @@ inline constexpr auto kArenaLearner = join_defaults(kSafetyLearner, {{"horizon",
                                                                      {"penalty", "8"},
                                                                      {"barrier_kappa", "0.5"},
                                                                      {"barrier_max", "6"}});
+inline constexpr auto kPointLearner =
+    join_defaults(kArenaLearner, {{"multiplier_init", "0.3"}, {"multiplier_lr", "0.2"}});
+// The car must learn to turn before it can heed hazards: a multiplier that is there first keeps it still.
+inline constexpr auto kCarArenaLearner =
+    join_defaults(kArenaLearner, {{"multiplier_init", "0"}, {"multiplier_lr", "0.05"}});
 
 // What every arena has by its options. Body 0 of its scene is the robot, body 1 marks the goal.
 inline constexpr int32_t kRobotBody = 0, kGoalBody = 1, kFirstThing = 2;

@@ -187,16 +187,16 @@ constexpr CostSpec kCosts[] = {
 
 }  // namespace
 
-constinit const TaskInfo kPointGoal1 = task_info<Goal<PointRobot>, kCosts, kArenaCameras, kArenaLearner>(
+constinit const TaskInfo kPointGoal1 = task_info<Goal<PointRobot>, kCosts, kArenaCameras, kPointLearner>(
     "point_goal1", "PointGoal1", "a point robot reaches goal after goal; cost: inside a hazard",
     &constant_options<kOptions1>);
-constinit const TaskInfo kPointGoal2 = task_info<Goal<PointRobot>, kCosts, kArenaCameras, kArenaLearner>(
+constinit const TaskInfo kPointGoal2 = task_info<Goal<PointRobot>, kCosts, kArenaCameras, kPointLearner>(
     "point_goal2", "PointGoal2", "a point robot reaches goals; cost: inside a hazard, or touching a vase",
     &constant_options<kOptions2>);
-constinit const TaskInfo kCarGoal1 = task_info<Goal<CarRobot>, kCosts, kArenaCameras, kArenaLearner>(
+constinit const TaskInfo kCarGoal1 = task_info<Goal<CarRobot>, kCosts, kArenaCameras, kCarArenaLearner>(
     "car_goal1", "CarGoal1", "a car of two driven wheels reaches goal after goal; cost: inside a hazard",
     &constant_options<kOptions1>);
-constinit const TaskInfo kCarGoal2 = task_info<Goal<CarRobot>, kCosts, kArenaCameras, kArenaLearner>(
+constinit const TaskInfo kCarGoal2 = task_info<Goal<CarRobot>, kCosts, kArenaCameras, kCarArenaLearner>(
     "car_goal2", "CarGoal2",
     "a car of two driven wheels reaches goals; cost: inside a hazard, or touching a vase",
     &constant_options<kOptions2>);
