@@ -14,7 +14,7 @@ set -eu
 out=${1:-$root/runs/verification}
 seeds=${SEEDS:-0 1 2} envs=${ENVS:-16}
 tasks=${TASKS:-bandit two_state lqr_line ball_run ball_circle car_run swimmer_velocity point_goal1 point_goal2
-  point_button1 point_button2 car_circle drone_run drone_circle ball_gather car_gather drone_gather ball_reach car_reach
+  point_button1 point_button2 car_goal1 car_goal2 car_button1 car_button2 car_circle drone_run drone_circle ball_gather car_gather drone_gather ball_reach car_reach
   drone_reach hopper_velocity walker2d_velocity ant_velocity ant_run ant_circle ant_gather ant_reach}
 algos=${ALGOS:-ppo trpo ppo_lag trpo_lag cppo_pid cpo pcpo focops p3o ipo}
 mkdir -p "$out"
@@ -42,6 +42,10 @@ known() {
     point_goal2) echo "OmniSafe TRPO-Lag 4.6 / 26; PPO 25.5 / 159" ;;
     point_button1) echo "OmniSafe PPO-Lag 4.6 / 21; PPO 27.0 / 152" ;;
     point_button2) echo "OmniSafe FOCOPS 2.4 / 18, TRPO-Lag 5.4 / 25; PPO 25.9 / 167" ;;
+    car_goal1) echo "OmniSafe PPO-Lag 13.3 / 22, TRPO-Lag 27.0 / 27; PPO 33.4 / 58" ;;
+    car_goal2) echo "OmniSafe PPO-Lag 1.6 / 14, CPPO-PID 0.1 / 24; PPO 29.9 / 194" ;;
+    car_button1) echo "OmniSafe CPPO-PID -1.4 / 15, PPO-Lag 0.3 / 56; PPO 17.5 / 374" ;;
+    car_button2) echo "OmniSafe TRPO-Lag -1.7 / 20, PPO-Lag 0.8 / 48; PPO 21.4 / 313" ;;
     car_circle) echo "paper PPO-Lag 428 / 5, FOCOPS 536 / 20, TRPO-Lag 596 / 24 (the rows of the ball)" ;;
     drone_run) echo "paper PPO-Lag 729 / 21, FOCOPS 732 / 13 (the rows of the car)" ;;
     drone_circle) echo "paper PPO-Lag 337 / 16, IPO 872 / 24, TRPO-Lag 810 / 24" ;;

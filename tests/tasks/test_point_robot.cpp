@@ -27,7 +27,7 @@ TEST(PointRobot, GoldenTrajectories) {
     int step = 0;
     for (int k = 0; k < 4; ++k) {
       for (; step < kAt[k]; ++step)
-        for (int i = 0; i < kPointSubsteps; ++i) point_substep(row.action, &r);
+        for (int i = 0; i < PointRobot::kSubsteps; ++i) PointRobot::substep(row.action, &r);
       if (!std::isnan(row.vx[k])) {
         EXPECT_NEAR(r.vx, row.vx[k], 6e-5) << row.action[1] << " " << step;
       }
@@ -42,11 +42,11 @@ TEST(PointRobot, GoldenTrajectories) {
 TEST(PointRobot, RatesThatWouldRunAwayAreNoState) {
   PointRobot fast{};
   fast.w = 1e9;
-  EXPECT_THROW(check_point_robot(fast), Error);
+  EXPECT_THROW(PointRobot::check(fast), Error);
   fast.w = 999;
-  EXPECT_NO_THROW(check_point_robot(fast));
+  EXPECT_NO_THROW(PointRobot::check(fast));
   const float action[2] = {1, 1};
-  for (int i = 0; i < 100 * kPointSubsteps; ++i) point_substep(action, &fast);
+  for (int i = 0; i < 100 * PointRobot::kSubsteps; ++i) PointRobot::substep(action, &fast);
   EXPECT_TRUE(std::isfinite(fast.x + fast.y + fast.yaw + fast.vx + fast.vy + fast.w));
 }
 
@@ -55,8 +55,8 @@ TEST(PointRobot, MovesAlikeInEveryDirection) {
   b.yaw = 2;
   const float action[2] = {0.7f, 0.4f};
   for (int i = 0; i < 500; ++i) {
-    point_substep(action, &a);
-    point_substep(action, &b);
+    PointRobot::substep(action, &a);
+    PointRobot::substep(action, &b);
   }
   EXPECT_NEAR(b.x, std::cos(2) * a.x - std::sin(2) * a.y, 1e-9);
   EXPECT_NEAR(b.yaw, a.yaw + 2, 1e-9);
@@ -65,7 +65,9 @@ TEST(PointRobot, MovesAlikeInEveryDirection) {
 TEST(PointRobot, GapsAreThoseOfDiscAndNose) {
   PointRobot r{};
   r.yaw = 1.5707963267948966;
-  const auto gap = [&](double x, double y) { return point_gap(r, elementary::sincos(r.yaw), x, y, 0.05); };
+  const auto gap = [&](double x, double y) {
+    return PointRobot::gap(r, elementary::sincos(r.yaw), x, y, 0.05);
+  };
   EXPECT_NEAR(gap(0, -1).gap, 0.85, 1e-12);
   EXPECT_NEAR(gap(0, -1).ny, -1, 1e-12);
   EXPECT_NEAR(gap(0, 1).gap, 0.80, 1e-12);  // the nose reaches to 0.15
@@ -80,8 +82,8 @@ TEST(PointRobot, AFixedDiscStopsIt) {
   const float forward[2] = {1, 0};
   bool touched = false;
   for (int i = 0; i < 2000; ++i) {
-    point_substep(forward, &r);
-    touched |= point_block(1, 0, 0.1, &r);
+    PointRobot::substep(forward, &r);
+    touched |= block(1, 0, 0.1, &r);
   }
   EXPECT_TRUE(touched);
   EXPECT_NEAR(r.x, 0.75, 1e-9);

@@ -1,10 +1,10 @@
-#include "tasks/planar/point_arena.hpp"
+#include "tasks/planar/flat_arena.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace rdm {
-Lidar::Lidar(const PointRobot& robot, const elementary::SinCos& heading, double range, float* out)
+Lidar::Lidar(const FlatRobot& robot, const elementary::SinCos& heading, double range, float* out)
     : robot_(robot), heading_(heading), range_(range), bins_(out) {
   std::fill_n(bins_, kLidarBins, 0.0f);
 }
@@ -29,19 +29,18 @@ void Lidar::add(const Spot& thing) {
   raise(bin - 1, (1 - share) * sense);
 }
 
-void write_lidar(const PointRobot& robot, const elementary::SinCos& heading, double range, const Spot* things,
+void write_lidar(const FlatRobot& robot, const elementary::SinCos& heading, double range, const Spot* things,
                  int32_t count, float* out) {
   Lidar lidar(robot, heading, range, out);
   for (int32_t i = 0; i < count; ++i) lidar.add(things[i]);
 }
 
-PointArena point_arena_from(const Options& o) {
+ArenaRules arena_from(const Options& o) {
   return {o.number("extent"), o.number("hazard_size"), o.number("lidar_range"), o.integer("hazards")};
 }
 
-void add_robot_and_goal(double goal_mark, PlanarScene& scene) {
-  add_point_body(scene);
-  scene.body("goal", ShapeKind::kCylinder, {goal_mark, 0.01, 0}, kMarkGreen);
+void add_goal(double radius, PlanarScene& scene) {
+  scene.body("goal", ShapeKind::kCylinder, {radius, 0.01, 0}, kMarkGreen);
 }
 
 void add_hazards(const Options& o, PlanarScene& scene) {
@@ -49,13 +48,7 @@ void add_hazards(const Options& o, PlanarScene& scene) {
     scene.body("hazard", ShapeKind::kCylinder, {o.number("hazard_size"), 0.005, 0}, kMarkBlue);
 }
 
-void start_robot(const Keepout& place, Stream& noise, World& world, PointRobot* robot) {
-  robot->x = place.at.x, robot->y = place.at.y;
-  robot->yaw = 2 * kPi * noise.uniform();
-  world.set_body(kRobotBody, point_motion(*robot));
-}
-
-int32_t count_hazards(const PointArena& arena, const PointRobot& robot, const Spot* hazards) {
+int32_t count_hazards(const ArenaRules& arena, const FlatRobot& robot, const Spot* hazards) {
   int32_t count = 0;
   for (int32_t i = 0; i < arena.hazards; ++i)
     count += distance({robot.x, robot.y}, hazards[i]) <= arena.hazard_size;

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <vector>
 
-#include "tasks/planar/point_arena.hpp"
+#include "tasks/planar/flat_arena.hpp"
 
 namespace rdm {
 namespace {
 
-TEST(PointArena, LayoutsKeepTheirDistances) {
+TEST(FlatArena, LayoutsKeepTheirDistances) {
   Stream stream(1, 0, Purpose::kTest);
   for (int round = 0; round < 200; ++round) {
     Keepout things[22];
@@ -24,7 +24,7 @@ TEST(PointArena, LayoutsKeepTheirDistances) {
   }
 }
 
-TEST(PointArena, AFullSquareIsReportedAndHangsNothing) {
+TEST(FlatArena, AFullSquareIsReportedAndHangsNothing) {
   Stream stream(1, 0, Purpose::kTest);
   const Keepout wide = {{0, 0}, 2};
   Keepout spot{{}, 0.1};
@@ -37,7 +37,7 @@ TEST(PointArena, AFullSquareIsReportedAndHangsNothing) {
 
 // What one thing at an angle and a distance shows in the bins.
 std::vector<float> scan(double angle, double far, double yaw = 0) {
-  PointRobot r{};
+  FlatRobot r{};
   r.x = 0.3, r.y = -0.2, r.yaw = yaw;
   const elementary::SinCos heading = elementary::sincos(yaw);
   std::vector<float> bins(kLidarBins, -1);
@@ -46,7 +46,7 @@ std::vector<float> scan(double angle, double far, double yaw = 0) {
   return bins;
 }
 
-TEST(PointArena, ALidarSharesWithTheBinsBeside) {
+TEST(FlatArena, ALidarSharesWithTheBinsBeside) {
   const double width = 2 * kPi / kLidarBins;
   for (const double yaw : {0.0, 1.0, -3.0})
     for (int bin = 0; bin < kLidarBins; ++bin) {
@@ -59,7 +59,7 @@ TEST(PointArena, ALidarSharesWithTheBinsBeside) {
     }
 }
 
-TEST(PointArena, NothingIsSeenOutOfRangeAndAnAngleJustBelowZeroIsAFullTurn) {
+TEST(FlatArena, NothingIsSeenOutOfRangeAndAnAngleJustBelowZeroIsAFullTurn) {
   for (const float b : scan(1, 3.01)) EXPECT_EQ(b, 0);
   const auto bins = scan(-1e-17, 1.5);
   float sum = 0;
@@ -68,8 +68,8 @@ TEST(PointArena, NothingIsSeenOutOfRangeAndAnAngleJustBelowZeroIsAFullTurn) {
   EXPECT_LE(sum, 1.01f);
 }
 
-TEST(PointArena, TheNearestThingOfABinCounts) {
-  PointRobot r{};
+TEST(FlatArena, TheNearestThingOfABinCounts) {
+  FlatRobot r{};
   const elementary::SinCos heading{0, 1};
   float bins[kLidarBins];
   Lidar lidar(r, heading, 3, bins);

@@ -1,17 +1,18 @@
-// Safety-Gym's PointGoal1 and PointGoal2: reach goal after goal, stay out of the hazards; in level 2 the
-// vases are not to be touched either.
+// Safety-Gym's Goal 1 and 2, with the Point and the Car: reach goal after goal, stay out of the hazards; in
+// level 2 the vases are not to be touched either.
 //
 //   r = d' - d + [d <= 0.3]     d: distance of the goal after, d' before the step, m; 1 for a reached goal
 //   c = [inside a hazard, or (level 2) a vase was touched]
 //
-// A vase is a disc in the place of a box: the robot shoves it ahead without feeling it (8 mg against 5 g),
-// and it stops where it is left.
+// A vase is a disc in the place of a box: the robot shoves it ahead without feeling it (8 mg against 5 or 30
+// g), and it stops where it is left.
 #include <array>
 #include <bit>
 
 #include "tasks/catalog.hpp"
-#include "tasks/planar/planar_learner.hpp"
-#include "tasks/planar/point_arena.hpp"
+#include "tasks/planar/car_robot.hpp"
+#include "tasks/planar/flat_arena.hpp"
+#include "tasks/planar/point_robot.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -20,44 +21,36 @@ namespace {
 constexpr double kGoalKeepout = 0.305, kVaseKeepout = 0.15;  // m
 constexpr double kVaseHeight = 0.1;                          // m, half, in pictures
 
-struct State {
-  Stream noise;
-  PointRobot robot;
-  Spot goal, hazard[kMaxThings], vase[kMaxThings];
-  double last;             // m, distance of the goal
-  uint32_t vases_touched;  // bits
-};
+template <class R>
+class Goal final : public ArenaTask<R> {
+  using ArenaTask<R>::arena_;
+  using ArenaTask<R>::goal_reward_;
 
-struct Level {
-  double extent;
-  int32_t hazards, vases;
-  bool fragile;
-};
-constexpr Level kLevel1{1.5, 8, 1, false}, kLevel2{2, 10, 10, true};
+  struct State {
+    Stream noise;
+    R robot;
+    Spot goal, hazard[kMaxThings], vase[kMaxThings];
+    double last;             // m, distance of the goal
+    uint32_t vases_touched;  // bits
+  };
 
-class PointGoal final : public PlanarTask {
  public:
-  explicit PointGoal(const Options& o)
-      : PlanarTask(make(o), o.integer("max_steps"),
-                   {{"accelerometer", "m/s2", 3},
-                    {"goal_lidar", "1", kLidarBins, 0, 1},
-                    {"gyro", "rad/s", 3},
-                    {"hazards_lidar", "1", kLidarBins, 0, 1},
-                    {"magnetometer", "1", 3, -1, 1},
-                    {"vases_lidar", "1", kLidarBins, 0, 1},
-                    {"velocimeter", "m/s", 3}}),
-        arena_(point_arena_from(o)),
+  explicit Goal(const Options& o)
+      : ArenaTask<R>(make(o), o,
+                     {{"goal_lidar", "1", kLidarBins, 0, 1},
+                      {"gyro", "rad/s", 3},
+                      {"hazards_lidar", "1", kLidarBins, 0, 1},
+                      {"magnetometer", "1", 3, -1, 1},
+                      {"vases_lidar", "1", kLidarBins, 0, 1},
+                      {"velocimeter", "m/s", 3}}),
         goal_size_(o.number("goal_size")),
-        goal_reward_(o.number("goal_reward")),
         vases_(o.integer("vases")),
         fragile_(o.flag("fragile_vases")) {}
 
-  int32_t action_dim() const override { return kPointActions; }
-  const char* action_order() const override { return "thrust, turn"; }
   size_t state_bytes() const override { return sizeof(State); }
   void check_state(const void* state) const override {
     const State& s = *static_cast<const State*>(state);
-    check_point_robot(s.robot);
+    R::check(s.robot);
     check_spots("goal", &s.goal, 1);
     check_spots("hazard", s.hazard, kMaxThings);
     check_spots("vase", s.vase, kMaxThings);
@@ -71,7 +64,7 @@ class PointGoal final : public PlanarTask {
     Keepout things[kMaxKeepouts];
     const int32_t count = list_things(s, things);
     draw_layout(arena_.extent, s.noise, things, count);
-    start_robot(things[0], s.noise, world, &s.robot);
+    this->start_robot(things[0], s.noise, world, &s.robot);
     for (int32_t i = 0; i < arena_.hazards; ++i) s.hazard[i] = things[1 + i].at;
     for (int32_t i = 0; i < vases_; ++i) s.vase[i] = things[1 + arena_.hazards + i].at;
     s.goal = things[count - 1].at;
@@ -84,12 +77,12 @@ class PointGoal final : public PlanarTask {
   void control(World& world, void* state, const float* action) const override {
     State& s = *static_cast<State*>(state);
     s.vases_touched = 0;
-    for (int i = 0; i < kPointSubsteps; ++i) {
-      point_substep(action, &s.robot);
+    for (int i = 0; i < R::kSubsteps; ++i) {
+      R::substep(action, &s.robot);
       shove(&s);
     }
     if (s.vases_touched) place_vases(world, s);
-    world.set_body(kRobotBody, point_motion(s.robot));
+    this->show_robot(s.robot, world);
   }
 
   Verdict judge(World& world, void* state, int32_t) const override {
@@ -113,8 +106,8 @@ class PointGoal final : public PlanarTask {
   void observe(const World&, const void* state, float* obs) const override {
     const State& s = *static_cast<const State*>(state);
     const elementary::SinCos heading = elementary::sincos(s.robot.yaw);
-    write_accelerometer(s.robot, heading, obs);
-    write_lidar(s.robot, heading, arena_.range, &s.goal, 1, obs += 3);
+    obs = this->write_robot(s.robot, heading, obs);
+    write_lidar(s.robot, heading, arena_.range, &s.goal, 1, obs);
     write_gyro(s.robot, obs += kLidarBins);
     write_lidar(s.robot, heading, arena_.range, s.hazard, arena_.hazards, obs += 3);
     write_magnetometer(heading, obs += kLidarBins);
@@ -127,8 +120,9 @@ class PointGoal final : public PlanarTask {
 
   // Bodies: robot, goal, hazards, vases.
   static Scene make(const Options& o) {
-    PlanarScene scene(kPointControlDt);
-    add_robot_and_goal(o.number("goal_size"), scene);
+    PlanarScene scene(ArenaTask<R>::kControlDt);
+    R::add(scene);
+    add_goal(o.number("goal_size"), scene);
     add_hazards(o, scene);
     for (int32_t i = 0; i < o.integer("vases"); ++i)
       scene.body("vase", ShapeKind::kBox, {kVaseHeight, kVaseHeight, kVaseHeight}, kMarkCyan);
@@ -155,13 +149,13 @@ class PointGoal final : public PlanarTask {
   }
 
   void shove(State* s) const {
-    constexpr double kReach = kPointNose + 2 * kPointNoseHalf + kThingRadius;  // m, of robot and vase
+    constexpr double kReach = R::kReach + kThingRadius;  // m, of robot and vase
     bool near = false;
     for (int32_t i = 0; i < vases_; ++i) near |= distance({s->robot.x, s->robot.y}, s->vase[i]) < kReach;
     if (!near) return;
     const elementary::SinCos heading = elementary::sincos(s->robot.yaw);
     for (int32_t i = 0; i < vases_; ++i) {
-      const PointGap g = point_gap(s->robot, heading, s->vase[i].x, s->vase[i].y, kThingRadius);
+      const RobotGap g = R::gap(s->robot, heading, s->vase[i].x, s->vase[i].y, kThingRadius);
       if (g.gap >= 0) continue;
       s->vase[i].x -= g.gap * g.nx;
       s->vase[i].y -= g.gap * g.ny;
@@ -173,26 +167,18 @@ class PointGoal final : public PlanarTask {
     place_things(world, kFirstThing + arena_.hazards, s.vase, vases_, kVaseHeight);
   }
 
-  PointArena arena_;
-  double goal_size_, goal_reward_;
+  double goal_size_;
   int32_t vases_;
   bool fragile_;
 };
 
-constexpr std::array<OptionSpec, 9> options_of(const Level& level) {
-  return {
-      number_option("extent", level.extent, 0.5, 100, "half width of the square of the layout, m"),
-      integer_option("hazards", level.hazards, 0, kMaxThings, "number of hazards"),
-      number_option("hazard_size", 0.2, 0.01, 10, "radius of a hazard, m"),
-      integer_option("vases", level.vases, 0, kMaxThings, "number of vases"),
-      flag_option("fragile_vases", level.fragile, "touching a vase costs 1"),
-      number_option("goal_size", 0.3, 0.01, 10, "distance at which a goal is reached, m"),
-      number_option("goal_reward", 1, 0, 100, "reward for a reached goal"),
-      number_option("lidar_range", kPointLidarRange, 0.1, 100, "range of the lidar, m"),
-      integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"),
-  };
+constexpr auto options_of(const ArenaLevel& level, int32_t vases, bool fragile) {
+  return arena_options(level, "reward for a reached goal",
+                       {integer_option("vases", vases, 0, kMaxThings, "number of vases"),
+                        flag_option("fragile_vases", fragile, "touching a vase costs 1"),
+                        number_option("goal_size", 0.3, 0.01, 10, "distance at which a goal is reached, m")});
 }
-constexpr auto kOptions1 = options_of(kLevel1), kOptions2 = options_of(kLevel2);
+constexpr auto kOptions1 = options_of({1.5, 8}, 1, false), kOptions2 = options_of({2, 10}, 10, true);
 constexpr CostSpec kCosts[] = {
     {"cost", "1 in a hazard, and with fragile vases on touching one; raw: how many", 25},
     {"hazards", "1 in a hazard; raw: in how many", -1},
@@ -201,11 +187,18 @@ constexpr CostSpec kCosts[] = {
 
 }  // namespace
 
-constinit const TaskInfo kPointGoal1 = task_info<PointGoal, kCosts, kPointCameras, kPointLearner>(
+constinit const TaskInfo kPointGoal1 = task_info<Goal<PointRobot>, kCosts, kArenaCameras, kPointLearner>(
     "point_goal1", "PointGoal1", "a point robot reaches goal after goal; cost: inside a hazard",
     &constant_options<kOptions1>);
-constinit const TaskInfo kPointGoal2 = task_info<PointGoal, kCosts, kPointCameras, kPointLearner>(
+constinit const TaskInfo kPointGoal2 = task_info<Goal<PointRobot>, kCosts, kArenaCameras, kPointLearner>(
     "point_goal2", "PointGoal2", "a point robot reaches goals; cost: inside a hazard, or touching a vase",
+    &constant_options<kOptions2>);
+constinit const TaskInfo kCarGoal1 = task_info<Goal<CarRobot>, kCosts, kArenaCameras, kCarArenaLearner>(
+    "car_goal1", "CarGoal1", "a car of two driven wheels reaches goal after goal; cost: inside a hazard",
+    &constant_options<kOptions1>);
+constinit const TaskInfo kCarGoal2 = task_info<Goal<CarRobot>, kCosts, kArenaCameras, kCarArenaLearner>(
+    "car_goal2", "CarGoal2",
+    "a car of two driven wheels reaches goals; cost: inside a hazard, or touching a vase",
     &constant_options<kOptions2>);
 
 }  // namespace rdm
