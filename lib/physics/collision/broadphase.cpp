@@ -47,6 +47,10 @@ Float4 dot(const Float4* a, const Float4* b) {
   return dot(w, w);
 }
 
+int32_t parts_in(const ArticulationDef& def) {
+  return (static_cast<int32_t>(def.shapes.size()) + kPartShapes - 1) / kPartShapes;
+}
+
 }  // namespace
 
 Capsule capsule_around(const SceneShape& shape) {
@@ -75,14 +79,48 @@ Pose rest_pose(const Scene& scene, const SceneShape& shape) {
   return scene.def.articulations[static_cast<size_t>(shape.articulation)].X_WB * shape.def.X_LS;
 }
 
+template <class Use>
+void BroadPhase::each_row(const Scene& scene, const Use& use) const {
+  Row row{};
+  const auto part_of = [&](const SceneShape& s, int32_t shape) {
+    int32_t part = 0;
+    for (int32_t a = 0; a < s.articulation; ++a)
+      part += parts_in(scene.def.articulations[static_cast<size_t>(a)]);
+    return part + (shape - scene.first_shape[static_cast<size_t>(s.articulation)]) / kPartShapes;
+  };
+  int32_t last = -1;  // shape a of the row
+  for (const PairRun& run : scene.runs) {
+    for (int32_t k = run.first; run.shape < 0 && k < run.first + run.count; ++k) {
+      const ShapePair& pair = scene.pairs[static_cast<size_t>(k)];
+      const SceneShape& a = scene.shapes[static_cast<size_t>(pair.a)];
+      const int32_t other = pair.b - first_other_;
+      const bool whole = a.articulation >= 0 && other >= 0;
+      const bool goes_on = row.count > 0 && (whole ? row.part >= 0 && pair.a == last && other % 64 != 0 &&
+                                                         other == row.first_other + row.count
+                                                   : row.part < 0);
+      if (goes_on) {
+        ++row.count;
+        continue;
+      }
+      if (row.count > 0) use(row);
+      row = {k, 1, whole ? part_of(a, pair.a) : -1, whole ? other : -1};
+      last = pair.a;
+    }
+    if (row.count > 0) use(row);
+    row.count = 0;
+  }
+}
+
 void BroadPhase::carve(const Scene& scene, Arena& arena) {
   const auto planes = std::count_if(scene.shapes.begin(), scene.shapes.end(),
                                     [](const SceneShape& s) { return s.radius < 0; });
   first_other_ = scene.first_body_shape;
   num_others_ = static_cast<int32_t>(scene.shapes.size()) - first_other_;
   num_parts_ = 0;
-  for (const ArticulationDef& def : scene.def.articulations)
-    num_parts_ += (static_cast<int32_t>(def.shapes.size()) + kPartShapes - 1) / kPartShapes;
+  for (const ArticulationDef& def : scene.def.articulations) num_parts_ += parts_in(def);
+  words_ = (num_others_ + 63) / 64;
+  num_rows_ = 0;
+  each_row(scene, [&](const Row&) { ++num_rows_; });
   const auto parts = static_cast<size_t>(num_parts_), others = static_cast<size_t>(num_others_);
   bounds_ = arena.make<Bound>(scene.shapes.size());
   pairs_ = arena.make<Pair>(scene.pairs.size());
@@ -92,7 +130,8 @@ void BroadPhase::carve(const Scene& scene, Arena& arena) {
   part_boxes_ = arena.make<Box>(parts);
   other_plane_ = arena.make<int32_t>(others);
   neighbours_ = arena.make<uint8_t>(scene.shapes.size());
-  marks_ = arena.make<uint8_t>(parts * others);
+  near_ = arena.make<uint64_t>(parts * static_cast<size_t>(words_));
+  rows_ = arena.make<Row>(static_cast<size_t>(num_rows_));
 }
 
 void BroadPhase::make(const Scene& scene) {
@@ -123,18 +162,13 @@ void BroadPhase::make(const Scene& scene) {
     for (int32_t first = begin; first < end; first += kPartShapes)
       *part++ = {static_cast<int32_t>(a), first, std::min(first + kPartShapes, end)};
   }
-  const auto part_of = [&](int32_t shape) {
-    int32_t k = 0;
-    while (shape >= parts_[k].end) ++k;
-    return k;
-  };
   for (size_t k = 0; k < scene.pairs.size(); ++k) {
     const ShapePair& pair = scene.pairs[k];
     const int32_t other = pair.b - first_other_;
-    const bool marked = scene.shapes[static_cast<size_t>(pair.a)].articulation >= 0 && other >= 0;
-    pairs_[k] = {pair.a, pair.b, other >= 0 ? other_plane_[other] : -1,
-                 marked ? part_of(pair.a) * num_others_ + other : -1};
+    pairs_[k] = {pair.a, pair.b, other >= 0 ? other_plane_[other] : -1};
   }
+  Row* row = rows_;
+  each_row(scene, [&](const Row& r) { *row++ = r; });
 }
 
 void BroadPhase::update_boxes(const Scene& scene) {
@@ -218,13 +252,16 @@ uint32_t BroadPhase::capsules_meet(const int32_t* list) const {
 
 // What is no link and near a part of an articulation.
 void BroadPhase::mark_others() {
-  uint8_t* mark = marks_;
-  for (int32_t k = 0; k < num_parts_; ++k)
+  for (int32_t k = 0; k < num_parts_; ++k) {
+    const Box& box = part_boxes_[k];
+    uint64_t* words = near_ + k * words_;
+    for (int32_t w = 0; w < words_; ++w) words[w] = 0;
     for (int32_t i = 0; i < num_others_; ++i) {
       const int32_t plane = other_plane_[i];
-      *mark++ =
-          plane < 0 ? near(bounds_[first_other_ + i], part_boxes_[k]) : near(planes_[plane], part_boxes_[k]);
+      const bool is_near = plane < 0 ? near(bounds_[first_other_ + i], box) : near(planes_[plane], box);
+      words[i / 64] |= uint64_t{is_near} << (i % 64);
     }
+  }
 }
 
 // Of at most kBatch pairs: all tests before any of the collisions, so that they overlap in the machine. The
@@ -268,19 +305,32 @@ void BroadPhase::search(const Scene& scene, const PairList* listed, Visit visit,
     count = 0;
   };
   int32_t marked[2] = {-1, -1};  // the articulations that neighbours_ is about
-  int32_t at = 0;                // in the list of those to search
+  const auto try_pair = [&](int32_t pair) {
+    if (pairs_[pair].plane < 0 || on_plane(pairs_[pair])) add(pair);
+  };
+  int32_t at = 0;  // in the list of those to search
+  const Row* row = rows_;
   for (const PairRun& run : scene.runs) {
     const int32_t end = run.first + run.count;
-    if (run.shape < 0) {
-      if (!listed) {
-        for (int32_t k = run.first; k < end; ++k)
-          if (!passed_over(pairs_[k])) add(k);
-        continue;
+    for (; run.shape < 0 && row < rows_ + num_rows_ && row->first < end; ++row) {
+      const int32_t row_end = row->first + row->count;
+      uint64_t bits = row->part < 0 ? 0 : near_others(*row);
+      // of a row that is listed as a whole, or all are, only those that are near
+      const int32_t last = at + row->count - 1;
+      const bool whole = !listed || (last < listed->count && listed->pairs[at] == row->first &&
+                                     listed->pairs[last] == row_end - 1);
+      if (whole) at += row->count;
+      if (whole && row->part >= 0) {
+        for (; bits != 0; bits &= bits - 1) try_pair(row->first + std::countr_zero(bits));
+      } else if (whole) {
+        for (int32_t k = row->first; k < row_end; ++k) try_pair(k);
+      } else {
+        for (; at < listed->count && listed->pairs[at] < row_end; ++at)
+          if (row->part < 0 || (bits >> (listed->pairs[at] - row->first) & 1) != 0)
+            try_pair(listed->pairs[at]);
       }
-      for (; at < listed->count && listed->pairs[at] < end; ++at)
-        if (!passed_over(pairs_[listed->pairs[at]])) add(listed->pairs[at]);
-      continue;
     }
+    if (run.shape < 0) continue;
     if (!near(bounds_[run.shape], boxes_[run.articulation])) continue;
     const int32_t owner = scene.shapes[static_cast<size_t>(run.shape)].articulation;
     if (owner >= 0 && (owner != marked[0] || run.articulation != marked[1])) {

@@ -66,7 +66,6 @@ class BroadPhase {
   struct Pair {
     int32_t a, b;
     int32_t plane;  // index of planes_ when b is one: only its own test counts; else -1
-    int32_t mark;   // index of marks_ when a is an articulation's and b no articulation's; else -1
   };
   struct Plane {
     Vec3 n;
@@ -79,12 +78,21 @@ class BroadPhase {
   struct Part {
     int32_t articulation, first, end;
   };
+  // Pairs in a row, of a run without an articulation. With a part: of one of its shapes with others that
+  // stand in a row too, all in one word of near_.
+  struct Row {
+    int32_t first, count;
+    int32_t part, first_other;  // -1: pairs of any kind
+  };
+  template <class Use>
+  void each_row(const Scene& scene, const Use& use) const;
+  uint64_t near_others(const Row& row) const {
+    const uint64_t word = near_[row.part * words_ + row.first_other / 64] >> (row.first_other % 64);
+    return row.count == 64 ? word : word & ((uint64_t{1} << row.count) - 1);
+  }
   void update_boxes(const Scene& scene);
   void mark_neighbours(const Scene& scene, int32_t articulation, const Box& box);
   void mark_others();
-  bool passed_over(const Pair& pair) const {
-    return (pair.mark >= 0 && !marks_[pair.mark]) || (pair.plane >= 0 && !on_plane(pair));
-  }
   void visit_near(int32_t* list, int32_t count, Visit visit, void* context) const;
   bool on_plane(const Pair& pair) const;
   // Bit k: the spheres, or the capsules, of pair list[k] meet, or one of them is a plane; four of them.
@@ -96,13 +104,15 @@ class BroadPhase {
   Bound* bounds_ = nullptr;
   Pair* pairs_ = nullptr;
   Plane* planes_ = nullptr;
-  Box* boxes_ = nullptr;                                      // [articulations]
-  Part* parts_ = nullptr;                                     // of all articulations, in their order
-  Box* part_boxes_ = nullptr;                                 // [parts]
-  int32_t* other_plane_ = nullptr;                            // [others] index of planes_; -1
-  uint8_t* neighbours_ = nullptr;                             // [shapes] near the other articulation of a run
-  uint8_t* marks_ = nullptr;                                  // [parts][others] the other is near the part
-  int32_t num_parts_ = 0, first_other_ = 0, num_others_ = 0;  // others: shapes of no articulation
+  Box* boxes_ = nullptr;            // [articulations]
+  Part* parts_ = nullptr;           // of all articulations, in their order
+  Box* part_boxes_ = nullptr;       // [parts]
+  int32_t* other_plane_ = nullptr;  // [others] index of planes_; -1
+  uint8_t* neighbours_ = nullptr;   // [shapes] near the other articulation of a run
+  uint64_t* near_ = nullptr;        // [parts][words_] bit k: other k is near the part
+  Row* rows_ = nullptr;             // in the order of their pairs
+  int32_t num_parts_ = 0, num_rows_ = 0, words_ = 0;
+  int32_t first_other_ = 0, num_others_ = 0;  // others: shapes of no articulation
 };
 
 }  // namespace rdm
