@@ -93,7 +93,9 @@ using Int4 = int32_t __attribute__((vector_size(16)));  // as a mask -1: true, 0
 }
 
 // N numbers of type S, for code that is compiled once per instruction set: in an unnamed namespace, so that
-// no linker joins two sets' copies. Such a source includes this header after every other one with code.
+// no linker joins two sets' copies. Such a source includes this header after every other one with code, and
+// one for AVX defines RDM_SIMD_AVX before: compilers do not tell what a pragma or an attribute has switched
+// on.
 namespace {
 
 template <class S, int N>
@@ -117,6 +119,13 @@ struct Simd {
     return m;
   }
   [[gnu::always_inline]] static uint32_t bits(const Mask& m) {
+#if defined(RDM_SIMD_AVX)
+    if constexpr (sizeof(S) == 4 && N == 8) {
+      __m256 all;
+      std::memcpy(&all, &m, sizeof all);
+      return static_cast<uint32_t>(_mm256_movemask_ps(all));
+    }
+#endif
 #if defined(__x86_64__)
     if constexpr (sizeof(S) == 4) {
       __m128 part[N / 4];
@@ -131,6 +140,16 @@ struct Simd {
     return b;
   }
   [[gnu::always_inline]] static V root(const V& v) {
+#if defined(RDM_SIMD_AVX)
+    if constexpr (sizeof(S) == 4 && N == 8) {
+      __m256 all;
+      std::memcpy(&all, &v, sizeof all);
+      all = _mm256_sqrt_ps(all);
+      V r;
+      std::memcpy(&r, &all, sizeof r);
+      return r;
+    }
+#endif
 #if defined(__x86_64__)
     if constexpr (sizeof(S) == 4) {
       __m128 part[N / 4];
@@ -148,6 +167,17 @@ struct Simd {
   // to[i] lane l = from[l][i], for i in [0, count).
   [[gnu::always_inline]] static void gather(const S* const* from, int count, V* to) {
     int i = 0;
+#if defined(RDM_SIMD_AVX)
+    if constexpr (sizeof(S) == 4 && N == 8)
+      for (; i + 4 <= count; i += 4) {
+        __m256 r[4];
+        for (int l = 0; l < 4; ++l)
+          r[l] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(from[l] + i)),
+                                      _mm_loadu_ps(from[4 + l] + i), 1);
+        transpose_halves(r);
+        std::memcpy(&to[i], r, sizeof r);
+      }
+#endif
 #if defined(__x86_64__)
     if constexpr (sizeof(S) == 4)
       for (; i + 4 <= count; i += 4)
@@ -165,6 +195,16 @@ struct Simd {
   // to[l][i] = from[i] lane l, of the first `lanes` lanes.
   [[gnu::always_inline]] static void scatter(const V* from, int count, int lanes, S* const* to) {
     int i = 0;
+#if defined(RDM_SIMD_AVX)
+    if constexpr (sizeof(S) == 4 && N == 8)
+      for (; i + 4 <= count; i += 4) {
+        __m256 r[4];
+        std::memcpy(r, &from[i], sizeof r);
+        transpose_halves(r);
+        for (int l = 0; l < 4 && l < lanes; ++l) _mm_storeu_ps(to[l] + i, _mm256_castps256_ps128(r[l]));
+        for (int l = 4; l < lanes; ++l) _mm_storeu_ps(to[l] + i, _mm256_extractf128_ps(r[l - 4], 1));
+      }
+#endif
 #if defined(__x86_64__)
     if constexpr (sizeof(S) == 4)
       for (; i + 4 <= count; i += 4)
@@ -179,6 +219,19 @@ struct Simd {
     for (; i < count; ++i)
       for (int l = 0; l < lanes; ++l) to[l][i] = from[i][l];
   }
+
+#if defined(RDM_SIMD_AVX)
+ private:
+  // Four rows into four columns, in the lower and in the upper four lanes.
+  [[gnu::always_inline]] static void transpose_halves(__m256 (&r)[4]) {
+    const __m256 a = _mm256_unpacklo_ps(r[0], r[1]), b = _mm256_unpackhi_ps(r[0], r[1]),
+                 c = _mm256_unpacklo_ps(r[2], r[3]), d = _mm256_unpackhi_ps(r[2], r[3]);
+    r[0] = _mm256_shuffle_ps(a, c, 0x44);
+    r[1] = _mm256_shuffle_ps(a, c, 0xee);
+    r[2] = _mm256_shuffle_ps(b, d, 0x44);
+    r[3] = _mm256_shuffle_ps(b, d, 0xee);
+  }
+#endif
 };
 
 template <class S>

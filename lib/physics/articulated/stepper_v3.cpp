@@ -17,6 +17,7 @@
 #else
 #pragma GCC target("avx2")
 #endif
+#define RDM_SIMD_AVX
 
 #include "physics/articulated/stepper.inl"
 

@@ -243,40 +243,48 @@ void search_nearest(const MapTree& tree, const VoxelLattice& lattice, float thre
   }
 }
 
-// Separating axes of a cube and a turned box: 15 candidates.
+// Separating axes of a cube and a turned box: 15 candidates, the same for all cubes of the map.
 class TurnedBox {
  public:
-  TurnedBox(const Pose& X_WB, const Vec3& half) : R_(to_matrix(X_WB.q)), p_(X_WB.p), half_(half) {}
+  TurnedBox(const Pose& X_WB, const Vec3& half) : p_(X_WB.p) {
+    const Mat3 R = to_matrix(X_WB.q);
+    const auto add = [&](const Vec3& axis, double reach) {
+      axes_[count_++] = {axis, std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z), reach};
+    };
+    const auto reach_along = [&](const Vec3& axis) {
+      double reach = 0;
+      for (int k = 0; k < 3; ++k) reach += half[k] * std::abs(dot(axis, R.col(k)));
+      return reach;
+    };
+    Vec3 units[3];
+    for (int i = 0; i < 3; ++i) {
+      units[i][i] = 1;
+      add(units[i], reach_along(units[i]));
+    }
+    for (int j = 0; j < 3; ++j) add(R.col(j), half[j]);
+    for (const Vec3& unit : units)
+      for (int j = 0; j < 3; ++j) {
+        const Vec3 axis = cross(unit, R.col(j));
+        if (dot(axis, axis) >= 1e-12) add(axis, reach_along(axis));
+      }
+  }
   bool meets(const Vec3& low, double side) const {
     const double h = 0.5 * side;
     const Vec3 d = p_ - (low + Vec3{h, h, h});
-    for (int i = 0; i < 3; ++i) {
-      const double reach =
-          std::abs(R_(i, 0)) * half_.x + std::abs(R_(i, 1)) * half_.y + std::abs(R_(i, 2)) * half_.z;
-      if (std::abs(d[i]) > h + reach) return false;
-    }
-    for (int j = 0; j < 3; ++j) {
-      const Vec3 axis = R_.col(j);
-      const double cube = h * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
-      if (std::abs(dot(d, axis)) > cube + half_[j]) return false;
-    }
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        Vec3 unit;
-        unit[i] = 1;
-        const Vec3 axis = cross(unit, R_.col(j));
-        if (dot(axis, axis) < 1e-12) continue;
-        const double cube = h * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
-        double reach = 0;
-        for (int k = 0; k < 3; ++k) reach += half_[k] * std::abs(dot(axis, R_.col(k)));
-        if (std::abs(dot(d, axis)) > cube + reach) return false;
-      }
+    if (std::abs(d.x) <= h && std::abs(d.y) <= h && std::abs(d.z) <= h) return true;  // holds the middle
+    for (int i = 0; i < count_; ++i)
+      if (std::abs(dot(d, axes_[i].n)) > h * axes_[i].cube + axes_[i].reach) return false;
     return true;
   }
 
  private:
-  Mat3 R_;
-  Vec3 p_, half_;
+  struct Axis {
+    Vec3 n;              // of any length
+    double cube, reach;  // of a cube of half a side of one, and of the box
+  };
+  Vec3 p_;
+  Axis axes_[15];
+  int count_ = 0;
 };
 
 }  // namespace
