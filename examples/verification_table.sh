@@ -15,7 +15,8 @@ out=${1:-$root/runs/verification}
 seeds=${SEEDS:-0 1 2} envs=${ENVS:-16}
 tasks=${TASKS:-bandit two_state lqr_line ball_run ball_circle car_run swimmer_velocity point_goal1 point_goal2
   point_button1 point_button2 car_goal1 car_goal2 car_button1 car_button2 car_circle drone_run drone_circle
-  ball_gather car_gather drone_gather ball_reach car_reach drone_reach hopper_velocity walker2d_velocity ant_velocity ant_run ant_circle ant_gather ant_reach}
+  ball_gather car_gather drone_gather ball_reach car_reach drone_reach hopper_velocity walker2d_velocity ant_velocity
+  ant_run ant_circle ant_gather ant_reach}
 algos=${ALGOS:-ppo trpo ppo_lag trpo_lag cppo_pid cpo pcpo focops p3o ipo}
 mkdir -p "$out"
 
