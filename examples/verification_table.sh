@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every algorithm on the small worlds with known answers: each run from scratch with the tasks' defaults.
+# Every algorithm on the worlds of the verification suite, those with known answers first: each run from scratch with the tasks' defaults.
 # Finished runs are kept and stopped ones go on, so the script can be stopped and called again.
 #   bash examples/verification_table.sh [OUT]      OUT: folder of the runs, default runs/verification
 # It leaves OUT/rows.csv, a row for each finished run, and prints a Markdown table of the means over seeds,
@@ -14,8 +14,9 @@ set -eu
 out=${1:-$root/runs/verification}
 seeds=${SEEDS:-0 1 2} envs=${ENVS:-16}
 tasks=${TASKS:-bandit two_state lqr_line ball_run ball_circle car_run swimmer_velocity point_goal1 point_goal2
-  point_button1 point_button2 car_goal1 car_goal2 car_button1 car_button2 car_circle drone_run drone_circle ball_gather car_gather drone_gather ball_reach car_reach
-  drone_reach hopper_velocity walker2d_velocity ant_velocity ant_run ant_circle ant_gather ant_reach}
+  point_button1 point_button2 car_goal1 car_goal2 car_button1 car_button2 car_circle drone_run drone_circle
+  ball_gather car_gather drone_gather ball_reach car_reach drone_reach hopper_velocity walker2d_velocity ant_velocity
+  ant_run ant_circle ant_gather ant_reach}
 algos=${ALGOS:-ppo trpo ppo_lag trpo_lag cppo_pid cpo pcpo focops p3o ipo}
 mkdir -p "$out"
 

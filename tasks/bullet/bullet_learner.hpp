@@ -31,7 +31,11 @@ inline constexpr auto kBallGatherLearner = kSeekLearner, kBallReachLearner = kSe
                       kCarCircleLearner = kSeekLearner, kCarGatherLearner = kSeekLearner,
                       kCarReachLearner = kSeekLearner, kDroneGatherLearner = kDroneLearner,
                       kDroneReachLearner = kDroneLearner;
-inline constexpr auto kAntLearner = kLeggedLearner, kAntGatherLearner = kLeggedLearner;
+inline constexpr auto kAntLearner = kLeggedLearner;
+// In rooms its motors are four times as strong: wider noise throws it over 2 m.
+inline constexpr auto kAntSeekLearner =
+    join_defaults(kWalkLearner, {{"init_std", "0.15"}, {"std_min", "0.02"}});
+inline constexpr auto kAntGatherLearner = kAntSeekLearner, kAntReachLearner = kAntSeekLearner;
 
 inline constexpr CameraSpec kRoomCameras[] = {
     {"front", {0, -15, 12}, {0, 0, 0}, 0.9},

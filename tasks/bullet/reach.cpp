@@ -265,7 +265,7 @@ constinit const TaskInfo kDroneReach = task_info<Reach<Drone>, kCosts, kRoomCame
     "drone_reach", "DroneReach",
     "a quadrotor reaches goal after goal; cost: pillars, a box that runs, above 2 m",
     &constant_options<kDroneOptions>);
-constinit const TaskInfo kAntReach = task_info<Reach<Ant>, kCosts, kRoomCameras, kAntLearner>(
+constinit const TaskInfo kAntReach = task_info<Reach<Ant>, kCosts, kRoomCameras, kAntReachLearner>(
     "ant_reach", "AntReach",
     "a robot of four legs reaches goal after goal; cost: puddles, and a box that runs",
     &constant_options<kAntOptions>);
