@@ -30,8 +30,9 @@
 // start), and from kConjugateFrom points on are accelerated by the non-smooth non-linear conjugate gradient
 // method of Silcowitz-Hansen, Niebe and Erleben (2010): a sweep's change d_k is the negative gradient, the
 // next search direction p_k = d_k + beta p_(k-1) with beta = |d_k|^2 / |d_(k-1)|^2 (Fletcher and Reeves),
-// restarted where beta > 1. At most `iterations` sweeps, for stacks of many points up to kStackFactor times
-// as many; fewer once the squared change of a sweep is small against the squared impulses.
+// restarted where beta > 1. At most `iterations` sweeps, for stacks up to kStackFactor times as many: by
+// the levels of a pile, or as many as if all points were one stack of boxes; fewer once the squared change of
+// a sweep is small against the squared impulses.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -49,6 +50,10 @@ constexpr int32_t kStackFactor = 4;
 // Square of the relative change at which the sweeps end early, and that of a stack: more than kStack points.
 constexpr double kTolerance = 1e-9, kStackTolerance = 1e-8;
 constexpr int32_t kStack = 64;
+// Sweeps for two levels of a pile, and how many of its last are not accelerated: what a step along the
+// direction overshoots by is to be taken back.
+constexpr int32_t kSweepsPerTwoLevels = 7;
+constexpr int32_t kPlainSweeps = 3;
 
 template <class S>
 struct ContactSolver {
@@ -75,6 +80,7 @@ struct ContactSolver {
   int32_t count = 0, num_segments = 0, most_segments = 0;  // most_segments: of a point
   WideContacts<S> wide;                                    // points of piles, beside the others
   S softness = 0;
+  int32_t levels = 0;  // of the pile, if there is one (wide_contacts.inl)
 
   // The last `bodies` segments are those of the free bodies.
   void carve(Arena& arena, int32_t max_points, int32_t segment_count, int32_t path_segments, int32_t bodies) {
@@ -148,11 +154,12 @@ struct ContactSolver {
     out[1] = a[2] + a[3];
     out[2] = b[0] + b[1];
   }
-  S sweep(S* impulse_square);
-  S sweep_all(S* impulse_square) {
-    if (wide.count == 0) return sweep(impulse_square);
+  // First a step of `beta` along each point's conjugate direction; null: none.
+  S sweep(const S* beta, S* impulse_square);
+  S sweep_all(const S* beta, S* impulse_square) {
+    if (wide.count == 0) return sweep(beta, impulse_square);
     S rest = 0;
-    const S delta_square = wide.sweep(softness, sum, impulse_square), more = sweep(&rest);
+    const S delta_square = wide.sweep(beta, sum, impulse_square), more = sweep(beta, &rest);
     *impulse_square += rest;
     return delta_square + more;
   }
@@ -203,12 +210,18 @@ void ContactSolver<S>::warm_start(Point* p, const S* impulse) {
   }
 }
 
-// One pass over all points. Returns the sum of the squared changes of the impulses; `impulse_square` of them.
+// One pass over all points, after the step along their directions. Returns the sum of the squared changes of
+// the impulses; `impulse_square` of them.
 template <class S>
-S ContactSolver<S>::sweep(S* impulse_square) {
+S ContactSolver<S>::sweep(const S* beta, S* impulse_square) {
   S delta_square = 0, square = 0;
   for (int32_t i = 0; i < count; ++i) {
     Point& p = points[i];
+    for (int f = 0; beta && f < 3; ++f) {
+      S& way = point_direction[i][f];
+      p.impulse[f] += *beta * way;
+      way = *beta * way + delta[i][f];
+    }
     const Row* z = rows + 3 * p.first;
     const int32_t* segment = segments + p.first;
     if (p.axes == 1) {
@@ -269,13 +282,15 @@ S ContactSolver<S>::sweep(S* impulse_square) {
 template <class S>
 void ContactSolver<S>::solve(int32_t iterations) {
   S impulse_square = 0;  // sum of squared impulses
-  // weight travels from point to point, one sweep each: stacks get more
+  // weight travels from body to body, one sweep each: stacks get more. A box stands on four points.
   const int32_t all = count + wide.count;
   const S tolerance = all > kStack ? S(kStackTolerance) : S(kTolerance);
-  iterations = std::clamp(3 * all / 4, iterations, kStackFactor * iterations);
+  const bool pile = wide.count > 0;
+  iterations = std::clamp(pile ? kSweepsPerTwoLevels * levels / 2 : 3 * all / 4, iterations,
+                          kStackFactor * iterations);
   if (all < kConjugateFrom) {
     for (int32_t k = 0; k < iterations; ++k) {
-      const S delta_square = sweep(&impulse_square);
+      const S delta_square = sweep(nullptr, &impulse_square);
       if (delta_square <= tolerance * impulse_square) return;
     }
     return;
@@ -283,18 +298,19 @@ void ContactSolver<S>::solve(int32_t iterations) {
   const auto restart = [&] {
     for (int32_t s = 0; s < num_segments; ++s) direction[s] = Row{};
     for (int32_t i = 0; i < count; ++i)
-      for (int f = 0; f < 3; ++f) point_direction[i][f] = 0;
-    wide.restart();
+      point_direction[i][0] = point_direction[i][1] = point_direction[i][2] = 0;
   };
   restart();
-  S last_square = 0;
+  S last_square = 0, beta = 0;
+  bool onward = false;  // along the direction
   for (int32_t k = 0; k < iterations; ++k) {
     for (int32_t s = 0; s < num_segments; ++s) previous[s] = sum[s];
-    const S delta_square = sweep_all(&impulse_square);
+    const S delta_square = sweep_all(onward ? &beta : nullptr, &impulse_square);
     if (delta_square <= tolerance * impulse_square || k + 1 == iterations) return;
-    const S beta = k ? delta_square / last_square : S(0);
+    beta = k ? delta_square / last_square : S(0);
     last_square = delta_square;
-    if (beta > 1) {
+    onward = !(beta > 1) && (!pile || k + kPlainSweeps < iterations);
+    if (!onward) {
       restart();
       continue;
     }
@@ -303,12 +319,6 @@ void ContactSolver<S>::solve(int32_t iterations) {
       sum[s] += beta * direction[s];
       direction[s] = beta * direction[s] + d;
     }
-    for (int32_t i = 0; i < count; ++i)
-      for (int f = 0; f < 3; ++f) {
-        points[i].impulse[f] += beta * point_direction[i][f];
-        point_direction[i][f] = beta * point_direction[i][f] + delta[i][f];
-      }
-    wide.accelerate(beta);
   }
 }
 

@@ -467,6 +467,13 @@ bool BatchStepper<L>::add_piles(int32_t world, bool again) {
   wide.number_points();
   for (int32_t g = 0; g < wide.num_groups; ++g) add_pile_points(world, again, &wide.groups[g]);
   wide.warm_start(contacts_.sum);
+  contacts_.levels = wide.levels([&](const auto& visit) {
+    for (int32_t i = 0; i < w.num_contacts; ++i) {
+      const Attachment &a = attachments_[w.contacts[i].shape_a], &b = attachments_[w.contacts[i].shape_b];
+      if (a.kind == Attachment::kTree && b.kind == Attachment::kBody) visit(b.body);
+      if (b.kind == Attachment::kTree && a.kind == Attachment::kBody) visit(a.body);
+    }
+  });
   return true;
 }
 
@@ -497,6 +504,7 @@ void BatchStepper<L>::add_pile_points(int32_t world, bool again, typename WideCo
     put_body(&b, &group->sqrt_mass_b, l, group->body_b[l]);
     put(&group->mu, l, friction(w, w.contact_pairs[group->first[l]]));
   }
+  group->linear = group->sqrt_mass_a * group->sqrt_mass_a + group->sqrt_mass_b * group->sqrt_mass_b;
   const auto dot3 = [](const WV* x, const WV* y) { return (x[0] * y[0] + x[1] * y[1]) + x[2] * y[2]; };
   const auto cross3 = [](const WV* x, const WV* y, WV* out) {
     out[0] = x[1] * y[2] - x[2] * y[1];

@@ -9,8 +9,17 @@
 //
 // A point's row along an axis f of its frame (normal and tangents), with arms from the centres of mass:
 //   a: ( sqrt(1/m_a) f,  C_a^-1 R_a^T (arm_a x f))      b: (-sqrt(1/m_b) f, -C_b^-1 R_b^T (arm_b x f))
-// The axes stand in for both linear halves.
+// The axes stand in for both linear halves: while the points of a pair are solved, its slip
+//   s = sqrt(1/m_a) sum_a - sqrt(1/m_b) sum_b  of the linear halves
+// is kept in place of both, an impulse d f changes it by (1/m_a + 1/m_b) d f, and what all of them come to
+// goes back into the sums at the end.
+//
+// One point waits for another, so that what counts is the longest chain of operations and not their number.
+// An update is therefore written as  n <- max(0, (c n + k b_n) - k v_n)  with k = inv_n, c = 1 - k softness,
+// and the tangents' as what they come to for the old n, less the change of n times a constant. The step along
+// the conjugate direction that follows a sweep (contact_solver.inl) is taken at the beginning of the next.
 #pragma once
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -35,22 +44,26 @@ struct WideContacts {
   typedef S Row __attribute__((vector_size(sizeof(S) * kWide)));
 
   struct Point {
-    V axis[3][3];                     // n, t, u
-    V turn_a[3][3], turn_b[3][3];     // angular halves of the rows
-    V coupling[2];                    // A_nt, A_nu
-    V inv_n, inv_tangents[3], inv_t;  // as ContactSolver::Point
-    V b[3], impulse[3], delta[3], direction[3];
+    V axis[3][3];                                // n, t, u
+    V turn_a[3][3], turn_b[3][3];                // angular halves of the rows
+    V coupling[2];                               // A_nt, A_nu
+    V inv_n, inv_tangents[3], inv_t;             // as ContactSolver::Point
+    V decay;                                     // c
+    V follow[2];                                 // of the tangents, per change of n
+    V b[3], impulse[3], delta[3], direction[3];  // b[0] times inv_n
   };
   struct Group {
     int32_t first[kWide], count[kWide];    // points of the lane's pair in the world's list
     int32_t body_a[kWide], body_b[kWide];  // -1: static, or no pair
     int32_t lanes, first_point, most;      // most: points of a lane
     V sqrt_mass_a, sqrt_mass_b, mu;        // sqrt(1/m)
+    V linear;                              // 1/m_a + 1/m_b
   };
 
   Point* points = nullptr;
   Group* groups = nullptr;
   uint64_t* taken = nullptr;  // [groups][words] the bodies of a group, a bit each
+  int32_t* level = nullptr;   // [bodies]
   int32_t num_groups = 0, words = 0, count = 0;
   int32_t first_segment = 0, rest = 0;  // of the bodies; of what is at rest
 
@@ -61,12 +74,17 @@ struct WideContacts {
     points = arena.make<Point>(n);
     groups = arena.make<Group>(n);
     taken = arena.make<uint64_t>(n * static_cast<size_t>(words));
+    level = arena.make<int32_t>(static_cast<size_t>(bodies));
   }
   void begin() { num_groups = count = 0; }
   // The pair with points [first, first + n) of the world's list; b -1: at rest. a is a body.
   void add(int32_t first, int32_t n, int32_t a, int32_t b);
   // After the last pair: where each group's points are.
   void number_points();
+  // How many bodies weight goes through at most on its shortest way to what is at rest; of bodies that have
+  // no such way, to those that `held(visit)` calls visit(body) for; else to any other.
+  template <class Held>
+  int32_t levels(const Held& held);
 
   // The rows of the sums that the lanes work on.
   void rows_of(const int32_t* bodies, Row* sum, S** out) const {
@@ -77,26 +95,22 @@ struct WideContacts {
   void prepare(const Group& g, Point* p, S softness) const;
   // No impulse in this lane.
   void clear(Point* p, int lane) const {
-    for (V* v : {&p->inv_n, &p->inv_t, &p->inv_tangents[0], &p->inv_tangents[1], &p->inv_tangents[2]})
+    for (V* v : {&p->inv_n, &p->inv_t, &p->inv_tangents[0], &p->inv_tangents[1], &p->inv_tangents[2],
+                 &p->follow[0], &p->follow[1], &p->b[0]})
       L::set(v, lane, S(0));
   }
   void warm_start(Row* sum) const;
-  S sweep(S softness, Row* sum, S* impulse_square);
-  void restart() {
-    const int32_t end = num_groups ? groups[num_groups - 1].first_point + groups[num_groups - 1].most : 0;
-    for (int32_t i = 0; i < end; ++i)
-      points[i].direction[0] = points[i].direction[1] = points[i].direction[2] = V{};
-  }
-  void accelerate(S beta) {
-    const int32_t end = num_groups ? groups[num_groups - 1].first_point + groups[num_groups - 1].most : 0;
-    for (int32_t i = 0; i < end; ++i)
-      for (int f = 0; f < 3; ++f) {
-        points[i].impulse[f] += beta * points[i].direction[f];
-        points[i].direction[f] = beta * points[i].direction[f] + points[i].delta[f];
-      }
-  }
+  // As ContactSolver::sweep.
+  S sweep(const S* beta, Row* sum, S* impulse_square);
 
  private:
+  static constexpr int32_t kNoLevel = 1 << 20;
+  template <class Visit>
+  void each_pair(const Visit& visit) const {
+    for (int32_t g = 0; g < num_groups; ++g)
+      for (int l = 0; l < groups[g].lanes; ++l) visit(groups[g].body_a[l], groups[g].body_b[l]);
+  }
+  void spread_levels();
   [[gnu::always_inline]] static V dot3(const V* a, const V* b) {
     return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
   }
@@ -138,11 +152,51 @@ void WideContacts<S>::number_points() {
   }
 }
 
+// Until every body is at most one above the lowest that it touches.
+template <class S>
+void WideContacts<S>::spread_levels() {
+  for (bool changed = true; changed;) {
+    changed = false;
+    each_pair([&](int32_t a, int32_t b) {
+      if (b < 0) return;
+      int32_t &x = level[a], &y = level[b];
+      if (x > y + 1) x = y + 1, changed = true;
+      if (y > x + 1) y = x + 1, changed = true;
+    });
+  }
+}
+
+template <class S>
+template <class Held>
+int32_t WideContacts<S>::levels(const Held& held) {
+  const auto first = [&](int32_t body) {
+    if (level[body] == kNoLevel) level[body] = 1;
+  };
+  each_pair([&](int32_t a, int32_t b) {
+    level[a] = kNoLevel;
+    if (b >= 0) level[b] = kNoLevel;
+  });
+  each_pair([&](int32_t a, int32_t b) {
+    if (b < 0) first(a);
+  });
+  spread_levels();
+  held(first);
+  spread_levels();
+  int32_t most = 0;
+  each_pair([&](int32_t a, int32_t b) {
+    if (level[a] == kNoLevel) {
+      first(a);
+      spread_levels();
+    }
+    most = std::max({most, level[a], b < 0 ? 0 : level[b]});
+  });
+  return most;
+}
+
 template <class S>
 void WideContacts<S>::prepare(const Group& g, Point* p, S softness) const {
-  const V linear = g.sqrt_mass_a * g.sqrt_mass_a + g.sqrt_mass_b * g.sqrt_mass_b;
   const auto product = [&](int f, int k) {
-    return linear * dot3(p->axis[f], p->axis[k]) + dot3(p->turn_a[f], p->turn_a[k]) +
+    return g.linear * dot3(p->axis[f], p->axis[k]) + dot3(p->turn_a[f], p->turn_a[k]) +
            dot3(p->turn_b[f], p->turn_b[k]);
   };
   const V kNone{}, kImmovable = L::all(S(1e-6)), kOne = L::all(S(1));
@@ -158,6 +212,10 @@ void WideContacts<S>::prepare(const Group& g, Point* p, S softness) const {
   p->inv_tangents[0] = L::select(regular, uu * d, p->inv_t);
   p->inv_tangents[1] = L::select(regular, tt * d, p->inv_t);
   p->inv_tangents[2] = L::select(regular, -tu * d, kNone);
+  p->decay = kOne - softness * p->inv_n;
+  p->b[0] *= p->inv_n;
+  p->follow[0] = p->inv_tangents[0] * p->coupling[0] + p->inv_tangents[2] * p->coupling[1];
+  p->follow[1] = p->inv_tangents[2] * p->coupling[0] + p->inv_tangents[1] * p->coupling[1];
 }
 
 template <class S>
@@ -186,9 +244,9 @@ void WideContacts<S>::warm_start(Row* sum) const {
   }
 }
 
-// As ContactSolver::sweep, over the groups.
+// One pass over the groups.
 template <class S>
-S WideContacts<S>::sweep(S softness, Row* sum, S* impulse_square) {
+S WideContacts<S>::sweep(const S* beta, Row* sum, S* impulse_square) {
   V delta_square{}, square{};
   const V none{};
   for (int32_t k = 0; k < num_groups; ++k) {
@@ -196,31 +254,39 @@ S WideContacts<S>::sweep(S softness, Row* sum, S* impulse_square) {
     S *row_a[kWide], *row_b[kWide];
     rows_of(g.body_a, sum, row_a);
     rows_of(g.body_b, sum, row_b);
-    V a[kWide], b[kWide];
+    V a[kWide], b[kWide], slip[3], push[3] = {};  // push: impulse of all points
     L::gather(row_a, kWide, a);
     L::gather(row_b, kWide, b);
+    for (int r = 0; r < 3; ++r) slip[r] = g.sqrt_mass_a * a[r] - g.sqrt_mass_b * b[r];
     for (int32_t i = 0; i < g.most; ++i) {
       Point& p = points[g.first_point + i];
-      V slip[3], v[3];
-      for (int r = 0; r < 3; ++r) slip[r] = g.sqrt_mass_a * a[r] - g.sqrt_mass_b * b[r];
-      for (int f = 0; f < 3; ++f)
-        v[f] = dot3(p.axis[f], slip) + dot3(p.turn_a[f], a + 3) + dot3(p.turn_b[f], b + 3);
-      V n = p.impulse[0] + (p.b[0] - v[0] - softness * p.impulse[0]) * p.inv_n;
-      n = L::select(n < none, none, n);
-      const V d0 = n - p.impulse[0];
-      const V e1 = p.b[1] - v[1] - p.coupling[0] * d0, e2 = p.b[2] - v[2] - p.coupling[1] * d0;
-      V t1 = p.impulse[1] + (p.inv_tangents[0] * e1 + p.inv_tangents[2] * e2);
-      V t2 = p.impulse[2] + (p.inv_tangents[2] * e1 + p.inv_tangents[1] * e2);
+      V last[3], v[3];
+      for (int f = 0; f < 3; ++f) {
+        last[f] = p.impulse[f];
+        if (beta) {
+          last[f] += *beta * p.direction[f];
+          p.direction[f] = *beta * p.direction[f] + p.delta[f];
+        } else {
+          p.direction[f] = none;
+        }
+        v[f] = (dot3(p.axis[f], slip) + dot3(p.turn_a[f], a + 3)) + dot3(p.turn_b[f], b + 3);
+      }
+      const V e1 = p.b[1] - v[1], e2 = p.b[2] - v[2];
+      const V n = larger(none, (p.decay * last[0] + p.b[0]) - p.inv_n * v[0]);
+      const V d0 = n - last[0];
+      V t1 = (last[1] + (p.inv_tangents[0] * e1 + p.inv_tangents[2] * e2)) - p.follow[0] * d0;
+      V t2 = (last[2] + (p.inv_tangents[2] * e1 + p.inv_tangents[1] * e2)) - p.follow[1] * d0;
       const V bound = g.mu * n, bound_square = bound * bound;
       const Mask slides = t1 * t1 + t2 * t2 > bound_square;
       if (L::bits(slides) != 0) {
-        const V x1 = p.impulse[1] + p.inv_t * e1, x2 = p.impulse[2] + p.inv_t * e2;
+        const V x1 = last[1] + p.inv_t * (e1 - p.coupling[0] * d0),
+                x2 = last[2] + p.inv_t * (e2 - p.coupling[1] * d0);
         const V length = x1 * x1 + x2 * x2;
         const V shrink = L::select(length > bound_square, bound / L::root(length), L::all(S(1)));
         t1 = L::select(slides, x1 * shrink, t1);
         t2 = L::select(slides, x2 * shrink, t2);
       }
-      const V d1 = t1 - p.impulse[1], d2 = t2 - p.impulse[2];
+      const V d1 = t1 - last[1], d2 = t2 - last[2];
       p.impulse[0] = n;
       p.impulse[1] = t1;
       p.impulse[2] = t2;
@@ -228,14 +294,18 @@ S WideContacts<S>::sweep(S softness, Row* sum, S* impulse_square) {
       p.delta[1] = d1;
       p.delta[2] = d2;
       for (int r = 0; r < 3; ++r) {
-        const V push = p.axis[0][r] * d0 + p.axis[1][r] * d1 + p.axis[2][r] * d2;
-        a[r] += g.sqrt_mass_a * push;
-        b[r] -= g.sqrt_mass_b * push;
+        const V more = p.axis[0][r] * d0 + p.axis[1][r] * d1 + p.axis[2][r] * d2;
+        push[r] += more;
+        slip[r] += g.linear * more;
         a[3 + r] += p.turn_a[0][r] * d0 + p.turn_a[1][r] * d1 + p.turn_a[2][r] * d2;
         b[3 + r] += p.turn_b[0][r] * d0 + p.turn_b[1][r] * d1 + p.turn_b[2][r] * d2;
       }
       delta_square += d0 * d0 + d1 * d1 + d2 * d2;
       square += n * n + t1 * t1 + t2 * t2;
+    }
+    for (int r = 0; r < 3; ++r) {
+      a[r] += g.sqrt_mass_a * push[r];
+      b[r] -= g.sqrt_mass_b * push[r];
     }
     L::scatter(a, kWide, kWide, row_a);
     L::scatter(b, kWide, kWide, row_b);
