@@ -154,7 +154,7 @@ struct ContactSolver {
     out[1] = a[2] + a[3];
     out[2] = b[0] + b[1];
   }
-  // First a step of `beta` along each point's conjugate direction; null: none, and the directions start anew.
+  // First a step of `beta` along each point's conjugate direction; null: none.
   S sweep(const S* beta, S* impulse_square);
   S sweep_all(const S* beta, S* impulse_square) {
     if (wide.count == 0) return sweep(beta, impulse_square);
@@ -217,10 +217,10 @@ S ContactSolver<S>::sweep(const S* beta, S* impulse_square) {
   S delta_square = 0, square = 0;
   for (int32_t i = 0; i < count; ++i) {
     Point& p = points[i];
-    for (int f = 0; f < 3; ++f) {
+    for (int f = 0; beta && f < 3; ++f) {
       S& way = point_direction[i][f];
-      if (beta) p.impulse[f] += *beta * way;
-      way = beta ? *beta * way + delta[i][f] : S(0);
+      p.impulse[f] += *beta * way;
+      way = *beta * way + delta[i][f];
     }
     const Row* z = rows + 3 * p.first;
     const int32_t* segment = segments + p.first;
@@ -295,7 +295,12 @@ void ContactSolver<S>::solve(int32_t iterations) {
     }
     return;
   }
-  for (int32_t s = 0; s < num_segments; ++s) direction[s] = Row{};
+  const auto restart = [&] {
+    for (int32_t s = 0; s < num_segments; ++s) direction[s] = Row{};
+    for (int32_t i = 0; i < count; ++i)
+      point_direction[i][0] = point_direction[i][1] = point_direction[i][2] = 0;
+  };
+  restart();
   S last_square = 0, beta = 0;
   bool onward = false;  // along the direction
   for (int32_t k = 0; k < iterations; ++k) {
@@ -305,10 +310,14 @@ void ContactSolver<S>::solve(int32_t iterations) {
     beta = k ? delta_square / last_square : S(0);
     last_square = delta_square;
     onward = !(beta > 1) && (!pile || k + kPlainSweeps < iterations);
+    if (!onward) {
+      restart();
+      continue;
+    }
     for (int32_t s = 0; s < num_segments; ++s) {
       const Row d = sum[s] - previous[s];
-      if (onward) sum[s] += beta * direction[s];
-      direction[s] = onward ? beta * direction[s] + d : Row{};
+      sum[s] += beta * direction[s];
+      direction[s] = beta * direction[s] + d;
     }
   }
 }
