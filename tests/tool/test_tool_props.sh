@@ -21,7 +21,7 @@ demo() {
 # Loose things stand up to a millimetre off their places.
 demo pick_bottles 330 2.5 0.8 16 --set reset_noise=0.001     # (339, 0.6, 100 %)
 demo jenga 610 5 0.8 16 --set reset_noise=0.001              # (627, 0, 100 %)
-demo clean_house 19000 5 0.9 16 --set reset_noise=0.003      # (19244, 0, 100 %)
+demo clean_house 19000 5 0.9 16 --set reset_noise=0.003      # (19321, 0, 100 %)
 # Throws and grasps are drawn by themselves.
 demo hand_over_safe_finger 18.5 0.5 0.7 200                  # (20.5, 0, 79 %)
 demo hand_over_safe_joint 18.5 0.5 0.7 200
