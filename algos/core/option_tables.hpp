@@ -38,6 +38,8 @@ inline constexpr std::array kSharedOptions = {
                 "deviation as parameters, or outputs of the actor's network; no gradient at its bounds"),
     text_option("std_schedule", "none", "none|linear",
                 "linear: not learned, falls from init_std to std_min over total_epochs"),
+    number_option("average", 0, 0, 0.9999,
+                  "share of its past in the actor's mean over epochs, which policy files hold; 0: none"),
     flag_option("normalize_obs", true,
                 "subtract the running mean of observations, divide by their deviation"),
     number_option("obs_clip", 5, 0.1, 1e6, "bound on normalised observations"),
