@@ -158,7 +158,7 @@ void Agent::update(const float* last_obs, Epoch* out) {
     if (learner_.skipped() > skipped)
       log(resolved_.config.hooks, LogLevel::kWarning, "update: %lld gradients were not finite and left out",
           static_cast<long long>(learner_.skipped() - skipped));
-    if (learned_.passes > 0 && !warm) schedule_.adapt(learned_.mean.kl);
+    if (learned_.passes > 0 && !warm) schedule_.adapt(learned_.mean.kl, epoch_);
     collector_.episodes().mark();
     ++epoch_;
     if (!warm) schedule_std(nets_, resolved_.options, epoch_);

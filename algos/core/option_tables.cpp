@@ -40,6 +40,7 @@ constexpr PresetValue kPresetValues[] = {
     {"paper", "critic_learning_rate", "0"},
     {"paper", "lr_schedule", "kl"},
     {"paper", "kl_target", "0.016"},
+    {"paper", "kl_target_end", "0"},
     {"paper", "kl_factor", "1.5"},
     {"paper", "lr_min", "1e-5"},
     {"paper", "lr_max", "1e-2"},

@@ -73,6 +73,8 @@ inline constexpr std::array kSharedOptions = {
     integer_option("total_epochs", 1000, 1, 1 << 30, "epochs of the linear schedules", true),
     number_option("kl_target", 0.02, 1e-9, 1e3,
                   "kl schedule: the epoch's mean KL is kept in half to twice this", true),
+    number_option("kl_target_end", 0, 0, 1e3,
+                  "kl schedule: kl_target goes to this, in a line over total_epochs; 0: it stays", true),
     number_option("kl_factor", 1.3, 1, 10, "kl schedule: change of the rate per epoch", true),
     number_option("lr_min", 1e-5, 0, kMaxLearningRate, "kl schedule: lowest rate", true),
     number_option("lr_max", 3e-3, 0, kMaxLearningRate, "kl schedule: highest rate", true),
