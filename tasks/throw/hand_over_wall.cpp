@@ -124,7 +124,8 @@ const CameraSpec kCameras[] = {
 };
 
 // Until it is learned to throw through the hole, every throw costs: the limit has to wait.
-constexpr auto kLearner = join_defaults(throw_learner("3"), {{"multiplier_lr", "0.001"}});
+constexpr auto kLearner =
+    join_defaults(throw_learner("3"), {{"multiplier_lr", "0.0005"}, {"multiplier_warmup", "2000"}});
 
 }  // namespace
 
