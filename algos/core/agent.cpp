@@ -70,6 +70,7 @@ void Agent::open(const AgentConfig& config) {
   schedule_.reset(resolved_.options);
   shuffle_ = Stream(config.seed, 0, Purpose::kMinibatch);
   init_networks(nets_, resolved_);
+  restart_average(nets_);
   opened();
   read_live();
   TensorInfo t;
@@ -157,10 +158,11 @@ void Agent::update(const float* last_obs, Epoch* out) {
     if (learner_.skipped() > skipped)
       log(resolved_.config.hooks, LogLevel::kWarning, "update: %lld gradients were not finite and left out",
           static_cast<long long>(learner_.skipped() - skipped));
-    if (learned_.passes > 0 && !warm) schedule_.adapt(learned_.mean.kl);
+    if (learned_.passes > 0 && !warm) schedule_.adapt(learned_.mean.kl, epoch_);
     collector_.episodes().mark();
     ++epoch_;
     if (!warm) schedule_std(nets_, resolved_.options, epoch_);
+    if (!warm) average_actor(nets_);
     if (out) fill_epoch(stats, rate, out);
   } catch (...) {
     drop_horizon();
@@ -243,7 +245,10 @@ CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {
   const HostScope scope(resolved_.config.hooks);
   need_idle("clone");
   check_cancel();
-  return clone_actor(resolved_, demo, how, regression_, nets_, collector_.normalizer(), cancel_);
+  const CloneReport report =
+      clone_actor(resolved_, demo, how, regression_, nets_, collector_.normalizer(), cancel_);
+  restart_average(nets_);
+  return report;
 }
 
 void Agent::set_recording(const DemoRows& demo, uint64_t mark) {
@@ -279,6 +284,7 @@ void Agent::load_policy(const PolicyView& p, double samples) {
   std::copy_n(p.params, actor.num_params(), nets_.net(Networks::kActor));
   if (!nets_.state_std()) std::copy_n(p.log_std, nets_.action_dim, nets_.log_std());
   clamp_log_std(nets_);
+  restart_average(nets_);
   Adam& adam = nets_.block[Networks::kActor].adam;
   std::fill_n(adam.m, adam.size, 0.0f);
   std::fill_n(adam.v, adam.size, 0.0f);
@@ -399,11 +405,11 @@ void Agent::write_policy_file(Writer& out) {
   v.actor = nets_.shape[Networks::kActor];
   v.columns = nets_.columns[Networks::kActor];
   v.row_dim = nets_.obs_dim;
-  v.params = nets_.net(Networks::kActor);
+  v.params = nets_.kept_actor();
   if (nets_.state_std())
     v.state_std = true, v.std_bounds[0] = nets_.std_low, v.std_bounds[1] = nets_.std_high;
   else
-    v.log_std = nets_.log_std();
+    v.log_std = nets_.kept_log_std();
   v.shift = n.shift;
   v.scale = n.scale;
   Vector<float> seen(v.columns ? 2 * static_cast<size_t>(v.actor.in) : 0);

@@ -76,8 +76,12 @@ class Agent {
 
   void set_option(const OptionInput& option);
   const Options& options() const { return resolved_.options; }
-  bool tensor(int32_t index, TensorInfo* out);      // false past the end
-  void tensors_changed() { clamp_log_std(nets_); }  // after a write through TensorInfo::data
+  bool tensor(int32_t index, TensorInfo* out);  // false past the end
+  // After a write through TensorInfo::data. The actor's average begins again.
+  void tensors_changed() {
+    clamp_log_std(nets_);
+    restart_average(nets_);
+  }
 
   // Between epochs; Error(kState) inside a horizon.
   CloneReport clone(const DemoRows& demo, const CloneOptions& how);

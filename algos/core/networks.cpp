@@ -67,6 +67,11 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
     n.size += (n.block[i].size + 15) / 16 * 16;
   }
   n.params = arena.make<float>(n.size);
+  n.average_share = resolved.options.number("average");
+  if (n.average_share > 0) {
+    n.average = arena.make<float>(n.block[Networks::kActor].size);
+    n.averaged = arena.make<int64_t>(1);
+  }
   for (int32_t i = 0; i < n.count; ++i) n.block[i].adam = carve_adam(arena, n.block[i].size);
   return n;
 }
@@ -87,10 +92,24 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
   }
 }
 
+void average_actor(const Networks& n) {
+  if (!n.average) return;
+  const auto count = static_cast<double>(++*n.averaged);
+  const auto share = static_cast<float>(std::max(1 - n.average_share, 1 / count));
+  const size_t size = n.block[Networks::kActor].size;
+  for (size_t j = 0; j < size; ++j) n.average[j] += share * (n.params[j] - n.average[j]);
+}
+
+void restart_average(const Networks& n) {
+  if (!n.average) return;
+  *n.averaged = 0;
+  std::copy_n(n.params, n.block[Networks::kActor].size, n.average);
+}
+
 void clamp_log_std(const Networks& n) {
   if (n.state_std()) return;
-  for (int32_t j = 0; j < n.action_dim; ++j)
-    n.log_std()[j] = std::clamp(n.log_std()[j], n.std_low, n.std_high);
+  for (float* x : {n.log_std(), n.average})
+    for (int32_t j = 0; x && j < n.action_dim; ++j) x[j] = std::clamp(x[j], n.std_low, n.std_high);
 }
 
 void Networks::bound_std(int32_t rows, float* y) const {
@@ -129,6 +148,14 @@ void Networks::visit(StateIo& io) {
   for (int32_t i = 0; p && i < count; ++i)
     io.require(largest_output(shape[i], p, net_offset(i), input_bound) <= kMaxOutput,
                "a network whose outputs may be too large");
+  if (average) {
+    io.section("MEAN");
+    io.counter(*averaged);
+    const StateView<float> a = io.numbers(average, block[kActor].size, -kMaxOutput, kMaxOutput);
+    if (a)
+      io.require(largest_output(shape[kActor], a, std_size, input_bound) <= kMaxOutput,
+                 "an average whose outputs may be too large");
+  }
   io.section("ADAM");
   for (int32_t i = 0; i < count; ++i) {
     Adam& a = block[i].adam;

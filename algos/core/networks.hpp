@@ -30,18 +30,28 @@ struct Networks {
   float log_share = 0;              // of the innovation in them
   double input_bound = 0;           // on the magnitude of inputs
   float* params = nullptr;
+  // Option average: the actor's block as the mean over past epochs, of which the last ones count most; null:
+  // none. It is what acts without noise and goes into policy files; it takes no part in learning.
+  float* average = nullptr;
+  double average_share = 0;     // of the average that the next epoch leaves, at most
+  int64_t* averaged = nullptr;  // epochs in it; null: as average
 
   bool state_std() const { return std_size == 0; }
   float* log_std() const { return params; }
   size_t net_offset(int32_t i) const { return block[i].offset + (i == kActor ? std_size : 0); }
   float* net(int32_t i) const { return params + net_offset(i); }
+  // The actor that others get to see: log deviations, then the network.
+  const float* kept_log_std() const { return average ? average : params; }
+  const float* kept_actor() const { return kept_log_std() + std_size; }
   // y = network i of the rows x [rows][obs_dim], and the gradient of its block, grad laid out as params; x
   // and scratch as in the forward pass before. The actor's log deviations are those of the innovation, within
   // their bounds.
   void forward(int32_t i, const float* x, int32_t rows, const MlpScratch& scratch, float* y) const {
-    if (columns[i]) pick_columns(x, rows, obs_dim, columns[i], shape[i].in, scratch.picked);
-    mlp_forward(shape[i], net(i), seen(i, x, scratch), rows, scratch, y);
-    if (i == kActor && state_std()) bound_std(rows, y);
+    forward_with(net(i), i, x, rows, scratch, y);
+  }
+  // The same of the actor that others get to see.
+  void forward_kept(const float* x, int32_t rows, const MlpScratch& scratch, float* y) const {
+    forward_with(kept_actor(), kActor, x, rows, scratch, y);
   }
   void backward(int32_t i, const float* x, int32_t rows, const MlpScratch& scratch, const float* dy,
                 float* grad) const {
@@ -58,6 +68,12 @@ struct Networks {
   void visit(StateIo& io);
 
  private:
+  void forward_with(const float* weights, int32_t i, const float* x, int32_t rows, const MlpScratch& scratch,
+                    float* y) const {
+    if (columns[i]) pick_columns(x, rows, obs_dim, columns[i], shape[i].in, scratch.picked);
+    mlp_forward(shape[i], weights, seen(i, x, scratch), rows, scratch, y);
+    if (i == kActor && state_std()) bound_std(rows, y);
+  }
   const float* seen(int32_t i, const float* x, const MlpScratch& scratch) const {
     return columns[i] ? scratch.picked : x;
   }
@@ -67,6 +83,10 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved);
 // Weights from the streams (seed, network, init); the actor's last bias is the initial mean.
 void init_networks(const Networks& n, const ResolvedAgentConfig& resolved);
 void clamp_log_std(const Networks& n);
+// One more epoch in the average: a plain mean until it has 1 / (1 - average_share) of them.
+void average_actor(const Networks& n);
+// It begins again with the actor as it is.
+void restart_average(const Networks& n);
 // With std_schedule=linear the deviation for the epoch that follows `done` finished ones.
 void schedule_std(const Networks& n, const Options& options, int32_t done);
 

@@ -26,6 +26,10 @@ constexpr PresetValue kPresetValues[] = {
     {"paper", "action_repeat", "1"},
     {"paper", "noise_correlation", "0"},
     {"paper", "init_std", "0.8"},
+    {"paper", "std_schedule", "none"},
+    {"paper", "average", "0"},
+    {"paper", "actor_obs", "*"},
+    {"paper", "critic_obs", "*"},
     {"paper", "discount", "0.99"},
     {"paper", "lambda", "0.95"},
     {"paper", "cost_lambda", "0.95"},
@@ -36,6 +40,7 @@ constexpr PresetValue kPresetValues[] = {
     {"paper", "critic_learning_rate", "0"},
     {"paper", "lr_schedule", "kl"},
     {"paper", "kl_target", "0.016"},
+    {"paper", "kl_target_end", "0"},
     {"paper", "kl_factor", "1.5"},
     {"paper", "lr_min", "1e-5"},
     {"paper", "lr_max", "1e-2"},
@@ -67,6 +72,10 @@ constexpr PresetValue kPresetValues[] = {
     {"omnisafe", "action_repeat", "1"},
     {"omnisafe", "noise_correlation", "0"},
     {"omnisafe", "init_std", "1"},
+    {"omnisafe", "std_schedule", "none"},
+    {"omnisafe", "average", "0"},
+    {"omnisafe", "actor_obs", "*"},
+    {"omnisafe", "critic_obs", "*"},
     {"omnisafe", "discount", "0.99"},
     {"omnisafe", "lambda", "0.95"},
     {"omnisafe", "cost_lambda", "0.95"},
@@ -189,6 +198,8 @@ Options read_options(const AgentConfig& config, const AlgoInfo& algo) {
   o.set_lines(config.settings, kOwner);
   for (int32_t i = 0; i < config.num_defaults; ++i) lay_default(o, algo, config.defaults[i]);
   lay_preset(o, config, algo.name);
+  // A schedule that nobody asked for gives way.
+  if (same_name(o.text("std_mode"), "state")) o.set_default("std_schedule", "none");
   return o;
 }
 

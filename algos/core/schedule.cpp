@@ -20,6 +20,8 @@ void RateSchedule::read_live(const Options& o) {
   if (const double rate = o.number("learning_rate"); rate != base_) base_ = adapted_ = rate;
   total_ = o.integer("total_epochs");
   target_ = o.number("kl_target");
+  target_end_ = o.number("kl_target_end");
+  if (target_end_ == 0) target_end_ = target_;
   factor_ = o.number("kl_factor");
   low_ = o.number("lr_min");
   high_ = o.number("lr_max");
@@ -34,11 +36,13 @@ double RateSchedule::rate(int32_t done) const {
   return kind_ == Kind::kKl ? adapted_ : base_;
 }
 
-void RateSchedule::adapt(double kl) {
+void RateSchedule::adapt(double kl, int32_t done) {
   if (kind_ != Kind::kKl) return;
-  if (kl > 2 * target_)
+  const double passed = std::min(1.0, static_cast<double>(done) / total_);
+  const double target = target_ + passed * (target_end_ - target_);
+  if (kl > 2 * target)
     adapted_ = std::max(low_, adapted_ / factor_);
-  else if (kl < target_ / 2)
+  else if (kl < target / 2)
     adapted_ = std::min(high_, adapted_ * factor_);
 }
 

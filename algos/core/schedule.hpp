@@ -15,14 +15,14 @@ class RateSchedule {
   double share(int32_t done) const;
   // rate() over learning_rate, whatever the schedule.
   double change(int32_t done) const { return base_ > 0 ? rate(done) / base_ : 1; }
-  // After an epoch, with its KL(old || new), mean over all passes.
-  void adapt(double kl);
+  // After the epoch that followed `done` finished ones, with its KL(old || new), mean over all passes.
+  void adapt(double kl, int32_t done);
   void visit(StateIo& io);
 
  private:
   enum class Kind { kConstant, kLinear, kKl } kind_ = Kind::kConstant;
   double base_ = 0, adapted_ = 0;
-  double target_ = 0, factor_ = 1, low_ = 0, high_ = 0;
+  double target_ = 0, target_end_ = 0, factor_ = 1, low_ = 0, high_ = 0;
   int32_t total_ = 1;
 };
 

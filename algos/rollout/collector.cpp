@@ -95,7 +95,7 @@ void Collector::split_head(const float* y, int32_t rows, float* mean, float* log
 
 void Collector::mean_rows(const Workspace& workspace, const float* obs, int32_t rows, float* action) const {
   float* y = nets_->state_std() ? workspace.out : action;
-  nets_->forward(Networks::kActor, normalized(obs, rows, workspace.obs), rows, workspace.actor, y);
+  nets_->forward_kept(normalized(obs, rows, workspace.obs), rows, workspace.actor, y);
   if (y != action) split_head(y, rows, action, nullptr);
 }
 

@@ -21,7 +21,15 @@ const SafeThrowConfig kConfig = {
     &flat_hand_mean,
     {.throw_height = 1.3, .throw_low = -60, .throw_high = 60}};
 
-constexpr auto kFingerLearner = throw_learner("40"), kJointLearner = throw_learner("30");
+// A catch comes late in an episode and is learned late in a run: longer paths, steps that stay as large.
+constexpr auto catch_learner(const char* cost_limit) {
+  return join_defaults(throw_learner(cost_limit), {{"ppo:horizon", "16"},
+                                                   {"ppo_lag:horizon", "16"},
+                                                   {"std_min", "0.1"},
+                                                   {"kl_target_end", "0"},
+                                                   {"lr_min", "1e-5"}});
+}
+constexpr auto kFingerLearner = catch_learner("40"), kJointLearner = catch_learner("30");
 
 const CameraSpec kCameras[] = {
     {"front", {1.7, -0.4, 0.9}, {0, -0.35, 0.65}, 45 * kDegree},

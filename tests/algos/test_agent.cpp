@@ -55,6 +55,81 @@ bool same_bytes(const std::vector<float>& a, const std::vector<float>& b) {
 
 }  // namespace
 
+// Of the actor's tensors, in the order of the agent's.
+std::vector<float> policy_parameters(Agent& a) {
+  const auto bytes = policy_file(a);
+  Policy* p = Policy::read(bytes.data(), bytes.size(), HostHooks());
+  const PolicyView& v = p->view();
+  std::vector<float> out(v.log_std, v.log_std + v.action_dim());
+  out.insert(out.end(), v.params, v.params + v.actor.num_params());
+  Policy::destroy(p);
+  return out;
+}
+
+// What an agent whose option average is `share` writes after each of six epochs.
+std::vector<std::vector<float>> policies(const char* share, std::vector<float>* learned) {
+  AgentSetup s = lag();
+  s.with("average", share);
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  std::vector<std::vector<float>> out;
+  for (int i = 0; i < 6; ++i) {
+    world.epoch(*a);
+    out.push_back(policy_parameters(*a));
+  }
+  *learned = parameters(*a);
+  return out;
+}
+
+TEST(Agent, AnAverageIsWhatPoliciesAreAndChangesNoLearning) {
+  std::vector<float> with, without;
+  const auto mean = policies("0.6", &with), last = policies("0", &without);
+  EXPECT_TRUE(same_bytes(with, without));
+  std::vector<double> wanted(last[0].size());
+  size_t moved = 0;
+  for (size_t k = 0; k < last.size(); ++k)
+    for (size_t j = 0; j < wanted.size(); ++j) {
+      const double share = std::max(0.4, 1.0 / static_cast<double>(k + 1));
+      wanted[j] += share * (static_cast<double>(last[k][j]) - wanted[j]);
+      ASSERT_NEAR(static_cast<double>(mean[k][j]), wanted[j], 1e-5) << k << " " << j;
+      if (k > 0) moved += mean[k][j] != last[k][j];
+    }
+  EXPECT_GT(moved, 4 * wanted.size());
+}
+
+TEST(Agent, AnAverageActsWithoutNoise) {
+  for (const char* std_mode : {"free", "state"}) {
+    AgentSetup s = lag();
+    s.with("average", "0.6").with("std_mode", std_mode);
+    const AgentPtr a = s.make();
+    NoiseWorld world(s.config);
+    for (int i = 0; i < 4; ++i) world.epoch(*a);
+    const auto bytes = policy_file(*a);
+    Policy* p = Policy::read(bytes.data(), bytes.size(), HostHooks());
+    std::vector<float> own(40 * 3), frozen(40 * 3);
+    a->act(world.obs(), false, own.data());
+    std::vector<unsigned char> scratch(p->scratch_bytes(40) + 64);
+    auto at = reinterpret_cast<uintptr_t>(scratch.data());
+    p->act(world.obs(), 40, nullptr, frozen.data(), scratch.data() + (64 - at % 64) % 64);
+    for (size_t i = 0; i < own.size(); ++i)
+      EXPECT_EQ(std::clamp(own[i], -1.0f, 1.0f), frozen[i]) << std_mode << " " << i;
+    Policy::destroy(p);
+  }
+}
+
+TEST(Agent, AnAverageBeginsAgainWithWrittenTensors) {
+  AgentSetup s = lag();
+  s.with("average", "0.6").with("hidden", "4");
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  for (int i = 0; i < 3; ++i) world.epoch(*a);
+  TensorInfo t;
+  ASSERT_TRUE(a->tensor(1, &t));
+  t.data[0] = 0.125f;
+  a->tensors_changed();
+  EXPECT_EQ(policy_parameters(*a)[3], 0.125f);
+}
+
 TEST(Agent, SameBytesForAnyThreadsAndAnySchedule) {
   const std::vector<float> wanted = play(lag(), 4);
   for (const float x : wanted) ASSERT_TRUE(std::isfinite(x));

@@ -121,6 +121,7 @@ class Victim {
     s.with("noise_correlation", "0.3").with("lr_schedule", "kl").with("terminal_cost", "on");
     s.with("activation", std::strcmp(std_mode, "state") == 0 ? "elu" : "tanh");
     s.with("normalize_reward", "on").with("normalize_cost", "on").with("std_mode", std_mode);
+    s.with("average", "0.5");
     for (const char* one : {"cpo", "pcpo", "focops"})
       if (std::strcmp(algo, one) == 0) s.with("several_costs", "worst");
     return s;

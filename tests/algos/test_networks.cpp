@@ -134,6 +134,35 @@ TEST(Networks, SeedsAndNetworksDrawDifferentWeights) {
   EXPECT_NE(a.nets.net(Networks::kReward)[0], a.nets.net(Networks::kCost)[0]);
 }
 
+TEST(Networks, TheAverageIsPlainFirstThenForgets) {
+  AgentSetup s("ppo", 5, 2, 2);
+  s.with("hidden", "4").with("average", "0.75").with("std_min", "0.5");
+  Made m(s);
+  restart_average(m.nets);
+  ASSERT_NE(m.nets.average, nullptr);
+  const size_t size = m.nets.block[Networks::kActor].size, at = m.nets.std_size + 3;
+  EXPECT_EQ(0, std::memcmp(m.nets.average, m.nets.params, size * sizeof(float)));
+  const float values[] = {3, 5, 1, 7, 20};
+  // means of 1, 2, 3 and 4 of them; from then on a quarter of what is new
+  const float wanted[] = {3, 4, 3, 4, 8};
+  for (int k = 0; k < 5; ++k) {
+    m.nets.params[at] = values[k];
+    average_actor(m.nets);
+    EXPECT_FLOAT_EQ(m.nets.average[at], wanted[k]) << k;
+    EXPECT_EQ(m.nets.params[at], values[k]);
+  }
+  m.nets.average[0] = -9;
+  clamp_log_std(m.nets);
+  EXPECT_FLOAT_EQ(std::exp(m.nets.average[0]), 0.5f);
+  restart_average(m.nets);
+  EXPECT_EQ(m.nets.average[at], 20);
+  m.nets.params[at] = 2;
+  average_actor(m.nets);
+  EXPECT_EQ(m.nets.average[at], 2);
+  AgentSetup none("ppo", 5, 2, 2);
+  EXPECT_EQ(Made(none).nets.average, nullptr);
+}
+
 TEST(Networks, DeviationStaysInItsBounds) {
   AgentSetup s("ppo", 5, 2, 2);
   s.with("std_min", "0.1").with("std_max", "1");

@@ -67,6 +67,16 @@ TEST(OptionTables, ADefaultMayBelongToOneAlgorithm) {
   EXPECT_EQ(thrown([&] { read(lag, {{"focops:trust_kl", "3", 0}}); }).code, Code::kNotFound);
 }
 
+TEST(OptionTables, AScheduleOfATaskGivesWayToDeviationsOfTheState) {
+  const std::vector<OptionInput> rows = {{"std_schedule", "linear", 0}};
+  AgentSetup free("ppo", 1, 1, 4), state("ppo", 1, 1, 4), both("ppo", 1, 1, 4);
+  state.with("std_mode", "state");
+  both.with("std_mode", "state").with("std_schedule", "linear");
+  EXPECT_STREQ(read(free, rows).text("std_schedule"), "linear");
+  EXPECT_STREQ(read(state, rows).text("std_schedule"), "none");
+  EXPECT_STREQ(read(both, rows).text("std_schedule"), "linear");
+}
+
 TEST(OptionTables, GivenOverPresetOverDefaultsOverTable) {
   AgentSetup s("ppo_lag", 1, 1, 4);
   s.with("clip", "0.3").with("preset", "paper");
