@@ -198,7 +198,7 @@ class OfAPool(unittest.TestCase):
     def test_parameters_are_read_and_written(self):
         agent, pool, _ = trained()
         tensors = agent.tensors
-        self.assertEqual(tensors["actor.0.weight"].shape[1], pool.obs_dim)
+        self.assertEqual((tensors["actor.0.weight"].shape[1], pool.obs_dim), (150, 398))  # a throw sees these of all
         before = agent.policy().act(pool.obs)
         bias = f"actor.{sum(name.startswith('actor.') and name.endswith('.bias') for name in tensors) - 1}.bias"
         tensors[bias] = tensors[bias] + 0.125
