@@ -83,9 +83,10 @@ void add_eval(CLI::App& app, Run& run) {
   auto flags = std::make_shared<EvalFlags>();
   flags->pool.envs = kEvalEnvs;
   CLI::App* command = app.add_subcommand("eval", "Evaluate a policy over whole episodes");
-  command->add_option("--policy", flags->policy,
-                      "policy file, run folder, .demo file, trained, plan, demo, zero, hold or random; a run's task "
-                      "options come with it");
+  command->add_option(
+      "--policy", flags->policy,
+      "policy file, run folder, .demo file, trained, plan, demo, zero, hold or random; a run's task "
+      "options come with it");
   CLI::Option* task =
       add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
   command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));

@@ -16,11 +16,13 @@
 #include "tasks/catalog.hpp"
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/hand/single_hand.hpp"
+#include "tasks/state_check.hpp"
 
 namespace rdm {
 namespace {
 
 constexpr double kTurnSoftness = 0.1;  // rad
+constexpr double kMaxTurn = 3.2;       // rad, just above pi
 // The released cost looks at the first 15 of the tips' 30 numbers: two fingers' forces and torques, one
 // force.
 constexpr int kSeenNumbers = 15;
@@ -62,7 +64,7 @@ void add_options(OptionTable& table) {
 class Reorient final : public SingleHand {
  public:
   explicit Reorient(const Options& o)
-      : SingleHand(kConfig, o),
+      : SingleHand(kConfig, o, sizeof(TurnState)),
         price_(o.number("action_price")),
         turn_reward_(o.number("turn_reward")),
         bonus_(o.number("success_bonus")),
@@ -72,20 +74,35 @@ class Reorient final : public SingleHand {
         literal_(same_name(o.text("cost_mode"), "literal")),
         object_only_(same_name(o.text("cost_mode"), "object")) {}
 
+  void reset(World& world, void* state, Stream& stream) const override {
+    SingleHand::reset(world, state, stream);
+    TurnState& s = *static_cast<TurnState*>(state);
+    s.turn = turn_left(world, s);
+  }
+
  private:
+  struct TurnState : State {
+    double turn;  // rotation error after the last step, rad
+  };
+
+  void check_own_state(const void* state) const override {
+    SingleHand::check_own_state(state);
+    check_numbers("turn", &static_cast<const TurnState*>(state)->turn, 1, kMaxTurn);
+  }
+
   void judge_step(const Step& step, Verdict* v) const override {
     const Pose& X = step.world.body(0).X;
-    const double theta = turn_left(step.world, *step.state);
+    TurnState& s = *static_cast<TurnState*>(step.state);
+    const double theta = turn_left(step.world, s);
     double squares = 0;
     for (int i = 0; i < hand().num_actions; ++i)
       squares += static_cast<double>(step.action[i]) * static_cast<double>(step.action[i]);
-    v->reward = reorient_reward(theta, squares, price_, bonus_, tolerance_) +
-                turn_reward_ * (step.state->turn - theta);
+    v->reward = reorient_reward(theta, squares, price_, bonus_, tolerance_) + turn_reward_ * (s.turn - theta);
     v->success = theta <= tolerance_;
     v->terminated = norm(X.p - goal().goal) >= fall_distance_;
     judge_force(step.world, v);
-    if (v->success) draw_goal(goal(), &step.state->goal, step.state->goals);
-    step.state->turn = v->success ? turn_left(step.world, *step.state) : theta;
+    if (v->success) draw_goal(goal(), &s.goal, s.goals);
+    s.turn = v->success ? turn_left(step.world, s) : theta;
   }
 
   void judge_force(const World& world, Verdict* v) const {

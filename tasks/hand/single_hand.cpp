@@ -2,12 +2,8 @@
 
 #include <algorithm>
 
-#include "tasks/state_check.hpp"
-
 namespace rdm {
 namespace {
-
-constexpr double kMaxTurn = 3.2;  // rad, just above pi
 
 constexpr OptionSpec kRows[] = {
     integer_option("max_steps", 74, 1, 100000, "control steps of an episode"),
@@ -29,8 +25,8 @@ void add_single_hand_options(const SingleHandConfig& config, OptionTable& table)
   add_hand_control_options(config.hands, table);
 }
 
-SingleHand::SingleHand(const SingleHandConfig& config, const Options& o)
-    : HandTask(config.hands, o, make_scene_def(config, o), sizeof(State)),
+SingleHand::SingleHand(const SingleHandConfig& config, const Options& o, size_t state_size)
+    : HandTask(config.hands, o, make_scene_def(config, o), state_size),
       joint_noise_(o.number("joint_noise")),
       goal_(object_goal_from(o)) {
   goal_.standing = config.place.standing;
@@ -46,7 +42,6 @@ void SingleHand::reset(World& world, void* state, Stream& stream) const {
   hands().reset(joint_noise_, false, world, control_state(state), stream);
   reset_object(goal_, world, &s.goal, stream);
   s.goals = Stream(stream.next(), 0, Purpose::kReset);
-  s.turn = turn_left(world, s);
 }
 
 double SingleHand::turn_left(const World& world, const State& state) const {
@@ -54,9 +49,7 @@ double SingleHand::turn_left(const World& world, const State& state) const {
 }
 
 void SingleHand::check_own_state(const void* state) const {
-  const State& s = *static_cast<const State*>(state);
-  check_goal(s.goal);
-  check_numbers("turn", &s.turn, 1, kMaxTurn);
+  check_goal(static_cast<const State*>(state)->goal);
 }
 
 Verdict SingleHand::judge(World& world, void* state, int32_t) const {

@@ -27,7 +27,6 @@ class SingleHand : public HandTask {
   struct State {
     GoalState goal;
     Stream goals;  // of goals drawn within an episode
-    double turn;   // rotation error after the last step, rad
   };
   // What a step is judged by.
   struct Step {
@@ -36,7 +35,8 @@ class SingleHand : public HandTask {
     const float* action;    // [num_actions]
     State* state;
   };
-  SingleHand(const SingleHandConfig& config, const Options& options);
+  // state_size: of a task's own state, which begins with a State.
+  SingleHand(const SingleHandConfig& config, const Options& options, size_t state_size = sizeof(State));
   void check_own_state(const void* state) const override;
   virtual void judge_step(const Step& step, Verdict* verdict) const = 0;
 

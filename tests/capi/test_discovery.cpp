@@ -158,6 +158,10 @@ TEST(Discovery, DefaultsOfEveryTaskFitEveryAlgorithm) {
       ASSERT_EQ(rdm_task_default(t, static_cast<int32_t>(i), &defaults[i]), RDM_OK);
     rdm_option past;
     EXPECT_EQ(rdm_task_default(t, static_cast<int32_t>(defaults.size()), &past), RDM_RANGE);
+    // they may name parts of the observation
+    std::vector<rdm_field> fields(static_cast<size_t>(tasks[static_cast<size_t>(t)].num_fields));
+    for (size_t i = 0; i < fields.size(); ++i)
+      ASSERT_EQ(rdm_task_field(t, static_cast<int32_t>(i), &fields[i]), RDM_OK);
     for (int32_t a = 0; a < rdm_algo_count(); ++a) {
       rdm_algo algo;
       algo.struct_size = sizeof algo;
@@ -165,9 +169,11 @@ TEST(Discovery, DefaultsOfEveryTaskFitEveryAlgorithm) {
       rdm_agent_config config;
       rdm_agent_config_init(&config, sizeof config);
       config.algo = algo.name;
-      config.obs_dim = 4;
       config.action_dim = 2;
       config.num_envs = 2;
+      config.fields = fields.data();
+      config.num_fields = static_cast<int32_t>(fields.size());
+      config.obs_dim = tasks[static_cast<size_t>(t)].obs_dim;
       config.defaults = defaults.data();
       config.num_defaults = static_cast<int32_t>(defaults.size());
       size_t bytes = 0;
