@@ -3637,8 +3637,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_recording_append": Function(
         c_int32, {"r": c_void_p, "rows": POINTER(rdm_recording_rows)},
         {}, True,
-        """Adds rows of a host's own; their episodes are numbered behind those that are there. ARGUMENT for numbers that are not
-        finite, flags that are not 0 or 1, episodes or states out of order: nothing changes.
+        """Adds rows of a host's own; their episodes are numbered behind those that are there, actions and labels are cut to
+        [-1, 1]. ARGUMENT for numbers that are not finite, flags that are not 0 or 1, episodes or states out of order: nothing changes.
         """),
     "rdm_recording_append_all": Function(
         c_int32, {"r": c_void_p, "other": c_void_p},
