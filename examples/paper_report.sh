@@ -19,7 +19,7 @@ means() {
       second[k] = $at["second_limit"]; more[k] += $at["second_cost"]
       over = limit[k] >= 0 && $at["cost"] > limit[k]; overs[k] += over
       each[k] = each[k] (i > 1 ? "," : "") number($at["return"]); costs[k] = costs[k] (i > 1 ? "," : "") number($at["cost"]) (over ? "!" : "") }
-    function number(x) { return sprintf(x >= 1e4 ? "%.0f" : x >= 1e3 ? "%.0f" : "%.3g", x) }
+    function number(x) { return sprintf(x >= 1e3 ? "%.0f" : "%.3g", x) }
     END { for (c = 1; c <= count; ++c) { k = order[c]; split(k, name, SUBSEP); m = n[k]
       printf "%s %s %s %d", name[1], name[2], limit[k], m
       for (j = 1; j <= 13; ++j) printf " %.6g", sum[k, j] / m
@@ -29,23 +29,22 @@ means() {
 
 # The paper's Table 1 as TASK ALGO RETURN COST.
 published() {
-  local task
-  paste -d ' ' <(for task in cpo trpo_lag ppo_lag p3o pcpo focops cppo_pid ipo; do echo "$task"; done) - <<'T' |
-4.57 32.41 6.18 29.54 21.63 34.72 2.68 29.3
-3.62 36.02 3.83 10.77 4.55 15.6 3.37 33.13
-17.4 27.69 22.44 71.15 25.5 65.56 24.11 64.39
-21.93 40.54 21.9 31.34 22.72 47.3 20.09 55.84
-3.08 70.15 3.08 70.15 0.3 3.22 0.26 5.0
-13.89 39.68 19.79 33.45 18.95 38.57 4.1 32.54
-3.63 29.41 5.21 28.54 0.31 3.28 3.81 32.6
-3.12 69.23 3.01 69.21 0.27 4.18 0.32 5.24
+  local algo a b c d e f g h
+  while read -r algo a b c d e f g h; do
+    echo "hand_over_safe_finger $algo $a $b"
+    echo "hand_over_safe_joint $algo $c $d"
+    echo "catch_underarm_safe_finger $algo $e $f"
+    echo "catch_underarm_safe_joint $algo $g $h"
+  done <<'T'
+cpo 4.57 32.41 6.18 29.54 21.63 34.72 2.68 29.3
+trpo_lag 3.62 36.02 3.83 10.77 4.55 15.6 3.37 33.13
+ppo_lag 17.4 27.69 22.44 71.15 25.5 65.56 24.11 64.39
+p3o 21.93 40.54 21.9 31.34 22.72 47.3 20.09 55.84
+pcpo 3.08 70.15 3.08 70.15 0.3 3.22 0.26 5.0
+focops 13.89 39.68 19.79 33.45 18.95 38.57 4.1 32.54
+cppo_pid 3.63 29.41 5.21 28.54 0.31 3.28 3.81 32.6
+ipo 3.12 69.23 3.01 69.21 0.27 4.18 0.32 5.24
 T
-    while read -r algo a b c d e f g h; do
-      echo "hand_over_safe_finger $algo $a $b"
-      echo "hand_over_safe_joint $algo $c $d"
-      echo "catch_underarm_safe_finger $algo $e $f"
-      echo "catch_underarm_safe_joint $algo $g $h"
-    done
 }
 
 order="hand_over_safe_finger hand_over_safe_joint catch_underarm_safe_finger catch_underarm_safe_joint grasp reorient
@@ -80,7 +79,7 @@ T
 
 claims() {
   { means table1 | sed 's/^/T /'; means fig7 | sed 's/^/F /'; } | awk '
-    { k = $2 SUBSEP $3; ret[k] = $7; cost[k] = $8; limit[k] = $4; tcost[k] = $15; over[k] = $16; swing[k] = $17; ok[k] = $22; sret[k] = $11; scost[k] = $12; there[k] = 1; from[k] = $1 }
+    { k = $2 SUBSEP $3; ret[k] = $7; cost[k] = $8; limit[k] = $4; tcost[k] = $15; swing[k] = $17; ok[k] = $22; there[k] = 1 }
     function at(task, algo) { return task SUBSEP algo }
     function row(name, verdict, figures) { printf "| %s | %s | %s |\n", name, verdict, figures }
     function all(verdicts) { return verdicts ~ /0/ ? (verdicts ~ /1/ ? "in part" : "contradicted") : (verdicts == "" ? "not measured" : "yes") }

@@ -113,19 +113,6 @@ condensed() {
       print "" } }' "$1"
 }
 
-# last_tenth CSV LIMIT: cost and return of the last tenth of training, share of its epochs over the limit, and how far
-# the cost swings: its standard deviation over the second half of training.
-last_tenth() {
-  awk -F, -v limit="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == "Metrics/EpRet") r = i; if ($i == "Metrics/EpCost") c = i } next }
-    { ret[NR] = $r; cost[NR] = $c }
-    END { first = NR - int((NR - 1) / 10) + 1; if (first > NR) first = NR
-      for (i = first; i <= NR; ++i) { a += ret[i]; b += cost[i]; over += limit >= 0 && cost[i] > limit }
-      half = int(NR / 2) + 1
-      for (i = half; i <= NR; ++i) { s += cost[i]; q += cost[i] * cost[i] }
-      n = NR - first + 1; m = NR - half + 1; d = q / m - (s / m) * (s / m)
-      printf "%.4f,%.4f,%.4f,%.4f", a / n, b / n, over / n, sqrt(d > 0 ? d : 0) }' "$1"
-}
-
 # reached CSV: seconds of training until half of the episodes of an epoch, noise and all, were a success; "" never.
 reached() {
   awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }

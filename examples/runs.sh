@@ -42,6 +42,19 @@ sampled() {
   [ ! -s "$1.json" ] || kept "$1.sampled.json" eval --policy "$1" --stochastic --episodes 100 --seed $((1000000 + $2))
 }
 
+# last_tenth CSV LIMIT: of a progress.csv, "return,cost,over,swing": means of the last tenth of training, the share of its
+# epochs over the limit (< 0: none), and how far the cost swings, its standard deviation over the second half of training.
+last_tenth() {
+  awk -F, -v limit="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == "Metrics/EpRet") r = i; if ($i == "Metrics/EpCost") c = i } next }
+    { ret[NR] = $r; cost[NR] = $c }
+    END { first = NR - int((NR - 1) / 10) + 1; if (first > NR) first = NR
+      for (i = first; i <= NR; ++i) { a += ret[i]; b += cost[i]; over += limit >= 0 && cost[i] > limit }
+      half = int(NR / 2) + 1
+      for (i = half; i <= NR; ++i) { s += cost[i]; q += cost[i] * cost[i] }
+      n = NR - first + 1; m = NR - half + 1; d = q / m - (s / m) * (s / m)
+      printf "%.4f,%.4f,%.4f,%.4f", a / n, b / n, over / n, sqrt(d > 0 ? d : 0) }' "$1"
+}
+
 # For the awk programs of the tables: a cost as text, marked where it is over its limit.
 marked='function marked(cost, limit) {
   return sprintf("%.3g", cost) (limit ~ /^[0-9]/ && cost + 0 > limit + 0 ? "!" : "")

@@ -66,15 +66,6 @@ known() {
   esac
 }
 
-# tail_of CSV: "return,cost", means over the last tenth of the epochs of a progress.csv.
-tail_of() {
-  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == "Metrics/EpRet") r = i; if ($i == "Metrics/EpCost") c = i } next }
-    { ret[NR] = $r; cost[NR] = $c }
-    END { first = NR - int((NR - 1) / 10) + 1; if (first > NR) first = NR
-      for (i = first; i <= NR; ++i) { a += ret[i]; b += cost[i] }
-      printf "%.4f,%.4f", a / (NR - first + 1), b / (NR - first + 1) }' "$1"
-}
-
 for task in $tasks; do for algo in $algos; do for seed in $seeds; do
   name=$task.$algo.$seed
   wait_turn
@@ -87,7 +78,7 @@ echo "task,algo,seed,return,cost,eval_return,eval_cost,limit,feasible,steps,wall
 for task in $tasks; do for algo in $algos; do for seed in $seeds; do
   f=$out/$task.$algo.$seed.json
   [ -s "$f" ] || continue
-  echo "$task,$algo,$seed,$(tail_of "${f%.json}/progress.csv"),$(value return "$f"),$(value cost "$f"),$(value \
+  echo "$task,$algo,$seed,$(last_tenth "${f%.json}/progress.csv" -1 | cut -d, -f1,2),$(value return "$f"),$(value cost "$f"),$(value \
     cost_limit "$f"),$(value feasible "$f"),$(value env_steps "$f"),$(value wall_seconds "$f")" >> "$out/rows.csv"
 done; done; done
 

@@ -31,7 +31,6 @@ std::vector<std::string> chosen_tasks(const BaselineFlags& flags) {
 
 // Of the words asked for, or all but `trained`: those that the task has.
 std::vector<std::string> policies_of(const std::string& task, const BaselineFlags& flags) {
-  const auto trained = trained_tasks();
   std::vector<std::string> names;
   for (const char* name : {"zero", "hold", "random", "demo", "trained"}) {
     const auto asked = [&](const std::string& word) { return same_name(word, name); };
@@ -39,7 +38,7 @@ std::vector<std::string> policies_of(const std::string& task, const BaselineFlag
     if (flags.policies.empty() ? learned : std::none_of(flags.policies.begin(), flags.policies.end(), asked))
       continue;
     if (same_name(name, "demo") && !has_builtin_demo(task)) continue;
-    if (learned && std::find(trained.begin(), trained.end(), task) == trained.end()) continue;
+    if (learned && !has_trained_policy(task)) continue;
     names.push_back(name);
   }
   return names;

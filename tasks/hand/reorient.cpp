@@ -85,6 +85,10 @@ class Reorient final : public SingleHand {
     double turn;  // rotation error after the last step, rad
   };
 
+  double turn_left(const World& world, const State& s) const {  // rad
+    return rotation_angle(rotation_error(goal(), world.body(0).X.q, s.goal));
+  }
+
   void check_own_state(const void* state) const override {
     SingleHand::check_own_state(state);
     check_numbers("turn", &static_cast<const TurnState*>(state)->turn, 1, kMaxTurn);

@@ -44,10 +44,6 @@ void SingleHand::reset(World& world, void* state, Stream& stream) const {
   s.goals = Stream(stream.next(), 0, Purpose::kReset);
 }
 
-double SingleHand::turn_left(const World& world, const State& state) const {
-  return rotation_angle(rotation_error(goal_, world.body(0).X.q, state.goal));
-}
-
 void SingleHand::check_own_state(const void* state) const {
   check_goal(static_cast<const State*>(state)->goal);
 }

@@ -40,8 +40,6 @@ class SingleHand : public HandTask {
   void check_own_state(const void* state) const override;
   virtual void judge_step(const Step& step, Verdict* verdict) const = 0;
 
-  double turn_left(const World& world, const State& state) const;  // rotation error, rad
-
   const Hand& hand() const { return hands().hand(0); }
   const ObjectGoal& goal() const { return goal_; }
   float initial_mean_[kMaxHandActions] = {};

@@ -27,19 +27,17 @@ bool read_trained_word(const std::string& word, std::string* task) {
   return true;
 }
 
-std::vector<std::string> trained_tasks() {
-  std::vector<std::string> out;
-  for (int32_t i = 0, n = rdm_task_count(); i < n; ++i)
-    if (file_exists(file_of(task_at(i).name))) out.push_back(task_at(i).name);
-  return out;
+bool has_trained_policy(const std::string& task) {
+  return file_exists(file_of(task));
 }
 
 std::string trained_policy(const std::string& task) {
   const std::string name = task_at(find_task(task)).name;
-  const std::string file = file_of(name);
-  if (file_exists(file)) return file;
+  if (has_trained_policy(name)) return file_of(name);
   std::string all;
-  for (const std::string& other : trained_tasks()) all += (all.empty() ? "" : ", ") + other;
+  for (int32_t i = 0, n = rdm_task_count(); i < n; ++i)
+    if (const std::string other = task_at(i).name; has_trained_policy(other))
+      all += (all.empty() ? "" : ", ") + other;
   throw Failure("policy trained: none for task " + name + " in " + policies_folder().string() +
                 (all.empty() ? ", nor for another" : "; there is one for " + all));
 }

@@ -1,7 +1,6 @@
 // The policies that come with the tool, one of a task: `--policy trained`.
 #pragma once
 #include <string>
-#include <vector>
 
 namespace tool {
 
@@ -10,6 +9,6 @@ bool read_trained_word(const std::string& word, std::string* task);
 // The task's file, in share/redman/policies beside the folder of the program. Failure, with the tasks that
 // have one, when there is none.
 std::string trained_policy(const std::string& task);
-std::vector<std::string> trained_tasks();  // in the order of discovery
+bool has_trained_policy(const std::string& task);
 
 }  // namespace tool

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "fuzz.hpp"
+#include "zip.hpp"
 
 namespace hard {
 namespace {
@@ -33,15 +34,6 @@ Bytes read_all(const std::string& path) {
   for (int c = std::fgetc(f); c != EOF; c = std::fgetc(f)) out.push_back(static_cast<unsigned char>(c));
   std::fclose(f);
   return out;
-}
-
-uint32_t crc(const unsigned char* p, size_t size) {
-  uint32_t c = ~0u;
-  for (size_t i = 0; i < size; ++i) {
-    c ^= p[i];
-    for (int k = 0; k < 8; ++k) c = (c >> 1) ^ (c & 1 ? 0xedb88320u : 0);
-  }
-  return ~c;
 }
 
 }  // namespace
@@ -80,23 +72,8 @@ std::vector<Bytes> seeds() {
   return out;
 }
 
-// The directory's checksums become those of the bytes that stand in the members.
 void whole(unsigned char* data, size_t size) {
-  const auto word = [&](size_t at) {
-    uint32_t v = 0;
-    if (at + sizeof v <= size) std::memcpy(&v, data + at, sizeof v);
-    return v;
-  };
-  for (size_t at = 0; at + 46 <= size; ++at) {
-    if (word(at) != 0x02014b50) continue;
-    const size_t local = word(at + 42), length = word(at + 20);
-    if (local + 30 > size) continue;
-    const size_t begin = local + 30 + (word(local + 26) & 0xffff) + (word(local + 28) & 0xffff);
-    if (begin > size || length > size - begin) continue;
-    const uint32_t checksum = crc(data + begin, length);
-    std::memcpy(data + at + 16, &checksum, sizeof checksum);
-    std::memcpy(data + local + 14, &checksum, sizeof checksum);
-  }
+  mend_zip(data, size);
 }
 size_t fixed_bytes() {
   return 0;

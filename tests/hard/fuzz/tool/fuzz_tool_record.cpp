@@ -1,8 +1,8 @@
 // Recorded rollouts: what is read has as many actions and states as its episodes say.
 #include <unistd.h>
-#include <zlib.h>
 
 #include "../fuzz.hpp"
+#include "../zip.hpp"
 #include "common/files.hpp"
 #include "common/report.hpp"
 #include "record/recorded_rollout.hpp"
@@ -28,22 +28,8 @@ std::vector<Bytes> seeds() {
   }
   return out;
 }
-// The directory's checksums become those of the bytes that stand in the members.
 void whole(unsigned char* data, size_t size) {
-  const auto word = [&](size_t at) {
-    uint32_t v = 0;
-    if (at + sizeof v <= size) std::memcpy(&v, data + at, sizeof v);
-    return v;
-  };
-  for (size_t at = 0; at + 46 <= size; ++at) {
-    if (word(at) != 0x02014b50) continue;
-    const size_t local = word(at + 42), length = word(at + 20);
-    if (local + 30 > size) continue;
-    const size_t begin = local + 30 + (word(local + 26) & 0xffff) + (word(local + 28) & 0xffff);
-    if (begin > size || length > size - begin) continue;
-    const auto checksum = static_cast<uint32_t>(crc32_z(0, data + begin, length));
-    std::memcpy(data + at + 16, &checksum, sizeof checksum);
-  }
+  mend_zip(data, size);
 }
 size_t fixed_bytes() {
   return 0;
