@@ -44,6 +44,8 @@ inline constexpr std::array kSharedOptions = {
                 "subtract the running mean of observations, divide by their deviation"),
     number_option("obs_clip", 5, 0.1, 1e6, "bound on normalised observations"),
     number_option("obs_count_max", 0, 0, kHuge, "samples after which old statistics fade; 0: never"),
+    number_option("obs_freeze", 0, 0, kHuge,
+                  "samples after which statistics stand still, those of a clone too; 0: never"),
     flag_option("normalize_reward", false,
                 "learn from rewards less their running mean, over their deviation"),
     flag_option("normalize_cost", false, "the same for costs; limits hold for costs as they are"),

@@ -58,6 +58,7 @@ void Collector::open(const ResolvedAgentConfig& resolved, const Networks& nets, 
   normalizer_.clip = static_cast<float>(o.number("obs_clip"));
   normalize_ = o.flag("normalize_obs");
   obs_count_max_ = o.number("obs_count_max");
+  obs_freeze_ = o.number("obs_freeze");
   normalize_reward_ = o.flag("normalize_reward");
   reward_factor_ = static_cast<float>(o.number("reward_factor"));
   normalize_cost_ = o.flag("normalize_cost") && resolved.config.cost_dim > 0;
@@ -126,7 +127,8 @@ void Collector::act(const float* obs, bool sample, float* action) {
   const int32_t envs = rollout_.num_envs;
   check_rows("obs", obs, nullptr, envs, rollout_.obs_dim);
   if (sample) {
-    if (normalize_) normalizer_merge(normalizer_, obs, envs, nullptr, obs_count_max_);
+    if (normalize_ && !(obs_freeze_ > 0 && normalizer_.count >= obs_freeze_))
+      normalizer_merge(normalizer_, obs, envs, nullptr, obs_count_max_);
     for (size_t j = 0; !nets_->state_std() && j < rollout_.action_dim; ++j) {
       rollout_.log_std[j] = nets_->log_std()[j] + resolved_->log_share;
       std_[j] = static_cast<float>(elementary::exp(static_cast<double>(rollout_.log_std[j])));

@@ -81,7 +81,7 @@ class Collector {
   const float *reward_ = nullptr, *cost_ = nullptr;
   float *scaled_reward_ = nullptr, *scaled_cost_ = nullptr;
   AdvantageOptions advantage_;
-  double discount_ = 0, obs_count_max_ = 0;
+  double discount_ = 0, obs_count_max_ = 0, obs_freeze_ = 0;
   int64_t env_steps_ = 0;
   bool pending_ = false;  // a sampled act waits for its record
   bool normalize_ = true, terminal_cost_ = false, discounted_limit_ = false;

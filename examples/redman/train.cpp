@@ -14,9 +14,9 @@ namespace {
 struct TrainFlags {
   RunSettings run;
   double steps = 1e6;
-  std::vector<std::string> sets;
+  std::vector<std::string> sets, teach_given;  // the latter: names of settings
   std::string out, resume, start_share = "0";
-  bool teach_given = false, task_given = false;
+  bool task_given = false;
   bool steps_given = false, threads_given = false, others_given = false, overwrite = false;
 };
 
@@ -61,9 +61,10 @@ Trainer begin(TrainFlags flags) {
   apply_sets(flags.sets, run.pool, &run.agent);
   run.steps = whole_steps(flags.steps);
   if (run.teach.asked()) {
-    const Options options = taught_options(run.teach);
-    run.agent.options.insert(run.agent.options.begin(), options.begin(), options.end());
-  } else if (flags.teach_given) {
+    for (const Options& options :
+         {adopt_lesson(flags.teach_given, run.pool, run.teach), taught_options(run.teach)})
+      run.agent.options.insert(run.agent.options.begin(), options.begin(), options.end());
+  } else if (!flags.teach_given.empty()) {
     throw Usage("flags of a teacher without --from");
   }
   run.own = own_files(task_at(find_task(run.pool.task)).name);
@@ -147,33 +148,21 @@ std::vector<CLI::Option*> add_teach_flags(CLI::App& command, RunSettings& run, s
       "--from", t.from,
       "learn from this first: demo, a .demo or .npz file (clone it), trained, a policy file or run folder "
       "(begin with it)");
-  return {
-      command.add_option("--demo-decisions", t.decisions, "of the teacher, each world")
-          ->check(CLI::Range(1, 1 << 24)),
-      command.add_option("--noise", t.noise, "mean deviation of what is added to the teacher's actions")
-          ->check(CLI::Range(0.0, 10.0)),
-      command.add_flag("--success-only", t.success_only, "leave out episodes of the teacher without success"),
-      command.add_option("--clone-epochs", t.clone_epochs, "passes over the teacher's rows, at most")
-          ->check(CLI::Range(1, 100000)),
-      command
-          .add_option("--clone-patience", t.clone_patience,
-                      "passes without a better validation loss that end cloning; 0: none do")
-          ->check(CLI::Range(0, 100000)),
-      command.add_option("--clone-rate", t.clone_rate, "Adam's rate while cloning")
-          ->check(CLI::Range(0.0, 10.0)),
-      command.add_option("--validation", t.validation, "share of the rows held back")
-          ->check(CLI::Range(0.0, 0.9)),
-      command
-          .add_option(
-              "--dagger", t.dagger,
-              "rounds in which the student acts too and the teacher labels; a policy is a teacher then")
-          ->check(CLI::Range(0, 1000)),
-      command.add_option("--beta", t.beta, "the teacher's share of decisions in round k of those is beta^k")
-          ->check(CLI::Range(0.0, 1.0)),
-      command.add_option(
-          "--start-share", start_share,
-          "share of episodes that begin at a state of the recording: 0.7, or 0.7..0 over the run"),
-      command.add_option("--save-recording", run.save_recording, "file (.npz) for what the teacher showed")};
+  std::vector<CLI::Option*> out;
+  for (const TeachField& f : kTeachFields) {
+    const std::string flag = std::string("--") + f.name;
+    CLI::Option* o =
+        f.whole ? command.add_option(flag, t.*f.whole, f.help) : command.add_option(flag, t.*f.real, f.help);
+    out.push_back(o->check(CLI::Range(f.least, f.most)));
+  }
+  out.push_back(command.add_flag("--success-only", t.success_only,
+                                 "leave out episodes of the teacher without success"));
+  out.push_back(command.add_option(
+      "--start-share", start_share,
+      "share of episodes that begin at a state of the recording: 0.7, or 0.7..0 over the run"));
+  out.push_back(
+      command.add_option("--save-recording", run.save_recording, "file (.npz) for what the teacher showed"));
+  return out;
 }
 
 }  // namespace
@@ -211,7 +200,8 @@ void add_train(CLI::App& app, Run& run) {
   command->add_option("--resume", flags->resume, "run folder to go on with, from its last checkpoint");
   command->callback([&run, flags, threads, steps, others, taught] {
     flags->task_given = others.front()->count() > 0;
-    for (const CLI::Option* o : taught) flags->teach_given |= o->count() > 0;
+    for (const CLI::Option* o : taught)
+      if (o->count() > 0) flags->teach_given.push_back(o->get_name().substr(2));
     flags->threads_given = threads->count() > 0;
     flags->steps_given = steps->count() > 0;
     for (const CLI::Option* o : others) flags->others_given |= o->count() > 0;

@@ -112,6 +112,7 @@ constexpr OptionSpec kRows[] = {
 void add_options(OptionTable& table) {
   table.add(kRows);
   add_prop_options(make_config(), 500, 96, table);
+  table.set_default("reset_noise", 0.003);
 }
 
 HandScene make_scene_def(const Options& o) {

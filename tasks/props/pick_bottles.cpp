@@ -74,6 +74,7 @@ void add_options(OptionTable& table) {
   table.add(kRows);
   add_prop_options(make_config(false), 250, 96, table);
   table.set_default("sleep_time", 0.25);
+  table.set_default("reset_noise", 0.003);
 }
 
 HandScene make_scene_def(const Options& o) {

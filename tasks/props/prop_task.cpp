@@ -7,7 +7,7 @@ namespace {
 
 constexpr OptionSpec kRows[] = {
     number_option("reset_noise", 0, 0, 0.5,
-                  "half width of the draw by which things start elsewhere, m; with joint_noise 0 too: one "
+                  "half width of the draw by which things start elsewhere, m; 0, with joint_noise 0 too: one "
                   "start for all episodes"),
     number_option("joint_noise", 0, 0, 1, "share of each joint's range that is drawn at a reset"),
 };

@@ -189,6 +189,18 @@ TEST(Collector, NormaliserLearnsFromSamplesOnly) {
   EXPECT_EQ(raw.rollout().obs[5], 5);
 }
 
+// Two decisions of four rows fill it; later ones change nothing.
+TEST(Collector, NormaliserStandsStill) {
+  AgentSetup s = world();
+  Bench b(std::move(s.with("obs_freeze", "8")));
+  for (int32_t t = 0; t < 4; ++t) {
+    for (size_t i = 0; i < b.obs.size(); ++i) b.obs[i] = static_cast<float>(t + 1) * static_cast<float>(i);
+    b.decide();
+    EXPECT_EQ(b.collector.normalizer().count, std::min(8, 4 * (t + 1)));
+    EXPECT_EQ(b.collector.normalizer().mean[1], t == 0 ? 4 : 6);
+  }
+}
+
 // 10 control steps long, cost 2 per decision of 2 steps: rate 1 per control step.
 TEST(Collector, TerminalCostChargesTheMissingSteps) {
   AgentSetup s = world();

@@ -59,6 +59,15 @@ grep -q '^begins with the policy' out || { echo "no start from a policy: $(cat o
 # shellcheck disable=SC2086
 "$tool" train $small --from whole --dagger 1 $short --set hidden=8 --out distilled > out 2>&1 || { cat out; failed=1; }
 
+# What a demonstration says of how it is learned from; flags win.
+printf '%s\n' 'task hand_over_safe_finger' 'teach demo-decisions=20' 'teach clone-epochs=2' 'teach dagger=2' 'teach beta=0.25' \
+  'learn hidden=8' 'learn warm_epochs=3' 'phase a' 'right.WRJ0 = 1' > told.demo
+"$tool" train --envs 8 --set max_steps=20 --set horizon=8 --steps 8000 --from told.demo --dagger 1 --set warm_epochs=2 --out told > out 2>&1 ||
+  { cat out; failed=1; }
+for word in '"dagger": 1' '"beta": 0.25' '"decisions": 20' '"hidden": "8"' '"warm_epochs": "2"' '"obs_freeze": "1"'; do
+  grep -qF -- "$word" told/config.json || { echo "told: config.json has no $word"; failed=1; }
+done
+
 head -c 5000 shown.npz > cut.npz
 refused 1 cut.npz --from cut.npz
 refused 1 hidden --from whole --set max_steps=20 --set hidden=8

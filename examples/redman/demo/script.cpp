@@ -10,6 +10,7 @@
 #include "common/names.hpp"
 #include "common/text.hpp"
 #include "demo/hand.hpp"
+#include "teach/settings.hpp"
 
 namespace tool {
 namespace {
@@ -64,6 +65,26 @@ class Line {
   std::vector<std::string> words_;
   size_t at_ = 0;
 };
+
+std::pair<std::string, std::string> read_pair(Line& line) {
+  const std::string pair = line.word("key=value");
+  const size_t equals = pair.find('=');
+  if (equals == 0 || equals == std::string::npos) line.bad("'" + pair + "' is not key=value");
+  return {pair.substr(0, equals), pair.substr(equals + 1)};
+}
+
+std::pair<std::string, std::string> read_teach(Line& line) {
+  auto pair = read_pair(line);
+  const TeachField* field = find_teach_field(pair.first);
+  if (!field) line.bad("'" + pair.first + "' is no setting of train --from that a demonstration gives");
+  char* end = nullptr;
+  const double v = std::strtod(pair.second.c_str(), &end);
+  if (pair.second.empty() || *end || !(v >= field->least && v <= field->most) ||
+      (field->whole && v != std::floor(v)))
+    line.bad(format("%s=%s is not a %snumber of %g .. %g", field->name, pair.second.c_str(),
+                    field->whole ? "whole " : "", field->least, field->most));
+  return pair;
+}
 
 DemoScript::Condition read_condition(Line& line) {
   DemoScript::Condition c;
@@ -183,11 +204,12 @@ DemoScript parse_demo(const char* text, size_t size, const std::string& file) {
     if (word == "task") {
       script.task = line.word("the task's name");
     } else if (word == "set" || word == "when") {
-      const std::string pair = line.word("key=value");
-      const size_t equals = pair.find('=');
-      if (equals == 0 || equals == std::string::npos) line.bad("'" + pair + "' is not key=value");
-      script.options.emplace_back(pair.substr(0, equals), pair.substr(equals + 1));
+      script.options.push_back(read_pair(line));
       if (word == "when") script.when.push_back(script.options.back());
+    } else if (word == "teach") {
+      script.teach.push_back(read_teach(line));
+    } else if (word == "learn") {
+      script.learn.push_back(read_pair(line));
     } else if (word == "phase") {
       script.phases.emplace_back();
       script.phases.back().name = line.word("the phase's name");

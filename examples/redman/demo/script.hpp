@@ -49,6 +49,8 @@ struct DemoScript {
   std::string task;
   Options options;  // of the task
   Options when;     // among them: with which the tool takes this script and not another of the task
+  Options teach;    // how it is learned from: settings of `train --from` (teach/settings.hpp),
+  Options learn;    // and options of the algorithm
   std::vector<Phase> phases;
 };
 // The files of examples/demos, TASK.demo or TASK_WORD.demo, put into the program when it is built; the last

@@ -1,4 +1,4 @@
-// What `train --from` is asked for.
+// What `train --from` is asked for, by flags and by what a demonstration says of itself.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -21,5 +21,32 @@ struct TeachSettings {
   double start_share_end = 0;  // in the last
   bool asked() const { return !from.empty(); }
 };
+
+// Numbers of those settings that a flag, or the line `teach NAME=VALUE` of a demonstration, gives.
+struct TeachField {
+  const char *name, *help;
+  double least, most;
+  int32_t TeachSettings::*whole;  // or
+  double TeachSettings::*real;
+};
+inline constexpr TeachField kTeachFields[] = {
+    {"demo-decisions", "of the teacher, each world", 1, 1 << 24, &TeachSettings::decisions, nullptr},
+    {"noise", "mean deviation of what is added to the teacher's actions", 0, 10, nullptr,
+     &TeachSettings::noise},
+    {"clone-epochs", "passes over the teacher's rows, at most", 1, 100000, &TeachSettings::clone_epochs,
+     nullptr},
+    {"clone-patience", "passes without a better validation loss that end cloning; 0: none do", 0, 100000,
+     &TeachSettings::clone_patience, nullptr},
+    {"clone-rate", "Adam's rate while cloning", 0, 10, nullptr, &TeachSettings::clone_rate},
+    {"validation", "share of the rows held back", 0, 0.9, nullptr, &TeachSettings::validation},
+    {"dagger", "rounds in which the student acts too and the teacher labels; a policy is a teacher then", 0,
+     1000, &TeachSettings::dagger, nullptr},
+    {"beta", "the teacher's share of decisions in round k of those is beta^k", 0, 1, nullptr,
+     &TeachSettings::beta}};
+inline const TeachField* find_teach_field(const std::string& name) {
+  for (const TeachField& f : kTeachFields)
+    if (name == f.name) return &f;
+  return nullptr;
+}
 
 }  // namespace tool

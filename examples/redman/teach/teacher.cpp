@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "common/names.hpp"
 #include "common/text.hpp"
@@ -147,7 +148,26 @@ Options taught_options(const TeachSettings& s) {
   return {{"std_min", "0.01"},       {"init_std", "0.03"},
           {"learning_rate", "1e-9"}, {"critic_learning_rate", "1e-3"},
           {"lr_schedule", "kl"},     {"kl_target", "0.02"},
-          {"lr_min", "1e-9"},        {"warm_epochs", "10"}};
+          {"lr_min", "1e-9"},        {"warm_epochs", "10"},
+          {"obs_freeze", "1"}};
+}
+
+Options adopt_lesson(const std::vector<std::string>& given, const PoolSettings& pool,
+                     TeachSettings& settings) {
+  if (!settings.asked() || is_file(settings.from)) return {};
+  const ActorChoice choice = choose_actor(settings.from, pool.task);
+  if (!choice.demo) return {};
+  const DemoScript script = choice.script ? *choice.script : builtin_demo(pool.task, pool.options);
+  for (const auto& [name, value] : script.teach) {
+    if (std::find(given.begin(), given.end(), name) != given.end()) continue;
+    const TeachField& field = *find_teach_field(name);
+    const double v = std::strtod(value.c_str(), nullptr);
+    if (field.whole)
+      settings.*field.whole = static_cast<int32_t>(v);
+    else
+      settings.*field.real = v;
+  }
+  return script.learn;
 }
 
 void adopt_teacher(const TeachSettings& s, bool task_given, const std::vector<std::string>& sets,

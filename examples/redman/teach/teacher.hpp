@@ -24,6 +24,11 @@ struct Taught {
 // climbs from next to nothing. To be laid under the user's own.
 Options taught_options(const TeachSettings& settings);
 
+// What a demonstration says of how it is learned from (lines `teach` and `learn` of its script): its
+// settings, but for those that `given` names, and options of the algorithm, to be laid under the user's own.
+Options adopt_lesson(const std::vector<std::string>& given, const PoolSettings& pool,
+                     TeachSettings& settings);
+
 // Fills the agent: by its teacher's labels, or where `from` is a policy and there are no rounds of DAgger, by
 // that policy itself. `repeat`: control steps of a decision of the agent. `save`: a file for the recording,
 // "": none. Progress goes to stderr.
