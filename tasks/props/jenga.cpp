@@ -94,7 +94,7 @@ void add_options(OptionTable& table) {
   table.add(pair);
   add_prop_options(make_config(false, same_name(table.choice("pair"), "paper")), 250, 256, table);
   table.set_default("sleep_time", 0.25);
-  table.set_default("reset_noise", 0.002);
+  table.set_default("reset_noise", 0.001);
 }
 
 HandScene make_scene_def(const JengaTower& tower, const Options& o) {

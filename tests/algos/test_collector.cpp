@@ -198,6 +198,7 @@ TEST(Collector, NormaliserStandsStill) {
     b.decide();
     EXPECT_EQ(b.collector.normalizer().count, std::min(8, 4 * (t + 1)));
     EXPECT_EQ(b.collector.normalizer().mean[1], t == 0 ? 4 : 6);
+    b.collector.drop();
   }
 }
 

@@ -7,6 +7,7 @@ namespace {
 
 constexpr const char* kTask = "jenga";
 enum : int { kCost, kMoved, kContact, kFall };
+constexpr OptionInput kNominal = {"reset_noise", nullptr, 0};
 
 class Jenga : public testing::Test {
  protected:
@@ -52,14 +53,14 @@ TEST_F(Jenga, TheTowerStandsStill) {
 TEST_F(Jenga, NothingIsInsideAnythingAtTheStart) {
   for (const char* left : {"mirror", "right_copy"})
     for (const char* preset : {"redman", "real"}) {
-      TestPool p(kTask, 1, {{"left_model", left, 0}, {"preset", preset, 0}});
+      TestPool p(kTask, 1, {{"left_model", left, 0}, {"preset", preset, 0}, kNominal});
       p->reset(nullptr, nullptr);
       for (int32_t b = 0; b < 17; ++b) EXPECT_LT(p->world(0).body_overlap(b), 5.1e-4) << left << preset << b;
     }
 }
 
 TEST_F(Jenga, TheRewardPaysThePushAndTheTouch) {
-  TestPool p(kTask, 1, {{"gravity", nullptr, 0}});
+  TestPool p(kTask, 1, {{"gravity", nullptr, 0}, kNominal});
   p->reset(nullptr, nullptr);
   const auto reward_at = [&](double y) {
     Motion m = p->world(0).body(0);
@@ -81,7 +82,7 @@ TEST_F(Jenga, TheRewardPaysThePushAndTheTouch) {
 
 // Cost of the step after block 5 was put `way` aside, by mode.
 double cost_after(const char* mode, double way, int blocks) {
-  TestPool p(kTask, 1, {{"gravity", nullptr, 0}, {"cost_mode", mode, 0}});
+  TestPool p(kTask, 1, {{"gravity", nullptr, 0}, {"cost_mode", mode, 0}, kNominal});
   p->reset(nullptr, nullptr);
   for (int32_t b = 1; b <= blocks; ++b) {
     Motion m = p->world(0).body(b);
@@ -105,7 +106,7 @@ TEST_F(Jenga, EveryCostMode) {
 }
 
 TEST_F(Jenga, ColumnsOfContactAndFall) {
-  TestPool p(kTask, 1, {{"cost_mode", "contact", 0}});
+  TestPool p(kTask, 1, {{"cost_mode", "contact", 0}, kNominal});
   p->reset(nullptr, nullptr);
   run(p, Baseline::kHold, 1);
   EXPECT_EQ(p.cost(0)[kContact], 0);

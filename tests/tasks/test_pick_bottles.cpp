@@ -17,7 +17,7 @@ class PickBottles : public testing::Test {
 };
 
 TEST_F(PickBottles, Layout) {
-  TestPool p(kTask, 1);
+  TestPool p(kTask, 1, {{"reset_noise", nullptr, 0}});
   EXPECT_EQ(p->obs_dim(), 424);
   EXPECT_EQ(p->cost_dim(), 4);
   EXPECT_EQ(p->task().max_steps(), 250);

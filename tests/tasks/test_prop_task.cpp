@@ -74,7 +74,8 @@ TEST(PropTask, ResetNoiseMovesThingsWithinItsBound) {
   register_builtin_tasks();
   constexpr double kNoise = 0.005;
   for (const char* task : kTasks) {
-    TestPool still(task, 1), p(task, 6, {{"reset_noise", nullptr, kNoise}, {"joint_noise", nullptr, 0.01}});
+    TestPool still(task, 1, {{"reset_noise", nullptr, 0}}),
+        p(task, 6, {{"reset_noise", nullptr, kNoise}, {"joint_noise", nullptr, 0.01}});
     still->reset(nullptr, nullptr);
     p->reset(nullptr, nullptr);
     double most = 0, apart = 0;
