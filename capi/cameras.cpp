@@ -2,6 +2,7 @@
 #include "capi/handles.hpp"
 
 #if RDM_WITH_SIM
+#include "sense/mounted_camera.hpp"
 #include "sense/scene_shapes.hpp"
 
 using namespace rdm;
@@ -23,9 +24,9 @@ constexpr int kColorSamples = 3;  // per side of a pixel
 
 }  // namespace
 
-Camera rdm::capi::task_camera(int32_t task, const char* name) {
+Camera rdm::capi::pool_camera(const rdm_pool* p, int32_t env, const char* name) {
   need(name, "camera");
-  return camera_of(task_at(task), name);
+  return placed(camera_of(task_at(p->pool->task_index()), p->pool->task(), name), p->pool->world(env));
 }
 
 rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {
@@ -101,7 +102,7 @@ rdm_result rdm_pool_render(rdm_pool* p, int32_t env, const char* camera, int32_t
                            float* depth, int32_t* segmentation) {
   return call(text_of(p), [&] {
     const World& world = world_of(p, env);
-    const Camera eye = task_camera(p->pool->task_index(), camera);
+    const Camera eye = pool_camera(p, env, camera);
     const int32_t count = gather_shapes(world, p->shapes);
     Image image;
     image.width = w;

@@ -181,6 +181,7 @@ rdm_camera rdm::capi::describe(const CameraSpec& c) {
     o.target[k] = static_cast<float>(c.target[k]);
   }
   o.fov_y = static_cast<float>(c.fov_y);
+  o.mount = c.mount;
   return o;
 }
 

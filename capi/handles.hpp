@@ -33,7 +33,7 @@ struct rdm_pool {
 
 namespace rdm::capi {
 // A camera of the task by name; Error(kNotFound) offers the nearest.
-Camera task_camera(int32_t task, const char* name);
+Camera pool_camera(const rdm_pool* p, int32_t env, const char* name);  // as it stands in that world now
 rdm_camera describe(const CameraSpec& c);
 // Field i of a task's observation; Error(kRange) past the end.
 rdm_field field_of(const Task& task, int32_t i);

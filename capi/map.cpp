@@ -151,7 +151,7 @@ rdm_result rdm_map_scan(rdm_map* m, rdm_pool* p, int32_t env, const char* camera
     if (num_skip < 0) fail(Code::kRange, "num_skip: %d is negative", num_skip);
     if (num_skip > 0) need(skip, "skip");
     const HostScope scope(m->hooks);
-    const Camera eye = task_camera(p->pool->task_index(), camera);
+    const Camera eye = pool_camera(p, env, camera);
     const View view = make_view(eye, w, h);
     const size_t pixels = static_cast<size_t>(w) * static_cast<size_t>(h);
     Vector<float> depth(pixels), points;

@@ -367,6 +367,7 @@ void OwnTask::take_cameras() {
       fail(Code::kArgument, "def.cameras[%d]: %s does not look from one place to another", i, c.name);
     if (!(spec.fov_y > 0.01 && spec.fov_y < 3))
       fail(Code::kRange, "def.cameras[%d].fov_y: %g of %s is outside [0.01, 3]", i, spec.fov_y, c.name);
+    spec.mount = c.mount;  // a pool checks it, whose scene is built
     for (const CameraSpec& other : cameras_)
       if (same_name(other.name, c.name))
         fail(Code::kArgument, "def.cameras[%d].name: %s is there twice", i, c.name);

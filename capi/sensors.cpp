@@ -28,7 +28,19 @@ rdm_result rdm_pool_sensors(const rdm_pool* p, rdm_sensors* io) {
     s.point_shape = b.point_shape;
     s.point_count = b.point_count;
     s.voxels = b.voxels;
-    write_struct(io, s, sizeof(rdm_sensors), "io");
+    s.point_class = b.point_class;
+    s.num_classes = c.points ? point_classes(p->pool->task().scene()) : 0;
+    write_struct(io, s, kFirstSensorsSize, "io");
+  });
+}
+
+rdm_result rdm_pool_camera(const rdm_pool* p, int32_t i, rdm_camera* out) {
+  return call(text_of(p), [&] {
+    need_handle(p);
+    need(out, "out");
+    const CameraSpec* c = i < 0 ? nullptr : camera_at(task_at(p->pool->task_index()), p->pool->task(), i);
+    if (!c) fail(Code::kRange, "i: %d is past the last camera", i);
+    *out = describe(*c);
   });
 }
 
@@ -39,8 +51,8 @@ rdm_result rdm_pool_sensor_camera(const rdm_pool* p, int32_t cloud, int32_t i, r
     if (cloud < 0 || cloud > 1) fail(Code::kRange, "cloud: %d is outside [0, 1]", cloud);
     const SenseConfig& c = p->pool->sense();
     need_index(i, cloud ? c.num_cloud_cameras : c.num_cameras, "i");
-    *out = describe(
-        camera_spec(task_at(p->pool->task_index()), (cloud ? c.cloud_cameras : c.cameras)[i].name.text));
+    *out = describe(camera_spec(task_at(p->pool->task_index()), p->pool->task(),
+                                (cloud ? c.cloud_cameras : c.cameras)[i].name.text));
   });
 }
 

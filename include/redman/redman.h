@@ -181,10 +181,11 @@ typedef struct rdm_cost {   /* frozen layout: a cost column */
 } rdm_cost;
 typedef struct rdm_camera { /* frozen layout */
   const char *name;         /* "front"                                                        */
-  float eye[3];             /* m, world                                                       */
-  float target[3];          /* m, world                                                       */
+  float eye[3];             /* m, in the frame that mount names                               */
+  float target[3];          /* m, likewise; the picture's centre looks from eye to target     */
   float fov_y;              /* rad, vertical field of view                                    */
-  int32_t reserved;         /* 0                                                              */
+  int32_t mount;            /* 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of the base of its
+                             * articulation k - 1 (cameras that ride on a robot)              */
 } rdm_camera;
 RDM_API int32_t rdm_task_count(void); /* number of tasks; 0 without the simulation half */
 RDM_API rdm_result rdm_task_at(int32_t index, rdm_task *io);                   /* RANGE past the end */
@@ -1245,8 +1246,15 @@ typedef struct rdm_sensors {      /* the same addresses until destroy; NULL wher
   const int32_t *point_count;     /* [num_envs] points that differ; the rest repeats them in turn                  */
   const int8_t *voxels;           /* [num_envs][num_voxels][num_voxels][num_voxels] (x, y, z) about the task's
                                    * object: 1 occupied, 0 free, -1 not seen                                       */
+  const uint8_t *point_class;     /* [num_envs][num_points] what a point lies on: one of the articulations (hands,
+                                   * arms included), then of the free bodies, last anything else, or nothing       */
+  int32_t num_classes;            /* of those; 0 where points are off                                              */
+  int32_t reserved2;              /* 0                                                                             */
 } rdm_sensors;
 RDM_API rdm_result rdm_pool_sensors(const rdm_pool *p, rdm_sensors *io); /* fills io */
+/* The i-th camera by whose name this pool can look: the task's, then those that ride on its robots ("right_palm" and
+ * "left_palm" of hands), then those for clouds. RANGE ends. */
+RDM_API rdm_result rdm_pool_camera(const rdm_pool *p, int32_t i, rdm_camera *out);
 /* The cameras that rows stand for: i-th of the pictures (cloud 0) or of points and voxels (cloud 1). RANGE ends. */
 RDM_API rdm_result rdm_pool_sensor_camera(const rdm_pool *p, int32_t cloud, int32_t i, rdm_camera *out);
 

@@ -24,6 +24,7 @@ enum class Purpose : uint32_t {
   kStart = 10,       // whether and where in a recording an episode begins
   kImitation = 11,   // rows of a recording beside a minibatch
   kClone = 12,       // what is held back for validation, and shuffling
+  kCamera = 13,      // where an episode's cameras stand
 };
 
 class Stream {

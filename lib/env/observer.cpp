@@ -1,5 +1,8 @@
 #include "env/observer.hpp"
 
+#include <algorithm>
+
+#include "sense/mounted_camera.hpp"
 #include "sense/scene_shapes.hpp"
 
 namespace rdm {
@@ -21,8 +24,8 @@ T* make_if(Arena& arena, bool wanted, size_t count) {
   return wanted ? arena.make<T>(count) : nullptr;
 }
 
-void take_pictures(const SenseConfig& c, int32_t num_shapes, const SenseScratch& s, const SenseBuffers& b,
-                   size_t env) {
+void take_pictures(const SenseConfig& c, const World& world, int32_t num_shapes, const SenseScratch& s,
+                   const SenseBuffers& b, size_t env) {
   for (int32_t k = 0; k < c.num_cameras; ++k) {
     const size_t at = (env * static_cast<size_t>(c.num_cameras) + static_cast<size_t>(k)) * pixels(c);
     Image image;
@@ -31,38 +34,66 @@ void take_pictures(const SenseConfig& c, int32_t num_shapes, const SenseScratch&
     if (b.rgb) image.rgb = b.rgb + 3 * at;
     if (b.depth) image.depth = b.depth + at;
     if (b.segmentation) image.segmentation = b.segmentation + at;
-    render(s.shapes, num_shapes, c.cameras[k], image, {}, s.raycast);
+    render(s.shapes, num_shapes, placed(c.cameras[k], world), image, {}, s.raycast);
   }
 }
 
-void take_clouds(const SenseConfig& c, int32_t num_shapes, const Vec3& focus, Stream& stream, SenseScratch& s,
-                 const SenseBuffers& b, size_t env) {
+// Off its place by draws of up to `noise` m of eye and target.
+Camera moved(Camera camera, double noise, Stream& stream) {
+  if (!(noise > 0)) return camera;
+  for (Vec3* p : {&camera.eye, &camera.target})
+    for (int k = 0; k < 3; ++k) (*p)[k] += noise * stream.signed_unit();
+  return camera;
+}
+
+void take_clouds(const SenseConfig& c, const World& world, int32_t num_shapes, const Vec3& focus,
+                 Stream& stream, Stream& cameras, SenseScratch& s, const SenseBuffers& b, size_t env) {
   int32_t solid = 0;
   for (int32_t i = 0; i < num_shapes; ++i)
     if (s.shapes[i].kind != ShapeKind::kPlane) s.solid[solid++] = s.shapes[i];
   DepthPicture pictures[kMaxCameras];
+  Vec3 centre;
   s.cloud.all.count = 0;
   for (int32_t k = 0; k < c.num_cloud_cameras; ++k) {
     const size_t at = static_cast<size_t>(k) * cloud_pixels(c);
     float* depth = s.depth + at;
     int32_t* segmentation = s.segmentation + at;
-    render(s.solid, solid, c.cloud_cameras[k], {c.cloud_width, c.cloud_height, nullptr, depth, segmentation},
-           {}, s.raycast);
-    pictures[k] = {make_view(c.cloud_cameras[k], c.cloud_width, c.cloud_height), depth};
-    if (c.points)
-      append_points(pictures[k].view, depth, segmentation, c.cloud_cameras[0].target, c.range, &s.cloud.all);
+    const Camera camera = placed(moved(c.cloud_cameras[k], c.camera_noise, cameras), world);
+    if (k == 0) centre = camera.target;
+    render(s.solid, solid, camera, {c.cloud_width, c.cloud_height, nullptr, depth, segmentation}, {},
+           s.raycast);
+    pictures[k] = {make_view(camera, c.cloud_width, c.cloud_height), depth};
+    if (c.points) append_points(pictures[k].view, depth, segmentation, centre, c.range, &s.cloud.all);
   }
   if (c.points) {
     const size_t row = env * static_cast<size_t>(c.num_points);
     Cloud out{b.points + 3 * row, b.point_shape + row, 0};
     thin_cloud(c.thinning, c.num_points, c.thinning_voxel, stream, s.cloud, &out);
+    if (c.point_noise > 0 || c.point_dropout > 0)
+      disturb_cloud(c.point_noise, c.point_dropout, c.num_points, stream, &out);
     b.point_count[env] = out.count;
+    for (size_t i = row; i < row + static_cast<size_t>(c.num_points); ++i)
+      b.point_class[i] = point_class(world.scene(), b.point_shape[i]);
   }
   if (c.voxels)
     grid_from_depth(pictures, c.num_cloud_cameras, focus, c.grid, c.cell, b.voxels + env * cells(c));
 }
 
 }  // namespace
+
+int32_t point_classes(const Scene& scene) {
+  return std::min(255, static_cast<int32_t>(scene.def.articulations.size()) + scene.num_bodies + 1);
+}
+
+uint8_t point_class(const Scene& scene, int32_t shape) {
+  const int32_t last = point_classes(scene) - 1;
+  if (shape < 0) return static_cast<uint8_t>(last);
+  const SceneShape& s = scene.shapes[static_cast<size_t>(shape)];
+  if (s.articulation >= 0) return static_cast<uint8_t>(std::min(s.articulation, last - 1));
+  if (s.carrier != Carrier::kBody) return static_cast<uint8_t>(last);
+  return static_cast<uint8_t>(
+      std::min(static_cast<int32_t>(scene.def.articulations.size()) + s.index, last - 1));
+}
 
 SenseBuffers carve_sense_buffers(Arena& arena, const SenseConfig& c, size_t num_envs) {
   const size_t images = num_envs * static_cast<size_t>(c.num_cameras) * pixels(c);
@@ -74,6 +105,7 @@ SenseBuffers carve_sense_buffers(Arena& arena, const SenseConfig& c, size_t num_
   b.points = make_if<float>(arena, c.points, 3 * points);
   b.point_shape = make_if<int32_t>(arena, c.points, points);
   b.point_count = make_if<int32_t>(arena, c.points, num_envs);
+  b.point_class = make_if<uint8_t>(arena, c.points, points);
   b.voxels = make_if<int8_t>(arena, c.voxels, num_envs * cells(c));
   return b;
 }
@@ -92,12 +124,12 @@ SenseScratch carve_sense_scratch(Arena& arena, const SenseConfig& c, int32_t num
   return s;
 }
 
-void sense_world(const SenseConfig& c, const World& world, const Vec3& focus, Stream stream, SenseScratch& s,
-                 const SenseBuffers& b, size_t env) {
+void sense_world(const SenseConfig& c, const World& world, const Vec3& focus, Stream points, Stream cameras,
+                 SenseScratch& s, const SenseBuffers& b, size_t env) {
   if (!c.any()) return;
   const int32_t num_shapes = gather_shapes(world, s.shapes);
-  if (c.pictures()) take_pictures(c, num_shapes, s, b, env);
-  if (c.clouds()) take_clouds(c, num_shapes, focus, stream, s, b, env);
+  if (c.pictures()) take_pictures(c, world, num_shapes, s, b, env);
+  if (c.clouds()) take_clouds(c, world, num_shapes, focus, points, cameras, s, b, env);
 }
 
 }  // namespace rdm

@@ -14,9 +14,14 @@ struct SenseBuffers {
   float* points = nullptr;          // [env][num_points][3]
   int32_t* point_shape = nullptr;   // [env][num_points]
   int32_t* point_count = nullptr;   // [env] how many differ; the rest repeats them
+  uint8_t* point_class = nullptr;   // [env][num_points] below point_classes
   int8_t* voxels = nullptr;         // [env][grid][grid][grid]
 };
 SenseBuffers carve_sense_buffers(Arena& arena, const SenseConfig& config, size_t num_envs);
+
+// What a point can lie on: one of the articulations, then of the free bodies, last anything else, or nothing.
+int32_t point_classes(const Scene& scene);  // at most 255: the last bodies of a larger scene share one
+uint8_t point_class(const Scene& scene, int32_t shape);
 
 // Workspace of one thread.
 struct SenseScratch {
@@ -29,8 +34,8 @@ struct SenseScratch {
 SenseScratch carve_sense_scratch(Arena& arena, const SenseConfig& config, int32_t num_shapes);
 
 // Fills the rows of world `env`. Points and voxels do not see planes. `focus` is the middle of the voxels;
-// the stream draws points.
-void sense_world(const SenseConfig& config, const World& world, const Vec3& focus, Stream stream,
-                 SenseScratch& scratch, const SenseBuffers& buffers, size_t env);
+// `points` draws points and their noise, `cameras`, the same throughout an episode, where cameras stand.
+void sense_world(const SenseConfig& config, const World& world, const Vec3& focus, Stream points,
+                 Stream cameras, SenseScratch& scratch, const SenseBuffers& buffers, size_t env);
 
 }  // namespace rdm

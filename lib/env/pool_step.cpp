@@ -113,11 +113,12 @@ void Pool::Impl::see(int32_t env, Block& block) {
   const Slot& s = slots[env];
   if (!sense.any()) return;
   // a saved state shows the same points when it is gone on with
-  const uint64_t moment =
-      0x9e3779b97f4a7c15u * (s.episode.reset.counter() + static_cast<uint64_t>(s.episode.step));
-  sense_world(sense, *s.world, task->focus(*s.world, s.task_state),
-              Stream(s.episode.seed + moment, s.episode.reset.world(), Purpose::kSense), block.sense, sensed,
-              static_cast<size_t>(env));
+  const auto stream = [&](int32_t step, Purpose purpose) {
+    const uint64_t moment = s.episode.reset.counter() + static_cast<uint64_t>(step);
+    return Stream(s.episode.seed + 0x9e3779b97f4a7c15u * moment, s.episode.reset.world(), purpose);
+  };
+  sense_world(sense, *s.world, task->focus(*s.world, s.task_state), stream(s.episode.step, Purpose::kSense),
+              stream(0, Purpose::kCamera), block.sense, sensed, static_cast<size_t>(env));
 }
 
 void Pool::Impl::clear_rows(int32_t env) {

@@ -90,10 +90,10 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
     }
   } undo{this};
   read_options(c);
-  sense = sense_from(options, *info);
   repeat = repeat_from(options, *info);
   options_hash = hash_options();
   task = make_task(*info, options, config.hooks);
+  sense = sense_from(options, *info, *task);
   if (info->source) {  // another task may have its name by now
     const size_t bytes = task->state_bytes();
     options_hash = hash_bytes(&bytes, sizeof bytes, options_hash);

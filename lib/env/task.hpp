@@ -30,10 +30,13 @@ struct CostSpec {
   const char* help;
   double limit;  // default limit per episode, < 0: none
 };
+// As Camera (sense/render/camera.hpp).
 struct CameraSpec {
   const char* name;
   Vec3 eye, target;  // m
   double fov_y;      // rad
+  Vec3 up = {0, 0, 1};
+  int32_t mount = 0;
 };
 struct LearnerDefault {
   const char* key;
@@ -72,6 +75,8 @@ class Task {
   virtual float obs_limit() const { return std::numeric_limits<float>::infinity(); }
   // What the local grid of voxels is about, m: the first free body, unless the task knows better.
   virtual Vec3 focus(const World& world, const void* state) const;
+  // Cameras on what moves, whose places follow from the options; names as those of the registry's row.
+  virtual const Vector<CameraSpec>& mounted_cameras() const;
   // The hold action: the nominal start pose, base entries 0. [action_dim]
   virtual void hold_action(float* action) const = 0;
   // Mean action that a new policy starts from. [action_dim]

@@ -147,6 +147,11 @@ TaskRef::~TaskRef() {
   if (index_ >= 0) release(index_);
 }
 
+const Vector<CameraSpec>& Task::mounted_cameras() const {
+  static const Vector<CameraSpec> none;
+  return none;
+}
+
 Vec3 Task::focus(const World& world, const void*) const {
   return world.scene().num_bodies > 0 ? world.body(0).X.p : Vec3{0, -0.5, 0.5};
 }

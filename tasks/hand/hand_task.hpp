@@ -25,6 +25,8 @@ class HandTask : public Task {
   }
   float obs_limit() const override { return 5; }
   void hold_action(float* action) const override { hands_.hold(action); }
+  // "right_palm" and "left_palm": at the wrist, before the palm, towards what the fingers hold.
+  const Vector<CameraSpec>& mounted_cameras() const override { return cameras_; }
 
  protected:
   // `own_bytes` of a task's own state stand before those of the hands' control, which begin with doubles:
@@ -52,6 +54,7 @@ class HandTask : public Task {
   Scene scene_;
   HandControl hands_;
   FieldTable fields_;
+  Vector<CameraSpec> cameras_;
 };
 
 }  // namespace rdm

@@ -1,6 +1,8 @@
 // Pictures, points and voxels of a pool: what they show, that they agree with each other, and that threads,
 // saved states and the heap make no difference.
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "env/observer.hpp"
 #include "heap_count.hpp"
@@ -153,6 +155,50 @@ TEST(Observer, SeeingTakesNothingFromTheHeap) {
   const int64_t before = heap_count();
   for (int t = 0; t < 20; ++t) p->step(nullptr);
   EXPECT_EQ(heap_count(), before);
+}
+
+// Its own place in each episode, the same all through it: the ball lies still, so the first pixel that sees
+// it does too.
+TEST(Observer, CamerasThatStandElsewhere) {
+  auto options = all_of_it("points");
+  options.push_back({"camera_noise", nullptr, 0.05});
+  TestPool p("toy_push", 2, options, with()), again("toy_push", 2, options, with(2)),
+      nominal("toy_push", 2, all_of_it("points"), with());
+  for (TestPool* pool : {&p, &again, &nominal}) (*pool)->reset(nullptr, nullptr);
+  EXPECT_EQ(copy(p->sensed().points, 600), copy(again->sensed().points, 600));
+  EXPECT_NE(copy(p->sensed().points, 300), copy(nominal->sensed().points, 300));
+  const auto cloud = [&](const TestPool& pool) {
+    std::set<std::array<float, 3>> seen;
+    const float* at = const_cast<TestPool&>(pool)->sensed().points;
+    for (int i = 0; i < 100; ++i) seen.insert({at[3 * i], at[3 * i + 1], at[3 * i + 2]});
+    return seen;
+  };
+  for (size_t env = 0; env < 2; ++env) {
+    const Vec3 ball = p->world(static_cast<int32_t>(env)).body(0).X.p;
+    for (size_t i = env * 100; i < env * 100 + 100; ++i) {
+      const float* at = p->sensed().points + 3 * i;
+      EXPECT_NEAR(norm(Vec3{at[0], at[1], at[2]} - ball), 0.1, 1e-5) << "points are where they are";
+    }
+  }
+  p->reset(nullptr, nullptr);
+  EXPECT_NE(cloud(p), cloud(again)) << "another episode, another place";
+}
+
+TEST(Observer, NoisyPointsAreFewerAndOffTheBall) {
+  auto options = all_of_it("points");
+  options.push_back({"point_noise", nullptr, 0.01});
+  options.push_back({"point_dropout", nullptr, 0.5});
+  TestPool p("toy_push", 1, options, with());
+  p->reset(nullptr, nullptr);
+  EXPECT_GT(p->sensed().point_count[0], 20);
+  EXPECT_LT(p->sensed().point_count[0], 80);
+  double off = 0;
+  for (int i = 0; i < 100; ++i) {
+    const float* at = p->sensed().points + 3 * i;
+    off = std::max(off, std::abs(norm(Vec3{at[0], at[1], at[2]} - p->world(0).body(0).X.p) - 0.1));
+  }
+  EXPECT_GT(off, 0.005);
+  EXPECT_LT(off, 0.08);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "env/options/sense.hpp"
+#include "toy_task.hpp"
 
 namespace rdm {
 namespace {
@@ -22,7 +23,9 @@ SenseConfig read(std::vector<OptionInput> inputs) {
   const OptionSpec* rows = sense_options(&count);
   options.add_table(rows, count);
   for (const OptionInput& input : inputs) options.set(input, "test");
-  return sense_from(options, task());
+  test::register_toy();
+  test::TestPool toy("toy_push", 1);
+  return sense_from(options, task(), toy->task());
 }
 
 Code code_of(std::vector<OptionInput> inputs) {

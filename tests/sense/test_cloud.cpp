@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <set>
 
 #include "sense/cloud/cloud.hpp"
@@ -162,6 +163,50 @@ TEST(Cloud, NothingSeenIsSaid) {
   EXPECT_EQ(t.count, 0);
   EXPECT_EQ(t.points, std::vector<float>(15));
   EXPECT_EQ(t.shape, std::vector<int32_t>(5, -1));
+}
+
+// Of 2000 points 2000 (1 - dropout) are left, within four deviations, each off by `noise`.
+TEST(Cloud, ADisturbedOneLosesPointsAndMovesTheOthers) {
+  constexpr int32_t kPoints = 2000;
+  std::vector<float> points(3 * kPoints);
+  std::vector<int32_t> shape(kPoints);
+  Cloud cloud{points.data(), shape.data(), 0};
+  const auto refill = [&] {
+    for (int32_t i = 0; i < kPoints; ++i) {
+      points[3 * static_cast<size_t>(i)] = static_cast<float>(i);
+      points[3 * static_cast<size_t>(i) + 1] = points[3 * static_cast<size_t>(i) + 2] = 0;
+      shape[static_cast<size_t>(i)] = i;
+    }
+    cloud.count = kPoints;
+  };
+  for (const double dropout : {0.0, 0.3, 0.9}) {
+    refill();
+    Stream stream(5, 0, Purpose::kSense);
+    disturb_cloud(0.01, dropout, kPoints, stream, &cloud);
+    const double left = kPoints * (1 - dropout);
+    EXPECT_NEAR(cloud.count, left, 4 * std::sqrt(left * dropout) + 0.5) << dropout;
+    double sum = 0, square = 0;
+    for (size_t i = 0; i < kPoints; ++i) {
+      const size_t first = i % static_cast<size_t>(cloud.count);
+      EXPECT_EQ(shape[i], shape[first]);
+      EXPECT_EQ(points[3 * i + 1], points[3 * first + 1]);
+      EXPECT_NEAR(points[3 * i], static_cast<float>(shape[i]), 0.06);
+      if (i == first) sum += static_cast<double>(points[3 * i + 1]), square += std::pow(points[3 * i + 1], 2);
+    }
+    EXPECT_NEAR(sum / cloud.count, 0, 0.04 / std::sqrt(cloud.count));
+    EXPECT_NEAR(std::sqrt(square / cloud.count), 0.01, 0.03 / std::sqrt(cloud.count));
+    const auto once = points;
+    refill();
+    Stream again(5, 0, Purpose::kSense);
+    disturb_cloud(0.01, dropout, kPoints, again, &cloud);
+    EXPECT_EQ(points, once);
+  }
+  refill();
+  Stream stream(5, 0, Purpose::kSense);
+  disturb_cloud(0, 1, kPoints, stream, &cloud);
+  EXPECT_EQ(cloud.count, 0);
+  EXPECT_EQ(shape[7], -1);
+  EXPECT_EQ(points[21], 0);
 }
 
 }  // namespace

@@ -453,30 +453,32 @@ class Camera(Record):
     """The values of rdm_camera."""
 
     name: str  # "front"
-    eye: tuple[float, ...]  # m, world
-    target: tuple[float, ...]  # m, world
+    eye: tuple[float, ...]  # m, in the frame that mount names
+    target: tuple[float, ...]  # m, likewise; the picture's centre looks from eye to target
     fov_y: float  # rad, vertical field of view
+    mount: int  # 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of the base of its articulation k - 1 (cameras that ride on a robot)
 
 
 class rdm_camera(Structure):
     """name: "front"
-    eye: m, world
-    target: m, world
+    eye: m, in the frame that mount names
+    target: m, likewise; the picture's centre looks from eye to target
     fov_y: rad, vertical field of view
-    reserved: 0
+    mount: 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of the base of its articulation k - 1
+        (cameras that ride on a robot)
     """
 
     name: bytes | None
     eye: Any
     target: Any
     fov_y: float
-    reserved: int
+    mount: int
     _fields_ = [
         ("name", c_char_p),
         ("eye", c_float * 3),
         ("target", c_float * 3),
         ("fov_y", c_float),
-        ("reserved", c_int32),
+        ("mount", c_int32),
     ]
 
 
@@ -2277,6 +2279,10 @@ class rdm_sensors(Structure):
     point_count: [num_envs] points that differ; the rest repeats them in turn
     voxels: [num_envs][num_voxels][num_voxels][num_voxels] (x, y, z) about the task's object: 1 occupied, 0
         free, -1 not seen
+    point_class: [num_envs][num_points] what a point lies on: one of the articulations (hands, arms included),
+        then of the free bodies, last anything else, or nothing
+    num_classes: of those; 0 where points are off
+    reserved2: 0
     """
 
     struct_size: int
@@ -2294,6 +2300,9 @@ class rdm_sensors(Structure):
     point_shape: int | None
     point_count: int | None
     voxels: int | None
+    point_class: int | None
+    num_classes: int
+    reserved2: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("num_cameras", c_int32),
@@ -2310,6 +2319,9 @@ class rdm_sensors(Structure):
         ("point_shape", c_void_p),
         ("point_count", c_void_p),
         ("voxels", c_void_p),
+        ("point_class", c_void_p),
+        ("num_classes", c_int32),
+        ("reserved2", c_int32),
     ]
 
 
@@ -2672,6 +2684,7 @@ ROWS: dict[str, dict[str, Rows]] = {
         "point_shape": Rows("int32", ("num_envs", "num_points")),
         "point_count": Rows("int32", ("num_envs",)),
         "voxels": Rows("int8", ("num_envs", "num_voxels", "num_voxels", "num_voxels")),
+        "point_class": Rows("uint8", ("num_envs", "num_points")),
     },
     "rdm_recording_rows": {
         "obs": Rows("float32", ("rows", "obs_dim")),
@@ -3585,6 +3598,12 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "io": POINTER(rdm_sensors)},
         {}, True,
         """fills io"""),
+    "rdm_pool_camera": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_camera)},
+        {}, True,
+        """The i-th camera by whose name this pool can look: the task's, then those that ride on its robots ("right_palm" and
+        "left_palm" of hands), then those for clouds. RANGE ends.
+        """),
     "rdm_pool_sensor_camera": Function(
         c_int32, {"p": c_void_p, "cloud": c_int32, "i": c_int32, "out": POINTER(rdm_camera)},
         {}, True,

@@ -4,24 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "common/names.hpp"
-
 namespace tool {
-namespace {
-
-void check_camera(const std::string& camera, int32_t task) {
-  std::vector<std::string> names;
-  for (int32_t i = 0; i < task_at(task).num_cameras; ++i) {
-    rdm_camera c;
-    redman::check(rdm_task_camera(task, i, &c));
-    if (same_name(camera, c.name)) return;
-    names.push_back(c.name);
-  }
-  throw Usage("--camera " + camera + ": unknown" + nearest_hint(camera, names));
-}
-
-}  // namespace
-
 Scene::Scene(const PoolSettings& settings, const ActorChoice& choice, std::string camera, int32_t width,
              int32_t height)
     : pool_(make_pool(settings, RDM_AUTORESET_OFF)),
@@ -29,8 +12,12 @@ Scene::Scene(const PoolSettings& settings, const ActorChoice& choice, std::strin
       camera_(std::move(camera)),
       width_(width),
       height_(height) {
-  check_camera(camera_, pool_.spec().task);
   pool_.reset();
+  try {
+    pool_.render(0, camera_.c_str(), 1, 1);
+  } catch (const redman::Error& e) {
+    throw Usage(std::string("--") + e.what());
+  }
   actor_.restart();
 }
 

@@ -7,7 +7,7 @@ namespace tool {
 
 class Scene {
  public:
-  // Usage with the nearest name when the task has no such camera.
+  // Usage with the nearest name when the pool has no such camera.
   Scene(const PoolSettings& settings, const ActorChoice& choice, std::string camera, int32_t width,
         int32_t height);
   const redman::Pool& pool() const { return pool_; }

@@ -24,6 +24,11 @@ constexpr OptionSpec kRows[] = {
     integer_option("points", 2048, 1, 65536, "points of a world"),
     text_option("sampling", "furthest", "furthest|random|voxel", "how points are chosen of those seen"),
     number_option("sampling_voxel", 0.01, 0.001, 1, "sampling = voxel: side of a voxel, m"),
+    number_option("point_noise", 0, 0, 0.5, "deviation of the noise on each coordinate of a point, m"),
+    number_option("point_dropout", 0, 0, 1, "share of the points that are lost; others stand for them"),
+    number_option(
+        "camera_noise", 0, 0, 1,
+        "half width of the draw, each episode, by which eye and target of cloud_cameras are off, m"),
     integer_option("voxels", 16, 1, 128, "cells along a side of the local grid"),
     number_option("voxel_size", 0.03, 0.001, 1, "side of a cell, m"),
 };
@@ -49,11 +54,11 @@ void each_word(const char* list, F&& f) {
   }
 }
 
-int32_t read_cameras(const char* list, const TaskInfo& task, const char* key, Camera* out) {
+int32_t read_cameras(const char* list, const TaskInfo& info, const Task& task, const char* key, Camera* out) {
   int32_t count = 0;
   each_word(list, [&](const char* word) {
     if (count == kMaxCameras) fail(Code::kRange, "%s: more than %d", key, kMaxCameras);
-    out[count++] = camera_of(task, word);
+    out[count++] = camera_of(info, task, word);
   });
   if (count == 0) fail(Code::kArgument, "%s: none is named", key);
   return count;
@@ -66,28 +71,37 @@ const OptionSpec* sense_options(int32_t* count) {
   return kRows;
 }
 
-const CameraSpec& camera_spec(const TaskInfo& task, const char* name) {
+const CameraSpec* camera_at(const TaskInfo& info, const Task& task, int32_t i) {
+  if (i < info.num_cameras) return &info.cameras[i];
+  i -= info.num_cameras;
+  const Vector<CameraSpec>& mounted = task.mounted_cameras();
+  const auto riding = static_cast<int32_t>(mounted.size());
+  if (i < riding) return &mounted[static_cast<size_t>(i)];
+  i -= riding;
+  return i < static_cast<int32_t>(std::size(kCloudCameras)) ? &kCloudCameras[i] : nullptr;
+}
+
+const CameraSpec& camera_spec(const TaskInfo& info, const Task& task, const char* name) {
   Vector<const char*> names;
-  const auto look = [&](const CameraSpec* specs, int32_t count) -> const CameraSpec* {
-    for (int32_t i = 0; i < count; ++i) {
-      if (same_name(specs[i].name, name)) return &specs[i];
-      names.push_back(specs[i].name);
-    }
-    return nullptr;
-  };
-  const CameraSpec* c = look(task.cameras, task.num_cameras);
-  if (!c) c = look(kCloudCameras, static_cast<int32_t>(std::size(kCloudCameras)));
-  if (c) return *c;
+  for (int32_t i = 0; const CameraSpec* c = camera_at(info, task, i); ++i) {
+    if (same_name(c->name, name)) return *c;
+    names.push_back(c->name);
+  }
   fail(Code::kNotFound, "camera %s: unknown%s", Quoted(name).text,
        Nearest(name, names.data(), static_cast<int32_t>(names.size())).text);
 }
 
-Camera camera_of(const TaskInfo& task, const char* name) {
-  const CameraSpec& c = camera_spec(task, name);
-  return {c.name, c.eye, c.target, c.fov_y};
+Camera camera_of(const TaskInfo& info, const Task& task, const char* name) {
+  const CameraSpec& c = camera_spec(info, task, name);
+  const Scene& scene = task.scene();
+  const auto links = static_cast<int32_t>(scene.num_links),
+             bases = static_cast<int32_t>(scene.def.articulations.size());
+  if (c.mount < -bases || c.mount > links)
+    fail(Code::kRange, "camera %s: mount %d is outside [%d, %d]", c.name, c.mount, -bases, links);
+  return {c.name, c.eye, c.target, c.fov_y, c.up, c.mount};
 }
 
-SenseConfig sense_from(const Options& options, const TaskInfo& task) {
+SenseConfig sense_from(const Options& options, const TaskInfo& info, const Task& task) {
   SenseConfig c;
   struct Word {
     const char* name;
@@ -109,15 +123,17 @@ SenseConfig sense_from(const Options& options, const TaskInfo& task) {
          Nearest(word, names, static_cast<int32_t>(std::size(words))).text);
   });
   if (c.pictures()) {
-    c.num_cameras = read_cameras(options.text("cameras"), task, "cameras", c.cameras);
+    c.num_cameras = read_cameras(options.text("cameras"), info, task, "cameras", c.cameras);
     c.width = options.integer("image_width");
     c.height = options.integer("image_height");
   }
   if (c.clouds()) {
-    c.num_cloud_cameras = read_cameras(options.text("cloud_cameras"), task, "cloud_cameras", c.cloud_cameras);
+    c.num_cloud_cameras =
+        read_cameras(options.text("cloud_cameras"), info, task, "cloud_cameras", c.cloud_cameras);
     c.cloud_width = options.integer("cloud_width");
     c.cloud_height = options.integer("cloud_height");
     c.range = options.number("cloud_range");
+    c.camera_noise = options.number("camera_noise");
   }
   if (c.points) {
     c.num_points = options.integer("points");
@@ -126,6 +142,8 @@ SenseConfig sense_from(const Options& options, const TaskInfo& task) {
                  : same_name(sampling, "voxel") ? Thinning::kVoxel
                                                 : Thinning::kFurthest;
     c.thinning_voxel = options.number("sampling_voxel");
+    c.point_noise = options.number("point_noise");
+    c.point_dropout = options.number("point_dropout");
   }
   if (c.voxels) {
     c.grid = options.integer("voxels");

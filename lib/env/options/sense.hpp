@@ -23,8 +23,11 @@ struct SenseConfig {
   int32_t num_points = 0;
   Thinning thinning = Thinning::kFurthest;
   double thinning_voxel = 0, range = 0;  // m
-  int32_t grid = 0;                      // cells along a side
-  double cell = 0;                       // m
+  double point_noise = 0;                // m, deviation of each coordinate
+  double point_dropout = 0;              // share of the points that are lost
+  double camera_noise = 0;  // m, half width of an episode's draw of eye and target of a cloud camera
+  int32_t grid = 0;         // cells along a side
+  double cell = 0;          // m
 
   bool pictures() const { return rgb || depth || segmentation; }
   bool clouds() const { return points || voxels; }
@@ -32,11 +35,13 @@ struct SenseConfig {
 };
 // Error(kArgument) for a modality that is unknown, Error(kNotFound) for a camera that is neither the task's
 // nor one of the three that every task has for clouds.
-SenseConfig sense_from(const Options& options, const TaskInfo& task);
+SenseConfig sense_from(const Options& options, const TaskInfo& info, const Task& task);
 
-// A camera of the task, or "above", "side_right", "side_left": those for clouds, about (0, -0.5, 0.5), of
-// tasks that name none so.
-const CameraSpec& camera_spec(const TaskInfo& task, const char* name);
-Camera camera_of(const TaskInfo& task, const char* name);
+// A camera of the task, mounted or not, or "above", "side_right", "side_left": those for clouds, about
+// (0, -0.5, 0.5), of tasks that name none so.
+// The i-th of these, null past the end.
+const CameraSpec* camera_at(const TaskInfo& info, const Task& task, int32_t i);
+const CameraSpec& camera_spec(const TaskInfo& info, const Task& task, const char* name);
+Camera camera_of(const TaskInfo& info, const Task& task, const char* name);
 
 }  // namespace rdm

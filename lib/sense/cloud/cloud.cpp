@@ -14,6 +14,18 @@ void draw(int32_t* list, int32_t count, int32_t wanted, Stream& stream) {
     std::swap(list[i], list[i + static_cast<int32_t>(stream.below(static_cast<uint32_t>(count - i)))]);
 }
 
+void clear(int32_t wanted, Cloud* out) {
+  std::fill_n(out->points, 3 * static_cast<ptrdiff_t>(wanted), 0.0f);
+  std::fill_n(out->shape, wanted, -1);
+  out->count = 0;
+}
+
+void copy_point(const Cloud& from, int32_t i, Cloud* to, int32_t at) {
+  std::memcpy(to->points + 3 * static_cast<ptrdiff_t>(at), from.points + 3 * static_cast<ptrdiff_t>(i),
+              3 * sizeof(float));
+  to->shape[at] = from.shape[i];
+}
+
 }  // namespace
 
 void append_points(const View& view, const float* depth, const int32_t* segmentation, const Vec3& centre,
@@ -68,25 +80,30 @@ void thin_cloud(Thinning thinning, int32_t wanted, double voxel, Stream& stream,
   } else {
     for (int32_t i = 0; i < count; ++i) s.chosen[i] = i;
   }
-  if (count == 0) {  // nothing was seen, or nothing that lies within the lattice of voxels
-    std::fill_n(out->points, 3 * static_cast<ptrdiff_t>(wanted), 0.0f);
-    std::fill_n(out->shape, wanted, -1);
-    out->count = 0;
-    return;
-  }
+  if (count == 0) return clear(wanted, out);  // nothing was seen, or nothing within the lattice of voxels
   const int32_t some = std::min(wanted, count);
   if (some < count && thinning == Thinning::kFurthest)
     sample_furthest(s.all.points, count, some,
                     static_cast<int32_t>(stream.below(static_cast<uint32_t>(count))), s.furthest, s.chosen);
   else if (some < count)
     draw(s.chosen, count, some, stream);
-  for (int32_t i = 0; i < wanted; ++i) {
-    const int32_t from = s.chosen[i % some];
-    std::memcpy(out->points + 3 * static_cast<ptrdiff_t>(i), s.all.points + 3 * static_cast<ptrdiff_t>(from),
-                3 * sizeof(float));
-    out->shape[i] = s.all.shape[from];
-  }
+  for (int32_t i = 0; i < wanted; ++i) copy_point(s.all, s.chosen[i % some], out, i);
   out->count = some;
+}
+
+void disturb_cloud(double noise, double dropout, int32_t wanted, Stream& stream, Cloud* cloud) {
+  int32_t kept = 0;
+  for (int32_t i = 0; i < cloud->count; ++i)
+    if (!(dropout > 0 && stream.uniform() < dropout)) copy_point(*cloud, i, cloud, kept++);
+  if (kept == 0) return clear(wanted, cloud);
+  for (int32_t i = 0; noise > 0 && i < kept; ++i) {
+    float off[3];
+    stream.normals(off, 3);
+    for (int k = 0; k < 3; ++k)
+      cloud->points[3 * static_cast<ptrdiff_t>(i) + k] += static_cast<float>(noise) * off[k];
+  }
+  for (int32_t i = kept; i < wanted; ++i) copy_point(*cloud, i % kept, cloud, i);
+  cloud->count = kept;
 }
 
 }  // namespace rdm

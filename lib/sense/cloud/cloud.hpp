@@ -42,4 +42,9 @@ CloudScratch carve_cloud_scratch(Arena& arena, int32_t max_points, Thinning thin
 void thin_cloud(Thinning thinning, int32_t wanted, double voxel, Stream& stream, CloudScratch& scratch,
                 Cloud* out);
 
+// What a depth camera does to a thinned cloud of `wanted` points, of which the first cloud->count differ:
+// each of these is lost with probability `dropout`, normal noise of deviation `noise` m moves each coordinate
+// of the others, and they are repeated in turn again.
+void disturb_cloud(double noise, double dropout, int32_t wanted, Stream& stream, Cloud* cloud);
+
 }  // namespace rdm

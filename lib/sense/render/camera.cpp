@@ -21,8 +21,9 @@ View make_view(const Camera& camera, int32_t width, int32_t height) {
   if (!(norm(ahead) >= 1e-6)) fail(Code::kArgument, "camera: eye and target are less than 1e-6 m apart");
 
   const Vec3 z = normalized(ahead);
-  const bool vertical = std::abs(z.x) < 1e-6 && std::abs(z.y) < 1e-6;
-  const Vec3 x = normalized(cross(z, vertical ? Vec3{-1, 0, 0} : Vec3{0, 0, 1}));
+  const Vec3 side = cross(z, camera.up);
+  const bool vertical = std::abs(side.x) < 1e-6 && std::abs(side.y) < 1e-6 && std::abs(side.z) < 1e-6;
+  const Vec3 x = normalized(vertical ? cross(z, Vec3{-1, 0, 0}) : side);
   const Vec3 y = cross(z, x);
   View view;
   view.eye = camera.eye;

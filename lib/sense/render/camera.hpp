@@ -14,12 +14,16 @@ inline constexpr int32_t kMaxImageSide = 8192;  // pixels
 
 struct Camera {
   Name name;
-  Vec3 eye, target;  // world, m; the picture's centre looks from eye to target
-  double fov_y = 0;  // vertical field of view, rad, in (0, pi)
+  Vec3 eye, target;     // m; the picture's centre looks from eye to target
+  double fov_y = 0;     // vertical field of view, rad, in (0, pi)
+  Vec3 up = {0, 0, 1};  // what points up in the picture
+  // In whose frame these three are: 0 the world's, k > 0 link k - 1's, -k the base's of articulation k - 1
+  // (sense/mounted_camera.hpp brings them to the world).
+  int32_t mount = 0;
 };
 
-// A camera with a picture size. World z is up in the picture; a camera that looks straight up or down has
-// world -x up, so that `top` is `front` tipped over.
+// A camera of the world with a picture size. One that looks straight along `up` has world -x up, so that
+// `top` is `front` tipped over.
 struct View {
   Vec3 eye;
   Mat3 R_WC;
@@ -32,8 +36,8 @@ struct View {
   Vec3 point(double x, double y, double depth) const { return eye + depth * (R_WC * ray_C(x, y)); }
 };
 
-// Error(kRange) for a size outside [1, kMaxImageSide] or a bad angle; Error(kArgument) for an eye or target
-// that is not finite, or eye and target less than 1e-6 m apart.
+// The mount is not looked at. Error(kRange) for a size outside [1, kMaxImageSide] or a bad angle;
+// Error(kArgument) for an eye or target that is not finite, or eye and target less than 1e-6 m apart.
 View make_view(const Camera& camera, int32_t width, int32_t height);
 
 }  // namespace rdm
