@@ -52,7 +52,9 @@ class Agent {
   // Adds what this algorithm needs to an arena, measuring or real.
   virtual void carve(Arena& arena);
 
-  void act(const float* obs, bool sample, float* action);
+  // clouds [num_envs], in metres: of an agent with eyes.
+  void act(const float* obs, bool sample, float* action, const PointRows& clouds = {});
+  const PointNetShape& eyes() const { return resolved_.eyes; }
   void record(const Transition& t);
   // As the critics see any rows, in the units of rewards and costs: value [rows] and cost
   // [rows][num_limited()], of the cost columns limited_column(i). Error(kUnsupported) where those are scaled
@@ -148,6 +150,7 @@ class Agent {
  private:
   void warm_up();
   void need_idle(const char* call) const;
+  void need_clouds(const DemoRows& demo) const;
   // action_std and entropy: of the policy now, or with std_mode=state as it was on the epoch's data.
   void fill_spread(Epoch& e) const;
   void fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const;

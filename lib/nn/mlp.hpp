@@ -2,6 +2,8 @@
 //
 // A batch is row-major, one row per sample. All memory comes from the caller; nothing is allocated.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -32,6 +34,26 @@ struct MlpShape {
 };
 // Error(kRange) for a count, width or activation outside the bounds above.
 void check_mlp_shape(const MlpShape& shape);
+
+// Bound on the magnitude of every sum within a network whose inputs are within +-bound: layer by layer the
+// largest sum of a row's magnitudes. params[i] is the i-th.
+template <class Params>
+double mlp_bound(const MlpShape& s, const Params& params, double bound) {
+  double most = bound;
+  for (int32_t l = 0; l < s.num_layers(); ++l) {
+    const auto rows = static_cast<size_t>(s.layer_out(l)), cols = static_cast<size_t>(s.layer_in(l));
+    double widest = 0;
+    for (size_t i = 0; i < rows; ++i) {
+      double sum = 0;
+      for (size_t j = 0; j < cols; ++j)
+        sum += std::abs(static_cast<double>(params[s.weight_offset(l) + i * cols + j]));
+      widest = std::max(widest, bound * sum + std::abs(static_cast<double>(params[s.bias_offset(l) + i])));
+    }
+    most = std::max(most, widest);
+    bound = s.activation == Activation::kTanh ? 1 : std::max(1.0, widest);
+  }
+  return most;
+}
 
 // Workspace of one thread for batches of up to `rows` rows.
 struct MlpScratch {

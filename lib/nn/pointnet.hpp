@@ -9,6 +9,8 @@
 // Each feature belongs to the one point that won it (the first of equal ones). So backward and tangent passes
 // run on winners alone, at most as many as there are features: a few per cent of the forward pass.
 #pragma once
+#include <algorithm>
+
 #include "nn/mlp.hpp"
 #include "nn/scratch.hpp"
 
@@ -31,6 +33,11 @@ struct PointNetShape {
 // Error(kRange) for what is outside the bounds above, or an input that is not 3 + classes.
 void check_pointnet_shape(const PointNetShape& shape);
 
+// Largest magnitude of the network's inputs.
+inline double largest_point(const PointNetShape& s) {
+  return std::max(1.0, 32.767 / static_cast<double>(s.range));
+}
+
 // Millimetres from the origin, whole and within +-32767: what the network sees of a point however it comes,
 // so that acting and learning agree bit by bit. points, out [count][3], m.
 void quantize_points(const PointNetShape& shape, const float* points, size_t count, int16_t* out);
@@ -45,6 +52,16 @@ struct PointRows {
   int32_t stride = 1;
 
   explicit operator bool() const { return points || metres || features; }
+  // The same without the first rows, of clouds that are not listed.
+  PointRows from(const PointNetShape& s, size_t first) const {
+    PointRows r = *this;
+    const size_t count = first * static_cast<size_t>(s.points);
+    if (points) r.points += 3 * count;
+    if (metres) r.metres += 3 * count;
+    if (classes) r.classes += count;
+    if (features) r.features += first * static_cast<size_t>(s.features());
+    return r;
+  }
   size_t row(size_t i) const {
     return order ? static_cast<size_t>(order[i * static_cast<size_t>(stride)]) : i;
   }
