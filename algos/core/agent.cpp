@@ -267,6 +267,26 @@ CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {
   return report;
 }
 
+PretrainReport Agent::pretrain(const PointRows& clouds, const uint8_t* label, int32_t rows,
+                               const PretrainOptions& how) {
+  const FpMode mode;
+  const HostScope scope(resolved_.config.hooks);
+  need_idle("pretrain");
+  const PointNetShape& eyes = resolved_.eyes;
+  if (!eyes.points) fail(Code::kState, "pretrain: the agent has no encoder");
+  check_rows("points", clouds.metres, nullptr, rows, eyes.row_points());
+  need_classes(eyes, clouds, static_cast<size_t>(rows));
+  check_cancel();
+  const size_t count = static_cast<size_t>(rows) * static_cast<size_t>(eyes.points);
+  Vector<int16_t> points(3 * count);
+  quantize_points(eyes, clouds.metres, count, points.data());
+  PointRows kept;
+  kept.points = points.data(), kept.classes = clouds.classes;
+  const PretrainReport report = pretrain_eyes(resolved_, kept, label, rows, how, nets_, workers_, cancel_);
+  restart_average(nets_);
+  return report;
+}
+
 void Agent::set_recording(const DemoRows& demo, uint64_t mark) {
   need_idle("set_recording");
   need_clouds(demo);

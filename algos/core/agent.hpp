@@ -33,6 +33,7 @@
 #include "algos/core/schedule.hpp"
 #include "algos/imitation/clone.hpp"
 #include "algos/imitation/imitation.hpp"
+#include "algos/imitation/pretrain.hpp"
 #include "algos/rollout/collector.hpp"
 
 namespace rdm {
@@ -87,6 +88,9 @@ class Agent {
 
   // Between epochs; Error(kState) inside a horizon.
   CloneReport clone(const DemoRows& demo, const CloneOptions& how);
+  // clouds [rows] in metres, label [rows][points]. Error(kState) inside a horizon or without eyes.
+  PretrainReport pretrain(const PointRows& clouds, const uint8_t* label, int32_t rows,
+                          const PretrainOptions& how);
   // Copies the rows for the imitation term; mark: their fingerprint. rows 0: none.
   void set_recording(const DemoRows& demo, uint64_t mark);
   // Actor and statistics become a frozen policy's, which count for so many samples; Error(kArgument) names

@@ -145,14 +145,8 @@ void Collector::check_clouds(const PointRows& clouds) const {
     return;
   }
   if (!clouds.metres) fail(Code::kState, "act: the agent's encoder needs points");
-  if (eyes.classes && !clouds.classes)
-    fail(Code::kArgument, "point_class: NULL, but the encoder sees %d classes", eyes.classes);
-  const size_t envs = static_cast<size_t>(rollout_.num_envs), count = rollout_.row_points;
+  need_classes(eyes, clouds, static_cast<size_t>(rollout_.num_envs));
   check_rows("points", clouds.metres, nullptr, rollout_.num_envs, eyes.row_points());
-  for (size_t i = 0; eyes.classes && i < envs * count; ++i)
-    if (clouds.classes[i] >= eyes.classes)
-      fail(Code::kRange, "point_class: row %zu has class %d, outside [0, %d)", i / count,
-           int32_t{clouds.classes[i]}, eyes.classes);
 }
 
 void Collector::act(const float* obs, bool sample, float* action, const PointRows& clouds) {

@@ -69,7 +69,7 @@ void largest(const PointNetShape& shape, const float* params, const PointRows& c
   std::fill_n(s.at, m.out, 0.0f);
   for (int32_t first = 0; first < shape.points; first += kTile) {
     const int32_t n = std::min(kTile, shape.points - first);
-    for (int32_t p = 0; p < n; ++p) see_point(shape, clouds, r, sz(first + p), s.x + sz(p) * sz(m.in));
+    see_points(shape, clouds, r, first, n, s.x);
     const float* x = s.x;
     for (int32_t l = 0; l < m.num_layers(); ++l) {
       GemmArgs g;
@@ -142,6 +142,22 @@ void check_pointnet_shape(const PointNetShape& s) {
   for (const float x : s.origin)
     if (!(std::abs(x) <= 1e6f))
       fail(Code::kRange, "point origin: %g m is outside [-1e6, 1e6]", static_cast<double>(x));
+}
+
+void see_points(const PointNetShape& shape, const PointRows& clouds, size_t row, int32_t first, int32_t count,
+                float* x) {
+  for (size_t p = 0; p < sz(count); ++p)
+    see_point(shape, clouds, row, sz(first) + p, x + p * sz(shape.mlp.in));
+}
+
+void need_classes(const PointNetShape& s, const PointRows& clouds, size_t rows) {
+  if (s.classes == 0) return;
+  if (!clouds.classes) fail(Code::kArgument, "point_class: NULL, but the encoder sees %d classes", s.classes);
+  const size_t count = sz(s.points);
+  for (size_t i = 0; i < rows * count; ++i)
+    if (clouds.classes[i] >= s.classes)
+      fail(Code::kRange, "point_class: row %zu has class %d, outside [0, %d)", i / count,
+           int32_t{clouds.classes[i]}, s.classes);
 }
 
 void quantize_points(const PointNetShape& shape, const float* points, size_t count, int16_t* out) {

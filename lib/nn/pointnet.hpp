@@ -67,6 +67,14 @@ struct PointRows {
   }
 };
 
+// Error(kArgument, kRange) unless these rows have the classes that the network sees.
+void need_classes(const PointNetShape& shape, const PointRows& clouds, size_t rows);
+
+// What the network's first layer sees of points [first, first + count) of row `row` of the arrays: x
+// [count][in].
+void see_points(const PointNetShape& shape, const PointRows& clouds, size_t row, int32_t first, int32_t count,
+                float* x);
+
 // Workspace of one thread for any number of rows.
 struct PointNetScratch {
   // forward: a tile of points

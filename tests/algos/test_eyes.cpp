@@ -379,3 +379,60 @@ TEST(Eyes, AStudentClonesWhatItSees) {
     other.epoch(*b);
   }
 }
+
+namespace {
+std::vector<unsigned char> pretrained(int32_t threads, PretrainReport* report,
+                                      const char* encoder = "16,16") {
+  AgentSetup s = PointWorld::setup("ppo_lag", 40, encoder);
+  s.config.num_threads = threads;
+  const AgentPtr a = s.make();
+  PointWorld world(200, 4);
+  PretrainOptions how;
+  how.num_labels = 2, how.epochs = 15, how.learning_rate = 5e-3;
+  *report = a->pretrain(world.clouds(), world.point_class.data(), 200, how);
+  return saved(*a);
+}
+}  // namespace
+
+// Half of the points are the object's, a fifth of a metre above the others.
+TEST(Eyes, PretrainingTellsPointsApart) {
+  PretrainReport report, other;
+  const auto state = pretrained(0, &report);
+  EXPECT_EQ(report.train_rows, 180);
+  EXPECT_EQ(report.validation_rows, 20);
+  EXPECT_EQ(report.most_common, 0.5);
+  EXPECT_GT(report.accuracy, 0.98);
+  EXPECT_LT(report.validation_loss, 0.1);
+  for (const int32_t threads : {1, 2, 4}) EXPECT_EQ(pretrained(threads, &other), state) << threads;
+  pretrained(0, &report, "24");
+  EXPECT_GT(report.accuracy, 0.98) << "without hidden layers";
+}
+
+TEST(Eyes, PretrainingChangesTheEncoderAlone) {
+  AgentSetup s = small("ppo_lag");
+  const AgentPtr a = s.make();
+  PointWorld world(40);
+  const auto before = parameters(*a), eyes = encoder_of(*a);
+  PretrainOptions how;
+  how.num_labels = 2, how.epochs = 2;
+  a->cancel();
+  EXPECT_EQ(thrown([&] { a->pretrain(world.clouds(), world.point_class.data(), 40, how); }).code,
+            Code::kCancelled);
+  EXPECT_EQ(parameters(*a), before);
+  a->pretrain(world.clouds(), world.point_class.data(), 40, how);
+  const auto after = parameters(*a);
+  ASSERT_EQ(after.size(), before.size());
+  EXPECT_NE(encoder_of(*a), eyes);
+  // tensors of the encoder are the last
+  EXPECT_TRUE(std::equal(before.begin(), before.end() - static_cast<long>(eyes.size()), after.begin()));
+  how.num_labels = 1;
+  const auto text = [&] {
+    return thrown([&] { a->pretrain(world.clouds(), world.point_class.data(), 40, how); }).text;
+  };
+  EXPECT_EQ(text(), "num_labels: 1 is outside [2, 64]");
+  how.num_labels = 2, world.point_class[30] = 2;
+  EXPECT_EQ(text(), "label: row 1 has 2, outside [0, 2)");
+  world.draw();
+  world.decide(*a);
+  EXPECT_EQ(text(), "pretrain: only between epochs; this horizon has begun");
+}
