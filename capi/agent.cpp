@@ -16,8 +16,26 @@ rdm_result rdm_agent_config_init(rdm_agent_config* c, size_t size) {
   });
 }
 
+namespace {
+rdm_pretrain_config default_pretrain() {
+  rdm_pretrain_config d{};
+  d.epochs = 20;
+  d.batch_rows = 16;
+  d.learning_rate = 1e-3;
+  d.validation = 0.1;
+  return d;
+}
+}  // namespace
+
+rdm_result rdm_pretrain_config_init(rdm_pretrain_config* how, size_t size) {
+  return call(nullptr,
+              [&] { init_struct(how, size, sizeof(rdm_pretrain_config), default_pretrain(), "how"); });
+}
+
 #if RDM_WITH_LEARN
 namespace {
+
+constexpr int32_t kMaxPretrainRows = 1 << 20;
 
 constexpr int32_t kMaxValueRows = 1 << 24;  // of rdm_agent_values
 
@@ -147,6 +165,49 @@ rdm_result rdm_agent_act(rdm_agent* a, const float* obs, int32_t mode, float* ac
     if (mode != RDM_SAMPLE && mode != RDM_MEAN)
       fail(Code::kRange, "mode: %d is not RDM_SAMPLE or RDM_MEAN", mode);
     a->agent->act(obs, mode == RDM_SAMPLE, action);
+  });
+}
+
+rdm_result rdm_agent_act_points(rdm_agent* a, const float* obs, const rdm_points* points, int32_t mode,
+                                float* action) {
+  return call(text_of(a), [&] {
+    need_handle(a);
+    need(obs, "obs");
+    need(action, "action");
+    if (mode != RDM_SAMPLE && mode != RDM_MEAN)
+      fail(Code::kRange, "mode: %d is not RDM_SAMPLE or RDM_MEAN", mode);
+    if (!a->agent->eyes().points) fail(Code::kState, "points: the agent has no encoder");
+    a->agent->act(obs, mode == RDM_SAMPLE, action, read_points(points, a->agent->eyes()));
+  });
+}
+
+rdm_result rdm_agent_pretrain(rdm_agent* a, const rdm_points* points, const uint8_t* label, int32_t rows,
+                              const rdm_pretrain_config* how, rdm_pretrain_report* io) {
+  return call(text_of(a), [&] {
+    need_handle(a);
+    need(label, "label");
+    const auto in = read_struct(how, sizeof(rdm_pretrain_config), default_pretrain(), "how");
+    if (io) check_out(io, sizeof(rdm_pretrain_report), "io");
+    if (rows < 1 || rows > kMaxPretrainRows)
+      fail(Code::kRange, "rows: %d is outside [1, %d]", rows, kMaxPretrainRows);
+    if (!a->agent->eyes().points) fail(Code::kState, "pretrain: the agent has no encoder");
+    PretrainOptions o;
+    o.num_labels = in.num_labels;
+    o.epochs = in.epochs;
+    o.batch_rows = in.batch_rows;
+    o.learning_rate = in.learning_rate;
+    o.validation = in.validation;
+    o.seed = in.seed;
+    const PretrainReport r = a->agent->pretrain(read_points(points, a->agent->eyes()), label, rows, o);
+    if (!io) return;
+    rdm_pretrain_report out{};
+    out.train_rows = r.train_rows;
+    out.validation_rows = r.validation_rows;
+    out.train_loss = r.train_loss;
+    out.validation_loss = r.validation_loss;
+    out.accuracy = r.accuracy;
+    out.most_common = r.most_common;
+    write_struct(io, out, sizeof(rdm_pretrain_report), "io");
   });
 }
 

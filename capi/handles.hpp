@@ -78,6 +78,8 @@ struct rdm_policy {
 };
 
 namespace rdm::capi {
+// A host's clouds for an encoder; rows of them are not looked at.
+PointRows read_points(const rdm_points* points, const PointNetShape& eyes);
 // As rdm_policy_check; the struct is read already.
 void check_policy(const PolicyView& v, const rdm_spec& spec);
 }  // namespace rdm::capi

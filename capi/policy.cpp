@@ -39,22 +39,62 @@ struct PolicyTensor {
   const char* name;  // static
   const float* data;
   int32_t rows, cols;
-  // of a policy that sees a part of the row: `data` has but the seen ones of cols (rows, where that is 1)
+  // of a policy that sees a part of the row: `data` has but the seen ones of cols (rows, where that is 1),
+  // then those that are none of the row's
   bool part = false;
-  float unseen = 0;  // what stands for the others
+  float unseen = 0;                        // what stands for the others
+  const int16_t* millimetres = nullptr;    // in the place of data: points of the example
+  const unsigned char* numbers = nullptr;  // in the place of data: their classes
 };
 
 // All that the tensor is, [rows][cols].
 void copy_tensor(const PolicyView& v, const PolicyTensor& t, float* out) {
   const size_t size = static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols);
+  for (size_t i = 0; t.millimetres && i < size; ++i)
+    out[i] = static_cast<float>(static_cast<double>(v.eyes.origin[i % 3]) + 0.001 * t.millimetres[i]);
+  for (size_t i = 0; t.numbers && i < size; ++i) out[i] = t.numbers[i];
+  if (t.millimetres || t.numbers) return;
   if (!t.part) {
     std::copy(t.data, t.data + size, out);
     return;
   }
   std::fill_n(out, size, t.unseen);
-  const auto seen = static_cast<size_t>(v.actor.in), row = static_cast<size_t>(v.obs_dim());
-  for (size_t r = 0; r < size / row; ++r)
-    for (size_t i = 0; i < seen; ++i) out[r * row + static_cast<size_t>(v.columns[i])] = t.data[r * seen + i];
+  const auto entries = static_cast<size_t>(v.entries()), dim = static_cast<size_t>(v.obs_dim());
+  const size_t row = t.cols > 1 ? static_cast<size_t>(t.cols) : dim, features = row - dim;
+  for (size_t r = 0; r < size / row; ++r) {
+    const float* from = t.data + r * (entries + features);
+    for (size_t i = 0; i < entries; ++i) out[r * row + static_cast<size_t>(v.columns[i])] = from[i];
+    std::copy_n(from + entries, features, out + r * row + dim);
+  }
+}
+
+// Those of what sees points.
+bool eyes_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
+  static constexpr const char* kWeights[] = {"encoder.0.weight", "encoder.1.weight", "encoder.2.weight",
+                                             "encoder.3.weight"};
+  static constexpr const char* kBiases[] = {"encoder.0.bias", "encoder.1.bias", "encoder.2.bias",
+                                            "encoder.3.bias"};
+  const PointNetShape& eyes = v.eyes;
+  const MlpShape& s = eyes.mlp;
+  if (!eyes.points) return false;
+  if (i < 2 * s.num_layers()) {
+    const int32_t l = i / 2;
+    const bool weight = i % 2 == 0;
+    *out = {weight ? kWeights[l] : kBiases[l],
+            v.eyes_params + (weight ? s.weight_offset(l) : s.bias_offset(l)), s.layer_out(l),
+            weight ? s.layer_in(l) : 1};
+    return true;
+  }
+  PolicyTensor points = {"example.points", nullptr, eyes.points, 3};
+  points.millimetres = v.example_points;
+  PolicyTensor classes = {"example.point_class", nullptr, eyes.points, 1};
+  classes.numbers = v.example_classes;
+  const PolicyTensor rest[] = {
+      {"encoder.origin", eyes.origin, 3, 1}, {"encoder.range", &eyes.range, 1, 1}, points, classes};
+  const int32_t at = i - 2 * s.num_layers();
+  if (at >= (eyes.classes ? 4 : 3)) return false;
+  *out = rest[at];
+  return true;
 }
 
 // The i-th block of numbers of a policy file; false past the end.
@@ -72,8 +112,8 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
     if (i % 2)
       *out = {kBiases[l], v.params + s.bias_offset(l), s.layer_out(l), 1};
     else
-      *out = {kWeights[l], v.params + s.weight_offset(l), s.layer_out(l), part ? v.obs_dim() : s.layer_in(l),
-              part};
+      *out = {kWeights[l], v.params + s.weight_offset(l), s.layer_out(l),
+              part ? v.obs_dim() + v.eyes.features() : s.layer_in(l), part};
     return true;
   }
   const PolicyTensor std_bounds = {"actor.log_std_bounds", v.std_bounds, 2, 1};
@@ -86,12 +126,13 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
                                      {"normalizer.scale", v.scale, v.obs_dim(), 1, part, 1},
                                      {"normalizer.clip", &v.clip, 1, 1}};
   const auto rest = static_cast<size_t>(i - 2 * s.num_layers());
+  const size_t known = std::size(always) + (v.clip > 0 ? std::size(normalizer) : 0);
   if (rest < std::size(always))
     *out = always[rest];
-  else if (v.clip > 0 && rest < std::size(always) + std::size(normalizer))
+  else if (rest < known)
     *out = normalizer[rest - std::size(always)];
   else
-    return false;
+    return eyes_tensor_at(v, static_cast<int32_t>(rest - known), out);
   return true;
 }
 
@@ -141,9 +182,12 @@ rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
     info.control_dt = v.control_dt;
     info.noise_correlation = v.noise_correlation;
     info.layout_hash = v.layout_hash;
-    info.num_params = v.actor.num_params();
+    info.num_params = v.actor.num_params() + v.eyes.num_params();
     info.task = v.task;
     info.activation = activation_name(v.actor.activation);
+    info.num_points = v.eyes.points;
+    info.num_point_classes = v.eyes.classes;
+    info.num_features = v.eyes.features();
     write_struct(io, info, offsetof(rdm_policy_info, activation), "io");
   });
 }
@@ -152,20 +196,48 @@ size_t rdm_policy_scratch(const rdm_policy* p, int32_t rows) {
   return is_handle(p) && rows > 0 ? p->policy->scratch_bytes(rows) + kScratchSlack : 0;
 }
 
+namespace {
+void act(const Policy& policy, const float* obs, const PointRows& clouds, int32_t rows, const float* noise,
+         float* action, void* scratch, size_t scratch_bytes) {
+  need(action, "action");
+  need(scratch, "scratch");
+  scratch = aligned_scratch(scratch, scratch_bytes, policy.scratch_bytes(rows));
+  const PolicyView& v = policy.view();
+  need_finite(obs, rows, v.obs_dim(), "obs");
+  if (noise) need_finite(noise, rows, v.action_dim(), "noise");
+  policy.act(obs, rows, noise, action, scratch, clouds);
+  need_finite(action, rows, v.action_dim(), "action: the network overflows on these observations");
+}
+void need_rows(int32_t rows) {
+  if (rows < 1) fail(Code::kRange, "rows: %d is less than 1", rows);
+}
+}  // namespace
+
 rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, const float* noise,
                           float* action, void* scratch, size_t scratch_bytes) {
   return call(nullptr, [&] {
     need_handle(p);
     need(obs, "obs");
-    need(action, "action");
-    need(scratch, "scratch");
-    if (rows < 1) fail(Code::kRange, "rows: %d is less than 1", rows);
-    scratch = aligned_scratch(scratch, scratch_bytes, p->policy->scratch_bytes(rows));
-    const PolicyView& v = p->policy->view();
-    need_finite(obs, rows, v.obs_dim(), "obs");
-    if (noise) need_finite(noise, rows, v.action_dim(), "noise");
-    p->policy->act(obs, rows, noise, action, scratch);
-    need_finite(action, rows, v.action_dim(), "action: the network overflows on these observations");
+    need_rows(rows);
+    if (p->policy->view().eyes.points)
+      fail(Code::kState, "policy: it sees points, which come with rdm_policy_act_points");
+    act(*p->policy, obs, {}, rows, noise, action, scratch, scratch_bytes);
+  });
+}
+
+rdm_result rdm_policy_act_points(const rdm_policy* p, const float* obs, const rdm_points* points,
+                                 int32_t rows, const float* noise, float* action, void* scratch,
+                                 size_t scratch_bytes) {
+  return call(nullptr, [&] {
+    need_handle(p);
+    need(obs, "obs");
+    need_rows(rows);
+    const PointNetShape& eyes = p->policy->view().eyes;
+    if (!eyes.points) fail(Code::kState, "policy: it sees no points");
+    const PointRows clouds = read_points(points, eyes);
+    need_finite(clouds.metres, rows, 3 * eyes.points, "points");
+    need_classes(eyes, clouds, static_cast<size_t>(rows));
+    act(*p->policy, obs, clouds, rows, noise, action, scratch, scratch_bytes);
   });
 }
 
@@ -210,6 +282,17 @@ rdm_result rdm_policy_columns(const rdm_policy* p, int32_t* columns, int32_t cap
     for (int32_t i = 0; i < std::min(capacity, v.actor.in); ++i) columns[i] = v.columns ? v.columns[i] : i;
     *count = v.actor.in;
   });
+}
+
+PointRows rdm::capi::read_points(const rdm_points* points, const PointNetShape& eyes) {
+  const auto in = read_struct(points, sizeof(rdm_points), rdm_points{}, "points");
+  need(in.points, "points.points");
+  if (in.num_points != eyes.points)
+    fail(Code::kRange, "points.num_points: %d, the encoder sees %d", in.num_points, eyes.points);
+  PointRows clouds;
+  clouds.metres = in.points;
+  clouds.classes = eyes.classes ? in.point_class : nullptr;
+  return clouds;
 }
 
 void rdm::capi::check_policy(const PolicyView& v, const rdm_spec& s) {

@@ -59,8 +59,25 @@ void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat, bool raw_costs)
   }
 }
 
+// What the pool's worlds show to an agent with eyes.
+PointRows clouds_of(const Agent& agent, const Pool& pool) {
+  const PointNetShape& eyes = agent.eyes();
+  PointRows clouds;
+  if (!eyes.points) return clouds;
+  clouds.metres = pool.sensed().points;
+  if (!clouds.metres)
+    fail(Code::kState, "pool: it has no points for the agent's encoder: option modality=points");
+  if (pool.sense().num_points != eyes.points)
+    fail(Code::kArgument, "encoder_points: the agent's encoder sees %d, the pool has %d", eyes.points,
+         pool.sense().num_points);
+  if (eyes.classes)
+    fail(Code::kUnsupported, "encoder_classes: a pool's points have none; rdm_agent_act_points takes them");
+  return clouds;
+}
+
 void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
   check_match(agent.config(), agent.action_repeat(), pool);
+  const PointRows clouds = clouds_of(agent, pool);
   if (agent.missing() != agent.horizon())
     fail(Code::kState, "agent: a horizon was begun by hand: finish it with record and update");
   const Buffers& b = pool.buffers();
@@ -76,7 +93,7 @@ void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
   try {
     while (agent.missing() > 0) {
       agent.check_cancel();
-      agent.act(b.obs, true, b.action);
+      agent.act(b.obs, true, b.action, clouds);
       hold_action(pool, d, agent.action_repeat() / pool.repeat(), agent.raw_costs());
       agent.record(t);
     }

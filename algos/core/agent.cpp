@@ -18,6 +18,12 @@ constexpr uint32_t kVersion = 1;
 constexpr int32_t kMaxEpochs = 1 << 30;                // of a state that loads; as many more do not overflow
 constexpr double kEntropyOfUnit = 1.4189385332046727;  // of a normal with deviation 1
 
+bool same_network(const PointNetShape& a, const PointNetShape& b) {
+  return a.classes == b.classes && a.mlp.num_hidden == b.mlp.num_hidden && a.mlp.out == b.mlp.out &&
+         a.mlp.activation == b.mlp.activation &&
+         std::equal(a.mlp.hidden, a.mlp.hidden + a.mlp.num_hidden, b.mlp.hidden);
+}
+
 }  // namespace
 
 size_t Agent::memory(const AgentConfig& config) {
@@ -113,11 +119,11 @@ bool Agent::raw_costs() const {
   return std::strcmp(resolved_.options.text("cost_signal"), "raw") == 0;
 }
 
-void Agent::act(const float* obs, bool sample, float* action) {
+void Agent::act(const float* obs, bool sample, float* action, const PointRows& clouds) {
   const FpMode mode;
   if (sample && imitation_.wanted() && !imitation_.has_rows())
     fail(Code::kState, "act: option imitation needs a recording: rdm_agent_set_recording comes first");
-  collector_.act(obs, sample, action);
+  collector_.act(obs, sample, action, clouds);
 }
 
 void Agent::values(const float* obs, int32_t rows, float* value, float* cost) const {
@@ -240,10 +246,20 @@ void Agent::need_idle(const char* call) const {
   if (!collector_.idle()) fail(Code::kState, "%s: only between epochs; this horizon has begun", call);
 }
 
+void Agent::need_clouds(const DemoRows& demo) const {
+  if (!resolved_.sees() || demo.rows < 1) return;
+  if (!demo.clouds.points)
+    fail(Code::kArgument, "recording: without points, which the agent's encoder needs");
+  if (resolved_.eyes.classes && !demo.clouds.classes)
+    fail(Code::kArgument, "recording: its points have no classes, the encoder sees %d",
+         resolved_.eyes.classes);
+}
+
 CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {
   const FpMode mode;
   const HostScope scope(resolved_.config.hooks);
   need_idle("clone");
+  need_clouds(demo);
   check_cancel();
   const CloneReport report =
       clone_actor(resolved_, demo, how, regression_, nets_, collector_.normalizer(), cancel_);
@@ -251,8 +267,29 @@ CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {
   return report;
 }
 
+PretrainReport Agent::pretrain(const PointRows& clouds, const uint8_t* label, int32_t rows,
+                               const PretrainOptions& how) {
+  const FpMode mode;
+  const HostScope scope(resolved_.config.hooks);
+  need_idle("pretrain");
+  const PointNetShape& eyes = resolved_.eyes;
+  if (!eyes.points) fail(Code::kState, "pretrain: the agent has no encoder");
+  check_rows("points", clouds.metres, nullptr, rows, eyes.row_points());
+  need_classes(eyes, clouds, static_cast<size_t>(rows));
+  check_cancel();
+  const size_t count = static_cast<size_t>(rows) * static_cast<size_t>(eyes.points);
+  Vector<int16_t> points(3 * count);
+  quantize_points(eyes, clouds.metres, count, points.data());
+  PointRows kept;
+  kept.points = points.data(), kept.classes = clouds.classes;
+  const PretrainReport report = pretrain_eyes(resolved_, kept, label, rows, how, nets_, workers_, cancel_);
+  restart_average(nets_);
+  return report;
+}
+
 void Agent::set_recording(const DemoRows& demo, uint64_t mark) {
   need_idle("set_recording");
+  need_clouds(demo);
   imitation_.set(demo, mark, resolved_.config.hooks);
 }
 
@@ -274,14 +311,21 @@ void Agent::load_policy(const PolicyView& p, double samples) {
     differ("hidden");
   if (p.actor.activation != actor.activation) differ("activation");
   const int32_t* columns = nets_.columns[Networks::kActor];
+  const PointNetShape &eyes = nets_.eyes, &theirs = p.eyes;
+  if (theirs.points != eyes.points) differ("encoder_points");
+  if (!same_network(theirs, eyes)) differ("encoder");
+  if (!std::equal(eyes.origin, eyes.origin + 3, theirs.origin) || eyes.range != theirs.range)
+    differ("encoder_origin, or encoder_range,");
+  const int32_t entries = nets_.actor_entries();
   if (p.actor.in != actor.in || (p.columns != nullptr) != (columns != nullptr) ||
-      (columns && !std::equal(columns, columns + actor.in, p.columns)))
+      (columns && !std::equal(columns, columns + entries, p.columns)))
     differ("actor_obs");
   Normalizer& n = collector_.normalizer();
   if ((p.clip > 0) != collector_.normalizes() || (p.clip > 0 && p.clip != n.clip))
     differ("normalize_obs, or obs_clip,");
 
   std::copy_n(p.params, actor.num_params(), nets_.net(Networks::kActor));
+  if (eyes.points) std::copy_n(p.eyes_params, eyes.num_params(), nets_.eyes_net());
   if (!nets_.state_std()) std::copy_n(p.log_std, nets_.action_dim, nets_.log_std());
   clamp_log_std(nets_);
   restart_average(nets_);
@@ -293,7 +337,7 @@ void Agent::load_policy(const PolicyView& p, double samples) {
   n.count = samples;
   std::fill_n(n.mean, n.dim, 0.0);
   std::fill_n(n.m2, n.dim, samples - 1);  // of entries that the policy does not see: as they are
-  for (int32_t i = 0; i < actor.in; ++i) {
+  for (int32_t i = 0; i < entries; ++i) {
     const int32_t at = columns ? columns[i] : i;
     const double std = 1 / static_cast<double>(p.scale[i]);  // in double: refresh finds the same float
     n.mean[at] = static_cast<double>(p.shift[i]);
@@ -406,17 +450,19 @@ void Agent::write_policy_file(Writer& out) {
   v.columns = nets_.columns[Networks::kActor];
   v.row_dim = nets_.obs_dim;
   v.params = nets_.kept_actor();
+  v.eyes = nets_.eyes;
+  v.eyes_params = v.params + nets_.eyes_offset();
   if (nets_.state_std())
     v.state_std = true, v.std_bounds[0] = nets_.std_low, v.std_bounds[1] = nets_.std_high;
   else
     v.log_std = nets_.kept_log_std();
   v.shift = n.shift;
   v.scale = n.scale;
-  Vector<float> seen(v.columns ? 2 * static_cast<size_t>(v.actor.in) : 0);
+  Vector<float> seen(v.columns ? 2 * static_cast<size_t>(v.entries()) : 0);
   if (v.columns) {
-    float* const scale = seen.data() + v.actor.in;
-    pick_columns(n.shift, 1, n.dim, v.columns, v.actor.in, seen.data());
-    pick_columns(n.scale, 1, n.dim, v.columns, v.actor.in, scale);
+    float* const scale = seen.data() + v.entries();
+    pick_columns(n.shift, 1, n.dim, v.columns, v.entries(), seen.data());
+    pick_columns(n.scale, 1, n.dim, v.columns, v.entries(), scale);
     v.shift = seen.data(), v.scale = scale;
   }
   v.clip = collector_.normalizes() ? n.clip : 0;

@@ -33,6 +33,7 @@
 #include "algos/core/schedule.hpp"
 #include "algos/imitation/clone.hpp"
 #include "algos/imitation/imitation.hpp"
+#include "algos/imitation/pretrain.hpp"
 #include "algos/rollout/collector.hpp"
 
 namespace rdm {
@@ -52,7 +53,9 @@ class Agent {
   // Adds what this algorithm needs to an arena, measuring or real.
   virtual void carve(Arena& arena);
 
-  void act(const float* obs, bool sample, float* action);
+  // clouds [num_envs], in metres: of an agent with eyes.
+  void act(const float* obs, bool sample, float* action, const PointRows& clouds = {});
+  const PointNetShape& eyes() const { return resolved_.eyes; }
   void record(const Transition& t);
   // As the critics see any rows, in the units of rewards and costs: value [rows] and cost
   // [rows][num_limited()], of the cost columns limited_column(i). Error(kUnsupported) where those are scaled
@@ -85,6 +88,9 @@ class Agent {
 
   // Between epochs; Error(kState) inside a horizon.
   CloneReport clone(const DemoRows& demo, const CloneOptions& how);
+  // clouds [rows] in metres, label [rows][points]. Error(kState) inside a horizon or without eyes.
+  PretrainReport pretrain(const PointRows& clouds, const uint8_t* label, int32_t rows,
+                          const PretrainOptions& how);
   // Copies the rows for the imitation term; mark: their fingerprint. rows 0: none.
   void set_recording(const DemoRows& demo, uint64_t mark);
   // Actor and statistics become a frozen policy's, which count for so many samples; Error(kArgument) names
@@ -148,6 +154,7 @@ class Agent {
  private:
   void warm_up();
   void need_idle(const char* call) const;
+  void need_clouds(const DemoRows& demo) const;
   // action_std and entropy: of the policy now, or with std_mode=state as it was on the epoch's data.
   void fill_spread(Epoch& e) const;
   void fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const;

@@ -18,15 +18,12 @@ Workspace carve_workspace(Arena& arena, const ResolvedAgentConfig& resolved, siz
   workspace.rows = resolved.chunk_rows;
   const auto rows = static_cast<size_t>(workspace.rows);
   const auto widest = static_cast<size_t>(std::max(resolved.actor.out, resolved.cost_critic.out));
-  workspace.actor = carve_mlp_scratch(arena, resolved.actor, workspace.rows);
+  workspace.actor = carve_actor_scratch(arena, resolved, workspace.rows);
   workspace.critic = covers(resolved.actor, resolved.cost_critic)
                          ? workspace.actor
                          : carve_mlp_scratch(arena, resolved.cost_critic, workspace.rows);
-  const auto pick = [&](const Vector<int32_t>& columns, MlpScratch& scratch) {
-    if (!columns.empty() && !scratch.picked) scratch.picked = arena.make<float>(rows * columns.size());
-  };
-  pick(resolved.actor_columns, workspace.actor);
-  pick(resolved.critic_columns, workspace.critic);
+  const size_t picked = resolved.critic_columns.size();
+  workspace.critic.picked = picked ? arena.make<float>(rows * picked) : nullptr;
   workspace.obs = arena.make<float>(rows * resolved.obs_dim());
   workspace.out = arena.make<float>(rows * widest);
   workspace.dout = arena.make<float>(rows * widest);

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "algos/core/resolved_config.hpp"
+#include "algos/core/networks.hpp"
 #include "base/workers.hpp"
 
 namespace rdm {
@@ -32,7 +32,8 @@ struct Surrogate {
 // Workspace of one chunk in flight.
 struct Workspace {
   int32_t rows = 0;
-  MlpScratch actor, critic;
+  ActorScratch actor;
+  MlpScratch critic;
   float* obs = nullptr;                   // [rows][obs_dim]
   float *out = nullptr, *dout = nullptr;  // [rows][widest output]
   float* grad = nullptr;                  // [num_params]

@@ -16,15 +16,18 @@ constexpr const char* kTouch[] = {"*joint_position", "*joint_velocity", "*joint_
                                   "*base_position",  "*base_angles",    "*base_rotation", "*base_velocity",
                                   "*base_spin",      "*action",         "accelerometer",  "gyro",
                                   "magnetometer",    "velocimeter"};
+constexpr const char* kGoal[] = {"goal.*"};
 constexpr const char* kForces[] = {"*_tip_force", "*_tip_torque"};
 
-// Fields of `add` but for those of `less`.
+// Fields of `add` and `too` but for those of `less`.
 struct Preset {
   const char* name;
-  std::span<const char*const> add, less;
+  std::span<const char*const> add, less, too;
 };
-constexpr Preset kPresets[] = {
-    {"state", kState, {}}, {"touch", kTouch, {}}, {"proprioception", kTouch, kForces}};
+constexpr Preset kPresets[] = {{"state", kState, {}, {}},
+                               {"vision", kTouch, {}, kGoal},
+                               {"touch", kTouch, {}, {}},
+                               {"proprioception", kTouch, kForces, {}}};
 
 bool among(std::span<const char* const> patterns, const char* name) {
   return std::any_of(patterns.begin(), patterns.end(), [&](const char* p) { return name_matches(p, name); });
@@ -61,8 +64,10 @@ class Selection {
       if (!same_name(p.name, word)) continue;
       if (p.add.data() == kState) return set_all(seen);
       need_fields(word);
-      if (set_where(seen, [&](const char* name) { return among(p.add, name) && !among(p.less, name); }))
-        return;
+      const auto meant = [&](const char* name) {
+        return (among(p.add, name) || among(p.too, name)) && !among(p.less, name);
+      };
+      if (set_where(seen, meant)) return;
       fail(Code::kNotFound, "%s: %s: the observation has no such field", key_, p.name);
     }
     need_fields(word);

@@ -1,9 +1,11 @@
 // Which entries of an observation a network sees: options actor_obs and critic_obs.
 //
 // A list of words separated by commas, read from the left: a field's name or a pattern with '*' adds entries,
-// with '!' before it takes them away; a list that begins so has all at first. Three words are lists by
+// with '!' before it takes them away; a list that begins so has all at first. Four words are lists by
 // themselves where no field has their name: state is all, proprioception what the robot's own joints, bases
-// and last action tell (of small worlds the inertial sensors), touch that and the fingertips' forces.
+// and last action tell (of small worlds the inertial sensors), touch that and the fingertips' forces, vision
+// touch and where the goal is: all that stands beside a cloud, and nothing of where an object is or how it
+// moves or differs from its goal.
 #pragma once
 #include <cstdint>
 

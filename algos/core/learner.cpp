@@ -86,7 +86,8 @@ BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const int32_
 
 void Learner::policy_gradient(Workspace& workspace, const PolicyLoss& policy, const int32_t* order,
                               int32_t rows, float* grad) const {
-  nets_->forward(Networks::kActor, workspace.obs, rows, workspace.actor, workspace.out);
+  const PointRows clouds = rollout_->clouds(order);
+  nets_->forward_actor(workspace.obs, clouds, rows, workspace.actor, workspace.out);
   std::memset(grad, 0, nets_->std_size * sizeof(float));
   const PolicyChunk chunk = chunk_of(workspace, order, rows, grad);
   const size_t dim = rollout_->action_dim;
@@ -95,7 +96,7 @@ void Learner::policy_gradient(Workspace& workspace, const PolicyLoss& policy, co
     std::fill_n(chunk.dlog_std_of(i), dim, policy.explores() ? -scale_ * static_cast<float>(entropy_) : 0.0f);
   policy.add(chunk);
   if (state) nets_->gate_std(workspace.out, rows, workspace.dout);
-  nets_->backward(Networks::kActor, workspace.obs, rows, workspace.actor, workspace.dout, grad);
+  nets_->backward_actor(workspace.obs, clouds, rows, workspace.actor, workspace.dout, grad);
 }
 
 // Squared error against the targets, or with value_clip the larger one of it and of that of a value held near
@@ -177,7 +178,7 @@ void Learner::measure_rows(Workspace& workspace, const int32_t* order, int32_t r
   const auto dim = static_cast<int32_t>(r.action_dim);
   const auto costs = static_cast<size_t>(r.num_costs);
   gather_obs(r, order, 1, rows, workspace.obs);
-  nets_->forward(Networks::kActor, workspace.obs, rows, workspace.actor, workspace.out);
+  nets_->forward_actor(workspace.obs, r.clouds(order), rows, workspace.actor, workspace.out);
   workspace.surrogate = Surrogate();
   const PolicyChunk chunk = chunk_of(workspace, order, rows, nullptr);
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {

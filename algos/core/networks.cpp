@@ -10,30 +10,18 @@
 namespace rdm {
 namespace {
 constexpr const char* kNames[] = {"actor", "reward_critic", "cost_critic"};
+constexpr uint32_t kEyesStream = 3;  // of initial weights, behind those of the three networks
 
 // Bound on what a network of a loaded state may give: far beyond any that learns, and a float still holds its
 // square.
 constexpr double kMaxOutput = 1e18;
 
-// Bound on the magnitude of every sum within a network whose inputs are within +-bound: layer by layer the
-// largest sum of a row's magnitudes. at: where its parameters begin.
-double largest_output(const MlpShape& s, const StateView<float>& params, size_t at, double bound) {
-  double most = bound;
-  for (int32_t l = 0; l < s.num_layers(); ++l) {
-    const auto rows = static_cast<size_t>(s.layer_out(l)), cols = static_cast<size_t>(s.layer_in(l));
-    double widest = 0;
-    for (size_t i = 0; i < rows; ++i) {
-      double sum = 0;
-      for (size_t j = 0; j < cols; ++j)
-        sum += std::abs(static_cast<double>(params[at + s.weight_offset(l) + i * cols + j]));
-      widest =
-          std::max(widest, bound * sum + std::abs(static_cast<double>(params[at + s.bias_offset(l) + i])));
-    }
-    most = std::max(most, widest);
-    bound = s.activation == Activation::kTanh ? 1 : std::max(1.0, widest);
-  }
-  return most;
-}
+// Numbers of a list from one on.
+struct From {
+  const StateView<float>& list;
+  size_t at;
+  float operator[](size_t i) const { return list[at + i]; }
+};
 
 // Moments that some gradients can have left: with m = sum (1 - a) a^k g_k and v = sum (1 - b) b^k g_k^2 it is
 // |m| <= sqrt(v) (1 - a) / sqrt((1 - b) (1 - a^2 / b)) = 7.27 sqrt(v) (Cauchy and Schwarz), but for squares
@@ -54,6 +42,8 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   n.columns[Networks::kActor] = list(resolved.actor_columns);
   n.columns[Networks::kReward] = n.columns[Networks::kCost] = list(resolved.critic_columns);
   n.obs_dim = resolved.config.obs_dim;
+  n.eyes = resolved.eyes;
+  n.frozen = resolved.frozen;
   n.count = resolved.num_limited > 0 ? 3 : 2;
   n.action_dim = resolved.config.action_dim;
   n.std_size = resolved.state_std() ? 0 : (resolved.action_dim() + 15) / 16 * 16;
@@ -63,7 +53,8 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   n.input_bound = resolved.options.flag("normalize_obs") ? resolved.options.number("obs_clip") : 1e3;
   for (int32_t i = 0; i < n.count; ++i) {
     n.block[i].offset = n.size;
-    n.block[i].size = n.shape[i].num_params() + (i == Networks::kActor ? n.std_size : 0);
+    n.block[i].size = n.shape[i].num_params();
+    if (i == Networks::kActor) n.block[i].size += n.std_size + n.eyes.num_params();
     n.size += (n.block[i].size + 15) / 16 * 16;
   }
   n.params = arena.make<float>(n.size);
@@ -76,12 +67,74 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   return n;
 }
 
+ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolved, int32_t rows) {
+  ActorScratch s;
+  const auto n = static_cast<size_t>(rows);
+  static_cast<MlpScratch&>(s) = carve_mlp_scratch(arena, resolved.actor, rows);
+  if (!resolved.actor_columns.empty() || resolved.sees())
+    s.picked = arena.make<float>(n * static_cast<size_t>(resolved.actor.in));
+  if (!resolved.sees()) return s;
+  const auto features = static_cast<size_t>(resolved.eyes.features());
+  s.eyes = carve_pointnet_scratch(arena, resolved.eyes);
+  s.winner = arena.make<int32_t>(n * features);
+  s.dfeatures = arena.make<float>(n * features);
+  return s;
+}
+
+void Networks::forward_actor_with(const float* weights, const float* x, const PointRows& clouds, int32_t rows,
+                                  const ActorScratch& scratch, float* y) const {
+  if (!eyes.points) return forward_with(weights, kActor, x, rows, scratch, y);
+  const size_t in = feature_step(), own = static_cast<size_t>(actor_entries()), width = in - own;
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
+    const float* row = x + i * static_cast<size_t>(obs_dim);
+    float* to = scratch.picked + i * in;
+    if (columns[kActor])
+      pick_columns(row, 1, obs_dim, columns[kActor], actor_entries(), to);
+    else
+      std::copy_n(row, own, to);
+    if (clouds.features) std::copy_n(clouds.features + clouds.row(i) * width, width, to + own);
+  }
+  if (!clouds.features)
+    pointnet_forward(eyes, weights + eyes_offset(), clouds, rows, scratch.eyes, scratch.picked + own, in,
+                     scratch.winner);
+  mlp_forward(shape[kActor], weights, scratch.picked, rows, scratch, y);
+  if (state_std()) bound_std(rows, y);
+}
+
+void Networks::backward_actor(const float* x, const PointRows& clouds, int32_t rows,
+                              const ActorScratch& scratch, const float* dy, float* grad) const {
+  if (!eyes.points) return backward(kActor, x, rows, scratch, dy, grad);
+  float* const net_grad = grad + net_offset(kActor);
+  float* const eyes_grad = net_grad + eyes_offset();
+  mlp_backward(shape[kActor], net(kActor), scratch.picked, rows, scratch, dy, net_grad, actor_entries(),
+               frozen ? nullptr : scratch.dfeatures);
+  if (frozen)
+    std::fill_n(eyes_grad, eyes.num_params(), 0.0f);
+  else
+    pointnet_backward(eyes, eyes_net(), clouds, rows, scratch.eyes, features(scratch), feature_step(),
+                      scratch.winner, scratch.dfeatures, eyes_grad);
+}
+
+void Networks::tangent_actor(const float* direction, const float* x, const PointRows& clouds, int32_t rows,
+                             const ActorScratch& scratch, float* dy) const {
+  if (!eyes.points) return tangent(kActor, direction, x, rows, scratch, dy);
+  if (!frozen)
+    pointnet_tangent(eyes, eyes_net(), direction + eyes_offset(), clouds, rows, scratch.eyes,
+                     features(scratch), feature_step(), scratch.winner, scratch.dfeatures);
+  mlp_tangent(shape[kActor], net(kActor), direction, scratch.picked, rows, scratch, dy, actor_entries(),
+              frozen ? nullptr : scratch.dfeatures);
+}
+
 void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
   const Options& o = resolved.options;
   for (int32_t i = 0; i < n.count; ++i) {
     Stream stream(resolved.config.seed, static_cast<uint32_t>(i), Purpose::kInit);
     const double last = i == Networks::kActor ? o.number("last_layer_scale") : 1;
     mlp_init(n.shape[i], stream, static_cast<float>(last), n.net(i));
+  }
+  if (n.eyes.points) {
+    Stream stream(resolved.config.seed, kEyesStream, Purpose::kInit);
+    mlp_init(n.eyes.mlp, stream, 1, n.eyes_net());
   }
   const MlpShape& actor = n.shape[Networks::kActor];
   float* bias = n.net(Networks::kActor) + actor.bias_offset(actor.num_hidden);
@@ -139,21 +192,27 @@ void schedule_std(const Networks& n, const Options& o, int32_t done) {
 int32_t Networks::num_tensors() const {
   int32_t tensors = state_std() ? 0 : 1;
   for (int32_t i = 0; i < count; ++i) tensors += 2 * shape[i].num_layers();
-  return tensors;
+  return tensors + (eyes.points ? 2 * eyes.mlp.num_layers() : 0);
 }
 
 void Networks::visit(StateIo& io) {
+  // Bound on what the actor's network sees, its features too.
+  const auto input_of = [&](const StateView<float>& p, size_t at) {
+    if (!eyes.points) return input_bound;
+    return std::max(input_bound, mlp_bound(eyes.mlp, From{p, at + eyes_offset()}, largest_point(eyes)));
+  };
   io.section("NETS");
   const StateView<float> p = io.numbers(params, size, -kMaxOutput, kMaxOutput);
   for (int32_t i = 0; p && i < count; ++i)
-    io.require(largest_output(shape[i], p, net_offset(i), input_bound) <= kMaxOutput,
+    io.require(mlp_bound(shape[i], From{p, net_offset(i)},
+                         i == kActor ? input_of(p, std_size) : input_bound) <= kMaxOutput,
                "a network whose outputs may be too large");
   if (average) {
     io.section("MEAN");
     io.counter(*averaged);
     const StateView<float> a = io.numbers(average, block[kActor].size, -kMaxOutput, kMaxOutput);
     if (a)
-      io.require(largest_output(shape[kActor], a, std_size, input_bound) <= kMaxOutput,
+      io.require(mlp_bound(shape[kActor], From{a, std_size}, input_of(a, std_size)) <= kMaxOutput,
                  "an average whose outputs may be too large");
   }
   io.section("ADAM");
@@ -171,6 +230,13 @@ bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) 
     *out = {name, rows, cols, data};
     return true;
   };
+  const auto layer = [&](const char* net, const MlpShape& s, float* params) {
+    const int32_t l = index / 2;
+    const bool weight = index % 2 == 0;
+    std::snprintf(name, kTensorNameSize, "%s.%d.%s", net, l, weight ? "weight" : "bias");
+    return set(s.layer_out(l), weight ? s.layer_in(l) : 1,
+               params + (weight ? s.weight_offset(l) : s.bias_offset(l)));
+  };
   if (!n.state_std() && index-- == 0) {
     std::snprintf(name, kTensorNameSize, "actor.log_std");
     return set(n.action_dim, 1, n.log_std());
@@ -182,12 +248,9 @@ bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) 
       index -= tensors;
       continue;
     }
-    const int32_t l = index / 2;
-    const bool weight = index % 2 == 0;
-    std::snprintf(name, kTensorNameSize, "%s.%d.%s", kNames[i], l, weight ? "weight" : "bias");
-    float* at = n.net(i) + (weight ? s.weight_offset(l) : s.bias_offset(l));
-    return set(s.layer_out(l), weight ? s.layer_in(l) : 1, at);
+    return layer(kNames[i], s, n.net(i));
   }
+  if (n.eyes.points && index < 2 * n.eyes.mlp.num_layers()) return layer("encoder", n.eyes.mlp, n.eyes_net());
   return false;
 }
 

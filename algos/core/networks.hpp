@@ -1,5 +1,9 @@
 // The parameters that an agent learns: log standard deviation, actor, reward critic, cost critic, one vector.
 //
+// An actor with eyes (option encoder) sees its entries of the row and, behind them, the features of a cloud:
+// the encoder's parameters stand behind the actor's network, in the same block, and learn with it, or with
+// encoder_frozen stay as they are. Critics see rows alone.
+//
 // With std_mode=state there is no such deviation: the actor's network gives, behind each row's means, its log
 // deviations.
 #pragma once
@@ -15,12 +19,23 @@ struct Block {
   Adam adam;
 };
 
-// Order: actor (log_std padded to 16 with zeros, then the network), reward critic, cost critic.
+// Scratch of an actor: what its eyes need too. picked: the rows that its network sees, with features.
+struct ActorScratch : MlpScratch {
+  PointNetScratch eyes;
+  int32_t* winner = nullptr;   // [rows][features]
+  float* dfeatures = nullptr;  // [rows][features]
+};
+ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolved, int32_t rows);
+
+// Order: actor (log_std padded to 16 with zeros, then the network, then its eyes), reward critic, cost
+// critic.
 struct Networks {
   enum Index { kActor, kReward, kCost };
   MlpShape shape[3];
   const int32_t* columns[3] = {};  // [shape.in] entries of a row that the network sees; null: all
   int32_t obs_dim = 0;             // of a row
+  PointNetShape eyes;              // of the actor; points 0: none
+  bool frozen = false;             // eyes do not learn
   Block block[3];
   int32_t count = 0;    // 2 without cost critic
   size_t size = 0;      // of params
@@ -43,16 +58,34 @@ struct Networks {
   // The actor that others get to see: log deviations, then the network.
   const float* kept_log_std() const { return average ? average : params; }
   const float* kept_actor() const { return kept_log_std() + std_size; }
+  // Of the encoder's parameters behind those of the actor's network.
+  size_t eyes_offset() const { return shape[kActor].num_params(); }
+  float* eyes_net() const { return net(kActor) + eyes_offset(); }
+  // Entries of the row that the actor sees, before its features.
+  int32_t actor_entries() const { return shape[kActor].in - eyes.features(); }
   // y = network i of the rows x [rows][obs_dim], and the gradient of its block, grad laid out as params; x
   // and scratch as in the forward pass before. The actor's log deviations are those of the innovation, within
   // their bounds.
   void forward(int32_t i, const float* x, int32_t rows, const MlpScratch& scratch, float* y) const {
     forward_with(net(i), i, x, rows, scratch, y);
   }
-  // The same of the actor that others get to see.
-  void forward_kept(const float* x, int32_t rows, const MlpScratch& scratch, float* y) const {
-    forward_with(kept_actor(), kActor, x, rows, scratch, y);
+  // The same of an actor that may have eyes, for these clouds of the rows; and of the actor that others get
+  // to see.
+  void forward_actor(const float* x, const PointRows& clouds, int32_t rows, const ActorScratch& scratch,
+                     float* y) const {
+    forward_actor_with(net(kActor), x, clouds, rows, scratch, y);
   }
+  void forward_kept(const float* x, const PointRows& clouds, int32_t rows, const ActorScratch& scratch,
+                    float* y) const {
+    forward_actor_with(kept_actor(), x, clouds, rows, scratch, y);
+  }
+  void backward_actor(const float* x, const PointRows& clouds, int32_t rows, const ActorScratch& scratch,
+                      const float* dy, float* grad) const;
+  void tangent_actor(const float* direction, const float* x, const PointRows& clouds, int32_t rows,
+                     const ActorScratch& scratch, float* dy) const;
+  // Features of the rows in the scratch of the last forward pass, feature_step() apart.
+  const float* features(const ActorScratch& scratch) const { return scratch.picked + actor_entries(); }
+  size_t feature_step() const { return static_cast<size_t>(shape[kActor].in); }
   void backward(int32_t i, const float* x, int32_t rows, const MlpScratch& scratch, const float* dy,
                 float* grad) const {
     mlp_backward(shape[i], net(i), seen(i, x, scratch), rows, scratch, dy, grad + net_offset(i));
@@ -74,6 +107,8 @@ struct Networks {
     mlp_forward(shape[i], weights, seen(i, x, scratch), rows, scratch, y);
     if (i == kActor && state_std()) bound_std(rows, y);
   }
+  void forward_actor_with(const float* weights, const float* x, const PointRows& clouds, int32_t rows,
+                          const ActorScratch& scratch, float* y) const;
   const float* seen(int32_t i, const float* x, const MlpScratch& scratch) const {
     return columns[i] ? scratch.picked : x;
   }

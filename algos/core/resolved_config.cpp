@@ -61,11 +61,12 @@ Activation activation_of(const char* name) {
 }
 
 // "64,64" into widths; blanks are skipped.
-MlpShape parse_shape(const Options& o, const char* key, int32_t in, int32_t out) {
+MlpShape parse_shape(const Options& o, const char* key, int32_t in, int32_t out,
+                     const char* activation = "activation") {
   MlpShape s;
   s.in = in;
   s.out = out;
-  s.activation = activation_of(o.text("activation"));
+  s.activation = activation_of(o.text(activation));
   const char* p = o.text(key);
   while (*p == ' ') ++p;
   while (*p) {
@@ -107,6 +108,35 @@ void resolve_costs(ResolvedAgentConfig& resolved) {
          resolved.row->info.name, resolved.num_limited);
 }
 
+// "x,y,z" in m; blanks are skipped.
+void parse_origin(const char* text, float (&origin)[3]) {
+  const char* p = text;
+  for (int32_t k = 0; k < 3; ++k) {
+    char* end = nullptr;
+    origin[k] = std::strtof(p, &end);
+    while (*end == ' ') ++end;
+    if (end == p || *end != (k < 2 ? ',' : '\0'))
+      fail(Code::kArgument, "encoder_origin: '%s' is not three numbers such as 0,0,1", Quoted(text).text);
+    p = end + 1;
+  }
+}
+
+void resolve_eyes(ResolvedAgentConfig& resolved) {
+  const Options& o = resolved.options;
+  PointNetShape eyes;
+  eyes.classes = o.integer("encoder_classes");
+  eyes.mlp = parse_shape(o, "encoder", 3 + eyes.classes, 0, "encoder_activation");
+  if (eyes.mlp.num_hidden == 0) return;
+  int32_t& last = eyes.mlp.hidden[--eyes.mlp.num_hidden];
+  eyes.mlp.out = last, last = 0;
+  eyes.points = o.integer("encoder_points");
+  eyes.range = static_cast<float>(o.number("encoder_range"));
+  parse_origin(o.text("encoder_origin"), eyes.origin);
+  check_pointnet_shape(eyes);
+  resolved.eyes = eyes;
+  resolved.frozen = o.flag("encoder_frozen");
+}
+
 void resolve_networks(ResolvedAgentConfig& resolved) {
   const AgentConfig& c = resolved.config;
   const Options& o = resolved.options;
@@ -121,7 +151,8 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
   resolved.actor_columns = columns("actor_obs");
   resolved.critic_columns = columns("critic_obs");
   const int32_t actor_in = inputs(resolved.actor_columns), critic_in = inputs(resolved.critic_columns);
-  resolved.actor = parse_shape(o, "hidden", actor_in, outputs * c.action_dim);
+  resolve_eyes(resolved);
+  resolved.actor = parse_shape(o, "hidden", actor_in + resolved.eyes.features(), outputs * c.action_dim);
   resolved.reward_critic = parse_shape(o, critic, critic_in, 1);
   resolved.cost_critic = parse_shape(o, critic, critic_in, std::max(resolved.num_limited, 1));
   check_mlp_shape(resolved.actor);

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "algos/core/agent_types.hpp"
-#include "nn/mlp.hpp"
+#include "nn/pointnet.hpp"
 
 namespace rdm {
 
@@ -20,6 +20,9 @@ struct ResolvedAgentConfig {
   const AlgoRow* row;
 
   MlpShape actor, reward_critic, cost_critic;  // cost_critic.out = num_limited
+  // What the actor sees of points: features that stand behind its entries of the row. points 0: nothing.
+  PointNetShape eyes;
+  bool frozen = false;  // they do not learn
   // Entries of the row that these see, ascending; empty: all.
   Vector<int32_t> actor_columns, critic_columns;
   int32_t num_limited = 0;         // limited cost columns; 0 for algorithms without costs
@@ -33,6 +36,7 @@ struct ResolvedAgentConfig {
   int32_t workers = 1;         // chunks in flight
   float log_share = 0;         // ln of the innovation's share of the standard deviation
 
+  bool sees() const { return eyes.points > 0; }
   // The actor's network gives log deviations behind its means.
   bool state_std() const { return actor.out != config.action_dim; }
   size_t obs_dim() const { return static_cast<size_t>(config.obs_dim); }

@@ -21,8 +21,15 @@ void Imitation::set(const DemoRows& demo, uint64_t mark, const HostHooks& hooks)
   Vector<float> obs(demo.obs, demo.obs + n * resolved_->obs_dim());
   Vector<float> label(demo.label, demo.label + n * resolved_->action_dim());
   Vector<int32_t> order(n ? static_cast<size_t>(resolved_->samples) : 0);
+  const size_t count = n * static_cast<size_t>(resolved_->eyes.points);
+  const PointRows& clouds = demo.clouds;
+  Vector<int16_t> points(clouds.points, clouds.points + (clouds.points ? 3 * count : 0));
+  Vector<uint8_t> classes(clouds.classes, clouds.classes + (clouds.classes ? count : 0));
+  points_ = std::move(points), classes_ = std::move(classes);
   obs_ = std::move(obs), label_ = std::move(label), order_ = std::move(order);
-  demo_ = {demo.rows, obs_.data(), label_.data(), nullptr};
+  demo_ = {demo.rows, obs_.data(), label_.data(), nullptr, {}};
+  demo_.clouds.points = points_.empty() ? nullptr : points_.data();
+  demo_.clouds.classes = classes_.empty() ? nullptr : classes_.data();
   mark_ = n ? mark : 0;
   rows_ = 0;
 }

@@ -22,7 +22,9 @@ double Regression::chunk(const Workspace& workspace, const DemoRows& demo, const
     std::memcpy(workspace.obs + i * width, demo.obs + static_cast<size_t>(order[i]) * width,
                 width * sizeof(float));
   const float* x = collector_->normalized(workspace.obs, rows, workspace.obs);
-  nets_->forward(Networks::kActor, x, rows, workspace.actor, workspace.out);
+  PointRows clouds = demo.clouds;
+  clouds.order = order;
+  nets_->forward_actor(x, clouds, rows, workspace.actor, workspace.out);
   float precision[kMaxActions];
   std::fill_n(precision, dim, 1.0f);
   double sum = 0;
@@ -42,7 +44,7 @@ double Regression::chunk(const Workspace& workspace, const DemoRows& demo, const
   }
   if (!grad) return sum;
   std::memset(grad, 0, nets_->std_size * sizeof(float));
-  nets_->backward(Networks::kActor, x, rows, workspace.actor, workspace.dout, grad);
+  nets_->backward_actor(x, clouds, rows, workspace.actor, workspace.dout, grad);
   return sum;
 }
 

@@ -94,21 +94,39 @@ void Collector::split_head(const float* y, int32_t rows, float* mean, float* log
   }
 }
 
-void Collector::mean_rows(const Workspace& workspace, const float* obs, int32_t rows, float* action) const {
+void Collector::mean_rows(const Workspace& workspace, const float* obs, const PointRows& clouds, int32_t rows,
+                          float* action) const {
   float* y = nets_->state_std() ? workspace.out : action;
-  nets_->forward_kept(normalized(obs, rows, workspace.obs), rows, workspace.actor, y);
+  nets_->forward_kept(normalized(obs, rows, workspace.obs), clouds, rows, workspace.actor, y);
   if (y != action) split_head(y, rows, action, nullptr);
 }
 
-void Collector::act_rows(const Workspace& workspace, const float* obs, int32_t first, int32_t rows,
-                         float* action) {
+PointRows Collector::keep_points(const PointRows& clouds, size_t at, int32_t rows) const {
+  const Rollout& r = rollout_;
+  if (!r.points) return clouds;
+  const auto count = static_cast<size_t>(rows) * r.row_points;
+  PointRows kept;
+  kept.points = r.points + at * r.row_points * 3;
+  quantize_points(nets_->eyes, clouds.metres, count, r.points + at * r.row_points * 3);
+  if (r.point_class) {
+    kept.classes = r.point_class + at * r.row_points;
+    std::memcpy(r.point_class + at * r.row_points, clouds.classes, count);
+  }
+  return kept;
+}
+
+void Collector::act_rows(const Workspace& workspace, const float* obs, const PointRows& clouds, int32_t first,
+                         int32_t rows, float* action) {
   Rollout& r = rollout_;
   const size_t at = r.row(r.filled) + static_cast<size_t>(first), dim = r.action_dim;
   float* x = r.obs + at * r.obs_dim;
   if (normalized(obs, rows, x) != x)
     std::memcpy(x, obs, static_cast<size_t>(rows) * r.obs_dim * sizeof(float));
   float *mean = r.mean + at * dim, *y = nets_->state_std() ? workspace.out : mean;
-  nets_->forward(Networks::kActor, x, rows, workspace.actor, y);
+  nets_->forward_actor(x, keep_points(clouds, at, rows), rows, workspace.actor, y);
+  for (size_t i = 0; r.features && i < static_cast<size_t>(rows); ++i)
+    std::memcpy(r.features + (at + i) * r.row_features,
+                nets_->features(workspace.actor) + i * nets_->feature_step(), r.row_features * sizeof(float));
   if (y != mean) split_head(y, rows, mean, r.log_std_of(at));
   values(workspace, x, rows, r.value + at, r.cost_value + at * static_cast<size_t>(r.num_costs));
   float own_std[kMaxActions];
@@ -121,11 +139,23 @@ void Collector::act_rows(const Workspace& workspace, const float* obs, int32_t f
   }
 }
 
-void Collector::act(const float* obs, bool sample, float* action) {
+void Collector::check_clouds(const PointRows& clouds) const {
+  const PointNetShape& eyes = nets_->eyes;
+  if (!eyes.points) {
+    if (clouds) fail(Code::kState, "points: the agent has no encoder");
+    return;
+  }
+  if (!clouds.metres) fail(Code::kState, "act: the agent's encoder needs points");
+  need_classes(eyes, clouds, static_cast<size_t>(rollout_.num_envs));
+  check_rows("points", clouds.metres, nullptr, rollout_.num_envs, eyes.row_points());
+}
+
+void Collector::act(const float* obs, bool sample, float* action, const PointRows& clouds) {
   if (sample && pending_) fail(Code::kState, "act: the last sampled actions were not recorded");
   if (sample && missing() == 0) fail(Code::kState, "act: the horizon is full, update is due");
   const int32_t envs = rollout_.num_envs;
   check_rows("obs", obs, nullptr, envs, rollout_.obs_dim);
+  check_clouds(clouds);
   if (sample) {
     if (normalize_ && !(obs_freeze_ > 0 && normalizer_.count >= obs_freeze_))
       normalizer_merge(normalizer_, obs, envs, nullptr, obs_count_max_);
@@ -139,10 +169,11 @@ void Collector::act(const float* obs, bool sample, float* action) {
   workers_->sweep(envs, share, [&](const Workspace& workspace, int32_t first, int32_t rows) {
     const float* x = obs + static_cast<size_t>(first) * rollout_.obs_dim;
     float* a = action + static_cast<size_t>(first) * rollout_.action_dim;
+    const PointRows seen = clouds.from(nets_->eyes, static_cast<size_t>(first));
     if (sample)
-      act_rows(workspace, x, first, rows, a);
+      act_rows(workspace, x, seen, first, rows, a);
     else
-      mean_rows(workspace, x, rows, a);
+      mean_rows(workspace, x, seen, rows, a);
   });
   if (sample) pending_ = true;
 }

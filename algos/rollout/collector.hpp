@@ -26,7 +26,8 @@ class Collector {
   // The three must outlive the collector.
   void open(const ResolvedAgentConfig& resolved, const Networks& nets, BatchWorkers& workers);
 
-  void act(const float* obs, bool sample, float* action);
+  // clouds [num_envs], in metres: of an agent with eyes, which no other takes.
+  void act(const float* obs, bool sample, float* action, const PointRows& clouds = {});
   void record(const Transition& t);
   // What the critics say of any rows obs [rows][obs_dim]: value [rows], cost_value [rows][num_limited].
   void value_rows(const float* obs, int32_t rows, float* value, float* cost_value) const;
@@ -56,10 +57,15 @@ class Collector {
  private:
   void values(const Workspace& workspace, const float* x, int32_t rows, float* value,
               float* cost_value) const;
-  void act_rows(const Workspace& workspace, const float* obs, int32_t first, int32_t rows, float* action);
+  void act_rows(const Workspace& workspace, const float* obs, const PointRows& clouds, int32_t first,
+                int32_t rows, float* action);
   // What a network with std_mode=state gives, taken apart: means, log deviations (null: not wanted).
   void split_head(const float* y, int32_t rows, float* mean, float* log_std) const;
-  void mean_rows(const Workspace& workspace, const float* obs, int32_t rows, float* action) const;
+  void mean_rows(const Workspace& workspace, const float* obs, const PointRows& clouds, int32_t rows,
+                 float* action) const;
+  void check_clouds(const PointRows& clouds) const;
+  // Keeps what is learned from of a row's clouds; what the actor is to see.
+  PointRows keep_points(const PointRows& clouds, size_t at, int32_t rows) const;
   void check(const Transition& t) const;
   void value_truncated(const Transition& t);
   void scale_rewards(const Transition& t);

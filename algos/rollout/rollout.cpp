@@ -16,6 +16,14 @@ Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
   r.action_dim = resolved.action_dim();
   const auto n = static_cast<size_t>(resolved.samples), k = static_cast<size_t>(r.num_costs);
   r.obs = arena.make<float>(n * r.obs_dim);
+  r.row_points = static_cast<size_t>(resolved.eyes.points);
+  r.row_features = static_cast<size_t>(resolved.eyes.features());
+  if (resolved.sees() && resolved.frozen) {
+    r.features = arena.make<float>(n * r.row_features);
+  } else if (resolved.sees()) {
+    r.points = arena.make<int16_t>(n * r.row_points * 3);
+    r.point_class = resolved.eyes.classes ? arena.make<uint8_t>(n * r.row_points) : nullptr;
+  }
   r.action = arena.make<float>(n * r.action_dim);
   r.mean = arena.make<float>(n * r.action_dim);
   for (float** column :

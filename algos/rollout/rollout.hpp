@@ -12,9 +12,13 @@ struct Rollout {
   int32_t filled = 0;  // decisions recorded
 
   // [samples] rows of:
-  float* obs = nullptr;     // [obs_dim] as the networks saw it
-  float* action = nullptr;  // [action_dim] less the offset of the correlated noise
-  float* mean = nullptr;    // [action_dim] of the policy that acted
+  float* obs = nullptr;                     // [obs_dim] as the networks saw it
+  int16_t* points = nullptr;                // [eyes.points][3], of an actor whose eyes learn
+  uint8_t* point_class = nullptr;           // [eyes.points], with classes
+  float* features = nullptr;                // [features], of eyes that stand still
+  size_t row_points = 0, row_features = 0;  // points and features of a row
+  float* action = nullptr;                  // [action_dim] less the offset of the correlated noise
+  float* mean = nullptr;                    // [action_dim] of the policy that acted
   float* log_prob = nullptr;
   float *reward = nullptr, *value = nullptr, *advantage = nullptr, *target = nullptr;
   // [num_costs]
@@ -29,6 +33,10 @@ struct Rollout {
   int32_t* order = nullptr;                                 // [samples] valid rows, shuffled
 
   float* log_std_of(size_t at) const { return log_std + at * std_step; }
+  // What the actor saw of the listed rows, every stride-th of the list.
+  PointRows clouds(const int32_t* order, int32_t stride = 1) const {
+    return {points, nullptr, point_class, features, order, stride};
+  }
   size_t row(int32_t t) const { return static_cast<size_t>(t) * static_cast<size_t>(num_envs); }
   int32_t samples() const { return horizon * num_envs; }
 };

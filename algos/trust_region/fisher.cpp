@@ -53,12 +53,14 @@ void Fisher::multiply(const float* v, float* out) {
   workers_->sweep(
       rows_, resolved_->chunk_rows,
       [&](Workspace& workspace, int32_t first, int32_t n) {
-        gather_obs(*rollout_, order_ + first * stride_, stride_, n, workspace.obs);
-        nets_->forward(Networks::kActor, workspace.obs, n, workspace.actor, workspace.out);
-        nets_->tangent(Networks::kActor, v + skip, workspace.obs, n, workspace.actor, workspace.dout);
+        const int32_t* rows = order_ + first * stride_;
+        const PointRows clouds = rollout_->clouds(rows, stride_);
+        gather_obs(*rollout_, rows, stride_, n, workspace.obs);
+        nets_->forward_actor(workspace.obs, clouds, n, workspace.actor, workspace.out);
+        nets_->tangent_actor(v + skip, workspace.obs, clouds, n, workspace.actor, workspace.dout);
         weigh(workspace.out, n, workspace.dout);
-        nets_->backward(Networks::kActor, workspace.obs, n, workspace.actor, workspace.dout,
-                        first == 0 ? out : workspace.grad);
+        nets_->backward_actor(workspace.obs, clouds, n, workspace.actor, workspace.dout,
+                              first == 0 ? out : workspace.grad);
       },
       [&](int32_t group, int32_t n) { workers_->reduce(group, n, out, skip, size); });
   const auto damping = static_cast<float>(damping_), own = static_cast<float>(2 / dims_);

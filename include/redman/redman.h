@@ -544,6 +544,10 @@ typedef struct rdm_policy_info { /* what a policy file tells of its network */
   uint64_t num_params;        /* of the network                                                           */
   const char *task;           /* "" for a host's own environment                                          */
   const char *activation;     /* of the hidden layers: "tanh", "elu", "relu"; static                      */
+  int32_t num_points;         /* of the cloud beside each row, for rdm_policy_act_points; 0: it sees none  */
+  int32_t num_point_classes;  /* that it tells points apart by, 0: none                                   */
+  int32_t num_features;       /* that its encoder makes of a cloud, 0 without                             */
+  int32_t reserved;           /* 0                                                                        */
 } rdm_policy_info;
 RDM_API rdm_result rdm_policy_load(rdm_policy **out, const void *bytes, size_t size); /* copies bytes [size] */
 RDM_API rdm_result rdm_policy_load_file(rdm_policy **out, const char *path);          /* NOT_FOUND, FORMAT ... */
@@ -553,12 +557,15 @@ RDM_API size_t rdm_policy_scratch(const rdm_policy *p, int32_t rows); /* bytes f
 /* action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise [rows][action_dim] are
  * the caller's standard normals, NULL: the mean. scratch [scratch_bytes]: rdm_policy_scratch bytes or more, aligned
  * in any way. No heap, no hidden state: any number of threads, each with its own scratch. ARGUMENT when obs or noise
- * is not finite, or so large that the network overflows (action is written then, and of no use). */
+ * is not finite, or so large that the network overflows (action is written then, and of no use). STATE for a policy
+ * that sees points. */
 RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t rows, const float *noise,
                                   float *action, void *scratch, size_t scratch_bytes);
 /* "actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
  * "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows of obs_dim: a
- * weight of an entry that the policy does not see is 0. */
+ * weight of an entry that the policy does not see is 0. Of one that sees points "actor.0.weight" has a column for each
+ * feature behind those, and there are "encoder.0.weight" and so on, "encoder.origin" and "encoder.range", in m, and
+ * "example.points", in m, with "example.point_class". */
 RDM_API rdm_result rdm_policy_tensor(const rdm_policy *p, int32_t i, rdm_tensor *out);
 /* Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE. */
 RDM_API rdm_result rdm_policy_tensor_read(const rdm_policy *p, const char *name, float *out, size_t count);
@@ -595,6 +602,57 @@ RDM_API rdm_result rdm_pool_copy(rdm_pool *dst, int32_t dst_env, const rdm_pool 
  * to come, and the same of the cost columns that it limits, cost [rows][RDM_MAX_COSTS] by column, others 0; cost may be
  * NULL. UNSUPPORTED with options normalize_reward or normalize_cost, which leave critics no unit. */
 RDM_API rdm_result rdm_agent_values(const rdm_agent *a, const float *obs, int32_t rows, float *value, float *cost);
+
+/* ---- eyes: agents and policies that see points ---------------------------------------------------------------- */
+/* With the agent option `encoder` ("64,128") a PointNet makes features of a cloud for the actor, beside the entries of the
+ * row that it sees (actor_obs, "vision": nothing of an object); critics see rows alone. Of rdm_sensors:
+ *
+ *   rdm_points seen = {.struct_size = sizeof seen, .num_points = s.num_points, .points = s.points};
+ *   rdm_agent_act_points(agent, b.obs, &seen, RDM_SAMPLE, b.action);  rdm_pool_step(pool);  rdm_agent_record(agent, &t);
+ *
+ * or rdm_agent_rollout with a pool whose modality has points. Points count as whole millimetres from `encoder_origin`,
+ * within +-32.767 m; their order and what comes twice change nothing. */
+typedef struct rdm_points {     /* a cloud for each row of obs, in the call that takes it                         */
+  uint32_t struct_size;         /* bytes                                                                           */
+  int32_t num_points;           /* of each cloud: the agent's option encoder_points, the policy's num_points       */
+  const float *points;          /* [rows][num_points][3], world, m, required                                       */
+  const uint8_t *point_class;   /* [rows][num_points] less than option encoder_classes; NULL only where that is 0  */
+} rdm_points;
+/* As rdm_agent_act: action [num_envs][action_dim] for obs [num_envs][obs_dim] and as many clouds, of an agent with the option
+ * encoder; STATE without it. ARGUMENT for a point that is not finite, RANGE for another number of points or a class that
+ * there is not: nothing is remembered. */
+RDM_API rdm_result rdm_agent_act_points(rdm_agent *a, const float *obs, const rdm_points *points, int32_t mode,
+                                        float *action);
+/* As rdm_policy_act, of obs [rows][obs_dim], noise [rows][action_dim] or NULL, action [rows][action_dim] and scratch
+ * [scratch_bytes], for a policy whose num_points is not 0; STATE for others, errors as above. */
+RDM_API rdm_result rdm_policy_act_points(const rdm_policy *p, const float *obs, const rdm_points *points, int32_t rows,
+                                         const float *noise, float *action, void *scratch, size_t scratch_bytes);
+typedef struct rdm_pretrain_config { /* how rdm_agent_pretrain learns */
+  uint32_t struct_size;       /* bytes, set by rdm_pretrain_config_init                                    */
+  int32_t num_labels;         /* kinds of points to tell apart, 2..64, required                            */
+  int32_t epochs;             /* passes over the clouds, 1..100000, default 20                             */
+  int32_t batch_rows;         /* clouds of a minibatch, 1..4096, default 16                                */
+  double learning_rate;       /* Adam's, 0..10, default 1e-3, falling in a line to a tenth                 */
+  double validation;          /* share of the clouds that are not learned from, 0..0.9, default 0.1        */
+  uint64_t seed;              /* of the head's weights, of shuffling and of the choice, default 0          */
+} rdm_pretrain_config;
+RDM_API rdm_result rdm_pretrain_config_init(rdm_pretrain_config *how, size_t size); /* defaults into the first `size` bytes */
+typedef struct rdm_pretrain_report { /* what rdm_agent_pretrain did */
+  uint32_t struct_size;       /* in: bytes                                                                 */
+  int32_t train_rows;         /* clouds                                                                    */
+  int32_t validation_rows;    /* clouds                                                                    */
+  int32_t reserved;           /* 0                                                                         */
+  double train_loss;          /* of the last epoch, mean cross-entropy of a point, nats                    */
+  double validation_loss;     /* likewise, of the clouds held back; 0 without                              */
+  double accuracy;            /* share of points of these that are told right; of all clouds without       */
+  double most_common;         /* share that whoever always says the commonest label tells right            */
+} rdm_pretrain_report;
+/* The agent's encoder learns to tell the points of clouds [rows] apart by label [rows][num_points], each less than
+ * num_labels: a head sees a point's last hidden layer and the cloud's features, and is thrown away afterwards. Nothing else
+ * changes. Same seed, same bytes, for any number of threads. STATE inside a horizon or without an encoder; CANCELLED after
+ * rdm_agent_cancel: the encoder as before. io may be NULL. */
+RDM_API rdm_result rdm_agent_pretrain(rdm_agent *a, const rdm_points *points, const uint8_t *label, int32_t rows,
+                                      const rdm_pretrain_config *how, rdm_pretrain_report *io);
 
 /* ---- planning: actions by trying them out -------------------------------------------------------------------- */
 /* A planner rolls many worlds out from where one stands, each under a noisy plan, and moves the plan to what went best
@@ -1403,7 +1461,7 @@ RDM_API rdm_result rdm_agent_clone(rdm_agent *a, const rdm_recording *r, const r
 RDM_API rdm_result rdm_agent_set_recording(rdm_agent *a, const rdm_recording *r);
 /* Warm start: the actor, its deviation and the statistics of observations become the policy's, which count for `samples` (2 to
  * 10^12) observations; its optimiser begins anew. STATE inside a horizon; ARGUMENT where layout, hidden layers, activation,
- * std_mode, actor_obs or normalize_obs differ: the text says which, and nothing changes. */
+ * std_mode, actor_obs, encoder or normalize_obs differ: the text says which, and nothing changes. */
 RDM_API rdm_result rdm_agent_load_policy(rdm_agent *a, const rdm_policy *p, double samples);
 /* Worlds begin an episode, with probability `share` (0 to 1), at a state of the recording, drawn from a stream of their own: all
  * other draws are what they are without. Such an episode has the steps that are left; sums begin at 0. States are copied, and

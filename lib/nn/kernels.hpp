@@ -21,6 +21,8 @@ namespace rdm {
 inline constexpr int32_t kPackColumns = 512, kPackStep = 64, kPackDepth = 256;
 // Up to so many rows B is not packed at all when A's rows and B's columns lie in order in memory.
 inline constexpr int32_t kSkinnyRows = 4;
+// Up to so many columns dot products along k beat padded panels.
+inline constexpr int32_t kDotColumns = 3;
 
 // C = A B, or C += A B, then optionally + bias[j], an activation, or a product with an activation's slope.
 struct GemmArgs {
@@ -37,8 +39,14 @@ struct GemmArgs {
   Activation activation = Activation::kTanh;
   int32_t pack_columns = kPackColumns;  // of B at a time, a multiple of kPackStep
   float* packed = nullptr;              // gemm_pack_floats(n, k, pack_columns) floats
+  bool is_packed = false;               // the last product with these panels had the same B (packs_whole)
 };
 size_t gemm_pack_floats(int32_t n, int32_t k, int32_t pack_columns = kPackColumns);
+// All of B is packed at a time, so that a product of more than kSkinnyRows rows and more than kDotColumns
+// columns leaves it in `packed`.
+inline bool packs_whole(int32_t n, int32_t k) {
+  return n <= kPackColumns && k <= kPackDepth;
+}
 
 struct AdamArgs {
   size_t size;
@@ -68,6 +76,17 @@ struct Kernels {
                         float* dmean, float* dlog_std);
   float (*kl)(const float* mean0, const float* log_std0, const float* mean1, const float* log_std1,
               int32_t n);
+  // What a PointNet needs beside products. best[j] = max(best[j], z[r][j]) over the rows of z [rows][n], and
+  // at[j] = first + r where it rose; of equal values the first keeps its place.
+  void (*max_rows)(const float* z, int32_t rows, int32_t n, float first, float* best, float* at);
+  void (*activate)(Activation a, float* x, size_t n);               // x = act(x)
+  void (*slope)(Activation a, const float* h, size_t n, float* d);  // d *= act' at values h of act
+  // Of z[j] = w[j] . h[slot[j]], w [n][k], h [][k]: dw[j] += dz[j] h[slot[j]], dh[slot[j]] += dz[j] w[j] (dh
+  // null: not wanted), for j in order, but where dz[j] is 0.
+  void (*spread_slots)(const float* dz, const int32_t* slot, int32_t n, int32_t k, const float* h,
+                       const float* w, float* dw, float* dh);
+  // y[j] += v[j] . h[slot[j]], likewise.
+  void (*dot_slots)(const int32_t* slot, int32_t n, int32_t k, const float* h, const float* v, float* y);
   // Elementwise, y may be x: for tests of their accuracy.
   void (*map_tanh)(const float* x, size_t n, float* y);
   void (*map_elu)(const float* x, size_t n, float* y);

@@ -8,7 +8,6 @@ namespace {
 
 constexpr int kPanel = kLanes * kTileVectors;
 static_assert(kPackStep % kPanel == 0);
-constexpr int32_t kDotColumns = 3;   // up to here dot products along k beat padded panels
 constexpr int32_t kInPlaceRows = 2;  // up to here B is not worth packing when its rows lie in order
 
 inline int32_t less_of(int32_t a, int32_t b) {
@@ -261,8 +260,8 @@ void blocked_product(const GemmArgs& g) {
       const int32_t k = less_of(kPackDepth, g.k - k0);
       const bool add = g.add || k0 > 0, last = k0 + k == g.k;
       const float* b = g.b + at(k0) * g.b_row + at(j0) * g.b_col;
-      if (g.b_col != 1) pack_columns(b, g.b_col, k, n, g.packed);
-      if (g.b_col == 1 && !in_place) pack_rows(b, g.b_row, k, n, g.packed);
+      if (g.b_col != 1 && !g.is_packed) pack_columns(b, g.b_col, k, n, g.packed);
+      if (g.b_col == 1 && !in_place && !g.is_packed) pack_rows(b, g.b_row, k, n, g.packed);
       for (int32_t j = 0; j < n; j += kPanel) {
         const int32_t columns = less_of(kPanel, n - j);
         const bool whole = columns % kLanes == 0;

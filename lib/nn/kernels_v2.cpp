@@ -44,6 +44,9 @@ inline V low(V a, V b) {
 inline V high(V a, V b) {
   return max(a, b);
 }
+inline V above(V a, V b, V yes, V no) {
+  return a > b ? yes : no;
+}
 inline V positive(V z, V yes, V no) {
   return z > V{} ? yes : no;
 }
@@ -80,7 +83,7 @@ inline float fma(float a, float b, float c) {
 }  // namespace
 }  // namespace rdm
 
-#include "nn/kernels_vector.hpp"
+#include "nn/kernels_points.hpp"
 
 namespace rdm {
 const Kernels* kernels_v2() {

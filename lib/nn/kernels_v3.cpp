@@ -55,6 +55,9 @@ inline V low(V a, V b) {
 inline V high(V a, V b) {
   return _mm256_max_ps(a, b);
 }
+inline V above(V a, V b, V yes, V no) {
+  return _mm256_blendv_ps(no, yes, _mm256_cmp_ps(a, b, _CMP_GT_OQ));
+}
 inline V positive(V z, V yes, V no) {
   return _mm256_blendv_ps(no, yes, _mm256_cmp_ps(z, _mm256_setzero_ps(), _CMP_GT_OQ));
 }
@@ -83,7 +86,7 @@ inline float fma(float a, float b, float c) {
 }  // namespace
 }  // namespace rdm
 
-#include "nn/kernels_vector.hpp"
+#include "nn/kernels_points.hpp"
 
 namespace rdm {
 const Kernels* kernels_v3() {

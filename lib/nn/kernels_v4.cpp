@@ -56,6 +56,9 @@ inline V low(V a, V b) {
 inline V high(V a, V b) {
   return _mm512_maskz_max_ps(0xFFFF, a, b);
 }
+inline V above(V a, V b, V yes, V no) {
+  return _mm512_mask_blend_ps(_mm512_cmp_ps_mask(a, b, _CMP_GT_OQ), no, yes);
+}
 inline V positive(V z, V yes, V no) {
   return _mm512_mask_blend_ps(_mm512_cmp_ps_mask(z, _mm512_setzero_ps(), _CMP_GT_OQ), no, yes);
 }
@@ -87,7 +90,7 @@ inline float fma(float a, float b, float c) {
 }  // namespace
 }  // namespace rdm
 
-#include "nn/kernels_vector.hpp"
+#include "nn/kernels_points.hpp"
 
 namespace rdm {
 const Kernels* kernels_v4() {

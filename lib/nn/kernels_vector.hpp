@@ -202,11 +202,5 @@ void map(const float* x, size_t n, float* y) {
   }
 }
 
-#define RDM_KERNEL_TABLE                                                                        \
-  {                                                                                             \
-    kIsa, gemm, column_sums, adam, sum_squares, column_moments, normalize, add_noise, log_prob, \
-        log_prob_grad, kl, map<tanh_of>, map<elu_of>, map<exp_of>                               \
-  }
-
 }  // namespace
 }  // namespace rdm

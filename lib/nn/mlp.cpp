@@ -91,6 +91,7 @@ void mlp_forward(const MlpShape& shape, const float* params, const float* x, int
   const Kernels& kernel = kernels();
   for (int32_t l = 0; l < shape.num_layers(); ++l) {
     const bool last = l == shape.num_hidden;
+    if (last && !y) return;
     float* z = last ? y : scratch.activation[l];
     GemmArgs g = times_weights(shape, l, params + shape.weight_offset(l), x, rows, z, scratch.packed);
     g.bias = params + shape.bias_offset(l);
@@ -102,30 +103,46 @@ void mlp_forward(const MlpShape& shape, const float* params, const float* x, int
 }
 
 void mlp_tangent(const MlpShape& shape, const float* params, const float* direction, const float* x,
-                 int32_t rows, const MlpScratch& scratch, float* dy) {
+                 int32_t rows, const MlpScratch& scratch, float* dy, int32_t first_input, const float* dx) {
   const Kernels& kernel = kernels();
-  const float* dx = nullptr;
+  int32_t moved = shape.in - first_input;  // inputs of the layer that move
   for (int32_t l = 0; l < shape.num_layers(); ++l) {
     const bool last = l == shape.num_hidden;
+    if (last && !dy) return;
     float* dz = last ? dy : scratch.delta[l & 1];
     GemmArgs g = times_weights(shape, l, direction + shape.weight_offset(l), x, rows, dz, scratch.packed);
     if (dx) {
       kernel.gemm(g);
-      g.a = dx, g.b = params + shape.weight_offset(l), g.add = true;
+      g.a = dx, g.a_row = sz(moved), g.k = moved;
+      g.b = params + shape.weight_offset(l) + shape.layer_in(l) - moved, g.add = true;
     }
     g.bias = direction + shape.bias_offset(l);
     g.slope_of = last ? nullptr : scratch.activation[l];
     kernel.gemm(g);
-    x = scratch.activation[l], dx = dz;
+    x = scratch.activation[l], dx = dz, moved = shape.layer_out(l);
   }
 }
 
-void mlp_backward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
-                  const MlpScratch& scratch, const float* dy, float* grad) {
+namespace {
+
+// C = delta W of layer l, for inputs from `first` on.
+GemmArgs times_layer(const MlpShape& shape, int32_t l, const float* params, const float* delta, int32_t rows,
+                     int32_t first, float* c, float* packed) {
+  GemmArgs d;
+  d.m = rows, d.n = shape.layer_in(l) - first, d.k = shape.layer_out(l);
+  d.a = delta, d.a_row = sz(d.k), d.a_col = 1;
+  d.b = params + shape.weight_offset(l) + first, d.b_row = sz(shape.layer_in(l)), d.b_col = 1;
+  d.c = c;
+  d.packed = packed;
+  return d;
+}
+
+// From layer l down, given the derivative by its outputs before their activation.
+void backward_from(const MlpShape& shape, int32_t l, const float* params, const float* x, int32_t rows,
+                   const MlpScratch& scratch, const float* delta, float* grad, int32_t first_input,
+                   float* dx) {
   const Kernels& kernel = kernels();
-  const float* delta = dy;
-  if (rows == 0) std::fill_n(grad, shape.num_params(), 0.0f);
-  for (int32_t l = shape.num_hidden; l >= 0; --l) {
+  for (; l >= 0; --l) {
     const int32_t in = shape.layer_in(l), out = shape.layer_out(l);
     const float* h = l == 0 ? x : scratch.activation[l - 1];
     kernel.column_sums(delta, rows, out, grad + shape.bias_offset(l));
@@ -137,17 +154,31 @@ void mlp_backward(const MlpShape& shape, const float* params, const float* x, in
     g.packed = scratch.packed;
     kernel.gemm(g);
     if (l == 0) break;
-    GemmArgs d;  // next delta = delta W .* act'(h)
-    d.m = rows, d.n = in, d.k = out;
-    d.a = delta, d.a_row = sz(out), d.a_col = 1;
-    d.b = params + shape.weight_offset(l), d.b_row = sz(in), d.b_col = 1;
-    d.c = scratch.delta[l & 1];
+    // next delta = delta W .* act'(h)
+    GemmArgs d = times_layer(shape, l, params, delta, rows, 0, scratch.delta[l & 1], scratch.packed);
     d.slope_of = h;
     d.activation = shape.activation;
-    d.packed = scratch.packed;
     kernel.gemm(d);
     delta = d.c;
   }
+  if (dx) kernel.gemm(times_layer(shape, 0, params, delta, rows, first_input, dx, scratch.packed));
+}
+
+}  // namespace
+
+void mlp_backward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
+                  const MlpScratch& scratch, const float* dy, float* grad, int32_t first_input, float* dx) {
+  if (rows == 0) std::fill_n(grad, shape.num_params(), 0.0f);
+  backward_from(shape, shape.num_hidden, params, x, rows, scratch, dy, grad, first_input, dx);
+}
+
+void mlp_backward_hidden(const MlpShape& shape, const float* params, const float* x, int32_t rows,
+                         const MlpScratch& scratch, float* dh, float* grad) {
+  const int32_t last = shape.num_hidden - 1;
+  if (rows == 0) std::fill_n(grad, shape.weight_offset(shape.num_hidden), 0.0f);
+  if (last < 0) return;
+  kernels().slope(shape.activation, scratch.activation[last], sz(rows) * sz(shape.hidden[last]), dh);
+  backward_from(shape, last, params, x, rows, scratch, dh, grad, 0, nullptr);
 }
 
 void mlp_init(const MlpShape& shape, Stream& stream, float last_layer_scale, float* params) {

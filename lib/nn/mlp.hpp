@@ -2,6 +2,8 @@
 //
 // A batch is row-major, one row per sample. All memory comes from the caller; nothing is allocated.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -33,6 +35,26 @@ struct MlpShape {
 // Error(kRange) for a count, width or activation outside the bounds above.
 void check_mlp_shape(const MlpShape& shape);
 
+// Bound on the magnitude of every sum within a network whose inputs are within +-bound: layer by layer the
+// largest sum of a row's magnitudes. params[i] is the i-th.
+template <class Params>
+double mlp_bound(const MlpShape& s, const Params& params, double bound) {
+  double most = bound;
+  for (int32_t l = 0; l < s.num_layers(); ++l) {
+    const auto rows = static_cast<size_t>(s.layer_out(l)), cols = static_cast<size_t>(s.layer_in(l));
+    double widest = 0;
+    for (size_t i = 0; i < rows; ++i) {
+      double sum = 0;
+      for (size_t j = 0; j < cols; ++j)
+        sum += std::abs(static_cast<double>(params[s.weight_offset(l) + i * cols + j]));
+      widest = std::max(widest, bound * sum + std::abs(static_cast<double>(params[s.bias_offset(l) + i])));
+    }
+    most = std::max(most, widest);
+    bound = s.activation == Activation::kTanh ? 1 : std::max(1.0, widest);
+  }
+  return most;
+}
+
 // Workspace of one thread for batches of up to `rows` rows.
 struct MlpScratch {
   int32_t rows = 0;
@@ -48,19 +70,29 @@ MlpScratch carve_mlp_scratch(Arena& arena, const MlpShape& shape, int32_t rows);
 void pick_columns(const float* x, int32_t rows, int32_t width, const int32_t* columns, int32_t count,
                   float* y);
 
-// y = net(x). x [rows][in], y [rows][out]; hidden activations stay in the scratch for the backward pass.
+// y = net(x). x [rows][in], y [rows][out]; hidden activations stay in the scratch for the backward pass. y
+// null: the hidden layers alone.
 void mlp_forward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
                  const MlpScratch& scratch, float* y);
 
 // grad [num_params] is overwritten with d(loss)/d(params), given dy = d(loss)/dy [rows][out] of the last
-// forward pass over the same x. Sums over rows are taken in a fixed order.
+// forward pass over the same x. Sums over rows are taken in a fixed order. dx [rows][in - first_input], null:
+// not wanted, becomes d(loss)/dx of the inputs from first_input on.
 void mlp_backward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
-                  const MlpScratch& scratch, const float* dy, float* grad);
+                  const MlpScratch& scratch, const float* dy, float* grad, int32_t first_input = 0,
+                  float* dx = nullptr);
+// The same of the hidden layers alone, given dh = d(loss)/d(values of the last one), which it overwrites; dh
+// may be scratch.delta[num_hidden & 1]. The last layer's entries of grad stay as they are.
+void mlp_backward_hidden(const MlpShape& shape, const float* params, const float* x, int32_t rows,
+                         const MlpScratch& scratch, float* dh, float* grad);
 
 // dy = (d net / d params) direction, rows of the same x as the last forward pass: the tangent half of a
-// Fisher-vector product (mlp_backward is the other half). direction [num_params], dy [rows][out].
+// Fisher-vector product (mlp_backward is the other half). direction [num_params], dy [rows][out]; null: the
+// hidden layers alone, of which the last one's stays in scratch.delta[(num_hidden - 1) & 1]. dx [rows][in -
+// first_input]: how the inputs from first_input on move along with it; null: none does.
 void mlp_tangent(const MlpShape& shape, const float* params, const float* direction, const float* x,
-                 int32_t rows, const MlpScratch& scratch, float* dy);
+                 int32_t rows, const MlpScratch& scratch, float* dy, int32_t first_input = 0,
+                 const float* dx = nullptr);
 
 // Kaiming-uniform with a = sqrt(5): weight and bias ~ U(-1/sqrt(fan_in), 1/sqrt(fan_in)); the last layer's
 // weights and bias are scaled by last_layer_scale.

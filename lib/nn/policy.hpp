@@ -1,31 +1,33 @@
 // The frozen policy: normaliser, actor network, action scale; runs on a machine that has nothing else.
 // Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC". Version 2 is written for a policy
-// whose deviation depends on the state, version 3 for one that sees a part of the observation alone: versions
-// before do not know these.
+// whose deviation depends on the state, version 3 for one that sees a part of the observation alone, version
+// 4 for one that sees points: versions before do not know these.
 #pragma once
 #include <cstdint>
 
 #include "base/bytes.hpp"
 #include "base/file.hpp"
-#include "nn/mlp.hpp"
+#include "nn/pointnet.hpp"
 
 namespace rdm {
 
 inline constexpr char kPolicyMagic[8] = {'R', 'D', 'M', 'P', 'O', 'L', 'I', 'C'};
-inline constexpr uint32_t kPolicyVersion = 3;
+inline constexpr uint32_t kPolicyVersion = 4;
 
 // Everything that a policy file holds, as views of memory that somebody else owns.
 struct PolicyView {
   MlpShape
       actor;  // in: entries that it sees; out: action_dim, or with state_std twice that, log deviations last
-  const int32_t* columns = nullptr;    // [actor.in] entries of the row, ascending; null: all of them
+  PointNetShape eyes;                  // points 0: none; their features are the actor's last inputs
+  const float* eyes_params = nullptr;  // [eyes.num_params()]
+  const int32_t* columns = nullptr;    // [entries()] entries of the row, ascending; null: all of them
   int32_t row_dim = 0;                 // with columns: entries of a row
   const float* params = nullptr;       // [actor.num_params()]
   const float* log_std = nullptr;      // [action_dim], null with state_std
   bool state_std = false;              // the network gives the log deviations
   float std_bounds[2] = {};            // lowest and highest of these
-  const float* shift = nullptr;        // [actor.in] observation normaliser: clip((x - shift) scale, +-clip)
-  const float* scale = nullptr;        // [actor.in]
+  const float* shift = nullptr;        // [entries()] observation normaliser: clip((x - shift) scale, +-clip)
+  const float* scale = nullptr;        // [entries()]
   float clip = 0;                      // 0: no normaliser
   int32_t action_repeat = 1;           // control steps per decision
   float noise_correlation = 0;         // AR(1) coefficient of the exploration noise
@@ -33,9 +35,12 @@ struct PolicyView {
   uint64_t layout_hash = 0;            // of the observation and action layout, 0 unknown
   char task[64] = "";                  // "" for a host's own environment
   const float* example_obs = nullptr;  // [obs_dim()], null: zeros are written
-  const float* example_action = nullptr;  // [action_dim], the mean action for it; a load checks it
+  const float* example_action = nullptr;     // [action_dim], the mean action for it; a load checks it
+  const int16_t* example_points = nullptr;   // [eyes.points][3], and classes; null: some that are made up
+  const uint8_t* example_classes = nullptr;  // [eyes.points]
 
-  int32_t obs_dim() const { return columns ? row_dim : actor.in; }
+  int32_t entries() const { return actor.in - eyes.features(); }  // of a row, that it sees
+  int32_t obs_dim() const { return columns ? row_dim : entries(); }
   int32_t action_dim() const { return state_std ? actor.out / 2 : actor.out; }
 };
 void write_policy(Writer& out, const PolicyView& view);
@@ -52,7 +57,9 @@ class Policy {
   size_t scratch_bytes(int32_t rows) const;
   // action [rows][action_dim] = clip(mean + std * noise, -1, 1); noise, as action, standard normals or null
   // for the mean. scratch: scratch_bytes(rows) bytes, 64-byte aligned.
-  void act(const float* obs, int32_t rows, const float* noise, float* action, void* scratch) const;
+  // clouds [rows]: of a policy that sees points.
+  void act(const float* obs, int32_t rows, const float* noise, float* action, void* scratch,
+           const PointRows& clouds = {}) const;
 
  private:
   HostHooks hooks_;

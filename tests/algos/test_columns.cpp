@@ -47,6 +47,12 @@ TEST(Columns, PresetsAreListsByName) {
   EXPECT_EQ(select("touch"), (Columns{0, 1, 2, 3, 4, 5, 8}));
   EXPECT_EQ(select("proprioception"), (Columns{0, 1, 5, 8}));
   EXPECT_EQ(select("proprioception,object.position"), (Columns{0, 1, 5, 6, 7, 8}));
+  EXPECT_EQ(select("vision"), (Columns{0, 1, 2, 3, 4, 5, 8})) << "as touch: there is no goal";
+  const ObsField goals[] = {{"right.joint_position", 0, 2},  {"right.ff_tip_force", 2, 1},
+                            {"object.position", 3, 1},       {"goal.position", 4, 2},
+                            {"object.rotation_error", 6, 1}, {"target.velocity", 7, 1}};
+  const Vector<int32_t> seen = select_columns("actor_obs", "vision", goals, 6, 8);
+  EXPECT_EQ(Columns(seen.begin(), seen.end()), (Columns{0, 1, 2, 4, 5})) << "the goal, nothing of objects";
   EXPECT_EQ(select("!proprioception"), (Columns{2, 3, 4, 6, 7}));
   // a field of that name comes first
   const ObsField own[] = {{"state", 0, 1}, {"rest", 1, 1}};

@@ -136,9 +136,9 @@ TEST(LearnerView, PresetsFitEveryTaskWithARobot) {
     bool joints = false;
     for (int i = 0; rdm_pool_field(p, i, &f) == RDM_OK; ++i)
       joints |= std::string(f.name) == "joint_position";
-    int32_t counts[3] = {};
-    const char* presets[] = {"state", "touch", "proprioception"};
-    for (int k = 0; k < 3; ++k) {
+    int32_t counts[4] = {};
+    const char* presets[] = {"state", "touch", "proprioception", "vision"};
+    for (int k = 0; k < 4; ++k) {
       const bool known = k == 0 || hands || sensors || joints;
       rdm_agent* a = agent_of(p, std::string("actor_obs=") + presets[k], known ? RDM_OK : RDM_NOT_FOUND);
       if (!a) continue;
@@ -150,6 +150,9 @@ TEST(LearnerView, PresetsFitEveryTaskWithARobot) {
     if (hands) {
       EXPECT_GT(counts[0], counts[1]);
       EXPECT_GT(counts[1], counts[2]);
+      EXPECT_GE(counts[3], counts[1]);
+      EXPECT_LE(counts[3], counts[1] + 7);  // a goal's pose, where there is one
+      EXPECT_LT(counts[3], counts[0]);
       EXPECT_EQ((counts[1] - counts[2]) % 30, 0);  // six numbers of each of five fingertips
     }
     rdm_pool_destroy(p);

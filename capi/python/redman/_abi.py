@@ -1155,6 +1155,9 @@ class PolicyInfo(Record):
     num_params: int  # of the network
     task: str  # "" for a host's own environment
     activation: str  # of the hidden layers: "tanh", "elu", "relu"; static
+    num_points: int  # of the cloud beside each row, for rdm_policy_act_points; 0: it sees none
+    num_point_classes: int  # that it tells points apart by, 0: none
+    num_features: int  # that its encoder makes of a cloud, 0 without
 
 
 class rdm_policy_info(Structure):
@@ -1168,6 +1171,10 @@ class rdm_policy_info(Structure):
     num_params: of the network
     task: "" for a host's own environment
     activation: of the hidden layers: "tanh", "elu", "relu"; static
+    num_points: of the cloud beside each row, for rdm_policy_act_points; 0: it sees none
+    num_point_classes: that it tells points apart by, 0: none
+    num_features: that its encoder makes of a cloud, 0 without
+    reserved: 0
     """
 
     struct_size: int
@@ -1180,6 +1187,10 @@ class rdm_policy_info(Structure):
     num_params: int
     task: bytes | None
     activation: bytes | None
+    num_points: int
+    num_point_classes: int
+    num_features: int
+    reserved: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("obs_dim", c_int32),
@@ -1191,6 +1202,119 @@ class rdm_policy_info(Structure):
         ("num_params", c_uint64),
         ("task", c_char_p),
         ("activation", c_char_p),
+        ("num_points", c_int32),
+        ("num_point_classes", c_int32),
+        ("num_features", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
+class rdm_points(Structure):
+    """With the agent option `encoder` ("64,128") a PointNet makes features of a cloud for the actor, beside the entries of the
+    row that it sees (actor_obs, "vision": nothing of an object); critics see rows alone. Of rdm_sensors:
+
+      rdm_points seen = {.struct_size = sizeof seen, .num_points = s.num_points, .points = s.points};
+      rdm_agent_act_points(agent, b.obs, &seen, RDM_SAMPLE, b.action);  rdm_pool_step(pool);  rdm_agent_record(agent, &t);
+
+    or rdm_agent_rollout with a pool whose modality has points. Points count as whole millimetres from `encoder_origin`,
+    within +-32.767 m; their order and what comes twice change nothing.
+
+    struct_size: bytes
+    num_points: of each cloud: the agent's option encoder_points, the policy's num_points
+    points: [rows][num_points][3], world, m, required
+    point_class: [rows][num_points] less than option encoder_classes; NULL only where that is 0
+    """
+
+    struct_size: int
+    num_points: int
+    points: int | None
+    point_class: int | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_points", c_int32),
+        ("points", c_void_p),
+        ("point_class", c_void_p),
+    ]
+
+
+class PretrainConfig(Record):
+    """The values of rdm_pretrain_config."""
+
+    num_labels: int  # kinds of points to tell apart, 2..64, required
+    epochs: int  # passes over the clouds, 1..100000, default 20
+    batch_rows: int  # clouds of a minibatch, 1..4096, default 16
+    learning_rate: float  # Adam's, 0..10, default 1e-3, falling in a line to a tenth
+    validation: float  # share of the clouds that are not learned from, 0..0.9, default 0.1
+    seed: int  # of the head's weights, of shuffling and of the choice, default 0
+
+
+class rdm_pretrain_config(Structure):
+    """struct_size: bytes, set by rdm_pretrain_config_init
+    num_labels: kinds of points to tell apart, 2..64, required
+    epochs: passes over the clouds, 1..100000, default 20
+    batch_rows: clouds of a minibatch, 1..4096, default 16
+    learning_rate: Adam's, 0..10, default 1e-3, falling in a line to a tenth
+    validation: share of the clouds that are not learned from, 0..0.9, default 0.1
+    seed: of the head's weights, of shuffling and of the choice, default 0
+    """
+
+    struct_size: int
+    num_labels: int
+    epochs: int
+    batch_rows: int
+    learning_rate: float
+    validation: float
+    seed: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_labels", c_int32),
+        ("epochs", c_int32),
+        ("batch_rows", c_int32),
+        ("learning_rate", c_double),
+        ("validation", c_double),
+        ("seed", c_uint64),
+    ]
+
+
+class PretrainReport(Record):
+    """The values of rdm_pretrain_report."""
+
+    train_rows: int  # clouds
+    validation_rows: int  # clouds
+    train_loss: float  # of the last epoch, mean cross-entropy of a point, nats
+    validation_loss: float  # likewise, of the clouds held back; 0 without
+    accuracy: float  # share of points of these that are told right; of all clouds without
+    most_common: float  # share that whoever always says the commonest label tells right
+
+
+class rdm_pretrain_report(Structure):
+    """struct_size: in: bytes
+    train_rows: clouds
+    validation_rows: clouds
+    reserved: 0
+    train_loss: of the last epoch, mean cross-entropy of a point, nats
+    validation_loss: likewise, of the clouds held back; 0 without
+    accuracy: share of points of these that are told right; of all clouds without
+    most_common: share that whoever always says the commonest label tells right
+    """
+
+    struct_size: int
+    train_rows: int
+    validation_rows: int
+    reserved: int
+    train_loss: float
+    validation_loss: float
+    accuracy: float
+    most_common: float
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("train_rows", c_int32),
+        ("validation_rows", c_int32),
+        ("reserved", c_int32),
+        ("train_loss", c_double),
+        ("validation_loss", c_double),
+        ("accuracy", c_double),
+        ("most_common", c_double),
     ]
 
 
@@ -2590,6 +2714,9 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_epoch": rdm_epoch,
     "rdm_tensor": rdm_tensor,
     "rdm_policy_info": rdm_policy_info,
+    "rdm_points": rdm_points,
+    "rdm_pretrain_config": rdm_pretrain_config,
+    "rdm_pretrain_report": rdm_pretrain_report,
     "rdm_planner_config": rdm_planner_config,
     "rdm_planner_spec": rdm_planner_spec,
     "rdm_plan_info": rdm_plan_info,
@@ -2652,6 +2779,10 @@ ROWS: dict[str, dict[str, Rows]] = {
         "valid": Rows("uint8", ("num_envs",)),
         "success": Rows("uint8", ("num_envs",)),
         "steps": Rows("int32", ("num_envs",)),
+    },
+    "rdm_points": {
+        "points": Rows("float32", ("rows", "num_points", "3")),
+        "point_class": Rows("uint8", ("rows", "num_points")),
     },
     "rdm_planner_config": {
         "noise": Rows("float32", ("action_dim",)),
@@ -3079,14 +3210,17 @@ FUNCTIONS: dict[str, Function] = {
         """action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise [rows][action_dim] are
         the caller's standard normals, NULL: the mean. scratch [scratch_bytes]: rdm_policy_scratch bytes or more, aligned
         in any way. No heap, no hidden state: any number of threads, each with its own scratch. ARGUMENT when obs or noise
-        is not finite, or so large that the network overflows (action is written then, and of no use).
+        is not finite, or so large that the network overflows (action is written then, and of no use). STATE for a policy
+        that sees points.
         """),
     "rdm_policy_tensor": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},
         {}, False,
         """"actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
         "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows of obs_dim: a
-        weight of an entry that the policy does not see is 0.
+        weight of an entry that the policy does not see is 0. Of one that sees points "actor.0.weight" has a column for each
+        feature behind those, and there are "encoder.0.weight" and so on, "encoder.origin" and "encoder.range", in m, and
+        "example.points", in m, with "example.point_class".
         """),
     "rdm_policy_tensor_read": Function(
         c_int32, {"p": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
@@ -3120,6 +3254,31 @@ FUNCTIONS: dict[str, Function] = {
         """What the agent's critics say of obs [rows][obs_dim], for any number of rows: value [rows], the discounted sum of rewards
         to come, and the same of the cost columns that it limits, cost [rows][RDM_MAX_COSTS] by column, others 0; cost may be
         NULL. UNSUPPORTED with options normalize_reward or normalize_cost, which leave critics no unit.
+        """),
+    "rdm_agent_act_points": Function(
+        c_int32, {"a": c_void_p, "obs": c_void_p, "points": POINTER(rdm_points), "mode": c_int32, "action": c_void_p},
+        {"obs": Rows("float32", ("num_envs", "obs_dim")), "action": Rows("float32", ("num_envs", "action_dim"))}, True,
+        """As rdm_agent_act: action [num_envs][action_dim] for obs [num_envs][obs_dim] and as many clouds, of an agent with the option
+        encoder; STATE without it. ARGUMENT for a point that is not finite, RANGE for another number of points or a class that
+        there is not: nothing is remembered.
+        """),
+    "rdm_policy_act_points": Function(
+        c_int32, {"p": c_void_p, "obs": c_void_p, "points": POINTER(rdm_points), "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
+        {"obs": Rows("float32", ("rows", "obs_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim"))}, True,
+        """As rdm_policy_act, of obs [rows][obs_dim], noise [rows][action_dim] or NULL, action [rows][action_dim] and scratch
+        [scratch_bytes], for a policy whose num_points is not 0; STATE for others, errors as above.
+        """),
+    "rdm_pretrain_config_init": Function(
+        c_int32, {"how": POINTER(rdm_pretrain_config), "size": c_size_t},
+        {}, True,
+        """defaults into the first `size` bytes"""),
+    "rdm_agent_pretrain": Function(
+        c_int32, {"a": c_void_p, "points": POINTER(rdm_points), "label": c_void_p, "rows": c_int32, "how": POINTER(rdm_pretrain_config), "io": POINTER(rdm_pretrain_report)},
+        {"label": Rows("uint8", ("rows", "num_points"))}, True,
+        """The agent's encoder learns to tell the points of clouds [rows] apart by label [rows][num_points], each less than
+        num_labels: a head sees a point's last hidden layer and the cloud's features, and is thrown away afterwards. Nothing else
+        changes. Same seed, same bytes, for any number of threads. STATE inside a horizon or without an encoder; CANCELLED after
+        rdm_agent_cancel: the encoder as before. io may be NULL.
         """),
     "rdm_planner_config_init": Function(
         c_int32, {"c": POINTER(rdm_planner_config), "size": c_size_t},
@@ -3726,7 +3885,7 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """Warm start: the actor, its deviation and the statistics of observations become the policy's, which count for `samples` (2 to
         10^12) observations; its optimiser begins anew. STATE inside a horizon; ARGUMENT where layout, hidden layers, activation,
-        std_mode, actor_obs or normalize_obs differ: the text says which, and nothing changes.
+        std_mode, actor_obs, encoder or normalize_obs differ: the text says which, and nothing changes.
         """),
     "rdm_pool_set_starts": Function(
         c_int32, {"p": c_void_p, "r": c_void_p, "share": c_double},

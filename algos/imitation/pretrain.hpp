@@ -1,0 +1,31 @@
+// An encoder that learns to tell the points of clouds apart before anything is at stake.
+//
+// For each point a head sees what the last hidden layer makes of it and the features of its cloud, and gives
+// log-odds of its label; cross-entropy, mean over points, by Adam. So the hidden layers learn where a point
+// belongs and the features what the cloud is made of. The head is thrown away afterwards. Chunks are reduced
+// in order, as everywhere (learner.hpp).
+#pragma once
+#include "algos/core/batch_workers.hpp"
+#include "algos/core/cancel.hpp"
+
+namespace rdm {
+
+// As rdm_pretrain_config.
+struct PretrainOptions {
+  int32_t num_labels = 0, epochs = 20, batch_rows = 16;
+  double learning_rate = 1e-3, validation = 0.1;
+  uint64_t seed = 0;
+};
+
+struct PretrainReport {
+  int32_t train_rows = 0, validation_rows = 0;
+  double train_loss = 0, validation_loss = 0, accuracy = 0, most_common = 0;
+};
+
+// clouds [rows] as points, label [rows][points]. All that it changes is the encoder with its optimiser;
+// nothing when it throws. Error(kRange, kArgument), kCancelled.
+PretrainReport pretrain_eyes(const ResolvedAgentConfig& resolved, const PointRows& clouds,
+                             const uint8_t* label, int32_t rows, const PretrainOptions& how, Networks& nets,
+                             BatchWorkers& workers, CancelFlag& cancel);
+
+}  // namespace rdm

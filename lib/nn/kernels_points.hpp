@@ -1,0 +1,90 @@
+// What a PointNet needs beside matrix products, by lanes, and the table of all kernels. Part of
+// kernels_v*.cpp, which define the lanes.
+#pragma once
+#include "nn/kernels_vector.hpp"
+
+namespace rdm {
+namespace {
+
+// kVectors vectors of columns at a time. A row's number is a float, exact up to 2^24, so that one blend moves
+// it beside the value.
+template <int kVectors>
+inline void max_columns(const float* z, int32_t rows, size_t n, float first, float* best, float* at_best) {
+  V top[kVectors], where[kVectors], number = all(first);
+  for (size_t v = 0; v < kVectors; ++v)
+    top[v] = load(best + v * kLanes), where[v] = load(at_best + v * kLanes);
+  for (int32_t r = 0; r < rows; ++r, z += n, number = number + all(1.0f))
+#pragma GCC unroll 4
+    for (size_t v = 0; v < kVectors; ++v) {
+      const V here = load(z + v * kLanes);
+      where[v] = above(here, top[v], number, where[v]);
+      top[v] = above(here, top[v], here, top[v]);
+    }
+  for (size_t v = 0; v < kVectors; ++v)
+    store(best + v * kLanes, top[v]), store(at_best + v * kLanes, where[v]);
+}
+
+void max_rows(const float* z, int32_t rows, int32_t n, float first, float* best, float* at_best) {
+  int32_t j = 0;
+  for (; j + 4 * kLanes <= n; j += 4 * kLanes)
+    max_columns<4>(z + j, rows, at(n), first, best + j, at_best + j);
+  for (; j + kLanes <= n; j += kLanes) max_columns<1>(z + j, rows, at(n), first, best + j, at_best + j);
+  const int32_t left = n - j;
+  if (left == 0) return;
+  V top = load_part(best + j, left), where = load_part(at_best + j, left), number = all(first);
+  for (int32_t r = 0; r < rows; ++r, number = number + all(1.0f)) {
+    const V here = load_part(z + at(r) * at(n) + at(j), left);
+    where = above(here, top, number, where);
+    top = above(here, top, here, top);
+  }
+  store_part(best + j, top, left), store_part(at_best + j, where, left);
+}
+
+void activate(Activation a, float* x, size_t n) {
+  for (size_t i = 0; i < n; i += kLanes) {
+    const int32_t count = n - i < kLanes ? static_cast<int32_t>(n - i) : kLanes;
+    put(x + i, activation_of(a, get(x + i, count)), count);
+  }
+}
+
+void slope(Activation a, const float* h, size_t n, float* d) {
+  for (size_t i = 0; i < n; i += kLanes) {
+    const int32_t count = n - i < kLanes ? static_cast<int32_t>(n - i) : kLanes;
+    put(d + i, get(d + i, count) * slope_of(a, get(h + i, count)), count);
+  }
+}
+
+void spread_slots(const float* dz, const int32_t* slot, int32_t n, int32_t k, const float* h, const float* w,
+                  float* dw, float* dh) {
+  const auto add_to = [k](float s, const float* x, float* y) {
+    by_lanes(k, [&](size_t i, int32_t count) {
+      put(y + i, fma(all(s), get(x + i, count), get(y + i, count)), count);
+    });
+  };
+  for (size_t j = 0; j < at(n); ++j) {
+    if (dz[j] == 0) continue;
+    const size_t row = at(slot[j]) * at(k);
+    add_to(dz[j], h + row, dw + j * at(k));
+    if (dh) add_to(dz[j], w + j * at(k), dh + row);
+  }
+}
+
+void dot_slots(const int32_t* slot, int32_t n, int32_t k, const float* h, const float* v, float* y) {
+  for (size_t j = 0; j < at(n); ++j) {
+    V sum = {};
+    by_lanes(k, [&](size_t i, int32_t count) {
+      sum = fma(get(v + j * at(k) + i, count), get(h + at(slot[j]) * at(k) + i, count), sum);
+    });
+    y[j] += sum_of(sum);
+  }
+}
+
+#define RDM_KERNEL_TABLE                                                                                  \
+  {                                                                                                       \
+    kIsa, gemm, column_sums, adam, sum_squares, column_moments, normalize, add_noise, log_prob,           \
+        log_prob_grad, kl, max_rows, activate, slope, spread_slots, dot_slots, map<tanh_of>, map<elu_of>, \
+        map<exp_of>                                                                                       \
+  }
+
+}  // namespace
+}  // namespace rdm
