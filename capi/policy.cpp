@@ -279,8 +279,8 @@ rdm_result rdm_policy_columns(const rdm_policy* p, int32_t* columns, int32_t cap
     if (capacity < 0) fail(Code::kRange, "capacity: %d is negative", capacity);
     if (capacity > 0) need(columns, "columns");
     const PolicyView& v = p->policy->view();
-    for (int32_t i = 0; i < std::min(capacity, v.actor.in); ++i) columns[i] = v.columns ? v.columns[i] : i;
-    *count = v.actor.in;
+    for (int32_t i = 0; i < std::min(capacity, v.entries()); ++i) columns[i] = v.columns ? v.columns[i] : i;
+    *count = v.entries();
   });
 }
 

@@ -18,7 +18,7 @@ struct DemoRows {
   const float* obs = nullptr;        // [rows][obs_dim] as a pool gives them
   const float* label = nullptr;      // [rows][action_dim]
   const int64_t* episode = nullptr;  // [rows] number, null: one
-  PointRows clouds;                  // [rows], for an agent with eyes
+  PointRows clouds = {};             // [rows], for an agent with eyes
 };
 
 class Regression {

@@ -8,6 +8,7 @@
 #include "heap_count.hpp"
 #include "nn/pointnet.hpp"
 #include "nn_data.hpp"
+#include "oracle_pointnet.hpp"
 
 using namespace rdm;
 
@@ -332,4 +333,35 @@ TEST(PointNet, ShapesOutsideTheBoundsAreErrors) {
   EXPECT_EQ(thrown([](auto& s) { s.range = 0; }), "point range: 0 m is outside [0.001, 1000]");
   EXPECT_EQ(thrown([](auto& s) { s.origin[1] = NAN; }), "point origin: nan m is outside [-1e6, 1e6]");
   EXPECT_NE(thrown([](auto& s) { s.mlp.hidden[0] = 0; }), "");
+}
+
+// Features and gradient against torch's autograd: tests/oracle/pointnet.py makes the tables.
+TEST(PointNet, AgreesWithTorch) {
+  const auto wave = [](size_t i, size_t k) {
+    const auto n = static_cast<long>((i * (2 * k + 3) * 37 + k * 101 + i * i * 11) % 129);
+    return static_cast<float>(n - 64) / 64;
+  };
+  const auto check = [&](Activation activation, const auto& features, const auto& gradient) {
+    Eyes e({{6, 7, 5}, 11, 2, 4, activation});
+    float* at = e.params.data();
+    for (int32_t l = 0; l < 3; ++l)
+      for (const bool bias : {false, true}) {
+        const size_t n = sz(e.shape.mlp.layer_out(l)) * (bias ? 1 : sz(e.shape.mlp.layer_in(l)));
+        for (size_t i = 0; i < n; ++i) *at++ = wave(i, sz(2 * l) + bias);
+      }
+    for (size_t i = 0; i < e.points.size(); ++i)
+      e.points[i] = static_cast<int16_t>(static_cast<long>((i * 7919 + i * i * 13) % 601) - 300);
+    for (size_t i = 0; i < e.classes.size(); ++i) e.classes[i] = (i * 5 + i / 3) % 2;
+    std::vector<float> dy(e.y.size());
+    for (size_t i = 0; i < dy.size(); ++i) dy[i] = wave(i, 9);
+    for_each_isa([&](const char* isa) {
+      SCOPED_TRACE(isa);
+      e.forward();
+      EXPECT_LT(distance(e.y, {std::begin(features), std::end(features)}), 2e-6);
+      EXPECT_LT(distance(e.backward(dy), {std::begin(gradient), std::end(gradient)}), 1e-5);
+    });
+  };
+  check(Activation::kTanh, kPointFeaturesTanh, kPointGradientTanh);
+  check(Activation::kElu, kPointFeaturesElu, kPointGradientElu);
+  check(Activation::kRelu, kPointFeaturesRelu, kPointGradientRelu);
 }

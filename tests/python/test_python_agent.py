@@ -51,6 +51,27 @@ class Pendulum:
 
 
 class PartsOfARow(unittest.TestCase):
+    def test_an_agent_with_eyes_takes_points(self):
+        draw = np.random.default_rng(1)
+        options = {"encoder": "8,12", "encoder_points": 16, "encoder_classes": 2, "horizon": 4}
+        with redman.Agent(obs_dim=3, action_dim=2, num_envs=4, options=options) as agent:
+            for _ in range(4):
+                seen = {"points": draw.normal(size=(4, 16, 3)), "point_class": draw.integers(0, 2, (4, 16))}
+                agent.act(draw.normal(size=(4, 3)), **seen)
+                agent.record(reward=np.ones(4), cost=np.zeros(4))
+            obs = draw.normal(size=(4, 3)).astype(np.float32)
+            agent.update(obs)
+            mean = agent.act(obs, "mean", **seen)
+            with self.assertRaisesRegex(redman.StateError, "needs points"):
+                agent.act(obs, "mean")
+            with self.assertRaisesRegex(redman.ArgumentError, r"points: shape \(4, 16, 2\) does not fit"):
+                agent.act(obs, "mean", points=np.zeros((4, 16, 2)))
+            policy = agent.policy()
+        self.assertEqual(policy.info.num_points, 16)
+        np.testing.assert_array_equal(policy.act(obs, **seen), np.clip(mean, -1, 1))
+        one = policy.act(obs[0], points=seen["points"][0], point_class=seen["point_class"][:1])
+        np.testing.assert_array_equal(one, np.clip(mean[0], -1, 1))
+
     def test_an_actor_that_sees_a_part(self):
         with redman.Pool("grasp", 4) as pool:
             pool.reset()

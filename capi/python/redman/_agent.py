@@ -19,7 +19,7 @@ from ._library import Handle, assign, bytes_of, check, encoded, failure, filled,
 from ._options import Options, Value, laid, option_array, read_settings, settings_of
 from ._policy import Policy
 from ._pool import Pool
-from ._rows import Array, FloatArray, address, given
+from ._rows import Array, FloatArray, address, clouds, given
 from ._tensors import Tensors
 
 _MODES = {"sample": ActMode.SAMPLE, "mean": ActMode.MEAN}
@@ -96,10 +96,12 @@ class Agent:
 
     # ---- learning ---------------------------------------------------------------------------------------------
 
-    def act(self, obs: Any, mode: str = "sample", out: Optional[FloatArray] = None) -> FloatArray:
+    def act(self, obs: Any, mode: str = "sample", out: Optional[FloatArray] = None, points: Any = None,
+            point_class: Any = None) -> FloatArray:
         """Actions [num_envs][action_dim] for obs [num_envs][obs_dim]: a sample, which record must follow, or the mean.
 
-        One call is one decision, to be held for option action_repeat control steps. Samples are not clipped.
+        One call is one decision, to be held for option action_repeat control steps. Samples are not clipped. An agent
+        with option encoder takes points [num_envs][encoder_points][3] too, and with encoder_classes their classes.
         """
         if mode not in _MODES:
             raise ArgumentError(f"mode: {mode!r} is none of {', '.join(_MODES)}")
@@ -109,7 +111,13 @@ class Agent:
         direct = action.shape == shape and action.dtype == np.float32 and action.flags.c_contiguous
         target = action if direct else np.empty(shape, np.float32)
         with self._lock:
-            self._check(lib.rdm_agent_act(self._a, rows.ctypes.data, _MODES[mode], target.ctypes.data))
+            if points is None:
+                self._check(lib.rdm_agent_act(self._a, rows.ctypes.data, _MODES[mode], target.ctypes.data))
+            else:
+                seen, kept = clouds(points, point_class, self.num_envs)
+                self._check(lib.rdm_agent_act_points(self._a, rows.ctypes.data, byref(seen), _MODES[mode],
+                                                     target.ctypes.data))
+                del kept
         if not direct:
             action[...] = target
         return action

@@ -13,7 +13,7 @@ from . import _abi
 from ._error import ArgumentError, FileError, MissingFileError
 from ._library import Handle, check, filled, lib, policy_folders
 from ._pool import Pool
-from ._rows import Array, FloatArray, given
+from ._rows import Array, FloatArray, clouds, given
 from ._tensors import Tensors
 
 
@@ -63,8 +63,11 @@ class Policy:
     def __bytes__(self) -> bytes:
         return self._bytes
 
-    def act(self, obs: Any, noise: Any = None) -> FloatArray:
-        """clip(mean + std noise, -1, 1) for one observation [obs_dim] or rows [n][obs_dim]; noise None: the mean."""
+    def act(self, obs: Any, noise: Any = None, points: Any = None, point_class: Any = None) -> FloatArray:
+        """clip(mean + std noise, -1, 1) for one observation [obs_dim] or rows [n][obs_dim]; noise None: the mean.
+
+        A policy that sees points takes them [n][num_points][3] too, and where it has num_point_classes their classes.
+        """
         rows_of = _abi.FUNCTIONS["rdm_policy_act"].rows
         observed = np.asarray(obs)
         if observed.ndim not in (1, 2) or observed.shape[-1] != self.info.obs_dim:
@@ -77,8 +80,15 @@ class Policy:
             seen = given(observed, rows_of["obs"], lengths, "obs")
             drawn = None if noise is None else given(noise, rows_of["noise"], lengths, "noise")
             size, scratch = self._scratch(rows)
-            check(lib.rdm_policy_act(self._handle.value, seen.ctypes.data, rows,
-                                     None if drawn is None else drawn.ctypes.data, action.ctypes.data, scratch, size))
+            noise_at = None if drawn is None else drawn.ctypes.data
+            if points is None:
+                check(lib.rdm_policy_act(self._handle.value, seen.ctypes.data, rows, noise_at, action.ctypes.data,
+                                         scratch, size))
+            else:
+                cloud, kept = clouds(points, point_class, rows)
+                check(lib.rdm_policy_act_points(self._handle.value, seen.ctypes.data, ctypes.byref(cloud), rows,
+                                                noise_at, action.ctypes.data, scratch, size))
+                del kept
         return action if observed.ndim == 2 else action.reshape(-1)
 
     def _scratch(self, rows: int) -> tuple[int, int]:

@@ -1,10 +1,12 @@
 """Rows: arrays that the library reads or writes, named and shaped as the header says."""
 from __future__ import annotations
 
+import ctypes
 from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional
 
 import numpy as np
 
+from . import _abi
 from ._abi import Rows
 from ._error import ArgumentError
 
@@ -93,3 +95,20 @@ class Borrowed:
 
     def array(self) -> Array:
         return np.asarray(self)
+
+
+def clouds(points: Any, point_class: Any, rows: int) -> tuple[_abi.rdm_points, tuple[Any, ...]]:
+    """The struct for clouds points [rows][n][3], point_class [rows][n] or None, and what it borrows."""
+    array = np.asarray(points)
+    if array.ndim == 2 and rows == 1:
+        array = array[None]
+    if array.ndim != 3 or array.shape[0] != rows or array.shape[2] != 3:
+        raise ArgumentError(f"points: shape {array.shape} does not fit ({rows}, n, 3)")
+    table = _abi.ROWS["rdm_points"]
+    lengths = {"rows": rows, "num_points": array.shape[1]}
+    metres = given(array, table["points"], lengths, "points")
+    classes = None if point_class is None else given(point_class, table["point_class"], lengths, "point_class")
+    out = _abi.rdm_points(struct_size=ctypes.sizeof(_abi.rdm_points), num_points=array.shape[1],
+                          points=metres.ctypes.data,
+                          point_class=None if classes is None else classes.ctypes.data)
+    return out, (metres, classes)

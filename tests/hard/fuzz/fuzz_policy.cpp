@@ -12,6 +12,11 @@ std::vector<Bytes> seeds() {
     HARD_REQUIRE(a.epoch() == RDM_OK, "%s", rdm_last_error());
     out.push_back(a.policy());
   }
+  AgentOf seeing;
+  seeing.configure("ppo");
+  seeing.config.settings = "encoder=4,6\nencoder_points=8\nencoder_classes=2";
+  HARD_REQUIRE(seeing.create() == RDM_OK, "%s", rdm_last_error());
+  out.push_back(seeing.policy());
   return out;
 }
 
@@ -38,8 +43,15 @@ void one(const unsigned char* data, size_t size) {
   const size_t bytes = rdm_policy_scratch(p, rows);
   HARD_REQUIRE(bytes > 0 && bytes < (1u << 28), "%zu bytes of scratch", bytes);
   void* scratch = std::malloc(bytes);
+  std::vector<float> metres(count(rows * 3, info.num_points));
+  for (size_t i = 0; i < metres.size(); ++i) metres[i] = 0.1f * static_cast<float>(i % 11) - 0.5f;
+  std::vector<uint8_t> classes(count(rows, info.num_points));
+  const rdm_points seen = {sizeof seen, info.num_points, metres.data(), classes.data()};
   for (const float* e : {static_cast<const float*>(nullptr), static_cast<const float*>(noise.data())}) {
-    const rdm_result act = rdm_policy_act(p, obs.data(), rows, e, action.data(), scratch, bytes);
+    const rdm_result act =
+        info.num_points > 0
+            ? rdm_policy_act_points(p, obs.data(), &seen, rows, e, action.data(), scratch, bytes)
+            : rdm_policy_act(p, obs.data(), rows, e, action.data(), scratch, bytes);
     if (act != RDM_OK) require_refusal(act);
     for (float a : action)
       HARD_REQUIRE(act != RDM_OK || (a >= -1 && a <= 1), "an action is %g", static_cast<double>(a));
