@@ -72,7 +72,7 @@ rdm_result change(rdm_recording* r, F&& f) {
 }  // namespace
 
 rdm_result rdm_recording_config_init(rdm_recording_config* c, size_t size) {
-  return call(nullptr, [&] { init_struct(c, size, sizeof(rdm_recording_config), default_config(), "c"); });
+  return call(nullptr, [&] { init_struct(c, size, kFirstRecordingConfigSize, default_config(), "c"); });
 }
 
 rdm_result rdm_clone_config_init(rdm_clone_config* how, size_t size) {
@@ -82,7 +82,7 @@ rdm_result rdm_clone_config_init(rdm_clone_config* how, size_t size) {
 rdm_result rdm_recording_create(rdm_recording** out, const rdm_recording_config* c) {
   return call_with(c, [&] {
     need(out, "out");
-    const auto in = read_struct(c, sizeof(rdm_recording_config), default_config(), "config");
+    const auto in = read_struct(c, kFirstRecordingConfigSize, default_config(), "config");
     check_error(in);
     RecordingSpec spec;
     spec.obs_dim = in.obs_dim;
@@ -91,6 +91,7 @@ rdm_result rdm_recording_create(rdm_recording** out, const rdm_recording_config*
     spec.layout_hash = in.layout_hash;
     spec.state_bytes = in.state_bytes;
     spec.state_stride = in.state_stride;
+    spec.num_points = in.num_points;
     const char* task = in.task ? in.task : "";
     if (std::strlen(task) >= sizeof spec.task || !is_clean_text(task))
       fail(Code::kRange, "config.task: longer than %zu characters, or not one line of UTF-8",
@@ -127,7 +128,8 @@ rdm_result rdm_recording_get_info(const rdm_recording* r, rdm_recording_info* io
     out.layout_hash = x.spec().layout_hash;
     out.fingerprint = x.fingerprint();
     out.task = x.spec().task;
-    write_struct(io, out, sizeof(rdm_recording_info), "io");
+    out.num_points = x.spec().num_points;
+    write_struct(io, out, kFirstRecordingInfoSize, "io");
   });
 }
 
@@ -149,13 +151,15 @@ rdm_result rdm_recording_get_rows(const rdm_recording* r, rdm_recording_rows* io
     out.num_states = v.num_states;
     out.state_row = v.state_row;
     out.state = v.state;
-    write_struct(io, out, sizeof(rdm_recording_rows), "io");
+    out.points = v.points;
+    out.point_class = v.point_class;
+    write_struct(io, out, kFirstRecordingRowsSize, "io");
   });
 }
 
 rdm_result rdm_recording_append(rdm_recording* r, const rdm_recording_rows* rows) {
   return change(r, [&](Recording& x) {
-    const auto in = read_struct(rows, sizeof(rdm_recording_rows), rdm_recording_rows{}, "rows");
+    const auto in = read_struct(rows, kFirstRecordingRowsSize, rdm_recording_rows{}, "rows");
     RecordingRows v;
     v.rows = in.rows;
     v.obs = in.obs;
@@ -170,6 +174,8 @@ rdm_result rdm_recording_append(rdm_recording* r, const rdm_recording_rows* rows
     v.num_states = in.num_states;
     v.state_row = in.state_row;
     v.state = in.state;
+    v.points = in.points;
+    v.point_class = in.point_class;
     x.append(v);
   });
 }
@@ -222,7 +228,7 @@ rdm_result rdm_recording_load_file(rdm_recording** out, const char* path) {
 rdm_result rdm_recording_config_for_pool(rdm_recording_config* c, const rdm_pool* p) {
   return call_with(c, text_of(p), [&] {
     need_handle(p);
-    auto config = read_struct(c, sizeof(rdm_recording_config), default_config(), "config");
+    auto config = read_struct(c, kFirstRecordingConfigSize, default_config(), "config");
     const Pool& pool = *p->pool;
     config.obs_dim = pool.obs_dim();
     config.action_dim = pool.task().action_dim();
@@ -230,7 +236,8 @@ rdm_result rdm_recording_config_for_pool(rdm_recording_config* c, const rdm_pool
     config.task = task_at(pool.task_index()).name;
     config.layout_hash = layout_hash(pool.task());
     config.state_bytes = pool.state_size(0);
-    write_struct(c, config, sizeof(rdm_recording_config), "config");
+    config.num_points = pool.sense().num_points;
+    write_struct(c, config, kFirstRecordingConfigSize, "config");
   });
 }
 
@@ -244,6 +251,7 @@ void check_match(const RecordingSpec& r, const Pool& p) {
   same(r.obs_dim, p.obs_dim(), "obs_dim");
   same(r.action_dim, p.task().action_dim(), "action_dim");
   same(r.cost_dim, p.cost_dim(), "cost_dim");
+  if (r.num_points) same(r.num_points, p.sense().num_points, "num_points");
   if (r.layout_hash && r.layout_hash != layout_hash(p.task()))
     fail(Code::kArgument, "layout_hash: the recording's differs from the pool's");
 }
@@ -285,7 +293,10 @@ rdm_result rdm_recording_begin_step(rdm_recording* r, const rdm_pool* p, const f
     for (int32_t i = 0; i < n; ++i) {
       if (!taken(i)) continue;
       const auto row = static_cast<size_t>(i);
-      x.begin_row(i, b.obs + row * obs, b.action + row * actions, label ? label + row * actions : nullptr);
+      const size_t cloud = row * static_cast<size_t>(x.spec().num_points);
+      const SenseBuffers& seen = pool.sensed();
+      x.begin_row(i, b.obs + row * obs, b.action + row * actions, label ? label + row * actions : nullptr,
+                  seen.points + 3 * cloud, seen.point_class + cloud);
       if (!x.state_due(i)) continue;
       Writer out(x.add_state(i), x.spec().state_bytes);
       pool.get_state(i, out);
@@ -332,7 +343,28 @@ DemoRows demo_rows(const Recording& x, const AgentConfig& a) {
   if (x.rows() > INT32_MAX / 2)
     fail(Code::kRange, "recording: %lld rows are more than 2^30", static_cast<long long>(x.rows()));
   const RecordingRows v = x.view();
-  return {static_cast<int32_t>(v.rows), v.obs, v.label, v.episode};
+  return {static_cast<int32_t>(v.rows), v.obs, v.label, v.episode, {}};
+}
+
+// Its clouds as the agent's encoder counts them, in `memory`; none for an agent without eyes.
+PointRows demo_clouds(const Recording& x, const PointNetShape& eyes, Vector<int16_t>& memory) {
+  PointRows out;
+  const RecordingRows v = x.view();
+  if (!eyes.points || !v.points) return out;
+  if (x.spec().num_points != eyes.points)
+    fail(Code::kArgument, "recording: its clouds have %d points, the agent's encoder sees %d",
+         x.spec().num_points, eyes.points);
+  int32_t origin[3];
+  for (int k = 0; k < 3; ++k)
+    origin[k] = static_cast<int32_t>(std::lround(1000 * static_cast<double>(eyes.origin[k])));
+  const size_t count = static_cast<size_t>(v.rows) * eyes.row_points();
+  memory.resize(count);
+  for (size_t i = 0; i < count; ++i)
+    memory[i] = static_cast<int16_t>(std::clamp(v.points[i] - origin[i % 3], -32767, 32767));
+  out.points = memory.data();
+  if (eyes.classes) out.classes = v.point_class;
+  need_classes(eyes, out, static_cast<size_t>(v.rows));
+  return out;
 }
 
 }  // namespace
@@ -360,7 +392,11 @@ rdm_result rdm_agent_clone(rdm_agent* a, const rdm_recording* r, const rdm_clone
     o.capacity = in.capacity;
     o.train_loss = in.train_loss;
     o.validation_loss = in.validation_loss;
-    const CloneReport report = a->agent->clone(demo_rows(*r->recording, a->agent->config()), o);
+    const HostScope scope(r->hooks);
+    Vector<int16_t> memory;
+    DemoRows demo = demo_rows(*r->recording, a->agent->config());
+    demo.clouds = demo_clouds(*r->recording, a->agent->eyes(), memory);
+    const CloneReport report = a->agent->clone(demo, o);
     if (!io) return;
     rdm_clone_report out{};
     out.epochs = report.epochs;
@@ -379,7 +415,11 @@ rdm_result rdm_agent_set_recording(rdm_agent* a, const rdm_recording* r) {
     need_handle(a);
     if (!r) return a->agent->set_recording({}, 0);
     need_handle(r);
-    a->agent->set_recording(demo_rows(*r->recording, a->agent->config()), r->recording->fingerprint());
+    const HostScope scope(r->hooks);
+    Vector<int16_t> memory;
+    DemoRows demo = demo_rows(*r->recording, a->agent->config());
+    demo.clouds = demo_clouds(*r->recording, a->agent->eyes(), memory);
+    a->agent->set_recording(demo, r->recording->fingerprint());
   });
 }
 #endif

@@ -70,8 +70,11 @@ PointRows clouds_of(const Agent& agent, const Pool& pool) {
   if (pool.sense().num_points != eyes.points)
     fail(Code::kArgument, "encoder_points: the agent's encoder sees %d, the pool has %d", eyes.points,
          pool.sense().num_points);
-  if (eyes.classes)
-    fail(Code::kUnsupported, "encoder_classes: a pool's points have none; rdm_agent_act_points takes them");
+  if (!eyes.classes) return clouds;
+  if (const int32_t count = point_classes(pool.task().scene()); count > eyes.classes)
+    fail(Code::kArgument, "encoder_classes: the pool's points have %d classes, the agent's encoder sees %d",
+         count, eyes.classes);
+  clouds.classes = pool.sensed().point_class;
   return clouds;
 }
 

@@ -1,4 +1,5 @@
 // `train`: a run from flags or from its folder, and how good its policy is in the end.
+#include <algorithm>
 #include <cmath>
 
 #include "commands.hpp"
@@ -64,9 +65,11 @@ Trainer begin(TrainFlags flags) {
     for (const Options& options :
          {adopt_lesson(flags.teach_given, run.pool, run.teach), taught_options(run.teach)})
       run.agent.options.insert(run.agent.options.begin(), options.begin(), options.end());
-  } else if (!flags.teach_given.empty()) {
+  } else if (!std::all_of(flags.teach_given.begin(), flags.teach_given.end(),
+                          [](const std::string& name) { return name.rfind("pretrain", 0) == 0; })) {
     throw Usage("flags of a teacher without --from");
   }
+  give_eyes(run.agent, run.pool);
   run.own = own_files(task_at(find_task(run.pool.task)).name);
   Trainer trainer(run);  // a wrong value throws here or below, before there is a folder
   trainer.prepare();
@@ -123,6 +126,13 @@ Report run_train(const TrainFlags& flags) {
                      {"epochs", c.epochs},
                      {"loss", c.train_loss},
                      {"validation_loss", c.validation_loss}};
+  }
+  if (trainer.taught().pretrained) {
+    const rdm_pretrain_report& c = trainer.taught().pretraining;
+    json["pretrain"] = {{"clouds", c.train_rows},
+                        {"loss", c.validation_loss},
+                        {"accuracy", c.accuracy},
+                        {"most_common", c.most_common}};
   }
   std::string text = format("run      %s\npolicy   %s\n", trainer.folder().path().c_str(),
                             trainer.folder().policy().c_str());

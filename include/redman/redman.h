@@ -1357,10 +1357,12 @@ typedef struct rdm_recording_config { /* what a recording is made from */
   int32_t error_size;      /* bytes of error, terminator included; what is longer is cut                   */
   char *error;             /* [error_size] the text of a failing call that takes this config; NULL         */
   const rdm_host *host;    /* hooks of this handle, copied; NULL: those of rdm_init                        */
+  int32_t num_points;      /* of the cloud beside each row, 0..65536; 0: none are kept; default 0          */
+  int32_t reserved;        /* 0                                                                            */
 } rdm_recording_config;
 /* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's. */
 RDM_API rdm_result rdm_recording_config_init(rdm_recording_config *c, size_t size);
-/* Sets dims, task, layout_hash and state_bytes from a pool. Pointers are borrowed from the pool. */
+/* Sets dims, task, layout_hash, state_bytes and num_points from a pool. Pointers are borrowed from the pool. */
 RDM_API rdm_result rdm_recording_config_for_pool(rdm_recording_config *c, const rdm_pool *p);
 RDM_API rdm_result rdm_recording_create(rdm_recording **out, const rdm_recording_config *c); /* empty */
 RDM_API void rdm_recording_destroy(rdm_recording *r);             /* NULL is fine */
@@ -1379,6 +1381,8 @@ typedef struct rdm_recording_info { /* what a recording holds */
   uint64_t layout_hash;    /* 0: unknown                                                                   */
   uint64_t fingerprint;    /* of obs and label of all rows; what an agent that uses them is resumed by     */
   const char *task;        /* "" for a host's own environment                                              */
+  int32_t num_points;      /* of each row's cloud; 0: it has none                                          */
+  int32_t reserved;        /* 0                                                                            */
 } rdm_recording_info;
 RDM_API rdm_result rdm_recording_get_info(const rdm_recording *r, rdm_recording_info *io); /* fills io */
 
@@ -1399,6 +1403,8 @@ typedef struct rdm_recording_rows {
   int64_t num_states;         /* count                                                                     */
   const int64_t *state_row;   /* [num_states] row before which the world had the state, ascending          */
   const uint8_t *state;       /* [num_states][state_bytes] what rdm_pool_set_state takes                   */
+  const int16_t *points;      /* [rows][num_points][3] mm, world, before the action; NULL without clouds    */
+  const uint8_t *point_class; /* [rows][num_points] as of rdm_sensors; to append, NULL: 0                  */
 } rdm_recording_rows;
 /* Borrowed pointers, until the next call that changes the recording. */
 RDM_API rdm_result rdm_recording_get_rows(const rdm_recording *r, rdm_recording_rows *io);
@@ -1420,7 +1426,7 @@ RDM_API rdm_result rdm_recording_end_step(rdm_recording *r, const rdm_pool *p, c
 RDM_API rdm_result rdm_recording_filter(rdm_recording *r, int32_t need_success, const double *max_cost, int64_t *dropped);
 RDM_API rdm_result rdm_recording_clear(rdm_recording *r);         /* no rows; memory stays */
 /* A file of arrays, .npz, that numpy.load opens: obs, action, label, reward, cost, terminated, truncated, success, episode,
- * state_row, state; task, layout_hash, format. Replaced atomically. */
+ * state_row, state, points, point_class; task, layout_hash, format. Replaced atomically. */
 RDM_API rdm_result rdm_recording_save_file(const rdm_recording *r, const char *path);
 /* Makes one of such a file, also as numpy.savez writes it, or of one that `redman rollout --record` wrote. NOT_FOUND; FORMAT when a
  * checksum, a shape or a number is wrong, VERSION_MISMATCH for a newer one. */

@@ -24,7 +24,7 @@ inline rdm_points points(const float* metres, int32_t count, const uint8_t* clas
 }
 // What the worlds of a pool show, borrowed from it.
 inline rdm_points points(const rdm_sensors& seen) {
-  return points(seen.points, seen.num_points);
+  return points(seen.points, seen.num_points, seen.point_class);
 }
 
 inline void act(const Agent& agent, const float* obs, const rdm_points& seen, int32_t mode, float* action) {

@@ -45,7 +45,8 @@ void Pool::step(const uint8_t* mask) {
       m.control_step(begin, end, block, [&](int32_t env) { return named(env) && m.slots[env].goes_on; });
     if (!m.sense.any()) return;
     for (int32_t env = begin; env < end; ++env)
-      if (named(env)) block.attempt(env, [&] { m.see(env, block); });
+      if (named(env) && m.slots[env].episode.step % m.sense.every == 0)
+        block.attempt(env, [&] { m.see(env, block); });
   });
 }
 

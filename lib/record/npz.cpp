@@ -117,6 +117,7 @@ size_t NpyArray::item_bytes() const {
     if (std::strcmp(type, known) == 0) return 4;
   for (const char* known : {"<i8", "<u8", "<f8"})
     if (std::strcmp(type, known) == 0) return 8;
+  if (std::strcmp(type, "<i2") == 0) return 2;
   if (std::strcmp(type, "|u1") == 0 || std::strcmp(type, "|b1") == 0) return 1;
   if (std::strncmp(type, "|S", 2) != 0 || !type[2]) return 0;
   size_t n = 0;

@@ -52,6 +52,12 @@ uint64_t hash_words(const void* data, size_t size, uint64_t hash) {
   return hash_bytes(p, size, hash);
 }
 
+// Whole millimetres within what 16 bits hold.
+int16_t millimetres(float metres) {
+  return static_cast<int16_t>(
+      std::clamp(std::nearbyint(1000.0 * static_cast<double>(metres)), -32767.0, 32767.0));
+}
+
 float cut_unit(float v) {
   return std::clamp(v, -1.0f, 1.0f);
 }
@@ -64,6 +70,7 @@ Recording::Recording(const RecordingSpec& spec, int64_t capacity) : spec_(spec) 
   check_range("cost_dim", spec.cost_dim, 0, 16);
   check_range("state_bytes", static_cast<int64_t>(std::min<size_t>(spec.state_bytes, INT64_MAX)), 0, 1 << 30);
   check_range("state_stride", spec.state_stride, 1, 1 << 30);
+  check_range("num_points", spec.num_points, 0, kMaxRecordedPoints);
   check_range("capacity", capacity, 0, kMaxRecordingRows);
   const auto rows = static_cast<size_t>(capacity);
   if (rows) reserve(rows, spec.state_bytes ? rows / static_cast<size_t>(spec.state_stride) + 1 : 0);
@@ -82,6 +89,8 @@ void Recording::reserve(size_t rows, size_t states) {
   room(episode_, rows);
   room(state_row_, states);
   room(state_, states * spec_.state_bytes);
+  room(points_, rows * num_points() * 3);
+  room(point_class_, rows * num_points());
 }
 
 RecordingRows Recording::view() const {
@@ -93,6 +102,7 @@ RecordingRows Recording::view() const {
   v.episode = episode_.data();
   v.num_states = num_states();
   v.state_row = state_row_.data(), v.state = state_.data();
+  if (spec_.num_points) v.points = points_.data(), v.point_class = point_class_.data();
   return v;
 }
 
@@ -100,7 +110,10 @@ uint64_t Recording::fingerprint() const {
   uint64_t h = hash_bytes(&spec_.obs_dim, sizeof spec_.obs_dim);
   h = hash_bytes(&spec_.action_dim, sizeof spec_.action_dim, h);
   h = hash_words(obs_.data(), obs_.size() * sizeof(float), h);
-  return hash_words(label_.data(), label_.size() * sizeof(float), h);
+  h = hash_words(label_.data(), label_.size() * sizeof(float), h);
+  if (!spec_.num_points) return h;
+  h = hash_words(points_.data(), points_.size() * sizeof(int16_t), h);
+  return hash_words(point_class_.data(), point_class_.size(), h);
 }
 
 uint64_t Recording::state_fingerprint() const {
@@ -113,6 +126,8 @@ void Recording::check(const RecordingRows& in) const {
   const auto n = static_cast<size_t>(in.rows);
   if (n && !in.obs) fail(Code::kArgument, "obs: NULL");
   if (n && !in.action) fail(Code::kArgument, "action: NULL");
+  if (n && spec_.num_points && !in.points) fail(Code::kArgument, "points: NULL");
+  if (n && !spec_.num_points && in.points) fail(Code::kArgument, "points: this recording has none");
   check_finite("obs", in.obs, n, obs_dim());
   check_finite("action", in.action, n, action_dim());
   check_finite("label", in.label, n, action_dim());
@@ -158,6 +173,8 @@ void Recording::append(const RecordingRows& in) {
   add(terminated_, in.terminated, n);
   add(truncated_, in.truncated, n);
   add(success_, in.success, n);
+  add(points_, in.points, n * num_points() * 3);
+  add(point_class_, in.point_class, n * num_points());
   for (size_t i = 0; i < states; ++i) state_row_.push_back(static_cast<int64_t>(before) + in.state_row[i]);
   if (states) add(state_, in.state, states * spec_.state_bytes);
   episodes_ += last + 1;
@@ -169,6 +186,8 @@ void Recording::append_all(const Recording& other) {
   if (o.obs_dim != spec_.obs_dim || o.action_dim != spec_.action_dim || o.cost_dim != spec_.cost_dim)
     fail(Code::kArgument, "other: its rows have %d observations, %d actions, %d costs, these %d, %d, %d",
          o.obs_dim, o.action_dim, o.cost_dim, spec_.obs_dim, spec_.action_dim, spec_.cost_dim);
+  if (o.num_points != spec_.num_points)
+    fail(Code::kArgument, "other: its clouds have %d points, these %d", o.num_points, spec_.num_points);
   if (o.layout_hash != spec_.layout_hash) fail(Code::kArgument, "other: of another layout");
   if (other.num_states() > 0 && o.state_bytes != spec_.state_bytes)
     fail(Code::kArgument, "other: its states have %zu bytes, these %zu", o.state_bytes, spec_.state_bytes);
@@ -190,6 +209,8 @@ void Recording::copy_row(size_t from, size_t to) {
   move(truncated_, 1);
   move(success_, 1);
   move(episode_, 1);
+  move(points_, num_points() * 3);
+  move(point_class_, num_points());
 }
 
 void Recording::cut(size_t rows, size_t states) {
@@ -204,6 +225,8 @@ void Recording::cut(size_t rows, size_t states) {
   episode_.resize(rows);
   state_row_.resize(states);
   state_.resize(states * spec_.state_bytes);
+  points_.resize(rows * num_points() * 3);
+  point_class_.resize(rows * num_points());
 }
 
 int64_t Recording::filter(bool need_success, const double* max_cost) {
@@ -261,7 +284,8 @@ void Recording::make_room(const void* source, int32_t worlds) {
   source_ = source;
 }
 
-void Recording::begin_row(int32_t world, const float* obs, const float* action, const float* label) {
+void Recording::begin_row(int32_t world, const float* obs, const float* action, const float* label,
+                          const float* points, const uint8_t* point_class) {
   Open& o = open_[static_cast<size_t>(world)];
   if (o.episode < 0) o.episode = episodes_++, o.count = 0;
   o.row = rows();
@@ -275,6 +299,8 @@ void Recording::begin_row(int32_t world, const float* obs, const float* action, 
   truncated_.push_back(0);
   success_.push_back(0);
   episode_.push_back(o.episode);
+  for (size_t j = 0; j < 3 * num_points(); ++j) points_.push_back(millimetres(points[j]));
+  add(point_class_, point_class, num_points());
 }
 
 bool Recording::state_due(int32_t world) const {

@@ -19,6 +19,7 @@ struct RecordingSpec {
   char task[64] = "";
   size_t state_bytes = 0;    // of one state; 0: none are kept
   int32_t state_stride = 8;  // begin_row wants the state of every n-th row of an episode
+  int32_t num_points = 0;    // of each row's cloud; 0: none are kept
 };
 
 // Meaning, shapes and defaults of null as rdm_recording_rows.
@@ -30,8 +31,11 @@ struct RecordingRows {
   int64_t num_states = 0;
   const int64_t* state_row = nullptr;
   const uint8_t* state = nullptr;
+  const int16_t* points = nullptr;
+  const uint8_t* point_class = nullptr;
 };
 
+inline constexpr int32_t kMaxRecordedPoints = 65536;
 inline constexpr int64_t kMaxRecordingRows = int64_t{1} << 40;
 
 class Recording {
@@ -45,7 +49,7 @@ class Recording {
   int64_t episodes() const { return episodes_; }
   int64_t num_states() const { return static_cast<int64_t>(state_row_.size()); }
   RecordingRows view() const;
-  uint64_t fingerprint() const;        // of obs and label
+  uint64_t fingerprint() const;        // of obs, label and points
   uint64_t state_fingerprint() const;  // of the states
 
   // Error(kArgument) for rows that are none; nothing changes.
@@ -59,8 +63,10 @@ class Recording {
   // Room for a row of each of so many worlds of this source; a source that was not the last one begins new
   // episodes.
   void make_room(const void* source, int32_t worlds);
-  // The row of a world; action and label are cut to [-1, 1]. Needs room.
-  void begin_row(int32_t world, const float* obs, const float* action, const float* label);
+  // The row of a world; action and label are cut to [-1, 1]. points [num_points][3], m, of the world, and
+  // point_class [num_points] where the recording has clouds. Needs room.
+  void begin_row(int32_t world, const float* obs, const float* action, const float* label,
+                 const float* points = nullptr, const uint8_t* point_class = nullptr);
   // Whether the state before the row that begin_row just added belongs to the recording, and where it goes.
   bool state_due(int32_t world) const;
   unsigned char* add_state(int32_t world);
@@ -80,6 +86,7 @@ class Recording {
   size_t obs_dim() const { return static_cast<size_t>(spec_.obs_dim); }
   size_t action_dim() const { return static_cast<size_t>(spec_.action_dim); }
   size_t cost_dim() const { return static_cast<size_t>(spec_.cost_dim); }
+  size_t num_points() const { return static_cast<size_t>(spec_.num_points); }
   void check(const RecordingRows& rows) const;
   void reserve(size_t rows, size_t states);
   void copy_row(size_t from, size_t to);
@@ -90,6 +97,8 @@ class Recording {
   Vector<uint8_t> terminated_, truncated_, success_;
   Vector<int64_t> episode_, state_row_;
   Vector<uint8_t> state_;
+  Vector<int16_t> points_;
+  Vector<uint8_t> point_class_;
   int64_t episodes_ = 0;
   const void* source_ = nullptr;
   Vector<Open> open_;  // [worlds of the source]

@@ -136,6 +136,12 @@ void Recording::write(Vector<unsigned char>& file) const {
     out.add("state_row", array_of("<i8", state_row_.data(), states));
     out.add("state", array_of("|u1", state_.data(), states, spec_.state_bytes));
   }
+  if (spec_.num_points > 0) {
+    NpyArray points = array_of("<i2", points_.data(), n, width(spec_.num_points));
+    points.dims = 3, points.shape[2] = 3;
+    out.add("points", points);
+    out.add("point_class", array_of("|u1", point_class_.data(), n, width(spec_.num_points)));
+  }
   out.finish();
 }
 
@@ -165,7 +171,17 @@ Recording* Recording::read(const unsigned char* bytes, size_t size, const HostHo
   read_states(in, n, &states);
   spec.state_bytes = states.width;
 
+  if (in.has("points")) {
+    const NpyArray a = in.array("points");
+    if (!a.is("<i2", 3) || a.shape[0] != n || a.shape[1] < 1 || a.shape[1] > kMaxRecordedPoints ||
+        a.shape[2] != 3)
+      fail(Code::kFormat, "%s: array points has another type or shape", kWhat);
+    spec.num_points = static_cast<int32_t>(a.shape[1]);
+  }
+
   const Columns columns(in);
+  Vector<int16_t> points;
+  Vector<uint8_t> point_class;
   Vector<float> obs, action, label, reward, cost;
   Vector<uint8_t> terminated, truncated, success;
   Vector<int64_t> episode;
@@ -182,6 +198,11 @@ Recording* Recording::read(const unsigned char* bytes, size_t size, const HostHo
   v.success = columns.take("success", "|b1", 1, n, 0, success);
   read_episodes(in, n, episode);
   v.episode = episode.data();
+  if (spec.num_points) {
+    v.points = columns.take("points", "<i2", 3, n, width(spec.num_points), points);
+    if (in.has("point_class"))
+      v.point_class = columns.take("point_class", "|u1", 2, n, width(spec.num_points), point_class);
+  }
   v.num_states = static_cast<int64_t>(states.row.size());
   v.state_row = states.row.data();
   v.state = states.bytes.data();

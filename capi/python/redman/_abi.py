@@ -2462,6 +2462,8 @@ class rdm_recording_config(Structure):
     error_size: bytes of error, terminator included; what is longer is cut
     error: [error_size] the text of a failing call that takes this config; NULL
     host: hooks of this handle, copied; NULL: those of rdm_init
+    num_points: of the cloud beside each row, 0..65536; 0: none are kept; default 0
+    reserved: 0
     """
 
     struct_size: int
@@ -2476,6 +2478,8 @@ class rdm_recording_config(Structure):
     error_size: int
     error: int | None
     host: Any
+    num_points: int
+    reserved: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("obs_dim", c_int32),
@@ -2489,6 +2493,8 @@ class rdm_recording_config(Structure):
         ("error_size", c_int32),
         ("error", c_void_p),
         ("host", POINTER(rdm_host)),
+        ("num_points", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -2505,6 +2511,7 @@ class RecordingInfo(Record):
     layout_hash: int  # 0: unknown
     fingerprint: int  # of obs and label of all rows; what an agent that uses them is resumed by
     task: str  # "" for a host's own environment
+    num_points: int  # of each row's cloud; 0: it has none
 
 
 class rdm_recording_info(Structure):
@@ -2519,6 +2526,8 @@ class rdm_recording_info(Structure):
     layout_hash: 0: unknown
     fingerprint: of obs and label of all rows; what an agent that uses them is resumed by
     task: "" for a host's own environment
+    num_points: of each row's cloud; 0: it has none
+    reserved: 0
     """
 
     struct_size: int
@@ -2532,6 +2541,8 @@ class rdm_recording_info(Structure):
     layout_hash: int
     fingerprint: int
     task: bytes | None
+    num_points: int
+    reserved: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("obs_dim", c_int32),
@@ -2544,6 +2555,8 @@ class rdm_recording_info(Structure):
         ("layout_hash", c_uint64),
         ("fingerprint", c_uint64),
         ("task", c_char_p),
+        ("num_points", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -2565,6 +2578,8 @@ class rdm_recording_rows(Structure):
     num_states: count
     state_row: [num_states] row before which the world had the state, ascending
     state: [num_states][state_bytes] what rdm_pool_set_state takes
+    points: [rows][num_points][3] mm, world, before the action; NULL without clouds
+    point_class: [rows][num_points] as of rdm_sensors; to append, NULL: 0
     """
 
     struct_size: int
@@ -2582,6 +2597,8 @@ class rdm_recording_rows(Structure):
     num_states: int
     state_row: int | None
     state: int | None
+    points: int | None
+    point_class: int | None
     _fields_ = [
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
@@ -2598,6 +2615,8 @@ class rdm_recording_rows(Structure):
         ("num_states", c_int64),
         ("state_row", c_void_p),
         ("state", c_void_p),
+        ("points", c_void_p),
+        ("point_class", c_void_p),
     ]
 
 
@@ -2829,6 +2848,8 @@ ROWS: dict[str, dict[str, Rows]] = {
         "episode": Rows("int64", ("rows",)),
         "state_row": Rows("int64", ("num_states",)),
         "state": Rows("uint8", ("num_states", "state_bytes")),
+        "points": Rows("int16", ("rows", "num_points", "3")),
+        "point_class": Rows("uint8", ("rows", "num_points")),
     },
     "rdm_clone_config": {
         "train_loss": Rows("float64", ("capacity",)),
@@ -3791,7 +3812,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_recording_config_for_pool": Function(
         c_int32, {"c": POINTER(rdm_recording_config), "p": c_void_p},
         {}, True,
-        """Sets dims, task, layout_hash and state_bytes from a pool. Pointers are borrowed from the pool."""),
+        """Sets dims, task, layout_hash, state_bytes and num_points from a pool. Pointers are borrowed from the pool."""),
     "rdm_recording_create": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_recording_config)},
         {}, True,
@@ -3855,7 +3876,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"r": c_void_p, "path": c_char_p},
         {}, True,
         """A file of arrays, .npz, that numpy.load opens: obs, action, label, reward, cost, terminated, truncated, success, episode,
-        state_row, state; task, layout_hash, format. Replaced atomically.
+        state_row, state, points, point_class; task, layout_hash, format. Replaced atomically.
         """),
     "rdm_recording_load_file": Function(
         c_int32, {"out": POINTER(c_void_p), "path": c_char_p},

@@ -72,6 +72,33 @@ CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* t
   return task;
 }
 
+void give_eyes(int32_t points, int32_t repeat, PoolSettings& pool) {
+  const Options own = {{"modality", "points"},
+                       {"points", std::to_string(points)},
+                       {"sampling", "voxel"},
+                       {"sense_every", std::to_string(repeat)}};
+  pool.options.insert(pool.options.begin(), own.begin(), own.end());
+}
+
+void give_eyes(const AgentSettings& agent, PoolSettings& pool) {
+  const auto table = algo_options(find_algo(agent.algo));
+  const auto value = [&](const char* key) {
+    std::string out;
+    for (const rdm_option_info& o : table)
+      if (same_name(o.key, key)) out = o.text ? o.text : number_text(o.number);
+    for (const rdm_option& o : task_defaults(find_task(pool.task)))
+      if (same_name(o.key, key)) out = o.text ? o.text : number_text(o.number);
+    for (const auto& [name, text] : agent.options)
+      if (same_name(name, key)) out = text;
+    return out;
+  };
+  if (value("encoder").empty()) return;
+  const auto whole = [&](const char* key) {
+    return std::max(1, static_cast<int32_t>(std::strtol(value(key).c_str(), nullptr, 10)));
+  };
+  give_eyes(whole("encoder_points"), whole("action_repeat"), pool);
+}
+
 bool learns_magnitudes(const AgentSettings& agent) {
   bool raw = false;
   for (const auto& [key, value] : agent.options)

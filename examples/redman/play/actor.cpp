@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "common/files.hpp"
+#include <redman/redman_map.hpp>
+
 #include "common/names.hpp"
 #include "play/plan_word.hpp"
 #include "play/trained.hpp"
@@ -92,7 +94,10 @@ ActorChoice choose_actor(const std::string& word, const std::string& task) {
     return choice;
   }
   choice.file = is_folder(word) ? word + "/policy.rdm" : word;
-  choice.task = load(choice.file).info().task;
+  const rdm_policy_info info = load(choice.file).info();
+  choice.task = info.task;
+  choice.points = info.num_points;
+  choice.repeat = info.action_repeat;
   const std::string folder = run_folder_of(choice.file);
   if (folder.empty()) return choice;
   const RunSettings run = run_settings(folder);
@@ -118,6 +123,7 @@ void adopt_task(const ActorChoice& choice, bool task_given, const std::vector<st
     const Options own = builtin_demo(pool.task, given).options;
     pool.options.insert(pool.options.begin(), own.begin(), own.end());
   }
+  if (choice.points > 0) give_eyes(choice.points, choice.repeat, pool);
   if (!same_name(pool.task, choice.task)) return;
   pool.options.insert(pool.options.begin(), choice.options.begin(), choice.options.end());
   pool.magnitudes = choice.magnitudes;
@@ -190,6 +196,14 @@ void Actor::prepare(const redman::Pool& pool) {
   const size_t n = pool.num_envs(), width = pool.action().width();
   scratch_.resize(policy_->scratch_bytes(static_cast<int32_t>(n)));
   repeat_ = std::max(1, policy_->info().action_repeat / pool.spec().action_repeat);
+  if (const auto points = static_cast<size_t>(policy_->info().num_points); points > 0) {
+    const rdm_sensors seen = redman::sensors(pool);
+    if (!seen.points || seen.num_points != policy_->info().num_points)
+      throw Failure(format("the policy sees clouds of %d points: set modality=points and points=%d",
+                           policy_->info().num_points, policy_->info().num_points));
+    points_.resize(n * points * 3);
+    point_class_.resize(n * points);
+  }
   hold_.assign(n, 0);
   due_.reserve(n);
   obs_.resize(n * pool.obs().width());
@@ -278,6 +292,12 @@ void Actor::act(redman::Pool& pool, const uint8_t* mask) {
   for (size_t k = 0; k < due_.size(); ++k) {
     const size_t i = due_[k];
     std::copy(pool.obs()[i].begin(), pool.obs()[i].end(), obs_.data() + k * pool.obs().width());
+    if (!points_.empty()) {
+      const rdm_sensors seen = redman::sensors(pool);
+      const auto count = static_cast<size_t>(seen.num_points);
+      std::copy_n(seen.points + 3 * count * i, 3 * count, points_.data() + 3 * count * k);
+      std::copy_n(seen.point_class + count * i, count, point_class_.data() + count * k);
+    }
     if (!stochastic_) continue;
     for (size_t j = 0; j < width; ++j) {
       float& m = memory_[i * width + j];
@@ -286,8 +306,14 @@ void Actor::act(redman::Pool& pool, const uint8_t* mask) {
     }
     fresh_[i] = 0;
   }
-  policy_->act(obs_.data(), static_cast<int32_t>(due_.size()), stochastic_ ? noise_.data() : nullptr,
-               action_.data(), scratch_.data(), scratch_.size());
+  const auto rows = static_cast<int32_t>(due_.size());
+  const float* noise = stochastic_ ? noise_.data() : nullptr;
+  if (points_.empty())
+    policy_->act(obs_.data(), rows, noise, action_.data(), scratch_.data(), scratch_.size());
+  else
+    redman::act(*policy_, obs_.data(),
+                redman::points(points_.data(), policy_->info().num_points, point_class_.data()), rows, noise,
+                action_.data(), scratch_.data(), scratch_.size());
   for (size_t k = 0; k < due_.size(); ++k)
     std::copy_n(action_.data() + k * width, width, pool.action()[due_[k]].begin());
 }

@@ -3,6 +3,7 @@
 #pragma once
 #include <optional>
 #include <redman/redman_plan.hpp>
+#include <redman/redman_points.hpp>
 #include <string>
 
 #include "common/setup.hpp"
@@ -26,6 +27,7 @@ struct ActorChoice {
   Options options;                  // of the task, when the policy stands in a run folder
   std::vector<std::string> limits;  // --cost-limit of that run
   bool magnitudes = false;          // which are on magnitudes
+  int32_t points = 0, repeat = 1;   // of a policy with eyes: that it sees, and control steps of a decision
 };
 // zero, hold, random, demo, trained (of `task`, play/trained.hpp), plan (play/plan_word.hpp), a .demo file,
 // an .npz file of a rollout, a policy file or a run folder. Failure when the file cannot be read as what it
@@ -86,6 +88,8 @@ class Actor {
   std::vector<float> obs_, action_, noise_;  // rows of those worlds
   std::vector<float> memory_;                // [num_envs][action_dim] correlated noise
   std::vector<uint8_t> fresh_;               // [num_envs] the memory is to be drawn anew
+  std::vector<float> points_;                // clouds of those worlds, where the policy sees
+  std::vector<uint8_t> point_class_;
   redman::Bytes scratch_;
 };
 

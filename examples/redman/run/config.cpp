@@ -60,6 +60,8 @@ Json teach_json(const TeachSettings& t) {
           {"clone_patience", t.clone_patience},
           {"clone_rate", t.clone_rate},
           {"validation", t.validation},
+          {"pretrain", t.pretrain},
+          {"pretrain_epochs", t.pretrain_epochs},
           {"dagger", t.dagger},
           {"beta", t.beta},
           {"start_share", t.start_share},
@@ -76,6 +78,10 @@ TeachSettings parse_teach(const Document& json) {
   t.clone_patience = static_cast<int32_t>(integer_at(json, "clone_patience", 0, 100000));
   t.clone_rate = number_at(json, "clone_rate", 0, 10);
   t.validation = number_at(json, "validation", 0, 0.9);
+  if (json.contains("pretrain")) {
+    t.pretrain = static_cast<int32_t>(integer_at(json, "pretrain", 0, 1 << 20));
+    t.pretrain_epochs = static_cast<int32_t>(integer_at(json, "pretrain_epochs", 1, 100000));
+  }
   t.dagger = static_cast<int32_t>(integer_at(json, "dagger", 0, 1000));
   t.beta = number_at(json, "beta", 0, 1);
   t.start_share = number_at(json, "start_share", 0, 1);
@@ -122,7 +128,7 @@ std::string config_text(const RunSettings& s, const redman::Pool& pool, const re
   if (!s.own.task.empty()) json["task_file"] = s.own.task;
   if (!s.own.robots.empty()) json["robot_files"] = s.own.robots;
   if (!s.own.objects.empty()) json["object_files"] = s.own.objects;
-  if (s.teach.asked()) json["teach_cfgs"] = teach_json(s.teach);
+  if (s.teach.asked() || s.teach.pretrain > 0) json["teach_cfgs"] = teach_json(s.teach);
   std::string text = json_text(json, 2) + '\n';
   if (text.size() > kMostJsonBytes)
     throw Failure(format("a run's config.json has room for %zu bytes: its robots and task take %zu",

@@ -15,6 +15,8 @@ struct TeachSettings {
   int32_t clone_patience = 0;  // epochs without a better validation loss that end it; 0: never
   double clone_rate = 1e-3;    // Adam's
   double validation = 0.1;     // share of rows held back
+  int32_t pretrain = 0;  // clouds by which an encoder learns to tell points apart before; 0: it does not
+  int32_t pretrain_epochs = 10;
   int32_t dagger = 0;          // further rounds, in which the student acts too
   double beta = 0.5;           // the teacher's share of decisions in round k: beta^k
   double start_share = 0;      // of episodes that begin at a state of the recording, in the first epoch
@@ -39,6 +41,9 @@ inline constexpr TeachField kTeachFields[] = {
      &TeachSettings::clone_patience, nullptr},
     {"clone-rate", "Adam's rate while cloning", 0, 10, nullptr, &TeachSettings::clone_rate},
     {"validation", "share of the rows held back", 0, 0.9, nullptr, &TeachSettings::validation},
+    {"pretrain", "clouds by which an encoder learns to tell hands and things apart before all else", 0,
+     1 << 20, &TeachSettings::pretrain, nullptr},
+    {"pretrain-epochs", "passes over those", 1, 100000, &TeachSettings::pretrain_epochs, nullptr},
     {"dagger", "rounds in which the student acts too and the teacher labels; a policy is a teacher then", 0,
      1000, &TeachSettings::dagger, nullptr},
     {"beta", "the teacher's share of decisions in round k of those is beta^k", 0, 1, nullptr,

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include <redman/redman_map.hpp>
+
 #include "common/names.hpp"
 #include "common/text.hpp"
 #include "teach/noise.hpp"
@@ -12,7 +14,8 @@
 namespace tool {
 namespace {
 
-constexpr uint64_t kTeachSeed = 3000000;   // the teacher's worlds draw from seed + this + the round
+constexpr uint64_t kTeachSeed = 3000000;  // the teacher's worlds draw from seed + this + the round
+constexpr uint64_t kPretrainSeed = 5000000;
 constexpr double kPolicySamples = 100000;  // that a policy's statistics of observations count for
 
 bool is_file(const std::string& word) {
@@ -80,7 +83,11 @@ class Lesson {
   void choose(const std::vector<float>& label, const redman::Policy* student, double beta,
               std::vector<float>& held) {
     const size_t n = pool_.num_envs(), width = pool_.action().width();
-    if (student) student->act(pool_.obs().data(), static_cast<int32_t>(n), nullptr, held.data());
+    if (student && student->info().num_points > 0)
+      redman::act(*student, pool_.obs().data(), redman::points(redman::sensors(pool_)), static_cast<int32_t>(n),
+                  nullptr, held.data());
+    else if (student)
+      student->act(pool_.obs().data(), static_cast<int32_t>(n), nullptr, held.data());
     for (size_t i = 0; i < n; ++i) {
       noise_.draw(i);
       const bool taught = !student || noise_.uniform() < beta;
@@ -125,6 +132,35 @@ rdm_clone_report clone(const TeachSettings& s, redman::Agent& agent, const redma
   std::fprintf(stderr, "cloned %lld rows in %d epochs: loss %.5f, held back %.5f\n",
                static_cast<long long>(report.train_rows), report.epochs, report.train_loss,
                report.validation_loss);
+  return report;
+}
+
+rdm_pretrain_report pretrain(const TeachSettings& s, const PoolSettings& settings, const redman::Agent& agent,
+                             int32_t repeat) {
+  PoolSettings own = settings;
+  own.seed += kPretrainSeed;
+  const bool taught = s.asked() && !is_file(s.from);
+  Lesson lesson(s, own, choose_actor(taught ? s.from : "random", settings.task), repeat, own.seed);
+  const rdm_sensors seen = redman::sensors(lesson.pool());
+  if (!seen.points) throw Usage("--pretrain: the agent sees no points: --set encoder=64,128");
+  redman::Recording shown(lesson.pool(), s.pretrain + settings.envs);
+  RoundMeans means;
+  while (shown.info().rows < s.pretrain) lesson.decide(shown, nullptr, 1, &means);
+  const rdm_recording_rows rows = shown.rows();
+  std::vector<float> metres(static_cast<size_t>(s.pretrain) * static_cast<size_t>(seen.num_points) * 3);
+  for (size_t i = 0; i < metres.size(); ++i) metres[i] = 0.001f * static_cast<float>(rows.points[i]);
+  redman::Bytes label(metres.size() / 3);
+  std::copy_n(rows.point_class, label.size(), label.begin());
+  auto how = redman::pretrain_config(seen.num_classes);
+  how.epochs = s.pretrain_epochs;
+  how.seed = settings.seed;
+  const rdm_pretrain_report report = as_usage([&] {
+    return redman::pretrain(agent, redman::points(metres.data(), seen.num_points, rows.point_class),
+                            label.data(), s.pretrain, how);
+  });
+  std::fprintf(stderr,
+               "encoder tells %.1f%% of points right after %d clouds (the commonest kind has %.1f%%)\n",
+               100 * report.accuracy, report.train_rows, 100 * report.most_common);
   return report;
 }
 
@@ -184,6 +220,10 @@ void adopt_teacher(const TeachSettings& s, bool task_given, const std::vector<st
 Taught teach(const TeachSettings& s, const PoolSettings& settings, redman::Agent& agent, int32_t repeat,
              const std::string& save) {
   Taught out;
+  if (s.pretrain > 0) {
+    out.pretraining = pretrain(s, settings, agent, repeat);
+    out.pretrained = true;
+  }
   if (!s.asked()) return out;
   if (is_file(s.from)) {
     out.recording = open_recording(s.from);

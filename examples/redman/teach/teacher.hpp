@@ -6,6 +6,7 @@
 // then acts for a growing share of decisions, the teacher labels what it finds, and the student is fitted to
 // all of it again.
 #pragma once
+#include <redman/redman_points.hpp>
 #include <redman/redman_record.hpp>
 
 #include "play/actor.hpp"
@@ -17,7 +18,8 @@ namespace tool {
 struct Taught {
   redman::Recording recording;
   rdm_clone_report report = redman::sized<rdm_clone_report>();
-  bool cloned = false;
+  rdm_pretrain_report pretraining = redman::sized<rdm_pretrain_report>();
+  bool cloned = false, pretrained = false;
 };
 
 // Options of the algorithm that keep what was taught: small deviations, critics first, an actor's rate that
@@ -29,8 +31,10 @@ Options taught_options(const TeachSettings& settings);
 Options adopt_lesson(const std::vector<std::string>& given, const PoolSettings& pool,
                      TeachSettings& settings);
 
-// Fills the agent: by its teacher's labels, or where `from` is a policy and there are no rounds of DAgger, by
-// that policy itself. `repeat`: control steps of a decision of the agent. `save`: a file for the recording,
+// First, if asked for, the agent's encoder learns to tell hands and things apart, in worlds where the teacher
+// acts, or without one anything. Then fills the agent: by its teacher's labels, or where `from` is a policy
+// and there are no rounds of DAgger, by that policy itself. `repeat`: control steps of a decision of the
+// agent. `save`: a file for the recording,
 // "": none. Progress goes to stderr.
 Taught teach(const TeachSettings& settings, const PoolSettings& pool, redman::Agent& agent, int32_t repeat,
              const std::string& save);

@@ -12,6 +12,9 @@ namespace {
 constexpr OptionSpec kRows[] = {
     text_option("modality", "state", nullptr,
                 "what worlds see: state, or any of rgb, depth, segmentation, points, voxels joined by +"),
+    integer_option(
+        "sense_every", 1, 1, 10000,
+        "control steps of an episode from look to look: rows show the last one; a policy's action_repeat"),
     text_option("cameras", "front", nullptr, "cameras of rgb, depth and segmentation, joined by +"),
     integer_option("image_width", 64, 1, 2048, "of rgb, depth and segmentation, pixels"),
     integer_option("image_height", 64, 1, 2048, "of rgb, depth and segmentation, pixels"),
@@ -122,6 +125,7 @@ SenseConfig sense_from(const Options& options, const TaskInfo& info, const Task&
     fail(Code::kArgument, "modality %s: unknown%s", Quoted(word).text,
          Nearest(word, names, static_cast<int32_t>(std::size(words))).text);
   });
+  c.every = options.integer("sense_every");
   if (c.pictures()) {
     c.num_cameras = read_cameras(options.text("cameras"), info, task, "cameras", c.cameras);
     c.width = options.integer("image_width");

@@ -29,6 +29,8 @@ struct SenseConfig {
   int32_t grid = 0;         // cells along a side
   double cell = 0;          // m
 
+  int32_t every = 1;  // control steps of an episode between two looks
+
   bool pictures() const { return rgb || depth || segmentation; }
   bool clouds() const { return points || voxels; }
   bool any() const { return pictures() || clouds(); }
