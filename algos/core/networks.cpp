@@ -93,6 +93,7 @@ void Networks::forward_actor_with(const float* weights, const float* x, const Po
     else
       std::copy_n(row, own, to);
     if (clouds.features) std::copy_n(clouds.features + clouds.row(i) * width, width, to + own);
+    if (clouds.winner) std::copy_n(clouds.winner + clouds.row(i) * width, width, scratch.winner + i * width);
   }
   if (!clouds.features)
     pointnet_forward(eyes, weights + eyes_offset(), clouds, rows, scratch.eyes, scratch.picked + own, in,

@@ -98,10 +98,18 @@ struct Backup {
 
 }  // namespace
 
-CloneReport clone_actor(const ResolvedAgentConfig& resolved, const DemoRows& demo, const CloneOptions& how,
+CloneReport clone_actor(const ResolvedAgentConfig& resolved, const DemoRows& given, const CloneOptions& how,
                         const Regression& regression, Networks& nets, Normalizer& normalizer,
                         CancelFlag& cancel) {
-  check(resolved, demo, how);
+  check(resolved, given, how);
+  // Of an encoder that stands still the features are computed once.
+  DemoRows demo = given;
+  Vector<float> features(
+      resolved.frozen ? static_cast<size_t>(demo.rows) * static_cast<size_t>(resolved.eyes.features()) : 0);
+  if (resolved.frozen) {
+    regression.features(demo, features.data());
+    demo.clouds.features = features.data();
+  }
   Block& actor = nets.block[Networks::kActor];
   const Backup before(nets, normalizer);
   Vector<int32_t> order(static_cast<size_t>(demo.rows));

@@ -81,4 +81,14 @@ double Regression::loss(const DemoRows& demo, const int32_t* order, int32_t rows
   return sum / (2.0 * rows);
 }
 
+void Regression::features(const DemoRows& demo, float* out) const {
+  const PointNetShape& eyes = nets_->eyes;
+  const auto width = static_cast<size_t>(eyes.features());
+  workers_->sweep(
+      demo.rows, resolved_->chunk_rows, [&](const Workspace& workspace, int32_t first, int32_t n) {
+        pointnet_forward(eyes, nets_->eyes_net(), demo.clouds.from(eyes, static_cast<size_t>(first)), n,
+                         workspace.actor.eyes, out + static_cast<size_t>(first) * width, width, nullptr);
+      });
+}
+
 }  // namespace rdm

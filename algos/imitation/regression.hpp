@@ -31,6 +31,8 @@ class Regression {
   double gradient(const DemoRows& demo, const int32_t* order, int32_t rows, bool precise, double weight,
                   bool add, float* grad) const;
   double loss(const DemoRows& demo, const int32_t* order, int32_t rows, bool precise) const;
+  // What the encoder makes of all clouds: out [rows][features].
+  void features(const DemoRows& demo, float* out) const;
 
  private:
   // Twice the sum of L's terms; grad null: no gradient.

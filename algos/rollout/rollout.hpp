@@ -35,7 +35,7 @@ struct Rollout {
   float* log_std_of(size_t at) const { return log_std + at * std_step; }
   // What the actor saw of the listed rows, every stride-th of the list.
   PointRows clouds(const int32_t* order, int32_t stride = 1) const {
-    return {points, nullptr, point_class, features, order, stride};
+    return {points, nullptr, point_class, features, nullptr, order, stride};
   }
   size_t row(int32_t t) const { return static_cast<size_t>(t) * static_cast<size_t>(num_envs); }
   int32_t samples() const { return horizon * num_envs; }

@@ -1,11 +1,17 @@
 #include "algos/trust_region/fisher.hpp"
 
+#include <algorithm>
+
 #include "base/elementary.hpp"
 
 namespace rdm {
 
 void Fisher::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
   weight_ = arena.make<float>(resolved.state_std() ? 0 : resolved.action_dim());
+  if (!resolved.sees() || resolved.frozen) return;
+  const size_t count = static_cast<size_t>(resolved.samples) * static_cast<size_t>(resolved.eyes.features());
+  features_ = arena.make<float>(count);
+  winner_ = arena.make<int32_t>(count);
 }
 
 void Fisher::open(const ResolvedAgentConfig& resolved, const Rollout& rollout, const Networks& nets,
@@ -25,10 +31,30 @@ void Fisher::read_live(const Options& o) {
 void Fisher::set_rows(const int32_t* order, int32_t rows) {
   order_ = order;
   rows_ = (rows + stride_ - 1) / stride_;
+  if (nets_->eyes.points && !nets_->frozen) see();
   for (size_t j = 0; !nets_->state_std() && j < resolved_->action_dim(); ++j) {
     const auto log_std = static_cast<double>(nets_->log_std()[j] + resolved_->log_share);
     weight_[j] = static_cast<float>(elementary::exp(-2 * log_std) / (rows_ * dims_));
   }
+}
+
+void Fisher::see() {
+  const auto width = static_cast<size_t>(nets_->eyes.features());
+  workers_->sweep(rows_, resolved_->chunk_rows, [&](const Workspace& workspace, int32_t first, int32_t n) {
+    const PointRows seen = rollout_->clouds(order_ + first * stride_, stride_);
+    pointnet_forward(nets_->eyes, nets_->eyes_net(), seen, n, workspace.actor.eyes, workspace.actor.dfeatures,
+                     width, workspace.actor.winner);
+    for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
+      std::copy_n(workspace.actor.dfeatures + i * width, width, features_ + seen.row(i) * width);
+      std::copy_n(workspace.actor.winner + i * width, width, winner_ + seen.row(i) * width);
+    }
+  });
+}
+
+PointRows Fisher::clouds(const int32_t* rows) const {
+  PointRows c = rollout_->clouds(rows, stride_);
+  if (features_) c.features = features_, c.winner = winner_;
+  return c;
 }
 
 void Fisher::weigh(const float* y, int32_t n, float* dy) const {
@@ -54,12 +80,12 @@ void Fisher::multiply(const float* v, float* out) {
       rows_, resolved_->chunk_rows,
       [&](Workspace& workspace, int32_t first, int32_t n) {
         const int32_t* rows = order_ + first * stride_;
-        const PointRows clouds = rollout_->clouds(rows, stride_);
+        const PointRows seen = clouds(rows);
         gather_obs(*rollout_, rows, stride_, n, workspace.obs);
-        nets_->forward_actor(workspace.obs, clouds, n, workspace.actor, workspace.out);
-        nets_->tangent_actor(v + skip, workspace.obs, clouds, n, workspace.actor, workspace.dout);
+        nets_->forward_actor(workspace.obs, seen, n, workspace.actor, workspace.out);
+        nets_->tangent_actor(v + skip, workspace.obs, seen, n, workspace.actor, workspace.dout);
         weigh(workspace.out, n, workspace.dout);
-        nets_->backward_actor(workspace.obs, clouds, n, workspace.actor, workspace.dout,
+        nets_->backward_actor(workspace.obs, seen, n, workspace.actor, workspace.dout,
                               first == 0 ? out : workspace.grad);
       },
       [&](int32_t group, int32_t n) { workers_->reduce(group, n, out, skip, size); });

@@ -26,12 +26,15 @@ class Fisher {
             BatchWorkers& workers);
   void read_live(const Options& options);
 
-  // The matrix is of every stride-th of the listed rows, at the policy as it is at each product.
+  // The matrix is of every stride-th of the listed rows, at the policy as it is at each product. An encoder
+  // is held at what it is now: all points go through it here, once, and winners alone in each product.
   void set_rows(const int32_t* order, int32_t rows);
   // out = (F + damping I) v; both laid out as the actor's block.
   void multiply(const float* v, float* out);
 
  private:
+  void see();
+  PointRows clouds(const int32_t* rows) const;
   // Tangents of the outputs of n rows into what is propagated back.
   void weigh(const float* y, int32_t n, float* dy) const;
 
@@ -39,7 +42,9 @@ class Fisher {
   const Rollout* rollout_ = nullptr;
   const Networks* nets_ = nullptr;
   BatchWorkers* workers_ = nullptr;
-  float* weight_ = nullptr;  // [action_dim] 1 / (N sigma^2); none with std_mode=state
+  float* weight_ = nullptr;    // [action_dim] 1 / (N sigma^2); none with std_mode=state
+  float* features_ = nullptr;  // [samples][features] of an encoder that learns, and the points that won
+  int32_t* winner_ = nullptr;  // likewise
   const int32_t* order_ = nullptr;
   int32_t rows_ = 0, stride_ = 1;
   double damping_ = 0.1, dims_ = 1;  // dims: what sums over action dimensions are divided by

@@ -48,6 +48,7 @@ struct PointRows {
   const float* metres = nullptr;     // where points is null: [][points][3], m
   const uint8_t* classes = nullptr;  // [][points], each less than shape.classes; null without
   const float* features = nullptr;   // [][features] of a network that stands still; null: to be computed
+  const int32_t* winner = nullptr;   // [][features] beside these, for a backward pass
   const int32_t* order = nullptr;
   int32_t stride = 1;
 
@@ -60,6 +61,7 @@ struct PointRows {
     if (metres) r.metres += 3 * count;
     if (classes) r.classes += count;
     if (features) r.features += first * static_cast<size_t>(s.features());
+    if (winner) r.winner += first * static_cast<size_t>(s.features());
     return r;
   }
   size_t row(size_t i) const {

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "algos/core/agent.hpp"
+#include "algos/trust_region/fisher.hpp"
 #include "heap_count.hpp"
 #include "nn/policy.hpp"
 #include "point_world.hpp"
@@ -435,4 +436,63 @@ TEST(Eyes, PretrainingChangesTheEncoderAlone) {
   world.draw();
   world.decide(*a);
   EXPECT_EQ(text(), "pretrain: only between epochs; this horizon has begun");
+}
+
+// Products that keep the points that won are J' W J v + damping v by the whole network.
+TEST(Eyes, FisherProductsAreThoseOfTheWholeNetwork) {
+  AgentSetup s = PointWorld::setup("trpo", 30);
+  s.with("horizon", "2")
+      .with("fisher_stride", "2")
+      .with("encoder_classes", "2")
+      .with("last_layer_scale", "1");
+  const ResolvedAgentConfig resolved = resolve_config(s.ready());
+  struct {
+    Networks nets;
+    BatchWorkers workers;
+    Rollout rollout;
+    Fisher fisher;
+    void carve(Arena& arena, const ResolvedAgentConfig& r) {
+      nets = carve_networks(arena, r);
+      workers.carve(arena, r, nets.size);
+      rollout = carve_rollout(arena, r);
+      fisher.carve(arena, r);
+    }
+  } b;
+  Arena measure;
+  b.carve(measure, resolved);
+  Arena arena(HostHooks{}, measure.used());
+  b.carve(arena, resolved);
+  b.workers.open(HostHooks{}, 0);
+  init_networks(b.nets, resolved);
+  PointWorld world(60);
+  std::copy(world.obs.begin(), world.obs.end(), b.rollout.obs);
+  std::copy(world.point_class.begin(), world.point_class.end(), b.rollout.point_class);
+  quantize_points(b.nets.eyes, world.points.data(), world.points.size() / 3, b.rollout.points);
+  std::vector<int32_t> order(60);
+  for (int32_t i = 0; i < 60; ++i) order[size_of(i)] = (i * 7 + 3) % 60;
+  b.fisher.open(resolved, b.rollout, b.nets, b.workers);
+  b.fisher.read_live(resolved.options);
+  b.fisher.set_rows(order.data(), 60);
+  const size_t size = b.nets.block[Networks::kActor].size, skip = b.nets.std_size;
+  std::vector<float> v(size), product(size), wanted(b.nets.size);
+  Stream stream(8, 0, Purpose::kTest);
+  for (float& x : v) x = static_cast<float>(stream.signed_unit());
+  b.fisher.multiply(v.data(), product.data());
+
+  const Workspace& w = b.workers[0];
+  ASSERT_GE(w.rows, 30);
+  const PointRows clouds = b.rollout.clouds(order.data(), 2);
+  gather_obs(b.rollout, order.data(), 2, 30, w.obs);
+  b.nets.forward_actor(w.obs, clouds, 30, w.actor, w.out);
+  b.nets.tangent_actor(v.data() + skip, w.obs, clouds, 30, w.actor, w.dout);
+  const auto weight = static_cast<float>(1 / (0.3 * 0.3 * 30));
+  for (size_t i = 0; i < 60; ++i) w.dout[i] *= weight;
+  b.nets.backward_actor(w.obs, clouds, 30, w.actor, w.dout, wanted.data());
+  double top = 0, gap = 0;
+  for (size_t i = skip; i < size; ++i) {
+    const double exact = static_cast<double>(wanted[i]) + 0.1 * static_cast<double>(v[i]);
+    top = std::max(top, std::abs(exact));
+    gap = std::max(gap, std::abs(exact - static_cast<double>(product[i])));
+  }
+  EXPECT_LT(gap, 1e-5 * top);
 }
