@@ -57,6 +57,20 @@ void add_bench(CLI::App& app, Run& run) {
   add_set_flag(*command, update->sets);
   command->callback([&run, update] { run = [update] { return bench_update(*update); }; });
 
+  auto policy = std::make_shared<SeeingFlags>();
+  policy->pool.envs = 64;
+  command = bench->add_subcommand("policy", "What a policy that sees points costs, part by part");
+  add_pool_flags(*command, policy->pool, "task");
+  command->add_option("--algo", policy->agent.algo, "algorithm");
+  command->add_option("--modality", policy->modality, "what it sees: points");
+  command->add_option("--points", policy->points, "of a cloud")->check(CLI::Range(1, 16384));
+  command->add_option("--encoder", policy->encoder, "widths of its layers, such as 64,128");
+  command->add_option("--horizon", policy->horizon, "decisions of a world in an epoch")
+      ->check(CLI::Range(1, 4096));
+  add_seconds(*command, policy->seconds);
+  add_set_flag(*command, policy->sets);
+  command->callback([&run, policy] { run = [policy] { return bench_policy(*policy); }; });
+
   auto act = std::make_shared<ActFlags>();
   command = bench->add_subcommand("act", "Actions per second of a frozen policy");
   add_network_flags(*command, act->obs, act->act, act->hidden);

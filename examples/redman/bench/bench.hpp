@@ -38,4 +38,15 @@ struct ActFlags {
 // rdm_policy_act alone.
 Report bench_act(const ActFlags& flags);
 
+struct SeeingFlags {
+  PoolSettings pool;
+  AgentSettings agent;
+  std::vector<std::string> sets;
+  std::string modality = "points", encoder = "64,128";
+  int32_t points = 512, horizon = 8;
+  double seconds = 6;
+};
+// A policy that sees, part by part: clouds, its encoder, updates; and training as a whole.
+Report bench_policy(SeeingFlags flags);
+
 }  // namespace tool

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-
-#include "common/files.hpp"
 #include <redman/redman_map.hpp>
 
+#include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/text.hpp"
 #include "play/plan_word.hpp"
 #include "play/trained.hpp"
 #include "record/recorded_rollout.hpp"

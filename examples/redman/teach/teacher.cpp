@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-
 #include <redman/redman_map.hpp>
 
 #include "common/names.hpp"
@@ -84,8 +83,8 @@ class Lesson {
               std::vector<float>& held) {
     const size_t n = pool_.num_envs(), width = pool_.action().width();
     if (student && student->info().num_points > 0)
-      redman::act(*student, pool_.obs().data(), redman::points(redman::sensors(pool_)), static_cast<int32_t>(n),
-                  nullptr, held.data());
+      redman::act(*student, pool_.obs().data(), redman::points(redman::sensors(pool_)),
+                  static_cast<int32_t>(n), nullptr, held.data());
     else if (student)
       student->act(pool_.obs().data(), static_cast<int32_t>(n), nullptr, held.data());
     for (size_t i = 0; i < n; ++i) {
