@@ -496,3 +496,28 @@ TEST(Eyes, FisherProductsAreThoseOfTheWholeNetwork) {
   }
   EXPECT_LT(gap, 1e-5 * top);
 }
+
+// What would lose against any other point unseen, for it is no number, does not load.
+TEST(Eyes, AStateWithAnEncoderThatOverflowsIsRefused) {
+  AgentSetup s = small("ppo_lag"), t = small("ppo_lag");
+  t.config.seed = 5;
+  const AgentPtr a = s.make(), b = t.make();
+  const auto good = saved(*a);
+  TensorInfo found{};
+  for (int32_t i = 0; a->tensor(i, &found) && std::strcmp(found.name, "encoder.0.weight") != 0; ++i) {
+  }
+  ASSERT_STREQ(found.name, "encoder.0.weight");
+  found.data[0] = 1e17f;
+  const auto bad = saved(*a);
+  const Thrown refused = thrown([&] { b->load(bad.data(), bad.size()); });
+  EXPECT_EQ(refused.code, Code::kFormat);
+  EXPECT_NE(refused.text.find("too large"), std::string::npos) << refused.text;
+  b->load(good.data(), good.size());
+  EXPECT_EQ(saved(*b), good);
+
+  // another encoder's state is another agent's
+  AgentSetup other = small("ppo_lag");
+  other.with("encoder_range", "0.5");
+  const AgentPtr c = other.make();
+  EXPECT_NE(thrown([&] { c->load(good.data(), good.size()); }).text.find("encoder_range"), std::string::npos);
+}
