@@ -521,3 +521,53 @@ TEST(Eyes, AStateWithAnEncoderThatOverflowsIsRefused) {
   const AgentPtr c = other.make();
   EXPECT_NE(thrown([&] { c->load(good.data(), good.size()); }).text.find("encoder_range"), std::string::npos);
 }
+
+// Cross-entropy of points by differences: head, features, and hidden layers both of winners and of each
+// point.
+TEST(Eyes, ThePretrainingGradientAgreesWithDifferences) {
+  for (const char* activation : {"tanh", "elu"})
+    for (const char* encoder : {"6,7", "5,6,7", "9"}) {
+      SCOPED_TRACE(std::string(activation) + " " + encoder);
+      AgentSetup s = PointWorld::setup("ppo", 8, encoder);
+      s.with("encoder_activation", activation).with("encoder_classes", "2");
+      const ResolvedAgentConfig resolved = resolve_config(s.ready());
+      const PointNetShape& eyes = resolved.eyes;
+      BatchWorkers workers;
+      Arena measure;
+      workers.carve(measure, resolved, 1);
+      Arena arena(HostHooks{}, measure.used());
+      workers.carve(arena, resolved, 1);
+      workers.open(HostHooks{}, 0);
+      PointWorld world(7);
+      std::vector<int16_t> points(world.points.size());
+      quantize_points(eyes, world.points.data(), world.points.size() / 3, points.data());
+      std::vector<uint8_t> label(world.point_class.size());
+      Stream stream(6, 0, Purpose::kTest);
+      for (auto& l : label) l = static_cast<uint8_t>(stream.below(3));
+      PointRows clouds;
+      clouds.points = points.data(), clouds.classes = world.point_class.data();
+      const int32_t order[] = {6, 0, 3, 4, 1};
+      std::vector<float> params(segmentation_params(eyes, 3)), grad(params.size());
+      for (float& p : params) p = 0.5f * static_cast<float>(stream.signed_unit());
+      const auto loss = [&](float* g) {
+        return segmentation_loss(eyes, clouds, label.data(), 3, order, 5, workers, params.data(), g);
+      };
+      loss(grad.data());
+      double top = 0;
+      for (const float g : grad) top = std::max(top, std::abs(static_cast<double>(g)));
+      const float h = 4e-3f;
+      size_t far = 0, far_eyes = 0;
+      for (size_t i = 0; i < params.size(); i += i < eyes.num_params() ? 1 : 7) {
+        const float kept = params[i];
+        params[i] = kept + h;
+        const double up = loss(nullptr);
+        params[i] = kept - h;
+        const double slope = (up - loss(nullptr)) / (2 * static_cast<double>(h));
+        params[i] = kept;
+        const bool bad = std::abs(slope - static_cast<double>(grad[i])) > 5e-3 * top;
+        far += bad, far_eyes += bad && i < eyes.num_params();
+      }
+      EXPECT_LE(far, far_eyes) << "the head has no edges";
+      EXPECT_LE(far_eyes, eyes.num_params() / 30) << "a step may go over an edge of the max";
+    }
+}
