@@ -41,6 +41,14 @@ struct Lane {
   int64_t right = 0;
 };
 
+MlpShape head_of(const MlpShape& m, int32_t labels) {
+  MlpShape head;
+  head.in = m.layer_in(m.num_hidden) + m.out, head.out = labels;
+  head.num_hidden = 1, head.hidden[0] = kHeadWidth;
+  head.activation = m.activation;
+  return head;
+}
+
 class Pretraining {
  public:
   Pretraining(const PointNetShape& eyes, const PointRows& clouds, const uint8_t* label, int32_t labels,
@@ -48,9 +56,7 @@ class Pretraining {
       : eyes_(eyes), clouds_(clouds), label_(label), workers_(workers) {
     const MlpShape& m = eyes.mlp;
     width_ = m.layer_in(m.num_hidden);
-    head_.in = width_ + m.out, head_.out = labels;
-    head_.num_hidden = 1, head_.hidden[0] = kHeadWidth;
-    head_.activation = m.activation;
+    head_ = head_of(m, labels);
     Arena measure;
     carve(measure);
     arena_ = Arena(host(), measure.used());
@@ -188,6 +194,17 @@ double share_of_commonest(const uint8_t* label, size_t points, const int32_t* or
 }
 
 }  // namespace
+
+size_t segmentation_params(const PointNetShape& eyes, int32_t num_labels) {
+  return eyes.num_params() + head_of(eyes.mlp, num_labels).num_params();
+}
+
+double segmentation_loss(const PointNetShape& eyes, const PointRows& clouds, const uint8_t* label,
+                         int32_t num_labels, const int32_t* order, int32_t rows, BatchWorkers& workers,
+                         const float* params, float* grad) {
+  Pretraining training(eyes, clouds, label, num_labels, workers);
+  return training.run(params, order, rows, grad).loss / (static_cast<double>(rows) * eyes.points);
+}
 
 PretrainReport pretrain_eyes(const ResolvedAgentConfig& resolved, const PointRows& clouds,
                              const uint8_t* label, int32_t rows, const PretrainOptions& how, Networks& nets,

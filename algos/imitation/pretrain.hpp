@@ -22,6 +22,13 @@ struct PretrainReport {
   double train_loss = 0, validation_loss = 0, accuracy = 0, most_common = 0;
 };
 
+// What is minimised, of the listed clouds, and its gradient: params [the encoder's, then the head's], grad
+// likewise. For tests; takes memory from the hooks in force.
+size_t segmentation_params(const PointNetShape& eyes, int32_t num_labels);
+double segmentation_loss(const PointNetShape& eyes, const PointRows& clouds, const uint8_t* label,
+                         int32_t num_labels, const int32_t* order, int32_t rows, BatchWorkers& workers,
+                         const float* params, float* grad);
+
 // clouds [rows] as points, label [rows][points]. All that it changes is the encoder with its optimiser;
 // nothing when it throws. Error(kRange, kArgument), kCancelled.
 PretrainReport pretrain_eyes(const ResolvedAgentConfig& resolved, const PointRows& clouds,

@@ -440,7 +440,7 @@ TEST(Eyes, PretrainingChangesTheEncoderAlone) {
 
 // Products that keep the points that won are J' W J v + damping v by the whole network.
 TEST(Eyes, FisherProductsAreThoseOfTheWholeNetwork) {
-  AgentSetup s = PointWorld::setup("trpo", 30);
+  AgentSetup s = PointWorld::setup("trpo", 100);
   s.with("horizon", "2")
       .with("fisher_stride", "2")
       .with("encoder_classes", "2")
@@ -464,35 +464,116 @@ TEST(Eyes, FisherProductsAreThoseOfTheWholeNetwork) {
   b.carve(arena, resolved);
   b.workers.open(HostHooks{}, 0);
   init_networks(b.nets, resolved);
-  PointWorld world(60);
+  PointWorld world(200);
   std::copy(world.obs.begin(), world.obs.end(), b.rollout.obs);
   std::copy(world.point_class.begin(), world.point_class.end(), b.rollout.point_class);
   quantize_points(b.nets.eyes, world.points.data(), world.points.size() / 3, b.rollout.points);
-  std::vector<int32_t> order(60);
-  for (int32_t i = 0; i < 60; ++i) order[size_of(i)] = (i * 7 + 3) % 60;
+  std::vector<int32_t> order(200);
+  for (int32_t i = 0; i < 200; ++i) order[size_of(i)] = (i * 7 + 3) % 200;
   b.fisher.open(resolved, b.rollout, b.nets, b.workers);
   b.fisher.read_live(resolved.options);
-  b.fisher.set_rows(order.data(), 60);
+  b.fisher.set_rows(order.data(), 200);
   const size_t size = b.nets.block[Networks::kActor].size, skip = b.nets.std_size;
-  std::vector<float> v(size), product(size), wanted(b.nets.size);
+  std::vector<float> v(size), product(size), part(b.nets.size);
+  std::vector<double> wanted(size);
   Stream stream(8, 0, Purpose::kTest);
   for (float& x : v) x = static_cast<float>(stream.signed_unit());
   b.fisher.multiply(v.data(), product.data());
 
+  // by the whole network, chunk after chunk
   const Workspace& w = b.workers[0];
-  ASSERT_GE(w.rows, 30);
-  const PointRows clouds = b.rollout.clouds(order.data(), 2);
-  gather_obs(b.rollout, order.data(), 2, 30, w.obs);
-  b.nets.forward_actor(w.obs, clouds, 30, w.actor, w.out);
-  b.nets.tangent_actor(v.data() + skip, w.obs, clouds, 30, w.actor, w.dout);
-  const auto weight = static_cast<float>(1 / (0.3 * 0.3 * 30));
-  for (size_t i = 0; i < 60; ++i) w.dout[i] *= weight;
-  b.nets.backward_actor(w.obs, clouds, 30, w.actor, w.dout, wanted.data());
+  ASSERT_LT(w.rows, 100) << "several chunks";
+  const auto weight = static_cast<float>(1 / (0.3 * 0.3 * 100));
+  for (int32_t first = 0; first < 100; first += w.rows) {
+    const int32_t n = std::min(w.rows, 100 - first), *rows = order.data() + 2 * first;
+    const PointRows clouds = b.rollout.clouds(rows, 2);
+    gather_obs(b.rollout, rows, 2, n, w.obs);
+    b.nets.forward_actor(w.obs, clouds, n, w.actor, w.out);
+    b.nets.tangent_actor(v.data() + skip, w.obs, clouds, n, w.actor, w.dout);
+    for (size_t i = 0; i < 2 * size_of(n); ++i) w.dout[i] *= weight;
+    b.nets.backward_actor(w.obs, clouds, n, w.actor, w.dout, part.data());
+    for (size_t i = skip; i < size; ++i) wanted[i] += static_cast<double>(part[i]);
+  }
   double top = 0, gap = 0;
   for (size_t i = skip; i < size; ++i) {
-    const double exact = static_cast<double>(wanted[i]) + 0.1 * static_cast<double>(v[i]);
+    const double exact = wanted[i] + 0.1 * static_cast<double>(v[i]);
     top = std::max(top, std::abs(exact));
     gap = std::max(gap, std::abs(exact - static_cast<double>(product[i])));
   }
   EXPECT_LT(gap, 1e-5 * top);
+}
+
+// What would lose against any other point unseen, for it is no number, does not load.
+TEST(Eyes, AStateWithAnEncoderThatOverflowsIsRefused) {
+  AgentSetup s = small("ppo_lag"), t = small("ppo_lag");
+  t.config.seed = 5;
+  const AgentPtr a = s.make(), b = t.make();
+  const auto good = saved(*a);
+  TensorInfo found{};
+  for (int32_t i = 0; a->tensor(i, &found) && std::strcmp(found.name, "encoder.0.weight") != 0; ++i) {
+  }
+  ASSERT_STREQ(found.name, "encoder.0.weight");
+  found.data[0] = 1e17f;
+  const auto bad = saved(*a);
+  const Thrown refused = thrown([&] { b->load(bad.data(), bad.size()); });
+  EXPECT_EQ(refused.code, Code::kFormat);
+  EXPECT_NE(refused.text.find("too large"), std::string::npos) << refused.text;
+  b->load(good.data(), good.size());
+  EXPECT_EQ(saved(*b), good);
+
+  // another encoder's state is another agent's
+  AgentSetup other = small("ppo_lag");
+  other.with("encoder_range", "0.5");
+  const AgentPtr c = other.make();
+  EXPECT_NE(thrown([&] { c->load(good.data(), good.size()); }).text.find("encoder_range"), std::string::npos);
+}
+
+// Cross-entropy of points by differences: head, features, and hidden layers both of winners and of each
+// point.
+TEST(Eyes, ThePretrainingGradientAgreesWithDifferences) {
+  for (const char* activation : {"tanh", "elu"})
+    for (const char* encoder : {"6,7", "5,6,7", "9"}) {
+      SCOPED_TRACE(std::string(activation) + " " + encoder);
+      AgentSetup s = PointWorld::setup("ppo", 8, encoder);
+      s.with("encoder_activation", activation).with("encoder_classes", "2");
+      const ResolvedAgentConfig resolved = resolve_config(s.ready());
+      const PointNetShape& eyes = resolved.eyes;
+      BatchWorkers workers;
+      Arena measure;
+      workers.carve(measure, resolved, 1);
+      Arena arena(HostHooks{}, measure.used());
+      workers.carve(arena, resolved, 1);
+      workers.open(HostHooks{}, 0);
+      PointWorld world(7);
+      std::vector<int16_t> points(world.points.size());
+      quantize_points(eyes, world.points.data(), world.points.size() / 3, points.data());
+      std::vector<uint8_t> label(world.point_class.size());
+      Stream stream(6, 0, Purpose::kTest);
+      for (auto& l : label) l = static_cast<uint8_t>(stream.below(3));
+      PointRows clouds;
+      clouds.points = points.data(), clouds.classes = world.point_class.data();
+      const int32_t order[] = {6, 0, 3, 4, 1};
+      std::vector<float> params(segmentation_params(eyes, 3)), grad(params.size());
+      for (float& p : params) p = 0.5f * static_cast<float>(stream.signed_unit());
+      const auto loss = [&](float* g) {
+        return segmentation_loss(eyes, clouds, label.data(), 3, order, 5, workers, params.data(), g);
+      };
+      loss(grad.data());
+      double top = 0;
+      for (const float g : grad) top = std::max(top, std::abs(static_cast<double>(g)));
+      const float h = 4e-3f;
+      size_t far = 0, far_eyes = 0;
+      for (size_t i = 0; i < params.size(); i += i < eyes.num_params() ? 1 : 7) {
+        const float kept = params[i];
+        params[i] = kept + h;
+        const double up = loss(nullptr);
+        params[i] = kept - h;
+        const double slope = (up - loss(nullptr)) / (2 * static_cast<double>(h));
+        params[i] = kept;
+        const bool bad = std::abs(slope - static_cast<double>(grad[i])) > 5e-3 * top;
+        far += bad, far_eyes += bad && i < eyes.num_params();
+      }
+      EXPECT_LE(far, far_eyes) << "the head has no edges";
+      EXPECT_LE(far_eyes, eyes.num_params() / 30) << "a step may go over an edge of the max";
+    }
 }

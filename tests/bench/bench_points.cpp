@@ -1,12 +1,14 @@
 // Speed of a PointNet per instruction set, one thread, CPU time: forward and backward pass of a row of 512
-// and of 2,048 points with layers 64 and 128, and what share of the product's operations per second the
-// forward pass is. tests/bench/torch_points.py is the same in torch.
+// and of 2,048 points with layers 64 and 128. Then an agent's (ppo_lag, 381 entries, 40 actions, 1,024
+// decisions, 5 passes, layers 64,64): acting, and samples times passes per second of its update, end to end
+// and with a frozen encoder. tests/bench/torch_points.py is the same in torch.
 //   bench_points [tanh|elu|relu]
 #include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <vector>
 
+#include "agents.hpp"
 #include "base/fpmode.hpp"
 #include "nn/pointnet.hpp"
 #include "nn_data.hpp"
@@ -64,6 +66,37 @@ void run(const char* isa, int32_t points, Activation activation) {
               100 * backward / forward);
 }
 
+void run_agent(int32_t points, const char* frozen) {
+  const std::string count = std::to_string(points);
+  test::AgentSetup s("ppo_lag", 381, 40, 128);
+  s.with("encoder", "64,128").with("encoder_points", count.c_str()).with("encoder_frozen", frozen);
+  s.with("horizon", "8").with("passes", "5").with("minibatches", "4");
+  const test::AgentPtr a = s.make();
+  test::NoiseWorld world(s.config);
+  const auto metres = random_floats(128 * a->eyes().row_points(), 1, 0.25f);
+  PointRows clouds;
+  clouds.metres = metres.data();
+  double act = 1e9, update = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    double acting = 0;
+    while (a->missing() > 0) {
+      const double before = seconds();
+      a->act(world.obs(), true, world.action(), clouds);
+      acting += seconds() - before;
+      world.draw();
+      Transition t = world.transition();
+      t.valid = nullptr;
+      a->record(t);
+    }
+    const double before = seconds();
+    a->update(world.obs(), nullptr);
+    update = std::min(update, seconds() - before), act = std::min(act, acting);
+  }
+  std::printf(
+      "agent, %4d points, encoder_frozen=%-3s  act %.4f ms a row  update %.0f samples times passes/s\n",
+      points, frozen, 1e3 * act / 1024, 5 * 1024 / update);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -75,4 +108,6 @@ int main(int argc, char** argv) {
   for_each_isa([&](const char* isa) {
     for (const int32_t points : {512, 2048}) run(isa, points, activation);
   });
+  for (const int32_t points : {512, 2048})
+    for (const char* frozen : {"off", "on"}) run_agent(points, frozen);
 }

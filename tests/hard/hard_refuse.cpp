@@ -290,6 +290,36 @@ std::vector<Case> all_cases() {
                    },
                    clear});
   }
+  const auto seeing = [=](const rdm_host* host) {
+    g.agent.configure("trpo_lag", host);
+    g.agent.config.settings = "encoder=4,6\nencoder_points=8\nencoder_classes=2";
+  };
+  out.push_back({"agent that sees", seeing, [](const rdm_host*) { return g.agent.create(); }, clear});
+  out.push_back({"pretrain",
+                 [=](const rdm_host* host) {
+                   seeing(host);
+                   must(g.agent.create());
+                 },
+                 [](const rdm_host*) {
+                   float metres[5 * 8 * 3];
+                   for (int i = 0; i < 120; ++i) metres[i] = 0.01f * static_cast<float>((i * 37) % 41);
+                   uint8_t label[5 * 8];
+                   for (int i = 0; i < 40; ++i) label[i] = static_cast<uint8_t>(i % 2);
+                   const rdm_points points = {sizeof points, 8, metres, label};
+                   rdm_pretrain_config how;
+                   must(rdm_pretrain_config_init(&how, sizeof how));
+                   how.num_labels = 2, how.epochs = 2;
+                   return rdm_agent_pretrain(g.agent.handle, &points, label, 5, &how, nullptr);
+                 },
+                 clear});
+  out.push_back({"policy that sees, load",
+                 [=](const rdm_host* host) {
+                   seeing(host);
+                   must(g.agent.create());
+                   g.bytes = g.agent.policy();
+                 },
+                 [](const rdm_host*) { return rdm_policy_load(&g.policy, g.bytes.data(), g.bytes.size()); },
+                 clear});
   const std::string checkpoint = "hard_refuse-" + std::to_string(getpid()) + ".rdm";
   const auto pair = [=](const rdm_host* host) {
     must(g.agent.make("ppo_lag", host));

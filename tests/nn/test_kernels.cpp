@@ -214,3 +214,84 @@ TEST(Kernels, TheInstructionSetCanBeLoweredAndNamesAreChecked) {
   EXPECT_TRUE(set_kernel_isa(best.c_str()));
   EXPECT_EQ(kernel_isa(), best);
 }
+
+// What a PointNet needs, beside plain loops in double, for widths that leave lanes over.
+TEST(Kernels, LargestOfRowsAndItsPlace) {
+  for_each_isa([](const char* isa) {
+    SCOPED_TRACE(isa);
+    for (const int32_t n : {1, 3, 4, 7, 8, 16, 19, 33, 64, 70, 128, 131})
+      for (const int32_t rows : {1, 2, 9}) {
+        auto z = random_floats(sz(n) * sz(rows), 6);
+        if (rows == 9) std::copy_n(z.begin(), n, z.begin() + 4 * n);  // the fifth row is as the first
+        std::vector<float> best(sz(n) + 8, -0.5f), at(sz(n) + 8, -1);
+        kernels().max_rows(z.data(), rows, n, 100, best.data(), at.data());
+        for (size_t j = 0; j < best.size(); ++j) {
+          float wanted = -0.5f, place = -1;
+          for (size_t r = 0; j < sz(n) && r < sz(rows); ++r)
+            if (z[r * sz(n) + j] > wanted) wanted = z[r * sz(n) + j], place = static_cast<float>(100 + r);
+          EXPECT_EQ(best[j], wanted);
+          EXPECT_EQ(at[j], place);
+        }
+      }
+  });
+}
+
+TEST(Kernels, SlotsAreSpreadAndGathered) {
+  std::vector<float> v3;
+  for_each_isa([&](const char* isa) {
+    SCOPED_TRACE(isa);
+    for (const int32_t k : {1, 3, 5, 8, 16, 21, 64}) {
+      const int32_t n = 10, slots = 4;
+      auto dz = random_floats(sz(n), 1);
+      dz[3] = 0;
+      const auto h = random_floats(sz(slots) * sz(k), 2), w = random_floats(sz(n) * sz(k), 3);
+      const int32_t slot[] = {2, 0, 2, -1, 3, 3, 1, 0, 2, 1};  // none where dz is 0
+      const int32_t all[] = {2, 0, 2, 0, 3, 3, 1, 0, 2, 1};
+      std::vector<float> dw(sz(n) * sz(k) + 8, 0.5f), dh(sz(slots) * sz(k) + 8, 0.25f), y(sz(n), 0.125f);
+      kernels().spread_slots(dz.data(), slot, n, k, h.data(), w.data(), dw.data(), dh.data());
+      kernels().dot_slots(all, n, k, h.data(), w.data(), y.data());
+      std::vector<double> want_dw(dw.size(), 0.5), want_dh(dh.size(), 0.25), want_y(sz(n), 0.125);
+      for (size_t j = 0; j < sz(n); ++j)
+        for (size_t i = 0; i < sz(k); ++i) {
+          const double d = static_cast<double>(dz[j]), from = static_cast<double>(h[sz(all[j]) * sz(k) + i]);
+          want_dw[j * sz(k) + i] += d * from;
+          want_dh[sz(all[j]) * sz(k) + i] += d * static_cast<double>(w[j * sz(k) + i]);
+          want_y[j] += from * static_cast<double>(w[j * sz(k) + i]);
+        }
+      for (size_t i = 0; i < dw.size(); ++i) EXPECT_NEAR(static_cast<double>(dw[i]), want_dw[i], 1e-6);
+      for (size_t i = 0; i < dh.size(); ++i) EXPECT_NEAR(static_cast<double>(dh[i]), want_dh[i], 2e-6);
+      for (size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(static_cast<double>(y[i]), want_y[i], 1e-5);
+      auto again = std::vector<float>(dw.size(), 0.5f);
+      kernels().spread_slots(dz.data(), slot, n, k, h.data(), w.data(), again.data(), nullptr);
+      EXPECT_EQ(again, dw) << "without the other half";
+      if (k != 21 || std::strcmp(isa, kBaseIsa) == 0) continue;
+      if (v3.empty()) v3 = dw;
+      EXPECT_EQ(dw, v3) << "v3 and v4 agree";
+    }
+  });
+}
+
+TEST(Kernels, ActivationsAndSlopesInPlace) {
+  for_each_isa([](const char* isa) {
+    SCOPED_TRACE(isa);
+    for (const Activation a : {Activation::kTanh, Activation::kElu, Activation::kRelu})
+      for (const size_t n : {1, 5, 16, 37}) {
+        const auto z = random_floats(n, 7, 2);
+        auto h = z, d = random_floats(n, 8);
+        const auto before = d;
+        kernels().activate(a, h.data(), n);
+        kernels().slope(a, h.data(), n, d.data());
+        for (size_t i = 0; i < n; ++i) {
+          const auto x = static_cast<double>(z[i]), t = std::tanh(x);
+          const double value = a == Activation::kTanh  ? t
+                               : a == Activation::kElu ? (x < 0 ? std::expm1(x) : x)
+                                                       : std::max(0.0, x);
+          const double slope = a == Activation::kTanh  ? 1 - t * t
+                               : a == Activation::kElu ? (x < 0 ? std::exp(x) : 1)
+                                                       : x > 0;
+          EXPECT_NEAR(static_cast<double>(h[i]), value, 1e-6);
+          EXPECT_NEAR(static_cast<double>(d[i]), static_cast<double>(before[i]) * slope, 5e-6);
+        }
+      }
+  });
+}

@@ -460,3 +460,47 @@ TEST(Policy, ForeignAndNewerFilesAreNamed) {
   EXPECT_EQ(code_of(big_endian), Code::kFormat);
   EXPECT_NE(std::strstr(last_error(), "byte order"), nullptr);
 }
+
+// Version 4: the encoder's section, its weights and its example.
+TEST(Policy, AnEncoderOutOfRangeIsAnError) {
+  Made made(make_shape(3 + 4, {2}, 1), 0);
+  PointNetShape& eyes = made.view.eyes;
+  eyes.points = 9, eyes.classes = 2, eyes.mlp = make_shape(5, {6}, 4);
+  const auto weights = random_floats(eyes.num_params(), 9);
+  made.view.eyes_params = weights.data();
+  const Bytes b = made.bytes();
+  EXPECT_EQ(b[8], 4);
+  EXPECT_EQ(code_of(b), Code::kOk);
+  const Owned p = read(b);
+  EXPECT_EQ(p->view().entries(), 3);
+  EXPECT_EQ(p->view().eyes.mlp.hidden[0], 6);
+  const auto with = [&](const char* tag, size_t at, auto v) {
+    Bytes forged = b;
+    put(section(forged, tag) + at, v);
+    seal(forged);
+    return code_of(forged);
+  };
+  // points, classes, features, origin [3], range, activation, layers, widths [4]
+  for (const int32_t n : {0, -1, 8, 16385, INT32_MAX, INT32_MIN})
+    EXPECT_EQ(with("EYES", 0, n), Code::kFormat) << n;
+  for (const int32_t n : {-1, 1, 3, 65, INT32_MAX}) EXPECT_EQ(with("EYES", 4, n), Code::kFormat) << n;
+  for (const int32_t n : {0, -1, 3, 5, 7, 4097, INT32_MAX}) EXPECT_EQ(with("EYES", 8, n), Code::kFormat) << n;
+  EXPECT_EQ(with("EYES", 12, NAN), Code::kFormat);
+  EXPECT_EQ(with("EYES", 20, 1e7f), Code::kFormat);
+  for (const float x : {0.0f, -1.0f, 1e4f, NAN, INFINITY}) EXPECT_EQ(with("EYES", 24, x), Code::kFormat) << x;
+  for (const int32_t n : {-1, 3}) EXPECT_EQ(with("EYES", 28, n), Code::kFormat) << n;
+  for (const int32_t n : {-1, 0, 2, 5}) EXPECT_EQ(with("EYES", 32, n), Code::kFormat) << n;
+  for (const int32_t n : {0, 5, 7, 1 << 30}) EXPECT_EQ(with("EYES", 36, n), Code::kFormat) << n;
+  EXPECT_EQ(with("EYES", 40, 3), Code::kFormat) << "a layer that there is not";
+  const size_t actor = 4 * made.view.actor.num_params();
+  EXPECT_EQ(with("WGTS", actor, NAN), Code::kFormat);
+  EXPECT_EQ(with("WGTS", actor, 1e30f), Code::kFormat) << "sums that may not be numbers";
+  EXPECT_NE(std::strstr(last_error(), "too large"), nullptr);
+  EXPECT_EQ(with("WGTS", actor + 4 * (eyes.num_params() - 1), 9.0f), Code::kFormat) << "the example says so";
+  const size_t cloud = 4 * (3 + 1);  // behind the example's row and action
+  EXPECT_EQ(with("EXMP", cloud + 2 * 27, uint8_t{2}), Code::kFormat) << "a class that there is not";
+  Bytes older = b;
+  put(&older[8], uint32_t{3});
+  seal(older);
+  EXPECT_EQ(code_of(older), Code::kFormat);
+}
