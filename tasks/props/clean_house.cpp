@@ -7,6 +7,7 @@
 //
 // The text beside eq. (B8) has a fourth part, the distance from trash to broom, which the formula has not:
 // option reward_bottom is its weight.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -75,6 +76,8 @@ constexpr CameraSpec kCameras[] = {
 
 constexpr int32_t kMapRays = 128;               // along a side of a scan
 constexpr size_t kMapMemory = size_t{8} << 20;  // bytes
+constexpr double kMapReach = 100;               // m, about all that the scans see
+constexpr double kMapSlack = 1e-6;              // m, of the bounds about what is occupied
 
 constexpr OptionSpec kRows[] = {
     text_option("cost_mode", "default", "default|paper|event|literal|displacement",
@@ -290,6 +293,23 @@ class CleanHouse final : public PropTask {
     const int32_t chair = kChair;
     scan_scene(scene(), false, &chair, 1, cameras.data(), static_cast<int32_t>(cameras.size()), kMapRays,
                map_.get());
+    map_->box({-kMapReach, -kMapReach, -kMapReach}, {kMapReach, kMapReach, kMapReach},
+              [this](const OccupiedVoxel& v) {
+                for (int k = 0; k < 3; ++k) {
+                  map_low_[k] = std::min(map_low_[k], v.centre[k] - 0.5 * v.side - kMapSlack);
+                  map_high_[k] = std::max(map_high_[k], v.centre[k] + 0.5 * v.side + kMapSlack);
+                }
+              });
+  }
+
+  // False: a ball about p meets nothing that is occupied.
+  bool near_map(const Vec3& p, double radius) const {
+    double square = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double d = std::max({map_low_[k] - p[k], p[k] - map_high_[k], 0.0});
+      square += d * d;
+    }
+    return square <= radius * radius;
   }
 
   int32_t parts_in_map(const World& world) const {
@@ -298,7 +318,8 @@ class CleanHouse final : public PropTask {
       if (s.carrier != Carrier::kBody || s.index != kBroom) continue;
       const Vec3& size = s.def.size;
       const Vec3 half = s.def.kind == ShapeKind::kBox ? size : Vec3{size.x, size.x, size.y};
-      count += map_->meets_box(world.body(kBroom).X * s.def.X_LS, half);
+      const Pose X_WS = world.body(kBroom).X * s.def.X_LS;
+      count += near_map(X_WS.p, norm(half)) && map_->meets_box(X_WS, half);
     }
     return count;
   }
@@ -329,6 +350,7 @@ class CleanHouse final : public PropTask {
     void operator()(Occupancy* map) const { Occupancy::destroy(map); }
   };
   std::unique_ptr<Occupancy, DestroyMap> map_;  // gives its memory back also when a constructor throws
+  Vec3 map_low_ = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, map_high_ = -map_low_;  // box about what it has occupied
 };
 
 // Rewards are near 30 a step.

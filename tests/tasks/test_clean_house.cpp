@@ -108,6 +108,32 @@ TEST_F(CleanHouse, TheMapHasTheChairWhereItStoodAtTheStart) {
   EXPECT_EQ(p.cost(0)[kOccupancy], 0);
 }
 
+// At every place on a lattice about the chair: what is well within its solids, and what is well outside.
+TEST_F(CleanHouse, TheMapAnswersAllAboutTheChair) {
+  TestPool p(kTask, 1, {{"palm_limit", nullptr, 10}, {"handle_height", nullptr, -1}});
+  constexpr double kOff = 0.08;  // m, of a voxel's corner
+  int met = 0, clear = 0;
+  for (int i = -6; i <= 6; ++i)
+    for (int j = -5; j <= 5; ++j) {
+      p->reset(nullptr, nullptr);
+      const double x = 0.15 * i, y = 0.15 * j;
+      shift(p, kChair, {0, -5, 0});
+      shift(p, kBroom, {0.184 + x, -1.12 + y, 0});
+      run(p, Baseline::kHold, 1);
+      // head of .25 x .05, seat of .23, foot of .28
+      const double from_x = std::fabs(x) - 0.25, from_y = std::fabs(y) - 0.05;
+      if (from_x < 0.23 - kOff && from_y < 0.23 - kOff) {
+        EXPECT_EQ(p.cost(0)[kOccupancy], 1) << x << " " << y;
+        ++met;
+      } else if (from_x > 0.28 + kOff || from_y > 0.28 + kOff) {
+        EXPECT_EQ(p.cost(0)[kOccupancy], 0) << x << " " << y;
+        ++clear;
+      }
+    }
+  EXPECT_GT(met, 10);
+  EXPECT_GT(clear, 50);
+}
+
 TEST_F(CleanHouse, HandsCountWhenAsked) {
   const auto cost = [](const char* count) {
     TestPool p(kTask, 1, {{"count_hands", count, 0}});
