@@ -28,6 +28,7 @@ constexpr double kTipBeyond = 0.02;    // m, from the distal origin, as the rewa
 constexpr double kMovingSpeed = 0.01;  // m/s, of a chair that a broom pushes
 constexpr double kMovingWay = 0.01;    // m
 constexpr double kOnFloor = 1e-3;      // m
+constexpr double kStill = 0.01;        // rad/s
 constexpr double kNear = 0.25;         // m, of reward full: the broom is at the trash
 
 // Of the trash's lowest point, m.
@@ -116,6 +117,9 @@ void add_options(OptionTable& table) {
   table.add(kRows);
   add_prop_options(make_config(), 500, 96, table);
   table.set_default("reset_noise", 0.003);
+  if (same_name(table.choice("engine"), "ode")) return;
+  table.set_default("sleep_time", 0.05);
+  table.set_default("iterations", 16);  // a grip is few points, each of which waits for the others
 }
 
 HandScene make_scene_def(const Options& o) {
@@ -258,10 +262,12 @@ class CleanHouse final : public PropTask {
     return broom_point(world, hand == 0 ? kRightHold : kLeftHold);
   }
 
-  // A cylinder would roll on for ever: a torque against its rolling, never more than stops it.
+  // A cylinder would roll on for ever: a torque against its rolling, never more than stops it; none once it
+  // stands, so that it may fall asleep, which a push would keep it from.
   void stop_rolling(World& world) const {
     const Motion& m = world.body(kTrash);
     const double spin = norm(m.w);
+    if (scene().def.solver.sleep_time > 0 && spin < kStill) return;
     if (rolling_ == 0 || spin == 0 || trash_height(m.X) > kOnFloor) return;
     const double mass = scene().def.bodies[kTrash].inertia.mass;
     const double stops = 1.5 * mass * kTrashRadius * kTrashRadius * spin / scene().control_dt();

@@ -134,6 +134,34 @@ TEST_F(CleanHouse, TheMapAnswersAllAboutTheChair) {
   EXPECT_GT(clear, 50);
 }
 
+// What stands falls asleep, the trash too, whose rolling is braked; the broom wakes it.
+TEST_F(CleanHouse, WhatStandsSleepsUntilTheBroomComes) {
+  TestPool p(kTask, 1, {{"palm_limit", nullptr, 10}, {"handle_height", nullptr, -1}});
+  p->reset(nullptr, nullptr);
+  run(p, Baseline::kHold, 10);
+  for (int32_t b : {kTrash, kChair}) {
+    EXPECT_EQ(norm(p->world(0).body(b).v), 0);
+    EXPECT_EQ(norm(p->world(0).body(b).w), 0);
+  }
+  EXPECT_GT(p->world(0).num_contacts(), 4);  // they go on being reported
+  const double start = p->world(0).body(kTrash).X.p.y;
+  shift(p, kBroom, {0, -0.25, 0});
+  for (int t = 0; t < 30; ++t) {
+    p->world(0).push_body(kBroom, {0, -20, 0}, {});
+    run(p, Baseline::kHold, 1);
+  }
+  EXPECT_LT(p->world(0).body(kTrash).X.p.y, start - 0.02);
+}
+
+// Its own numbers for the engine of joint coordinates leave the other engine's as they are.
+TEST_F(CleanHouse, DefaultsFollowTheEngine) {
+  TestPool own(kTask, 1), ode(kTask, 1, with_engine("ode"));
+  EXPECT_EQ(own->world(0).scene().def.solver.iterations, 16);
+  EXPECT_GT(own->world(0).scene().def.solver.sleep_time, 0);
+  EXPECT_EQ(ode->world(0).scene().def.solver.iterations, 8);
+  EXPECT_EQ(ode->world(0).scene().def.solver.sleep_time, 0);
+}
+
 TEST_F(CleanHouse, HandsCountWhenAsked) {
   const auto cost = [](const char* count) {
     TestPool p(kTask, 1, {{"count_hands", count, 0}});
