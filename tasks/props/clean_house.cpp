@@ -7,6 +7,7 @@
 //
 // The text beside eq. (B8) has a fourth part, the distance from trash to broom, which the formula has not:
 // option reward_bottom is its weight.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -27,6 +28,7 @@ constexpr double kTipBeyond = 0.02;    // m, from the distal origin, as the rewa
 constexpr double kMovingSpeed = 0.01;  // m/s, of a chair that a broom pushes
 constexpr double kMovingWay = 0.01;    // m
 constexpr double kOnFloor = 1e-3;      // m
+constexpr double kStill = 0.01;        // rad/s
 constexpr double kNear = 0.25;         // m, of reward full: the broom is at the trash
 
 // Of the trash's lowest point, m.
@@ -75,6 +77,8 @@ constexpr CameraSpec kCameras[] = {
 
 constexpr int32_t kMapRays = 128;               // along a side of a scan
 constexpr size_t kMapMemory = size_t{8} << 20;  // bytes
+constexpr double kMapReach = 100;               // m, about all that the scans see
+constexpr double kMapSlack = 1e-6;              // m, of the bounds about what is occupied
 
 constexpr OptionSpec kRows[] = {
     text_option("cost_mode", "default", "default|paper|event|literal|displacement",
@@ -113,6 +117,9 @@ void add_options(OptionTable& table) {
   table.add(kRows);
   add_prop_options(make_config(), 500, 96, table);
   table.set_default("reset_noise", 0.003);
+  if (same_name(table.choice("engine"), "ode")) return;
+  table.set_default("sleep_time", 0.05);
+  table.set_default("iterations", 16);  // a grip is few points, each of which waits for the others
 }
 
 HandScene make_scene_def(const Options& o) {
@@ -255,10 +262,12 @@ class CleanHouse final : public PropTask {
     return broom_point(world, hand == 0 ? kRightHold : kLeftHold);
   }
 
-  // A cylinder would roll on for ever: a torque against its rolling, never more than stops it.
+  // A cylinder would roll on for ever: a torque against its rolling, never more than stops it; none once it
+  // stands, so that it may fall asleep, which a push would keep it from.
   void stop_rolling(World& world) const {
     const Motion& m = world.body(kTrash);
     const double spin = norm(m.w);
+    if (scene().def.solver.sleep_time > 0 && spin < kStill) return;
     if (rolling_ == 0 || spin == 0 || trash_height(m.X) > kOnFloor) return;
     const double mass = scene().def.bodies[kTrash].inertia.mass;
     const double stops = 1.5 * mass * kTrashRadius * kTrashRadius * spin / scene().control_dt();
@@ -290,6 +299,24 @@ class CleanHouse final : public PropTask {
     const int32_t chair = kChair;
     scan_scene(scene(), false, &chair, 1, cameras.data(), static_cast<int32_t>(cameras.size()), kMapRays,
                map_.get());
+    map_->box({-kMapReach, -kMapReach, -kMapReach}, {kMapReach, kMapReach, kMapReach},
+              [this](const OccupiedVoxel& v) {
+                for (int k = 0; k < 3; ++k) {
+                  map_low_[k] = std::min(map_low_[k], v.centre[k] - 0.5 * v.side - kMapSlack);
+                  map_high_[k] = std::max(map_high_[k], v.centre[k] + 0.5 * v.side + kMapSlack);
+                }
+              });
+  }
+
+  // False: what the turned box takes up along the axes meets nothing that is occupied.
+  bool near_map(const Pose& X_WB, const Vec3& half) const {
+    const Mat3 R = to_matrix(X_WB.q);
+    for (int k = 0; k < 3; ++k) {
+      const double reach =
+          std::fabs(R(k, 0)) * half.x + std::fabs(R(k, 1)) * half.y + std::fabs(R(k, 2)) * half.z;
+      if (X_WB.p[k] + reach < map_low_[k] || X_WB.p[k] - reach > map_high_[k]) return false;
+    }
+    return true;
   }
 
   int32_t parts_in_map(const World& world) const {
@@ -298,7 +325,8 @@ class CleanHouse final : public PropTask {
       if (s.carrier != Carrier::kBody || s.index != kBroom) continue;
       const Vec3& size = s.def.size;
       const Vec3 half = s.def.kind == ShapeKind::kBox ? size : Vec3{size.x, size.x, size.y};
-      count += map_->meets_box(world.body(kBroom).X * s.def.X_LS, half);
+      const Pose X_WS = world.body(kBroom).X * s.def.X_LS;
+      count += near_map(X_WS, half) && map_->meets_box(X_WS, half);
     }
     return count;
   }
@@ -329,6 +357,7 @@ class CleanHouse final : public PropTask {
     void operator()(Occupancy* map) const { Occupancy::destroy(map); }
   };
   std::unique_ptr<Occupancy, DestroyMap> map_;  // gives its memory back also when a constructor throws
+  Vec3 map_low_ = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, map_high_ = -map_low_;  // box about what it has occupied
 };
 
 // Rewards are near 30 a step.

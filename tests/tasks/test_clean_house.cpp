@@ -108,6 +108,60 @@ TEST_F(CleanHouse, TheMapHasTheChairWhereItStoodAtTheStart) {
   EXPECT_EQ(p.cost(0)[kOccupancy], 0);
 }
 
+// At every place on a lattice about the chair: what is well within its solids, and what is well outside.
+TEST_F(CleanHouse, TheMapAnswersAllAboutTheChair) {
+  TestPool p(kTask, 1, {{"palm_limit", nullptr, 10}, {"handle_height", nullptr, -1}});
+  constexpr double kOff = 0.08;  // m, of a voxel's corner
+  int met = 0, clear = 0;
+  for (int i = -6; i <= 6; ++i)
+    for (int j = -5; j <= 5; ++j) {
+      p->reset(nullptr, nullptr);
+      const double x = 0.15 * i, y = 0.15 * j;
+      shift(p, kChair, {0, -5, 0});
+      shift(p, kBroom, {0.184 + x, -1.12 + y, 0});
+      run(p, Baseline::kHold, 1);
+      // head of .25 x .05, seat of .23, foot of .28
+      const double from_x = std::fabs(x) - 0.25, from_y = std::fabs(y) - 0.05;
+      if (from_x < 0.23 - kOff && from_y < 0.23 - kOff) {
+        EXPECT_EQ(p.cost(0)[kOccupancy], 1) << x << " " << y;
+        ++met;
+      } else if (from_x > 0.28 + kOff || from_y > 0.28 + kOff) {
+        EXPECT_EQ(p.cost(0)[kOccupancy], 0) << x << " " << y;
+        ++clear;
+      }
+    }
+  EXPECT_GT(met, 10);
+  EXPECT_GT(clear, 50);
+}
+
+// What stands falls asleep, the trash too, whose rolling is braked; the broom wakes it.
+TEST_F(CleanHouse, WhatStandsSleepsUntilTheBroomComes) {
+  TestPool p(kTask, 1, {{"palm_limit", nullptr, 10}, {"handle_height", nullptr, -1}});
+  p->reset(nullptr, nullptr);
+  run(p, Baseline::kHold, 10);
+  for (int32_t b : {kTrash, kChair}) {
+    EXPECT_EQ(norm(p->world(0).body(b).v), 0);
+    EXPECT_EQ(norm(p->world(0).body(b).w), 0);
+  }
+  EXPECT_GT(p->world(0).num_contacts(), 4);  // they go on being reported
+  const double start = p->world(0).body(kTrash).X.p.y;
+  shift(p, kBroom, {0, -0.25, 0});
+  for (int t = 0; t < 30; ++t) {
+    p->world(0).push_body(kBroom, {0, -20, 0}, {});
+    run(p, Baseline::kHold, 1);
+  }
+  EXPECT_LT(p->world(0).body(kTrash).X.p.y, start - 0.02);
+}
+
+// Its own numbers for the engine of joint coordinates leave the other engine's as they are.
+TEST_F(CleanHouse, DefaultsFollowTheEngine) {
+  TestPool own(kTask, 1), ode(kTask, 1, with_engine("ode"));
+  EXPECT_EQ(own->world(0).scene().def.solver.iterations, 16);
+  EXPECT_GT(own->world(0).scene().def.solver.sleep_time, 0);
+  EXPECT_EQ(ode->world(0).scene().def.solver.iterations, 8);
+  EXPECT_EQ(ode->world(0).scene().def.solver.sleep_time, 0);
+}
+
 TEST_F(CleanHouse, HandsCountWhenAsked) {
   const auto cost = [](const char* count) {
     TestPool p(kTask, 1, {{"count_hands", count, 0}});

@@ -3,9 +3,16 @@
 namespace rdm {
 namespace {
 
+constexpr OptionSpec engine_option() {
+  OptionSpec row =
+      text_option("engine", "articulated", "articulated|ode",
+                  "robots in joint coordinates, or bodies and joints of ODE: slow, a cross-check");
+  row.chooses = true;  // a task may have other numbers for each
+  return row;
+}
+
 constexpr OptionSpec kRows[] = {
-    text_option("engine", "articulated", "articulated|ode",
-                "robots in joint coordinates, or bodies and joints of ODE: slow, a cross-check"),
+    engine_option(),
     number_option("frequency", 60, 10, 1000, "control steps per second, Hz"),
     integer_option("substeps", 2, 1, 16, "physics substeps per control step"),
     integer_option("iterations", 8, 1, 1000,

@@ -34,6 +34,8 @@ struct Overlap {
   Vec3 p;
   double depth;  // m
 };
+// True: a direction was found along which they are apart; false says nothing. Of boxes, cylinders, capsules.
+bool shown_apart(const Convex& a, const Convex& b);
 // False when they are apart. Exact for shallow overlap.
 bool find_overlap(const Convex& a, const Convex& b, Overlap* out);
 
