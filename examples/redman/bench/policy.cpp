@@ -52,7 +52,6 @@ rdm_epoch collect_and_update(redman::Agent& agent, redman::Pool& pool, int32_t h
   t.cost = pool.cost().data();
   t.terminated = pool.terminated().data();
   t.truncated = pool.truncated().data();
-  t.final_obs = pool.final_obs().data();
   const rdm_points points = redman::points(redman::sensors(pool));
   for (int32_t i = 0; i < horizon; ++i) {
     redman::act(agent, pool.obs().data(), points, RDM_SAMPLE, pool.action().data());
