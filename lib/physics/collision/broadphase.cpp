@@ -128,6 +128,7 @@ void BroadPhase::carve(const Scene& scene, Arena& arena) {
   boxes_ = arena.make<Box>(scene.def.articulations.size());
   parts_ = arena.make<Part>(parts);
   part_boxes_ = arena.make<Box>(parts);
+  part_lanes_ = arena.make<BoxLanes>((parts + 3) / 4);
   other_plane_ = arena.make<int32_t>(others);
   neighbours_ = arena.make<uint8_t>(scene.shapes.size());
   near_ = arena.make<uint64_t>(parts * static_cast<size_t>(words_));
@@ -155,6 +156,11 @@ void BroadPhase::make(const Scene& scene) {
     const Vec3 n = rotate(X_WS.q, {0, 0, 1});
     planes_[planes++] = {n, rdm::dot(n, X_WS.p)};
   }
+  for (int32_t k = num_parts_; k % 4 != 0; ++k)  // nothing
+    for (int r = 0; r < 3; ++r) {
+      part_lanes_[k / 4].low[r][k % 4] = kFar;
+      part_lanes_[k / 4].high[r][k % 4] = -kFar;
+    }
   Part* part = parts_;
   for (size_t a = 0; a < scene.def.articulations.size(); ++a) {
     const int32_t begin = scene.first_shape[a],
@@ -184,6 +190,10 @@ void BroadPhase::update_boxes(const Scene& scene) {
     }
     store4(part_boxes_[k].low, low);
     store4(part_boxes_[k].high, high);
+    for (int r = 0; r < 3; ++r) {
+      part_lanes_[k / 4].low[r][k % 4] = low[r];
+      part_lanes_[k / 4].high[r][k % 4] = high[r];
+    }
     Box& box = boxes_[part.articulation];
     store4(box.low, min(load4(box.low), low));
     store4(box.high, max(load4(box.high), high));
@@ -196,6 +206,18 @@ bool BroadPhase::near(const Bound& bound, const Box& box) {
   Float4 d = under > over ? under : over;
   d = d > zero ? d : zero;
   return dot3(d, d) < c[3] * c[3];
+}
+
+uint32_t BroadPhase::near(const Bound& bound, const BoxLanes& boxes) {
+  const Float4 zero{};
+  Float4 d[3];
+  for (int k = 0; k < 3; ++k) {
+    const Float4 c = splat(bound.center[k]);
+    const Float4 under = load4(boxes.low[k]) - c, over = c - load4(boxes.high[k]);
+    d[k] = under > over ? under : over;
+    d[k] = d[k] > zero ? d[k] : zero;
+  }
+  return bits_of(dot(d, d) < splat(bound.center[3] * bound.center[3]));
 }
 
 // The corner farthest below it.
@@ -252,15 +274,16 @@ uint32_t BroadPhase::capsules_meet(const int32_t* list) const {
 
 // What is no link and near a part of an articulation.
 void BroadPhase::mark_others() {
-  for (int32_t k = 0; k < num_parts_; ++k) {
-    const Box& box = part_boxes_[k];
-    uint64_t* words = near_ + k * words_;
-    for (int32_t w = 0; w < words_; ++w) words[w] = 0;
-    for (int32_t i = 0; i < num_others_; ++i) {
-      const int32_t plane = other_plane_[i];
-      const bool is_near = plane < 0 ? near(bounds_[first_other_ + i], box) : near(planes_[plane], box);
-      words[i / 64] |= uint64_t{is_near} << (i % 64);
-    }
+  std::fill_n(near_, num_parts_ * words_, uint64_t{0});
+  for (int32_t i = 0; i < num_others_; ++i) {
+    const Bound& bound = bounds_[first_other_ + i];
+    const int32_t plane = other_plane_[i];
+    const auto mark = [&](int32_t part) { near_[part * words_ + i / 64] |= uint64_t{1} << (i % 64); };
+    for (int32_t k = 0; plane >= 0 && k < num_parts_; ++k)
+      if (near(planes_[plane], part_boxes_[k])) mark(k);
+    for (int32_t k = 0; plane < 0 && k < num_parts_; k += 4)
+      for (uint32_t bits = near(bound, part_lanes_[k / 4]); bits != 0; bits &= bits - 1)
+        mark(k + std::countr_zero(bits));
   }
 }
 

@@ -74,6 +74,10 @@ class BroadPhase {
   struct Box {
     float low[4], high[4];
   };
+  // Four boxes, by coordinate.
+  struct BoxLanes {
+    float low[3][4], high[3][4];
+  };
   // Shapes of one articulation that stand in a row.
   struct Part {
     int32_t articulation, first, end;
@@ -99,6 +103,8 @@ class BroadPhase {
   uint32_t spheres_meet(const int32_t* list) const;
   uint32_t capsules_meet(const int32_t* list) const;
   static bool near(const Bound& bound, const Box& box);
+  // Bit k: box k of the four.
+  static uint32_t near(const Bound& bound, const BoxLanes& boxes);
   static bool near(const Plane& plane, const Box& box);
 
   Bound* bounds_ = nullptr;
@@ -107,6 +113,7 @@ class BroadPhase {
   Box* boxes_ = nullptr;            // [articulations]
   Part* parts_ = nullptr;           // of all articulations, in their order
   Box* part_boxes_ = nullptr;       // [parts]
+  BoxLanes* part_lanes_ = nullptr;  // [parts / 4, rounded up] the same, four side by side
   int32_t* other_plane_ = nullptr;  // [others] index of planes_; -1
   uint8_t* neighbours_ = nullptr;   // [shapes] near the other articulation of a run
   uint64_t* near_ = nullptr;        // [parts][words_] bit k: other k is near the part
