@@ -308,14 +308,15 @@ class CleanHouse final : public PropTask {
               });
   }
 
-  // False: a ball about p meets nothing that is occupied.
-  bool near_map(const Vec3& p, double radius) const {
-    double square = 0;
+  // False: what the turned box takes up along the axes meets nothing that is occupied.
+  bool near_map(const Pose& X_WB, const Vec3& half) const {
+    const Mat3 R = to_matrix(X_WB.q);
     for (int k = 0; k < 3; ++k) {
-      const double d = std::max({map_low_[k] - p[k], p[k] - map_high_[k], 0.0});
-      square += d * d;
+      const double reach =
+          std::fabs(R(k, 0)) * half.x + std::fabs(R(k, 1)) * half.y + std::fabs(R(k, 2)) * half.z;
+      if (X_WB.p[k] + reach < map_low_[k] || X_WB.p[k] - reach > map_high_[k]) return false;
     }
-    return square <= radius * radius;
+    return true;
   }
 
   int32_t parts_in_map(const World& world) const {
@@ -325,7 +326,7 @@ class CleanHouse final : public PropTask {
       const Vec3& size = s.def.size;
       const Vec3 half = s.def.kind == ShapeKind::kBox ? size : Vec3{size.x, size.x, size.y};
       const Pose X_WS = world.body(kBroom).X * s.def.X_LS;
-      count += near_map(X_WS.p, norm(half)) && map_->meets_box(X_WS, half);
+      count += near_map(X_WS, half) && map_->meets_box(X_WS, half);
     }
     return count;
   }
