@@ -132,7 +132,8 @@ class BatchStepper final : public Stepper {
   bool add_piles(int32_t world, bool again);
   void add_pile_points(int32_t world, bool again, typename WideContacts<S>::Group* group);
   void read_pile_impulses(int32_t world);
-  void apply_impulses(int32_t world);
+  void take_impulses(int32_t world);
+  void apply_impulses(TreeBatch<L>& t);
   void contact_forces(int32_t world);
   void integrate(TreeBatch<L>& t);
   void integrate_base(TreeBatch<L>& t);
@@ -282,11 +283,18 @@ void BatchStepper<L>::solve_contacts() {
     if (world.num_contacts > 0) open |= 1u << w;
   }
   for (int round = 0; open != 0; ++round) {
-    for (int32_t k = 0; k < num_batches_; ++k)
-      for (int32_t c = 0; c < batches_[k].tree->num_coords; ++c)
-        batches_[k].coord[c].inv_sqrt_d = L::root(batches_[k].coord[c].inv_d);
+    for (int32_t k = 0; k < num_batches_; ++k) {
+      TreeBatch<L>& t = batches_[k];
+      t.pushed = 0;
+      for (int32_t c = 0; c < t.tree->num_coords; ++c) {
+        t.coord[c].inv_sqrt_d = L::root(t.coord[c].inv_d);
+        t.coord[c].push = V{};
+      }
+    }
     for (int32_t w = 0; w < count_; ++w)
       if (open >> w & 1) solve_contacts_of(w, round > 0);
+    for (int32_t k = 0; k < num_batches_; ++k)
+      if (batches_[k].pushed != 0) apply_impulses(batches_[k]);
     if (round > kContactRounds) return;
     uint32_t changed = 0;
     for (int32_t k = 0; k < num_batches_; ++k) {
@@ -446,7 +454,7 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
                     static_cast<double>(impulse[2]) * u;
   }
   if (piles) read_pile_impulses(world);
-  apply_impulses(world);
+  take_impulses(world);
 }
 
 // The pairs of free bodies with each other and with static shapes into lanes, if there are enough of them.
@@ -585,9 +593,9 @@ void BatchStepper<L>::read_pile_impulses(int32_t world) {
   }
 }
 
-// v1 += L^-1 D^-1/2 sum for the robots, and the like for bodies.
+// What the contacts of one world come to: v1 of its bodies, and of robots the sums into their lanes.
 template <class L>
-void BatchStepper<L>::apply_impulses(int32_t world) {
+void BatchStepper<L>::take_impulses(int32_t world) {
   WorldState& w = *worlds_[world];
   for (int32_t g = 0; g < num_groups_; ++g) {
     const Tree& tree = *groups_[g].tree;
@@ -596,14 +604,10 @@ void BatchStepper<L>::apply_impulses(int32_t world) {
       if (!touched_[a]) continue;
       const auto [batch, lane] = lane_of(g, m, world);
       const auto* sum = contacts_.sum + member_segment_[a];
+      batch->pushed |= 1u << lane;
       for (int32_t c = 0; c < tree.num_coords; ++c) {
         const TreeSlot slot = tree.slots[static_cast<size_t>(c)];
-        const int32_t row = tree.row[static_cast<size_t>(c)], depth = tree.depth[static_cast<size_t>(c)];
-        S x = sum[slot.segment][slot.slot] * L::get(batch->coord[c].inv_sqrt_d, lane);
-        for (int32_t d = 0; d < depth; ++d)
-          x -= L::get(batch->factor[row + d], lane) * path_[tree.path[static_cast<size_t>(row + d)]];
-        path_[c] = x;
-        L::set(&batch->coord[c].v1, lane, L::get(batch->coord[c].v1, lane) + x);
+        L::set(&batch->coord[c].push, lane, sum[slot.segment][slot.slot]);
       }
     }
   }
@@ -616,6 +620,23 @@ void BatchStepper<L>::apply_impulses(int32_t world) {
         angular{static_cast<double>(sum[3]), static_cast<double>(sum[4]), static_cast<double>(sum[5])};
     body.v1 = body.v + sqrt_inv_mass * linear;
     body.w1 = body.w + transpose(body.inv_sqrt_inertia) * angular;
+  }
+}
+
+// v1 += L^-1 D^-1/2 sum for the robots that are touched.
+template <class L>
+void BatchStepper<L>::apply_impulses(TreeBatch<L>& t) {
+  const Tree& tree = *t.tree;
+  const Mask lanes = L::mask(t.pushed);
+  for (int32_t c = 0; c < tree.num_coords; ++c) {
+    CoordWork<V>& coord = t.coord[c];
+    const int32_t row = tree.row[static_cast<size_t>(c)], depth = tree.depth[static_cast<size_t>(c)];
+    const V* factor = t.factor + row;
+    const int16_t* path = tree.path.data() + row;
+    V x = coord.push * coord.inv_sqrt_d;
+    for (int32_t d = 0; d < depth; ++d) x -= factor[d] * t.coord[path[d]].push;
+    coord.push = x;
+    coord.v1 = L::select(lanes, V(coord.v1 + x), coord.v1);
   }
 }
 

@@ -72,6 +72,7 @@ struct CoordWork {
   V qd, bias;           // rate at the substep's start; RNEA's force
   V inv_d, inv_sqrt_d;  // 1 / D and its root
   V dv, v1;             // change of the rate; rate at the substep's end
+  V push;               // of contacts, half-solved (contact_solver.inl)
 };
 
 // The robots of one batch. Arrays are by link, coordinate or shape; a number of each is a V, by lane.
@@ -84,7 +85,8 @@ struct TreeBatch : BaseConstants<typename L::V> {
   const Tree* tree;
   S h, inv_h;
   bool spring_only, any_push;
-  Mask frozen;  // lanes whose active sets stay for this substep
+  Mask frozen;      // lanes whose active sets stay for this substep
+  uint32_t pushed;  // lanes that have a contact, a bit each
   V base_R[9], base_q[4], base_com[3];
   PersistentBase<V> base_state;
   LinkWork<V> base;
