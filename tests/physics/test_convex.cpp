@@ -114,7 +114,7 @@ TEST(Convex, OverlapOfKnownPairs) {
 TEST(Convex, TheDepthTakesThemApart) {
   Stream stream(3, 0, Purpose::kTest);
   int found = 0;
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < 4000; ++i) {
     const ShapeKind ka = kKinds[stream.next() % 6], kb = kKinds[stream.next() % 6];
     const Convex b = solid(kb, {0.05, 0.06, 0.04}, {{}, axis_angle(direction(stream), 2)});
     Convex a = solid(ka, {0.04, 0.05, 0.06}, {0.09 * direction(stream), axis_angle(direction(stream), 1)});
