@@ -164,10 +164,12 @@ inline void* aligned_scratch(void* scratch, size_t size, size_t bytes) {
 inline constexpr size_t kFirstSpecSize = offsetof(rdm_spec, action_repeat);
 inline constexpr size_t kFirstEpochSize = offsetof(rdm_epoch, cost_signal);
 inline constexpr size_t kFirstAgentConfigSize = offsetof(rdm_agent_config, settings);
+#ifdef RDM_EXPERIMENTAL
 inline constexpr size_t kFirstRecordingConfigSize = offsetof(rdm_recording_config, num_points);
 inline constexpr size_t kFirstRecordingInfoSize = offsetof(rdm_recording_info, num_points);
 inline constexpr size_t kFirstRecordingRowsSize = offsetof(rdm_recording_rows, points);
 inline constexpr size_t kFirstSensorsSize = offsetof(rdm_sensors, point_class);
+#endif
 
 // Hooks of a handle: the config's, else the process's.
 HostHooks hooks_from(const rdm_host* host);
