@@ -72,13 +72,22 @@ Report bench_policy(SeeingFlags flags) {
   apply_sets(flags.sets, flags.pool, &flags.agent);
   const double part = flags.seconds / 6, worlds_count = flags.pool.envs;
 
-  redman::Pool seen = worlds(flags.pool, "points", flags), blind = worlds(flags.pool, "state", flags);
+  PoolSettings as_trained = flags.pool;
+  AgentSettings own = flags.agent;
+  own.options.insert(own.options.begin(),
+                     {{"encoder", flags.encoder}, {"encoder_points", std::to_string(flags.points)}});
+  give_eyes(own, as_trained);
+  redman::Pool seen = worlds(as_trained, "points", flags), blind = worlds(flags.pool, "state", flags);
   const auto step = [](redman::Pool& pool) {
     pool.baseline(RDM_BASELINE_RANDOM);
     pool.step();
   };
-  const double cloud_ms =
-      1e3 * (time_of(part, [&] { step(seen); }) - time_of(part, [&] { step(blind); })) / worlds_count;
+  double cloud_ms;
+  {
+    redman::Pool each = worlds(flags.pool, "points", flags);  // a cloud in every step
+    cloud_ms =
+        1e3 * (time_of(part, [&] { step(each); }) - time_of(part, [&] { step(blind); })) / worlds_count;
+  }
 
   redman::Agent agent = learner(flags, seen, true), other = learner(flags, blind, false);
   const redman::Policy policy(agent.policy()), without(other.policy());
