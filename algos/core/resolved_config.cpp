@@ -1,5 +1,6 @@
 #include "algos/core/resolved_config.hpp"
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -110,12 +111,12 @@ void resolve_costs(ResolvedAgentConfig& resolved) {
 
 // "x,y,z" in m; blanks are skipped.
 void parse_origin(const char* text, float (&origin)[3]) {
-  const char* p = text;
+  const char *p = text, *last = text + std::strlen(text);
   for (int32_t k = 0; k < 3; ++k) {
-    char* end = nullptr;
-    origin[k] = std::strtof(p, &end);
+    while (*p == ' ') ++p;
+    auto [end, error] = std::from_chars(p, last, origin[k]);
     while (*end == ' ') ++end;
-    if (end == p || *end != (k < 2 ? ',' : '\0'))
+    if (error != std::errc() || *end != (k < 2 ? ',' : '\0'))
       fail(Code::kArgument, "encoder_origin: '%s' is not three numbers such as 0,0,1", Quoted(text).text);
     p = end + 1;
   }

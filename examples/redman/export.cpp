@@ -57,7 +57,8 @@ Report run_export(const ExportFlags& flags) {
                 ": it is no network; give a policy file, a run folder or trained:TASK");
   const redman::Policy policy(choice.file.c_str());
   if (policy.info().num_points > 0 && !(flags.onnx.empty() && flags.c.empty() && flags.probe.empty()))
-    throw Failure("export: " + choice.file + " sees points; such policies are written by --safetensors alone");
+    throw Failure("export: " + choice.file +
+                  " sees points; such policies are written by --safetensors alone");
   const Network network(policy);
   Json json = {{"policy", choice.file}};
   std::string text;

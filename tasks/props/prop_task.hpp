@@ -1,8 +1,8 @@
 // A task of two flying hands and loose things that start at rest: everything but what they are for.
 //
-// ReDMan B.1 draws "the object's starting pose and target pose" anew in every episode; it gives no widths. Here
-// option reset_noise is a few millimetres, each task's own default, as wide as its demonstration carries;
-// reset_noise=0 is the nominal start, the same each time.
+// ReDMan B.1 draws "the object's starting pose and target pose" anew in every episode; it gives no widths.
+// Here option reset_noise is a few millimetres, each task's own default, as wide as its demonstration
+// carries; reset_noise=0 is the nominal start, the same each time.
 #pragma once
 #include "tasks/hand/hand_task.hpp"
 

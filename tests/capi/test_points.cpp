@@ -268,8 +268,13 @@ TEST(Points, ARolloutSeesWhatThePoolShows) {
   redman::Agent b = with((common + "encoder=8,16\nencoder_points=65").c_str());
   EXPECT_EQ(rdm_agent_rollout(b.get(), pool.get(), nullptr), RDM_ARGUMENT);
   EXPECT_STREQ(rdm_agent_error(b.get()), "encoder_points: the agent's encoder sees 65, the pool has 64");
-  redman::Agent d = with((common + "encoder=8,16\nencoder_points=64\nencoder_classes=2").c_str());
-  EXPECT_EQ(rdm_agent_rollout(d.get(), pool.get(), nullptr), RDM_UNSUPPORTED);
+  // two hands, the object, anything else
+  redman::Agent d = with((common + "encoder=8,16\nencoder_points=64\nencoder_classes=4").c_str());
+  EXPECT_EQ(rdm_agent_rollout(d.get(), pool.get(), nullptr), RDM_OK) << rdm_agent_error(d.get());
+  redman::Agent few = with((common + "encoder=8,16\nencoder_points=64\nencoder_classes=2").c_str());
+  EXPECT_EQ(rdm_agent_rollout(few.get(), pool.get(), nullptr), RDM_ARGUMENT);
+  EXPECT_STREQ(rdm_agent_error(few.get()),
+               "encoder_classes: the pool's points have 4 classes, the agent's encoder sees 2");
   redman::Pool blind(redman::pool_config("hand_over_safe_finger", 2));
   blind.reset();
   EXPECT_EQ(rdm_agent_rollout(a.get(), blind.get(), nullptr), RDM_STATE);
