@@ -157,27 +157,33 @@ const char* rdm_agent_error(const rdm_agent* a) {
   return is_handle(a) ? a->error : "agent: NULL, not an agent, or destroyed";
 }
 
+namespace {
+
+// Whether actions are sampled.
+bool read_act(const rdm_agent* a, const float* obs, int32_t mode, const float* action) {
+  need_handle(a);
+  need(obs, "obs");
+  need(action, "action");
+  if (mode != RDM_SAMPLE && mode != RDM_MEAN)
+    fail(Code::kRange, "mode: %d is not RDM_SAMPLE or RDM_MEAN", mode);
+  return mode == RDM_SAMPLE;
+}
+
+}  // namespace
+
 rdm_result rdm_agent_act(rdm_agent* a, const float* obs, int32_t mode, float* action) {
   return call(text_of(a), [&] {
-    need_handle(a);
-    need(obs, "obs");
-    need(action, "action");
-    if (mode != RDM_SAMPLE && mode != RDM_MEAN)
-      fail(Code::kRange, "mode: %d is not RDM_SAMPLE or RDM_MEAN", mode);
-    a->agent->act(obs, mode == RDM_SAMPLE, action);
+    const bool sample = read_act(a, obs, mode, action);
+    a->agent->act(obs, sample, action);
   });
 }
 
 rdm_result rdm_agent_act_points(rdm_agent* a, const float* obs, const rdm_points* points, int32_t mode,
                                 float* action) {
   return call(text_of(a), [&] {
-    need_handle(a);
-    need(obs, "obs");
-    need(action, "action");
-    if (mode != RDM_SAMPLE && mode != RDM_MEAN)
-      fail(Code::kRange, "mode: %d is not RDM_SAMPLE or RDM_MEAN", mode);
+    const bool sample = read_act(a, obs, mode, action);
     if (!a->agent->eyes().points) fail(Code::kState, "points: the agent has no encoder");
-    a->agent->act(obs, mode == RDM_SAMPLE, action, read_points(points, a->agent->eyes()));
+    a->agent->act(obs, sample, action, read_points(points, a->agent->eyes()));
   });
 }
 

@@ -8,6 +8,7 @@
 #include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
+#include "base/shuffle.hpp"
 #include "nn/policy.hpp"
 
 namespace rdm {
@@ -193,8 +194,7 @@ BatchSums Agent::pass(const PolicyLoss* policy) {
   const int32_t size = (count + parts - 1) / parts;
   const double rate = schedule_.rate(epoch_);
   int32_t* order = rollout().order;
-  for (int32_t i = count - 1; i > 0; --i)
-    std::swap(order[i], order[shuffle_.below(static_cast<uint32_t>(i) + 1)]);
+  shuffle(shuffle_, order, count);
   BatchSums sums;
   for (int32_t first = 0; first < count; first += size) {
     check_cancel();

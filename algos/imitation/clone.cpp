@@ -3,18 +3,15 @@
 #include <cmath>
 #include <cstring>
 
+#include "algos/imitation/need.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
+#include "base/shuffle.hpp"
 
 namespace rdm {
 namespace {
 
 constexpr int32_t kFedRows = 4096;  // of a merge of statistics
-
-void need(const char* name, double value, double low, double high) {
-  if (!(value >= low && value <= high))
-    fail(Code::kRange, "%s: %g is outside [%g, %g]", name, value, low, high);
-}
 
 void check(const ResolvedAgentConfig& resolved, const DemoRows& demo, const CloneOptions& how) {
   need("epochs", how.epochs, 1, 100000);
@@ -31,11 +28,6 @@ void check(const ResolvedAgentConfig& resolved, const DemoRows& demo, const Clon
       fail(Code::kUnsupported, "action_std: with std_mode=state the deviation is the network's; 0 leaves it");
   }
   if (demo.rows < 1) fail(Code::kArgument, "recording: it has no rows");
-}
-
-void shuffle(Stream& stream, int32_t* list, int32_t count) {
-  for (int32_t i = count - 1; i > 0; --i)
-    std::swap(list[i], list[stream.below(static_cast<uint32_t>(i) + 1)]);
 }
 
 // Rows to learn from first, then those that are held back; returns how many the first are.

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algos/imitation/need.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
+#include "base/shuffle.hpp"
 
 namespace rdm {
 namespace {
@@ -16,16 +18,6 @@ constexpr double kMaxNorm = 1;      // of a gradient
 
 size_t sz(int32_t n) {
   return static_cast<size_t>(n);
-}
-
-void need(const char* name, double value, double low, double high) {
-  if (!(value >= low && value <= high))
-    fail(Code::kRange, "%s: %g is outside [%g, %g]", name, value, low, high);
-}
-
-void shuffle(Stream& stream, int32_t* list, int32_t count) {
-  for (int32_t i = count - 1; i > 0; --i)
-    std::swap(list[i], list[stream.below(static_cast<uint32_t>(i) + 1)]);
 }
 
 // What one thread works with.

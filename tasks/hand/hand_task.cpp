@@ -24,23 +24,6 @@ SceneDef adjusted(HandScene* made) {
 constexpr Vec3 kEye = {0, -0.14, -0.1}, kTarget = {0, -0.01, 0.03};
 constexpr double kFov = 75 * kPi / 180;
 
-CameraSpec palm_camera(const Hand& hand, int32_t i, bool copied) {
-  const Robot& robot = *hand.robot;
-  const Vec3 z = robot.z_palm, y = -robot.n_palm, x = cross(y, z);
-  // the tables of a left hand on an arm are mirrored already
-  const bool mirrors = i > 0 && !copied && robot.arm_links == 0;
-  const auto in_link = [&](const Vec3& v) {
-    const Vec3 w = mirrors ? mirrored_point(v, robot.mirror) : v;
-    return robot.palm < 0 ? rotate(robot.X_BR.q, w) : w;
-  };
-  const auto place = [&](const Vec3& p) {
-    const Vec3 q = in_link(robot.p_hold + p.x * x + p.y * y + p.z * z);
-    return robot.palm < 0 ? robot.X_BR.p + q : q;
-  };
-  const int32_t mount = robot.palm < 0 ? -(hand.articulation + 1) : hand.first + robot.palm + 1;
-  return {i == 0 ? "right_palm" : "left_palm", place(kEye), place(kTarget), kFov, in_link(z), mount};
-}
-
 }  // namespace
 
 HandTask::HandTask(const HandControlConfig& config, const Options& o, HandScene scene, size_t own_bytes)
@@ -54,7 +37,26 @@ HandTask::HandTask(const HandControlConfig& config, const Options& o, HandScene 
     fail(Code::kInternal, "hand task: %zu bytes of its own state are not a multiple of %zu", own_bytes,
          alignof(double));
   const bool copied = o.knows("left_model") && same_name(o.text("left_model"), "right_copy");
-  for (int32_t i = 0; i < config.count; ++i) cameras_.push_back(palm_camera(hands_.hand(i), i, copied));
+  for (int32_t i = 0; i < config.count; ++i) {
+    mirrors_[i] = i > 0 && !copied && hands_.hand(i).robot->arm_links == 0;
+    cameras_.push_back(palm_camera(i));
+  }
+}
+
+Vec3 HandTask::palm_point(int32_t i, const Vec3& p) const {
+  const Robot& robot = *hands_.hand(i).robot;
+  const Vec3 q = mirrors_[i] ? mirrored_point(p, robot.mirror) : p;
+  return robot.palm < 0 ? robot.X_BR * q : q;
+}
+
+CameraSpec HandTask::palm_camera(int32_t i) const {
+  const Hand& hand = hands_.hand(i);
+  const Robot& robot = *hand.robot;
+  const Vec3 z = robot.z_palm, y = -robot.n_palm, x = cross(y, z);
+  const auto place = [&](const Vec3& p) { return palm_point(i, robot.p_hold + p.x * x + p.y * y + p.z * z); };
+  const int32_t mount = robot.palm < 0 ? -(hand.articulation + 1) : hand.first + robot.palm + 1;
+  return {i == 0 ? "right_palm" : "left_palm",  place(kEye), place(kTarget), kFov,
+          palm_point(i, z) - palm_point(i, {}), mount};
 }
 
 }  // namespace rdm

@@ -45,8 +45,16 @@ class HandTask : public Task {
     return hands_.action(static_cast<const char*>(state) + own_bytes_);
   }
   FieldTable& own_fields() { return fields_; }
+  // Whether hand i is the mirror image of its robot's tables: a left one, but those of one on an arm are
+  // mirrored already.
+  bool mirrors(int32_t i) const { return mirrors_[i]; }
+  // A point of the palm's link, as the robot's tables have it, in the frame of what carries it here: that
+  // link, or the hand's base.
+  Vec3 palm_point(int32_t i, const Vec3& p) const;
 
  private:
+  CameraSpec palm_camera(int32_t i) const;
+
   EngineKind engine_;
   int32_t max_steps_;
   size_t own_bytes_;
@@ -54,6 +62,7 @@ class HandTask : public Task {
   Scene scene_;
   HandControl hands_;
   FieldTable fields_;
+  bool mirrors_[kMaxHands] = {};
   Vector<CameraSpec> cameras_;
 };
 

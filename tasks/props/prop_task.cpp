@@ -26,17 +26,13 @@ PropTask::PropTask(const HandControlConfig& config, const Options& o, HandScene 
       reset_noise_(o.number("reset_noise")),
       joint_noise_(o.number("joint_noise")) {
   hands().add_fields(own_fields());
-  const bool copied = same_name(o.text("left_model"), "right_copy");
   for (int32_t i = 0; i < kMaxHands; ++i) {
     const Hand& hand = hands().hand(i);
     const Robot& robot = *hand.robot;
     palms_[i] = robot.palm < 0 ? kRootLink : hand.first + robot.palm;
-    // a mounted left hand's tables are mirrored already
-    const bool mirrors = i > 0 && !copied && robot.arm_links == 0;
-    palm_points_[i] = mirrors ? mirrored_point(robot.p_hold, robot.mirror) : robot.p_hold;
-    if (robot.palm < 0) palm_points_[i] = robot.X_BR * palm_points_[i];
+    palm_points_[i] = palm_point(i, robot.p_hold);
     for (int32_t f = 0; f < hand.num_tips; ++f) {
-      const Vec3 p = mirrors ? mirrored_point(robot.tips[f].p_L, robot.mirror) : robot.tips[f].p_L;
+      const Vec3 p = mirrors(i) ? mirrored_point(robot.tips[f].p_L, robot.mirror) : robot.tips[f].p_L;
       const double length = norm(p);
       tip_axes_[i][f] = length > 0 ? (1 / length) * p : Vec3{0, 0, 1};
     }

@@ -148,14 +148,12 @@ rdm_pretrain_report pretrain(const TeachSettings& s, const PoolSettings& setting
   const rdm_recording_rows rows = shown.rows();
   std::vector<float> metres(static_cast<size_t>(s.pretrain) * static_cast<size_t>(seen.num_points) * 3);
   for (size_t i = 0; i < metres.size(); ++i) metres[i] = 0.001f * static_cast<float>(rows.points[i]);
-  redman::Bytes label(metres.size() / 3);
-  std::copy_n(rows.point_class, label.size(), label.begin());
   auto how = redman::pretrain_config(seen.num_classes);
   how.epochs = s.pretrain_epochs;
   how.seed = settings.seed;
   const rdm_pretrain_report report = as_usage([&] {
     return redman::pretrain(agent, redman::points(metres.data(), seen.num_points, rows.point_class),
-                            label.data(), s.pretrain, how);
+                            rows.point_class, s.pretrain, how);
   });
   std::fprintf(stderr,
                "encoder tells %.1f%% of points right after %d clouds (the commonest kind has %.1f%%)\n",
