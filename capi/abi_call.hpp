@@ -168,6 +168,7 @@ inline constexpr size_t kFirstAgentConfigSize = offsetof(rdm_agent_config, setti
 inline constexpr size_t kFirstRecordingConfigSize = offsetof(rdm_recording_config, num_points);
 inline constexpr size_t kFirstRecordingInfoSize = offsetof(rdm_recording_info, num_points);
 inline constexpr size_t kFirstRecordingRowsSize = offsetof(rdm_recording_rows, points);
+inline constexpr size_t kFirstPointsSize = offsetof(rdm_points, point_color);
 inline constexpr size_t kFirstSensorsSize = offsetof(rdm_sensors, point_class);
 #endif
 

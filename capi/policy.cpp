@@ -44,7 +44,7 @@ struct PolicyTensor {
   bool part = false;
   float unseen = 0;                        // what stands for the others
   const int16_t* millimetres = nullptr;    // in the place of data: points of the example
-  const unsigned char* numbers = nullptr;  // in the place of data: their classes
+  const unsigned char* numbers = nullptr;  // in the place of data: their classes, colours
 };
 
 // All that the tensor is, [rows][cols].
@@ -89,10 +89,15 @@ bool eyes_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
   points.millimetres = v.example_points;
   PolicyTensor classes = {"example.point_class", nullptr, eyes.points, 1};
   classes.numbers = v.example_classes;
-  const PolicyTensor rest[] = {
-      {"encoder.origin", eyes.origin, 3, 1}, {"encoder.range", &eyes.range, 1, 1}, points, classes};
+  PolicyTensor colors = {"example.point_color", nullptr, eyes.points, 3};
+  colors.numbers = v.example_colors;
+  const PolicyTensor rest[] = {{"encoder.origin", eyes.origin, 3, 1},
+                               {"encoder.range", &eyes.range, 1, 1},
+                               points,
+                               eyes.classes ? classes : colors,
+                               colors};
   const int32_t at = i - 2 * s.num_layers();
-  if (at >= (eyes.classes ? 4 : 3)) return false;
+  if (at >= 3 + (eyes.classes ? 1 : 0) + (eyes.color ? 1 : 0)) return false;
   *out = rest[at];
   return true;
 }
@@ -188,6 +193,7 @@ rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
     info.num_points = v.eyes.points;
     info.num_point_classes = v.eyes.classes;
     info.num_features = v.eyes.features();
+    info.point_color = v.eyes.color;
     write_struct(io, info, offsetof(rdm_policy_info, activation), "io");
   });
 }
@@ -236,7 +242,7 @@ rdm_result rdm_policy_act_points(const rdm_policy* p, const float* obs, const rd
     if (!eyes.points) fail(Code::kState, "policy: it sees no points");
     const PointRows clouds = read_points(points, eyes);
     need_finite(clouds.metres, rows, 3 * eyes.points, "points");
-    need_classes(eyes, clouds, static_cast<size_t>(rows));
+    need_channels(eyes, clouds, static_cast<size_t>(rows));
     act(*p->policy, obs, clouds, rows, noise, action, scratch, scratch_bytes);
   });
 }
@@ -285,13 +291,14 @@ rdm_result rdm_policy_columns(const rdm_policy* p, int32_t* columns, int32_t cap
 }
 
 PointRows rdm::capi::read_points(const rdm_points* points, const PointNetShape& eyes) {
-  const auto in = read_struct(points, sizeof(rdm_points), rdm_points{}, "points");
+  const auto in = read_struct(points, kFirstPointsSize, rdm_points{}, "points");
   need(in.points, "points.points");
   if (in.num_points != eyes.points)
     fail(Code::kRange, "points.num_points: %d, the encoder sees %d", in.num_points, eyes.points);
   PointRows clouds;
   clouds.metres = in.points;
   clouds.classes = eyes.classes ? in.point_class : nullptr;
+  clouds.colors = eyes.color ? in.point_color : nullptr;
   return clouds;
 }
 

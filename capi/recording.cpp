@@ -92,6 +92,9 @@ rdm_result rdm_recording_create(rdm_recording** out, const rdm_recording_config*
     spec.state_bytes = in.state_bytes;
     spec.state_stride = in.state_stride;
     spec.num_points = in.num_points;
+    if (in.point_color != 0 && in.point_color != 1)
+      fail(Code::kRange, "config.point_color: %d is not 0 or 1", in.point_color);
+    spec.point_color = in.point_color && in.num_points > 0;
     const char* task = in.task ? in.task : "";
     if (std::strlen(task) >= sizeof spec.task || !is_clean_text(task))
       fail(Code::kRange, "config.task: longer than %zu characters, or not one line of UTF-8",
@@ -153,6 +156,7 @@ rdm_result rdm_recording_get_rows(const rdm_recording* r, rdm_recording_rows* io
     out.state = v.state;
     out.points = v.points;
     out.point_class = v.point_class;
+    out.point_color = v.point_color;
     write_struct(io, out, kFirstRecordingRowsSize, "io");
   });
 }
@@ -176,6 +180,7 @@ rdm_result rdm_recording_append(rdm_recording* r, const rdm_recording_rows* rows
     v.state = in.state;
     v.points = in.points;
     v.point_class = in.point_class;
+    v.point_color = in.point_color;
     x.append(v);
   });
 }
@@ -237,6 +242,7 @@ rdm_result rdm_recording_config_for_pool(rdm_recording_config* c, const rdm_pool
     config.layout_hash = layout_hash(pool.task());
     config.state_bytes = pool.state_size(0);
     config.num_points = pool.sense().num_points;
+    config.point_color = pool.sensed().point_color != nullptr;
     write_struct(c, config, kFirstRecordingConfigSize, "config");
   });
 }
@@ -252,6 +258,8 @@ void check_match(const RecordingSpec& r, const Pool& p) {
   same(r.action_dim, p.task().action_dim(), "action_dim");
   same(r.cost_dim, p.cost_dim(), "cost_dim");
   if (r.num_points) same(r.num_points, p.sense().num_points, "num_points");
+  if (r.point_color && !p.sensed().point_color)
+    fail(Code::kArgument, "point_color: the recording has colours, the pool has none");
   if (r.layout_hash && r.layout_hash != layout_hash(p.task()))
     fail(Code::kArgument, "layout_hash: the recording's differs from the pool's");
 }
@@ -296,7 +304,7 @@ rdm_result rdm_recording_begin_step(rdm_recording* r, const rdm_pool* p, const f
       const size_t cloud = row * static_cast<size_t>(x.spec().num_points);
       const SenseBuffers& seen = pool.sensed();
       x.begin_row(i, b.obs + row * obs, b.action + row * actions, label ? label + row * actions : nullptr,
-                  seen.points + 3 * cloud, seen.point_class + cloud);
+                  seen.points + 3 * cloud, seen.point_class + cloud, seen.point_color + 3 * cloud);
       if (!x.state_due(i)) continue;
       Writer out(x.add_state(i), x.spec().state_bytes);
       pool.get_state(i, out);
@@ -363,7 +371,8 @@ PointRows demo_clouds(const Recording& x, const PointNetShape& eyes, Vector<int1
     memory[i] = static_cast<int16_t>(std::clamp(v.points[i] - origin[i % 3], -32767, 32767));
   out.points = memory.data();
   if (eyes.classes) out.classes = v.point_class;
-  need_classes(eyes, out, static_cast<size_t>(v.rows));
+  if (eyes.color) out.colors = v.point_color;
+  need_channels(eyes, out, static_cast<size_t>(v.rows));
   return out;
 }
 

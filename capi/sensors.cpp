@@ -29,7 +29,8 @@ rdm_result rdm_pool_sensors(const rdm_pool* p, rdm_sensors* io) {
     s.point_count = b.point_count;
     s.voxels = b.voxels;
     s.point_class = b.point_class;
-    s.num_classes = c.points ? point_classes(p->pool->task().scene()) : 0;
+    s.point_color = b.point_color;
+    s.num_classes = c.points ? point_classes(c, p->pool->task().scene()) : 0;
     write_struct(io, s, kFirstSensorsSize, "io");
   });
 }

@@ -20,8 +20,8 @@ constexpr int32_t kMaxEpochs = 1 << 30;                // of a state that loads;
 constexpr double kEntropyOfUnit = 1.4189385332046727;  // of a normal with deviation 1
 
 bool same_network(const PointNetShape& a, const PointNetShape& b) {
-  return a.classes == b.classes && a.mlp.num_hidden == b.mlp.num_hidden && a.mlp.out == b.mlp.out &&
-         a.mlp.activation == b.mlp.activation &&
+  return a.classes == b.classes && a.color == b.color && a.mlp.num_hidden == b.mlp.num_hidden &&
+         a.mlp.out == b.mlp.out && a.mlp.activation == b.mlp.activation &&
          std::equal(a.mlp.hidden, a.mlp.hidden + a.mlp.num_hidden, b.mlp.hidden);
 }
 
@@ -253,6 +253,8 @@ void Agent::need_clouds(const DemoRows& demo) const {
   if (resolved_.eyes.classes && !demo.clouds.classes)
     fail(Code::kArgument, "recording: its points have no classes, the encoder sees %d",
          resolved_.eyes.classes);
+  if (resolved_.eyes.color && !demo.clouds.colors)
+    fail(Code::kArgument, "recording: its points have no colours, which the encoder sees");
 }
 
 CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {
@@ -275,13 +277,13 @@ PretrainReport Agent::pretrain(const PointRows& clouds, const uint8_t* label, in
   const PointNetShape& eyes = resolved_.eyes;
   if (!eyes.points) fail(Code::kState, "pretrain: the agent has no encoder");
   check_rows("points", clouds.metres, nullptr, rows, eyes.row_points());
-  need_classes(eyes, clouds, static_cast<size_t>(rows));
+  need_channels(eyes, clouds, static_cast<size_t>(rows));
   check_cancel();
   const size_t count = static_cast<size_t>(rows) * static_cast<size_t>(eyes.points);
   Vector<int16_t> points(3 * count);
   quantize_points(eyes, clouds.metres, count, points.data());
   PointRows kept;
-  kept.points = points.data(), kept.classes = clouds.classes;
+  kept.points = points.data(), kept.classes = clouds.classes, kept.colors = clouds.colors;
   const PretrainReport report = pretrain_eyes(resolved_, kept, label, rows, how, nets_, workers_, cancel_);
   restart_average(nets_);
   return report;

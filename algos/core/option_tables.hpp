@@ -33,6 +33,7 @@ inline constexpr std::array kSharedOptions = {
     integer_option("encoder_points", 512, 1, 16384, "points of each cloud"),
     integer_option("encoder_classes", 0, 0, 64,
                    "classes of points, which it sees beside coordinates; 0: none"),
+    flag_option("encoder_color", false, "it sees the colours of points"),
     text_option("encoder_origin", "0,0,0", nullptr, "x,y,z in the world, m: where points are 0 to it"),
     number_option("encoder_range", 0.25, 1e-3, 1e3, "distance from there, m, that is 1 to it"),
     // collecting

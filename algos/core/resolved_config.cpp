@@ -126,7 +126,8 @@ void resolve_eyes(ResolvedAgentConfig& resolved) {
   const Options& o = resolved.options;
   PointNetShape eyes;
   eyes.classes = o.integer("encoder_classes");
-  eyes.mlp = parse_shape(o, "encoder", 3 + eyes.classes, 0, "encoder_activation");
+  eyes.color = o.flag("encoder_color");
+  eyes.mlp = parse_shape(o, "encoder", eyes.channels(), 0, "encoder_activation");
   if (eyes.mlp.num_hidden == 0) return;
   int32_t& last = eyes.mlp.hidden[--eyes.mlp.num_hidden];
   eyes.mlp.out = last, last = 0;

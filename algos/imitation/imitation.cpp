@@ -25,11 +25,13 @@ void Imitation::set(const DemoRows& demo, uint64_t mark, const HostHooks& hooks)
   const PointRows& clouds = demo.clouds;
   Vector<int16_t> points(clouds.points, clouds.points + (clouds.points ? 3 * count : 0));
   Vector<uint8_t> classes(clouds.classes, clouds.classes + (clouds.classes ? count : 0));
-  points_ = std::move(points), classes_ = std::move(classes);
+  Vector<uint8_t> colors(clouds.colors, clouds.colors + (clouds.colors ? 3 * count : 0));
+  points_ = std::move(points), classes_ = std::move(classes), colors_ = std::move(colors);
   obs_ = std::move(obs), label_ = std::move(label), order_ = std::move(order);
   demo_ = {demo.rows, obs_.data(), label_.data(), nullptr, {}};
   demo_.clouds.points = points_.empty() ? nullptr : points_.data();
   demo_.clouds.classes = classes_.empty() ? nullptr : classes_.data();
+  demo_.clouds.colors = colors_.empty() ? nullptr : colors_.data();
   mark_ = n ? mark : 0;
   rows_ = 0;
 }

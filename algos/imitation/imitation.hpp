@@ -37,7 +37,7 @@ class Imitation {
   const Regression* regression_ = nullptr;
   Vector<float> obs_, label_;
   Vector<int16_t> points_;
-  Vector<uint8_t> classes_;
+  Vector<uint8_t> classes_, colors_;
   Vector<int32_t> order_;  // [samples of an epoch]
   DemoRows demo_;
   uint64_t mark_ = 0;

@@ -112,6 +112,10 @@ PointRows Collector::keep_points(const PointRows& clouds, size_t at, int32_t row
     kept.classes = r.point_class + at * r.row_points;
     std::memcpy(r.point_class + at * r.row_points, clouds.classes, count);
   }
+  if (r.point_color) {
+    kept.colors = r.point_color + at * r.row_points * 3;
+    std::memcpy(r.point_color + at * r.row_points * 3, clouds.colors, 3 * count);
+  }
   return kept;
 }
 
@@ -146,7 +150,7 @@ void Collector::check_clouds(const PointRows& clouds) const {
     return;
   }
   if (!clouds.metres) fail(Code::kState, "act: the agent's encoder needs points");
-  need_classes(eyes, clouds, static_cast<size_t>(rollout_.num_envs));
+  need_channels(eyes, clouds, static_cast<size_t>(rollout_.num_envs));
   check_rows("points", clouds.metres, nullptr, rollout_.num_envs, eyes.row_points());
 }
 

@@ -23,6 +23,7 @@ Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
   } else if (resolved.sees()) {
     r.points = arena.make<int16_t>(n * r.row_points * 3);
     r.point_class = resolved.eyes.classes ? arena.make<uint8_t>(n * r.row_points) : nullptr;
+    r.point_color = resolved.eyes.color ? arena.make<uint8_t>(n * r.row_points * 3) : nullptr;
   }
   r.action = arena.make<float>(n * r.action_dim);
   r.mean = arena.make<float>(n * r.action_dim);

@@ -15,6 +15,7 @@ struct Rollout {
   float* obs = nullptr;                     // [obs_dim] as the networks saw it
   int16_t* points = nullptr;                // [eyes.points][3], of an actor whose eyes learn
   uint8_t* point_class = nullptr;           // [eyes.points], with classes
+  uint8_t* point_color = nullptr;           // [eyes.points][3], with colours
   float* features = nullptr;                // [features], of eyes that stand still
   size_t row_points = 0, row_features = 0;  // points and features of a row
   float* action = nullptr;                  // [action_dim] less the offset of the correlated noise
@@ -35,7 +36,7 @@ struct Rollout {
   float* log_std_of(size_t at) const { return log_std + at * std_step; }
   // What the actor saw of the listed rows, every stride-th of the list.
   PointRows clouds(const int32_t* order, int32_t stride = 1) const {
-    return {points, nullptr, point_class, features, nullptr, order, stride};
+    return {points, nullptr, point_class, point_color, features, nullptr, order, stride};
   }
   size_t row(int32_t t) const { return static_cast<size_t>(t) * static_cast<size_t>(num_envs); }
   int32_t samples() const { return horizon * num_envs; }

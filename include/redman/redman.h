@@ -547,7 +547,7 @@ typedef struct rdm_policy_info { /* what a policy file tells of its network */
   int32_t num_points;         /* of the cloud beside each row, for rdm_policy_act_points; 0: it sees none  */
   int32_t num_point_classes;  /* that it tells points apart by, 0: none                                   */
   int32_t num_features;       /* that its encoder makes of a cloud, 0 without                             */
-  int32_t reserved;           /* 0                                                                        */
+  int32_t point_color;        /* whether it sees the colours of points: 0, 1                              */
 } rdm_policy_info;
 RDM_API rdm_result rdm_policy_load(rdm_policy **out, const void *bytes, size_t size); /* copies bytes [size] */
 RDM_API rdm_result rdm_policy_load_file(rdm_policy **out, const char *path);          /* NOT_FOUND, FORMAT ... */
@@ -611,12 +611,14 @@ RDM_API rdm_result rdm_agent_values(const rdm_agent *a, const float *obs, int32_
  *   rdm_agent_act_points(agent, b.obs, &seen, RDM_SAMPLE, b.action);  rdm_pool_step(pool);  rdm_agent_record(agent, &t);
  *
  * or rdm_agent_rollout with a pool whose modality has points. Points count as whole millimetres from `encoder_origin`,
- * within +-32.767 m; their order and what comes twice change nothing. */
+ * within +-32.767 m; their order and what comes twice change nothing. Several clouds (of two cameras, of a goal) are one
+ * whose points have classes that tell them apart. */
 typedef struct rdm_points {     /* a cloud for each row of obs, in the call that takes it                         */
   uint32_t struct_size;         /* bytes                                                                           */
   int32_t num_points;           /* of each cloud: the agent's option encoder_points, the policy's num_points       */
   const float *points;          /* [rows][num_points][3], world, m, required                                       */
   const uint8_t *point_class;   /* [rows][num_points] less than option encoder_classes; NULL only where that is 0  */
+  const uint8_t *point_color;   /* [rows][num_points][3]; NULL only without option encoder_color                   */
 } rdm_points;
 /* As rdm_agent_act: action [num_envs][action_dim] for obs [num_envs][obs_dim] and as many clouds, of an agent with the option
  * encoder; STATE without it. ARGUMENT for a point that is not finite, RANGE for another number of points or a class that
@@ -1301,13 +1303,17 @@ typedef struct rdm_sensors {      /* the same addresses until destroy; NULL wher
   const int32_t *segmentation;    /* [num_envs][num_cameras][height][width], shape of rdm_pool_shape, -1: nothing  */
   const float *points;            /* [num_envs][num_points][3], world, m; planes are left out                      */
   const int32_t *point_shape;     /* [num_envs][num_points], -1: nothing was seen                                  */
-  const int32_t *point_count;     /* [num_envs] points that differ; the rest repeats them in turn                  */
+  const int32_t *point_count;     /* [num_envs] points that differ; the rest repeats them in turn, up to those of option
+                                   * goal_points, which come last: the first free body where it is to be brought   */
   const int8_t *voxels;           /* [num_envs][num_voxels][num_voxels][num_voxels] (x, y, z) about the task's
                                    * object: 1 occupied, 0 free, -1 not seen                                       */
   const uint8_t *point_class;     /* [num_envs][num_points] what a point lies on: one of the articulations (hands,
-                                   * arms included), then of the free bodies, last anything else, or nothing       */
+                                   * arms included), then of the free bodies, then anything else, or nothing; last
+                                   * the goal, with option goal_points                                             */
   int32_t num_classes;            /* of those; 0 where points are off                                              */
   int32_t reserved2;              /* 0                                                                             */
+  const uint8_t *point_color;     /* [num_envs][num_points][3] of what a point lies on, sRGB, 0 for nothing; NULL without
+                                   * option point_color                                                            */
 } rdm_sensors;
 RDM_API rdm_result rdm_pool_sensors(const rdm_pool *p, rdm_sensors *io); /* fills io */
 /* The i-th camera by whose name this pool can look: the task's, then those that ride on its robots ("right_palm" and
@@ -1358,11 +1364,11 @@ typedef struct rdm_recording_config { /* what a recording is made from */
   char *error;             /* [error_size] the text of a failing call that takes this config; NULL         */
   const rdm_host *host;    /* hooks of this handle, copied; NULL: those of rdm_init                        */
   int32_t num_points;      /* of the cloud beside each row, 0..65536; 0: none are kept; default 0          */
-  int32_t reserved;        /* 0                                                                            */
+  int32_t point_color;     /* whether its points have colours: 0, 1; default 0                             */
 } rdm_recording_config;
 /* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's. */
 RDM_API rdm_result rdm_recording_config_init(rdm_recording_config *c, size_t size);
-/* Sets dims, task, layout_hash, state_bytes and num_points from a pool. Pointers are borrowed from the pool. */
+/* Sets dims, task, layout_hash, state_bytes, num_points and point_color from a pool. Pointers are borrowed from the pool. */
 RDM_API rdm_result rdm_recording_config_for_pool(rdm_recording_config *c, const rdm_pool *p);
 RDM_API rdm_result rdm_recording_create(rdm_recording **out, const rdm_recording_config *c); /* empty */
 RDM_API void rdm_recording_destroy(rdm_recording *r);             /* NULL is fine */
@@ -1405,6 +1411,7 @@ typedef struct rdm_recording_rows {
   const uint8_t *state;       /* [num_states][state_bytes] what rdm_pool_set_state takes                   */
   const int16_t *points;      /* [rows][num_points][3] mm, world, before the action; NULL without clouds    */
   const uint8_t *point_class; /* [rows][num_points] as of rdm_sensors; to append, NULL: 0                  */
+  const uint8_t *point_color; /* [rows][num_points][3] likewise; NULL without colours                      */
 } rdm_recording_rows;
 /* Borrowed pointers, until the next call that changes the recording. */
 RDM_API rdm_result rdm_recording_get_rows(const rdm_recording *r, rdm_recording_rows *io);

@@ -14,17 +14,19 @@
 
 namespace redman {
 
-// Clouds [rows][count][3], m, world; classes [rows][count] or NULL. All are borrowed.
-inline rdm_points points(const float* metres, int32_t count, const uint8_t* classes = nullptr) {
+// Clouds [rows][count][3], m, world; classes [rows][count] and colors [rows][count][3] or NULL. All are borrowed.
+inline rdm_points points(const float* metres, int32_t count, const uint8_t* classes = nullptr,
+                         const uint8_t* colors = nullptr) {
   auto p = sized<rdm_points>();
   p.num_points = count;
   p.points = metres;
   p.point_class = classes;
+  p.point_color = colors;
   return p;
 }
 // What the worlds of a pool show, borrowed from it.
 inline rdm_points points(const rdm_sensors& seen) {
-  return points(seen.points, seen.num_points, seen.point_class);
+  return points(seen.points, seen.num_points, seen.point_class, seen.point_color);
 }
 
 inline void act(const Agent& agent, const float* obs, const rdm_points& seen, int32_t mode, float* action) {

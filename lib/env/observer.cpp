@@ -46,47 +46,92 @@ Camera moved(Camera camera, double noise, Stream& stream) {
   return camera;
 }
 
-void take_clouds(const SenseConfig& c, const World& world, int32_t num_shapes, const Vec3& focus,
-                 Stream& stream, Stream& cameras, SenseScratch& s, const SenseBuffers& b, size_t env) {
-  int32_t solid = 0;
-  for (int32_t i = 0; i < num_shapes; ++i)
-    if (s.shapes[i].kind != ShapeKind::kPlane) s.solid[solid++] = s.shapes[i];
-  DepthPicture pictures[kMaxCameras];
-  Vec3 centre;
+int32_t scene_classes(const Scene& scene) {
+  return std::min(255, static_cast<int32_t>(scene.def.articulations.size()) + scene.num_bodies + 1);
+}
+
+// Classes and colours of the points [first, first + count) of a world's row.
+void mark_points(const World& world, const SenseScratch& s, const SenseBuffers& b, size_t first,
+                 int32_t count, int32_t goal_class) {
+  for (size_t i = first; i < first + static_cast<size_t>(count); ++i) {
+    const int32_t shape = b.point_shape[i];
+    b.point_class[i] = goal_class >= 0 ? static_cast<uint8_t>(goal_class) : point_class(world.scene(), shape);
+    for (size_t k = 0; b.point_color && k < 3; ++k)
+      b.point_color[3 * i + k] = shape < 0 ? uint8_t{0} : s.shapes[shape].color[k];
+  }
+}
+
+// Depth pictures of s.solid by the cameras of clouds, and with points all that they show to s.cloud.all.
+void look(const SenseConfig& c, const Camera* cameras, int32_t solid, SenseScratch& s,
+          DepthPicture* pictures) {
   s.cloud.all.count = 0;
   for (int32_t k = 0; k < c.num_cloud_cameras; ++k) {
     const size_t at = static_cast<size_t>(k) * cloud_pixels(c);
     float* depth = s.depth + at;
     int32_t* segmentation = s.segmentation + at;
-    const Camera camera = placed(moved(c.cloud_cameras[k], c.camera_noise, cameras), world);
-    if (k == 0) centre = camera.target;
-    render(s.solid, solid, camera, {c.cloud_width, c.cloud_height, nullptr, depth, segmentation}, {},
+    render(s.solid, solid, cameras[k], {c.cloud_width, c.cloud_height, nullptr, depth, segmentation}, {},
            s.raycast);
-    pictures[k] = {make_view(camera, c.cloud_width, c.cloud_height), depth};
-    if (c.points) append_points(pictures[k].view, depth, segmentation, centre, c.range, &s.cloud.all);
+    pictures[k] = {make_view(cameras[k], c.cloud_width, c.cloud_height), depth};
+    if (c.points)
+      append_points(pictures[k].view, depth, segmentation, cameras[0].target, c.range, &s.cloud.all);
   }
+}
+
+// The shapes of body 0 alone, as if it were at the goal.
+int32_t place_goal(const World& world, int32_t num_shapes, const Pose& goal, SenseScratch& s) {
+  const Pose X_GW = goal * inverse(world.body(0).X);
+  int32_t solid = 0;
+  for (int32_t i = 0; i < num_shapes; ++i) {
+    const SceneShape& shape = world.scene().shapes[static_cast<size_t>(i)];
+    if (shape.carrier != Carrier::kBody || shape.index != 0) continue;
+    s.solid[solid] = s.shapes[i];
+    s.solid[solid].X_WS = X_GW * s.shapes[i].X_WS;
+    s.solid[solid].X_WS.q = normalized(s.solid[solid].X_WS.q);
+    ++solid;
+  }
+  return solid;
+}
+
+void take_clouds(const SenseConfig& c, const World& world, int32_t num_shapes, const Vec3& focus,
+                 const Pose& goal, Stream& stream, Stream& draws, SenseScratch& s, const SenseBuffers& b,
+                 size_t env) {
+  int32_t solid = 0;
+  for (int32_t i = 0; i < num_shapes; ++i)
+    if (s.shapes[i].kind != ShapeKind::kPlane) s.solid[solid++] = s.shapes[i];
+  Camera cameras[kMaxCameras];
+  for (int32_t k = 0; k < c.num_cloud_cameras; ++k)
+    cameras[k] = placed(moved(c.cloud_cameras[k], c.camera_noise, draws), world);
+  DepthPicture pictures[kMaxCameras];
+  look(c, cameras, solid, s, pictures);
+  const size_t row = env * static_cast<size_t>(c.num_points);
+  const int32_t seen = c.num_points - c.goal_points;
   if (c.points) {
-    const size_t row = env * static_cast<size_t>(c.num_points);
     Cloud out{b.points + 3 * row, b.point_shape + row, 0};
-    thin_cloud(c.thinning, c.num_points, c.thinning_voxel, stream, s.cloud, &out);
+    thin_cloud(c.thinning, seen, c.thinning_voxel, stream, s.cloud, &out);
     if (c.point_noise > 0 || c.point_dropout > 0)
-      disturb_cloud(c.point_noise, c.point_dropout, c.num_points, stream, &out);
+      disturb_cloud(c.point_noise, c.point_dropout, seen, stream, &out);
     b.point_count[env] = out.count;
-    for (size_t i = row; i < row + static_cast<size_t>(c.num_points); ++i)
-      b.point_class[i] = point_class(world.scene(), b.point_shape[i]);
+    mark_points(world, s, b, row, seen, -1);
   }
   if (c.voxels)
     grid_from_depth(pictures, c.num_cloud_cameras, focus, c.grid, c.cell, b.voxels + env * cells(c));
+  if (c.goal_points) {
+    const size_t at = row + static_cast<size_t>(seen);
+    look(c, cameras, place_goal(world, num_shapes, goal, s), s, pictures);
+    Cloud out{b.points + 3 * at, b.point_shape + at, 0};
+    thin_cloud(c.thinning, c.goal_points, c.thinning_voxel, stream, s.cloud, &out);
+    mark_points(world, s, b, at, c.goal_points, scene_classes(world.scene()));
+  }
 }
 
 }  // namespace
 
-int32_t point_classes(const Scene& scene) {
-  return std::min(255, static_cast<int32_t>(scene.def.articulations.size()) + scene.num_bodies + 1);
+int32_t point_classes(const SenseConfig& c, const Scene& scene) {
+  return scene_classes(scene) + (c.goal_points ? 1 : 0);
 }
 
 uint8_t point_class(const Scene& scene, int32_t shape) {
-  const int32_t last = point_classes(scene) - 1;
+  const int32_t last = scene_classes(scene) - 1;
   if (shape < 0) return static_cast<uint8_t>(last);
   const SceneShape& s = scene.shapes[static_cast<size_t>(shape)];
   if (s.articulation >= 0) return static_cast<uint8_t>(std::min(s.articulation, last - 1));
@@ -106,6 +151,7 @@ SenseBuffers carve_sense_buffers(Arena& arena, const SenseConfig& c, size_t num_
   b.point_shape = make_if<int32_t>(arena, c.points, points);
   b.point_count = make_if<int32_t>(arena, c.points, num_envs);
   b.point_class = make_if<uint8_t>(arena, c.points, points);
+  b.point_color = make_if<uint8_t>(arena, c.points && c.point_color, 3 * points);
   b.voxels = make_if<int8_t>(arena, c.voxels, num_envs * cells(c));
   return b;
 }
@@ -124,12 +170,12 @@ SenseScratch carve_sense_scratch(Arena& arena, const SenseConfig& c, int32_t num
   return s;
 }
 
-void sense_world(const SenseConfig& c, const World& world, const Vec3& focus, Stream points, Stream cameras,
-                 SenseScratch& s, const SenseBuffers& b, size_t env) {
+void sense_world(const SenseConfig& c, const World& world, const Vec3& focus, const Pose& goal, Stream points,
+                 Stream cameras, SenseScratch& s, const SenseBuffers& b, size_t env) {
   if (!c.any()) return;
   const int32_t num_shapes = gather_shapes(world, s.shapes);
   if (c.pictures()) take_pictures(c, world, num_shapes, s, b, env);
-  if (c.clouds()) take_clouds(c, world, num_shapes, focus, points, cameras, s, b, env);
+  if (c.clouds()) take_clouds(c, world, num_shapes, focus, goal, points, cameras, s, b, env);
 }
 
 }  // namespace rdm

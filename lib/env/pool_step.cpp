@@ -118,8 +118,9 @@ void Pool::Impl::see(int32_t env, Block& block) {
     const uint64_t moment = s.episode.reset.counter() + static_cast<uint64_t>(step);
     return Stream(s.episode.seed + 0x9e3779b97f4a7c15u * moment, s.episode.reset.world(), purpose);
   };
-  sense_world(sense, *s.world, task->focus(*s.world, s.task_state), stream(s.episode.step, Purpose::kSense),
-              stream(0, Purpose::kCamera), block.sense, sensed, static_cast<size_t>(env));
+  sense_world(sense, *s.world, task->focus(*s.world, s.task_state), task->goal_pose(s.task_state),
+              stream(s.episode.step, Purpose::kSense), stream(0, Purpose::kCamera), block.sense, sensed,
+              static_cast<size_t>(env));
 }
 
 void Pool::Impl::clear_rows(int32_t env) {

@@ -75,6 +75,9 @@ class Task {
   virtual float obs_limit() const { return std::numeric_limits<float>::infinity(); }
   // What the local grid of voxels is about, m: the first free body, unless the task knows better.
   virtual Vec3 focus(const World& world, const void* state) const;
+  // Where the first free body is to be brought, of a task that has such a goal.
+  virtual bool has_goal() const { return false; }
+  virtual Pose goal_pose(const void*) const { return {}; }
   // Cameras on what moves, whose places follow from the options; names as those of the registry's row.
   virtual const Vector<CameraSpec>& mounted_cameras() const;
   // The hold action: the nominal start pose, base entries 0. [action_dim]

@@ -38,9 +38,12 @@ void see_point(const PointNetShape& s, const PointRows& clouds, size_t r, size_t
   for (size_t k = 0; k < 3; ++k)
     x[k] = step * static_cast<float>(clouds.points ? clouds.points[at + k]
                                                    : millimetres(clouds.metres[at + k], s.origin[k]));
-  if (s.classes == 0) return;
-  std::fill_n(x + 3, s.classes, 0.0f);
-  x[3 + clouds.classes[r * sz(s.points) + p]] = 1;
+  if (s.classes) {
+    std::fill_n(x + 3, s.classes, 0.0f);
+    x[3 + clouds.classes[r * sz(s.points) + p]] = 1;
+  }
+  if (!s.color) return;
+  for (size_t k = 0; k < 3; ++k) x[3 + sz(s.classes) + k] = static_cast<float>(clouds.colors[at + k]) / 255;
 }
 
 template <class Make>
@@ -135,8 +138,9 @@ void check_pointnet_shape(const PointNetShape& s) {
   if (s.classes < 0 || s.classes > kMaxClasses)
     fail(Code::kRange, "point classes: %d is outside [0, %d]", s.classes, kMaxClasses);
   check_mlp_shape(s.mlp);
-  if (s.mlp.in != 3 + s.classes)
-    fail(Code::kRange, "encoder: %d inputs, not 3 and %d classes", s.mlp.in, s.classes);
+  if (s.mlp.in != s.channels())
+    fail(Code::kRange, "encoder: %d inputs, not 3 and %d classes%s", s.mlp.in, s.classes,
+         s.color ? " and 3 of a colour" : "");
   if (!(s.range >= 1e-3f && s.range <= 1e3f))
     fail(Code::kRange, "point range: %g m is outside [0.001, 1000]", static_cast<double>(s.range));
   for (const float x : s.origin)
@@ -150,7 +154,8 @@ void see_points(const PointNetShape& shape, const PointRows& clouds, size_t row,
     see_point(shape, clouds, row, sz(first) + p, x + p * sz(shape.mlp.in));
 }
 
-void need_classes(const PointNetShape& s, const PointRows& clouds, size_t rows) {
+void need_channels(const PointNetShape& s, const PointRows& clouds, size_t rows) {
+  if (s.color && !clouds.colors) fail(Code::kArgument, "point_color: NULL, but the encoder sees colours");
   if (s.classes == 0) return;
   if (!clouds.classes) fail(Code::kArgument, "point_class: NULL, but the encoder sees %d classes", s.classes);
   const size_t count = sz(s.points);

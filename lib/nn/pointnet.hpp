@@ -1,7 +1,7 @@
 // PointNet (Qi et al. 2017) without its transform nets: one network for every point of a cloud, the largest
 // of each of its outputs over the points, and an activation of these, which are the features of the cloud:
 //
-//   f_j = act(max_p z_j(x_p)),   x_p = (q_p step, one-hot class of p)
+//   f_j = act(max_p z_j(x_p)),   x_p = (q_p step, one-hot class of p, colour of p)
 //
 // Any order of the points gives the same bytes, and so do points that come twice. act rises, so it is applied
 // to the largest alone. z never is in memory as a whole: points go through in tiles that stay in the cache.
@@ -20,17 +20,19 @@ inline constexpr int32_t kMaxPoints = 16384;  // of a cloud
 inline constexpr int32_t kMaxClasses = 64;
 
 struct PointNetShape {
-  MlpShape mlp;          // in: 3 + classes; out: features, linear; activation: of features too
+  MlpShape mlp;          // in: channels(); out: features, linear; activation: of features too
   int32_t points = 0;    // of each cloud; 0: there is no such network
   int32_t classes = 0;   // of points, 0: they have none
+  bool color = false;    // points have one
   float origin[3] = {};  // m, where points are (0, 0, 0) to the network
   float range = 0.25f;   // m from there that are 1 to it
 
+  int32_t channels() const { return 3 + classes + (color ? 3 : 0); }  // that it sees of a point
   int32_t features() const { return points ? mlp.out : 0; }
   size_t num_params() const { return points ? mlp.num_params() : 0; }
   size_t row_points() const { return static_cast<size_t>(points) * 3; }
 };
-// Error(kRange) for what is outside the bounds above, or an input that is not 3 + classes.
+// Error(kRange) for what is outside the bounds above, or an input that is not channels().
 void check_pointnet_shape(const PointNetShape& shape);
 
 // Largest magnitude of the network's inputs.
@@ -47,6 +49,7 @@ struct PointRows {
   const int16_t* points = nullptr;   // [][points][3] as quantize_points gives them
   const float* metres = nullptr;     // where points is null: [][points][3], m
   const uint8_t* classes = nullptr;  // [][points], each less than shape.classes; null without
+  const uint8_t* colors = nullptr;   // [][points][3]; null without
   const float* features = nullptr;   // [][features] of a network that stands still; null: to be computed
   const int32_t* winner = nullptr;   // [][features] beside these, for a backward pass
   const int32_t* order = nullptr;
@@ -60,6 +63,7 @@ struct PointRows {
     if (points) r.points += 3 * count;
     if (metres) r.metres += 3 * count;
     if (classes) r.classes += count;
+    if (colors) r.colors += 3 * count;
     if (features) r.features += first * static_cast<size_t>(s.features());
     if (winner) r.winner += first * static_cast<size_t>(s.features());
     return r;
@@ -69,8 +73,8 @@ struct PointRows {
   }
 };
 
-// Error(kArgument, kRange) unless these rows have the classes that the network sees.
-void need_classes(const PointNetShape& shape, const PointRows& clouds, size_t rows);
+// Error(kArgument, kRange) unless these rows have the classes and colours that the network sees.
+void need_channels(const PointNetShape& shape, const PointRows& clouds, size_t rows);
 
 // What the network's first layer sees of points [first, first + count) of row `row` of the arrays: x
 // [count][in].

@@ -176,12 +176,13 @@ void write_eyes(Writer& out, const PolicyView& v) {
   out.end_section();
 }
 
-void read_eyes(Reader& in, PolicyView& v) {
+void read_eyes(Reader& in, PolicyView& v, bool color) {
   if (!in.find_section("EYES")) return;
   PointNetShape& s = v.eyes;
   s.points = in.value<int32_t>();
   s.classes = in.value<int32_t>();
-  s.mlp.in = 3 + std::clamp(s.classes, 0, kMaxClasses);
+  s.color = color;
+  s.mlp.in = 3 + std::clamp(s.classes, 0, kMaxClasses) + (color ? 3 : 0);
   s.mlp.out = in.value<int32_t>();
   for (float& x : s.origin) x = in.value<float>();
   s.range = in.value<float>();
@@ -199,12 +200,14 @@ void read_eyes(Reader& in, PolicyView& v) {
   if (v.entries() < 1) bad("the network has no inputs beside the features of points");
 }
 
-// Points about the origin and all classes in turn.
-void make_up_cloud(const PointNetShape& s, Vector<int16_t>& points, Vector<uint8_t>& classes) {
+// Points about the origin, all classes in turn, and many colours.
+void make_up_cloud(const PointNetShape& s, Vector<int16_t>& points, Vector<uint8_t>& classes,
+                   Vector<uint8_t>& colors) {
   const double step = std::min(1.0, static_cast<double>(s.range));
   for (size_t i = 0; i < points.size(); ++i)
     points[i] = static_cast<int16_t>(step * static_cast<double>((i * 7919 + i / 3) % 2001) - 1000 * step);
   for (size_t i = 0; i < classes.size(); ++i) classes[i] = static_cast<uint8_t>(i % sz(s.classes));
+  for (size_t i = 0; i < colors.size(); ++i) colors[i] = static_cast<uint8_t>(i * 97 % 256);
 }
 
 // Ranges [begin, end) of entries, ascending and apart from each other.
@@ -255,12 +258,14 @@ void write_policy(Writer& out, const PolicyView& view) {
   Vector<float> obs(n_row), action(n_out);
   Vector<int16_t> points(eyes.row_points());
   Vector<uint8_t> classes(eyes.classes && eyes.points ? sz(eyes.points) : 0);
-  PointRows cloud{points.data(), nullptr, classes.data()};
+  Vector<uint8_t> colors(eyes.color ? eyes.row_points() : 0);
+  PointRows cloud{points.data(), nullptr, classes.data(), colors.data()};
   if (view.example_points) {
     std::copy_n(view.example_points, points.size(), points.begin());
     if (!classes.empty()) std::copy_n(view.example_classes, classes.size(), classes.begin());
+    if (!colors.empty()) std::copy_n(view.example_colors, colors.size(), colors.begin());
   } else {
-    make_up_cloud(eyes, points, classes);
+    make_up_cloud(eyes, points, classes, colors);
   }
   if (view.example_obs) std::copy_n(view.example_obs, n_row, obs.begin());
   if (view.example_obs && view.example_action) {
@@ -269,7 +274,10 @@ void write_policy(Writer& out, const PolicyView& view) {
     Vector<float> memory(cut_act_scratch(view, 1, nullptr).bytes / sizeof(float) + Arena::kAlign);
     act_view(view, obs.data(), cloud, 1, nullptr, action.data(), align_scratch(memory.data()));
   }
-  out.begin_file(kPolicyMagic, eyes.points ? 4 : view.columns ? 3 : view.state_std ? 2 : 1);
+  out.begin_file(kPolicyMagic, eyes.points      ? (eyes.color ? 5 : 4)
+                               : view.columns   ? 3
+                               : view.state_std ? 2
+                                                : 1);
   out.begin_section("META");
   out.value(view.clip);
   out.value(view.action_repeat);
@@ -309,6 +317,7 @@ void write_policy(Writer& out, const PolicyView& view) {
   write_floats(out, action.data(), n_out);
   out.bytes(points.data(), points.size() * sizeof(int16_t));
   out.bytes(classes.data(), classes.size());
+  out.bytes(colors.data(), colors.size());
   out.end_section();
   out.end_file();
 }
@@ -321,12 +330,12 @@ Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
   read_arch(in, v.actor);
   if (version > 1) read_head(in, v);
   Vector<int32_t> columns;
-  if (version > 3) read_eyes(in, v);
+  if (version > 3) read_eyes(in, v, version > 4);
   if (version == 3 || (version > 3 && in.find_section("COLS"))) read_columns(in, v, &columns);
   const size_t n_row = sz(v.obs_dim());
   const size_t n_in = sz(v.entries()), n_out = sz(v.action_dim()), n_params = v.actor.num_params();
   const size_t n_eyes = v.eyes.num_params(), n_points = v.eyes.row_points();
-  const size_t n_classes = v.eyes.classes ? sz(v.eyes.points) : 0;
+  const size_t n_classes = v.eyes.classes ? sz(v.eyes.points) : 0, n_colors = v.eyes.color ? n_points : 0;
   const size_t n_std = v.state_std ? 0 : n_out;
   in.need_section("WGTS");
   const unsigned char *params = view_floats(in, n_params), *eyes = view_floats(in, n_eyes);
@@ -344,6 +353,7 @@ Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
   in.need_section("EXMP");
   const unsigned char *obs = view_floats(in, n_row), *action = view_floats(in, n_out);
   const unsigned char *points = in.view(n_points * sizeof(int16_t)), *classes = in.view(n_classes);
+  const unsigned char* colors = in.view(n_colors);
   in.expect_end();
   for (size_t i = 0; i < n_classes; ++i)
     if (classes[i] >= v.eyes.classes) bad("a point of the example is of a class that there is not");
@@ -357,10 +367,13 @@ Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
     v.eyes_params = n_eyes ? keep(arena, eyes, n_eyes) : nullptr;
     auto* example = arena.make<int16_t>(n_points);
     auto* example_classes = arena.make<uint8_t>(n_classes);
+    auto* example_colors = arena.make<uint8_t>(n_colors);
     if (example && n_points) std::memcpy(example, points, n_points * sizeof(int16_t));
     if (example_classes && n_classes) std::memcpy(example_classes, classes, n_classes);
+    if (example_colors && n_colors) std::memcpy(example_colors, colors, n_colors);
     v.example_points = n_points ? example : nullptr;
     v.example_classes = n_classes ? example_classes : nullptr;
+    v.example_colors = n_colors ? example_colors : nullptr;
     v.log_std = n_std ? keep(arena, log_std, n_std) : nullptr;
     v.shift = n_norm ? keep(arena, shift, n_in) : nullptr;
     v.scale = n_norm ? keep(arena, scale, n_in) : nullptr;
@@ -372,7 +385,8 @@ Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
     // What is not a number would lose against any other point, unseen.
     if (n_eyes && mlp_bound(v.eyes.mlp, v.eyes_params, largest_point(v.eyes)) > kMaxSum)
       bad("the encoder's sums may be too large");
-    act_view(v, v.example_obs, {v.example_points, nullptr, v.example_classes}, 1, nullptr, check, scratch);
+    act_view(v, v.example_obs, {v.example_points, nullptr, v.example_classes, v.example_colors}, 1, nullptr,
+             check, scratch);
     for (size_t j = 0; j < n_out; ++j)
       if (!(std::abs(check[j] - clip_unit(v.example_action[j])) <= kExampleTolerance))
         bad("the network does not give the example action that is stored beside it");

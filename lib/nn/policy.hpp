@@ -1,7 +1,7 @@
 // The frozen policy: normaliser, actor network, action scale; runs on a machine that has nothing else.
 // Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC". Version 2 is written for a policy
 // whose deviation depends on the state, version 3 for one that sees a part of the observation alone, version
-// 4 for one that sees points: versions before do not know these.
+// 4 for one that sees points, version 5 for one that sees their colours: versions before do not know these.
 #pragma once
 #include <cstdint>
 
@@ -12,7 +12,7 @@
 namespace rdm {
 
 inline constexpr char kPolicyMagic[8] = {'R', 'D', 'M', 'P', 'O', 'L', 'I', 'C'};
-inline constexpr uint32_t kPolicyVersion = 4;
+inline constexpr uint32_t kPolicyVersion = 5;
 
 // Everything that a policy file holds, as views of memory that somebody else owns.
 struct PolicyView {
@@ -35,9 +35,11 @@ struct PolicyView {
   uint64_t layout_hash = 0;            // of the observation and action layout, 0 unknown
   char task[64] = "";                  // "" for a host's own environment
   const float* example_obs = nullptr;  // [obs_dim()], null: zeros are written
-  const float* example_action = nullptr;     // [action_dim], the mean action for it; a load checks it
-  const int16_t* example_points = nullptr;   // [eyes.points][3], and classes; null: some that are made up
+  const float* example_action = nullptr;  // [action_dim], the mean action for it; a load checks it
+  const int16_t* example_points =
+      nullptr;  // [eyes.points][3], with what else it sees; null: some that are made up
   const uint8_t* example_classes = nullptr;  // [eyes.points]
+  const uint8_t* example_colors = nullptr;   // [eyes.points][3]
 
   int32_t entries() const { return actor.in - eyes.features(); }  // of a row, that it sees
   int32_t obs_dim() const { return columns ? row_dim : entries(); }

@@ -91,6 +91,7 @@ void Recording::reserve(size_t rows, size_t states) {
   room(state_, states * spec_.state_bytes);
   room(points_, rows * num_points() * 3);
   room(point_class_, rows * num_points());
+  room(point_color_, rows * num_colors());
 }
 
 RecordingRows Recording::view() const {
@@ -103,6 +104,7 @@ RecordingRows Recording::view() const {
   v.num_states = num_states();
   v.state_row = state_row_.data(), v.state = state_.data();
   if (spec_.num_points) v.points = points_.data(), v.point_class = point_class_.data();
+  if (spec_.point_color) v.point_color = point_color_.data();
   return v;
 }
 
@@ -113,7 +115,8 @@ uint64_t Recording::fingerprint() const {
   h = hash_words(label_.data(), label_.size() * sizeof(float), h);
   if (!spec_.num_points) return h;
   h = hash_words(points_.data(), points_.size() * sizeof(int16_t), h);
-  return hash_words(point_class_.data(), point_class_.size(), h);
+  h = hash_words(point_class_.data(), point_class_.size(), h);
+  return spec_.point_color ? hash_words(point_color_.data(), point_color_.size(), h) : h;
 }
 
 uint64_t Recording::state_fingerprint() const {
@@ -128,6 +131,9 @@ void Recording::check(const RecordingRows& in) const {
   if (n && !in.action) fail(Code::kArgument, "action: NULL");
   if (n && spec_.num_points && !in.points) fail(Code::kArgument, "points: NULL");
   if (n && !spec_.num_points && in.points) fail(Code::kArgument, "points: this recording has none");
+  if (n && spec_.point_color && !in.point_color) fail(Code::kArgument, "point_color: NULL");
+  if (n && !spec_.point_color && in.point_color)
+    fail(Code::kArgument, "point_color: this recording has none");
   check_finite("obs", in.obs, n, obs_dim());
   check_finite("action", in.action, n, action_dim());
   check_finite("label", in.label, n, action_dim());
@@ -175,6 +181,7 @@ void Recording::append(const RecordingRows& in) {
   add(success_, in.success, n);
   add(points_, in.points, n * num_points() * 3);
   add(point_class_, in.point_class, n * num_points());
+  add(point_color_, in.point_color, n * num_colors());
   for (size_t i = 0; i < states; ++i) state_row_.push_back(static_cast<int64_t>(before) + in.state_row[i]);
   if (states) add(state_, in.state, states * spec_.state_bytes);
   episodes_ += last + 1;
@@ -188,6 +195,7 @@ void Recording::append_all(const Recording& other) {
          o.obs_dim, o.action_dim, o.cost_dim, spec_.obs_dim, spec_.action_dim, spec_.cost_dim);
   if (o.num_points != spec_.num_points)
     fail(Code::kArgument, "other: its clouds have %d points, these %d", o.num_points, spec_.num_points);
+  if (o.point_color != spec_.point_color) fail(Code::kArgument, "other: one of the two has no colours");
   if (o.layout_hash != spec_.layout_hash) fail(Code::kArgument, "other: of another layout");
   if (other.num_states() > 0 && o.state_bytes != spec_.state_bytes)
     fail(Code::kArgument, "other: its states have %zu bytes, these %zu", o.state_bytes, spec_.state_bytes);
@@ -211,6 +219,7 @@ void Recording::copy_row(size_t from, size_t to) {
   move(episode_, 1);
   move(points_, num_points() * 3);
   move(point_class_, num_points());
+  move(point_color_, num_colors());
 }
 
 void Recording::cut(size_t rows, size_t states) {
@@ -227,6 +236,7 @@ void Recording::cut(size_t rows, size_t states) {
   state_.resize(states * spec_.state_bytes);
   points_.resize(rows * num_points() * 3);
   point_class_.resize(rows * num_points());
+  point_color_.resize(rows * num_colors());
 }
 
 int64_t Recording::filter(bool need_success, const double* max_cost) {
@@ -285,7 +295,7 @@ void Recording::make_room(const void* source, int32_t worlds) {
 }
 
 void Recording::begin_row(int32_t world, const float* obs, const float* action, const float* label,
-                          const float* points, const uint8_t* point_class) {
+                          const float* points, const uint8_t* point_class, const uint8_t* point_color) {
   Open& o = open_[static_cast<size_t>(world)];
   if (o.episode < 0) o.episode = episodes_++, o.count = 0;
   o.row = rows();
@@ -301,6 +311,7 @@ void Recording::begin_row(int32_t world, const float* obs, const float* action, 
   episode_.push_back(o.episode);
   for (size_t j = 0; j < 3 * num_points(); ++j) points_.push_back(millimetres(points[j]));
   add(point_class_, point_class, num_points());
+  add(point_color_, point_color, num_colors());
 }
 
 bool Recording::state_due(int32_t world) const {

@@ -20,6 +20,7 @@ struct RecordingSpec {
   size_t state_bytes = 0;    // of one state; 0: none are kept
   int32_t state_stride = 8;  // begin_row wants the state of every n-th row of an episode
   int32_t num_points = 0;    // of each row's cloud; 0: none are kept
+  bool point_color = false;  // points have one
 };
 
 // Meaning, shapes and defaults of null as rdm_recording_rows.
@@ -33,6 +34,7 @@ struct RecordingRows {
   const uint8_t* state = nullptr;
   const int16_t* points = nullptr;
   const uint8_t* point_class = nullptr;
+  const uint8_t* point_color = nullptr;
 };
 
 inline constexpr int32_t kMaxRecordedPoints = 65536;
@@ -63,10 +65,11 @@ class Recording {
   // Room for a row of each of so many worlds of this source; a source that was not the last one begins new
   // episodes.
   void make_room(const void* source, int32_t worlds);
-  // The row of a world; action and label are cut to [-1, 1]. points [num_points][3], m, of the world, and
-  // point_class [num_points] where the recording has clouds. Needs room.
+  // The row of a world; action and label are cut to [-1, 1]. points [num_points][3], m, of the world,
+  // point_class [num_points] and point_color [num_points][3] where the recording has those. Needs room.
   void begin_row(int32_t world, const float* obs, const float* action, const float* label,
-                 const float* points = nullptr, const uint8_t* point_class = nullptr);
+                 const float* points = nullptr, const uint8_t* point_class = nullptr,
+                 const uint8_t* point_color = nullptr);
   // Whether the state before the row that begin_row just added belongs to the recording, and where it goes.
   bool state_due(int32_t world) const;
   unsigned char* add_state(int32_t world);
@@ -87,6 +90,7 @@ class Recording {
   size_t action_dim() const { return static_cast<size_t>(spec_.action_dim); }
   size_t cost_dim() const { return static_cast<size_t>(spec_.cost_dim); }
   size_t num_points() const { return static_cast<size_t>(spec_.num_points); }
+  size_t num_colors() const { return spec_.point_color ? 3 * num_points() : 0; }
   void check(const RecordingRows& rows) const;
   void reserve(size_t rows, size_t states);
   void copy_row(size_t from, size_t to);
@@ -98,7 +102,7 @@ class Recording {
   Vector<int64_t> episode_, state_row_;
   Vector<uint8_t> state_;
   Vector<int16_t> points_;
-  Vector<uint8_t> point_class_;
+  Vector<uint8_t> point_class_, point_color_;
   int64_t episodes_ = 0;
   const void* source_ = nullptr;
   Vector<Open> open_;  // [worlds of the source]

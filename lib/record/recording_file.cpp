@@ -142,6 +142,11 @@ void Recording::write(Vector<unsigned char>& file) const {
     out.add("points", points);
     out.add("point_class", array_of("|u1", point_class_.data(), n, width(spec_.num_points)));
   }
+  if (spec_.point_color) {
+    NpyArray color = array_of("|u1", point_color_.data(), n, width(spec_.num_points));
+    color.dims = 3, color.shape[2] = 3;
+    out.add("point_color", color);
+  }
   out.finish();
 }
 
@@ -177,11 +182,12 @@ Recording* Recording::read(const unsigned char* bytes, size_t size, const HostHo
         a.shape[2] != 3)
       fail(Code::kFormat, "%s: array points has another type or shape", kWhat);
     spec.num_points = static_cast<int32_t>(a.shape[1]);
+    spec.point_color = in.has("point_color");
   }
 
   const Columns columns(in);
   Vector<int16_t> points;
-  Vector<uint8_t> point_class;
+  Vector<uint8_t> point_class, point_color;
   Vector<float> obs, action, label, reward, cost;
   Vector<uint8_t> terminated, truncated, success;
   Vector<int64_t> episode;
@@ -202,6 +208,8 @@ Recording* Recording::read(const unsigned char* bytes, size_t size, const HostHo
     v.points = columns.take("points", "<i2", 3, n, width(spec.num_points), points);
     if (in.has("point_class"))
       v.point_class = columns.take("point_class", "|u1", 2, n, width(spec.num_points), point_class);
+    if (spec.point_color)
+      v.point_color = columns.take("point_color", "|u1", 3, n, width(spec.num_points), point_color);
   }
   v.num_states = static_cast<int64_t>(states.row.size());
   v.state_row = states.row.data();

@@ -21,6 +21,10 @@ class SingleHand : public HandTask {
   Verdict judge(World& world, void* state, int32_t step) const override;
   void observe(const World& world, const void* state, float* obs) const override;
   void initial_mean(float* action) const override;
+  bool has_goal() const override { return true; }
+  Pose goal_pose(const void* state) const override {
+    return {goal_.goal, static_cast<const State*>(state)->goal.goal};
+  }
 
  protected:
   // One world's part. The bytes of the hand's control follow.

@@ -37,6 +37,10 @@ class ThrowTask : public HandTask {
   void initial_mean(float* action) const override {
     std::copy(std::begin(initial_mean_), std::begin(initial_mean_) + action_dim(), action);
   }
+  bool has_goal() const override { return true; }
+  Pose goal_pose(const void* state) const override {
+    return {setup_.goal, static_cast<const State*>(state)->progress.goal};
+  }
 
  protected:
   // What a cost is judged by. The commands in [-1, 1] and the actions are those of the step.

@@ -1,6 +1,7 @@
 // Agents and policies that see points, through the ABI and redman_points.hpp.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <redman/redman_points.hpp>
@@ -147,6 +148,48 @@ TEST(Points, ThePolicyIsShownAsTensors) {
       for (size_t k = 0; k < 12; ++k) EXPECT_EQ(w[r * 15 + 3 + k], own[r * 13 + 1 + k]);
     }
   }
+}
+
+// In colour: learned, kept in the file with an example, and no other thing than places and classes.
+TEST(Points, ColoursAreSeen) {
+  redman::Agent a = agent_of(
+      "encoder=8,12\nencoder_points=32\nencoder_classes=2\nencoder_color=true\nhidden=16\nhorizon=4");
+  Host h;
+  std::vector<uint8_t> colors(h.metres.size());
+  for (size_t i = 0; i < colors.size(); ++i) colors[i] = static_cast<uint8_t>(i * 37);
+  rdm_points seen = h.seen();
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ARGUMENT), "point_color: NULL, but the encoder sees colours");
+  seen.point_color = colors.data();
+  seen.struct_size = offsetof(rdm_points, point_color);  // of an older host: as if it were NULL
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ARGUMENT), "point_color: NULL, but the encoder sees colours");
+  seen.struct_size = sizeof seen;
+  auto t = redman::sized<rdm_transition>();
+  t.reward = h.reward.data(), t.cost = h.cost.data();
+  for (int i = 0; i < 4; ++i) {
+    redman::act(a, h.obs.data(), seen, RDM_SAMPLE, h.action.data());
+    a.record(t);
+  }
+  a.update(h.obs.data());
+  redman::act(a, h.obs.data(), seen, RDM_MEAN, h.action.data());
+  const auto wanted = h.action;
+  const redman::Policy p(a.policy());
+  EXPECT_EQ(p.info().point_color, 1);
+  redman::act(p, h.obs.data(), seen, kEnvs, nullptr, h.action.data());
+  EXPECT_EQ(h.action, wanted);
+  for (uint8_t& c : colors) c = static_cast<uint8_t>(255 - c);
+  redman::act(p, h.obs.data(), seen, kEnvs, nullptr, h.action.data());
+  EXPECT_NE(h.action, wanted);
+  for (const rdm_tensor& tensor : p.tensors()) {
+    if (std::string(tensor.name) == "encoder.0.weight") {
+      EXPECT_EQ(tensor.cols, 3 + 2 + 3);
+    }
+    if (std::string(tensor.name) != "example.point_color") continue;
+    EXPECT_EQ(tensor.rows, kPoints);
+    EXPECT_EQ(tensor.cols, 3);
+    const auto values = p.read(tensor);
+    EXPECT_GT(*std::max_element(values.begin(), values.end()), 200);
+  }
+  EXPECT_EQ(redman::Policy(agent_of(kEyes).policy()).info().point_color, 0);
 }
 
 TEST(Points, WhatIsWrongIsSaidInOneLine) {

@@ -61,6 +61,99 @@ TEST(RecordedClouds, AreWhatThePoolShowed) {
   std::remove(path);
 }
 
+redman::Pool showing(const char* task, const char* settings) {
+  auto c = redman::pool_config(task, kEnvs);
+  c.settings = settings;
+  redman::Pool pool(c);
+  pool.reset();
+  return pool;
+}
+
+TEST(RecordedClouds, ColoursAreKept) {
+  constexpr const char* kColored = "modality=points\npoints=64\nsampling=voxel\npoint_color=true";
+  redman::Pool pool = showing("hand_over_safe_finger", kColored);
+  redman::Recording r(pool, 10);
+  const rdm_sensors s = redman::sensors(pool);
+  std::vector<uint8_t> shown(s.point_color, s.point_color + kEnvs * kPoints * 3);
+  for (int32_t i = 0; i < kEnvs * kPoints; ++i) {
+    rdm_shape shape;
+    ASSERT_EQ(rdm_pool_shape(pool.get(), s.point_shape[i], &shape), RDM_OK);
+    for (int k = 0; k < 3; ++k) ASSERT_EQ(s.point_color[3 * i + k], shape.color[k]) << "point " << i;
+  }
+  r.begin_step(pool);
+  pool.step();
+  r.end_step(pool);
+  ASSERT_TRUE(r.rows().point_color);
+  EXPECT_TRUE(std::equal(shown.begin(), shown.end(), r.rows().point_color));
+  const char* path = "colored_clouds.npz";
+  ASSERT_EQ(rdm_recording_save_file(r.get(), path), RDM_OK) << rdm_last_error();
+  const redman::Recording again(path);
+  EXPECT_EQ(again.info().fingerprint, r.info().fingerprint);
+  EXPECT_TRUE(std::equal(shown.begin(), shown.end(), again.rows().point_color));
+  std::remove(path);
+
+  redman::Pool grey = seeing();
+  EXPECT_FALSE(redman::sensors(grey).point_color);
+  redman::Recording plain(grey, 10);
+  EXPECT_FALSE(plain.rows().point_color);
+  EXPECT_EQ(rdm_recording_begin_step(r.get(), grey.get(), nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_STREQ(rdm_recording_error(r.get()), "point_color: the recording has colours, the pool has none");
+  EXPECT_EQ(rdm_recording_append_all(plain.get(), r.get()), RDM_ARGUMENT);
+  EXPECT_STREQ(rdm_recording_error(plain.get()), "other: one of the two has no colours");
+
+  // whoever sees colours is not taught without them
+  const auto agent = [&](const redman::Pool& of) {
+    rdm_agent_config c = redman::agent_config(of);
+    c.settings = "encoder=8,8\nencoder_points=64\nencoder_color=true\nhidden=16";
+    return redman::Agent(c);
+  };
+  redman::Agent a = agent(pool);
+  plain.begin_step(grey);
+  grey.step();
+  plain.end_step(grey);
+  EXPECT_EQ(rdm_agent_set_recording(a.get(), plain.get()), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_set_recording(a.get(), r.get()), RDM_OK) << rdm_agent_error(a.get());
+  EXPECT_EQ(rdm_agent_rollout(a.get(), grey.get(), nullptr), RDM_STATE);
+}
+
+// The last points lie on the object where it is to be brought, and are of a class of their own.
+TEST(RecordedClouds, AGoalIsSeen) {
+  for (const char* task : {"reorient", "hand_over_safe_finger", "grasp"}) {
+    SCOPED_TRACE(task);
+    redman::Pool pool = showing(task, "modality=points\npoints=64\nsampling=voxel\ngoal_points=24");
+    redman::Pool plain = showing(task, "modality=points\npoints=40\nsampling=voxel");
+    const rdm_sensors s = redman::sensors(pool), without = redman::sensors(plain);
+    EXPECT_EQ(s.num_classes, without.num_classes + 1);
+    size_t position = 0;
+    rdm_field f;
+    for (int32_t i = 0; rdm_pool_field(pool.get(), i, &f) == RDM_OK; ++i)
+      if (std::string(f.name) == "goal.position") position = static_cast<size_t>(f.offset);
+    ASSERT_GT(position, 0u);
+    for (size_t i = 0; i < kEnvs; ++i) {
+      const float* goal = &pool.obs()[i][position];
+      for (size_t k = 0; k < 40; ++k) ASSERT_LT(s.point_class[i * 64 + k], without.num_classes);
+      double furthest = 0;
+      for (size_t k = 40; k < 64; ++k) {
+        ASSERT_EQ(s.point_class[i * 64 + k], without.num_classes);
+        double square = 0;
+        for (size_t x = 0; x < 3; ++x) {
+          const double d = s.points[3 * (i * 64 + k) + x] - goal[x];
+          square += d * d;
+        }
+        furthest = std::max(furthest, std::sqrt(square));
+      }
+      EXPECT_GT(furthest, 0.01);
+      EXPECT_LT(furthest, 0.09) << "an egg's or a cube's surface";
+    }
+  }
+  auto c = redman::pool_config("jenga", 1);
+  rdm_pool* p = nullptr;
+  c.settings = "modality=points\ngoal_points=24";
+  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ARGUMENT);
+  EXPECT_NE(std::string(rdm_last_error()).find("goal_points: task jenga brings no object to a pose"),
+            std::string::npos);
+}
+
 TEST(RecordedClouds, WhatDoesNotFitIsRefused) {
   redman::Pool pool = seeing();
   redman::Recording r(pool, 10);

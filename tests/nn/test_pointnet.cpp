@@ -21,15 +21,16 @@ size_t sz(int32_t n) {
 struct Case {
   std::vector<int32_t> widths;  // the last: features
   int32_t points, classes, rows;
+  bool color = false;
   Activation activation = Activation::kTanh;
 };
 
 // An encoder with weights, clouds and workspace.
 struct Eyes {
   explicit Eyes(const Case& c, uint64_t seed = 5) : rows(c.rows) {
-    shape.points = c.points, shape.classes = c.classes;
+    shape.points = c.points, shape.classes = c.classes, shape.color = c.color;
     const std::vector<int32_t> hidden(c.widths.begin(), c.widths.end() - 1);
-    shape.mlp = make_shape(3 + c.classes, hidden, c.widths.back(), c.activation);
+    shape.mlp = make_shape(shape.channels(), hidden, c.widths.back(), c.activation);
     shape.origin[0] = 0.1f, shape.origin[2] = -0.5f;
     check_pointnet_shape(shape);
     params.resize(shape.num_params());
@@ -40,6 +41,7 @@ struct Eyes {
     quantize_points(shape, metres.data(), metres.size() / 3, points.data());
     for (size_t i = 0; i < metres.size() / 3; ++i)
       classes.push_back(static_cast<uint8_t>(stream.below(static_cast<uint32_t>(std::max(1, c.classes)))));
+    for (size_t i = 0; i < metres.size(); ++i) colors.push_back(static_cast<uint8_t>(stream.below(256)));
     Arena measure;
     carve_pointnet_scratch(measure, shape);
     arena = Arena(HostHooks{}, measure.used());
@@ -51,6 +53,7 @@ struct Eyes {
     PointRows r;
     r.points = points.data();
     r.classes = shape.classes ? classes.data() : nullptr;
+    r.colors = shape.color ? colors.data() : nullptr;
     return r;
   }
   void forward() {
@@ -80,6 +83,8 @@ struct Eyes {
         for (size_t k = 0; k < 3; ++k)
           x[k] = static_cast<double>(step * static_cast<float>(points[(r * sz(shape.points) + i) * 3 + k]));
         if (shape.classes) x[3 + sz(classes[r * sz(shape.points) + i])] = 1;
+        for (size_t k = 0; shape.color && k < 3; ++k)
+          x[3 + sz(shape.classes) + k] = colors[(r * sz(shape.points) + i) * 3 + k] / 255.0;
         const auto z = net_in_double(shape.mlp, p, x);
         for (size_t j = 0; j < z.size(); ++j)
           if (z[j] > best[j]) best[j] = z[j], at[j] = static_cast<int32_t>(i);
@@ -97,7 +102,7 @@ struct Eyes {
   int32_t rows;
   std::vector<float> params, metres;
   std::vector<int16_t> points;
-  std::vector<uint8_t> classes;
+  std::vector<uint8_t> classes, colors;
   Arena arena;
   PointNetScratch scratch;
   std::vector<float> y;
@@ -106,7 +111,8 @@ struct Eyes {
 
 const Case kCases[] = {{{8, 12}, 30, 0, 5},          {{7, 5, 9}, 100, 3, 4}, {{6}, 97, 0, 3},
                        {{64, 128}, 100, 0, 2},       {{5, 3}, 1, 0, 6},      {{33, 70}, 289, 2, 2},
-                       {{4, 5, 6, 7, 8}, 13, 0, 70}, {{16, 1}, 50, 0, 2}};
+                       {{4, 5, 6, 7, 8}, 13, 0, 70}, {{16, 1}, 50, 0, 2},    {{9, 6}, 40, 2, 3, true},
+                       {{5, 7}, 33, 0, 4, true}};
 
 double distance(const std::vector<float>& a, const std::vector<double>& b) {
   double top = 1e-9, gap = 0;  // of features that are all 0 the difference itself
@@ -209,11 +215,12 @@ TEST(PointNet, AnyOrderAndRepeatsOfPointsGiveTheSameBytes) {
       for (size_t i = points - 1; i > 0; --i)
         std::swap(order[i], order[stream.below(static_cast<uint32_t>(i) + 1)]);
       const auto old = e.points;
-      const auto old_classes = e.classes;
+      const auto old_classes = e.classes, old_colors = e.colors;
       for (size_t r = 0; r < sz(c.rows); ++r)
         for (size_t i = 0; i < points; ++i) {
           std::copy_n(&old[3 * (r * points + order[i])], 3, &e.points[3 * (r * points + i)]);
           e.classes[r * points + i] = old_classes[r * points + order[i]];
+          std::copy_n(&old_colors[3 * (r * points + order[i])], 3, &e.colors[3 * (r * points + i)]);
         }
       e.forward();
       EXPECT_EQ(e.y, y);
@@ -230,6 +237,8 @@ TEST(PointNet, AnyOrderAndRepeatsOfPointsGiveTheSameBytes) {
         for (size_t i = 0; i < sz(twice.points); ++i) {
           std::copy_n(&old[3 * (r * points + i % points)], 3, &t.points[3 * (r * sz(twice.points) + i)]);
           t.classes[r * sz(twice.points) + i] = old_classes[r * points + i % points];
+          std::copy_n(&old_colors[3 * (r * points + i % points)], 3,
+                      &t.colors[3 * (r * sz(twice.points) + i)]);
         }
       t.forward();
       EXPECT_EQ(t.y, y);
@@ -273,7 +282,7 @@ TEST(PointNet, ListedRowsAreTheRowsThatTheyName) {
 }
 
 TEST(PointNet, EachInstructionSetIsDeterministicAndAllAgree) {
-  Eyes e({{64, 128}, 512, 0, 20, Activation::kRelu});
+  Eyes e({{64, 128}, 512, 0, 20, false, Activation::kRelu});
   const auto dy = random_floats(e.y.size(), 5);
   std::vector<double> first_y, first_grad;
   std::vector<float> v3_y, v3_grad;
@@ -330,6 +339,8 @@ TEST(PointNet, ShapesOutsideTheBoundsAreErrors) {
   EXPECT_EQ(thrown([](auto& s) { s.points = kMaxPoints + 1; }), "points: 16385 is outside [1, 16384]");
   EXPECT_EQ(thrown([](auto& s) { s.classes = 65; }), "point classes: 65 is outside [0, 64]");
   EXPECT_EQ(thrown([](auto& s) { s.classes = 1; }), "encoder: 5 inputs, not 3 and 1 classes");
+  EXPECT_EQ(thrown([](auto& s) { s.color = true; }),
+            "encoder: 5 inputs, not 3 and 2 classes and 3 of a colour");
   EXPECT_EQ(thrown([](auto& s) { s.range = 0; }), "point range: 0 m is outside [0.001, 1000]");
   EXPECT_EQ(thrown([](auto& s) { s.origin[1] = NAN; }), "point origin: nan m is outside [-1e6, 1e6]");
   EXPECT_NE(thrown([](auto& s) { s.mlp.hidden[0] = 0; }), "");
@@ -342,7 +353,7 @@ TEST(PointNet, AgreesWithTorch) {
     return static_cast<float>(n - 64) / 64;
   };
   const auto check = [&](Activation activation, const auto& features, const auto& gradient) {
-    Eyes e({{6, 7, 5}, 11, 2, 4, activation});
+    Eyes e({{6, 7, 5}, 11, 2, 4, false, activation});
     float* at = e.params.data();
     for (int32_t l = 0; l < 3; ++l)
       for (const bool bias : {false, true}) {

@@ -1158,6 +1158,7 @@ class PolicyInfo(Record):
     num_points: int  # of the cloud beside each row, for rdm_policy_act_points; 0: it sees none
     num_point_classes: int  # that it tells points apart by, 0: none
     num_features: int  # that its encoder makes of a cloud, 0 without
+    point_color: int  # whether it sees the colours of points: 0, 1
 
 
 class rdm_policy_info(Structure):
@@ -1174,7 +1175,7 @@ class rdm_policy_info(Structure):
     num_points: of the cloud beside each row, for rdm_policy_act_points; 0: it sees none
     num_point_classes: that it tells points apart by, 0: none
     num_features: that its encoder makes of a cloud, 0 without
-    reserved: 0
+    point_color: whether it sees the colours of points: 0, 1
     """
 
     struct_size: int
@@ -1190,7 +1191,7 @@ class rdm_policy_info(Structure):
     num_points: int
     num_point_classes: int
     num_features: int
-    reserved: int
+    point_color: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("obs_dim", c_int32),
@@ -1205,7 +1206,7 @@ class rdm_policy_info(Structure):
         ("num_points", c_int32),
         ("num_point_classes", c_int32),
         ("num_features", c_int32),
-        ("reserved", c_int32),
+        ("point_color", c_int32),
     ]
 
 
@@ -1217,23 +1218,27 @@ class rdm_points(Structure):
       rdm_agent_act_points(agent, b.obs, &seen, RDM_SAMPLE, b.action);  rdm_pool_step(pool);  rdm_agent_record(agent, &t);
 
     or rdm_agent_rollout with a pool whose modality has points. Points count as whole millimetres from `encoder_origin`,
-    within +-32.767 m; their order and what comes twice change nothing.
+    within +-32.767 m; their order and what comes twice change nothing. Several clouds (of two cameras, of a goal) are one
+    whose points have classes that tell them apart.
 
     struct_size: bytes
     num_points: of each cloud: the agent's option encoder_points, the policy's num_points
     points: [rows][num_points][3], world, m, required
     point_class: [rows][num_points] less than option encoder_classes; NULL only where that is 0
+    point_color: [rows][num_points][3]; NULL only without option encoder_color
     """
 
     struct_size: int
     num_points: int
     points: int | None
     point_class: int | None
+    point_color: int | None
     _fields_ = [
         ("struct_size", c_uint32),
         ("num_points", c_int32),
         ("points", c_void_p),
         ("point_class", c_void_p),
+        ("point_color", c_void_p),
     ]
 
 
@@ -2400,13 +2405,16 @@ class rdm_sensors(Structure):
     segmentation: [num_envs][num_cameras][height][width], shape of rdm_pool_shape, -1: nothing
     points: [num_envs][num_points][3], world, m; planes are left out
     point_shape: [num_envs][num_points], -1: nothing was seen
-    point_count: [num_envs] points that differ; the rest repeats them in turn
+    point_count: [num_envs] points that differ; the rest repeats them in turn, up to those of option
+        goal_points, which come last: the first free body where it is to be brought
     voxels: [num_envs][num_voxels][num_voxels][num_voxels] (x, y, z) about the task's object: 1 occupied, 0
         free, -1 not seen
     point_class: [num_envs][num_points] what a point lies on: one of the articulations (hands, arms included),
-        then of the free bodies, last anything else, or nothing
+        then of the free bodies, then anything else, or nothing; last the goal, with option goal_points
     num_classes: of those; 0 where points are off
     reserved2: 0
+    point_color: [num_envs][num_points][3] of what a point lies on, sRGB, 0 for nothing; NULL without option
+        point_color
     """
 
     struct_size: int
@@ -2427,6 +2435,7 @@ class rdm_sensors(Structure):
     point_class: int | None
     num_classes: int
     reserved2: int
+    point_color: int | None
     _fields_ = [
         ("struct_size", c_uint32),
         ("num_cameras", c_int32),
@@ -2446,6 +2455,7 @@ class rdm_sensors(Structure):
         ("point_class", c_void_p),
         ("num_classes", c_int32),
         ("reserved2", c_int32),
+        ("point_color", c_void_p),
     ]
 
 
@@ -2463,7 +2473,7 @@ class rdm_recording_config(Structure):
     error: [error_size] the text of a failing call that takes this config; NULL
     host: hooks of this handle, copied; NULL: those of rdm_init
     num_points: of the cloud beside each row, 0..65536; 0: none are kept; default 0
-    reserved: 0
+    point_color: whether its points have colours: 0, 1; default 0
     """
 
     struct_size: int
@@ -2479,7 +2489,7 @@ class rdm_recording_config(Structure):
     error: int | None
     host: Any
     num_points: int
-    reserved: int
+    point_color: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("obs_dim", c_int32),
@@ -2494,7 +2504,7 @@ class rdm_recording_config(Structure):
         ("error", c_void_p),
         ("host", POINTER(rdm_host)),
         ("num_points", c_int32),
-        ("reserved", c_int32),
+        ("point_color", c_int32),
     ]
 
 
@@ -2580,6 +2590,7 @@ class rdm_recording_rows(Structure):
     state: [num_states][state_bytes] what rdm_pool_set_state takes
     points: [rows][num_points][3] mm, world, before the action; NULL without clouds
     point_class: [rows][num_points] as of rdm_sensors; to append, NULL: 0
+    point_color: [rows][num_points][3] likewise; NULL without colours
     """
 
     struct_size: int
@@ -2599,6 +2610,7 @@ class rdm_recording_rows(Structure):
     state: int | None
     points: int | None
     point_class: int | None
+    point_color: int | None
     _fields_ = [
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
@@ -2617,6 +2629,7 @@ class rdm_recording_rows(Structure):
         ("state", c_void_p),
         ("points", c_void_p),
         ("point_class", c_void_p),
+        ("point_color", c_void_p),
     ]
 
 
@@ -2802,6 +2815,7 @@ ROWS: dict[str, dict[str, Rows]] = {
     "rdm_points": {
         "points": Rows("float32", ("rows", "num_points", "3")),
         "point_class": Rows("uint8", ("rows", "num_points")),
+        "point_color": Rows("uint8", ("rows", "num_points", "3")),
     },
     "rdm_planner_config": {
         "noise": Rows("float32", ("action_dim",)),
@@ -2835,6 +2849,7 @@ ROWS: dict[str, dict[str, Rows]] = {
         "point_count": Rows("int32", ("num_envs",)),
         "voxels": Rows("int8", ("num_envs", "num_voxels", "num_voxels", "num_voxels")),
         "point_class": Rows("uint8", ("num_envs", "num_points")),
+        "point_color": Rows("uint8", ("num_envs", "num_points", "3")),
     },
     "rdm_recording_rows": {
         "obs": Rows("float32", ("rows", "obs_dim")),
@@ -2850,6 +2865,7 @@ ROWS: dict[str, dict[str, Rows]] = {
         "state": Rows("uint8", ("num_states", "state_bytes")),
         "points": Rows("int16", ("rows", "num_points", "3")),
         "point_class": Rows("uint8", ("rows", "num_points")),
+        "point_color": Rows("uint8", ("rows", "num_points", "3")),
     },
     "rdm_clone_config": {
         "train_loss": Rows("float64", ("capacity",)),
@@ -3812,7 +3828,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_recording_config_for_pool": Function(
         c_int32, {"c": POINTER(rdm_recording_config), "p": c_void_p},
         {}, True,
-        """Sets dims, task, layout_hash, state_bytes and num_points from a pool. Pointers are borrowed from the pool."""),
+        """Sets dims, task, layout_hash, state_bytes, num_points and point_color from a pool. Pointers are borrowed from the pool."""),
     "rdm_recording_create": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_recording_config)},
         {}, True,

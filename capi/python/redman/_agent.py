@@ -97,11 +97,12 @@ class Agent:
     # ---- learning ---------------------------------------------------------------------------------------------
 
     def act(self, obs: Any, mode: str = "sample", out: Optional[FloatArray] = None, points: Any = None,
-            point_class: Any = None) -> FloatArray:
+            point_class: Any = None, point_color: Any = None) -> FloatArray:
         """Actions [num_envs][action_dim] for obs [num_envs][obs_dim]: a sample, which record must follow, or the mean.
 
         One call is one decision, to be held for option action_repeat control steps. Samples are not clipped. An agent
-        with option encoder takes points [num_envs][encoder_points][3] too, and with encoder_classes their classes.
+        with option encoder takes points [num_envs][encoder_points][3] too, with encoder_classes their classes, and with encoder_color
+        their colours [num_envs][encoder_points][3], 0 to 255.
         """
         if mode not in _MODES:
             raise ArgumentError(f"mode: {mode!r} is none of {', '.join(_MODES)}")
@@ -114,7 +115,7 @@ class Agent:
             if points is None:
                 self._check(lib.rdm_agent_act(self._a, rows.ctypes.data, _MODES[mode], target.ctypes.data))
             else:
-                seen, kept = clouds(points, point_class, self.num_envs)
+                seen, kept = clouds(points, point_class, point_color, self.num_envs)
                 self._check(lib.rdm_agent_act_points(self._a, rows.ctypes.data, byref(seen), _MODES[mode],
                                                      target.ctypes.data))
                 del kept

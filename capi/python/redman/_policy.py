@@ -63,10 +63,12 @@ class Policy:
     def __bytes__(self) -> bytes:
         return self._bytes
 
-    def act(self, obs: Any, noise: Any = None, points: Any = None, point_class: Any = None) -> FloatArray:
+    def act(self, obs: Any, noise: Any = None, points: Any = None, point_class: Any = None,
+            point_color: Any = None) -> FloatArray:
         """clip(mean + std noise, -1, 1) for one observation [obs_dim] or rows [n][obs_dim]; noise None: the mean.
 
-        A policy that sees points takes them [n][num_points][3] too, and where it has num_point_classes their classes.
+        A policy that sees points takes them [n][num_points][3] too, where it has num_point_classes their classes, and
+        where it sees point_color their colours [n][num_points][3], 0 to 255.
         """
         rows_of = _abi.FUNCTIONS["rdm_policy_act"].rows
         observed = np.asarray(obs)
@@ -85,7 +87,7 @@ class Policy:
                 check(lib.rdm_policy_act(self._handle.value, seen.ctypes.data, rows, noise_at, action.ctypes.data,
                                          scratch, size))
             else:
-                cloud, kept = clouds(points, point_class, rows)
+                cloud, kept = clouds(points, point_class, point_color, rows)
                 check(lib.rdm_policy_act_points(self._handle.value, seen.ctypes.data, ctypes.byref(cloud), rows,
                                                 noise_at, action.ctypes.data, scratch, size))
                 del kept

@@ -97,8 +97,8 @@ class Borrowed:
         return np.asarray(self)
 
 
-def clouds(points: Any, point_class: Any, rows: int) -> tuple[_abi.rdm_points, tuple[Any, ...]]:
-    """The struct for clouds points [rows][n][3], point_class [rows][n] or None, and what it borrows."""
+def clouds(points: Any, point_class: Any, point_color: Any, rows: int) -> tuple[_abi.rdm_points, tuple[Any, ...]]:
+    """The struct for clouds points [rows][n][3], point_class [rows][n], point_color [rows][n][3] or None, and what it borrows."""
     array = np.asarray(points)
     if array.ndim == 2 and rows == 1:
         array = array[None]
@@ -108,7 +108,9 @@ def clouds(points: Any, point_class: Any, rows: int) -> tuple[_abi.rdm_points, t
     lengths = {"rows": rows, "num_points": array.shape[1]}
     metres = given(array, table["points"], lengths, "points")
     classes = None if point_class is None else given(point_class, table["point_class"], lengths, "point_class")
+    colors = None if point_color is None else given(point_color, table["point_color"], lengths, "point_color")
     out = _abi.rdm_points(struct_size=ctypes.sizeof(_abi.rdm_points), num_points=array.shape[1],
                           points=metres.ctypes.data,
-                          point_class=None if classes is None else classes.ctypes.data)
-    return out, (metres, classes)
+                          point_class=None if classes is None else classes.ctypes.data,
+                          point_color=None if colors is None else colors.ctypes.data)
+    return out, (metres, classes, colors)

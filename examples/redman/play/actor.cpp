@@ -97,6 +97,7 @@ ActorChoice choose_actor(const std::string& word, const std::string& task) {
   const rdm_policy_info info = load(choice.file).info();
   choice.task = info.task;
   choice.points = info.num_points;
+  choice.color = info.point_color != 0;
   choice.repeat = info.action_repeat;
   const std::string folder = run_folder_of(choice.file);
   if (folder.empty()) return choice;
@@ -123,7 +124,7 @@ void adopt_task(const ActorChoice& choice, bool task_given, const std::vector<st
     const Options own = builtin_demo(pool.task, given).options;
     pool.options.insert(pool.options.begin(), own.begin(), own.end());
   }
-  if (choice.points > 0) give_eyes(choice.points, choice.repeat, pool);
+  if (choice.points > 0) give_eyes(choice.points, choice.repeat, choice.color, pool);
   if (!same_name(pool.task, choice.task)) return;
   pool.options.insert(pool.options.begin(), choice.options.begin(), choice.options.end());
   pool.magnitudes = choice.magnitudes;
@@ -203,6 +204,9 @@ void Actor::prepare(const redman::Pool& pool) {
                            policy_->info().num_points, policy_->info().num_points));
     points_.resize(n * points * 3);
     point_class_.resize(n * points);
+    if (policy_->info().point_color && !seen.point_color)
+      throw Failure("the policy sees the colours of points: set point_color=true");
+    if (policy_->info().point_color) point_color_.resize(n * points * 3);
   }
   hold_.assign(n, 0);
   due_.reserve(n);
@@ -297,6 +301,8 @@ void Actor::act(redman::Pool& pool, const uint8_t* mask) {
       const auto count = static_cast<size_t>(seen.num_points);
       std::copy_n(seen.points + 3 * count * i, 3 * count, points_.data() + 3 * count * k);
       std::copy_n(seen.point_class + count * i, count, point_class_.data() + count * k);
+      if (!point_color_.empty())
+        std::copy_n(seen.point_color + 3 * count * i, 3 * count, point_color_.data() + 3 * count * k);
     }
     if (!stochastic_) continue;
     for (size_t j = 0; j < width; ++j) {
@@ -311,9 +317,10 @@ void Actor::act(redman::Pool& pool, const uint8_t* mask) {
   if (points_.empty())
     policy_->act(obs_.data(), rows, noise, action_.data(), scratch_.data(), scratch_.size());
   else
-    redman::act(*policy_, obs_.data(),
-                redman::points(points_.data(), policy_->info().num_points, point_class_.data()), rows, noise,
-                action_.data(), scratch_.data(), scratch_.size());
+    redman::act(
+        *policy_, obs_.data(),
+        redman::points(points_.data(), policy_->info().num_points, point_class_.data(), point_color_.data()),
+        rows, noise, action_.data(), scratch_.data(), scratch_.size());
   for (size_t k = 0; k < due_.size(); ++k)
     std::copy_n(action_.data() + k * width, width, pool.action()[due_[k]].begin());
 }

@@ -28,6 +28,7 @@ struct ActorChoice {
   std::vector<std::string> limits;  // --cost-limit of that run
   bool magnitudes = false;          // which are on magnitudes
   int32_t points = 0, repeat = 1;   // of a policy with eyes: that it sees, and control steps of a decision
+  bool color = false;               // and whether in colour
 };
 // zero, hold, random, demo, trained (of `task`, play/trained.hpp), plan (play/plan_word.hpp), a .demo file,
 // an .npz file of a rollout, a policy file or a run folder. Failure when the file cannot be read as what it
@@ -89,7 +90,7 @@ class Actor {
   std::vector<float> memory_;                // [num_envs][action_dim] correlated noise
   std::vector<uint8_t> fresh_;               // [num_envs] the memory is to be drawn anew
   std::vector<float> points_;                // clouds of those worlds, where the policy sees
-  std::vector<uint8_t> point_class_;
+  std::vector<uint8_t> point_class_, point_color_;
   redman::Bytes scratch_;
 };
 

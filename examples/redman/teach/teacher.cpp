@@ -152,8 +152,9 @@ rdm_pretrain_report pretrain(const TeachSettings& s, const PoolSettings& setting
   how.epochs = s.pretrain_epochs;
   how.seed = settings.seed;
   const rdm_pretrain_report report = as_usage([&] {
-    return redman::pretrain(agent, redman::points(metres.data(), seen.num_points, rows.point_class),
-                            rows.point_class, s.pretrain, how);
+    return redman::pretrain(
+        agent, redman::points(metres.data(), seen.num_points, rows.point_class, rows.point_color),
+        rows.point_class, s.pretrain, how);
   });
   std::fprintf(stderr,
                "encoder tells %.1f%% of points right after %d clouds (the commonest kind has %.1f%%)\n",

@@ -29,6 +29,9 @@ constexpr OptionSpec kRows[] = {
     number_option("sampling_voxel", 0.01, 0.001, 1, "sampling = voxel: side of a voxel, m"),
     number_option("point_noise", 0, 0, 0.5, "deviation of the noise on each coordinate of a point, m"),
     number_option("point_dropout", 0, 0, 1, "share of the points that are lost; others stand for them"),
+    integer_option("goal_points", 0, 0, 65535,
+                   "of the points, the last so many lie on the object where it is to be brought"),
+    flag_option("point_color", false, "points have the colours of what they lie on"),
     number_option(
         "camera_noise", 0, 0, 1,
         "half width of the draw, each episode, by which eye and target of cloud_cameras are off, m"),
@@ -148,6 +151,12 @@ SenseConfig sense_from(const Options& options, const TaskInfo& info, const Task&
     c.thinning_voxel = options.number("sampling_voxel");
     c.point_noise = options.number("point_noise");
     c.point_dropout = options.number("point_dropout");
+    c.point_color = options.flag("point_color");
+    c.goal_points = options.integer("goal_points");
+    if (c.goal_points && !task.has_goal())
+      fail(Code::kArgument, "goal_points: task %s brings no object to a pose", info.name);
+    if (c.goal_points >= c.num_points)
+      fail(Code::kRange, "goal_points: %d is outside [0, points - 1 = %d]", c.goal_points, c.num_points - 1);
   }
   if (c.voxels) {
     c.grid = options.integer("voxels");

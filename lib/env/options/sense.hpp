@@ -25,6 +25,8 @@ struct SenseConfig {
   double thinning_voxel = 0, range = 0;  // m
   double point_noise = 0;                // m, deviation of each coordinate
   double point_dropout = 0;              // share of the points that are lost
+  bool point_color = false;
+  int32_t goal_points = 0;  // of num_points, the last
   double camera_noise = 0;  // m, half width of an episode's draw of eye and target of a cloud camera
   int32_t grid = 0;         // cells along a side
   double cell = 0;          // m
