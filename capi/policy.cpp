@@ -89,10 +89,14 @@ bool eyes_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
   points.millimetres = v.example_points;
   PolicyTensor classes = {"example.point_class", nullptr, eyes.points, 1};
   classes.numbers = v.example_classes;
-  const PolicyTensor rest[] = {
-      {"encoder.origin", eyes.origin, 3, 1}, {"encoder.range", &eyes.range, 1, 1}, points, classes};
+  static constexpr float kActivations[] = {0, 1, 2};  // by Activation
+  const PolicyTensor rest[] = {{"encoder.origin", eyes.origin, 3, 1},
+                               {"encoder.range", &eyes.range, 1, 1},
+                               {"encoder.activation", &kActivations[static_cast<size_t>(s.activation)], 1, 1},
+                               points,
+                               classes};
   const int32_t at = i - 2 * s.num_layers();
-  if (at >= (eyes.classes ? 4 : 3)) return false;
+  if (at >= (eyes.classes ? 5 : 4)) return false;
   *out = rest[at];
   return true;
 }
