@@ -3,6 +3,7 @@
 
 #include "commands.hpp"
 #include "common/files.hpp"
+#include "common/presets.hpp"
 #include "common/text.hpp"
 #include "network/c_source.hpp"
 #include "network/probe.hpp"
@@ -75,15 +76,30 @@ Json probe_json(const redman::Policy& policy, const Network& network, const Acto
 
 // What the observation is made of, as the policy's task has it with the options of its run; empty when that
 // is not the layout that the policy knows.
-std::vector<ObsField> fields_of(const redman::Policy& policy, const ActorChoice& choice) {
-  std::vector<ObsField> fields;
-  const auto pool = world_of(policy, choice, 0);
+std::vector<rdm_field> fields_of(const std::optional<redman::Pool>& pool) {
+  std::vector<rdm_field> fields;
+  rdm_field f;
   for (int32_t i = 0; pool && i < pool->spec().num_fields; ++i) {
-    rdm_field f;
     redman::check(rdm_pool_field(pool->get(), i, &f));
-    fields.push_back({f.name, f.unit, f.offset, f.count});
+    fields.push_back(f);
   }
   return fields;
+}
+
+std::vector<ObsField> seen_fields(const std::vector<rdm_field>& fields, const std::vector<int32_t>& columns) {
+  std::vector<ObsField> out;
+  for (const rdm_field& f : fields)
+    out.push_back({f.name, f.unit, f.offset, f.count, has_columns({"", columns}, f)});
+  return out;
+}
+
+// The preset that leaves just these columns; "" for none.
+std::string preset_of(int32_t obs_dim, const std::vector<rdm_field>& fields,
+                      const std::vector<int32_t>& columns) {
+  if (fields.empty()) return "";
+  for (const ObsPreset& p : obs_presets(obs_dim, fields))
+    if (p.columns == columns) return p.name;
+  return "";
 }
 
 Report run_export(const ExportFlags& flags) {
@@ -95,7 +111,12 @@ Report run_export(const ExportFlags& flags) {
     throw Usage("--policy " + flags.policy +
                 ": it is no network; give a policy file, a run folder or trained:TASK");
   const redman::Policy policy(choice.file.c_str());
-  const Network network(policy);
+  Network network(policy);
+  const auto world = world_of(policy, choice, 0);  // lends the names of its fields
+  const std::vector<rdm_field> fields = fields_of(world);
+  const std::vector<int32_t> columns = policy_columns(policy.get());
+  if (const std::string preset = preset_of(network.obs_dim, fields, columns); !preset.empty())
+    network.metadata.push_back({"observation_preset", preset});
   Json json = {{"policy", choice.file}};
   std::string text;
   const auto write = [&](const char* kind, const std::string& file, const std::string& bytes) {
@@ -108,7 +129,7 @@ Report run_export(const ExportFlags& flags) {
   if (!flags.safetensors.empty()) write("safetensors", flags.safetensors, safetensors_bytes(network));
   if (!flags.c.empty()) {
     const std::string name = flags.name_given ? flags.name : c_name_of(policy.info().task);
-    const CSource source = c_source(policy, network, name, fields_of(policy, choice), flags.int8);
+    const CSource source = c_source(policy, network, name, seen_fields(fields, columns), flags.int8);
     write("c", flags.c, source.text);
     json["file"] = flags.c;
     json["bytes"] = source.text.size();

@@ -81,6 +81,9 @@ for name in "tanh elu relu bare state part eyes kinds flat".split():
     x = run("actor", x, f)
     gap = max(abs(min(1, max(-1, a)) - b) for a, b in zip(x, t["example.action"]))
     assert gap < 1e-5, (name, gap)
+    assert meta.get("observation_preset") == ("vision" if name == "eyes" else None), meta
+    ranges = [tuple(map(int, r.split(".."))) for r in meta["observation_entries"].split()]
+    assert any(a <= 374 <= b for a, b in ranges) == (name != "eyes"), meta  # where the object is
     assert meta["task"] == "hand_over_safe_finger" and len(meta["layout_hash"]) == 16, meta
 EOF
 

@@ -19,6 +19,21 @@ cp whole/policy.rdm alone.rdm
 "$tool" eval --policy alone.rdm --set max_steps=20 --episodes 4 --json > row 2> err || { cat err; failed=1; }
 "$tool" rollout --policy whole --episodes 2 --json > row 2> err || { cat err; failed=1; }
 "$tool" render --policy whole --strip 2 --size 64x48 --out strip.png > out 2>&1 || { cat out; failed=1; }
+cp strip.png plain.png
+"$tool" render --policy whole --strip 2 --size 64x48 --cloud --out strip.png --json > row || { cat row; failed=1; }
+grep -q '"width":128,"height":96' row || { echo "a strip with clouds: $(cat row)"; failed=1; }
+cmp -s strip.png plain.png && { echo 'no cloud was drawn'; failed=1; }
+"$tool" render --policy zero --cloud > out 2> err
+{ [ $? -eq 2 ] && grep -q 'modality=points' err; } || { echo "clouds of worlds without: $(cat err)"; failed=1; }
+
+# What it sees can be made worse, and the thing another one; a cloud of another size is not its own.
+"$tool" eval --policy alone.rdm --set max_steps=20 --episodes 4 --json > base 2> err || failed=1
+for set in point_noise=0.05 point_dropout=0.9 camera_noise=0.2 object=ball cloud_cameras=front; do
+  "$tool" eval --policy alone.rdm --set max_steps=20 --set $set --episodes 4 --json > row 2> err || { echo "$set: $(cat err)"; failed=1; }
+  cmp -s base row && { echo "$set changes nothing"; failed=1; }
+done
+"$tool" eval --policy alone.rdm --set points=32 --episodes 1 > out 2> err && { echo 'a smaller cloud was taken'; failed=1; }
+grep -q 'points=64' err || { echo "a smaller cloud: $(cat err)"; failed=1; }
 "$tool" eval --policy alone.rdm --set modality=state --episodes 1 > out 2> err && { echo 'a blind pool was taken'; failed=1; }
 grep -q 'modality=points' err || { echo "blind: $(cat err)"; failed=1; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cinttypes>
 
+#include "common/presets.hpp"
 #include "common/report.hpp"
 #include "common/text.hpp"
 
@@ -66,6 +67,7 @@ Network::Network(const redman::Policy& policy) {
               {"action_repeat", std::to_string(info.action_repeat)},
               {"noise_correlation", format("%.9g", static_cast<double>(info.noise_correlation))},
               {"activation", activation},
+              {"observation_entries", ranges_text(policy_columns(policy.get()))},
               {"library", format("redman %u.%u.%u", v / 1000000, v / 1000 % 1000, v % 1000)},
               {"example_obs", join(find("example.obs"))},
               {"example_action", join(find("example.action"))}};

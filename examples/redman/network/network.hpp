@@ -30,7 +30,8 @@ struct Network {
   int32_t obs_dim = 0, action_dim = 0, num_layers = 0;
   Eyes eyes;
   std::vector<NamedTensor> tensors;  // as rdm_policy_tensor names them
-  // What a reader has to know beside the numbers: task, layout hash, rates, bounds of the action.
+  // What a reader has to know beside the numbers: task, layout hash, rates, bounds of the action, entries of
+  // a row that count.
   std::vector<std::pair<std::string, std::string>> metadata;
 
   const NamedTensor* find(const std::string& name) const;  // null: there is none
