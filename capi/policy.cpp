@@ -91,13 +91,15 @@ bool eyes_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
   classes.numbers = v.example_classes;
   PolicyTensor colors = {"example.point_color", nullptr, eyes.points, 3};
   colors.numbers = v.example_colors;
+  static constexpr float kActivations[] = {0, 1, 2};  // by Activation
   const PolicyTensor rest[] = {{"encoder.origin", eyes.origin, 3, 1},
                                {"encoder.range", &eyes.range, 1, 1},
+                               {"encoder.activation", &kActivations[static_cast<size_t>(s.activation)], 1, 1},
                                points,
                                eyes.classes ? classes : colors,
                                colors};
   const int32_t at = i - 2 * s.num_layers();
-  if (at >= 3 + (eyes.classes ? 1 : 0) + (eyes.color ? 1 : 0)) return false;
+  if (at >= 4 + (eyes.classes ? 1 : 0) + (eyes.color ? 1 : 0)) return false;
   *out = rest[at];
   return true;
 }

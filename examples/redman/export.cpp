@@ -1,6 +1,9 @@
 // `export`: a policy as a file for other programs.
+#include <redman/redman_map.hpp>
+
 #include "commands.hpp"
 #include "common/files.hpp"
+#include "common/presets.hpp"
 #include "common/text.hpp"
 #include "network/c_source.hpp"
 #include "network/probe.hpp"
@@ -16,35 +19,91 @@ struct ExportFlags {
   uint64_t seed = 0;
 };
 
-// Random observations and what the policy does.
-Json probe_json(const redman::Policy& policy, const Network& network, const ExportFlags& flags) {
-  const auto obs = probe_observations(network, static_cast<size_t>(flags.probes), flags.seed);
-  return {{"rows", flags.probes},
-          {"obs_dim", network.obs_dim},
-          {"action_dim", network.action_dim},
-          {"obs", obs},
-          {"action", mean_actions(policy, obs)}};
+// A world of the policy's task with the options of its run; none where that has another layout than the
+// policy knows, or is not here (a host's own environment).
+std::optional<redman::Pool> world_of(const redman::Policy& policy, const ActorChoice& choice, uint64_t seed) {
+  try {
+    PoolSettings settings;
+    settings.seed = seed;
+    adopt_task(choice, false, {}, settings);
+    redman::Pool pool = make_pool(settings, RDM_AUTORESET_OFF);
+    if (pool.spec().layout_hash == policy.info().layout_hash && *policy.info().task) return pool;
+  } catch (const Usage&) {
+  }
+  return {};
+}
+
+// Every second row becomes what the policy meets where it plays.
+void play_rows(redman::Pool pool, const ActorChoice& choice, std::vector<float>& obs, Clouds& clouds) {
+  Actor actor(choice, pool);
+  const auto count = static_cast<size_t>(choice.points), width = pool.obs().width();
+  pool.reset();
+  for (size_t row = 0; row < obs.size() / width; row += 2) {
+    const rdm_sensors seen = redman::sensors(pool);
+    std::copy_n(pool.obs()[0].begin(), width, obs.begin() + static_cast<std::ptrdiff_t>(row * width));
+    std::copy_n(seen.points, 3 * count, clouds.points.begin() + static_cast<std::ptrdiff_t>(3 * row * count));
+    if (!clouds.classes.empty())
+      std::copy_n(seen.point_class, count, clouds.classes.begin() + static_cast<std::ptrdiff_t>(row * count));
+    if (seen.point_color)
+      std::copy_n(seen.point_color, 3 * count,
+                  clouds.colors.begin() + static_cast<std::ptrdiff_t>(3 * row * count));
+    actor.act(pool);
+    pool.step();
+    if (!pool.terminated()[0] && !pool.truncated()[0]) continue;
+    pool.reset();
+    actor.restart();
+  }
+}
+
+// Random observations and what the policy does; of one with eyes, beside random clouds and played ones.
+Json probe_json(const redman::Policy& policy, const Network& network, const ActorChoice& choice,
+                const ExportFlags& flags) {
+  const auto rows = static_cast<size_t>(flags.probes);
+  auto obs = probe_observations(network, rows, flags.seed);
+  Clouds clouds = probe_clouds(network, rows, flags.seed);
+  const Eyes& eyes = network.eyes;
+  bool played = false;
+  if (eyes.points)
+    if (auto pool = world_of(policy, choice, flags.seed))
+      play_rows(std::move(*pool), choice, obs, clouds), played = true;
+  Json json = {{"rows", flags.probes}, {"obs_dim", network.obs_dim}, {"action_dim", network.action_dim}};
+  json["action"] = mean_actions(policy, obs, clouds);
+  json["obs"] = std::move(obs);
+  if (eyes.points == 0) return json;
+  json["num_points"] = eyes.points;
+  json["played"] = played;
+  json["points"] = std::move(clouds.points);
+  if (eyes.classes) json["point_class"] = std::move(clouds.classes);
+  if (eyes.color) json["point_color"] = std::move(clouds.colors);
+  return json;
 }
 
 // What the observation is made of, as the policy's task has it with the options of its run; empty when that
 // is not the layout that the policy knows.
-std::vector<ObsField> fields_of(const redman::Policy& policy, const ActorChoice& choice) {
-  std::vector<ObsField> fields;
-  try {
-    PoolSettings settings;
-    settings.task = policy.info().task;
-    settings.options = choice.options;
-    const redman::Pool pool = make_pool(settings, RDM_AUTORESET_OFF);
-    if (pool.spec().layout_hash != policy.info().layout_hash) return {};
-    for (int32_t i = 0; i < pool.spec().num_fields; ++i) {
-      rdm_field f;
-      redman::check(rdm_pool_field(pool.get(), i, &f));
-      fields.push_back({f.name, f.unit, f.offset, f.count});
-    }
-  } catch (const Usage&) {  // a host's own environment, or a task that is not here
-    return {};
+std::vector<rdm_field> fields_of(const std::optional<redman::Pool>& pool) {
+  std::vector<rdm_field> fields;
+  rdm_field f;
+  for (int32_t i = 0; pool && i < pool->spec().num_fields; ++i) {
+    redman::check(rdm_pool_field(pool->get(), i, &f));
+    fields.push_back(f);
   }
   return fields;
+}
+
+std::vector<ObsField> seen_fields(const std::vector<rdm_field>& fields, const std::vector<int32_t>& columns) {
+  std::vector<ObsField> out;
+  for (const rdm_field& f : fields)
+    out.push_back({f.name, f.unit, f.offset, f.count, has_columns({"", columns}, f)});
+  return out;
+}
+
+// The preset that leaves just these columns; "" for none.
+std::string preset_of(int32_t obs_dim, const std::vector<rdm_field>& fields,
+                      const std::vector<int32_t>& columns) {
+  if (fields.empty()) return "";
+  for (const ObsPreset& p : obs_presets(obs_dim, fields))
+    if (p.columns == columns) return p.name;
+  return "";
 }
 
 Report run_export(const ExportFlags& flags) {
@@ -56,10 +115,12 @@ Report run_export(const ExportFlags& flags) {
     throw Usage("--policy " + flags.policy +
                 ": it is no network; give a policy file, a run folder or trained:TASK");
   const redman::Policy policy(choice.file.c_str());
-  if (policy.info().num_points > 0 && !(flags.onnx.empty() && flags.c.empty() && flags.probe.empty()))
-    throw Failure("export: " + choice.file +
-                  " sees points; such policies are written by --safetensors alone");
-  const Network network(policy);
+  Network network(policy);
+  const auto world = world_of(policy, choice, 0);  // lends the names of its fields
+  const std::vector<rdm_field> fields = fields_of(world);
+  const std::vector<int32_t> columns = policy_columns(policy.get());
+  if (const std::string preset = preset_of(network.obs_dim, fields, columns); !preset.empty())
+    network.metadata.push_back({"observation_preset", preset});
   Json json = {{"policy", choice.file}};
   std::string text;
   const auto write = [&](const char* kind, const std::string& file, const std::string& bytes) {
@@ -72,7 +133,7 @@ Report run_export(const ExportFlags& flags) {
   if (!flags.safetensors.empty()) write("safetensors", flags.safetensors, safetensors_bytes(network));
   if (!flags.c.empty()) {
     const std::string name = flags.name_given ? flags.name : c_name_of(policy.info().task);
-    const CSource source = c_source(policy, network, name, fields_of(policy, choice), flags.int8);
+    const CSource source = c_source(policy, network, name, seen_fields(fields, columns), flags.int8);
     write("c", flags.c, source.text);
     json["file"] = flags.c;
     json["bytes"] = source.text.size();
@@ -84,7 +145,7 @@ Report run_export(const ExportFlags& flags) {
                      source.largest_error, source.rms_error);
     }
   }
-  if (!flags.probe.empty()) write("probe", flags.probe, probe_json(policy, network, flags).dump());
+  if (!flags.probe.empty()) write("probe", flags.probe, probe_json(policy, network, choice, flags).dump());
   return {json, text};
 }
 

@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "common/names.hpp"
+#include "common/presets.hpp"
 #include "common/text.hpp"
 
 namespace tool {
@@ -33,14 +34,21 @@ Json task_json(int32_t index) {
                       {"low", number(low)},
                       {"high", number(high)}});
   }
-  Json defaults = Json::object();
+  Json defaults = Json::object(), presets = Json::object();
   for (const rdm_option& o : task_defaults(index)) defaults[o.key] = o.text;
+  for (const ObsPreset& p : obs_presets(t.obs_dim, task_fields(index))) {
+    Json names = Json::array();
+    for (const rdm_field& f : task_fields(index))
+      if (has_columns(p, f)) names.push_back(f.name);
+    presets[p.name] = {{"entries", p.columns.size()}, {"fields", names}};
+  }
   return {{"name", t.name},           {"summary", t.summary},
           {"obs_dim", t.obs_dim},     {"action_dim", t.action_dim},
           {"cost_dim", t.cost_dim},   {"costs", costs},
           {"max_steps", t.max_steps}, {"control_dt", t.control_dt},
           {"fields", fields},         {"options", options_json(task_options(index))},
-          {"defaults", defaults},     {"initial_mean", task_initial_mean(index)}};
+          {"defaults", defaults},     {"initial_mean", task_initial_mean(index)},
+          {"presets", presets}};
 }
 
 std::string task_text(int32_t index) {
@@ -48,9 +56,14 @@ std::string task_text(int32_t index) {
   std::string out =
       format("%s: %s\n%d observations, %d actions, %d costs, %d steps of %.4f s\n\n", t.name, t.summary,
              t.obs_dim, t.action_dim, t.cost_dim, t.max_steps, static_cast<double>(t.control_dt));
-  Table fields({"field", "unit", "offset", "count"}), costs({"cost", "limit", "meaning"});
-  for (const rdm_field& f : task_fields(index))
-    fields.add({f.name, f.unit, std::to_string(f.offset), std::to_string(f.count)});
+  Table fields({"field", "unit", "offset", "count", "presets"}), costs({"cost", "limit", "meaning"});
+  const auto presets = obs_presets(t.obs_dim, task_fields(index));
+  for (const rdm_field& f : task_fields(index)) {
+    std::string in;
+    for (const ObsPreset& p : presets)
+      if (has_columns(p, f)) in += (in.empty() ? "" : " ") + p.name;
+    fields.add({f.name, f.unit, std::to_string(f.offset), std::to_string(f.count), in});
+  }
   for (const rdm_cost& c : task_costs(index))
     costs.add({c.name, c.limit < 0 ? "-" : number_text(c.limit), c.help});
   return out + fields.text() + '\n' + costs.text() + '\n' + options_text(task_options(index));

@@ -20,7 +20,7 @@ struct RenderFlags {
   PoolSettings pool;
   std::vector<std::string> sets;
   int32_t step = 0, strip = 0, from = 0, to = -1, width = 0, height = 0;
-  bool task_given = false, step_given = false;
+  bool task_given = false, step_given = false, cloud = false;
 };
 
 void read_size(RenderFlags& flags) {
@@ -35,7 +35,7 @@ void read_size(RenderFlags& flags) {
 }
 
 Scene scene_of(const RenderFlags& flags, const ActorChoice& choice) {
-  return {flags.pool, choice, flags.camera, flags.width, flags.height};
+  return {flags.pool, choice, flags.camera, flags.width, flags.height, flags.cloud};
 }
 
 Image draw(const RenderFlags& flags, const ActorChoice& choice, Scene& scene) {
@@ -46,7 +46,8 @@ Image draw(const RenderFlags& flags, const ActorChoice& choice, Scene& scene) {
 }
 
 void film(const RenderFlags& flags, Scene& scene) {
-  Film film(flags.video, flags.width, flags.height, 1 / static_cast<double>(scene.pool().spec().control_dt));
+  const int32_t height = flags.height * (flags.cloud ? 2 : 1);
+  Film film(flags.video, flags.width, height, 1 / static_cast<double>(scene.pool().spec().control_dt));
   scene.advance_to(flags.from);
   do {
     film.add(scene.picture());
@@ -80,7 +81,7 @@ Report run_render(RenderFlags flags) {
   Json json;
   int32_t frames = 0;
   double seconds = 0;
-  int32_t width = flags.width;
+  int32_t width = flags.width, height = flags.height * (flags.cloud ? 2 : 1);
   std::vector<std::string> files;
   if (pictures) {
     Scene scene = scene_of(flags, choice);
@@ -100,7 +101,7 @@ Report run_render(RenderFlags flags) {
   }
   std::string text;
   if (frames > 0)
-    text = format("%dx%d pixels, %d pictures at %.1f per second\n", width, flags.height, frames,
+    text = format("%dx%d pixels, %d pictures at %.1f per second\n", width, height, frames,
                   frames / std::max(seconds, 1e-9));
   if (!flags.html.empty() || !flags.glb.empty()) {
     const Playback playback = record(flags, choice);
@@ -118,7 +119,7 @@ Report run_render(RenderFlags flags) {
   json["file"] = files.front();
   if (frames > 0) {
     json["width"] = width;
-    json["height"] = flags.height;
+    json["height"] = height;
     json["frames"] = frames;
     json["frames_per_second"] = frames / std::max(seconds, 1e-9);
   }
@@ -150,6 +151,10 @@ void add_render(CLI::App& app, Run& run) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--size", flags->size, "pixels of one picture")->type_name("WxH");
   command->add_option("--camera", flags->camera, "camera of the task");
+  command->add_flag(
+      "--cloud", flags->cloud,
+      "below each picture the points that the last decision saw, by the same camera, coloured by what "
+      "they lie on");
   command->add_option("--out", flags->out, "PNG file; default render.png");
   command->add_option("--video", flags->video,
                       "film of the episode, .mp4 or .gif, made by the program ffmpeg");

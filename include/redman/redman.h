@@ -564,8 +564,8 @@ RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t
 /* "actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
  * "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows of obs_dim: a
  * weight of an entry that the policy does not see is 0. Of one that sees points "actor.0.weight" has a column for each
- * feature behind those, and there are "encoder.0.weight" and so on, "encoder.origin" and "encoder.range", in m, and
- * "example.points", in m, with "example.point_class". */
+ * feature behind those, and there are "encoder.0.weight" and so on, "encoder.origin" and "encoder.range", in m,
+ * "encoder.activation" (0 tanh, 1 elu, 2 relu), "example.points", in m, and "example.point_class". */
 RDM_API rdm_result rdm_policy_tensor(const rdm_policy *p, int32_t i, rdm_tensor *out);
 /* Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE. */
 RDM_API rdm_result rdm_policy_tensor_read(const rdm_policy *p, const char *name, float *out, size_t count);

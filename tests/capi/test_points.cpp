@@ -95,7 +95,7 @@ TEST(Points, ThePolicyIsShownAsTensors) {
   h.epoch(a);
   const redman::Policy p(a.policy());
   uint64_t count = 0;
-  std::vector<float> origin, range, points, classes, example;
+  std::vector<float> origin, range, activation, points, classes, example;
   int32_t inputs = 0, first = 0, last = 0;
   for (const rdm_tensor& t : p.tensors()) {
     const std::string name = t.name;
@@ -106,6 +106,7 @@ TEST(Points, ThePolicyIsShownAsTensors) {
     if (name == "encoder.1.bias") last = t.rows;
     if (name == "encoder.origin") origin = values;
     if (name == "encoder.range") range = values;
+    if (name == "encoder.activation") activation = values;
     if (name == "example.points") points = values;
     if (name == "example.point_class") classes = values;
     if (name == "example.action") example = values;
@@ -115,7 +116,8 @@ TEST(Points, ThePolicyIsShownAsTensors) {
   EXPECT_EQ(last, 12);
   EXPECT_EQ(origin, (std::vector<float>{0.5f, 0, -1}));
   EXPECT_EQ(range, std::vector<float>{0.25f});
-  EXPECT_EQ(count, p.info().num_params + kActions + 4) << "log_std, origin and range are none of them";
+  EXPECT_EQ(activation, std::vector<float>{2}) << "relu";
+  EXPECT_EQ(count, p.info().num_params + kActions + 5) << "log_std, origin, range and activation are not";
   ASSERT_EQ(points.size(), size_t{3 * kPoints});
   ASSERT_EQ(classes.size(), size_t{kPoints});
   // the example's points, as metres, give the example's action

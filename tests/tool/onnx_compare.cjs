@@ -1,5 +1,6 @@
 // onnx_compare.cjs MODULES FILE.onnx PROBE.json TOLERANCE: runs the file in onnxruntime-node on the
-// observations of the probe, in batches of 1 and of 7 and all at once, and compares with the actions in it.
+// observations of the probe, in batches of 1 and of 7 and all at once, and compares with the actions in it. Of a policy with
+// eyes also with the points backwards and some of them twice, and with the first one alone, which has to make a difference.
 const path = require('path');
 const fs = require('fs');
 const [modules, model, probe, tolerance] = process.argv.slice(2);
@@ -11,9 +12,30 @@ async function main() {
   const session = await ort.InferenceSession.create(model);
   let largest = 0;
   let spread = 0;
-  const compare = async (begin, rows) => {
+  const count = want.num_points || 0;
+  const points = Float32Array.from(want.points || []);
+  const classes = Uint8Array.from(want.point_class || []);
+  // Point order[i] of each of the rows' clouds.
+  const cloud = (begin, rows, order) => {
+    const seen = new Float32Array(rows * order.length * 3);
+    const kinds = new Uint8Array(rows * order.length);
+    for (let r = 0; r < rows; ++r) {
+      order.forEach((p, i) => {
+        const from = (begin + r) * count + p, to = r * order.length + i;
+        seen.set(points.subarray(3 * from, 3 * from + 3), 3 * to);
+        kinds[to] = classes.length ? classes[from] : 0;
+      });
+    }
+    const feeds = { points: new ort.Tensor('float32', seen, [rows, order.length, 3]) };
+    if (classes.length) feeds.point_class = new ort.Tensor('uint8', kinds, [rows, order.length]);
+    return feeds;
+  };
+  const all = Array.from({ length: count }, (_, i) => i);
+  const compare = async (begin, rows, order = all) => {
     const data = obs.slice(begin * want.obs_dim, (begin + rows) * want.obs_dim);
-    const out = await session.run({ obs: new ort.Tensor('float32', data, [rows, want.obs_dim]) });
+    const feeds = { obs: new ort.Tensor('float32', data, [rows, want.obs_dim]) };
+    if (count) Object.assign(feeds, cloud(begin, rows, order));
+    const out = await session.run(feeds);
     const shape = [rows, want.action_dim];
     if (String(out.action.dims) !== String(shape)) throw new Error(`action is ${out.action.dims}, not ${shape}`);
     const stds = out.log_std.dims;
@@ -28,9 +50,16 @@ async function main() {
   await compare(0, want.rows);
   for (let begin = 0; begin + 7 <= want.rows; begin += 7) await compare(begin, 7);
   for (let begin = 0; begin < Math.min(want.rows, 100); ++begin) await compare(begin, 1);
+  if (count) await compare(0, want.rows, [...all].reverse().concat(all.slice(0, 5)));
   console.log(`${want.rows} rows, largest difference ${largest.toExponential(2)}, actions spread over ${spread.toFixed(3)}`);
   if (!(largest <= Number(tolerance))) throw new Error(`the difference is above ${tolerance}`);
   if (spread === 0) throw new Error('all actions are the same: nothing was compared');
+  if (count) {
+    if (!want.played) throw new Error('no row of the probe was played');
+    largest = 0;
+    await compare(0, want.rows, [0]);
+    if (!(largest > 100 * Number(tolerance))) throw new Error(`one point gives the same actions as ${count}, within ${largest}`);
+  }
 }
 main().catch((e) => {
   console.error(`${model}: ${e.message}`);

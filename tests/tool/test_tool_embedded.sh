@@ -1,7 +1,7 @@
 #!/bin/sh
 # test_tool_embedded.sh TOOL [FOLDER]: policies of hand_over as C source on bare Cortex-M processors under qemu: the
 # self-test passes, and fails with a number changed; and a table of what they take, of the policies NAME.rdm in the
-# folder instead. Instructions are qemu's count (valgrind's on x86-64), not cycles.
+# folder instead. eyes: 64,64 beside a cloud of 64 points through an encoder of 16,32. Instructions are qemu's count (valgrind's on x86-64), not cycles.
 models=${2:-}
 [ -z "$models" ] || models=$(realpath "$models")
 . "$(dirname "$0")/tool.sh"
@@ -21,7 +21,7 @@ board() {
   file=$1 name=$2 machine=$3
   shift 3
   arm-none-eabi-gcc -std=gnu99 -Os "$@" -mthumb -w -DREDMAN_POLICY_TEST "-DPOLICY=\"$dir/$file\"" -DNAME="$name" \
-    -nostartfiles -T "$here/embedded/board.ld" "$here/embedded/board.c" -o board.elf -lc -lgcc || return 99
+    $eyes -nostartfiles -T "$here/embedded/board.ld" "$here/embedded/board.c" -o board.elf -lc -lgcc || return 99
   timeout 120 qemu-system-arm -M "$machine" -icount shift=0 -display none -monitor none -serial none \
     -semihosting-config enable=on,target=native -kernel board.elf < /dev/null > ran 2>&1
 }
@@ -43,26 +43,36 @@ measure() {  # measure NAME WEIGHTS MACHINE TITLE FLAGS...
 }
 host() {  # host NAME WEIGHTS
   gcc -std=c99 -Os -c "$1.c" -o object.o || { say "$1: gcc fails"; return; }
-  printf '#define REDMAN_POLICY_HEADER\n#include "%s.c"\nint main(void) { static float o[%s_obs_dim], a[%s_action_dim]; int i;
-    for (i = 0; i < 10; ++i) %s_act(o, a); return a[0] > 2; }\n' "$1" "$1" "$1" "$1" > calls.c
+  act=_act arguments='o, a' cloud=
+  [ -z "$eyes" ] || act=_act_points arguments="o, p, $1_num_points, a" cloud=", p[3 * $1_num_points]"
+  printf '#define REDMAN_POLICY_HEADER\n#include "%s.c"\nint main(void) { static float o[%s_obs_dim], a[%s_action_dim]%s; int i;
+    for (i = 0; i < 10; ++i) %s(%s); return a[0] > 2; }\n' "$1" "$1" "$1" "$cloud" "$1$act" "$arguments" > calls.c
   gcc -std=c99 -Os calls.c object.o -o calls
   count=-
   command -v valgrind > /dev/null && count=$(valgrind --tool=callgrind --callgrind-out-file=/dev/null \
-    "--toggle-collect=${1}_act" ./calls 2>&1 | awk '/Collected/ { printf "%d", $NF / 10 }')
+    "--toggle-collect=$1$act" ./calls 2>&1 | awk '/Collected/ { printf "%d", $NF / 10 }')
   row x86-64 "${1%%_*}" "$2" "$(section object.o .text)" "$(section object.o .rodata)" - "$count"
 }
 
+eyes=
 row target hidden weights .text .rodata stack instructions
 echo '|---|---|---|---|---|---|---|'
-for width in 64 128; do
+for width in 64 128 eyes; do
   model=$models/$width.rdm
+  hidden="--set hidden=$width,$width"
+  if [ $width = eyes ]; then
+    eyes=-DEYES
+    hidden='--set hidden=64,64 --set encoder=16,32 --set encoder_points=64 --set cloud_width=24 --set cloud_height=24'
+  fi
   if [ -z "$models" ]; then
-    "$tool" train --envs 4 --steps 512 --set max_steps=20 --set horizon=8 --set hidden=$width,$width --out run-$width > out 2> err ||
+    # shellcheck disable=SC2086
+    "$tool" train --envs 4 --steps 512 --set max_steps=20 --set horizon=8 $hidden --out run-$width > out 2> err ||
       { cat err; exit 1; }
     model=run-$width/policy.rdm
   fi
   for weights in float int8; do
     name=h${width}_$weights
+    [ $width = eyes ] && name=eyes_$weights
     flag=
     [ $weights = int8 ] && flag=--int8
     "$tool" export --policy "$model" --c "$name.c" --name "$name" $flag > out || say "$name: no export"

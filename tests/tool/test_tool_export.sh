@@ -31,10 +31,18 @@ policy relu --set hidden=32 --set activation=relu
 policy bare --set hidden=16,16 --set normalize_obs=false
 policy state --set hidden=16,16 --set std_mode=state
 policy part --set hidden=16,16 --set 'actor_obs=proprioception,object.*' --set 'critic_obs=!goal.*'
+cloud='--set encoder_points=32 --set cloud_width=24 --set cloud_height=24'
+# shellcheck disable=SC2086
+policy eyes --set encoder=16,24 --set actor_obs=vision --set hidden=16,16 $cloud
+# shellcheck disable=SC2086
+policy kinds --set encoder=8,8,9 --set encoder_classes=4 --set encoder_activation=elu --set encoder_origin=0.1,-0.2,0.9 \
+  --set encoder_range=0.4 --set hidden=16 --set std_mode=state $cloud
+# shellcheck disable=SC2086
+policy flat --set encoder=12 --set encoder_activation=tanh --set hidden=16 --set normalize_obs=false $cloud
 
 command -v python3 > /dev/null && python3 - "$dir" << 'EOF' || failed=1
 import json, math, struct, sys
-for name in "tanh elu relu bare state part".split():
+for name in "tanh elu relu bare state part eyes kinds flat".split():
     data = open(f"{sys.argv[1]}/{name}.safetensors", "rb").read()
     (n,) = struct.unpack("<Q", data[:8])
     head = json.loads(data[8:8 + n])
@@ -46,20 +54,36 @@ for name in "tanh elu relu bare state part".split():
         assert begin == at and v["dtype"] == "F32" and end - begin == 4 * math.prod(v["shape"]), key
         at, t[key] = end, struct.unpack(f"<{(end - begin) // 4}f", body[begin:end])
     assert at == len(body)
-    assert ("normalizer.shift" in t) == (name != "bare"), sorted(t)
+    assert ("normalizer.shift" in t) == (name not in ("bare", "flat")), sorted(t)
     x = t["example.obs"]
     if "normalizer.shift" in t:
         c = t["normalizer.clip"][0]
         x = [min(c, max(-c, (a - b) * s)) for a, b, s in zip(x, t["normalizer.shift"], t["normalizer.scale"])]
-    f = {"tanh": math.tanh, "elu": lambda z: z if z > 0 else math.expm1(z), "relu": lambda z: max(0.0, z)}[meta["activation"]]
-    layers = sum(1 for key in t if key.endswith(".weight"))
-    for l in range(layers):
-        w, b = t[f"actor.{l}.weight"], t[f"actor.{l}.bias"]
-        x = [b[o] + math.fsum(w[o * len(x) + i] * x[i] for i in range(len(x))) for o in range(len(b))]
-        if l + 1 < layers:
-            x = [f(z) for z in x]
+    kinds = {"tanh": math.tanh, "elu": lambda z: z if z > 0 else math.expm1(z), "relu": lambda z: max(0.0, z)}
+    def run(net, x, f):
+        layers = sum(1 for key in t if key.startswith(net) and key.endswith(".weight"))
+        for l in range(layers):
+            w, b = t[f"{net}.{l}.weight"], t[f"{net}.{l}.bias"]
+            x = [b[o] + math.fsum(w[o * len(x) + i] * x[i] for i in range(len(x))) for o in range(len(b))]
+            if l + 1 < layers:
+                x = [f(z) for z in x]
+        return x
+    f = kinds[meta["activation"]]
+    if "encoder.0.weight" in t:
+        points, count = t["example.points"], int(meta["num_points"])
+        assert head["example.points"]["shape"] == [count, 3], head["example.points"]
+        seen = [[round(1000 * (points[3 * p + k] - t["encoder.origin"][k])) / 1000 / t["encoder.range"][0] for k in range(3)]
+                for p in range(count)]
+        for p in range(count if "example.point_class" in t else 0):
+            seen[p] += [float(c == t["example.point_class"][p]) for c in range(int(meta["num_point_classes"]))]
+        act = kinds[meta["encoder_activation"]]
+        x = list(x) + [act(max(z)) for z in zip(*(run("encoder", row, act) for row in seen))]
+    x = run("actor", x, f)
     gap = max(abs(min(1, max(-1, a)) - b) for a, b in zip(x, t["example.action"]))
     assert gap < 1e-5, (name, gap)
+    assert meta.get("observation_preset") == ("vision" if name == "eyes" else None), meta
+    ranges = [tuple(map(int, r.split(".."))) for r in meta["observation_entries"].split()]
+    assert any(a <= 374 <= b for a, b in ranges) == (name != "eyes"), meta  # where the object is
     assert meta["task"] == "hand_over_safe_finger" and len(meta["layout_hash"]) == 16, meta
 EOF
 

@@ -20,7 +20,7 @@ policy() {
   # the numbers of the probe, one a line
   part() { sed "s/.*\"$1\":\\[*//; s/[]},].*//" "$name.json"; echo; }
   list() { sed "s/.*\"$1\":\\[//; s/\\].*//" "$name.json" | tr , '\n'; echo; }
-  { part rows; list obs; list action; } > "$name.txt"
+  { part rows; list obs; list action; [ -z "$eyes" ] || list points; [ "$eyes" != '-DEYES -DKINDS' ] || list point_class; } > "$name.txt"
 }
 # status FILE WANT WHAT: the self-test's
 status() {
@@ -33,7 +33,8 @@ status() {
 compared() {
   file=$1 base=${1%_8} limit=$2
   shift 2
-  cc -std=c99 "$@" "-DNAME=$file" "-DPOLICY=\"$dir/$file.c\"" "$here/c_source/compare.c" "$file.c" -o compare -lm &&
+  # shellcheck disable=SC2086
+  cc -std=c99 "$@" $eyes "-DNAME=$file" "-DPOLICY=\"$dir/$file.c\"" "$here/c_source/compare.c" "$file.c" -o compare -lm &&
     ./compare "$base.txt" > found || { say "$file: nothing was compared"; return; }
   awk -v limit="$limit" '{ exit !($1 <= limit) }' found || say "$file $*: $(cat found), the limit is $limit"
 }
@@ -58,7 +59,7 @@ check() {
     fi
     status "$file" 0 "$file"
     # any number that is changed is noticed, and a policy that takes what is no number
-    for table in weight_0 bias_1; do
+    for table in weight_0 bias_1 ${eyes:+weight_eye_0 origin}; do
       awk -v table="_$table[" '{ if (on) { sub(/^  -?/, "&1"); on = 0 } if (index($0, table) && /^static const/) on = 1; print }' \
         "$file" > changed.c
       cmp -s "$file" changed.c && say "$file: nothing was changed in $table"
@@ -68,6 +69,15 @@ check() {
     status changed.c 3 "$file without its fault"
     sed 's/const float a = \([a-z]*\)\[i\];/const float a = 0.9f * \1[i];/' "$file" > changed.c
     status changed.c 1 "$file with other actions"
+    [ -z "$eyes" ] && continue
+    sed 's/fault += points.*/;/; s/fault += best.*/;/' "$file" > changed.c
+    status changed.c 3 "$file with points that are not finite"
+    sed 's/if (count < 1).*/;/' "$file" > changed.c
+    status changed.c 3 "$file without a point"
+    sed 's/best\[i\] = back\[i\]/best[i] += back[i]/; s/best\[i\] = front\[i\]/best[i] += front[i]/' "$file" > changed.c
+    status changed.c 1 "$file with a sum in the place of the largest"
+    sed 's/return (float)k;/return 0.0f;/' "$file" > changed.c
+    status changed.c 1 "$file with points that all are the origin"
     nm -u object | grep -vE 'memcpy|__stack_chk_fail|_GLOBAL_OFFSET_TABLE_' > calls && say "$file calls $(cat calls)"
   done
   compared "$name" 1e-6 -Os
@@ -77,6 +87,7 @@ check() {
   grep -q 'differ from' "${name}_8.c" || say "${name}_8: its error is not in it"
   checked=$((checked + 1))
 }
+eyes=
 check tanh --set hidden=64,64 --set activation=tanh
 check elu --set hidden=128,64,32 --set activation=elu
 check relu --set hidden=30 --set activation=relu
@@ -84,10 +95,21 @@ check bare --set hidden=16,17 --set normalize_obs=false
 check state --set hidden=16,16 --set std_mode=state
 check part --set hidden=16,16 --set 'actor_obs=proprioception,object.*'
 check ball --task ball_run --set hidden=16,16
-[ $checked -eq 7 ] || say "$checked policies"
+cloud='--set encoder_points=40 --set cloud_width=24 --set cloud_height=24'
+eyes=-DEYES
+# shellcheck disable=SC2086
+check sees --set encoder=16,24 --set actor_obs=vision --set hidden=16,16 $cloud
+# shellcheck disable=SC2086
+check flat --set encoder=12 --set encoder_activation=tanh --set hidden=16 --set activation=relu --set normalize_obs=false $cloud
+eyes='-DEYES -DKINDS'
+# shellcheck disable=SC2086
+check kinds --set encoder=8,8,9 --set encoder_classes=4 --set encoder_activation=elu --set encoder_origin=0.1,-0.2,0.9 \
+  --set encoder_range=0.4 --set hidden=17 --set std_mode=state $cloud
+eyes=
+[ $checked -eq 10 ] || say "$checked policies"
 
 # several policies in one program, by one file or by several
-printf '#include "%s"\n#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' tanh.c elu_8.c elu_8.c > both.c
+printf '#include "%s"\n#include "%s"\n#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' tanh.c elu_8.c elu_8.c kinds.c > both.c
 # shellcheck disable=SC2086
 cc -std=c99 $strict both.c bare.c state_8.c -o both || say "policies do not live beside each other"
 cc -std=c99 -Ofast -c tanh.c -o object 2> err && say "-Ofast is taken"
@@ -96,6 +118,8 @@ grep -q 'ffast-math' err || say "-Ofast: $(cat err)"
 # names
 "$tool" export --policy tanh --c own.c --json > out && grep -q '"name":"hand_over_safe_finger"' out || say "$(cat out)"
 grep -q 'right.joint_position' own.c || say "the observation's fields are not said"
+grep -q 'object.position  m  (not seen)$' sees.c || say "what is not seen is not said"
+grep -q 'goal.position  m$' sees.c || say "what is seen is not said"
 for bad in 1a a-b 'a b' '' _a a__b 'a;b' "$(printf '%064d' 0 | tr 0 a)" 'é'; do
   "$tool" export --policy tanh --c bad.c --name "$bad" > out 2> err
   [ $? -eq 2 ] && [ "$(wc -l < err)" -eq 1 ] || say "--name $bad: $(cat err)"

@@ -70,7 +70,13 @@ json() {
 
 json 'tasks name summary obs_dim action_dim cost_dim costs limit max_steps control_dt fields unit offset count
       options key default low high help defaults initial_mean' tasks
-json 'defaults initial_mean action_repeat discount' tasks hand_over_safe_finger
+json 'defaults initial_mean action_repeat discount presets' tasks hand_over_safe_finger
+# What a preset leaves: nothing of an object in vision, no goal in touch, no forces in proprioception.
+"$tool" tasks grasp > out
+for row in 'object.position .* state' 'goal.position .* state vision' 'right.ff_tip_force .* state vision touch' \
+  'right.joint_position .* state vision touch proprioception'; do
+  grep -q "^$row *$" out || { echo "tasks grasp has no row '$row'"; failed=1; }
+done
 json 'algos name summary params key default low high help' algos
 json 'version abi ode eigen ccd octomap precision compiler' info
 json 'run policy env_steps wall_seconds steps_per_second return cost cost_stderr success_rate cost_limit feasible fall_rate length' \

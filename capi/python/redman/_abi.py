@@ -3256,8 +3256,8 @@ FUNCTIONS: dict[str, Function] = {
         """"actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
         "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows of obs_dim: a
         weight of an entry that the policy does not see is 0. Of one that sees points "actor.0.weight" has a column for each
-        feature behind those, and there are "encoder.0.weight" and so on, "encoder.origin" and "encoder.range", in m, and
-        "example.points", in m, with "example.point_class".
+        feature behind those, and there are "encoder.0.weight" and so on, "encoder.origin" and "encoder.range", in m,
+        "encoder.activation" (0 tanh, 1 elu, 2 relu), "example.points", in m, and "example.point_class".
         """),
     "rdm_policy_tensor_read": Function(
         c_int32, {"p": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},

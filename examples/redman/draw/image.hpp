@@ -14,6 +14,9 @@ struct Image {
 // Equal heights, left to right, with a thin white line between them inside the given sizes.
 Image side_by_side(const std::vector<Image>& images);
 
+// Equal widths, with a thin line between them inside the upper one.
+Image one_below_the_other(const Image& above, const Image& below);
+
 // The bytes of a PNG file.
 std::string png_bytes(const Image& image);
 // Replaces the file atomically. Failure when it cannot be written.

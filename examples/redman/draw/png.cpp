@@ -7,9 +7,11 @@
 #include "draw/image.hpp"
 
 namespace tool {
+namespace {
+constexpr int32_t kLine = 2;  // pixels
+}  // namespace
 
 Image side_by_side(const std::vector<Image>& images) {
-  constexpr int32_t kLine = 2;  // pixels
   Image out;
   for (const Image& i : images) {
     out.width += i.width;
@@ -25,6 +27,15 @@ Image side_by_side(const std::vector<Image>& images) {
           out.rgb.begin() + static_cast<std::ptrdiff_t>((y * static_cast<size_t>(out.width) + left) * 3));
     left += static_cast<size_t>(i.width);
   }
+  return out;
+}
+
+Image one_below_the_other(const Image& above, const Image& below) {
+  Image out{above.width, above.height + below.height, above.rgb};
+  const auto row = static_cast<size_t>(above.width) * 3;
+  std::fill(out.rgb.end() - static_cast<std::ptrdiff_t>(std::min(row * kLine, out.rgb.size())), out.rgb.end(),
+            static_cast<unsigned char>(255));
+  out.rgb.insert(out.rgb.end(), below.rgb.begin(), below.rgb.end());
   return out;
 }
 

@@ -19,6 +19,8 @@ namespace tool {
 namespace {
 
 constexpr size_t kErrorRows = 1000, kTestRows = 8;
+constexpr size_t kErrorPoints = 200000;  // that int8 is measured on, at most: fewer rows of large clouds
+constexpr int32_t kTestPoints = 24;      // of a cloud of the self-test
 constexpr float kTestSpread = 2, kTestFar = 30;  // the last row's
 constexpr double kFloatTolerance = 4e-6;         // another order of rounding, wherever the file runs
 
@@ -49,16 +51,16 @@ void quantise(Layer& layer) {
   }
 }
 
-// The layers that the mean action needs: of a network with deviations in its last layer, the first half.
-std::vector<Layer> layers_of(const Network& network, bool int8) {
+// Layers of "actor" or "encoder", of the last one so many rows; `mark` begins their numbers.
+std::vector<Layer> layers_of(const Network& network, const std::string& of, const char* mark, int32_t count,
+                             int32_t outputs, bool int8) {
   std::vector<Layer> layers;
-  for (int32_t l = 0; l < network.num_layers; ++l) {
+  for (int32_t l = 0; l < count; ++l) {
     Layer layer;
-    layer.number = std::to_string(l);
-    const NamedTensor &w = *network.find("actor." + layer.number + ".weight"),
-                      &b = *network.find("actor." + layer.number + ".bias");
-    const bool last = l + 1 == network.num_layers;
-    const auto rows = static_cast<size_t>(last ? network.action_dim : static_cast<int32_t>(w.shape[0]));
+    layer.number = mark + std::to_string(l);
+    const std::string from = of + '.' + std::to_string(l);
+    const NamedTensor &w = *network.find(from + ".weight"), &b = *network.find(from + ".bias");
+    const auto rows = static_cast<size_t>(l + 1 == count ? outputs : static_cast<int32_t>(w.shape[0]));
     layer.in = static_cast<size_t>(w.shape[1]);
     layer.out = (rows + 3) / 4 * 4;
     layer.weight.assign(layer.out * layer.in, 0);
@@ -72,6 +74,16 @@ std::vector<Layer> layers_of(const Network& network, bool int8) {
     layers.push_back(std::move(layer));
   }
   return layers;
+}
+
+struct Layers {
+  std::vector<Layer> actor;  // for the mean action: where the last one has deviations too, its first half
+  std::vector<Layer> eyes;
+};
+Layers layers_of(const Network& network, bool int8) {
+  const Eyes& e = network.eyes;
+  return {layers_of(network, "actor", "", network.num_layers, network.action_dim, int8),
+          layers_of(network, "encoder", "eye_", e.num_layers, e.features, int8)};
 }
 
 // ---- the file's own arithmetic with int8 weights, to measure what they cost -------------------------------
@@ -93,7 +105,42 @@ void run_layer(const Layer& layer, std::vector<float>& x) {
   x = y;
 }
 
-std::vector<float> run_layers(const Network& network, const std::vector<Layer>& layers, const float* obs) {
+void run_activation(const std::string& name, std::vector<float>& x) {
+  for (float& z : x)
+    z = name == "relu" ? std::max(z, 0.0f) : name == "elu" ? (z > 0 ? z : std::expm1(z)) : std::tanh(z);
+}
+
+void run_all(const std::vector<Layer>& layers, const std::string& activation, std::vector<float>& x) {
+  for (const Layer& layer : layers) {
+    run_layer(layer, x);
+    if (&layer != &layers.back()) run_activation(activation, x);
+  }
+}
+
+// Features of one cloud.
+std::vector<float> run_eyes(const Eyes& e, const std::vector<Layer>& layers, const float* points,
+                            const uint8_t* classes, const uint8_t* colors) {
+  std::vector<float> best, x;
+  for (size_t p = 0; p < static_cast<size_t>(e.points); ++p) {
+    x.assign(layers[0].in, 0);
+    for (size_t k = 0; k < 3; ++k) {
+      const double mm = 1000 * (static_cast<double>(points[3 * p + k]) - static_cast<double>(e.origin[k]));
+      x[k] = 0.001f / e.range * static_cast<float>(std::nearbyint(std::clamp(mm, -32767.0, 32767.0)));
+    }
+    if (e.classes) x[3 + classes[p]] = 1;
+    for (size_t k = 0; e.color && k < 3; ++k)
+      x[3 + static_cast<size_t>(e.classes) + k] = static_cast<float>(colors[3 * p + k]) / 255;
+    run_all(layers, e.activation, x);
+    if (p == 0) best = x;
+    for (size_t j = 0; j < x.size(); ++j) best[j] = std::max(best[j], x[j]);
+  }
+  best.resize(static_cast<size_t>(e.features));
+  run_activation(e.activation, best);
+  return best;
+}
+
+std::vector<float> run_layers(const Network& network, const Layers& layers, const float* obs,
+                              const Clouds& clouds, size_t row) {
   std::vector<float> x(obs, obs + network.obs_dim);
   if (const NamedTensor* clip = network.find("normalizer.clip")) {
     const auto &shift = network.find("normalizer.shift")->values,
@@ -101,14 +148,13 @@ std::vector<float> run_layers(const Network& network, const std::vector<Layer>& 
     for (size_t i = 0; i < x.size(); ++i)
       x[i] = std::clamp((x[i] - shift[i]) * scale[i], -clip->values[0], clip->values[0]);
   }
-  for (const Layer& layer : layers) {
-    run_layer(layer, x);
-    if (&layer == &layers.back()) break;
-    for (float& z : x)
-      z = network.activation == "relu"  ? std::max(z, 0.0f)
-          : network.activation == "elu" ? (z > 0 ? z : std::expm1(z))
-                                        : std::tanh(z);
+  if (const auto count = static_cast<size_t>(network.eyes.points)) {
+    const auto features =
+        run_eyes(network.eyes, layers.eyes, clouds.points.data() + 3 * row * count,
+                 clouds.classes.data() + row * count, clouds.colors.data() + 3 * row * count);
+    x.insert(x.end(), features.begin(), features.end());
   }
+  run_all(layers.actor, network.activation, x);
   x.resize(static_cast<size_t>(network.action_dim));
   for (float& a : x) a = std::clamp(a, -1.0f, 1.0f);
   return x;
@@ -214,15 +260,54 @@ void draw_row(const Network& network, uint32_t& random, float spread, float* obs
   }
 }
 
-// Observations of the self-test: the policy's example, and drawn ones.
-std::vector<float> test_observations(const Network& network) {
-  const auto in = static_cast<size_t>(network.obs_dim);
-  std::vector<float> obs = network.find("example.obs")->values;
-  obs.resize(kTestRows * in);
+// Of a coordinate of a drawn point, to each side of the origin, mm.
+int32_t reach_of(const Eyes& e) {
+  return static_cast<int32_t>(std::clamp(std::lround(2000 * static_cast<double>(e.range)), 1L, 30000L));
+}
+int32_t test_points(const Eyes& e) {
+  return std::min(kTestPoints, e.points);
+}
+
+// One cloud of the self-test, what template kDrawPoints draws; the rest of it repeats that.
+void draw_cloud(const Eyes& e, uint32_t& random, float* points, uint8_t* classes, uint8_t* colors) {
+  const int32_t reach = reach_of(e);
+  const auto drawn = static_cast<size_t>(test_points(e));
+  for (size_t i = 0; i < 3 * drawn; ++i) {
+    random = random * 1664525u + 1013904223u;
+    const auto mm = static_cast<int32_t>((random >> 8) % static_cast<uint32_t>(2 * reach + 1)) - reach;
+    points[i] = e.origin[i % 3] + 0.001f * static_cast<float>(mm);
+  }
+  for (size_t p = 0; p < static_cast<size_t>(e.points); ++p) {
+    if (p >= drawn) std::copy_n(points + 3 * (p % drawn), 3, points + 3 * p);
+    classes[p] = e.classes ? static_cast<uint8_t>(p % drawn % static_cast<size_t>(e.classes)) : uint8_t{0};
+    for (size_t k = 0; k < 3; ++k) colors[3 * p + k] = static_cast<uint8_t>((3 * (p % drawn) + k) * 37 % 256);
+  }
+}
+
+struct TestRows {
+  std::vector<float> obs;
+  Clouds clouds;
+};
+// Observations of the self-test, the policy's example and drawn ones, each with a drawn cloud.
+TestRows test_rows(const Network& network) {
+  const Eyes& e = network.eyes;
+  const auto in = static_cast<size_t>(network.obs_dim), count = static_cast<size_t>(e.points);
+  TestRows rows;
+  rows.obs.resize(kTestRows * in);
+  rows.clouds.points.resize(kTestRows * count * 3);
+  rows.clouds.classes.resize(kTestRows * count);
+  rows.clouds.colors.resize(kTestRows * count * 3);
   uint32_t random = 1;
-  for (size_t row = 1; row < kTestRows; ++row)
-    draw_row(network, random, row + 1 < kTestRows ? kTestSpread : kTestFar, obs.data() + row * in);
-  return obs;
+  for (size_t row = 0; row < kTestRows; ++row) {
+    if (row == 1) random = 1;
+    draw_row(network, random, row + 1 < kTestRows ? kTestSpread : kTestFar, rows.obs.data() + row * in);
+    if (count)
+      draw_cloud(e, random, rows.clouds.points.data() + 3 * row * count,
+                 rows.clouds.classes.data() + row * count, rows.clouds.colors.data() + 3 * row * count);
+  }
+  const auto& example = network.find("example.obs")->values;
+  std::copy(example.begin(), example.end(), rows.obs.begin());
+  return rows;
 }
 
 struct Sizes {
@@ -240,36 +325,160 @@ Sizes sizes_of(const std::vector<Layer>& layers) {
   return s;
 }
 
-std::string act_text(const Network& network, const std::vector<Layer>& layers, bool int8) {
-  const Sizes sizes = sizes_of(layers);
-  std::string out =
-      replaced(replaced(kActHead, "FRONT", std::to_string(sizes.front)), "BACK", std::to_string(sizes.back));
-  out += network.find("normalizer.clip") ? kNormalise : kTake;
+// Calls of layers, from the row `front` on.
+std::string layer_calls(const std::vector<Layer>& layers, bool int8, const char* indent,
+                        const char* activate) {
+  std::string out;
   for (size_t l = 0; l < layers.size(); ++l) {
     const Layer& y = layers[l];
     const std::string scale = int8 ? "NAME_scale_" + y.number + ", " : "";
-    out += format("  NAME_layer(NAME_weight_%s, %sNAME_bias_%s, %s, %zu, %zu, %s);\n", y.number.c_str(),
-                  scale.c_str(), y.number.c_str(), l % 2 ? "back" : "front", y.in, y.out,
+    out += format("%sNAME_layer(NAME_weight_%s, %sNAME_bias_%s, %s, %zu, %zu, %s);\n", indent,
+                  y.number.c_str(), scale.c_str(), y.number.c_str(), l % 2 ? "back" : "front", y.in, y.out,
                   l % 2 ? "front" : "back");
-    if (l + 1 < layers.size()) out += format("  NAME_activate(%s, %zu);\n", l % 2 ? "front" : "back", y.out);
+    if (l + 1 < layers.size())
+      out += format("%s%s(%s, %zu);\n", indent, activate, l % 2 ? "front" : "back", y.out);
   }
-  return out + replaced(kActTail, "LAST", layers.size() % 2 ? "back" : "front");
+  return out;
+}
+const char* last_row(const std::vector<Layer>& layers) {
+  return layers.size() % 2 ? "back" : "front";
+}
+std::string with_rows(const char* text, const std::vector<Layer>& layers) {
+  const Sizes sizes = sizes_of(layers);
+  return replaced(replaced(text, "FRONT", std::to_string(sizes.front)), "BACK", std::to_string(sizes.back));
+}
+
+// What comes with points, each with `type` before it and a comma behind.
+std::string channels_of(const Eyes& e, const std::string& type) {
+  return (e.classes ? type + "point_class, " : "") + (e.color ? type + "point_color, " : "");
+}
+
+// What a caller of the file writes.
+struct Call {
+  std::string declaration, call, no_points;
+};
+Call call_of(const Eyes& e) {
+  if (e.points == 0) return {"void NAME_act(const float *obs, float *action)", "NAME_act(obs, action)", ""};
+  const std::string act = "NAME_act_points(obs, points, " + channels_of(e, "");
+  return {"void NAME_act_points(const float *obs, const float *points, " +
+              channels_of(e, "const unsigned char *") + "int count, float *action)",
+          act + "count, action)", act + "0, action)"};
+}
+
+// The functions of one kind of activation, `name` in the place of "activation".
+std::string activation_text(const std::string& kind, bool eye) {
+  const std::string text = std::string(kind == "relu"  ? kRelu
+                                       : kind == "elu" ? kElu
+                                                       : kActivateTanh) +
+                           kActivate;
+  return eye ? replaced(text, "NAME_activat", "NAME_eye_activat") : text;
+}
+bool own_activation(const Network& network, const Layers& layers) {
+  return network.eyes.points && (network.eyes.activation != network.activation || layers.actor.size() == 1);
+}
+std::string activations_text(const Network& network, const Layers& layers) {
+  const bool actor = layers.actor.size() > 1, eyes = own_activation(network, layers);
+  std::string out;
+  if ((actor && network.activation != "relu") || (eyes && network.eyes.activation != "relu")) out += kTanh;
+  if (actor) out += activation_text(network.activation, false);
+  return eyes ? out + activation_text(network.eyes.activation, true) : out;
+}
+
+std::string eyes_text(const Network& network, const Layers& layers, bool int8) {
+  const Eyes& e = network.eyes;
+  const char* activate = own_activation(network, layers) ? "NAME_eye_activate" : "NAME_activate";
+  std::string see = with_rows(kSeeHead, layers.eyes);
+  if (e.classes) see += replaced(kSeeClasses, "CLASSES", std::to_string(e.classes));
+  if (e.color) see += replaced(kSeeColors, "FIRST", std::to_string(3 + e.classes));
+  see += layer_calls(layers.eyes, int8, "    ", activate) + replaced(kSeeTail, "LAST", last_row(layers.eyes));
+  see = replaced(see, "STEP", literal(static_cast<double>(0.001f / e.range)));
+  const std::string act =
+      replaced(replaced(with_rows(kActPointsHead, layers.actor), "EYE_ACTIVATE", activate), "DECLARATION",
+               call_of(e).declaration);
+  std::string out = kMillimetres + see + act;
+  out = replaced(out, "CHANNEL_PARAMETERS", channels_of(e, "const unsigned char *"));
+  out = replaced(out, "CHANNEL_ARGUMENTS", channels_of(e, ""));
+  return replaced(out, "FEATURES", std::to_string(e.features));
+}
+
+std::string act_text(const Network& network, const Layers& layers, bool int8) {
+  std::string out =
+      network.eyes.points ? eyes_text(network, layers, int8) : with_rows(kActHead, layers.actor);
+  out += kRow;
+  out += network.find("normalizer.clip") ? kNormalise : kTake;
+  out += layer_calls(layers.actor, int8, "  ", "NAME_activate");
+  return out + replaced(kActTail, "LAST", last_row(layers.actor));
+}
+
+// The self-test's clouds.
+std::string test_points_text(const Eyes& e) {
+  if (e.points == 0) return "";
+  const int32_t reach = reach_of(e);
+  std::string parameters, lines;
+  if (e.classes) {
+    parameters += ", unsigned char *point_class";
+    lines += format("    point_class[i / 3] = (unsigned char)(i / 3 %% %d);\n", e.classes);
+  }
+  if (e.color) {
+    parameters += ", unsigned char *point_color";
+    lines += "    point_color[i] = (unsigned char)(i * 37 % 256);\n";
+  }
+  std::string out = replaced(replaced(kDrawPoints, "DRAW_PARAMETER", parameters), "DRAW_LINE", lines);
+  out = replaced(out, "TEST_POINTS", std::to_string(test_points(e)));
+  return replaced(replaced(out, "SPAN", std::to_string(2 * reach + 1)), "REACH", std::to_string(reach));
+}
+std::string test_main_text(const Eyes& e) {
+  std::string cloud, draw, refused;
+  if (e.points) {
+    cloud = "  static float points[3 * NAME_test_points];\n";
+    if (e.classes) cloud += "  static unsigned char point_class[NAME_test_points];\n";
+    if (e.color) cloud += "  static unsigned char point_color[3 * NAME_test_points];\n";
+    cloud += "  const int count = NAME_test_points;\n";
+    draw = format("    NAME_draw_points(&random, points%s%s);\n", e.classes ? ", point_class" : "",
+                  e.color ? ", point_color" : "");
+    refused = kRefusePoints;
+    if (e.classes) refused += replaced(kRefuseClasses, "CLASSES", std::to_string(e.classes));
+  }
+  std::string out = replaced(replaced(kTestMain, "CLOUD", cloud), "DRAW", draw);
+  out = replaced(out, "REFUSED", refused);
+  const Call call = call_of(e);
+  return replaced(replaced(out, "NO_POINTS", call.no_points), "CALL", call.call);
 }
 
 std::string head_text(const Network& network, const std::vector<Layer>& layers,
                       const std::vector<ObsField>& fields, const rdm_policy_info& info) {
-  std::string out = kHead;
+  const Eyes& e = network.eyes;
+  const Call call = call_of(e);
+  std::string out = kHead, beside, sees;
+  if (e.points) {
+    beside = "points[3 * NAME_num_points], ";
+    sees = kSees;
+    if (e.classes) sees += kSeesClasses;
+    if (e.color) sees += kSeesColors;
+  }
+  out = replaced(
+      replaced(replaced(out, "BESIDE", beside), "CALL", replaced(call.call, "count", "NAME_num_points")),
+      "SEES", sees);
   const uint32_t v = rdm_version();
-  std::string shape = std::to_string(network.obs_dim);
+  std::string shape;
+  for (int32_t l = 0; l < e.num_layers; ++l)
+    shape += (l ? " -> " : "each point -> ") +
+             std::to_string(network.find("encoder." + std::to_string(l) + ".bias")->shape[0]) + ' ' +
+             e.activation;
+  if (e.points) shape += format(", the largest of all; %d beside ", e.features);
+  shape += std::to_string(network.obs_dim);
   for (size_t l = 0; l + 1 < layers.size(); ++l)
     shape += " -> " + std::to_string(network.find("actor." + layers[l].number + ".bias")->shape[0]) + ' ' +
              network.activation;
   shape += " -> " + std::to_string(network.action_dim);
   if (!fields.empty()) {
-    out += " *\n * Observation: entries, field, unit\n";
+    const bool whole = std::all_of(fields.begin(), fields.end(), [](const ObsField& f) { return f.seen; });
+    out +=
+        format(" *\n * Observation: entries, field, unit%s\n",
+               whole ? "" : "; what stands where nothing is seen, as long as it is finite, changes nothing");
     for (const ObsField& f : fields)
-      out += format(" *   %4d ..%4d  %s  %s\n", f.offset, f.offset + f.count - 1, harmless(f.name).c_str(),
-                    replaced(f.unit, "*/", "").c_str());
+      out += format(" *   %4d ..%4d  %s  %s%s\n", f.offset, f.offset + f.count - 1, harmless(f.name).c_str(),
+                    replaced(f.unit, "*/", "").c_str(), f.seen ? "" : "  (not seen)");
   }
   out = replaced(out, "TASK", *info.task ? harmless(info.task) : "its host");
   out = replaced(out, "VERSION", format("%u.%u.%u", v / 1000000, v / 1000 % 1000, v % 1000));
@@ -281,30 +490,48 @@ std::string head_text(const Network& network, const std::vector<Layer>& layers,
                                       : format("%d control steps", info.action_repeat));
 }
 
-size_t stack_bytes(const std::vector<Layer>& layers, bool int8) {
-  const Sizes s = sizes_of(layers);
-  return (s.front + s.back) * sizeof(float) + (int8 ? s.widest * sizeof(int16_t) : 0);
+size_t widest_of(const Layers& layers) {
+  return std::max(sizes_of(layers.actor).widest, layers.eyes.empty() ? 0 : sizes_of(layers.eyes).widest);
+}
+size_t stack_bytes(const Network& network, const Layers& layers, bool int8) {
+  const Sizes s = sizes_of(layers.actor);
+  size_t floats = s.front + s.back;
+  if (!layers.eyes.empty()) {
+    const Sizes e = sizes_of(layers.eyes);
+    floats += e.front + e.back + static_cast<size_t>(network.eyes.features);
+  }
+  return floats * sizeof(float) + (int8 ? widest_of(layers) * sizeof(int16_t) : 0);
 }
 
 }  // namespace
 
 CSource c_source(const redman::Policy& policy, const Network& network, const std::string& name,
                  const std::vector<ObsField>& fields, bool int8) {
-  const std::vector<Layer> layers = layers_of(network, int8);
+  const Layers layers = layers_of(network, int8);
+  const Eyes& eyes = network.eyes;
   const NamedTensor* clip = network.find("normalizer.clip");
-  const std::vector<float> tests = test_observations(network), expected = mean_actions(policy, tests);
+  const TestRows tests = test_rows(network);
+  const std::vector<float> expected = mean_actions(policy, tests.obs, tests.clouds);
   CSource out;
   double tolerance = kFloatTolerance;
   std::string weights = "32-bit floats";
   if (int8) {
-    std::vector<float> obs = probe_observations(network, kErrorRows, 0);
-    std::vector<float> exact = mean_actions(policy, obs);
-    obs.insert(obs.end(), tests.begin(), tests.end());
-    exact.insert(exact.end(), expected.begin(), expected.end());
+    const size_t rows =
+        eyes.points ? std::clamp<size_t>(kErrorPoints / static_cast<size_t>(eyes.points), 10, kErrorRows)
+                    : kErrorRows;
+    std::vector<float> obs = probe_observations(network, rows, 0);
+    Clouds clouds = probe_clouds(network, rows, 0);
+    std::vector<float> exact = mean_actions(policy, obs, clouds);
+    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    append(obs, tests.obs);
+    append(clouds.points, tests.clouds.points);
+    append(clouds.classes, tests.clouds.classes);
+    append(clouds.colors, tests.clouds.colors);
+    append(exact, expected);
     const auto in = static_cast<size_t>(network.obs_dim), dim = static_cast<size_t>(network.action_dim);
     double squares = 0;
     for (size_t row = 0; row < obs.size() / in; ++row) {
-      const std::vector<float> action = run_layers(network, layers, obs.data() + row * in);
+      const std::vector<float> action = run_layers(network, layers, obs.data() + row * in, clouds, row);
       for (size_t j = 0; j < dim; ++j) {
         const auto gap = static_cast<double>(std::abs(action[j] - exact[row * dim + j]));
         out.largest_error = std::max(out.largest_error, gap);
@@ -317,7 +544,7 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
         "8 bits and a scale for each row. Actions then differ from\n * the policy's by %g at most, %g in "
         "root "
         "mean square, over %zu random observations",
-        upwards(out.largest_error), upwards(out.rms_error), kErrorRows);
+        upwards(out.largest_error), upwards(out.rms_error), rows);
   }
 
   Tables tables;
@@ -327,24 +554,25 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
     tables.add("shift", shift);
     tables.add("scale", scale);
   }
-  for (const Layer& layer : layers) {
-    if (int8)
-      tables.add("weight_" + layer.number, layer.small), tables.add("scale_" + layer.number, layer.scale);
-    else
-      tables.add("weight_" + layer.number, layer.weight);
-    tables.add("bias_" + layer.number, layer.bias);
-  }
+  if (eyes.points) tables.add("origin", std::vector<float>(eyes.origin, eyes.origin + 3));
+  for (const auto* part : {&layers.actor, &layers.eyes})
+    for (const Layer& layer : *part) {
+      if (int8)
+        tables.add("weight_" + layer.number, layer.small), tables.add("scale_" + layer.number, layer.scale);
+      else
+        tables.add("weight_" + layer.number, layer.weight);
+      tables.add("bias_" + layer.number, layer.bias);
+    }
   const rdm_policy_info& info = policy.info();
   std::string& text = out.text;
-  text = head_text(network, layers, fields, info);
-  text += kDeclarations;
+  text = head_text(network, layers.actor, fields, info);
+  text += replaced(replaced(kDeclarations, "DECLARATION", call_of(eyes).declaration), "EYE_SIZES",
+                   !eyes.points ? ""
+                                : format(",\n       NAME_num_points = %d, NAME_num_point_classes = %d",
+                                         eyes.points, eyes.classes));
   text += tables.text();
   text += kFma;
-  if (layers.size() > 1) {
-    if (network.activation != "relu") text += kTanh;
-    text += network.activation == "relu" ? kRelu : network.activation == "elu" ? kElu : kActivateTanh;
-    text += kActivate;
-  }
+  text += activations_text(network, layers);
   text += int8 ? kLayerInt8 : kLayerFloat;
   text += act_text(network, layers, int8);
   text += kTestHead;
@@ -354,14 +582,15 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
   text += replaced(replaced(kDraw, "DRAWN", clip ? "u / NAME_scale[i] + NAME_shift[i]" : "u"), "SPREAD",
                    literal(static_cast<double>(kTestSpread)));
   text = replaced(text, "FAR", literal(static_cast<double>(kTestFar)));
-  text += replaced(kTestMain, "SUMS", tables.calls());
+  text += test_points_text(eyes);
+  text += replaced(test_main_text(eyes), "SUMS", tables.calls());
   for (const auto& [word, by] : std::vector<std::pair<std::string, std::string>>{
            {"WEIGHTS", weights},
-           {"STACK", std::to_string(stack_bytes(layers, int8))},
+           {"STACK", std::to_string(stack_bytes(network, layers, int8))},
            {"OBS_DIM", std::to_string(network.obs_dim)},
            {"ACTION_DIM", std::to_string(network.action_dim)},
            {"REPEAT", std::to_string(info.action_repeat)},
-           {"WIDEST", std::to_string(sizes_of(layers).widest)},
+           {"WIDEST", std::to_string(widest_of(layers))},
            {"CLIP", clip ? literal(static_cast<double>(clip->values[0])) : ""},
            {"ROWS", std::to_string(kTestRows)},
            {"TOLERANCE", literal(tolerance)},

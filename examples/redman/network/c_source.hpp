@@ -7,6 +7,7 @@ namespace tool {
 struct ObsField {
   std::string name, unit;
   int32_t offset = 0, count = 0;  // entries
+  bool seen = true;               // by the policy
 };
 
 struct CSource {

@@ -7,13 +7,13 @@ inline constexpr const char* kHead =
     R"(/* Policy of TASK, exported by redman VERSION. C99 and C++; no heap, no library, no state: call it from
  * any thread. STACK bytes of stack and a little.
  *
- *   float obs[NAME_obs_dim], action[NAME_action_dim];
- *   NAME_act(obs, action);
+ *   float obs[NAME_obs_dim], BESIDEaction[NAME_action_dim];
+ *   CALL;
  *
  * One decision, to be held for RATE: the mean action, clipped to [-1, 1].
  * Every action is NaN when an observation is not finite, or the network overflows on it: test one for
  * action == action before it moves anything.
- *
+SEES *
  * With REDMAN_POLICY_HEADER defined this file declares only. With REDMAN_POLICY_TEST it is a program: status 0
  * when the actions are the policy's, 1 when not, 2 when a number is not what was exported, 3 when an
  * observation that is not finite is taken.
@@ -22,14 +22,30 @@ inline constexpr const char* kHead =
  * Layout of observations and actions: LAYOUT.
 )";
 
+// Of a policy with eyes.
+inline constexpr const char* kSees =
+    R"( *
+ * points [count][3]: the cloud, m, in the frame that it was trained in (the world's). A point counts as whole
+ * millimetres from NAME_origin, within +-32.767 m. Any count from 1 on, in any order: what comes twice
+ * changes nothing. It learned from clouds of NAME_num_points. Every action is NaN when a point is not finite, or there
+ * is none.
+)";
+inline constexpr const char* kSeesClasses =
+    R"( * point_class [count]: what each point lies on, less than NAME_num_point_classes; every action is NaN for another.
+)";
+
+inline constexpr const char* kSeesColors =
+    R"( * point_color [count][3]: its colour, red, green and blue.
+)";
+
 inline constexpr const char* kDeclarations = R"( */
 #ifndef NAME_DECLARED
 #define NAME_DECLARED
-enum { NAME_obs_dim = OBS_DIM, NAME_action_dim = ACTION_DIM, NAME_action_repeat = REPEAT };
+enum { NAME_obs_dim = OBS_DIM, NAME_action_dim = ACTION_DIM, NAME_action_repeat = REPEATEYE_SIZES };
 #ifdef __cplusplus
 extern "C" {
 #endif
-void NAME_act(const float *obs, float *action); /* [NAME_obs_dim], [NAME_action_dim] */
+DECLARATION;
 #ifdef __cplusplus
 }
 #endif
@@ -163,7 +179,64 @@ void NAME_act(const float *obs, float *action) {
   float front[FRONT], back[BACK];
   float fault = 0.0f; /* NaN once something is not finite */
   int i;
-  for (i = 0; i < NAME_obs_dim; ++i) {
+)";
+
+inline constexpr const char* kRow = R"(  for (i = 0; i < NAME_obs_dim; ++i) {
+)";
+
+// ---- eyes -------------------------------------------------------------------------------------------------
+inline constexpr const char* kMillimetres = R"(
+/* What is seen of a coordinate: whole millimetres from the origin, halves to the even one, within +-32767. */
+static float NAME_millimetres(float x, float origin) {
+  const double mm = 1000.0 * ((double)x - (double)origin);
+  const double bound = mm > -32767.0 ? (mm < 32767.0 ? mm : 32767.0) : -32767.0;
+  const int32_t k = (int32_t)bound;
+  const double high = (double)k + 0.5, low = (double)k - 0.5;
+  if (bound > high || (bound == high && k % 2 != 0)) return (float)(k + 1);
+  if (bound < low || (bound == low && k % 2 != 0)) return (float)(k - 1);
+  return (float)k;
+}
+)";
+
+inline constexpr const char* kSeeHead = R"(
+/* best [FEATURES]: the largest of each of the encoder's outputs over all points. Returns 0, or NaN for no cloud. */
+static float NAME_see(const float *points, CHANNEL_PARAMETERSint count, float *best) {
+  float front[FRONT], back[BACK];
+  float fault = 0.0f;
+  int i, p;
+  for (i = 0; i < FEATURES; ++i) best[i] = 0.0f;
+  if (count < 1) fault = fault / fault;
+  for (p = 0; p < count; ++p, points += 3) {
+    for (i = 0; i < 3; ++i) {
+      front[i] = STEP * NAME_millimetres(points[i], NAME_origin[i]);
+      fault += points[i] - points[i];
+    }
+)";
+
+inline constexpr const char* kSeeClasses =
+    R"(    for (i = 0; i < CLASSES; ++i) front[3 + i] = point_class[p] == i ? 1.0f : 0.0f;
+    if (point_class[p] >= CLASSES) fault = (fault - fault) / (fault - fault);
+)";
+
+inline constexpr const char* kSeeColors =
+    R"(    for (i = 0; i < 3; ++i) front[FIRST + i] = (float)point_color[3 * p + i] / 255.0f;
+)";
+
+inline constexpr const char* kSeeTail = R"(    for (i = 0; i < FEATURES; ++i)
+      if (p == 0 || LAST[i] > best[i]) best[i] = LAST[i];
+  }
+  for (i = 0; i < FEATURES; ++i) fault += best[i] - best[i];
+  return fault;
+}
+)";
+
+inline constexpr const char* kActPointsHead = R"(
+DECLARATION {
+  float front[FRONT], back[BACK], features[FEATURES];
+  float fault = NAME_see(points, CHANNEL_ARGUMENTScount, features); /* NaN once something is not finite */
+  int i;
+  EYE_ACTIVATE(features, FEATURES);
+  for (i = 0; i < FEATURES; ++i) front[NAME_obs_dim + i] = features[i];
 )";
 
 inline constexpr const char* kNormalise = R"(    const float z = (obs[i] - NAME_shift[i]) * NAME_scale[i];
@@ -226,25 +299,52 @@ static void NAME_draw(int row, uint32_t *random, float *obs) {
 }
 )";
 
+// Whole millimetres, far from where rounding turns.
+inline constexpr const char* kDrawPoints = R"(
+enum { NAME_test_points = TEST_POINTS };
+static void NAME_draw_points(uint32_t *random, float *pointsDRAW_PARAMETER) {
+  int i;
+  for (i = 0; i < 3 * NAME_test_points; ++i) {
+    *random = *random * 1664525u + 1013904223u;
+    points[i] = NAME_origin[i % 3] + 0.001f * (float)((int32_t)((*random >> 8) % SPANu) - REACH);
+DRAW_LINE  }
+}
+)";
+
+// What is no cloud is refused: a point that is not finite, none at all.
+inline constexpr const char* kRefusePoints = R"(  points[NAME_test_points * 3 - 1] = huge * huge;
+  CALL;
+  if (action[0] == action[0]) return 3;
+  points[NAME_test_points * 3 - 1] = 0.0f;
+  NO_POINTS;
+  if (action[0] == action[0]) return 3;
+)";
+
+inline constexpr const char* kRefuseClasses = R"(  point_class[0] = CLASSES;
+  CALL;
+  if (action[0] == action[0]) return 3;
+  point_class[0] = 0;
+)";
+
 inline constexpr const char* kTestMain = R"(
 int main(void) {
   static float obs[NAME_obs_dim], action[NAME_action_dim];
-  const float tolerance = TOLERANCE, huge = 3e38f;
+CLOUD  const float tolerance = TOLERANCE, huge = 3e38f;
   uint32_t sum = 2166136261u, random = 1;
   int row, i;
 SUMS  if (sum != CHECKSUM) return 2;
   for (row = 0; row < ROWS; ++row) {
     if (row == 1) random = 1;
     NAME_draw(row, &random, obs);
-    NAME_act(obs, action);
+DRAW    CALL;
     for (i = 0; i < NAME_action_dim; ++i) {
       const float gap = action[i] - NAME_expected[row * NAME_action_dim + i];
       if (!(gap <= tolerance && gap >= -tolerance)) return 1;
     }
   }
-  obs[NAME_obs_dim - 1] = huge * huge;
+REFUSED  obs[NAME_obs_dim - 1] = huge * huge;
   for (row = 0; row < 2; ++row) {
-    NAME_act(obs, action);
+    CALL;
     for (i = 0; i < NAME_action_dim; ++i)
       if (action[i] == action[i]) return 3;
     obs[NAME_obs_dim - 1] -= obs[NAME_obs_dim - 1];

@@ -1,7 +1,9 @@
 #include "network/network.hpp"
 
+#include <algorithm>
 #include <cinttypes>
 
+#include "common/presets.hpp"
 #include "common/report.hpp"
 #include "common/text.hpp"
 
@@ -14,6 +16,37 @@ std::string join(const NamedTensor* t) {
   return out;
 }
 
+bool begins(const std::string& text, const char* with) {
+  return text.rfind(with, 0) == 0;
+}
+
+// What a file says of the eyes beside their weights.
+void read_eyes(Network& n, const rdm_policy_info& info) {
+  Eyes& e = n.eyes;
+  e.points = info.num_points;
+  if (e.points == 0) return;
+  constexpr const char* kActivations[] = {"tanh", "elu", "relu"};  // as rdm_policy_tensor numbers them
+  e.classes = info.num_point_classes;
+  e.color = info.point_color != 0;
+  e.features = info.num_features;
+  for (const NamedTensor& t : n.tensors)
+    e.num_layers += begins(t.name, "encoder.") && t.name.find(".weight") != std::string::npos;
+  e.activation = kActivations[static_cast<size_t>(n.find("encoder.activation")->values[0])];
+  const NamedTensor* origin = n.find("encoder.origin");
+  std::copy(origin->values.begin(), origin->values.end(), e.origin);
+  e.range = n.find("encoder.range")->values[0];
+  n.metadata.insert(n.metadata.end(), {{"num_points", std::to_string(e.points)},
+                                       {"num_point_classes", std::to_string(e.classes)},
+                                       {"point_color", std::to_string(e.color)},
+                                       {"num_features", std::to_string(e.features)},
+                                       {"encoder_activation", e.activation},
+                                       {"encoder_origin", join(origin)},
+                                       {"encoder_range", join(n.find("encoder.range"))},
+                                       {"example_points", join(n.find("example.points"))}});
+  if (e.classes) n.metadata.push_back({"example_point_class", join(n.find("example.point_class"))});
+  if (e.color) n.metadata.push_back({"example_point_color", join(n.find("example.point_color"))});
+}
+
 }  // namespace
 
 Network::Network(const redman::Policy& policy) {
@@ -23,10 +56,9 @@ Network::Network(const redman::Policy& policy) {
   action_dim = info.action_dim;
   for (const rdm_tensor& t : policy.tensors()) {
     NamedTensor tensor{t.name, {t.rows}, policy.read(t)};
-    if (tensor.name.find(".weight") != std::string::npos) {
-      tensor.shape.push_back(t.cols);
-      ++num_layers;
-    }
+    const bool weight = tensor.name.find(".weight") != std::string::npos;
+    if (weight || t.cols > 1) tensor.shape.push_back(t.cols);
+    num_layers += weight && begins(tensor.name, "actor.");
     tensors.push_back(std::move(tensor));
   }
   const uint32_t v = rdm_version();
@@ -38,9 +70,11 @@ Network::Network(const redman::Policy& policy) {
               {"action_repeat", std::to_string(info.action_repeat)},
               {"noise_correlation", format("%.9g", static_cast<double>(info.noise_correlation))},
               {"activation", activation},
+              {"observation_entries", ranges_text(policy_columns(policy.get()))},
               {"library", format("redman %u.%u.%u", v / 1000000, v / 1000 % 1000, v % 1000)},
               {"example_obs", join(find("example.obs"))},
               {"example_action", join(find("example.action"))}};
+  read_eyes(*this, info);
 }
 
 const NamedTensor* Network::find(const std::string& name) const {

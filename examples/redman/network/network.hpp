@@ -13,13 +13,26 @@ struct NamedTensor {
   std::vector<float> values;  // row-major
 };
 
+// The PointNet of a policy that sees points: z = its layers, the last one linear, of (millimetres / (1000
+// range), one-hot class, colour / 255); features = activation(max z over points).
+struct Eyes {
+  int32_t points = 0;  // of a cloud, 0: there are no eyes
+  int32_t classes = 0, features = 0, num_layers = 0;
+  bool color = false;
+  std::string activation;  // of hidden layers and features
+  float origin[3] = {};    // m
+  float range = 1;         // m
+};
+
 struct Network {
   explicit Network(const redman::Policy& policy);
 
   std::string activation;  // "tanh", "elu", "relu"
   int32_t obs_dim = 0, action_dim = 0, num_layers = 0;
+  Eyes eyes;
   std::vector<NamedTensor> tensors;  // as rdm_policy_tensor names them
-  // What a reader has to know beside the numbers: task, layout hash, rates, bounds of the action.
+  // What a reader has to know beside the numbers: task, layout hash, rates, bounds of the action, entries of
+  // a row that count.
   std::vector<std::pair<std::string, std::string>> metadata;
 
   const NamedTensor* find(const std::string& name) const;  // null: there is none
@@ -27,7 +40,10 @@ struct Network {
 
 // ONNX, IR 8, operators 17: input obs [batch][obs_dim]; outputs action [batch][action_dim] clipped to [-1,
 // 1], mean (the same before the clip) and log_std [action_dim], or [batch][action_dim] where it depends on
-// the state. The normaliser is part of the graph.
+// the state. The normaliser is part of the graph. Of a policy with eyes there are the inputs points [batch]
+// [num_points][3], m, where it tells classes apart point_class [batch][num_points], bytes, and where it sees
+// colours point_color [batch][num_points][3], bytes: with any num_points, for what comes twice changes
+// nothing. The encoder is part of the graph too.
 std::string onnx_bytes(const Network& network);
 
 // safetensors: a JSON header and the numbers.

@@ -1,36 +1,46 @@
 // ONNX: the graph of a policy as a protobuf message. Field numbers are those of onnx.proto.
+#include <type_traits>
+
 #include "network/network.hpp"
 #include "network/protobuf.hpp"
 
 namespace tool {
 namespace {
 
-constexpr int64_t kIr = 8, kOperators = 17, kFloat = 1;
+constexpr int64_t kIr = 8, kOperators = 17;
+enum Type : int64_t { kFloat = 1, kByte = 2, kInteger = 7, kDouble = 11 };  // TensorProto.DataType
+constexpr int64_t kBatch = 0, kPoints = -1;                                 // sizes that are free
+
+template <class T>
+constexpr Type kTypeOf = std::is_same_v<T, float>    ? kFloat
+                         : std::is_same_v<T, double> ? kDouble
+                                                     : kInteger;
 
 // TensorProto
+template <class T>
 Message tensor_message(const std::string& name, const std::vector<int64_t>& shape,
-                       const std::vector<float>& values) {
+                       const std::vector<T>& values) {
   Message m;
   for (const int64_t n : shape) m.integer(1, n);
-  m.integer(2, kFloat);
+  m.integer(2, kTypeOf<T>);
   m.text(8, name);
-  m.text(9, std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
+  m.text(9, std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)));
   return m;
 }
 
-// ValueInfoProto of a float tensor; a size of 0 is the free batch size.
-Message value_message(const std::string& name, const std::vector<int64_t>& shape) {
+// ValueInfoProto
+Message value_message(const std::string& name, const std::vector<int64_t>& shape, Type element) {
   Message dims;
   for (const int64_t n : shape) {
     Message dim;
-    if (n)
+    if (n > 0)
       dim.integer(1, n);
     else
-      dim.text(2, "batch");
+      dim.text(2, n == kBatch ? "batch" : "num_points");
     dims.message(1, dim);
   }
   Message tensor, type, m;
-  tensor.integer(1, kFloat);
+  tensor.integer(1, element);
   tensor.message(2, dims);
   type.message(1, tensor);
   m.text(1, name);
@@ -38,37 +48,45 @@ Message value_message(const std::string& name, const std::vector<int64_t>& shape
   return m;
 }
 
+// Of a node: one integer, or a list of them.
+struct Attribute {
+  const char* name;
+  int64_t value;
+  bool list = false;
+};
+
 // The graph as it is built: each node reads values by name and writes one.
 class Graph {
  public:
+  template <class T = float>
   std::string constant(const std::string& name, const std::vector<int64_t>& shape,
-                       const std::vector<float>& values) {
+                       const std::vector<T>& values) {
     tensors_.push_back(tensor_message(name, shape, values));
     return name;
   }
   std::string constant(const NamedTensor& t) { return constant(t.name, t.shape, t.values); }
   std::string node(const char* type, const std::vector<std::string>& in, const std::string& out,
-                   bool transpose_second = false) {
+                   const std::vector<Attribute>& attributes = {}) {
     Message m;
     for (const std::string& name : in) m.text(1, name);
     m.text(2, out);
     m.text(3, out);
     m.text(4, type);
-    if (transpose_second) {
+    for (const Attribute& a : attributes) {
       Message attribute;
-      attribute.text(1, "transB");
-      attribute.integer(3, 1);
-      attribute.integer(20, 2);  // an integer
+      attribute.text(1, a.name);
+      attribute.integer(a.list ? 8 : 3, a.value);
+      attribute.integer(20, a.list ? 7 : 2);  // AttributeProto.AttributeType
       m.message(5, attribute);
     }
     nodes_.push_back(std::move(m));
     return out;
   }
-  void input(const std::string& name, const std::vector<int64_t>& shape) {
-    inputs_.push_back(value_message(name, shape));
+  void input(const std::string& name, const std::vector<int64_t>& shape, Type element = kFloat) {
+    inputs_.push_back(value_message(name, shape, element));
   }
   void output(const std::string& name, const std::vector<int64_t>& shape) {
-    outputs_.push_back(value_message(name, shape));
+    outputs_.push_back(value_message(name, shape, kFloat));
   }
   // GraphProto
   Message message() const {
@@ -97,10 +115,71 @@ void add_normalizer(const Network& network, Graph& graph, std::string& x) {
   x = graph.node("Sub", {x, graph.constant(*network.find("normalizer.shift"))}, "centred");
   x = graph.node("Mul", {x, graph.constant(*network.find("normalizer.scale"))}, "scaled");
   const float bound = clip->values[0];
-  x = graph.node(
-      "Clip",
-      {x, graph.constant("normalizer.low", {}, {-bound}), graph.constant("normalizer.high", {}, {bound})},
-      "normalized");
+  x = graph.node("Clip",
+                 {x, graph.constant<float>("normalizer.low", {}, {-bound}),
+                  graph.constant<float>("normalizer.high", {}, {bound})},
+                 "normalized");
+}
+
+std::string add_classes(const Eyes& eyes, Graph& graph) {
+  graph.input("point_class", {kBatch, kPoints}, kByte);
+  const std::string number = graph.node("Cast", {"point_class"}, "point_class.number", {{"to", kInteger}}),
+                    depth = graph.constant<int64_t>("point_class.count", {}, {eyes.classes}),
+                    values = graph.constant<float>("point_class.values", {2}, {0, 1});
+  return graph.node("OneHot", {number, depth, values}, "point_class.one_hot");
+}
+
+// What the encoder sees of points: whole millimetres from its origin, in units of its range, class and
+// colour.
+std::string add_points(const Eyes& eyes, Graph& graph) {
+  graph.input("points", {kBatch, kPoints, 3});
+  const std::vector<double> origin(eyes.origin, eyes.origin + 3);
+  std::string x = graph.node("Cast", {"points"}, "points.double", {{"to", kDouble}});
+  x = graph.node("Sub", {x, graph.constant("points.origin", {3}, origin)}, "points.metres");
+  x = graph.node("Mul", {x, graph.constant<double>("points.thousand", {}, {1000})}, "points.millimetres");
+  x = graph.node("Clip",
+                 {x, graph.constant<double>("points.low", {}, {-32767}),
+                  graph.constant<double>("points.high", {}, {32767})},
+                 "points.bounded");
+  x = graph.node("Round", {x}, "points.whole");
+  x = graph.node("Cast", {x}, "points.float", {{"to", kFloat}});
+  x = graph.node("Mul", {x, graph.constant<float>("points.step", {}, {0.001f / eyes.range})},
+                 "points.scaled");
+  std::vector<std::string> seen = {x};
+  if (eyes.classes) seen.push_back(add_classes(eyes, graph));
+  if (eyes.color) {
+    graph.input("point_color", {kBatch, kPoints, 3}, kByte);
+    const std::string color = graph.node("Cast", {"point_color"}, "point_color.float", {{"to", kFloat}});
+    seen.push_back(graph.node("Div", {color, graph.constant<float>("point_color.largest", {}, {255})},
+                              "point_color.scaled"));
+  }
+  return seen.size() == 1 ? x : graph.node("Concat", seen, "points.seen", {{"axis", 2}});
+}
+
+NamedTensor transposed(const NamedTensor& t) {
+  const auto rows = static_cast<size_t>(t.shape[0]), cols = static_cast<size_t>(t.shape[1]);
+  NamedTensor out{t.name + ".transposed", {t.shape[1], t.shape[0]}, std::vector<float>(t.values.size())};
+  for (size_t r = 0; r < rows; ++r)
+    for (size_t c = 0; c < cols; ++c) out.values[c * rows + r] = t.values[r * cols + c];
+  return out;
+}
+
+// Features of the cloud, behind the entries of the row.
+void add_eyes(const Network& network, Graph& graph, std::string& row) {
+  const Eyes& eyes = network.eyes;
+  if (eyes.points == 0) return;
+  const std::string activation = activation_operator(eyes.activation);
+  std::string x = add_points(eyes, graph);
+  for (int32_t l = 0; l < eyes.num_layers; ++l) {
+    const std::string layer = "encoder." + std::to_string(l);
+    const bool last = l + 1 == eyes.num_layers;
+    const NamedTensor &weight = *network.find(layer + ".weight"), &bias = *network.find(layer + ".bias");
+    x = graph.node("MatMul", {x, graph.constant(transposed(weight))}, layer + ".product");
+    if (last) x = graph.node("ReduceMax", {x}, "encoder.largest", {{"axes", 1, true}, {"keepdims", 0}});
+    x = graph.node("Add", {x, graph.constant(bias)}, layer);
+    x = graph.node(activation.c_str(), {x}, last ? "features" : layer + ".out");
+  }
+  row = graph.node("Concat", {row, x}, "seen", {{"axis", 1}});
 }
 
 NamedTensor half(const NamedTensor& t, bool second) {
@@ -118,11 +197,11 @@ std::string add_head(Graph& graph, const std::string& x, const NamedTensor& weig
                      const NamedTensor& bounds) {
   const auto part = [&](bool second, const char* out) {
     return graph.node("Gemm", {x, graph.constant(half(weight, second)), graph.constant(half(bias, second))},
-                      out, true);
+                      out, {{"transB", 1}});
   };
   graph.node("Clip",
-             {part(true, "log_std.free"), graph.constant("log_std.low", {}, {bounds.values[0]}),
-              graph.constant("log_std.high", {}, {bounds.values[1]})},
+             {part(true, "log_std.free"), graph.constant<float>("log_std.low", {}, {bounds.values[0]}),
+              graph.constant<float>("log_std.high", {}, {bounds.values[1]})},
              "log_std");
   return part(false, "mean");
 }
@@ -131,9 +210,10 @@ std::string add_head(Graph& graph, const std::string& x, const NamedTensor& weig
 
 std::string onnx_bytes(const Network& network) {
   Graph graph;
-  graph.input("obs", {0, network.obs_dim});
+  graph.input("obs", {kBatch, network.obs_dim});
   std::string x = "obs";
   add_normalizer(network, graph, x);
+  add_eyes(network, graph, x);
   const NamedTensor *log_std = network.find("actor.log_std"), *bounds = network.find("actor.log_std_bounds");
   for (int32_t l = 0; l < network.num_layers; ++l) {
     const std::string layer = "actor." + std::to_string(l);
@@ -142,18 +222,21 @@ std::string onnx_bytes(const Network& network) {
     if (last && bounds)
       x = add_head(graph, x, weight, bias, *bounds);
     else
-      x = graph.node("Gemm", {x, graph.constant(weight), graph.constant(bias)}, last ? "mean" : layer, true);
+      x = graph.node("Gemm", {x, graph.constant(weight), graph.constant(bias)}, last ? "mean" : layer,
+                     {{"transB", 1}});
     if (!last) x = graph.node(activation_operator(network.activation).c_str(), {x}, layer + ".out");
   }
-  graph.node("Clip", {x, graph.constant("action.low", {}, {-1}), graph.constant("action.high", {}, {1})},
-             "action");
+  graph.node(
+      "Clip",
+      {x, graph.constant<float>("action.low", {}, {-1}), graph.constant<float>("action.high", {}, {1})},
+      "action");
   if (log_std) graph.node("Identity", {graph.constant(*log_std)}, "log_std");
-  graph.output("action", {0, network.action_dim});
-  graph.output("mean", {0, network.action_dim});
+  graph.output("action", {kBatch, network.action_dim});
+  graph.output("mean", {kBatch, network.action_dim});
   if (log_std)
     graph.output("log_std", {network.action_dim});
   else
-    graph.output("log_std", {0, network.action_dim});
+    graph.output("log_std", {kBatch, network.action_dim});
 
   Message operators, model;  // ModelProto
   operators.text(1, "");

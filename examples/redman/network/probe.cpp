@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <redman/redman_points.hpp>
 
 namespace tool {
 namespace {
@@ -28,7 +29,24 @@ std::vector<float> probe_observations(const Network& network, size_t rows, uint6
   return obs;
 }
 
-std::vector<float> mean_actions(const redman::Policy& policy, const std::vector<float>& obs) {
+Clouds probe_clouds(const Network& network, size_t rows, uint64_t seed) {
+  const Eyes& eyes = network.eyes;
+  Clouds clouds;
+  const size_t count = rows * static_cast<size_t>(eyes.points);
+  clouds.points.resize(3 * count);
+  clouds.classes.resize(eyes.points ? count : 0);
+  seed ^= 0x5851f42d4c957f2du;
+  for (size_t i = 0; i < clouds.points.size(); ++i)
+    clouds.points[i] = eyes.origin[i % 3] + 2 * eyes.range * signed_unit(seed);
+  for (size_t i = 0; i < clouds.classes.size() && eyes.classes; ++i)
+    clouds.classes[i] = static_cast<uint8_t>((i * 7 + i / 5) % static_cast<size_t>(eyes.classes));
+  clouds.colors.resize(3 * clouds.classes.size());
+  for (size_t i = 0; i < clouds.colors.size(); ++i) clouds.colors[i] = static_cast<uint8_t>(i * 89 % 256);
+  return clouds;
+}
+
+std::vector<float> mean_actions(const redman::Policy& policy, const std::vector<float>& obs,
+                                const Clouds& clouds) {
   const rdm_policy_info& info = policy.info();
   const size_t rows = obs.size() / static_cast<size_t>(info.obs_dim);
   const auto count = static_cast<int32_t>(rows);
@@ -36,7 +54,13 @@ std::vector<float> mean_actions(const redman::Policy& policy, const std::vector<
   const size_t bytes = (policy.scratch_bytes(count) + 63) / 64 * 64;
   const std::unique_ptr<void, decltype(&std::free)> scratch(std::aligned_alloc(64, bytes), std::free);
   if (!scratch) throw std::bad_alloc();
-  policy.act(obs.data(), count, nullptr, action.data(), scratch.get(), bytes);
+  if (info.num_points == 0)
+    policy.act(obs.data(), count, nullptr, action.data(), scratch.get(), bytes);
+  else
+    redman::act(
+        policy, obs.data(),
+        redman::points(clouds.points.data(), info.num_points, clouds.classes.data(), clouds.colors.data()),
+        count, nullptr, action.data(), scratch.get(), bytes);
   return action;
 }
 

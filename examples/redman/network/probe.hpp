@@ -6,7 +6,18 @@ namespace tool {
 
 // [rows][obs_dim] in the normaliser's range, two deviations to each side, and every tenth row far outside it.
 std::vector<float> probe_observations(const Network& network, size_t rows, uint64_t seed);
+
+// Clouds beside rows, of a policy with eyes; else empty.
+struct Clouds {
+  std::vector<float> points;     // [rows][eyes.points][3] m
+  std::vector<uint8_t> classes;  // [rows][eyes.points]
+  std::vector<uint8_t> colors;   // [rows][eyes.points][3]
+};
+// As many as rows, within twice the encoder's range about its origin.
+Clouds probe_clouds(const Network& network, size_t rows, uint64_t seed);
+
 // [rows][action_dim] mean actions.
-std::vector<float> mean_actions(const redman::Policy& policy, const std::vector<float>& obs);
+std::vector<float> mean_actions(const redman::Policy& policy, const std::vector<float>& obs,
+                                const Clouds& clouds);
 
 }  // namespace tool

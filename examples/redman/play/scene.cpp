@@ -3,10 +3,30 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <redman/redman_map.hpp>
+
+#include "common/names.hpp"
+#include "draw/cloud.hpp"
 
 namespace tool {
+namespace {
+
+// The camera, to look at clouds with.
+rdm_camera cloud_camera(const redman::Pool& pool, const std::string& name) {
+  if (!redman::sensors(pool).points)
+    throw Usage(
+        "--cloud: these worlds make no clouds; give --set modality=points, or a policy that sees points");
+  rdm_camera camera{};
+  for (int32_t i = 0; rdm_pool_camera(pool.get(), i, &camera) == RDM_OK && !same_name(camera.name, name);)
+    ++i;
+  if (camera.mount != 0) throw Usage("--cloud: camera " + name + " rides on a robot; give one that stands");
+  return camera;
+}
+
+}  // namespace
+
 Scene::Scene(const PoolSettings& settings, const ActorChoice& choice, std::string camera, int32_t width,
-             int32_t height)
+             int32_t height, bool cloud)
     : pool_(make_pool(settings, RDM_AUTORESET_OFF)),
       actor_(choice, pool_),
       camera_(std::move(camera)),
@@ -18,6 +38,7 @@ Scene::Scene(const PoolSettings& settings, const ActorChoice& choice, std::strin
   } catch (const redman::Error& e) {
     throw Usage(std::string("--") + e.what());
   }
+  if (cloud) cloud_ = cloud_camera(pool_, camera_);
   actor_.restart();
 }
 
@@ -39,6 +60,11 @@ Image Scene::picture() {
   const auto begin = Clock::now();
   Image image{width_, height_, {}};
   image.rgb = as_usage([&] { return pool_.render(0, camera_.c_str(), width_, height_); });
+  if (cloud_) {
+    const rdm_sensors s = redman::sensors(pool_);
+    image = one_below_the_other(
+        image, draw_cloud(*cloud_, s.points, s.point_shape, s.point_class, s.num_points, width_, height_));
+  }
   seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
   ++frames_;
   return image;

@@ -7,9 +7,11 @@ namespace tool {
 
 class Scene {
  public:
-  // Usage with the nearest name when the pool has no such camera.
+  // Usage with the nearest name when the pool has no such camera. With `cloud` pictures are twice as high:
+  // below is the cloud that the last decision was made on, by the same camera; Usage when there is none, or
+  // the camera rides on a robot.
   Scene(const PoolSettings& settings, const ActorChoice& choice, std::string camera, int32_t width,
-        int32_t height);
+        int32_t height, bool cloud = false);
   const redman::Pool& pool() const { return pool_; }
   int32_t step() const { return step_; }
   // False, and nothing happens, when the episode is over.
@@ -23,6 +25,7 @@ class Scene {
   redman::Pool pool_;
   Actor actor_;
   std::string camera_;
+  std::optional<rdm_camera> cloud_;  // that looks at clouds, where they are wanted
   int32_t width_, height_, step_ = 0, frames_ = 0;
   double seconds_ = 0;
 };

@@ -1,6 +1,8 @@
 /* compare PROBE: the exported policy on the observations of `redman export --probe`, as numbers on lines of
  * their own: rows, then obs [rows][obs_dim], then action [rows][action_dim]. Prints the largest difference,
- * then how many actions are the same bytes. NAME is the prefix of the export, POLICY its file. */
+ * then how many actions are the same bytes. NAME is the prefix of the export, POLICY its file. With EYES
+ * points [rows][num_points][3] come behind, which are given backwards and the first one twice, and with KINDS
+ * point_class. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,10 +29,35 @@ int main(int argc, char** argv) {
   float action[SYMBOL(NAME, _action_dim)], largest = 0;
   if (!f || fscanf(f, "%zu", &rows) != 1) return 2;
   float *obs = numbers(f, rows * in), *want = numbers(f, rows * out);
+#ifdef EYES
+  const size_t count = SYMBOL(NAME, _num_points);
+  float *points = numbers(f, rows * count * 3), *cloud = (float*)malloc((count + 1) * 3 * sizeof *cloud);
+  if (!points || !cloud) return 2;
+#ifdef KINDS
+  float* classes = numbers(f, rows * count);
+  unsigned char* kinds = (unsigned char*)malloc(count + 1);
+  if (!classes || !kinds) return 2;
+#endif
+#endif
   fclose(f);
   if (!obs || !want) return 2;
   for (size_t r = 0; r < rows; ++r) {
+#ifdef EYES
+    for (size_t i = 0; i <= count; ++i) {
+      const size_t from = r * count + (i < count ? count - 1 - i : 0);
+      memcpy(cloud + 3 * i, points + 3 * from, 3 * sizeof *points);
+#ifdef KINDS
+      kinds[i] = (unsigned char)classes[from];
+#endif
+    }
+#ifdef KINDS
+    SYMBOL(NAME, _act_points)(obs + r * in, cloud, kinds, (int)count + 1, action);
+#else
+    SYMBOL(NAME, _act_points)(obs + r * in, cloud, (int)count + 1, action);
+#endif
+#else
     SYMBOL(NAME, _act)(obs + r * in, action);
+#endif
     for (size_t j = 0; j < out; ++j) {
       const float gap = fabsf(action[j] - want[r * out + j]);
       if (!(gap <= largest)) largest = gap; /* NaN stays */
