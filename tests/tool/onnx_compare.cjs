@@ -15,19 +15,23 @@ async function main() {
   const count = want.num_points || 0;
   const points = Float32Array.from(want.points || []);
   const classes = Uint8Array.from(want.point_class || []);
+  const colors = Uint8Array.from(want.point_color || []);
   // Point order[i] of each of the rows' clouds.
   const cloud = (begin, rows, order) => {
     const seen = new Float32Array(rows * order.length * 3);
     const kinds = new Uint8Array(rows * order.length);
+    const tints = new Uint8Array(rows * order.length * 3);
     for (let r = 0; r < rows; ++r) {
       order.forEach((p, i) => {
         const from = (begin + r) * count + p, to = r * order.length + i;
         seen.set(points.subarray(3 * from, 3 * from + 3), 3 * to);
         kinds[to] = classes.length ? classes[from] : 0;
+        if (colors.length) tints.set(colors.subarray(3 * from, 3 * from + 3), 3 * to);
       });
     }
     const feeds = { points: new ort.Tensor('float32', seen, [rows, order.length, 3]) };
     if (classes.length) feeds.point_class = new ort.Tensor('uint8', kinds, [rows, order.length]);
+    if (colors.length) feeds.point_color = new ort.Tensor('uint8', tints, [rows, order.length, 3]);
     return feeds;
   };
   const all = Array.from({ length: count }, (_, i) => i);

@@ -38,11 +38,13 @@ policy eyes --set encoder=16,24 --set actor_obs=vision --set hidden=16,16 $cloud
 policy kinds --set encoder=8,8,9 --set encoder_classes=4 --set encoder_activation=elu --set encoder_origin=0.1,-0.2,0.9 \
   --set encoder_range=0.4 --set hidden=16 --set std_mode=state $cloud
 # shellcheck disable=SC2086
+policy tints --set encoder=8,9 --set encoder_classes=5 --set encoder_color=true --set goal_points=8 --set hidden=16 $cloud
+# shellcheck disable=SC2086
 policy flat --set encoder=12 --set encoder_activation=tanh --set hidden=16 --set normalize_obs=false $cloud
 
 command -v python3 > /dev/null && python3 - "$dir" << 'EOF' || failed=1
 import json, math, struct, sys
-for name in "tanh elu relu bare state part eyes kinds flat".split():
+for name in "tanh elu relu bare state part eyes kinds tints flat".split():
     data = open(f"{sys.argv[1]}/{name}.safetensors", "rb").read()
     (n,) = struct.unpack("<Q", data[:8])
     head = json.loads(data[8:8 + n])
@@ -76,6 +78,8 @@ for name in "tanh elu relu bare state part eyes kinds flat".split():
                 for p in range(count)]
         for p in range(count if "example.point_class" in t else 0):
             seen[p] += [float(c == t["example.point_class"][p]) for c in range(int(meta["num_point_classes"]))]
+        for p in range(count if "example.point_color" in t else 0):
+            seen[p] += [c / 255 for c in t["example.point_color"][3 * p:3 * p + 3]]
         act = kinds[meta["encoder_activation"]]
         x = list(x) + [act(max(z)) for z in zip(*(run("encoder", row, act) for row in seen))]
     x = run("actor", x, f)

@@ -20,7 +20,7 @@ policy() {
   # the numbers of the probe, one a line
   part() { sed "s/.*\"$1\":\\[*//; s/[]},].*//" "$name.json"; echo; }
   list() { sed "s/.*\"$1\":\\[//; s/\\].*//" "$name.json" | tr , '\n'; echo; }
-  { part rows; list obs; list action; [ -z "$eyes" ] || list points; [ "$eyes" != '-DEYES -DKINDS' ] || list point_class; } > "$name.txt"
+  { part rows; list obs; list action; [ -z "$eyes" ] || list points; case $eyes in *KINDS*) list point_class ;; esac; case $eyes in *COLORS*) list point_color ;; esac; } > "$name.txt"
 }
 # status FILE WANT WHAT: the self-test's
 status() {
@@ -105,8 +105,11 @@ eyes='-DEYES -DKINDS'
 # shellcheck disable=SC2086
 check kinds --set encoder=8,8,9 --set encoder_classes=4 --set encoder_activation=elu --set encoder_origin=0.1,-0.2,0.9 \
   --set encoder_range=0.4 --set hidden=17 --set std_mode=state $cloud
+eyes='-DEYES -DKINDS -DCOLORS'
+# shellcheck disable=SC2086
+check tints --set encoder=8,9 --set encoder_classes=5 --set encoder_color=true --set goal_points=8 --set hidden=16 $cloud
 eyes=
-[ $checked -eq 10 ] || say "$checked policies"
+[ $checked -eq 11 ] || say "$checked policies"
 
 # several policies in one program, by one file or by several
 printf '#include "%s"\n#include "%s"\n#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' tanh.c elu_8.c elu_8.c kinds.c > both.c

@@ -1,8 +1,8 @@
 /* compare PROBE: the exported policy on the observations of `redman export --probe`, as numbers on lines of
  * their own: rows, then obs [rows][obs_dim], then action [rows][action_dim]. Prints the largest difference,
  * then how many actions are the same bytes. NAME is the prefix of the export, POLICY its file. With EYES
- * points [rows][num_points][3] come behind, which are given backwards and the first one twice, and with KINDS
- * point_class. */
+ * points [rows][num_points][3] come behind, which are given backwards and the first one twice, with KINDS
+ * point_class, and with COLORS point_color. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,6 +38,11 @@ int main(int argc, char** argv) {
   unsigned char* kinds = (unsigned char*)malloc(count + 1);
   if (!classes || !kinds) return 2;
 #endif
+#ifdef COLORS
+  float* colors = numbers(f, rows * count * 3);
+  unsigned char* tints = (unsigned char*)malloc(3 * (count + 1));
+  if (!colors || !tints) return 2;
+#endif
 #endif
   fclose(f);
   if (!obs || !want) return 2;
@@ -49,8 +54,13 @@ int main(int argc, char** argv) {
 #ifdef KINDS
       kinds[i] = (unsigned char)classes[from];
 #endif
+#ifdef COLORS
+      for (size_t k = 0; k < 3; ++k) tints[3 * i + k] = (unsigned char)colors[3 * from + k];
+#endif
     }
-#ifdef KINDS
+#if defined COLORS
+    SYMBOL(NAME, _act_points)(obs + r * in, cloud, kinds, tints, (int)count + 1, action);
+#elif defined KINDS
     SYMBOL(NAME, _act_points)(obs + r * in, cloud, kinds, (int)count + 1, action);
 #else
     SYMBOL(NAME, _act_points)(obs + r * in, cloud, (int)count + 1, action);
