@@ -122,6 +122,7 @@ void add_normalizer(const Network& network, Graph& graph, std::string& x) {
 }
 
 // What the encoder sees of points: whole millimetres from its origin, in units of its range, and the class.
+// In doubles, as the library has it: with floats a half could become the other millimetre.
 std::string add_points(const Eyes& eyes, Graph& graph) {
   graph.input("points", {kBatch, kPoints, 3});
   const std::vector<double> origin(eyes.origin, eyes.origin + 3);
