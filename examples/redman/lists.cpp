@@ -1,4 +1,5 @@
 // `tasks`, `algos` and `info`: what there is, straight from the library's discovery.
+#include <algorithm>
 #include <cmath>
 #include <redman/redman.hpp>
 
@@ -12,7 +13,7 @@ namespace {
 
 struct ListFlags {
   std::string name;
-  bool markdown = false;
+  bool markdown = false, presets = false;
 };
 
 std::string limit_text(const std::vector<rdm_cost>& costs) {
@@ -69,6 +70,23 @@ std::string task_text(int32_t index) {
   return out + fields.text() + '\n' + costs.text() + '\n' + options_text(task_options(index));
 }
 
+// How many entries each preset of actor_obs leaves; "-": there are no such fields.
+std::string presets_text(int32_t only, bool markdown) {
+  const std::vector<std::string> names = {"state", "vision", "touch", "proprioception"};
+  Table table({"task", names[0], names[1], names[2], names[3]});
+  for (int32_t i = 0; i < rdm_task_count(); ++i) {
+    if (only >= 0 && i != only) continue;
+    const rdm_task t = task_at(i);
+    std::vector<std::string> row = {markdown ? format("`%s`", t.name) : t.name};
+    row.resize(1 + names.size(), "-");
+    for (const ObsPreset& p : obs_presets(t.obs_dim, task_fields(i)))
+      row[1 + static_cast<size_t>(std::find(names.begin(), names.end(), p.name) - names.begin())] =
+          std::to_string(p.columns.size());
+    table.add(row);
+  }
+  return markdown ? table.markdown() : table.text();
+}
+
 Report list_tasks(const ListFlags& flags) {
   Json all = Json::array();
   Table table({"task", "observations", "actions", "costs", "steps", "limit", "summary"});
@@ -81,7 +99,10 @@ Report list_tasks(const ListFlags& flags) {
     table.add({name, std::to_string(t.obs_dim), std::to_string(t.action_dim), std::to_string(t.cost_dim),
                std::to_string(t.max_steps), limit_text(task_costs(i)), t.summary});
   }
-  const std::string text = flags.markdown ? table.markdown() : only >= 0 ? task_text(only) : table.text();
+  const std::string text = flags.presets    ? presets_text(only, flags.markdown)
+                           : flags.markdown ? table.markdown()
+                           : only >= 0      ? task_text(only)
+                                            : table.text();
   return {{{"tasks", all}}, text};
 }
 
@@ -116,6 +137,9 @@ Report show_info() {
 void add_list(CLI::App& app, Run& run, const char* name, const char* help, Report (*list)(const ListFlags&)) {
   auto flags = std::make_shared<ListFlags>();
   CLI::App* command = app.add_subcommand(name, help);
+  if (list == list_tasks)
+    command->add_flag("--presets", flags->presets,
+                      "print how many entries of each task's observation the presets of actor_obs leave");
   command->add_option("name", flags->name, "show one of them with its options");
   command->add_flag("--markdown", flags->markdown, "print the table of the README");
   command->callback([&run, flags, list] { run = [flags, list] { return list(*flags); }; });

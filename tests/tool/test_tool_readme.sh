@@ -1,6 +1,6 @@
 #!/bin/sh
-# test_tool_readme.sh TOOL: the tables of tasks, algorithms and robots in README.md, and of objects in lib/objects/README.md, are
-# what the tool prints; README's task as text is the file that it names.
+# test_tool_readme.sh TOOL: the tables of tasks, algorithms and robots in README.md, of objects in lib/objects/README.md and of
+# presets in tasks/README.md, are what the tool prints; README's task as text is the file that it names.
 set -u
 tool=$(realpath "$1")
 readme=$(dirname "$0")/../../README.md
@@ -10,6 +10,9 @@ lost=$({ "$tool" tasks --markdown && "$tool" algos --markdown && "$tool" robots 
 done)
 lost=$lost$("$tool" objects --markdown | grep -v '^|---' | while IFS= read -r line; do
   grep -qxF -- "$line" "${readme%README.md}lib/objects/README.md" || echo "lib/objects/README.md has no line: $line"
+done)
+lost=$lost$("$tool" tasks --presets --markdown | while IFS= read -r line; do
+  grep -qxF -- "$line" "${readme%README.md}tasks/README.md" || echo "tasks/README.md has no line: $line"
 done)
 task=${readme%README.md}examples/scenes/press.task
 sed -n '/<summary>examples\/scenes\/press.task/,/^<\/details>/p' "$readme" | sed '1,/^```toml$/d; /^```$/,$d' | cmp - "$task" ||

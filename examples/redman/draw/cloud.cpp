@@ -10,7 +10,7 @@
 namespace tool {
 namespace {
 
-constexpr double kDot = 0.004;  // m, a dot's radius; half a pixel at least
+constexpr double kDot = 0.004;  // m, a dot's radius; a pixel at least
 
 void cross(const double a[3], const double b[3], double out[3]) {
   for (int i = 0; i < 3; ++i) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
@@ -79,7 +79,7 @@ Image draw_cloud(const rdm_camera& camera, const float* points, const int32_t* s
   Image image{width, height, {}};
   image.rgb.assign(static_cast<size_t>(width) * static_cast<size_t>(height) * 3, 255);
   for (const Dot& dot : dots) {
-    const double radius = std::max(0.5, projection.focus() * kDot / dot.at[2]);
+    const double radius = std::max(1.0, projection.focus() * kDot / dot.at[2]);
     const auto low = [&](int axis) { return std::max(0.0, std::floor(dot.at[axis] - radius)); };
     const auto high = [&](int axis, int32_t size) {
       return std::min<double>(size - 1, std::floor(dot.at[axis] + radius));

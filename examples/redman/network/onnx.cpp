@@ -130,7 +130,7 @@ std::string add_classes(const Eyes& eyes, Graph& graph) {
 }
 
 // What the encoder sees of points: whole millimetres from its origin, in units of its range, class and
-// colour.
+// colour. In doubles, as the library has it: with floats a half could become the other millimetre.
 std::string add_points(const Eyes& eyes, Graph& graph) {
   graph.input("points", {kBatch, kPoints, 3});
   const std::vector<double> origin(eyes.origin, eyes.origin + 3);

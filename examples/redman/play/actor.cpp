@@ -94,7 +94,8 @@ ActorChoice choose_actor(const std::string& word, const std::string& task) {
     return choice;
   }
   choice.file = is_folder(word) ? word + "/policy.rdm" : word;
-  const rdm_policy_info info = load(choice.file).info();
+  const redman::Policy policy = load(choice.file);  // lends info its texts
+  const rdm_policy_info& info = policy.info();
   choice.task = info.task;
   choice.points = info.num_points;
   choice.color = info.point_color != 0;
