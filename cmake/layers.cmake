@@ -8,6 +8,11 @@ target_compile_options(rdm_flags INTERFACE -ffp-contract=off -fno-math-errno
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
   target_compile_options(rdm_flags INTERFACE -march=x86-64-v2)
 endif()
+if(WIN32)
+  # the C library's printf is GCC's own there, whose formats the builds for other systems check
+  target_compile_definitions(rdm_flags INTERFACE __USE_MINGW_ANSI_STDIO=1)
+  target_compile_options(rdm_flags INTERFACE -Wno-format)
+endif()
 if(REDMAN_SANITIZE)
   target_compile_options(rdm_flags INTERFACE -fsanitize=${REDMAN_SANITIZE} -fno-omit-frame-pointer
                          -fno-sanitize-recover=all)

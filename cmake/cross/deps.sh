@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
-# deps.sh TARGET [contracted]: ODE, libccd, OctoMap and GoogleTest for another machine (arm64, windows), static, from
+# deps.sh TARGET [contracted|gtest]: ODE, libccd, OctoMap and GoogleTest for another machine (arm64, windows), static, from
 # Debian's sources, installed below build/cross/TARGET; built once. Eigen is headers: this machine's do.
 #
 # Distributions compile them as their compiler likes, which for ARM is with fused multiply-adds: other bytes. Here it
 # is off. With `contracted` it is on, and build/cross/TARGET-contracted has ODE and libccd alone: what a library made
-# of a distribution's says of itself is tested with it.
+# of a distribution's says of itself is tested with it. With `gtest` GoogleTest alone is made.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 . cmake/packages.sh
 . cmake/cross/sources.sh
-target=${1:?} contracted=${2:-}
+target=${1:?} part=${2:-} contracted=""
+[ "$part" != contracted ] || contracted=yes
 prefix=$PWD/build/cross/$target${contracted:+-contracted}
 contract=off
 [ -z "$contracted" ] || contract=fast
@@ -33,10 +34,11 @@ add() {
   : > "$prefix/$name.done"
 }
 
+[ -n "$contracted" ] || add gtest /usr/src/googletest -DBUILD_GMOCK=OFF
+[ "$part" != gtest ] || exit 0
 ode=$(source_of ode) && ccd=$(source_of ccd) || exit 1
 add ode "$ode" -DODE_DOUBLE_PRECISION=ON -DODE_WITH_DEMOS=OFF -DODE_WITH_TESTS=OFF -DODE_WITH_OPCODE=OFF
 add ccd "$ccd" -DENABLE_DOUBLE_PRECISION=ON -DBUILD_DOCUMENTATION=OFF
 [ -z "$contracted" ] || exit 0
 octomap=$(source_of octomap) || exit 1
 add octomap "$octomap" -DBUILD_OCTOVIS_SUBPROJECT=OFF -DBUILD_DYNAMICETD3D_SUBPROJECT=OFF -DBUILD_TESTING=OFF
-add gtest /usr/src/googletest -DBUILD_GMOCK=OFF
