@@ -36,8 +36,22 @@ add() {
 
 [ -n "$contracted" ] || add gtest /usr/src/googletest -DBUILD_GMOCK=OFF
 [ "$part" != gtest ] || exit 0
+ode_flags=()
+if [ "$target" = windows ]; then
+  need libz-mingw-w64-dev
+  mkdir -p "$prefix/include"
+  echo '#include <windows.h>' > "$prefix/include/Windows.h" # as ODE writes it
+  ode_flags=("-DCMAKE_CXX_FLAGS=-I$prefix/include")
+  # what the tool and the importers need; of those that are headers, this machine's
+  tinyxml2=$(source_of tinyxml2) && png=$(source_of png) || exit 1
+  add tinyxml2 "$tinyxml2" -Dtinyxml2_BUILD_TESTING=OFF
+  add png "$png" -DPNG_SHARED=OFF -DPNG_TESTS=OFF -DHAVE_LD_VERSION_SCRIPT=OFF
+  cp -r /usr/include/CLI /usr/include/nlohmann /usr/include/toml++ "$prefix/include"
+  mkdir -p "$prefix/share/cmake"
+  cp -r /usr/share/cmake/CLI11 /usr/share/cmake/nlohmann_json "$prefix/share/cmake"
+fi
 ode=$(source_of ode) && ccd=$(source_of ccd) || exit 1
-add ode "$ode" -DODE_DOUBLE_PRECISION=ON -DODE_WITH_DEMOS=OFF -DODE_WITH_TESTS=OFF -DODE_WITH_OPCODE=OFF
+add ode "$ode" -DODE_DOUBLE_PRECISION=ON -DODE_WITH_DEMOS=OFF -DODE_WITH_TESTS=OFF -DODE_WITH_OPCODE=OFF "${ode_flags[@]}"
 add ccd "$ccd" -DENABLE_DOUBLE_PRECISION=ON -DBUILD_DOCUMENTATION=OFF
 [ -z "$contracted" ] || exit 0
 octomap=$(source_of octomap) || exit 1

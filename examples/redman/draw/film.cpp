@@ -1,3 +1,19 @@
+#include "draw/image.hpp"
+
+#if defined(_WIN32)
+#include "common/report.hpp"
+
+namespace tool {
+
+Film::Film(const std::string&, int32_t, int32_t, double) {
+  throw Usage("--video: not on Windows; --html and --glb play the episode, --strip draws moments of it");
+}
+Film::~Film() = default;
+void Film::add(const Image&) {}
+void Film::finish() {}
+
+}  // namespace tool
+#else
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -10,7 +26,6 @@
 #include "common/files.hpp"
 #include "common/report.hpp"
 #include "common/text.hpp"
-#include "draw/image.hpp"
 
 extern char** environ;
 
@@ -79,3 +94,4 @@ void Film::finish() {
 }
 
 }  // namespace tool
+#endif
