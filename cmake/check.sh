@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64|windows|hard [MINUTES]]: installs what the tests need, builds, and runs them.
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|libc++|small|hard [MINUTES]]: installs what the tests need, builds, and runs them.
 # The last line says how many passed and failed; the exit status is 0 when none failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -139,14 +139,15 @@ case $mode in
     [ "$failed" -eq 0 ]
     ;;
   arm64)
-    # 64-bit ARM under qemu: hashes of worlds and learners, contracts of the ABI, what the build says of a fused ODE.
+    # 64-bit ARM under qemu: hashes of worlds and learners, contracts of the ABI, what the build says of a fused ODE;
+    # with `all` the tests that take half an hour there too.
     need g++-aarch64-linux-gnu qemu-user-static googletest curl
     bash cmake/cross/deps.sh arm64 && bash cmake/cross/deps.sh arm64 contracted || exit 1
     configure arm64
-    tests="golden golden_learners known_bytes fpmode elementary vec simd rng hash kernels mlp adam gaussian policy policy_tensors pointnet bytes file
-      workers library map occupancy narrowphase convex manifold stepper articulated_world ode_world hostile_state pool_state pool_step learner
-      oracle fingerprint contract_host contract_pool contract_agent contract_rollout contract_state"
-    [ "${2:-}" != all ] || tests+=" every_algo every_task contract_tasks"
+    tests="golden golden_learners known_bytes fpmode elementary simd rng kernels workers library contract_host contract_pool contract_agent
+      contract_rollout"
+    [ "${2:-}" != all ] || tests+=" vec hash mlp adam gaussian policy policy_tensors pointnet bytes file map occupancy narrowphase convex manifold stepper
+      articulated_world ode_world hostile_state pool_state pool_step learner oracle fingerprint contract_state every_algo every_task contract_tasks"
     # shellcheck disable=SC2046,SC2086
     cmake --build --preset arm64 -j "$(nproc)" --target redman redman_static 01_step 04_act $(printf 'test_%s ' $tests) >&2 ||
       die "preset arm64 could not be built: see above"
@@ -155,6 +156,36 @@ case $mode in
     status=$?
     sh tests/ports/contracted.sh "$PWD" aarch64-linux-gnu-g++ build/arm64/libredman.a || status=1
     exit $status
+    ;;
+  windows)
+    # Windows under wine: the library as one DLL, hashes of worlds and learners, programs in C against the DLL, the tool.
+    need g++-mingw-w64-x86-64-posix wine64 googletest curl
+    bash cmake/cross/deps.sh windows || exit 1
+    configure windows
+    tests="golden golden_learners known_bytes fpmode kernels library"
+    # shellcheck disable=SC2046,SC2086
+    cmake --build --preset windows -j "$(nproc)" --target redman redman_static redman_tool 01_step 03_train $(printf 'test_%s ' $tests) >&2 ||
+      die "preset windows could not be built: see above"
+    # shellcheck disable=SC2086
+    run_tests windows -R "^(test_($(echo $tests | tr ' ' '|'))|example_01_step|example_03_train)\$"
+    status=$?
+    sh tests/ports/windows.sh "$PWD" build/windows || status=1
+    exit $status
+    ;;
+  libc++)
+    # Another standard library beside another compiler: clang's, unpacked into a folder since it is at odds with libunwind-dev.
+    need clang-14 libc++1-14 libc++abi1-14
+    bash cmake/cross/libcxx.sh || exit 1
+    folder=$PWD/build/cross/libcxx
+    configure dev -B build/libcxx -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14 -DREDMAN_WERROR=OFF -DREDMAN_TOOL=OFF -DREDMAN_IMPORT=OFF \
+      -DREDMAN_HARD=OFF "-DCMAKE_CXX_FLAGS=-nostdinc++ -isystem $folder/include/c++/v1 -stdlib=libc++" "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O2 -g1" \
+      "-DCMAKE_EXE_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_SHARED_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_PREFIX_PATH=$folder"
+    cmake --build build/libcxx -j "$(nproc)" --target test_golden test_option test_text >&2 || die "the build with libc++ failed: see above"
+    run_tests libcxx -R '^test_(golden|option|text)$'
+    ;;
+  small)
+    # What the library takes where there is little, beside the table of examples/small/README.md.
+    bash cmake/small_table.sh
     ;;
   embedded)
     # Policies as C source, on this machine and on Cortex-M processors under qemu, with a table of what they take.
@@ -212,5 +243,5 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
-  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64|windows|hard [MINUTES]]" ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|libc++|small|hard [MINUTES]]" ;;
 esac

@@ -16,9 +16,6 @@ build small
 # The same flags with everything in it.
 configure small -B build/small-all -DREDMAN_SIM=ON -DREDMAN_LEARN=ON -DREDMAN_TOOL=OFF -DREDMAN_IMPORT=OFF -DREDMAN_INSTALL=OFF
 cmake --build build/small-all -j "$(nproc)" --target redman redman_static >&2 || die "the whole library could not be built for size: see above"
-configure small -B build/small-sim -DREDMAN_SIM=ON -DREDMAN_POLICY=OFF -DREDMAN_TOOL=OFF -DREDMAN_IMPORT=OFF -DREDMAN_INSTALL=OFF
-cmake --build build/small-sim -j "$(nproc)" --target redman redman_static >&2 || die "the simulator could not be built for size: see above"
-
 echo 'int main(void) { return 0; }' > $folder/nothing.c
 engines="-lode -lccd -loctomap -loctomath"
 # program NAME SOURCE BUILD LIBRARIES...: a static and a dynamic one, stripped.
@@ -33,7 +30,7 @@ program() {
 program nothing $folder/nothing.c ""
 program act examples/small/act.c small
 # shellcheck disable=SC2086
-{ program worlds examples/small/worlds.c small-sim $engines && program train examples/small/train.c small-all $engines; } || exit 1
+{ program worlds examples/small/worlds.c small-all $engines && program train examples/small/train.c small-all $engines; } || exit 1
 
 # stack COMMAND...: the least `ulimit -s`, kB, that it runs with, in steps of 4.
 stack() {
@@ -62,9 +59,9 @@ task=hand_over_safe_finger
   "$folder/nothing"
   echo "| nothing: an empty C program | 0 | - | - | $(stack "$folder/nothing") | $(kb "$(stat -c %s "$folder/nothing")") | - |"
   row "a policy acts (\`$task\`)" small act $policy
-  row "1 world steps (\`point_goal1\`)" small-sim worlds point_goal1 1
-  row "1 world steps (\`$task\`)" small-sim worlds $task 1
-  row "16 worlds step (\`$task\`)" small-sim worlds $task 16
+  row "1 world steps (\`point_goal1\`)" small-all worlds point_goal1 1
+  row "1 world steps (\`$task\`)" small-all worlds $task 1
+  row "16 worlds step (\`$task\`)" small-all worlds $task 16
   row "16 worlds train, \`horizon=16\`, \`hidden=32,32\`" small-all train $task horizon=16 hidden=32,32
   row "16 worlds train, defaults" small-all train $task
 } > $folder/table.md
