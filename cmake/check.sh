@@ -85,8 +85,11 @@ case $mode in
     need clang-14
     configure dev -B build/clang -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14 -DREDMAN_WERROR=OFF \
       -DREDMAN_TOOL=OFF '-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O3 -g1'
-    cmake --build build/clang -j "$(nproc)" --target test_golden test_stepper test_vec >&2 || die "the build with clang failed: see above"
-    run_tests clang -R '^(test_golden|golden_other_libm|test_stepper|test_vec)$'
+    cmake --build build/clang -j "$(nproc)" --target redman test_golden test_golden_learners test_stepper test_vec >&2 || die "the build with clang failed: see above"
+    run_tests clang -R '^(test_golden|test_golden_learners|golden_other_libm|test_stepper|test_vec)$'
+    status=$?
+    bash cmake/cross/row.sh clang 'x86-64, clang 14 -O3' build/ctest-clang.log build/clang/libredman.so - -
+    exit $status
     ;;
   languages)
     # The program of examples/LANGUAGE in every language: the tools are Debian's, where there are no others.
@@ -155,6 +158,7 @@ case $mode in
     run_tests arm64 -R "^(test_($(echo $tests | tr ' ' '|'))|example_01_step)\$"
     status=$?
     sh tests/ports/contracted.sh "$PWD" aarch64-linux-gnu-g++ build/arm64/libredman.a || status=1
+    STRIP=aarch64-linux-gnu-strip bash cmake/cross/row.sh arm64 '64-bit ARM, GCC 12, under qemu' build/ctest-arm64.log build/arm64/libredman.so - -
     exit $status
     ;;
   windows)
@@ -170,6 +174,8 @@ case $mode in
     run_tests windows -R "^(test_($(echo $tests | tr ' ' '|'))|example_01_step|example_03_train)\$"
     status=$?
     sh tests/ports/windows.sh "$PWD" build/windows || status=1
+    STRIP=x86_64-w64-mingw32-strip bash cmake/cross/row.sh windows 'Windows on x86-64, mingw-w64 GCC 12, under wine' build/ctest-windows.log \
+      build/windows/bin/libredman.dll - -
     exit $status
     ;;
   libc++)
@@ -180,8 +186,12 @@ case $mode in
     configure dev -B build/libcxx -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14 -DREDMAN_WERROR=OFF -DREDMAN_TOOL=OFF -DREDMAN_IMPORT=OFF \
       -DREDMAN_HARD=OFF "-DCMAKE_CXX_FLAGS=-nostdinc++ -isystem $folder/include/c++/v1 -stdlib=libc++" "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O2 -g1" \
       "-DCMAKE_EXE_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_SHARED_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_PREFIX_PATH=$folder"
-    cmake --build build/libcxx -j "$(nproc)" --target test_golden test_option test_text >&2 || die "the build with libc++ failed: see above"
-    run_tests libcxx -R '^test_(golden|option|text)$'
+    cmake --build build/libcxx -j "$(nproc)" --target redman test_golden test_golden_learners test_option test_text >&2 ||
+      die "the build with libc++ failed: see above"
+    run_tests libcxx -R '^test_(golden|golden_learners|option|text)$'
+    status=$?
+    bash cmake/cross/row.sh libcxx 'x86-64, clang 14 and libc++ 14' "build/ctest-$mode.log" build/libcxx/libredman.so - -
+    exit $status
     ;;
   small)
     # What the library takes where there is little, beside the table of examples/small/README.md.
