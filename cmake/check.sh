@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|hard [MINUTES]]: installs what the tests need, builds, and runs them.
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64|windows|hard [MINUTES]]: installs what the tests need, builds, and runs them.
 # The last line says how many passed and failed; the exit status is 0 when none failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -138,6 +138,24 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
+  arm64)
+    # 64-bit ARM under qemu: hashes of worlds and learners, contracts of the ABI, what the build says of a fused ODE.
+    need g++-aarch64-linux-gnu qemu-user-static googletest curl
+    bash cmake/cross/deps.sh arm64 && bash cmake/cross/deps.sh arm64 contracted || exit 1
+    configure arm64
+    tests="golden golden_learners known_bytes fpmode elementary vec simd rng hash kernels mlp adam gaussian policy policy_tensors pointnet bytes file
+      workers library map occupancy narrowphase convex manifold stepper articulated_world ode_world hostile_state pool_state pool_step learner
+      oracle fingerprint contract_host contract_pool contract_agent contract_rollout contract_state"
+    [ "${2:-}" != all ] || tests+=" every_algo every_task contract_tasks"
+    # shellcheck disable=SC2046,SC2086
+    cmake --build --preset arm64 -j "$(nproc)" --target redman redman_static 01_step 04_act $(printf 'test_%s ' $tests) >&2 ||
+      die "preset arm64 could not be built: see above"
+    # shellcheck disable=SC2086
+    run_tests arm64 -R "^(test_($(echo $tests | tr ' ' '|'))|example_01_step)\$"
+    status=$?
+    sh tests/ports/contracted.sh "$PWD" aarch64-linux-gnu-g++ build/arm64/libredman.a || status=1
+    exit $status
+    ;;
   embedded)
     # Policies as C source, on this machine and on Cortex-M processors under qemu, with a table of what they take.
     need clang-14 gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm valgrind
@@ -194,5 +212,5 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
-  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|hard [MINUTES]]" ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64|windows|hard [MINUTES]]" ;;
 esac
