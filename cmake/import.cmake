@@ -1,11 +1,11 @@
-# redman_import: robots out of files, on the public headers alone. The shared one stands on libredman.so; the static one
-# takes whichever redman the program links.
+# redman_import: robots out of files, on the public headers and lib/base/chars.hpp alone. The shared one stands on
+# libredman.so; the static one takes whichever redman the program links.
 if(NOT REDMAN_SIM OR REDMAN_IMPORT STREQUAL "OFF" OR RDM_IMPORT_MISSING)
   return()
 endif()
 file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/capi/import/*.cpp)
 add_library(rdm_import OBJECT ${sources})
-target_include_directories(rdm_import PRIVATE ${PROJECT_SOURCE_DIR}/include)
+target_include_directories(rdm_import PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/lib)
 target_include_directories(rdm_import SYSTEM PRIVATE ${RDM_TOML})
 target_link_libraries(rdm_import PRIVATE rdm_flags tinyxml2::tinyxml2)
 target_compile_options(rdm_import PRIVATE -O2)  # a file is read once: half the time to build
