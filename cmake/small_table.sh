@@ -36,7 +36,7 @@ program act examples/small/act.c small
 stack() {
   local low=4 high=1024 middle
   while [ $((high - low)) -gt 4 ]; do
-    middle=$(((low + high) / 8 * 4))
+    middle=$(((low + high) / 2 / 4 * 4))
     if (ulimit -s $middle && "$@") > /dev/null 2>&1; then high=$middle; else low=$middle; fi
   done
   echo $high

@@ -6,7 +6,7 @@
 static long peak_kb(void) {
   char line[128];
   long kb = -1;
-  FILE *status = fopen("/proc/self/status", "r");
+  FILE* status = fopen("/proc/self/status", "r");
   while (status && fgets(line, sizeof line, status))
     if (sscanf(line, "VmHWM: %ld", &kb) == 1) break;
   if (status) fclose(status);

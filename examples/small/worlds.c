@@ -4,9 +4,9 @@
 
 #include "peak.h"
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   rdm_pool_config config;
-  rdm_pool *pool = NULL;
+  rdm_pool* pool = NULL;
   size_t bytes = 0;
   if (argc < 3 || rdm_pool_config_init(&config, sizeof config) != RDM_OK) return 1;
   config.task = argv[1];

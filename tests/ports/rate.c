@@ -1,11 +1,12 @@
-/* Whole control steps of 16 worlds of hand_over_safe_finger in a second of processor time, under random actions. */
+/* Whole control steps of 16 worlds of hand_over_safe_finger in a second of processor time, under random
+ * actions. */
 #include <redman/redman.h>
 #include <stdio.h>
 #include <time.h>
 
 int main(void) {
   rdm_pool_config config;
-  rdm_pool *pool = NULL;
+  rdm_pool* pool = NULL;
   if (rdm_pool_config_init(&config, sizeof config) != RDM_OK) return 1;
   config.task = "hand_over_safe_finger";
   config.num_envs = 16;

@@ -1,4 +1,5 @@
-/* Prints what the library says of its build here: kernels, then what computes other bytes ("same bytes" for nothing). */
+/* Prints what the library says of its build here: kernels, then what computes other bytes ("same bytes" for
+ * nothing). */
 #include <redman/redman.h>
 #include <stdio.h>
 
