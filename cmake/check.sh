@@ -19,6 +19,12 @@ run_tests() {
   return "$status"
 }
 
+# total_of FILE: the sum of its lines "N passed, M failed"; good when some passed and none failed.
+total_of() {
+  awk '/^[0-9]+ passed, [0-9]+ failed$/ { passed += $1; failed += $3 }
+    END { print passed + 0 " passed, " failed + 0 " failed"; exit failed > 0 || passed == 0 }' "$1"
+}
+
 # shellcheck disable=SC2086
 need $build_packages libgtest-dev clang-format-14 octomap-tools python3 python3-numpy mypy help2man
 # shellcheck disable=SC2086
@@ -88,7 +94,7 @@ case $mode in
     cmake --build build/clang -j "$(nproc)" --target redman test_golden test_golden_learners test_stepper test_vec >&2 || die "the build with clang failed: see above"
     run_tests clang -R '^(test_golden|test_golden_learners|golden_other_libm|test_stepper|test_vec)$'
     status=$?
-    bash cmake/cross/row.sh clang 'x86-64, clang 14 -O3' build/ctest-clang.log build/clang/libredman.so - -
+    bash cmake/cross/row.sh clang '`clang`: x86-64, clang 14 -O3' build/ctest-clang.log build/clang/libredman.so clang-14 env >&2
     exit $status
     ;;
   languages)
@@ -155,28 +161,27 @@ case $mode in
     cmake --build --preset arm64 -j "$(nproc)" --target redman redman_static 01_step 04_act $(printf 'test_%s ' $tests) >&2 ||
       die "preset arm64 could not be built: see above"
     # shellcheck disable=SC2086
-    run_tests arm64 -R "^(test_($(echo $tests | tr ' ' '|'))|example_01_step)\$"
-    status=$?
-    sh tests/ports/contracted.sh "$PWD" aarch64-linux-gnu-g++ build/arm64/libredman.a || status=1
-    STRIP=aarch64-linux-gnu-strip bash cmake/cross/row.sh arm64 '64-bit ARM, GCC 12, under qemu' build/ctest-arm64.log build/arm64/libredman.so - -
-    exit $status
+    run_tests arm64 -R "^(test_($(echo $tests | tr ' ' '|'))|example_01_step)\$" | tee build/arm64.said
+    sh tests/ports/contracted.sh "$PWD" aarch64-linux-gnu-g++ build/arm64/libredman.a | tee -a build/arm64.said
+    STRIP=aarch64-linux-gnu-strip bash cmake/cross/row.sh arm64 '`arm64`: 64-bit ARM, GCC 12, under qemu' build/ctest-arm64.log \
+      build/arm64/libredman.so >&2
+    total_of build/arm64.said
     ;;
   windows)
     # Windows under wine: the library as one DLL, hashes of worlds and learners, programs in C against the DLL, the tool.
     need g++-mingw-w64-x86-64-posix wine64 googletest curl
     bash cmake/cross/deps.sh windows || exit 1
     configure windows
-    tests="golden golden_learners known_bytes fpmode kernels library"
+    tests="golden golden_learners known_bytes fpmode elementary rng kernels"
     # shellcheck disable=SC2046,SC2086
     cmake --build --preset windows -j "$(nproc)" --target redman redman_static redman_tool 01_step 03_train $(printf 'test_%s ' $tests) >&2 ||
       die "preset windows could not be built: see above"
     # shellcheck disable=SC2086
-    run_tests windows -R "^(test_($(echo $tests | tr ' ' '|'))|example_01_step|example_03_train)\$"
-    status=$?
-    sh tests/ports/windows.sh "$PWD" build/windows || status=1
-    STRIP=x86_64-w64-mingw32-strip bash cmake/cross/row.sh windows 'Windows on x86-64, mingw-w64 GCC 12, under wine' build/ctest-windows.log \
-      build/windows/bin/libredman.dll - -
-    exit $status
+    run_tests windows -R "^(test_($(echo $tests | tr ' ' '|'))|example_01_step|example_03_train)\$" | tee build/windows.said
+    sh tests/ports/windows.sh "$PWD" build/windows | tee -a build/windows.said
+    STRIP=x86_64-w64-mingw32-strip bash cmake/cross/row.sh windows '`windows`: x86-64, mingw-w64 GCC 12, under wine' build/ctest-windows.log \
+      build/windows/bin/libredman.dll x86_64-w64-mingw32-gcc-posix cmake/cross/wine.sh >&2
+    total_of build/windows.said
     ;;
   libc++)
     # Another standard library beside another compiler: clang's, unpacked into a folder since it is at odds with libunwind-dev.
@@ -190,7 +195,7 @@ case $mode in
       die "the build with libc++ failed: see above"
     run_tests libcxx -R '^test_(golden|golden_learners|option|text)$'
     status=$?
-    bash cmake/cross/row.sh libcxx 'x86-64, clang 14 and libc++ 14' "build/ctest-$mode.log" build/libcxx/libredman.so - -
+    bash cmake/cross/row.sh libcxx '`libc++`: x86-64, clang 14 and libc++ 14' "build/ctest-$mode.log" build/libcxx/libredman.so clang-14 env >&2
     exit $status
     ;;
   small)

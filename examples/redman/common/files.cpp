@@ -39,7 +39,7 @@ void check_target(const std::string& path, const std::string& target) {
 
 uint64_t random_number() {
   uint64_t out = 0;
-  if (getrandom(&out, sizeof out, 0) != static_cast<ssize_t>(sizeof out))
+  if (getentropy(&out, sizeof out) != 0)
     throw Failure(std::string("cannot draw a random number: ") + std::strerror(errno));
   return out;
 }

@@ -24,7 +24,7 @@ int64_t pread(int file, void* to, size_t size, int64_t offset);
 int64_t pwrite(int file, const void* bytes, size_t size, int64_t offset);
 int fsync(int file);
 int flock(int file, int how);  // LOCK_EX | LOCK_NB alone
-int64_t getrandom(void* to, size_t size, unsigned flags);
+int getentropy(void* to, size_t size);
 #endif
 
 #include <string>

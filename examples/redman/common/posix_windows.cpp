@@ -36,13 +36,13 @@ int flock(int file, int) {
   return -1;
 }
 
-int64_t getrandom(void* to, size_t size, unsigned) {
+int getentropy(void* to, size_t size) {
   for (size_t done = 0; done < size; done += sizeof(unsigned)) {
     unsigned bits = 0;
     if (rand_s(&bits) != 0) return -1;
     std::memcpy(static_cast<char*>(to) + done, &bits, std::min(size - done, sizeof bits));
   }
-  return static_cast<int64_t>(size);
+  return 0;
 }
 
 namespace tool {

@@ -36,6 +36,16 @@ bool ends_with(const std::string& s, const std::string& end) {
   return s.size() > end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
 }
 
+// Two ends that no child keeps.
+bool pipe_for_us(int ends[2]) {
+#if defined(__APPLE__)  // which has no pipe2
+  return pipe(ends) == 0 && fcntl(ends[0], F_SETFD, FD_CLOEXEC) == 0 &&
+         fcntl(ends[1], F_SETFD, FD_CLOEXEC) == 0;
+#else
+  return pipe2(ends, O_CLOEXEC) == 0;
+#endif
+}
+
 }  // namespace
 
 Film::Film(const std::string& path, int32_t width, int32_t height, double frames_per_second) : path_(path) {
@@ -56,7 +66,7 @@ Film::Film(const std::string& path, int32_t width, int32_t height, double frames
 
   std::signal(SIGPIPE, SIG_IGN);  // a write to an ffmpeg that gave up then answers EPIPE
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw Failure(std::string("cannot start ffmpeg: ") + std::strerror(errno));
+  if (!pipe_for_us(ends)) throw Failure(std::string("cannot start ffmpeg: ") + std::strerror(errno));
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
