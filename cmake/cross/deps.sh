@@ -52,6 +52,7 @@ if [ "$target" = windows ]; then
 fi
 ode=$(source_of ode) && ccd=$(source_of ccd) || exit 1
 add ode "$ode" -DODE_DOUBLE_PRECISION=ON -DODE_WITH_DEMOS=OFF -DODE_WITH_TESTS=OFF -DODE_WITH_OPCODE=OFF "${ode_flags[@]}"
+[ -e "$prefix/lib/libode.a" ] || cp "$prefix"/lib/libode*.a "$prefix/lib/libode.a" || exit 1 # ode_doubles on Windows
 add ccd "$ccd" -DENABLE_DOUBLE_PRECISION=ON -DBUILD_DOCUMENTATION=OFF
 [ -z "$contracted" ] || exit 0
 octomap=$(source_of octomap) || exit 1
