@@ -161,6 +161,7 @@ inline void* aligned_scratch(void* scratch, size_t size, size_t bytes) {
 }
 
 // Sizes of structs that have grown, as they were at first.
+inline constexpr size_t kFirstBuildSize = offsetof(rdm_build, differs);
 inline constexpr size_t kFirstSpecSize = offsetof(rdm_spec, action_repeat);
 inline constexpr size_t kFirstEpochSize = offsetof(rdm_epoch, cost_signal);
 inline constexpr size_t kFirstAgentConfigSize = offsetof(rdm_agent_config, settings);

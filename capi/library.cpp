@@ -8,6 +8,9 @@
 #if RDM_WITH_POLICY
 #include "nn/kernels.hpp"
 #endif
+#if RDM_WITH_SIM
+#include "physics/collision/known_bytes.hpp"
+#endif
 
 using namespace rdm;
 using namespace rdm::capi;
@@ -70,6 +73,7 @@ rdm_result rdm_check_abi(uint32_t abi, uint32_t version) {
 
 rdm_result rdm_build_info(rdm_build* io) {
   return call(nullptr, [&] {
+    check_out(io, kFirstBuildSize, "io");
     rdm_build b{};
     b.abi = RDM_ABI;
     b.version = RDM_TEXT_OF_VALUE(RDM_VERSION_MAJOR) "." RDM_TEXT_OF_VALUE(
@@ -89,7 +93,12 @@ rdm_result rdm_build_info(rdm_build* io) {
 #else
     b.kernels = "";
 #endif
-    write_struct(io, b, sizeof(rdm_build), "io");
+    b.differs = "";
+#if RDM_WITH_SIM
+    const KnownBytes& known = known_bytes();
+    if (!known.ode || !known.ccd) b.differs = known.ccd ? "ODE" : known.ode ? "libccd" : "ODE, libccd";
+#endif
+    write_struct(io, b, kFirstBuildSize, "io");
   });
 }
 

@@ -2,10 +2,10 @@
 #include "capi/own_task.hpp"
 
 #if RDM_WITH_SIM
-#include <bit>
 #include <cmath>
 #include <cstdio>
 
+#include "base/bit_cast.hpp"
 #include "base/text.hpp"
 #include "env/options/simulation.hpp"
 #include "env/options/table.hpp"
@@ -139,9 +139,9 @@ class BuiltTask final : public Task {
     const rdm_task_def& d = own_.def;
     rdm_world w(&world, &scene_, false);
     scene_.draws.apply(world, stream);
-    auto random = std::bit_cast<rdm_random>(stream);
+    auto random = rdm::bit_cast<rdm_random>(stream);
     own_.run("reset", [&] { return d.reset(d.user, instance_.data(), &w, state, &random); });
-    stream = std::bit_cast<Stream>(random);
+    stream = rdm::bit_cast<Stream>(random);
   }
   void control(World& world, void* state, const float* action) const override {
     const rdm_task_def& d = own_.def;

@@ -1,6 +1,6 @@
 // rdm_policy_*: the frozen network.
-#include <bit>
 
+#include "base/bit_cast.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "capi/handles.hpp"
@@ -148,7 +148,7 @@ void need_finite(const float* x, int32_t rows, int32_t width, const char* name) 
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
     uint32_t largest = 0;  // of the magnitudes, which order as their bits do
     for (size_t k = 0; k < dim; ++k)
-      largest = std::max(largest, std::bit_cast<uint32_t>(x[i * dim + k]) & 0x7fffffffu);
+      largest = std::max(largest, rdm::bit_cast<uint32_t>(x[i * dim + k]) & 0x7fffffffu);
     if (largest >= 0x7f800000u) fail(Code::kArgument, "%s: row %zu is not finite", name, i);
   }
 }

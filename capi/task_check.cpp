@@ -1,11 +1,11 @@
 // rdm_task_check: what a task promises, tried: its functions one by one with guards around what they write,
 // twice from the same seed, after save and restore; then whole pools with one thread and with two.
-#include <bit>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <memory>
 
+#include "base/bit_cast.hpp"
 #include "base/hash.hpp"
 #include "capi/handles.hpp"
 
@@ -208,7 +208,7 @@ class Stage {
     const uint64_t state = hash_bytes(state_.data(), state_.size());
     uint64_t first = 0;
     for (const uint32_t paper : {kUnwritten, kUnwritten ^ 0xff00u}) {
-      std::fill_n(row, plan_.obs_dim, std::bit_cast<float>(paper));
+      std::fill_n(row, plan_.obs_dim, rdm::bit_cast<float>(paper));
       call(Part::kObserve, [&] { task_.observe(*world_, state_.data(), row); });
       if (hash_bytes(state_.data(), state_.size()) != state) broken(Part::kObserve, "it changes its state");
       check_row(row, paper);
@@ -223,7 +223,7 @@ class Stage {
     int32_t i = 0;
     for (const FieldSpec& f : task_.fields())
       for (int32_t k = 0; k < f.count; ++k, ++i) {
-        if (std::bit_cast<uint32_t>(row[i]) == paper)
+        if (rdm::bit_cast<uint32_t>(row[i]) == paper)
           broken(Part::kObserve, "entry %d of field %s is not written", k, f.name.text);
         const auto value = static_cast<double>(row[i]);
         if (!std::isfinite(value))

@@ -1,7 +1,7 @@
 // rdm_world_* and rdm_random_*: a world as the functions of a host's task see it.
-#include <bit>
 #include <cmath>
 
+#include "base/bit_cast.hpp"
 #include "capi/own_task.hpp"
 #if RDM_WITH_SIM
 #include "physics/gravity_torques.hpp"
@@ -114,9 +114,9 @@ double* place_of(const rdm_factor& f, int64_t materials, Dynamics* d) {
 template <class F>
 auto draw(rdm_random* random, F&& f) -> decltype(f(std::declval<Stream&>())) {
   if (!random) return 0;
-  auto s = std::bit_cast<Stream>(*random);
+  auto s = rdm::bit_cast<Stream>(*random);
   const auto out = f(s);
-  *random = std::bit_cast<rdm_random>(s);
+  *random = rdm::bit_cast<rdm_random>(s);
   return out;
 }
 
@@ -387,7 +387,7 @@ rdm_result rdm_random_split(rdm_random* random, rdm_random* out) {
   return call_inside([&] {
     need(random, "random");
     need(out, "out");
-    *out = std::bit_cast<rdm_random>(Stream(rdm_random_bits(random), 0, Purpose::kReset));
+    *out = rdm::bit_cast<rdm_random>(Stream(rdm_random_bits(random), 0, Purpose::kReset));
   });
 }
 #endif

@@ -15,6 +15,9 @@ if(REDMAN_SIM)
 
   find_package(octomap REQUIRED)
   set(RDM_OCTOMAP octomap octomath)
+  if(CMAKE_CROSSCOMPILING AND TARGET octomap-static)
+    set(RDM_OCTOMAP octomap-static octomath-static)
+  endif()
   set(RDM_VERSION_TEXT_OCTOMAP ${octomap_VERSION})
 endif()
 

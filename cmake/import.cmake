@@ -1,11 +1,11 @@
-# redman_import: robots out of files, on the public headers alone. The shared one stands on libredman.so; the static one
-# takes whichever redman the program links.
+# redman_import: robots out of files, on the public headers and lib/base/chars.hpp alone. The shared one stands on
+# libredman.so; the static one takes whichever redman the program links.
 if(NOT REDMAN_SIM OR REDMAN_IMPORT STREQUAL "OFF" OR RDM_IMPORT_MISSING)
   return()
 endif()
 file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/capi/import/*.cpp)
 add_library(rdm_import OBJECT ${sources})
-target_include_directories(rdm_import PRIVATE ${PROJECT_SOURCE_DIR}/include)
+target_include_directories(rdm_import PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/lib)
 target_include_directories(rdm_import SYSTEM PRIVATE ${RDM_TOML})
 target_link_libraries(rdm_import PRIVATE rdm_flags tinyxml2::tinyxml2)
 target_compile_options(rdm_import PRIVATE -O2)  # a file is read once: half the time to build
@@ -32,15 +32,5 @@ target_link_libraries(redman_import_static PRIVATE tinyxml2::tinyxml2)
 if(REDMAN_SHARED)
   rdm_import_library(redman_import SHARED)
   target_link_libraries(redman_import PUBLIC redman PRIVATE tinyxml2::tinyxml2)
-  set(symbols ${PROJECT_SOURCE_DIR}/capi/import/redman_import.symbols)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${symbols})
-  file(STRINGS ${symbols} names REGEX "^rdm_")
-  list(JOIN names "; " names)
-  set(map ${PROJECT_BINARY_DIR}/redman_import.map)
-  file(CONFIGURE OUTPUT ${map} CONTENT "REDMAN_IMPORT_EXPERIMENTAL { global: ${names}; local: *; };\n")
-  target_link_options(redman_import PRIVATE -Wl,--as-needed -Wl,--version-script=${map})
-  if(NOT REDMAN_SANITIZE)
-    target_link_options(redman_import PRIVATE -Wl,-z,defs)
-  endif()
-  set_property(TARGET redman_import APPEND PROPERTY LINK_DEPENDS ${map})
+  rdm_export(redman_import import/redman_import:REDMAN_IMPORT_EXPERIMENTAL)
 endif()

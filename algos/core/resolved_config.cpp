@@ -1,6 +1,5 @@
 #include "algos/core/resolved_config.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +8,7 @@
 
 #include "algos/algo_registry.hpp"
 #include "algos/core/option_tables.hpp"
+#include "base/chars.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -114,7 +114,7 @@ void parse_origin(const char* text, float (&origin)[3]) {
   const char *p = text, *last = text + std::strlen(text);
   for (int32_t k = 0; k < 3; ++k) {
     while (*p == ' ') ++p;
-    auto [end, error] = std::from_chars(p, last, origin[k]);
+    auto [end, error] = from_chars(p, last, origin[k]);
     while (*end == ' ') ++end;
     if (error != std::errc() || *end != (k < 2 ? ',' : '\0'))
       fail(Code::kArgument, "encoder_origin: '%s' is not three numbers such as 0,0,1", Quoted(text).text);

@@ -2,9 +2,9 @@
 // text that reads back to the same bits. A key that is left out is 0, "none" or what rdm_object_def_init
 // gives.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "base/chars.hpp"
 #include "toml_text.hpp"
 
 namespace rdm::import {
@@ -17,7 +17,7 @@ std::string number_text(double x) {
   if (std::isnan(x)) return std::signbit(x) ? "-nan" : "nan";
   if (std::isinf(x)) return x < 0 ? "-inf" : "inf";
   char text[40];
-  std::string out(text, std::to_chars(text, text + sizeof text, x).ptr);
+  std::string out(text, to_chars(text, text + sizeof text, x).ptr);
   if (out.find_first_of(".e") == std::string::npos) out += ".0";
   return out;
 }

@@ -2,13 +2,13 @@
 // numbered. Numbers are the shortest text that reads back to the same bits. A key that is left out is 0,
 // "none" or what rdm_robot_def_init gives.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdarg>
 #include <cstring>
 #include <initializer_list>
 #include <limits>
 
+#include "base/chars.hpp"
 #include "toml_text.hpp"
 
 namespace rdm::import {
@@ -26,7 +26,7 @@ std::string number_text(T x) {
   if (std::isnan(x)) return std::signbit(x) ? "-nan" : "nan";
   if (std::isinf(x)) return x < 0 ? "-inf" : "inf";
   char text[40];
-  const auto end = std::to_chars(text, text + sizeof text, x).ptr;
+  const auto end = to_chars(text, text + sizeof text, x).ptr;
   std::string out(text, end);
   if (out.find_first_of(".e") == std::string::npos) out += ".0";
   return out;

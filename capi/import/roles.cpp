@@ -6,8 +6,8 @@
 // apart.
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 
+#include "base/chars.hpp"
 #include "model.hpp"
 
 namespace rdm::import {
@@ -347,7 +347,7 @@ struct Guess {
       int k = 0;
       for (; k < 6; ++k) {
         while (c != end && (*c == ' ' || *c == ',')) ++c;
-        const auto [after, error] = std::from_chars(c, end, v[k]);
+        const auto [after, error] = from_chars(c, end, v[k]);
         if (error != std::errc() || !(std::abs(v[k]) < 1e3)) break;
         c = after;
       }

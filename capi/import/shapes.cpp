@@ -1,8 +1,9 @@
 #include "shapes.hpp"
 
-#include <charconv>
 #include <cstring>
 #include <limits>
+
+#include "base/chars.hpp"
 
 namespace rdm::import {
 namespace {
@@ -92,7 +93,7 @@ double lines_number(const char*& c, const char* end, size_t line) {
   while (c != end && (*c == ' ' || *c == '\t')) ++c;
   if (c != end && *c == '+') ++c;
   double x = 0;
-  const auto [after, error] = std::from_chars(c, end, x);
+  const auto [after, error] = from_chars(c, end, x);
   if (error != std::errc() || !(std::abs(x) <= 1e6))
     refuse(RDM_FORMAT, "line %zu: a corner needs three numbers", line);
   c = after;
@@ -127,7 +128,7 @@ Mesh parse_lines(const std::string& bytes, bool obj) {
       while (true) {
         while (c != end && (*c == ' ' || *c == '\t')) ++c;
         long long i = 0;
-        const auto [after, error] = std::from_chars(c, end, i);
+        const auto [after, error] = from_chars(c, end, i);
         if (error != std::errc()) break;
         i = i < 0 ? static_cast<long long>(out.points.size()) + i : i - 1;
         if (i < 0 || i >= static_cast<long long>(out.points.size()))

@@ -3,12 +3,12 @@
 // of terms (task_program.hpp) anew for each pool, since numbers may be options of it.
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <memory>
 
+#include "base/chars.hpp"
 #include "task_program.hpp"
 #include "toml_text.hpp"
 
@@ -426,7 +426,7 @@ class Builder {
       Span s{};
       const auto read = [&](size_t from, size_t to, double* out) {
         const char* end = text.data() + to;
-        const auto r = std::from_chars(text.data() + from, end, *out);
+        const auto r = from_chars(text.data() + from, end, *out);
         return r.ec == std::errc() && r.ptr == end && std::isfinite(*out);
       };
       if (dots == std::string::npos || !read(0, dots, &s.low) || !read(dots + 2, text.size(), &s.high) ||

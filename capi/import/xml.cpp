@@ -2,9 +2,10 @@
 
 #include <tinyxml2.h>
 
-#include <charconv>
 #include <cstdarg>
 #include <cstring>
+
+#include "base/chars.hpp"
 
 namespace rdm::import {
 namespace {
@@ -167,7 +168,7 @@ std::vector<double> numbers(const Element& e, const char* attribute, const std::
     if (c == end) break;
     if (*c == '+' && c + 1 != end && c[1] != '-') ++c;
     double value = 0;
-    const auto [after, error] = std::from_chars(c, end, value);
+    const auto [after, error] = from_chars(c, end, value);
     if (error != std::errc() || (after != end && !space(*after)) || !(std::abs(value) <= 1e9))
       refuse_at(RDM_FORMAT, e, "%s: %s is no number", attribute, clean(text).c_str());
     out.push_back(value);

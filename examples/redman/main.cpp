@@ -9,6 +9,11 @@
 #include <new>
 #include <redman/redman.hpp>
 
+#if defined(_WIN32)
+#include <fcntl.h>
+#include <io.h>
+#endif
+
 #include "commands.hpp"
 #include "common/names.hpp"
 #include "common/plugin.hpp"
@@ -141,7 +146,11 @@ int run_tool(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+#if defined(_WIN32)
+  _setmode(_fileno(stdout), _O_BINARY);  // the same lines as elsewhere
+#else
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then is an error of write, with a text
+#endif
   try {
     return run_tool(argc, argv);
   } catch (...) {

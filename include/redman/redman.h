@@ -30,8 +30,8 @@
  *   - Strings that are returned live as long as their handle (static ones: for ever). UTF-8.
  *     What is no UTF-8 in a name that was given stands in a text as \xNN.
  *   - Arrays are row-major. SI units, radians. Quaternions are (x, y, z, w) here and in observations.
- *   - Same seed, same bytes: for any number of threads; worlds on every x86-64 machine, learners on
- *     every machine of the same vector unit.
+ *   - Same seed, same bytes: for any number of threads; worlds on every little-endian machine whose ODE and libccd were
+ *     compiled without fused multiply-adds (rdm_build.differs), learners on every machine with the same rdm_build.kernels.
  *
  * How to read the declarations, for generators of bindings (tests/rules/check_contract.py holds them to it):
  *   - `const T *x` is read, `T *x` is written. `x [rows][obs_dim]` in the comment of the function, or `[rows][obs_dim]`
@@ -50,7 +50,9 @@
 #include <stdint.h>
 
 #if !defined(RDM_API)
-#if defined(__GNUC__)
+#if defined(_WIN32)
+#define RDM_API /* the library exports the names of its list; programs need no mark */
+#elif defined(__GNUC__)
 #define RDM_API __attribute__((visibility("default")))
 #else
 #define RDM_API
@@ -110,6 +112,9 @@ typedef struct rdm_build { /* what this library was made of */
   const char *precision;  /* of physics and networks: "double physics, float nets"  */
   const char *compiler;   /* name and version                                       */
   const char *kernels;    /* instruction set that the networks run on here          */
+  const char *differs;    /* "ODE", "libccd", "ODE, libccd": these compute other bytes here than on the machines of the
+                           * recorded hashes (compiled with fused multiply-adds, as by Debian for arm64, or another
+                           * version), and so do worlds with contacts; "": none, or no simulation half */
 } rdm_build;
 RDM_API rdm_result rdm_build_info(rdm_build *io); /* fills io; strings are static */
 

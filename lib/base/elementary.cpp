@@ -3,9 +3,10 @@
 #include "base/elementary.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
+
+#include "base/bit_cast.hpp"
 
 namespace rdm::elementary {
 namespace {
@@ -22,7 +23,7 @@ constexpr double kHalfPi[] = {0x1.921fb54442cp0, 0x1.18469898cc4p-44, 0x1.1701b8
 // Remainder of |x| > 1600 by the double next to 2 pi, exact, by integers: one turn is that number times 2^50.
 double wrap(double x) {
   constexpr uint64_t kTurn = 0x1921fb54442d18;
-  const auto bits = std::bit_cast<uint64_t>(x);
+  const auto bits = bit_cast<uint64_t>(x);
   uint64_t rest = ((bits & 0xfffffffffffff) | 0x10000000000000) % kTurn;
   for (int left = static_cast<int>(bits >> 52 & 0x7ff) - 1025; left > 0; left -= 11)
     rest = (rest << std::min(left, 11)) % kTurn;
@@ -43,7 +44,7 @@ inline Reduced reduce(double x) {
   const double shifted = x * 0x1.45f306dc9c883p-1 + kRound, n = shifted - kRound;
   // With |n| < 2^10 both products and a are exact; y is too where |a| < |b|, else the next line has its loss.
   const double a = x - n * kHalfPi[0], b = n * kHalfPi[1], y = a - b;
-  return {y, ((a - y) - b) - n * kHalfPi[2], std::bit_cast<uint64_t>(shifted)};
+  return {y, ((a - y) - b) - n * kHalfPi[2], bit_cast<uint64_t>(shifted)};
 }
 
 inline double sin_near(double x, double low) {
@@ -82,7 +83,7 @@ inline Power split(double x) {
 
 // x 2^n where both are normal.
 inline double scaled(double x, int64_t n) {
-  return std::bit_cast<double>(std::bit_cast<uint64_t>(x) + (static_cast<uint64_t>(n) << 52));
+  return bit_cast<double>(bit_cast<uint64_t>(x) + (static_cast<uint64_t>(n) << 52));
 }
 
 constexpr double kExpMax = 0x1.62e42fefa39efp9;   // its exponential is the largest double
@@ -116,11 +117,10 @@ constexpr Angle kAtanOne = {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55};
 // Quadrants of real angles are hard to predict: bits are masked where one would branch.
 SinCos sincos(double x) {
   const Reduced r = reduce(x);
-  const auto s = std::bit_cast<uint64_t>(sin_near(r.high, r.low));
-  const auto c = std::bit_cast<uint64_t>(cos_near(r.high, r.low));
+  const auto s = bit_cast<uint64_t>(sin_near(r.high, r.low));
+  const auto c = bit_cast<uint64_t>(cos_near(r.high, r.low));
   const uint64_t q = r.quadrant, change = (s ^ c) & (0 - (q & 1));
-  return {std::bit_cast<double>(s ^ change ^ (q & 2) << 62),
-          std::bit_cast<double>(c ^ change ^ ((q + 1) & 2) << 62)};
+  return {bit_cast<double>(s ^ change ^ (q & 2) << 62), bit_cast<double>(c ^ change ^ ((q + 1) & 2) << 62)};
 }
 
 double sin(double x) {
@@ -153,9 +153,9 @@ double log(double x) {
   if (std::isnan(x) || x == kInfinity) return x;
   if (x < kMin) return x <= -kMin ? kNan : -kInfinity;
   // x = 2^n m with m in [sqrt(1/2), sqrt(2)).
-  const auto bits = std::bit_cast<uint64_t>(x);
+  const auto bits = bit_cast<uint64_t>(x);
   const auto n = static_cast<int64_t>(bits - 0x3fe6a09e667f3bcd) >> 52;
-  const double f = std::bit_cast<double>(bits - (static_cast<uint64_t>(n) << 52)) - 1;
+  const double f = bit_cast<double>(bits - (static_cast<uint64_t>(n) << 52)) - 1;
   const double s = f / (2 + f), z = s * s, w = z * z, half = 0.5 * f * f, k = static_cast<double>(n);
   const double p = z * (0x1.5555555555558p-1 +
                         w * (0x1.2492492e0351ap-2 + w * (0x1.7462bcee6f079p-3 + w * 0x1.2b66663d11a7p-3))) +

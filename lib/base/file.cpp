@@ -1,5 +1,6 @@
 #include "base/file.hpp"
 
+#if !defined(_WIN32)  // there: file_windows.cpp
 #include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -7,7 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <climits>
 #include <csignal>
@@ -15,6 +15,8 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
+
+#include "base/file_within.hpp"
 
 namespace rdm {
 namespace {
@@ -174,24 +176,7 @@ Vector<unsigned char> read_file(const char* path, const FileLimits& limits) {
     }
     return at;
   };
-  unsigned char head[64];
-  const auto size = static_cast<uint64_t>(st.st_size);
-  const size_t looked = read_to(head, sizeof head), magic = std::min(limits.magic.size(), looked);
-  if (std::memcmp(head, limits.magic.data(), magic) != 0)
-    fail(Code::kFormat, "%s: wrong magic: not a file of this kind", path);
-  if (const size_t end = limits.length_at + sizeof(uint64_t); limits.length_at > 0 && looked >= end) {
-    uint64_t length;
-    std::memcpy(&length, head + limits.length_at, sizeof length);
-    if (length != size - end)
-      fail(Code::kFormat, "%s: truncated or with a tail: the length does not match", path);
-  }
-  if (size > limits.longest)
-    fail(limits.too_long, "%s: %lld bytes, more than the %zu of any that would be taken here", path,
-         static_cast<long long>(st.st_size), limits.longest);
-  Vector<unsigned char> out(std::max(static_cast<size_t>(size), looked));
-  std::copy_n(head, looked, out.begin());
-  out.resize(looked + read_to(out.data() + looked, out.size() - looked));
-  return out;
+  return read_within(path, static_cast<uint64_t>(st.st_size), limits, read_to);
 }
 
 void write_file(const char* path, const void* data, size_t size) {
@@ -222,3 +207,4 @@ void write_file(const char* path, const void* data, size_t size) {
 }
 
 }  // namespace rdm
+#endif

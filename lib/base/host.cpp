@@ -5,12 +5,32 @@
 #include <cstdlib>
 #include <mutex>
 #include <new>
+#if defined(_WIN32)
+#include <malloc.h>
+#endif
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 
 namespace rdm {
 namespace {
+// The C library's; null when it has no more.
+void* aligned_block(size_t bytes, size_t align) {
+#if defined(_WIN32)
+  return _aligned_malloc(bytes, align);
+#else
+  void* p = nullptr;
+  return posix_memalign(&p, align, bytes) == 0 ? p : nullptr;
+#endif
+}
+void free_aligned_block(void* p) {
+#if defined(_WIN32)
+  _aligned_free(p);
+#else
+  std::free(p);
+#endif
+}
+
 std::mutex g_mutex;
 HostHooks g_host;
 thread_local const HostHooks* t_scope = nullptr;
@@ -35,12 +55,7 @@ void set_host(const HostHooks& hooks) {
 void* host_alloc(const HostHooks& hooks, size_t bytes, size_t align) {
   if (bytes == 0) bytes = 1;
   if (align < sizeof(void*)) align = sizeof(void*);
-  void* p = nullptr;
-  if (hooks.alloc) {
-    p = hooks.alloc(hooks.user, bytes, align);
-  } else if (posix_memalign(&p, align, bytes) != 0) {
-    p = nullptr;
-  }
+  void* const p = hooks.alloc ? hooks.alloc(hooks.user, bytes, align) : aligned_block(bytes, align);
   if (!p) fail(Code::kMemory, "out of memory: %zu bytes were refused", bytes);
   return p;
 }
@@ -52,7 +67,7 @@ void host_release(const HostHooks& hooks, void* p, size_t bytes, size_t align) n
   if (hooks.alloc)
     hooks.release(hooks.user, p, bytes, align);
   else
-    std::free(p);
+    free_aligned_block(p);
 }
 
 void log(const HostHooks& hooks, LogLevel level, const char* format, ...) {

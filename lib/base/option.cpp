@@ -1,11 +1,11 @@
 #include "base/option.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 
+#include "base/chars.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 
@@ -39,10 +39,10 @@ int edit_distance(const char* a, const char* b) {
 // Nine digits where they are enough, else as few as read back exactly.
 void print_number(double v, char* out) {
   char* const last = out + kOptionTextSize - 1;
-  const char* end = std::to_chars(out, last, v, std::chars_format::general, 9).ptr;
+  const char* end = to_chars(out, last, v, 9).ptr;
   double back = 0;
-  std::from_chars(out, end, back);
-  if (back != v) end = std::to_chars(out, last, v).ptr;
+  from_chars(out, end, back);
+  if (back != v) end = to_chars(out, last, v).ptr;
   out[end - out] = '\0';
 }
 
@@ -84,7 +84,7 @@ bool split_line(const char* begin, const char* end, Vector<char>* key, Vector<ch
 // Of a number, integer or flag; not strtod: a host may have set a locale with a decimal comma.
 bool read_number(const char* begin, const char* end, double* out) {
   if (begin < end && *begin == '+') ++begin;
-  const auto [stop, error] = std::from_chars(begin, end, *out);
+  const auto [stop, error] = from_chars(begin, end, *out);
   return error == std::errc() && stop == end;
 }
 

@@ -1,10 +1,10 @@
 #include "env/fields.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstdio>
 #include <cstring>
 
+#include "base/bit_cast.hpp"
 #include "base/error.hpp"
 #include "base/hash.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 
 // The bits of |x|, which stand in the order of |x|: a loop over them has neither branches nor an order.
 int32_t magnitude(float x) {
-  return std::bit_cast<int32_t>(x) & 0x7FFFFFFF;
+  return bit_cast<int32_t>(x) & 0x7FFFFFFF;
 }
 constexpr int32_t kInfinity = 0x7F800000;  // and above: not a number
 

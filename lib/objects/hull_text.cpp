@@ -1,8 +1,8 @@
 #include "objects/hull_text.hpp"
 
-#include <charconv>
 #include <cstring>
 
+#include "base/chars.hpp"
 #include "base/error.hpp"
 #include "physics/model/inertia.hpp"
 
@@ -15,7 +15,7 @@ Vector<Vec3> hull_points_from(const char* text) {
     Vec3 p;
     for (int k = 0; k < 3; ++k) {
       while (*at == ' ' || *at == '+') ++at;
-      const auto [stop, error] = std::from_chars(at, end, p[k]);
+      const auto [stop, error] = from_chars(at, end, p[k]);
       if (error != std::errc() || (k < 2 ? *stop != ',' : *stop != ';' && *stop != '\0'))
         fail(Code::kArgument, "hull: point %d is not x,y,z with ';' between points",
              static_cast<int>(points.size()));

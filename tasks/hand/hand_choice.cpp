@@ -1,10 +1,10 @@
 #include "tasks/hand/hand_choice.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <cstring>
 
+#include "base/chars.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "env/options/robot.hpp"
@@ -84,7 +84,7 @@ void read_numbers(const char* key, const char* text, int32_t count, double* out)
   const char *at = text, *const end = text + std::strlen(text);
   for (int32_t i = 0; i < count; ++i) {
     while (at < end && (*at == ' ' || (i > 0 && *at == ','))) ++at;
-    const auto [next, error] = std::from_chars(at, end, out[i]);
+    const auto [next, error] = from_chars(at, end, out[i]);
     if (error != std::errc() || !(std::abs(out[i]) <= 1000))
       fail(Code::kArgument, "%s: '%s' is neither auto nor %d numbers", key, Quoted(text).text, count);
     at = next;

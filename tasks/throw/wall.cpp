@@ -1,10 +1,10 @@
 #include "tasks/throw/wall.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 
+#include "base/chars.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 
@@ -89,7 +89,7 @@ bool parse_box(const char* text, ShapeDef* box) {
   const char *at = text, *const stop = text + std::strlen(text);
   for (; count < 9; ++count) {
     while (at < stop && *at == ' ') ++at;
-    const auto [end, error] = std::from_chars(at, stop, value[count]);
+    const auto [end, error] = from_chars(at, stop, value[count]);
     if (error != std::errc{}) break;
     at = end;
   }

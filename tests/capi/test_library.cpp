@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <redman/redman.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <string>
@@ -42,6 +43,22 @@ TEST(Library, BuildInfoFillsNoMoreThanItsCallerHas) {
   EXPECT_EQ(rdm_build_info(nullptr), RDM_ARGUMENT);
   newer.build.struct_size = 8;
   EXPECT_EQ(rdm_build_info(&newer.build), RDM_ARGUMENT);
+}
+
+TEST(Library, BuildInfoServesACallerOfTheFirstVersion) {
+  rdm_build build;
+  std::memset(&build, 0x55, sizeof build);
+  build.struct_size = offsetof(rdm_build, differs);
+  ASSERT_EQ(rdm_build_info(&build), RDM_OK);
+  EXPECT_GT(std::strlen(build.kernels), 0u);
+  unsigned char beyond[sizeof build.differs];
+  std::memcpy(beyond, &build.differs, sizeof beyond);
+  for (const unsigned char byte : beyond) EXPECT_EQ(byte, 0x55);
+  build.struct_size = sizeof build;
+  ASSERT_EQ(rdm_build_info(&build), RDM_OK);
+  for (const char* known : {"", "ODE", "libccd", "ODE, libccd"})
+    if (build.differs == std::string(known)) return;
+  ADD_FAILURE() << build.differs;
 }
 
 TEST(Library, HooksAreCountedAndPutBack) {

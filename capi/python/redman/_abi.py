@@ -194,6 +194,7 @@ class Build(Record):
     precision: str  # of physics and networks: "double physics, float nets"
     compiler: str  # name and version
     kernels: str  # instruction set that the networks run on here
+    differs: str  # "ODE", "libccd", "ODE, libccd": these compute other bytes here than on the machines of the recorded hashes (compiled with fused multiply-adds, as by Debian for arm64, or another version), and so do worlds with contacts; "": none, or no simulation half
 
 
 class rdm_build(Structure):
@@ -207,6 +208,9 @@ class rdm_build(Structure):
     precision: of physics and networks: "double physics, float nets"
     compiler: name and version
     kernels: instruction set that the networks run on here
+    differs: "ODE", "libccd", "ODE, libccd": these compute other bytes here than on the machines of the recorded
+        hashes (compiled with fused multiply-adds, as by Debian for arm64, or another version), and so do worlds
+        with contacts; "": none, or no simulation half
     """
 
     struct_size: int
@@ -219,6 +223,7 @@ class rdm_build(Structure):
     precision: bytes | None
     compiler: bytes | None
     kernels: bytes | None
+    differs: bytes | None
     _fields_ = [
         ("struct_size", c_uint32),
         ("abi", c_uint32),
@@ -230,6 +235,7 @@ class rdm_build(Structure):
         ("precision", c_char_p),
         ("compiler", c_char_p),
         ("kernels", c_char_p),
+        ("differs", c_char_p),
     ]
 
 

@@ -1,16 +1,15 @@
 // `bench step`, `bench observe`: control steps under random actions, blind and with pictures, points or
 // voxels.
 #include <redman/redman_sense.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <ctime>
-#include <fstream>
 
 #include "bench/bench.hpp"
 #include "bench/malloc_count.hpp"
 #include "common/names.hpp"
+#include "common/posix.hpp"
 #include "common/text.hpp"
 
 namespace tool {
@@ -19,13 +18,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double since(Clock::time_point t) {
   return std::chrono::duration<double>(Clock::now() - t).count();
-}
-
-size_t resident_bytes() {
-  std::ifstream in("/proc/self/statm");
-  size_t total = 0, resident = 0;
-  in >> total >> resident;
-  return resident * static_cast<size_t>(sysconf(_SC_PAGESIZE));
 }
 
 void random_steps(redman::Pool& pool, int count) {

@@ -1,19 +1,13 @@
 #include "common/files.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/random.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <climits>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
+#include "common/posix.hpp"
 #include "common/report.hpp"
 #include "common/text.hpp"
 
@@ -45,7 +39,7 @@ void check_target(const std::string& path, const std::string& target) {
 
 uint64_t random_number() {
   uint64_t out = 0;
-  if (getrandom(&out, sizeof out, 0) != static_cast<ssize_t>(sizeof out))
+  if (getentropy(&out, sizeof out) != 0)
     throw Failure(std::string("cannot draw a random number: ") + std::strerror(errno));
   return out;
 }
@@ -76,7 +70,7 @@ const char* read_all(int file, uint64_t offset, void* to, size_t size) {
 // A process of that number may live elsewhere, with a file system in common: it holds a lock on its file.
 bool is_abandoned(const std::string& temporary, const char* process) {
   const long pid = std::strtol(process, nullptr, 10);
-  if (pid <= 0 || pid > INT_MAX || kill(static_cast<pid_t>(pid), 0) == 0 || errno != ESRCH) return false;
+  if (pid <= 0 || pid > INT_MAX || !process_is_gone(static_cast<int>(pid))) return false;
   const int file = open(temporary.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) return false;
   const bool free = flock(file, LOCK_EX | LOCK_NB) == 0;
@@ -143,8 +137,8 @@ PreparedFile::PreparedFile(const std::string& path, const std::string& bytes) : 
 
 PreparedFile::~PreparedFile() {
   if (file_ < 0) return;
-  unlink(temporary_.c_str());
   close(file_);
+  unlink(temporary_.c_str());
 }
 
 void PreparedFile::write(const void* bytes, size_t size) {
@@ -166,36 +160,32 @@ void PreparedFile::sync() {
 void PreparedFile::commit() {
   sync();
   check_target(path_, target_);
-  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) give_up(errno);
+#if defined(_WIN32)  // which does not rename what is open
   close(file_);
   file_ = -1;
-  const std::string folder = fs::path(target_).parent_path().string();
-  const int f = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (f < 0) return;
-  fsync(f);  // best effort: the rename itself is atomic
-  close(f);
+#endif
+  std::error_code error;
+  fs::rename(temporary_, target_, error);
+  if (error) give_up(error.value());
+  if (file_ >= 0) close(file_);
+  file_ = -1;
+  sync_folder(fs::path(target_).parent_path().string());  // the rename itself is atomic
 }
 
 void PreparedFile::give_up(int error) {
-  if (file_ >= 0) {
-    unlink(temporary_.c_str());
-    close(file_);
-    file_ = -1;
-  }
+  if (file_ >= 0) close(file_);
+  if (!temporary_.empty()) unlink(temporary_.c_str());
+  file_ = -1;
   throw Failure("cannot write " + path_ + ": " + std::strerror(error));
 }
 
 ScratchFile::ScratchFile(const std::string& beside) : path_(beside) {
-  const std::string target = target_of(beside), folder = fs::path(target).parent_path().string();
-  file_ = open(folder.empty() ? "." : folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
-  if (file_ >= 0) return;
-  // a file system without such files: one whose name goes at once
+  const std::string target = target_of(beside);
   const std::string name =
       target + kTemporary +
       format("%d-%016llx", static_cast<int>(getpid()), static_cast<unsigned long long>(random_number()));
-  file_ = open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+  file_ = open_nameless(target, name);
   if (file_ < 0) throw Failure("cannot write " + path_ + ": " + std::strerror(errno));
-  unlink(name.c_str());
 }
 
 ScratchFile::~ScratchFile() {

@@ -149,7 +149,8 @@ Json build_json() {
   redman::check(rdm_build_info(&b));
   return {{"version", b.version},     {"abi", b.abi},           {"ode", b.ode},
           {"eigen", b.eigen},         {"ccd", b.ccd},           {"octomap", b.octomap},
-          {"precision", b.precision}, {"compiler", b.compiler}, {"kernels", b.kernels}};
+          {"precision", b.precision}, {"compiler", b.compiler}, {"kernels", b.kernels},
+          {"differs", b.differs}};
 }
 
 Json options_json(const std::vector<rdm_option_info>& table) {

@@ -1,7 +1,13 @@
 #include "common/plugin.hpp"
 
-#include <dlfcn.h>
 #include <redman/redman.h>
+#if defined(_WIN32)
+#include <windows.h>
+#else
+#include <dlfcn.h>
+#endif
+
+#include <system_error>
 
 #include "common/report.hpp"
 #include "common/task_files.hpp"
@@ -14,21 +20,48 @@ constexpr const char kFlag[] = "--plugin";
 using Plugin = rdm_result (*)();
 using Count = int32_t (*)();
 
-std::string last_dl_error() {
+#if defined(_WIN32)
+void* open_library(const std::string& path) {
+  return LoadLibraryA(path.c_str());
+}
+std::string last_error() {
+  return std::system_category().message(static_cast<int>(GetLastError()));
+}
+template <class F>
+F symbol(void* library, const char* name) {
+  return reinterpret_cast<F>(reinterpret_cast<void*>(GetProcAddress(static_cast<HMODULE>(library), name)));
+}
+// A library's own names alone are found in it.
+bool is_other(Count) {
+  return true;
+}
+#else
+void* open_library(const std::string& path) {
+  return dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+}
+std::string last_error() {
   const char* text = dlerror();
   return text ? text : "it cannot be opened";
 }
+template <class F>
+F symbol(void* library, const char* name) {
+  return reinterpret_cast<F>(dlsym(library, name));
+}
+bool is_other(Count count) {
+  return count != &rdm_task_count;
+}
+#endif
 
 void load_plugin(const std::string& file) {
   const std::string owner = std::string(kFlag) + " " + file + ": ";
   // a name without a slash would be looked for in the system's folders
   const std::string path = file.find('/') == std::string::npos ? "./" + file : file;
-  void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!library) throw Usage(owner + last_dl_error());
+  void* library = open_library(path);
+  if (!library) throw Usage(owner + last_error());
   // a library that carries redman in itself would register with that one
-  const auto count = reinterpret_cast<Count>(dlsym(library, "rdm_task_count"));
-  if (count && count != &rdm_task_count) throw Usage(owner + "it uses another libredman than this tool");
-  const auto plugin = reinterpret_cast<Plugin>(dlsym(library, "redman_plugin"));
+  const auto count = symbol<Count>(library, "rdm_task_count");
+  if (count && is_other(count)) throw Usage(owner + "it uses another libredman than this tool");
+  const auto plugin = symbol<Plugin>(library, "redman_plugin");
   if (!plugin) throw Usage(owner + "it has no function redman_plugin");
   if (const rdm_result r = plugin(); r != RDM_OK)
     throw Usage(owner + "redman_plugin: " + rdm_result_string(r) + ": " + rdm_last_error());

@@ -1,3 +1,19 @@
+#include "draw/image.hpp"
+
+#if defined(_WIN32)
+#include "common/report.hpp"
+
+namespace tool {
+
+Film::Film(const std::string&, int32_t, int32_t, double) {
+  throw Usage("--video: not on Windows; --html and --glb play the episode, --strip draws moments of it");
+}
+Film::~Film() = default;
+void Film::add(const Image&) {}
+void Film::finish() {}
+
+}  // namespace tool
+#else
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -10,7 +26,6 @@
 #include "common/files.hpp"
 #include "common/report.hpp"
 #include "common/text.hpp"
-#include "draw/image.hpp"
 
 extern char** environ;
 
@@ -19,6 +34,16 @@ namespace {
 
 bool ends_with(const std::string& s, const std::string& end) {
   return s.size() > end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
+}
+
+// Two ends that no child keeps.
+bool pipe_for_us(int ends[2]) {
+#if defined(__APPLE__)  // which has no pipe2
+  return pipe(ends) == 0 && fcntl(ends[0], F_SETFD, FD_CLOEXEC) == 0 &&
+         fcntl(ends[1], F_SETFD, FD_CLOEXEC) == 0;
+#else
+  return pipe2(ends, O_CLOEXEC) == 0;
+#endif
 }
 
 }  // namespace
@@ -41,7 +66,7 @@ Film::Film(const std::string& path, int32_t width, int32_t height, double frames
 
   std::signal(SIGPIPE, SIG_IGN);  // a write to an ffmpeg that gave up then answers EPIPE
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw Failure(std::string("cannot start ffmpeg: ") + std::strerror(errno));
+  if (!pipe_for_us(ends)) throw Failure(std::string("cannot start ffmpeg: ") + std::strerror(errno));
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
@@ -79,3 +104,4 @@ void Film::finish() {
 }
 
 }  // namespace tool
+#endif

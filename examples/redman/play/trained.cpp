@@ -4,13 +4,13 @@
 
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/posix.hpp"
 
 namespace tool {
 namespace {
 
 std::filesystem::path policies_folder() {
-  std::error_code none;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", none);
+  const std::filesystem::path program = path_of_program();
   return program.parent_path().parent_path() / "share/redman/policies";
 }
 

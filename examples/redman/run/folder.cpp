@@ -1,10 +1,5 @@
 #include "run/folder.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
@@ -16,6 +11,7 @@
 #include "common/files.hpp"
 #include "common/json.hpp"
 #include "common/names.hpp"
+#include "common/posix.hpp"
 #include "common/text.hpp"
 #include "run/events.hpp"
 
@@ -31,12 +27,10 @@ std::string canonical_algo(const std::string& name) {
   return algo_at(find_algo(name)).name;
 }
 
-// Opens the folder with a lock on it. File systems that know no locks are taken as they are.
-int lock_folder(const std::string& path) {
-  const int folder = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0) throw Failure("cannot open folder " + path + ": " + std::strerror(errno));
-  if (flock(folder, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return folder;
-  close(folder);
+int locked(const std::string& path) {
+  const int folder = lock_folder(path);
+  if (folder >= 0) return folder;
+  if (errno != EWOULDBLOCK) throw Failure("cannot open folder " + path + ": " + std::strerror(errno));
   throw Failure("another process is training in " + path + ": wait for it or stop it, or give another --out");
 }
 
@@ -69,7 +63,7 @@ RunFolder RunFolder::create(const std::string& path, bool overwrite) {
   std::error_code error;
   fs::create_directories(path, error);
   if (error) throw Failure("cannot make folder " + path + ": " + error.message());
-  RunFolder folder(path, lock_folder(path));
+  RunFolder folder(path, locked(path));
   if (fs::exists(fs::symlink_status(folder.config(), error)) && !overwrite)
     throw Failure(path + " holds a run already: go on with --resume " + path +
                   ", begin again with --overwrite, or give another --out");
@@ -79,7 +73,7 @@ RunFolder RunFolder::create(const std::string& path, bool overwrite) {
 RunFolder RunFolder::go_on(const std::string& path) {
   if (!file_exists(path + "/config.json"))
     throw Failure(path + " is not a run folder: it has no config.json; start one with train --out " + path);
-  RunFolder folder(path, lock_folder(path));
+  RunFolder folder(path, locked(path));
   for (const std::string& file : {folder.config(), folder.progress(), folder.policy(), folder.checkpoint()})
     sweep_temporaries(file, true);
   return folder;
@@ -99,7 +93,11 @@ RunFolder::~RunFolder() {
 std::string RunFolder::default_path(const RunSettings& settings) {
   const std::time_t now = std::time(nullptr);
   std::tm local{};
+#if defined(_WIN32)
+  localtime_s(&local, &now);
+#else
   localtime_r(&now, &local);
+#endif
   char stamp[32];
   std::strftime(stamp, sizeof stamp, "%Y-%m-%d-%H-%M-%S", &local);
   const std::string path = format("runs/%s-{%s}/seed-%03llu-%s", canonical_algo(settings.agent.algo).c_str(),
@@ -184,10 +182,7 @@ void RunFolder::write_events(const std::string& progress) {
 }
 
 void RunFolder::check() const {
-  struct stat held {
-  }, there{};
-  if (fstat(lock_, &held) != 0 || stat(path_.c_str(), &there) != 0 || held.st_ino != there.st_ino ||
-      held.st_dev != there.st_dev)
+  if (!is_same_folder(lock_, path_))
     throw Failure("the run folder " + path_ + " was removed while this run was training in it");
 }
 

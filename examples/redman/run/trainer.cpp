@@ -22,7 +22,8 @@ std::atomic<int> g_signals{0};
 std::atomic<rdm_agent*> g_agent{nullptr};
 
 // The first signal ends the run after this epoch, whose end can be continued bit for bit; the second at once.
-extern "C" void on_signal(int) {
+extern "C" void on_signal(int number) {
+  std::signal(number, on_signal);  // some systems take the handler away
   if (g_signals.fetch_add(1) > 0) rdm_agent_cancel(g_agent.load());
 }
 
@@ -31,22 +32,20 @@ class SignalScope {
   explicit SignalScope(rdm_agent* agent) {
     g_agent = agent;
     g_signals = 0;
-    struct sigaction action {};
-    action.sa_handler = on_signal;
-    sigaction(SIGINT, &action, &old_int_);
-    sigaction(SIGTERM, &action, &old_term_);
+    old_int_ = std::signal(SIGINT, on_signal);
+    old_term_ = std::signal(SIGTERM, on_signal);
   }
   ~SignalScope() {
-    sigaction(SIGINT, &old_int_, nullptr);
-    sigaction(SIGTERM, &old_term_, nullptr);
+    std::signal(SIGINT, old_int_);
+    std::signal(SIGTERM, old_term_);
     g_agent = nullptr;
   }
   SignalScope(const SignalScope&) = delete;
   SignalScope& operator=(const SignalScope&) = delete;
 
  private:
-  struct sigaction old_int_ {
-  }, old_term_{};
+  using Handler = void (*)(int);
+  Handler old_int_, old_term_;
 };
 
 PoolSettings eval_settings(const PoolSettings& train) {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cfloat>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
 
+#include "base/bit_cast.hpp"
 #include "base/error.hpp"
 #include "physics/limits.hpp"
 
@@ -364,7 +364,7 @@ bool persistent_sound(Reader& in, const Scene& scene) {
 
 bool same_motion(const Motion& a, const Motion& b) {
   using Words = std::array<uint64_t, sizeof(Motion) / 8>;
-  return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
+  return bit_cast<Words>(a) == bit_cast<Words>(b);
 }
 
 }  // namespace

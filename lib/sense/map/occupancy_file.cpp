@@ -1,10 +1,10 @@
 // Maps as files: the headers and both bodies that OctoMap's programs know, written and read without them,
 // since they print while writing and trust what they read.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
+#include "base/chars.hpp"
 #include "base/error.hpp"
 #include "sense/map/occupancy_tree.hpp"
 
@@ -99,7 +99,7 @@ T number(const char* begin, const char* end, const char* why) {
   while (begin < end && *begin == ' ') ++begin;
   while (end > begin && end[-1] == ' ') --end;
   T v{};
-  const auto [stop, error] = std::from_chars(begin, end, v);
+  const auto [stop, error] = from_chars(begin, end, v);
   if (error != std::errc() || stop != end) bad(why);
   return v;
 }
@@ -181,12 +181,10 @@ void Occupancy::write(MapFormat format, Vector<unsigned char>& out) const {
   put(out, binary ? kBinaryLine : kFullLine);
   put(out,
       "\n# (feel free to add / change comments, but leave the first line as it is!)\n#\nid OcTree\nsize ");
-  put(out, number,
-      static_cast<size_t>(std::to_chars(number, number + sizeof number, tree_->size()).ptr - number));
+  put(out, number, static_cast<size_t>(to_chars(number, number + sizeof number, tree_->size()).ptr - number));
   put(out, "\nres ");
   put(out, number,
-      static_cast<size_t>(std::to_chars(number, number + sizeof number, tree_->getResolution()).ptr -
-                          number));
+      static_cast<size_t>(to_chars(number, number + sizeof number, tree_->getResolution()).ptr - number));
   put(out, "\ndata\n");
   const MapNode* root = tree_->getRoot();
   if (root && binary)

@@ -1,0 +1,11 @@
+# What cross builds find: the packages of cmake/cross/deps.sh, headers alone of this machine's, nothing else of it.
+get_filename_component(RDM_CROSS ${CMAKE_CURRENT_LIST_DIR}/../../build/cross ABSOLUTE)
+set(RDM_CROSS ${RDM_CROSS}/${RDM_CROSS_TARGET})
+set(CMAKE_FIND_ROOT_PATH ${RDM_CROSS} ${RDM_CROSS_SYSTEM})
+set(CMAKE_PREFIX_PATH ${RDM_CROSS})
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE BOTH)
+set(Eigen3_DIR /usr/share/eigen3/cmake CACHE PATH "Headers alone")
+set(ENV{PKG_CONFIG_LIBDIR} ${RDM_CROSS}/lib/pkgconfig)

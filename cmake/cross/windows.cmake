@@ -1,0 +1,10 @@
+# Windows on x86-64 by mingw-w64, programs run by wine: bash cmake/check.sh windows.
+set(CMAKE_SYSTEM_NAME Windows)
+set(CMAKE_SYSTEM_PROCESSOR AMD64)
+set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)
+set(CMAKE_CXX_COMPILER x86_64-w64-mingw32-g++-posix)
+set(CMAKE_RC_COMPILER x86_64-w64-mingw32-windres)
+set(CMAKE_CROSSCOMPILING_EMULATOR ${CMAKE_CURRENT_LIST_DIR}/wine.sh)
+set(RDM_CROSS_TARGET windows)
+set(RDM_CROSS_SYSTEM /usr/x86_64-w64-mingw32)
+include(${CMAKE_CURRENT_LIST_DIR}/found.cmake)
