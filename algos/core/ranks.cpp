@@ -1,0 +1,172 @@
+#include "algos/core/ranks.hpp"
+
+#include <cstring>
+
+namespace rdm {
+namespace {
+
+constexpr size_t kPiece = size_t{1} << 19;  // bytes of a message, at most: memory is that for each rank
+constexpr size_t kLeast = 4096;
+
+void add(float* a, const float* b, size_t n) {
+  for (size_t i = 0; i < n; ++i) a[i] += b[i];
+}
+void add(double* a, const double* b, size_t n) {
+  for (size_t i = 0; i < n; ++i) a[i] += b[i];
+}
+
+}  // namespace
+
+void Ranks::carve(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_params) {
+  hooks_ = resolved.config.ranks;
+  blocks_ = resolved.blocks;
+  block_envs_ = resolved.config.num_envs / blocks_;
+  leaves_ = arena.make<double>(static_cast<size_t>(blocks_) * kFew);
+  if (alone()) return;
+  // Statistics go in one piece, whatever their width.
+  const size_t moments = (1 + 2 * std::max(resolved.obs_dim(), size_t{kMaxCosts})) * sizeof(double);
+  const size_t sums = num_params * sizeof(float) + kFew * sizeof(double);
+  piece_ = std::max({kLeast, moments, std::min(kPiece, sums)}) / 8 * 8;
+  const size_t message = sizeof(Head) + piece_;
+  mine_ = arena.make<unsigned char>(message);
+  all_ = arena.make<unsigned char>(message * static_cast<size_t>(count()));
+}
+
+void Ranks::begin(Head& head) {
+  head = {++exchanges_, cancel_->take() ? 1 : 0};
+  std::memcpy(mine_, &head, sizeof head);
+}
+
+void Ranks::heard(int32_t code) const {
+  if (code != 0)
+    fail(Code::kCancelled, "ranks: exchange %llu of rank %d failed: the host's hook returned %d",
+         static_cast<unsigned long long>(exchanges_), rank(), code);
+}
+
+// What a message says beside its body; a cancel that one has heard of is everyone's.
+void Ranks::look(const void* message, int32_t rank, Head& head) const {
+  Head theirs;
+  std::memcpy(&theirs, message, sizeof theirs);
+  if (theirs.exchange != head.exchange)
+    fail(Code::kState, "ranks: rank %d is at exchange %llu, this one, %d, at %llu", rank,
+         static_cast<unsigned long long>(theirs.exchange), this->rank(),
+         static_cast<unsigned long long>(head.exchange));
+  head.cancelled |= theirs.cancelled;
+}
+
+void Ranks::end(const Head& head) const {
+  if (head.cancelled) fail(Code::kCancelled, "cancelled by the host of one of the ranks");
+}
+
+void Ranks::exchange(size_t bytes) {
+  Head head;
+  begin(head);
+  const size_t message = sizeof head + bytes;
+  heard(hooks_.gather(hooks_.user, mine_, message, all_));
+  for (int32_t r = 0; r < count(); ++r) look(all_ + static_cast<size_t>(r) * message, r, head);
+  end(head);
+}
+
+void Ranks::gather(const void* mine, size_t bytes, void* all) {
+  const auto* from = static_cast<const unsigned char*>(mine);
+  auto* to = static_cast<unsigned char*>(all);
+  if (alone()) {
+    if (bytes) std::memcpy(to, from, bytes);
+    return;
+  }
+  for (size_t at = 0; at < bytes; at += piece_) {
+    const size_t n = std::min(piece_, bytes - at);
+    std::memcpy(body(), from + at, n);
+    exchange(n);
+    for (int32_t r = 0; r < count(); ++r)
+      std::memcpy(to + static_cast<size_t>(r) * bytes + at, body_of(r, n), n);
+  }
+}
+
+int64_t Ranks::total(int64_t mine) {
+  if (alone()) return mine;
+  std::memcpy(body(), &mine, sizeof mine);
+  exchange(sizeof mine);
+  int64_t sum = 0;
+  for (int32_t r = 0; r < count(); ++r) {
+    int64_t theirs;
+    std::memcpy(&theirs, body_of(r, sizeof theirs), sizeof theirs);
+    sum += theirs;
+  }
+  return sum;
+}
+
+void Ranks::sum(float* x, size_t n, double* y, size_t m) {
+  if (alone()) return;
+  const bool whole = (count() & (count() - 1)) == 0;
+  do {
+    const size_t most = (piece_ - m * sizeof(double)) / sizeof(float) / 2 * 2, now = std::min(n, most);
+    if (whole && hooks_.swap)
+      sum_by_swap(x, now, y, m);
+    else
+      sum_by_gather(x, now, y, m);
+    x += now, n -= now, m = 0;
+  } while (n > 0);
+}
+
+// Each rank hears all others and adds the whole tree.
+void Ranks::sum_by_gather(float* x, size_t n, double* y, size_t m) {
+  const size_t few = m * sizeof(double), bytes = few + (n + 1) / 2 * sizeof(double);
+  std::memset(body() + bytes - sizeof(double), 0, sizeof(double));
+  if (m) std::memcpy(body(), y, few);
+  if (n) std::memcpy(body() + few, x, n * sizeof(float));
+  exchange(bytes);
+  const auto node = [&](int32_t r) { return const_cast<unsigned char*>(body_of(r, bytes)); };
+  tree(count(), [&](int32_t a, int32_t b) {
+    add(reinterpret_cast<double*>(node(a)), reinterpret_cast<const double*>(node(b)), m);
+    add(reinterpret_cast<float*>(node(a) + few), reinterpret_cast<const float*>(node(b) + few), n);
+  });
+  if (m) std::memcpy(y, node(0), few);
+  if (n) std::memcpy(x, node(0) + few, n * sizeof(float));
+}
+
+// A level of the tree at a time: the partner has its neighbour's node, and both add the lower one first.
+void Ranks::sum_by_swap(float* x, size_t n, double* y, size_t m) {
+  const size_t few = m * sizeof(double), bytes = few + (n + 1) / 2 * sizeof(double);
+  Head head;
+  begin(head);
+  std::memset(body() + bytes - sizeof(double), 0, sizeof(double));
+  if (m) std::memcpy(body(), y, few);
+  if (n) std::memcpy(body() + few, x, n * sizeof(float));
+  for (int32_t k = 1; k < count(); k *= 2) {
+    const int32_t partner = rank() ^ k;
+    std::memcpy(mine_, &head, sizeof head);
+    heard(hooks_.swap(hooks_.user, partner, mine_, sizeof head + bytes, all_));
+    look(all_, partner, head);
+    const unsigned char* const theirs = all_ + sizeof head;
+    // a + b is b + a, bit for bit, of numbers; of two that are not the first one's bits stay.
+    add(reinterpret_cast<double*>(body()), reinterpret_cast<const double*>(theirs), m);
+    add(reinterpret_cast<float*>(body() + few), reinterpret_cast<const float*>(theirs + few), n);
+  }
+  end(head);
+  if (m) std::memcpy(y, body(), few);
+  if (n) std::memcpy(x, body() + few, n * sizeof(float));
+}
+
+void Ranks::agree(uint64_t hash) {
+  if (alone()) return;
+  std::memcpy(body(), &hash, sizeof hash);
+  exchange(sizeof hash);
+  const auto of = [&](int32_t r) {
+    uint64_t theirs;
+    std::memcpy(&theirs, body_of(r, sizeof theirs), sizeof theirs);
+    return theirs;
+  };
+  int32_t most = 0, held = 0;  // the rank whose hash most have; of as many, the lowest one
+  for (int32_t r = 0; r < count(); ++r) {
+    int32_t same = 0;
+    for (int32_t other = 0; other < count(); ++other) same += of(other) == of(r);
+    if (same > held) most = r, held = same;
+  }
+  for (int32_t r = 0; r < count(); ++r)
+    if (of(r) != of(most))
+      fail(Code::kState, "ranks: rank %d has drifted: it learned %016llx, %d of %d learned %016llx", r,
+           static_cast<unsigned long long>(of(r)), held, count(), static_cast<unsigned long long>(of(most)));
+}
+
+}  // namespace rdm
