@@ -84,8 +84,7 @@ int32_t BatchWorkers::add_group(int32_t n, int32_t blocks, float* total, size_t 
   return depth;
 }
 
-void BatchWorkers::reduce(int32_t n, int32_t blocks, float* total, size_t begin, size_t end,
-                          int32_t* depth) {
+void BatchWorkers::reduce(int32_t n, int32_t blocks, float* total, size_t begin, size_t end, int32_t* depth) {
   const auto ranges = static_cast<size_t>(n), size = end - begin;
   spread(n, [&](int32_t range) {
     const auto k = static_cast<size_t>(range);

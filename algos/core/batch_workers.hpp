@@ -54,8 +54,8 @@ struct Batch {
 // What one thread does of a batch at a time.
 struct Chunk {
   int32_t block = 0;
-  const int32_t* order = nullptr;  // [rows], every stride-th entry
-  int32_t rows = 0;                // 0: of an empty block
+  const int32_t* order = nullptr;   // [rows], every stride-th entry
+  int32_t rows = 0;                 // 0: of an empty block
   bool begins = true, ends = true;  // the block's first, its last
 };
 

@@ -12,9 +12,9 @@
 //
 // The stages of gradient(): gather the chunk's observations, forward through the actor, loss and its
 // derivatives by mean and log deviation, backward; the same for each critic; chunks' gradients added in
-// order, blocks and ranks along their tree. measure() is the forward half alone: what the policy as it is now would gain, cost and how far it is
-// from the one that acted, KL(old || now). The kl that an Epoch reports is summed in gradient(), so each
-// minibatch's is of before its own step: 0 for one pass over one minibatch.
+// order, blocks and ranks along their tree. measure() is the forward half alone: what the policy as it is now
+// would gain, cost and how far it is from the one that acted, KL(old || now). The kl that an Epoch reports is
+// summed in gradient(), so each minibatch's is of before its own step: 0 for one pass over one minibatch.
 //
 // By hand rather than by Eigen: every sum here runs in a fixed order whatever the processor's vectors and the
 // number of threads, which Eigen's products and reductions do not promise; the matrix products are lib/nn's.
@@ -103,12 +103,12 @@ class Learner {
   const Rollout* rollout_ = nullptr;
   Networks* nets_ = nullptr;
   BatchWorkers* workers_ = nullptr;
-  float* grad_ = nullptr;       // [Networks::size]
-  float* log_std_ = nullptr;    // [action_dim] of the innovation; none with std_mode=state
+  float* grad_ = nullptr;                 // [Networks::size]
+  float* log_std_ = nullptr;              // [action_dim] of the innovation; none with std_mode=state
   BatchSums* block_sums_ = nullptr;       // [this rank's blocks]
   Surrogate* block_surrogate_ = nullptr;  // likewise
-  float scale_ = 1;             // 1 / rows of the batch
-  size_t begin_ = 0, end_ = 0;  // of grad_: what the last gradient covers
+  float scale_ = 1;                       // 1 / rows of the batch
+  size_t begin_ = 0, end_ = 0;            // of grad_: what the last gradient covers
   bool policy_ = false, critics_ = false, learn_std_ = true, joint_norm_ = false, follow_actor_ = false;
   float value_clip_ = 0;
   double critic_rate_ = 0, entropy_ = 0, max_norm_ = 0, critic_l2_ = 0;

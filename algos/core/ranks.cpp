@@ -71,7 +71,7 @@ void Ranks::gather(const void* mine, size_t bytes, void* all) {
   const auto* from = static_cast<const unsigned char*>(mine);
   auto* to = static_cast<unsigned char*>(all);
   if (alone()) {
-    if (bytes) std::memcpy(to, from, bytes);
+    if (bytes) std::memmove(to, from, bytes);
     return;
   }
   for (size_t at = 0; at < bytes; at += piece_) {

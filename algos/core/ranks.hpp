@@ -44,7 +44,7 @@ class Ranks {
       for (int32_t i = 0; i + k < leaves; i += 2 * k) pair(i, i + k);
   }
 
-  // What all ranks give, in their order: all [count()][bytes].
+  // What all ranks give, in their order: all [count()][bytes]; mine may be its place in there.
   void gather(const void* mine, size_t bytes, void* all);
   int64_t total(int64_t mine);
   // x [n] and y [m] become their sums over ranks; m <= kFew.

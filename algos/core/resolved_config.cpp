@@ -169,8 +169,7 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
 void resolve_blocks(ResolvedAgentConfig& resolved) {
   const int32_t blocks = resolved.options.integer("blocks"), ranks = resolved.config.ranks.count;
   const int32_t envs = resolved.all_envs(), own = blocks / ranks;
-  if (envs % blocks != 0)
-    fail(Code::kArgument, "blocks: %d do not divide %d environments", blocks, envs);
+  if (envs % blocks != 0) fail(Code::kArgument, "blocks: %d do not divide %d environments", blocks, envs);
   if (blocks % ranks != 0 || (ranks > 1 && (own & (own - 1)) != 0))
     fail(Code::kArgument, "blocks: %d are not %d ranks times a power of two", blocks, ranks);
   resolved.blocks = own;

@@ -46,7 +46,7 @@ class Fisher {
   float* features_ = nullptr;  // [samples][features] of an encoder that learns, and the points that won
   int32_t* winner_ = nullptr;  // likewise
   Batch batch_;
-  int32_t rows_ = 0, stride_ = 1;  // rows: that the matrix is of, of all ranks
+  int32_t rows_ = 0, stride_ = 1;    // rows: that the matrix is of, of all ranks
   double damping_ = 0.1, dims_ = 1;  // dims: what sums over action dimensions are divided by
 };
 
