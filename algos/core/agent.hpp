@@ -101,7 +101,8 @@ class Agent {
   void save(Writer& out) const;         // Error(kState) inside a horizon
   // Error(kFormat, kVersion) unless load would take these bytes; changes nothing.
   void check_state(const void* bytes, size_t size);
-  void load(const void* bytes, size_t size);                      // changes nothing when it fails
+  void load(const void* bytes, size_t size);  // changes nothing when it fails
+  Ranks& ranks() { return workers_.ranks(); }
   const AgentConfig& config() const { return resolved_.config; }  // pointers inside are not valid any more
 
  protected:

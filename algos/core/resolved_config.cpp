@@ -17,7 +17,6 @@ namespace rdm {
 namespace {
 
 constexpr int64_t kMaxSamples = 1 << 28;
-constexpr int32_t kMaxRanks = 4096;
 
 void check_range(const char* name, int64_t value, int64_t low, int64_t high) {
   if (value < low || value > high)
