@@ -6,7 +6,7 @@ namespace rdm {
 namespace {
 
 constexpr size_t kPiece = size_t{1} << 19;  // bytes of a message, at most: memory is that for each rank
-constexpr size_t kLeast = 4096;
+constexpr size_t kLeast = size_t{1} << 16;
 
 void add(float* a, const float* b, size_t n) {
   for (size_t i = 0; i < n; ++i) a[i] += b[i];
@@ -25,7 +25,7 @@ void Ranks::carve(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_
   if (alone()) return;
   // Statistics go in one piece, whatever their width.
   const size_t moments = (1 + 2 * std::max(resolved.obs_dim(), size_t{kMaxCosts})) * sizeof(double);
-  const size_t sums = num_params * sizeof(float) + kFew * sizeof(double);
+  const size_t sums = (num_params + 2 * static_cast<size_t>(count())) * sizeof(float) + kFew * sizeof(double);
   piece_ = std::max({kLeast, moments, std::min(kPiece, sums)}) / 8 * 8;
   const size_t message = sizeof(Head) + piece_;
   mine_ = arena.make<unsigned char>(message);
@@ -100,7 +100,8 @@ void Ranks::sum(float* x, size_t n, double* y, size_t m) {
   if (alone()) return;
   const bool whole = (count() & (count() - 1)) == 0;
   do {
-    const size_t most = (piece_ - m * sizeof(double)) / sizeof(float) / 2 * 2, now = std::min(n, most);
+    const size_t step = 2 * static_cast<size_t>(count());
+    const size_t most = (piece_ - m * sizeof(double)) / sizeof(float) / step * step, now = std::min(n, most);
     if (whole && hooks_.swap)
       sum_by_swap(x, now, y, m);
     else
@@ -125,27 +126,48 @@ void Ranks::sum_by_gather(float* x, size_t n, double* y, size_t m) {
   if (n) std::memcpy(x, node(0) + few, n * sizeof(float));
 }
 
-// A level of the tree at a time: the partner has its neighbour's node, and both add the lower one first.
+// A level of the tree at a time: of what a rank still sums its partner takes one half and gives of the other,
+// so that in the end each has a part of the whole sum; then they give these back, the last partner first.
+// Twice the vector goes out, for any number of ranks. y is small: it goes along whole.
 void Ranks::sum_by_swap(float* x, size_t n, double* y, size_t m) {
-  const size_t few = m * sizeof(double), bytes = few + (n + 1) / 2 * sizeof(double);
+  const size_t few = m * sizeof(double), parts = static_cast<size_t>(count());
+  const size_t padded = (n + parts - 1) / parts * parts;
   Head head;
   begin(head);
-  std::memset(body() + bytes - sizeof(double), 0, sizeof(double));
+  float* const own = reinterpret_cast<float*>(body() + few);
   if (m) std::memcpy(body(), y, few);
-  if (n) std::memcpy(body() + few, x, n * sizeof(float));
-  for (int32_t k = 1; k < count(); k *= 2) {
-    const int32_t partner = rank() ^ k;
-    std::memcpy(mine_, &head, sizeof head);
-    heard(hooks_.swap(hooks_.user, partner, mine_, sizeof head + bytes, all_));
+  if (n) std::memcpy(own, x, n * sizeof(float));
+  std::fill(own + n, own + padded, 0.0f);
+  unsigned char* const out = all_ + sizeof(Head) + piece_;
+  const auto swap = [&](int32_t partner, size_t first, const float* part, size_t length) {
+    std::memcpy(out, &head, sizeof head);
+    std::memcpy(out + sizeof head, body(), first);
+    if (length) std::memcpy(out + sizeof head + first, part, length * sizeof(float));
+    heard(hooks_.swap(hooks_.user, partner, out, sizeof head + first + length * sizeof(float), all_));
     look(all_, partner, head);
-    const unsigned char* const theirs = all_ + sizeof head;
-    // a + b is b + a, bit for bit, of numbers; of two that are not the first one's bits stay.
+    return all_ + sizeof head;
+  };
+  size_t begins = 0, length = padded;
+  for (int32_t k = 1; k < count(); k *= 2) {
+    length /= 2;
+    const bool upper = rank() & k;
+    const float* const given = own + begins + (upper ? 0 : length);
+    begins += upper ? length : 0;
+    const unsigned char* const theirs = swap(rank() ^ k, few, given, length);
+    // a + b is b + a, bit for bit
     add(reinterpret_cast<double*>(body()), reinterpret_cast<const double*>(theirs), m);
-    add(reinterpret_cast<float*>(body() + few), reinterpret_cast<const float*>(theirs + few), n);
+    add(own + begins, reinterpret_cast<const float*>(theirs + few), length);
+  }
+  for (int32_t k = count() / 2; k > 0; k /= 2, length *= 2) {
+    const unsigned char* const theirs = swap(rank() ^ k, 0, own + begins, length);
+    const bool upper = rank() & k;
+    const size_t at = upper ? begins - length : begins + length;
+    if (length) std::memcpy(own + at, theirs, length * sizeof(float));
+    begins = std::min(begins, at);
   }
   end(head);
   if (m) std::memcpy(y, body(), few);
-  if (n) std::memcpy(x, body() + few, n * sizeof(float));
+  if (n) std::memcpy(x, own, n * sizeof(float));
 }
 
 void Ranks::agree(uint64_t hash) {

@@ -630,8 +630,8 @@ typedef struct rdm_ranks {  /* who learns together, and how messages go from one
   /* An allgather: `mine`, `bytes` of them, stands at `all` + r * bytes for each rank r afterwards, on all ranks; bytes is the
    * same on each. Blocks until all have come. Any number but 0 is a failure. NULL only for one rank.              */
   int32_t (*gather)(void *user, const void *mine, size_t bytes, void *all);
-  /* Sends mine to rank `partner`, which sends its own here: `theirs`. Takes the place of gather in sums where ranks is a power
-   * of two: log2(ranks) messages for ranks - 1. NULL: gather alone; on all ranks, or on none.                      */
+  /* Sends mine to rank `partner`, which sends as much here: `theirs`. Takes the place of gather in sums of gradients where
+   * ranks is a power of two: each receives 2 of them in 2 log2(ranks) messages, not ranks - 1. NULL on all ranks, or on none. */
   int32_t (*swap)(void *user, int32_t partner, const void *mine, size_t bytes, void *theirs);
 } rdm_ranks;
 /* As rdm_agent_create, of a rank's agent: c.num_envs worlds of ranks * c.num_envs. Takes more memory than rdm_agent_memory says:

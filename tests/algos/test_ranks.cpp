@@ -124,6 +124,13 @@ TEST(Ranks, ThreadsAndOddNumbers) {
   EXPECT_NE(learn(other, 1, 2).front().state, wanted.state);
 }
 
+TEST(Ranks, SwapsOfThreeLevels) {
+  AgentSetup s = setup_of("trpo_lag", "free");
+  s.with("blocks", "16");
+  const Outcome wanted = learn(s, 1, 2).front();
+  for (const Outcome& got : learn(s, 8, 2, true)) expect_same(got, wanted, "eight");
+}
+
 TEST(Ranks, LargeNetworksGoInPieces) {
   AgentSetup s = setup_of("cpo", "free");
   s.with("hidden", "400,400").with("passes", "1");
@@ -139,7 +146,7 @@ TEST(Ranks, SwapsTakeThePlaceOfGathersInSums) {
     const AgentPtr a = s.make();
     NoisePart(s.config).epoch(*a);
   });
-  EXPECT_EQ(meeting.swaps(), 3 * 2);  // passes, minibatches: one level
+  EXPECT_EQ(meeting.swaps(), 3 * 2 * 2);  // passes, minibatches; there and back of one level
 }
 
 // An actor with an encoder, of clouds; and a term that keeps it near a recording.

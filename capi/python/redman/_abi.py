@@ -1236,9 +1236,9 @@ class rdm_ranks(Structure):
     gather: An allgather: `mine`, `bytes` of them, stands at `all` + r * bytes for each rank r afterwards, on
         all ranks; bytes is the same on each. Blocks until all have come. Any number but 0 is a failure. NULL
         only for one rank.
-    swap: Sends mine to rank `partner`, which sends its own here: `theirs`. Takes the place of gather in sums
-        where ranks is a power of two: log2(ranks) messages for ranks - 1. NULL: gather alone; on all ranks, or
-        on none.
+    swap: Sends mine to rank `partner`, which sends as much here: `theirs`. Takes the place of gather in sums of
+        gradients where ranks is a power of two: each receives 2 of them in 2 log2(ranks) messages, not ranks -
+        1. NULL on all ranks, or on none.
     """
 
     struct_size: int
