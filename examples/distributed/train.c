@@ -43,6 +43,7 @@ static int train(const arguments* a, const rdm_ranks* ranks) {
   unsigned char* policy = NULL;
   char settings[32];
   size_t size = 0;
+  double *busy = calloc((size_t)ranks->ranks, sizeof *busy), slowest = 0;
   int status = 1;
 
   if (rdm_pool_config_init(&pool_config, sizeof pool_config)) goto done;
@@ -63,6 +64,7 @@ static int train(const arguments* a, const rdm_ranks* ranks) {
   if (rdm_agent_create_ranked(&agent, &agent_config, ranks)) goto done;
 
   const double begin = seconds();
+  const clock_t worked = clock();
   for (int i = 0; i < a->epochs; ++i) {
     if (rdm_agent_rollout(agent, pool, &e)) goto done;
     if (ranks->rank == 0)
@@ -70,14 +72,20 @@ static int train(const arguments* a, const rdm_ranks* ranks) {
              e.ret, e.cost[0]);
   }
   const double took = seconds() - begin;
+  const double mine = (double)(clock() - worked) / CLOCKS_PER_SEC;
+  if (!busy || ranks->gather(ranks->user, &mine, sizeof mine, busy)) goto done;
+  for (int r = 0; r < ranks->ranks; ++r)
+    if (busy[r] > slowest) slowest = busy[r];
   if (rdm_agent_policy(agent, NULL, 0, &size) || !(policy = malloc(size))) goto done;
   if (rdm_agent_policy(agent, policy, size, &size)) goto done;
   if (ranks->rank == 0)
-    printf("ranks %d  threads %d  blocks %d  policy %016llx  %.0f steps/s\n", (int)ranks->ranks, a->threads,
-           a->blocks, hash_of(policy, size), (double)e.env_steps / took);
+    printf("ranks %d  threads %d  blocks %d  policy %016llx  %.0f steps/s  %.3f s of the busiest\n",
+           (int)ranks->ranks, a->threads, a->blocks, hash_of(policy, size), (double)e.env_steps / took,
+           slowest);
   status = 0;
 done:
   if (status) fprintf(stderr, "rank %d: %s\n", (int)ranks->rank, rdm_last_error());
+  free(busy);
   free(policy);
   rdm_agent_destroy(agent);
   rdm_pool_destroy(pool);
