@@ -81,6 +81,11 @@ void read_config(const rdm_agent_config* c, Config* out) {
   a.num_fields = in.num_fields;
 }
 
+RankHooks read_ranks(const rdm_ranks* ranks) {
+  const auto in = read_struct(ranks, sizeof(rdm_ranks), rdm_ranks{}, "ranks");
+  return {in.rank, in.ranks, in.user, in.gather, in.swap};
+}
+
 DecisionBuffers carve_decision(Arena& arena, const AgentConfig& c) {
   const auto n = static_cast<size_t>(c.num_envs);
   DecisionBuffers d;
@@ -123,11 +128,14 @@ rdm_result rdm_agent_memory(const rdm_agent_config* c, size_t* bytes) {
   });
 }
 
-rdm_result rdm_agent_create(rdm_agent** out, const rdm_agent_config* c) {
+namespace {
+
+rdm_result create_agent(rdm_agent** out, const rdm_agent_config* c, const rdm_ranks* ranks) {
   return call_with(c, [&] {
     need(out, "out");
     Config config;
     read_config(c, &config);
+    if (ranks) config.agent.ranks = read_ranks(ranks);
     const HostHooks hooks = config.agent.hooks;
     const HostScope scope(hooks);
     rdm_agent* a = host_new<rdm_agent>(hooks);
@@ -144,6 +152,17 @@ rdm_result rdm_agent_create(rdm_agent** out, const rdm_agent_config* c) {
     }
     *out = a;
   });
+}
+
+}  // namespace
+
+rdm_result rdm_agent_create(rdm_agent** out, const rdm_agent_config* c) {
+  return create_agent(out, c, nullptr);
+}
+
+rdm_result rdm_agent_create_ranked(rdm_agent** out, const rdm_agent_config* c, const rdm_ranks* ranks) {
+  const rdm_result r = call(nullptr, [&] { need(ranks, "ranks"); });
+  return r == RDM_OK ? create_agent(out, c, ranks) : r;
 }
 
 void rdm_agent_destroy(rdm_agent* a) {

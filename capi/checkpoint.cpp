@@ -38,20 +38,56 @@ void load_pool(rdm_pool*, const void*, size_t) {
 }
 #endif
 
+// Of the pools of all ranks, whose agents all call; none of one process alone.
+#if RDM_WITH_SIM
+Vector<unsigned char> join_pools(Agent& agent, const rdm_pool* p) {
+  Ranks& ranks = agent.ranks();
+  if (!p || ranks.alone()) return {};
+  need_handle(p);
+  Writer count(nullptr, 0);
+  save_pool(p, count);
+  const auto n = static_cast<size_t>(ranks.count());
+  Vector<uint64_t> sizes(n);
+  const uint64_t size = count.size();
+  ranks.gather(&size, sizeof size, sizes.data());
+  const size_t most = *std::max_element(sizes.begin(), sizes.end());
+  Vector<unsigned char> own(most), all(n * most);
+  Writer out(own.data(), own.size());
+  save_pool(p, out);
+  ranks.gather(own.data(), most, all.data());
+  Vector<Pool::StateBytes> parts(n);
+  for (size_t r = 0; r < n; ++r) parts[r] = {all.data() + r * most, sizes[r]};
+  Writer joined(nullptr, 0);
+  Pool::join_states(parts.data(), ranks.count(), joined);
+  Vector<unsigned char> state(joined.size());
+  Writer to(state.data(), state.size());
+  Pool::join_states(parts.data(), ranks.count(), to);
+  return state;
+}
+#else
+Vector<unsigned char> join_pools(Agent&, const rdm_pool*) {
+  return {};
+}
+#endif
+
 // What a file may have that is this agent's and this pool's, or those of another configuration like it.
 FileLimits file_limits(const rdm_agent* a, const rdm_pool* p) {
   Writer count(nullptr, 0);
   const bool counted = guard([&] { a->agent->save(count); }) == Code::kOk;  // not inside a horizon
   if (p) save_pool(p, count);
-  const size_t states = count.size() + (counted ? 0 : size_t{1} << 28);
+  const auto ranks = static_cast<size_t>(a->agent->ranks().count());
+  const size_t states = ranks * count.size() + (counted ? 0 : size_t{1} << 28);
   return {{kCheckpointMagic, sizeof kCheckpointMagic}, kFileLengthAt, 2 * (kMaxNote + states)};
 }
 
-void write_checkpoint(Writer& w, const Agent& agent, const rdm_pool* pool, const void* note,
-                      size_t note_size) {
+void write_checkpoint(Writer& w, const Agent& agent, const rdm_pool* pool, const Vector<unsigned char>& pools,
+                      const void* note, size_t note_size) {
   w.begin_file(kCheckpointMagic, kCheckpointVersion);
   section(w, "AGNT", [&](Writer& s) { agent.save(s); });
-  if (pool) section(w, "POOL", [&](Writer& s) { save_pool(pool, s); });
+  if (!pools.empty())
+    section(w, "POOL", [&](Writer& s) { s.bytes(pools.data(), pools.size()); });
+  else if (pool)
+    section(w, "POOL", [&](Writer& s) { save_pool(pool, s); });
   section(w, "NOTE", [&](Writer& s) { s.bytes(note, note_size); });
   w.end_file();
 }
@@ -65,12 +101,13 @@ rdm_result rdm_checkpoint_write(const char* path, const rdm_agent* a, const rdm_
     need_handle(a);
     if (note_size) need(note, "note");
     if (note_size > kMaxNote) fail(Code::kRange, "note_size: %zu is above %zu", note_size, kMaxNote);
+    const auto pools = join_pools(*a->agent, p);
     Writer count(nullptr, 0);
-    write_checkpoint(count, *a->agent, p, note, note_size);
+    write_checkpoint(count, *a->agent, p, pools, note, note_size);
     Vector<unsigned char> file(count.size());
     Writer out(file.data(), file.size());
-    write_checkpoint(out, *a->agent, p, note, note_size);
-    write_file(path, file.data(), file.size());
+    write_checkpoint(out, *a->agent, p, pools, note, note_size);
+    if (a->agent->ranks().rank() == 0) write_file(path, file.data(), file.size());
   });
 }
 

@@ -342,6 +342,13 @@ rdm_result rdm_pool_get_state(const rdm_pool* p, int32_t env, void* bytes, size_
   });
 }
 
+rdm_result rdm_pool_set_rank(rdm_pool* p, int32_t rank, int32_t ranks) {
+  return call(text_of(p), [&] {
+    need_handle(p);
+    p->pool->set_rank(rank, ranks);
+  });
+}
+
 rdm_result rdm_pool_set_state(rdm_pool* p, int32_t env, const void* bytes, size_t size) {
   return call(text_of(p), [&] {
     check_env(p, env, true);

@@ -15,6 +15,8 @@ void check_match(const AgentConfig& a, int32_t repeat, const Pool& p) {
   same(a.obs_dim, p.obs_dim(), "obs_dim");
   same(a.action_dim, p.task().action_dim(), "action_dim");
   same(a.cost_dim, p.cost_dim(), "cost_dim");
+  same(a.ranks.rank, p.rank(), "rank");
+  same(a.ranks.count, p.ranks(), "ranks");
   if (p.config().autoreset == Autoreset::kOff)
     fail(Code::kState, "pool: its autoreset is off, so a rollout would stop at the first end of an episode");
   if (repeat % p.repeat() != 0)

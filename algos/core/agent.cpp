@@ -8,6 +8,7 @@
 #include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
+#include "base/hash.hpp"
 #include "base/shuffle.hpp"
 #include "nn/policy.hpp"
 
@@ -59,6 +60,7 @@ void Agent::carve(Arena& arena) {
   workers_.carve(arena, resolved_, nets_.size);
   collector_.carve(arena, resolved_);
   learner_.carve(arena, resolved_, nets_.size);
+  shuffle_ = arena.make<Stream>(static_cast<size_t>(resolved_.blocks));
   char* names = arena.make<char>(static_cast<size_t>(nets_.num_tensors()) * kTensorNameSize);
   names_ = reinterpret_cast<char(*)[kTensorNameSize]>(names);
 }
@@ -69,13 +71,16 @@ void Agent::open(const AgentConfig& config) {
   arena_ = Arena(config.hooks, measure.used());
   carve(arena_);
   workers_.open(config.hooks, config.num_threads);
+  workers_.ranks().open(cancel_);
   collector_.open(resolved_, nets_, workers_);
   learner_.open(resolved_, rollout(), nets_, workers_);
   regression_.open(resolved_, collector_, nets_, workers_);
   imitation_.open(resolved_, regression_);
   learner_.imitate(&imitation_);
   schedule_.reset(resolved_.options);
-  shuffle_ = Stream(config.seed, 0, Purpose::kMinibatch);
+  for (int32_t b = 0; b < resolved_.blocks; ++b)
+    shuffle_[b] =
+        Stream(config.seed, static_cast<uint32_t>(workers_.ranks().first_block() + b), Purpose::kMinibatch);
   init_networks(nets_, resolved_);
   restart_average(nets_);
   opened();
@@ -148,7 +153,8 @@ void Agent::update(const float* last_obs, Epoch* out) {
   check_rows("last_obs", last_obs, nullptr, resolved_.config.num_envs, resolved_.obs_dim());
   try {
     check_cancel();
-    valid_rows_ = collector_.estimate(last_obs);
+    collector_.settle();
+    collector_.estimate(last_obs);
     const EpisodeStats stats = collector_.episodes().stats();
     const bool warm = warming();
     imitation_.begin_epoch(std::max(0, epoch_ - warm_epochs_));
@@ -159,7 +165,7 @@ void Agent::update(const float* last_obs, Epoch* out) {
     if (warm) {
       warm_up();
     } else {
-      imitation_.draw(valid_rows_);
+      imitation_.draw(valid_rows());
       learn();
     }
     if (learner_.skipped() > skipped)
@@ -170,7 +176,10 @@ void Agent::update(const float* last_obs, Epoch* out) {
     ++epoch_;
     if (!warm) schedule_std(nets_, resolved_.options, epoch_);
     if (!warm) average_actor(nets_);
-    if (out) fill_epoch(stats, rate, out);
+    Epoch e;
+    fill_epoch(stats, rate, &e);
+    workers_.ranks().agree(learned_hash());
+    if (out) *out = e;
   } catch (...) {
     drop_horizon();
     throw;
@@ -190,20 +199,21 @@ void Agent::follow_reward() {
 }
 
 BatchSums Agent::pass(const PolicyLoss* policy) {
-  const int32_t count = valid_rows_, parts = std::min(resolved_.options.integer("minibatches"), count);
-  const int32_t size = (count + parts - 1) / parts;
+  const int32_t parts = std::min(resolved_.options.integer("minibatches"), valid_rows());
   const double rate = schedule_.rate(epoch_);
-  int32_t* order = rollout().order;
-  shuffle(shuffle_, order, count);
+  const Batch& whole = whole_batch();
+  for (int32_t b = 0; b < whole.blocks; ++b)
+    shuffle(shuffle_[b], rollout().order + whole.segment(b).first, whole.segment(b).rows);
   BatchSums sums;
-  for (int32_t first = 0; first < count; first += size) {
+  for (int32_t i = 0; i < parts; ++i) {
+    const Batch batch = collector_.minibatch(i, parts);
+    if (batch.rows == 0) continue;
     check_cancel();
-    const int32_t rows = std::min(size, count - first);
     if (policy) {
-      begin_minibatch(order + first, rows);
-      imitation_.draw(rows);
+      begin_minibatch(batch);
+      imitation_.draw(batch.rows);
     }
-    sums += learner_.gradient(policy, true, order + first, rows);
+    sums += learner_.gradient(policy, true, batch);
     learner_.step(rate, schedule_.change(epoch_));
   }
   return sums;
@@ -220,13 +230,13 @@ double Agent::violation(const EpisodeStats& stats, int32_t i) const {
 
 void Agent::learn() {
   const Options& o = resolved_.options;
-  const double stop = o.number("early_stop_kl"), count = valid_rows_;
+  const double stop = o.number("early_stop_kl"), count = valid_rows();
   BatchSums all, last;
-  while (valid_rows_ > 0 && learned_.passes < o.integer("passes")) {
+  while (count > 0 && learned_.passes < o.integer("passes")) {
     last = pass(&policy_loss());
     all += last;
     ++learned_.passes;
-    if (stop > 0 && learner_.kl(rollout().order, valid_rows_) > stop) break;
+    if (stop > 0 && learner_.kl(whole_batch()) > stop) break;
   }
   if (learned_.passes == 0) return;
   learned_.last_kl = last.kl / count;
@@ -236,10 +246,10 @@ void Agent::learn() {
 // Passes that move the critics alone.
 void Agent::warm_up() {
   BatchSums all;
-  for (; valid_rows_ > 0 && learned_.passes < resolved_.options.integer("passes"); ++learned_.passes)
+  for (; valid_rows() > 0 && learned_.passes < resolved_.options.integer("passes"); ++learned_.passes)
     all += pass(nullptr);
   if (learned_.passes > 0)
-    learned_.mean = all.scaled(1 / (static_cast<double>(valid_rows_) * learned_.passes));
+    learned_.mean = all.scaled(1 / (static_cast<double>(valid_rows()) * learned_.passes));
 }
 
 void Agent::need_idle(const char* call) const {
@@ -348,25 +358,38 @@ void Agent::load_policy(const PolicyView& p, double samples) {
   normalizer_refresh(n);
 }
 
-void Agent::fill_spread(Epoch& e) const {
+void Agent::fill_spread(Epoch& e) {
   const int32_t dim = resolved_.config.action_dim;
-  const auto add = [&](const float* log_std, double share, double count) {
+  const auto add = [&](const float* log_std, double share, double count, double& std, double& entropy) {
     for (int32_t j = 0; j < dim; ++j) {
       const auto l = static_cast<double>(log_std[j]);
-      e.action_std += elementary::exp(l) / (count * dim);
-      e.entropy += (l + share + kEntropyOfUnit) / count;
+      std += elementary::exp(l) / (count * dim);
+      entropy += (l + share + kEntropyOfUnit) / count;
     }
   };
   const auto share = static_cast<double>(resolved_.log_share);
-  if (!nets_.state_std()) return add(nets_.log_std(), share, 1);
+  if (!nets_.state_std()) return add(nets_.log_std(), share, 1, e.action_std, e.entropy);
   const Rollout& r = rollout();
-  for (int32_t i = 0; i < valid_rows_; ++i)
-    add(r.log_std_of(static_cast<size_t>(r.order[i])), 0, valid_rows_);
-  e.action_std *= elementary::exp(-share);
+  const auto sums = workers_.ranks().sum<2>([&](int32_t b, double* out) {
+    const Segment s = whole_batch().segment(b);
+    out[0] = out[1] = 0;
+    for (int32_t i = s.first; i < s.first + s.rows; ++i)
+      add(r.log_std_of(static_cast<size_t>(r.order[i])), 0, valid_rows(), out[0], out[1]);
+  });
+  e.action_std = sums[0] * elementary::exp(-share);
+  e.entropy = sums[1];
 }
 
-void Agent::fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const {
-  const Rollout& r = rollout();
+// Of what all ranks must have alike.
+uint64_t Agent::learned_hash() const {
+  if (workers_.ranks().alone()) return 0;
+  uint64_t hash = hash_bytes(nets_.params, nets_.size * sizeof(float));
+  const Normalizer& n = collector_.normalizer();
+  for (const double* x : {n.mean, n.m2}) hash = hash_bytes(x, static_cast<size_t>(n.dim) * sizeof *x, hash);
+  return hash;
+}
+
+void Agent::fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) {
   Epoch e;
   e.epoch = epoch_;
   e.env_steps = collector_.env_steps();
@@ -385,8 +408,8 @@ void Agent::fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const
   e.loss_reward_value = learned_.mean.reward_loss;
   e.loss_cost_value = learned_.mean.cost_loss;
   e.clip_fraction = learned_.mean.clipped;
-  e.value_reward = masked_mean(r.value, 1, r.valid, r.samples());
-  if (r.num_costs > 0) e.value_cost = masked_mean(r.cost_value, r.num_costs, r.valid, r.samples());
+  e.value_reward = collector_.mean_value(false);
+  if (rollout().num_costs > 0) e.value_cost = collector_.mean_value(true);
   e.passes = learned_.passes;
   e.cost_signal = raw_costs();
   *out = e;
@@ -402,7 +425,7 @@ bool Agent::tensor(int32_t index, TensorInfo* out) {
 void Agent::visit_state(StateIo& io) {
   io.section("COUN");
   io.integer(epoch_, 0, kMaxEpochs);
-  io.stream(shuffle_);
+  io.share(shuffle_, static_cast<size_t>(resolved_.blocks));
   nets_.visit(io);
   collector_.visit(io);
   learner_.visit(io);
@@ -412,11 +435,15 @@ void Agent::visit_state(StateIo& io) {
 
 void Agent::save(Writer& out) const {
   if (!collector_.idle()) fail(Code::kState, "save: only between epochs; this horizon has begun");
+  // The listing is shared with load; a StateWriter only reads.
+  auto* const self = const_cast<Agent*>(this);
+  Ranks& ranks = self->workers_.ranks();
+  const HostScope scope(resolved_.config.hooks);
+  if (ranks.alone() || !out.counts()) self->collector_.settle();
   out.begin_file(kMagic, kVersion);
   write_fingerprint(out, resolved_);
-  StateWriter io(out);
-  // The listing is shared with load; a StateWriter only reads.
-  const_cast<Agent*>(this)->visit_state(io);
+  StateWriter io(out, &ranks);
+  self->visit_state(io);
   io.end();
   out.end_file();
 }
@@ -426,7 +453,7 @@ void Agent::read_state(const void* bytes, size_t size, bool apply) {
   in.begin_file(kMagic, kVersion);
   read_fingerprint(in, resolved_, apply);
   if (apply) read_live();
-  StateReader io(in, apply);
+  StateReader io(in, apply, workers_.ranks().rank(), workers_.ranks().count());
   visit_state(io);
   io.end();
 }

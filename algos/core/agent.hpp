@@ -26,7 +26,7 @@
 // every change).
 //
 // Work on a minibatch is cut into chunks of fixed size that are reduced in a fixed order, so any number of
-// threads gives the same bytes.
+// threads gives the same bytes; and, over blocks of worlds, any number of processes (ranks.hpp).
 #pragma once
 #include "algos/core/cancel.hpp"
 #include "algos/core/learner.hpp"
@@ -101,7 +101,8 @@ class Agent {
   void save(Writer& out) const;         // Error(kState) inside a horizon
   // Error(kFormat, kVersion) unless load would take these bytes; changes nothing.
   void check_state(const void* bytes, size_t size);
-  void load(const void* bytes, size_t size);                      // changes nothing when it fails
+  void load(const void* bytes, size_t size);  // changes nothing when it fails
+  Ranks& ranks() { return workers_.ranks(); }
   const AgentConfig& config() const { return resolved_.config; }  // pointers inside are not valid any more
 
  protected:
@@ -117,11 +118,11 @@ class Agent {
   // The steps of policy and critics. Default: passes over shuffled minibatches, stopped early by KL.
   virtual void learn();
   // Before the gradient of each minibatch of the default learn().
-  virtual void begin_minibatch(const int32_t*, int32_t) {}
+  virtual void begin_minibatch(const Batch&) {}
   // Multiplier of limited cost i.
   virtual double cost_weight(int32_t) const { return 0; }
-  // One pass over the valid rows in shuffled minibatches: a step of the critics and, unless null, of the
-  // policy for each.
+  // One pass over the valid rows in shuffled minibatches, each with its share of every block: a step of the
+  // critics and, unless null, of the policy for each.
   BatchSums pass(const PolicyLoss* policy);
   // The first epochs, in which the critics learn alone.
   bool warming() const { return epoch_ < warm_epochs_; }
@@ -146,18 +147,21 @@ class Agent {
   CancelFlag& cancel_flag() { return cancel_; }
   // Share of a linear schedule that is left in this epoch.
   double schedule_share() const { return schedule_.share(epoch_); }
-  int32_t valid_rows() const { return valid_rows_; }
+  // Of all ranks.
+  int32_t valid_rows() const { return collector_.listed().rows; }
+  const Batch& whole_batch() const { return collector_.listed(); }
   // J_c - limit of limited cost i in the units of a mean over decisions (option violation_scale).
   double violation(const EpisodeStats& stats, int32_t i) const;
   const Rollout& rollout() const { return collector_.rollout(); }
 
  private:
   void warm_up();
+  uint64_t learned_hash() const;
   void need_idle(const char* call) const;
   void need_clouds(const DemoRows& demo) const;
   // action_std and entropy: of the policy now, or with std_mode=state as it was on the epoch's data.
-  void fill_spread(Epoch& e) const;
-  void fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) const;
+  void fill_spread(Epoch& e);
+  void fill_epoch(const EpisodeStats& stats, double rate, Epoch* out);
 
   ResolvedAgentConfig resolved_;
   CancelFlag cancel_;
@@ -167,9 +171,9 @@ class Agent {
   Collector collector_;
   Learner learner_;
   RateSchedule schedule_;
-  Stream shuffle_;
+  Stream* shuffle_ = nullptr;  // [this rank's blocks]
   Learned learned_;
-  int32_t epoch_ = 0, valid_rows_ = 0, warm_epochs_ = 0;
+  int32_t epoch_ = 0, warm_epochs_ = 0;
   Regression regression_;
   Imitation imitation_;
   char (*names_)[kTensorNameSize] = nullptr;  // of the tensors

@@ -22,6 +22,14 @@ const AlgoInfo& algo_at(int32_t index);
 // Error(kNotFound) with the nearest name.
 int32_t algo_find(const char* name);
 
+// How a host carries messages between the processes that learn together; as rdm_ranks.
+struct RankHooks {
+  int32_t rank = 0, count = 1;
+  void* user = nullptr;
+  int32_t (*gather)(void* user, const void* mine, size_t bytes, void* all) = nullptr;
+  int32_t (*swap)(void* user, int32_t rank, const void* mine, size_t bytes, void* theirs) = nullptr;
+};
+
 struct AgentConfig {
   int32_t obs_dim = 0, action_dim = 0, cost_dim = 1, num_envs = 0, num_threads = 0;
   const char* algo = "ppo_lag";
@@ -39,6 +47,7 @@ struct AgentConfig {
   const ObsField* fields = nullptr;     // [num_fields] parts of a row, or null: no names
   int32_t num_fields = 0;
   HostHooks hooks;
+  RankHooks ranks;
 };
 
 struct Transition {

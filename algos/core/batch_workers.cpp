@@ -53,7 +53,52 @@ void BatchWorkers::reduce(int32_t group, int32_t n, float* total, size_t begin, 
   });
 }
 
+Surrogate& Surrogate::operator+=(const Surrogate& b) {
+  gain += b.gain, kl += b.kl;
+  for (size_t k = 0; k < kMaxCosts; ++k) cost[k] += b.cost[k];
+  return *this;
+}
+
+// Nodes of the tree that wait for a neighbour stand one behind the other: the first in total.
+int32_t BatchWorkers::add_group(int32_t n, int32_t blocks, float* total, size_t low, size_t high,
+                                int32_t depth) const {
+  const auto node = [&](int32_t d) {
+    return d == 0 ? total : nodes_ + static_cast<size_t>(d - 1) * num_params_;
+  };
+  const auto add = [&](float* to, const float* part) {
+    for (size_t i = low; i < high; ++i) to[i] += part[i];
+  };
+  for (int32_t l = 0; l < n; ++l) {
+    const Chunk& chunk = workspaces_[l].chunk;
+    const float* part = workspaces_[l].grad;
+    if (!chunk.begins)
+      add(node(depth - 1), part);
+    else if (chunk.block > 0)
+      std::copy(part + low, part + high, node(depth) + low);
+    depth += chunk.begins;
+    if (!chunk.ends) continue;
+    const bool last = chunk.block == blocks - 1;
+    for (int32_t done = chunk.block + 1; depth > 1 && (last || done % 2 == 0); done /= 2, --depth)
+      add(node(depth - 2), node(depth - 1));
+  }
+  return depth;
+}
+
+void BatchWorkers::reduce(int32_t n, int32_t blocks, float* total, size_t begin, size_t end, int32_t* depth) {
+  const auto ranges = static_cast<size_t>(n), size = end - begin;
+  spread(n, [&](int32_t range) {
+    const auto k = static_cast<size_t>(range);
+    add_group(n, blocks, total, begin + size * k / ranges, begin + size * (k + 1) / ranges, *depth);
+  });
+  *depth = add_group(n, blocks, total, 0, 0, *depth);
+}
+
 void BatchWorkers::carve(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_params) {
+  ranks_.carve(arena, resolved, num_params);
+  num_params_ = num_params;
+  size_t levels = 0;
+  while ((1 << levels) < resolved.blocks) ++levels;
+  nodes_ = arena.make<float>(levels * num_params);
   count_ = resolved.workers;
   workspaces_ = arena.make<Workspace>(static_cast<size_t>(count_));
   for (int32_t i = 0; i < count_; ++i) {

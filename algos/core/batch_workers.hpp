@@ -1,11 +1,13 @@
 // Batches cut into chunks of fixed size, several in flight. Chunks are reduced in their order, so sums are
 // the same for any number of workers and any schedule: float sums depend on the order of their terms, so the
-// cut depends on the batch alone, never on the threads.
+// cut depends on the batch alone, never on the threads. Sums over blocks of worlds, and over ranks, meet in a
+// tree (ranks.hpp).
 #pragma once
 #include <memory>
 #include <optional>
 
 #include "algos/core/networks.hpp"
+#include "algos/core/ranks.hpp"
 #include "base/workers.hpp"
 
 namespace rdm {
@@ -21,12 +23,40 @@ struct BatchSums {
   BatchSums scaled(double s) const { return {s * loss, s * kl, s * clipped, s * reward_loss, s * cost_loss}; }
 };
 
-// Means over listed rows of what the policy as it is now does to them.
+// Means over listed rows, or sums on the way to them, of what the policy as it is now does to them.
 struct Surrogate {
   double gain = 0;              // rho (gain + linear)
   double cost[kMaxCosts] = {};  // rho A_c of each limited cost, or its clipped form
   double kl = 0;                // KL(old || now)
   bool finite() const;
+  Surrogate& operator+=(const Surrogate& b);
+};
+
+// A run of a list of rows.
+struct Segment {
+  int32_t first = 0, rows = 0;
+};
+
+// Rows of a rollout, block after block.
+struct Batch {
+  Batch() = default;
+  // One block's.
+  Batch(const int32_t* listed, int32_t count) : order(listed), rows(count) {}
+
+  Segment segment(int32_t block) const { return segments ? segments[block] : Segment{0, rows}; }
+
+  const int32_t* order = nullptr;
+  int32_t rows = 0;                   // of all blocks of all ranks: what means divide by
+  int32_t blocks = 1;                 // of this rank
+  const Segment* segments = nullptr;  // [blocks] of order; null: one of all rows
+};
+
+// What one thread does of a batch at a time.
+struct Chunk {
+  int32_t block = 0;
+  const int32_t* order = nullptr;   // [rows], every stride-th entry
+  int32_t rows = 0;                 // 0: of an empty block
+  bool begins = true, ends = true;  // the block's first, its last
 };
 
 // Workspace of one chunk in flight.
@@ -39,6 +69,7 @@ struct Workspace {
   float* grad = nullptr;                  // [num_params]
   BatchSums sums;
   Surrogate surrogate;
+  Chunk chunk;
 };
 
 // One workspace per thread that helps, at most one per chunk.
@@ -47,6 +78,8 @@ class BatchWorkers {
   void carve(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_params);
   void open(const HostHooks& hooks, int32_t threads) { threads_.emplace(hooks, threads); }
 
+  Ranks& ranks() { return ranks_; }
+  const Ranks& ranks() const { return ranks_; }
   int32_t count() const { return count_; }
   const Workspace& operator[](int32_t i) const { return workspaces_[i]; }
 
@@ -85,9 +118,41 @@ class BatchWorkers {
     sweep(rows, chunk_rows, work, [](int32_t, int32_t) {});
   }
 
+  // work(workspace, chunk) for the chunks of every stride-th row of each block of the batch, then reduce(n)
+  // for each group of n workspaces that ran together, in order.
+  template <class Work, class Reduce>
+  void sweep(const Batch& batch, int32_t stride, int32_t chunk_rows, Work&& work, Reduce&& reduce) {
+    for (int32_t block = 0, done = 0; block < batch.blocks;) {
+      int32_t n = 0;
+      for (; n < count_ && block < batch.blocks; ++n) {
+        const Segment s = batch.segment(block);
+        const int32_t rows = (s.rows + stride - 1) / stride, here = std::min(chunk_rows, rows - done);
+        const bool ends = done + here == rows;
+        workspaces_[n].chunk = {block, batch.order + s.first + done * stride, here, done == 0, ends};
+        done = ends ? 0 : done + here;
+        block += ends;
+      }
+      spread(n, [&](int32_t i) { work(workspaces_[i], workspaces_[i].chunk); });
+      reduce(n);
+    }
+  }
+  // Where the gradient of a workspace's chunk goes: that of the first of all where the sum is wanted.
+  static float* gradient_of(Workspace& workspace, float* total) {
+    return workspace.chunk.begins && workspace.chunk.block == 0 ? total : workspace.grad;
+  }
+  // Adds entries [begin, end) of the gradients of the n workers of a group, every range of them by another
+  // thread: to their blocks', and these along the tree to total. depth: nodes that wait, 0 before the first
+  // group; 1 after the last one of so many blocks.
+  void reduce(int32_t n, int32_t blocks, float* total, size_t begin, size_t end, int32_t* depth);
+
  private:
+  int32_t add_group(int32_t n, int32_t blocks, float* total, size_t low, size_t high, int32_t depth) const;
+
+  Ranks ranks_;
   Workspace* workspaces_ = nullptr;
   int32_t count_ = 0;
+  float* nodes_ = nullptr;  // [levels of the tree over this rank's blocks][num_params]
+  size_t num_params_ = 0;
   std::optional<Workers> threads_;
 };
 

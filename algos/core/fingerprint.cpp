@@ -40,7 +40,7 @@ void list_fields(const ResolvedAgentConfig& resolved, Field* out) {
   const AgentConfig& c = resolved.config;
   const Field fields[kFields] = {
       {"obs_dim", c.obs_dim},     {"action_dim", c.action_dim},
-      {"cost_dim", c.cost_dim},   {"num_envs", c.num_envs},
+      {"cost_dim", c.cost_dim},   {"num_envs", resolved.all_envs()},
       {"max_steps", c.max_steps}, {"number of limited costs", resolved.num_limited}};
   for (int i = 0; i < kFields; ++i) out[i] = fields[i];
 }

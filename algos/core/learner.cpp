@@ -13,6 +13,8 @@ namespace rdm {
 void Learner::carve(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_params) {
   grad_ = arena.make<float>(num_params);
   log_std_ = arena.make<float>(resolved.state_std() ? 0 : resolved.action_dim());
+  block_sums_ = arena.make<BatchSums>(static_cast<size_t>(resolved.blocks));
+  block_surrogate_ = arena.make<Surrogate>(static_cast<size_t>(resolved.blocks));
 }
 
 void Learner::open(const ResolvedAgentConfig& resolved, const Rollout& rollout, Networks& nets,
@@ -52,32 +54,48 @@ PolicyChunk Learner::chunk_of(Workspace& workspace, const int32_t* order, int32_
   return p;
 }
 
-BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const int32_t* order, int32_t rows) {
+// Of all blocks of this rank.
+BatchSums Learner::sums_of_blocks() {
+  const int32_t blocks = workers_->ranks().blocks();
+  Ranks::tree(blocks, [&](int32_t a, int32_t b) { block_sums_[a] += block_sums_[b]; });
+  return block_sums_[0];
+}
+
+BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const Batch& batch) {
+  const int32_t rows = batch.rows;
   refresh_log_std();
   policy_ = policy != nullptr;
   critics_ = critics;
   scale_ = 1 / static_cast<float>(rows);
   begin_ = policy_ ? 0 : nets_->block[Networks::kReward].offset;
   end_ = critics ? nets_->size : nets_->block[Networks::kReward].offset;
-  BatchSums sums;
+  int32_t depth = 0;
   workers_->sweep(
-      rows, resolved_->chunk_rows,
-      [&](Workspace& workspace, int32_t first, int32_t n) {
-        // The first chunk writes where the sum is wanted.
-        float* grad = first == 0 ? grad_ : workspace.grad;
-        const int32_t* chunk = order + first;
+      batch, 1, resolved_->chunk_rows,
+      [&](Workspace& workspace, const Chunk& chunk) {
+        float* grad = BatchWorkers::gradient_of(workspace, grad_);
+        const int32_t n = chunk.rows;
         workspace.sums = BatchSums();
-        gather_obs(*rollout_, chunk, 1, n, workspace.obs);
-        if (policy) policy_gradient(workspace, *policy, chunk, n, grad);
+        if (n == 0) return std::fill(grad + begin_, grad + end_, 0.0f);
+        gather_obs(*rollout_, chunk.order, 1, n, workspace.obs);
+        if (policy) policy_gradient(workspace, *policy, chunk.order, n, grad);
         if (!critics) return;
-        workspace.sums.reward_loss = critic_gradient(workspace, Networks::kReward, chunk, n, grad);
+        workspace.sums.reward_loss = critic_gradient(workspace, Networks::kReward, chunk.order, n, grad);
         if (nets_->count > Networks::kCost)
-          workspace.sums.cost_loss = critic_gradient(workspace, Networks::kCost, chunk, n, grad);
+          workspace.sums.cost_loss = critic_gradient(workspace, Networks::kCost, chunk.order, n, grad);
       },
-      [&](int32_t group, int32_t n) {
-        for (int32_t i = 0; i < n; ++i) sums += (*workers_)[i].sums;
-        workers_->reduce(group, n, grad_, begin_, end_);
+      [&](int32_t n) {
+        for (int32_t i = 0; i < n; ++i) {
+          const Workspace& w = (*workers_)[i];
+          if (w.chunk.begins) block_sums_[w.chunk.block] = BatchSums();
+          block_sums_[w.chunk.block] += w.sums;
+        }
+        workers_->reduce(n, batch.blocks, grad_, begin_, end_, &depth);
       });
+  BatchSums sums = sums_of_blocks();
+  double few[] = {sums.loss, sums.kl, sums.clipped, sums.reward_loss, sums.cost_loss};
+  workers_->ranks().sum(grad_ + begin_, end_ - begin_, few, std::size(few));
+  sums = {few[0], few[1], few[2], few[3], few[4]};
   add_penalties(policy);
   if (policy && policy->explores() && imitation_ && imitation_->active())
     sums.loss += rows * imitation_->add_gradient(grad_);
@@ -197,23 +215,29 @@ void Learner::measure_rows(Workspace& workspace, const int32_t* order, int32_t r
   }
 }
 
-Surrogate Learner::measure(const int32_t* order, int32_t rows, float clip) {
+Surrogate Learner::measure(const Batch& batch, float clip) {
   refresh_log_std();
-  Surrogate mean;
   workers_->sweep(
-      rows, resolved_->chunk_rows,
-      [&](Workspace& workspace, int32_t first, int32_t n) {
-        measure_rows(workspace, order + first, n, clip);
+      batch, 1, resolved_->chunk_rows,
+      [&](Workspace& workspace, const Chunk& chunk) {
+        measure_rows(workspace, chunk.order, chunk.rows, clip);
       },
-      [&](int32_t, int32_t n) {
+      [&](int32_t n) {
         for (int32_t i = 0; i < n; ++i) {
-          const Surrogate& part = (*workers_)[i].surrogate;
-          mean.gain += part.gain, mean.kl += part.kl;
-          for (int32_t k = 0; k < rollout_->num_costs; ++k) mean.cost[k] += part.cost[k];
+          const Workspace& w = (*workers_)[i];
+          Surrogate& sum = block_surrogate_[w.chunk.block];
+          if (w.chunk.begins) sum = Surrogate();
+          sum += w.surrogate;
         }
       });
-  mean.gain /= rows, mean.kl /= rows;
-  for (double& c : mean.cost) c /= rows;
+  Surrogate mean;
+  const auto sums = workers_->ranks().sum<2 + kMaxCosts>([&](int32_t b, double* out) {
+    const Surrogate& s = block_surrogate_[b];
+    *out++ = s.gain, *out++ = s.kl;
+    std::copy_n(s.cost, kMaxCosts, out);
+  });
+  mean.gain = sums[0] / batch.rows, mean.kl = sums[1] / batch.rows;
+  for (size_t k = 0; k < kMaxCosts; ++k) mean.cost[k] = sums[2 + k] / batch.rows;
   return mean;
 }
 

@@ -12,9 +12,9 @@
 //
 // The stages of gradient(): gather the chunk's observations, forward through the actor, loss and its
 // derivatives by mean and log deviation, backward; the same for each critic; chunks' gradients added in
-// order. measure() is the forward half alone: what the policy as it is now would gain, cost and how far it is
-// from the one that acted, KL(old || now). The kl that an Epoch reports is summed in gradient(), so each
-// minibatch's is of before its own step: 0 for one pass over one minibatch.
+// order, blocks and ranks along their tree. measure() is the forward half alone: what the policy as it is now
+// would gain, cost and how far it is from the one that acted, KL(old || now). The kl that an Epoch reports is
+// summed in gradient(), so each minibatch's is of before its own step: 0 for one pass over one minibatch.
 //
 // By hand rather than by Eigen: every sum here runs in a fixed order whatever the processor's vectors and the
 // number of threads, which Eigen's products and reductions do not promise; the matrix products are lib/nn's.
@@ -68,7 +68,7 @@ class Learner {
 
   // Gradients of mean loss over the listed rows: the policy's (null: none) less the entropy bonus, and, if
   // asked, the critics' squared errors with their L2 term. Valid until the next call.
-  BatchSums gradient(const PolicyLoss* policy, bool critics, const int32_t* order, int32_t rows);
+  BatchSums gradient(const PolicyLoss* policy, bool critics, const Batch& batch);
   const float* gradient() const { return grad_; }
   // Adam steps along what the last gradient computed; actor_share: actor_rate over its first value, which the
   // critics may follow. A network whose gradient is not finite stays as it is.
@@ -80,8 +80,8 @@ class Learner {
 
   // Of the policy as it is now, over the listed rows. clip > 0: each sample's cost is
   // max(rho A_c, clip(rho, 1 - clip, 1 + clip) A_c), so that only a fall of the cost can be hidden.
-  Surrogate measure(const int32_t* order, int32_t rows, float clip = 0);
-  double kl(const int32_t* order, int32_t rows) { return measure(order, rows).kl; }
+  Surrogate measure(const Batch& batch, float clip = 0);
+  double kl(const Batch& batch) { return measure(batch).kl; }
   // Steps that were left out so far.
   int64_t skipped() const { return skipped_; }
   void visit(StateIo& io);
@@ -97,15 +97,18 @@ class Learner {
   void measure_rows(Workspace& workspace, const int32_t* order, int32_t rows, float clip) const;
   void add_penalties(const PolicyLoss* policy);
   double joint_scale(int32_t first, int32_t last) const;
+  BatchSums sums_of_blocks();
 
   const ResolvedAgentConfig* resolved_ = nullptr;
   const Rollout* rollout_ = nullptr;
   Networks* nets_ = nullptr;
   BatchWorkers* workers_ = nullptr;
-  float* grad_ = nullptr;       // [Networks::size]
-  float* log_std_ = nullptr;    // [action_dim] of the innovation; none with std_mode=state
-  float scale_ = 1;             // 1 / rows of the batch
-  size_t begin_ = 0, end_ = 0;  // of grad_: what the last gradient covers
+  float* grad_ = nullptr;                 // [Networks::size]
+  float* log_std_ = nullptr;              // [action_dim] of the innovation; none with std_mode=state
+  BatchSums* block_sums_ = nullptr;       // [this rank's blocks]
+  Surrogate* block_surrogate_ = nullptr;  // likewise
+  float scale_ = 1;                       // 1 / rows of the batch
+  size_t begin_ = 0, end_ = 0;            // of grad_: what the last gradient covers
   bool policy_ = false, critics_ = false, learn_std_ = true, joint_norm_ = false, follow_actor_ = false;
   float value_clip_ = 0;
   double critic_rate_ = 0, entropy_ = 0, max_norm_ = 0, critic_l2_ = 0;

@@ -76,6 +76,8 @@ inline constexpr std::array kSharedOptions = {
     // learning
     integer_option("passes", 10, 1, 10000, "over the data of an epoch"),
     integer_option("minibatches", 4, 1, 1 << 20, "number of minibatches in a pass"),
+    integer_option("blocks", 1, 1, 65536,
+                   "equal parts of all worlds whose sums meet in a tree: ranks times a power of two"),
     number_option("learning_rate", 3e-4, 0, kMaxLearningRate, "Adam rate of the actor", true),
     number_option("critic_learning_rate", 0, 0, kMaxLearningRate,
                   "Adam rate of the critics; 0: learning_rate", true),

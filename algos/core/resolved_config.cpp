@@ -31,6 +31,10 @@ void check_config(const AgentConfig& c) {
   check_range("num_envs", c.num_envs, 1, 65536);
   check_range("num_threads", c.num_threads, 0, 256);
   check_range("max_steps", c.max_steps, 0, INT32_MAX);
+  check_range("ranks", c.ranks.count, 1, kMaxRanks);
+  check_range("rank", c.ranks.rank, 0, c.ranks.count - 1);
+  if (c.ranks.count > 1 && !c.ranks.gather)
+    fail(Code::kArgument, "gather: NULL with %d ranks", c.ranks.count);
   check_range("num_defaults", c.num_defaults, 0, INT32_MAX);
   check_range("num_options", c.num_options, 0, INT32_MAX);
   if (c.num_defaults && !c.defaults)
@@ -161,24 +165,38 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
   check_mlp_shape(resolved.reward_critic);
 }
 
+// Blocks of all ranks into this one's.
+void resolve_blocks(ResolvedAgentConfig& resolved) {
+  const int32_t blocks = resolved.options.integer("blocks"), ranks = resolved.config.ranks.count;
+  const int32_t envs = resolved.all_envs(), own = blocks / ranks;
+  if (envs % blocks != 0) fail(Code::kArgument, "blocks: %d do not divide %d environments", blocks, envs);
+  if (blocks % ranks != 0 || (ranks > 1 && (own & (own - 1)) != 0))
+    fail(Code::kArgument, "blocks: %d are not %d ranks times a power of two", blocks, ranks);
+  resolved.blocks = own;
+}
+
 void resolve_batches(ResolvedAgentConfig& resolved) {
   const Options& o = resolved.options;
   resolved.horizon = o.integer("horizon");
   resolved.action_repeat = o.integer("action_repeat");
   const int64_t samples = int64_t{resolved.horizon} * resolved.config.num_envs;
-  if (samples > kMaxSamples)
+  const int32_t ranks = resolved.config.ranks.count;
+  if (samples * ranks > kMaxSamples)
     fail(Code::kRange, "horizon: %d decisions of %d environments are more than %lld samples",
-         resolved.horizon, resolved.config.num_envs, static_cast<long long>(kMaxSamples));
+         resolved.horizon, resolved.all_envs(), static_cast<long long>(kMaxSamples));
   resolved.samples = static_cast<int32_t>(samples);
-  const int32_t parts = std::min(o.integer("minibatches"), resolved.samples);
-  resolved.minibatch_rows = (resolved.samples + parts - 1) / parts;
+  resolve_blocks(resolved);
+  const int32_t parts = std::min(o.integer("minibatches"), resolved.all_samples());
+  const int32_t block_samples = resolved.samples / resolved.blocks;
+  const int32_t block_rows = (block_samples + parts - 1) / parts;
+  resolved.minibatch_rows = block_rows * resolved.blocks;
   // A quarter of a minibatch keeps four threads busy; larger chunks than 256 rows leave the cache. Not by
-  // num_threads: results must not depend on it.
-  const int32_t quarter = (resolved.minibatch_rows + 3) / 4;
+  // num_threads or ranks: results must not depend on them.
+  const int32_t quarter = (block_rows + 3) / 4;
   resolved.chunk_rows = std::clamp((quarter + 31) / 32 * 32, 64, 256);
-  const int32_t rows = std::max(resolved.minibatch_rows, resolved.config.num_envs);
-  resolved.workers =
-      std::clamp(resolved.config.num_threads, 1, (rows + resolved.chunk_rows - 1) / resolved.chunk_rows);
+  const int32_t chunks = (block_rows + resolved.chunk_rows - 1) / resolved.chunk_rows * resolved.blocks;
+  const int32_t acting = (resolved.config.num_envs + resolved.chunk_rows - 1) / resolved.chunk_rows;
+  resolved.workers = std::clamp(resolved.config.num_threads, 1, std::max(chunks, acting));
   const double rho = o.number("noise_correlation");
   resolved.log_share = static_cast<float>(0.5 * elementary::log1p(-rho * rho));
 }

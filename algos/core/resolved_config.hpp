@@ -31,7 +31,8 @@ struct ResolvedAgentConfig {
 
   int32_t horizon = 0, action_repeat = 0;
   int32_t samples = 0;         // num_envs * horizon
-  int32_t minibatch_rows = 0;  // largest minibatch
+  int32_t blocks = 1;          // this rank's
+  int32_t minibatch_rows = 0;  // this rank's of the largest minibatch
   int32_t chunk_rows = 0;      // of a batch, by one thread at a time; the order of sums follows from it
   int32_t workers = 1;         // chunks in flight
   float log_share = 0;         // ln of the innovation's share of the standard deviation
@@ -42,6 +43,9 @@ struct ResolvedAgentConfig {
   size_t obs_dim() const { return static_cast<size_t>(config.obs_dim); }
   size_t action_dim() const { return static_cast<size_t>(config.action_dim); }
   size_t num_envs() const { return static_cast<size_t>(config.num_envs); }
+  // Of all ranks.
+  int32_t all_envs() const { return config.num_envs * config.ranks.count; }
+  int32_t all_samples() const { return samples * config.ranks.count; }
 };
 
 // Error(kRange, kArgument, kNotFound) with the name of the field or option.

@@ -18,6 +18,16 @@ void StateWriter::end() {
   open_ = false;
 }
 
+void StateWriter::share_bytes(void* x, size_t count) {
+  if (!ranks_ || ranks_->alone()) return out_.bytes(x, count);
+  const auto ranks = static_cast<size_t>(ranks_->count());
+  for (size_t r = 0; out_.counts() && r < ranks; ++r) out_.bytes(x, count);
+  if (out_.counts()) return;
+  Vector<unsigned char> all(ranks * count);
+  ranks_->gather(x, count, all.data());
+  out_.bytes(all.data(), all.size());
+}
+
 void StateReader::section(const char tag[4]) {
   end();
   in_.need_section(tag);
@@ -64,6 +74,35 @@ void StateReader::flags(uint8_t* x, size_t count) {
   const unsigned char* p = in_.view(count);
   if (apply_ && count) std::memcpy(x, p, count);
   for (size_t i = 0; i < count; ++i) require(p[i] <= 1, "a flag that is not 0 or 1");
+}
+
+// Others' parts are only looked at.
+template <class Read>
+void StateReader::each_part(Read&& read) {
+  const bool apply = apply_;
+  for (int32_t r = 0; r < ranks_; ++r) {
+    apply_ = apply && r == rank_;
+    read();
+  }
+  apply_ = apply;
+}
+
+void StateReader::share_bytes(void* x, size_t count) {
+  each_part([&] { bytes(x, count); });
+}
+void StateReader::share(float* x, size_t count, double low, double high) {
+  each_part([&] { read(x, count, low, high); });
+}
+void StateReader::share(double* x, size_t count, double low, double high) {
+  each_part([&] { read(x, count, low, high); });
+}
+void StateReader::share_flags(uint8_t* x, size_t count) {
+  each_part([&] { flags(x, count); });
+}
+void StateReader::share_counters(int64_t* x, size_t count) {
+  each_part([&] {
+    for (size_t i = 0; i < count; ++i) counter(x[i]);
+  });
 }
 
 void StateReader::require(bool holds, const char* what) const {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "algos/core/ranks.hpp"
 #include "base/bytes.hpp"
 #include "base/rng.hpp"
 
@@ -55,11 +56,22 @@ class StateIo {
   // A count of what happened so far.
   void counter(int64_t& x) { integer(x, 0, kMaxCounter); }
   void stream(Stream& s) { bytes(&s, sizeof s); }
+
+  // What each rank has of its own: a file has all of it in the order of ranks. So it is the file of one
+  // process that has all worlds.
+  virtual void share_bytes(void* x, size_t count) = 0;
+  virtual void share(float* x, size_t count, double low, double high) = 0;
+  virtual void share(double* x, size_t count, double low, double high) = 0;
+  virtual void share_counters(int64_t* x, size_t count) = 0;
+  virtual void share_flags(uint8_t* x, size_t count) = 0;
+  void share(Stream* s, size_t count) { share_bytes(s, count * sizeof *s); }
 };
 
 class StateWriter final : public StateIo {
  public:
-  explicit StateWriter(Writer& out) : out_(out) {}
+  // With more ranks than one all of them write, or all of them count.
+  StateWriter(Writer& out, Ranks* ranks) : out_(out), ranks_(ranks) {}
+  explicit StateWriter(Writer& out) : StateWriter(out, nullptr) {}
   using StateIo::integer;
   void section(const char tag[4]) override;
   void end() override;
@@ -77,16 +89,23 @@ class StateWriter final : public StateIo {
   }
   void flags(uint8_t* x, size_t count) override { out_.bytes(x, count); }
   void bytes(void* x, size_t count) override { out_.bytes(x, count); }
+  void share_bytes(void* x, size_t count) override;
+  void share(float* x, size_t count, double, double) override { share_bytes(x, count * sizeof *x); }
+  void share(double* x, size_t count, double, double) override { share_bytes(x, count * sizeof *x); }
+  void share_counters(int64_t* x, size_t count) override { share_bytes(x, count * sizeof *x); }
+  void share_flags(uint8_t* x, size_t count) override { share_bytes(x, count); }
 
  private:
   Writer& out_;
+  Ranks* ranks_;
   bool open_ = false;
 };
 
-// With `apply` false only checks.
+// With `apply` false only checks. Of what ranks share, all is checked and one's own part is taken.
 class StateReader final : public StateIo {
  public:
-  StateReader(Reader& in, bool apply) : in_(in), apply_(apply) {}
+  StateReader(Reader& in, bool apply, int32_t rank = 0, int32_t ranks = 1)
+      : in_(in), apply_(apply), rank_(rank), ranks_(ranks) {}
   using StateIo::integer;
   void section(const char tag[4]) override;
   void end() override;
@@ -96,12 +115,20 @@ class StateReader final : public StateIo {
   void flags(uint8_t* x, size_t count) override;
   void bytes(void* x, size_t count) override;
   void require(bool holds, const char* what) const override;
+  void share_bytes(void* x, size_t count) override;
+  void share(float* x, size_t count, double low, double high) override;
+  void share(double* x, size_t count, double low, double high) override;
+  void share_counters(int64_t* x, size_t count) override;
+  void share_flags(uint8_t* x, size_t count) override;
 
  private:
   template <class T>
   StateView<T> read(T* x, size_t count, double low, double high);
+  template <class Read>
+  void each_part(Read&& read);
   Reader& in_;
   bool apply_;
+  int32_t rank_, ranks_;
   char tag_[5] = "";
 };
 

@@ -64,8 +64,8 @@ class Ipo final : public CostWeighted<Ppo, BarrierRule> {
       violation_[i] = violation(stats, i), loss_.weight[i] = 0;
     if (known_) loss_.aim(Surrogate(), violation_, resolved().num_limited);
   }
-  void begin_minibatch(const int32_t* order, int32_t rows) override {
-    if (exact_ && known_) loss_.aim(learner().measure(order, rows), violation_, resolved().num_limited);
+  void begin_minibatch(const Batch& batch) override {
+    if (exact_ && known_) loss_.aim(learner().measure(batch), violation_, resolved().num_limited);
   }
   double cost_weight(int32_t i) const override {
     return exact_ ? static_cast<double>(loss_.weight[i]) : CostWeighted::cost_weight(i);

@@ -44,8 +44,8 @@ void P3o::begin_epoch(const EpisodeStats& stats, int32_t epoch) {
   for (int32_t i = 0; i < resolved().num_limited; ++i) violation_[i] = violation(stats, i);
 }
 
-void P3o::begin_minibatch(const int32_t* order, int32_t rows) {
-  const Surrogate now = learner().measure(order, rows, loss_.clip_cost ? loss_.clip : 0);
+void P3o::begin_minibatch(const Batch& batch) {
+  const Surrogate now = learner().measure(batch, loss_.clip_cost ? loss_.clip : 0);
   for (int32_t k = 0; k < resolved().num_limited; ++k)
     loss_.weight[k] = now.cost[k] + violation_[k] > 0 ? static_cast<float>(kappa_) : 0;
 }

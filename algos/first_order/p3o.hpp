@@ -39,7 +39,7 @@ class P3o final : public Ppo {
   const PolicyLoss& policy_loss() const override { return loss_; }
   void begin_epoch(const EpisodeStats& stats, int32_t epoch) override;
   // The penalty is on where the minibatch's estimate of the constraint is above 0.
-  void begin_minibatch(const int32_t* order, int32_t rows) override;
+  void begin_minibatch(const Batch& batch) override;
   double cost_weight(int32_t) const override { return kappa_; }
   void opened() override { kappa_ = options().number("penalty"); }
   void read_live() override;

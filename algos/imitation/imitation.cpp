@@ -20,7 +20,7 @@ void Imitation::set(const DemoRows& demo, uint64_t mark, const HostHooks& hooks)
   const auto n = static_cast<size_t>(demo.rows);
   Vector<float> obs(demo.obs, demo.obs + n * resolved_->obs_dim());
   Vector<float> label(demo.label, demo.label + n * resolved_->action_dim());
-  Vector<int32_t> order(n ? static_cast<size_t>(resolved_->samples) : 0);
+  Vector<int32_t> order(n ? static_cast<size_t>(resolved_->all_samples()) : 0);
   const size_t count = n * static_cast<size_t>(resolved_->eyes.points);
   const PointRows& clouds = demo.clouds;
   Vector<int16_t> points(clouds.points, clouds.points + (clouds.points ? 3 * count : 0));
@@ -43,7 +43,7 @@ void Imitation::begin_epoch(int32_t done) {
 
 void Imitation::draw(int32_t rows) {
   if (!(weight_ > 0)) return;
-  rows_ = std::min({rows, demo_.rows, resolved_->samples});
+  rows_ = std::min({rows, demo_.rows, resolved_->all_samples()});
   const auto count = static_cast<uint32_t>(demo_.rows);
   for (int32_t i = 0; i < rows_; ++i)
     order_[static_cast<size_t>(i)] = static_cast<int32_t>(stream_.below(count));

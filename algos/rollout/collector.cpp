@@ -42,7 +42,16 @@ void Collector::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
   scaled_cost_ = arena.make<float>(resolved.num_envs() * static_cast<size_t>(resolved.config.cost_dim));
   noise_.carve(arena, resolved);
   episodes_.carve(arena, resolved.config.num_envs, resolved.config.cost_dim,
-                  o.knows("multiplier_window") ? o.integer("multiplier_window") : kStatsWindow);
+                  o.knows("multiplier_window") ? o.integer("multiplier_window") : kStatsWindow,
+                  resolved.config.ranks.count);
+  const auto blocks = static_cast<size_t>(resolved.blocks);
+  const auto widest = std::max(resolved.obs_dim(), static_cast<size_t>(resolved.config.cost_dim));
+  moments_step_ = 1 + 2 * widest;
+  if (resolved.blocks > 1 || resolved.config.ranks.count > 1)
+    moments_ = arena.make<double>(blocks * moments_step_);
+  block_rows_ = arena.make<int32_t>(blocks * static_cast<size_t>(resolved.config.ranks.count));
+  segments_ = arena.make<Segment>(blocks);
+  part_ = arena.make<Segment>(blocks);
   std_ = arena.make<float>(resolved.state_std() ? 0 : resolved.action_dim());
   final_value_ = arena.make<float>(resolved.num_envs());
   final_cost_ = arena.make<float>(resolved.num_envs() * static_cast<size_t>(resolved.num_limited));
@@ -54,7 +63,7 @@ void Collector::open(const ResolvedAgentConfig& resolved, const Networks& nets, 
   resolved_ = &resolved;
   nets_ = &nets;
   workers_ = &workers;
-  noise_.reset(resolved.config.seed);
+  noise_.reset(resolved.config.seed, resolved.config.ranks.rank * resolved.config.num_envs);
   normalizer_.clip = static_cast<float>(o.number("obs_clip"));
   normalize_ = o.flag("normalize_obs");
   obs_count_max_ = o.number("obs_count_max");
@@ -162,7 +171,7 @@ void Collector::act(const float* obs, bool sample, float* action, const PointRow
   check_clouds(clouds);
   if (sample) {
     if (normalize_ && !(obs_freeze_ > 0 && normalizer_.count >= obs_freeze_))
-      normalizer_merge(normalizer_, obs, envs, nullptr, obs_count_max_);
+      merge(normalizer_, obs, nullptr, obs_count_max_);
     for (size_t j = 0; !nets_->state_std() && j < rollout_.action_dim; ++j) {
       rollout_.log_std[j] = nets_->log_std()[j] + resolved_->log_share;
       std_[j] = static_cast<float>(elementary::exp(static_cast<double>(rollout_.log_std[j])));
@@ -259,7 +268,7 @@ void Collector::scale_rewards(const Transition& t) {
   const int32_t envs = rollout_.num_envs;
   reward_ = t.reward, cost_ = t.cost;
   if (normalize_reward_) {
-    normalizer_merge(reward_scale_, t.reward, envs, t.valid, 0);
+    merge(reward_scale_, t.reward, t.valid, 0);
     normalizer_apply(reward_scale_, t.reward, envs, scaled_reward_);
     reward_ = scaled_reward_;
   }
@@ -268,7 +277,7 @@ void Collector::scale_rewards(const Transition& t) {
     reward_ = scaled_reward_;
   }
   if (normalize_cost_) {
-    normalizer_merge(cost_scale_, t.cost, envs, t.valid, 0);
+    merge(cost_scale_, t.cost, t.valid, 0);
     normalizer_apply(cost_scale_, t.cost, envs, scaled_cost_);
     cost_ = scaled_cost_;
   }
@@ -291,7 +300,7 @@ void Collector::record_row(const Transition& t, int32_t env) {
   const int32_t steps = t.steps ? t.steps[e] : resolved_->action_repeat;
   const bool terminated = flag(t.terminated, e, false), over = terminated || flag(t.truncated, e, false);
   const auto discount = static_cast<float>(elementary::pow(discount_, steps));
-  env_steps_ += steps;
+  own_steps_ += steps;
   const double weight = discounted_limit_ ? elementary::pow(discount_, episodes_.length(env)) : 1;
   episodes_.add(env, static_cast<double>(t.reward[e]), cost, steps, flag(t.success, e, false), weight);
   r.reward[at] = reward_[e] + discount * final_value_[e];
@@ -312,12 +321,58 @@ void Collector::record(const Transition& t) {
   check(t);
   value_truncated(t);
   scale_rewards(t);
+  episodes_.tick();
   for (int32_t env = 0; env < rollout_.num_envs; ++env) record_row(t, env);
   ++rollout_.filled;
   pending_ = false;
 }
 
-int32_t Collector::estimate(const float* last_obs) {
+// Rows of all ranks: moments of each block, in the tree.
+void Collector::merge(Normalizer& n, const float* x, const uint8_t* mask, double count_max) {
+  Ranks& ranks = workers_->ranks();
+  if (!moments_) return normalizer_merge(n, x, rollout_.num_envs, mask, count_max);
+  const auto envs = static_cast<size_t>(ranks.block_envs()), dim = static_cast<size_t>(n.dim);
+  const auto node = [&](int32_t b) { return moments_ + static_cast<size_t>(b) * moments_step_; };
+  workers_->spread(ranks.blocks(), [&](int32_t b) {
+    const size_t first = static_cast<size_t>(b) * envs;
+    normalizer_moments(n.dim, x + first * dim, ranks.block_envs(), mask ? mask + first : nullptr, node(b));
+  });
+  const auto add = [&](double* a, const double* b) { normalizer_add_moments(n.dim, a, b); };
+  Ranks::tree(ranks.blocks(), [&](int32_t a, int32_t b) { add(node(a), node(b)); });
+  ranks.fold(moments_, 1 + 2 * dim, add);
+  normalizer_merge_moments(n, moments_, count_max);
+}
+
+void Collector::settle() {
+  env_steps_ += workers_->ranks().total(own_steps_);
+  own_steps_ = 0;
+  episodes_.settle(workers_->ranks());
+}
+
+Batch Collector::minibatch(int32_t i, int32_t parts) const {
+  const Ranks& ranks = workers_->ranks();
+  const auto part = [&](int32_t rows) {
+    const int64_t size = (rows + parts - 1) / parts, first = std::min<int64_t>(i * size, rows);
+    return Segment{static_cast<int32_t>(first), static_cast<int32_t>(std::min<int64_t>(size, rows - first))};
+  };
+  Batch batch = listed_rows_;
+  batch.rows = 0;
+  for (int32_t b = 0; b < ranks.blocks() * ranks.count(); ++b) batch.rows += part(block_rows_[b]).rows;
+  for (int32_t b = 0; b < ranks.blocks(); ++b) {
+    part_[b] = part(segments_[b].rows);
+    part_[b].first += segments_[b].first;
+  }
+  batch.segments = part_;
+  return batch;
+}
+
+double Collector::mean_value(bool of_cost) const {
+  const Rollout& r = rollout_;
+  return of_cost ? masked_mean(r.rows(), r.cost_value, r.num_costs, workers_->ranks())
+                 : masked_mean(r.rows(), r.value, 1, workers_->ranks());
+}
+
+void Collector::estimate(const float* last_obs) {
   const Rollout& r = rollout_;
   workers_->sweep(r.num_envs, resolved_->chunk_rows,
                   [&](const Workspace& workspace, int32_t first, int32_t rows) {
@@ -326,8 +381,19 @@ int32_t Collector::estimate(const float* last_obs) {
                     values(workspace, x, rows, r.last_value + at,
                            r.last_cost_value + at * static_cast<size_t>(r.num_costs));
                   });
-  estimate_advantages(r, advantage_);
-  return list_valid(r);
+  Ranks& ranks = workers_->ranks();
+  estimate_advantages(r, advantage_, ranks);
+  const int32_t envs = ranks.block_envs();
+  int32_t* const own = block_rows_ + ranks.first_block();
+  for (int32_t b = 0, at = 0; b < ranks.blocks(); ++b, at += own[b - 1]) {
+    own[b] = list_valid(r, b * envs, envs, at);
+    segments_[b] = {at, own[b]};
+  }
+  ranks.gather(own, static_cast<size_t>(ranks.blocks()) * sizeof *own, block_rows_);
+  listed_rows_ = Batch(r.order, 0);
+  listed_rows_.blocks = ranks.blocks();
+  listed_rows_.segments = segments_;
+  for (int32_t b = 0; b < ranks.blocks() * ranks.count(); ++b) listed_rows_.rows += block_rows_[b];
 }
 
 void Collector::visit(StateIo& io) {

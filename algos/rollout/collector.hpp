@@ -37,8 +37,17 @@ class Collector {
   bool idle() const { return rollout_.filled == 0 && !pending_; }
   void drop();
 
-  // Advantages and targets of a full horizon, in the rollout; the number of valid rows, listed in its order.
-  int32_t estimate(const float* last_obs);
+  // Brings in what other ranks counted since.
+  void settle();
+  // Advantages and targets of a full horizon, in the rollout, whose order then lists the valid rows by
+  // blocks.
+  void estimate(const float* last_obs);
+  // The listed rows, those of all ranks counted.
+  const Batch& listed() const { return listed_rows_; }
+  // Minibatch i of `parts`: of each block's list the part of that number.
+  Batch minibatch(int32_t i, int32_t parts) const;
+  // Of the values that acted, over all ranks' rows; column 0 of the costs'.
+  double mean_value(bool of_cost) const;
 
   const Rollout& rollout() const { return rollout_; }
   Episodes& episodes() { return episodes_; }
@@ -48,9 +57,11 @@ class Collector {
   // The rows as networks see them: obs, or with normalize_obs memory [rows][obs_dim], which may be obs.
   const float* normalized(const float* obs, int32_t rows, float* memory) const;
   bool normalizes() const { return normalize_; }
-  int64_t env_steps() const { return env_steps_; }
+  int64_t env_steps() const { return env_steps_ + own_steps_; }  // of others: those that settle has counted
   void visit(StateIo& io);
   void after_load() {
+    own_steps_ = 0;
+    episodes_.forget();
     for (Normalizer* n : {&normalizer_, &reward_scale_, &cost_scale_}) normalizer_refresh(*n);
   }
 
@@ -69,6 +80,7 @@ class Collector {
   void check(const Transition& t) const;
   void value_truncated(const Transition& t);
   void scale_rewards(const Transition& t);
+  void merge(Normalizer& n, const float* x, const uint8_t* mask, double count_max);
   void record_row(const Transition& t, int32_t env);
   void charge_fall(int32_t env, float discount, float* sample_cost, double* charge) const;
 
@@ -88,7 +100,13 @@ class Collector {
   float *scaled_reward_ = nullptr, *scaled_cost_ = nullptr;
   AdvantageOptions advantage_;
   double discount_ = 0, obs_count_max_ = 0, obs_freeze_ = 0;
-  int64_t env_steps_ = 0;
+  int64_t env_steps_ = 0, own_steps_ = 0;  // of all ranks, and this one's since they were counted
+  double* moments_ = nullptr;              // [this rank's blocks][1 + 2 widest row]; none for one block alone
+  size_t moments_step_ = 0;
+  int32_t* block_rows_ = nullptr;  // [all blocks] valid rows
+  Segment* segments_ = nullptr;    // [this rank's blocks]
+  Segment* part_ = nullptr;        // likewise, of the last minibatch
+  Batch listed_rows_;
   bool pending_ = false;  // a sampled act waits for its record
   bool normalize_ = true, terminal_cost_ = false, discounted_limit_ = false;
   bool normalize_reward_ = false, normalize_cost_ = false;

@@ -21,7 +21,7 @@ struct EpisodeStats {
 class Episodes {
  public:
   // cost_window: episodes behind charged_cost.
-  void carve(Arena& arena, int32_t num_envs, int32_t cost_dim, int32_t cost_window);
+  void carve(Arena& arena, int32_t num_envs, int32_t cost_dim, int32_t cost_window, int32_t ranks = 1);
 
   // Adds a decision of environment env; cost [cost_dim]. weight: of its costs in what limits hold for.
   void add(int32_t env, double reward, const float* cost, int32_t steps, bool success, double weight = 1);
@@ -31,6 +31,13 @@ class Episodes {
   // Ends it. charge [cost_dim] or null is added to the charged costs.
   void finish(int32_t env, bool terminated, const double* charge);
 
+  // A decision of all environments begins.
+  void tick() { ++moment_; }
+  // Among ranks an episode that ended counts from here on: all of theirs come in, by time, then environment,
+  // as those of one process would.
+  void settle(Ranks& ranks);
+  void forget() { ended_count_ = moment_ = 0; }  // of what came since
+
   EpisodeStats stats() const;
   void mark() { marked_ = finished_; }
   void visit(StateIo& io);
@@ -39,7 +46,17 @@ class Episodes {
   size_t at(int32_t i, int32_t column) const {
     return static_cast<size_t>(i) * static_cast<size_t>(cost_dim_) + static_cast<size_t>(column);
   }
+  size_t wide() const { return kOwn + 2 * static_cast<size_t>(cost_dim_); }  // of a row of ended_
+  void take(const double* row);
+
+  // Of a row of ended_, before its costs and charged costs.
+  enum { kMoment, kReturn, kLength, kFall, kSuccess, kOwn };
   int32_t num_envs_ = 0, cost_dim_ = 0, cost_window_ = 0, capacity_ = 0;
+  double* ended_ = nullptr;    // [capacity_][wide()] ring of what ended since settle; none without ranks
+  double* arrived_ = nullptr;  // [ranks][capacity_][wide()]
+  int64_t* counts_ = nullptr;  // [ranks]
+  int32_t* next_ = nullptr;    // [ranks]
+  int64_t ended_count_ = 0, moment_ = 0;
   int64_t finished_ = 0, marked_ = 0;
   // [num_envs] of the running episodes
   double *ret_ = nullptr, *cost_ = nullptr, *weighed_ = nullptr;  // cost, weighed [num_envs][cost_dim]

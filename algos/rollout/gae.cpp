@@ -23,27 +23,37 @@ void gae(const GaeColumn& c, const float* discount, const uint8_t* valid, int32_
   }
 }
 
-double masked_mean(const float* x, int32_t stride, const uint8_t* valid, int32_t count) {
-  double sum = 0, n = 0;
-  for (size_t i = 0; i < static_cast<size_t>(count); ++i)
-    if (valid[i]) sum += static_cast<double>(x[i * static_cast<size_t>(stride)]), n += 1;
+double masked_mean(const BlockRows& rows, const float* x, int32_t stride, Ranks& ranks) {
+  const int32_t envs = ranks.block_envs();
+  const auto [sum, n] = ranks.sum<2>([&](int32_t b, double* out) {
+    out[0] = out[1] = 0;
+    rows.each(b * envs, envs, [&](int32_t row) {
+      out[0] += static_cast<double>(x[static_cast<size_t>(row) * static_cast<size_t>(stride)]), out[1] += 1;
+    });
+  });
   return n > 0 ? sum / n : 0;
 }
 
-void standardize(float* x, int32_t stride, const uint8_t* valid, int32_t count, bool divide) {
-  const double mean = masked_mean(x, stride, valid, count);
-  double squares = 0, n = 0;
-  for (size_t i = 0; i < static_cast<size_t>(count); ++i)
-    if (valid[i]) {
-      const double gap = static_cast<double>(x[i * static_cast<size_t>(stride)]) - mean;
-      squares += gap * gap, n += 1;
-    }
-  const double scale = divide && n > 0 ? 1 / (std::sqrt(squares / n) + 1e-8) : 1;
-  for (size_t i = 0; i < static_cast<size_t>(count); ++i)
-    if (valid[i]) {
-      float& v = x[i * static_cast<size_t>(stride)];
-      v = static_cast<float>((static_cast<double>(v) - mean) * scale);
-    }
+void standardize(const BlockRows& rows, float* x, int32_t stride, bool divide, Ranks& ranks) {
+  const double mean = masked_mean(rows, x, stride, ranks);
+  const int32_t envs = ranks.block_envs();
+  const auto at = [&](int32_t row) -> float& {
+    return x[static_cast<size_t>(row) * static_cast<size_t>(stride)];
+  };
+  double scale = 1;
+  if (divide) {
+    const auto [squares, n] = ranks.sum<2>([&](int32_t b, double* out) {
+      out[0] = out[1] = 0;
+      rows.each(b * envs, envs, [&](int32_t row) {
+        const double gap = static_cast<double>(at(row)) - mean;
+        out[0] += gap * gap, out[1] += 1;
+      });
+    });
+    if (n > 0) scale = 1 / (std::sqrt(squares / n) + 1e-8);
+  }
+  rows.each(0, rows.num_envs, [&](int32_t row) {
+    at(row) = static_cast<float>((static_cast<double>(at(row)) - mean) * scale);
+  });
 }
 
 }  // namespace rdm

@@ -13,6 +13,8 @@
 #pragma once
 #include <cstdint>
 
+#include "algos/core/ranks.hpp"
+
 namespace rdm {
 
 // One reward or cost column; sample (t, env) is element (t num_envs + env) stride.
@@ -30,10 +32,25 @@ struct GaeColumn {
 void gae(const GaeColumn& c, const float* discount, const uint8_t* valid, int32_t horizon, int32_t num_envs,
          double lambda);
 
-// Over the valid rows: subtracts the mean and, if asked, divides by the population deviation + 1e-8.
-void standardize(float* x, int32_t stride, const uint8_t* valid, int32_t count, bool divide);
+// Rows of a rollout in the order of its columns, by blocks of environments.
+struct BlockRows {
+  const uint8_t* valid = nullptr;
+  int32_t horizon = 0, num_envs = 0;
 
-// Mean over the valid rows, 0 when there are none.
-double masked_mean(const float* x, int32_t stride, const uint8_t* valid, int32_t count);
+  // f(row) for each valid one of environments [first, first + count).
+  template <class F>
+  void each(int32_t first, int32_t count, F&& f) const {
+    for (int32_t t = 0; t < horizon; ++t)
+      for (int32_t e = first; e < first + count; ++e)
+        if (const int32_t row = t * num_envs + e; valid[row]) f(row);
+  }
+};
+
+// Over the valid rows of all ranks: subtracts the mean and, if asked, divides by the population deviation +
+// 1e-8.
+void standardize(const BlockRows& rows, float* x, int32_t stride, bool divide, Ranks& ranks);
+
+// Mean over the valid rows of all ranks, 0 when there are none.
+double masked_mean(const BlockRows& rows, const float* x, int32_t stride, Ranks& ranks);
 
 }  // namespace rdm

@@ -15,9 +15,9 @@ void Noise::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
   state_ = arena.make<float>(resolved.num_envs() * resolved.action_dim());
 }
 
-void Noise::reset(uint64_t seed) {
+void Noise::reset(uint64_t seed, int32_t first) {
   for (int32_t env = 0; env < num_envs_; ++env)
-    stream_[env] = Stream(seed, static_cast<uint32_t>(env), Purpose::kPolicyNoise);
+    stream_[env] = Stream(seed, static_cast<uint32_t>(first + env), Purpose::kPolicyNoise);
 }
 
 void Noise::sample(int32_t env, const float* mean, const float* std, float* action, float* centered) {
@@ -38,8 +38,9 @@ void Noise::end_episode(int32_t env) {
 
 void Noise::visit(StateIo& io) {
   io.section("NOIS");
-  for (int32_t env = 0; env < num_envs_; ++env) io.stream(stream_[env]);
-  io.numbers(state_, static_cast<size_t>(num_envs_) * static_cast<size_t>(dim_), -kMaxNoise, kMaxNoise);
+  const auto n = static_cast<size_t>(num_envs_);
+  io.share(stream_, n);
+  io.share(state_, n * static_cast<size_t>(dim_), -kMaxNoise, kMaxNoise);
 }
 
 }  // namespace rdm

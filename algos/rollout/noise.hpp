@@ -11,7 +11,8 @@ namespace rdm {
 class Noise {
  public:
   void carve(Arena& arena, const ResolvedAgentConfig& resolved);
-  void reset(uint64_t seed);
+  // first: number of environment 0 among all ranks'.
+  void reset(uint64_t seed, int32_t first = 0);
   // Draws for environment env: action = mean + noise, centered = action - offset. All [action_dim].
   // std: of the innovation.
   void sample(int32_t env, const float* mean, const float* std, float* action, float* centered);

@@ -41,15 +41,15 @@ Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
   return r;
 }
 
-void estimate_advantages(const Rollout& r, const AdvantageOptions& options) {
+void estimate_advantages(const Rollout& r, const AdvantageOptions& options, Ranks& ranks) {
   gae({r.reward, r.value, r.last_value, r.advantage, r.target, 1}, r.discount, r.valid, r.horizon, r.num_envs,
       options.lambda);
-  if (options.standardize_reward) standardize(r.advantage, 1, r.valid, r.samples(), true);
+  if (options.standardize_reward) standardize(r.rows(), r.advantage, 1, true, ranks);
   for (int32_t k = 0; k < r.num_costs; ++k) {
     gae({r.cost + k, r.cost_value + k, r.last_cost_value + k, r.cost_advantage + k, r.cost_target + k,
          r.num_costs},
         r.discount, r.valid, r.horizon, r.num_envs, options.cost_lambda);
-    standardize(r.cost_advantage + k, r.num_costs, r.valid, r.samples(), options.standardize_cost);
+    standardize(r.rows(), r.cost_advantage + k, r.num_costs, options.standardize_cost, ranks);
   }
 }
 
@@ -81,11 +81,10 @@ void combine_advantages(const Rollout& r, const double* weights, Mix mix, bool s
   }
 }
 
-int32_t list_valid(const Rollout& r) {
-  int32_t count = 0;
-  for (int32_t i = 0; i < r.samples(); ++i)
-    if (r.valid[i]) r.order[count++] = i;
-  return count;
+int32_t list_valid(const Rollout& r, int32_t first, int32_t count, int32_t at) {
+  const int32_t begin = at;
+  r.rows().each(first, count, [&](int32_t row) { r.order[at++] = row; });
+  return at - begin;
 }
 
 }  // namespace rdm

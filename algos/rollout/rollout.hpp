@@ -31,7 +31,7 @@ struct Rollout {
   // What the actor climbs: clipped, and linear in the ratio (0 unless the algorithm splits its loss).
   float *gain = nullptr, *linear = nullptr;
   float *last_value = nullptr, *last_cost_value = nullptr;  // [num_envs], [num_envs][num_costs]
-  int32_t* order = nullptr;                                 // [samples] valid rows, shuffled
+  int32_t* order = nullptr;  // [samples] valid rows, block after block, shuffled
 
   float* log_std_of(size_t at) const { return log_std + at * std_step; }
   // What the actor saw of the listed rows, every stride-th of the list.
@@ -40,6 +40,7 @@ struct Rollout {
   }
   size_t row(int32_t t) const { return static_cast<size_t>(t) * static_cast<size_t>(num_envs); }
   int32_t samples() const { return horizon * num_envs; }
+  BlockRows rows() const { return {valid, horizon, num_envs}; }
 };
 Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved);
 
@@ -57,12 +58,13 @@ void gather_obs(const Rollout& r, const int32_t* order, int32_t stride, int32_t 
 // or A_r - sum l_i A_ci.
 enum class Mix : int32_t { kSum, kDifference, kPlain };
 
-// Fills advantages and targets of reward and costs, and scales the advantages.
-void estimate_advantages(const Rollout& r, const AdvantageOptions& options);
+// Fills advantages and targets of reward and costs, and scales the advantages by those of all ranks.
+void estimate_advantages(const Rollout& r, const AdvantageOptions& options, Ranks& ranks);
 // What the actor climbs under cost weights l [num_costs], in gain; with split the cost part of it stands in
 // linear instead, which no clip touches.
 void combine_advantages(const Rollout& r, const double* weights, Mix mix, bool split);
-// Writes the valid rows into order; returns their number.
-int32_t list_valid(const Rollout& r);
+// Writes the valid rows into order, those of environments [first, first + count) from entry `at` on; returns
+// their number.
+int32_t list_valid(const Rollout& r, int32_t first, int32_t count, int32_t at);
 
 }  // namespace rdm

@@ -23,8 +23,8 @@ bool Cpo::solve(double c) {
   return y.which == CpoCase::kBoundary || y.which == CpoCase::kInside || y.which == CpoCase::kNoCost;
 }
 
-double Cpo::step_policy(const int32_t* order, int32_t rows) {
-  region().linearize(order, rows, cost_, schedule_share());
+double Cpo::step_policy(const Batch& batch) {
+  region().linearize(batch, cost_, schedule_share());
   const bool keep_reward = solve(c_);
   const auto k = static_cast<size_t>(cost_);
   return region().search([&](const Surrogate& before, const Surrogate& after) {

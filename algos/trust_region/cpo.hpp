@@ -16,7 +16,7 @@ class Cpo : public Trpo {
 
  protected:
   void begin_epoch(const EpisodeStats& stats, int32_t epoch) override;
-  double step_policy(const int32_t* order, int32_t rows) override;
+  double step_policy(const Batch& batch) override;
   bool constrained() const override { return true; }
   double cost_weight(int32_t i) const override { return i == cost_ ? nu_ : 0; }
   void visit_state(StateIo& io) override;

@@ -28,9 +28,11 @@ void Fisher::read_live(const Options& o) {
   stride_ = o.integer("fisher_stride");
 }
 
-void Fisher::set_rows(const int32_t* order, int32_t rows) {
-  order_ = order;
-  rows_ = (rows + stride_ - 1) / stride_;
+void Fisher::set_rows(const Batch& batch) {
+  batch_ = batch;
+  int32_t own = 0;
+  for (int32_t b = 0; b < batch.blocks; ++b) own += (batch.segment(b).rows + stride_ - 1) / stride_;
+  rows_ = static_cast<int32_t>(workers_->ranks().total(own));
   if (nets_->eyes.points && !nets_->frozen) see();
   for (size_t j = 0; !nets_->state_std() && j < resolved_->action_dim(); ++j) {
     const auto log_std = static_cast<double>(nets_->log_std()[j] + resolved_->log_share);
@@ -40,15 +42,16 @@ void Fisher::set_rows(const int32_t* order, int32_t rows) {
 
 void Fisher::see() {
   const auto width = static_cast<size_t>(nets_->eyes.features());
-  workers_->sweep(rows_, resolved_->chunk_rows, [&](const Workspace& workspace, int32_t first, int32_t n) {
-    const PointRows seen = rollout_->clouds(order_ + first * stride_, stride_);
-    pointnet_forward(nets_->eyes, nets_->eyes_net(), seen, n, workspace.actor.eyes, workspace.actor.dfeatures,
-                     width, workspace.actor.winner);
-    for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
+  const auto look = [&](const Workspace& workspace, const Chunk& chunk) {
+    const PointRows seen = rollout_->clouds(chunk.order, stride_);
+    pointnet_forward(nets_->eyes, nets_->eyes_net(), seen, chunk.rows, workspace.actor.eyes,
+                     workspace.actor.dfeatures, width, workspace.actor.winner);
+    for (size_t i = 0; i < static_cast<size_t>(chunk.rows); ++i) {
       std::copy_n(workspace.actor.dfeatures + i * width, width, features_ + seen.row(i) * width);
       std::copy_n(workspace.actor.winner + i * width, width, winner_ + seen.row(i) * width);
     }
-  });
+  };
+  workers_->sweep(batch_, stride_, resolved_->chunk_rows, look, [](int32_t) {});
 }
 
 PointRows Fisher::clouds(const int32_t* rows) const {
@@ -76,19 +79,22 @@ void Fisher::weigh(const float* y, int32_t n, float* dy) const {
 
 void Fisher::multiply(const float* v, float* out) {
   const size_t skip = nets_->std_size, size = nets_->block[Networks::kActor].size;
+  int32_t depth = 0;
   workers_->sweep(
-      rows_, resolved_->chunk_rows,
-      [&](Workspace& workspace, int32_t first, int32_t n) {
-        const int32_t* rows = order_ + first * stride_;
-        const PointRows seen = clouds(rows);
-        gather_obs(*rollout_, rows, stride_, n, workspace.obs);
+      batch_, stride_, resolved_->chunk_rows,
+      [&](Workspace& workspace, const Chunk& chunk) {
+        float* grad = BatchWorkers::gradient_of(workspace, out);
+        const int32_t n = chunk.rows;
+        if (n == 0) return std::fill(grad + skip, grad + size, 0.0f);
+        const PointRows seen = clouds(chunk.order);
+        gather_obs(*rollout_, chunk.order, stride_, n, workspace.obs);
         nets_->forward_actor(workspace.obs, seen, n, workspace.actor, workspace.out);
         nets_->tangent_actor(v + skip, workspace.obs, seen, n, workspace.actor, workspace.dout);
         weigh(workspace.out, n, workspace.dout);
-        nets_->backward_actor(workspace.obs, seen, n, workspace.actor, workspace.dout,
-                              first == 0 ? out : workspace.grad);
+        nets_->backward_actor(workspace.obs, seen, n, workspace.actor, workspace.dout, grad);
       },
-      [&](int32_t group, int32_t n) { workers_->reduce(group, n, out, skip, size); });
+      [&](int32_t n) { workers_->reduce(n, batch_.blocks, out, skip, size, &depth); });
+  workers_->ranks().sum(out + skip, size - skip, nullptr, 0);
   const auto damping = static_cast<float>(damping_), own = static_cast<float>(2 / dims_);
   for (size_t j = 0; j < skip; ++j) out[j] = (own + damping) * v[j];
   for (size_t j = skip; j < size; ++j) out[j] += damping * v[j];

@@ -26,9 +26,9 @@ class Fisher {
             BatchWorkers& workers);
   void read_live(const Options& options);
 
-  // The matrix is of every stride-th of the listed rows, at the policy as it is at each product. An encoder
+  // The matrix is of every stride-th of each block's rows, at the policy as it is at each product. An encoder
   // is held at what it is now: all points go through it here, once, and winners alone in each product.
-  void set_rows(const int32_t* order, int32_t rows);
+  void set_rows(const Batch& batch);
   // out = (F + damping I) v; both laid out as the actor's block.
   void multiply(const float* v, float* out);
 
@@ -45,8 +45,8 @@ class Fisher {
   float* weight_ = nullptr;    // [action_dim] 1 / (N sigma^2); none with std_mode=state
   float* features_ = nullptr;  // [samples][features] of an encoder that learns, and the points that won
   int32_t* winner_ = nullptr;  // likewise
-  const int32_t* order_ = nullptr;
-  int32_t rows_ = 0, stride_ = 1;
+  Batch batch_;
+  int32_t rows_ = 0, stride_ = 1;    // rows: that the matrix is of, of all ranks
   double damping_ = 0.1, dims_ = 1;  // dims: what sums over action dimensions are divided by
 };
 

@@ -21,8 +21,8 @@ void Trpo::read_live() {
   region_.read_live(options());
 }
 
-double Trpo::step_policy(const int32_t* order, int32_t rows) {
-  region_.linearize(order, rows, -1, schedule_share());
+double Trpo::step_policy(const Batch& batch) {
+  region_.linearize(batch, -1, schedule_share());
   if (region_.q() > 0)
     region_.set_step(std::sqrt(2 * region_.delta() / region_.q()), 0, 0);
   else
@@ -33,7 +33,7 @@ double Trpo::step_policy(const int32_t* order, int32_t rows) {
 
 void Trpo::learn() {
   if (valid_rows() == 0) return;
-  step_policy(rollout().order, valid_rows());
+  step_policy(whole_batch());
   BatchSums sums;
   Learned& out = learned();
   for (; out.passes < options().integer("passes"); ++out.passes) sums += pass(nullptr);

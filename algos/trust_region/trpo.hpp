@@ -19,7 +19,7 @@ class Trpo : public Agent {
   void learn() override;
   const PolicyLoss& policy_loss() const override { return loss_; }
   // The step of the actor over the listed rows; returns the fraction of it that the line search took.
-  virtual double step_policy(const int32_t* order, int32_t rows);
+  virtual double step_policy(const Batch& batch);
   // A limited cost is linearised beside the reward.
   virtual bool constrained() const { return false; }
   TrustRegion& region() { return region_; }

@@ -36,7 +36,7 @@ void TrustRegion::read_live(const Options& o) {
 
 void TrustRegion::gradient_of(const PolicyLoss& loss, float sign, float* out) {
   cancel_->check();
-  learner_->gradient(&loss, false, order_, rows_);
+  learner_->gradient(&loss, false, batch_);
   for (size_t i = 0; i < size_; ++i) out[i] = sign * learner_->gradient()[i];
 }
 
@@ -49,11 +49,10 @@ void TrustRegion::solve(const float* b, float* x) {
       b, cg_, cg_options_, x);
 }
 
-void TrustRegion::linearize(const int32_t* order, int32_t rows, int32_t cost, double share) {
+void TrustRegion::linearize(const Batch& batch, int32_t cost, double share) {
   delta_ = limit_ * share * share;
-  order_ = order;
-  rows_ = rows;
-  fisher_.set_rows(order, rows);
+  batch_ = batch;
+  fisher_.set_rows(batch);
   gradient_of(GainLoss(), -1, g_);
   solve(g_, x_);
   // By x'F x rather than G'x: right also where conjugate gradients stopped early.
@@ -78,7 +77,7 @@ void TrustRegion::set_step(double along_x, double along_p, double along_b) {
 
 // The gain is less the imitation term, as its gradient is.
 Surrogate TrustRegion::measure() {
-  Surrogate s = learner_->measure(order_, rows_);
+  Surrogate s = learner_->measure(batch_);
   s.gain -= learner_->imitation();
   return s;
 }

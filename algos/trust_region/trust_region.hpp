@@ -29,7 +29,7 @@ class TrustRegion {
   // Gradients at the policy as it is over the listed rows: of the gain, by which all steps rise, and of
   // limited cost `cost` (< 0: none); then x = H^-1 G and p = H^-1 b.
   // share scales the region's radius.
-  void linearize(const int32_t* order, int32_t rows, int32_t cost, double share);
+  void linearize(const Batch& batch, int32_t cost, double share);
   // Scalars of the linearised problem: q = G'x, r = b'x, s = b'p, b'b.
   double q() const { return q_; }
   double r() const { return r_; }
@@ -79,8 +79,8 @@ class TrustRegion {
   CgOptions cg_options_;
   size_t size_ = 0;
   float *g_ = nullptr, *x_ = nullptr, *b_ = nullptr, *p_ = nullptr, *step_ = nullptr, *before_ = nullptr;
-  const int32_t* order_ = nullptr;
-  int32_t rows_ = 0, tries_ = 15;
+  Batch batch_;
+  int32_t tries_ = 15;
   double q_ = 0, r_ = 0, s_ = 0, bb_ = 0, limit_ = 0.01, delta_ = 0.01, decay_ = 0.8, dims_ = 1;
   Surrogate reached_;
 };

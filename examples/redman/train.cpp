@@ -1,22 +1,27 @@
 // `train`: a run from flags or from its folder, and how good its policy is in the end.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <optional>
 
 #include "commands.hpp"
 #include "common/json.hpp"
 #include "common/names.hpp"
 #include "common/text.hpp"
 #include "play/evaluate.hpp"
+#include "run/ranks.hpp"
 #include "run/trainer.hpp"
 
 namespace tool {
 namespace {
 
+constexpr int32_t kMostBlocks = 64;  // that --ranks sets
+
 struct TrainFlags {
   RunSettings run;
   double steps = 1e6;
-  std::vector<std::string> sets, teach_given;  // the latter: names of settings
-  std::string out, resume, start_share = "0";
+  std::vector<std::string> sets, teach_given;         // the latter: names of settings
+  std::string out, resume, start_share = "0", ranks;  // ranks "": none
   bool task_given = false;
   bool steps_given = false, threads_given = false, others_given = false, overwrite = false;
 };
@@ -52,7 +57,16 @@ void parse_shares(const std::string& text, TeachSettings& teach) {
   teach.start_share_end = dots == std::string::npos ? teach.start_share : share(text.substr(dots + 2));
 }
 
-Trainer begin(TrainFlags flags) {
+// The same for any number of ranks, so that the run is.
+void give_blocks(RunSettings& run) {
+  for (const auto& [key, value] : run.agent.options)
+    if (same_name(key, "blocks")) return;
+  int32_t blocks = 1;
+  while (blocks < kMostBlocks && run.pool.envs % (2 * blocks) == 0) blocks *= 2;
+  run.agent.options.emplace_back("blocks", std::to_string(blocks));
+}
+
+Trainer begin(TrainFlags flags, const Ranks* ranks) {
   RunSettings& run = flags.run;
   take_limit_from_sets(flags.sets, run.limits);
   if (run.teach.asked()) {
@@ -70,28 +84,76 @@ Trainer begin(TrainFlags flags) {
     throw Usage("flags of a teacher without --from");
   }
   give_eyes(run.agent, run.pool);
+  if (ranks) give_blocks(run);
   run.own = own_files(task_at(find_task(run.pool.task)).name);
-  Trainer trainer(run);  // a wrong value throws here or below, before there is a folder
+  Trainer trainer(run, ranks);  // a wrong value throws here or below, before there is a folder
+  if (ranks && !ranks->first()) {
+    trainer.follow("");
+    return trainer;
+  }
   trainer.prepare();
   trainer.begin(
       RunFolder::create(flags.out.empty() ? RunFolder::default_path(run) : flags.out, flags.overwrite));
   return trainer;
 }
 
-Trainer go_on(const TrainFlags& flags) {
+Trainer go_on(const TrainFlags& flags, const Ranks* ranks) {
   if (flags.others_given)
-    throw Usage("--resume takes its settings from the folder; only --steps and --threads may change");
-  RunFolder folder = RunFolder::go_on(flags.resume);
+    throw Usage(
+        "--resume takes its settings from the folder; only --steps, --threads and --ranks may change");
+  std::optional<RunFolder> folder;
+  if (!ranks || ranks->first()) folder.emplace(RunFolder::go_on(flags.resume));
   RunSettings run = run_settings(flags.resume);
   if (flags.steps_given) run.steps = whole_steps(flags.steps);
   if (flags.threads_given) run.pool.threads = flags.run.pool.threads;
-  Trainer trainer(run);
-  trainer.resume(std::move(folder));
+  Trainer trainer(run, ranks);
+  if (folder)
+    trainer.resume(std::move(*folder));
+  else
+    trainer.follow(flags.resume + "/checkpoint.rdm");
   return trainer;
 }
 
+Trainer start(const TrainFlags& flags, const Ranks* ranks) {
+  return flags.resume.empty() ? begin(flags, ranks) : go_on(flags, ranks);
+}
+
+// A rank that is not the first: it learns, and ends here.
+[[noreturn]] void follow_first(const TrainFlags& flags, Ranks& ranks) {
+  int status = 0;
+  try {
+    start(flags, &ranks).run();
+  } catch (const Usage&) {
+    status = 2;  // the first rank says it
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "redman: rank %d: %s\n", ranks.hooks().rank, printable(e.what()).c_str());
+    status = 1;
+  }
+  std::exit(ranks.end(status));
+}
+
+Report train_alone(const TrainFlags& flags, const Ranks* ranks);
+
 Report run_train(const TrainFlags& flags) {
-  Trainer trainer = flags.resume.empty() ? begin(flags) : go_on(flags);
+  if (flags.ranks.empty()) return train_alone(flags, nullptr);
+  const auto ranks = Ranks::begin(flags.ranks);
+  if (!ranks->first()) follow_first(flags, *ranks);
+  const auto learned = [&] {
+    try {
+      return train_alone(flags, ranks.get());
+    } catch (...) {
+      ranks->end(1);
+      throw;
+    }
+  };
+  Report report = learned();
+  if (ranks->end(0) != 0) throw Failure("--ranks: a rank ended with an error");
+  return report;
+}
+
+// Of one process, or the first of several.
+Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
+  Trainer trainer = start(flags, ranks);
   std::fprintf(stderr, "training in %s\n", printable(trainer.folder().path()).c_str());
   trainer.run();
 
@@ -193,6 +255,8 @@ void add_train(CLI::App& app, Run& run) {
       command->add_option("--checkpoint-every", r.checkpoint_every, "epochs between checkpoints")
           ->check(CLI::PositiveNumber)};
   CLI::Option* threads = command->add_option("--threads", r.pool.threads, "threads; 0: the caller's own");
+  command->add_option("--ranks", flags->ranks,
+                      "processes that learn together: N of this machine, or mpi under mpirun; sets blocks");
   CLI::Option* steps =
       command->add_option("--steps,--total-steps", flags->steps, "control steps, all worlds together")
           ->check(CLI::PositiveNumber);

@@ -210,6 +210,8 @@ inline rdm_agent_config agent_config(const Pool& pool) {
 class Agent {
  public:
   explicit Agent(const rdm_agent_config& config) : handle_(made(rdm_agent_create, &config)) {}
+  // Takes over an agent that was made otherwise.
+  explicit Agent(rdm_agent* agent) : handle_(agent) {}
   rdm_agent* get() const { return handle_.get(); }
   void act(const float* obs, int32_t mode, float* action) { check(rdm_agent_act(get(), obs, mode, action)); }
   void record(const rdm_transition& t) { check(rdm_agent_record(get(), &t)); }

@@ -37,6 +37,7 @@ class Writer {
 
   size_t size() const { return at_; }
   bool fits() const { return at_ <= capacity_; }
+  bool counts() const { return !data_; }  // and writes nothing
 
  private:
   static constexpr int kDepth = 8;

@@ -9,6 +9,8 @@ namespace rdm {
 
 using ParallelBody = void (*)(void* context, int32_t index);
 
+inline constexpr int32_t kMaxRanks = 4096;  // processes that learn together
+
 struct HostHooks {
   void* user = nullptr;
   void* (*alloc)(void* user, size_t bytes, size_t align) = nullptr;            // null: the C library's

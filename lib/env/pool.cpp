@@ -121,6 +121,28 @@ void Pool::Impl::name_streams(int32_t env, uint64_t seed, uint32_t number) {
   slots[env].start = Stream(seed, number, Purpose::kStart);
 }
 
+void Pool::set_rank(int32_t rank, int32_t ranks) {
+  Impl& m = *impl_;
+  if (ranks < 1 || ranks > kMaxRanks) fail(Code::kRange, "ranks: %d is outside [1, %d]", ranks, kMaxRanks);
+  if (rank < 0 || rank >= ranks) fail(Code::kRange, "rank: %d is outside [0, %d]", rank, ranks - 1);
+  const int32_t n = m.config.num_envs;
+  for (int32_t i = 0; i < n; ++i)
+    if (m.slots[i].episode.phase != Phase::kNew)
+      fail(Code::kState, "set_rank: only before the first reset; world %d has begun", i);
+  for (int32_t i = 0; i < n; ++i)
+    m.name_streams(i, m.config.seed,
+                   static_cast<uint32_t>(rank) * static_cast<uint32_t>(n) + static_cast<uint32_t>(i));
+  m.rank = rank, m.ranks = ranks;
+}
+
+int32_t Pool::rank() const {
+  return impl_->rank;
+}
+
+int32_t Pool::ranks() const {
+  return impl_->ranks;
+}
+
 Pool::Impl::~Impl() {
   if (slots)
     for (size_t i = 0; i < num(); ++i)

@@ -77,6 +77,17 @@ class Pool {
   size_t state_size(int32_t env) const;
   void get_state(int32_t env, Writer& out) const;               // env -1: all
   void set_state(int32_t env, const void* bytes, size_t size);  // all checks before any change
+  // The worlds are a part of those of `ranks` pools of as many: so their streams are numbered, and a state of
+  // all is one of which set_state takes this part. Error(kState) after the first reset.
+  void set_rank(int32_t rank, int32_t ranks);
+  int32_t rank() const;
+  int32_t ranks() const;
+  // The state of all worlds of pools, from each one's of its own, in their order.
+  struct StateBytes {
+    const unsigned char* bytes;
+    size_t size;
+  };
+  static void join_states(const StateBytes* parts, int32_t count, Writer& out);
   uint64_t hash(int32_t env) const;
   // World `env` (-1: every one) becomes world `source` of a pool of the same task and options, which may be
   // this one: what set_state(get_state) does, with the rows of the last step too. Error(kArgument) for a pool

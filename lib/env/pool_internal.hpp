@@ -119,14 +119,16 @@ struct Pool::Impl : ResolvedPoolConfig {
   void each_world(const uint8_t* mask, F&& f);
 
   // --- state
-  // Error(kFormat) unless the bytes are a state of so many worlds of this pool; then the worlds can be read.
-  void open_state(Reader& in, int32_t worlds) const;
+  // Error(kFormat) unless the bytes are a state of so many worlds of this pool, or of the other number, which
+  // it returns; then the worlds can be read.
+  int32_t open_state(Reader& in, int32_t worlds, int32_t other = 0) const;
   void write_world(int32_t env, Writer& out) const;
   // keep_streams: those of the disturbances stay the world's own.
   void read_world(int32_t env, Reader& in, bool keep_streams = false);
   void copy_world(int32_t env, const Impl& from, int32_t source);
   void check_world(int32_t env) const;  // Error(kFormat) when what was read makes no sense
 
+  int32_t rank = 0, ranks = 1;
   float* obs(int32_t env) const { return buffers.obs + env * static_cast<ptrdiff_t>(obs_dim); }
   float* final_obs(int32_t env) const { return buffers.final_obs + env * static_cast<ptrdiff_t>(obs_dim); }
   float* action(int32_t env) const { return buffers.action + env * static_cast<ptrdiff_t>(action_dim); }

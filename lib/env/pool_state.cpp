@@ -149,7 +149,7 @@ void Pool::get_state(int32_t env, Writer& out) const {
   out.end_file();
 }
 
-void Pool::Impl::open_state(Reader& in, int32_t worlds) const {
+int32_t Pool::Impl::open_state(Reader& in, int32_t worlds, int32_t other) const {
   in.begin_file(kMagic, kVersion);
   in.need_section("HEAD");
   char name[kTextSize];
@@ -161,10 +161,12 @@ void Pool::Impl::open_state(Reader& in, int32_t worlds) const {
   if (in.value<uint64_t>() != options_hash)
     fail(Code::kFormat, "state: of a pool of task %s with other options", info->name);
   if (in.value<uint64_t>() != layout_hash(*task)) fail(Code::kFormat, "state: of another layout");
-  if (const auto count = in.value<int32_t>(); count != worlds)
+  const auto count = in.value<int32_t>();
+  if (count != worlds && count != other)
     fail(Code::kFormat, "state: it holds %d worlds, %d are to be set", count, worlds);
   in.expect_end();
   in.need_section("WRLD");
+  return count;
 }
 
 void Pool::set_state(int32_t env, const void* bytes, size_t size) {
@@ -173,7 +175,8 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
   const HostScope scope(m.config.hooks);
   const Range range = range_of(env, m.config.num_envs);
   Reader in(bytes, size, "state");
-  m.open_state(in, range.count());
+  const int32_t own = range.count(), all = env < 0 ? own * m.ranks : own;
+  const int32_t held = m.open_state(in, own, all), before = held == own ? 0 : own * m.rank;
   Reader drawn(bytes, size, "state");
   double share = m.starts.share;
   bool with_starts = false;
@@ -186,8 +189,9 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
              "state: its episodes begin at states of a recording that is not this pool's; set those first");
       share = drawn.value<double>();
       if (!(share >= 0 && share <= 1)) fail(Code::kFormat, "state: a share of starts of %g", share);
-      if (drawn.left() != sizeof(Stream) * m.num())
+      if (drawn.left() != sizeof(Stream) * static_cast<size_t>(held))
         fail(Code::kFormat, "state: not a stream of starts for each world");
+      drawn.view(sizeof(Stream) * static_cast<size_t>(before));
     }
   }
 
@@ -199,11 +203,12 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
   for (int32_t i = range.begin; i < range.end; ++i) m.write_world(i, keep);
   int32_t at = range.begin;
   try {
+    for (int32_t i = 0; i < before; ++i) m.read_world(at, in);  // of other ranks
     for (; at < range.end; ++at) {
       m.read_world(at, in);
       m.check_world(at);
     }
-    in.expect_end();
+    if (held == own) in.expect_end();
   } catch (...) {
     Reader old(backup.data(), backup.size(), "state");
     for (int32_t i = range.begin; i < range.end && i <= at; ++i) m.read_world(i, old);
@@ -217,6 +222,46 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
     if (with_starts) m.slots[i].start = drawn.value<Stream>();
   }
   m.starts.share = share;
+}
+
+void Pool::join_states(const StateBytes* parts, int32_t count, Writer& out) {
+  const auto each = [&](const char tag[4], auto&& f) {
+    bool found = true;
+    for (int32_t i = 0; i < count; ++i) {
+      Reader in(parts[i].bytes, parts[i].size, "state");
+      in.begin_file(kMagic, kVersion);
+      found = found && in.find_section(tag);
+      if (found) f(i, in);
+    }
+  };
+  int32_t worlds = 0;
+  each("HEAD", [&](int32_t, Reader& in) {
+    in.view(in.left() - sizeof worlds);
+    worlds += in.value<int32_t>();
+  });
+  const auto copy = [&](Reader& in) {
+    const size_t size = in.left();
+    out.bytes(in.view(size), size);
+  };
+  out.begin_file(kMagic, kVersion);
+  out.begin_section("HEAD");
+  each("HEAD", [&](int32_t i, Reader& in) {
+    const size_t size = in.left() - sizeof worlds;
+    if (i == 0) out.bytes(in.view(size), size);
+  });
+  out.value(worlds);
+  out.end_section();
+  out.begin_section("WRLD");
+  each("WRLD", [&](int32_t, Reader& in) { copy(in); });
+  out.end_section();
+  bool begun = false;
+  each("STRT", [&](int32_t i, Reader& in) {
+    if (i == 0) out.begin_section("STRT"), begun = true;
+    if (i > 0) in.view(sizeof(uint64_t) + sizeof(double));  // mark and share, as the first one's
+    copy(in);
+  });
+  if (begun) out.end_section();
+  out.end_file();
 }
 
 void Pool::Impl::copy_world(int32_t env, const Impl& from, int32_t source) {

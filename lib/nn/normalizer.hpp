@@ -19,6 +19,11 @@ void normalizer_reset(Normalizer& n);
 // Merges rows whose mask is not 0 (mask null: all). x [rows][dim]. std = sqrt(m2/(count-1)) within [1e-2,
 // 1e37]. With count_max > 0 the count saturates there, so that old data fade.
 void normalizer_merge(Normalizer& n, const float* x, int32_t rows, const uint8_t* mask, double count_max);
+// The same in two steps: moments [1 + 2 dim] of rows, their count, mean and sum of squared deviations, which
+// add up pairwise; and what is merged.
+void normalizer_moments(int32_t dim, const float* x, int32_t rows, const uint8_t* mask, double* moments);
+void normalizer_add_moments(int32_t dim, double* moments, const double* more);
+void normalizer_merge_moments(Normalizer& n, const double* moments, double count_max);
 // y may be x.
 void normalizer_apply(const Normalizer& n, const float* x, int32_t rows, float* y);
 // shift and scale from count, mean, m2 (after a load).

@@ -472,7 +472,7 @@ TEST(Eyes, FisherProductsAreThoseOfTheWholeNetwork) {
   for (int32_t i = 0; i < 200; ++i) order[size_of(i)] = (i * 7 + 3) % 200;
   b.fisher.open(resolved, b.rollout, b.nets, b.workers);
   b.fisher.read_live(resolved.options);
-  b.fisher.set_rows(order.data(), 200);
+  b.fisher.set_rows({order.data(), 200});
   const size_t size = b.nets.block[Networks::kActor].size, skip = b.nets.std_size;
   std::vector<float> v(size), product(size), part(b.nets.size);
   std::vector<double> wanted(size);

@@ -19,7 +19,7 @@ struct FisherBench {
     fisher.carve(arena, b.resolved);
     fisher.open(b.resolved, b.rollout, b.nets, b.workers);
     fisher.read_live(b.resolved.options);
-    fisher.set_rows(b.order.data(), b.resolved.samples);
+    fisher.set_rows({b.order.data(), b.resolved.samples});
   }
   std::vector<float> times(const std::vector<float>& v) {
     std::vector<float> out(size);
@@ -168,7 +168,7 @@ TEST(Fisher, StrideTakesEveryNthRow) {
   FisherBench f(b), g(c);
   std::vector<int32_t> fourth;
   for (size_t i = 0; i < c.order.size(); i += 4) fourth.push_back(c.order[i]);
-  g.fisher.set_rows(fourth.data(), static_cast<int32_t>(fourth.size()));
+  g.fisher.set_rows({fourth.data(), static_cast<int32_t>(fourth.size())});
   const auto v = random_direction(b, 7);
   EXPECT_EQ(f.times(v), g.times(v));
 }

@@ -48,7 +48,7 @@ void expect_finite_difference(AgentSetup s) {
   for (size_t j = 0; !state && j < 2; ++j) b.rollout.log_std[j] += j == 0 ? 0.05f : -0.04f;
   FocopsLoss loss;
   loss.eta = state ? 0.02f : 0.01f;
-  const BatchSums sums = b.learner.gradient(&loss, false, b.order.data(), b.resolved.samples);
+  const BatchSums sums = b.learner.gradient(&loss, false, {b.order.data(), b.resolved.samples});
   EXPECT_GT(sums.clipped, 10);
   EXPECT_LT(sums.clipped, 150);
   const std::vector<double> start = b.params();

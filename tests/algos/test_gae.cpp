@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "algos/rollout/gae.hpp"
+#include "ranks.hpp"
 
 using namespace rdm;
+using namespace rdm::test;
 
 namespace {
 
@@ -139,9 +141,11 @@ TEST(Standardize, Golden) {
   std::vector<float> x = {1.4796937683f, 0.6206207f, 0.7694f, -1.2f};
   const std::vector<uint8_t> valid(4, 1);
   std::vector<float> centred = x;
-  standardize(x.data(), 1, valid.data(), 4, true);
+  AloneRanks alone(1);
+  const BlockRows rows = {valid.data(), 4, 1};
+  standardize(rows, x.data(), 1, true, alone.ranks);
   expect_rows(x, {1.0744687606, 0.2055264123, 0.3560149320, -1.6360101050});
-  standardize(centred.data(), 1, valid.data(), 4, false);
+  standardize(rows, centred.data(), 1, false, alone.ranks);
   expect_rows(centred, {1.4796937683 - .4174286171, 0.6206207 - .4174286171, 0.7694 - .4174286171,
                         -1.2 - .4174286171});
 }
@@ -149,18 +153,33 @@ TEST(Standardize, Golden) {
 TEST(Standardize, DeadRowsNeitherCountNorChange) {
   std::vector<float> x = {1, 1000, 3};
   const std::vector<uint8_t> valid = {1, 0, 1};
-  EXPECT_EQ(masked_mean(x.data(), 1, valid.data(), 3), 2);
-  standardize(x.data(), 1, valid.data(), 3, true);
+  AloneRanks alone(1);
+  const BlockRows rows = {valid.data(), 3, 1};
+  EXPECT_EQ(masked_mean(rows, x.data(), 1, alone.ranks), 2);
+  standardize(rows, x.data(), 1, true, alone.ranks);
   expect_rows(x, {-1, 1000, 1});
 }
 
 TEST(Standardize, ConstantsAndNothing) {
   std::vector<float> x = {4, 4};
   const std::vector<uint8_t> valid = {1, 1}, none = {0, 0};
-  standardize(x.data(), 1, valid.data(), 2, true);
+  AloneRanks alone(1);
+  standardize({valid.data(), 2, 1}, x.data(), 1, true, alone.ranks);
   expect_rows(x, {0, 0});
   x = {4, 5};
-  standardize(x.data(), 1, none.data(), 2, true);
+  standardize({none.data(), 2, 1}, x.data(), 1, true, alone.ranks);
   expect_rows(x, {4, 5});
-  EXPECT_EQ(masked_mean(x.data(), 1, none.data(), 2), 0);
+  EXPECT_EQ(masked_mean({none.data(), 2, 1}, x.data(), 1, alone.ranks), 0);
+}
+
+// Rows of environments 0 and 1 are one block's, those of 2 and 3 the other's; the mean is of all.
+TEST(Standardize, BlocksAreParts) {
+  std::vector<float> x = {1, 2, 3, 4, 5, 6, 7, 8}, same = x;
+  const std::vector<uint8_t> valid = {1, 1, 0, 1, 1, 1, 1, 1};
+  const BlockRows rows = {valid.data(), 2, 4};
+  AloneRanks one(4), two(4, 2);
+  EXPECT_FLOAT_EQ(static_cast<float>(masked_mean(rows, x.data(), 1, two.ranks)), 33.0f / 7);
+  standardize(rows, x.data(), 1, true, one.ranks);
+  standardize(rows, same.data(), 1, true, two.ranks);
+  for (size_t i = 0; i < x.size(); ++i) EXPECT_FLOAT_EQ(x[i], same[i]);
 }

@@ -34,10 +34,10 @@ TEST(Ipo, ExactBarrierHasTheGradientOfTheLogarithm) {
   BarrierLoss loss;
   loss.kappa = 0.3, loss.max = 5;
   const double violation[] = {-0.4, 0.5};
-  loss.aim(b.learner.measure(b.order.data(), b.resolved.samples), violation, 2);
+  loss.aim(b.learner.measure({b.order.data(), b.resolved.samples}), violation, 2);
   EXPECT_NE(loss.weight[0], static_cast<float>(0.3 / 0.4));  // not the slope where the epoch began
   EXPECT_EQ(loss.weight[1], 5);
-  b.learner.gradient(&loss, false, b.order.data(), b.resolved.samples);
+  b.learner.gradient(&loss, false, {b.order.data(), b.resolved.samples});
   const auto total = [&](const std::vector<double>& p) {
     double gain = 0, cost[2] = {};
     for (size_t i = 0; i < b.order.size(); ++i) {

@@ -24,7 +24,7 @@ TEST(Learner, GradientIsTheFiniteDifferenceOfTheWholeLoss) {
     s.config.cost_limits = limits;
     Bench b(std::move(s));
     ASSERT_EQ(b.resolved.chunk_rows, 64);  // 160 rows in 3 chunks
-    const BatchSums sums = b.learner.gradient(&b.loss, true, b.order.data(), b.resolved.samples);
+    const BatchSums sums = b.learner.gradient(&b.loss, true, {b.order.data(), b.resolved.samples});
     std::vector<double> p = b.params();
     double largest = 0;
     for (size_t j = 0; j < p.size(); ++j) {
@@ -48,17 +48,17 @@ TEST(Learner, GradientIsTheFiniteDifferenceOfTheWholeLoss) {
       EXPECT_LT(b.share_at_bound(), 0.9);
     }
     EXPECT_NEAR(sums.kl, kl, 1e-4 * kl);
-    EXPECT_NEAR(b.learner.kl(b.order.data(), b.resolved.samples), kl / b.resolved.samples,
+    EXPECT_NEAR(b.learner.kl({b.order.data(), b.resolved.samples}), kl / b.resolved.samples,
                 1e-4 * kl / b.resolved.samples);
   }
 }
 
 TEST(Learner, CriticsAlone) {
   Bench b(small());
-  b.learner.gradient(&b.loss, true, b.order.data(), b.resolved.samples);
+  b.learner.gradient(&b.loss, true, {b.order.data(), b.resolved.samples});
   const std::vector<float> both(b.learner.gradient(), b.learner.gradient() + b.nets.size);
   const std::vector<float> before(b.nets.params, b.nets.params + b.nets.size);
-  b.learner.gradient(nullptr, true, b.order.data(), b.resolved.samples);
+  b.learner.gradient(nullptr, true, {b.order.data(), b.resolved.samples});
   const size_t critics = b.nets.block[Networks::kReward].offset;
   for (size_t j = critics; j < b.nets.size; ++j) EXPECT_EQ(b.learner.gradient()[j], both[j]);
   b.learner.step(1e-3);
@@ -75,7 +75,7 @@ TEST(Learner, CriticsAlone) {
 TEST(Learner, PolicyAlone) {
   Bench b(small());
   const std::vector<float> before(b.nets.params, b.nets.params + b.nets.size);
-  b.learner.gradient(&b.loss, false, b.order.data(), b.resolved.samples);
+  b.learner.gradient(&b.loss, false, {b.order.data(), b.resolved.samples});
   b.learner.step(1e-3);
   const size_t critics = b.nets.block[Networks::kReward].offset;
   EXPECT_NE(b.nets.params[0], before[0]);
@@ -88,7 +88,7 @@ TEST(Learner, AnyNumberOfWorkersGivesTheSameBytes) {
     AgentSetup s = small();
     s.config.num_threads = threads;
     Bench b(std::move(s));
-    b.learner.gradient(&b.loss, true, b.order.data(), b.resolved.samples);
+    b.learner.gradient(&b.loss, true, {b.order.data(), b.resolved.samples});
     const std::vector<float> got(b.learner.gradient(), b.learner.gradient() + b.nets.size);
     if (threads == 0) wanted = got;
     EXPECT_EQ(0, std::memcmp(got.data(), wanted.data(), got.size() * sizeof(float))) << threads;
@@ -98,7 +98,7 @@ TEST(Learner, AnyNumberOfWorkersGivesTheSameBytes) {
 TEST(Learner, FixedDeviationHasNoGradient) {
   AgentSetup s = small();
   Bench b(std::move(s.with("learn_std", "false")));
-  b.learner.gradient(&b.loss, true, b.order.data(), b.resolved.samples);
+  b.learner.gradient(&b.loss, true, {b.order.data(), b.resolved.samples});
   EXPECT_EQ(b.learner.gradient()[0], 0);
   EXPECT_EQ(b.learner.gradient()[1], 0);
 }
@@ -107,7 +107,7 @@ TEST(Learner, GradientThatIsNotFiniteLeavesItsNetworkAlone) {
   Bench b(small());
   b.rollout.target[7] = std::numeric_limits<float>::infinity();
   const std::vector<float> before(b.nets.params, b.nets.params + b.nets.size);
-  b.learner.gradient(&b.loss, true, b.order.data(), b.resolved.samples);
+  b.learner.gradient(&b.loss, true, {b.order.data(), b.resolved.samples});
   b.learner.step(1e-3);
   EXPECT_EQ(b.learner.skipped(), 1);
   const Block& reward = b.nets.block[Networks::kReward];
@@ -125,7 +125,7 @@ TEST(Learner, ClippedValuesAreTheLargerError) {
         static_cast<float>(b.network(b.params(), Networks::kReward, i)[0] + 0.1 * stream.signed_unit());
     b.rollout.cost_value[i] = static_cast<float>(stream.signed_unit());
   }
-  b.learner.gradient(nullptr, true, b.order.data(), b.resolved.samples);
+  b.learner.gradient(nullptr, true, {b.order.data(), b.resolved.samples});
   const auto total = [&](const std::vector<double>& p) {
     double sum = 0;
     for (size_t i = 0; i < b.order.size(); ++i)
@@ -154,7 +154,7 @@ TEST(Learner, ClippedValuesAreTheLargerError) {
 TEST(Learner, JointNormBoundsAllNetworksTogether) {
   AgentSetup s = small();
   Bench b(std::move(s.with("joint_grad_norm", "on").with("max_grad_norm", "0.1")));
-  b.learner.gradient(&b.loss, true, b.order.data(), b.resolved.samples);
+  b.learner.gradient(&b.loss, true, {b.order.data(), b.resolved.samples});
   std::vector<double> before(b.learner.gradient(), b.learner.gradient() + b.nets.size);
   double norm = 0;
   for (const double x : before) norm += x * x;
@@ -170,7 +170,7 @@ TEST(Learner, CriticsMayFollowTheActorsRate) {
     AgentSetup s = small();
     Bench b(std::move(s.with("critic_lr_schedule", schedule)));
     const std::vector<double> before = b.params();
-    b.learner.gradient(nullptr, true, b.order.data(), b.resolved.samples);
+    b.learner.gradient(nullptr, true, {b.order.data(), b.resolved.samples});
     b.learner.step(1e-3, 0);
     EXPECT_EQ(b.params() == before, std::string(schedule) == "actor");
   }

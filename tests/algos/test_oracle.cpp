@@ -67,7 +67,7 @@ struct Oracle : Bench {
     }
   }
   void expect(const PolicyLoss& loss, const double* wanted, const char* name) {
-    const BatchSums sums = learner.gradient(&loss, false, order.data(), kRows);
+    const BatchSums sums = learner.gradient(&loss, false, {order.data(), kRows});
     EXPECT_NEAR(sums.loss / kRows, wanted[0], 2e-6) << name;
     double largest = 0;
     for (size_t j = 0; j < size(); ++j) {
@@ -113,7 +113,7 @@ TEST(Oracle, FisherProduct) {
   f.carve(arena, resolved);
   f.open(resolved, o.rollout, o.nets, o.workers);
   f.read_live(resolved.options);
-  f.set_rows(o.order.data(), kRows);
+  f.set_rows({o.order.data(), kRows});
   std::vector<float> v(o.nets.block[Networks::kActor].size), out(v.size());
   for (size_t j = 0; j < Oracle::size(); ++j) v[o.place(j)] = static_cast<float>(wave(j, 12));
   f.multiply(v.data(), out.data());

@@ -62,7 +62,7 @@ void expect_finite_difference(AgentSetup s) {
   std::fill_n(b.rollout.linear, b.order.size(), 0.0f);
   PenalizedSurrogate loss;
   loss.weight[0] = 3, loss.weight[1] = 0.5f;
-  b.learner.gradient(&loss, false, b.order.data(), b.resolved.samples);
+  b.learner.gradient(&loss, false, {b.order.data(), b.resolved.samples});
   const auto total = [&](const std::vector<double>& p) {
     double sum = 0;
     for (size_t i = 0; i < b.order.size(); ++i) {

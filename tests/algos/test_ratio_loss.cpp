@@ -19,14 +19,14 @@ TEST(RatioLoss, GoldenMeansAndLogProbabilities) {
 
 TEST(RatioLoss, GoldenGradients) {
   GoldenNet net;
-  net.learner.gradient(nullptr, true, net.order.data(), 2);
+  net.learner.gradient(nullptr, true, {net.order.data(), 2});
   const GainLoss gain;
-  net.learner.gradient(&gain, false, net.order.data(), 2);
+  net.learner.gradient(&gain, false, {net.order.data(), 2});
   std::vector<double> g = net.get(net.learner.gradient());
   for (double& x : g) x = -x;
   expect_near(g, kGoldenG, 2e-7);
   const CostLoss cost(0);
-  net.learner.gradient(&cost, false, net.order.data(), 2);
+  net.learner.gradient(&cost, false, {net.order.data(), 2});
   expect_near(net.get(net.learner.gradient()), kGoldenB, 2e-7);
 }
 
@@ -35,17 +35,17 @@ TEST(RatioLoss, TheEntropyBonusIsNotTheCosts) {
   s.with("entropy", "0.5");
   GoldenNet net(std::move(s));
   const CostLoss cost(0);
-  net.learner.gradient(&cost, false, net.order.data(), 2);
+  net.learner.gradient(&cost, false, {net.order.data(), 2});
   EXPECT_NEAR(static_cast<double>(net.learner.gradient()[0]), kGoldenB[0], 2e-7);
   const GainLoss gain;
-  net.learner.gradient(&gain, false, net.order.data(), 2);
+  net.learner.gradient(&gain, false, {net.order.data(), 2});
   EXPECT_NEAR(static_cast<double>(net.learner.gradient()[0]), -kGoldenG[0] - 0.5, 2e-7);
 }
 
 TEST(RatioLoss, MeasureIsTheMeanOverTheRows) {
   Bench b(two_costs({"p3o", 3, 2, 16}));
   for (const float clip : {0.0f, 0.2f}) {
-    const Surrogate got = b.learner.measure(b.order.data(), b.resolved.samples, clip);
+    const Surrogate got = b.learner.measure({b.order.data(), b.resolved.samples}, clip);
     double gain = 0, cost[2] = {};
     for (size_t i = 0; i < b.order.size(); ++i) {
       const double rho = b.ratio(b.params(), i);

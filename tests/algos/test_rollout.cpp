@@ -1,5 +1,6 @@
 #include "agents.hpp"
 #include "algos/rollout/rollout.hpp"
+#include "ranks.hpp"
 
 using namespace rdm;
 using namespace rdm::test;
@@ -9,6 +10,7 @@ namespace {
 struct Made {
   ResolvedAgentConfig resolved;
   Arena arena;
+  AloneRanks alone{2};
   Rollout rollout;
   explicit Made(AgentSetup& s) : resolved(resolve_config(s.ready())) {
     Arena measure;
@@ -64,8 +66,9 @@ TEST(Rollout, ColumnsAreEstimatedApart) {
     r.cost[2 * i] = 1;
     r.cost[2 * i + 1] = static_cast<float>(i % 3);
   }
-  estimate_advantages(
-      r, {.lambda = 0, .cost_lambda = 0, .standardize_reward = false, .standardize_cost = false});
+  estimate_advantages(r,
+                      {.lambda = 0, .cost_lambda = 0, .standardize_reward = false, .standardize_cost = false},
+                      m.alone.ranks);
   for (size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(r.advantage[i], static_cast<float>(i));
     EXPECT_EQ(r.target[i], static_cast<float>(i));
@@ -74,7 +77,8 @@ TEST(Rollout, ColumnsAreEstimatedApart) {
     EXPECT_EQ(r.cost_advantage[2 * i + 1], static_cast<float>(i % 3) - 1);
   }
   estimate_advantages(r,
-                      {.lambda = 0, .cost_lambda = 0, .standardize_reward = true, .standardize_cost = true});
+                      {.lambda = 0, .cost_lambda = 0, .standardize_reward = true, .standardize_cost = true},
+                      m.alone.ranks);
   EXPECT_FLOAT_EQ(r.advantage[5], 2.5f / 1.7078251f);
   EXPECT_FLOAT_EQ(r.cost_advantage[11], 1 / 0.8164966f);
 }
@@ -84,8 +88,9 @@ TEST(Rollout, CostsHaveTheirOwnLambda) {
   Made m(s);
   Rollout& r = m.rollout;
   for (size_t i = 0; i < 6; ++i) r.reward[i] = r.cost[2 * i] = i >= 4 ? 1 : 0;
-  estimate_advantages(
-      r, {.lambda = 1, .cost_lambda = 0, .standardize_reward = false, .standardize_cost = false});
+  estimate_advantages(r,
+                      {.lambda = 1, .cost_lambda = 0, .standardize_reward = false, .standardize_cost = false},
+                      m.alone.ranks);
   EXPECT_EQ(r.advantage[0], 0.25f);
   EXPECT_EQ(r.cost_target[0], 0);
 }
@@ -94,9 +99,12 @@ TEST(Rollout, ListOfValidRows) {
   AgentSetup s = two_costs();
   Made m(s);
   m.rollout.valid[0] = m.rollout.valid[4] = 0;
-  ASSERT_EQ(list_valid(m.rollout), 4);
-  const int32_t wanted[] = {1, 2, 3, 5};
+  ASSERT_EQ(list_valid(m.rollout, 0, 2, 0), 4);
+  const int32_t wanted[] = {1, 2, 3, 5}, by_envs[] = {2, 1, 3, 5};
   for (size_t i = 0; i < 4; ++i) EXPECT_EQ(m.rollout.order[i], wanted[i]);
+  ASSERT_EQ(list_valid(m.rollout, 0, 1, 0), 1);
+  ASSERT_EQ(list_valid(m.rollout, 1, 1, 1), 3);
+  for (size_t i = 0; i < 4; ++i) EXPECT_EQ(m.rollout.order[i], by_envs[i]);
 }
 
 TEST(Rollout, CombinedAdvantage) {

@@ -19,7 +19,7 @@ struct RegionBench {
     region.carve(arena, net.resolved, net.nets, true);
     region.open(cancel, net.resolved, net.rollout, net.nets, net.workers, net.learner);
     region.read_live(net.resolved.options);
-    region.linearize(net.order.data(), 2, 0, 1);
+    region.linearize({net.order.data(), 2}, 0, 1);
   }
 };
 
@@ -79,7 +79,7 @@ TEST(TrustRegion, SearchKeepsTheKlWithinItsBound) {
     RegionBench b;
     b.region.set_step(length, 0, 0);
     if (b.region.search([](const Surrogate&, const Surrogate&) { return true; }) == 0) continue;
-    EXPECT_LE(b.net.learner.kl(b.net.order.data(), 2), 0.01);
-    EXPECT_EQ(b.region.reached().kl, b.net.learner.kl(b.net.order.data(), 2));
+    EXPECT_LE(b.net.learner.kl({b.net.order.data(), 2}), 0.01);
+    EXPECT_EQ(b.region.reached().kl, b.net.learner.kl({b.net.order.data(), 2}));
   }
 }

@@ -1216,6 +1216,56 @@ class rdm_policy_info(Structure):
     ]
 
 
+class rdm_ranks(Structure):
+    """Each process has a pool and an agent of num_envs worlds; together they are one learner with ranks * num_envs of them, whose
+    bytes are those of one process with as many worlds and the same option `blocks`, for any number of ranks. redman links no
+    MPI: messages go through a hook.
+
+      rdm_ranks r = {.struct_size = sizeof r, .rank = 1, .ranks = 4, .user = &mine, .gather = my_allgather};
+      rdm_pool_set_rank(pool, r.rank, r.ranks);
+      c.settings = "blocks=16";                      // ranks times a power of two, which divides all worlds
+      rdm_agent_create_ranked(&agent, &c, &r);
+      for (...) rdm_agent_rollout(agent, pool, &e);  // e, the policy and the saved state are the same on each rank
+
+    Configs are the same on all ranks but for num_threads, hooks and texts. All of them make the same calls of rollout, act with
+    RDM_SAMPLE, record, update, save with memory, rdm_checkpoint_write: these exchange messages, in one order. Loading does not:
+    each takes its own part. A state that was saved by some ranks goes on with any other number that `blocks` allows.
+      - CANCELLED: a hook failed (a rank is gone), or rdm_agent_cancel was called on one rank, which stops all of them at one
+        place. The handles are good; after a failed hook, what ranks have learned may differ: load a state that was saved.
+      - STATE: ranks are out of step; or one has drifted, which each update looks for: the text names it.
+      - a rank whose call fails otherwise leaves the others waiting in their hooks, unless it ends and these notice.
+
+    struct_size: bytes
+    rank: of this process, 0..ranks - 1; its world 0 is number rank * num_envs of all
+    ranks: processes, 1..4096
+    reserved: 0
+    user: passed back to the hooks; may be NULL
+    gather: An allgather: `mine`, `bytes` of them, stands at `all` + r * bytes for each rank r afterwards, on
+        all ranks; bytes is the same on each. Blocks until all have come. Any number but 0 is a failure. NULL
+        only for one rank.
+    swap: Sends mine to rank `partner`, which sends as much here: `theirs`. Takes the place of gather in sums of
+        gradients where ranks is a power of two: each receives 2 of them in 2 log2(ranks) messages, not ranks -
+        1. NULL on all ranks, or on none.
+    """
+
+    struct_size: int
+    rank: int
+    ranks: int
+    reserved: int
+    user: int | None
+    gather: Any
+    swap: Any
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("rank", c_int32),
+        ("ranks", c_int32),
+        ("reserved", c_int32),
+        ("user", c_void_p),
+        ("gather", CFUNCTYPE(c_int32, c_void_p, c_void_p, c_size_t, c_void_p)),
+        ("swap", CFUNCTYPE(c_int32, c_void_p, c_int32, c_void_p, c_size_t, c_void_p)),
+    ]
+
+
 class rdm_points(Structure):
     """With the agent option `encoder` ("64,128") a PointNet makes features of a cloud for the actor, beside the entries of the
     row that it sees (actor_obs, "vision": nothing of an object); critics see rows alone. Of rdm_sensors:
@@ -2752,6 +2802,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_epoch": rdm_epoch,
     "rdm_tensor": rdm_tensor,
     "rdm_policy_info": rdm_policy_info,
+    "rdm_ranks": rdm_ranks,
     "rdm_points": rdm_points,
     "rdm_pretrain_config": rdm_pretrain_config,
     "rdm_pretrain_report": rdm_pretrain_report,
@@ -3297,6 +3348,18 @@ FUNCTIONS: dict[str, Function] = {
         """What the agent's critics say of obs [rows][obs_dim], for any number of rows: value [rows], the discounted sum of rewards
         to come, and the same of the cost columns that it limits, cost [rows][RDM_MAX_COSTS] by column, others 0; cost may be
         NULL. UNSUPPORTED with options normalize_reward or normalize_cost, which leave critics no unit.
+        """),
+    "rdm_agent_create_ranked": Function(
+        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_agent_config), "ranks": POINTER(rdm_ranks)},
+        {}, True,
+        """As rdm_agent_create, of a rank's agent: c.num_envs worlds of ranks * c.num_envs. Takes more memory than rdm_agent_memory says:
+        a message, half a MiB at most where rows are no wider, for each rank. The hooks must outlive the agent.
+        """),
+    "rdm_pool_set_rank": Function(
+        c_int32, {"p": c_void_p, "rank": c_int32, "ranks": c_int32},
+        {}, True,
+        """Worlds of the pool are numbers rank * num_envs on of ranks * num_envs: of their streams, and of a state of all worlds (env -1),
+        from which set_state takes them. Before the first reset; STATE afterwards. rdm_agent_rollout needs agent and pool of one rank.
         """),
     "rdm_agent_act_points": Function(
         c_int32, {"a": c_void_p, "obs": c_void_p, "points": POINTER(rdm_points), "mode": c_int32, "action": c_void_p},

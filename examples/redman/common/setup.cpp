@@ -1,3 +1,6 @@
+#ifndef RDM_EXPERIMENTAL
+#define RDM_EXPERIMENTAL
+#endif
 #include "common/setup.hpp"
 
 #include <CLI/CLI.hpp>
@@ -158,7 +161,8 @@ redman::Pool make_pool(const PoolSettings& settings, int32_t autoreset) {
 }
 
 redman::Agent make_agent(const AgentSettings& settings, const redman::Pool& pool,
-                         const std::vector<double>& limits, uint64_t seed, int32_t threads) {
+                         const std::vector<double>& limits, uint64_t seed, int32_t threads,
+                         const rdm_ranks* ranks) {
   auto config = redman::agent_config(pool);
   const auto options = raw_options(settings.options);
   config.algo = settings.algo.c_str();
@@ -167,7 +171,12 @@ redman::Agent make_agent(const AgentSettings& settings, const redman::Pool& pool
   config.cost_limits = limits.data();
   config.options = options.data();
   config.num_options = static_cast<int32_t>(options.size());
-  return as_usage([&] { return redman::Agent(config); });
+  return as_usage([&] {
+    if (!ranks) return redman::Agent(config);
+    rdm_agent* agent = nullptr;
+    redman::check(rdm_agent_create_ranked(&agent, &config, ranks));
+    return redman::Agent(agent);
+  });
 }
 
 std::vector<double> cost_limits(const redman::Pool& pool, const std::vector<std::string>& texts) {

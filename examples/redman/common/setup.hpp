@@ -14,6 +14,8 @@ class Option;
 class Validator;
 }  // namespace CLI
 
+struct rdm_ranks;
+
 namespace tool {
 
 using Options = std::vector<std::pair<std::string, std::string>>;  // key, value as text
@@ -60,8 +62,10 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
 
 // Makes the worlds, or the agent for them; Usage when a name or a value is wrong.
 redman::Pool make_pool(const PoolSettings& settings, int32_t autoreset);
+// ranks: the agent is one of them; null: alone.
 redman::Agent make_agent(const AgentSettings& settings, const redman::Pool& pool,
-                         const std::vector<double>& limits, uint64_t seed, int32_t threads);
+                         const std::vector<double>& limits, uint64_t seed, int32_t threads,
+                         const rdm_ranks* ranks = nullptr);
 
 // [cost_dim] limits: the task's own, with "40" (column 0) or "name=3" of each text laid over. < 0: none.
 std::vector<double> cost_limits(const redman::Pool& pool, const std::vector<std::string>& texts);

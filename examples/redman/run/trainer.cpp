@@ -54,6 +54,14 @@ PoolSettings eval_settings(const PoolSettings& train) {
   return s;
 }
 
+PoolSettings part_of(const PoolSettings& whole, const Ranks* ranks) {
+  PoolSettings s = whole;
+  if (ranks && s.envs % ranks->count() != 0)
+    throw Usage(format("--ranks: %d do not divide %d worlds", ranks->count(), s.envs));
+  if (ranks) s.envs /= ranks->count();
+  return s;
+}
+
 std::vector<CostColumn> cost_columns(int32_t task, const std::vector<double>& limits) {
   std::vector<CostColumn> columns;
   for (const rdm_cost& c : task_costs(task)) columns.push_back({c.name, limits[columns.size()] >= 0});
@@ -83,15 +91,18 @@ std::string agent_option(const redman::Agent& agent, const std::string& algo, co
 
 }  // namespace
 
-Trainer::Trainer(RunSettings settings)
-    : settings_(std::move(settings)),
-      pool_(make_pool(settings_.pool, RDM_AUTORESET_SAME_STEP)),
+Trainer::Trainer(RunSettings settings, const Ranks* ranks)
+    : ranks_(ranks),
+      settings_(std::move(settings)),
+      pool_(make_pool(part_of(settings_.pool, ranks), RDM_AUTORESET_SAME_STEP)),
       eval_pool_(make_pool(eval_settings(settings_.pool), RDM_AUTORESET_OFF)),
       limits_(cost_limits(pool_, settings_.limits)),
-      agent_(make_agent(settings_.agent, pool_, limits_, settings_.pool.seed, settings_.pool.threads)),
+      agent_(make_agent(settings_.agent, pool_, limits_, settings_.pool.seed, settings_.pool.threads,
+                        ranks ? &ranks->hooks() : nullptr)),
       score_limits_(limits_),
       last_{std::nan(""), std::nan("")} {
   if (!handles_costs(settings_.agent.algo, pool_)) score_limits_.assign(limits_.size(), -1);
+  if (ranks) redman::check(rdm_pool_set_rank(pool_.get(), ranks->hooks().rank, ranks->count()));
 }
 
 void Trainer::prepare() {
@@ -103,7 +114,7 @@ void Trainer::prepare() {
 // The same each time, so that a run that goes on has what it needs of it.
 void Trainer::learn_from_teacher() {
   taught_ = teach(settings_.teach, settings_.pool, agent_, static_cast<int32_t>(option("action_repeat")),
-                  settings_.save_recording);
+                  first() ? settings_.save_recording : std::string());
   const rdm_recording* recording = taught_.recording.get();
   if (!recording && (wants_imitation() || wants_starts()))
     throw Usage("--start-share, imitation: a recording is needed: --from demo, a .npz file, or --dagger");
@@ -147,10 +158,18 @@ void Trainer::resume(RunFolder folder) {
   }
   folder_.emplace(std::move(folder));
   if (wants_imitation() || wants_starts()) learn_from_teacher();
-  restore();
+  restore(folder_->checkpoint());
   plan_schedule();
   folder_->cut_progress(progress_bytes_, settings_.events);
   replace_file(folder_->config(), config_text(settings_, pool_, agent_, limits_, steps_per_epoch()));
+}
+
+void Trainer::follow(const std::string& checkpoint) {
+  const bool begun = !checkpoint.empty() && file_exists(checkpoint);
+  if (!begun) return prepare();
+  if (wants_imitation() || wants_starts()) learn_from_teacher();
+  restore(checkpoint);
+  plan_schedule();
 }
 
 int64_t Trainer::option(const char* key) const {
@@ -172,6 +191,11 @@ void Trainer::plan_schedule() {
 }
 
 void Trainer::save() {
+  if (!first()) {  // its part of what the first one writes
+    redman::check(rdm_checkpoint_write("", agent_.get(), pool_.get(), nullptr, 0));
+    saved_epoch_ = epoch_;
+    return;
+  }
   folder_->check();
   Note note{epoch_, env_steps_, progress_bytes_, earlier_seconds_ + seconds_, {}, best_, best_policy_};
   if (!std::isnan(last_.ret)) note.last = last_;
@@ -181,8 +205,7 @@ void Trainer::save() {
   saved_epoch_ = epoch_;
 }
 
-void Trainer::restore() {
-  const std::string path = folder_->checkpoint();
+void Trainer::restore(const std::string& path) {
   std::string bytes;
   const auto read = [&] {
     size_t size = 0;
@@ -244,7 +267,7 @@ void Trainer::train_epoch(Meter& meter) {
   epoch_ = e.epoch;
   own_steps_ += steps;
   own_seconds_ += times.epoch;
-  if (epoch_ % settings_.eval_every == 0) {
+  if (first() && epoch_ % settings_.eval_every == 0) {
     clock = Clock::now();
     if (compete(agent_.policy(), &last_)) folder_->write_policy({best_policy_.begin(), best_policy_.end()});
     scored_epoch_ = epoch_;
@@ -252,18 +275,23 @@ void Trainer::train_epoch(Meter& meter) {
   }
   seconds_ += since(begin);
   times.total = earlier_seconds_ + seconds_;
-  progress_bytes_ =
-      folder_->append_progress(curve_row(cost_columns(pool_.spec().task, limits_), e, steps, last_, times));
+  if (first())
+    progress_bytes_ =
+        folder_->append_progress(curve_row(cost_columns(pool_.spec().task, limits_), e, steps, last_, times));
   if (epoch_ % settings_.checkpoint_every == 0) save();
-  meter.show(e);
+  if (first()) meter.show(e);
+}
+
+bool Trainer::stopped() const {
+  return ranks_ ? ranks_->any(g_signals != 0) : g_signals != 0;
 }
 
 void Trainer::train_to_the_end(Meter& meter) {
   try {
-    while (env_steps_ < settings_.steps && g_signals == 0) train_epoch(meter);
+    while (env_steps_ < settings_.steps && !stopped()) train_epoch(meter);
     if (saved_epoch_ != epoch_) save();
   } catch (const redman::Error& e) {
-    if (e.code() != RDM_CANCELLED) throw;
+    if (e.code() != RDM_CANCELLED || g_signals == 0) throw;
   }
 }
 
@@ -273,12 +301,14 @@ void Trainer::run() {
   try {
     train_to_the_end(meter);
   } catch (const std::runtime_error& e) {
+    if (!first()) throw;
     folder_->check();  // where the folder is gone, that is what went wrong
     if (saved_epoch_ < 1) throw;
     throw Failure(std::string(e.what()) +
                   format("; the checkpoint of epoch %d is kept: go on with train --resume ", saved_epoch_) +
                   folder_->path());
   }
+  if (!first()) return;
   interrupted_ = env_steps_ < settings_.steps;
   if (interrupted_)
     meter.say(saved_epoch_ > 0

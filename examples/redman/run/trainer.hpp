@@ -7,6 +7,7 @@
 #include "run/meter.hpp"
 #include "run/note.hpp"
 #include "run/progress.hpp"
+#include "run/ranks.hpp"
 #include "teach/teacher.hpp"
 
 namespace tool {
@@ -15,14 +16,17 @@ class Trainer {
  public:
   static constexpr uint64_t kEvalSeed = 1000000;  // the report at the end uses streams of seed + this
 
-  // Makes worlds and agent; nothing is written yet.
-  explicit Trainer(RunSettings settings);
+  // Makes worlds and agent; nothing is written yet. ranks: this process is one of them, which must outlive
+  // the trainer: it has its part of the worlds, and the first rank alone writes and evaluates.
+  explicit Trainer(RunSettings settings, const Ranks* ranks = nullptr);
   // What a run needs from its first step on; throws where the settings do not go together.
   void prepare();
   // Starts a run in the folder, after prepare(), or goes back to its checkpoint (to the start when it was
   // killed before the first).
   void begin(RunFolder folder);
   void resume(RunFolder folder);
+  // The same of a rank that is not the first, which has no folder of its own. Empty: the run begins.
+  void follow(const std::string& checkpoint);
 
   // Epochs until the steps are done or SIGINT; then the last checkpoint and policy.rdm.
   void run();
@@ -37,7 +41,9 @@ class Trainer {
   double steps_per_second() const;  // of this process, collecting and learning
 
  private:
-  void restore();
+  void restore(const std::string& path);
+  bool first() const { return !ranks_ || ranks_->first(); }
+  bool stopped() const;  // by a signal to one of the ranks
   void plan_schedule();
   void learn_from_teacher();
   void draw_starts();
@@ -53,7 +59,8 @@ class Trainer {
   void save();
   void finish();
 
-  std::optional<RunFolder> folder_;
+  const Ranks* ranks_;
+  std::optional<RunFolder> folder_;  // of the first rank
   RunSettings settings_;
   redman::Pool pool_, eval_pool_;
   std::vector<double> limits_;

@@ -1,0 +1,193 @@
+// Learners of many processes through the C ABI: pools that know their part, checkpoints of all, refusals.
+#include <array>
+#include <cstdio>
+
+#include "contract.hpp"
+#include "ranks.hpp"
+
+using rdm::test::each_rank;
+using rdm::test::Meeting;
+
+namespace {
+
+rdm_ranks ranks_of(Meeting& meeting, int32_t rank) {
+  const rdm::RankHooks h = meeting.hooks(rank);
+  rdm_ranks r{};
+  r.struct_size = sizeof r;
+  r.rank = h.rank, r.ranks = h.count;
+  r.user = h.user, r.gather = h.gather;
+  return r;
+}
+
+// A rank's pool and agent; `worlds` of all.
+struct Part {
+  rdm_pool* pool = nullptr;
+  rdm_agent* agent = nullptr;
+
+  Part(const char* task, int32_t worlds, const rdm_ranks& ranks, const char* algo = "ppo_lag",
+       const char* settings = "") {
+    rdm_pool_config pc = pool_config(worlds / ranks.ranks);
+    pc.task = task;
+    pool = make_pool(pc);
+    EXPECT_EQ(rdm_pool_set_rank(pool, ranks.rank, ranks.ranks), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK);
+    rdm_agent_config c;
+    EXPECT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+    EXPECT_EQ(rdm_agent_config_for_pool(&c, pool), RDM_OK);
+    const rdm_option small[] = {{"hidden", "8", 0},
+                                {"critic_hidden", "8", 0},
+                                {"horizon", nullptr, 8},
+                                {"passes", nullptr, 2},
+                                {"blocks", nullptr, 8}};
+    c.options = small;
+    c.num_options = 5;
+    c.algo = algo;
+    c.settings = settings;
+    EXPECT_EQ(rdm_agent_create_ranked(&agent, &c, &ranks), RDM_OK) << rdm_last_error();
+  }
+  ~Part() {
+    rdm_agent_destroy(agent);
+    rdm_pool_destroy(pool);
+  }
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
+  void epochs(int count) {
+    for (int i = 0; i < count; ++i)
+      ASSERT_EQ(rdm_agent_rollout(agent, pool, nullptr), RDM_OK) << rdm_agent_error(agent);
+  }
+};
+
+using Bytes = std::vector<unsigned char>;
+
+Bytes file_bytes(const std::string& path) {
+  Bytes out;
+  if (FILE* f = std::fopen(path.c_str(), "rb")) {
+    for (int c; (c = std::fgetc(f)) != EOF;) out.push_back(static_cast<unsigned char>(c));
+    std::fclose(f);
+  }
+  return out;
+}
+
+std::string path_of(const char* name) {
+  return testing::TempDir() + "redman_ranks_" + name + ".rdm";
+}
+
+// The checkpoint of so many epochs by some ranks, perhaps from another one on.
+Bytes checkpoint(const char* task, const char* algo, int32_t ranks, int epochs, const std::string& from,
+                 const char* name) {
+  const std::string path = path_of(name);
+  Meeting meeting(ranks);
+  each_rank(ranks, [&](int32_t rank) {
+    const rdm_ranks r = ranks_of(meeting, rank);
+    Part part(task, 16, r, algo);
+    size_t size = 0;
+    if (!from.empty()) {
+      ASSERT_EQ(rdm_checkpoint_read(from.c_str(), part.agent, part.pool, nullptr, 0, &size), RDM_OK)
+          << rdm_last_error();
+    }
+    part.epochs(epochs);
+    ASSERT_EQ(rdm_checkpoint_write(path.c_str(), part.agent, part.pool, "note", rank == 0 ? 4 : 0), RDM_OK)
+        << rdm_agent_error(part.agent);
+  });
+  return file_bytes(path);
+}
+
+}  // namespace
+
+TEST(ContractRanks, CheckpointsAreTheSameForAnyNumber) {
+  for (const auto& [task, algo] : {std::pair{"bandit", "focops"}, std::pair{"two_state", "ppo_lag"},
+                                   std::pair{"two_state", "cpo"}, std::pair{"grasp", "ppo_lag"}}) {
+    const int more = 2;
+    const Bytes wanted = checkpoint(task, algo, 1, 2 + more, "", "whole");
+    ASSERT_GT(wanted.size(), 1000u);
+    for (const int32_t ranks : {2, 4})
+      EXPECT_EQ(checkpoint(task, algo, ranks, 2 + more, "", "all"), wanted) << task;
+    checkpoint(task, algo, 2, 2, "", "half");
+    for (const int32_t ranks : {1, 4})
+      EXPECT_EQ(checkpoint(task, algo, ranks, more, path_of("half"), "rest"), wanted) << task << ranks;
+  }
+}
+
+TEST(ContractRanks, WorldsHaveTheirPlaceAmongAll) {
+  rdm_pool_config whole = pool_config(6), part = pool_config(2);
+  rdm_pool *all = make_pool(whole), *mine = make_pool(part);
+  ASSERT_EQ(rdm_pool_set_rank(mine, 1, 3), RDM_OK) << rdm_last_error();
+  for (rdm_pool* p : {all, mine}) ASSERT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
+  EXPECT_EQ(hash_of(mine, 0), hash_of(all, 2));
+  EXPECT_EQ(hash_of(mine, 1), hash_of(all, 3));
+  ASSERT_EQ(rdm_pool_step(all), RDM_OK);
+  size_t size = 0;
+  ASSERT_EQ(rdm_pool_state_size(all, -1, &size), RDM_OK);
+  Bytes bytes(size);
+  ASSERT_EQ(rdm_pool_get_state(all, -1, bytes.data(), size, &size), RDM_OK);
+  ASSERT_EQ(rdm_pool_set_state(mine, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(hash_of(mine, 0), hash_of(all, 2));
+  EXPECT_EQ(hash_of(mine, 1), hash_of(all, 3));
+  EXPECT_EQ(rdm_pool_set_rank(mine, 1, 3), RDM_STATE);
+  EXPECT_STREQ(rdm_pool_error(mine), "set_rank: only before the first reset; world 0 has begun");
+  EXPECT_EQ(rdm_pool_set_rank(nullptr, 0, 1), RDM_ARGUMENT);
+  rdm_pool* fresh = make_pool(part);
+  EXPECT_EQ(rdm_pool_set_rank(fresh, 3, 3), RDM_RANGE);
+  EXPECT_STREQ(rdm_pool_error(fresh), "rank: 3 is outside [0, 2]");
+  EXPECT_EQ(rdm_pool_set_rank(fresh, 0, 0), RDM_RANGE);
+  for (rdm_pool* p : {all, mine, fresh}) rdm_pool_destroy(p);
+}
+
+TEST(ContractRanks, Refusals) {
+  Meeting meeting(2);
+  const rdm_ranks good = ranks_of(meeting, 0);
+  const auto why = [](rdm_ranks r, rdm_result code, const char* settings = "blocks=4") {
+    rdm_agent_config c = agent_config();
+    c.settings = settings;
+    rdm_agent* a = nullptr;
+    EXPECT_EQ(rdm_agent_create_ranked(&a, &c, &r), code);
+    EXPECT_EQ(a, nullptr);
+    return std::string(rdm_last_error());
+  };
+  rdm_ranks r = good;
+  r.struct_size = 4;
+  why(r, RDM_ARGUMENT);
+  r = good, r.rank = 2;
+  EXPECT_EQ(why(r, RDM_RANGE), "rank: 2 is outside [0, 1]");
+  r = good, r.gather = nullptr;
+  EXPECT_EQ(why(r, RDM_ARGUMENT), "gather: NULL with 2 ranks");
+  EXPECT_EQ(why(good, RDM_ARGUMENT, ""), "blocks: 1 are not 2 ranks times a power of two");
+  EXPECT_EQ(why(good, RDM_ARGUMENT, "blocks=16"), "blocks: 16 do not divide 8 environments");
+  rdm_agent_config c = agent_config();
+  rdm_agent* a = nullptr;
+  EXPECT_EQ(rdm_agent_create_ranked(&a, &c, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_create_ranked(nullptr, &c, &good), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_create_ranked(&a, nullptr, &good), RDM_ARGUMENT);
+}
+
+TEST(ContractRanks, AgentAndPoolAreOfOneRank) {
+  Meeting meeting(2);
+  Part part("two_state", 16, ranks_of(meeting, 1));
+  rdm_pool_config pc = pool_config(8);
+  pc.task = "two_state";
+  rdm_pool* other = make_pool(pc);
+  ASSERT_EQ(rdm_pool_reset(other, nullptr, nullptr), RDM_OK);
+  EXPECT_EQ(rdm_agent_rollout(part.agent, other, nullptr), RDM_ARGUMENT);
+  EXPECT_STREQ(rdm_agent_error(part.agent), "rank: the agent has 1, the pool 0");
+  rdm_pool_destroy(other);
+}
+
+// A rank that goes away: the others' calls are cancelled, and a checkpoint of before goes on with those that
+// are left.
+TEST(ContractRanks, OneThatDiesAndTheRestGoesOn) {
+  const std::string path = path_of("before");
+  Meeting meeting(4);
+  std::array<rdm_result, 4> heard{};
+  each_rank(4, [&](int32_t rank) {
+    Part part("two_state", 16, ranks_of(meeting, rank));
+    part.epochs(2);
+    ASSERT_EQ(rdm_checkpoint_write(path.c_str(), part.agent, part.pool, nullptr, 0), RDM_OK);
+    if (rank == 3) return meeting.leave();
+    heard[static_cast<size_t>(rank)] = rdm_agent_rollout(part.agent, part.pool, nullptr);
+    EXPECT_EQ(rdm_checkpoint_write(path_of("never").c_str(), part.agent, part.pool, nullptr, 0),
+              RDM_CANCELLED);
+  });
+  for (size_t rank = 0; rank < 3; ++rank) EXPECT_EQ(heard[rank], RDM_CANCELLED);
+  EXPECT_EQ(checkpoint("two_state", "ppo_lag", 2, 2, path, "after"),
+            checkpoint("two_state", "ppo_lag", 1, 4, "", "unbroken"));
+}
