@@ -305,7 +305,7 @@ std::vector<Case> all_cases() {
                    for (int i = 0; i < 120; ++i) metres[i] = 0.01f * static_cast<float>((i * 37) % 41);
                    uint8_t label[5 * 8];
                    for (int i = 0; i < 40; ++i) label[i] = static_cast<uint8_t>(i % 2);
-                   const rdm_points points = {sizeof points, 8, metres, label};
+                   const rdm_points points = {sizeof points, 8, metres, label, nullptr};
                    rdm_pretrain_config how;
                    must(rdm_pretrain_config_init(&how, sizeof how));
                    how.num_labels = 2, how.epochs = 2;

@@ -46,7 +46,8 @@ void one(const unsigned char* data, size_t size) {
   std::vector<float> metres(count(rows * 3, info.num_points));
   for (size_t i = 0; i < metres.size(); ++i) metres[i] = 0.1f * static_cast<float>(i % 11) - 0.5f;
   std::vector<uint8_t> classes(count(rows, info.num_points));
-  const rdm_points seen = {sizeof seen, info.num_points, metres.data(), classes.data()};
+  const std::vector<uint8_t> colors(metres.size(), 90);
+  const rdm_points seen = {sizeof seen, info.num_points, metres.data(), classes.data(), colors.data()};
   for (const float* e : {static_cast<const float*>(nullptr), static_cast<const float*>(noise.data())}) {
     const rdm_result act =
         info.num_points > 0

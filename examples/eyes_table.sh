@@ -1,0 +1,114 @@
+#!/usr/bin/env bash
+# The README's tables of policies that see, measured again: three ways to train one beside the state policy and one without
+# eyes, and how a student of a teacher takes noise, missing points, moved cameras and another object. Finished runs are
+# kept and stopped ones go on, so the script can be stopped and called again.
+#   bash examples/eyes_table.sh [OUT]     OUT: folder of the runs, default runs/eyes
+# Environment: REDMAN (the tool), TASKS ("hand_over_safe_finger hand_over_wall grasp"), WAYS ("student blind state end frozen
+# tuned"), SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), POINTS (of a cloud; 256), STEPS (control steps of what
+# learns from trial and error; else 2 million of a throw and 1 million of grasp), EPISODES (fresh ones; 300),
+# FLAGS (more for `redman train` and what it trains with eyes).
+#
+#   state    PPO-Lag on the whole row        end      the same, from a cloud in the place of the object's state, end to end
+#   student  the policy that comes with redman teaches one that sees (DAgger), then PPO-Lag
+#   blind    the same, without the cloud     frozen   the encoder learns to tell things apart first, and stands still then
+#   tuned    as frozen, but it goes on to learn
+set -eu
+# shellcheck source=examples/runs.sh
+. "$(dirname "$0")/runs.sh"
+out=${1:-$root/runs/eyes}
+tasks=${TASKS:-hand_over_safe_finger hand_over_wall grasp} ways=${WAYS:-student blind state end frozen tuned}
+seeds=${SEEDS:-0 1 2} points=${POINTS:-256} episodes=${EPISODES:-300}
+mkdir -p "$out"
+
+flags() {  # TASK WAY
+  local n=${STEPS:-2000000} few=300000 hide="--set actor_obs=vision"
+  if [ "$1" = grasp ]; then n=${STEPS:-1000000} few=150000; fi
+  local see="$hide --set encoder=64,128 --set encoder_points=$points"
+  local taught="--from trained --dagger 8 --beta 0.4 --demo-decisions 80 --clone-epochs 15 --steps $few --eval-every 15"
+  case $2 in
+    student) echo "$taught $see" ;;
+    blind) echo "$taught $hide" ;;
+    state) echo "--steps $n --eval-every 60" ;;
+    end) echo "--steps $n --eval-every 60 $see" ;;
+    frozen) echo "--steps $n --eval-every 60 --pretrain 5000 $see --set encoder_frozen=true" ;;
+    tuned) echo "--steps $n --eval-every 60 --pretrain 5000 $see" ;;
+    *) echo "no such way: $2" >&2; return 1 ;;
+  esac
+}
+
+run_one() {  # TASK WAY SEED
+  local dir=$out/$1.$2.$3
+  # shellcheck disable=SC2046,SC2086
+  if trained "$dir" --task "$1" --seed "$3" --no-tensorboard $(flags "$1" "$2") ${FLAGS:-} &&
+    kept "$dir.eval.json" eval --policy "$dir" --episodes "$episodes" --seed $((1000000 + $3)); then
+    return
+  fi
+  echo "$dir failed: see $dir.log" >&2
+}
+
+for seed in $seeds; do for way in $ways; do for task in $tasks; do
+  wait_turn
+  run_one "$task" "$way" "$seed" < /dev/null &
+done; done; done
+wait
+
+# mean KEY FILES...: of the tool's JSON files
+mean() {
+  local key=$1 file
+  shift
+  for file in "$@"; do value "$key" "$file"; done | awk '{ s += $1 } END { printf "%.4g", s / NR }'
+}
+each() {
+  local key=$1 file
+  shift
+  for file in "$@"; do value "$key" "$file"; done | awk '{ printf "%s%.4g", NR > 1 ? ", " : "", $1 }'
+}
+# row LABEL FILES...: means over seeds, and each
+row() {
+  local label=$1
+  shift
+  awk -v label="$label" -v n=$# -v ret="$(mean return_mean "$@")" -v rets="$(each return_mean "$@")" -v cost="$(mean cost_mean "$@")" \
+    -v costs="$(each cost_mean "$@")" -v limit="$(value cost_limits "$1")" -v falls="$(mean fall_rate "$@")" \
+    -v success="$(mean success_rate "$@")" "$marked"'BEGIN {
+      m = split(costs, c, ", "); costs = ""
+      for (i = 1; i <= m; ++i) costs = costs (i > 1 ? ", " : "") marked(c[i], limit)
+      printf "| %s | %s%s | %s%s | %.1f %% | %.1f %% |\n", label, ret, n > 1 ? " (" rets ")" : "", marked(cost, limit),
+        n > 1 ? " (" costs ")" : "", 100 * falls, 100 * success }'
+}
+
+echo "| task (limit) | way | return (each seed) | cost (each seed) | falls | success |"
+echo "|---|---|---|---|---|---|"
+for task in $tasks; do for way in $ways; do
+  files=()
+  for seed in $seeds; do
+    file=$out/$task.$way.$seed.eval.json
+    [ ! -s "$file" ] || files+=("$file")
+  done
+  [ ${#files[@]} -eq 0 ] || row "\`$task\` ($(value cost_limits "${files[0]}")) | $way" "${files[@]}"
+done; done
+echo
+case " $ways " in *" student "*) ;; *) exit 0 ;; esac
+
+# name and settings of what is done to students' eyes
+disturbances="as_trained
+noise_5_mm point_noise=0.005
+noise_20_mm point_noise=0.02
+half_the_points_lost point_dropout=0.5
+cameras_2_cm_off camera_noise=0.02
+cameras_10_cm_off camera_noise=0.1
+one_camera_of_three cloud_cameras=above
+ball_for_the_object object=ball"
+echo "| task | of students' eyes | return (each seed) | cost (each seed) | falls | success |"
+echo "|---|---|---|---|---|---|"
+for task in $tasks; do while read -r name setting; do
+  files=()
+  for seed in $seeds; do
+    dir=$out/$task.student.$seed
+    [ -s "$dir.json" ] || continue
+    # shellcheck disable=SC2086
+    kept "$dir.$name.json" eval --policy "$dir" --episodes "$episodes" --seed $((1000000 + seed)) ${setting:+--set "$setting"} < /dev/null
+    files+=("$dir.$name.json")
+  done
+  [ ${#files[@]} -eq 0 ] || row "\`$task\` | ${name//_/ }" "${files[@]}"
+done <<< "$disturbances"; done
+echo "$over_note"
