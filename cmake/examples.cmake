@@ -109,7 +109,7 @@ ${RDM_WEB}    {nullptr, nullptr},
   target_sources(redman_tool_parts PRIVATE ${RDM_DISTRIBUTED}/fork_ranks.c)
   if(REDMAN_MPI)
     target_sources(redman_tool_parts PRIVATE ${RDM_DISTRIBUTED}/mpi_ranks.c)
-    target_compile_definitions(redman_tool_parts PRIVATE REDMAN_MPI=1)
+    set_source_files_properties(${PROJECT_SOURCE_DIR}/examples/redman/run/ranks.cpp PROPERTIES COMPILE_DEFINITIONS REDMAN_MPI=1)
     target_link_libraries(redman_tool_parts PUBLIC MPI::MPI_C)
   endif()
   target_link_libraries(redman_tool_parts PUBLIC CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG ZLIB::ZLIB ${CMAKE_DL_LIBS})

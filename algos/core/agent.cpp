@@ -467,6 +467,7 @@ void Agent::load(const void* bytes, size_t size) {
   check_state(bytes, size);
   read_state(bytes, size, true);
   collector_.after_load();
+  workers_.ranks().restart();
   clamp_log_std(nets_);
   drop_horizon();
 }

@@ -56,6 +56,8 @@ class Ranks {
   // Sums over blocks: leaf(b, out) gives the N numbers of block b of this rank.
   template <size_t N, class Leaf>
   std::array<double, N> sum(Leaf&& leaf);
+  // All ranks are at one place again, as they have loaded one state.
+  void restart() { exchanges_ = 0; }
   // Error(kState) naming the first rank whose hash most others do not have.
   void agree(uint64_t hash);
 

@@ -234,6 +234,41 @@ TEST(Ranks, OneThatDiesCancelsTheOthers) {
   }
 }
 
+// Where a hook fails but all are still there, one state on all of them is a new beginning.
+TEST(Ranks, AfterAFailedExchangeAStateGoesOn) {
+  const AgentSetup setup = setup_of("cpo", "free");
+  Meeting meeting(2);
+  std::vector<AgentPtr> agents(2);
+  std::vector<std::unique_ptr<NoisePart>> worlds(2);
+  std::vector<std::vector<unsigned char>> states(2);
+  for (int32_t r = 0; r < 2; ++r) {
+    AgentSetup s = part_of(setup, meeting, r, 2);
+    agents[size_of(r)] = s.make();
+    worlds[size_of(r)] = std::make_unique<NoisePart>(s.config);
+  }
+  const auto each = [&](auto&& body) {
+    each_rank(2, [&](int32_t r) { body(*agents[size_of(r)], *worlds[size_of(r)], states[size_of(r)], r); });
+  };
+  each([](Agent& a, NoisePart& world, auto& state, int32_t) {
+    for (int i = 0; i < 2; ++i) world.epoch(a);
+    state = saved(a);
+  });
+  each([&](Agent& a, NoisePart& world, auto&, int32_t rank) {
+    NoisePart other = world;
+    while (a.missing() > 2) other.decide(a);
+    if (rank == 1) return meeting.leave();
+    EXPECT_EQ(thrown([&] { other.epoch(a); }).code, Code::kCancelled);
+  });
+  meeting.heal();
+  each([](Agent& a, NoisePart& world, auto& state, int32_t) {
+    a.load(state.data(), state.size());
+    for (int i = 0; i < 2; ++i) world.epoch(a);
+    state = saved(a);
+  });
+  const Outcome wanted = learn(setup, 1, 4).front();
+  for (const auto& state : states) EXPECT_EQ(state, wanted.state);
+}
+
 TEST(Ranks, ACancelStopsAllAtOnePlace) {
   Meeting meeting(2);
   std::vector<Thrown> heard(2);

@@ -48,7 +48,7 @@ cmp -s a b || { echo "a run by 2, 4 and 1 ranks differs"; failed=1; }
 killed() { # which: first or another
   rm -rf broken
   # shellcheck disable=SC2086
-  "$tool" train $flags --steps 400000 --ranks 4 --out broken > /dev/null 2> err &
+  "$tool" train $flags --set total_epochs=4000 --steps 400000 --ranks 4 --out broken > /dev/null 2> err &
   pid=$!
   while kill -0 $pid 2> /dev/null && { [ ! -f broken/progress.csv ] || [ "$(wc -l < broken/progress.csv)" -lt 9 ]; }; do
     sleep 0.01
@@ -77,7 +77,7 @@ rows=$(wc -l < broken/progress.csv)
 steps=$(((rows + 40) * 128))
 "$tool" train --resume broken --steps $steps --ranks 2 > /dev/null 2> err || { echo "resume failed: $(cat err)"; failed=1; }
 # shellcheck disable=SC2086
-"$tool" train $flags --steps 400000 --ranks 4 --out unbroken > /dev/null 2> err &
+"$tool" train $flags --set total_epochs=4000 --steps 400000 --ranks 4 --out unbroken > /dev/null 2> err &
 pid=$!
 while kill -0 $pid 2> /dev/null && { [ ! -f unbroken/progress.csv ] || [ "$(wc -l < unbroken/progress.csv)" -le $((rows + 20)) ]; }; do
   sleep 0.01
