@@ -12,6 +12,7 @@ if(WIN32)
   # the C library's printf is GCC's own there, whose formats the builds for other systems check
   target_compile_definitions(rdm_flags INTERFACE __USE_MINGW_ANSI_STDIO=1)
   target_compile_options(rdm_flags INTERFACE -Wno-format)
+  target_link_options(rdm_flags INTERFACE -static)
 endif()
 if(REDMAN_SANITIZE)
   target_compile_options(rdm_flags INTERFACE -fsanitize=${REDMAN_SANITIZE} -fno-omit-frame-pointer

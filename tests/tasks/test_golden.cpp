@@ -59,6 +59,22 @@ bool has_engines(const rdm_task& task) {
   return rdm_pool_spec(&c, &spec) == RDM_OK;
 }
 
+// What stands in the file, with the rows in the place of theirs that another C library makes.
+std::string recorded_rows() {
+  std::ostringstream text;
+  text << std::ifstream(RDM_TEST_DATA "/golden/tasks.txt").rdbuf();
+  std::string rows = text.str();
+#if defined(_WIN32)
+  std::ifstream others(RDM_TEST_DATA "/golden/tasks_windows.txt");
+  for (std::string row; std::getline(others, row);) {
+    if (row[0] == '#') continue;
+    const size_t at = rows.find("\n" + row.substr(0, row.rfind(' ') + 1)) + 1;
+    rows.replace(at, rows.find('\n', at) - at, row);
+  }
+#endif
+  return rows;
+}
+
 TEST(Golden, EveryTaskGivesTheRecordedBytes) {
   std::string now = "# task, engine, hash\n";
   for (int32_t i = 0; i < rdm_task_count(); ++i) {
@@ -84,9 +100,7 @@ TEST(Golden, EveryTaskGivesTheRecordedBytes) {
     ASSERT_TRUE(std::ofstream(path) << now) << path;
     GTEST_SKIP() << path << " was written";
   }
-  std::ostringstream recorded;
-  recorded << std::ifstream(path).rdbuf();
-  EXPECT_EQ(now, recorded.str()) << "if the change is meant, run this test once with RDM_WRITE_GOLDEN=1";
+  EXPECT_EQ(now, recorded_rows()) << "if the change is meant, run this test once with RDM_WRITE_GOLDEN=1";
 }
 
 }  // namespace
