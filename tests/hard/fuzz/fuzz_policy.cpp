@@ -14,7 +14,7 @@ std::vector<Bytes> seeds() {
   }
   AgentOf seeing;
   seeing.configure("ppo");
-  seeing.config.settings = "encoder=4,6\nencoder_points=8\nencoder_classes=2";
+  seeing.config.settings = "encoder=4,6\nencoder_points=8\nencoder_classes=2\nencoder_color=true";
   HARD_REQUIRE(seeing.create() == RDM_OK, "%s", rdm_last_error());
   out.push_back(seeing.policy());
   return out;
