@@ -14,7 +14,8 @@
 
 namespace redman {
 
-// Clouds [rows][count][3], m, world; classes [rows][count] and colors [rows][count][3] or NULL. All are borrowed.
+// Clouds [rows][count][3], m, world; classes [rows][count] and colors [rows][count][3] or NULL. All are
+// borrowed.
 inline rdm_points points(const float* metres, int32_t count, const uint8_t* classes = nullptr,
                          const uint8_t* colors = nullptr) {
   auto p = sized<rdm_points>();

@@ -177,7 +177,7 @@ void write_eyes(Writer& out, const PolicyView& v) {
 }
 
 void read_eyes(Reader& in, PolicyView& v, bool color) {
-  if (!in.find_section("EYES")) return;
+  in.need_section("EYES");
   PointNetShape& s = v.eyes;
   s.points = in.value<int32_t>();
   s.classes = in.value<int32_t>();
