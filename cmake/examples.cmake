@@ -108,9 +108,11 @@ ${RDM_WEB}    {nullptr, nullptr},
   target_include_directories(redman_tool_parts PUBLIC ${PROJECT_SOURCE_DIR}/examples/redman)
   target_sources(redman_tool_parts PRIVATE ${RDM_DISTRIBUTED}/fork_ranks.c)
   if(REDMAN_MPI)
-    target_sources(redman_tool_parts PRIVATE ${RDM_DISTRIBUTED}/mpi_ranks.c)
+    add_library(redman_mpi_ranks STATIC ${RDM_DISTRIBUTED}/mpi_ranks.c)  # apart: others need none of MPI's flags
+    target_link_libraries(redman_mpi_ranks PRIVATE MPI::MPI_C)
+    rdm_example(redman_mpi_ranks)
     set_source_files_properties(${PROJECT_SOURCE_DIR}/examples/redman/run/ranks.cpp PROPERTIES COMPILE_DEFINITIONS REDMAN_MPI=1)
-    target_link_libraries(redman_tool_parts PUBLIC MPI::MPI_C)
+    target_link_libraries(redman_tool_parts PRIVATE redman_mpi_ranks)
   endif()
   target_link_libraries(redman_tool_parts PUBLIC CLI11::CLI11 nlohmann_json::nlohmann_json PNG::PNG ZLIB::ZLIB ${CMAKE_DL_LIBS})
   if(TARGET Qhull::qhull_r)

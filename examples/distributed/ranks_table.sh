@@ -32,6 +32,7 @@ awk -v cores="$cores" '
     print "policies: " kinds " (1: all the same)"
   }' "$work/1-0" "$work/2-0" "$work/4-0" "$work/1-2" "$work/1-4"
 
-for each in 64 256 1024 4096; do
-  "$bin/distributed_simulate" "$each" 1 $task ppo_lag 256
+for each in "64 8" "256 5" "1024 3" "4096 2"; do
+  # shellcheck disable=SC2086
+  "$bin/distributed_simulate" $each $task ppo_lag 256
 done
