@@ -19,6 +19,7 @@ namespace {
 
 constexpr long kMostForked = 256;
 
+#if defined(__linux__)
 class Forked final : public Ranks {
  public:
   explicit Forked(int ranks) {
@@ -31,6 +32,7 @@ class Forked final : public Ranks {
  private:
   fork_ranks* processes_ = nullptr;
 };
+#endif
 
 #if REDMAN_MPI
 class Mpi final : public Ranks {
@@ -60,7 +62,11 @@ std::unique_ptr<Ranks> Ranks::begin(const std::string& text) {
   const long ranks = std::strtol(text.c_str(), &last, 10);
   if (text.empty() || *last || ranks < 1 || ranks > kMostForked)
     throw Usage("--ranks " + printable(text) + ": not a number of 1 to 256, nor mpi");
+#if defined(__linux__)
   return std::make_unique<Forked>(static_cast<int>(ranks));
+#else
+  throw Usage("--ranks: processes are forked on Linux alone; mpi takes those of MPI");
+#endif
 }
 
 bool Ranks::any(bool mine) const {
