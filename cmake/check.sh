@@ -153,9 +153,9 @@ case $mode in
     need g++-aarch64-linux-gnu qemu-user-static googletest curl
     bash cmake/cross/deps.sh arm64 && bash cmake/cross/deps.sh arm64 contracted || exit 1
     configure arm64
-    tests="golden golden_learners known_bytes fpmode elementary simd rng kernels workers library contract_host contract_pool contract_agent
+    tests="golden golden_learners known_bytes fpmode simd rng kernels workers library contract_host contract_pool contract_agent
       contract_rollout"
-    [ "${2:-}" != all ] || tests+=" vec hash mlp adam gaussian policy policy_tensors pointnet bytes file map occupancy narrowphase convex manifold stepper
+    [ "${2:-}" != all ] || tests+=" elementary vec hash mlp adam gaussian policy policy_tensors pointnet bytes file map occupancy narrowphase convex manifold stepper
       articulated_world ode_world hostile_state pool_state pool_step learner oracle fingerprint contract_state every_algo every_task contract_tasks"
     # shellcheck disable=SC2046,SC2086
     cmake --build --preset arm64 -j "$(nproc)" --target redman redman_static 01_step 04_act $(printf 'test_%s ' $tests) >&2 ||
