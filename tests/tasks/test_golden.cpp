@@ -68,7 +68,8 @@ std::string recorded_rows() {
   std::ifstream others(RDM_TEST_DATA "/golden/tasks_windows.txt");
   for (std::string row; std::getline(others, row);) {
     if (row[0] == '#') continue;
-    const size_t at = rows.find("\n" + row.substr(0, row.rfind(' ') + 1)) + 1;
+    const std::string key = row.substr(0, row.rfind(' ') + 1);
+    const size_t at = rows.find(key);
     rows.replace(at, rows.find('\n', at) - at, row);
   }
 #endif
