@@ -37,8 +37,14 @@ add() {
 [ -n "$contracted" ] || add gtest /usr/src/googletest -DBUILD_GMOCK=OFF
 [ "$part" != gtest ] || exit 0
 ode=$(source_of ode) && ccd=$(source_of ccd) || exit 1
+# emscripten's C library is one of Linux in what ODE asks of it
+sed -i 's/defined(__linux__)$/& || defined(__EMSCRIPTEN__)/' "$ode/config.h.cmake.in" || exit 1
 add ode "$ode" -DODE_DOUBLE_PRECISION=ON -DODE_WITH_DEMOS=OFF -DODE_WITH_TESTS=OFF -DODE_WITH_OPCODE=OFF
-add ccd "$ccd" -DENABLE_DOUBLE_PRECISION=ON -DBUILD_DOCUMENTATION=OFF
+add ccd "$ccd" -DENABLE_DOUBLE_PRECISION=ON -DBUILD_DOCUMENTATION=OFF -DBUILD_TESTING=OFF
 [ -z "$contracted" ] || exit 0
 octomap=$(source_of octomap) || exit 1
+if [ "$target" = wasm ]; then
+  add octomap cmake/cross/octomap "-DOCTOMAP=$octomap"
+  exit 0
+fi
 add octomap "$octomap" -DBUILD_OCTOVIS_SUBPROJECT=OFF -DBUILD_DYNAMICETD3D_SUBPROJECT=OFF -DBUILD_TESTING=OFF
