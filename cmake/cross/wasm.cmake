@@ -6,9 +6,9 @@ set(RDM_CROSS_SYSTEM /usr/share/emscripten/cache/sysroot)
 include(/usr/share/emscripten/cmake/Modules/Platform/Emscripten.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/found.cmake)
 set(CMAKE_CROSSCOMPILING_EMULATOR node --no-experimental-fetch)
-# LLVM 14 makes wrong vectors of whole numbers that become doubles (two draws of Stream::uniform side by side): vectors are
-# those that are written as such
-set(flags "-msimd128 -fno-slp-vectorize -fno-vectorize")
+# LLVM 14 makes wrong vectors of whole numbers that become doubles (two draws of Stream::uniform side by side), so vectors
+# are those that are written as such. These are its own options, since -fno-slp-vectorize counts behind -O3 alone.
+set(flags "-msimd128 -mllvm -vectorize-slp=false -mllvm -vectorize-loops=false")
 set(CMAKE_C_FLAGS_INIT "${flags}")
 set(CMAKE_CXX_FLAGS_INIT "${flags} -fwasm-exceptions")
 # programs: worlds of any size, files of this machine, the stack of a thread elsewhere
