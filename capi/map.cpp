@@ -1,4 +1,6 @@
 // rdm_map_*: occupancy maps.
+#include <algorithm>
+
 #include "base/file.hpp"
 #include "capi/handles.hpp"
 
@@ -78,7 +80,7 @@ rdm_result rdm_map_create(rdm_map** out, const rdm_map_config* c) {
     check_error(in);
     OccupancyConfig config;
     config.resolution = in.resolution;
-    config.memory = in.memory;
+    config.memory = static_cast<size_t>(std::min<uint64_t>(in.memory, SIZE_MAX));
     config.max_range = in.max_range;
     config.hit = in.hit;
     config.miss = in.miss;

@@ -91,7 +91,7 @@ class BuiltTask final : public Task {
       : own_(own),
         engine_(engine_from(o)),
         max_steps_(o.integer("max_steps")),
-        instance_(own.def.instance_bytes / sizeof(Block) + 1) {
+        instance_(static_cast<size_t>(own.def.instance_bytes / sizeof(Block)) + 1) {
     begin_scene(own, o, &scene_);
     struct Retire {
       rdm_scene* scene;

@@ -1,6 +1,7 @@
 // rdm_recording_*: trajectories as data, and what agents and pools take of them.
 #include "record/recording.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -23,7 +24,7 @@ struct rdm_recording {
 
 namespace {
 
-constexpr size_t kLongestFile = size_t{1} << 40;
+constexpr size_t kLongestFile = size_t{1} << (sizeof(size_t) == 8 ? 40 : 31);
 
 rdm_recording_config default_config() {
   rdm_recording_config c{};
@@ -89,7 +90,7 @@ rdm_result rdm_recording_create(rdm_recording** out, const rdm_recording_config*
     spec.action_dim = in.action_dim;
     spec.cost_dim = in.cost_dim;
     spec.layout_hash = in.layout_hash;
-    spec.state_bytes = in.state_bytes;
+    spec.state_bytes = static_cast<size_t>(std::min<uint64_t>(in.state_bytes, SIZE_MAX));
     spec.state_stride = in.state_stride;
     spec.num_points = in.num_points;
     if (in.point_color != 0 && in.point_color != 1)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|hard [MINUTES]]: installs what the tests need, builds, and runs them.
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|browser|hard [MINUTES]]: installs what the tests need, builds, and runs them.
 # The last line says how many passed and failed; the exit status is 0 when none failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -199,6 +199,13 @@ case $mode in
     mkdir -p build/pages
     PAGES=$PWD/build/pages run_tests dev -R '^test_tool_(pages|events|solid)$'
     ;;
+  browser)
+    # The page of cmake/browser.sh in headless Chromium, as a file, and the library in Node; build/browser keeps what it looks like.
+    need chromium fonts-dejavu-core
+    bash cmake/browser.sh || exit 1
+    node --no-experimental-fetch examples/browser/probe.cjs build/browser "$PWD" || exit 1
+    node tests/browser/open_browser.cjs build/browser/page/index.html build/browser
+    ;;
   hard)
     # Tries to break the library for an hour (or MINUTES), builds included: tests/hard/README.md. Two lines of work,
     # one for each of two processors; every part gets a share of the time that the builds leave.
@@ -239,5 +246,5 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
-  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|hard [MINUTES]]" ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|browser|hard [MINUTES]]" ;;
 esac

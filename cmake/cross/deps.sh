@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# deps.sh TARGET [contracted|gtest]: ODE, libccd, OctoMap and GoogleTest for another machine (arm64, windows), static, from
+# deps.sh TARGET [contracted|gtest]: ODE, libccd, OctoMap and GoogleTest for another machine (arm64, windows, wasm), static, from
 # Debian's sources, installed below build/cross/TARGET; built once. Eigen is headers: this machine's do.
 #
 # Distributions compile them as their compiler likes, which for ARM is with fused multiply-adds: other bytes. Here it
@@ -51,9 +51,15 @@ if [ "$target" = windows ]; then
   cp -r /usr/share/cmake/CLI11 /usr/share/cmake/nlohmann_json "$prefix/share/cmake"
 fi
 ode=$(source_of ode) && ccd=$(source_of ccd) || exit 1
+# emscripten's C library is one of Linux in what ODE asks of it
+sed -i 's/defined(__linux__)$/& || defined(__EMSCRIPTEN__)/' "$ode/config.h.cmake.in" || exit 1
 add ode "$ode" -DODE_DOUBLE_PRECISION=ON -DODE_WITH_DEMOS=OFF -DODE_WITH_TESTS=OFF -DODE_WITH_OPCODE=OFF "${ode_flags[@]}"
 [ -e "$prefix/lib/libode.a" ] || cp "$prefix"/lib/libode*.a "$prefix/lib/libode.a" || exit 1 # ode_doubles on Windows
-add ccd "$ccd" -DENABLE_DOUBLE_PRECISION=ON -DBUILD_DOCUMENTATION=OFF
+add ccd "$ccd" -DENABLE_DOUBLE_PRECISION=ON -DBUILD_DOCUMENTATION=OFF -DBUILD_TESTING=OFF
 [ -z "$contracted" ] || exit 0
 octomap=$(source_of octomap) || exit 1
+if [ "$target" = wasm ]; then
+  add octomap cmake/cross/octomap "-DOCTOMAP=$octomap"
+  exit 0
+fi
 add octomap "$octomap" -DBUILD_OCTOVIS_SUBPROJECT=OFF -DBUILD_DYNAMICETD3D_SUBPROJECT=OFF -DBUILD_TESTING=OFF

@@ -81,8 +81,9 @@ void Writer::begin_section(const char tag[4]) {
 void Writer::end_section() {
   const size_t section = pop();
   const size_t begin = section + kSectionHeader;
-  const uint64_t length = at_ - begin;
-  const uint32_t crc = at_ <= capacity_ ? crc32(data_ + begin, length) : 0;
+  const size_t size = at_ - begin;
+  const uint64_t length = size;
+  const uint32_t crc = at_ <= capacity_ ? crc32(data_ + begin, size) : 0;
   patch(section + 4, &crc, 4);
   patch(section + 8, &length, 8);
 }
@@ -122,8 +123,9 @@ uint32_t Reader::begin_file(const char magic[8], uint32_t newest_version) {
   file_end_ = size_;
   for (size_t p = file_begin_; p < file_end_;) {
     if (file_end_ - p < kSectionHeader) bad("truncated section");
-    const auto n = load<uint64_t>(data_ + p + 8);
-    if (n > file_end_ - p - kSectionHeader) bad("truncated section");
+    const auto length = load<uint64_t>(data_ + p + 8);
+    if (length > file_end_ - p - kSectionHeader) bad("truncated section");
+    const auto n = static_cast<size_t>(length);
     if (crc32(data_ + p + kSectionHeader, n) != load<uint32_t>(data_ + p + 4)) bad("checksum mismatch");
     p += kSectionHeader + n;
   }
@@ -132,7 +134,7 @@ uint32_t Reader::begin_file(const char magic[8], uint32_t newest_version) {
 
 bool Reader::find_section(const char tag[4]) {
   for (size_t p = file_begin_; p < file_end_;) {
-    const auto n = load<uint64_t>(data_ + p + 8);
+    const auto n = static_cast<size_t>(load<uint64_t>(data_ + p + 8));  // within the file: begin_file
     if (std::memcmp(data_ + p, tag, 4) == 0) {
       at_ = p + kSectionHeader;
       end_ = at_ + n;

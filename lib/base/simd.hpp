@@ -12,6 +12,8 @@
 
 #if defined(__x86_64__)
 #include <immintrin.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 namespace rdm {
@@ -57,6 +59,8 @@ using Int4 = int32_t __attribute__((vector_size(16)));  // as a mask -1: true, 0
 [[gnu::always_inline]] inline Float4 sqrt(Float4 v) {
 #if defined(__x86_64__)
   return _mm_sqrt_ps(v);
+#elif defined(__wasm_simd128__)
+  return (Float4)wasm_f32x4_sqrt((v128_t)v);
 #else
   return Float4{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
 #endif
@@ -67,6 +71,8 @@ using Int4 = int32_t __attribute__((vector_size(16)));  // as a mask -1: true, 0
   __m128 r;
   std::memcpy(&r, &m, sizeof r);
   return static_cast<uint32_t>(_mm_movemask_ps(r));
+#elif defined(__wasm_simd128__)
+  return wasm_i32x4_bitmask((v128_t)m);
 #else
   uint32_t bits = 0;
   for (int k = 0; k < kFloat4Lanes; ++k) bits |= static_cast<uint32_t>(m[k] != 0) << k;
@@ -126,15 +132,13 @@ struct Simd {
       return static_cast<uint32_t>(_mm256_movemask_ps(all));
     }
 #endif
-#if defined(__x86_64__)
     if constexpr (sizeof(S) == 4) {
-      __m128 part[N / 4];
+      Int4 part[N / 4];
       std::memcpy(part, &m, sizeof m);
-      uint32_t b = static_cast<uint32_t>(_mm_movemask_ps(part[0]));
-      if constexpr (N == 8) b |= static_cast<uint32_t>(_mm_movemask_ps(part[1])) << 4;
+      uint32_t b = bits_of(part[0]);
+      if constexpr (N == 8) b |= bits_of(part[1]) << 4;
       return b;
     }
-#endif
     uint32_t b = 0;
     for (int l = 0; l < N; ++l) b |= static_cast<uint32_t>(m[l] != 0) << l;
     return b;
@@ -150,16 +154,14 @@ struct Simd {
       return r;
     }
 #endif
-#if defined(__x86_64__)
     if constexpr (sizeof(S) == 4) {
-      __m128 part[N / 4];
+      Float4 part[N / 4];
       std::memcpy(part, &v, sizeof v);
-      for (__m128& p : part) p = _mm_sqrt_ps(p);
+      for (Float4& p : part) p = sqrt(p);
       V r;
       std::memcpy(&r, part, sizeof r);
       return r;
     }
-#endif
     V r;
     for (int l = 0; l < N; ++l) r[l] = std::sqrt(v[l]);
     return r;
@@ -178,17 +180,14 @@ struct Simd {
         std::memcpy(&to[i], r, sizeof r);
       }
 #endif
-#if defined(__x86_64__)
     if constexpr (sizeof(S) == 4)
       for (; i + 4 <= count; i += 4)
         for (int half = 0; half < N; half += 4) {
-          __m128 r[4];
-          for (int l = 0; l < 4; ++l) r[l] = _mm_loadu_ps(from[half + l] + i);
-          _MM_TRANSPOSE4_PS(r[0], r[1], r[2], r[3]);
-          for (int k = 0; k < 4; ++k)
-            std::memcpy(reinterpret_cast<S*>(&to[i + k]) + half, &r[k], sizeof r[k]);
+          Float4 r[4];
+          for (int l = 0; l < 4; ++l) r[l] = load4(from[half + l] + i);
+          transpose(r);
+          for (int k = 0; k < 4; ++k) store4(reinterpret_cast<S*>(&to[i + k]) + half, r[k]);
         }
-#endif
     for (; i < count; ++i)
       for (int l = 0; l < N; ++l) to[i][l] = from[l][i];
   }
@@ -205,17 +204,14 @@ struct Simd {
         for (int l = 4; l < lanes; ++l) _mm_storeu_ps(to[l] + i, _mm256_extractf128_ps(r[l - 4], 1));
       }
 #endif
-#if defined(__x86_64__)
     if constexpr (sizeof(S) == 4)
       for (; i + 4 <= count; i += 4)
         for (int half = 0; half < lanes; half += 4) {
-          __m128 r[4];
-          for (int k = 0; k < 4; ++k)
-            std::memcpy(&r[k], reinterpret_cast<const S*>(&from[i + k]) + half, sizeof r[k]);
-          _MM_TRANSPOSE4_PS(r[0], r[1], r[2], r[3]);
-          for (int l = 0; l < 4 && half + l < lanes; ++l) _mm_storeu_ps(to[half + l] + i, r[l]);
+          Float4 r[4];
+          for (int k = 0; k < 4; ++k) r[k] = load4(reinterpret_cast<const S*>(&from[i + k]) + half);
+          transpose(r);
+          for (int l = 0; l < 4 && half + l < lanes; ++l) store4(to[half + l] + i, r[l]);
         }
-#endif
     for (; i < count; ++i)
       for (int l = 0; l < lanes; ++l) to[l][i] = from[i][l];
   }

@@ -93,7 +93,7 @@ void Pool::Impl::read_world(int32_t env, Reader& in, bool keep_streams) {
   Slot& s = slots[env];
   const auto size = in.value<uint64_t>();
   if (size > in.left()) fail(Code::kFormat, "state: truncated");
-  const size_t left = in.left() - size;
+  const auto left = static_cast<size_t>(in.left() - size);
   s.world->load(in);
   if (in.left() != left) fail(Code::kFormat, "state: a world's record has another length");
   in.bytes(s.task_state, task->state_bytes());

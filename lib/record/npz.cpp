@@ -245,7 +245,7 @@ uint64_t NpzReader::read_member(uint64_t at, uint64_t end) {
   m.offset = value<uint32_t>(at + 42);
   at += kCentralBytes;
   if (end - at < name + extra + comment) bad("the archive's directory is cut off");
-  std::memcpy(m.name, data_ + at, std::min<uint64_t>(name, sizeof m.name - 1));
+  std::memcpy(m.name, data_ + at, std::min(static_cast<size_t>(name), sizeof m.name - 1));
   const uint64_t stop = at + name + extra;
   for (uint64_t e = at + name; stop - e >= 4;) {
     const auto id = value<uint16_t>(e), length = value<uint16_t>(e + 2);

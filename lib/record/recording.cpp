@@ -68,7 +68,8 @@ Recording::Recording(const RecordingSpec& spec, int64_t capacity) : spec_(spec) 
   check_range("obs_dim", spec.obs_dim, 1, 16384);
   check_range("action_dim", spec.action_dim, 1, 1024);
   check_range("cost_dim", spec.cost_dim, 0, 16);
-  check_range("state_bytes", static_cast<int64_t>(std::min<size_t>(spec.state_bytes, INT64_MAX)), 0, 1 << 30);
+  check_range("state_bytes", static_cast<int64_t>(std::min<uint64_t>(spec.state_bytes, INT64_MAX)), 0,
+              1 << 30);
   check_range("state_stride", spec.state_stride, 1, 1 << 30);
   check_range("num_points", spec.num_points, 0, kMaxRecordedPoints);
   check_range("capacity", capacity, 0, kMaxRecordingRows);
@@ -77,7 +78,8 @@ Recording::Recording(const RecordingSpec& spec, int64_t capacity) : spec_(spec) 
 }
 
 void Recording::reserve(size_t rows, size_t states) {
-  if (rows > static_cast<size_t>(kMaxRecordingRows)) fail(Code::kRange, "rows: more than 2^40");
+  if (rows > static_cast<size_t>(kMaxRecordingRows))
+    fail(Code::kRange, "rows: more than 2^%d", sizeof(size_t) == 8 ? 40 : 31);
   room(obs_, rows * obs_dim());
   room(action_, rows * action_dim());
   room(label_, rows * action_dim());

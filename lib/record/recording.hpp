@@ -38,7 +38,7 @@ struct RecordingRows {
 };
 
 inline constexpr int32_t kMaxRecordedPoints = 65536;
-inline constexpr int64_t kMaxRecordingRows = int64_t{1} << 40;
+inline constexpr int64_t kMaxRecordingRows = int64_t{1} << (sizeof(size_t) == 8 ? 40 : 31);
 
 class Recording {
  public:

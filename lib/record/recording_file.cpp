@@ -111,11 +111,11 @@ void read_episodes(const NpzReader& in, uint64_t rows, Vector<int64_t>& out) {
 }  // namespace
 
 void Recording::write(Vector<unsigned char>& file) const {
-  const auto n = static_cast<uint64_t>(rows()), states = state_row_.size();
+  const auto n = static_cast<uint64_t>(rows()), states = uint64_t{state_row_.size()};
   file.clear();
-  file.reserve((obs_.size() + action_.size() + label_.size() + cost_.size() + reward_.size()) *
-                   sizeof(float) +
-               state_.size() + (n + states) * sizeof(int64_t) + 3 * n + 8192);
+  file.reserve(static_cast<size_t>(
+      (obs_.size() + action_.size() + label_.size() + cost_.size() + reward_.size()) * sizeof(float) +
+      state_.size() + (n + states) * sizeof(int64_t) + 3 * n + 8192));
   NpzWriter out(file);
   const auto width = [](int32_t w) { return static_cast<uint64_t>(w); };
   add_text(out, "format", kFormat);

@@ -23,7 +23,7 @@
     empty('This task has nothing to look at: its world is numbers.');
   } else {
     try {
-      scene = openScene($('scene'), glb, contacts);
+      scene = openScene($('scene'), readGlb(glb), contacts);
     } catch (e) {
       empty('This browser shows no WebGL here (' + e.message + '); the curves below work all the same.');
     }

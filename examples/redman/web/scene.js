@@ -1,5 +1,6 @@
-// The episode in three dimensions: our own .glb file read into three, posed at any time, with a camera that a
-// pointer turns. The world is z-up here; the file's root node, which turns it for other viewers, is left out.
+// An episode in three dimensions: our own .glb file, or what is laid out like one (examples/browser), read into
+// three, posed at any time, with a camera that a pointer turns. The world is z-up here; the file's root node, which
+// turns it for other viewers, is left out.
 'use strict';
 
 // Typed arrays of a .glb file by accessor, and its JSON.
@@ -51,9 +52,9 @@ function makeFloor(square) {
 }
 
 // show(frame) poses everything (frames may be fractions), look({eye, target, fov_y}) places the camera,
-// draw() renders. contacts: {xyz, force, unit, newton, end}: see player.js.
-function openScene(canvas, bytes, contacts) {
-  const { json, array } = readGlb(bytes);
+// draw() renders. model: {json, array}, as of readGlb; contacts: {xyz, force, unit, end, most}: see player.js.
+function openScene(canvas, model, contacts) {
+  const { json, array } = model;
   const renderer = makeRenderer(canvas), world = new THREE.Scene();
   const camera = new THREE.PerspectiveCamera(45, 1, 0.005, 500);
   camera.up.set(0, 0, 1);
@@ -246,7 +247,8 @@ function openScene(canvas, bytes, contacts) {
     for (const f of floors) f.material.color.copy(f.color).multiplyScalar(dark.matches ? 0.3 : 1);
     dirty = true;
   }
-  (dark.addEventListener ? dark.addEventListener('change', paintSky) : dark.addListener(paintSky));
+  if (dark.addEventListener) dark.addEventListener('change', paintSky);
+  else dark.addListener(paintSky);
   paintSky();
 
   function draw() {
@@ -267,11 +269,19 @@ function openScene(canvas, bytes, contacts) {
     renderer.render(world, camera);
   }
 
+  // x, y in [-1, 1]. What is there: {index: of the node, name, point: m}, or null.
   const ray = new THREE.Raycaster();
-  function nameAt(x, y) {
+  function hitAt(x, y) {
     ray.setFromCamera(new THREE.Vector2(x, y), camera);
     const hit = ray.intersectObjects(objects.filter(o => o), false)[0];
-    return hit ? hit.object.name : '';
+    return hit ? { index: objects.indexOf(hit.object), name: hit.object.name, point: hit.point } : null;
+  }
+  // The point there as far away as `through` is.
+  function pointAt(x, y, through) {
+    ray.setFromCamera(new THREE.Vector2(x, y), camera);
+    const ahead = target.clone().sub(eye).normalize();
+    const far = through.clone().sub(eye).dot(ahead) / ray.ray.direction.dot(ahead);
+    return ray.ray.direction.clone().multiplyScalar(far).add(eye);
   }
 
   let travel = 0;  // m, of the middle of what moves
@@ -280,7 +290,14 @@ function openScene(canvas, bytes, contacts) {
     for (let k = 0; k < frames; ++k) travel = Math.max(travel, middle(k).distanceTo(start));
   }
   return {
-    show, look, draw, nameAt, travel, objects: objects.filter(o => o),
+    show, look, draw, hitAt, pointAt, travel, extent, objects: objects.filter(o => o),
+    nameAt(x, y) { const hit = hitAt(x, y); return hit ? hit.name : ''; },
+    add(object) { world.add(object); dirty = true; },
+    end() {  // browsers give few canvases a context at a time
+      if (dark.removeEventListener) dark.removeEventListener('change', paintSky);
+      renderer.dispose();
+      renderer.forceContextLoss();
+    },
     setFollow(on) { follow = on; followed = middle(frame); },
     setContacts(on) { touch.visible = on; if (on) showContacts(frame); dirty = true; },
     position(name) { const o = world.getObjectByName(name); return o ? o.position.toArray() : null; },

@@ -1,0 +1,413 @@
+// The page: one world in the main thread, stepped in time with the clock; training in a worker.
+// Others may steer it: window.redman = {ready, task(name), actor(name), play(), pause(), step(n), reset(seed), ...}.
+'use strict';
+const redman = window.redman = {};
+redman.ready = (async () => {
+  const $ = id => document.getElementById(id);
+  const bytesOf = base64 => Uint8Array.from(atob(base64), c => c.charCodeAt(0));
+  const unpacked = async bytes =>
+    new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer());
+  const number = v => (Number.isInteger(v) ? String(v) : Math.abs(v) >= 1000 ? v.toFixed(0) : Math.abs(v) >= 10 ? v.toFixed(1) : v.toFixed(2));
+  const thousands = v => Math.round(v).toString().replace(/\B(?=(\d{3})+$)/g, '\u2009');
+  const ink = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const words = name => name.replace(/_/g, ' ');
+  const sleep = () => new Promise(r => setTimeout(r));
+
+  const wasm = await unpacked(bytesOf($('wasm').textContent));
+  const engine = openEngine(await createRedman({ wasmBinary: wasm }));
+  const about = engine.about();
+  $('about').textContent = `redman ${about.version} in WebAssembly, ${thousands(wasm.length / 1024)} kB`;
+
+  let task = '', actor = 'zero', world = null, view = null, model = null, playing = false, owed = 0, before = 0, seed = 1;
+  let grabbed = null, learned = null, learnedTask = '', played = 0, contactPeak = 1e-6, shown = '';
+  const finished = { count: 0, success: 0 }, timed = { ms: 0, steps: 0 };  // of the last hundred or so steps
+  const contacts = { xyz: new Float32Array(3 * 128), force: new Float32Array(3 * 128), unit: 1, end: [0], most: 128 };
+
+  // ---- what is shown ----
+  function costRows() {
+    $('costs').replaceChildren(...world.costs.map(c => {
+      const row = document.createElement('div');
+      row.className = 'cost';
+      row.title = c.help;
+      row.innerHTML = '<div class="line"><span></span><span class="value number"></span></div>' + (c.limit >= 0 ? '<div class="bar"><i></i><u></u></div>' : '');
+      row.querySelector('span').textContent = words(c.name);
+      return row;
+    }));
+  }
+  function showNumbers(n) {
+    $('return').textContent = number(n.ret);
+    $('reward').textContent = number(n.reward);
+    $('rate').textContent = timed.steps > 5 ? thousands(1000 * timed.steps / timed.ms) : '\u2013';
+    $('where').textContent = `step ${n.step} of ${world.steps} · ${(n.step * world.dt).toFixed(2)} s`;
+    const success = finished.count ? `, ${(100 * finished.success / finished.count).toFixed(0)}% with success` : '';
+    $('episodes').textContent = `${finished.count} finished${success}`;
+    world.costs.forEach((c, k) => {
+      const row = $('costs').children[k];
+      row.querySelector('.value').textContent = c.limit >= 0 ? `${number(n.sum[k])} of ${number(c.limit)}` : number(n.sum[k]);
+      row.classList.toggle('over', c.limit >= 0 && n.sum[k] > c.limit);
+      if (c.limit >= 0) row.querySelector('i').style.width = Math.min(100, n.sum[k] ? 80 * (c.limit > 0 ? n.sum[k] / c.limit : 2) : 0) + '%';
+    });
+  }
+  function showState(text, good) {
+    $('state').hidden = !text;
+    $('state').textContent = text;
+    $('state').className = 'state ' + (good ? 'good' : 'bad');
+    shown = text;
+  }
+  function pose() {
+    if (!view) return;
+    model.pose(engine.poses(world.shapes.length));
+    if ($('contacts').checked) {
+      const { count, rows } = engine.contacts();
+      for (let i = 0; i < count; ++i)
+        for (let k = 0; k < 3; ++k) {
+          const force = rows[6 * i + 3 + k];
+          contactPeak = Math.max(contactPeak, Math.abs(force));
+          contacts.xyz[3 * i + k] = rows[6 * i + k];
+          contacts.force[3 * i + k] = force / contactPeak * 32767;
+        }
+      contacts.end[0] = count;
+    }
+    view.show(0);
+  }
+  function look(name) {
+    const c = world.cameras.find(c => c.name === name) || world.cameras[0];
+    if (!c || !view) return;
+    view.look(c);
+    for (const b of $('cameras').children) b.setAttribute('aria-pressed', b.textContent === c.name);
+  }
+
+  // ---- the world ----
+  const demonstration = () => redmanDemonstrations[task];
+  function begin(from) {
+    seed = actor === 'demonstration' ? demonstration().seed : from;
+    engine.reset(seed);
+    played = 0;
+    pose();
+    showNumbers({ reward: 0, ret: 0, step: 0, sum: world.costs.map(() => 0) });
+  }
+  function open(name) {
+    const settings = actor === 'demonstration' ? demonstration().settings : '';
+    engine.open(name, 1, settings);
+    world = engine.scene();
+    task = name;
+    finished.count = finished.success = 0;
+    timed.ms = timed.steps = 0;
+    $('message').hidden = true;
+    if (view) view.end();
+    view = model = null;
+    const old = $('scene'), canvas = old.cloneNode();  // a context of its own
+    old.replaceWith(canvas);
+    if (!world.shapes.length) {
+      $('message').textContent = 'This task has nothing to look at: its world is numbers.';
+      $('message').hidden = false;
+    } else {
+      try {
+        model = modelOf(world.shapes, engine.poses(world.shapes.length));
+        view = openScene(canvas, model, contacts);
+        view.add(arrow);
+        view.setContacts($('contacts').checked);
+      } catch (e) {
+        $('message').textContent = 'This browser shows no WebGL here (' + e.message + '); the numbers work all the same.';
+        $('message').hidden = false;
+      }
+    }
+    $('cameras').replaceChildren(...world.cameras.filter(c => !c.name.startsWith('cloud')).map(c => {  // not what eyes look from
+      const b = document.createElement('button');
+      b.textContent = c.name;
+      b.onclick = () => look(c.name);
+      return b;
+    }));
+    look(/^(hand_over|catch)/.test(task) ? 'close' : 'front');
+    costRows();
+    $('summary').textContent = `${world.summary}. ${world.obs} observations, ${world.actions} actions, ${Math.round(1 / world.dt)} steps in a second.`;
+    $('task').value = name;
+  }
+  function can(who) {
+    return who === 'trained' ? task in redmanPolicies : who === 'demonstration' ? task in redmanDemonstrations : who === 'learned' ? learnedTask === task : true;
+  }
+  function showActors() {
+    for (const b of $('actors').children) {
+      b.setAttribute('aria-pressed', b.dataset.actor === actor);
+      b.disabled = !can(b.dataset.actor);
+    }
+  }
+  function act(who) {
+    if (!can(who)) return;
+    const own = who === 'demonstration' || actor === 'demonstration';
+    actor = who;
+    if (own && ((demonstration() && demonstration().settings) || '') !== '') open(task);
+    if (who === 'trained') engine.policy(bytesOf(redmanPolicies[task]));
+    if (who === 'learned') engine.policy(learned);
+    showState('');
+    begin(seed);
+    showActors();
+  }
+  function choose(name) {
+    grabbed = null;
+    actor = 'zero';
+    open(name);
+    act(['trained', 'learned', 'demonstration', 'zero'].find(can));
+  }
+  // One control step; false at the end of an episode.
+  function step() {
+    const given = actor === 'demonstration' ? demonstration() : null;
+    if (given && !given.rows) given.rows = new Float32Array(bytesOf(given.actions).buffer);
+    push();
+    const began = performance.now();
+    if (given) engine.step(engine.actors.given, given.rows.slice(played * world.actions, (played + 1) * world.actions));
+    else engine.step(engine.actors[actor === 'trained' || actor === 'learned' ? 'policy' : actor]);
+    timed.ms = 0.99 * timed.ms + performance.now() - began;
+    timed.steps = 0.99 * timed.steps + 1;
+    ++played;
+    const n = redman.last = engine.numbers(world.costs.length);
+    showState(n.success ? 'success' : shown === 'success' && !n.terminated ? 'success' : n.terminated ? 'ended' : '', n.success || shown === 'success');
+    const over = n.terminated || n.truncated || (given && (played + 1) * world.actions > given.rows.length);
+    if (over) {
+      ++finished.count;
+      if (shown === 'success') ++finished.success;
+      redman.finished = n;
+      played = 0;
+      if (actor === 'learned') engine.policy(learned);
+    }
+    showNumbers(n);
+    if (over && given) begin(0);
+    return !over;
+  }
+  function play(on) {
+    playing = on;
+    owed = 0;
+    $('play').innerHTML = on ? '&#10074;&#10074;' : '&#9654;';
+  }
+
+  // ---- the mouse pushes ----
+  const arrow = new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 0.1, '#e0102a');
+  arrow.visible = false;
+  const newton = () => Math.pow(10, Number($('strength').value));
+  const showNewton = () => { const v = newton(); $('newton').textContent = (v < 10 ? v.toFixed(1) : v.toFixed(0)) + ' N'; };
+  const spot = e => {
+    const r = $('view').getBoundingClientRect();
+    return [(e.clientX - r.left) / r.width * 2 - 1, 1 - (e.clientY - r.top) / r.height * 2];
+  };
+  function push() {
+    if (!grabbed) return;
+    pose();
+    grabbed.object.updateMatrixWorld();
+    const at = grabbed.object.localToWorld(grabbed.local.clone()), pull = grabbed.to.clone().sub(at);
+    const full = 0.2 * view.extent, force = pull.clone().multiplyScalar(newton() / Math.max(full, pull.length()));
+    engine.push(grabbed.index, force.x, force.y, force.z);
+    grabbed.force = force.length();
+    arrow.visible = pull.length() > 1e-4;
+    arrow.position.copy(at);
+    arrow.setDirection(pull.clone().normalize());
+    arrow.setLength(Math.max(pull.length(), 1e-3), 0.03 * view.extent, 0.02 * view.extent);
+  }
+  $('view').addEventListener('pointerdown', e => {
+    if (!view || e.button !== 0 || e.shiftKey || e.target !== $('scene')) return;
+    const hit = view.hitAt(...spot(e));
+    if (!hit || world.shapes[hit.index].fixed) return;
+    const object = view.objects[hit.index];
+    grabbed = { index: hit.index, object, local: object.worldToLocal(hit.point.clone()), to: hit.point, from: hit.point.clone(), force: 0 };
+    $('scene').setPointerCapture(e.pointerId);
+    e.stopPropagation();  // the view does not turn
+  }, true);
+  $('view').addEventListener('pointermove', e => {
+    const label = $('name');
+    if (grabbed) {
+      grabbed.to = view.pointAt(...spot(e), grabbed.from);
+      e.stopPropagation();
+    }
+    const hit = !view || (e.buttons && !grabbed) ? null : grabbed || view.hitAt(...spot(e)), r = $('view').getBoundingClientRect();
+    label.hidden = !hit;
+    $('view').classList.toggle('over', !!hit && !world.shapes[hit.index].fixed);
+    if (!hit) return;
+    label.textContent = world.shapes[hit.index].name + (grabbed && grabbed.force ? ' ' + grabbed.force.toFixed(1) + ' N' : '');
+    label.style.left = Math.min(e.clientX - r.left + 14, r.width - 150) + 'px';
+    label.style.top = e.clientY - r.top + 10 + 'px';
+  }, true);
+  for (const end of ['pointerup', 'pointercancel', 'pointerleave'])
+    $('view').addEventListener(end, e => {
+      if (end === 'pointerleave' && grabbed) return;
+      grabbed = null;
+      arrow.visible = false;
+      $('name').hidden = true;
+      pose();
+    }, true);
+
+  // ---- training ----
+  let worker = null, run = 0;
+  const curve = { steps: [], ret: [], cost: [] };
+  function plot(canvas, xs, ys, limit, title, color) {
+    const ratio = window.devicePixelRatio || 1, w = canvas.clientWidth, h = canvas.clientHeight;
+    canvas.width = Math.round(w * ratio);
+    canvas.height = Math.round(h * ratio);
+    const g = canvas.getContext('2d');
+    g.setTransform(ratio, 0, 0, ratio, 0, 0);
+    g.clearRect(0, 0, w, h);
+    const left = 46, top = 18, right = w - 4, bottom = h - 16;
+    g.font = '11px system-ui, "DejaVu Sans", sans-serif';
+    g.fillStyle = ink('--soft');
+    g.textBaseline = 'top';
+    g.fillText(title, left, 2);
+    let low = Math.min(...ys, limit ?? Infinity), high = Math.max(...ys, limit ?? -Infinity);
+    if (!ys.length) low = 0, high = 1;
+    if (limit !== null) low = Math.min(low, 0);
+    if (high - low < 1e-9) high = low + 1;
+    const most = Math.max(xs[xs.length - 1] || 1, 1), x = v => left + v / most * (right - left), y = v => bottom - (v - low) / (high - low) * (bottom - top);
+    g.strokeStyle = ink('--edge');
+    g.beginPath();
+    for (const v of [low, high]) g.moveTo(left, Math.round(y(v)) + 0.5), g.lineTo(right, Math.round(y(v)) + 0.5);
+    g.stroke();
+    g.textAlign = 'right';
+    g.textBaseline = 'middle';
+    if (ys.length) for (const v of [low, high]) g.fillText(number(v), left - 6, y(v));
+    g.textBaseline = 'bottom';
+    if (ys.length) g.fillText(thousands(most) + ' steps', right, h);
+    if (limit !== null) {
+      g.strokeStyle = g.fillStyle = ink('--bad');
+      g.setLineDash([5, 4]);
+      g.beginPath();
+      g.moveTo(left, y(limit));
+      g.lineTo(right, y(limit));
+      g.stroke();
+      g.setLineDash([]);
+      const above = y(limit) - top > 14;
+      g.textBaseline = above ? 'bottom' : 'top';
+      g.fillText('limit ' + number(limit), right, y(limit) + (above ? -1 : 3));
+    }
+    g.textAlign = 'left';
+    g.strokeStyle = color;
+    g.lineWidth = 2;
+    g.lineJoin = 'round';
+    g.beginPath();
+    ys.forEach((v, i) => g.lineTo(x(xs[i]), y(v)));
+    g.stroke();
+  }
+  function drawCurves() {
+    $('return-curve').hidden = $('cost-curve').hidden = !curve.task;
+    if (!curve.task) return;
+    const limit = world && world.costs.length && world.costs[0].limit >= 0 ? world.costs[0].limit : null;
+    plot($('return-curve'), curve.steps, curve.ret, null, 'return of an episode', ink('--accent'));
+    plot($('cost-curve'), curve.steps, curve.cost, curve.task === task || !curve.task ? limit : null, 'cost of an episode', ink('--ink'));
+  }
+  function stopTraining() {
+    ++run;
+    if (worker) worker.postMessage({ stop: true });
+    $('train').textContent = 'train';
+    redman.training = false;
+  }
+  function startTraining(most = 1e9) {
+    const name = task, mine = ++run;
+    if (!worker) {
+      const source = ['glue', 'engine', 'worker'].map(id => $(id).textContent).join('\n');
+      worker = new Worker(URL.createObjectURL(new Blob([source], { type: 'text/javascript' })));
+      worker.onerror = e => { $('training').textContent = 'The worker failed: ' + e.message; };
+      worker.onmessage = ({ data }) => {
+        if (data.run !== run) return;
+        if (data.error) $('training').textContent = data.error;
+        if (data.error || data.ended) return void stopTraining();
+        const e = data.epoch;
+        redman.epoch = { ...e, rate: data.rate };
+        if (e.episodes > 0) {
+          curve.steps.push(e.steps);
+          curve.ret.push(e.ret);
+          curve.cost.push(e.cost[0] ?? 0);
+        }
+        if (curve.steps.length > 400) for (const k of ['steps', 'ret', 'cost']) curve[k] = curve[k].filter((_, i) => i % 2 || i === 0);
+        $('samples').textContent = `${thousands(data.rate)} samples / s`;
+        $('training').textContent = `epoch ${e.epoch}, ${thousands(e.steps)} steps, ${thousands(e.episodes)} episodes` +
+          (e.episodes ? `, success ${(100 * e.success).toFixed(0)}%` : '') + `, multiplier ${e.multiplier.toFixed(3)}`;
+        if (data.policy) {
+          learned = data.policy;
+          learnedTask = curve.task;
+          if (actor !== 'learned') showActors();
+        }
+        drawCurves();
+      };
+    }
+    Object.assign(curve, { steps: [], ret: [], cost: [], task: name });
+    if (actor === 'learned') act('zero');
+    learnedTask = '';
+    showActors();
+    worker.postMessage({ start: { run: mine, wasm, task: name, algo: $('algo').value, worlds: Number($('worlds').value), seed: Number($('seed').value), settings: '', most } });
+    $('train').textContent = 'stop';
+    drawCurves();
+    $('training').textContent = 'making worlds and networks';
+    redman.training = true;
+  }
+
+  // ---- proof ----
+  async function prove(most = Infinity) {
+    const rows = JSON.parse($('golden').textContent), wrong = [];
+    let done = 0;
+    $('prove').disabled = true;
+    for (const [name, kind, hash] of rows.slice(0, most)) {
+      $('proof').textContent = `${done} of ${rows.length} equal: ${name} ${kind === '-' ? '' : kind}`;
+      await sleep();
+      if (engine.hash(name, kind) === hash) ++done;
+      else wrong.push(name);
+    }
+    $('proof').textContent = `${done} of ${Math.min(most, rows.length)} hashes are those recorded on x86-64` + (wrong.length ? '; not: ' + wrong.join(', ') : '.');
+    $('prove').disabled = false;
+    return { done, wrong };
+  }
+
+  // ---- buttons ----
+  for (const t of about.tasks) $('task').append(new Option(words(t.name), t.name));
+  for (const a of about.algos) $('algo').append(new Option(words(a.name), a.name, false, a.name === 'ppo_lag'));
+  $('task').onchange = e => choose(e.target.value);
+  for (const b of $('actors').children) b.onclick = () => act(b.dataset.actor);
+  $('play').onclick = () => play(!playing);
+  $('step').onclick = () => { play(false); step(); pose(); };
+  $('again').onclick = () => begin(seed + 1);
+  $('contacts').onchange = e => { if (view) view.setContacts(e.target.checked); pose(); };
+  $('strength').oninput = showNewton;
+  $('train').onclick = () => (redman.training ? stopTraining() : startTraining());
+  $('prove').onclick = () => prove();
+  document.addEventListener('keydown', e => {
+    if (['SELECT', 'INPUT', 'BUTTON'].includes(e.target.tagName) || e.key !== ' ') return;
+    play(!playing);
+    e.preventDefault();
+  });
+  window.addEventListener('resize', drawCurves);
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', drawCurves);
+
+  function frame(now) {
+    if (playing && before) {
+      owed = Math.min(owed + (now - before) / 1000 / world.dt * Number($('speed').value), 12);
+      const until = performance.now() + 14;
+      for (; owed >= 1 && performance.now() < until; --owed) step();
+      pose();
+    }
+    before = now;
+    if (view) view.draw();
+    requestAnimationFrame(frame);
+  }
+
+  showNewton();
+  choose('hand_over_safe_finger');
+  drawCurves();
+  play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
+  requestAnimationFrame(frame);
+  Object.defineProperty(redman, 'state', { get: () => ({ task, actor, playing, seed, step: redman.last ? redman.last.step : 0, finished: finished.count, learned: learnedTask }) });
+  Object.assign(redman, {
+    engine, prove, look, choose, act, begin, play: () => play(true), pause: () => play(false), train: startTraining, stop: stopTraining,
+    step(n = 1) {
+      for (let i = 0; i < n; ++i) step();
+      pose();
+    },
+    position: name => (view ? view.position(name) : null),
+    movable() {  // something in sight that a mouse can push: {name, x, y}, in pixels of the page
+      const r = $('view').getBoundingClientRect();
+      view.draw();
+      for (let row = 1; row < 24; ++row)
+        for (let k = 1; k < 32; ++k) {
+          const hit = view.hitAt(k / 16 - 1, 1 - row / 12);
+          if (hit && !world.shapes[hit.index].fixed) return { name: hit.name, x: r.left + k / 32 * r.width, y: r.top + row / 24 * r.height };
+        }
+      return null;
+    },
+  });
+  return true;
+})();
+redman.ready.catch(e => { document.getElementById('message').textContent = 'This page cannot run here: ' + e.message; });
