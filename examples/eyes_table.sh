@@ -61,7 +61,7 @@ mean() {
 each() {
   local key=$1 file
   shift
-  for file in "$@"; do value "$key" "$file"; done | awk '{ printf "%s%.4g", NR > 1 ? ", " : "", $1 }'
+  for file in "$@"; do value "$key" "$file"; done | awk '{ printf "%s%.4g", (NR > 1 ? ", " : ""), $1 }'
 }
 # row LABEL FILES...: means over seeds, and each
 row() {
@@ -72,8 +72,8 @@ row() {
     -v success="$(mean success_rate "$@")" "$marked"'BEGIN {
       m = split(costs, c, ", "); costs = ""
       for (i = 1; i <= m; ++i) costs = costs (i > 1 ? ", " : "") marked(c[i], limit)
-      printf "| %s | %s%s | %s%s | %.1f %% | %.1f %% |\n", label, ret, n > 1 ? " (" rets ")" : "", marked(cost, limit),
-        n > 1 ? " (" costs ")" : "", 100 * falls, 100 * success }'
+      printf "| %s | %s%s | %s%s | %.1f %% | %.1f %% |\n", label, ret, (n > 1 ? " (" rets ")" : ""), marked(cost, limit),
+        (n > 1 ? " (" costs ")" : ""), 100 * falls, 100 * success }'
 }
 
 echo "| task (limit) | way | return (each seed) | cost (each seed) | falls | success |"
