@@ -50,13 +50,13 @@ Vector<unsigned char> join_pools(Agent& agent, const rdm_pool* p) {
   Vector<uint64_t> sizes(n);
   const uint64_t size = count.size();
   ranks.gather(&size, sizeof size, sizes.data());
-  const size_t most = *std::max_element(sizes.begin(), sizes.end());
+  const size_t most = static_cast<size_t>(*std::max_element(sizes.begin(), sizes.end()));
   Vector<unsigned char> own(most), all(n * most);
   Writer out(own.data(), own.size());
   save_pool(p, out);
   ranks.gather(own.data(), most, all.data());
   Vector<Pool::StateBytes> parts(n);
-  for (size_t r = 0; r < n; ++r) parts[r] = {all.data() + r * most, sizes[r]};
+  for (size_t r = 0; r < n; ++r) parts[r] = {all.data() + r * most, static_cast<size_t>(sizes[r])};
   Writer joined(nullptr, 0);
   Pool::join_states(parts.data(), ranks.count(), joined);
   Vector<unsigned char> state(joined.size());
