@@ -305,7 +305,8 @@ rdm_result rdm_recording_begin_step(rdm_recording* r, const rdm_pool* p, const f
       const size_t cloud = row * static_cast<size_t>(x.spec().num_points);
       const SenseBuffers& seen = pool.sensed();
       x.begin_row(i, b.obs + row * obs, b.action + row * actions, label ? label + row * actions : nullptr,
-                  seen.points + 3 * cloud, seen.point_class + cloud, seen.point_color + 3 * cloud);
+                  seen.points + 3 * cloud, seen.point_class + cloud,
+                  seen.point_color ? seen.point_color + 3 * cloud : nullptr);
       if (!x.state_due(i)) continue;
       Writer out(x.add_state(i), x.spec().state_bytes);
       pool.get_state(i, out);
