@@ -48,6 +48,14 @@ static void put_member(const char* key, const char* value) {
   put("\"%s\":", key);
   put_string(value);
 }
+/* Entry i of a list. */
+static void put_named(int i, const char* name, const char* summary) {
+  put("%s", i ? ",{" : "{");
+  put_member("name", name);
+  put("%s", ",");
+  put_member("summary", summary);
+  put("%s", "}");
+}
 static void put_floats(const char* key, const float* v, int count) {
   put("\"%s\":[", key);
   for (int i = 0; i < count; ++i) put(i ? ",%.9g" : "%.9g", (double)v[i]);
@@ -73,21 +81,13 @@ EXPORT const char* page_about(void) {
   for (int i = 0; i < rdm_task_count(); ++i) {
     rdm_task task = {.struct_size = sizeof task};
     if (rdm_task_at(i, &task)) return NULL;
-    put("%s", i ? ",{" : "{");
-    put_member("name", task.name);
-    put("%s", ",");
-    put_member("summary", task.summary);
-    put("%s", "}");
+    put_named(i, task.name, task.summary);
   }
   put("%s", "],\"algos\":[");
   for (int i = 0; i < rdm_algo_count(); ++i) {
     rdm_algo algo = {.struct_size = sizeof algo};
     if (rdm_algo_at(i, &algo)) return NULL;
-    put("%s", i ? ",{" : "{");
-    put_member("name", algo.name);
-    put("%s", ",");
-    put_member("summary", algo.summary);
-    put("%s", "}");
+    put_named(i, algo.name, algo.summary);
   }
   put("%s", "]}");
   return text;

@@ -11,22 +11,9 @@ using namespace rdm::test;
 
 namespace {
 
-// Two costs with limits where an algorithm takes several.
 AgentSetup setup_of(const char* algo, const char* std_mode, int32_t threads = 0) {
-  static const double limits[] = {1, 0.5};
-  AgentSetup s(algo, 6, 3, 40);
+  AgentSetup s = busy_setup(algo, std_mode, 40);
   s.config.num_threads = threads;
-  s.config.cost_dim = 2;
-  s.config.max_steps = 30;
-  s.config.seed = 11;
-  s.config.cost_limits = limits;
-  s.with("hidden", "16,8").with("horizon", "12").with("passes", "3").with("minibatches", "2");
-  s.with("noise_correlation", "0.3").with("lr_schedule", "kl").with("learning_rate", "2e-3");
-  s.with("terminal_cost", "on").with("normalize_reward", "on").with("normalize_cost", "on");
-  s.with("reward_factor", "0.5").with("average", "0.6");
-  s.with("std_mode", std_mode);
-  for (const char* one : {"cpo", "pcpo", "focops"})
-    if (std::strcmp(algo, one) == 0) s.with("several_costs", "worst");
   return s;
 }
 

@@ -14,19 +14,8 @@ namespace {
 constexpr int32_t kEnvs = 16;  // of all ranks
 
 AgentSetup setup_of(const char* algo, const char* std_mode, int32_t envs = kEnvs) {
-  static const double limits[] = {1, 0.5};
-  AgentSetup s(algo, 6, 3, envs);
-  s.config.cost_dim = 2;
-  s.config.max_steps = 30;
-  s.config.seed = 11;
-  s.config.cost_limits = limits;
-  s.with("hidden", "16,8").with("horizon", "12").with("passes", "3").with("minibatches", "2");
-  s.with("noise_correlation", "0.3").with("lr_schedule", "kl").with("learning_rate", "2e-3");
-  s.with("terminal_cost", "on").with("normalize_reward", "on").with("normalize_cost", "on");
-  s.with("reward_factor", "0.5").with("average", "0.6").with("early_stop_kl", "0.5");
-  s.with("std_mode", std_mode).with("blocks", "4");
-  for (const char* one : {"cpo", "pcpo", "focops"})
-    if (std::strcmp(algo, one) == 0) s.with("several_costs", "worst");
+  AgentSetup s = busy_setup(algo, std_mode, envs);
+  s.with("early_stop_kl", "0.5").with("blocks", "4");
   for (const char* trust : {"trpo", "trpo_lag", "cpo", "pcpo"})
     if (std::strcmp(algo, trust) == 0) s.with("fisher_stride", "3");
   return s;

@@ -44,6 +44,25 @@ struct AgentSetup {
   AgentPtr make() { return AgentPtr(Agent::create(ready())); }
 };
 
+// With most of what crosses rows and epochs switched on, and two costs with limits, the worst of which counts
+// where an algorithm takes one.
+inline AgentSetup busy_setup(const char* algo, const char* std_mode, int32_t num_envs) {
+  static const double limits[] = {1, 0.5};
+  AgentSetup s(algo, 6, 3, num_envs);
+  s.config.cost_dim = 2;
+  s.config.max_steps = 30;
+  s.config.seed = 11;
+  s.config.cost_limits = limits;
+  s.with("hidden", "16,8").with("horizon", "12").with("passes", "3").with("minibatches", "2");
+  s.with("noise_correlation", "0.3").with("lr_schedule", "kl").with("learning_rate", "2e-3");
+  s.with("terminal_cost", "on").with("normalize_reward", "on").with("normalize_cost", "on");
+  s.with("reward_factor", "0.5").with("average", "0.6");
+  s.with("std_mode", std_mode);
+  for (const char* one : {"cpo", "pcpo", "focops"})
+    if (std::strcmp(algo, one) == 0) s.with("several_costs", "worst");
+  return s;
+}
+
 inline size_t size_of(int32_t n) {
   return static_cast<size_t>(n);
 }

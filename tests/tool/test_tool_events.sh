@@ -76,13 +76,13 @@ for row, event in zip(table, rows):
     for name, value in want.items():
         assert abs(event['values'][name] - value) <= 1e-6 * abs(value) + 1e-30, (name, value, event['values'][name])
 END
-same() {  # same FOLDER WHAT
+reads_same() {  # reads_same FOLDER WHAT
   python3 read.py "$1" > out 2>&1 || { echo "$2: $(tail -n 1 out)"; failed=1; }
 }
 flags='--task ball_run --envs 4 --set max_steps=20 --set horizon=25 --set hidden=16,16 --checkpoint-every 4'
 # shellcheck disable=SC2086
 "$tool" train $flags --steps 4000 --out run > out 2> err || { cat err; exit 1; }
-same run 'a run'
+reads_same run 'a run'
 name=$(ls run | grep tfevents)
 
 for rows in 3 6 11; do  # killed between checkpoints
@@ -98,18 +98,18 @@ for rows in 3 6 11; do  # killed between checkpoints
   before=$(ls broken | grep tfevents)
   "$tool" train --resume broken > /dev/null 2> err || { echo "resume failed: $(cat err)"; failed=1; }
   [ "$(ls broken | grep tfevents)" = "$before" ] || { echo "a resumed run writes $(ls broken)"; failed=1; }
-  same broken "a run that was killed at row $rows and went on"
+  reads_same broken "a run that was killed at row $rows and went on"
 done
 # a file that was spoiled or lost is written again
 printf 'x' >> "run/$name"
 "$tool" train --resume run --steps 4400 > out 2> err || { cat err; failed=1; }
-same run 'a spoiled file'
+reads_same run 'a spoiled file'
 rm "run/$name"
 "$tool" train --resume run --steps 4800 > out 2> err || { cat err; failed=1; }
-same run 'a lost file'
+reads_same run 'a lost file'
 # shellcheck disable=SC2086
 "$tool" train $flags --steps 1000 --out run --overwrite > out 2> err || { cat err; failed=1; }
-same run 'a run in the place of another'
+reads_same run 'a run in the place of another'
 # shellcheck disable=SC2086
 "$tool" train $flags --steps 1000 --out without --no-tensorboard > out 2> err || { cat err; failed=1; }
 "$tool" train --resume without --steps 2000 > out 2> err || { cat err; failed=1; }

@@ -4,17 +4,6 @@
 . "$(dirname "$0")/tool.sh"
 flags='--task two_state --envs 16 --set hidden=16,16 --set horizon=8 --eval-every 4 --checkpoint-every 3 --no-tensorboard'
 
-curve() {
-  awk -F, 'NR == 1 { for (i = NF; i > 0; --i) if ($i ~ /^Time\//) last = i - 1 }
-           { for (i = 1; i <= last; ++i) printf "%s%s", $i, i < last ? "," : "\n" }' "$1/progress.csv"
-}
-same() {
-  curve "$1" > a
-  curve "$2" > b
-  cmp -s a b || { echo "$2/progress.csv differs from $1's ($3)"; failed=1; }
-  cmp -s "$1/policy.rdm" "$2/policy.rdm" || { echo "$2/policy.rdm differs from $1's ($3)"; failed=1; }
-}
-
 for algo in ppo_lag cpo; do
   for ranks in 1 2 4; do
     # shellcheck disable=SC2086

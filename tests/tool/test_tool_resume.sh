@@ -5,18 +5,6 @@
 flags='--envs 8 --set max_steps=20 --set hidden=16,16 --set horizon=8 --eval-every 4 --checkpoint-every 3'
 steps=20000
 
-# The columns before the first Time/ column.
-curve() {
-  awk -F, 'NR == 1 { for (i = NF; i > 0; --i) if ($i ~ /^Time\//) last = i - 1 }
-           { for (i = 1; i <= last; ++i) printf "%s%s", $i, i < last ? "," : "\n" }' "$1/progress.csv"
-}
-same() {
-  curve "$1" > a
-  curve "$2" > b
-  cmp -s a b || { echo "$2/progress.csv differs from $1's ($3)"; failed=1; }
-  cmp -s "$1/policy.rdm" "$2/policy.rdm" || { echo "$2/policy.rdm differs from $1's ($3)"; failed=1; }
-}
-
 # shellcheck disable=SC2086
 "$tool" train $flags --steps $steps --out whole > /dev/null 2> err || { cat err; exit 1; }
 [ "$(wc -l < whole/progress.csv)" -gt 40 ] || { echo "the run is too short to be broken"; failed=1; }

@@ -5,10 +5,6 @@
 small='--envs 8 --set max_steps=20 --set hidden=16,16 --set horizon=8 --eval-every 4 --checkpoint-every 2 --steps 8000'
 short='--demo-decisions 30 --clone-epochs 2'
 
-curve() {
-  awk -F, 'NR == 1 { for (i = NF; i > 0; --i) if ($i ~ /^Time\//) last = i - 1 }
-           { for (i = 1; i <= last; ++i) printf "%s%s", $i, i < last ? "," : "\n" }' "$1/progress.csv"
-}
 refused() { # refused STATUS WORD FLAGS...
   wanted=$1 word=$2
   shift 2

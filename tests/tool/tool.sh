@@ -7,3 +7,16 @@ failed=0
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 cd "$dir" || exit 1
+
+# The columns before the first Time/ column.
+curve() {
+  awk -F, 'NR == 1 { for (i = NF; i > 0; --i) if ($i ~ /^Time\//) last = i - 1 }
+           { for (i = 1; i <= last; ++i) printf "%s%s", $i, i < last ? "," : "\n" }' "$1/progress.csv"
+}
+# same RUN OTHER WHAT: two runs learned the same, policy and curve; else failed=1, with WHAT said.
+same() {
+  curve "$1" > a
+  curve "$2" > b
+  cmp -s a b || { echo "$2/progress.csv differs from $1's ($3)"; failed=1; }
+  cmp -s "$1/policy.rdm" "$2/policy.rdm" || { echo "$2/policy.rdm differs from $1's ($3)"; failed=1; }
+}
