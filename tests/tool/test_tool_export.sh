@@ -38,7 +38,7 @@ policy eyes --set encoder=16,24 --set actor_obs=vision --set hidden=16,16 $cloud
 policy kinds --set encoder=8,8,9 --set encoder_classes=4 --set encoder_activation=elu --set encoder_origin=0.1,-0.2,0.9 \
   --set encoder_range=0.4 --set hidden=16 --set std_mode=state $cloud
 # shellcheck disable=SC2086
-policy tints --set encoder=8,9 --set encoder_classes=5 --set encoder_color=true --set goal_points=8 --set hidden=16 $cloud
+policy tints --set encoder=8,9 --set encoder_classes=5 --set encoder_color=on --set goal_points=8 --set hidden=16 $cloud
 # shellcheck disable=SC2086
 policy flat --set encoder=12 --set encoder_activation=tanh --set hidden=16 --set normalize_obs=false $cloud
 

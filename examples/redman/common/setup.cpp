@@ -75,11 +75,11 @@ CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* t
   return task;
 }
 
-void give_eyes(int32_t points, int32_t repeat, bool color, PoolSettings& pool) {
+void give_eyes(int32_t points, int32_t repeat, const std::string& color, PoolSettings& pool) {
   const Options own = {{"modality", "points"},
                        {"points", std::to_string(points)},
                        {"sampling", "voxel"},
-                       {"point_color", color ? "true" : "false"},
+                       {"point_color", color},
                        {"sense_every", std::to_string(repeat)}};
   pool.options.insert(pool.options.begin(), own.begin(), own.end());
 }
@@ -100,8 +100,7 @@ void give_eyes(const AgentSettings& agent, PoolSettings& pool) {
   const auto whole = [&](const char* key) {
     return std::max(1, static_cast<int32_t>(std::strtol(value(key).c_str(), nullptr, 10)));
   };
-  const std::string color = value("encoder_color");
-  give_eyes(whole("encoder_points"), whole("action_repeat"), color == "true" || color == "1", pool);
+  give_eyes(whole("encoder_points"), whole("action_repeat"), value("encoder_color"), pool);
 }
 
 bool learns_magnitudes(const AgentSettings& agent) {

@@ -39,9 +39,9 @@ struct AgentSettings {
   std::string algo = "ppo_lag";
   Options options;
 };
-// A policy that sees `points` of each world, in colour or not, at a decision every `repeat` control steps:
-// the pool's options for that, under those that the user gave.
-void give_eyes(int32_t points, int32_t repeat, bool color, PoolSettings& pool);
+// A policy that sees `points` of each world, in colour or not (a flag's text), at a decision every `repeat`
+// control steps: the pool's options for that, under those that the user gave.
+void give_eyes(int32_t points, int32_t repeat, const std::string& color, PoolSettings& pool);
 // The same for an agent that has option encoder; nothing for others.
 void give_eyes(const AgentSettings& agent, PoolSettings& pool);
 bool learns_magnitudes(const AgentSettings& agent);

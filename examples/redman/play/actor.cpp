@@ -125,7 +125,7 @@ void adopt_task(const ActorChoice& choice, bool task_given, const std::vector<st
     const Options own = builtin_demo(pool.task, given).options;
     pool.options.insert(pool.options.begin(), own.begin(), own.end());
   }
-  if (choice.points > 0) give_eyes(choice.points, choice.repeat, choice.color, pool);
+  if (choice.points > 0) give_eyes(choice.points, choice.repeat, choice.color ? "true" : "false", pool);
   if (!same_name(pool.task, choice.task)) return;
   pool.options.insert(pool.options.begin(), choice.options.begin(), choice.options.end());
   pool.magnitudes = choice.magnitudes;
