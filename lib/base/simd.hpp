@@ -45,10 +45,18 @@ using Int4 = int32_t __attribute__((vector_size(16)));  // as a mask -1: true, 0
 }
 // Of two operands with a not-a-number, the second is given.
 [[gnu::always_inline]] inline Float4 min(Float4 a, Float4 b) {
+#if defined(__x86_64__)
+  return _mm_min_ps(a, b);
+#else
   return a < b ? a : b;
+#endif
 }
 [[gnu::always_inline]] inline Float4 max(Float4 a, Float4 b) {
+#if defined(__x86_64__)
+  return _mm_max_ps(a, b);
+#else
   return a > b ? a : b;
+#endif
 }
 [[gnu::always_inline]] inline Float4 clamp(Float4 v, float lo, float hi) {
   return min(max(v, splat(lo)), splat(hi));

@@ -12,19 +12,13 @@ namespace {
 constexpr int32_t kBatch = 64;        // pairs
 constexpr float kFar = 1e30f;         // m
 constexpr float kEverywhere = 1e15f;  // m, radius of a plane's bound: its square is a number
-constexpr int32_t kPartShapes = 6;
-constexpr float kSlack = 1e-5f;     // m, for the rounding of bounds
-constexpr float kFlatness = 1e-6f;  // of two axes that count as parallel
-
-float dot3(Float4 a, Float4 b) {
-  const Float4 p = a * b;
-  return p[0] + p[1] + p[2];
-}
+constexpr int32_t kBlock = 4;
+constexpr float kSlack = 1e-5f;        // m, for the rounding of bounds
+constexpr float kCenterSlack = 1e-6f;  // the same, per metre from the origin
+constexpr float kFlatness = 1e-6f;     // of two axes that count as parallel
 
 Float4 clamp_unit(Float4 x) {
-  const Float4 one = splat(1.0f);
-  x = x < -one ? -one : x;
-  return x > one ? one : x;
+  return min(splat(1.0f), max(splat(-1.0f), x));
 }
 
 Float4 dot(const Float4* a, const Float4* b) {
@@ -47,8 +41,18 @@ Float4 dot(const Float4* a, const Float4* b) {
   return dot(w, w);
 }
 
-int32_t parts_in(const ArticulationDef& def) {
-  return (static_cast<int32_t>(def.shapes.size()) + kPartShapes - 1) / kPartShapes;
+Float4 slack_at(const Bound& bound) {
+  return splat(kSlack) + kCenterSlack * abs(load4(bound.center));
+}
+
+// Half sides of the box around a bound's capsule.
+Float4 half_sides(const Bound& bound) {
+  const Float4 u = load4(bound.axis);
+  return abs(u) + splat(u[3]) + slack_at(bound);
+}
+
+int32_t blocks_in(const ArticulationDef& def) {
+  return (static_cast<int32_t>(def.shapes.size()) + kBlock - 1) / kBlock;
 }
 
 }  // namespace
@@ -81,33 +85,30 @@ Pose rest_pose(const Scene& scene, const SceneShape& shape) {
 
 template <class Use>
 void BroadPhase::each_row(const Scene& scene, const Use& use) const {
-  Row row{};
-  const auto part_of = [&](const SceneShape& s, int32_t shape) {
-    int32_t part = 0;
-    for (int32_t a = 0; a < s.articulation; ++a)
-      part += parts_in(scene.def.articulations[static_cast<size_t>(a)]);
-    return part + (shape - scene.first_shape[static_cast<size_t>(s.articulation)]) / kPartShapes;
-  };
-  int32_t last = -1;  // shape a of the row
   for (const PairRun& run : scene.runs) {
-    for (int32_t k = run.first; run.shape < 0 && k < run.first + run.count; ++k) {
+    if (run.shape >= 0) {
+      const int32_t owner = scene.shapes[static_cast<size_t>(run.shape)].articulation;
+      use(Row{Row::kRun, run.first, run.count, run.shape, 0, 0, run.articulation, owner});
+      continue;
+    }
+    Row row{};
+    for (int32_t k = run.first; k < run.first + run.count; ++k) {
       const ShapePair& pair = scene.pairs[static_cast<size_t>(k)];
-      const SceneShape& a = scene.shapes[static_cast<size_t>(pair.a)];
       const int32_t other = pair.b - first_other_;
-      const bool whole = a.articulation >= 0 && other >= 0;
-      const bool goes_on = row.count > 0 && (whole ? row.part >= 0 && pair.a == last && other % 64 != 0 &&
-                                                         other == row.first_other + row.count
-                                                   : row.part < 0);
+      const bool whole = pair.a < first_other_ && other >= 0;
+      const bool goes_on =
+          row.count > 0 && (whole ? row.kind == Row::kOthers && row.shape == pair.a &&
+                                        row.shift + row.count < 64 && other % 64 == row.shift + row.count
+                                  : row.kind == Row::kAny);
       if (goes_on) {
         ++row.count;
         continue;
       }
       if (row.count > 0) use(row);
-      row = {k, 1, whole ? part_of(a, pair.a) : -1, whole ? other : -1};
-      last = pair.a;
+      row = {Row::kAny, k, 1, -1, 0, 0, -1, -1};
+      if (whole) row = {Row::kOthers, k, 1, pair.a, pair.a * words_ + other / 64, other % 64, -1, -1};
     }
-    if (row.count > 0) use(row);
-    row.count = 0;
+    use(row);
   }
 }
 
@@ -116,22 +117,24 @@ void BroadPhase::carve(const Scene& scene, Arena& arena) {
                                     [](const SceneShape& s) { return s.radius < 0; });
   first_other_ = scene.first_body_shape;
   num_others_ = static_cast<int32_t>(scene.shapes.size()) - first_other_;
-  num_parts_ = 0;
-  for (const ArticulationDef& def : scene.def.articulations) num_parts_ += parts_in(def);
+  num_articulations_ = static_cast<int32_t>(scene.def.articulations.size());
+  num_blocks_ = 0;
+  for (const ArticulationDef& def : scene.def.articulations) num_blocks_ += blocks_in(def);
   words_ = (num_others_ + 63) / 64;
   num_rows_ = 0;
   each_row(scene, [&](const Row&) { ++num_rows_; });
-  const auto parts = static_cast<size_t>(num_parts_), others = static_cast<size_t>(num_others_);
+  const auto links = static_cast<size_t>(first_other_), others = static_cast<size_t>(num_others_);
+  num_moving_ = first_other_ + scene.num_body_shapes;
   bounds_ = arena.make<Bound>(scene.shapes.size());
+  extents_ = arena.make<Extent>(scene.shapes.size());
   pairs_ = arena.make<Pair>(scene.pairs.size());
   planes_ = arena.make<Plane>(static_cast<size_t>(planes));
   boxes_ = arena.make<Box>(scene.def.articulations.size());
-  parts_ = arena.make<Part>(parts);
-  part_boxes_ = arena.make<Box>(parts);
-  part_lanes_ = arena.make<BoxLanes>((parts + 3) / 4);
+  blocks_ = arena.make<Block>(static_cast<size_t>(num_blocks_));
+  block_end_ = arena.make<int32_t>(scene.def.articulations.size());
   other_plane_ = arena.make<int32_t>(others);
   neighbours_ = arena.make<uint8_t>(scene.shapes.size());
-  near_ = arena.make<uint64_t>(parts * static_cast<size_t>(words_));
+  near_ = arena.make<uint64_t>(links * static_cast<size_t>(words_));
   rows_ = arena.make<Row>(static_cast<size_t>(num_rows_));
 }
 
@@ -150,23 +153,27 @@ void BroadPhase::make(const Scene& scene) {
       bound.center[k] = static_cast<float>(X_WS.p[k]);
       bound.axis[k] = static_cast<float>(axis[k]);
     }
+    store4(extents_[i].half, half_sides(bound));
+    const Mat3 R = to_matrix(X_WS.q);
+    for (int k = 0; s.def.kind == ShapeKind::kBox && k < 3; ++k) {
+      const Vec3& half = s.def.size;
+      extents_[i].half[k] = static_cast<float>(std::fabs(R(k, 0)) * half.x + std::fabs(R(k, 1)) * half.y +
+                                               std::fabs(R(k, 2)) * half.z) +
+                            slack_at(bound)[k];
+    }
     if (const int32_t other = static_cast<int32_t>(i) - first_other_; other >= 0)
       other_plane_[other] = plane ? planes : -1;
     if (!plane) continue;
     const Vec3 n = rotate(X_WS.q, {0, 0, 1});
     planes_[planes++] = {n, rdm::dot(n, X_WS.p)};
   }
-  for (int32_t k = num_parts_; k % 4 != 0; ++k)  // nothing
-    for (int r = 0; r < 3; ++r) {
-      part_lanes_[k / 4].low[r][k % 4] = kFar;
-      part_lanes_[k / 4].high[r][k % 4] = -kFar;
-    }
-  Part* part = parts_;
+  int32_t blocks = 0;
   for (size_t a = 0; a < scene.def.articulations.size(); ++a) {
     const int32_t begin = scene.first_shape[a],
                   end = begin + static_cast<int32_t>(scene.def.articulations[a].shapes.size());
-    for (int32_t first = begin; first < end; first += kPartShapes)
-      *part++ = {static_cast<int32_t>(a), first, std::min(first + kPartShapes, end)};
+    for (int32_t first = begin; first < end; first += kBlock)
+      blocks_[blocks++] = {first, std::min(kBlock, end - first), {}, {}};
+    block_end_[a] = blocks;
   }
   for (size_t k = 0; k < scene.pairs.size(); ++k) {
     const ShapePair& pair = scene.pairs[k];
@@ -177,87 +184,92 @@ void BroadPhase::make(const Scene& scene) {
   each_row(scene, [&](const Row& r) { *row++ = r; });
 }
 
-void BroadPhase::update_boxes(const Scene& scene) {
-  const Box nothing = {{kFar, kFar, kFar, kFar}, {-kFar, -kFar, -kFar, -kFar}};
-  for (size_t a = 0; a < scene.def.articulations.size(); ++a) boxes_[a] = nothing;
-  for (int32_t k = 0; k < num_parts_; ++k) {
-    const Part& part = parts_[k];
+void BroadPhase::update_extents() {
+  for (int32_t i = 0; i < num_moving_; ++i) store4(extents_[i].half, half_sides(bounds_[i]));
+}
+
+void BroadPhase::update_boxes() {
+  int32_t k = 0;
+  for (int32_t a = 0; a < num_articulations_; ++a) {
     Float4 low = splat(kFar), high = splat(-kFar);
-    for (int32_t i = part.first; i < part.end; ++i) {
-      const Float4 c = load4(bounds_[i].center), r = splat(c[3] + kSlack), x = c - r, y = c + r;
-      low = x < low ? x : low;
-      high = y > high ? y : high;
+    for (; k < block_end_[a]; ++k) {
+      Block& block = blocks_[k];
+      Float4 center[4], half[4];
+      for (int i = 0; i < kBlock; ++i) {
+        const int32_t shape = block.first + (i < block.count ? i : 0);
+        center[i] = load4(bounds_[shape].center);
+        half[i] = load4(extents_[shape].half);
+        low = min(center[i] - half[i], low);
+        high = max(center[i] + half[i], high);
+      }
+      transpose(center), transpose(half);
+      for (int r = 0; r < 3; ++r) {
+        store4(block.center[r], center[r]);
+        store4(block.half[r], half[r]);
+      }
     }
-    store4(part_boxes_[k].low, low);
-    store4(part_boxes_[k].high, high);
-    for (int r = 0; r < 3; ++r) {
-      part_lanes_[k / 4].low[r][k % 4] = low[r];
-      part_lanes_[k / 4].high[r][k % 4] = high[r];
-    }
-    Box& box = boxes_[part.articulation];
-    store4(box.low, min(load4(box.low), low));
-    store4(box.high, max(load4(box.high), high));
+    store4(boxes_[a].low, low);
+    store4(boxes_[a].high, high);
   }
 }
 
-bool BroadPhase::near(const Bound& bound, const Box& box) {
-  const Float4 c = load4(bound.center), zero{};
-  const Float4 under = load4(box.low) - c, over = c - load4(box.high);
-  Float4 d = under > over ? under : over;
-  d = d > zero ? d : zero;
-  return dot3(d, d) < c[3] * c[3];
+bool BroadPhase::boxes_meet(int32_t a, int32_t b) const {
+  const Float4 gap = abs(load4(bounds_[a].center) - load4(bounds_[b].center));
+  return (bits_of(gap < load4(extents_[a].half) + load4(extents_[b].half)) & 7) == 7;
 }
 
-uint32_t BroadPhase::near(const Bound& bound, const BoxLanes& boxes) {
-  const Float4 zero{};
-  Float4 d[3];
+bool BroadPhase::near(int32_t shape, const Box& box) const {
+  const Float4 c = load4(bounds_[shape].center), half = load4(extents_[shape].half);
+  return (bits_of((load4(box.low) < c + half) & (load4(box.high) > c - half)) & 7) == 7;
+}
+
+uint32_t BroadPhase::near(int32_t shape, const Block& block) const {
+  Int4 meet = splat_int(-1);
   for (int k = 0; k < 3; ++k) {
-    const Float4 c = splat(bound.center[k]);
-    const Float4 under = load4(boxes.low[k]) - c, over = c - load4(boxes.high[k]);
-    d[k] = under > over ? under : over;
-    d[k] = d[k] > zero ? d[k] : zero;
+    const Float4 gap = abs(load4(block.center[k]) - splat(bounds_[shape].center[k]));
+    meet &= gap < load4(block.half[k]) + splat(extents_[shape].half[k]);
   }
-  return bits_of(dot(d, d) < splat(bound.center[3] * bound.center[3]));
+  return bits_of(meet);
 }
 
-// The corner farthest below it.
+// The corners farthest below it.
+uint32_t BroadPhase::near(const Plane& plane, const Block& block) {
+  Float4 above = splat(-static_cast<float>(plane.d)), reach{};
+  for (int k = 0; k < 3; ++k) {
+    const float n = static_cast<float>(plane.n[k]);
+    above += n * load4(block.center[k]);
+    reach += std::fabs(n) * load4(block.half[k]);
+  }
+  return bits_of(above < reach);
+}
+
 bool BroadPhase::near(const Plane& plane, const Box& box) {
   Vec3 corner;
-  for (int k = 0; k < 3; ++k) corner[k] = plane.n[k] > 0 ? box.low[k] : box.high[k];
-  return rdm::dot(corner, plane.n) - plane.d < kSlack;
+  for (int k = 0; k < 3; ++k) corner[k] = static_cast<double>(plane.n[k] > 0 ? box.low[k] : box.high[k]);
+  return rdm::dot(corner, plane.n) - plane.d < 0;
 }
 
 bool BroadPhase::on_plane(const Pair& pair) const {
-  const Bound& a = bounds_[pair.a];
+  const float *center = bounds_[pair.a].center, *half = extents_[pair.a].half;
   const Plane& plane = planes_[pair.plane];
-  const Vec3 c{a.center[0], a.center[1], a.center[2]};
-  return rdm::dot(c, plane.n) - plane.d < a.center[3] + kSlack;
+  double above = -plane.d, reach = 0;
+  for (int k = 0; k < 3; ++k) {
+    above += plane.n[k] * static_cast<double>(center[k]);
+    reach += std::fabs(plane.n[k]) * static_cast<double>(half[k]);
+  }
+  return above < reach;
 }
 
 bool BroadPhase::near(int32_t pair) const {
   const int32_t list[4] = {pair, pair, pair, pair};
-  if (pairs_[pair].plane >= 0) return on_plane(pairs_[pair]);
-  return spheres_meet(list) != 0 && capsules_meet(list) != 0;
+  return pairs_[pair].plane >= 0 ? on_plane(pairs_[pair]) : capsules_meet(list) != 0;
 }
 
 // Shapes of an articulation that are near another's box.
 void BroadPhase::mark_neighbours(const Scene& scene, int32_t articulation, const Box& box) {
   const int32_t first = scene.first_shape[static_cast<size_t>(articulation)];
   const auto count = scene.def.articulations[static_cast<size_t>(articulation)].shapes.size();
-  for (int32_t i = first; i < first + static_cast<int32_t>(count); ++i)
-    neighbours_[i] = near(bounds_[i], box);
-}
-
-uint32_t BroadPhase::spheres_meet(const int32_t* list) const {
-  Float4 p[4], q[4];
-  for (int k = 0; k < 4; ++k) {
-    const Pair& pair = pairs_[list[k]];
-    p[k] = load4(bounds_[pair.a].center);
-    q[k] = load4(bounds_[pair.b].center);
-  }
-  transpose(p), transpose(q);
-  const Float4 d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]}, reach = p[3] + q[3] + splat(kSlack);
-  return bits_of(dot(d, d) < reach * reach);
+  for (int32_t i = first; i < first + static_cast<int32_t>(count); ++i) neighbours_[i] = near(i, box);
 }
 
 uint32_t BroadPhase::capsules_meet(const int32_t* list) const {
@@ -272,53 +284,49 @@ uint32_t BroadPhase::capsules_meet(const int32_t* list) const {
   return bits_of(segment_distance(p, u, q, v) < reach * reach);
 }
 
-// What is no link and near a part of an articulation.
+// What is no link and near a shape of an articulation.
 void BroadPhase::mark_others() {
-  std::fill_n(near_, num_parts_ * words_, uint64_t{0});
+  std::fill_n(near_, first_other_ * words_, uint64_t{0});
   for (int32_t i = 0; i < num_others_; ++i) {
-    const Bound& bound = bounds_[first_other_ + i];
-    const int32_t plane = other_plane_[i];
-    const auto mark = [&](int32_t part) { near_[part * words_ + i / 64] |= uint64_t{1} << (i % 64); };
-    for (int32_t k = 0; plane >= 0 && k < num_parts_; ++k)
-      if (near(planes_[plane], part_boxes_[k])) mark(k);
-    for (int32_t k = 0; plane < 0 && k < num_parts_; k += 4)
-      for (uint32_t bits = near(bound, part_lanes_[k / 4]); bits != 0; bits &= bits - 1)
-        mark(k + std::countr_zero(bits));
+    const int32_t shape = first_other_ + i;
+    const Plane* plane = other_plane_[i] < 0 ? nullptr : planes_ + other_plane_[i];
+    for (int32_t a = 0, first = 0; a < num_articulations_; first = block_end_[a++]) {
+      if (!(plane ? near(*plane, boxes_[a]) : near(shape, boxes_[a]))) continue;
+      for (int32_t k = first; k < block_end_[a]; ++k) {
+        const Block& block = blocks_[k];
+        uint32_t bits = (plane ? near(*plane, block) : near(shape, block)) & ((1u << block.count) - 1);
+        for (; bits != 0; bits &= bits - 1)
+          near_[(block.first + std::countr_zero(bits)) * words_ + i / 64] |= uint64_t{1} << (i % 64);
+      }
+    }
   }
 }
 
 // Of at most kBatch pairs: all tests before any of the collisions, so that they overlap in the machine. The
 // list has room up to a multiple of four.
 void BroadPhase::visit_near(int32_t* list, int32_t count, Visit visit, void* context) const {
-  int32_t near[kBatch + 3], found = 0;
   for (int32_t k = count; k % 4 != 0; ++k) list[k] = list[0];
-  for (int32_t k = 0; k < count; k += 4) {
-    const uint32_t bits = spheres_meet(list + k);
-    for (int32_t i = 0; i < std::min(4, count - k); ++i) {
-      near[found] = list[k + i];
-      found += bits >> i & 1;
-    }
-  }
-  for (int32_t k = found; k % 4 != 0; ++k) near[k] = near[0];
   uint64_t bits = 0;
-  for (int32_t k = 0; k < found; k += 4) bits |= uint64_t{capsules_meet(near + k)} << k;
-  if (found < kBatch) bits &= (uint64_t{1} << found) - 1;
-  for (; bits != 0; bits &= bits - 1) visit(context, near[std::countr_zero(bits)]);
+  for (int32_t k = 0; k < count; k += 4) bits |= uint64_t{capsules_meet(list + k)} << k;
+  if (count < kBatch) bits &= (uint64_t{1} << count) - 1;
+  for (; bits != 0; bits &= bits - 1) visit(context, list[std::countr_zero(bits)]);
 }
 
 void BroadPhase::search_listed(const PairList& listed, Visit visit, void* context) {
+  update_extents();
   for (int32_t at = 0; at < listed.count;) {
     int32_t list[kBatch + 3], count = 0;
     for (; at < listed.count && count < kBatch; ++at) {
       const Pair& pair = pairs_[listed.pairs[at]];
-      if (pair.plane < 0 || on_plane(pair)) list[count++] = listed.pairs[at];
+      if (pair.plane < 0 ? boxes_meet(pair.a, pair.b) : on_plane(pair)) list[count++] = listed.pairs[at];
     }
     visit_near(list, count, visit, context);
   }
 }
 
 void BroadPhase::search(const Scene& scene, const PairList* listed, Visit visit, void* context) {
-  update_boxes(scene);
+  update_extents();
+  update_boxes();
   mark_others();
   int32_t list[kBatch + 3], count = 0;
   const auto add = [&](int32_t pair) {
@@ -327,42 +335,33 @@ void BroadPhase::search(const Scene& scene, const PairList* listed, Visit visit,
     visit_near(list, count, visit, context);
     count = 0;
   };
-  int32_t marked[2] = {-1, -1};  // the articulations that neighbours_ is about
-  const auto try_pair = [&](int32_t pair) {
-    if (pairs_[pair].plane < 0 || on_plane(pairs_[pair])) add(pair);
+  const auto try_pair = [&](int32_t index) {
+    const Pair& pair = pairs_[index];
+    if (pair.plane < 0 ? boxes_meet(pair.a, pair.b) : on_plane(pair)) add(index);
   };
-  int32_t at = 0;  // in the list of those to search
-  const Row* row = rows_;
-  for (const PairRun& run : scene.runs) {
-    const int32_t end = run.first + run.count;
-    for (; run.shape < 0 && row < rows_ + num_rows_ && row->first < end; ++row) {
-      const int32_t row_end = row->first + row->count;
-      uint64_t bits = row->part < 0 ? 0 : near_others(*row);
-      // of a row that is listed as a whole, or all are, only those that are near
-      const int32_t last = at + row->count - 1;
-      const bool whole = !listed || (last < listed->count && listed->pairs[at] == row->first &&
-                                     listed->pairs[last] == row_end - 1);
-      if (whole) at += row->count;
-      if (whole && row->part >= 0) {
-        for (; bits != 0; bits &= bits - 1) try_pair(row->first + std::countr_zero(bits));
-      } else if (whole) {
-        for (int32_t k = row->first; k < row_end; ++k) try_pair(k);
-      } else {
-        for (; at < listed->count && listed->pairs[at] < row_end; ++at)
-          if (row->part < 0 || (bits >> (listed->pairs[at] - row->first) & 1) != 0)
-            try_pair(listed->pairs[at]);
+  int32_t marked[2] = {-1, -1};  // the articulations that neighbours_ is about
+  int32_t at = 0;                // in the list of those to search
+  for (const Row *row = rows_, *last = rows_ + num_rows_; row < last; ++row) {
+    const int32_t end = row->first + row->count;
+    if (row->kind == Row::kOthers) {
+      at += row->count;
+      uint64_t bits = near_[row->word] >> row->shift;
+      if (row->count < 64) bits &= (uint64_t{1} << row->count) - 1;
+      for (; bits != 0; bits &= bits - 1) add(row->first + std::countr_zero(bits));
+    } else if (row->kind == Row::kRun) {
+      if (!near(row->shape, boxes_[row->articulation])) continue;
+      if (row->owner >= 0 && (row->owner != marked[0] || row->articulation != marked[1])) {
+        marked[0] = row->owner;
+        marked[1] = row->articulation;
+        mark_neighbours(scene, row->articulation, boxes_[row->owner]);
       }
+      for (int32_t k = row->first; k < end; ++k)
+        if (row->owner < 0 || neighbours_[pairs_[k].b] != 0) try_pair(k);
+    } else if (listed) {
+      for (; at < listed->count && listed->pairs[at] < end; ++at) try_pair(listed->pairs[at]);
+    } else {
+      for (int32_t k = row->first; k < end; ++k) try_pair(k);
     }
-    if (run.shape < 0) continue;
-    if (!near(bounds_[run.shape], boxes_[run.articulation])) continue;
-    const int32_t owner = scene.shapes[static_cast<size_t>(run.shape)].articulation;
-    if (owner >= 0 && (owner != marked[0] || run.articulation != marked[1])) {
-      marked[0] = owner;
-      marked[1] = run.articulation;
-      mark_neighbours(scene, run.articulation, boxes_[owner]);
-    }
-    for (int32_t k = run.first; k < end; ++k)
-      if (owner < 0 || neighbours_[pairs_[k].b] != 0) add(k);
   }
   visit_near(list, count, visit, context);
 }

@@ -1,16 +1,17 @@
 // Which pairs of a scene may touch at the present poses: most are passed over by bounds alone.
 //
-// Every shape stands in a sphere and, more tightly, in a capsule (a segment c +- u with a radius). A search:
-//   1. an axis-aligned box around each articulation's spheres, and around each part of it: a few shapes in a
-//      row, a finger's as a rule;
-//   2. per run of pairs of one shape with one articulation: the shape's sphere against that box,
-//      |max(low - c, c - high, 0)|^2 < r^2, and that articulation's shapes against the box of its own;
-//   3. of pairs of a link with what is no link: the other's sphere, or its plane, against the box of the
-//      link's part;
-//   4. of the pairs that are left, four at a time: spheres, |c_a - c_b|^2 < (r_a + r_b)^2, then, of those
-//   that
-//      meet, four at a time again, the distance of the segments (Ericson, Real-Time Collision Detection,
-//      2005, section 5.1.9). Planes: n . c - d < r.
+// Every shape stands in a capsule (a segment c +- u with a radius r) and so in a box along the world's axes,
+// c
+// +- (|u| + r); of boxes at rest that box is exact. A search:
+//   1. the boxes of shapes that move, and one around each articulation;
+//   2. what is no link, or its plane, against the box of each articulation, then against its shapes' boxes,
+//   four
+//      at a time: that settles the boxes of all pairs of a link with such a shape;
+//   3. per run of pairs of one shape with one articulation: the shape's box against that one's, and that
+//      articulation's shapes against the box of its own;
+//   4. of all other pairs the boxes, one by one; planes against the lowest corner of the shape's box;
+//   5. of what is left, four at a time, the distance of the segments (Ericson, Real-Time Collision Detection,
+//      2005, section 5.1.9).
 // All in floats, with a slack for their rounding: a pair that touches is never passed over, so what is found
 // does not depend on the bounds. A bound with a number missing (NaN) touches nothing.
 #pragma once
@@ -27,8 +28,8 @@ struct Capsule {
 };
 Capsule capsule_around(const SceneShape& shape);
 
-// Which pairs of runs without an articulation to search: indices of Scene::pairs, ascending. A search skips
-// the others.
+// Which pairs of runs without an articulation to search: indices of Scene::pairs, ascending, all those among
+// them that a link or a base is in. A search skips the others.
 struct PairList {
   const int32_t* pairs;
   int32_t count;
@@ -74,52 +75,57 @@ class BroadPhase {
   struct Box {
     float low[4], high[4];
   };
-  // Four boxes, by coordinate.
-  struct BoxLanes {
-    float low[3][4], high[3][4];
+  struct Extent {
+    float half[4];
   };
-  // Shapes of one articulation that stand in a row.
-  struct Part {
-    int32_t articulation, first, end;
-  };
-  // Pairs in a row, of a run without an articulation. With a part: of one of its shapes with others that
-  // stand in a row too, all in one word of near_.
-  struct Row {
+  // Up to four shapes in a row of one articulation, their boxes by coordinate.
+  struct Block {
     int32_t first, count;
-    int32_t part, first_other;  // -1: pairs of any kind
+    float center[3][4], half[3][4];
+  };
+  // Pairs in a row.
+  struct Row {
+    enum Kind : int32_t {
+      kAny,     // of all sorts
+      kOthers,  // a shape of an articulation with others that stand in a row too, all in one word of near_
+      kRun      // a run of a shape with an articulation
+    } kind;
+    int32_t first, count;
+    int32_t shape;                // of kOthers and kRun
+    int32_t word, shift;          // kOthers: the first pair's place in near_
+    int32_t articulation, owner;  // kRun; the shape's articulation, -1: none
   };
   template <class Use>
   void each_row(const Scene& scene, const Use& use) const;
-  uint64_t near_others(const Row& row) const {
-    const uint64_t word = near_[row.part * words_ + row.first_other / 64] >> (row.first_other % 64);
-    return row.count == 64 ? word : word & ((uint64_t{1} << row.count) - 1);
-  }
-  void update_boxes(const Scene& scene);
+  void update_extents();  // of the shapes that move
+  void update_boxes();
   void mark_neighbours(const Scene& scene, int32_t articulation, const Box& box);
   void mark_others();
   void visit_near(int32_t* list, int32_t count, Visit visit, void* context) const;
   bool on_plane(const Pair& pair) const;
-  // Bit k: the spheres, or the capsules, of pair list[k] meet, or one of them is a plane; four of them.
-  uint32_t spheres_meet(const int32_t* list) const;
+  bool boxes_meet(int32_t a, int32_t b) const;
+  // Bit k: the capsules of pair list[k] meet, or one of them is a plane; four of them.
   uint32_t capsules_meet(const int32_t* list) const;
-  static bool near(const Bound& bound, const Box& box);
-  // Bit k: box k of the four.
-  static uint32_t near(const Bound& bound, const BoxLanes& boxes);
+  bool near(int32_t shape, const Box& box) const;
+  // Bit k: shape k of the block.
+  uint32_t near(int32_t shape, const Block& block) const;
+  static uint32_t near(const Plane& plane, const Block& block);
   static bool near(const Plane& plane, const Box& box);
 
   Bound* bounds_ = nullptr;
+  Extent* extents_ = nullptr;  // [shapes] half sides of the boxes, with the slack
   Pair* pairs_ = nullptr;
   Plane* planes_ = nullptr;
   Box* boxes_ = nullptr;            // [articulations]
-  Part* parts_ = nullptr;           // of all articulations, in their order
-  Box* part_boxes_ = nullptr;       // [parts]
-  BoxLanes* part_lanes_ = nullptr;  // [parts / 4, rounded up] the same, four side by side
+  Block* blocks_ = nullptr;         // of all articulations, in their order
+  int32_t* block_end_ = nullptr;    // [articulations] the first that is none of its blocks
   int32_t* other_plane_ = nullptr;  // [others] index of planes_; -1
   uint8_t* neighbours_ = nullptr;   // [shapes] near the other articulation of a run
-  uint64_t* near_ = nullptr;        // [parts][words_] bit k: other k is near the part
+  uint64_t* near_ = nullptr;        // [shapes of articulations][words_] bit k: other k is near
   Row* rows_ = nullptr;             // in the order of their pairs
-  int32_t num_parts_ = 0, num_rows_ = 0, words_ = 0;
+  int32_t num_articulations_ = 0, num_blocks_ = 0, num_rows_ = 0, words_ = 0;
   int32_t first_other_ = 0, num_others_ = 0;  // others: shapes of no articulation
+  int32_t num_moving_ = 0;                    // shapes before the first that never moves
 };
 
 }  // namespace rdm
