@@ -74,12 +74,15 @@ struct ContactSolver {
   Point* points = nullptr;                                        // [max_points]
   Row* rows = nullptr;                                            // [max_points][2 * path_segments][3]
   int32_t* segments = nullptr;                                    // [max_points][2 * path_segments]
+  int32_t* moved = nullptr;                                       // [num_segments] those of any point
+  uint8_t* is_moved = nullptr;                                    // [num_segments]
   Row *sum = nullptr, *previous = nullptr, *direction = nullptr;  // [num_segments]
   S (*delta)[3] = nullptr;                                        // [max_points]
   S (*point_direction)[3] = nullptr;
   int32_t count = 0, num_segments = 0, most_segments = 0;  // most_segments: of a point
   WideContacts<S> wide;                                    // points of piles, beside the others
   S softness = 0;
+  int32_t num_moved = 0;
   int32_t levels = 0;  // of the pile, if there is one (wide_contacts.inl)
 
   // The last `bodies` segments are those of the free bodies.
@@ -90,6 +93,8 @@ struct ContactSolver {
     points = arena.make<Point>(n);
     rows = arena.make<Row>(n * k * 3);
     segments = arena.make<int32_t>(n * k);
+    moved = arena.make<int32_t>(static_cast<size_t>(segment_count));
+    is_moved = arena.make<uint8_t>(static_cast<size_t>(segment_count));
     sum = arena.make<Row>(static_cast<size_t>(segment_count) + 1);  // the last for what is at rest: stays 0
     previous = arena.make<Row>(static_cast<size_t>(segment_count));
     direction = arena.make<Row>(static_cast<size_t>(segment_count));
@@ -154,12 +159,16 @@ struct ContactSolver {
     out[1] = a[2] + a[3];
     out[2] = b[0] + b[1];
   }
+  void list_moved();
+  // A point's update with its kCount segments, 0: any number; the changes go to `change`.
+  template <int kCount>
+  [[gnu::always_inline]] void update(Point* p, S* change);
   // First a step of `beta` along each point's conjugate direction; null: none.
   S sweep(const S* beta, S* impulse_square);
   S sweep_all(const S* beta, S* impulse_square) {
     if (wide.count == 0) return sweep(beta, impulse_square);
     S rest = 0;
-    const S delta_square = wide.sweep(beta, sum, impulse_square), more = sweep(beta, &rest);
+    const S delta_square = wide.sweep(beta, impulse_square), more = sweep(beta, &rest);
     *impulse_square += rest;
     return delta_square + more;
   }
@@ -210,6 +219,53 @@ void ContactSolver<S>::warm_start(Point* p, const S* impulse) {
   }
 }
 
+template <class S>
+template <int kCount>
+inline void ContactSolver<S>::update(Point* point, S* change) {
+  Point& p = *point;
+  const int32_t number = kCount > 0 ? kCount : p.count;
+  const Row* z = rows + 3 * p.first;
+  const int32_t* segment = segments + p.first;
+  Row kept[kCount > 0 ? kCount : 1];  // the sums, where they fit into registers
+  Row r[3] = {};
+  for (int32_t k = 0; k < number; ++k) {
+    const Row s = sum[segment[k]];
+    if (kCount > 0) kept[k] = s;
+    for (int f = 0; f < 3; ++f) r[f] += z[3 * k + f] * s;
+  }
+  S v[3];
+  reduce_three(r, v);
+  S n = p.impulse[0] + (p.b[0] - v[0] - p.softness * p.impulse[0]) * p.inv_n;
+  n = n < 0 ? S(0) : n;
+  const S d0 = n - p.impulse[0];
+  const S e1 = p.b[1] - v[1] - p.A[3] * d0, e2 = p.b[2] - v[2] - p.A[4] * d0;
+  // stick: both tangents at once; slip: a gradient step back onto the cone
+  S t1 = p.impulse[1] + (p.inv_tangents[0] * e1 + p.inv_tangents[2] * e2);
+  S t2 = p.impulse[2] + (p.inv_tangents[2] * e1 + p.inv_tangents[1] * e2);
+  const S bound = p.mu * n;
+  if (t1 * t1 + t2 * t2 > bound * bound) {
+    t1 = p.impulse[1] + p.inv_t * e1;
+    t2 = p.impulse[2] + p.inv_t * e2;
+    const S square = t1 * t1 + t2 * t2;
+    if (square > bound * bound) {
+      const S shrink = bound / std::sqrt(square);
+      t1 *= shrink;
+      t2 *= shrink;
+    }
+  }
+  const S d1 = t1 - p.impulse[1], d2 = t2 - p.impulse[2];
+  p.impulse[0] = n;
+  p.impulse[1] = t1;
+  p.impulse[2] = t2;
+  for (int32_t k = 0; k < number; ++k) {
+    Row& s = sum[segment[k]];
+    s = (kCount > 0 ? kept[k] : s) + (z[3 * k] * d0 + z[3 * k + 1] * d1 + z[3 * k + 2] * d2);
+  }
+  change[0] = d0;
+  change[1] = d1;
+  change[2] = d2;
+}
+
 // One pass over all points, after the step along their directions. Returns the sum of the squared changes of
 // the impulses; `impulse_square` of them.
 template <class S>
@@ -217,66 +273,63 @@ S ContactSolver<S>::sweep(const S* beta, S* impulse_square) {
   S delta_square = 0, square = 0;
   for (int32_t i = 0; i < count; ++i) {
     Point& p = points[i];
+    S* d = delta[i];
     for (int f = 0; beta && f < 3; ++f) {
       S& way = point_direction[i][f];
       p.impulse[f] += *beta * way;
-      way = *beta * way + delta[i][f];
+      way = *beta * way + d[f];
     }
-    const Row* z = rows + 3 * p.first;
-    const int32_t* segment = segments + p.first;
     if (p.axes == 1) {
+      const Row* z = rows + 3 * p.first;
+      const int32_t* segment = segments + p.first;
       Row r{};
       for (int32_t k = 0; k < p.count; ++k) r += z[3 * k] * sum[segment[k]];
       S n = p.impulse[0] + (p.b[0] - reduce(r) - p.softness * p.impulse[0]) * p.inv_n;
       n = n < 0 ? S(0) : n;
-      const S d = n - p.impulse[0];
+      d[0] = n - p.impulse[0];
+      d[1] = d[2] = 0;
       p.impulse[0] = n;
-      for (int32_t k = 0; k < p.count; ++k) sum[segment[k]] += z[3 * k] * d;
-      delta[i][0] = d;
-      delta[i][1] = delta[i][2] = 0;
-      delta_square += d * d;
+      for (int32_t k = 0; k < p.count; ++k) sum[segment[k]] += z[3 * k] * d[0];
+      delta_square += d[0] * d[0];
       square += n * n;
       continue;
     }
-    Row r[3] = {};
-    for (int32_t k = 0; k < p.count; ++k) {
-      const Row s = sum[segment[k]];
-      for (int f = 0; f < 3; ++f) r[f] += z[3 * k + f] * s;
+    switch (p.count) {
+      case 1:
+        update<1>(&p, d);
+        break;
+      case 2:
+        update<2>(&p, d);
+        break;
+      case 3:
+        update<3>(&p, d);
+        break;
+      case 4:
+        update<4>(&p, d);
+        break;
+      default:
+        update<0>(&p, d);
     }
-    S v[3];
-    reduce_three(r, v);
-    S n = p.impulse[0] + (p.b[0] - v[0] - p.softness * p.impulse[0]) * p.inv_n;
-    n = n < 0 ? S(0) : n;
-    const S d0 = n - p.impulse[0];
-    const S e1 = p.b[1] - v[1] - p.A[3] * d0, e2 = p.b[2] - v[2] - p.A[4] * d0;
-    // stick: both tangents at once; slip: a gradient step back onto the cone
-    S t1 = p.impulse[1] + (p.inv_tangents[0] * e1 + p.inv_tangents[2] * e2);
-    S t2 = p.impulse[2] + (p.inv_tangents[2] * e1 + p.inv_tangents[1] * e2);
-    const S bound = p.mu * n;
-    if (t1 * t1 + t2 * t2 > bound * bound) {
-      t1 = p.impulse[1] + p.inv_t * e1;
-      t2 = p.impulse[2] + p.inv_t * e2;
-      const S square = t1 * t1 + t2 * t2;
-      if (square > bound * bound) {
-        const S shrink = bound / std::sqrt(square);
-        t1 *= shrink;
-        t2 *= shrink;
-      }
-    }
-    const S d1 = t1 - p.impulse[1], d2 = t2 - p.impulse[2];
-    p.impulse[0] = n;
-    p.impulse[1] = t1;
-    p.impulse[2] = t2;
-    for (int32_t k = 0; k < p.count; ++k)
-      sum[segment[k]] += z[3 * k] * d0 + z[3 * k + 1] * d1 + z[3 * k + 2] * d2;
-    delta[i][0] = d0;
-    delta[i][1] = d1;
-    delta[i][2] = d2;
-    delta_square += d0 * d0 + d1 * d1 + d2 * d2;
-    square += n * n + t1 * t1 + t2 * t2;
+    delta_square += d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    square += p.impulse[0] * p.impulse[0] + p.impulse[1] * p.impulse[1] + p.impulse[2] * p.impulse[2];
   }
   *impulse_square = square;
   return delta_square;
+}
+
+// All other sums stay 0.
+template <class S>
+void ContactSolver<S>::list_moved() {
+  num_moved = 0;
+  std::fill_n(is_moved, num_segments, uint8_t{0});
+  const auto add = [&](int32_t segment) {
+    moved[num_moved] = segment;
+    num_moved += is_moved[segment] == 0;
+    is_moved[segment] = 1;
+  };
+  for (int32_t i = 0; i < count; ++i)
+    for (int32_t k = 0; k < points[i].count; ++k) add(segments[points[i].first + k]);
+  wide.each_body([&](int32_t body) { add(wide.first_segment + body); });
 }
 
 template <class S>
@@ -295,8 +348,12 @@ void ContactSolver<S>::solve(int32_t iterations) {
     }
     return;
   }
+  list_moved();
   const auto restart = [&] {
-    for (int32_t s = 0; s < num_segments; ++s) direction[s] = Row{};
+    for (int32_t m = 0; m < num_moved; ++m) {
+      direction[moved[m]] = Row{};
+      previous[moved[m]] = sum[moved[m]];
+    }
     for (int32_t i = 0; i < count; ++i)
       point_direction[i][0] = point_direction[i][1] = point_direction[i][2] = 0;
   };
@@ -304,7 +361,6 @@ void ContactSolver<S>::solve(int32_t iterations) {
   S last_square = 0, beta = 0;
   bool onward = false;  // along the direction
   for (int32_t k = 0; k < iterations; ++k) {
-    for (int32_t s = 0; s < num_segments; ++s) previous[s] = sum[s];
     const S delta_square = sweep_all(onward ? &beta : nullptr, &impulse_square);
     if (delta_square <= tolerance * impulse_square || k + 1 == iterations) return;
     beta = k ? delta_square / last_square : S(0);
@@ -314,9 +370,11 @@ void ContactSolver<S>::solve(int32_t iterations) {
       restart();
       continue;
     }
-    for (int32_t s = 0; s < num_segments; ++s) {
+    for (int32_t m = 0; m < num_moved; ++m) {
+      const int32_t s = moved[m];
       const Row d = sum[s] - previous[s];
       sum[s] += beta * direction[s];
+      previous[s] = sum[s];
       direction[s] = beta * direction[s] + d;
     }
   }

@@ -82,9 +82,11 @@ void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
   using V = typename L::V;
   using S = typename L::Scalar;
   const Tree& tree = *t.tree;
-  const int offset = tree.coord(0), entries = static_cast<int>(tree.path.size());
-  for (int k = 0; k < entries; ++k) t.factor[k] = t.mass_matrix[k];
-  for (int c = 0; c < offset; ++c) t.coord[c].dv = -(t.h * t.coord[c].bias);
+  const int offset = tree.coord(0);
+  for (int c = 0; c < offset; ++c) {
+    t.coord[c].gain = V{};
+    t.dv[c] = -(t.h * t.coord[c].bias);
+  }
   for (int i = 0; i < tree.num_links; ++i) {
     const LinkModel<L>& model = t.model[i];
     const LinkWork<V>& joint = t.work[i];
@@ -93,15 +95,13 @@ void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
     const V free = S(1) - active.saturated * active.saturated, on = active.limited * active.limited;
     const V limit_gain = on * (t.h * model.limit_stiffness), gain = joint.gain * free + limit_gain;
     const V edge = L::select(active.limited < V{}, model.lower, model.upper);
-    t.factor[tree.row[static_cast<size_t>(offset + i)] + tree.depth[static_cast<size_t>(offset + i)]] +=
-        t.h * gain;
-    c.dv = t.h * (joint.spring * free + active.saturated * joint.bound - c.bias - c.qd * gain +
-                  on * model.limit_stiffness * (edge - joint.q));
+    c.gain = t.h * gain;
+    t.dv[offset + i] = t.h * (joint.spring * free + active.saturated * joint.bound - c.bias - c.qd * gain +
+                              on * model.limit_stiffness * (edge - joint.q));
   }
-  factor(t);
-  solve(t);
+  factor_and_solve(t);
   for (int c = 0; c < tree.num_coords; ++c)
-    t.coord[c].v1 = L::select(lanes, V(t.coord[c].qd + t.coord[c].dv), t.coord[c].v1);
+    t.coord[c].v1 = L::select(lanes, V(t.coord[c].qd + t.dv[c]), t.coord[c].v1);
 }
 
 // Changes the active sets of the lanes in `lanes` where v1 contradicts them; the lanes that changed.

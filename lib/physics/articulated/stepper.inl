@@ -149,6 +149,7 @@ class BatchStepper final : public Stepper {
   int32_t* first_word_ = nullptr;      // [articulations] in WorldState::persistent, in numbers
   uint8_t* touched_ = nullptr;         // [articulations] by a contact of the world being solved
   S* path_ = nullptr;                  // [most coordinates][4] working memory of a contact's path
+  const V** factor_rows_ = nullptr;    // [most coordinates] of its coordinates
   Quat* q_JL_ = nullptr;               // [num_links]
   Mat3* R_JL_ = nullptr;               // [num_links]
   ContactSolver<S> contacts_;
@@ -288,7 +289,7 @@ void BatchStepper<L>::solve_contacts() {
       t.pushed = 0;
       for (int32_t c = 0; c < t.tree->num_coords; ++c) {
         t.coord[c].inv_sqrt_d = L::root(t.coord[c].inv_d);
-        t.coord[c].push = V{};
+        t.push[c] = V{};
       }
     }
     for (int32_t w = 0; w < count_; ++w)
@@ -359,7 +360,8 @@ void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, 
   S x[3];
   for (int r = 0; r < 3; ++r) {
     x[r] = static_cast<S>(p[r] - base[r]);
-    axis[r] = Axes4{static_cast<S>(axes[0][r]), static_cast<S>(axes[1][r]), static_cast<S>(axes[2][r]), 0};
+    axis[r] =
+        sign * Axes4{static_cast<S>(axes[0][r]), static_cast<S>(axes[1][r]), static_cast<S>(axes[2][r]), 0};
   }
   // z[d]: the three rows' entries of the path's coordinate d
   Axes4* z = reinterpret_cast<Axes4*>(path_);
@@ -376,24 +378,44 @@ void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, 
     // velocity of the point at unit rate
     const S v[3] = {s[0] + (a[1] * x[2] - a[2] * x[1]), s[1] + (a[2] * x[0] - a[0] * x[2]),
                     s[2] + (a[0] * x[1] - a[1] * x[0])};
-    z[d] = (axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2]) * sign;
+    z[d] = axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2];
     velocity += z[d] * L::get(c.v1, lane);
+    factor_rows_[d] = batch->factor + tree.row[static_cast<size_t>(path[d])];
   }
   for (int f = 0; f < count; ++f) point->b[f] -= velocity[f];
-  // L^-T, then D^-1/2, into the segments that the path runs through
-  int32_t segment = -1;
-  typename ContactSolver<S>::Row* rows = nullptr;
-  for (int32_t d = depth; d >= 0; --d) {
-    const int c = path[d];
-    const V* factor = batch->factor + tree.row[static_cast<size_t>(c)];
-    for (int32_t e = 0; e < d; ++e) z[e] -= z[d] * L::get(factor[e], lane);
-    const Axes4 half_solved = z[d] * L::get(batch->coord[c].inv_sqrt_d, lane);
-    const TreeSlot slot = tree.slots[static_cast<size_t>(c)];
-    if (slot.segment != segment) {
-      segment = slot.segment;
-      rows = contacts_.segment_rows(point, at.first_segment + segment);
+  // L^-T: from each entry what those behind it take, the last first; four entries at a time stay in registers
+  int32_t top = depth;
+  for (; top >= 3; top -= 4) {
+    Axes4* const four = z + top - 3;
+    Axes4 y[4] = {four[0], four[1], four[2], four[3]};
+    const auto take = [&](const Axes4& from, int32_t d, int entries) {
+      const V* factor = factor_rows_[d] + top - 3;
+      for (int i = 0; i < entries; ++i) y[i] -= from * L::get(factor[i], lane);
+    };
+    for (int32_t d = depth; d > top; --d) take(z[d], d, 4);
+    take(y[3], top, 3);
+    take(y[2], top - 1, 2);
+    take(y[1], top - 2, 1);
+    for (int i = 0; i < 4; ++i) four[i] = y[i];
+  }
+  for (; top >= 0; --top)
+    for (int32_t d = depth; d > top; --d) z[top] -= z[d] * L::get(factor_rows_[d][top], lane);
+  // D^-1/2, into the segments that the path runs through
+  for (int32_t d = depth; d >= 0;) {
+    const int32_t segment = tree.slots[static_cast<size_t>(path[d])].segment;
+    S part[3][kSegment] = {};
+    for (; d >= 0; --d) {
+      const TreeSlot slot = tree.slots[static_cast<size_t>(path[d])];
+      if (slot.segment != segment) break;
+      const Axes4 half_solved = z[d] * L::get(batch->coord[path[d]].inv_sqrt_d, lane);
+      for (int f = 0; f < 3; ++f) part[f][slot.slot] = half_solved[f];
     }
-    for (int f = 0; f < count; ++f) rows[f][slot.slot] += half_solved[f];
+    auto* rows = contacts_.segment_rows(point, at.first_segment + segment);
+    for (int f = 0; f < count; ++f) {
+      typename ContactSolver<S>::Row row;
+      std::memcpy(&row, part[f], sizeof row);
+      rows[f] += row;
+    }
   }
 }
 
@@ -607,7 +629,7 @@ void BatchStepper<L>::take_impulses(int32_t world) {
       batch->pushed |= 1u << lane;
       for (int32_t c = 0; c < tree.num_coords; ++c) {
         const TreeSlot slot = tree.slots[static_cast<size_t>(c)];
-        L::set(&batch->coord[c].push, lane, sum[slot.segment][slot.slot]);
+        L::set(&batch->push[c], lane, sum[slot.segment][slot.slot]);
       }
     }
   }
@@ -633,9 +655,9 @@ void BatchStepper<L>::apply_impulses(TreeBatch<L>& t) {
     const int32_t row = tree.row[static_cast<size_t>(c)], depth = tree.depth[static_cast<size_t>(c)];
     const V* factor = t.factor + row;
     const int16_t* path = tree.path.data() + row;
-    V x = coord.push * coord.inv_sqrt_d;
-    for (int32_t d = 0; d < depth; ++d) x -= factor[d] * t.coord[path[d]].push;
-    coord.push = x;
+    V x = t.push[c] * coord.inv_sqrt_d;
+    for (int32_t d = 0; d < depth; ++d) x -= factor[d] * t.push[path[d]];
+    t.push[c] = x;
     coord.v1 = L::select(lanes, V(coord.v1 + x), coord.v1);
   }
 }
@@ -935,7 +957,10 @@ void BatchStepper<L>::carve(Arena& arena) {
       t.work = arena.make<LinkWork<V>>(links);
       t.coord = arena.make<CoordWork<V>>(static_cast<size_t>(tree.num_coords));
       t.mass_matrix = arena.make<V>(tree.path.size());
+      t.reduced = arena.make<V>(tree.path.size());
       t.factor = arena.make<V>(tree.path.size());
+      t.dv = arena.make<V>(static_cast<size_t>(tree.num_coords));
+      t.push = arena.make<V>(static_cast<size_t>(tree.num_coords));
       if (scene_->def.feedforward) t.feedforward = arena.make<V>(links);
       t.shape_p = arena.make<V[3]>(shapes);
       t.shape_a = arena.make<V[3]>(shapes);
@@ -950,6 +975,7 @@ void BatchStepper<L>::carve(Arena& arena) {
   first_word_ = arena.make<int32_t>(scene_->def.articulations.size());
   touched_ = arena.make<uint8_t>(scene_->def.articulations.size());
   path_ = arena.make<S>(4 * static_cast<size_t>(most_coords));
+  factor_rows_ = arena.make<const V*>(static_cast<size_t>(most_coords));
   R_JL_ = arena.make<Mat3>(static_cast<size_t>(scene_->num_links));
   q_JL_ = arena.make<Quat>(static_cast<size_t>(scene_->num_links));
   contacts_.carve(arena, scene_->def.solver.contacts_max, segments, path, scene_->num_bodies);

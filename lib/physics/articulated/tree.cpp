@@ -149,6 +149,19 @@ void list_slots(Tree* tree) {
   }
 }
 
+void list_below(Tree* tree) {
+  for (int32_t c = 0; c < tree->num_coords; ++c) {
+    tree->first_below.push_back(static_cast<int32_t>(tree->below.size()));
+    const auto depth = tree->depth[static_cast<size_t>(c)];
+    for (int32_t k = tree->num_coords - 1; k > c; --k) {
+      const int32_t row = tree->row[static_cast<size_t>(k)];
+      if (tree->depth[static_cast<size_t>(k)] > depth && tree->path[static_cast<size_t>(row + depth)] == c)
+        tree->below.push_back({k, row});
+    }
+  }
+  tree->first_below.push_back(static_cast<int32_t>(tree->below.size()));
+}
+
 Tree make_tree(const Scene& scene, int32_t articulation) {
   const ArticulationDef& def = scene.def.articulations[static_cast<size_t>(articulation)];
   Tree tree;
@@ -176,6 +189,7 @@ Tree make_tree(const Scene& scene, int32_t articulation) {
     tree.shape_slender.push_back(s.shape.kind == ShapeKind::kCapsule);
   }
   list_slots(&tree);
+  list_below(&tree);
   return tree;
 }
 

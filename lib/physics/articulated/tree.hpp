@@ -64,6 +64,11 @@ struct TreeSlot {
   int16_t segment, slot;
 };
 
+// A coordinate that another is an ancestor of, and where its row begins.
+struct TreeBelow {
+  int32_t coord, row;
+};
+
 // Articulations with the same links, joints and shapes in the same places: lanes of one computation.
 struct Tree {
   bool free_base = false;
@@ -74,9 +79,11 @@ struct Tree {
   Vector<int32_t> shape_links;    // -1: the base
   Vector<uint8_t> shape_slender;  // capsules: their bounds have an axis
 
-  Vector<int32_t> row;    // [num_coords]: where a coordinate's row begins in `path` and in the matrix
-  Vector<int32_t> depth;  // [num_coords]: ancestors of a coordinate
-  Vector<int16_t> path;   // all rows: the ancestors' indices and the coordinate's own
+  Vector<int32_t> row;          // [num_coords]: where a coordinate's row begins in `path` and in the matrix
+  Vector<int32_t> depth;        // [num_coords]: ancestors of a coordinate
+  Vector<int16_t> path;         // all rows: the ancestors' indices and the coordinate's own
+  Vector<int32_t> first_below;  // [num_coords + 1]: where a coordinate's descendants begin in `below`
+  Vector<TreeBelow> below;      // of each coordinate the last first
   Vector<TreeSlot> slots;
   int32_t num_segments = 0;
   int32_t path_segments = 0;  // most segments on one path

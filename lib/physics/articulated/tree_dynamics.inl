@@ -19,9 +19,8 @@
 //                       for i and its ancestors j, with I_i the spatial inertia of all that is behind joint
 //                       i: mass m, first moment h = m c, second moments J about O. I (a, s) is the momentum
 //                       p = m s + a x h, l = J a + h x s
-//   factor              M = L^T D L, L a lower unit triangle with M's own sparsity (RBDA 6.5): nothing fills
-//                       in, and n coordinates of depth d cost n d^2
-//   solve               x <- L^-1 D^-1 L^-T x
+//   factor_and_solve    M = L^T D L, L a lower unit triangle with M's own sparsity (RBDA 6.5): nothing fills
+//                       in, and n coordinates of depth d cost n d^2; then x <- L^-1 D^-1 L^-T x
 //   momenta             the solved rates' momenta, for the next substep
 //
 // Bias by momentum balance. A textbook's bias takes w x I w of the step's start and may gain energy at a step
@@ -71,8 +70,8 @@ struct CoordWork {
   V a[3], s[3];         // motion: angular, linear at the base's origin
   V qd, bias;           // rate at the substep's start; RNEA's force
   V inv_d, inv_sqrt_d;  // 1 / D and its root
-  V dv, v1;             // change of the rate; rate at the substep's end
-  V push;               // of contacts, half-solved (contact_solver.inl)
+  V gain;               // what the active set adds to the diagonal
+  V v1;                 // rate at the substep's end
 };
 
 // The robots of one batch. Arrays are by link, coordinate or shape; a number of each is a V, by lane.
@@ -94,8 +93,9 @@ struct TreeBatch : BaseConstants<typename L::V> {
   PersistentLink<V>* state;
   LinkWork<V>* work;
   CoordWork<V>* coord;
-  V *mass_matrix, *factor;  // rows as in Tree::path
-  V* feedforward;           // [num_links]; null: none
+  V *mass_matrix, *reduced, *factor;  // rows as in Tree::path
+  V *dv, *push;                       // by coordinate: change of the rate; of contacts, half-solved
+  V* feedforward;                     // [num_links]; null: none
   // Shapes: place and half axis (of capsules) in their link's joint frame, and both in world axes from the
   // base's origin.
   V (*shape_p)[3], (*shape_a)[3], (*center)[3], (*axis)[3];
@@ -534,45 +534,80 @@ void composite_inertias(TreeBatch<L>& t) {
   entry(5, 3) = b.J[4], entry(5, 4) = b.J[5], entry(5, 5) = b.J[2];
 }
 
-// t.factor, which holds the matrix: its rows become those of L off the diagonal, inv_d its 1 / D.
+// kCount entries of a row of D L, from those of M: less what the coordinates below take, the last of them
+// first. `more` is added to the last entry. The sums stay in registers.
+template <int kCount, class V>
+void reduce_entries(const V* matrix, const V& more, const TreeBelow* below, const TreeBelow* end,
+                    const V* factor, const V* reduced, V* out) {
+  V sum[kCount];
+  for (int e = 0; e < kCount; ++e) sum[e] = matrix[e];
+  sum[kCount - 1] += more;
+  for (; below < end; ++below) {
+    const V a = factor[below->row];
+    const V* row = reduced + below->row;
+    for (int e = 0; e < kCount; ++e) sum[e] -= a * row[e];
+  }
+  for (int e = 0; e < kCount; ++e) out[e] = sum[e];
+}
+
+// The rows of t.mass_matrix with the gains on its diagonal: t.factor gets those of L off the diagonal, inv_d
+// 1 / D. t.dv becomes (L^T D L)^-1 t.dv.
 template <class L>
-void factor(TreeBatch<L>& t) {
+void factor_and_solve(TreeBatch<L>& t) {
   using V = typename L::V;
   using S = typename L::Scalar;
   const Tree& tree = *t.tree;
   const int32_t *rows = tree.row.data(), *depths = tree.depth.data();
-  const int16_t* path = tree.path.data();
+  const V none{};
   for (int k = tree.num_coords - 1; k >= 0; --k) {
-    const int depth = depths[k];
-    V* row = t.factor + rows[k];
-    const V inv_d = S(1) / row[depth];
-    t.coord[k].inv_d = inv_d;
-    for (int d = depth - 1; d >= 0; --d) {
-      const V a = row[d] * inv_d;
-      V* other = t.factor + rows[path[rows[k] + d]];
-      for (int e = 0; e <= d; ++e) other[e] -= a * row[e];
-      row[d] = a;
+    const int depth = depths[k], row = rows[k];
+    const TreeBelow *below = tree.below.data() + tree.first_below[static_cast<size_t>(k)],
+                    *end = tree.below.data() + tree.first_below[static_cast<size_t>(k) + 1];
+    const V *factor = t.factor + depth, *reduced = t.reduced, *from = t.mass_matrix + row;
+    V *to = t.reduced + row, x = t.dv[k];
+    for (const TreeBelow* b = below; b < end; ++b) x -= factor[b->row] * t.dv[b->coord];
+    t.dv[k] = x;
+    int left = depth + 1;
+    for (; left > 8; left -= 8, from += 8, reduced += 8, to += 8)
+      reduce_entries<8>(from, none, below, end, factor, reduced, to);
+    const auto rest = [&](auto count) {
+      reduce_entries<count.value>(from, t.coord[k].gain, below, end, factor, reduced, to);
+    };
+    switch (left) {
+      case 1:
+        rest(std::integral_constant<int, 1>{});
+        break;
+      case 2:
+        rest(std::integral_constant<int, 2>{});
+        break;
+      case 3:
+        rest(std::integral_constant<int, 3>{});
+        break;
+      case 4:
+        rest(std::integral_constant<int, 4>{});
+        break;
+      case 5:
+        rest(std::integral_constant<int, 5>{});
+        break;
+      case 6:
+        rest(std::integral_constant<int, 6>{});
+        break;
+      case 7:
+        rest(std::integral_constant<int, 7>{});
+        break;
+      default:
+        rest(std::integral_constant<int, 8>{});
     }
-  }
-}
-
-// dv <- L^-1 D^-1 L^-T dv.
-template <class L>
-void solve(TreeBatch<L>& t) {
-  using V = typename L::V;
-  const Tree& tree = *t.tree;
-  const int32_t *rows = tree.row.data(), *depths = tree.depth.data();
-  const int16_t* path = tree.path.data();
-  for (int k = tree.num_coords - 1; k >= 0; --k) {
-    const V right = t.coord[k].dv;
-    const V* row = t.factor + rows[k];
-    for (int d = depths[k] - 1; d >= 0; --d) t.coord[path[rows[k] + d]].dv -= row[d] * right;
+    const V inv_d = S(1) / t.reduced[row + depth];
+    t.coord[k].inv_d = inv_d;
+    for (int d = 0; d < depth; ++d) t.factor[row + d] = t.reduced[row + d] * inv_d;
   }
   for (int k = 0; k < tree.num_coords; ++k) {
-    V x = t.coord[k].dv * t.coord[k].inv_d;
+    V x = t.dv[k] * t.coord[k].inv_d;
     const V* row = t.factor + rows[k];
-    for (int d = 0; d < depths[k]; ++d) x -= row[d] * t.coord[path[rows[k] + d]].dv;
-    t.coord[k].dv = x;
+    const int16_t* path = tree.path.data() + rows[k];
+    for (int d = 0; d < depths[k]; ++d) x -= row[d] * t.dv[path[d]];
+    t.dv[k] = x;
   }
 }
 

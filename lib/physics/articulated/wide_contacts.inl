@@ -58,6 +58,7 @@ struct WideContacts {
     int32_t lanes, first_point, most;      // most: points of a lane
     V sqrt_mass_a, sqrt_mass_b, mu;        // sqrt(1/m)
     V linear;                              // 1/m_a + 1/m_b
+    S *row_a[kWide], *row_b[kWide];        // of the sums
   };
 
   Point* points = nullptr;
@@ -91,6 +92,12 @@ struct WideContacts {
     for (int l = 0; l < kWide; ++l)
       out[l] = reinterpret_cast<S*>(sum + (bodies[l] < 0 ? rest : first_segment + bodies[l]));
   }
+  void place_rows(Row* sum) {
+    for (int32_t g = 0; g < num_groups; ++g) {
+      rows_of(groups[g].body_a, sum, groups[g].row_a);
+      rows_of(groups[g].body_b, sum, groups[g].row_b);
+    }
+  }
   // After the axes, turns, b and the start's impulses of a point are in.
   void prepare(const Group& g, Point* p, S softness) const;
   // No impulse in this lane.
@@ -99,9 +106,17 @@ struct WideContacts {
                  &p->follow[0], &p->follow[1], &p->b[0]})
       L::set(v, lane, S(0));
   }
-  void warm_start(Row* sum) const;
+  void warm_start(Row* sum);  // which has the sums from now on
+  // visit(body) for every body of a pair, perhaps more than once.
+  template <class Visit>
+  void each_body(const Visit& visit) const {
+    each_pair([&](int32_t a, int32_t b) {
+      visit(a);
+      if (b >= 0) visit(b);
+    });
+  }
   // As ContactSolver::sweep.
-  S sweep(const S* beta, Row* sum, S* impulse_square);
+  S sweep(const S* beta, S* impulse_square);
 
  private:
   static constexpr int32_t kNoLevel = 1 << 20;
@@ -219,15 +234,13 @@ void WideContacts<S>::prepare(const Group& g, Point* p, S softness) const {
 }
 
 template <class S>
-void WideContacts<S>::warm_start(Row* sum) const {
+void WideContacts<S>::warm_start(Row* sum) {
+  place_rows(sum);
   for (int32_t k = 0; k < num_groups; ++k) {
     const Group& g = groups[k];
-    S *row_a[kWide], *row_b[kWide];
-    rows_of(g.body_a, sum, row_a);
-    rows_of(g.body_b, sum, row_b);
     V a[kWide], b[kWide];
-    L::gather(row_a, kWide, a);
-    L::gather(row_b, kWide, b);
+    L::gather(g.row_a, kWide, a);
+    L::gather(g.row_b, kWide, b);
     for (int32_t i = 0; i < g.most; ++i) {
       const Point& p = points[g.first_point + i];
       for (int f = 0; f < 3; ++f)
@@ -239,24 +252,21 @@ void WideContacts<S>::warm_start(Row* sum) const {
           b[3 + r] += p.turn_b[f][r] * p.impulse[f];
         }
     }
-    L::scatter(a, kWide, kWide, row_a);
-    L::scatter(b, kWide, kWide, row_b);
+    L::scatter(a, kWide, kWide, g.row_a);
+    L::scatter(b, kWide, kWide, g.row_b);
   }
 }
 
 // One pass over the groups.
 template <class S>
-S WideContacts<S>::sweep(const S* beta, Row* sum, S* impulse_square) {
+S WideContacts<S>::sweep(const S* beta, S* impulse_square) {
   V delta_square{}, square{};
   const V none{};
   for (int32_t k = 0; k < num_groups; ++k) {
     const Group& g = groups[k];
-    S *row_a[kWide], *row_b[kWide];
-    rows_of(g.body_a, sum, row_a);
-    rows_of(g.body_b, sum, row_b);
     V a[kWide], b[kWide], slip[3], push[3] = {};  // push: impulse of all points
-    L::gather(row_a, kWide, a);
-    L::gather(row_b, kWide, b);
+    L::gather(g.row_a, kWide, a);
+    L::gather(g.row_b, kWide, b);
     for (int r = 0; r < 3; ++r) slip[r] = g.sqrt_mass_a * a[r] - g.sqrt_mass_b * b[r];
     for (int32_t i = 0; i < g.most; ++i) {
       Point& p = points[g.first_point + i];
@@ -307,8 +317,8 @@ S WideContacts<S>::sweep(const S* beta, Row* sum, S* impulse_square) {
       a[r] += g.sqrt_mass_a * push[r];
       b[r] -= g.sqrt_mass_b * push[r];
     }
-    L::scatter(a, kWide, kWide, row_a);
-    L::scatter(b, kWide, kWide, row_b);
+    L::scatter(a, kWide, kWide, g.row_a);
+    L::scatter(b, kWide, kWide, g.row_b);
   }
   *impulse_square = total(square);
   return total(delta_square);
