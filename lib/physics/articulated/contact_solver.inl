@@ -66,6 +66,8 @@ struct ContactSolver {
     S inv_t;            // a step that is short enough for both tangents
     S b[3];             // wanted change of velocity, b - J v_free
     S impulse[3];       // normal, tangents, N s
+    S delta[3];         // change of the last sweep
+    S direction[3];     // conjugate
     S softness, mu;
     int32_t first, count;  // rows and segments of this point
     int32_t axes;          // 3, or 1 without friction
@@ -77,10 +79,8 @@ struct ContactSolver {
   int32_t* moved = nullptr;                                       // [num_segments] those of any point
   uint8_t* is_moved = nullptr;                                    // [num_segments]
   Row *sum = nullptr, *previous = nullptr, *direction = nullptr;  // [num_segments]
-  S (*delta)[3] = nullptr;                                        // [max_points]
-  S (*point_direction)[3] = nullptr;
-  int32_t count = 0, num_segments = 0, most_segments = 0;  // most_segments: of a point
-  WideContacts<S> wide;                                    // points of piles, beside the others
+  int32_t count = 0, num_segments = 0, most_segments = 0;         // most_segments: of a point
+  WideContacts<S> wide;                                           // points of piles, beside the others
   S softness = 0;
   int32_t num_moved = 0;
   int32_t levels = 0;  // of the pile, if there is one (wide_contacts.inl)
@@ -98,8 +98,6 @@ struct ContactSolver {
     sum = arena.make<Row>(static_cast<size_t>(segment_count) + 1);  // the last for what is at rest: stays 0
     previous = arena.make<Row>(static_cast<size_t>(segment_count));
     direction = arena.make<Row>(static_cast<size_t>(segment_count));
-    delta = arena.make<S[3]>(n);
-    point_direction = arena.make<S[3]>(n);
     wide.carve(arena, max_points, bodies);
     wide.first_segment = segment_count - bodies;
     wide.rest = segment_count;
@@ -160,9 +158,15 @@ struct ContactSolver {
     out[2] = b[0] + b[1];
   }
   void list_moved();
-  // A point's update with its kCount segments, 0: any number; the changes go to `change`.
+  // What an update comes to.
+  struct Outcome {
+    S delta_square, square;
+  };
+  // A point's update; kCount segments, 0: any number.
   template <int kCount>
-  [[gnu::always_inline]] void update(Point* p, S* change);
+  [[gnu::always_inline]] Outcome update(Point* p);
+  template <int kCount>
+  [[gnu::always_inline]] Outcome update_normal(Point* p);
   // First a step of `beta` along each point's conjugate direction; null: none.
   S sweep(const S* beta, S* impulse_square);
   S sweep_all(const S* beta, S* impulse_square) {
@@ -221,7 +225,7 @@ void ContactSolver<S>::warm_start(Point* p, const S* impulse) {
 
 template <class S>
 template <int kCount>
-inline void ContactSolver<S>::update(Point* point, S* change) {
+inline typename ContactSolver<S>::Outcome ContactSolver<S>::update(Point* point) {
   Point& p = *point;
   const int32_t number = kCount > 0 ? kCount : p.count;
   const Row* z = rows + 3 * p.first;
@@ -235,17 +239,18 @@ inline void ContactSolver<S>::update(Point* point, S* change) {
   }
   S v[3];
   reduce_three(r, v);
-  S n = p.impulse[0] + (p.b[0] - v[0] - p.softness * p.impulse[0]) * p.inv_n;
+  const S last[3] = {p.impulse[0], p.impulse[1], p.impulse[2]};
+  S n = last[0] + (p.b[0] - v[0] - p.softness * last[0]) * p.inv_n;
   n = n < 0 ? S(0) : n;
-  const S d0 = n - p.impulse[0];
+  const S d0 = n - last[0];
   const S e1 = p.b[1] - v[1] - p.A[3] * d0, e2 = p.b[2] - v[2] - p.A[4] * d0;
   // stick: both tangents at once; slip: a gradient step back onto the cone
-  S t1 = p.impulse[1] + (p.inv_tangents[0] * e1 + p.inv_tangents[2] * e2);
-  S t2 = p.impulse[2] + (p.inv_tangents[2] * e1 + p.inv_tangents[1] * e2);
+  S t1 = last[1] + (p.inv_tangents[0] * e1 + p.inv_tangents[2] * e2);
+  S t2 = last[2] + (p.inv_tangents[2] * e1 + p.inv_tangents[1] * e2);
   const S bound = p.mu * n;
   if (t1 * t1 + t2 * t2 > bound * bound) {
-    t1 = p.impulse[1] + p.inv_t * e1;
-    t2 = p.impulse[2] + p.inv_t * e2;
+    t1 = last[1] + p.inv_t * e1;
+    t2 = last[2] + p.inv_t * e2;
     const S square = t1 * t1 + t2 * t2;
     if (square > bound * bound) {
       const S shrink = bound / std::sqrt(square);
@@ -253,17 +258,46 @@ inline void ContactSolver<S>::update(Point* point, S* change) {
       t2 *= shrink;
     }
   }
-  const S d1 = t1 - p.impulse[1], d2 = t2 - p.impulse[2];
-  p.impulse[0] = n;
-  p.impulse[1] = t1;
-  p.impulse[2] = t2;
+  const S d1 = t1 - last[1], d2 = t2 - last[2];
   for (int32_t k = 0; k < number; ++k) {
     Row& s = sum[segment[k]];
     s = (kCount > 0 ? kept[k] : s) + (z[3 * k] * d0 + z[3 * k + 1] * d1 + z[3 * k + 2] * d2);
   }
-  change[0] = d0;
-  change[1] = d1;
-  change[2] = d2;
+  p.impulse[0] = n;
+  p.impulse[1] = t1;
+  p.impulse[2] = t2;
+  p.delta[0] = d0;
+  p.delta[1] = d1;
+  p.delta[2] = d2;
+  return {d0 * d0 + d1 * d1 + d2 * d2, n * n + t1 * t1 + t2 * t2};
+}
+
+// Without friction.
+template <class S>
+template <int kCount>
+inline typename ContactSolver<S>::Outcome ContactSolver<S>::update_normal(Point* point) {
+  Point& p = *point;
+  const int32_t number = kCount > 0 ? kCount : p.count;
+  const Row* z = rows + 3 * p.first;
+  const int32_t* segment = segments + p.first;
+  Row kept[kCount > 0 ? kCount : 1];
+  Row r{};
+  for (int32_t k = 0; k < number; ++k) {
+    const Row s = sum[segment[k]];
+    if (kCount > 0) kept[k] = s;
+    r += z[3 * k] * s;
+  }
+  const S last = p.impulse[0];
+  S n = last + (p.b[0] - reduce(r) - p.softness * last) * p.inv_n;
+  n = n < 0 ? S(0) : n;
+  const S d = n - last;
+  for (int32_t k = 0; d != 0 && k < number; ++k) {
+    Row& s = sum[segment[k]];
+    s = (kCount > 0 ? kept[k] : s) + z[3 * k] * d;
+  }
+  p.impulse[0] = n;
+  p.delta[0] = d;
+  return {d * d, n * n};
 }
 
 // One pass over all points, after the step along their directions. Returns the sum of the squared changes of
@@ -271,47 +305,46 @@ inline void ContactSolver<S>::update(Point* point, S* change) {
 template <class S>
 S ContactSolver<S>::sweep(const S* beta, S* impulse_square) {
   S delta_square = 0, square = 0;
-  for (int32_t i = 0; i < count; ++i) {
-    Point& p = points[i];
-    S* d = delta[i];
-    for (int f = 0; beta && f < 3; ++f) {
-      S& way = point_direction[i][f];
-      p.impulse[f] += *beta * way;
-      way = *beta * way + d[f];
-    }
-    if (p.axes == 1) {
-      const Row* z = rows + 3 * p.first;
-      const int32_t* segment = segments + p.first;
-      Row r{};
-      for (int32_t k = 0; k < p.count; ++k) r += z[3 * k] * sum[segment[k]];
-      S n = p.impulse[0] + (p.b[0] - reduce(r) - p.softness * p.impulse[0]) * p.inv_n;
-      n = n < 0 ? S(0) : n;
-      d[0] = n - p.impulse[0];
-      d[1] = d[2] = 0;
-      p.impulse[0] = n;
-      for (int32_t k = 0; k < p.count; ++k) sum[segment[k]] += z[3 * k] * d[0];
-      delta_square += d[0] * d[0];
-      square += n * n;
-      continue;
-    }
-    switch (p.count) {
+  const S step = beta ? *beta : S(0);
+  for (Point *p = points, *end = points + count; p < end; ++p) {
+    const bool rough = p->axes == 3;
+    if (beta)
+      for (int f = 0; f < (rough ? 3 : 1); ++f) {
+        const S way = p->direction[f];
+        p->impulse[f] += step * way;
+        p->direction[f] = step * way + p->delta[f];
+      }
+    Outcome outcome;
+    switch (rough ? p->count : -p->count) {
       case 1:
-        update<1>(&p, d);
+        outcome = update<1>(p);
         break;
       case 2:
-        update<2>(&p, d);
+        outcome = update<2>(p);
         break;
       case 3:
-        update<3>(&p, d);
+        outcome = update<3>(p);
         break;
       case 4:
-        update<4>(&p, d);
+        outcome = update<4>(p);
+        break;
+      case -1:
+        outcome = update_normal<1>(p);
+        break;
+      case -2:
+        outcome = update_normal<2>(p);
+        break;
+      case -3:
+        outcome = update_normal<3>(p);
+        break;
+      case -4:
+        outcome = update_normal<4>(p);
         break;
       default:
-        update<0>(&p, d);
+        outcome = rough ? update<0>(p) : update_normal<0>(p);
     }
-    delta_square += d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-    square += p.impulse[0] * p.impulse[0] + p.impulse[1] * p.impulse[1] + p.impulse[2] * p.impulse[2];
+    delta_square += outcome.delta_square;
+    square += outcome.square;
   }
   *impulse_square = square;
   return delta_square;
@@ -355,7 +388,7 @@ void ContactSolver<S>::solve(int32_t iterations) {
       previous[moved[m]] = sum[moved[m]];
     }
     for (int32_t i = 0; i < count; ++i)
-      point_direction[i][0] = point_direction[i][1] = point_direction[i][2] = 0;
+      for (S& way : points[i].direction) way = 0;
   };
   restart();
   S last_square = 0, beta = 0;

@@ -232,13 +232,17 @@ void BatchStepper<L>::detect_contacts(int32_t world) {
       const Vec3& base = w.bases[member.articulation].X.p;
       const float origin[3] = {static_cast<float>(base.x), static_cast<float>(base.y),
                                static_cast<float>(base.z)};
-      for (size_t k = 0; k < tree.shape_links.size(); ++k) {
-        if (tree.shape_links[k] < 0 && !tree.free_base) continue;
-        Bound& bound = bounds[static_cast<size_t>(member.first_shape) + k];
+      const auto shapes = static_cast<int32_t>(tree.shape_links.size());
+      const int32_t* links = tree.shape_links.data();
+      const uint8_t* slender = tree.shape_slender.data();
+      Bound* bound = bounds + member.first_shape;
+      for (int32_t k = 0; k < shapes; ++k, ++bound) {
+        if (links[k] < 0 && !tree.free_base) continue;
+        const V *center = batch->center[k], *axis = batch->axis[k];
         for (int r = 0; r < 3; ++r)
-          bound.center[r] = origin[r] + static_cast<float>(L::get(batch->center[k][r], lane));
-        if (!tree.shape_slender[k]) continue;
-        for (int r = 0; r < 3; ++r) bound.axis[r] = static_cast<float>(L::get(batch->axis[k][r], lane));
+          bound->center[r] = origin[r] + static_cast<float>(L::get(center[r], lane));
+        if (!slender[k]) continue;
+        for (int r = 0; r < 3; ++r) bound->axis[r] = static_cast<float>(L::get(axis[r], lane));
       }
     }
   }
@@ -650,14 +654,15 @@ template <class L>
 void BatchStepper<L>::apply_impulses(TreeBatch<L>& t) {
   const Tree& tree = *t.tree;
   const Mask lanes = L::mask(t.pushed);
+  V* const push = t.push;
   for (int32_t c = 0; c < tree.num_coords; ++c) {
     CoordWork<V>& coord = t.coord[c];
     const int32_t row = tree.row[static_cast<size_t>(c)], depth = tree.depth[static_cast<size_t>(c)];
     const V* factor = t.factor + row;
     const int16_t* path = tree.path.data() + row;
-    V x = t.push[c] * coord.inv_sqrt_d;
-    for (int32_t d = 0; d < depth; ++d) x -= factor[d] * t.push[path[d]];
-    t.push[c] = x;
+    V x = push[c] * coord.inv_sqrt_d;
+    for (int32_t d = 0; d < depth; ++d) x -= factor[d] * push[path[d]];
+    push[c] = x;
     coord.v1 = L::select(lanes, V(coord.v1 + x), coord.v1);
   }
 }

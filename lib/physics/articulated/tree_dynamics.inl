@@ -535,17 +535,29 @@ void composite_inertias(TreeBatch<L>& t) {
 }
 
 // kCount entries of a row of D L, from those of M: less what the coordinates below take, the last of them
-// first. `more` is added to the last entry. The sums stay in registers.
+// first. The sums stay in registers. The row's last entries take `more` on the diagonal, and its entry of
+// `right`, of the right side, goes the same way.
 template <int kCount, class V>
-void reduce_entries(const V* matrix, const V& more, const TreeBelow* below, const TreeBelow* end,
-                    const V* factor, const V* reduced, V* out) {
+void reduce_entries(const V* matrix, const V* more, const TreeBelow* below, const TreeBelow* end,
+                    const V* factor, const V* reduced, V* out, const V* rights, V* right) {
   V sum[kCount];
   for (int e = 0; e < kCount; ++e) sum[e] = matrix[e];
-  sum[kCount - 1] += more;
-  for (; below < end; ++below) {
-    const V a = factor[below->row];
-    const V* row = reduced + below->row;
-    for (int e = 0; e < kCount; ++e) sum[e] -= a * row[e];
+  if (more) {
+    sum[kCount - 1] += *more;
+    V x = *right;
+    for (; below < end; ++below) {
+      const V a = factor[below->row];
+      const V* row = reduced + below->row;
+      for (int e = 0; e < kCount; ++e) sum[e] -= a * row[e];
+      x -= a * rights[below->coord];
+    }
+    *right = x;
+  } else {
+    for (; below < end; ++below) {
+      const V a = factor[below->row];
+      const V* row = reduced + below->row;
+      for (int e = 0; e < kCount; ++e) sum[e] -= a * row[e];
+    }
   }
   for (int e = 0; e < kCount; ++e) out[e] = sum[e];
 }
@@ -558,20 +570,18 @@ void factor_and_solve(TreeBatch<L>& t) {
   using S = typename L::Scalar;
   const Tree& tree = *t.tree;
   const int32_t *rows = tree.row.data(), *depths = tree.depth.data();
-  const V none{};
+  V* const dv = t.dv;
   for (int k = tree.num_coords - 1; k >= 0; --k) {
     const int depth = depths[k], row = rows[k];
     const TreeBelow *below = tree.below.data() + tree.first_below[static_cast<size_t>(k)],
                     *end = tree.below.data() + tree.first_below[static_cast<size_t>(k) + 1];
     const V *factor = t.factor + depth, *reduced = t.reduced, *from = t.mass_matrix + row;
-    V *to = t.reduced + row, x = t.dv[k];
-    for (const TreeBelow* b = below; b < end; ++b) x -= factor[b->row] * t.dv[b->coord];
-    t.dv[k] = x;
+    V* to = t.reduced + row;
     int left = depth + 1;
     for (; left > 8; left -= 8, from += 8, reduced += 8, to += 8)
-      reduce_entries<8>(from, none, below, end, factor, reduced, to);
+      reduce_entries<8, V>(from, nullptr, below, end, factor, reduced, to, nullptr, nullptr);
     const auto rest = [&](auto count) {
-      reduce_entries<count.value>(from, t.coord[k].gain, below, end, factor, reduced, to);
+      reduce_entries<count.value>(from, &t.coord[k].gain, below, end, factor, reduced, to, dv, dv + k);
     };
     switch (left) {
       case 1:
@@ -598,16 +608,17 @@ void factor_and_solve(TreeBatch<L>& t) {
       default:
         rest(std::integral_constant<int, 8>{});
     }
-    const V inv_d = S(1) / t.reduced[row + depth];
+    const V *whole = t.reduced + row, inv_d = S(1) / whole[depth];
+    V* part = t.factor + row;
     t.coord[k].inv_d = inv_d;
-    for (int d = 0; d < depth; ++d) t.factor[row + d] = t.reduced[row + d] * inv_d;
+    for (int d = 0; d < depth; ++d) part[d] = whole[d] * inv_d;
   }
   for (int k = 0; k < tree.num_coords; ++k) {
-    V x = t.dv[k] * t.coord[k].inv_d;
+    V x = dv[k] * t.coord[k].inv_d;
     const V* row = t.factor + rows[k];
     const int16_t* path = tree.path.data() + rows[k];
-    for (int d = 0; d < depths[k]; ++d) x -= row[d] * t.dv[path[d]];
-    t.dv[k] = x;
+    for (int d = 0; d < depths[k]; ++d) x -= row[d] * dv[path[d]];
+    dv[k] = x;
   }
 }
 

@@ -95,17 +95,17 @@ void BroadPhase::each_row(const Scene& scene, const Use& use) const {
     for (int32_t k = run.first; k < run.first + run.count; ++k) {
       const ShapePair& pair = scene.pairs[static_cast<size_t>(k)];
       const int32_t other = pair.b - first_other_;
-      const bool whole = pair.a < first_other_ && other >= 0;
-      const bool goes_on =
-          row.count > 0 && (whole ? row.kind == Row::kOthers && row.shape == pair.a &&
-                                        row.shift + row.count < 64 && other % 64 == row.shift + row.count
-                                  : row.kind == Row::kAny);
-      if (goes_on) {
+      const bool link = pair.a < first_other_, whole = link && other >= 0,
+                 plane = !whole && other >= 0 && scene.shapes[static_cast<size_t>(pair.b)].radius < 0;
+      const Row::Kind kind = whole ? Row::kOthers : plane ? Row::kPlane : link ? Row::kLink : Row::kAny;
+      const bool follows =
+          row.shape == pair.a && row.shift + row.count < 64 && other % 64 == row.shift + row.count;
+      if (row.count > 0 && row.kind == kind && !plane && (!whole || follows)) {
         ++row.count;
         continue;
       }
       if (row.count > 0) use(row);
-      row = {Row::kAny, k, 1, -1, 0, 0, -1, -1};
+      row = {kind, k, 1, -1, 0, 0, -1, -1};
       if (whole) row = {Row::kOthers, k, 1, pair.a, pair.a * words_ + other / 64, other % 64, -1, -1};
     }
     use(row);
@@ -336,8 +336,7 @@ void BroadPhase::search(const Scene& scene, const PairList* listed, Visit visit,
     count = 0;
   };
   const auto try_pair = [&](int32_t index) {
-    const Pair& pair = pairs_[index];
-    if (pair.plane < 0 ? boxes_meet(pair.a, pair.b) : on_plane(pair)) add(index);
+    if (boxes_meet(pairs_[index].a, pairs_[index].b)) add(index);
   };
   int32_t marked[2] = {-1, -1};  // the articulations that neighbours_ is about
   int32_t at = 0;                // in the list of those to search
@@ -357,10 +356,16 @@ void BroadPhase::search(const Scene& scene, const PairList* listed, Visit visit,
       }
       for (int32_t k = row->first; k < end; ++k)
         if (row->owner < 0 || neighbours_[pairs_[k].b] != 0) try_pair(k);
-    } else if (listed) {
-      for (; at < listed->count && listed->pairs[at] < end; ++at) try_pair(listed->pairs[at]);
-    } else {
+    } else if (row->kind == Row::kLink) {
+      at += row->count;
       for (int32_t k = row->first; k < end; ++k) try_pair(k);
+    } else {
+      const bool plane = row->kind == Row::kPlane;
+      for (int32_t k = row->first; k < end; ++k) {
+        if (listed && !(at < listed->count && listed->pairs[at] < end)) break;
+        const int32_t pair = listed ? listed->pairs[at++] : k;
+        if (plane ? on_plane(pairs_[pair]) : boxes_meet(pairs_[pair].a, pairs_[pair].b)) add(pair);
+      }
     }
   }
   visit_near(list, count, visit, context);

@@ -86,7 +86,9 @@ class BroadPhase {
   // Pairs in a row.
   struct Row {
     enum Kind : int32_t {
-      kAny,     // of all sorts
+      kPlane,   // one, with a plane
+      kLink,    // a shape of an articulation with shapes of it, or of another without a run
+      kAny,     // no link among them
       kOthers,  // a shape of an articulation with others that stand in a row too, all in one word of near_
       kRun      // a run of a shape with an articulation
     } kind;
