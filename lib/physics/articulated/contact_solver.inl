@@ -59,15 +59,18 @@ template <class S>
 struct ContactSolver {
   typedef S Row __attribute__((vector_size(sizeof(S) * kSegment)));
 
+  // A number each of the normal and the tangents; the fourth is 0.
+  typedef S Axes __attribute__((vector_size(sizeof(S) * 4)));
+
   struct Point {
-    S A[6];             // J M^-1 J^T: nn, tt, uu, nt, nu, tu
-    S inv_n;            // of nn with softness
-    S inv_tangents[3];  // of the tangents' block: tt, uu, tu
-    S inv_t;            // a step that is short enough for both tangents
-    S b[3];             // wanted change of velocity, b - J v_free
-    S impulse[3];       // normal, tangents, N s
-    S delta[3];         // change of the last sweep
-    S direction[3];     // conjugate
+    Axes b;                    // wanted change of velocity, b - J v_free
+    Axes impulse;              // N s
+    Axes delta;                // change of the last sweep
+    Axes direction;            // conjugate
+    Axes coupling;             // of A = J M^-1 J^T: -, nt, nu
+    Axes inv_same, inv_other;  // of the tangents' block: -, tt, uu; -, tu, tu
+    S inv_n;                   // of nn with softness
+    S inv_t;                   // a step that is short enough for both tangents
     S softness, mu;
     int32_t first, count;  // rows and segments of this point
     int32_t axes;          // 3, or 1 without friction
@@ -142,20 +145,21 @@ struct ContactSolver {
     return t;
   }
   // Three sums at once, each summed in the order of reduce().
-  static void reduce_three(const Row* r, S* out) {
-    typedef S Half __attribute__((vector_size(sizeof(S) * 4)));
-    Half h[3];
+  static Axes reduce_three(const Row* r) {
+    Axes h[3];
     for (int f = 0; f < 3; ++f)
       h[f] =
           __builtin_shufflevector(r[f], r[f], 0, 1, 2, 3) + __builtin_shufflevector(r[f], r[f], 4, 5, 6, 7);
     // (0 + 2, 1 + 3) of rows 0 and 1 side by side, then of row 2
-    const Half a =
+    const Axes a =
         __builtin_shufflevector(h[0], h[1], 0, 1, 4, 5) + __builtin_shufflevector(h[0], h[1], 2, 3, 6, 7);
-    const Half b =
+    const Axes b =
         __builtin_shufflevector(h[2], h[2], 0, 1, 0, 1) + __builtin_shufflevector(h[2], h[2], 2, 3, 2, 3);
-    out[0] = a[0] + a[1];
-    out[1] = a[2] + a[3];
-    out[2] = b[0] + b[1];
+    return __builtin_shufflevector(a, b, 0, 2, 4, 4) + __builtin_shufflevector(a, b, 1, 3, 5, 5);
+  }
+  static S square_of(const Axes& x) {
+    const Axes y = x * x;
+    return y[0] + y[1] + y[2];
   }
   void list_moved();
   // What an update comes to.
@@ -192,24 +196,20 @@ void ContactSolver<S>::prepare(Point* p) {
   // ground) no impulse changes anything: none is given. 1/kg; the heaviest arm is far above.
   constexpr S kImmovable = S(1e-6);
   const auto inverse = [](S a) { return a > kImmovable ? 1 / a : S(0); };
-  p->A[0] = product(0, 0);
-  p->inv_n = p->A[0] > kImmovable ? 1 / (p->A[0] + p->softness) : S(0);
+  const S nn = product(0, 0);
+  p->inv_n = nn > kImmovable ? 1 / (nn + p->softness) : S(0);
   if (p->axes == 1) return;
-  p->A[1] = product(1, 1);
-  p->A[2] = product(2, 2);
-  p->A[3] = product(0, 1);
-  p->A[4] = product(0, 2);
-  p->A[5] = product(1, 2);
-  const S larger = p->A[1] > p->A[2] ? p->A[1] : p->A[2], coupling = p->A[5] < 0 ? -p->A[5] : p->A[5];
+  const S tt = product(1, 1), uu = product(2, 2), tu = product(1, 2);
+  p->coupling = Axes{0, product(0, 1), product(0, 2), 0};
+  const S larger = tt > uu ? tt : uu, coupling = tu < 0 ? -tu : tu;
   p->inv_t = inverse(larger + coupling);
-  const S determinant = p->A[1] * p->A[2] - p->A[5] * p->A[5];
+  const S determinant = tt * uu - tu * tu;
   if (larger > kImmovable && determinant > S(1e-6) * larger * larger) {
-    const S d = 1 / determinant;
-    p->inv_tangents[0] = p->A[2] * d;
-    p->inv_tangents[1] = p->A[1] * d;
-    p->inv_tangents[2] = -p->A[5] * d;
+    const S d = 1 / determinant, other = -tu * d;
+    p->inv_same = Axes{0, uu * d, tt * d, 0};
+    p->inv_other = Axes{0, other, other, 0};
   } else {
-    p->inv_tangents[0] = p->inv_tangents[1] = p->inv_t;
+    p->inv_same = Axes{0, p->inv_t, p->inv_t, 0};
   }
 }
 
@@ -237,39 +237,36 @@ inline typename ContactSolver<S>::Outcome ContactSolver<S>::update(Point* point)
     if (kCount > 0) kept[k] = s;
     for (int f = 0; f < 3; ++f) r[f] += z[3 * k + f] * s;
   }
-  S v[3];
-  reduce_three(r, v);
-  const S last[3] = {p.impulse[0], p.impulse[1], p.impulse[2]};
+  const Axes v = reduce_three(r), last = p.impulse;
   S n = last[0] + (p.b[0] - v[0] - p.softness * last[0]) * p.inv_n;
   n = n < 0 ? S(0) : n;
-  const S d0 = n - last[0];
-  const S e1 = p.b[1] - v[1] - p.A[3] * d0, e2 = p.b[2] - v[2] - p.A[4] * d0;
+  const Axes e = p.b - v - p.coupling * (n - last[0]);
+  const auto with_n = [&](Axes x) {
+    x[0] = n;
+    x[3] = 0;
+    return x;
+  };
   // stick: both tangents at once; slip: a gradient step back onto the cone
-  S t1 = last[1] + (p.inv_tangents[0] * e1 + p.inv_tangents[2] * e2);
-  S t2 = last[2] + (p.inv_tangents[2] * e1 + p.inv_tangents[1] * e2);
+  Axes t = last + (p.inv_same * e + p.inv_other * __builtin_shufflevector(e, e, 0, 2, 1, 3));
   const S bound = p.mu * n;
-  if (t1 * t1 + t2 * t2 > bound * bound) {
-    t1 = last[1] + p.inv_t * e1;
-    t2 = last[2] + p.inv_t * e2;
-    const S square = t1 * t1 + t2 * t2;
-    if (square > bound * bound) {
-      const S shrink = bound / std::sqrt(square);
-      t1 *= shrink;
-      t2 *= shrink;
-    }
+  const auto slip_square = [](const Axes& x) {
+    const Axes y = x * x;
+    return y[1] + y[2];
+  };
+  if (slip_square(t) > bound * bound) {
+    t = last + p.inv_t * e;
+    const S square = slip_square(t);
+    if (square > bound * bound) t *= bound / std::sqrt(square);
   }
-  const S d1 = t1 - last[1], d2 = t2 - last[2];
+  t = with_n(t);
+  const Axes d = t - last;
   for (int32_t k = 0; k < number; ++k) {
     Row& s = sum[segment[k]];
-    s = (kCount > 0 ? kept[k] : s) + (z[3 * k] * d0 + z[3 * k + 1] * d1 + z[3 * k + 2] * d2);
+    s = (kCount > 0 ? kept[k] : s) + (z[3 * k] * d[0] + z[3 * k + 1] * d[1] + z[3 * k + 2] * d[2]);
   }
-  p.impulse[0] = n;
-  p.impulse[1] = t1;
-  p.impulse[2] = t2;
-  p.delta[0] = d0;
-  p.delta[1] = d1;
-  p.delta[2] = d2;
-  return {d0 * d0 + d1 * d1 + d2 * d2, n * n + t1 * t1 + t2 * t2};
+  p.impulse = t;
+  p.delta = d;
+  return {square_of(d), square_of(t)};
 }
 
 // Without friction.
@@ -308,12 +305,11 @@ S ContactSolver<S>::sweep(const S* beta, S* impulse_square) {
   const S step = beta ? *beta : S(0);
   for (Point *p = points, *end = points + count; p < end; ++p) {
     const bool rough = p->axes == 3;
-    if (beta)
-      for (int f = 0; f < (rough ? 3 : 1); ++f) {
-        const S way = p->direction[f];
-        p->impulse[f] += step * way;
-        p->direction[f] = step * way + p->delta[f];
-      }
+    if (beta) {
+      const Axes way = step * p->direction;
+      p->impulse += way;
+      p->direction = way + p->delta;
+    }
     Outcome outcome;
     switch (rough ? p->count : -p->count) {
       case 1:
@@ -387,8 +383,7 @@ void ContactSolver<S>::solve(int32_t iterations) {
       direction[moved[m]] = Row{};
       previous[moved[m]] = sum[moved[m]];
     }
-    for (int32_t i = 0; i < count; ++i)
-      for (S& way : points[i].direction) way = 0;
+    for (int32_t i = 0; i < count; ++i) points[i].direction = Axes{};
   };
   restart();
   S last_square = 0, beta = 0;
