@@ -1,8 +1,13 @@
 #include "physics/articulated/sleep.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <utility>
+
+#include "base/simd.hpp"
 
 namespace rdm {
 namespace {
@@ -43,22 +48,43 @@ void place_points(const Contact* contacts, const int32_t* pairs, int32_t count, 
   }
 }
 
+// Its place from shape a's centre, and one number more.
+Float4 place_of(const WarmPoint& point) {
+  static_assert(sizeof(WarmPoint) >= offsetof(WarmPoint, p) + sizeof(Float4));
+  Float4 p;
+  std::memcpy(&p, reinterpret_cast<const char*>(&point) + offsetof(WarmPoint, p), sizeof p);
+  return p;
+}
+
 // For each point the nearest of the last substep's points of the same pair, measured from shape a's centre
-// (points slide with it); -1: none. Both lists are in the order of the pairs.
+// (points slide with it), the first of those as near; -1: none. Both lists are in the order of the pairs.
 void match_points(const WarmPoint* now, int32_t count, const WarmPoint* before, int32_t num_before,
                   int32_t* match) {
-  int32_t first = 0;
-  for (int32_t i = 0; i < count; ++i) {
-    const WarmPoint& here = now[i];
-    while (first < num_before && before[first].pair < here.pair) ++first;
-    float nearest = kWarmReach * kWarmReach;
-    match[i] = -1;
-    for (int32_t k = first; k < num_before && before[k].pair == here.pair; ++k) {
-      float square = 0;
-      for (int r = 0; r < 3; ++r) square += (before[k].p[r] - here.p[r]) * (before[k].p[r] - here.p[r]);
-      if (!(square < nearest)) continue;
-      nearest = square;
-      match[i] = k;
+  for (int32_t i = 0, first = 0, last = 0; i < count;) {
+    const int32_t pair = now[i].pair, begin = i;
+    while (i < count && now[i].pair == pair) match[i++] = -1;
+    for (first = last; first < num_before && before[first].pair < pair;) ++first;
+    for (last = first; last < num_before && before[last].pair == pair;) ++last;
+    float nearest[kMaxPairPoints];
+    std::fill_n(nearest, kMaxPairPoints, kWarmReach * kWarmReach);
+    for (int32_t k = first; k < last; k += kFloat4Lanes) {
+      Float4 there[4];
+      for (int l = 0; l < kFloat4Lanes; ++l) there[l] = place_of(before[std::min(k + l, last - 1)]);
+      transpose(there);
+      for (int32_t m = begin; m < i; ++m) {
+        Float4 square{};
+        for (int r = 0; r < 3; ++r) {
+          const Float4 d = there[r] - splat(now[m].p[r]);
+          square += d * d;
+        }
+        float& least = nearest[m - begin];
+        for (uint32_t bits = bits_of(square < splat(least)); bits != 0; bits &= bits - 1) {
+          const int l = std::countr_zero(bits);
+          if (!(square[l] < least)) continue;
+          least = square[l];
+          match[m] = k + l;
+        }
+      }
     }
   }
 }

@@ -122,6 +122,7 @@ class BatchStepper final : public Stepper {
   void solve_contacts_of(int32_t world, bool again);
   void add_contact_rows(typename ContactSolver<S>::Point* point, const Attachment& at, int32_t world, S sign,
                         const Vec3& p, const Vec3* axes);
+  // A point of a free body with another or with what is at rest.
   bool is_free(const Contact& contact) const {
     return attachments_[contact.shape_a].kind == Attachment::kBody &&
            (attachments_[contact.shape_b].kind == Attachment::kBody ||
@@ -148,6 +149,7 @@ class BatchStepper final : public Stepper {
   int32_t* member_segment_ = nullptr;  // [articulations] first segment
   int32_t* first_word_ = nullptr;      // [articulations] in WorldState::persistent, in numbers
   uint8_t* touched_ = nullptr;         // [articulations] by a contact of the world being solved
+  uint8_t* in_pile_ = nullptr;         // [contacts_max] of that world's points those in lanes
   S* path_ = nullptr;                  // [most coordinates][4] working memory of a contact's path
   const V** factor_rows_ = nullptr;    // [most coordinates] of its coordinates
   Quat* q_JL_ = nullptr;               // [num_links]
@@ -451,7 +453,7 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
   const bool piles = add_piles(world, again);
   for (int32_t i = 0; i < count; ++i) {
     const Contact& contact = w.contacts[i];
-    if (piles && is_free(contact)) continue;
+    if (piles && in_pile_[i]) continue;
     auto& point = contacts_.add(static_cast<S>(friction(w, w.contact_pairs[i])));
     Vec3 axes[3] = {contact.n, {}, {}};
     tangents(contact.n, &axes[1], &axes[2]);
@@ -471,7 +473,7 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
   }
   contacts_.solve(solver.iterations);
   for (int32_t i = 0, k = 0; i < count; ++i) {
-    if (piles && is_free(w.contacts[i])) continue;
+    if (piles && in_pile_[i]) continue;
     const Vec3& n = w.contacts[i].n;
     Vec3 t, u;
     tangents(n, &t, &u);
@@ -490,11 +492,14 @@ bool BatchStepper<L>::add_piles(int32_t world, bool again) {
   auto& wide = contacts_.wide;
   if (!wide.points || w.num_contacts < kWideFrom) return false;
   int32_t free = 0;
-  for (int32_t i = 0; i < w.num_contacts; ++i) free += is_free(w.contacts[i]);
+  for (int32_t i = 0; i < w.num_contacts; ++i) {
+    in_pile_[i] = is_free(w.contacts[i]);
+    free += in_pile_[i];
+  }
   if (free < kWideFrom) return false;
   for (int32_t i = 0, end = 0; i < w.num_contacts; i = end) {
     while (end < w.num_contacts && w.contact_pairs[end] == w.contact_pairs[i]) ++end;
-    if (is_free(w.contacts[i]))
+    if (in_pile_[i])
       wide.add(i, end - i, attachments_[w.contacts[i].shape_a].body,
                attachments_[w.contacts[i].shape_b].body);
   }
@@ -503,6 +508,7 @@ bool BatchStepper<L>::add_piles(int32_t world, bool again) {
   wide.warm_start(contacts_.sum);
   contacts_.levels = wide.levels([&](const auto& visit) {
     for (int32_t i = 0; i < w.num_contacts; ++i) {
+      if (in_pile_[i]) continue;
       const Attachment &a = attachments_[w.contacts[i].shape_a], &b = attachments_[w.contacts[i].shape_b];
       if (a.kind == Attachment::kTree && b.kind == Attachment::kBody) visit(b.body);
       if (b.kind == Attachment::kTree && a.kind == Attachment::kBody) visit(a.body);
@@ -605,17 +611,19 @@ template <class L>
 void BatchStepper<L>::read_pile_impulses(int32_t world) {
   WorldState& w = *worlds_[world];
   const auto& wide = contacts_.wide;
+  typedef double Doubles __attribute__((vector_size(sizeof(double) * kWide)));
   for (int32_t g = 0; g < wide.num_groups; ++g) {
     const auto& group = wide.groups[g];
-    for (int l = 0; l < group.lanes; ++l)
-      for (int32_t k = 0; k < group.count[l]; ++k) {
-        const auto& p = wide.points[group.first_point + k];
-        Vec3& out = w.impulses[group.first[l] + k];
-        out = {};
-        for (int f = 0; f < 3; ++f)
-          for (int r = 0; r < 3; ++r)
-            out[r] += static_cast<double>(p.axis[f][r][l]) * static_cast<double>(p.impulse[f][l]);
+    for (int32_t k = 0; k < group.most; ++k) {
+      const auto& p = wide.points[group.first_point + k];
+      Doubles out[3] = {};
+      for (int f = 0; f < 3; ++f) {
+        const Doubles impulse = __builtin_convertvector(p.impulse[f], Doubles);
+        for (int r = 0; r < 3; ++r) out[r] += __builtin_convertvector(p.axis[f][r], Doubles) * impulse;
       }
+      for (int l = 0; l < group.lanes; ++l)
+        if (k < group.count[l]) w.impulses[group.first[l] + k] = {out[0][l], out[1][l], out[2][l]};
+    }
   }
 }
 
@@ -979,6 +987,7 @@ void BatchStepper<L>::carve(Arena& arena) {
   member_segment_ = arena.make<int32_t>(scene_->def.articulations.size());
   first_word_ = arena.make<int32_t>(scene_->def.articulations.size());
   touched_ = arena.make<uint8_t>(scene_->def.articulations.size());
+  in_pile_ = arena.make<uint8_t>(static_cast<size_t>(scene_->def.solver.contacts_max));
   path_ = arena.make<S>(4 * static_cast<size_t>(most_coords));
   factor_rows_ = arena.make<const V*>(static_cast<size_t>(most_coords));
   R_JL_ = arena.make<Mat3>(static_cast<size_t>(scene_->num_links));

@@ -161,13 +161,6 @@ void size_bound(const SceneShape& shape, double factor, Bound* bound) {
   for (int k = 0; k < 3; ++k) bound->axis[k] *= static_cast<float>(factor);
 }
 
-bool warm_impulse(const WorldState& s, int32_t contact, Vec3* impulse) {
-  if (s.match[contact] < 0) return false;
-  const float* found = s.warm[s.match[contact]].impulse;
-  *impulse = {static_cast<double>(found[0]), static_cast<double>(found[1]), static_cast<double>(found[2])};
-  return true;
-}
-
 void store_impulses(WorldState* s) {
   for (int32_t i = 0; i < s->num_contacts; ++i)
     for (int k = 0; k < 3; ++k) s->next_warm[i].impulse[k] = static_cast<float>(s->impulses[i][k]);

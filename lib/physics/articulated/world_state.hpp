@@ -183,7 +183,12 @@ struct WorldState {
 void begin_step(const ArticulatedModel& model, WorldState* s);
 void predict_bodies(const ArticulatedModel& model, WorldState* s);
 // Impulse on shape a that the last substep gave at a point like this one; false: none.
-bool warm_impulse(const WorldState& s, int32_t contact, Vec3* impulse);
+inline bool warm_impulse(const WorldState& s, int32_t contact, Vec3* impulse) {
+  if (s.match[contact] < 0) return false;
+  const float* found = s.warm[s.match[contact]].impulse;
+  *impulse = {static_cast<double>(found[0]), static_cast<double>(found[1]), static_cast<double>(found[2])};
+  return true;
+}
 void store_impulses(WorldState* s);
 void integrate_bodies(const ArticulatedModel& model, WorldState* s);  // by v1, w1
 
