@@ -30,8 +30,9 @@ void set_body_bounds(const Scene& scene, const WorldState& s, Bound* bounds) {
     const Mat3& R_WB = s.free_bodies[shape.index].R;
     const Pose& X_BS = shape.def.X_LS;
     const SizedShape* own = s.sized ? s.sized + i : nullptr;
-    set_bound(shape, s.bodies[shape.index].X.p + R_WB * (own ? own->p : X_BS.p), R_WB * to_matrix(X_BS.q),
-              &bounds[at]);
+    const bool turned = X_BS.q.x != 0 || X_BS.q.y != 0 || X_BS.q.z != 0;
+    set_bound(shape, s.bodies[shape.index].X.p + R_WB * (own ? own->p : X_BS.p),
+              turned ? R_WB * to_matrix(X_BS.q) : R_WB, &bounds[at]);
     if (own) size_bound(shape, own->size_factor, &bounds[at]);
     if (s.sleep) s.body_bounds[i] = bounds[at];
   }

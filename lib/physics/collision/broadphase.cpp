@@ -250,11 +250,12 @@ bool BroadPhase::near(const Plane& plane, const Box& box) {
 }
 
 bool BroadPhase::on_plane(const Pair& pair) const {
-  const float *center = bounds_[pair.a].center, *half = extents_[pair.a].half;
+  const Bound& bound = bounds_[pair.a];
+  const Float4 half = half_sides(bound);
   const Plane& plane = planes_[pair.plane];
   double above = -plane.d, reach = 0;
   for (int k = 0; k < 3; ++k) {
-    above += plane.n[k] * static_cast<double>(center[k]);
+    above += plane.n[k] * static_cast<double>(bound.center[k]);
     reach += std::fabs(plane.n[k]) * static_cast<double>(half[k]);
   }
   return above < reach;
