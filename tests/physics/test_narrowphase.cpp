@@ -27,7 +27,7 @@ void add_body(SceneDef* def, ShapeKind kind, const Vec3& size, const Vec3& secon
   def->bodies.push_back(body);
 }
 
-// Two free hands, a body of every kind, one of them of two shapes; a plane and a table.
+// Two free hands, a body of every kind, one of them of two shapes; a plane, a table and a plank that leans.
 SceneDef everything(int32_t contacts_max) {
   test::TwoHands config;
   config.hand_hand = true;
@@ -45,6 +45,9 @@ SceneDef everything(int32_t contacts_max) {
   table.kind = ShapeKind::kBox;
   table.size = {0.3, 0.3, 0.05};
   table.X_LS.p = {0, -0.4, 0.35};
+  def.statics.push_back(table);
+  table.size = {0.02, 0.25, 0.1};
+  table.X_LS = {{0.1, -0.4, 0.55}, axis_angle({0.6, 0, 0.8}, 0.7)};
   def.statics.push_back(table);
   return def;
 }
@@ -96,10 +99,10 @@ class Rig final : public Collider::Poses {
     *R = to_matrix(poses_[static_cast<size_t>(shape)].q);
   }
 
-  Collider::Found collide() {
+  Collider::Found collide(const PairList* listed = nullptr) {
     asked_.assign(geoms_.size(), 0);
     touched_.assign(scene_.pairs.size(), 0);
-    return collider_.collide(scene_, *this, nullptr, contacts_.data(), pairs_.data(), touched_.data());
+    return collider_.collide(scene_, *this, listed, contacts_.data(), pairs_.data(), touched_.data());
   }
   double overlap(int32_t body) {
     asked_.assign(geoms_.size(), 0);
@@ -186,6 +189,42 @@ TEST(Collider, FindsWhatAskingEveryPairFinds) {
   EXPECT_GT(points, 2500);
   EXPECT_GT(robots, 1000);
   EXPECT_GT(planes, 20);
+}
+
+// As when bodies sleep: the pairs of every second body with others and with what is at rest are not listed.
+TEST(Collider, APairThatIsNotListedIsLeftOutAndNoOther) {
+  Rig rig(everything(4096));
+  const Scene& scene = rig.scene();
+  const auto rests = [&](int32_t shape) {
+    const SceneShape& s = scene.shapes[static_cast<size_t>(shape)];
+    return s.carrier == Carrier::kStatic || (s.carrier == Carrier::kBody && s.index % 2 == 0);
+  };
+  std::vector<int32_t> list;
+  std::vector<uint8_t> left_out(scene.pairs.size());
+  for (const PairRun& run : scene.runs)
+    for (int32_t k = run.first; run.shape < 0 && k < run.first + run.count; ++k) {
+      const ShapePair& pair = scene.pairs[static_cast<size_t>(k)];
+      left_out[static_cast<size_t>(k)] = rests(pair.a) && rests(pair.b);
+      if (!left_out[static_cast<size_t>(k)]) list.push_back(k);
+    }
+  const PairList listed = {list.data(), static_cast<int32_t>(list.size())};
+  Stream random(3, 0, Purpose::kTest);
+  int out = 0, in = 0;
+  for (int k = 0; k < 100; ++k) {
+    rig.scatter(random, 0.2);
+    const int32_t all = rig.collide().count;
+    std::vector<size_t> want;
+    for (int32_t i = 0; i < all; ++i)
+      if (!left_out[rig.pair(i)]) want.push_back(rig.pair(i));
+    const int32_t found = rig.collide(&listed).count;
+    std::vector<size_t> pairs;
+    for (int32_t i = 0; i < found; ++i) pairs.push_back(rig.pair(i));
+    EXPECT_EQ(pairs, want) << k;
+    in += found;
+    out += all - found;
+  }
+  EXPECT_GT(in, 500);
+  EXPECT_GT(out, 50);
 }
 
 // No point of a shape is outside of the capsule around it.
