@@ -27,13 +27,16 @@ struct TwoJoints {
       tree.depth.push_back(0);
       tree.path.push_back(static_cast<int16_t>(i));
     }
+    tree.first_below.resize(3);  // nothing hangs on either
     batch.tree = &tree;
     batch.model = model;
     batch.state = state;
     batch.work = work;
     batch.coord = coord;
     batch.mass_matrix = mass_matrix;
+    batch.reduced = reduced;
     batch.factor = factor;
+    batch.dv = dv;
   }
   void set(int i, const JointDef& joint) {
     model[i].kp = joint.kp;
@@ -58,7 +61,7 @@ struct TwoJoints {
   PersistentLink<double> state[2] = {};
   LinkWork<double> work[2] = {};
   CoordWork<double> coord[2] = {};
-  double mass_matrix[2] = {1, 1}, factor[2] = {}, feedforward[2] = {};
+  double mass_matrix[2] = {1, 1}, reduced[2] = {}, factor[2] = {}, dv[2] = {}, feedforward[2] = {};
   TreeBatch<L> batch = {};
 };
 
