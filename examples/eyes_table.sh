@@ -4,34 +4,37 @@
 # kept and stopped ones go on, so the script can be stopped and called again.
 #   bash examples/eyes_table.sh [OUT]     OUT: folder of the runs, default runs/eyes
 # Environment: REDMAN (the tool), TASKS ("hand_over_safe_finger hand_over_wall grasp"), WAYS ("student blind state end frozen
-# tuned"), SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), POINTS (of a cloud; 256), STEPS (control steps of what
-# learns from trial and error; else 2 million of a throw and 1 million of grasp), EPISODES (fresh ones; 300),
-# FLAGS (more for `redman train` and what it trains with eyes).
+# tuned"), SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), TEACHER (trained: the policy that comes with redman;
+# or a run folder), OBS (what the actor reads of the row; vision), STEPS (control steps of what learns from trial and
+# error; 2 million), EPISODES (fresh ones; 200), FLAGS (more for `redman train`).
 #
 #   state    PPO-Lag on the whole row        end      the same, from a cloud in the place of the object's state, end to end
-#   student  the policy that comes with redman teaches one that sees (DAgger), then PPO-Lag
-#   blind    the same, without the cloud     frozen   the encoder learns to tell things apart first, and stands still then
-#   tuned    as frozen, but it goes on to learn
+#   student  TEACHER teaches one that sees   frozen   the encoder learns to tell things apart first, and stands still then
+#            (DAgger), then PPO-Lag          tuned    as frozen, but it goes on to learn
+#   blind    the same, without the cloud
+#
+# Students see 256 points of three cameras of 96 x 96; those that need ten times the steps 128 points of 48 x 48, half the time.
 set -eu
 # shellcheck source=examples/runs.sh
 . "$(dirname "$0")/runs.sh"
 out=${1:-$root/runs/eyes}
 tasks=${TASKS:-hand_over_safe_finger hand_over_wall grasp} ways=${WAYS:-student blind state end frozen tuned}
-seeds=${SEEDS:-0 1 2} points=${POINTS:-256} episodes=${EPISODES:-300}
+seeds=${SEEDS:-0 1 2} teacher=${TEACHER:-trained} obs=${OBS:-vision} episodes=${EPISODES:-200}
 mkdir -p "$out"
 
 flags() {  # TASK WAY
-  local n=${STEPS:-2000000} few=300000 hide="--set actor_obs=vision"
-  if [ "$1" = grasp ]; then n=${STEPS:-1000000} few=150000; fi
-  local see="$hide --set encoder=64,128 --set encoder_points=$points"
-  local taught="--from trained --dagger 8 --beta 0.4 --demo-decisions 80 --clone-epochs 15 --steps $few --eval-every 15"
+  local n=${STEPS:-2000000} few=300000 hide="--set actor_obs=$obs" see="--set encoder=64,128"
+  if [ "$1" = grasp ]; then few=150000; fi
+  local taught="--from $teacher --dagger 8 --beta 0.4 --demo-decisions 80 --clone-epochs 15 --steps $few --eval-every 15 $hide"
+  local tried="--steps $n --eval-every 60"
+  local seeing="$tried $hide $see --set encoder_points=128 --set cloud_width=48 --set cloud_height=48"
   case $2 in
-    student) echo "$taught $see" ;;
-    blind) echo "$taught $hide" ;;
-    state) echo "--steps $n --eval-every 60" ;;
-    end) echo "--steps $n --eval-every 60 $see" ;;
-    frozen) echo "--steps $n --eval-every 60 --pretrain 5000 $see --set encoder_frozen=true" ;;
-    tuned) echo "--steps $n --eval-every 60 --pretrain 5000 $see" ;;
+    student) echo "$taught $see --set encoder_points=256" ;;
+    blind) echo "$taught" ;;
+    state) echo "$tried" ;;
+    end) echo "$seeing" ;;
+    frozen) echo "$seeing --pretrain 5000 --set encoder_frozen=true" ;;
+    tuned) echo "$seeing --pretrain 5000" ;;
     *) echo "no such way: $2" >&2; return 1 ;;
   esac
 }
