@@ -223,7 +223,9 @@ case $mode in
     need chromium fonts-dejavu-core
     bash cmake/browser.sh || exit 1
     node --no-experimental-fetch examples/browser/probe.cjs build/browser "$PWD" || exit 1
-    node tests/browser/open_browser.cjs build/browser/page/index.html build/browser
+    node tests/browser/open_browser.cjs build/browser/page/index.html build/browser | tee build/browser/said
+    passed=$(sed -n 's/^\([0-9]*\) passed, 0 failed$/\1/p' build/browser/said | tail -n1)
+    [ -n "$passed" ] && bash cmake/cross/browser_row.sh "$passed" >&2
     ;;
   hard)
     # Tries to break the library for an hour (or MINUTES), builds included: tests/hard/README.md. Two lines of work,
