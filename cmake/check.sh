@@ -190,7 +190,7 @@ case $mode in
     folder=$PWD/build/cross/libcxx
     configure dev -B build/libcxx -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14 -DREDMAN_WERROR=OFF -DREDMAN_TOOL=OFF -DREDMAN_IMPORT=OFF \
       -DREDMAN_HARD=OFF "-DCMAKE_CXX_FLAGS=-nostdinc++ -isystem $folder/include/c++/v1 -stdlib=libc++" "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O2 -g1" \
-      "-DCMAKE_EXE_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_SHARED_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_PREFIX_PATH=$folder"
+      "-DCMAKE_EXE_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_SHARED_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_PREFIX_PATH=$folder" "-DCMAKE_BUILD_RPATH=$folder/lib"
     cmake --build build/libcxx -j "$(nproc)" --target redman test_golden test_golden_learners test_option test_text >&2 ||
       die "the build with libc++ failed: see above"
     run_tests libcxx -R '^test_(golden|golden_learners|option|text)$'

@@ -12,8 +12,7 @@ if [ ! -e "$folder/unpacked" ]; then
   for deb in "$folder"/debs/*.deb; do dpkg -x "$deb" "$folder/root" || exit 1; done
   mkdir -p "$folder/include/c++" "$folder/lib"
   cp -r "$folder/root/usr/lib/llvm-14/include/c++/v1" "$folder/include/c++/"
-  ln -sf /usr/lib/x86_64-linux-gnu/libc++.so.1.0 "$folder/lib/libc++.so"
-  ln -sf /usr/lib/x86_64-linux-gnu/libc++abi.so.1.0 "$folder/lib/libc++abi.so"
+  echo 'INPUT(/usr/lib/x86_64-linux-gnu/libc++.so.1.0 /usr/lib/x86_64-linux-gnu/libc++abi.so.1.0)' > "$folder/lib/libc++.so"
   : > "$folder/unpacked"
 fi
 octomap=$(source_of octomap) || exit 1
@@ -25,8 +24,8 @@ add() {
   echo "building $name with libc++" >&2
   {
     cmake -G Ninja -S "$source" -B "$folder/build/$name" -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_BUILD_TYPE=Release \
-      "-DCMAKE_CXX_FLAGS=-nostdinc++ -isystem $folder/include/c++/v1 -stdlib=libc++" "-DCMAKE_EXE_LINKER_FLAGS=-L$folder/lib" \
-      "-DCMAKE_SHARED_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_INSTALL_PREFIX=$folder" -DCMAKE_INSTALL_LIBDIR=lib -DBUILD_SHARED_LIBS=OFF \
+      "-DCMAKE_CXX_FLAGS=-nostdinc++ -isystem $folder/include/c++/v1 -stdlib=libc++ -L$folder/lib" \
+      "-DCMAKE_INSTALL_PREFIX=$folder" -DCMAKE_INSTALL_LIBDIR=lib -DBUILD_SHARED_LIBS=OFF \
       -DCMAKE_POLICY_VERSION_MINIMUM=3.5 "$@" &&
       cmake --build "$folder/build/$name" -j "$(nproc)" && cmake --install "$folder/build/$name"
   } > "$log" 2>&1 || { tail -n 20 "$log" >&2; die "$name could not be built with libc++: $log"; }
