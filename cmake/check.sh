@@ -163,6 +163,7 @@ case $mode in
     # shellcheck disable=SC2086
     run_tests arm64 -R "^(test_($(echo $tests | tr ' ' '|'))|example_01_step)\$" | tee build/arm64.said
     sh tests/ports/contracted.sh "$PWD" aarch64-linux-gnu-g++ build/arm64/libredman.a | tee -a build/arm64.said
+    sh tests/ports/neon.sh build/arm64/libredman.a aarch64-linux-gnu-objdump | tee -a build/arm64.said
     STRIP=aarch64-linux-gnu-strip bash cmake/cross/row.sh arm64 '`arm64`: 64-bit ARM, GCC 12, under qemu' build/ctest-arm64.log \
       build/arm64/libredman.so >&2
     total_of build/arm64.said
