@@ -35,6 +35,7 @@ flags() {  # TASK WAY
     hand_over_wall) n=6000000 aim="--cost-limit 2" eyes="--set encoder_points=64 --set cloud_cameras=above" ;;
   esac
   local taught="--from $teacher --dagger 8 --beta 0.4 --demo-decisions $decisions --clone-epochs 15 --steps $few --eval-every 15 $hide"
+  [ "$1.$2" != hand_over_wall.end ] || aim="--cost-limit 1" # learns to keep it last
   local tried="--steps ${STEPS:-$n} --eval-every 60 $aim"
   local seeing="$tried $hide $see $eyes --set cloud_width=48 --set cloud_height=48"
   case $2 in
