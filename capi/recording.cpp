@@ -14,6 +14,27 @@
 using namespace rdm;
 using namespace rdm::capi;
 
+namespace {
+
+rdm_clone_config default_clone() {
+  rdm_clone_config c{};
+  c.epochs = 30;
+  c.batch_rows = 512;
+  c.patience = 5;
+  c.learning_rate = 1e-3;
+  c.learning_rate_end = 1e-5;
+  c.validation = 0.1;
+  c.feed_normalizer = 1;
+  return c;
+}
+
+}  // namespace
+
+rdm_result rdm_clone_config_init(rdm_clone_config* how, size_t size) {
+  return call(nullptr, [&] { init_struct(how, size, sizeof(rdm_clone_config), default_clone(), "how"); });
+}
+
+#if RDM_WITH_SIM || RDM_WITH_LEARN
 struct rdm_recording {
   static constexpr Tag kTag = Tag::kRecording;
   Tag tag = kTag;
@@ -30,18 +51,6 @@ rdm_recording_config default_config() {
   rdm_recording_config c{};
   c.task = "";
   c.state_stride = 8;
-  return c;
-}
-
-rdm_clone_config default_clone() {
-  rdm_clone_config c{};
-  c.epochs = 30;
-  c.batch_rows = 512;
-  c.patience = 5;
-  c.learning_rate = 1e-3;
-  c.learning_rate_end = 1e-5;
-  c.validation = 0.1;
-  c.feed_normalizer = 1;
   return c;
 }
 
@@ -74,10 +83,6 @@ rdm_result change(rdm_recording* r, F&& f) {
 
 rdm_result rdm_recording_config_init(rdm_recording_config* c, size_t size) {
   return call(nullptr, [&] { init_struct(c, size, kFirstRecordingConfigSize, default_config(), "c"); });
-}
-
-rdm_result rdm_clone_config_init(rdm_clone_config* how, size_t size) {
-  return call(nullptr, [&] { init_struct(how, size, sizeof(rdm_clone_config), default_clone(), "how"); });
 }
 
 rdm_result rdm_recording_create(rdm_recording** out, const rdm_recording_config* c) {
@@ -229,6 +234,8 @@ rdm_result rdm_recording_load_file(rdm_recording** out, const char* path) {
     open_handle(out, hooks, [&] { return Recording::read(file.data(), file.size(), hooks); });
   });
 }
+
+#endif
 
 #if RDM_WITH_SIM
 rdm_result rdm_recording_config_for_pool(rdm_recording_config* c, const rdm_pool* p) {

@@ -1,9 +1,9 @@
 # Reads the public header and writes, for the halves that a build leaves out, the functions that say so.
 # -v sim=0|1 -v learn=0|1 -v policy=0|1: which halves there are, and whether frozen policies run. A function belongs to a half by its name; one of agents that
-# takes a pool needs both. The two config_init functions are in every build, and what has no half is too.
+# takes a pool needs both; recordings are in either. The two config_init functions are in every build, and what has no half is too.
 function half_of(name, parameters) {
   if (name ~ /^rdm_(pool|agent)_config_init$/) return ""
-  if (name ~ /^rdm_recording_/) return sim || parameters !~ /rdm_pool/ ? "" : "simulation"
+  if (name ~ /^rdm_recording_/) return !sim && parameters ~ /rdm_pool/ ? "simulation" : sim || learn ? "" : "learning"
   if (name ~ /^rdm_agent_/ && parameters ~ /rdm_pool/) return sim ? (learn ? "" : "learning") : "simulation"
   if (name ~ /^rdm_(task|robot|object|pool|planner|map|sample|scene|world|random)_/) return sim ? "" : "simulation"
   if (name ~ /^rdm_policy_/) return policy ? "" : "learning"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|browser|hard [MINUTES]]: installs what the tests need, builds, and runs them.
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|libc++|small|browser|hard [MINUTES]]: installs what the tests need, builds, and runs them.
 # The last line says how many passed and failed; the exit status is 0 when none failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -163,18 +163,19 @@ case $mode in
     # shellcheck disable=SC2086
     run_tests arm64 -R "^(test_($(echo $tests | tr ' ' '|'))|example_01_step)\$" | tee build/arm64.said
     sh tests/ports/contracted.sh "$PWD" aarch64-linux-gnu-g++ build/arm64/libredman.a | tee -a build/arm64.said
+    sh tests/ports/neon.sh build/arm64/libredman.a aarch64-linux-gnu-objdump | tee -a build/arm64.said
     STRIP=aarch64-linux-gnu-strip bash cmake/cross/row.sh arm64 '`arm64`: 64-bit ARM, GCC 12, under qemu' build/ctest-arm64.log \
       build/arm64/libredman.so >&2
     total_of build/arm64.said
     ;;
   windows)
-    # Windows under wine: the library as one DLL, hashes of worlds and learners, programs in C against the DLL.
+    # Windows under wine: the library as one DLL, hashes of worlds and learners, programs in C against the DLL, the tool.
     need g++-mingw-w64-x86-64-posix wine64 googletest curl
     bash cmake/cross/deps.sh windows || exit 1
     configure windows
     tests="golden golden_learners known_bytes fpmode rng kernels" # not elementary: its reference, sinl, is coarse there
     # shellcheck disable=SC2046,SC2086
-    cmake --build --preset windows -j "$(nproc)" --target redman redman_static 01_step 03_train $(printf 'test_%s ' $tests) >&2 ||
+    cmake --build --preset windows -j "$(nproc)" --target redman redman_static redman_tool 01_step 03_train $(printf 'test_%s ' $tests) >&2 ||
       die "preset windows could not be built: see above"
     # shellcheck disable=SC2086
     run_tests windows -R "^(test_($(echo $tests | tr ' ' '|'))|example_01_step|example_03_train)\$" | tee build/windows.said
@@ -182,6 +183,25 @@ case $mode in
     STRIP=x86_64-w64-mingw32-strip bash cmake/cross/row.sh windows '`windows`: x86-64, mingw-w64 GCC 12, under wine' build/ctest-windows.log \
       build/windows/bin/libredman.dll x86_64-w64-mingw32-gcc-posix cmake/cross/wine.sh >&2
     total_of build/windows.said
+    ;;
+  libc++)
+    # Another standard library beside another compiler: clang's, unpacked into a folder since it is at odds with libunwind-dev.
+    need clang-14 libc++1-14 libc++abi1-14
+    bash cmake/cross/libcxx.sh || exit 1
+    folder=$PWD/build/cross/libcxx
+    configure dev -B build/libcxx -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14 -DREDMAN_WERROR=OFF -DREDMAN_TOOL=OFF -DREDMAN_IMPORT=OFF \
+      -DREDMAN_HARD=OFF "-DCMAKE_CXX_FLAGS=-nostdinc++ -isystem $folder/include/c++/v1 -stdlib=libc++" "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O2 -g1" \
+      "-DCMAKE_EXE_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_SHARED_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_PREFIX_PATH=$folder" "-DCMAKE_BUILD_RPATH=$folder/lib"
+    cmake --build build/libcxx -j "$(nproc)" --target redman test_golden test_golden_learners test_option test_text >&2 ||
+      die "the build with libc++ failed: see above"
+    run_tests libcxx -R '^test_(golden|golden_learners|option|text)$'
+    status=$?
+    bash cmake/cross/row.sh libcxx '`libc++`: x86-64, clang 14 and libc++ 14' "build/ctest-$mode.log" build/libcxx/libredman.so clang-14 env >&2
+    exit $status
+    ;;
+  small)
+    # What the library takes where there is little, beside the table of examples/small/README.md.
+    bash cmake/small_table.sh
     ;;
   embedded)
     # Policies as C source, on this machine and on Cortex-M processors under qemu, with a table of what they take.
@@ -204,7 +224,9 @@ case $mode in
     need chromium fonts-dejavu-core
     bash cmake/browser.sh || exit 1
     node --no-experimental-fetch examples/browser/probe.cjs build/browser "$PWD" || exit 1
-    node tests/browser/open_browser.cjs build/browser/page/index.html build/browser
+    node tests/browser/open_browser.cjs build/browser/page/index.html build/browser | tee build/browser/said
+    passed=$(sed -n 's/^\([0-9]*\) passed, 0 failed$/\1/p' build/browser/said | tail -n1)
+    [ -n "$passed" ] && bash cmake/cross/browser_row.sh "$passed" >&2
     ;;
   hard)
     # Tries to break the library for an hour (or MINUTES), builds included: tests/hard/README.md. Two lines of work,
@@ -246,5 +268,5 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
-  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|browser|hard [MINUTES]]" ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|libc++|small|browser|hard [MINUTES]]" ;;
 esac

@@ -4,7 +4,7 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 for row in build/ports/*.row; do
-  [ -e "$row" ] || { echo "no rows: run check.sh arm64, windows, clang first"; exit 1; }
+  [ -e "$row" ] || { echo "no rows: run check.sh arm64, windows, clang, libc++, browser first"; exit 1; }
   title=$(cut -d'|' -f2 "$row")
   awk -v title="$title" -v row="$(cat "$row")" -F'|' '
     /^<!-- machines -->/ { inside = 1 }

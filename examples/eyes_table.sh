@@ -4,43 +4,66 @@
 # kept and stopped ones go on, so the script can be stopped and called again.
 #   bash examples/eyes_table.sh [OUT]     OUT: folder of the runs, default runs/eyes
 # Environment: REDMAN (the tool), TASKS ("hand_over_safe_finger hand_over_wall grasp"), WAYS ("student blind state end frozen
-# tuned"), SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), POINTS (of a cloud; 256), STEPS (control steps of what
-# learns from trial and error; else 2 million of a throw and 1 million of grasp), EPISODES (fresh ones; 300),
-# FLAGS (more for `redman train` and what it trains with eyes).
+# tuned"), SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), TEACHER (trained: the policy that comes with redman;
+# or a run folder), OBS (what the actor reads of the row; vision), STEPS (control steps of what learns from trial and
+# error; 2 million, of the wall 6), EPISODES (fresh ones; 200), FLAGS (more for `redman train`).
 #
 #   state    PPO-Lag on the whole row        end      the same, from a cloud in the place of the object's state, end to end
-#   student  the policy that comes with redman teaches one that sees (DAgger), then PPO-Lag
-#   blind    the same, without the cloud     frozen   the encoder learns to tell things apart first, and stands still then
-#   tuned    as frozen, but it goes on to learn
+#   student  TEACHER teaches one that sees   frozen   the encoder learns to tell things apart first, and stands still then
+#            (DAgger), then PPO-Lag          tuned    as frozen, but it goes on to learn
+#   blind    the same, without the cloud
+#
+# A scene whose joints do not tell where things are (a teacher first: redman train --task examples/scenes/touch.task --steps 1e6 --out runs/touch):
+#   TASKS=examples/scenes/touch.task TEACHER=runs/touch OBS=right.joints,right.rates WAYS="student blind" bash examples/eyes_table.sh
+#
+# Students see 256 points of three cameras of 96 x 96. Trial and error asks for many more steps, so it sees 128 points of three
+# cameras of 48 x 48, on the wall 64 of one; and since the policy that is kept shall hold on fresh episodes, it learns
+# below the limit where that is tight.
 set -eu
 # shellcheck source=examples/runs.sh
 . "$(dirname "$0")/runs.sh"
 out=${1:-$root/runs/eyes}
 tasks=${TASKS:-hand_over_safe_finger hand_over_wall grasp} ways=${WAYS:-student blind state end frozen tuned}
-seeds=${SEEDS:-0 1 2} points=${POINTS:-256} episodes=${EPISODES:-300}
+seeds=${SEEDS:-0 1 2} teacher=${TEACHER:-trained} obs=${OBS:-vision} episodes=${EPISODES:-200}
 mkdir -p "$out"
 
 flags() {  # TASK WAY
-  local n=${STEPS:-2000000} few=300000 hide="--set actor_obs=vision"
-  if [ "$1" = grasp ]; then n=${STEPS:-1000000} few=150000; fi
-  local see="$hide --set encoder=64,128 --set encoder_points=$points"
-  local taught="--from trained --dagger 8 --beta 0.4 --demo-decisions 80 --clone-epochs 15 --steps $few --eval-every 15"
+  local n=2000000 few=300000 decisions=80 eyes="--set encoder_points=128" aim="" hide="--set actor_obs=$obs" see="--set encoder=64,128"
+  case $1 in
+    *touch.task) decisions=200 ;;
+    grasp) few=150000 aim="--cost-limit 22" ;;
+    hand_over_wall) n=6000000 aim="--cost-limit 2" eyes="--set encoder_points=64 --set cloud_cameras=above" ;;
+  esac
+  local taught="--from $teacher --dagger 8 --beta 0.4 --demo-decisions $decisions --clone-epochs 15 --steps $few --eval-every 15 $hide"
+  [ "$1.$2" != hand_over_wall.end ] || aim="--cost-limit 1" # learns to keep it last
+  local tried="--steps ${STEPS:-$n} --eval-every 60 $aim"
+  local seeing="$tried $hide $see $eyes --set cloud_width=48 --set cloud_height=48"
   case $2 in
-    student) echo "$taught $see" ;;
-    blind) echo "$taught $hide" ;;
-    state) echo "--steps $n --eval-every 60" ;;
-    end) echo "--steps $n --eval-every 60 $see" ;;
-    frozen) echo "--steps $n --eval-every 60 --pretrain 5000 $see --set encoder_frozen=true" ;;
-    tuned) echo "--steps $n --eval-every 60 --pretrain 5000 $see" ;;
+    student) echo "$taught $see --set encoder_points=256" ;;
+    blind) echo "$taught" ;;
+    state) echo "$tried" ;;
+    end) echo "$seeing" ;;
+    frozen) echo "$seeing --pretrain 5000 --set encoder_frozen=true" ;;
+    tuned) echo "$seeing --pretrain 5000" ;;
     *) echo "no such way: $2" >&2; return 1 ;;
   esac
 }
 
+folder() { echo "$out/$(basename "$1" .task).$2.$3"; }  # TASK WAY SEED
+
+limit() {  # TASK: the one that is reported
+  case $1 in
+    grasp) echo "--cost-limit 25" ;;
+    hand_over_wall) echo "--cost-limit 3" ;;
+  esac
+}
+
 run_one() {  # TASK WAY SEED
-  local dir=$out/$1.$2.$3
+  local dir
+  dir=$(folder "$@")
   # shellcheck disable=SC2046,SC2086
   if trained "$dir" --task "$1" --seed "$3" --no-tensorboard $(flags "$1" "$2") ${FLAGS:-} &&
-    kept "$dir.eval.json" eval --policy "$dir" --episodes "$episodes" --seed $((1000000 + $3)); then
+    kept "$dir.eval.json" eval --policy "$dir" --episodes "$episodes" --seed $((1000000 + $3)) $(limit "$1"); then
     return
   fi
   echo "$dir failed: see $dir.log" >&2
@@ -81,7 +104,7 @@ echo "|---|---|---|---|---|---|"
 for task in $tasks; do for way in $ways; do
   files=()
   for seed in $seeds; do
-    file=$out/$task.$way.$seed.eval.json
+    file=$(folder "$task" "$way" "$seed").eval.json
     [ ! -s "$file" ] || files+=("$file")
   done
   [ ${#files[@]} -eq 0 ] || row "\`$task\` ($(value cost_limits "${files[0]}")) | $way" "${files[@]}"
@@ -103,10 +126,11 @@ echo "|---|---|---|---|---|---|"
 for task in $tasks; do while read -r name setting; do
   files=()
   for seed in $seeds; do
-    dir=$out/$task.student.$seed
+    dir=$(folder "$task" student "$seed")
     [ -s "$dir.json" ] || continue
     # shellcheck disable=SC2086
-    kept "$dir.$name.json" eval --policy "$dir" --episodes "$episodes" --seed $((1000000 + seed)) ${setting:+--set "$setting"} < /dev/null
+    kept "$dir.$name.json" eval --policy "$dir" --episodes "$episodes" --seed $((1000000 + seed)) ${setting:+--set "$setting"} < /dev/null ||
+      continue # not every task has an object
     files+=("$dir.$name.json")
   done
   [ ${#files[@]} -eq 0 ] || row "\`$task\` | ${name//_/ }" "${files[@]}"

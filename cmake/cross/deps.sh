@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# deps.sh TARGET [contracted|gtest]: ODE, libccd, OctoMap and GoogleTest for another machine (arm64, windows, wasm), static, from
+# deps.sh TARGET [contracted|gtest]: ODE, libccd, OctoMap and GoogleTest for another machine (arm64, windows, wasm) or this one (native), static, from
 # Debian's sources, installed below build/cross/TARGET; built once. Eigen is headers: this machine's do.
 #
 # Distributions compile them as their compiler likes, which for ARM is with fused multiply-adds: other bytes. Here it

@@ -1,6 +1,6 @@
 #!/bin/sh
 # windows.sh ROOT BUILD: the DLL exports the checked-in lists and nothing else and needs nothing but Windows; a program in
-# C made against it says that it has the same bytes.
+# C made against it says that it has the same bytes; the tool lists tasks, trains, evaluates, and replaces its files.
 set -u
 root=$1 build=$(cd "$2" && pwd)
 run="$root/cmake/cross/wine.sh"
@@ -22,5 +22,13 @@ x86_64-w64-mingw32-gcc-posix -std=c99 -D__USE_MINGW_ANSI_STDIO=1 -I "$root/inclu
 cp "$dll" .
 says() { "$run" ./say.exe | tr -d '\r' | grep -q '; same bytes$'; }
 check 'a program in C' says
+tool=$build/bin/redman.exe
+cp "$tool" "$build"/bin/*.dll .
+check 'the tool lists tasks' sh -c "'$run' ./redman.exe tasks | grep -q hand_over_safe_finger"
+check 'the tool trains' "$run" ./redman.exe train --task point_goal1 --envs 8 --steps 2048 --set horizon=64 --set hidden=16,16 --out run
+check 'the tool goes on' "$run" ./redman.exe train --resume run --steps 4096
+check 'the tool evaluates' "$run" ./redman.exe eval --policy run/policy.rdm --episodes 2
+left() { ! ls -A run | grep -E 'tmp-|\.lock'; }
+check 'no temporary file is left' left
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

@@ -22,6 +22,7 @@ run rollout --task press.task --policy hold --episodes 3 --envs 2 --threads 2 --
 sed 's/.*"hash":"\{0,1\}\([0-9a-f]*\).*/\1/' out > two
 grep -q '^[0-9a-f]\{8,\}$' one || say "no hash: $(cat one)"
 cmp one two || say "the hash depends on threads"
+run rollout --task "$here/../../examples/scenes/touch.task" --policy random --episodes 2 --envs 2 --set max_steps=20 --set modality=points --set points=64 --json
 
 # A run remembers what it was made of: the files may go.
 "$tool" robot "$here/../import/hand.urdf" --name own_hand --out own.robot > out 2>&1 || say "$(cat out)"

@@ -1,8 +1,5 @@
 #include "network/probe.hpp"
 
-#include <cstdlib>
-#include <memory>
-#include <new>
 #include <redman/redman_points.hpp>
 
 namespace tool {
@@ -51,16 +48,18 @@ std::vector<float> mean_actions(const redman::Policy& policy, const std::vector<
   const size_t rows = obs.size() / static_cast<size_t>(info.obs_dim);
   const auto count = static_cast<int32_t>(rows);
   std::vector<float> action(rows * static_cast<size_t>(info.action_dim));
-  const size_t bytes = (policy.scratch_bytes(count) + 63) / 64 * 64;
-  const std::unique_ptr<void, decltype(&std::free)> scratch(std::aligned_alloc(64, bytes), std::free);
-  if (!scratch) throw std::bad_alloc();
+  struct alignas(64) Line {  // std::aligned_alloc is missing on Windows
+    unsigned char bytes[64];
+  };
+  const size_t bytes = policy.scratch_bytes(count);
+  std::vector<Line> scratch((bytes + sizeof(Line) - 1) / sizeof(Line));
   if (info.num_points == 0)
-    policy.act(obs.data(), count, nullptr, action.data(), scratch.get(), bytes);
+    policy.act(obs.data(), count, nullptr, action.data(), scratch.data(), bytes);
   else
     redman::act(
         policy, obs.data(),
         redman::points(clouds.points.data(), info.num_points, clouds.classes.data(), clouds.colors.data()),
-        count, nullptr, action.data(), scratch.get(), bytes);
+        count, nullptr, action.data(), scratch.data(), bytes);
   return action;
 }
 
