@@ -394,7 +394,7 @@ void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, 
   for (; top >= 3; top -= 4) {
     Axes4* const four = z + top - 3;
     Axes4 y[4] = {four[0], four[1], four[2], four[3]};
-    const auto take = [&](const Axes4& from, int32_t d, int entries) {
+    const auto take = [&, lane = lane](const Axes4& from, int32_t d, int entries) {
       const V* factor = factor_rows_[d] + top - 3;
       for (int i = 0; i < entries; ++i) y[i] -= from * L::get(factor[i], lane);
     };
