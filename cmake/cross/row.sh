@@ -6,7 +6,7 @@ set -u
 name=$1 title=$2 log=$3 library=$4 compiler=${5:-} runner=${6:-}
 strip=${STRIP:-strip} copy=$(mktemp)
 trap 'rm -f "$copy"' EXIT
-mkdir -p build/ports
+. cmake/cross/rates.sh
 # verdict TEST FILE: how many of the file's hashes are equal: all, since the test compares all, but for those that it has
 # other ones of on this machine.
 verdict() {
@@ -19,16 +19,12 @@ total=$(sed -n 's/.* tests failed out of \([0-9]*\).*/\1/p' "$log" | tail -n1)
 failed=$(sed -n 's/.* tests passed, \([0-9]*\) tests* failed out of .*/\1/p' "$log" | tail -n1)
 "$strip" -o "$copy" "$library" || exit 1
 speed=-
-for native in build/release build/dev; do [ ! -e $native/libredman.so ] || break; done
-if [ -n "$compiler" ] && [ -e $native/libredman.so ]; then
+if [ -n "$compiler" ] && native_is_built; then
   link=$library
   [ ! -e "${library%/bin/*}/libredman.dll.a" ] || link=${library%/bin/*}/libredman.dll.a
   program=$(dirname "$library")/rate.exe # beside a DLL, where Windows finds it
   "$compiler" -O1 -Iinclude tests/ports/rate.c "$link" "-Wl,-rpath,$PWD/$(dirname "$library")" -o "$program" &&
-    gcc -O1 -Iinclude tests/ports/rate.c $native/libredman.so "-Wl,-rpath,$PWD/$native" -o build/ports/rate || exit 1
-  # in turns, since a busy machine changes its pace
-  for _ in 1 2 3; do "$runner" "$program" && build/ports/rate || exit 1; done > build/ports/$name.rates
-  speed=$(tr -d '\r' < build/ports/$name.rates | awk 'NR % 2 { a += $1; next } { b += $1 } END { printf "%.2f", a / b }')
+    speed=$(speed_beside "$name" "$runner" "$program") || exit 1
 fi
 echo "| $title | $(verdict test_golden tasks.txt) | $(verdict test_golden_learners learners.txt) | $((total - failed)) of $total | $speed | $(($(stat -c %s "$copy") / 1000)) kB |" |
   tee "build/ports/$name.row"
