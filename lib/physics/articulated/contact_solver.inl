@@ -96,7 +96,7 @@ struct ContactSolver {
     points = arena.make<Point>(n);
     rows = arena.make<Row>(n * k * 3);
     segments = arena.make<int32_t>(n * k);
-    moved = arena.make<int32_t>(static_cast<size_t>(segment_count));
+    moved = arena.make<int32_t>(static_cast<size_t>(segment_count) + 1);  // list_moved writes behind the last
     is_moved = arena.make<uint8_t>(static_cast<size_t>(segment_count));
     sum = arena.make<Row>(static_cast<size_t>(segment_count) + 1);  // the last for what is at rest: stays 0
     previous = arena.make<Row>(static_cast<size_t>(segment_count));

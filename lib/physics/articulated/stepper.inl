@@ -361,7 +361,7 @@ void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, 
   const int32_t articulation = tree.members[static_cast<size_t>(at.member)].articulation;
   touched_[articulation] = 1;
   const Vec3& base = w.bases[articulation].X.p;
-  typedef S Axes4 __attribute__((vector_size(sizeof(S) * 4)));  // one number per axis
+  using Axes4 = typename ContactSolver<S>::Axes;
   Axes4 axis[3], velocity{};
   S x[3];
   for (int r = 0; r < 3; ++r) {
