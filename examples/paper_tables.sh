@@ -2,7 +2,8 @@
 # The paper's experiments, measured again: Table 1 and Fig. 6 (eight algorithms on the four throws with costs of the
 # robot's state), Fig. 7 (six tasks with costs of the environment's state), rows with a second cost, and what the
 # paper claims of its algorithms. Finished runs are kept and stopped ones go on, so the script can be stopped and
-# called again: seed after seed, so that the tables are whole, if thin, as early as can be.
+# called again, also where only RESULTS is left of earlier calls (a run with a row there is done; AGAIN=1 runs it
+# anew): seed after seed, so that the tables are whole, if thin, as early as can be.
 #   bash examples/paper_tables.sh [OUT] [RESULTS]   OUT: folder of the runs, default runs/paper
 #                                                   RESULTS: what is kept of them, default examples/results
 # Environment: REDMAN (the tool), PARTS ("table1 fig7 second": what is trained), SEEDS ("0 1 2"), JOBS (runs at once,
@@ -76,6 +77,13 @@ rows() {
   done; done
 }
 
+# reported NAME STEPS: it has a row among the results, of as many steps, and nothing of the run itself is here.
+reported() {
+  [ -z "${AGAIN:-}" ] && [ ! -e "$out/$1" ] && [ -s "$results/runs.csv" ] &&
+    awk -F, -v name="$1" -v n="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+      $1 == name && $at["env_steps"] >= n { found = 1 } END { exit !found }' "$results/runs.csv"
+}
+
 run_one() {  # a row
   local name=$1 part=$2 task=$3 algo=$4 seed=$5 n=$6
   shift 6
@@ -89,6 +97,7 @@ run_one() {  # a row
 
 rows | {
   while read -r -a row; do
+    ! reported "${row[0]}" "${row[5]}" || continue
     wait_turn
     run_one "${row[@]}" < /dev/null &
   done
