@@ -1,4 +1,4 @@
-// Settings with which hands learned to throw: one decision each 4 control steps, 64 worlds.
+// Settings with which hands learned: one decision each 4 control steps, 64 worlds.
 #pragma once
 #include "tasks/task_info.hpp"
 
@@ -45,5 +45,13 @@ constexpr auto throw_learner(const char* cost_limit) {
                      {"penalty", "2"},           {"focops_eta", "0.04"},    {"focops:early_stop_kl", "0.04"},
                      {"trust_kl", "0.15"},       {"fisher_stride", "4"},    {"cost_limit", cost_limit}});
 }
+
+// Where a moment decides (an egg let go off fingertips, a hole to be met): two decisions for each one of
+// above, in as many control steps of an epoch.
+inline constexpr LearnerDefault kFineDecisions[] = {{"action_repeat", "2"},
+                                                    {"horizon", "32"},
+                                                    {"ppo:horizon", "16"},
+                                                    {"ppo_lag:horizon", "16"},
+                                                    {"noise_correlation", "0.55"}};
 
 }  // namespace rdm

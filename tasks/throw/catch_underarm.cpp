@@ -23,11 +23,11 @@ const SafeThrowConfig kConfig = {
 
 // A catch comes late in an episode and is learned late in a run: longer paths, steps that stay as large.
 constexpr auto catch_learner(const char* cost_limit) {
-  return join_defaults(throw_learner(cost_limit), {{"ppo:horizon", "16"},
-                                                   {"ppo_lag:horizon", "16"},
-                                                   {"std_min", "0.1"},
-                                                   {"kl_target_end", "0"},
-                                                   {"lr_min", "1e-5"}});
+  return join_defaults(join_defaults(throw_learner(cost_limit), kFineDecisions), {{"ppo:horizon", "32"},
+                                                                                  {"ppo_lag:horizon", "32"},
+                                                                                  {"std_min", "0.1"},
+                                                                                  {"kl_target_end", "0"},
+                                                                                  {"lr_min", "1e-5"}});
 }
 constexpr auto kFingerLearner = catch_learner("40"), kJointLearner = catch_learner("30");
 

@@ -125,7 +125,7 @@ const CameraSpec kCameras[] = {
 
 // Until it is learned to throw through the hole, every throw costs: the limit has to wait.
 constexpr auto kLearner = join_defaults(
-    throw_learner("3"),
+    join_defaults(throw_learner("3"), kFineDecisions),
     {{"multiplier_lr", "0.0005"}, {"multiplier_warmup", "2000"}, {"kl_target_end", "0"}, {"lr_min", "1e-5"}});
 
 }  // namespace
