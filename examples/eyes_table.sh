@@ -6,7 +6,7 @@
 # Environment: REDMAN (the tool), TASKS ("hand_over_safe_finger hand_over_wall grasp"), WAYS ("student blind state end frozen
 # tuned"), SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), TEACHER (trained: the policy that comes with redman;
 # or a run folder), OBS (what the actor reads of the row; vision), STEPS (control steps of what learns from trial and
-# error; 2 million, of the wall 6), EPISODES (fresh ones; 200), FLAGS (more for `redman train`).
+# error; 2 million, of the wall 6, tuned 9), EPISODES (fresh ones; 200), FLAGS (more for `redman train`).
 #
 #   state    PPO-Lag on the whole row        end      the same, from a cloud in the place of the object's state, end to end
 #   student  TEACHER teaches one that sees   frozen   the encoder learns to tell things apart first, and stands still then
@@ -35,7 +35,10 @@ flags() {  # TASK WAY
     hand_over_wall) n=6000000 aim="--cost-limit 2" eyes="--set encoder_points=64 --set cloud_cameras=above" ;;
   esac
   local taught="--from $teacher --dagger 8 --beta 0.4 --demo-decisions $decisions --clone-epochs 15 --steps $few --eval-every 15 $hide"
-  [ "$1.$2" != hand_over_wall.end ] || aim="--cost-limit 1.5" # learns to keep it last
+  case $1.$2 in # those that learn to keep it last
+    hand_over_wall.end) aim="--cost-limit 1.5" ;;
+    hand_over_wall.tuned) n=9000000 aim="--cost-limit 1.5" ;;
+  esac
   local tried="--steps ${STEPS:-$n} --eval-every 60 $aim"
   local seeing="$tried $hide $see $eyes --set cloud_width=48 --set cloud_height=48"
   case $2 in
