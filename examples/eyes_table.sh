@@ -28,19 +28,18 @@ seeds=${SEEDS:-0 1 2} teacher=${TEACHER:-trained} obs=${OBS:-vision} episodes=${
 mkdir -p "$out"
 
 flags() {  # TASK WAY
-  local n=2000000 few=300000 decisions=80 eyes="--set encoder_points=128" aim="" hide="--set actor_obs=$obs" see="--set encoder=64,128"
+  local n=2000000 few=300000 decisions=80 eyes="--set encoder_points=128" aim="" held="" hide="--set actor_obs=$obs" see="--set encoder=64,128"
   case $1 in
     *touch.task) decisions=200 ;;
     grasp) few=150000 aim="--cost-limit 22" ;;
-    hand_over_wall) n=6000000 aim="--cost-limit 2" eyes="--set encoder_points=64 --set cloud_cameras=above" ;;
+    hand_over_wall) # decisions come twice as often there
+      n=6000000 few=150000 decisions=160 aim="--cost-limit 2" held=$aim eyes="--set encoder_points=64 --set cloud_cameras=above" ;;
   esac
-  [ "$1" != hand_over_wall ] || few=150000 decisions=160 # decisions come twice as often there
-  local taught="--from $teacher --dagger 8 --beta 0.4 --demo-decisions $decisions --clone-epochs 15 --steps $few --eval-every 15 $hide"
-  [ "$1" != hand_over_wall ] || taught="$taught --cost-limit 2"
   case $1.$2 in # those that learn to keep it last
     hand_over_wall.end) aim="--cost-limit 1.5" ;;
     hand_over_wall.tuned) n=9000000 aim="--cost-limit 1.5" ;;
   esac
+  local taught="--from $teacher --dagger 8 --beta 0.4 --demo-decisions $decisions --clone-epochs 15 --steps $few --eval-every 15 $hide $held"
   local tried="--steps ${STEPS:-$n} --eval-every 60 $aim"
   local seeing="$tried $hide $see $eyes --set cloud_width=48 --set cloud_height=48"
   case $2 in
