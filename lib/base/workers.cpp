@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -11,22 +13,41 @@
 #include "base/fpmode.hpp"
 
 namespace rdm {
+namespace {
+
+// A thread that sleeps takes longer to wake up than many rounds last, so one looks for a while first. It
+// gives its core away at every look: whoever else wants it (another handle's threads, say) has it.
+constexpr std::chrono::microseconds kPatience(60);
+
+template <class F>
+bool soon(F&& happened) {
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  do {
+    if (happened()) return true;
+    std::this_thread::yield();
+  } while (std::chrono::steady_clock::now() < until);
+  return happened();
+}
+
+}  // namespace
 
 struct Workers::Shared {
   explicit Shared(int32_t count) : pid(getpid()), threads(static_cast<size_t>(count)) {}
 
   void loop(int32_t self, int32_t width) {
     uint64_t seen = 0;
+    const auto called = [&] { return round.load(std::memory_order_acquire) != seen; };
     for (;;) {
-      {
+      if (!soon(called)) {
         std::unique_lock lock(mutex);
-        start.wait(lock, [&] { return stop || round != seen; });
-        if (stop) return;
-        seen = round;
+        start.wait(lock, called);
       }
+      if (stop) return;
+      seen = round.load(std::memory_order_relaxed);
       share(self, width);
-      std::lock_guard lock(mutex);
-      if (--running == 0) finish.notify_one();
+      if (running.fetch_sub(1, std::memory_order_acq_rel) > 1) continue;
+      const std::lock_guard lock(mutex);
+      finish.notify_one();
     }
   }
   void share(int32_t self, int32_t width) const {
@@ -35,8 +56,9 @@ struct Workers::Shared {
   }
   void end() {
     {
-      std::lock_guard lock(mutex);
+      const std::lock_guard lock(mutex);
       stop = true;
+      round.fetch_add(1, std::memory_order_release);
     }
     start.notify_all();
     for (auto& t : threads)
@@ -46,8 +68,10 @@ struct Workers::Shared {
   pid_t pid;
   std::mutex mutex;
   std::condition_variable start, finish;
-  uint64_t round = 0;
-  int32_t running = 0, n = 0;
+  // What a round is stands still while it runs: `round` and `running` hand it over and back.
+  std::atomic<uint64_t> round = 0;
+  std::atomic<int32_t> running = 0;
+  int32_t n = 0;
   bool stop = false;
   ParallelBody body = nullptr;
   void* context = nullptr;
@@ -106,17 +130,19 @@ void Workers::run(int32_t n, ParallelBody body, void* context) {
   if (shared_->pid != getpid())
     fail(Code::kState, "worker threads do not survive fork: make the handle in the child");
   {
-    std::lock_guard lock(shared_->mutex);
+    const std::lock_guard lock(shared_->mutex);
     shared_->n = n;
     shared_->body = body;
     shared_->context = context;
-    shared_->running = width_ - 1;
-    ++shared_->round;
+    shared_->running.store(width_ - 1, std::memory_order_relaxed);
+    shared_->round.fetch_add(1, std::memory_order_release);
   }
   shared_->start.notify_all();
   shared_->share(0, width_);
+  const auto done = [&] { return shared_->running.load(std::memory_order_acquire) == 0; };
+  if (soon(done)) return;
   std::unique_lock lock(shared_->mutex);
-  shared_->finish.wait(lock, [&] { return shared_->running == 0; });
+  shared_->finish.wait(lock, done);
 }
 
 }  // namespace rdm

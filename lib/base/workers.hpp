@@ -19,7 +19,8 @@ class Workers {
   Workers& operator=(const Workers&) = delete;
 
   // Runs body(context, i) once for every i in [0, n) and returns when all are done. Bodies must not
-  // throw. In a forked child of a process that had started threads: Error(kState). No heap use.
+  // throw. Between rounds threads look out for the next one for a moment, then sleep. In a forked child of a
+  // process that had started threads: Error(kState). No heap use.
   void run(int32_t n, ParallelBody body, void* context);
 
   int32_t width() const { return width_; }

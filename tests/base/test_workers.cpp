@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <thread>
 #include <vector>
@@ -40,6 +41,23 @@ TEST_P(WorkersOf, EveryIndexOnceEveryRound) {
       workers.run(n, Visits::body, &visits);
       ASSERT_TRUE(visits.all(round)) << n << " bodies, round " << round;
     }
+  }
+}
+
+// Pauses that are longer than any thread looks out for: it is asleep, and has to be woken up.
+TEST_P(WorkersOf, SleepersAreWoken) {
+  struct Slow : Visits {
+    using Visits::Visits;
+    static void body(void* context, int32_t i) {
+      if (i == 1) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      Visits::body(context, i);
+    }
+  } visits(4);
+  Workers workers(host(), GetParam());
+  for (int round = 1; round <= 20; ++round) {
+    workers.run(4, Slow::body, static_cast<Visits*>(&visits));
+    ASSERT_TRUE(visits.all(round)) << "round " << round;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
 
