@@ -42,10 +42,7 @@ bool Surrogate::finite() const {
 void BatchWorkers::reduce(int32_t group, int32_t n, float* total, size_t begin, size_t end) {
   const int32_t from = group == 0 ? 1 : 0;
   if (from >= n) return;
-  const auto ranges = static_cast<size_t>(n), size = end - begin;
-  spread(n, [&](int32_t range) {
-    const auto k = static_cast<size_t>(range);
-    const size_t low = begin + size * k / ranges, high = begin + size * (k + 1) / ranges;
+  ranges(begin, end, [&](size_t low, size_t high) {
     for (int32_t l = from; l < n; ++l) {
       const float* part = workspaces_[l].grad;
       for (size_t i = low; i < high; ++i) total[i] += part[i];
@@ -85,11 +82,7 @@ int32_t BatchWorkers::add_group(int32_t n, int32_t blocks, float* total, size_t 
 }
 
 void BatchWorkers::reduce(int32_t n, int32_t blocks, float* total, size_t begin, size_t end, int32_t* depth) {
-  const auto ranges = static_cast<size_t>(n), size = end - begin;
-  spread(n, [&](int32_t range) {
-    const auto k = static_cast<size_t>(range);
-    add_group(n, blocks, total, begin + size * k / ranges, begin + size * (k + 1) / ranges, *depth);
-  });
+  ranges(begin, end, [&](size_t low, size_t high) { add_group(n, blocks, total, low, high, *depth); });
   *depth = add_group(n, blocks, total, 0, 0, *depth);
 }
 

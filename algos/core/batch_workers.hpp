@@ -96,6 +96,17 @@ class BatchWorkers {
         const_cast<void*>(static_cast<const void*>(std::addressof(body))));
   }
 
+  // body(low, high) for ranges that [begin, end) is cut into, each on the thread that has it every time: what
+  // one writes of a gradient lies near it when it comes to read it.
+  template <class Body>
+  void ranges(size_t begin, size_t end, Body&& body) {
+    const auto n = static_cast<size_t>(count_), size = end - begin;
+    spread(count_, [&](int32_t range) {
+      const auto k = static_cast<size_t>(range);
+      body(begin + size * k / n, begin + size * (k + 1) / n);
+    });
+  }
+
   // work(workspace, first, n) for the chunks of [0, rows), then reduce(first chunk, n) for each group of
   // chunks that ran together, in order: chunk `first chunk + i` was done by workspace i.
   template <class Work, class Reduce>

@@ -153,10 +153,10 @@ void Learner::add_penalties(const PolicyLoss* policy) {
     grad_[j] = learn_std_ ? grad_[j] - bonus : 0;
   if (!critics_ || critic_l2_ == 0) return;
   const auto twice = static_cast<float>(2 * critic_l2_);
-  for (int32_t i = Networks::kReward; i < nets_->count; ++i) {
-    const Block& b = nets_->block[i];
-    for (size_t j = b.offset; j < b.offset + b.size; ++j) grad_[j] += twice * nets_->params[j];
-  }
+  const size_t first = nets_->block[Networks::kReward].offset;
+  workers_->ranges(begin_, end_, [&](size_t low, size_t high) {
+    for (size_t j = std::max(low, first); j < high; ++j) grad_[j] += twice * nets_->params[j];
+  });
 }
 
 // The factor that bounds the norm over all networks that take part.
@@ -169,7 +169,6 @@ double Learner::joint_scale(int32_t first, int32_t last) const {
 }
 
 void Learner::step(double actor_rate, double actor_share) {
-  bool left_out[3] = {};
   const int32_t first = policy_ ? Networks::kActor : Networks::kReward;
   const int32_t last = critics_ ? nets_->count : int32_t{Networks::kReward};
   const double critic_rate = follow_actor_ ? critic_rate_ * actor_share : critic_rate_;
@@ -180,14 +179,20 @@ void Learner::step(double actor_rate, double actor_share) {
       grad_[j] = static_cast<float>(scale * static_cast<double>(grad_[j]));
     bound = 0;
   }
+  AdamStep steps[3];
   workers_->spread(last - first, [&](int32_t i) {
     const int32_t net = first + i;
     Block& b = nets_->block[net];
     const double rate = net == Networks::kActor ? actor_rate : critic_rate;
-    const double norm = adam_step(b.adam, nets_->params + b.offset, grad_ + b.offset, rate, bound);
-    left_out[net] = !std::isfinite(norm);
+    steps[net] = adam_begin(b.adam, nets_->params + b.offset, grad_ + b.offset, rate, bound);
   });
-  for (const bool out : left_out) skipped_ += out;
+  workers_->ranges(begin_, end_, [&](size_t low, size_t high) {
+    for (int32_t net = first; net < last; ++net) {
+      const Block& b = nets_->block[net];
+      adam_range(steps[net], std::max(low, b.offset) - b.offset, std::max(high, b.offset) - b.offset);
+    }
+  });
+  for (int32_t net = first; net < last; ++net) skipped_ += !std::isfinite(steps[net].norm);
   if (policy_) clamp_log_std(*nets_);
 }
 

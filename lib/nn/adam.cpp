@@ -16,17 +16,38 @@ Adam carve_adam(Arena& arena, size_t size) {
   return a;
 }
 
-double adam_step(Adam& adam, float* params, const float* grad, double rate, double max_norm) {
-  const Kernels& kernel = kernels();
-  const double norm = std::sqrt(kernel.sum_squares(grad, adam.size));
-  if (!std::isfinite(norm)) return norm;
-  const double clip = max_norm > 0 ? std::min(1.0, max_norm / (norm + 1e-6)) : 1.0;
+AdamStep adam_begin(Adam& adam, float* params, const float* grad, double rate, double max_norm) {
+  AdamStep step;
+  step.norm = std::sqrt(kernels().sum_squares(grad, adam.size));
+  if (!std::isfinite(step.norm)) return step;
+  const double clip = max_norm > 0 ? std::min(1.0, max_norm / (step.norm + 1e-6)) : 1.0;
   ++adam.t;
   const double bias1 = 1 - elementary::pow(0.9, adam.t);
   const double bias2 = 1 - elementary::pow(0.999, adam.t);
-  kernel.adam({adam.size, params, adam.m, adam.v, grad, static_cast<float>(clip),
-               static_cast<float>(rate / bias1), static_cast<float>(1 / std::sqrt(bias2))});
-  return norm;
+  step.args = {adam.size,
+               params,
+               adam.m,
+               adam.v,
+               grad,
+               static_cast<float>(clip),
+               static_cast<float>(rate / bias1),
+               static_cast<float>(1 / std::sqrt(bias2))};
+  return step;
+}
+
+void adam_range(const AdamStep& step, size_t low, size_t high) {
+  AdamArgs part = step.args;
+  high = std::min(high, part.size);
+  if (low >= high) return;
+  part.size = high - low;
+  part.params += low, part.m += low, part.v += low, part.grad += low;
+  kernels().adam(part);
+}
+
+double adam_step(Adam& adam, float* params, const float* grad, double rate, double max_norm) {
+  const AdamStep step = adam_begin(adam, params, grad, rate, max_norm);
+  adam_range(step, 0, adam.size);
+  return step.norm;
 }
 
 }  // namespace rdm

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/arena.hpp"
+#include "nn/kernels.hpp"
 
 namespace rdm {
 
@@ -18,5 +19,14 @@ Adam carve_adam(Arena& arena, size_t size);
 // max_norm <= 0: no clipping. Returns the norm before clipping, summed in a fixed order in double. With a
 // norm that is not finite nothing is changed.
 double adam_step(Adam& adam, float* params, const float* grad, double rate, double max_norm);
+
+// The same in two parts: what is to be done, counted as a step, and entries [low, high) of it, in any order
+// and on any thread.
+struct AdamStep {
+  double norm = 0;
+  AdamArgs args = {};
+};
+AdamStep adam_begin(Adam& adam, float* params, const float* grad, double rate, double max_norm);
+void adam_range(const AdamStep& step, size_t low, size_t high);
 
 }  // namespace rdm
