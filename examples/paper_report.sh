@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The tables of examples/paper_tables.sh out of the runs that it kept, without running anything:
 #   bash examples/paper_report.sh [RESULTS]   RESULTS: the folder with runs.csv, default examples/results
-# writes RESULTS/table1.md, fig7.md, second.md and claims.md.
+# writes RESULTS/table1.md, fig7.md, second.md, claims.md and short.md, which README.md has.
 set -eu
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 results=${1:-$root/examples/results}
@@ -77,6 +77,31 @@ policy of that moment with its noise; `half succeed after`: seconds of training,
 T
 }
 
+# short PART TASK...: a column for each of the tasks that has runs, a row for each algorithm; the mean action.
+short() {
+  local part=$1
+  shift
+  { published | sed 's/^/P /'; means "$part" | sed 's/^/M /'; } | awk -v tasks="$*" '
+    function number(x) { return sprintf(x >= 1e3 ? "%.0f" : "%.3g", x) }
+    function cost_of(x, limit) { return number(x) (limit >= 0 && x > limit ? "!" : "") }
+    $1 == "P" { published[$2, $3] = $4; its[$2, $3] = $5; next }
+    { limit[$2] = $4; seeds[$2, $3] = $5; known[$3] = 1; more = $5 > more ? $5 : more
+      cell[$2, $3] = sprintf("%s @ %s, %.0f %%", number($7), cost_of($8, $4), 100 * $10)
+      sampled[$2, $3] = number($11) " @ " cost_of($12, $4) }
+    END { n = split(tasks, task, " "); m = 0
+      for (i = 1; i <= n; ++i) if (task[i] in limit) column[++m] = task[i]
+      if (m == 0) exit
+      head = "| algorithm |"; rule = "|---|"
+      for (i = 1; i <= m; ++i) { head = head " `" column[i] "`" (limit[column[i]] >= 0 ? " (" limit[column[i]] ")" : "") " |"; rule = rule "---|" }
+      print head; print rule
+      na = split("ppo trpo ppo_lag trpo_lag cppo_pid cpo pcpo focops p3o ipo", algo, " ")
+      for (j = 1; j <= na; ++j) { if (!(algo[j] in known)) continue
+        line = "| `" algo[j] "` |"
+        for (i = 1; i <= m; ++i) { k = column[i] SUBSEP algo[j]
+          line = line " " (k in cell ? cell[k] (seeds[k] > 1 ? " (" seeds[k] " seeds)" : "") "; " sampled[k] (k in published ? "; " published[k] " @ " cost_of(its[k], limit[column[i]]) : "") : "-") " |" }
+        print line } }'
+}
+
 claims() {
   { means table1 | sed 's/^/T /'; means fig7 | sed 's/^/F /'; } | awk '
     { k = $2 SUBSEP $3; ret[k] = $7; cost[k] = $8; limit[k] = $4; tcost[k] = $15; swing[k] = $17; ok[k] = $22; there[k] = 1 }
@@ -123,7 +148,14 @@ claims() {
     }'
 }
 
-{ echo "# Table 1"; echo; table table1; note; } > "$results/table1.md"
+{ echo "# Table 1"; echo; table table1; note; [ -z "$(means long)" ] || { echo; echo "## 100 M steps"; echo; table long; }; } > "$results/table1.md"
 { echo "# Fig. 7"; echo; table fig7; note; } > "$results/fig7.md"
 { echo "# With a second limit"; echo; table second; note; } > "$results/second.md"
 { echo "# What the paper says of its algorithms"; echo; claims; } > "$results/claims.md"
+{
+  # shellcheck disable=SC2086
+  short table1 $order
+  echo
+  # shellcheck disable=SC2086
+  short fig7 $order
+} > "$results/short.md"
