@@ -5,12 +5,15 @@
 set -eu
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 results=${1:-$root/examples/results}
+# For the awk programs of the tables: a figure as text.
+number='function number(x) { return sprintf(x >= 1e3 ? "%.0f" : "%.3g", x) }
+'
 
 # means PART: one line for each task and algorithm: task algo limit seeds steps return cost falls success sampled_return
 # sampled_cost sampled_over train_return train_cost train_over train_swing wall returns costs seeds_over feasible
 # second_limit second_cost seconds_to_half
 means() {
-  awk -F, -v part="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+  awk -F, -v part="$1" "$number"'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
     $at["part"] == part { k = $at["task"] SUBSEP $at["algorithm"]
       if (!(k in n)) { order[++count] = k; limit[k] = $at["limit"] + 0 }
       i = ++n[k]; split("env_steps return cost falls success sampled_return sampled_cost sampled_over train_return train_cost train_over train_swing wall_seconds", key, " ")
@@ -19,7 +22,6 @@ means() {
       second[k] = $at["second_limit"]; more[k] += $at["second_cost"]
       over = limit[k] >= 0 && $at["cost"] > limit[k]; overs[k] += over
       each[k] = each[k] (i > 1 ? "," : "") number($at["return"]); costs[k] = costs[k] (i > 1 ? "," : "") number($at["cost"]) (over ? "!" : "") }
-    function number(x) { return sprintf(x >= 1e3 ? "%.0f" : "%.3g", x) }
     END { for (c = 1; c <= count; ++c) { k = order[c]; split(k, name, SUBSEP); m = n[k]
       printf "%s %s %s %d", name[1], name[2], limit[k], m
       for (j = 1; j <= 13; ++j) printf " %.6g", sum[k, j] / m
@@ -57,8 +59,7 @@ table() {
   echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
   for task in $order; do
     { published | sed 's/^/P /'; means "$1" | awk -v t="$task" '$1 == t' | sort -k21,21nr -k6,6nr; } |
-      awk '$1 == "P" { known[$2, $3] = $4 " @ " $5; next }
-        function number(x) { return sprintf(x >= 1e3 ? "%.0f" : "%.3g", x) }
+      awk "$number"'$1 == "P" { known[$2, $3] = $4 " @ " $5; next }
         { gsub(",", ", ", $18); gsub(",", ", ", $19)
           printf "| `%s` (%s) | `%s` | %s", $1, $3 < 0 ? "-" : $3, $2, number($6); if ($4 > 1) printf " (%s)", $18
           printf " | %s%s", number($7), $21 ? "" : "!"; if ($4 > 1) printf " (%s)", $19
@@ -81,11 +82,10 @@ T
 short() {
   local part=$1
   shift
-  { published | sed 's/^/P /'; means "$part" | sed 's/^/M /'; } | awk -v tasks="$*" '
-    function number(x) { return sprintf(x >= 1e3 ? "%.0f" : "%.3g", x) }
+  { published | sed 's/^/P /'; means "$part" | sed 's/^/M /'; } | awk -v tasks="$*" "$number"'
     function cost_of(x, limit) { return number(x) (limit >= 0 && x > limit ? "!" : "") }
     $1 == "P" { published[$2, $3] = $4; its[$2, $3] = $5; next }
-    { limit[$2] = $4; seeds[$2, $3] = $5; known[$3] = 1; more = $5 > more ? $5 : more
+    { limit[$2] = $4; seeds[$2, $3] = $5; known[$3] = 1
       cell[$2, $3] = sprintf("%s @ %s, %.0f %%", number($7), cost_of($8, $4), 100 * $10)
       sampled[$2, $3] = number($11) " @ " cost_of($12, $4) }
     END { n = split(tasks, task, " "); m = 0

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The README's table of Reorient, learned: for each seed four stages one after the other, each from the run of the one
-# before (whose options hold until others are given), then 500 fresh episodes of the task as it comes. Finished stages are kept and stopped
-# ones go on, so the script can be stopped and called again.
+# before (whose options hold until others are given), then 500 fresh episodes of the task as it comes. Finished stages
+# are kept and stopped ones go on, so the script can be stopped and called again.
 #   bash examples/reorient_table.sh [OUT]   OUT: folder of the runs, default runs/reorient
 # Environment: REDMAN (the tool), SEEDS ("1 2 3"), JOBS (seeds at once, one thread each; 2).
 #   1 PPO, costs not counted, goals three times as wide: what turns an egg at all
@@ -34,9 +34,9 @@ limited() {
 
 learn() {  # SEED
   stage "$1" 1 --set canonical_rotation=true --algo ppo --steps 8e6 --eval-every 20 --set success_angle=0.3 --set kl_target=0.03 &&
-    limited "$1" 2 --set canonical_rotation=true --steps 6.6e6 --eval-every 20 --set success_angle=0.2 --set warm_epochs=8 --set learning_rate=0.0004 \
+    limited "$1" 2 --steps 6.6e6 --eval-every 20 --set success_angle=0.2 --set warm_epochs=8 --set learning_rate=0.0004 \
       --set kl_target=0.03 --set multiplier_init=0.05 &&
-    limited "$1" 3 --set canonical_rotation=true --steps 110e6 --eval-every 40 --set success_angle=0.2 --set warm_epochs=6 --set learning_rate=0.0003 \
+    limited "$1" 3 --steps 110e6 --eval-every 40 --set success_angle=0.2 --set warm_epochs=6 --set learning_rate=0.0003 \
       --set kl_target=0.03 --set multiplier_init=0.6 --set std_schedule=linear --set init_std=0.25 --set std_min=0.08 &&
     limited "$1" 4 --set canonical_rotation=false --steps 40e6 --eval-every 40 --set success_angle=0.1 --set warm_epochs=6 \
       --set learning_rate=0.0002 --set kl_target=0.02 --set multiplier_init=0.4 --set std_schedule=linear --set init_std=0.15 --set std_min=0.06 &&
