@@ -124,6 +124,9 @@ condensed() {
       print "" } }' "$1"
 }
 
+# wall_seconds CSV: of a run and of what it went on from, by its condensed training.
+wall_seconds() { tail -n 1 "$1" | cut -d, -f2; }
+
 # reached CSV: seconds of training until half of the episodes of an epoch, noise and all, were a success; "" never.
 reached() {
   awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
@@ -147,7 +150,7 @@ rows | while read -r name part task algo seed n flags; do
   condensed "$out/$name/progress.csv" > "$results/runs/$name/progress.csv"
   cp "$out/$name/config.json" "$results/runs/$name/config.json"
   tail=$(last_tenth "$out/$name/progress.csv" "$limit")
-  echo "$name,$part,$task,$algo,$seed,$limit,$(value return "$f"),$(value cost "$f"),$(value cost_stderr "$f"),$(value fall_rate "$f"),$(value success_rate "$f"),$(value length "$f"),$(value return_mean "$s"),$(value cost_mean "$s"),$(value violation_rate "$s"),$tail,$(value env_steps "$f"),$(value wall_seconds "$f"),$(reached "$out/$name/progress.csv"),$(of_second "$out/$name.mean.json"),$flags"
+  echo "$name,$part,$task,$algo,$seed,$limit,$(value return "$f"),$(value cost "$f"),$(value cost_stderr "$f"),$(value fall_rate "$f"),$(value success_rate "$f"),$(value length "$f"),$(value return_mean "$s"),$(value cost_mean "$s"),$(value violation_rate "$s"),$tail,$(value env_steps "$f"),$(wall_seconds "$results/runs/$name/progress.csv"),$(reached "$out/$name/progress.csv"),$(of_second "$out/$name.mean.json"),$flags"
 done > "$results/runs.csv.new"
 # runs of other calls stay
 {
