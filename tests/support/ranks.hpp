@@ -2,6 +2,7 @@
 #pragma once
 #include <condition_variable>
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "agents.hpp"
@@ -130,7 +131,8 @@ class NoisePart {
 struct AloneRanks {
   explicit AloneRanks(int32_t envs, int32_t blocks = 1) {
     AgentSetup s("ppo", 1, 1, envs);
-    s.with("blocks", std::to_string(blocks).c_str());
+    const std::string count = std::to_string(blocks);  // the setup keeps the pointer
+    s.with("blocks", count.c_str());
     const ResolvedAgentConfig resolved = resolve_config(s.ready());
     Arena measure;
     ranks.carve(measure, resolved, 1);
