@@ -64,7 +64,7 @@ table() {
           printf "| `%s` (%s) | `%s` | %s", $1, $3 < 0 ? "-" : $3, $2, number($6); if ($4 > 1) printf " (%s)", $18
           printf " | %s%s", number($7), $21 ? "" : "!"; if ($4 > 1) printf " (%s)", $19
           if ($22 == "-") printf " | "; else printf " | %s (%s)", $23, $22
-          printf " | %.0f %% | %.0f %% | %s @ %s | %.0f %% | %s @ %s | %.0f %% | %.2g M | %.0f | %s | %s |\n", 100 * $8, 100 * $9, number($10),
+          printf " | %.0f %% | %.0f %% | %s @ %s | %.0f %% | %s @ %s | %.0f %% | %.3g M | %.0f | %s | %s |\n", 100 * $8, 100 * $9, number($10),
             number($11), 100 * $12, number($13), number($14), 100 * $15, $5 / 1e6, $17, $24 == "-" ? "" : sprintf("%.0f", $24), (($1, $2) in known) ? known[$1, $2] : "" }'
   done
 }

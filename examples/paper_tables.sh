@@ -13,7 +13,8 @@
 #
 # RESULTS/runs.csv has a row for each run: its command, seed, steps, wall time; the mean action and the policy with its
 # noise over 100 fresh episodes each; the last tenth of training. RESULTS/runs/NAME is its configuration and its
-# training, a hundredth in each row; `redman plot` draws it. RESULTS/*.md are the tables, feasible first (made by
+# training, a hundredth in each row (`redman plot` draws it), of a LONG one its policy too. RESULTS/*.md are the
+# tables, feasible first (made by
 # examples/paper_report.sh out of runs.csv), RESULTS/*.svg the curves.
 set -eu
 # shellcheck source=examples/runs.sh
@@ -149,6 +150,7 @@ rows | while read -r name part task algo seed n flags; do
   mkdir -p "$results/runs/$name"
   condensed "$out/$name/progress.csv" > "$results/runs/$name/progress.csv"
   cp "$out/$name/config.json" "$results/runs/$name/config.json"
+  [ "$part" != long ] || cp "$out/$name/policy.rdm" "$results/runs/$name/policy.rdm"  # an hour each: eval, render use it
   tail=$(last_tenth "$out/$name/progress.csv" "$limit")
   echo "$name,$part,$task,$algo,$seed,$limit,$(value return "$f"),$(value cost "$f"),$(value cost_stderr "$f"),$(value fall_rate "$f"),$(value success_rate "$f"),$(value length "$f"),$(value return_mean "$s"),$(value cost_mean "$s"),$(value violation_rate "$s"),$tail,$(value env_steps "$f"),$(wall_seconds "$results/runs/$name/progress.csv"),$(reached "$out/$name/progress.csv"),$(of_second "$out/$name.mean.json"),$flags"
 done > "$results/runs.csv.new"
