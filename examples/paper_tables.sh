@@ -14,8 +14,7 @@
 # RESULTS/runs.csv has a row for each run: its command, seed, steps, wall time; the mean action and the policy with its
 # noise over 100 fresh episodes each; the last tenth of training. RESULTS/runs/NAME is its configuration and its
 # training, a hundredth in each row (`redman plot` draws it), of a LONG one its policy too. RESULTS/*.md are the
-# tables, feasible first (made by
-# examples/paper_report.sh out of runs.csv), RESULTS/*.svg the curves.
+# tables, feasible first (made by examples/paper_report.sh out of runs.csv), RESULTS/*.svg the curves.
 set -eu
 # shellcheck source=examples/runs.sh
 . "$(dirname "$0")/runs.sh"
