@@ -47,13 +47,12 @@ algos() {
 
 # second TASK ALGO: the flags of its rows with a second cost. CPO is defined for one: it follows the more violated.
 second() {
-  local several=
-  [ "$2" != cpo ] || several=" --set several_costs=worst"
   case $1 in
-    hand_over_*) echo "--cost-limit effort=1$several" ;;
-    catch_*) echo "--cost-limit throw_height=1$several" ;;
-    jenga) echo "--cost-limit blocks_contact=60$several" ;;
+    hand_over_*) echo "--cost-limit effort=1" ;;
+    catch_*) echo "--cost-limit throw_height=1" ;;
+    jenga) echo "--cost-limit blocks_contact=60" ;;
   esac
+  [ "$2" != cpo ] || echo "--set several_costs=worst"
 }
 
 wanted() { case " ${2:-$1} " in *" $1 "*) ;; *) return 1 ;; esac }
@@ -68,7 +67,7 @@ rows() {
       for algo in $(algos "$part" "$task"); do
         wanted "$algo" "${ALGOS:-}" || continue
         case $part in
-          second) echo "$task.$algo.second.$seed second $task $algo $seed ${STEPS:-$(steps "$task")} $(second "$task" "$algo")" ;;
+          second) echo "$task.$algo.second.$seed second $task $algo $seed ${STEPS:-$(steps "$task")} $(second "$task" "$algo" | xargs)" ;;
           *) echo "$task.$algo.$seed $part $task $algo $seed ${STEPS:-$(steps "$task")}" ;;
         esac
       done
