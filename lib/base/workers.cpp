@@ -78,8 +78,10 @@ struct Workers::Shared {
   Vector<std::thread> threads;
 };
 
-Workers::Workers(const HostHooks& hooks, int32_t threads) : hooks_(hooks) {
-  width_ = threads > 1 ? threads : 1;
+Workers::Workers(const HostHooks& hooks, int32_t threads)
+    : hooks_(hooks),
+      width_(threads > 1 ? threads : 1),
+      cursors_(threads > 1 ? static_cast<size_t>(threads) : 0) {
   if (hooks_.parallel || width_ == 1) return;
   shared_ = host_new<Shared>(hooks_, width_ - 1);
   try {
@@ -95,8 +97,10 @@ Workers::Workers(const HostHooks& hooks, int32_t threads) : hooks_(hooks) {
 }
 
 size_t Workers::memory(const HostHooks& hooks, int32_t threads) {
-  if (hooks.parallel || threads <= 1) return 0;
-  return sizeof(Shared) + static_cast<size_t>(threads - 1) * sizeof(std::thread);
+  if (threads <= 1) return 0;
+  const size_t cursors = static_cast<size_t>(threads) * sizeof(Cursor);
+  if (hooks.parallel) return cursors;
+  return cursors + sizeof(Shared) + static_cast<size_t>(threads - 1) * sizeof(std::thread);
 }
 
 Workers::~Workers() {
@@ -143,6 +147,37 @@ void Workers::run(int32_t n, ParallelBody body, void* context) {
   if (soon(done)) return;
   std::unique_lock lock(shared_->mutex);
   shared_->finish.wait(lock, done);
+}
+
+void Workers::run_pieces(int32_t n, int32_t parts, int32_t grain, PieceBody body, void* context) {
+  if (parts == 1) {
+    const FpMode mode;
+    body(context, 0, 0, n);
+    return;
+  }
+  struct Call {
+    Cursor* cursors;
+    int32_t n, parts, grain;
+    PieceBody body;
+    void* context;
+  } call{cursors_.data(), n, parts, grain, body, context};
+  for (int32_t p = 0; p < parts; ++p)
+    cursors_[static_cast<size_t>(p)].next.store(part_begin(n, parts, p), std::memory_order_relaxed);
+  run(
+      parts,
+      [](void* argument, int32_t self) {
+        const Call& c = *static_cast<Call*>(argument);
+        for (int32_t i = 0; i < c.parts; ++i) {
+          const int32_t part = (self + i) % c.parts, end = part_begin(c.n, c.parts, part + 1);
+          std::atomic<int32_t>& next = c.cursors[part].next;
+          while (next.load(std::memory_order_relaxed) < end) {
+            const int32_t begin = next.fetch_add(c.grain, std::memory_order_relaxed);
+            if (begin >= end) break;
+            c.body(c.context, self, begin, begin + c.grain < end ? begin + c.grain : end);
+          }
+        }
+      },
+      &call);
 }
 
 }  // namespace rdm

@@ -54,12 +54,14 @@ struct Slot {
 };
 
 inline constexpr int32_t kMaxGroup = 16;
+inline constexpr int32_t kFewWorlds = 4;
 
 // A reward or cost beyond it is as good as not finite; sums of an episode stay below the other, and both are
 // finite as floats.
 inline constexpr double kMaxVerdict = 1e20, kMaxSum = 1e30;
 
-// A run of worlds that stays with one worker.
+// What a worker needs to step worlds: its own run of them first, then pieces of those of others, in the
+// memory of its first world.
 struct alignas(Arena::kAlign) Block {
   float* action;  // [action_dim] clipped
   SenseScratch sense;
@@ -111,10 +113,11 @@ struct Pool::Impl : ResolvedPoolConfig {
   void close_step(int32_t env, const Verdict& verdict, uint32_t status, bool lost);
   bool costs_end(const Verdict& verdict) const;  // option end_on_cost
   void write_verdict(int32_t env, const Verdict& verdict, uint32_t status);
-  // f(begin, end, block) for every block, f(env, block) for every world, on the workers. Both rethrow the
-  // error of the lowest world when all is done.
+  // f(begin, end, block) for runs of worlds that are all of them together, f(env, block) for every world, on
+  // the workers. Both rethrow the error of the lowest world when all is done. `whole`: one run for each
+  // block, for worlds that are named by a mask: their groups are fullest in long runs.
   template <class F>
-  void each_block(F&& f);
+  void each_block(F&& f, bool whole = false);
   template <class F>
   void each_world(const uint8_t* mask, F&& f);
 
@@ -161,24 +164,31 @@ void Block::attempt(int32_t env, F&& f) {
 }
 
 template <class F>
-void Pool::Impl::each_block(F&& f) {
+void Pool::Impl::each_block(F&& f, bool whole) {
   struct Call {
     Impl* impl;
     F* f;
-  } call{this, &f};
-  const int32_t count = num_blocks();
-  workers->run(
-      count,
-      [](void* context, int32_t b) {
-        const FpMode mode;
+    bool lends;
+  } call{this, &f, slots[0].world->lends()};
+  const int32_t count = num_blocks(), all = config.num_envs;
+  for (int32_t b = 0; b < count; ++b) blocks[b].failed = -1;
+  // whole groups, and not so few that taking a piece weighs more than a step of a small world
+  const int32_t piece = (kFewWorlds + group_size - 1) / group_size * group_size;
+  workers->run_pieces(
+      all, count, whole || !call.lends ? all : piece,
+      [](void* context, int32_t b, int32_t begin, int32_t end) {
         const Call& c = *static_cast<Call*>(context);
-        Block& block = c.impl->blocks[b];
-        block.failed = -1;
-        (*c.f)(c.impl->block_begin(b), c.impl->block_begin(b + 1), block);
+        Impl& m = *c.impl;
+        const World& home = *m.slots[m.block_begin(b)].world;
+        if (c.lends)
+          for (int32_t env = begin; env < end; ++env) m.slots[env].world->borrow(home);
+        (*c.f)(begin, end, m.blocks[b]);
       },
       &call);
+  const Block* first = nullptr;
   for (int32_t b = 0; b < count; ++b)
-    if (blocks[b].failed >= 0) throw blocks[b].error;
+    if (blocks[b].failed >= 0 && (!first || blocks[b].failed < first->failed)) first = &blocks[b];
+  if (first) throw first->error;
 }
 
 template <class F>

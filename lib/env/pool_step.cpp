@@ -36,18 +36,20 @@ void Pool::step(const uint8_t* mask) {
   const FpMode mode;
   Impl& m = *impl_;
   m.check_ready(mask);
-  m.each_block([&](int32_t begin, int32_t end, Block& block) {
-    const auto named = [&](int32_t env) { return !mask || mask[env]; };
-    for (int32_t env = begin; env < end; ++env)
-      if (named(env)) m.slots[env].taken = 0;
-    m.control_step(begin, end, block, named);
-    for (int32_t r = 1; r < m.repeat; ++r)
-      m.control_step(begin, end, block, [&](int32_t env) { return named(env) && m.slots[env].goes_on; });
-    if (!m.sense.any()) return;
-    for (int32_t env = begin; env < end; ++env)
-      if (named(env) && m.slots[env].episode.step % m.sense.every == 0)
-        block.attempt(env, [&] { m.see(env, block); });
-  });
+  m.each_block(
+      [&](int32_t begin, int32_t end, Block& block) {
+        const auto named = [&](int32_t env) { return !mask || mask[env]; };
+        for (int32_t env = begin; env < end; ++env)
+          if (named(env)) m.slots[env].taken = 0;
+        m.control_step(begin, end, block, named);
+        for (int32_t r = 1; r < m.repeat; ++r)
+          m.control_step(begin, end, block, [&](int32_t env) { return named(env) && m.slots[env].goes_on; });
+        if (!m.sense.any()) return;
+        for (int32_t env = begin; env < end; ++env)
+          if (named(env) && m.slots[env].episode.step % m.sense.every == 0)
+            block.attempt(env, [&] { m.see(env, block); });
+      },
+      mask != nullptr);
 }
 
 void Pool::baseline(Baseline kind) {

@@ -118,7 +118,7 @@ int32_t ResolvedPoolConfig::num_blocks() const {
 }
 
 int32_t ResolvedPoolConfig::block_begin(int32_t block) const {
-  return static_cast<int32_t>(int64_t{config.num_envs} * block / num_blocks());
+  return Workers::part_begin(config.num_envs, num_blocks(), block);
 }
 
 }  // namespace rdm

@@ -13,6 +13,7 @@ class KinematicWorld final : public World {
 
   EngineKind engine() const override { return EngineKind::kKinematic; }
   void step() override {}
+  bool lends() const override { return true; }
   void set_body(int32_t i, const Motion& m) override { bodies_[i] = m; }
   // Error(kUnsupported): there is no mass that a force could move.
   void set_base(int32_t articulation, const Motion& m) override;

@@ -69,6 +69,10 @@ class World {
   // The same for `count` worlds that share working memory (see create), together where the engine gains
   // from it: the bytes are those of stepping each alone.
   static void step_together(World* const* worlds, int32_t count);
+  // From now on this world works in the memory of `lender` (a world of the same scene that lends), which no
+  // other world may then do at the same time. Worlds of an engine that does not lend keep to their own.
+  virtual bool lends() const { return false; }
+  virtual void borrow(const World&) {}
   // The number of worlds that are best stepped together.
   virtual int32_t group_size() const { return 1; }
 

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -87,6 +88,53 @@ TEST_P(WorkersOf, ResultDoesNotDependOnTheThreads) {
   for (int32_t i = 0; i < 33; ++i) Sums::body(&serial, i);
   Workers(host(), GetParam()).run(33, Sums::body, &parallel);
   for (int i = 0; i < 33; ++i) EXPECT_EQ(serial.out[i], parallel.out[i]);
+}
+
+TEST_P(WorkersOf, PiecesAreAllItemsOnceAndOneAtATimeForAPart) {
+  struct Pieces {
+    std::vector<std::atomic<int>> items;
+    std::atomic<int> busy[4] = {};
+    std::atomic<bool> good = true;
+    int32_t parts = 1, grain = 1;
+    static void body(void* context, int32_t part, int32_t begin, int32_t end) {
+      auto* p = static_cast<Pieces*>(context);
+      if (part < 0 || part >= p->parts || p->busy[part]++ != 0) p->good = false;
+      if (p->parts > 1 && (end <= begin || end - begin > p->grain)) p->good = false;
+      for (int32_t i = begin; i < end; ++i) ++p->items[static_cast<size_t>(i)];
+      --p->busy[part];
+    }
+  };
+  Workers workers(host(), GetParam());
+  for (const int32_t n : {1, 5, 16, 67})
+    for (int32_t parts = 1; parts <= std::min(n, workers.width()); ++parts)
+      for (const int32_t grain : {1, 4, 100}) {
+        Pieces pieces{std::vector<std::atomic<int>>(static_cast<size_t>(n))};
+        pieces.parts = parts;
+        pieces.grain = grain;
+        for (int round = 1; round <= 50; ++round) {
+          workers.run_pieces(n, parts, grain, Pieces::body, &pieces);
+          ASSERT_TRUE(pieces.good) << n << " in " << parts << " by " << grain;
+          for (const auto& times : pieces.items) ASSERT_EQ(times, round);
+        }
+      }
+}
+
+// The first piece lasts until all others are done: some thread has to take what is left of its part.
+TEST(Workers, OneThatIsIdleTakesPiecesOfAPartThatLasts) {
+  struct Lasting {
+    std::atomic<int> done = 0;
+    int seen = 0;
+    static void body(void* context, int32_t, int32_t begin, int32_t) {
+      auto* l = static_cast<Lasting*>(context);
+      const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+      while (begin == 0 && l->done < 7 && std::chrono::steady_clock::now() < until) std::this_thread::yield();
+      if (begin == 0) l->seen = l->done;
+      ++l->done;
+    }
+  } lasting;
+  Workers(host(), 2).run_pieces(8, 2, 1, Lasting::body, &lasting);
+  EXPECT_EQ(lasting.seen, 7);
+  EXPECT_EQ(lasting.done, 8);
 }
 
 TEST(Workers, HostHookTakesTheWork) {

@@ -82,7 +82,7 @@ ArticulatedWorld::ArticulatedWorld(const Scene& scene, Arena& arena, Articulated
     throw;
   }
   if (arena.measuring()) return;
-  state_.body_models = own_models_ ? own_models_ : shared_->model.bodies.data();
+  state_.body_models = own_models_ ? own_models_ : home_->model.bodies.data();
   own_constants();
   for (int32_t i = 0; i < scene.num_bodies; ++i) set_body(i, bodies_[i]);
   for (int32_t a = 0; a < static_cast<int32_t>(bases); ++a) links_changed(a);
@@ -109,13 +109,13 @@ void ArticulatedWorld::carve_sleep(Arena& arena) {
 void ArticulatedWorld::make_shared(Arena& arena, ArticulatedWorld* partner, bool partnered) {
   if (partnered) {
     if (!partner) return;  // measuring
-    shared_ = partner->shared_;
-    ++shared_->users;
+    shared_ = home_ = partner->home_;
+    ++home_->users;
     return;
   }
   const HostHooks hooks = host();
   auto* shared = host_new<ArticulatedShared>(hooks);
-  shared_ = shared;
+  shared_ = home_ = shared;
   shared->users = 1;
   shared->hooks = hooks;
   shared->model = make_articulated_model(*scene_);
@@ -140,11 +140,11 @@ ArticulatedWorld::~ArticulatedWorld() {
 }
 
 void ArticulatedWorld::release_shared() {
-  if (!shared_ || --shared_->users > 0) return;
-  const HostHooks hooks = shared_->hooks;
-  if (shared_->group && shared_->group != shared_->alone) shared_->group->end(hooks);
-  if (shared_->alone) shared_->alone->end(hooks);
-  host_delete(hooks, shared_);
+  if (!home_ || --home_->users > 0) return;
+  const HostHooks hooks = home_->hooks;
+  if (home_->group && home_->group != home_->alone) home_->group->end(hooks);
+  if (home_->alone) home_->alone->end(hooks);
+  host_delete(hooks, home_);
 }
 
 template <class S>

@@ -33,6 +33,8 @@ class ArticulatedWorld final : public World {
 
   EngineKind engine() const override { return EngineKind::kArticulated; }
   void step() override;
+  bool lends() const override { return true; }
+  void borrow(const World& lender) override { shared_ = static_cast<const ArticulatedWorld&>(lender).home_; }
   int32_t group_size() const override { return shared_->group->group_size(); }
   void set_body(int32_t i, const Motion& m) override;
   void set_base(int32_t articulation, const Motion& m) override;
@@ -66,10 +68,11 @@ class ArticulatedWorld final : public World {
   void recover();
 
   OdeGuard guard_;
-  ArticulatedShared* shared_ = nullptr;
-  WorldState state_ = {};            // this world's arrays, as a stepper takes them
-  BodyModel* own_models_ = nullptr;  // [num_bodies]
-  uint8_t* heavier_ = nullptr;       // [articulations] a mass changed since the momenta were made
+  ArticulatedShared* home_ = nullptr;    // kept while this world lives
+  ArticulatedShared* shared_ = nullptr;  // worked with: home_, or a lender's
+  WorldState state_ = {};                // this world's arrays, as a stepper takes them
+  BodyModel* own_models_ = nullptr;      // [num_bodies]
+  uint8_t* heavier_ = nullptr;           // [articulations] a mass changed since the momenta were made
 };
 
 }  // namespace rdm
