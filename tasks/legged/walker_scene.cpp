@@ -10,6 +10,9 @@ namespace {
 
 constexpr double kFreely = 1e4;  // rad, m: the range of what has no limit
 constexpr int32_t kContactsMax = 48;
+// No motor here, and no leg that swings, reaches this far beyond a joint's end. Past it the engine stops a
+// joint without a reaction, which is a push from nowhere.
+constexpr double kStopMargin = 0.1;  // rad
 
 ShapeDef make_shape(const char* name, ShapeKind kind, const Vec3& size, const Pose& X, int32_t material,
                     Color color) {
@@ -42,6 +45,7 @@ void make_walkable(PlanarScene& scene, double h, int32_t substeps, double limb_m
   def.solver.substeps = substeps;
   def.solver.contacts_max = kContactsMax;
   def.solver.spring_only_effort = true;
+  def.solver.limit_margin = kStopMargin;
   def.feedforward = true;
   def.num_materials = 3;
   for (const auto& [material, mu] : {std::pair{kLimbMaterial, limb_mu}, std::pair{kFootMaterial, foot_mu}})

@@ -1,4 +1,5 @@
 // The ant, MuJoCo's and Bullet's.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -84,6 +85,36 @@ TEST(Ant, RunIsPaidByTheWayAndItsEffort) {
     ASSERT_NEAR(static_cast<double>(w.reward()), 60 * gain - 2 * power - 0.1 * square - 0.1 * ends + 1, 2e-3);
     const Vec3 v = world.base(0).v;
     ASSERT_EQ(w.cost(), std::hypot(v.x, v.y) > 1.5 || std::fabs(at.y) > 2);
+  }
+}
+
+// High above the floor nothing outside pushes it sideways, however hard its motors drive the legs into their
+// stops: its momentum stays.
+TEST(Ant, StopsOfItsJointsPushItNowhere) {
+  for (const char* task : {"ant_run", "ant_reach"}) {
+    SmallWorld w(task);
+    World& world = w.pool()->world(0);
+    const ArticulationDef& robot = robot_of(w);
+    Motion m = world.base(0);
+    m.X.p.z = 100;
+    m.v = m.w = {};
+    world.set_base(0, m);
+    double fastest = 0, mass = robot.base.mass;
+    for (const LinkDef& link : robot.links) mass += link.inertia.mass;
+    for (int i = 0; i < 200 && !w.terminated(); ++i) {
+      if (i % 20 == 0) w.pool()->baseline(Baseline::kRandom);
+      for (int k = 0; k < 8; ++k) w.pool().action(0)[k] = w.pool().action(0)[k] < 0 ? -1.0f : 1.0f;
+      w.pool()->step(nullptr);
+      if (i % 20 < 19) continue;  // until the legs lie still at their stops
+      Vec3 momentum;
+      for (int32_t k = -1; k < 8; ++k) {
+        const Motion& part = k < 0 ? world.base(0) : world.link(k);
+        const Inertia& inertia = k < 0 ? robot.base : robot.links[static_cast<size_t>(k)].inertia;
+        momentum += inertia.mass * (part.v + cross(part.w, rotate(part.X.q, inertia.com)));
+      }
+      fastest = std::max(fastest, std::hypot(momentum.x, momentum.y) / mass);
+    }
+    EXPECT_LT(fastest, 1e-3) << task;
   }
 }
 

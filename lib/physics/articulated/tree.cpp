@@ -33,7 +33,7 @@ bool is_massless(const Inertia& inertia) {
 
 // The solver's stiffness gives way to heavy links: a joint of inertia I that runs into its end at rate v goes
 // beyond by about v h / (1 + h^2 k / I). From kHeavy on, k is kStiff I / h^2, with I the most that the joint
-// may carry in any pose (kg m2, kg).
+// may carry in any pose, its motor's own with it (kg m2, kg).
 constexpr double kHeavy = 0.05, kStiff = 10;
 
 void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* member) {
@@ -42,6 +42,7 @@ void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* memb
   Vector<double> carried(count);
   for (size_t k = 0; k < count; ++k) {
     const Inertia& inertia = def.links[k].inertia;
+    carried[k] += def.links[k].joint.armature;
     const double moment = inertia.moment[0] + inertia.moment[1] + inertia.moment[2];
     double reach = norm(inertia.com);
     for (auto i = static_cast<int32_t>(k); i >= 0;) {
