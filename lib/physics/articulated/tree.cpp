@@ -35,6 +35,9 @@ bool is_massless(const Inertia& inertia) {
 // beyond by about v h / (1 + h^2 k / I). From kHeavy on, k is kStiff I / h^2, with I the most that the joint
 // may carry in any pose, its motor's own with it (kg m2, kg).
 constexpr double kHeavy = 0.05, kStiff = 10;
+// Where torques are fed forward, a motor may lean on its stop for good: the end then holds it this far inside
+// the margin, past which it would be stopped without a reaction, and push a free base along.
+constexpr double kLeaning = 0.5;
 
 void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* member) {
   const SolverDef& solver = scene.def.solver;
@@ -57,6 +60,8 @@ void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* memb
   for (size_t i = 0; i < count; ++i) {
     double k = solver.limit_stiffness;
     if (k > 0 && carried[i] > kHeavy) k = std::max(k, kStiff * carried[i] / (solver.h * solver.h));
+    if (k > 0 && scene.def.feedforward && def.free_base && solver.limit_margin > 0)
+      k = std::max(k, def.links[i].joint.effort / (kLeaning * solver.limit_margin));
     member->links[i].limit_stiffness = k;
   }
 }

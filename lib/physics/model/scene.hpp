@@ -122,7 +122,7 @@ struct SolverDef {
   double contact_max_speed = 0;     // m/s, correction of depth; 0: the engine's own, see below
   int32_t contacts_per_pair = 4;    // 1..8
   int32_t contacts_max = 36;        // per world and substep, 1..4096; more raise kStatusContactOverflow
-  double limit_margin = 5e-3;       // rad beyond a joint's range before it is clamped
+  double limit_margin = 5e-3;       // rad beyond a joint's range before it is clamped, without a reaction
   double limit_stiffness = 100;     // N m/rad of the soft limit; engine articulated: of light joints, 0: none
   double link_armature = 3e-5;      // kg m2 about the joint axis of links under 1e-4 kg m2 (engine ode)
   bool spring_only_effort = false;  // true: effort bounds the spring alone, damping stays outside
