@@ -37,7 +37,8 @@ bool is_massless(const Inertia& inertia) {
 constexpr double kHeavy = 0.05, kStiff = 10;
 // Where torques are fed forward, a motor may lean on its stop for good: the end then holds it this far inside
 // the margin, past which it would be stopped without a reaction, and push a free base along.
-constexpr double kLeaning = 0.5;
+// Up to kStiffest I / h^2, for efforts that stand for no bound at all.
+constexpr double kLeaning = 0.5, kStiffest = 1e4;
 
 void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* member) {
   const SolverDef& solver = scene.def.solver;
@@ -59,9 +60,11 @@ void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* memb
   }
   for (size_t i = 0; i < count; ++i) {
     double k = solver.limit_stiffness;
-    if (k > 0 && carried[i] > kHeavy) k = std::max(k, kStiff * carried[i] / (solver.h * solver.h));
+    const double stiff = carried[i] / (solver.h * solver.h);
+    if (k > 0 && carried[i] > kHeavy) k = std::max(k, kStiff * stiff);
     if (k > 0 && scene.def.feedforward && def.free_base && solver.limit_margin > 0)
-      k = std::max(k, def.links[i].joint.effort / (kLeaning * solver.limit_margin));
+      k = std::max(k,
+                   std::min(def.links[i].joint.effort / (kLeaning * solver.limit_margin), kStiffest * stiff));
     member->links[i].limit_stiffness = k;
   }
 }
