@@ -1,8 +1,8 @@
 // The ant of Bullet-Safety-Gym as an agent: eight motors on a free body that the articulated engine moves.
 //
 // The body is MuJoCo's ant (legged/ant_body.hpp) with hips of +-40 and ankles of 30 to 100 degrees; a motor
-// gives 250 a N m, in rooms 1000 a. Its armature and damping of 1 are those of that model. It is over when
-// the torso is at 0.26 m or lower. The effort is
+// gives 250 a N m. Its armature and damping of 1 are those of that model. It is over when the torso is at
+// 0.26 m or lower. Departure: in rooms too, where the original has 1000 a. The effort is
 //   -2 mean |a r| - 0.1 mean a^2 - 0.1 #(|p| > 0.99) + 1 (fallen: -1),   p: joint position relative to its
 //   range, in [-1, 1]; r: 0.1 times the joint's rate
 #pragma once
