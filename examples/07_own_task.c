@@ -83,13 +83,13 @@ static rdm_result observe(void* user, const void* instance, const rdm_world* w, 
   return RDM_OK;
 }
 
+static int32_t task = -1;        /* its number */
 rdm_result redman_plugin(void) { /* the tool calls it of a library that is given by --plugin */
   static const rdm_field_def fields[] = {{"joints", "rad", JOINTS + 1, 0, 0, 0},
                                          {"rates", "10 rad/s", JOINTS + 1, 0, 0, 0},
                                          {"cup", "m", 3, 0, 0, 0}};
   static const rdm_cost cost = {"touch", "the hand touches the cup; raw: contact force, N", 5};
   rdm_task_def def;
-  int32_t task;
   rdm_task_def_init(&def, sizeof def);
   def.name = "press", def.summary = "press a button; cost: touching the cup beside it";
   def.fields = fields, def.num_fields = 3, def.costs = &cost, def.num_costs = 1;
@@ -116,5 +116,6 @@ int main(int argc, char** argv) {
   if (status) fprintf(stderr, "07_own_task: %s\n", rdm_last_error());
   rdm_agent_destroy(agent);
   rdm_pool_destroy(pool);
+  if (task >= 0) rdm_task_remove(task);
   return status;
 }

@@ -28,9 +28,9 @@ enum {
   GOAL = 81
 };
 static const float pi = 3.14159265f;
-static const float sight = 5, berth = 2.5f;     /* m */
-static const float noise = 0.05f;               /* deviation of an action */
-static const float bent[LEGS] = {1, -1, -1, 1}; /* the side of an ankle */
+static const float sight = 5, berth = 2.8f, edge = 1.7f; /* m */
+static const float noise = 0.05f;                        /* deviation of an action */
+static const float bent[LEGS] = {1, -1, -1, 1};          /* the side of an ankle */
 
 static uint32_t drawn = 1;
 static float draw(void) { /* about normal, deviation 1 */
@@ -52,7 +52,9 @@ static float choose_way(const float* obs) {
     for (int k = 0; k < SECTORS && !blocked; ++k) { /* from y to x, 15 degrees each: 1 - distance / sight */
       const float off = way - (pi / 2 - 2 * pi * ((float)k + 0.5f) / SECTORS);
       const float d = sight * (1 - obs[OBSTACLES + k]), ahead = d * cosf(off), beside = d * fabsf(sinf(off));
-      blocked = obs[OBSTACLES + k] > 0 && ahead > 0 && ahead < far + 0.5f && beside < fminf(berth, 0.98f * d);
+      const int inside = d < edge && ahead > -0.7f * d; /* and does not lead out */
+      blocked = obs[OBSTACLES + k] > 0 &&
+                (inside || (ahead > 0 && ahead < far + 0.5f && beside < fminf(berth, 0.98f * d)));
     }
     if (!blocked) return way;
   }

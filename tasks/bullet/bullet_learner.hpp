@@ -32,7 +32,7 @@ inline constexpr auto kBallGatherLearner = kSeekLearner, kBallReachLearner = kSe
                       kCarReachLearner = kSeekLearner, kDroneGatherLearner = kDroneLearner,
                       kDroneReachLearner = kDroneLearner;
 inline constexpr auto kAntLearner = kLeggedLearner;
-// In rooms its motors are four times as strong: wider noise throws it over 2 m.
+// In rooms a fall costs more than a stride earns: narrower noise than in the open.
 inline constexpr auto kAntSeekLearner =
     join_defaults(kWalkLearner, {{"init_std", "0.15"}, {"std_min", "0.02"}});
 inline constexpr auto kAntGatherLearner = kAntSeekLearner, kAntReachLearner = kAntSeekLearner;
