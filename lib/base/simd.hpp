@@ -108,13 +108,13 @@ using Int4 = int32_t __attribute__((vector_size(16)));  // as a mask -1: true, 0
 
 // N numbers of type S, for code that is compiled once per instruction set: in an unnamed namespace, so that
 // no linker joins two sets' copies. Such a source includes this header after every other one with code, and
-// one for AVX defines RDM_SIMD_AVX before: compilers do not tell what a pragma or an attribute has switched
-// on.
+// one for AVX defines RDM_SIMD_AVX before, one for AVX-512 RDM_SIMD_AVX512 too: compilers do not tell what a
+// pragma or an attribute has switched on.
 namespace {
 
 template <class S, int N>
 struct Simd {
-  static_assert(N == 4 || N == 8);
+  static_assert(N == 4 || N == 8 || N == 16);
   using Scalar = S;
   static constexpr int kCount = N;
   typedef S V __attribute__((vector_size(sizeof(S) * N)));
@@ -133,6 +133,13 @@ struct Simd {
     return m;
   }
   [[gnu::always_inline]] static uint32_t bits(const Mask& m) {
+#if defined(RDM_SIMD_AVX512)
+    if constexpr (sizeof(S) == 4 && N == 16) {
+      __m512i all;
+      std::memcpy(&all, &m, sizeof all);
+      return static_cast<uint32_t>(_mm512_movepi32_mask(all));
+    }
+#endif
 #if defined(RDM_SIMD_AVX)
     if constexpr (sizeof(S) == 4 && N == 8) {
       __m256 all;
@@ -143,8 +150,8 @@ struct Simd {
     if constexpr (sizeof(S) == 4) {
       Int4 part[N / 4];
       std::memcpy(part, &m, sizeof m);
-      uint32_t b = bits_of(part[0]);
-      if constexpr (N == 8) b |= bits_of(part[1]) << 4;
+      uint32_t b = 0;
+      for (int k = 0; k < N / 4; ++k) b |= bits_of(part[k]) << 4 * k;
       return b;
     }
     uint32_t b = 0;
@@ -152,6 +159,17 @@ struct Simd {
     return b;
   }
   [[gnu::always_inline]] static V root(const V& v) {
+#if defined(RDM_SIMD_AVX512)
+    if constexpr (sizeof(S) == 4 && N == 16) {
+      __m512 all;
+      std::memcpy(&all, &v, sizeof all);
+      // unmasked, GCC 12 warns of its own header
+      all = _mm512_maskz_sqrt_ps(0xffff, all);
+      V r;
+      std::memcpy(&r, &all, sizeof r);
+      return r;
+    }
+#endif
 #if defined(RDM_SIMD_AVX)
     if constexpr (sizeof(S) == 4 && N == 8) {
       __m256 all;
@@ -178,15 +196,17 @@ struct Simd {
   [[gnu::always_inline]] static void gather(const S* const* from, int count, V* to) {
     int i = 0;
 #if defined(RDM_SIMD_AVX)
-    if constexpr (sizeof(S) == 4 && N == 8)
-      for (; i + 4 <= count; i += 4) {
-        __m256 r[4];
-        for (int l = 0; l < 4; ++l)
-          r[l] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(from[l] + i)),
-                                      _mm_loadu_ps(from[4 + l] + i), 1);
-        transpose_halves(r);
-        std::memcpy(&to[i], r, sizeof r);
-      }
+    if constexpr (sizeof(S) == 4 && N >= 8)
+      for (; i + 4 <= count; i += 4)
+        for (int eight = 0; eight < N; eight += 8) {
+          const S* const* lane = from + eight;
+          __m256 r[4];
+          for (int l = 0; l < 4; ++l)
+            r[l] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(lane[l] + i)),
+                                        _mm_loadu_ps(lane[4 + l] + i), 1);
+          transpose_halves(r);
+          for (int k = 0; k < 4; ++k) _mm256_storeu_ps(reinterpret_cast<S*>(&to[i + k]) + eight, r[k]);
+        }
 #endif
     if constexpr (sizeof(S) == 4)
       for (; i + 4 <= count; i += 4)
@@ -203,14 +223,18 @@ struct Simd {
   [[gnu::always_inline]] static void scatter(const V* from, int count, int lanes, S* const* to) {
     int i = 0;
 #if defined(RDM_SIMD_AVX)
-    if constexpr (sizeof(S) == 4 && N == 8)
-      for (; i + 4 <= count; i += 4) {
-        __m256 r[4];
-        std::memcpy(r, &from[i], sizeof r);
-        transpose_halves(r);
-        for (int l = 0; l < 4 && l < lanes; ++l) _mm_storeu_ps(to[l] + i, _mm256_castps256_ps128(r[l]));
-        for (int l = 4; l < lanes; ++l) _mm_storeu_ps(to[l] + i, _mm256_extractf128_ps(r[l - 4], 1));
-      }
+    if constexpr (sizeof(S) == 4 && N >= 8)
+      for (; i + 4 <= count; i += 4)
+        for (int eight = 0; eight < lanes; eight += 8) {
+          S* const* lane = to + eight;
+          const int n = lanes - eight < 8 ? lanes - eight : 8;
+          __m256 r[4];
+          for (int k = 0; k < 4; ++k)
+            r[k] = _mm256_loadu_ps(reinterpret_cast<const S*>(&from[i + k]) + eight);
+          transpose_halves(r);
+          for (int l = 0; l < 4 && l < n; ++l) _mm_storeu_ps(lane[l] + i, _mm256_castps256_ps128(r[l]));
+          for (int l = 4; l < n; ++l) _mm_storeu_ps(lane[l] + i, _mm256_extractf128_ps(r[l - 4], 1));
+        }
 #endif
     if constexpr (sizeof(S) == 4)
       for (; i + 4 <= count; i += 4)

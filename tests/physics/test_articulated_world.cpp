@@ -72,7 +72,7 @@ TEST(ArticulatedWorld, StepsAtTheContactCapWithoutTheHeap) {
 }
 
 TEST(ArticulatedWorld, TakesTheMemoryItAnnounces) {
-  for (const int32_t lanes : {0, 1, 4, 8})
+  for (const int32_t lanes : {0, 1, 4, 8, 16})
     for (const bool wide : {false, true}) {
       SceneDef def = floating_hands();
       def.solver.lanes = lanes;

@@ -271,7 +271,7 @@ TEST(DynamicsWorlds, LanesAndGroupsChangeNoBit) {
   std::vector<uint64_t> distinct = want;
   std::sort(distinct.begin(), distinct.end());
   EXPECT_EQ(std::unique(distinct.begin(), distinct.end()), distinct.end());
-  for (const int32_t lanes : {0, 1, 4, 8})
+  for (const int32_t lanes : {0, 1, 4, 8, 16})
     for (const int32_t together : {1, 3, 8, 9})
       EXPECT_EQ(play(lanes, together), want) << lanes << " " << together;
 }

@@ -191,7 +191,7 @@ TEST(FeedforwardLanes, ChangeNoBit) {
     return hashes;
   };
   const auto want = play(1);
-  for (const int32_t lanes : {0, 4, 8}) EXPECT_EQ(play(lanes), want) << lanes;
+  for (const int32_t lanes : {0, 4, 8, 16}) EXPECT_EQ(play(lanes), want) << lanes;
 }
 
 // --- What holds an arm.

@@ -100,7 +100,7 @@ TEST_P(LargeRobots, LanesAndGroupsChangeNoBit) {
   int64_t contacts = 0;
   const auto want = play(GetParam().def(), 1, 1, &contacts);
   EXPECT_GT(contacts, 1000);
-  for (const int32_t lanes : {0, 4, 8})
+  for (const int32_t lanes : {0, 4, 8, 16})
     for (const int32_t together : {1, 5}) EXPECT_EQ(play(GetParam().def(), lanes, together), want) << lanes;
 }
 

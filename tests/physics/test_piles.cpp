@@ -411,13 +411,13 @@ TEST(Piles, LanesGroupsAndInstructionSetsChangeNoBit) {
     def.solver.double_precision = wide;
     ASSERT_TRUE(set_stepper_isa(kBaseIsa));
     const std::vector<uint64_t> want = play(def, 1, 1);
-    for (const char* isa : {kBaseIsa, kV3Isa}) {
+    for (const char* isa : {kBaseIsa, kV3Isa, kV4Isa}) {
       if (!set_stepper_isa(isa)) continue;
       if (wide) {
         EXPECT_EQ(play(def, 0, 3), want) << isa;
         continue;
       }
-      for (const int32_t lanes : {0, 4, 8}) EXPECT_EQ(play(def, lanes, 3), want) << isa << ", " << lanes;
+      for (const int32_t lanes : {0, 4, 8, 16}) EXPECT_EQ(play(def, lanes, 3), want) << isa << ", " << lanes;
       EXPECT_EQ(play(def, 0, 2), want) << isa;
     }
   }

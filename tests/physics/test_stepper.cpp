@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
 
 #include "articulated.hpp"
@@ -153,14 +154,14 @@ TEST_P(StepperScenes, LanesGroupsAndInstructionSetsChangeNoBit) {
   std::vector<uint64_t> distinct = want.hashes;
   std::sort(distinct.begin(), distinct.end());
   EXPECT_EQ(std::unique(distinct.begin(), distinct.end()), distinct.end());  // no two worlds do the same
-  for (const char* isa : {kBaseIsa, kV3Isa}) {
+  for (const char* isa : {kBaseIsa, kV3Isa, kV4Isa}) {
     if (!set_stepper_isa(isa)) continue;
     EXPECT_STREQ(stepper_isa(), isa);
     const auto expect_same = [&](int32_t lanes, int32_t together) {
       EXPECT_EQ(play(GetParam().def(), lanes, together).hashes, want.hashes)
           << isa << ", " << lanes << " lanes, groups of " << together;
     };
-    for (const int32_t lanes : {1, 4, 8})
+    for (const int32_t lanes : {1, 4, 8, 16})
       for (const int32_t together : {0, 3, 9}) expect_same(lanes, together);
     for (int32_t together = 0; together <= kWorlds; ++together) expect_same(0, together);
   }
@@ -217,7 +218,9 @@ TEST(Stepper, GroupsFillTheLanes) {
     def.solver.double_precision = wide;
     return test::Simulation(def, EngineKind::kArticulated)->group_size();
   };
-  EXPECT_EQ(size(fixed_hands(), 0), 4);  // two hands a world, eight lanes
+  const bool sixteen = std::strcmp(stepper_isa(), kV4Isa) == 0;
+  EXPECT_EQ(size(fixed_hands(), 0), sixteen ? 8 : 4);  // two hands a world
+  EXPECT_EQ(size(fixed_hands(), 16), sixteen ? 8 : 4);
   EXPECT_EQ(size(fixed_hands(), 8), 4);
   EXPECT_EQ(size(fixed_hands(), 4), 2);
   EXPECT_EQ(size(fixed_hands(), 1), 1);

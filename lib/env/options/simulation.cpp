@@ -1,5 +1,7 @@
 #include "env/options/simulation.hpp"
 
+#include <cstdlib>
+
 namespace rdm {
 namespace {
 
@@ -35,7 +37,7 @@ constexpr OptionSpec kRows[] = {
                 "what a joint's effort limit bounds: spring and damping, or the spring alone"),
     text_option("precision", "single", "single|double",
                 "engine articulated: arithmetic; double is a reference, half as fast"),
-    text_option("lanes", "auto", "auto|1|4|8",
+    text_option("lanes", "auto", "auto|1|4|8|16",
                 "engine articulated: numbers computed at a time; the results are the same"),
     number_option("sleep_time", 0, 0, 100,
                   "engine articulated: things that were slow for so long sleep until touched, s; 0: never"),
@@ -74,8 +76,7 @@ SolverDef solver_from(const Options& o) {
   s.spring_only_effort = same_name(o.text("effort_bounds"), "spring");
   s.exact = o.flag("exact_solver");
   s.double_precision = same_name(o.text("precision"), "double");
-  const char* lanes = o.text("lanes");
-  s.lanes = same_name(lanes, "auto") ? 0 : lanes[0] - '0';
+  s.lanes = static_cast<int32_t>(std::strtol(o.text("lanes"), nullptr, 10));  // auto: 0
   s.sleep_time = o.number("sleep_time");
   s.sleep_speed = o.number("sleep_speed");
   s.sleep_spin = o.number("sleep_spin");

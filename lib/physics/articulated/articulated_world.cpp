@@ -122,15 +122,16 @@ void ArticulatedWorld::make_shared(Arena& arena, ArticulatedWorld* partner, bool
   shared->collider.carve(*scene_, arena);
   const SolverDef& solver = scene_->def.solver;
   const auto make = [&](int32_t lanes) {
-    return make_stepper({solver.double_precision, lanes}, shared->model, &shared->collider, hooks, arena);
+    shared->steppers[shared->num_steppers++] =
+        make_stepper({solver.double_precision, lanes}, shared->model, &shared->collider, hooks, arena);
   };
   if (solver.double_precision || solver.lanes > 0) {
-    shared->alone = shared->group = make(std::max(solver.lanes, 1));
+    make(std::max(solver.lanes, 1));
   } else {
     const bool single = std::all_of(shared->model.trees.begin(), shared->model.trees.end(),
                                     [](const Tree& tree) { return tree.members.size() == 1; });
-    shared->alone = make(single ? 1 : 4);
-    shared->group = make(8);
+    make(single ? 1 : 4);
+    for (int32_t lanes = 8; lanes <= widest_lanes(); lanes *= 2) make(lanes);
   }
   if (!arena.measuring()) shared->collider.make(*scene_);
 }
@@ -142,8 +143,8 @@ ArticulatedWorld::~ArticulatedWorld() {
 void ArticulatedWorld::release_shared() {
   if (!home_ || --home_->users > 0) return;
   const HostHooks hooks = home_->hooks;
-  if (home_->group && home_->group != home_->alone) home_->group->end(hooks);
-  if (home_->alone) home_->alone->end(hooks);
+  for (Stepper* stepper : home_->steppers)
+    if (stepper) stepper->end(hooks);
   host_delete(hooks, home_);
 }
 
@@ -199,11 +200,11 @@ void ArticulatedWorld::links_changed(int32_t articulation) {
     }
     fresh_[i] = 0;
   }
-  shared_->alone->refresh(&state_, articulation);
+  shared_->alone().refresh(&state_, articulation);
 }
 
 void ArticulatedWorld::fetch_link(int32_t i) const {
-  shared_->alone->read_link(state_, i, &links_[i], &link_R_[i]);
+  shared_->alone().read_link(state_, i, &links_[i], &link_R_[i]);
   fresh_[i] = 1;
 }
 
@@ -283,18 +284,18 @@ void ArticulatedWorld::clear_pushes() {
 void ArticulatedWorld::step() {
   WorldState* const one = &state_;
   const OdeScope scope;
-  shared_->alone->step(&one, 1);
+  shared_->alone().step(&one, 1);
   end_step();
 }
 
 void ArticulatedWorld::step_group(World* const* worlds, int32_t count) {
   const OdeScope scope;
-  WorldState* run[8];
-  const int32_t most = std::min(shared_->group->group_size(), 8);
+  WorldState* run[kMostLanes];
+  const int32_t most = shared_->widest().group_size();
   for (int32_t first = 0; first < count; first += most) {
     const int32_t n = std::min(most, count - first);
     for (int32_t i = 0; i < n; ++i) run[i] = &static_cast<ArticulatedWorld*>(worlds[first + i])->state_;
-    (n == 1 ? shared_->alone : shared_->group)->step(run, n);
+    shared_->fitting(n).step(run, n);
     for (int32_t i = 0; i < n; ++i) static_cast<ArticulatedWorld*>(worlds[first + i])->end_step();
   }
 }

@@ -19,9 +19,20 @@ namespace rdm {
 struct ArticulatedShared {
   ArticulatedModel model;
   Collider collider;
-  Stepper *alone = nullptr, *group = nullptr;  // for one world and for many; may be the same
+  static constexpr int kSteppers = 3;
+  Stepper* steppers[kSteppers] = {};  // the first for one world, the last, of num_steppers, for the most
+  int num_steppers = 0;
   int32_t users = 0;
   HostHooks hooks;
+
+  Stepper& alone() const { return *steppers[0]; }
+  Stepper& widest() const { return *steppers[num_steppers - 1]; }
+  // The narrowest that takes so many worlds together.
+  Stepper& fitting(int32_t worlds) const {
+    int k = 0;
+    while (k + 1 < num_steppers && steppers[k]->group_size() < worlds) ++k;
+    return *steppers[k];
+  }
 };
 
 class ArticulatedWorld final : public World {
@@ -35,7 +46,7 @@ class ArticulatedWorld final : public World {
   void step() override;
   bool lends() const override { return true; }
   void borrow(const World& lender) override { shared_ = static_cast<const ArticulatedWorld&>(lender).home_; }
-  int32_t group_size() const override { return shared_->group->group_size(); }
+  int32_t group_size() const override { return shared_->widest().group_size(); }
   void set_body(int32_t i, const Motion& m) override;
   void set_base(int32_t articulation, const Motion& m) override;
   void push_body(int32_t i, const Vec3& force, const Vec3& torque) override;

@@ -8,21 +8,27 @@
 namespace rdm {
 namespace {
 
+constexpr int kTables = 3;
+
+StepperTable table_at(int i) {
+  return i == 0 ? steppers_v2() : i == 1 ? steppers_v3() : steppers_v4();
+}
+
 bool usable(const StepperTable& table) {
-  return table.isa && (std::strcmp(table.isa, kV3Isa) != 0 || cpu().avx2);
+  if (!table.isa) return false;
+  if (std::strcmp(table.isa, kV4Isa) == 0) return cpu().v4;
+  return std::strcmp(table.isa, kV3Isa) != 0 || cpu().avx2;
 }
 
 // 0: the best there is; else an index into the tables, plus 1.
 std::atomic<int> chosen{0};
 
-StepperTable table_at(int i) {
-  return i == 0 ? steppers_v2() : steppers_v3();
-}
-
 StepperTable table() {
   const int choice = chosen.load(std::memory_order_acquire);
   if (choice > 0) return table_at(choice - 1);
-  return usable(steppers_v3()) ? steppers_v3() : steppers_v2();
+  int best = kTables - 1;
+  while (best > 0 && !usable(table_at(best))) --best;
+  return table_at(best);
 }
 
 }  // namespace
@@ -33,7 +39,7 @@ Stepper* make_stepper(const StepperKind& kind, const ArticulatedModel& model, Co
 }
 
 bool set_stepper_isa(const char* name) {
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < kTables; ++i) {
     const StepperTable t = table_at(i);
     if (usable(t) && std::strcmp(t.isa, name) == 0) {
       chosen.store(i + 1, std::memory_order_release);
@@ -45,6 +51,10 @@ bool set_stepper_isa(const char* name) {
 
 const char* stepper_isa() {
   return table().isa;
+}
+
+int32_t widest_lanes() {
+  return table().lanes;
 }
 
 }  // namespace rdm

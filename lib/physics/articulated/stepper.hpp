@@ -10,9 +10,11 @@
 
 namespace rdm {
 
+inline constexpr int32_t kMostLanes = 16;
+
 struct StepperKind {
   bool double_precision = false;  // the reference: one lane
-  int32_t lanes = 1;              // 1, 4 or 8 floats
+  int32_t lanes = 1;              // 1, 4, 8 or 16 floats; 16 are 8 where the set has not so many
 };
 
 class Stepper {
@@ -33,18 +35,21 @@ class Stepper {
 Stepper* make_stepper(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
                       const HostHooks& hooks, Arena& arena);
 
-// kBaseIsa, kV3Isa (base/cpu.hpp): what steppers made from now on use; false where this machine or build has
-// it not.
+// kBaseIsa, kV3Isa, kV4Isa (base/cpu.hpp): what steppers made from now on use; false where this machine or
+// build has it not.
 bool set_stepper_isa(const char* name);
 const char* stepper_isa();
+int32_t widest_lanes();  // of that set: 8, or 16
 
 // The steppers of one instruction set: what stepper_v*.cpp hand to stepper.cpp.
 struct StepperTable {
   const char* isa = nullptr;  // null: not in this build
+  int32_t lanes = 0;          // the most
   Stepper* (*make)(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
                    const HostHooks& hooks, Arena& arena) = nullptr;
 };
 StepperTable steppers_v2();
 StepperTable steppers_v3();
+StepperTable steppers_v4();
 
 }  // namespace rdm

@@ -1107,13 +1107,21 @@ Stepper* make_batches(const ArticulatedModel& model, Collider* collider, const H
 Stepper* make_kind(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
                    const HostHooks& hooks, Arena& arena) {
   if (kind.double_precision) return make_batches<Simd<double, 1>>(model, collider, hooks, arena);
-  if (kind.lanes == 8) return make_batches<Simd<float, 8>>(model, collider, hooks, arena);
+#if defined(RDM_SIMD_AVX512)
+  if (kind.lanes > 8) return make_batches<Simd<float, 16>>(model, collider, hooks, arena);
+#endif
+  if (kind.lanes >= 8) return make_batches<Simd<float, 8>>(model, collider, hooks, arena);
   if (kind.lanes == 4) return make_batches<Simd<float, 4>>(model, collider, hooks, arena);
   return make_batches<Simd<float, 1>>(model, collider, hooks, arena);
 }
 
 StepperTable stepper_table(const char* isa) {
-  return {isa, make_kind};
+#if defined(RDM_SIMD_AVX512)
+  constexpr int32_t kWidest = 16;
+#else
+  constexpr int32_t kWidest = 8;
+#endif
+  return {isa, kWidest, make_kind};
 }
 
 }  // namespace

@@ -45,8 +45,8 @@ void check_solver(const SolverDef& s) {
   need(s.sleep_time, 0, 100, "solver", "sleep_time");
   need(s.sleep_speed, 0, 10, "solver", "sleep_speed");
   need(s.sleep_spin, 0, 100, "solver", "sleep_spin");
-  if (s.lanes != 0 && s.lanes != 1 && s.lanes != 4 && s.lanes != 8)
-    fail(Code::kRange, "solver: lanes: %d is none of 0, 1, 4, 8", s.lanes);
+  if (s.lanes != 0 && s.lanes != 1 && s.lanes != 4 && s.lanes != 8 && s.lanes != 16)
+    fail(Code::kRange, "solver: lanes: %d is none of 0, 1, 4, 8, 16", s.lanes);
 }
 
 void check_inertia(const Inertia& inertia, bool may_be_empty, const char* owner) {
