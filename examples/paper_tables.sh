@@ -130,12 +130,6 @@ condensed() {
 # wall_seconds CSV: of a run and of what it went on from, by its condensed training.
 wall_seconds() { tail -n 1 "$1" | cut -d, -f2; }
 
-# reached CSV: seconds of training until half of the episodes of an epoch, noise and all, were a success; "" never.
-reached() {
-  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
-    $at["Metrics/SuccessRate"] >= 0.5 && $at["Metrics/SuccessRate"] ~ /^[0-9.]/ { printf "%.0f", $at["Time/Total"]; exit }' "$1"
-}
-
 # of_second FILE: limit and mean cost of the second column that has a limit, of an evaluation; "," without one.
 of_second() {
   [ -s "$1" ] || { echo ,; return; }

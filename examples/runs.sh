@@ -55,6 +55,12 @@ last_tenth() {
       printf "%.4f,%.4f,%.4f,%.4f", a / n, b / n, over / n, sqrt(d > 0 ? d : 0) }' "$1"
 }
 
+# reached CSV: seconds of training until half of the episodes of an epoch, noise and all, were a success; "" never.
+reached() {
+  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+    $at["Metrics/SuccessRate"] >= 0.5 && $at["Metrics/SuccessRate"] ~ /^[0-9.]/ { printf "%.0f", $at["Time/Total"]; exit }' "$1"
+}
+
 # For the awk programs of the tables: a cost as text, marked where it is over its limit.
 marked='function marked(cost, limit) {
   return sprintf("%.3g", cost) (limit ~ /^[0-9]/ && cost + 0 > limit + 0 ? "!" : "")
