@@ -230,7 +230,7 @@ inline typename ContactSolver<S>::Outcome ContactSolver<S>::update(Point* point)
   const int32_t number = kCount > 0 ? kCount : p.count;
   const Row* z = rows + 3 * p.first;
   const int32_t* segment = segments + p.first;
-  Row kept[kCount > 0 ? kCount : 1];  // the sums, where they fit into registers
+  Row kept[std::max(kCount, 1)];  // the sums, where they fit into registers
   Row r[3] = {};
   for (int32_t k = 0; k < number; ++k) {
     const Row s = sum[segment[k]];
@@ -277,7 +277,7 @@ inline typename ContactSolver<S>::Outcome ContactSolver<S>::update_normal(Point*
   const int32_t number = kCount > 0 ? kCount : p.count;
   const Row* z = rows + 3 * p.first;
   const int32_t* segment = segments + p.first;
-  Row kept[kCount > 0 ? kCount : 1];
+  Row kept[std::max(kCount, 1)];
   Row r{};
   for (int32_t k = 0; k < number; ++k) {
     const Row s = sum[segment[k]];
