@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The README's tables of policies that see, measured again: three ways to train one beside the state policy and one without
+# results/point_clouds.md's tables of policies that see, measured again: three ways to train one beside the state policy and one without
 # eyes, and how a student of a teacher takes noise, missing points, moved cameras and another object. Finished runs are
 # kept and stopped ones go on, so the script can be stopped and called again.
 #   bash examples/eyes_table.sh [OUT]     OUT: folder of the runs, default runs/eyes

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The README's tables of other hands and of drawn dynamics, measured again: every row is trained from scratch with the task's
+# results/other_hands.md's tables of other hands and of drawn dynamics, measured again: every row is trained from scratch with the task's
 # defaults (PPO-Lag), for several seeds, and evaluated on fresh episodes. Finished runs are kept, so the script can be
 # stopped and called again.
 #   bash examples/hands_table.sh [OUT]      OUT: folder of the runs, default runs/hands

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The README's learning table, measured again: every row is trained from scratch with the defaults, for several
+# results/hand_over.md's learning table, measured again: every row is trained from scratch with the defaults, for several
 # seeds, and evaluated on 100 fresh episodes. Finished runs are kept, so the script can be stopped and called again.
 #   bash examples/learning_table.sh [OUT]      OUT: folder of the runs, default runs/table
 # Environment: REDMAN (the tool), SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), STEPS and PPO_STEPS

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The tables of examples/paper_tables.sh out of the runs that it kept, without running anything:
 #   bash examples/paper_report.sh [RESULTS]   RESULTS: the folder with runs.csv, default examples/results
-# writes RESULTS/table1.md, fig7.md, second.md, claims.md and short.md, which README.md has.
+# writes RESULTS/table1.md, fig7.md, second.md, claims.md and short.md, which hand_tasks.md has.
 set -eu
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 results=${1:-$root/examples/results}

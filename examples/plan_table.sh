@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The README's table of planning, measured again: each method on each task, with the same seed. Finished rows are kept, so
+# results/planning.md's table of planning, measured again: each method on each task, with the same seed. Finished rows are kept, so
 # the script can be stopped and called again.
 #   bash examples/plan_table.sh [OUT]       OUT: folder of the results, default runs/plans
 # Environment: REDMAN (the tool), TASKS, METHODS ("predictive cem mppi"), SIZES (samples x steps x knots: "64x32x5"),

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The README's table of Reorient, learned: for each seed four stages one after the other, each from the run of the one
+# results/reorient.md's table of Reorient, learned: for each seed four stages one after the other, each from the run of the one
 # before (whose options hold until others are given), then 500 fresh episodes of the task as it comes. Finished stages
 # are kept and stopped ones go on, so the script can be stopped and called again.
 #   bash examples/reorient_table.sh [OUT]   OUT: folder of the runs, default runs/reorient

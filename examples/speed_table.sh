@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The README's table of speeds: each of the paper's ten tasks under random actions, 64 worlds.
+# results/speed.md's table of speeds: each of the paper's ten tasks under random actions, 64 worlds.
 #   bash examples/speed_table.sh
 # Environment: REDMAN (the tool), TASKS, SECONDS_EACH (of one measurement; 3). Other work on the machine shows.
 set -eu

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The README's table of tasks: what PPO-Lag and PPO learn on each of the paper's ten with the defaults, beside the
+# results/hand_tasks.md's table of tasks: what PPO-Lag and PPO learn on each of the paper's ten with the defaults, beside the
 # floors (zero, hold, random) and the demonstration, 100 fresh episodes each. Finished runs are kept and stopped ones
 # go on, so the script can be stopped and called again.
 #   bash examples/task_table.sh [OUT]      OUT: folder of the runs, default runs/tasks

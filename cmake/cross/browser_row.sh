@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# browser_row.sh PASSED: the browser's row of README's table of machines, build/ports/browser.row, after all hashes were found
+# browser_row.sh PASSED: the browser's row of the table of machines in cmake/cross/README.md, build/ports/browser.row, after all hashes were found
 # equal and PASSED checks of the page passed. Speed: steps a second in Node over those of this machine's own library.
 set -u
 . cmake/cross/rates.sh

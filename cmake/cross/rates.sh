@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# Sourced by the scripts that make rows of README's table of machines, at the project's root.
+# Sourced by the scripts that make rows of the table of machines in cmake/cross/README.md, at the project's root.
 mkdir -p build/ports
 for native in build/release build/dev; do [ ! -e $native/libredman.so ] || break; done
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# row.sh NAME TITLE LOG LIBRARY [COMPILER RUNNER]: writes build/ports/NAME.row, a row of README's table of machines, from
+# row.sh NAME TITLE LOG LIBRARY [COMPILER RUNNER]: writes build/ports/NAME.row, a row of the table of machines in cmake/cross/README.md, from
 # what was measured: LOG is ctest's, LIBRARY a shared library. With a compiler its steps a second, through RUNNER (env: here),
 # are set beside those of this machine's own library (build/release or build/dev); an emulator's would say nothing.
 set -u

@@ -141,7 +141,7 @@ void add_list(CLI::App& app, Run& run, const char* name, const char* help, Repor
     command->add_flag("--presets", flags->presets,
                       "print how many entries of each task's observation the presets of actor_obs leave");
   command->add_option("name", flags->name, "show one of them with its options");
-  command->add_flag("--markdown", flags->markdown, "print the table of the README");
+  command->add_flag("--markdown", flags->markdown, "print the table of the manual pages");
   command->callback([&run, flags, list] { run = [flags, list] { return list(*flags); }; });
 }
 

@@ -212,7 +212,7 @@ Report run_object(const ObjectFlags& flags) {
 void add_objects(CLI::App& app, Run& run) {
   auto flags = std::make_shared<ObjectsFlags>();
   CLI::App* command = app.add_subcommand("objects", "List the objects that --set object=NAME takes");
-  command->add_flag("--markdown", flags->markdown, "print the table of the README");
+  command->add_flag("--markdown", flags->markdown, "print the table of the manual pages");
   command->add_option("--sheet", flags->sheet, "PNG file: a picture of each, and of articulated ones");
   command->add_option("--side", flags->side, "pixels of a picture's side")->check(CLI::Range(16, 1024));
   command->add_option("--columns", flags->columns, "pictures in a row")->check(CLI::Range(1, 100));

@@ -121,7 +121,7 @@ Report show_robot(const RobotFlags& flags) {
 void add_robots(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RobotsFlags>();
   CLI::App* command = app.add_subcommand("robots", "List the robots that --set hand=NAME and arm=NAME take");
-  command->add_flag("--markdown", flags->markdown, "print the table of the README");
+  command->add_flag("--markdown", flags->markdown, "print the table of the manual pages");
   add_robot_flag(*command);
   command->callback([&run, flags] { run = [flags] { return list_robots(*flags); }; });
 }

@@ -1,5 +1,5 @@
 // Typed options by string key: declared once in a table with default, bounds and help, given by a host as
-// a list, read back as values. Discovery, `--help` and the README print the same table.
+// a list, read back as values. Discovery, `--help` and the pages print the same table.
 //
 // A number or integer that is declared as a range takes "0.7..1.3" too: what a world draws for itself at each
 // reset. An open row "noise.FIELD" declares the keys "noise.NAME" for every NAME; whoever reads them says

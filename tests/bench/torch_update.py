@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The work of `redman bench update --algo ppo_lag` in torch, for the README's comparison.
+"""The work of `redman bench update --algo ppo_lag` in torch, for examples/results/speed.md.
 
     OMP_NUM_THREADS=1 python3 tests/bench/torch_update.py [--hidden 64,64] [--samples 8192] [--minibatch 1024]
 

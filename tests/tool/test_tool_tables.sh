@@ -1,0 +1,17 @@
+#!/bin/sh
+# test_tool_tables.sh TOOL: the tables between marks in the pages are what the tool prints, and the tables of results are what
+# examples/paper_report.sh makes of the rows of runs.
+set -u
+tool=$(realpath "$1")
+cd "$(dirname "$0")/../.." || exit 1
+[ -f README.md ] || { echo "there is no README.md"; exit 1; }
+lost=$(bash cmake/tables.sh "$tool" check)
+results=examples/results
+again=$(mktemp -d)
+trap 'rm -rf "$again"' EXIT
+cp "$results/runs.csv" "$again"
+bash examples/paper_report.sh "$again"
+for table in table1 fig7 second claims short; do
+  cmp "$again/$table.md" "$results/$table.md" || lost="$lost $results/$table.md is not what its runs.csv makes"
+done
+[ -z "$lost" ] || { echo "$lost"; exit 1; }
