@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "common/files.hpp"
+#include "common/ownership.hpp"
 #include "common/text.hpp"
 #include "draw/svg.hpp"
 #include "run/curves.hpp"
@@ -16,6 +17,7 @@ namespace {
 struct PlotFlags {
   std::vector<std::string> folders;
   std::string out = "plot.svg";
+  bool out_given = false;
   bool each = false;
 };
 
@@ -107,6 +109,8 @@ Chart chart_of_tasks(const std::vector<std::vector<const RunData*>>& tasks, bool
 }
 
 Report run_plot(const PlotFlags& flags) {
+  check_replaceable(flags.out);
+  if (!flags.out_given) check_default_output(flags.out, kChartMark, "--out");
   std::vector<RunData> runs;
   for (const std::string& folder : flags.folders)
     for (const std::string& path : find_runs(folder)) runs.push_back(read_run(path));
@@ -133,9 +137,12 @@ void add_plot(CLI::App& app, Run& run) {
                    "run folders, or folders of them; seeds of one setting become a mean with a band, several "
                    "tasks a row of panels each")
       ->required();
-  command->add_option("--out", flags->out, "SVG file; default plot.svg");
+  const CLI::Option* out = command->add_option("--out", flags->out, "SVG file; default plot.svg");
   command->add_flag("--each", flags->each, "a line for every folder");
-  command->callback([&run, flags] { run = [flags] { return run_plot(*flags); }; });
+  command->callback([&run, flags, out] {
+    flags->out_given = out->count() > 0;
+    run = [flags] { return run_plot(*flags); };
+  });
 }
 
 }  // namespace tool

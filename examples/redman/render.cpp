@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/ownership.hpp"
 #include "common/text.hpp"
 #include "play/playback.hpp"
 #include "play/scene.hpp"
@@ -77,7 +78,10 @@ Report run_render(RenderFlags flags) {
   apply_sets(flags.sets, flags.pool, nullptr);
   const bool plays = !flags.video.empty() || !flags.html.empty() || !flags.glb.empty();
   const bool pictures = !plays || !flags.out.empty() || flags.strip > 0 || flags.step_given;
-  if (flags.out.empty()) flags.out = "render.png";
+  if (flags.out.empty()) {
+    flags.out = "render.png";
+    if (pictures) check_default_output(flags.out, "\x89PNG", "--out");
+  }
   Json json;
   int32_t frames = 0;
   double seconds = 0;

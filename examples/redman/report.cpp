@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/ownership.hpp"
 #include "common/text.hpp"
 #include "play/evaluate.hpp"
 #include "play/scene.hpp"
@@ -18,6 +19,7 @@ namespace {
 struct ReportFlags {
   std::vector<std::string> folders;
   std::string html = "report.html";
+  bool html_given = false;
   int32_t episodes = kEvalEpisodes, strip = 6, threads = 0;
 };
 
@@ -130,6 +132,7 @@ Json ranking_json(const TaskReport& t) {
 
 Report run_report(const ReportFlags& flags) {
   check_replaceable(flags.html);
+  if (!flags.html_given) check_default_output(flags.html, "content=\"redman\"", "--html");
   std::vector<RunData> runs;
   for (const std::string& folder : flags.folders)
     for (const std::string& path : find_runs(folder)) runs.push_back(read_run(path));
@@ -168,7 +171,7 @@ void add_report(CLI::App& app, Run& run) {
           "folders", flags->folders,
           "run folders, or folders of them; runs that differ in the seed alone are one configuration")
       ->required();
-  command->add_option("--html", flags->html, "page to write; default report.html");
+  const CLI::Option* html = command->add_option("--html", flags->html, "page to write; default report.html");
   command
       ->add_option("--episodes", flags->episodes,
                    "fresh episodes that evaluate each run; 0: its training alone")
@@ -176,7 +179,10 @@ void add_report(CLI::App& app, Run& run) {
   command->add_option("--strip", flags->strip, "moments of an episode of each configuration; 0: no pictures")
       ->check(CLI::Range(0, 64));
   command->add_option("--threads", flags->threads, "threads; 0: the caller's own");
-  command->callback([&run, flags] { run = [flags] { return run_report(*flags); }; });
+  command->callback([&run, flags, html] {
+    flags->html_given = html->count() > 0;
+    run = [flags] { return run_report(*flags); };
+  });
 }
 
 }  // namespace tool

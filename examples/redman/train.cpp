@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "common/files.hpp"
 #include "common/json.hpp"
 #include "common/names.hpp"
 #include "common/text.hpp"
@@ -68,6 +69,7 @@ void give_blocks(RunSettings& run) {
 
 Trainer begin(TrainFlags flags, const Ranks* ranks) {
   RunSettings& run = flags.run;
+  if (!run.save_recording.empty()) check_replaceable(run.save_recording);
   take_limit_from_sets(flags.sets, run.limits);
   if (run.teach.asked()) {
     parse_shares(flags.start_share, run.teach);
@@ -92,15 +94,17 @@ Trainer begin(TrainFlags flags, const Ranks* ranks) {
     return trainer;
   }
   trainer.prepare();
-  trainer.begin(
-      RunFolder::create(flags.out.empty() ? RunFolder::default_path(run) : flags.out, flags.overwrite));
+  trainer.begin(flags.out.empty() ? RunFolder::create_default(run)
+                                  : RunFolder::create(flags.out, flags.overwrite));
   return trainer;
 }
 
 Trainer go_on(const TrainFlags& flags, const Ranks* ranks) {
   if (flags.others_given)
     throw Usage(
-        "--resume takes its settings from the folder; only --steps, --threads and --ranks may change");
+        "--resume takes its settings from the folder; only --steps, --threads and --ranks may change: to "
+        "begin "
+        "a new run with other settings from its policy, give --from FOLDER instead");
   std::optional<RunFolder> folder;
   if (!ranks || ranks->first()) folder.emplace(RunFolder::go_on(flags.resume));
   RunSettings run = run_settings(flags.resume);

@@ -145,11 +145,21 @@ TEST(CheckpointNote, RefusesWhatItsReaderCouldNotUse) {
   EXPECT_NE(failure([&] { note(replaced(kNote, "640", "9223372036854775807")); }), "");
   EXPECT_NE(failure([&] { note(replaced(kNote, "99", "-1")); }), "");
   EXPECT_NE(failure([&] { note(replaced(kNote, ":5", ":2147483648")); }), "");
-  EXPECT_NE(failure([&] { note(replaced(kNote, "1.5", "-1")); }), "");
+  EXPECT_NE(failure([&] { note(replaced(kNote, "1.5", "\"1.5\"")); }), "");
   EXPECT_NE(failure([&] { note(kNote, ""); }), "") << "a best one without its policy";
   EXPECT_NE(failure([&] { note(kNote, "\n"); }), "") << "a best one without its policy";
   EXPECT_NE(failure([&] { parse_note(nullptr, 0); }), "");
   spoil(kNote + "\nPOLICY", [](const std::string& text) { parse_note(text.data(), text.size()); });
+}
+
+TEST(CheckpointNote, OfAClockThatJumpedCostsTheTimeAlone) {
+  for (const char* seconds : {"-1", "1e13", "-1e300", "null"}) {
+    const Note n = note(replaced(kNote, "1.5", seconds));
+    EXPECT_TRUE(n.clock_lost) << seconds;
+    EXPECT_EQ(n.seconds, 0) << seconds;
+    EXPECT_EQ(n.epoch, 5);
+  }
+  EXPECT_FALSE(note(kNote).clock_lost);
 }
 
 Columns progress(const std::string& text) {

@@ -69,7 +69,7 @@ rm -f big.csv
 [ ! -e curve.svg.tmp-99999999-0123456789abcdef ] || say "the file of a killed writer stays for ever"
 [ -e "curve.svg.tmp-$$-0123456789abcdef" ] || say "the file of a living writer was swept"
 cp -r run swept
-: > swept/checkpoint.rdm.tmp-12
+: > swept/checkpoint.rdm.tmp-0123456789abcdef
 : > swept/policy.rdm.tmp-99999999-0123456789abcdef
 train --resume swept > /dev/null 2>&1 && say "a resume took the flags of a new run"
 "$tool" train --resume swept > /dev/null 2> err || say "resume: $(cat err)"

@@ -1,5 +1,6 @@
 #include "common/files.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <climits>
 #include <cstdio>
@@ -7,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "common/ownership.hpp"
 #include "common/posix.hpp"
 #include "common/report.hpp"
 #include "common/text.hpp"
@@ -14,8 +16,6 @@
 namespace tool {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr const char* kTemporary = ".tmp-";
 
 // Where a write to `path` has to go: through symbolic links, dangling ones too.
 std::string target_of(const std::string& path) {
@@ -225,13 +225,33 @@ void OpenFile::read(uint64_t offset, void* to, size_t size) const {
   if (problem) throw Failure("cannot read " + path_ + ": " + problem);
 }
 
+std::string beginning_of(const std::string& path, size_t bytes) {
+  const OpenFile file(path);
+  std::string out(std::min<uint64_t>(bytes, file.size()), '\0');
+  if (!out.empty()) file.read(0, out.data(), out.size());
+  return out;
+}
+
 void check_replaceable(const std::string& path) {
   check_target(path, path);
+  if (is_run_file(target_of(path)))
+    throw Failure("cannot write " + path + ": it is a file of a training run; give another name");
 }
 
 void replace_file(const std::string& path, const std::string& bytes) {
+  check_replaceable(path);
   PreparedFile file(path, bytes);
   file.commit();
+}
+
+bool is_temporary(const std::string& name, const std::string& of) {
+  const std::string head = of + kTemporary;
+  if (name.compare(0, head.size(), head) != 0) return false;
+  const std::string tail = name.substr(head.size());  // "<process>-<16 digits>", of the library's the latter
+  const size_t dash = tail.find('-'), random = dash == std::string::npos ? 0 : dash + 1;
+  return tail.size() == random + 16 &&
+         tail.find_first_not_of("0123456789abcdef", random) == std::string::npos &&
+         (random == 0 || (dash > 0 && tail.find_first_not_of("0123456789") == dash));
 }
 
 void sweep_temporaries(const std::string& path, bool alone) {
@@ -241,8 +261,9 @@ void sweep_temporaries(const std::string& path, bool alone) {
   fs::directory_iterator at(folder.empty() ? "." : folder, error);
   for (; !error && at != fs::directory_iterator(); at.increment(error)) {
     const std::string name = at->path().filename().string();
-    if (name.compare(0, head.size(), head) != 0) continue;
+    if (!is_temporary(name, whole.filename().string())) continue;
     const std::string file = at->path().string();
+    if (!fs::is_regular_file(at->symlink_status(error))) continue;
     if (alone || is_abandoned(file, name.c_str() + head.size())) unlink(file.c_str());
   }
 }

@@ -71,11 +71,17 @@ class OpenFile {
   uint64_t size_ = 0;
 };
 
-// Failure when something stands at `path` that is no regular file.
+// Its first bytes, or all of a shorter one.
+std::string beginning_of(const std::string& path, size_t bytes);
+// Failure when something stands at `path` that is no regular file, or a training's.
 void check_replaceable(const std::string& path);
 // Both steps at once.
 void replace_file(const std::string& path, const std::string& bytes);
 
+// What stands between a file's name and a temporary one's end, and whether `name` is that of a temporary file
+// of `of`, whoever wrote it: the tool or the library.
+inline constexpr const char* kTemporary = ".tmp-";
+bool is_temporary(const std::string& name, const std::string& of);
 // Removes the temporary files that killed writers of `path` have left. `alone`: nobody else can be writing
 // it.
 void sweep_temporaries(const std::string& path, bool alone);

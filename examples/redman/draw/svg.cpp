@@ -205,6 +205,7 @@ std::string draw_chart(const std::string& title, const std::vector<Panel>& panel
   std::string out = format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f %.0f\">\n",
       width, height, width, height);
+  out += std::string(kChartMark) + '\n';
   out +=
       "<style>text{font-family:Helvetica,Arial,'DejaVu Sans',sans-serif;font-size:11px;fill:#333}"
       ".head{font-size:17px;font-weight:bold;fill:#111}.title{font-size:13px;font-weight:bold}.legend{font-"

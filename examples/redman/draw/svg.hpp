@@ -31,6 +31,8 @@ struct LegendEntry {
   std::string label;
 };
 
+// Stands in the first lines of such a file.
+inline constexpr const char* kChartMark = "<!-- redman plot -->";
 // A whole document: `columns` panels a row. x_label stands under the panels of the last row.
 std::string draw_chart(const std::string& title, const std::vector<Panel>& panels, size_t columns,
                        const std::string& x_label, const std::vector<LegendEntry>& legend);

@@ -89,6 +89,7 @@ Recorder::Recorder(const std::string& path, const redman::Pool& pool, size_t epi
       file_(path),
       scratch_(path),
       episodes_(episodes) {
+  check_replaceable(path);
   if (table_ && states) throw Usage("--record-states: a .csv file has no room for states; give an .npz file");
   const size_t n = pool.num_envs();
   const rdm_buffers& b = pool.buffers();

@@ -49,10 +49,6 @@ std::string event_file_name(int64_t unix_seconds) {
   return kName + std::to_string(unix_seconds) + ".redman";
 }
 
-bool is_event_file(const std::string& name) {
-  return name.rfind(kName, 0) == 0;
-}
-
 std::string event_head(int64_t unix_seconds) {
   Message event;
   event.wide(1, static_cast<double>(unix_seconds));

@@ -7,7 +7,6 @@ namespace tool {
 
 // "events.out.tfevents.<unix seconds>.redman"; rows stand at that time and their Time/Total.
 std::string event_file_name(int64_t unix_seconds);
-bool is_event_file(const std::string& name);  // of any writer
 
 // Records (TFRecord: length, masked CRC32C, bytes, masked CRC32C) with an Event of tensorboard's event.proto
 // each. The file's first one, then one for a row of progress.csv: step TotalEnvSteps, no value for what is no

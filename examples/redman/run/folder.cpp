@@ -11,6 +11,7 @@
 #include "common/files.hpp"
 #include "common/json.hpp"
 #include "common/names.hpp"
+#include "common/ownership.hpp"
 #include "common/posix.hpp"
 #include "common/text.hpp"
 #include "run/events.hpp"
@@ -25,6 +26,23 @@ std::string canonical_task(const std::string& name) {
 }
 std::string canonical_algo(const std::string& name) {
   return algo_at(find_algo(name)).name;
+}
+
+constexpr int kMostTwins = 1000;  // run folders of one second
+
+// A dangling link stands in the way of a folder, and the system blames its name alone.
+void make_folders(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (!error && is_folder(path)) return;
+  for (fs::path at = path; !at.empty() && at != at.parent_path(); at = at.parent_path()) {
+    std::error_code unread;
+    if (!fs::is_symlink(fs::symlink_status(at, unread)) || fs::exists(at, unread)) continue;
+    throw Failure("cannot make folder " + path + ": " + at.string() + " is a link to " +
+                  fs::read_symlink(at, unread).string() + ", which is not there");
+  }
+  throw Failure("cannot make folder " + path + ": " +
+                (error ? error.message() : "something else has its name"));
 }
 
 int locked(const std::string& path) {
@@ -57,23 +75,53 @@ size_t append_whole(const std::string& path, const std::string& bytes) {
   return static_cast<size_t>(s.st_size) + bytes.size();
 }
 
+// Of redman's, or what a killed writer of one has left.
+bool is_own_event_file(const std::string& folder, const std::string& name) {
+  const std::string whole = name.substr(0, name.find(kTemporary)), path = folder + '/' + name;
+  if (whole != name && !is_temporary(name, whole)) return false;
+  const size_t digits = std::min(whole.find_first_of("0123456789"), whole.size());
+  const int64_t unix_seconds = std::strtoll(whole.c_str() + digits, nullptr, 10);
+  std::error_code error;
+  if (whole != event_file_name(unix_seconds) || !fs::is_regular_file(fs::symlink_status(path, error)))
+    return false;
+  const std::string head = event_head(unix_seconds), bytes = beginning_of(path, head.size());
+  return head.compare(0, bytes.size(), bytes) == 0;  // a kill leaves a part of it, or nothing
+}
+
 }  // namespace
 
 RunFolder RunFolder::create(const std::string& path, bool overwrite) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error) throw Failure("cannot make folder " + path + ": " + error.message());
+  make_folders(path);
   RunFolder folder(path, locked(path));
-  if (fs::exists(fs::symlink_status(folder.config(), error)) && !overwrite)
-    throw Failure(path + " holds a run already: go on with --resume " + path +
-                  ", begin again with --overwrite, or give another --out");
-  return folder;
+  check_run_files(path);
+  const std::string there = first_run_file(path);
+  if (overwrite || there.empty()) return folder;
+  if (there != "config.json")
+    throw Failure(path + " holds " + there +
+                  " of another run: replace it with --overwrite, or give another --out");
+  throw Failure(path + " holds a run already: go on with --resume " + path +
+                ", begin again with --overwrite, or give another --out");
+}
+
+RunFolder RunFolder::create_default(const RunSettings& settings) {
+  const std::string first = default_path(settings);
+  make_folders(fs::path(first).parent_path().string());
+  for (int i = 1; i <= kMostTwins; ++i) {  // two that begin in one second: one makes the folder
+    const std::string path = i == 1 ? first : first + "-" + std::to_string(i);
+    std::error_code error;
+    if (fs::create_directory(path, error)) return RunFolder(path, locked(path));
+    if (error && !fs::exists(fs::symlink_status(path)))
+      throw Failure("cannot make folder " + path + ": " + error.message());
+  }
+  throw Failure("cannot make folder " + first + ": " + std::to_string(kMostTwins) +
+                " of its name stand there");
 }
 
 RunFolder RunFolder::go_on(const std::string& path) {
   if (!file_exists(path + "/config.json"))
     throw Failure(path + " is not a run folder: it has no config.json; start one with train --out " + path);
   RunFolder folder(path, locked(path));
+  check_run_files(path);
   for (const std::string& file : {folder.config(), folder.progress(), folder.policy(), folder.checkpoint()})
     sweep_temporaries(file, true);
   return folder;
@@ -100,12 +148,9 @@ std::string RunFolder::default_path(const RunSettings& settings) {
 #endif
   char stamp[32];
   std::strftime(stamp, sizeof stamp, "%Y-%m-%d-%H-%M-%S", &local);
-  const std::string path = format("runs/%s-{%s}/seed-%03llu-%s", canonical_algo(settings.agent.algo).c_str(),
-                                  canonical_task(settings.pool.task).c_str(),
-                                  static_cast<unsigned long long>(settings.pool.seed), stamp);
-  std::string free_path = path;
-  for (int i = 2; fs::exists(free_path); ++i) free_path = path + "-" + std::to_string(i);
-  return free_path;
+  return format("runs/%s-{%s}/seed-%03llu-%s", canonical_algo(settings.agent.algo).c_str(),
+                canonical_task(settings.pool.task).c_str(),
+                static_cast<unsigned long long>(settings.pool.seed), stamp);
 }
 
 void RunFolder::start(const std::string& config, const std::string& header, const std::string& policy,
@@ -124,9 +169,14 @@ void RunFolder::start(const std::string& config, const std::string& header, cons
   if (with_events) write_events(header + '\n');
 }
 
+void RunFolder::write_config(const std::string& text) const {
+  check();
+  PreparedFile(config(), text).commit();
+}
+
 void RunFolder::write_policy(const std::string& bytes) const {
   check();
-  replace_file(policy(), bytes);
+  PreparedFile(policy(), bytes).commit();
 }
 
 size_t RunFolder::append_progress(const std::string& row) const {
@@ -153,7 +203,8 @@ std::vector<std::string> RunFolder::event_files() const {
   std::vector<std::string> names;
   std::error_code error;
   for (fs::directory_iterator at(path_, error); !error && at != fs::directory_iterator(); at.increment(error))
-    if (is_event_file(at->path().filename().string())) names.push_back(at->path().filename().string());
+    if (is_own_event_file(path_, at->path().filename().string()))
+      names.push_back(at->path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -171,7 +222,9 @@ void RunFolder::write_events(const std::string& progress) {
     events_ = name;
   }
   const std::string path = file(events_.c_str()), bytes = event_bytes(progress, begun_);
-  if (!file_exists(path)) return replace_file(path, bytes);
+  if (!fs::exists(fs::symlink_status(path))) return PreparedFile(path, bytes).commit();
+  if (!is_own_event_file(path_, events_))
+    throw Failure(path + " was not written by redman: move it away, or give another folder");
   struct stat s {};
   const int f = open_growing(path, &s);
   const bool emptied = f >= 0 && ftruncate(f, 0) == 0;

@@ -12,13 +12,14 @@ namespace tool {
 class RunFolder {
  public:
   // Makes the folder and its parents, for this process alone to write in. A run that stands there already is
-  // a Failure unless `overwrite`; nothing of it goes before start().
+  // a Failure unless `overwrite`; nothing of it goes before start(). Files of a run's names that redman did
+  // not write are a Failure always; others in the folder stay as they are.
   static RunFolder create(const std::string& path, bool overwrite);
+  // A folder of its own, runs/<algo>-{<task>}/seed-000-<local time>, with -2, -3, ... where there is one.
+  static RunFolder create_default(const RunSettings& settings);
   // An existing run, for this process alone to write in. Failure when there is no config.json, or another
   // process trains there.
   static RunFolder go_on(const std::string& path);
-  // runs/<algo>-{<task>}/seed-000-<local time>
-  static std::string default_path(const RunSettings& settings);
 
   ~RunFolder();
   RunFolder(RunFolder&& other) noexcept;
@@ -35,6 +36,7 @@ class RunFolder {
   void start(const std::string& config, const std::string& header, const std::string& policy,
              bool with_events);
 
+  void write_config(const std::string& text) const;
   void write_policy(const std::string& bytes) const;
 
   // progress.csv: a row is appended whole or not at all; resuming cuts it back to the checkpoint. The event
@@ -46,7 +48,8 @@ class RunFolder {
 
  private:
   RunFolder(std::string path, int lock) : path_(std::move(path)), lock_(lock) {}
-  std::vector<std::string> event_files() const;  // names, in order
+  static std::string default_path(const RunSettings& settings);
+  std::vector<std::string> event_files() const;  // names of redman's, in order
   void write_events(const std::string& progress);
 
   std::string path_;

@@ -38,7 +38,11 @@ Note parse_note(const char* bytes, size_t size) {
   note.epoch = static_cast<int32_t>(integer_at(json, "epoch", 0, INT32_MAX));
   note.env_steps = integer_at(json, "env_steps", 0, kMostExact);
   note.progress_bytes = static_cast<size_t>(integer_at(json, "progress_bytes", 0, kMostExact));
-  note.seconds = number_at(json, "seconds", 0, kMostSeconds);
+  // for curves alone: a clock that jumped is no reason to lose the run
+  if (!json.contains("seconds")) throw Failure("seconds: missing");
+  const double seconds = finite_or(json["seconds"], "seconds", -1);
+  note.clock_lost = !(seconds >= 0 && seconds <= kMostSeconds);
+  note.seconds = note.clock_lost ? 0 : seconds;
   if (json.contains("last")) {
     const Document& last = list_at(json, "last", 2);
     note.last = {finite_or(last[0], "last", -DBL_MAX), finite_or(last[1], "last", DBL_MAX)};

@@ -19,11 +19,12 @@ struct Note {
   std::optional<LastEvaluation> last;
   std::optional<Score> best;
   redman::Bytes best_policy;  // empty without `best`
+  bool clock_lost = false;    // parsed: `seconds` was out of range, and is 0
 };
 
 std::string note_bytes(const Note& note);
-// Failure when a member is missing, of the wrong kind or out of range. Whether the policy is one is for
-// redman::Policy to say.
+// Failure when a member is missing, of the wrong kind or out of range, but for `seconds`. Whether the policy
+// is one is for redman::Policy to say.
 Note parse_note(const char* bytes, size_t size);
 
 }  // namespace tool

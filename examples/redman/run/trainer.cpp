@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 
 #include "common/files.hpp"
@@ -161,7 +162,7 @@ void Trainer::resume(RunFolder folder) {
   restore(folder_->checkpoint());
   plan_schedule();
   folder_->cut_progress(progress_bytes_, settings_.events);
-  replace_file(folder_->config(), config_text(settings_, pool_, agent_, limits_, steps_per_epoch()));
+  folder_->write_config(config_text(settings_, pool_, agent_, limits_, steps_per_epoch()));
 }
 
 void Trainer::follow(const std::string& checkpoint) {
@@ -197,7 +198,7 @@ void Trainer::save() {
     return;
   }
   folder_->check();
-  Note note{epoch_, env_steps_, progress_bytes_, earlier_seconds_ + seconds_, {}, best_, best_policy_};
+  Note note{epoch_, env_steps_, progress_bytes_, earlier_seconds_ + seconds_, {}, best_, best_policy_, false};
   if (!std::isnan(last_.ret)) note.last = last_;
   const std::string bytes = note_bytes(note);
   redman::check(rdm_checkpoint_write(folder_->checkpoint().c_str(), agent_.get(), pool_.get(), bytes.data(),
@@ -223,6 +224,8 @@ void Trainer::restore(const std::string& path) {
     env_steps_ = note.env_steps;
     progress_bytes_ = note.progress_bytes;
     earlier_seconds_ = note.seconds;
+    if (note.clock_lost && first())
+      std::fputs("the checkpoint's time of training is out of range: Time/Total begins at 0 again\n", stderr);
     if (note.last) last_ = *note.last;
     best_ = note.best;
     best_policy_ = std::move(note.best_policy);
