@@ -111,22 +111,59 @@ Workers::~Workers() {
   }  // in a forked child the threads do not exist: their memory is left alone
 }
 
-void Workers::run(int32_t n, ParallelBody body, void* context) {
-  if (hooks_.parallel) {
-    struct Wrapped {
-      ParallelBody body;
-      void* context;
-    } wrapped{body, context};
-    hooks_.parallel(
-        hooks_.user, n,
-        [](void* c, int32_t i) {
-          const FpMode mode;
-          const auto* w = static_cast<Wrapped*>(c);
-          w->body(w->context, i);
-        },
-        &wrapped);
-    return;
+void Workers::Round::call(void* round, int32_t i) {
+  Round& r = *static_cast<Round*>(round);
+  if (r.inside.fetch_add(1, std::memory_order_acq_rel) & kOpen) {
+    if (i < 0 || i >= r.n)
+      r.outside.store(i == kNone ? -1 : i, std::memory_order_relaxed);
+    else if (const uint64_t bit = uint64_t{1} << i % 64;
+             r.taken[i / 64].fetch_or(bit, std::memory_order_relaxed) & bit)
+      r.again.store(i, std::memory_order_relaxed);
+    else {
+      const FpMode mode;
+      r.body(r.context, i);
+    }
   }
+  r.inside.fetch_sub(1, std::memory_order_release);
+}
+
+int32_t Workers::Round::close() {
+  const int64_t left = inside.fetch_and(~kOpen, std::memory_order_acq_rel) & ~kOpen;
+  while (inside.load(std::memory_order_acquire) != 0) std::this_thread::yield();
+  return static_cast<int32_t>(left);
+}
+
+int32_t Workers::Round::ran() const {
+  int32_t count = 0;
+  for (const auto& word : taken)
+    for (uint64_t bits = word.load(std::memory_order_relaxed); bits; bits &= bits - 1) ++count;
+  return count;
+}
+
+void Workers::run_by_hook(int32_t n, ParallelBody body, void* context) {
+  if (n > kMost) fail(Code::kInternal, "workers: %d pieces, at most %d", n, kMost);
+  Round& r = round_;
+  r.n = n, r.body = body, r.context = context;
+  for (auto& word : r.taken) word.store(0, std::memory_order_relaxed);
+  r.again = -1, r.outside = Round::kNone;
+  r.inside.fetch_or(Round::kOpen, std::memory_order_release);
+  bool thrown = false;
+  try {
+    hooks_.parallel(hooks_.user, n, Round::call, &r);
+  } catch (...) {
+    thrown = true;
+  }
+  const int32_t left = r.close(), ran = r.ran();
+  if (thrown) fail(Code::kArgument, "an exception came out of the parallel hook");
+  if (left > 0) fail(Code::kState, "the parallel hook returned while %d of %d were still running", left, n);
+  if (ran < n) fail(Code::kState, "the parallel hook ran %d of %d", ran, n);
+  if (r.again >= 0) fail(Code::kState, "the parallel hook ran index %d twice", r.again.load());
+  if (r.outside != Round::kNone)
+    fail(Code::kState, "the parallel hook ran index %d, which is outside [0, %d)", r.outside.load(), n);
+}
+
+void Workers::run(int32_t n, ParallelBody body, void* context) {
+  if (hooks_.parallel) return run_by_hook(n, body, context);
   if (!shared_) {
     for (int32_t i = 0; i < n; ++i) body(context, i);
     return;

@@ -22,9 +22,10 @@ class Workers {
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
-  // Runs body(context, i) once for every i in [0, n) and returns when all are done. Bodies must not
-  // throw. Between rounds threads look out for the next one for a moment, then sleep. In a forked child of a
-  // process that had started threads: Error(kState). No heap use.
+  // Runs body(context, i) once for every i in [0, n), n <= kMost, and returns when all are done. Bodies must
+  // not throw. Between rounds threads look out for the next one for a moment, then sleep. Error(kState) in a
+  // forked child of a process that had started threads, and where a host's parallel hook did not do what it
+  // should: some bodies were not run then. No heap use.
   void run(int32_t n, ParallelBody body, void* context);
 
   // Runs body over [0, n), cut into `parts` (at most width(); part p begins at part_begin) and these into
@@ -36,6 +37,7 @@ class Workers {
   }
 
   int32_t width() const { return width_; }
+  static constexpr int32_t kMost = 256;
   // Bytes that the constructor takes from the alloc hook.
   static size_t memory(const HostHooks& hooks, int32_t threads);
 
@@ -44,10 +46,29 @@ class Workers {
   struct alignas(64) Cursor {
     std::atomic<int32_t> next;  // item of the part that nobody has taken
   };
+  // A round over a host's parallel hook, which is not trusted: each index runs once, none after the hook has
+  // returned, whatever it calls and when.
+  struct Round {
+    static void call(void* round, int32_t i);
+    int32_t close();  // bodies that still run when the hook returns; waits for them
+    int32_t ran() const;
+
+    int32_t n = 0;
+    ParallelBody body = nullptr;
+    void* context = nullptr;
+    std::atomic<uint64_t> taken[kMost / 64] = {};      // a bit for each index
+    std::atomic<int32_t> again = -1, outside = kNone;  // indices that it should not have run
+    std::atomic<int64_t> inside = 0;                   // calls within; kOpen above them
+    static constexpr int64_t kOpen = int64_t{1} << 32;
+    static constexpr int32_t kNone = INT32_MIN;
+  };
+  void run_by_hook(int32_t n, ParallelBody body, void* context);
+
   HostHooks hooks_;
   int32_t width_ = 1;
   Vector<Cursor> cursors_;  // [width] of the parts; none for one thread
   Shared* shared_ = nullptr;
+  Round round_;
 };
 
 }  // namespace rdm

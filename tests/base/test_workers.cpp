@@ -161,6 +161,93 @@ TEST(Workers, HostHookTakesTheWork) {
   EXPECT_EQ(spread.n, 9);
 }
 
+// Hooks that do not do what they should, each for one round; the next round is a good one.
+TEST(Workers, HookThatRunsTooLittleOrTooMuchIsNoticed) {
+  using Hook = void (*)(int32_t n, ParallelBody body, void* context);
+  const struct {
+    const char* text;
+    Hook hook;
+    int times;  // that index 1 is run
+  } cases[] = {
+      {"the parallel hook ran 0 of 3", [](int32_t, ParallelBody, void*) {}, 0},
+      {"the parallel hook ran 2 of 3",
+       [](int32_t n, ParallelBody body, void* context) {
+         for (int32_t i = 1; i < n; ++i) body(context, i);
+       },
+       1},
+      {"the parallel hook ran index 1 twice",
+       [](int32_t n, ParallelBody body, void* context) {
+         for (int32_t i = 0; i < n; ++i) body(context, i);
+         body(context, 1);
+       },
+       1},
+      {"the parallel hook ran index 3, which is outside [0, 3)",
+       [](int32_t n, ParallelBody body, void* context) {
+         for (int32_t i = 0; i <= n; ++i) body(context, i);
+       },
+       1},
+      {"the parallel hook ran index -1, which is outside [0, 3)",
+       [](int32_t n, ParallelBody body, void* context) {
+         for (int32_t i = -1; i < n; ++i) body(context, i);
+       },
+       1},
+      {"an exception came out of the parallel hook", [](int32_t, ParallelBody, void*) { throw 1; }, 0},
+  };
+  static Hook hook;
+  HostHooks hooks;
+  hooks.parallel = [](void*, int32_t n, ParallelBody body, void* context) { hook(n, body, context); };
+  Workers workers(hooks, 3);
+  for (const auto& c : cases) {
+    Visits visits(3);
+    hook = c.hook;
+    EXPECT_NE(guard([&] { workers.run(3, Visits::body, &visits); }), Code::kOk) << c.text;
+    EXPECT_STREQ(last_error(), c.text);
+    EXPECT_EQ(visits.count[1], c.times) << c.text;
+    hook = [](int32_t n, ParallelBody body, void* context) {
+      for (int32_t i = 0; i < n; ++i) body(context, i);
+    };
+    Visits good(3);
+    EXPECT_EQ(guard([&] { workers.run(3, Visits::body, &good); }), Code::kOk) << last_error();
+    EXPECT_TRUE(good.all(1));
+  }
+}
+
+// Jobs that go on after the hook has returned: those that had begun are waited for, the others do nothing.
+TEST(Workers, HookThatReturnsEarlyIsNoticed) {
+  struct Jobs {
+    std::vector<std::thread> threads;
+    std::atomic<bool> begun = false, late = false;
+  } jobs;
+  HostHooks hooks;
+  hooks.user = &jobs;
+  hooks.parallel = [](void* user, int32_t, ParallelBody body, void* context) {
+    auto* j = static_cast<Jobs*>(user);
+    j->threads.emplace_back(body, context, 0);
+    j->threads.emplace_back([=] {
+      while (!j->late) std::this_thread::yield();
+      body(context, 1);
+    });
+    while (!j->begun) std::this_thread::yield();
+  };
+  struct Work {
+    Jobs* jobs;
+    std::atomic<int> ended{0};
+  } work{&jobs};
+  Workers workers(hooks, 2);
+  const ParallelBody body = [](void* context, int32_t) {
+    auto* w = static_cast<Work*>(context);
+    w->jobs->begun = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ++w->ended;
+  };
+  EXPECT_EQ(guard([&] { workers.run(2, body, &work); }), Code::kState);
+  EXPECT_STREQ(last_error(), "the parallel hook returned while 1 of 2 were still running");
+  EXPECT_EQ(work.ended, 1);
+  jobs.late = true;
+  for (std::thread& t : jobs.threads) t.join();
+  EXPECT_EQ(work.ended, 1);
+}
+
 #if defined(__SSE2__)
 void write_mode(void* context, int32_t i) {
   static_cast<unsigned*>(context)[i] = _mm_getcsr() & 0xFFC0u;
