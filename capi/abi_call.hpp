@@ -16,20 +16,17 @@ namespace rdm::capi {
 // No struct of any version is larger: a size above it was never set.
 inline constexpr size_t kMaxStructSize = 4096;
 
-// Runs f under the library's floating-point mode; a failure goes to this thread's text and, if given, to
-// the handle's.
+// Runs f under the library's floating-point mode; a failure goes to this thread's text. Calls on a handle:
+// in_use.hpp.
 template <class F>
-rdm_result call(char* handle_text, F&& f) noexcept {
+rdm_result call(F&& f) noexcept {
   const FpMode mode;
-  const Code code = guard(f);
-  if (code != Code::kOk && handle_text) std::strcpy(handle_text, last_error());
-  return static_cast<rdm_result>(code);
+  return static_cast<rdm_result>(guard(f));
 }
 
-// The same for a call that takes a config: a failure's text goes to config.error too, where there is one.
-template <class Config, class F>
-rdm_result call_with(const Config* c, char* handle_text, F&& f) noexcept {
-  const rdm_result r = call(handle_text, f);
+// A failure's text goes to config.error too, where there is one.
+template <class Config>
+rdm_result tell(const Config* c, rdm_result r) {
   if (r == RDM_OK || !c) return r;
   constexpr size_t end = offsetof(Config, error_size) + sizeof c->error_size;
   if (c->struct_size < end || c->struct_size > kMaxStructSize || !c->error || c->error_size < 1) return r;
@@ -38,7 +35,7 @@ rdm_result call_with(const Config* c, char* handle_text, F&& f) noexcept {
 }
 template <class Config, class F>
 rdm_result call_with(const Config* c, F&& f) noexcept {
-  return call_with(c, nullptr, f);
+  return tell(c, call(f));
 }
 template <class Config>
 void check_error(const Config& c) {
@@ -85,11 +82,6 @@ void need_handle(const Handle* h) {
   if (h->tag == Handle::kTag) return;
   if (const char* other = name_of(h->tag)) fail(Code::kArgument, "%s: the handle is of kind %s", name, other);
   fail(Code::kArgument, "%s: no handle of this kind, or one that was destroyed", name);
-}
-// Where a handle keeps the text of its last failure; NULL for what is no such handle.
-template <class Handle>
-char* text_of(Handle* h) {
-  return is_handle(h) ? h->error : nullptr;
 }
 // Before the memory goes: whoever comes with the handle once more is told.
 template <class Handle>

@@ -7,7 +7,7 @@ using namespace rdm;
 using namespace rdm::capi;
 
 rdm_result rdm_agent_config_init(rdm_agent_config* c, size_t size) {
-  return call(nullptr, [&] {
+  return call([&] {
     rdm_agent_config d{};
     d.cost_dim = 1;
     d.algo = "ppo_lag";
@@ -28,8 +28,7 @@ rdm_pretrain_config default_pretrain() {
 }  // namespace
 
 rdm_result rdm_pretrain_config_init(rdm_pretrain_config* how, size_t size) {
-  return call(nullptr,
-              [&] { init_struct(how, size, sizeof(rdm_pretrain_config), default_pretrain(), "how"); });
+  return call([&] { init_struct(how, size, sizeof(rdm_pretrain_config), default_pretrain(), "how"); });
 }
 
 #if RDM_WITH_LEARN
@@ -161,12 +160,12 @@ rdm_result rdm_agent_create(rdm_agent** out, const rdm_agent_config* c) {
 }
 
 rdm_result rdm_agent_create_ranked(rdm_agent** out, const rdm_agent_config* c, const rdm_ranks* ranks) {
-  const rdm_result r = call(nullptr, [&] { need(ranks, "ranks"); });
+  const rdm_result r = call([&] { need(ranks, "ranks"); });
   return r == RDM_OK ? create_agent(out, c, ranks) : r;
 }
 
 void rdm_agent_destroy(rdm_agent* a) {
-  if (!is_handle(a)) return;
+  if (!may_end(a)) return;
   Agent::destroy(a->agent);
   retire(a);
   host_delete(a->hooks, a);
@@ -179,8 +178,7 @@ const char* rdm_agent_error(const rdm_agent* a) {
 namespace {
 
 // Whether actions are sampled.
-bool read_act(const rdm_agent* a, const float* obs, int32_t mode, const float* action) {
-  need_handle(a);
+bool read_act(const float* obs, int32_t mode, const float* action) {
   need(obs, "obs");
   need(action, "action");
   if (mode != RDM_SAMPLE && mode != RDM_MEAN)
@@ -191,16 +189,16 @@ bool read_act(const rdm_agent* a, const float* obs, int32_t mode, const float* a
 }  // namespace
 
 rdm_result rdm_agent_act(rdm_agent* a, const float* obs, int32_t mode, float* action) {
-  return call(text_of(a), [&] {
-    const bool sample = read_act(a, obs, mode, action);
+  return call_on(a, [&] {
+    const bool sample = read_act(obs, mode, action);
     a->agent->act(obs, sample, action);
   });
 }
 
 rdm_result rdm_agent_act_points(rdm_agent* a, const float* obs, const rdm_points* points, int32_t mode,
                                 float* action) {
-  return call(text_of(a), [&] {
-    const bool sample = read_act(a, obs, mode, action);
+  return call_on(a, [&] {
+    const bool sample = read_act(obs, mode, action);
     if (!a->agent->eyes().points) fail(Code::kState, "points: the agent has no encoder");
     a->agent->act(obs, sample, action, read_points(points, a->agent->eyes()));
   });
@@ -208,8 +206,7 @@ rdm_result rdm_agent_act_points(rdm_agent* a, const float* obs, const rdm_points
 
 rdm_result rdm_agent_pretrain(rdm_agent* a, const rdm_points* points, const uint8_t* label, int32_t rows,
                               const rdm_pretrain_config* how, rdm_pretrain_report* io) {
-  return call(text_of(a), [&] {
-    need_handle(a);
+  return call_on(a, [&] {
     need(label, "label");
     const auto in = read_struct(how, sizeof(rdm_pretrain_config), default_pretrain(), "how");
     if (io) check_out(io, sizeof(rdm_pretrain_report), "io");
@@ -237,8 +234,7 @@ rdm_result rdm_agent_pretrain(rdm_agent* a, const rdm_points* points, const uint
 }
 
 rdm_result rdm_agent_record(rdm_agent* a, const rdm_transition* t) {
-  return call(text_of(a), [&] {
-    need_handle(a);
+  return call_on(a, [&] {
     const auto in = read_struct(t, sizeof(rdm_transition), rdm_transition{}, "transition");
     need(in.reward, "transition.reward");
     if (a->agent->config().cost_dim > 0) need(in.cost, "transition.cost");
@@ -256,8 +252,7 @@ rdm_result rdm_agent_record(rdm_agent* a, const rdm_transition* t) {
 }
 
 rdm_result rdm_agent_values(const rdm_agent* a, const float* obs, int32_t rows, float* value, float* cost) {
-  return call(text_of(a), [&] {
-    need_handle(a);
+  return call_on(a, [&] {
     need(obs, "obs");
     need(value, "value");
     if (rows < 1 || rows > kMaxValueRows)
@@ -308,8 +303,7 @@ void write_epoch(rdm_epoch* io, const Epoch& e) {
 }  // namespace rdm::capi
 
 rdm_result rdm_agent_update(rdm_agent* a, const float* last_obs, rdm_epoch* io) {
-  return call(text_of(a), [&] {
-    need_handle(a);
+  return call_on(a, [&] {
     need(last_obs, "last_obs");
     if (io) check_out(io, kFirstEpochSize, "io");
     Epoch e;
@@ -323,8 +317,7 @@ void rdm_agent_cancel(rdm_agent* a) {
 }
 
 rdm_result rdm_agent_set(rdm_agent* a, const rdm_option* option) {
-  return call(text_of(a), [&] {
-    need_handle(a);
+  return call_on(a, [&] {
     need(option, "option");
     need(option->key, "option.key");
     a->agent->set_option({option->key, option->text, option->number});
@@ -332,22 +325,15 @@ rdm_result rdm_agent_set(rdm_agent* a, const rdm_option* option) {
 }
 
 rdm_result rdm_agent_option(const rdm_agent* a, int32_t i, const char** key, char* text) {
-  return call(text_of(a), [&] {
-    need_handle(a);
-    give_option(a->agent->options(), i, key, text, "rdm_agent_settings");
-  });
+  return call_on(a, [&] { give_option(a->agent->options(), i, key, text, "rdm_agent_settings"); });
 }
 
 rdm_result rdm_agent_settings(const rdm_agent* a, char* text, size_t capacity, size_t* size) {
-  return call(text_of(a), [&] {
-    need_handle(a);
-    give_settings(a->agent->options(), text, capacity, size);
-  });
+  return call_on(a, [&] { give_settings(a->agent->options(), text, capacity, size); });
 }
 
 rdm_result rdm_agent_tensor(const rdm_agent* a, int32_t i, rdm_tensor* out) {
-  return call(text_of(a), [&] {
-    need_handle(a);
+  return call_on(a, [&] {
     need(out, "out");
     TensorInfo t;
     if (i < 0 || !a->agent->tensor(i, &t)) fail(Code::kRange, "i: %d is past the end of the tensors", i);
@@ -374,8 +360,7 @@ TensorInfo find_tensor(Agent& agent, const char* name, size_t count) {
 }  // namespace
 
 rdm_result rdm_agent_tensor_read(const rdm_agent* a, const char* name, float* out, size_t count) {
-  return call(text_of(a), [&] {
-    need_handle(a);
+  return call_on(a, [&] {
     need(out, "out");
     const TensorInfo t = find_tensor(*a->agent, name, count);
     std::copy(t.data, t.data + count, out);
@@ -383,8 +368,7 @@ rdm_result rdm_agent_tensor_read(const rdm_agent* a, const char* name, float* ou
 }
 
 rdm_result rdm_agent_tensor_write(rdm_agent* a, const char* name, const float* values, size_t count) {
-  return call(text_of(a), [&] {
-    need_handle(a);
+  return call_on(a, [&] {
     need(values, "values");
     const TensorInfo t = find_tensor(*a->agent, name, count);
     for (size_t i = 0; i < count; ++i)
@@ -395,15 +379,11 @@ rdm_result rdm_agent_tensor_write(rdm_agent* a, const char* name, const float* v
 }
 
 rdm_result rdm_agent_policy(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
-  return call(text_of(a), [&] {
-    need_handle(a);
-    emit(bytes, capacity, size, [&](Writer& w) { a->agent->write_policy_file(w); });
-  });
+  return call_on(a, [&] { emit(bytes, capacity, size, [&](Writer& w) { a->agent->write_policy_file(w); }); });
 }
 
 rdm_result rdm_agent_policy_file(const rdm_agent* a, const char* path) {
-  return call(text_of(a), [&] {
-    need_handle(a);
+  return call_on(a, [&] {
     need(path, "path");
     Writer count(nullptr, 0);
     a->agent->write_policy_file(count);
@@ -415,15 +395,11 @@ rdm_result rdm_agent_policy_file(const rdm_agent* a, const char* path) {
 }
 
 rdm_result rdm_agent_save(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
-  return call(text_of(a), [&] {
-    need_handle(a);
-    emit(bytes, capacity, size, [&](Writer& w) { a->agent->save(w); });
-  });
+  return call_on(a, [&] { emit(bytes, capacity, size, [&](Writer& w) { a->agent->save(w); }); });
 }
 
 rdm_result rdm_agent_load(rdm_agent* a, const void* bytes, size_t size) {
-  return call(text_of(a), [&] {
-    need_handle(a);
+  return call_on(a, [&] {
     need(bytes, "bytes");
     a->agent->load(bytes, size);
   });

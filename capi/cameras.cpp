@@ -11,7 +11,6 @@ using namespace rdm::capi;
 namespace {
 
 World& world_of(const rdm_pool* p, int32_t env) {
-  need_handle(p);
   need_index(env, p->pool->config().num_envs, "env");
   return p->pool->world(env);
 }
@@ -30,8 +29,7 @@ Camera rdm::capi::pool_camera(const rdm_pool* p, int32_t env, const char* name) 
 }
 
 rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     need(out, "out");
     const auto& shapes = p->pool->task().scene().shapes;
     need_index(i, static_cast<int64_t>(shapes.size()), "i");
@@ -48,8 +46,7 @@ rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {
 }
 
 rdm_result rdm_pool_hull(const rdm_pool* p, int32_t i, float* points, int32_t capacity, int32_t* count) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     need(count, "count");
     const Scene& scene = p->pool->task().scene();
     need_index(i, static_cast<int64_t>(scene.shapes.size()), "i");
@@ -63,7 +60,7 @@ rdm_result rdm_pool_hull(const rdm_pool* p, int32_t i, float* points, int32_t ca
 }
 
 rdm_result rdm_pool_poses(const rdm_pool* p, int32_t env, float* pose) {
-  return call(text_of(p), [&] {
+  return call_on(p, [&] {
     const World& world = world_of(p, env);
     need(pose, "pose");
     const auto count = static_cast<int32_t>(world.scene().shapes.size());
@@ -78,7 +75,7 @@ rdm_result rdm_pool_poses(const rdm_pool* p, int32_t env, float* pose) {
 
 rdm_result rdm_pool_contacts(const rdm_pool* p, int32_t env, rdm_contact* out, int32_t capacity,
                              int32_t* count) {
-  return call(text_of(p), [&] {
+  return call_on(p, [&] {
     const World& world = world_of(p, env);
     need(count, "count");
     if (capacity < 0) fail(Code::kRange, "capacity: %d is negative", capacity);
@@ -100,7 +97,7 @@ rdm_result rdm_pool_contacts(const rdm_pool* p, int32_t env, rdm_contact* out, i
 
 rdm_result rdm_pool_render(rdm_pool* p, int32_t env, const char* camera, int32_t w, int32_t h, uint8_t* rgb,
                            float* depth, int32_t* segmentation) {
-  return call(text_of(p), [&] {
+  return call_on(p, [&] {
     const World& world = world_of(p, env);
     const Camera eye = pool_camera(p, env, camera);
     const int32_t count = gather_shapes(world, p->shapes);
@@ -117,7 +114,7 @@ rdm_result rdm_pool_render(rdm_pool* p, int32_t env, const char* camera, int32_t
 }
 
 rdm_result rdm_pool_push(rdm_pool* p, int32_t env, int32_t shape, const float force[3]) {
-  return call(text_of(p), [&] {
+  return call_on(p, [&] {
     World& world = world_of(p, env);
     need(force, "force");
     const auto& shapes = world.scene().shapes;

@@ -1,4 +1,6 @@
 // Checkpoints: agent, pool and a note of the host's in one file.
+#include <optional>
+
 #include "base/file.hpp"
 #include "capi/handles.hpp"
 
@@ -21,15 +23,26 @@ void section(Writer& w, const char tag[4], F&& body) {
 
 // The pool's part; a build without the simulation half has none to save.
 #if RDM_WITH_SIM
+template <class Pool>
+class PoolUse {  // of one that may be NULL
+ public:
+  explicit PoolUse(Pool* p) {
+    if (p) use_.emplace(p);
+  }
+
+ private:
+  std::optional<Use<Pool>> use_;
+};
 void save_pool(const rdm_pool* p, Writer& out) {
-  need_handle(p);
   p->pool->get_state(-1, out);
 }
 void load_pool(rdm_pool* p, const void* bytes, size_t size) {
-  need_handle(p);
   p->pool->set_state(-1, bytes, size);
 }
 #else
+struct PoolUse {
+  explicit PoolUse(const rdm_pool*) {}
+};
 void save_pool(const rdm_pool*, Writer&) {
   left_out("simulation");
 }
@@ -43,7 +56,6 @@ void load_pool(rdm_pool*, const void*, size_t) {
 Vector<unsigned char> join_pools(Agent& agent, const rdm_pool* p) {
   Ranks& ranks = agent.ranks();
   if (!p || ranks.alone()) return {};
-  need_handle(p);
   Writer count(nullptr, 0);
   save_pool(p, count);
   const auto n = static_cast<size_t>(ranks.count());
@@ -96,9 +108,9 @@ void write_checkpoint(Writer& w, const Agent& agent, const rdm_pool* pool, const
 
 rdm_result rdm_checkpoint_write(const char* path, const rdm_agent* a, const rdm_pool* p, const void* note,
                                 size_t note_size) {
-  return call(text_of(a), [&] {
+  return call_on(a, [&] {
     need(path, "path");
-    need_handle(a);
+    const PoolUse use(p);
     if (note_size) need(note, "note");
     if (note_size > kMaxNote) fail(Code::kRange, "note_size: %zu is above %zu", note_size, kMaxNote);
     const auto pools = join_pools(*a->agent, p);
@@ -113,9 +125,9 @@ rdm_result rdm_checkpoint_write(const char* path, const rdm_agent* a, const rdm_
 
 rdm_result rdm_checkpoint_read(const char* path, rdm_agent* a, rdm_pool* p, void* note, size_t capacity,
                                size_t* note_size) {
-  return call(text_of(a), [&] {
+  return call_on(a, [&] {
     need(path, "path");
-    need_handle(a);
+    const PoolUse use(p);
     need(note_size, "note_size");
     if (capacity) need(note, "note");
     const auto file = read_file(path, file_limits(a, p));

@@ -105,7 +105,7 @@ void rdm::capi::forget_task(int32_t index) {
 
 int32_t rdm_task_count(void) {
   int32_t n = 0;
-  call(nullptr, [&] {
+  call([&] {
     register_builtin_tasks();
     n = task_count();
   });
@@ -113,14 +113,14 @@ int32_t rdm_task_count(void) {
 }
 
 rdm_result rdm_task_at(int32_t index, rdm_task* io) {
-  return call(nullptr, [&] {
+  return call([&] {
     check_out(io, sizeof(rdm_task), "io");
     write_struct(io, described(index)->task, sizeof(rdm_task), "io");
   });
 }
 
 rdm_result rdm_task_find(const char* name, int32_t* index) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(name, "name");
     need(index, "index");
     register_builtin_tasks();
@@ -129,7 +129,7 @@ rdm_result rdm_task_find(const char* name, int32_t* index) {
 }
 
 rdm_result rdm_task_field(int32_t task, int32_t i, rdm_field* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const auto d = described(task);
     need_index(i, d->task.num_fields, "i");
@@ -138,7 +138,7 @@ rdm_result rdm_task_field(int32_t task, int32_t i, rdm_field* out) {
 }
 
 rdm_result rdm_task_field_bounds(int32_t task, int32_t i, float* low, float* high) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(low, "low");
     need(high, "high");
     const auto d = described(task);
@@ -149,7 +149,7 @@ rdm_result rdm_task_field_bounds(int32_t task, int32_t i, float* low, float* hig
 }
 
 rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const TaskRef ref = ref_at(task);
     const TaskInfo& info = *ref;
@@ -159,7 +159,7 @@ rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost* out) {
 }
 
 rdm_result rdm_task_option(int32_t task, int32_t i, rdm_option_info* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const TaskRef info = ref_at(task);
     const auto tables = tables_of(*info);
@@ -186,7 +186,7 @@ rdm_camera rdm::capi::describe(const CameraSpec& c) {
 }
 
 rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const TaskRef ref = ref_at(task);
     const TaskInfo& info = *ref;
@@ -196,7 +196,7 @@ rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera* out) {
 }
 
 rdm_result rdm_task_default(int32_t task, int32_t i, rdm_option* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const TaskRef ref = ref_at(task);
     const TaskInfo& info = *ref;
@@ -210,7 +210,7 @@ int32_t rdm_robot_count(void) {
 }
 
 rdm_result rdm_robot_at(int32_t index, rdm_robot* io) {
-  return call(nullptr, [&] {
+  return call([&] {
     check_out(io, sizeof(rdm_robot), "io");
     const RobotRef ref(index);
     const Robot& r = *ref;
@@ -224,7 +224,7 @@ rdm_result rdm_robot_at(int32_t index, rdm_robot* io) {
 }
 
 rdm_result rdm_robot_joint(int32_t robot_index, int32_t i, rdm_joint* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const RobotRef ref(robot_index);
     const Robot& r = *ref;
@@ -253,7 +253,7 @@ int32_t rdm_algo_count(void) {
 }
 
 rdm_result rdm_algo_at(int32_t index, rdm_algo* io) {
-  return call(nullptr, [&] {
+  return call([&] {
     check_out(io, sizeof(rdm_algo), "io");
     need_index(index, algo_count(), "index");
     const AlgoInfo& a = algo_at(index);
@@ -266,7 +266,7 @@ rdm_result rdm_algo_at(int32_t index, rdm_algo* io) {
 }
 
 rdm_result rdm_algo_find(const char* name, int32_t* index) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(name, "name");
     need(index, "index");
     *index = algo_find(name);
@@ -274,7 +274,7 @@ rdm_result rdm_algo_find(const char* name, int32_t* index) {
 }
 
 rdm_result rdm_algo_option(int32_t algo, int32_t i, rdm_option_info* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     need_index(algo, algo_count(), "algo");
     const AlgoInfo& a = algo_at(algo);

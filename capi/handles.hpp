@@ -1,7 +1,7 @@
 // The handles behind the ABI: the object itself, its error text, and what only the shim needs. And what one
 // source file of the shim takes from another.
 #pragma once
-#include "capi/abi_call.hpp"
+#include "capi/in_use.hpp"
 #if RDM_WITH_SIM
 #include "env/pool.hpp"
 #include "robot/robot_copy.hpp"
@@ -17,7 +17,9 @@
 #if RDM_WITH_SIM
 struct rdm_pool {
   static constexpr rdm::capi::Tag kTag = rdm::capi::Tag::kPool;
+  static constexpr bool kOneAtATime = false;
   rdm::capi::Tag tag = kTag;
+  mutable rdm::capi::InUse in_use;
   rdm::HostHooks hooks;
   mutable char error[rdm::kErrorTextSize] = "";  // also of calls that only read
   rdm::Pool* pool = nullptr;
@@ -55,7 +57,9 @@ struct DecisionBuffers {
 
 struct rdm_agent {
   static constexpr rdm::capi::Tag kTag = rdm::capi::Tag::kAgent;
+  static constexpr bool kOneAtATime = true;  // to save it settles statistics, to value it uses its threads
   rdm::capi::Tag tag = kTag;
+  mutable rdm::capi::InUse in_use;
   rdm::HostHooks hooks;
   mutable char error[rdm::kErrorTextSize] = "";  // also of calls that only read
   rdm::Agent* agent = nullptr;

@@ -64,7 +64,7 @@ uint32_t rdm_features(void) {
 }
 
 rdm_result rdm_check_abi(uint32_t abi, uint32_t version) {
-  return call(nullptr, [&] {
+  return call([&] {
     if (abi != RDM_ABI) fail(Code::kVersion, "abi: the header has %u, the library %d", abi, RDM_ABI);
     if (version > RDM_VERSION)
       fail(Code::kVersion, "version: the header has %u, the library %d", version, RDM_VERSION);
@@ -72,7 +72,7 @@ rdm_result rdm_check_abi(uint32_t abi, uint32_t version) {
 }
 
 rdm_result rdm_build_info(rdm_build* io) {
-  return call(nullptr, [&] {
+  return call([&] {
     check_out(io, kFirstBuildSize, "io");
     rdm_build b{};
     b.abi = RDM_ABI;
@@ -103,7 +103,7 @@ rdm_result rdm_build_info(rdm_build* io) {
 }
 
 rdm_result rdm_init(const rdm_host* host) {
-  return call(nullptr, [&] {
+  return call([&] {
     const std::lock_guard lock(g_init_mutex);
     const HostHooks hooks = host ? hooks_from(host) : HostHooks{};
     if (g_init_count > 0 && host)

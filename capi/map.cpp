@@ -14,7 +14,9 @@ using namespace rdm::capi;
 
 struct rdm_map {
   static constexpr Tag kTag = Tag::kMap;
+  static constexpr bool kOneAtATime = false;
   Tag tag = kTag;
+  mutable InUse in_use;
   HostHooks hooks;
   char error[kErrorTextSize] = "";
   Occupancy* map = nullptr;
@@ -70,7 +72,7 @@ MapFormat format_of(const char* path) {
 }  // namespace
 
 rdm_result rdm_map_config_init(rdm_map_config* c, size_t size) {
-  return call(nullptr, [&] { init_struct(c, size, kFirstSize, default_config(), "c"); });
+  return call([&] { init_struct(c, size, kFirstSize, default_config(), "c"); });
 }
 
 rdm_result rdm_map_create(rdm_map** out, const rdm_map_config* c) {
@@ -101,7 +103,7 @@ rdm_result rdm_map_create(rdm_map** out, const rdm_map_config* c) {
 }
 
 void rdm_map_destroy(rdm_map* m) {
-  if (!is_handle(m)) return;
+  if (!may_end(m)) return;
   Occupancy::destroy(m->map);
   retire(m);
   host_delete(m->hooks, m);
@@ -112,8 +114,7 @@ const char* rdm_map_error(const rdm_map* m) {
 }
 
 rdm_result rdm_map_get_info(const rdm_map* m, rdm_map_info* io) {
-  return call(nullptr, [&] {
-    need_handle(m);
+  return call_on(m, [&] {
     const OccupancyInfo i = m->map->info();
     rdm_map_info out{};
     out.full = i.dropped > 0;
@@ -127,16 +128,12 @@ rdm_result rdm_map_get_info(const rdm_map* m, rdm_map_info* io) {
 }
 
 rdm_result rdm_map_clear(rdm_map* m) {
-  return call(text_of(m), [&] {
-    need_handle(m);
-    m->map->clear();
-  });
+  return call_on(m, [&] { m->map->clear(); });
 }
 
 rdm_result rdm_map_insert(rdm_map* m, const float origin[3], const float* points, size_t count,
                           uint64_t* dropped) {
-  return call(text_of(m), [&] {
-    need_handle(m);
+  return call_on(m, [&] {
     need(origin, "origin");
     need_points(points, count, "points");
     const uint64_t lost = m->map->insert(to_vec(origin), points, count);
@@ -146,9 +143,8 @@ rdm_result rdm_map_insert(rdm_map* m, const float origin[3], const float* points
 
 rdm_result rdm_map_scan(rdm_map* m, rdm_pool* p, int32_t env, const char* camera, int32_t w, int32_t h,
                         const int32_t* skip, int32_t num_skip, uint64_t* dropped) {
-  return call(text_of(m), [&] {
-    need_handle(m);
-    need_handle(p);
+  return call_on(m, [&] {
+    const Use use(p);
     need_index(env, p->pool->config().num_envs, "env");
     if (num_skip < 0) fail(Code::kRange, "num_skip: %d is negative", num_skip);
     if (num_skip > 0) need(skip, "skip");
@@ -174,8 +170,7 @@ rdm_result rdm_map_scan(rdm_map* m, rdm_pool* p, int32_t env, const char* camera
 }
 
 rdm_result rdm_map_query(const rdm_map* m, const float* points, size_t count, float* probability) {
-  return call(nullptr, [&] {
-    need_handle(m);
+  return call_on(m, [&] {
     need_points(points, count, "points");
     if (count > 0) need(probability, "probability");
     m->map->query(points, count, probability);
@@ -184,8 +179,7 @@ rdm_result rdm_map_query(const rdm_map* m, const float* points, size_t count, fl
 
 rdm_result rdm_map_box(const rdm_map* m, const float low[3], const float high[3], rdm_voxel* out,
                        size_t capacity, size_t* count) {
-  return call(nullptr, [&] {
-    need_handle(m);
+  return call_on(m, [&] {
     need(low, "low");
     need(high, "high");
     need(count, "count");
@@ -205,8 +199,7 @@ rdm_result rdm_map_box(const rdm_map* m, const float low[3], const float high[3]
 }
 
 rdm_result rdm_map_meets(const rdm_map* m, const float pose[7], const float half[3], int32_t* meets) {
-  return call(nullptr, [&] {
-    need_handle(m);
+  return call_on(m, [&] {
     need(pose, "pose");
     need(half, "half");
     need(meets, "meets");
@@ -219,8 +212,7 @@ rdm_result rdm_map_meets(const rdm_map* m, const float pose[7], const float half
 
 rdm_result rdm_map_raycast(const rdm_map* m, const float origin[3], const float direction[3], float range,
                            int32_t through_unknown, float hit[3], int32_t* found) {
-  return call(nullptr, [&] {
-    need_handle(m);
+  return call_on(m, [&] {
     need(origin, "origin");
     need(direction, "direction");
     need(hit, "hit");
@@ -233,8 +225,7 @@ rdm_result rdm_map_raycast(const rdm_map* m, const float origin[3], const float 
 
 rdm_result rdm_map_distance(const rdm_map* m, const float* points, size_t count, float most,
                             float* distance) {
-  return call(nullptr, [&] {
-    need_handle(m);
+  return call_on(m, [&] {
     need_points(points, count, "points");
     if (count > 0) need(distance, "distance");
     if (!(most > 0 && most <= 1e6f))
@@ -245,8 +236,7 @@ rdm_result rdm_map_distance(const rdm_map* m, const float* points, size_t count,
 }
 
 rdm_result rdm_map_grid(const rdm_map* m, const float pose[7], const int32_t n[3], float side, int8_t* out) {
-  return call(nullptr, [&] {
-    need_handle(m);
+  return call_on(m, [&] {
     need(pose, "pose");
     need(n, "n");
     need(out, "out");
@@ -259,8 +249,7 @@ rdm_result rdm_map_grid(const rdm_map* m, const float pose[7], const int32_t n[3
 }
 
 rdm_result rdm_map_save(const rdm_map* m, int32_t format, void* bytes, size_t capacity, size_t* size) {
-  return call(nullptr, [&] {
-    need_handle(m);
+  return call_on(m, [&] {
     need(size, "size");
     if (format != RDM_MAP_BINARY && format != RDM_MAP_FULL)
       fail(Code::kRange, "format: %d is outside [0, 1]", format);
@@ -275,8 +264,7 @@ rdm_result rdm_map_save(const rdm_map* m, int32_t format, void* bytes, size_t ca
 }
 
 rdm_result rdm_map_save_file(const rdm_map* m, const char* path) {
-  return call(nullptr, [&] {
-    need_handle(m);
+  return call_on(m, [&] {
     need(path, "path");
     const HostScope scope(m->hooks);
     Vector<unsigned char> file;
@@ -286,16 +274,14 @@ rdm_result rdm_map_save_file(const rdm_map* m, const char* path) {
 }
 
 rdm_result rdm_map_load(rdm_map* m, const void* bytes, size_t size) {
-  return call(text_of(m), [&] {
-    need_handle(m);
+  return call_on(m, [&] {
     need(bytes, "bytes");
     m->map->read(bytes, size);
   });
 }
 
 rdm_result rdm_map_load_file(rdm_map* m, const char* path) {
-  return call(text_of(m), [&] {
-    need_handle(m);
+  return call_on(m, [&] {
     need(path, "path");
     const HostScope scope(m->hooks);
     const auto file = read_file(path, m->map->file_limits());

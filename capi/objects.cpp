@@ -71,7 +71,7 @@ int32_t rdm_object_count(void) {
 }
 
 rdm_result rdm_object_at(int32_t index, rdm_object* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const ObjectRef object(index);
     *out = {object->name, object->shape_text, object->mass};
@@ -79,11 +79,11 @@ rdm_result rdm_object_at(int32_t index, rdm_object* out) {
 }
 
 rdm_result rdm_object_def_init(rdm_object_def* def, size_t size) {
-  return call(nullptr, [&] { init_struct(def, size, kFirstSize, default_def(), "def"); });
+  return call([&] { init_struct(def, size, kFirstSize, default_def(), "def"); });
 }
 
 rdm_result rdm_object_find(const char* name, int32_t* index) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(name, "name");
     need(index, "index");
     *index = find_object(name);
@@ -91,7 +91,7 @@ rdm_result rdm_object_find(const char* name, int32_t* index) {
 }
 
 rdm_result rdm_object_get(int32_t object, rdm_object_def* io) {
-  return call(nullptr, [&] {
+  return call([&] {
     check_out(io, kFirstSize, "io");
     const ObjectRef ref(object);
     rdm_object_def d = default_def();
@@ -108,7 +108,7 @@ rdm_result rdm_object_get(int32_t object, rdm_object_def* io) {
 }
 
 rdm_result rdm_object_shape_at(int32_t object, int32_t i, rdm_shape_def* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const ObjectRef ref(object);
     need_index(i, ref->shapes.count, "i");
@@ -130,17 +130,17 @@ rdm_result rdm_object_shape_at(int32_t object, int32_t i, rdm_shape_def* out) {
 }
 
 rdm_result rdm_object_check(const rdm_object_def* def) {
-  return call(nullptr, [&] { with_object(def, check_object); });
+  return call([&] { with_object(def, check_object); });
 }
 
 rdm_result rdm_object_create(int32_t* out, const rdm_object_def* def) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     with_object(def, [&](const Object& o) { *out = add_object(o); });
   });
 }
 
 rdm_result rdm_object_remove(int32_t object) {
-  return call(nullptr, [&] { remove_object(object); });
+  return call([&] { remove_object(object); });
 }
 #endif

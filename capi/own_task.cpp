@@ -433,11 +433,11 @@ void OwnTask::blame(const char* function, rdm_result r, bool thrown) const {
 }
 
 rdm_result rdm_task_def_init(rdm_task_def* def, size_t size) {
-  return call(nullptr, [&] { init_struct(def, size, kFirstSize, default_def(), "def"); });
+  return call([&] { init_struct(def, size, kFirstSize, default_def(), "def"); });
 }
 
 rdm_result rdm_task_register(int32_t* out, const rdm_task_def* def) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     register_builtin_tasks();
     const auto in = read_struct(def, kFirstSize, default_def(), "def");
@@ -453,7 +453,7 @@ rdm_result rdm_task_register(int32_t* out, const rdm_task_def* def) {
 }
 
 rdm_result rdm_task_remove(int32_t task) {
-  return call(nullptr, [&] {
+  return call([&] {
     remove_task(task);
     forget_task(task);
   });

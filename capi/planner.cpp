@@ -1,4 +1,6 @@
 // rdm_planner_*: planning in a pool's worlds, with a policy's proposals and an agent's critic.
+#include <optional>
+
 #include "capi/handles.hpp"
 
 #if RDM_WITH_SIM
@@ -52,7 +54,9 @@ class Critics final : public PlanCritic {
 
 struct rdm_planner {
   static constexpr Tag kTag = Tag::kPlanner;
+  static constexpr bool kOneAtATime = false;
   Tag tag = kTag;
+  mutable InUse in_use;
   HostHooks hooks;
   mutable char error[kErrorTextSize] = "";  // also of calls that only read
   Planner* planner = nullptr;
@@ -61,6 +65,7 @@ struct rdm_planner {
 #endif
 #if RDM_WITH_LEARN
   Critics critics;
+  const rdm_agent* agent = nullptr;  // theirs
 #endif
 };
 
@@ -88,7 +93,7 @@ void use_policy(const rdm_policy* policy, const rdm_pool*, rdm_planner*, Planner
 #if RDM_WITH_LEARN
 void use_critic(const rdm_agent* agent, const Pool& pool, rdm_planner* p, PlannerConfig* config) {
   if (!agent) return;
-  need_handle(agent);
+  const Use use(agent);
   const AgentConfig& a = agent->agent->config();
   if (a.obs_dim != pool.obs_dim())
     fail(Code::kArgument, "obs_dim: the agent has %d, the pool %d", a.obs_dim, pool.obs_dim());
@@ -96,6 +101,7 @@ void use_critic(const rdm_agent* agent, const Pool& pool, rdm_planner* p, Planne
     fail(Code::kArgument, "cost_dim: the agent has %d, the pool %d", a.cost_dim, pool.cost_dim());
   agent->agent->values(nullptr, 0, nullptr, nullptr);  // refuses critics without a unit
   p->critics.open(agent->agent);
+  p->agent = agent;
   config->critic = &p->critics;
 }
 #else
@@ -107,7 +113,7 @@ void use_critic(const rdm_agent* agent, const Pool&, rdm_planner*, PlannerConfig
 }  // namespace
 
 rdm_result rdm_planner_config_init(rdm_planner_config* c, size_t size) {
-  return call(nullptr, [&] { init_struct(c, size, kFirstSize, rdm_planner_config{}, "c"); });
+  return call([&] { init_struct(c, size, kFirstSize, rdm_planner_config{}, "c"); });
 }
 
 rdm_result rdm_planner_create(rdm_planner** out, const rdm_planner_config* c) {
@@ -116,7 +122,7 @@ rdm_result rdm_planner_create(rdm_planner** out, const rdm_planner_config* c) {
     const auto in = read_struct(c, kFirstSize, rdm_planner_config{}, "config");
     check_error(in);
     need(in.pool, "config.pool");
-    need_handle(in.pool);
+    const Use use(in.pool);
     if (in.num_threads < 0 || in.num_threads > 256)
       fail(Code::kRange, "config.num_threads: %d is outside [0, 256]", in.num_threads);
     const HostHooks hooks = hooks_from(in.host);
@@ -147,7 +153,7 @@ rdm_result rdm_planner_create(rdm_planner** out, const rdm_planner_config* c) {
 }
 
 void rdm_planner_destroy(rdm_planner* p) {
-  if (!is_handle(p)) return;
+  if (!may_end(p)) return;
   const FpMode mode;
   Planner::destroy(p->planner);
   retire(p);
@@ -159,8 +165,7 @@ const char* rdm_planner_error(const rdm_planner* p) {
 }
 
 rdm_result rdm_planner_get_spec(const rdm_planner* p, rdm_planner_spec* io) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     rdm_planner_spec s{};
     s.samples = p->planner->samples();
     s.horizon = p->planner->horizon();
@@ -172,7 +177,7 @@ rdm_result rdm_planner_get_spec(const rdm_planner* p, rdm_planner_spec* io) {
 }
 
 rdm_result rdm_planner_option_at(int32_t i, rdm_option_info* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     int32_t count = 0;
     const OptionSpec* rows = planner_options(&count);
@@ -182,17 +187,17 @@ rdm_result rdm_planner_option_at(int32_t i, rdm_option_info* out) {
 }
 
 rdm_result rdm_planner_settings(const rdm_planner* p, char* text, size_t capacity, size_t* size) {
-  return call(text_of(p), [&] {
-    need_handle(p);
-    give_settings(p->planner->options(), text, capacity, size);
-  });
+  return call_on(p, [&] { give_settings(p->planner->options(), text, capacity, size); });
 }
 
 rdm_result rdm_planner_act(rdm_planner* p, const rdm_pool* pool, int32_t env, float* action,
                            rdm_plan_info* io) {
-  return call(text_of(p), [&] {
-    need_handle(p);
-    need_handle(pool);
+  return call_on(p, [&] {
+    const Use use(pool);
+#if RDM_WITH_LEARN
+    std::optional<Use<const rdm_agent>> critic;
+    if (p->agent) critic.emplace(p->agent);
+#endif
     need_index(env, pool->pool->config().num_envs, "env");
     need(action, "action");
     if (io) check_out(io, sizeof *io, "io");
@@ -211,31 +216,25 @@ rdm_result rdm_planner_act(rdm_planner* p, const rdm_pool* pool, int32_t env, fl
 }
 
 rdm_result rdm_planner_reset(rdm_planner* p) {
-  return call(text_of(p), [&] {
-    need_handle(p);
-    p->planner->forget();
-  });
+  return call_on(p, [&] { p->planner->forget(); });
 }
 
 rdm_result rdm_planner_get_plan(const rdm_planner* p, float* plan) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     need(plan, "plan");
     std::copy_n(p->planner->plan(), p->planner->horizon() * p->planner->action_dim(), plan);
   });
 }
 
 rdm_result rdm_planner_set_plan(rdm_planner* p, const float* plan) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     need(plan, "plan");
     p->planner->set_plan(plan);
   });
 }
 
 rdm_result rdm_planner_write_state(const rdm_planner* p, void* bytes, size_t capacity, size_t* size) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     need(size, "size");
     Writer count(nullptr, 0);
     p->planner->write_state(count);
@@ -250,8 +249,7 @@ rdm_result rdm_planner_write_state(const rdm_planner* p, void* bytes, size_t cap
 }
 
 rdm_result rdm_planner_read_state(rdm_planner* p, const void* bytes, size_t size) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     need(bytes, "bytes");
     p->planner->read_state(bytes, size);
   });

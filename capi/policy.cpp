@@ -155,7 +155,7 @@ void need_finite(const float* x, int32_t rows, int32_t width, const char* name) 
 }  // namespace
 
 rdm_result rdm_policy_load(rdm_policy** out, const void* bytes, size_t size) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     need(bytes, "bytes");
     make(out, bytes, size);
@@ -163,7 +163,7 @@ rdm_result rdm_policy_load(rdm_policy** out, const void* bytes, size_t size) {
 }
 
 rdm_result rdm_policy_load_file(rdm_policy** out, const char* path) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     need(path, "path");
     const auto bytes = read_file(path, Policy::file_limits());
@@ -179,7 +179,7 @@ void rdm_policy_destroy(rdm_policy* p) {
 }
 
 rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
-  return call(nullptr, [&] {
+  return call([&] {
     need_handle(p);
     const PolicyView& v = p->policy->view();
     rdm_policy_info info{};
@@ -223,7 +223,7 @@ void need_rows(int32_t rows) {
 
 rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, const float* noise,
                           float* action, void* scratch, size_t scratch_bytes) {
-  return call(nullptr, [&] {
+  return call([&] {
     need_handle(p);
     need(obs, "obs");
     need_rows(rows);
@@ -236,7 +236,7 @@ rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, c
 rdm_result rdm_policy_act_points(const rdm_policy* p, const float* obs, const rdm_points* points,
                                  int32_t rows, const float* noise, float* action, void* scratch,
                                  size_t scratch_bytes) {
-  return call(nullptr, [&] {
+  return call([&] {
     need_handle(p);
     need(obs, "obs");
     need_rows(rows);
@@ -250,7 +250,7 @@ rdm_result rdm_policy_act_points(const rdm_policy* p, const float* obs, const rd
 }
 
 rdm_result rdm_policy_tensor(const rdm_policy* p, int32_t i, rdm_tensor* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need_handle(p);
     need(out, "out");
     PolicyTensor t;
@@ -260,7 +260,7 @@ rdm_result rdm_policy_tensor(const rdm_policy* p, int32_t i, rdm_tensor* out) {
 }
 
 rdm_result rdm_policy_tensor_read(const rdm_policy* p, const char* name, float* out, size_t count) {
-  return call(nullptr, [&] {
+  return call([&] {
     need_handle(p);
     need(name, "name");
     need(out, "out");
@@ -281,7 +281,7 @@ rdm_result rdm_policy_tensor_read(const rdm_policy* p, const char* name, float* 
 }
 
 rdm_result rdm_policy_columns(const rdm_policy* p, int32_t* columns, int32_t capacity, int32_t* count) {
-  return call(nullptr, [&] {
+  return call([&] {
     need_handle(p);
     need(count, "count");
     if (capacity < 0) fail(Code::kRange, "capacity: %d is negative", capacity);
@@ -317,7 +317,7 @@ void rdm::capi::check_policy(const PolicyView& v, const rdm_spec& s) {
 }
 
 rdm_result rdm_policy_check(const rdm_policy* p, const rdm_spec* spec) {
-  return call(nullptr, [&] {
+  return call([&] {
     need_handle(p);
     check_policy(p->policy->view(), read_struct(spec, kFirstSpecSize, rdm_spec{}, "spec"));
   });
@@ -325,8 +325,7 @@ rdm_result rdm_policy_check(const rdm_policy* p, const rdm_spec* spec) {
 
 #if RDM_WITH_LEARN
 rdm_result rdm_agent_load_policy(rdm_agent* a, const rdm_policy* p, double samples) {
-  return call(text_of(a), [&] {
-    need_handle(a);
+  return call_on(a, [&] {
     need_handle(p);
     a->agent->load_policy(p->policy->view(), samples);
   });

@@ -1,4 +1,6 @@
 // rdm_pool_*: config to pool and back. Pictures and poses are in cameras.cpp.
+#include <optional>
+
 #include "capi/handles.hpp"
 #if RDM_WITH_SIM
 #include "env/resolved_config.hpp"
@@ -13,7 +15,7 @@ constexpr size_t kFirstConfigSize = offsetof(rdm_pool_config, settings);
 }
 
 rdm_result rdm_pool_config_init(rdm_pool_config* c, size_t size) {
-  return call(nullptr, [&] {
+  return call([&] {
     rdm_pool_config d{};
     d.num_envs = 1;
     init_struct(c, size, kFirstConfigSize, d, "c");
@@ -154,7 +156,7 @@ rdm_result rdm_pool_create(rdm_pool** out, const rdm_pool_config* c) {
 }
 
 void rdm_pool_destroy(rdm_pool* p) {
-  if (!is_handle(p)) return;
+  if (!may_end(p)) return;
   const FpMode mode;
   if (p->pool) Pool::destroy(p->pool);
   retire(p);
@@ -166,8 +168,7 @@ const char* rdm_pool_error(const rdm_pool* p) {
 }
 
 rdm_result rdm_pool_get_spec(const rdm_pool* p, rdm_spec* io) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     write_struct(io, spec_of(p->pool->task(), p->pool->task_index(), p->pool->repeat()), kFirstSpecSize,
                  "io");
   });
@@ -183,30 +184,22 @@ rdm_field rdm::capi::field_of(const Task& task, int32_t i) {
 }
 
 rdm_result rdm_pool_field(const rdm_pool* p, int32_t i, rdm_field* out) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     need(out, "out");
     *out = field_of(p->pool->task(), i);
   });
 }
 
 rdm_result rdm_pool_option(const rdm_pool* p, int32_t i, const char** key, char* text) {
-  return call(text_of(p), [&] {
-    need_handle(p);
-    give_option(p->pool->options(), i, key, text, "rdm_pool_settings");
-  });
+  return call_on(p, [&] { give_option(p->pool->options(), i, key, text, "rdm_pool_settings"); });
 }
 
 rdm_result rdm_pool_settings(const rdm_pool* p, char* text, size_t capacity, size_t* size) {
-  return call(text_of(p), [&] {
-    need_handle(p);
-    give_settings(p->pool->options(), text, capacity, size);
-  });
+  return call_on(p, [&] { give_settings(p->pool->options(), text, capacity, size); });
 }
 
 rdm_result rdm_pool_field_bounds(const rdm_pool* p, int32_t i, float* low, float* high) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     need(low, "low");
     need(high, "high");
     const Task& task = p->pool->task();
@@ -218,16 +211,14 @@ rdm_result rdm_pool_field_bounds(const rdm_pool* p, int32_t i, float* low, float
 }
 
 rdm_result rdm_pool_initial_mean(const rdm_pool* p, float* action) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     need(action, "action");
     std::copy_n(p->initial_mean, p->pool->task().action_dim(), action);
   });
 }
 
 rdm_result rdm_pool_buffers(const rdm_pool* p, rdm_buffers* io) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     const Buffers& b = p->pool->buffers();
     rdm_buffers out{};
     out.obs = b.obs;
@@ -248,8 +239,7 @@ rdm_result rdm_pool_buffers(const rdm_pool* p, rdm_buffers* io) {
 }
 
 rdm_result rdm_pool_bind(rdm_pool* p, const rdm_buffers* b) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     const auto in = read_struct(b, sizeof(rdm_buffers), rdm_buffers{}, "b");
     const auto aligned = [](const void* q, const char* name) {
       if (reinterpret_cast<uintptr_t>(q) % 4) fail(Code::kArgument, "b.%s is not 4-byte aligned", name);
@@ -283,30 +273,22 @@ rdm_result rdm_pool_bind(rdm_pool* p, const rdm_buffers* b) {
 }
 
 rdm_result rdm_pool_reset(rdm_pool* p, const uint64_t* seeds, const uint8_t* mask) {
-  return call(text_of(p), [&] {
-    need_handle(p);
-    p->pool->reset(seeds, mask);
-  });
+  return call_on(p, [&] { p->pool->reset(seeds, mask); });
 }
 
 rdm_result rdm_pool_step(rdm_pool* p) {
-  return call(text_of(p), [&] {
-    need_handle(p);
-    p->pool->step(nullptr);
-  });
+  return call_on(p, [&] { p->pool->step(nullptr); });
 }
 
 rdm_result rdm_pool_step_masked(rdm_pool* p, const uint8_t* mask) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     need(mask, "mask");
     p->pool->step(mask);
   });
 }
 
 rdm_result rdm_pool_baseline(rdm_pool* p, int32_t kind) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     if (kind < RDM_BASELINE_ZERO || kind > RDM_BASELINE_RANDOM)
       fail(Code::kRange, "kind: %d is outside [0, 2]", kind);
     p->pool->baseline(static_cast<Baseline>(kind));
@@ -315,14 +297,13 @@ rdm_result rdm_pool_baseline(rdm_pool* p, int32_t kind) {
 
 namespace {
 void check_env(const rdm_pool* p, int32_t env, bool all_allowed) {
-  need_handle(p);
   if (env == -1 && all_allowed) return;
   need_index(env, p->pool->config().num_envs, "env");
 }
 }  // namespace
 
 rdm_result rdm_pool_state_size(const rdm_pool* p, int32_t env, size_t* bytes) {
-  return call(text_of(p), [&] {
+  return call_on(p, [&] {
     check_env(p, env, true);
     need(bytes, "bytes");
     *bytes = p->pool->state_size(env);
@@ -330,7 +311,7 @@ rdm_result rdm_pool_state_size(const rdm_pool* p, int32_t env, size_t* bytes) {
 }
 
 rdm_result rdm_pool_get_state(const rdm_pool* p, int32_t env, void* bytes, size_t capacity, size_t* size) {
-  return call(text_of(p), [&] {
+  return call_on(p, [&] {
     check_env(p, env, true);
     need(bytes, "bytes");
     need(size, "size");
@@ -343,14 +324,11 @@ rdm_result rdm_pool_get_state(const rdm_pool* p, int32_t env, void* bytes, size_
 }
 
 rdm_result rdm_pool_set_rank(rdm_pool* p, int32_t rank, int32_t ranks) {
-  return call(text_of(p), [&] {
-    need_handle(p);
-    p->pool->set_rank(rank, ranks);
-  });
+  return call_on(p, [&] { p->pool->set_rank(rank, ranks); });
 }
 
 rdm_result rdm_pool_set_state(rdm_pool* p, int32_t env, const void* bytes, size_t size) {
-  return call(text_of(p), [&] {
+  return call_on(p, [&] {
     check_env(p, env, true);
     need(bytes, "bytes");
     p->pool->set_state(env, bytes, size);
@@ -358,7 +336,7 @@ rdm_result rdm_pool_set_state(rdm_pool* p, int32_t env, const void* bytes, size_
 }
 
 rdm_result rdm_pool_hash(const rdm_pool* p, int32_t env, uint64_t* hash) {
-  return call(text_of(p), [&] {
+  return call_on(p, [&] {
     check_env(p, env, true);
     need(hash, "hash");
     *hash = p->pool->hash(env);
@@ -366,9 +344,9 @@ rdm_result rdm_pool_hash(const rdm_pool* p, int32_t env, uint64_t* hash) {
 }
 
 rdm_result rdm_pool_copy(rdm_pool* dst, int32_t dst_env, const rdm_pool* src, int32_t src_env) {
-  return call(text_of(dst), [&] {
-    need_handle(dst);
-    need_handle(src);
+  return call_on(dst, [&] {
+    std::optional<Use<const rdm_pool>> use;
+    if (src != dst) use.emplace(src);
     const int32_t worlds = dst->pool->config().num_envs;
     if (dst_env < -1 || dst_env >= worlds)
       fail(Code::kRange, "dst_env: %d is outside [-1, %d)", dst_env, worlds);
@@ -377,8 +355,7 @@ rdm_result rdm_pool_copy(rdm_pool* dst, int32_t dst_env, const rdm_pool* src, in
 }
 
 rdm_result rdm_pool_get_stats(const rdm_pool* p, rdm_pool_stats* io) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     check_out(io, sizeof(rdm_pool_stats), "io");
     const PoolStats s = p->pool->stats();
     rdm_pool_stats out{};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "base/file.hpp"
 #include "capi/handles.hpp"
@@ -31,13 +32,15 @@ rdm_clone_config default_clone() {
 }  // namespace
 
 rdm_result rdm_clone_config_init(rdm_clone_config* how, size_t size) {
-  return call(nullptr, [&] { init_struct(how, size, sizeof(rdm_clone_config), default_clone(), "how"); });
+  return call([&] { init_struct(how, size, sizeof(rdm_clone_config), default_clone(), "how"); });
 }
 
 #if RDM_WITH_SIM || RDM_WITH_LEARN
 struct rdm_recording {
   static constexpr Tag kTag = Tag::kRecording;
+  static constexpr bool kOneAtATime = false;
   Tag tag = kTag;
+  mutable InUse in_use;
   HostHooks hooks;
   char error[kErrorTextSize] = "";
   Recording* recording = nullptr;
@@ -72,8 +75,7 @@ void open_handle(rdm_recording** out, const HostHooks& hooks, F&& make) {
 // A call that changes a recording: its memory is its own hooks'.
 template <class F>
 rdm_result change(rdm_recording* r, F&& f) {
-  return call(text_of(r), [&] {
-    need_handle(r);
+  return call_on(r, [&] {
     const HostScope scope(r->hooks);
     f(*r->recording);
   });
@@ -82,7 +84,7 @@ rdm_result change(rdm_recording* r, F&& f) {
 }  // namespace
 
 rdm_result rdm_recording_config_init(rdm_recording_config* c, size_t size) {
-  return call(nullptr, [&] { init_struct(c, size, kFirstRecordingConfigSize, default_config(), "c"); });
+  return call([&] { init_struct(c, size, kFirstRecordingConfigSize, default_config(), "c"); });
 }
 
 rdm_result rdm_recording_create(rdm_recording** out, const rdm_recording_config* c) {
@@ -112,7 +114,7 @@ rdm_result rdm_recording_create(rdm_recording** out, const rdm_recording_config*
 }
 
 void rdm_recording_destroy(rdm_recording* r) {
-  if (!is_handle(r)) return;
+  if (!may_end(r)) return;
   host_delete(r->hooks, r->recording);
   retire(r);
   host_delete(r->hooks, r);
@@ -123,8 +125,7 @@ const char* rdm_recording_error(const rdm_recording* r) {
 }
 
 rdm_result rdm_recording_get_info(const rdm_recording* r, rdm_recording_info* io) {
-  return call(nullptr, [&] {
-    need_handle(r);
+  return call_on(r, [&] {
     const Recording& x = *r->recording;
     rdm_recording_info out{};
     out.obs_dim = x.spec().obs_dim;
@@ -143,8 +144,7 @@ rdm_result rdm_recording_get_info(const rdm_recording* r, rdm_recording_info* io
 }
 
 rdm_result rdm_recording_get_rows(const rdm_recording* r, rdm_recording_rows* io) {
-  return call(nullptr, [&] {
-    need_handle(r);
+  return call_on(r, [&] {
     const RecordingRows v = r->recording->view();
     rdm_recording_rows out{};
     out.rows = v.rows;
@@ -193,7 +193,8 @@ rdm_result rdm_recording_append(rdm_recording* r, const rdm_recording_rows* rows
 
 rdm_result rdm_recording_append_all(rdm_recording* r, const rdm_recording* other) {
   return change(r, [&](Recording& x) {
-    need_handle(other);
+    std::optional<Use<const rdm_recording>> use;
+    if (other != r) use.emplace(other);
     x.append_all(*other->recording);
   });
 }
@@ -215,8 +216,7 @@ rdm_result rdm_recording_clear(rdm_recording* r) {
 }
 
 rdm_result rdm_recording_save_file(const rdm_recording* r, const char* path) {
-  return call(nullptr, [&] {
-    need_handle(r);
+  return call_on(r, [&] {
     need(path, "path");
     const HostScope scope(r->hooks);
     Vector<unsigned char> file;
@@ -226,7 +226,7 @@ rdm_result rdm_recording_save_file(const rdm_recording* r, const char* path) {
 }
 
 rdm_result rdm_recording_load_file(rdm_recording** out, const char* path) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     need(path, "path");
     const HostHooks hooks = host();
@@ -239,8 +239,7 @@ rdm_result rdm_recording_load_file(rdm_recording** out, const char* path) {
 
 #if RDM_WITH_SIM
 rdm_result rdm_recording_config_for_pool(rdm_recording_config* c, const rdm_pool* p) {
-  return call_with(c, text_of(p), [&] {
-    need_handle(p);
+  return call_with(c, p, [&] {
     auto config = read_struct(c, kFirstRecordingConfigSize, default_config(), "config");
     const Pool& pool = *p->pool;
     config.obs_dim = pool.obs_dim();
@@ -289,7 +288,7 @@ bool resets(const Pool& p, int32_t env) {
 rdm_result rdm_recording_begin_step(rdm_recording* r, const rdm_pool* p, const float* label,
                                     const uint8_t* mask) {
   return change(r, [&](Recording& x) {
-    need_handle(p);
+    const Use use(p);
     const Pool& pool = *p->pool;
     check_match(x.spec(), pool);
     const Buffers& b = pool.buffers();
@@ -323,7 +322,7 @@ rdm_result rdm_recording_begin_step(rdm_recording* r, const rdm_pool* p, const f
 
 rdm_result rdm_recording_end_step(rdm_recording* r, const rdm_pool* p, const uint8_t* mask) {
   return change(r, [&](Recording& x) {
-    need_handle(p);
+    const Use use(p);
     const Pool& pool = *p->pool;
     if (!x.follows(p)) fail(Code::kState, "end_step: no begin_step of this pool came before");
     const Buffers& b = pool.buffers();
@@ -336,10 +335,9 @@ rdm_result rdm_recording_end_step(rdm_recording* r, const rdm_pool* p, const uin
 }
 
 rdm_result rdm_pool_set_starts(rdm_pool* p, const rdm_recording* r, double share) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     if (!r) return p->pool->set_starts(nullptr, 0, -1, 0, share);
-    need_handle(r);
+    const Use use(r);
     const Recording& x = *r->recording;
     check_match(x.spec(), *p->pool);
     p->pool->set_starts(x.view().state, x.spec().state_bytes, x.num_states(), x.state_fingerprint(), share);
@@ -389,9 +387,8 @@ PointRows demo_clouds(const Recording& x, const PointNetShape& eyes, Vector<int1
 
 rdm_result rdm_agent_clone(rdm_agent* a, const rdm_recording* r, const rdm_clone_config* how,
                            rdm_clone_report* io) {
-  return call(text_of(a), [&] {
-    need_handle(a);
-    need_handle(r);
+  return call_on(a, [&] {
+    const Use use(r);
     const auto in =
         how ? read_struct(how, sizeof(rdm_clone_config), default_clone(), "how") : default_clone();
     if (io) check_out(io, sizeof(rdm_clone_report), "io");
@@ -429,10 +426,9 @@ rdm_result rdm_agent_clone(rdm_agent* a, const rdm_recording* r, const rdm_clone
 }
 
 rdm_result rdm_agent_set_recording(rdm_agent* a, const rdm_recording* r) {
-  return call(text_of(a), [&] {
-    need_handle(a);
+  return call_on(a, [&] {
     if (!r) return a->agent->set_recording({}, 0);
-    need_handle(r);
+    const Use use(r);
     const HostScope scope(r->hooks);
     Vector<int16_t> memory;
     DemoRows demo = demo_rows(*r->recording, a->agent->config());

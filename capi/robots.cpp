@@ -181,22 +181,22 @@ RobotCopy rdm::capi::robot_from(const rdm_robot_def* def) {
 }
 
 rdm_result rdm_robot_def_init(rdm_robot_def* def, size_t size) {
-  return call(nullptr, [&] { init_struct(def, size, kFirstSize, default_def(), "def"); });
+  return call([&] { init_struct(def, size, kFirstSize, default_def(), "def"); });
 }
 
 rdm_result rdm_robot_create(int32_t* out, const rdm_robot_def* def) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     *out = add_robot(robot_from(def).robot());
   });
 }
 
 rdm_result rdm_robot_remove(int32_t robot) {
-  return call(nullptr, [&] { remove_robot(robot); });
+  return call([&] { remove_robot(robot); });
 }
 
 rdm_result rdm_robot_find(const char* name, int32_t* index) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(name, "name");
     need(index, "index");
     *index = find_robot(name);
@@ -205,7 +205,7 @@ rdm_result rdm_robot_find(const char* name, int32_t* index) {
 
 rdm_result rdm_robot_mount(int32_t* out, const char* name, int32_t arm, int32_t hand, double yaw,
                            double adapter, int32_t left) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     need(name, "name");
     if (!std::isfinite(yaw)) fail(Code::kArgument, "yaw is not finite");
@@ -220,7 +220,7 @@ rdm_result rdm_robot_mount(int32_t* out, const char* name, int32_t arm, int32_t 
 }
 
 rdm_result rdm_robot_get(int32_t robot, rdm_robot_def* io) {
-  return call(nullptr, [&] {
+  return call([&] {
     check_out(io, kFirstSize, "io");
     const RobotRef ref(robot);
     const Robot& r = *ref;
@@ -255,7 +255,7 @@ rdm_result rdm_robot_get(int32_t robot, rdm_robot_def* io) {
 }
 
 rdm_result rdm_robot_link_at(int32_t robot, int32_t i, rdm_robot_link* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const RobotRef ref(robot);
     const RobotLink& l = link_at(*ref, i);
@@ -283,7 +283,7 @@ rdm_result rdm_robot_link_at(int32_t robot, int32_t i, rdm_robot_link* out) {
 }
 
 rdm_result rdm_robot_shape_at(int32_t robot, int32_t i, rdm_robot_shape* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const RobotRef ref(robot);
     need_index(i, ref->shapes.count, "i");
@@ -302,7 +302,7 @@ rdm_result rdm_robot_shape_at(int32_t robot, int32_t i, rdm_robot_shape* out) {
 }
 
 rdm_result rdm_robot_pair_at(int32_t robot, int32_t i, rdm_robot_pair* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const RobotRef ref(robot);
     need_index(i, ref->self_pairs.count, "i");
@@ -311,7 +311,7 @@ rdm_result rdm_robot_pair_at(int32_t robot, int32_t i, rdm_robot_pair* out) {
 }
 
 rdm_result rdm_robot_coupling_at(int32_t robot, int32_t i, rdm_robot_coupling* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const RobotRef ref(robot);
     need_index(i, ref->couplings.count, "i");
@@ -321,7 +321,7 @@ rdm_result rdm_robot_coupling_at(int32_t robot, int32_t i, rdm_robot_coupling* o
 }
 
 rdm_result rdm_robot_curve_at(int32_t robot, int32_t i, rdm_robot_curve* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const RobotRef ref(robot);
     need_index(i, ref->curves.count, "i");
@@ -337,7 +337,7 @@ rdm_result rdm_robot_curve_at(int32_t robot, int32_t i, rdm_robot_curve* out) {
 }
 
 rdm_result rdm_robot_finger_at(int32_t robot, int32_t i, rdm_robot_finger* out) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(out, "out");
     const RobotRef ref(robot);
     need_index(i, ref->fingers.count, "i");
@@ -349,7 +349,7 @@ rdm_result rdm_robot_finger_at(int32_t robot, int32_t i, rdm_robot_finger* out) 
 }
 
 rdm_result rdm_robot_poses_of(int32_t robot, int32_t* commands, double* home, double* folded, float* closed) {
-  return call(nullptr, [&] {
+  return call([&] {
     const RobotRef ref(robot);
     const Robot& r = *ref;
     const int32_t n = r.num_actuated();
@@ -362,7 +362,7 @@ rdm_result rdm_robot_poses_of(int32_t robot, int32_t* commands, double* home, do
 
 rdm_result rdm_robot_kinematics(int32_t robot, const double* q, double* poses, double* flange, double* tips,
                                 double* palm) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(poses, "poses");
     const RobotRef ref(robot);
     const Robot& r = *ref;
@@ -384,7 +384,7 @@ rdm_result rdm_robot_kinematics(int32_t robot, const double* q, double* poses, d
 }
 
 rdm_result rdm_robot_reach(int32_t robot, const double pose[7], double* q, int32_t* found) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(found, "found");
     const RobotRef ref(robot);
     if (ref->flange == kNoLink) fail(Code::kUnsupported, "robot %s has no flange", ref->name);

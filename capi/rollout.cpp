@@ -115,9 +115,8 @@ void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
 }  // namespace
 
 rdm_result rdm_agent_rollout(rdm_agent* a, rdm_pool* p, rdm_epoch* io) {
-  return call(text_of(a), [&] {
-    need_handle(a);
-    need_handle(p);
+  return call_on(a, [&] {
+    const Use use(p);
     if (io) check_out(io, kFirstEpochSize, "io");
     Epoch e;
     rollout(*a->agent, *p->pool, a->decision, &e);
@@ -126,8 +125,7 @@ rdm_result rdm_agent_rollout(rdm_agent* a, rdm_pool* p, rdm_epoch* io) {
 }
 
 rdm_result rdm_agent_config_for_pool(rdm_agent_config* c, const rdm_pool* p) {
-  return call_with(c, text_of(p), [&] {
-    need_handle(p);
+  return call_with(c, p, [&] {
     auto config = read_struct(c, kFirstAgentConfigSize, rdm_agent_config{}, "config");
     const Pool& pool = *p->pool;
     config.obs_dim = pool.obs_dim();

@@ -10,8 +10,7 @@ using namespace rdm;
 using namespace rdm::capi;
 
 rdm_result rdm_pool_sensors(const rdm_pool* p, rdm_sensors* io) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     const SenseConfig& c = p->pool->sense();
     const SenseBuffers& b = p->pool->sensed();
     rdm_sensors s{};
@@ -36,8 +35,7 @@ rdm_result rdm_pool_sensors(const rdm_pool* p, rdm_sensors* io) {
 }
 
 rdm_result rdm_pool_camera(const rdm_pool* p, int32_t i, rdm_camera* out) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     need(out, "out");
     const CameraSpec* c = i < 0 ? nullptr : camera_at(task_at(p->pool->task_index()), p->pool->task(), i);
     if (!c) fail(Code::kRange, "i: %d is past the last camera", i);
@@ -46,8 +44,7 @@ rdm_result rdm_pool_camera(const rdm_pool* p, int32_t i, rdm_camera* out) {
 }
 
 rdm_result rdm_pool_sensor_camera(const rdm_pool* p, int32_t cloud, int32_t i, rdm_camera* out) {
-  return call(text_of(p), [&] {
-    need_handle(p);
+  return call_on(p, [&] {
     need(out, "out");
     if (cloud < 0 || cloud > 1) fail(Code::kRange, "cloud: %d is outside [0, 1]", cloud);
     const SenseConfig& c = p->pool->sense();
@@ -71,7 +68,7 @@ size_t rdm_sample_scratch(int32_t count) {
 
 rdm_result rdm_sample_furthest(const float* points, int32_t count, int32_t wanted, int32_t start,
                                int32_t* chosen, void* scratch, size_t scratch_bytes) {
-  return call(nullptr, [&] {
+  return call([&] {
     need(points, "points");
     need(chosen, "chosen");
     need(scratch, "scratch");

@@ -374,7 +374,7 @@ void check_pools(PoolConfig config, const char* task) {
 }  // namespace
 
 rdm_result rdm_task_check(const char* task, const char* settings, char* error, int32_t error_size) {
-  const rdm_result r = call(nullptr, [&] {
+  const rdm_result r = call([&] {
     need(task, "task");
     if (error && error_size < 1)
       fail(Code::kRange, "error_size: %d is less than 1, but error is set", error_size);

@@ -19,8 +19,14 @@
  *     thread, for calls on a pool or an agent also rdm_pool_error(p) or rdm_agent_error(a) (where a call takes
  *     both: the agent's), and names the argument and its range.
  *   - Handles are made through `out` and ended by a void destroy function that takes NULL.
- *   - A pool and an agent: one thread at a time, not bound to a thread; rdm_agent_cancel from any. A policy:
- *     immutable, shared freely. What takes no handle: any number of threads.
+ *   - A pool and an agent: one thread at a time, not bound to a thread; rdm_agent_cancel and the _error functions from
+ *     any. A policy: immutable, shared freely. What takes no handle: any number of threads.
+ *   - One call at a time changes a pool, agent, planner, recording or map; while none does, any number read one (take it
+ *     as `const`; an agent never). A call that comes while another is within is STATE, and does nothing: of a second
+ *     thread, or of a callback or hook on the handle that it is called for. Its text is rdm_last_error() alone. A
+ *     rollout is within its agent and its pool, a plan within its planner and its critic's agent, and reads its pool.
+ *     To destroy a handle while a call is within does nothing either, and the log hook of the handle is told: destroy
+ *     it once more afterwards.
  *   - fork: in the child, handles with threads of their own (num_threads above 1 and no parallel hook) answer
  *     STATE to what needs those, and can be destroyed; all others go on as in the parent.
  *   - A handle of another kind, or one that was destroyed and whose memory has not been used since, is an
@@ -129,7 +135,9 @@ typedef struct rdm_host { /* what a host gives in the place of the C library and
   void (*release)(void *user, void *p, size_t bytes, size_t align); /* required with alloc             */
   void (*log)(void *user, int32_t level, const char *line); /* 0 info, 1 warning, 2 error; NULL: silent */
   /* Must run body(context, i) once for every i in [0, n), each on one OS thread, and return when all are
-   * done; may be serial. NULL: redman's own workers.                                                   */
+   * done; may be serial. NULL: redman's own workers. Where it runs fewer, one twice or another one, or returns
+   * before all are done, the call that needed it is STATE and says so: it was done in part, and bodies that
+   * come later do nothing.                                                                              */
   void (*parallel)(void *user, int32_t n, rdm_body body, void *context);
 } rdm_host;
 /* Process-wide hooks for handles made later, whose configs give none. Counted; NULL: defaults. Optional. */

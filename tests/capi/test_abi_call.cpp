@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "capi/abi_call.hpp"
+#include "capi/in_use.hpp"
 
 namespace rdm::capi {
 namespace {
@@ -77,13 +77,45 @@ TEST(Shim, InitRefusesLessThanTheFirstVersion) {
   EXPECT_EQ(out.b, 2);
 }
 
+struct Handle {
+  static constexpr Tag kTag = Tag::kPool;
+  static constexpr bool kOneAtATime = false;
+  Tag tag = kTag;
+  HostHooks hooks;
+  mutable InUse in_use;
+  char error[kErrorTextSize] = "";
+};
+
 TEST(Shim, CallKeepsTheHandlesTextAndTheHostsMode) {
-  char text[kErrorTextSize] = "";
-  EXPECT_EQ(call(text, [] { need_index(5, 3, "i"); }), RDM_RANGE);
-  EXPECT_STREQ(text, "i: 5 is outside [0, 3)");
-  EXPECT_EQ(call(text, [] {}), RDM_OK);
-  EXPECT_STREQ(text, "i: 5 is outside [0, 3)");
-  EXPECT_EQ(call(nullptr, [] { throw 1; }), RDM_INTERNAL);
+  Handle h;
+  EXPECT_EQ(call_on(&h, [] { need_index(5, 3, "i"); }), RDM_RANGE);
+  EXPECT_STREQ(h.error, "i: 5 is outside [0, 3)");
+  EXPECT_EQ(call_on(&h, [] {}), RDM_OK);
+  EXPECT_STREQ(h.error, "i: 5 is outside [0, 3)");
+  EXPECT_EQ(call([] { throw 1; }), RDM_INTERNAL);
+}
+
+TEST(Shim, OneCallChangesAHandleOrSeveralReadIt) {
+  Handle h;
+  const Handle& read = h;
+  EXPECT_EQ(call_on(&h,
+                    [&] {
+                      EXPECT_EQ(call_on(&h, [] {}), RDM_STATE);
+                      EXPECT_EQ(call_on(&read, [] {}), RDM_STATE);
+                      EXPECT_FALSE(may_end(&h));
+                    }),
+            RDM_OK);
+  EXPECT_EQ(call_on(&read,
+                    [&] {
+                      EXPECT_EQ(call_on(&read, [] {}), RDM_OK);
+                      EXPECT_EQ(call_on(&h, [] {}), RDM_STATE);
+                      EXPECT_FALSE(may_end(&h));
+                    }),
+            RDM_OK);
+  EXPECT_STREQ(h.error, "");
+  EXPECT_EQ(call_on(&h, [] { throw 1; }), RDM_INTERNAL);
+  EXPECT_EQ(call_on(&h, [] {}), RDM_OK) << "a failure leaves it free";
+  EXPECT_TRUE(may_end(&h));
 }
 
 TEST(Shim, OptionListsAreChecked) {
