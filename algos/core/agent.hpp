@@ -19,7 +19,8 @@
 //   Collector     the Rollout, normalisers, noise, episodes; only it writes them, but for gain, linear (the
 //                 algorithm) and order (the passes)
 //   Learner       the gradient that a step follows
-//   Imitation    the rows that it is held near: a recording's, copied when it is set, outside of the arena
+//   Imitation     the demonstration that regularises the policy: a recording's rows, copied when it is set,
+//                 outside of the arena
 //   TrustRegion, rules of an algorithm: what they carve or hold themselves
 // A part begins in four steps: carve (arrays, twice: to measure and for good), open (pointers to other parts,
 // options that are fixed), opened (an algorithm's own parts), read_live (options that may change; again after

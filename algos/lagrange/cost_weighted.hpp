@@ -4,7 +4,7 @@
 
 namespace rdm {
 
-// Base: a Agent. Rule: made from a ResolvedAgentConfig; step(stats, resolved, epoch) once per epoch
+// Base: an Agent. Rule: made from a ResolvedAgentConfig; step(stats, resolved, epoch) once per epoch
 // before the policy step, then weight(i) of limited cost i, mix(), split(), read_live(options), visit(io).
 template <class Base, class Rule>
 class CostWeighted : public Base {

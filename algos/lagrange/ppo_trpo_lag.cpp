@@ -12,9 +12,8 @@
 //   part alone and adds l rho A_c unclipped: cost_loss=split. Clipped, a step that has lowered the cost
 //   enough is not drawn on by it; ReDMan's form, reward and cost clipped apart, is not here.
 // - A_c is of costs discounted like rewards, while J_c and its limit are sums over an episode without
-// discount
-//   (option discounted_limit: with): with 0.96 per step the gradient sees costs some 25 steps ahead, and l
-//   makes up for the scale, not for what is farther.
+//   discount (option discounted_limit: with): with 0.96 per step the gradient sees costs some 25 steps ahead,
+//   and l makes up for the scale, not for what is farther.
 // - the authors learn l in softplus form (multiplier_optimizer=softplus); the default is Adam on l itself.
 #include "algos/algo_registry.hpp"
 #include "algos/core/option_tables.hpp"

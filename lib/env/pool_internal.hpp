@@ -30,7 +30,6 @@ struct Counters {
   int64_t contacts_sum, steps, diverged, overflowed;
 };
 
-// All that belongs to world i beside its buffer rows.
 // Where episodes may begin, beside the task's own start.
 struct Starts {
   Vector<unsigned char> records;  // [count][record_bytes] as write_world has them
@@ -40,6 +39,7 @@ struct Starts {
   double share = 0;
 };
 
+// All that belongs to world i beside its buffer rows.
 struct Slot {
   World* world;
   void* task_state;

@@ -1,8 +1,7 @@
 // Where a robot's links are, and which joint angles bring a flange to a place.
 //
 // Frames: R the root of a robot's tables, L a link, F the flange. The inverse is by damped least squares
-// (Wampler 1986; Nakamura and Hanafusa 1986): with the pose error e, m and rad, and the Jacobian J of the
-// flange,
+// (Wampler 1986; Nakamura and Hanafusa 1986). With the pose error e, m and rad, and J the flange's Jacobian:
 //   dq = J' (J J' + lambda^2 1)^-1 e,   q := clamp(q + dq),   lambda^2 = |e|^2 / 2 + 1e-9 (Sugihara 2011).
 #pragma once
 #include "base/host.hpp"

@@ -1,8 +1,7 @@
 // Clean House (ReDMan B.8): two hands sweep a bottle to a dustpan with a broom, past a chair.
 //
 //   r = 50 - 10 d_target - 5 d_left - 5 d_right   eq. (B8): distances of the trash from the dustpan and of
-//   the
-//                                                 palms from their places on the broom's handle, m
+//                                                 the palms from their places on the broom's handle, m
 //   c = [the broom touches the chair, and it moves]
 //
 // The text beside eq. (B8) has a fourth part, the distance from trash to broom, which the formula has not:

@@ -14,8 +14,7 @@ std::string read_file(const std::string& path, size_t most = size_t{1} << 28);
 // A file's new content, written beside it: nothing is lost until commit() syncs it and puts it in its place,
 // in one move. Where a symbolic link stands, the file that it leads to is replaced; what is no regular file
 // (a device, a FIFO, a folder) is refused. A kill leaves the old or the new content, and perhaps a temporary
-// file
-// "<name>.tmp-<process>-<random>", which the next writer of the same file sweeps.
+// file "<name>.tmp-<process>-<random>", which the next writer of the same file sweeps.
 class PreparedFile {
  public:
   explicit PreparedFile(const std::string& path);  // empty; Failure when it cannot be written

@@ -22,9 +22,8 @@ struct RecordNote {
 class Recorder {
  public:
   // For the file of this name: named columns of text where it ends in .csv, else arrays of numpy (.npz).
-  // `states`: the world's state before each step too. Failure when the file cannot be written. Borrows the
-  // pool.
-  // `labels`: the action before noise, as label() finds it.
+  // `states`: the world's state before each step too. `labels`: the action before noise, as label() finds
+  // it. Failure when the file cannot be written. Borrows the pool.
   Recorder(const std::string& path, const redman::Pool& pool, size_t episodes, bool states,
            bool labels = false);
 

@@ -14,8 +14,8 @@
 // damping stays outside.
 //
 // A step. Both laws are linear in v1 for a given active set (who is saturated, who is at a limit), so that
-//   (M + h G) (v1 - qd) = h (spring' - bias - G qd),  G = diag(gain of those not saturated + h k of the
-//   limited),
+//   (M + h G) (v1 - qd) = h (spring' - bias - G qd),  G = diag(gain of those not saturated, + h k of those
+//                                                              limited),
 // spring' with the bound for the saturated and k (edge - q) for the limited: one factorisation. v1 then says
 // which set it should have been with: a linear complementarity problem, solved by pivoting on the set: all
 // contradictions at once (block principal pivoting: Judice and Pires 1994, a basis-exchange of a few passes),
@@ -76,7 +76,7 @@ void joint_drives(TreeBatch<L>& t) {
   }
 }
 
-// v1 of the lanes in `lanes` for the present active active.
+// v1 of the lanes in `lanes` for the present active set.
 template <class L>
 void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
   using V = typename L::V;

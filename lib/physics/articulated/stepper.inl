@@ -330,11 +330,10 @@ inline void tangents(const Vec3& n, Vec3* t, Vec3* u) {
 
 // One side's part of a point's rows, and its velocity without contacts, which is taken from the wanted one.
 // `sign` is +1 on a, -1 on b; p the point, axes the normal and the tangents, in double.
-// A body:  J = (n, (p - c) x n), half-solved with sqrt(1/m) and C^-1 R^T.
-// A robot: J has an entry n . (s_c + a_c x p) per coordinate c on the path from the touched link to the root,
-// and
-//          z = D^-1/2 L^-T J^T stays on that path: from the link inward, each entry is taken off those before
-//          it.
+// A body:  J = (n, (p - c) x n), times sqrt(1/m) and C^-1 R^T: half of the solve with its mass matrix.
+// A robot: J has an entry n . (s_c + a_c x p) per coordinate c on the path from the touched link to the root.
+//          z = D^-1/2 L^-T J^T stays on that path: from the link inward, each entry is taken off those
+//          before it.
 template <class L>
 void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, const Attachment& at,
                                        int32_t world, S sign, const Vec3& p, const Vec3* axes) {

@@ -1,12 +1,11 @@
 // Which pairs of a scene may touch at the present poses: most are passed over by bounds alone.
 //
-// Every shape stands in a capsule (a segment c +- u with a radius r) and so in a box along the world's axes,
-// c
-// +- (|u| + r); of boxes at rest that box is exact. A search:
+// Every shape is bounded by a capsule (a segment c +- u with a radius r), and so by a box along the world's
+// axes, c +- (|u| + r); of boxes at rest that box is exact. A search:
 //   1. the boxes of shapes that move, and one around each articulation;
-//   2. what is no link, or its plane, against the box of each articulation, then against its shapes' boxes,
-//   four
-//      at a time: that settles the boxes of all pairs of a link with such a shape;
+//   2. each shape that is not a link's (its box, or a plane) against the box of each articulation, then
+//      against the boxes of that one's shapes, four at a time: this settles all pairs of a link with such a
+//      shape;
 //   3. per run of pairs of one shape with one articulation: the shape's box against that one's, and that
 //      articulation's shapes against the box of its own;
 //   4. of all other pairs the boxes, one by one; planes against the lowest corner of the shape's box;

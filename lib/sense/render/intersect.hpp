@@ -1,16 +1,16 @@
 // Where rays enter a primitive, and its normal there, for four rays at once. Exact analytic forms.
 //
 // A ray is o + t d in the shape's frame S; t is the depth, d is not of unit length (primitive.hpp). Each form
-// (Ericson, "Real-time collision detection", 2005, 5.3; Hughes et al., "Computer graphics", 2013, chapter
-// 15):
-//   sphere    |o + t d|^2 = r^2: t = t_m - sqrt((r^2 - |m|^2) / d.d), m = o + t_m d the point nearest the
-//   centre tube z    a t^2 + 2 b t + c = 0 of the parts normal to z, from m instead of o: the same root,
-//   without the
-//             difference of large numbers that a far eye would give; a capsule is a tube and the sphere of
-//             the end that the ray meets first, a cylinder what is within the tube and between two planes
-//   ellipsoid a sphere of radius 1 once all is divided by the half axes
-//   box       slabs (Kay and Kajiya 1986): the last of three entries, if it comes before the first of three
-//   exits hull      the same over the planes of its faces (Cyrus and Beck 1978)
+// (Ericson, "Real-time collision detection", 2005, 5.3; Hughes et al., "Computer graphics", 2013, ch. 15):
+//   sphere     |o + t d|^2 = r^2: t = t_m - sqrt((r^2 - |m|^2) / d.d), m = o + t_m d the point nearest the
+//              centre
+//   tube z     a t^2 + 2 b t + c = 0 of the parts normal to z, from m instead of o: the same root, without
+//              the difference of large numbers that a far eye would give; a capsule is a tube and the sphere
+//              of the end that the ray meets first, a cylinder what is within the tube and between two planes
+//   ellipsoid  a sphere of radius 1 once all is divided by the half axes
+//   box        slabs (Kay and Kajiya 1986): the last of three entries, if it comes before the first of three
+//              exits
+//   hull       the same over the planes of its faces (Cyrus and Beck 1978)
 //
 // Only entering counts: an eye inside a shape looks out of it, and a ray that leaves a surface never meets
 // that surface again. All shapes are convex.

@@ -2,9 +2,9 @@
 //
 //   fuzz_x --seeds FOLDER       writes the seeds there and ends
 //   fuzz_x [libFuzzer's flags]  built with -fsanitize=fuzzer
-//   fuzz_x [--seconds S] [--runs N] [--seed N] [FILE or FOLDER]...   built without: files are run as they
-//   are, then
-//                               changed seeds for S seconds or N inputs
+//   fuzz_x [--seconds S] [--runs N] [--seed N] [FILE or FOLDER]...
+//                               built without: files are run as they are, then changed seeds for S seconds or
+//                               N inputs
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
