@@ -37,7 +37,7 @@ BEGIN {
   print "// The functions of the halves that this build leaves out: they exist and say so. Written by capi/stubs.awk."
   print "#include \"capi/abi_call.hpp\"\n\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"\n"
   print "static rdm_result left_out(const char* half) {"
-  print "  return rdm::capi::call(nullptr, [half] { rdm::capi::left_out(half); });\n}"
+  print "  return rdm::capi::call([half] { rdm::capi::left_out(half); });\n}"
   print "template <class Config>\nstatic rdm_result left_out(const char* half, const Config* c) {"
   print "  return rdm::capi::call_with(c, [half] { rdm::capi::left_out(half); });\n}"
 }
