@@ -250,7 +250,9 @@ class rdm_host(Structure):
     release: required with alloc
     log: 0 info, 1 warning, 2 error; NULL: silent
     parallel: Must run body(context, i) once for every i in [0, n), each on one OS thread, and return when all
-        are done; may be serial. NULL: redman's own workers.
+        are done; may be serial. NULL: redman's own workers. Where it runs fewer, one twice or another one, or
+        returns before all are done, the call that needed it is STATE and says so: it was done in part, and
+        bodies that come later do nothing.
     """
 
     struct_size: int
