@@ -102,9 +102,8 @@ Trainer begin(TrainFlags flags, const Ranks* ranks) {
 Trainer go_on(const TrainFlags& flags, const Ranks* ranks) {
   if (flags.others_given)
     throw Usage(
-        "--resume takes its settings from the folder; only --steps, --threads and --ranks may change: to "
-        "begin "
-        "a new run with other settings from its policy, give --from FOLDER instead");
+        "--resume takes its settings from the folder; only --steps, --threads and --ranks may change: "
+        "to begin a new run with other settings from its policy, give --from FOLDER instead");
   std::optional<RunFolder> folder;
   if (!ranks || ranks->first()) folder.emplace(RunFolder::go_on(flags.resume));
   RunSettings run = run_settings(flags.resume);
