@@ -13,3 +13,9 @@ def same(a, b):
     if isinstance(a, (tuple, list)):
         return type(a) is type(b) and len(a) == len(b) and all(map(same, a, b))
     return type(a) is type(b) and a == b
+
+
+def shaped(info):
+    """Types, shapes and kinds of a dict's values."""
+    return {key: (type(value), getattr(value, "shape", None), getattr(value, "dtype", None))
+            for key, value in info.items()}

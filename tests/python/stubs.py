@@ -60,7 +60,12 @@ def sb3():
         def _get_indices(self, indices):
             return range(self.num_envs) if indices is None else [indices] if isinstance(indices, int) else indices
 
+    class BaseCallback:
+        pass
+
     _module("stable_baselines3.common.vec_env", VecEnv=VecEnv)
+    _module("stable_baselines3.common.callbacks", BaseCallback=BaseCallback)
+    _module("stable_baselines3.common.monitor", Monitor=type("Monitor", (), {}))
 
 
 def safety():

@@ -4,6 +4,7 @@ import copy
 import inspect
 import multiprocessing
 import pickle
+import re
 import subprocess
 import sys
 import unittest
@@ -17,7 +18,7 @@ peers.stand_in()
 
 import redman
 from redman import gym
-from same import same
+from same import same, shaped
 
 MODES = ("NextStep", "SameStep", "Disabled")
 TASKS = ("hand_over_safe_finger", "grasp", "bandit", "two_state", "point_goal1")
@@ -94,6 +95,43 @@ class Rules(unittest.TestCase):
                 env.reset(seed=123)
                 self.assertTrue(same(one, env.step(action)))
 
+    def test_infos_of_a_reset_have_the_keys_of_a_step(self):
+        with gym.Env("hand_over_safe_finger") as env:
+            began = env.reset(seed=1)[1]
+            stepped = env.step(np.ones(40, np.float32))[-1]
+            self.assertEqual(shaped(began), shaped(stepped))
+            while not any(env.step(np.ones(40, np.float32))[2:4]):
+                pass
+            again = env.reset()[1]
+            self.assertEqual(shaped(again), shaped(stepped))
+            self.assertFalse(any(np.any(value) for value in (*began.values(), *again.values())))
+        for mode in MODES:
+            with self.subTest(mode), gym.VectorEnv("hand_over_safe_finger", 3, autoreset_mode=mode) as envs:
+                began = envs.reset(seed=1)[1]
+                self.assertEqual(shaped(began), shaped(envs.step(np.ones((3, 40), np.float32))[-1]))
+
+    def test_an_option_that_a_reset_does_not_read_is_refused(self):
+        with gym.Env("hand_over_safe_finger") as env, gym.VectorEnv("hand_over_safe_finger", 2) as envs:
+            for options, words in (({"foo": 1}, "'foo' is not used"),
+                                   ({"object": "egg"}, "given when the environment is made: options={'object': ...}"),
+                                   ({"obejct": "egg"}, "options={'object': ...}")):
+                for each in (env, envs):
+                    with self.assertRaisesRegex(redman.ArgumentError, re.escape(words)):
+                        each.reset(options=options)
+            with self.assertRaisesRegex(redman.ArgumentError, "nearest is reset_mask"):
+                envs.reset(options={"reset_mas": np.ones(2, bool)})
+            for options in (None, {}):
+                env.reset(options=options)
+                envs.reset(options=options)
+
+    def test_steps_of_an_episode(self):
+        for arguments, steps in (({}, 75), ({"action_repeat": "task"}, 19), ({"options": {"max_steps": 10}}, 10)):
+            with gym.Env("hand_over_safe_finger", **arguments) as env:
+                self.assertEqual(env.max_episode_steps, steps)
+        gym.VectorEnv("hand_over_safe_finger", 2, max_episode_steps=75).close()
+        with self.assertRaisesRegex(redman.ArgumentError, "max_episode_steps: 20, but an episode has 75.*max_steps"):
+            gym.VectorEnv("hand_over_safe_finger", 2, max_episode_steps=20)
+
     def test_what_was_given_stays(self):
         with gym.Env("hand_over_safe_finger") as env:
             obs, _ = env.reset(seed=1)
@@ -114,6 +152,10 @@ class Rules(unittest.TestCase):
         with gym.Env("hand_over_safe_finger") as env:
             env.reset(seed=1)
             self.assertIsNone(env.render())
+        with gym.Env("hand_over_safe_finger", render_mode="depth_array", width=64, height=48) as env:
+            env.reset(seed=1)
+            self.assertTrue(same(env.render(), env.pool.render(0, None, 64, 48, "depth")))
+            self.assertGreater(env.render().max(), 0)
         with gym.VectorEnv("hand_over_safe_finger", 2, render_mode="rgb_array", width=64, height=48) as env:
             env.reset(seed=1)
             self.assertEqual([p.shape for p in env.render()], [(48, 64, 3)] * 2)
@@ -156,6 +198,70 @@ class Costs(unittest.TestCase):
             self.assertIn(entries, named.observation_space)
         with gym.VectorEnv("hand_over_safe_finger", 3, named=True) as named:
             self.assertIn(named.reset(seed=1)[0], named.observation_space)
+
+
+class Senses(unittest.TestCase):
+    """Option modality: pictures and clouds are observations, or are refused."""
+
+    ALL = {"modality": "rgb+depth+segmentation+points+voxels", "image_width": 32, "image_height": 24, "points": 64,
+           "voxels": 8, "point_color": True}
+
+    def test_an_observation_has_all_that_was_asked_for(self):
+        with gym.Env("grasp", options=self.ALL) as env, gym.Env("grasp") as blind:
+            entries, row = env.reset(seed=1)[0], blind.reset(seed=1)[0]
+            shapes = {"state": (211,), "rgb": (24, 32, 3), "depth": (24, 32), "segmentation": (24, 32),
+                      "points": (64, 3), "point_class": (64,), "point_color": (64, 3), "voxels": (8, 8, 8)}
+            self.assertEqual({name: value.shape for name, value in entries.items()}, shapes)
+            for _ in range(3):
+                self.assertIn(entries, env.observation_space)
+                self.assertTrue(same(entries["state"], row))
+                for name in shapes:
+                    if name != "state":
+                        seen = getattr(env.pool.sensors, name)[0]
+                        self.assertTrue(same(entries[name], seen.reshape(shapes[name])), name)
+                before = copy.deepcopy(entries)
+                action = env.action_space.sample()
+                after, row = env.step(action)[0], blind.step(action)[0]
+                self.assertTrue(same(entries, before), "an earlier observation has changed")
+                self.assertFalse(same(entries["rgb"], after["rgb"]))
+                entries = after
+            other = pickle.loads(pickle.dumps(env))
+            self.assertTrue(same(other.step(action)[0], env.step(action)[0]))
+
+    def test_two_cameras_and_named_fields(self):
+        options = {"modality": "depth", "cameras": "front+above"}
+        with gym.Env("grasp", options=options, named=True) as env:
+            entries = env.reset(seed=1)[0]
+            self.assertEqual(list(entries), [*env.fields, "depth"])
+            self.assertEqual(entries["depth"].shape, (2, 64, 64))
+            self.assertIn(entries, env.observation_space)
+
+    def test_vectors_see_what_single_worlds_see(self):
+        for mode in ("NextStep", "Disabled"):
+            with gym.VectorEnv("grasp", 2, autoreset_mode=mode, options={**self.ALL, "max_steps": 3}) as envs:
+                worlds = [gym.Env("grasp", options={**self.ALL, "max_steps": 3}) for _ in range(2)]
+                rows = envs.reset(seed=5)[0]
+                self.assertIn(rows, envs.observation_space)
+                for i, env in enumerate(worlds):
+                    env.reset(seed=5 + i)
+                for _ in range(3):
+                    actions = envs.action_space.sample()
+                    rows, *_, truncated, _ = envs.step(actions)
+                    for i, env in enumerate(worlds):
+                        last = env.step(actions[i])[0]
+                        self.assertTrue(all(same(rows[name][i], last[name]) for name in last), mode)
+                self.assertTrue(truncated.all())
+                if mode == "NextStep":
+                    rows = envs.step(actions)[0]
+                    for i, env in enumerate(worlds):
+                        first = env.reset()[0]
+                        self.assertTrue(all(same(rows[name][i], first[name]) for name in first))
+                for env in worlds:
+                    env.close()
+
+    def test_where_they_cannot_be_they_are_refused(self):
+        with self.assertRaisesRegex(redman.UnsupportedError, "modality=rgb: SameStep has no last picture"):
+            gym.VectorEnv("grasp", 2, autoreset_mode="SameStep", options={"modality": "rgb"})
 
 
 class Seeds(unittest.TestCase):
@@ -254,7 +360,7 @@ class Autoreset(unittest.TestCase):
         with gym.VectorEnv("bandit", 2, autoreset_mode="SameStep") as envs:
             envs.reset(seed=1)
             *_, info = envs.step(np.ones((2, 1), np.float32))
-            self.assertNotIn("cost", info)
+            self.assertEqual(info["cost"].tolist(), [0, 0])  # of the resets
             final = [row["cost"] for row in info["final_info"]] if gym._OLD else info["final_info"]["cost"]
             np.testing.assert_array_equal(final, envs.cost)
             self.assertGreater(envs.cost.min(), 0)
@@ -401,7 +507,19 @@ class WithGymnasium(unittest.TestCase):
         for task in redman.tasks():
             env = gymnasium.make(gym.env_id(task))
             self.assertEqual((env.unwrapped.pool.task.name, env.spec.id), (task, gym.env_id(task)))
+            self.assertEqual(env.spec.max_episode_steps, redman.task(task).max_steps)
             env.close()
+
+    def test_an_episode_is_as_long_as_its_options_say(self):
+        import gymnasium
+        env = gymnasium.make(gym.env_id("lqr_line"), options={"max_steps": 50})
+        for again in (env, gymnasium.make(env.spec)):
+            again.reset(seed=1)
+            steps = 1
+            while not any(again.step(again.action_space.sample())[2:4]):
+                steps += 1
+            self.assertEqual((again.spec.max_episode_steps, steps), (50, 50))
+            again.close()
 
     def test_sync_vector_env_bit_for_bit(self):
         from gymnasium.vector import SyncVectorEnv
@@ -457,6 +575,12 @@ class WithGymnasium(unittest.TestCase):
         env = gymnasium.wrappers.NormalizeObservation(gymnasium.make(gym.env_id("hand_over_safe_finger")))
         self.assertEqual(env.reset(seed=1)[0].shape, (398,))
 
+    def test_named_entries_flatten_to_the_row(self):
+        from gymnasium.spaces import flatten
+        with gym.Env("grasp", named=True) as named, gym.Env("grasp") as plain:
+            entries, row = named.reset(seed=1)[0], plain.reset(seed=1)[0]
+            self.assertTrue(same(flatten(named.observation_space, entries), row))
+
     def test_make_vec(self):
         import gymnasium
         kwargs = {"vectorization_mode": "custom"} if gym._OLD else {}
@@ -464,6 +588,9 @@ class WithGymnasium(unittest.TestCase):
         self.assertIsInstance(envs, gym.VectorEnv)
         self.assertEqual(envs.reset(seed=1)[0].shape, (3, 398))
         self.assertEqual(envs.spec.id, gym.env_id("hand_over_safe_finger"))
+        self.assertEqual(envs.spec.max_episode_steps, 75)
+        if not gym._OLD:
+            gymnasium.make_vec(envs.spec).close()
         envs.close()
 
     def test_async_vector_env(self):

@@ -58,6 +58,16 @@ class Contract(unittest.TestCase):
         self.assertFalse(same(first, second))
         self.assertTrue(same(first, env.reset(seed=7)[0].numpy()))
 
+    def test_what_is_not_read_is_refused(self):
+        with self.assertRaisesRegex(redman.UnsupportedError, "modality=rgb: observations of OmniSafe are vectors"):
+            omnisafe.Redman("RedmanGrasp-v0", options={"modality": "rgb"})
+        env = omnisafe.Redman("RedmanBandit-v0")
+        self.assertEqual(env.reset(seed=1, options={})[1].keys(), env.reset(options=None)[1].keys())
+        with self.assertRaisesRegex(redman.ArgumentError, "foo"):
+            env.reset(options={"foo": 1})
+        with self.assertRaisesRegex(redman.NotFoundError, "PPOLagg.*nearest is PPOLag"):
+            omnisafe.configs("bandit", "PPOLagg")
+
     def test_ids(self):
         ids = omnisafe.Redman.support_envs() if hasattr(omnisafe.Redman, "support_envs") else omnisafe.Redman._support_envs
         for name in (*GPU_IDS, *map(omnisafe.env_id, redman.tasks())):

@@ -11,13 +11,13 @@ stubs.safety()
 
 import redman
 from redman import gym, safety
-from same import same
+from same import same, shaped
 
 
 class Contract(unittest.TestCase):
     def test_six_values_are_those_of_the_gym(self):
         with safety.Env("hand_over_safe_finger") as env, gym.Env("hand_over_safe_finger") as other:
-            self.assertTrue(same(env.reset(seed=3), other.reset(seed=3)))
+            self.assertTrue(same(env.reset(seed=3)[0], other.reset(seed=3)[0]))
             for _ in range(20):
                 action = np.full(40, 0.5, np.float32)
                 obs, reward, cost, terminated, truncated, info = env.step(action)
@@ -45,7 +45,7 @@ class Contract(unittest.TestCase):
                         ends += 1
                         self.assertTrue(same(info["final_observation"][i], last))
                         self.assertTrue(same(info["final_info"][i], told))
-                        self.assertFalse("_cost_sum" in info and info["_cost_sum"][i])
+                        self.assertEqual(info["cost_sum"][i], 0)  # of the reset
                         last, _ = env.reset()
                     else:
                         self.assertEqual(info["cost_sum"][i], told["cost_sum"])
@@ -55,13 +55,42 @@ class Contract(unittest.TestCase):
     def test_every_task_has_an_id(self):
         from gymnasium.envs.registration import registry
         self.assertIsNone(safety.unregistered)
-        self.assertEqual(safety.env_id("hand_over_safe_finger"), "SafetyHandOverSafeFinger-v0")
+        self.assertEqual(safety.env_id("hand_over_safe_finger"), "SafetyRedmanHandOverSafeFinger-v0")
         for task in redman.tasks():
             self.assertIn(safety.env_id(task), registry)
+            self.assertIn("Safety" + gym.camel(task) + "-v0", registry)  # ours, or that of a namesake
+
+    def test_infos_of_a_reset_have_the_keys_of_a_step(self):
+        with safety.Env("hand_over_safe_finger") as env:
+            began = env.reset(seed=1)[1]
+            stepped = env.step(np.ones(40, np.float32))[-1]
+            self.assertEqual(shaped(began), shaped(stepped))
+            self.assertFalse(any(began.values()))
+        with safety.VectorEnv("hand_over_safe_finger", 2) as envs:
+            began = envs.reset(seed=1)[1]
+            self.assertEqual(shaped(began), shaped(envs.step(np.ones((2, 40), np.float32))[-1]))
+
+    def test_what_worlds_see(self):
+        with safety.Env("grasp", options={"modality": "depth"}) as env:
+            self.assertEqual(list(env.reset(seed=1)[0]), ["state", "depth"])
+        with self.assertRaisesRegex(redman.UnsupportedError, "modality=points"):
+            safety.VectorEnv("grasp", 2, options={"modality": "points"})
 
 
 @peers.needs("safety_gymnasium", "gymnasium")
 class WithSafetyGymnasium(unittest.TestCase):
+    def test_an_id_of_ours_is_our_environment(self):
+        import safety_gymnasium
+        from gymnasium.envs.registration import registry
+        self.assertIsNone(safety.unregistered)
+        for task in redman.tasks():
+            made = safety_gymnasium.make(safety.env_id(task)).unwrapped
+            self.assertEqual((type(made), made.pool.task.name), (safety.Env, task))
+            made.close()
+        # its namesakes stay its own
+        self.assertNotEqual(registry["SafetyPointGoal1-v0"].entry_point, "redman.safety:Env")
+        self.assertEqual(registry["SafetyHandOverSafeFinger-v0"].entry_point, "redman.safety:Env")
+
     def test_make_with_its_checker(self):
         import safety_gymnasium
         for task in ("hand_over_safe_finger", "grasp", "bandit"):

@@ -1,4 +1,5 @@
 """redman.sb3: its VecEnv against single worlds, always; Stable-Baselines3's own checks and PPO where it is at hand."""
+import sys
 import unittest
 import warnings
 
@@ -74,7 +75,40 @@ class Contract(unittest.TestCase):
         with self.assertRaisesRegex(AttributeError, "nonsense"):
             vec.env_method("nonsense")
         self.assertEqual(vec.env_is_wrapped(object), [False] * 3)
+        self.assertEqual(vec.env_is_wrapped(sys.modules["stable_baselines3.common.monitor"].Monitor), [True] * 3)
         vec.close()
+
+    def test_an_ended_episode_tells_what_monitor_tells(self):
+        vec = sb3.VecEnv("hand_over_safe_finger", 3, seed=1, action_repeat=2, penalty=0.5)
+        vec.reset()
+        self.assertEqual(set(vec.reset_infos[0]), {"cost", "costs", "success", "status", "TimeLimit.truncated"})
+        vec.action_space.seed(1)
+        total, length, costs, success = np.zeros(3), np.zeros(3, int), np.zeros((3, 8)), np.zeros(3, bool)
+        ends = 0
+        for _ in range(120):
+            _, reward, done, infos = vec.step(np.stack([vec.action_space.sample() for _ in range(3)]))
+            total, length = total + reward, length + 1
+            costs, success = costs + [info["costs"] for info in infos], success | [info["success"] for info in infos]
+            for i, info in enumerate(infos):
+                self.assertEqual("episode" in info, bool(done[i]))
+                if not done[i]:
+                    continue
+                ends += 1
+                self.assertAlmostEqual(info["episode"]["r"], total[i], places=4)
+                self.assertEqual((info["episode"]["l"], info["is_success"]), (length[i], success[i]))
+                self.assertGreater(info["episode"]["t"], 0)
+                self.assertEqual(list(info["episode_cost"]), list(vec.cost_names))
+                np.testing.assert_allclose(list(info["episode_cost"].values()), costs[i], rtol=1e-6)
+                total[i] = length[i] = costs[i] = success[i] = 0
+        self.assertGreaterEqual(ends, 3)
+
+    def test_what_cannot_be_given_is_refused(self):
+        with self.assertRaisesRegex(redman.UnsupportedError, "modality=rgb: .*DummyVecEnv"):
+            sb3.VecEnv("grasp", 2, options={"modality": "rgb"})
+        vec = sb3.VecEnv("bandit", 2)
+        vec._options = [{"points": 3}] * 2
+        with self.assertRaisesRegex(redman.ArgumentError, "points"):
+            vec.reset()
 
     def test_wrong_actions(self):
         vec = sb3.VecEnv("bandit", 2)
@@ -125,6 +159,31 @@ class WithStableBaselines3(unittest.TestCase):
         action, _ = model.predict(env.reset(), deterministic=True)
         self.assertEqual(action.shape, (16, 40))
 
+    def test_the_log_has_returns_lengths_successes_and_costs(self):
+        from stable_baselines3 import PPO
+        from stable_baselines3.common.evaluation import evaluate_policy
+        from stable_baselines3.common.logger import configure
+        env = sb3.VecEnv("hand_over_safe_finger", 8, seed=1, action_repeat="task", center="initial")
+        model = PPO("MlpPolicy", env, n_steps=32, batch_size=64, device="cpu")
+        logger = configure(None, [])
+        seen = {}
+        dump = logger.dump
+        logger.dump = lambda step: (seen.update(logger.name_to_value), dump(step))
+        model.set_logger(logger)
+        model.learn(2 * 8 * 32, callback=sb3.CostCallback())
+        for key in ("ep_rew_mean", "ep_len_mean", "success_rate", "ep_cost_mean/cost", "ep_cost_mean/ff2_range"):
+            self.assertIn("rollout/" + key, seen)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            evaluate_policy(model, sb3.VecEnv("hand_over_safe_finger", 2, seed=1), 2)
+
+    def test_pictures_reach_a_multi_input_policy(self):
+        from stable_baselines3 import PPO
+        from stable_baselines3.common.vec_env import DummyVecEnv
+        options = {"modality": "rgb+points", "points": 32, "max_steps": 4}
+        env = DummyVecEnv([lambda: gym.Env("grasp", options=options)] * 2)
+        PPO("MultiInputPolicy", env, n_steps=4, batch_size=8, n_epochs=1, device="cpu").learn(8)
+
     def test_dummy_vec_env_bit_for_bit(self):
         from stable_baselines3.common.vec_env import DummyVecEnv
         theirs, ours = DummyVecEnv([lambda: gym.Env("hand_over_safe_finger")] * 3), sb3.VecEnv("hand_over_safe_finger", 3)
@@ -133,7 +192,11 @@ class WithStableBaselines3(unittest.TestCase):
         ours.action_space.seed(1)
         for _ in range(90):
             actions = np.stack([ours.action_space.sample() for _ in range(3)])
-            self.assertTrue(same(ours.step(actions), theirs.step(actions)))
+            mine, other = ours.step(actions), theirs.step(actions)
+            for info in mine[3]:
+                for key in ("episode", "is_success", "episode_cost"):  # a Monitor would give
+                    info.pop(key, None)
+            self.assertTrue(same(mine, other))
 
 
 class Peers(unittest.TestCase):

@@ -117,4 +117,4 @@ def batch_space(space: Any, n: int) -> Any:
     """The space of n rows."""
     if isinstance(space, Dict):
         return Dict({name: batch_space(s, n) for name, s in space.items()})
-    return Box(np.tile(space.low, (n, 1)), np.tile(space.high, (n, 1)), dtype=space.dtype)
+    return Box(np.stack([space.low] * n), np.stack([space.high] * n), dtype=space.dtype)

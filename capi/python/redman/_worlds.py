@@ -10,8 +10,11 @@ from typing import Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
+from ._error import ArgumentError, UnsupportedError
+from ._names import nearest_of
 from ._pool import Pool
 from ._rows import Array, FloatArray
+from ._senses import Senses
 
 Center = Union[None, str, Sequence[float], Array]
 Seeds = Union[None, int, Sequence[Optional[int]]]
@@ -23,18 +26,21 @@ class Worlds:
     seed: what the first reset() takes that is given none; None draws one from the system.
     action_repeat: control steps of a step, "task" for the rate at which the task's own learner decides.
     center: action of a learner's 0, "initial" for the pose with which the task's own learner begins, or [action_dim].
+    senses: "" where pictures and clouds are observations; else why they cannot be, and option modality is refused.
     """
 
     def __init__(self, task: str, num_envs: int, *, seed: Optional[int] = None, autoreset: str = "off",
                  options: Optional[Mapping[str, Any]] = None, threads: int = 0,
                  action_repeat: Union[int, str] = 1, center: Center = None, camera: Optional[str] = None,
-                 width: int = 320, height: int = 240) -> None:
+                 width: int = 320, height: int = 240, senses: str = "") -> None:
         options = dict(options or {})
         if action_repeat != 1:
             options["action_repeat"] = 0 if action_repeat == "task" else action_repeat
         self.seed: Seeds = secrets.randbits(63) if seed is None else int(seed)
         self.pool = Pool(task, num_envs=num_envs, seed=self.seed, threads=threads, autoreset=autoreset, options=options)
         self._take_rows()
+        if senses and self.senses:
+            raise UnsupportedError(f"option modality={options.get('modality')}: {senses}")
         self.camera, self.width, self.height = camera, width, height
         self.center = self._center(center)
         reach = np.ones(self.pool.action_dim, np.float32) if self.center is None else 1 + np.abs(self.center)
@@ -48,9 +54,11 @@ class Worlds:
         self.obs, self.final_obs, self.action, self.reward = pool.obs, pool.final_obs, pool.action, pool.reward
         self.cost, self.terminated, self.truncated = pool.cost, pool.terminated, pool.truncated
         self.success, self.status = pool.success, pool.status
+        self.senses = Senses(pool)
 
     def __getstate__(self) -> dict[str, Any]:
-        rows = ("obs", "final_obs", "action", "reward", "cost", "terminated", "truncated", "success", "status")
+        rows = ("obs", "final_obs", "action", "reward", "cost", "terminated", "truncated", "success", "status",
+                "senses")
         return {name: value for name, value in self.__dict__.items() if name not in rows}
 
     def __setstate__(self, saved: dict[str, Any]) -> None:
@@ -66,6 +74,11 @@ class Worlds:
     def cost_names(self) -> tuple[str, ...]:
         """Name of each cost column; the first is "cost", the task's."""
         return tuple(self.pool.costs)
+
+    @property
+    def max_episode_steps(self) -> int:
+        """Steps of a whole episode."""
+        return -(-self.pool.max_steps // self.pool.spec.action_repeat)
 
     @property
     def seconds(self) -> float:
@@ -107,6 +120,18 @@ class Worlds:
         if np.any(chosen & ~named):
             self.pool.reset(None, chosen & ~named)
 
+    def no_options(self, options: Optional[Mapping[str, Any]], known: Sequence[str] = ()) -> None:
+        """Refuses options of a reset that nobody reads."""
+        for key in options or {}:
+            if key in known:
+                continue
+            own = nearest_of(key, [*self.pool.task.options, *known])
+            hint = (f"; nearest is {own}" if own in known else
+                    f": an option of the task is given when the environment is made: options={{{own!r}: ...}}" if own else
+                    "")
+            takes = f"reset takes {', '.join(known)}" if known else "reset takes none"
+            raise ArgumentError(f"reset: option {key!r} is not used, {takes}{hint}")
+
     def act(self, actions: Any) -> None:
         """Writes a learner's actions [num_envs][action_dim] for the next step."""
         self._write(self.action, np.asarray(actions, np.float32))
@@ -123,6 +148,6 @@ class Worlds:
         else:
             np.add(rows, self.center, out=to)
 
-    def render(self, env: int = 0) -> Array:
-        """A picture [height][width][3] of a world."""
-        return self.pool.render(env, self.camera, self.width, self.height)
+    def render(self, env: int = 0, what: str = "rgb") -> Array:
+        """A picture [height][width][3] of a world, or its depth [height][width], m."""
+        return self.pool.render(env, self.camera, self.width, self.height, what)

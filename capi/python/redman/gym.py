@@ -6,19 +6,26 @@
 
 Env is one world, VectorEnv many in one pool, equal bit for bit to Gymnasium's SyncVectorEnv over as many Env. What a step
 cost is in its info: "cost", the task's own (column 0), and "costs" [cost_dim], as cost_names names them; beside them
-"success" and "status" (redman.h, RDM_STATUS_*). An episode is named by its seed alone: world i of reset(seed=s) has
-the episode of an Env with reset(seed=s + i).
+"success" and "status" (redman.h, RDM_STATUS_*). Infos of a reset have the same keys, all 0. An episode is named by its
+seed alone: world i of reset(seed=s) has the episode of an Env with reset(seed=s + i).
+
+With option modality (rgb, depth, segmentation, points, voxels joined by +) an observation is a dict: "state", the row, and
+an entry for each of them; pictures of one camera are [height][width]..., of several [cameras][height][width]...
+named=True makes it a dict too: an entry for each field in place of "state", in the row's order, so that Gymnasium's
+flatten gives the row.
 
 Without Gymnasium the two classes have the same methods over spaces of their own, and no id is registered.
 """
 from __future__ import annotations
 
+import copy
 from typing import Any, Mapping, Optional, Union
 
 import numpy as np
 
 from ._defaults import Defaults, defaults
 from ._discovery import tasks
+from ._error import ArgumentError
 from ._pool import Pool
 from ._rows import Array
 from ._worlds import Center, Seeds, Worlds
@@ -44,26 +51,55 @@ __all__ = ["Defaults", "Env", "VectorEnv", "camel", "defaults", "env_id", "regis
 
 Info = dict[str, Any]
 _MODES = {"NextStep": "next_step", "SameStep": "same_step", "Disabled": "off"}
+_NO_LAST_LOOK = ("SameStep has no last picture or cloud of an episode that ended; take autoreset_mode \"NextStep\" or "
+                 "\"Disabled\", or single environments")
 _OLD = gymnasium is not None and gymnasium.__version__.startswith("0.")
+
+
+_PICTURES = {"rgb_array": "rgb", "depth_array": "depth"}  # render_mode: what Pool.render calls it
 
 
 class _Named:
     """What Env and VectorEnv tell of their worlds."""
 
     worlds: Worlds
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 60}
+    metadata = {"render_modes": list(_PICTURES), "render_fps": 60}
+    _spec: Any = None
 
     def _begin(self, worlds: Worlds, render_mode: Optional[str], named: bool) -> tuple[Any, Any]:
         """Takes the worlds; the spaces of one of them."""
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f'render_mode: None or "rgb_array", not "{render_mode}"')
+        if render_mode is not None and render_mode not in _PICTURES:
+            raise ArgumentError(f"render_mode: None, {' or '.join(map(repr, _PICTURES))}, not {render_mode!r}")
         self.worlds, self.render_mode, self.named = worlds, render_mode, named
         self.fields, self.cost_names = worlds.fields, worlds.cost_names
-        self.metadata = {"render_modes": ["rgb_array"], "render_fps": max(1, round(1 / worlds.seconds))}
+        self.metadata = {"render_modes": list(_PICTURES), "render_fps": max(1, round(1 / worlds.seconds))}
         low, high = worlds.obs_low, worlds.obs_high
-        obs = Box(low, high, dtype=np.float32) if not named else Dict(
-            {name: Box(low[at], high[at], dtype=np.float32) for name, at in self.fields.items()})
+        obs: Any = Box(low, high, dtype=np.float32)
+        if named:
+            obs = {name: Box(low[at], high[at], dtype=np.float32) for name, at in self.fields.items()}
+        elif worlds.senses:
+            obs = {"state": obs}
+        if isinstance(obs, dict):  # as pairs: Gymnasium sorts a dict by name
+            obs = Dict(list({**obs, **worlds.senses.spaces(Box)}.items()))
         return obs, Box(worlds.action_low, worlds.action_high, dtype=np.float32)
+
+    @property
+    def max_episode_steps(self) -> int:
+        """Steps of a whole episode, which the worlds count themselves."""
+        return self.worlds.max_episode_steps
+
+    @property
+    def spec(self) -> Any:  # type: ignore[override]
+        """Gymnasium's, with this environment's own max_episode_steps. That of the id has none: make() would wrap a time
+        limit of its own about an episode whose length option max_steps can change."""
+        return self._spec
+
+    @spec.setter
+    def spec(self, spec: Any) -> None:
+        if spec is not None:
+            spec = copy.copy(spec)
+            spec.max_episode_steps = self.max_episode_steps
+        self._spec = spec
 
     @property
     def pool(self) -> Pool:
@@ -76,8 +112,12 @@ class _Named:
         limits = np.array([c.limit for c in self.pool.costs.values()])
         return np.where(limits < 0, np.nan, limits)
 
-    def _seen(self, rows: Array) -> Any:
-        return {name: rows[..., at] for name, at in self.fields.items()} if self.named else rows
+    def _seen(self, rows: Array, env: Any = slice(None)) -> Any:
+        """Rows as the observation space has them, with what those worlds see."""
+        if not self.named and not self.worlds.senses:
+            return rows
+        entries = {name: rows[..., at] for name, at in self.fields.items()} if self.named else {"state": rows}
+        return {**entries, **self.worlds.senses.seen(env)}
 
     def _told(self) -> dict[str, Array]:
         """What infos say of a step, a row for each world."""
@@ -90,6 +130,15 @@ class _Named:
         w = self.worlds
         return {"cost": w.cost.item(i, 0), "costs": w.cost[i].copy(), "success": w.success.item(i),
                 "status": w.status.item(i)}
+
+    def _began_of(self, i: int) -> Info:
+        """What infos say of a reset: the same keys, and nothing has happened yet."""
+        return {key: np.zeros_like(value) if isinstance(value, np.ndarray) else type(value)(0)
+                for key, value in self._told_of(i).items()}
+
+    def _pictured(self, i: int) -> Array:
+        """Of a world, as render_mode says."""
+        return self.worlds.render(i, _PICTURES[str(self.render_mode)])
 
 
 class Env(_Named, _Env):
@@ -110,22 +159,23 @@ class Env(_Named, _Env):
         self.observation_space, self.action_space = self._begin(worlds, render_mode, named)
 
     def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
-        """A new episode: that of the seed, or the next of the world's own stream. options are not used."""
+        """A new episode: that of the seed, or the next of the world's own stream. There are no options of a reset."""
+        self.worlds.no_options(options)
         super().reset(seed=seed)
         self.worlds.reset(seed if seed is None else [seed])
-        return self._seen(self.worlds.obs[0].copy()), {}
+        return self._seen(self.worlds.obs[0].copy(), 0), self._began_of(0)
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
         """Observation, reward, terminated, truncated, info."""
         w = self.worlds
         w.act_alone(action)
         w.pool.step()
-        return (self._seen(w.obs[0].copy()), w.reward.item(0), w.terminated.item(0), w.truncated.item(0),
+        return (self._seen(w.obs[0].copy(), 0), w.reward.item(0), w.terminated.item(0), w.truncated.item(0),
                 self._told_of(0))
 
     def render(self) -> Optional[Array]:
-        """A picture [height][width][3], or None without a render_mode."""
-        return self.worlds.render() if self.render_mode else None
+        """A picture [height][width][3] or depth [height][width] in m, 0 where nothing is; None without a render_mode."""
+        return self._pictured(0) if self.render_mode else None
 
     def close(self) -> None:
         self.pool.close()
@@ -139,7 +189,8 @@ class VectorEnv(_Named, _VectorEnv):
     copy: False returns the pool's observations, which the next call overwrites.
 
     In SameStep mode info["cost"] of worlds whose episode ended is in info["final_info"], as Gymnasium has it;
-    the attributes cost [num_envs] and costs [num_envs][cost_dim] are those of the last step in every mode.
+    the attributes cost [num_envs] and costs [num_envs][cost_dim] are those of the last step in every mode. What a world
+    saw last is gone by then: SameStep takes no option modality.
     """
 
     _old = _OLD  # infos as Gymnasium 0.x has them
@@ -148,12 +199,16 @@ class VectorEnv(_Named, _VectorEnv):
                  options: Optional[Mapping[str, Any]] = None, threads: int = 0, autoreset_mode: Any = None,
                  copy: bool = True, render_mode: Optional[str] = None, camera: Optional[str] = None, width: int = 320,
                  height: int = 240, action_repeat: Union[int, str] = 1, center: Center = None,
-                 named: bool = False) -> None:
+                 named: bool = False, max_episode_steps: Optional[int] = None) -> None:
         mode = getattr(autoreset_mode, "value", autoreset_mode) or ("SameStep" if _OLD else "NextStep")
         if mode not in _MODES:
-            raise ValueError(f"autoreset_mode: {', '.join(_MODES)}, not {mode}")
+            raise ArgumentError(f"autoreset_mode: {', '.join(_MODES)}, not {mode}")
         worlds = Worlds(task, num_envs, seed=seed, autoreset=_MODES[mode], options=options, threads=threads,
-                        action_repeat=action_repeat, center=center, camera=camera, width=width, height=height)
+                        action_repeat=action_repeat, center=center, camera=camera, width=width, height=height,
+                        senses=_NO_LAST_LOOK if mode == "SameStep" else "")
+        if max_episode_steps not in (None, worlds.max_episode_steps):  # what make_vec hands on of a spec is our own
+            raise ArgumentError(f"max_episode_steps: {max_episode_steps}, but an episode has {worlds.max_episode_steps} "
+                                "steps; options={'max_steps': n} makes it n control steps")
         obs, action = self._begin(worlds, render_mode, named)
         if _OLD:
             _VectorEnv.__init__(self, num_envs, obs, action)
@@ -167,13 +222,15 @@ class VectorEnv(_Named, _VectorEnv):
     def reset(self, *, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
         """New episodes, everywhere or where options["reset_mask"] [num_envs] is True. seed: s names episode s + i for
         world i, or a list; where it is None, worlds go on with the streams that they have."""
+        self.worlds.no_options(options, ("reset_mask",))
         mask = (options or {}).get("reset_mask")
         if mask is not None and not (isinstance(mask, np.ndarray) and mask.shape == (self.num_envs,)
                                      and mask.dtype == bool and mask.any()):
-            raise ValueError(f"reset_mask: an array of {self.num_envs} bool, one of them True")
+            raise ArgumentError(f"reset_mask: an array of {self.num_envs} bool, one of them True")
         self.worlds.reset(seed, mask)
         self._ended = np.zeros(self.num_envs, bool) if mask is None else self._ended & ~mask
-        return self._observed(), {}
+        began = np.ones(self.num_envs, bool) if mask is None else mask
+        return self._observed(), self._rows(self._told_but(began), began)
 
     def step(self, actions: Any) -> tuple[Any, Array, Array, Array, Info]:
         """Observations, rewards, terminated, truncated, infos."""
@@ -197,36 +254,40 @@ class VectorEnv(_Named, _VectorEnv):
     def _observed(self) -> Any:
         return self._seen(self.worlds.obs.copy() if self.copy else self.worlds.obs)
 
+    def _told_but(self, began: Array) -> dict[str, Array]:
+        """The rows of infos, those of a reset where worlds have begun anew."""
+        told = self._told()
+        for values in told.values():
+            values[began] = 0
+        return told
+
     def _infos(self, was_ended: Array) -> dict[str, Any]:
-        """What Gymnasium's SyncVectorEnv makes of the infos of its parts: a reset has none."""
-        told, ended = self._told(), self._ended
+        """What Gymnasium's SyncVectorEnv makes of the infos of its parts."""
+        ended = self._ended
         infos: Info = {}
-        absent = None  # worlds whose info is that of a reset
+        began = np.zeros(self.num_envs, bool)
         if self.mode == "NextStep":
-            absent = was_ended if was_ended.any() else None
+            began = was_ended
         elif self.mode == "SameStep" and ended.any():
-            absent = ended
+            began = ended
             final_obs = "final_observation" if self._old else "final_obs"
             final_rows = self.worlds.final_obs.copy()
             infos[final_obs] = _objects(ended, lambda i: self._seen(final_rows[i]))
-            infos["final_info"] = _objects(ended, self._told_of) if self._old else self._rows(told, ~ended)
+            told = self._told()
+            infos["final_info"] = _objects(ended, self._told_of) if self._old else self._rows(told, ended)
             infos["_" + final_obs], infos["_final_info"] = ended.copy(), ended.copy()
-        infos.update(self._rows(told, absent))
+        infos.update(self._rows(self._told_but(began), self._all))
         return infos
 
-    def _rows(self, told: dict[str, Array], absent: Optional[Array]) -> Info:
-        """The rows with a mask, 0 where they are absent; nothing where all are."""
-        if absent is not None and absent.all():
-            return {}
+    def _rows(self, told: dict[str, Array], here: Array) -> Info:
+        """The rows with a mask of where they are, 0 elsewhere."""
         rows: Info = {}
-        here = self._all if absent is None else ~absent
         for key, values in told.items():
             if self._old and values.ndim > 1:
                 rows[key] = _objects(here, lambda i, values=values: values[i])
-            elif absent is None:
-                rows[key] = values
             else:
-                rows[key] = np.where(here.reshape(-1, *[1] * (values.ndim - 1)), values, values.dtype.type(0))
+                mask = here.reshape(-1, *[1] * (values.ndim - 1))
+                rows[key] = values if here.all() else np.where(mask, values, values.dtype.type(0))
             rows["_" + key] = here.copy()
         return rows
 
@@ -245,7 +306,7 @@ class VectorEnv(_Named, _VectorEnv):
 
     def render(self) -> Optional[tuple[Array, ...]]:
         """A picture of each world, or None without a render_mode."""
-        return tuple(self.worlds.render(i) for i in range(self.num_envs)) if self.render_mode else None
+        return tuple(self._pictured(i) for i in range(self.num_envs)) if self.render_mode else None
 
     def close_extras(self, **_: Any) -> None:
         if hasattr(self, "worlds"):  # it is also called for what was never made
@@ -289,7 +350,8 @@ def register() -> None:
 def _vector_entry(task: str) -> Any:
     """make_vec of Gymnasium 0.x passes on nothing of the spec."""
     def make(num_envs: int = 1, max_episode_steps: Optional[int] = None, **kwargs: Any) -> VectorEnv:
-        return VectorEnv(task, num_envs, **{k: v for k, v in kwargs.items() if k != "task"})
+        return VectorEnv(task, num_envs, max_episode_steps=max_episode_steps,
+                         **{k: v for k, v in kwargs.items() if k != "task"})
     return make
 
 

@@ -18,6 +18,8 @@ import numpy as np
 
 from ._defaults import Defaults, defaults
 from ._discovery import tasks
+from ._error import ArgumentError, NotFoundError
+from ._names import nearest
 from ._rows import Array
 from ._worlds import Worlds
 from .gym import camel
@@ -48,6 +50,7 @@ def env_id(task: str) -> str:
     return f"Redman{camel(task)}-v0"
 
 
+_VECTORS = "observations of OmniSafe are vectors; redman.gym has pictures and clouds"
 _Settings = dict[str, Any]
 _DECISIONS: _Settings = {"action_repeat": "task", "center": "initial"}
 _IDS: dict[str, tuple[str, _Settings]] = {
@@ -72,10 +75,11 @@ class Redman(CMDP):
                  height: int = 256, **settings: Any) -> None:
         super().__init__(env_id)
         if render_mode not in (None, "rgb_array"):
-            raise ValueError(f'render_mode: None or "rgb_array", not "{render_mode}"')
+            raise ArgumentError(f'render_mode: None or "rgb_array", not {render_mode!r}')
         task, own = _IDS[env_id]
         self._num_envs, self._device = num_envs, torch.device(device)
-        self._worlds = Worlds(task, num_envs, autoreset="same_step", width=width, height=height, **{**own, **settings})
+        self._worlds = Worlds(task, num_envs, autoreset="same_step", width=width, height=height, senses=_VECTORS,
+                              **{**own, **settings})
         cameras = list(self._worlds.pool.cameras)
         named = cameras[camera_id] if camera_name is None and camera_id is not None else camera_name
         self._worlds.camera = None if named == "track" and named not in cameras else named
@@ -86,14 +90,15 @@ class Redman(CMDP):
     @property
     def max_episode_steps(self) -> int:
         """Steps of a whole episode."""
-        return -(-self._worlds.pool.max_steps // self._worlds.pool.spec.action_repeat)
+        return self._worlds.max_episode_steps
 
     def set_seed(self, seed: int) -> None:
         """Names the episodes of the next reset: seed + i for world i."""
         self._worlds.seed = int(seed)
 
     def reset(self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, dict[str, Any]]:
-        """New episodes everywhere."""
+        """New episodes everywhere. There are no options of a reset."""
+        self._worlds.no_options(options)
         self._worlds.reset(seed)
         return self._tensor(self._worlds.obs), {}
 
@@ -125,7 +130,7 @@ def register(name: str, task: str, **settings: Any) -> str:
     """An id of your own for a task with settings: action_repeat and center of the task's own unless given, options,
     threads. Returns it."""
     if "/" in name or name in _IDS:
-        raise ValueError(f"{name}: an id without / that is not taken")
+        raise ArgumentError(f"{name}: an id without / that is not taken")
     _IDS[name] = task, {**_DECISIONS, **settings}
     Redman._support_envs.append(name)  # the registry holds this list
     return name
@@ -139,6 +144,8 @@ def configs(task: str, algo: str = "PPOLag", steps: float = 2e6, options: Option
     steps: control steps of one world, summed over worlds. options: of the task; where an algorithm has no env_cfgs to
     take them, give it an id of register() with the same. Change what the dict holds before it is given.
     """
+    if algo not in ALGORITHM2TYPE:
+        raise NotFoundError(f"algorithm {algo!r}: OmniSafe has no such one{nearest(algo, ALGORITHM2TYPE)}")
     d, kind = defaults(task, options), ALGORITHM2TYPE[algo]
     # An epoch of OmniSafe begins with a reset: whole episodes, or their ends are never seen.
     decisions = num_envs * d.episode * -(-2 * d.horizon // d.episode)

@@ -1,8 +1,11 @@
 """Tasks as environments of Safety-Gymnasium: a step gives six values, the cost third.
 
     import safety_gymnasium, redman.safety
-    env = safety_gymnasium.make("SafetyHandOverSafeFinger-v0")
+    env = safety_gymnasium.make("SafetyRedmanHandOverSafeFinger-v0")
     obs, reward, cost, terminated, truncated, info = env.step(action)
+
+Every task has the id SafetyRedman<Task>-v0, and Safety<Task>-v0 too where Safety-Gymnasium has no such id of its own:
+SafetyPointGoal1-v0 and eleven more are its own environments, not ours.
 
 info names the costs as Safety-Gymnasium does: cost_sum is the task's own (column 0), cost_<name> every other. Env and
 VectorEnv need Gymnasium alone, or nothing; the ids need Safety-Gymnasium. VectorEnv ends as SafetySyncVectorEnv does:
@@ -55,7 +58,7 @@ class VectorEnv(_Told, gym.VectorEnv):
     _old = True
 
     def __init__(self, task: str, num_envs: int = 1, **kwargs: Any) -> None:
-        super().__init__(task, num_envs, autoreset_mode="SameStep", **kwargs)
+        super().__init__(task, num_envs, autoreset_mode="SameStep", **kwargs)  # modalities are refused there
 
     def step(self, actions: Any) -> tuple[Any, Array, Array, Array, Array, gym.Info]:  # type: ignore[override]
         """Observations, rewards, costs, terminated, truncated, infos."""
@@ -64,17 +67,22 @@ class VectorEnv(_Told, gym.VectorEnv):
 
 
 def env_id(task: str) -> str:
-    """The id under which Safety-Gymnasium has a task."""
+    """The id of a task, which no environment but ours has."""
+    return f"SafetyRedman{gym.camel(task)}-v0"
+
+
+def _plain_id(task: str) -> str:
     return f"Safety{gym.camel(task)}-v0"
 
 
 def register() -> None:
-    """Gives Safety-Gymnasium an id for every task; importing this module does it where it can."""
+    """Gives Safety-Gymnasium ids for every task; importing this module does it where it can."""
     import safety_gymnasium
     from gymnasium.envs.registration import registry
     for task in tasks():
-        if env_id(task) not in registry:
-            safety_gymnasium.register(id=env_id(task), entry_point="redman.safety:Env", kwargs={"task": task})
+        for name in (env_id(task), _plain_id(task)):
+            if name not in registry:
+                safety_gymnasium.register(id=name, entry_point="redman.safety:Env", kwargs={"task": task})
 
 
 unregistered: Optional[str] = None  # why there are no ids

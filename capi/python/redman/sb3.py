@@ -8,28 +8,37 @@
     PPO("MlpPolicy", env, **redman.sb3.ppo_kwargs("hand_over_safe_finger")).learn(500_000)
 
 Its learners know no costs: each info has "cost", "costs", "success" and "status" as in redman.gym, and
-penalty=w takes w times the cost from the reward.
+penalty=w takes w times the cost from the reward. The info of an episode that ended has "episode" {r, l, t}, as Monitor
+writes it, "is_success" (there was one) and "episode_cost", the sum of each cost by name. CostCallback logs those sums:
+learn(500_000, callback=redman.sb3.CostCallback()) adds rollout/ep_cost_mean/<name> to what is logged.
 """
 from __future__ import annotations
 
 import math
+import time
+from collections import deque
 from typing import Any, Iterable, Mapping, Optional, Union
 
 import numpy as np
 
 from ._defaults import Defaults, defaults
+from ._error import ArgumentError
 from ._pool import Pool
 from ._rows import Array
 from ._worlds import Center, Worlds
 
 try:
     from gymnasium.spaces import Box
+    from stable_baselines3.common.callbacks import BaseCallback as _BaseCallback
+    from stable_baselines3.common.monitor import Monitor as _Monitor
     from stable_baselines3.common.vec_env import VecEnv as _VecEnv
 except ImportError as error:
     raise ImportError(f"redman.sb3 needs Stable-Baselines3 and what it needs: {error}") from error
 
-__all__ = ["Defaults", "VecEnv", "defaults", "ppo_kwargs"]
+__all__ = ["CostCallback", "Defaults", "VecEnv", "defaults", "ppo_kwargs"]
 
+_NO_LAST_LOOK = ("Stable-Baselines3 wants the last observation of an ended episode, and pictures and clouds of it are gone; "
+                 "DummyVecEnv([lambda: redman.gym.Env(task, options=...)]) with \"MultiInputPolicy\" has them")
 Indices = Union[None, int, Iterable[int]]
 
 
@@ -46,14 +55,18 @@ class VecEnv(_VecEnv):
                  camera: Optional[str] = None, width: int = 320, height: int = 240,
                  action_repeat: Union[int, str] = 1, center: Center = None, penalty: float = 0.0) -> None:
         if render_mode not in (None, "rgb_array"):
-            raise ValueError(f'render_mode: None or "rgb_array", not "{render_mode}"')
+            raise ArgumentError(f'render_mode: None or "rgb_array", not {render_mode!r}')
         self.worlds = Worlds(task, num_envs, seed=seed, autoreset="same_step", options=options, threads=threads,
-                             action_repeat=action_repeat, center=center, camera=camera, width=width, height=height)
+                             action_repeat=action_repeat, center=center, camera=camera, width=width, height=height,
+                             senses=_NO_LAST_LOOK)
         self.render_mode, self.penalty = render_mode, penalty
         self.fields, self.cost_names = self.worlds.fields, self.worlds.cost_names
         super().__init__(num_envs, Box(self.worlds.obs_low, self.worlds.obs_high, dtype=np.float32),
                          Box(self.worlds.action_low, self.worlds.action_high, dtype=np.float32))
         self.metadata["render_fps"] = max(1, round(1 / self.worlds.seconds))
+        self._began = time.time()
+        self._return, self._length = np.zeros(num_envs), np.zeros(num_envs, np.int64)  # of the episodes so far
+        self._costs, self._success = np.zeros((num_envs, self.pool.cost_dim)), np.zeros(num_envs, bool)
 
     @property
     def pool(self) -> Pool:
@@ -61,11 +74,16 @@ class VecEnv(_VecEnv):
         return self.worlds.pool
 
     def reset(self) -> Array:
-        """New episodes: those of seed(), else the next of the worlds' own streams. Options are not used."""
+        """New episodes: those of seed(), else the next of the worlds' own streams. There are no options of a reset."""
+        for options in self._options:
+            self.worlds.no_options(options)
         self.worlds.reset(None if all(s is None for s in self._seeds) else self._seeds)
         self._reset_seeds()
         self._reset_options()
-        self.reset_infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        nothing = self._infos(np.zeros_like(self.worlds.cost), *np.zeros((3, self.num_envs), bool))
+        self.reset_infos: list[dict[str, Any]] = nothing
+        for sums in (self._return, self._length, self._costs, self._success):
+            sums[...] = 0
         return np.array(self.pool.obs)
 
     def step_async(self, actions: Array) -> None:
@@ -77,16 +95,34 @@ class VecEnv(_VecEnv):
         w = self.worlds
         w.pool.step()
         costs, ended = w.cost.copy(), w.terminated | w.truncated
-        infos: list[dict[str, Any]] = [
-            {"cost": cost, "costs": row, "success": success, "status": status, "TimeLimit.truncated": cut}
-            for cost, row, success, status, cut in zip(
-                costs[:, 0].tolist(), costs, w.success.tolist(), w.status.tolist(),
-                (w.truncated & ~w.terminated).tolist())]
+        reward = w.reward - self.penalty * costs[:, 0] if self.penalty else w.reward.copy()
+        infos = self._infos(costs, w.success, w.status, w.truncated & ~w.terminated)
+        self._return += reward
+        self._length += 1
+        self._costs += costs
+        self._success |= w.success
         for i in np.flatnonzero(ended):
             infos[i]["terminal_observation"] = w.final_obs[i].copy()
-            self.reset_infos[i] = {}
-        reward = w.reward - self.penalty * costs[:, 0] if self.penalty else w.reward.copy()
+            infos[i].update(self._finished(i))
+            self.reset_infos[i] = self._infos(np.zeros_like(costs[:1]), *np.zeros((3, 1), bool))[0]
         return w.obs.copy(), reward.astype(np.float32, copy=False), ended, infos
+
+    @staticmethod
+    def _infos(costs: Array, success: Array, status: Array, cut: Array) -> list[dict[str, Any]]:
+        """What a step tells of each world."""
+        return [{"cost": cost, "costs": row, "success": won, "status": int(bits), "TimeLimit.truncated": late}
+                for cost, row, won, bits, late in zip(costs[:, 0].tolist(), costs, success.tolist(), status.tolist(),
+                                                      cut.tolist())]
+
+    def _finished(self, i: int) -> dict[str, Any]:
+        """What the info of an ended episode has more; its sums begin anew."""
+        told = {"episode": {"r": round(float(self._return[i]), 6), "l": int(self._length[i]),
+                            "t": round(time.time() - self._began, 6)},
+                "is_success": bool(self._success[i]),
+                "episode_cost": dict(zip(self.cost_names, self._costs[i].tolist()))}
+        for sums in (self._return, self._length, self._costs, self._success):
+            sums[i] = 0
+        return told
 
     def close(self) -> None:
         """Ends the worlds."""
@@ -118,8 +154,25 @@ class VecEnv(_VecEnv):
         return [method(*method_args, env=i, **method_kwargs) for i in chosen]
 
     def env_is_wrapped(self, wrapper_class: type, indices: Indices = None) -> list[bool]:
-        """No world has a wrapper."""
-        return [False for _ in self._get_indices(indices)]
+        """No world has a wrapper; but infos have what a Monitor writes, and who asks for one is told that it is there."""
+        return [wrapper_class is _Monitor for _ in self._get_indices(indices)]
+
+
+class CostCallback(_BaseCallback):
+    """Logs the mean cost of the last hundred episodes, rollout/ep_cost_mean/<name>, when a rollout ends."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._episodes: deque[dict[str, float]] = deque(maxlen=100)
+
+    def _on_step(self) -> bool:
+        self._episodes.extend(info["episode_cost"] for info in self.locals["infos"] if "episode_cost" in info)
+        return True
+
+    def _on_rollout_end(self) -> None:
+        for name in self._episodes[0] if self._episodes else ():
+            mean = sum(costs[name] for costs in self._episodes) / len(self._episodes)
+            self.logger.record(f"rollout/ep_cost_mean/{name}", mean)
 
 
 def ppo_kwargs(task: str, options: Optional[Mapping[str, Any]] = None, num_envs: int = 64) -> dict[str, Any]:
