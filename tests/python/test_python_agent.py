@@ -1,5 +1,6 @@
 """Agent, Policy and Map: learning on worlds of one's own, Ctrl-C, copies, parameters, files."""
 import copy
+import json
 import os
 import pickle
 import signal
@@ -48,6 +49,26 @@ class Pendulum:
         self.angle += 0.05 * self.speed
         self.age += 1
         return reward, np.abs(torque) > 1.5, self.age == 100
+
+
+class Rows(unittest.TestCase):
+    def test_an_epoch_names_its_costs_and_is_json(self):
+        pool = redman.Pool("hand_over_safe_finger", 8)
+        pool.reset()
+        with redman.Agent(pool, options={"horizon": 16}) as agent:
+            epoch = agent.rollout(pool)
+            self.assertEqual(epoch.costs, dict(zip(pool.costs, epoch.cost)))
+            self.assertEqual(epoch.multipliers, dict(zip(pool.costs, epoch.multiplier)))
+            told = json.loads(json.dumps(epoch))
+            self.assertEqual(told["epoch"], 1)
+            self.assertEqual(list(told["costs"]), list(pool.costs))
+            self.assertEqual(dict(epoch), vars(epoch))
+            again = pickle.loads(pickle.dumps(epoch))
+            self.assertEqual((repr(again), type(again), dict(again).keys()), (repr(epoch), redman.Epoch, epoch.keys()))
+        with redman.Agent(obs_dim=1, action_dim=1, cost_dim=2, options={"horizon": 1}) as agent:
+            agent.act([[0.0]])
+            agent.record(1.0, [[1.0, 2.0]], terminated=True)
+            self.assertEqual(list(agent.update([[0.0]]).costs), ["cost 0", "cost 1"])
 
 
 class PartsOfARow(unittest.TestCase):

@@ -1,9 +1,11 @@
 """train, evaluate, curve: what the command-line tool does, to the byte."""
+import base64
 import contextlib
 import importlib.util
 import io
 import json
 import os
+import pickle
 import re
 import signal
 import subprocess
@@ -135,6 +137,61 @@ class Curves(unittest.TestCase):
                 redman.curve(folder)
         with self.assertRaises(redman.MissingFileError):
             redman.curve("/nowhere")
+
+    def test_a_page_holds_the_picture_as_an_image(self):
+        run = redman.train("bandit", steps=500, envs=4, progress=False)
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "progress.csv").write_text("TotalEnvSteps,Metrics/EpRet,Metrics/EpCost\n10,1,2\n")
+            for drawn in (run, run.curve, redman.curve(folder), redman.curve(folder, folder)):
+                found = re.fullmatch('<img src="data:image/svg[+]xml;base64,([A-Za-z0-9+/=]+)">', drawn._repr_html_())
+                self.assertEqual(base64.b64decode(found[1]).decode(), drawn._repr_svg_())
+
+    @unittest.skipUnless(importlib.util.find_spec("nbconvert"), "no nbconvert (apt-get install python3-nbconvert)")
+    def test_an_exported_notebook_shows_it(self):
+        from nbconvert import HTMLExporter
+        from nbformat.v4 import new_code_cell, new_notebook, new_output
+        curve = redman.train("bandit", steps=500, envs=4, progress=False).curve
+        output = new_output("display_data", {"image/svg+xml": curve._repr_svg_(), "text/html": curve._repr_html_()})
+        page, _ = HTMLExporter().from_notebook_node(new_notebook(cells=[new_code_cell("curve", outputs=[output])]))
+        self.assertIn(base64.b64encode(curve._repr_svg_().encode()).decode(), page)
+
+    def test_runs_of_one_name_have_legends_of_their_own(self):
+        row = "TotalEnvSteps,Metrics/EpRet,Metrics/EpCost\n10,1,2\n"
+        config = json.dumps({"task": "grasp", "algo": "ppo", "seed": 3, "cost_limits": {}})
+
+        def texts(curves):
+            nodes = xml.etree.ElementTree.fromstring(curves._repr_svg_()).iter()
+            return [node.text for node in nodes if node.tag.endswith("text") and "grasp" in node.text]
+
+        with tempfile.TemporaryDirectory() as root:
+            folders = [Path(root, *parts) for parts in (("a", "run"), ("b", "run"), ("b", "other"))]
+            for folder in folders:
+                folder.mkdir(parents=True)
+                Path(folder, "progress.csv").write_text(row)
+                Path(folder, "config.json").write_text(config)
+            name = "grasp ppo seed 3"
+            self.assertEqual(texts(redman.curve(folders[0])), [name])
+            self.assertEqual(texts(redman.curve(*folders)),
+                             [f"{name} (a/run)", f"{name} (b/run)", f"{name} (other)"])
+            self.assertEqual(texts(redman.curve(folders[0], folders[0])),
+                             [f"{name} #1", f"{name} #2"])
+            self.assertEqual(texts(redman.Curves([redman.Curve(redman.curve(folders[0]), name)] * 2)),
+                             [f"{name} #1", f"{name} #2"])
+
+    def test_a_curve_is_a_dict(self):
+        curve = redman.train("bandit", steps=3000, envs=8, progress=False).curve
+        self.assertIsInstance(curve, dict)
+        self.assertEqual(set(map(len, curve.values())), {len(curve.steps)})
+        again = pickle.loads(pickle.dumps(curve))
+        self.assertEqual((again.label, again.limit, list(again)), (curve.label, curve.limit, list(curve)))
+
+    @unittest.skipUnless(importlib.util.find_spec("pandas"), "no pandas (apt-get install python3-pandas)")
+    def test_a_table_has_a_row_for_each_epoch(self):
+        import pandas
+        curve = redman.train("bandit", steps=3000, envs=8, progress=False).curve
+        for table in (pandas.DataFrame(curve), curve.to_pandas()):
+            self.assertEqual((table.shape, list(table.columns)), ((len(curve.steps), len(curve)), list(curve)))
+            np.testing.assert_array_equal(table["TotalEnvSteps"], curve.steps)
 
     def test_a_run_draws_itself(self):
         run = redman.train("bandit", steps=500, envs=4, progress=False)

@@ -8,7 +8,7 @@ import threading
 import time
 from ctypes import byref, c_size_t
 from queue import SimpleQueue
-from typing import Any, Callable, Iterator, Mapping, MutableMapping, Optional, Sequence, Union
+from typing import Any, Callable, Dict, Iterator, Mapping, MutableMapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -26,8 +26,29 @@ _MODES = {"sample": ActMode.SAMPLE, "mean": ActMode.MEAN}
 CostLimits = Union[None, float, Sequence[Optional[float]], Mapping[str, Optional[float]]]
 
 
-class Epoch(_abi.Epoch):
-    """One row of the learning curve; means over the last 100 finished episodes."""
+class Epoch(_abi.Epoch, Dict[str, Any]):  # type: ignore[misc]  # a record has a hash, a dict has none
+    """One row of the learning curve; means over the last 100 finished episodes.
+
+    costs and multipliers have those of cost and multiplier by name. Also a dict of all that it has, which
+    json.dumps and loggers take.
+    """
+
+    costs: dict[str, float]
+    multipliers: dict[str, float]
+
+    def __init__(self, struct: Union[_abi.rdm_epoch, Mapping[str, Any]], names: Optional[Sequence[str]] = None) -> None:
+        if isinstance(struct, Mapping):  # a copy
+            self.__dict__.update(struct)
+        else:
+            super().__init__(struct)
+            columns = slice(0, None if names is None else max(len(names), 1))
+            cost, multiplier = self.cost[columns], self.multiplier[columns]
+            self.__dict__.update(cost=cost, multiplier=multiplier, costs=dict(zip(names or (), cost)),
+                                 multipliers=dict(zip(names or (), multiplier)))
+        self.update(self.__dict__)
+
+    def __reduce__(self) -> Any:
+        return Epoch, (dict(self.__dict__),)
 
 
 class _AgentTensors(Tensors, MutableMapping[str, FloatArray]):
@@ -81,6 +102,7 @@ class Agent:
             columns = [f"cost {k}" for k in range(cost_dim)]
         if initial_mean is not None:
             own["initial_mean"] = np.broadcast_to(np.asarray(initial_mean, np.float32), own["action_dim"]).copy()
+        own["cost_names"] = list(columns)
         own["cost_limits"] = _limits(cost_limits, own["cost_limits"], columns)
         self._lock = threading.RLock()
         self._make(own)
@@ -216,10 +238,7 @@ class Agent:
         self.load(state)
 
     def _epoch(self, struct: _abi.rdm_epoch) -> Epoch:
-        epoch = Epoch(struct)
-        columns = slice(0, max(self.cost_dim, 1))
-        shorter: Epoch = epoch.replaced(cost=epoch.cost[columns], multiplier=epoch.multiplier[columns])
-        return shorter
+        return Epoch(struct, self._config["cost_names"])
 
     # ---- what it is -------------------------------------------------------------------------------------------
 

@@ -1,12 +1,14 @@
 """Learning curves: the columns of progress.csv, drawn as SVG without any other library."""
 from __future__ import annotations
 
+import base64
 import html
+import importlib
 import json
 import math
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Dict, Iterable, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -22,22 +24,31 @@ _COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#5
 _WIDTH, _HEIGHT, _LEFT, _TOP, _RIGHT, _BOTTOM = 300, 190, 56, 30, 20, 54  # of a panel, and around it
 
 
-class Curve(Mapping[str, Column]):
-    """Columns by name ("TotalEnvSteps", "Metrics/EpRet", ...), a row for each epoch; draws itself in a notebook."""
+class _Drawn:
+    """What draws itself in a notebook; as an image too, since exports to HTML take the lines out of an SVG."""
 
-    def __init__(self, columns: Mapping[str, Any], label: str = "", limit: Optional[float] = None) -> None:
-        self._columns = {name: np.asarray(values, np.float64) for name, values in columns.items()}
+    def _repr_svg_(self) -> str:
+        raise NotImplementedError
+
+    def _repr_html_(self) -> str:
+        return as_image(self._repr_svg_())
+
+    def save(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Writes the picture as an SVG file."""
+        Path(path).write_text(self._repr_svg_(), encoding="utf-8")
+
+
+class Curve(_Drawn, Dict[str, Column]):
+    """Columns by name ("TotalEnvSteps", "Metrics/EpRet", ...), a row for each epoch; draws itself in a notebook. A dict:
+    pandas.DataFrame(curve) has a row for each epoch too, as to_pandas() has.
+    """
+
+    def __init__(self, columns: Mapping[str, Any] = {}, label: str = "", limit: Optional[float] = None,
+                 folder: str = "") -> None:
+        super().__init__((name, np.asarray(values, np.float64)) for name, values in columns.items())
         self.label = label
         self.limit = limit  # of the first cost
-
-    def __getitem__(self, name: str) -> Column:
-        return self._columns[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._columns)
-
-    def __len__(self) -> int:
-        return len(self._columns)
+        self.folder = folder  # where it was read, "" for none
 
     @property
     def steps(self) -> Column:
@@ -54,18 +65,18 @@ class Curve(Mapping[str, Column]):
         """Mean cost of the last episodes, column 0."""
         return self["Metrics/EpCost"]
 
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame, a row for each epoch; needs pandas."""
+        return importlib.import_module("pandas").DataFrame(dict(self))
+
     def _repr_svg_(self) -> str:
         return draw([self])
-
-    def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes the picture as an SVG file."""
-        Path(path).write_text(self._repr_svg_(), encoding="utf-8")
 
     def __repr__(self) -> str:
         return f"<Curve {self.label}: {len(self.steps)} epochs>"
 
 
-class Curves(Sequence[Curve]):
+class Curves(_Drawn, Sequence[Curve]):
     """Several runs in one picture."""
 
     def __init__(self, curves: Iterable[Curve]) -> None:
@@ -79,10 +90,6 @@ class Curves(Sequence[Curve]):
 
     def _repr_svg_(self) -> str:
         return draw(self._curves)
-
-    def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes the picture as an SVG file."""
-        Path(path).write_text(self._repr_svg_(), encoding="utf-8")
 
 
 def read(folder: Union[str, os.PathLike[str]]) -> Curve:
@@ -107,7 +114,7 @@ def read(folder: Union[str, os.PathLike[str]]) -> Curve:
         limit = config["cost_limits"].get("cost")
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         pass  # the columns alone are a curve too
-    return Curve({name: table[:, i] for i, name in enumerate(names)}, label, limit)
+    return Curve({name: table[:, i] for i, name in enumerate(names)}, label, limit, str(path))
 
 
 def curve(*folders: Union[str, os.PathLike[str]]) -> Union[Curve, Curves]:
@@ -169,6 +176,25 @@ def _panel(title: str, column: str, curves: Sequence[Curve], limit: Optional[flo
     return "".join(out)
 
 
+def as_image(svg: str) -> str:
+    """An SVG as an HTML image that holds it."""
+    return f'<img src="data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}">'
+
+
+def _legends(curves: Sequence[Curve]) -> list[str]:
+    """A text for each curve, no two alike: its label; of those with one label the end of the folder's path that tells
+    them apart, or a number."""
+    labels = {(one.label, one.folder): one.label for one in curves}
+    most = max(len(Path(folder).parts) for _, folder in labels) if labels else 0
+    for depth in range(1, most + 1):
+        texts = list(labels.values())
+        for (label, folder), text in list(labels.items()):
+            if folder and texts.count(text) > 1:
+                labels[label, folder] = f"{label} ({Path(*Path(folder).parts[-depth:])})"
+    texts = [labels[one.label, one.folder] for one in curves]
+    return [f"{text} #{texts[:i].count(text) + 1}" if texts.count(text) > 1 else text for i, text in enumerate(texts)]
+
+
 def draw(curves: Sequence[Curve]) -> str:
     """Return and cost over control steps as an SVG; the dashed line is the limit."""
     limits = {one.limit for one in curves}
@@ -176,10 +202,10 @@ def draw(curves: Sequence[Curve]) -> str:
     width = _LEFT + _WIDTH + _RIGHT
     height = _TOP + _HEIGHT + _BOTTOM + 18 * len(curves)
     legend = ""
-    for i, one in enumerate(curves):
+    for i, label in enumerate(_legends(curves)):
         y = _TOP + _HEIGHT + _BOTTOM + 18 * i
         legend += (f'<path d="M{_LEFT} {y}h24" stroke="{_COLORS[i % len(_COLORS)]}" stroke-width="2"/>'
-                   f'<text x="{_LEFT + 32}" y="{y + 4}">{html.escape(one.label)}</text>')
+                   f'<text x="{_LEFT + 32}" y="{y + 4}">{html.escape(label)}</text>')
     return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * width}" height="{height}" '
             f'font-family="sans-serif" font-size="11" fill="#222"><rect width="100%" height="100%" fill="#fff"/>'
             + _panel("return", "Metrics/EpRet", curves, None, 0)

@@ -20,12 +20,6 @@ class Record:
                 if hasattr(struct, name):
                     self.__dict__[name] = _plain(getattr(struct, name))
 
-    def replaced(self, **values: Any) -> Any:
-        """A copy with other values."""
-        copy = object.__new__(type(self))
-        copy.__dict__.update(self.__dict__, **values)
-        return copy
-
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"{type(self).__name__}.{name} is what the library said; it cannot be set")
 

@@ -68,7 +68,8 @@ class Run:
     @property
     def curve(self) -> Curve:
         """Progress of the epochs."""
-        return Curve(self._rows, f"{self.task} {self.algo} seed {self.seed}", self.agent.cost_limits[0])
+        return Curve(self._rows, f"{self.task} {self.algo} seed {self.seed}", self.agent.cost_limits[0],
+                     str(self.folder or ""))
 
     def evaluate(self, episodes: int = 100, num_envs: int = 16) -> Evaluation:
         """The policy on episodes that it was not chosen by."""
@@ -77,6 +78,9 @@ class Run:
 
     def _repr_svg_(self) -> str:
         return self.curve._repr_svg_()
+
+    def _repr_html_(self) -> str:
+        return self.curve._repr_html_()
 
     def __repr__(self) -> str:
         return f"<Run {self.task} {self.algo} seed {self.seed}: {self.env_steps} steps in {self.seconds:.0f} s>"
