@@ -174,7 +174,7 @@ inline Mass operator*(const Pose& X, const Mass& m) {
 }
 inline Mass operator+(const Mass& a, const Mass& b) {
   const double mass = a.mass + b.mass;
-  if (mass <= 0) return {};
+  if (mass <= 0) return {0, {}, a.moment + b.moment};
   const V3 com = (1 / mass) * (a.mass * a.com + b.mass * b.com);
   return {mass, com,
           a.moment + b.moment + point_moment(a.mass, a.com - com) + point_moment(b.mass, b.com - com)};

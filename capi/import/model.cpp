@@ -248,6 +248,9 @@ struct Builder {
     const auto q = home_of(*out);
     const auto felt = felt_inertia(*out, q);
     const auto poses = link_poses(*out, q);
+    std::vector<double> drawn;  // joints as the file draws its bodies
+    for (const JointIn* j : joints) drawn.push_back(j->turned - moved_of(j->name));
+    const auto felt_as_drawn = felt_inertia(*out, drawn);
     for (size_t r = 0; r < joints.size(); ++r) {
       const JointIn& j = *joints[r];
       rdm_robot_link& l = out->links[r];
@@ -272,6 +275,7 @@ struct Builder {
       const double reach = j.slides ? kReachSlide : kReachAngle;
       l.kp = j.kp >= 0 ? j.kp : l.effort / reach;
       l.kd = std::max(j.kd, 0.0) + j.damping;
+      if (j.damping_ratio > 0) l.kd += j.damping_ratio * 2 * std::sqrt(l.kp * felt_as_drawn[r]);
       if (j.kp < 0 || l.kd == 0) l.kd = std::max(l.kd, 2 * std::sqrt(l.kp * felt[r]));
       if (j.kp < 0)
         out->note(RDM_NOTE_GUESSED, j.element->line, "joint %s: kp %.4g, kd %.4g from its effort and inertia",

@@ -21,6 +21,8 @@ struct JointIn {
   double turned = 0;            // by which the body's pose in the file is ahead of the joint's 0
   double velocity = 0, armature = 0, friction = 0, damping = 0;
   double effort = -1, kp = -1, kd = -1;  // -1: not said
+  double most_effort = -1;               // of all that drives it; -1: no bound
+  double damping_ratio = 0;              // of its drive, against the inertia that it feels; beside kd
   bool has_command = false, driven = false;
   double command_low = 0, command_high = 0;
 };

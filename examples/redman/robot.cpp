@@ -129,7 +129,11 @@ void add_robots(CLI::App& app, Run& run) {
 void add_robot(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RobotFlags>();
   CLI::App* command = app.add_subcommand(
-      "robot", "Read a robot's file (URDF, MJCF, .robot): what is taken, dropped, guessed");
+      "robot",
+      "Read a robot's file (URDF, MJCF, .robot): what is taken, dropped, guessed. A joint without an end "
+      "gets "
+      "+-2 pi (rad; m for one that slides). What could change mass, pose, axis, range or coupling is read or "
+      "refused by name");
   ImportFlags& f = flags->import;
   command->add_option("file", flags->file, "file, or a robot's name")->required();
   command->add_flag("--check", flags->check, "try it alone: what touches, shakes or does not get there");
@@ -142,7 +146,7 @@ void add_robot(CLI::App& app, Run& run) {
                     "raise moments of inertia that break the triangle rule");
   command->add_option("--packages", f.packages,
                       "folder of what package:// names; default: found above the file");
-  command->add_option("--root", f.root, "link (body) whose subtree is taken");
+  command->add_option("--root", f.root, "link (body) whose subtree is taken; world: all of an MJCF file");
   command->add_option("--palm", f.palm, "link of the palm");
   command->add_option("--tips", f.tips, "links or sites where fingers end: a,b,c");
   command->add_option("--mount", f.mount, "link, site or \"x y z roll pitch yaw\" that comes onto an arm");

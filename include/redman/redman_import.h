@@ -13,10 +13,16 @@
  * Rules of redman.h hold. The text of a failure is rdm_import_error() of the calling thread. An rdm_import does not
  * change but in rdm_import_check; any number of threads may read it.
  *
+ * What could change mass, pose, axis, range or coupling is read, or refused with the name of its element; so is an element
+ * or attribute of MJCF that is not known. Dropped, each with a note: what is seen alone, friction and softness of contacts,
+ * springs of joints and tendons, limits of tendons that are wide, actuators that hold no joint (their effort is taken),
+ * sensors, options of a simulator. examples/robots/README.md has the tables.
+ *
  * What is done on the way: fixed joints and their links become part of what carries them; a mesh becomes the smallest of
- * box, capsule and sphere around its corners; a joint without an end gets +-2 pi. Gains come from position actuators, else
- * kp reaches the effort 0.2 rad (20 mm) off the target and kd damps critically with the inertia that the joint feels at
- * home. What no such file says (palm, fingers, tips, mount, flange, poses) is guessed, the same way each time, and listed. */
+ * box, capsule and sphere around its corners; a joint without an end gets +-2 pi, rad or m. Gains come from position
+ * actuators, else kp reaches the effort 0.2 rad (20 mm) off the target and kd damps critically with the inertia that the
+ * joint feels at home. What no such file says (palm, fingers, tips, mount, flange, poses) is guessed, the same way each time,
+ * and listed. */
 #ifndef REDMAN_IMPORT_H
 #define REDMAN_IMPORT_H
 #ifndef RDM_EXPERIMENTAL

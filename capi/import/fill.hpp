@@ -1,0 +1,22 @@
+// What a shape weighs at density 1: primitives as shells, meshes in the four ways of MJCF, hulls of points.
+#pragma once
+#include "geometry.hpp"
+#include "shapes.hpp"
+
+namespace rdm::import {
+
+enum class Fill {
+  kLegacy,  // MJCF's own: pyramids from the middle of the surface, all counted as positive
+  kExact,   // signed volumes: right for closed surfaces
+  kConvex,  // of the hull
+  kShell    // the surface; density is per square metre
+};
+
+// The surface alone, in its own pose; an ellipsoid's area is Thomsen's.
+Mass shell(const Primitive& s);
+// Mass 0 for a surface that encloses nothing.
+Mass filled(const Mesh& mesh, Fill how);
+// The hull's triangles, turned outwards; no faces for points in one plane. RANGE above 4096 corners.
+Mesh hull_of(const std::vector<V3>& points);
+
+}  // namespace rdm::import
