@@ -82,7 +82,7 @@ void read_config(const rdm_agent_config* c, Config* out) {
 
 RankHooks read_ranks(const rdm_ranks* ranks) {
   const auto in = read_struct(ranks, sizeof(rdm_ranks), rdm_ranks{}, "ranks");
-  return {in.rank, in.ranks, in.user, in.gather, in.swap};
+  return {in.rank, in.ranks, in.user, in.gather, in.swap, RDM_VERSION};
 }
 
 DecisionBuffers carve_decision(Arena& arena, const AgentConfig& c) {
@@ -93,7 +93,8 @@ DecisionBuffers carve_decision(Arena& arena, const AgentConfig& c) {
   d.steps = arena.make<int32_t>(n);
   d.mask = arena.make<uint8_t>(n);
   d.valid = arena.make<uint8_t>(n);
-  d.ended = arena.make<uint8_t>(n);
+  d.terminated = arena.make<uint8_t>(n);
+  d.truncated = arena.make<uint8_t>(n);
   d.success = arena.make<uint8_t>(n);
   return d;
 }

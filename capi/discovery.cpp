@@ -7,6 +7,7 @@
 #include <mutex>
 #include <vector>
 
+#include "base/lasting.hpp"
 #include "env/options/disturb.hpp"
 #include "env/options/repeat.hpp"
 #include "robot/robots.hpp"
@@ -41,7 +42,6 @@ std::array<OptionTableView, 4> tables_of(const TaskInfo& info) {
 // What a task with its default options has.
 struct Described {
   rdm_task task{};
-  std::vector<Name> names;  // of the fields
   std::vector<rdm_field> fields;
   std::vector<std::array<float, 2>> bounds;  // of each
 };
@@ -52,8 +52,8 @@ Described describe(const TaskInfo& info) {
   const TaskHandle task = make_task(info, options, host());
   Described d;
   d.task.control_dt = static_cast<float>(task->scene().control_dt());
-  d.task.name = info.name;
-  d.task.summary = info.summary;
+  d.task.name = lasting(info.name);
+  d.task.summary = lasting(info.summary);
   d.task.obs_dim = obs_dim(*task);
   d.task.action_dim = task->action_dim();
   d.task.cost_dim = info.num_costs;
@@ -63,16 +63,16 @@ Described describe(const TaskInfo& info) {
   d.task.num_cameras = info.num_cameras;
   d.task.num_defaults = info.num_defaults;
   for (int32_t i = 0; i < d.task.num_fields; ++i) {
-    d.names.push_back(task->fields()[static_cast<size_t>(i)].name);
     d.fields.push_back(field_of(*task, i));
+    d.fields.back().name = lasting(d.fields.back().name);
+    d.fields.back().unit = lasting(d.fields.back().unit);
     const FieldSpec f = bounded_field(*task, i);
     d.bounds.push_back({f.low, f.high});
   }
-  for (size_t i = 0; i < d.fields.size(); ++i) d.fields[i].name = d.names[i].text;
   return d;
 }
 
-// Made when it is first asked for and kept as long as the task is listed: its names are handed out.
+// Made when it is first asked for and kept as long as the task is listed.
 struct Known {
   std::mutex mutex;
   std::map<int32_t, std::shared_ptr<const Described>> tasks;
@@ -92,6 +92,7 @@ std::shared_ptr<const Described> described(int32_t index) {
   }
   auto made = std::make_shared<const Described>(describe(*info));  // takes a while, and may call the host
   const std::lock_guard lock(k.mutex);
+  if (!task_listed(index)) return made;  // removed meanwhile, and forgotten
   return k.tasks.try_emplace(index, std::move(made)).first->second;
 }
 
@@ -154,7 +155,7 @@ rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost* out) {
     const TaskRef ref = ref_at(task);
     const TaskInfo& info = *ref;
     need_index(i, info.num_costs, "i");
-    *out = {info.costs[i].name, info.costs[i].help, info.costs[i].limit};
+    *out = {lasting(info.costs[i].name), lasting(info.costs[i].help), info.costs[i].limit};
   });
 }
 
@@ -170,6 +171,7 @@ rdm_result rdm_task_option(int32_t task, int32_t i, rdm_option_info* out) {
       if (i >= 0 && i < t.count) *out = describe(t.rows[i]);
       i -= t.count;
     }
+    for (const char** text : {&out->key, &out->help, &out->text, &out->choices}) *text = lasting(*text);
   });
 }
 
@@ -192,6 +194,7 @@ rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera* out) {
     const TaskInfo& info = *ref;
     need_index(i, info.num_cameras, "i");
     *out = describe(info.cameras[i]);
+    out->name = lasting(out->name);
   });
 }
 
@@ -201,7 +204,7 @@ rdm_result rdm_task_default(int32_t task, int32_t i, rdm_option* out) {
     const TaskRef ref = ref_at(task);
     const TaskInfo& info = *ref;
     need_index(i, info.num_defaults, "i");
-    *out = {info.defaults[i].key, info.defaults[i].value, 0};
+    *out = {lasting(info.defaults[i].key), lasting(info.defaults[i].value), 0};
   });
 }
 
@@ -217,8 +220,8 @@ rdm_result rdm_robot_at(int32_t index, rdm_robot* io) {
     rdm_robot o{};
     o.num_joints = r.links.count;
     o.num_actuated = r.num_actuated();
-    o.name = r.name;
-    o.summary = r.help;
+    o.name = lasting(r.name);
+    o.summary = lasting(r.help);
     write_struct(io, o, sizeof(rdm_robot), "io");
   });
 }
@@ -231,7 +234,7 @@ rdm_result rdm_robot_joint(int32_t robot_index, int32_t i, rdm_joint* out) {
     need_index(i, r.links.count, "i");
     const RobotLink& l = r.links[i];
     rdm_joint o{};
-    o.name = l.joint;
+    o.name = lasting(l.joint);
     o.lower = l.lower;
     o.upper = l.upper;
     o.kp = r.coupled(i) ? 0 : l.kp;

@@ -49,10 +49,10 @@ void forget_task(int32_t index);
 #if RDM_WITH_LEARN
 // Sums over the control steps of one decision, for rdm_agent_rollout.
 struct DecisionBuffers {
-  float* reward = nullptr;                                                          // [num_envs]
-  float* cost = nullptr;                                                            // [num_envs][cost_dim]
-  int32_t* steps = nullptr;                                                         // [num_envs]
-  uint8_t *mask = nullptr, *valid = nullptr, *ended = nullptr, *success = nullptr;  // [num_envs]
+  float* reward = nullptr;   // [num_envs]
+  float* cost = nullptr;     // [num_envs][cost_dim]
+  int32_t* steps = nullptr;  // [num_envs]
+  uint8_t *mask = nullptr, *valid = nullptr, *terminated = nullptr, *truncated = nullptr, *success = nullptr;
 };
 
 struct rdm_agent {

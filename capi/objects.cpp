@@ -2,6 +2,7 @@
 #include "capi/handles.hpp"
 
 #if RDM_WITH_SIM
+#include "base/lasting.hpp"
 #include "objects/objects.hpp"
 
 using namespace rdm;
@@ -74,7 +75,7 @@ rdm_result rdm_object_at(int32_t index, rdm_object* out) {
   return call([&] {
     need(out, "out");
     const ObjectRef object(index);
-    *out = {object->name, object->shape_text, object->mass};
+    *out = {lasting(object->name), lasting(object->shape_text), object->mass};
   });
 }
 
@@ -96,10 +97,10 @@ rdm_result rdm_object_get(int32_t object, rdm_object_def* io) {
     const ObjectRef ref(object);
     rdm_object_def d = default_def();
     d.num_shapes = ref->shapes.count;
-    d.name = ref->name;
-    d.alias = ref->alias;
-    d.summary = ref->help;
-    d.material = ref->material.name;
+    d.name = lasting(ref->name);
+    d.alias = lasting(ref->alias);
+    d.summary = lasting(ref->help);
+    d.material = lasting(ref->material.name);
     d.friction = ref->material.friction;
     d.mass = ref->mass;
     std::copy_n(object_inertia(*ref).moment, 6, d.moment);

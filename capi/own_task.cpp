@@ -39,9 +39,9 @@ const OptionTable& simulation_rows() {
   return table;
 }
 
-void need_rows(const void* rows, int32_t count, int32_t least, const char* name) {
-  if (count < least || count > kMostRows)
-    fail(Code::kRange, "def.num_%s: %d is outside [%d, %d]", name, count, least, kMostRows);
+void need_rows(const void* rows, int32_t count, int32_t least, const char* name, int32_t most = kMostRows) {
+  if (count < least || count > most)
+    fail(Code::kRange, "def.num_%s: %d is outside [%d, %d]", name, count, least, most);
   if (count > 0 && !rows) fail(Code::kArgument, "def.%s is NULL with num_%s %d", name, name, count);
 }
 
@@ -140,8 +140,14 @@ class BuiltTask final : public Task {
     rdm_world w(&world, &scene_, false);
     scene_.draws.apply(world, stream);
     auto random = rdm::bit_cast<rdm_random>(stream);
-    own_.run("reset", [&] { return d.reset(d.user, instance_.data(), &w, state, &random); });
-    stream = rdm::bit_cast<Stream>(random);
+    const auto keep = [&] { stream = rdm::bit_cast<Stream>(random); };
+    try {
+      own_.run("reset", [&] { return d.reset(d.user, instance_.data(), &w, state, &random); });
+    } catch (...) {
+      keep();  // what failed by chance is not tried with the same draws
+      throw;
+    }
+    keep();
   }
   void control(World& world, void* state, const float* action) const override {
     const rdm_task_def& d = own_.def;
@@ -272,9 +278,7 @@ void OwnTask::take_fields() {
 }
 
 void OwnTask::take_costs() {
-  need_rows(def.costs, def.num_costs, 1, "costs");
-  if (def.num_costs > kMaxTaskCosts)
-    fail(Code::kRange, "def.num_costs: %d is outside [1, %d]", def.num_costs, kMaxTaskCosts);
+  need_rows(def.costs, def.num_costs, 1, "costs", kMaxTaskCosts);
   for (int32_t i = 0; i < def.num_costs; ++i) {
     const rdm_cost& c = def.costs[i];
     need_name(c.name, RowName("costs", i, "name").text, kNameSize - 1);
@@ -324,6 +328,10 @@ void OwnTask::take_options() {
       made.help = texts_.keep(o.help);
       made.range = ranged;
       if (kind == OptionKind::kFlag) made.low = 0, made.high = 1;
+      const bool wide = made.low < -0x1p31 || made.high > 0x1p31 - 1;
+      if (kind == OptionKind::kInteger && wide)
+        fail(Code::kRange, "def.options[%d]: low %g or high %g of %s is outside [-2147483648, 2147483647]", i,
+             o.low, o.high, o.key);
       if (kind != OptionKind::kText && !(made.low < made.high))
         fail(Code::kRange, "def.options[%d]: low %g of %s is not below high %g", i, o.low, o.key, o.high);
     }
@@ -419,12 +427,20 @@ void OwnTask::destroy(Task* task, const HostHooks& hooks) const {
 void OwnTask::end() noexcept {
   const auto release = def.release;
   void* const user = def.user;
-  host_delete(hooks_, this);
-  if (release) release(user);
+  const HostHooks hooks = hooks_;
+  char name[kLongestName + 1];
+  copy_text(name, sizeof name, def.name);
+  host_delete(hooks, this);
+  if (!release) return;
+  try {
+    release(user);
+  } catch (...) {
+    log(hooks, LogLevel::kError, "task %s: release: an exception came out of it", name);
+  }
 }
 
 void OwnTask::blame(const char* function, rdm_result r, bool thrown) const {
-  if (thrown) fail(Code::kInternal, "task %s: %s: an exception came out of it", def.name, function);
+  if (thrown) fail(Code::kArgument, "task %s: %s: an exception came out of it", def.name, function);
   if (r > 0 || (r < static_cast<rdm_result>(RDM_CANCELLED) && r != static_cast<rdm_result>(RDM_INTERNAL)))
     fail(Code::kArgument, "task %s: %s: it returned %d, which is no rdm_result", def.name, function, r);
   char text[kErrorTextSize];

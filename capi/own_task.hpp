@@ -112,6 +112,7 @@ struct rdm_scene {
   rdm::Vector<double> frictions;  // of materials that objects brought; -1 of others, as long as materials
   rdm::Vector<rdm::capi::PlacedRobot> robots;
   bool complete = false;
+  rdm::Error failure = {};  // of completing it: what is asked of it afterwards gets the same
   rdm::Scene scene;
   rdm::Vector<rdm::capi::TouchGroup> groups;
   rdm::FieldTable fields;
@@ -121,7 +122,7 @@ struct rdm_scene {
 
 namespace rdm::capi {
 void begin_scene(const OwnTask& own, const Options& options, rdm_scene* scene);
-// Makes `scene`; from here on nothing can be added.
+// Makes `scene`; from here on nothing can be added. Where it cannot be made, it never can.
 void complete_scene(rdm_scene* scene);
 }  // namespace rdm::capi
 

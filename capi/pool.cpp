@@ -167,6 +167,12 @@ const char* rdm_pool_error(const rdm_pool* p) {
   return is_handle(p) ? p->error : "pool: NULL, not a pool, or destroyed";
 }
 
+const char* rdm_pool_world_error(const rdm_pool* p, int32_t env) {
+  if (!is_handle(p)) return rdm_pool_error(p);
+  if (env < 0 || env >= p->pool->config().num_envs) return "env: no such world";
+  return p->pool->task_error(env);
+}
+
 rdm_result rdm_pool_get_spec(const rdm_pool* p, rdm_spec* io) {
   return call_on(p, [&] {
     write_struct(io, spec_of(p->pool->task(), p->pool->task_index(), p->pool->repeat()), kFirstSpecSize,

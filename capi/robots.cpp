@@ -4,6 +4,7 @@
 #if RDM_WITH_SIM
 #include <cmath>
 
+#include "base/lasting.hpp"
 #include "robot/kinematics.hpp"
 #include "robot/mounted.hpp"
 #include "robot/robots.hpp"
@@ -226,9 +227,9 @@ rdm_result rdm_robot_get(int32_t robot, rdm_robot_def* io) {
     const Robot& r = *ref;
     rdm_robot_def d = default_def();
     d.kind = static_cast<int32_t>(r.kind);
-    d.name = r.name;
-    d.alias = r.alias;
-    d.summary = r.help;
+    d.name = lasting(r.name);
+    d.alias = lasting(r.alias);
+    d.summary = lasting(r.help);
     d.num_links = r.links.count;
     d.num_shapes = r.shapes.count;
     d.num_pairs = r.self_pairs.count;
@@ -260,8 +261,8 @@ rdm_result rdm_robot_link_at(int32_t robot, int32_t i, rdm_robot_link* out) {
     const RobotRef ref(robot);
     const RobotLink& l = link_at(*ref, i);
     rdm_robot_link o{};
-    o.name = l.name;
-    o.joint = l.joint;
+    o.name = lasting(l.name);
+    o.joint = lasting(l.joint);
     o.parent = l.parent;
     o.kind = static_cast<int32_t>(l.kind);
     put(l.p_PL, o.p);
@@ -289,7 +290,7 @@ rdm_result rdm_robot_shape_at(int32_t robot, int32_t i, rdm_robot_shape* out) {
     need_index(i, ref->shapes.count, "i");
     const RobotShape& s = ref->shapes[i];
     rdm_robot_shape o{};
-    o.name = s.name;
+    o.name = lasting(s.name);
     o.link = s.link;
     o.kind = static_cast<int32_t>(s.kind);
     put(s.size, o.size);
@@ -342,7 +343,8 @@ rdm_result rdm_robot_finger_at(int32_t robot, int32_t i, rdm_robot_finger* out) 
     const RobotRef ref(robot);
     need_index(i, ref->fingers.count, "i");
     const RobotFinger& f = ref->fingers[i];
-    rdm_robot_finger o{f.name, f.first, ref->tips[i].link, f.lateral, f.proximal, f.middle, f.thumb, {}};
+    rdm_robot_finger o{lasting(f.name), f.first,  ref->tips[i].link, f.lateral,
+                       f.proximal,      f.middle, f.thumb,           {}};
     put(ref->tips[i].p_L, o.p_tip);
     *out = o;
   });

@@ -30,21 +30,22 @@ void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat, bool raw_costs)
   const Buffers& b = pool.buffers();
   const auto n = static_cast<size_t>(pool.config().num_envs);
   const auto costs = static_cast<size_t>(pool.cost_dim());
-  const bool next_step = pool.config().autoreset == Autoreset::kNextStep;
   std::fill_n(d.reward, n, 0.0f);
   std::fill_n(d.cost, n * costs, 0.0f);
   std::fill_n(d.steps, n, 0);
   std::fill_n(d.success, n, uint8_t{0});
   for (size_t i = 0; i < n; ++i) {
-    d.mask[i] = 1;
-    // in next-step mode the step after an end only resets: a dead transition of one step
-    d.valid[i] = !(next_step && (b.terminated[i] || b.truncated[i]));
+    d.mask[i] = d.valid[i] = 1;
   }
   for (int32_t r = 0; r < repeat; ++r) {
     pool.step(d.mask);
     bool any = false;
     for (size_t i = 0; i < n; ++i) {
       if (!d.mask[i]) continue;
+      const bool only_reset = pool.taken(static_cast<int32_t>(i)) == 0;
+      if (only_reset) d.valid[i] = 0;  // next-step mode, or a reset that had failed before
+      d.terminated[i] = b.terminated[i] && !only_reset;
+      d.truncated[i] = b.truncated[i] && !only_reset;
       if (d.valid[i]) {
         d.reward[i] += b.reward[i];
         for (size_t k = 0; k < costs; ++k)
@@ -88,12 +89,14 @@ void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
   const PointRows clouds = clouds_of(agent, pool);
   if (agent.missing() != agent.horizon())
     fail(Code::kState, "agent: a horizon was begun by hand: finish it with record and update");
+  agent.ranks().set_pool(pool.config().seed, static_cast<int32_t>(pool.config().autoreset),
+                         pool.options_hash());
   const Buffers& b = pool.buffers();
   Transition t;
   t.reward = d.reward;
   t.cost = d.cost;
-  t.terminated = b.terminated;
-  t.truncated = b.truncated;
+  t.terminated = d.terminated;
+  t.truncated = d.truncated;
   t.final_obs = b.final_obs;
   t.valid = d.valid;
   t.success = d.success;

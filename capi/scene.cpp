@@ -29,8 +29,13 @@ Quat quat(const double q[4]) {
   return {q[3], q[0], q[1], q[2]};
 }
 
-void need_open(const rdm_scene* scene) {
+void need_whole(const rdm_scene* scene) {
   need_handle(scene);
+  if (scene->failure.code != Code::kOk) throw scene->failure;
+}
+
+void need_open(const rdm_scene* scene) {
+  need_whole(scene);
   if (scene->complete)
     fail(Code::kState, "scene: it is complete: nothing is added or set after the first find, touch or joint");
 }
@@ -119,16 +124,21 @@ Inertia inertia_of(const BodyDef& body, double mass) {
   return sum;
 }
 
+void add_material(rdm_scene* scene, const char* name, double friction) {
+  if (scene->materials.size() == kMaxMaterials)
+    fail(Code::kRange, "material %s: more than %d", Quoted(name).text, kMaxMaterials);
+  scene->frictions.reserve(scene->frictions.size() + 1);  // both grow, or none
+  scene->materials.push_back(name);
+  scene->frictions.push_back(friction);
+}
+
 // The scene's material of that name, or a new one with its friction on all that are there.
 int32_t material_of(rdm_scene* scene, const ObjectMaterial& own) {
   const int32_t known = find_name(
       scene->materials, [](const Name& n) { return n.text; }, own.name);
   if (known >= 0) return known;
   const auto added = static_cast<int32_t>(scene->materials.size());
-  if (added == kMaxMaterials)
-    fail(Code::kRange, "material %s: more than %d", Quoted(own.name).text, kMaxMaterials);
-  scene->materials.push_back(own.name);
-  scene->frictions.push_back(own.friction);
+  add_material(scene, own.name, own.friction);
   for (int32_t i = 0; i <= added; ++i) {
     const double other = scene->frictions[static_cast<size_t>(i)];
     Friction f;
@@ -252,15 +262,26 @@ void rdm::capi::begin_scene(const OwnTask& own, const Options& options, rdm_scen
   scene->mean = own.mean;
 }
 
-void rdm::capi::complete_scene(rdm_scene* scene) {
-  if (scene->complete) return;
+namespace {
+void make_complete(rdm_scene* scene) {
   scene->def.num_materials = static_cast<int32_t>(scene->materials.size());
   scene->scene = make_scene(std::move(scene->def));
   scene->def = {};
-  scene->complete = true;  // whatever else is wrong with it
   need_unique_shapes(scene->scene);
   int32_t articulation = 0;
   for (PlacedRobot& robot : scene->robots) place_robot(scene, &robot, articulation++);
+}
+}  // namespace
+
+void rdm::capi::complete_scene(rdm_scene* scene) {
+  need_whole(scene);
+  if (scene->complete) return;
+  scene->complete = true;
+  const Code code = guard([&] { make_complete(scene); });
+  if (code == Code::kOk) return;
+  scene->failure.code = code;
+  copy_text(scene->failure.text, sizeof scene->failure.text, last_error());
+  throw scene->failure;
 }
 
 rdm_result rdm_scene_number(rdm_scene* scene, const char* key, double* value) {
@@ -332,10 +353,7 @@ rdm_result rdm_scene_add_material(rdm_scene* scene, const char* name) {
     if (find_name(
             scene->materials, [](const Name& n) { return n.text; }, name) >= 0)
       fail(Code::kArgument, "material %s is there twice", Quoted(name).text);
-    if (scene->materials.size() == kMaxMaterials)
-      fail(Code::kRange, "material %s: more than %d", Quoted(name).text, kMaxMaterials);
-    scene->materials.push_back(name);
-    scene->frictions.push_back(kNoFriction);
+    add_material(scene, name, kNoFriction);
   });
 }
 
@@ -366,6 +384,16 @@ rdm_result rdm_scene_set_gravity(rdm_scene* scene, const double gravity[3]) {
   });
 }
 
+rdm_result rdm_scene_robot_init(rdm_scene_robot* robot, size_t size) {
+  return call_inside([&] {
+    rdm_scene_robot d{};
+    d.robot = -1;
+    d.q[3] = 1;
+    d.filled = 1;
+    init_struct(robot, size, kFirstRobotSize, d, "robot");
+  });
+}
+
 rdm_result rdm_scene_add_robot(rdm_scene* scene, const rdm_scene_robot* robot, int32_t* index) {
   return call_inside([&] {
     need_open(scene);
@@ -382,6 +410,11 @@ rdm_result rdm_scene_add_robot(rdm_scene* scene, const rdm_scene_robot* robot, i
       placed.own = RobotCopy(described.robot());
       placed.of_scene = true;
     } else {
+      if (in.robot < 0 || (in.robot == 0 && in.filled == 0))
+        fail(Code::kArgument,
+             "robot.robot of %s: left out: of rdm_robot_find, in a struct that rdm_scene_robot_init has "
+             "filled",
+             in.name);
       placed.listed = RobotRef(in.robot);
     }
     const Robot& r = placed.robot();
@@ -402,6 +435,7 @@ rdm_result rdm_scene_add_robot(rdm_scene* scene, const rdm_scene_robot* robot, i
     def.gravity = in.gravity != 0;
     const int32_t material = find_material(*scene, in.material);
     for (ArticulationShape& s : def.shapes) s.shape.material = material;
+    scene->robots.reserve(scene->robots.size() + 1);  // both grow, or none
     scene->def.articulations.push_back(std::move(def));
     scene->robots.push_back(std::move(placed));
     if (index) *index = static_cast<int32_t>(scene->robots.size()) - 1;
@@ -453,8 +487,11 @@ rdm_result rdm_scene_add_object(rdm_scene* scene, int32_t object, const char* na
     if (scene->def.bodies.size() == kMostThings)
       fail(Code::kRange, "body %s: more than %d", name, kMostThings);
     const Pose X_WB{vec(p), quat(q)};
-    scene->def.bodies.push_back(
-        make_object_body(*ref, name, X_WB, 0, scale, material_of(scene, ref->material)));
+    BodyDef body = make_object_body(*ref, name, X_WB, 0, scale, 0);
+    scene->def.bodies.reserve(scene->def.bodies.size() + 1);
+    const int32_t material = material_of(scene, ref->material);  // nothing fails behind it
+    for (ShapeDef& s : body.shapes) s.material = material;
+    scene->def.bodies.push_back(std::move(body));
     if (index) *index = static_cast<int32_t>(scene->def.bodies.size()) - 1;
   });
 }
@@ -472,7 +509,7 @@ rdm_result rdm_scene_add_static(rdm_scene* scene, const rdm_shape_def* shape) {
 
 rdm_result rdm_scene_set_field(rdm_scene* scene, const char* field, int32_t count) {
   return call_inside([&] {
-    need_handle(scene);
+    need_whole(scene);
     need(field, "field");
     if (count < 1 || count > kMostEntries)
       fail(Code::kRange, "count: %d of field %s is outside [1, %d]", count, Quoted(field).text, kMostEntries);
@@ -490,7 +527,7 @@ rdm_result rdm_scene_set_field(rdm_scene* scene, const char* field, int32_t coun
 
 rdm_result rdm_scene_set_actions(rdm_scene* scene, int32_t count, const float* hold, const float* mean) {
   return call_inside([&] {
-    need_handle(scene);
+    need_whole(scene);
     check_action_dim(count, "count");
     Vector<float> h, m;
     copy_actions(hold, count, "hold", &h);

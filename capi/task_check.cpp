@@ -336,6 +336,12 @@ void compare_rows(const Pool& a, const Pool& b, const char* task, int32_t step, 
       fail(Code::kArgument, "task %s: the state of world %d is another one %s; step %d", task, i, when, step);
 }
 
+// No function of the task failed in a world.
+void need_told(const Pool& p, int32_t step) {
+  for (int32_t i = 0; i < kPoolWorlds; ++i)
+    if (p.buffers().status[i] & kStatusTask) fail(Code::kArgument, "%s; step %d", p.task_error(i), step);
+}
+
 void check_pools(PoolConfig config, const char* task) {
   config.num_envs = kPoolWorlds;
   const PoolPtr one(Pool::create(config));
@@ -348,11 +354,13 @@ void check_pools(PoolConfig config, const char* task) {
     for (Pool* p : {one.get(), two.get()}) {
       p->baseline(Baseline::kRandom);
       p->step(nullptr);
+      need_told(*p, step);
     }
     compare_rows(*one, *two, task, step, "with two threads");
     if (step > kPoolSteps / 2) {
       restored->baseline(Baseline::kRandom);
       restored->step(nullptr);
+      need_told(*restored, step);
       compare_rows(*one, *restored, task, step, "in a pool that was restored");
     } else if (step == kPoolSteps / 2) {
       bytes.resize(one->state_size(-1));
@@ -365,6 +373,7 @@ void check_pools(PoolConfig config, const char* task) {
   for (int32_t step = 1; step <= kPoolSteps; ++step) {
     one->baseline(Baseline::kHold);
     one->step(nullptr);
+    need_told(*one, step);
     for (int32_t i = 0; i < kPoolWorlds; ++i)
       if (one->buffers().status[i] & kStatusDiverged)
         fail(Code::kArgument, "task %s: with the hold action world %d diverges; step %d", task, i, step);

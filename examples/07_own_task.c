@@ -24,13 +24,15 @@ static rdm_result build(void* user, rdm_scene* scene, void* instance) {
                       ground = {"ground", .kind = RDM_PLANE};
   const rdm_body_def cup = {sizeof cup, 1, "cup", &side, .p = {0.01, -0.43, 0.025}, .mass = 0.1};
   rdm_robot_def press;
-  rdm_scene_robot hand = {sizeof hand, .name = "hand", .p = {0, 0, 0.1}, .q = {0, 1, 0, 0}};
+  rdm_scene_robot hand;
   const rdm_scene_robot button = {sizeof button, .own = &press, .name = "button", .p = {-0.033, -0.43, 0.03}};
   (void)user;
   cap.q[3] = cap.axis[2] = 1, cap.lower = -0.01, cap.kp = 100, cap.kd = 2, cap.effort = 2;
   cap.moment[0] = cap.moment[1] = cap.moment[2] = 1e-5;
   rdm_robot_def_init(&press, sizeof press);
   press.name = "button", press.links = &cap, press.num_links = 1, press.shapes = &top, press.num_shapes = 1;
+  rdm_scene_robot_init(&hand, sizeof hand);
+  hand.name = "hand", hand.p[2] = 0.1, hand.q[1] = 1, hand.q[3] = 0;
   if (rdm_robot_find("shadow_hand", &hand.robot) || rdm_scene_add_robot(scene, &hand, &id->hand) ||
       rdm_scene_add_robot(scene, &button, NULL) || rdm_scene_add_body(scene, &cup, &id->cup) ||
       rdm_scene_add_static(scene, &ground) ||

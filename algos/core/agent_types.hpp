@@ -28,6 +28,7 @@ struct RankHooks {
   void* user = nullptr;
   int32_t (*gather)(void* user, const void* mine, size_t bytes, void* all) = nullptr;
   int32_t (*swap)(void* user, int32_t rank, const void* mine, size_t bytes, void* theirs) = nullptr;
+  uint32_t version = 0;  // of the library, which all ranks must have alike
 };
 
 struct AgentConfig {

@@ -23,6 +23,7 @@ void Ranks::carve(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_
   block_envs_ = resolved.config.num_envs / blocks_;
   leaves_ = arena.make<double>(static_cast<size_t>(blocks_) * kFew);
   if (alone()) return;
+  setup_.carve(arena, resolved);
   // Statistics go in one piece, whatever their width.
   const size_t moments = (1 + 2 * std::max(resolved.obs_dim(), size_t{kMaxCosts})) * sizeof(double);
   const size_t sums = (num_params + 2 * static_cast<size_t>(count())) * sizeof(float) + kFew * sizeof(double);
@@ -32,7 +33,16 @@ void Ranks::carve(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_
   all_ = arena.make<unsigned char>(message * static_cast<size_t>(count()));
 }
 
+// Exchange 0.
+void Ranks::meet() {
+  if (met_) return;
+  heard(hooks_.gather(hooks_.user, setup_.mine(), RankSetup::kBytes, setup_.all()));
+  setup_.compare();
+  met_ = true;
+}
+
 void Ranks::begin(Head& head) {
+  meet();
   head = {++exchanges_, cancel_->take() ? 1 : 0};
   std::memcpy(mine_, &head, sizeof head);
 }

@@ -14,11 +14,13 @@
 //
 // The parameters, their optimisers, statistics, multipliers and schedules are the same on each rank, moved by
 // the same numbers; rows, noise and running episodes are its own. Each message begins with the number of the
-// exchange and whether its rank was cancelled, which cancels all of them at the same place.
+// exchange and whether its rank was cancelled, which cancels all of them at the same place. Before the first
+// one they compare what they were set up with.
 #pragma once
 #include <array>
 
 #include "algos/core/cancel.hpp"
+#include "algos/core/rank_setup.hpp"
 #include "algos/core/resolved_config.hpp"
 #include "base/arena.hpp"
 
@@ -58,6 +60,10 @@ class Ranks {
   std::array<double, N> sum(Leaf&& leaf);
   // All ranks are at one place again, as they have loaded one state.
   void restart() { exchanges_ = 0; }
+  // The pool that this rank's rollout steps, before the first exchange.
+  void set_pool(uint64_t seed, int32_t autoreset, uint64_t options) {
+    setup_.set_pool(seed, autoreset, options);
+  }
   // Error(kState) naming the first rank whose hash most others do not have.
   void agree(uint64_t hash);
 
@@ -73,6 +79,7 @@ class Ranks {
   const unsigned char* body_of(int32_t rank, size_t bytes) const {
     return all_ + static_cast<size_t>(rank) * (sizeof(Head) + bytes) + sizeof(Head);
   }
+  void meet();
   void begin(Head& head);
   void look(const void* message, int32_t rank, Head& head) const;
   void heard(int32_t code) const;
@@ -89,6 +96,8 @@ class Ranks {
   unsigned char *mine_ = nullptr, *all_ = nullptr;
   double* leaves_ = nullptr;
   uint64_t exchanges_ = 0;
+  RankSetup setup_;
+  bool met_ = false;
 };
 
 template <class Merge>

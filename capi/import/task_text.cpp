@@ -576,8 +576,8 @@ class Builder {
     const Table& t = part.t;
     if (parts_.size() == kMostPlayers)
       t.bad(RDM_RANGE, line_of(t.t), "more than %d robots and trees", kMostPlayers);
-    rdm_scene_robot r{};
-    r.struct_size = sizeof r;
+    rdm_scene_robot r;
+    rdm_scene_robot_init(&r, sizeof r);
     r.robot = part.listed;
     if (part.listed < 0) r.own = &part.draft->def;
     r.name = part.name.c_str();

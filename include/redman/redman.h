@@ -33,7 +33,8 @@
  *     ARGUMENT; to destroy such a one does nothing.
  *   - Structs begin with struct_size = sizeof of your version: set it yourself or through the _init function.
  *     ARGUMENT for less than the first version had or more than 4096.
- *   - Strings that are returned live as long as their handle (static ones: for ever). UTF-8.
+ *   - Strings that are returned live as long as their handle (those of tasks, algorithms, robots and objects: for ever, also
+ *     where these are removed; equal ones are kept once). UTF-8.
  *     What is no UTF-8 in a name that was given stands in a text as \xNN.
  *   - Arrays are row-major. SI units, radians. Quaternions are (x, y, z, w) here and in observations.
  *   - Same seed, same bytes: for any number of threads; worlds on every little-endian machine whose ODE and libccd were
@@ -259,7 +260,8 @@ enum rdm_autoreset { RDM_AUTORESET_SAME_STEP = 0, RDM_AUTORESET_NEXT_STEP = 1, R
 enum rdm_status {                  /* bits of rdm_buffers.status */
   RDM_STATUS_CONTACTS = 1,         /* contacts beyond contacts_max were left out              */
   RDM_STATUS_DIVERGED = 2,         /* a value was not finite: the episode was truncated       */
-  RDM_STATUS_BAD_ACTION = 4        /* the row of actions was not finite: likewise             */
+  RDM_STATUS_BAD_ACTION = 4,       /* the row of actions was not finite: likewise             */
+  RDM_STATUS_TASK = 8              /* a function of a host's own task failed: likewise        */
 };
 typedef struct rdm_pool_config { /* what a pool is made from */
   uint32_t struct_size;      /* bytes, set by rdm_pool_config_init                                        */
@@ -345,11 +347,13 @@ RDM_API rdm_result rdm_pool_bind(rdm_pool *p, const rdm_buffers *b);
 
 /* Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new streams: the seed
  * alone, whatever the world's number, so that seed s gives what a pool of one world created with seed s has. NULL: go
- * on with the worlds' own, which after create is (config.seed, i). Costs are 0 afterwards. */
+ * on with the worlds' own, which after create is (config.seed, i). Costs are 0 afterwards. Where a host's own task
+ * fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand as if they were never reset,
+ * the others have begun. */
 RDM_API rdm_result rdm_pool_reset(rdm_pool *p, const uint64_t *seeds, const uint8_t *mask);
 /* One control step of every world: reads action, writes all the rest. STATE before the first reset, and with
- * autoreset off while an ended world was not reset. Worlds that diverge or get an action that is not finite
- * are truncated and flagged, with reward and cost 0 in that step; the call returns OK.
+ * autoreset off while an ended world was not reset. Worlds that diverge, get an action that is not finite, or whose
+ * task of a host's own fails, are truncated and flagged, with reward and cost 0 in that step; the call returns OK.
  * With option action_repeat it is that many control steps with the same action, or as many as the episode has left:
  * reward and cost are sums over them, success is set if any had it, status has the bits of all, the other rows are
  * those after the last. */
@@ -632,7 +636,9 @@ RDM_API rdm_result rdm_agent_values(const rdm_agent *a, const float *obs, int32_
  * each takes its own part. A state that was saved by some ranks goes on with any other number that `blocks` allows.
  *   - CANCELLED: a hook failed (a rank is gone), or rdm_agent_cancel was called on one rank, which stops all of them at one
  *     place. The handles are good; after a failed hook, what ranks have learned may differ: load a state that was saved.
- *   - STATE: ranks are out of step; or one has drifted, which each update looks for: the text names it.
+ *   - STATE: ranks are set up differently, which the first exchange looks for (the rank and number of ranks, the library's
+ *     version, seed, sizes and options of agent and pool); or are out of step; or one has drifted, which each update looks
+ *     for. The text names what and whose.
  *   - a rank whose call fails otherwise leaves the others waiting in their hooks, unless it ends and these notice. */
 typedef struct rdm_ranks {  /* who learns together, and how messages go from one to the other                     */
   uint32_t struct_size;     /* bytes                                                                              */
@@ -908,7 +914,8 @@ typedef struct rdm_robot_def { /* a whole robot; the arrays are copied by rdm_ro
   double hold_p[3];        /* where a thing is that the hand holds, in palm_link's frame, m               */
 } rdm_robot_def;
 RDM_API rdm_result rdm_robot_def_init(rdm_robot_def *def, size_t size); /* defaults into the first `size` bytes */
-/* Adds a robot under a number that no other gets; *out is for rdm_robot_at and what follows here. ARGUMENT, RANGE: the
+/* Adds a robot under a number that no other gets, also later: 2^31 of them in a process; what a removed one took comes
+ * back. *out is for rdm_robot_at and what follows here. ARGUMENT, RANGE: the
  * text names the row; a name that is taken is an ARGUMENT. Moments must be positive and keep the triangle rule. */
 RDM_API rdm_result rdm_robot_create(int32_t *out, const rdm_robot_def *def);
 /* Pools that use it keep it. ARGUMENT for the library's own. */
@@ -918,7 +925,7 @@ RDM_API rdm_result rdm_robot_find(const char *name, int32_t *index); /* name or 
  * `yaw` (rad) about the flange's z and stands off by `adapter` (m); left: its mirror image. UNSUPPORTED: no arm, no hand. */
 RDM_API rdm_result rdm_robot_mount(int32_t *out, const char *name, int32_t arm, int32_t hand, double yaw, double adapter,
                                    int32_t left);
-/* What rdm_robot_create took, but for the arrays, which are NULL here; texts live as long as the robot. */
+/* What rdm_robot_create took, but for the arrays, which are NULL here. */
 RDM_API rdm_result rdm_robot_get(int32_t robot, rdm_robot_def *io);
 RDM_API rdm_result rdm_robot_link_at(int32_t robot, int32_t i, rdm_robot_link *out);         /* i < num_links */
 RDM_API rdm_result rdm_robot_shape_at(int32_t robot, int32_t i, rdm_robot_shape *out);       /* i < num_shapes */
@@ -975,8 +982,8 @@ typedef struct rdm_object_def { /* a whole object; rdm_object_create copies it w
 } rdm_object_def;
 RDM_API rdm_result rdm_object_def_init(rdm_object_def *def, size_t size); /* defaults into the first `size` bytes */
 RDM_API rdm_result rdm_object_find(const char *name, int32_t *index); /* name or alias; NOT_FOUND: nearest in the text */
-/* What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which are NULL here; texts
- * live as long as the object. Shape i < num_shapes is in the frame at the centre of mass. */
+/* What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which are NULL here.
+ * Shape i < num_shapes is in the frame at the centre of mass; the points of a hull live as long as the object. */
 RDM_API rdm_result rdm_object_get(int32_t object, rdm_object_def *io);
 RDM_API rdm_result rdm_object_shape_at(int32_t object, int32_t i, rdm_shape_def *out);
 /* Adds an object under a number that no other gets, *out for rdm_object_at and what is here. ARGUMENT, RANGE: the text names
@@ -1010,12 +1017,22 @@ RDM_API rdm_result rdm_object_remove(int32_t object);
  *   - `build` may be called more often than pools are made (to ask for sizes).
  *   - State and instance are plain bytes, zeroed before reset and build. No pointers in a state.
  *   - No memory is left behind by a step; nothing is kept of a pointer after the call.
- *   - They return RDM_OK, or an error, which the call that stepped the world gives, with the text of the call that failed
- *     in them or of rdm_fail; the other worlds have been stepped. */
+ *   - They return RDM_OK, or an error. One of build is that of making the pool. One of control, judge or observe ends the
+ *     episode of its world: truncated, RDM_STATUS_TASK, reward and cost 0 in that step; the other worlds go on and the
+ *     step returns RDM_OK. rdm_pool_world_error has the text of the call that failed in them, or of rdm_fail. A reset that
+ *     fails within a step flags the world too, which shows the end that it had until one succeeds in a later step, with
+ *     the draws that follow; one within rdm_pool_reset is that call's error.
+ *   - They do not leave by longjmp, which nothing here survives: a runtime whose errors do (Lua, Ruby, PHP) catches them
+ *     within the function and returns an error. An exception of C++ that comes out counts as an ARGUMENT, out of `release`
+ *     it goes to the log.
+ *   - They do not call the handle that they are called for (STATE). */
 typedef struct rdm_scene rdm_scene; /* handle, within build: what a world is made of */
 typedef struct rdm_world rdm_world; /* handle, within a call of the others: one world */
 /* Sets rdm_last_error of this thread to `text` and returns `code`. */
 RDM_API rdm_result rdm_fail(rdm_result code, const char *text);
+/* What failed last in world env of the pool: "world 3: task press: judge: sensor lost", at most 255 bytes; "" at first, and
+ * for the library's own tasks. Kept until the world's next failure; no part of a saved state. */
+RDM_API const char *rdm_pool_world_error(const rdm_pool *p, int32_t env);
 
 typedef struct rdm_body_def { /* a free body; its frame is at its centre of mass */
   uint32_t struct_size;    /* bytes                                                                       */
@@ -1032,8 +1049,8 @@ typedef struct rdm_body_def { /* a free body; its frame is at its centre of mass
   int32_t reserved;        /* 0                                                                           */
 } rdm_body_def;
 typedef struct rdm_scene_robot { /* a robot in a scene: one of the list, or a tree of its own (a drawer, a door) */
-  uint32_t struct_size;    /* bytes                                                                       */
-  int32_t robot;           /* of rdm_robot_find                                                           */
+  uint32_t struct_size;    /* bytes, set by rdm_scene_robot_init                                          */
+  int32_t robot;           /* of rdm_robot_find; default -1: left out                                     */
   const rdm_robot_def *own; /* a robot of this scene alone, in the place of `robot`; NULL                 */
   const char *name;        /* begins, with '_', the names of its links, joints and shapes; unique         */
   const char *material;    /* of its shapes; NULL: "default"                                              */
@@ -1043,8 +1060,10 @@ typedef struct rdm_scene_robot { /* a robot in a scene: one of the list, or a tr
   int32_t free_base;       /* flag: the base moves                                                        */
   int32_t left;            /* flag: the mirror image                                                      */
   int32_t gravity;         /* flag: its links feel gravity                                                */
-  int32_t reserved;        /* 0                                                                           */
+  int32_t filled;          /* flag, set by rdm_scene_robot_init: without it a robot of 0 was left out     */
 } rdm_scene_robot;
+/* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's. */
+RDM_API rdm_result rdm_scene_robot_init(rdm_scene_robot *robot, size_t size);
 enum rdm_scene_part { /* what rdm_scene_find looks for; numbers count from 0 in the order of adding */
   RDM_SCENE_ROBOT = 0, RDM_SCENE_BODY = 1,
   RDM_SCENE_LINK = 2,   /* of all robots, robot by robot; joint i moves link i */
@@ -1061,7 +1080,9 @@ RDM_API rdm_result rdm_scene_range(rdm_scene *scene, const char *key, double *lo
 enum rdm_friction { RDM_PASSES = -1 }; /* in the place of a coefficient */
 /* What is added gets the next number. A friction is that of two materials, or of one with itself; 1 unless
  * said; RDM_PASSES: they go through each other. Gravity [3] is in the place of the option's. The texts of errors name the
- * thing; all is STATE after the first find, touch or joint. */
+ * thing; all is STATE after the first find, touch or joint. A scene that could not be completed there, or in the end,
+ * stays so: all later calls on it, and what `build` is called for, have that error. A robot that is neither `own` nor
+ * given by number is an ARGUMENT. */
 RDM_API rdm_result rdm_scene_add_material(rdm_scene *scene, const char *name); /* "default" is one, 15 more */
 RDM_API rdm_result rdm_scene_set_friction(rdm_scene *scene, const char *a, const char *b, double mu); /* 0 or more */
 RDM_API rdm_result rdm_scene_set_gravity(rdm_scene *scene, const double gravity[3]); /* m/s2 */
@@ -1291,7 +1312,8 @@ RDM_API rdm_result rdm_map_get_info(const rdm_map *m, rdm_map_info *io); /* fill
 RDM_API rdm_result rdm_map_clear(rdm_map *m);               /* all is unknown again */
 
 /* One scan: rays from origin [3] to points [count][3]. Each voxel changes once: up where a ray ends, else down where
- * rays pass. Points that are not finite are left out. A full map grows no more: the call returns OK, *dropped (may
+ * rays pass. Points that are not finite are left out, and those nearer to the origin than a voxel's side: a depth of 0
+ * says that nothing was seen. A full map grows no more: the call returns OK, *dropped (may
  * be NULL) says how many voxels were left out, and voxels that exist go on being updated. */
 RDM_API rdm_result rdm_map_insert(rdm_map *m, const float origin[3], const float *points, size_t count,
                                   uint64_t *dropped);

@@ -105,6 +105,9 @@ void read_value(const OptionSpec& s, const char* key, const char* text, const ch
     good = read_number(text, first_end, &out->low) && read_number(second, end, &out->high);
     if (good && !s.range) fail(Code::kArgument, "%s option %s: takes one number, no range", owner, key);
   }
+  if (!good && s.kind == OptionKind::kFlag)
+    fail(Code::kArgument, "%s option %s: '%s' is none of true, false, on, off, 1, 0", owner, key,
+         Quoted(text).text);
   if (!good)
     fail(Code::kArgument, "%s option %s: '%s' is not a number%s", owner, key, Quoted(text).text,
          s.range ? " or a range a..b" : "");

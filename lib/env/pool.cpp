@@ -59,6 +59,7 @@ Pool::Impl::Carved Pool::Impl::carve_rows(const ResolvedPoolConfig& plan, Arena&
   c.sensed = carve_sense_buffers(arena, plan.sense, n);
   c.slots = arena.make<Slot>(n);
   c.blocks = arena.make<Block>(blocks);
+  if (plan.info->source) c.task_errors = arena.make<char>(n * kErrorTextSize);
   for (size_t i = 0; i < blocks; ++i) {
     float* action = arena.make<float>(actions);
     const SenseScratch sense =
@@ -89,6 +90,7 @@ void Pool::Impl::build() {
   sensed = carved.sensed;
   slots = carved.slots;
   blocks = carved.blocks;
+  task_errors = carved.task_errors;
   for (int32_t b = 0; b < num_blocks(); ++b) {
     World* partner = nullptr;  // the worlds of a block step one after the other
     for (int32_t i = block_begin(b); i < block_begin(b + 1); ++i) {
@@ -226,6 +228,9 @@ int32_t Pool::task_index() const {
 }
 const Options& Pool::options() const {
   return impl_->options;
+}
+uint64_t Pool::options_hash() const {
+  return impl_->options_hash;
 }
 const PoolConfig& Pool::config() const {
   return impl_->config;

@@ -12,6 +12,7 @@ namespace rdm {
 
 enum class Autoreset : int32_t { kSameStep = 0, kNextStep = 1, kOff = 2 };
 inline constexpr uint32_t kStatusBadAction = 4u;
+inline constexpr uint32_t kStatusTask = 8u;  // a function of a host's task failed
 
 struct PoolConfig {
   int32_t num_envs = 1, num_threads = 0;
@@ -52,6 +53,7 @@ class Pool {
   const Task& task() const;
   int32_t task_index() const;
   const Options& options() const;
+  uint64_t options_hash() const;     // task name and every option's value
   const PoolConfig& config() const;  // pointers inside are not valid any more
   int32_t obs_dim() const;
   int32_t cost_dim() const;
@@ -64,9 +66,12 @@ class Pool {
   const SenseBuffers& sensed() const;  // written by reset and step
   void bind(const Buffers& host);      // non-null pointers take over; contents are copied
 
-  // A seed that is given names the streams alone, as of the only world of a pool.
+  // A seed that is given names the streams alone, as of the only world of a pool. Where the task of a host
+  // fails in it: the error of the lowest such world, which is as a new one then; the others have begun.
   void reset(const uint64_t* seeds, const uint8_t* mask);
-  void step(const uint8_t* mask);  // null: all
+  // A world in which the task of a host fails is truncated with kStatusTask, and the others go on.
+  void step(const uint8_t* mask);             // null: all
+  const char* task_error(int32_t env) const;  // what failed last in a world; "": nothing so far
   // Episodes begin, with probability `share`, at one of `count` states of single worlds, each of so many
   // bytes; they are copied. Error(kFormat) where one is no running world's of this pool: nothing changes.
   // mark tells such sets apart. count -1: the states stay.
@@ -93,6 +98,8 @@ class Pool {
   // this one: what set_state(get_state) does, with the rows of the last step too. Error(kArgument) for a pool
   // that differs, Error(kRange) for a world that is not there. No heap use.
   void copy(int32_t env, const Pool& from, int32_t source);
+  // Error(kArgument) for a pool that differs, by the names of the two.
+  void need_same(const Pool& from, const char* name, const char* own) const;
   // Of the episode that runs in a world: control steps so far, sum of a cost; false: none runs.
   bool running(int32_t env) const;
   int32_t episode_step(int32_t env) const;

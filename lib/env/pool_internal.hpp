@@ -87,6 +87,7 @@ struct Pool::Impl : ResolvedPoolConfig {
     SenseBuffers sensed;
     Slot* slots = nullptr;
     Block* blocks = nullptr;
+    char* task_errors = nullptr;
   };
   static Carved carve_rows(const ResolvedPoolConfig& plan, Arena& arena);
   static size_t arena_bytes(const ResolvedPoolConfig& plan);
@@ -95,7 +96,13 @@ struct Pool::Impl : ResolvedPoolConfig {
 
   // --- stepping
   void check_ready(const uint8_t* mask) const;
-  void begin_episode(int32_t env);   // resets world, streams go on, writes obs
+  // Resets world, streams go on, writes obs. Where the task fails in it: its code; the world then is as it
+  // was made, and the episode the one before.
+  Code begin_episode(int32_t env);
+  void restart(int32_t env);  // a step that only resets
+  // Runs f, which calls the task; the code of a host's one that failed in it, and the world's text says how.
+  template <class F>
+  Code attempt_task(int32_t env, F&& f);
   void begin_at_start(int32_t env);  // an episode that has begun, perhaps at one of `starts`
   void clear_rows(int32_t env);      // reward, costs, flags, status, sums; final_obs becomes obs
   // What is shown of control step `step`, 0 at a reset; false: an entry is not finite.
@@ -144,6 +151,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   SenseBuffers sensed;
   Slot* slots = nullptr;              // [num_envs]
   Block* blocks = nullptr;            // [num_blocks]
+  char* task_errors = nullptr;        // [num_envs][kErrorTextSize] of a host's task; null for other ones
   unsigned char* pristine = nullptr;  // a world's state before anything happened: what a reset starts from
   size_t pristine_size = 0;
   Starts starts;

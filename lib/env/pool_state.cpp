@@ -292,6 +292,17 @@ void Pool::Impl::copy_world(int32_t env, const Impl& from, int32_t source) {
   buffers.success[env] = from.buffers.success[source];
 }
 
+void Pool::need_same(const Pool& from, const char* name, const char* own) const {
+  const Impl &m = *impl_, &f = *from.impl_;
+  if (m.info != f.info)
+    fail(Code::kArgument, "%s: a pool of task %s, %s has %s", name, f.info->name, own, m.info->name);
+  if (m.slots[0].world->engine() != f.slots[0].world->engine())
+    fail(Code::kArgument, "%s: a pool of another physics engine", name);
+  if (m.options_hash != f.options_hash)
+    fail(Code::kArgument, "%s: a pool of task %s with other options", name, m.info->name);
+  if (m.layout != f.layout) fail(Code::kArgument, "%s: a pool of another layout", name);
+}
+
 void Pool::copy(int32_t env, const Pool& from, int32_t source) {
   const FpMode mode;
   Impl& m = *impl_;
@@ -299,13 +310,7 @@ void Pool::copy(int32_t env, const Pool& from, int32_t source) {
   const Range range = range_of(env, m.config.num_envs);
   if (source < 0 || source >= f.config.num_envs)
     fail(Code::kRange, "src_env: %d is outside [0, %d)", source, f.config.num_envs);
-  if (m.info != f.info)
-    fail(Code::kArgument, "src: a pool of task %s, dst has %s", f.info->name, m.info->name);
-  if (m.slots[0].world->engine() != f.slots[0].world->engine())
-    fail(Code::kArgument, "src: a pool of another physics engine");
-  if (m.options_hash != f.options_hash)
-    fail(Code::kArgument, "src: a pool of task %s with other options", m.info->name);
-  if (m.layout != f.layout) fail(Code::kArgument, "src: a pool of another layout");
+  need_same(from, "src", "dst");
   if (range.count() < kFewCopies) {
     for (int32_t i = range.begin; i < range.end; ++i) m.copy_world(i, f, source);
     return;

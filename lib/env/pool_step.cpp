@@ -1,8 +1,10 @@
 // Episodes: reset, control steps, their ends, and the baseline actions.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
+#include "base/text.hpp"
 #include "env/fields.hpp"
 #include "env/pool_internal.hpp"
 
@@ -26,9 +28,15 @@ void Pool::reset(const uint64_t* seeds, const uint8_t* mask) {
   Impl& m = *impl_;
   m.each_world(mask, [&](int32_t env, Block& block) {
     if (seeds) m.name_streams(env, seeds[env], 0);
-    m.begin_episode(env);
+    const Code code = m.begin_episode(env);
     m.clear_rows(env);
-    m.see(env, block);
+    if (code == Code::kOk) return m.see(env, block);
+    Episode& e = m.slots[env].episode;
+    e.phase = Phase::kNew;
+    e.step = 0;
+    e.terminated = e.truncated = 0;
+    m.buffers.status[env] = kStatusTask;
+    fail(code, "%s", task_error(env));
   });
 }
 
@@ -85,22 +93,54 @@ void Pool::Impl::check_ready(const uint8_t* mask) const {
   }
 }
 
-void Pool::Impl::begin_episode(int32_t env) {
+template <class F>
+Code Pool::Impl::attempt_task(int32_t env, F&& f) {
+  try {
+    f();
+    return Code::kOk;
+  } catch (const Error& e) {
+    if (!task_errors) throw;
+    char text[kErrorTextSize + 32];
+    std::snprintf(text, sizeof text, "world %d: %s", env, e.text);
+    copy_text(task_errors + static_cast<size_t>(env) * kErrorTextSize, kErrorTextSize, text);
+    return e.code;
+  }
+}
+
+const char* Pool::task_error(int32_t env) const {
+  const char* texts = impl_->task_errors;
+  return texts ? texts + static_cast<size_t>(env) * kErrorTextSize : "";
+}
+
+Code Pool::Impl::begin_episode(int32_t env) {
   Slot& s = slots[env];
-  // from the state that a new world has: nothing of the last episode is left in the engine
-  Reader in(pristine, pristine_size, "pristine world");
-  s.world->load(in);
-  std::memset(s.task_state, 0, task->state_bytes());
   Episode& e = s.episode;
+  const Episode before = e;
+  // from the state that a new world has: nothing of the last episode is left in the engine
+  const auto renew = [&] {
+    Reader in(pristine, pristine_size, "pristine world");
+    s.world->load(in);
+    std::memset(s.task_state, 0, task->state_bytes());
+  };
+  renew();
   e.phase = Phase::kRunning;
   e.step = 0;
   e.terminated = e.truncated = 0;
   e.sum_reward = 0;
   for (double& sum : e.sum_cost) sum = 0;
-  task->reset(*s.world, s.task_state, e.reset);
-  if (disturbance.any()) s.disturbance.begin(disturbance, *task);
-  observe(env, 0, obs(env));
-  if (starts.share > 0) begin_at_start(env);
+  const Code code = attempt_task(env, [&] {
+    task->reset(*s.world, s.task_state, e.reset);
+    if (disturbance.any()) s.disturbance.begin(disturbance, *task);
+    observe(env, 0, obs(env));
+    if (starts.share > 0) begin_at_start(env);
+  });
+  if (code == Code::kOk) return code;
+  renew();
+  const Stream drawn = e.reset;  // the next attempt draws others
+  e = before;
+  e.reset = drawn;
+  std::memcpy(obs(env), final_obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
+  return code;
 }
 
 bool Pool::Impl::observe(int32_t env, int32_t step, float* row) {
@@ -151,13 +191,13 @@ void Pool::Impl::control_step(int32_t begin, int32_t end, Block& block, F&& want
 void Pool::Impl::start_step(int32_t env, Block& block) {
   Slot& s = slots[env];
   s.goes_on = false;
-  if (s.episode.phase == Phase::kEnded) {  // next-step mode: this step only resets
-    begin_episode(env);
-    clear_rows(env);
+  if (s.episode.phase == Phase::kEnded) {  // next-step mode, or a reset that failed: this step only resets
+    restart(env);
   } else if (clip_action(action(env), action_dim, block.action)) {
     if (disturbance.delays_actions())
       s.disturbance.delay_action(disturbance, s.episode.step, action_dim, block.action);
-    task->control(*s.world, s.task_state, block.action);
+    const auto drive = [&] { task->control(*s.world, s.task_state, block.action); };
+    if (attempt_task(env, drive) != Code::kOk) return lose_step(env, kStatusTask);
     block.group[block.waiting] = s.world;
     block.member[block.waiting++] = env;
   } else {
@@ -182,10 +222,15 @@ void Pool::Impl::finish_step(int32_t env) {
   ++c.steps;
   c.overflowed += (status & kStatusContactOverflow) != 0;
   if (status & kStatusDiverged) return lose_step(env, status);
-  Verdict verdict = task->judge(*s.world, s.task_state, s.episode.step + 1);
+  Verdict verdict;
+  bool finite = false;
+  const Code code = attempt_task(env, [&] {
+    verdict = task->judge(*s.world, s.task_state, s.episode.step + 1);
+    finite = observe(env, s.episode.step + 1, final_obs(env)) && sound(verdict, cost_dim);
+  });
+  if (code != Code::kOk) return lose_step(env, status | kStatusTask);
+  if (!finite) return lose_step(env, status | kStatusDiverged);
   if (disturbance.end_on_cost && costs_end(verdict)) verdict.terminated = true;
-  if (!observe(env, s.episode.step + 1, final_obs(env)) || !sound(verdict, cost_dim))
-    return lose_step(env, status | kStatusDiverged);
   std::memcpy(obs(env), final_obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
   close_step(env, verdict, status, false);
 }
@@ -213,7 +258,20 @@ void Pool::Impl::close_step(int32_t env, const Verdict& verdict, uint32_t status
   slots[env].goes_on = !e.terminated && !e.truncated;
   if (slots[env].goes_on) return;
   e.phase = Phase::kEnded;
-  if (config.autoreset == Autoreset::kSameStep) begin_episode(env);
+  if (config.autoreset == Autoreset::kSameStep && begin_episode(env) != Code::kOk)
+    buffers.status[env] |= kStatusTask;
+}
+
+// Where the task fails in it the world goes on showing the end that it had, and the
+// next step is another attempt.
+void Pool::Impl::restart(int32_t env) {
+  const Code code = begin_episode(env);
+  clear_rows(env);
+  if (code == Code::kOk) return;
+  const Episode& e = slots[env].episode;
+  buffers.status[env] = kStatusTask;
+  buffers.terminated[env] = e.terminated;
+  buffers.truncated[env] = e.truncated;
 }
 
 void Pool::Impl::write_verdict(int32_t env, const Verdict& verdict, uint32_t status) {

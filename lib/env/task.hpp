@@ -128,12 +128,11 @@ const OptionSpec* task_options(const TaskInfo& info, int32_t* count, OptionTable
 
 // The rows by number and by name. Any number of threads may look while others add and remove; a number is
 // never given twice.
-inline constexpr int32_t kMaxTasks = 1024;  // in the life of a process
-void register_task(const TaskInfo& info);   // static data
-// Error(kArgument) for a name that is taken, Error(kRange) for more than kMaxTasks; the source is then the
-// caller's still.
+void register_task(const TaskInfo& info);  // static data
+// Error(kArgument) for a name that is taken; the source is then the caller's still.
 int32_t add_task(TaskSource* source);
-void remove_task(int32_t index);         // who holds a reference keeps it; Error(kArgument) for a static one
+void remove_task(int32_t index);  // who holds a reference keeps it; Error(kArgument) for a static one
+bool task_listed(int32_t index);
 int32_t task_count();                    // numbers that were given; those of removed tasks count
 const TaskInfo& task_at(int32_t index);  // of an added task: as long as someone holds a reference
 int32_t task_find(const char* name);     // Error(kNotFound) with the nearest name; aliases count

@@ -5,21 +5,21 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/numbered.hpp"
 #include "base/text.hpp"
 #include "env/task.hpp"
 
 namespace rdm {
 namespace {
 
-struct Row {
-  const TaskInfo* info;
-  int32_t users;  // of an added one: references, and one for the list
-  bool listed;    // not removed
-};
+using Rows = Numbered<const TaskInfo*>;
 
 std::mutex g_lock;
-Row g_rows[kMaxTasks];
-int32_t g_count = 0;
+// Under the lock.
+Rows& rows() {
+  static auto* const list = new Rows;  // never ended: a pool may outlive all statics
+  return *list;
+}
 
 constexpr size_t kMaxName = 96;
 
@@ -39,76 +39,79 @@ void strip_id(const char* id, char* out) {
 int32_t find(const char* name) {
   char id[kMaxName];
   strip_id(name, id);
-  for (int32_t i = 0; i < g_count; ++i) {
-    if (!g_rows[i].listed) continue;
-    const TaskInfo& info = *g_rows[i].info;
-    if (same_name(info.name, name)) return i;
-    if (info.alias && same_name(info.alias, id)) return i;
+  for (const Rows::Row& row : rows()) {
+    if (!row.listed) continue;
+    const TaskInfo& info = *row.what;
+    if (same_name(info.name, name)) return row.number;
+    if (info.alias && same_name(info.alias, id)) return row.number;
   }
   return -1;
 }
 
-void need_row(int32_t index) {
-  if (index < 0 || index >= g_count) fail(Code::kRange, "task: %d is outside [0, %d)", index, g_count);
+// Error(kRange); Error(kNotFound): it was removed, and nobody uses it.
+Rows::Row& need_row(int32_t index) {
+  if (index < 0 || index >= rows().given())
+    fail(Code::kRange, "task: %d is outside [0, %d)", index, rows().given());
+  Rows::Row* const row = rows().find(index);
+  if (!row) fail(Code::kNotFound, "task %d was removed", index);
+  return *row;
 }
-[[noreturn]] void fail_removed(int32_t index) {
-  fail(Code::kNotFound, "task %d was removed", index);
+Rows::Row& need_listed(int32_t index) {
+  Rows::Row& row = need_row(index);
+  if (!row.listed) fail(Code::kNotFound, "task %d was removed", index);
+  return row;
 }
 
 void release(int32_t index) {
-  TaskSource* last = nullptr;
+  const TaskInfo* last = nullptr;
   {
     const std::lock_guard<std::mutex> hold(g_lock);
-    Row& row = g_rows[index];
-    if (--row.users > 0) return;
-    last = std::exchange(row.info, nullptr)->source;
+    if (!rows().release(index, &last)) return;
   }
-  last->end();
+  last->source->end();
 }
 
 }  // namespace
 
 void register_task(const TaskInfo& info) {
   const std::lock_guard<std::mutex> hold(g_lock);
-  if (g_count == kMaxTasks) fail(Code::kInternal, "task %s: more than %d tasks", info.name, kMaxTasks);
   if (info.num_costs < 1 || info.num_costs > kMaxTaskCosts)
     fail(Code::kInternal, "task %s: %d cost columns", info.name, info.num_costs);
   if (find(info.name) >= 0) fail(Code::kInternal, "task %s is registered twice", info.name);
-  g_rows[g_count++] = {&info, 0, true};
+  rows().add(&info);
 }
 
 int32_t add_task(TaskSource* source) {
   const TaskInfo& info = source->info();
   const std::lock_guard<std::mutex> hold(g_lock);
   if (find(info.name) >= 0) fail(Code::kArgument, "task %s: the name is taken", info.name);
-  if (g_count == kMaxTasks)
-    fail(Code::kRange, "task %s: more than %d tasks were added", info.name, kMaxTasks);
-  g_rows[g_count] = {&info, 1, true};
-  return g_count++;
+  return rows().add(&info);
 }
 
 void remove_task(int32_t index) {
   {
     const std::lock_guard<std::mutex> hold(g_lock);
-    need_row(index);
-    Row& row = g_rows[index];
-    if (!row.listed) fail_removed(index);
-    if (!row.info->source) fail(Code::kArgument, "task %s is the library's own", row.info->name);
+    Rows::Row& row = need_listed(index);
+    if (!row.what->source) fail(Code::kArgument, "task %s is the library's own", row.what->name);
     row.listed = false;
   }
   release(index);
 }
 
+bool task_listed(int32_t index) {
+  const std::lock_guard<std::mutex> hold(g_lock);
+  const Rows::Row* const row = rows().find(index);
+  return row && row->listed;
+}
+
 int32_t task_count() {
   const std::lock_guard<std::mutex> hold(g_lock);
-  return g_count;
+  return rows().given();
 }
 
 const TaskInfo& task_at(int32_t index) {
   const std::lock_guard<std::mutex> hold(g_lock);
-  need_row(index);
-  if (!g_rows[index].info) fail_removed(index);
-  return *g_rows[index].info;
+  return *need_row(index).what;
 }
 
 int32_t task_find(const char* name) {
@@ -116,19 +119,17 @@ int32_t task_find(const char* name) {
   const std::lock_guard<std::mutex> hold(g_lock);
   const int32_t i = find(name);
   if (i >= 0) return i;
-  const char* names[kMaxTasks];
-  int32_t count = 0;
-  for (int32_t k = 0; k < g_count; ++k)
-    if (g_rows[k].listed) names[count++] = g_rows[k].info->name;
-  fail(Code::kNotFound, "task %s: unknown%s", Quoted(name).text, Nearest(name, names, count).text);
+  Vector<const char*> names;
+  for (const Rows::Row& row : rows())
+    if (row.listed) names.push_back(row.what->name);
+  fail(Code::kNotFound, "task %s: unknown%s", Quoted(name).text,
+       Nearest(name, names.data(), static_cast<int32_t>(names.size())).text);
 }
 
 TaskRef::TaskRef(int32_t index) {
   const std::lock_guard<std::mutex> hold(g_lock);
-  need_row(index);
-  Row& row = g_rows[index];
-  if (!row.listed) fail_removed(index);
-  info_ = row.info;
+  Rows::Row& row = need_listed(index);
+  info_ = row.what;
   if (!info_->source) return;
   index_ = index;
   ++row.users;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/numbered.hpp"
 #include "base/option.hpp"
 #include "base/text.hpp"
 
@@ -11,15 +12,9 @@ namespace rdm {
 namespace {
 
 struct Added {
-  ObjectCopy* object;
+  ObjectCopy* object = nullptr;
   HostHooks hooks;
-  int32_t users;  // references, and one for the list
-  bool listed;    // not removed; what is removed stays until its last user goes
 };
-
-std::mutex g_lock;
-Added g_added[kMaxObjects];
-int32_t g_num_added = 0;
 
 constexpr int kNumTables = 5;
 struct Own {
@@ -39,29 +34,40 @@ const Own& own() {
   return tables;
 }
 
-// Under the lock.
-int32_t given() {
-  return own().count + g_num_added;
-}
-const Object* at(int32_t index) {
-  if (index < own().count) return &own().at(index);
-  return &g_added[index - own().count].object->object();
-}
-bool listed(int32_t index) {
-  return index < own().count || g_added[index - own().count].listed;
+std::mutex g_lock;
+// Under the lock; numbered behind our own.
+Numbered<Added>& added() {
+  static auto* const list = new Numbered<Added>(own().count);  // never ended: a pool may outlive all statics
+  return *list;
 }
 
 void release(int32_t index) {
-  ObjectCopy* last = nullptr;
-  HostHooks hooks;
+  Added last;
   {
     const std::lock_guard<std::mutex> hold(g_lock);
-    Added& added = g_added[index - own().count];
-    if (--added.users > 0) return;
-    last = std::exchange(added.object, nullptr);
-    hooks = added.hooks;
+    if (!added().release(index, &last)) return;
   }
-  host_delete(hooks, last);
+  host_delete(last.hooks, last.object);
+}
+
+void need_index(int32_t index) {
+  if (index < 0 || index >= added().given())
+    fail(Code::kRange, "object: %d is outside [0, %d)", index, added().given());
+}
+Numbered<Added>::Row& listed_row(int32_t index) {
+  Numbered<Added>::Row* const row = added().find(index);
+  if (!row || !row->listed) fail(Code::kNotFound, "object %d was removed", index);
+  return *row;
+}
+
+// Calls f(object, number) for all that are listed, until it returns true.
+template <class F>
+bool any_listed(F&& f) {
+  for (int32_t i = 0; i < own().count; ++i)
+    if (f(own().at(i), i)) return true;
+  for (const auto& row : added())
+    if (row.listed && f(row.what.object->object(), row.number)) return true;
+  return false;
 }
 
 // "mug" of "025_mug"; null: no number.
@@ -73,33 +79,35 @@ const char* without_number(const char* alias) {
 
 // Under the lock; -1: none. Names go before aliases, so that a short alias hides none.
 int32_t find(const char* name) {
-  for (int32_t i = 0; i < given(); ++i)
-    if (listed(i) && same_name(at(i)->name, name)) return i;
-  for (int32_t i = 0; i < given(); ++i)
-    if (listed(i) && at(i)->alias && same_name(at(i)->alias, name)) return i;
-  for (int32_t i = 0; i < given(); ++i) {
-    if (!listed(i)) continue;
-    const char* bare = without_number(at(i)->alias);
-    if (bare && same_name(bare, name)) return i;
-  }
-  return -1;
+  int32_t found = -1;
+  const auto take = [&](bool same, int32_t i) { return same && (found = i, true); };
+  any_listed([&](const Object& o, int32_t i) { return take(same_name(o.name, name), i); }) ||
+      any_listed([&](const Object& o, int32_t i) { return take(o.alias && same_name(o.alias, name), i); }) ||
+      any_listed([&](const Object& o, int32_t i) {
+        const char* bare = without_number(o.alias);
+        return take(bare && same_name(bare, name), i);
+      });
+  return found;
 }
 
 }  // namespace
 
 int32_t num_objects() {
   const std::lock_guard<std::mutex> hold(g_lock);
-  return given();
+  return added().given();
 }
 
 ObjectRef::ObjectRef(int32_t index) {
   const std::lock_guard<std::mutex> hold(g_lock);
-  if (index < 0 || index >= given()) fail(Code::kRange, "object: %d is outside [0, %d)", index, given());
-  if (!listed(index)) fail(Code::kNotFound, "object %d was removed", index);
-  object_ = at(index);
-  if (index < own().count) return;
+  need_index(index);
+  if (index < own().count) {
+    object_ = &own().at(index);
+    return;
+  }
+  Numbered<Added>::Row& row = listed_row(index);
+  object_ = &row.what.object->object();
   index_ = index;
-  ++g_added[index - own().count].users;
+  ++row.users;
 }
 
 ObjectRef::ObjectRef(ObjectRef&& other) noexcept
@@ -121,11 +129,11 @@ int32_t find_object(const char* name) {
   const int32_t i = find(name);
   if (i >= 0) return i;
   Vector<const char*> names;
-  for (int32_t k = 0; k < given(); ++k) {
-    if (!listed(k)) continue;
-    names.push_back(at(k)->name);
-    if (at(k)->alias) names.push_back(at(k)->alias);
-  }
+  any_listed([&](const Object& o, int32_t) {
+    names.push_back(o.name);
+    if (o.alias) names.push_back(o.alias);
+    return false;
+  });
   fail(Code::kNotFound, "object %s: unknown%s", Quoted(name).text,
        Nearest(name, names.data(), static_cast<int32_t>(names.size())).text);
 }
@@ -134,28 +142,23 @@ int32_t add_object(const Object& object) {
   check_object(object);
   const HostHooks hooks = host();
   ObjectCopy* copy = host_new<ObjectCopy>(hooks, object);
-  const char* taken = nullptr;
-  {
+  try {
     const std::lock_guard<std::mutex> hold(g_lock);
     for (const char* name : {object.name, object.alias})
-      if (name && !taken && find(name) >= 0) taken = name;
-    if (!taken && g_num_added < kMaxObjects) {
-      g_added[g_num_added] = {copy, hooks, 1, true};
-      return own().count + g_num_added++;
-    }
+      if (name && find(name) >= 0) fail(Code::kArgument, "object %s: the name is taken", Quoted(name).text);
+    return added().add({copy, hooks});
+  } catch (...) {
+    host_delete(hooks, copy);
+    throw;
   }
-  host_delete(hooks, copy);
-  if (taken) fail(Code::kArgument, "object %s: the name is taken", Quoted(taken).text);
-  fail(Code::kRange, "object %s: more than %d objects were added", Quoted(object.name).text, kMaxObjects);
 }
 
 void remove_object(int32_t index) {
   {
     const std::lock_guard<std::mutex> hold(g_lock);
-    if (index < 0 || index >= given()) fail(Code::kRange, "object: %d is outside [0, %d)", index, given());
-    if (index < own().count) fail(Code::kArgument, "object %s is the library's own", at(index)->name);
-    if (!listed(index)) fail(Code::kNotFound, "object %d was removed", index);
-    g_added[index - own().count].listed = false;
+    need_index(index);
+    if (index < own().count) fail(Code::kArgument, "object %s is the library's own", own().at(index).name);
+    listed_row(index).listed = false;
   }
   release(index);
 }

@@ -7,8 +7,6 @@
 
 namespace rdm {
 
-inline constexpr int32_t kMaxObjects = 1024;  // added in the life of a process
-
 int32_t num_objects();  // numbers that were given; those of removed objects count
 
 // While it lives, the object stays.

@@ -290,7 +290,7 @@ void Planner::roll_out(const Pool& pool, int32_t env) {
       for (int32_t k = 0; k < cost_dim_; ++k)
         c.cost[k] += static_cast<double>(b.cost[sz(i) * sz(cost_dim_) + sz(k)]);
       if (!b.terminated[i] && !b.truncated[i]) continue;
-      c.lost = (b.status[i] & (kStatusDiverged | kStatusBadAction)) != 0;
+      c.lost = (b.status[i] & (kStatusDiverged | kStatusBadAction | kStatusTask)) != 0;
       alive_[i] = 0;
       --alive;
     }
@@ -337,6 +337,7 @@ void Planner::move_centre() {
 
 void Planner::act(const Pool& pool, int32_t env, float* action, PlanInfo* info) {
   const FpMode mode;
+  rollouts_->need_same(pool, "pool", "the planner");
   if (!pool.running(env)) fail(Code::kState, "act: no episode runs in world %d; reset it first", env);
   const size_t count = sz(horizon_) * sz(action_dim_);
   PlanInfo out;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/numbered.hpp"
 #include "base/option.hpp"
 #include "base/text.hpp"
 
@@ -17,36 +18,44 @@ const Robot* const kOwn[] = {&kShadowHand,  &kAllegroHand, &kSchunkSvh,   &kBarr
 constexpr int32_t kNumOwn = static_cast<int32_t>(sizeof kOwn / sizeof kOwn[0]);
 
 struct Added {
-  RobotCopy* robot;
+  RobotCopy* robot = nullptr;
   HostHooks hooks;
-  int32_t users;  // references, and one for the list
-  bool listed;    // not removed; what is removed stays until its last user goes
 };
 
 std::mutex g_lock;
-Added g_added[kMaxRobots];
-int32_t g_num_added = 0;
-
-// Under the lock.
-const Robot* at(int32_t index) {
-  if (index < kNumOwn) return kOwn[index];
-  return &g_added[index - kNumOwn].robot->robot();
-}
-bool listed(int32_t index) {
-  return index < kNumOwn || g_added[index - kNumOwn].listed;
+// Under the lock; numbered behind our own.
+Numbered<Added>& added() {
+  static auto* const list = new Numbered<Added>(kNumOwn);  // never ended: a pool may outlive all statics
+  return *list;
 }
 
 void release(int32_t index) {
-  RobotCopy* last = nullptr;
-  HostHooks hooks;
+  Added last;
   {
     const std::lock_guard<std::mutex> hold(g_lock);
-    Added& added = g_added[index - kNumOwn];
-    if (--added.users > 0) return;
-    last = std::exchange(added.robot, nullptr);
-    hooks = added.hooks;
+    if (!added().release(index, &last)) return;
   }
-  host_delete(hooks, last);
+  host_delete(last.hooks, last.robot);
+}
+
+void need_index(int32_t index) {
+  if (index < 0 || index >= added().given())
+    fail(Code::kRange, "robot: %d is outside [0, %d)", index, added().given());
+}
+Numbered<Added>::Row& listed_row(int32_t index) {
+  Numbered<Added>::Row* const row = added().find(index);
+  if (!row || !row->listed) fail(Code::kNotFound, "robot %d was removed", index);
+  return *row;
+}
+
+// Calls f(robot, number) for all that are listed, until it returns true.
+template <class F>
+bool any_listed(F&& f) {
+  for (int32_t i = 0; i < kNumOwn; ++i)
+    if (f(*kOwn[i], i)) return true;
+  for (const auto& row : added())
+    if (row.listed && f(row.what.robot->robot(), row.number)) return true;
+  return false;
 }
 
 bool called(const Robot& robot, const char* name) {
@@ -55,27 +64,29 @@ bool called(const Robot& robot, const char* name) {
 
 // Under the lock; -1: none.
 int32_t find(const char* name) {
-  for (int32_t i = 0; i < kNumOwn + g_num_added; ++i)
-    if (listed(i) && called(*at(i), name)) return i;
-  return -1;
+  int32_t found = -1;
+  any_listed([&](const Robot& r, int32_t i) { return called(r, name) && (found = i, true); });
+  return found;
 }
 
 }  // namespace
 
 int32_t num_robots() {
   const std::lock_guard<std::mutex> hold(g_lock);
-  return kNumOwn + g_num_added;
+  return added().given();
 }
 
 RobotRef::RobotRef(int32_t index) {
   const std::lock_guard<std::mutex> hold(g_lock);
-  if (index < 0 || index >= kNumOwn + g_num_added)
-    fail(Code::kRange, "robot: %d is outside [0, %d)", index, kNumOwn + g_num_added);
-  if (!listed(index)) fail(Code::kNotFound, "robot %d was removed", index);
-  robot_ = at(index);
-  if (index < kNumOwn) return;
+  need_index(index);
+  if (index < kNumOwn) {
+    robot_ = kOwn[index];
+    return;
+  }
+  Numbered<Added>::Row& row = listed_row(index);
+  robot_ = &row.what.robot->robot();
   index_ = index;
-  ++g_added[index - kNumOwn].users;
+  ++row.users;
 }
 
 RobotRef::RobotRef(RobotRef&& other) noexcept
@@ -96,43 +107,37 @@ int32_t find_robot(const char* name) {
   const std::lock_guard<std::mutex> hold(g_lock);
   const int32_t i = find(name);
   if (i >= 0) return i;
-  const char* names[2 * (kNumOwn + kMaxRobots)];
-  int32_t count = 0;
-  for (int32_t k = 0; k < kNumOwn + g_num_added; ++k) {
-    if (!listed(k)) continue;
-    names[count++] = at(k)->name;
-    if (at(k)->alias) names[count++] = at(k)->alias;
-  }
-  fail(Code::kNotFound, "robot %s: unknown%s", Quoted(name).text, Nearest(name, names, count).text);
+  Vector<const char*> names;
+  any_listed([&](const Robot& r, int32_t) {
+    names.push_back(r.name);
+    if (r.alias) names.push_back(r.alias);
+    return false;
+  });
+  fail(Code::kNotFound, "robot %s: unknown%s", Quoted(name).text,
+       Nearest(name, names.data(), static_cast<int32_t>(names.size())).text);
 }
 
 int32_t add_robot(const Robot& robot) {
   check_robot(robot);
   const HostHooks hooks = host();
   RobotCopy* copy = host_new<RobotCopy>(hooks, robot);
-  const char* taken = nullptr;
-  {
+  try {
     const std::lock_guard<std::mutex> hold(g_lock);
     for (const char* name : {robot.name, robot.alias})
-      if (name && !taken && find(name) >= 0) taken = name;
-    if (!taken && g_num_added < kMaxRobots) {
-      g_added[g_num_added] = {copy, hooks, 1, true};
-      return kNumOwn + g_num_added++;
-    }
+      if (name && find(name) >= 0) fail(Code::kArgument, "robot %s: the name is taken", Quoted(name).text);
+    return added().add({copy, hooks});
+  } catch (...) {
+    host_delete(hooks, copy);
+    throw;
   }
-  host_delete(hooks, copy);
-  if (taken) fail(Code::kArgument, "robot %s: the name is taken", Quoted(taken).text);
-  fail(Code::kRange, "robot %s: more than %d robots were added", Quoted(robot.name).text, kMaxRobots);
 }
 
 void remove_robot(int32_t index) {
   {
     const std::lock_guard<std::mutex> hold(g_lock);
-    if (index < 0 || index >= kNumOwn + g_num_added)
-      fail(Code::kRange, "robot: %d is outside [0, %d)", index, kNumOwn + g_num_added);
+    need_index(index);
     if (index < kNumOwn) fail(Code::kArgument, "robot %s is the library's own", kOwn[index]->name);
-    if (!listed(index)) fail(Code::kNotFound, "robot %d was removed", index);
-    g_added[index - kNumOwn].listed = false;
+    listed_row(index).listed = false;
   }
   release(index);
 }

@@ -6,8 +6,6 @@
 
 namespace rdm {
 
-inline constexpr int32_t kMaxRobots = 1024;  // in the life of a process
-
 int32_t num_robots();  // numbers that were given; those of removed robots count
 
 // While it lives, the robot stays.

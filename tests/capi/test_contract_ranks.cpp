@@ -191,3 +191,82 @@ TEST(ContractRanks, OneThatDiesAndTheRestGoesOn) {
   EXPECT_EQ(checkpoint("two_state", "ppo_lag", 2, 2, path, "after"),
             checkpoint("two_state", "ppo_lag", 1, 4, "", "unbroken"));
 }
+
+namespace {
+
+// What one of two ranks is made with.
+struct RankMade {
+  uint64_t pool_seed = 0, seed = 0;
+  int32_t worlds = 4, horizon = 8, claimed = -1, autoreset = RDM_AUTORESET_SAME_STEP;
+  const char *algo = "ppo_lag", *settings = "", *pool_settings = "";
+};
+
+// The text that both ranks have after their first rollouts.
+std::string meet(const RankMade& first, const RankMade& second) {
+  Meeting meeting(2);
+  std::string texts[2];
+  each_rank(2, [&](int32_t rank) {
+    const RankMade& s = rank == 0 ? first : second;
+    rdm_ranks r = ranks_of(meeting, rank);
+    if (s.claimed >= 0) r.rank = s.claimed;
+    rdm_pool_config pc = pool_config(s.worlds);
+    pc.task = "two_state";
+    pc.seed = s.pool_seed;
+    pc.autoreset = s.autoreset;
+    pc.settings = s.pool_settings;
+    pc.num_threads = rank;  // may differ
+    rdm_pool* const pool = make_pool(pc);
+    EXPECT_EQ(rdm_pool_set_rank(pool, r.rank, r.ranks), RDM_OK);
+    EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK);
+    rdm_agent_config c;
+    EXPECT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+    EXPECT_EQ(rdm_agent_config_for_pool(&c, pool), RDM_OK);
+    const rdm_option small[] = {{"hidden", "8", 0},
+                                {"critic_hidden", "8", 0},
+                                {"horizon", nullptr, static_cast<double>(s.horizon)},
+                                {"blocks", nullptr, 4}};
+    c.options = small;
+    c.num_options = 4;
+    c.algo = s.algo;
+    c.seed = s.seed;
+    c.settings = s.settings;
+    c.num_threads = rank;
+    rdm_agent* agent = nullptr;
+    EXPECT_EQ(rdm_agent_create_ranked(&agent, &c, &r), RDM_OK) << rdm_last_error();
+    const rdm_result result = rdm_agent_rollout(agent, pool, nullptr);
+    EXPECT_TRUE(result == RDM_OK || result == RDM_STATE) << rdm_agent_error(agent);
+    if (result != RDM_OK) texts[rank] = rdm_agent_error(agent);
+    rdm_agent_destroy(agent);
+    rdm_pool_destroy(pool);
+  });
+  EXPECT_EQ(texts[0], texts[1]) << "both are told the same";
+  return texts[0];
+}
+
+}  // namespace
+
+TEST(ContractRanks, SetUpDifferentlyTheyStopAtOnce) {
+  const auto with = [](auto&& change) {
+    RankMade s;
+    change(s);
+    return s;
+  };
+  const std::pair<RankMade, const char*> rows[] = {
+      {with([](RankMade&) {}), ""},
+      {with([](RankMade& s) { s.pool_seed = 5; }), "ranks: pool seed: rank 1 has 5, rank 0 has 0"},
+      {with([](RankMade& s) { s.worlds = 8; }), "ranks: num_envs: rank 1 has 8, rank 0 has 4"},
+      {with([](RankMade& s) { s.claimed = 0; }),
+       "ranks: at the place of rank 1 is one that calls itself rank 0"},
+      {with([](RankMade& s) { s.horizon = 16; }), "ranks: horizon: rank 1 has 16, rank 0 has 8"},
+      {with([](RankMade& s) { s.seed = 7; }), "ranks: seed: rank 1 has 7, rank 0 has 0"},
+      {with([](RankMade& s) { s.algo = "focops"; }), "ranks: algo: rank 1 has another one than rank 0"},
+      {with([](RankMade& s) { s.settings = "learning_rate=1e-4"; }),
+       "ranks: option learning_rate: rank 1 has another one than rank 0"},
+      {with([](RankMade& s) { s.settings = "hidden=16"; }),
+       "ranks: option hidden: rank 1 has another one than rank 0"},
+      {with([](RankMade& s) { s.autoreset = RDM_AUTORESET_NEXT_STEP; }),
+       "ranks: pool autoreset: rank 1 has 1, rank 0 has 0"},
+      {with([](RankMade& s) { s.pool_settings = "noise.*=0.1"; }),
+       "ranks: pool options: rank 1 has another one than rank 0"}};
+  for (const auto& [second, text] : rows) EXPECT_EQ(meet(RankMade{}, second), text);
+}

@@ -121,6 +121,28 @@ TEST(Map, GridBoxAndTurnedBoxAgree) {
   EXPECT_EQ(grid[8], 1);
 }
 
+// A depth camera says 0 where it saw nothing, rdm_pool_render too: unprojected that is the camera's own place.
+TEST(Map, WhatIsNearerThanAVoxelIsNoObstacle) {
+  const MapHandle map(0.02);
+  const float origin[3] = {0, 0, 0.5f}, ahead[3] = {1, 0, 0}, pose[7] = {0, 0, 0.5f, 0, 0, 0, 1},
+              half[3] = {0.05f, 0.05f, 0.05f};
+  const float points[4][3] = {{1, 0, 0.5f}, {0, 0, 0.5f}, {0.015f, 0, 0.5f}, {0, -0.019f, 0.5f}};
+  ASSERT_EQ(rdm_map_insert(map.m, origin, points[0], 4, nullptr), RDM_OK);
+  float hit[3] = {}, p = 0;
+  int32_t found = 0;
+  ASSERT_EQ(rdm_map_raycast(map.m, origin, ahead, 5, 1, hit, &found), RDM_OK);
+  EXPECT_EQ(found, 1);
+  EXPECT_NEAR(hit[0], 1, 0.02);
+  ASSERT_EQ(rdm_map_query(map.m, origin, 1, &p), RDM_OK);
+  EXPECT_LT(p, 0.5f) << "the ray to the wall clears it";
+  ASSERT_EQ(rdm_map_meets(map.m, pose, half, &found), RDM_OK);
+  EXPECT_EQ(found, 0);
+  const float near[3] = {0, 0.03f, 0.5f};  // further than a voxel: it is one
+  ASSERT_EQ(rdm_map_insert(map.m, origin, near, 1, nullptr), RDM_OK);
+  ASSERT_EQ(rdm_map_query(map.m, near, 1, &p), RDM_OK);
+  EXPECT_GT(p, 0.5f);
+}
+
 TEST(Map, FilesAndBytesComeBack) {
   const std::string stem = ::testing::TempDir() + "redman_test_map_" + std::to_string(getpid());
   const MapHandle map(0.1), other(0.5);

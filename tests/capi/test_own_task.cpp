@@ -203,26 +203,6 @@ TEST(OwnTask, GoesOnFromAState) {
   EXPECT_EQ(rdm_pool_set_state(c.pool, -1, bytes.data(), size), RDM_FORMAT);
 }
 
-TEST(OwnTask, AnErrorOfOneWorldStopsNoOther) {
-  BallTask t("own_error");
-  const Registered made(t.def);
-  Rows rows("own_error", 2);
-  rows.step();
-  t.user.fault = Fault::kControlNan;
-  EXPECT_EQ(rdm_pool_step(rows.pool), RDM_ARGUMENT);
-  EXPECT_STREQ(rdm_last_error(), "task own_error: control: targets[0] is not finite or beyond 1e+06");
-  EXPECT_STREQ(rdm_pool_error(rows.pool), rdm_last_error());
-  t.user.fault = Fault::kJudgeNegative;
-  EXPECT_EQ(rdm_pool_step(rows.pool), RDM_RANGE);
-  EXPECT_STREQ(rdm_last_error(), "task own_error: judge: cost speed is -0.5, less than 0");
-  t.user.fault = Fault::kResetFails;
-  EXPECT_EQ(rdm_pool_reset(rows.pool, nullptr, nullptr), RDM_STATE);
-  EXPECT_STREQ(rdm_last_error(), "task own_error: reset: call not allowed in this state") << rdm_last_error();
-  t.user.fault = Fault::kNone;
-  EXPECT_EQ(rdm_pool_reset(rows.pool, nullptr, nullptr), RDM_OK);
-  rows.step(50);
-}
-
 TEST(OwnTask, ARowThatIsNotFiniteEndsTheEpisode) {
   for (const Fault fault : {Fault::kRowNan, Fault::kJudgeNan}) {
     BallTask t("own_nan", fault);
@@ -399,8 +379,9 @@ struct Arm {
 
 rdm_result arm_build(void* user, rdm_scene* scene, void*) {
   auto* arm = static_cast<Arm*>(user);
-  rdm_scene_robot robot{};
-  robot.struct_size = sizeof robot, robot.name = "arm", robot.gravity = 1;
+  rdm_scene_robot robot;
+  rdm_scene_robot_init(&robot, sizeof robot);
+  robot.name = "arm", robot.gravity = 1;
   rdm_robot_def d;
   rdm_robot_def_init(&d, sizeof d);
   rdm_result r = rdm_robot_find("ur5e", &robot.robot);

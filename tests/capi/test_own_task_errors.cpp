@@ -49,7 +49,8 @@ TEST(OwnTaskErrors, OfDescriptions) {
        [](auto& t) { t.fields[2].count = 0; }},
       {RDM_RANGE, "def.fields[2]: low 1 of paddle.position is not below high -1",
        [](auto& t) { t.fields[2].low = 1, t.fields[2].high = -1; }},
-      {RDM_RANGE, "def.num_costs: 0 is outside [1, 512]", [](auto& t) { t.def.num_costs = 0; }},
+      {RDM_RANGE, "def.num_costs: 0 is outside [1, 16]", [](auto& t) { t.def.num_costs = 0; }},
+      {RDM_RANGE, "def.num_costs: 17 is outside [1, 16]", [](auto& t) { t.def.num_costs = 17; }},
       {RDM_ARGUMENT, "def.costs[1].name: touch is there twice", [](auto& t) { t.costs[1].name = "touch"; }},
       {RDM_ARGUMENT, "def.costs[0].limit of touch is not finite", [](auto& t) { t.costs[0].limit = NAN; }},
       {RDM_ARGUMENT, "def.options[1].key: push is there twice", [](auto& t) { t.options[1].key = "push"; }},
@@ -60,6 +61,12 @@ TEST(OwnTaskErrors, OfDescriptions) {
        [](auto& t) { t.options[0].choices = "1|2"; }},
       {RDM_RANGE, "def.options[1].text: cross of mood is none of calm|wild",
        [](auto& t) { t.options[1].text = "cross"; }},
+      {RDM_RANGE, "def.options[0]: low -1e+300 or high 10 of push is outside [-2147483648, 2147483647]",
+       [](auto& t) { t.options[0].kind = RDM_INTEGER, t.options[0].low = -1e300; }},
+      {RDM_RANGE, "def.options[0]: low 0 or high 2.14748e+09 of push is outside [-2147483648, 2147483647]",
+       [](auto& t) { t.options[0].kind = RDM_INTEGER, t.options[0].high = 2147483648.0; }},
+      {RDM_RANGE, "def.options[0].number: 1e+12 of push is outside [0, 10], or no integer",
+       [](auto& t) { t.options[0].kind = RDM_INTEGER, t.options[0].number = 1e12; }},
       {RDM_RANGE, "def.options[0].kind: 9 of push is outside [0, 3]", [](auto& t) { t.options[0].kind = 9; }},
       {RDM_ARGUMENT, "def.options[2].kind: frequency, which every task has, is an RDM_NUMBER",
        [](auto& t) { t.options[2].kind = RDM_TEXT; }},
@@ -102,8 +109,9 @@ rdm_result simple_scene(rdm_scene* scene) {
   rdm_body_def body{};
   body.struct_size = sizeof body, body.name = "ball", body.shapes = &ball, body.num_shapes = 1, body.mass = 1;
   if (const rdm_result r = rdm_scene_add_body(scene, &body, nullptr)) return r;
-  rdm_scene_robot hand{};
-  hand.struct_size = sizeof hand, hand.name = "hand", hand.p[2] = 1;
+  rdm_scene_robot hand;
+  rdm_scene_robot_init(&hand, sizeof hand);
+  hand.name = "hand", hand.p[2] = 1;
   if (const rdm_result r = rdm_robot_find("shadow_hand", &hand.robot)) return r;
   return rdm_scene_add_robot(scene, &hand, nullptr);
 }
@@ -158,8 +166,9 @@ std::function<rdm_result(rdm_scene*)> with_body(std::function<void(rdm_body_def&
 std::function<rdm_result(rdm_scene*)> with_robot(std::function<void(rdm_scene_robot&)> change) {
   return [change](rdm_scene* scene) {
     if (const rdm_result r = simple_scene(scene)) return r;
-    rdm_scene_robot hand{};
-    hand.struct_size = sizeof hand, hand.name = "other", hand.p[0] = 1;
+    rdm_scene_robot hand;
+    rdm_scene_robot_init(&hand, sizeof hand);
+    hand.name = "other", hand.p[0] = 1;
     rdm_robot_find("shadow_hand", &hand.robot);
     change(hand);
     return rdm_scene_add_robot(scene, &hand, nullptr);
@@ -221,7 +230,10 @@ TEST(OwnTaskErrors, OfScenes) {
          s.num_points = 4;
          s.points = flat;
        })},
-      {RDM_RANGE, "robot: -1 is outside [0, 18)", with_robot([](auto& r) { r.robot = -1; })},
+      {RDM_ARGUMENT,
+       "robot.robot of other: left out: of rdm_robot_find, in a struct that rdm_scene_robot_init has filled",
+       with_robot([](auto& r) { r.robot = -1; })},
+      {RDM_RANGE, "robot: 99999 is outside [0, 18)", with_robot([](auto& r) { r.robot = 99999; })},
       {RDM_ARGUMENT, "robot.name is NULL", with_robot([](auto& r) { r.name = nullptr; })},
       {RDM_ARGUMENT, "scene: the name hand is taken", with_robot([](auto& r) { r.name = "hand"; })},
       {RDM_ARGUMENT, "robot.struct_size: 3 is less than 112", with_robot([](auto& r) { r.struct_size = 3; })},
@@ -355,7 +367,7 @@ TEST(OwnTaskErrors, OfCallsInAWorld) {
   for (const BadCall& row : rows) {
     Scripted script{simple_scene, row.reset};
     EXPECT_EQ(try_task(&script), row.code);
-    const std::string wanted = std::string("task t: reset: ") + row.text;
+    const std::string wanted = std::string("world 0: task t: reset: ") + row.text;
     EXPECT_EQ(std::string(rdm_last_error()).substr(0, wanted.size()), wanted);
     std::printf("%s\n", rdm_last_error());
   }

@@ -49,9 +49,10 @@ inline rdm_result grasp_build(void*, rdm_scene* scene, void* instance) {
   for (const char* name : {"hand", "object", "ground"}) OWN_TRY(rdm_scene_add_material(scene, name));
   OWN_TRY(rdm_scene_set_friction(scene, "hand", "hand", 0));
   OWN_TRY(rdm_scene_set_friction(scene, "hand", "object", 0.75));
-  rdm_scene_robot hand{};
-  hand.struct_size = sizeof hand, hand.name = "right", hand.material = "hand";
-  hand.p[2] = 0.1, hand.q[1] = 1;
+  rdm_scene_robot hand;
+  OWN_TRY(rdm_scene_robot_init(&hand, sizeof hand));
+  hand.name = "right", hand.material = "hand";
+  hand.p[2] = 0.1, hand.q[1] = 1, hand.q[3] = 0;
   OWN_TRY(rdm_robot_find("shadow_hand", &hand.robot));
   OWN_TRY(rdm_scene_add_robot(scene, &hand, &ids->hand));
   rdm_shape_def box{};

@@ -88,6 +88,7 @@ class Status(enum.IntFlag):
     CONTACTS = 1  # contacts beyond contacts_max were left out
     DIVERGED = 2  # a value was not finite: the episode was truncated
     BAD_ACTION = 4  # the row of actions was not finite: likewise
+    TASK = 8  # a function of a host's own task failed: likewise
 
 
 class BaselineKind(enum.IntEnum):
@@ -1234,7 +1235,9 @@ class rdm_ranks(Structure):
     each takes its own part. A state that was saved by some ranks goes on with any other number that `blocks` allows.
       - CANCELLED: a hook failed (a rank is gone), or rdm_agent_cancel was called on one rank, which stops all of them at one
         place. The handles are good; after a failed hook, what ranks have learned may differ: load a state that was saved.
-      - STATE: ranks are out of step; or one has drifted, which each update looks for: the text names it.
+      - STATE: ranks are set up differently, which the first exchange looks for (the rank and number of ranks, the library's
+        version, seed, sizes and options of agent and pool); or are out of step; or one has drifted, which each update looks
+        for. The text names what and whose.
       - a rank whose call fails otherwise leaves the others waiting in their hooks, unless it ends and these notice.
 
     struct_size: bytes
@@ -2012,8 +2015,8 @@ class rdm_body_def(Structure):
 
 
 class rdm_scene_robot(Structure):
-    """struct_size: bytes
-    robot: of rdm_robot_find
+    """struct_size: bytes, set by rdm_scene_robot_init
+    robot: of rdm_robot_find; default -1: left out
     own: a robot of this scene alone, in the place of `robot`; NULL
     name: begins, with '_', the names of its links, joints and shapes; unique
     material: of its shapes; NULL: "default"
@@ -2023,7 +2026,7 @@ class rdm_scene_robot(Structure):
     free_base: flag: the base moves
     left: flag: the mirror image
     gravity: flag: its links feel gravity
-    reserved: 0
+    filled: flag, set by rdm_scene_robot_init: without it a robot of 0 was left out
     """
 
     struct_size: int
@@ -2037,7 +2040,7 @@ class rdm_scene_robot(Structure):
     free_base: int
     left: int
     gravity: int
-    reserved: int
+    filled: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("robot", c_int32),
@@ -2050,7 +2053,7 @@ class rdm_scene_robot(Structure):
         ("free_base", c_int32),
         ("left", c_int32),
         ("gravity", c_int32),
-        ("reserved", c_int32),
+        ("filled", c_int32),
     ]
 
 
@@ -3109,14 +3112,16 @@ FUNCTIONS: dict[str, Function] = {
         {"seeds": Rows("uint64", ("num_envs",)), "mask": Rows("uint8", ("num_envs",))}, False,
         """Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new streams: the seed
         alone, whatever the world's number, so that seed s gives what a pool of one world created with seed s has. NULL: go
-        on with the worlds' own, which after create is (config.seed, i). Costs are 0 afterwards.
+        on with the worlds' own, which after create is (config.seed, i). Costs are 0 afterwards. Where a host's own task
+        fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand as if they were never reset,
+        the others have begun.
         """),
     "rdm_pool_step": Function(
         c_int32, {"p": c_void_p},
         {}, False,
         """One control step of every world: reads action, writes all the rest. STATE before the first reset, and with
-        autoreset off while an ended world was not reset. Worlds that diverge or get an action that is not finite
-        are truncated and flagged, with reward and cost 0 in that step; the call returns OK.
+        autoreset off while an ended world was not reset. Worlds that diverge, get an action that is not finite, or whose
+        task of a host's own fails, are truncated and flagged, with reward and cost 0 in that step; the call returns OK.
         With option action_repeat it is that many control steps with the same action, or as many as the episode has left:
         reward and cost are sums over them, success is set if any had it, status has the bits of all, the other rows are
         those after the last.
@@ -3458,7 +3463,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_robot_create": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_robot_def)},
         {}, True,
-        """Adds a robot under a number that no other gets; *out is for rdm_robot_at and what follows here. ARGUMENT, RANGE: the
+        """Adds a robot under a number that no other gets, also later: 2^31 of them in a process; what a removed one took comes
+        back. *out is for rdm_robot_at and what follows here. ARGUMENT, RANGE: the
         text names the row; a name that is taken is an ARGUMENT. Moments must be positive and keep the triangle rule.
         """),
     "rdm_robot_remove": Function(
@@ -3478,7 +3484,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_robot_get": Function(
         c_int32, {"robot": c_int32, "io": POINTER(rdm_robot_def)},
         {}, True,
-        """What rdm_robot_create took, but for the arrays, which are NULL here; texts live as long as the robot."""),
+        """What rdm_robot_create took, but for the arrays, which are NULL here."""),
     "rdm_robot_link_at": Function(
         c_int32, {"robot": c_int32, "i": c_int32, "out": POINTER(rdm_robot_link)},
         {}, True,
@@ -3532,14 +3538,14 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_object_get": Function(
         c_int32, {"object": c_int32, "io": POINTER(rdm_object_def)},
         {}, True,
-        """What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which are NULL here; texts
-        live as long as the object. Shape i < num_shapes is in the frame at the centre of mass.
+        """What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which are NULL here.
+        Shape i < num_shapes is in the frame at the centre of mass; the points of a hull live as long as the object.
         """),
     "rdm_object_shape_at": Function(
         c_int32, {"object": c_int32, "i": c_int32, "out": POINTER(rdm_shape_def)},
         {}, True,
-        """What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which are NULL here; texts
-        live as long as the object. Shape i < num_shapes is in the frame at the centre of mass.
+        """What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which are NULL here.
+        Shape i < num_shapes is in the frame at the centre of mass; the points of a hull live as long as the object.
         """),
     "rdm_object_create": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_object_def)},
@@ -3559,6 +3565,16 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"code": c_int32, "text": c_char_p},
         {}, True,
         """Sets rdm_last_error of this thread to `text` and returns `code`."""),
+    "rdm_pool_world_error": Function(
+        c_char_p, {"p": c_void_p, "env": c_int32},
+        {}, True,
+        """What failed last in world env of the pool: "world 3: task press: judge: sensor lost", at most 255 bytes; "" at first, and
+        for the library's own tasks. Kept until the world's next failure; no part of a saved state.
+        """),
+    "rdm_scene_robot_init": Function(
+        c_int32, {"robot": POINTER(rdm_scene_robot), "size": c_size_t},
+        {}, True,
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
     "rdm_scene_number": Function(
         c_int32, {"scene": c_void_p, "key": c_char_p, "value": c_void_p},
         {}, True,
@@ -3804,7 +3820,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"m": c_void_p, "origin": c_void_p, "points": c_void_p, "count": c_size_t, "dropped": c_void_p},
         {"origin": Rows("float32", ("3",)), "points": Rows("float32", ("count", "3"))}, True,
         """One scan: rays from origin [3] to points [count][3]. Each voxel changes once: up where a ray ends, else down where
-        rays pass. Points that are not finite are left out. A full map grows no more: the call returns OK, *dropped (may
+        rays pass. Points that are not finite are left out, and those nearer to the origin than a voxel's side: a depth of 0
+        says that nothing was seen. A full map grows no more: the call returns OK, *dropped (may
         be NULL) says how many voxels were left out, and voxels that exist go on being updated.
         """),
     "rdm_map_scan": Function(

@@ -132,8 +132,9 @@ rdm_result build(void* user, rdm_scene* scene, void*) {
   if (const rdm_result r = rdm_scene_add_static(scene, &ground)) return r;
   const double p[3] = {0, 0, shown.lift}, q[4] = {};
   if (!shown.robot) return rdm_scene_add_object(scene, shown.index, "object", p, q, 1, nullptr);
-  rdm_scene_robot robot{};
-  robot.struct_size = sizeof robot, robot.robot = shown.index, robot.name = "it";
+  rdm_scene_robot robot;
+  if (const rdm_result r = rdm_scene_robot_init(&robot, sizeof robot)) return r;
+  robot.robot = shown.index, robot.name = "it";
   robot.p[2] = shown.lift;
   return rdm_scene_add_robot(scene, &robot, nullptr);
 }

@@ -56,9 +56,11 @@ Recording parse_recording(const ZipReader& zip) {
               state = array_at(zip, "state", "|u1", 2);
   r.action_dim = static_cast<size_t>(action.shape.shape[1]);
   r.action.resize(static_cast<size_t>(action.shape.bytes()) / sizeof(float));
-  std::memcpy(r.action.data(), action.bytes.data() + action.begin, r.action.size() * sizeof(float));
+  if (!r.action.empty())
+    std::memcpy(r.action.data(), action.bytes.data() + action.begin, r.action.size() * sizeof(float));
   r.begin.resize(static_cast<size_t>(begin.shape.shape[0]));
-  std::memcpy(r.begin.data(), begin.bytes.data() + begin.begin, r.begin.size() * sizeof(uint64_t));
+  if (!r.begin.empty())
+    std::memcpy(r.begin.data(), begin.bytes.data() + begin.begin, r.begin.size() * sizeof(uint64_t));
   r.state_bytes = static_cast<size_t>(state.shape.shape[1]);
   r.state = state.bytes.substr(state.begin);
   if (r.begin.size() < 2 || r.begin.size() > size_t{kMostEpisodes} + 1 || r.begin[0] != 0 ||

@@ -26,7 +26,7 @@
 namespace rdm {
 namespace {
 
-constexpr double kMinMemory = 1u << 20, kMaxMemory = 64.0 * (1u << 30);  // bytes; more than 32 bits hold
+constexpr uint64_t kMinMemory = 1u << 20, kMaxMemory = uint64_t{64} << 30;  // bytes; more than 32 bits hold
 // The workspace takes about a quarter of the memory, and never more than this many voxels of a scan.
 constexpr size_t kBytesPerKey = 40, kMaxKeys = 1u << 22;
 
@@ -40,7 +40,9 @@ void check_range(const char* name, double v, double low, double high) {
 
 void check(const OccupancyConfig& c) {
   check_range("resolution", c.resolution, 0.001, 10);
-  check_range("memory", static_cast<double>(c.memory), kMinMemory, kMaxMemory);
+  if (c.memory < kMinMemory || c.memory > kMaxMemory)
+    fail(Code::kRange, "memory: %llu is outside [%llu, %llu]", static_cast<unsigned long long>(c.memory),
+         static_cast<unsigned long long>(kMinMemory), static_cast<unsigned long long>(kMaxMemory));
   check_range("max_range", c.max_range, 0, 1e6);
   check_range("hit", c.hit, 0.5, 0.999);
   check_range("miss", c.miss, 0.001, 0.5);
@@ -151,11 +153,13 @@ uint64_t Occupancy::insert(const Vec3& origin, const float* points, size_t count
   const uint64_t before = dropped_;
   const auto point = [&](size_t i) { return Vec3{points[3 * i], points[3 * i + 1], points[3 * i + 2]}; };
   const auto near = [&](const Vec3& p) { return max_range_ == 0 || norm(p - origin) <= max_range_; };
+  // what a depth of 0 becomes, a sensor's word for nothing, and what no ray leads to
+  const auto at_eye = [&](const Vec3& p) { return norm(p - origin) < tree_->getResolution(); };
   for (size_t begin = 0, end = 0; begin < count; begin = end) {
     // ends of rays first: what is occupied in this scan is not free in it
     set_.shrink(0);
     for (; end < count && set_.size() < set_.capacity() / 2; ++end)
-      if (const Vec3 p = point(end); lattice.key(p, &key) && near(p)) set_.add(pack(key));
+      if (const Vec3 p = point(end); lattice.key(p, &key) && near(p) && !at_eye(p)) set_.add(pack(key));
     const size_t ends = set_.size();
     apply(0, ends, hit_);
     const auto pass = [&](const VoxelKey& at, double) {
@@ -168,7 +172,7 @@ uint64_t Occupancy::insert(const Vec3& origin, const float* points, size_t count
     };
     for (size_t i = begin; i < end; ++i) {
       Vec3 p = point(i);
-      if (!finite(p)) continue;
+      if (!finite(p) || at_eye(p)) continue;
       if (!near(p)) p = origin + max_range_ / norm(p - origin) * (p - origin);
       VoxelKey last;
       if (!lattice.key(p, &last)) continue;
