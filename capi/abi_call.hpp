@@ -156,6 +156,7 @@ inline void* aligned_scratch(void* scratch, size_t size, size_t bytes) {
 inline constexpr size_t kFirstBuildSize = offsetof(rdm_build, differs);
 inline constexpr size_t kFirstSpecSize = offsetof(rdm_spec, action_repeat);
 inline constexpr size_t kFirstEpochSize = offsetof(rdm_epoch, cost_signal);
+inline constexpr size_t kFirstTransitionSize = offsetof(rdm_transition, status);
 inline constexpr size_t kFirstAgentConfigSize = offsetof(rdm_agent_config, settings);
 #ifdef RDM_EXPERIMENTAL
 inline constexpr size_t kFirstRecordingConfigSize = offsetof(rdm_recording_config, num_points);

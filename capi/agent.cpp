@@ -96,6 +96,7 @@ DecisionBuffers carve_decision(Arena& arena, const AgentConfig& c) {
   d.terminated = arena.make<uint8_t>(n);
   d.truncated = arena.make<uint8_t>(n);
   d.success = arena.make<uint8_t>(n);
+  d.status = arena.make<uint32_t>(n);
   return d;
 }
 
@@ -236,7 +237,7 @@ rdm_result rdm_agent_pretrain(rdm_agent* a, const rdm_points* points, const uint
 
 rdm_result rdm_agent_record(rdm_agent* a, const rdm_transition* t) {
   return call_on(a, [&] {
-    const auto in = read_struct(t, sizeof(rdm_transition), rdm_transition{}, "transition");
+    const auto in = read_struct(t, kFirstTransitionSize, rdm_transition{}, "transition");
     need(in.reward, "transition.reward");
     if (a->agent->config().cost_dim > 0) need(in.cost, "transition.cost");
     Transition x;
@@ -248,6 +249,7 @@ rdm_result rdm_agent_record(rdm_agent* a, const rdm_transition* t) {
     x.success = in.success;
     x.final_obs = in.final_obs;
     x.steps = in.steps;
+    x.status = in.status;
     a->agent->record(x);
   });
 }
@@ -299,6 +301,14 @@ void write_epoch(rdm_epoch* io, const Epoch& e) {
   out.value_cost = e.value_cost;
   out.passes = e.passes;
   out.cost_signal = e.cost_signal;
+  out.flags = e.flags;
+  out.skipped_gradients = e.skipped_gradients;
+  out.invalid_rows = e.invalid_rows;
+  out.diverged = e.diverged;
+  out.contacts_left_out = e.contacts_left_out;
+  out.bad_actions = e.bad_actions;
+  out.task_failed = e.task_failed;
+  out.unconverged = e.unconverged;
   write_struct(io, out, kFirstEpochSize, "io");
 }
 }  // namespace rdm::capi
@@ -315,6 +325,10 @@ rdm_result rdm_agent_update(rdm_agent* a, const float* last_obs, rdm_epoch* io) 
 
 void rdm_agent_cancel(rdm_agent* a) {
   if (is_handle(a)) a->agent->cancel();
+}
+
+rdm_result rdm_agent_discard(rdm_agent* a) {
+  return call_on(a, [&] { a->agent->discard(); });
 }
 
 rdm_result rdm_agent_set(rdm_agent* a, const rdm_option* option) {

@@ -53,6 +53,7 @@ struct DecisionBuffers {
   float* cost = nullptr;     // [num_envs][cost_dim]
   int32_t* steps = nullptr;  // [num_envs]
   uint8_t *mask = nullptr, *valid = nullptr, *terminated = nullptr, *truncated = nullptr, *success = nullptr;
+  uint32_t* status = nullptr;  // [num_envs] of the decision
 };
 
 struct rdm_agent {

@@ -34,6 +34,7 @@ void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat, bool raw_costs)
   std::fill_n(d.cost, n * costs, 0.0f);
   std::fill_n(d.steps, n, 0);
   std::fill_n(d.success, n, uint8_t{0});
+  std::fill_n(d.status, n, uint32_t{0});
   for (size_t i = 0; i < n; ++i) {
     d.mask[i] = d.valid[i] = 1;
   }
@@ -46,6 +47,7 @@ void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat, bool raw_costs)
       if (only_reset) d.valid[i] = 0;  // next-step mode, or a reset that had failed before
       d.terminated[i] = b.terminated[i] && !only_reset;
       d.truncated[i] = b.truncated[i] && !only_reset;
+      d.status[i] |= b.status[i];
       if (d.valid[i]) {
         d.reward[i] += b.reward[i];
         for (size_t k = 0; k < costs; ++k)
@@ -101,6 +103,7 @@ void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
   t.valid = d.valid;
   t.success = d.success;
   t.steps = d.steps;
+  t.status = d.status;
   try {
     while (agent.missing() > 0) {
       agent.check_cancel();

@@ -101,8 +101,7 @@ void Agent::read_live() {
   imitation_.read_live(resolved_.options);
   warm_epochs_ = resolved_.options.integer("warm_epochs");
   schedule_.read_live(resolved_.options);
-  if (resolved_.num_limited > 0 && resolved_.column[0] == 0)
-    resolved_.limit[0] = resolved_.options.number("cost_limit");
+  if (resolved_.num_limited > 0 && resolved_.column[0] == 0) resolved_.limit[0] = limit_of_first(resolved_);
 }
 
 void Agent::set_option(const OptionInput& option) {
@@ -111,13 +110,18 @@ void Agent::set_option(const OptionInput& option) {
   for (int32_t i = 0; i < o.count(); ++i)
     if (same_name(o.spec(i).key, option.key) && !o.spec(i).live)
       fail(Code::kState, "agent option %s: fixed at creation", o.spec(i).key);
-  const double limit = o.number("cost_limit");
-  o.set(option, "agent");
-  if ((limit < 0) != (o.number("cost_limit") < 0)) {
-    o.set({"cost_limit", nullptr, limit}, "agent");
-    fail(Code::kState, "agent option cost_limit: column 0 was created %s a limit",
-         limit < 0 ? "without" : "with");
+  if (same_name("cost_limit", option.key) && resolved_.rate_steps > 0)
+    fail(Code::kState, "agent option cost_limit: the limit on column 0 is cost_limit_per_step");
+  for (const char* key : {"cost_limit", "cost_limit_per_step"}) {
+    if (!same_name(key, option.key)) continue;
+    const double limit = o.number(key);
+    o.set(option, "agent");
+    if ((limit < 0) == (o.number(key) < 0)) return read_live();
+    o.set({key, nullptr, limit}, "agent");
+    fail(Code::kState, "agent option %s: column 0 was created %s%s", key, limit < 0 ? "without" : "with",
+         same_name(key, "cost_limit") ? " a limit" : " it");
   }
+  o.set(option, "agent");
   read_live();
 }
 
@@ -127,6 +131,7 @@ bool Agent::raw_costs() const {
 
 void Agent::act(const float* obs, bool sample, float* action, const PointRows& clouds) {
   const FpMode mode;
+  if (sample && collector_.idle()) check_cancel();
   if (sample && imitation_.wanted() && !imitation_.has_rows())
     fail(Code::kState, "act: option imitation needs a recording: rdm_agent_set_recording comes first");
   collector_.act(obs, sample, action, clouds);
@@ -148,17 +153,19 @@ void Agent::record(const Transition& t) {
 
 void Agent::update(const float* last_obs, Epoch* out) {
   const FpMode mode;
+  hear_cancel();
   if (missing() > 0) fail(Code::kState, "update: %d decisions are missing in this horizon", missing());
   if (!last_obs) fail(Code::kArgument, "last_obs: NULL");
   check_rows("last_obs", last_obs, nullptr, resolved_.config.num_envs, resolved_.obs_dim());
   try {
-    check_cancel();
     collector_.settle();
     collector_.estimate(last_obs);
     const EpisodeStats stats = collector_.episodes().stats();
+    const EpochTotals totals = collector_.totals();
     const bool warm = warming();
     imitation_.begin_epoch(std::max(0, epoch_ - warm_epochs_));
-    if (!warm) begin_epoch(stats, epoch_ + 1);
+    warn_of_limits(stats);
+    if (!warm) begin_epoch(judge(resolved_, stats, totals), epoch_ + 1);
     const double rate = warm ? 0 : schedule_.rate(epoch_);
     const int64_t skipped = learner_.skipped();
     learned_ = Learned();
@@ -177,7 +184,9 @@ void Agent::update(const float* last_obs, Epoch* out) {
     if (!warm) schedule_std(nets_, resolved_.options, epoch_);
     if (!warm) average_actor(nets_);
     Epoch e;
-    fill_epoch(stats, rate, &e);
+    fill_episodes(stats, totals, e);
+    fill_counts(totals, learner_.skipped() - skipped, e);
+    fill_learned(rate, e);
     workers_.ranks().agree(learned_hash());
     if (out) *out = e;
   } catch (...) {
@@ -187,7 +196,30 @@ void Agent::update(const float* last_obs, Epoch* out) {
   drop_horizon();
 }
 
-void Agent::begin_epoch(const EpisodeStats&, int32_t) {
+// A cancel drops what was collected, full or not.
+void Agent::hear_cancel() {
+  try {
+    check_cancel();
+  } catch (...) {
+    drop_horizon();
+    throw;
+  }
+}
+
+void Agent::discard() {
+  drop_horizon();
+  cancel_.take();
+}
+
+void Agent::warn_of_limits(const EpisodeStats& stats) {
+  if (warned_ || !lacks_length(resolved_, stats)) return;
+  warned_ = true;
+  log(resolved_.config.hooks, LogLevel::kWarning,
+      "update: no episode has ended and none has a length, so limits on an episode's cost cannot be judged, "
+      "only broken by those that run; give max_steps, or option episode_steps or cost_limit_per_step");
+}
+
+void Agent::begin_epoch(const Judged&, int32_t) {
   follow_reward();
 }
 
@@ -219,13 +251,13 @@ BatchSums Agent::pass(const PolicyLoss* policy) {
   return sums;
 }
 
-double Agent::violation(const EpisodeStats& stats, int32_t i) const {
-  const double gap = stats.finished > 0 ? stats.charged_cost[resolved_.column[i]] - resolved_.limit[i] : 0;
+double Agent::violation(const Judged& costs, int32_t i) const {
+  const double gap = costs.known[i] ? costs.excess(i) : 0;
   const char* scale = resolved_.options.text("violation_scale");
   if (std::strcmp(scale, "raw") == 0) return gap;
   if (std::strcmp(scale, "discount") == 0)
     return gap * (1 - elementary::pow(resolved_.options.number("discount"), resolved_.action_repeat));
-  return gap / std::max(1.0, stats.length / resolved_.action_repeat);
+  return gap / std::max(1.0, costs.steps[i] / resolved_.action_repeat);
 }
 
 void Agent::learn() {
@@ -389,30 +421,54 @@ uint64_t Agent::learned_hash() const {
   return hash;
 }
 
-void Agent::fill_epoch(const EpisodeStats& stats, double rate, Epoch* out) {
-  Epoch e;
-  e.epoch = epoch_;
-  e.env_steps = collector_.env_steps();
+void Agent::fill_episodes(const EpisodeStats& stats, const EpochTotals& totals, Epoch& e) const {
   e.episodes = stats.finished;
   e.ret = stats.ret;
-  std::memcpy(e.cost, stats.cost, sizeof e.cost);
-  e.cost_per_step = stats.cost_per_step;
+  std::copy_n(stats.cost, resolved_.config.cost_dim, e.cost);
+  const bool by_rate = resolved_.rate_steps > 0 || stats.finished == 0;
+  e.cost_per_step = by_rate ? totals.rate(0) : stats.cost_per_step;
   e.length = stats.length;
   e.fall_rate = stats.fall_rate;
   e.success_rate = stats.success_rate;
+  if (stats.finished == 0) e.flags |= kEpochNoEpisode;
+}
+
+void Agent::fill_counts(const EpochTotals& totals, int64_t skipped, Epoch& e) const {
+  const auto count = [&](int64_t& to, int64_t n, EpochFlag flag) {
+    to = n;
+    if (n > 0) e.flags |= flag;
+  };
+  count(e.skipped_gradients, skipped, kEpochSkippedGradients);
+  count(e.invalid_rows, totals.invalid, kEpochInvalidRows);
+  if (totals.cut > 0) e.flags |= kEpochCut;
+  count(e.contacts_left_out, totals.status[0], kEpochContacts);
+  count(e.diverged, totals.status[1], kEpochDiverged);
+  count(e.bad_actions, totals.status[2], kEpochBadAction);
+  count(e.task_failed, totals.status[3], kEpochTask);
+  count(e.unconverged, totals.status[4], kEpochSolver);
+}
+
+void Agent::fill_learned(double rate, Epoch& e) {
+  e.epoch = epoch_;
+  e.env_steps = collector_.env_steps();
   for (int32_t i = 0; i < resolved_.num_limited; ++i) e.multiplier[resolved_.column[i]] = cost_weight(i);
   fill_spread(e);
-  e.kl = learned_.last_kl;
   e.learning_rate = rate;
+  e.passes = learned_.passes;
+  e.cost_signal = raw_costs();
+  if (valid_rows() == 0) {
+    for (double* x : {&e.kl, &e.loss_policy, &e.loss_reward_value, &e.loss_cost_value, &e.clip_fraction,
+                      &e.value_reward, &e.value_cost})
+      *x = kNothing;
+    return;
+  }
+  e.kl = learned_.last_kl;
   e.loss_policy = learned_.mean.loss;
   e.loss_reward_value = learned_.mean.reward_loss;
   e.loss_cost_value = learned_.mean.cost_loss;
   e.clip_fraction = learned_.mean.clipped;
   e.value_reward = collector_.mean_value(false);
   if (rollout().num_costs > 0) e.value_cost = collector_.mean_value(true);
-  e.passes = learned_.passes;
-  e.cost_signal = raw_costs();
-  *out = e;
 }
 
 bool Agent::tensor(int32_t index, TensorInfo* out) {

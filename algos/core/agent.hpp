@@ -74,7 +74,9 @@ class Agent {
   // Rollouts take magnitudes in the place of costs: option cost_signal.
   bool raw_costs() const;
   void drop_horizon() { collector_.drop(); }  // after a cancel: forget what was collected
-  void cancel() { cancel_.set(); }            // from any thread or signal handler
+  // From any state back to between epochs: without a begun horizon, and without a cancel that waits.
+  void discard();
+  void cancel() { cancel_.set(); }  // from any thread or signal handler
   // Error(kCancelled) once after cancel().
   void check_cancel() { cancel_.check(); }
 
@@ -113,7 +115,7 @@ class Agent {
   virtual const PolicyLoss& policy_loss() const = 0;
   // After advantages were estimated, before the policy step: moves multipliers, sets gain and linear of the
   // rollout. Default: the reward advantage. epoch counts from 1.
-  virtual void begin_epoch(const EpisodeStats& stats, int32_t epoch);
+  virtual void begin_epoch(const Judged& costs, int32_t epoch);
   // gain becomes the reward advantage, linear 0.
   void follow_reward();
   // The steps of policy and critics. Default: passes over shuffled minibatches, stopped early by KL.
@@ -151,8 +153,9 @@ class Agent {
   // Of all ranks.
   int32_t valid_rows() const { return collector_.listed().rows; }
   const Batch& whole_batch() const { return collector_.listed(); }
-  // J_c - limit of limited cost i in the units of a mean over decisions (option violation_scale).
-  double violation(const EpisodeStats& stats, int32_t i) const;
+  // J_c - limit of limited cost i in the units of a mean over decisions (option violation_scale); 0, at the
+  // limit, while J_c is not known.
+  double violation(const Judged& costs, int32_t i) const;
   const Rollout& rollout() const { return collector_.rollout(); }
 
  private:
@@ -162,7 +165,11 @@ class Agent {
   void need_clouds(const DemoRows& demo) const;
   // action_std and entropy: of the policy now, or with std_mode=state as it was on the epoch's data.
   void fill_spread(Epoch& e);
-  void fill_epoch(const EpisodeStats& stats, double rate, Epoch* out);
+  void fill_episodes(const EpisodeStats& stats, const EpochTotals& totals, Epoch& e) const;
+  void fill_counts(const EpochTotals& totals, int64_t skipped, Epoch& e) const;
+  void fill_learned(double rate, Epoch& e);
+  void hear_cancel();
+  void warn_of_limits(const EpisodeStats& stats);
 
   ResolvedAgentConfig resolved_;
   CancelFlag cancel_;
@@ -175,6 +182,7 @@ class Agent {
   Stream* shuffle_ = nullptr;  // [this rank's blocks]
   Learned learned_;
   int32_t epoch_ = 0, warm_epochs_ = 0;
+  bool warned_ = false;  // that a limit cannot be judged
   Regression regression_;
   Imitation imitation_;
   char (*names_)[kTensorNameSize] = nullptr;  // of the tensors

@@ -57,6 +57,20 @@ struct Transition {
   const uint8_t *terminated = nullptr, *truncated = nullptr, *valid = nullptr, *success = nullptr;
   const float* final_obs = nullptr;  // [num_envs][obs_dim]
   const int32_t* steps = nullptr;    // [num_envs]
+  const uint32_t* status = nullptr;  // [num_envs] RDM_STATUS_*
+};
+
+// As the public ones.
+enum EpochFlag : uint32_t {
+  kEpochNoEpisode = 1,
+  kEpochSkippedGradients = 2,
+  kEpochInvalidRows = 4,
+  kEpochCut = 8,
+  kEpochDiverged = 16,
+  kEpochContacts = 32,
+  kEpochBadAction = 64,
+  kEpochTask = 128,
+  kEpochSolver = 256
 };
 
 // Field by field the public rdm_epoch, without struct_size.
@@ -70,6 +84,9 @@ struct Epoch {
   double value_reward = 0, value_cost = 0;
   int32_t passes = 0;
   int32_t cost_signal = 0;  // 1: costs are magnitudes
+  uint32_t flags = 0;       // EpochFlag
+  int64_t skipped_gradients = 0, invalid_rows = 0, diverged = 0, contacts_left_out = 0, bad_actions = 0;
+  int64_t task_failed = 0, unconverged = 0;
 };
 
 struct TensorInfo {

@@ -1,7 +1,9 @@
 #include "algos/core/fingerprint.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 
 #include "algos/core/option_tables.hpp"
 #include "base/error.hpp"
@@ -11,6 +13,15 @@ namespace rdm {
 namespace {
 
 constexpr const char* kWhat = "agent state";
+
+// Options that came after the first files. A file has them, all of them behind the others, only where one is
+// not at its default: so files of before load, and an agent that uses none writes what it always did.
+constexpr const char* kLater[] = {"cost_limit_per_step", "episode_steps"};
+
+bool is_later(const OptionSpec& spec) {
+  return std::any_of(std::begin(kLater), std::end(kLater),
+                     [&](const char* key) { return same_name(key, spec.key); });
+}
 
 double option_number(const Options& o, int32_t i) {
   const OptionSpec& s = o.spec(i);
@@ -25,6 +36,16 @@ double option_number(const Options& o, int32_t i) {
       break;
   }
   return 0;
+}
+
+int32_t first_count(const Options& o) {
+  return o.count() - static_cast<int32_t>(std::size(kLater));
+}
+
+bool uses_later(const Options& o) {
+  for (int32_t i = 0; i < o.count(); ++i)
+    if (is_later(o.spec(i)) && option_number(o, i) != o.spec(i).number) return true;
+  return false;
 }
 
 const char* option_text(const Options& o, int32_t i) {
@@ -59,6 +80,8 @@ void read_option(Reader& in, Options& o, int32_t i, bool apply) {
     // Without a limit there is no multiplier and no column of the critic for it.
     if (same_name(s.key, "cost_limit") && (number < 0) != (o.number(s.key) < 0))
       fail(Code::kFormat, "%s: column 0 is %s a limit there", kWhat, number < 0 ? "without" : "with");
+    if (same_name(s.key, "cost_limit_per_step") && (number < 0) != (o.number(s.key) < 0))
+      fail(Code::kFormat, "%s: option cost_limit_per_step is %g there", kWhat, number);
     if (apply) o.set({s.key, nullptr, number}, "agent");
     return;
   }
@@ -82,12 +105,17 @@ void write_fingerprint(Writer& out, const ResolvedAgentConfig& resolved) {
   for (const Field& f : fields) out.value(f.value);
   for (int32_t i = 0; i < resolved.num_limited; ++i) out.value(resolved.column[i]);
   for (int32_t i = 0; i < resolved.num_limited; ++i) out.value(resolved.limit[i]);
-  out.value(o.count());
-  for (int32_t i = 0; i < o.count(); ++i) {
-    out.text(o.spec(i).key);
-    out.text(option_text(o, i));
-    out.value(option_number(o, i));
-  }
+  out.value(first_count(o));
+  const auto write = [&](bool later) {
+    for (int32_t i = 0; i < o.count(); ++i) {
+      if (is_later(o.spec(i)) != later) continue;
+      out.text(o.spec(i).key);
+      out.text(option_text(o, i));
+      out.value(option_number(o, i));
+    }
+  };
+  write(false);
+  if (uses_later(o)) write(true);
   out.end_section();
 }
 
@@ -114,9 +142,17 @@ void read_fingerprint(Reader& in, ResolvedAgentConfig& resolved, bool apply) {
            resolved.column[i], there, resolved.limit[i]);
   }
   Options& o = resolved.options;
-  if (const auto there = in.value<int32_t>(); there != o.count())
-    fail(Code::kFormat, "%s: %d options there, %d in this agent", kWhat, there, o.count());
-  for (int32_t i = 0; i < o.count(); ++i) read_option(in, o, i, apply);
+  if (const auto there = in.value<int32_t>(); there != first_count(o))
+    fail(Code::kFormat, "%s: %d options there, %d in this agent", kWhat, there, first_count(o));
+  const auto read = [&](bool later) {
+    for (int32_t i = 0; i < o.count(); ++i)
+      if (is_later(o.spec(i)) == later) read_option(in, o, i, apply);
+  };
+  read(false);
+  if (in.left() > 0)
+    read(true);
+  else if (uses_later(o))
+    fail(Code::kFormat, "%s: without the options cost_limit_per_step, episode_steps of this agent", kWhat);
   in.expect_end();
 }
 

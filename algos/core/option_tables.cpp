@@ -172,7 +172,8 @@ void lay_preset(Options& o, const AgentConfig& config, const char* algo) {
   const char* preset = o.text("preset");
   for (const PresetValue& v : kPresetValues) {
     // Without the length of an episode there is nothing to charge.
-    if (same_name(v.key, "terminal_cost") && config.max_steps <= 0) continue;
+    const bool length = config.max_steps > 0 || o.integer("episode_steps") > 0;
+    if (same_name(v.key, "terminal_cost") && !length) continue;
     if (v.algos && !among(v.algos, algo)) continue;
     if (same_name(v.preset, preset) && o.knows(v.key)) o.set_default(v.key, v.text);
   }

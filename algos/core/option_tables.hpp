@@ -108,6 +108,10 @@ inline constexpr std::array kSharedOptions = {
     number_option("imitation_decay", 0.99, 0, 1, "factor on that weight per epoch", true),
     // costs
     number_option("cost_limit", 25, -1, kHuge, "limit on column 0's sum over an episode; < 0: none", true),
+    number_option("cost_limit_per_step", -1, -1, kHuge,
+                  "limit on column 0's mean per control step, in the place of cost_limit; < 0: none", true),
+    integer_option("episode_steps", 0, 0, INT32_MAX,
+                   "control steps after which an episode counts as ended; 0: max_steps of the config"),
     text_option("cost_signal", "flag", "flag|raw",
                 "what rollouts take as cost: the pool's, or cost_raw above 0; limits are in its unit"),
 };

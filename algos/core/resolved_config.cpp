@@ -24,6 +24,15 @@ void check_range(const char* name, int64_t value, int64_t low, int64_t high) {
          static_cast<long long>(low), static_cast<long long>(high));
 }
 
+// Two fields of a row of observations, of which both names and entries differ.
+void check_apart(const ObsField& a, const ObsField& b, int32_t i, int32_t j) {
+  if (std::strcmp(a.name, b.name) == 0)
+    fail(Code::kArgument, "fields[%d]: the name '%s' is that of fields[%d]", j, Quoted(b.name).text, i);
+  if (a.offset < b.offset + b.count && b.offset < a.offset + a.count)
+    fail(Code::kArgument, "fields[%d]: entries of '%s' are those of fields[%d], '%s', too", j,
+         Quoted(b.name).text, i, Quoted(a.name).text);
+}
+
 void check_config(const AgentConfig& c) {
   check_range("obs_dim", c.obs_dim, 1, 16384);
   check_range("action_dim", c.action_dim, 1, kMaxActions);
@@ -55,6 +64,7 @@ void check_config(const AgentConfig& c) {
     if (f.offset < 0 || f.count < 1 || f.offset > c.obs_dim - f.count)
       fail(Code::kRange, "fields[%d]: entries %d to %lld are not within obs_dim %d", i, f.offset,
            static_cast<long long>(f.offset) + f.count, c.obs_dim);
+    for (int32_t j = 0; j < i; ++j) check_apart(c.fields[j], f, j, i);
   }
   for (int32_t i = 0; c.cost_limits && i < c.cost_dim; ++i)
     if (!std::isfinite(c.cost_limits[i])) fail(Code::kArgument, "cost_limits[%d] is not finite", i);
@@ -92,11 +102,14 @@ MlpShape parse_shape(const Options& o, const char* key, int32_t in, int32_t out,
 void resolve_costs(ResolvedAgentConfig& resolved) {
   AgentConfig& c = resolved.config;
   Options& o = resolved.options;
+  resolved.episode_steps = o.integer("episode_steps") > 0 ? o.integer("episode_steps") : c.max_steps;
+  if (o.number("cost_limit_per_step") >= 0)
+    resolved.rate_steps = resolved.episode_steps > 0 ? resolved.episode_steps : kRateSteps;
   if (c.cost_limits && c.cost_dim > 0 && !o.given("cost_limit"))
     o.set_default("cost_limit", c.cost_limits[0] < 0 ? -1.0 : c.cost_limits[0]);
   if (resolved.row->costs == Costs::kNone) return;
   for (int32_t k = 0; k < c.cost_dim; ++k) {
-    const double limit = k == 0 ? o.number("cost_limit") : c.cost_limits ? c.cost_limits[k] : -1;
+    const double limit = k == 0 ? limit_of_first(resolved) : c.cost_limits ? c.cost_limits[k] : -1;
     if (limit < 0) continue;
     resolved.column[resolved.num_limited] = k;
     resolved.limit[resolved.num_limited++] = limit;
@@ -213,11 +226,17 @@ void check_pairs(const ResolvedAgentConfig& resolved) {
       fail(Code::kRange, "init_std: at a bound, where std_mode=state has no gradient");
   }
   if (o.number("lr_min") > o.number("lr_max")) fail(Code::kRange, "lr_min: above lr_max");
-  if (o.flag("terminal_cost") && resolved.config.max_steps <= 0)
-    fail(Code::kArgument, "terminal_cost: needs max_steps, which is unknown (0)");
+  if (o.flag("terminal_cost") && resolved.episode_steps <= 0)
+    fail(Code::kArgument, "terminal_cost: needs max_steps, which is unknown (0), or option episode_steps");
 }
 
 }  // namespace
+
+double limit_of_first(const ResolvedAgentConfig& resolved) {
+  const Options& o = resolved.options;
+  return resolved.rate_steps > 0 ? o.number("cost_limit_per_step") * resolved.rate_steps
+                                 : o.number("cost_limit");
+}
 
 ResolvedAgentConfig resolve_config(const AgentConfig& config) {
   check_config(config);
@@ -225,8 +244,8 @@ ResolvedAgentConfig resolve_config(const AgentConfig& config) {
   ResolvedAgentConfig resolved(config, read_options(config, row.info), row);
   std::snprintf(resolved.task, sizeof resolved.task, "%s", config.task ? config.task : "");
   resolved.config.algo = row.info.name;
-  check_pairs(resolved);
   resolve_costs(resolved);
+  check_pairs(resolved);
   resolve_networks(resolved);
   resolve_batches(resolved);
   return resolved;

@@ -27,7 +27,9 @@ struct ResolvedAgentConfig {
   Vector<int32_t> actor_columns, critic_columns;
   int32_t num_limited = 0;         // limited cost columns; 0 for algorithms without costs
   int32_t column[kMaxCosts] = {};  // [num_limited] column of each
-  double limit[kMaxCosts] = {};    // [num_limited]
+  double limit[kMaxCosts] = {};    // [num_limited] on the sum over an episode, or over rate_steps
+  int32_t episode_steps = 0;       // control steps after which an episode is counted as ended; 0: never
+  int32_t rate_steps = 0;          // > 0: column 0 is limited per control step, as a sum over so many
 
   int32_t horizon = 0, action_repeat = 0;
   int32_t samples = 0;         // num_envs * horizon
@@ -47,6 +49,11 @@ struct ResolvedAgentConfig {
   int32_t all_envs() const { return config.num_envs * config.ranks.count; }
   int32_t all_samples() const { return samples * config.ranks.count; }
 };
+
+// Control steps that a limit per step is judged over where no length is known: an episode of Safety Gym.
+inline constexpr int32_t kRateSteps = 1000;
+// The limit on column 0 by its options, in the units of limit[]; < 0: none.
+double limit_of_first(const ResolvedAgentConfig& resolved);
 
 // Error(kRange, kArgument, kNotFound) with the name of the field or option.
 ResolvedAgentConfig resolve_config(const AgentConfig& config);

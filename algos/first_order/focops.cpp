@@ -56,13 +56,12 @@ FocopsRule::FocopsRule(const ResolvedAgentConfig& resolved)
       count_(resolved.num_limited),
       mix_(resolved.options.flag("multiplier_divide") ? Mix::kSum : Mix::kPlain) {}
 
-void FocopsRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t epoch) {
-  lagrange_.step(stats, resolved, epoch);
-  if (stats.finished == 0) return;
-  const auto excess = [&](int32_t i) { return stats.charged_cost[resolved.column[i]] - resolved.limit[i]; };
-  worst_ = 0;
-  for (int32_t i = 1; i < resolved.num_limited; ++i)
-    if (excess(i) > excess(worst_)) worst_ = i;
+void FocopsRule::step(const Judged& costs, int32_t epoch) {
+  lagrange_.step(costs, epoch);
+  int32_t worst = -1;
+  for (int32_t i = 0; i < costs.count; ++i)
+    if (costs.known[i] && (worst < 0 || costs.excess(i) > costs.excess(worst))) worst = i;
+  if (worst >= 0) worst_ = worst;
 }
 
 void FocopsRule::visit(StateIo& io) {

@@ -20,10 +20,9 @@ void BarrierRule::read_live(const Options& o) {
   split_ = std::strcmp(o.text("cost_loss"), "split") == 0;
 }
 
-void BarrierRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t) {
-  if (stats.finished == 0) return;
+void BarrierRule::step(const Judged& costs, int32_t) {
   for (int32_t i = 0; i < count_; ++i)
-    slope_[i] = barrier_slope(stats.charged_cost[resolved.column[i]], resolved.limit[i], kappa_, max_);
+    if (costs.known[i]) slope_[i] = barrier_slope(costs.cost[i], costs.limit[i], kappa_, max_);
 }
 
 void BarrierRule::visit(StateIo& io) {
@@ -55,13 +54,13 @@ class Ipo final : public CostWeighted<Ppo, BarrierRule> {
     loss_.kappa = options().number("barrier_kappa");
     loss_.max = options().number("barrier_max");
   }
-  void begin_epoch(const EpisodeStats& stats, int32_t epoch) override {
-    CostWeighted::begin_epoch(stats, epoch);
-    known_ = stats.finished > 0;
+  void begin_epoch(const Judged& costs, int32_t epoch) override {
+    CostWeighted::begin_epoch(costs, epoch);
+    known_ = costs.any_known();
     if (!exact_) return;
     follow_reward();
     for (int32_t i = 0; i < resolved().num_limited; ++i)
-      violation_[i] = violation(stats, i), loss_.weight[i] = 0;
+      violation_[i] = violation(costs, i), loss_.weight[i] = 0;
     if (known_) loss_.aim(Surrogate(), violation_, resolved().num_limited);
   }
   void begin_minibatch(const Batch& batch) override {

@@ -9,8 +9,9 @@
 // the epoch's J_c for the whole epoch, at most barrier_max = 1 and that much beyond the limit, where the
 // logarithm does not exist, and weighs the combined advantage (A_r - sum slope A_c) / (1 + sum slope). With
 // kappa = 0.01 and a limit of 40 the slope is 0.001 at a cost of 30, 0.01 at 39 and 1 above 40: a switch at
-// the limit. The figures of examples/results are of this default. barrier=exact is the paper's: its slope is at the J_c that
-// each minibatch estimates for the policy as it is then, the reward is clipped and the cost is not.
+// the limit. The figures of examples/results are of this default. barrier=exact is the paper's: its slope is
+// at the J_c that each minibatch estimates for the policy as it is then, the reward is clipped and the cost
+// is not.
 #pragma once
 #include "algos/first_order/p3o.hpp"
 
@@ -35,7 +36,7 @@ class BarrierRule {
   explicit BarrierRule(const ResolvedAgentConfig& resolved) : count_(resolved.num_limited) {
     read_live(resolved.options);
   }
-  void step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t epoch);
+  void step(const Judged& costs, int32_t epoch);
   double weight(int32_t i) const { return slope_[i]; }
   Mix mix() const { return Mix::kSum; }
   bool split() const { return split_; }

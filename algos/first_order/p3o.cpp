@@ -37,11 +37,11 @@ void P3o::read_live() {
   loss_.clip_cost = options().flag("penalty_clip");
 }
 
-void P3o::begin_epoch(const EpisodeStats& stats, int32_t epoch) {
-  Ppo::begin_epoch(stats, epoch);
+void P3o::begin_epoch(const Judged& costs, int32_t epoch) {
+  Ppo::begin_epoch(costs, epoch);
   if (epoch > 1)
     kappa_ = std::min(kappa_ * options().number("penalty_growth"), options().number("penalty_max"));
-  for (int32_t i = 0; i < resolved().num_limited; ++i) violation_[i] = violation(stats, i);
+  for (int32_t i = 0; i < resolved().num_limited; ++i) violation_[i] = violation(costs, i);
 }
 
 void P3o::begin_minibatch(const Batch& batch) {

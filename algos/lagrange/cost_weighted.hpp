@@ -4,7 +4,7 @@
 
 namespace rdm {
 
-// Base: an Agent. Rule: made from a ResolvedAgentConfig; step(stats, resolved, epoch) once per epoch
+// Base: an Agent. Rule: made from a ResolvedAgentConfig; step(costs, epoch) once per epoch
 // before the policy step, then weight(i) of limited cost i, mix(), split(), read_live(options), visit(io).
 template <class Base, class Rule>
 class CostWeighted : public Base {
@@ -13,8 +13,8 @@ class CostWeighted : public Base {
       : Base(std::move(resolved)), rule_(this->resolved()) {}
 
  protected:
-  void begin_epoch(const EpisodeStats& stats, int32_t epoch) override {
-    rule_.step(stats, this->resolved(), epoch);
+  void begin_epoch(const Judged& costs, int32_t epoch) override {
+    rule_.step(costs, epoch);
     double weights[kMaxCosts];
     for (int32_t i = 0; i < this->resolved().num_limited; ++i) weights[i] = rule_.weight(i);
     combine_advantages(this->rollout(), weights, rule_.mix(), rule_.split());

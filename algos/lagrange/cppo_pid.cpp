@@ -33,10 +33,9 @@ void PidRule::read_live(const Options& o) {
   options_.max = mix_ == Mix::kDifference ? share : o.number("pid_max");
 }
 
-void PidRule::step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t) {
-  if (!stats.fresh) return;
+void PidRule::step(const Judged& costs, int32_t) {
   for (int32_t i = 0; i < count_; ++i)
-    pid_[i].step(options_, stats.charged_cost[resolved.column[i]], resolved.limit[i]);
+    if (costs.fresh[i]) pid_[i].step(options_, costs.cost[i], costs.limit[i]);
 }
 
 void PidRule::visit(StateIo& io) {

@@ -1,7 +1,7 @@
 // The rule of CPPO-PID: one PID controller for each cost limit.
 #pragma once
 #include "algos/lagrange/pid.hpp"
-#include "algos/rollout/episodes.hpp"
+#include "algos/rollout/limits.hpp"
 #include "algos/rollout/rollout.hpp"
 
 namespace rdm {
@@ -9,8 +9,8 @@ namespace rdm {
 class PidRule {
  public:
   explicit PidRule(const ResolvedAgentConfig& resolved);
-  // Not without a fresh episode.
-  void step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t epoch);
+  // Each by its fresh cost; not without one.
+  void step(const Judged& costs, int32_t epoch);
   double weight(int32_t i) const { return pid_[i].value(); }
   Mix mix() const { return mix_; }
   bool split() const { return false; }

@@ -25,11 +25,10 @@ void Lagrange::read_live(const Options& o) {
   warmup_ = o.integer("multiplier_warmup");
 }
 
-void Lagrange::step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t epoch) {
-  if (!stats.fresh) return;
+void Lagrange::step(const Judged& costs, int32_t epoch) {
   const double warmth = warmup_ > 0 ? std::min(1.0, static_cast<double>(epoch - 1) / warmup_) : 1;
   for (int32_t i = 0; i < count_; ++i)
-    multiplier_[i].step(options_, stats.charged_cost[resolved.column[i]], resolved.limit[i], warmth);
+    if (costs.fresh[i]) multiplier_[i].step(options_, costs.cost[i], costs.limit[i], warmth);
 }
 
 void Lagrange::visit(StateIo& io) {

@@ -2,7 +2,7 @@
 #pragma once
 #include "algos/core/resolved_config.hpp"
 #include "algos/lagrange/multiplier.hpp"
-#include "algos/rollout/episodes.hpp"
+#include "algos/rollout/limits.hpp"
 #include "algos/rollout/rollout.hpp"
 
 namespace rdm {
@@ -10,9 +10,9 @@ namespace rdm {
 class Lagrange {
  public:
   explicit Lagrange(const ResolvedAgentConfig& resolved);
-  // Moves the multipliers by the episode costs that limits hold for; not without a fresh episode. epoch
+  // Moves the multipliers by the episode costs that limits hold for; not without a fresh one. epoch
   // counts from 1 and drives the warm-up.
-  void step(const EpisodeStats& stats, const ResolvedAgentConfig& resolved, int32_t epoch);
+  void step(const Judged& costs, int32_t epoch);
   double weight(int32_t i) const { return multiplier_[i].value(); }
   Mix mix() const { return Mix::kSum; }
   bool split() const { return split_; }

@@ -32,6 +32,21 @@ void check_rows(const char* name, const float* x, const uint8_t* mask, int32_t r
       fail(Code::kArgument, "%s: row %zu is not finite", name, i);
 }
 
+void check_costs(const char* name, const float* x, int32_t rows, int32_t columns) {
+  check_rows(name, x, nullptr, rows, static_cast<size_t>(columns));
+  const size_t count = static_cast<size_t>(rows) * static_cast<size_t>(columns);
+  for (size_t i = 0; i < count; ++i)
+    if (x[i] < 0)
+      fail(Code::kArgument, "%s: row %zu, column %zu is %g, less than 0", name,
+           i / static_cast<size_t>(columns), i % static_cast<size_t>(columns), static_cast<double>(x[i]));
+}
+
+void Collector::check_flags(const char* name, const uint8_t* flags) const {
+  for (size_t i = 0; flags && i < resolved_->num_envs(); ++i)
+    if (flags[i] > 1)
+      fail(Code::kArgument, "%s: row %zu is %d, neither 0 nor 1", name, i, static_cast<int>(flags[i]));
+}
+
 void Collector::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
   const Options& o = resolved.options;
   rollout_ = carve_rollout(arena, resolved);
@@ -56,6 +71,8 @@ void Collector::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
   final_value_ = arena.make<float>(resolved.num_envs());
   final_cost_ = arena.make<float>(resolved.num_envs() * static_cast<size_t>(resolved.num_limited));
   listed_ = arena.make<int32_t>(resolved.num_envs());
+  epoch_cost_ = arena.make<double>(resolved.num_envs() * static_cast<size_t>(resolved.config.cost_dim));
+  epoch_steps_ = arena.make<double>(resolved.num_envs());
 }
 
 void Collector::open(const ResolvedAgentConfig& resolved, const Networks& nets, BatchWorkers& workers) {
@@ -81,6 +98,10 @@ void Collector::open(const ResolvedAgentConfig& resolved, const Networks& nets, 
 void Collector::drop() {
   rollout_.filled = 0;
   pending_ = false;
+  std::fill_n(epoch_cost_, resolved_->num_envs() * static_cast<size_t>(resolved_->config.cost_dim), 0.0);
+  std::fill_n(epoch_steps_, resolved_->num_envs(), 0.0);
+  invalid_ = cut_ = 0;
+  std::fill_n(status_, EpochTotals::kStatusKinds, int64_t{0});
 }
 
 const float* Collector::normalized(const float* obs, int32_t rows, float* memory) const {
@@ -206,11 +227,15 @@ void Collector::check(const Transition& t) const {
   const AgentConfig& c = resolved_->config;
   if (!t.reward) fail(Code::kArgument, "reward: NULL");
   if (!t.cost && c.cost_dim > 0) fail(Code::kArgument, "cost: NULL with cost_dim %d", c.cost_dim);
+  check_flags("terminated", t.terminated);
+  check_flags("truncated", t.truncated);
+  check_flags("valid", t.valid);
+  check_flags("success", t.success);
   check_rows("reward", t.reward, t.valid, c.num_envs, 1);
-  check_rows("cost", t.cost, t.valid, c.num_envs, static_cast<size_t>(c.cost_dim));
+  check_costs("cost", t.cost, c.num_envs, c.cost_dim);
   for (size_t i = 0; i < resolved_->num_envs(); ++i) {
-    if (!flag(t.valid, i, true)) continue;
     if (t.steps && t.steps[i] < 0) fail(Code::kRange, "steps: row %zu is %d", i, t.steps[i]);
+    if (!flag(t.valid, i, true)) continue;
     if (t.final_obs && flag(t.truncated, i, false) &&
         !all_finite(t.final_obs + i * resolved_->obs_dim(), resolved_->obs_dim()))
       fail(Code::kArgument, "final_obs: row %zu is not finite", i);
@@ -246,7 +271,7 @@ void Collector::value_truncated(const Transition& t) {
 // A fall ends costs early, which is no safety: the steps that are missing are charged at the episode's own
 // rate, in full in the episode's cost (charge [cost_dim]), discounted in what is learned from.
 void Collector::charge_fall(int32_t env, float discount, float* sample_cost, double* charge) const {
-  const int64_t length = episodes_.length(env), left = resolved_->config.max_steps - length;
+  const int64_t length = episodes_.length(env), left = resolved_->episode_steps - length;
   for (int32_t k = 0; k < resolved_->config.cost_dim; ++k) charge[k] = 0;
   if (left <= 0 || length == 0) return;
   const auto steps = static_cast<double>(left);
@@ -283,35 +308,63 @@ void Collector::scale_rewards(const Transition& t) {
   }
 }
 
+// What statistics and limits count of a row: all of a valid one; of another the cost, and its time and
+// success unless it only resets, as the first row of an episode that does not end it.
+void Collector::count_row(const Transition& t, int32_t env, const float* cost, int32_t steps) {
+  const auto e = static_cast<size_t>(env), columns = static_cast<size_t>(resolved_->config.cost_dim);
+  const bool valid = flag(t.valid, e, true);
+  const bool over = flag(t.terminated, e, false) || flag(t.truncated, e, false);
+  const bool resets = !valid && !over && episodes_.length(env) == 0;
+  const int32_t taken = resets ? 0 : steps;
+  const double weight = discounted_limit_ ? elementary::pow(discount_, episodes_.length(env)) : 1;
+  episodes_.add(env, valid ? static_cast<double>(t.reward[e]) : 0, cost, taken,
+                !resets && flag(t.success, e, false), weight);
+  own_steps_ += taken;
+  epoch_steps_[e] += taken;
+  for (size_t k = 0; k < columns; ++k) epoch_cost_[e * columns + k] += static_cast<double>(cost[k]);
+  if (!valid && !resets) ++invalid_;
+  for (int32_t bit = 0; t.status && bit < EpochTotals::kStatusKinds; ++bit)
+    if (t.status[e] >> bit & 1) ++status_[bit];
+}
+
+// Ends the episode of a row that is over, or closes the sums of one that is too long; its path goes on.
+void Collector::end_row(const Transition& t, int32_t env, float discount, float* sample_cost) {
+  const auto e = static_cast<size_t>(env);
+  const bool terminated = flag(t.terminated, e, false);
+  if (!terminated && !flag(t.truncated, e, false)) {
+    if (resolved_->episode_steps == 0 || episodes_.length(env) < resolved_->episode_steps) return;
+    ++cut_;
+    return episodes_.finish(env, false, nullptr);
+  }
+  double charge[kMaxCosts];
+  const bool charged = terminated && terminal_cost_;
+  if (charged) charge_fall(env, discount, sample_cost, charge);
+  episodes_.finish(env, terminated, charged ? charge : nullptr);
+  noise_.end_episode(env);
+}
+
 void Collector::record_row(const Transition& t, int32_t env) {
   Rollout& r = rollout_;
   const auto e = static_cast<size_t>(env), costs = static_cast<size_t>(r.num_costs);
   const size_t at = r.row(r.filled) + e;
-  float* limited = r.cost + at * costs;
-  r.reward[at] = r.discount[at] = 0;
-  for (size_t i = 0; i < costs; ++i) limited[i] = 0;
-  r.valid[at] = flag(t.valid, e, true);
-  if (!r.valid[at]) {
-    noise_.end_episode(env);
-    return;
-  }
   const size_t first = e * static_cast<size_t>(resolved_->config.cost_dim);
   const float *cost = t.cost ? t.cost + first : nullptr, *learned = t.cost ? cost_ + first : nullptr;
   const int32_t steps = t.steps ? t.steps[e] : resolved_->action_repeat;
-  const bool terminated = flag(t.terminated, e, false), over = terminated || flag(t.truncated, e, false);
   const auto discount = static_cast<float>(elementary::pow(discount_, steps));
-  own_steps_ += steps;
-  const double weight = discounted_limit_ ? elementary::pow(discount_, episodes_.length(env)) : 1;
-  episodes_.add(env, static_cast<double>(t.reward[e]), cost, steps, flag(t.success, e, false), weight);
-  r.reward[at] = reward_[e] + discount * final_value_[e];
-  for (size_t i = 0; i < costs; ++i)
-    limited[i] = learned[resolved_->column[i]] + discount * final_cost_[e * costs + i];
-  r.discount[at] = over ? 0 : discount;
-  if (!over) return;
-  double charge[kMaxCosts];
-  const bool charged = terminated && terminal_cost_;
-  if (charged) charge_fall(env, discount, limited, charge);
-  episodes_.finish(env, terminated, charged ? charge : nullptr);
+  float* limited = r.cost + at * costs;
+  count_row(t, env, cost, steps);
+  r.valid[at] = flag(t.valid, e, true);
+  if (r.valid[at]) {
+    const bool over = flag(t.terminated, e, false) || flag(t.truncated, e, false);
+    r.reward[at] = reward_[e] + discount * final_value_[e];
+    for (size_t i = 0; i < costs; ++i)
+      limited[i] = learned[resolved_->column[i]] + discount * final_cost_[e * costs + i];
+    r.discount[at] = over ? 0 : discount;
+  }
+  end_row(t, env, discount, limited);
+  if (r.valid[at]) return;
+  r.reward[at] = r.discount[at] = 0;
+  std::fill_n(limited, costs, 0.0f);
   noise_.end_episode(env);
 }
 
@@ -347,6 +400,36 @@ void Collector::settle() {
   env_steps_ += workers_->ranks().total(own_steps_);
   own_steps_ = 0;
   episodes_.settle(workers_->ranks());
+}
+
+EpochTotals Collector::totals() const {
+  constexpr size_t kCosts = kMaxCosts, kSteps = kCosts, kRunning = kCosts + 1, kInvalid = kCosts + 2;
+  constexpr size_t kCut = kInvalid + 1, kStatus = kCut + 1;
+  Ranks& ranks = workers_->ranks();
+  const auto columns = static_cast<size_t>(resolved_->config.cost_dim);
+  const int32_t envs = ranks.block_envs();
+  const auto sums = ranks.sum<kStatus + EpochTotals::kStatusKinds>([&](int32_t b, double* out) {
+    std::fill_n(out, kStatus + EpochTotals::kStatusKinds, 0.0);
+    for (int32_t env = b * envs; env < (b + 1) * envs; ++env) {
+      const auto e = static_cast<size_t>(env);
+      for (size_t k = 0; k < columns; ++k) out[k] += epoch_cost_[e * columns + k];
+      out[kSteps] += epoch_steps_[e];
+      out[kRunning] += static_cast<double>(episodes_.length(env));
+    }
+    if (b > 0) return;  // counts are of this rank, whichever block they stand with
+    out[kInvalid] = static_cast<double>(invalid_);
+    out[kCut] = static_cast<double>(cut_);
+    for (size_t i = 0; i < EpochTotals::kStatusKinds; ++i) out[kStatus + i] = static_cast<double>(status_[i]);
+  });
+  EpochTotals t;
+  std::copy_n(sums.begin(), kCosts, t.cost);
+  t.steps = sums[kSteps];
+  t.running = sums[kRunning] / resolved_->all_envs();
+  t.invalid = static_cast<int64_t>(sums[kInvalid]);
+  t.cut = static_cast<int64_t>(sums[kCut]);
+  for (size_t i = 0; i < EpochTotals::kStatusKinds; ++i)
+    t.status[i] = static_cast<int64_t>(sums[kStatus + i]);
+  return t;
 }
 
 Batch Collector::minibatch(int32_t i, int32_t parts) const {

@@ -13,7 +13,7 @@
 #pragma once
 #include "algos/core/batch_workers.hpp"
 #include "algos/core/networks.hpp"
-#include "algos/rollout/episodes.hpp"
+#include "algos/rollout/limits.hpp"
 #include "algos/rollout/noise.hpp"
 #include "algos/rollout/rollout.hpp"
 #include "nn/normalizer.hpp"
@@ -39,6 +39,8 @@ class Collector {
 
   // Brings in what other ranks counted since.
   void settle();
+  // Of the horizon so far, over all ranks.
+  EpochTotals totals() const;
   // Advantages and targets of a full horizon, in the rollout, whose order then lists the valid rows by
   // blocks.
   void estimate(const float* last_obs);
@@ -81,7 +83,10 @@ class Collector {
   void value_truncated(const Transition& t);
   void scale_rewards(const Transition& t);
   void merge(Normalizer& n, const float* x, const uint8_t* mask, double count_max);
+  void check_flags(const char* name, const uint8_t* flags) const;
   void record_row(const Transition& t, int32_t env);
+  void count_row(const Transition& t, int32_t env, const float* cost, int32_t steps);
+  void end_row(const Transition& t, int32_t env, float discount, float* sample_cost);
   void charge_fall(int32_t env, float discount, float* sample_cost, double* charge) const;
 
   const ResolvedAgentConfig* resolved_ = nullptr;
@@ -107,6 +112,9 @@ class Collector {
   Segment* segments_ = nullptr;    // [this rank's blocks]
   Segment* part_ = nullptr;        // likewise, of the last minibatch
   Batch listed_rows_;
+  // Of this horizon: [num_envs][cost_dim], [num_envs], and counts that need no order.
+  double *epoch_cost_ = nullptr, *epoch_steps_ = nullptr;
+  int64_t invalid_ = 0, cut_ = 0, status_[EpochTotals::kStatusKinds] = {};
   bool pending_ = false;  // a sampled act waits for its record
   bool normalize_ = true, terminal_cost_ = false, discounted_limit_ = false;
   bool normalize_reward_ = false, normalize_cost_ = false;
@@ -116,5 +124,8 @@ class Collector {
 // Error(kArgument) naming the first row of x [rows][dim] that is not finite; rows whose mask is 0 are
 // skipped.
 void check_rows(const char* name, const float* x, const uint8_t* mask, int32_t rows, size_t dim);
+
+// Error(kArgument) naming the first entry of x [rows][columns] that no cost can be: not finite, below 0.
+void check_costs(const char* name, const float* x, int32_t rows, int32_t columns);
 
 }  // namespace rdm

@@ -115,6 +115,10 @@ EpisodeStats Episodes::stats() const {
   s.finished = finished_;
   s.fresh = finished_ > marked_;
   const int64_t shown = std::min<int64_t>(finished_, kStatsWindow);
+  if (shown == 0) return s;
+  s.ret = s.length = s.fall_rate = s.success_rate = s.cost_per_step = 0;
+  std::fill_n(s.cost, kMaxCosts, 0.0);
+  std::fill_n(s.charged_cost, kMaxCosts, 0.0);
   for (int64_t i = finished_ - shown; i < finished_; ++i) {
     const auto slot = static_cast<int32_t>(i % capacity_);
     s.ret += done_ret_[slot];
@@ -123,7 +127,6 @@ EpisodeStats Episodes::stats() const {
     s.success_rate += done_success_[slot];
     for (int32_t k = 0; k < cost_dim_; ++k) s.cost[k] += done_cost_[at(slot, k)];
   }
-  if (shown == 0) return s;
   const int64_t charged = std::min<int64_t>(finished_, cost_window_);
   for (int64_t i = finished_ - charged; i < finished_; ++i)
     for (int32_t k = 0; k < cost_dim_; ++k)

@@ -1,5 +1,8 @@
 // Running episodes of all environments and the window of the last finished ones; statistics are values.
 #pragma once
+#include <algorithm>
+#include <limits>
+
 #include "algos/core/agent_types.hpp"
 #include "algos/core/state_io.hpp"
 #include "base/arena.hpp"
@@ -8,14 +11,21 @@ namespace rdm {
 
 inline constexpr int32_t kStatsWindow = 100;  // episodes behind the numbers of an Epoch
 
-// Means over finished episodes; all 0 while there is none.
+inline constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // of what was not measured
+
+// Means over finished episodes; while there is none, kNothing.
 struct EpisodeStats {
   int64_t finished = 0;  // so far
   bool fresh = false;    // at least one since the last mark
-  double ret = 0, length = 0, fall_rate = 0, success_rate = 0, cost_per_step = 0;
-  double cost[kMaxCosts] = {};  // raw sum of each column
+  double ret = kNothing, length = kNothing, fall_rate = kNothing, success_rate = kNothing;
+  double cost_per_step = kNothing;  // column 0
+  double cost[kMaxCosts];           // raw sum of each column
   // Mean of the last `cost_window` episodes' weighed sums with what falls were charged: what limits hold for.
-  double charged_cost[kMaxCosts] = {};
+  double charged_cost[kMaxCosts];
+
+  EpisodeStats() {
+    for (double* list : {cost, charged_cost}) std::fill_n(list, kMaxCosts, kNothing);
+  }
 };
 
 class Episodes {

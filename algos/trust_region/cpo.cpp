@@ -6,11 +6,11 @@
 
 namespace rdm {
 
-void Cpo::begin_epoch(const EpisodeStats& stats, int32_t epoch) {
-  Trpo::begin_epoch(stats, epoch);
+void Cpo::begin_epoch(const Judged& costs, int32_t epoch) {
+  Trpo::begin_epoch(costs, epoch);
   cost_ = 0;
   for (int32_t i = 0; i < resolved().num_limited; ++i) {
-    const double c = violation(stats, i);
+    const double c = violation(costs, i);
     if (i == 0 || c > c_) cost_ = i, c_ = c;
   }
 }

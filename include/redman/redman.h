@@ -428,13 +428,14 @@ typedef struct rdm_agent_config { /* what an agent is made from */
   uint64_t seed;              /* of weights, noise, shuffling; default 0                                  */
   uint64_t layout_hash;       /* kept in policy files; 0: unknown                                         */
   float control_dt;           /* s, kept in policy files; 0: unknown                                      */
-  int32_t max_steps;          /* control steps of an episode, for terminal_cost; 0: unknown               */
+  int32_t max_steps;          /* control steps of an episode: one that is longer is counted as ended there; 0: unknown */
   const float *initial_mean;  /* [action_dim] mean action of the new policy, copied; NULL: 0              */
   const rdm_option *defaults; /* [num_defaults] laid under options (a task's); "algo:key" is for one algo */
   const rdm_option *options;  /* [num_options] the caller's; NULL: none                                   */
   int32_t num_defaults;       /* count, default 0                                                         */
   int32_t num_options;        /* count, default 0                                                         */
-  const double *cost_limits;  /* [cost_dim] on the sum over an episode, < 0: none; NULL: option cost_limit for column 0 */
+  const double *cost_limits;  /* [cost_dim] on the sum over an episode, < 0: none; NULL: option cost_limit for column 0, which
+                               * stands over [0] where both are given */
   const rdm_host *host;       /* hooks of this handle, copied; NULL: those of rdm_init                    */
   const char *settings;       /* options as lines key=value, laid over `options`, copied; NULL: none      */
   char *error;                /* [error_size] the text of a failing call that takes this config; NULL     */
@@ -468,21 +469,42 @@ typedef struct rdm_transition { /* what followed the last sampled actions; a row
   const uint8_t *terminated;  /* [num_envs] NULL: none                                                    */
   const uint8_t *truncated;   /* [num_envs] NULL: none                                                    */
   const float *final_obs;     /* [num_envs][obs_dim] read where truncated; NULL: truncation has value 0   */
-  const uint8_t *valid;       /* [num_envs] 0: a dead transition, not learned from; NULL: all valid       */
+  const uint8_t *valid;       /* [num_envs] 0: not learned from; NULL: all valid                          */
   const uint8_t *success;     /* [num_envs] for the statistics; NULL: none                                */
   const int32_t *steps;       /* [num_envs] control steps in this decision; NULL: action_repeat           */
+  const uint32_t *status;     /* [num_envs] RDM_STATUS_* of the decision, for the epoch's counts; NULL: none */
 } rdm_transition;
-/* STATE unless a sampled act came before, or when the horizon is full. */
+/* STATE unless a sampled act came before, or when the horizon is full. ARGUMENT for a flag that is neither 0 nor 1, a
+ * cost that is not finite or below 0, in any row, and for a reward or final_obs that is not finite in a valid one.
+ * A row with valid 0 is not learned from and its reward does not count; its cost counts, and an end in it ends the
+ * episode. Its steps count too, but in a row that neither ends an episode nor follows another row of one: that is what
+ * next-step autoreset returns for the step that only resets.
+ * An episode that is not over after max_steps control steps counts as one there (RDM_EPOCH_CUT): its sums are closed and
+ * begin anew. The path goes on, so the value of the next observation follows, as after a truncation. Option
+ * episode_steps sets that length, cost_limit_per_step a limit on the cost per control step, which needs no ends. */
 RDM_API rdm_result rdm_agent_record(rdm_agent *a, const rdm_transition *t);
 
-typedef struct rdm_epoch {    /* one row of the learning curve; means over the last 100 finished episodes */
+enum rdm_epoch_flag {          /* of rdm_epoch.flags */
+  RDM_EPOCH_NO_EPISODE = 1,        /* no episode has ended so far: ret, cost, length and rates are NaN         */
+  RDM_EPOCH_SKIPPED_GRADIENTS = 2, /* gradients that were not finite were left out                             */
+  RDM_EPOCH_INVALID_ROWS = 4,      /* rows with valid 0                                                        */
+  RDM_EPOCH_CUT = 8,               /* episodes were counted as ended at max_steps or episode_steps             */
+  RDM_EPOCH_DIVERGED = 16,         /* decisions flagged RDM_STATUS_DIVERGED                                    */
+  RDM_EPOCH_CONTACTS = 32,         /* decisions flagged RDM_STATUS_CONTACTS                                    */
+  RDM_EPOCH_BAD_ACTION = 64,       /* decisions flagged RDM_STATUS_BAD_ACTION                                  */
+  RDM_EPOCH_TASK = 128,            /* decisions flagged RDM_STATUS_TASK                                        */
+  RDM_EPOCH_SOLVER = 256           /* decisions flagged RDM_STATUS_SOLVER                                      */
+};
+/* One row of the learning curve; means over the last 100 finished episodes. NaN: nothing was measured. */
+typedef struct rdm_epoch {
   uint32_t struct_size;       /* in: bytes                                                                */
   int32_t epoch;              /* count from 1                                                             */
   int64_t env_steps;          /* control steps so far, all environments                                   */
   int64_t episodes;           /* finished so far                                                          */
   double ret;                 /* sum of rewards of an episode                                             */
   double cost[RDM_MAX_COSTS]; /* sum of each cost column of an episode, of what cost_signal says          */
-  double cost_per_step;       /* column 0, per control step                                               */
+  double cost_per_step;       /* column 0, per control step; of this epoch's decisions while no episode has ended, and
+                               * with option cost_limit_per_step                                          */
   double length;              /* control steps of an episode                                              */
   double fall_rate;           /* share of episodes that terminated                                        */
   double success_rate;        /* share of episodes with at least one success                              */
@@ -503,9 +525,18 @@ typedef struct rdm_epoch {    /* one row of the learning curve; means over the l
   int32_t reserved;           /* 0                                                                        */
   int32_t cost_signal;        /* costs are sums of 0: costs, 1: their magnitudes (option cost_signal=raw) */
   int32_t reserved2;          /* 0                                                                        */
+  uint32_t flags;             /* RDM_EPOCH_*                                                              */
+  uint32_t reserved3;         /* 0                                                                        */
+  int64_t skipped_gradients;  /* in this epoch, as all counts below: steps left out                       */
+  int64_t invalid_rows;       /* decisions with valid 0 that did not only reset                           */
+  int64_t diverged;           /* decisions of a world with each RDM_STATUS_*                              */
+  int64_t contacts_left_out;
+  int64_t bad_actions;
+  int64_t task_failed;
+  int64_t unconverged;
 } rdm_epoch;
-/* Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL. STATE when
- * the horizon is not full, CANCELLED after rdm_agent_cancel (the horizon is dropped). */
+/* Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL. CANCELLED after
+ * rdm_agent_cancel (the horizon is dropped, full or not), STATE when the horizon is not full. */
 RDM_API rdm_result rdm_agent_update(rdm_agent *a, const float *last_obs, rdm_epoch *io);
 /* One epoch natively: act, step (action_repeat control steps), record until the horizon is full, then update. The
  * pool must have been reset and must not have autoreset off; dims and num_envs must agree. A pool that repeats
@@ -513,8 +544,13 @@ RDM_API rdm_result rdm_agent_update(rdm_agent *a, const float *last_obs, rdm_epo
  * defaults are that rdm_agent_config_for_pool sets. With the agent's option cost_signal=raw the costs are sums over
  * control steps of cost_raw where that is above 0. */
 RDM_API rdm_result rdm_agent_rollout(rdm_agent *a, rdm_pool *p, rdm_epoch *io);
-/* Async-signal-safe, from any thread: the running or next rollout or update returns CANCELLED. */
+/* Async-signal-safe, from any thread: the running rollout or update returns CANCELLED. A horizon that has begun by act
+ * and record is dropped by its update; between horizons, the next rollout, update or first act with RDM_SAMPLE
+ * returns CANCELLED, before anything is collected. */
 RDM_API void rdm_agent_cancel(rdm_agent *a);
+/* Drops the horizon that has begun, and a cancel that waits: from any state back to between epochs. Nothing is learned from
+ * what it drops. Episodes that run go on, with what was recorded of them. */
+RDM_API rdm_result rdm_agent_discard(rdm_agent *a);
 /* Changes a live option. NOT_FOUND, RANGE, or STATE when it is not live. */
 RDM_API rdm_result rdm_agent_set(rdm_agent *a, const rdm_option *option);
 /* Option i of the algorithm as this agent has it: key (static) and the value as text [RDM_TEXT_SIZE], which reads

@@ -31,14 +31,14 @@ struct Buffers {
   float *obs = nullptr, *final_obs = nullptr, *action = nullptr, *reward = nullptr, *cost = nullptr,
         *cost_raw = nullptr, *episode_return = nullptr, *episode_cost = nullptr;
   int32_t* episode_step = nullptr;
-  uint32_t* status = nullptr;
+  uint32_t *status = nullptr, *episode_status = nullptr;
   uint8_t *terminated = nullptr, *truncated = nullptr, *success = nullptr;
 };
 
 struct PoolStats {
   int32_t contacts_max = 0;
   double contacts_mean = 0, joint_drift = 0;
-  int64_t steps = 0, diverged = 0, overflowed = 0;
+  int64_t steps = 0, diverged = 0, overflowed = 0, bad_actions = 0, task_failed = 0, unconverged = 0;
 };
 
 enum class Baseline : int32_t { kZero = 0, kHold = 1, kRandom = 2 };

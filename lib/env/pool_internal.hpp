@@ -27,7 +27,7 @@ struct Episode {
 
 struct Counters {
   int32_t contacts_max;
-  int64_t contacts_sum, steps, diverged, overflowed;
+  int64_t contacts_sum, steps, diverged, overflowed, bad_actions, task_failed, unconverged;
 };
 
 // Where episodes may begin, beside the task's own start.
@@ -47,7 +47,8 @@ struct Slot {
   Counters counters;
   WorldDisturbance disturbance;
   Stream start;   // whether and where in Starts an episode begins
-  int32_t taken;  // control steps of the last step
+  uint32_t status;  // of the episode that runs, or has ended and waits for its reset: OR over its steps
+  int32_t taken;    // control steps of the last step
   double
       magnitude[kMaxTaskCosts];  // with option action_repeat: sums over these of cost_raw where it is above 0
   bool goes_on;                  // a further control step of this step would be of the same episode
@@ -99,6 +100,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   // Resets world, streams go on, writes obs. Where the task fails in it: its code; the world then is as it
   // was made, and the episode the one before.
   Code begin_episode(int32_t env);
+  void start_clear_rows(int32_t env);  // clear_rows of an episode that has begun, with what it began with
   void restart(int32_t env);  // a step that only resets
   // Runs f, which calls the task; the code of a host's one that failed in it, and the world's text says how.
   template <class F>

@@ -515,6 +515,7 @@ TEST(Agent, AHorizonOfDeadRowsTeachesNothing) {
     world.draw();
     Transition t = world.transition();
     t.valid = none.data();
+    t.terminated = t.truncated = nullptr;
     a->record(t);
   }
   const std::vector<float> before = parameters(*a);
@@ -523,5 +524,7 @@ TEST(Agent, AHorizonOfDeadRowsTeachesNothing) {
   EXPECT_TRUE(same_bytes(parameters(*a), before));
   EXPECT_EQ(e.passes, 0);
   EXPECT_EQ(e.env_steps, 0);
-  EXPECT_EQ(e.kl, 0);
+  for (const double x : {e.kl, e.loss_policy, e.loss_reward_value, e.value_reward, e.ret, e.length})
+    EXPECT_TRUE(std::isnan(x));
+  EXPECT_EQ(e.flags, kEpochNoEpisode);
 }

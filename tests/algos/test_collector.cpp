@@ -135,19 +135,96 @@ TEST(Collector, EstimateUsesTheValueAfterTheHorizon) {
   EXPECT_NEAR(b.rollout().target[4], 3 + d * (1 + 0.81 * 0.95), 1e-5);
 }
 
-TEST(Collector, DeadRowsAreNotCounted) {
+// What next-step autoreset returns for the step that only resets.
+TEST(Collector, ARowThatOnlyResetsIsNotCounted) {
   Bench b(world());
   b.valid = {1, 0, 1, 1};
-  b.terminated = {0, 1, 0, 0};
   b.reward[1] = std::numeric_limits<float>::quiet_NaN();
   b.decide();
   EXPECT_EQ(b.collector.env_steps(), 6);
   EXPECT_EQ(b.collector.episodes().stats().finished, 0);
   EXPECT_EQ(b.collector.episodes().length(1), 0);
   EXPECT_EQ(b.rollout().reward[1], 0);
+  EXPECT_EQ(b.collector.totals().invalid, 0);
   for (int i = 0; i < 2; ++i) b.decide();
   b.collector.estimate(b.obs.data());
   EXPECT_EQ(b.collector.listed().rows, 9);
+}
+
+// An emergency stop: the row is not learned from, but its cost counts and the episode is over.
+TEST(Collector, AnEndInARowThatIsNotValidEndsTheEpisode) {
+  Bench b(world());
+  b.decide();
+  b.valid = {1, 0, 1, 0};
+  b.truncated = {0, 1, 0, 0};
+  b.reward[1] = b.reward[3] = std::numeric_limits<float>::quiet_NaN();
+  b.decide();
+  const EpisodeStats s = b.collector.episodes().stats();
+  EXPECT_EQ(s.finished, 1);
+  EXPECT_EQ(s.cost[0], 4);
+  EXPECT_EQ(s.ret, 1);
+  EXPECT_EQ(s.length, 4);
+  EXPECT_EQ(b.collector.episodes().length(1), 0);
+  EXPECT_EQ(b.collector.episodes().length(3), 4);
+  EXPECT_EQ(b.collector.episodes().cost(3, 0), 4);
+  EXPECT_EQ(b.collector.totals().invalid, 2);
+  EXPECT_EQ(b.collector.totals().cost[0], 16);
+  EXPECT_EQ(b.collector.totals().steps, 16);
+  EXPECT_EQ(b.rollout().discount[5], 0);
+  EXPECT_EQ(b.rollout().cost[5], 0);
+}
+
+// Ten control steps of two a decision: sums close, the path goes on.
+TEST(Collector, AnEpisodeThatIsTooLongIsCountedAsEnded) {
+  AgentSetup s = world();
+  Bench b(std::move(s.with("horizon", "7")));
+  for (int i = 0; i < 7; ++i) b.decide();
+  const EpisodeStats e = b.collector.episodes().stats();
+  EXPECT_EQ(e.finished, 4);
+  EXPECT_EQ(e.length, 10);
+  EXPECT_EQ(e.cost[0], 10);
+  EXPECT_EQ(e.fall_rate, 0);
+  EXPECT_EQ(b.collector.episodes().length(0), 4);
+  EXPECT_EQ(b.collector.totals().cut, 4);
+  for (int32_t row = 0; row < 28; ++row) EXPECT_GT(b.rollout().discount[row], 0);
+  b.collector.drop();
+  EXPECT_EQ(b.collector.totals().cut, 0);
+  EXPECT_EQ(b.collector.totals().steps, 0);
+}
+
+TEST(Collector, EpisodeStepsStandForMaxSteps) {
+  AgentSetup s = world();
+  Bench b(std::move(s.with("episode_steps", "4").with("horizon", "6")));
+  for (int i = 0; i < 6; ++i) b.decide();
+  EXPECT_EQ(b.collector.episodes().stats().finished, 12);
+  EXPECT_EQ(b.collector.episodes().stats().length, 4);
+}
+
+TEST(Collector, RefusesWhatNoFlagAndNoCostIs) {
+  const auto refused = [](auto&& spoil, const char* text) {
+    Bench b(world());
+    spoil(b);
+    const Thrown t = thrown([&] { b.decide(); });
+    EXPECT_EQ(t.code, Code::kArgument) << text;
+    EXPECT_STREQ(t.text.c_str(), text);
+  };
+  refused([](Bench& b) { b.cost[2] = -3; }, "cost: row 2, column 0 is -3, less than 0");
+  refused([](Bench& b) { b.valid[2] = 0, b.cost[2] = -3; }, "cost: row 2, column 0 is -3, less than 0");
+  refused([](Bench& b) { b.valid[1] = 0, b.cost[1] = std::numeric_limits<float>::quiet_NaN(); },
+          "cost: row 1 is not finite");
+  refused([](Bench& b) { b.terminated[0] = 2; }, "terminated: row 0 is 2, neither 0 nor 1");
+  refused([](Bench& b) { b.truncated[1] = 255; }, "truncated: row 1 is 255, neither 0 nor 1");
+  refused([](Bench& b) { b.valid[3] = 7; }, "valid: row 3 is 7, neither 0 nor 1");
+  refused([](Bench& b) { b.success[3] = 3; }, "success: row 3 is 3, neither 0 nor 1");
+}
+
+TEST(Collector, CountsStatusBits) {
+  Bench b(world());
+  const std::vector<uint32_t> status = {0, 1, 2 | 16, 4 | 8};
+  b.t.status = status.data();
+  for (int i = 0; i < 2; ++i) b.decide();
+  const EpochTotals t = b.collector.totals();
+  for (const int64_t count : t.status) EXPECT_EQ(count, 2);
 }
 
 TEST(Collector, RemembersTheLogProbabilityOfWhatItDid) {

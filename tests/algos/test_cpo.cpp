@@ -7,7 +7,7 @@ using namespace rdm::test;
 
 TEST(Cpo, BanditStopsAtTheLimit) {
   AgentSetup s = bandit("cpo");
-  s.with("cost_limit", "1").with("multiplier_window", "2000");
+  s.with("cost_limit", "6").with("multiplier_window", "2000");
   Epoch e;
   EXPECT_NEAR(play_bandit(s, 100, &e), 1, 0.05);
 }
@@ -26,7 +26,7 @@ TEST(Cpo, RecoversFromAnInfeasibleStart) {
   const float start[] = {4};
   AgentSetup s = bandit("cpo");
   s.config.initial_mean = start;
-  s.with("cost_limit", "1").with("multiplier_window", "2000");
+  s.with("cost_limit", "6").with("multiplier_window", "2000");
   Epoch e;
   float last = 4;
   for (int epochs = 1; epochs <= 20; epochs += 3) {

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "agents.hpp"
 #include "algos/rollout/episodes.hpp"
 
@@ -23,7 +25,10 @@ TEST(Episodes, SumsPerEnvironmentAndMeansOverFinishedOnes) {
   Book b(2, 2, 100);
   const float cheap[] = {1, 0}, dear[] = {3, 2};
   EXPECT_EQ(b.episodes.stats().finished, 0);
-  EXPECT_EQ(b.episodes.stats().ret, 0);
+  const EpisodeStats none = b.episodes.stats();
+  for (const double x : {none.ret, none.length, none.fall_rate, none.success_rate, none.cost_per_step,
+                         none.cost[0], none.charged_cost[0]})
+    EXPECT_TRUE(std::isnan(x));
   b.episodes.add(0, 5, cheap, 4, false);
   b.episodes.add(1, 1, dear, 4, true);
   b.episodes.add(0, 2, cheap, 2, false);

@@ -20,7 +20,7 @@ TEST(Ipo, SlopeIsTheDerivativeOfTheLogarithm) {
 TEST(Ipo, WithoutBarrierItIsPpo) {
   for (const char* barrier : {"epoch", "exact"}) {
     AgentSetup plain = bandit("ppo"), s = bandit("ipo");
-    s.with("cost_limit", "1").with("barrier_max", "0").with("barrier", barrier);
+    s.with("cost_limit", "6").with("barrier_max", "0").with("barrier", barrier);
     Epoch a, b;
     EXPECT_EQ(play_bandit(plain, 5, &a), play_bandit(s, 5, &b));
     EXPECT_EQ(a.kl, b.kl);
@@ -53,7 +53,7 @@ TEST(Ipo, ExactBarrierHasTheGradientOfTheLogarithm) {
 
 TEST(Ipo, ExactBarrierStopsBeforeTheLimit) {
   AgentSetup s = bandit("ipo");
-  s.with("cost_limit", "1").with("barrier", "exact").with("multiplier_window", "2000");
+  s.with("cost_limit", "6").with("barrier", "exact").with("multiplier_window", "2000");
   s.with("barrier_kappa", "0.1").with("barrier_max", "20");
   Epoch e;
   const float mean = play_bandit(s, 100, &e);

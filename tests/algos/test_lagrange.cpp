@@ -13,11 +13,12 @@ AgentSetup sgd(const char* warmup = "0") {
   return s;
 }
 
-EpisodeStats costing(double cost, bool fresh = true) {
-  EpisodeStats s;
-  s.fresh = fresh;
-  s.charged_cost[0] = cost;
-  return s;
+Judged costing(double cost, bool fresh = true) {
+  Judged j;
+  j.count = 1;
+  j.known[0] = true, j.fresh[0] = fresh;
+  j.cost[0] = cost, j.limit[0] = 25;
+  return j;
 }
 
 }  // namespace
@@ -26,9 +27,9 @@ TEST(Lagrange, MovesOnFreshEpisodesOnly) {
   AgentSetup s = sgd();
   const ResolvedAgentConfig resolved = resolve_config(s.ready());
   Lagrange l(resolved);
-  l.step(costing(30, false), resolved, 1);
+  l.step(costing(30, false), 1);
   EXPECT_EQ(l.weight(0), 0);
-  l.step(costing(30), resolved, 2);
+  l.step(costing(30), 2);
   EXPECT_DOUBLE_EQ(l.weight(0), 0.5);
 }
 
@@ -39,7 +40,7 @@ TEST(Lagrange, WarmUpGrowsFromNothingToTheFullRate) {
   const double steps[] = {0, 0.125, 0.25, 0.375, 0.5, 0.5};
   double before = 0;
   for (int32_t epoch = 1; epoch <= 6; ++epoch) {
-    l.step(costing(30), resolved, epoch);
+    l.step(costing(30), epoch);
     EXPECT_DOUBLE_EQ(l.weight(0) - before, steps[epoch - 1]) << epoch;
     before = l.weight(0);
   }

@@ -24,22 +24,22 @@ TEST(P3o, TheLimitIsInTheUnitsOfADecision) {
     using Ppo::Ppo;
     using Ppo::violation;
   };
-  EpisodeStats stats;
-  stats.finished = 1, stats.length = 40, stats.charged_cost[0] = 35;
+  Judged costs;
+  costs.count = 1, costs.known[0] = true, costs.steps[0] = 40, costs.cost[0] = 35, costs.limit[0] = 25;
   const std::pair<const char*, double> wanted[] = {{nullptr, 0.5}, {"discount", 1.9}, {"raw", 10}};
   for (const auto& [scale, violation] : wanted) {
     AgentSetup s("p3o", 3, 2, 16);
     s.with("action_repeat", "2").with("discount", "0.9").with("cost_limit", "25");
     if (scale) s.with("violation_scale", scale);
     const Probe p(resolve_config(s.ready()));
-    EXPECT_NEAR(p.violation(stats, 0), violation, 1e-12);
+    EXPECT_NEAR(p.violation(costs, 0), violation, 1e-12);
     EXPECT_TRUE(p.options().flag("penalty_clip"));
   }
 }
 
 TEST(P3o, WithoutPenaltyItIsPpo) {
   AgentSetup plain = bandit("ppo"), s = bandit("p3o");
-  s.with("cost_limit", "1").with("penalty", "0").with("penalty_max", "0");
+  s.with("cost_limit", "6").with("penalty", "0").with("penalty_max", "0");
   Epoch a, b;
   EXPECT_EQ(play_bandit(plain, 5, &a), play_bandit(s, 5, &b));
   EXPECT_EQ(a.kl, b.kl);
@@ -47,7 +47,7 @@ TEST(P3o, WithoutPenaltyItIsPpo) {
 
 TEST(P3o, KappaGrowsToItsBound) {
   AgentSetup s = bandit("p3o");
-  s.with("cost_limit", "1").with("penalty", "1").with("penalty_growth", "2").with("penalty_max", "5");
+  s.with("cost_limit", "6").with("penalty", "1").with("penalty_growth", "2").with("penalty_max", "5");
   Epoch e;
   for (const double kappa : {1.0, 2.0, 4.0, 5.0}) {
     play_bandit(s, kappa == 1 ? 1 : kappa == 2 ? 2 : kappa == 4 ? 3 : 4, &e);

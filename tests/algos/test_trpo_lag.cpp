@@ -6,7 +6,7 @@ using namespace rdm::test;
 
 TEST(TrpoLag, BanditStopsAtTheLimit) {
   AgentSetup s = bandit("trpo_lag");
-  s.with("cost_limit", "1").with("multiplier_optimizer", "sgd").with("multiplier_lr", "0.1");
+  s.with("cost_limit", "6").with("multiplier_optimizer", "sgd").with("multiplier_lr", "0.1");
   s.with("multiplier_window", "2000");
   Epoch e;
   EXPECT_NEAR(play_bandit(s, 140, &e), 1, 0.05);  // to the end of its schedule, the trust region shrinks

@@ -118,6 +118,20 @@ class ActMode(enum.IntEnum):
     MEAN = 1
 
 
+class EpochFlag(enum.IntFlag):
+    """of rdm_epoch.flags"""
+
+    NO_EPISODE = 1  # no episode has ended so far: ret, cost, length and rates are NaN
+    SKIPPED_GRADIENTS = 2  # gradients that were not finite were left out
+    INVALID_ROWS = 4  # rows with valid 0
+    CUT = 8  # episodes were counted as ended at max_steps or episode_steps
+    DIVERGED = 16  # decisions flagged RDM_STATUS_DIVERGED
+    CONTACTS = 32  # decisions flagged RDM_STATUS_CONTACTS
+    BAD_ACTION = 64  # decisions flagged RDM_STATUS_BAD_ACTION
+    TASK = 128  # decisions flagged RDM_STATUS_TASK
+    SOLVER = 256  # decisions flagged RDM_STATUS_SOLVER
+
+
 class RobotKind(enum.IntEnum):
     """of a robot"""
 
@@ -907,13 +921,14 @@ class rdm_agent_config(Structure):
     seed: of weights, noise, shuffling; default 0
     layout_hash: kept in policy files; 0: unknown
     control_dt: s, kept in policy files; 0: unknown
-    max_steps: control steps of an episode, for terminal_cost; 0: unknown
+    max_steps: control steps of an episode: one that is longer is counted as ended there; 0: unknown
     initial_mean: [action_dim] mean action of the new policy, copied; NULL: 0
     defaults: [num_defaults] laid under options (a task's); "algo:key" is for one algo
     options: [num_options] the caller's; NULL: none
     num_defaults: count, default 0
     num_options: count, default 0
-    cost_limits: [cost_dim] on the sum over an episode, < 0: none; NULL: option cost_limit for column 0
+    cost_limits: [cost_dim] on the sum over an episode, < 0: none; NULL: option cost_limit for column 0, which
+        stands over [0] where both are given
     host: hooks of this handle, copied; NULL: those of rdm_init
     settings: options as lines key=value, laid over `options`, copied; NULL: none
     error: [error_size] the text of a failing call that takes this config; NULL
@@ -988,9 +1003,10 @@ class rdm_transition(Structure):
     terminated: [num_envs] NULL: none
     truncated: [num_envs] NULL: none
     final_obs: [num_envs][obs_dim] read where truncated; NULL: truncation has value 0
-    valid: [num_envs] 0: a dead transition, not learned from; NULL: all valid
+    valid: [num_envs] 0: not learned from; NULL: all valid
     success: [num_envs] for the statistics; NULL: none
     steps: [num_envs] control steps in this decision; NULL: action_repeat
+    status: [num_envs] RDM_STATUS_* of the decision, for the epoch's counts; NULL: none
     """
 
     struct_size: int
@@ -1003,6 +1019,7 @@ class rdm_transition(Structure):
     valid: int | None
     success: int | None
     steps: int | None
+    status: int | None
     _fields_ = [
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
@@ -1014,18 +1031,19 @@ class rdm_transition(Structure):
         ("valid", c_void_p),
         ("success", c_void_p),
         ("steps", c_void_p),
+        ("status", c_void_p),
     ]
 
 
 class Epoch(Record):
-    """The values of rdm_epoch."""
+    """One row of the learning curve; means over the last 100 finished episodes. NaN: nothing was measured."""
 
     epoch: int  # count from 1
     env_steps: int  # control steps so far, all environments
     episodes: int  # finished so far
     ret: float  # sum of rewards of an episode
     cost: tuple[float, ...]  # sum of each cost column of an episode, of what cost_signal says
-    cost_per_step: float  # column 0, per control step
+    cost_per_step: float  # column 0, per control step; of this epoch's decisions while no episode has ended, and with option cost_limit_per_step
     length: float  # control steps of an episode
     fall_rate: float  # share of episodes that terminated
     success_rate: float  # share of episodes with at least one success
@@ -1042,16 +1060,27 @@ class Epoch(Record):
     value_cost: float  # mean prediction over the batch
     passes: int  # over the data, fewer after an early stop
     cost_signal: int  # costs are sums of 0: costs, 1: their magnitudes (option cost_signal=raw)
+    flags: int  # RDM_EPOCH_*
+    skipped_gradients: int  # in this epoch, as all counts below: steps left out
+    invalid_rows: int  # decisions with valid 0 that did not only reset
+    diverged: int  # decisions of a world with each RDM_STATUS_*
+    contacts_left_out: int
+    bad_actions: int
+    task_failed: int
+    unconverged: int
 
 
 class rdm_epoch(Structure):
-    """struct_size: in: bytes
+    """One row of the learning curve; means over the last 100 finished episodes. NaN: nothing was measured.
+
+    struct_size: in: bytes
     epoch: count from 1
     env_steps: control steps so far, all environments
     episodes: finished so far
     ret: sum of rewards of an episode
     cost: sum of each cost column of an episode, of what cost_signal says
-    cost_per_step: column 0, per control step
+    cost_per_step: column 0, per control step; of this epoch's decisions while no episode has ended, and with
+        option cost_limit_per_step
     length: control steps of an episode
     fall_rate: share of episodes that terminated
     success_rate: share of episodes with at least one success
@@ -1072,6 +1101,15 @@ class rdm_epoch(Structure):
     reserved: 0
     cost_signal: costs are sums of 0: costs, 1: their magnitudes (option cost_signal=raw)
     reserved2: 0
+    flags: RDM_EPOCH_*
+    reserved3: 0
+    skipped_gradients: in this epoch, as all counts below: steps left out
+    invalid_rows: decisions with valid 0 that did not only reset
+    diverged: decisions of a world with each RDM_STATUS_*
+    contacts_left_out
+    bad_actions
+    task_failed
+    unconverged
     """
 
     struct_size: int
@@ -1099,6 +1137,15 @@ class rdm_epoch(Structure):
     reserved: int
     cost_signal: int
     reserved2: int
+    flags: int
+    reserved3: int
+    skipped_gradients: int
+    invalid_rows: int
+    diverged: int
+    contacts_left_out: int
+    bad_actions: int
+    task_failed: int
+    unconverged: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("epoch", c_int32),
@@ -1125,6 +1172,15 @@ class rdm_epoch(Structure):
         ("reserved", c_int32),
         ("cost_signal", c_int32),
         ("reserved2", c_int32),
+        ("flags", c_uint32),
+        ("reserved3", c_uint32),
+        ("skipped_gradients", c_int64),
+        ("invalid_rows", c_int64),
+        ("diverged", c_int64),
+        ("contacts_left_out", c_int64),
+        ("bad_actions", c_int64),
+        ("task_failed", c_int64),
+        ("unconverged", c_int64),
     ]
 
 
@@ -2873,6 +2929,7 @@ ROWS: dict[str, dict[str, Rows]] = {
         "valid": Rows("uint8", ("num_envs",)),
         "success": Rows("uint8", ("num_envs",)),
         "steps": Rows("int32", ("num_envs",)),
+        "status": Rows("uint32", ("num_envs",)),
     },
     "rdm_points": {
         "points": Rows("float32", ("rows", "num_points", "3")),
@@ -3213,12 +3270,20 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_record": Function(
         c_int32, {"a": c_void_p, "t": POINTER(rdm_transition)},
         {}, False,
-        """STATE unless a sampled act came before, or when the horizon is full."""),
+        """STATE unless a sampled act came before, or when the horizon is full. ARGUMENT for a flag that is neither 0 nor 1, a
+        cost that is not finite or below 0, in any row, and for a reward or final_obs that is not finite in a valid one.
+        A row with valid 0 is not learned from and its reward does not count; its cost counts, and an end in it ends the
+        episode. Its steps count too, but in a row that neither ends an episode nor follows another row of one: that is what
+        next-step autoreset returns for the step that only resets.
+        An episode that is not over after max_steps control steps counts as one there (RDM_EPOCH_CUT): its sums are closed and
+        begin anew. The path goes on, so the value of the next observation follows, as after a truncation. Option
+        episode_steps sets that length, cost_limit_per_step a limit on the cost per control step, which needs no ends.
+        """),
     "rdm_agent_update": Function(
         c_int32, {"a": c_void_p, "last_obs": c_void_p, "io": POINTER(rdm_epoch)},
         {"last_obs": Rows("float32", ("num_envs", "obs_dim"))}, False,
-        """Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL. STATE when
-        the horizon is not full, CANCELLED after rdm_agent_cancel (the horizon is dropped).
+        """Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL. CANCELLED after
+        rdm_agent_cancel (the horizon is dropped, full or not), STATE when the horizon is not full.
         """),
     "rdm_agent_rollout": Function(
         c_int32, {"a": c_void_p, "p": c_void_p, "io": POINTER(rdm_epoch)},
@@ -3232,7 +3297,16 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_cancel": Function(
         None, {"a": c_void_p},
         {}, False,
-        """Async-signal-safe, from any thread: the running or next rollout or update returns CANCELLED."""),
+        """Async-signal-safe, from any thread: the running rollout or update returns CANCELLED. A horizon that has begun by act
+        and record is dropped by its update; between horizons, the next rollout, update or first act with RDM_SAMPLE
+        returns CANCELLED, before anything is collected.
+        """),
+    "rdm_agent_discard": Function(
+        c_int32, {"a": c_void_p},
+        {}, False,
+        """Drops the horizon that has begun, and a cancel that waits: from any state back to between epochs. Nothing is learned from
+        what it drops. Episodes that run go on, with what was recorded of them.
+        """),
     "rdm_agent_set": Function(
         c_int32, {"a": c_void_p, "option": POINTER(rdm_option)},
         {}, False,

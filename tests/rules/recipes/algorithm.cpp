@@ -11,11 +11,11 @@ namespace {
 class Rectify {
  public:
   explicit Rectify(const ResolvedAgentConfig&) {}
-  void step(const EpisodeStats& stats, const ResolvedAgentConfig& config, int32_t) {
-    if (!stats.fresh) return;
+  void step(const Judged& costs, int32_t) {
+    if (!costs.any_known()) return;
     violated_ = -1;
-    for (int32_t i = 0; i < config.num_limited && violated_ < 0; ++i)
-      if (stats.charged_cost[config.column[i]] > config.limit[i]) violated_ = i;
+    for (int32_t i = 0; i < costs.count && violated_ < 0; ++i)
+      if (costs.known[i] && costs.excess(i) > 0) violated_ = i;
   }
   double weight(int32_t i) const { return i == violated_ ? 1 : 0; }
   Mix mix() const { return Mix::kDifference; }  // (1 - sum w) A_r - sum w A_c
