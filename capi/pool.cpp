@@ -12,7 +12,8 @@ using namespace rdm::capi;
 
 namespace {
 constexpr size_t kFirstConfigSize = offsetof(rdm_pool_config, settings);
-}
+constexpr size_t kFirstStatsSize = offsetof(rdm_pool_stats, bad_actions);
+}  // namespace
 
 rdm_result rdm_pool_config_init(rdm_pool_config* c, size_t size) {
   return call([&] {
@@ -237,6 +238,7 @@ rdm_result rdm_pool_buffers(const rdm_pool* p, rdm_buffers* io) {
     out.episode_cost = b.episode_cost;
     out.episode_step = b.episode_step;
     out.status = b.status;
+    out.episode_status = b.episode_status;
     out.terminated = b.terminated;
     out.truncated = b.truncated;
     out.success = b.success;
@@ -260,6 +262,7 @@ rdm_result rdm_pool_bind(rdm_pool* p, const rdm_buffers* b) {
     aligned(in.episode_cost, "episode_cost");
     aligned(in.episode_step, "episode_step");
     aligned(in.status, "status");
+    aligned(in.episode_status, "episode_status");
     Buffers h;
     h.obs = in.obs;
     h.final_obs = in.final_obs;
@@ -271,6 +274,7 @@ rdm_result rdm_pool_bind(rdm_pool* p, const rdm_buffers* b) {
     h.episode_cost = in.episode_cost;
     h.episode_step = in.episode_step;
     h.status = in.status;
+    h.episode_status = in.episode_status;
     h.terminated = in.terminated;
     h.truncated = in.truncated;
     h.success = in.success;
@@ -362,7 +366,7 @@ rdm_result rdm_pool_copy(rdm_pool* dst, int32_t dst_env, const rdm_pool* src, in
 
 rdm_result rdm_pool_get_stats(const rdm_pool* p, rdm_pool_stats* io) {
   return call_on(p, [&] {
-    check_out(io, sizeof(rdm_pool_stats), "io");
+    check_out(io, kFirstStatsSize, "io");
     const PoolStats s = p->pool->stats();
     rdm_pool_stats out{};
     out.contacts_max = s.contacts_max;
@@ -371,7 +375,10 @@ rdm_result rdm_pool_get_stats(const rdm_pool* p, rdm_pool_stats* io) {
     out.steps = s.steps;
     out.diverged = s.diverged;
     out.overflowed = s.overflowed;
-    write_struct(io, out, sizeof(rdm_pool_stats), "io");
+    out.bad_actions = s.bad_actions;
+    out.task_failed = s.task_failed;
+    out.unconverged = s.unconverged;
+    write_struct(io, out, kFirstStatsSize, "io");
   });
 }
 #endif

@@ -55,6 +55,7 @@ Report run_baseline(const BaselineFlags& flags) {
       adopt_task(choice, true, {}, pool);
       const Evaluation e = evaluate(choice, pool, {}, flags.episodes, false);
       const Summary& s = e.summary;
+      say_trouble(s.trouble, task + ", " + policy);
       Json row = {{"task", task}, {"policy", policy}};
       row.update(evaluation_json(e, flags.episodes));
       rows.push_back(row);

@@ -23,22 +23,24 @@ Evaluation evaluate(const ActorChoice& choice, PoolSettings settings, const std:
 
 Json evaluation_json(const Evaluation& e, int32_t episodes) {
   const Summary& s = e.summary;
-  return {{"episodes", episodes},
-          {"return_mean", s.return_mean},
-          {"return_std", s.return_std},
-          {"return_stderr", s.return_stderr},
-          {"cost_mean", s.cost_mean},
-          {"cost_std", s.cost_std},
-          {"cost_stderr", s.cost_stderr},
-          {"success_rate", s.success_rate},
-          {"success_steps_mean", s.success_steps},
-          {"length_mean", s.length_mean},
-          {"cost_limits", e.limits},
-          {"cost_signal", e.magnitudes ? "raw" : "flag"},
-          {"violation_rate", s.violation_rate},
-          {"fall_rate", s.fall_rate},
-          {"cost_per_step", s.cost_per_step},
-          {"feasible", feasible(s, e.limits)}};
+  Json json = {{"episodes", episodes},
+               {"return_mean", s.return_mean},
+               {"return_std", s.return_std},
+               {"return_stderr", s.return_stderr},
+               {"cost_mean", s.cost_mean},
+               {"cost_std", s.cost_std},
+               {"cost_stderr", s.cost_stderr},
+               {"success_rate", s.success_rate},
+               {"success_steps_mean", s.success_steps},
+               {"length_mean", s.length_mean},
+               {"cost_limits", e.limits},
+               {"cost_signal", e.magnitudes ? "raw" : "flag"},
+               {"violation_rate", s.violation_rate},
+               {"fall_rate", s.fall_rate},
+               {"cost_per_step", s.cost_per_step},
+               {"feasible", feasible(s, e.limits)}};
+  put_trouble(json, s.trouble);
+  return json;
 }
 
 std::string evaluation_text(const Evaluation& e, int32_t episodes) {
@@ -72,6 +74,7 @@ Report run_eval(EvalFlags flags) {
   apply_sets(flags.sets, flags.pool, nullptr);
   choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
   const Evaluation e = evaluate(choice, flags.pool, choice.limits, flags.episodes, flags.stochastic);
+  say_trouble(e.summary.trouble, "eval");
   Json json = {{"policy", flags.policy}, {"task", task_at(find_task(flags.pool.task)).name}};
   json.update(evaluation_json(e, flags.episodes));
   return {json, evaluation_text(e, flags.episodes)};

@@ -45,6 +45,7 @@ Report run_plan(PlanFlags flags) {
   pool.reset();
   const std::vector<Episode> played = play_episodes(pool, actor, episodes, after, before);
   e.summary = summarise(played, e.limits);
+  say_trouble(e.summary.trouble, "plan");
   const double ms = actor.planning().calls > 0
                         ? 1e3 * actor.planning().seconds / static_cast<double>(actor.planning().calls)
                         : 0;

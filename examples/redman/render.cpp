@@ -56,7 +56,7 @@ void film(const RenderFlags& flags, Scene& scene) {
   film.finish();
 }
 
-Playback record(const RenderFlags& flags, const ActorChoice& choice) {
+Playback record(const RenderFlags& flags, const ActorChoice& choice, Trouble& trouble) {
   Scene scene = scene_of(flags, choice);
   scene.advance_to(flags.from);
   Playback playback = begin_playback(scene.pool(), cost_limits(scene.pool(), choice.limits));
@@ -65,6 +65,7 @@ Playback record(const RenderFlags& flags, const ActorChoice& choice) {
   do {
     add_frame(playback, scene.pool());
   } while ((flags.to < 0 || scene.step() < flags.to) && scene.advance());
+  trouble = scene.trouble();
   return playback;
 }
 
@@ -83,6 +84,7 @@ Report run_render(RenderFlags flags) {
     if (pictures) check_default_output(flags.out, "\x89PNG", "--out");
   }
   Json json;
+  Trouble trouble;  // of the last episode that was played: all are the same, as far as they go
   int32_t frames = 0;
   double seconds = 0;
   int32_t width = flags.width, height = flags.height * (flags.cloud ? 2 : 1);
@@ -94,6 +96,7 @@ Report run_render(RenderFlags flags) {
     width = image.width;
     frames += scene.frames();
     seconds += scene.seconds();
+    trouble = scene.trouble();
     files.push_back(flags.out);
   }
   if (!flags.video.empty()) {
@@ -101,6 +104,7 @@ Report run_render(RenderFlags flags) {
     film(flags, scene);
     frames += scene.frames();
     seconds += scene.seconds();
+    trouble = scene.trouble();
     files.push_back(json["video"] = flags.video);
   }
   std::string text;
@@ -108,7 +112,7 @@ Report run_render(RenderFlags flags) {
     text = format("%dx%d pixels, %d pictures at %.1f per second\n", width, height, frames,
                   frames / std::max(seconds, 1e-9));
   if (!flags.html.empty() || !flags.glb.empty()) {
-    const Playback playback = record(flags, choice);
+    const Playback playback = record(flags, choice, trouble);
     if (!flags.html.empty()) {
       replace_file(flags.html, playback_page(playback, flags.camera));
       files.push_back(json["html"] = flags.html);
@@ -121,6 +125,8 @@ Report run_render(RenderFlags flags) {
     if (frames == 0) json["frames"] = playback.frames;
   }
   json["file"] = files.front();
+  put_trouble(json, trouble);
+  say_trouble(trouble, "render");
   if (frames > 0) {
     json["width"] = width;
     json["height"] = height;

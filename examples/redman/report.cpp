@@ -38,7 +38,8 @@ Outcome evaluated(const RunData& run, const ReportFlags& flags) {
   const Evaluation e = evaluate(choice, report_worlds(run, flags.threads), run_settings(run.path).limits,
                                 flags.episodes, false);
   Outcome o{true, e.summary.return_mean, e.summary.success_rate, e.summary.fall_rate, e.summary.length_mean,
-            {}};
+            {},   e.summary.trouble};
+  say_trouble(o.trouble, run.path);
   for (size_t k = 0; k < e.costs.size(); ++k)
     o.costs.push_back({e.costs[k], e.limits[k], e.summary.cost_mean[k]});
   return o;
@@ -96,6 +97,8 @@ TaskReport report_of(const std::vector<const RunData*>& runs, const ReportFlags&
       if (flags.episodes < 1) continue;
       try {
         c.outcomes.back() = evaluated(*run, flags);
+        if (const Trouble& t_run = c.outcomes.back().trouble; t_run.any())
+          t.notes.push_back(run->path + ": " + trouble_text(t_run));
       } catch (const std::runtime_error& e) {
         t.notes.push_back(run->path + " was not evaluated: " + e.what());
       }
@@ -119,13 +122,15 @@ Json ranking_json(const TaskReport& t) {
     const Outcome mean = c.mean();
     Json costs = Json::object();
     for (const CostOutcome& cost : mean.costs) costs[cost.name] = cost.mean;
-    out.push_back({{"task", t.task},
-                   {"configuration", c.label},
-                   {"runs", c.runs.size()},
-                   {"feasible", mean.score().feasible},
-                   {"evaluated", mean.evaluated},
-                   {"return", mean.ret},
-                   {"cost", costs}});
+    Json row = {{"task", t.task},
+                {"configuration", c.label},
+                {"runs", c.runs.size()},
+                {"feasible", mean.score().feasible},
+                {"evaluated", mean.evaluated},
+                {"return", mean.ret},
+                {"cost", costs}};
+    put_trouble(row, mean.trouble);
+    out.push_back(row);
   }
   return out;
 }

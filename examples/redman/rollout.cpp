@@ -31,7 +31,7 @@ class StepTable {
     header_ = "episode,step,reward";
     for (const rdm_cost& c : task_costs(pool.spec().task))
       header_ += std::string(",") + (c.name == std::string("cost") ? "cost" : std::string("cost.") + c.name);
-    header_ += ",terminated,truncated,success";
+    header_ += ",terminated,truncated,success,status";
     for (int32_t i = 0; i < pool.spec().num_fields; ++i) {
       rdm_field field;
       redman::check(rdm_pool_field(pool.get(), i, &field));
@@ -44,7 +44,8 @@ class StepTable {
     std::string& out = rows_[episode];
     out += format("%zu,%d,%.9g", episode, ++steps_[episode], static_cast<double>(pool.reward()[env]));
     for (const float c : pool.cost()[env]) out += format(",%.9g", static_cast<double>(c));
-    out += format(",%d,%d,%d", pool.terminated()[env], pool.truncated()[env], pool.success()[env]);
+    out += format(",%d,%d,%d,%u", pool.terminated()[env], pool.truncated()[env], pool.success()[env],
+                  pool.status()[env]);
     for (const rdm_field& f : fields_)
       for (int32_t k = 0; k < f.count; ++k)
         out += format(",%.9g", static_cast<double>(pool.obs()[env][static_cast<size_t>(f.offset + k)]));
@@ -124,6 +125,8 @@ Report run_rollout(RolloutFlags flags) {
                {"return_mean", s.return_mean},           {"cost_mean", s.cost_mean},
                {"length_mean", s.length_mean},           {"fall_rate", s.fall_rate},
                {"success_rate", s.success_rate},         {"hash", hash}};
+  put_trouble(json, s.trouble);
+  say_trouble(s.trouble, "rollout");
   std::string text = format("%d episodes: return %.4f, cost %.3f, length %.1f, falls %.0f%%\nstate hash %s\n",
                             flags.episodes, s.return_mean, s.cost_mean.empty() ? 0 : s.cost_mean[0],
                             s.length_mean, 100 * s.fall_rate, hash.c_str());

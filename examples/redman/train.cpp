@@ -168,6 +168,8 @@ Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
   const ActorChoice choice = choose_actor(trainer.folder().policy());
   const Evaluation e = evaluate(choice, settings, run.limits, kEvalEpisodes, false);
   const Summary& s = e.summary;
+  say_trouble(trainer.trouble(), "training");
+  say_trouble(s.trouble, "evaluation");
   const bool safe = feasible(s, e.limits);
   const double cost = s.cost_mean.empty() ? 0 : s.cost_mean[0], limit = e.limits.empty() ? -1 : e.limits[0];
   Json json = {{"run", trainer.folder().path()},
@@ -185,6 +187,8 @@ Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
                {"fall_rate", s.fall_rate},
                {"length", s.length_mean},
                {"interrupted", trainer.interrupted()}};
+  put_trouble(json, s.trouble);
+  put_trouble(json, trainer.trouble(), "training_");
   if (trainer.taught().cloned) {
     const rdm_clone_report& c = trainer.taught().report;
     json["clone"] = {{"rows", c.train_rows},

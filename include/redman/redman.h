@@ -261,7 +261,10 @@ enum rdm_status {                  /* bits of rdm_buffers.status */
   RDM_STATUS_CONTACTS = 1,         /* contacts beyond contacts_max were left out              */
   RDM_STATUS_DIVERGED = 2,         /* a value was not finite: the episode was truncated       */
   RDM_STATUS_BAD_ACTION = 4,       /* the row of actions was not finite: likewise             */
-  RDM_STATUS_TASK = 8              /* a function of a host's own task failed: likewise        */
+  RDM_STATUS_TASK = 8,             /* a function of a host's own task failed: likewise        */
+  RDM_STATUS_SOLVER = 16           /* contacts were not solved, not seen in engine ode: one was wrong by more than 1 m/s
+                                    * along its normal when the sweeps ended (a thing under one that is a thousand times
+                                    * heavier), or gave way for ever (heavier than contact_max_speed / contact_cfm N) */
 };
 typedef struct rdm_pool_config { /* what a pool is made from */
   uint32_t struct_size;      /* bytes, set by rdm_pool_config_init                                        */
@@ -334,11 +337,11 @@ typedef struct rdm_buffers {
   float *episode_return;     /* [num_envs] sum of rewards; the finished episode's where one ended         */
   float *episode_cost;       /* [num_envs][cost_dim] likewise                                             */
   int32_t *episode_step;     /* [num_envs] control steps, likewise                                        */
-  uint32_t *status;          /* [num_envs] RDM_STATUS_* of the last step                                  */
+  uint32_t *status;          /* [num_envs] RDM_STATUS_* of the last step or reset                         */
   uint8_t *terminated;       /* [num_envs] 1: the task ended (a fall)                                     */
   uint8_t *truncated;        /* [num_envs] 1: cut by the time limit or a bad status                       */
   uint8_t *success;          /* [num_envs] 1: the task's success holds in this step                       */
-  void *reserved_pointer;    /* NULL                                                                      */
+  uint32_t *episode_status;  /* [num_envs] all RDM_STATUS_* of the episode; the finished one's where one ended */
 } rdm_buffers;
 RDM_API rdm_result rdm_pool_buffers(const rdm_pool *p, rdm_buffers *io); /* borrowed pointers */
 /* Non-NULL pointers of b take the place of the pool's (sizes as above, at least 4-byte aligned; they must
@@ -347,9 +350,10 @@ RDM_API rdm_result rdm_pool_bind(rdm_pool *p, const rdm_buffers *b);
 
 /* Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new streams: the seed
  * alone, whatever the world's number, so that seed s gives what a pool of one world created with seed s has. NULL: go
- * on with the worlds' own, which after create is (config.seed, i). Costs are 0 afterwards. Where a host's own task
- * fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand as if they were never reset,
- * the others have begun. */
+ * on with the worlds' own, which after create is (config.seed, i). Costs are 0 afterwards. An entry of the first
+ * observation that is not finite is written as 0, and the world is flagged RDM_STATUS_DIVERGED, its episode with it.
+ * Where a host's own task fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand as if
+ * they were never reset, the others have begun. */
 RDM_API rdm_result rdm_pool_reset(rdm_pool *p, const uint64_t *seeds, const uint8_t *mask);
 /* One control step of every world: reads action, writes all the rest. STATE before the first reset, and with
  * autoreset off while an ended world was not reset. Worlds that diverge, get an action that is not finite, or whose
@@ -408,8 +412,11 @@ typedef struct rdm_pool_stats { /* counts since create */
   double contacts_mean;      /* mean of the same                                                          */
   double joint_drift;        /* m, largest gap of any joint now, all worlds                               */
   int64_t steps;             /* control steps of one world, summed over worlds                            */
-  int64_t diverged;          /* worlds flagged RDM_STATUS_DIVERGED so far                                 */
+  int64_t diverged;          /* steps and resets flagged RDM_STATUS_DIVERGED so far                       */
   int64_t overflowed;        /* steps flagged RDM_STATUS_CONTACTS so far                                  */
+  int64_t bad_actions;       /* steps flagged RDM_STATUS_BAD_ACTION so far                                */
+  int64_t task_failed;       /* steps flagged RDM_STATUS_TASK so far                                      */
+  int64_t unconverged;       /* steps flagged RDM_STATUS_SOLVER so far                                    */
 } rdm_pool_stats;
 RDM_API rdm_result rdm_pool_get_stats(const rdm_pool *p, rdm_pool_stats *io); /* fills io */
 

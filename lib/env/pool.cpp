@@ -53,6 +53,7 @@ Pool::Impl::Carved Pool::Impl::carve_rows(const ResolvedPoolConfig& plan, Arena&
   b.episode_cost = arena.make<float>(n * costs);
   b.episode_step = arena.make<int32_t>(n);
   b.status = arena.make<uint32_t>(n);
+  b.episode_status = arena.make<uint32_t>(n);
   b.terminated = arena.make<uint8_t>(n);
   b.truncated = arena.make<uint8_t>(n);
   b.success = arena.make<uint8_t>(n);
@@ -299,6 +300,7 @@ void Pool::bind(const Buffers& host) {
   take(b.episode_cost, host.episode_cost, costs);
   take(b.episode_step, host.episode_step, n);
   take(b.status, host.status, n);
+  take(b.episode_status, host.episode_status, n);
   take(b.terminated, host.terminated, n);
   take(b.truncated, host.truncated, n);
   take(b.success, host.success, n);
@@ -314,6 +316,9 @@ PoolStats Pool::stats() const {
     s.steps += slot.counters.steps;
     s.diverged += slot.counters.diverged;
     s.overflowed += slot.counters.overflowed;
+    s.bad_actions += slot.counters.bad_actions;
+    s.task_failed += slot.counters.task_failed;
+    s.unconverged += slot.counters.unconverged;
     const double drift = slot.world->joint_drift();
     if (drift > s.joint_drift) s.joint_drift = drift;
   }

@@ -46,7 +46,7 @@ struct Slot {
   Episode episode;
   Counters counters;
   WorldDisturbance disturbance;
-  Stream start;   // whether and where in Starts an episode begins
+  Stream start;     // whether and where in Starts an episode begins
   uint32_t status;  // of the episode that runs, or has ended and waits for its reset: OR over its steps
   int32_t taken;    // control steps of the last step
   double
@@ -100,12 +100,12 @@ struct Pool::Impl : ResolvedPoolConfig {
   // Resets world, streams go on, writes obs. Where the task fails in it: its code; the world then is as it
   // was made, and the episode the one before.
   Code begin_episode(int32_t env);
-  void start_clear_rows(int32_t env);  // clear_rows of an episode that has begun, with what it began with
   void restart(int32_t env);  // a step that only resets
+  void count(int32_t env, uint32_t status);
   // Runs f, which calls the task; the code of a host's one that failed in it, and the world's text says how.
   template <class F>
   Code attempt_task(int32_t env, F&& f);
-  void begin_at_start(int32_t env);  // an episode that has begun, perhaps at one of `starts`
+  bool begin_at_start(int32_t env);  // an episode that has begun; true: it now is one of `starts`
   void clear_rows(int32_t env);      // reward, costs, flags, status, sums; final_obs becomes obs
   // What is shown of control step `step`, 0 at a reset; false: an entry is not finite.
   bool observe(int32_t env, int32_t step, float* row);

@@ -59,9 +59,9 @@ void Pool::set_starts(const unsigned char* states, size_t state_bytes, int64_t c
   m.starts = std::move(next);
 }
 
-void Pool::Impl::begin_at_start(int32_t env) {
+bool Pool::Impl::begin_at_start(int32_t env) {
   Slot& s = slots[env];
-  if (!(s.start.uniform() < starts.share)) return;
+  if (!(s.start.uniform() < starts.share)) return false;
   const size_t at = s.start.below(static_cast<uint32_t>(starts.count));
   Reader in(starts.records.data() + at * starts.record_bytes, starts.record_bytes, "state");
   const Episode own = s.episode;
@@ -69,6 +69,7 @@ void Pool::Impl::begin_at_start(int32_t env) {
   const int32_t step = s.episode.step;
   s.episode = own;
   s.episode.step = step;
+  return true;
 }
 
 }  // namespace rdm

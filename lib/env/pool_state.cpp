@@ -4,6 +4,8 @@
 //
 // A state is a file of two sections: HEAD says what it belongs to, WRLD holds one record a world: length,
 // world, task struct, episode, observation row, and what the world's disturbances remember, where it has any.
+// EPST has what went wrong so far in each episode, RDM_STATUS_*; a state without it, of redman before 1.0, has 0.
+// Hashes are of the worlds alone.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,6 +22,8 @@ constexpr char kMagic[8] = {'R', 'D', 'M', 'S', 'T', 'A', 'T', 'E'};
 constexpr uint32_t kVersion = 1;
 constexpr size_t kTextSize = 64;
 constexpr int32_t kFewCopies = 16;  // made sooner than other threads wake up
+constexpr uint32_t kEveryStatus =
+    kStatusContactOverflow | kStatusDiverged | kStatusBadAction | kStatusTask | kStatusUnconverged;
 
 struct Range {
   int32_t begin, end;
@@ -139,6 +143,9 @@ void Pool::get_state(int32_t env, Writer& out) const {
   out.begin_section("WRLD");
   for (int32_t i = range.begin; i < range.end; ++i) m.write_world(i, out);
   out.end_section();
+  out.begin_section("EPST");
+  for (int32_t i = range.begin; i < range.end; ++i) out.value(m.slots[i].status);
+  out.end_section();
   if (env < 0 && m.starts.count > 0) {
     out.begin_section("STRT");
     out.value(m.starts.mark);
@@ -195,6 +202,17 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
     }
   }
 
+  Reader flags(bytes, size, "state");
+  flags.begin_file(kMagic, kVersion);
+  const bool flagged = flags.find_section("EPST");
+  if (flagged) {
+    if (flags.left() != sizeof(uint32_t) * static_cast<size_t>(held))
+      fail(Code::kFormat, "state: not a status for each world's episode");
+    for (Reader all_flags = flags; all_flags.left() > 0;)
+      if (all_flags.value<uint32_t>() & ~kEveryStatus) fail(Code::kFormat, "state: an unknown status");
+    flags.view(sizeof(uint32_t) * static_cast<size_t>(before));
+  }
+
   // a record that turns out bad half-way must leave no trace
   Writer need(nullptr, 0);
   for (int32_t i = range.begin; i < range.end; ++i) m.write_world(i, need);
@@ -215,6 +233,7 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
     throw;
   }
   for (int32_t i = range.begin; i < range.end; ++i) {
+    m.slots[i].status = flagged ? flags.value<uint32_t>() : 0;
     m.clear_rows(i);
     // the flags of an ended world that waits for its reset belong to its state; all else is of a step
     m.buffers.terminated[i] = m.slots[i].episode.terminated;
@@ -254,6 +273,16 @@ void Pool::join_states(const StateBytes* parts, int32_t count, Writer& out) {
   out.begin_section("WRLD");
   each("WRLD", [&](int32_t, Reader& in) { copy(in); });
   out.end_section();
+  out.begin_section("EPST");
+  each("HEAD", [&](int32_t i, Reader& in) {
+    in.view(in.left() - sizeof worlds);
+    const auto own = in.value<int32_t>();
+    Reader flags(parts[i].bytes, parts[i].size, "state");
+    flags.begin_file(kMagic, kVersion);
+    if (flags.find_section("EPST")) return copy(flags);
+    for (int32_t k = 0; k < own; ++k) out.value(uint32_t{0});
+  });
+  out.end_section();
   bool begun = false;
   each("STRT", [&](int32_t i, Reader& in) {
     if (i == 0) out.begin_section("STRT"), begun = true;
@@ -272,6 +301,7 @@ void Pool::Impl::copy_world(int32_t env, const Impl& from, int32_t source) {
   std::memcpy(to.task_state, s.task_state, task->state_bytes());
   to.episode = s.episode;
   if (disturbance.any()) to.disturbance.copy(s.disturbance);
+  to.status = s.status;
   to.taken = s.taken;
   to.goes_on = s.goes_on;
   std::copy_n(s.magnitude, cost_dim, to.magnitude);
@@ -287,6 +317,7 @@ void Pool::Impl::copy_world(int32_t env, const Impl& from, int32_t source) {
   buffers.episode_return[env] = from.buffers.episode_return[source];
   buffers.episode_step[env] = from.buffers.episode_step[source];
   buffers.status[env] = from.buffers.status[source];
+  buffers.episode_status[env] = from.buffers.episode_status[source];
   buffers.terminated[env] = from.buffers.terminated[source];
   buffers.truncated[env] = from.buffers.truncated[source];
   buffers.success[env] = from.buffers.success[source];

@@ -21,6 +21,12 @@ bool sound(const Verdict& v, int32_t costs) {
   return good;
 }
 
+// What a host's learner reads must be finite: such an entry becomes 0, and the world is flagged.
+void mend_row(float* row, int32_t count) {
+  for (int32_t i = 0; i < count; ++i)
+    if (!std::isfinite(row[i])) row[i] = 0;
+}
+
 }  // namespace
 
 void Pool::reset(const uint64_t* seeds, const uint8_t* mask) {
@@ -30,12 +36,12 @@ void Pool::reset(const uint64_t* seeds, const uint8_t* mask) {
     if (seeds) m.name_streams(env, seeds[env], 0);
     const Code code = m.begin_episode(env);
     m.clear_rows(env);
+    m.buffers.status[env] = m.slots[env].status;
     if (code == Code::kOk) return m.see(env, block);
     Episode& e = m.slots[env].episode;
     e.phase = Phase::kNew;
     e.step = 0;
     e.terminated = e.truncated = 0;
-    m.buffers.status[env] = kStatusTask;
     fail(code, "%s", task_error(env));
   });
 }
@@ -128,13 +134,19 @@ Code Pool::Impl::begin_episode(int32_t env) {
   e.terminated = e.truncated = 0;
   e.sum_reward = 0;
   for (double& sum : e.sum_cost) sum = 0;
+  bool good = true;
   const Code code = attempt_task(env, [&] {
     task->reset(*s.world, s.task_state, e.reset);
     if (disturbance.any()) s.disturbance.begin(disturbance, *task);
-    observe(env, 0, obs(env));
-    if (starts.share > 0) begin_at_start(env);
+    good = observe(env, 0, obs(env));
+    if (starts.share > 0) good |= begin_at_start(env);
   });
-  if (code == Code::kOk) return code;
+  s.status = 0;
+  if (code == Code::kOk) {
+    if (!good) count(env, kStatusDiverged);
+    return code;
+  }
+  count(env, kStatusTask);
   renew();
   const Stream drawn = e.reset;  // the next attempt draws others
   e = before;
@@ -147,9 +159,10 @@ bool Pool::Impl::observe(int32_t env, int32_t step, float* row) {
   Slot& s = slots[env];
   task->observe(*s.world, s.task_state, row);
   const bool good = clip_row(row, obs_dim, obs_limit);
-  if (disturbance.fields.empty() || !good) return good;
+  if (!good && step == 0) mend_row(row, obs_dim);
+  if (disturbance.fields.empty() || (!good && step > 0)) return good;
   s.disturbance.show(disturbance, step, row);
-  return clip_row(row, obs_dim, obs_limit);
+  return clip_row(row, obs_dim, obs_limit) && good;
 }
 
 void Pool::Impl::see(int32_t env, Block& block) {
@@ -174,6 +187,7 @@ void Pool::Impl::clear_rows(int32_t env) {
   buffers.reward[env] = buffers.episode_return[env] = 0;
   buffers.episode_step[env] = 0;
   buffers.status[env] = 0;
+  buffers.episode_status[env] = slots[env].status;
   buffers.terminated[env] = buffers.truncated[env] = buffers.success[env] = 0;
 }
 
@@ -220,7 +234,6 @@ void Pool::Impl::finish_step(int32_t env) {
   c.contacts_max = contacts > c.contacts_max ? contacts : c.contacts_max;
   c.contacts_sum += contacts;
   ++c.steps;
-  c.overflowed += (status & kStatusContactOverflow) != 0;
   if (status & kStatusDiverged) return lose_step(env, status);
   Verdict verdict;
   bool finite = false;
@@ -242,7 +255,6 @@ bool Pool::Impl::costs_end(const Verdict& verdict) const {
 }
 
 void Pool::Impl::lose_step(int32_t env, uint32_t status) {
-  slots[env].counters.diverged += (status & kStatusDiverged) != 0;
   // the last finite one
   std::memcpy(final_obs(env), obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
   close_step(env, Verdict{}, status, true);
@@ -252,14 +264,16 @@ void Pool::Impl::close_step(int32_t env, const Verdict& verdict, uint32_t status
   Episode& e = slots[env].episode;
   ++e.step;
   ++slots[env].taken;
+  count(env, status);
   e.terminated = verdict.terminated;
   e.truncated = lost || (!verdict.terminated && e.step >= task->max_steps());
   write_verdict(env, verdict, status);
   slots[env].goes_on = !e.terminated && !e.truncated;
   if (slots[env].goes_on) return;
   e.phase = Phase::kEnded;
-  if (config.autoreset == Autoreset::kSameStep && begin_episode(env) != Code::kOk)
-    buffers.status[env] |= kStatusTask;
+  if (config.autoreset != Autoreset::kSameStep) return;
+  begin_episode(env);
+  buffers.status[env] |= slots[env].status;  // what went wrong in the reset
 }
 
 // Where the task fails in it the world goes on showing the end that it had, and the
@@ -267,11 +281,23 @@ void Pool::Impl::close_step(int32_t env, const Verdict& verdict, uint32_t status
 void Pool::Impl::restart(int32_t env) {
   const Code code = begin_episode(env);
   clear_rows(env);
+  buffers.status[env] = slots[env].status;
   if (code == Code::kOk) return;
   const Episode& e = slots[env].episode;
-  buffers.status[env] = kStatusTask;
   buffers.terminated[env] = e.terminated;
   buffers.truncated[env] = e.truncated;
+}
+
+// Into the episode's status and the counters.
+void Pool::Impl::count(int32_t env, uint32_t status) {
+  Slot& s = slots[env];
+  s.status |= status;
+  Counters& c = s.counters;
+  c.overflowed += (status & kStatusContactOverflow) != 0;
+  c.diverged += (status & kStatusDiverged) != 0;
+  c.bad_actions += (status & kStatusBadAction) != 0;
+  c.task_failed += (status & kStatusTask) != 0;
+  c.unconverged += (status & kStatusUnconverged) != 0;
 }
 
 void Pool::Impl::write_verdict(int32_t env, const Verdict& verdict, uint32_t status) {
@@ -294,6 +320,7 @@ void Pool::Impl::write_verdict(int32_t env, const Verdict& verdict, uint32_t sta
   }
   buffers.episode_step[env] = e.step;
   buffers.status[env] = first ? status : buffers.status[env] | status;
+  buffers.episode_status[env] = slots[env].status;
   buffers.success[env] = verdict.success || (!first && buffers.success[env]);
   buffers.terminated[env] = e.terminated;
   buffers.truncated[env] = e.truncated;

@@ -148,7 +148,7 @@ bool World::sound_extras(Reader& in, const Scene& scene) {
 
 bool World::copy_rows(const World& other) {
   const auto links = static_cast<size_t>(scene_->num_links);
-  status_ = other.status_;
+  status_ = saved_status(other.status_);
   std::copy_n(other.q_, links, q_);
   std::copy_n(other.qd_, links, qd_);
   std::copy_n(other.target_, links, target_);

@@ -19,6 +19,7 @@ enum class EngineKind : int32_t { kOde = 0, kArticulated = 1, kKinematic = 2 };
 enum : uint32_t {
   kStatusContactOverflow = 1u,  // more contacts than contacts_max: the last ones were left out
   kStatusDiverged = 2u,         // a value is not finite, or the engine gave up; reset the world
+  kStatusUnconverged = 16u,     // contacts were not solved: contact_solver.inl; not saved with a state
 };
 
 struct Motion {
@@ -179,6 +180,8 @@ class World {
   // The rows in which every engine's state agrees, bases and bodies, and what the scene asks for; true:
   // factors of dynamics_ changed, sizes of shapes with them.
   bool copy_rows(const World& other);
+  // What a state keeps of the status.
+  static uint32_t saved_status(uint32_t status) { return status & ~kStatusUnconverged; }
   // Reads status, q, qd, target, torque and sensors, in which every engine's state agrees; false where one
   // of them is not finite or out of range.
   static bool sound_rows(Reader& in, const Scene& scene);

@@ -113,7 +113,8 @@ TEST(Scene, RefusesWhatCannotBeSimulated) {
   EXPECT_EQ(code_of([](SceneDef&) {}), Code::kOk);
   EXPECT_EQ(code_of([](SceneDef& d) { d.solver.iterations = 1001; }), Code::kRange);
   EXPECT_EQ(code_of([](SceneDef& d) { d.solver.substeps = 0; }), Code::kRange);
-  EXPECT_EQ(code_of([](SceneDef& d) { d.solver.contacts_max = 0; }), Code::kRange);
+  EXPECT_EQ(code_of([](SceneDef& d) { d.solver.contacts_max = -1; }), Code::kRange);
+  EXPECT_EQ(code_of([](SceneDef& d) { d.solver.contacts_max = 4097; }), Code::kRange);
   EXPECT_EQ(code_of([&](SceneDef& d) { d.solver.h = nan; }), Code::kRange);
   EXPECT_EQ(code_of([&](SceneDef& d) { d.gravity.z = nan; }), Code::kArgument);
   EXPECT_EQ(code_of([](SceneDef& d) { d.friction[0][0].mu = -1; }), Code::kRange);

@@ -1,6 +1,7 @@
 """Whole episodes of a policy: how good it is, and what it looks like."""
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Any, Callable, Optional, Sequence, Union
 
@@ -13,12 +14,19 @@ from ._policy import Policy
 from ._pool import Pool
 from ._rows import Array, FloatArray
 
+# What ends an episode, and what goes on: bits of Pool.status (redman.h, RDM_STATUS_*) by their names in results.
+_END_FLAGS = {"diverged": 2, "bad_actions": 4, "task_failed": 8}
+_STEP_FLAGS = {"contacts_left_out": 1, "unconverged": 16}
+
 Player = Union[Policy, str, Callable[[FloatArray], Any]]
 
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Means over whole episodes; costs are a number for each column."""
+    """Means over whole episodes; costs are a number for each column.
+
+    An episode that diverged, got a bad action or whose task failed is a violation and no success; what it summed up to
+    then is no measurement: all else is of the other episodes, NaN where there are none."""
 
     episodes: int
     return_mean: float
@@ -30,10 +38,17 @@ class Evaluation:
     fall_rate: float  # share of episodes that terminated
     violation_rate: float  # share of episodes over a limit
     cost_limits: list[Optional[float]]
+    diverged: int = 0  # episodes that ended as a value was not finite
+    contacts_left_out: int = 0  # steps in which contacts beyond contacts_max were left out
+    unconverged: int = 0  # steps in which contacts were not solved
+    bad_actions: int = 0  # episodes that ended as an action was not finite
+    task_failed: int = 0  # episodes that ended as a function of the task failed
 
     @property
     def feasible(self) -> bool:
-        """No mean cost is above its limit."""
+        """No mean cost is above its limit, and every episode came to an end of its own."""
+        if self.diverged or self.bad_actions or self.task_failed:
+            return False
         return all(limit is None or mean <= limit for mean, limit in zip(self.cost_mean, self.cost_limits))
 
 
@@ -79,12 +94,15 @@ def play(pool: Pool, player: Player, episodes: int, magnitudes: bool = False) ->
     playing = number < episodes
     success = np.zeros(n, np.bool_)
     raw = np.zeros((n, pool.cost_dim))
+    flagged = np.zeros((n, len(_STEP_FLAGS)), np.int64)  # steps so far
     out: list[dict[str, Any]] = [{} for _ in range(episodes)]
     while playing.any():
         actor.act()
         pool.step(mask=playing)
         success |= pool.success & playing
         raw += np.maximum(pool.cost_raw, 0) * playing[:, None]
+        for k, bit in enumerate(_STEP_FLAGS.values()):
+            flagged[:, k] += (pool.status & bit != 0) & playing
         ended = (pool.terminated | pool.truncated) & playing
         if not ended.any():
             continue
@@ -92,10 +110,12 @@ def play(pool: Pool, player: Player, episodes: int, magnitudes: bool = False) ->
             cost = raw[i].copy() if magnitudes else pool.episode_cost[i].astype(np.float64)
             out[number[i]] = {"return": float(pool.episode_return[i]), "cost": cost,
                               "length": int(pool.episode_step[i]), "fall": bool(pool.terminated[i]),
-                              "success": bool(success[i])}
+                              "success": bool(success[i]), "status": int(pool.episode_status[i]),
+                              **dict(zip(_STEP_FLAGS, flagged[i].tolist()))}
             number[i] += n
         success[ended] = False
         raw[ended] = 0
+        flagged[ended] = 0
         playing = number < episodes
         again = ended & playing
         if again.any():
@@ -124,24 +144,31 @@ def evaluate(player: Player, task: Optional[str] = None, episodes: int = 100, nu
 
 
 def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]]) -> Evaluation:
-    """Means of episodes."""
-    returns = np.array([episode["return"] for episode in played])
-    costs = np.array([episode["cost"] for episode in played])
-    over = np.zeros(len(played), np.bool_)
+    """Means of episodes, with a warning where worlds went wrong."""
+    counts = {name: sum(episode[name] for episode in played) for name in _STEP_FLAGS}
+    counts.update({name: sum(episode["status"] & bit != 0 for episode in played) for name, bit in _END_FLAGS.items()})
+    if any(counts.values()):
+        told = ", ".join(f"{name} {count}" for name, count in counts.items() if count)
+        warnings.warn(f"worlds went wrong in {len(played)} episodes: {told}", RuntimeWarning, stacklevel=3)
+    sound = [episode for episode in played if not episode["status"] & sum(_END_FLAGS.values())]
+    returns = np.array([episode["return"] for episode in sound] or [np.nan])
+    costs = np.array([episode["cost"] for episode in sound] or [np.full(len(limits), np.nan)])
+    over = np.zeros(len(costs), np.bool_)
     for k, limit in enumerate(limits):
         if limit is not None:
             over |= costs[:, k] > limit
+    lost = len(played) - len(sound)
 
     def share(values: Any) -> float:
-        return float(np.mean(values))
+        return float(np.mean(values)) if len(values) else float("nan")
 
     return Evaluation(
         episodes=len(played), return_mean=share(returns), return_std=float(returns.std()),
         cost_mean=costs.mean(axis=0).tolist(), cost_std=costs.std(axis=0).tolist(),
-        length_mean=share([episode["length"] for episode in played]),
-        success_rate=share([episode["success"] for episode in played]),
-        fall_rate=share([episode["fall"] for episode in played]), violation_rate=share(over),
-        cost_limits=list(limits))
+        length_mean=share([episode["length"] for episode in sound]),
+        success_rate=sum(episode["success"] for episode in sound) / len(played),
+        fall_rate=share([episode["fall"] for episode in sound]),
+        violation_rate=(int(over.sum()) + lost) / len(played), cost_limits=list(limits), **counts)
 
 
 def strip(policy: Policy, frames: int = 6, width: int = 240, height: int = 180) -> Optional[bytes]:

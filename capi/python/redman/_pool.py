@@ -184,8 +184,14 @@ class Pool:
 
     @property
     def status(self) -> npt.NDArray[np.uint32]:
-        """[num_envs] bits of the last step: 1 contacts were left out, 2 diverged, 4 bad action."""
+        """[num_envs] bits of the last step or reset, RDM_STATUS_*: 1 contacts were left out, 2 diverged, 4 bad action, 8
+        the task failed, 16 contacts were not solved."""
         return self._rows["status"]
+
+    @property
+    def episode_status(self) -> npt.NDArray[np.uint32]:
+        """[num_envs] all bits of the episode so far; the finished one's where one ended."""
+        return self._rows["episode_status"]
 
     @property
     def terminated(self) -> npt.NDArray[np.bool_]:

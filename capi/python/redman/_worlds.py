@@ -53,12 +53,12 @@ class Worlds:
         pool = self.pool
         self.obs, self.final_obs, self.action, self.reward = pool.obs, pool.final_obs, pool.action, pool.reward
         self.cost, self.terminated, self.truncated = pool.cost, pool.terminated, pool.truncated
-        self.success, self.status = pool.success, pool.status
+        self.success, self.status, self.episode_status = pool.success, pool.status, pool.episode_status
         self.senses = Senses(pool)
 
     def __getstate__(self) -> dict[str, Any]:
         rows = ("obs", "final_obs", "action", "reward", "cost", "terminated", "truncated", "success", "status",
-                "senses")
+                "episode_status", "senses")
         return {name: value for name, value in self.__dict__.items() if name not in rows}
 
     def __setstate__(self, saved: dict[str, Any]) -> None:

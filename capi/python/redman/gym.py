@@ -6,8 +6,9 @@
 
 Env is one world, VectorEnv many in one pool, equal bit for bit to Gymnasium's SyncVectorEnv over as many Env. What a step
 cost is in its info: "cost", the task's own (column 0), and "costs" [cost_dim], as cost_names names them; beside them
-"success" and "status" (redman.h, RDM_STATUS_*). Infos of a reset have the same keys, all 0. An episode is named by its
-seed alone: world i of reset(seed=s) has the episode of an Env with reset(seed=s + i).
+"success", "status" (redman.h, RDM_STATUS_*: 0 where nothing went wrong) and "episode_status", all its bits since the
+episode began. Infos of a reset have the same keys, all 0 but for a first observation that was not finite (2). An episode
+is named by its seed alone: world i of reset(seed=s) has the episode of an Env with reset(seed=s + i).
 
 With option modality (rgb, depth, segmentation, points, voxels joined by +) an observation is a dict: "state", the row, and
 an entry for each of them; pictures of one camera are [height][width]..., of several [cameras][height][width]...
@@ -123,18 +124,23 @@ class _Named:
         """What infos say of a step, a row for each world."""
         w = self.worlds
         return {"cost": w.cost[:, 0].astype(np.float64), "costs": w.cost.copy(), "success": w.success.copy(),
-                "status": w.status.astype(np.int64)}
+                **{key: rows.astype(np.int64) for key, rows in self._flags().items()}}
 
     def _told_of(self, i: int) -> Info:
         """The same of one world."""
         w = self.worlds
         return {"cost": w.cost.item(i, 0), "costs": w.cost[i].copy(), "success": w.success.item(i),
-                "status": w.status.item(i)}
+                **{key: rows.item(i) for key, rows in self._flags().items()}}
+
+    def _flags(self) -> dict[str, Array]:
+        """What went wrong in each world."""
+        return {"status": self.worlds.status, "episode_status": self.worlds.episode_status}
 
     def _began_of(self, i: int) -> Info:
-        """What infos say of a reset: the same keys, and nothing has happened yet."""
-        return {key: np.zeros_like(value) if isinstance(value, np.ndarray) else type(value)(0)
-                for key, value in self._told_of(i).items()}
+        """What infos say of a reset: the same keys, and nothing has happened yet but what went wrong in it."""
+        nothing = {key: np.zeros_like(value) if isinstance(value, np.ndarray) else type(value)(0)
+                   for key, value in self._told_of(i).items()}
+        return {**nothing, **{key: rows.item(i) for key, rows in self._flags().items()}}
 
     def _pictured(self, i: int) -> Array:
         """Of a world, as render_mode says."""
@@ -257,8 +263,9 @@ class VectorEnv(_Named, _VectorEnv):
     def _told_but(self, began: Array) -> dict[str, Array]:
         """The rows of infos, those of a reset where worlds have begun anew."""
         told = self._told()
-        for values in told.values():
-            values[began] = 0
+        for key, values in told.items():
+            if self.mode == "SameStep" or key not in self._flags():  # else those rows are the reset's own
+                values[began] = 0
         return told
 
     def _infos(self, was_ended: Array) -> dict[str, Any]:

@@ -100,19 +100,25 @@ class Redman(CMDP):
         """New episodes everywhere. There are no options of a reset."""
         self._worlds.no_options(options)
         self._worlds.reset(seed)
-        return self._tensor(self._worlds.obs), {}
+        return self._tensor(self._worlds.obs), self._flags()
 
     def step(self, action: Any) -> tuple[Any, ...]:
         """Observation, reward, cost, terminated, truncated, info; rows of one world without the axis of worlds."""
         w = self._worlds
         w.act(action.detach().cpu().numpy().reshape(w.action.shape))
         w.pool.step()
-        info: dict[str, Any] = {}
+        info = self._flags()
         ended = w.terminated | w.truncated
         if ended.any():
             info["final_observation"] = self._tensor(w.final_obs)
             info["_final_observation"] = torch.from_numpy(ended if self._num_envs > 1 else ended[0:1])
         return (*map(self._tensor, (w.obs, w.reward, w.cost[:, 0], w.terminated, w.truncated)), info)
+
+    def _flags(self) -> dict[str, Any]:
+        """What went wrong in each world: RDM_STATUS_* of the step, and all of the episode."""
+        w = self._worlds
+        return {key: torch.from_numpy(rows.astype(np.int64)[slice(None) if self._num_envs > 1 else 0:1])
+                for key, rows in (("status", w.status), ("episode_status", w.episode_status))}
 
     def _tensor(self, rows: Array) -> Any:
         """A copy: OmniSafe keeps tensors of earlier steps."""

@@ -13,7 +13,7 @@ a new episode in the same step, info["final_observation"] and info["final_info"]
 """
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Any, Callable, Optional
 
 import numpy as np
 
@@ -29,18 +29,19 @@ __all__ = ["Defaults", "Env", "VectorEnv", "defaults", "env_id", "register", "un
 class _Told:
     worlds: Worlds
     cost_names: tuple[str, ...]
+    _flags: Callable[[], dict[str, Array]]
 
     def _told(self) -> dict[str, Array]:
         w = self.worlds
         costs = w.cost.T.astype(np.float64)
         return {"cost_sum": costs[0], **{f"cost_{name}": c for name, c in zip(self.cost_names[1:], costs[1:])},
-                "success": w.success.copy(), "status": w.status.astype(np.int64)}
+                "success": w.success.copy(), **{key: rows.astype(np.int64) for key, rows in self._flags().items()}}
 
     def _told_of(self, i: int) -> gym.Info:
         w = self.worlds
         costs = w.cost[i].tolist()
         return {"cost_sum": costs[0], **{f"cost_{name}": c for name, c in zip(self.cost_names[1:], costs[1:])},
-                "success": w.success.item(i), "status": w.status.item(i)}
+                "success": w.success.item(i), **{key: rows.item(i) for key, rows in self._flags().items()}}
 
 
 class Env(_Told, gym.Env):

@@ -7,7 +7,7 @@
     env = VecNormalize(env, norm_reward=False, clip_obs=5)
     PPO("MlpPolicy", env, **redman.sb3.ppo_kwargs("hand_over_safe_finger")).learn(500_000)
 
-Its learners know no costs: each info has "cost", "costs", "success" and "status" as in redman.gym, and
+Its learners know no costs: each info has "cost", "costs", "success", "status" and "episode_status" as in redman.gym, and
 penalty=w takes w times the cost from the reward. The info of an episode that ended has "episode" {r, l, t}, as Monitor
 writes it, "is_success" (there was one) and "episode_cost", the sum of each cost by name. CostCallback logs those sums:
 learn(500_000, callback=redman.sb3.CostCallback()) adds rollout/ep_cost_mean/<name> to what is logged.
@@ -80,7 +80,8 @@ class VecEnv(_VecEnv):
         self.worlds.reset(None if all(s is None for s in self._seeds) else self._seeds)
         self._reset_seeds()
         self._reset_options()
-        nothing = self._infos(np.zeros_like(self.worlds.cost), *np.zeros((3, self.num_envs), bool))
+        w, no = self.worlds, np.zeros(self.num_envs, bool)
+        nothing = self._infos(np.zeros_like(w.cost), no, w.status, w.episode_status, no)
         self.reset_infos: list[dict[str, Any]] = nothing
         for sums in (self._return, self._length, self._costs, self._success):
             sums[...] = 0
@@ -96,7 +97,7 @@ class VecEnv(_VecEnv):
         w.pool.step()
         costs, ended = w.cost.copy(), w.terminated | w.truncated
         reward = w.reward - self.penalty * costs[:, 0] if self.penalty else w.reward.copy()
-        infos = self._infos(costs, w.success, w.status, w.truncated & ~w.terminated)
+        infos = self._infos(costs, w.success, w.status, w.episode_status, w.truncated & ~w.terminated)
         self._return += reward
         self._length += 1
         self._costs += costs
@@ -104,15 +105,16 @@ class VecEnv(_VecEnv):
         for i in np.flatnonzero(ended):
             infos[i]["terminal_observation"] = w.final_obs[i].copy()
             infos[i].update(self._finished(i))
-            self.reset_infos[i] = self._infos(np.zeros_like(costs[:1]), *np.zeros((3, 1), bool))[0]
+            self.reset_infos[i] = self._infos(np.zeros_like(costs[:1]), *np.zeros((4, 1), bool))[0]
         return w.obs.copy(), reward.astype(np.float32, copy=False), ended, infos
 
     @staticmethod
-    def _infos(costs: Array, success: Array, status: Array, cut: Array) -> list[dict[str, Any]]:
+    def _infos(costs: Array, success: Array, status: Array, all_status: Array, cut: Array) -> list[dict[str, Any]]:
         """What a step tells of each world."""
-        return [{"cost": cost, "costs": row, "success": won, "status": int(bits), "TimeLimit.truncated": late}
-                for cost, row, won, bits, late in zip(costs[:, 0].tolist(), costs, success.tolist(), status.tolist(),
-                                                      cut.tolist())]
+        return [{"cost": cost, "costs": row, "success": won, "status": int(bits), "episode_status": int(all_bits),
+                 "TimeLimit.truncated": late}
+                for cost, row, won, bits, all_bits, late in zip(costs[:, 0].tolist(), costs, success.tolist(),
+                                                                status.tolist(), all_status.tolist(), cut.tolist())]
 
     def _finished(self, i: int) -> dict[str, Any]:
         """What the info of an ended episode has more; its sums begin anew."""

@@ -10,6 +10,7 @@ namespace {
 // Mean and standard deviation of value(episode).
 template <class Value>
 std::pair<double, double> spread(const std::vector<Episode>& episodes, Value value) {
+  if (episodes.empty()) return {std::nan(""), std::nan("")};
   double sum = 0, squares = 0;
   for (const Episode& e : episodes) sum += value(e);
   const double mean = sum / static_cast<double>(episodes.size());
@@ -43,6 +44,11 @@ std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t coun
   const auto any = [](const std::vector<uint8_t>& mask) {
     return std::find(mask.begin(), mask.end(), 1) != mask.end();
   };
+  const auto note_starts = [&](const std::vector<uint8_t>& begun) {
+    for (size_t i = 0; i < n; ++i)
+      if (begun[i]) episodes[episode[i]].trouble.add(pool.status()[i]);
+  };
+  note_starts(playing);
   actor.restart();
   while (any(playing)) {
     actor.act(pool, playing.data());
@@ -54,6 +60,7 @@ std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t coun
       if (!playing[i]) continue;
       Episode& e = episodes[episode[i]];
       e.success_steps += pool.success()[i] != 0;
+      e.trouble.add(pool.status()[i]);
       if (magnitudes) add_magnitudes(pool.cost_raw()[i], e.cost);
       if (after) after(i, episode[i]);
       if (!pool.terminated()[i] && !pool.truncated()[i]) continue;
@@ -66,19 +73,26 @@ std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t coun
     }
     if (!any(ended)) continue;
     pool.reset(nullptr, ended.data());
+    note_starts(ended);
     actor.restart(ended.data());
   }
   return episodes;
 }
 
-Summary summarise(const std::vector<Episode>& episodes, const std::vector<double>& limits) {
+Summary summarise(const std::vector<Episode>& all, const std::vector<double>& limits) {
   Summary s;
-  if (episodes.empty()) return s;
+  if (all.empty()) return s;
+  std::vector<Episode> episodes;  // those that are measurements
+  for (const Episode& e : all) {
+    s.trouble.add(e.trouble);
+    if (!e.trouble.lost()) episodes.push_back(e);
+  }
   std::tie(s.return_mean, s.return_std) = spread(episodes, [](const Episode& e) { return e.ret; });
   s.return_stderr = standard_error(s.return_std, episodes.size());
   s.length_mean = spread(episodes, [](const Episode& e) { return e.length; }).first;
   s.fall_rate = spread(episodes, [](const Episode& e) { return e.terminated ? 1 : 0; }).first;
-  s.success_rate = spread(episodes, [](const Episode& e) { return e.success_steps > 0 ? 1 : 0; }).first;
+  s.success_rate =
+      spread(all, [](const Episode& e) { return e.success_steps > 0 && !e.trouble.lost() ? 1 : 0; }).first;
   s.success_steps = spread(episodes, [](const Episode& e) { return e.success_steps; }).first;
   for (size_t k = 0; k < limits.size(); ++k) {
     const auto [mean, std] = spread(episodes, [k](const Episode& e) { return e.cost[k]; });
@@ -86,7 +100,8 @@ Summary summarise(const std::vector<Episode>& episodes, const std::vector<double
     s.cost_std.push_back(std);
     s.cost_stderr.push_back(standard_error(std, episodes.size()));
   }
-  s.violation_rate = spread(episodes, [&](const Episode& e) {
+  s.violation_rate = spread(all, [&](const Episode& e) {
+                       if (e.trouble.lost()) return 1;
                        for (size_t k = 0; k < limits.size(); ++k)
                          if (limits[k] >= 0 && e.cost[k] > limits[k]) return 1;
                        return 0;
@@ -96,6 +111,7 @@ Summary summarise(const std::vector<Episode>& episodes, const std::vector<double
 }
 
 bool feasible(const Summary& summary, const std::vector<double>& limits) {
+  if (summary.trouble.lost()) return false;
   for (size_t k = 0; k < limits.size(); ++k)
     if (limits[k] >= 0 && summary.cost_mean[k] > limits[k]) return false;
   return true;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "play/actor.hpp"
+#include "play/trouble.hpp"
 
 namespace tool {
 
@@ -15,6 +16,7 @@ struct Episode {
   int32_t length = 0;         // control steps
   bool terminated = false;    // a fall
   int32_t success_steps = 0;  // in which the task's success held; of reorient: goals
+  Trouble trouble;
 };
 
 // Called around each control step of world `env` in its episode number `episode`.
@@ -36,12 +38,15 @@ struct Summary {
   double cost_per_step = 0;   // column 0
   double return_stderr = 0;   // of return_mean; so below
   std::vector<double> cost_mean, cost_std, cost_stderr;
+  Trouble trouble;  // of all episodes
 };
 // Standard deviations are of the population, standard errors of the mean from the sample's, NaN for one
 // episode. limits [cost_dim], < 0: none.
+// An episode that trouble ended is a violation and no success; what it summed up to then is no measurement,
+// and all else is of the other episodes, NaN where there are none.
 Summary summarise(const std::vector<Episode>& episodes, const std::vector<double>& limits);
 
-// Every limited column's mean is at or below its limit.
+// Every limited column's mean is at or below its limit, and trouble ended no episode.
 bool feasible(const Summary& summary, const std::vector<double>& limits);
 
 }  // namespace tool

@@ -2,6 +2,7 @@
 #pragma once
 #include "draw/image.hpp"
 #include "play/actor.hpp"
+#include "play/trouble.hpp"
 
 namespace tool {
 
@@ -20,6 +21,7 @@ class Scene {
   Image picture();  // by the camera
   int32_t frames() const { return frames_; }
   double seconds() const { return seconds_; }  // spent in pictures
+  Trouble trouble() const { return trouble_of(pool_); }
 
  private:
   redman::Pool pool_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 namespace tool {
@@ -45,6 +46,7 @@ std::string short_key(const std::string& key) {
 }  // namespace
 
 Score Outcome::score() const {
+  if (trouble.lost()) return {false, ret, std::numeric_limits<double>::infinity()};
   Score s{true, ret, 0};
   for (const CostOutcome& c : costs) {
     if (c.limit < 0) continue;
@@ -75,7 +77,8 @@ Outcome training_outcome(const RunData& run) {
           tail_mean(run, "Metrics/SuccessRate"),
           tail_mean(run, "Metrics/FallRate"),
           tail_mean(run, "Metrics/EpLen"),
-          cost_columns_of(run)};
+          cost_columns_of(run),
+          {}};
 }
 
 TrainingEnd training_end(const RunData& run) {
@@ -108,6 +111,8 @@ Outcome Configuration::mean() const {
   m.length = average([](const Outcome& o) { return o.length; });
   for (size_t k = 0; k < m.costs.size(); ++k)
     m.costs[k].mean = average([&](const Outcome& o) { return k < o.costs.size() ? o.costs[k].mean : 0; });
+  m.trouble = {};
+  for (const Outcome& o : outcomes) m.trouble.add(o.trouble);
   return m;
 }
 

@@ -20,8 +20,9 @@ struct Outcome {
   bool evaluated = false;  // fresh episodes on the mean action; else the last tenth of training
   double ret = 0, success = 0, falls = 0, length = 0;
   std::vector<CostOutcome> costs;  // column 0 first
-  // Every limited column's mean is at or below its limit; feasible before infeasible, then as policies are
-  // chosen.
+  Trouble trouble;                 // of the episodes that evaluate
+  // Every limited column's mean is at or below its limit, and trouble ended no episode; feasible before
+  // infeasible, then as policies are chosen.
   Score score() const;
 };
 

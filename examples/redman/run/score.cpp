@@ -1,6 +1,7 @@
 #include "run/score.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace tool {
 
@@ -10,6 +11,7 @@ bool Score::better_than(const Score& other) const {
 }
 
 Score score_of(const Summary& s, const std::vector<double>& limits) {
+  if (s.trouble.lost()) return {false, s.return_mean, std::numeric_limits<double>::infinity()};
   Score score{true, s.return_mean, 0};
   for (size_t k = 0; k < limits.size(); ++k) {
     if (limits[k] < 0) continue;

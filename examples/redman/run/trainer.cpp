@@ -247,12 +247,14 @@ bool Trainer::compete(const redman::Bytes& policy, LastEvaluation* last) {
   Actor actor(redman::Policy(policy), eval_pool_);
   const Summary look = summarise(play(actor, 0), limits_);
   if (last) *last = {look.return_mean, look.cost_mean.empty() ? 0 : look.cost_mean[0]};
+  if (look.trouble.lost()) return false;
   if (best_ && !score_of(look, score_limits_).better_than(*best_)) return false;
   std::vector<Episode> episodes;
   for (size_t round = 1; round <= kConfirmations; ++round)
     for (Episode& e : play(actor, round)) episodes.push_back(std::move(e));
-  const Score score = score_of(summarise(episodes, limits_), score_limits_);
-  if (best_ && !score.better_than(*best_)) return false;
+  const Summary confirmed = summarise(episodes, limits_);
+  const Score score = score_of(confirmed, score_limits_);
+  if (confirmed.trouble.lost() || (best_ && !score.better_than(*best_))) return false;
   best_ = score;
   best_policy_ = policy;
   return true;
@@ -325,8 +327,13 @@ void Trainer::run() {
 // later must not depend on where it was stopped.
 void Trainer::finish() {
   if (epoch_ == 0) return;
-  if (scored_epoch_ != epoch_) compete(agent_.policy(), nullptr);
-  folder_->write_policy({best_policy_.begin(), best_policy_.end()});
+  const redman::Bytes last = agent_.policy();
+  if (scored_epoch_ != epoch_) compete(last, nullptr);
+  if (!best_)
+    std::fputs("redman: episodes of every policy that was evaluated diverged: the last policy is kept\n",
+               stderr);
+  const redman::Bytes& kept = best_ ? best_policy_ : last;
+  folder_->write_policy({kept.begin(), kept.end()});
 }
 
 double Trainer::steps_per_second() const {

@@ -38,7 +38,8 @@ class Trainer {
   bool interrupted() const { return interrupted_; }
   double seconds() const { return seconds_; }  // of this process, evaluations included
   const Taught& taught() const { return taught_; }
-  double steps_per_second() const;  // of this process, collecting and learning
+  Trouble trouble() const { return trouble_of(pool_); }  // of training, in this process
+  double steps_per_second() const;                       // of this process, collecting and learning
 
  private:
   void restore(const std::string& path);
@@ -53,7 +54,8 @@ class Trainer {
   int64_t steps_per_epoch() const;        // at most: worlds rest from an episode's end to the next decision
   void train_epoch(Meter& meter);
   void train_to_the_end(Meter& meter);
-  // Whether a policy is better than the best so far, which it then replaces; `last`: how it looked.
+  // Whether a policy is better than the best so far, which it then replaces; `last`: how it looked. One whose
+  // episodes diverged is not.
   bool compete(const redman::Bytes& policy, LastEvaluation* last);
   std::vector<Episode> play(Actor& actor, size_t round);
   void save();

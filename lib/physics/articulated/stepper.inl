@@ -128,6 +128,7 @@ class BatchStepper final : public Stepper {
            (attachments_[contact.shape_b].kind == Attachment::kBody ||
             attachments_[contact.shape_b].kind == Attachment::kStatic);
   }
+  double most_push_out_speed() const;
   double push_out_speed(const Contact& contact) const;
   double friction(const WorldState& w, int32_t pair) const;
   bool add_piles(int32_t world, bool again);
@@ -287,6 +288,7 @@ void BatchStepper<L>::solve_contacts() {
       world.free_bodies[i].v1 = world.free_bodies[i].v;
       world.free_bodies[i].w1 = world.free_bodies[i].w;
     }
+    world.unsolved = false;
     if (world.num_contacts > 0) open |= 1u << w;
   }
   for (int round = 0; open != 0; ++round) {
@@ -424,14 +426,19 @@ void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, 
   }
 }
 
-// erp / h of the depth below the layer, at most `fastest`: a deep overlap, as after a blow, must not turn
-// into a shot.
+template <class L>
+double BatchStepper<L>::most_push_out_speed() const {
+  const SolverDef& solver = scene_->def.solver;
+  return solver.contact_max_speed > 0 ? solver.contact_max_speed : kArticulatedContactSpeed;
+}
+
+// erp / h of the depth below the layer, within a bound: a deep overlap, as after a blow, must not turn into a
+// shot.
 template <class L>
 double BatchStepper<L>::push_out_speed(const Contact& contact) const {
   const SolverDef& solver = scene_->def.solver;
-  const double fastest = solver.contact_max_speed > 0 ? solver.contact_max_speed : kArticulatedContactSpeed;
   return std::min(std::max(contact.depth - solver.contact_layer, 0.0) * solver.contact_erp / solver.h,
-                  fastest);
+                  most_push_out_speed());
 }
 
 template <class L>
@@ -471,6 +478,7 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
     contacts_.warm_start(&point, start);
   }
   contacts_.solve(solver.iterations);
+  w.unsolved = contacts_.unsolved();
   for (int32_t i = 0, k = 0; i < count; ++i) {
     if (piles && in_pile_[i]) continue;
     const Vec3& n = w.contacts[i].n;
@@ -674,13 +682,18 @@ void BatchStepper<L>::apply_impulses(TreeBatch<L>& t) {
   }
 }
 
-// Contact forces, and their mean on the links with a sensor, in the pose they act in.
+// Contact forces, and their mean on the links with a sensor, in the pose they act in. A point that is solved
+// moves apart at push_out_speed - softness n: where that is the bound and n is larger, it gives way for ever.
 template <class L>
 void BatchStepper<L>::contact_forces(int32_t world) {
   WorldState& w = *worlds_[world];
   const double inv_h = 1 / scene_->def.solver.h, weight = 1.0 / scene_->def.solver.substeps;
+  const double fastest = most_push_out_speed(), softness = scene_->def.solver.contact_cfm * inv_h;
+  if (w.unsolved) w.status |= kStatusUnconverged;
   for (int32_t i = 0; i < w.num_contacts; ++i) {
     Contact& contact = w.contacts[i];
+    if (softness * dot(w.impulses[i], contact.n) > fastest && push_out_speed(contact) == fastest)
+      w.status |= kStatusUnconverged;
     contact.force = inv_h * w.impulses[i];
     for (int side = 0; side < 2; ++side) {
       const Attachment& at = attachments_[side ? contact.shape_b : contact.shape_a];

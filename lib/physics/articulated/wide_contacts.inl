@@ -117,6 +117,7 @@ struct WideContacts {
   }
   // As ContactSolver::sweep.
   S sweep(const S* beta, S* impulse_square);
+  bool unsolved(S most) const;
 
  private:
   static constexpr int32_t kNoLevel = 1 << 20;
@@ -322,6 +323,17 @@ S WideContacts<S>::sweep(const S* beta, S* impulse_square) {
   }
   *impulse_square = total(square);
   return total(delta_square);
+}
+
+template <class S>
+bool WideContacts<S>::unsolved(S most) const {
+  for (int32_t k = 0; k < num_groups; ++k)
+    for (int32_t i = 0; i < groups[k].most; ++i) {
+      const Point& p = points[groups[k].first_point + i];
+      const V bound = most * p.inv_n;
+      if (L::bits((p.delta[0] > bound) | (-p.delta[0] > bound)) != 0) return true;
+    }
+  return false;
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ void check_solver(const SolverDef& s) {
   need(s.contact_layer, 0, 0.1, "solver", "contact_layer");
   need(s.contact_max_speed, 0, 1e3, "solver", "contact_max_speed");
   need(s.contacts_per_pair, 1, 8, "solver", "contacts_per_pair");
-  need(s.contacts_max, 1, 4096, "solver", "contacts_max");
+  need(s.contacts_max, 0, kMostContacts, "solver", "contacts_max");
   need(s.limit_margin, 0, 0.1, "solver", "limit_margin");
   need(s.limit_stiffness, 0, 1e6, "solver", "limit_stiffness");
   need(s.link_armature, 0, 1, "solver", "link_armature");
@@ -307,6 +307,24 @@ void list_runs(Scene* scene) {
   }
 }
 
+// What a heap of convex things comes to: three neighbours for each shape of a body (a neighbour counts the
+// other way too, so that there are six), one for each that belongs to a robot, none where no pair is; and
+// at least what scenes have by default.
+int32_t contacts_needed(const Scene& scene) {
+  constexpr int32_t kOfBody = 3, kOfRobot = 1;
+  Vector<int32_t> partners(scene.shapes.size());
+  for (const ShapePair& pair : scene.pairs) {
+    ++partners[static_cast<size_t>(pair.a)];
+    ++partners[static_cast<size_t>(pair.b)];
+  }
+  int64_t pairs = 0;
+  for (size_t i = 0; i < scene.shapes.size(); ++i)
+    if (scene.moves(scene.shapes[i]))
+      pairs += std::min(partners[i], scene.shapes[i].carrier == Carrier::kBody ? kOfBody : kOfRobot);
+  return static_cast<int32_t>(std::clamp<int64_t>(pairs * scene.def.solver.contacts_per_pair,
+                                                  SolverDef().contacts_max, kMostContacts));
+}
+
 }  // namespace
 
 Name::Name(const char* s) {
@@ -347,6 +365,7 @@ Scene make_scene(SceneDef def) {
   flatten(&scene);
   list_pairs(&scene);
   list_runs(&scene);
+  if (scene.def.solver.contacts_max == 0) scene.def.solver.contacts_max = contacts_needed(scene);
   return scene;
 }
 

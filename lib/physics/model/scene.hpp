@@ -111,6 +111,8 @@ struct Friction {
   bool passes = false;  // the two go through each other
 };
 
+inline constexpr int32_t kMostContacts = 4096;
+
 struct SolverDef {
   double h = 1.0 / 120;          // substep, s
   int32_t substeps = 2;          // per control step, 1..16
@@ -121,7 +123,8 @@ struct SolverDef {
   double contact_layer = 0.0005;    // m of allowed depth
   double contact_max_speed = 0;     // m/s, correction of depth; 0: the engine's own, see below
   int32_t contacts_per_pair = 4;    // 1..8
-  int32_t contacts_max = 36;        // per world and substep, 1..4096; more raise kStatusContactOverflow
+  int32_t contacts_max = 36;        // per world and substep, to kMostContacts; more raise
+                                    // kStatusContactOverflow; 0: make_scene fills in what the shapes need
   double limit_margin = 5e-3;       // rad beyond a joint's range before it is clamped, without a reaction
   double limit_stiffness = 100;     // N m/rad of the soft limit; engine articulated: of light joints, 0: none
   double link_armature = 3e-5;      // kg m2 about the joint axis of links under 1e-4 kg m2 (engine ode)
