@@ -1,8 +1,11 @@
 // Version, build, results, and process-wide hooks.
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <mutex>
 
+#include "base/names.hpp"
+#include "base/text.hpp"
 #include "base/vec.hpp"
 #include "capi/abi_call.hpp"
 #if RDM_WITH_POLICY
@@ -29,6 +32,24 @@ const char* rdm_result_string(rdm_result r) {
 }
 const char* rdm_last_error(void) {
   return last_error();
+}
+
+rdm_result rdm_nearest_names(const char* name, const char* names, char* text, size_t capacity) {
+  return call([&] {
+    need(name, "name");
+    need(names, "names");
+    need(text, "text");
+    if (capacity == 0) fail(Code::kArgument, "capacity: 0 bytes hold no text");
+    Vector<char> lines(names, names + std::strlen(names) + 1);
+    Vector<const char*> rows;
+    for (char* at = lines.data(); *at && rows.size() < static_cast<size_t>(Nearest::kMostLookedAt);) {
+      char* end = at + std::strcspn(at, "\n");
+      rows.push_back(at);
+      at = *end ? end + 1 : end;
+      *end = '\0';
+    }
+    clean_text(text, capacity, Nearest(name, rows.data(), static_cast<int32_t>(rows.size())).text);
+  });
 }
 rdm_result rdm_fail(rdm_result code, const char* text) {
   return call_inside([&] {

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "base/bit_cast.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "env/options/simulation.hpp"
 #include "env/options/table.hpp"
@@ -67,7 +68,7 @@ void need_text(const char* text, const char* what) {
 
 struct RowName {  // "def.costs[2]" and a member
   RowName(const char* rows, int32_t i, const char* member) {
-    std::snprintf(text, sizeof text, "def.%s[%d].%s", rows, i, member);
+    print_text(text, sizeof text, "def.%s[%d].%s", rows, i, member);
   }
   char text[64];
 };
@@ -398,7 +399,7 @@ void OwnTask::take_defaults() {
     if (!text) {
       if (!std::isfinite(d.number))
         fail(Code::kArgument, "def.defaults[%d].number of %s is not finite", i, d.key);
-      std::snprintf(number, sizeof number, "%.17g", d.number);
+      print_text(number, sizeof number, "%.17g", d.number);
       text = number;
     }
     need_text(text, RowName("defaults", i, "text").text);

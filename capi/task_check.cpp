@@ -10,6 +10,7 @@
 #include "capi/handles.hpp"
 
 #if RDM_WITH_SIM
+#include "base/format.hpp"
 #include "env/fields.hpp"
 #include "env/resolved_config.hpp"
 #include "tasks/catalog.hpp"
@@ -248,7 +249,7 @@ void Stage::broken(Part part, const char* format, ...) const {
   char text[kErrorTextSize];
   va_list arguments;
   va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
+  print_list(text, sizeof text, format, arguments);
   va_end(arguments);
   fail(Code::kArgument, "task %s: %s: %s; step %d", plan_.info->name, kPartNames[static_cast<int>(part)],
        text, step_);

@@ -10,15 +10,18 @@
 #include <cstring>
 #include <memory>
 
+#include "base/format.hpp"
+#include "base/names.hpp"
+
 namespace rdm::import {
 namespace {
 
 std::string vformat(const char* pattern, va_list list) {
   va_list again;
   va_copy(again, list);
-  const int size = std::vsnprintf(nullptr, 0, pattern, list);
+  const int size = print_list(nullptr, 0, pattern, list);
   std::string out(static_cast<size_t>(std::max(size, 0)) + 1, '\0');
-  std::vsnprintf(out.data(), out.size(), pattern, again);
+  print_list(out.data(), out.size(), pattern, again);
   va_end(again);
   out.pop_back();
   return out;
@@ -35,25 +38,6 @@ size_t character(const unsigned char* c, size_t left) {
       (c[0] == 0xf4 && c[1] > 0x8f) || (c[0] == 0xc2 && c[1] < 0xa0))
     return 0;
   return n;
-}
-
-char folded(char c) {
-  return c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-}
-
-// Levenshtein's distance.
-size_t distance(const std::string& a, const std::string& b) {
-  std::vector<size_t> row(b.size() + 1);
-  for (size_t k = 0; k < row.size(); ++k) row[k] = k;
-  for (size_t i = 0; i < a.size(); ++i) {
-    size_t corner = row[0]++;
-    for (size_t k = 0; k < b.size(); ++k) {
-      const size_t change = corner + (folded(a[i]) == folded(b[k]) ? 0 : 1);
-      corner = row[k + 1];
-      row[k + 1] = std::min({row[k] + 1, row[k + 1] + 1, change});
-    }
-  }
-  return row.back();
 }
 
 template <class T, class F>
@@ -96,19 +80,14 @@ std::string clean(const std::string& text, size_t most) {
 }
 
 bool same_name(const std::string& a, const std::string& b) {
-  return a.size() == b.size() &&
-         std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return folded(x) == folded(y); });
+  return rdm::same_name(a.c_str(), b.c_str());
 }
 
 std::string nearest_hint(const std::string& word, const std::vector<std::string>& names) {
-  const std::string* best = nullptr;
-  size_t least = 0;
-  for (const std::string& name : names) {
-    const size_t d = distance(word.substr(0, 64), name.substr(0, 64));
-    if (!best || d < least) best = &name, least = d;
-  }
-  if (!best || least > std::max<size_t>(2, best->size() / 2)) return "";
-  return "; nearest is " + clean(*best);
+  std::vector<const char*> all;
+  for (const std::string& name : names) all.push_back(name.c_str());
+  return clean(Nearest(word.c_str(), all.data(), static_cast<int32_t>(all.size())).text,
+               sizeof(Nearest::text));
 }
 
 bool file_exists(const std::string& path) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdarg>
 
+#include "base/format.hpp"
+
 namespace rdm::import {
 
 void parser_fault() {
@@ -24,7 +26,7 @@ void Table::bad(rdm_result code, int line, const char* pattern, ...) const {
   char text[400];
   va_list list;
   va_start(list, pattern);
-  std::vsnprintf(text, sizeof text, pattern, list);
+  print_list(text, sizeof text, pattern, list);
   va_end(list);
   refuse(code, "line %d: %s%s%s", line, what.c_str(), what.empty() ? "" : ": ", text);
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/chars.hpp"
+#include "base/format.hpp"
 
 namespace rdm::import {
 namespace {
@@ -153,7 +154,7 @@ void refuse_at(rdm_result code, const Element& e, const char* pattern, ...) {
   char text[512];
   va_list list;
   va_start(list, pattern);
-  std::vsnprintf(text, sizeof text, pattern, list);
+  print_list(text, sizeof text, pattern, list);
   va_end(list);
   refuse(code, "%s: %s", where(e).c_str(), text);
 }

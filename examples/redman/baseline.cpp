@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "common/names.hpp"
+#include "common/numbers.hpp"
 #include "common/robots.hpp"
 #include "common/text.hpp"
 #include "play/actor.hpp"
@@ -82,7 +83,7 @@ void add_baseline(CLI::App& app, Run& run) {
                    "zero, hold, random, demo or trained; repeatable; default: all but trained")
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"zero", "hold", "random", "demo", "trained"}, CLI::ignore_case));
-  command->add_option("--envs,--num-envs", flags->pool.envs, "worlds")->check(CLI::PositiveNumber);
+  command->add_option("--envs,--num-envs", flags->pool.envs, "worlds")->check(at_least(1));
   command->add_option("--threads", flags->pool.threads, "threads; 0: the caller's own");
   add_robot_flag(*command);
   command->add_option("--seed", flags->pool.seed, "seed of worlds and random actions");

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "common/numbers.hpp"
 #include "common/setup.hpp"
 
 namespace tool {
@@ -17,7 +18,7 @@ void add_network_flags(CLI::App& command, int32_t& obs, int32_t& act, std::strin
 
 void add_seconds(CLI::App& command, double& seconds) {
   command.add_option("--seconds", seconds, "time to measure for")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->check(finite_to(86400));
 }
 
@@ -45,7 +46,7 @@ void add_bench(CLI::App& app, Run& run) {
   command->callback([&run, observe] { run = [observe] { return bench_observe(*observe); }; });
 
   auto update = std::make_shared<UpdateFlags>();
-  const auto positive = CLI::PositiveNumber;
+  const auto positive = at_least(1);
   command = bench->add_subcommand("update", "Samples per second that an agent learns from");
   command->add_option("--algo", update->algo, "algorithm");
   add_network_flags(*command, update->obs, update->act, update->hidden);

@@ -4,6 +4,7 @@
 #include <redman/redman.hpp>
 
 #include "commands.hpp"
+#include "common/numbers.hpp"
 #include "common/text.hpp"
 #include "mesh/hulls.hpp"
 
@@ -65,7 +66,7 @@ void add_hull(CLI::App& app, Run& run) {
   command->add_option("file", flags->file, ".obj or .stl")->required();
   command->add_option("--points", flags->points, "at most so many corners, the farthest out first")
       ->check(CLI::Range(4, kMostPoints));
-  command->add_option("--scale", flags->scale, "m per unit of the file")->check(CLI::PositiveNumber);
+  command->add_option("--scale", flags->scale, "m per unit of the file")->check(above_zero());
   command->callback([&run, flags] { run = [flags] { return run_hull(*flags); }; });
 }
 

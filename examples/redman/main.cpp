@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <locale>
 #include <new>
 #include <redman/redman.hpp>
 
@@ -16,6 +17,7 @@
 
 #include "commands.hpp"
 #include "common/names.hpp"
+#include "common/numbers.hpp"
 #include "common/plugin.hpp"
 #include "common/text.hpp"
 
@@ -62,18 +64,59 @@ int fail(const std::string& text, int status, bool json) {
   return status;
 }
 
-// CLI11 answers an unknown subcommand with an unexpected argument.
-std::string usage_text(const CLI::App& app, const CLI::ParseError& error, const Arguments& arguments) {
-  std::string text = error.what();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  if (arguments.words.empty()) return "a subcommand is needed; redman --help lists them";
-  const std::string& first = arguments.words.front();
+std::vector<std::string> subcommands_of(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(sub->get_name());
-  if (first[0] != '-' && std::find(names.begin(), names.end(), first) == names.end())
-    return "subcommand " + first + ": unknown" + nearest_hint(first, names);
-  return text + (app.get_subcommands().empty() ? "; see redman --help" : "; see redman " + first + " --help");
+  return names;
+}
+
+std::vector<std::string> flags_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* o : app.get_options())
+    for (const std::string& name : o->get_lnames()) names.push_back("--" + name);
+  for (const char* name : {"--json", "--plugin"}) names.emplace_back(name);
+  return names;
+}
+
+// The first flag that the command does not have, "" when it has them all.
+std::string unknown_flag(const CLI::App& command, const std::vector<std::string>& words) {
+  const std::vector<std::string> known = flags_of(command);
+  for (const std::string& word : words) {
+    const std::string flag = word.substr(0, word.find('='));
+    if (flag == "--") break;
+    if (flag.rfind("--", 0) == 0 && std::find(known.begin(), known.end(), flag) == known.end()) return flag;
+  }
+  return "";
+}
+
+// CLI11 answers an unknown subcommand or flag with a list of unexpected arguments, and a number that does not
+// fit into a flag's type as one that it cannot convert.
+std::string usage_text(const CLI::App& app, const CLI::ParseError& error, const Arguments& arguments) {
+  std::string text = error.what(), path = "redman";
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (arguments.words.empty()) return "a subcommand is needed; redman --help lists them";
+  const CLI::App* command = &app;
+  size_t depth = 0;
+  for (; !command->get_subcommands().empty(); ++depth) {
+    command = command->get_subcommands().front();
+    path += ' ' + command->get_name();
+  }
+  const std::vector<std::string> below = subcommands_of(*command);
+  const std::string next = depth < arguments.words.size() ? arguments.words[depth] : "";
+  const std::string see = "; see " + path + " --help";
+  if (!below.empty() && !next.empty() && next[0] != '-')
+    return "subcommand " + path.substr(std::strlen("redman")) + (depth > 0 ? " " : "") + next + ": unknown" +
+           nearest_hint(next, below) + see;
+  const std::string flag = unknown_flag(*command, arguments.words);
+  if (!flag.empty() && dynamic_cast<const CLI::ExtrasError*>(&error))
+    return flag + ": unknown" + nearest_hint(flag, flags_of(*command)) + see;
+  const std::string unread = "Could not convert: ";
+  if (text.rfind(unread, 0) == 0) {
+    text = text.substr(unread.size()) + ": out of range";
+    if (const size_t equals = text.find(" = "); equals != std::string::npos) text.replace(equals, 3, " ");
+  }
+  return text + see;
 }
 
 // Everything that was asked for; throws what failed.
@@ -81,6 +124,7 @@ void work(CLI::App& app, Run& run, const Arguments& arguments) {
   try {
     redman::check(rdm_check_abi(RDM_ABI, RDM_VERSION));
     load_plugins(arguments.plugins);
+    std::locale::global(std::locale::classic());  // C's too: a plugin may have set another for its own texts
     app.parse(std::vector<std::string>(arguments.words.rbegin(), arguments.words.rend()));
     print_result(run(), arguments.json);
   } catch (const CLI::CallForHelp&) {
@@ -128,6 +172,7 @@ int run_tool(int argc, char** argv) {
   app.set_help_all_flag("--help-all", "Help of every subcommand");
   std::vector<std::string> plugins;  // for the help; they are taken before
   app.add_option("--plugin", plugins, kPluginHelp)->type_name("FILE");
+  check_numbers(app);
   try {
     arguments.plugins = take_plugins(arguments.words);
     work(app, run, arguments);
@@ -140,7 +185,17 @@ int run_tool(int argc, char** argv) {
     return fail("out of memory: ask for less at once", 1, json);
   } catch (const std::exception& e) {
     return fail(e.what(), 1, json);
+  } catch (...) {
+    return fail("something was thrown that is no std::exception: a fault of redman's or a plugin's", 1, json);
   }
+}
+
+// Where there is not even the memory to say so by the ways above.
+int fail_without_memory(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (std::strcmp(argv[i], "--json") == 0) std::puts("{\"error\":\"out of memory\",\"status\":1}");
+  std::fputs("redman: out of memory\n", stderr);
+  return 1;
 }
 
 }  // namespace
@@ -154,7 +209,6 @@ int main(int argc, char** argv) {
   try {
     return run_tool(argc, argv);
   } catch (...) {
-    std::fputs("redman: out of memory\n", stderr);
-    return 1;
+    return fail_without_memory(argc, argv);
   }
 }

@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "common/files.hpp"
+#include "common/numbers.hpp"
 #include "common/text.hpp"
 #include "draw/sheet.hpp"
 #include "mesh/hulls.hpp"
@@ -230,11 +231,11 @@ void add_object(CLI::App& app, Run& run) {
           ->check(CLI::Range(1, RDM_OBJECT_SHAPES)),
       command->add_option("--points", flags->points, "at most so many corners of each")
           ->check(CLI::Range(4, 32)),
-      command->add_option("--mass", flags->mass, "kg")->check(CLI::PositiveNumber),
+      command->add_option("--mass", flags->mass, "kg")->check(above_zero()),
       command->add_option("--friction", flags->friction, "coefficient of its surface")
           ->check(CLI::Range(0.0, 10.0)),
       command->add_option("--material", flags->material, "name of its surface"),
-      command->add_option("--scale", flags->scale, "m per unit of the file")->check(CLI::PositiveNumber),
+      command->add_option("--scale", flags->scale, "m per unit of the file")->check(above_zero()),
       command->add_option("--name", flags->name, "name of the object; default: the file's"),
   };
   command->add_option("--out", flags->out, "write it as an .object file");

@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/numbers.hpp"
 #include "common/ownership.hpp"
 #include "common/text.hpp"
 #include "play/playback.hpp"
@@ -25,10 +26,11 @@ struct RenderFlags {
 };
 
 void read_size(RenderFlags& flags) {
-  char* end = nullptr;
-  const long width = std::strtol(flags.size.c_str(), &end, 10);
-  const long height = *end == 'x' ? std::strtol(end + 1, &end, 10) : 0;
-  if (*end || width < 1 || height < 1 || width > kMostPixels || height > kMostPixels)
+  const size_t cross = std::min(flags.size.find('x'), flags.size.size());
+  uint64_t width = 0, height = 0;
+  const bool read = read_whole(flags.size.substr(0, cross), &width) && cross < flags.size.size() &&
+                    read_whole(flags.size.substr(cross + 1), &height);
+  if (!read || width < 1 || height < 1 || width > kMostPixels || height > kMostPixels)
     throw Usage("--size " + flags.size + ": not WIDTHxHEIGHT, such as 640x480, up to " +
                 std::to_string(kMostPixels));
   flags.width = static_cast<int32_t>(width);
@@ -148,17 +150,17 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option("--policy", flags->policy,
                       "policy file, run folder, .demo file, trained, plan, demo, zero, hold or random");
   command->add_option("--seed", flags->pool.seed, "seed of the episode");
-  CLI::Option* step = command->add_option("--step", flags->step, "control step to draw; 0: the start")
-                          ->check(CLI::NonNegativeNumber);
+  CLI::Option* step =
+      command->add_option("--step", flags->step, "control step to draw; 0: the start")->check(at_least(0));
   command->add_option("--strip", flags->strip, "so many moments of the episode side by side")
       ->check(CLI::Range(1, 64))
       ->excludes(step);
   command->add_option("--from", flags->from, "first step of the strip, the film and the playback")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
   command
       ->add_option("--to", flags->to,
                    "last step of the strip, the film and the playback; default: the episode's end")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
   command->add_option("--size", flags->size, "pixels of one picture")->type_name("WxH");
   command->add_option("--camera", flags->camera, "camera of the task");
   command->add_flag(

@@ -8,6 +8,7 @@
 #include "common/files.hpp"
 #include "common/json.hpp"
 #include "common/names.hpp"
+#include "common/numbers.hpp"
 #include "common/text.hpp"
 #include "play/evaluate.hpp"
 #include "run/ranks.hpp"
@@ -48,9 +49,8 @@ int64_t whole_steps(double steps) {
 void parse_shares(const std::string& text, TeachSettings& teach) {
   const size_t dots = text.find("..");
   const auto share = [&](const std::string& part) {
-    char* end = nullptr;
-    const double v = std::strtod(part.c_str(), &end);
-    if (part.empty() || *end || !(v >= 0 && v <= 1))
+    double v = 0;
+    if (!read_number(part, &v) || !(v >= 0 && v <= 1))
       throw Usage("--start-share " + text + ": not a share of 0 to 1, or two as 0.7..0");
     return v;
   };
@@ -137,6 +137,16 @@ Trainer start(const TrainFlags& flags, const Ranks* ranks) {
 
 Report train_alone(const TrainFlags& flags, const Ranks* ranks);
 
+// A run ends with an epoch: what is made of another number of steps is said.
+void say_steps(const Trainer& trainer) {
+  const int64_t asked = trainer.settings().steps, epoch = trainer.steps_per_epoch();
+  const int64_t left = std::max<int64_t>(0, asked - trainer.env_steps()), epochs = (left + epoch - 1) / epoch;
+  if (left % epoch == 0) return;
+  std::fprintf(stderr, "--steps %lld: a run ends with an epoch, of up to %lld steps: it makes up to %lld\n",
+               static_cast<long long>(asked), static_cast<long long>(epoch),
+               static_cast<long long>(trainer.env_steps() + epochs * epoch));
+}
+
 Report run_train(const TrainFlags& flags) {
   if (flags.ranks.empty()) return train_alone(flags, nullptr);
   const auto ranks = Ranks::begin(flags.ranks);
@@ -158,6 +168,7 @@ Report run_train(const TrainFlags& flags) {
 Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
   Trainer trainer = start(flags, ranks);
   std::fprintf(stderr, "training in %s\n", printable(trainer.folder().path()).c_str());
+  say_steps(trainer);
   trainer.run();
 
   const RunSettings& run = trainer.settings();
@@ -257,16 +268,14 @@ void add_train(CLI::App& app, Run& run) {
       command->add_option("--envs,--num-envs", r.pool.envs, "worlds"),
       command->add_option("--seed", r.pool.seed, "seed of worlds, weights and noise"),
       command->add_option("--out", flags->out, "run folder; default runs/<algo>-{<task>}/seed-<n>-<time>"),
-      command->add_option("--eval-every", r.eval_every, "epochs between evaluations")
-          ->check(CLI::PositiveNumber),
+      command->add_option("--eval-every", r.eval_every, "epochs between evaluations")->check(at_least(1)),
       command->add_option("--checkpoint-every", r.checkpoint_every, "epochs between checkpoints")
-          ->check(CLI::PositiveNumber)};
+          ->check(at_least(1))};
   CLI::Option* threads = command->add_option("--threads", r.pool.threads, "threads; 0: the caller's own");
   command->add_option("--ranks", flags->ranks,
                       "processes that learn together: N of this machine, or mpi under mpirun; sets blocks");
   CLI::Option* steps =
-      command->add_option("--steps,--total-steps", flags->steps, "control steps, all worlds together")
-          ->check(CLI::PositiveNumber);
+      command->add_option("--steps,--total-steps", flags->steps, "control steps, all worlds together");
   add_cost_limit_flag(*command, r.limits);
   add_set_flag(*command, flags->sets);
   others.push_back(command->get_option("--cost-limit"));

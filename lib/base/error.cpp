@@ -3,6 +3,7 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 
 namespace rdm {
@@ -16,7 +17,7 @@ void fail(Code code, const char* format, ...) {
   char raw[kErrorTextSize + 4];  // a character that is cut here does not fit into the text either
   va_list args;
   va_start(args, format);
-  std::vsnprintf(raw, sizeof raw, format, args);
+  print_list(raw, sizeof raw, format, args);
   va_end(args);
   clean_text(e.text, sizeof e.text, raw);
   throw e;

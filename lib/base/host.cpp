@@ -10,6 +10,7 @@
 #endif
 
 #include "base/error.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 
 namespace rdm {
@@ -75,7 +76,7 @@ void log(const HostHooks& hooks, LogLevel level, const char* format, ...) {
   char raw[512 + 4], line[512];  // a character that is cut in the first does not fit into the second
   va_list args;
   va_start(args, format);
-  std::vsnprintf(raw, sizeof raw, format, args);
+  print_list(raw, sizeof raw, format, args);
   va_end(args);
   clean_text(line, sizeof line, raw);
   hooks.log(hooks.user, static_cast<int32_t>(level), line);

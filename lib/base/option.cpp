@@ -14,28 +14,6 @@ namespace {
 
 constexpr char kAnyName[] = ".FIELD";
 
-char fold(char c) {
-  if (c == '-') return '_';
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-int edit_distance(const char* a, const char* b) {
-  constexpr size_t kMax = 64;
-  const size_t n = std::min(std::strlen(a), kMax), m = std::min(std::strlen(b), kMax);
-  int row[kMax + 1];
-  for (size_t j = 0; j <= m; ++j) row[j] = static_cast<int>(j);
-  for (size_t i = 1; i <= n; ++i) {
-    int diagonal = row[0];
-    row[0] = static_cast<int>(i);
-    for (size_t j = 1; j <= m; ++j) {
-      const int substitute = diagonal + (fold(a[i - 1]) != fold(b[j - 1]));
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
-    }
-  }
-  return row[m];
-}
-
 // Nine digits where they are enough, else as few as read back exactly.
 void print_number(double v, char* out) {
   char* const last = out + kOptionTextSize - 1;
@@ -52,15 +30,7 @@ void print_range(const OptionRange& v, char* out) {
   char high[kOptionTextSize];
   print_number(v.high, high);
   const size_t at = std::strlen(out);
-  std::snprintf(out + at, kOptionTextSize - at, "..%s", high);  // 24 characters a number at most
-}
-
-bool is_near(const char* name, const char* known, int distance) {
-  const size_t a = std::strlen(name), b = std::strlen(known), common = std::min(a, b);
-  if (3 * static_cast<size_t>(distance) <= std::max(a, b) + 2) return true;
-  size_t same = 0;
-  while (same < common && fold(name[same]) == fold(known[same])) ++same;
-  return same == common && common >= 3;
+  print_text(out + at, kOptionTextSize - at, "..%s", high);  // 24 characters a number at most
 }
 
 // The line from `begin` to `end` as key and value, blanks about them cut off; false when it is empty.
@@ -109,8 +79,10 @@ void read_value(const OptionSpec& s, const char* key, const char* text, const ch
     fail(Code::kArgument, "%s option %s: '%s' is none of true, false, on, off, 1, 0", owner, key,
          Quoted(text).text);
   if (!good)
-    fail(Code::kArgument, "%s option %s: '%s' is not a number%s", owner, key, Quoted(text).text,
-         s.range ? " or a range a..b" : "");
+    fail(Code::kArgument, "%s option %s: '%s' is not %s", owner, key, Quoted(text).text,
+         s.kind == OptionKind::kFlag ? "true, false, on, off, 1 or 0"
+         : s.range                   ? "a number or a range a..b"
+                                     : "a number");
   if (!dots) out->high = out->low;
 }
 
@@ -120,7 +92,7 @@ bool match_choice(const char* choices, const char* word, char* out) {
     const char* end = std::strchr(p, '|');
     const size_t n = end ? static_cast<size_t>(end - p) : std::strlen(p);
     char choice[kOptionTextSize];
-    std::snprintf(choice, sizeof choice, "%.*s", static_cast<int>(n), p);
+    print_text(choice, sizeof choice, "%.*s", static_cast<int>(n), p);
     if (same_name(choice, word)) {
       std::strcpy(out, choice);
       return true;
@@ -131,44 +103,6 @@ bool match_choice(const char* choices, const char* word, char* out) {
 }
 
 }  // namespace
-
-bool same_name(const char* a, const char* b) {
-  for (; *a && *b; ++a, ++b)
-    if (fold(*a) != fold(*b)) return false;
-  return *a == *b;
-}
-
-bool name_matches(const char* pattern, const char* name) {
-  const char *star = nullptr, *from = nullptr;  // the last '*', and the name behind what it stands for
-  while (*name) {
-    if (*pattern == '*') {
-      star = pattern++, from = name;
-    } else if (*pattern && fold(*pattern) == fold(*name)) {
-      ++pattern, ++name;
-    } else if (star) {
-      pattern = star + 1, name = ++from;
-    } else {
-      return false;
-    }
-  }
-  while (*pattern == '*') ++pattern;
-  return !*pattern;
-}
-
-int32_t nearest_name(const char* name, const char* const* names, int32_t count) {
-  int32_t best = -1;
-  int least = 1 << 30;
-  for (int32_t i = 0; i < count; ++i) {
-    const int d = edit_distance(name, names[i]);
-    if (d < least && is_near(name, names[i], d)) least = d, best = i;
-  }
-  return best;
-}
-
-Nearest::Nearest(const char* name, const char* const* names, int32_t count) {
-  const int32_t near = nearest_name(name, names, count);
-  std::snprintf(text, sizeof text, "%s%s", near >= 0 ? "; nearest is " : "", near >= 0 ? names[near] : "");
-}
 
 size_t Options::held_bytes() const {
   size_t bytes = rows_.capacity() * sizeof(Row);
@@ -188,7 +122,7 @@ const OptionSpec* Options::find_open(const char* key) const {
     if (!r.spec->open || !r.own_key.empty()) continue;
     const size_t n = static_cast<size_t>(std::strrchr(r.spec->key, '.') - r.spec->key) + 1;
     size_t same = 0;
-    while (same < n && fold(key[same]) == fold(r.spec->key[same])) ++same;
+    while (same < n && fold_letter(key[same]) == fold_letter(r.spec->key[same])) ++same;
     if (same == n && key[n]) return r.spec;
   }
   return nullptr;
@@ -318,12 +252,14 @@ void Options::each_line(const char* lines, const char* owner, bool known) {
   for (const char* at = lines; at && *at;) {
     const char* end = at + std::strcspn(at, "\n");
     ++number;
+    bool has_key = false;
     try {
-      if (split_line(at, end, &key, &value) && (!known || knows(key.data())))
-        set({key.data(), value.data(), 0}, owner);
+      has_key = split_line(at, end, &key, &value);
     } catch (const Error& e) {
       fail(e.code, "settings line %d: %s", number, e.text);
     }
+    // what is wrong with a value names its key: a host that holds a map knows of no lines
+    if (has_key && (!known || knows(key.data()))) set({key.data(), value.data(), 0}, owner);
     at = *end ? end + 1 : end;
   }
 }
@@ -364,7 +300,7 @@ bool Options::print(int32_t i, char* out) const {
   if (r.spec->kind == OptionKind::kText)
     copy_text(out, kOptionTextSize, r.text);
   else if (r.spec->kind == OptionKind::kFlag)
-    std::snprintf(out, kOptionTextSize, "%s", r.value.low != 0 ? "true" : "false");
+    print_text(out, kOptionTextSize, "%s", r.value.low != 0 ? "true" : "false");
   else
     print_range(r.value, out);
   return r.long_text.empty();

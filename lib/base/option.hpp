@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "base/host.hpp"
+#include "base/names.hpp"
 #include "base/rng.hpp"
 
 namespace rdm {
@@ -149,20 +150,6 @@ class Options {
   static void write(Row& row, const char* text);  // without the spaces at its ends
   void assign(Row& row, const OptionInput& input, const char* owner) const;
   Vector<Row> rows_;
-};
-
-// Keys and names match without regard to case, and '-' equals '_'.
-bool same_name(const char* a, const char* b);
-// As same_name, where every '*' of the pattern stands for any letters or none.
-bool name_matches(const char* pattern, const char* name);
-// Index of the nearest name by edit distance, -1 when none is near: about a third of its letters differ, or
-// one of both begins with the other (three letters or more).
-int32_t nearest_name(const char* name, const char* const* names, int32_t count);
-
-// What an error text says of a name that is unknown: "; nearest is ppo_lag", or "" when none is near.
-struct Nearest {
-  Nearest(const char* name, const char* const* names, int32_t count);
-  char text[2 * kOptionTextSize];
 };
 
 }  // namespace rdm

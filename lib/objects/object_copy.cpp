@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/format.hpp"
+
 namespace rdm {
 
 void write_shape_text(const Object& object, char* out, size_t size) {
@@ -17,8 +19,7 @@ void write_shape_text(const Object& object, char* out, size_t size) {
     for (int k = 0; k < kNumKinds && at < size; ++k) {
       if (counts[k] == 0) continue;
       const char* end = counts[k] == 1 ? "" : k == static_cast<int>(ShapeKind::kBox) ? "es" : "s";
-      const int n =
-          std::snprintf(out + at, size - at, "%s%d %s%s", at ? ", " : "", counts[k], kKinds[k], end);
+      const int n = print_text(out + at, size - at, "%s%d %s%s", at ? ", " : "", counts[k], kKinds[k], end);
       at += n > 0 ? static_cast<size_t>(n) : size;
     }
     return;
@@ -27,23 +28,23 @@ void write_shape_text(const Object& object, char* out, size_t size) {
   const Vec3& d = s.size;
   switch (s.kind) {
     case ShapeKind::kSphere:
-      std::snprintf(out, size, "sphere r %.6g", d.x);
+      print_text(out, size, "sphere r %.6g", d.x);
       break;
     case ShapeKind::kCapsule:
-      std::snprintf(out, size, "capsule r %.6g, straight part %.6g", d.x, 2 * d.y);
+      print_text(out, size, "capsule r %.6g, straight part %.6g", d.x, 2 * d.y);
       break;
     case ShapeKind::kCylinder:
-      std::snprintf(out, size, "cylinder r %.6g, h %.6g", d.x, 2 * d.y);
+      print_text(out, size, "cylinder r %.6g, h %.6g", d.x, 2 * d.y);
       break;
     case ShapeKind::kBox:
-      std::snprintf(out, size, "box %.6g x %.6g x %.6g", 2 * d.x, 2 * d.y, 2 * d.z);
+      print_text(out, size, "box %.6g x %.6g x %.6g", 2 * d.x, 2 * d.y, 2 * d.z);
       break;
     case ShapeKind::kEllipsoid:
-      std::snprintf(out, size, "ellipsoid %.6g x %.6g x %.6g (half axes)", d.x, d.y, d.z);
+      print_text(out, size, "ellipsoid %.6g x %.6g x %.6g (half axes)", d.x, d.y, d.z);
       break;
     case ShapeKind::kHull:
     case ShapeKind::kPlane:
-      std::snprintf(out, size, "hull of %d points", s.points.count);
+      print_text(out, size, "hull of %d points", s.points.count);
       break;
   }
 }

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/format.hpp"
 #include "base/option.hpp"
 #include "base/text.hpp"
 #include "physics/model/inertia.hpp"
@@ -28,7 +29,7 @@ struct Check {
     char text[kErrorTextSize];
     va_list list;
     va_start(list, format);
-    std::vsnprintf(text, sizeof text, format, list);
+    print_list(text, sizeof text, format, list);
     va_end(list);
     fail(code, "robot %s: %s", Quoted(robot.name ? robot.name : "").text, text);
   }

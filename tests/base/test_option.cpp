@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/option.hpp"
+#include "comma_locale.hpp"
 
 namespace rdm {
 namespace {
@@ -143,6 +144,14 @@ TEST(Options, ALongTextIsKeptWholeAndPrintedCut) {
   EXPECT_STREQ(o.text("points"), "short");
 }
 
+TEST(Options, AFlagSaysItsWords) {
+  OptionSpec flag = flag_option("push", true, "");
+  Options o;
+  o.add_table(&flag, 1);
+  EXPECT_EQ(guard([&] { o.set({"push", "yes", 0}, "task"); }), Code::kArgument);
+  EXPECT_STREQ(last_error(), "task option push: 'yes' is not true, false, on, off, 1 or 0");
+}
+
 TEST(Options, UnknownKeyNamesTheNearest) {
   Options o = made();
   EXPECT_EQ(set(o, "lerning-rate", nullptr, 1), Code::kNotFound);
@@ -234,10 +243,10 @@ TEST(Options, LinesAreLaidOverWhatWasGiven) {
   o.set_lines("", "task");
 }
 
-TEST(Options, ErrorsOfLinesSayWhichLine) {
+TEST(Options, ErrorsOfLinesNameTheKeyOrTheLine) {
   Options o = made();
   EXPECT_EQ(guard([&] { o.set_lines("gamma=0.1\n\ngama=1", "task"); }), Code::kNotFound);
-  EXPECT_STREQ(last_error(), "settings line 3: task option gama: unknown; nearest is gamma");
+  EXPECT_STREQ(last_error(), "task option gama: unknown; nearest is gamma");
   EXPECT_EQ(guard([&] { o.set_lines("\nnonsense\n", "task"); }), Code::kArgument);
   EXPECT_STREQ(last_error(), "settings line 2: 'nonsense' is not key=value");
   EXPECT_EQ(guard([&] { o.set_lines("gamma=2", "task"); }), Code::kRange);
@@ -382,32 +391,12 @@ TEST(Options, OfOpenKeysTheLastLineIsTheLastRow) {
 }
 
 TEST(Options, DecimalPointInEveryLocale) {
-  const char* before = std::setlocale(LC_NUMERIC, nullptr);
-  const std::string keep = before ? before : "C";
-  const char* comma = nullptr;
-  for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE.utf8", "nl_NL.UTF-8"})
-    if (!comma) comma = std::setlocale(LC_NUMERIC, name);
-  if (!comma) GTEST_SKIP() << "this machine has no locale with a decimal comma";
+  const CommaLocale locale;
+  if (!locale.set()) GTEST_SKIP() << "no locale with a decimal comma is installed, and none can be made";
   Options o = made();
   EXPECT_EQ(set(o, "gamma", "0.25"), Code::kOk);
   EXPECT_EQ(o.number("gamma"), 0.25);
   EXPECT_EQ(printed(o, 0), "0.25");
-  std::setlocale(LC_NUMERIC, keep.c_str());
-}
-
-TEST(NearestName, ByEditDistance) {
-  const char* names[] = {"ppo", "ppo_lag", "trpo", "cpo"};
-  EXPECT_EQ(nearest_name("ppolag", names, 4), 1);
-  EXPECT_EQ(nearest_name("TRPO", names, 4), 2);
-  EXPECT_EQ(nearest_name("trpoo", names, 4), 2);
-  EXPECT_EQ(nearest_name("cp", names, 4), 3);
-  const char* longer[] = {"bandit", "hand_over_safe_finger"};
-  EXPECT_EQ(nearest_name("hand_over", longer, 2), 1);  // it begins so
-  for (const char* far : {"c", "nonsense", "xyz", "", "a_name_that_is_far_longer_than_any"})
-    EXPECT_EQ(nearest_name(far, names, 4), -1) << far;
-  EXPECT_STREQ(Nearest("ppolag", names, 4).text, "; nearest is ppo_lag");
-  EXPECT_STREQ(Nearest("nonsense", names, 4).text, "");
-  EXPECT_EQ(nearest_name("x", names, 0), -1);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Every robot, and every hand on every arm, in the engine: holding the start pose, and random commands.
+// Every robot of the list, and every hand on every arm, in the engine: holding the start pose, bearing its
+// weight, and random commands.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,16 +31,23 @@ std::vector<double> start_of(const Robot& robot) {
   return q;
 }
 
-// All robots alone, then every hand on every arm.
+// All robots alone, then every hand on every arm. What is passive has nothing to hold it but springs:
+// test_articulated_objects.cpp.
 template <class F>
 void for_all(F&& f) {
   std::vector<const Robot*> arms, hands;
-  for (int32_t i = 0; i < 13; ++i) {
+  int32_t alone = 0;
+  for (int32_t i = 0; i < num_robots(); ++i) {
     const RobotRef ref(i);
-    (ref->kind == RobotKind::kArm ? arms : hands).push_back(&*ref);
+    if (ref->kind == RobotKind::kArm) arms.push_back(&*ref);
+    if (ref->kind == RobotKind::kHand) hands.push_back(&*ref);
+    if (ref->passive) continue;
     f(*ref);
+    ++alone;
   }
-  ASSERT_EQ(hands.size() * arms.size(), 40u);
+  ASSERT_GE(hands.size(), 5u);
+  ASSERT_GE(arms.size(), 8u);
+  ASSERT_GE(alone, 13);
   for (const Robot* arm : arms)
     for (const Robot* hand : hands) f(make_mounted(*arm, *hand, {}).robot());
 }

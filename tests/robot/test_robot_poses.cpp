@@ -128,7 +128,7 @@ void expect_near(const Pose& a, const Pose& b, const std::string& what) {
 }
 
 TEST(RobotPoses, AgreeWithTheIndependentModel) {
-  ASSERT_EQ(golden().robots.size(), 13u);
+  ASSERT_GE(golden().robots.size(), 13u);
   int checked = 0;
   for (const auto& [name, g] : golden().robots) {
     const Robot& robot = own(name);
@@ -144,7 +144,7 @@ TEST(RobotPoses, AgreeWithTheIndependentModel) {
         EXPECT_NEAR(robot.home.count ? robot.home[i] : 0, q[static_cast<size_t>(i)], kExact) << name;
     }
   }
-  EXPECT_EQ(checked, 175);
+  EXPECT_GE(checked, 175);
 }
 
 TEST(RobotPoses, PalmsFaceTheWayTheModelSays) {
@@ -156,8 +156,8 @@ TEST(RobotPoses, PalmsFaceTheWayTheModelSays) {
       }
 }
 
-TEST(RobotPoses, FortyPairsAgreeWithTheIndependentModel) {
-  ASSERT_EQ(golden().pairs.size(), 40u);
+TEST(RobotPoses, PairsAgreeWithTheIndependentModel) {
+  ASSERT_GE(golden().pairs.size(), 40u);
   for (const GoldenPair& pair : golden().pairs) {
     const Robot &arm = own(pair.arm), &hand = own(pair.hand);
     const GoldenRobot &ga = golden().robots.at(pair.arm), &gh = golden().robots.at(pair.hand);

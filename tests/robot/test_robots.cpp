@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstring>
+#include <iterator>
 #include <set>
 #include <string>
 #include <thread>
@@ -37,12 +38,13 @@ const Known kKnown[] = {
     {"ur10e", nullptr, RobotKind::kArm, 6, 6, 33.104},
 };
 
-TEST(Robots, AreThePapersFiveHandsAndEightArms) {
-  ASSERT_GE(num_robots(), 13);
-  for (int32_t i = 0; i < 13; ++i) {
+// Their numbers are in files and in hosts' memories: a robot is added at the end of the list.
+TEST(Robots, BeginWithThePapersFiveHandsAndEightArms) {
+  ASSERT_GE(num_robots(), static_cast<int32_t>(std::size(kKnown)));
+  for (int32_t i = 0; i < static_cast<int32_t>(std::size(kKnown)); ++i) {
     const Known& known = kKnown[i];
     const RobotRef robot(i);
-    EXPECT_STREQ(robot->name, known.name);
+    EXPECT_STREQ(robot->name, known.name) << "the list of robots is append-only";
     EXPECT_EQ(find_robot(known.name), i);
     if (known.alias) {
       EXPECT_EQ(find_robot(known.alias), i);
@@ -52,7 +54,6 @@ TEST(Robots, AreThePapersFiveHandsAndEightArms) {
     EXPECT_EQ(robot->kind, known.kind) << known.name;
     EXPECT_EQ(robot->links.count, known.joints) << known.name;
     EXPECT_EQ(robot->num_actuated(), known.commands) << known.name;
-    EXPECT_NO_THROW(check_robot(*robot)) << known.name;
     double mass = robot->root.mass;
     for (const RobotLink& link : robot->links) mass += link.mass;
     EXPECT_NEAR(mass, known.mass, 2e-5) << known.name;
@@ -60,13 +61,15 @@ TEST(Robots, AreThePapersFiveHandsAndEightArms) {
 }
 
 TEST(Robots, StandWhereTheyCanStand) {
-  for (int32_t i = 0; i < 13; ++i) {
+  for (int32_t i = 0; i < num_robots(); ++i) {
     const RobotRef robot(i);
+    EXPECT_NO_THROW(check_robot(*robot)) << robot->name;
     for (int32_t k = 0; k < robot->links.count; ++k) {
       const RobotLink& l = robot->links[k];
       const double q = robot->home.count ? robot->home[k] : 0;
       EXPECT_GE(q, l.lower) << l.joint;
       EXPECT_LE(q, l.upper) << l.joint;
+      if (robot->passive) continue;
       EXPECT_GT(l.kp, 0) << l.joint;
       EXPECT_GT(l.kd, 0) << l.joint;
       EXPECT_GT(l.effort, 0) << l.joint;
@@ -90,14 +93,14 @@ TEST(Robots, StandWhereTheyCanStand) {
       for (const RobotCoupling& c : robot->couplings)
         EXPECT_NEAR(robot->poses.folded[c.link], c.ratio * robot->poses.folded[c.other], c.slack + 1e-4)
             << robot->links[c.link].joint;
-    } else {
+    } else if (robot->kind == RobotKind::kArm) {
       EXPECT_EQ(robot->flange, robot->links.count - 1) << robot->name;
     }
   }
 }
 
 TEST(Robots, PairsAreNoNeighboursAndStandOnce) {
-  for (int32_t i = 0; i < 13; ++i) {
+  for (int32_t i = 0; i < num_robots(); ++i) {
     const RobotRef robot(i);
     std::set<std::pair<int32_t, int32_t>> seen;
     const auto parent = [&](int32_t link) { return link < 0 ? kNoLink : robot->links[link].parent; };
@@ -139,8 +142,8 @@ TEST(Robots, ComeAndGo) {
   RobotCopy copy(kUr5e);
   copy.bind().name = copy.keep(name.c_str());
   copy.bind().alias = copy.keep("cag");
-  const int32_t index = add_robot(copy.robot());
-  EXPECT_GE(index, 13);
+  const int32_t before = num_robots(), index = add_robot(copy.robot());
+  EXPECT_EQ(index, before);
   EXPECT_EQ(find_robot("Come_And_Go"), index);
   EXPECT_EQ(find_robot("cag"), index);
   for (const char* taken : {"come_and_go", "cag", "panda", "ur5e"}) {

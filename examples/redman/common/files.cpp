@@ -7,7 +7,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <vector>
 
+#include "common/names.hpp"
 #include "common/ownership.hpp"
 #include "common/posix.hpp"
 #include "common/report.hpp"
@@ -90,12 +92,34 @@ bool is_folder(const std::string& path) {
   return fs::is_directory(path, error);
 }
 
+std::string missing_file_hint(const std::string& path) {
+  constexpr size_t kMostNames = 500;
+  const fs::path whole = path, folder = whole.parent_path();
+  std::error_code error;
+  if (!folder.empty() && !fs::is_directory(folder, error)) return "; there is no folder " + folder.string();
+  std::vector<std::string> names;
+  fs::directory_iterator at(folder.empty() ? "." : folder, error);
+  for (; !error && at != fs::directory_iterator() && names.size() < kMostNames; at.increment(error))
+    if (const std::string name = at->path().filename().string(); is_utf8(name)) names.push_back(name);
+  std::sort(names.begin(), names.end());
+  std::string hint = nearest_hint(whole.filename().string(), names);
+  if (!hint.empty() && !folder.empty()) hint += " in " + folder.string();
+  return hint;
+}
+
+std::string why_no_file(const std::string& path) {
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return "";
+  if (fs::exists(path, error)) return "it is not a regular file";
+  return "no such file" + missing_file_hint(path);
+}
+
 std::string read_file(const std::string& path, size_t most) {
   const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);  // a FIFO is not waited for
   struct stat s {};
   std::string problem, bytes;
   if (file < 0 || fstat(file, &s) != 0)
-    problem = std::strerror(errno);
+    problem = std::strerror(errno) + (errno == ENOENT ? missing_file_hint(path) : std::string());
   else if (!S_ISREG(s.st_mode))
     problem = "it is not a regular file";
   else if (static_cast<uint64_t>(s.st_size) > most)
@@ -211,7 +235,9 @@ OpenFile::OpenFile(const std::string& path) : path_(path) {
     size_ = static_cast<uint64_t>(s.st_size);
     return;
   }
-  const std::string problem = found ? "it is not a regular file" : std::strerror(errno);
+  const std::string problem = found             ? "it is not a regular file"
+                              : errno == ENOENT ? std::strerror(errno) + missing_file_hint(path)
+                                                : std::strerror(errno);
   if (file_ >= 0) close(file_);
   throw Failure("cannot read " + path + ": " + problem);
 }

@@ -8,6 +8,11 @@ namespace tool {
 
 bool file_exists(const std::string& path);  // a regular file
 bool is_folder(const std::string& path);
+// Of a file or folder that is not there: "; nearest is runs/a/policy.rdm" of the names beside it, "; there is no
+// folder runs/a", or "" when no name is near.
+std::string missing_file_hint(const std::string& path);
+// Why it cannot be read: "no such file; nearest is ...", "it is not a regular file"; "" when it can be.
+std::string why_no_file(const std::string& path);
 // Failure when it cannot be read, is no regular file or is longer than `most` bytes.
 std::string read_file(const std::string& path, size_t most = size_t{1} << 28);
 

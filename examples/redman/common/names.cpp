@@ -1,3 +1,6 @@
+#ifndef RDM_EXPERIMENTAL
+#define RDM_EXPERIMENTAL
+#endif
 #include "common/names.hpp"
 
 #include <algorithm>
@@ -13,21 +16,6 @@ namespace {
 std::string folded(std::string s) {
   for (char& c : s) c = c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return s;
-}
-
-size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<size_t> row(b.size() + 1);
-  for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t substitute = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
-    }
-  }
-  return row[b.size()];
 }
 
 int32_t find(rdm_result (*find_name)(const char*, int32_t*), const std::string& name) {
@@ -66,16 +54,11 @@ bool same_name(const std::string& a, const std::string& b) {
 }
 
 std::string nearest_hint(const std::string& word, const std::vector<std::string>& names) {
-  std::string best;
-  size_t least = SIZE_MAX;
-  for (const std::string& name : names) {
-    const size_t distance = edit_distance(folded(word), folded(name)),
-                 common = std::min(word.size(), name.size());
-    const bool begins = common >= 3 && folded(word).substr(0, common) == folded(name).substr(0, common);
-    const bool near = begins || 3 * distance <= std::max(word.size(), name.size()) + 2;
-    if (near && distance < least) least = distance, best = name;
-  }
-  return best.empty() ? "" : "; nearest is " + best;
+  std::string lines;
+  for (const std::string& name : names) lines += name + '\n';
+  char text[4 * RDM_TEXT_SIZE];
+  redman::check(rdm_nearest_names(word.c_str(), lines.c_str(), text, sizeof text));
+  return text;
 }
 
 int32_t find_task(const std::string& name) {

@@ -12,8 +12,7 @@ namespace tool {
 
 // Case is ignored and '-' equals '_'.
 bool same_name(const std::string& a, const std::string& b);
-// "; nearest is NAME" with the entry of `names` that differs least, "" when none is near: as the library's
-// texts.
+// "; nearest is NAME", or several, or "" when none of `names` is near: as the library's texts.
 std::string nearest_hint(const std::string& word, const std::vector<std::string>& names);
 
 // Index by name, of a task by its file too; Usage with the nearest known name.

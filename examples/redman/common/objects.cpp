@@ -20,12 +20,19 @@ std::vector<std::string> object_names() {
 }
 
 #ifdef REDMAN_IMPORT
+namespace {
+std::string hint_of(const std::string& file) {
+  const std::string hint = nearest_hint(file, object_names());
+  return hint.empty() ? missing_file_hint(file) : hint;
+}
+}  // namespace
+
 Import import_object(const std::string& file) {
   rdm_import* made = nullptr;
   int32_t known = -1;
   if (!file_exists(file) && file.find('/') == std::string::npos) {
     if (rdm_object_find(file.c_str(), &known) != RDM_OK)
-      throw Failure(file + ": no file, and no object of that name" + nearest_hint(file, object_names()));
+      throw Failure(file + ": no file, and no object of that name" + hint_of(file));
     if (rdm_import_object(&made, known) != RDM_OK) throw Failure(rdm_import_error());
   } else if (rdm_import_object_file(&made, file.c_str()) != RDM_OK) {
     throw Failure(rdm_import_error());
@@ -72,7 +79,16 @@ namespace {
 int32_t add_object(const Import& import, const std::string& where) {
   const rdm_object_def def = object_def_of(import);
   int32_t object = -1;
-  if (rdm_object_create(&object, &def) != RDM_OK) throw Failure(where + ": " + rdm_last_error());
+  if (rdm_object_create(&object, &def) != RDM_OK) {
+    int32_t taken = -1;
+    const std::string text = rdm_last_error();
+    const bool other = rdm_object_find(def.name, &taken) == RDM_OK;
+    throw Failure(where + ": " + text +
+                  (other ? ": give it another by redman object " + where +
+                               " --name NAME --out NAME.object, and "
+                               "take that file"
+                         : ""));
+  }
   remember_object(def.name, object_text(def));
   return object;
 }

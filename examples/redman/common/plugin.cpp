@@ -1,3 +1,6 @@
+#ifndef RDM_EXPERIMENTAL
+#define RDM_EXPERIMENTAL
+#endif
 #include "common/plugin.hpp"
 
 #include <redman/redman.h>
@@ -7,8 +10,10 @@
 #include <dlfcn.h>
 #endif
 
+#include <exception>
 #include <system_error>
 
+#include "common/files.hpp"
 #include "common/report.hpp"
 #include "common/task_files.hpp"
 
@@ -52,10 +57,23 @@ bool is_other(Count count) {
 }
 #endif
 
+// What the plugin answers; the error's text is its own, not that of an earlier call.
+rdm_result call(Plugin plugin, const std::string& owner) {
+  rdm_fail(RDM_ARGUMENT, "it gave no text");
+  try {
+    return plugin();
+  } catch (const std::exception& e) {
+    throw Usage(owner + "redman_plugin threw an exception: " + e.what());
+  } catch (...) {
+    throw Usage(owner + "redman_plugin threw something that is no std::exception");
+  }
+}
+
 void load_plugin(const std::string& file) {
   const std::string owner = std::string(kFlag) + " " + file + ": ";
   // a name without a slash would be looked for in the system's folders
   const std::string path = file.find('/') == std::string::npos ? "./" + file : file;
+  if (!file_exists(path)) throw Usage(owner + "no such file" + missing_file_hint(path));
   void* library = open_library(path);
   if (!library) throw Usage(owner + last_error());
   // a library that carries redman in itself would register with that one
@@ -63,7 +81,7 @@ void load_plugin(const std::string& file) {
   if (count && is_other(count)) throw Usage(owner + "it uses another libredman than this tool");
   const auto plugin = symbol<Plugin>(library, "redman_plugin");
   if (!plugin) throw Usage(owner + "it has no function redman_plugin");
-  if (const rdm_result r = plugin(); r != RDM_OK)
+  if (const rdm_result r = call(plugin, owner); r != RDM_OK)
     throw Usage(owner + "redman_plugin: " + rdm_result_string(r) + ": " + rdm_last_error());
   remember_plugin(path);
 }

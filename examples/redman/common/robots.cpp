@@ -54,7 +54,9 @@ Import import_robot(const std::string& file, const ImportFlags& flags) {
       auto robot = redman::sized<rdm_robot>();
       if (rdm_robot_at(i, &robot) == RDM_OK) names.emplace_back(robot.name);
     }
-    throw Failure(file + ": no file, and no robot of that name" + nearest_hint(file, names));
+    const std::string hint = nearest_hint(file, names);
+    throw Failure(file + ": no file, and no robot of that name" +
+                  (hint.empty() ? missing_file_hint(file) : hint));
   }
   if (r != RDM_OK) throw Failure(rdm_import_error());
   return Import(made);
@@ -72,7 +74,16 @@ namespace {
 int32_t add_robot(const Import& import, const std::string& where) {
   const rdm_robot_def def = def_of(import);
   int32_t robot = -1;
-  if (rdm_robot_create(&robot, &def) != RDM_OK) throw Failure(where + ": " + rdm_last_error());
+  if (rdm_robot_create(&robot, &def) != RDM_OK) {
+    int32_t taken = -1;
+    const std::string text = rdm_last_error();
+    const bool other = rdm_robot_find(def.name, &taken) == RDM_OK;
+    throw Failure(where + ": " + text +
+                  (other ? ": give it another by redman robot " + where +
+                               " --name NAME --out NAME.robot, and take "
+                               "that file"
+                         : ""));
+  }
   remember_robot(def.name, robot_text(def));
   return robot;
 }

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "common/names.hpp"
+#include "common/numbers.hpp"
 #include "common/objects.hpp"
 #include "common/robots.hpp"
 #include "common/task_files.hpp"
@@ -17,14 +18,8 @@ namespace tool {
 namespace {
 
 double limit_number(const std::string& text, const std::string& whole) {
-  size_t used = 0;
   double value = 0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-  }
-  if (used == 0 || used != text.size() || !std::isfinite(value))
-    throw Usage("--cost-limit " + whole + ": not a number or name=number");
+  if (!read_number(text, &value)) throw Usage("--cost-limit " + whole + ": not a number or name=number");
   return value;
 }
 
@@ -43,8 +38,10 @@ std::pair<std::string, std::string> split_pair(const std::string& text, const ch
 CLI::Validator finite_to(double most) {
   return CLI::Validator(
       [most](const std::string& text) {
-        const double value = std::strtod(text.c_str(), nullptr);
-        return value <= most ? std::string() : text + " is not a number up to " + number_text(most);
+        double value = 0;
+        return read_number(text, &value) && value <= most
+                   ? std::string()
+                   : text + " is not a number up to " + number_text(most);
       },
       "");
 }

@@ -19,10 +19,14 @@ namespace {
 constexpr const char* kBaselines[] = {"zero", "hold", "random"};  // by RDM_BASELINE_*
 
 redman::Policy load(const std::string& file) {
-  if (!file_exists(file))
-    throw Failure("policy " + file +
-                  ": no such file; give a policy file, a run folder, a .demo or .npz file, trained, plan, "
-                  "demo, zero, hold or random");
+  const std::vector<std::string> words = {"trained", "plan", "demo", "zero", "hold", "random"};
+  if (const std::string hint = nearest_hint(file, words); !hint.empty() && !file_exists(file))
+    throw Failure("policy " + file + ": no such file or word" + hint);
+  if (const std::string problem = why_no_file(file); !problem.empty())
+    throw Failure(
+        "policy " + file + ": " + problem +
+        "; give a policy file, a run folder, a .demo or .npz file, trained, plan, demo, zero, hold or "
+        "random");
   try {
     return redman::Policy(file.c_str());
   } catch (const redman::Error& e) {

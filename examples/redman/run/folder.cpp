@@ -119,7 +119,9 @@ RunFolder RunFolder::create_default(const RunSettings& settings) {
 
 RunFolder RunFolder::go_on(const std::string& path) {
   if (!file_exists(path + "/config.json"))
-    throw Failure(path + " is not a run folder: it has no config.json; start one with train --out " + path);
+    throw Failure(path + " is not a run folder: " +
+                  (is_folder(path) ? "it has no config.json" : "it is not there" + missing_file_hint(path)) +
+                  "; start one with train --out " + path);
   RunFolder folder(path, locked(path));
   check_run_files(path);
   for (const std::string& file : {folder.config(), folder.progress(), folder.policy(), folder.checkpoint()})

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../../distributed/fork_ranks.h"
+#include "common/numbers.hpp"
 #include "common/report.hpp"
 #include "common/text.hpp"
 #if REDMAN_MPI
@@ -58,9 +59,8 @@ std::unique_ptr<Ranks> Ranks::begin(const std::string& text) {
     throw Usage("--ranks mpi: this tool was built without MPI (cmake -DREDMAN_MPI=ON)");
 #endif
   }
-  char* last = nullptr;
-  const long ranks = std::strtol(text.c_str(), &last, 10);
-  if (text.empty() || *last || ranks < 1 || ranks > kMostForked)
+  int64_t ranks = 0;
+  if (!read_whole(text, &ranks) || ranks < 1 || ranks > kMostForked)
     throw Usage("--ranks " + printable(text) + ": not a number of 1 to 256, nor mpi");
 #if defined(__linux__)
   return std::make_unique<Forked>(static_cast<int>(ranks));

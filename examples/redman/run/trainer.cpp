@@ -309,6 +309,9 @@ void Trainer::run() {
     if (!first()) throw;
     folder_->check();  // where the folder is gone, that is what went wrong
     if (saved_epoch_ < 1) throw;
+    if (!file_exists(folder_->checkpoint()))
+      throw Failure(std::string(e.what()) + "; " + folder_->checkpoint() +
+                    " was removed: there is nothing to go on from");
     throw Failure(std::string(e.what()) +
                   format("; the checkpoint of epoch %d is kept: go on with train --resume ", saved_epoch_) +
                   folder_->path());

@@ -33,6 +33,7 @@ class Trainer {
 
   const RunFolder& folder() const { return *folder_; }
   const RunSettings& settings() const { return settings_; }
+  int64_t steps_per_epoch() const;  // at most: worlds rest from an episode's end to the next decision
   const std::vector<double>& limits() const { return limits_; }
   int64_t env_steps() const { return env_steps_; }
   bool interrupted() const { return interrupted_; }
@@ -51,7 +52,6 @@ class Trainer {
   bool wants_imitation() const;
   bool wants_starts() const;
   int64_t option(const char* key) const;  // of the agent, as it stands
-  int64_t steps_per_epoch() const;        // at most: worlds rest from an episode's end to the next decision
   void train_epoch(Meter& meter);
   void train_to_the_end(Meter& meter);
   // Whether a policy is better than the best so far, which it then replaces; `last`: how it looked. One whose

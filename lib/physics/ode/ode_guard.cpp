@@ -10,6 +10,7 @@
 #include <new>
 
 #include "base/error.hpp"
+#include "base/format.hpp"
 #include "base/host.hpp"
 
 namespace rdm {
@@ -32,7 +33,7 @@ void pass_on(dMessageFunction* host_handler, LogLevel level, int number, const c
     return;
   }
   char line[256];
-  std::vsnprintf(line, sizeof line, text, args);
+  print_list(line, sizeof line, text, args);
   log(host(), level, "ode %d: %s", number, line);
 }
 
@@ -42,7 +43,7 @@ void throw_or_pass(dMessageFunction* host_handler, int number, const char* text,
     return;
   }
   char line[160];
-  std::vsnprintf(line, sizeof line, text, args);
+  print_list(line, sizeof line, text, args);
   fail(Code::kPhysics, "ode: %s", line);
 }
 

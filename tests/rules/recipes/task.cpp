@@ -65,7 +65,7 @@ class FencedWalk final : public PlanarTask {
 };
 
 constexpr OptionSpec kOptions[] = {integer_option("max_steps", 50, 1, 100000, "control steps of an episode")};
-constexpr CostSpec kCosts[] = {{"beyond", "1 in a step that ends beyond the fence", 5}};
+constexpr CostSpec kCosts[] = {{"cost", "1 in a step that ends beyond the fence", 5}};
 constexpr CameraSpec kCameras[] = {{"front", {0, -4, 2}, {0, 0, 0}, 0.8}};
 constexpr std::array kDefaults = {LearnerDefault{"horizon", "100"}, LearnerDefault{"init_std", "0.5"}};
 

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# regenerate.sh [BUILD]: writes again what follows from the lists of tasks, algorithms, robots and objects and from the public
+# headers: the golden rows, the layouts of structs, Python's declarations, and the tables between marks in the pages. BUILD is a
+# folder with tests, build/dev unless given. What it changed is for you to look at and to commit.
+set -eu
+cd "$(dirname "$0")/.."
+build=${1:-build/dev}
+[ -f "$build/CMakeCache.txt" ] || { echo "$build is no build folder: cmake --preset dev, or give another"; exit 1; }
+cmake --build "$build" --target redman_tool test_golden test_golden_learners print_layout
+for rows in test_golden test_golden_learners; do
+  RDM_WRITE_GOLDEN=1 "$build/tests/$rows" > "$build/$rows.log" || { cat "$build/$rows.log"; exit 1; }
+done
+"$build/tests/print_layout" > capi/layout.golden
+python3 capi/python/generate_abi.py
+bash cmake/tables.sh "$build/bin/redman"
+git status --short -- tests/golden capi/layout.golden capi/python/redman/_abi.py '*.md'
