@@ -221,7 +221,8 @@ void MjcfReader::add_body(const Element& e, int parent, const Pose& frame, const
   if (const auto* t = e.get("mocap"))
     if (flag(e, "mocap", *t)) {
       if (model.bodies.empty() || !drops_mocap(e, c))
-        refuse_at(RDM_UNSUPPORTED, e, "mocap: a body that its host moves is not read");
+        refuse_at(RDM_UNSUPPORTED, e,
+                  "mocap: a body that its host moves is not read; options.root takes another");
       out->note(RDM_NOTE_DROPPED, e.line, "body %s: its host moves it (mocap), and nothing of it touches%s",
                 clean(body.name).c_str(), in_file(e).c_str());
       for (const auto& x : e.children) {

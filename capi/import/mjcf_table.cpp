@@ -23,6 +23,19 @@ Words<Row> words_of(const std::vector<Row>& rows, const char* Row::*element, con
   }
   return out;
 }
+// Harmless wherever it stands: a name that some element has to drop, and none to read.
+bool harmless(const std::string& attribute) {
+  bool dropped = false;
+  for (const AttributeRow& row : attribute_rows()) {
+    std::istringstream in(row.attributes);
+    for (std::string word; in >> word;) {
+      if (word != attribute) continue;
+      if (row.use != Use::kDropped) return false;
+      dropped = true;
+    }
+  }
+  return dropped;
+}
 template <class Row>
 std::string nearest(const std::map<std::string, const Row*>& known, const std::string& word) {
   std::vector<std::string> names;
@@ -140,6 +153,7 @@ void check_attributes(const Element& e, const std::string& kind) {
   for (const Attribute& a : e.attributes) {
     if (a.name.rfind("xmlns", 0) == 0) continue;
     const auto found = known.find(a.name);
+    if (found == known.end() && harmless(a.name)) continue;
     if (found == known.end())
       refuse_at(RDM_UNSUPPORTED, e, "%s is no attribute that is known here, and it could change the robot%s",
                 clean(a.name).c_str(), nearest(known, a.name).c_str());
@@ -153,6 +167,11 @@ const ElementRow& row_of(const Element& e, const std::string& parent) {
   static const auto table = words_of(element_rows(), &ElementRow::parent, &ElementRow::children);
   const auto& known = table.at(parent);
   const auto found = known.find(e.tag);
+  if (found == known.end() && parent == "mujoco")
+    for (const auto& [other, children] : table)
+      if (children.count(e.tag))
+        refuse_at(RDM_FORMAT, e, "it stands outside of %s: a part that other files include",
+                  other == "body" ? "worldbody" : other.c_str());
   if (found == known.end())
     refuse_at(RDM_UNSUPPORTED, e, "no element that is known in %s, and it could change the robot%s",
               parent.c_str(), nearest(known, e.tag).c_str());
