@@ -33,6 +33,8 @@ const char* name_of(Tag tag) {
       return "agent";
     case Tag::kPolicy:
       return "policy";
+    case Tag::kActor:
+      return "actor";
     case Tag::kPlanner:
       return "planner";
     case Tag::kMap:

@@ -60,6 +60,7 @@ enum class Tag : uint32_t {
   kPool = 0x6c6f6f70,
   kAgent = 0x6e656761,
   kPolicy = 0x796c6f70,
+  kActor = 0x6f746361,
   kMap = 0x2070616d,
   kRecording = 0x64636572,
   kPlanner = 0x6e616c70,

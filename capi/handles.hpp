@@ -11,7 +11,7 @@
 #include "algos/core/agent.hpp"
 #endif
 #if RDM_WITH_POLICY
-#include "nn/policy.hpp"
+#include "nn/actor.hpp"
 #endif
 
 #if RDM_WITH_SIM

@@ -1,6 +1,5 @@
 // rdm_policy_*: the frozen network.
 
-#include "base/bit_cast.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "capi/handles.hpp"
@@ -145,12 +144,7 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
 
 void need_finite(const float* x, int32_t rows, int32_t width, const char* name) {
   const auto dim = static_cast<size_t>(width);
-  for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
-    uint32_t largest = 0;  // of the magnitudes, which order as their bits do
-    for (size_t k = 0; k < dim; ++k)
-      largest = std::max(largest, rdm::bit_cast<uint32_t>(x[i * dim + k]) & 0x7fffffffu);
-    if (largest >= 0x7f800000u) fail(Code::kArgument, "%s: row %zu is not finite", name, i);
-  }
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i) need_finite_row(x + i * dim, dim, name, i);
 }
 }  // namespace
 

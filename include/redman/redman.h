@@ -46,8 +46,8 @@
  *     function's comment is what stands behind it, then what stands above the run of functions that it is in.
  *   - Words in a shape are arguments of the function, members of structs, or macros; n0 is the first number of n.
  *   - An array whose comment says so may be NULL; a struct with struct_size that is no config is in and out.
- *   - `const char *` is a text that ends in 0. `rdm_pool *`, `rdm_agent *`, `rdm_policy *`, `rdm_recording *`, `rdm_planner *`, `rdm_map *`,
- *     `rdm_scene *` and `rdm_world *` are handles, through `**` new ones. `void *` with a shape is bytes; other ones are passed through.
+ *   - `const char *` is a text that ends in 0. `rdm_pool *`, `rdm_agent *`, `rdm_policy *`, `rdm_actor *`, `rdm_recording *`, `rdm_planner *`,
+ *     `rdm_map *`, `rdm_scene *` and `rdm_world *` are handles, through `**` new ones. `void *` with a shape is bytes; other ones are passed through.
  *   - Text and bytes of any length come as (T *x, size_t capacity, size_t *size): x NULL asks for the size alone, a
  *     capacity below it is RANGE. The size of a text is without its 0, for which the capacity must have room.
  */
@@ -614,7 +614,8 @@ RDM_API rdm_result rdm_policy_load_file(rdm_policy **out, const char *path);    
 RDM_API void rdm_policy_destroy(rdm_policy *p);             /* NULL is fine */
 RDM_API rdm_result rdm_policy_get_info(const rdm_policy *p, rdm_policy_info *io); /* fills io */
 RDM_API size_t rdm_policy_scratch(const rdm_policy *p, int32_t rows); /* bytes for act, at any address; 0: bad arguments */
-/* action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise [rows][action_dim] are
+/* One decision, to be held for rdm_policy_info.action_repeat control steps (rdm_actor_act counts them):
+ * action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise [rows][action_dim] are
  * the caller's standard normals, NULL: the mean. scratch [scratch_bytes]: rdm_policy_scratch bytes or more, aligned
  * in any way. No heap, no hidden state: any number of threads, each with its own scratch. ARGUMENT when obs or noise
  * is not finite, or so large that the network overflows (action is written then, and of no use). STATE for a policy
@@ -760,6 +761,63 @@ typedef struct rdm_pretrain_report { /* what rdm_agent_pretrain did */
  * rdm_agent_cancel: the encoder as before. io may be NULL. */
 RDM_API rdm_result rdm_agent_pretrain(rdm_agent *a, const rdm_points *points, const uint8_t *label, int32_t rows,
                                       const rdm_pretrain_config *how, rdm_pretrain_report *io);
+
+/* ---- actors: a policy that plays ------------------------------------------------------------------------------ */
+/* A policy decides every rdm_policy_info.action_repeat control steps, and its action is held between. An actor does the counting
+ * for worlds of a pool, or of an environment of your own, so that a policy earns the same wherever it plays:
+ *
+ *   rdm_actor_config c;  rdm_actor *actor;
+ *   rdm_actor_config_init(&c, sizeof c);
+ *   c.policy = policy;  c.spec = &spec;  c.num_envs = n;              // spec: of rdm_pool_get_spec
+ *   if (rdm_actor_create(&actor, &c)) puts(rdm_last_error());
+ *   for (...) {
+ *     rdm_actor_act(actor, b.obs, NULL, NULL, b.action);  rdm_pool_step(pool);
+ *     rdm_actor_reset(actor, b.terminated, b.truncated);             // of a pool with RDM_AUTORESET_SAME_STEP
+ *   }
+ *   rdm_actor_destroy(actor);
+ *
+ * With RDM_AUTORESET_OFF reset the actor where the pool is reset; with RDM_AUTORESET_NEXT_STEP after the step that resets, by the
+ * ends of the step before. One thread at a time. Same policy, seed and calls: the same bytes. */
+typedef struct rdm_actor rdm_actor; /* handle */
+typedef struct rdm_actor_config { /* what an actor is made from */
+  uint32_t struct_size;      /* bytes, set by rdm_actor_config_init                                       */
+  int32_t num_envs;          /* rows of an act, 1..65536, required                                        */
+  const rdm_policy *policy;  /* required; must outlive the actor                                          */
+  const rdm_spec *spec;      /* of the pool that it plays in, checked as rdm_policy_check does; its action_repeat must divide the
+                              * policy's. NULL: nothing is checked, and a step is one control step        */
+  uint64_t seed;             /* of the noise; default 0                                                   */
+  int32_t stochastic;        /* 1: actions are sampled, with the noise correlation of the policy; default 0: the mean */
+  int32_t reserved;          /* 0                                                                         */
+  const float *center;       /* [action_dim] in [-1, 1] that the environment adds to every action it is given, and the actor
+                              * subtracts (the sum is right to a rounding); copied; NULL: 0               */
+  const rdm_host *host;      /* hooks of this handle, copied; NULL: those of rdm_init                     */
+  char *error;               /* [error_size] the text of a failing call that takes this config; NULL      */
+  int32_t error_size;        /* bytes, terminator included; what is longer is cut                         */
+  int32_t reserved2;         /* 0                                                                         */
+} rdm_actor_config;
+/* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's. */
+RDM_API rdm_result rdm_actor_config_init(rdm_actor_config *c, size_t size);
+/* Bytes *bytes that creation takes from the alloc hook, exact. */
+RDM_API rdm_result rdm_actor_memory(const rdm_actor_config *c, size_t *bytes);
+/* Makes the actor; every world begins an episode. ARGUMENT for a step that does not divide the policy's decision,
+ * VERSION_MISMATCH for a spec that the policy does not fit, RANGE for sizes and a center out of bounds. */
+RDM_API rdm_result rdm_actor_create(rdm_actor **out, const rdm_actor_config *c);
+RDM_API void rdm_actor_destroy(rdm_actor *actor);             /* NULL is fine */
+RDM_API const char *rdm_actor_error(const rdm_actor *actor);  /* last failure on this handle; "" at first */
+/* action [num_envs][action_dim] for one step of the worlds whose mask [num_envs] is not 0 (NULL: all): a new decision on
+ * obs [num_envs][obs_dim] where one is due, else the one that is held; rows of other worlds are not written. points: clouds of
+ * the worlds for a policy that sees points, NULL for others. No heap. ARGUMENT for rows that are not finite where a decision is
+ * due: nothing is counted then. */
+RDM_API rdm_result rdm_actor_act(rdm_actor *actor, const float *obs, const rdm_points *points, const uint8_t *mask,
+                                 float *action);
+/* Episodes begin anew where terminated [num_envs] or truncated [num_envs] is not 0: a decision is due there, and its noise is
+ * fresh. Either may be NULL; both NULL: everywhere. Any mask will do in the place of one of them. */
+RDM_API rdm_result rdm_actor_reset(rdm_actor *actor, const uint8_t *terminated, const uint8_t *truncated);
+/* Held actions, counts and noise as bytes [capacity]; NULL asks for the size. An actor of the same policy and config that reads
+ * them goes on with the same bytes. */
+RDM_API rdm_result rdm_actor_write_state(const rdm_actor *actor, void *bytes, size_t capacity, size_t *size);
+/* Of bytes [size]. FORMAT for bytes that are not whole, or of another actor: nothing changes. */
+RDM_API rdm_result rdm_actor_read_state(rdm_actor *actor, const void *bytes, size_t size);
 
 /* ---- planning: actions by trying them out -------------------------------------------------------------------- */
 /* A planner rolls many worlds out from where one stands, each under a noisy plan, and moves the plan to what went best

@@ -29,6 +29,7 @@ struct Handles {
   rdm_policy* policy = nullptr;
   rdm_map* map = nullptr;
   rdm_planner* planner = nullptr;
+  rdm_actor* actor = nullptr;
 
   Handles() {
     rdm_pool_config p = pool_config(1);
@@ -52,10 +53,17 @@ struct Handles {
     n.settings = "samples=2\nhorizon=2";
     n.host = &host.hooks;
     EXPECT_EQ(rdm_planner_create(&planner, &n), RDM_OK);
+    rdm_actor_config o;
+    EXPECT_EQ(rdm_actor_config_init(&o, sizeof o), RDM_OK);
+    o.policy = policy;
+    o.num_envs = 1;
+    o.host = &host.hooks;
+    EXPECT_EQ(rdm_actor_create(&actor, &o), RDM_OK);
   }
   ~Handles() {
     rdm_pool_destroy(pool);
     rdm_agent_destroy(agent);
+    rdm_actor_destroy(actor);
     rdm_policy_destroy(policy);
     rdm_map_destroy(map);
     rdm_planner_destroy(planner);
@@ -87,6 +95,7 @@ T* plain() {
 #define AGENT static_cast<rdm_agent*>(h)
 #define POLICY static_cast<rdm_policy*>(h)
 #define MAP static_cast<rdm_map*>(h)
+#define ACTOR static_cast<rdm_actor*>(h)
 #define PLANNER static_cast<rdm_planner*>(h)
 #define CALL(expression)                     \
   [](void* h, Handles& good) -> rdm_result { \
@@ -183,6 +192,13 @@ const std::vector<Call> kPlannerCalls = {
     CALL(rdm_planner_read_state(PLANNER, g_bytes, 8)),
 };
 
+const std::vector<Call> kActorCalls = {
+    CALL(rdm_actor_act(ACTOR, g_floats, nullptr, nullptr, g_floats)),
+    CALL(rdm_actor_reset(ACTOR, nullptr, nullptr)),
+    CALL(rdm_actor_write_state(ACTOR, nullptr, 0, &g_size)),
+    CALL(rdm_actor_read_state(ACTOR, g_bytes, 8)),
+};
+
 void expect_refused(const std::vector<Call>& calls, void* h, Handles& good, const char* text) {
   for (size_t i = 0; i < calls.size(); ++i) {
     EXPECT_EQ(calls[i](h, good), RDM_ARGUMENT) << "call " << i;
@@ -199,12 +215,14 @@ TEST(Handles, OfAnotherKindAreNamed) {
   expect_refused(kPolicyCalls, good.map, good, "policy: the handle is of kind map");
   expect_refused(kMapCalls, good.policy, good, "map: the handle is of kind policy");
   expect_refused(kPlannerCalls, good.pool, good, "planner: the handle is of kind pool");
+  expect_refused(kActorCalls, good.policy, good, "actor: the handle is of kind policy");
 }
 
 TEST(Handles, ThatWereDestroyedAreRefused) {
   Handles good, ended;
   rdm_pool_destroy(ended.pool);
   rdm_agent_destroy(ended.agent);
+  rdm_actor_destroy(ended.actor);
   rdm_policy_destroy(ended.policy);
   rdm_map_destroy(ended.map);
   rdm_planner_destroy(ended.planner);
@@ -213,10 +231,12 @@ TEST(Handles, ThatWereDestroyedAreRefused) {
   expect_refused(kPolicyCalls, ended.policy, good, "destroyed");
   expect_refused(kMapCalls, ended.map, good, "destroyed");
   expect_refused(kPlannerCalls, ended.planner, good, "destroyed");
+  expect_refused(kActorCalls, ended.actor, good, "destroyed");
   EXPECT_NE(std::strstr(rdm_pool_error(ended.pool), "destroyed"), nullptr);
   EXPECT_NE(std::strstr(rdm_agent_error(ended.agent), "destroyed"), nullptr);
   EXPECT_NE(std::strstr(rdm_map_error(ended.map), "destroyed"), nullptr);
   EXPECT_NE(std::strstr(rdm_planner_error(ended.planner), "destroyed"), nullptr);
+  EXPECT_NE(std::strstr(rdm_actor_error(ended.actor), "destroyed"), nullptr);
   EXPECT_EQ(rdm_policy_scratch(ended.policy, 1), 0u);
   rdm_agent_cancel(ended.agent);
 }  // and are destroyed a second time here
@@ -228,10 +248,12 @@ TEST(Handles, OfAnotherKindAreNotDestroyed) {
   rdm_policy_destroy(reinterpret_cast<rdm_policy*>(good.map));
   rdm_map_destroy(reinterpret_cast<rdm_map*>(good.policy));
   rdm_planner_destroy(reinterpret_cast<rdm_planner*>(good.pool));
+  rdm_actor_destroy(reinterpret_cast<rdm_actor*>(good.policy));
   EXPECT_EQ(rdm_pool_reset(good.pool, nullptr, nullptr), RDM_OK);
   EXPECT_EQ(feed_epoch(good.agent), RDM_OK);
   EXPECT_EQ(rdm_map_clear(good.map), RDM_OK);
   EXPECT_EQ(rdm_planner_reset(good.planner), RDM_OK);
+  EXPECT_EQ(rdm_actor_reset(good.actor, nullptr, nullptr), RDM_OK);
   auto* info = sized<rdm_policy_info>();
   EXPECT_EQ(rdm_policy_get_info(good.policy, info), RDM_OK);
   EXPECT_EQ(info->obs_dim, 3);

@@ -8,7 +8,7 @@ import pathlib
 import re
 import sys
 
-HANDLES = {"rdm_pool", "rdm_agent", "rdm_policy", "rdm_recording", "rdm_planner", "rdm_map", "rdm_scene", "rdm_world"}
+HANDLES = {"rdm_pool", "rdm_agent", "rdm_policy", "rdm_actor", "rdm_recording", "rdm_planner", "rdm_map", "rdm_scene", "rdm_world"}
 INTEGERS = {"int32_t", "uint32_t", "int64_t", "uint64_t", "size_t"}
 LENGTHS = {"capacity", "scratch_bytes", "note_size", "num_skip", "wanted"}  # arguments that say how long another is
 SHAPE = r"((?:\[[^\]\[]+\])+)"

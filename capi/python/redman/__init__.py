@@ -11,24 +11,26 @@
 from __future__ import annotations
 
 from ._abi import Autoreset, BaselineKind, OptionKind, ResultCode, ShapeKind, Status
+from ._actor import Actor
 from ._agent import Agent, Epoch
 from ._curve import Curve, Curves, curve
 from ._discovery import Algo, Field, Option, Robot, Task, algo, algos, build, objects, robots, task, tasks
 from ._error import (AllocationError, ArgumentError, CancelledError, Error, FileError, FormatError, InternalError,
                      MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError,
                      VersionError)
+from ._hold import HoldWarning
 from ._map import Map, sample_furthest
 from ._play import Evaluation, evaluate
-from ._policy import Policy
+from ._policy import Origin, Policy
 from ._pool import Pool, Sensors, memory
 from ._train import Run, train
 
 __version__ = version = build().version
 
 __all__ = [
-    "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "CancelledError", "Curve",
-    "Curves", "Epoch", "Error", "Evaluation", "Field", "FileError", "FormatError", "InternalError", "Map",
-    "MissingFileError", "NotFoundError", "Option", "OptionKind", "PhysicsError", "Policy", "Pool", "RangeError",
+    "Actor", "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "CancelledError", "Curve",
+    "Curves", "Epoch", "Error", "Evaluation", "Field", "FileError", "FormatError", "HoldWarning", "InternalError", "Map",
+    "MissingFileError", "NotFoundError", "Option", "OptionKind", "Origin", "PhysicsError", "Policy", "Pool", "RangeError",
     "ResultCode", "Robot", "Run", "Sensors", "ShapeKind", "StateError", "Status", "Task", "UnsupportedError",
     "VersionError", "__version__", "algo", "algos", "build", "curve", "evaluate", "memory", "objects", "robots",
     "sample_furthest", "task", "tasks", "train", "version",

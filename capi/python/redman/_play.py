@@ -1,24 +1,36 @@
 """Whole episodes of a policy: how good it is, and what it looks like."""
 from __future__ import annotations
 
+import os
 import warnings
-from dataclasses import dataclass
-from typing import Any, Callable, Optional, Sequence, Union
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _png
-from ._error import ArgumentError, Error
+from ._actor import worlds_of
+from ._error import ArgumentError, Error, NotFoundError
+from ._names import nearest
 from ._options import Options
-from ._policy import Policy
+from ._policy import Origin, Policy
 from ._pool import Pool
 from ._rows import Array, FloatArray
+from ._worlds import Center, center_of
+
+if TYPE_CHECKING:
+    from ._agent import Agent
+    from ._train import Run
 
 # What ends an episode, and what goes on: bits of Pool.status (redman.h, RDM_STATUS_*) by their names in results.
 _END_FLAGS = {"diverged": 2, "bad_actions": 4, "task_failed": 8}
 _STEP_FLAGS = {"contacts_left_out": 1, "unconverged": 16}
 
-Player = Union[Policy, str, Callable[[FloatArray], Any]]
+_BASELINES = ("zero", "hold", "random")
+Function = Callable[[FloatArray], Any]
+# What plays: a policy, a run or its folder, an agent, a baseline, a function of rows, a model with `predict`.
+Player = Union[Policy, str, "os.PathLike[str]", "Run", "Agent", Function, Any]
 
 
 @dataclass(frozen=True)
@@ -33,7 +45,7 @@ class Evaluation:
     return_std: float
     cost_mean: list[float]
     cost_std: list[float]
-    length_mean: float
+    length_mean: float  # control steps
     success_rate: float  # share of episodes with at least one success
     fall_rate: float  # share of episodes that terminated
     violation_rate: float  # share of episodes over a limit
@@ -52,44 +64,80 @@ class Evaluation:
         return all(limit is None or mean <= limit for mean, limit in zip(self.cost_mean, self.cost_limits))
 
 
-class _Actor:
-    """Writes the pool's actions: the policy's decisions, each held as long as it was trained to."""
+class _Plays:
+    """Writes the actions of a pool for its next step."""
 
-    def __init__(self, player: Player, pool: Pool) -> None:
-        self._player, self._pool = player, pool
-        self._repeat = player.info.action_repeat if isinstance(player, Policy) else 1
-        if isinstance(player, Policy):
-            player.check(pool)
-        self._left = np.zeros(pool.num_envs, np.int64)  # control steps that the action of each world is still held
+    def __init__(self, player: Union[Policy, str, Any], pool: Pool, action_repeat: Optional[int] = None,
+                 center: Optional[FloatArray] = None) -> None:
+        self._player, self._pool, self._center = player, pool, center
+        self._policy = player.actor(pool) if isinstance(player, Policy) else None
+        # a function decides at every step of its own pool, which this one's may be parts of
+        self._hold = 1 if action_repeat is None else action_repeat // pool.spec.action_repeat
+        self._left = np.zeros(pool.num_envs, np.int64)
+        self._state: Any = None  # of a model
+        self._began = np.ones(pool.num_envs, np.bool_)
 
-    def act(self) -> None:
-        if isinstance(self._player, str):
-            self._pool.baseline(self._player)
+    def act(self, mask: Optional[Array] = None) -> None:
+        if self._policy is not None:
+            self._pool.action[...] = self._policy(mask=mask)
             return
         due = self._left == 0
         if due.any():
-            obs = self._pool.obs
-            decided = self._player.act(obs) if isinstance(self._player, Policy) else self._player(obs)
-            self._pool.action[due] = np.asarray(decided)[due]
-            self._left[due] = self._repeat
+            if isinstance(self._player, str):
+                kept = self._pool.action.copy()
+                self._pool.baseline(self._player)
+                self._pool.action[~due] = kept[~due]
+            else:
+                self._pool.action[due] = self._about(self._decided())[due]
+            self._left[due] = self._hold
+            self._began[due] = False
         self._left -= 1
+
+    def _decided(self) -> Any:
+        if not hasattr(self._player, "predict"):
+            return self._player(self._pool.obs)
+        obs = self._pool.obs
+        normalizer = getattr(self._player, "get_vec_normalize_env", lambda: None)()
+        if normalizer is not None:  # what its observations went through while it learned
+            obs = normalizer.normalize_obs(obs)
+        action, self._state = self._player.predict(obs, state=self._state, episode_start=self._began.copy(),
+                                                   deterministic=True)
+        return action
+
+    def _about(self, actions: Any) -> Array:
+        """As Worlds of the environments write them."""
+        rows = np.asarray(actions)
+        if rows.dtype != np.float64:
+            rows = np.asarray(rows, np.float32)
+        if rows.shape != self._pool.action.shape:
+            raise ArgumentError(f"evaluate: the actions have shape {rows.shape}, not {self._pool.action.shape}")
+        return rows if self._center is None else rows + self._center
 
     def restart(self, worlds: Array) -> None:
         self._left[worlds] = 0
+        self._began[worlds] = True
 
 
-def limits_of(pool: Pool, wanted: Optional[Sequence[Optional[float]]]) -> list[Optional[float]]:
-    """The wanted limits, or the task's own."""
+def limits_of(pool: Pool, wanted: Union[None, Sequence[Optional[float]], Mapping[str, float]]) -> list[Optional[float]]:
+    """The wanted limits, of each column or by name; or the task's own."""
+    if isinstance(wanted, Mapping):
+        return [wanted.get(name) for name in pool.costs]
     if wanted is not None:
         return list(wanted)
     return [None if cost.limit < 0 else cost.limit for cost in pool.costs.values()]
 
 
-def play(pool: Pool, player: Player, episodes: int, magnitudes: bool = False) -> list[dict[str, Any]]:
+def play(pool: Pool, player: Any, episodes: int, magnitudes: bool = False, action_repeat: Optional[int] = None,
+         center: Optional[FloatArray] = None) -> list[dict[str, Any]]:
     """Each episode's return, costs, length, fall and success; the pool's autoreset is off, and it was just reset. With
-    magnitudes costs are sums of cost_raw where it is above 0, as an agent with cost_signal=raw learns them."""
+    magnitudes costs are sums of cost_raw where it is above 0, as an agent with cost_signal=raw learns them; the pool
+    then takes single control steps, for it shows cost_raw of the last one alone. action_repeat: control steps that a
+    baseline's or a function's actions last, None: a step of the pool."""
+    if magnitudes and pool.spec.action_repeat != 1:
+        raise ArgumentError(f"magnitudes: cost_raw is shown for each step of the pool, and one has "
+                            f"{pool.spec.action_repeat} control steps")
     n = pool.num_envs
-    actor = _Actor(player, pool)
+    plays = _Plays(player, pool, action_repeat, center)
     number = np.arange(n)
     playing = number < episodes
     success = np.zeros(n, np.bool_)
@@ -97,7 +145,7 @@ def play(pool: Pool, player: Player, episodes: int, magnitudes: bool = False) ->
     flagged = np.zeros((n, len(_STEP_FLAGS)), np.int64)  # steps so far
     out: list[dict[str, Any]] = [{} for _ in range(episodes)]
     while playing.any():
-        actor.act()
+        plays.act(playing)
         pool.step(mask=playing)
         success |= pool.success & playing
         raw += np.maximum(pool.cost_raw, 0) * playing[:, None]
@@ -120,27 +168,127 @@ def play(pool: Pool, player: Player, episodes: int, magnitudes: bool = False) ->
         again = ended & playing
         if again.any():
             pool.reset(mask=again)
-            actor.restart(again)
+            plays.restart(again)
     return out
+
+
+@dataclass
+class _Judged:
+    """Who plays, and what is known of how it is to be judged."""
+
+    player: Any
+    origin: Optional[Origin] = None
+    task: Optional[str] = None
+    action_repeat: Union[None, int, str] = None  # of the environment that a model learned in
+    center: Center = None
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+
+def _judged(player: Player, task: Optional[str]) -> _Judged:
+    from ._agent import Agent
+    from ._train import Run
+    if isinstance(player, Run):
+        player = player.policy
+    if isinstance(player, Agent):
+        player = player.policy()
+    if isinstance(player, (str, os.PathLike)):
+        player = _named(player, task)
+    if isinstance(player, Policy):
+        return _Judged(player, player.origin, player.info.task or None)
+    if isinstance(player, str):
+        return _Judged(player)
+    if hasattr(player, "predict"):
+        return _of_model(player)
+    if callable(player):
+        return _Judged(player)
+    raise ArgumentError(f"evaluate: a {type(player).__name__} is no policy, run, folder, baseline, function of rows or model "
+                        "with predict")
+
+
+def _named(word: Union[str, os.PathLike[str]], task: Optional[str]) -> Union[Policy, str]:
+    """A baseline, "trained", or a file or folder of a policy."""
+    if word in _BASELINES:
+        return str(word)
+    if word == "trained":
+        if task is None:
+            raise ArgumentError("evaluate: say which task")
+        return Policy.trained(task)
+    if Path(word).exists():
+        return Policy.load(word)
+    raise NotFoundError(f"evaluate: {os.fspath(word)!r} is no file or folder, nor one of {', '.join(_BASELINES)}, trained"
+                        f"{nearest(os.fspath(word), (*_BASELINES, 'trained'))}")
+
+
+def _of_model(model: Any) -> _Judged:
+    """A model of another library, and how the environment that it has stands to its pool."""
+    pool, worlds = worlds_of(getattr(model, "get_env", lambda: None)())
+    if pool is None or worlds is None:
+        return _Judged(model)
+    return _Judged(model, task=pool.task.name, action_repeat=pool.spec.action_repeat, center=worlds.center,
+                   options=pool._config["options"])
+
+
+def _folded(key: str) -> str:
+    return key.lower().replace("-", "_")
 
 
 def evaluate(player: Player, task: Optional[str] = None, episodes: int = 100, num_envs: int = 16, seed: int = 0,
              threads: int = 0, options: Optional[Options] = None,
-             cost_limits: Optional[Sequence[Optional[float]]] = None, magnitudes: bool = False) -> Evaluation:
-    """How good a policy, a baseline ("zero", "hold", "random") or a function of obs rows is, over whole episodes.
+             cost_limits: Optional[Sequence[Optional[float]]] = None, magnitudes: Optional[bool] = None, *,
+             action_repeat: Union[None, int, str] = None, center: Center = None) -> Evaluation:
+    """How good a policy is over whole episodes: the same ones as `redman eval` plays for the same seed and number of worlds.
 
-    The same episodes as `redman eval` plays for the same seed and number of worlds. With magnitudes costs are sums of
-    cost_raw where it is above 0, as an agent with cost_signal=raw learns them.
+    player: a Policy, a Run, a run folder or policy file, an Agent, "trained" (the policy that comes with the task), a baseline
+    ("zero", "hold", "random"), a function of rows obs [num_envs][obs_dim], or a model with Stable-Baselines3's predict.
+
+    A policy that comes from a run brings the run's task, options, limits and cost signal, as in `redman eval --policy
+    FOLDER`; what is said here is laid over them. A model that has an environment of redman.sb3 brings that one's task,
+    options, action_repeat and center, and its VecNormalize. For functions and other models say what they learned with:
+    action_repeat, the control steps that an action lasts ("task": a decision of the task's own learner; a policy of redman
+    holds by itself), and center, what an action of 0 does ("initial", or [action_dim]).
+
+    With magnitudes costs are sums of cost_raw where it is above 0, as an agent with cost_signal=raw learns them.
     """
-    if task is None:
-        if not isinstance(player, Policy) or not player.info.task:
-            raise ArgumentError("evaluate: say which task")
-        task = player.info.task
     if episodes < 1:
         raise ArgumentError("episodes: 1 or more")
-    with Pool(task, min(num_envs, episodes), seed, threads, autoreset="off", options=options) as pool:
+    judged = _judged(player, task)
+    origin = judged.origin
+    known = judged.task or (origin.task if origin else None)
+    if task is None and known is None:
+        raise ArgumentError("evaluate: say which task")
+    chosen = known if task is None else task
+    assert chosen is not None
+    own: Mapping[str, Any] = {}
+    limits: Union[None, Sequence[Optional[float]], Mapping[str, float]] = cost_limits
+    if known is not None and _folded(chosen) == _folded(known):
+        own = judged.options
+        if origin is not None and _folded(origin.task) == _folded(chosen):
+            own = origin.options
+            limits = origin.cost_limits if limits is None else limits
+            magnitudes = origin.magnitudes if magnitudes is None else magnitudes
+    given_options = {_folded(key) for key in options or {}}
+    laid = {key: value for key, value in own.items() if _folded(key) not in given_options}
+    laid.update(options or {})
+    if isinstance(judged.player, Policy) and center is not None:
+        raise ArgumentError("center: a policy of redman acts about none")
+    repeat = judged.action_repeat if action_repeat is None else action_repeat
+    if repeat is not None and "action_repeat" not in given_options:
+        laid = {key: value for key, value in laid.items() if _folded(key) != "action_repeat"}
+        laid["action_repeat"] = 0 if repeat == "task" else repeat
+    center = judged.center if center is None else center
+    pool = Pool(chosen, min(num_envs, episodes), seed, threads, autoreset="off", options=laid)
+    steps = pool.spec.action_repeat
+    if magnitudes and steps > 1:
+        pool = Pool(chosen, min(num_envs, episodes), seed, threads, autoreset="off", options=singly(laid))
+    with pool:
         pool.reset()
-        return summary(play(pool, player, episodes, magnitudes), limits_of(pool, cost_limits))
+        return summary(play(pool, judged.player, episodes, bool(magnitudes), steps, center_of(pool, center)),
+                       limits_of(pool, limits))
+
+
+def singly(options: Mapping[str, Any]) -> dict[str, Any]:
+    """The same options with single control steps."""
+    return {**{key: value for key, value in options.items() if _folded(key) != "action_repeat"}, "action_repeat": 1}
 
 
 def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]]) -> Evaluation:
@@ -172,20 +320,19 @@ def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]])
 
 
 def strip(policy: Policy, frames: int = 6, width: int = 240, height: int = 180) -> Optional[bytes]:
-    """A PNG of moments of an episode, side by side; None where the task cannot be made or shown."""
+    """A PNG of moments of an episode, side by side, with the options of the policy's run; None where the task cannot be made
+    or shown."""
     if not policy.info.task:
         return None
     try:
-        with Pool(policy.info.task, autoreset="off") as pool:
+        with Pool(policy.info.task, autoreset="off", options=policy.origin.options if policy.origin else None) as pool:
             pool.reset()
-            actor = _Actor(policy, pool)
+            plays = _Plays(policy, pool)
             pictures = [pool.render(width=width, height=height)]
-            step = 0
             while len(pictures) < frames and not (pool.terminated[0] or pool.truncated[0]):
-                actor.act()
+                plays.act()
                 pool.step()
-                step += 1
-                if step * (frames - 1) >= len(pictures) * pool.max_steps:
+                if pool.episode_step[0] * (frames - 1) >= len(pictures) * pool.max_steps:
                     pictures.append(pool.render(width=width, height=height))
             return _png.row(pictures)
     except Error:

@@ -2,44 +2,81 @@
 from __future__ import annotations
 
 import ctypes
+import json
 import os
 import threading
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any, Mapping, Optional, Union
 
 import numpy as np
 
 from . import _abi
-from ._error import ArgumentError, FileError, MissingFileError
+from ._actor import Actor
+from ._error import ArgumentError, FileError, FormatError, MissingFileError
+from ._hold import decided, warn
 from ._library import Handle, check, filled, lib, policy_folders
+from ._options import Value
 from ._pool import Pool
 from ._rows import Array, FloatArray, clouds, given
 from ._tensors import Tensors
+
+
+@dataclass(frozen=True)
+class Origin:
+    """The run that a policy comes from: what it is to be judged by."""
+
+    task: str
+    options: Mapping[str, Value] = field(default_factory=dict)  # of the task
+    cost_limits: Mapping[str, float] = field(default_factory=dict)  # of the costs that have one, by name
+    magnitudes: bool = False  # costs are sums of cost_raw, and the limits in that unit (option cost_signal=raw)
+    folder: Optional[str] = None
+
+    @classmethod
+    def of_folder(cls, folder: Path) -> Optional[Origin]:
+        """Of a run folder's config.json; None where there is none."""
+        try:
+            said = json.loads((folder / "config.json").read_text(encoding="utf-8"))
+            options = dict(pair.split("=", 1) for pair in said["set"])
+            limits = {str(name): float(limit) for name, limit in said["cost_limits"].items()}
+            return cls(str(said["task"]), options, limits, said["algo_cfgs"].get("cost_signal") == "raw", str(folder))
+        except (FileNotFoundError, NotADirectoryError):
+            return None
+        except OSError as error:
+            raise FileError(f"run {folder}: config.json: {error.strerror}") from None
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise FormatError(f"run {folder}: config.json is not a run's: {error!r}") from None
 
 
 class Policy:
     """Actions for observations; immutable, any number of threads may share it.
 
         policy = redman.Policy.load("runs/first")          # a run folder, a file, or bytes
-        action = policy.act(pool.obs)                      # the mean; noise adds a sample
+        actor = policy.actor(pool)                         # or of an environment
+        pool.step(actor())
 
-    One call is one decision, to be held for policy.info.action_repeat control steps.
+    A policy decides every policy.info.action_repeat control steps; an actor holds its actions between. act, and calling the
+    policy, are one decision each, and whoever calls them holds the action. origin is what its run folder knows: task, options,
+    limits; evaluate and a notebook's picture use them.
     """
 
-    def __init__(self, data: bytes) -> None:
+    def __init__(self, data: bytes, origin: Optional[Origin] = None) -> None:
         self._bytes = bytes(data)
+        self.origin = origin
         self._handle = Handle(lib.rdm_policy_load, lib.rdm_policy_destroy, self._bytes, len(self._bytes))
         self.info = _abi.PolicyInfo(filled(_abi.rdm_policy_info, lib.rdm_policy_get_info, self._handle.value))
         self._local = threading.local()
 
     @classmethod
     def load(cls, source: Union[str, os.PathLike[str], bytes, bytearray, memoryview]) -> Policy:
-        """Of a policy file, of a run folder's policy.rdm, or of the bytes of a file."""
+        """Of a policy file, of a run folder's policy.rdm, or of the bytes of a file. A file in a run folder brings what the run
+        knows (origin)."""
         if isinstance(source, (bytes, bytearray, memoryview)):
             return cls(bytes(source))
         path = Path(source)
         try:
-            return cls((path / "policy.rdm" if path.is_dir() else path).read_bytes())
+            data = (path / "policy.rdm" if path.is_dir() else path).read_bytes()
+            return cls(data, Origin.of_folder(path if path.is_dir() else path.parent))
         except FileNotFoundError:
             raise MissingFileError(f"policy {path}: there is no such file") from None
         except OSError as error:
@@ -65,8 +102,10 @@ class Policy:
 
     def act(self, obs: Any, noise: Any = None, points: Any = None, point_class: Any = None,
             point_color: Any = None) -> FloatArray:
-        """clip(mean + std noise, -1, 1) for one observation [obs_dim] or rows [n][obs_dim]; noise None: the mean.
+        """One decision: clip(mean + std noise, -1, 1) for one observation [obs_dim] or rows [n][obs_dim]; noise None: the mean.
 
+        It is to be held for info.action_repeat control steps: actor() does that, and is what plays a pool or an environment.
+        pool.step(policy.act(pool.obs)) at every step is another policy, and a HoldWarning says so.
         A policy that sees points takes them [n][num_points][3] too, where it has num_point_classes their classes, and
         where it sees point_color their colours [n][num_points][3], 0 to 255.
         """
@@ -91,7 +130,63 @@ class Policy:
                 check(lib.rdm_policy_act_points(self._handle.value, seen.ctypes.data, ctypes.byref(cloud), rows,
                                                 noise_at, action.ctypes.data, scratch, size))
                 del kept
-        return action if observed.ndim == 2 else action.reshape(-1)
+        return decided(action if observed.ndim == 2 else action.reshape(-1), self.info.action_repeat)
+
+    __call__ = act
+
+    def actor(self, where: Any = None, *, num_envs: Optional[int] = None, action_repeat: int = 1, center: Any = None,
+              stochastic: bool = False, seed: int = 0) -> Actor:
+        """What plays this policy in a pool, or in an environment of redman.gym, sb3, safety or omnisafe: an Actor.
+
+        For worlds of another kind: their number, control steps of one of their steps, and the center that they add to actions.
+        stochastic samples, with noise of the seed that is correlated as in training.
+        """
+        return Actor(self, where, num_envs=num_envs, action_repeat=action_repeat, center=center, stochastic=stochastic,
+                     seed=seed)
+
+    def predict(self, observation: Any, state: Any = None, episode_start: Any = None,
+                deterministic: bool = True) -> tuple[FloatArray, Any]:
+        """As a model of Stable-Baselines3: (action, state), one call for each control step.
+
+        state carries the actions that are held: give back the one that the last call returned. episode_start [n] says where an
+        episode begins. deterministic=False samples by numpy's global generator. In an environment whose step is more than a
+        control step, or that has a center, policy.actor(env).predict is the one to take.
+        """
+        observed = np.asarray(observation)
+        rows = observed.reshape(-1, observed.shape[-1]) if observed.ndim in (1, 2) else observed
+        shape = (len(rows), self.info.action_dim)
+        if state is None:
+            if episode_start is None and self.info.action_repeat > 1:
+                self._told_no_state()
+            left, action, noise, fresh = np.zeros(len(rows), int), np.zeros(shape, np.float32), np.zeros(
+                shape, np.float32), np.ones(len(rows), bool)
+        else:
+            left, action, noise, fresh = (part.copy() for part in state)
+            if action.shape != shape:
+                raise ArgumentError(f"state: of {len(action)} rows, not {len(rows)}")
+        if episode_start is not None:
+            begun = np.broadcast_to(np.asarray(episode_start, bool), left.shape)
+            left[begun], fresh[begun] = 0, True
+        due = left == 0
+        if due.any():
+            drawn = None
+            if not deterministic:
+                rho = self.info.noise_correlation
+                drawn = np.random.standard_normal(shape).astype(np.float32)
+                drawn = np.where(fresh[:, None], drawn, np.float32(rho) * noise + np.float32(np.sqrt(1 - rho * rho)) * drawn)
+                noise[due] = drawn[due]
+            action[due] = np.asarray(self.act(rows[due], None if drawn is None else drawn[due]))
+            left[due], fresh[due] = self.info.action_repeat, False
+        left -= 1
+        given_back = action.copy() if observed.ndim == 2 else action[0].copy()
+        return given_back, (left, action, noise, fresh)
+
+    def _told_no_state(self) -> None:
+        """A second call that begins anew is a loop that drops the state."""
+        if getattr(self._local, "began", 0) == 1:
+            warn(f"predict: no state was given back, so this policy decides at every step in place of every "
+                 f"{self.info.action_repeat}. action, state = policy.predict(obs, state, episode_start)")
+        self._local.began = getattr(self._local, "began", 0) + 1
 
     def _scratch(self, rows: int) -> tuple[int, int]:
         """Size and address of this thread's memory for so many rows."""
@@ -124,12 +219,12 @@ class Policy:
         return self._handle.value
 
     def _repr_png_(self) -> Optional[bytes]:
-        """Six moments of an episode of its task, for a notebook; None for a task of your own or other options."""
+        """Six moments of an episode of its task, with the options of its run, for a notebook; None for a task of your own."""
         from ._play import strip
         return strip(self)
 
     def __reduce__(self) -> Any:
-        return Policy, (self._bytes,)
+        return Policy, (self._bytes, self.origin)
 
     def __deepcopy__(self, _: Any) -> Policy:
         return self  # immutable

@@ -13,6 +13,7 @@ import numpy as np
 from . import _abi, _discovery, _png
 from ._abi import Autoreset, BaselineKind
 from ._error import ArgumentError, Error, StateError
+from ._hold import LAST, Watch
 from ._library import Handle, assign, check, encoded, failure, filled, int32, lib, sized
 from ._options import Options, Value, read_settings, settings_of
 from ._rows import Array, Borrowed, FloatArray, address, given, made, shape_of
@@ -130,6 +131,7 @@ class Pool:
         check(lib.rdm_pool_bind(self._p, byref(buffers)))
         self._action = self._rows["action"]
         self._obs = self._rows["obs"]
+        self._watch = Watch()
 
     # ---- rows -------------------------------------------------------------------------------------------------
 
@@ -219,7 +221,15 @@ class Pool:
         if code:
             raise self._fail(code)
 
+    def watch(self, action: Any, centered: bool = False) -> None:
+        """Warns where an action comes straight from a policy at each of several steps that it is to be held for."""
+        if LAST.array is not None:
+            rows = self._rows
+            ended = rows["terminated"][0] or rows["truncated"][0]  # the row is then the finished episode's
+            self._watch.look(action, -1 if ended else int(rows["episode_step"][0]), self.spec.action_repeat, centered)
+
     def _write_action(self, action: Any) -> None:
+        self.watch(action)
         try:
             if type(action) is np.ndarray and action.dtype is _FLOAT:
                 self._action[...] = action  # a third of what copyto takes, and casts nothing here
@@ -256,9 +266,10 @@ class Pool:
         return self._obs
 
     def step(self, action: Any = None, mask: Any = None) -> FloatArray:
-        """One control step of every world (of those where mask holds); returns obs.
+        """One step of every world (of those where mask holds), of option action_repeat control steps; returns obs.
 
-        action is written to pool.action first; None takes what stands there.
+        action is written to pool.action first; None takes what stands there. A policy's is that of policy.actor(pool), which
+        holds it: pool.step(actor()).
         """
         if action is not None and action is not self._action:
             self._write_action(action)

@@ -22,14 +22,13 @@ from ._curve import Curve
 from ._error import ArgumentError, FileError, NotFoundError, StateError
 from ._library import check, encoded, lib
 from ._options import Options, Value, shown
-from ._play import Evaluation, evaluate, play, summary
-from ._policy import Policy
+from ._play import Evaluation, evaluate, play, singly, summary
+from ._policy import Origin, Policy
 from ._pool import Pool
 
 # Of an evaluation during training; a policy that looks better than the best so far plays as many again
 # _CONFIRMATIONS times, and those alone say whether it is.
 _SELECTION_EPISODES, _CONFIRMATIONS = 20, 4
-_REPORT_SEED = 1_000_000  # reports play the episodes of seed + this
 Callback = Callable[[Epoch], Any]
 
 
@@ -58,12 +57,20 @@ class Run:
 
     def __init__(self, task: str, algo: str, seed: int, options: dict[str, Value], agent: Agent) -> None:
         self.task, self.algo, self.seed, self.options, self.agent = task, algo, seed, options, agent
-        self.policy: Policy = agent.policy()
         self.folder: Optional[Path] = None
+        self.policy: Policy = self._own(agent.policy())
         self.env_steps = 0
         self.seconds = 0.0
         self.interrupted = False
         self._rows: dict[str, list[float]] = {}
+
+    def _own(self, policy: Policy) -> Policy:
+        """The policy with what it is to be judged by."""
+        names = _discovery.task(self.task).costs
+        limits = {name: limit for name, limit in zip(names, self.agent.cost_limits) if limit is not None}
+        policy.origin = Origin(self.task, self.options, limits, learns_magnitudes(self.agent),
+                               None if self.folder is None else str(self.folder))
+        return policy
 
     @property
     def curve(self) -> Curve:
@@ -71,10 +78,10 @@ class Run:
         return Curve(self._rows, f"{self.task} {self.algo} seed {self.seed}", self.agent.cost_limits[0],
                      str(self.folder or ""))
 
-    def evaluate(self, episodes: int = 100, num_envs: int = 16) -> Evaluation:
-        """The policy on episodes that it was not chosen by."""
-        return evaluate(self.policy, self.task, episodes, num_envs, self.seed + _REPORT_SEED, options=self.options,
-                        cost_limits=self.agent.cost_limits, magnitudes=learns_magnitudes(self.agent))
+    def evaluate(self, episodes: int = 100, num_envs: int = 16, seed: int = 0, threads: int = 0) -> Evaluation:
+        """The policy on episodes that it was not chosen by: those of `redman.evaluate(folder)` and of
+        `redman eval --policy FOLDER`. The report at the end of `redman train` is that of seed=run.seed + 1_000_000."""
+        return evaluate(self.policy, episodes=episodes, num_envs=num_envs, seed=seed, threads=threads)
 
     def _repr_svg_(self) -> str:
         return self.curve._repr_svg_()
@@ -303,8 +310,10 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
         cost_limits = float(asked.pop(key)) if cost_limits is None else cost_limits
     of_task, of_algo = split_options(task, algo, asked)
     pool = Pool(task, envs, seed, threads, options=of_task)
-    judge = Pool(task, _SELECTION_EPISODES, seed, threads, autoreset="off", options=of_task)
     agent = Agent(pool, algo, seed, threads, of_algo, cost_limits)
+    magnitudes = learns_magnitudes(agent)
+    judge = Pool(task, _SELECTION_EPISODES, seed, threads, autoreset="off",
+                 options=singly(of_task) if magnitudes else of_task)
     run = Run(pool.task.name, agent.algo.name, seed, of_task, agent)
     settings = agent.options
     per_epoch = envs * int(settings["horizon"]) * int(settings["action_repeat"])
@@ -323,7 +332,7 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
     def played(policy: Policy, number: int) -> list[dict[str, Any]]:
         first = first_seed + number * _SELECTION_EPISODES
         judge.reset([1 << 63 | (first + i) % (1 << 63) for i in range(_SELECTION_EPISODES)])
-        return play(judge, policy, _SELECTION_EPISODES, learns_magnitudes(agent))
+        return play(judge, policy, _SELECTION_EPISODES, magnitudes)
 
     def compete(policy: Policy) -> tuple[float, float]:
         """How it looked; a policy that is better than the best so far takes its place."""
@@ -343,6 +352,7 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
         if folder:
             stack.callback(folder.close)
             run.folder = folder.path
+            run.policy = run._own(run.policy)
             blank = _row(Epoch(_abi.rdm_epoch()), names, limits, 0, tested, (1.0, 0.0, 0.0))
             folder.begin(_config(run, pool, of_task, of_algo, goal, threads, eval_every, per_epoch), ",".join(blank),
                          bytes(run.policy))
@@ -355,7 +365,7 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
             evaluated = 0.0
             if epoch.epoch % eval_every == 0:
                 kept = run.policy
-                tested = compete(agent.policy())
+                tested = compete(run._own(agent.policy()))
                 if folder and run.policy is not kept:
                     folder.write("policy.rdm", bytes(run.policy))
                 evaluated = time.perf_counter() - began - learned
@@ -376,7 +386,7 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
         if meter:
             meter.end(run)
         if epoch and epoch.epoch % eval_every:
-            compete(agent.policy())
+            compete(run._own(agent.policy()))
         if folder:
             folder.write("policy.rdm", bytes(run.policy))
     return run

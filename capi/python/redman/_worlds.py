@@ -20,6 +20,20 @@ Center = Union[None, str, Sequence[float], Array]
 Seeds = Union[None, int, Sequence[Optional[int]]]
 
 
+def center_of(pool: Pool, center: Center) -> Optional[FloatArray]:
+    """[action_dim] that is added to every action, None: nothing."""
+    if center is None:
+        return None
+    if isinstance(center, str):
+        if center != "initial":
+            raise ValueError(f'center: None, "initial" or [{pool.action_dim}] numbers, not "{center}"')
+        return pool.initial_mean
+    given = np.array(center, np.float32)
+    if given.shape != (pool.action_dim,) or not np.all(np.abs(given) <= 1):
+        raise ValueError(f"center: [{pool.action_dim}] numbers in [-1, 1], not {given.shape}")
+    return given
+
+
 class Worlds:
     """num_envs worlds of a task in one pool.
 
@@ -42,7 +56,7 @@ class Worlds:
         if senses and self.senses:
             raise UnsupportedError(f"option modality={options.get('modality')}: {senses}")
         self.camera, self.width, self.height = camera, width, height
-        self.center = self._center(center)
+        self.center = center_of(self.pool, center)
         reach = np.ones(self.pool.action_dim, np.float32) if self.center is None else 1 + np.abs(self.center)
         self.action_low, self.action_high = -reach, reach
         low, self.obs_high = self.pool.bounds
@@ -85,18 +99,6 @@ class Worlds:
         """Of a step."""
         return float(self.pool.control_dt) * self.pool.spec.action_repeat
 
-    def _center(self, center: Center) -> Optional[FloatArray]:
-        if center is None:
-            return None
-        if isinstance(center, str):
-            if center != "initial":
-                raise ValueError(f'center: None, "initial" or [{self.pool.action_dim}] numbers, not "{center}"')
-            return self.pool.initial_mean
-        given = np.array(center, np.float32)
-        if given.shape != (self.pool.action_dim,) or not np.all(np.abs(given) <= 1):
-            raise ValueError(f"center: [{self.pool.action_dim}] numbers in [-1, 1], not {given.shape}")
-        return given
-
     def reset(self, seed: Seeds = None, mask: Optional[Array] = None) -> None:
         """New episodes where mask says. An int is seed + i for world i; where a list has None, and after a reset
         without seeds, worlds go on with the streams that they have."""
@@ -134,19 +136,23 @@ class Worlds:
 
     def act(self, actions: Any) -> None:
         """Writes a learner's actions [num_envs][action_dim] for the next step."""
-        self._write(self.action, np.asarray(actions, np.float32))
+        self._write(self.action, actions)
 
     def act_alone(self, action: Any) -> None:
         """The same for the one world there is: [action_dim]."""
-        self._write(self.action[0], np.asarray(action, np.float32))
+        self._write(self.action[0], action)
 
-    def _write(self, to: FloatArray, rows: FloatArray) -> None:
+    def _write(self, to: FloatArray, actions: Any) -> None:
+        self.pool.watch(actions, self.center is not None)
+        rows = np.asarray(actions)
+        if rows.dtype != np.float64:  # an actor's about the center, whose sum is then exact
+            rows = np.asarray(rows, np.float32)
         if rows.shape != to.shape:
             raise ValueError(f"action: shape {to.shape}, not {rows.shape}")
         if self.center is None:
             to[...] = rows
         else:
-            np.add(rows, self.center, out=to)
+            np.add(rows, self.center, out=to, casting="same_kind")
 
     def render(self, env: int = 0, what: str = "rgb") -> Array:
         """A picture [height][width][3] of a world, or its depth [height][width], m."""

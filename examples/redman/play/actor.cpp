@@ -136,7 +136,7 @@ void adopt_task(const ActorChoice& choice, bool task_given, const std::vector<st
 }
 
 Actor::Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic, uint64_t seed)
-    : baseline_(choice.baseline), stochastic_(stochastic), random_(mixed(seed)) {
+    : baseline_(choice.baseline) {
   if (choice.demo)
     demo_.emplace(
         choice.script ? *choice.script : builtin_demo(task_at(pool.spec().task).name, settings_of(pool)),
@@ -165,11 +165,11 @@ Actor::Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic, uin
                     e.what());
     }
   }
-  prepare(pool);
+  prepare(pool, stochastic, seed);
 }
 
 Actor::Actor(redman::Policy policy, const redman::Pool& pool) : policy_(std::move(policy)) {
-  prepare(pool);
+  prepare(pool, false, 0);
 }
 
 void Actor::make_planners(const ActorChoice& choice, const redman::Pool& pool, uint64_t seed) {
@@ -197,29 +197,22 @@ void Actor::plan(redman::Pool& pool, const uint8_t* mask) {
   planning_.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-void Actor::prepare(const redman::Pool& pool) {
+// The player of the policy, whose step is that of the pool.
+void Actor::prepare(const redman::Pool& pool, bool stochastic, uint64_t seed) {
   if (!policy_) return;
-  const size_t n = pool.num_envs(), width = pool.action().width();
-  scratch_.resize(policy_->scratch_bytes(static_cast<int32_t>(n)));
-  repeat_ = std::max(1, policy_->info().action_repeat / pool.spec().action_repeat);
-  if (const auto points = static_cast<size_t>(policy_->info().num_points); points > 0) {
+  if (const int32_t points = policy_->info().num_points; points > 0) {
     const rdm_sensors seen = redman::sensors(pool);
-    if (!seen.points || seen.num_points != policy_->info().num_points)
-      throw Failure(format("the policy sees clouds of %d points: set modality=points and points=%d",
-                           policy_->info().num_points, policy_->info().num_points));
-    points_.resize(n * points * 3);
-    point_class_.resize(n * points);
+    if (!seen.points || seen.num_points != points)
+      throw Failure(
+          format("the policy sees clouds of %d points: set modality=points and points=%d", points, points));
     if (policy_->info().point_color && !seen.point_color)
       throw Failure("the policy sees the colours of points: set point_color=true");
-    if (policy_->info().point_color) point_color_.resize(n * points * 3);
+    seen_ = redman::points(seen);
   }
-  hold_.assign(n, 0);
-  due_.reserve(n);
-  obs_.resize(n * pool.obs().width());
-  action_.resize(n * width);
-  if (stochastic_) noise_.resize(n * width);
-  if (stochastic_) memory_.resize(n * width);
-  fresh_.assign(n, 1);
+  auto config = redman::actor_config(*policy_, pool);
+  config.stochastic = stochastic;
+  config.seed = seed;
+  player_.emplace(as_usage([&] { return redman::Actor(config); }));
 }
 
 void Actor::restart(const uint8_t* mask) {
@@ -232,11 +225,7 @@ void Actor::restart(const uint8_t* mask) {
     episode_[i] += played_.size();
     played_[i] = 0;
   }
-  for (size_t i = 0; i < hold_.size(); ++i) {
-    if (mask && !mask[i]) continue;
-    hold_[i] = 0;
-    fresh_[i] = 1;
-  }
+  if (player_) player_->reset(mask);
 }
 
 std::string Actor::went_elsewhere(size_t env) const {
@@ -273,61 +262,12 @@ void Actor::replay(redman::Pool& pool, const uint8_t* mask) {
   }
 }
 
-// Standard normal by Box and Muller; the library's own distributions would differ between compilers.
-float Actor::normal() {
-  const auto unit = [&] { return (static_cast<double>(mixed(random_++) >> 11) + 0.5) * 0x1p-53; };
-  const double radius = std::sqrt(-2 * std::log(unit())), angle = 2 * 3.14159265358979323846 * unit();
-  return static_cast<float>(radius * std::cos(angle));
-}
-
 void Actor::act(redman::Pool& pool, const uint8_t* mask) {
   if (demo_) return demo_->act(pool, mask);
   if (recording_) return replay(pool, mask);
   if (!planners_.empty()) return plan(pool, mask);
-  if (!policy_) {
-    pool.baseline(baseline_);
-    return;
-  }
-  due_.clear();
-  for (size_t i = 0; i < pool.num_envs(); ++i) {
-    if (mask && !mask[i]) continue;
-    if (hold_[i]-- > 0) continue;
-    hold_[i] = repeat_ - 1;
-    due_.push_back(i);
-  }
-  if (due_.empty()) return;
-  const size_t width = pool.action().width();
-  const float rho = policy_->info().noise_correlation, fresh_part = std::sqrt(1 - rho * rho);
-  for (size_t k = 0; k < due_.size(); ++k) {
-    const size_t i = due_[k];
-    std::copy(pool.obs()[i].begin(), pool.obs()[i].end(), obs_.data() + k * pool.obs().width());
-    if (!points_.empty()) {
-      const rdm_sensors seen = redman::sensors(pool);
-      const auto count = static_cast<size_t>(seen.num_points);
-      std::copy_n(seen.points + 3 * count * i, 3 * count, points_.data() + 3 * count * k);
-      std::copy_n(seen.point_class + count * i, count, point_class_.data() + count * k);
-      if (!point_color_.empty())
-        std::copy_n(seen.point_color + 3 * count * i, 3 * count, point_color_.data() + 3 * count * k);
-    }
-    if (!stochastic_) continue;
-    for (size_t j = 0; j < width; ++j) {
-      float& m = memory_[i * width + j];
-      m = fresh_[i] ? normal() : rho * m + fresh_part * normal();
-      noise_[k * width + j] = m;
-    }
-    fresh_[i] = 0;
-  }
-  const auto rows = static_cast<int32_t>(due_.size());
-  const float* noise = stochastic_ ? noise_.data() : nullptr;
-  if (points_.empty())
-    policy_->act(obs_.data(), rows, noise, action_.data(), scratch_.data(), scratch_.size());
-  else
-    redman::act(
-        *policy_, obs_.data(),
-        redman::points(points_.data(), policy_->info().num_points, point_class_.data(), point_color_.data()),
-        rows, noise, action_.data(), scratch_.data(), scratch_.size());
-  for (size_t k = 0; k < due_.size(); ++k)
-    std::copy_n(action_.data() + k * width, width, pool.action()[due_[k]].begin());
+  if (player_) return player_->act(pool, mask, seen_.points ? &seen_ : nullptr);
+  pool.baseline(baseline_);
 }
 
 }  // namespace tool

@@ -2,6 +2,7 @@
 // zero, hold, random.
 #pragma once
 #include <optional>
+#include <redman/redman_actor.hpp>
 #include <redman/redman_plan.hpp>
 #include <redman/redman_points.hpp>
 #include <string>
@@ -49,15 +50,16 @@ struct PlanningCost {
 
 class Actor {
  public:
-  // Failure when the policy does not fit the pool's observations and actions. A recording's episode e is
+  // Failure when the policy does not fit the pool's observations and actions, Usage when its decision is no
+  // whole number of the pool's steps. A recording's episode e is
   // played as the pool's episode e, each from its recorded start.
   Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic = false, uint64_t seed = 0);
   Actor(redman::Policy policy, const redman::Pool& pool);
 
   // Episodes begin anew in the worlds of the mask [num_envs] (null: all): a decision is due there.
   void restart(const uint8_t* mask = nullptr);
-  // Fills the action rows of the worlds in the mask: a decision every action_repeat control steps, held
-  // between.
+  // Fills the action rows of the worlds in the mask. A policy decides every action_repeat control steps of
+  // its own, whatever the pool's step is.
   void act(redman::Pool& pool, const uint8_t* mask = nullptr);
   // Failure when an episode of a recording did not end where it ended when it was recorded.
   void check_ends() const;
@@ -66,10 +68,9 @@ class Actor {
  private:
   void make_planners(const ActorChoice& choice, const redman::Pool& pool, uint64_t seed);
   void plan(redman::Pool& pool, const uint8_t* mask);
-  void prepare(const redman::Pool& pool);
+  void prepare(const redman::Pool& pool, bool stochastic, uint64_t seed);
   void replay(redman::Pool& pool, const uint8_t* mask);
   std::string went_elsewhere(size_t env) const;
-  float normal();
 
   int32_t baseline_ = -1;
   std::optional<redman::Policy> policy_;
@@ -81,17 +82,8 @@ class Actor {
   std::shared_ptr<const Recording> recording_;
   std::string file_;                      // of the recording
   std::vector<size_t> episode_, played_;  // [num_envs] of the recording, and its steps so far
-  bool stochastic_ = false;
-  uint64_t random_ = 0;
-  int32_t repeat_ = 1;                       // steps of the pool for a decision
-  std::vector<int32_t> hold_;                // [num_envs] of these, until the next one
-  std::vector<size_t> due_;                  // worlds that decide now
-  std::vector<float> obs_, action_, noise_;  // rows of those worlds
-  std::vector<float> memory_;                // [num_envs][action_dim] correlated noise
-  std::vector<uint8_t> fresh_;               // [num_envs] the memory is to be drawn anew
-  std::vector<float> points_;                // clouds of those worlds, where the policy sees
-  std::vector<uint8_t> point_class_, point_color_;
-  redman::Bytes scratch_;
+  std::optional<redman::Actor> player_;   // of policy_, which outlives it
+  rdm_points seen_ = {};                  // clouds of all worlds, where it sees them
 };
 
 }  // namespace tool
