@@ -1383,7 +1383,8 @@ typedef struct rdm_map_config { /* what a map is made from */
   uint32_t reserved;       /* 0                                                                           */
   double resolution;       /* side of a voxel, m, 0.001 to 10, default 0.02                               */
   uint64_t memory;         /* bytes that tree and workspace may take, 2^20 to 2^36, default 2^26          */
-  double max_range;        /* m; longer rays clear their way so far; 0: none is too long; default 0       */
+  double max_range;        /* m; longer rays clear their way so far and add no occupied voxel; 0: none is
+                            * too long; default 4, with which looks of a pool's cameras fit into memory   */
   double hit;              /* probability of occupied where a ray ends, 0.5 to 0.999, default 0.7         */
   double miss;             /* the same where one passes, 0.001 to 0.5, default 0.4                        */
   double low;              /* no probability goes below, 0.001 to 0.5, default 0.1192                     */

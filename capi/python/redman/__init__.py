@@ -10,28 +10,47 @@
 """
 from __future__ import annotations
 
-from ._abi import Autoreset, BaselineKind, OptionKind, ResultCode, ShapeKind, Status
+from typing import TYPE_CHECKING
+
+from ._abi import (Autoreset, BaselineKind, Build, Camera, Joint, MapInfo, Object, OptionKind, PolicyInfo, PoolStats,
+                   ResultCode, Shape, ShapeKind, Spec, Status)
 from ._actor import Actor
-from ._agent import Agent, Epoch
+from ._agent import Agent, CostLimits, Epoch
+from ._callbacks import c_function
 from ._curve import Curve, Curves, curve
-from ._discovery import Algo, Field, Option, Robot, Task, algo, algos, build, objects, robots, task, tasks
+from ._discovery import (Algo, Cost, Field, Option, Robot, Task, algo, algos, build, objects, robots, task, tasks)
 from ._error import (AllocationError, ArgumentError, CancelledError, Error, FileError, FormatError, InternalError,
-                     MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError,
+                     MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError, UsageError,
                      VersionError)
 from ._hold import HoldWarning
 from ._map import Map, sample_furthest
-from ._play import Evaluation, evaluate
+from ._names import moved
+from ._options import Options
+from ._play import Evaluation, Player, evaluate
 from ._policy import Origin, Policy
 from ._pool import Pool, Sensors, memory
-from ._train import Run, train
+from ._train import Callback, Run, train
 
 __version__ = version = build().version
 
 __all__ = [
-    "Actor", "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "CancelledError", "Curve",
-    "Curves", "Epoch", "Error", "Evaluation", "Field", "FileError", "FormatError", "HoldWarning", "InternalError", "Map",
-    "MissingFileError", "NotFoundError", "Option", "OptionKind", "Origin", "PhysicsError", "Policy", "Pool", "RangeError",
-    "ResultCode", "Robot", "Run", "Sensors", "ShapeKind", "StateError", "Status", "Task", "UnsupportedError",
-    "VersionError", "__version__", "algo", "algos", "build", "curve", "evaluate", "memory", "objects", "robots",
-    "sample_furthest", "task", "tasks", "train", "version",
+    "Actor", "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "Build", "Callback", "Camera",
+    "CancelledError", "Cost", "CostLimits", "Curve", "Curves", "Epoch", "Error", "Evaluation", "Field", "FileError",
+    "FormatError", "HoldWarning", "InternalError", "Joint", "Map", "MapInfo", "MissingFileError", "NotFoundError", "Object",
+    "Option", "OptionKind", "Options", "Origin", "PhysicsError", "Player", "Policy", "PolicyInfo", "Pool", "PoolStats",
+    "RangeError", "ResultCode", "Robot", "Run", "Sensors", "Shape", "ShapeKind", "Spec", "StateError", "Status", "Task",
+    "UnsupportedError", "UsageError", "VersionError", "__version__", "algo", "algos", "build", "c_function", "curve",
+    "evaluate", "memory", "objects", "robots", "sample_furthest", "task", "tasks", "train", "version",
 ]
+
+moved(globals(), __all__)  # what is public is of this module, in texts and in pickles
+
+if not TYPE_CHECKING:  # a type checker would take it for every name
+
+    def __getattr__(name):
+        """Adapters are imported when they are asked for; other libraries' words say what to write instead."""
+        import importlib
+        from ._names import module_hint
+        if name in ("gym", "omnisafe", "safety", "sb3"):
+            return importlib.import_module(f".{name}", __name__)
+        raise AttributeError(module_hint(name, __all__))

@@ -89,6 +89,7 @@ class Status(enum.IntFlag):
     DIVERGED = 2  # a value was not finite: the episode was truncated
     BAD_ACTION = 4  # the row of actions was not finite: likewise
     TASK = 8  # a function of a host's own task failed: likewise
+    SOLVER = 16  # contacts were not solved, not seen in engine ode: one was wrong by more than 1 m/s along its normal when the sweeps ended (a thing under one that is a thousand times heavier), or gave way for ever (heavier than contact_max_speed / contact_cfm N)
 
 
 class BaselineKind(enum.IntEnum):
@@ -759,11 +760,11 @@ class rdm_buffers(Structure):
     episode_return: [num_envs] sum of rewards; the finished episode's where one ended
     episode_cost: [num_envs][cost_dim] likewise
     episode_step: [num_envs] control steps, likewise
-    status: [num_envs] RDM_STATUS_* of the last step
+    status: [num_envs] RDM_STATUS_* of the last step or reset
     terminated: [num_envs] 1: the task ended (a fall)
     truncated: [num_envs] 1: cut by the time limit or a bad status
     success: [num_envs] 1: the task's success holds in this step
-    reserved_pointer: NULL
+    episode_status: [num_envs] all RDM_STATUS_* of the episode; the finished one's where one ended
     """
 
     struct_size: int
@@ -781,7 +782,7 @@ class rdm_buffers(Structure):
     terminated: int | None
     truncated: int | None
     success: int | None
-    reserved_pointer: int | None
+    episode_status: int | None
     _fields_ = [
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
@@ -798,7 +799,7 @@ class rdm_buffers(Structure):
         ("terminated", c_void_p),
         ("truncated", c_void_p),
         ("success", c_void_p),
-        ("reserved_pointer", c_void_p),
+        ("episode_status", c_void_p),
     ]
 
 
@@ -877,8 +878,11 @@ class PoolStats(Record):
     contacts_mean: float  # mean of the same
     joint_drift: float  # m, largest gap of any joint now, all worlds
     steps: int  # control steps of one world, summed over worlds
-    diverged: int  # worlds flagged RDM_STATUS_DIVERGED so far
+    diverged: int  # steps and resets flagged RDM_STATUS_DIVERGED so far
     overflowed: int  # steps flagged RDM_STATUS_CONTACTS so far
+    bad_actions: int  # steps flagged RDM_STATUS_BAD_ACTION so far
+    task_failed: int  # steps flagged RDM_STATUS_TASK so far
+    unconverged: int  # steps flagged RDM_STATUS_SOLVER so far
 
 
 class rdm_pool_stats(Structure):
@@ -887,8 +891,11 @@ class rdm_pool_stats(Structure):
     contacts_mean: mean of the same
     joint_drift: m, largest gap of any joint now, all worlds
     steps: control steps of one world, summed over worlds
-    diverged: worlds flagged RDM_STATUS_DIVERGED so far
+    diverged: steps and resets flagged RDM_STATUS_DIVERGED so far
     overflowed: steps flagged RDM_STATUS_CONTACTS so far
+    bad_actions: steps flagged RDM_STATUS_BAD_ACTION so far
+    task_failed: steps flagged RDM_STATUS_TASK so far
+    unconverged: steps flagged RDM_STATUS_SOLVER so far
     """
 
     struct_size: int
@@ -898,6 +905,9 @@ class rdm_pool_stats(Structure):
     steps: int
     diverged: int
     overflowed: int
+    bad_actions: int
+    task_failed: int
+    unconverged: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("contacts_max", c_int32),
@@ -906,6 +916,9 @@ class rdm_pool_stats(Structure):
         ("steps", c_int64),
         ("diverged", c_int64),
         ("overflowed", c_int64),
+        ("bad_actions", c_int64),
+        ("task_failed", c_int64),
+        ("unconverged", c_int64),
     ]
 
 
@@ -1437,6 +1450,51 @@ class rdm_pretrain_report(Structure):
         ("validation_loss", c_double),
         ("accuracy", c_double),
         ("most_common", c_double),
+    ]
+
+
+class rdm_actor_config(Structure):
+    """struct_size: bytes, set by rdm_actor_config_init
+    num_envs: rows of an act, 1..65536, required
+    policy: required; must outlive the actor
+    spec: of the pool that it plays in, checked as rdm_policy_check does; its action_repeat must divide the
+        policy's. NULL: nothing is checked, and a step is one control step
+    seed: of the noise; default 0
+    stochastic: 1: actions are sampled, with the noise correlation of the policy; default 0: the mean
+    reserved: 0
+    center: [action_dim] in [-1, 1] that the environment adds to every action it is given, and the actor
+        subtracts (the sum is right to a rounding); copied; NULL: 0
+    host: hooks of this handle, copied; NULL: those of rdm_init
+    error: [error_size] the text of a failing call that takes this config; NULL
+    error_size: bytes, terminator included; what is longer is cut
+    reserved2: 0
+    """
+
+    struct_size: int
+    num_envs: int
+    policy: int | None
+    spec: Any
+    seed: int
+    stochastic: int
+    reserved: int
+    center: int | None
+    host: Any
+    error: int | None
+    error_size: int
+    reserved2: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_envs", c_int32),
+        ("policy", c_void_p),
+        ("spec", POINTER(rdm_spec)),
+        ("seed", c_uint64),
+        ("stochastic", c_int32),
+        ("reserved", c_int32),
+        ("center", c_void_p),
+        ("host", POINTER(rdm_host)),
+        ("error", c_void_p),
+        ("error_size", c_int32),
+        ("reserved2", c_int32),
     ]
 
 
@@ -2395,7 +2453,8 @@ class rdm_map_config(Structure):
     reserved: 0
     resolution: side of a voxel, m, 0.001 to 10, default 0.02
     memory: bytes that tree and workspace may take, 2^20 to 2^36, default 2^26
-    max_range: m; longer rays clear their way so far; 0: none is too long; default 0
+    max_range: m; longer rays clear their way so far and add no occupied voxel; 0: none is too long; default 4,
+        with which looks of a pool's cameras fit into memory
     hit: probability of occupied where a ray ends, 0.5 to 0.999, default 0.7
     miss: the same where one passes, 0.001 to 0.5, default 0.4
     low: no probability goes below, 0.001 to 0.5, default 0.1192
@@ -2867,6 +2926,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_points": rdm_points,
     "rdm_pretrain_config": rdm_pretrain_config,
     "rdm_pretrain_report": rdm_pretrain_report,
+    "rdm_actor_config": rdm_actor_config,
     "rdm_planner_config": rdm_planner_config,
     "rdm_planner_spec": rdm_planner_spec,
     "rdm_plan_info": rdm_plan_info,
@@ -2915,6 +2975,7 @@ ROWS: dict[str, dict[str, Rows]] = {
         "terminated": Rows("uint8", ("num_envs",)),
         "truncated": Rows("uint8", ("num_envs",)),
         "success": Rows("uint8", ("num_envs",)),
+        "episode_status": Rows("uint32", ("num_envs",)),
     },
     "rdm_agent_config": {
         "initial_mean": Rows("float32", ("action_dim",)),
@@ -2935,6 +2996,9 @@ ROWS: dict[str, dict[str, Rows]] = {
         "points": Rows("float32", ("rows", "num_points", "3")),
         "point_class": Rows("uint8", ("rows", "num_points")),
         "point_color": Rows("uint8", ("rows", "num_points", "3")),
+    },
+    "rdm_actor_config": {
+        "center": Rows("float32", ("action_dim",)),
     },
     "rdm_planner_config": {
         "noise": Rows("float32", ("action_dim",)),
@@ -3169,9 +3233,10 @@ FUNCTIONS: dict[str, Function] = {
         {"seeds": Rows("uint64", ("num_envs",)), "mask": Rows("uint8", ("num_envs",))}, False,
         """Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new streams: the seed
         alone, whatever the world's number, so that seed s gives what a pool of one world created with seed s has. NULL: go
-        on with the worlds' own, which after create is (config.seed, i). Costs are 0 afterwards. Where a host's own task
-        fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand as if they were never reset,
-        the others have begun.
+        on with the worlds' own, which after create is (config.seed, i). Costs are 0 afterwards. An entry of the first
+        observation that is not finite is written as 0, and the world is flagged RDM_STATUS_DIVERGED, its episode with it.
+        Where a host's own task fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand as if
+        they were never reset, the others have begun.
         """),
     "rdm_pool_step": Function(
         c_int32, {"p": c_void_p},
@@ -3382,7 +3447,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_policy_act": Function(
         c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
         {"obs": Rows("float32", ("rows", "obs_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim"))}, False,
-        """action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise [rows][action_dim] are
+        """One decision, to be held for rdm_policy_info.action_repeat control steps (rdm_actor_act counts them):
+        action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise [rows][action_dim] are
         the caller's standard normals, NULL: the mean. scratch [scratch_bytes]: rdm_policy_scratch bytes or more, aligned
         in any way. No heap, no hidden state: any number of threads, each with its own scratch. ARGUMENT when obs or noise
         is not finite, or so large that the network overflows (action is written then, and of no use). STATE for a policy
@@ -3405,6 +3471,13 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "spec": POINTER(rdm_spec)},
         {}, False,
         """OK, or VERSION_MISMATCH with a text that says which field of the spec differs."""),
+    "rdm_nearest_names": Function(
+        c_int32, {"name": c_char_p, "names": c_char_p, "text": c_void_p, "capacity": c_size_t},
+        {}, True,
+        """What the texts of NOT_FOUND end with, for names of your own: writes "; nearest is gamma", "; nearest are a, b and c" of
+        several that are equally near, or "" when nobody can have meant one of `names`, one a line, of which the first 500 count.
+        Case is ignored, '-' equals '_'. Cut at `capacity` >= 1 bytes; RDM_TEXT_SIZE * 4 hold all.
+        """),
     "rdm_pool_push": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "shape": c_int32, "force": c_void_p},
         {"force": Rows("float32", ("3",))}, True,
@@ -3467,6 +3540,52 @@ FUNCTIONS: dict[str, Function] = {
         changes. Same seed, same bytes, for any number of threads. STATE inside a horizon or without an encoder; CANCELLED after
         rdm_agent_cancel: the encoder as before. io may be NULL.
         """),
+    "rdm_actor_config_init": Function(
+        c_int32, {"c": POINTER(rdm_actor_config), "size": c_size_t},
+        {}, True,
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
+    "rdm_actor_memory": Function(
+        c_int32, {"c": POINTER(rdm_actor_config), "bytes": c_void_p},
+        {}, True,
+        """Bytes *bytes that creation takes from the alloc hook, exact."""),
+    "rdm_actor_create": Function(
+        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_actor_config)},
+        {}, True,
+        """Makes the actor; every world begins an episode. ARGUMENT for a step that does not divide the policy's decision,
+        VERSION_MISMATCH for a spec that the policy does not fit, RANGE for sizes and a center out of bounds.
+        """),
+    "rdm_actor_destroy": Function(
+        None, {"actor": c_void_p},
+        {}, True,
+        """NULL is fine"""),
+    "rdm_actor_error": Function(
+        c_char_p, {"actor": c_void_p},
+        {}, True,
+        """last failure on this handle; "" at first"""),
+    "rdm_actor_act": Function(
+        c_int32, {"actor": c_void_p, "obs": c_void_p, "points": POINTER(rdm_points), "mask": c_void_p, "action": c_void_p},
+        {"obs": Rows("float32", ("num_envs", "obs_dim")), "mask": Rows("uint8", ("num_envs",)), "action": Rows("float32", ("num_envs", "action_dim"))}, True,
+        """action [num_envs][action_dim] for one step of the worlds whose mask [num_envs] is not 0 (NULL: all): a new decision on
+        obs [num_envs][obs_dim] where one is due, else the one that is held; rows of other worlds are not written. points: clouds of
+        the worlds for a policy that sees points, NULL for others. No heap. ARGUMENT for rows that are not finite where a decision is
+        due: nothing is counted then.
+        """),
+    "rdm_actor_reset": Function(
+        c_int32, {"actor": c_void_p, "terminated": c_void_p, "truncated": c_void_p},
+        {"terminated": Rows("uint8", ("num_envs",)), "truncated": Rows("uint8", ("num_envs",))}, True,
+        """Episodes begin anew where terminated [num_envs] or truncated [num_envs] is not 0: a decision is due there, and its noise is
+        fresh. Either may be NULL; both NULL: everywhere. Any mask will do in the place of one of them.
+        """),
+    "rdm_actor_write_state": Function(
+        c_int32, {"actor": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, True,
+        """Held actions, counts and noise as bytes [capacity]; NULL asks for the size. An actor of the same policy and config that reads
+        them goes on with the same bytes.
+        """),
+    "rdm_actor_read_state": Function(
+        c_int32, {"actor": c_void_p, "bytes": c_void_p, "size": c_size_t},
+        {}, True,
+        """Of bytes [size]. FORMAT for bytes that are not whole, or of another actor: nothing changes."""),
     "rdm_planner_config_init": Function(
         c_int32, {"c": POINTER(rdm_planner_config), "size": c_size_t},
         {}, True,

@@ -3,20 +3,23 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import math
 import os
 import threading
 import time
 from ctypes import byref, c_size_t
 from queue import SimpleQueue
-from typing import Any, Callable, Dict, Iterator, Mapping, MutableMapping, Optional, Sequence, Union
+from typing import Any, Callable, Dict, Iterable, Iterator, Mapping, MutableMapping, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _abi, _discovery
 from ._abi import ActMode
-from ._error import ArgumentError, Error, NotFoundError, StateError, error_of
-from ._library import Handle, assign, bytes_of, check, encoded, failure, filled, lib, sized, text
-from ._options import Options, Value, laid, option_array, read_settings, settings_of
+from ._error import ArgumentError, Error, NotFoundError, StateError, UsageError, error_of
+from ._files import read_whole, write_whole
+from ._library import Handle, assign, bytes_of, check, encoded, failure, filled, lib, raise_kept, raised, sized, text
+from ._names import Hinted, keywords, nearest
+from ._options import Given, Options, Value, kind_of, laid, option_array, read_settings, settings_of
 from ._policy import Policy
 from ._pool import Pool
 from ._rows import Array, FloatArray, address, clouds, given
@@ -65,7 +68,7 @@ class _AgentTensors(Tensors, MutableMapping[str, FloatArray]):
         raise TypeError("tensors cannot be deleted")
 
 
-class Agent:
+class Agent(Hinted):
     """Learns from a pool, or from rows of any origin.
 
         agent = redman.Agent(pool, algo="ppo_lag", seed=1, cost_limits=40)
@@ -76,11 +79,20 @@ class Agent:
         agent.record(reward, cost, terminated, truncated, final_obs)
         epoch = agent.update(obs)                       # after option horizon such decisions
 
-    cost_limits: of column 0, of each column (None: no limit), or by the names of the pool's costs. A pool brings its
+    cost_limits: of column 0, of each column (None, or NaN in an array: no limit), or by the names of the pool's costs. A pool brings its
     dimensions, its task's defaults for learners, start pose and limits; fields, {name: (offset, count)}, name the parts
     of other rows for actor_obs and critic_obs. One thread at a time; others wait.
     """
 
+    _hints = {
+        "learn": "agent.rollout(pool) is one epoch, redman.train(task, steps=...) a whole run",
+        "train": "agent.rollout(pool) is one epoch, redman.train(task, steps=...) a whole run",
+        "predict": "agent.act(obs, 'mean'), or agent.policy().act(obs)",
+        "evaluate": "redman.evaluate(agent.policy(), task)", "parameters": "agent.tensors",
+        "state_dict": "agent.tensors has the parameters by name, agent.save() all of its state",
+        "load_state_dict": "agent.tensors[name] = array, or agent.load(state)"}
+
+    @keywords(aliases={"cost_limit": "cost_limits", "num_threads": "threads"}, options=True)
     def __init__(self, pool: Optional[Pool] = None, algo: str = "ppo_lag", seed: int = 0, threads: int = 0,
                  options: Optional[Options] = None, cost_limits: CostLimits = None, *,
                  obs_dim: Optional[int] = None, action_dim: Optional[int] = None, num_envs: int = 1,
@@ -151,6 +163,9 @@ class Agent:
 
         reward and cost are sums over the decision, final_obs is read where truncated, steps are control steps.
         """
+        if cost is None and self.cost_dim:
+            raise ArgumentError(f"record: cost is missing: [{self.num_envs}][{self.cost_dim}], 0 where there was none; an "
+                                "agent without costs is made with cost_dim=0")
         said = {"reward": reward, "cost": cost, "terminated": terminated, "truncated": truncated,
                 "final_obs": final_obs, "valid": valid, "success": success, "steps": steps}
         table = _abi.ROWS["rdm_transition"]
@@ -189,6 +204,8 @@ class Agent:
         """A long call. In the main thread it runs beside it, which hears signals meanwhile."""
         if threading.current_thread() is not threading.main_thread():
             self._check(call(self._a, *arguments))
+            if raised:
+                raise_kept()
             return
         go: SimpleQueue[None] = SimpleQueue()
         done = threading.Lock()
@@ -223,6 +240,8 @@ class Agent:
             raise
         if failed:
             raise failed[0]
+        if raised:
+            raise_kept()
 
     @staticmethod
     def _wait(ended: list[bool]) -> None:
@@ -248,9 +267,10 @@ class Agent:
         return read_settings(lib.rdm_agent_settings, self._open(),
                              {key: option.kind for key, option in self.algo.options.items()})
 
-    def set(self, **options: Value) -> None:
+    def set(self, **options: Given) -> None:
         """Changes live options: agent.set(learning_rate=1e-4). Keys with dots: agent.set(**{"a.b": 1})."""
-        for row in option_array(options):
+        kinds = known_options(self.algo, options)
+        for row in option_array(options, kinds):
             with self._lock:
                 self._check(lib.rdm_agent_set(self._a, byref(row)))
 
@@ -274,15 +294,21 @@ class Agent:
 
     # ---- state ------------------------------------------------------------------------------------------------
 
-    def save(self) -> bytes:
-        """All state, between epochs: networks, optimiser, multipliers, normaliser, streams, counters."""
+    def save(self, path: Union[None, str, os.PathLike[str]] = None) -> bytes:
+        """All state, between epochs: networks, optimiser, multipliers, normaliser, streams, counters. With a path it is
+        written there too, whole or not at all."""
         with self._lock:
-            return bytes_of(lib.rdm_agent_save, self._open())
+            state = bytes_of(lib.rdm_agent_save, self._open())
+        if path is not None:
+            write_whole(path, state, "agent")
+        return state
 
-    def load(self, state: bytes) -> None:
-        """Goes on from save() of an agent of the same configuration; nothing changes when it fails."""
+    def load(self, state: Union[bytes, bytearray, memoryview, str, os.PathLike[str]]) -> None:
+        """Goes on from save() of an agent of the same configuration, its bytes or its path; nothing changes when it
+        fails."""
+        data = read_whole(state, "agent") if isinstance(state, (str, os.PathLike)) else bytes(state)
         with self._lock:
-            self._check(lib.rdm_agent_load(self._a, bytes(state), len(state)))
+            self._check(lib.rdm_agent_load(self._a, data, len(data)))
 
     def write_checkpoint(self, path: Union[str, os.PathLike[str]], pool: Optional[Pool] = None,
                          note: bytes = b"") -> None:
@@ -365,7 +391,12 @@ def _config_of(pool: Pool) -> dict[str, Any]:
 def _limits(wanted: CostLimits, usual: Optional[Array], columns: Sequence[str]) -> Optional[list[float]]:
     """A limit for each column, below 0 for none; None leaves column 0 to option cost_limit."""
     def number(limit: Optional[float]) -> float:
-        return -1.0 if limit is None else float(limit)
+        if limit is None:
+            return -1.0
+        try:
+            return -1.0 if math.isnan(limit) else float(limit)
+        except TypeError:
+            raise UsageError(f"cost_limits: numbers or None, not {limit!r}") from None
 
     limits = None if usual is None else [float(limit) for limit in usual]
     if wanted is None:
@@ -374,19 +405,31 @@ def _limits(wanted: CostLimits, usual: Optional[Array], columns: Sequence[str]) 
         limits = limits or [-1.0] * len(columns)
         for name, limit in wanted.items():
             if name not in columns:
-                raise NotFoundError(f"cost_limits: no cost {name}; there are {', '.join(columns)}")
+                raise NotFoundError(f"cost_limits: no cost {name}{nearest(str(name), columns)}; there are "
+                                    f"{', '.join(columns)}")
             limits[columns.index(name)] = number(limit)
         return limits
     if isinstance(wanted, (int, float, np.number)):
         limits = limits or [-1.0] * len(columns)
         if not limits:
             raise ArgumentError("cost_limits: there are no costs")
-        limits[0] = float(wanted)
+        limits[0] = number(float(wanted))
         return limits
+    if isinstance(wanted, str) or not hasattr(wanted, "__iter__"):
+        raise UsageError(f"cost_limits: a number, one for each cost, or a dict by name, not {wanted!r}")
     listed = [number(limit) for limit in wanted]
     if len(listed) != len(columns):
         raise ArgumentError(f"cost_limits: {len(listed)} limits for {len(columns)} costs")
     return listed
+
+
+def known_options(algo: _discovery.Algo, options: Iterable[str]) -> dict[str, int]:
+    """What each option of an algorithm is; a key that it does not have is refused with the nearest that it has."""
+    kinds: dict[str, int] = {key: option.kind for key, option in algo.options.items()}
+    for key in options:
+        if kind_of(key, kinds) is None:
+            raise NotFoundError(f"{algo.name} option {key}: unknown{nearest(key, kinds)}")
+    return kinds
 
 
 def _created(own: Mapping[str, Any]) -> Handle:
@@ -396,7 +439,8 @@ def _created(own: Mapping[str, Any]) -> Handle:
     assign(config, {name: own[name] for name in ("obs_dim", "action_dim", "cost_dim", "num_envs", "num_threads", "seed",
                                                  "layout_hash", "control_dt", "max_steps")})
     config.algo, config.task = encoded(own["algo"]), encoded(own["task"])
-    config.settings = settings_of(own["options"])
+    if own["options"]:
+        config.settings = settings_of(own["options"], known_options(_discovery.algo(own["algo"]), own["options"]))
     defaults = option_array(own["defaults"])
     config.defaults, config.num_defaults = defaults, len(defaults)
     arrays = {name: None if own[name] is None else np.ascontiguousarray(own[name], rows.dtype)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, Mapping, Optional, Sequen
 import numpy as np
 
 from ._error import FormatError, MissingFileError
+from ._names import Hinted
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -38,10 +39,16 @@ class _Drawn:
         Path(path).write_text(self._repr_svg_(), encoding="utf-8")
 
 
-class Curve(_Drawn, Dict[str, Column]):
+_DRAWS = "it draws itself in a notebook; save('curve.svg') writes the picture"
+
+
+class Curve(_Drawn, Hinted, Dict[str, Column]):
     """Columns by name ("TotalEnvSteps", "Metrics/EpRet", ...), a row for each epoch; draws itself in a notebook. A dict:
     pandas.DataFrame(curve) has a row for each epoch too, as to_pandas() has.
     """
+
+    _hints = {"plot": _DRAWS, "show": _DRAWS, "draw": _DRAWS, "df": "to_pandas()", "to_df": "to_pandas()",
+              "columns": "list(curve) has the names of the columns", "epochs": "curve['Train/Epoch']"}
 
     def __init__(self, columns: Mapping[str, Any] = {}, label: str = "", limit: Optional[float] = None,
                  folder: str = "") -> None:
@@ -76,8 +83,10 @@ class Curve(_Drawn, Dict[str, Column]):
         return f"<Curve {self.label}: {len(self.steps)} epochs>"
 
 
-class Curves(_Drawn, Sequence[Curve]):
+class Curves(_Drawn, Hinted, Sequence[Curve]):
     """Several runs in one picture."""
+
+    _hints = {"plot": _DRAWS, "show": _DRAWS, "draw": _DRAWS}
 
     def __init__(self, curves: Iterable[Curve]) -> None:
         self._curves = list(curves)

@@ -44,7 +44,7 @@ def defaults(task: str, options: Optional[Mapping[str, Any]] = None) -> Defaults
         own = pool.task.defaults
         options_of = {**algos()["trpo_lag"].options, **algos()["ppo_lag"].options}
         known = {key: own.get(f"ppo_lag:{key}", own.get(key, option.default)) for key, option in options_of.items()}
-        limits = {name: cost.limit for name, cost in pool.costs.items() if cost.limit >= 0}
+        limits = {name: cost.limit for name, cost in pool.costs.items() if cost.limit is not None}
         center, steps = pool.initial_mean, pool.max_steps
     repeat = int(known["action_repeat"])
     limit = limits.get("cost")

@@ -3,12 +3,14 @@ from __future__ import annotations
 
 import ctypes
 import math
+import re
 from ctypes import byref, c_float, c_int32
 from functools import lru_cache
-from typing import Any, Callable, Iterator, TypeVar
+from typing import Any, Callable, Iterator, Optional, TypeVar, Union
 
 from . import _abi
-from ._error import NotFoundError
+from ._abi import OptionKind
+from ._error import NotFoundError, UsageError
 from ._library import encoded, filled, check, lib, text
 from ._options import Value, default_of, laid
 from ._record import Record
@@ -19,11 +21,22 @@ R = TypeVar("R", bound=Record)
 class Option(_abi.OptionInfo):
     """One row of an option table; default is as its kind says: a text, a number or a flag."""
 
+    kind: OptionKind
     default: Value
 
     def __init__(self, struct: _abi.rdm_option_info) -> None:
         super().__init__(struct)
-        self.__dict__["default"] = default_of(struct)
+        self.__dict__.update(kind=OptionKind(struct.kind), default=default_of(struct))
+
+
+class Cost(_abi.Cost):
+    """A cost column. limit: on its sum over an episode, None where there is none."""
+
+    limit: Optional[float]  # type: ignore[assignment]
+
+    def __init__(self, struct: _abi.rdm_cost) -> None:
+        super().__init__(struct)
+        self.__dict__["limit"] = None if struct.limit < 0 else struct.limit
 
 
 class Field(_abi.Field):
@@ -63,7 +76,7 @@ class Task(_abi.Task):
     """A task with its default options; fields, costs, options and cameras by name, in their order."""
 
     fields: dict[str, Field]
-    costs: dict[str, _abi.Cost]
+    costs: dict[str, Cost]
     options: dict[str, Option]
     cameras: dict[str, _abi.Camera]
     defaults: dict[str, Value]  # of learner options: rdm_task_default
@@ -72,7 +85,7 @@ class Task(_abi.Task):
         super().__init__(filled(_abi.rdm_task, lib.rdm_task_at, index))
         said = self.__dict__
         said["fields"] = fields_of(index, self.num_fields, lib.rdm_task_field, lib.rdm_task_field_bounds)
-        said["costs"] = _records(_abi.Cost, _abi.rdm_cost, lib.rdm_task_cost, self.cost_dim, index)
+        said["costs"] = _records(Cost, _abi.rdm_cost, lib.rdm_task_cost, self.cost_dim, index)
         said["options"] = _records(Option, _abi.rdm_option_info, lib.rdm_task_option, self.num_options, index)
         said["cameras"] = _records(_abi.Camera, _abi.rdm_camera, lib.rdm_task_camera, self.num_cameras, index)
         said["defaults"] = laid(
@@ -143,9 +156,19 @@ def algos() -> dict[str, Algo]:
     return {algo.name: algo for algo in map(algo_at, range(lib.rdm_algo_count()))}
 
 
-def task(name: str) -> Task:
+def task(name: Union[str, Task]) -> Task:
     """One task; case is ignored and '-' equals '_'. NotFoundError offers the nearest name."""
-    return task_at(find(lib.rdm_task_find, name))
+    return task_at(find(lib.rdm_task_find, task_name(name)))
+
+
+def task_name(task: Union[str, Task]) -> str:
+    """The name of a task that is given as its name, as Task, or as its id in Gymnasium (redman/BallRun-v0)."""
+    if isinstance(task, Task):
+        return task.name
+    if not isinstance(task, str):
+        raise UsageError(f"task: the name of a task, not {task!r}")
+    found = re.fullmatch(r"redman/(\w+)-v\d+", task)
+    return found[1] if found else task
 
 
 def algo(name: str) -> Algo:

@@ -16,6 +16,10 @@ class ArgumentError(Error, ValueError):
     code = ResultCode.ARGUMENT
 
 
+class UsageError(ArgumentError, TypeError):
+    """An argument that a function does not have, or of a type that it does not take."""
+
+
 class RangeError(Error, ValueError, IndexError):
     """Outside the documented bounds, or an index past the end."""
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 import ctypes
 import operator
 import os
+import re
 import sys
 from ctypes import byref, c_size_t
 from pathlib import Path
 from typing import Any, Callable, Mapping, TypeVar
 
 from . import _abi
-from ._error import Error, RangeError, error_of
+from ._error import ArgumentError, Error, RangeError, UsageError, error_of
 
 Struct = TypeVar("Struct", bound=ctypes.Structure)
 
@@ -73,15 +74,41 @@ def text(value: bytes | None) -> str:
 
 def encoded(value: str | os.PathLike[str]) -> bytes:
     """A text or a path for the library."""
-    raw = os.fsencode(value)
+    try:
+        raw = os.fsencode(value)
+    except TypeError:
+        raise UsageError(f"a text or a path, not {value!r}") from None
     if b"\0" in raw:
-        raise ValueError("a text with a zero byte in it")
+        raise ArgumentError(f"{value!r}: a text with a zero byte in it")
     return raw
+
+
+# What functions of Python that the library called have raised, (function, exception), until a call from Python tells it.
+raised: list[tuple[str, BaseException]] = []
 
 
 def failure(code: int) -> Error:
     """The exception of the call that has just failed on this thread."""
-    return error_of(code, text(lib.rdm_last_error()))
+    said = text(lib.rdm_last_error())
+    error = error_of(code, re.sub(r"\bsettings line \d+: ", "", said))  # a dict of options has no lines
+    return error if not raised else _of_python(error)
+
+
+def raise_kept() -> None:
+    """Where a call was OK, though a function of Python raised in it: that ended an episode alone."""
+    raise _of_python(ArgumentError())
+
+
+def _of_python(error: Error) -> Error:
+    """The error with what Python raised as its cause; the first counts."""
+    name, cause = raised[0]
+    raised.clear()
+    if not isinstance(cause, Exception):  # Ctrl-C
+        raise cause
+    said = f"{name} raised {type(cause).__name__}: {cause}"
+    told = type(error)(f"{error}; {said}" if str(error) else said)
+    told.code, told.__cause__ = error.code, cause
+    return told
 
 
 def check(code: int) -> None:
@@ -97,21 +124,32 @@ def sized(kind: type[Struct]) -> Struct:
     return value
 
 
+def whole(value: Any, name: str, low: int, high: int) -> int:
+    """An integer argument within low and high."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise UsageError(f"{name}: a whole number, not {value!r}") from None
+    if not low <= number <= high:
+        raise RangeError(f"{name}: {number} is not in {low} to {high}")
+    return number
+
+
 def int32(value: Any, name: str) -> int:
     """An integer argument; ctypes alone would cut off what does not fit."""
-    number = operator.index(value)
-    if not -(1 << 31) <= number < 1 << 31:
-        raise RangeError(f"{name}: {number} is no 32-bit integer")
-    return number
+    return whole(value, name, -(1 << 31), (1 << 31) - 1)
 
 
 def assign(struct: ctypes.Structure, values: Mapping[str, Any]) -> None:
     """Sets fields; an integer that does not fit is refused."""
+    kinds = dict((field[0], field[1]) for field in struct._fields_)
     for name, value in values.items():
-        number = value if isinstance(value, float) else operator.index(value)
-        setattr(struct, name, number)
-        if getattr(struct, name) != number and not isinstance(value, float):
-            raise RangeError(f"{name}: {number} is outside of its range")
+        if kinds[name] not in (ctypes.c_double, ctypes.c_float):
+            bits = 8 * ctypes.sizeof(kinds[name])
+            signed = kinds[name](-1).value < 0
+            low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1)
+            value = whole(value, name, low, high)
+        setattr(struct, name, value)
 
 
 def filled(kind: type[Struct], call: Callable[..., int], *before: Any) -> Struct:

@@ -4,6 +4,7 @@ from __future__ import annotations
 import ctypes
 import os
 import threading
+import warnings
 from ctypes import byref, c_int32, c_size_t, c_uint64
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
 
@@ -11,8 +12,9 @@ import numpy as np
 
 from . import _abi
 from ._abi import MapFormat
-from ._error import ArgumentError, StateError
+from ._error import ArgumentError, StateError, UsageError
 from ._library import Handle, assign, bytes_of, check, encoded, failure, filled, int32, lib, sized
+from ._names import nearest
 from ._pool import Pool
 from ._rows import Array, FloatArray, address, given
 
@@ -37,7 +39,8 @@ class Map:
         m.insert(origin, points)
         m.query(points)                     # probability of occupied, -1 where unknown
 
-    Points are in m. Other fields of rdm_map_config are keywords: memory, max_range, hit, miss, low, high, threshold.
+    Points are in m. Other fields of rdm_map_config are keywords: memory (bytes, 64 MiB), max_range (m, 4; 0: none), hit,
+    miss, low, high, threshold. dropped: voxels that it left out so far, since it was full.
     """
 
     def __init__(self, resolution: float = 0.02, **config: float) -> None:
@@ -48,25 +51,33 @@ class Map:
         known = {name for name, kind in struct._fields_ if kind is ctypes.c_double} | {"memory"}
         for name, value in self._config.items():
             if name not in known:
-                raise TypeError(f"Map: {name!r} is none of {', '.join(sorted(known))}")
+                raise UsageError(f"Map: {name!r} is none of {', '.join(sorted(known))}{nearest(name, known)}")
             if name == "memory":
                 assign(struct, {name: value})
             else:
                 setattr(struct, name, float(value))
         self._handle: Optional[Handle] = Handle(lib.rdm_map_create, lib.rdm_map_destroy, byref(struct))
         self._m = self._handle.value
+        self._memory, self._max_range, self.dropped = int(struct.memory), float(struct.max_range), 0
 
     def insert(self, origin: Sequence[float], points: Any) -> int:
-        """One scan: rays from origin to points. Returns how many voxels a full map left out."""
+        """One scan: rays from origin to points. Returns how many voxels a full map left out, and warns where it did."""
         rows, at = _points(points), self._given("rdm_map_insert", "origin", origin)
+        if "max_range" not in self._config:
+            far = int(np.count_nonzero(np.linalg.norm(rows - at, axis=1) > self._max_range))
+            if far:
+                warnings.warn(f"{far} of {len(rows)} points are farther than max_range = {self._max_range:g} m, its default: "
+                              "their rays clear the way so far and the points are left out; say max_range=...",
+                              RuntimeWarning, stacklevel=2)
         dropped = c_uint64()
         with self._lock:
             self._check(lib.rdm_map_insert(self._m, at.ctypes.data, rows.ctypes.data, len(rows), byref(dropped)))
-        return dropped.value
+        return self._left_out(dropped.value)
 
     def scan(self, pool: Pool, env: int = 0, camera: Optional[str] = None, width: int = 96, height: int = 96,
              skip: Sequence[int] = ()) -> int:
-        """One scan by a camera of the pool's task; rays that end on a shape in skip are left out."""
+        """One scan by a camera of the pool's task; rays that end on a shape in skip are left out. Returns how many voxels a
+        full map left out, 0 in one that is large enough, and warns where it did."""
         left = np.ascontiguousarray(skip, np.int32)
         dropped = c_uint64()
         name = next(iter(pool.cameras), "") if camera is None else camera
@@ -74,7 +85,15 @@ class Map:
         with self._lock, pool._lock:
             self._check(lib.rdm_map_scan(self._m, pool._open(), env, encoded(name), width, height,
                                          address(left) if len(left) else None, len(left), byref(dropped)))
-        return dropped.value
+        return self._left_out(dropped.value)
+
+    def _left_out(self, dropped: int) -> int:
+        """Says that the map is full: what is not in it is no free space."""
+        self.dropped += dropped
+        if dropped:
+            warnings.warn(f"a full map left out {dropped} voxels: raise memory (it has {self._memory} bytes) or resolution, "
+                          "or lower max_range", RuntimeWarning, stacklevel=3)
+        return dropped
 
     def query(self, points: Any) -> FloatArray:
         """[count] probability that the voxel of each point is occupied; -1: unknown."""

@@ -1,7 +1,21 @@
-"""The nearest of the names that there are, as the library's own texts offer it."""
+"""Names that are not ours: the nearest that is, or what to write instead."""
 from __future__ import annotations
 
-from typing import Iterable
+import functools
+import inspect
+from typing import TYPE_CHECKING, Any, Callable, ClassVar, Iterable, Mapping, TypeVar
+
+from ._error import UsageError
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+# What other libraries call our options.
+WORDS = {
+    "lr": "learning_rate", "gamma": "discount", "lam": "lambda", "gae_lambda": "lambda", "clip_range": "clip",
+    "clip_ratio": "clip", "ent_coef": "entropy_bonus", "entropy_coef": "entropy_bonus", "hidden_sizes": "hidden",
+    "net_arch": "hidden", "n_epochs": "passes", "update_iters": "passes", "target_kl": "kl_target",
+    "n_steps": "horizon", "frame_skip": "action_repeat", "max_episode_steps": "max_steps", "episode_length": "max_steps",
+    "lambda_lr": "multiplier_lr", "obs_normalize": "normalize_obs"}
 
 
 def nearest_of(name: str, known: Iterable[str]) -> str:
@@ -12,6 +26,8 @@ def nearest_of(name: str, known: Iterable[str]) -> str:
     wanted = folded(name)
     distances = {word: _distance(wanted, folded(word)) for word in known}
     best = min(distances, key=lambda word: (distances[word], word), default="")
+    if WORDS.get(wanted) in distances:
+        return WORDS[wanted]
     return best if best and distances[best] <= max(2, len(wanted) // 3) else ""
 
 
@@ -33,3 +49,100 @@ def _distance(a: str, b: str) -> int:
             row.append(cost)
         rows.append(row)
     return rows[-1][-1]
+
+
+def keywords(*, aliases: Mapping[str, str] = {}, hints: Mapping[str, str] = {},
+             options: bool = False) -> Callable[[Function], Function]:
+    """A function that also takes the aliases of its arguments, and says of others what to write instead.
+
+    options: words of an algorithm or a task are sent to the argument of that name.
+    """
+    def wrap(function: Function) -> Function:
+        names = list(inspect.signature(function).parameters)
+        known = frozenset(names)
+
+        @functools.wraps(function)
+        def call(*args: Any, **given: Any) -> Any:
+            if not known.issuperset(given):
+                given = _known(function, names[:len(args)], given, known, aliases, hints, options)
+            return function(*args, **given)
+
+        return call  # type: ignore[return-value]
+    return wrap
+
+
+def _known(function: Callable[..., Any], placed: list[str], given: dict[str, Any], known: frozenset[str],
+           aliases: Mapping[str, str], hints: Mapping[str, str], options: bool) -> dict[str, Any]:
+    name = function.__qualname__.replace(".__init__", "")
+    out: dict[str, Any] = {}
+    for key, value in given.items():
+        own = aliases.get(key, key)
+        if own not in known:
+            raise UsageError(f"{name}({key}=...): {_advice(key, value, known, hints, options)}")
+        if own in out or own in placed:
+            raise UsageError(f"{name}: {key} and {own} are one argument, given twice")
+        out[own] = value
+    return out
+
+
+def _advice(key: str, value: Any, known: frozenset[str], hints: Mapping[str, str], options: bool) -> str:
+    if key in hints:
+        return hints[key]
+    if options:
+        own = _option(key)
+        if own:
+            return f"{'it' if own == key else own} is an option: options={{{own!r}: {value!r}}}"
+    return f"there is no such argument{nearest(key, known - {'self'})}"
+
+
+def _option(key: str) -> str:
+    """The option of a task or an algorithm that a word stands for, "" for none."""
+    from . import _discovery
+    every = {name for algo in _discovery.algos().values() for name in algo.options}
+    every |= {name for task in _discovery.tasks().values() for name in task.options}
+    for word in (key, WORDS.get(key, "")):
+        if word in every:
+            return word
+    return ""
+
+
+class Hinted:
+    """An object that says of attributes which it has not what to write instead."""
+
+    _hints: ClassVar[Mapping[str, str]] = {}
+
+    if not TYPE_CHECKING:  # a type checker would take it for all attributes
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+            kind = type(self)
+            said = kind._hints.get(name)
+            if said is None:
+                said = "there is no such attribute" + nearest(name, (own for own in dir(kind) if own[0] != "_"))
+            raise AttributeError(f"{kind.__name__}.{name}: {said}")
+
+
+# Of the module: what to write instead.
+_MODULE_HINTS = {
+    "make": "redman.Pool(task, num_envs) has worlds; after import redman.gym gymnasium.make('redman/BallRun-v0') too",
+    "make_vec": "redman.Pool(task, num_envs), or redman.gym.VectorEnv(task, num_envs)",
+    "load": "redman.Policy.load(path) reads a policy or a run folder, redman.curve(folder) its curve",
+    "save": "policy.save(path), agent.save(path), redman.train(..., out=folder)",
+    "learn": "redman.train(task, steps=...)", "PPO": "redman.train(task, algo='ppo')",
+    "envs": "redman.tasks()", "list_tasks": "redman.tasks()", "registry": "redman.tasks()", "Env": "redman.gym.Env",
+    "VectorEnv": "redman.gym.VectorEnv", "VecEnv": "redman.sb3.VecEnv", "render": "Pool.render"}
+
+
+def module_hint(name: str, known: Iterable[str]) -> str:
+    """Of a name that the module does not have."""
+    said = _MODULE_HINTS.get(name) or f"there is no such name{nearest(name, known)}"
+    return f"redman.{name}: {said}"
+
+
+def moved(names: Mapping[str, Any], public: Iterable[str]) -> None:
+    """Classes and functions of private modules say that they are of the package."""
+    for name in public:
+        thing = names[name]
+        if isinstance(thing, (type, type(moved))) and str(thing.__module__).startswith("redman._"):
+            thing.__module__ = "redman"

@@ -3,49 +3,68 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import byref, c_size_t
-from typing import Any, Callable, Iterable, Mapping, Union
+from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Union
+
+import numpy as np
 
 from . import _abi
 from ._abi import OptionKind
-from ._error import ArgumentError
+from ._error import ArgumentError, UsageError
 from ._library import check, encoded, text
 
 Value = Union[str, float, int, bool]
-# A pair is a range, from which each world draws at a reset; it is read back as a text.
-Options = Mapping[str, Union[Value, tuple[float, float]]]
+# A pair is a range where an option takes one, from which each world draws at a reset; it is read back as a text. For an
+# option whose value is a list in a text, such as hidden, numbers in a list or a tuple are that list.
+Given = Union[Value, Sequence[float], Sequence[str]]
+Options = Mapping[str, Given]
+_COMMAS = ("actor_obs", "critic_obs")  # options whose value is a list of names with commas; of others it has +
+Kinds = Mapping[str, int]  # OptionKind of each key; noise.right.tip_force is one of noise.FIELD
 
 
-def shown(key: str, value: Union[Value, tuple[float, float]]) -> str:
-    """A value as the library reads it, exact: true, 0.1, 16, egg, 0.7..1.3."""
+def shown(key: str, value: Any, kinds: Kinds = {}) -> str:
+    """A value as the library reads it, exact: true, 0.1, 16, egg, 0.7..1.3, 64,64, rgb+depth."""
     if isinstance(value, str):
         return value
-    if isinstance(value, bool):
+    if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
-    if isinstance(value, tuple):
-        return "..".join(shown(key, bound) for bound in value)
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return _listed(key, list(value), isinstance(value, tuple), kinds)
     try:
         number = float(value)
     except (TypeError, ValueError):
-        raise TypeError(f"option {key}: a number, a flag or a text, not {type(value).__name__}") from None
+        raise UsageError(f"option {key}: a number, a flag, a text, or a list or pair of numbers, "
+                              f"not {type(value).__name__}") from None
     return repr(number)[:-2] if repr(number).endswith(".0") else repr(number)
 
 
-def settings_of(options: Options) -> bytes:
+def _listed(key: str, values: list[Any], pair: bool, kinds: Kinds) -> str:
+    if values and all(isinstance(value, str) for value in values):
+        return ("," if key in _COMMAS else "+").join(values)
+    if values and all(isinstance(value, (list, tuple, np.ndarray)) for value in values):  # points of a hull
+        return ";".join(_listed(key, list(value), False, {}) for value in values)
+    kind = kind_of(key, kinds)
+    ranged = pair if kind is None else kind in (OptionKind.NUMBER, OptionKind.INTEGER)
+    if ranged and len(values) != 2:
+        raise ArgumentError(f"option {key}: a range is a pair of numbers, not {len(values)}")
+    return (".." if ranged else ",").join(shown(key, value) for value in values)
+
+
+def settings_of(options: Options, kinds: Kinds = {}) -> bytes:
     """The lines key=value of a config."""
     lines = []
     for key, value in options.items():
-        line = f"{key}={shown(key, value)}"
+        line = f"{key}={shown(key, value, kinds)}"
         if "\n" in line or "=" in key:
             raise ArgumentError(f"option {key!r}: a key without '=', a value of one line")
         lines.append(line)
     return encoded("\n".join(lines))
 
 
-def option_array(options: Options) -> Any:
+def option_array(options: Options, kinds: Kinds = {}) -> Any:
     """[len(options)] rdm_option; it holds its texts."""
     array = (_abi.rdm_option * len(options))()
     for row, (key, value) in zip(array, options.items()):
-        row.key, row.text = encoded(key), encoded(shown(key, value))
+        row.key, row.text = encoded(key), encoded(shown(key, value, kinds))
     return array
 
 
@@ -59,12 +78,16 @@ def read_settings(call: Callable[..., int], handle: Any, kinds: Mapping[str, int
     return {key: value_of(kind_of(key, kinds), value) for key, value in pairs}
 
 
-def kind_of(key: str, kinds: Mapping[str, int]) -> int:
-    """What an option's value is; noise.right.tip_force is one of noise.FIELD."""
-    return kinds[key] if key in kinds else kinds[key.split(".", 1)[0] + ".FIELD"]
+def kind_of(key: str, kinds: Kinds) -> Optional[int]:
+    """What an option's value is; None where the key is not known."""
+    folded = key.lower().replace("-", "_")
+    for word in (key, folded, key.split(".", 1)[0] + ".FIELD", folded.split(".", 1)[0] + ".FIELD"):
+        if word in kinds:
+            return kinds[word]
+    return None
 
 
-def value_of(kind: int, said: str) -> Value:
+def value_of(kind: Optional[int], said: str) -> Value:
     """The text of an option as its kind says."""
     if kind == OptionKind.TEXT:
         return said

@@ -124,7 +124,7 @@ def limits_of(pool: Pool, wanted: Union[None, Sequence[Optional[float]], Mapping
         return [wanted.get(name) for name in pool.costs]
     if wanted is not None:
         return list(wanted)
-    return [None if cost.limit < 0 else cost.limit for cost in pool.costs.values()]
+    return [cost.limit for cost in pool.costs.values()]
 
 
 def play(pool: Pool, player: Any, episodes: int, magnitudes: bool = False, action_repeat: Optional[int] = None,

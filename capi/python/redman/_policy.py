@@ -11,15 +11,20 @@ from typing import Any, Mapping, Optional, Union
 
 import numpy as np
 
-from . import _abi
+from . import _abi, _discovery
 from ._actor import Actor
 from ._error import ArgumentError, FileError, FormatError, MissingFileError
+from ._files import read_whole, write_whole
 from ._hold import decided, warn
 from ._library import Handle, check, filled, lib, policy_folders
+from ._names import Hinted
 from ._options import Value
 from ._pool import Pool
 from ._rows import Array, FloatArray, clouds, given
 from ._tensors import Tensors
+
+
+_MAGIC = b"RDMPOLIC"
 
 
 @dataclass(frozen=True)
@@ -48,7 +53,7 @@ class Origin:
             raise FormatError(f"run {folder}: config.json is not a run's: {error!r}") from None
 
 
-class Policy:
+class Policy(Hinted):
     """Actions for observations; immutable, any number of threads may share it.
 
         policy = redman.Policy.load("runs/first")          # a run folder, a file, or bytes
@@ -60,8 +65,17 @@ class Policy:
     limits; evaluate and a notebook's picture use them.
     """
 
+    _hints = {
+        "predict": "policy.act(obs)", "forward": "policy.act(obs)", "parameters": "policy.tensors",
+        "render": "a policy draws itself in a notebook; the command `redman render` makes pictures and pages of an episode",
+        "plot": "a policy draws itself in a notebook", "evaluate": "redman.evaluate(policy)",
+        "state_dict": "policy.tensors", "task": "policy.info.task", "obs_dim": "policy.info.obs_dim",
+        "action_dim": "policy.info.action_dim", "to_bytes": "bytes(policy)"}
+
     def __init__(self, data: bytes, origin: Optional[Origin] = None) -> None:
         self._bytes = bytes(data)
+        if self._bytes[:len(_MAGIC)] != _MAGIC:
+            raise FormatError("policy: these bytes are no policy file of redman (.rdm)")
         self.origin = origin
         self._handle = Handle(lib.rdm_policy_load, lib.rdm_policy_destroy, self._bytes, len(self._bytes))
         self.info = _abi.PolicyInfo(filled(_abi.rdm_policy_info, lib.rdm_policy_get_info, self._handle.value))
@@ -74,28 +88,27 @@ class Policy:
         if isinstance(source, (bytes, bytearray, memoryview)):
             return cls(bytes(source))
         path = Path(source)
+        if path.is_dir() and not (path / "policy.rdm").exists():
+            raise MissingFileError(f"policy {path}: no run folder: there is no policy.rdm in it")
+        data = read_whole(path / "policy.rdm" if path.is_dir() else path, "policy")
         try:
-            data = (path / "policy.rdm" if path.is_dir() else path).read_bytes()
             return cls(data, Origin.of_folder(path if path.is_dir() else path.parent))
-        except FileNotFoundError:
-            raise MissingFileError(f"policy {path}: there is no such file") from None
-        except OSError as error:
-            raise FileError(f"policy {path}: {error.strerror}") from None
+        except FormatError as error:
+            text = str(error)
+            raise FormatError(f"policy {path}{text[len('policy'):]}" if text.startswith("policy") else text) from None
 
     @classmethod
-    def trained(cls, task: str) -> Policy:
+    def trained(cls, task: Union[str, _discovery.Task]) -> Policy:
         """Of the policies that come with redman, that of a task: the one of `redman eval --policy trained`."""
-        name = task.lower().replace("-", "_")
+        name = _discovery.task(task).name
         for folder in policy_folders():
             if (folder / f"{name}.rdm").is_file():
                 return cls.load(folder / f"{name}.rdm")
-        raise MissingFileError(f"policy of {task}: none in " + ", ".join(str(folder) for folder in policy_folders()))
+        raise MissingFileError(f"policy of {name}: none in " + ", ".join(str(folder) for folder in policy_folders()))
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes the policy file, whole or not at all."""
-        temporary = Path(f"{os.fspath(path)}.part")
-        temporary.write_bytes(self._bytes)
-        os.replace(temporary, path)
+        write_whole(path, self._bytes, "policy")
 
     def __bytes__(self) -> bytes:
         return self._bytes
@@ -199,7 +212,10 @@ class Policy:
 
     def check(self, pool: Pool) -> None:
         """VersionError, which says what differs, unless the policy fits the pool's task and options."""
-        check(lib.rdm_policy_check(self._open(), pool._spec))
+        try:
+            check(lib.rdm_policy_check(self._open(), pool._spec))
+        except VersionError as error:
+            raise VersionError(f"a policy of {self.info.task or 'another world'} on task {pool.task.name}: {error}") from None
 
     @property
     def columns(self) -> Array:

@@ -6,15 +6,17 @@ import math
 import operator
 import threading
 from ctypes import byref, c_int32, c_size_t, c_uint64
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _abi, _discovery, _png
 from ._abi import Autoreset, BaselineKind
-from ._error import ArgumentError, Error, StateError
+from ._error import ArgumentError, Error, NotFoundError, StateError, UsageError
 from ._hold import LAST, Watch
-from ._library import Handle, assign, check, encoded, failure, filled, int32, lib, sized
+from ._library import (Handle, assign, check, encoded, failure, filled, int32, lib, raise_kept, raised, sized)
+from ._names import Hinted, keywords, nearest
 from ._options import Options, Value, read_settings, settings_of
 from ._rows import Array, Borrowed, FloatArray, address, given, made, shape_of
 
@@ -47,13 +49,18 @@ def _struct(own: Mapping[str, Any]) -> _abi.rdm_pool_config:
     config.task = encoded(own["task"])
     assign(config, {"num_envs": own["num_envs"], "seed": own["seed"], "num_threads": own["threads"]})
     config.autoreset = _autoreset(own["autoreset"])
-    config.settings = settings_of(own["options"])
+    config.settings = settings_of(own["options"], _kinds(own["task"]) if own["options"] else {})
     return config
 
 
-def memory(task: str, num_envs: int = 1, options: Optional[Options] = None) -> tuple[int, int]:
+def _kinds(task: str) -> dict[str, int]:
+    """What each option of a task is."""
+    return {key: option.kind for key, option in _discovery.task(task).options.items()}
+
+
+def memory(task: Union[str, _discovery.Task], num_envs: int = 1, options: Optional[Options] = None) -> tuple[int, int]:
     """Bytes that a pool would take: by the library, exact, and by the physics engine, an estimate."""
-    config = _struct({"task": task, "num_envs": num_envs, "seed": 0, "threads": 0, "autoreset": "same_step",
+    config = _struct({"task": _discovery.task_name(task), "num_envs": num_envs, "seed": 0, "threads": 0, "autoreset": "same_step",
                       "options": dict(options or {})})
     ours, engines = c_size_t(), c_size_t()
     check(lib.rdm_pool_memory(byref(config), byref(ours), byref(engines)))
@@ -93,7 +100,7 @@ class Sensors:
             i += 1
 
 
-class Pool:
+class Pool(Hinted):
     """N worlds of one task.
 
         pool = redman.Pool("hand_over_safe_finger", num_envs=16, seed=7)
@@ -105,13 +112,26 @@ class Pool:
 
     Rows (obs, action, reward, cost, ...) are views of one memory that reset and step write: copy what is to stay.
     They outlive the pool. One thread at a time uses a pool; others wait. Options are a dict (`pool.options` has all).
+    task: a name, redman.task(name), or an id of Gymnasium's.
     """
 
-    def __init__(self, task: str, num_envs: int = 1, seed: int = 0, threads: int = 0, autoreset: object = "same_step",
+    _hints = {
+        "observation_space": "Pool.bounds has the lowest and highest observations; redman.gym.VectorEnv(task, num_envs) "
+                             "has spaces",
+        "action_space": "actions are [num_envs][action_dim] in [-1, 1], pool.baseline('random') draws some; "
+                        "redman.gym.VectorEnv(task, num_envs) has spaces",
+        "close_all": "close()", "num_actions": "action_dim", "num_obs": "obs_dim", "dones": "terminated, truncated",
+        "done": "terminated | truncated", "rewards": "reward", "infos": "cost, success, status are rows of the pool",
+        "info": "cost, success, status are rows of the pool", "observations": "obs", "actions": "action",
+        "get_state": "state(env)", "dt": "control_dt"}
+    _lost: Optional[str] = None  # why a copy has no worlds
+
+    @keywords(aliases={"envs": "num_envs", "num_threads": "threads"}, options=True)
+    def __init__(self, task: Union[str, _discovery.Task], num_envs: int = 1, seed: int = 0, threads: int = 0, autoreset: object = "same_step",
                  options: Optional[Options] = None) -> None:
         self._lock = threading.RLock()
         self._config: dict[str, Any] = {
-            "task": task, "num_envs": num_envs, "seed": seed, "threads": threads,
+            "task": _discovery.task_name(task), "num_envs": num_envs, "seed": seed, "threads": threads,
             "autoreset": _AUTORESET_NAMES[_autoreset(autoreset)], "options": dict(options or {})}
         config = _struct(self._config)
         self._handle: Optional[Handle] = Handle(lib.rdm_pool_create, lib.rdm_pool_destroy, byref(config))
@@ -213,13 +233,24 @@ class Pool:
     # ---- stepping ---------------------------------------------------------------------------------------------
 
     def _fail(self, code: int) -> Error:
+        if self._lost:
+            return NotFoundError(self._lost)
         if self._p is None:
             return StateError("pool: it was closed")
         return failure(code)
 
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            if self._lost and not name.startswith("__"):
+                raise NotFoundError(self._lost)
+            return super().__getattr__(name)
+
     def _check(self, code: int) -> None:
         if code:
             raise self._fail(code)
+        if raised:
+            raise_kept()
 
     def watch(self, action: Any, centered: bool = False) -> None:
         """Warns where an action comes straight from a policy at each of several steps that it is to be held for."""
@@ -243,6 +274,7 @@ class Pool:
         return None if mask is None else given(
             mask, _abi.FUNCTIONS["rdm_pool_reset"].rows["mask"], self._lengths, "mask", spread=True)
 
+    @keywords(aliases={"seed": "seeds"}, hints={"options": "options are those of the pool: Pool(task, options={...})"})
     def reset(self, seeds: Union[None, int, Sequence[int], Array] = None, mask: Any = None) -> FloatArray:
         """Starts new episodes where mask holds (None: everywhere) and returns obs.
 
@@ -255,9 +287,13 @@ class Pool:
                 first = operator.index(seeds)  # type: ignore[arg-type]
                 listed = list(range(first, first + self.num_envs))
             except TypeError:
-                listed = [operator.index(seed) for seed in seeds]  # type: ignore[union-attr]
-            if any(not 0 <= seed < 1 << 64 for seed in listed):
-                raise ArgumentError("seeds: integers from 0 to 2^64 - 1")
+                try:
+                    listed = [operator.index(seed) for seed in seeds]  # type: ignore[union-attr]
+                except TypeError:
+                    raise UsageError(f"seeds: a whole number, one for each world, or None, not {seeds!r}") from None
+            wrong = [seed for seed in listed if not 0 <= seed < 1 << 64]
+            if wrong:
+                raise ArgumentError(f"seeds: {wrong[0]} is not in 0 to 2^64 - 1")
             table = _abi.FUNCTIONS["rdm_pool_reset"].rows["seeds"]
             rows = given(np.array(listed, np.uint64), table, self._lengths, "seeds")
         chosen = self._mask(mask)
@@ -280,8 +316,8 @@ class Pool:
             chosen = self._mask(mask)
             with self._lock:
                 code = lib.rdm_pool_step_masked(self._p, address(chosen))
-        if code:
-            raise self._fail(code)
+        if code or raised:
+            self._check(code)
         return self._obs
 
     def baseline(self, kind: str = "hold") -> FloatArray:
@@ -350,6 +386,10 @@ class Pool:
     @property
     def shapes(self) -> list[_abi.Shape]:
         """What the scene is made of, the same for all worlds; kind is a redman.ShapeKind."""
+        return list(self._shapes)
+
+    @cached_property
+    def _shapes(self) -> list[_abi.Shape]:
         return [_abi.Shape(filled(_abi.rdm_shape, lib.rdm_pool_shape, self._open(), i))
                 for i in range(self.spec.num_shapes)]
 
@@ -388,9 +428,9 @@ class Pool:
     def push(self, env: int, shape: Union[int, str], force: Sequence[float]) -> None:
         """Pushes a shape's carrier during the next step: force in N at its centre of mass, world axes."""
         if isinstance(shape, str):
-            names = [row.name for row in self.shapes]
+            names = [row.name for row in self._shapes]
             if shape not in names:
-                raise ArgumentError(f"shape: {shape!r} is none of this scene's")
+                raise ArgumentError(f"shape: {shape!r} is none of this scene's{nearest(shape, names)}")
             shape = names.index(shape)
         rows = given(force, _abi.FUNCTIONS["rdm_pool_push"].rows["force"], self._lengths, "force")
         with self._lock:
@@ -413,13 +453,17 @@ class Pool:
     @property
     def fields(self) -> dict[str, _discovery.Field]:
         """What each entry of obs means, with this pool's options."""
+        return dict(self._fields)
+
+    @cached_property
+    def _fields(self) -> dict[str, _discovery.Field]:
         return _discovery.fields_of(self._open(), self.spec.num_fields, lib.rdm_pool_field, lib.rdm_pool_field_bounds)
 
     @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """Lowest and highest value of each entry of an observation, infinite where there is no bound."""
         low, high = np.full(self.obs_dim, -np.inf, np.float32), np.full(self.obs_dim, np.inf, np.float32)
-        for field in self.fields.values():
+        for field in self._fields.values():
             if not math.isnan(field.low):
                 low[field.slice] = field.low
             if not math.isnan(field.high):
@@ -434,13 +478,27 @@ class Pool:
         return out
 
     @property
-    def costs(self) -> dict[str, _abi.Cost]:
+    def costs(self) -> dict[str, _discovery.Cost]:
         """What each column of cost means."""
         return dict(self.task.costs)
 
     @property
+    def cost_names(self) -> tuple[str, ...]:
+        """Name of each column of cost; the first is "cost", the task's own."""
+        return tuple(self.task.costs)
+
+    @property
+    def seed(self) -> int:
+        """That which it was made with."""
+        return int(self._config["seed"])
+
+    @property
     def options(self) -> dict[str, Value]:
         """All options of the task as this pool has them."""
+        return dict(self._options)
+
+    @cached_property
+    def _options(self) -> dict[str, Value]:
         return read_settings(lib.rdm_pool_settings, self._open(),
                              {key: option.kind for key, option in self.task.options.items()})
 
@@ -462,9 +520,18 @@ class Pool:
         self.close()
 
     def __repr__(self) -> str:
+        if self._lost:
+            return "<Pool, lost>"
         return f"<Pool {self.task.name}: {self.num_envs} worlds{', closed' if self._p is None else ''}>"
 
     # ---- copies -----------------------------------------------------------------------------------------------
+
+    def copy(self, src: int, dst: int, other: Optional[Pool] = None) -> None:
+        """Puts world dst into the state of world src of this pool, or of another one of the same task and options."""
+        source = self if other is None else other
+        first, second = sorted((self, source), key=id)
+        with first._lock, second._lock:
+            self._check(lib.rdm_pool_copy(self._p, int32(dst, "dst"), source._open(), int32(src, "src")))
 
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
@@ -477,7 +544,13 @@ class Pool:
                     "rows": {name: array.copy() for name, array in self._rows.items()}}
 
     def __setstate__(self, saved: Mapping[str, Any]) -> None:
-        Pool.__init__(self, **saved["config"])
+        try:
+            Pool.__init__(self, **saved["config"])
+        except NotFoundError as error:  # raised by the first call instead: a worker that cannot read what it is sent dies
+            self._lost = (f"{error}. A process registers its own tasks, robots and objects anew: do it where the module "
+                          "is imported, or in the initializer of its workers")
+            self._p = self._handle = None
+            return
         if saved["state"] is not None:
             self.set_state(saved["state"])
         for name, array in saved["rows"].items():

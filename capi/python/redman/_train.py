@@ -16,12 +16,14 @@ from typing import Any, Callable, Iterator, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 
-from . import _abi, _discovery
+from . import _abi, _discovery, _events
 from ._agent import Agent, CostLimits, Epoch
 from ._curve import Curve
-from ._error import ArgumentError, FileError, NotFoundError, StateError
-from ._library import check, encoded, lib
-from ._options import Options, Value, shown
+from ._error import ArgumentError, FileError, NotFoundError, StateError, UnsupportedError, UsageError
+from ._files import read_whole, write_whole
+from ._library import check, encoded, lib, whole
+from ._names import Hinted, keywords, nearest
+from ._options import Given, Options, Value, shown
 from ._play import Evaluation, evaluate, play, singly, summary
 from ._policy import Origin, Policy
 from ._pool import Pool
@@ -29,6 +31,7 @@ from ._pool import Pool
 # Of an evaluation during training; a policy that looks better than the best so far plays as many again
 # _CONFIRMATIONS times, and those alone say whether it is.
 _SELECTION_EPISODES, _CONFIRMATIONS = 20, 4
+_MOST_STEPS = 1 << 53  # what a float counts exactly
 Callback = Callable[[Epoch], Any]
 
 
@@ -52,8 +55,18 @@ def _score(e: Evaluation) -> _Score:
     return _Score(feasible, 0.0 if feasible else -excess, e.return_mean)
 
 
-class Run:
+class Run(Hinted):
     """A finished run: policy (the best feasible one), curve, agent (its last state), folder, env_steps, seconds."""
+
+    _draws = "run.curve and run.policy draw themselves in a notebook; run.curve.save('curve.svg') writes the curve"
+    _hints = {
+        "save": "run.policy.save('policy.rdm') writes the policy; train(..., out='runs/first') a whole run folder",
+        "plot": _draws, "render": f"{_draws}; the command `redman render` makes pictures and pages of an episode",
+        "epochs": "run.curve has a column for each quantity and a row for each epoch; a callback is given each Epoch",
+        "config": "run.options are those of the task, run.agent.options the learner's; config.json of run.folder has all",
+        "best": "run.policy is the best one", "model": "run.policy, or run.agent", "history": "run.curve",
+        "resume": "from Python a run does not go on; the command `redman train --resume FOLDER` does, if it has a folder",
+        "returns": "run.curve.returns", "costs": "run.curve.costs"}
 
     def __init__(self, task: str, algo: str, seed: int, options: dict[str, Value], agent: Agent) -> None:
         self.task, self.algo, self.seed, self.options, self.agent = task, algo, seed, options, agent
@@ -78,6 +91,12 @@ class Run:
         return Curve(self._rows, f"{self.task} {self.algo} seed {self.seed}", self.agent.cost_limits[0],
                      str(self.folder or ""))
 
+    @classmethod
+    def load(cls, folder: Union[str, os.PathLike[str]]) -> Run:
+        """A run is not read back."""
+        raise UnsupportedError(f"Run.load: redman.Policy.load({os.fspath(folder)!r}) and redman.curve(...) read a run folder; "
+                                "the command `redman train --resume FOLDER` goes on with it")
+
     def evaluate(self, episodes: int = 100, num_envs: int = 16, seed: int = 0, threads: int = 0) -> Evaluation:
         """The policy on episodes that it was not chosen by: those of `redman.evaluate(folder)` and of
         `redman eval --policy FOLDER`. The report at the end of `redman train` is that of seed=run.seed + 1_000_000."""
@@ -97,19 +116,24 @@ def _folded(key: str) -> str:
     return key.lower().replace("-", "_")
 
 
-def split_options(task: str, algo: str, options: Mapping[str, Value]) -> tuple[dict[str, Value], dict[str, Value]]:
+def split_options(task: str, algo: str, options: Options) -> tuple[dict[str, Value], dict[str, Value]]:
     """Options of the task and those of the algorithm; a key of both goes to both."""
-    of_task, of_algo = ({_folded(key) for key in table}
-                        for table in (_discovery.task(task).options, _discovery.algo(algo).options))
+    tables = (_discovery.task(task).options, _discovery.algo(algo).options)
+    of_task, of_algo = ({_folded(key) for key in table} for table in tables)
+    kinds = {key: option.kind for table in tables for key, option in table.items()}
+
+    def plain(key: str, value: Given) -> Value:
+        return shown(key, value, kinds) if isinstance(value, (list, tuple, np.ndarray)) else value  # type: ignore[return-value]
 
     def is_of_task(key: str) -> bool:
         return _folded(key) in of_task or _folded(key.split(".", 1)[0] + ".FIELD") in of_task
 
     for key in options:
         if not is_of_task(key) and _folded(key) not in of_algo:
-            raise NotFoundError(f"option {key}: neither task {task} nor algorithm {algo} has it")
-    return ({key: value for key, value in options.items() if is_of_task(key)},
-            {key: value for key, value in options.items() if _folded(key) in of_algo})
+            raise NotFoundError(f"option {key}: neither task {task} nor algorithm {algo} has it"
+                                f"{nearest(key, sorted(of_task | of_algo))}")
+    return ({key: plain(key, value) for key, value in options.items() if is_of_task(key)},
+            {key: plain(key, value) for key, value in options.items() if _folded(key) in of_algo})
 
 
 def learns_magnitudes(agent: Agent) -> bool:
@@ -144,8 +168,9 @@ class _Meter:
         self._shown = now
         rate = e.env_steps / max(now - self._begin, 1e-9)
         left = int(max(self._goal - e.env_steps, 0) / max(rate, 1e-9))
-        line = (f"{min(100, 100 * e.env_steps / self._goal):3.0f}%  {e.env_steps} steps  return {e.ret:.2f}  "
-                f"cost {e.cost[0]:.2f}  length {e.length:.0f}  falls {100 * e.fall_rate:.0f}%  {rate:.0f} steps/s  "
+        ended = (f"return {e.ret:.2f}  cost {e.cost[0]:.2f}  length {e.length:.0f}  falls {100 * e.fall_rate:.0f}%"
+                 if e.episodes > 0 else "return -  cost -  length -  falls -")  # of no episode
+        line = (f"{min(100, 100 * e.env_steps / self._goal):3.0f}%  {e.env_steps} steps  {ended}  {rate:.0f} steps/s  "
                 f"{left // 60}:{left % 60:02d} left")
         self._say(f"\r{line:<{self._width}}" if self._live else f"{line}\n")
         self._width = len(line) if self._live else 0
@@ -211,9 +236,27 @@ def _row(e: Epoch, costs: list[str], limits: list[Optional[float]], steps: int, 
     return row
 
 
+# What the files of a run begin with; of config.json it is keys that no other program's has.
+_HEADS = {"progress.csv": b"Train/Epoch,Train/TotalSteps,TotalEnvSteps,", "policy.rdm": b"RDMPOLIC",
+          "checkpoint.rdm": b"RDMCHECK", "config.json": b""}
+_CONFIG_KEYS = {"task", "algo", "seed", "train_cfgs", "algo_cfgs", "layout_hash"}
+
+
+def _is_own(path: Path) -> bool:
+    """Whether redman wrote the file of a run's name."""
+    if path.name == "config.json":
+        try:
+            config = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return False
+        return isinstance(config, dict) and _CONFIG_KEYS <= config.keys()
+    with open(path, "rb") as file:
+        return file.read(len(_HEADS[path.name])) == _HEADS[path.name]
+
+
 class _Folder:
     """A run folder that `redman eval`, `plot` and `train --resume` take: whole files or none, locked while it is
-    written."""
+    written. Files of those names that redman did not write stay, and the run is refused."""
 
     def __init__(self, path: Union[str, os.PathLike[str]], overwrite: bool) -> None:
         self.path = Path(path)
@@ -230,23 +273,35 @@ class _Folder:
             raise StateError(f"another process is training in {self.path}") from None
         except (ImportError, OSError):
             pass  # a system or a file system without locks
-        if (self.path / "config.json").exists() and not overwrite:
+        there = [self.path / name for name in _HEADS if os.path.lexists(self.path / name)]
+        foreign = [path for path in there if not path.is_file() or not _is_own(path)]
+        if foreign:
             self.close()
-            raise StateError(f"{self.path} holds a run already: say overwrite=True, or another folder")
+            raise StateError(f"{foreign[0]} was not written by redman: move it away, or give another folder")
+        if there and not overwrite:
+            self.close()
+            raise StateError(f"{self.path} holds {'a run' if len(there) > 1 else there[0].name + ' of a run'} already: "
+                             "say overwrite=True, or another folder")
         self.progress_bytes = 0
+        self._begun = int(time.time())
+        self._events = self.path / _events.file_name(self._begun)
 
     def close(self) -> None:
         os.close(self._lock)
 
     def write(self, name: str, data: bytes) -> None:
-        temporary = self.path / f"{name}.part"
-        temporary.write_bytes(data)
-        os.replace(temporary, self.path / name)
+        write_whole(self.path / name, data, "run folder")
 
     def begin(self, config: dict[str, Any], header: str, policy: bytes) -> None:
         for old in ("checkpoint.rdm", "config.json"):
             with contextlib.suppress(FileNotFoundError):
                 (self.path / old).unlink()
+        for path in self.path.glob("events.out.tfevents.*.redman"):  # of the run that this one takes the place of
+            seconds = path.name.split(".")[3]
+            if path.is_file() and seconds.isdecimal() and path.read_bytes().startswith(_events.head(int(seconds))):
+                path.unlink()
+        self._header = header
+        write_whole(self._events, _events.head(self._begun), "run folder")
         self.write("progress.csv", f"{header}\n".encode())
         self.write("policy.rdm", policy)
         self.write("config.json", (json.dumps(config, indent=2) + "\n").encode())
@@ -255,10 +310,12 @@ class _Folder:
         with open(self.path / "progress.csv", "ab") as file:
             file.write(f"{row}\n".encode())
             self.progress_bytes = file.tell()
+        with open(self._events, "ab") as file:
+            file.write(_events.row(dict(zip(self._header.split(","), row.split(","))), self._begun))
 
 
 def _config(run: Run, pool: Pool, of_task: dict[str, Value], of_algo: dict[str, Value], steps: int, threads: int,
-            eval_every: int, per_epoch: int) -> dict[str, Any]:
+            eval_every: int, per_epoch: int, task_text: Optional[str]) -> dict[str, Any]:
     """config.json: what the run was asked for, with the defaults written out."""
     limits = dict(zip(pool.costs, run.agent.cost_limits))
     return {
@@ -268,12 +325,12 @@ def _config(run: Run, pool: Pool, of_task: dict[str, Value], of_algo: dict[str, 
         "set_cost_limit": [f"{name}={shown(name, -1 if limit is None else limit)}" for name, limit in limits.items()],
         "cost_limits": {name: limit for name, limit in limits.items() if limit is not None},
         "train_cfgs": {"total_steps": steps, "vector_env_nums": pool.num_envs, "threads": threads,
-                       "eval_every": eval_every, "checkpoint_every": eval_every},
+                       "eval_every": eval_every, "checkpoint_every": eval_every, "tensorboard": True},
         "algo_cfgs": {**{key: shown(key, value) for key, value in run.agent.options.items()},
                       "steps_per_epoch": per_epoch},
         "env_cfgs": {key: shown(key, value) for key, value in pool.options.items()},
         "obs_dim": pool.obs_dim, "action_dim": pool.action_dim, "layout_hash": f"{pool.spec.layout_hash:016x}",
-        "build": dict(vars(_discovery.build()))}
+        "build": dict(vars(_discovery.build())), **({} if task_text is None else {"task_file": task_text})}
 
 
 def _note(e: Epoch, folder: _Folder, seconds: float, tested: tuple[float, float], best: Optional[_Score],
@@ -288,26 +345,55 @@ def _note(e: Epoch, folder: _Folder, seconds: float, tested: tuple[float, float]
     return f"{json.dumps(said)}\n".encode() + bytes(policy)
 
 
-def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, envs: int = 64, threads: int = 0,
-          options: Optional[Options] = None, cost_limits: CostLimits = None,
+_OWN_SEED = "a run has one seed: [redman.train(..., seed=s) for s in seeds] makes several"
+
+
+def _steps(steps: float) -> int:
+    """A whole number of control steps, 1e6 too."""
+    try:
+        goal = int(steps)
+    except TypeError:
+        raise UsageError(f"steps: a number, not {steps!r}") from None
+    except (ValueError, OverflowError):
+        goal = 0
+    if not 1 <= goal <= _MOST_STEPS or goal != steps:
+        raise ArgumentError(f"steps: {steps} is not a whole number from 1 to 2^53")
+    return goal
+
+
+@keywords(aliases={"num_envs": "envs", "cost_limit": "cost_limits", "total_steps": "steps", "total_timesteps": "steps",
+                   "num_threads": "threads"},
+          hints={"resume": "from Python a run does not go on; the command `redman train --resume FOLDER` does",
+                 "seeds": _OWN_SEED, "env_id": "task=...", "env": "task=..."}, options=True)
+def train(task: Union[str, _discovery.Task], algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, envs: int = 64,
+          threads: int = 0, options: Optional[Options] = None, cost_limits: CostLimits = None,
           out: Union[None, str, os.PathLike[str]] = None, callback: Optional[Callback] = None, eval_every: int = 10,
-          progress: bool = True, overwrite: bool = False) -> Run:
-    """Trains a policy on a task, as `redman train` does: the same arguments give the same policy.
+          progress: bool = True, overwrite: bool = False,
+          task_file: Union[None, str, os.PathLike[str]] = None) -> Run:
+    """Trains a policy on a task: the policy of `redman train` with the same arguments, to the byte.
 
     steps are control steps of all worlds together; options are those of the task and of the algorithm. Every
     eval_every epochs twenty episodes, and eighty more where those look good, decide which policy is kept: the best that
-    stays within the limits, else the one that comes nearest. out makes a run folder. callback(epoch) is called after each epoch; a true answer ends
+    stays within the limits, else the one that comes nearest. callback(epoch) is called after each epoch; a true answer ends
     the run. The first Ctrl-C ends it after this epoch, and what has been learned is returned; the second at once.
+
+    out makes a run folder, which `redman eval`, `plot`, `report` and `train --resume` take, with the curve for TensorBoard;
+    from Python itself a run does not go on. task_file: the .task file that the task was registered from, whose text is kept
+    there, so that the tool knows the task.
     """
-    goal = int(steps)
-    if goal < 1 or goal != steps:
-        raise ArgumentError(f"steps: {steps} is not a whole number above 0")
-    if eval_every < 1:
-        raise ArgumentError("eval_every: 1 or more")
-    asked: dict[str, Value] = {key: shown(key, value) if isinstance(value, tuple) else value
-                               for key, value in (options or {}).items()}
+    goal = _steps(steps)
+    task = _discovery.task_name(task)
+    whole(eval_every, "eval_every", 1, (1 << 31) - 1)
+    if not hasattr(seed, "__index__"):
+        raise UsageError(f"seed: a whole number, not {seed!r}; {_OWN_SEED}")
+    whole(seed, "seed", 0, (1 << 64) - 1)
+    whole(envs, "envs", 1, (1 << 31) - 1)
+    whole(threads, "threads", 0, (1 << 31) - 1)
+    task_text = None if task_file is None else read_whole(task_file, "task file").decode(errors="replace")
+    asked: dict[str, Given] = dict(options or {})
     for key in [key for key in asked if _folded(key) == "cost_limit"]:
-        cost_limits = float(asked.pop(key)) if cost_limits is None else cost_limits
+        limit = float(asked.pop(key))  # type: ignore[arg-type]
+        cost_limits = limit if cost_limits is None else cost_limits
     of_task, of_algo = split_options(task, algo, asked)
     pool = Pool(task, envs, seed, threads, options=of_task)
     agent = Agent(pool, algo, seed, threads, of_algo, cost_limits)
@@ -354,7 +440,8 @@ def train(task: str, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, e
             run.folder = folder.path
             run.policy = run._own(run.policy)
             blank = _row(Epoch(_abi.rdm_epoch()), names, limits, 0, tested, (1.0, 0.0, 0.0))
-            folder.begin(_config(run, pool, of_task, of_algo, goal, threads, eval_every, per_epoch), ",".join(blank),
+            folder.begin(_config(run, pool, of_task, of_algo, goal, threads, eval_every, per_epoch, task_text),
+                         ",".join(blank),
                          bytes(run.policy))
         heard = stack.enter_context(_ends_after_epoch())
         stopped = False

@@ -77,7 +77,8 @@ class Worlds:
 
     def __setstate__(self, saved: dict[str, Any]) -> None:
         self.__dict__.update(saved)
-        self._take_rows()
+        if not self.pool._lost:  # else the first call says why
+            self._take_rows()
 
     @property
     def fields(self) -> dict[str, slice]:

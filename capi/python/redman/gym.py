@@ -109,9 +109,8 @@ class _Named:
 
     @property
     def cost_limits(self) -> Array:
-        """[cost_dim] limit on each cost's sum over an episode; NaN: none."""
-        limits = np.array([c.limit for c in self.pool.costs.values()])
-        return np.where(limits < 0, np.nan, limits)
+        """[cost_dim] limit on each cost's sum over an episode; NaN, as numpy writes None, where there is none."""
+        return np.array([c.limit for c in self.pool.costs.values()], np.float64)
 
     def _seen(self, rows: Array, env: Any = slice(None)) -> Any:
         """Rows as the observation space has them, with what those worlds see."""

@@ -14,7 +14,7 @@ namespace rdm {
 struct OccupancyConfig {
   double resolution = 0.02;   // side of a voxel, m, 0.001 to 10
   size_t memory = 64u << 20;  // bytes of tree and workspace at most, 1 MiB to 64 GiB
-  double max_range = 0;       // m: longer rays clear the way so far and say no more; 0: none is too long
+  double max_range = 4;       // m: longer rays clear the way so far and say no more; 0: none is too long
   double hit = 0.7,
          miss = 0.4;  // probability that a voxel is occupied, given a ray that ends or passes there
   double low = 0.1192, high = 0.971;  // probabilities are kept between these

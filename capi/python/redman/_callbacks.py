@@ -1,0 +1,39 @@
+"""Python functions that the library calls, as those of a task of your own: their exceptions are kept and raised."""
+from __future__ import annotations
+
+import ctypes
+from typing import Any, Callable
+
+from . import _abi
+from ._abi import ResultCode
+from ._error import NotFoundError, UsageError
+from ._library import raised
+from ._names import nearest
+
+
+def c_function(member: str, function: Callable[..., Any]) -> Any:
+    """A Python function as a member of a struct of redman.h: c_function("rdm_task_def.judge", judge).
+
+    It is called with the arguments that the header says; None and 0 are success. What it raises is the failure of that
+    call, and the cause of the redman.Error that the call from Python raises then. Keep the result as long as the library
+    may call it: as long as a task is registered.
+    """
+    struct, _, name = member.partition(".")
+    pointer: Any = getattr(ctypes, "_CFuncPtr")
+    members: dict[str, Any] = {f"{key}.{field[0]}": field[1] for key, kind in _abi.STRUCTS.items()
+                               for field in kind._fields_ if issubclass(field[1], pointer)}
+    if member not in members:
+        raise NotFoundError(f"{member}: no function of a struct of redman.h{nearest(member, members)}")
+    if not callable(function):
+        raise UsageError(f"{member}: a function, not {function!r}")
+    answers = members[member]._restype_ is ctypes.c_int32
+
+    def call(*arguments: Any) -> Any:
+        try:
+            code = function(*arguments)
+            return (0 if code is None else int(code)) if answers else code
+        except BaseException as error:
+            raised.append((name, error))
+            return int(ResultCode.INTERNAL) if answers else None
+
+    return members[member](call)
