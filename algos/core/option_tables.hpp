@@ -130,7 +130,7 @@ inline constexpr std::array kMultiplierOptions = {
     number_option("multiplier_max", 1e6, 0, kMaxMultiplier, "upper bound on the multiplier", true),
     number_option("multiplier_gain", 0, 0, 1e6,
                   "added to the multiplier per violation: damps its swings (augmented Lagrangian)", true),
-    flag_option("multiplier_normalized", false, "divide the violation by the limit"),
+    flag_option("multiplier_normalized", false, "divide the violation by the limit; at most 3"),
     integer_option("multiplier_warmup", 0, 0, 1 << 30, "epochs in which the multiplier's rate grows from 0",
                    true),
     integer_option("multiplier_window", 100, 1, 1000000, "finished episodes that J_c is the mean of"),

@@ -9,6 +9,10 @@
 namespace rdm {
 namespace {
 
+// In limits. Near a limit of 0 any cost would be an excess without bound, and the multiplier would jump to a
+// height that it never comes back from. At 0 itself each epoch with a cost counts as this much.
+constexpr double kMostExcess = 3;
+
 double softplus(double w) {
   return w > 30 ? w : elementary::log1p(elementary::exp(w));
 }
@@ -26,7 +30,7 @@ void Multiplier::reset(const MultiplierOptions& options) {
 
 void Multiplier::step(const MultiplierOptions& options, double cost, double limit, double warmth) {
   double e = cost - limit;
-  if (options.normalized) e /= std::max(limit, 1e-8);
+  if (options.normalized) e = std::min(e / std::max(limit, 1e-8), kMostExcess);
   const double rate = options.rate * warmth;
   if (options.optimizer == MultiplierOptimizer::kSgd) {
     raw_ += rate * e;

@@ -14,7 +14,7 @@ enum class MultiplierOptimizer : int32_t { kSgd, kAdam, kSoftplus };
 struct MultiplierOptions {
   MultiplierOptimizer optimizer = MultiplierOptimizer::kAdam;
   double init = 0.001, rate = 0.035, max = 1e6;
-  bool normalized = false;  // the violation is divided by the limit
+  bool normalized = false;  // the violation is divided by the limit, at most 3
   double gain = 0;          // of the augmented Lagrangian's term
 };
 

@@ -117,3 +117,15 @@ TEST(Multiplier, WarmthScalesTheStep) {
   m.step(o, 35, 25, 0.25);
   EXPECT_NEAR(m.value(), 0.025, 1e-15);
 }
+
+// A limit of 0 has no unit, and one near it makes any cost a thousand limits.
+TEST(Multiplier, NormalizedExcessIsBounded) {
+  MultiplierOptions o;
+  o.optimizer = MultiplierOptimizer::kSgd;
+  o.init = 0;
+  o.rate = 0.1;
+  o.normalized = true;
+  expect_close(respond(o, {7, 0, 250, 0.01}, 0), {0.3, 0.3, 0.6, 0.9});
+  expect_close(respond(o, {7, 0, 250}, 1e-3), {0.3, 0.2, 0.5});
+  expect_close(respond(o, {50, 75, 250, 0}), {0.1, 0.3, 0.6, 0.5});
+}
