@@ -219,7 +219,7 @@ void Agent::warn_of_limits(const EpisodeStats& stats) {
       "only broken by those that run; give max_steps, or option episode_steps or cost_limit_per_step");
 }
 
-void Agent::begin_epoch(const Judged&, int32_t) {
+void Agent::begin_epoch(const JudgedCosts&, int32_t) {
   follow_reward();
 }
 
@@ -251,7 +251,7 @@ BatchSums Agent::pass(const PolicyLoss* policy) {
   return sums;
 }
 
-double Agent::violation(const Judged& costs, int32_t i) const {
+double Agent::violation(const JudgedCosts& costs, int32_t i) const {
   const double gap = costs.known[i] ? costs.excess(i) : 0;
   const char* scale = resolved_.options.text("violation_scale");
   if (std::strcmp(scale, "raw") == 0) return gap;

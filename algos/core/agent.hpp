@@ -115,7 +115,7 @@ class Agent {
   virtual const PolicyLoss& policy_loss() const = 0;
   // After advantages were estimated, before the policy step: moves multipliers, sets gain and linear of the
   // rollout. Default: the reward advantage. epoch counts from 1.
-  virtual void begin_epoch(const Judged& costs, int32_t epoch);
+  virtual void begin_epoch(const JudgedCosts& costs, int32_t epoch);
   // gain becomes the reward advantage, linear 0.
   void follow_reward();
   // The steps of policy and critics. Default: passes over shuffled minibatches, stopped early by KL.
@@ -155,7 +155,7 @@ class Agent {
   const Batch& whole_batch() const { return collector_.listed(); }
   // J_c - limit of limited cost i in the units of a mean over decisions (option violation_scale); 0, at the
   // limit, while J_c is not known.
-  double violation(const Judged& costs, int32_t i) const;
+  double violation(const JudgedCosts& costs, int32_t i) const;
   const Rollout& rollout() const { return collector_.rollout(); }
 
  private:

@@ -56,7 +56,7 @@ FocopsRule::FocopsRule(const ResolvedAgentConfig& resolved)
       count_(resolved.num_limited),
       mix_(resolved.options.flag("multiplier_divide") ? Mix::kSum : Mix::kPlain) {}
 
-void FocopsRule::step(const Judged& costs, int32_t epoch) {
+void FocopsRule::step(const JudgedCosts& costs, int32_t epoch) {
   lagrange_.step(costs, epoch);
   int32_t worst = -1;
   for (int32_t i = 0; i < costs.count; ++i)

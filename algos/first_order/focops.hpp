@@ -40,7 +40,7 @@ class FocopsBase : public Agent {
 class FocopsRule {
  public:
   explicit FocopsRule(const ResolvedAgentConfig& resolved);
-  void step(const Judged& costs, int32_t epoch);
+  void step(const JudgedCosts& costs, int32_t epoch);
   double weight(int32_t i) const { return i == worst_ ? lagrange_.weight(i) : 0; }
   Mix mix() const { return mix_; }
   bool split() const { return false; }

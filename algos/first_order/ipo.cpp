@@ -20,7 +20,7 @@ void BarrierRule::read_live(const Options& o) {
   split_ = std::strcmp(o.text("cost_loss"), "split") == 0;
 }
 
-void BarrierRule::step(const Judged& costs, int32_t) {
+void BarrierRule::step(const JudgedCosts& costs, int32_t) {
   for (int32_t i = 0; i < count_; ++i)
     if (costs.known[i]) slope_[i] = barrier_slope(costs.cost[i], costs.limit[i], kappa_, max_);
 }
@@ -54,7 +54,7 @@ class Ipo final : public CostWeighted<Ppo, BarrierRule> {
     loss_.kappa = options().number("barrier_kappa");
     loss_.max = options().number("barrier_max");
   }
-  void begin_epoch(const Judged& costs, int32_t epoch) override {
+  void begin_epoch(const JudgedCosts& costs, int32_t epoch) override {
     CostWeighted::begin_epoch(costs, epoch);
     known_ = costs.any_known();
     if (!exact_) return;

@@ -36,7 +36,7 @@ class BarrierRule {
   explicit BarrierRule(const ResolvedAgentConfig& resolved) : count_(resolved.num_limited) {
     read_live(resolved.options);
   }
-  void step(const Judged& costs, int32_t epoch);
+  void step(const JudgedCosts& costs, int32_t epoch);
   double weight(int32_t i) const { return slope_[i]; }
   Mix mix() const { return Mix::kSum; }
   bool split() const { return split_; }

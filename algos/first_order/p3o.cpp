@@ -37,7 +37,7 @@ void P3o::read_live() {
   loss_.clip_cost = options().flag("penalty_clip");
 }
 
-void P3o::begin_epoch(const Judged& costs, int32_t epoch) {
+void P3o::begin_epoch(const JudgedCosts& costs, int32_t epoch) {
   Ppo::begin_epoch(costs, epoch);
   if (epoch > 1)
     kappa_ = std::min(kappa_ * options().number("penalty_growth"), options().number("penalty_max"));

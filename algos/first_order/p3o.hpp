@@ -37,7 +37,7 @@ class P3o final : public Ppo {
 
  protected:
   const PolicyLoss& policy_loss() const override { return loss_; }
-  void begin_epoch(const Judged& costs, int32_t epoch) override;
+  void begin_epoch(const JudgedCosts& costs, int32_t epoch) override;
   // The penalty is on where the minibatch's estimate of the constraint is above 0.
   void begin_minibatch(const Batch& batch) override;
   double cost_weight(int32_t) const override { return kappa_; }

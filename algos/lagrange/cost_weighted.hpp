@@ -13,7 +13,7 @@ class CostWeighted : public Base {
       : Base(std::move(resolved)), rule_(this->resolved()) {}
 
  protected:
-  void begin_epoch(const Judged& costs, int32_t epoch) override {
+  void begin_epoch(const JudgedCosts& costs, int32_t epoch) override {
     rule_.step(costs, epoch);
     double weights[kMaxCosts];
     for (int32_t i = 0; i < this->resolved().num_limited; ++i) weights[i] = rule_.weight(i);

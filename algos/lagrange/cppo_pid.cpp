@@ -33,7 +33,7 @@ void PidRule::read_live(const Options& o) {
   options_.max = mix_ == Mix::kDifference ? share : o.number("pid_max");
 }
 
-void PidRule::step(const Judged& costs, int32_t) {
+void PidRule::step(const JudgedCosts& costs, int32_t) {
   for (int32_t i = 0; i < count_; ++i)
     if (costs.fresh[i]) pid_[i].step(options_, costs.cost[i], costs.limit[i]);
 }

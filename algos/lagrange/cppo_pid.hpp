@@ -10,7 +10,7 @@ class PidRule {
  public:
   explicit PidRule(const ResolvedAgentConfig& resolved);
   // Each by its fresh cost; not without one.
-  void step(const Judged& costs, int32_t epoch);
+  void step(const JudgedCosts& costs, int32_t epoch);
   double weight(int32_t i) const { return pid_[i].value(); }
   Mix mix() const { return mix_; }
   bool split() const { return false; }

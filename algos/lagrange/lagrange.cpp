@@ -25,7 +25,7 @@ void Lagrange::read_live(const Options& o) {
   warmup_ = o.integer("multiplier_warmup");
 }
 
-void Lagrange::step(const Judged& costs, int32_t epoch) {
+void Lagrange::step(const JudgedCosts& costs, int32_t epoch) {
   const double warmth = warmup_ > 0 ? std::min(1.0, static_cast<double>(epoch - 1) / warmup_) : 1;
   for (int32_t i = 0; i < count_; ++i)
     if (costs.fresh[i]) multiplier_[i].step(options_, costs.cost[i], costs.limit[i], warmth);

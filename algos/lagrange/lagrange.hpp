@@ -12,7 +12,7 @@ class Lagrange {
   explicit Lagrange(const ResolvedAgentConfig& resolved);
   // Moves the multipliers by the episode costs that limits hold for; not without a fresh one. epoch
   // counts from 1 and drives the warm-up.
-  void step(const Judged& costs, int32_t epoch);
+  void step(const JudgedCosts& costs, int32_t epoch);
   double weight(int32_t i) const { return multiplier_[i].value(); }
   Mix mix() const { return Mix::kSum; }
   bool split() const { return split_; }

@@ -7,8 +7,8 @@ bool lacks_length(const ResolvedAgentConfig& resolved, const EpisodeStats& stats
   return resolved.num_limited > (resolved.rate_steps > 0 ? 1 : 0);
 }
 
-Judged judge(const ResolvedAgentConfig& resolved, const EpisodeStats& stats, const EpochTotals& totals) {
-  Judged j;
+JudgedCosts judge(const ResolvedAgentConfig& resolved, const EpisodeStats& stats, const EpochTotals& totals) {
+  JudgedCosts j;
   j.count = resolved.num_limited;
   for (int32_t i = 0; i < j.count; ++i) {
     const int32_t k = resolved.column[i];

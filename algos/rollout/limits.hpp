@@ -32,7 +32,7 @@ struct EpochTotals {
 };
 
 // Of limited cost i, [num_limited].
-struct Judged {
+struct JudgedCosts {
   int32_t count = 0;
   bool known[kMaxCosts] = {};
   bool fresh[kMaxCosts] = {};  // there is something new to judge by
@@ -47,6 +47,6 @@ struct Judged {
 
 // A limit is set for which neither ends nor a length nor a rate are known.
 bool lacks_length(const ResolvedAgentConfig& resolved, const EpisodeStats& stats);
-Judged judge(const ResolvedAgentConfig& resolved, const EpisodeStats& stats, const EpochTotals& totals);
+JudgedCosts judge(const ResolvedAgentConfig& resolved, const EpisodeStats& stats, const EpochTotals& totals);
 
 }  // namespace rdm

@@ -6,7 +6,7 @@
 
 namespace rdm {
 
-void Cpo::begin_epoch(const Judged& costs, int32_t epoch) {
+void Cpo::begin_epoch(const JudgedCosts& costs, int32_t epoch) {
   Trpo::begin_epoch(costs, epoch);
   cost_ = 0;
   for (int32_t i = 0; i < resolved().num_limited; ++i) {

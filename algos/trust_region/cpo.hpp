@@ -15,7 +15,7 @@ class Cpo : public Trpo {
   explicit Cpo(ResolvedAgentConfig&& resolved) : Trpo(std::move(resolved)) {}
 
  protected:
-  void begin_epoch(const Judged& costs, int32_t epoch) override;
+  void begin_epoch(const JudgedCosts& costs, int32_t epoch) override;
   double step_policy(const Batch& batch) override;
   bool constrained() const override { return true; }
   double cost_weight(int32_t i) const override { return i == cost_ ? nu_ : 0; }

@@ -13,8 +13,8 @@ AgentSetup sgd(const char* warmup = "0") {
   return s;
 }
 
-Judged costing(double cost, bool fresh = true) {
-  Judged j;
+JudgedCosts costing(double cost, bool fresh = true) {
+  JudgedCosts j;
   j.count = 1;
   j.known[0] = true, j.fresh[0] = fresh;
   j.cost[0] = cost, j.limit[0] = 25;

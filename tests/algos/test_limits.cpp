@@ -32,7 +32,7 @@ EpisodeStats ended(double cost, double length) {
 
 TEST(Limits, SumsOfFinishedEpisodesAreHeldAgainstTheLimit) {
   AgentSetup s = lag(25);
-  const Judged j = judge(resolve_config(s.ready()), ended(30, 100), running());
+  const JudgedCosts j = judge(resolve_config(s.ready()), ended(30, 100), running());
   EXPECT_TRUE(j.known[0] && j.fresh[0]);
   EXPECT_EQ(j.excess(0), 5);
   EXPECT_EQ(j.steps[0], 100);
@@ -40,7 +40,7 @@ TEST(Limits, SumsOfFinishedEpisodesAreHeldAgainstTheLimit) {
 
 TEST(Limits, RunningEpisodesCanOnlyBreakOne) {
   AgentSetup tight = lag(25), wide = lag(31);
-  const Judged broken = judge(resolve_config(tight.ready()), {}, running());
+  const JudgedCosts broken = judge(resolve_config(tight.ready()), {}, running());
   EXPECT_TRUE(broken.known[0] && broken.fresh[0]);
   EXPECT_DOUBLE_EQ(broken.excess(0), 0.1 * 300 - 25);
   EXPECT_FALSE(judge(resolve_config(wide.ready()), {}, running()).known[0]);
@@ -61,7 +61,7 @@ TEST(Limits, ALimitPerStepIsASumOverAnEpisodesLength) {
     s.options.push_back({"cost_limit_per_step", nullptr, 0.05});
     s.config.max_steps = max_steps;
     const double steps = max_steps > 0 ? max_steps : kRateSteps;
-    const Judged j = judge(resolve_config(s.ready()), ended(3, 7), running());
+    const JudgedCosts j = judge(resolve_config(s.ready()), ended(3, 7), running());
     EXPECT_TRUE(j.known[0] && j.fresh[0]);
     EXPECT_NEAR(j.cost[0], 0.1 * steps, 1e-12);
     EXPECT_NEAR(j.limit[0], 0.05 * steps, 1e-12);

@@ -24,7 +24,7 @@ TEST(P3o, TheLimitIsInTheUnitsOfADecision) {
     using Ppo::Ppo;
     using Ppo::violation;
   };
-  Judged costs;
+  JudgedCosts costs;
   costs.count = 1, costs.known[0] = true, costs.steps[0] = 40, costs.cost[0] = 35, costs.limit[0] = 25;
   const std::pair<const char*, double> wanted[] = {{nullptr, 0.5}, {"discount", 1.9}, {"raw", 10}};
   for (const auto& [scale, violation] : wanted) {

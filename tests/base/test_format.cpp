@@ -30,7 +30,8 @@ std::string ours(const char* pattern, T... values) {
 
 TEST(PrintText, SaysWhatPrintfSays) {
   SAME_AS_PRINTF("plain %% text");
-  for (const double x : {0.0, -0.0, 1.0, 0.5, -1234.56789, 1e-300, 1e22, DBL_MAX, INFINITY, -INFINITY, NAN}) {
+  const double huge = HUGE_VAL, nothing = std::nan("");
+  for (const double x : {0.0, -0.0, 1.0, 0.5, -1234.56789, 1e-300, 1e22, DBL_MAX, huge, -huge, nothing}) {
     SAME_AS_PRINTF("%g", x);
     SAME_AS_PRINTF("[%.9g, %+e]", x, x);
     SAME_AS_PRINTF("%12.3f|%-12.3f|%012.3f|% .2E|%.0f|%.17g", x, x, x, x, x, x);

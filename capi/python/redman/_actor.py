@@ -22,7 +22,7 @@ def worlds_of(where: Any) -> tuple[Optional[Pool], Any]:
     """The pool of an environment, and its worlds: those of redman.gym, sb3, safety and omnisafe, wrapped or not."""
     if isinstance(where, Pool):
         return where, None
-    inner = where
+    inner: Any = where
     for _ in range(64):  # wrappers
         worlds = getattr(inner, "worlds", None) or getattr(inner, "_worlds", None)
         if isinstance(getattr(worlds, "pool", None), Pool):

@@ -95,7 +95,7 @@ class _Plays:
 
     def _decided(self) -> Any:
         if not hasattr(self._player, "predict"):
-            return self._player(self._pool.obs)
+            return self._player(self._pool.obs)  # type: ignore[operator]
         obs = self._pool.obs
         normalizer = getattr(self._player, "get_vec_normalize_env", lambda: None)()
         if normalizer is not None:  # what its observations went through while it learned

@@ -13,7 +13,7 @@ import numpy as np
 
 from . import _abi, _discovery
 from ._actor import Actor
-from ._error import ArgumentError, FileError, FormatError, MissingFileError
+from ._error import ArgumentError, FileError, FormatError, MissingFileError, VersionError
 from ._files import read_whole, write_whole
 from ._hold import decided, warn
 from ._library import Handle, check, filled, lib, policy_folders

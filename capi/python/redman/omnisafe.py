@@ -117,7 +117,7 @@ class Redman(CMDP):
     def _flags(self) -> dict[str, Any]:
         """What went wrong in each world: RDM_STATUS_* of the step, and all of the episode."""
         w = self._worlds
-        return {key: torch.from_numpy(rows.astype(np.int64)[slice(None) if self._num_envs > 1 else 0:1])
+        return {key: torch.from_numpy(rows.astype(np.int64))
                 for key, rows in (("status", w.status), ("episode_status", w.episode_status))}
 
     def _tensor(self, rows: Array) -> Any:

@@ -11,7 +11,7 @@ namespace {
 class Rectify {
  public:
   explicit Rectify(const ResolvedAgentConfig&) {}
-  void step(const Judged& costs, int32_t) {
+  void step(const JudgedCosts& costs, int32_t) {
     if (!costs.any_known()) return;
     violated_ = -1;
     for (int32_t i = 0; i < costs.count && violated_ < 0; ++i)
