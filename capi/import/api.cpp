@@ -78,11 +78,12 @@ rdm_import_options defaults() {
 Options read_options(const rdm_import_options* in) {
   rdm_import_options o = defaults();
   if (in) {
-    constexpr size_t first = sizeof o;
+    // What the first version of the struct ended with.
+    constexpr size_t first = offsetof(rdm_import_options, mend_inertia) + sizeof o.mend_inertia;
     if (in->struct_size < first || in->struct_size > kMaxStruct)
       refuse(RDM_ARGUMENT, "options.struct_size: %u is outside [%zu, %zu]; set it by rdm_import_options_init",
              in->struct_size, first, kMaxStruct);
-    std::memcpy(&o, in, first);
+    std::memcpy(&o, in, std::min<size_t>(in->struct_size, sizeof o));
     if (o.error && o.error_size < 1)
       refuse(RDM_RANGE, "options.error_size: %d is less than 1, but error is set", o.error_size);
     if (o.format < RDM_IMPORT_AUTO || o.format > RDM_IMPORT_ROBOT)
@@ -93,6 +94,10 @@ Options read_options(const rdm_import_options* in) {
       refuse(RDM_RANGE, "options.skip_meshes: %d is outside [0, 1]", o.skip_meshes);
     if (o.mend_inertia != 0 && o.mend_inertia != 1)
       refuse(RDM_RANGE, "options.mend_inertia: %d is outside [0, 1]", o.mend_inertia);
+    if (!(o.density >= 0 && o.density <= 1e5))
+      refuse(RDM_RANGE, "options.density: %g is outside [0, 1e5]", o.density);
+    if (!(o.slide_range >= 0 && o.slide_range <= 1e6))
+      refuse(RDM_RANGE, "options.slide_range: %g is outside [0, 1e6]", o.slide_range);
   }
   Options out;
   const auto text = [](const char* t) { return std::string(t ? t : ""); };
@@ -100,6 +105,8 @@ Options read_options(const rdm_import_options* in) {
   out.kind = o.kind;
   out.skip_meshes = o.skip_meshes != 0;
   out.mend_inertia = o.mend_inertia != 0;
+  out.density = o.density;
+  out.slide_range = o.slide_range;
   out.name = text(o.name);
   out.folder = text(o.folder);
   if (!out.folder.empty() && out.folder.back() != '/') out.folder += '/';
@@ -136,8 +143,15 @@ void try_create(rdm_robot_def def) {
   def.num_links = 0;
   (void)rdm_robot_create(&robot, &def);
   text = rdm_last_error();
+  if (text.find("the name is taken") != std::string::npos) text += ": options.name says another";
   if (text.find("the name is") != std::string::npos || text.find("a name is made of") != std::string::npos)
     refuse(RDM_ARGUMENT, "%s", text.c_str());
+}
+
+// XML that is not well-formed up to its first element too.
+bool begins_as_xml(const std::string& bytes) {
+  const size_t at = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return at != std::string::npos && bytes[at] == '<';
 }
 
 void read(const std::string& bytes, const Options& options, Draft* out) {
@@ -145,7 +159,9 @@ void read(const std::string& bytes, const Options& options, Draft* out) {
   if (format == RDM_IMPORT_AUTO) {
     const std::string element = first_element(bytes);
     format = element == "mujoco" || element == "mujocoinclude" ? RDM_IMPORT_MJCF
-             : element.empty()                                 ? RDM_IMPORT_ROBOT
+             : !element.empty()                                ? RDM_IMPORT_URDF
+             : !begins_as_xml(bytes)                           ? RDM_IMPORT_ROBOT
+             : bytes.find("<mujoco") != std::string::npos      ? RDM_IMPORT_MJCF
                                                                : RDM_IMPORT_URDF;
   }
   if (format == RDM_IMPORT_MJCF)

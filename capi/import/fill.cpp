@@ -1,6 +1,7 @@
 #include "fill.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -89,14 +90,33 @@ Mass surface_mass(const Mesh& mesh) {
   return out;
 }
 
-Mass scaled(double factor, Mass m) {
+}  // namespace
+
+Mass scaled(double factor, const Mass& in) {
+  Mass m = in;
   m.mass *= factor;
   for (auto& row : m.moment)
     for (double& x : row) x *= factor;
   return m;
 }
 
-}  // namespace
+bool is_closed(const Mesh& mesh) {
+  std::map<std::tuple<double, double, double>, uint32_t> corners;  // the first of each place
+  const auto corner = [&](uint32_t k) {
+    const V3& p = mesh.points[k];
+    return corners.emplace(std::make_tuple(p.x, p.y, p.z), k).first->second;
+  };
+  std::map<std::pair<uint32_t, uint32_t>, int> edges;
+  for (const auto& f : mesh.faces) {
+    const uint32_t c[3] = {corner(f[0]), corner(f[1]), corner(f[2])};
+    for (size_t k = 0; k < 3; ++k)
+      if (c[k] != c[(k + 1) % 3]) ++edges[{c[k], c[(k + 1) % 3]}];
+  }
+  return !edges.empty() && std::all_of(edges.begin(), edges.end(), [&](const auto& e) {
+    const auto back = edges.find({e.first.second, e.first.first});
+    return back != edges.end() && back->second == e.second;
+  });
+}
 
 Mass filled(const Mesh& mesh, Fill how) {
   if (how == Fill::kConvex || mesh.faces.empty()) {

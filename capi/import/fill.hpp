@@ -14,6 +14,9 @@ enum class Fill {
 
 // The surface alone, in its own pose; an ellipsoid's area is Thomsen's.
 Mass shell(const Primitive& s);
+// Whether each edge has a triangle to either side, which go about it in opposite ways.
+bool is_closed(const Mesh& mesh);
+Mass scaled(double factor, const Mass& m);
 // Mass 0 for a surface that encloses nothing.
 Mass filled(const Mesh& mesh, Fill how);
 // The hull's triangles, turned outwards; no faces for points in one plane. RANGE above 4096 corners.

@@ -85,6 +85,7 @@ std::string write_object(const rdm_object_def& def);
 struct Options {
   int32_t format = RDM_IMPORT_AUTO, kind = -1;
   bool skip_meshes = false, mend_inertia = false;
+  double density = 0, slide_range = 0;
   std::string name, folder, packages, root, palm, tips, mount, flange;
   bool has_folder = false;
   std::string file;  // as it is named in texts

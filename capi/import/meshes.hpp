@@ -10,8 +10,9 @@ class Meshes {
   // NULL: it cannot be read and options.skip_meshes is set (a note says so); else refused at the element.
   const Mesh* find(const Element& e, const std::string& path);
   // Where "package://hand/meshes/palm.stl" lies: in options.packages, else in the nearest folder above the
-  // file that has it, with or without the package's name; "" when nowhere.
-  std::string resolved(const std::string& name) const;
+  // file that has it; where none has, without the package's name, with a note. "\" is tried as "/". "" when
+  // nowhere.
+  std::string resolved(const Element& e, const std::string& name) const;
 
  private:
   const Options& options_;

@@ -51,9 +51,12 @@ void MjcfReader::add_joint(const Element& e, const Pose& frame, const std::strin
     j.lower = scaled(n[0]), j.upper = scaled(n[1]);
     if (!(j.lower < j.upper)) refuse_at(RDM_RANGE, e, "the range [%g, %g] is empty", n[0], n[1]);
   } else {
-    j.lower = -2 * M_PI, j.upper = 2 * M_PI;
-    out->note(RDM_NOTE_CHANGED, e.line, "joint %s %s without end: its range is +-2 pi%s%s",
-              clean(j.name).c_str(), j.slides ? "slides" : "turns", j.slides ? " m" : "", in_file(e).c_str());
+    j.upper = most_of(options, j.slides);
+    j.lower = -j.upper;
+    const std::string end = j.slides && options.slide_range > 0 ? format("%g", j.upper) : "2 pi";
+    out->note(RDM_NOTE_CHANGED, e.line, "joint %s %s without end: its range is +-%s%s%s",
+              clean(j.name).c_str(), j.slides ? "slides" : "turns", end.c_str(), j.slides ? " m" : "",
+              in_file(e).c_str());
   }
   j.turned = scaled(number_of(e, "ref", c, 0));
   j.armature = number_of(e, "armature", c, 0);

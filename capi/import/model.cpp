@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cstring>
 
+#include "latin.hpp"
+
 namespace rdm::import {
 namespace {
 
@@ -11,13 +13,14 @@ constexpr size_t kMostRows = 4096;    // of shapes, of pairs: so too
 constexpr size_t kLongestName = 25;   // what rdm_robot_create takes
 constexpr double kReachAngle = 0.2;   // rad off the target where kp gives the whole effort
 constexpr double kReachSlide = 0.02;  // m
+constexpr double kMostGain = 1e6;     // what rdm_robot_create takes
 constexpr double kGravity = 9.81;
 
-// Letters, digits, '_', '-', '+'; not empty, not too long, not taken.
+// Letters (of other scripts: as latin() has them), digits, '_', '-', '+'; not empty, not too long, not taken.
 std::string fitting_name(const std::string& name, const char* otherwise,
                          const std::vector<std::string>& taken) {
   std::string out;
-  for (const char c : name)
+  for (const char c : latin(name))
     out += std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-+", c) ? c : '_';
   if (out.empty()) out = otherwise;
   if (out.size() > kLongestName) out = out.substr(out.size() - kLongestName);  // endings tell more
@@ -178,7 +181,11 @@ struct Builder {
       const bool carries =
           std::any_of(out->links.begin(), out->links.end(),
                       [&](const rdm_robot_link& other) { return other.parent == static_cast<int32_t>(r); });
-      if (!carries) refuse_at(RDM_RANGE, *bodies[r]->element, "it moves and has no mass");
+      if (!carries) refuse_at(RDM_RANGE, *bodies[r]->element, "it moves and has no mass%s", in.massless_hint);
+    }
+    if (!(root.mass > 0) && root.moment != M3{}) {  // it stands: nothing feels them
+      out->note(RDM_NOTE_DROPPED, in.bodies[0].element->line, "the root's moments of inertia, without mass");
+      root.moment = {};
     }
     out->def.root_mass = root.mass;
     put(root.com, out->def.root_com);
@@ -273,7 +280,7 @@ struct Builder {
                   l.joint, l.effort);
       }
       const double reach = j.slides ? kReachSlide : kReachAngle;
-      l.kp = j.kp >= 0 ? j.kp : l.effort / reach;
+      l.kp = j.kp >= 0 ? j.kp : std::min(l.effort / reach, kMostGain);
       l.kd = std::max(j.kd, 0.0) + j.damping;
       if (j.damping_ratio > 0) l.kd += j.damping_ratio * 2 * std::sqrt(l.kp * felt_as_drawn[r]);
       if (j.kp < 0 || l.kd == 0) l.kd = std::max(l.kd, 2 * std::sqrt(l.kp * felt[r]));

@@ -61,7 +61,13 @@ struct Model {
   std::vector<std::pair<std::string, std::string>>
       excluded;                        // names of bodies whose shapes pass through each other
   std::map<std::string, double> home;  // by joint
+  const char* massless_hint = "";      // ends the refusal of a body that moves and has no mass
 };
+
+// How far a joint without an end goes to either side, rad or m.
+inline double most_of(const Options& options, bool slides) {
+  return slides && options.slide_range > 0 ? options.slide_range : 2 * M_PI;
+}
 
 // Where a body or a frame of the file went: `row` of links (RDM_ROOT_LINK), its pose there.
 struct Place {

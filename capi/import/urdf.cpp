@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fill.hpp"
 #include "meshes.hpp"
+#include "urdf_table.hpp"
 #include "xml.hpp"
 
 namespace rdm::import {
@@ -26,6 +28,7 @@ struct Reader {
   static std::string needed(const Element& e, const char* attribute) {
     const std::string* text = e.get(attribute);
     if (!text || text->empty()) refuse_at(RDM_FORMAT, e, "no %s", attribute);
+    refuse_xacro(e, attribute, *text);
     return *text;
   }
   static double given(const Element& e, const char* attribute, double otherwise) {
@@ -37,6 +40,13 @@ struct Reader {
     if (const Element* o = e.child("origin")) {
       if (const std::string* xyz = o->get("xyz")) X.p = vector3(*o, "xyz", *xyz);
       if (const std::string* rpy = o->get("rpy")) X.q = from_rpy(vector3(*o, "rpy", *rpy));
+      if (const std::string* quat = o->get("quat_xyzw")) {
+        if (o->find("rpy")) refuse_at(RDM_FORMAT, *o, "rpy and quat_xyzw");
+        const auto n = numbers(*o, "quat_xyzw", *quat, 4, 4);
+        if (n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3] < 1e-18)
+          refuse_at(RDM_ARGUMENT, *o, "quat_xyzw: its length is 0");
+        X.q = normalized({n[0], n[1], n[2], n[3]});
+      }
     }
     return X;
   }
@@ -98,32 +108,65 @@ struct Reader {
     return root->find("name")->value;
   }
 
-  Mass mass_of(const Element& l) {
+  // `moves`: by a joint of its own. What is fixed may have moments alone, which what carries it takes.
+  Mass mass_of(const Element& l, bool moves) {
     Mass out_mass;
     const Element* inertial = l.child("inertial");
     if (!inertial) return out_mass;
+    const std::string what = "link " + clean(l.find("name")->value);
     const Element *mass = inertial->child("mass"), *inertia = inertial->child("inertia");
-    if (!mass) refuse_at(RDM_FORMAT, *inertial, "link %s has no mass", clean(l.find("name")->value).c_str());
-    if (!inertia)
-      refuse_at(RDM_FORMAT, *inertial, "link %s has no inertia", clean(l.find("name")->value).c_str());
+    if (!mass) refuse_at(RDM_FORMAT, *inertial, "%s has no mass", what.c_str());
+    if (!inertia) refuse_at(RDM_FORMAT, *inertial, "%s has no inertia", what.c_str());
     const Pose X = origin_of(*inertial);
     const double m = number(*mass, "value", needed(*mass, "value"));
     double i[6];
     const char* const keys[6] = {"ixx", "iyy", "izz", "ixy", "ixz", "iyz"};
     for (int k = 0; k < 6; ++k) i[k] = given(*inertia, keys[k], 0);
+    const char* const mirrored[3] = {"iyx", "izx", "izy"};
+    for (int k = 0; k < 3; ++k)
+      if (given(*inertia, mirrored[k], i[3 + k]) != i[3 + k])
+        refuse_at(RDM_FORMAT, *inertia, "%s: %s is not %s", what.c_str(), mirrored[k], keys[3 + k]);
     const M3 moment{{{i[0], i[3], i[4]}, {i[3], i[1], i[5]}, {i[4], i[5], i[2]}}};
-    if (m == 0 && std::all_of(i, i + 6, [](double x) { return x == 0; })) {
-      out->note(RDM_NOTE_CHANGED, mass->line, "link %s has no mass", clean(l.find("name")->value).c_str());
-      return out_mass;
+    const bool point = std::all_of(i, i + 6, [](double x) { return x == 0; });
+    if (m == 0 && (point || !moves)) {
+      Mass one{1, {}, moment};
+      if (!point) check_mass(*inertia, what, options.mend_inertia, &one, out);
+      out->note(RDM_NOTE_CHANGED, mass->line, "%s has no mass%s", what.c_str(),
+                point ? "" : "; its moments are part of what carries it");
+      return X * Mass{0, {}, one.moment};
     }
-    const std::string what = "link " + clean(l.find("name")->value);
     if (!(m > 0)) refuse_at(RDM_RANGE, *mass, "%s: the mass %g is not above 0", what.c_str(), m);
     Mass read{m, {}, moment};
     check_mass(*inertia, what, options.mend_inertia, &read, out);
     return X * read;
   }
 
-  void add_shapes(const Element& l, BodyIn* body) {
+  // At the density that options say for links without inertial, or an inertial's own (Isaac Gym's way).
+  double density_of(const Element& l) const {
+    const Element* inertial = l.child("inertial");
+    if (!inertial) return options.density;
+    const Element* density = inertial->child("density");
+    return density && !inertial->child("mass") ? number(*density, "value", needed(*density, "value")) : 0;
+  }
+  // Of density 1: inside a closed surface, else of its hull, else of the shape that stands for it.
+  static Mass mass_of(const Mesh& mesh, const Primitive& shape) {
+    Mass one = is_closed(mesh) ? filled(mesh, Fill::kExact) : Mass{};
+    if (!(one.mass > 0)) try {
+        one = filled(mesh, Fill::kConvex);
+      } catch (const Refusal&) {  // too many corners
+      }
+    return one.mass > 0 ? one : solid(shape);
+  }
+  void weigh(const Element& l, double density, BodyIn* body) {
+    for (const Mass& m : weighed) body->mass = body->mass + scaled(density, m);
+    if (body->mass.mass > 0)
+      out->note(RDM_NOTE_GUESSED, l.line, "link %s: mass %.4g, of its shapes at %g kg/m3",
+                clean(body->name).c_str(), body->mass.mass, density);
+  }
+  std::vector<Mass> weighed;  // shapes of the link at hand, of density 1
+
+  void add_shapes(const Element& l, BodyIn* body, bool weighs) {
+    weighed.clear();
     for (const Element* c : l.all("collision")) {
       ShapeIn s;
       s.element = c;
@@ -159,6 +202,7 @@ struct Reader {
         std::vector<V3> points = mesh->points;
         for (V3& v : points) v = {scale.x * v.x, scale.y * v.y, scale.z * v.z};
         p = around(points);
+        if (weighs) weighed.push_back(X * mass_of(Mesh{points, mesh->faces}, p));
         p.X = X * p.X;
         out->note(RDM_NOTE_CHANGED, g->line, "mesh %s is %s", clean(file).c_str(),
                   p.kind == RDM_BOX       ? "a box"
@@ -169,6 +213,7 @@ struct Reader {
         if (g->tag != "sphere")
           p = {g->tag == "cylinder" ? RDM_CYLINDER : RDM_CAPSULE, {p.size.x, size("length") / 2, 0}, X};
       }
+      if (weighs && g->tag != "mesh") weighed.push_back(solid(p));
       body->shapes.push_back(s);
     }
   }
@@ -192,15 +237,32 @@ struct Reader {
       out->note(RDM_NOTE_CHANGED, j.element->line, "joint %s turns without end: its range is +-2 pi",
                 clean(j.name).c_str());
     } else {
-      o.lower = given(*limit, "lower", 0);
-      o.upper = given(*limit, "upper", 0);
+      const double most = most_of(options, o.slides);
+      const auto end = [&](const char* key) {
+        const std::string* text = limit->get(key);
+        const double x = text ? bound(*limit, key, *text) : 0;
+        if (std::isfinite(x)) return x;
+        out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: %s %s is none: %g", clean(j.name).c_str(), key,
+                  clean(*text).c_str(), std::copysign(most, x));
+        return std::copysign(most, x);
+      };
+      o.lower = end("lower");
+      o.upper = end("upper");
       if (!(o.lower < o.upper))
         refuse_at(RDM_RANGE, *limit, "joint %s: the range [%g, %g] is empty", clean(j.name).c_str(), o.lower,
                   o.upper);
     }
     if (limit) {
-      o.effort = given(*limit, "effort", -1);
-      o.velocity = std::max(given(*limit, "velocity", 0), 0.0);
+      const auto most = [&](const char* key, double otherwise) {  // infinite: not said
+        const std::string* text = limit->get(key);
+        const double x = text ? bound(*limit, key, *text) : otherwise;
+        if (std::isfinite(x)) return x;
+        out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: %s %s is no bound", clean(j.name).c_str(), key,
+                  clean(*text).c_str());
+        return otherwise;
+      };
+      o.effort = most("effort", -1);
+      o.velocity = std::max(most("velocity", 0), 0.0);
     }
     if (const Element* dynamics = j.element->child("dynamics")) {
       o.damping = std::max(given(*dynamics, "damping", 0), 0.0);
@@ -235,8 +297,11 @@ struct Reader {
           if (const Element* e = joint->element->child(tag)) mark(*e);
       }
     }
-    body.mass = mass_of(l);
-    add_shapes(l, &body);
+    const double density = density_of(l);
+    if (density < 0) refuse_at(RDM_RANGE, l, "density: %g is below 0", density);
+    if (density == 0) body.mass = mass_of(l, !body.joints.empty());
+    add_shapes(l, &body, density > 0);
+    if (density > 0) weigh(l, density, &body);
     model.bodies.push_back(std::move(body));
     const int self = static_cast<int>(model.bodies.size()) - 1;
     for (const Joint& j : joints)
@@ -249,6 +314,8 @@ struct Reader {
 
   void read() {
     robot.get("name");
+    if (options.density == 0)
+      model.massless_hint = ": options.density gives one to links without inertial, of their collision";
     model.name = robot.find("name") ? robot.find("name")->value : "";
     find_links();
     find_joints();
@@ -276,9 +343,7 @@ struct Reader {
 void read_urdf(const std::string& bytes, const Options& options, Draft* out) {
   const auto robot = parse_xml(bytes, options, false);
   if (robot->tag != "robot") refuse_at(RDM_FORMAT, *robot, "no URDF: the first element is not robot");
-  for (const auto& child : robot->children)
-    if (child->tag.find(':') != std::string::npos && child->tag.rfind("xacro:", 0) == 0)
-      refuse_at(RDM_UNSUPPORTED, *child, "xacro is not read: expand the file with the xacro tool first");
+  check_urdf(*robot);
   Reader reader(*robot, options, out);
   reader.read();
   list_dropped(*robot, out);

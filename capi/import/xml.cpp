@@ -2,6 +2,8 @@
 
 #include <tinyxml2.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdarg>
 #include <cstring>
 
@@ -13,6 +15,56 @@ namespace {
 
 constexpr size_t kMostElements = 200000;
 constexpr int kMostIncludes = 16;  // deep
+constexpr double kLargest = 1e9;   // of a number
+
+const char* reason_of(tinyxml2::XMLError e) {
+  switch (e) {
+    case tinyxml2::XML_ERROR_PARSING_DECLARATION:
+      return "the declaration <?xml ...?> must stand first in the file, before comments too";
+    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
+      return "an attribute that is not name=\"value\"";
+    case tinyxml2::XML_ERROR_PARSING_TEXT:
+      return "a text that does not end";
+    case tinyxml2::XML_ERROR_PARSING_CDATA:
+      return "a CDATA section that does not end";
+    case tinyxml2::XML_ERROR_PARSING_COMMENT:
+      return "a comment that does not end";
+    case tinyxml2::XML_ERROR_PARSING_UNKNOWN:
+      return "a <! that does not end";
+    case tinyxml2::XML_ERROR_PARSING_ELEMENT:
+      return "an element that does not end";
+    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
+      return "an element that another one's end closes, or nothing";
+    case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
+      return "nothing stands in it";
+    case tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED:
+      return "elements too deep in each other";
+    default:
+      return tinyxml2::XMLDocument::ErrorIDToName(e);
+  }
+}
+
+// A DOCTYPE alone says nothing; entities and what other files declare would change values unseen.
+void refuse_doctype(const std::string& bytes, const std::string& file) {
+  for (size_t at = 0; (at = bytes.find('<', at)) != std::string::npos; ++at) {
+    if (bytes.compare(at, 4, "<!--") == 0) {
+      at = bytes.find("-->", at);
+      if (at == std::string::npos) return;
+      continue;
+    }
+    if (bytes.compare(at, 2, "<?") == 0) continue;
+    if (bytes.compare(at, 9, "<!DOCTYPE") != 0) return;
+    const std::string text = bytes.substr(at, bytes.find('>', at) - at);
+    const auto line = 1 + std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    for (const char* word : {"[", "SYSTEM", "PUBLIC"})
+      if (text.find(word) != std::string::npos)
+        refuse(RDM_UNSUPPORTED,
+               "line %ld%s: DOCTYPE: entities and files of declarations are not read: write the values "
+               "themselves",
+               static_cast<long>(line), file.empty() ? "" : (" of " + clean(file)).c_str());
+    return;
+  }
+}
 
 struct Parser {
   const Options& options;
@@ -28,6 +80,8 @@ struct Parser {
     e->line = x.GetLineNum();
     for (const auto* a = x.FirstAttribute(); a; a = a->Next())
       e->attributes.push_back({a->Name(), a->Value(), false});
+    if (e->tag.rfind("xacro:", 0) == 0)
+      refuse_at(RDM_UNSUPPORTED, *e, "xacro is not read: expand the file with the xacro tool first");
     for (const auto* c = x.FirstChildElement(); c; c = c->NextSiblingElement()) {
       if (includes && std::strcmp(c->Name(), "include") == 0)
         include(*c, file, depth, e.get());
@@ -56,11 +110,12 @@ struct Parser {
   }
 
   std::unique_ptr<Element> parse(const std::string& bytes, const std::string& file, int depth) {
+    refuse_doctype(bytes, file);
     tinyxml2::XMLDocument document;
     const auto result = document.Parse(bytes.data(), bytes.size());
     const std::string of = file.empty() ? "" : " of " + clean(file);
     if (result != tinyxml2::XML_SUCCESS)
-      refuse(RDM_FORMAT, "line %d%s: no XML: %s", document.ErrorLineNum(), of.c_str(), document.ErrorName());
+      refuse(RDM_FORMAT, "line %d%s: no XML: %s", document.ErrorLineNum(), of.c_str(), reason_of(result));
     const auto* root = document.RootElement();
     if (!root) refuse(RDM_FORMAT, "line 1%s: no element", of.c_str());
     return copy(*root, file, depth);
@@ -136,7 +191,9 @@ std::string first_element(const std::string& bytes) {
   for (;;) {
     at = bytes.find_first_not_of(" \t\r\n", at);
     if (at == std::string::npos || bytes[at] != '<') return "";
-    if (skip("<?", "?>") || skip("<!--", "-->") || skip("<!", ">")) continue;
+    if (skip("<?", "?>") || skip("<!--", "-->")) continue;
+    const size_t subset = bytes.find_first_of("[>", at);  // of a DOCTYPE
+    if (skip("<!", subset != std::string::npos && bytes[subset] == '[' ? "]>" : ">")) continue;
     const size_t end = bytes.find_first_of(" \t\r\n/>", at + 1);
     return bytes.substr(at + 1, end == std::string::npos ? end : end - at - 1);
   }
@@ -159,21 +216,52 @@ void refuse_at(rdm_result code, const Element& e, const char* pattern, ...) {
   refuse(code, "%s: %s", where(e).c_str(), text);
 }
 
+namespace {
+
+bool is_space(char x) {
+  return x == ' ' || x == '\t' || x == '\n' || x == '\r' || x == ',';
+}
+// The next number of a text, which may be infinite; NaN: there is none.
+double next_number(const char** at, const char* end) {
+  const char* c = *at;
+  if (*c == '+' && c + 1 != end && c[1] != '-') ++c;
+  double value = 0;
+  const auto [after, error] = from_chars(c, end, value);
+  if (after != end && !is_space(*after)) return NAN;
+  if (error == std::errc::result_out_of_range) {
+    const std::string text(c, after);
+    const bool small = text.find("e-") != std::string::npos || text.find("E-") != std::string::npos;
+    value = small ? 0 : *c == '-' ? -INFINITY : INFINITY;
+  } else if (error != std::errc()) {
+    return NAN;
+  }
+  *at = after;
+  return value;
+}
+
+}  // namespace
+
+void refuse_xacro(const Element& e, const char* attribute, const std::string& text) {
+  if (text.find("${") != std::string::npos || text.find("$(") != std::string::npos)
+    refuse_at(RDM_UNSUPPORTED, e, "%s: %s: xacro is not read: expand the file with the xacro tool first",
+              attribute, clean(text).c_str());
+}
+
 std::vector<double> numbers(const Element& e, const char* attribute, const std::string& text, size_t least,
                             size_t most) {
   std::vector<double> out;
   const char *c = text.data(), *end = c + text.size();
-  const auto space = [](char x) { return x == ' ' || x == '\t' || x == '\n' || x == '\r' || x == ','; };
   while (true) {
-    while (c != end && space(*c)) ++c;
+    while (c != end && is_space(*c)) ++c;
     if (c == end) break;
-    if (*c == '+' && c + 1 != end && c[1] != '-') ++c;
-    double value = 0;
-    const auto [after, error] = from_chars(c, end, value);
-    if (error != std::errc() || (after != end && !space(*after)) || !(std::abs(value) <= 1e9))
+    const double value = next_number(&c, end);
+    if (std::isnan(value)) {
+      refuse_xacro(e, attribute, text);
       refuse_at(RDM_FORMAT, e, "%s: %s is no number", attribute, clean(text).c_str());
+    }
+    if (!(std::abs(value) <= kLargest))
+      refuse_at(RDM_RANGE, e, "%s: %s is outside [-1e9, 1e9]", attribute, clean(text).c_str());
     out.push_back(value);
-    c = after;
     if (out.size() > most) break;
   }
   if (out.size() < least || out.size() > most) {
@@ -182,6 +270,15 @@ std::vector<double> numbers(const Element& e, const char* attribute, const std::
               most == 1 ? "" : "s");
   }
   return out;
+}
+
+double bound(const Element& e, const char* attribute, const std::string& text) {
+  const char *c = text.data(), *end = c + text.size();
+  while (c != end && is_space(*c)) ++c;
+  const double value = c == end ? NAN : next_number(&c, end);
+  while (c != end && is_space(*c)) ++c;
+  if (std::isnan(value) || c != end) return number(e, attribute, text);  // which says why
+  return std::abs(value) <= kLargest ? value : std::copysign(INFINITY, value);
 }
 
 double number(const Element& e, const char* attribute, const std::string& text) {

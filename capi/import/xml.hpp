@@ -33,10 +33,14 @@ std::unique_ptr<Element> parse_xml(const std::string& bytes, const Options& opti
 std::string where(const Element& e);
 [[noreturn]] [[gnu::format(printf, 3, 4)]] void refuse_at(rdm_result code, const Element& e,
                                                           const char* format, ...);
-// The numbers of a text; refuses what is no number, not finite or beyond 1e9.
+// The numbers of a text; refuses what is no number, not finite or beyond 1e9, each with its reason.
 std::vector<double> numbers(const Element& e, const char* attribute, const std::string& text, size_t least,
                             size_t most);
 double number(const Element& e, const char* attribute, const std::string& text);
+// The same of a bound, which may be none: what is infinite or beyond 1e9 is infinite.
+double bound(const Element& e, const char* attribute, const std::string& text);
+// Refuses what xacro would have replaced: ${} and $().
+void refuse_xacro(const Element& e, const char* attribute, const std::string& text);
 V3 vector3(const Element& e, const char* attribute, const std::string& text);
 
 // Notes of elements that were not seen and attributes that were not read, in the order of the file.

@@ -14,12 +14,12 @@
  * change but in rdm_import_check; any number of threads may read it.
  *
  * What could change mass, pose, axis, range or coupling is read, or refused with the name of its element; so is an element
- * or attribute of MJCF that is not known. Dropped, each with a note: what is seen alone, friction and softness of contacts,
- * springs of joints and tendons, limits of tendons that are wide, actuators that hold no joint (their effort is taken),
- * sensors, options of a simulator. examples/robots/README.md has the tables.
+ * or attribute of URDF or MJCF that is not known. Dropped, each with a note: what is seen alone, friction and softness of
+ * contacts, springs of joints and tendons, limits of tendons that are wide, actuators that hold no joint (their effort is
+ * taken), sensors, options of a simulator, what other programs added to URDF for themselves.
  *
  * What is done on the way: fixed joints and their links become part of what carries them; a mesh becomes the smallest of
- * box, capsule and sphere around its corners; a joint without an end gets +-2 pi, rad or m. Gains come from position
+ * box, capsule and sphere around its corners; a joint without an end gets +-2 pi, rad or m (options.slide_range). Gains come from position
  * actuators, else kp reaches the effort 0.2 rad (20 mm) off the target and kd damps critically with the inertia that the
  * joint feels at home. What no such file says (palm, fingers, tips, mount, flange, poses) is guessed, the same way each time,
  * and listed. */
@@ -63,6 +63,8 @@ typedef struct rdm_import_options { /* how a file is read; what a .robot file sa
   char *error;             /* [error_size] the text of a failing call that takes these options; NULL      */
   int32_t error_size;      /* bytes, terminator included; what is longer is cut                           */
   int32_t mend_inertia;    /* flag: moments that break the triangle rule are raised with a note, else refused */
+  double density;          /* kg/m3, of URDF links without <inertial>: what their <collision> weighs; 0: they weigh nothing */
+  double slide_range;      /* m to either side, of a joint that slides without an end; 0: 2 pi                */
 } rdm_import_options;
 typedef struct rdm_import_note { /* frozen layout; texts live as long as the handle */
   int32_t kind;            /* RDM_NOTE_*                                                                  */

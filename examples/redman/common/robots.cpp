@@ -32,6 +32,8 @@ Import import_robot(const std::string& file, const ImportFlags& flags) {
   if (!flags.kind.empty()) o.kind = place_of(flags.kind, {"other", "hand", "arm"}, "--kind");
   o.skip_meshes = flags.skip_meshes;
   o.mend_inertia = flags.mend_inertia;
+  o.density = flags.density;
+  o.slide_range = flags.slide_range;
   const auto text = [](const std::string& s) { return s.empty() ? nullptr : s.c_str(); };
   o.name = text(flags.name);
   o.packages = text(flags.packages);

@@ -23,6 +23,7 @@ using Import = std::unique_ptr<rdm_import, ImportDelete>;
 struct ImportFlags {
   std::string format = "auto", kind, name, packages, root, palm, tips, mount, flange;
   bool skip_meshes = false, mend_inertia = false;
+  double density = 0, slide_range = 0;
 };
 
 // Failure with line and element. Or, for the name of a robot that is there and no file, that robot.

@@ -1,0 +1,314 @@
+// URDF: what changes mass, pose, axis, range or coupling is read or refused by name; what gives links without
+// inertial a mass; where meshes are looked for; names of any script.
+#include <redman/redman_import.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "imports.hpp"
+
+namespace {
+
+const std::string kInertial =
+    "<inertial><mass value='0.5'/><inertia ixx='1e-3' iyy='1e-3' izz='1e-3' ixy='0' ixz='0' "
+    "iyz='0'/></inertial>";
+const std::string kBox = "<collision><geometry><box size='0.2 0.2 0.1'/></geometry></collision>";
+const std::string kOrigin = "<origin xyz='0 0 0.1'/>";
+const std::string kLimit = "<limit lower='-1' upper='1' effort='5' velocity='1'/>";
+
+// A base and an arm on a hinge; the parts of a case in the place of these.
+struct File {
+  std::string before, base = kInertial, arm = kInertial, type = "revolute",
+                      joint = kOrigin + "<axis xyz='1 0 0'/>" + kLimit, after;
+  std::string text() const {
+    return before + "<robot name='two'><link name='base'>" + base + "</link><link name='arm'>" + arm +
+           "</link><joint name='j' type='" + type + "'><parent link='base'/><child link='arm'/>" + joint +
+           "</joint>" + after + "</robot>";
+  }
+};
+std::string with_joint(const std::string& joint) {
+  File f;
+  f.joint = joint;
+  return f.text();
+}
+std::string with_arm(const std::string& arm) {
+  File f;
+  f.arm = arm;
+  return f.text();
+}
+std::string with_more(const std::string& after) {
+  File f;
+  f.after = after;
+  return f.text();
+}
+
+struct Folder {  // of a test, with files in it
+  std::filesystem::path path;
+  Folder() : path(std::filesystem::temp_directory_path() / ("redman_urdf_" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(path);
+  }
+  ~Folder() { std::filesystem::remove_all(path); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::string add(const std::string& name, const std::string& text) const {
+    const auto file = path / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+    return file.string();
+  }
+};
+// A tetrahedron with three edges of `side` along the axes.
+std::string tetrahedron(double side, bool closed = true) {
+  const std::string s = std::to_string(side);
+  return "v 0 0 0\nv " + s + " 0 0\nv 0 " + s + " 0\nv 0 0 " + s + "\nf 1 3 2\nf 1 2 4\nf 1 4 3\n" +
+         (closed ? "f 2 3 4\n" : "");
+}
+
+// ---- what is not known ----
+TEST(Urdf, SlipsOfThePenAreRefusedWithTheNearestWord) {
+  expect_refused(
+      with_joint("<origin xyz='0 0 1' rrpy='0 1 0'/>" + kLimit), RDM_UNSUPPORTED,
+      "origin: rrpy is no attribute that is known here, and it could change the robot; nearest is rpy");
+  expect_refused(with_joint("<axis xzy='0 0 1'/>" + kLimit), RDM_UNSUPPORTED, "nearest is xyz");
+  expect_refused(with_joint("<axis rpy='0 1 0' xyz='0 0 1'/>" + kLimit), RDM_UNSUPPORTED, "axis: rpy");
+  expect_refused(
+      with_joint("<orgin xyz='0 0 1'/>" + kLimit), RDM_UNSUPPORTED,
+      "orgin: no element that is known in joint, and it could change the robot; nearest is origin");
+  expect_refused(with_joint(kLimit + "<mimik joint='k'/>"), RDM_UNSUPPORTED, "nearest is mimic");
+  expect_refused(with_joint("<limit lower='-1' uper='1'/>"), RDM_UNSUPPORTED, "nearest is upper");
+  expect_refused(with_arm("<inertail/>"), RDM_UNSUPPORTED, "nearest is inertial");
+  expect_refused(with_more("<lnk name='x'/>"), RDM_UNSUPPORTED, "nearest is link");
+  expect_refused(with_joint(kLimit + "<mimic joint='k' multipler='2'/>"), RDM_UNSUPPORTED,
+                 "nearest is multiplier");
+}
+
+TEST(Urdf, ElementsInTheWrongPlaceAreRefused) {
+  expect_refused(with_more(kInertial), RDM_FORMAT, "inertial: it stands in link, not in robot");
+  expect_refused(
+      with_arm("<collision><geometry><origin xyz='0 0 1'/><box size='1 1 1'/></geometry></collision>"),
+      RDM_FORMAT, "origin: it stands in collision, not in geometry");
+  expect_refused(with_arm(kInertial + "<origin xyz='0 0 1'/>"), RDM_FORMAT, "not in link");
+  EXPECT_TRUE(from_text(with_arm(kInertial + "<origin xyz='0 0 0' rpy='0 0 0'/>"))
+                  .has_note(RDM_NOTE_DROPPED, "origin"));
+}
+
+TEST(Urdf, SecondOnesAreRefusedUnlessTheySayTheSame) {
+  expect_refused(with_joint(kOrigin + "<origin xyz='0 0 0.2'/>" + kLimit), RDM_FORMAT,
+                 "origin: a second one, after that of line 1");
+  expect_refused(with_joint("<child link='base'/>" + kLimit), RDM_FORMAT, "child: a second one");
+  std::string other = kInertial;
+  other.replace(other.find("0.5"), 3, "0.6");
+  expect_refused(with_arm(kInertial + other), RDM_FORMAT, "inertial: a second one");
+  EXPECT_EQ(from_text(with_arm(kInertial + kInertial)).def.links[0].mass, 0.5);
+}
+
+TEST(Urdf, WhatClosesLoopsOrBendsIsRefused) {
+  expect_refused(with_more("<loop_joint name='l'/>"), RDM_UNSUPPORTED, "loop_joint l: it closes a loop");
+  expect_refused(with_more("<drake:joint name='l' type='ball'/>"), RDM_UNSUPPORTED, "drake:joint l");
+  expect_refused(with_joint(kLimit + "<drake:mimic joint='k'/>"), RDM_UNSUPPORTED, "write it as mimic");
+  expect_refused(with_arm(kInertial + "<fem/>"), RDM_UNSUPPORTED, "bodies that bend");
+}
+
+TEST(Urdf, WordsOfOtherProgramsAreDroppedAndListed) {
+  const Import i = from_text(with_more(
+      "<gazebo reference='arm'><mu1>1</mu1></gazebo><transmission name='t'/><drake:collision_filter_group "
+      "name='g'/><mujoco><compiler meshdir='meshes' balanceinertia='true'/></mujoco>"));
+  for (const char* text : {"gazebo", "transmission t", "drake:collision_filter_group g", "mujoco"})
+    EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, text)) << text;
+  expect_refused(with_more("<mujoco><compiler settotalmass='14'/></mujoco>"), RDM_UNSUPPORTED,
+                 "settotalmass=\"14\" would change masses");
+  EXPECT_EQ(from_text(with_more("<mujoco><compiler settotalmass='-1'/></mujoco>")).def.links[0].mass, 0.5);
+}
+
+// ---- numbers ----
+TEST(Urdf, NoNumberAndTooLargeANumberAreTwoReasons) {
+  expect_refused(with_joint("<origin xyz='0 0 1e16'/>" + kLimit), RDM_RANGE,
+                 "xyz: 0 0 1e16 is outside [-1e9, 1e9]");
+  expect_refused(with_joint("<origin xyz='0 0 inf'/>" + kLimit), RDM_RANGE, "xyz: 0 0 inf is outside");
+  expect_refused(with_joint("<origin xyz='0 0 1,5.5.5'/>" + kLimit), RDM_FORMAT, "is no number");
+  expect_refused(with_joint("<origin xyz='0 0 1e999'/>" + kLimit), RDM_RANGE, "is outside");
+  EXPECT_EQ(from_text(with_joint("<origin xyz='0 0 1e-999'/>" + kLimit)).def.links[0].p[2], 0);
+}
+
+TEST(Urdf, ABoundThatIsNoneIsNone) {
+  for (const char* far : {"1e16", "inf", "3.4028234663852886e+38", "1.7976931348623157e+308"}) {
+    const Import i = from_text(with_joint("<limit lower='-" + std::string(far) + "' upper='0.5' effort='" +
+                                          far + "' velocity='" + far + "'/>"));
+    EXPECT_DOUBLE_EQ(i.def.links[0].lower, -2 * M_PI);
+    EXPECT_DOUBLE_EQ(i.def.links[0].upper, 0.5);
+    EXPECT_EQ(i.def.links[0].velocity, 0);
+    EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "joint j: lower -" + std::string(far) + " is none: -6.28319"));
+    EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "effort"));
+    EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "joint j: effort"));
+  }
+  expect_refused(with_joint("<limit lower='nan' upper='0.5' effort='1' velocity='1'/>"), RDM_FORMAT,
+                 "lower: nan is no number");
+  File slide;
+  slide.type = "prismatic", slide.joint = "<limit lower='-inf' upper='inf' effort='1' velocity='1'/>";
+  rdm_import_options o = options();
+  o.slide_range = 3;
+  EXPECT_EQ(from_text(slide.text(), &o).def.links[0].lower, -3);
+  EXPECT_DOUBLE_EQ(from_text(slide.text()).def.links[0].upper, 2 * M_PI);
+}
+
+TEST(Urdf, TurnsByQuaternionAndMirroredMomentsAreRead) {
+  const Import i = from_text(with_joint("<origin xyz='0 0 1' quat_xyzw='0 0 2 0'/>" + kLimit));
+  EXPECT_NEAR(std::abs(i.def.links[0].q[2]), 1, 1e-12);
+  expect_refused(with_joint("<origin rpy='0 0 0' quat_xyzw='0 0 1 0'/>" + kLimit), RDM_FORMAT,
+                 "rpy and quat_xyzw");
+  const auto moments = [](const char* iyx) {
+    return with_arm(
+        "<inertial><mass value='1'/><inertia ixx='1e-3' iyy='1e-3' izz='1e-3' ixy='1e-4' ixz='0' "
+        "iyz='0' iyx='" +
+        std::string(iyx) + "'/></inertial>");
+  };
+  EXPECT_DOUBLE_EQ(from_text(moments("1e-4")).def.links[0].moment[3], 1e-4);
+  expect_refused(moments("2e-4"), RDM_FORMAT, "link arm: iyx is not ixy");
+}
+
+// ---- masses ----
+TEST(Urdf, ADensityWeighsLinksWithoutInertial) {
+  expect_refused(with_arm(kBox), RDM_RANGE, "link arm: it moves and has no mass: options.density gives one");
+  rdm_import_options o = options();
+  o.density = 500;
+  const Import i = from_text(with_arm("<collision><origin xyz='0 0 0.3'/><geometry><box size='0.2 0.2 0.1'/>"
+                                      "</geometry></collision>"),
+                             &o);
+  EXPECT_DOUBLE_EQ(i.def.links[0].mass, 2);
+  EXPECT_DOUBLE_EQ(i.def.links[0].com[2], 0.3);
+  EXPECT_NEAR(i.def.links[0].moment[0], 2 * (0.04 + 0.01) / 12, 1e-12);
+  EXPECT_DOUBLE_EQ(i.def.root_mass, 0.5);  // it says its mass
+  EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "link arm: mass 2, of its shapes at 500 kg/m3"));
+  expect_refused(with_arm(""), RDM_RANGE, "link arm: it moves and has no mass", &o);  // nothing to weigh
+  // Isaac Gym's: a density of the link itself.
+  EXPECT_DOUBLE_EQ(
+      from_text(with_arm("<inertial><density value='250'/></inertial>" + kBox)).def.links[0].mass, 1);
+  for (const double wrong : {-1.0, 1e6, double(NAN)}) {
+    o.density = wrong;
+    expect_refused(with_arm(kBox), RDM_RANGE, "options.density", &o);
+  }
+}
+
+TEST(Urdf, ADensityFillsMeshes) {
+  const Folder folder;
+  folder.add("closed.obj", tetrahedron(0.3));
+  folder.add("open.obj", tetrahedron(0.3, false));
+  const auto mass = [&](const std::string& mesh) {
+    rdm_import_options o = options();
+    o.density = 1000;
+    return from_path(folder.add("a.urdf", with_arm("<collision><geometry><mesh filename='" + mesh +
+                                                   "'/></geometry></collision>")),
+                     &o)
+        .def.links[0]
+        .mass;
+  };
+  EXPECT_NEAR(mass("closed.obj"), 1000 * 0.027 / 6, 1e-9);
+  EXPECT_NEAR(mass("open.obj"), 1000 * 0.027 / 6, 1e-9);                       // its hull
+  EXPECT_NEAR(mass("closed.obj' scale='-1 2 1"), 2 * 1000 * 0.027 / 6, 1e-9);  // mirrored, longer
+}
+
+TEST(Urdf, FixedLinksMayHaveMomentsAlone) {
+  const std::string moments =
+      "<inertial><mass value='0'/><inertia ixx='0.1' iyy='0.1' izz='0.1'/></inertial>";
+  File f;
+  f.after = "<link name='flange'>" + moments +
+            "</link><joint name='k' type='fixed'><parent link='arm'/><child link='flange'/></joint>";
+  const Import i = from_text(f.text());
+  EXPECT_DOUBLE_EQ(i.def.links[0].mass, 0.5);
+  EXPECT_NEAR(i.def.links[0].moment[0], 0.101, 1e-12);
+  EXPECT_TRUE(
+      i.has_note(RDM_NOTE_CHANGED, "link flange has no mass; its moments are part of what carries it"));
+  expect_refused(with_arm(moments), RDM_RANGE, "link arm: the mass 0 is not above 0");
+}
+
+// ---- text ----
+TEST(Urdf, XacroIsNamedWhereverItStands) {
+  const char* words = "xacro is not read: expand the file with the xacro tool first";
+  expect_refused(with_arm(kInertial + "<xacro:insert_block name='x'/>"), RDM_UNSUPPORTED, words);
+  expect_refused(with_joint("<origin xyz='0 0 ${height}'/>" + kLimit), RDM_UNSUPPORTED, words);
+  expect_refused(with_joint("<origin xyz='$(optenv XYZ 0 0 0)'/>" + kLimit), RDM_UNSUPPORTED, words);
+  expect_refused(
+      with_arm(kInertial +
+               "<collision><geometry><mesh filename='$(find hand)/a.stl'/></geometry></collision>"),
+      RDM_UNSUPPORTED, words);
+  EXPECT_EQ(from_text("<robot xmlns:xacro='http://ros.org/wiki/xacro'" + with_arm(kInertial).substr(6))
+                .def.num_links,
+            1);
+}
+
+TEST(Urdf, DoctypesAndXmlErrorsSayWhatIsWrong) {
+  File f;
+  f.before = "<!DOCTYPE robot [<!ENTITY h '0.3'>]>\n";
+  expect_refused(f.text(), RDM_UNSUPPORTED, "line 1: DOCTYPE: entities");
+  f.before = "<?xml version='1.0'?>\n<!-- hand -->\n<!DOCTYPE robot SYSTEM 'robot.dtd'>";
+  expect_refused(f.text(), RDM_UNSUPPORTED, "line 3: DOCTYPE");
+  f.before = "<!DOCTYPE robot>";
+  EXPECT_EQ(from_text(f.text()).def.num_links, 1);
+  f.before = "<!-- licence --><?xml version='1.0'?>";
+  expect_refused(f.text(), RDM_FORMAT, "no XML: the declaration <?xml ...?> must stand first in the file");
+  expect_refused("<robot name='x'><link name='a'></robot>", RDM_FORMAT,
+                 "no XML: an element that another one's end closes");
+  expect_refused("<!-- a -->\n -->\n<mujoco><worldbody/></mujoco>", RDM_FORMAT,
+                 "line 3: mujoco: no body");  // no .robot file
+  expect_refused("<robot name=x>", RDM_FORMAT, "no XML: an attribute that is not name=\"value\"");
+}
+
+// ---- meshes ----
+TEST(Urdf, MeshesAreFoundByTheirWholeNameBeforeAPartOfIt) {
+  const Folder folder;
+  folder.add("ws/hand/meshes/a.obj", tetrahedron(0.3));
+  folder.add("ws/hand/robots/meshes/a.obj", tetrahedron(0.1));  // nearer, but of no package
+  const auto read = [&](const std::string& mesh) {
+    return from_path(folder.add(
+        "ws/hand/robots/a.urdf",
+        with_arm(kInertial + "<collision><geometry><mesh filename='" + mesh + "'/></geometry></collision>")));
+  };
+  const Import whole = read("package://hand/meshes/a.obj");
+  ASSERT_EQ(whole.def.num_shapes, 1);
+  EXPECT_NEAR(whole.def.shapes[0].size[0], 0.15, 0.15);
+  EXPECT_FALSE(whole.has_note(RDM_NOTE_CHANGED, "no folder hand"));
+  const Import part = read("package://other/meshes/a.obj");
+  EXPECT_LT(part.def.shapes[0].size[0], whole.def.shapes[0].size[0]);
+  EXPECT_TRUE(
+      part.has_note(RDM_NOTE_CHANGED, "mesh package://other/meshes/a.obj: no folder other holds it; "));
+  const Import windows = read("..\\meshes\\a.obj");
+  EXPECT_EQ(windows.def.shapes[0].size[0], whole.def.shapes[0].size[0]);
+  EXPECT_TRUE(windows.has_note(RDM_NOTE_CHANGED, "\\ was read as /"));
+}
+
+// ---- names ----
+TEST(Urdf, NamesOfAnyScriptKeepReadableIds) {
+  const std::vector<std::pair<const char*, const char*>> names{{"рука_левая", "ruka_levaya"},
+                                                               {"Щит", "Shchit"},
+                                                               {"てくび", "tekubi"},
+                                                               {"ハンド", "hando"},
+                                                               {"손가락", "songarak"},
+                                                               {"χέρι", "cheri"},
+                                                               {"Daumen_übersetzt", "Daumen_ubersetzt"},
+                                                               {"手", "u624b"},
+                                                               {"główna", "glowna"},
+                                                               {"l finger/1", "l_finger_1"}};
+  for (const auto& [name, id] : names) {
+    std::string text = File().text();
+    for (size_t at = 0; (at = text.find("'arm'", at)) != std::string::npos;)
+      text.replace(at, 5, "'" + std::string(name) + "'");
+    const Import i = from_text(text);
+    EXPECT_STREQ(i.def.links[0].name, id);
+    EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, std::string("link ") + name + " is called " + id));
+  }
+}
+
+// ---- options ----
+TEST(Urdf, OptionsOfOlderCallersAreTaken) {
+  rdm_import_options o = options();
+  o.struct_size = offsetof(rdm_import_options, density);
+  o.density = -1;  // beyond what the caller knows
+  EXPECT_EQ(from_text(File().text(), &o).def.num_links, 1);
+}
+
+}  // namespace
