@@ -13,11 +13,6 @@ namespace {
 
 constexpr size_t kMostOfHull = 4096;  // corners: the work grows with their square
 
-double side(const Mesh& m, const std::array<uint32_t, 3>& f, V3 p) {
-  const V3 a = m.points[f[0]];
-  return dot(unit(cross(m.points[f[1]] - a, m.points[f[2]] - a), {}), p - a);
-}
-
 // Four corners that are not in one plane; none: fewer than four.
 std::vector<uint32_t> first_corners(const std::vector<V3>& p, double close) {
   std::vector<uint32_t> out{0};
@@ -61,6 +56,92 @@ Mass pyramids(const Mesh& mesh, V3 apex, bool positive) {
     for (size_t j = 0; j < 3; ++j) out.moment[i][j] = (i == j ? trace : 0) - second[i][j];
   return out;  // the moment is about the apex
 }
+
+// A hull that grows corner by corner. Corners in one plane are what makes this fail, so they are shifted a
+// little, the same way each time; the faces' numbers are those of the corners as they were.
+class Hull {
+ public:
+  Hull(const std::vector<V3>& corners, double scale, double shift) {
+    uint64_t state = 1;
+    const auto random = [&] {  // in [-1, 1)
+      state = state * 6364136223846793005u + 1442695040888963407u;
+      return static_cast<double>(state >> 11) * 0x1p-52 - 1;
+    };
+    for (const V3& p : corners)
+      points_.push_back(scale * (p - corners[0]) + shift * V3{random(), random(), random()});
+  }
+  // False: a corner's shadow has no simple edge.
+  bool grow(const std::array<uint32_t, 4>& first) {
+    const V3 inside = 0.25 * (points_[first[0]] + points_[first[1]] + points_[first[2]] + points_[first[3]]);
+    for (size_t k = 0; k < 4; ++k) {
+      Face f{first[k], first[(k + 1) % 4], first[(k + 2) % 4]};
+      if (sees(inside, f)) std::swap(f[1], f[2]);
+      if (!add(f)) return false;
+    }
+    for (uint32_t k = 0; k < points_.size(); ++k)
+      if (std::find(first.begin(), first.end(), k) == first.end() && !take(k)) return false;
+    return true;
+  }
+  std::vector<std::array<uint32_t, 3>> faces() const {
+    std::vector<Face> out;
+    for (const Face& f : faces_)
+      if (f[0] != f[1]) out.push_back(f);
+    return out;
+  }
+
+ private:
+  using Face = std::array<uint32_t, 3>;  // 0, 0, 0: it is gone
+  std::vector<V3> points_;
+  std::vector<Face> faces_;
+  std::vector<size_t> free_;
+  std::map<std::pair<uint32_t, uint32_t>, size_t> left_;  // face to the left of an edge
+
+  bool sees(V3 p, const Face& f) const {
+    const V3 a = points_[f[0]];
+    return dot(cross(points_[f[1]] - a, points_[f[2]] - a), p - a) > 0;
+  }
+  bool add(const Face& f) {
+    const size_t at = free_.empty() ? faces_.size() : free_.back();
+    if (free_.empty())
+      faces_.push_back(f);
+    else
+      faces_[at] = f, free_.pop_back();
+    for (size_t k = 0; k < 3; ++k)
+      if (!left_.emplace(std::make_pair(f[k], f[(k + 1) % 3]), at).second) return false;
+    return true;
+  }
+  // Cuts away what the corner sees, and closes the hole with a cone of its edge.
+  bool take(uint32_t corner) {
+    const V3 p = points_[corner];
+    size_t start = 0;
+    while (start < faces_.size() && (faces_[start][0] == faces_[start][1] || !sees(p, faces_[start])))
+      ++start;
+    if (start == faces_.size()) return true;  // inside
+    std::vector<size_t> seen{start};
+    std::set<size_t> in{start};
+    std::vector<std::pair<uint32_t, uint32_t>> edge;
+    for (size_t i = 0; i < seen.size(); ++i) {
+      const Face f = faces_[seen[i]];
+      for (size_t k = 0; k < 3; ++k) {
+        const auto beyond = left_.find({f[(k + 1) % 3], f[k]});
+        if (beyond == left_.end()) return false;
+        if (in.count(beyond->second)) continue;
+        if (!sees(p, faces_[beyond->second]))
+          edge.emplace_back(f[k], f[(k + 1) % 3]);
+        else if (in.insert(beyond->second).second)
+          seen.push_back(beyond->second);
+      }
+    }
+    for (const size_t i : seen) {
+      for (size_t k = 0; k < 3; ++k) left_.erase({faces_[i][k], faces_[i][(k + 1) % 3]});
+      faces_[i] = {};
+      free_.push_back(i);
+    }
+    return std::all_of(edge.begin(), edge.end(), [&](const auto& e) {
+      return add({e.first, e.second, corner});
+    });
+  }
+};
 
 struct Surface {
   double area = 0;
@@ -195,31 +276,13 @@ Mesh hull_of(const std::vector<V3>& points) {
   if (out.points.size() < 4) return out;
   double size = 0;
   for (const V3& p : out.points) size = std::max(size, norm(p - out.points[0]));
-  const double close = 1e-9 * size;
-  const auto first = first_corners(out.points, close);
+  const auto first = first_corners(out.points, 1e-9 * size);
   if (first.size() < 4) return out;
-  const V3 inside =
-      0.25 * (out.points[first[0]] + out.points[first[1]] + out.points[first[2]] + out.points[first[3]]);
-  const auto add = [&](uint32_t a, uint32_t b, uint32_t c) {
-    std::array<uint32_t, 3> f{a, b, c};
-    if (side(out, f, inside) > 0) std::swap(f[1], f[2]);
-    out.faces.push_back(f);
-  };
-  for (size_t k = 0; k < 4; ++k) add(first[k], first[(k + 1) % 4], first[(k + 2) % 4]);
-  for (uint32_t k = 0; k < out.points.size(); ++k) {
-    std::set<std::pair<uint32_t, uint32_t>> edges;  // of the faces that this corner sees
-    std::vector<std::array<uint32_t, 3>> kept;
-    for (const auto& f : out.faces) {
-      if (side(out, f, out.points[k]) <= close) {
-        kept.push_back(f);
-        continue;
-      }
-      for (size_t i = 0; i < 3; ++i) edges.insert({f[i], f[(i + 1) % 3]});
-    }
-    if (edges.empty()) continue;
-    out.faces = kept;
-    for (const auto& [a, b] : edges)
-      if (!edges.count({b, a})) out.faces.push_back({a, b, k});
+  for (double shift = 1e-9; shift < 1e-5; shift *= 10) {
+    Hull hull(out.points, 1 / size, shift);
+    if (!hull.grow({first[0], first[1], first[2], first[3]})) continue;
+    out.faces = hull.faces();
+    return out;
   }
   return out;
 }

@@ -148,14 +148,18 @@ struct Reader {
     const Element* density = inertial->child("density");
     return density && !inertial->child("mass") ? number(*density, "value", needed(*density, "value")) : 0;
   }
-  // Of density 1: inside a closed surface, else of its hull, else of the shape that stands for it.
+  // Of density 1: inside a closed surface, else (open, or both sides of a sheet) of its hull, else of the
+  // shape that stands for it.
   static Mass mass_of(const Mesh& mesh, const Primitive& shape) {
+    constexpr double kLeast = 1e-6;  // of the shape, for a surface with an inside
     Mass one = is_closed(mesh) ? filled(mesh, Fill::kExact) : Mass{};
-    if (!(one.mass > 0)) try {
-        one = filled(mesh, Fill::kConvex);
-      } catch (const Refusal&) {  // too many corners
-      }
-    return one.mass > 0 ? one : solid(shape);
+    if (one.mass > kLeast * volume_of(shape)) return one;
+    try {
+      one = filled(mesh, Fill::kConvex);
+    } catch (const Refusal&) {  // too many corners
+      one = {};
+    }
+    return one.mass > kLeast * volume_of(shape) ? one : solid(shape);
   }
   void weigh(const Element& l, double density, BodyIn* body) {
     for (const Mass& m : weighed) body->mass = body->mass + scaled(density, m);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -210,6 +211,34 @@ TEST(Urdf, ADensityFillsMeshes) {
   EXPECT_NEAR(mass("closed.obj"), 1000 * 0.027 / 6, 1e-9);
   EXPECT_NEAR(mass("open.obj"), 1000 * 0.027 / 6, 1e-9);                       // its hull
   EXPECT_NEAR(mass("closed.obj' scale='-1 2 1"), 2 * 1000 * 0.027 / 6, 1e-9);  // mirrored, longer
+}
+
+// Round parts with fine chamfers, as programs for drawing write them: many corners in one plane up to
+// rounding, and slivers between them.
+TEST(Urdf, HullsOfChamferedPartsAreRight) {
+  const Folder folder;
+  const int n = 64;
+  for (const double size : {1.0, 0.1, 1e-3}) {
+    std::string text;
+    for (const auto& [r, z] : {std::pair{1.0, 0.0}, {1.0, 1.0}, {0.99999, 1.00001}, {0.9999, 1.0001}})
+      for (int k = 0; k < n; ++k) {
+        char line[96];
+        std::snprintf(line, sizeof line, "v %.7g %.7g %.7g\n", size * r * std::cos(2 * M_PI * k / n),
+                      size * r * std::sin(2 * M_PI * k / n), size * z);
+        text += line;
+      }
+    folder.add("rod.obj", text + "f 1 2 3\n");  // open
+    rdm_import_options o = options();
+    o.density = 1000;
+    const Import i = from_path(
+        folder.add("a.urdf",
+                   with_arm("<collision><geometry><mesh filename='rod.obj'/></geometry></collision>")),
+        &o);
+    const double mass = 1000 * n / 2.0 * std::sin(2 * M_PI / n) * size * size * size;
+    EXPECT_NEAR(i.def.links[0].mass, mass, 1e-3 * mass);
+    EXPECT_NEAR(i.def.links[0].com[2], size / 2, 1e-3 * size);
+    EXPECT_NEAR(i.def.links[0].moment[2], mass * size * size / 2, 5e-3 * mass * size * size);
+  }
 }
 
 TEST(Urdf, FixedLinksMayHaveMomentsAlone) {
