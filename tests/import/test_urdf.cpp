@@ -223,7 +223,7 @@ TEST(Urdf, HullsOfChamferedPartsAreRight) {
     for (const auto& [r, z] : {std::pair{1.0, 0.0}, {1.0, 1.0}, {0.99999, 1.00001}, {0.9999, 1.0001}})
       for (int k = 0; k < n; ++k) {
         char line[96];
-        std::snprintf(line, sizeof line, "v %.7g %.7g %.7g\n", size * r * std::cos(2 * M_PI * k / n),
+        std::snprintf(line, sizeof line, "v %.8g %.8g %.8g\n", size * r * std::cos(2 * M_PI * k / n),
                       size * r * std::sin(2 * M_PI * k / n), size * z);
         text += line;
       }
