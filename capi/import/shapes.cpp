@@ -206,15 +206,40 @@ Mass solid(const Primitive& s) {
   return s.X * out;
 }
 
+namespace {
+
+// Without a byte order mark; lines end in \n, whichever system wrote them; words of an .stl are small.
+std::string text_of(const std::string& bytes, bool obj) {
+  std::string out;
+  out.reserve(bytes.size());
+  for (size_t at = bytes.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0; at < bytes.size(); ++at) {
+    const char c = bytes[at];
+    if (c == '\r' && at + 1 < bytes.size() && bytes[at + 1] == '\n') continue;
+    out += c == '\r' ? '\n' : !obj && c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  }
+  return out;
+}
+// The words of an .stl that is text, whose length is no binary one's.
+bool is_text(const std::string& bytes) {
+  const std::string begin = text_of(bytes.substr(0, 4096), false);
+  return bytes.size() < kStlHeader || begin.find("vertex") != std::string::npos ||
+         begin.find("endsolid") != std::string::npos;
+}
+
+}  // namespace
+
 Mesh parse_mesh(const std::string& bytes, bool obj) {
   Mesh out;
   uint32_t facets = 0;
   if (bytes.size() >= kStlHeader)
     std::memcpy(&facets, bytes.data() + kStlHeader - sizeof facets, sizeof facets);
-  if (obj || bytes.size() < kStlHeader ||
-      bytes.size() != kStlHeader + kStlFacet * static_cast<size_t>(facets)) {
-    out = parse_lines(bytes, obj);
+  const size_t expected = kStlHeader + kStlFacet * static_cast<size_t>(facets);
+  if (obj || (bytes.size() != expected && is_text(bytes))) {
+    out = parse_lines(text_of(bytes, obj), obj);
   } else {
+    if (bytes.size() != expected)
+      refuse(RDM_FORMAT, "its header says %u facets, %zu bytes; it has %zu", facets, expected, bytes.size());
+    if (facets == 0) refuse(RDM_FORMAT, "its header says 0 facets");
     if (3 * static_cast<size_t>(facets) > kMostPoints)
       refuse(RDM_RANGE, "more than %zu corners", kMostPoints);
     for (uint32_t f = 0; f < facets; ++f) {

@@ -310,6 +310,35 @@ TEST(Urdf, MeshesAreFoundByTheirWholeNameBeforeAPartOfIt) {
   EXPECT_TRUE(windows.has_note(RDM_NOTE_CHANGED, "\\ was read as /"));
 }
 
+TEST(Urdf, MeshesOfOtherSystemsAreReadAndBrokenOnesSayWhy) {
+  const Folder folder;
+  const auto shape = [&](const std::string& name, const std::string& bytes) {
+    folder.add(name, bytes);
+    return folder.add("a.urdf", with_arm(kInertial + "<collision><geometry><mesh filename='" + name +
+                                         "'/></geometry></collision>"));
+  };
+  const auto refused = [&](const std::string& name, const std::string& bytes, const std::string& words) {
+    rdm_import* i = nullptr;
+    EXPECT_EQ(rdm_import_file(&i, shape(name, bytes).c_str(), nullptr), RDM_FORMAT) << words;
+    EXPECT_NE(std::string(rdm_import_error()).find(words), std::string::npos) << rdm_import_error();
+    rdm_import_destroy(i);
+  };
+  const auto facets = [](uint8_t said, size_t there) {
+    return std::string(80, 'x') + std::string{static_cast<char>(said), 0, 0, 0} +
+           std::string(50 * there, '\0');
+  };
+  refused("a.stl", facets(2, 1), "its header says 2 facets, 184 bytes; it has 134");
+  refused("a.stl", facets(1, 1) + "behind", "its header says 1 facets, 134 bytes; it has 140");
+  refused("a.stl", facets(0, 0), "its header says 0 facets");
+  refused("a.stl", "solid a\nendsolid a\n", "no corners in it");
+  const std::string text =
+      "SOLID a\rFACET NORMAL 0 0 1\rOUTER LOOP\rVERTEX 0 0 0\rVERTEX 0.2 0 0\rVERTEX 0 0.2 0\rENDLOOP\r"
+      "ENDFACET\rENDSOLID a\r";
+  EXPECT_EQ(from_path(shape("a.stl", text)).def.num_shapes, 1);
+  EXPECT_EQ(from_path(shape("a.obj", "\xef\xbb\xbf" + tetrahedron(0.3))).def.num_shapes, 1);
+  refused("a.obj", "v 0 0 0\r\nv 1 0\r\n", "line 2: a corner needs three numbers");
+}
+
 // ---- names ----
 TEST(Urdf, NamesOfAnyScriptKeepReadableIds) {
   const std::vector<std::pair<const char*, const char*>> names{{"рука_левая", "ruka_levaya"},

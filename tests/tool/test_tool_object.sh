@@ -25,6 +25,16 @@ for command in "rollout --policy hold --episodes 1" "eval --policy zero --episod
 done
 "$tool" render --task grasp --object mug.object --set object=my_mug --size 32x32 --out mug.png > out 2>&1 || say "render: $(cat out)"
 
+# Meshes of other systems are read; broken ones say why.
+printf '\357\273\277v 0 0 0\rv 0.1 0 0\rv 0 0.1 0\rv 0 0 0.1\rf 1 3 2\rf 1 2 4\rf 1 4 3\rf 2 3 4\r' > mac.obj
+"$tool" object mac.obj --mass 0.1 > out 2>&1 || say "mac.obj: $(cat out)"
+{ printf '%80s' x; printf '\2\0\0\0'; printf '%050d' 0; } > short.stl
+"$tool" object short.stl --mass 0.1 > out 2>&1 && say "short.stl is taken"
+grep -q "its header says 2 facets, 184 bytes; it has 134" out || say "short.stl: $(cat out)"
+{ printf '%80s' x; printf '\0\0\0\0'; } > none.stl
+"$tool" object none.stl --mass 0.1 > out 2>&1 && say "none.stl is taken"
+grep -q "its header says 0 facets" out || say "none.stl: $(cat out)"
+
 # An L of two blocks, closed, in mm: 40 x 20 x 20 lies, 20 x 20 x 20 stands on its end.
 cat > ell.obj << 'END'
 v 0 0 0

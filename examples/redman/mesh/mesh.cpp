@@ -53,14 +53,34 @@ std::vector<Point> text_points(const char* bytes, size_t size, const char* key) 
   return out;
 }
 
-// A header may begin with "solid" too: the length decides.
+// Without a byte order mark; lines end in \n, whichever system wrote them; words of an .stl are small.
+std::string text_of(const char* bytes, size_t size, MeshKind kind) {
+  size_t at = size >= 3 && std::memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+  std::string out;
+  out.reserve(size - at);
+  for (; at < size; ++at) {
+    const char c = bytes[at];
+    if (c == '\r' && at + 1 < size && bytes[at + 1] == '\n') continue;
+    out += c == '\r' ? '\n' : kind == MeshKind::kStl && c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  }
+  return out;
+}
+
+// A header may begin with "solid" too: the length decides, and where it is wrong the text.
 bool is_binary_stl(const char* bytes, size_t size, uint32_t* facets) {
   if (size < kStlHeader) return false;
   std::memcpy(facets, bytes + kStlHeader - sizeof *facets, sizeof *facets);
-  return size == kStlHeader + kStlFacet * static_cast<size_t>(*facets);
+  if (size == kStlHeader + kStlFacet * static_cast<size_t>(*facets)) return true;
+  const std::string begin = text_of(bytes, std::min<size_t>(size, 4096), MeshKind::kStl);
+  return begin.find("vertex") == std::string::npos && begin.find("endsolid") == std::string::npos;
 }
 
-std::vector<Point> binary_points(const char* bytes, uint32_t facets) {
+std::vector<Point> binary_points(const char* bytes, size_t size, uint32_t facets) {
+  const size_t expected = kStlHeader + kStlFacet * static_cast<size_t>(facets);
+  if (size != expected)
+    throw Failure("its header says " + std::to_string(facets) + " facets, " + std::to_string(expected) +
+                  " bytes; it has " + std::to_string(size));
+  if (facets == 0) throw Failure("its header says 0 facets");
   std::vector<Point> out;
   for (size_t f = 0; f < facets; ++f) {
     float numbers[12];  // normal, then three corners
@@ -74,9 +94,13 @@ std::vector<Point> binary_points(const char* bytes, uint32_t facets) {
 
 std::vector<Point> parse_mesh(const char* bytes, size_t size, MeshKind kind) {
   uint32_t facets = 0;
-  std::vector<Point> out = kind == MeshKind::kObj                ? text_points(bytes, size, "v")
-                           : is_binary_stl(bytes, size, &facets) ? binary_points(bytes, facets)
-                                                                 : text_points(bytes, size, "vertex");
+  std::vector<Point> out;
+  if (kind == MeshKind::kStl && is_binary_stl(bytes, size, &facets)) {
+    out = binary_points(bytes, size, facets);
+  } else {
+    const std::string text = text_of(bytes, size, kind);
+    out = text_points(text.data(), text.size(), kind == MeshKind::kObj ? "v" : "vertex");
+  }
   if (out.empty()) throw Failure("no vertices in it");
   return out;
 }
@@ -151,7 +175,8 @@ Mesh parse_faces(const char* bytes, size_t size, MeshKind kind) {
   if (kind == MeshKind::kObj) {
     Mesh numbered;
     numbered.points = corners;
-    obj_faces(bytes, size, &numbered);
+    const std::string text = text_of(bytes, size, kind);
+    obj_faces(text.data(), text.size(), &numbered);
     out.faces = std::move(numbered.faces);
     for (auto& face : out.faces)
       for (uint32_t& i : face) i = place[i];
