@@ -21,6 +21,7 @@ struct Compiler {
 struct MeshIn {
   Primitive hull;  // the smallest around it
   Mass mass;       // at density 1; 0: it encloses nothing
+  Mass surface;    // the same of its surface alone (shellinertia of a geom)
   Pose X;          // of its principal axes, the longest last
   V3 box;          // half sizes of the box of the same moments
   V3 low, high;    // its corners' bounds along the principal axes
@@ -110,6 +111,9 @@ class MjcfReader {
   void lead_by_driven();
   void read_actuators();
   void read_actuator(const Element& e);
+  bool is_mocap(const std::string& body) const;
+  bool stands(const std::string& body) const;
+  bool ties_nothing(const Element& e) const;
   void note_left_out(const Element& e, const char* why);
 };
 

@@ -4,6 +4,7 @@
 // actuator the group is turned about, so that the driven joint leads.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "mjcf.hpp"
 
@@ -118,6 +119,30 @@ void MjcfReader::read_tendon_limits() {
 }
 
 // ---- equalities ----
+bool MjcfReader::is_mocap(const std::string& body) const {
+  const std::function<bool(const Element&)> in = [&](const Element& e) {
+    return std::any_of(e.children.begin(), e.children.end(), [&](const auto& c) {
+      const Attribute *name = c->find("name"), *mocap = c->find("mocap");
+      return (c->tag == "body" && name && name->value == body && mocap && mocap->value == "true") || in(*c);
+    });
+  };
+  return in(mujoco);
+}
+// Nothing moves it against the root.
+bool MjcfReader::stands(const std::string& body) const {
+  if (body == "world") return options.root.empty() || options.root == "world";
+  for (size_t b = 0; b < model.bodies.size(); ++b) {
+    if (model.bodies[b].name != body) continue;
+    for (int at = static_cast<int>(b); at >= 0; at = model.bodies[static_cast<size_t>(at)].parent)
+      if (!model.bodies[static_cast<size_t>(at)].joints.empty()) return false;
+    return true;
+  }
+  return is_mocap(body);  // it was dropped
+}
+bool MjcfReader::ties_nothing(const Element& e) const {
+  const std::string *one = e.get("body1"), *two = e.get("body2");
+  return one && stands(*one) && stands(two ? *two : "world");
+}
 void MjcfReader::read_equalities() {
   for (const Element* all : mujoco.all("equality"))
     for (const auto& child : all->children) {
@@ -135,7 +160,16 @@ void MjcfReader::read_equalities() {
           for (const BodyIn& body : model.bodies) here = here || body.name == *end;
           for (const FrameIn& frame : model.frames) here = here || frame.name == *end;
         }
-      if (here) refuse_at(RDM_UNSUPPORTED, e, "%s %s", e.tag.c_str(), row.why);
+      if (!here) continue;
+      if (ties_nothing(e)) {
+        note_left_out(e, "neither of its bodies moves");
+        continue;
+      }
+      for (const char* key : {"body1", "body2"})
+        if (const auto* body = e.get(key); body && is_mocap(*body))
+          refuse_at(RDM_UNSUPPORTED, e, "%s ties a body to %s, which its host moves (mocap): it is not read",
+                    e.tag.c_str(), clean(*body).c_str());
+      refuse_at(RDM_UNSUPPORTED, e, "%s %s", e.tag.c_str(), row.why);
     }
 }
 

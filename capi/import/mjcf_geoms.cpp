@@ -76,13 +76,12 @@ void MjcfReader::add_geom(const Element& e, const Pose& frame, const std::string
                   counts ? "mass" : "shape", clean(body->name).c_str(), clean(*mesh_name).c_str());
       return;
     }
-    if ((counts || kind != "mesh") && !(mesh->mass.mass > kLeastVolume))
+    const Mass& mass_of_mesh = is_shell && kind == "mesh" ? mesh->surface : mesh->mass;
+    if ((counts || kind != "mesh") && !(mass_of_mesh.mass > kLeastVolume))
       refuse_at(RDM_RANGE, e, "mesh %s encloses nothing: no mass or size can be taken of it",
                 clean(*mesh_name).c_str());
     if (kind == "mesh") {
-      if (is_shell && counts)
-        refuse_at(RDM_FORMAT, e, "shellinertia of a mesh: the mesh itself says it (inertia=\"shell\")");
-      one = p.X * mesh->mass;
+      one = p.X * mass_of_mesh;
       p = {mesh->hull.kind, mesh->hull.size, p.X * mesh->hull.X};
     } else {
       const Primitive f = fitted(e, kind, c, *mesh);
@@ -176,6 +175,7 @@ const MeshIn* MjcfReader::mesh_of(const Element& asset, const Element& geom) {
                            : said == "convex" ? Fill::kConvex
                            : said == "shell"  ? Fill::kShell
                                               : Fill::kLegacy);
+    in.surface = mesh.faces.empty() ? in.mass : filled(mesh, Fill::kShell);
   } catch (const Refusal& r) {
     refuse_at(r.code, asset, "%s", r.text.c_str());
   }

@@ -66,6 +66,18 @@ void refuse_doctype(const std::string& bytes, const std::string& file) {
   }
 }
 
+// A declaration behind comments says nothing that is used: it is read as if it stood first.
+void blank_late_declaration(std::string* bytes) {
+  const size_t at = bytes->find("<?xml ");
+  if (at == std::string::npos || at == 0) return;
+  if (!first_element(bytes->substr(0, at) + "<x/>").compare("x")) {
+    const size_t end = bytes->find("?>", at);
+    if (end == std::string::npos) return;
+    for (size_t k = at; k < end + 2; ++k)
+      if ((*bytes)[k] != '\n') (*bytes)[k] = ' ';
+  }
+}
+
 struct Parser {
   const Options& options;
   bool includes;
@@ -109,7 +121,8 @@ struct Parser {
     for (auto& child : root->children) into->children.push_back(std::move(child));
   }
 
-  std::unique_ptr<Element> parse(const std::string& bytes, const std::string& file, int depth) {
+  std::unique_ptr<Element> parse(std::string bytes, const std::string& file, int depth) {
+    blank_late_declaration(&bytes);
     refuse_doctype(bytes, file);
     tinyxml2::XMLDocument document;
     const auto result = document.Parse(bytes.data(), bytes.size());

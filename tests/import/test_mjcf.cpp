@@ -555,4 +555,34 @@ TEST(Mjcf, TargetsOfTheHostAreDropped) {
   expect_refused(text, RDM_UNSUPPORTED, "body goal: mocap", &o);
 }
 
+// What ties bodies of which none moves changes nothing; what a host pulls is no robot.
+TEST(Mjcf, TiesToTargetsOfTheHost) {
+  const auto text = [](const std::string& tie) {
+    std::string out = file(arm(kRod), "", "<equality>" + tie + "</equality>");
+    out.insert(out.find("</worldbody>"),
+               "<body name='goal' mocap='true'><geom size='.1' contype='0' conaffinity='0'/></body>");
+    return out;
+  };
+  const Import i = from_text(text("<weld body1='goal' body2='base'/>"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, "weld : neither of its bodies moves"));
+  EXPECT_EQ(from_text(text("<weld body1='base'/>")).def.num_links, 1);
+  expect_refused(text("<weld body1='goal' body2='arm'/>"), RDM_UNSUPPORTED,
+                 "weld ties a body to goal, which its host moves (mocap)");
+  expect_refused(text("<connect body1='base' body2='arm' anchor='0 0 0'/>"), RDM_UNSUPPORTED,
+                 "connect closes a loop of bodies");
+}
+
+// The surface alone of a mesh: an octahedron of edge sqrt(2) has 4 sqrt(3) of it, its points at 1 from the middle.
+TEST(Mjcf, ShellsOfMeshesWeighTheirSurface) {
+  const Import i =
+      from_text(file(arm("<geom type='mesh' mesh='octahedron' density='2' shellinertia='true'/>"),
+                     "<asset><mesh name='octahedron' vertex='1 0 0  -1 0 0  0 1 0  0 -1 0  0 0 1  0 0 -1' "
+                     "face='0 2 4  2 1 4  1 "
+                     "3 4  3 0 4  2 0 5  1 2 5  3 1 5  0 3 5'/></asset>"));
+  const double mass = 2 * 4 * std::sqrt(3.0);
+  EXPECT_NEAR(i.def.links[0].mass, mass, 1e-9);
+  // Over a triangle of unit axes the mean of x^2 is 1/6.
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(i.def.links[0].moment[k], mass / 3, 1e-9);
+}
+
 }  // namespace
