@@ -9,7 +9,7 @@ namespace tool {
 Evaluation evaluate(const ActorChoice& choice, PoolSettings settings, const std::vector<std::string>& limits,
                     int32_t episodes, bool stochastic) {
   settings.envs = std::min(settings.envs, episodes);
-  redman::Pool pool = make_pool(settings, RDM_AUTORESET_OFF);
+  redman::Pool pool = make_pool(counted(settings), RDM_AUTORESET_OFF);
   Evaluation out;
   out.limits = cost_limits(pool, limits);
   for (const rdm_cost& c : task_costs(pool.spec().task)) out.costs.push_back(c.name);

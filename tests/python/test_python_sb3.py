@@ -81,7 +81,7 @@ class Contract(unittest.TestCase):
     def test_an_ended_episode_tells_what_monitor_tells(self):
         vec = sb3.VecEnv("hand_over_safe_finger", 3, seed=1, action_repeat=2, penalty=0.5)
         vec.reset()
-        self.assertEqual(set(vec.reset_infos[0]), {"cost", "costs", "success", "status", "TimeLimit.truncated"})
+        self.assertEqual(set(vec.reset_infos[0]), {"cost", "costs", "success", "status", "episode_status", "TimeLimit.truncated"})
         vec.action_space.seed(1)
         total, length, costs, success = np.zeros(3), np.zeros(3, int), np.zeros((3, 8)), np.zeros(3, bool)
         ends = 0

@@ -4,6 +4,7 @@
 #include "common/setup.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -105,6 +106,16 @@ bool learns_magnitudes(const AgentSettings& agent) {
   for (const auto& [key, value] : agent.options)
     if (same_name(key, "cost_signal")) raw = same_name(value, "raw");
   return raw;
+}
+
+PoolSettings counted(PoolSettings pool) {
+  if (!pool.magnitudes) return pool;
+  Options& o = pool.options;
+  o.erase(std::remove_if(o.begin(), o.end(),
+                         [](const auto& each) { return same_name(each.first, "action_repeat"); }),
+          o.end());
+  o.emplace_back("action_repeat", "1");
+  return pool;
 }
 
 void add_set_flag(CLI::App& command, std::vector<std::string>& sets) {

@@ -45,6 +45,9 @@ void give_eyes(int32_t points, int32_t repeat, const std::string& color, PoolSet
 // The same for an agent that has option encoder; nothing for others.
 void give_eyes(const AgentSettings& agent, PoolSettings& pool);
 bool learns_magnitudes(const AgentSettings& agent);
+// A pool in which costs are counted: single control steps for magnitudes, since a pool shows cost_raw of a
+// step's last one alone. Actors hold actions, so the episodes are the same.
+PoolSettings counted(PoolSettings pool);
 
 // Refuses what is above `most`, and what is no number: CLI11's own checks let nan pass.
 CLI::Validator finite_to(double most);

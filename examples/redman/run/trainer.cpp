@@ -49,10 +49,11 @@ class SignalScope {
   Handler old_int_, old_term_;
 };
 
-PoolSettings eval_settings(const PoolSettings& train) {
-  PoolSettings s = train;
+PoolSettings eval_settings(const RunSettings& run) {
+  PoolSettings s = run.pool;
   s.envs = static_cast<int32_t>(kSelectionEpisodes);
-  return s;
+  s.magnitudes = learns_magnitudes(run.agent);
+  return counted(s);
 }
 
 PoolSettings part_of(const PoolSettings& whole, const Ranks* ranks) {
@@ -96,7 +97,7 @@ Trainer::Trainer(RunSettings settings, const Ranks* ranks)
     : ranks_(ranks),
       settings_(std::move(settings)),
       pool_(make_pool(part_of(settings_.pool, ranks), RDM_AUTORESET_SAME_STEP)),
-      eval_pool_(make_pool(eval_settings(settings_.pool), RDM_AUTORESET_OFF)),
+      eval_pool_(make_pool(eval_settings(settings_), RDM_AUTORESET_OFF)),
       limits_(cost_limits(pool_, settings_.limits)),
       agent_(make_agent(settings_.agent, pool_, limits_, settings_.pool.seed, settings_.pool.threads,
                         ranks ? &ranks->hooks() : nullptr)),
