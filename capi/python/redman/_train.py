@@ -169,7 +169,7 @@ class _Meter:
         rate = e.env_steps / max(now - self._begin, 1e-9)
         left = int(max(self._goal - e.env_steps, 0) / max(rate, 1e-9))
         ended = (f"return {e.ret:.2f}  cost {e.cost[0]:.2f}  length {e.length:.0f}  falls {100 * e.fall_rate:.0f}%"
-                 if e.episodes > 0 else "return -  cost -  length -  falls -")  # of no episode
+                 if e.episodes > 0 else f"no episode has ended  cost per step {e.cost_per_step:.3g}")
         line = (f"{min(100, 100 * e.env_steps / self._goal):3.0f}%  {e.env_steps} steps  {ended}  {rate:.0f} steps/s  "
                 f"{left // 60}:{left % 60:02d} left")
         self._say(f"\r{line:<{self._width}}" if self._live else f"{line}\n")
@@ -222,7 +222,7 @@ def _row(e: Epoch, costs: list[str], limits: list[Optional[float]], steps: int, 
                              "Metrics/EpRet": episodic(e.ret)}
     row.update((named("Metrics/EpCost", k), episodic(e.cost[k])) for k in range(len(costs)))
     row.update({"Metrics/EpLen": episodic(e.length), "Metrics/FallRate": episodic(e.fall_rate),
-                "Metrics/SuccessRate": episodic(e.success_rate), "Metrics/CostPerStep": episodic(e.cost_per_step),
+                "Metrics/SuccessRate": episodic(e.success_rate), "Metrics/CostPerStep": e.cost_per_step,
                 "Metrics/Episodes": e.episodes})
     row.update((named("Metrics/LagrangeMultiplier", k), e.multiplier[k]) for k in range(len(costs))
                if k == 0 or limits[k] is not None)
@@ -232,7 +232,10 @@ def _row(e: Epoch, costs: list[str], limits: list[Optional[float]], steps: int, 
         "Loss/Loss_reward_critic": e.loss_reward_value, "Loss/Loss_cost_critic": e.loss_cost_value,
         "Value/reward": e.value_reward, "Value/cost": e.value_cost, "Metrics/TestEpRet": tested[0],
         "Metrics/TestEpCost": tested[1], "Time/Epoch": times[0], "Time/Evaluation": times[1],
-        "Time/FPS": steps / times[0], "Time/Total": times[2]})
+        "Time/FPS": steps / times[0], "Time/Total": times[2],
+        "Trouble/Diverged": e.diverged, "Trouble/ContactsLeftOut": e.contacts_left_out, "Trouble/Unconverged": e.unconverged,
+        "Trouble/BadActions": e.bad_actions, "Trouble/TaskFailed": e.task_failed, "Trouble/InvalidRows": e.invalid_rows,
+        "Trouble/SkippedGradients": e.skipped_gradients})
     return row
 
 

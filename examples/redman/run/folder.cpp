@@ -168,6 +168,7 @@ void RunFolder::start(const std::string& config, const std::string& header, cons
   new_config.commit();
   new_progress.commit();
   new_policy.commit();
+  header_ = header;
   if (with_events) write_events(header + '\n');
 }
 
@@ -198,7 +199,9 @@ void RunFolder::cut_progress(size_t bytes, bool with_events) {
   if (opened && !enough)
     throw Failure(progress() + " is shorter than the checkpoint says; start the run anew");
   if (!good) throw Failure("cannot shorten " + progress() + ": " + std::strerror(error));
-  if (with_events) write_events(read_file(progress()));
+  const std::string kept = read_file(progress());
+  header_ = kept.substr(0, kept.find('\n'));
+  if (with_events) write_events(kept);
 }
 
 std::vector<std::string> RunFolder::event_files() const {
@@ -213,7 +216,6 @@ std::vector<std::string> RunFolder::event_files() const {
 
 // Into the file that is there, which a reader may be following; else into a new one.
 void RunFolder::write_events(const std::string& progress) {
-  header_ = progress.substr(0, progress.find('\n'));
   begun_ = std::time(nullptr);
   events_ = event_file_name(begun_);
   for (const std::string& name : event_files()) {

@@ -31,6 +31,7 @@ class RunFolder {
   std::string policy() const { return file("policy.rdm"); }
   std::string checkpoint() const { return file("checkpoint.rdm"); }
   std::string progress() const { return file("progress.csv"); }
+  const std::string& header() const { return header_; }  // of progress.csv, of a run that began or goes on
 
   // Begins a run. What stood in the folder goes when all of this has been written beside it.
   void start(const std::string& config, const std::string& header, const std::string& policy,

@@ -35,12 +35,15 @@ void Meter::show(const rdm_epoch& e) {
       static_cast<double>(e.env_steps - first_) / std::max(Seconds(now - begin_).count(), 1e-9);
   const double left = std::min(static_cast<double>(std::max<int64_t>(goal_ - e.env_steps, 0)) / rate, 1e9);
   const auto seconds_left = static_cast<int>(left);
-  const std::string line = format(
-      "%3.0f%%  %s steps  return %.2f  cost %.2f  length %.0f  falls %.0f%%  multiplier %.3g  %s steps/s  "
-      "%d:%02d left",
-      std::min(100.0, 100 * static_cast<double>(e.env_steps) / static_cast<double>(goal_)),
-      short_count(static_cast<double>(e.env_steps)).c_str(), e.ret, e.cost[0], e.length, 100 * e.fall_rate,
-      e.multiplier[0], short_count(rate).c_str(), seconds_left / 60, seconds_left % 60);
+  const std::string ended = e.flags & RDM_EPOCH_NO_EPISODE
+                                ? format("no episode has ended  cost per step %.3g", e.cost_per_step)
+                                : format("return %.2f  cost %.2f  length %.0f  falls %.0f%%", e.ret,
+                                         e.cost[0], e.length, 100 * e.fall_rate);
+  const std::string line =
+      format("%3.0f%%  %s steps  %s  multiplier %.3g  %s steps/s  %d:%02d left",
+             std::min(100.0, 100 * static_cast<double>(e.env_steps) / static_cast<double>(goal_)),
+             short_count(static_cast<double>(e.env_steps)).c_str(), ended.c_str(), e.multiplier[0],
+             short_count(rate).c_str(), seconds_left / 60, seconds_left % 60);
   wipe();
   std::fputs(line.c_str(), stderr);
   if (terminal_)

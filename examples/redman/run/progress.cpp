@@ -34,7 +34,7 @@ void visit(const std::vector<CostColumn>& columns, const Row& row, Add add) {
   add("Metrics/EpLen", episodic(e.length));
   add("Metrics/FallRate", episodic(e.fall_rate));
   add("Metrics/SuccessRate", episodic(e.success_rate));
-  add("Metrics/CostPerStep", episodic(e.cost_per_step));
+  add("Metrics/CostPerStep", e.cost_per_step);
   add("Metrics/Episodes", static_cast<double>(e.episodes));
   for (size_t k = 0; k < columns.size(); ++k)
     if (k == 0 || columns[k].limited) add(name("Metrics/LagrangeMultiplier", k), e.multiplier[k]);
@@ -55,6 +55,13 @@ void visit(const std::vector<CostColumn>& columns, const Row& row, Add add) {
   add("Time/Evaluation", row.times.evaluation);
   add("Time/FPS", static_cast<double>(row.steps) / row.times.epoch);
   add("Time/Total", row.times.total);
+  add("Trouble/Diverged", static_cast<double>(e.diverged));
+  add("Trouble/ContactsLeftOut", static_cast<double>(e.contacts_left_out));
+  add("Trouble/Unconverged", static_cast<double>(e.unconverged));
+  add("Trouble/BadActions", static_cast<double>(e.bad_actions));
+  add("Trouble/TaskFailed", static_cast<double>(e.task_failed));
+  add("Trouble/InvalidRows", static_cast<double>(e.invalid_rows));
+  add("Trouble/SkippedGradients", static_cast<double>(e.skipped_gradients));
 }
 
 constexpr size_t kMostColumns = 1000;
@@ -85,13 +92,17 @@ std::string curve_header(const std::vector<CostColumn>& costs) {
   return out;
 }
 
-std::string curve_row(const std::vector<CostColumn>& costs, const rdm_epoch& e, int64_t steps_in_epoch,
-                      const LastEvaluation& evaluation, const EpochTimes& times) {
+std::string curve_row(const std::string& header, const std::vector<CostColumn>& costs, const rdm_epoch& e,
+                      int64_t steps_in_epoch, const LastEvaluation& evaluation, const EpochTimes& times) {
+  std::map<std::string, double> values;
+  visit(costs, Row{e, steps_in_epoch, evaluation, times},
+        [&](const std::string& name, double value) { values[name] = value; });
   std::string out;
-  visit(costs, Row{e, steps_in_epoch, evaluation, times}, [&](const std::string&, double value) {
+  for (const std::string& name : split(header, kMostColumns)) {
+    const auto found = values.find(name);
     out += out.empty() ? "" : ",";
-    out += std::isnan(value) ? "nan" : format("%.9g", value);
-  });
+    out += found == values.end() || std::isnan(found->second) ? "nan" : format("%.9g", found->second);
+  }
   return out;
 }
 

@@ -29,9 +29,11 @@ struct CostColumn {
 
 // Column 0 has the bare name, the others "/<name>".
 std::string curve_header(const std::vector<CostColumn>& costs);
-// Numbers have nine digits; means over episodes are nan before the first one ends.
-std::string curve_row(const std::vector<CostColumn>& costs, const rdm_epoch& e, int64_t steps_in_epoch,
-                      const LastEvaluation& evaluation, const EpochTimes& times);
+// In the order of `header`, which is that of the run's file: a run may go on that an older version began.
+// Numbers have nine digits; means over episodes are nan before the first one ends, and what this version does
+// not know is.
+std::string curve_row(const std::string& header, const std::vector<CostColumn>& costs, const rdm_epoch& e,
+                      int64_t steps_in_epoch, const LastEvaluation& evaluation, const EpochTimes& times);
 
 // Columns by name, all of one length; NaN where a cell is no number or beyond +-1e100. A row of another
 // length, such as a last one that is cut short, is left out. Failure when a name stands twice.

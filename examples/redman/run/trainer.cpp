@@ -282,8 +282,8 @@ void Trainer::train_epoch(Meter& meter) {
   seconds_ += since(begin);
   times.total = earlier_seconds_ + seconds_;
   if (first())
-    progress_bytes_ =
-        folder_->append_progress(curve_row(cost_columns(pool_.spec().task, limits_), e, steps, last_, times));
+    progress_bytes_ = folder_->append_progress(
+        curve_row(folder_->header(), cost_columns(pool_.spec().task, limits_), e, steps, last_, times));
   if (epoch_ % settings_.checkpoint_every == 0) save();
   if (first()) meter.show(e);
 }
