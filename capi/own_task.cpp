@@ -88,6 +88,23 @@ bool among(const char* word, const char* choices) {
   }
 }
 
+// A build may make pools of other tasks; one that makes a pool of its own would never end.
+constexpr int32_t kMostNested = 8;
+thread_local int32_t t_nested = 0;  // builds of this thread that have not returned
+
+struct Nested {
+  explicit Nested(const char* task) {
+    if (t_nested >= kMostNested)
+      fail(Code::kState,
+           "task %s: build: %d builds deep: a build made a pool whose build made a pool, and so on", task,
+           kMostNested);
+    ++t_nested;
+  }
+  ~Nested() { --t_nested; }
+  Nested(const Nested&) = delete;
+  Nested& operator=(const Nested&) = delete;
+};
+
 // A task of one pool: what its functions are called with.
 class BuiltTask final : public Task {
  public:
@@ -96,6 +113,7 @@ class BuiltTask final : public Task {
         engine_(engine_from(o)),
         max_steps_(o.integer("max_steps")),
         instance_(static_cast<size_t>(own.def.instance_bytes / sizeof(Block)) + 1) {
+    const Nested nested(own.def.name);
     begin_scene(own, o, &scene_);
     struct Retire {
       rdm_scene* scene;

@@ -117,7 +117,8 @@ TEST_P(ContractLimits, OnSumsWithoutAnEndAreBrokenByThoseThatRun) {
   EXPECT_LE(t.settle(150), 1.2 * 5);
   EXPECT_EQ(t.epoch.flags, RDM_EPOCH_NO_EPISODE);
   EXPECT_EQ(t.epoch.episodes, 0);
-  for (const double x : {t.epoch.ret, t.epoch.cost[0], t.epoch.length, t.epoch.fall_rate, t.epoch.success_rate})
+  for (const double x :
+       {t.epoch.ret, t.epoch.cost[0], t.epoch.length, t.epoch.fall_rate, t.epoch.success_rate})
     EXPECT_TRUE(std::isnan(x));
   EXPECT_NEAR(t.epoch.cost_per_step, t.cost_per_step, 1e-12);
 }

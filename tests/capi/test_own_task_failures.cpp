@@ -243,6 +243,35 @@ TEST(OwnTaskFailures, TheTaskCheckNamesAFailureThatOnlyPoolsSee) {
       << rdm_last_error();
 }
 
+TEST(OwnTaskFailures, ABuildThatMakesItsOwnPoolEnds) {
+  CalledTask t("builds_itself");
+  int32_t builds = 0;
+  std::string text;
+  t.build = [&](rdm_scene*) {
+    ++builds;
+    rdm_pool_config c = pool_config(1);
+    c.task = "builds_itself";
+    rdm_pool* p = nullptr;
+    if (const rdm_result r = rdm_pool_create(&p, &c)) {
+      if (text.empty()) text = rdm_last_error();
+      return r;
+    }
+    rdm_pool_destroy(p);
+    return rdm_result{RDM_OK};
+  };
+  rdm_pool_config c = pool_config(1);
+  c.task = "builds_itself";
+  rdm_pool* p = nullptr;
+  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_STATE);
+  EXPECT_EQ(builds, 8);
+  EXPECT_EQ(
+      text,
+      "task builds_itself: build: 8 builds deep: a build made a pool whose build made a pool, and so on");
+  t.build = nullptr;
+  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_OK) << rdm_last_error();
+  rdm_pool_destroy(p);
+}
+
 TEST(OwnTaskFailures, TextsAreOfWorldsThatThereAre) {
   CalledTask t("texts");
   Pool p("texts", 2);

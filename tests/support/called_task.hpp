@@ -18,6 +18,7 @@ class CalledTask {
   std::function<rdm_result(rdm_world*, int64_t*)> control;  // and the control steps of the episode so far
   std::function<rdm_result(const rdm_world*, int64_t, rdm_verdict*)> judge;
   std::function<rdm_result(const rdm_world*)> observe;
+  std::function<float(int64_t)> shows;  // the observation after so many control steps, in the place of them
   std::function<void()> release;
   rdm_task_def def;
 
@@ -53,7 +54,8 @@ class CalledTask {
       return self(u).judge ? self(u).judge(world, *static_cast<int64_t*>(state), out) : rdm_result{RDM_OK};
     };
     def.observe = [](void* u, const void*, const rdm_world* world, const void* state, float* obs) {
-      obs[0] = static_cast<float>(*static_cast<const int64_t*>(state));
+      const int64_t steps = *static_cast<const int64_t*>(state);
+      obs[0] = self(u).shows ? self(u).shows(steps) : static_cast<float>(steps);
       return self(u).observe ? self(u).observe(world) : rdm_result{RDM_OK};
     };
     def.release = [](void* u) {
