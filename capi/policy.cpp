@@ -299,15 +299,19 @@ PointRows rdm::capi::read_points(const rdm_points* points, const PointNetShape& 
 }
 
 void rdm::capi::check_policy(const PolicyView& v, const rdm_spec& s) {
+  const char *origin = v.task[0] ? "; the policy learned in task " : "", *task = v.task;
   if (v.obs_dim() != s.obs_dim)
-    fail(Code::kVersion, "obs_dim: the policy has %d, the task %d", v.obs_dim(), s.obs_dim);
+    fail(Code::kVersion, "obs_dim: the policy has %d, the task %d%s%s", v.obs_dim(), s.obs_dim, origin, task);
   if (v.action_dim() != s.action_dim)
-    fail(Code::kVersion, "action_dim: the policy has %d, the task %d", v.action_dim(), s.action_dim);
+    fail(Code::kVersion, "action_dim: the policy has %d, the task %d%s%s", v.action_dim(), s.action_dim,
+         origin, task);
   if (v.layout_hash && s.layout_hash && v.layout_hash != s.layout_hash)
-    fail(Code::kVersion, "layout_hash: the policy learned another layout of observations or actions");
+    fail(Code::kVersion,
+         "layout_hash: the policy learned another layout of observations or actions than the task has%s%s",
+         origin, task);
   if (v.control_dt > 0 && s.control_dt > 0 && std::abs(v.control_dt - s.control_dt) > 1e-6f)
-    fail(Code::kVersion, "control_dt: the policy has %g s, the task %g s", static_cast<double>(v.control_dt),
-         static_cast<double>(s.control_dt));
+    fail(Code::kVersion, "control_dt: the policy has %g s, the task %g s%s%s",
+         static_cast<double>(v.control_dt), static_cast<double>(s.control_dt), origin, task);
 }
 
 rdm_result rdm_policy_check(const rdm_policy* p, const rdm_spec* spec) {

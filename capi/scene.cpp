@@ -9,6 +9,7 @@
 #include "env/options/simulation.hpp"
 #include "objects/objects.hpp"
 #include "physics/model/inertia.hpp"
+#include "physics/model/validate.hpp"
 
 using namespace rdm;
 using namespace rdm::capi;
@@ -469,6 +470,7 @@ rdm_result rdm_scene_add_body(rdm_scene* scene, const rdm_body_def* body, int32_
     } else {
       b.inertia = inertia_of(b, in.mass);
     }
+    validate_body(b, static_cast<int32_t>(scene->materials.size()));
     scene->def.bodies.push_back(std::move(b));
     if (index) *index = static_cast<int32_t>(scene->def.bodies.size()) - 1;
   });
@@ -503,6 +505,7 @@ rdm_result rdm_scene_add_static(rdm_scene* scene, const rdm_shape_def* shape) {
     ShapeDef s = read_shape(*scene, *shape, nullptr);
     if (scene->def.statics.size() == kMostThings)
       fail(Code::kRange, "shape %s: more than %d that stand still", s.name.text, kMostThings);
+    validate_static(s, static_cast<int32_t>(scene->materials.size()));
     scene->def.statics.push_back(std::move(s));
   });
 }

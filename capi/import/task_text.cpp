@@ -51,6 +51,15 @@ struct TextTask {
   std::vector<rdm_option_info> options;
   std::vector<rdm_camera> cameras;
   std::vector<rdm_option> defaults;
+  struct Row {  // where a row of rdm_task_def stands in the file
+    std::string def;
+    int line;
+    std::string what;
+  };
+  std::vector<Row> rows;
+  void stands(const char* list, size_t row, int line, const std::string& what) {
+    rows.push_back({format("def.%s[%zu]", list, row), line, what});
+  }
   const char* keep(std::string text) {
     texts.push_back(std::move(text));
     return texts.back().c_str();
@@ -239,6 +248,7 @@ class Registration {
       if (const toml::node* n = t.find("scale"); n && !n->is_string()) scale = t.as_number(*n, "scale");
       std::string unit = t.text("unit", row.unit);
       if (!t.find("unit") && scale != 1) unit = format("%g %s", 1 / scale, row.unit);
+      task_.stands("fields", task_.fields.size(), line_of(t.t), t.what);
       task_.fields.push_back({task_.keep(field_name(t)), task_.keep(unit), 1, 0, 0, 0});
     }
     if (task_.fields.empty()) top_.bad(RDM_FORMAT, 1, "no [[observe]]");
@@ -253,6 +263,7 @@ class Registration {
       if (there == task_.costs.end()) {
         if (task_.costs.size() == RDM_MAX_COSTS)
           t.bad(RDM_RANGE, line_of(t.t), "more than %d costs", RDM_MAX_COSTS);
+        task_.stands("costs", task_.costs.size(), line_of(t.t), t.what);
         task_.costs.push_back({name, task_.keep(t.text("help", term_of(t, false).name)), limit});
       } else if (t.find("limit") || t.find("help")) {
         t.bad(RDM_FORMAT, line_of(t.t), "limit, help: the first row of a cost has them");
@@ -272,6 +283,7 @@ class Registration {
         own_option(t, &o);
       else
         shared_option(t, value, &o);
+      task_.stands("options", task_.options.size(), line_of(key.source()), t.what);
       task_.options.push_back(o);
     }
   }
@@ -341,6 +353,7 @@ class Registration {
       double fov = 0.785398163397448;
       t.number("fov", &fov);
       c.fov_y = static_cast<float>(fov);
+      task_.stands("cameras", task_.cameras.size(), line_of(t.t), t.what);
       task_.cameras.push_back(c);
     }
   }
@@ -355,6 +368,7 @@ class Registration {
         o.number = flag->get() ? 1 : 0;
       else
         o.number = all.as_number(value, name.c_str());
+      task_.stands("defaults", task_.defaults.size(), line_of(key.source()), "learn: " + clean(name));
       task_.defaults.push_back(o);
     }
   }
@@ -403,6 +417,10 @@ class Builder {
     if (compensated_) check(top_, 1, rdm_scene_set_feedforward(scene_));
     const auto draws = top_.rows("draw");
     if (!draws.empty()) check(draws[0], line_of(draws[0].t), rdm_scene_set_adjustable(scene_));
+    if (!joint_names_.empty()) {  // the first look at the whole scene: what is wrong then is no robot's fault
+      rdm_joint first;
+      if (const rdm_result r = rdm_scene_joint(scene_, 0, &first)) refuse(r, "%s", rdm_last_error());
+    }
     for (size_t i = 0; i < parts_.size(); ++i) add_player(i);
     if (p_.num_actions == 0) top_.bad(RDM_FORMAT, 1, "nothing is moved by actions: a [[robot]] is");
     check(top_, 1, rdm_scene_set_actions(scene_, p_.num_actions, hold_.data(), hold_.data()));
@@ -674,7 +692,8 @@ class Builder {
     moves = spans(t, "w", d.w, 3) || moves;
     d.apart = t.flag("apart", true);
     check(t, line_of(t.t), add(p, q, &d.body));
-    if (moves) *take(t, p_.draws, &p_.num_draws, kMostDraws, "bodies that are drawn") = d;
+    if (moves)
+      *take(t, p_.draws, &p_.num_draws, kMostDraws, "bodies that begin with a range in p, rpy, v or w") = d;
   }
   // One of the catalogue, or the host's: shapes, mass and friction are its own.
   void add_object(const Table& t) {
@@ -1342,6 +1361,21 @@ rdm_result try_world(const char* name) {
   return r;
 }
 
+// What is wrong with the task, in the file's words and at the file's line.
+[[noreturn]] void refuse_def(const TextTask& task, rdm_result r) {
+  const std::string text = rdm_last_error();
+  for (const TextTask::Row& row : task.rows) {
+    if (text.compare(0, row.def.size(), row.def) != 0) continue;
+    const size_t rest = text.find_first_not_of(".: ", row.def.size());
+    refuse(r, "line %d: %s: %s", row.line, row.what.c_str(), text.c_str() + std::min(rest, text.size()));
+  }
+  const toml::node* section = task.root.get("task");
+  const std::string def = "def.";
+  const bool own = text.compare(0, def.size(), def) == 0;
+  refuse(r, "line %d: %s", section ? line_of(*section) : 1,
+         (own ? "task: " + text.substr(def.size()) : text).c_str());
+}
+
 }  // namespace
 
 int32_t read_task(const std::string& bytes, const std::string& file) {
@@ -1358,10 +1392,7 @@ int32_t read_task(const std::string& bytes, const std::string& file) {
   d.release = release;
   int32_t index = -1;
   const std::string name = d.name;
-  if (const rdm_result r = rdm_task_register(&index, &d)) {
-    const toml::node* section = task->root.get("task");
-    refuse(r, "line %d: %s", section ? line_of(*section) : 1, rdm_last_error());
-  }
+  if (const rdm_result r = rdm_task_register(&index, &d)) refuse_def(*task, r);
   (void)task.release();  // the library's, until `release`
   if (const rdm_result r = try_world(name.c_str())) {
     std::string text = inner_text(name);

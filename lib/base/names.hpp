@@ -77,7 +77,7 @@ inline int name_distance(const char* word, const char* known) {
   if (n < kLeastPart) return best;
   const auto near = [&](int slips) { return 4 * static_cast<size_t>(slips) <= n + 1; };
   if (near(begin)) best = std::min(best, 2 * begin + 1);
-  for (const char* p = known; *p; ++p) {
+  for (const char* p = known; *p && p < known + kMostCompared; ++p) {
     if (!std::strchr("_-. :", *p) || !p[1]) continue;
     edit_distance(word, p + 1, &begin);
     if (near(begin)) best = std::min(best, 2 * begin + 2);
@@ -107,22 +107,23 @@ struct Nearest {
     count = std::min(count, kMostLookedAt);
     int least = kUnlike;
     int32_t near = 0, named = 0;
+    int32_t found[kMostLookedAt];
     for (int32_t i = 0; i < count; ++i) {
       const int d = name_distance(name, names[i]);
-      if (d == least && d != kUnlike) ++near;
-      if (d < least) least = d, near = 1;
+      if (d < least) least = d, near = 0;
+      const auto same = [&](int32_t other) { return same_name(names[other], names[i]); };
+      if (d == least && d != kUnlike && std::none_of(found, found + near, same)) found[near++] = i;
     }
     size_t at = 0;
     const auto add = [&](const char* before, const char* word) {
       at += static_cast<size_t>(print_text(text + at, sizeof text - at, "%s%.63s", before, word));
     };
-    for (int32_t i = 0; i < count && named < kMostNamed; ++i) {
-      if (least == kUnlike || name_distance(name, names[i]) != least) continue;
-      ++named;
+    while (named < std::min(near, kMostNamed)) {
+      const char* word = names[found[named++]];
       add(named == 1      ? (near == 1 ? "; nearest is " : "; nearest are ")
           : named == near ? " and "
                           : ", ",
-          names[i]);
+          word);
     }
     if (near > named) print_text(text + at, sizeof text - at, " and %d more", static_cast<int>(near - named));
   }

@@ -79,10 +79,8 @@ void read_value(const OptionSpec& s, const char* key, const char* text, const ch
     fail(Code::kArgument, "%s option %s: '%s' is none of true, false, on, off, 1, 0", owner, key,
          Quoted(text).text);
   if (!good)
-    fail(Code::kArgument, "%s option %s: '%s' is not %s", owner, key, Quoted(text).text,
-         s.kind == OptionKind::kFlag ? "true, false, on, off, 1 or 0"
-         : s.range                   ? "a number or a range a..b"
-                                     : "a number");
+    fail(Code::kArgument, "%s option %s: '%s' is not a number%s", owner, key, Quoted(text).text,
+         s.range ? " or a range a..b" : "");
   if (!dots) out->high = out->low;
 }
 

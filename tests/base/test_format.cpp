@@ -15,7 +15,7 @@ namespace {
 
 template <class... T>
 std::string ours(const char* pattern, T... values) {
-  char text[1024];
+  char text[4096];
   const int n = print_text(text, sizeof text, pattern, values...);
   EXPECT_EQ(static_cast<size_t>(n), std::string(text).size()) << pattern;
   return text;
@@ -23,15 +23,16 @@ std::string ours(const char* pattern, T... values) {
 
 #define SAME_AS_PRINTF(...)                        \
   do {                                             \
-    char want[1024];                               \
+    char want[4096];                               \
     std::snprintf(want, sizeof want, __VA_ARGS__); \
     EXPECT_EQ(ours(__VA_ARGS__), want);            \
   } while (false)
 
 TEST(PrintText, SaysWhatPrintfSays) {
   SAME_AS_PRINTF("plain %% text");
-  const double huge = HUGE_VAL, nothing = std::nan("");
-  for (const double x : {0.0, -0.0, 1.0, 0.5, -1234.56789, 1e-300, 1e22, DBL_MAX, huge, -huge, nothing}) {
+  const double infinite = HUGE_VAL, none = std::nan("");
+  for (const double x :
+       {0.0, -0.0, 1.0, 0.5, -1234.56789, 1e-300, 1e22, DBL_MAX, infinite, -infinite, none}) {
     SAME_AS_PRINTF("%g", x);
     SAME_AS_PRINTF("[%.9g, %+e]", x, x);
     SAME_AS_PRINTF("%12.3f|%-12.3f|%012.3f|% .2E|%.0f|%.17g", x, x, x, x, x, x);

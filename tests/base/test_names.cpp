@@ -60,6 +60,10 @@ TEST(Nearest, OffersWhatHasTheWordAmongItsParts) {
   EXPECT_EQ(nearest("zebra", names), "");
 }
 
+TEST(Nearest, OffersANameThatStandsTwiceOnce) {
+  EXPECT_EQ(nearest("bll", {"ball", "cup", "ball", "Ball"}), "; nearest is ball");
+}
+
 TEST(Nearest, OffersTheNameThatTheWordGoesOnFrom) {
   EXPECT_EQ(nearest("hidden_sizes_of_all", {"hid", "hidden", "clip"}), "; nearest is hidden");
 }

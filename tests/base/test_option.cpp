@@ -149,7 +149,7 @@ TEST(Options, AFlagSaysItsWords) {
   Options o;
   o.add_table(&flag, 1);
   EXPECT_EQ(guard([&] { o.set({"push", "yes", 0}, "task"); }), Code::kArgument);
-  EXPECT_STREQ(last_error(), "task option push: 'yes' is not true, false, on, off, 1 or 0");
+  EXPECT_STREQ(last_error(), "task option push: 'yes' is none of true, false, on, off, 1, 0");
 }
 
 TEST(Options, UnknownKeyNamesTheNearest) {

@@ -201,7 +201,7 @@ TEST(Discovery, TasksAreWhatTheirPoolsAre) {
 }
 
 TEST(Discovery, Algorithms) {
-  ASSERT_GE(rdm_algo_count(), 2);
+  ASSERT_GT(rdm_algo_count(), 0);
   for (int32_t a = 0; a < rdm_algo_count(); ++a) {
     rdm_algo algo;
     algo.struct_size = sizeof algo;
@@ -247,7 +247,7 @@ TEST(Discovery, RobotsAndObjects) {
     EXPECT_EQ(rdm_robot_joint(r, robot.num_joints, &joint), RDM_RANGE);
   }
   rdm_object object;
-  ASSERT_GE(rdm_object_count(), 2);
+  ASSERT_GT(rdm_object_count(), 0);
   for (int32_t i = 0; i < rdm_object_count(); ++i) {
     ASSERT_EQ(rdm_object_at(i, &object), RDM_OK);
     EXPECT_GT(object.mass, 0) << object.name;

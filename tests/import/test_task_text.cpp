@@ -383,6 +383,21 @@ TEST(TaskText, RefusalsNameLineAndKey) {
            {"[[cost]]\n", "", "cannot redefine existing"},
            {"control = \"position\"\n", "", "nothing is moved by actions"},
            {"[[observe]]", "[[observe]", "t.task: line 47: "},
+           // what the library refuses, at the row that it is of
+           {"name = \"touch\"", "name = \"a b\"",
+            "t.task: line 50: cost a b: name: a b has other characters"},
+           {"limit = 5", "limit = inf", "line 50: cost touch: limit of touch is not finite"},
+           {"far = {", "\"f r\" = {", "line 7: options: f r: key: f r has other characters"},
+           {"low = 0, high = 2", "low = 0.5, high = 0.5",
+            "line 7: options: far: low 0.5 of far is not below high 0.5"},
+           {"name = \"text_test\"", "name = \"text test\"",
+            "line 1: task: name: text test has other characters"},
+           {"kind = \"plane\"", "kind = \"hull\"\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]",
+            "line 44: static table: table: the points are in one plane or too near each other"},
+           {"kind = \"plane\"", "kind = \"box\"\nsize = [1, 1, 0]",
+            "line 44: static table: table: half size 0"},
+           {"mass = 0.2", "moment = [1, 1, 1, 0, 0, 0]\nmass = 0.2\nmaterial = \"none\"",
+            "line 35: body plane: material none: unknown"},
        }) {
     std::string text = good;
     const size_t at = text.find(w.from);

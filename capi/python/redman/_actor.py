@@ -1,21 +1,33 @@
 """Actor: a policy that plays, its actions held as long as it decides."""
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import sys
 from ctypes import byref
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Iterator, Optional
 
 import numpy as np
 
 from . import _abi
-from ._error import ArgumentError, UnsupportedError
+from ._error import ArgumentError, UnsupportedError, VersionError
 from ._library import Handle, assign, bytes_of, check, lib, sized
 from ._pool import Pool
 from ._rows import Array, address, clouds, given
 
 if TYPE_CHECKING:
     from ._policy import Policy
+
+
+@contextlib.contextmanager
+def on_task(pool: Optional[Pool]) -> Iterator[None]:
+    """What does not fit a policy is said with the task that it does not fit."""
+    try:
+        yield
+    except VersionError as error:
+        if pool is None:
+            raise
+        raise VersionError(f"on task {pool.task.name}: {error}") from None
 
 
 def worlds_of(where: Any) -> tuple[Optional[Pool], Any]:
@@ -80,7 +92,8 @@ class Actor:
         check(lib.rdm_actor_config_init(byref(config), ctypes.sizeof(config)))
         config.policy, config.spec = policy._open(), ctypes.pointer(spec)
         assign(config, {"num_envs": self.num_envs, "seed": seed, "stochastic": int(stochastic)})
-        self._handle = Handle(lib.rdm_actor_create, lib.rdm_actor_destroy, byref(config))
+        with on_task(self._pool):
+            self._handle = Handle(lib.rdm_actor_create, lib.rdm_actor_destroy, byref(config))
         self._lengths = {"num_envs": self.num_envs, "obs_dim": policy.info.obs_dim, "action_dim": policy.info.action_dim}
         self._action = np.zeros((self.num_envs, policy.info.action_dim), np.float32)
         self._rows = _abi.FUNCTIONS["rdm_actor_act"].rows

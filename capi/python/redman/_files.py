@@ -2,11 +2,23 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import os
 from pathlib import Path
 from typing import Union
 
 from ._error import FileError, MissingFileError
+from ._names import nearest
+
+
+def _beside(path: Path) -> str:
+    """'; nearest is NAME' of what stands beside a file that is not there."""
+    try:
+        with os.scandir(path.parent) as entries:
+            names = [entry.name for entry in itertools.islice(entries, 500)]
+    except OSError:
+        return f"; there is no folder {path.parent}"
+    return nearest(path.name, names)
 
 
 def read_whole(path: Union[str, os.PathLike[str]], what: str) -> bytes:
@@ -14,7 +26,7 @@ def read_whole(path: Union[str, os.PathLike[str]], what: str) -> bytes:
     try:
         return Path(path).read_bytes()
     except FileNotFoundError:
-        raise MissingFileError(f"{what} {os.fspath(path)}: there is no such file") from None
+        raise MissingFileError(f"{what} {os.fspath(path)}: there is no such file{_beside(Path(path))}") from None
     except OSError as error:
         raise FileError(f"{what} {os.fspath(path)}: {error.strerror}") from None
 

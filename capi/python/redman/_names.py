@@ -1,11 +1,14 @@
 """Names that are not ours: the nearest that is, or what to write instead."""
 from __future__ import annotations
 
+import ctypes
 import functools
 import inspect
 from typing import TYPE_CHECKING, Any, Callable, ClassVar, Iterable, Mapping, TypeVar
 
+from . import _abi
 from ._error import UsageError
+from ._library import check, encoded, lib, text
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -18,37 +21,20 @@ WORDS = {
     "lambda_lr": "multiplier_lr", "obs_normalize": "normalize_obs"}
 
 
-def nearest_of(name: str, known: Iterable[str]) -> str:
-    """That of the known names which the fewest changes lead to; "" where none is near. Case, - and _ do not count."""
-    def folded(word: str) -> str:
-        return word.lower().replace("-", "_")
-
-    wanted = folded(name)
-    distances = {word: _distance(wanted, folded(word)) for word in known}
-    best = min(distances, key=lambda word: (distances[word], word), default="")
-    if WORDS.get(wanted) in distances:
-        return WORDS[wanted]
-    return best if best and distances[best] <= max(2, len(wanted) // 3) else ""
+def meant(name: str, known: Iterable[str]) -> str:
+    """That of the known names which another library's word stands for; "" for none."""
+    own = WORDS.get(name.lower().replace("-", "_"), "")
+    return own if own in set(known) else ""
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """'; nearest is NAME', or "" where none is near."""
-    best = nearest_of(name, known)
-    return f"; nearest is {best}" if best else ""
-
-
-def _distance(a: str, b: str) -> int:
-    """Letters to insert, to leave out, to replace or to swap."""
-    rows = [list(range(len(b) + 1))]
-    for i, letter in enumerate(a, 1):
-        row = [i]
-        for j, other in enumerate(b, 1):
-            cost = min(rows[-1][j] + 1, row[-1] + 1, rows[-1][j - 1] + (letter != other))
-            if i > 1 and j > 1 and letter == b[j - 2] and a[i - 2] == other:
-                cost = min(cost, rows[-2][j - 2] + 1)
-            row.append(cost)
-        rows.append(row)
-    return rows[-1][-1]
+    """'; nearest is NAME', or several, or "" where none is near: as the library's texts say it."""
+    names = sorted(known)
+    if own := meant(name, names):
+        return f"; nearest is {own}"
+    out = ctypes.create_string_buffer(4 * _abi.RDM_TEXT_SIZE)
+    check(lib.rdm_nearest_names(encoded(name.replace("\0", " ")), encoded("\n".join(names)), out, len(out)))
+    return text(out.value)
 
 
 def keywords(*, aliases: Mapping[str, str] = {}, hints: Mapping[str, str] = {},

@@ -12,8 +12,8 @@ from typing import Any, Mapping, Optional, Union
 import numpy as np
 
 from . import _abi, _discovery
-from ._actor import Actor
-from ._error import ArgumentError, FileError, FormatError, MissingFileError, VersionError
+from ._actor import Actor, on_task
+from ._error import ArgumentError, FileError, FormatError, MissingFileError
 from ._files import read_whole, write_whole
 from ._hold import decided, warn
 from ._library import Handle, check, filled, lib, policy_folders
@@ -212,10 +212,8 @@ class Policy(Hinted):
 
     def check(self, pool: Pool) -> None:
         """VersionError, which says what differs, unless the policy fits the pool's task and options."""
-        try:
+        with on_task(pool):
             check(lib.rdm_policy_check(self._open(), pool._spec))
-        except VersionError as error:
-            raise VersionError(f"a policy of {self.info.task or 'another world'} on task {pool.task.name}: {error}") from None
 
     @property
     def columns(self) -> Array:

@@ -155,10 +155,13 @@ def _handles_costs(algo: str, columns: int) -> bool:
 class _Meter:
     """One line of progress on stderr: rewritten on a terminal and in a notebook, else one every ten seconds."""
 
-    def __init__(self, goal: int) -> None:
+    def __init__(self, goal: int, per_epoch: int) -> None:
         self._goal, self._begin, self._shown = goal, time.monotonic(), 0.0
         self._width = 0  # of the line that stands there
         self._live = sys.stderr.isatty() or "ipykernel" in sys.modules
+        if goal % per_epoch:
+            self._say(f"steps={goal}: a run ends with an epoch, of up to {per_epoch} steps: it makes up to "
+                      f"{math.ceil(goal / per_epoch) * per_epoch}\n")
 
     def show(self, e: Epoch) -> None:
         now = time.monotonic()
@@ -375,10 +378,11 @@ def train(task: Union[str, _discovery.Task], algo: str = "ppo_lag", steps: float
           task_file: Union[None, str, os.PathLike[str]] = None) -> Run:
     """Trains a policy on a task: the policy of `redman train` with the same arguments, to the byte.
 
-    steps are control steps of all worlds together; options are those of the task and of the algorithm. Every
-    eval_every epochs twenty episodes, and eighty more where those look good, decide which policy is kept: the best that
-    stays within the limits, else the one that comes nearest. callback(epoch) is called after each epoch; a true answer ends
-    the run. The first Ctrl-C ends it after this epoch, and what has been learned is returned; the second at once.
+    steps are control steps of all worlds together, rounded up to whole epochs, which a line on stderr says; options are those
+    of the task and of the algorithm. Every eval_every epochs twenty episodes, and eighty more where those look good, decide which
+    policy is kept: the best that stays within the limits, else the one that comes nearest. callback(epoch) is called after each
+    epoch; a true answer ends the run. The first Ctrl-C ends it after this epoch, and what has been learned is returned; the second
+    at once.
 
     out makes a run folder, which `redman eval`, `plot`, `report` and `train --resume` take, with the curve for TensorBoard;
     from Python itself a run does not go on. task_file: the .task file that the task was registered from, whose text is kept
@@ -413,7 +417,7 @@ def train(task: Union[str, _discovery.Task], algo: str = "ppo_lag", steps: float
     counted = limits if _handles_costs(run.algo, pool.cost_dim) else [None] * len(limits)
     first_seed = seed * _SELECTION_EPISODES * (1 + _CONFIRMATIONS)
     names = list(pool.costs)
-    meter = _Meter(goal) if progress else None
+    meter = _Meter(goal, per_epoch) if progress else None
     best: Optional[_Score] = None
     tested = (math.nan, math.nan)
     epoch: Optional[Epoch] = None

@@ -11,7 +11,7 @@ from typing import Any, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from ._error import ArgumentError, UnsupportedError
-from ._names import nearest_of
+from ._names import nearest
 from ._pool import Pool
 from ._rows import Array, FloatArray
 from ._senses import Senses
@@ -128,11 +128,10 @@ class Worlds:
         for key in options or {}:
             if key in known:
                 continue
-            own = nearest_of(key, [*self.pool.task.options, *known])
-            hint = (f"; nearest is {own}" if own in known else
-                    f": an option of the task is given when the environment is made: options={{{own!r}: ...}}" if own else
-                    "")
             takes = f"reset takes {', '.join(known)}" if known else "reset takes none"
+            hint = nearest(key, [*self.pool.task.options, *known])
+            if hint and not nearest(key, known):
+                hint += ": an option of the task is given when the environment is made, options={...}"
             raise ArgumentError(f"reset: option {key!r} is not used, {takes}{hint}")
 
     def act(self, actions: Any) -> None:

@@ -1,8 +1,10 @@
 #include "mesh/mesh.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -10,6 +12,7 @@
 
 #include "common/files.hpp"
 #include "common/report.hpp"
+#include "common/text.hpp"
 
 namespace tool {
 namespace {
@@ -25,22 +28,45 @@ void add(std::vector<Point>& points, const Point& p, const char* part, size_t nu
   points.push_back(p);
 }
 
-// The numbers behind each line's first word `key`.
-std::vector<Point> text_points(const char* bytes, size_t size, const char* key) {
-  constexpr const char* kSpace = " \t\r\v\f";
-  std::vector<Point> out;
+constexpr const char* kSpace = " \t\v\f";
+
+// Calls f(line, number) for each line: a byte order mark before the first is none of it, CR, LF or both end one, and
+// a '\' before that end goes on in the next.
+template <class F>
+void each_line(const char* bytes, size_t size, F&& f) {
   std::string line;
-  size_t number = 0;
-  for (size_t at = 0; at < size;) {
-    const void* found = std::memchr(bytes + at, '\n', size - at);
-    const size_t end = found ? static_cast<size_t>(static_cast<const char*>(found) - bytes) : size;
-    line.assign(bytes + at, end - at);
-    at = end + 1;
-    ++number;
-    const char* c = line.c_str() + std::strspn(line.c_str(), kSpace);
-    const size_t word = std::strcspn(c, kSpace);
-    if (word != std::strlen(key) || std::strncmp(c, key, word) != 0) continue;
-    c += word;
+  size_t number = 1, first = 1;
+  for (size_t at = size >= 3 && std::memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; at < size; ++number) {
+    size_t end = at;
+    while (end < size && bytes[end] != '\n' && bytes[end] != '\r') ++end;
+    line.append(bytes + at, end - at);
+    at = end + (end + 1 < size && bytes[end] == '\r' && bytes[end + 1] == '\n' ? 2 : 1);
+    if (at < size && !line.empty() && line.back() == '\\') {
+      line.back() = ' ';
+      continue;
+    }
+    f(line.c_str(), first);
+    line.clear();
+    first = number + 1;
+  }
+}
+
+// Behind the line's first word where that is `key`, in any case where `any_case`; null where it is another.
+const char* behind_word(const char* line, const char* key, bool any_case) {
+  line += std::strspn(line, kSpace);
+  for (; *key; ++key, ++line)
+    if (*line != *key && !(any_case && std::tolower(static_cast<unsigned char>(*line)) == *key))
+      return nullptr;
+  return *line && std::strchr(kSpace, *line) ? line : nullptr;
+}
+
+// "v x y z" of an .obj file, "vertex x y z" of an .stl file.
+std::vector<Point> text_points(const char* bytes, size_t size, MeshKind kind) {
+  std::vector<Point> out;
+  each_line(bytes, size, [&](const char* line, size_t number) {
+    const bool obj = kind == MeshKind::kObj;
+    const char* c = behind_word(line, obj ? "v" : "vertex", !obj);
+    if (!c) return;
     Point p;
     for (double& x : p) {
       char* after = nullptr;
@@ -49,38 +75,35 @@ std::vector<Point> text_points(const char* bytes, size_t size, const char* key) 
       c = after;
     }
     add(out, p, "line ", number);
-  }
+  });
   return out;
 }
 
-// Without a byte order mark; lines end in \n, whichever system wrote them; words of an .stl are small.
-std::string text_of(const char* bytes, size_t size, MeshKind kind) {
-  size_t at = size >= 3 && std::memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
-  std::string out;
-  out.reserve(size - at);
-  for (; at < size; ++at) {
-    const char c = bytes[at];
-    if (c == '\r' && at + 1 < size && bytes[at + 1] == '\n') continue;
-    out += c == '\r' ? '\n' : kind == MeshKind::kStl && c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-  }
-  return out;
+uint32_t facets_said(const char* bytes) {
+  uint32_t facets = 0;
+  std::memcpy(&facets, bytes + kStlHeader - sizeof facets, sizeof facets);
+  return facets;
 }
 
-// A header may begin with "solid" too: the length decides, and where it is wrong the text.
-bool is_binary_stl(const char* bytes, size_t size, uint32_t* facets) {
-  if (size < kStlHeader) return false;
-  std::memcpy(facets, bytes + kStlHeader - sizeof *facets, sizeof *facets);
-  if (size == kStlHeader + kStlFacet * static_cast<size_t>(*facets)) return true;
-  const std::string begin = text_of(bytes, std::min<size_t>(size, 4096), MeshKind::kStl);
-  return begin.find("vertex") == std::string::npos && begin.find("endsolid") == std::string::npos;
+// Its header may begin with "solid" as a text does, and bytes may follow: but no text has a zero byte.
+bool is_binary_stl(const char* bytes, size_t size) {
+  return std::memchr(bytes, 0, std::min(size, kStlHeader)) != nullptr ||
+         (size >= kStlHeader && size == kStlHeader + kStlFacet * static_cast<size_t>(facets_said(bytes)));
 }
 
-std::vector<Point> binary_points(const char* bytes, size_t size, uint32_t facets) {
-  const size_t expected = kStlHeader + kStlFacet * static_cast<size_t>(facets);
-  if (size != expected)
-    throw Failure("its header says " + std::to_string(facets) + " facets, " + std::to_string(expected) +
-                  " bytes; it has " + std::to_string(size));
+// Facets of a binary .stl file.
+uint32_t facets_of(const char* bytes, size_t size) {
+  if (size < kStlHeader) throw Failure(std::to_string(size) + " bytes are too few for a binary .stl file");
+  const uint32_t facets = facets_said(bytes);
   if (facets == 0) throw Failure("its header says 0 facets");
+  const size_t needed = kStlHeader + kStlFacet * static_cast<size_t>(facets);
+  if (needed > size)
+    throw Failure("it is cut off: its header says " + std::to_string(facets) + " facets, " +
+                  std::to_string(needed) + " bytes; it has " + std::to_string(size));
+  return facets;
+}
+
+std::vector<Point> binary_points(const char* bytes, uint32_t facets) {
   std::vector<Point> out;
   for (size_t f = 0; f < facets; ++f) {
     float numbers[12];  // normal, then three corners
@@ -93,37 +116,29 @@ std::vector<Point> binary_points(const char* bytes, size_t size, uint32_t facets
 }  // namespace
 
 std::vector<Point> parse_mesh(const char* bytes, size_t size, MeshKind kind) {
-  uint32_t facets = 0;
-  std::vector<Point> out;
-  if (kind == MeshKind::kStl && is_binary_stl(bytes, size, &facets)) {
-    out = binary_points(bytes, size, facets);
-  } else {
-    const std::string text = text_of(bytes, size, kind);
-    out = text_points(text.data(), text.size(), kind == MeshKind::kObj ? "v" : "vertex");
-  }
+  const bool binary = kind == MeshKind::kStl && is_binary_stl(bytes, size);
+  std::vector<Point> out =
+      binary ? binary_points(bytes, facets_of(bytes, size)) : text_points(bytes, size, kind);
   if (out.empty()) throw Failure("no vertices in it");
   return out;
+}
+
+size_t bytes_behind(const char* bytes, size_t size, MeshKind kind) {
+  if (kind != MeshKind::kStl || !is_binary_stl(bytes, size)) return 0;
+  return size - kStlHeader - kStlFacet * static_cast<size_t>(facets_of(bytes, size));
 }
 
 namespace {
 
 // Faces of an .obj: each `f` line's corners, counted from 1, or from the end where they are negative.
 void obj_faces(const char* bytes, size_t size, Mesh* out) {
-  constexpr const char* kSpace = " \t\r\v\f";
-  std::string line;
-  size_t number = 0;
   int64_t before = 0;  // vertices so far
-  for (size_t at = 0; at < size;) {
-    const void* found = std::memchr(bytes + at, '\n', size - at);
-    const size_t end = found ? static_cast<size_t>(static_cast<const char*>(found) - bytes) : size;
-    line.assign(bytes + at, end - at);
-    at = end + 1;
-    ++number;
-    const char* c = line.c_str() + std::strspn(line.c_str(), kSpace);
-    if (c[0] == 'v' && std::strchr(kSpace, c[1]) && c[1]) ++before;
-    if (c[0] != 'f' || !c[1] || !std::strchr(kSpace, c[1])) continue;
+  each_line(bytes, size, [&](const char* line, size_t number) {
+    if (behind_word(line, "v", false)) ++before;
+    const char* c = behind_word(line, "f", false);
+    if (!c) return;
     std::vector<uint32_t> corners;
-    for (c += 1 + std::strspn(c + 1, kSpace); *c; c += std::strspn(c, kSpace)) {
+    for (c += std::strspn(c, kSpace); *c; c += std::strspn(c, kSpace)) {
       char* after = nullptr;
       int64_t i = std::strtoll(c, &after, 10);
       if (after == c) break;
@@ -136,7 +151,7 @@ void obj_faces(const char* bytes, size_t size, Mesh* out) {
     if (corners.size() < 3) throw Failure("line " + std::to_string(number) + ": a face needs three vertices");
     for (size_t k = 2; k < corners.size(); ++k)
       out->faces.push_back({corners[0], corners[k - 1], corners[k]});
-  }
+  });
 }
 
 MeshKind kind_of(const std::string& path) {
@@ -154,7 +169,11 @@ auto parsed(const std::string& path, F&& parse) {
   const MeshKind kind = kind_of(path);
   const std::string bytes = read_file(path);
   try {
-    return parse(bytes.data(), bytes.size(), kind);
+    auto mesh = parse(bytes.data(), bytes.size(), kind);
+    if (const size_t rest = bytes_behind(bytes.data(), bytes.size(), kind))
+      std::fprintf(stderr, "%s: %zu bytes behind its last facet are left out\n", printable(path).c_str(),
+                   rest);
+    return mesh;
   } catch (const Failure& e) {
     throw Failure(path + ": " + e.what());
   }
@@ -175,8 +194,7 @@ Mesh parse_faces(const char* bytes, size_t size, MeshKind kind) {
   if (kind == MeshKind::kObj) {
     Mesh numbered;
     numbered.points = corners;
-    const std::string text = text_of(bytes, size, kind);
-    obj_faces(text.data(), text.size(), &numbered);
+    obj_faces(bytes, size, &numbered);
     out.faces = std::move(numbered.faces);
     for (auto& face : out.faces)
       for (uint32_t& i : face) i = place[i];

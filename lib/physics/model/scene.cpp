@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "physics/model/inertia.hpp"
+#include "physics/model/validate.hpp"
 
 namespace rdm {
 namespace {
@@ -79,7 +80,8 @@ void check_shape(ShapeDef* shape, int32_t num_materials, bool moves) {
       for (int i = 0; i < 3; ++i) need(s[i], 1e-6, 1e3, name, "half size");
       return;
     case ShapeKind::kHull:
-      return;  // make_hull checks its points
+      make_hull(shape->points.data(), static_cast<int32_t>(shape->points.size()), name);
+      return;
     case ShapeKind::kPlane:
       if (moves) fail(Code::kArgument, "%s: a plane cannot move", name);
       return;
@@ -326,6 +328,14 @@ int32_t contacts_needed(const Scene& scene) {
 }
 
 }  // namespace
+
+void validate_body(BodyDef body, int32_t num_materials) {
+  check_body(&body, num_materials);
+}
+
+void validate_static(ShapeDef shape, int32_t num_materials) {
+  check_shape(&shape, num_materials, false);
+}
 
 Name::Name(const char* s) {
   std::strncpy(text, s, kNameSize - 1);
