@@ -106,10 +106,11 @@ std::string usage_text(const CLI::App& app, const CLI::ParseError& error, const 
   const std::string next = depth < arguments.words.size() ? arguments.words[depth] : "";
   const std::string see = "; see " + path + " --help";
   if (!below.empty() && !next.empty() && next[0] != '-')
-    return "subcommand " + path.substr(std::strlen("redman")) + (depth > 0 ? " " : "") + next + ": unknown" +
+    return path.replace(0, std::strlen("redman"), "subcommand") + ' ' + next + ": unknown" +
            nearest_hint(next, below) + see;
   const std::string flag = unknown_flag(*command, arguments.words);
-  if (!flag.empty() && dynamic_cast<const CLI::ExtrasError*>(&error))
+  if (!flag.empty() &&
+      (dynamic_cast<const CLI::ExtrasError*>(&error) || dynamic_cast<const CLI::RequiredError*>(&error)))
     return flag + ": unknown" + nearest_hint(flag, flags_of(*command)) + see;
   const std::string unread = "Could not convert: ";
   if (text.rfind(unread, 0) == 0) {

@@ -27,7 +27,12 @@ Report run_plan(PlanFlags flags) {
   const std::string word = plan_word(options, flags.policy, flags.critic);
   ActorChoice choice = choose_actor(word, flags.pool.task);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
-  apply_sets(flags.sets, flags.pool, nullptr);
+  for (const std::string& set : flags.sets) try {
+      apply_sets({set}, flags.pool, nullptr);
+    } catch (const Usage& e) {
+      const std::string hint = planner_hint(split_pair(set, "--set").first);
+      throw Usage(e.what() + (hint.empty() ? hint : hint + " of --plan"));
+    }
   choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
   flags.pool.envs = std::min(flags.pool.envs, flags.episodes);
   redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_OFF);

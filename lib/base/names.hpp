@@ -45,20 +45,22 @@ inline bool name_matches(const char* pattern, const char* name) {
 inline constexpr int kUnlike = INT_MAX;
 inline constexpr size_t kMostCompared = 64;  // letters of a name
 
-// Letters to insert, remove or replace (Levenshtein 1966) between `word` and the whole of `known`, and in
-// *begin between it and that beginning of `known` which differs least.
+// Letters to insert, remove, replace or swap with the next (Damerau 1964) between `word` and the whole of `known`,
+// and in *begin between it and that beginning of `known` which differs least.
 inline int edit_distance(const char* word, const char* known, int* begin) {
   const size_t n = std::min(std::strlen(word), kMostCompared),
                m = std::min(std::strlen(known), kMostCompared);
-  int row[kMostCompared + 1];
+  int rows[3][kMostCompared + 1];  // of the word's letter, of the one before it, and of that before it
+  int *row = rows[0], *last = rows[1], *older = rows[2];
   for (size_t j = 0; j <= m; ++j) row[j] = static_cast<int>(j);
+  const auto same = [&](size_t i, size_t j) { return fold_letter(word[i - 1]) == fold_letter(known[j - 1]); };
   for (size_t i = 1; i <= n; ++i) {
-    int diagonal = row[0];
+    int* const free = older;
+    older = last, last = row, row = free;
     row[0] = static_cast<int>(i);
     for (size_t j = 1; j <= m; ++j) {
-      const int substitute = diagonal + (fold_letter(word[i - 1]) != fold_letter(known[j - 1]));
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + !same(i, j)});
+      if (i > 1 && j > 1 && same(i, j - 1) && same(i - 1, j)) row[j] = std::min(row[j], older[j - 2] + 1);
     }
   }
   *begin = *std::min_element(row, row + m + 1);

@@ -14,6 +14,7 @@ TEST(NearestName, ByEditDistance) {
   EXPECT_EQ(nearest_name("ppolag", names, 4), 1);
   EXPECT_EQ(nearest_name("TRPO", names, 4), 2);
   EXPECT_EQ(nearest_name("trpoo", names, 4), 2);
+  EXPECT_EQ(nearest_name("trop", names, 4), 2);  // two letters swapped
   EXPECT_EQ(nearest_name("cp", names, 4), 3);
   const char* longer[] = {"bandit", "hand_over_safe_finger"};
   EXPECT_EQ(nearest_name("hand_over", longer, 2), 1);  // it begins so

@@ -14,6 +14,12 @@ std::vector<rdm_option_info> planner_options() {
   return out;
 }
 
+std::string planner_hint(const std::string& key) {
+  std::vector<std::string> keys = {"policy", "critic"};
+  for (const rdm_option_info& row : planner_options()) keys.push_back(row.key);
+  return nearest_hint(key, keys);
+}
+
 bool read_plan_word(const std::string& word, PlanWord* out) {
   const size_t colon = word.find(':');
   if (!same_name(word.substr(0, colon), "plan")) return false;
@@ -29,9 +35,7 @@ bool read_plan_word(const std::string& word, PlanWord* out) {
     } else if (has_option(table, key)) {
       out->settings += key + '=' + value + '\n';
     } else {
-      std::vector<std::string> keys = {"policy", "critic"};
-      for (const rdm_option_info& row : table) keys.push_back(row.key);
-      throw Usage("--policy " + word + ": planners have no option " + key + nearest_hint(key, keys));
+      throw Usage("--policy " + word + ": planners have no option " + key + planner_hint(key));
     }
     at = end;
   }
