@@ -6,6 +6,7 @@
 #include "common/names.hpp"
 #include "common/numbers.hpp"
 #include "common/robots.hpp"
+#include "common/setup.hpp"
 #include "common/text.hpp"
 #include "play/actor.hpp"
 #include "play/evaluate.hpp"
@@ -46,6 +47,7 @@ std::vector<std::string> policies_of(const std::string& task, const BaselineFlag
 }
 
 Report run_baseline(const BaselineFlags& flags) {
+  say_worlds(flags.pool, flags.episodes);
   Json rows = Json::array();
   Table table({"task", "policy", "return", "cost", "limit", "length", "success"});
   for (const std::string& task : chosen_tasks(flags))
@@ -82,8 +84,8 @@ void add_baseline(CLI::App& app, Run& run) {
       ->add_option("--policy", flags->policies,
                    "zero, hold, random, demo or trained; repeatable; default: all but trained")
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"zero", "hold", "random", "demo", "trained"}, CLI::ignore_case));
-  command->add_option("--envs,--num-envs", flags->pool.envs, "worlds")->check(at_least(1));
+      ->check(one_of({"zero", "hold", "random", "demo", "trained"}));
+  add_envs_flag(*command, flags->pool);
   command->add_option("--threads", flags->pool.threads, "threads; 0: the caller's own");
   add_robot_flag(*command);
   command->add_option("--seed", flags->pool.seed, "seed of worlds and random actions");

@@ -221,7 +221,7 @@ void add_completion(CLI::App& app, Run& run) {
       app.add_subcommand("completion", "Print a script that completes this tool's command line");
   command->add_option("shell", *shell, "bash, zsh or fish")
       ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+      ->check(one_of({"bash", "zsh", "fish"}));
   command->callback([&app, &run, shell] { run = [&app, shell] { return run_completion(app, *shell); }; });
 }
 

@@ -34,6 +34,7 @@ Report run_plan(PlanFlags flags) {
       throw Usage(e.what() + (hint.empty() ? hint : hint + " of --plan"));
     }
   choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
+  say_worlds(flags.pool, flags.episodes);
   flags.pool.envs = std::min(flags.pool.envs, flags.episodes);
   redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_OFF);
   Evaluation e;

@@ -21,7 +21,7 @@ struct RolloutFlags {
   int32_t episodes = 1;
   bool states = false;  // in the record
   double noise = 0;     // mean deviation of what is added to actions
-  bool task_given = false, envs_given = false, seed_given = false, episodes_given = false;
+  bool task_given = false, seed_given = false, episodes_given = false;
 };
 
 // Rows of one CSV file, kept per episode so that the file is in order of episodes for any number of worlds.
@@ -69,7 +69,7 @@ void adopt_recording(const Recording& r, RolloutFlags& flags) {
   const auto count = static_cast<int32_t>(r.episodes());
   if (flags.seed_given)
     throw Usage("--seed: a recorded rollout begins where it was recorded; it goes without a seed");
-  if (!flags.envs_given) flags.pool.envs = r.pool.envs;
+  if (!flags.pool.envs_given) flags.pool.envs = r.pool.envs;
   if (!flags.episodes_given) flags.episodes = count;
   if (flags.episodes > count)
     throw Usage(format("--episodes %d: %s has %d", flags.episodes, flags.policy.c_str(), count));
@@ -80,6 +80,7 @@ Report run_rollout(RolloutFlags flags) {
   if (choice.recording) adopt_recording(*choice.recording, flags);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
+  say_worlds(flags.pool, flags.episodes);
   flags.pool.envs = std::min(flags.pool.envs, flags.episodes);
   redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_OFF);
   Actor actor(choice, pool);
@@ -171,7 +172,6 @@ void add_rollout(CLI::App& app, Run& run) {
   command->callback([&run, flags, task, episodes, command] {
     flags->task_given = task->count() > 0;
     flags->episodes_given = episodes->count() > 0;
-    flags->envs_given = command->count("--envs") > 0;
     flags->seed_given = command->count("--seed") > 0;
     run = [flags] { return run_rollout(*flags); };
   });

@@ -11,6 +11,7 @@
 namespace rdm {
 namespace {
 
+// New ones stand at the end: hosts keep numbers.
 const Robot* const kOwn[] = {&kShadowHand,  &kAllegroHand, &kSchunkSvh,   &kBarrettBh282, &kRobotiq3f,
                              &kFrankaPanda, &kAbbIrb4600,  &kKinovaJaco2, &kKukaIiwa7,    &kXarm6,
                              &kAbbCrb15000, &kUr5e,        &kUr10e,       &kDrawer,       &kDoor,

@@ -219,6 +219,7 @@ TEST(Map, BadArgumentsGetAnswersAndNothingIsPrinted) {
   rdm_map_config_init(&c, sizeof c);
   c.memory = 1;
   EXPECT_EQ(rdm_map_create(&m, &c), RDM_RANGE);
+  EXPECT_STREQ(rdm_last_error(), "memory: 1 is outside [1048576, 68719476736]");
   EXPECT_EQ(m, nullptr);
   const float p[3] = {0, 0, 0}, nan[3] = {NAN, 0, 0}, pose[7] = {0, 0, 0, 0, 0, 0, 1}, no_pose[7] = {};
   float out[3];

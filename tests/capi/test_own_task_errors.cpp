@@ -183,6 +183,7 @@ std::function<rdm_result(rdm_scene*)> after(std::function<rdm_result(rdm_scene*)
 
 TEST(OwnTaskErrors, OfScenes) {
   static const double flat[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+  const std::string no_robot = "robot: 99999 is outside [0, " + std::to_string(rdm_robot_count()) + ")";
   const auto add_static = [](const char* name) {
     return after([name](rdm_scene* s) {
       rdm_shape_def ground{};
@@ -233,7 +234,7 @@ TEST(OwnTaskErrors, OfScenes) {
       {RDM_ARGUMENT,
        "robot.robot of other: left out: of rdm_robot_find, in a struct that rdm_scene_robot_init has filled",
        with_robot([](auto& r) { r.robot = -1; })},
-      {RDM_RANGE, "robot: 99999 is outside [0, 18)", with_robot([](auto& r) { r.robot = 99999; })},
+      {RDM_RANGE, no_robot.c_str(), with_robot([](auto& r) { r.robot = 99999; })},
       {RDM_ARGUMENT, "robot.name is NULL", with_robot([](auto& r) { r.name = nullptr; })},
       {RDM_ARGUMENT, "scene: the name hand is taken", with_robot([](auto& r) { r.name = "hand"; })},
       {RDM_ARGUMENT, "robot.struct_size: 3 is less than 112", with_robot([](auto& r) { r.struct_size = 3; })},

@@ -623,7 +623,8 @@ TEST(PlannerErrors, AWrongCallChangesNothing) {
     EXPECT_EQ(state_of(planner), before);
   };
   action = 9;
-  refused(rdm_planner_act(planner.get(), other.get(), 0, &action, nullptr), RDM_ARGUMENT, "other options");
+  refused(rdm_planner_act(planner.get(), other.get(), 0, &action, nullptr), RDM_ARGUMENT,
+          "pool: a pool of task lqr_line with other options");
   refused(rdm_planner_act(planner.get(), pool.get(), 1, &action, nullptr), RDM_RANGE, "env: 1");
   refused(rdm_planner_act(planner.get(), nullptr, 0, &action, nullptr), RDM_ARGUMENT, "pool is NULL");
   refused(rdm_planner_act(planner.get(), pool.get(), 0, nullptr, nullptr), RDM_ARGUMENT, "action is NULL");

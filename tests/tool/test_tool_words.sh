@@ -37,6 +37,8 @@ refused 1 'nearest is hold' rollout --policy hodl
 refused 1 'nearest is trained' eval --task grasp --policy traind
 refused 2 'nearest is samples' plan --task ball_run --set smaples=3
 refused 2 'nearest is samples' rollout --task ball_run --policy plan:smaples=3
+refused 2 'nearest is bash' completion bahs
+refused 2 'nearest is hold' baseline --policy hodl
 # Subcommands and flags, at each depth.
 refused 2 'subcommand trian: unknown; nearest is train' trian
 refused 2 'subcommand bench stp: unknown; nearest is step; see redman bench --help' bench stp
@@ -52,6 +54,8 @@ refused 1 'policy runs/first/polcy.rdm: no such file; nearest is policy.rdm in r
 refused 1 'there is no folder runs/frist' eval --policy runs/frist/policy.rdm
 refused 1 'presss.task: No such file or directory; nearest is press.task' rollout --task presss.task
 refused 1 'is not there; nearest is first in runs' train --resume runs/frst
+refused 1 'is not there; nearest is runs' plot rnus
+refused 1 'is not there; nearest is first in runs' report runs/fisrt
 refused 1 'not a regular file' rollout --task ball_run --policy plan:policy=/dev/zero
 refused 2 'no such file; nearest is press.task' tasks --plugin ./pres.task
 
@@ -76,6 +80,8 @@ done
 for value in 10,5 0x10 ten; do refused 2 '--cost-limit' train --task ball_run --cost-limit "$value"; done
 grep -q 'e+30[0-9]\|[0-9]\{60\}' err && say "a bound is printed with $(cat err)"
 "$tool" rollout --task ball_run --set max_steps=2 --seed 18446744073709551615 > out 2> err || say "the largest seed: $(cat err)"
+"$tool" rollout --task ball_run --set max_steps=2 --envs 70000 --episodes 3 > out 2> err
+grep -qx -- '--envs 70000: no more worlds are made than episodes are played, 3' err || say "70,000 worlds: $(cat err)"
 # What is made of steps that are no whole epochs is said, and of others nothing.
 "$tool" train --task ball_run --envs 2 --set horizon=50 --set max_steps=10 --steps 130 --out odd > out 2> err
 grep -q -- '--steps 130: a run ends with an epoch, of up to 100 steps: it makes up to 200' err || say "130 steps: $(cat err)"

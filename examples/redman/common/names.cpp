@@ -3,6 +3,7 @@
 #endif
 #include "common/names.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <redman/redman.hpp>
@@ -59,6 +60,21 @@ std::string nearest_hint(const std::string& word, const std::vector<std::string>
   char text[4 * RDM_TEXT_SIZE];
   redman::check(rdm_nearest_names(word.c_str(), lines.c_str(), text, sizeof text));
   return text;
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ",") + word;
+  return CLI::Validator(
+      [words, list](std::string& value) {
+        for (const std::string& word : words)
+          if (same_name(word, value)) {
+            value = word;
+            return std::string();
+          }
+        return value + " is none of " + list + nearest_hint(value, words);
+      },
+      "{" + list + "}");
 }
 
 int32_t find_task(const std::string& name) {

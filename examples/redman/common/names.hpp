@@ -8,12 +8,18 @@
 
 #include "common/report.hpp"
 
+namespace CLI {
+class Validator;
+}
+
 namespace tool {
 
 // Case is ignored and '-' equals '_'.
 bool same_name(const std::string& a, const std::string& b);
 // "; nearest is NAME", or several, or "" when none of `names` is near: as the library's texts.
 std::string nearest_hint(const std::string& word, const std::vector<std::string>& names);
+// Refuses a flag's value that is none of the words, with the nearest; the value becomes the word as it stands there.
+CLI::Validator one_of(const std::vector<std::string>& words);
 
 // Index by name, of a task by its file too; Usage with the nearest known name.
 int32_t find_task(const std::string& name);

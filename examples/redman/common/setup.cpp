@@ -65,9 +65,21 @@ CLI::Option* add_task_flag(CLI::App& command, std::string& task, const char* nam
           ""));
 }
 
+void add_envs_flag(CLI::App& command, PoolSettings& pool) {
+  command.add_option("--envs,--num-envs", pool.envs, "worlds")
+      ->check(at_least(1))
+      ->each([&pool](const std::string&) { pool.envs_given = true; });
+}
+
+void say_worlds(const PoolSettings& pool, int32_t episodes) {
+  if (pool.envs_given && pool.envs > episodes)
+    std::fprintf(stderr, "--envs %d: no more worlds are made than episodes are played, %d\n", pool.envs,
+                 episodes);
+}
+
 CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help) {
   CLI::Option* task = add_task_flag(command, pool.task, "--task,--env-id", task_help);
-  command.add_option("--envs,--num-envs", pool.envs, "worlds");
+  add_envs_flag(command, pool);
   command.add_option("--threads", pool.threads, "threads; 0: the caller's own");
   command.add_option("--seed", pool.seed, "seed");
   return task;

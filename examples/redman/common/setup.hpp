@@ -33,6 +33,7 @@ struct PoolSettings {
   Options options;  // of the task
   // Evaluations count what an agent with cost_signal=raw learns: sums of cost_raw where it is above 0.
   bool magnitudes = false;
+  bool envs_given = false;  // by a flag
 };
 
 struct AgentSettings {
@@ -55,6 +56,7 @@ CLI::Validator finite_to(double most);
 // Flags that several subcommands share. The first returns --task.
 // --robot, --object and --task (which it returns): names, or files of one's own.
 CLI::Option* add_task_flag(CLI::App& command, std::string& task, const char* names, const char* help);
+void add_envs_flag(CLI::App& command, PoolSettings& pool);
 CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help);
 void add_set_flag(CLI::App& command, std::vector<std::string>& sets);
 void add_cost_limit_flag(CLI::App& command, std::vector<std::string>& limits);
@@ -62,6 +64,9 @@ void add_cost_limit_flag(CLI::App& command, std::vector<std::string>& limits);
 // Gives each "key=value" to the tables that know the key: the task's, and, when `agent` is not null, the
 // algorithm's. Usage with the nearest known key when no table does.
 void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentSettings* agent);
+
+// Says so where more worlds were asked for than there are episodes, of which each is played in one.
+void say_worlds(const PoolSettings& pool, int32_t episodes);
 
 // Makes the worlds, or the agent for them; Usage when a name or a value is wrong.
 redman::Pool make_pool(const PoolSettings& settings, int32_t autoreset);

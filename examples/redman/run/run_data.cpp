@@ -24,7 +24,10 @@ std::vector<std::string> find_runs(const std::string& folder) {
   for (; !error && at != fs::recursive_directory_iterator(); at.increment(error))
     if (at->path().filename() == "config.json" && at->is_regular_file(kind))
       found.push_back(at->path().parent_path().string());
-  if (found.empty()) throw Failure(folder + " holds no run: no config.json in it or below");
+  if (found.empty())
+    throw Failure(folder + " holds no run: " +
+                  (is_folder(folder) ? "no config.json in it or below"
+                                     : "it is not there" + missing_file_hint(folder)));
   std::sort(found.begin(), found.end());
   return found;
 }
