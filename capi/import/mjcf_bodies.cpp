@@ -242,6 +242,8 @@ void MjcfReader::add_body(const Element& e, int parent, const Pose& frame, const
   model.bodies.push_back(body);
   const size_t self = model.bodies.size() - 1;
   const bool moving = moves(e, c);
+  if (const auto all = e.all("inertial"); all.size() > 1)
+    refuse_at(RDM_FORMAT, *all[1], "a second one, after that of line %d", all[0]->line);
   const Element* given = compiler.inertia_from == "true" ? nullptr : e.child("inertial");
   if (!given && compiler.inertia_from == "false" && compiler.least_mass == 0 && moving)
     refuse_at(RDM_RANGE, e, "it moves and has no inertial, and inertiafromgeom is false");

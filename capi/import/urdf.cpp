@@ -1,6 +1,7 @@
 // URDF. Links are bodies, joints hang them together; what is fixed is merged by build().
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fill.hpp"
 #include "meshes.hpp"
@@ -266,11 +267,17 @@ struct Reader {
         return otherwise;
       };
       o.effort = most("effort", -1);
-      o.velocity = std::max(most("velocity", 0), 0.0);
+      o.velocity = most("velocity", 0);
+      if (o.velocity < 0)
+        out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: velocity %g is no bound", clean(j.name).c_str(),
+                  std::exchange(o.velocity, 0));
     }
     if (const Element* dynamics = j.element->child("dynamics")) {
-      o.damping = std::max(given(*dynamics, "damping", 0), 0.0);
-      o.friction = std::max(given(*dynamics, "friction", 0), 0.0);
+      o.damping = given(*dynamics, "damping", 0);
+      o.friction = given(*dynamics, "friction", 0);
+      if (o.damping < 0 || o.friction < 0)
+        refuse_at(RDM_RANGE, *dynamics, "joint %s: damping %g or friction %g is below 0",
+                  clean(j.name).c_str(), o.damping, o.friction);
     }
     if (const Element* mimic = j.element->child("mimic"))
       model.couplings.push_back({j.name, needed(*mimic, "joint"), given(*mimic, "multiplier", 1),

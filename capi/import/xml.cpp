@@ -22,7 +22,7 @@ const char* reason_of(tinyxml2::XMLError e) {
     case tinyxml2::XML_ERROR_PARSING_DECLARATION:
       return "the declaration <?xml ...?> must stand first in the file, before comments too";
     case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
-      return "an attribute that is not name=\"value\"";
+      return "an attribute that is not name=\"value\", or stands twice";
     case tinyxml2::XML_ERROR_PARSING_TEXT:
       return "a text that does not end";
     case tinyxml2::XML_ERROR_PARSING_CDATA:

@@ -572,6 +572,13 @@ TEST(Mjcf, TiesToTargetsOfTheHost) {
                  "connect closes a loop of bodies");
 }
 
+TEST(Mjcf, WhatStandsTwiceIsRefused) {
+  const std::string inertial = "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
+  expect_refused(file(arm(inertial + inertial)), RDM_FORMAT, "inertial: a second one, after that of line 1");
+  expect_refused(file(arm(kRod, "axis='0 1 0' axis='1 0 0' range='0 1'")), RDM_FORMAT,
+                 "an attribute that is not name=\"value\", or stands twice");
+}
+
 // The surface alone of a mesh: an octahedron of edge sqrt(2) has 4 sqrt(3) of it, its points at 1 from the middle.
 TEST(Mjcf, ShellsOfMeshesWeighTheirSurface) {
   const Import i =

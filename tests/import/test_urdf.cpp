@@ -157,6 +157,17 @@ TEST(Urdf, ABoundThatIsNoneIsNone) {
   EXPECT_DOUBLE_EQ(from_text(slide.text()).def.links[0].upper, 2 * M_PI);
 }
 
+TEST(Urdf, NegativeNumbersAreSaidOrRefused) {
+  const Import i = from_text(with_joint("<limit lower='-1' upper='1' effort='-1' velocity='-1'/>"));
+  EXPECT_EQ(i.def.links[0].velocity, 0);
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "joint j: velocity -1 is no bound"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "joint j: effort"));
+  expect_refused(with_joint(kLimit + "<dynamics damping='-1'/>"), RDM_RANGE,
+                 "damping -1 or friction 0 is below 0");
+  expect_refused(with_joint("<origin xyz='0 0 1' xyz='0 0 2'/>" + kLimit), RDM_FORMAT,
+                 "an attribute that is not name=\"value\", or stands twice");
+}
+
 TEST(Urdf, TurnsByQuaternionAndMirroredMomentsAreRead) {
   const Import i = from_text(with_joint("<origin xyz='0 0 1' quat_xyzw='0 0 2 0'/>" + kLimit));
   EXPECT_NEAR(std::abs(i.def.links[0].q[2]), 1, 1e-12);
