@@ -154,6 +154,11 @@ bool begins_as_xml(const std::string& bytes) {
   return at != std::string::npos && bytes[at] == '<';
 }
 
+bool names_xml(const std::string& path) {
+  const std::string ending = path.substr(std::min(path.rfind('.'), path.size()));
+  return ending == ".urdf" || ending == ".xml" || ending == ".mjcf" || ending == ".xacro";
+}
+
 void read(const std::string& bytes, const Options& options, Draft* out) {
   int32_t format = options.format;
   if (format == RDM_IMPORT_AUTO) {
@@ -211,6 +216,8 @@ rdm_result rdm_import_file(rdm_import** out, const char* path, const rdm_import_
     const std::string bytes = read_file(path);
     auto made = std::make_unique<rdm_import>();
     try {
+      if (o.format == RDM_IMPORT_AUTO && names_xml(path) && !begins_as_xml(bytes))
+        refuse(RDM_FORMAT, "line 1: no XML: it does not begin with <");
       read(bytes, o, &made->draft);
     } catch (const Refusal& r) {
       refuse(r.code, "%s: %s", clean(path, 160).c_str(), r.text.c_str());

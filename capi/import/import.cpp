@@ -27,6 +27,8 @@ std::string vformat(const char* pattern, va_list list) {
   return out;
 }
 
+constexpr const char* kPointer = "version https://git-lfs.github.com/spec/";  // such a file begins so
+
 // Bytes of the character at `c`, 0: none of UTF-8, or a control character.
 size_t character(const unsigned char* c, size_t left) {
   if (c[0] < 0x80) return c[0] >= 0x20 && c[0] != 0x7f ? 1 : 0;
@@ -116,6 +118,8 @@ std::string read_file(const std::string& path) {
     out.append(part, n);
   }
   if (std::ferror(file.get())) refuse(RDM_IO, "%s: cannot be read", name.c_str());
+  if (out.compare(0, std::strlen(kPointer), kPointer) == 0)
+    refuse(RDM_FORMAT, "%s: a pointer of Git LFS, not the file itself: git lfs pull brings it", name.c_str());
   return out;
 }
 

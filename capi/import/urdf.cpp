@@ -11,6 +11,8 @@
 namespace rdm::import {
 namespace {
 
+constexpr double kMostBound = 1e6;  // of an effort, of a velocity: what rdm_robot_create takes
+
 struct Reader {
   Reader(const Element& file, const Options& given, Draft* draft) : robot(file), options(given), out(draft) {}
   const Element& robot;
@@ -170,6 +172,15 @@ struct Reader {
   }
   std::vector<Mass> weighed;  // shapes of the link at hand, of density 1
 
+  // A mark of a place, as of contacts: nothing can touch it.
+  static bool is_point(const Element& shape) {
+    const std::string* size = shape.tag == "box" ? shape.get("size") : nullptr;
+    if (shape.tag == "sphere") size = shape.get("radius");
+    if (!size) return false;
+    const auto n = numbers(shape, shape.tag == "box" ? "size" : "radius", *size, 1, 3);
+    return std::all_of(n.begin(), n.end(), [](double x) { return x == 0; });
+  }
+
   void add_shapes(const Element& l, BodyIn* body, bool weighs) {
     weighed.clear();
     for (const Element* c : l.all("collision")) {
@@ -185,6 +196,11 @@ struct Reader {
       if (!g)
         refuse_at(RDM_UNSUPPORTED, *geometry, "link %s: neither box, cylinder, sphere, capsule nor mesh",
                   clean(body->name).c_str());
+      if (is_point(*g)) {
+        out->note(RDM_NOTE_DROPPED, g->line, "link %s: a %s of no size", clean(body->name).c_str(),
+                  g->tag.c_str());
+        continue;
+      }
       Primitive& p = s.shape;
       const auto size = [&](const char* key) {
         const double x = number(*g, key, needed(*g, key));
@@ -261,7 +277,7 @@ struct Reader {
       const auto most = [&](const char* key, double otherwise) {  // infinite: not said
         const std::string* text = limit->get(key);
         const double x = text ? bound(*limit, key, *text) : otherwise;
-        if (std::isfinite(x)) return x;
+        if (std::abs(x) <= kMostBound) return x;
         out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: %s %s is no bound", clean(j.name).c_str(), key,
                   clean(*text).c_str());
         return otherwise;

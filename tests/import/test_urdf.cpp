@@ -137,7 +137,7 @@ TEST(Urdf, NoNumberAndTooLargeANumberAreTwoReasons) {
 }
 
 TEST(Urdf, ABoundThatIsNoneIsNone) {
-  for (const char* far : {"1e16", "inf", "3.4028234663852886e+38", "1.7976931348623157e+308"}) {
+  for (const char* far : {"1e16", "inf", "1e10", "3.4028234663852886e+38", "1.7976931348623157e+308"}) {
     const Import i = from_text(with_joint("<limit lower='-" + std::string(far) + "' upper='0.5' effort='" +
                                           far + "' velocity='" + far + "'/>"));
     EXPECT_DOUBLE_EQ(i.def.links[0].lower, -2 * M_PI);
@@ -155,6 +155,24 @@ TEST(Urdf, ABoundThatIsNoneIsNone) {
   o.slide_range = 3;
   EXPECT_EQ(from_text(slide.text(), &o).def.links[0].lower, -3);
   EXPECT_DOUBLE_EQ(from_text(slide.text()).def.links[0].upper, 2 * M_PI);
+}
+
+TEST(Urdf, ShapesOfNoSizeAreDropped) {
+  for (const char* shape : {"<sphere radius='0'/>", "<box size='0 0 0'/>"}) {
+    const Import i = from_text(
+        with_arm(kInertial + "<collision><geometry>" + std::string(shape) + "</geometry></collision>"));
+    EXPECT_EQ(i.def.num_shapes, 0);
+    EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, "link arm: a ")) << shape;
+  }
+  expect_refused(with_arm(kInertial + "<collision><geometry><box size='0 1 1'/></geometry></collision>"),
+                 RDM_RANGE, "size 0 is not above 0");
+}
+
+TEST(Urdf, FilesThatAreNoXmlSaySo) {
+  const Folder folder;
+  rdm_import* i = nullptr;
+  EXPECT_EQ(rdm_import_file(&i, folder.add("a.urdf", "hand = 1\n").c_str(), nullptr), RDM_FORMAT);
+  EXPECT_NE(std::string(rdm_import_error()).find("line 1: no XML"), std::string::npos) << rdm_import_error();
 }
 
 TEST(Urdf, NegativeNumbersAreSaidOrRefused) {
@@ -349,6 +367,8 @@ TEST(Urdf, MeshesOfOtherSystemsAreReadAndBrokenOnesSayWhy) {
       "ENDFACET\rENDSOLID a\r";
   EXPECT_EQ(from_path(shape("a.stl", text)).def.num_shapes, 1);
   EXPECT_EQ(from_path(shape("a.obj", "\xef\xbb\xbf" + tetrahedron(0.3))).def.num_shapes, 1);
+  refused("a.stl", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n",
+          "a pointer of Git LFS");
   refused("a.obj", "v 0 0 0\r\nv 1 0\r\n", "line 2: a corner needs three numbers");
 }
 
