@@ -48,8 +48,6 @@ struct rdm_recording {
 
 namespace {
 
-constexpr size_t kLongestFile = size_t{1} << (sizeof(size_t) == 8 ? 40 : 31);
-
 rdm_recording_config default_config() {
   rdm_recording_config c{};
   c.task = "";
@@ -230,8 +228,12 @@ rdm_result rdm_recording_load_file(rdm_recording** out, const char* path) {
     need(out, "out");
     need(path, "path");
     const HostHooks hooks = host();
-    const auto file = read_file(path, {{"PK\x03\x04", 4}, 0, kLongestFile});
-    open_handle(out, hooks, [&] { return Recording::read(file.data(), file.size(), hooks); });
+    const FileSource file(path);
+    char magic[4] = {};
+    file.read(0, magic, std::min<size_t>(sizeof magic, static_cast<size_t>(file.size())));
+    if (std::memcmp(magic, "PK\x03\x04", sizeof magic) != 0)
+      fail(Code::kFormat, "%s: wrong magic: not a file of this kind", path);
+    open_handle(out, hooks, [&] { return Recording::read(file, hooks); });
   });
 }
 

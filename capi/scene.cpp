@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/names.hpp"
 #include "base/text.hpp"
 #include "capi/own_task.hpp"
 
@@ -173,24 +174,6 @@ void need_unique_shapes(const Scene& scene) {
         fail(Code::kArgument, "shape %s is there twice", scene.shapes[i].def.name.text);
 }
 
-// '*' stands for any characters, '?' for one.
-bool matches(const char* pattern, const char* name) {
-  const char *star = nullptr, *from = nullptr;
-  while (*name) {
-    if (*pattern == '*') {
-      star = ++pattern, from = name;
-    } else if (*pattern == '?' || *pattern == *name) {
-      ++pattern, ++name;
-    } else if (star) {
-      pattern = star, name = ++from;
-    } else {
-      return false;
-    }
-  }
-  while (*pattern == '*') ++pattern;
-  return !*pattern;
-}
-
 // The name of the body or robot that carries a shape, "" of what stands still.
 const char* owner_of(const rdm_scene& scene, const SceneShape& shape) {
   if (shape.articulation >= 0) return scene.robots[static_cast<size_t>(shape.articulation)].name.text;
@@ -205,7 +188,7 @@ void mark(const rdm_scene& scene, const char* pattern, const char* what, uint8_t
   bool found = false;
   const auto& shapes = scene.scene.shapes;
   for (size_t i = 0; i < shapes.size(); ++i)
-    if (matches(pattern, shapes[i].def.name.text) || matches(pattern, owner_of(scene, shapes[i]))) {
+    if (name_matches(pattern, shapes[i].def.name.text) || name_matches(pattern, owner_of(scene, shapes[i]))) {
       (*sides)[i] |= bit;
       found = true;
     }

@@ -1,5 +1,5 @@
-# redman_import: robots out of files, on the public headers and lib/base/chars.hpp alone. The shared one stands on
-# libredman.so; the static one takes whichever redman the program links.
+# redman_import: robots out of files, on the public headers and on lib/base, whose objects it carries. The shared one stands
+# on libredman.so; the static one takes whichever redman the program links.
 if(NOT REDMAN_SIM OR REDMAN_IMPORT STREQUAL "OFF" OR RDM_IMPORT_MISSING)
   return()
 endif()
@@ -18,7 +18,7 @@ set_target_properties(rdm_import PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VIS
 function(rdm_import_library target kind)
   add_library(${target} ${kind})
   add_library(redman::${target} ALIAS ${target})
-  target_sources(${target} PRIVATE $<TARGET_OBJECTS:rdm_import>)
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:rdm_import> $<TARGET_OBJECTS:rdm_base>)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   set_target_properties(${target} PROPERTIES OUTPUT_NAME redman_import LINKER_LANGUAGE CXX
@@ -31,9 +31,9 @@ function(rdm_import_library target kind)
   endif()
 endfunction()
 rdm_import_library(redman_import_static STATIC)
-target_link_libraries(redman_import_static PRIVATE tinyxml2::tinyxml2)
+target_link_libraries(redman_import_static PRIVATE tinyxml2::tinyxml2 Threads::Threads)
 if(REDMAN_SHARED)
   rdm_import_library(redman_import SHARED)
-  target_link_libraries(redman_import PUBLIC redman PRIVATE tinyxml2::tinyxml2)
+  target_link_libraries(redman_import PUBLIC redman PRIVATE tinyxml2::tinyxml2 Threads::Threads)
   rdm_export(redman_import import/redman_import:REDMAN_IMPORT_EXPERIMENTAL)
 endif()

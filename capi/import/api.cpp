@@ -6,6 +6,7 @@
 #include <new>
 
 #include "import.hpp"
+#include "toml_text.hpp"
 
 using namespace rdm::import;
 
@@ -18,6 +19,7 @@ struct rdm_import {
 
 namespace {
 
+constexpr size_t kMostXml = kCostLimits[static_cast<size_t>(Cost::kTextBytes)].most;
 constexpr size_t kTextSize = 512;
 constexpr size_t kMaxStruct = 4096;
 thread_local char t_error[kTextSize] = "";
@@ -213,7 +215,7 @@ rdm_result rdm_import_file(rdm_import** out, const char* path, const rdm_import_
     need(path, "path");
     Options o = read_options(options);
     if (!o.has_folder) o.folder = folder_of(path), o.has_folder = true;
-    const std::string bytes = read_file(path);
+    const std::string bytes = read_file(path, kMostXml);
     auto made = std::make_unique<rdm_import>();
     try {
       if (o.format == RDM_IMPORT_AUTO && names_xml(path) && !begins_as_xml(bytes))
@@ -231,7 +233,7 @@ rdm_result rdm_import_text(rdm_import** out, const void* bytes, size_t size,
   return call(options, [&] {
     need(out, "out");
     if (size > 0) need(bytes, "bytes");
-    if (size > kMostBytes) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostBytes);
+    if (size > kMostXml) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostXml);
     const Options o = read_options(options);
     auto made = std::make_unique<rdm_import>();
     read(std::string(static_cast<const char*>(bytes), size), o, &made->draft);
@@ -310,7 +312,7 @@ rdm_result rdm_import_task(int32_t* task, const char* path) {
   return call(nullptr, [&] {
     need(task, "task");
     need(path, "path");
-    *task = read_named_task(read_file(path), clean(path, kLongestPath));
+    *task = read_named_task(read_file(path, kMostToml), clean(path, kLongestPath));
   });
 }
 
@@ -318,7 +320,7 @@ rdm_result rdm_import_task_text(int32_t* task, const void* bytes, size_t size, c
   return call(nullptr, [&] {
     need(task, "task");
     if (size > 0) need(bytes, "bytes");
-    if (size > kMostBytes) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostBytes);
+    if (size > kMostToml) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostToml);
     *task = read_named_task(std::string(static_cast<const char*>(bytes), size),
                             file ? clean(file, kLongestPath) : "");
   });
@@ -340,7 +342,7 @@ rdm_result rdm_import_object_file(rdm_import** out, const char* path) {
   return call(nullptr, [&] {
     need(out, "out");
     need(path, "path");
-    const std::string bytes = read_file(path);
+    const std::string bytes = read_file(path, kMostToml);
     try {
       *out = made_object(bytes);
     } catch (const Refusal& r) {
@@ -353,7 +355,7 @@ rdm_result rdm_import_object_text(rdm_import** out, const void* bytes, size_t si
   return call(nullptr, [&] {
     need(out, "out");
     if (size > 0) need(bytes, "bytes");
-    if (size > kMostBytes) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostBytes);
+    if (size > kMostToml) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostToml);
     *out = made_object(std::string(static_cast<const char*>(bytes), size));
   });
 }

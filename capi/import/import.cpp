@@ -3,15 +3,15 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cerrno>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
-#include <memory>
 
+#include "base/error.hpp"
+#include "base/file.hpp"
 #include "base/format.hpp"
 #include "base/names.hpp"
+#include "base/text.hpp"
 
 namespace rdm::import {
 namespace {
@@ -28,19 +28,6 @@ std::string vformat(const char* pattern, va_list list) {
 }
 
 constexpr const char* kPointer = "version https://git-lfs.github.com/spec/";  // such a file begins so
-
-// Bytes of the character at `c`, 0: none of UTF-8, or a control character.
-size_t character(const unsigned char* c, size_t left) {
-  if (c[0] < 0x80) return c[0] >= 0x20 && c[0] != 0x7f ? 1 : 0;
-  const size_t n = c[0] >= 0xf0 ? 4 : c[0] >= 0xe0 ? 3 : 2;
-  if (c[0] < 0xc2 || c[0] > 0xf4 || n > left) return 0;
-  for (size_t k = 1; k < n; ++k)
-    if ((c[k] & 0xc0) != 0x80) return 0;
-  if ((c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xed && c[1] > 0x9f) || (c[0] == 0xf0 && c[1] < 0x90) ||
-      (c[0] == 0xf4 && c[1] > 0x8f) || (c[0] == 0xc2 && c[1] < 0xa0))
-    return 0;
-  return n;
-}
 
 template <class T, class F>
 void get_rows(int32_t robot, int32_t count, std::vector<T>* rows, F&& at) {
@@ -68,17 +55,11 @@ void refuse(rdm_result code, const char* pattern, ...) {
 }
 
 std::string clean(const std::string& text, size_t most) {
-  std::string out;
-  for (size_t at = 0; at < text.size();) {
-    const auto* c = reinterpret_cast<const unsigned char*>(text.data()) + at;
-    const size_t n = character(c, text.size() - at);
-    std::string next = text.substr(at, std::max<size_t>(n, 1));
-    if (n == 0) next = *c < 0x20 || *c == 0x7f ? std::string(" ") : format("\\x%02x", *c);
-    if (out.size() + next.size() > most) return out + "...";
-    out += next;
-    at += std::max<size_t>(n, 1);
-  }
-  return out;
+  std::string in = text.substr(0, most), out(most + 1, '\0');
+  std::replace(in.begin(), in.end(), '\0', ' ');  // which would end the text
+  const bool whole = clean_text(out.data(), out.size(), in.c_str()) && in.size() == text.size();
+  out.resize(std::strlen(out.c_str()));
+  return whole ? out : out + "...";
 }
 
 bool same_name(const std::string& a, const std::string& b) {
@@ -92,6 +73,13 @@ std::string nearest_hint(const std::string& word, const std::vector<std::string>
                sizeof(Nearest::text));
 }
 
+void Budget::spend(Cost cost, size_t count) {
+  size_t& spent = spent_[static_cast<size_t>(cost)];
+  const CostLimit& limit = kCostLimits[static_cast<size_t>(cost)];
+  if (count > limit.most - spent) refuse(RDM_RANGE, "more than %zu %s in one import", limit.most, limit.what);
+  spent += count;
+}
+
 bool file_exists(const std::string& path) {
   struct stat s;
   return ::stat(path.c_str(), &s) == 0 && S_ISREG(s.st_mode);
@@ -102,25 +90,17 @@ std::string folder_of(const std::string& path) {
   return slash == std::string::npos ? "" : path.substr(0, slash + 1);
 }
 
-std::string read_file(const std::string& path) {
-  const std::string name = clean(path, 160);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"), std::fclose);
-  if (!file)
-    refuse(errno == ENOENT ? RDM_NOT_FOUND : RDM_IO, "%s: cannot be opened: %s", name.c_str(),
-           std::strerror(errno));
-  struct stat s;
-  if (::fstat(::fileno(file.get()), &s) != 0 || !S_ISREG(s.st_mode))
-    refuse(RDM_IO, "%s: no regular file", name.c_str());
-  std::string out;
-  char part[1 << 16];
-  while (const size_t n = std::fread(part, 1, sizeof part, file.get())) {
-    if (out.size() + n > kMostBytes) refuse(RDM_RANGE, "%s: more than %zu bytes", name.c_str(), kMostBytes);
-    out.append(part, n);
+std::string read_file(const std::string& path, size_t longest) {
+  try {
+    const auto bytes = rdm::read_file(path.c_str(), {"", 0, longest, Code::kRange});
+    std::string out(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (out.compare(0, std::strlen(kPointer), kPointer) == 0)
+      refuse(RDM_FORMAT, "%s: a pointer of Git LFS, not the file itself: git lfs pull brings it",
+             clean(path, 160).c_str());
+    return out;
+  } catch (const Error& e) {
+    throw Refusal{static_cast<rdm_result>(e.code), e.text};
   }
-  if (std::ferror(file.get())) refuse(RDM_IO, "%s: cannot be read", name.c_str());
-  if (out.compare(0, std::strlen(kPointer), kPointer) == 0)
-    refuse(RDM_FORMAT, "%s: a pointer of Git LFS, not the file itself: git lfs pull brings it", name.c_str());
-  return out;
 }
 
 Draft::Draft() {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "budget.hpp"
+
 namespace rdm::import {
 
 // A file that cannot be a robot. The text is one line and names the line of the file and the element.
@@ -25,10 +27,9 @@ std::string nearest_hint(const std::string& word, const std::vector<std::string>
 // Case is ignored and '-' equals '_', as redman compares names.
 bool same_name(const std::string& a, const std::string& b);
 
-inline constexpr size_t kMostBytes = size_t{1} << 26;  // of a file
 inline constexpr size_t kMostNotes = 4096;
-// NOT_FOUND, IO; RANGE above kMostBytes.
-std::string read_file(const std::string& path);
+// NOT_FOUND, IO for what is no regular file, none of which is waited for; RANGE above `longest` bytes.
+std::string read_file(const std::string& path, size_t longest);
 bool file_exists(const std::string& path);
 std::string folder_of(const std::string& path);  // with its last '/', "" for a plain name
 
@@ -54,6 +55,7 @@ struct Draft {
   rdm_robot_def def{};     // its scalars; arrays and counts by bind()
 
   std::vector<Note> notes;
+  Budget budget;  // of the files that it comes from
 
   Draft();
   Draft(const Draft&) = delete;

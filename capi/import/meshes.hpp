@@ -1,4 +1,4 @@
-// Mesh files of a robot, each read once.
+// Mesh files of a robot: where their names lead, and what is in them.
 #pragma once
 #include "model.hpp"
 
@@ -7,17 +7,18 @@ namespace rdm::import {
 class Meshes {
  public:
   Meshes(const Options& options, Draft* out) : options_(options), out_(out) {}
-  // NULL: it cannot be read and options.skip_meshes is set (a note says so); else refused at the element.
-  const Mesh* find(const Element& e, const std::string& path);
-  // Where "package://hand/meshes/palm.stl" lies: in options.packages, else in the nearest folder above the
-  // file that has it; where none has, without the package's name, with a note. "\" is tried as "/". "" when
-  // nowhere.
-  std::string resolved(const Element& e, const std::string& name) const;
+  // Valid until the next call. NULL: it cannot be read and options.skip_meshes is set (a note says so); else
+  // refused at the element.
+  const Mesh* find(const Element& e, const std::string& name);
 
  private:
+  const std::string& place(const Element& e, const std::string& name);
+  std::string found(const Element& e, const std::string& name);
   const Options& options_;
   Draft* out_;
-  std::map<std::string, Mesh> found_;
+  std::map<std::string, std::string> places_;  // of names; "" for nowhere
+  std::string last_;                           // whose mesh it is: one alone is kept, as they are large
+  Mesh mesh_;
 };
 
 }  // namespace rdm::import

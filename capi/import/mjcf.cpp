@@ -49,12 +49,19 @@ const std::string* MjcfReader::value(const Element& e, const char* key, const st
     for (const auto& [name, values] : classes) names.push_back(name);
     refuse_at(RDM_NOT_FOUND, e, "there is no class %s%s", clean(c).c_str(), nearest_hint(c, names).c_str());
   }
-  const auto of = in->second.find(kind ? kind : e.tag);
-  if (of == in->second.end()) return nullptr;
-  const auto found = of->second.find(key);
-  if (found == of->second.end()) return nullptr;
-  found->second->read = true;
-  return &found->second->value;
+  const std::string tag = kind ? kind : e.tag, name = key;
+  for (const Class* at = in->second; at; at = at->parent) {
+    out->budget.spend(Cost::kSteps, 1);
+    const auto of = at->values.find(tag);
+    if (of == at->values.end()) continue;
+    const auto found = of->second.find(name);
+    if (found == of->second.end()) continue;
+    // one long text of a class may be read for every element
+    out->budget.spend(Cost::kSteps, found->second->value.size() / 16);
+    found->second->read = true;
+    return &found->second->value;
+  }
+  return nullptr;
 }
 
 double MjcfReader::number_of(const Element& e, const char* key, const std::string& c, double otherwise,
@@ -132,17 +139,17 @@ Pose MjcfReader::pose_at(const Element& e, const std::string& c) const {
 }
 
 // ---- sections ----
-void MjcfReader::read_classes(const Element& e, const Class& parent, bool top) {
+void MjcfReader::read_classes(const Element& e, const Class* parent, bool top) {
   const std::string* name = e.get("class");
   const std::string key = name ? *name : top ? "main" : "";
   if (key.empty()) refuse_at(RDM_FORMAT, e, "a class in a class needs a name");
   check_children(e, "default");
-  Class c = parent;
-  const auto before = classes.find(key);
-  if (before != classes.end()) {
-    if (!top) refuse_at(RDM_ARGUMENT, e, "class %s stands twice", clean(key).c_str());
-    c = before->second;
-  }
+  const Class*& row = classes[key];
+  if (row && !top) refuse_at(RDM_ARGUMENT, e, "class %s stands twice", clean(key).c_str());
+  // A second <default> of the file adds to the first one's class; classes read before do not change by it.
+  Class& c = class_rows.emplace_back();
+  c.parent = row ? row : parent;
+  row = &c;
   for (const auto& child : e.children) {
     if (child->tag == "default") continue;
     const std::string kind = kind_of_default(child->tag);
@@ -152,11 +159,10 @@ void MjcfReader::read_classes(const Element& e, const Class& parent, bool top) {
       }
     if (const char* table = table_of_default(kind)) check_attributes(*child, table);
     child->seen = true;
-    Values& values = c[kind];
+    Values& values = c.values[kind];
     for (const Attribute& a : child->attributes) values[a.name] = &a;
   }
-  classes[key] = c;
-  for (const Element* child : e.all("default")) read_classes(*child, c, false);
+  for (const Element* child : e.all("default")) read_classes(*child, &c, false);
 }
 
 void MjcfReader::read_compiler() {
@@ -273,7 +279,7 @@ void MjcfReader::read() {
   for (const auto& d : mujoco.children)
     if (d->tag == "deformable") check_children(*d, "deformable");
   read_compiler();
-  classes["main"];
+  classes["main"] = &class_rows.emplace_back();
   for (const Element* d : mujoco.all("default")) read_classes(*d, classes["main"], true);
   read_assets();
   read_worlds();
@@ -295,7 +301,7 @@ void MjcfReader::read() {
 }
 
 void read_mjcf(const std::string& bytes, const Options& options, Draft* out) {
-  const auto mujoco = parse_xml(bytes, options, true);
+  const auto mujoco = parse_xml(bytes, options, true, out);
   if (mujoco->tag == "mujocoinclude")
     refuse_at(RDM_FORMAT, *mujoco, "a part that other files include, no model of its own");
   if (mujoco->tag != "mujoco") refuse_at(RDM_FORMAT, *mujoco, "no MJCF: the first element is not mujoco");

@@ -1,6 +1,7 @@
 // The reader of MJCF; its parts stand in four files: mjcf.cpp (values, classes, the file's sections),
 // mjcf_bodies.cpp (bodies, joints, masses), mjcf_geoms.cpp (shapes), mjcf_drives.cpp (what couples and drives).
 #pragma once
+#include <deque>
 #include <set>
 
 #include "fill.hpp"
@@ -41,7 +42,10 @@ class MjcfReader {
 
  private:
   using Values = std::map<std::string, const Attribute*>;  // of one kind of element in one class
-  using Class = std::map<std::string, Values>;             // by kind
+  struct Class {
+    const Class* parent = nullptr;         // what a class does not say is said by this one
+    std::map<std::string, Values> values;  // by kind
+  };
 
   const Element& mujoco;
   const Options& options;
@@ -49,7 +53,8 @@ class MjcfReader {
   Options mesh_options;  // with the folder of the compiler
   Meshes meshes{mesh_options, out};
   Compiler compiler;
-  std::map<std::string, Class> classes;
+  std::deque<Class> class_rows;                  // one for each <default>
+  std::map<std::string, const Class*> classes;   // the last row of each name
   std::map<std::string, const Element*> assets;  // meshes by name
   std::map<const Element*, MeshIn> read_meshes;
   std::vector<std::string> order;            // joints as qpos has them, "" of a free joint
@@ -71,7 +76,7 @@ class MjcfReader {
   Pose pose_at(const Element& e, const std::string& c = "") const;
 
   // ---- sections ----
-  void read_classes(const Element& e, const Class& parent, bool top);
+  void read_classes(const Element& e, const Class* parent, bool top);
   void read_compiler();
   void read_assets();
   void read_excluded();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <tuple>
 
 #include "mjcf.hpp"
 
@@ -18,9 +19,10 @@ struct Follows {
   std::string leader;
   double ratio = 1;
 };
-Follows leader_of(const Model& model, const std::string& joint) {
+Follows leader_of(const Model& model, const std::string& joint, Budget* budget) {
   Follows out{joint, 1};
   for (size_t steps = 0; steps <= model.couplings.size(); ++steps) {
+    budget->spend(Cost::kSteps, model.couplings.size());
     const auto next = std::find_if(model.couplings.begin(), model.couplings.end(),
                                    [&](const CouplingIn& x) { return x.follower == out.leader; });
     if (next == model.couplings.end()) return out;
@@ -121,6 +123,7 @@ void MjcfReader::read_tendon_limits() {
 // ---- equalities ----
 bool MjcfReader::is_mocap(const std::string& body) const {
   const std::function<bool(const Element&)> in = [&](const Element& e) {
+    out->budget.spend(Cost::kSteps, e.children.size());
     return std::any_of(e.children.begin(), e.children.end(), [&](const auto& c) {
       const Attribute *name = c->find("name"), *mocap = c->find("mocap");
       return (c->tag == "body" && name && name->value == body && mocap && mocap->value == "true") || in(*c);
@@ -131,6 +134,7 @@ bool MjcfReader::is_mocap(const std::string& body) const {
 // Nothing moves it against the root.
 bool MjcfReader::stands(const std::string& body) const {
   if (body == "world") return options.root.empty() || options.root == "world";
+  out->budget.spend(Cost::kSteps, model.bodies.size());
   for (size_t b = 0; b < model.bodies.size(); ++b) {
     if (model.bodies[b].name != body) continue;
     for (int at = static_cast<int>(b); at >= 0; at = model.bodies[static_cast<size_t>(at)].parent)
@@ -155,6 +159,7 @@ void MjcfReader::read_equalities() {
         continue;
       }
       bool here = options.root.empty() || options.root == "world";
+      out->budget.spend(Cost::kSteps, model.bodies.size() + model.frames.size());
       for (const char* key : {"body1", "body2", "site1", "site2"})
         if (const auto* end = e.get(key)) {
           for (const BodyIn& body : model.bodies) here = here || body.name == *end;
@@ -222,12 +227,14 @@ void MjcfReader::lead_by_driven() {
     // The group of this joint, breadth first.
     std::vector<std::string> group{start};
     std::set<std::string> in{start};
-    for (size_t k = 0; k < group.size(); ++k)
+    for (size_t k = 0; k < group.size(); ++k) {
+      out->budget.spend(Cost::kSteps, 2 * model.couplings.size());
       for (const CouplingIn& c : model.couplings) {
         if (!has(c, group[k])) continue;
         const std::string& other = c.follower == group[k] ? c.leader : c.follower;
         if (in.insert(other).second) group.push_back(other);
       }
+    }
     placed.insert(in.begin(), in.end());
     std::vector<CouplingIn> own;
     for (const CouplingIn& c : model.couplings)
@@ -239,6 +246,7 @@ void MjcfReader::lead_by_driven() {
     const auto follows = [&](const std::string& j) {
       return std::any_of(own.begin(), own.end(), [&](const CouplingIn& c) { return c.follower == j; });
     };
+    out->budget.spend(Cost::kSteps, group.size() * own.size());
     std::string leader;
     for (const bool must_be_driven : {true, false})
       for (const bool must_lead : {true, false})
@@ -262,15 +270,13 @@ void MjcfReader::lead_by_driven() {
       }
   }
   // Those of the file's order first, as they stood.
+  const auto key = [](const CouplingIn& c) {
+    return std::make_tuple(c.element, std::min(c.follower, c.leader), std::max(c.follower, c.leader));
+  };
+  std::map<decltype(key(all[0])), size_t> place;
+  for (size_t k = 0; k < model.couplings.size(); ++k) place.emplace(key(model.couplings[k]), k);
   std::stable_sort(all.begin(), all.end(), [&](const CouplingIn& a, const CouplingIn& b) {
-    const auto at = [&](const CouplingIn& x) {
-      for (size_t k = 0; k < model.couplings.size(); ++k)
-        if (model.couplings[k].element == x.element && has(model.couplings[k], x.follower) &&
-            has(model.couplings[k], x.leader))
-          return k;
-      return model.couplings.size();
-    };
-    return at(a) < at(b);
+    return place.at(key(a)) < place.at(key(b));
   });
   model.couplings = all;
 }
@@ -318,11 +324,14 @@ void MjcfReader::read_actuator(const Element& e) {
     if (found == tendons.end()) {
       bool there = false;  // a spatial one, or one of other bodies
       for (const Element* t : mujoco.all("tendon"))
-        for (const auto& x : t->children)
+        for (const auto& x : t->children) {
+          out->budget.spend(Cost::kSteps, 1);
           there = there || (x->find("name") && x->find("name")->value == *tendon);
+        }
       if (!there) refuse_at(RDM_NOT_FOUND, e, "there is no tendon %s", clean(*tendon).c_str());
       return note_left_out(e, "its tendon is none of joints that are here");
     }
+    out->budget.spend(Cost::kSteps, 8 * found->second.joints.size());
     parts = found->second.joints;
     const Element& t = *found->second.element;
     const std::string* most = value(t, "actuatorfrcrange", "", "tendon");
@@ -340,7 +349,8 @@ void MjcfReader::read_actuator(const Element& e) {
   // How the length grows with the joint that leads; groups that only this tendon joins follow the first.
   std::vector<std::pair<std::string, double>> groups;  // leaders, and length per angle of each
   for (const auto& [name, share] : parts) {
-    const Follows f = leader_of(model, name);
+    const Follows f = leader_of(model, name, &out->budget);
+    out->budget.spend(Cost::kSteps, groups.size());
     const auto known =
         std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == f.leader; });
     if (known != groups.end())
@@ -431,7 +441,7 @@ void MjcfReader::read_actuator(const Element& e) {
     parts.insert(parts.begin(), {leader, per / gear});
   double squares = 0;
   for (const auto& [name, share] : parts) {
-    const double ratio = joint ? 1 : leader_of(model, name).ratio;
+    const double ratio = joint ? 1 : leader_of(model, name, &out->budget).ratio;
     squares += ratio * ratio;
   }
   const double along = joint ? gear : per;

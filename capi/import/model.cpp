@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <set>
 
 #include "latin.hpp"
 
@@ -16,36 +17,48 @@ constexpr double kReachSlide = 0.02;  // m
 constexpr double kMostGain = 1e6;     // what rdm_robot_create takes
 constexpr double kGravity = 9.81;
 
-// Letters (of other scripts: as latin() has them), digits, '_', '-', '+'; not empty, not too long, not taken.
-std::string fitting_name(const std::string& name, const char* otherwise,
-                         const std::vector<std::string>& taken) {
+// Letters (of other scripts: as latin() has them), digits, '_', '-', '+'; not empty, not too long.
+std::string fitting_name(const std::string& name, const char* otherwise) {
   std::string out;
   for (const char c : latin(name))
     out += std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-+", c) ? c : '_';
   if (out.empty()) out = otherwise;
   if (out.size() > kLongestName) out = out.substr(out.size() - kLongestName);  // endings tell more
-  const std::string stem = out;
-  const auto is_taken = [&] {
-    return std::any_of(taken.begin(), taken.end(), [&](const std::string& t) { return same_name(t, out); });
-  };
-  for (int k = 2; is_taken(); ++k) {
-    const std::string tail = '_' + std::to_string(k);
-    out = stem.substr(0, kLongestName - tail.size()) + tail;
-  }
   return out;
 }
 
-struct Namer {
-  Draft* out;
-  const char* what;
-  std::vector<std::string> taken;
+// A name that is taken gets the next number of its stem: each is tried once, however many are called the same.
+class Namer {
+ public:
+  Namer(Draft* out, const char* what) : out_(out), what_(what) {}
   const char* give(const std::string& name, const char* otherwise, int line) {
-    taken.push_back(fitting_name(name, otherwise, taken));
-    if (taken.back() != name && !name.empty())
-      out->note(RDM_NOTE_CHANGED, line, "%s %s is called %s", what, clean(name).c_str(),
-                taken.back().c_str());
-    return out->keep(taken.back());
+    const char* given = quiet(name, otherwise);
+    if (given != name && !name.empty())
+      out_->note(RDM_NOTE_CHANGED, line, "%s %s is called %s", what_, clean(name).c_str(), given);
+    return given;
   }
+  const char* quiet(const std::string& name, const char* otherwise) {
+    const std::string stem = fitting_name(name, otherwise);
+    std::string out = stem;
+    if (!taken_.insert(folded(out)).second) {
+      int& next = next_.emplace(folded(stem), 2).first->second;
+      do {
+        const std::string tail = '_' + std::to_string(next++);
+        out = stem.substr(0, kLongestName - tail.size()) + tail;
+      } while (!taken_.insert(folded(out)).second);
+    }
+    return out_->keep(out);
+  }
+
+ private:
+  static std::string folded(std::string name) {  // as names are compared
+    for (char& c : name) c = c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return name;
+  }
+  Draft* out_;
+  const char* what_;
+  std::set<std::string> taken_;
+  std::map<std::string, int> next_;  // of a stem
 };
 
 struct Builder {
@@ -102,8 +115,19 @@ struct Builder {
     return all;
   }
 
+  // Before anything is compared with anything.
+  void count_joints() const {
+    size_t count = 0;
+    for (const BodyIn& b : in.bodies)
+      for (const JointIn& j : b.joints)
+        if (++count > RDM_ROBOT_LINKS)
+          refuse_at(RDM_RANGE, *j.element, "more than %d joints that move", RDM_ROBOT_LINKS);
+    if (in.couplings.size() > kMostRows)
+      refuse_at(RDM_RANGE, *in.couplings[kMostRows].element, "more than %zu couplings", kMostRows);
+  }
+
   void add_links() {
-    Namer links{out, "link", {}}, names{out, "joint", {}};
+    Namer links{out, "link"}, names{out, "joint"};
     for (size_t b = 0; b < in.bodies.size(); ++b) {
       const BodyIn& body = in.bodies[b];
       Place at;
@@ -113,8 +137,6 @@ struct Builder {
       }
       for (size_t k = 0; k < body.joints.size(); ++k) {
         const JointIn& j = body.joints[k];
-        if (out->links.size() == RDM_ROBOT_LINKS)
-          refuse_at(RDM_RANGE, *j.element, "more than %d joints that move", RDM_ROBOT_LINKS);
         const double zero = moved_of(j.name);
         const double ahead = zero - j.turned;
         rdm_robot_link l{};
@@ -197,8 +219,7 @@ struct Builder {
   }
 
   void add_shapes() {
-    Namer names{out, "shape", {}};
-    names.what = "shape";
+    Namer names{out, "shape"};
     for (size_t b = 0; b < in.bodies.size(); ++b) {
       int32_t count = 0;
       for (const ShapeIn& s : in.bodies[b].shapes) {
@@ -211,8 +232,7 @@ struct Builder {
         if (name.empty()) {  // no note: the file has no name for it
           const std::string body = at.row < 0 && b == 0 ? "root" : in.bodies[b].name;
           name = count == 0 ? body : body + '_' + std::to_string(count + 1);
-          names.taken.push_back(fitting_name(name, "shape", names.taken));
-          o.name = out->keep(names.taken.back());
+          o.name = names.quiet(name, "shape");
         } else {
           o.name = names.give(name, "shape", s.element->line);
         }
@@ -313,12 +333,18 @@ struct Builder {
     const auto parent = [&](int32_t link) {
       return link >= 0 ? out->links[static_cast<size_t>(link)].parent : RDM_NO_LINK;
     };
+    std::set<std::pair<std::string, std::string>> excluded;
+    for (const auto& [x, y] : in.excluded) excluded.emplace(std::min(x, y), std::max(x, y));
     const auto is_excluded = [&](size_t a, size_t b) {
+      if (excluded.empty()) return false;
       const std::string &x = in.bodies[shape_body[a]].name, &y = in.bodies[shape_body[b]].name;
-      return std::any_of(in.excluded.begin(), in.excluded.end(), [&](const auto& e) {
-        return (e.first == x && e.second == y) || (e.first == y && e.second == x);
-      });
+      return excluded.count({std::min(x, y), std::max(x, y)}) > 0;
     };
+    std::vector<Primitive> at_home;
+    for (const rdm_robot_shape& s : out->shapes) {
+      at_home.push_back(primitive_of(s));
+      at_home.back().X = pose_of(poses, s.link) * at_home.back().X;
+    }
     std::map<std::pair<int32_t, int32_t>, int> overlapping;  // links: shapes
     for (size_t b = 0; b < out->shapes.size(); ++b)
       for (size_t a = 0; a < b; ++a) {
@@ -326,9 +352,7 @@ struct Builder {
         if (la == lb || parent(la) == lb || parent(lb) == la || is_excluded(a, b)) continue;
         if (!(shapes[a]->contype & shapes[b]->conaffinity) && !(shapes[b]->contype & shapes[a]->conaffinity))
           continue;
-        Primitive x = primitive_of(out->shapes[a]), y = primitive_of(out->shapes[b]);
-        x.X = pose_of(poses, la) * x.X;
-        y.X = pose_of(poses, lb) * y.X;
+        const Primitive &x = at_home[a], &y = at_home[b];
         if (touch(x, y))
           ++overlapping[{std::min(la, lb), std::max(la, lb)}];
         else if (out->pairs.size() < kMostRows)
@@ -435,6 +459,7 @@ std::vector<double> felt_inertia(const Draft& d, const std::vector<double>& q) {
 
 void build(const Model& model, const Options& options, Draft* out) {
   Builder b{model, options, out, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  b.count_joints();
   const auto couplings = b.resolved();
   for (const CouplingIn& c : couplings)
     if (c.offset != 0) b.moved[c.follower] = c.offset;
@@ -446,7 +471,7 @@ void build(const Model& model, const Options& options, Draft* out) {
   b.add_home();
   b.add_drives();
   b.add_pairs();
-  const std::string name = fitting_name(options.name.empty() ? model.name : options.name, "robot", {});
+  const std::string name = fitting_name(options.name.empty() ? model.name : options.name, "robot");
   if (!options.name.empty() && name != options.name)
     refuse(RDM_ARGUMENT, "options.name: %s: a name is made of at most %zu letters, digits, '_', '-' and '+'",
            clean(options.name).c_str(), kLongestName);

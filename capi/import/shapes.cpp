@@ -8,8 +8,8 @@
 namespace rdm::import {
 namespace {
 
-constexpr size_t kMostPoints = 2000000;
-constexpr size_t kStlHeader = 84, kStlFacet = 50;  // bytes
+constexpr size_t kMostPoints = 2000000, kMostMeshBytes = size_t{1} << 26;  // of one mesh
+constexpr size_t kStlHeader = 84, kStlFacet = 50;                          // bytes
 
 V3 support(int32_t kind, V3 s, V3 d) {
   const double n = norm(d);
@@ -100,50 +100,84 @@ double lines_number(const char*& c, const char* end, size_t line) {
   return x;
 }
 
-Mesh parse_lines(const std::string& bytes, bool obj) {
-  Mesh out;
-  size_t number = 0;
-  for (size_t at = 0; at < bytes.size();) {
-    const size_t stop = std::min(bytes.find('\n', at), bytes.size());
-    const char *c = bytes.data() + at, *end = bytes.data() + stop;
+// The end of the line at `at`: LF, CR or both; where a '\' stands before it the line goes on.
+size_t line_end(std::string& bytes, size_t at) {
+  for (;;) {
+    const size_t stop = std::min(bytes.find_first_of("\r\n", at), bytes.size());
+    if (stop == at || stop == bytes.size() || bytes[stop - 1] != '\\') return stop;
+    const bool both = bytes[stop] == '\r' && stop + 1 < bytes.size() && bytes[stop + 1] == '\n';
+    bytes[stop - 1] = bytes[stop] = ' ';
+    if (both) bytes[stop + 1] = ' ';
     at = stop + 1;
-    ++number;
+  }
+}
+
+// Text, a line each: "v x y z" and "f i j k ..." of .obj, "vertex x y z" of .stl in any case.
+class LineReader {
+ public:
+  LineReader(std::string bytes, bool obj) : bytes_(std::move(bytes)), obj_(obj) {
+    size_t at = bytes_.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0;
+    while (at < bytes_.size()) {
+      const size_t stop = line_end(bytes_, at);
+      ++line_;
+      read(bytes_.data() + at, bytes_.data() + stop);
+      at = stop + (bytes_.compare(stop, 2, "\r\n") == 0 ? 2 : 1);
+    }
+    if (!obj && mesh.points.size() % 3 != 0)
+      refuse(RDM_FORMAT, "it ends in a facet: %zu corners are not three for each", mesh.points.size());
+  }
+  Mesh mesh;
+
+ private:
+  static void skip(const char*& c, const char* end) {
     while (c != end && (*c == ' ' || *c == '\t')) ++c;
-    const std::string_view line(c, static_cast<size_t>(end - c));
-    const auto is = [&](std::string_view word) {
-      return line.size() > word.size() && line.substr(0, word.size()) == word &&
-             (line[word.size()] == ' ' || line[word.size()] == '\t');
-    };
-    if (is(obj ? "v" : "vertex")) {
-      c += obj ? 1 : 6;
-      V3 p;
-      for (int k = 0; k < 3; ++k) p[k] = lines_number(c, end, number);
-      if (out.points.size() == kMostPoints) refuse(RDM_RANGE, "more than %zu corners", kMostPoints);
-      out.points.push_back(p);
-      const auto n = static_cast<uint32_t>(out.points.size());
-      if (!obj && n % 3 == 0) out.faces.push_back({n - 3, n - 2, n - 1});
-    } else if (obj && is("f")) {
-      ++c;
-      std::vector<uint32_t> corners;
-      while (true) {
-        while (c != end && (*c == ' ' || *c == '\t')) ++c;
-        long long i = 0;
-        const auto [after, error] = from_chars(c, end, i);
-        if (error != std::errc()) break;
-        i = i < 0 ? static_cast<long long>(out.points.size()) + i : i - 1;
-        if (i < 0 || i >= static_cast<long long>(out.points.size()))
-          refuse(RDM_FORMAT, "line %zu: a face of a corner that is not there", number);
-        corners.push_back(static_cast<uint32_t>(i));
-        c = after;
-        while (c != end && *c != ' ' && *c != '\t') ++c;
-        if (out.faces.size() + corners.size() > 3 * kMostPoints) refuse(RDM_RANGE, "too many faces");
+  }
+  static bool is(const char* c, const char* end, const char* word) {
+    for (; *word; ++word, ++c)
+      if (c == end || std::tolower(static_cast<unsigned char>(*c)) != *word) return false;
+    return c != end && (*c == ' ' || *c == '\t');
+  }
+  void read(const char* c, const char* end) {
+    skip(c, end);
+    if (is(c, end, obj_ ? "v" : "vertex"))
+      corner(c + (obj_ ? 1 : 6), end);
+    else if (obj_ && is(c, end, "f"))
+      face(c + 1, end);
+  }
+  void corner(const char* c, const char* end) {
+    V3 p;
+    for (int k = 0; k < 3; ++k) p[k] = lines_number(c, end, line_);
+    if (mesh.points.size() == kMostPoints) refuse(RDM_RANGE, "more than %zu corners", kMostPoints);
+    mesh.points.push_back(p);
+    const auto n = static_cast<uint32_t>(mesh.points.size());
+    if (!obj_ && n % 3 == 0) mesh.faces.push_back({n - 3, n - 2, n - 1});
+  }
+  void face(const char* c, const char* end) {
+    uint32_t first = 0, before = 0, count = 0;
+    for (;; ++count) {
+      skip(c, end);
+      long long i = 0;
+      const auto [after, error] = from_chars(c, end, i);
+      if (error != std::errc()) break;
+      const auto points = static_cast<long long>(mesh.points.size());
+      i = i < 0 ? points + i : i - 1;
+      if (i < 0 || i >= points) refuse(RDM_FORMAT, "line %zu: a face of a corner that is not there", line_);
+      const auto corner = static_cast<uint32_t>(i);
+      if (count == 0) first = corner;
+      if (count >= 2) {
+        if (mesh.faces.size() == kMostPoints) refuse(RDM_RANGE, "more than %zu faces", kMostPoints);
+        mesh.faces.push_back({first, before, corner});
       }
-      for (size_t k = 2; k < corners.size(); ++k)
-        out.faces.push_back({corners[0], corners[k - 1], corners[k]});
+      before = corner;
+      c = after;
+      while (c != end && *c != ' ' && *c != '\t') ++c;
     }
   }
-  return out;
-}
+
+  std::string bytes_;
+  bool obj_;
+  size_t line_ = 0;
+};
 
 }  // namespace
 
@@ -151,11 +185,34 @@ V3 farthest(const Primitive& s, V3 way) {
   return s.X * support(s.kind, s.size, back(s.X.q) * way);
 }
 
+namespace {
+
+// Of the ball about X.p that holds it.
+double reach(const Primitive& s) {
+  switch (s.kind) {
+    case RDM_SPHERE:
+      return s.size.x;
+    case RDM_CAPSULE:
+      return s.size.x + s.size.y;
+    case RDM_CYLINDER:
+      return std::hypot(s.size.x, s.size.y);
+    case RDM_BOX:
+      return norm(s.size);
+    default:
+      return std::max({s.size.x, s.size.y, s.size.z});
+  }
+}
+
+}  // namespace
+
 bool touch(const Primitive& a, const Primitive& b) {
   const auto corner = [&](V3 way) { return farthest(a, way) - farthest(b, -1 * way); };
   V3 way = b.X.p - a.X.p;
   if (norm(way) < 1e-12) return true;
-  std::vector<V3> s{corner(way)};
+  if (norm(way) > 1.0000001 * (reach(a) + reach(b))) return false;
+  std::vector<V3> s;
+  s.reserve(4);
+  s.push_back(corner(way));
   way = -1 * s[0];
   for (int k = 0; k < 64; ++k) {
     if (norm(way) < 1e-15) return true;
@@ -208,34 +265,24 @@ Mass solid(const Primitive& s) {
 
 namespace {
 
-// Without a byte order mark; lines end in \n, whichever system wrote them; words of an .stl are small.
-std::string text_of(const std::string& bytes, bool obj) {
-  std::string out;
-  out.reserve(bytes.size());
-  for (size_t at = bytes.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0; at < bytes.size(); ++at) {
-    const char c = bytes[at];
-    if (c == '\r' && at + 1 < bytes.size() && bytes[at + 1] == '\n') continue;
-    out += c == '\r' ? '\n' : !obj && c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-  }
-  return out;
-}
 // The words of an .stl that is text, whose length is no binary one's.
 bool is_text(const std::string& bytes) {
-  const std::string begin = text_of(bytes.substr(0, 4096), false);
+  std::string begin = bytes.substr(0, 4096);
+  for (char& c : begin) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return bytes.size() < kStlHeader || begin.find("vertex") != std::string::npos ||
          begin.find("endsolid") != std::string::npos;
 }
 
 }  // namespace
 
-Mesh parse_mesh(const std::string& bytes, bool obj) {
+Mesh parse_mesh(std::string bytes, bool obj) {
   Mesh out;
   uint32_t facets = 0;
   if (bytes.size() >= kStlHeader)
     std::memcpy(&facets, bytes.data() + kStlHeader - sizeof facets, sizeof facets);
   const size_t expected = kStlHeader + kStlFacet * static_cast<size_t>(facets);
   if (obj || (bytes.size() != expected && is_text(bytes))) {
-    out = parse_lines(text_of(bytes, obj), obj);
+    out = LineReader(std::move(bytes), obj).mesh;
   } else {
     if (bytes.size() != expected)
       refuse(RDM_FORMAT, "its header says %u facets, %zu bytes; it has %zu", facets, expected, bytes.size());
@@ -256,14 +303,16 @@ Mesh parse_mesh(const std::string& bytes, bool obj) {
   return out;
 }
 
-Mesh read_mesh(const std::string& path) {
+Mesh read_mesh(const std::string& path, Budget* budget) {
   std::string ending = path.substr(std::min(path.rfind('.'), path.size()));
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (ending != ".stl" && ending != ".obj")
     refuse(RDM_UNSUPPORTED, "%s: meshes are read from .stl and .obj", clean(path, 160).c_str());
-  const std::string bytes = read_file(path);
+  budget->spend(Cost::kFiles, 1);
+  std::string bytes = read_file(path, std::min(kMostMeshBytes, budget->left(Cost::kMeshBytes)));
+  budget->spend(Cost::kMeshBytes, bytes.size());
   try {
-    return parse_mesh(bytes, ending == ".obj");
+    return parse_mesh(std::move(bytes), ending == ".obj");
   } catch (const Refusal& r) {
     refuse(r.code, "%s: %s", clean(path, 160).c_str(), r.text.c_str());
   }

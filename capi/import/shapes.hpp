@@ -23,9 +23,9 @@ struct Mesh {
   std::vector<V3> points;
   std::vector<std::array<uint32_t, 3>> faces;
 };
-// .stl (binary, text), .obj; UNSUPPORTED for others. Bounds: 2 million corners, 1e6 m.
-Mesh read_mesh(const std::string& path);
-Mesh parse_mesh(const std::string& bytes, bool obj);
+// .stl (binary, text), .obj; UNSUPPORTED for others. Bounds: 2 million corners and faces, 1e6 m.
+Mesh read_mesh(const std::string& path, Budget* budget);
+Mesh parse_mesh(std::string bytes, bool obj);
 // The smallest of box, capsule and sphere that holds the points, along their axes or the frame's.
 Primitive around(const std::vector<V3>& points);
 // Of density 1 by its faces; mass 0 for what is not closed.

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "base/chars.hpp"
+#include "base/names.hpp"
 #include "task_program.hpp"
 #include "toml_text.hpp"
 
@@ -157,13 +158,6 @@ std::string field_name(const Table& t) {
   if (out.size() > kLongest)
     t.bad(RDM_RANGE, line_of(t.t), "name: %s has more than %zu characters", clean(out).c_str(), kLongest);
   return out;
-}
-
-// '*' stands for any characters, '?' for one.
-bool matches(const char* pattern, const char* name) {
-  if (*pattern == '*') return matches(pattern + 1, name) || (*name && matches(pattern, name + 1));
-  if (!*name) return !*pattern;
-  return (*pattern == '?' || *pattern == *name) && matches(pattern + 1, name + 1);
 }
 
 // ---- options, as numbers and texts that begin with '$' ----
@@ -891,11 +885,11 @@ class Builder {
         }
       const double rate = speed > 0 ? speed : d.links[at].velocity > 0 ? d.links[at].velocity : 1;
       c.step = 2 * (control == 3 ? rate / frequency : step) / (info.upper - info.lower);
-      const bool driven =
-          player->control != Control::kNone &&
-          std::any_of(drive.begin(), drive.end(), [&](const std::string& pattern) {
-            return matches(pattern.c_str(), d.links[at].joint) || matches(pattern.c_str(), info.name);
-          });
+      const bool driven = player->control != Control::kNone &&
+                          std::any_of(drive.begin(), drive.end(), [&](const std::string& pattern) {
+                            return name_matches(pattern.c_str(), d.links[at].joint) ||
+                                   name_matches(pattern.c_str(), info.name);
+                          });
       c.action = driven ? 0 : -1;
       player->commands = std::max(player->commands, info.action + 1);
     }
@@ -950,7 +944,7 @@ class Builder {
         for (const Part& part : parts_)
           for (const rdm_robot_link& l : part.draft->links) {
             const std::string link = part.name + '_' + l.name;
-            if (pattern == part.name || matches(pattern.c_str(), link.c_str())) add(j, 0), any = true;
+            if (pattern == part.name || name_matches(pattern.c_str(), link.c_str())) add(j, 0), any = true;
             ++j;
           }
         if (!any)
@@ -1083,9 +1077,9 @@ class Builder {
       const int32_t before = p_.num_joints;
       for (const Part& part : parts_)
         for (size_t i = 0; i < part.draft->links.size(); ++i, ++j) {
-          const bool named = key[0] == 'o'
-                                 ? pattern == part.name
-                                 : matches(pattern.c_str(), joint_names_[static_cast<size_t>(j)].c_str());
+          const bool named =
+              key[0] == 'o' ? pattern == part.name
+                            : name_matches(pattern.c_str(), joint_names_[static_cast<size_t>(j)].c_str());
           if (named) list_joint(t, j);
         }
       if (p_.num_joints == before) {

@@ -8,14 +8,46 @@
 
 namespace rdm::import {
 
+namespace {
+
+constexpr size_t kMostValues = 400000;  // each becomes about 100 bytes
+constexpr size_t kMostParts = 64;       // of a dotted key: each is a table in a table, which end by recursion
+
+// Counted without the parser, and so rather too many: in texts and comments too.
+void check_cost(const std::string& bytes) {
+  size_t values = 0, parts = 0;
+  int line = 1;
+  bool key = true;  // what stands before a line's '='
+  for (const char c : bytes) {
+    if (c == '\n')
+      ++line, parts = 0, key = true;
+    else if (c == ',' || c == '[' || c == '{' || c == '=')
+      ++values, parts = 0, key = c != '=';
+    else if (c == '.' && key)
+      ++parts;
+    else if (c == '#' && parts == 0)
+      key = false;
+    if (parts > kMostParts) refuse(RDM_RANGE, "line %d: a key of more than %zu parts", line, kMostParts);
+    if (values > kMostValues) refuse(RDM_RANGE, "line %d: more than %zu values", line, kMostValues);
+  }
+}
+
+}  // namespace
+
 void parser_fault() {
   throw ParserFault{};
 }
 
 toml::table parse_toml(const std::string& bytes) {
+  if (bytes.size() > kMostToml) refuse(RDM_RANGE, "more than %zu bytes", kMostToml);
+  check_cost(bytes);
   try {
-    return toml::parse(std::string_view(bytes));
-  } catch (const toml::parse_error& e) {
+    toml::parse_result first = toml::parse(std::string_view(bytes));
+    if (first) return std::move(first).table();
+    // The parser's streams take refused memory for a wrong number: what is wrong is wrong a second time.
+    const toml::parse_result again = toml::parse(std::string_view(bytes));
+    const toml::parse_error& e = first.error();
+    if (again || again.error().source().begin != e.source().begin) throw std::bad_alloc();
     refuse(RDM_FORMAT, "line %d: %s", line_of(e.source()), clean(std::string(e.description()), 200).c_str());
   } catch (const ParserFault&) {
     refuse(RDM_FORMAT, "line %ld: no TOML", std::count(bytes.begin(), bytes.end(), '\n') + 1);

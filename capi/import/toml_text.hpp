@@ -9,14 +9,16 @@ struct ParserFault {};  // what the parser takes to be impossible is not: it mus
 #undef NDEBUG
 #define TOML_ASSERT(condition) ((condition) ? static_cast<void>(0) : ::rdm::import::parser_fault())
 #define TOML_HEADER_ONLY 1
-#define TOML_EXCEPTIONS 1
+#define TOML_EXCEPTIONS 0  // an error that is thrown takes memory, and ends the process where there is none
 #include <toml++/toml.h>
 
 #include <initializer_list>
 
 namespace rdm::import {
 
-// FORMAT with the line for what is no TOML.
+inline constexpr size_t kMostToml = size_t{1} << 22;  // bytes of a .task, .robot or .object
+// FORMAT with the line for what is no TOML; RANGE, before it is parsed, for more than any of them has: commas,
+// brackets and equal signs (400,000), parts of a dotted key (64).
 toml::table parse_toml(const std::string& bytes);
 
 inline int line_of(const toml::source_region& s) {

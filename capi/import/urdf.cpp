@@ -1,6 +1,7 @@
 // URDF. Links are bodies, joints hang them together; what is fixed is merged by build().
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "fill.hpp"
@@ -26,7 +27,9 @@ struct Reader {
     std::string name, type, parent, child;
   };
   std::vector<Joint> joints;
-  std::map<std::string, size_t> above;  // joint whose child the link is
+  std::map<std::string, size_t> above;               // joint whose child the link is
+  std::map<std::string, std::vector<size_t>> below;  // joints whose parent it is
+  std::set<std::string> taken;                       // links that became bodies
 
   static std::string needed(const Element& e, const char* attribute) {
     const std::string* text = e.get(attribute);
@@ -86,6 +89,7 @@ struct Reader {
         refuse_at(RDM_ARGUMENT, *e, "link %s has two parents: joint %s of line %d too",
                   clean(j.child).c_str(), clean(joints[other->second].name).c_str(),
                   joints[other->second].element->line);
+      below[j.parent].push_back(joints.size());
       joints.push_back(j);
     }
   }
@@ -331,8 +335,8 @@ struct Reader {
     if (density > 0) weigh(l, density, &body);
     model.bodies.push_back(std::move(body));
     const int self = static_cast<int>(model.bodies.size()) - 1;
-    for (const Joint& j : joints)
-      if (j.parent == name) add(j.child, self, &j, depth + 1);
+    taken.insert(name);
+    for (const size_t j : below[name]) add(joints[j].child, self, &joints[j], depth + 1);
   }
   void mark(const Element& e) {
     for (const Attribute& a : e.attributes) a.read = true;
@@ -350,15 +354,13 @@ struct Reader {
     add(root, -1, nullptr, 0);
     if (options.root.empty() && model.bodies.size() != links.size()) {
       for (const auto& [name, e] : links)
-        if (std::none_of(model.bodies.begin(), model.bodies.end(),
-                         [&](const BodyIn& b) { return b.name == name; }))
+        if (!taken.count(name))
           refuse_at(RDM_ARGUMENT, *e, "it hangs in a loop of joints, not on the root %s",
                     clean(root).c_str());
     }
     if (!options.root.empty())
       for (const auto& [name, e] : links)
-        if (std::none_of(model.bodies.begin(), model.bodies.end(),
-                         [&](const BodyIn& b) { return b.name == name; })) {
+        if (!taken.count(name)) {
           out->note(RDM_NOTE_DROPPED, e->line, "link %s: not below options.root", clean(name).c_str());
           mark(*e);
         }
@@ -368,7 +370,7 @@ struct Reader {
 }  // namespace
 
 void read_urdf(const std::string& bytes, const Options& options, Draft* out) {
-  const auto robot = parse_xml(bytes, options, false);
+  const auto robot = parse_xml(bytes, options, false, out);
   if (robot->tag != "robot") refuse_at(RDM_FORMAT, *robot, "no URDF: the first element is not robot");
   check_urdf(*robot);
   Reader reader(*robot, options, out);

@@ -13,9 +13,10 @@
 namespace rdm::import {
 namespace {
 
-constexpr size_t kMostElements = 200000;
-constexpr int kMostIncludes = 16;  // deep
-constexpr double kLargest = 1e9;   // of a number
+constexpr int kMostIncludes = 16;              // deep
+constexpr size_t kMostAttributes = 256;        // of an element: the parser compares each with all before it
+constexpr size_t kMostText = 256, kEach = 64;  // bytes of a text of numbers, and of each of them
+constexpr double kLargest = 1e9;               // of a number
 
 const char* reason_of(tinyxml2::XMLError e) {
   switch (e) {
@@ -78,14 +79,65 @@ void blank_late_declaration(std::string* bytes) {
   }
 }
 
+// What a text would cost the parser, counted as the parser reads it before the parser has it: one pass over the
+// bytes.
+class Scan {
+ public:
+  Scan(const std::string& bytes, const std::string& of) : bytes_(bytes), of_(of) {
+    while (at_ < bytes_.size()) markup();
+  }
+  size_t nodes = 0, attributes = 0;
+
+ private:
+  bool skip(const char* begin, const char* end) {
+    if (bytes_.compare(at_, std::strlen(begin), begin) != 0) return false;
+    const size_t found = bytes_.find(end, at_ + std::strlen(begin));
+    at_ = found == std::string::npos ? bytes_.size() : found + std::strlen(end);
+    return true;
+  }
+  void markup() {
+    const size_t text = bytes_.find_first_not_of(" \t\r\n", at_);
+    at_ = std::min(bytes_.find('<', at_), bytes_.size());
+    if (text < at_) ++nodes;
+    if (at_ == bytes_.size() || skip("</", ">")) return;
+    ++nodes;
+    if (!skip("<?", "?>") && !skip("<!--", "-->") && !skip("<![CDATA[", "]]>") && !skip("<!", ">")) element();
+  }
+  void element() {
+    const size_t begin = at_;
+    size_t own = 0;
+    char quote = 0;
+    for (++at_; at_ < bytes_.size(); ++at_) {
+      const char c = bytes_[at_];
+      if (quote)
+        quote = c == quote ? 0 : quote;
+      else if (c == '"' || c == '\'')
+        quote = c;
+      else if (c == '=')
+        ++own;
+      else if (c == '>')
+        break;
+    }
+    at_ = std::min(at_ + 1, bytes_.size());
+    if (own > kMostAttributes)
+      refuse(RDM_RANGE, "line %ld%s: more than %zu attributes of one element",
+             1 + static_cast<long>(
+                     std::count(bytes_.begin(), bytes_.begin() + static_cast<ptrdiff_t>(begin), '\n')),
+             of_.c_str(), kMostAttributes);
+    attributes += own;
+  }
+
+  const std::string& bytes_;
+  const std::string& of_;
+  size_t at_ = 0;
+};
+
 struct Parser {
   const Options& options;
   bool includes;
-  size_t count = 0;
+  Draft* out;
 
   std::unique_ptr<Element> copy(const tinyxml2::XMLElement& x, const std::string& file, int depth) {
-    if (++count > kMostElements)
-      refuse(RDM_RANGE, "line %d: more than %zu elements", x.GetLineNum(), kMostElements);
     auto e = std::make_unique<Element>();
     e->tag = x.Name();
     e->file = file;
@@ -106,27 +158,33 @@ struct Parser {
   void include(const tinyxml2::XMLElement& x, const std::string& file, int depth, Element* into) {
     const char* name = x.Attribute("file");
     const std::string at =
-        format("line %d%s%s: include", x.GetLineNum(), file.empty() ? "" : " of ", clean(file).c_str());
+        format("line %d%s%s: include", x.GetLineNum(), file.empty() ? "" : " of ", file.c_str());
     if (!name || !*name) refuse(RDM_FORMAT, "%s: no file", at.c_str());
     if (!options.has_folder)
       refuse(RDM_NOT_FOUND, "%s: %s: a text alone has no folder to look in", at.c_str(), clean(name).c_str());
     if (depth >= kMostIncludes) refuse(RDM_RANGE, "%s: more than %d deep", at.c_str(), kMostIncludes);
     std::string bytes;
     try {
-      bytes = read_file(name[0] == '/' ? std::string(name) : options.folder + name);
+      out->budget.spend(Cost::kFiles, 1);
+      bytes = read_file(name[0] == '/' ? std::string(name) : options.folder + name,
+                        out->budget.left(Cost::kTextBytes));
     } catch (const Refusal& r) {
       refuse(r.code, "%s: %s", at.c_str(), r.text.c_str());
     }
-    auto root = parse(bytes, name, depth + 1);
+    auto root = parse(bytes, clean(name), depth + 1);
     for (auto& child : root->children) into->children.push_back(std::move(child));
   }
 
   std::unique_ptr<Element> parse(std::string bytes, const std::string& file, int depth) {
+    const std::string of = file.empty() ? "" : " of " + file;
+    out->budget.spend(Cost::kTextBytes, bytes.size());
     blank_late_declaration(&bytes);
     refuse_doctype(bytes, file);
+    const Scan scan(bytes, of);
+    out->budget.spend(Cost::kNodes, scan.nodes);
+    out->budget.spend(Cost::kAttributes, scan.attributes);
     tinyxml2::XMLDocument document;
     const auto result = document.Parse(bytes.data(), bytes.size());
-    const std::string of = file.empty() ? "" : " of " + clean(file);
     if (result != tinyxml2::XML_SUCCESS)
       refuse(RDM_FORMAT, "line %d%s: no XML: %s", document.ErrorLineNum(), of.c_str(), reason_of(result));
     const auto* root = document.RootElement();
@@ -136,7 +194,8 @@ struct Parser {
 };
 
 void list(const Element& e, bool root, Draft* out) {
-  const auto in = e.file.empty() ? std::string() : " (in " + clean(e.file) + ")";
+  if (out->notes.size() > kMostNotes) return;
+  const auto in = e.file.empty() ? std::string() : " (in " + e.file + ")";
   if (!root && !e.seen) {
     const Attribute* name = e.find("name");
     if (!name) name = e.find("joint");
@@ -187,8 +246,9 @@ const Element* Element::child(const char* name) const {
   return nullptr;
 }
 
-std::unique_ptr<Element> parse_xml(const std::string& bytes, const Options& options, bool includes) {
-  Parser parser{options, includes};
+std::unique_ptr<Element> parse_xml(const std::string& bytes, const Options& options, bool includes,
+                                   Draft* out) {
+  Parser parser{options, includes, out};
   return parser.parse(bytes, "", 0);
 }
 
@@ -214,7 +274,7 @@ std::string first_element(const std::string& bytes) {
 
 std::string where(const Element& e) {
   std::string out = format("line %d", e.line);
-  if (!e.file.empty()) out += " of " + clean(e.file);
+  if (!e.file.empty()) out += " of " + e.file;
   out += ": " + clean(e.tag);
   if (const Attribute* name = e.find("name")) out += ' ' + clean(name->value);
   return out;
@@ -263,6 +323,9 @@ void refuse_xacro(const Element& e, const char* attribute, const std::string& te
 std::vector<double> numbers(const Element& e, const char* attribute, const std::string& text, size_t least,
                             size_t most) {
   std::vector<double> out;
+  if (text.size() > kMostText + kEach * most)
+    refuse_at(RDM_RANGE, e, "%s: %zu bytes are too long a text for %zu number%s", attribute, text.size(),
+              most, most == 1 ? "" : "s");
   const char *c = text.data(), *end = c + text.size();
   while (true) {
     while (c != end && is_space(*c)) ++c;

@@ -13,7 +13,7 @@ struct Attribute {
   mutable bool read = false;
 };
 struct Element {
-  std::string tag, file;  // file: "" or the name of an included one
+  std::string tag, file;  // file: "" or the name of an included one, cleaned
   int line = 0;
   std::vector<Attribute> attributes;
   std::vector<std::unique_ptr<Element>> children;
@@ -26,8 +26,10 @@ struct Element {
 };
 
 // The whole file; include elements are replaced by what stands in their files below `folder`.
-// FORMAT with the line for what is no XML; `includes` allows <include file="">.
-std::unique_ptr<Element> parse_xml(const std::string& bytes, const Options& options, bool includes);
+// FORMAT with the line for what is no XML, UNSUPPORTED for a DOCTYPE that declares; `includes` allows
+// <include file="">. What it costs is taken from out->budget before memory is.
+std::unique_ptr<Element> parse_xml(const std::string& bytes, const Options& options, bool includes,
+                                   Draft* out);
 
 // "line 3: joint knee" (of an included file: "line 3 of b.xml: joint knee").
 std::string where(const Element& e);

@@ -15,7 +15,8 @@
 namespace tool {
 namespace {
 
-constexpr int32_t kMostPixels = 8192;  // a side
+constexpr int32_t kMostPixels = 8192;                     // a side
+constexpr uint64_t kMostStripPixels = uint64_t{1} << 24;  // 8 moments of 1920x1080
 
 struct RenderFlags {
   std::string policy = "hold", size = "640x480", camera = "front", out, video, html, glb;
@@ -35,6 +36,11 @@ void read_size(RenderFlags& flags) {
                 std::to_string(kMostPixels));
   flags.width = static_cast<int32_t>(width);
   flags.height = static_cast<int32_t>(height);
+  const uint64_t pixels =
+      width * height * (flags.cloud ? 2 : 1) * static_cast<uint64_t>(std::max(flags.strip, 1));
+  if (flags.strip > 1 && pixels > kMostStripPixels)
+    throw Usage("--size " + flags.size + ", --strip " + std::to_string(flags.strip) + ": a strip of " +
+                std::to_string(pixels) + " pixels, more than " + std::to_string(kMostStripPixels));
 }
 
 Scene scene_of(const RenderFlags& flags, const ActorChoice& choice) {

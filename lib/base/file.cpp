@@ -158,13 +158,45 @@ void sweep(const char* target) {
 
 }  // namespace
 
-Vector<unsigned char> read_file(const char* path, const FileLimits& limits) {
+namespace {
+
+// The one place where a file is opened to be read; its size.
+int open_regular(const char* path, uint64_t* size) {
   // without O_NONBLOCK a pipe would wait for a writer
-  const Descriptor f(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
-  if (f.fd < 0)
+  const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (fd < 0)
     fail(errno == ENOENT ? Code::kNotFound : Code::kIo, "%s: cannot open: %s", path, std::strerror(errno));
   struct stat st {};
-  if (fstat(f.fd, &st) != 0 || !S_ISREG(st.st_mode)) fail(Code::kIo, "%s: not a regular file", path);
+  if (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode)) {
+    close(fd);
+    fail(Code::kIo, "%s: not a regular file", path);
+  }
+  *size = static_cast<uint64_t>(st.st_size);
+  return fd;
+}
+
+}  // namespace
+
+FileSource::FileSource(const char* path) : path_(path), handle_(open_regular(path, &size_)) {}
+
+FileSource::~FileSource() {
+  close(static_cast<int>(handle_));
+}
+
+void FileSource::read(uint64_t at, void* to, size_t count) const {
+  auto* out = static_cast<unsigned char*>(to);
+  while (count > 0) {
+    const ssize_t n = pread(static_cast<int>(handle_), out, count, static_cast<off_t>(at));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) refuse(path_, "read", errno);
+    if (n == 0) fail(Code::kIo, "%s: it has become shorter", path_);
+    out += n, at += static_cast<uint64_t>(n), count -= static_cast<size_t>(n);
+  }
+}
+
+Vector<unsigned char> read_file(const char* path, const FileLimits& limits) {
+  uint64_t size;
+  const Descriptor f(open_regular(path, &size));
   const auto read_to = [&](unsigned char* out, size_t size) {
     size_t at = 0;
     while (at < size) {
@@ -176,7 +208,7 @@ Vector<unsigned char> read_file(const char* path, const FileLimits& limits) {
     }
     return at;
   };
-  return read_within(path, static_cast<uint64_t>(st.st_size), limits, read_to);
+  return read_within(path, size, limits, read_to);
 }
 
 void write_file(const char* path, const void* data, size_t size) {

@@ -1,6 +1,8 @@
-// Whole files: read one, or replace one so that a kill at any moment leaves the old or the new content.
+// Files: read one whole or in parts, or replace one so that a kill at any moment leaves the old or the new content.
 #pragma once
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <string_view>
 
 #include "base/error.hpp"
@@ -21,6 +23,44 @@ struct FileLimits {
 // longest size, kIo for any other failure: folders, devices and pipes are refused, and none of them is waited
 // for.
 Vector<unsigned char> read_file(const char* path, const FileLimits& limits);
+
+// Bytes that are read in parts.
+class ByteSource {
+ public:
+  virtual ~ByteSource() = default;
+  virtual uint64_t size() const = 0;
+  // Copies `count` bytes from `at` on, which are there: at + count <= size().
+  virtual void read(uint64_t at, void* to, size_t count) const = 0;
+};
+
+// A regular file. Errors as read_file's; Error(kIo) where it has become shorter.
+class FileSource : public ByteSource {
+ public:
+  explicit FileSource(const char* path);
+  ~FileSource() override;
+  FileSource(const FileSource&) = delete;
+  FileSource& operator=(const FileSource&) = delete;
+  uint64_t size() const override { return size_; }
+  void read(uint64_t at, void* to, size_t count) const override;
+
+ private:
+  const char* path_;  // the caller's
+  intptr_t handle_;
+  uint64_t size_ = 0;
+};
+
+class MemorySource : public ByteSource {
+ public:
+  MemorySource(const unsigned char* data, size_t size) : data_(data), size_(size) {}
+  uint64_t size() const override { return size_; }
+  void read(uint64_t at, void* to, size_t count) const override {
+    if (count) std::memcpy(to, data_ + at, count);
+  }
+
+ private:
+  const unsigned char* data_;
+  size_t size_;
+};
 
 // Writes <path>.tmp-<16 hex digits>, syncs, renames, syncs the folder. A link stays, what it leads to is
 // replaced. On Error(kIo) (full disk, file-size limit, no right, not a regular file) the old file is

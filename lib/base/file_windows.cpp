@@ -91,17 +91,54 @@ void sweep(const std::wstring& name) {
 
 }  // namespace
 
-Vector<unsigned char> read_file(const char* path, const FileLimits& limits) {
+namespace {
+
+// The one place where a file is opened to be read; its size.
+HANDLE open_regular(const char* path, uint64_t* size) {
   const std::wstring name = wide(path);
   const DWORD attributes = GetFileAttributesW(name.c_str());
   if (attributes != INVALID_FILE_ATTRIBUTES && (attributes & FILE_ATTRIBUTE_DIRECTORY))
     fail(Code::kIo, "%s: not a regular file", path);
-  Handle f(CreateFileW(name.c_str(), GENERIC_READ, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
-                       nullptr, OPEN_EXISTING, FILE_ATTRIBUTE_NORMAL, nullptr));
-  if (!f.open()) refuse(path, "open", GetLastError());
-  LARGE_INTEGER size;
-  if (GetFileType(f.get()) != FILE_TYPE_DISK || !GetFileSizeEx(f.get(), &size))
+  const HANDLE f =
+      CreateFileW(name.c_str(), GENERIC_READ, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr,
+                  OPEN_EXISTING, FILE_ATTRIBUTE_NORMAL, nullptr);
+  if (f == INVALID_HANDLE_VALUE) refuse(path, "open", GetLastError());
+  LARGE_INTEGER length;
+  if (GetFileType(f) != FILE_TYPE_DISK || !GetFileSizeEx(f, &length)) {
+    CloseHandle(f);
     fail(Code::kIo, "%s: not a regular file", path);
+  }
+  *size = static_cast<uint64_t>(length.QuadPart);
+  return f;
+}
+
+}  // namespace
+
+FileSource::FileSource(const char* path)
+    : path_(path), handle_(reinterpret_cast<intptr_t>(open_regular(path, &size_))) {}
+
+FileSource::~FileSource() {
+  CloseHandle(reinterpret_cast<HANDLE>(handle_));
+}
+
+void FileSource::read(uint64_t at, void* to, size_t count) const {
+  auto* out = static_cast<unsigned char*>(to);
+  while (count > 0) {
+    OVERLAPPED place{};
+    place.Offset = static_cast<DWORD>(at), place.OffsetHigh = static_cast<DWORD>(at >> 32);
+    DWORD n = 0;
+    const auto most = static_cast<DWORD>(std::min<size_t>(count, size_t{1} << 30));
+    if (!ReadFile(reinterpret_cast<HANDLE>(handle_), out, most, &n, &place) &&
+        GetLastError() != ERROR_HANDLE_EOF)
+      refuse(path_, "read", GetLastError());
+    if (n == 0) fail(Code::kIo, "%s: it has become shorter", path_);
+    out += n, at += n, count -= n;
+  }
+}
+
+Vector<unsigned char> read_file(const char* path, const FileLimits& limits) {
+  uint64_t size;
+  Handle f(open_regular(path, &size));
   const auto read_to = [&](unsigned char* out, size_t wanted) {
     size_t at = 0;
     while (at < wanted) {
@@ -113,7 +150,7 @@ Vector<unsigned char> read_file(const char* path, const FileLimits& limits) {
     }
     return at;
   };
-  return read_within(path, static_cast<uint64_t>(size.QuadPart), limits, read_to);
+  return read_within(path, size, limits, read_to);
 }
 
 void write_file(const char* path, const void* data, size_t size) {

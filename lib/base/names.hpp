@@ -23,14 +23,14 @@ inline bool same_name(const char* a, const char* b) {
   return *a == *b;
 }
 
-// As same_name, where every '*' of the pattern stands for any letters or none. At most |pattern| x |name|
-// steps.
+// As same_name, where a '*' of the pattern stands for any letters or none and a '?' for one. At most
+// |pattern| x |name| steps.
 inline bool name_matches(const char* pattern, const char* name) {
   const char *star = nullptr, *from = nullptr;  // the last '*', and the name behind what it stands for
   while (*name) {
     if (*pattern == '*') {
       star = pattern++, from = name;
-    } else if (*pattern && fold_letter(*pattern) == fold_letter(*name)) {
+    } else if (*pattern && (*pattern == '?' || fold_letter(*pattern) == fold_letter(*name))) {
       ++pattern, ++name;
     } else if (star) {
       pattern = star + 1, name = ++from;
@@ -45,11 +45,16 @@ inline bool name_matches(const char* pattern, const char* name) {
 inline constexpr int kUnlike = INT_MAX;
 inline constexpr size_t kMostCompared = 64;  // letters of a name
 
+inline size_t compared_length(const char* name) {
+  size_t n = 0;
+  while (n < kMostCompared && name[n]) ++n;
+  return n;
+}
+
 // Letters to insert, remove, replace or swap with the next (Damerau 1964) between `word` and the whole of `known`,
 // and in *begin between it and that beginning of `known` which differs least.
 inline int edit_distance(const char* word, const char* known, int* begin) {
-  const size_t n = std::min(std::strlen(word), kMostCompared),
-               m = std::min(std::strlen(known), kMostCompared);
+  const size_t n = compared_length(word), m = compared_length(known);
   int rows[3][kMostCompared + 1];  // of the word's letter, of the one before it, and of that before it
   int *row = rows[0], *last = rows[1], *older = rows[2];
   for (size_t j = 0; j <= m; ++j) row[j] = static_cast<int>(j);
@@ -72,14 +77,14 @@ inline int edit_distance(const char* word, const char* known, int* begin) {
 // hand_over_safe_finger), then where the name is the beginning of the word.
 inline int name_distance(const char* word, const char* known) {
   constexpr size_t kLeastPart = 3;  // letters
-  const size_t n = std::strlen(word), m = std::strlen(known);
+  const size_t n = compared_length(word), m = compared_length(known);
   int begin = 0, best = kUnlike;
   const int whole = edit_distance(word, known, &begin);
   if (3 * static_cast<size_t>(whole) <= std::max(n, m) + 2) best = 2 * whole;
   if (n < kLeastPart) return best;
   const auto near = [&](int slips) { return 4 * static_cast<size_t>(slips) <= n + 1; };
   if (near(begin)) best = std::min(best, 2 * begin + 1);
-  for (const char* p = known; *p && p < known + kMostCompared; ++p) {
+  for (const char* p = known; p != known + m; ++p) {
     if (!std::strchr("_-. :", *p) || !p[1]) continue;
     edit_distance(word, p + 1, &begin);
     if (near(begin)) best = std::min(best, 2 * begin + 2);

@@ -195,8 +195,8 @@ void NpzWriter::finish() {
   put(low32(size)), put(low32(begin)), put(uint16_t{0});
 }
 
-NpzReader::NpzReader(const unsigned char* data, size_t size, const char* what)
-    : data_(data), size_(size), what_(what) {
+NpzReader::NpzReader(const ByteSource& source, const char* what)
+    : source_(source), size_(source.size()), what_(what) {
   read_directory();
 }
 
@@ -208,7 +208,7 @@ template <class T>
 T NpzReader::value(uint64_t at) const {
   if (at > size_ || size_ - at < sizeof(T)) bad("the archive is cut off");
   T v;
-  std::memcpy(&v, data_ + at, sizeof v);
+  source_.read(at, &v, sizeof v);
   return v;
 }
 
@@ -216,11 +216,14 @@ void NpzReader::read_directory() {
   // the end stands before a comment of up to 65,535 bytes, and after the 64-bit form of itself
   if (size_ < kEndBytes) bad("not a whole archive (.npz)");
   const uint64_t first = size_ - std::min(size_, kMostComment + kEndBytes);
-  uint64_t end = size_ - kEndBytes;
-  while (value<uint32_t>(end) != kEnd) {
-    if (end == first) bad("not a whole archive (.npz)");
-    --end;
+  Vector<unsigned char> tail(static_cast<size_t>(size_ - first));
+  source_.read(first, tail.data(), tail.size());
+  size_t back = tail.size() - kEndBytes;
+  while (std::memcmp(tail.data() + back, &kEnd, sizeof kEnd) != 0) {
+    if (back == 0) bad("not a whole archive (.npz)");
+    --back;
   }
+  const uint64_t end = first + back;
   uint64_t count = value<uint16_t>(end + 10), bytes = value<uint32_t>(end + 12),
            begin = value<uint32_t>(end + 16);
   if (end >= kLocatorBytes && value<uint32_t>(end - kLocatorBytes) == kLocator64) {
@@ -245,7 +248,9 @@ uint64_t NpzReader::read_member(uint64_t at, uint64_t end) {
   m.offset = value<uint32_t>(at + 42);
   at += kCentralBytes;
   if (end - at < name + extra + comment) bad("the archive's directory is cut off");
-  std::memcpy(m.name, data_ + at, std::min(static_cast<size_t>(name), sizeof m.name - 1));
+  Vector<char> here(static_cast<size_t>(name)), there(static_cast<size_t>(name));
+  source_.read(at, here.data(), here.size());
+  std::copy_n(here.data(), std::min(here.size(), sizeof m.name - 1), m.name);
   const uint64_t stop = at + name + extra;
   for (uint64_t e = at + name; stop - e >= 4;) {
     const auto id = value<uint16_t>(e), length = value<uint16_t>(e + 2);
@@ -260,9 +265,10 @@ uint64_t NpzReader::read_member(uint64_t at, uint64_t end) {
   }
   // a member whose name is spoiled would be one that is missing: both places say it
   const uint64_t local = m.offset + kLocalBytes;
-  if (local > size_ || size_ - local < name || value<uint16_t>(m.offset + 26) != name ||
-      std::memcmp(data_ + local, data_ + at, static_cast<size_t>(name)) != 0)
+  if (local > size_ || size_ - local < name || value<uint16_t>(m.offset + 26) != name)
     bad("the archive's directory is spoiled");
+  source_.read(local, there.data(), there.size());
+  if (here != there) bad("the archive's directory is spoiled");
   members_.push_back(m);
   return stop + comment;
 }
@@ -274,28 +280,52 @@ const NpzReader::Member* NpzReader::find(const char* name) const {
   return nullptr;
 }
 
-NpyArray NpzReader::array(const char* name) const {
-  const auto refuse = [&](const char* why) { fail(Code::kFormat, "%s: array %s %s", what_, name, why); };
+void NpzReader::refuse(const char* name, const char* why) const {
+  fail(Code::kFormat, "%s: array %s %s", what_, name, why);
+}
+
+NpyArray NpzReader::read_header(const char* name, Place* place) const {
   const Member* m = find(name);
-  if (!m) refuse("is missing");
-  if (m->method != 0 || (m->flags & kEncrypted)) refuse("is packed: write the file with numpy.savez");
-  if (m->size != m->packed || m->offset > size_ || size_ - m->offset < kLocalBytes) refuse("is cut off");
-  if (value<uint32_t>(m->offset) != kLocal) refuse("is not where it should be");
+  if (!m) refuse(name, "is missing");
+  if (m->method != 0 || (m->flags & kEncrypted)) refuse(name, "is packed: write the file with numpy.savez");
+  if (m->size != m->packed || m->offset > size_ || size_ - m->offset < kLocalBytes)
+    refuse(name, "is cut off");
+  if (value<uint32_t>(m->offset) != kLocal) refuse(name, "is not where it should be");
   const uint64_t begin =
       m->offset + kLocalBytes + value<uint16_t>(m->offset + 26) + value<uint16_t>(m->offset + 28);
-  if (begin > size_ || size_ - begin < m->size) refuse("is cut off");
-  const unsigned char* bytes = data_ + begin;
+  if (begin > size_ || size_ - begin < m->size) refuse(name, "is cut off");
+  if (m->size > SIZE_MAX / 2) refuse(name, "is longer than this machine's memory can be");
   const auto size = static_cast<size_t>(m->size);
-  if (crc32(bytes, size) != m->checksum) refuse("is spoiled: its checksum differs");
-  if (size < kHead || std::memcmp(bytes, kMagic, 8) != 0) refuse("is no array of numpy, version 1");
-  const size_t length = bytes[8] + 256u * bytes[9];
+  unsigned char head[kHead];
+  if (size < kHead) refuse(name, "is no array of numpy, version 1");
+  source_.read(begin, head, kHead);
+  if (std::memcmp(head, kMagic, 8) != 0) refuse(name, "is no array of numpy, version 1");
+  const size_t length = head[8] + 256u * head[9];
+  if (length > size - kHead) refuse(name, "ends in its header");
+  Vector<char> literal(length);
+  source_.read(begin + kHead, literal.data(), length);
+  Literal text(literal.data(), length);
   NpyArray a;
-  if (length > size - kHead) refuse("ends in its header");
-  Literal text(reinterpret_cast<const char*>(bytes + kHead), length);
-  if (!parse_header(text, &a)) refuse("has a header that is not read here");
-  a.data = bytes + kHead + length;
-  if (a.item_bytes() == 0) refuse("has a type that is not read here");
-  if (a.bytes() != size - kHead - length) refuse("is not as long as it says");
+  if (!parse_header(text, &a)) refuse(name, "has a header that is not read here");
+  if (a.item_bytes() == 0) refuse(name, "has a type that is not read here");
+  if (a.bytes() != size - kHead - length) refuse(name, "is not as long as it says");
+  *place = {begin, size, kHead + length, m->checksum};
+  return a;
+}
+
+NpyArray NpzReader::header(const char* name) const {
+  Place place;
+  return read_header(name, &place);
+}
+
+NpyArray NpzReader::array(const char* name) {
+  Place place;
+  NpyArray a = read_header(name, &place);
+  Vector<unsigned char>().swap(bytes_);  // the last one's memory first
+  bytes_.resize(place.size);
+  source_.read(place.begin, bytes_.data(), place.size);
+  if (crc32(bytes_.data(), place.size) != place.checksum) refuse(name, "is spoiled: its checksum differs");
+  a.data = bytes_.data() + place.head;
   return a;
 }
 

@@ -1,4 +1,4 @@
-// Archives of numpy arrays (.npz) in memory: ZIP members that are stored as they are, each an array file of
+// Archives of numpy arrays (.npz): ZIP members that are stored as they are, each an array file of
 // version 1 (.npy), whose header is a Python literal.
 //
 // Enough of ZIP for what numpy.savez writes and numpy.load opens, sizes beyond 4 GB in the 64-bit form; the
@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/file.hpp"
 #include "base/host.hpp"
 
 namespace rdm {
@@ -18,7 +19,7 @@ struct NpyArray {
   char type[12] = "";                   // "<f4", "|b1", "<i8", "|S12"
   int32_t dims = 0;                     // 0: one value
   uint64_t shape[kMaxArrayDims] = {};   // [dims]
-  const unsigned char* data = nullptr;  // bytes() of them, at any address
+  const unsigned char* data = nullptr;  // bytes() of them, at any address; of a header NULL
   size_t item_bytes() const;            // 0: a type that is not read here
   uint64_t bytes() const;               // of all values; saturates
   bool is(const char* other, int32_t d) const;
@@ -46,13 +47,17 @@ class NpzWriter {
   int count_ = 0;
 };
 
+// The directory at the end is read first, then headers, and an array when it is asked for: what a file says of
+// itself is known before memory is taken for it.
 class NpzReader {
  public:
-  // Error(kFormat), the text begins with `what`, for bytes that are no whole archive. Borrows the bytes.
-  NpzReader(const unsigned char* data, size_t size, const char* what);
+  // Error(kFormat), the text begins with `what`, for bytes that are no whole archive. Borrows the source.
+  NpzReader(const ByteSource& source, const char* what);
   bool has(const char* name) const { return find(name) != nullptr; }
-  // Error(kFormat) when there is none, its checksum or header is wrong, or it is packed.
-  NpyArray array(const char* name) const;
+  // Type and shape; the numbers are as many as they say. Error(kFormat) when there is none, or it is packed.
+  NpyArray header(const char* name) const;
+  // With its numbers, which live until the next call. Error(kFormat) when its checksum is wrong too.
+  NpyArray array(const char* name);
 
  private:
   struct Member {
@@ -61,17 +66,25 @@ class NpzReader {
     uint32_t checksum;
     uint16_t flags, method;
   };
+  struct Place {  // of an array file in the archive
+    uint64_t begin;
+    size_t size, head;
+    uint32_t checksum;
+  };
   static constexpr size_t kMost = 256;  // further members are not looked at
   template <class T>
   T value(uint64_t at) const;  // Error(kFormat) past the end
   const Member* find(const char* name) const;
   void read_directory();
   uint64_t read_member(uint64_t at, uint64_t end);
+  NpyArray read_header(const char* name, Place* place) const;
   [[noreturn]] void bad(const char* why) const;
-  const unsigned char* data_;
+  [[noreturn]] void refuse(const char* name, const char* why) const;
+  const ByteSource& source_;
   uint64_t size_;
   const char* what_;
   Vector<Member> members_;
+  Vector<unsigned char> bytes_;  // of the last array
 };
 
 }  // namespace rdm

@@ -9,6 +9,7 @@
 #pragma once
 #include <cstdint>
 
+#include "base/file.hpp"
 #include "base/host.hpp"
 
 namespace rdm {
@@ -79,7 +80,7 @@ class Recording {
 
   void write(Vector<unsigned char>& file) const;
   // Error(kFormat) for bytes that are no recording, kVersion for a newer one.
-  static Recording* read(const unsigned char* bytes, size_t size, const HostHooks& hooks);
+  static Recording* read(const ByteSource& source, const HostHooks& hooks);
 
  private:
   struct Open {

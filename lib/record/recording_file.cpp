@@ -39,34 +39,44 @@ void add_text(NpzWriter& out, const char* name, const char* text) {
 // What a file has for a column; missing ones stay empty.
 class Columns {
  public:
-  explicit Columns(const NpzReader& in) : in_(in) {}
+  explicit Columns(NpzReader& in) : in_(in) {}
 
   template <class T>
   const T* take(const char* name, const char* type, int32_t dims, uint64_t rows, uint64_t width,
                 Vector<T>& keep) const {
+    check(in_.header(name), name, type, dims, rows, width);
     const NpyArray a = in_.array(name);
-    if (!a.is(type, dims) || a.shape[0] != rows || (dims > 1 && a.shape[1] != width))
-      fail(Code::kFormat, "%s: array %s has another type or shape", kWhat, name);
     keep.resize(static_cast<size_t>(a.bytes()) / sizeof(T));
     if (!keep.empty()) std::memcpy(keep.data(), a.data, keep.size() * sizeof(T));
     return keep.data();
   }
 
+  // Before anything is read: the shape alone.
+  void check(const char* name, const char* type, int32_t dims, uint64_t rows, uint64_t width) const {
+    check(in_.header(name), name, type, dims, rows, width);
+  }
+
  private:
-  const NpzReader& in_;
+  static void check(const NpyArray& a, const char* name, const char* type, int32_t dims, uint64_t rows,
+                    uint64_t width) {
+    if (!a.is(type, dims) || a.shape[0] != rows || (dims > 1 && a.shape[1] != width))
+      fail(Code::kFormat, "%s: array %s has another type or shape", kWhat, name);
+  }
+  NpzReader& in_;
 };
 
-void read_text(const NpzReader& in, const char* name, char* out, size_t capacity) {
-  const NpyArray a = in.array(name);
-  if (a.dims != 0 || std::strncmp(a.type, "|S", 2) != 0 || a.item_bytes() >= capacity)
+void read_text(NpzReader& in, const char* name, char* out, size_t capacity) {
+  const NpyArray head = in.header(name);
+  if (head.dims != 0 || std::strncmp(head.type, "|S", 2) != 0 || head.item_bytes() >= capacity)
     fail(Code::kFormat, "%s: array %s is no text of at most %zu bytes", kWhat, name, capacity - 1);
+  const NpyArray a = in.array(name);
   std::memcpy(out, a.data, a.item_bytes());
   out[a.item_bytes()] = '\0';
   if (!is_clean_text(out)) fail(Code::kFormat, "%s: array %s holds control characters", kWhat, name);
 }
 
 int32_t width_of(const NpzReader& in, const char* name, uint64_t least, uint64_t most) {
-  const NpyArray a = in.array(name);
+  const NpyArray a = in.header(name);
   if (!a.is("<f4", 2) || a.shape[1] < least || a.shape[1] > most)
     fail(Code::kFormat, "%s: array %s has another type or shape", kWhat, name);
   return static_cast<int32_t>(a.shape[1]);
@@ -78,15 +88,14 @@ struct States {
   Vector<int64_t> row;
   size_t width = 0;
 };
-void read_states(const NpzReader& in, uint64_t rows, States* out) {
+void read_states(NpzReader& in, uint64_t rows, States* out) {
   const bool own = in.has("state_row"), every = !own && in.has("states");
   const char* name = every ? "states" : "state";
   if (!in.has(name)) return;
-  const NpyArray a = in.array(name);
+  const NpyArray a = in.header(name);
   if (!a.is("|u1", 2) || a.shape[0] > rows || a.shape[1] > (1u << 30))
     fail(Code::kFormat, "%s: array %s has another type or shape", kWhat, name);
   out->width = static_cast<size_t>(a.shape[1]);
-  out->bytes.assign(a.data, a.data + a.bytes());
   const Columns columns(in);
   if (own)
     columns.take("state_row", "<i8", 1, a.shape[0], 0, out->row);
@@ -95,11 +104,12 @@ void read_states(const NpzReader& in, uint64_t rows, States* out) {
   else
     columns.take("episode_begin", "<i8", 1, a.shape[0] + 1, 0, out->row), out->row.pop_back();
   if (out->row.size() != a.shape[0]) fail(Code::kFormat, "%s: not a row for each state", kWhat);
+  columns.take(name, "|u1", 2, a.shape[0], a.shape[1], out->bytes);
 }
 
-void read_episodes(const NpzReader& in, uint64_t rows, Vector<int64_t>& out) {
+void read_episodes(NpzReader& in, uint64_t rows, Vector<int64_t>& out) {
   const Columns columns(in);
-  if (!in.array("episode").is("<i4", 1)) {
+  if (!in.header("episode").is("<i4", 1)) {
     columns.take("episode", "<i8", 1, rows, 0, out);
     return;
   }
@@ -150,8 +160,8 @@ void Recording::write(Vector<unsigned char>& file) const {
   out.finish();
 }
 
-Recording* Recording::read(const unsigned char* bytes, size_t size, const HostHooks& hooks) {
-  const NpzReader in(bytes, size, kWhat);
+Recording* Recording::read(const ByteSource& source, const HostHooks& hooks) {
+  NpzReader in(source, kWhat);
   char format[64];
   if (in.has("format")) {
     read_text(in, "format", format, sizeof format);
@@ -163,21 +173,18 @@ Recording* Recording::read(const unsigned char* bytes, size_t size, const HostHo
   RecordingSpec spec;
   if (in.has("task")) read_text(in, "task", spec.task, sizeof spec.task);
   if (in.has("layout_hash")) {
+    if (!in.header("layout_hash").is("<u8", 0))
+      fail(Code::kFormat, "%s: array layout_hash has another type or shape", kWhat);
     const NpyArray a = in.array("layout_hash");
-    if (!a.is("<u8", 0)) fail(Code::kFormat, "%s: array layout_hash has another type or shape", kWhat);
     std::memcpy(&spec.layout_hash, a.data, sizeof spec.layout_hash);
   }
   spec.obs_dim = width_of(in, "obs", 1, 16384);
   spec.action_dim = width_of(in, "action", 1, 1024);
   spec.cost_dim = width_of(in, "cost", 0, 16);
-  const uint64_t n = in.array("obs").shape[0];
+  const uint64_t n = in.header("obs").shape[0];
   if (n > static_cast<uint64_t>(kMaxRecordingRows)) fail(Code::kFormat, "%s: too many rows", kWhat);
-  States states;
-  read_states(in, n, &states);
-  spec.state_bytes = states.width;
-
   if (in.has("points")) {
-    const NpyArray a = in.array("points");
+    const NpyArray a = in.header("points");
     if (!a.is("<i2", 3) || a.shape[0] != n || a.shape[1] < 1 || a.shape[1] > kMaxRecordedPoints ||
         a.shape[2] != 3)
       fail(Code::kFormat, "%s: array points has another type or shape", kWhat);
@@ -194,16 +201,24 @@ Recording* Recording::read(const unsigned char* bytes, size_t size, const HostHo
   RecordingRows v;
   const auto width = [](int32_t w) { return static_cast<uint64_t>(w); };
   v.rows = static_cast<int64_t>(n);
-  v.obs = columns.take("obs", "<f4", 2, n, width(spec.obs_dim), obs);
-  v.action = columns.take("action", "<f4", 2, n, width(spec.action_dim), action);
-  if (in.has("label")) v.label = columns.take("label", "<f4", 2, n, width(spec.action_dim), label);
-  v.reward = columns.take("reward", "<f4", 1, n, 0, reward);
-  v.cost = columns.take("cost", "<f4", 2, n, width(spec.cost_dim), cost);
+  // all shapes, then the short columns: what does not fit is found before the long ones take memory
+  columns.check("obs", "<f4", 2, n, width(spec.obs_dim));
+  columns.check("action", "<f4", 2, n, width(spec.action_dim));
+  columns.check("reward", "<f4", 1, n, 0);
+  columns.check("cost", "<f4", 2, n, width(spec.cost_dim));
   v.terminated = columns.take("terminated", "|b1", 1, n, 0, terminated);
   v.truncated = columns.take("truncated", "|b1", 1, n, 0, truncated);
   v.success = columns.take("success", "|b1", 1, n, 0, success);
   read_episodes(in, n, episode);
   v.episode = episode.data();
+  States states;
+  read_states(in, n, &states);
+  spec.state_bytes = states.width;
+  v.obs = columns.take("obs", "<f4", 2, n, width(spec.obs_dim), obs);
+  v.action = columns.take("action", "<f4", 2, n, width(spec.action_dim), action);
+  if (in.has("label")) v.label = columns.take("label", "<f4", 2, n, width(spec.action_dim), label);
+  v.reward = columns.take("reward", "<f4", 1, n, 0, reward);
+  v.cost = columns.take("cost", "<f4", 2, n, width(spec.cost_dim), cost);
   if (spec.num_points) {
     v.points = columns.take("points", "<i2", 3, n, width(spec.num_points), points);
     if (in.has("point_class"))

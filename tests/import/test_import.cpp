@@ -548,7 +548,7 @@ TEST(Refusals, OptionsOfTheCall) {
   o = options(), o.format = RDM_IMPORT_MJCF;
   refused("hand.urdf", o, RDM_FORMAT, "no MJCF: the first element is not mujoco");
   o = options();
-  refused("none.urdf", o, RDM_NOT_FOUND, "none.urdf: cannot be opened");
+  refused("none.urdf", o, RDM_NOT_FOUND, "none.urdf: cannot open");
   // A part of a tree, meshes that are not there, moments that are mended.
   o = options(), o.root = "head";
   EXPECT_EQ(from_file("gripper.urdf", &o).def.num_links, 2);

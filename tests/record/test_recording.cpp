@@ -181,11 +181,15 @@ TEST(Recording, OpenRowsSumWhatFollows) {
   EXPECT_EQ(r.episodes(), 3);
 }
 
+Recording* read_bytes(const unsigned char* data, size_t size) {
+  return Recording::read(MemorySource(data, size), HostHooks());
+}
+
 TEST(Recording, FileComesBackToTheByte) {
   Recording r(small(), 0);
   r.append(two_episodes().view());
   const auto bytes = file_of(r);
-  const Owned back(Recording::read(bytes.data(), bytes.size(), HostHooks()));
+  const Owned back(read_bytes(bytes.data(), bytes.size()));
   EXPECT_EQ(file_of(*back), bytes);
   EXPECT_EQ(back->fingerprint(), r.fingerprint());
   EXPECT_EQ(back->state_fingerprint(), r.state_fingerprint());
@@ -200,7 +204,7 @@ TEST(Recording, FileComesBackToTheByte) {
 TEST(Recording, AnEmptyOneIsAFileToo) {
   const Recording r(small(), 0);
   const auto bytes = file_of(r);
-  const Owned back(Recording::read(bytes.data(), bytes.size(), HostHooks()));
+  const Owned back(read_bytes(bytes.data(), bytes.size()));
   EXPECT_EQ(back->rows(), 0);
   EXPECT_EQ(back->spec().obs_dim, 3);
 }
@@ -216,7 +220,7 @@ TEST(Recording, CorruptFilesAreRefusedOrTheSame) {
     auto bad = bytes;
     bad[i] = static_cast<unsigned char>(bad[i] ^ 0x41u);
     try {
-      const Owned back(Recording::read(bad.data(), bad.size(), HostHooks()));
+      const Owned back(read_bytes(bad.data(), bad.size()));
       EXPECT_EQ(back->fingerprint(), r.fingerprint()) << i;
     } catch (const Error& e) {
       EXPECT_TRUE(e.code == Code::kFormat || e.code == Code::kVersion) << i << ": " << e.text;
@@ -225,8 +229,7 @@ TEST(Recording, CorruptFilesAreRefusedOrTheSame) {
     }
   }
   EXPECT_GT(refused, static_cast<int>(bytes.size() / 2));
-  for (size_t n = 0; n < bytes.size(); n += 7)
-    EXPECT_THROW(Owned(Recording::read(bytes.data(), n, HostHooks())), Error) << n;
+  for (size_t n = 0; n < bytes.size(); n += 7) EXPECT_THROW(Owned(read_bytes(bytes.data(), n)), Error) << n;
 }
 
 TEST(Recording, SpecsAreHeldToTheirBounds) {

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, Mapping, Optional, Sequen
 import numpy as np
 
 from ._error import FormatError, MissingFileError
+from ._files import MOST_JSON, MOST_TEXT, read_bytes
 from ._names import Hinted
 
 if TYPE_CHECKING:
@@ -105,7 +106,7 @@ def read(folder: Union[str, os.PathLike[str]]) -> Curve:
     """The curve of one run folder. A row that a kill left unfinished is left out."""
     path = Path(folder)
     try:
-        lines = (path / "progress.csv").read_text(encoding="utf-8", errors="replace").splitlines()
+        lines = read_bytes(path / "progress.csv", MOST_TEXT).decode(errors="replace").splitlines()
     except OSError as error:
         raise MissingFileError(f"{path} is no run folder: progress.csv: {error.strerror}") from None
     names = lines[0].split(",") if lines else []
@@ -118,7 +119,7 @@ def read(folder: Union[str, os.PathLike[str]]) -> Curve:
         raise FormatError(f"{path}/progress.csv: {error}") from None
     label, limit = path.name, None
     try:
-        config = json.loads((path / "config.json").read_text(encoding="utf-8"))
+        config = json.loads(read_bytes(path / "config.json", MOST_JSON))
         label = f"{config['task']} {config['algo']} seed {config['seed']}"
         limit = config["cost_limits"].get("cost")
     except (OSError, ValueError, KeyError, TypeError, AttributeError):

@@ -2,8 +2,10 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import itertools
 import os
+import stat
 from pathlib import Path
 from typing import Union
 
@@ -21,10 +23,31 @@ def _beside(path: Path) -> str:
     return nearest(path.name, names)
 
 
-def read_whole(path: Union[str, os.PathLike[str]], what: str) -> bytes:
+MOST_BYTES = 1 << 28  # of a policy or a checkpoint
+MOST_TEXT = 1 << 26  # of a table
+MOST_TASK = 1 << 22
+MOST_JSON = 1 << 20
+
+
+def read_bytes(path: Union[str, os.PathLike[str]], most: int) -> bytes:
+    """The bytes of a regular file, which is not waited for; OSError for anything else, or for a longer file."""
+    descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    try:
+        said = os.fstat(descriptor)
+        if not stat.S_ISREG(said.st_mode):
+            raise OSError(errno.EINVAL, "it is not a regular file")
+        if said.st_size > most:
+            raise OSError(errno.EFBIG, f"it is longer than {most} bytes")
+        with open(descriptor, "rb", closefd=False) as file:
+            return file.read(said.st_size)
+    finally:
+        os.close(descriptor)
+
+
+def read_whole(path: Union[str, os.PathLike[str]], what: str, most: int = MOST_BYTES) -> bytes:
     """The bytes of a file; what: whose they are, for the text of an error."""
     try:
-        return Path(path).read_bytes()
+        return read_bytes(path, most)
     except FileNotFoundError:
         raise MissingFileError(f"{what} {os.fspath(path)}: there is no such file{_beside(Path(path))}") from None
     except OSError as error:

@@ -13,8 +13,8 @@ import numpy as np
 
 from . import _abi, _discovery
 from ._actor import Actor, on_task
-from ._error import ArgumentError, FileError, FormatError, MissingFileError
-from ._files import read_whole, write_whole
+from ._error import ArgumentError, FileError, FormatError, MissingFileError, VersionError
+from ._files import MOST_JSON, read_bytes, read_whole, write_whole
 from ._hold import decided, warn
 from ._library import Handle, check, filled, lib, policy_folders
 from ._names import Hinted
@@ -41,7 +41,7 @@ class Origin:
     def of_folder(cls, folder: Path) -> Optional[Origin]:
         """Of a run folder's config.json; None where there is none."""
         try:
-            said = json.loads((folder / "config.json").read_text(encoding="utf-8"))
+            said = json.loads(read_bytes(folder / "config.json", MOST_JSON))
             options = dict(pair.split("=", 1) for pair in said["set"])
             limits = {str(name): float(limit) for name, limit in said["cost_limits"].items()}
             return cls(str(said["task"]), options, limits, said["algo_cfgs"].get("cost_signal") == "raw", str(folder))

@@ -20,7 +20,7 @@ from . import _abi, _discovery, _events
 from ._agent import Agent, CostLimits, Epoch
 from ._curve import Curve
 from ._error import ArgumentError, FileError, NotFoundError, StateError, UnsupportedError, UsageError
-from ._files import read_whole, write_whole
+from ._files import MOST_JSON, MOST_TASK, read_bytes, read_whole, write_whole
 from ._library import check, encoded, lib, whole
 from ._names import Hinted, keywords, nearest
 from ._options import Given, Options, Value, shown
@@ -252,12 +252,16 @@ def _is_own(path: Path) -> bool:
     """Whether redman wrote the file of a run's name."""
     if path.name == "config.json":
         try:
-            config = json.loads(path.read_text(encoding="utf-8"))
+            config = json.loads(read_bytes(path, MOST_JSON))
         except (OSError, ValueError):
             return False
         return isinstance(config, dict) and _CONFIG_KEYS <= config.keys()
+    return _begins(path, _HEADS[path.name])
+
+
+def _begins(path: Path, head: bytes) -> bool:
     with open(path, "rb") as file:
-        return file.read(len(_HEADS[path.name])) == _HEADS[path.name]
+        return file.read(len(head)) == head
 
 
 class _Folder:
@@ -304,7 +308,7 @@ class _Folder:
                 (self.path / old).unlink()
         for path in self.path.glob("events.out.tfevents.*.redman"):  # of the run that this one takes the place of
             seconds = path.name.split(".")[3]
-            if path.is_file() and seconds.isdecimal() and path.read_bytes().startswith(_events.head(int(seconds))):
+            if path.is_file() and seconds.isdecimal() and _begins(path, _events.head(int(seconds))):
                 path.unlink()
         self._header = header
         write_whole(self._events, _events.head(self._begun), "run folder")
@@ -396,7 +400,7 @@ def train(task: Union[str, _discovery.Task], algo: str = "ppo_lag", steps: float
     whole(seed, "seed", 0, (1 << 64) - 1)
     whole(envs, "envs", 1, (1 << 31) - 1)
     whole(threads, "threads", 0, (1 << 31) - 1)
-    task_text = None if task_file is None else read_whole(task_file, "task file").decode(errors="replace")
+    task_text = None if task_file is None else read_whole(task_file, "task file", MOST_TASK).decode(errors="replace")
     asked: dict[str, Given] = dict(options or {})
     for key in [key for key in asked if _folded(key) == "cost_limit"]:
         limit = float(asked.pop(key))  # type: ignore[arg-type]

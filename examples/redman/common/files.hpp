@@ -14,7 +14,7 @@ std::string missing_file_hint(const std::string& path);
 // Why it cannot be read: "no such file; nearest is ...", "it is not a regular file"; "" when it can be.
 std::string why_no_file(const std::string& path);
 // Failure when it cannot be read, is no regular file or is longer than `most` bytes.
-std::string read_file(const std::string& path, size_t most = size_t{1} << 28);
+std::string read_file(const std::string& path, size_t most = size_t{1} << 26);
 
 // A file's new content, written beside it: nothing is lost until commit() syncs it and puts it in its place,
 // in one move. Where a symbolic link stands, the file that it leads to is replaced; what is no regular file

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tool {
@@ -11,8 +12,18 @@ struct Image {
   std::vector<unsigned char> rgb;  // [height][width][3]
 };
 
-// Equal heights, left to right, with a thin white line between them inside the given sizes.
-Image side_by_side(const std::vector<Image>& images);
+// Pictures of one size, left to right, with a thin white line between them inside the given sizes. Each is
+// copied as it comes, so that memory holds the strip and one picture.
+class PictureRow {
+ public:
+  explicit PictureRow(int32_t pictures) : pictures_(pictures) {}
+  void add(const Image& picture);
+  Image take() { return std::move(row_); }
+
+ private:
+  Image row_;
+  int32_t pictures_, added_ = 0;
+};
 
 // Equal widths, with a thin line between them inside the upper one.
 Image one_below_the_other(const Image& above, const Image& below);

@@ -8,26 +8,21 @@
 
 namespace tool {
 namespace {
-constexpr int32_t kLine = 2;  // pixels
+constexpr size_t kLine = 2;  // pixels
 }  // namespace
 
-Image side_by_side(const std::vector<Image>& images) {
-  Image out;
-  for (const Image& i : images) {
-    out.width += i.width;
-    out.height = std::max(out.height, i.height);
+void PictureRow::add(const Image& picture) {
+  const auto width = static_cast<size_t>(picture.width), height = static_cast<size_t>(picture.height),
+             whole = width * static_cast<size_t>(pictures_);
+  if (added_ == 0) {
+    row_ = {picture.width * pictures_, picture.height, {}};
+    row_.rgb.resize(whole * height * 3, 255);
   }
-  out.rgb.resize(static_cast<size_t>(out.width) * static_cast<size_t>(out.height) * 3, 255);
-  size_t left = 0;
-  for (const Image& i : images) {
-    const auto drawn = static_cast<size_t>(&i == &images.back() ? i.width : std::max(i.width - kLine, 0));
-    for (size_t y = 0; y < static_cast<size_t>(i.height); ++y)
-      std::copy_n(
-          i.rgb.begin() + static_cast<std::ptrdiff_t>(y * static_cast<size_t>(i.width) * 3), drawn * 3,
-          out.rgb.begin() + static_cast<std::ptrdiff_t>((y * static_cast<size_t>(out.width) + left) * 3));
-    left += static_cast<size_t>(i.width);
-  }
-  return out;
+  const bool last = added_ + 1 == pictures_;
+  const size_t drawn = last ? width : width - std::min(width, size_t{kLine});
+  const size_t left = width * static_cast<size_t>(added_++);
+  for (size_t y = 0; y < height; ++y)
+    std::copy_n(picture.rgb.data() + y * width * 3, drawn * 3, row_.rgb.data() + (y * whole + left) * 3);
 }
 
 Image one_below_the_other(const Image& above, const Image& below) {

@@ -72,13 +72,13 @@ Image Scene::picture() {
 
 Image draw_strip(Scene& scene, int32_t moments, int32_t first, int32_t last) {
   first = std::min(first, last);
-  std::vector<Image> images;
+  PictureRow strip(moments);
   for (int32_t i = 0; i < moments; ++i) {
     const double share = moments > 1 ? static_cast<double>(i) / (moments - 1) : 0.5;
     scene.advance_to(first + static_cast<int32_t>(std::lround(share * (last - first))));
-    images.push_back(scene.picture());
+    strip.add(scene.picture());
   }
-  return side_by_side(images);
+  return strip.take();
 }
 
 int32_t last_step(Scene scene, int32_t to) {

@@ -125,7 +125,7 @@ std::string npy_header(const ArrayShape& array) {
   return out + text;
 }
 
-ArrayShape parse_npy(const char* bytes, size_t size, size_t* begin) {
+ArrayShape parse_npy_head(const char* bytes, size_t size, size_t* begin) {
   if (size < kHead || std::memcmp(bytes, kMagic, 8) != 0) throw Failure("not an array of numpy, version 1");
   const size_t length = static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
   if (length > size - kHead) throw Failure("an array ends in its header");
@@ -159,6 +159,11 @@ ArrayShape parse_npy(const char* bytes, size_t size, size_t* begin) {
   text.need("}");
   if (seen != 7) throw Failure("not an array of numpy: its header is not whole");
   if (out.item_bytes() == 0) throw Failure("an array's type is not known");
+  return out;
+}
+
+ArrayShape parse_npy(const char* bytes, size_t size, size_t* begin) {
+  ArrayShape out = parse_npy_head(bytes, size, begin);
   if (out.bytes() != size - *begin) throw Failure("an array is not as long as it says");
   return out;
 }

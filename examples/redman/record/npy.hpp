@@ -19,6 +19,9 @@ std::string npy_header(const ArrayShape& array);
 // none, is in Fortran's order, or is not as long as it says.
 ArrayShape parse_npy(const char* bytes, size_t size, size_t* begin);
 
+// The same of the file's first bytes alone, whose numbers need not be there.
+ArrayShape parse_npy_head(const char* bytes, size_t size, size_t* begin);
+
 // Text as an array of one value: UTF-8 to UTF-32 and back. Failure when it is no text.
 ArrayShape text_shape(const std::string& utf8);
 std::string text_bytes(const std::string& utf8);

@@ -1,5 +1,6 @@
 #include "record/recorded_rollout.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "common/files.hpp"
@@ -10,7 +11,10 @@
 namespace tool {
 namespace {
 
-constexpr uint64_t kMostBytes = uint64_t{1} << 33;  // of an array that is read whole
+// All arrays together take at most this, or this many times what the file takes: a rollout's numbers do not
+// pack tighter, while zeros would by 1,000.
+constexpr uint64_t kMostBytes = uint64_t{1} << 26, kMostPacked = 24;
+constexpr size_t kMostHead = 1024;  // of an array file
 
 struct Array {
   ArrayShape shape;
@@ -18,26 +22,33 @@ struct Array {
   size_t begin = 0;
 };
 
-Array array_at(const ZipReader& zip, const std::string& name, const char* type, size_t dimensions,
-               uint64_t most = kMostBytes) {
+// Its shape, before the numbers are unpacked; `bytes` holds the head alone.
+Array head_of(const ZipReader& zip, const std::string& name, const char* type, size_t dimensions) {
   if (!zip.has(name + ".npy")) throw Failure("it has no array " + name);
   Array a;
-  a.bytes = zip.member(name + ".npy", most);
+  a.bytes = zip.head(name + ".npy", kMostHead);
   try {
-    a.shape = parse_npy(a.bytes.data(), a.bytes.size(), &a.begin);
+    a.shape = parse_npy_head(a.bytes.data(), a.bytes.size(), &a.begin);
   } catch (const Failure& e) {
     throw Failure(name + ": " + e.what());
   }
   if ((type && a.shape.type != type) || a.shape.shape.size() != dimensions)
     throw Failure(name + ": another type or shape than a rollout's");
+  if (a.shape.bytes() != zip.size(name + ".npy") - a.begin) throw Failure(name + ": not as long as it says");
   return a;
+}
+
+void read_numbers(const ZipReader& zip, const std::string& name, Array* a) {
+  a->bytes = zip.member(name + ".npy", zip.size(name + ".npy"));
 }
 
 }  // namespace
 
 Recording parse_recording(const ZipReader& zip) {
   Recording r;
-  const Array text = array_at(zip, "metadata", nullptr, 0, 4 * kMostJsonBytes + 1024);
+  Array text = head_of(zip, "metadata", nullptr, 0);
+  if (text.shape.bytes() > 4 * kMostJsonBytes) throw Failure("metadata: too long");
+  read_numbers(zip, "metadata", &text);
   const std::string json_text = text_of_array(text.shape, text.bytes.data() + text.begin);
   const Document json = parse_json(json_text.data(), json_text.size());
   if (text_at(json, "format") != "redman rollout 1") throw Failure("of another format than redman rollout 1");
@@ -52,24 +63,33 @@ Recording parse_recording(const ZipReader& zip) {
   r.policy = text_at(json, "policy");
   r.hash = text_at(json, "hash", 16);
 
-  const Array action = array_at(zip, "action", "<f4", 2), begin = array_at(zip, "episode_begin", "<i8", 1),
-              state = array_at(zip, "state", "|u1", 2);
-  r.action_dim = static_cast<size_t>(action.shape.shape[1]);
-  r.action.resize(static_cast<size_t>(action.shape.bytes()) / sizeof(float));
-  if (!r.action.empty())
-    std::memcpy(r.action.data(), action.bytes.data() + action.begin, r.action.size() * sizeof(float));
+  Array action = head_of(zip, "action", "<f4", 2), begin = head_of(zip, "episode_begin", "<i8", 1),
+        state = head_of(zip, "state", "|u1", 2);
+  const uint64_t episodes = begin.shape.shape[0] - 1;  // of 0: more than there may be
+  if (episodes < 1 || episodes > kMostEpisodes)
+    throw Failure("episode_begin: not the first steps of its episodes");
+  if (state.shape.shape[0] != episodes) throw Failure("state: not one for each episode");
+  const uint64_t most = std::max(kMostBytes, kMostPacked * zip.size());
+  if (action.shape.bytes() > most || state.shape.bytes() > most - action.shape.bytes())
+    throw Failure("action, state: " + std::to_string(action.shape.bytes()) + " and " +
+                  std::to_string(state.shape.bytes()) + " bytes out of a file of " +
+                  std::to_string(zip.size()));
+  read_numbers(zip, "episode_begin", &begin);
   r.begin.resize(static_cast<size_t>(begin.shape.shape[0]));
-  if (!r.begin.empty())
-    std::memcpy(r.begin.data(), begin.bytes.data() + begin.begin, r.begin.size() * sizeof(uint64_t));
-  r.state_bytes = static_cast<size_t>(state.shape.shape[1]);
-  r.state = state.bytes.substr(state.begin);
-  if (r.begin.size() < 2 || r.begin.size() > size_t{kMostEpisodes} + 1 || r.begin[0] != 0 ||
-      r.begin.back() != action.shape.shape[0])
+  std::memcpy(r.begin.data(), begin.bytes.data() + begin.begin, r.begin.size() * sizeof(uint64_t));
+  if (r.begin[0] != 0 || r.begin.back() != action.shape.shape[0])
     throw Failure("episode_begin: not the first steps of its episodes");
   for (size_t e = 0; e < r.episodes(); ++e)
     if (r.begin[e] >= r.begin[e + 1])
       throw Failure("episode_begin: episode " + std::to_string(e) + " has no step");
-  if (state.shape.shape[0] != r.episodes()) throw Failure("state: not one for each episode");
+  read_numbers(zip, "action", &action);
+  r.action_dim = static_cast<size_t>(action.shape.shape[1]);
+  r.action.resize(static_cast<size_t>(action.shape.bytes()) / sizeof(float));
+  std::memcpy(r.action.data(), action.bytes.data() + action.begin, r.action.size() * sizeof(float));
+  action.bytes = {};
+  read_numbers(zip, "state", &state);
+  r.state_bytes = static_cast<size_t>(state.shape.shape[1]);
+  r.state = state.bytes.substr(state.begin);
   return r;
 }
 

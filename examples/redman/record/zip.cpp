@@ -55,7 +55,8 @@ uint32_t checksum_of(uint32_t before, const void* bytes, size_t size) {
   return static_cast<uint32_t>(crc32_z(before, static_cast<const Bytef*>(bytes), size));
 }
 
-std::string inflated(const std::string& packed, uint64_t size) {
+// The first `size` bytes of what is packed; `whole`: it ends there.
+std::string inflated(const std::string& packed, size_t size, bool whole) {
   std::string out(size, '\0');
   z_stream z{};
   if (inflateInit2(&z, -MAX_WBITS) != Z_OK) throw Failure("zlib gives up");
@@ -74,7 +75,8 @@ std::string inflated(const std::string& packed, uint64_t size) {
     if (state == Z_OK && give == z.avail_in && room == z.avail_out) break;
   }
   inflateEnd(&z);
-  if (state != Z_STREAM_END || done != size) throw Failure("a packed array is spoiled");
+  const bool ended = state == Z_STREAM_END;
+  if (done != size || (whole && !ended)) throw Failure("a packed array is spoiled");
   return out;
 }
 
@@ -198,21 +200,45 @@ bool ZipReader::has(const std::string& name) const {
   return std::any_of(members_.begin(), members_.end(), [&](const Member& m) { return m.name == name; });
 }
 
-std::string ZipReader::member(const std::string& name, uint64_t most) const {
+const ZipReader::Member& ZipReader::find(const std::string& name) const {
   const auto found =
       std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.name == name; });
   if (found == members_.end()) throw Failure("it holds no " + name);
-  const Member& m = *found;
-  if (m.size > most) throw Failure("member " + name + " has more than " + std::to_string(most) + " bytes");
-  if (m.offset > size_ || size_ - m.offset < kLocalBytes) throw Failure("member " + name + " is cut off");
+  return *found;
+}
+
+// Where its bytes are.
+uint64_t ZipReader::begin_of(const Member& m) const {
+  if (m.offset > size_ || size_ - m.offset < kLocalBytes) throw Failure("member " + m.name + " is cut off");
   std::string head(kLocalBytes, '\0');
   read_(m.offset, head.data(), head.size());
-  if (value_at<uint32_t>(head, 0) != kLocal) throw Failure("member " + name + " is not where it should be");
+  if (value_at<uint32_t>(head, 0) != kLocal) throw Failure("member " + m.name + " is not where it should be");
   const uint64_t begin = m.offset + kLocalBytes + value_at<uint16_t>(head, 26) + value_at<uint16_t>(head, 28);
-  if (begin > size_ || size_ - begin < m.packed) throw Failure("member " + name + " is cut off");
+  if (begin > size_ || size_ - begin < m.packed) throw Failure("member " + m.name + " is cut off");
+  return begin;
+}
+
+uint64_t ZipReader::size(const std::string& name) const {
+  return find(name).size;
+}
+
+std::string ZipReader::head(const std::string& name, size_t most) const {
+  const Member& m = find(name);
+  const auto size = static_cast<size_t>(std::min<uint64_t>(most, m.size));
+  // so few bytes are packed in no more than this
+  const size_t packed =
+      m.deflated ? static_cast<size_t>(std::min<uint64_t>(2 * most + 4096, m.packed)) : size;
+  std::string bytes(packed, '\0');
+  read_(begin_of(m), bytes.data(), bytes.size());
+  return m.deflated ? inflated(bytes, size, false) : bytes;
+}
+
+std::string ZipReader::member(const std::string& name, uint64_t most) const {
+  const Member& m = find(name);
+  if (m.size > most) throw Failure("member " + name + " has more than " + std::to_string(most) + " bytes");
   std::string bytes(static_cast<size_t>(m.packed), '\0');
-  read_(begin, bytes.data(), bytes.size());
-  if (m.deflated) bytes = inflated(bytes, m.size);
+  read_(begin_of(m), bytes.data(), bytes.size());
+  if (m.deflated) bytes = inflated(bytes, static_cast<size_t>(m.size), true);
   if (checksum_of(0, bytes.data(), bytes.size()) != m.checksum)
     throw Failure("member " + name + " is spoiled");
   return bytes;

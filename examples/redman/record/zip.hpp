@@ -38,6 +38,10 @@ class ZipReader {
   bool has(const std::string& name) const;
   // The whole member. Failure when there is none, it has more than `most` bytes, or its checksum is another.
   std::string member(const std::string& name, uint64_t most) const;
+  // Its first bytes, at most `most`; the checksum is not looked at.
+  std::string head(const std::string& name, size_t most) const;
+  uint64_t size(const std::string& name) const;  // of the whole member
+  uint64_t size() const { return size_; }        // of the archive
 
  private:
   struct Member {
@@ -47,6 +51,8 @@ class ZipReader {
     bool deflated;
   };
   void add_member(const std::string& directory, size_t& at);
+  const Member& find(const std::string& name) const;
+  uint64_t begin_of(const Member& m) const;
   uint64_t size_;
   Read read_;
   std::vector<Member> members_;
