@@ -110,6 +110,8 @@ class MjcfReader {
   void read_tendons();
   void read_equalities();
   void read_equality(const Element& e);
+  void refuse_limited(const Element& spatial) const;
+  void narrow(const Element& e, const std::string& joint, double one, double other);
   void read_tendon_limits();
   void couple_joints(const Element& e, const std::string& follower, double cf, const std::string& leader,
                      double cl, double length, double slack);

@@ -106,9 +106,8 @@ Mass MjcfReader::inertial(const Element& e, const BodyIn& body, bool moves) {
   } else if (diagonal) {
     const auto n = numbers(e, "diaginertia", *diagonal, 3, 3);
     for (size_t k = 0; k < 3; ++k) m.moment[k][k] = n[k];
-  } else {
-    refuse_at(RDM_FORMAT, e, "body %s: neither diaginertia nor fullinertia", name.c_str());
   }
+  // Neither: a point, which does for what is fixed to another body.
   bound(e, name, &m);
   const auto p = principal(m.moment, nullptr);
   const bool point = p[0] == 0 && p[1] == 0 && p[2] == 0;

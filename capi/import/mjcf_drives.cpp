@@ -63,9 +63,25 @@ void MjcfReader::find_driven() {
 }
 
 // ---- tendons ----
+void MjcfReader::refuse_limited(const Element& spatial) const {
+  const std::string* range = value(spatial, "range", "", "tendon");
+  if (!range || !limited(spatial, "limited", value(spatial, "limited", "", "tendon"), range)) return;
+  const bool whole = options.root.empty() || options.root == "world";
+  for (const auto& c : spatial.children) {
+    const Attribute* site = c->find("site");
+    const bool here = site && std::any_of(model.frames.begin(), model.frames.end(),
+                                          [&](const FrameIn& f) { return f.name == site->value; });
+    if (whole || here)
+      refuse_at(RDM_UNSUPPORTED, spatial, "the range %s of its length would tie joints, and is not read",
+                clean(*range).c_str());
+  }
+}
+
 void MjcfReader::read_tendons() {
   for (const Element* t : mujoco.all("tendon")) {
     check_children(*t, "tendon");
+    for (const auto& s : t->children)
+      if (s->tag == "spatial") refuse_limited(*s);
     for (const Element* f : t->all("fixed")) {
       check_attributes(*f, "fixed");
       Tendon o{f, {}};
@@ -95,6 +111,20 @@ void MjcfReader::couple_joints(const Element& e, const std::string& follower, do
             clean(leader).c_str(), in_file(e).c_str());
 }
 
+// A tendon of one joint: its limit is the joint's.
+void MjcfReader::narrow(const Element& e, const std::string& joint, double one, double other) {
+  JointIn& j = *joint_by[joint];
+  const double lower = std::max(j.lower, std::min(one, other)),
+               upper = std::min(j.upper, std::max(one, other));
+  if (!(lower < upper))
+    refuse_at(RDM_RANGE, e, "its range leaves joint %s [%g, %g]", clean(joint).c_str(), lower, upper);
+  if (lower - j.lower > 1e-9 || j.upper - upper > 1e-9)
+    out->note(RDM_NOTE_CHANGED, e.line, "tendon %s: joint %s goes from %g to %g%s",
+              clean(e.find("name") ? e.find("name")->value : "").c_str(), clean(joint).c_str(), lower, upper,
+              in_file(e).c_str());
+  j.lower = lower, j.upper = upper;
+}
+
 void MjcfReader::read_tendon_limits() {
   for (const std::string& name : tendon_order) {
     const Tendon& t = tendons.at(name);
@@ -103,6 +133,10 @@ void MjcfReader::read_tendon_limits() {
     if (!limited(e, "limited", value(e, "limited", "", "tendon"), range) || !range) continue;
     const auto n = numbers(e, "range", *range, 2, 2);
     if (!(n[0] <= n[1])) refuse_at(RDM_RANGE, e, "the range [%g, %g] is empty", n[0], n[1]);
+    if (t.joints.size() == 1) {
+      narrow(e, t.joints[0].first, n[0] / t.joints[0].second, n[1] / t.joints[0].second);
+      continue;
+    }
     const double slack = (n[1] - n[0]) / 2;
     // The joint that has an actuator leads.
     const bool two = t.joints.size() == 2;

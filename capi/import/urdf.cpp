@@ -12,8 +12,6 @@
 namespace rdm::import {
 namespace {
 
-constexpr double kMostBound = 1e6;  // of an effort, of a velocity: what rdm_robot_create takes
-
 struct Reader {
   Reader(const Element& file, const Options& given, Draft* draft) : robot(file), options(given), out(draft) {}
   const Element& robot;
@@ -281,7 +279,7 @@ struct Reader {
       const auto most = [&](const char* key, double otherwise) {  // infinite: not said
         const std::string* text = limit->get(key);
         const double x = text ? bound(*limit, key, *text) : otherwise;
-        if (std::abs(x) <= kMostBound) return x;
+        if (std::isfinite(x)) return x;
         out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: %s %s is no bound", clean(j.name).c_str(), key,
                   clean(*text).c_str());
         return otherwise;

@@ -69,7 +69,8 @@ const std::map<std::string, Row>& rows() {
       {"limit",
        {"", "", "lower upper effort velocity",
         "acceleration deceleration jerk command_effort current gear_velocity k_velocity stepSize", ""}},
-      {"dynamics", {"", "", "damping friction", "D K mu_coulomb mu_viscous", ""}},
+      {"dynamics",
+       {"", "", "damping friction", "D K mu_coulomb mu_viscous spring_stiffness spring_reference", ""}},
       {"mimic", {"", "", "joint multiplier offset", "", ""}},
   };
   return all;

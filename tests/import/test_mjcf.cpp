@@ -572,6 +572,31 @@ TEST(Mjcf, TiesToTargetsOfTheHost) {
                  "connect closes a loop of bodies");
 }
 
+TEST(Mjcf, LimitsOfTendonsOfOneJointAreTheJoints) {
+  const auto text = [](const std::string& tendon) {
+    return chain(1, "<tendon><fixed name='t' limited='true' " + tendon + "</fixed></tendon>");
+  };
+  const Import i = from_text(text("range='-.8 -.2'><joint joint='j0' coef='-2'/>"));
+  EXPECT_NEAR(i.def.links[0].lower, 0.1, 1e-12);
+  EXPECT_NEAR(i.def.links[0].upper, 0.4, 1e-12);
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "tendon t: joint j0 goes from 0.1 to 0.4"));
+  EXPECT_DOUBLE_EQ(from_text(text("range='-9 9'><joint joint='j0' coef='2'/>")).def.links[0].upper, 1);
+  expect_refused(text("range='4 5'><joint joint='j0' coef='2'/>"), RDM_RANGE, "its range leaves joint j0");
+  std::string spatial = chain(1,
+                              "<tendon><spatial limited='true' range='0 1'><site site='a'/><site "
+                              "site='b'/></spatial></tendon>");
+  expect_refused(spatial, RDM_UNSUPPORTED, "spatial: the range 0 1 of its length would tie joints");
+  spatial.replace(spatial.find("'true'"), 6, "'false'");
+  EXPECT_EQ(from_text(spatial).def.num_links, 1);
+}
+
+TEST(Mjcf, InertialsOfAMassAloneArePoints) {
+  const std::string point = "<inertial pos='0 0 .1' mass='2'/>";
+  const Import i = from_text(file(arm(kRod + "<body name='tool'>" + point + "</body>")));
+  EXPECT_NEAR(i.def.links[0].mass, 2.1, 1e-12);
+  expect_refused(file(arm(point)), RDM_ARGUMENT, "it moves, and its moments of inertia are 0");
+}
+
 TEST(Mjcf, WhatStandsTwiceIsRefused) {
   const std::string inertial = "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
   expect_refused(file(arm(inertial + inertial)), RDM_FORMAT, "inertial: a second one, after that of line 1");
