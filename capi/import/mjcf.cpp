@@ -79,9 +79,12 @@ bool MjcfReader::flag(const Element& e, const char* key, const std::string& text
 bool MjcfReader::limited(const Element& e, const char* key, const std::string* limited,
                          const std::string* range) const {
   if (limited && *limited != "auto") return flag(e, key, *limited);
-  if (!range || !compiler.autolimits) return false;
+  if (!range) return false;
   const auto n = numbers(e, "range", *range, 2, 2);
-  return n[0] != 0 || n[1] != 0;
+  const bool has_range = n[0] != 0 || n[1] != 0;
+  if (has_range && !compiler.autolimits)
+    refuse_at(RDM_FORMAT, e, "a range and no %s, where autolimits is false: it could hold or not", key);
+  return has_range;
 }
 
 // ---- poses ----

@@ -69,7 +69,8 @@ class MjcfReader {
   double number_of(const Element& e, const char* key, const std::string& c, double otherwise,
                    const char* kind = nullptr) const;
   bool flag(const Element& e, const char* key, const std::string& text) const;
-  // Whether a range holds: `limited` says so, or it is auto and the range is not "0 0".
+  // Whether a range holds: `limited` says so, or it is auto and the range is not "0 0". Refused, as in MuJoCo,
+  // where the compiler's autolimits is false and nothing else says it.
   bool limited(const Element& e, const char* key, const std::string* limited, const std::string* range) const;
   double angle(double x) const { return compiler.degrees ? x * M_PI / 180 : x; }
   Turn turn_at(const Element& e, const std::string& c) const;

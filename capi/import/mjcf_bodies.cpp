@@ -243,7 +243,8 @@ void MjcfReader::add_body(const Element& e, int parent, const Pose& frame, const
   const bool moving = moves(e, c);
   if (const auto all = e.all("inertial"); all.size() > 1)
     refuse_at(RDM_FORMAT, *all[1], "a second one, after that of line %d", all[0]->line);
-  const Element* given = compiler.inertia_from == "true" ? nullptr : e.child("inertial");
+  const Element* written = e.child("inertial");
+  const Element* given = compiler.inertia_from == "true" ? nullptr : written;
   if (!given && compiler.inertia_from == "false" && compiler.least_mass == 0 && moving)
     refuse_at(RDM_RANGE, e, "it moves and has no inertial, and inertiafromgeom is false");
   if (given) model.bodies[self].mass = inertial(*given, model.bodies[self], moving);
@@ -252,6 +253,10 @@ void MjcfReader::add_body(const Element& e, int parent, const Pose& frame, const
              given || compiler.inertia_from == "false" ? nullptr : &from_geoms, depth);
   BodyIn& read = model.bodies[self];
   if (given) return;
+  if (written && !(from_geoms.mass > 0)) {  // no geom says it: also with inertiafromgeom="true" it stays
+    read.mass = inertial(*written, read, moving);
+    return;
+  }
   const std::string name = clean(read.name);
   if (from_geoms.mass > 0) {
     bound(e, name, &from_geoms);

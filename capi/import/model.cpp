@@ -10,11 +10,12 @@
 namespace rdm::import {
 namespace {
 
-constexpr size_t kMostRows = 4096;    // of shapes, of pairs: so too
-constexpr size_t kLongestName = 25;   // what rdm_robot_create takes
-constexpr double kReachAngle = 0.2;   // rad off the target where kp gives the whole effort
-constexpr double kReachSlide = 0.02;  // m
-constexpr double kMostGain = 1e6;     // what rdm_robot_create takes
+constexpr size_t kMostRows = 4096;     // of shapes, of pairs: so too
+constexpr size_t kLongestName = 25;    // what rdm_robot_create takes
+constexpr double kReachAngle = 0.2;    // rad off the target where kp gives the whole effort
+constexpr double kReachSlide = 0.02;   // m
+constexpr double kMostGain = 1e6;      // what rdm_robot_create takes
+constexpr double kPointRadius = 0.01;  // of a root whose mass is in one point; it stands, nothing feels them
 constexpr double kGravity = 9.81;
 
 // Letters (of other scripts: as latin() has them), digits, '_', '-', '+'; not empty, not too long.
@@ -208,6 +209,17 @@ struct Builder {
     if (!(root.mass > 0) && root.moment != M3{}) {  // it stands: nothing feels them
       out->note(RDM_NOTE_DROPPED, in.bodies[0].element->line, "the root's moments of inertia, without mass");
       root.moment = {};
+    }
+    if (root.mass > 0) {
+      const auto p = principal(root.moment, nullptr);
+      if (!(*std::max_element(p.begin(), p.end()) > 0)) {
+        root.moment = solid(Primitive{RDM_SPHERE, {kPointRadius, 0, 0}, {}}).moment;
+        const double factor = root.mass / volume_of({RDM_SPHERE, {kPointRadius, 0, 0}, {}});
+        for (auto& row : root.moment)
+          for (double& x : row) x *= factor;
+        out->note(RDM_NOTE_GUESSED, in.bodies[0].element->line,
+                  "the root: moments of inertia of a ball of %g m", kPointRadius);
+      }
     }
     out->def.root_mass = root.mass;
     put(root.com, out->def.root_com);

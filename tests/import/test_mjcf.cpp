@@ -93,7 +93,6 @@ TEST(Mjcf, RangesHoldWhereTheySaySo) {
   for (const Row& r :
        {Row{"range='-90 90'", -M_PI / 2, M_PI / 2, ""}, Row{"range='0 0'", -2 * M_PI, 2 * M_PI, ""},
         Row{"range='-90 90' limited='false'", -2 * M_PI, 2 * M_PI, ""},
-        Row{"range='-90 90'", -2 * M_PI, 2 * M_PI, "<compiler autolimits='false'/>"},
         Row{"range='-90 90' limited='true'", -M_PI / 2, M_PI / 2, "<compiler autolimits='false'/>"},
         Row{"type='slide' range='-.2 .3'", -0.2, 0.3, ""},
         Row{"type='slide' axis='1 0 0'", -2 * M_PI, 2 * M_PI, ""}}) {
@@ -103,6 +102,8 @@ TEST(Mjcf, RangesHoldWhereTheySaySo) {
     EXPECT_DOUBLE_EQ(i.def.links[0].upper, r.upper);
     EXPECT_EQ(i.has_note(RDM_NOTE_CHANGED, "without end"), r.upper > 6);
   }
+  expect_refused(file(arm(kRod, "range='-90 90'"), "<compiler autolimits='false'/>"), RDM_FORMAT,
+                 "joint j: a range and no limited, where autolimits is false");
   expect_refused(file(arm(kRod, "range='0 0' limited='true'")), RDM_RANGE,
                  "joint j: the range [0, 0] is empty");
 }
@@ -588,6 +589,20 @@ TEST(Mjcf, LimitsOfTendonsOfOneJointAreTheJoints) {
   expect_refused(spatial, RDM_UNSUPPORTED, "spatial: the range 0 1 of its length would tie joints");
   spatial.replace(spatial.find("'true'"), 6, "'false'");
   EXPECT_EQ(from_text(spatial).def.num_links, 1);
+}
+
+// inertiafromgeom="true" takes the geoms' mass; where none of the groups has any, the inertial's.
+TEST(Mjcf, AnInertialStaysWhereNoGeomSaysMore) {
+  const auto mass = [](const std::string& geom) {
+    return from_text(file(arm("<inertial pos='0 0 0' mass='2' diaginertia='1 1 1'/>" + geom),
+                          "<compiler inertiafromgeom='true' inertiagrouprange='0 2'/>"))
+        .def.links[0]
+        .mass;
+  };
+  EXPECT_EQ(mass("<geom size='.1' mass='3'/>"), 3);
+  EXPECT_EQ(mass("<geom size='.1' mass='3' group='3'/>"), 2);
+  EXPECT_EQ(mass("<geom size='.1' mass='0'/>"), 2);
+  EXPECT_EQ(mass(""), 2);
 }
 
 TEST(Mjcf, InertialsOfAMassAloneArePoints) {

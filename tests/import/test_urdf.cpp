@@ -284,6 +284,17 @@ TEST(Urdf, FixedLinksMayHaveMomentsAlone) {
   expect_refused(with_arm(moments), RDM_RANGE, "link arm: the mass 0 is not above 0");
 }
 
+TEST(Urdf, TheRootMayBeAPoint) {
+  File f;
+  f.base = "<inertial><mass value='3'/><inertia ixx='0' iyy='0' izz='0'/></inertial>";
+  const Import i = from_text(f.text());
+  EXPECT_EQ(i.def.root_mass, 3);
+  EXPECT_NEAR(i.def.root_moment[0], 3 * 0.4 * 1e-4, 1e-12);
+  EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "the root: moments of inertia of a ball of 0.01 m"));
+  f.base = "<inertial><mass value='0'/><inertia ixx='1' iyy='1' izz='1'/></inertial>";
+  EXPECT_TRUE(from_text(f.text()).has_note(RDM_NOTE_DROPPED, "the root's moments of inertia, without mass"));
+}
+
 // ---- text ----
 TEST(Urdf, XacroIsNamedWhereverItStands) {
   const char* words = "xacro is not read: expand the file with the xacro tool first";
