@@ -1388,12 +1388,18 @@ int32_t read_task(const std::string& bytes, const std::string& file) {
   const std::string name = d.name;
   if (const rdm_result r = rdm_task_register(&index, &d)) refuse_def(*task, r);
   (void)task.release();  // the library's, until `release`
+  struct Registered {
+    int32_t index;
+    ~Registered() {
+      if (index >= 0) rdm_task_remove(index);
+    }
+  } registered{index};  // removed also where there is no memory for the reason
   if (const rdm_result r = try_world(name.c_str())) {
     std::string text = inner_text(name);
     if (!file.empty() && text.compare(0, file.size() + 2, file + ": ") == 0) text.erase(0, file.size() + 2);
-    rdm_task_remove(index);
     throw Refusal{r, text};
   }
+  registered.index = -1;
   return index;
 }
 

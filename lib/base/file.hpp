@@ -44,9 +44,9 @@ class FileSource : public ByteSource {
   void read(uint64_t at, void* to, size_t count) const override;
 
  private:
-  const char* path_;  // the caller's
+  const char* path_;   // the caller's
+  uint64_t size_ = 0;  // before handle_, whose opening sets it
   intptr_t handle_;
-  uint64_t size_ = 0;
 };
 
 class MemorySource : public ByteSource {

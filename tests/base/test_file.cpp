@@ -256,5 +256,20 @@ TEST_F(File, RelativeNameWithoutAFolder) {
   std::filesystem::current_path(back);
 }
 
+TEST_F(File, IsReadInPartsToo) {
+  write("0123456789");
+  const FileSource file(path.c_str());
+  EXPECT_EQ(file.size(), 10u);
+  char part[4] = {};
+  file.read(7, part, 3);
+  EXPECT_STREQ(part, "789");
+  std::filesystem::resize_file(path, 8);
+  EXPECT_THROW(file.read(7, part, 3), Error);
+  EXPECT_THROW(FileSource(folder.c_str()), Error);
+  const auto pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(FileSource(pipe.c_str()), Error);
+}
+
 }  // namespace
 }  // namespace rdm

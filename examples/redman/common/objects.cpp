@@ -1,6 +1,7 @@
 #include "common/objects.hpp"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <redman/redman.hpp>
 
 #include "common/files.hpp"
@@ -31,8 +32,11 @@ Import import_object(const std::string& file) {
   rdm_import* made = nullptr;
   int32_t known = -1;
   if (!file_exists(file) && file.find('/') == std::string::npos) {
-    if (rdm_object_find(file.c_str(), &known) != RDM_OK)
+    if (rdm_object_find(file.c_str(), &known) != RDM_OK) {
+      std::error_code error;
+      if (std::filesystem::exists(file, error)) throw Failure(file + ": it is not a regular file");
       throw Failure(file + ": no file, and no object of that name" + hint_of(file));
+    }
     if (rdm_import_object(&made, known) != RDM_OK) throw Failure(rdm_import_error());
   } else if (rdm_import_object_file(&made, file.c_str()) != RDM_OK) {
     throw Failure(rdm_import_error());

@@ -73,7 +73,7 @@ void load_plugin(const std::string& file) {
   const std::string owner = std::string(kFlag) + " " + file + ": ";
   // a name without a slash would be looked for in the system's folders
   const std::string path = file.find('/') == std::string::npos ? "./" + file : file;
-  if (!file_exists(path)) throw Usage(owner + "no such file" + missing_file_hint(path));
+  if (!file_exists(path)) throw Usage(owner + why_no_file(path));
   void* library = open_library(path);
   if (!library) throw Usage(owner + last_error());
   // a library that carries redman in itself would register with that one
