@@ -199,9 +199,9 @@ bool is_closed(const Mesh& mesh) {
   });
 }
 
-Mass filled(const Mesh& mesh, Fill how) {
+Mass filled(const Mesh& mesh, Fill how, Budget* budget) {
   if (how == Fill::kConvex || mesh.faces.empty()) {
-    const Mesh hull = hull_of(mesh.points);
+    const Mesh hull = hull_of(mesh.points, budget);
     return hull.faces.empty() ? Mass{} : filled(hull, how == Fill::kShell ? how : Fill::kExact);
   }
   if (how == Fill::kShell) return surface_mass(mesh);
@@ -264,7 +264,7 @@ Mass shell(const Primitive& s) {
   return s.X * out;
 }
 
-Mesh hull_of(const std::vector<V3>& points) {
+Mesh hull_of(const std::vector<V3>& points, Budget* budget) {
   Mesh out;
   out.points = points;
   std::sort(out.points.begin(), out.points.end(),
@@ -274,6 +274,7 @@ Mesh hull_of(const std::vector<V3>& points) {
   if (out.points.size() > kMostOfHull)
     refuse(RDM_RANGE, "the hull of %zu corners: more than %zu", out.points.size(), kMostOfHull);
   if (out.points.size() < 4) return out;
+  if (budget) budget->spend(Cost::kSteps, out.points.size() * out.points.size() / 10);
   double size = 0;
   for (const V3& p : out.points) size = std::max(size, norm(p - out.points[0]));
   const auto first = first_corners(out.points, 1e-9 * size);

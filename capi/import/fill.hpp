@@ -18,8 +18,9 @@ Mass shell(const Primitive& s);
 bool is_closed(const Mesh& mesh);
 Mass scaled(double factor, const Mass& m);
 // Mass 0 for a surface that encloses nothing.
-Mass filled(const Mesh& mesh, Fill how);
-// The hull's triangles, turned outwards; no faces for points in one plane. RANGE above 4096 corners.
-Mesh hull_of(const std::vector<V3>& points);
+Mass filled(const Mesh& mesh, Fill how, Budget* budget = nullptr);
+// The hull's triangles, turned outwards; no faces for points in one plane. RANGE above 4096 corners ("the hull
+// of ..."), and where the budget has not the work, which grows with the square of the corners.
+Mesh hull_of(const std::vector<V3>& points, Budget* budget = nullptr);
 
 }  // namespace rdm::import

@@ -171,10 +171,12 @@ const MeshIn* MjcfReader::mesh_of(const Element& asset, const Element& geom) {
   MeshIn in;
   in.hull = around(mesh.points);
   try {
-    in.mass = filled(mesh, said == "exact"    ? Fill::kExact
-                           : said == "convex" ? Fill::kConvex
-                           : said == "shell"  ? Fill::kShell
-                                              : Fill::kLegacy);
+    in.mass = filled(mesh,
+                     said == "exact"    ? Fill::kExact
+                     : said == "convex" ? Fill::kConvex
+                     : said == "shell"  ? Fill::kShell
+                                        : Fill::kLegacy,
+                     &out->budget);
     in.surface = mesh.faces.empty() ? in.mass : filled(mesh, Fill::kShell);
   } catch (const Refusal& r) {
     refuse_at(r.code, asset, "%s", r.text.c_str());

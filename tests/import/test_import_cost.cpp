@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -178,6 +179,25 @@ std::string chain_of_followers() {
 std::string star_of_followers() {
   return coupled("0");
 }
+// Hulls, whose work grows with the square of their corners.
+std::string hulls() {
+  const auto sphere = [](size_t k) {
+    return times(2000, [&](size_t i) {
+      const double z = 1 - (2 * static_cast<double>(i) + 1) / 2000, r = std::sqrt(1 - z * z),
+                   a = 2.4 * static_cast<double>(i) + static_cast<double>(k);
+      return std::to_string(r * std::cos(a)) + ' ' + std::to_string(r * std::sin(a)) + ' ' +
+             std::to_string(z) + ' ';
+    });
+  };
+  return mjcf("<asset>" +
+                  times(100,
+                        [&](size_t k) {
+                          return "<mesh name=\"m" + n(k) + "\" inertia=\"convex\" vertex=\"" + sphere(k) +
+                                 "\"/>";
+                        }) +
+                  "</asset>",
+              times(100, [](size_t k) { return "<geom type=\"mesh\" mesh=\"m" + n(k) + "\"/>"; }));
+}
 std::string names_of_parts() {  // each '_' is where a part of a name begins, which the nearest may be like
   return mjcf("", times(10, [](size_t i) {
                 std::string name;
@@ -299,6 +319,7 @@ std::vector<Case> texts() {
       {"chain of followers", "mjcf", chain_of_followers()},
       {"star of followers", "mjcf", star_of_followers()},
       {"names of parts", "mjcf", names_of_parts()},
+      {"hulls", "mjcf", hulls()},
       {"equalities", "mjcf", equalities()},
       {"tendons", "mjcf", tendons()},
       {"limited tendons", "mjcf", limited_tendons()},

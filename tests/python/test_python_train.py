@@ -178,6 +178,21 @@ class Curves(unittest.TestCase):
             self.assertEqual(texts(redman.Curves([redman.Curve(redman.curve(folders[0]), name)] * 2)),
                              [f"{name} #1", f"{name} #2"])
 
+    @unittest.skipUnless(hasattr(os, "mkfifo"), "no FIFO here")
+    def test_what_is_no_regular_file_is_not_waited_for(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pipe, huge = Path(folder, "policy.rdm"), Path(folder, "huge")
+            os.mkfifo(pipe)
+            huge.touch()
+            os.truncate(huge, 100 << 30)
+            for path in (pipe, folder, "/dev/zero", huge):
+                with self.assertRaises(redman.Error):
+                    redman.Policy.load(path)
+            Path(folder, "progress.csv").symlink_to(huge)
+            Path(folder, "config.json").symlink_to(pipe)
+            with self.assertRaises(redman.Error):
+                redman.curve(folder)
+
     def test_a_curve_is_a_dict(self):
         curve = redman.train("bandit", steps=3000, envs=8, progress=False).curve
         self.assertIsInstance(curve, dict)

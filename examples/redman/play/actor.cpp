@@ -20,7 +20,8 @@ constexpr const char* kBaselines[] = {"zero", "hold", "random"};  // by RDM_BASE
 
 redman::Policy load(const std::string& file) {
   const std::vector<std::string> words = {"trained", "plan", "demo", "zero", "hold", "random"};
-  if (const std::string hint = nearest_hint(file, words); !hint.empty() && !file_exists(file))
+  if (const std::string hint = nearest_hint(file, words);
+      !hint.empty() && why_no_file(file).rfind("no such", 0) == 0)
     throw Failure("policy " + file + ": no such file or word" + hint);
   if (const std::string problem = why_no_file(file); !problem.empty())
     throw Failure(
