@@ -11,7 +11,7 @@
 namespace rdm::import {
 namespace {
 
-constexpr size_t kMostOfHull = 4096;  // corners: the work grows with their square
+constexpr size_t kFacesPerStep = 16;  // that are looked at, of the budget's steps
 
 // Four corners that are not in one plane; none: fewer than four.
 std::vector<uint32_t> first_corners(const std::vector<V3>& p, double close) {
@@ -61,7 +61,7 @@ Mass pyramids(const Mesh& mesh, V3 apex, bool positive) {
 // little, the same way each time; the faces' numbers are those of the corners as they were.
 class Hull {
  public:
-  Hull(const std::vector<V3>& corners, double scale, double shift) {
+  Hull(const std::vector<V3>& corners, double scale, double shift, Budget* account) : budget_(account) {
     uint64_t state = 1;
     const auto random = [&] {  // in [-1, 1)
       state = state * 6364136223846793005u + 1442695040888963407u;
@@ -91,6 +91,7 @@ class Hull {
 
  private:
   using Face = std::array<uint32_t, 3>;  // 0, 0, 0: it is gone
+  Budget* budget_;
   std::vector<V3> points_;
   std::vector<Face> faces_;
   std::vector<size_t> free_;
@@ -113,6 +114,7 @@ class Hull {
   // Cuts away what the corner sees, and closes the hole with a cone of its edge.
   bool take(uint32_t corner) {
     const V3 p = points_[corner];
+    budget_->spend(Cost::kSteps, 1 + faces_.size() / kFacesPerStep);
     size_t start = 0;
     while (start < faces_.size() && (faces_[start][0] == faces_[start][1] || !sees(p, faces_[start])))
       ++start;
@@ -202,7 +204,7 @@ bool is_closed(const Mesh& mesh) {
 Mass filled(const Mesh& mesh, Fill how, Budget* budget) {
   if (how == Fill::kConvex || mesh.faces.empty()) {
     const Mesh hull = hull_of(mesh.points, budget);
-    return hull.faces.empty() ? Mass{} : filled(hull, how == Fill::kShell ? how : Fill::kExact);
+    return hull.faces.empty() ? Mass{} : filled(hull, how == Fill::kShell ? how : Fill::kExact, budget);
   }
   if (how == Fill::kShell) return surface_mass(mesh);
   if (how == Fill::kLegacy) {
@@ -264,23 +266,27 @@ Mass shell(const Primitive& s) {
   return s.X * out;
 }
 
-Mesh hull_of(const std::vector<V3>& points, Budget* budget) {
-  Mesh out;
-  out.points = points;
-  std::sort(out.points.begin(), out.points.end(),
+std::vector<V3> corners_of(const std::vector<V3>& points) {
+  std::vector<V3> out = points;
+  std::sort(out.begin(), out.end(),
             [](V3 a, V3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
   const auto same = [](V3 a, V3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
-  out.points.erase(std::unique(out.points.begin(), out.points.end(), same), out.points.end());
+  out.erase(std::unique(out.begin(), out.end(), same), out.end());
+  return out;
+}
+
+Mesh hull_of(const std::vector<V3>& points, Budget* budget) {
+  Mesh out;
+  out.points = corners_of(points);
   if (out.points.size() > kMostOfHull)
     refuse(RDM_RANGE, "the hull of %zu corners: more than %zu", out.points.size(), kMostOfHull);
   if (out.points.size() < 4) return out;
-  if (budget) budget->spend(Cost::kSteps, out.points.size() * out.points.size() / 10);
   double size = 0;
   for (const V3& p : out.points) size = std::max(size, norm(p - out.points[0]));
   const auto first = first_corners(out.points, 1e-9 * size);
   if (first.size() < 4) return out;
   for (double shift = 1e-9; shift < 1e-5; shift *= 10) {
-    Hull hull(out.points, 1 / size, shift);
+    Hull hull(out.points, 1 / size, shift, budget);
     if (!hull.grow({first[0], first[1], first[2], first[3]})) continue;
     out.faces = hull.faces();
     return out;

@@ -177,7 +177,7 @@ const MeshIn* MjcfReader::mesh_of(const Element& asset, const Element& geom) {
                      : said == "shell"  ? Fill::kShell
                                         : Fill::kLegacy,
                      &out->budget);
-    in.surface = mesh.faces.empty() ? in.mass : filled(mesh, Fill::kShell);
+    in.surface = mesh.faces.empty() ? in.mass : filled(mesh, Fill::kShell, &out->budget);
   } catch (const Refusal& r) {
     refuse_at(r.code, asset, "%s", r.text.c_str());
   }

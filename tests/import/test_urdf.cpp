@@ -270,6 +270,32 @@ TEST(Urdf, HullsOfChamferedPartsAreRight) {
   }
 }
 
+// Hulls of many round meshes are work that a file of some kB could ask for.
+TEST(Urdf, HullsDrawOnTheBudget) {
+  const Folder folder;
+  std::string mesh, text = "<robot name='many'><link name='l0'>" + kInertial + "</link>";
+  for (int k = 0; k < 4000; ++k) {  // a spiral on a sphere
+    const double z = (k + 0.5) / 2000 - 1, r = std::sqrt(1 - z * z);
+    mesh += "v " + std::to_string(r * std::cos(2.4 * k)) + ' ' + std::to_string(r * std::sin(2.4 * k)) + ' ' +
+            std::to_string(z) + '\n';
+  }
+  folder.add("ball.obj", mesh + "f 1 2 3\n");
+  for (int k = 1; k <= 60; ++k) {
+    const std::string n = std::to_string(k), before = std::to_string(k - 1);
+    text += "<link name='l" + n +
+            "'><collision><geometry><mesh filename='ball.obj'/></geometry></collision></link>" +
+            "<joint name='j" + n + "' type='revolute'><parent link='l" + before + "'/><child link='l" + n +
+            "'/>" + kLimit + "</joint>";
+  }
+  rdm_import_options o = options();
+  o.density = 1000;
+  rdm_import* i = nullptr;
+  EXPECT_EQ(rdm_import_file(&i, folder.add("many.urdf", text + "</robot>").c_str(), &o), RDM_RANGE);
+  EXPECT_NE(std::string(rdm_import_error()).find("steps of work in one import"), std::string::npos)
+      << rdm_import_error();
+  rdm_import_destroy(i);
+}
+
 TEST(Urdf, FixedLinksMayHaveMomentsAlone) {
   const std::string moments =
       "<inertial><mass value='0'/><inertia ixx='0.1' iyy='0.1' izz='0.1'/></inertial>";
