@@ -74,7 +74,9 @@ typedef struct rdm_import_note { /* frozen layout; texts live as long as the han
 /* Fills the first `size` bytes with defaults. */
 RDM_API rdm_result rdm_import_options_init(rdm_import_options *options, size_t size);
 /* Reads a file; options may be NULL. NOT_FOUND, IO; FORMAT: malformed, with its line; ARGUMENT, RANGE: a robot that cannot
- * be, with line and element; UNSUPPORTED: an element that would change the robot and is not read. */
+ * be, with line and element; UNSUPPORTED: an element that would change the robot and is not read.
+ * What is no regular file is IO and never waited for. A file and all that it includes or names cost at most 4096 files, 16 MB
+ * of text, 512 MB of meshes (64 MB each), 250,000 elements, 400,000 attributes and 10 million steps of work: RANGE beyond. */
 RDM_API rdm_result rdm_import_file(rdm_import **out, const char *path, const rdm_import_options *options);
 /* The same for bytes [size] of a file. Without options.folder it has neither meshes nor includes. */
 RDM_API rdm_result rdm_import_text(rdm_import **out, const void *bytes, size_t size, const rdm_import_options *options);
