@@ -646,9 +646,10 @@ RDM_API rdm_result rdm_policy_check(const rdm_policy *p, const rdm_spec *spec);
 extern "C" {
 #endif
 
-/* What the texts of NOT_FOUND end with, for names of your own: writes "; nearest is gamma", "; nearest are a, b and c" of
- * several that are equally near, or "" when nobody can have meant one of `names`, one a line, of which the first 500 count.
- * Case is ignored, '-' equals '_'. Cut at `capacity` >= 1 bytes; RDM_TEXT_SIZE * 4 hold all. */
+/* What the texts of NOT_FOUND end with, for names of your own: writes to text [capacity] "; nearest is gamma",
+ * "; nearest are a, b and c" of several that are equally near, or "" when nobody can have meant one of `names`, one a
+ * line, of which the first 500 count. Case is ignored, '-' equals '_'. Cut at capacity >= 1 bytes; 4 * RDM_TEXT_SIZE
+ * hold all. */
 RDM_API rdm_result rdm_nearest_names(const char *name, const char *names, char *text, size_t capacity);
 
 /* Pushes a shape's carrier during the next step: force [3] at its centre of mass, N, world axes. */

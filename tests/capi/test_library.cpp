@@ -1,4 +1,7 @@
 #include <gtest/gtest.h>
+#ifndef RDM_EXPERIMENTAL
+#define RDM_EXPERIMENTAL
+#endif
 #include <redman/redman.h>
 
 #include <cstddef>
@@ -17,6 +20,29 @@ TEST(Library, HeaderAndLibraryAreCompared) {
   EXPECT_EQ(rdm_check_abi(RDM_ABI, RDM_VERSION + 1), RDM_VERSION_MISMATCH);
   EXPECT_EQ(rdm_check_abi(RDM_ABI + 1, RDM_VERSION), RDM_VERSION_MISMATCH);
   EXPECT_NE(std::string(rdm_last_error()).find("abi"), std::string::npos);
+}
+
+TEST(Library, NearestNamesAreThoseOfItsOwnTexts) {
+  char text[4 * RDM_TEXT_SIZE];
+  ASSERT_EQ(rdm_nearest_names("Gama", "lambda\ngamma\nclip", text, sizeof text), RDM_OK);
+  EXPECT_STREQ(text, "; nearest is gamma");
+  ASSERT_EQ(rdm_nearest_names("lag", "ppo_lag\ntrpo_lag\n\nppo\n", text, sizeof text), RDM_OK);
+  EXPECT_STREQ(text, "; nearest are ppo_lag and trpo_lag");
+  for (const char* none : {"", "\n\n", "zebra"}) {
+    ASSERT_EQ(rdm_nearest_names("gamma", none, text, sizeof text), RDM_OK);
+    EXPECT_STREQ(text, "");
+  }
+  ASSERT_EQ(rdm_nearest_names("gama", "gamma", text, 8), RDM_OK);
+  EXPECT_STREQ(text, "; neare");
+  const std::string most(400, 'x');
+  ASSERT_EQ(
+      rdm_nearest_names(most.c_str(), (most + "a\n" + most + "b\n" + most + "c").c_str(), text, sizeof text),
+      RDM_OK);
+  EXPECT_LT(std::strlen(text), sizeof text - 1);
+  EXPECT_EQ(rdm_nearest_names(nullptr, "a", text, sizeof text), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_nearest_names("a", nullptr, text, sizeof text), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_nearest_names("a", "a", nullptr, sizeof text), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_nearest_names("a", "a", text, 0), RDM_ARGUMENT);
 }
 
 TEST(Library, ResultsHaveStrings) {

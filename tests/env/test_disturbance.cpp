@@ -203,8 +203,7 @@ TEST(Disturbance, AFieldThatIsNoneIsNamed) {
             "ball.position");
   EXPECT_EQ(text_of("delay.cube.*=1"),
             "toy_push option delay.cube.*: no field of the observation has this name");
-  EXPECT_EQ(text_of("nose.action=1"),
-            "toy_push option nose.action: unknown; nearest is noise.FIELD");
+  EXPECT_EQ(text_of("nose.action=1"), "toy_push option nose.action: unknown; nearest is noise.FIELD");
   for (const char* bad : {"delay.action=17", "delay.action=0.5", "dropout.action=1.5", "noise.action=-1",
                           "bias.action=0.2..0.1", "action_delay=17", "action_delay=1..17", "end_on_cost=2"})
     EXPECT_EQ(code_of([&] { TestPool p("toy_push", 1, {}, config(bad)); }), Code::kRange) << bad;

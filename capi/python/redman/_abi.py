@@ -3474,9 +3474,10 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_nearest_names": Function(
         c_int32, {"name": c_char_p, "names": c_char_p, "text": c_void_p, "capacity": c_size_t},
         {}, True,
-        """What the texts of NOT_FOUND end with, for names of your own: writes "; nearest is gamma", "; nearest are a, b and c" of
-        several that are equally near, or "" when nobody can have meant one of `names`, one a line, of which the first 500 count.
-        Case is ignored, '-' equals '_'. Cut at `capacity` >= 1 bytes; RDM_TEXT_SIZE * 4 hold all.
+        """What the texts of NOT_FOUND end with, for names of your own: writes to text [capacity] "; nearest is gamma",
+        "; nearest are a, b and c" of several that are equally near, or "" when nobody can have meant one of `names`, one a
+        line, of which the first 500 count. Case is ignored, '-' equals '_'. Cut at capacity >= 1 bytes; 4 * RDM_TEXT_SIZE
+        hold all.
         """),
     "rdm_pool_push": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "shape": c_int32, "force": c_void_p},
