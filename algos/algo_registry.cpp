@@ -9,8 +9,9 @@
 namespace rdm {
 namespace {
 
-const AlgoRow* const kRows[] = {&kPpo, &kTrpo, &kPpoLag, &kTrpoLag, &kCppoPid,
-                                &kCpo, &kPcpo, &kFocops, &kP3o,     &kIpo};
+const AlgoRow* const kRows[] = {
+    &kPpo, &kTrpo, &kPpoLag, &kTrpoLag, &kCppoPid, &kCpo, &kPcpo, &kFocops, &kP3o, &kIpo,
+};
 
 }  // namespace
 

@@ -12,10 +12,11 @@ namespace rdm {
 namespace {
 
 // New ones stand at the end: hosts keep numbers.
-const Robot* const kOwn[] = {&kShadowHand,  &kAllegroHand, &kSchunkSvh,   &kBarrettBh282, &kRobotiq3f,
-                             &kFrankaPanda, &kAbbIrb4600,  &kKinovaJaco2, &kKukaIiwa7,    &kXarm6,
-                             &kAbbCrb15000, &kUr5e,        &kUr10e,       &kDrawer,       &kDoor,
-                             &kScrewBottle, &kScissors,    &kTap};
+const Robot* const kOwn[] = {
+    &kShadowHand, &kAllegroHand, &kSchunkSvh, &kBarrettBh282, &kRobotiq3f,   &kFrankaPanda,
+    &kAbbIrb4600, &kKinovaJaco2, &kKukaIiwa7, &kXarm6,        &kAbbCrb15000, &kUr5e,
+    &kUr10e,      &kDrawer,      &kDoor,      &kScrewBottle,  &kScissors,    &kTap,
+};
 constexpr int32_t kNumOwn = static_cast<int32_t>(sizeof kOwn / sizeof kOwn[0]);
 
 struct Added {

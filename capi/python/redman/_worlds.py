@@ -131,7 +131,8 @@ class Worlds:
             takes = f"reset takes {', '.join(known)}" if known else "reset takes none"
             hint = nearest(key, [*self.pool.task.options, *known])
             if hint and not nearest(key, known):
-                hint += ": an option of the task is given when the environment is made, options={...}"
+                own = repr(hint[len("; nearest is "):]) if hint.startswith("; nearest is ") else "name"
+                hint = f": an option of the task is given when the environment is made: options={{{own}: ...}}{hint}"
             raise ArgumentError(f"reset: option {key!r} is not used, {takes}{hint}")
 
     def act(self, actions: Any) -> None:
