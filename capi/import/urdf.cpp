@@ -282,6 +282,9 @@ struct Reader {
         return otherwise;
       };
       o.effort = most("effort", -1);
+      if (o.effort == 0)
+        out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: effort 0 is none: it is guessed",
+                  clean(j.name).c_str());
       o.velocity = most("velocity", 0);
       if (o.velocity < 0)
         out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: velocity %g is no bound", clean(j.name).c_str(),

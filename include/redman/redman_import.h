@@ -16,13 +16,13 @@
  * What could change mass, pose, axis, range or coupling is read, or refused with the name of its element; so is an element
  * or attribute of URDF or MJCF that is not known. Dropped, each with a note: what is seen alone, friction and softness of
  * contacts, springs of joints and tendons, limits of tendons that are wide, actuators that hold no joint (their effort is
- * taken), sensors, options of a simulator, what other programs added to URDF for themselves.
+ * taken), sensors, options of a simulator, soft limits of controllers, what other programs added to URDF for themselves.
  *
  * What is done on the way: fixed joints and their links become part of what carries them; a mesh becomes the smallest of
- * box, capsule and sphere around its corners; a joint without an end gets +-2 pi, rad or m (options.slide_range). Gains come from position
- * actuators, else kp reaches the effort 0.2 rad (20 mm) off the target and kd damps critically with the inertia that the
- * joint feels at home. What no such file says (palm, fingers, tips, mount, flange, poses) is guessed, the same way each time,
- * and listed. */
+ * box, capsule and sphere around its corners; a joint without an end gets +-2 pi, rad or m (options.slide_range). Gains come
+ * from position actuators, else kp reaches the effort 0.2 rad (20 mm) off the target and kd damps critically with the inertia
+ * that the joint feels at home. What no such file says (palm, fingers, tips, mount, flange, poses) is guessed, the same way
+ * each time, and listed. */
 #ifndef REDMAN_IMPORT_H
 #define REDMAN_IMPORT_H
 #ifndef RDM_EXPERIMENTAL

@@ -180,6 +180,8 @@ TEST(Urdf, NegativeNumbersAreSaidOrRefused) {
   EXPECT_EQ(i.def.links[0].velocity, 0);
   EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "joint j: velocity -1 is no bound"));
   EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "joint j: effort"));
+  EXPECT_TRUE(from_text(with_joint("<limit lower='-1' upper='1' effort='0' velocity='1'/>"))
+                  .has_note(RDM_NOTE_CHANGED, "joint j: effort 0 is none"));
   expect_refused(with_joint(kLimit + "<dynamics damping='-1'/>"), RDM_RANGE,
                  "damping -1 or friction 0 is below 0");
   expect_refused(with_joint("<origin xyz='0 0 1' xyz='0 0 2'/>" + kLimit), RDM_FORMAT,
