@@ -99,9 +99,7 @@ rdm_result rdm_actor_act(rdm_actor* a, const float* obs, const rdm_points* point
 }
 
 rdm_result rdm_actor_reset(rdm_actor* a, const uint8_t* terminated, const uint8_t* truncated) {
-  return call_on(a, [&] {
-    a->actor->reset(terminated, truncated);
-  });
+  return call_on(a, [&] { a->actor->reset(terminated, truncated); });
 }
 
 rdm_result rdm_actor_write_state(const rdm_actor* a, void* bytes, size_t capacity, size_t* size) {

@@ -536,11 +536,11 @@ typedef struct rdm_epoch {
   uint32_t reserved3;         /* 0                                                                        */
   int64_t skipped_gradients;  /* in this epoch, as all counts below: steps left out                       */
   int64_t invalid_rows;       /* decisions with valid 0 that did not only reset                           */
-  int64_t diverged;           /* decisions of a world with each RDM_STATUS_*                              */
-  int64_t contacts_left_out;
-  int64_t bad_actions;
-  int64_t task_failed;
-  int64_t unconverged;
+  int64_t diverged;           /* decisions flagged RDM_STATUS_DIVERGED                                    */
+  int64_t contacts_left_out;  /* decisions flagged RDM_STATUS_CONTACTS                                    */
+  int64_t bad_actions;        /* decisions flagged RDM_STATUS_BAD_ACTION                                  */
+  int64_t task_failed;        /* decisions flagged RDM_STATUS_TASK                                        */
+  int64_t unconverged;        /* decisions flagged RDM_STATUS_SOLVER                                      */
 } rdm_epoch;
 /* Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL. CANCELLED after
  * rdm_agent_cancel (the horizon is dropped, full or not), STATE when the horizon is not full. */

@@ -134,8 +134,10 @@ class Pool {
   View<uint8_t> terminated() const { return {buffers_.terminated, num_envs_}; }
   View<uint8_t> truncated() const { return {buffers_.truncated, num_envs_}; }
   View<uint8_t> success() const { return {buffers_.success, num_envs_}; }
-  View<uint32_t> status() const { return {buffers_.status, num_envs_}; }                  // RDM_STATUS_*
-  View<uint32_t> episode_status() const { return {buffers_.episode_status, num_envs_}; }  // of the episode so far
+  View<uint32_t> status() const { return {buffers_.status, num_envs_}; }  // RDM_STATUS_*
+  View<uint32_t> episode_status() const {
+    return {buffers_.episode_status, num_envs_};
+  }  // of the episode so far
 
   void bind(const rdm_buffers& b) {
     check(rdm_pool_bind(get(), &b));

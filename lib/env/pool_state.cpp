@@ -4,7 +4,7 @@
 //
 // A state is a file of two sections: HEAD says what it belongs to, WRLD holds one record a world: length,
 // world, task struct, episode, observation row, and what the world's disturbances remember, where it has any.
-// EPST has what went wrong so far in each episode, RDM_STATUS_*; a state without it, of redman before 1.0, has 0.
+// EPST has what went wrong so far in each episode, RDM_STATUS_*; states of version 1 have none: 0.
 // Hashes are of the worlds alone.
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ namespace rdm {
 namespace {
 
 constexpr char kMagic[8] = {'R', 'D', 'M', 'S', 'T', 'A', 'T', 'E'};
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;  // 1, before redman 1.0: without EPST
 constexpr size_t kTextSize = 64;
 constexpr int32_t kFewCopies = 16;  // made sooner than other threads wake up
 constexpr uint32_t kEveryStatus =
@@ -203,9 +203,9 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
   }
 
   Reader flags(bytes, size, "state");
-  flags.begin_file(kMagic, kVersion);
-  const bool flagged = flags.find_section("EPST");
+  const bool flagged = flags.begin_file(kMagic, kVersion) > 1;
   if (flagged) {
+    flags.need_section("EPST");
     if (flags.left() != sizeof(uint32_t) * static_cast<size_t>(held))
       fail(Code::kFormat, "state: not a status for each world's episode");
     for (Reader all_flags = flags; all_flags.left() > 0;)
@@ -278,8 +278,10 @@ void Pool::join_states(const StateBytes* parts, int32_t count, Writer& out) {
     in.view(in.left() - sizeof worlds);
     const auto own = in.value<int32_t>();
     Reader flags(parts[i].bytes, parts[i].size, "state");
-    flags.begin_file(kMagic, kVersion);
-    if (flags.find_section("EPST")) return copy(flags);
+    if (flags.begin_file(kMagic, kVersion) > 1) {
+      flags.need_section("EPST");
+      return copy(flags);
+    }
     for (int32_t k = 0; k < own; ++k) out.value(uint32_t{0});
   });
   out.end_section();

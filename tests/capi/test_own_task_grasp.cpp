@@ -12,12 +12,13 @@ struct World {
   rdm_pool* pool = nullptr;
   rdm_buffers b{};
   rdm_spec spec{};
-  World(const char* task, int32_t envs, int32_t threads) {
+  World(const char* task, int32_t envs, int32_t threads, const std::string& settings = "") {
     rdm_pool_config c;
     rdm_pool_config_init(&c, sizeof c);
     c.task = task;
     c.num_envs = envs;
     c.num_threads = threads;
+    c.settings = settings.c_str();
     c.seed = 7;
     EXPECT_EQ(rdm_pool_create(&pool, &c), RDM_OK) << rdm_last_error();
     b.struct_size = sizeof b;
@@ -40,11 +41,23 @@ struct World {
   }
 };
 
+// A scene of a host's own has room for the contacts of its shapes; the library's task says how many it takes.
+std::string same_room_as(const char* task) {
+  int32_t index = 0;
+  rdm_option_info o;
+  EXPECT_EQ(rdm_task_find(task, &index), RDM_OK);
+  for (int32_t i = 0; rdm_task_option(index, i, &o) == RDM_OK; ++i)
+    if (std::string(o.key) == "contacts_max")
+      return "contacts_max=" + std::to_string(static_cast<int>(o.number));
+  ADD_FAILURE() << task << " has no option contacts_max";
+  return "";
+}
+
 TEST(OwnGrasp, HasTheBytesOfTheLibrarysOwn) {
   GraspTask t;
   const Registered made(t.def);
   for (const int32_t envs : {1, 8}) {
-    World ours("grasp", envs, 0), own("own_grasp", envs, envs > 1 ? 2 : 0);
+    World ours("grasp", envs, 0), own("own_grasp", envs, envs > 1 ? 2 : 0, same_room_as("grasp"));
     ASSERT_EQ(own.spec.obs_dim, ours.spec.obs_dim);
     ASSERT_EQ(own.spec.action_dim, ours.spec.action_dim);
     const auto n = static_cast<size_t>(envs);

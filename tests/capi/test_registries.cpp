@@ -96,7 +96,8 @@ TEST(Registries, ThousandsComeAndGo) {
     EXPECT_EQ(kind.count(), last + 1);
     for (const int32_t gone : {first, first + kMany / 2, last}) {
       EXPECT_EQ(kind.name_of(gone, &name), RDM_NOT_FOUND);
-      EXPECT_EQ(std::string(rdm_last_error()), std::string(kind.what) + " " + std::to_string(gone) + " was removed");
+      EXPECT_EQ(std::string(rdm_last_error()),
+                std::string(kind.what) + " " + std::to_string(gone) + " was removed");
       EXPECT_EQ(kind.remove(gone), RDM_NOT_FOUND);
     }
     EXPECT_EQ(kind.name_of(last + 1, &name), RDM_RANGE);

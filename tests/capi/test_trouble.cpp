@@ -63,7 +63,7 @@ rdm_epoch learn(rdm_pool* pool) {
 // A box of `mass` kg and 10 cm.
 rdm_result add_box(rdm_scene* scene, const char* name, double mass, double height) {
   rdm_shape_def box{};
-  box.kind = RDM_BOX, box.size[0] = box.size[1] = box.size[2] = 0.1;
+  box.kind = RDM_BOX, box.size[0] = box.size[1] = box.size[2] = 0.05;
   rdm_body_def body{};
   body.struct_size = sizeof body, body.name = name, body.shapes = &box, body.num_shapes = 1;
   body.mass = mass, body.p[0] = 1, body.p[2] = height;
@@ -141,7 +141,7 @@ TEST(Trouble, AFirstObservationThatIsNotFiniteIsFlaggedAndMended) {
   p.expect_status(RDM_STATUS_DIVERGED, RDM_STATUS_DIVERGED);
   for (size_t e = 0; e < kWorlds; ++e) EXPECT_EQ(p.b.obs[e], 0);
   size_t size = 0;
-  EXPECT_EQ(rdm_pool_get_state(p.pool, -1, nullptr, 0, &size), RDM_OK);
+  EXPECT_EQ(rdm_pool_state_size(p.pool, -1, &size), RDM_OK);
   std::vector<unsigned char> state(size);
   EXPECT_EQ(rdm_pool_get_state(p.pool, -1, state.data(), size, &size), RDM_OK);
   EXPECT_EQ(rdm_pool_set_state(p.pool, -1, state.data(), size), RDM_OK) << rdm_pool_error(p.pool);

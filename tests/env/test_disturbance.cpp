@@ -308,7 +308,7 @@ TEST(Disturbance, AStateWithWhatNoWorldDrawsIsRefused) {
   run(p, 3);
   const auto good = p.state();
   Reader in(good.data(), good.size(), "state");
-  in.begin_file("RDMSTATE", 1);
+  in.begin_file("RDMSTATE", 2);
   in.need_section("WRLD");
   const size_t size = in.left(), begin = static_cast<size_t>(in.view(size) - good.data());
   // noise, bias [2], delay, ring [3][2], drop-out, shown [2], of the action delay and ring [3][2]

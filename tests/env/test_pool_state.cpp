@@ -107,7 +107,7 @@ TEST(PoolState, ABadRecordLeavesNoTrace) {
   run(a, 2);
   auto state = a.state();
   Reader in(state.data(), state.size(), "state");
-  in.begin_file("RDMSTATE", 1);
+  in.begin_file("RDMSTATE", 2);
   in.need_section("WRLD");
   const size_t size = in.left();
   const auto* payload = in.view(size);
@@ -135,7 +135,7 @@ TEST(PoolState, ATasksStructIsItsOwnToJudge) {
   const auto with_steps = [&](int64_t steps) {
     auto state = a.state();
     Reader in(state.data(), state.size(), "state");
-    in.begin_file("RDMSTATE", 1);
+    in.begin_file("RDMSTATE", 2);
     in.need_section("WRLD");
     const size_t size = in.left();
     const auto offset = static_cast<size_t>(in.view(size) - state.data());

@@ -24,7 +24,8 @@ int main(int argc, char** argv) {
   rdm_actor_config how;
   rdm_spec spec = {.struct_size = sizeof spec};
   rdm_buffers rows = {.struct_size = sizeof rows};
-  if (!check(rdm_pool_config_init(&config, sizeof config)) || !check(rdm_actor_config_init(&how, sizeof how))) return 1;
+  if (!check(rdm_pool_config_init(&config, sizeof config)) || !check(rdm_actor_config_init(&how, sizeof how)))
+    return 1;
   config.task = argv[2];
   config.num_envs = n;
   config.autoreset = RDM_AUTORESET_OFF;
@@ -37,7 +38,8 @@ int main(int argc, char** argv) {
   how.num_envs = n;
   if (!check(rdm_actor_create(&actor, &how)) || !check(rdm_pool_reset(pool, seed, NULL))) return 1;
   for (int left = n; left > 0;) {
-    if (!check(rdm_actor_act(actor, rows.obs, NULL, live, rows.action)) || !check(rdm_pool_step_masked(pool, live)))
+    if (!check(rdm_actor_act(actor, rows.obs, NULL, live, rows.action)) ||
+        !check(rdm_pool_step_masked(pool, live)))
       return 1;
     for (int i = 0; i < n; ++i)
       if (live[i] && (rows.terminated[i] || rows.truncated[i])) live[i] = 0, --left;

@@ -80,20 +80,30 @@ TEST(OccupancyMemory, AVoxelThatFindsNoneChangesNothing) {
                 least);
       EXPECT_NE(file_of(*map), before);
     };
-    check({0.05, 0.05, 0.05}, {0.05, 0.05, 0.05}, 33);    // the root and 16 levels, each a node and a list
-    check({0.15, 0.05, 0.05}, {0.15, 0.05, 0.05}, 1);     // a sister: one node
-    check({-0.05, 0.05, 0.05}, {-0.05, 0.05, 0.05}, 30);  // another branch
+    // a ray across one voxel, for nearer points than its side are left out
+    const auto across = [](const Vec3& middle, double part) {
+      return Vec3{middle.x + part, middle.y + part, middle.z + part};
+    };
+    const auto check_one = [&](const Vec3& v, int least) {
+      check(across(v, -0.045), across(v, 0.045), least);
+    };
+    check_one({0.05, 0.05, 0.05}, 33);   // the root and 16 levels, each a node and a list
+    check_one({0.15, 0.05, 0.05}, 1);    // a sister: one node
+    check_one({-0.05, 0.05, 0.05}, 30);  // another branch
     // eight equal voxels join, and are split again when one of them changes
     for (int k = 0; k < 20; ++k)
       for (int v = 0; v < 8; ++v) {
         const float p[] = {1.65f + 0.1f * static_cast<float>(v & 1),
                            1.65f + 0.1f * static_cast<float>(v >> 1 & 1),
                            1.65f + 0.1f * static_cast<float>(v >> 2)};
-        map->insert({p[0], p[1], p[2]}, p, 1);
+        const Vec3 end = across({p[0], p[1], p[2]}, 0.045);
+        const float last[] = {static_cast<float>(end.x), static_cast<float>(end.y),
+                              static_cast<float>(end.z)};
+        map->insert(across({p[0], p[1], p[2]}, -0.045), last, 1);
       }
-    const float beyond[] = {1.85f, 1.65f, 1.65f};
-    for (int k = 0; k < 20; ++k) map->insert({1.85, 1.65, 1.65}, beyond, 1);
-    check({1.75, 1.65, 1.65}, {1.85, 1.65, 1.65}, 9);
+    const float beyond[] = {1.895f, 1.695f, 1.695f};
+    for (int k = 0; k < 20; ++k) map->insert(across({1.85, 1.65, 1.65}, -0.045), beyond, 1);
+    check({1.74, 1.65, 1.65}, {1.85, 1.65, 1.65}, 9);
   }
   EXPECT_EQ(new_live, live);
 }

@@ -52,7 +52,7 @@ struct Figures {
   int64_t not_finite = 0;       // steps with a number in any buffer, pose or contact that is not finite
   int64_t diverged = 0;         // steps with RDM_STATUS_DIVERGED
   int64_t overflowed = 0;       // steps with RDM_STATUS_CONTACTS
-  int64_t other = 0;            // steps with any other bit
+  int64_t other = 0;            // steps with any other bit than those and RDM_STATUS_SOLVER
   int64_t unflagged = 0;        // steps whose status has no bit, but a value beyond the bounds below
   int64_t stuck = 0;            // longest run of diverged steps of one world, resets left out
   double contacts_mean = 0;     // per step, of the last substep
@@ -279,7 +279,8 @@ class Trial {
     ++f.steps;
     f.diverged += (status & RDM_STATUS_DIVERGED) != 0;
     f.overflowed += (status & RDM_STATUS_CONTACTS) != 0;
-    f.other += (status & ~static_cast<uint32_t>(RDM_STATUS_DIVERGED | RDM_STATUS_CONTACTS)) != 0;
+    f.other +=
+        (status & ~static_cast<uint32_t>(RDM_STATUS_DIVERGED | RDM_STATUS_CONTACTS | RDM_STATUS_SOLVER)) != 0;
     f.episodes += rows_.terminated[env] || rows_.truncated[env];
     run_[e] = status & RDM_STATUS_DIVERGED ? run_[e] + 1 : 0;
     f.stuck = std::max(f.stuck, run_[e]);

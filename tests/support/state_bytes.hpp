@@ -19,7 +19,7 @@ class StateBytes {
     spec.struct_size = sizeof spec;
     rdm_pool_get_spec(p, &spec);
     rdm::Reader in(bytes_.data(), size, "state");
-    in.begin_file("RDMSTATE", 1);
+    in.begin_file("RDMSTATE", 2);
     in.need_section("WRLD");
     size_ = in.left();
     begin_ = static_cast<size_t>(in.view(size_) - bytes_.data());

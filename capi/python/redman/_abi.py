@@ -1076,11 +1076,11 @@ class Epoch(Record):
     flags: int  # RDM_EPOCH_*
     skipped_gradients: int  # in this epoch, as all counts below: steps left out
     invalid_rows: int  # decisions with valid 0 that did not only reset
-    diverged: int  # decisions of a world with each RDM_STATUS_*
-    contacts_left_out: int
-    bad_actions: int
-    task_failed: int
-    unconverged: int
+    diverged: int  # decisions flagged RDM_STATUS_DIVERGED
+    contacts_left_out: int  # decisions flagged RDM_STATUS_CONTACTS
+    bad_actions: int  # decisions flagged RDM_STATUS_BAD_ACTION
+    task_failed: int  # decisions flagged RDM_STATUS_TASK
+    unconverged: int  # decisions flagged RDM_STATUS_SOLVER
 
 
 class rdm_epoch(Structure):
@@ -1118,11 +1118,11 @@ class rdm_epoch(Structure):
     reserved3: 0
     skipped_gradients: in this epoch, as all counts below: steps left out
     invalid_rows: decisions with valid 0 that did not only reset
-    diverged: decisions of a world with each RDM_STATUS_*
-    contacts_left_out
-    bad_actions
-    task_failed
-    unconverged
+    diverged: decisions flagged RDM_STATUS_DIVERGED
+    contacts_left_out: decisions flagged RDM_STATUS_CONTACTS
+    bad_actions: decisions flagged RDM_STATUS_BAD_ACTION
+    task_failed: decisions flagged RDM_STATUS_TASK
+    unconverged: decisions flagged RDM_STATUS_SOLVER
     """
 
     struct_size: int

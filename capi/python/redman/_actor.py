@@ -36,7 +36,7 @@ def worlds_of(where: Any) -> tuple[Optional[Pool], Any]:
         return where, None
     inner: Any = where
     for _ in range(64):  # wrappers
-        worlds = getattr(inner, "worlds", None) or getattr(inner, "_worlds", None)
+        worlds: Any = getattr(inner, "worlds", None) or getattr(inner, "_worlds", None)
         if isinstance(getattr(worlds, "pool", None), Pool):
             return worlds.pool, worlds
         inside = next((getattr(inner, name, None) for name in ("env", "venv", "_env")

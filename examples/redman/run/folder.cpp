@@ -66,9 +66,14 @@ int open_growing(const std::string& path, struct stat* s) {
 size_t append_whole(const std::string& path, const std::string& bytes) {
   struct stat s {};
   const int f = open_growing(path, &s);
-  const ssize_t wrote = f < 0 ? -1 : ::write(f, bytes.data(), bytes.size());
-  const int error = wrote < 0 ? errno : ENOSPC;
-  const bool good = wrote == static_cast<ssize_t>(bytes.size());
+  size_t wrote = 0;
+  while (f >= 0 && wrote < bytes.size()) {  // where a part fits, the rest says why no more does
+    const ssize_t part = ::write(f, bytes.data() + wrote, bytes.size() - wrote);
+    if (part <= 0) break;
+    wrote += static_cast<size_t>(part);
+  }
+  const int error = errno;
+  const bool good = f >= 0 && wrote == bytes.size();
   const bool cut = good || f < 0 || ftruncate(f, s.st_size) == 0;  // a part of a row is none
   if (f >= 0) close(f);
   if (!good || !cut) throw Failure("cannot write " + path + ": " + std::strerror(error));
