@@ -133,7 +133,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   // --- state
   // Error(kFormat) unless the bytes are a state of so many worlds of this pool, or of the other number, which
   // it returns; then the worlds can be read.
-  int32_t open_state(Reader& in, int32_t worlds, int32_t other = 0) const;
+  int32_t open_state(Reader& in, int32_t worlds, int32_t other = 0, uint32_t* version = nullptr) const;
   void write_world(int32_t env, Writer& out) const;
   // keep_streams: those of the disturbances stay the world's own.
   void read_world(int32_t env, Reader& in, bool keep_streams = false);

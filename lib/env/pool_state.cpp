@@ -156,8 +156,9 @@ void Pool::get_state(int32_t env, Writer& out) const {
   out.end_file();
 }
 
-int32_t Pool::Impl::open_state(Reader& in, int32_t worlds, int32_t other) const {
-  in.begin_file(kMagic, kVersion);
+int32_t Pool::Impl::open_state(Reader& in, int32_t worlds, int32_t other, uint32_t* version) const {
+  const uint32_t written = in.begin_file(kMagic, kVersion);
+  if (version) *version = written;
   in.need_section("HEAD");
   char name[kTextSize];
   in.text(name, sizeof name);
@@ -183,12 +184,12 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
   const Range range = range_of(env, m.config.num_envs);
   Reader in(bytes, size, "state");
   const int32_t own = range.count(), all = env < 0 ? own * m.ranks : own;
-  const int32_t held = m.open_state(in, own, all), before = held == own ? 0 : own * m.rank;
-  Reader drawn(bytes, size, "state");
+  uint32_t version = 0;
+  const int32_t held = m.open_state(in, own, all, &version), before = held == own ? 0 : own * m.rank;
+  Reader drawn = in, flags = in;  // checked once, which is most of what reading a state costs
   double share = m.starts.share;
   bool with_starts = false;
   if (env < 0) {
-    drawn.begin_file(kMagic, kVersion);
     with_starts = drawn.find_section("STRT");
     if (with_starts) {
       if (drawn.value<uint64_t>() != m.starts.mark)
@@ -202,8 +203,7 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
     }
   }
 
-  Reader flags(bytes, size, "state");
-  const bool flagged = flags.begin_file(kMagic, kVersion) > 1;
+  const bool flagged = version > 1;
   if (flagged) {
     flags.need_section("EPST");
     if (flags.left() != sizeof(uint32_t) * static_cast<size_t>(held))
