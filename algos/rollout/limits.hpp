@@ -4,13 +4,12 @@
 // that never ends has no such sum, and nothing is not 0. So, for each limited cost:
 //   sums that end           episodes end by themselves, or the agent closes one at episode_steps or max_steps
 //                           control steps: J_c as ever, known from the first one on
-//   cost_limit_per_step     J_c is the epoch's mean cost per control step times kRateSteps, or the length
-//   that is
-//                           known; the limit likewise. So rates of multipliers and penalties keep their unit
+//   cost_limit_per_step     J_c is the epoch's mean cost per control step times kRateSteps, or times the
+//                           length that is known; the limit likewise. So rates of multipliers and penalties
+//                           keep their unit
 //   neither, no end so far  an episode is at least as long as those that run: J_c is the epoch's cost per
-//   step
-//                           times their mean length. That bounds J_c from below, so it is known only where it
-//                           is above the limit
+//                           step times their mean length. That bounds J_c from below, so it is known only
+//                           where it is above the limit
 // While a cost is not known multipliers and slopes stay as they are, and constrained steps take the policy to
 // be at the limit, so that they may not raise its cost.
 #pragma once
