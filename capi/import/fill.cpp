@@ -32,7 +32,7 @@ std::vector<uint32_t> first_corners(const std::vector<V3>& p, double close) {
   return out;
 }
 
-// Moments about the origin and volumes of the pyramids from it to the faces.
+// Volume, centre and moments about the apex of the pyramids from it to the faces.
 Mass pyramids(const Mesh& mesh, V3 apex, bool positive) {
   double volume = 0;
   V3 first;

@@ -363,35 +363,4 @@ Primitive around(const std::vector<V3>& points) {
   return best;
 }
 
-Mass solid(const Mesh& mesh) {
-  // Tetrahedra from the origin; second moments about it, then shifted to the centre.
-  double volume = 0;
-  V3 first;
-  M3 second{};  // integral of r r^T
-  for (const auto& f : mesh.faces) {
-    const V3 a = mesh.points[f[0]], b = mesh.points[f[1]], c = mesh.points[f[2]], sum = a + b + c;
-    const double v = dot(a, cross(b, c)) / 6;
-    volume += v;
-    first = first + (v / 4) * sum;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        second[static_cast<size_t>(i)][static_cast<size_t>(j)] +=
-            v / 20 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + sum[i] * sum[j]);
-  }
-  if (volume < 0) {
-    volume = -volume, first = -1 * first;
-    for (auto& row : second)
-      for (double& x : row) x = -x;
-  }
-  if (!(volume > 1e-18)) return {};
-  Mass out{volume, (1 / volume) * first, {}};
-  const double trace = second[0][0] + second[1][1] + second[2][2];
-  for (size_t i = 0; i < 3; ++i)
-    for (size_t j = 0; j < 3; ++j) out.moment[i][j] = (i == j ? trace : 0) - second[i][j];
-  const M3 shift = point_moment(volume, out.com);
-  for (size_t i = 0; i < 3; ++i)
-    for (size_t j = 0; j < 3; ++j) out.moment[i][j] -= shift[i][j];
-  return out;
-}
-
 }  // namespace rdm::import

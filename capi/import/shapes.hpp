@@ -28,7 +28,5 @@ Mesh read_mesh(const std::string& path, Budget* budget);
 Mesh parse_mesh(std::string bytes, bool obj);
 // The smallest of box, capsule and sphere that holds the points, along their axes or the frame's.
 Primitive around(const std::vector<V3>& points);
-// Of density 1 by its faces; mass 0 for what is not closed.
-Mass solid(const Mesh& mesh);
 
 }  // namespace rdm::import
