@@ -3,30 +3,10 @@
 #include <string>
 
 #include "called_task.hpp"
-#include "contract.hpp"
+#include "task_pool.hpp"
 
 namespace rdm::test {
 namespace {
-
-struct Pool {
-  rdm_pool* pool = nullptr;
-  rdm_buffers b{};
-  explicit Pool(const char* task, int32_t envs, int32_t threads = 0, int32_t autoreset = 0,
-                const char* settings = nullptr) {
-    rdm_pool_config c = pool_config(envs);
-    c.task = task;
-    c.num_threads = threads;
-    c.autoreset = autoreset;
-    c.settings = settings;
-    pool = make_pool(c);
-    b.struct_size = sizeof b;
-    EXPECT_EQ(rdm_pool_buffers(pool, &b), RDM_OK);
-  }
-  ~Pool() { rdm_pool_destroy(pool); }
-  Pool(const Pool&) = delete;
-  Pool& operator=(const Pool&) = delete;
-  std::string text(int32_t env) const { return rdm_pool_world_error(pool, env); }
-};
 
 // Draws of a reset choose the worlds, so that they are the same for any threads.
 struct Lottery {
@@ -50,7 +30,7 @@ TEST(OwnTaskFailures, OneWorldIsFlaggedAndTheOthersGoOn) {
   for (const std::string function : functions)
     for (const int32_t threads : {0, 3}) {
       Lottery l("fails_alone");
-      Pool p("fails_alone", 8, threads);
+      TaskPool p("fails_alone", 8, threads);
       EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, nullptr), RDM_OK);
       const auto fails = [](const rdm_world* world) {
         return Lottery::chosen(world) ? rdm_fail(RDM_IO, "sensor lost") : rdm_result{RDM_OK};
@@ -100,13 +80,13 @@ TEST(OwnTaskFailures, SameBytesForAnyThreads) {
   };
   for (const int32_t autoreset : {RDM_AUTORESET_SAME_STEP, RDM_AUTORESET_NEXT_STEP}) {
     l.task.reset = [&](rdm_world* w, rdm_random* random) { return fails_to_reset(w, random); };
-    Pool one("fails_alike", 6, 0, autoreset), four("fails_alike", 6, 4, autoreset),
+    TaskPool one("fails_alike", 6, 0, autoreset), four("fails_alike", 6, 4, autoreset),
         again("fails_alike", 6, 0, autoreset);
-    for (Pool* p : {&one, &four})
+    for (TaskPool* p : {&one, &four})
       for (int k = 0; rdm_pool_reset(p->pool, nullptr, nullptr) != RDM_OK; ++k) ASSERT_LT(k, 200);
     int32_t retried = 0;
     for (int step = 0; step < 120; ++step) {
-      for (Pool* p : {&one, &four}) {
+      for (TaskPool* p : {&one, &four}) {
         EXPECT_EQ(rdm_pool_baseline(p->pool, RDM_BASELINE_RANDOM), RDM_OK);
         EXPECT_EQ(rdm_pool_step(p->pool), RDM_OK);
       }
@@ -135,7 +115,7 @@ TEST(OwnTaskFailures, AResetThatFails) {
   Lottery l("fails_reset");
   int calls = 0;
   const auto good = l.task.reset;
-  Pool p("fails_reset", 3);
+  TaskPool p("fails_reset", 3);
   l.task.reset = [&](rdm_world* w, rdm_random* random) {
     return ++calls == 2 ? rdm_fail(RDM_IO, "no place") : good(w, random);
   };
@@ -162,7 +142,7 @@ TEST(OwnTaskFailures, AResetThatFailsWithinAStep) {
   l.task.reset = [&](rdm_world* w, rdm_random* random) {
     return fails ? rdm_fail(RDM_IO, "no place") : good(w, random);
   };
-  Pool p("fails_later", 2);
+  TaskPool p("fails_later", 2);
   EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, nullptr), RDM_OK);
   for (int k = 0; k < 19; ++k) EXPECT_EQ(rdm_pool_step(p.pool), RDM_OK);
   fails = true;
@@ -206,7 +186,7 @@ TEST(OwnTaskFailures, ExceptionsAreTheHosts) {
   CalledTask t("throws");
   int released = 0;
   {
-    Pool p("throws", 1);
+    TaskPool p("throws", 1);
     t.judge = [](const rdm_world*, int64_t, rdm_verdict*) -> rdm_result { throw 1; };
     EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, nullptr), RDM_OK);
     EXPECT_EQ(rdm_pool_step(p.pool), RDM_OK);
@@ -274,7 +254,7 @@ TEST(OwnTaskFailures, ABuildThatMakesItsOwnPoolEnds) {
 
 TEST(OwnTaskFailures, TextsAreOfWorldsThatThereAre) {
   CalledTask t("texts");
-  Pool p("texts", 2);
+  TaskPool p("texts", 2);
   EXPECT_EQ(p.text(0), "");
   EXPECT_EQ(p.text(2), "env: no such world");
   EXPECT_EQ(p.text(-1), "env: no such world");

@@ -3,30 +3,18 @@
 #include <limits>
 
 #include "called_task.hpp"
-#include "contract.hpp"
+#include "task_pool.hpp"
 
 namespace rdm::test {
 namespace {
 
 constexpr int32_t kWorlds = 3;
 
-struct Pool {
-  rdm_pool* pool = nullptr;
-  rdm_buffers b{};
-  explicit Pool(const char* task, const char* settings = nullptr,
-                int32_t autoreset = RDM_AUTORESET_SAME_STEP) {
-    rdm_pool_config c = pool_config(kWorlds);
-    c.task = task;
-    c.settings = settings;
-    c.autoreset = autoreset;
-    pool = make_pool(c);
-    b.struct_size = sizeof b;
-    EXPECT_EQ(rdm_pool_buffers(pool, &b), RDM_OK);
+struct Pool : TaskPool {
+  explicit Pool(const char* task, const char* settings = nullptr, int32_t autoreset = RDM_AUTORESET_SAME_STEP)
+      : TaskPool(task, kWorlds, 0, autoreset, settings) {
     EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK);
   }
-  ~Pool() { rdm_pool_destroy(pool); }
-  Pool(const Pool&) = delete;
-  Pool& operator=(const Pool&) = delete;
 
   void step(int32_t times = 1) {
     for (int32_t i = 0; i < times; ++i) ASSERT_EQ(rdm_pool_step(pool), RDM_OK) << rdm_pool_error(pool);
