@@ -1,6 +1,7 @@
 """Agent: one algorithm that acts and learns, on the worlds of a pool or on a world of your own."""
 from __future__ import annotations
 
+import _thread
 import contextlib
 import ctypes
 import math
@@ -223,16 +224,16 @@ class Agent(Hinted):
                 ended.append(True)
                 done.release()
 
-        thread = threading.Thread(target=work, name="redman", daemon=True)
+        started = None
         done.acquire()
-        try:  # a signal may raise behind each of these
-            thread.start()
+        try:  # a signal may raise behind each of these; Thread.start would leave a dead thread in threading's books
+            started = _thread.start_new_thread(work, ())
             go.put(None)
             done.acquire()
         except BaseException:
             given_up.append(True)
             go.put(None)
-            if thread.ident is not None:  # else it finds that this was given up
+            if started is not None:  # else it finds that this was given up
                 lib.rdm_agent_cancel(self._a)
                 self._wait(ended)
                 if not failed:
