@@ -17,6 +17,7 @@ struct AlgoRow {
   size_t (*measure)(ResolvedAgentConfig&& resolved);
   Agent* (*make)(const HostHooks& hooks, ResolvedAgentConfig&& resolved);
   void (*end)(Agent* agent);
+  void (*adapt)(ResolvedAgentConfig& resolved);  // defaults that hang on the limits, by set_default; or null
 };
 const AlgoRow& algo_row(int32_t index);
 
@@ -26,8 +27,10 @@ extern const AlgoRow kPpo, kTrpo, kPpoLag, kTrpoLag, kCppoPid, kCpo, kPcpo, kFoc
 // The row of an algorithm whose class is T.
 template <class T, size_t N>
 constexpr AlgoRow make_algo_row(const char* name, const char* summary,
-                                const std::array<OptionSpec, N>& options, Costs costs) {
+                                const std::array<OptionSpec, N>& options, Costs costs,
+                                void (*adapt)(ResolvedAgentConfig&) = nullptr) {
   AlgoRow row{};
+  row.adapt = adapt;
   row.info = {name, summary, options.data(), static_cast<int32_t>(N)};
   row.costs = costs;
   row.measure = [](ResolvedAgentConfig&& resolved) -> size_t {

@@ -124,6 +124,7 @@ void resolve_costs(ResolvedAgentConfig& resolved) {
          "most "
          "violated one",
          resolved.row->info.name, resolved.num_limited);
+  if (resolved.row->adapt) resolved.row->adapt(resolved);
 }
 
 // "x,y,z" in m; blanks are skipped.

@@ -70,6 +70,17 @@ void FocopsRule::visit(StateIo& io) {
 }
 
 namespace {
+
+constexpr double kPaperBound = 2;  // on nu
+
+// No cost is under a limit of 0, so there nu only climbs. A large one would leave of the reward, beside the
+// KL's fixed weight, next to nothing.
+void bound_multiplier(ResolvedAgentConfig& resolved) {
+  const double *limit = resolved.limit, bound = resolved.options.number("multiplier_max");
+  if (std::find(limit, limit + resolved.num_limited, 0.0) != limit + resolved.num_limited)
+    resolved.options.set_default("multiplier_max", std::min(bound, kPaperBound));
+}
+
 constexpr std::array kFocopsOptions = {
     number_option("temperature", 1.5, 1e-6, 1e6, "lambda of the paper, fixed", true),
     number_option("focops_eta", 0.02, 0, 1e6, "samples whose KL(new || old) is above this teach nothing",
@@ -79,11 +90,11 @@ constexpr std::array kFocopsOptions = {
 constexpr auto kOptions =
     with_defaults(join_options(kSharedOptions, kMultiplierOptions, kFocopsOptions, kOneCostOptions),
                   {OtherDefault{"multiplier_optimizer", 0, "sgd"}, OtherDefault{"multiplier_init", 0},
-                   OtherDefault{"multiplier_lr", 0.01}, OtherDefault{"multiplier_max", 2},
+                   OtherDefault{"multiplier_lr", 0.01}, OtherDefault{"multiplier_max", kPaperBound},
                    OtherDefault{"early_stop_kl", 0.02}});
 }  // namespace
 constinit const AlgoRow kFocops = make_algo_row<Focops>(
     "focops", "First-order constrained optimisation in policy space (Zhang et al. 2020)", kOptions,
-    Costs::kOne);
+    Costs::kOne, bound_multiplier);
 
 }  // namespace rdm

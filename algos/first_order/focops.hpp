@@ -9,7 +9,8 @@
 //
 // Departures: the cost advantage is centred, not standardised, as the authors' code has both
 // (scale_cost_adv=std: that); multiplier_divide divides by 1 + nu, as a peer does; of several limited costs
-// the most violated one alone weighs in an epoch, with a nu of its own.
+// the most violated one alone weighs in an epoch, with a nu of its own. At a limit of 0 nu_max is at most the
+// paper's 2, unless the host gives another.
 #pragma once
 #include "algos/core/agent.hpp"
 #include "algos/lagrange/cost_weighted.hpp"

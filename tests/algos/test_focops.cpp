@@ -75,6 +75,23 @@ TEST(Focops, GradientIsTheFiniteDifference) {
   expect_finite_difference(with_state_std(s));
 }
 
+TEST(Focops, NuIsBoundedByTwoAtALimitOfZero) {
+  const auto bound = [](const char* limit, const char* given) {
+    const OptionInput wide{"multiplier_max", nullptr, 100};
+    AgentSetup s("focops", 1, 1, 1);
+    s.config.defaults = &wide;
+    s.config.num_defaults = 1;
+    s.with("cost_limit", limit);
+    if (given) s.with("multiplier_max", given);
+    return resolve_config(s.ready()).options.number("multiplier_max");
+  };
+  EXPECT_EQ(bound("25", nullptr), 100);
+  EXPECT_EQ(bound("1e-6", nullptr), 100);
+  EXPECT_EQ(bound("0", nullptr), 2);
+  EXPECT_EQ(bound("0", "50"), 50);
+  EXPECT_EQ(bound("0", "1"), 1);
+}
+
 TEST(Focops, SeveralCostsAreRefusedOrTheWorstIsFollowed) {
   const double limits[] = {1, 0.5};
   for (const char* algo : {"focops", "cpo", "pcpo"}) {
