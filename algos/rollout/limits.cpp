@@ -27,6 +27,8 @@ JudgedCosts judge(const ResolvedAgentConfig& resolved, const EpisodeStats& stats
       j.steps[i] = totals.running;
       j.known[i] = j.fresh[i] = j.cost[i] > j.limit[i];
     }
+    const bool whole = totals.steps >= j.steps[i] * resolved.all_envs();
+    j.spotless[i] = j.known[i] && j.limit[i] == 0 && totals.cost[k] == 0 && (whole || j.cost[i] == 0);
   }
   return j;
 }

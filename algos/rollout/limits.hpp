@@ -37,6 +37,10 @@ struct JudgedCosts {
   bool fresh[kMaxCosts] = {};  // there is something new to judge by
   double cost[kMaxCosts] = {}, limit[kMaxCosts] = {};
   double steps[kMaxCosts] = {};  // control steps that the sum is over
+  // The limit is 0 and no decision of this epoch cost anything, nor an episode of the window if the epoch is
+  // shorter than one. As costs are not negative the policy is at their minimum, where the gradient of its cost
+  // is 0: an estimate of that would be the critic's error alone.
+  bool spotless[kMaxCosts] = {};
 
   bool any_known() const {
     return std::any_of(known, known + count, [](bool k) { return k; });

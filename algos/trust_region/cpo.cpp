@@ -9,9 +9,12 @@ namespace rdm {
 void Cpo::begin_epoch(const JudgedCosts& costs, int32_t epoch) {
   Trpo::begin_epoch(costs, epoch);
   cost_ = 0;
+  free_ = true;
   for (int32_t i = 0; i < resolved().num_limited; ++i) {
+    if (costs.spotless[i]) continue;
     const double c = violation(costs, i);
-    if (i == 0 || c > c_) cost_ = i, c_ = c;
+    if (free_ || c > c_) cost_ = i, c_ = c;
+    free_ = false;
   }
 }
 
@@ -24,11 +27,11 @@ bool Cpo::solve(double c) {
 }
 
 double Cpo::step_policy(const Batch& batch) {
-  region().linearize(batch, cost_, schedule_share());
-  const bool keep_reward = solve(c_);
+  region().linearize(batch, free_ ? -1 : cost_, schedule_share());
+  const bool keep_reward = solve(free_ ? 0 : c_);
   const auto k = static_cast<size_t>(cost_);
   return region().search([&](const Surrogate& before, const Surrogate& after) {
-    return after.cost[k] - before.cost[k] <= std::max(-c_, 0.0) &&
+    return (free_ || after.cost[k] - before.cost[k] <= std::max(-c_, 0.0)) &&
            (!keep_reward || after.gain >= before.gain);
   });
 }

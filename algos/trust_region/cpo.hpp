@@ -5,6 +5,8 @@
 // The line search wants KL <= delta, the cost surrogate to rise by at most max(-c, 0), and, unless the
 // problem was a recovery, the reward's not to fall (the paper's section 6.1; 6.2 for the recovery). Of
 // several limited costs each epoch follows the most violated one (several_costs=worst); the paper has one.
+// Where a limit of 0 is kept (JudgedCosts::spotless) the step is TRPO's: c is 0 and b noise there, and a step
+// along the plane b'y = 0 raises the cost surrogate by its curvature, so that no shorter one is accepted.
 #pragma once
 #include "algos/trust_region/trpo.hpp"
 
@@ -29,6 +31,7 @@ class Cpo : public Trpo {
  private:
   int32_t cost_ = 0;  // the limited cost that this epoch follows
   double c_ = 0;
+  bool free_ = false;  // no limit can bind
 };
 
 }  // namespace rdm

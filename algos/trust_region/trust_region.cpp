@@ -1,5 +1,6 @@
 #include "algos/trust_region/trust_region.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "algos/first_order/ratio_loss.hpp"
@@ -59,7 +60,10 @@ void TrustRegion::linearize(const Batch& batch, int32_t cost, double share) {
   fisher_.multiply(x_, cg_.product);
   q_ = dot(x_, cg_.product, size_);
   r_ = s_ = bb_ = 0;
-  if (cost < 0) return;
+  if (cost < 0) {
+    if (p_) std::fill_n(b_, size_, 0.0f), std::fill_n(p_, size_, 0.0f);
+    return;
+  }
   gradient_of(CostLoss(cost), 1, b_);
   solve(b_, p_);
   r_ = dot(b_, x_, size_);

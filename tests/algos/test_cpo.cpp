@@ -37,6 +37,42 @@ TEST(Cpo, RecoversFromAnInfeasibleStart) {
   EXPECT_NEAR(play_bandit(s, 100, &e), 1, 0.05);
 }
 
+namespace {
+
+// The actor and more after four epochs in a world of noise where every decision costs `cost`.
+std::vector<float> play_noise(const char* algo, const char* limit, float cost) {
+  AgentSetup s(algo, 3, 2, 8);
+  s.with("horizon", "100").with("hidden", "16").with("passes", "2").with("cost_limit", limit);
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  const std::vector<float> costs(size_of(s.config.num_envs), cost);
+  for (int epoch = 0; epoch < 4; ++epoch) {
+    while (a->missing() > 0) {
+      a->act(world.obs(), true, world.action());
+      world.draw();
+      Transition t = world.transition();
+      t.cost = costs.data();
+      a->record(t);
+    }
+    a->update(world.obs(), nullptr);
+  }
+  std::vector<float> all = parameters(*a);
+  all.resize(3 * 16 + 16 + 16 * 2 + 2);
+  return all;
+}
+
+}  // namespace
+
+// The cost critic starts anywhere, so its advantages have a slope where nothing costs. At a limit of 0 that
+// must not hold the policy back, as it does where something costs.
+TEST(Cpo, AtALimitOfZeroAPolicyWithoutACostIsFree) {
+  const std::vector<float> plain = play_noise("trpo", "0", 0);
+  for (const char* algo : {"cpo", "pcpo"}) {
+    EXPECT_EQ(play_noise(algo, "0", 0), plain) << algo;
+    EXPECT_NE(play_noise(algo, "0", 0.1f), plain) << algo;
+  }
+}
+
 TEST(Cpo, TwoStatesReachTheConstrainedOptimum) {
   const Outcome o = play_two_state(
       "cpo",

@@ -70,6 +70,27 @@ TEST(Limits, ALimitPerStepIsASumOverAnEpisodesLength) {
   }
 }
 
+// 4 environments, or 400 control steps of them in an epoch.
+TEST(Limits, OnlyALimitOfZeroThatNothingBreaksIsSpotless) {
+  struct Case {
+    double limit, cost, paid, length;
+    bool spotless;
+  };
+  const Case cases[] = {
+      {0, 0, 0, 100, true},   {0, 0, 0, 101, true},     // whole episodes, or all of them clean
+      {0, 0.5, 0, 100, true}, {0, 0.5, 0, 101, false},  // older costs: a whole one outweighs them
+      {0, 0, 1, 100, false},  {0, 0.5, 1, 100, false}, {25, 0, 0, 100, false}, {1e-6, 0, 0, 100, false}};
+  for (const Case& c : cases) {
+    AgentSetup s = lag(c.limit);
+    s.config.num_envs = 4;
+    EpochTotals t;
+    t.cost[0] = c.paid, t.steps = 400;
+    const JudgedCosts j = judge(resolve_config(s.ready()), ended(c.cost, c.length), t);
+    EXPECT_EQ(j.spotless[0], c.spotless) << c.limit << ' ' << c.cost << ' ' << c.paid << ' ' << c.length;
+    EXPECT_FALSE(judge(resolve_config(s.ready()), {}, t).spotless[0]);
+  }
+}
+
 TEST(Limits, TheLimitPerStepIsLiveWhereItWasGiven) {
   AgentSetup s = lag(25);
   s.options.push_back({"cost_limit_per_step", nullptr, 0.05});
