@@ -62,7 +62,7 @@ void MjcfReader::add_joint(const Element& e, const Pose& frame, const std::strin
   j.armature = number_of(e, "armature", c, 0);
   const auto coefficient = [&](const char* key) {
     const auto* t = value(e, key, c);
-    const auto n = t ? numbers(e, key, *t, 1, 3) : std::vector<double>{0};
+    const auto n = t ? numbers(e, key, *t, 1, 3, kMostDamping) : std::vector<double>{0};
     if (std::any_of(n.begin() + 1, n.end(), [](double x) { return x != 0; }))
       refuse_at(RDM_UNSUPPORTED, e, "%s: a polynomial is not read, its first number alone", key);
     return n[0];

@@ -313,7 +313,11 @@ struct Builder {
       }
       const double reach = j.slides ? kReachSlide : kReachAngle;
       l.kp = j.kp >= 0 ? j.kp : std::min(l.effort / reach, kMostGain);
-      l.kd = std::max(j.kd, 0.0) + j.damping;
+      const double damping = std::min(j.damping, std::max(kMostGain - std::max(j.kd, 0.0), 0.0));
+      if (damping < j.damping)
+        out->note(RDM_NOTE_CHANGED, j.element->line, "joint %s: damping %g is %g, the most that a joint has",
+                  l.joint, j.damping, damping);
+      l.kd = std::max(j.kd, 0.0) + damping;
       if (j.damping_ratio > 0) l.kd += j.damping_ratio * 2 * std::sqrt(l.kp * felt_as_drawn[r]);
       if (j.kp < 0 || l.kd == 0) l.kd = std::max(l.kd, 2 * std::sqrt(l.kp * felt[r]));
       if (j.kp < 0)

@@ -12,6 +12,10 @@
 
 namespace rdm::import {
 
+// Files say by it that a joint stays where it is; what is above the gains of a joint becomes the largest of
+// these, with a note.
+inline constexpr double kMostDamping = 1e30;
+
 struct JointIn {
   std::string name;
   const Element* element = nullptr;

@@ -146,6 +146,16 @@ struct Reader {
     return X * read;
   }
 
+  // ROS reads the first of them, and so do the simulators that read URDF.
+  void note_more_inertials(const Element& l) {
+    const auto all = l.all("inertial");
+    for (size_t k = 1; k < all.size(); ++k) {
+      mark(*all[k]);
+      out->note(RDM_NOTE_CHANGED, all[k]->line,
+                "link %s: a second inertial, passed over as in ROS: that of line %d counts",
+                clean(l.find("name")->value).c_str(), all[0]->line);
+    }
+  }
   // At the density that options say for links without inertial, or an inertial's own (Isaac Gym's way).
   double density_of(const Element& l) const {
     const Element* inertial = l.child("inertial");
@@ -291,7 +301,8 @@ struct Reader {
                   std::exchange(o.velocity, 0));
     }
     if (const Element* dynamics = j.element->child("dynamics")) {
-      o.damping = given(*dynamics, "damping", 0);
+      if (const auto* t = dynamics->get("damping"))
+        o.damping = numbers(*dynamics, "damping", *t, 1, 1, kMostDamping)[0];
       o.friction = given(*dynamics, "friction", 0);
       if (o.damping < 0 || o.friction < 0)
         refuse_at(RDM_RANGE, *dynamics, "joint %s: damping %g or friction %g is below 0",
@@ -326,6 +337,7 @@ struct Reader {
           if (const Element* e = joint->element->child(tag)) mark(*e);
       }
     }
+    note_more_inertials(l);
     const double density = density_of(l);
     if (density < 0) refuse_at(RDM_RANGE, l, "density: %g is below 0", density);
     if (density == 0) body.mass = mass_of(l, !body.joints.empty());

@@ -45,7 +45,7 @@ const std::map<std::string, Row>& rows() {
         "visual contact gravity kinematic self_collision_checking collision_checking self_filter surface "
         "gazebo "
         "audio_source bullet sensor material verbose velocity_decay",
-        "name", "type concave", "inertial"}},
+        "name", "type concave", ""}},  // of several inertials the first counts
       {"inertial", {"origin mass inertia", "density friction", "", "name", "origin mass inertia density"}},
       {"mass", {"", "", "value", "", ""}},
       {"inertia", {"", "", "ixx iyy izz ixy ixz iyz iyx izx izy", "", ""}},

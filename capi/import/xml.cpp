@@ -16,7 +16,6 @@ namespace {
 constexpr int kMostIncludes = 16;              // deep
 constexpr size_t kMostAttributes = 256;        // of an element: the parser compares each with all before it
 constexpr size_t kMostText = 256, kEach = 64;  // bytes of a text of numbers, and of each of them
-constexpr double kLargest = 1e9;               // of a number
 
 const char* reason_of(tinyxml2::XMLError e) {
   switch (e) {
@@ -321,7 +320,7 @@ void refuse_xacro(const Element& e, const char* attribute, const std::string& te
 }
 
 std::vector<double> numbers(const Element& e, const char* attribute, const std::string& text, size_t least,
-                            size_t most) {
+                            size_t most, double largest) {
   std::vector<double> out;
   if (text.size() > kMostText + kEach * most)
     refuse_at(RDM_RANGE, e, "%s: %zu bytes are too long a text for %zu number%s", attribute, text.size(),
@@ -335,8 +334,11 @@ std::vector<double> numbers(const Element& e, const char* attribute, const std::
       refuse_xacro(e, attribute, text);
       refuse_at(RDM_FORMAT, e, "%s: %s is no number", attribute, clean(text).c_str());
     }
-    if (!(std::abs(value) <= kLargest))
-      refuse_at(RDM_RANGE, e, "%s: %s is outside [-1e9, 1e9]", attribute, clean(text).c_str());
+    if (!(std::abs(value) <= largest)) {
+      const int power = static_cast<int>(std::lround(std::log10(largest)));
+      refuse_at(RDM_RANGE, e, "%s: %s is outside [-1e%d, 1e%d]", attribute, clean(text).c_str(), power,
+                power);
+    }
     out.push_back(value);
     if (out.size() > most) break;
   }

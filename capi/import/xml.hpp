@@ -35,9 +35,11 @@ std::unique_ptr<Element> parse_xml(const std::string& bytes, const Options& opti
 std::string where(const Element& e);
 [[noreturn]] [[gnu::format(printf, 3, 4)]] void refuse_at(rdm_result code, const Element& e,
                                                           const char* format, ...);
-// The numbers of a text; refuses what is no number, not finite or beyond 1e9, each with its reason.
+inline constexpr double kLargest = 1e9;  // of a number, where nothing else is said
+// The numbers of a text; refuses what is no number, not finite or beyond `largest`, a power of ten, each with its
+// reason.
 std::vector<double> numbers(const Element& e, const char* attribute, const std::string& text, size_t least,
-                            size_t most);
+                            size_t most, double largest = kLargest);
 double number(const Element& e, const char* attribute, const std::string& text);
 // The same of a bound, which may be none: what is infinite or beyond 1e9 is infinite.
 double bound(const Element& e, const char* attribute, const std::string& text);

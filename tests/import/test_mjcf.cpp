@@ -109,6 +109,13 @@ TEST(Mjcf, RangesHoldWhereTheySaySo) {
 }
 
 // ---- masses ----
+// As in Fetch's base, which slides nowhere by it.
+TEST(Mjcf, ADampingThatHoldsAJointStillIsTheLargest) {
+  const Import i = from_text(file(arm(kRod, "type='slide' range='-1 1' damping='1e11'")));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "joint j: damping 1e+11 is 1e+06, the most that a joint has"));
+  EXPECT_EQ(i.def.links[0].kd, 1e6);
+}
+
 TEST(Mjcf, GeomsHaveMassByGroupMassAndDensity) {
   const double volume = 8 * 0.01 * 0.02 * 0.03;
   struct Row {

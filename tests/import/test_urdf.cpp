@@ -102,10 +102,36 @@ TEST(Urdf, SecondOnesAreRefusedUnlessTheySayTheSame) {
   expect_refused(with_joint(kOrigin + "<origin xyz='0 0 0.2'/>" + kLimit), RDM_FORMAT,
                  "origin: a second one, after that of line 1");
   expect_refused(with_joint("<child link='base'/>" + kLimit), RDM_FORMAT, "child: a second one");
+  expect_refused(with_joint("<dynamics damping='1'/><dynamics damping='2'/>" + kLimit), RDM_FORMAT,
+                 "dynamics: a second one");
+}
+
+// As in fingers of TriFinger Pro, whose tips have that of the simulation and that of the drawing.
+TEST(Urdf, OfTwoInertialsTheFirstCounts) {
   std::string other = kInertial;
   other.replace(other.find("0.5"), 3, "0.6");
-  expect_refused(with_arm(kInertial + other), RDM_FORMAT, "inertial: a second one");
-  EXPECT_EQ(from_text(with_arm(kInertial + kInertial)).def.links[0].mass, 0.5);
+  const Import i = from_text(with_arm(kInertial + other)), twins = from_text(with_arm(kInertial + kInertial));
+  EXPECT_EQ(i.def.links[0].mass, 0.5);
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED,
+                         "link arm: a second inertial, passed over as in ROS: that of line 1 counts"));
+  EXPECT_EQ(from_text(with_arm(other + kInertial)).def.links[0].mass, 0.6);
+  EXPECT_EQ(twins.def.links[0].mass, 0.5);
+  EXPECT_TRUE(twins.has_note(RDM_NOTE_CHANGED, "a second inertial"));
+  // What is passed over is looked at all the same.
+  other.replace(other.find("<mass"), 5, "<mas");
+  expect_refused(with_arm(kInertial + other), RDM_UNSUPPORTED, "nearest is mass");
+}
+
+TEST(Urdf, ADampingThatHoldsAJointStillIsTheLargest) {
+  const auto with_damping = [](const char* text) {
+    return with_joint(kOrigin + kLimit + "<dynamics damping='" + text + "'/>");
+  };
+  const Import i = from_text(with_damping("1e11"));
+  EXPECT_EQ(i.def.links[0].kd, 1e6);
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "damping 1e+11 is 1e+06, the most that a joint has"));
+  EXPECT_TRUE(from_text(with_damping("1e6")).notes(RDM_NOTE_CHANGED).empty());
+  expect_refused(with_damping("-1"), RDM_RANGE, "damping -1 or friction 0 is below 0");
+  expect_refused(with_damping("1e31"), RDM_RANGE, "damping: 1e31 is outside [-1e30, 1e30]");
 }
 
 TEST(Urdf, WhatClosesLoopsOrBendsIsRefused) {
