@@ -145,9 +145,24 @@ void try_create(rdm_robot_def def) {
   def.num_links = 0;
   (void)rdm_robot_create(&robot, &def);
   text = rdm_last_error();
-  if (text.find("the name is taken") != std::string::npos) text += ": options.name says another";
   if (text.find("the name is") != std::string::npos || text.find("a name is made of") != std::string::npos)
     refuse(RDM_ARGUMENT, "%s", text.c_str());
+}
+
+// An option that would change the robot, in a format that does not take it.
+void need_taken(const Options& o, int32_t format) {
+  if (format == RDM_IMPORT_MJCF && o.density > 0)
+    refuse(
+        RDM_ARGUMENT,
+        "options.density: of URDF alone; a geom of MJCF says its own mass or density, else has 1000 kg/m3");
+  if (format != RDM_IMPORT_ROBOT) return;
+  const std::pair<const char*, bool> said[] = {
+      {"density", o.density > 0},    {"slide_range", o.slide_range > 0}, {"root", !o.root.empty()},
+      {"palm", !o.palm.empty()},     {"tips", !o.tips.empty()},          {"mount", !o.mount.empty()},
+      {"flange", !o.flange.empty()},
+  };
+  for (const auto& [name, given] : said)
+    if (given) refuse(RDM_ARGUMENT, "options.%s: of URDF and MJCF; a .robot file says it itself", name);
 }
 
 // XML that is not well-formed up to its first element too.
@@ -171,6 +186,7 @@ void read(const std::string& bytes, const Options& options, Draft* out) {
              : bytes.find("<mujoco") != std::string::npos      ? RDM_IMPORT_MJCF
                                                                : RDM_IMPORT_URDF;
   }
+  need_taken(options, format);
   if (format == RDM_IMPORT_MJCF)
     read_mjcf(bytes, options, out);
   else if (format == RDM_IMPORT_URDF)

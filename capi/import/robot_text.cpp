@@ -442,7 +442,14 @@ struct RobotReader {
         top.bad(RDM_VERSION_MISMATCH, line_of(*n), "format: this library reads %d", kFormat);
     rdm_robot_def& d = out->def;
     d.name = options.name.empty() ? name(top, "name") : out->keep(options.name);
-    if (top.find("alias")) d.alias = name(top, "alias");
+    if (const toml::node* n = top.find("alias")) {
+      const char* alias = name(top, "alias");
+      if (options.name.empty())
+        d.alias = alias;
+      else
+        out->note(RDM_NOTE_DROPPED, line_of(*n), "alias %s: another name of what is now %s",
+                  clean(alias).c_str(), clean(options.name).c_str());
+    }
     if (top.find("summary")) d.summary = name(top, "summary");
     d.kind = options.kind >= 0 ? options.kind : top.choice("kind", kKinds, 3, 0);
     static constexpr const char* kAxes[] = {"x", "y", "z"};

@@ -112,7 +112,9 @@ Report show(const rdm_object_def& def, const ObjectFlags& flags, Json json, cons
   json["friction"] = def.friction;
   json["shapes"] = def.num_shapes;
   if (!flags.out.empty()) {
-    replace_file(flags.out, object_text(def));
+    const std::string written = object_text(def);
+    import_object_text(written, flags.file);  // nothing is written that could not be read
+    replace_file(flags.out, written);
     json["file"] = flags.out;
     text += "\nwritten to " + flags.out + '\n';
   }
@@ -201,11 +203,17 @@ Report object_of_mesh(const ObjectFlags& flags) {
 Report run_object(const ObjectFlags& flags) {
   if (is_mesh(flags.file)) return object_of_mesh(flags);
   if (flags.given)
-    throw Usage(
-        flags.file +
-        ": --parts, --points, --mass, --friction, --material, --scale and --name are of a mesh (.stl, .obj)");
+    throw Usage(flags.file +
+                ": --parts, --points, --mass, --friction, --material and --scale are of a mesh (.stl, .obj)");
   const Import import = import_object(flags.file);
-  return show(object_def_of(import), flags, Json::object(), "");
+  rdm_object_def def = object_def_of(import);
+  std::string how;
+  if (!flags.name.empty()) {
+    if (def.alias) how = std::string("without its alias ") + def.alias + '\n';
+    def.name = flags.name.c_str();
+    def.alias = nullptr;
+  }
+  return show(def, flags, Json::object(), how);
 }
 
 }  // namespace
@@ -236,8 +244,8 @@ void add_object(CLI::App& app, Run& run) {
           ->check(CLI::Range(0.0, 10.0)),
       command->add_option("--material", flags->material, "name of its surface"),
       command->add_option("--scale", flags->scale, "m per unit of the file")->check(above_zero()),
-      command->add_option("--name", flags->name, "name of the object; default: the file's"),
   };
+  command->add_option("--name", flags->name, "name of the object; default: the file's");
   command->add_option("--out", flags->out, "write it as an .object file");
   command->callback([&run, flags, of_mesh] {
     for (const CLI::Option* option : of_mesh) flags->given = flags->given || option->count() > 0;

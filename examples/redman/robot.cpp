@@ -144,8 +144,9 @@ void add_robot(CLI::App& app, Run& run) {
   command->add_flag("--skip-meshes", f.skip_meshes, "drop meshes that cannot be read");
   command->add_flag("--mend-inertia", f.mend_inertia,
                     "raise moments of inertia that break the triangle rule");
-  command->add_option("--density", f.density,
-                      "kg/m3 of URDF links without inertial; default: they weigh nothing");
+  command->add_option(
+      "--density", f.density,
+      "kg/m3 of URDF links without inertial; default: they weigh nothing. Refused for other formats");
   command->add_option("--slide-range", f.slide_range,
                       "m to either side of a joint that slides without an end; default: 2 pi");
   command->add_option("--packages", f.packages,

@@ -47,12 +47,12 @@ enum rdm_note_kind { /* of a note */
   RDM_NOTE_GUESSED = 2, /* does not stand in the file            */
   RDM_NOTE_CHECK = 3    /* found by rdm_import_check             */
 };
-typedef struct rdm_import_options { /* how a file is read; what a .robot file says itself goes before the roles here */
+typedef struct rdm_import_options { /* how a file is read; a .robot file takes no root, roles, density or slide_range: ARGUMENT */
   uint32_t struct_size;    /* bytes, set by rdm_import_options_init                                       */
   int32_t format;          /* RDM_IMPORT_*                                                                */
   int32_t kind;            /* RDM_ROBOT_*, -1: guessed; default -1                                        */
   int32_t skip_meshes;     /* flag: meshes that cannot be read are dropped with a note, else refused      */
-  const char *name;        /* of the robot; NULL: the file's                                              */
+  const char *name;        /* of the robot, which then has no alias; NULL: the file's                     */
   const char *folder;      /* where the names of a text's meshes begin; NULL: that of the file, or none   */
   const char *packages;    /* folder that holds the folders of package://; NULL: searched above the file  */
   const char *root;        /* link (body) whose subtree is taken, "world" for all of an MJCF file; NULL   */
@@ -63,7 +63,8 @@ typedef struct rdm_import_options { /* how a file is read; what a .robot file sa
   char *error;             /* [error_size] the text of a failing call that takes these options; NULL      */
   int32_t error_size;      /* bytes, terminator included; what is longer is cut                           */
   int32_t mend_inertia;    /* flag: moments that break the triangle rule are raised with a note, else refused */
-  double density;          /* kg/m3, of URDF links without <inertial>: what their <collision> weighs; 0: they weigh nothing */
+  double density;          /* kg/m3, of URDF links without <inertial>: what their <collision> weighs; 0: they weigh nothing;
+                            * above 0 with another format, where geoms say their own: ARGUMENT             */
   double slide_range;      /* m to either side, of a joint that slides without an end; 0: 2 pi                */
 } rdm_import_options;
 typedef struct rdm_import_note { /* frozen layout; texts live as long as the handle */

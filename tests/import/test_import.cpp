@@ -119,6 +119,27 @@ TEST(Import, RolesAreGuessedAndListed) {
   EXPECT_NEAR(two.def.mount_q[2], std::sqrt(0.5), 1e-12);
 }
 
+// An option that would change the robot is taken or refused, never passed over.
+TEST(Import, OptionsThatAFormatDoesNotTakeAreRefused) {
+  const auto refused = [](const std::string& bytes, const std::string& text, auto&& set) {
+    rdm_import_options o = options();
+    set(o);
+    expect_refused(bytes, RDM_ARGUMENT, text, &o);
+  };
+  refused(read("hand.xml"), "options.density: of URDF alone; a geom of MJCF says its own mass or density",
+          [](auto& o) { o.density = 1000; });
+  const std::string robot = written(from_file("hand.urdf").def);
+  for (const auto& [name, set] : std::initializer_list<std::pair<const char*, void (*)(rdm_import_options&)>>{
+           {"density", [](auto& o) { o.density = 1000; }},
+           {"slide_range", [](auto& o) { o.slide_range = 1; }},
+           {"root", [](auto& o) { o.root = "palm"; }},
+           {"palm", [](auto& o) { o.palm = "palm"; }},
+           {"tips", [](auto& o) { o.tips = "index_distal"; }},
+           {"mount", [](auto& o) { o.mount = "palm"; }},
+           {"flange", [](auto& o) { o.flange = "none"; }}})
+    refused(robot, std::string("options.") + name + ": of URDF and MJCF; a .robot file says it itself", set);
+}
+
 TEST(Import, MjcfIsTheSameHand) {
   const Import urdf = from_file("hand.urdf"), mjcf = from_file("hand.xml");
   ASSERT_EQ(mjcf.def.num_links, urdf.def.num_links);

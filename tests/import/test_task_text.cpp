@@ -420,6 +420,31 @@ TEST(TaskText, RefusalsNameLineAndKey) {
   EXPECT_STREQ(rdm_import_error(), "line 1: task text_test: the name is taken");
 }
 
+// As a bin of many objects is written: those that are placed are not counted, and the text says what is.
+TEST(TaskText, BodiesWithARangeAreBounded) {
+  const auto bodies = [](int count, const char* y) {
+    std::string text;
+    for (int k = 0; k < count; ++k) {
+      const std::string at = std::to_string(k);
+      text += "[[body]]\nname = \"b" + at + "\"\nkind = \"sphere\"\nsize = [0.01]\nmass = 0.1\np = [" + at +
+              ", " + y + ", 1]\n";
+    }
+    return text;
+  };
+  const std::string good = with("");
+  const auto refusal = [&](const std::string& more) -> std::string {
+    int32_t task = -1;
+    const std::string text = good + more;
+    if (rdm_import_task_text(&task, text.data(), text.size(), "t.task") != RDM_OK) return rdm_import_error();
+    EXPECT_EQ(rdm_task_remove(task), RDM_OK);
+    return "";
+  };
+  EXPECT_EQ(refusal(bodies(100, "0")), "");
+  EXPECT_NE(refusal(bodies(65, "\"0..1\""))
+                .find("body b63: more than 64 bodies that begin with a range in p, rpy, v or w"),
+            std::string::npos);
+}
+
 TEST(TaskText, TermRefusals) {
   for (const auto& [row, text] : std::map<std::string, std::string>{
            {"term = \"distance\"\na = \"ball\"\n", "no b"},

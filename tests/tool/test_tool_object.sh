@@ -102,6 +102,13 @@ bad "in one plane" object flat.obj --mass 1
 bad "line 2: mas is no key; nearest is mass" object bad.object
 bad "are of a mesh" object mug.object --mass 1
 bad "line 2: mas is no key" eval --task grasp --object bad.object
-bad "the name is taken" eval --task grasp --object mug.object --object mug.object
+bad "the name is taken: give it another by redman object mug.object --name NAME --out NAME.object" eval --task grasp --object mug.object --object mug.object
+# What the text says to do works.
+"$tool" object mug.object --name mug2 --out mug2.object > out 2>&1 || say "object --name: $(cat out)"
+"$tool" objects --object mug.object --object mug2.object | grep -q '^mug2 ' || say "mug under another name"
+"$tool" object 011_banana --name banana2 --out banana2.object > out 2>&1 || say "object --name: $(cat out)"
+"$tool" objects --object banana2.object | grep -q '^banana2 ' || say "one of the list under another name, without its alias"
+bad "the name a b is made of other than letters" object mug.object --name 'a b' --out ab.object
+[ ! -e ab.object ] || say "an object is written that cannot be read"
 bad "banana" eval --task grasp --set object=bananna
 exit $failed

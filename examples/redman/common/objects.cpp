@@ -44,6 +44,13 @@ Import import_object(const std::string& file) {
   return Import(made);
 }
 
+Import import_object_text(const std::string& text, const std::string& where) {
+  rdm_import* made = nullptr;
+  if (rdm_import_object_text(&made, text.data(), text.size()) != RDM_OK)
+    throw Failure(where + ": " + rdm_import_error());
+  return Import(made);
+}
+
 rdm_object_def object_def_of(const Import& import) {
   rdm_object_def def;
   rdm_object_def_init(&def, sizeof def);
@@ -71,6 +78,9 @@ namespace {
 Import import_object(const std::string&) {
   without();
 }
+Import import_object_text(const std::string&, const std::string&) {
+  without();
+}
 rdm_object_def object_def_of(const Import&) {
   without();
 }
@@ -86,7 +96,8 @@ int32_t add_object(const Import& import, const std::string& where) {
   if (rdm_object_create(&object, &def) != RDM_OK) {
     int32_t taken = -1;
     const std::string text = rdm_last_error();
-    const bool other = rdm_object_find(def.name, &taken) == RDM_OK;
+    const bool other = rdm_object_find(def.name, &taken) == RDM_OK ||
+                       (def.alias && rdm_object_find(def.alias, &taken) == RDM_OK);
     throw Failure(where + ": " + text +
                   (other ? ": give it another by redman object " + where +
                                " --name NAME --out NAME.object, and "
@@ -103,15 +114,7 @@ int32_t load_object(const std::string& file) {
 }
 
 int32_t load_object_text(const std::string& text, const std::string& where) {
-#ifdef REDMAN_IMPORT
-  rdm_import* made = nullptr;
-  if (rdm_import_object_text(&made, text.data(), text.size()) != RDM_OK)
-    throw Failure(where + ": " + rdm_import_error());
-  return add_object(Import(made), where);
-#else
-  (void)text;
-  return load_object(where);
-#endif
+  return add_object(import_object_text(text, where), where);
 }
 
 void add_object_flag(CLI::App& command) {

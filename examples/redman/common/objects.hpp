@@ -12,6 +12,8 @@ namespace tool {
 
 // Failure with line and key. Or, for the name of an object that is there and no file, that object.
 Import import_object(const std::string& file);
+// The same of an .object file's text; `where` begins what is wrong with it.
+Import import_object_text(const std::string& text, const std::string& where);
 rdm_object_def object_def_of(const Import& import);
 // The file's object, added to those of the process; 0 and up.
 int32_t load_object(const std::string& file);

@@ -47,6 +47,10 @@ Import import_robot(const std::string& file, const ImportFlags& flags) {
   if (!file_exists(file) && file.find('/') == std::string::npos &&
       rdm_robot_find(file.c_str(), &known) == RDM_OK) {
     if (rdm_import_robot(&made, known) != RDM_OK) throw Failure(rdm_import_error());
+    // Flags mean the same as for its own .robot file.
+    const std::string written = robot_text(def_of(Import(made)));
+    if (rdm_import_text(&made, written.data(), written.size(), &o) != RDM_OK)
+      throw Failure(file + ": " + rdm_import_error());
     return Import(made);
   }
   const rdm_result r = rdm_import_file(&made, file.c_str(), &o);
@@ -79,7 +83,8 @@ int32_t add_robot(const Import& import, const std::string& where) {
   if (rdm_robot_create(&robot, &def) != RDM_OK) {
     int32_t taken = -1;
     const std::string text = rdm_last_error();
-    const bool other = rdm_robot_find(def.name, &taken) == RDM_OK;
+    const bool other = rdm_robot_find(def.name, &taken) == RDM_OK ||
+                       (def.alias && rdm_robot_find(def.alias, &taken) == RDM_OK);
     throw Failure(where + ": " + text +
                   (other ? ": give it another by redman robot " + where +
                                " --name NAME --out NAME.robot, and take "
