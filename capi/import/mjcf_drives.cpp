@@ -206,8 +206,10 @@ void MjcfReader::read_equalities() {
       }
       for (const char* key : {"body1", "body2"})
         if (const auto* body = e.get(key); body && is_mocap(*body))
-          refuse_at(RDM_UNSUPPORTED, e, "%s ties a body to %s, which its host moves (mocap): it is not read",
-                    e.tag.c_str(), clean(*body).c_str());
+          refuse_at(RDM_UNSUPPORTED, e,
+                    "%s ties a body to %s, which its host moves (mocap): it is not read; without the %s the "
+                    "robot's own joints move it",
+                    e.tag.c_str(), clean(*body).c_str(), e.tag.c_str());
       refuse_at(RDM_UNSUPPORTED, e, "%s %s", e.tag.c_str(), row.why);
     }
 }

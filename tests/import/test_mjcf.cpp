@@ -575,7 +575,7 @@ TEST(Mjcf, TiesToTargetsOfTheHost) {
   EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, "weld : neither of its bodies moves"));
   EXPECT_EQ(from_text(text("<weld body1='base'/>")).def.num_links, 1);
   expect_refused(text("<weld body1='goal' body2='arm'/>"), RDM_UNSUPPORTED,
-                 "weld ties a body to goal, which its host moves (mocap)");
+                 "weld ties a body to goal, which its host moves (mocap): it is not read; without the weld");
   expect_refused(text("<connect body1='base' body2='arm' anchor='0 0 0'/>"), RDM_UNSUPPORTED,
                  "connect closes a loop of bodies");
 }
