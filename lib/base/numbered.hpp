@@ -21,7 +21,7 @@ class Numbered {
     T what;
   };
 
-  explicit Numbered(int32_t first = 0) : next_(first) {}
+  explicit Numbered(const char* what, int32_t first = 0) : what_(what), next_(first) {}
 
   // Error(kMemory), Error(kRange) after 2^31 of them: nothing changes.
   int32_t add(T what) {
@@ -37,6 +37,23 @@ class Numbered {
                                       [](const Row& r, int32_t n) { return r.number < n; });
     return row != rows_.end() && row->number == number ? &*row : nullptr;
   }
+  // Error(kRange): the number was never given.
+  void need(int32_t number) const {
+    if (number < 0 || number >= next_) fail(Code::kRange, "%s: %d is outside [0, %d)", what_, number, next_);
+  }
+  // Error(kNotFound) too: it was removed, and has no user.
+  Row& row(int32_t number) {
+    need(number);
+    Row* const found = find(number);
+    if (!found) fail(Code::kNotFound, "%s %d was removed", what_, number);
+    return *found;
+  }
+  // Error(kNotFound) for all that were removed.
+  Row& listed(int32_t number) {
+    Row& found = row(number);
+    if (!found.listed) fail(Code::kNotFound, "%s %d was removed", what_, number);
+    return found;
+  }
   // A user less; true: it was the last one, and *what is the caller's to end.
   bool release(int32_t number, T* what) {
     Row* const row = find(number);
@@ -50,6 +67,7 @@ class Numbered {
 
  private:
   std::vector<Row> rows_;  // by number; the process's own memory, as no handle has it
+  const char* what_;       // one of them, in texts
   int32_t next_;
 };
 

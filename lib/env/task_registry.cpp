@@ -17,7 +17,7 @@ using Rows = Numbered<const TaskInfo*>;
 std::mutex g_lock;
 // Under the lock.
 Rows& rows() {
-  static auto* const list = new Rows;  // never ended: a pool may outlive all statics
+  static auto* const list = new Rows("task");  // never ended: a pool may outlive all statics
   return *list;
 }
 
@@ -46,20 +46,6 @@ int32_t find(const char* name) {
     if (info.alias && same_name(info.alias, id)) return row.number;
   }
   return -1;
-}
-
-// Error(kRange); Error(kNotFound): it was removed, and nobody uses it.
-Rows::Row& need_row(int32_t index) {
-  if (index < 0 || index >= rows().given())
-    fail(Code::kRange, "task: %d is outside [0, %d)", index, rows().given());
-  Rows::Row* const row = rows().find(index);
-  if (!row) fail(Code::kNotFound, "task %d was removed", index);
-  return *row;
-}
-Rows::Row& need_listed(int32_t index) {
-  Rows::Row& row = need_row(index);
-  if (!row.listed) fail(Code::kNotFound, "task %d was removed", index);
-  return row;
 }
 
 void release(int32_t index) {
@@ -91,7 +77,7 @@ int32_t add_task(TaskSource* source) {
 void remove_task(int32_t index) {
   {
     const std::lock_guard<std::mutex> hold(g_lock);
-    Rows::Row& row = need_listed(index);
+    Rows::Row& row = rows().listed(index);
     if (!row.what->source) fail(Code::kArgument, "task %s is the library's own", row.what->name);
     row.listed = false;
   }
@@ -111,7 +97,7 @@ int32_t task_count() {
 
 const TaskInfo& task_at(int32_t index) {
   const std::lock_guard<std::mutex> hold(g_lock);
-  return *need_row(index).what;
+  return *rows().row(index).what;
 }
 
 int32_t task_find(const char* name) {
@@ -128,7 +114,7 @@ int32_t task_find(const char* name) {
 
 TaskRef::TaskRef(int32_t index) {
   const std::lock_guard<std::mutex> hold(g_lock);
-  Rows::Row& row = need_listed(index);
+  Rows::Row& row = rows().listed(index);
   info_ = row.what;
   if (!info_->source) return;
   index_ = index;

@@ -37,7 +37,8 @@ const Own& own() {
 std::mutex g_lock;
 // Under the lock; numbered behind our own.
 Numbered<Added>& added() {
-  static auto* const list = new Numbered<Added>(own().count);  // never ended: a pool may outlive all statics
+  static auto* const list =
+      new Numbered<Added>("object", own().count);  // never ended: a pool may outlive all statics
   return *list;
 }
 
@@ -48,16 +49,6 @@ void release(int32_t index) {
     if (!added().release(index, &last)) return;
   }
   host_delete(last.hooks, last.object);
-}
-
-void need_index(int32_t index) {
-  if (index < 0 || index >= added().given())
-    fail(Code::kRange, "object: %d is outside [0, %d)", index, added().given());
-}
-Numbered<Added>::Row& listed_row(int32_t index) {
-  Numbered<Added>::Row* const row = added().find(index);
-  if (!row || !row->listed) fail(Code::kNotFound, "object %d was removed", index);
-  return *row;
 }
 
 // Calls f(object, number) for all that are listed, until it returns true.
@@ -99,12 +90,12 @@ int32_t num_objects() {
 
 ObjectRef::ObjectRef(int32_t index) {
   const std::lock_guard<std::mutex> hold(g_lock);
-  need_index(index);
+  added().need(index);
   if (index < own().count) {
     object_ = &own().at(index);
     return;
   }
-  Numbered<Added>::Row& row = listed_row(index);
+  Numbered<Added>::Row& row = added().listed(index);
   object_ = &row.what.object->object();
   index_ = index;
   ++row.users;
@@ -156,9 +147,9 @@ int32_t add_object(const Object& object) {
 void remove_object(int32_t index) {
   {
     const std::lock_guard<std::mutex> hold(g_lock);
-    need_index(index);
+    added().need(index);
     if (index < own().count) fail(Code::kArgument, "object %s is the library's own", own().at(index).name);
-    listed_row(index).listed = false;
+    added().listed(index).listed = false;
   }
   release(index);
 }

@@ -27,7 +27,8 @@ struct Added {
 std::mutex g_lock;
 // Under the lock; numbered behind our own.
 Numbered<Added>& added() {
-  static auto* const list = new Numbered<Added>(kNumOwn);  // never ended: a pool may outlive all statics
+  static auto* const list =
+      new Numbered<Added>("robot", kNumOwn);  // never ended: a pool may outlive all statics
   return *list;
 }
 
@@ -38,16 +39,6 @@ void release(int32_t index) {
     if (!added().release(index, &last)) return;
   }
   host_delete(last.hooks, last.robot);
-}
-
-void need_index(int32_t index) {
-  if (index < 0 || index >= added().given())
-    fail(Code::kRange, "robot: %d is outside [0, %d)", index, added().given());
-}
-Numbered<Added>::Row& listed_row(int32_t index) {
-  Numbered<Added>::Row* const row = added().find(index);
-  if (!row || !row->listed) fail(Code::kNotFound, "robot %d was removed", index);
-  return *row;
 }
 
 // Calls f(robot, number) for all that are listed, until it returns true.
@@ -80,12 +71,12 @@ int32_t num_robots() {
 
 RobotRef::RobotRef(int32_t index) {
   const std::lock_guard<std::mutex> hold(g_lock);
-  need_index(index);
+  added().need(index);
   if (index < kNumOwn) {
     robot_ = kOwn[index];
     return;
   }
-  Numbered<Added>::Row& row = listed_row(index);
+  Numbered<Added>::Row& row = added().listed(index);
   robot_ = &row.what.robot->robot();
   index_ = index;
   ++row.users;
@@ -137,9 +128,9 @@ int32_t add_robot(const Robot& robot) {
 void remove_robot(int32_t index) {
   {
     const std::lock_guard<std::mutex> hold(g_lock);
-    need_index(index);
+    added().need(index);
     if (index < kNumOwn) fail(Code::kArgument, "robot %s is the library's own", kOwn[index]->name);
-    listed_row(index).listed = false;
+    added().listed(index).listed = false;
   }
   release(index);
 }
