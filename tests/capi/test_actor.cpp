@@ -2,26 +2,13 @@
 // ends, states, a center; and each refusal.
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <redman/redman_actor.hpp>
 
 #include "contract.hpp"
 #include "heap_count.hpp"
+#include "owned.hpp"
 
 namespace {
-
-struct PoolEnd {
-  void operator()(rdm_pool* p) const { rdm_pool_destroy(p); }
-};
-struct PolicyEnd {
-  void operator()(rdm_policy* p) const { rdm_policy_destroy(p); }
-};
-struct ActorEnd {
-  void operator()(rdm_actor* a) const { rdm_actor_destroy(a); }
-};
-using Pool = std::unique_ptr<rdm_pool, PoolEnd>;
-using Policy = std::unique_ptr<rdm_policy, PolicyEnd>;
-using Actor = std::unique_ptr<rdm_actor, ActorEnd>;
 
 Pool pool_of(const std::string& settings, int32_t envs, int32_t autoreset = RDM_AUTORESET_OFF) {
   rdm_pool_config c = pool_config(envs);
@@ -49,13 +36,6 @@ Policy policy_of(const rdm_pool* pool, const char* settings) {
   return Policy(p);
 }
 constexpr const char* kEverySix = "hidden=16\naction_repeat=6\nhorizon=8\nnormalize_obs=false\n";
-
-rdm_spec spec_of(const rdm_pool* pool) {
-  rdm_spec s{};
-  s.struct_size = sizeof s;
-  EXPECT_EQ(rdm_pool_get_spec(pool, &s), RDM_OK);
-  return s;
-}
 
 rdm_actor_config config_of(const Policy& policy, const rdm_spec* spec, int32_t envs) {
   rdm_actor_config c;

@@ -131,9 +131,7 @@ TEST(ContractPool, WrongOrderIsAStateError) {
 TEST(ContractPool, OneBadRowOfActionsDoesNotTouchTheOthers) {
   rdm_pool *p = make_pool(pool_config(3)), *clean = make_pool(pool_config(3));
   rdm_buffers b = buffers_of(p);
-  rdm_spec spec{};
-  spec.struct_size = sizeof spec;
-  ASSERT_EQ(rdm_pool_get_spec(p, &spec), RDM_OK);
+  const rdm_spec spec = spec_of(p);
   for (rdm_pool* q : {p, clean}) ASSERT_EQ(rdm_pool_reset(q, nullptr, nullptr), RDM_OK);
   for (float bad : {kNan, HUGE_VALF, -HUGE_VALF}) {
     b.action[spec.action_dim + 5] = bad;  // world 1

@@ -19,15 +19,25 @@ rdm_ranks ranks_of(Meeting& meeting, int32_t rank) {
   return r;
 }
 
-// A rank's pool and agent; `worlds` of all.
+// What a rank is made with; `worlds` of all ranks.
+struct RankMade {
+  const char *task = "two_state", *algo = "ppo_lag", *settings = "", *pool_settings = "";
+  uint64_t pool_seed = 0, seed = 0;
+  int32_t worlds = 16, horizon = 8, autoreset = RDM_AUTORESET_SAME_STEP, threads = 0;
+};
+
+// A rank's pool and agent.
 struct Part {
   rdm_pool* pool = nullptr;
   rdm_agent* agent = nullptr;
 
-  Part(const char* task, int32_t worlds, const rdm_ranks& ranks, const char* algo = "ppo_lag",
-       const char* settings = "") {
-    rdm_pool_config pc = pool_config(worlds / ranks.ranks);
-    pc.task = task;
+  Part(const RankMade& made, const rdm_ranks& ranks) {
+    rdm_pool_config pc = pool_config(made.worlds / ranks.ranks);
+    pc.task = made.task;
+    pc.seed = made.pool_seed;
+    pc.autoreset = made.autoreset;
+    pc.settings = made.pool_settings;
+    pc.num_threads = made.threads;
     pool = make_pool(pc);
     EXPECT_EQ(rdm_pool_set_rank(pool, ranks.rank, ranks.ranks), RDM_OK) << rdm_last_error();
     EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK);
@@ -36,13 +46,15 @@ struct Part {
     EXPECT_EQ(rdm_agent_config_for_pool(&c, pool), RDM_OK);
     const rdm_option small[] = {{"hidden", "8", 0},
                                 {"critic_hidden", "8", 0},
-                                {"horizon", nullptr, 8},
+                                {"horizon", nullptr, static_cast<double>(made.horizon)},
                                 {"passes", nullptr, 2},
                                 {"blocks", nullptr, 8}};
     c.options = small;
     c.num_options = 5;
-    c.algo = algo;
-    c.settings = settings;
+    c.algo = made.algo;
+    c.seed = made.seed;
+    c.settings = made.settings;
+    c.num_threads = made.threads;
     EXPECT_EQ(rdm_agent_create_ranked(&agent, &c, &ranks), RDM_OK) << rdm_last_error();
   }
   ~Part() {
@@ -79,7 +91,9 @@ Bytes checkpoint(const char* task, const char* algo, int32_t ranks, int epochs, 
   Meeting meeting(ranks);
   each_rank(ranks, [&](int32_t rank) {
     const rdm_ranks r = ranks_of(meeting, rank);
-    Part part(task, 16, r, algo);
+    RankMade made;
+    made.task = task, made.algo = algo;
+    Part part(made, r);
     size_t size = 0;
     if (!from.empty()) {
       ASSERT_EQ(rdm_checkpoint_read(from.c_str(), part.agent, part.pool, nullptr, 0, &size), RDM_OK)
@@ -162,7 +176,7 @@ TEST(ContractRanks, Refusals) {
 
 TEST(ContractRanks, AgentAndPoolAreOfOneRank) {
   Meeting meeting(2);
-  Part part("two_state", 16, ranks_of(meeting, 1));
+  Part part(RankMade{}, ranks_of(meeting, 1));
   rdm_pool_config pc = pool_config(8);
   pc.task = "two_state";
   rdm_pool* other = make_pool(pc);
@@ -179,7 +193,7 @@ TEST(ContractRanks, OneThatDiesAndTheRestGoesOn) {
   Meeting meeting(4);
   std::array<rdm_result, 4> heard{};
   each_rank(4, [&](int32_t rank) {
-    Part part("two_state", 16, ranks_of(meeting, rank));
+    Part part(RankMade{}, ranks_of(meeting, rank));
     part.epochs(2);
     ASSERT_EQ(rdm_checkpoint_write(path.c_str(), part.agent, part.pool, nullptr, 0), RDM_OK);
     if (rank == 3) return meeting.leave();
@@ -194,50 +208,19 @@ TEST(ContractRanks, OneThatDiesAndTheRestGoesOn) {
 
 namespace {
 
-// What one of two ranks is made with.
-struct RankMade {
-  uint64_t pool_seed = 0, seed = 0;
-  int32_t worlds = 4, horizon = 8, claimed = -1, autoreset = RDM_AUTORESET_SAME_STEP;
-  const char *algo = "ppo_lag", *settings = "", *pool_settings = "";
-};
-
-// The text that both ranks have after their first rollouts.
-std::string meet(const RankMade& first, const RankMade& second) {
+// The text that both ranks have after their first rollouts; the second one says that it is rank `claimed`.
+std::string meet(const RankMade& second, int32_t claimed = 1) {
   Meeting meeting(2);
   std::string texts[2];
   each_rank(2, [&](int32_t rank) {
-    const RankMade& s = rank == 0 ? first : second;
+    RankMade made = rank == 0 ? RankMade{} : second;
+    made.threads = rank;  // may differ
     rdm_ranks r = ranks_of(meeting, rank);
-    if (s.claimed >= 0) r.rank = s.claimed;
-    rdm_pool_config pc = pool_config(s.worlds);
-    pc.task = "two_state";
-    pc.seed = s.pool_seed;
-    pc.autoreset = s.autoreset;
-    pc.settings = s.pool_settings;
-    pc.num_threads = rank;  // may differ
-    rdm_pool* const pool = make_pool(pc);
-    EXPECT_EQ(rdm_pool_set_rank(pool, r.rank, r.ranks), RDM_OK);
-    EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK);
-    rdm_agent_config c;
-    EXPECT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
-    EXPECT_EQ(rdm_agent_config_for_pool(&c, pool), RDM_OK);
-    const rdm_option small[] = {{"hidden", "8", 0},
-                                {"critic_hidden", "8", 0},
-                                {"horizon", nullptr, static_cast<double>(s.horizon)},
-                                {"blocks", nullptr, 4}};
-    c.options = small;
-    c.num_options = 4;
-    c.algo = s.algo;
-    c.seed = s.seed;
-    c.settings = s.settings;
-    c.num_threads = rank;
-    rdm_agent* agent = nullptr;
-    EXPECT_EQ(rdm_agent_create_ranked(&agent, &c, &r), RDM_OK) << rdm_last_error();
-    const rdm_result result = rdm_agent_rollout(agent, pool, nullptr);
-    EXPECT_TRUE(result == RDM_OK || result == RDM_STATE) << rdm_agent_error(agent);
-    if (result != RDM_OK) texts[rank] = rdm_agent_error(agent);
-    rdm_agent_destroy(agent);
-    rdm_pool_destroy(pool);
+    if (rank == 1) r.rank = claimed;
+    const Part part(made, r);
+    const rdm_result result = rdm_agent_rollout(part.agent, part.pool, nullptr);
+    EXPECT_TRUE(result == RDM_OK || result == RDM_STATE) << rdm_agent_error(part.agent);
+    if (result != RDM_OK) texts[rank] = rdm_agent_error(part.agent);
   });
   EXPECT_EQ(texts[0], texts[1]) << "both are told the same";
   return texts[0];
@@ -254,9 +237,7 @@ TEST(ContractRanks, SetUpDifferentlyTheyStopAtOnce) {
   const std::pair<RankMade, const char*> rows[] = {
       {with([](RankMade&) {}), ""},
       {with([](RankMade& s) { s.pool_seed = 5; }), "ranks: pool seed: rank 1 has 5, rank 0 has 0"},
-      {with([](RankMade& s) { s.worlds = 8; }), "ranks: num_envs: rank 1 has 8, rank 0 has 4"},
-      {with([](RankMade& s) { s.claimed = 0; }),
-       "ranks: at the place of rank 1 is one that calls itself rank 0"},
+      {with([](RankMade& s) { s.worlds = 32; }), "ranks: num_envs: rank 1 has 16, rank 0 has 8"},
       {with([](RankMade& s) { s.horizon = 16; }), "ranks: horizon: rank 1 has 16, rank 0 has 8"},
       {with([](RankMade& s) { s.seed = 7; }), "ranks: seed: rank 1 has 7, rank 0 has 0"},
       {with([](RankMade& s) { s.algo = "focops"; }), "ranks: algo: rank 1 has another one than rank 0"},
@@ -268,5 +249,6 @@ TEST(ContractRanks, SetUpDifferentlyTheyStopAtOnce) {
        "ranks: pool autoreset: rank 1 has 1, rank 0 has 0"},
       {with([](RankMade& s) { s.pool_settings = "noise.*=0.1"; }),
        "ranks: pool options: rank 1 has another one than rank 0"}};
-  for (const auto& [second, text] : rows) EXPECT_EQ(meet(RankMade{}, second), text);
+  for (const auto& [second, text] : rows) EXPECT_EQ(meet(second), text);
+  EXPECT_EQ(meet(RankMade{}, 0), "ranks: at the place of rank 1 is one that calls itself rank 0");
 }

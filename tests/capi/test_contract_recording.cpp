@@ -30,9 +30,7 @@ rdm_recording_rows rows_of(const rdm_recording* r) {
 // Random actions as what is done, 0.25 as what was meant.
 void record(rdm_recording* r, rdm_pool* p, int steps, bool labels = true) {
   const rdm_buffers b = buffers_of(p);
-  rdm_spec s{};
-  s.struct_size = sizeof s;
-  ASSERT_EQ(rdm_pool_get_spec(p, &s), RDM_OK);
+  const rdm_spec s = spec_of(p);
   std::vector<float> label(4 * static_cast<size_t>(s.action_dim), 0.25f);
   for (int i = 0; i < steps; ++i) {
     ASSERT_EQ(rdm_pool_baseline(p, RDM_BASELINE_RANDOM), RDM_OK);
@@ -107,9 +105,7 @@ TEST(ContractRecording, EpisodesOfBothAutoresets) {
   for (const int32_t mode : {RDM_AUTORESET_SAME_STEP, RDM_AUTORESET_NEXT_STEP}) {
     Worlds w(1, 0, mode);
     const rdm_buffers b = buffers_of(w.pool);
-    rdm_spec s{};
-    s.struct_size = sizeof s;
-    ASSERT_EQ(rdm_pool_get_spec(w.pool, &s), RDM_OK);
+    const rdm_spec s = spec_of(w.pool);
     Owned o{recording_for(w.pool, 1 << 20)};
     record(o.r, w.pool, s.max_steps + 20, false);
     const rdm_recording_info i = info_of(o.r);
@@ -210,9 +206,7 @@ TEST(ContractRecording, StartsResumeAndDoNotFollowThreads) {
   Owned o{recording_for(demo.pool, 10)}, other{recording_for(demo.pool, 10)};
   record(o.r, demo.pool, 60);
   record(other.r, demo.pool, 30);
-  rdm_spec s{};
-  s.struct_size = sizeof s;
-  ASSERT_EQ(rdm_pool_get_spec(demo.pool, &s), RDM_OK);
+  const rdm_spec s = spec_of(demo.pool);
   const auto play = [](rdm_pool* p, int steps) {
     for (int i = 0; i < steps; ++i) {
       ASSERT_EQ(rdm_pool_baseline(p, RDM_BASELINE_RANDOM), RDM_OK);

@@ -69,9 +69,7 @@ TEST(ContractRollout, CheckpointsCarryAgentPoolAndNote) {
 
 // All that a host sees of a pool: the rows and the state.
 std::vector<unsigned char> seen(const rdm_pool* p) {
-  rdm_spec s{};
-  s.struct_size = sizeof s;
-  EXPECT_EQ(rdm_pool_get_spec(p, &s), RDM_OK);
+  const rdm_spec s = spec_of(p);
   const rdm_buffers b = buffers_of(p);
   std::vector<unsigned char> out;
   const auto add = [&](const void* data, size_t bytes) {

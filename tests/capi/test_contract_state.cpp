@@ -40,12 +40,6 @@ class ContractState : public testing::TestWithParam<std::string> {
       ASSERT_EQ(rdm_pool_step(p), RDM_OK) << rdm_pool_error(p);
     }
   }
-  static rdm_spec spec_of(const rdm_pool* p) {
-    rdm_spec s{};
-    s.struct_size = sizeof s;
-    EXPECT_EQ(rdm_pool_get_spec(p, &s), RDM_OK);
-    return s;
-  }
   static rdm_result set(rdm_pool* p, const std::vector<unsigned char>& state) {
     return rdm_pool_set_state(p, 0, state.data(), state.size());
   }

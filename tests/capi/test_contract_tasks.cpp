@@ -18,12 +18,6 @@ class ContractTasks : public testing::TestWithParam<std::string> {
     c.seed = 11;
     return c;
   }
-  static rdm_spec spec_of(const rdm_pool* p) {
-    rdm_spec s{};
-    s.struct_size = sizeof s;
-    EXPECT_EQ(rdm_pool_get_spec(p, &s), RDM_OK);
-    return s;
-  }
   static void play(rdm_pool* p, int steps) {
     for (int i = 0; i < steps; ++i) {
       ASSERT_EQ(rdm_pool_baseline(p, RDM_BASELINE_RANDOM), RDM_OK);

@@ -37,9 +37,7 @@ TEST(FieldBounds, RandomEpisodesStayWithin) {
     c.task = task.c_str();
     rdm_pool* p = make_pool(c);
     ASSERT_NE(p, nullptr);
-    rdm_spec spec{};
-    spec.struct_size = sizeof spec;
-    ASSERT_EQ(rdm_pool_get_spec(p, &spec), RDM_OK);
+    const rdm_spec spec = spec_of(p);
     const Bounds bounds = bounds_of(p, spec);
     ASSERT_EQ(bounds.low.size(), static_cast<size_t>(spec.obs_dim));
     const rdm_buffers b = buffers_of(p);

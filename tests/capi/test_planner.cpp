@@ -3,26 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 #include "base/rng.hpp"
 #include "contract.hpp"
 #include "heap_count.hpp"
+#include "owned.hpp"
 
 namespace {
 
 size_t sz(int32_t n) {
   return static_cast<size_t>(n);
 }
-
-struct PoolEnd {
-  void operator()(rdm_pool* p) const { rdm_pool_destroy(p); }
-};
-struct PlannerEnd {
-  void operator()(rdm_planner* p) const { rdm_planner_destroy(p); }
-};
-using Pool = std::unique_ptr<rdm_pool, PoolEnd>;
-using Planner = std::unique_ptr<rdm_planner, PlannerEnd>;
 
 Pool pool_of(const char* task, const char* settings = "", int32_t envs = 1, uint64_t seed = 1,
              int32_t threads = 0, int32_t autoreset = RDM_AUTORESET_OFF) {
@@ -52,13 +43,6 @@ Planner planner_of(const rdm_planner_config& c) {
 }
 Planner planner_of(const Pool& pool, const char* settings) {
   return planner_of(config_of(pool, settings));
-}
-
-rdm_spec spec_of(const Pool& pool) {
-  rdm_spec s{};
-  s.struct_size = sizeof s;
-  EXPECT_EQ(rdm_pool_get_spec(pool.get(), &s), RDM_OK);
-  return s;
 }
 
 rdm_plan_info act(const Planner& planner, const Pool& pool, float* action) {
@@ -366,7 +350,7 @@ std::vector<unsigned char> course_of(int32_t threads, int32_t own_threads) {
   for (int i = 0; i < 4; ++i) {
     act(planner, pool, b.action);
     const auto* bytes = reinterpret_cast<const unsigned char*>(b.action);
-    out.insert(out.end(), bytes, bytes + sizeof(float) * sz(spec_of(pool).action_dim));
+    out.insert(out.end(), bytes, bytes + sizeof(float) * sz(spec_of(pool.get()).action_dim));
     EXPECT_EQ(rdm_pool_step(pool.get()), RDM_OK);
   }
   const auto state = state_of(planner);
@@ -426,23 +410,12 @@ TEST(Determinism, AStateThatIsNotWholeOrOfAnotherPlannerIsRefused) {
 }
 
 // An agent for the pool, with every weight 0: its policy's mean is what the last bias says.
-struct AgentEnd {
-  void operator()(rdm_agent* a) const { rdm_agent_destroy(a); }
-};
-struct PolicyEnd {
-  void operator()(rdm_policy* p) const { rdm_policy_destroy(p); }
-};
-using Agent = std::unique_ptr<rdm_agent, AgentEnd>;
-using Policy = std::unique_ptr<rdm_policy, PolicyEnd>;
-
 Agent agent_of(const Pool& pool, const char* settings) {
   rdm_agent_config c;
   EXPECT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
   EXPECT_EQ(rdm_agent_config_for_pool(&c, pool.get()), RDM_OK);
   c.settings = settings;
-  rdm_agent* a = nullptr;
-  EXPECT_EQ(rdm_agent_create(&a, &c), RDM_OK) << rdm_last_error();
-  return Agent(a);
+  return Agent(make_agent(c));
 }
 // Every number of a network is 0 but the last bias.
 void set_output(const Agent& agent, const std::string& net, float value) {
@@ -458,12 +431,9 @@ void set_output(const Agent& agent, const std::string& net, float value) {
   ASSERT_EQ(rdm_agent_tensor_write(agent.get(), last.c_str(), &value, 1), RDM_OK) << last;
 }
 Policy policy_of(const Agent& agent) {
-  size_t size = 0;
-  EXPECT_EQ(rdm_agent_policy(agent.get(), nullptr, 0, &size), RDM_OK);
-  std::vector<unsigned char> bytes(size);
-  EXPECT_EQ(rdm_agent_policy(agent.get(), bytes.data(), size, &size), RDM_OK);
+  const auto bytes = policy_bytes(agent.get());
   rdm_policy* p = nullptr;
-  EXPECT_EQ(rdm_policy_load(&p, bytes.data(), size), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_policy_load(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
   return Policy(p);
 }
 
@@ -712,7 +682,7 @@ TEST(Sensors, APoolWithPicturesIsPlannedInWithout) {
   const Pool seen = pool_of("hand_over_safe_finger", "modality=depth\nimage_width=16\nimage_height=16", 1, 3);
   const Pool blind = pool_of("hand_over_safe_finger", "", 1, 3);
   const Planner planner = planner_of(seen, "samples=3\nhorizon=2");
-  std::vector<float> a(sz(spec_of(seen).action_dim)), b(a.size());
+  std::vector<float> a(sz(spec_of(seen.get()).action_dim)), b(a.size());
   act(planner, seen, a.data());
   const Planner other = planner_of(blind, "samples=3\nhorizon=2");
   act(other, blind, b.data());

@@ -98,6 +98,13 @@ inline rdm_buffers buffers_of(const rdm_pool* p) {
   return b;
 }
 
+inline rdm_spec spec_of(const rdm_pool* p) {
+  rdm_spec s{};
+  s.struct_size = sizeof s;
+  EXPECT_EQ(rdm_pool_get_spec(p, &s), RDM_OK);
+  return s;
+}
+
 inline uint64_t hash_of(const rdm_pool* p, int32_t env = -1) {
   uint64_t h = 0;
   EXPECT_EQ(rdm_pool_hash(p, env, &h), RDM_OK);
