@@ -2,6 +2,7 @@
 # regenerate.sh [BUILD]: writes again what follows from the lists of tasks, algorithms, robots and objects and from the public
 # headers: the golden rows, the layouts of structs, Python's declarations, and the tables between marks in the pages. BUILD is a
 # folder with tests, build/dev unless given. What it changed is for you to look at and to commit.
+# tests/golden/tasks_windows.txt needs the build for Windows, build/windows, which `bash cmake/check.sh windows` makes.
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-build/dev}
@@ -10,6 +11,12 @@ cmake --build "$build" --target redman_tool test_golden test_golden_learners pri
 for rows in test_golden test_golden_learners; do
   RDM_WRITE_GOLDEN=1 "$build/tests/$rows" > "$build/$rows.log" || { cat "$build/$rows.log"; exit 1; }
 done
+if [ -f build/windows/CMakeCache.txt ]; then
+  cmake --build build/windows --target test_golden
+  RDM_WRITE_GOLDEN=1 cmake/cross/wine.sh build/windows/tests/test_golden.exe > build/windows/test_golden.log || { cat build/windows/test_golden.log; exit 1; }
+elif ! git diff --quiet -- tests/golden/tasks.txt; then
+  echo "tests/golden/tasks_windows.txt is as it was: run bash cmake/check.sh windows, and this again if test_golden failed there"
+fi
 "$build/tests/print_layout" > capi/layout.golden
 python3 capi/python/generate_abi.py
 bash cmake/tables.sh "$build/bin/redman"
