@@ -11,7 +11,7 @@ cmake --build "$build" --target redman_tool test_golden test_golden_learners pri
 for rows in test_golden test_golden_learners; do
   RDM_WRITE_GOLDEN=1 "$build/tests/$rows" > "$build/$rows.log" || { cat "$build/$rows.log"; exit 1; }
 done
-if [ -f build/windows/CMakeCache.txt ]; then
+if [ -e build/windows/tests/test_golden.exe ]; then
   cmake --build build/windows --target test_golden
   RDM_WRITE_GOLDEN=1 cmake/cross/wine.sh build/windows/tests/test_golden.exe > build/windows/test_golden.log || { cat build/windows/test_golden.log; exit 1; }
 elif ! git diff --quiet -- tests/golden/tasks.txt; then
