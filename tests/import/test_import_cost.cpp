@@ -367,10 +367,14 @@ rdm_result read(const Case& c, std::string* text) {
   return r;
 }
 
-size_t address_space() {
+// No more than kMostMemory beside what there is. The sanitizers reserve address space as they like.
+void limit_memory() {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
-  return pages * static_cast<size_t>(sysconf(_SC_PAGESIZE));
+  const rlimit space{pages * static_cast<size_t>(sysconf(_SC_PAGESIZE)) + kMostMemory, RLIM_INFINITY};
+  setrlimit(RLIMIT_AS, &space);
+#endif
 }
 
 // Runs `work` in a process of its own, which may take so much and no more; what it answers, and what it took.
@@ -389,10 +393,7 @@ Cost measured(const std::function<std::string()>& work) {
     const rlimit cpu{kMostSeconds, kMostSeconds}, core{0, 0};
     setrlimit(RLIMIT_CPU, &cpu);
     setrlimit(RLIMIT_CORE, &core);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-    const rlimit space{address_space() + kMostMemory, RLIM_INFINITY};
-    setrlimit(RLIMIT_AS, &space);
-#endif
+    limit_memory();
     rusage before{};
     getrusage(RUSAGE_SELF, &before);
     std::string text = work();
