@@ -114,7 +114,7 @@ inline long long signed_argument(Arguments& args, char length) {
   switch (length) {
     case 'q':
       return va_arg(args.list, long long);
-    case 'l':
+    case 'l':  // NOLINT(bugprone-branch-clone): types that are alike on some machines
       return va_arg(args.list, long);
     case 'j':
       return va_arg(args.list, intmax_t);
@@ -129,7 +129,7 @@ inline unsigned long long unsigned_argument(Arguments& args, char length) {
   switch (length) {
     case 'q':
       return va_arg(args.list, unsigned long long);
-    case 'l':
+    case 'l':  // NOLINT(bugprone-branch-clone)
       return va_arg(args.list, unsigned long);
     case 'j':
       return va_arg(args.list, uintmax_t);

@@ -1,4 +1,5 @@
 // Functions of a host's task that fail: which world, what happens to it, and that the others go on.
+#include <atomic>
 #include <cmath>
 #include <string>
 
@@ -212,7 +213,7 @@ TEST(OwnTaskFailures, ExceptionsAreTheHosts) {
 
 TEST(OwnTaskFailures, TheTaskCheckNamesAFailureThatOnlyPoolsSee) {
   CalledTask t("fails_in_pools");
-  int64_t calls = 0;
+  std::atomic<int64_t> calls{0};  // worlds are judged by several threads
   t.judge = [&](const rdm_world*, int64_t, rdm_verdict*) {
     return ++calls > 2000 ? rdm_fail(RDM_IO, "worn out") : rdm_result{RDM_OK};
   };
