@@ -68,6 +68,7 @@ bool same_name(const std::string& a, const std::string& b) {
 
 std::string nearest_hint(const std::string& word, const std::vector<std::string>& names) {
   std::vector<const char*> all;
+  all.reserve(names.size());
   for (const std::string& name : names) all.push_back(name.c_str());
   return clean(Nearest(word.c_str(), all.data(), static_cast<int32_t>(all.size())).text,
                sizeof(Nearest::text));

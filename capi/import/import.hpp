@@ -24,6 +24,14 @@ struct Refusal {
 std::string clean(const std::string& text, size_t most = 64);
 // "; nearest is NAME", or "" when none is near.
 std::string nearest_hint(const std::string& word, const std::vector<std::string>& names);
+// Of the keys of a map.
+template <class Map>
+std::string nearest_key(const std::string& word, const Map& known) {
+  std::vector<std::string> names;
+  names.reserve(known.size());
+  for (const auto& [name, row] : known) names.push_back(name);
+  return nearest_hint(word, names);
+}
 // Case is ignored and '-' equals '_', as redman compares names.
 bool same_name(const std::string& a, const std::string& b);
 

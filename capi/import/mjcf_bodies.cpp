@@ -86,7 +86,7 @@ void MjcfReader::drop_free(const Element& e) {
   if (e.tag == "freejoint") check_attributes(e, "freejoint");
   out->note(RDM_NOTE_DROPPED, e.line, "%s: the root stands still%s", clean(e.tag).c_str(),
             in_file(e).c_str());
-  order.push_back("");
+  order.emplace_back();
 }
 
 // ---- masses ----

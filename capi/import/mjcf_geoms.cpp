@@ -9,12 +9,6 @@ namespace {
 
 constexpr double kLeastVolume = 1e-15;  // m^3: below it a mesh encloses nothing
 
-std::string listed(const std::map<std::string, const Element*>& meshes, const std::string& name) {
-  std::vector<std::string> names;
-  for (const auto& [known, m] : meshes) names.push_back(known);
-  return nearest_hint(name, names);
-}
-
 Mass with_mass(double mass, Mass m) {
   const double factor = mass / m.mass;
   m.mass = mass;
@@ -116,7 +110,7 @@ const MeshIn* MjcfReader::mesh_in(const Element& geom, const std::string& name) 
   const auto asset = assets.find(name);
   if (asset == assets.end())
     refuse_at(RDM_NOT_FOUND, geom, "there is no mesh %s%s", clean(name).c_str(),
-              listed(assets, name).c_str());
+              nearest_key(name, assets).c_str());
   return mesh_of(*asset->second, geom);
 }
 

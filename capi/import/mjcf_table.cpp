@@ -36,12 +36,6 @@ bool harmless(const std::string& attribute) {
   }
   return dropped;
 }
-template <class Row>
-std::string nearest(const std::map<std::string, const Row*>& known, const std::string& word) {
-  std::vector<std::string> names;
-  for (const auto& [name, row] : known) names.push_back(name);
-  return nearest_hint(word, names);
-}
 
 }  // namespace
 
@@ -156,7 +150,7 @@ void check_attributes(const Element& e, const std::string& kind) {
     if (found == known.end() && harmless(a.name)) continue;
     if (found == known.end())
       refuse_at(RDM_UNSUPPORTED, e, "%s is no attribute that is known here, and it could change the robot%s",
-                clean(a.name).c_str(), nearest(known, a.name).c_str());
+                clean(a.name).c_str(), nearest_key(a.name, known).c_str());
     const AttributeRow& row = *found->second;
     if (row.use == Use::kRefused && !(row.harmless && a.value == row.harmless))
       refuse_at(RDM_UNSUPPORTED, e, "%s=\"%s\": %s", clean(a.name).c_str(), clean(a.value).c_str(), row.why);
@@ -174,7 +168,7 @@ const ElementRow& row_of(const Element& e, const std::string& parent) {
                   other == "body" ? "worldbody" : other.c_str());
   if (found == known.end())
     refuse_at(RDM_UNSUPPORTED, e, "no element that is known in %s, and it could change the robot%s",
-              parent.c_str(), nearest(known, e.tag).c_str());
+              parent.c_str(), nearest_key(e.tag, known).c_str());
   return *found->second;
 }
 

@@ -1187,7 +1187,10 @@ class Builder {
       out.index = find(t, "a", RDM_SCENE_SENSOR, link);
     }
     if (keys & kStart) {
-      const auto same = [&](const Place& x) { return std::memcmp(&x, &out.a, sizeof x) == 0; };
+      const auto same = [&](const Place& x) {
+        return x.on == out.a.on && x.index == out.a.index && std::equal(x.p, x.p + 3, out.a.p) &&
+               std::equal(x.q, x.q + 4, out.a.q);
+      };
       const Place* end = p_.starts + p_.num_starts;
       const Place* there = std::find_if(static_cast<const Place*>(p_.starts), end, same);
       out.index = static_cast<int32_t>(there - p_.starts);

@@ -70,7 +70,7 @@ void refuse_doctype(const std::string& bytes, const std::string& file) {
 void blank_late_declaration(std::string* bytes) {
   const size_t at = bytes->find("<?xml ");
   if (at == std::string::npos || at == 0) return;
-  if (!first_element(bytes->substr(0, at) + "<x/>").compare("x")) {
+  if (first_element(bytes->substr(0, at) + "<x/>") == "x") {
     const size_t end = bytes->find("?>", at);
     if (end == std::string::npos) return;
     for (size_t k = at; k < end + 2; ++k)
