@@ -78,6 +78,10 @@ void blank_late_declaration(std::string* bytes) {
   }
 }
 
+int line_at(const std::string& bytes, size_t at) {
+  return 1 + static_cast<int>(std::count(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(at), '\n'));
+}
+
 // What a text would cost the parser, counted as the parser reads it before the parser has it: one pass over the
 // bytes.
 class Scan {
@@ -86,6 +90,7 @@ class Scan {
     while (at_ < bytes_.size()) markup();
   }
   size_t nodes = 0, attributes = 0;
+  size_t behind = std::string::npos;  // where the first markup stands that is behind the root element
 
  private:
   bool skip(const char* begin, const char* end) {
@@ -98,9 +103,22 @@ class Scan {
     const size_t text = bytes_.find_first_not_of(" \t\r\n", at_);
     at_ = std::min(bytes_.find('<', at_), bytes_.size());
     if (text < at_) ++nodes;
-    if (at_ == bytes_.size() || skip("</", ">")) return;
+    if (at_ == bytes_.size()) return;
+    const size_t begin = at_;
+    if (skip("</", ">")) {
+      end(begin);
+      return;
+    }
     ++nodes;
-    if (!skip("<?", "?>") && !skip("<!--", "-->") && !skip("<![CDATA[", "]]>") && !skip("<!", ">")) element();
+    if (skip("<?", "?>") || skip("<!--", "-->") || skip("<![CDATA[", "]]>") || skip("<!", ">")) return;
+    element();
+    if (ended_) behind = std::min(behind, begin);
+    ++depth_;
+    if (bytes_[at_ - 1] == '>' && bytes_[at_ - 2] == '/') end(begin);
+  }
+  void end(size_t begin) {
+    if (ended_) behind = std::min(behind, begin);
+    ended_ |= --depth_ <= 0;
   }
   void element() {
     const size_t begin = at_;
@@ -119,9 +137,7 @@ class Scan {
     }
     at_ = std::min(at_ + 1, bytes_.size());
     if (own > kMostAttributes)
-      refuse(RDM_RANGE, "line %ld%s: more than %zu attributes of one element",
-             1 + static_cast<long>(
-                     std::count(bytes_.begin(), bytes_.begin() + static_cast<ptrdiff_t>(begin), '\n')),
+      refuse(RDM_RANGE, "line %d%s: more than %zu attributes of one element", line_at(bytes_, begin),
              of_.c_str(), kMostAttributes);
     attributes += own;
   }
@@ -129,6 +145,8 @@ class Scan {
   const std::string& bytes_;
   const std::string& of_;
   size_t at_ = 0;
+  int64_t depth_ = 0;
+  bool ended_ = false;  // the root element
 };
 
 struct Parser {
@@ -188,6 +206,10 @@ struct Parser {
       refuse(RDM_FORMAT, "line %d%s: no XML: %s", document.ErrorLineNum(), of.c_str(), reason_of(result));
     const auto* root = document.RootElement();
     if (!root) refuse(RDM_FORMAT, "line 1%s: no element", of.c_str());
+    if (scan.behind != std::string::npos)
+      out->note(RDM_NOTE_DROPPED, line_at(bytes, scan.behind), "what stands behind the end of <%s>%s%s%s",
+                clean(root->Name()).c_str(), file.empty() ? "" : " (in ", file.c_str(),
+                file.empty() ? "" : ")");
     return copy(*root, file, depth);
   }
 };

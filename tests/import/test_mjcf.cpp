@@ -547,6 +547,16 @@ TEST(Mjcf, WhatCannotChangeItIsListed) {
     EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, text)) << text;
 }
 
+// The parser stops there, as MuJoCo's does, and says nothing.
+TEST(Mjcf, WhatStandsBehindTheRootIsListed) {
+  const std::string whole = file(arm(kRod, "axis='0 1 0' range='-90 90'"));
+  EXPECT_FALSE(from_text(whole + "<!-- the end -->\n").has_note(RDM_NOTE_DROPPED, "behind"));
+  for (const char* more :
+       {"\n</mujoco>", "\n<mujoco><worldbody><body name='c'/></worldbody></mujoco>", "\n<x/>"})
+    EXPECT_TRUE(from_text(whole + more).has_note(RDM_NOTE_DROPPED, "what stands behind the end of <mujoco>"))
+        << more;
+}
+
 // A target that a host moves, of nothing that touches, is no robot and no reason to ask which is.
 TEST(Mjcf, TargetsOfTheHostAreDropped) {
   const std::string target =
