@@ -37,6 +37,7 @@ TEST(SimOptions, DefaultsAreTheSolversOwn) {
   EXPECT_EQ(s.link_armature, d.link_armature);
   EXPECT_EQ(s.spring_only_effort, d.spring_only_effort);
   EXPECT_EQ(s.exact, d.exact);
+  EXPECT_EQ(s.integrator, d.integrator);
   EXPECT_EQ(s.sleep_time, d.sleep_time);
   EXPECT_EQ(s.sleep_speed, d.sleep_speed);
   EXPECT_EQ(s.sleep_spin, d.sleep_spin);
@@ -63,6 +64,7 @@ TEST(SimOptions, EachReachesTheSolver) {
                                  {"link_armature", nullptr, 1e-5},
                                  {"effort_bounds", "spring", 0},
                                  {"exact_solver", "true", 0},
+                                 {"integrator", "trapezoid", 0},
                                  {"sleep_time", nullptr, 0.5},
                                  {"sleep_speed", nullptr, 0.002},
                                  {"sleep_spin", nullptr, 0.03},
@@ -85,6 +87,7 @@ TEST(SimOptions, EachReachesTheSolver) {
   EXPECT_EQ(s.link_armature, 1e-5);
   EXPECT_TRUE(s.spring_only_effort);
   EXPECT_TRUE(s.exact);
+  EXPECT_EQ(s.integrator, Integrator::kTrapezoid);
   EXPECT_EQ(s.sleep_time, 0.5);
   EXPECT_EQ(s.sleep_speed, 0.002);
   EXPECT_EQ(s.sleep_spin, 0.03);

@@ -36,6 +36,8 @@ constexpr OptionSpec kRows[] = {
     number_option("link_armature", 3e-5, 0, 0.1, "inertia added to finger links in engine ode, kg m2"),
     text_option("effort_bounds", "drive", "drive|spring",
                 "what a joint's effort limit bounds: spring and damping, or the spring alone"),
+    text_option("integrator", "auto", "auto|euler|trapezoid",
+                "engine articulated: how robots move; auto: trapezoid for free bases that little damps"),
     text_option("precision", "single", "single|double",
                 "engine articulated: arithmetic; double is a reference, half as fast"),
     text_option("lanes", "auto", "auto|1|4|8|16",
@@ -46,6 +48,11 @@ constexpr OptionSpec kRows[] = {
     number_option("sleep_spin", 0.25, 0, 100, "angular speed below which a thing is slow, rad/s"),
     flag_option("exact_solver", false, "engine ode: the direct solver, slow; a reference"),
 };
+
+Integrator integrator_from(const char* text) {
+  if (same_name(text, "euler")) return Integrator::kEuler;
+  return same_name(text, "trapezoid") ? Integrator::kTrapezoid : Integrator::kAuto;
+}
 
 }  // namespace
 
@@ -76,6 +83,7 @@ SolverDef solver_from(const Options& o) {
   s.link_armature = o.number("link_armature");
   s.spring_only_effort = same_name(o.text("effort_bounds"), "spring");
   s.exact = o.flag("exact_solver");
+  s.integrator = integrator_from(o.text("integrator"));
   s.double_precision = same_name(o.text("precision"), "double");
   s.lanes = static_cast<int32_t>(std::strtol(o.text("lanes"), nullptr, 10));  // auto: 0
   s.sleep_time = o.number("sleep_time");

@@ -76,9 +76,10 @@ void joint_drives(TreeBatch<L>& t) {
   }
 }
 
-// v1 of the lanes in `lanes` for the present active set.
+// v1 of the lanes in `lanes` for the present active set. `factored`: the factors are of this very set, of the
+// last solve; forces alone have changed.
 template <class L>
-void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
+void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes, bool factored = false) {
   using V = typename L::V;
   using S = typename L::Scalar;
   const Tree& tree = *t.tree;
@@ -99,7 +100,11 @@ void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
     t.dv[offset + i] = t.h * (joint.spring * free + active.saturated * joint.bound - c.bias - c.qd * gain +
                               on * model.limit_stiffness * (edge - joint.q));
   }
-  factor_and_solve(t);
+  if (factored)
+    reduce_right_side(t);
+  else
+    factor(t);
+  substitute(t);
   for (int c = 0; c < tree.num_coords; ++c)
     t.coord[c].v1 = L::select(lanes, V(t.coord[c].qd + t.dv[c]), t.coord[c].v1);
 }
@@ -159,13 +164,13 @@ void damp_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
   }
 }
 
-// v1 of all lanes as if nothing touched.
+// v1 of all lanes as if nothing touched. `again`: it was called before in this substep, and forces have changed.
 template <class L>
-void solve_without_contacts(TreeBatch<L>& t) {
+void solve_without_contacts(TreeBatch<L>& t, bool again = false) {
   using Mask = typename L::Mask;
   const Mask everyone = L::mask(~0u);
   t.frozen = L::nothing();
-  solve_active_set(t, everyone);
+  solve_active_set(t, everyone, again);
   for (int pass = 0;; ++pass) {
     const Mask changed = update_active_set(t, everyone, pass >= kAllPasses);
     if (L::bits(changed) == 0) return;

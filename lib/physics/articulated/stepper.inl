@@ -9,6 +9,7 @@
 // actuation, acceleration, constraint, integration):
 //   position       link inertias and shapes in world axes, contact points
 //   acceleration   joint columns, bias forces, composite inertias                          tree_dynamics.inl
+//                  of free bases without damping once more, for the motion to come            look_ahead.inl
 //   actuation      drives, effort bounds and joint limits as an active set, velocities
 //                  without contacts                                                        joint_limits.inl
 //   constraint     contact impulses, in turn with the active set                           contact_solver.inl
@@ -28,6 +29,7 @@
 #pragma once
 #include "physics/articulated/contact_solver.inl"
 #include "physics/articulated/joint_limits.inl"
+#include "physics/articulated/look_ahead.inl"
 #include "physics/articulated/sleep.hpp"
 #include "physics/articulated/stepper.hpp"
 
@@ -197,11 +199,17 @@ void BatchStepper<L>::substep() {
   for (int32_t k = 0; k < num_batches_; ++k) {
     TreeBatch<L>& t = batches_[k];
     motion_subspaces(t);
+    if (t.tree->looks_ahead) guess_ahead(t);
     body_forces(t);
     bias_forces(t);
     composite_inertias(t);
     joint_drives(t);
     solve_without_contacts(t);
+    if (!t.tree->looks_ahead) continue;
+    look_ahead(t);
+    body_forces(t);
+    bias_forces(t);
+    solve_without_contacts(t, true);
   }
   // constraint
   solve_contacts();
@@ -212,6 +220,7 @@ void BatchStepper<L>::substep() {
     joint_torques(t, static_cast<S>(1.0 / scene_->def.solver.substeps));
     integrate(t);
     momenta(t);
+    if (t.tree->looks_ahead) add_half_ahead(t);
     integrate_base(t);
     kinematics(t);
   }
@@ -697,6 +706,7 @@ void BatchStepper<L>::contact_forces(int32_t world) {
     contact.force = inv_h * w.impulses[i];
     for (int side = 0; side < 2; ++side) {
       const Attachment& at = attachments_[side ? contact.shape_b : contact.shape_a];
+      if (at.kind == Attachment::kBody) w.free_bodies[at.body].touches = true;
       if (at.sensor < 0) continue;
       const TreeMember& member = groups_[at.group].tree->members[static_cast<size_t>(at.member)];
       const auto [batch, lane] = lane_of(at.group, at.member, world);
@@ -979,6 +989,10 @@ void BatchStepper<L>::carve(Arena& arena) {
       t.tree = &tree;
       t.model = arena.make<LinkModel<L>>(links);
       t.state = arena.make<PersistentLink<V>>(links);
+      if (tree.looks_ahead) {
+        t.trial = arena.make<PersistentLink<V>>(links);
+        t.present = arena.make<V>(static_cast<size_t>(tree.num_coords) + links);
+      }
       t.work = arena.make<LinkWork<V>>(links);
       t.coord = arena.make<CoordWork<V>>(static_cast<size_t>(tree.num_coords));
       t.mass_matrix = arena.make<V>(tree.path.size());

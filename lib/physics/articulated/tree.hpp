@@ -72,6 +72,7 @@ struct TreeBelow {
 // Articulations with the same links, joints and shapes in the same places: lanes of one computation.
 struct Tree {
   bool free_base = false;
+  bool looks_ahead = false;  // look_ahead.inl
   int32_t num_links = 0, num_coords = 0;
   Vector<TreeLink> links;
   Vector<TreeMember> members;

@@ -19,20 +19,23 @@
 //                       for i and its ancestors j, with I_i the spatial inertia of all that is behind joint
 //                       i: mass m, first moment h = m c, second moments J about O. I (a, s) is the momentum
 //                       p = m s + a x h, l = J a + h x s
-//   factor_and_solve    M = L^T D L, L a lower unit triangle with M's own sparsity (RBDA 6.5): nothing fills
+//   factor, substitute  M = L^T D L, L a lower unit triangle with M's own sparsity (RBDA 6.5): nothing fills
 //                       in, and n coordinates of depth d cost n d^2; then x <- L^-1 D^-1 L^-T x
 //   momenta             the solved rates' momenta, for the next substep
 //
 // Bias by momentum balance. A textbook's bias takes w x I w of the step's start and may gain energy at a step
 // of any size. Here each body's velocity of c and angular momentum about c are stored as the last solve left
 // them (v-, L-: vectors of the world), and the bias is what carries them over into the new pose:
-//   f   = m (v_c(q, qd) - d v-) / h - d (m g + push)          g = 0 of weightless links
-//   n_c = (I(q) w(q, qd) - d L-) / h - d torque
-// with v_c, w of the rates unchanged since the solve. M dv = h (tau - bias) then leaves each body with
-// d (p- + h (m g + push)) and what the joints add, d = 1 / (1 + h damping). No Coriolis term is written: the
-// difference quotient is it. But it is the one of the middle between the two poses, and is therefore rotated
-// on by kForwardRotation h w. Of a free base's robot, w is taken against the base, and the base takes the
-// reaction, so that the momentum of the whole stays exact.
+//   f   = m' (v_c(q, qd) - d v-) / h - m g - push             g = 0 of weightless links
+//   n_c = (I'(q) w(q, qd) - d L-) / h - torque
+// with v_c, w of the rates unchanged since the solve. M dv = h (tau - bias) then leaves each body with d p- and
+// what weight, pushes and joints add. A robot whose base is damped keeps d = e^(-h damping) of its momentum and
+// meets every force, its joints' and its contacts' too, with the masses m' = m / gain (model/flow.hpp): what a
+// flying hand does to the thing that it holds does not depend on the length of a substep.
+// No Coriolis term is written: the difference quotient is it. But it is the one of the middle between the two
+// poses, and is therefore rotated on by kForwardRotation h w. Of a free base's robot, w is taken against the
+// base, and the base takes the reaction, so that the momentum of the whole stays exact. Where a tree looks ahead
+// (look_ahead.inl), the quotient is that of both sides of the pose instead.
 #pragma once
 #include "base/simd.hpp"
 #include "physics/articulated/world_state.hpp"
@@ -56,12 +59,13 @@ struct LinkModel : LinkConstants<typename L::V> {
 template <class V>
 struct LinkWork {
   V q, target;
-  V c[3], moment[6];      // centre of mass and moments about it, world axes
-  V f[3], n[3];           // spatial force, then the sum of those behind the joint
-  V mass, h[3], J[6];     // spatial inertia, then that of the composite body behind the joint
-  V push[6];              // force and torque about the centre of mass
-  V spring, gain, bound;  // drive: torque = spring - gain v1, inside +-bound
-  V torque;               // mean over the substeps so far
+  V c[3], moment[6];         // centre of mass and moments about it, world axes
+  V f[3], n[3];              // spatial force, then the sum of those behind the joint
+  V mass, h[3], J[6];        // spatial inertia, then that of the composite body behind the joint
+  V push[6];                 // force and torque about the centre of mass
+  V spring, gain, bound;     // drive: torque = spring - gain v1, inside +-bound
+  V torque;                  // mean over the substeps so far
+  V ahead_v[3], ahead_n[3];  // what the coming motion changes (look_ahead.inl): of c's velocity, of the spin
 };
 
 // Per coordinate.
@@ -91,11 +95,13 @@ struct TreeBatch : BaseConstants<typename L::V> {
   LinkWork<V> base;
   LinkModel<L>* model;  // [num_links], as all of these
   PersistentLink<V>* state;
+  PersistentLink<V>* trial;  // where the tree looks ahead: the links as they will be
   LinkWork<V>* work;
   CoordWork<V>* coord;
   V *mass_matrix, *reduced, *factor;  // rows as in Tree::path
   V *dv, *push;                       // by coordinate: change of the rate; of contacts, half-solved
   V* feedforward;                     // [num_links]; null: none
+  V* present;  // where the tree looks ahead: rates [num_coords], then angles [num_links]
   // Shapes: place and half axis (of capsules) in their link's joint frame, and both in world axes from the
   // base's origin.
   V (*shape_p)[3], (*shape_a)[3], (*center)[3], (*axis)[3];
@@ -357,7 +363,13 @@ template <class L, class V>
     dv[r] = (v[r] + w_x_arm[r] - t.linear_damping * linear[r]) * t.inv_h;
     dn[r] = (spin[r] - t.angular_damping * angular[r]) * t.inv_h;
   }
-  if (relative_w) {
+  if (t.tree->looks_ahead) {
+    const S half_rate = S(0.5) * t.inv_h;
+    for (int r = 0; r < 3; ++r) {
+      dv[r] += half_rate * b->ahead_v[r];
+      dn[r] += half_rate * b->ahead_n[r];
+    }
+  } else if (relative_w) {
     const S angle_per_rate = S(kForwardRotation) * t.h;
     V tv[3], tn[3];
     cross(relative_w, dv, tv);
@@ -378,27 +390,27 @@ template <class L, class V>
       }
     }
   }
-  for (int r = 0; r < 3; ++r) b->f[r] = mass * (dv[r] - t.linear_damping * gravity[r]);
+  for (int r = 0; r < 3; ++r) b->f[r] = mass * (dv[r] - gravity[r]);
   if (t.any_push)
     for (int r = 0; r < 3; ++r) {
-      b->f[r] -= t.linear_damping * b->push[r];
-      dn[r] -= t.angular_damping * b->push[3 + r];
+      b->f[r] -= b->push[r];
+      dn[r] -= b->push[3 + r];
     }
   cross(c, b->f, b->n);  // from c to O
   for (int r = 0; r < 3; ++r) b->n[r] += dn[r];
 }
 
 // A link without mass hands a push on to what hangs on it. The push is about the centre of mass it names.
-template <class L, class V>
-void push_massless(const TreeBatch<L>& t, const PersistentLink<V>& state, const V* com, LinkWork<V>* b) {
+template <class V>
+void push_massless(const PersistentLink<V>& state, const V* com, LinkWork<V>* b) {
   V arm[3];
   rotate(state.R, com, arm);
   for (int r = 0; r < 3; ++r) {
     arm[r] += state.P[r];
-    b->f[r] = -(t.linear_damping * b->push[r]);
+    b->f[r] = -b->push[r];
   }
   cross(arm, b->f, b->n);
-  for (int r = 0; r < 3; ++r) b->n[r] -= t.angular_damping * b->push[3 + r];
+  for (int r = 0; r < 3; ++r) b->n[r] -= b->push[3 + r];
 }
 
 // f, n of every body for the rates qd in the present pose.
@@ -416,7 +428,7 @@ void body_forces(TreeBatch<L>& t) {
     LinkWork<V>& b = t.work[i];
     if (link.massless) {
       for (int r = 0; r < 3; ++r) b.f[r] = b.n[r] = V{};
-      if (t.any_push) push_massless(t, self, t.model[i].com, &b);
+      if (t.any_push) push_massless(self, t.model[i].com, &b);
       continue;
     }
     V arm[3], relative_w[3];
@@ -563,9 +575,9 @@ void reduce_entries(const V* matrix, const V* more, const TreeBelow* below, cons
 }
 
 // The rows of t.mass_matrix with the gains on its diagonal: t.factor gets those of L off the diagonal, inv_d
-// 1 / D. t.dv becomes (L^T D L)^-1 t.dv.
+// 1 / D. t.dv becomes L^-T t.dv on the way.
 template <class L>
-void factor_and_solve(TreeBatch<L>& t) {
+void factor(TreeBatch<L>& t) {
   using V = typename L::V;
   using S = typename L::Scalar;
   const Tree& tree = *t.tree;
@@ -613,6 +625,32 @@ void factor_and_solve(TreeBatch<L>& t) {
     t.coord[k].inv_d = inv_d;
     for (int d = 0; d < depth; ++d) part[d] = whole[d] * inv_d;
   }
+}
+
+// t.dv <- L^-T t.dv, with the factors at hand.
+template <class L>
+void reduce_right_side(TreeBatch<L>& t) {
+  using V = typename L::V;
+  const Tree& tree = *t.tree;
+  for (int k = tree.num_coords - 1; k >= 0; --k) {
+    const auto at = static_cast<size_t>(k);
+    const V* factor = t.factor + tree.depth[at];
+    V x = t.dv[k];
+    for (int32_t b = tree.first_below[at]; b < tree.first_below[at + 1]; ++b) {
+      const TreeBelow& below = tree.below[static_cast<size_t>(b)];
+      x -= factor[below.row] * t.dv[below.coord];
+    }
+    t.dv[k] = x;
+  }
+}
+
+// t.dv <- L^-1 D^-1 t.dv
+template <class L>
+void substitute(TreeBatch<L>& t) {
+  using V = typename L::V;
+  const Tree& tree = *t.tree;
+  const int32_t *rows = tree.row.data(), *depths = tree.depth.data();
+  V* const dv = t.dv;
   for (int k = 0; k < tree.num_coords; ++k) {
     V x = dv[k] * t.coord[k].inv_d;
     const V* row = t.factor + rows[k];

@@ -3,28 +3,31 @@
 // whatever the lanes: free bodies, contact points, the impulses that the next solve starts from.
 //
 // A free body has mass m, inertia I about its centre of mass, and no coordinates but pose and velocity:
-//   predict    v = d_v (v + h (g + f/m))         w = d_w (w + h R I^-1 R^T torque)      without contacts
-//   contacts   v1, w1: what the solver makes of them
-//   integrate  p += h v1,  q <- exp(h w1) q,  then w <- R' I^-1 R'^T L with L = R I R^T w1 of the old pose:
-//              a body that spins freely keeps its angular momentum L, not its angular velocity.
-// d = 1 / (1 + h damping) is implicit damping. R rotates the body's axes into world axes.
+//   predict    v = keep v + gain h (g + f/m), w alike with R I^-1 R^T torque            without contacts
+//   contacts   v1, w1: what the solver makes of them, with the masses m / gain
+//   integrate  with a contact point p += h v1, q <- exp(h w1) q; without one p += h (gain v + fall h (g + f/m)),
+//              q <- exp(h w_m) q with the rate w_m of the middle; then w <- R' I^-1 R'^T L, L = R I R^T w1 of
+//              the old pose: a body that spins freely keeps its angular momentum L, not its angular velocity.
+// keep, gain and fall are those of damping over a substep (model/flow.hpp): a flight is exact at any substep.
+// R rotates the body's axes into world axes.
 #pragma once
 #include <cstdint>
 
 #include "physics/articulated/tree.hpp"
 #include "physics/collision/narrowphase.hpp"
+#include "physics/model/flow.hpp"
 #include "physics/world.hpp"
 
 namespace rdm {
 
 // Constants of a free body.
 struct BodyModel {
-  double inv_mass, sqrt_inv_mass;
-  Mat3 moment;             // I, body axes, kg m2
-  Mat3 inv_moment;         // I^-1
-  Mat3 inv_sqrt_moment;    // C^-1, where I = C C^T (Cholesky)
-  double linear, angular;  // factors of implicit damping
-  Vec3 gravity;            // m/s2
+  double inv_mass, sqrt_inv_mass;  // 1/m; root of gain / m
+  Mat3 moment;                     // I, body axes, kg m2
+  Mat3 inv_moment;                 // I^-1
+  Mat3 inv_sqrt_moment;            // C^-1, where I / gain = C C^T (Cholesky)
+  Flow linear, angular;            // of damping
+  Vec3 gravity;                    // m/s2
 };
 
 // A pair of a run without an articulation: which body each shape is on.
@@ -46,15 +49,16 @@ struct ArticulatedModel {
 ArticulatedModel make_articulated_model(const Scene& scene);
 
 // The constants of a link and of an articulation that a world may have of its own (model/dynamics.hpp), as V:
-// one number per lane, or a plain number as an adjustable world stores it. In joint axes.
+// one number per lane, or a plain number as an adjustable world stores it. In joint axes. Masses and moments of a
+// robot whose base is damped are over the damping's gain (model/flow.hpp): that is what all forces meet.
 template <class V>
 struct LinkConstants {
   V mass, moment[6], kp, kd, effort, friction, armature;
 };
 template <class V>
 struct BaseConstants {
-  V gravity[3], linear_damping, angular_damping;  // factors of implicit damping, 1 without
-  V base_mass, base_moment[6];                    // of a free base
+  V gravity[3], linear_damping, angular_damping;  // times the damping's gain; what it keeps, 1 without
+  V base_mass, base_moment[6];                    // of a free base, over the gain
 };
 inline constexpr size_t kLinkConstants = sizeof(LinkConstants<float>) / sizeof(float),
                         kBaseConstants = sizeof(BaseConstants<float>) / sizeof(float);
@@ -102,6 +106,8 @@ struct FreeBody {
   Mat3 R, inv_sqrt_inertia;  // R_WB; C^-1 R^T: torque impulse in the world to half-solved coordinates
   Vec3 v, w;                 // predicted, without contacts
   Vec3 v1, w1;               // with them
+  Vec3 way;                  // mean velocity of the substep, without contacts
+  bool touches;              // has a contact point in this substep
 };
 
 // A contact's impulse on shape a, from which the next substep's solve starts.

@@ -99,8 +99,8 @@ struct BodyDef {
   Name name;
   Pose X_WB;                   // start pose
   Inertia inertia;             // com must be the body's origin
-  double angular_damping = 0;  // 1/s, implicit
-  double linear_damping = 0;   // 1/s, implicit
+  double angular_damping = 0;  // 1/s
+  double linear_damping = 0;   // 1/s
   bool gravity = true;
   Vector<ShapeDef> shapes;
 };
@@ -112,6 +112,13 @@ struct Friction {
 };
 
 inline constexpr int32_t kMostContacts = 4096;
+
+// How engine articulated carries a robot's momenta over a substep (articulated/look_ahead.inl).
+enum class Integrator : int32_t {
+  kAuto = 0,      // trapezoid for free bases that little damps, else euler
+  kEuler = 1,     // semi-implicit, one solve; a free base without damping may gain energy without bound
+  kTrapezoid = 2  // by the pose behind and the pose to come: energy swings and does not drift
+};
 
 struct SolverDef {
   double h = 1.0 / 120;          // substep, s
@@ -132,6 +139,7 @@ struct SolverDef {
   bool exact = false;               // engine ode: the O(n^3) solver, slow; the reference of tests
   // Engine articulated:
   bool double_precision = false;  // arithmetic in double, one lane: a reference, half as fast
+  Integrator integrator = Integrator::kAuto;
   int32_t lanes = 0;  // 1, 4, 8 or 16 numbers at a time; 0: what suits scene and machine. Same bytes for all
   // Free bodies fall asleep (articulated/sleep.hpp) once they have been slower than both for so long.
   double sleep_time = 0;                         // s; 0: never
