@@ -109,6 +109,50 @@ TEST(Sleep, ATowerSleepsWhereItStoodAndKeepsItsContacts) {
     EXPECT_EQ(tower->pair_touched(static_cast<int32_t>(k)), touched[k] != 0);
 }
 
+// Points on a rim are elsewhere after any motion: the forces must not go by where they are found.
+TEST(Sleep, RoundThingsAreCarriedWhileTheySleep) {
+  constexpr double kMass = 1, kRadius = 0.04, kHalf = 0.1, kWeightOfOne = kMass * 9.81;
+  constexpr int kCount = 6;
+  Inertia inertia;
+  inertia.mass = kMass;
+  inertia.moment[0] = inertia.moment[1] = kMass * (kRadius * kRadius / 4 + kHalf * kHalf / 3);
+  inertia.moment[2] = kMass * kRadius * kRadius / 2;
+  SceneDef def;
+  def.solver.sleep_time = 0.25;
+  ShapeDef table;
+  table.kind = ShapeKind::kBox;
+  table.size = {5, 5, 0.1};
+  table.X_LS.p = {0, 0, -0.1};
+  def.statics.push_back(table);
+  for (int i = 0; i < kCount; ++i)
+    def.bodies.push_back(test::make_body(ShapeKind::kCylinder, {kRadius, kHalf, 0}, inertia,
+                                         {{0.5 * i, 0, kHalf + 0.002 * i}, {}}));
+  for (const bool plane : {false, true}) {
+    if (plane) {
+      def.statics[0] = {};
+      def.statics[0].kind = ShapeKind::kPlane;
+    }
+    for (const int32_t substeps : {1, 2, 4}) {
+      def.solver.substeps = substeps;
+      def.solver.h = 1.0 / 60 / substeps;
+      test::Simulation sim(def, kEngine);
+      steps(*sim, 120);
+      ASSERT_EQ(sleepers(*sim), kCount) << substeps;
+      double carried[kCount] = {}, moment[kCount] = {};
+      for (int32_t k = 0; k < sim->num_contacts(); ++k) {
+        const Contact& c = sim->contacts()[k];
+        const int32_t i = sim.scene().shapes[static_cast<size_t>(c.shape_a)].index;
+        carried[i] += c.force.z;
+        moment[i] += cross(c.p - sim->body(i).X.p, c.force).x;
+      }
+      for (int i = 0; i < kCount; ++i) {
+        EXPECT_NEAR(carried[i], kWeightOfOne, 0.01 * kWeightOfOne) << plane << substeps << ' ' << i;
+        EXPECT_NEAR(moment[i], 0, 0.02 * kWeightOfOne * kRadius) << plane << substeps << ' ' << i;
+      }
+    }
+  }
+}
+
 TEST(Sleep, AnIslandWakesAsAWholeAndAnotherSleepsOn) {
   SceneDef def = tower_def();
   const auto far = static_cast<int32_t>(def.bodies.size());

@@ -105,6 +105,51 @@ void unite(const Scene& scene, int32_t a, int32_t b, WorldState* s) {
     if (s->sleep[i].island == high) s->sleep[i].island = low;
 }
 
+// Points among the sleeping. A pair keeps those of the last solve with their impulses, where they were on shape
+// a; only normal and depth are of the nearest point found at rest, as points on a rim jump with any motion. A
+// pair first found now keeps what is found, without a force. What is kept follows from poses and from
+// impulses as a state stores them, and does not change when it is kept again. False: there is no room.
+bool keep_points(const Scene& scene, const Bound* bounds, int32_t num_found, WorldState* s) {
+  const double inv_h = 1 / scene.def.solver.h;
+  s->num_kept = 0;
+  for (int32_t begin = 0, end = 0, at = 0; begin < num_found; begin = end) {
+    const int32_t pair = s->contact_pairs[begin];
+    while (end < num_found && s->contact_pairs[end] == pair) ++end;
+    while (at < s->num_warm && s->warm[at].pair < pair) ++at;
+    const int32_t first = at;
+    while (at < s->num_warm && s->warm[at].pair == pair) ++at;
+    const bool known = at > first;
+    const int32_t count = known ? at - first : end - begin;
+    if (s->num_kept + count > scene.def.solver.contacts_max) return false;
+    const float* center = bounds[s->contacts[begin].shape_a].center;
+    for (int32_t k = 0; k < count; ++k, ++s->num_kept) {
+      WarmPoint& point = s->kept_warm[s->num_kept];
+      Contact& contact = s->kept[s->num_kept];
+      s->kept_pairs[s->num_kept] = pair;
+      if (known) {
+        point = s->warm[first + k];
+      } else {
+        place_points(s->contacts + begin + k, s->contact_pairs + begin + k, 1, bounds, &point);
+        std::fill_n(point.impulse, 3, 0.0f);
+      }
+      Vec3 p;
+      for (int r = 0; r < 3; ++r) p[r] = static_cast<double>(center[r]) + static_cast<double>(point.p[r]);
+      int32_t nearest = begin;
+      double least = kStateBound * kStateBound;
+      for (int32_t i = begin; i < end; ++i) {
+        const Vec3 apart = s->contacts[i].p - p;
+        if (!(dot(apart, apart) < least)) continue;
+        least = dot(apart, apart);
+        nearest = i;
+      }
+      contact = s->contacts[nearest];
+      contact.p = p;
+      for (int r = 0; r < 3; ++r) contact.force[r] = inv_h * static_cast<double>(point.impulse[r]);
+    }
+  }
+  return true;
+}
+
 // The lists of pairs by who sleeps, and the points of pairs where both sides are at rest. False: there is no
 // room for them all.
 bool sort_pairs(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses, WorldState* s) {
@@ -123,8 +168,9 @@ bool sort_pairs(const ArticulatedModel& model, Collider* collider, Collider::Pos
       s->searched[s->num_searched++] = pair.pair;
   }
   if (s->num_resting == 0) return true;
-  const Collider::Found found = collider->collide_listed(scene, poses, {s->resting, s->num_resting}, s->kept,
-                                                         s->kept_pairs, s->touched);
+  // `contacts` are free until the search
+  const Collider::Found found = collider->collide_listed(scene, poses, {s->resting, s->num_resting},
+                                                         s->contacts, s->contact_pairs, s->touched);
   if (found.failed) s->diverged = true;
   // those of the others that stay
   const auto stays = [&](int32_t i, int32_t* at) {
@@ -133,21 +179,16 @@ bool sort_pairs(const ArticulatedModel& model, Collider* collider, Collider::Pos
   };
   int32_t left = 0;
   for (int32_t i = 0, at = 0; i < s->num_warm; ++i) left += stays(i, &at);
-  if (found.overflow || found.count + left > scene.def.solver.contacts_max) return false;
-  place_points(s->kept, s->kept_pairs, found.count, collider->bounds(), s->kept_warm);
-  match_points(s->kept_warm, found.count, s->warm, s->num_warm, s->match);
-  const double inv_h = 1 / scene.def.solver.h;
-  for (int32_t i = 0; i < found.count; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const float impulse = s->match[i] < 0 ? 0 : s->warm[s->match[i]].impulse[k];
-      s->kept_warm[i].impulse[k] = impulse;
-      s->kept[i].force[k] = inv_h * static_cast<double>(impulse);
-    }
+  if (found.overflow || !keep_points(scene, collider->bounds(), found.count, s) ||
+      s->num_kept + left > scene.def.solver.contacts_max) {
+    s->num_kept = 0;
+    return false;
+  }
+  for (int32_t i = 0; i < s->num_kept; ++i) {
     const int32_t a = scene.shapes[static_cast<size_t>(s->kept[i].shape_a)].index,
                   b = scene.shapes[static_cast<size_t>(s->kept[i].shape_b)].index;
     if (b >= 0) unite(scene, a, b, s);
   }
-  s->num_kept = found.count;
   left = 0;
   for (int32_t i = 0, at = 0; i < s->num_warm; ++i)
     if (stays(i, &at)) s->warm[left++] = s->warm[i];

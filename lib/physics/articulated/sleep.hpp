@@ -6,9 +6,9 @@
 //   - in which all its bodies have been quiet for sleep_time without a break,
 //   - some body of it touches a static shape, and none touches a shape of an articulation,
 //   - and no contact point was left out.
-// Its bodies then stand still, v = w = 0. Their points are found once more, where they have come to rest, and
-// kept: they are reported with the forces of the last solve, they count and touch, and their impulses start
-// the next solve; the pairs among them and with static shapes are not searched.
+// Its bodies then stand still, v = w = 0. The points of the last solve are kept: they are reported with its
+// forces, they count and touch, and their impulses start the next solve; normals and depths are found once
+// more, where the bodies have come to rest. The pairs among them and with static shapes are not searched.
 // It wakes as a whole, in the substep (contacts are searched anew) or call in which
 //   - an awake body or a shape of an articulation is found to touch one of its bodies,
 //   - one of its bodies is set or pushed, or dynamics are set,
