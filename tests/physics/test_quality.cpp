@@ -26,7 +26,7 @@ class Quality : public testing::TestWithParam<Column> {
   static double bound(double ode, double of_articulated) { return articulated() ? of_articulated : ode; }
 };
 
-// Claims that engine ode cannot keep: it leaves velocity products out, and eight sweeps from nothing do not
+// Claims that engine ode cannot keep: its velocity products are explicit, and eight sweeps from nothing do not
 // hold a tower.
 class Exacting : public Quality {};
 
@@ -198,7 +198,7 @@ TEST_P(Exacting, ShorterStepsKeepMomentumBetter) {
   EXPECT_LT(c.angular, 1e-3);
 }
 
-// The judge is judged: with velocity products pushed from outside, nothing but the step is left.
+// The judge is judged: nothing but the step is left.
 TEST(Reference, KeepsEnergyAndMomentum) {
   const Swing s = swing(reference_column());
   for (const double gain : s.gain) EXPECT_LT(std::fabs(gain), 0.02 * s.kinetic);

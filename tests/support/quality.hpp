@@ -108,10 +108,8 @@ inline Momentum momentum(const World& world, int32_t articulation) {
 
 // A scene in one column's hands.
 //
-// Engine ode differs from the mechanics of the scene in three ways besides its solver: light links between
-// two crossed axes are lumped into the next one, velocity products are left out (it carries joint rates,
-// not momenta, from substep to substep), and small links get an armature. The reference has none of these:
-// no link of it is lumped, and the velocity products are pushed from outside.
+// Engine ode differs from the mechanics of the scene in two ways besides its solver: light links between two
+// crossed axes are lumped into the next one, and small links get an armature. The reference has neither.
 class Rig {
  public:
   Rig(SceneDef def, const Column& column)
@@ -125,7 +123,6 @@ class Rig {
   void tick(F&& before) {
     for (int32_t i = 0; i < column_.steps; ++i) {
       before();
-      if (column_.reference) push_velocity_products();
       sim_->step();
       status_ |= sim_->status();
     }
@@ -139,10 +136,6 @@ class Rig {
   double checked(double x) const { return diverged() ? std::numeric_limits<double>::quiet_NaN() : x; }
 
  private:
-  struct Acceleration {
-    Vec3 linear, angular;  // of a frame's origin, while all joint and base accelerations are 0
-  };
-
   // The scene's own cap of contacts stays.
   static SceneDef prepared(SceneDef def, const Column& column) {
     const int32_t contacts_max = def.solver.contacts_max;
@@ -160,57 +153,9 @@ class Rig {
     return def;
   }
 
-  static Vec3 gyroscopic(const Inertia& inertia, const Motion& m) {
-    const Mat3 R = to_matrix(m.X.q);
-    return cross(m.w, R * (moment_matrix(inertia) * (transpose(R) * m.w)));
-  }
-
-  void push_velocity_products() {
-    accelerations_.resize(static_cast<size_t>(scene().num_links));
-    for (int32_t a = 0; a < static_cast<int32_t>(scene().def.articulations.size()); ++a) {
-      const ArticulationDef& def = scene().def.articulations[static_cast<size_t>(a)];
-      const Motion& base = sim_->base(a);
-      Acceleration at_base;
-      if (def.free_base) {
-        at_base.linear = cross(base.w, cross(base.w, -rotate(base.X.q, def.base.com)));
-        sim_->push_base(a, {}, -gyroscopic(def.base, base));
-      }
-      const int32_t first = scene().link_offset[static_cast<size_t>(a)];
-      for (int32_t i = first; i < first + static_cast<int32_t>(def.links.size()); ++i)
-        push_link(i, base, at_base);
-    }
-  }
-
-  void push_link(int32_t i, const Motion& base, const Acceleration& at_base) {
-    const LinkFrame& frame = scene().frames[static_cast<size_t>(i)];
-    const Inertia& inertia = scene().link(i).inertia;
-    const Motion& m = sim_->link(i);
-    const Motion& parent = frame.parent < 0 ? base : sim_->link(frame.parent);
-    const Acceleration& before =
-        frame.parent < 0 ? at_base : accelerations_[static_cast<size_t>(frame.parent)];
-    const Vec3 r = m.X.p - parent.X.p, slide = m.v - parent.v - cross(parent.w, r);
-    Acceleration& here = accelerations_[static_cast<size_t>(i)];
-    here.angular = before.angular + cross(parent.w, m.w);
-    here.linear = before.linear + cross(before.angular, r) + cross(parent.w, cross(parent.w, r) + 2 * slide);
-    if (inertia.mass <= 0) return;
-    const Mat3 R = to_matrix(m.X.q);
-    const Vec3 arm = R * inertia.com, c = m.X.p + arm;
-    const Vec3 a = here.linear + cross(here.angular, arm) + cross(m.w, cross(m.w, arm));
-    const Vec3 moment = R * (moment_matrix(inertia) * (transpose(R) * here.angular)) + gyroscopic(inertia, m);
-    sim_->push_link(i, -inertia.mass * a, c);
-    // A torque as a couple of forces a metre apart.
-    if (norm(moment) == 0) return;
-    const Vec3 lever =
-        normalized(cross(moment, std::fabs(moment.x) < 0.9 * norm(moment) ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
-    const Vec3 force = cross(moment, lever);
-    sim_->push_link(i, -force, c + lever);
-    sim_->push_link(i, force, c);
-  }
-
   FpMode mode_;
   Column column_;
   Simulation sim_;
-  std::vector<Acceleration> accelerations_;
   uint32_t status_ = 0;  // of all steps so far
 };
 

@@ -8,6 +8,12 @@
 #include "physics/ode/ode_convert.hpp"
 
 // One substep; W world, L link, P parent (World::rebuild has the kinematics):
+//   products   rates that stay are not momenta that stay: the bodies' velocities J(q) qd change by h dJ/dt qd
+//              from pose to pose. What that takes,
+//                alpha = alpha_P + w_P x w_L,  a = a_P + alpha_P x r + w_P x (w_P x r) + 2 w_P x slide,
+//                f = m a_c,  n_c = I alpha + w x I w,
+//              is summed from the tips (RNEA) and taken from the joints, as torques -C(q, qd) qd, and from a free
+//              base. I is the link's own moment, without armature. What damps the bodies damps these too.
 //   drive      each joint's motor row is told velocity v*, softness cfm and bound F (drive.hpp). With J the
 //              row that takes the bodies' velocities to the joint's rate, the solver looks for lambda with
 //                h J M^-1 J^T lambda + cfm lambda = v* - J v,   |lambda| <= F,
@@ -60,6 +66,7 @@ void OdeLinks::carve(const Scene& scene, Arena& arena) {
   links_ = arena.make<Link>(static_cast<size_t>(num_links_));
   joints_ = arena.make<Joint>(static_cast<size_t>(num_links_));
   bases_ = arena.make<Link>(scene.def.articulations.size());
+  bias_ = arena.make<Bias>(static_cast<size_t>(num_links_));
 }
 
 // A link without shapes whose only child turns about a second axis through the same origin, at a right
@@ -188,6 +195,77 @@ void OdeLinks::make(dWorldID world, const LinkState& state) {
       const int32_t other = joints_[i].def->coupled_to;
       joints_[i].other = other < 0 ? -1 : first + other;
     }
+  }
+}
+
+void OdeLinks::push_velocity_products(const LinkState& state) {
+  const Scene& scene = *state.scene;
+  const auto spin_moment = [](const Inertia& inertia, const Mat3& R, const Vec3& w, const Vec3& alpha) {
+    const auto turned = [&](const Vec3& v) { return R * (moment_matrix(inertia) * (transpose(R) * v)); };
+    return turned(alpha) + cross(w, turned(w));
+  };
+  const auto push = [](dBodyID body, const Vec3& force, const Vec3& torque) {
+    if (!body) return;
+    dBodyAddForce(body, force.x, force.y, force.z);
+    dBodyAddTorque(body, torque.x, torque.y, torque.z);
+  };
+  for (int32_t a = 0; a < static_cast<int32_t>(scene.def.articulations.size()); ++a) {
+    const ArticulationDef& def = scene.def.articulations[static_cast<size_t>(a)];
+    const Motion& base = state.bases[a];
+    const int32_t first = scene.link_offset[static_cast<size_t>(a)],
+                  end = first + static_cast<int32_t>(def.links.size());
+    Bias of_base;
+    const Vec3 base_arm = state.base_R[a] * def.base.com;
+    if (def.free_base) {
+      of_base.linear = -cross(base.w, cross(base.w, base_arm));  // its centre of mass goes straight on
+      of_base.moment = spin_moment(def.base, state.base_R[a], base.w, {});
+    }
+    for (int32_t i = first; i < end; ++i) {
+      const LinkFrame& frame = scene.frames[static_cast<size_t>(i)];
+      const bool on_base = frame.parent < 0;
+      const Motion &m = state.links[i], &parent = on_base ? base : state.links[frame.parent];
+      const Bias& before = on_base ? of_base : bias_[frame.parent];
+      const Vec3 r = m.X.p - parent.X.p, w_x_r = cross(parent.w, r), slide = m.v - parent.v - w_x_r;
+      Bias& here = bias_[i];
+      here = {};
+      here.angular = before.angular + cross(parent.w, m.w);
+      here.linear = before.linear + cross(before.angular, r) + cross(parent.w, w_x_r + 2 * slide);
+      if (!links_[i].owner) continue;
+      dMass mass;
+      dBodyGetMass(links_[i].body, &mass);
+      const Vec3 arm = state.link_R[i] * links_[i].com;
+      here.force = mass.mass * (here.linear + cross(here.angular, arm) + cross(m.w, cross(m.w, arm)));
+      here.moment = spin_moment(scene.link(i).inertia, state.link_R[i], m.w, here.angular) +
+                    cross(m.X.p + arm - base.X.p, here.force);
+    }
+    const double factor = def.free_base ? 1 / (1 + scene.def.solver.h * def.base_damping) : 1;
+    for (int32_t i = end - 1; i >= first; --i) {
+      const LinkFrame& frame = scene.frames[static_cast<size_t>(i)];
+      const Joint& joint = joints_[i];
+      const Bias& here = bias_[i];
+      Bias& inboard = frame.parent < 0 ? of_base : bias_[frame.parent];
+      inboard.force += here.force;
+      inboard.moment += here.moment;
+      const Vec3& axis = state.axes[i];
+      if (frame.prismatic) {
+        const Vec3 force = (-factor * dot(axis, here.force)) * axis;
+        Vec3 couple;  // what a force along two lines leaves, shared by both
+        if (joint.parent)
+          couple =
+              0.5 * cross(from_ode(dBodyGetPosition(joint.parent)) - from_ode(dBodyGetPosition(joint.child)),
+                          force);
+        push(joint.child, force, couple);
+        push(joint.parent, -force, couple);
+      } else {
+        const Vec3 torque =
+            (-factor * dot(axis, here.moment - cross(state.links[i].X.p - base.X.p, here.force))) * axis;
+        push(joint.child, {}, torque);
+        push(joint.parent, {}, -torque);
+      }
+    }
+    if (def.free_base)
+      push(bases_[a].body, -factor * of_base.force,
+           -factor * (of_base.moment - cross(base_arm, of_base.force)));
   }
 }
 

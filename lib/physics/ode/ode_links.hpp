@@ -1,7 +1,8 @@
 // The ODE bodies and joints of the articulations, and the way between them and joint coordinates.
 //
 // ODE only supplies rates: after each substep they are read about the axes the solver used, integrated
-// here, and every body is put back exactly where forward kinematics says.
+// here, and every body is put back exactly where forward kinematics says. As rates are kept and not momenta,
+// the velocity products (Coriolis, centrifugal) are pushed from outside.
 #pragma once
 #include <ode/ode.h>
 
@@ -36,6 +37,8 @@ class OdeLinks {
   // Share of the link's moment that is its own and not armature: damping acts on that.
   double own_share(int32_t link) const { return links_[link].own_share; }
 
+  // Pushes what carries the links' momenta on while the rates stay: the velocity products of the next substep.
+  void push_velocity_products(const LinkState& state);
   // Motor rows for the next substep.
   void drive(const LinkState& state);
   // Reads rates, adds each row's torque x weight, integrates and clamps q. False: a rate is out of bounds.
@@ -67,6 +70,10 @@ class OdeLinks {
     MotorRow motor;
     int32_t other;  // flat link a coupled joint follows, -1
   };
+  struct Bias {
+    Vec3 linear, angular;  // acceleration of a link's origin, while those of joints and bases are 0
+    Vec3 force, moment;    // that it takes, about the base's origin; then of all that is behind the joint
+  };
   bool merges(const Scene& scene, int32_t link) const;
   void make_bodies(dWorldID world, int32_t articulation, const LinkState& state);
   void make_joint(dWorldID world, int32_t link, const LinkState& state);
@@ -76,6 +83,7 @@ class OdeLinks {
   Link* links_ = nullptr;
   Link* bases_ = nullptr;
   Joint* joints_ = nullptr;
+  Bias* bias_ = nullptr;  // [num_links]
   int32_t num_links_ = 0;
 };
 

@@ -351,6 +351,7 @@ void OdeWorld::add_sensors(double weight) {
 }
 
 bool OdeWorld::substep(double weight) {
+  tree_.push_velocity_products(state());
   apply_forces();
   tree_.drive(state());
   const OdeContacts::Found found = contact_.collide(ode_, *scene_, contacts_, touched_);
