@@ -37,6 +37,7 @@ const OptionTable& simulation_rows() {
     Filled() {
       add_sim_options(*this);
       set_default("contacts_max", 0);  // nobody but the scene knows
+      set_default("speculative_contacts", 1);
     }
   };
   static const Filled table;

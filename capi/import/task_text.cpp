@@ -42,7 +42,8 @@ constexpr const char* kShared[] = {"engine",
                                    "lanes",
                                    "sleep_time",
                                    "sleep_speed",
-                                   "sleep_spin"};
+                                   "sleep_spin",
+                                   "speculative_contacts"};
 
 struct TextTask {
   std::string file;

@@ -30,8 +30,9 @@ struct Motion {
 struct Contact {
   int32_t shape_a, shape_b;  // indices of Scene::shapes
   Vec3 p, n;                 // point; unit normal from b into a; world
-  double depth;              // m
+  double depth;              // m; < 0, in a substep only: yet to come, so far along n
   Vec3 force;                // on a, N, world
+  Vec3 gap;                  // of one to come: from p, which is on a, to the point of b as it is now
 };
 
 struct Wrench {

@@ -38,6 +38,7 @@ TEST(SimOptions, DefaultsAreTheSolversOwn) {
   EXPECT_EQ(s.spring_only_effort, d.spring_only_effort);
   EXPECT_EQ(s.exact, d.exact);
   EXPECT_EQ(s.integrator, d.integrator);
+  EXPECT_EQ(s.speculative_contacts, d.speculative_contacts);
   EXPECT_EQ(s.sleep_time, d.sleep_time);
   EXPECT_EQ(s.sleep_speed, d.sleep_speed);
   EXPECT_EQ(s.sleep_spin, d.sleep_spin);
@@ -65,6 +66,7 @@ TEST(SimOptions, EachReachesTheSolver) {
                                  {"effort_bounds", "spring", 0},
                                  {"exact_solver", "true", 0},
                                  {"integrator", "trapezoid", 0},
+                                 {"speculative_contacts", "true", 0},
                                  {"sleep_time", nullptr, 0.5},
                                  {"sleep_speed", nullptr, 0.002},
                                  {"sleep_spin", nullptr, 0.03},
@@ -88,6 +90,7 @@ TEST(SimOptions, EachReachesTheSolver) {
   EXPECT_TRUE(s.spring_only_effort);
   EXPECT_TRUE(s.exact);
   EXPECT_EQ(s.integrator, Integrator::kTrapezoid);
+  EXPECT_TRUE(s.speculative_contacts);
   EXPECT_EQ(s.sleep_time, 0.5);
   EXPECT_EQ(s.sleep_speed, 0.002);
   EXPECT_EQ(s.sleep_spin, 0.03);

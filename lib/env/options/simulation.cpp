@@ -46,6 +46,8 @@ constexpr OptionSpec kRows[] = {
                   "engine articulated: things that were slow for so long sleep until touched, s; 0: never"),
     number_option("sleep_speed", 0.01, 0, 10, "speed below which a thing is slow, m/s"),
     number_option("sleep_spin", 0.25, 0, 100, "angular speed below which a thing is slow, rad/s"),
+    flag_option("speculative_contacts", false,
+                "engine articulated: fast things stop at what they would pass through; costs some speed"),
     flag_option("exact_solver", false, "engine ode: the direct solver, slow; a reference"),
 };
 
@@ -84,6 +86,7 @@ SolverDef solver_from(const Options& o) {
   s.spring_only_effort = same_name(o.text("effort_bounds"), "spring");
   s.exact = o.flag("exact_solver");
   s.integrator = integrator_from(o.text("integrator"));
+  s.speculative_contacts = o.flag("speculative_contacts");
   s.double_precision = same_name(o.text("precision"), "double");
   s.lanes = static_cast<int32_t>(std::strtol(o.text("lanes"), nullptr, 10));  // auto: 0
   s.sleep_time = o.number("sleep_time");

@@ -82,6 +82,7 @@ class BatchStepper final : public Stepper {
   struct WorldPoses final : Collider::Poses {
     WorldPoses(const BatchStepper* s, int32_t i) : stepper(s), index(i) { sized = s->worlds_[i]->sized; }
     void place(int32_t shape, Vec3* p, Mat3* R) override { stepper->shape_pose(index, shape, p, R); }
+    Vec3 way(int32_t shape) override { return stepper->shape_way(index, shape); }
     const BatchStepper* stepper;
     int32_t index;
   };
@@ -120,6 +121,8 @@ class BatchStepper final : public Stepper {
   void substep();
   void detect_contacts(int32_t world);
   void shape_pose(int32_t world, int32_t shape, Vec3* p, Mat3* R) const;
+  Vec3 shape_way(int32_t world, int32_t shape) const;
+  void look_ahead(int32_t world);
   void solve_contacts();
   void solve_contacts_of(int32_t world, bool again);
   void add_contact_rows(typename ContactSolver<S>::Point* point, const Attachment& at, int32_t world, S sign,
@@ -190,6 +193,7 @@ void BatchStepper<L>::substep() {
   for (int32_t k = 0; k < num_batches_; ++k) {
     link_inertias(batches_[k]);
     shape_poses(batches_[k]);
+    if (batches_[k].shape_way) shape_ways(batches_[k]);
   }
   for (int32_t w = 0; w < count_; ++w) {
     detect_contacts(w);
@@ -258,6 +262,7 @@ void BatchStepper<L>::detect_contacts(int32_t world) {
       }
     }
   }
+  if (scene_->def.solver.speculative_contacts) look_ahead(world);
   WorldPoses poses(this, world);
   find_contacts(*model_, collider_, poses, &w);
 }
@@ -284,6 +289,58 @@ void BatchStepper<L>::shape_pose(int32_t world, int32_t shape, Vec3* p, Mat3* R)
   *R = R_WJ * member.shapes[static_cast<size_t>(k)].R_JS;
   *p = w.bases[member.articulation].X.p;
   for (int r = 0; r < 3; ++r) (*p)[r] += static_cast<double>(L::get(batch->center[k][r], lane));
+}
+
+// Where the substep takes a shape's place at the rates that it begins with, and bodies by their weight.
+template <class L>
+Vec3 BatchStepper<L>::shape_way(int32_t world, int32_t shape) const {
+  const Attachment& at = attachments_[shape];
+  if (at.kind == Attachment::kStatic) return {};
+  const double h = scene_->def.solver.h;
+  Vec3 v, spin, arm;
+  if (at.kind == Attachment::kBody) {
+    const WorldState& w = *worlds_[world];
+    if (w.asleep(at.body)) return {};
+    const Vec3& p_BS = w.sized ? w.sized[shape - scene_->first_body_shape].p
+                               : scene_->shapes[static_cast<size_t>(shape)].def.X_LS.p;
+    const Motion& m = w.bodies[at.body];
+    v = m.v + h * w.body_models[at.body].gravity;
+    spin = m.w;
+    arm = w.free_bodies[at.body].R * p_BS;
+  } else {
+    const auto [batch, lane] = lane_of(at.group, at.member, world);
+    const int32_t k = shape - batch->tree->members[static_cast<size_t>(at.member)].first_shape;
+    for (int r = 0; r < 3; ++r) {
+      const bool base = at.link < 0;
+      v[r] = static_cast<double>(L::get(base ? batch->coord[r].qd : batch->state[at.link].v[r], lane));
+      spin[r] = static_cast<double>(L::get(base ? batch->coord[3 + r].qd : batch->state[at.link].w[r], lane));
+      arm[r] = static_cast<double>(L::get(batch->center[k][r], lane));
+      if (!base) arm[r] -= static_cast<double>(L::get(batch->state[at.link].P[r], lane));
+    }
+  }
+  return h * (v + cross(spin, arm));
+}
+
+// Bounds on all ways, for the collider: of links each, of bodies each.
+template <class L>
+void BatchStepper<L>::look_ahead(int32_t world) {
+  float* ways = collider_->ways();
+  float fastest = 0;
+  for (int32_t g = 0; g < num_groups_; ++g) {
+    const Tree& tree = *groups_[g].tree;
+    for (int32_t m = 0; m < groups_[g].members; ++m) {
+      const auto [batch, lane] = lane_of(g, m, world);
+      float* way = ways + tree.members[static_cast<size_t>(m)].first_shape;
+      for (int32_t k = 0; k < static_cast<int32_t>(tree.shape_links.size()); ++k) {
+        way[k] = static_cast<float>(L::get(batch->shape_way[k], lane));
+        fastest = std::max(fastest, way[k]);
+      }
+    }
+  }
+  const int32_t first = scene_->first_body_shape;
+  for (int32_t i = first; i < first + scene_->num_body_shapes; ++i)
+    ways[i] = static_cast<float>(norm(shape_way(world, i)));
+  collider_->look_ahead(fastest);
 }
 
 // Contacts and active sets in turn, until they agree or the rounds are over: then the damped choice. `open`
@@ -442,10 +499,11 @@ double BatchStepper<L>::most_push_out_speed() const {
 }
 
 // erp / h of the depth below the layer, within a bound: a deep overlap, as after a blow, must not turn into a
-// shot.
+// shot. What is yet to come may come as near as it is.
 template <class L>
 double BatchStepper<L>::push_out_speed(const Contact& contact) const {
   const SolverDef& solver = scene_->def.solver;
+  if (contact.depth < 0) return contact.depth / solver.h;
   return std::min(std::max(contact.depth - solver.contact_layer, 0.0) * solver.contact_erp / solver.h,
                   most_push_out_speed());
 }
@@ -473,8 +531,9 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
     Vec3 axes[3] = {contact.n, {}, {}};
     tangents(contact.n, &axes[1], &axes[2]);
     point.b[0] = static_cast<S>(push_out_speed(contact));
+    if (contact.depth < 0) point.softness = S(0);
     add_contact_rows(&point, attachments_[contact.shape_a], world, S(1), contact.p, axes);
-    add_contact_rows(&point, attachments_[contact.shape_b], world, S(-1), contact.p, axes);
+    add_contact_rows(&point, attachments_[contact.shape_b], world, S(-1), contact.p + contact.gap, axes);
     contacts_.prepare(&point);
     Vec3 last;
     if (piles && again)
@@ -569,7 +628,7 @@ void BatchStepper<L>::add_pile_points(int32_t world, bool again, typename WideCo
   };
   for (int32_t k = 0; k < group->most; ++k) {
     auto& p = wide.points[group->first_point + k];
-    WV arm_a[3] = {}, arm_b[3] = {}, last[3] = {}, push_out{};
+    WV arm_a[3] = {}, arm_b[3] = {}, last[3] = {}, push_out{}, softness = W::all(contacts_.softness);
     WV* n = p.axis[0];
     n[0] = n[1] = WV{};
     n[2] = W::all(S(1));
@@ -578,13 +637,15 @@ void BatchStepper<L>::add_pile_points(int32_t world, bool again, typename WideCo
       const int32_t i = group->first[l] + k;
       const Contact& contact = w.contacts[i];
       const Vec3 to_a = contact.p - w.bodies[group->body_a[l]].X.p;
-      const Vec3 to_b = group->body_b[l] < 0 ? Vec3{} : contact.p - w.bodies[group->body_b[l]].X.p;
+      const Vec3 to_b =
+          group->body_b[l] < 0 ? Vec3{} : contact.p + contact.gap - w.bodies[group->body_b[l]].X.p;
       Vec3 start;
       if (again)
         start = w.impulses[i];
       else
         warm_impulse(w, i, &start);
       put(&push_out, l, push_out_speed(contact));
+      if (contact.depth < 0) put(&softness, l, 0);
       for (int r = 0; r < 3; ++r) {
         put(&n[r], l, contact.n[r]);
         put(&arm_a[r], l, to_a[r]);
@@ -616,7 +677,7 @@ void BatchStepper<L>::add_pile_points(int32_t world, bool again, typename WideCo
     }
     p.b[0] += push_out;
     p.impulse[0] = W::select(p.impulse[0] < none, none, p.impulse[0]);
-    wide.prepare(*group, &p, contacts_.softness);
+    wide.prepare(*group, &p, softness);
     // a lane that has no such point
     for (int l = 0; l < group->lanes; ++l)
       if (k >= group->count[l]) wide.clear(&p, l);
@@ -691,6 +752,27 @@ void BatchStepper<L>::apply_impulses(TreeBatch<L>& t) {
   }
 }
 
+// Points to come that got no impulse: nobody touches there.
+inline void drop_unmet(WorldState* w) {
+  int32_t kept = 0;
+  for (int32_t i = 0; i < w->num_contacts; ++i) {
+    Contact& contact = w->contacts[i];
+    if (contact.depth < 0) {
+      if (dot(w->impulses[i], w->impulses[i]) == 0) continue;
+      w->touched[w->contact_pairs[i]] = 1;
+      contact.depth = 0;
+    }
+    if (kept != i) {
+      w->contacts[kept] = contact;
+      w->contact_pairs[kept] = w->contact_pairs[i];
+      w->impulses[kept] = w->impulses[i];
+      w->next_warm[kept] = w->next_warm[i];
+    }
+    ++kept;
+  }
+  w->num_contacts = kept;
+}
+
 // Contact forces, and their mean on the links with a sensor, in the pose they act in. A point that is solved
 // moves apart at push_out_speed - softness n: where that is the bound and n is larger, it gives way for ever.
 template <class L>
@@ -699,6 +781,7 @@ void BatchStepper<L>::contact_forces(int32_t world) {
   const double inv_h = 1 / scene_->def.solver.h, weight = 1.0 / scene_->def.solver.substeps;
   const double fastest = most_push_out_speed(), softness = scene_->def.solver.contact_cfm * inv_h;
   if (w.unsolved) w.status |= kStatusUnconverged;
+  if (scene_->def.solver.speculative_contacts) drop_unmet(&w);
   for (int32_t i = 0; i < w.num_contacts; ++i) {
     Contact& contact = w.contacts[i];
     if (softness * dot(w.impulses[i], contact.n) > fastest && push_out_speed(contact) == fastest)
@@ -716,9 +799,10 @@ void BatchStepper<L>::contact_forces(int32_t world) {
       Vec3 origin = w.bases[member.articulation].X.p;
       for (int r = 0; r < 3; ++r) origin[r] += static_cast<double>(L::get(link.P[r], lane));
       const Mat3 R_LW = member.links[static_cast<size_t>(at.link)].R_LJ * transpose(R_WJ);
-      const Vec3 force = (side ? -weight : weight) * contact.force;
+      const Vec3 force = (side ? -weight : weight) * contact.force,
+                 place = side ? contact.p + contact.gap : contact.p;
       w.sensors[at.sensor].force += R_LW * force;
-      w.sensors[at.sensor].torque += R_LW * cross(contact.p - origin, force);
+      w.sensors[at.sensor].torque += R_LW * cross(place - origin, force);
     }
   }
 }
@@ -1005,6 +1089,7 @@ void BatchStepper<L>::carve(Arena& arena) {
       t.shape_a = arena.make<V[3]>(shapes);
       t.center = arena.make<V[3]>(shapes);
       t.axis = arena.make<V[3]>(shapes);
+      if (scene_->def.solver.speculative_contacts) t.shape_way = arena.make<V>(shapes);
       if (batches_) batches_[batch] = t;
     }
   }

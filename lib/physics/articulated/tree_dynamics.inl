@@ -105,6 +105,7 @@ struct TreeBatch : BaseConstants<typename L::V> {
   // Shapes: place and half axis (of capsules) in their link's joint frame, and both in world axes from the
   // base's origin.
   V (*shape_p)[3], (*shape_a)[3], (*center)[3], (*axis)[3];
+  V* shape_way;  // m, how far each one's place moves in the substep; null: nobody asks
   int32_t world[L::kCount], member[L::kCount];  // of each lane; lanes without a world repeat another's
   bool used[L::kCount];
 };
@@ -293,6 +294,26 @@ void shape_poses(TreeBatch<L>& t) {
     rotate(R, t.shape_p[k], t.center[k]);
     for (int r = 0; r < 3; ++r) t.center[k][r] += P[r];
     if (tree.shape_slender[static_cast<size_t>(k)]) rotate(R, t.shape_a[k], t.axis[k]);
+  }
+}
+
+// Of the shapes' places at the rates that the substep begins with.
+template <class L>
+void shape_ways(TreeBatch<L>& t) {
+  using V = typename L::V;
+  const Tree& tree = *t.tree;
+  for (int k = 0; k < static_cast<int>(tree.shape_links.size()); ++k) {
+    const int link = tree.shape_links[static_cast<size_t>(k)];
+    if (link < 0 && !tree.free_base) continue;
+    V v[3], w[3], arm[3], turn[3];
+    for (int r = 0; r < 3; ++r) {
+      v[r] = link < 0 ? t.coord[r].qd : t.state[link].v[r];
+      w[r] = link < 0 ? t.coord[3 + r].qd : t.state[link].w[r];
+      arm[r] = link < 0 ? t.center[k][r] : V(t.center[k][r] - t.state[link].P[r]);
+    }
+    cross(w, arm, turn);
+    for (int r = 0; r < 3; ++r) v[r] += turn[r];
+    t.shape_way[k] = t.h * L::root(dot(v, v));
   }
 }
 

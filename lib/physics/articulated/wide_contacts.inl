@@ -99,7 +99,7 @@ struct WideContacts {
     }
   }
   // After the axes, turns, b and the start's impulses of a point are in.
-  void prepare(const Group& g, Point* p, S softness) const;
+  void prepare(const Group& g, Point* p, const V& softness) const;
   // No impulse in this lane.
   void clear(Point* p, int lane) const {
     for (V* v : {&p->inv_n, &p->inv_t, &p->inv_tangents[0], &p->inv_tangents[1], &p->inv_tangents[2],
@@ -210,7 +210,7 @@ int32_t WideContacts<S>::levels(const Held& held) {
 }
 
 template <class S>
-void WideContacts<S>::prepare(const Group& g, Point* p, S softness) const {
+void WideContacts<S>::prepare(const Group& g, Point* p, const V& softness) const {
   const auto product = [&](int f, int k) {
     return g.linear * dot3(p->axis[f], p->axis[k]) + dot3(p->turn_a[f], p->turn_a[k]) +
            dot3(p->turn_b[f], p->turn_b[k]);

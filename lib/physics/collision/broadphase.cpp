@@ -16,6 +16,8 @@ constexpr int32_t kBlock = 4;
 constexpr float kSlack = 1e-5f;        // m, for the rounding of bounds
 constexpr float kCenterSlack = 1e-6f;  // the same, per metre from the origin
 constexpr float kFlatness = 1e-6f;     // of two axes that count as parallel
+// So far into each other two may come unseen: of the thinner one's half width, and m.
+constexpr float kThinShare = 0.5f, kMostThin = 1.5e-3f;
 
 Float4 clamp_unit(Float4 x) {
   return min(splat(1.0f), max(splat(-1.0f), x));
@@ -49,6 +51,46 @@ Float4 slack_at(const Bound& bound) {
 Float4 half_sides(const Bound& bound) {
   const Float4 u = load4(bound.axis);
   return abs(u) + splat(u[3]) + slack_at(bound);
+}
+
+// Half of the least width, m: of a hull, among the directions of its faces.
+float half_width_of(const SceneShape& shape, const Hull* hull) {
+  const Vec3& s = shape.def.size;
+  switch (shape.def.kind) {
+    case ShapeKind::kBox:
+    case ShapeKind::kEllipsoid:
+      return static_cast<float>(std::min({s.x, s.y, s.z}));
+    case ShapeKind::kCylinder:
+      return static_cast<float>(std::min(s.x, s.y));
+    case ShapeKind::kHull: {
+      double least = HUGE_VAL;
+      for (int32_t i = 0; i < hull->num_faces; ++i) {
+        const Hull::Face& face = hull->faces[i];
+        double width = 0;
+        for (int32_t k = 0; k < hull->num_points; ++k)
+          width = std::max(width, rdm::dot(face.n, hull->corner(face, 0) - hull->points[k]));
+        least = std::min(least, width);
+      }
+      return static_cast<float>(0.5 * least);
+    }
+    case ShapeKind::kSphere:
+    case ShapeKind::kCapsule:
+      return static_cast<float>(s.x);
+    case ShapeKind::kPlane:
+      break;
+  }
+  return kFar;
+}
+
+// Points of two segments p + s u and q + t v, |s|, |t| <= 1, that are nearest or nearly so; a - b.
+Vec3 between_segments(const Vec3& r, const Vec3& u, const Vec3& v) {
+  const double a = rdm::dot(u, u) + 1e-12, e = rdm::dot(v, v) + 1e-12, b = rdm::dot(u, v), c = rdm::dot(u, r),
+               f = rdm::dot(v, r), d = a * e - b * b;
+  const auto unit = [](double x) { return std::clamp(x, -1.0, 1.0); };
+  double s = unit(d > 1e-9 * a * e ? (b * f - c * e) / d : -c / a);
+  const double t = unit((b * s + f) / e);
+  s = unit((b * t - c) / a);
+  return r + s * u - t * v;
 }
 
 int32_t blocks_in(const ArticulationDef& def) {
@@ -126,6 +168,8 @@ void BroadPhase::carve(const Scene& scene, Arena& arena) {
   const auto links = static_cast<size_t>(first_other_), others = static_cast<size_t>(num_others_);
   num_moving_ = first_other_ + scene.num_body_shapes;
   bounds_ = arena.make<Bound>(scene.shapes.size());
+  ways_ = arena.make<float>(scene.shapes.size());
+  half_widths_ = arena.make<float>(scene.shapes.size());
   extents_ = arena.make<Extent>(scene.shapes.size());
   pairs_ = arena.make<Pair>(scene.pairs.size());
   planes_ = arena.make<Plane>(static_cast<size_t>(planes));
@@ -175,10 +219,19 @@ void BroadPhase::make(const Scene& scene) {
       blocks_[blocks++] = {first, std::min(kBlock, end - first), {}, {}};
     block_end_[a] = blocks;
   }
+  for (size_t i = 0; i < scene.shapes.size(); ++i)
+    half_widths_[i] = half_width_of(scene.shapes[i], scene.hull_of(scene.shapes[i]));
+  const auto of_body = [&](int32_t shape) { return shape >= first_other_ && shape < num_moving_; };
+  least_thin_ = kFar;
   for (size_t k = 0; k < scene.pairs.size(); ++k) {
     const ShapePair& pair = scene.pairs[k];
     const int32_t other = pair.b - first_other_;
-    pairs_[k] = {pair.a, pair.b, other >= 0 ? other_plane_[other] : -1};
+    const float thin =
+        of_body(pair.a) || of_body(pair.b)
+            ? std::min(kMostThin, kThinShare * std::min(half_widths_[pair.a], half_widths_[pair.b]))
+            : kFar;
+    pairs_[k] = {pair.a, pair.b, other >= 0 ? other_plane_[other] : -1, thin};
+    least_thin_ = std::min(least_thin_, thin);
   }
   Row* row = rows_;
   each_row(scene, [&](const Row& r) { *row++ = r; });
@@ -186,6 +239,15 @@ void BroadPhase::make(const Scene& scene) {
 
 void BroadPhase::update_extents() {
   for (int32_t i = 0; i < num_moving_; ++i) store4(extents_[i].half, half_sides(bounds_[i]));
+  for (int32_t i = first_other_; ahead_ && i < num_moving_; ++i)
+    store4(extents_[i].half, load4(extents_[i].half) + splat(ways_[i] + link_way_));
+}
+
+void BroadPhase::look_ahead(float link_way) {
+  float fastest = 0;
+  for (int32_t i = first_other_; i < num_moving_; ++i) fastest = std::max(fastest, ways_[i]);
+  link_way_ = link_way;
+  ahead_ = fastest + std::max(fastest, link_way) > least_thin_;
 }
 
 void BroadPhase::update_boxes() {
@@ -251,7 +313,8 @@ bool BroadPhase::near(const Plane& plane, const Box& box) {
 
 bool BroadPhase::on_plane(const Pair& pair) const {
   const Bound& bound = bounds_[pair.a];
-  const Float4 half = half_sides(bound);
+  Float4 half = half_sides(bound);
+  if (ahead_ && pair.a >= first_other_) half += splat(ways_[pair.a]);
   const Plane& plane = planes_[pair.plane];
   double above = -plane.d, reach = 0;
   for (int k = 0; k < 3; ++k) {
@@ -263,7 +326,7 @@ bool BroadPhase::on_plane(const Pair& pair) const {
 
 bool BroadPhase::near(int32_t pair) const {
   const int32_t list[4] = {pair, pair, pair, pair};
-  return pairs_[pair].plane >= 0 ? on_plane(pairs_[pair]) : capsules_meet(list) != 0;
+  return pairs_[pair].plane >= 0 ? on_plane(pairs_[pair]) : capsules_meet(list, nullptr) != 0;
 }
 
 // Shapes of an articulation that are near another's box.
@@ -273,7 +336,30 @@ void BroadPhase::mark_neighbours(const Scene& scene, int32_t articulation, const
   for (int32_t i = first; i < first + static_cast<int32_t>(count); ++i) neighbours_[i] = near(i, box);
 }
 
-uint32_t BroadPhase::capsules_meet(const int32_t* list) const {
+bool BroadPhase::passes(int32_t index, const Vec3& way) const {
+  const Pair& pair = pairs_[index];
+  if (pair.plane >= 0) return false;
+  const Bound &a = bounds_[pair.a], &b = bounds_[pair.b];
+  Vec3 r, u, v;
+  for (int k = 0; k < 3; ++k) {
+    r[k] = static_cast<double>(a.center[k]) - static_cast<double>(b.center[k]);
+    u[k] = static_cast<double>(a.axis[k]);
+    v[k] = static_cast<double>(b.axis[k]);
+  }
+  const auto slack = static_cast<double>(kSlack);
+  // the spheres
+  const double spheres = static_cast<double>(a.center[3]) + static_cast<double>(b.center[3]) + slack;
+  const Vec3 nearest = r + std::clamp(-rdm::dot(r, way) / rdm::dot(way, way), 0.0, 1.0) * way;
+  if (rdm::dot(nearest, nearest) > spheres * spheres) return true;
+  // the capsules, along the way between them: what separates them now and at the end does so all the time
+  const Vec3 x = between_segments(r, u, v);
+  const double length = norm(x),
+               reach = static_cast<double>(a.axis[3]) + static_cast<double>(b.axis[3]) + slack;
+  const double apart = rdm::dot(x, r) - std::fabs(rdm::dot(x, u)) - std::fabs(rdm::dot(x, v));
+  return apart + std::min(0.0, rdm::dot(x, way)) > reach * length;
+}
+
+uint32_t BroadPhase::capsules_meet(const int32_t* list, uint32_t* ahead) const {
   Float4 p[4], u[4], q[4], v[4];
   for (int k = 0; k < 4; ++k) {
     const Bound &a = bounds_[pairs_[list[k]].a], &b = bounds_[pairs_[list[k]].b];
@@ -282,7 +368,18 @@ uint32_t BroadPhase::capsules_meet(const int32_t* list) const {
   }
   transpose(p), transpose(q), transpose(u), transpose(v);
   const Float4 reach = u[3] + v[3] + splat(kSlack);
-  return bits_of(segment_distance(p, u, q, v) < reach * reach);
+  const Float4 square = segment_distance(p, u, q, v);
+  if (ahead) {
+    Float4 more{};
+    for (int k = 0; k < 4; ++k) {
+      const Pair& pair = pairs_[list[k]];
+      const float way = ways_[pair.a] + ways_[pair.b];
+      more[k] = way > pair.thin ? way : 0.0f;
+    }
+    const Float4 far = reach + more;
+    *ahead = bits_of(square < far * far);
+  }
+  return bits_of(square < reach * reach);
 }
 
 // What is no link and near a shape of an articulation.
@@ -307,10 +404,18 @@ void BroadPhase::mark_others() {
 // list has room up to a multiple of four.
 void BroadPhase::visit_near(int32_t* list, int32_t count, Visit visit, void* context) const {
   for (int32_t k = count; k % 4 != 0; ++k) list[k] = list[0];
-  uint64_t bits = 0;
-  for (int32_t k = 0; k < count; k += 4) bits |= uint64_t{capsules_meet(list + k)} << k;
-  if (count < kBatch) bits &= (uint64_t{1} << count) - 1;
-  for (; bits != 0; bits &= bits - 1) visit(context, list[std::countr_zero(bits)]);
+  uint64_t bits = 0, ahead = 0;
+  for (int32_t k = 0; k < count; k += 4) {
+    uint32_t coming = 0;
+    bits |= uint64_t{capsules_meet(list + k, ahead_ ? &coming : nullptr)} << k;
+    ahead |= uint64_t{coming} << k;
+  }
+  uint64_t all = bits | ahead;
+  if (count < kBatch) all &= (uint64_t{1} << count) - 1;
+  for (; all != 0; all &= all - 1) {
+    const int k = std::countr_zero(all);
+    visit(context, list[k], (bits >> k & 1) == 0);
+  }
 }
 
 void BroadPhase::search_listed(const PairList& listed, Visit visit, void* context) {

@@ -11,6 +11,8 @@
 //   4. of all other pairs the boxes, one by one; planes against the lowest corner of the shape's box;
 //   5. of what is left, four at a time, the distance of the segments (Ericson, Real-Time Collision Detection,
 //      2005, section 5.1.9).
+// Looking ahead, the boxes of bodies' shapes grow by their own way and that of the fastest link, and pairs
+// whose capsules are nearer than both ways are visited too, as far as those ways matter (Pair::thin).
 // All in floats, with a slack for their rounding: a pair that touches is never passed over, so what is found
 // does not depend on the bounds. A bound with a number missing (NaN) touches nothing.
 #pragma once
@@ -45,7 +47,8 @@ Pose rest_pose(const Scene& scene, const SceneShape& shape);
 
 class BroadPhase {
  public:
-  using Visit = void (*)(void* context, int32_t pair);
+  // `ahead`: they do not touch yet, but may before the substep ends.
+  using Visit = void (*)(void* context, int32_t pair, bool ahead);
 
   void carve(const Scene& scene, Arena& arena);
   // Bounds of shapes at rest, and radii of all.
@@ -54,6 +57,20 @@ class BroadPhase {
   // [shapes]. Centres and axes of shapes that move are the caller's to set before each search; of an
   // adjustable scene the radii of bodies' shapes too.
   Bound* bounds() { return bounds_; }
+
+  // [shapes] how far each one's place moves in a substep, m; of those at rest zero. The caller's to set before
+  // each search that looks ahead.
+  float* ways() { return ways_; }
+  // Of the next search: pairs with a body that may touch within the substep are visited too. `link_way`: m, of
+  // the fastest link. Nothing is done where all are slow.
+  void look_ahead(float link_way);
+  bool looks_ahead() const { return ahead_; }
+  // m, the way of a against b that is left to their overlap; out of reach for pairs without a body.
+  float thin(int32_t pair) const { return pairs_[pair].thin; }
+  // m, half of the least width of a shape; of a plane out of reach.
+  float half_width(int32_t shape) const { return half_widths_[shape]; }
+  // True: the bounds of the two do not meet while a moves by `way` against b.
+  bool passes(int32_t pair, const Vec3& way) const;
 
   // Calls visit for each pair that may touch, in the order of Scene::pairs; null: of all pairs.
   void search(const Scene& scene, const PairList* listed, Visit visit, void* context);
@@ -66,6 +83,7 @@ class BroadPhase {
   struct Pair {
     int32_t a, b;
     int32_t plane;  // index of planes_ when b is one: only its own test counts; else -1
+    float thin;
   };
   struct Plane {
     Vec3 n;
@@ -106,7 +124,8 @@ class BroadPhase {
   bool on_plane(const Pair& pair) const;
   bool boxes_meet(int32_t a, int32_t b) const;
   // Bit k: the capsules of pair list[k] meet, or one of them is a plane; four of them.
-  uint32_t capsules_meet(const int32_t* list) const;
+  // `ahead`, if given, gets those that meet within their ways.
+  uint32_t capsules_meet(const int32_t* list, uint32_t* ahead) const;
   bool near(int32_t shape, const Box& box) const;
   // Bit k: shape k of the block.
   uint32_t near(int32_t shape, const Block& block) const;
@@ -116,6 +135,7 @@ class BroadPhase {
   Bound* bounds_ = nullptr;
   Extent* extents_ = nullptr;  // [shapes] half sides of the boxes, with the slack
   Pair* pairs_ = nullptr;
+  float *ways_ = nullptr, *half_widths_ = nullptr;  // [shapes]
   Plane* planes_ = nullptr;
   Box* boxes_ = nullptr;            // [articulations]
   Block* blocks_ = nullptr;         // of all articulations, in their order
@@ -127,6 +147,8 @@ class BroadPhase {
   int32_t num_articulations_ = 0, num_blocks_ = 0, num_rows_ = 0, words_ = 0;
   int32_t first_other_ = 0, num_others_ = 0;  // others: shapes of no articulation
   int32_t num_moving_ = 0;                    // shapes before the first that never moves
+  bool ahead_ = false;
+  float link_way_ = 0, least_thin_ = 0;  // m, of all pairs
 };
 
 }  // namespace rdm

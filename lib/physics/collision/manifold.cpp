@@ -24,6 +24,7 @@ constexpr double kFlat = 0.985;      // cosine between the overlap's normal and 
 constexpr double kAlong = 0.1;       // sine between two edges that count as along each other
 constexpr double kPreferred = 1e-3;  // by which a's face must fit better than b's to be the one cut at
 constexpr double kSideways = 1e-9;   // sine of two axes that have no crossing
+constexpr double kDeepEnough = 0.9;  // of the deepest point, for two ends to stand in for it
 constexpr int kMostCut = 2 * Feature::kMost;
 static_assert(kMaxHullPoints <= kMostCut, "a hull's points are thinned out too");
 
@@ -152,6 +153,33 @@ int manifold_on_plane(const Convex& a, const Vec3& n, double offset, ManifoldPoi
   count = thin_out(points, count);
   std::copy_n(points, count, out);
   return count;
+}
+
+// The axis is cut at the sides of the box that it runs across; what is left ends in two spheres.
+int capsule_on_box(const Convex& capsule, const Convex& box, double depth, ManifoldPoint* out) {
+  const Mat3 R = transpose(box.R);
+  const Vec3 c = R * (capsule.p - box.p), u = R * capsule.R.col(2);
+  const double radius = capsule.size.x;
+  double low = -capsule.size.y, high = capsule.size.y;
+  for (int k = 0; k < 3; ++k) {
+    if (std::fabs(u[k]) < kAlong) continue;
+    const double s = (-box.size[k] - c[k]) / u[k], t = (box.size[k] - c[k]) / u[k];
+    low = std::max(low, std::min(s, t));
+    high = std::min(high, std::max(s, t));
+  }
+  if (!(high - low > kSideways)) return 0;
+  int count = 0;
+  for (const double s : {low, high}) {
+    const Vec3 center = c + s * u;
+    Vec3 on = center;
+    for (int k = 0; k < 3; ++k) on[k] = std::clamp(on[k], -box.size[k], box.size[k]);
+    const Vec3 gap = center - on;
+    const double distance = norm(gap);
+    if (!(distance < radius) || distance < kSideways) return 0;
+    const Vec3 n = (1 / distance) * (box.R * gap);
+    out[count++] = {box.p + box.R * center - (0.5 * (radius + distance)) * n, n, radius - distance};
+  }
+  return std::max(out[0].depth, out[1].depth) > kDeepEnough * depth ? 2 : 0;
 }
 
 int manifold_between(const Convex& a, const Convex& b, ManifoldPoint* out) {

@@ -20,4 +20,8 @@ int manifold_on_plane(const Convex& a, const Vec3& n, double offset, ManifoldPoi
 // Of two solids: at most kManifoldPoints, the deepest first; 0 when they are apart.
 int manifold_between(const Convex& a, const Convex& b, ManifoldPoint* out);
 
+// Points of a capsule that lies along a face or an edge of a box: where both of its ends on the box, one of
+// them about as deep as the deepest point (`depth`, m), are inside. 2, or 0: one point is enough.
+int capsule_on_box(const Convex& capsule, const Convex& box, double depth, ManifoldPoint* out);
+
 }  // namespace rdm

@@ -1,7 +1,10 @@
 #include "physics/collision/narrowphase.hpp"
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "physics/collision/overlap.hpp"
+#include "physics/collision/sweep.hpp"
 #include "physics/ode/ode_convert.hpp"
 #include "physics/ode/ode_guard.hpp"
 
@@ -9,7 +12,18 @@
 // put each there), the points (shapes.cpp: ODE's for spheres, capsules, boxes and planes with each other,
 // ours otherwise), then one Contact per point until the world's contacts_max. Contacts stand in the order of
 // the scene's pairs, whatever the bounds let through: results do not depend on the broad phase.
+//
+// Looking ahead, a pair that does not touch is swept (sweep.hpp) where a moves farther against b than its
+// broad phase's `thin`: what is slower is left to overlap, as ever. Overlaps at seams go last (seams.hpp).
 namespace rdm {
+namespace {
+
+// By how much two may overlap at the substep's end and still be left to that overlap: m, and of the thinner
+// one's half width.
+constexpr double kMostShallow = 1.5e-3, kShallowShare = 0.25;
+constexpr double kComing = -1e-12;  // m, the depth of a point to come that is there already
+
+}  // namespace
 
 Collider::~Collider() {
   const OdeScope scope;
@@ -22,6 +36,7 @@ void Collider::carve(const Scene& scene, Arena& arena) {
   first_body_shape_ = scene.first_body_shape;
   geoms_ = arena.make<Geom>(scene.shapes.size());
   broad_.carve(scene, arena);
+  seams_.carve(scene, arena);
   placed_ = arena.make<uint32_t>(scene.shapes.size());
   moves_ = arena.make<uint8_t>(scene.shapes.size());
 }
@@ -34,6 +49,7 @@ void Collider::make(const Scene& scene) {
     if (s.def.collides) geoms_[i] = make_geom(s.def, scene.hull_of(s), rest_pose(scene, s));
   }
   broad_.make(scene);
+  seams_.make(scene, geoms_);
 }
 
 void Collider::put(Poses& poses, int32_t shape) {
@@ -64,16 +80,44 @@ void Collider::add_points(const Search& search, int32_t index) {
   dContactGeom points[kMaxPairPoints];
   const int n = touch(search.poses, pair, solver.contacts_per_pair, points);
   if (n > 0) search.touched[index] = 1;
-  for (int i = 0; i < n; ++i) {
-    int32_t& count = search.found->count;
-    if (count == solver.contacts_max) {
-      search.found->overflow = true;
-      return;
-    }
-    search.pairs[count] = index;
-    search.contacts[count++] = {pair.a,          pair.b, from_ode(points[i].pos), from_ode(points[i].normal),
-                                points[i].depth, {}};
+  if (n == 0 && broad_.looks_ahead()) add_coming(search, index);
+  for (int i = 0; i < n; ++i)
+    add(search, index,
+        {pair.a, pair.b, from_ode(points[i].pos), from_ode(points[i].normal), points[i].depth, {}, {}});
+}
+
+void Collider::add(const Search& search, int32_t index, const Contact& contact) {
+  int32_t& count = search.found->count;
+  if (count == search.scene.def.solver.contacts_max) {
+    search.found->overflow = true;
+    return;
   }
+  search.pairs[count] = index;
+  search.contacts[count++] = contact;
+}
+
+void Collider::add_coming(const Search& search, int32_t index) {
+  const ShapePair& pair = search.scene.pairs[static_cast<size_t>(index)];
+  const auto thin = static_cast<double>(broad_.thin(index));
+  if (broad_.ways()[pair.a] + broad_.ways()[pair.b] <= broad_.thin(index)) return;
+  const Vec3 way = search.poses.way(pair.a) - search.poses.way(pair.b);
+  if (norm(way) <= thin || broad_.passes(index, way)) return;
+  put(search.poses, pair.a);
+  put(search.poses, pair.b);
+  const Geom &a = geoms_[pair.a], &b = geoms_[pair.b];
+  const double shallow = std::min(
+      kMostShallow,
+      kShallowShare * static_cast<double>(std::min(broad_.half_width(pair.a), broad_.half_width(pair.b))));
+  ComingPoint points[kManifoldPoints];
+  int n = 0;
+  if (b.kind == ShapeKind::kPlane)
+    n = coming_on_plane(convex_of(a), b.plane_n, b.plane_d, way, shallow, points);
+  else
+    n = coming_contacts(convex_of(a), convex_of(b), way, shallow, points);
+  n = std::min(n, static_cast<int>(search.scene.def.solver.contacts_per_pair));
+  for (int i = 0; i < n; ++i)
+    add(search, index,
+        {pair.a, pair.b, points[i].p, points[i].n, std::min(points[i].depth, kComing), {}, points[i].gap});
 }
 
 template <class Walk>
@@ -82,13 +126,17 @@ Collider::Found Collider::search(const Search& search, Walk walk) {
   *search.found = {0, false, false};
   try {
     const OdeScope scope;
-    walk([](void* context, int32_t pair) {
+    walk([](void* context, int32_t pair, bool ahead) {
       const auto* s = static_cast<const Search*>(context);
-      s->self->add_points(*s, pair);
+      if (ahead)
+        s->self->add_coming(*s, pair);
+      else
+        s->self->add_points(*s, pair);
     });
   } catch (const Error&) {
     search.found->failed = true;
   }
+  search.found->count = seams_.smooth(geoms_, search.contacts, search.pairs, search.found->count);
   return *search.found;
 }
 

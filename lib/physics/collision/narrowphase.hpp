@@ -6,6 +6,7 @@
 #pragma once
 #include "base/arena.hpp"
 #include "physics/collision/broadphase.hpp"
+#include "physics/collision/seams.hpp"
 #include "physics/collision/shapes.hpp"
 #include "physics/world.hpp"
 
@@ -18,6 +19,8 @@ class Collider {
    public:
     virtual ~Poses() = default;
     virtual void place(int32_t shape, Vec3* p_WS, Mat3* R_WS) = 0;
+    // Where the substep is about to take a shape's place, m; asked for by searches that look ahead.
+    virtual Vec3 way(int32_t) { return {}; }
     const SizedShape* sized = nullptr;  // [num_body_shapes] of the world; null: the scene's sizes
   };
   struct Found {
@@ -37,6 +40,10 @@ class Collider {
   // [shapes]; those of shapes at rest are in place. Of an adjustable scene the caller sets the radii of
   // bodies' shapes too.
   Bound* bounds() { return broad_.bounds(); }
+  // The next search finds contacts to come too (sweep.hpp), with depth < 0: not yet touched[]. The caller sets
+  // the ways of all shapes that move before; see BroadPhase.
+  float* ways() { return broad_.ways(); }
+  void look_ahead(float link_way) { broad_.look_ahead(link_way); }
 
   // Contact points in the order of the pairs, without force; `pairs` [contacts_max] gets each point's pair;
   // touched[] is only set. Of runs without an articulation those of `listed` alone, null: all. Never throws.
@@ -63,10 +70,13 @@ class Collider {
   Found search(const Search& search, Walk walk);
   int touch(Poses& poses, const ShapePair& pair, int most, dContactGeom* out);
   void add_points(const Search& search, int32_t pair);
+  void add_coming(const Search& search, int32_t pair);
+  void add(const Search& search, int32_t pair, const Contact& contact);
   void put(Poses& poses, int32_t shape);
 
   Geom* geoms_ = nullptr;
   BroadPhase broad_;
+  Seams seams_;
   uint32_t* placed_ = nullptr;  // [shapes] the last search that put the geom in place
   uint8_t* moves_ = nullptr;
   uint32_t search_ = 0;

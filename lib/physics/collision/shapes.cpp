@@ -17,12 +17,30 @@ bool is_ours(const Geom& geom) {
          geom.kind == ShapeKind::kHull;
 }
 
+// ODE has one point for a capsule and a box, on which it rocks: its two ends on the box stand in for it.
+int capsule_ends(const Geom& a, const Geom& b, int found, dContactGeom* points) {
+  const bool first = a.kind == ShapeKind::kCapsule;
+  if (found != 1 ||
+      !(first ? b.kind == ShapeKind::kBox : a.kind == ShapeKind::kBox && b.kind == ShapeKind::kCapsule))
+    return found;
+  ManifoldPoint ends[2];
+  if (capsule_on_box(convex_of(first ? a : b), convex_of(first ? b : a), points[0].depth, ends) != 2)
+    return found;
+  points[1] = points[0];
+  for (int i = 0; i < 2; ++i) {
+    to_ode(ends[i].p, points[i].pos);
+    to_ode((first ? 1.0 : -1.0) * ends[i].n, points[i].normal);
+    points[i].depth = ends[i].depth;
+  }
+  return 2;
+}
+
+}  // namespace
+
 Convex convex_of(const Geom& geom) {
   return {geom.kind, geom.size, from_ode(dGeomGetPosition(geom.id)), mat_from_ode(dGeomGetRotation(geom.id)),
           geom.hull};
 }
-
-}  // namespace
 
 Geom make_geom(const ShapeDef& shape, const Hull* hull, const Pose& X_WS) {
   const Vec3& s = shape.size;
@@ -91,7 +109,7 @@ int collide_geoms(const Geom& a, const Geom& b, int most, dContactGeom* out) {
     // Two boxes have no more points; asked for fewer, ODE would choose them by an arc tangent of the C
     // library.
     dContactGeom all[kMaxPairPoints];
-    const int found = dCollide(a.id, b.id, kMaxPairPoints, all, sizeof all[0]);
+    const int found = capsule_ends(a, b, dCollide(a.id, b.id, kMaxPairPoints, all, sizeof all[0]), all);
     const int kept = keep_spread<kMaxPairPoints>(
         all, found, most, [](const dContactGeom& point) { return from_ode(point.pos); });
     std::copy_n(all, kept, out);

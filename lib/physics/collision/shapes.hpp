@@ -2,7 +2,7 @@
 #pragma once
 #include <ode/ode.h>
 
-#include "physics/model/scene.hpp"
+#include "physics/collision/convex.hpp"
 
 namespace rdm {
 
@@ -21,11 +21,15 @@ struct Geom {
 // kind. ODE knows ellipsoids and hulls as the spheres about them.
 Geom make_geom(const ShapeDef& shape, const Hull* hull, const Pose& X_WS);
 
+// As it stands; not of a plane.
+Convex convex_of(const Geom& geom);
+
 // Of the same kind, not a plane.
 void resize_geom(Geom* geom, const Vec3& size, const Hull* hull);
 
 // At most `most` points, the deepest among them; normals point from b into a. ODE finds those of spheres,
-// capsules, boxes and planes with each other, all others are manifold.hpp's.
+// capsules, boxes and planes with each other, but for the ends of a capsule that lies along a box; all others
+// are manifold.hpp's.
 int collide_geoms(const Geom& a, const Geom& b, int most, dContactGeom* out);
 
 }  // namespace rdm

@@ -141,6 +141,7 @@ struct SolverDef {
   bool double_precision = false;  // arithmetic in double, one lane: a reference, half as fast
   Integrator integrator = Integrator::kAuto;
   int32_t lanes = 0;  // 1, 4, 8 or 16 numbers at a time; 0: what suits scene and machine. Same bytes for all
+  bool speculative_contacts = false;  // rows for what free bodies are about to hit (collision/sweep.hpp)
   // Free bodies fall asleep (articulated/sleep.hpp) once they have been slower than both for so long.
   double sleep_time = 0;                         // s; 0: never
   double sleep_speed = 0.01, sleep_spin = 0.25;  // m/s, rad/s

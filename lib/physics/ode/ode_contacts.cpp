@@ -113,7 +113,7 @@ OdeContacts::Found OdeContacts::collide(dWorldID world, const Scene& scene, Cont
   update_bounds();
   Found found = {0, false};
   Search search = {this, world, scene, contacts, touched, &found};
-  const auto visit = [](void* context, int32_t pair) {
+  const auto visit = [](void* context, int32_t pair, bool) {
     const auto* s = static_cast<Search*>(context);
     s->self->add_points(*s, pair);
   };
@@ -136,7 +136,7 @@ void OdeContacts::add_points(const Search& search, int32_t index) {
     }
     make_joint(search.world, search.scene, geoms[i], pair.mu, a.body, b.body, count);
     search.contacts[count++] = {pair.a,         pair.b, from_ode(geoms[i].pos), from_ode(geoms[i].normal),
-                                geoms[i].depth, {}};
+                                geoms[i].depth, {}, {}};
   }
 }
 
