@@ -14,6 +14,7 @@ constexpr double kRelative = 1e-6;                  // of a distance
 constexpr double kProgress = 1e-12;                 // of its square, in a step
 constexpr double kNothing = 1e-20;                  // m2
 constexpr double kOnwards = -0.1;                   // cosine: an overlap that pushes a out the way it goes
+constexpr double kAlike = 0.9;                      // cosine of two normals of one contact
 constexpr double kFlat = 0.985, kPreferred = 1e-3;  // as manifold.cpp
 
 // Of a solid as a core and a radius around it.
@@ -266,11 +267,20 @@ int coming_contacts(const Convex& a, const Convex& b, const Vec3& way, double sh
       out[i] = {pa - shift, pb - pa + shift, c.n, -std::max(0.0, along + c.gap - kTouch)};
     }
   }
-  if (count == 0) {
-    out[0] = {d.a - shift, d.b - d.a + shift, d.n, -std::max(0.0, t * closing)};
-    count = 1;
+  if (count > 0) return count;
+  // no face: what touches once they are a little into each other
+  Convex inside = there;
+  inside.p -= (d.gap + 2 * kTouch) * d.n;
+  ManifoldPoint points[kManifoldPoints];
+  const int found = manifold_between(inside, b, points);
+  for (int i = 0; i < found; ++i) {
+    const ManifoldPoint& point = points[i];
+    if (dot(point.n, d.n) > kAlike)
+      out[count++] = {point.p - shift, shift, point.n, std::min(0.0, kTouch + dot(shift, point.n))};
   }
-  return count;
+  if (count > 0) return count;
+  out[0] = {d.a - shift, d.b - d.a + shift, d.n, std::min(0.0, -t * closing)};
+  return 1;
 }
 
 int coming_on_plane(const Convex& a, const Vec3& n, double offset, const Vec3& way, double shallow,
