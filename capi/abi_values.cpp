@@ -31,6 +31,7 @@ static_assert(same(kStatusContactOverflow, RDM_STATUS_CONTACTS));
 static_assert(same(kStatusDiverged, RDM_STATUS_DIVERGED));
 static_assert(same(kStatusBadAction, RDM_STATUS_BAD_ACTION));
 static_assert(same(kStatusUnconverged, RDM_STATUS_SOLVER));
+static_assert(same(kStatusSlowed, RDM_STATUS_SLOWED));
 static_assert(same(Baseline::kZero, RDM_BASELINE_ZERO) && same(Baseline::kHold, RDM_BASELINE_HOLD));
 static_assert(same(Baseline::kRandom, RDM_BASELINE_RANDOM));
 static_assert(same(ShapeKind::kSphere, RDM_SPHERE) && same(ShapeKind::kCapsule, RDM_CAPSULE));

@@ -309,6 +309,7 @@ void write_epoch(rdm_epoch* io, const Epoch& e) {
   out.bad_actions = e.bad_actions;
   out.task_failed = e.task_failed;
   out.unconverged = e.unconverged;
+  out.slowed = e.slowed;
   write_struct(io, out, kFirstEpochSize, "io");
 }
 }  // namespace rdm::capi

@@ -378,6 +378,8 @@ rdm_result rdm_pool_get_stats(const rdm_pool* p, rdm_pool_stats* io) {
     out.bad_actions = s.bad_actions;
     out.task_failed = s.task_failed;
     out.unconverged = s.unconverged;
+    out.slowed = s.slowed;
+    out.solver_residual = s.solver_residual;
     write_struct(io, out, kFirstStatsSize, "io");
   });
 }

@@ -446,6 +446,7 @@ void Agent::fill_counts(const EpochTotals& totals, int64_t skipped, Epoch& e) co
   count(e.bad_actions, totals.status[2], kEpochBadAction);
   count(e.task_failed, totals.status[3], kEpochTask);
   count(e.unconverged, totals.status[4], kEpochSolver);
+  count(e.slowed, totals.status[5], kEpochSlowed);
 }
 
 void Agent::fill_learned(double rate, Epoch& e) {

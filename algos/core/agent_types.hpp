@@ -70,7 +70,8 @@ enum EpochFlag : uint32_t {
   kEpochContacts = 32,
   kEpochBadAction = 64,
   kEpochTask = 128,
-  kEpochSolver = 256
+  kEpochSolver = 256,
+  kEpochSlowed = 512
 };
 
 // Field by field the public rdm_epoch, without struct_size.
@@ -86,7 +87,7 @@ struct Epoch {
   int32_t cost_signal = 0;  // 1: costs are magnitudes
   uint32_t flags = 0;       // EpochFlag
   int64_t skipped_gradients = 0, invalid_rows = 0, diverged = 0, contacts_left_out = 0, bad_actions = 0;
-  int64_t task_failed = 0, unconverged = 0;
+  int64_t task_failed = 0, unconverged = 0, slowed = 0;
 };
 
 struct TensorInfo {

@@ -20,7 +20,7 @@ namespace rdm {
 
 // Of the decisions of one epoch, all ranks'.
 struct EpochTotals {
-  static constexpr int32_t kStatusKinds = 5;  // bits of RDM_STATUS_*
+  static constexpr int32_t kStatusKinds = 6;  // bits of RDM_STATUS_*
   double cost[kMaxCosts] = {};                // sum of each column
   double steps = 0;                           // control steps
   double running = 0;                         // mean length of the episodes that run now

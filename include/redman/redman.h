@@ -262,9 +262,10 @@ enum rdm_status {                  /* bits of rdm_buffers.status */
   RDM_STATUS_DIVERGED = 2,         /* a value was not finite: the episode was truncated       */
   RDM_STATUS_BAD_ACTION = 4,       /* the row of actions was not finite: likewise             */
   RDM_STATUS_TASK = 8,             /* a function of a host's own task failed: likewise        */
-  RDM_STATUS_SOLVER = 16           /* contacts were not solved, not seen in engine ode: one was wrong by more than 1 m/s
+  RDM_STATUS_SOLVER = 16,          /* contacts were not solved, not seen in engine ode: one was wrong by more than 1 m/s
                                     * along its normal when the sweeps ended (a thing under one that is a thousand times
                                     * heavier), or gave way for ever (heavier than contact_max_speed / contact_cfm N) */
+  RDM_STATUS_SLOWED = 32           /* a free body that turned by more than 3 rad in a substep was slowed to that */
 };
 typedef struct rdm_pool_config { /* what a pool is made from */
   uint32_t struct_size;      /* bytes, set by rdm_pool_config_init                                        */
@@ -417,6 +418,9 @@ typedef struct rdm_pool_stats { /* counts since create */
   int64_t bad_actions;       /* steps flagged RDM_STATUS_BAD_ACTION so far                                */
   int64_t task_failed;       /* steps flagged RDM_STATUS_TASK so far                                      */
   int64_t unconverged;       /* steps flagged RDM_STATUS_SOLVER so far                                    */
+  int64_t slowed;            /* steps flagged RDM_STATUS_SLOWED so far                                    */
+  double solver_residual;    /* m/s, what a contact's normal velocity was still wrong by when the last sweep of the last step
+                              * came to it, the largest of all worlds; NaN: engine ode, not measured */
 } rdm_pool_stats;
 RDM_API rdm_result rdm_pool_get_stats(const rdm_pool *p, rdm_pool_stats *io); /* fills io */
 
@@ -500,7 +504,8 @@ enum rdm_epoch_flag {          /* of rdm_epoch.flags */
   RDM_EPOCH_CONTACTS = 32,         /* decisions flagged RDM_STATUS_CONTACTS                                    */
   RDM_EPOCH_BAD_ACTION = 64,       /* decisions flagged RDM_STATUS_BAD_ACTION                                  */
   RDM_EPOCH_TASK = 128,            /* decisions flagged RDM_STATUS_TASK                                        */
-  RDM_EPOCH_SOLVER = 256           /* decisions flagged RDM_STATUS_SOLVER                                      */
+  RDM_EPOCH_SOLVER = 256,          /* decisions flagged RDM_STATUS_SOLVER                                      */
+  RDM_EPOCH_SLOWED = 512           /* decisions flagged RDM_STATUS_SLOWED                                      */
 };
 /* One row of the learning curve; means over the last 100 finished episodes. NaN: nothing was measured. */
 typedef struct rdm_epoch {
@@ -541,6 +546,7 @@ typedef struct rdm_epoch {
   int64_t bad_actions;        /* decisions flagged RDM_STATUS_BAD_ACTION                                  */
   int64_t task_failed;        /* decisions flagged RDM_STATUS_TASK                                        */
   int64_t unconverged;        /* decisions flagged RDM_STATUS_SOLVER                                      */
+  int64_t slowed;             /* decisions flagged RDM_STATUS_SLOWED                                      */
 } rdm_epoch;
 /* Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL. CANCELLED after
  * rdm_agent_cancel (the horizon is dropped, full or not), STATE when the horizon is not full. */

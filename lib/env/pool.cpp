@@ -319,8 +319,11 @@ PoolStats Pool::stats() const {
     s.bad_actions += slot.counters.bad_actions;
     s.task_failed += slot.counters.task_failed;
     s.unconverged += slot.counters.unconverged;
+    s.slowed += slot.counters.slowed;
     const double drift = slot.world->joint_drift();
     if (drift > s.joint_drift) s.joint_drift = drift;
+    const double residual = slot.world->solver_residual();
+    if (!(residual <= s.solver_residual)) s.solver_residual = residual;
   }
   if (s.steps > 0) s.contacts_mean = static_cast<double>(contacts) / static_cast<double>(s.steps);
   return s;

@@ -38,7 +38,9 @@ struct Buffers {
 struct PoolStats {
   int32_t contacts_max = 0;
   double contacts_mean = 0, joint_drift = 0;
-  int64_t steps = 0, diverged = 0, overflowed = 0, bad_actions = 0, task_failed = 0, unconverged = 0;
+  double solver_residual = 0;  // m/s; NaN: the engine does not measure it
+  int64_t steps = 0, diverged = 0, overflowed = 0, bad_actions = 0, task_failed = 0, unconverged = 0,
+          slowed = 0;
 };
 
 enum class Baseline : int32_t { kZero = 0, kHold = 1, kRandom = 2 };

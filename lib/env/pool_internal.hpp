@@ -27,7 +27,7 @@ struct Episode {
 
 struct Counters {
   int32_t contacts_max;
-  int64_t contacts_sum, steps, diverged, overflowed, bad_actions, task_failed, unconverged;
+  int64_t contacts_sum, steps, diverged, overflowed, bad_actions, task_failed, unconverged, slowed;
 };
 
 // Where episodes may begin, beside the task's own start.

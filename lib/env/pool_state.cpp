@@ -22,8 +22,8 @@ constexpr char kMagic[8] = {'R', 'D', 'M', 'S', 'T', 'A', 'T', 'E'};
 constexpr uint32_t kVersion = 2;  // 1, before redman 1.0: without EPST
 constexpr size_t kTextSize = 64;
 constexpr int32_t kFewCopies = 16;  // made sooner than other threads wake up
-constexpr uint32_t kEveryStatus =
-    kStatusContactOverflow | kStatusDiverged | kStatusBadAction | kStatusTask | kStatusUnconverged;
+constexpr uint32_t kEveryStatus = kStatusContactOverflow | kStatusDiverged | kStatusBadAction | kStatusTask |
+                                  kStatusUnconverged | kStatusSlowed;
 
 struct Range {
   int32_t begin, end;

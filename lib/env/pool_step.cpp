@@ -298,6 +298,7 @@ void Pool::Impl::count(int32_t env, uint32_t status) {
   c.bad_actions += (status & kStatusBadAction) != 0;
   c.task_failed += (status & kStatusTask) != 0;
   c.unconverged += (status & kStatusUnconverged) != 0;
+  c.slowed += (status & kStatusSlowed) != 0;
 }
 
 void Pool::Impl::write_verdict(int32_t env, const Verdict& verdict, uint32_t status) {

@@ -10,7 +10,7 @@ namespace rdm {
 
 inline constexpr double kStateBound = 1e6;        // m, m/s, rad/s: of free bodies and bases
 inline constexpr double kRateBound = 1e6;         // rad/s, m/s: of joints
-inline constexpr double kMaxBodySpin = 100.0;     // rad/s: free bodies that spin faster are slowed to it
+inline constexpr double kMaxBodyTurn = 3;         // rad in a substep: free bodies are slowed to it
 inline constexpr double kMomentumBound = 1e12;    // kg m2/s, N s: of links, and of contacts' impulses
 inline constexpr double kFeedforwardBound = 1e9;  // N m, N: of what is added to a drive; efforts end at 1e7
 inline constexpr double kUnitTolerance = 0.01;    // of the square of a unit quaternion's length

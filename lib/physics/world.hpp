@@ -4,6 +4,7 @@
 // state of every articulation; link poses and velocities follow from them by forward kinematics.
 #pragma once
 #include <cstdint>
+#include <limits>
 
 #include "base/arena.hpp"
 #include "base/bytes.hpp"
@@ -20,6 +21,7 @@ enum : uint32_t {
   kStatusContactOverflow = 1u,  // more contacts than contacts_max: the last ones were left out
   kStatusDiverged = 2u,         // a value is not finite, or the engine gave up; reset the world
   kStatusUnconverged = 16u,     // contacts were not solved: contact_solver.inl; not saved with a state
+  kStatusSlowed = 32u,          // a free body spun faster than the engine follows: limits.hpp; not saved
 };
 
 struct Motion {
@@ -141,6 +143,9 @@ class World {
   uint32_t status() const { return status_; }
   // Largest distance between the two sides of any joint, m: 0 by construction where links are rebuilt.
   virtual double joint_drift() const = 0;
+  // What the velocity of a contact point along its normal was still wrong by as the last sweep of the last
+  // step came to it, m/s: the largest of all, 0 without contacts; NaN where the engine does not measure it.
+  virtual double solver_residual() const { return std::numeric_limits<double>::quiet_NaN(); }
 
   // The whole state, exact to the bit: a world that loads it goes on as the one that saved it. Torques,
   // sensors and status are in it; contacts are not (none after load), nor are pushes not yet acted on.
@@ -182,7 +187,7 @@ class World {
   // factors of dynamics_ changed, sizes of shapes with them.
   bool copy_rows(const World& other);
   // What a state keeps of the status.
-  static uint32_t saved_status(uint32_t status) { return status & ~kStatusUnconverged; }
+  static uint32_t saved_status(uint32_t status) { return status & ~(kStatusUnconverged | kStatusSlowed); }
   // Reads status, q, qd, target, torque and sensors, in which every engine's state agrees; false where one
   // of them is not finite or out of range.
   static bool sound_rows(Reader& in, const Scene& scene);

@@ -47,9 +47,10 @@ void build_redman(double sink, JengaTower* t) {
 }
 
 // Rows of three and a top row of two; the target is the middle one of the third.
-void build_real(double sink, JengaTower* t) {
+void build_real(double layer, JengaTower* t) {
   constexpr Vec3 kHalf = {0.0125, 0.0375, 0.0075};  // along y
-  constexpr double kPitch = 2 * kHalf.x + 2e-4;     // side faces do not touch
+  const double sink = std::min(layer, kLayerShare * kHalf.z);
+  constexpr double kPitch = 2 * kHalf.x + 2e-4;  // side faces do not touch
   constexpr int kTarget = 7;
   int next = 1;
   for (int i = 0; i < 1 + kJengaBlocks; ++i) {

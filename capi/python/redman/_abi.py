@@ -90,6 +90,7 @@ class Status(enum.IntFlag):
     BAD_ACTION = 4  # the row of actions was not finite: likewise
     TASK = 8  # a function of a host's own task failed: likewise
     SOLVER = 16  # contacts were not solved, not seen in engine ode: one was wrong by more than 1 m/s along its normal when the sweeps ended (a thing under one that is a thousand times heavier), or gave way for ever (heavier than contact_max_speed / contact_cfm N)
+    SLOWED = 32  # a free body that turned by more than 3 rad in a substep was slowed to that
 
 
 class BaselineKind(enum.IntEnum):
@@ -131,6 +132,7 @@ class EpochFlag(enum.IntFlag):
     BAD_ACTION = 64  # decisions flagged RDM_STATUS_BAD_ACTION
     TASK = 128  # decisions flagged RDM_STATUS_TASK
     SOLVER = 256  # decisions flagged RDM_STATUS_SOLVER
+    SLOWED = 512  # decisions flagged RDM_STATUS_SLOWED
 
 
 class RobotKind(enum.IntEnum):
@@ -883,6 +885,8 @@ class PoolStats(Record):
     bad_actions: int  # steps flagged RDM_STATUS_BAD_ACTION so far
     task_failed: int  # steps flagged RDM_STATUS_TASK so far
     unconverged: int  # steps flagged RDM_STATUS_SOLVER so far
+    slowed: int  # steps flagged RDM_STATUS_SLOWED so far
+    solver_residual: float  # m/s, what a contact's normal velocity was still wrong by when the last sweep of the last step came to it, the largest of all worlds; NaN: engine ode, not measured
 
 
 class rdm_pool_stats(Structure):
@@ -896,6 +900,9 @@ class rdm_pool_stats(Structure):
     bad_actions: steps flagged RDM_STATUS_BAD_ACTION so far
     task_failed: steps flagged RDM_STATUS_TASK so far
     unconverged: steps flagged RDM_STATUS_SOLVER so far
+    slowed: steps flagged RDM_STATUS_SLOWED so far
+    solver_residual: m/s, what a contact's normal velocity was still wrong by when the last sweep of the last
+        step came to it, the largest of all worlds; NaN: engine ode, not measured
     """
 
     struct_size: int
@@ -908,6 +915,8 @@ class rdm_pool_stats(Structure):
     bad_actions: int
     task_failed: int
     unconverged: int
+    slowed: int
+    solver_residual: float
     _fields_ = [
         ("struct_size", c_uint32),
         ("contacts_max", c_int32),
@@ -919,6 +928,8 @@ class rdm_pool_stats(Structure):
         ("bad_actions", c_int64),
         ("task_failed", c_int64),
         ("unconverged", c_int64),
+        ("slowed", c_int64),
+        ("solver_residual", c_double),
     ]
 
 
@@ -1081,6 +1092,7 @@ class Epoch(Record):
     bad_actions: int  # decisions flagged RDM_STATUS_BAD_ACTION
     task_failed: int  # decisions flagged RDM_STATUS_TASK
     unconverged: int  # decisions flagged RDM_STATUS_SOLVER
+    slowed: int  # decisions flagged RDM_STATUS_SLOWED
 
 
 class rdm_epoch(Structure):
@@ -1123,6 +1135,7 @@ class rdm_epoch(Structure):
     bad_actions: decisions flagged RDM_STATUS_BAD_ACTION
     task_failed: decisions flagged RDM_STATUS_TASK
     unconverged: decisions flagged RDM_STATUS_SOLVER
+    slowed: decisions flagged RDM_STATUS_SLOWED
     """
 
     struct_size: int
@@ -1159,6 +1172,7 @@ class rdm_epoch(Structure):
     bad_actions: int
     task_failed: int
     unconverged: int
+    slowed: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("epoch", c_int32),
@@ -1194,6 +1208,7 @@ class rdm_epoch(Structure):
         ("bad_actions", c_int64),
         ("task_failed", c_int64),
         ("unconverged", c_int64),
+        ("slowed", c_int64),
     ]
 
 

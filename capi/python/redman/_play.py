@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 # What ends an episode, and what goes on: bits of Pool.status (redman.h, RDM_STATUS_*) by their names in results.
 _END_FLAGS = {"diverged": 2, "bad_actions": 4, "task_failed": 8}
-_STEP_FLAGS = {"contacts_left_out": 1, "unconverged": 16}
+_STEP_FLAGS = {"contacts_left_out": 1, "unconverged": 16, "slowed": 32}
 
 _BASELINES = ("zero", "hold", "random")
 Function = Callable[[FloatArray], Any]
@@ -53,6 +53,7 @@ class Evaluation:
     diverged: int = 0  # episodes that ended as a value was not finite
     contacts_left_out: int = 0  # steps in which contacts beyond contacts_max were left out
     unconverged: int = 0  # steps in which contacts were not solved
+    slowed: int = 0  # steps in which a thing spun faster than the engine follows
     bad_actions: int = 0  # episodes that ended as an action was not finite
     task_failed: int = 0  # episodes that ended as a function of the task failed
 

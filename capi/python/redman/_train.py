@@ -237,6 +237,7 @@ def _row(e: Epoch, costs: list[str], limits: list[Optional[float]], steps: int, 
         "Metrics/TestEpCost": tested[1], "Time/Epoch": times[0], "Time/Evaluation": times[1],
         "Time/FPS": steps / times[0], "Time/Total": times[2],
         "Trouble/Diverged": e.diverged, "Trouble/ContactsLeftOut": e.contacts_left_out, "Trouble/Unconverged": e.unconverged,
+        "Trouble/Slowed": e.slowed,
         "Trouble/BadActions": e.bad_actions, "Trouble/TaskFailed": e.task_failed, "Trouble/InvalidRows": e.invalid_rows,
         "Trouble/SkippedGradients": e.skipped_gradients})
     return row

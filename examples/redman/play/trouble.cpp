@@ -12,6 +12,7 @@ void Trouble::add(uint32_t status) {
   task_failed |= (status & RDM_STATUS_TASK) != 0;
   contacts_left_out += (status & RDM_STATUS_CONTACTS) != 0;
   unconverged += (status & RDM_STATUS_SOLVER) != 0;
+  slowed += (status & RDM_STATUS_SLOWED) != 0;
 }
 
 void Trouble::add(const Trouble& other) {
@@ -20,12 +21,14 @@ void Trouble::add(const Trouble& other) {
   task_failed += other.task_failed;
   contacts_left_out += other.contacts_left_out;
   unconverged += other.unconverged;
+  slowed += other.slowed;
 }
 
 void put_trouble(Json& json, const Trouble& t, const std::string& prefix) {
   json[prefix + "diverged"] = t.diverged;
   json[prefix + "contacts_left_out"] = t.contacts_left_out;
   json[prefix + "unconverged"] = t.unconverged;
+  json[prefix + "slowed"] = t.slowed;
   json[prefix + "bad_actions"] = t.bad_actions;
   json[prefix + "task_failed"] = t.task_failed;
 }
@@ -45,6 +48,8 @@ std::string trouble_text(const Trouble& t) {
       " steps left contacts out (option contacts_max)");
   add(t.unconverged, " step did not solve its contacts (options iterations, substeps)",
       " steps did not solve their contacts (options iterations, substeps)");
+  add(t.slowed, " step slowed a thing that spun too fast (option substeps)",
+      " steps slowed things that spun too fast (option substeps)");
   return text;
 }
 
@@ -54,7 +59,7 @@ void say_trouble(const Trouble& t, const std::string& where) {
 
 Trouble trouble_of(const redman::Pool& pool) {
   const rdm_pool_stats s = pool.stats();
-  return {s.diverged, s.bad_actions, s.task_failed, s.overflowed, s.unconverged};
+  return {s.diverged, s.bad_actions, s.task_failed, s.overflowed, s.unconverged, s.slowed};
 }
 
 }  // namespace tool

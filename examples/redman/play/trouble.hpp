@@ -11,11 +11,11 @@ namespace tool {
 // Episodes that went wrong for good, and steps of a pool that went wrong without an end.
 struct Trouble {
   int64_t diverged = 0, bad_actions = 0, task_failed = 0;
-  int64_t contacts_left_out = 0, unconverged = 0;
+  int64_t contacts_left_out = 0, unconverged = 0, slowed = 0;
 
   void add(uint32_t status);  // of a step, or the reset, of one episode
   void add(const Trouble& other);
-  bool any() const { return lost() || contacts_left_out > 0 || unconverged > 0; }
+  bool any() const { return lost() || contacts_left_out > 0 || unconverged > 0 || slowed > 0; }
   // Episodes that were cut off: what they came to is no measurement.
   bool lost() const { return diverged > 0 || bad_actions > 0 || task_failed > 0; }
 };

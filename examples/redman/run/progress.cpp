@@ -58,6 +58,7 @@ void visit(const std::vector<CostColumn>& columns, const Row& row, Add add) {
   add("Trouble/Diverged", static_cast<double>(e.diverged));
   add("Trouble/ContactsLeftOut", static_cast<double>(e.contacts_left_out));
   add("Trouble/Unconverged", static_cast<double>(e.unconverged));
+  add("Trouble/Slowed", static_cast<double>(e.slowed));
   add("Trouble/BadActions", static_cast<double>(e.bad_actions));
   add("Trouble/TaskFailed", static_cast<double>(e.task_failed));
   add("Trouble/InvalidRows", static_cast<double>(e.invalid_rows));

@@ -54,6 +54,7 @@ class ArticulatedWorld final : public World {
   void push_base(int32_t articulation, const Vec3& force, const Vec3& torque) override;
   double body_overlap(int32_t body) override;
   double joint_drift() const override { return 0; }
+  double solver_residual() const override { return state_.residual; }
   void save(Writer& out) const override;
   void load(Reader& in) override;
   void copy(const World& other) override;

@@ -64,6 +64,7 @@ constexpr double kUnsolvedSpeed = 1;
 
 template <class S>
 struct ContactSolver {
+  using Scalar = S;
   typedef S Row __attribute__((vector_size(sizeof(S) * kSegment)));
 
   // A number each of the normal and the tangents; the fourth is 0.
@@ -91,7 +92,6 @@ struct ContactSolver {
   Row *sum = nullptr, *previous = nullptr, *direction = nullptr;  // [num_segments]
   int32_t count = 0, num_segments = 0, most_segments = 0;         // most_segments: of a point
   WideContacts<S> wide;                                           // points of piles, beside the others
-  S softness = 0;
   int32_t num_moved = 0;
   int32_t levels = 0;  // of the pile, if there is one (wide_contacts.inl)
 
@@ -113,13 +113,12 @@ struct ContactSolver {
     wide.rest = segment_count;
   }
 
-  void begin(S contact_softness) {
+  void begin() {
     count = 0;
-    softness = contact_softness;
     for (int32_t s = 0; s <= num_segments; ++s) sum[s] = Row{};
     wide.begin();
   }
-  Point& add(S mu) {
+  Point& add(S mu, S softness) {
     Point& p = points[count];
     p = Point{};
     p.mu = mu;
@@ -143,8 +142,8 @@ struct ContactSolver {
   void prepare(Point* p);
   void warm_start(Point* p, const S* impulse);
   void solve(int32_t iterations);
-  // A point's normal velocity was wrong by more than kUnsolvedSpeed when the last sweep came to it.
-  bool unsolved() const;
+  // What the normal velocity of a point was wrong by when the last sweep came to it, m/s: the most of all.
+  S residual() const;
 
  private:
   static S reduce(const Row& r) {
@@ -419,14 +418,14 @@ void ContactSolver<S>::solve(int32_t iterations) {
 
 // An impulse changes by what the velocity is wrong by, times inv_n.
 template <class S>
-bool ContactSolver<S>::unsolved() const {
-  constexpr S kMost = S(kUnsolvedSpeed);
-  bool any = false;
+S ContactSolver<S>::residual() const {
+  S most = wide.count > 0 ? wide.residual() : S(0);
   for (int32_t i = 0; i < count; ++i) {
     const Point& p = points[i];
-    any |= std::abs(p.delta[0]) > kMost * p.inv_n;
+    const S d = std::abs(p.delta[0]);
+    if (d > most * p.inv_n && p.inv_n > 0) most = d / p.inv_n;
   }
-  return any || (wide.count > 0 && wide.unsolved(kMost));
+  return most;
 }
 
 }  // namespace

@@ -28,6 +28,7 @@
 // batch.
 #pragma once
 #include "physics/articulated/contact_solver.inl"
+#include "physics/articulated/direct_contacts.inl"
 #include "physics/articulated/joint_limits.inl"
 #include "physics/articulated/look_ahead.inl"
 #include "physics/articulated/sleep.hpp"
@@ -37,6 +38,9 @@ namespace rdm {
 namespace {
 
 constexpr int kContactRounds = 3;  // of contacts and active sets in turn
+// m/s by which a loaded point gives way, at most: it so lies no deeper than kMostYield h / erp below the layer
+// (0.8 mm as scenes come), whatever it carries. 200 N at the softness that scenes come with.
+constexpr double kMostYield = 0.02;
 
 template <class L>
 class BatchStepper final : public Stepper {
@@ -89,6 +93,7 @@ class BatchStepper final : public Stepper {
 
   // memory and constants
   void carve(Arena& arena);
+  bool may_be_extreme() const;
   void fill_constants(TreeBatch<L>& t, int32_t batch);
   void list_attachments();
   // lanes and worlds
@@ -134,8 +139,12 @@ class BatchStepper final : public Stepper {
             attachments_[contact.shape_b].kind == Attachment::kStatic);
   }
   double most_push_out_speed() const;
-  double push_out_speed(const Contact& contact) const;
+  double push_out_speed(const WorldState& w, int32_t contact) const;
+  double softness(const WorldState& w, int32_t contact) const;
+  double layer(const WorldState& w, int32_t contact) const;
   double friction(const WorldState& w, int32_t pair) const;
+  void find_extremes(int32_t world);
+  void solve_extremes(int32_t world);
   bool add_piles(int32_t world, bool again);
   void add_pile_points(int32_t world, bool again, typename WideContacts<S>::Group* group);
   void read_pile_impulses(int32_t world);
@@ -151,6 +160,7 @@ class BatchStepper final : public Stepper {
   Group* groups_ = nullptr;
   TreeBatch<L>* batches_ = nullptr;
   Attachment* attachments_ = nullptr;  // [shapes]
+  double* half_widths_ = nullptr;      // [shapes] m
   int32_t* body_segment_ = nullptr;    // [num_bodies]
   int32_t* member_segment_ = nullptr;  // [articulations] first segment
   int32_t* first_word_ = nullptr;      // [articulations] in WorldState::persistent, in numbers
@@ -161,6 +171,12 @@ class BatchStepper final : public Stepper {
   Quat* q_JL_ = nullptr;               // [num_links]
   Mat3* R_JL_ = nullptr;               // [num_links]
   ContactSolver<S> contacts_;
+  DirectContacts<ContactSolver<S>> direct_;
+  int32_t* island_ =
+      nullptr;  // [num_bodies] the lowest body of each body's, or above it; null: no scene for it
+  int32_t* directly_ =
+      nullptr;             // [contacts_max] of the world being solved: a point's island, -1: by sweeps alone
+  bool extremes_ = false;  // any point is of an island
   int32_t num_groups_ = 0, num_batches_ = 0, group_size_ = 1, count_ = 0;
   WorldState* const* worlds_ = nullptr;  // [count_] of the step under way
 };
@@ -354,7 +370,7 @@ void BatchStepper<L>::solve_contacts() {
       world.free_bodies[i].v1 = world.free_bodies[i].v;
       world.free_bodies[i].w1 = world.free_bodies[i].w;
     }
-    world.unsolved = false;
+    world.residual = 0;
     if (world.num_contacts > 0) open |= 1u << w;
   }
   for (int round = 0; open != 0; ++round) {
@@ -501,11 +517,36 @@ double BatchStepper<L>::most_push_out_speed() const {
 // erp / h of the depth below the layer, within a bound: a deep overlap, as after a blow, must not turn into a
 // shot. What is yet to come may come as near as it is.
 template <class L>
-double BatchStepper<L>::push_out_speed(const Contact& contact) const {
+double BatchStepper<L>::push_out_speed(const WorldState& w, int32_t index) const {
   const SolverDef& solver = scene_->def.solver;
-  if (contact.depth < 0) return contact.depth / solver.h;
-  return std::min(std::max(contact.depth - solver.contact_layer, 0.0) * solver.contact_erp / solver.h,
+  const double depth = w.contacts[index].depth;
+  if (depth < 0) return depth / solver.h;
+  return std::min(std::max(depth - layer(w, index), 0.0) * solver.contact_erp / solver.h,
                   most_push_out_speed());
+}
+
+// The pair's; of shapes that a world has in sizes of its own by those.
+template <class L>
+double BatchStepper<L>::layer(const WorldState& w, int32_t index) const {
+  const ShapePair& pair = scene_->pairs[static_cast<size_t>(w.contact_pairs[index])];
+  if (!w.sized) return pair.layer;
+  const auto width = [&](int32_t shape) {
+    const int32_t k = shape - scene_->first_body_shape;
+    const bool own = k >= 0 && k < scene_->num_body_shapes;
+    return (own ? w.sized[k].size_factor : 1.0) * half_widths_[shape];
+  };
+  return layer_of(scene_->def.solver, std::min(width(pair.a), width(pair.b)));
+}
+
+// cfm / h; less where the point's last impulse would give way by more than kMostYield.
+template <class L>
+double BatchStepper<L>::softness(const WorldState& w, int32_t index) const {
+  const SolverDef& solver = scene_->def.solver;
+  const double soft = solver.contact_cfm / solver.h;
+  Vec3 last;
+  if (!warm_impulse(w, index, &last)) return soft;
+  const double n = dot(last, w.contacts[index].n);
+  return soft * n > kMostYield ? kMostYield / n : soft;
 }
 
 template <class L>
@@ -521,16 +562,18 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
   WorldState& w = *worlds_[world];
   const SolverDef& solver = scene_->def.solver;
   const int32_t count = w.num_contacts;
-  contacts_.begin(static_cast<S>(solver.contact_cfm / solver.h));
+  contacts_.begin();
   for (size_t a = 0; a < scene_->def.articulations.size(); ++a) touched_[a] = 0;
+  find_extremes(world);
   const bool piles = add_piles(world, again);
   for (int32_t i = 0; i < count; ++i) {
     const Contact& contact = w.contacts[i];
     if (piles && in_pile_[i]) continue;
-    auto& point = contacts_.add(static_cast<S>(friction(w, w.contact_pairs[i])));
+    auto& point =
+        contacts_.add(static_cast<S>(friction(w, w.contact_pairs[i])), static_cast<S>(softness(w, i)));
     Vec3 axes[3] = {contact.n, {}, {}};
     tangents(contact.n, &axes[1], &axes[2]);
-    point.b[0] = static_cast<S>(push_out_speed(contact));
+    point.b[0] = static_cast<S>(push_out_speed(w, i));
     if (contact.depth < 0) point.softness = S(0);
     add_contact_rows(&point, attachments_[contact.shape_a], world, S(1), contact.p, axes);
     add_contact_rows(&point, attachments_[contact.shape_b], world, S(-1), contact.p + contact.gap, axes);
@@ -545,8 +588,9 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
     start[0] = start[0] < 0 ? S(0) : start[0];
     contacts_.warm_start(&point, start);
   }
+  if (extremes_) solve_extremes(world);
   contacts_.solve(solver.iterations);
-  w.unsolved = contacts_.unsolved();
+  w.residual = static_cast<double>(contacts_.residual());
   for (int32_t i = 0, k = 0; i < count; ++i) {
     if (piles && in_pile_[i]) continue;
     const Vec3& n = w.contacts[i].n;
@@ -560,6 +604,69 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
   take_impulses(world);
 }
 
+// Which points are solved at once: those of free bodies that hang together with two that touch and differ much.
+template <class L>
+void BatchStepper<L>::find_extremes(int32_t world) {
+  extremes_ = false;
+  if (!island_) return;
+  const WorldState& w = *worlds_[world];
+  const auto body_of = [&](int32_t shape) {
+    const Attachment& at = attachments_[shape];
+    return at.kind == Attachment::kBody ? at.body : -1;
+  };
+  const auto differ = [&](int32_t a, int32_t b) {
+    const double x = w.body_models[a].inv_mass, y = w.body_models[b].inv_mass;
+    return x > kExtremeRatio * y || y > kExtremeRatio * x;
+  };
+  for (int32_t i = 0; i < w.num_contacts && !extremes_; ++i) {
+    const int32_t a = body_of(w.contacts[i].shape_a), b = body_of(w.contacts[i].shape_b);
+    extremes_ = a >= 0 && b >= 0 && differ(a, b);
+  }
+  if (!extremes_) return;
+  for (int32_t i = 0; i < scene_->num_bodies; ++i) island_[i] = i;
+  const auto root = [&](int32_t i) {
+    while (island_[i] != i) i = island_[i] = island_[island_[i]];
+    return i;
+  };
+  for (int32_t i = 0; i < w.num_contacts; ++i) {
+    const int32_t a = body_of(w.contacts[i].shape_a), b = body_of(w.contacts[i].shape_b);
+    if (a < 0 || b < 0) continue;
+    const int32_t x = root(a), y = root(b);
+    island_[std::max(x, y)] = std::min(x, y);
+  }
+  for (int32_t i = 0; i < w.num_contacts; ++i) directly_[i] = -1;
+  for (int32_t i = 0; i < w.num_contacts; ++i) {
+    const int32_t a = body_of(w.contacts[i].shape_a), b = body_of(w.contacts[i].shape_b);
+    if (a < 0 || b < 0 || directly_[i] >= 0 || !differ(a, b)) continue;
+    const int32_t island = root(a);
+    const auto of_it = [&](int32_t k) {
+      const int32_t x = body_of(w.contacts[k].shape_a), y = body_of(w.contacts[k].shape_b);
+      return (x >= 0 && root(x) == island) || (y >= 0 && root(y) == island);
+    };
+    int32_t points = 0;
+    for (int32_t k = 0; k < w.num_contacts; ++k) points += of_it(k);
+    if (points > kMostDirect) continue;
+    for (int32_t k = 0; k < w.num_contacts; ++k)
+      if (of_it(k)) directly_[k] = island;
+  }
+}
+
+template <class L>
+void BatchStepper<L>::solve_extremes(int32_t world) {
+  const WorldState& w = *worlds_[world];
+  const SolverDef& solver = scene_->def.solver;
+  for (int32_t island = 0; island < scene_->num_bodies; ++island) {
+    direct_.begin();
+    for (int32_t i = 0, k = 0; i < w.num_contacts; ++i) {
+      if (contacts_.wide.count > 0 && in_pile_[i]) continue;
+      auto* point = contacts_.points + k++;
+      if (directly_[i] == island)
+        direct_.add(point, kYieldShare * layer(w, i) * solver.contact_erp / solver.h);
+    }
+    direct_.solve(&contacts_);
+  }
+}
+
 // The pairs of free bodies with each other and with static shapes into lanes, if there are enough of them.
 template <class L>
 bool BatchStepper<L>::add_piles(int32_t world, bool again) {
@@ -568,7 +675,7 @@ bool BatchStepper<L>::add_piles(int32_t world, bool again) {
   if (!wide.points || w.num_contacts < kWideFrom) return false;
   int32_t free = 0;
   for (int32_t i = 0; i < w.num_contacts; ++i) {
-    in_pile_[i] = is_free(w.contacts[i]);
+    in_pile_[i] = is_free(w.contacts[i]) && !(extremes_ && directly_[i] >= 0);
     free += in_pile_[i];
   }
   if (free < kWideFrom) return false;
@@ -628,7 +735,7 @@ void BatchStepper<L>::add_pile_points(int32_t world, bool again, typename WideCo
   };
   for (int32_t k = 0; k < group->most; ++k) {
     auto& p = wide.points[group->first_point + k];
-    WV arm_a[3] = {}, arm_b[3] = {}, last[3] = {}, push_out{}, softness = W::all(contacts_.softness);
+    WV arm_a[3] = {}, arm_b[3] = {}, last[3] = {}, push_out{}, soft{};
     WV* n = p.axis[0];
     n[0] = n[1] = WV{};
     n[2] = W::all(S(1));
@@ -644,8 +751,8 @@ void BatchStepper<L>::add_pile_points(int32_t world, bool again, typename WideCo
         start = w.impulses[i];
       else
         warm_impulse(w, i, &start);
-      put(&push_out, l, push_out_speed(contact));
-      if (contact.depth < 0) put(&softness, l, 0);
+      put(&push_out, l, push_out_speed(w, i));
+      put(&soft, l, contact.depth < 0 ? 0 : softness(w, i));
       for (int r = 0; r < 3; ++r) {
         put(&n[r], l, contact.n[r]);
         put(&arm_a[r], l, to_a[r]);
@@ -677,7 +784,7 @@ void BatchStepper<L>::add_pile_points(int32_t world, bool again, typename WideCo
     }
     p.b[0] += push_out;
     p.impulse[0] = W::select(p.impulse[0] < none, none, p.impulse[0]);
-    wide.prepare(*group, &p, softness);
+    wide.prepare(*group, &p, soft);
     // a lane that has no such point
     for (int l = 0; l < group->lanes; ++l)
       if (k >= group->count[l]) wide.clear(&p, l);
@@ -779,12 +886,12 @@ template <class L>
 void BatchStepper<L>::contact_forces(int32_t world) {
   WorldState& w = *worlds_[world];
   const double inv_h = 1 / scene_->def.solver.h, weight = 1.0 / scene_->def.solver.substeps;
-  const double fastest = most_push_out_speed(), softness = scene_->def.solver.contact_cfm * inv_h;
-  if (w.unsolved) w.status |= kStatusUnconverged;
+  const double fastest = most_push_out_speed();
+  if (w.residual > kUnsolvedSpeed) w.status |= kStatusUnconverged;
   if (scene_->def.solver.speculative_contacts) drop_unmet(&w);
   for (int32_t i = 0; i < w.num_contacts; ++i) {
     Contact& contact = w.contacts[i];
-    if (softness * dot(w.impulses[i], contact.n) > fastest && push_out_speed(contact) == fastest)
+    if (softness(w, i) * dot(w.impulses[i], contact.n) > fastest && push_out_speed(w, i) == fastest)
       w.status |= kStatusUnconverged;
     contact.force = inv_h * w.impulses[i];
     for (int side = 0; side < 2; ++side) {
@@ -1043,6 +1150,18 @@ void BatchStepper<L>::scatter(TreeBatch<L>& t) {
 
 // --- Memory and constants.
 
+// Two bodies differ by kExtremeRatio, as they are or by a world's factors on their masses.
+template <class L>
+bool BatchStepper<L>::may_be_extreme() const {
+  constexpr double kFactors = 4;
+  double least = HUGE_VAL, most = 0;
+  for (const BodyDef& body : scene_->def.bodies) {
+    least = std::min(least, body.inertia.mass);
+    most = std::max(most, body.inertia.mass);
+  }
+  return most * (scene_->def.adjustable ? kFactors : 1) > kExtremeRatio * least;
+}
+
 // Segments of the contact solver: those of every member of every tree, then one per body.
 template <class L>
 void BatchStepper<L>::carve(Arena& arena) {
@@ -1094,11 +1213,17 @@ void BatchStepper<L>::carve(Arena& arena) {
     }
   }
   attachments_ = arena.make<Attachment>(scene_->shapes.size());
+  half_widths_ = arena.make<double>(scene_->shapes.size());
   body_segment_ = arena.make<int32_t>(static_cast<size_t>(scene_->num_bodies));
   member_segment_ = arena.make<int32_t>(scene_->def.articulations.size());
   first_word_ = arena.make<int32_t>(scene_->def.articulations.size());
   touched_ = arena.make<uint8_t>(scene_->def.articulations.size());
   in_pile_ = arena.make<uint8_t>(static_cast<size_t>(scene_->def.solver.contacts_max));
+  if (may_be_extreme()) {
+    island_ = arena.make<int32_t>(static_cast<size_t>(scene_->num_bodies));
+    directly_ = arena.make<int32_t>(static_cast<size_t>(scene_->def.solver.contacts_max));
+    direct_.carve(arena, segments);
+  }
   path_ = arena.make<S>(4 * static_cast<size_t>(most_coords));
   factor_rows_ = arena.make<const V*>(static_cast<size_t>(most_coords));
   R_JL_ = arena.make<Mat3>(static_cast<size_t>(scene_->num_links));
@@ -1165,7 +1290,10 @@ void BatchStepper<L>::list_attachments() {
     word += kBase + kLink * static_cast<int32_t>(scene_->def.articulations[a].links.size());
   }
   const Attachment none = {Attachment::kStatic, 0, 0, -1, -1, -1, -1, 0};
-  for (size_t i = 0; i < scene_->shapes.size(); ++i) attachments_[i] = none;
+  for (size_t i = 0; i < scene_->shapes.size(); ++i) {
+    attachments_[i] = none;
+    half_widths_[i] = half_width(*scene_, scene_->shapes[i]);
+  }
   const auto sensor_of = [&](int32_t link) {
     for (size_t i = 0; i < scene_->sensors.size(); ++i)
       if (scene_->sensors[i] == link) return static_cast<int32_t>(i);

@@ -117,7 +117,7 @@ struct WideContacts {
   }
   // As ContactSolver::sweep.
   S sweep(const S* beta, S* impulse_square);
-  bool unsolved(S most) const;
+  S residual() const;
 
  private:
   static constexpr int32_t kNoLevel = 1 << 20;
@@ -326,14 +326,19 @@ S WideContacts<S>::sweep(const S* beta, S* impulse_square) {
 }
 
 template <class S>
-bool WideContacts<S>::unsolved(S most) const {
+S WideContacts<S>::residual() const {
+  V most{};
+  const V none{}, one = L::all(S(1));
   for (int32_t k = 0; k < num_groups; ++k)
     for (int32_t i = 0; i < groups[k].most; ++i) {
       const Point& p = points[groups[k].first_point + i];
-      const V bound = most * p.inv_n;
-      if (L::bits((p.delta[0] > bound) | (-p.delta[0] > bound)) != 0) return true;
+      const Mask held = p.inv_n > none;
+      const V speed = larger(p.delta[0], -p.delta[0]) / L::select(held, p.inv_n, one);
+      most = larger(most, L::select(held, speed, none));
     }
-  return false;
+  S all = 0;
+  for (int l = 0; l < kWide; ++l) all = std::max(all, L::get(most, l));
+  return all;
 }
 
 }  // namespace

@@ -209,8 +209,10 @@ void integrate_bodies(const ArticulatedModel& model, WorldState* s) {
       m.v = m.w = {};
       continue;
     }
-    const double spin = norm(m.w);
-    if (spin > kMaxBodySpin) m.w = (kMaxBodySpin / spin) * m.w;
+    if (const double turn = h * norm(m.w); turn > kMaxBodyTurn) {
+      m.w = (kMaxBodyTurn / turn) * m.w;
+      s->status |= kStatusSlowed;
+    }
     const Vec3 momentum = body.R * (constants.moment * (transpose(body.R) * m.w));
     // Contacts are solved for the velocity of the end, and what they hold moves by it. All else flies exactly.
     if (body.touches)

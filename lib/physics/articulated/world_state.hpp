@@ -175,8 +175,8 @@ struct WorldState {
   Wrench* sensors;   // [sensors] mean over the substeps, link axes, about the link's origin
   uint8_t* touched;  // [pairs]
   uint32_t status;
-  bool unsolved;  // the last solve of the substep ended too early: ContactSolver::unsolved
-  bool diverged;  // the step's numbers are not to be used: the world goes back to the poses below
+  double residual;  // m/s, of the last solve of the substep: ContactSolver::residual
+  bool diverged;    // the step's numbers are not to be used: the world goes back to the poses below
   Motion *start_bodies, *start_bases;  // [num_bodies], [articulations] as the step began
 
   bool asleep(int32_t body) const { return sleep && sleep[body].island != kAwake; }

@@ -272,7 +272,9 @@ void add_pair(Scene* scene, int32_t a, int32_t b) {
   if (!scene->moves(*y) && !within_reach(*scene, *x, *y)) return;
   const Friction& friction = scene->def.friction[x->def.material][y->def.material];
   if (friction.passes) return;
-  scene->pairs.push_back({a, b, friction.mu, y->radius < 0 ? -1 : x->radius + y->radius});
+  scene->pairs.push_back(
+      {a, b, friction.mu, y->radius < 0 ? -1 : x->radius + y->radius,
+       layer_of(scene->def.solver, std::min(half_width(*scene, *x), half_width(*scene, *y)))});
 }
 
 void list_pairs(Scene* scene) {
@@ -328,6 +330,34 @@ int32_t contacts_needed(const Scene& scene) {
 }
 
 }  // namespace
+
+double half_width(const Scene& scene, const SceneShape& shape) {
+  const Vec3& s = shape.def.size;
+  switch (shape.def.kind) {
+    case ShapeKind::kSphere:
+    case ShapeKind::kCapsule:
+      return s.x;
+    case ShapeKind::kCylinder:
+      return std::min(s.x, s.y);
+    case ShapeKind::kBox:
+    case ShapeKind::kEllipsoid:
+      return std::min({s.x, s.y, s.z});
+    case ShapeKind::kHull: {
+      const Hull& hull = *scene.hull_of(shape);
+      double width = HUGE_VAL;
+      for (int32_t f = 0; f < hull.num_faces; ++f) {
+        double lowest = HUGE_VAL;
+        for (int32_t i = 0; i < hull.num_points; ++i)
+          lowest = std::min(lowest, dot(hull.faces[f].n, hull.points[i]));
+        width = std::min(width, hull.faces[f].offset - lowest);
+      }
+      return 0.5 * width;
+    }
+    case ShapeKind::kPlane:
+      break;
+  }
+  return HUGE_VAL;
+}
 
 void validate_body(BodyDef body, int32_t num_materials) {
   check_body(&body, num_materials);

@@ -127,7 +127,7 @@ struct SolverDef {
   double relaxation = 1.3;       // successive over-relaxation of QuickStep
   double erp = 0.8, cfm = 1e-9;  // joints
   double contact_erp = 0.2, contact_cfm = 1e-4;
-  double contact_layer = 0.0005;    // m of allowed depth
+  double contact_layer = 0.0005;    // m of allowed depth, less between thin things: kLayerShare
   double contact_max_speed = 0;     // m/s, correction of depth; 0: the engine's own, see below
   int32_t contacts_per_pair = 4;    // 1..8
   int32_t contacts_max = 36;        // per world and substep, to kMostContacts; more raise
@@ -149,6 +149,9 @@ struct SolverDef {
 
 // Faster correction helps engine ode, whose contacts give way; in joint coordinates it would kick fingers.
 inline constexpr double kOdeContactSpeed = 1.0, kArticulatedContactSpeed = 0.4;  // m/s
+
+// Of the smallest half width of the thinner of two shapes: what they may be in each other at rest.
+inline constexpr double kLayerShare = 0.05;
 
 inline constexpr int kMaxMaterials = 16;
 
@@ -184,6 +187,7 @@ struct ShapePair {
   int32_t a, b;  // indices of Scene::shapes
   double mu;
   double reach;  // m, sum of bounding radii; < 0: b is a plane
+  double layer;  // m of allowed depth: contact_layer, at most kLayerShare of the thinner shape's half width
 };
 
 // What forward kinematics needs of a link, packed.
@@ -230,6 +234,14 @@ struct Scene {
   int32_t find_shape(const char* name) const;
   double control_dt() const { return def.solver.h * def.solver.substeps; }
 };
+
+// Half of a shape's extent along the axis along which it is thinnest, m; infinite for a plane. Of a hull, along
+// the normals of its faces.
+double half_width(const Scene& scene, const SceneShape& shape);
+// What a contact of things with these half widths may be deep, m.
+inline double layer_of(const SolverDef& solver, double half_width) {
+  return half_width * kLayerShare < solver.contact_layer ? half_width * kLayerShare : solver.contact_layer;
+}
 
 // Error(kArgument) or Error(kRange) for anything a world could not be made of.
 Scene make_scene(SceneDef def);

@@ -7,9 +7,11 @@ namespace rdm {
 namespace {
 
 // The one place where a contact's surface is described, every field of the mode included.
-dContact describe(const SolverDef& solver, const dContactGeom& geom, double mu) {
+// ODE has one layer for all contacts: what a pair's own is thinner by counts as depth.
+dContact describe(const SolverDef& solver, const dContactGeom& geom, double mu, double layer) {
   dContact contact = {};
   contact.geom = geom;
+  contact.geom.depth += solver.contact_layer - layer;
   contact.surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
   contact.surface.mu = mu;
   contact.surface.soft_erp = solver.contact_erp;
@@ -77,8 +79,8 @@ void OdeContacts::empty() {
 }
 
 void OdeContacts::make_joint(dWorldID world, const Scene& scene, const dContactGeom& geom, double mu,
-                             dBodyID a, dBodyID b, int32_t index) {
-  const dContact contact = describe(scene.def.solver, geom, mu);
+                             double layer, dBodyID a, dBodyID b, int32_t index) {
+  const dContact contact = describe(scene.def.solver, geom, mu, layer);
   const dJointID joint = dJointCreateContact(world, group_, &contact);
   dJointAttach(joint, a, b);
   dJointSetFeedback(joint, &feedback_[index]);
@@ -89,7 +91,7 @@ void OdeContacts::fill(dWorldID world, const Scene& scene, const dBodyID* bodies
   geom.normal[2] = 1;
   for (int32_t i = 0; i < scene.def.solver.contacts_max; ++i) {
     const dBodyID a = bodies[i % count], b = bodies[(i + 1) % count];
-    make_joint(world, scene, geom, 1, a, a == b ? nullptr : b, i);
+    make_joint(world, scene, geom, 1, scene.def.solver.contact_layer, a, a == b ? nullptr : b, i);
   }
 }
 
@@ -134,7 +136,7 @@ void OdeContacts::add_points(const Search& search, int32_t index) {
       search.found->overflow = true;
       return;
     }
-    make_joint(search.world, search.scene, geoms[i], pair.mu, a.body, b.body, count);
+    make_joint(search.world, search.scene, geoms[i], pair.mu, pair.layer, a.body, b.body, count);
     search.contacts[count++] = {pair.a,         pair.b, from_ode(geoms[i].pos), from_ode(geoms[i].normal),
                                 geoms[i].depth, {}, {}};
   }

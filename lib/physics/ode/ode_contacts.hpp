@@ -55,8 +55,8 @@ class OdeContacts {
   };
   void update_bounds();
   void add_points(const Search& search, int32_t pair);
-  void make_joint(dWorldID world, const Scene& scene, const dContactGeom& geom, double mu, dBodyID a,
-                  dBodyID b, int32_t index);
+  void make_joint(dWorldID world, const Scene& scene, const dContactGeom& geom, double mu, double layer,
+                  dBodyID a, dBodyID b, int32_t index);
 
   Shape* shapes_ = nullptr;
   dJointFeedback* feedback_ = nullptr;

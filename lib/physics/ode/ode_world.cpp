@@ -121,7 +121,7 @@ void OdeWorld::make_bodies() {
     body_ids_[i] = dBodyCreate(ode_);
     dBodySetMass(body_ids_[i], &mass);
     dBodySetGravityMode(body_ids_[i], def.gravity);
-    dBodySetMaxAngularSpeed(body_ids_[i], kMaxBodySpin);
+    dBodySetMaxAngularSpeed(body_ids_[i], kMaxBodyTurn / scene_->def.solver.h);
     set_body(i, {def.X_WB, {}, {}});
   }
 }
@@ -316,12 +316,15 @@ void OdeWorld::read_body(int32_t i) {
 }
 
 bool OdeWorld::read_bodies() {
+  constexpr double kAtBound = 1 - 1e-9;
   for (int32_t i = 0; i < scene_->num_bodies; ++i) {
     const dBodyID body = body_ids_[i];
     if (!bounded(from_ode(dBodyGetPosition(body))) || !bounded(from_ode(dBodyGetLinearVel(body))) ||
         !bounded(from_ode(dBodyGetAngularVel(body))))
       return false;
     read_body(i);
+    // ODE cuts to it
+    if (norm(bodies_[i].w) >= kAtBound * kMaxBodyTurn / scene_->def.solver.h) status_ |= kStatusSlowed;
   }
   for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a) {
     const dBodyID body = tree_.base(a);
