@@ -127,7 +127,7 @@ class BatchStepper final : public Stepper {
   void detect_contacts(int32_t world);
   void shape_pose(int32_t world, int32_t shape, Vec3* p, Mat3* R) const;
   Vec3 shape_way(int32_t world, int32_t shape) const;
-  void look_ahead(int32_t world);
+  void find_coming(int32_t world);
   void solve_contacts();
   void solve_contacts_of(int32_t world, bool again);
   void add_contact_rows(typename ContactSolver<S>::Point* point, const Attachment& at, int32_t world, S sign,
@@ -278,7 +278,7 @@ void BatchStepper<L>::detect_contacts(int32_t world) {
       }
     }
   }
-  if (scene_->def.solver.speculative_contacts) look_ahead(world);
+  if (scene_->def.solver.speculative_contacts) find_coming(world);
   WorldPoses poses(this, world);
   find_contacts(*model_, collider_, poses, &w);
 }
@@ -339,7 +339,7 @@ Vec3 BatchStepper<L>::shape_way(int32_t world, int32_t shape) const {
 
 // Bounds on all ways, for the collider: of links each, of bodies each.
 template <class L>
-void BatchStepper<L>::look_ahead(int32_t world) {
+void BatchStepper<L>::find_coming(int32_t world) {
   float* ways = collider_->ways();
   float fastest = 0;
   for (int32_t g = 0; g < num_groups_; ++g) {
