@@ -874,6 +874,7 @@ inline void drop_unmet(WorldState* w) {
       w->contact_pairs[kept] = w->contact_pairs[i];
       w->impulses[kept] = w->impulses[i];
       w->next_warm[kept] = w->next_warm[i];
+      w->match[kept] = w->match[i];
     }
     ++kept;
   }
