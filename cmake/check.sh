@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|libc++|small|browser|hard [MINUTES]]: installs what the tests need, builds, and runs them.
+# check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|libc++|small|browser|physics|hard [MINUTES]]: installs what the tests need, builds, and runs them.
 # The last line says how many passed and failed; the exit status is 0 when none failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -228,6 +228,13 @@ case $mode in
     passed=$(sed -n 's/^\([0-9]*\) passed, 0 failed$/\1/p' build/browser/said | tail -n1)
     [ -n "$passed" ] && bash cmake/cross/browser_row.sh "$passed" >&2
     ;;
+  physics)
+    # The truth table: each row of physics beside its analytic answer or MuJoCo's, the shipped skills at other substeps, and
+    # the page that has them (lib/physics/README.md).
+    configure dev
+    cmake --build --preset dev -j "$(nproc)" --target truth redman_tool >&2 || die "preset dev could not be built: see above"
+    bash cmake/truth_table.sh build/dev check
+    ;;
   hard)
     # Tries to break the library for an hour (or MINUTES), builds included: tests/hard/README.md. Two lines of work,
     # one for each of two processors; every part gets a share of the time that the builds leave.
@@ -268,5 +275,5 @@ case $mode in
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
     ;;
-  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|libc++|small|browser|hard [MINUTES]]" ;;
+  *) die "usage: check.sh [dev|asan|tsan|valgrind|tidy|slow|halves|clang|languages|coverage|packages|pages|embedded|arm64 [all]|windows|libc++|small|browser|physics|hard [MINUTES]]" ;;
 esac

@@ -119,7 +119,7 @@ void momenta(Rows& rows) {
       }
       const std::string at = text("free %s, %d substeps", c.said, sub);
       rows.add({at + ": speed of the centre of mass, change in 20 s", 0, 0.001, ""}, path, note);
-      rows.add({at + ": angular momentum, change in 20 s", 0, sub == 2 ? 0.05 : 0.005, ""}, turned, note);
+      rows.add({at + ": angular momentum, change in 20 s", 0, sub == 2 ? 0.05 : 0.01, ""}, turned, note);
     }
 }
 
@@ -209,12 +209,14 @@ void pendulums(Rows& rows) {
     int sub;
     double tolerance;
   };
+  // 5 rods swing chaotically: their energy alone is compared
   for (const Kept& k : {Kept{"pendulum from 90 deg", {kPi / 2}, 2, 0.01},
-                        Kept{"double pendulum from (2, 1) rad", {2, 1}, 2, 0.05},
-                        Kept{"chain of 5", {1.2, 0.3, 0.2, 0.1, 0}, 8, 0.05}})
-    rows.add({text("%s, integrator=midpoint: energy after 10 s / start, %d substeps", k.said, k.sub), 1,
+                        Kept{"double pendulum from (2, 1) rad", {2, 1}, 2, 0.15},
+                        Kept{"double pendulum from (2, 1) rad", {2, 1}, 8, 0.05},
+                        Kept{"chain of 5", {1.2, 0.3, 0.2, 0.1, 0}, 8, 0.15}})
+    rows.add({text("%s, integrator=trapezoid: energy after 10 s / start, %d substeps", k.said, k.sub), 1,
               k.tolerance},
-             [&] { return swing(k.q0, k.sub, "integrator=midpoint", 10).energy.back(); });
+             [&] { return swing(k.q0, k.sub, "integrator=trapezoid", 10).energy.back(); });
 }
 
 }  // namespace
