@@ -1,9 +1,10 @@
 // A direct solve for the points of a few bodies of very different mass. Part of stepper_v*.cpp.
 //
 // Sweeps (contact_solver.inl) carry weight from point to point, and where a ton stands on a kilogram each of
-// them moves a thousandth of it: eight sweeps do not hold it. Where a body touches one that is lighter by more
-// than kExtremeRatio, the points of all bodies that hang together with them by contacts are therefore solved at
-// once before the sweeps begin, which then have little to do.
+// them moves a thousandth of it: eight sweeps do not hold it. Where free bodies that hang together by contacts
+// differ by more than kExtremeRatio in mass, all of their points are therefore solved at once before the sweeps
+// begin. The sweeps then find what this did not see: a robot that touches one of the bodies, and what else that
+// robot touches; where there is nothing of the kind they are left out.
 //
 // Equations, in the half-solved coordinates of contact_solver.inl, in which the mass matrix is 1. Unknown is
 // y = sum of z lambda over the points; u = z y - b is what a point's velocity is off by, s its softness:
@@ -34,10 +35,10 @@
 namespace rdm {
 namespace {
 
-constexpr double kExtremeRatio = 20;     // of the masses of two free bodies that touch
-constexpr int32_t kMostDirect = 128;     // points of an island
-constexpr int32_t kMostUnknowns = 192;   // 32 bodies; 0.15 MB of working memory
-constexpr int kOuter = 6, kNewton = 30;  // at most
+constexpr double kExtremeRatio = 20;      // of the masses of free bodies that hang together
+constexpr int32_t kMostDirect = 128;      // points of an island
+constexpr int32_t kMostUnknowns = 192;    // 32 bodies; 0.15 MB of working memory
+constexpr int kOuter = 10, kNewton = 30;  // at most
 constexpr double kYieldShare = 0.1;
 
 template <class Solver>
@@ -76,8 +77,9 @@ struct DirectContacts {
     points[count].yield = yield;
     points[count++].point = point;
   }
-  // The impulses of the points that were added, which have been warm started, and the sums with them.
-  void solve(Solver* solver);
+  // The impulses of the points that were added, which have been warm started, and the sums with them. False: there
+  // is no room for them.
+  bool solve(Solver* solver);
 
  private:
   // psi's second derivative along the axes n, t, u; lambda by the way.
@@ -328,8 +330,8 @@ bool DirectContacts<Solver>::correct() {
 }
 
 template <class Solver>
-void DirectContacts<Solver>::solve(Solver* solver) {
-  if (count == 0 || !place_segments(*solver)) return;
+bool DirectContacts<Solver>::solve(Solver* solver) {
+  if (!place_segments(*solver)) return false;
   begin_points(*solver);
   minimise(*solver);
   for (int outer = 1; outer < kOuter && correct(); ++outer) minimise(*solver);
@@ -345,6 +347,15 @@ void DirectContacts<Solver>::solve(Solver* solver) {
     for (int32_t c = 0; c < width(*solver, segment); ++c)
       solver->sum[segment][c] = static_cast<S>(other[from + c] + y[from + c]);
   }
+  // what is left, as a sweep would find it
+  for (int32_t i = 0; i < count; ++i) {
+    const Direct& p = points[i];
+    double v[3];
+    project(*solver, y, i, v);
+    const double n = p.lambda[0], wrong = p.b[0] - v[0] - p.s * n;
+    p.point->delta[0] = static_cast<S>(n > 0 ? wrong : std::max(wrong, 0.0)) * p.point->inv_n;
+  }
+  return true;
 }
 
 }  // namespace

@@ -78,6 +78,11 @@ class BatchStepper final : public Stepper {
     int32_t sensor;         // of the link, -1: none
     int32_t first_segment;  // of the body or the member in the contact solver
   };
+  // Of free bodies that hang together by contacts, at the lowest of them.
+  struct Island {
+    int32_t root, points;  // the lowest body, or one that is nearer to it
+    double least, most;    // inverse mass, 1/kg
+  };
   struct Lane {
     TreeBatch<L>* batch;
     int lane;
@@ -144,7 +149,7 @@ class BatchStepper final : public Stepper {
   double layer(const WorldState& w, int32_t contact) const;
   double friction(const WorldState& w, int32_t pair) const;
   void find_extremes(int32_t world);
-  void solve_extremes(int32_t world);
+  bool solve_extremes(int32_t world);
   bool add_piles(int32_t world, bool again);
   void add_pile_points(int32_t world, bool again, typename WideContacts<S>::Group* group);
   void read_pile_impulses(int32_t world);
@@ -172,8 +177,7 @@ class BatchStepper final : public Stepper {
   Mat3* R_JL_ = nullptr;               // [num_links]
   ContactSolver<S> contacts_;
   DirectContacts<ContactSolver<S>> direct_;
-  int32_t* island_ =
-      nullptr;  // [num_bodies] the lowest body of each body's, or above it; null: no scene for it
+  Island* island_ = nullptr;  // [num_bodies]; null: bodies are much alike
   int32_t* directly_ =
       nullptr;             // [contacts_max] of the world being solved: a point's island, -1: by sweeps alone
   bool extremes_ = false;  // any point is of an island
@@ -515,13 +519,14 @@ double BatchStepper<L>::most_push_out_speed() const {
 }
 
 // erp / h of the depth below the layer, within a bound: a deep overlap, as after a blow, must not turn into a
-// shot. What is yet to come may come as near as it is.
+// shot. Above the layer as much the other way: what rests lies equally deep wherever it started, and no point of
+// a face leaves and comes back. What is yet to come may come as near as it is.
 template <class L>
 double BatchStepper<L>::push_out_speed(const WorldState& w, int32_t index) const {
   const SolverDef& solver = scene_->def.solver;
   const double depth = w.contacts[index].depth;
   if (depth < 0) return depth / solver.h;
-  return std::min(std::max(depth - layer(w, index), 0.0) * solver.contact_erp / solver.h,
+  return std::min((depth - layer(w, index)) * solver.contact_erp / solver.h,
                   most_push_out_speed());
 }
 
@@ -569,6 +574,8 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
   for (int32_t i = 0; i < count; ++i) {
     const Contact& contact = w.contacts[i];
     if (piles && in_pile_[i]) continue;
+    contacts_.stacked += attachments_[contact.shape_a].kind == Attachment::kBody &&
+                         attachments_[contact.shape_b].kind == Attachment::kBody;
     auto& point =
         contacts_.add(static_cast<S>(friction(w, w.contact_pairs[i])), static_cast<S>(softness(w, i)));
     Vec3 axes[3] = {contact.n, {}, {}};
@@ -588,8 +595,8 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
     start[0] = start[0] < 0 ? S(0) : start[0];
     contacts_.warm_start(&point, start);
   }
-  if (extremes_) solve_extremes(world);
-  contacts_.solve(solver.iterations);
+  const bool solved = extremes_ && solve_extremes(world);
+  if (!solved || contacts_.wide.count > 0) contacts_.solve(solver.iterations, solved);
   w.residual = static_cast<double>(contacts_.residual());
   for (int32_t i = 0, k = 0; i < count; ++i) {
     if (piles && in_pile_[i]) continue;
@@ -604,7 +611,7 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
   take_impulses(world);
 }
 
-// Which points are solved at once: those of free bodies that hang together with two that touch and differ much.
+// Which points are solved at once: those of free bodies that hang together by contacts and differ much in mass.
 template <class L>
 void BatchStepper<L>::find_extremes(int32_t world) {
   extremes_ = false;
@@ -614,45 +621,42 @@ void BatchStepper<L>::find_extremes(int32_t world) {
     const Attachment& at = attachments_[shape];
     return at.kind == Attachment::kBody ? at.body : -1;
   };
-  const auto differ = [&](int32_t a, int32_t b) {
-    const double x = w.body_models[a].inv_mass, y = w.body_models[b].inv_mass;
-    return x > kExtremeRatio * y || y > kExtremeRatio * x;
-  };
-  for (int32_t i = 0; i < w.num_contacts && !extremes_; ++i) {
-    const int32_t a = body_of(w.contacts[i].shape_a), b = body_of(w.contacts[i].shape_b);
-    extremes_ = a >= 0 && b >= 0 && differ(a, b);
-  }
-  if (!extremes_) return;
-  for (int32_t i = 0; i < scene_->num_bodies; ++i) island_[i] = i;
   const auto root = [&](int32_t i) {
-    while (island_[i] != i) i = island_[i] = island_[island_[i]];
+    while (island_[i].root != i) i = island_[i].root = island_[island_[i].root].root;
     return i;
   };
+  for (int32_t i = 0; i < scene_->num_bodies; ++i) {
+    const double inverse = w.body_models[i].inv_mass;
+    island_[i] = {i, 0, inverse, inverse};
+  }
   for (int32_t i = 0; i < w.num_contacts; ++i) {
     const int32_t a = body_of(w.contacts[i].shape_a), b = body_of(w.contacts[i].shape_b);
     if (a < 0 || b < 0) continue;
     const int32_t x = root(a), y = root(b);
-    island_[std::max(x, y)] = std::min(x, y);
+    if (x == y) continue;
+    Island &to = island_[std::min(x, y)], &from = island_[std::max(x, y)];
+    from.root = std::min(x, y);
+    to.least = std::min(to.least, from.least);
+    to.most = std::max(to.most, from.most);
+    extremes_ |= to.most > kExtremeRatio * to.least;
   }
-  for (int32_t i = 0; i < w.num_contacts; ++i) directly_[i] = -1;
+  if (!extremes_) return;
   for (int32_t i = 0; i < w.num_contacts; ++i) {
     const int32_t a = body_of(w.contacts[i].shape_a), b = body_of(w.contacts[i].shape_b);
-    if (a < 0 || b < 0 || directly_[i] >= 0 || !differ(a, b)) continue;
-    const int32_t island = root(a);
-    const auto of_it = [&](int32_t k) {
-      const int32_t x = body_of(w.contacts[k].shape_a), y = body_of(w.contacts[k].shape_b);
-      return (x >= 0 && root(x) == island) || (y >= 0 && root(y) == island);
-    };
-    int32_t points = 0;
-    for (int32_t k = 0; k < w.num_contacts; ++k) points += of_it(k);
-    if (points > kMostDirect) continue;
-    for (int32_t k = 0; k < w.num_contacts; ++k)
-      if (of_it(k)) directly_[k] = island;
+    directly_[i] = a < 0 && b < 0 ? -1 : root(std::max(a, b));
+    if (directly_[i] >= 0) ++island_[directly_[i]].points;
+  }
+  for (int32_t i = 0; i < w.num_contacts; ++i) {
+    if (directly_[i] < 0) continue;
+    const Island& island = island_[directly_[i]];
+    if (island.points > kMostDirect || island.most <= kExtremeRatio * island.least) directly_[i] = -1;
   }
 }
 
+// True if that is all there is to solve of the points outside of lanes: then no sweep touches them.
 template <class L>
-void BatchStepper<L>::solve_extremes(int32_t world) {
+bool BatchStepper<L>::solve_extremes(int32_t world) {
+  bool all = true;
   const WorldState& w = *worlds_[world];
   const SolverDef& solver = scene_->def.solver;
   for (int32_t island = 0; island < scene_->num_bodies; ++island) {
@@ -660,11 +664,13 @@ void BatchStepper<L>::solve_extremes(int32_t world) {
     for (int32_t i = 0, k = 0; i < w.num_contacts; ++i) {
       if (contacts_.wide.count > 0 && in_pile_[i]) continue;
       auto* point = contacts_.points + k++;
+      all &= directly_[i] >= 0;
       if (directly_[i] == island)
         direct_.add(point, kYieldShare * layer(w, i) * solver.contact_erp / solver.h);
     }
-    direct_.solve(&contacts_);
+    if (direct_.count > 0) all &= direct_.solve(&contacts_);
   }
+  return all;
 }
 
 // The pairs of free bodies with each other and with static shapes into lanes, if there are enough of them.
@@ -1221,7 +1227,7 @@ void BatchStepper<L>::carve(Arena& arena) {
   touched_ = arena.make<uint8_t>(scene_->def.articulations.size());
   in_pile_ = arena.make<uint8_t>(static_cast<size_t>(scene_->def.solver.contacts_max));
   if (may_be_extreme()) {
-    island_ = arena.make<int32_t>(static_cast<size_t>(scene_->num_bodies));
+    island_ = arena.make<Island>(static_cast<size_t>(scene_->num_bodies));
     directly_ = arena.make<int32_t>(static_cast<size_t>(scene_->def.solver.contacts_max));
     direct_.carve(arena, segments);
   }
