@@ -5,6 +5,18 @@
 
 #include "physics/collision/thinning.hpp"
 
+// Distance. The cores of a and b (of round things their axis or centre, with a radius r about it) are as far
+// apart as the origin is from the Minkowski difference a - b; Gilbert, Johnson and Keerthi (1988) walk there
+// over simplexes of support points w = h_a(-x) - h_b(x), x the nearest point so far. Each x gives a bound too:
+//   gap along x/|x|  >=  x . w / |x| - r_a - r_b,
+// and the best bound is what the advance trusts; where it exceeds -way . x/|x| the two never meet.
+//
+// Advance. With closing = -way . n, t += gap / closing until the gap is kTouch: along n they cannot meet
+// earlier. If rounding takes them into each other all the same, t goes back half of the last step.
+//
+// Points. Those of the shown faces as in manifold.cpp, 3., but for all corners that the way reaches, each with
+// its own gap; of round sides and edges those of the overlap a little farther on. They stand on a and b as
+// both are now, so that lever arms are right.
 namespace rdm {
 namespace {
 
@@ -276,7 +288,7 @@ int coming_contacts(const Convex& a, const Convex& b, const Vec3& way, double sh
   for (int i = 0; i < found; ++i) {
     const ManifoldPoint& point = points[i];
     if (dot(point.n, d.n) > kAlike)
-      out[count++] = {point.p - shift, shift, point.n, std::min(0.0, kTouch + dot(shift, point.n))};
+      out[count++] = {point.p - shift, shift, point.n, std::min(0.0, kTouch - d.gap + dot(shift, point.n))};
   }
   if (count > 0) return count;
   out[0] = {d.a - shift, d.b - d.a + shift, d.n, std::min(0.0, -t * closing)};
