@@ -36,7 +36,7 @@ struct Standing {
   bool unsolved = false;
 };
 Standing stand(const SceneDef& def) {
-  test::Sim sim(def, EngineKind::kArticulated);
+  test::Simulation sim(def, EngineKind::kArticulated);
   const int32_t top = sim.scene().num_bodies - 1;
   const double before = sim->body(top).X.p.z;
   Standing out;
@@ -79,7 +79,7 @@ TEST(MassRatios, AWiderTonStandsOnACube) {
 }
 
 TEST(MassRatios, ColumnsStandUnderATon) {
-  for (const size_t cubes : {2u, 5u, 10u})
+  for (const size_t cubes : {5u, 10u})
     for (const double top : {0.1, 0.5}) {
       std::vector<double> masses(cubes, 1.0);
       masses.push_back(1000);
@@ -111,7 +111,7 @@ TEST(MassRatios, NothingIsTooHeavyForAPoint) {
 
 // The weight arrives at the ground.
 TEST(MassRatios, ForcesAreTheWeights) {
-  test::Sim sim(column({1, 1, 1000}), EngineKind::kArticulated);
+  test::Simulation sim(column({1, 1, 1000}), EngineKind::kArticulated);
   for (int k = 0; k < 300; ++k) sim->step();
   double up = 0;
   for (int32_t i = 0; i < sim->num_contacts(); ++i) {
@@ -121,22 +121,29 @@ TEST(MassRatios, ForcesAreTheWeights) {
   EXPECT_NEAR(up / (1002 * 9.81), 1, 1e-5);
 }
 
-// Friction holds and slides as it does without a ton: 1 kg under 1000 kg on a slope of 0.9 and 1.2 times mu.
+// Friction holds and slides as it does without a ton: a sheet of 1 kg under one of 1000 kg on slopes of 0.9 and
+// 1.2 times mu.
 TEST(MassRatios, AHeavyPairSlidesFromTheSameSlopeOn) {
+  const double mu = 0.5, seconds = 0.5;
+  const Vec3 half = {0.1, 0.1, 0.02};
   for (const double share : {0.9, 1.2}) {
-    const double angle = std::atan(0.5 * share), seconds = 0.5;
-    SceneDef def = column({1, 1000});
-    def.friction[0][0].mu = 0.5;
+    const double angle = std::atan(mu * share);
     const Quat q_WP = axis_angle({0, 1, 0}, angle);
-    def.statics[0] = test::make_plane(q_WP);
-    for (BodyDef& body : def.bodies) body.X_WB = {rotate(q_WP, body.X_WB.p), q_WP};
-    test::Sim sim(def, EngineKind::kArticulated);
-    const Vec3 along = rotate(q_WP, {1, 0, 0}), before = sim->body(1).X.p;
+    SceneDef def;
+    for (int i = 0; i < 2; ++i)
+      def.bodies.push_back(
+          test::make_box(i ? 1000 : 1, half, {rotate(q_WP, {0, 0, half.z * (2 * i + 1)}), q_WP}));
+    def.statics.push_back(test::make_plane(q_WP));
+    def.friction[0][0].mu = mu;
+    test::Simulation sim(def, EngineKind::kArticulated);
+    const Vec3 along = rotate(q_WP, {1, 0, 0});
     for (int k = 0; k < 30; ++k) sim->step();
-    const double way = dot(sim->body(1).X.p - before, along);
-    const double exact =
-        share < 1 ? 0 : 0.5 * 9.81 * (std::sin(angle) - 0.5 * std::cos(angle)) * seconds * seconds;
-    EXPECT_NEAR(way, exact, 2e-3 + 0.05 * exact) << share;
+    const double before = dot(sim->body(1).v, along);
+    for (int k = 0; k < 30; ++k) sim->step();
+    const double gained = dot(sim->body(1).v, along) - before;
+    const double exact = share < 1 ? 0 : 9.81 * (std::sin(angle) - mu * std::cos(angle)) * seconds;
+    EXPECT_NEAR(gained, exact, 1e-3 + 0.02 * exact) << share;
+    EXPECT_TRUE(share > 1 || std::fabs(before) < 1e-4) << before;
   }
 }
 
@@ -147,7 +154,7 @@ TEST(MassRatios, GiveTheSameBytesInAllLanes) {
   for (int k = 0; k < 4; ++k) {
     SceneDef def = column({1, 1, 1, 1000});
     def.solver.lanes = lanes[k];
-    test::Sim sim(def, EngineKind::kArticulated);
+    test::Simulation sim(def, EngineKind::kArticulated);
     for (int i = 0; i < 60; ++i) sim->step();
     places[k] = sim->body(3).X.p;
   }

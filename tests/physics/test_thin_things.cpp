@@ -34,7 +34,7 @@ void expect_rest(const Vec3& half) {
   for (const ShapeDef& ground : {test::make_plane(), slab(0.01), slab(kThin)})
     for (const double start : {0.0, 1e-4, -layer})
       for (const double yaw : {0.0, 0.3}) {
-        test::Sim sim(lay(half, start, ground, yaw), EngineKind::kArticulated);
+        test::Simulation sim(lay(half, start, ground, yaw), EngineKind::kArticulated);
         double speed = 0;
         for (int k = 0; k < 300; ++k) {
           sim->step();
@@ -75,7 +75,7 @@ TEST(ThinThings, TheLayerIsOfTheThinnerShape) {
 // Wherever it began, what rests is as deep: no point of a face hangs in the air.
 TEST(ThinThings, AllThatRestsLiesEquallyDeep) {
   for (const double start : {0.0, -1e-4, -3e-4, -5e-4, 2e-4}) {
-    test::Sim sim(lay({0.05, 0.05, 0.05}, start, test::make_plane(), 0), EngineKind::kArticulated);
+    test::Simulation sim(lay({0.05, 0.05, 0.05}, start, test::make_plane(), 0), EngineKind::kArticulated);
     for (int k = 0; k < 120; ++k) sim->step();
     const double sag = sim->body(0).X.p.z - 0.05;
     EXPECT_NEAR(sag, -5.3e-4, 0.4e-4) << start;  // 2.7 kg
