@@ -17,7 +17,8 @@ using namespace rdm::capi;
 
 namespace {
 
-constexpr size_t kFirstBodySize = sizeof(rdm_body_def), kFirstRobotSize = sizeof(rdm_scene_robot);
+constexpr size_t kFirstBodySize = sizeof(rdm_body_def), kFirstRobotSize = sizeof(rdm_scene_robot),
+                 kFirstLawSize = sizeof(rdm_contact_law);
 constexpr int32_t kMostShapes = 256, kMostThings = 1024;
 constexpr double kCentred = 1e-6;   // m
 constexpr double kNoFriction = -1;  // of a material that no object brought
@@ -354,6 +355,40 @@ rdm_result rdm_scene_set_friction(rdm_scene* scene, const char* a, const char* b
     f.passes = passes;
     if (!passes) f.mu = mu;
     scene->def.friction[i][k] = scene->def.friction[k][i] = f;
+  });
+}
+
+rdm_result rdm_contact_law_init(rdm_contact_law* law, size_t size) {
+  return call_inside([&] {
+    rdm_contact_law d{};
+    const ContactLaw usual;
+    d.damping_ratio = usual.damping_ratio;
+    d.impedance_min = usual.impedance_min;
+    d.impedance_max = usual.impedance_max;
+    d.impedance_width = usual.impedance_width;
+    init_struct(law, size, kFirstLawSize, d, "law");
+  });
+}
+
+rdm_result rdm_scene_set_contact(rdm_scene* scene, const char* a, const char* b, const rdm_contact_law* law) {
+  return call_inside([&] {
+    need_open(scene);
+    need(a, "a");
+    need(b, "b");
+    const auto in = read_struct(law, kFirstLawSize, rdm_contact_law{}, "law");
+    const int32_t i = find_material(*scene, a), k = find_material(*scene, b);
+    ContactLaw l;
+    l.restitution = in.restitution;
+    l.torsional = in.torsional;
+    l.rolling = in.rolling;
+    l.time_constant = in.time_constant;
+    l.damping_ratio = in.damping_ratio;
+    l.impedance_min = in.impedance_min;
+    l.impedance_max = in.impedance_max;
+    l.impedance_width = in.impedance_width;
+    l.pyramid = in.pyramid != 0;
+    check_law(l);
+    scene->def.laws[i][k] = scene->def.laws[k][i] = l;
   });
 }
 

@@ -5,7 +5,7 @@ function half_of(name, parameters) {
   if (name ~ /^rdm_(pool|agent)_config_init$/) return ""
   if (name ~ /^rdm_recording_/) return !sim && parameters ~ /rdm_pool/ ? "simulation" : sim || learn ? "" : "learning"
   if (name ~ /^rdm_agent_/ && parameters ~ /rdm_pool/) return sim ? (learn ? "" : "learning") : "simulation"
-  if (name ~ /^rdm_(task|robot|object|pool|planner|map|sample|scene|world|random)_/) return sim ? "" : "simulation"
+  if (name ~ /^rdm_(task|robot|object|pool|planner|map|sample|scene|contact|world|random)_/) return sim ? "" : "simulation"
   if (name ~ /^rdm_(policy|actor)_/) return policy ? "" : "learning"
   if (name ~ /^rdm_(algo|agent|checkpoint)_/) return learn ? "" : "learning"
   return ""

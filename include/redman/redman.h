@@ -1190,6 +1190,20 @@ RDM_API rdm_result rdm_scene_number(rdm_scene *scene, const char *key, double *v
 RDM_API rdm_result rdm_scene_text(rdm_scene *scene, const char *key, const char **text);
 /* Bounds *low and *high of a number or integer whose row takes a range (choices "a..b"), for reset to draw from; equal: a number. */
 RDM_API rdm_result rdm_scene_range(rdm_scene *scene, const char *key, double *low, double *high);
+typedef struct rdm_contact_law { /* how two materials meet beside their friction */
+  uint32_t struct_size;    /* bytes, set by rdm_contact_law_init                                          */
+  int32_t pyramid;         /* flag, of soft contacts: friction by edges, as MuJoCo has it by default: the softer the more
+                            * it rubs, and sliding lifts                                                  */
+  double restitution;      /* 0 to 1: share of the speed at which a hard contact closed, above 0.05 m/s, that it parts with */
+  double torsional;        /* m, 0 to 10: turning about the normal is opposed by at most this times the normal force */
+  double rolling;          /* m, 0 to 10: rolling likewise                                                */
+  double time_constant;    /* s, to 10: a spring and damper, as MuJoCo's solref; 0: hard. At least two substeps count */
+  double damping_ratio;    /* of it, 0.01 to 100; default 1                                               */
+  double impedance_min;    /* 1e-4 to 0.9999, of a touch, as MuJoCo's solimp; default 0.9                 */
+  double impedance_max;    /* likewise, deeper than the width; default 0.95                               */
+  double impedance_width;  /* m, to 10; default 0.001                                                     */
+} rdm_contact_law;
+RDM_API rdm_result rdm_contact_law_init(rdm_contact_law *law, size_t size); /* defaults into the first `size` bytes */
 enum rdm_friction { RDM_PASSES = -1 }; /* in the place of a coefficient */
 /* What is added gets the next number. A friction is that of two materials, or of one with itself; 1 unless
  * said; RDM_PASSES: they go through each other. Gravity [3] is in the place of the option's. The texts of errors name the
@@ -1198,6 +1212,9 @@ enum rdm_friction { RDM_PASSES = -1 }; /* in the place of a coefficient */
  * given by number is an ARGUMENT. */
 RDM_API rdm_result rdm_scene_add_material(rdm_scene *scene, const char *name); /* "default" is one, 15 more */
 RDM_API rdm_result rdm_scene_set_friction(rdm_scene *scene, const char *a, const char *b, double mu); /* 0 or more */
+/* RANGE, ARGUMENT: the text names the field. Making the pool is UNSUPPORTED with engine=ode where a law has more than a
+ * restitution. Fingertips feel the forces of such contacts, not the torques of turning. */
+RDM_API rdm_result rdm_scene_set_contact(rdm_scene *scene, const char *a, const char *b, const rdm_contact_law *law);
 RDM_API rdm_result rdm_scene_set_gravity(rdm_scene *scene, const double gravity[3]); /* m/s2 */
 RDM_API rdm_result rdm_scene_set_feedforward(rdm_scene *scene); /* worlds take rdm_world_set_feedforward */
 RDM_API rdm_result rdm_scene_set_adjustable(rdm_scene *scene);  /* worlds take rdm_world_scale */

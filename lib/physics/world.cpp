@@ -16,11 +16,23 @@ void check_kind(EngineKind kind) {
     fail(Code::kUnsupported, "engine %d does not exist", static_cast<int>(kind));
 }
 
+// ODE knows a bounce, and no more of contact laws.
+void check_laws(EngineKind kind, const Scene& scene) {
+  if (kind != EngineKind::kOde) return;
+  for (const ContactLaw& law : scene.laws)
+    if (law.soft() || law.torsional > 0 || law.rolling > 0)
+      fail(
+          Code::kUnsupported,
+          "engine ode knows of a contact law its restitution alone: not time_constant, torsional and rolling "
+          "friction; engine articulated does");
+}
+
 }  // namespace
 
 World* World::create(EngineKind kind, const Scene& scene, Arena& arena, const HostHooks& hooks,
                      World* partner) {
   const HostScope scope(hooks);
+  check_laws(kind, scene);
   if (kind == EngineKind::kOde)
     return host_new<OdeWorld>(hooks, scene, arena, static_cast<OdeWorld*>(partner));
   check_kind(kind);
@@ -31,6 +43,7 @@ World* World::create(EngineKind kind, const Scene& scene, Arena& arena, const Ho
 
 void World::measure(EngineKind kind, const Scene& scene, Arena& arena, bool partnered) {
   check_kind(kind);
+  check_laws(kind, scene);
   if (!arena.measuring()) fail(Code::kInternal, "measure: the arena is a real one");
   if (kind == EngineKind::kOde)
     const OdeWorld world(scene, arena);

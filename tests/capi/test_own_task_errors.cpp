@@ -181,6 +181,16 @@ std::function<rdm_result(rdm_scene*)> after(std::function<rdm_result(rdm_scene*)
   };
 }
 
+std::function<rdm_result(rdm_scene*)> with_law(const char* material,
+                                               std::function<void(rdm_contact_law&)> change) {
+  return after([material, change](rdm_scene* scene) {
+    rdm_contact_law law;
+    rdm_contact_law_init(&law, sizeof law);
+    change(law);
+    return rdm_scene_set_contact(scene, material, "default", &law);
+  });
+}
+
 TEST(OwnTaskErrors, OfScenes) {
   static const double flat[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
   const std::string no_robot = "robot: 99999 is outside [0, " + std::to_string(rdm_robot_count()) + ")";
@@ -248,6 +258,11 @@ TEST(OwnTaskErrors, OfScenes) {
        after([](auto* s) { return rdm_scene_set_friction(s, "clay", "default", 1); })},
       {RDM_RANGE, "mu: -2 is neither RDM_PASSES nor within [0, 1000]",
        after([](auto* s) { return rdm_scene_set_friction(s, "default", "default", -2); })},
+      {RDM_NOT_FOUND, "material clay: unknown", with_law("clay", [](auto&) {})},
+      {RDM_RANGE, "contact law: restitution: 2 is outside [0, 1]",
+       with_law("default", [](auto& l) { l.restitution = 2; })},
+      {RDM_ARGUMENT, "law.struct_size: 3 is less than 72",
+       with_law("default", [](auto& l) { l.struct_size = 3; })},
       {RDM_ARGUMENT, "shape.name is NULL", add_static(nullptr)},
       {RDM_ARGUMENT, "shape ball is there twice", add_static("ball")},
       {RDM_NOT_FOUND, "body bal: unknown; nearest is ball", after([](auto* s) {

@@ -2186,6 +2186,58 @@ class rdm_scene_robot(Structure):
     ]
 
 
+class ContactLaw(Record):
+    """The values of rdm_contact_law."""
+
+    pyramid: int  # flag, of soft contacts: friction by edges, as MuJoCo has it by default: the softer the more it rubs, and sliding lifts
+    restitution: float  # 0 to 1: share of the speed at which a hard contact closed, above 0.05 m/s, that it parts with
+    torsional: float  # m, 0 to 10: turning about the normal is opposed by at most this times the normal force
+    rolling: float  # m, 0 to 10: rolling likewise
+    time_constant: float  # s, to 10: a spring and damper, as MuJoCo's solref; 0: hard. At least two substeps count
+    damping_ratio: float  # of it, 0.01 to 100; default 1
+    impedance_min: float  # 1e-4 to 0.9999, of a touch, as MuJoCo's solimp; default 0.9
+    impedance_max: float  # likewise, deeper than the width; default 0.95
+    impedance_width: float  # m, to 10; default 0.001
+
+
+class rdm_contact_law(Structure):
+    """struct_size: bytes, set by rdm_contact_law_init
+    pyramid: flag, of soft contacts: friction by edges, as MuJoCo has it by default: the softer the more it
+        rubs, and sliding lifts
+    restitution: 0 to 1: share of the speed at which a hard contact closed, above 0.05 m/s, that it parts with
+    torsional: m, 0 to 10: turning about the normal is opposed by at most this times the normal force
+    rolling: m, 0 to 10: rolling likewise
+    time_constant: s, to 10: a spring and damper, as MuJoCo's solref; 0: hard. At least two substeps count
+    damping_ratio: of it, 0.01 to 100; default 1
+    impedance_min: 1e-4 to 0.9999, of a touch, as MuJoCo's solimp; default 0.9
+    impedance_max: likewise, deeper than the width; default 0.95
+    impedance_width: m, to 10; default 0.001
+    """
+
+    struct_size: int
+    pyramid: int
+    restitution: float
+    torsional: float
+    rolling: float
+    time_constant: float
+    damping_ratio: float
+    impedance_min: float
+    impedance_max: float
+    impedance_width: float
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("pyramid", c_int32),
+        ("restitution", c_double),
+        ("torsional", c_double),
+        ("rolling", c_double),
+        ("time_constant", c_double),
+        ("damping_ratio", c_double),
+        ("impedance_min", c_double),
+        ("impedance_max", c_double),
+        ("impedance_width", c_double),
+    ]
+
+
 class rdm_joints(Structure):
     """struct_size: in: bytes
     count: of joints
@@ -2956,6 +3008,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_object_def": rdm_object_def,
     "rdm_body_def": rdm_body_def,
     "rdm_scene_robot": rdm_scene_robot,
+    "rdm_contact_law": rdm_contact_law,
     "rdm_joints": rdm_joints,
     "rdm_motion": rdm_motion,
     "rdm_factor": rdm_factor,
@@ -3796,6 +3849,10 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"scene": c_void_p, "key": c_char_p, "low": c_void_p, "high": c_void_p},
         {}, True,
         """Bounds *low and *high of a number or integer whose row takes a range (choices "a..b"), for reset to draw from; equal: a number."""),
+    "rdm_contact_law_init": Function(
+        c_int32, {"law": POINTER(rdm_contact_law), "size": c_size_t},
+        {}, True,
+        """defaults into the first `size` bytes"""),
     "rdm_scene_add_material": Function(
         c_int32, {"scene": c_void_p, "name": c_char_p},
         {}, True,
@@ -3804,6 +3861,12 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "mu": c_double},
         {}, True,
         """0 or more"""),
+    "rdm_scene_set_contact": Function(
+        c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "law": POINTER(rdm_contact_law)},
+        {}, True,
+        """RANGE, ARGUMENT: the text names the field. Making the pool is UNSUPPORTED with engine=ode where a law has more than a
+        restitution. Fingertips feel the forces of such contacts, not the torques of turning.
+        """),
     "rdm_scene_set_gravity": Function(
         c_int32, {"scene": c_void_p, "gravity": c_void_p},
         {"gravity": Rows("float64", ("3",))}, True,

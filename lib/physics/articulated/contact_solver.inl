@@ -44,6 +44,7 @@
 #include <cstdint>
 
 #include "base/arena.hpp"
+#include "physics/articulated/contact_laws.inl"
 #include "physics/articulated/tree.hpp"
 #include "physics/articulated/wide_contacts.inl"
 
@@ -96,6 +97,7 @@ struct ContactSolver {
   Row *sum = nullptr, *previous = nullptr, *direction = nullptr;  // [num_segments]
   int32_t count = 0, num_segments = 0, most_segments = 0;         // most_segments: of a point
   WideContacts<S> wide;                                           // points of piles, beside the others
+  LawContacts<S> laws;                                            // those with a law of their own, likewise
   int32_t num_moved = 0;
   bool alone = false;   // of solve
   int32_t levels = 0;   // of the pile, if there is one (wide_contacts.inl)
@@ -123,6 +125,7 @@ struct ContactSolver {
     count = stacked = 0;
     for (int32_t s = 0; s <= num_segments; ++s) sum[s] = Row{};
     wide.begin();
+    laws.count = 0;
   }
   Point& add(S mu, S softness) {
     Point& p = points[count];
@@ -190,11 +193,14 @@ struct ContactSolver {
   S sweep(const S* beta, S* impulse_square);
   S sweep_all(const S* beta, S* impulse_square) {
     if (alone) return wide.sweep(beta, impulse_square);
-    if (wide.count == 0) return sweep(beta, impulse_square);
-    S rest = 0;
-    const S delta_square = wide.sweep(beta, impulse_square), more = sweep(beta, &rest);
+    if (wide.count + laws.count == 0) return sweep(beta, impulse_square);
+    S rest = 0, delta_square = 0;
+    *impulse_square = 0;
+    if (wide.count > 0) delta_square = wide.sweep(beta, impulse_square);
+    delta_square += sweep(beta, &rest);
     *impulse_square += rest;
-    return delta_square + more;
+    if (laws.count > 0) delta_square += laws.sweep(beta, impulse_square, sum);
+    return delta_square;
   }
 };
 
@@ -374,6 +380,8 @@ void ContactSolver<S>::list_moved() {
   };
   for (int32_t i = 0; i < count; ++i)
     for (int32_t k = 0; k < points[i].count; ++k) add(segments[points[i].first + k]);
+  for (int32_t i = 0; i < laws.count; ++i)
+    for (int32_t k = 0; k < laws.points[i].count; ++k) add(laws.segments[laws.points[i].first + k]);
   wide.each_body([&](int32_t body) { add(wide.first_segment + body); });
 }
 
@@ -382,7 +390,7 @@ void ContactSolver<S>::solve(int32_t iterations, bool wide_alone) {
   alone = wide_alone;
   S impulse_square = 0;  // sum of squared impulses
   // weight travels from body to body, one sweep each: stacks get more. A box stands on four points.
-  const int32_t all = count + wide.count;
+  const int32_t all = count + wide.count + laws.count;
   const S tolerance = all > kStack ? S(kStackTolerance) : S(kTolerance);
   const bool pile = wide.count > 0;
   iterations =
@@ -390,7 +398,7 @@ void ContactSolver<S>::solve(int32_t iterations, bool wide_alone) {
                  iterations, kStackFactor * iterations);
   if (all < kConjugateFrom) {
     for (int32_t k = 0; k < iterations; ++k) {
-      const S delta_square = sweep(nullptr, &impulse_square);
+      const S delta_square = sweep_all(nullptr, &impulse_square);
       if (delta_square <= tolerance * impulse_square) return;
     }
     return;
@@ -402,6 +410,10 @@ void ContactSolver<S>::solve(int32_t iterations, bool wide_alone) {
       previous[moved[m]] = sum[moved[m]];
     }
     for (int32_t i = 0; i < count; ++i) points[i].direction = Axes{};
+    for (int32_t i = 0; i < laws.count; ++i) {
+      std::fill_n(laws.points[i].direction, laws.kAxes, S(0));
+      std::fill_n(laws.points[i].edge_direction, laws.kEdges, S(0));
+    }
   };
   restart();
   S last_square = 0, beta = 0;
@@ -435,6 +447,7 @@ S ContactSolver<S>::residual() const {
     const S d = std::abs(p.delta[0]);
     if (d > most * p.inv_n && p.inv_n > 0) most = d / p.inv_n;
   }
+  if (laws.count > 0) most = std::max(most, laws.residual());
   return most;
 }
 

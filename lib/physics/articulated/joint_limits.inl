@@ -7,6 +7,9 @@
 //          which is kp (target - (q + h v1)) - kd v1 and Coulomb friction as a secant: implicit PD, the same
 //          as physics/model/drive.hpp's motor row (target rate spring / gain, softness 1 / gain, force bound)
 //   limit  tau = k (edge - q - h v1)                 while q + h v1 is beyond the edge (limited = +-1)
+// With SolverDef::limit_law soft, the limit of a joint that is beyond its edge is that law's row
+// (model/contact_law.hpp) about the joint's inverse inertia at q = 0, which only pushes back:
+//          h tau = max(0, keep v0 + push - v1) / softness      inwards
 // k is the solver's for light links, and grows with what a heavy joint carries (tree.cpp): past the margin a
 // joint is stopped by decree, all others keeping their rates, which feeds energy to a chain that a soft limit
 // let there. A coupled joint's target is its own q, clamped to ratio times the other joint's angle as qd will
@@ -76,6 +79,35 @@ void joint_drives(TreeBatch<L>& t) {
   }
 }
 
+// Soft limits: gain and constant part of the torque at each joint's end nearest to it, by soft_row.
+template <class L>
+void soft_limits(TreeBatch<L>& t) {
+  using V = typename L::V;
+  using S = typename L::Scalar;
+  const int offset = t.tree->coord(0);
+  const ContactLaw& law = *t.limit_law;
+  const double h = static_cast<double>(t.h), most = law.impedance_max, T = std::max(law.time_constant, 2 * h),
+               whole = 1 + h / (most * T);
+  const S keep = static_cast<S>((1 - h / (most * T)) / whole), least = static_cast<S>(law.impedance_min),
+          rise = static_cast<S>(law.impedance_max - law.impedance_min),
+          per_width = static_cast<S>(1 / law.impedance_width), inv_whole = static_cast<S>(1 / whole),
+          stiffness =
+              static_cast<S>(h / (most * most * T * T * law.damping_ratio * law.damping_ratio * whole));
+  const V one = L::all(1), zero{};
+  for (int i = 0; i < t.tree->num_links; ++i) {
+    const LinkModel<L>& model = t.model[i];
+    LinkWork<V>& joint = t.work[i];
+    const V under = model.lower - joint.q, over = joint.q - model.upper;
+    const V depth = L::select(under > zero, under, L::select(over > zero, over, zero));
+    const V x = L::select(depth * per_width < one, V(depth * per_width), one), rest = one - x;
+    const V share = L::select(x < S(0.5), V(S(2) * x * x), V(one - S(2) * rest * rest));
+    const V d = least + rise * share;
+    const V side = L::select(under > zero, one, V(-one));
+    joint.limit_gain = (t.inv_h / inv_whole) * d / ((one - d) * model.limit_weight);
+    joint.limit_push = keep * t.coord[offset + i].qd + side * (stiffness * d * depth);
+  }
+}
+
 // v1 of the lanes in `lanes` for the present active set. `factored`: the factors are of this very set, of the
 // last solve; forces alone have changed.
 template <class L>
@@ -94,6 +126,13 @@ void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes, bool factored = f
     const PersistentLink<V>& active = t.state[i];
     CoordWork<V>& c = t.coord[offset + i];
     const V free = S(1) - active.saturated * active.saturated, on = active.limited * active.limited;
+    if (t.limit_law) {
+      const V limit_gain = on * joint.limit_gain, gain = joint.gain * free + limit_gain;
+      c.gain = t.h * gain;
+      t.dv[offset + i] = t.h * (joint.spring * free + active.saturated * joint.bound - c.bias - c.qd * gain +
+                                limit_gain * joint.limit_push);
+      continue;
+    }
     const V limit_gain = on * (t.h * model.limit_stiffness), gain = joint.gain * free + limit_gain;
     const V edge = L::select(active.limited < V{}, model.lower, model.upper);
     c.gain = t.h * gain;
@@ -131,8 +170,11 @@ typename L::Mask update_active_set(TreeBatch<L>& t, typename L::Mask lanes, bool
         active.saturated > zero, L::select(torque >= joint.bound, one, zero),
         L::select(active.saturated < zero, L::select(torque <= -joint.bound, V(-one), zero), V(high + low)));
     const V next = joint.q + t.h * v1;
-    const V below = L::select(next < model.lower, V(-one), zero),
-            above = L::select(next > model.upper, one, zero);
+    V below = L::select(next < model.lower, V(-one), zero), above = L::select(next > model.upper, one, zero);
+    if (t.limit_law) {
+      below = L::select((joint.q < model.lower) & (v1 < joint.limit_push), V(-one), zero);
+      above = L::select((joint.q > model.upper) & (v1 > joint.limit_push), one, zero);
+    }
     const V limited =
         L::select(active.limited < zero, below, L::select(active.limited > zero, above, V(below + above)));
     const Mask limit_flips = limited != active.limited, drive_flips = saturated != active.saturated;
@@ -170,6 +212,7 @@ void solve_without_contacts(TreeBatch<L>& t, bool again = false) {
   using Mask = typename L::Mask;
   const Mask everyone = L::mask(~0u);
   t.frozen = L::nothing();
+  if (t.limit_law && !again) soft_limits(t);
   solve_active_set(t, everyone, again);
   for (int pass = 0;; ++pass) {
     const Mask changed = update_active_set(t, everyone, pass >= kAllPasses);
@@ -195,7 +238,8 @@ void joint_torques(TreeBatch<L>& t, typename L::Scalar weight) {
     const V v1 = t.coord[offset + i].v1;
     const V drive = clamp<L>(V(joint.spring - joint.gain * v1), V(-joint.bound), joint.bound);
     const V edge = L::select(active.limited < V{}, model.lower, model.upper);
-    const V limit = active.limited * active.limited * model.limit_stiffness * (edge - joint.q - t.h * v1);
+    V limit = active.limited * active.limited * model.limit_stiffness * (edge - joint.q - t.h * v1);
+    if (t.limit_law) limit = active.limited * active.limited * joint.limit_gain * (joint.limit_push - v1);
     joint.torque += weight * (drive + limit);
   }
 }

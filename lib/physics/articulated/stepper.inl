@@ -137,6 +137,11 @@ class BatchStepper final : public Stepper {
   void solve_contacts_of(int32_t world, bool again);
   void add_contact_rows(typename ContactSolver<S>::Point* point, const Attachment& at, int32_t world, S sign,
                         const Vec3& p, const Vec3* axes);
+  using LawPoint = typename LawContacts<S>::Point;
+  void add_law_point(int32_t world, int32_t contact, const ContactLaw& law, bool again);
+  void add_law_rows(LawPoint* point, const Attachment& at, int32_t world, S sign, const Vec3& p,
+                    const Vec3* axes, double* before);
+  double bounce(const ContactLaw& law, const Contact& contact, double before, double change) const;
   // A point of a free body with another or with what is at rest.
   bool is_free(const Contact& contact) const {
     return attachments_[contact.shape_a].kind == Attachment::kBody &&
@@ -171,10 +176,10 @@ class BatchStepper final : public Stepper {
   int32_t* first_word_ = nullptr;      // [articulations] in WorldState::persistent, in numbers
   uint8_t* touched_ = nullptr;         // [articulations] by a contact of the world being solved
   uint8_t* in_pile_ = nullptr;         // [contacts_max] of that world's points those in lanes
-  S* path_ = nullptr;                  // [most coordinates][4] working memory of a contact's path
-  const V** factor_rows_ = nullptr;    // [most coordinates] of its coordinates
-  Quat* q_JL_ = nullptr;               // [num_links]
-  Mat3* R_JL_ = nullptr;               // [num_links]
+  S* path_ = nullptr;                // [most coordinates][4, with laws 6] working memory of a contact's path
+  const V** factor_rows_ = nullptr;  // [most coordinates] of its coordinates
+  Quat* q_JL_ = nullptr;             // [num_links]
+  Mat3* R_JL_ = nullptr;             // [num_links]
   ContactSolver<S> contacts_;
   DirectContacts<ContactSolver<S>> direct_;
   Island* island_ = nullptr;  // [num_bodies]; null: bodies are much alike
@@ -526,8 +531,7 @@ double BatchStepper<L>::push_out_speed(const WorldState& w, int32_t index) const
   const SolverDef& solver = scene_->def.solver;
   const double depth = w.contacts[index].depth;
   if (depth < 0) return depth / solver.h;
-  return std::min((depth - layer(w, index)) * solver.contact_erp / solver.h,
-                  most_push_out_speed());
+  return std::min((depth - layer(w, index)) * solver.contact_erp / solver.h, most_push_out_speed());
 }
 
 // The pair's; of shapes that a world has in sizes of its own by those.
@@ -574,6 +578,10 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
   for (int32_t i = 0; i < count; ++i) {
     const Contact& contact = w.contacts[i];
     if (piles && in_pile_[i]) continue;
+    if (const ContactLaw* law = scene_->law_of(w.contact_pairs[i])) {
+      add_law_point(world, i, *law, piles && again);
+      continue;
+    }
     contacts_.stacked += attachments_[contact.shape_a].kind == Attachment::kBody &&
                          attachments_[contact.shape_b].kind == Attachment::kBody;
     auto& point =
@@ -598,11 +606,17 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
   const bool solved = extremes_ && solve_extremes(world);
   if (!solved || contacts_.wide.count > 0) contacts_.solve(solver.iterations, solved);
   w.residual = static_cast<double>(contacts_.residual());
-  for (int32_t i = 0, k = 0; i < count; ++i) {
+  for (int32_t i = 0, k = 0, of_law = 0; i < count; ++i) {
     if (piles && in_pile_[i]) continue;
     const Vec3& n = w.contacts[i].n;
     Vec3 t, u;
     tangents(n, &t, &u);
+    if (scene_->law_of(w.contact_pairs[i])) {
+      const auto& impulse = contacts_.laws.points[of_law++].impulse;
+      w.impulses[i] = static_cast<double>(impulse[0]) * n + static_cast<double>(impulse[1]) * t +
+                      static_cast<double>(impulse[2]) * u;
+      continue;
+    }
     const auto& impulse = contacts_.points[k++].impulse;
     w.impulses[i] = static_cast<double>(impulse[0]) * n + static_cast<double>(impulse[1]) * t +
                     static_cast<double>(impulse[2]) * u;
@@ -643,7 +657,8 @@ void BatchStepper<L>::find_extremes(int32_t world) {
   if (!extremes_) return;
   for (int32_t i = 0; i < w.num_contacts; ++i) {
     const int32_t a = body_of(w.contacts[i].shape_a), b = body_of(w.contacts[i].shape_b);
-    directly_[i] = a < 0 && b < 0 ? -1 : root(std::max(a, b));
+    const bool own_law = scene_->law_of(w.contact_pairs[i]) != nullptr;
+    directly_[i] = own_law || (a < 0 && b < 0) ? -1 : root(std::max(a, b));
     if (directly_[i] >= 0) ++island_[directly_[i]].points;
   }
   for (int32_t i = 0; i < w.num_contacts; ++i) {
@@ -663,6 +678,10 @@ bool BatchStepper<L>::solve_extremes(int32_t world) {
     direct_.begin();
     for (int32_t i = 0, k = 0; i < w.num_contacts; ++i) {
       if (contacts_.wide.count > 0 && in_pile_[i]) continue;
+      if (scene_->law_of(w.contact_pairs[i])) {
+        all = false;
+        continue;
+      }
       auto* point = contacts_.points + k++;
       all &= directly_[i] >= 0;
       if (directly_[i] == island)
@@ -673,6 +692,141 @@ bool BatchStepper<L>::solve_extremes(int32_t world) {
   return all;
 }
 
+// One side's part of the rows of a point with a law, as add_contact_rows; axes 3 to 5 are of turning. Adds
+// the velocities of the substep's start to `before`.
+template <class L>
+void BatchStepper<L>::add_law_rows(LawPoint* point, const Attachment& at, int32_t world, S sign,
+                                   const Vec3& p, const Vec3* axes, double* before) {
+  constexpr int kAxes = LawContacts<S>::kAxes;
+  const WorldState& w = *worlds_[world];
+  const int count = point->axes;
+  const double side = static_cast<double>(sign);
+  if (at.kind == Attachment::kBody) {
+    const FreeBody& body = w.free_bodies[at.body];
+    const Motion& m = w.bodies[at.body];
+    const double sqrt_inv_mass = w.body_models[at.body].sqrt_inv_mass;
+    const Vec3 arm = p - m.X.p;
+    auto* rows = contacts_.laws.segment_rows(point, at.first_segment);
+    for (int f = 0; f < count; ++f) {
+      const Vec3 linear = f < 3 ? axes[f] : Vec3{}, moment = f < 3 ? cross(arm, axes[f]) : axes[f - 3];
+      const Vec3 angular = body.inv_sqrt_inertia * moment;
+      for (int r = 0; r < 3; ++r) {
+        rows[f][r] += sign * static_cast<S>(linear[r] * sqrt_inv_mass);
+        rows[f][3 + r] += sign * static_cast<S>(angular[r]);
+      }
+      point->b[f] -= sign * static_cast<S>(dot(linear, body.v) + dot(moment, body.w));
+      before[f] += side * (dot(linear, m.v) + dot(moment, m.w));
+    }
+    return;
+  }
+  if (at.kind == Attachment::kStatic) return;
+  const auto [batch, lane] = lane_of(at.group, at.member, world);
+  const Tree& tree = *batch->tree;
+  const int32_t articulation = tree.members[static_cast<size_t>(at.member)].articulation;
+  touched_[articulation] = 1;
+  const Vec3& base = w.bases[articulation].X.p;
+  S x[3];
+  for (int r = 0; r < 3; ++r) x[r] = static_cast<S>(p[r] - base[r]);
+  S(*z)[kAxes] = reinterpret_cast<S(*)[kAxes]>(path_);
+  const int32_t first = tree.row[static_cast<size_t>(at.coord)],
+                depth = tree.depth[static_cast<size_t>(at.coord)];
+  const int16_t* path = tree.path.data() + first;
+  for (int32_t d = 0; d <= depth; ++d) {
+    const CoordWork<V>& c = batch->coord[path[d]];
+    S a[3], s[3];
+    for (int r = 0; r < 3; ++r) {
+      a[r] = L::get(c.a[r], lane);
+      s[r] = L::get(c.s[r], lane);
+    }
+    const S v[3] = {s[0] + (a[1] * x[2] - a[2] * x[1]), s[1] + (a[2] * x[0] - a[0] * x[2]),
+                    s[2] + (a[0] * x[1] - a[1] * x[0])};
+    const S rate = L::get(c.v1, lane), last = L::get(c.qd, lane);
+    for (int f = 0; f < count; ++f) {
+      const S* of = f < 3 ? v : a;
+      const Vec3& axis = axes[f % 3];
+      z[d][f] = sign * (static_cast<S>(axis.x) * of[0] + static_cast<S>(axis.y) * of[1] +
+                        static_cast<S>(axis.z) * of[2]);
+      point->b[f] -= z[d][f] * rate;
+      before[f] += static_cast<double>(z[d][f] * last);
+    }
+    factor_rows_[d] = batch->factor + tree.row[static_cast<size_t>(path[d])];
+  }
+  for (int32_t top = depth; top >= 0; --top)
+    for (int32_t d = depth; d > top; --d)
+      for (int f = 0; f < count; ++f) z[top][f] -= z[d][f] * L::get(factor_rows_[d][top], lane);
+  for (int32_t d = depth; d >= 0; --d) {
+    const TreeSlot slot = tree.slots[static_cast<size_t>(path[d])];
+    auto* rows = contacts_.laws.segment_rows(point, at.first_segment + slot.segment);
+    const S scale = L::get(batch->coord[path[d]].inv_sqrt_d, lane);
+    for (int f = 0; f < count; ++f) rows[f][slot.slot] += z[d][f] * scale;
+  }
+}
+
+// The speed at which a point is to part that closed at -before (m/s, along the normal, at the substep's
+// start), 0: it was too slow to bounce. A free body that falls onto what is at rest is as deep in it as it
+// came since they met: it leaves with the energy that it would have had there. What moves it through the
+// substep, `change`, comes on top.
+template <class L>
+double BatchStepper<L>::bounce(const ContactLaw& law, const Contact& contact, double before,
+                               double change) const {
+  if (!(before < -kBounceSpeed) || law.restitution == 0) return 0;
+  const Attachment &a = attachments_[contact.shape_a], &b = attachments_[contact.shape_b];
+  double fallen = 0;  // m2/s2: twice gravity times the way since they met
+  if (a.kind == Attachment::kBody && b.kind == Attachment::kStatic)
+    fallen = -2 * contact.depth * dot(model_->bodies[static_cast<size_t>(a.body)].gravity, contact.n);
+  const double square = before * before, e = law.restitution;
+  fallen = std::clamp(fallen, 0.0, square);
+  return std::max(std::sqrt(e * e * (square - fallen) + fallen) + std::min(change, 0.0), 0.0);
+}
+
+template <class L>
+void BatchStepper<L>::add_law_point(int32_t world, int32_t index, const ContactLaw& law, bool again) {
+  WorldState& w = *worlds_[world];
+  const Contact& contact = w.contacts[index];
+  const double mu = friction(w, w.contact_pairs[index]);
+  const double friction_of[] = {0, mu, mu, law.torsional, law.rolling, law.rolling};
+  LawPoint& point = contacts_.laws.add(law.rolling > 0 ? 6 : law.torsional > 0 ? 4 : mu > 0 ? 3 : 1);
+  Vec3 axes[3] = {contact.n, {}, {}};
+  tangents(contact.n, &axes[1], &axes[2]);
+  double before[LawContacts<S>::kAxes] = {};
+  // the collider's is the deepest of the shape's
+  const bool middle = law.soft() && scene_->shapes[static_cast<size_t>(contact.shape_b)].radius < 0;
+  const Vec3 p = middle ? contact.p + (0.5 * (contact.depth + law.margin)) * contact.n : contact.p;
+  add_law_rows(&point, attachments_[contact.shape_a], world, S(1), p, axes, before);
+  add_law_rows(&point, attachments_[contact.shape_b], world, S(-1), p + contact.gap, axes, before);
+  contacts_.laws.prepare(&point);
+  for (int f = 0; f < point.axes; ++f) point.friction[f] = static_cast<S>(friction_of[f]);
+  if (contact.depth < 0) {  // yet to come: as near as it is, then the law
+    point.b[0] += static_cast<S>(push_out_speed(w, index));
+  } else if (law.soft()) {
+    const SoftRow row = soft_row(law, contact.depth, scene_->def.solver.h);
+    const double weight = model_->inverse_weights[static_cast<size_t>(contact.shape_a)] +
+                          model_->inverse_weights[static_cast<size_t>(contact.shape_b)];
+    point.pyramid = law.pyramid && point.axes > 1 && mu > 0;
+    for (int f = 0; f < point.axes; ++f) {
+      point.b[f] += static_cast<S>(row.keep * before[f] + (f == 0 ? row.push : 0));
+      const double ratio = f > 2 && friction_of[f] > 0 ? mu / friction_of[f] : 1;
+      point.softness[f] = static_cast<S>(row.weight * weight * ratio * ratio);
+    }
+    if (point.pyramid) point.softness[0] = static_cast<S>(2 * mu * mu * (1 + mu * mu) * row.weight * weight);
+  } else {
+    const double change = -static_cast<double>(point.b[0]) - before[0];
+    const double leaving = bounce(law, contact, before[0], change), push_out = push_out_speed(w, index);
+    point.softness[0] =
+        leaving > push_out ? S(0) : static_cast<S>(softness(w, index));  // which would swallow some
+    point.b[0] += static_cast<S>(std::max(push_out, leaving));
+  }
+  Vec3 last;
+  if (again)
+    last = w.impulses[index];
+  else if (!warm_impulse(w, index, &last))
+    return;
+  S start[3];
+  for (int f = 0; f < 3; ++f) start[f] = static_cast<S>(dot(last, axes[f]));
+  start[0] = start[0] < 0 ? S(0) : start[0];
+  contacts_.laws.warm_start(&point, start, contacts_.sum);
+}
+
 // The pairs of free bodies with each other and with static shapes into lanes, if there are enough of them.
 template <class L>
 bool BatchStepper<L>::add_piles(int32_t world, bool again) {
@@ -681,7 +835,8 @@ bool BatchStepper<L>::add_piles(int32_t world, bool again) {
   if (!wide.points || w.num_contacts < kWideFrom) return false;
   int32_t free = 0;
   for (int32_t i = 0; i < w.num_contacts; ++i) {
-    in_pile_[i] = is_free(w.contacts[i]) && !(extremes_ && directly_[i] >= 0);
+    in_pile_[i] =
+        is_free(w.contacts[i]) && !scene_->law_of(w.contact_pairs[i]) && !(extremes_ && directly_[i] >= 0);
     free += in_pile_[i];
   }
   if (free < kWideFrom) return false;
@@ -898,7 +1053,9 @@ void BatchStepper<L>::contact_forces(int32_t world) {
   if (scene_->def.solver.speculative_contacts) drop_unmet(&w);
   for (int32_t i = 0; i < w.num_contacts; ++i) {
     Contact& contact = w.contacts[i];
-    if (softness(w, i) * dot(w.impulses[i], contact.n) > fastest && push_out_speed(w, i) == fastest)
+    const ContactLaw* law = scene_->law_of(w.contact_pairs[i]);
+    if (!(law && law->soft()) && softness(w, i) * dot(w.impulses[i], contact.n) > fastest &&
+        push_out_speed(w, i) == fastest)
       w.status |= kStatusUnconverged;
     contact.force = inv_h * w.impulses[i];
     for (int side = 0; side < 2; ++side) {
@@ -1231,11 +1388,12 @@ void BatchStepper<L>::carve(Arena& arena) {
     directly_ = arena.make<int32_t>(static_cast<size_t>(scene_->def.solver.contacts_max));
     direct_.carve(arena, segments);
   }
-  path_ = arena.make<S>(4 * static_cast<size_t>(most_coords));
+  path_ = arena.make<S>((scene_->laws.empty() ? 4u : 6u) * static_cast<size_t>(most_coords));
   factor_rows_ = arena.make<const V*>(static_cast<size_t>(most_coords));
   R_JL_ = arena.make<Mat3>(static_cast<size_t>(scene_->num_links));
   q_JL_ = arena.make<Quat>(static_cast<size_t>(scene_->num_links));
   contacts_.carve(arena, scene_->def.solver.contacts_max, segments, path, scene_->num_bodies);
+  if (!scene_->laws.empty()) contacts_.laws.carve(arena, scene_->def.solver.contacts_max, path);
 }
 
 // The constants of each lane's member. They stay: a lane holds the same member in every step.
@@ -1246,6 +1404,7 @@ void BatchStepper<L>::fill_constants(TreeBatch<L>& t, int32_t batch) {
   t.h = static_cast<S>(solver.h);
   t.inv_h = static_cast<S>(1 / solver.h);
   t.spring_only = solver.spring_only_effort;
+  t.limit_law = solver.limit_law.soft() ? &solver.limit_law : nullptr;
   assign(t, batch, group_size_);
   if (tree.free_base)
     for (int k = 0; k < 3; ++k) {
@@ -1277,6 +1436,7 @@ void BatchStepper<L>::fill_constants(TreeBatch<L>& t, int32_t batch) {
       put(&b.ratio, l, joint.ratio);
       put(&b.slack, l, joint.slack);
       put(&b.limit_stiffness, l, link.limit_stiffness);
+      put(&b.limit_weight, l, link.limit_weight);
     }
     for (size_t k = 0; k < m.shapes.size(); ++k) {
       const ShapeDef& def = scene_->shapes[static_cast<size_t>(m.first_shape) + k].def;

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "physics/model/inertia.hpp"
+#include "physics/model/inverse_weights.hpp"
 
 namespace rdm {
 namespace {
@@ -66,6 +67,7 @@ void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* memb
       k = std::max(k,
                    std::min(def.links[i].joint.effort / (kLeaning * solver.limit_margin), kStiffest * stiff));
     member->links[i].limit_stiffness = k;
+    member->links[i].limit_weight = 1;
   }
 }
 
@@ -271,6 +273,13 @@ Vector<Tree> make_trees(const Scene& scene) {
     check_masses(scene, tree);
     find_shortcuts(&tree);
   }
+  if (!scene.def.solver.limit_law.soft()) return trees;
+  const InverseWeights weights = inverse_weights(scene);
+  for (Tree& tree : trees)
+    for (TreeMember& member : tree.members)
+      for (int32_t i = 0; i < tree.num_links; ++i)
+        member.links[static_cast<size_t>(i)].limit_weight =
+            weights.joints[static_cast<size_t>(member.first_link + i)];
   return trees;
 }
 

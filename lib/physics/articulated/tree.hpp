@@ -39,6 +39,7 @@ struct MemberLink {
   Inertia inertia;  // in joint axes
   JointDef joint;
   double limit_stiffness;  // N m/rad (N/m) of the joint's ends
+  double limit_weight;     // 1/(kg m2) (1/kg) of soft limits, else 1 (model/inverse_weights.hpp)
 };
 
 struct TreeShape {

@@ -52,7 +52,7 @@ template <class L>
 struct LinkModel : LinkConstants<typename L::V> {
   using V = typename L::V;
   V R_PJ[9], q_PJ[4], p_PJ[3], com[3];
-  V lower, upper, ratio, slack, limit_stiffness;
+  V lower, upper, ratio, slack, limit_stiffness, limit_weight;
 };
 
 // One substep's values, per link.
@@ -64,6 +64,7 @@ struct LinkWork {
   V mass, h[3], J[6];        // spatial inertia, then that of the composite body behind the joint
   V push[6];                 // force and torque about the centre of mass
   V spring, gain, bound;     // drive: torque = spring - gain v1, inside +-bound
+  V limit_gain, limit_push;  // soft limit: torque = gain (push - v1), inwards alone
   V torque;                  // mean over the substeps so far
   V ahead_v[3], ahead_n[3];  // what the coming motion changes (look_ahead.inl): of c's velocity, of the spin
 };
@@ -88,8 +89,9 @@ struct TreeBatch : BaseConstants<typename L::V> {
   const Tree* tree;
   S h, inv_h;
   bool spring_only, any_push;
-  Mask frozen;      // lanes whose active sets stay for this substep
-  uint32_t pushed;  // lanes that have a contact, a bit each
+  const ContactLaw* limit_law;  // null: limits are hard
+  Mask frozen;                  // lanes whose active sets stay for this substep
+  uint32_t pushed;              // lanes that have a contact, a bit each
   V base_R[9], base_q[4], base_com[3];
   PersistentBase<V> base_state;
   LinkWork<V> base;

@@ -7,6 +7,7 @@
 
 #include "physics/limits.hpp"
 #include "physics/model/inertia.hpp"
+#include "physics/model/inverse_weights.hpp"
 
 namespace rdm {
 namespace {
@@ -48,6 +49,11 @@ ArticulatedModel make_articulated_model(const Scene& scene) {
   model.scene = &scene;
   model.trees = make_trees(scene);
   for (int32_t i = 0; i < scene.num_bodies; ++i) model.bodies.push_back(body_model(scene, i, nullptr));
+  const auto soft = [](const ContactLaw& law) { return law.soft(); };
+  if (std::any_of(scene.laws.begin(), scene.laws.end(), soft)) {
+    const InverseWeights weights = inverse_weights(scene);
+    for (const SceneShape& shape : scene.shapes) model.inverse_weights.push_back(weights.of(scene, shape));
+  }
   const SolverDef& solver = scene.def.solver;
   if (solver.sleep_time == 0 || scene.num_bodies == 0) return model;
   model.sleep_substeps = std::max(1, static_cast<int32_t>(std::lround(solver.sleep_time / solver.h)));

@@ -44,7 +44,8 @@ struct ArticulatedModel {
   // where bodies fall asleep (sleep.hpp)
   int32_t sleep_substeps = 0;  // so long they are quiet before; 0: never
   Vector<ListedPair> listed_pairs;
-  bool all_listed = false;  // those are all pairs
+  bool all_listed = false;         // those are all pairs
+  Vector<double> inverse_weights;  // [shapes] 1/kg (model/inverse_weights.hpp); empty: no contact is soft
 };
 ArticulatedModel make_articulated_model(const Scene& scene);
 

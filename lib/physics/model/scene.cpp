@@ -43,6 +43,7 @@ void check_solver(const SolverDef& s) {
   need(s.limit_margin, 0, 0.1, "solver", "limit_margin");
   need(s.limit_stiffness, 0, 1e6, "solver", "limit_stiffness");
   need(s.link_armature, 0, 1, "solver", "link_armature");
+  check_law(s.limit_law);
   need(s.sleep_time, 0, 100, "solver", "sleep_time");
   need(s.sleep_speed, 0, 10, "solver", "sleep_speed");
   need(s.sleep_spin, 0, 100, "solver", "sleep_spin");
@@ -163,6 +164,9 @@ void check(SceneDef* def) {
       if (def->friction[i][j].mu != def->friction[j][i].mu ||
           def->friction[i][j].passes != def->friction[j][i].passes)
         fail(Code::kArgument, "friction: materials %d and %d differ by order", i, j);
+      check_law(def->laws[i][j]);
+      if (!(def->laws[i][j] == def->laws[j][i]))
+        fail(Code::kArgument, "contact law: materials %d and %d differ by order", i, j);
     }
   if (def->articulations.empty() && def->bodies.empty())
     fail(Code::kArgument, "scene: nothing in it can move");
@@ -311,6 +315,25 @@ void list_runs(Scene* scene) {
   }
 }
 
+// Every law that differs once.
+void list_laws(Scene* scene) {
+  for (const ShapePair& pair : scene->pairs) {
+    const auto material = [&](int32_t shape) {
+      return scene->shapes[static_cast<size_t>(shape)].def.material;
+    };
+    const ContactLaw& law = scene->def.laws[material(pair.a)][material(pair.b)];
+    int32_t i = -1;
+    if (law.differs()) {
+      i = 0;
+      while (i < static_cast<int32_t>(scene->laws.size()) && !(scene->laws[static_cast<size_t>(i)] == law))
+        ++i;
+      if (i == static_cast<int32_t>(scene->laws.size())) scene->laws.push_back(law);
+    }
+    scene->pair_laws.push_back(static_cast<int16_t>(i));
+  }
+  if (scene->laws.empty()) scene->pair_laws = {};
+}
+
 // What a heap of convex things comes to: three neighbours for each shape of a body (a neighbour counts the
 // other way too, so that there are six), one for each that belongs to a robot, none where no pair is; and
 // at least what scenes have by default.
@@ -405,6 +428,7 @@ Scene make_scene(SceneDef def) {
   flatten(&scene);
   list_pairs(&scene);
   list_runs(&scene);
+  list_laws(&scene);
   if (scene.def.solver.contacts_max == 0) scene.def.solver.contacts_max = contacts_needed(scene);
   return scene;
 }

@@ -8,6 +8,7 @@
 
 #include "base/host.hpp"
 #include "base/vec.hpp"
+#include "physics/model/contact_law.hpp"
 #include "physics/model/hull.hpp"
 
 namespace rdm {
@@ -142,6 +143,7 @@ struct SolverDef {
   Integrator integrator = Integrator::kAuto;
   int32_t lanes = 0;  // 1, 4, 8 or 16 numbers at a time; 0: what suits scene and machine. Same bytes for all
   bool speculative_contacts = false;  // rows for what free bodies are about to hit (collision/sweep.hpp)
+  ContactLaw limit_law;               // of joint limits, where it is soft: in place of limit_stiffness
   // Free bodies fall asleep (articulated/sleep.hpp) once they have been slower than both for so long.
   double sleep_time = 0;                         // s; 0: never
   double sleep_speed = 0.01, sleep_spin = 0.25;  // m/s, rad/s
@@ -163,6 +165,7 @@ struct SceneDef {
   Vector<ShapeDef> statics;
   int32_t num_materials = 1;
   Friction friction[kMaxMaterials][kMaxMaterials];
+  ContactLaw laws[kMaxMaterials][kMaxMaterials];  // symmetric; engine articulated, others: World::make
   bool articulations_touch = true;  // shapes of different articulations may (friction by material)
   bool feedforward = false;         // worlds have World::feedforward, a torque added to every drive
   bool adjustable = false;          // worlds have World::dynamics, factors on these constants (dynamics.hpp)
@@ -220,11 +223,19 @@ struct Scene {
   Vector<LinkFrame> frames;           // per link
   Vector<SceneShape> shapes;  // articulation by articulation (base shapes are in place), bodies, statics
   Vector<Hull> hulls;
-  Vector<ShapePair> pairs;  // all pairs that may touch, in fixed order
-  Vector<PairRun> runs;     // the same pairs, run by run
-  Vector<int32_t> sensors;  // link indices with a sensor
+  Vector<ShapePair> pairs;    // all pairs that may touch, in fixed order
+  Vector<PairRun> runs;       // the same pairs, run by run
+  Vector<ContactLaw> laws;    // those of pairs that have one of their own
+  Vector<int16_t> pair_laws;  // [pairs] index of laws, -1: none; empty: no pair has one
+  Vector<int32_t> sensors;    // link indices with a sensor
 
   const LinkDef& link(int32_t i) const;
+  // Null: the pair has no law of its own.
+  const ContactLaw* law_of(int32_t pair) const {
+    if (pair_laws.empty()) return nullptr;
+    const int16_t i = pair_laws[static_cast<size_t>(pair)];
+    return i < 0 ? nullptr : &laws[static_cast<size_t>(i)];
+  }
   bool moves(const SceneShape& shape) const;  // not static, not on a fixed base
   // Null where the shape is of another kind.
   const Hull* hull_of(const SceneShape& shape) const {

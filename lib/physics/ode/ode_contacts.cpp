@@ -8,7 +8,8 @@ namespace {
 
 // The one place where a contact's surface is described, every field of the mode included.
 // ODE has one layer for all contacts: what a pair's own is thinner by counts as depth.
-dContact describe(const SolverDef& solver, const dContactGeom& geom, double mu, double layer) {
+dContact describe(const SolverDef& solver, const dContactGeom& geom, double mu, double layer,
+                  const ContactLaw* law) {
   dContact contact = {};
   contact.geom = geom;
   contact.geom.depth += solver.contact_layer - layer;
@@ -16,6 +17,12 @@ dContact describe(const SolverDef& solver, const dContactGeom& geom, double mu, 
   contact.surface.mu = mu;
   contact.surface.soft_erp = solver.contact_erp;
   contact.surface.soft_cfm = solver.contact_cfm;
+  if (law && law->restitution > 0) {
+    contact.surface.mode |= dContactBounce;
+    contact.surface.bounce = law->restitution;
+    contact.surface.bounce_vel = kBounceSpeed;
+    contact.surface.soft_cfm = solver.cfm;  // softness would swallow some
+  }
   return contact;
 }
 
@@ -79,8 +86,8 @@ void OdeContacts::empty() {
 }
 
 void OdeContacts::make_joint(dWorldID world, const Scene& scene, const dContactGeom& geom, double mu,
-                             double layer, dBodyID a, dBodyID b, int32_t index) {
-  const dContact contact = describe(scene.def.solver, geom, mu, layer);
+                             double layer, const ContactLaw* law, dBodyID a, dBodyID b, int32_t index) {
+  const dContact contact = describe(scene.def.solver, geom, mu, layer, law);
   const dJointID joint = dJointCreateContact(world, group_, &contact);
   dJointAttach(joint, a, b);
   dJointSetFeedback(joint, &feedback_[index]);
@@ -91,7 +98,7 @@ void OdeContacts::fill(dWorldID world, const Scene& scene, const dBodyID* bodies
   geom.normal[2] = 1;
   for (int32_t i = 0; i < scene.def.solver.contacts_max; ++i) {
     const dBodyID a = bodies[i % count], b = bodies[(i + 1) % count];
-    make_joint(world, scene, geom, 1, scene.def.solver.contact_layer, a, a == b ? nullptr : b, i);
+    make_joint(world, scene, geom, 1, scene.def.solver.contact_layer, nullptr, a, a == b ? nullptr : b, i);
   }
 }
 
@@ -136,9 +143,10 @@ void OdeContacts::add_points(const Search& search, int32_t index) {
       search.found->overflow = true;
       return;
     }
-    make_joint(search.world, search.scene, geoms[i], pair.mu, pair.layer, a.body, b.body, count);
-    search.contacts[count++] = {pair.a,         pair.b, from_ode(geoms[i].pos), from_ode(geoms[i].normal),
-                                geoms[i].depth, {}, {}};
+    make_joint(search.world, search.scene, geoms[i], pair.mu, pair.layer, search.scene.law_of(index), a.body,
+               b.body, count);
+    search.contacts[count++] = {
+        pair.a, pair.b, from_ode(geoms[i].pos), from_ode(geoms[i].normal), geoms[i].depth, {}, {}};
   }
 }
 

@@ -56,7 +56,7 @@ class OdeContacts {
   void update_bounds();
   void add_points(const Search& search, int32_t pair);
   void make_joint(dWorldID world, const Scene& scene, const dContactGeom& geom, double mu, double layer,
-                  dBodyID a, dBodyID b, int32_t index);
+                  const ContactLaw* law, dBodyID a, dBodyID b, int32_t index);
 
   Shape* shapes_ = nullptr;
   dJointFeedback* feedback_ = nullptr;
