@@ -263,8 +263,8 @@ enum rdm_status {                  /* bits of rdm_buffers.status */
   RDM_STATUS_BAD_ACTION = 4,       /* the row of actions was not finite: likewise             */
   RDM_STATUS_TASK = 8,             /* a function of a host's own task failed: likewise        */
   RDM_STATUS_SOLVER = 16,          /* contacts were not solved, not seen in engine ode: one was wrong by more than 1 m/s
-                                    * along its normal when the sweeps ended (a thing under one that is a thousand times
-                                    * heavier), or gave way for ever (heavier than contact_max_speed / contact_cfm N) */
+                                    * along its normal when the sweeps ended (much under something heavier, with few
+                                    * iterations), or gave way for ever (a contact_max_speed below 0.02 m/s) */
   RDM_STATUS_SLOWED = 32           /* a free body that turned by more than 3 rad in a substep was slowed to that */
 };
 typedef struct rdm_pool_config { /* what a pool is made from */

@@ -7,8 +7,9 @@
 //   normal    0 <= n   complementary to   J_n v1 + softness n >= b,  b = erp (depth - layer) / h, bounded
 //   friction  |(t, u)| <= mu n, and J_t v1 = J_u v1 = 0 unless on the cone's edge, there against the slip
 // b is the push-out speed of Baumgarte's stabilisation, softness = cfm / h (Catto, Soft Constraints, GDC
-// 2011). Under a steady force F a contact so gives way by F cfm h / erp beyond the layer, and it holds no
-// more than F = contact_max_speed / cfm: 4 kN as scenes come; arms that press harder want a smaller cfm. A
+// 2011). Under a steady force F a contact so gives way by F cfm h / erp beyond the layer; a point that
+// carries more than kMostYield / cfm (stepper.inl) is made stiffer and holds what it must. b is negative above the
+// layer: what rests lies equally deep, wherever it started. A
 // cone and not a pyramid: sliding is opposed along the slip, and the angle at which a body starts to slide
 // does not depend on its heading.
 //
@@ -36,8 +37,9 @@
 // a sweep is small against the squared impulses.
 //
 // Said, not cured (kStatusUnconverged): a normal whose velocity was wrong by more than kUnsolvedSpeed when
-// the last sweep came to it, as under a thing that is a thousand times heavier; and a point that gives way
-// although it is pushed out as fast as points are, as under a thing that is heavier than one point holds.
+// the last sweep came to it, as in tall stacks that get heavier upwards (free bodies alone: direct_contacts.inl
+// solves them); and a point that gives way although it is pushed out as fast as points are, where the option
+// contact_max_speed is below kMostYield.
 #pragma once
 #include <algorithm>
 #include <cmath>
