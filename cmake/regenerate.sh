@@ -7,7 +7,7 @@ set -eu
 cd "$(dirname "$0")/.."
 build=${1:-build/dev}
 [ -f "$build/CMakeCache.txt" ] || { echo "$build is no build folder: cmake --preset dev, or give another"; exit 1; }
-cmake --build "$build" --target redman_tool test_golden test_golden_learners print_layout
+cmake --build "$build" --target redman_tool test_golden test_golden_learners print_layout truth
 for rows in test_golden test_golden_learners; do
   RDM_WRITE_GOLDEN=1 "$build/tests/$rows" > "$build/$rows.log" || { cat "$build/$rows.log"; exit 1; }
 done
@@ -20,4 +20,5 @@ fi
 "$build/tests/print_layout" > capi/layout.golden
 python3 capi/python/generate_abi.py
 bash cmake/tables.sh "$build/bin/redman"
+bash cmake/truth_table.sh "$build" short || echo "the truth table has rows that are off: see above"
 git status --short -- tests/golden capi/layout.golden capi/python/redman/_abi.py '*.md'

@@ -1,5 +1,6 @@
-// Chains of rods without drives: what energy and momentum they keep. Free base: rods of .3 m and .1 kg joined about y, x, y, x,
-// no gravity, tumbling; energy, momentum and angular momentum stay. Fixed base: pendulums about y; energy stays.
+// Chains of rods without drives: what energy and momentum they keep. Free base: rods of .3 m and .1 kg joined
+// about y, x, y, x, no gravity, tumbling; energy, momentum and angular momentum stay. Fixed base: pendulums
+// about y; energy stays.
 #include <algorithm>
 
 #include "lab.hpp"
@@ -60,11 +61,11 @@ struct FreeCase {
   const char* mujoco;  // Euler, implicit, RK4: energy after 10 s, h 1/120
 };
 const FreeCase kFree[] = {
-    {1, 1e-4, "2 rods, axial 1e-4 kg m2", "6.4, 2.7, 0 % (Euler, implicit, RK4)"},
-    {1, kAcross, "2 rods, axial 7.5e-4 kg m2", "3.1, 2.6, 0 %"},
-    {2, 1e-4, "3 rods, axial 1e-4 kg m2", "2.2, .6, 0 %"},
-    {3, 1e-5, "4 rods, axial 1e-5 kg m2", "lost after 9.8 s, 6.8, 0 %"},
-    {3, kAcross, "4 rods, axial 7.5e-4 kg m2", "220, 1.7, .1 %"},
+    {1, 1e-4, "2 rods, axial 1e-4 kg m2", ".064, .027, 0 (Euler, implicit, RK4)"},
+    {1, kAcross, "2 rods, axial 7.5e-4 kg m2", ".031, .026, 0"},
+    {2, 1e-4, "3 rods, axial 1e-4 kg m2", ".022, .006, 0"},
+    {3, 1e-5, "4 rods, axial 1e-5 kg m2", "lost after 9.8 s, .068, 0"},
+    {3, kAcross, "4 rods, axial 7.5e-4 kg m2", "2.2, .017, .001"},
 };
 
 void free_chains(Rows& rows) {
@@ -155,9 +156,10 @@ void hinge(Rows& rows) {
       note = e.what();
     }
     const std::string at = text("free hinge at 20 rad/s, %d substeps: energy after ", sub);
-    rows.add({at + "1 s / start", 1, 0.05, "", sub == 2 ? "32, 14, 0 % (Euler, implicit, RK4)" : ""}, second,
+    rows.add({at + "1 s / start", 1, 0.05, "", sub == 2 ? ".32, .14, 0 (Euler, implicit, RK4)" : ""}, second,
              note);
-    rows.add({at + "10 s / start", 1, 0.1, ""}, ten, note);
+    rows.add({at + "10 s / start", 1, 0.1, "", sub == 2 ? "2.3, 1.6e8, 4e-4 (Euler, implicit, RK4)" : ""},
+             ten, note);
   }
 }
 
@@ -197,8 +199,9 @@ Pendulum swing(std::vector<double> q0, int sub, const char* settings, int second
 
 void pendulums(Rows& rows) {
   // As it is by default: a damped order 1.
-  rows.add({"pendulum from 90 deg: energy after 1 s / start, 2 substeps", 1, 0.035, "", ""},
-           [] { return swing({kPi / 2}, 2, "", 1).energy.back(); });
+  rows.add(
+      {"pendulum from 90 deg: energy after 1 s / start, 2 substeps", 1, 0.035, "", ".012 (Euler), 0 (RK4)"},
+      [] { return swing({kPi / 2}, 2, "", 1).energy.back(); });
   rows.add({"pendulum from 90 deg: largest energy gained in 10 s, 2 substeps", 0, 0.01}, [] {
     const Pendulum p = swing({kPi / 2}, 2, "", 10);
     return std::max(0.0, *std::max_element(p.energy.begin(), p.energy.end()) - 1);
@@ -208,14 +211,17 @@ void pendulums(Rows& rows) {
     std::vector<double> q0;
     int sub;
     double tolerance;
+    const char* mujoco;
   };
   // 5 rods swing chaotically: their energy alone is compared
-  for (const Kept& k : {Kept{"pendulum from 90 deg", {kPi / 2}, 2, 0.01},
-                        Kept{"double pendulum from (2, 1) rad", {2, 1}, 2, 0.15},
-                        Kept{"double pendulum from (2, 1) rad", {2, 1}, 8, 0.05},
-                        Kept{"chain of 5", {1.2, 0.3, 0.2, 0.1, 0}, 8, 0.15}})
+  for (const Kept& k :
+       {Kept{"pendulum from 90 deg", {kPi / 2}, 2, 0.01, ".012 (Euler), 0 (RK4)"},
+        Kept{"double pendulum from (2, 1) rad", {2, 1}, 2, 0.15, ".75, 5.9, .008 (Euler, implicit, RK4)"},
+        Kept{"double pendulum from (2, 1) rad", {2, 1}, 8, 0.05, ""},
+        Kept{
+            "chain of 5", {1.2, 0.3, 0.2, 0.1, 0}, 8, 0.15, "14.5, 1, .065 (Euler, implicit, RK4; h 1/120)"}})
     rows.add({text("%s, integrator=trapezoid: energy after 10 s / start, %d substeps", k.said, k.sub), 1,
-              k.tolerance},
+              k.tolerance, "", k.mujoco},
              [&] { return swing(k.q0, k.sub, "integrator=trapezoid", 10).energy.back(); });
 }
 

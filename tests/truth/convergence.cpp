@@ -1,4 +1,5 @@
-// Where the engine goes as the substep goes to 0: the double pendulum from (1, .5) rad, after 1 s, beside its exact motion.
+// Where the engine goes as the substep goes to 0: the double pendulum from (1, .5) rad, after 1 s, beside its
+// exact motion.
 #include "convergence.hpp"
 
 #include <algorithm>

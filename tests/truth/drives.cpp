@@ -1,5 +1,6 @@
-// Drives. A step of the target: I q'' = kp (target - q) - kd q', by its two roots; a drive at its bound accelerates a link
-// by effort / (I + armature); drives are implicit, so the error is of order 1 in the substep.
+// Drives. A step of the target: I q'' = kp (target - q) - kd q', by its two roots; a drive at its bound
+// accelerates a link by effort / (I + armature); drives are implicit, so the error is of order 1 in the
+// substep.
 #include <algorithm>
 #include <complex>
 

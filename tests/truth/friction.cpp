@@ -1,5 +1,6 @@
-// Coulomb friction. A slope at angle a: rest below atan(mu), else g (sin a - mu cos a); sliding from v: v^2 / (2 mu g);
-// a ball that slides ends rolling at 5/7 v; a cylinder rolls down at 2/3 g sin a; four corners at r slow a turning box by mu g r m / I.
+// Coulomb friction. A slope at angle a: rest below atan(mu), else g (sin a - mu cos a); sliding from v: v^2 /
+// (2 mu g); a ball that slides ends rolling at 5/7 v; a cylinder rolls down at 2/3 g sin a; four corners at r
+// slow a turning box by mu g r m / I.
 #include <algorithm>
 
 #include "lab.hpp"
@@ -25,11 +26,19 @@ void slope(Rows& rows) {
   const double mu = 0.5, critical = std::atan(mu);
   for (const double share : {0.5, 0.9, 0.97, 0.99, 1.01, 1.03, 1.1, 1.5}) {
     const double a = critical * share;
+    // its default pyramid of friction, headings 0 and 45 deg
+    const char* const mujoco = share == 0.5    ? "8e-4, 7e-4 (headings)"
+                               : share == 0.9  ? ".002, 2.0 (headings)"
+                               : share == 0.99 ? ".007, 3.1 (headings)"
+                               : share == 1.01 ? ".016, 3.2 (headings)"
+                               : share == 1.1  ? ".08, 3.1 (headings)"
+                               : share == 1.5  ? ".38, 2.9 (headings)"
+                                               : "";
     const double exact = std::max(0.0, kG * (std::sin(a) - mu * std::cos(a)) * 2.5);
     rows.add({text("slope at %g of the critical angle, mu .5, headings 0 and 45 deg, 2 and 8 substeps: speed "
                    "after 2.5 s",
                    share),
-              exact, share < 1 ? 1e-4 : 0.006, "m/s"},
+              exact, share < 1 ? 1e-4 : 0.006, "m/s", mujoco},
              [&] {
                double worst = exact;
                for (const int sub : {2, 8})

@@ -1,5 +1,6 @@
-// Joints. Dry friction sticks below its torque and takes it away above; a coupling ties both ways, q2 = r q1, and the leader feels
-// r^2 times the follower's inertia; a limit stops a joint the same at all substeps, and moves no momentum of a free body.
+// Joints. Dry friction sticks below its torque and takes it away above; a coupling ties both ways, q2 = r q1,
+// and the leader feels r^2 times the follower's inertia; a limit stops a joint the same at all substeps, and
+// moves no momentum of a free body.
 #include <algorithm>
 
 #include "lab.hpp"

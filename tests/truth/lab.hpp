@@ -1,6 +1,6 @@
-// A laboratory on the public header alone: a scene of plain structs becomes a task of its own (rdm_task_register,
-// rdm_scene_*) and a pool of one world; after each control step all that can be seen of it is copied out.
-// SI units, radians; quaternions (x, y, z, w), as in redman.h.
+// A laboratory on the public header alone: a scene of plain structs becomes a task of its own
+// (rdm_task_register, rdm_scene_*) and a pool of one world; after each control step all that can be seen of
+// it is copied out. SI units, radians; quaternions (x, y, z, w), as in redman.h.
 #pragma once
 #ifndef RDM_EXPERIMENTAL
 #define RDM_EXPERIMENTAL

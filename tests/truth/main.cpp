@@ -1,9 +1,11 @@
-// truth: the engine beside pencil and paper, and MuJoCo. Every row is one case: what it measures here, what is right, how
-// near it must be. Deterministic; the exit status is 1 where a row is off, 2 for words that it does not know.
-//   truth [--share] [--only WORD] [--jobs N] [--json | --markdown] [--page FILE] [--skills TOOL POLICIES] [--times]
-// --share takes the checks that together last less than a minute; --page compares the rows with those between the marks of a
-// page; --skills adds the shipped policies at other substeps, minutes. Rows of the pending list (pending.cpp) may be off, and
-// may not hold.
+// truth: the engine beside pencil and paper, and MuJoCo. Every row is one case: what it measures here, what
+// is right, how near it must be. Deterministic; the exit status is 1 where a row is off, 2 for words that it
+// does not know.
+//   truth [--share] [--only WORD] [--jobs N] [--json | --markdown] [--page FILE]
+//         [--skills TOOL POLICIES] [--times]
+// --share takes the checks that together last less than a minute; --page compares the rows with those between
+// the marks of a page; --skills adds the shipped policies at other substeps, minutes. Rows of the pending list
+// (pending.cpp) may be off, and may not hold.
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -209,7 +211,8 @@ int run(const Words& words) {
                    print(r.tolerance).c_str(), print(r.exact).c_str());
     }
   }
-  if (!words.share && words.only.empty())  // a name that is no row's would wait for ever
+  if (!words.share && words.only.empty() &&
+      !words.tool.empty())  // a name that is no row's would wait for ever
     for (const std::string& name : pending_names()) {
       if (names.count(name) > 0) continue;
       std::fprintf(stderr, "'%s' of the pending list is no row: remove it from the pending list\n",

@@ -1,5 +1,5 @@
-// Heavy on light and light on heavy stand for 10 s, by default; and what is thinner than the usual contact layer rests too: it
-// carries its weight and sinks by a small share of its own thickness.
+// Heavy on light and light on heavy stand for 10 s, by default; and what is thinner than the usual contact
+// layer rests too: it carries its weight and sinks by a small share of its own thickness.
 #include <algorithm>
 
 #include "lab.hpp"

@@ -1,5 +1,5 @@
-// Engine ode as a cross-check: the same scenes as ODE's bodies and joints. Fast motion has its velocity products, a free robot
-// at a limit keeps its momentum, things at rest are carried.
+// Engine ode as a cross-check: the same scenes as ODE's bodies and joints. Fast motion has its velocity
+// products, a free robot at a limit keeps its momentum, things at rest are carried.
 #include <algorithm>
 
 #include "convergence.hpp"

@@ -1,5 +1,5 @@
-// Things at rest: their contacts carry their weight, sink no deeper than the layer that is left alone, and stacks, a pyramid
-// and a round arch of nine voussoirs stand where they were put.
+// Things at rest: their contacts carry their weight, sink no deeper than the layer that is left alone, and
+// stacks, a pyramid and a round arch of nine voussoirs stand where they were put.
 #include <algorithm>
 
 #include "lab.hpp"

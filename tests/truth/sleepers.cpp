@@ -1,4 +1,5 @@
-// What sleeps keeps the contacts with which it fell asleep: their forces carry its weight at all times after it came to rest.
+// What sleeps keeps the contacts with which it fell asleep: their forces carry its weight at all times after
+// it came to rest.
 #include <algorithm>
 
 #include "lab.hpp"

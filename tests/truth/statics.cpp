@@ -1,5 +1,6 @@
-// Statics and Newton's law: drives carry m g l, contacts carry what lies on a robot, efforts of rdm_world_gravity hold an arm, and
-// of each body in a pile m dv = h (sum of its listed contact forces + m g) in every substep.
+// Statics and Newton's law: drives carry m g l, contacts carry what lies on a robot, efforts of
+// rdm_world_gravity hold an arm, and of each body in a pile m dv = h (sum of its listed contact forces + m g)
+// in every substep.
 #include <algorithm>
 
 #include "lab.hpp"

@@ -1,7 +1,8 @@
-// Contacts in time: fast things against thin ones. A thing of 6 cm and .1 kg is shot 24 times at a target, from places spread over
-// the way of one substep; "through" is that it crosses the target's middle plane within its silhouette. Nothing may go through,
-// whatever the speed, and nothing may leave with more energy than it came with. What passes beside a thing, or over the inner
-// edges of flush tiles, is not touched by them. All with the option speculative_contacts.
+// Contacts in time: fast things against thin ones. A thing of 6 cm and .1 kg is shot 24 times at a target,
+// from places spread over the way of one substep; "through" is that it crosses the target's middle plane
+// within its silhouette. Nothing may go through, whatever the speed, and nothing may leave with more energy
+// than it came with. What passes beside a thing, or over the inner edges of flush tiles, is not touched by
+// them. All with the option speculative_contacts.
 #include <algorithm>
 
 #include "lab.hpp"
