@@ -184,6 +184,7 @@ rdm_result Lab::build(rdm_scene* out) {
   check(rdm_scene_add_material(out, "m"));
   check(rdm_scene_set_friction(out, "m", "m", scene.friction));
   check(rdm_scene_set_gravity(out, scene.gravity.data()));
+  if (scene.materials) scene.materials(out);
   if (scene.feedforward) check(rdm_scene_set_feedforward(out));
   joints_ = 0;
   int count = 0;

@@ -97,7 +97,8 @@ struct Scene {
   V3 gravity = {0, 0, -kG};
   double friction = 1;  // of all on all
   bool feedforward = false;
-  std::string settings;  // lines key=value
+  std::string settings;                       // lines key=value
+  std::function<void(rdm_scene*)> materials;  // what "m" is beside its friction
   std::function<void(const Lab&, rdm_world*)> control;
 };
 

@@ -141,6 +141,7 @@ int run(const Words& words) {
   add_mass_ratios(all);
   add_joints(all);
   add_drives(all);
+  add_contact_laws(all);
   add_sleepers(all);
   add_ode(all);
   add_statics(all);

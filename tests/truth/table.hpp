@@ -60,6 +60,7 @@ void add_tunnelling(Checks& checks);
 void add_mass_ratios(Checks& checks);
 void add_joints(Checks& checks);
 void add_drives(Checks& checks);
+void add_contact_laws(Checks& checks);
 void add_sleepers(Checks& checks);
 void add_ode(Checks& checks);
 void add_statics(Checks& checks);
