@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "physics/articulated/articulated_world.hpp"
 #include "physics/kinematic_world.hpp"
+#include "physics/model/soft_limits.hpp"
 #include "physics/ode/ode_world.hpp"
 
 namespace rdm {
@@ -220,7 +221,7 @@ bool World::sound_rows(Reader& in, const Scene& scene) {
     const JointDef& joint = scene.link(i).joint;
     // an engine may keep angles as floats
     const double room =
-        scene.def.solver.limit_margin + 1e-6 * (1 + std::fabs(joint.lower) + std::fabs(joint.upper));
+        stop_margin(scene.def.solver) + 1e-6 * (1 + std::fabs(joint.lower) + std::fabs(joint.upper));
     const auto q = in.value<double>();
     good &= q >= joint.lower - room && q <= joint.upper + room;
   }

@@ -33,6 +33,7 @@
 #include "physics/articulated/look_ahead.inl"
 #include "physics/articulated/sleep.hpp"
 #include "physics/articulated/stepper.hpp"
+#include "physics/model/soft_limits.hpp"
 
 namespace rdm {
 namespace {
@@ -1082,7 +1083,7 @@ void BatchStepper<L>::contact_forces(int32_t world) {
 template <class L>
 void BatchStepper<L>::integrate(TreeBatch<L>& t) {
   const Mask good =
-      integrate_joints(t, static_cast<S>(scene_->def.solver.limit_margin), static_cast<S>(kRateBound));
+      integrate_joints(t, static_cast<S>(stop_margin(scene_->def.solver)), static_cast<S>(kRateBound));
   const uint32_t bad = worlds_of(t, good ^ L::mask(~0u));
   for (int32_t w = 0; w < count_; ++w)
     if (bad >> w & 1) worlds_[w]->diverged = true;

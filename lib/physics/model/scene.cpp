@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "physics/model/inertia.hpp"
+#include "physics/model/soft_limits.hpp"
 #include "physics/model/validate.hpp"
 
 namespace rdm {
@@ -246,7 +247,7 @@ double reach_of(const Scene& scene, const SceneShape& shape) {
     reach += norm(frame.p_PL);
     const JointDef& joint = scene.link(i).joint;
     if (frame.prismatic)
-      reach += std::max(std::fabs(joint.lower), std::fabs(joint.upper)) + scene.def.solver.limit_margin;
+      reach += std::max(std::fabs(joint.lower), std::fabs(joint.upper)) + stop_margin(scene.def.solver);
   }
   return reach;
 }
