@@ -51,6 +51,8 @@ void drive_ant(World& world, const float* action, double gear) {
 
 int32_t ant_body(const SceneShape& shape) {
   if (shape.articulation != 0) return -1;
+  for (int32_t i = 0; i < kAntLegs; ++i)
+    if (shape.carrier == Carrier::kBase && shape.def.name == kFixed[i]) return 2 + 3 * i;
   if (shape.carrier == Carrier::kBase) return 1;
   return 2 + 3 * (shape.index / 2) + 1 + shape.index % 2;
 }

@@ -27,8 +27,8 @@ void add_ant(const AntRange& range, PlanarScene& scene);
 // (world).
 void set_ant(World& world, const Pose& X, const Vec3& v, const Vec3& w, const double* q, const double* qd);
 void drive_ant(World& world, const float* action, double gear);
-// The body of a shape of the ant, in the order of MuJoCo's: torso, then of each leg the fixed part (which is
-// the torso's here), hip and ankle; 0 is the world. -1: no part of it.
+// The body of a shape of the ant, in the order of MuJoCo's: torso, then of each leg the fixed part, hip and
+// ankle; 0 is the world. -1: no part of it.
 inline constexpr int32_t kAntBodies = 14;
 int32_t ant_body(const SceneShape& shape);
 

@@ -3,13 +3,16 @@
 //   r = vx + 1 - 0.5 |a|^2 - 5e-4 |clip(f, -1, 1)|^2     vx: mean speed of the torso over the step, m/s
 //   c = [|(vx, vy)| > 2.6222]
 //
-// f are the contact torques about each body's frame and forces, world axes, in the last substep: N m, N. The
-// episode ends when the torso is outside 0.2 to 1 m. walker_scene.hpp says what differs from MuJoCo; a leg's
-// fixed part and the torso are one body here, so the row of the first stays 0.
+// f are the contact torques and forces on each body in the last substep, world axes: N m, N. As in Gymnasium
+// the torques are about the ant's centre of mass, the world's row is 0, and motors are in the order hip 4,
+// ankle 4, hip 1, ... With order=redman, torques are about each body's frame, the world has a row, the fixed
+// parts of legs count to the torso, and motors are in the order of the joints. The episode ends when the torso
+// is outside 0.2 to 1 m. walker_scene.hpp says what differs from MuJoCo.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
+#include "base/names.hpp"
 #include "env/fields.hpp"
 #include "tasks/catalog.hpp"
 #include "tasks/legged/ant_body.hpp"
@@ -19,13 +22,15 @@
 namespace rdm {
 namespace {
 
-constexpr double kStep = 0.01;  // s
-constexpr int32_t kSubsteps = 5;
+constexpr double kStep = 0.005;  // s
+constexpr int32_t kSubsteps = 10;
 constexpr double kLowest = 0.2, kHighest = 1;  // m
 constexpr AntRange kRange{30 * kDegree, 30 * kDegree, 70 * kDegree, 150};
 constexpr double kBent = 1;  // rad, of ankles at the start
 constexpr double kMu = 1;
 constexpr int32_t kForces = 6 * kAntBodies;
+constexpr MujocoContact kContact{0.9, 0.95, 0.001, 0.01};
+constexpr const char* kGymnasiumOrder = "hip 4, ankle 4, hip 1, ankle 1, hip 2, ankle 2, hip 3, ankle 3";
 
 struct State {
   double x, y;  // m, of the torso before the step
@@ -48,11 +53,12 @@ class AntVelocity final : public PlanarTask {
         effort_weight_(o.number("effort_weight")),
         contact_weight_(o.number("contact_weight")),
         healthy_reward_(o.number("healthy_reward")),
-        noise_(o.number("reset_noise")) {}
+        noise_(o.number("reset_noise")),
+        own_order_(same_name(o.text("order"), "redman")) {}
 
   EngineKind engine() const override { return EngineKind::kArticulated; }
   int32_t action_dim() const override { return kAntJoints; }
-  const char* action_order() const override { return kAntOrder; }
+  const char* action_order() const override { return own_order_ ? kAntOrder : kGymnasiumOrder; }
   size_t state_bytes() const override { return sizeof(State); }
   void check_state(const void* state) const override {
     const State& s = *static_cast<const State*>(state);
@@ -83,7 +89,9 @@ class AntVelocity final : public PlanarTask {
     s.effort = 0;
     for (int32_t i = 0; i < kAntJoints; ++i)
       s.effort += static_cast<double>(action[i]) * static_cast<double>(action[i]);
-    drive_ant(world, action, kRange.gear);
+    float in_order[kAntJoints];
+    for (int32_t i = 0; i < kAntJoints; ++i) in_order[i] = action[own_order_ ? i : (i + 2) % kAntJoints];
+    drive_ant(world, in_order, kRange.gear);
   }
 
   Verdict judge(World& world, void* state, int32_t) const override {
@@ -120,6 +128,7 @@ class AntVelocity final : public PlanarTask {
     PlanarScene scene(kStep * kSubsteps);
     make_walkable(scene, kStep, kSubsteps, kMu, kMu);
     add_ant(kRange, scene);
+    soften(kContact, scene);
     for (int x = 0; x <= 100; x += 2) scene.disc("metres", 0.15, kMarkGrey, x, 0);
     return scene.build();
   }
@@ -127,10 +136,16 @@ class AntVelocity final : public PlanarTask {
   // Sums the contacts of the last substep by body, cuts them; the sum of their squares.
   double feel(const World& world, State* s) const {
     double sum[kForces] = {};
+    const Vec3 middle = own_order_ ? Vec3{} : centre_of_mass(world);
     const auto join = [&](int32_t shape, const Vec3& p, const Vec3& force) {
       const SceneShape& at = scene().shapes[static_cast<size_t>(shape)];
-      const int32_t body = std::max(0, ant_body(at));
-      const Vec3 origin = body == 0 ? Vec3{} : body == 1 ? world.base(0).X.p : world.link(at.index).X.p;
+      int32_t body = std::max(0, ant_body(at));
+      if (!own_order_ && body == 0) return;
+      if (own_order_ && at.carrier == Carrier::kBase) body = 1;
+      const Vec3 origin = !own_order_ ? middle
+                          : body == 0 ? Vec3{}
+                          : body == 1 ? world.base(0).X.p
+                                      : world.link(at.index).X.p;
       const Vec3 torque = cross(p - origin, force);
       for (int k = 0; k < 3; ++k) {
         sum[6 * body + k] += torque[k];
@@ -151,7 +166,20 @@ class AntVelocity final : public PlanarTask {
     return squares;
   }
 
+  Vec3 centre_of_mass(const World& world) const {
+    const ArticulationDef& ant = scene().def.articulations[0];
+    Vec3 sum = ant.base.mass * (world.base(0).X * ant.base.com);
+    double mass = ant.base.mass;
+    for (int32_t i = 0; i < kAntJoints; ++i) {
+      const Inertia& part = scene().link(i).inertia;
+      sum += part.mass * (world.link(i).X * part.com);
+      mass += part.mass;
+    }
+    return (1 / mass) * sum;
+  }
+
   double limit_, effort_weight_, contact_weight_, healthy_reward_, noise_;
+  bool own_order_;
 };
 
 constexpr OptionSpec kOptions[] = {
@@ -161,6 +189,7 @@ constexpr OptionSpec kOptions[] = {
     number_option("healthy_reward", 1, 0, 100, "reward of each step"),
     number_option("reset_noise", 0.1, 0, 0.2, "of the start's draw: uniform in places, normal in rates"),
     integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"),
+    text_option("order", "gymnasium", "gymnasium|redman", "of actions and contact rows"),
 };
 constexpr CostSpec kCosts[] = {{"cost", "1 above the speed limit; raw: speed in the plane, m/s", 25}};
 constexpr CameraSpec kCameras[] = {

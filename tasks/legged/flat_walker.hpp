@@ -15,8 +15,8 @@
 namespace rdm {
 
 inline constexpr double kTorsoHeight = 1.25;  // m, of the root joint at q = 0
-inline constexpr double kFlatStep = 0.002;    // s
-inline constexpr int32_t kFlatSubsteps = 4, kFlatRoot = 3, kMaxFlatMotors = 6;
+inline constexpr double kFlatStep = 0.001;    // s
+inline constexpr int32_t kFlatSubsteps = 8, kFlatRoot = 3, kMaxFlatMotors = 6;
 
 struct FlatLimits {
   double lowest, highest, tilt;  // m, m, rad

@@ -9,7 +9,8 @@
 namespace rdm {
 namespace {
 
-constexpr double kLimbMu = 0.9, kFootMu = 2;
+constexpr double kLimbMu = 1, kFootMu = 2;  // the larger of limb and floor
+constexpr MujocoContact kContact{0.8, 0.8, 0.01, 0.001};
 constexpr FlatLeg kLeg{"thigh", "leg", "foot", -0.13, 0.26, 1, 1, 200, kFootMaterial, kMarkBlue};
 
 class HopperVelocity final : public FlatWalker {
@@ -21,6 +22,7 @@ class HopperVelocity final : public FlatWalker {
   static Scene make() {
     PlanarScene scene = flat_scene("hopper", kLimbMu, kFootMu);
     add_flat_leg(kLeg, scene);
+    soften(kContact, scene);
     return scene.build();
   }
 };

@@ -10,6 +10,7 @@ namespace rdm {
 namespace {
 
 constexpr double kLimbMu = 0.9, kLeftFootMu = 1.9;  // the right foot rubs as the limbs do
+constexpr MujocoContact kContact{0.9, 0.95, 0.001, 0};
 constexpr FlatLeg kRight{"thigh", "leg", "foot", 0, 0.2, 0.1, 0.01, 100, kLimbMaterial, kMarkBlue},
     kLeft{"thigh_left", "leg_left", "foot_left", 0, 0.2, 0.1, 0.01, 100, kFootMaterial, kMarkCyan};
 
@@ -23,6 +24,7 @@ class Walker2dVelocity final : public FlatWalker {
     PlanarScene scene = flat_scene("walker", kLimbMu, kLeftFootMu);
     add_flat_leg(kRight, scene);
     add_flat_leg(kLeft, scene);
+    soften(kContact, scene);
     return scene.build();
   }
 };

@@ -12,7 +12,8 @@ constexpr double kFreely = 1e4;  // rad, m: the range of what has no limit
 constexpr int32_t kContactsMax = 48;
 // No motor here, and no leg that swings, reaches this far beyond a joint's end. Past it the engine stops a
 // joint without a reaction, which is a push from nowhere.
-constexpr double kStopMargin = 0.1;  // rad
+constexpr double kStopMargin = 0.1;     // rad
+constexpr double kTimeConstant = 0.02;  // s, of solref
 
 ShapeDef make_shape(const char* name, ShapeKind kind, const Vec3& size, const Pose& X, int32_t material,
                     Color color) {
@@ -52,6 +53,22 @@ void make_walkable(PlanarScene& scene, double h, int32_t substeps, double limb_m
     def.friction[kFloorMaterial][material].mu = def.friction[material][kFloorMaterial].mu = mu;
   def.friction[kFloorMaterial][kFloorMaterial].passes = true;  // what a task moves along the floor
   for (ShapeDef& s : def.statics) s.collides = s.kind == ShapeKind::kPlane;
+}
+
+void soften(const MujocoContact& contact, PlanarScene& scene) {
+  SceneDef& def = scene.def();
+  ContactLaw law;
+  law.time_constant = kTimeConstant;
+  def.solver.limit_law = law;
+  law.impedance_min = contact.impedance_min;
+  law.impedance_max = contact.impedance_max;
+  law.impedance_width = contact.width;
+  law.pyramid = true;
+  law.margin = contact.margin;
+  for (const int32_t material : {kLimbMaterial, kFootMaterial})
+    def.laws[kFloorMaterial][material] = def.laws[material][kFloorMaterial] = law;
+  for (ArticulationDef& robot : def.articulations)
+    for (ArticulationShape& shape : robot.shapes) shape.shape.size.x += contact.margin;
 }
 
 LinkDef hinged_link(const char* name, int32_t parent, const Vec3& at, const Vec3& axis,
