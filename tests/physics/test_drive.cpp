@@ -87,7 +87,7 @@ TEST(Drive, NoDriveNoRow) {
   EXPECT_GT(motor_row(joint, SolverDef(), 1.6, 1, 1).force, 0);  // the limit remains
 }
 
-TEST(Drive, DryFrictionOpposesAndFadesAtRest) {
+TEST(Drive, DryFrictionOpposesAndSticks) {
   JointDef joint = finger();
   joint.kp = joint.kd = 0;
   joint.friction = 0.02;
@@ -96,7 +96,13 @@ TEST(Drive, DryFrictionOpposesAndFadesAtRest) {
     const MotorRow row = motor_row(joint, solver, 0.5, qd, 0);
     EXPECT_NEAR(motor_torque(row, qd), -std::copysign(0.02, qd), 1e-12);
   }
-  EXPECT_NEAR(motor_torque(motor_row(joint, solver, 0.5, 0.01, 0), 0.01), -0.002, 1e-12);
+  const MotorRow row = motor_row(joint, solver, 0.5, 1, 0);
+  EXPECT_NEAR(motor_torque(row, kStickSpeed / 2), -0.01, 1e-12);
+  EXPECT_EQ(row.force, joint.friction);
+  joint.kp = 1;  // beside a drive it fades below kFrictionSpeed
+  joint.effort = 0.9;
+  EXPECT_NEAR(motor_torque(motor_row(joint, solver, 0.5, 0.01, 0.5), 0.01),
+              -(0.02 / kFrictionSpeed + solver.h * joint.kp) * 0.01, 1e-12);
 }
 
 TEST(Drive, SpringOnlyEffortLeavesDampingOutside) {

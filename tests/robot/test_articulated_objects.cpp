@@ -112,8 +112,8 @@ TEST(ArticulatedObjects, StayWhereTheyAreLeft) {
   });
 }
 
-// A push of half the friction lets it creep, at half the speed below which friction is viscous; one of three
-// times that moves it, that way.
+// A push of half the friction does not move it but for creep where friction is beside a spring or, on engine ode, a
+// push; one of three times that moves it, that way.
 TEST(ArticulatedObjects, MoveWhereTheyArePushed) {
   for_all([](const Robot& robot, EngineKind engine) {
     for (int32_t i = 0; i < robot.links.count; ++i)

@@ -467,7 +467,13 @@ void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, 
   const int32_t first = tree.row[static_cast<size_t>(at.coord)],
                 depth = tree.depth[static_cast<size_t>(at.coord)];
   const int16_t* path = tree.path.data() + first;
+  const uint8_t* moving = tree.moving.data() + first;
   for (int32_t d = 0; d <= depth; ++d) {
+    factor_rows_[d] = batch->factor + tree.row[static_cast<size_t>(path[d])];
+    if (!moving[d]) {
+      z[d] = Axes4{};
+      continue;
+    }
     const CoordWork<V>& c = batch->coord[path[d]];
     S a[3], s[3];
     for (int r = 0; r < 3; ++r) {
@@ -479,7 +485,6 @@ void BatchStepper<L>::add_contact_rows(typename ContactSolver<S>::Point* point, 
                     s[2] + (a[0] * x[1] - a[1] * x[0])};
     z[d] = axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2];
     velocity += z[d] * L::get(c.v1, lane);
-    factor_rows_[d] = batch->factor + tree.row[static_cast<size_t>(path[d])];
   }
   for (int f = 0; f < count; ++f) point->b[f] -= velocity[f];
   // L^-T: from each entry what those behind it take, the last first; four entries at a time stay in registers
@@ -1439,6 +1444,7 @@ void BatchStepper<L>::fill_constants(TreeBatch<L>& t, int32_t batch) {
       put(&b.slack, l, joint.slack);
       put(&b.limit_stiffness, l, link.limit_stiffness);
       put(&b.limit_weight, l, link.limit_weight);
+      put(&b.limit_time, l, link.limit_time);
     }
     for (size_t k = 0; k < m.shapes.size(); ++k) {
       const ShapeDef& def = scene_->shapes[static_cast<size_t>(m.first_shape) + k].def;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "physics/model/drive.hpp"
 #include "physics/model/inertia.hpp"
 #include "physics/model/inverse_weights.hpp"
 
@@ -40,6 +41,8 @@ constexpr double kHeavy = 0.05, kStiff = 10;
 // the margin, past which it would be stopped without a reaction, and push a free base along.
 // Up to kStiffest I / h^2, for efforts that stand for no bound at all.
 constexpr double kLeaning = 0.5, kStiffest = 1e4;
+// An end's damping is its stiffness times kLimitTime (drive.hpp), or what damps the inertia critically, 2 (k I)^1/2,
+// where that is more: in seconds, whatever the substep; but no less than implicit Euler's own h k.
 
 void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* member) {
   const SolverDef& solver = scene.def.solver;
@@ -68,6 +71,9 @@ void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* memb
                    std::min(def.links[i].joint.effort / (kLeaning * solver.limit_margin), kStiffest * stiff));
     member->links[i].limit_stiffness = k;
     member->links[i].limit_weight = 1;
+    member->links[i].limit_time = std::max(solver.h, kLimitTime);
+    if (k > 0)
+      member->links[i].limit_time = std::max(member->links[i].limit_time, 2 * std::sqrt(carried[i] / k));
   }
 }
 
@@ -155,6 +161,56 @@ void add_coord(Tree* tree, int32_t parent) {
   tree->path.push_back(static_cast<int16_t>(at));
 }
 
+// The coordinate before which a coordinate's row ends: its parent, or what couplings put in between. By
+// symbolic elimination, the last coordinate first: what a row has entries with, its parent has too.
+Vector<int32_t> row_parents(const Tree& tree, const Vector<int32_t>& parents) {
+  const auto count = parents.size();
+  Vector<uint8_t> entries(count * count);
+  const auto entry = [&](size_t row, int32_t column) -> uint8_t& {
+    return entries[row * count + static_cast<size_t>(column)];
+  };
+  for (size_t c = 0; c < count; ++c)
+    for (int32_t p = parents[c]; p >= 0; p = parents[static_cast<size_t>(p)]) entry(c, p) = 1;
+  for (int32_t i = 0; i < tree.num_links; ++i) {
+    const int32_t other = tree.links[static_cast<size_t>(i)].coupled_to;
+    if (other < 0) continue;
+    const auto [low, high] = std::minmax({tree.coord(i), tree.coord(other)});
+    entry(static_cast<size_t>(high), low) = 1;
+  }
+  Vector<int32_t> out(count, -1);
+  for (size_t c = count; c-- > 0;) {
+    for (auto p = static_cast<int32_t>(c); p-- > 0 && out[c] < 0;)
+      if (entry(c, p)) out[c] = p;
+    if (out[c] < 0) continue;
+    for (int32_t p = 0; p < out[c]; ++p) entry(static_cast<size_t>(out[c]), p) |= entry(c, p);
+  }
+  return out;
+}
+
+// Which coordinates of a row move its link, and where the entries of couplings are.
+void mark_rows(const Vector<int32_t>& parents, Tree* tree) {
+  const auto place = [&](int32_t c, int32_t other) {
+    const int32_t row = tree->row[static_cast<size_t>(c)], depth = tree->depth[static_cast<size_t>(c)];
+    const auto begin = tree->path.begin() + row;
+    return static_cast<int32_t>(std::find(begin, begin + depth, static_cast<int16_t>(other)) -
+                                tree->path.begin());
+  };
+  tree->moving.resize(tree->path.size());
+  for (int32_t c = 0; c < tree->num_coords; ++c) {
+    tree->moving[static_cast<size_t>(tree->row[static_cast<size_t>(c)] +
+                                     tree->depth[static_cast<size_t>(c)])] = 1;
+    for (int32_t p = parents[static_cast<size_t>(c)]; p >= 0; p = parents[static_cast<size_t>(p)])
+      tree->moving[static_cast<size_t>(place(c, p))] = 1;
+  }
+  for (int32_t i = 0; i < tree->num_links; ++i) {
+    TreeLink& link = tree->links[static_cast<size_t>(i)];
+    if (link.coupled_to < 0) continue;
+    const auto [low, high] = std::minmax({tree->coord(i), tree->coord(link.coupled_to)});
+    link.coupling_entry = place(high, low);
+    tree->coupled.push_back(i);
+  }
+}
+
 void list_slots(Tree* tree) {
   const auto count = static_cast<size_t>(tree->num_coords);
   Vector<int32_t> children(count), segments(count);  // segments: on the path so far
@@ -200,8 +256,9 @@ Tree make_tree(const Scene& scene, int32_t articulation) {
   if (tree.num_coords > kMaxCoords)
     fail(Code::kUnsupported, "%s: %d coordinates, the engine takes at most %d", def.name.text,
          tree.num_coords, kMaxCoords);
+  Vector<int32_t> parents;  // of each coordinate
   if (def.free_base)
-    for (int32_t k = 0; k < 6; ++k) add_coord(&tree, k - 1);
+    for (int32_t k = 0; k < 6; ++k) parents.push_back(k - 1);
   const int32_t base_coord = def.free_base ? 5 : -1;
   for (const LinkDef& link : def.links) {
     TreeLink t;
@@ -211,8 +268,10 @@ Tree make_tree(const Scene& scene, int32_t articulation) {
     t.sensor = link.sensor;
     t.weightless = link.weightless;
     tree.links.push_back(t);
-    add_coord(&tree, link.parent < 0 ? base_coord : tree.coord(link.parent));
+    parents.push_back(link.parent < 0 ? base_coord : tree.coord(link.parent));
   }
+  for (const int32_t parent : row_parents(tree, parents)) add_coord(&tree, parent);
+  mark_rows(parents, &tree);
   for (const ArticulationShape& s : def.shapes) {
     tree.shape_links.push_back(s.link);
     tree.shape_slender.push_back(s.shape.kind == ShapeKind::kCapsule);

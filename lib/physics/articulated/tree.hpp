@@ -11,6 +11,10 @@
 // first, itself last, and all rows stand in one array. Six coordinates of a base are a chain: each is the
 // parent of the next.
 //
+// A coupling adds an entry for its two joints. Where neither is behind the other, the one with the higher number
+// has the other's row before its own: rows are then those of the elimination tree (Davis, Direct Methods for
+// Sparse Linear Systems, 2006, section 4.1), a superset of the ancestors, and `moving` says which are.
+//
 // Robots that are alike (links, joints, shapes; not the numbers) are members of one tree, and members are
 // what the lanes of a batch hold.
 #pragma once
@@ -20,8 +24,9 @@ namespace rdm {
 
 // What all members of a tree have in common, per link.
 struct TreeLink {
-  int32_t parent = -1;      // link of the tree, -1: the base
-  int32_t coupled_to = -1;  // link whose angle a coupled joint follows
+  int32_t parent = -1;          // link of the tree, -1: the base
+  int32_t coupled_to = -1;      // link whose angle a coupled joint follows
+  int32_t coupling_entry = -1;  // of the two joints in the mass matrix
   bool prismatic = false;
   bool aligned = false;    // J is not turned against the parent's J at q = 0
   bool isotropic = false;  // the moments are the same about every axis
@@ -40,6 +45,7 @@ struct MemberLink {
   JointDef joint;
   double limit_stiffness;  // N m/rad (N/m) of the joint's ends
   double limit_weight;     // 1/(kg m2) (1/kg) of soft limits, else 1 (model/inverse_weights.hpp)
+  double limit_time;       // s, their damping over their stiffness
 };
 
 struct TreeShape {
@@ -76,14 +82,16 @@ struct Tree {
   bool looks_ahead = false;  // look_ahead.inl
   int32_t num_links = 0, num_coords = 0;
   Vector<TreeLink> links;
+  Vector<int32_t> coupled;  // those of them that are coupled to another
   Vector<TreeMember> members;
   // Shape i of a member is shape first_shape + i of the scene.
   Vector<int32_t> shape_links;    // -1: the base
   Vector<uint8_t> shape_slender;  // capsules: their bounds have an axis
 
   Vector<int32_t> row;          // [num_coords]: where a coordinate's row begins in `path` and in the matrix
-  Vector<int32_t> depth;        // [num_coords]: ancestors of a coordinate
-  Vector<int16_t> path;         // all rows: the ancestors' indices and the coordinate's own
+  Vector<int32_t> depth;        // [num_coords]: coordinates before it in its row
+  Vector<int16_t> path;         // all rows: those coordinates' indices and its own
+  Vector<uint8_t> moving;       // as `path`: 1: it moves the row's link; 0: there for a coupling's sake
   Vector<int32_t> first_below;  // [num_coords + 1]: where a coordinate's descendants begin in `below`
   Vector<TreeBelow> below;      // of each coordinate the last first
   Vector<TreeSlot> slots;

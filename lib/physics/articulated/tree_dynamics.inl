@@ -52,18 +52,22 @@ template <class L>
 struct LinkModel : LinkConstants<typename L::V> {
   using V = typename L::V;
   V R_PJ[9], q_PJ[4], p_PJ[3], com[3];
-  V lower, upper, ratio, slack, limit_stiffness, limit_weight;
+  V lower, upper, ratio, slack, limit_stiffness, limit_time, limit_weight;
 };
 
 // One substep's values, per link.
 template <class V>
 struct LinkWork {
   V q, target;
-  V c[3], moment[6];         // centre of mass and moments about it, world axes
-  V f[3], n[3];              // spatial force, then the sum of those behind the joint
-  V mass, h[3], J[6];        // spatial inertia, then that of the composite body behind the joint
-  V push[6];                 // force and torque about the centre of mass
-  V spring, gain, bound;     // drive: torque = spring - gain v1, inside +-bound
+  V c[3], moment[6];      // centre of mass and moments about it, world axes
+  V f[3], n[3];           // spatial force, then the sum of those behind the joint
+  V mass, h[3], J[6];     // spatial inertia, then that of the composite body behind the joint
+  V push[6];              // force and torque about the centre of mass
+  V spring, gain, bound;  // drive: torque = spring - gain v1, inside +-bound; of a coupled joint, v1 of both
+  V damping;              // beside it, outside of the bound
+  V stick, slip,
+      sticks;   // dry friction: gain while slip is 0, else a torque against slip; 1: a row of its own
+  V uncoupled;  // mass matrix of a coupled joint and the other, without the coupling
   V limit_gain, limit_push;  // soft limit: torque = gain (push - v1), inwards alone
   V torque;                  // mean over the substeps so far
   V ahead_v[3], ahead_n[3];  // what the coming motion changes (look_ahead.inl): of c's velocity, of the spin
@@ -88,7 +92,7 @@ struct TreeBatch : BaseConstants<typename L::V> {
 
   const Tree* tree;
   S h, inv_h;
-  bool spring_only, any_push;
+  bool spring_only, any_push, any_stick;
   const ContactLaw* limit_law;  // null: limits are hard
   Mask frozen;                  // lanes whose active sets stay for this substep
   uint32_t pushed;              // lanes that have a contact, a bit each
@@ -544,7 +548,8 @@ void composite_inertias(TreeBatch<L>& t) {
     for (int r = 0; r < 3; ++r) l[r] += x[r];
     for (int d = 0; d <= depth; ++d) {
       const CoordWork<V>& other = t.coord[tree.path[static_cast<size_t>(row + d)]];
-      t.mass_matrix[row + d] = dot(other.a, l) + dot(other.s, p);
+      t.mass_matrix[row + d] =
+          tree.moving[static_cast<size_t>(row + d)] ? V(dot(other.a, l) + dot(other.s, p)) : V{};
     }
     t.mass_matrix[row + depth] += t.model[i].armature;
     if (parent < 0 && !tree.free_base) continue;

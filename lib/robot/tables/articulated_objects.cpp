@@ -1,7 +1,7 @@
 // Things that move and are no robots: a drawer, a door, a bottle with a screw cap, scissors, a tap.
 //
-// Nothing drives them: a joint has dry friction, which holds it where it was left but for creep below
-// kFrictionSpeed, a little damping, and of a door's handle a spring. Frames: z up, x out of the front, to
+// Nothing drives them: a joint has dry friction, which holds it where it was left, a little damping, and of a
+// door's handle a spring. Frames: z up, x out of the front, to
 // whom handles them; joints at 0 are closed. Sizes and masses are round figures of such things (K); moments
 // are those of solid boxes (D). What slides or turns in a guide does not touch it: the joint and its ends are
 // the guide.
