@@ -433,7 +433,7 @@ TEST(CoupledJoints, MayStandBeforeTheOnesTheyFollow) {
       test::Simulation sim(def, engine);
       sim->target()[1 - follower] = 0.6;
       std::vector<double> track;
-      for (int k = 0; k < 60; ++k) {
+      for (int k = 0; k < 120; ++k) {  // the leader moves both
         sim->step();
         track.push_back(sim->q()[1 - follower]);
         track.push_back(sim->q()[follower]);

@@ -158,7 +158,8 @@ TEST(ArticulatedObjects, StopAtTheirEnds) {
         EXPECT_EQ(sim->status() & kStatusDiverged, 0u) << robot.name << " " << l.joint;
         EXPECT_LT(high, l.upper + 0.02) << robot.name << " " << l.joint;
         EXPECT_GT(low, l.lower - 0.02) << robot.name << " " << l.joint;
-        EXPECT_NEAR(sim->q()[i], way > 0 ? l.upper : l.lower, 0.03) << robot.name << " " << l.joint;
+        EXPECT_NEAR(sim->q()[i], way > 0 ? l.upper : l.lower, 0.03)
+            << robot.name << " " << l.joint << " " << (engine == EngineKind::kOde ? "ode" : "articulated");
       }
   });
 }
