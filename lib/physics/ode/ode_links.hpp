@@ -67,8 +67,8 @@ class OdeLinks {
     Row row;
     double sign;        // of the row's rate against the joint's
     double cfm, force;  // what ODE was told last
-    MotorRow motor;
-    int32_t other;  // flat link a coupled joint follows, -1
+    MotorRow motor;     // the drive's law
+    int32_t other;      // flat link a coupled joint follows, -1
   };
   struct Bias {
     Vec3 linear, angular;  // acceleration of a link's origin, while those of joints and bases are 0

@@ -13,6 +13,13 @@ namespace {
 constexpr int32_t kMaxOdeIterations = 8;  // more would draw from a process-wide seed
 constexpr double kTurnTolerance = 1e-6;   // between a saved quaternion and its matrix
 
+constexpr double kSmallDecay = 1e-4;  // below it series are used, to x^2
+
+// (1 - e^-x) / x
+double mean_decay(double x) {
+  return x > kSmallDecay ? -std::expm1(-x) / x : 1 - x / 2 + x * x / 6;
+}
+
 // What the solver's working memory is taken for: a purpose of its own, because it serves all worlds that
 // share it. ODE gives the old block back before it asks for a larger one, and keeps pointing at it when that
 // is refused: it stays until the larger one is there.
@@ -151,12 +158,19 @@ void OdeWorld::make_geoms() {
 }
 
 void OdeWorld::set_force(Force* force, dBodyID body, double linear_damping, double angular_damping,
-                         double mass, bool gravity) {
+                         double mass, bool gravity, bool flies) {
   const double h = scene_->def.solver.h;
   force->body = body;
-  force->linear = 1 / (1 + h * linear_damping);
-  force->angular = 1 / (1 + h * angular_damping);
-  if (gravity) force->gravity = (mass * (force->linear - 1)) * scene_->def.gravity;
+  const auto damp = [&](double damping, double* factor, double* push) {
+    const double x = h * damping;
+    *factor = flies ? std::exp(-x) : 1 / (1 + x);
+    *push = flies ? mean_decay(x) : *factor;
+  };
+  damp(linear_damping, &force->linear, &force->linear_push);
+  damp(angular_damping, &force->angular, &force->angular_push);
+  const double x = h * linear_damping;
+  force->way = x > kSmallDecay ? (1 - mean_decay(x)) / x : 0.5 - x / 6;
+  if (gravity) force->gravity = (mass * (force->linear_push - 1)) * scene_->def.gravity;
 }
 
 void OdeWorld::make_forces() {
@@ -168,22 +182,23 @@ void OdeWorld::make_forces() {
     dMass mass;
     dBodyGetMass(tree_.body(i), &mass);
     set_force(force, tree_.body(i), damping, damping * tree_.own_share(i), mass.mass,
-              def.gravity && !scene_->link(i).weightless);
+              def.gravity && !scene_->link(i).weightless, false);
     const int32_t next = i + 1;
     // Both links of a universal joint push the same body; only one of them may damp it.
     if (next < scene_->num_links && tree_.body(next) == tree_.body(i)) {
-      force->linear = force->angular = 1;
+      force->linear = force->angular = force->linear_push = force->angular_push = 1;
       force->gravity = {};
     }
   }
   for (size_t a = 0; a < scene_->def.articulations.size(); ++a, ++force) {
     const ArticulationDef& def = scene_->def.articulations[a];
     set_force(force, tree_.base(static_cast<int32_t>(a)), def.base_damping, def.base_damping, def.base.mass,
-              def.gravity);
+              def.gravity, false);
   }
   for (int32_t i = 0; i < scene_->num_bodies; ++i, ++force) {
     const BodyDef& def = scene_->def.bodies[static_cast<size_t>(i)];
-    set_force(force, body_ids_[i], def.linear_damping, def.angular_damping, def.inertia.mass, def.gravity);
+    set_force(force, body_ids_[i], def.linear_damping, def.angular_damping, def.inertia.mass, def.gravity,
+              true);
   }
 }
 
@@ -272,15 +287,18 @@ void OdeWorld::push_body(int32_t i, const Vec3& force, const Vec3& torque) {
 
 void OdeWorld::apply_forces() {
   for (int32_t i = 0; i < num_forces_; ++i) {
-    const Force& f = forces_[i];
+    Force& f = forces_[i];
     if (!f.body) continue;
+    f.p = from_ode(dBodyGetPosition(f.body));
+    f.v = from_ode(dBodyGetLinearVel(f.body));
+    f.touched = false;
     if (f.linear != 1 || f.angular != 1) {
       write_velocity(f.body, f.linear * from_ode(dBodyGetLinearVel(f.body)),
                      f.angular * from_ode(dBodyGetAngularVel(f.body)));
       dBodyAddForce(f.body, f.gravity.x, f.gravity.y, f.gravity.z);
     }
     if (!f.pushed) continue;
-    const Vec3 force = f.linear * f.push.force, torque = f.angular * f.push.torque;
+    const Vec3 force = f.linear_push * f.push.force, torque = f.angular_push * f.push.torque;
     dBodyAddForce(f.body, force.x, force.y, force.z);
     dBodyAddTorque(f.body, torque.x, torque.y, torque.z);
   }
@@ -293,6 +311,24 @@ void OdeWorld::solve() {
   if (!(solver.exact ? dWorldStep(ode_, solver.h) : dWorldQuickStep(ode_, solver.h)))
     fail(Code::kMemory, "ode: no memory for a step");
   in_solver_ = false;
+}
+
+// Free bodies that touched nothing, from where ODE has put them to where they flew.
+void OdeWorld::fly() {
+  const double h = scene_->def.solver.h;
+  Force* const flying = forces_ + (num_forces_ - scene_->num_bodies);
+  for (int32_t k = 0; k < num_contacts_; ++k)
+    for (const int32_t shape : {contacts_[k].shape_a, contacts_[k].shape_b}) {
+      const SceneShape& of = scene_->shapes[static_cast<size_t>(shape)];
+      if (of.carrier == Carrier::kBody) flying[of.index].touched = true;
+    }
+  for (int32_t i = 0; i < scene_->num_bodies; ++i) {
+    const Force& f = flying[i];
+    if (f.touched) continue;
+    const Vec3 a = (1 / (h * f.linear_push)) * (from_ode(dBodyGetLinearVel(f.body)) - f.linear * f.v);
+    const Vec3 p = f.p + h * (f.linear_push * f.v + (h * f.way) * a);
+    dBodySetPosition(f.body, p.x, p.y, p.z);
+  }
 }
 
 // After a throw through the solver. Its jobs point into a stack that is gone and the memory it worked in is
@@ -361,6 +397,7 @@ bool OdeWorld::substep(double weight) {
   num_contacts_ = found.count;
   if (found.overflow) status_ |= kStatusContactOverflow;
   solve();
+  fly();
   contact_.read_forces(num_contacts_, contacts_);
   add_sensors(weight);
   if (!tree_.integrate(state(), weight) || !read_bodies()) return false;

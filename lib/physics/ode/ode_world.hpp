@@ -37,14 +37,19 @@ class OdeWorld final : public World {
   void copy(const World& other) override;
 
  private:
-  // One ODE body: what acts on it besides gravity and joints. Factors are those of implicit damping,
-  // v <- factor (v + h a), brought in before the solver runs.
+  // One ODE body: what acts on it besides gravity and joints. Damping is brought in before the solver runs,
+  //   v <- factor v + push_factor h a.
+  // Of links and bases it is implicit, both factors 1 / (1 + h c). A free body flies exactly, v' = a - c v:
+  //   v1 = k v0 + h p1 a,  x1 = x0 + h (p1 v0 + h p2 a),  k = e^-hc, p1 = (1 - k) / hc, p2 = (1 - p1) / hc;
+  // one that touches something moves by h v1, which its contacts were solved for.
   struct Force {
     dBodyID body;
-    double linear, angular;
+    double linear, angular, linear_push, angular_push;
+    double way;    // p2
     Vec3 gravity;  // N that damping takes from ODE's own gravity
+    Vec3 p, v;     // of a free body, as the substep began
     Wrench push;
-    bool pushed;
+    bool pushed, touched;
   };
 
   LinkState state() const {
@@ -61,11 +66,12 @@ class OdeWorld final : public World {
   void prewarm();
   void destroy();
   void set_force(Force* force, dBodyID body, double linear_damping, double angular_damping, double mass,
-                 bool gravity);
+                 bool gravity, bool flies);
   void add_push(Force& force, const Vec3& f, const Vec3& torque);
   bool substep(double weight);  // false: diverged
   void apply_forces();
   void solve();
+  void fly();
   bool read_bodies();
   void add_sensors(double weight);
   void recover();
