@@ -737,7 +737,13 @@ void BatchStepper<L>::add_law_rows(LawPoint* point, const Attachment& at, int32_
   const int32_t first = tree.row[static_cast<size_t>(at.coord)],
                 depth = tree.depth[static_cast<size_t>(at.coord)];
   const int16_t* path = tree.path.data() + first;
+  const uint8_t* moving = tree.moving.data() + first;
   for (int32_t d = 0; d <= depth; ++d) {
+    factor_rows_[d] = batch->factor + tree.row[static_cast<size_t>(path[d])];
+    if (!moving[d]) {
+      for (int f = 0; f < kAxes; ++f) z[d][f] = 0;
+      continue;
+    }
     const CoordWork<V>& c = batch->coord[path[d]];
     S a[3], s[3];
     for (int r = 0; r < 3; ++r) {
@@ -755,7 +761,6 @@ void BatchStepper<L>::add_law_rows(LawPoint* point, const Attachment& at, int32_
       point->b[f] -= z[d][f] * rate;
       before[f] += static_cast<double>(z[d][f] * last);
     }
-    factor_rows_[d] = batch->factor + tree.row[static_cast<size_t>(path[d])];
   }
   for (int32_t top = depth; top >= 0; --top)
     for (int32_t d = depth; d > top; --d)
@@ -769,20 +774,22 @@ void BatchStepper<L>::add_law_rows(LawPoint* point, const Attachment& at, int32_
 }
 
 // The speed at which a point is to part that closed at -before (m/s, along the normal, at the substep's
-// start), 0: it was too slow to bounce. A free body that falls onto what is at rest is as deep in it as it
-// came since they met: it leaves with the energy that it would have had there. What moves it through the
-// substep, `change`, comes on top.
+// start), 0: it does not meet in this substep, or was too slow to bounce. A free body that falls onto what is
+// at rest is as deep in it as it came since they met: it leaves with the energy that it would have had there.
+// What moves it through the substep, `change`, comes on top.
 template <class L>
 double BatchStepper<L>::bounce(const ContactLaw& law, const Contact& contact, double before,
                                double change) const {
   if (!(before < -kBounceSpeed) || law.restitution == 0) return 0;
+  if (contact.depth < 0 && (before + change) * scene_->def.solver.h > contact.depth) return 0;
   const Attachment &a = attachments_[contact.shape_a], &b = attachments_[contact.shape_b];
   double fallen = 0;  // m2/s2: twice gravity times the way since they met
   if (a.kind == Attachment::kBody && b.kind == Attachment::kStatic)
     fallen = -2 * contact.depth * dot(model_->bodies[static_cast<size_t>(a.body)].gravity, contact.n);
   const double square = before * before, e = law.restitution;
-  fallen = std::clamp(fallen, 0.0, square);
-  return std::max(std::sqrt(e * e * (square - fallen) + fallen) + std::min(change, 0.0), 0.0);
+  if (contact.depth >= 0) fallen = std::clamp(fallen, 0.0, square);
+  const double left = std::max(e * e * (square - fallen) + fallen, 0.0);
+  return std::max(std::sqrt(left) + std::min(change, 0.0), 0.0);
 }
 
 template <class L>
@@ -802,9 +809,8 @@ void BatchStepper<L>::add_law_point(int32_t world, int32_t index, const ContactL
   add_law_rows(&point, attachments_[contact.shape_b], world, S(-1), p + contact.gap, axes, before);
   contacts_.laws.prepare(&point);
   for (int f = 0; f < point.axes; ++f) point.friction[f] = static_cast<S>(friction_of[f]);
-  if (contact.depth < 0) {
-    // yet to come: a soft one gives way once they meet, a hard one lets them come as near as they are
-    point.b[0] = law.soft() ? S(-1e9) : point.b[0] + static_cast<S>(push_out_speed(w, index));
+  if (law.soft() && contact.depth < 0) {  // yet to come: as near as it is, then the law
+    point.b[0] += static_cast<S>(push_out_speed(w, index));
   } else if (law.soft()) {
     const SoftRow row = soft_row(law, contact.depth, scene_->def.solver.h);
     const double weight = model_->inverse_weights[static_cast<size_t>(contact.shape_a)] +
@@ -819,9 +825,9 @@ void BatchStepper<L>::add_law_point(int32_t world, int32_t index, const ContactL
   } else {
     const double change = -static_cast<double>(point.b[0]) - before[0];
     const double leaving = bounce(law, contact, before[0], change), push_out = push_out_speed(w, index);
-    point.softness[0] =
-        leaving > push_out ? S(0) : static_cast<S>(softness(w, index));  // which would swallow some
-    point.b[0] += static_cast<S>(std::max(push_out, leaving));
+    // softness would swallow some of a bounce
+    if (leaving <= push_out && contact.depth >= 0) point.softness[0] = static_cast<S>(softness(w, index));
+    point.b[0] += static_cast<S>(leaving > 0 ? std::max(push_out, leaving) : push_out);
   }
   Vec3 last;
   if (again)
