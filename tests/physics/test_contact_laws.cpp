@@ -69,6 +69,21 @@ TEST(ContactLaws, AThingBouncesToTheSquareOfItsRestitution) {
     }
 }
 
+// With rows for contacts to come, in long substeps.
+TEST(ContactLaws, AThingBouncesOffWhatItSeesComing) {
+  ContactLaw law;
+  law.restitution = 0.8;
+  SceneDef def = sphere_def(law, 0.5, 1.0 / 240, 1, kRadius + 1);
+  def.solver.speculative_contacts = true;
+  Ball ball(def);
+  ball.run(std::sqrt(2 * 1 / kGravity) + 0.02);
+  double highest = 0, lowest = kRadius;
+  for (int i = 0; i < 240 && ball.at().v.z > -0.2; ++i, ball.run(1.0 / 240))
+    highest = std::max(highest, ball.at().X.p.z - kRadius), lowest = std::min(lowest, ball.at().X.p.z);
+  EXPECT_NEAR(highest, 0.64, 0.02 * 0.64);
+  EXPECT_GT(lowest, kRadius - 1e-3);
+}
+
 TEST(ContactLaws, WithoutRestitutionNothingBounces) {
   Ball ball(sphere_def({}, 0.5, 1.0 / 960, 4, kRadius + 0.2));
   ball.run(0.6);
