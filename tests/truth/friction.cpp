@@ -85,9 +85,9 @@ void rolling(Rows& rows) {
     ball.shapes = {sphere(0.05)}, ball.p = {0, 0, 0.05}, ball.v = {2, 0, 0};
     Lab lab(on_plane(ball, 0.5, sub));
     lab.step(60);
-    rows.add(
-        {text("ball that slides at 2 m/s and then rolls, %d substeps: speed", sub), 10.0 / 7, 0.002, "m/s"},
-        lab.v()[0]);
+    rows.add({text("ball that slides at 2 m/s and then rolls, %d substeps: speed", sub), 10.0 / 7, 0.002,
+              "m/s", sub == 2 ? ".008 (h 1/120)" : ""},
+             lab.v()[0]);
     rows.add({text("ball that rolls, %d substeps: w r / v", sub), 1, 0.001}, lab.w()[1] * 0.05 / lab.v()[0]);
     lab.step(300);
     rows.add({text("ball that rolls, %d substeps: speed after 6 s", sub), 10.0 / 7, 0.002, "m/s"},
@@ -110,7 +110,7 @@ void on_the_spot(Rows& rows) {
   for (const int sub : {2, 8}) {
     const double r = std::hypot(0.05, 0.05), inertia = 0.02 / 12, slows = 0.4 * kG * r / inertia;
     rows.add({text("box of .1 m spinning at 10 rad/s, mu .4, %d substeps: angle to rest (four corners)", sub),
-              100 / (2 * slows), sub == 2 ? 0.05 : 0.015, "rad"},
+              100 / (2 * slows), sub == 2 ? 0.05 : 0.015, "rad", sub == 2 ? ".033 (h 1/120)" : ""},
              [sub] {
                Body b = slab();
                b.w = {0, 0, 10};

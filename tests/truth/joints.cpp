@@ -44,21 +44,27 @@ void dry_friction(Rows& rows) {
     for (const int sub : {2, 16}) {
       const double exact = std::max(0.0, (share - 1) * 0.05 / 1e-3);
       rows.add({text("dry friction, %g of breakaway, %d substeps: rate after 1 s", share, sub), exact,
-                share < 1 ? 1e-4 : 0.02 * exact, "rad/s"},
+                share < 1 ? 1e-4 : 0.02 * exact, "rad/s",
+                sub != 2       ? ""
+                : share == 0.5 ? ".026 (h 1/120)"
+                : share == 0.9 ? ".047 (h 1/120)"
+                               : ".004 (h 1/120)"},
                [&] { return rate_after_push(share, 10, sub, false); });
     }
   rows.add({"dry friction, 1.5 of breakaway, 2 substeps: angle after 1 s", 12.5, 0.25, "rad"},
            [] { return rate_after_push(1.5, 10, 2, true); });
   // its bound is its own: a drive of no effort has no part in it
-  rows.add({"dry friction without a drive, from 20 rad/s, 2 substeps: angle to rest", 4, 0.08, "rad"}, [] {
-    Robot r;
-    r.gravity = false;
-    r.links = {hinge(1e-3)}, r.links[0].friction = 0.05;
-    r.q0 = {0}, r.qd0 = {20};
-    Lab lab(of(r, 2));
-    lab.step(60);
-    return lab.q[0];
-  });
+  rows.add({"dry friction without a drive, from 20 rad/s, 2 substeps: angle to rest", 4, 0.08, "rad",
+            ".082 (h 1/120)"},
+           [] {
+             Robot r;
+             r.gravity = false;
+             r.links = {hinge(1e-3)}, r.links[0].friction = 0.05;
+             r.q0 = {0}, r.qd0 = {20};
+             Lab lab(of(r, 2));
+             lab.step(60);
+             return lab.q[0];
+           });
   // held against gravity: .9 of the breakaway torque at the start, m g l
   rows.add({"arm held level by dry friction of 1.1 m g l, 2 substeps: falls in 5 s", 0, 1e-3, "rad"}, [] {
     Robot r;
@@ -103,8 +109,10 @@ void couplings(Rows& rows) {
         note = e.what();
       }
       const std::string at = text("coupling of ratio %g, %d substeps: ", ratio, sub);
-      rows.add({at + "leader pushed for .5 s turns", exact, 0.03 * exact, "rad"}, leader, note);
-      rows.add({at + "follower's gap", 0, 0.005, "rad"}, gap, note);
+      rows.add({at + "leader pushed for .5 s turns", exact, 0.03 * exact, "rad",
+                sub == 2 ? text("%.2g (h 1/120)", 0.017 * exact) : ""},
+               leader, note);
+      rows.add({at + "follower's gap", 0, 0.005, "rad", sub == 2 ? "4e-4 (h 1/120)" : ""}, gap, note);
       rows.add({at + "follower pushed for .5 s, leader turns", ratio * exact, 0.03 * std::fabs(ratio * exact),
                 "rad"},
                back, note);

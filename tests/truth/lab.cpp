@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <deque>
 
+#include "table.hpp"
+
 namespace truth {
 
 V3 operator+(const V3& a, const V3& b) {
@@ -147,7 +149,7 @@ struct Lab::Calls {
 
 Lab::Lab(Scene s) : scene(std::move(s)) {
   static std::atomic<int> count{0};
-  name_ = "lab" + std::to_string(++count);
+  name_ = text("lab%d", ++count);
   const rdm_field_def field{"none", "1", 1, 0, 0, 0};
   const rdm_cost cost{"cost", "none", -1};
   rdm_task_def d;
@@ -189,7 +191,7 @@ rdm_result Lab::build(rdm_scene* out) {
   joints_ = 0;
   int count = 0;
   for (const Robot& r : scene.robots) {
-    const std::string name = "r" + std::to_string(count++);
+    const std::string name = text("r%d", count++);
     rdm_scene_robot s;
     check(rdm_scene_robot_init(&s, sizeof s));
     s.name = name.c_str(), s.material = "m";
@@ -208,9 +210,8 @@ rdm_result Lab::build(rdm_scene* out) {
     } else {
       for (const Link& l : r.links) {
         rdm_robot_link x{};
-        const std::string number = std::to_string(links.size());
-        x.name = names.emplace_back("a" + number).c_str();
-        x.joint = names.emplace_back("j" + number).c_str();
+        x.name = names.emplace_back(text("a%zu", links.size())).c_str();
+        x.joint = names.emplace_back(text("j%zu", links.size())).c_str();
         x.parent = l.parent, x.kind = l.kind, x.lower = l.lower, x.upper = l.upper;
         x.kp = l.kp, x.kd = l.kd, x.effort = l.effort, x.armature = l.armature, x.friction = l.friction;
         x.mass = l.mass;
@@ -220,7 +221,7 @@ rdm_result Lab::build(rdm_scene* out) {
       }
       for (const auto& [link, shape] : r.shapes) {
         rdm_robot_shape x{};
-        x.name = names.emplace_back("s" + std::to_string(shapes.size())).c_str();
+        x.name = names.emplace_back(text("s%zu", shapes.size())).c_str();
         x.link = link, x.kind = shape.kind;
         copy(shape.size, x.size), copy(shape.p, x.p), copy(shape.q, x.q);
         shapes.push_back(x);
@@ -239,7 +240,7 @@ rdm_result Lab::build(rdm_scene* out) {
   }
   count = 0;
   for (const Body& b : scene.bodies) {
-    const std::string name = "b" + std::to_string(count++);
+    const std::string name = text("b%d", count++);
     std::vector<rdm_shape_def> shapes;
     for (const Shape& s : b.shapes) shapes.push_back(shape_def(s));
     rdm_body_def d{};
@@ -250,7 +251,7 @@ rdm_result Lab::build(rdm_scene* out) {
   }
   count = 0;
   for (Shape s : scene.statics) {
-    if (s.name.empty()) s.name = "t" + std::to_string(count++);
+    if (s.name.empty()) s.name = text("t%d", count++);
     const rdm_shape_def d = shape_def(s);
     check(rdm_scene_add_static(out, &d));
   }

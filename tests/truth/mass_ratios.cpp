@@ -36,7 +36,10 @@ void ratios(Rows& rows) {
       }
       const std::string at = text("box %d times as %s on top for 10 s, 2 and 8 substeps: ", ratio,
                                   heavy_on_top ? "heavy" : "light");
-      rows.add({at + "sinks", 0, 4, "mm"}, sinks, note);
+      const char* const fell = heavy_on_top && ratio == 1000  ? "100 (h 1/120)"
+                               : heavy_on_top && ratio == 100 ? "2.5 (h 1/120)"
+                                                              : "";
+      rows.add({at + "sinks", 0, 4, "mm", fell}, sinks, note);
       rows.add({at + "goes aside", 0, 2, "mm"}, aside, note);
     }
 }
