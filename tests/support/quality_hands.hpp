@@ -46,16 +46,12 @@ inline Sag sag(const Column& column) {
   SceneDef def = hands_def(column, false);
   without_contacts(&def);
   for (ArticulationDef& a : def.articulations)
-    for (LinkDef& link : a.links) link.joint.slack = 0;
+    for (LinkDef& link : a.links) link.joint.coupled_to = -1;  // one-way in engine ode
   Rig rig(def, column);
   target_all(rig, kCup);
   double q[kHandLinks];
   const double still[kHandLinks] = {};
-  for (int32_t i = 0; i < kHandLinks; ++i) {
-    const JointDef& joint = rig.scene().link(i).joint;
-    q[i] = joint.coupled_to < 0 ? rig->target()[i]
-                                : std::clamp(joint.ratio * q[joint.coupled_to], joint.lower, joint.upper);
-  }
+  for (int32_t i = 0; i < kHandLinks; ++i) q[i] = rig->target()[i];
   for (int32_t hand = 0; hand < num_hands(rig); ++hand) rig->set_joints(hand, q, still);
   for (int k = 0; k < 90; ++k)
     rig.tick([&] {

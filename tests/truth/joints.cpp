@@ -89,7 +89,7 @@ void couplings(Rows& rows) {
           r.gravity = false;
           r.links = {hinge(1e-3), hinge(1e-3)};
           r.links[0].effort = r.links[1].effort = 10;
-          r.links[1].kp = 10, r.links[1].kd = 0.1, r.links[1].p = {0.1, 0, 0};
+          r.links[1].kp = 10, r.links[1].p = {0.1, 0, 0};
           Coupling c;
           c.ratio = ratio;
           r.couplings = {c};

@@ -23,7 +23,8 @@
 // A coupled joint's target is its own q, clamped to ratio times the other joint's angle -+ slack: a tendon
 // between the two. With x = q - ratio q_other and g its gradient, 1 and -ratio, the drive is
 //   tau g,  tau = spring - gain g . v1 inside +-bound,  gain = h kp while it is taut, else 0,
-// on both joints, which adds h gain g g^T to the mass matrix; kd damps the coupled joint alone, outside the bound.
+// on both joints, which adds h gain g g^T to the mass matrix; kd damps the coupled joint alone, outside the bound,
+// and a feed-forward is a torque on it alone.
 //
 // A step. All laws are linear in v1 for a given active set (who is saturated, at a limit, slipping), so that
 //   (M + h G) (v1 - qd) = h (spring' - bias - G qd),  G = diag(gain of those not saturated, + k T of those
@@ -73,7 +74,7 @@ void joint_drives(TreeBatch<L>& t) {
     }
     target = clamp<L>(target, model.lower, model.upper);
     V kp = model.kp, bound = model.effort, spring = kp * (target - joint.q);
-    if (t.feedforward) {  // a zero changes no bit
+    if (t.feedforward && link.coupled_to < 0) {  // a zero changes no bit
       const V& extra = t.feedforward[i];
       spring = L::select(extra != V{}, V(spring + extra), spring);
     }
@@ -163,6 +164,7 @@ void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes, bool factored = f
     const V free = S(1) - active.saturated * active.saturated, on = active.limited * active.limited;
     V gain = coupled ? joint.damping : V(joint.gain * free);
     V push = joint.spring * free + active.saturated * joint.bound;
+    if (coupled && t.feedforward) push += t.feedforward[i];
     if (t.any_stick) {
       gain += joint.stick * (S(1) - joint.slip * joint.slip);
       push -= joint.slip * model.friction;
@@ -323,7 +325,9 @@ void joint_torques(TreeBatch<L>& t, typename L::Scalar weight) {
     V limit =
         active.limited * active.limited * model.limit_stiffness * (edge - joint.q - model.limit_time * v1);
     if (t.limit_law) limit = active.limited * active.limited * joint.limit_gain * (joint.limit_push - v1);
-    joint.torque += weight * (drive - joint.damping * v1 + limit);
+    V torque = drive - joint.damping * v1 + limit;
+    if (t.feedforward && t.tree->links[static_cast<size_t>(i)].coupled_to >= 0) torque += t.feedforward[i];
+    joint.torque += weight * torque;
   }
 }
 

@@ -809,8 +809,8 @@ void BatchStepper<L>::add_law_point(int32_t world, int32_t index, const ContactL
   add_law_rows(&point, attachments_[contact.shape_b], world, S(-1), p + contact.gap, axes, before);
   contacts_.laws.prepare(&point);
   for (int f = 0; f < point.axes; ++f) point.friction[f] = static_cast<S>(friction_of[f]);
-  if (law.soft() && contact.depth < 0) {  // yet to come: as near as it is, then the law
-    point.b[0] += static_cast<S>(push_out_speed(w, index));
+  if (law.soft() && contact.depth < 0) {  // yet to come: it gives way once they meet
+    point.b[0] = S(-1e9);
   } else if (law.soft()) {
     const SoftRow row = soft_row(law, contact.depth, scene_->def.solver.h);
     const double weight = model_->inverse_weights[static_cast<size_t>(contact.shape_a)] +

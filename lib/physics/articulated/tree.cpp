@@ -64,14 +64,15 @@ void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* memb
   }
   for (size_t i = 0; i < count; ++i) {
     double k = solver.limit_stiffness;
-    const double stiff = carried[i] / (solver.h * solver.h);
+    // as stiff as steps of kLimitTime allow, in shorter ones too: where a joint stops does not depend on them
+    const double step = std::max(solver.h, kLimitTime), stiff = carried[i] / (step * step);
     if (k > 0 && carried[i] > kHeavy) k = std::max(k, kStiff * stiff);
     if (k > 0 && scene.def.feedforward && def.free_base && solver.limit_margin > 0)
       k = std::max(k,
                    std::min(def.links[i].joint.effort / (kLeaning * solver.limit_margin), kStiffest * stiff));
     member->links[i].limit_stiffness = k;
     member->links[i].limit_weight = 1;
-    member->links[i].limit_time = std::max(solver.h, kLimitTime);
+    member->links[i].limit_time = step;
     if (k > 0)
       member->links[i].limit_time = std::max(member->links[i].limit_time, 2 * std::sqrt(carried[i] / k));
   }

@@ -16,7 +16,8 @@
 //
 // Points. Those of the shown faces as in manifold.cpp, 3., but for all corners that the way reaches, each with
 // its own gap; of round sides and edges those of the overlap a little farther on. They stand on a and b as
-// both are now, so that lever arms are right.
+// both are now, so that lever arms are right. Depth counts to kTouch beyond the surface: what comes to rest then
+// overlaps, and its next contact is one of the ordinary kind.
 namespace rdm {
 namespace {
 
@@ -276,7 +277,7 @@ int coming_contacts(const Convex& a, const Convex& b, const Vec3& way, double sh
       const Cut& c = cuts[i];
       const Vec3 pa = on_a ? c.face_p : c.p, pb = on_a ? c.p : c.face_p;
       const double along = -dot(shift, c.n);
-      out[i] = {pa - shift, pb - pa + shift, c.n, -std::max(0.0, along + c.gap - kTouch)};
+      out[i] = {pa - shift, pb - pa + shift, c.n, -std::max(0.0, along + c.gap + kTouch)};
     }
   }
   if (count > 0) return count;
@@ -288,10 +289,10 @@ int coming_contacts(const Convex& a, const Convex& b, const Vec3& way, double sh
   for (int i = 0; i < found; ++i) {
     const ManifoldPoint& point = points[i];
     if (dot(point.n, d.n) > kAlike)
-      out[count++] = {point.p - shift, shift, point.n, std::min(0.0, kTouch - d.gap + dot(shift, point.n))};
+      out[count++] = {point.p - shift, shift, point.n, std::min(0.0, dot(shift, point.n) - d.gap - kTouch)};
   }
   if (count > 0) return count;
-  out[0] = {d.a - shift, d.b - d.a + shift, d.n, std::min(0.0, -t * closing)};
+  out[0] = {d.a - shift, d.b - d.a + shift, d.n, std::min(0.0, -t * closing - d.gap - kTouch)};
   return 1;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/error.hpp"
 #include "physics/model/inertia.hpp"
@@ -19,8 +18,6 @@
 //              row that takes the bodies' velocities to the joint's rate, the solver looks for lambda with
 //                h J M^-1 J^T lambda + cfm lambda = v* - J v,   |lambda| <= F,
 //              beside the rows that hold the joint together.
-//   limits     soft, in that row (drive.hpp); a joint that would run past its margin within the substep is told
-//              to stop at its end instead, by whatever force.
 //   solve      ODE's, at most 8 sweeps: what the bodies got is not yet that lambda.
 //   integrate  rate qd = a . (w_L - w_P) about the axis a that the solver used; q += h qd, clamped. The
 //              torque told is the drive law's at that rate, clip((v* - qd) / cfm, -F, F), which a converged
@@ -297,6 +294,7 @@ void OdeLinks::tell(Joint& joint, const MotorRow& row) const {
   }
   joint.cfm = row.cfm;
   joint.force = row.force;
+  joint.motor = row;
 }
 
 void OdeLinks::drive(const LinkState& state) {
@@ -307,20 +305,7 @@ void OdeLinks::drive(const LinkState& state) {
     const double goal = joint.other >= 0 ? coupled_target(def, state.q[i], state.q[joint.other])
                                          : std::clamp(state.target[i], def.lower, def.upper);
     const double extra = state.feedforward ? state.feedforward[i] : 0;
-    const MotorRow row = motor_row(def, solver, state.q[i], state.qd[i], goal, extra);
-    // Would it run past the margin, where it is clamped without a reaction, it is stopped at its end, with one.
-    const double q = state.q[i], next = q + solver.h * state.qd[i];
-    const bool under = next<def.lower - solver.limit_margin, over = next> def.upper + solver.limit_margin;
-    if (under || over) {
-      MotorRow stop = row;
-      stop.velocity = ((under ? def.lower : def.upper) - q) / solver.h;
-      stop.cfm = solver.cfm;
-      stop.force = std::numeric_limits<double>::infinity();
-      tell(joint, stop);
-    } else {
-      tell(joint, row);
-    }
-    joint.motor = row;
+    tell(joint, motor_row(def, solver, state.q[i], state.qd[i], goal, extra));
   }
 }
 
