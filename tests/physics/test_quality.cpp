@@ -94,21 +94,24 @@ TEST_P(Exacting, ATowerStandsUntilItIsPulledDown) {
 }
 
 TEST_P(Quality, HandsSagAsTheReference) {
-  static const Sag exact = sag(reference_column());
-  const Sag s = sag(GetParam());
+  static const Sag exact_of[] = {sag(reference_column(), false), sag(reference_column(), true)};
+  const bool coupled = !articulated();
+  const Sag &exact = exact_of[coupled], s = sag(GetParam(), coupled);
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(s.joint[i] / exact.joint[i], 1, bound(0.05, 0.005)) << i;
 }
 
 TEST_P(Quality, AnArmReachesWithItsHandAsTheReference) {
-  static const Reach exact = reach(reference_column());
-  const Reach r = reach(GetParam());
+  static const Reach exact_of[] = {reach(reference_column(), false), reach(reference_column(), true)};
+  const bool coupled = !articulated();
+  const Reach &exact = exact_of[coupled], r = reach(GetParam(), coupled);
   EXPECT_LT(rms_error(r, exact, 0, kArmLinks), bound(0.08, 0.02));
   EXPECT_LT(rms_error(r, exact, kArmLinks, kArmHandLinks), bound(0.06, 0.015));
 }
 
 TEST_P(Quality, FlicksFollowTheReference) {
-  static const Flick exact = flick(reference_column());
-  const Flick f = flick(GetParam());
+  static const Flick exact_of[] = {flick(reference_column(), false), flick(reference_column(), true)};
+  const bool coupled = !articulated();
+  const Flick &exact = exact_of[coupled], f = flick(GetParam(), coupled);
   const double bounds[4] = {0.05, 0.03, 0.03, 0.06};
   for (int i = 0; i < 4; ++i) {
     double sum = 0;

@@ -31,6 +31,12 @@ inline void PrintTo(const Column& column, std::ostream* out) {  // for googletes
   *out << column.name;
 }
 
+// Engine ode's couplings are one-way, engine articulated's act back: beside each other hands go without.
+inline void uncouple(SceneDef* def) {
+  for (ArticulationDef& a : def->articulations)
+    for (LinkDef& link : a.links) link.joint.coupled_to = -1;
+}
+
 // Engine ode with the exact solver in small steps. The clamp beyond the joint limits is set out of reach: it
 // stands in for the limit spring where steps are too long for it.
 inline Column reference_column() {

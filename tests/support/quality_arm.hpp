@@ -63,8 +63,10 @@ struct Reach {
   static constexpr int kTicks = 30;
   double coordinate[kTicks][kArmHandLinks];  // rad, m
 };
-inline Reach reach(const Column& column) {
-  Rig rig(arm_def(), column);
+inline Reach reach(const Column& column, bool coupled = true) {
+  SceneDef def = arm_def();
+  if (!coupled) uncouple(&def);
+  Rig rig(def, column);
   Reach out;
   for (int k = 0; k < Reach::kTicks; ++k) {
     for (int32_t i = 0; i < kArmHandLinks; ++i) {

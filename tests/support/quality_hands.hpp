@@ -42,16 +42,21 @@ inline double violation(Rig& rig, int32_t first, int32_t last) {
 struct Sag {
   double joint[4];  // kWatched
 };
-inline Sag sag(const Column& column) {
+inline Sag sag(const Column& column, bool coupled = true) {
   SceneDef def = hands_def(column, false);
   without_contacts(&def);
+  if (!coupled) uncouple(&def);
   for (ArticulationDef& a : def.articulations)
-    for (LinkDef& link : a.links) link.joint.coupled_to = -1;  // one-way in engine ode
+    for (LinkDef& link : a.links) link.joint.slack = 0;
   Rig rig(def, column);
   target_all(rig, kCup);
   double q[kHandLinks];
   const double still[kHandLinks] = {};
-  for (int32_t i = 0; i < kHandLinks; ++i) q[i] = rig->target()[i];
+  for (int32_t i = 0; i < kHandLinks; ++i) {
+    const JointDef& joint = rig.scene().link(i).joint;
+    q[i] = joint.coupled_to < 0 ? rig->target()[i]
+                                : std::clamp(joint.ratio * q[joint.coupled_to], joint.lower, joint.upper);
+  }
   for (int32_t hand = 0; hand < num_hands(rig); ++hand) rig->set_joints(hand, q, still);
   for (int k = 0; k < 90; ++k)
     rig.tick([&] {
@@ -69,9 +74,10 @@ struct Flick {
   double angle[kTicks][4];                 // kWatched, rad
   double wrist_rate = 0, finger_rate = 0;  // peaks at the ends of control steps, wrist and proximal, rad/s
 };
-inline Flick flick(const Column& column) {
+inline Flick flick(const Column& column, bool coupled = true) {
   SceneDef def = hands_def(column, false);
   without_contacts(&def);
+  if (!coupled) uncouple(&def);
   Rig rig(def, column);
   double q[kHandLinks] = {};
   const double still[kHandLinks] = {};
