@@ -64,6 +64,35 @@ TEST(Ant, VelocityIsPaidByTheFormula) {
   EXPECT_GT(contacts, 0);
 }
 
+// The same actions in MuJoCo 2.2.2 on the published model, for 0.3 s: height, quaternion, joints.
+TEST(Ant, MovesAsInMuJoCo) {
+  SmallWorld w("ant_velocity", {{"reset_noise", nullptr, 0}});
+  for (int k = 0; k < 6; ++k) {
+    for (int j = 0; j < 8; ++j) w.pool().action(0)[j] = static_cast<float>(0.3 * ((3 * j) % 5 - 2) / 2);
+    w.pool()->step(nullptr);
+  }
+  const double rows[] = {0.62955,  0.99676,  -0.00365, -0.00425, 0.08018, -0.53345, 1.22267,
+                         -0.00143, -1.22272, 0.53249,  -1.22235, -0.5253, 1.22235};
+  for (int i = 0; i < 13; ++i) EXPECT_NEAR(static_cast<double>(w.obs(i)), rows[i], 0.02) << i;
+}
+
+// Gymnasium's motors begin with the last leg.
+TEST(Ant, OrderIsGymnasiumsOrOurs) {
+  SmallWorld theirs("ant_velocity", {{"reset_noise", nullptr, 0}}),
+      ours("ant_velocity", {{"reset_noise", nullptr, 0}, {"order", "redman", 0}});
+  EXPECT_NE(theirs.pool()->task().action_order(), ours.pool()->task().action_order());
+  for (int i = 0; i < 20; ++i) {
+    theirs.step({0.4f, -0.3f, 0.1f, 0.2f, -0.1f, 0.3f, 0.2f, -0.4f});
+    ours.step({0.1f, 0.2f, -0.1f, 0.3f, 0.2f, -0.4f, 0.4f, -0.3f});
+    for (int k = 0; k < 27; ++k) ASSERT_EQ(theirs.obs(k), ours.obs(k)) << k;
+  }
+  // the world's row
+  for (int k = 27; k < 33; ++k) EXPECT_EQ(theirs.obs(k), 0);
+  float felt = 0;
+  for (int k = 27; k < 33; ++k) felt += std::fabs(ours.obs(k));
+  EXPECT_GT(felt, 0);
+}
+
 TEST(Ant, RunIsPaidByTheWayAndItsEffort) {
   SmallWorld w("ant_run");
   for (int i = 0; i < 200; ++i) {

@@ -30,6 +30,7 @@ struct LawContacts {
     S A[kAxes][kAxes];
     S impulse[kAxes], delta[kAxes], direction[kAxes];  // N s, N m s; of the last sweep; conjugate
     S edge[kEdges], edge_delta[kEdges], edge_direction[kEdges];
+    S tangent[3];                // t, world axes
     S softness[kAxes];           // of a pyramid the first is that of all edges
     S friction[kAxes];           // -, mu, mu, torsional, rolling, rolling
     int32_t first, count, axes;  // rows and segments of this point; 1, 3, 4 or 6

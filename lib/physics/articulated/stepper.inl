@@ -142,6 +142,7 @@ class BatchStepper final : public Stepper {
   void add_law_point(int32_t world, int32_t contact, const ContactLaw& law, bool again);
   void add_law_rows(LawPoint* point, const Attachment& at, int32_t world, S sign, const Vec3& p,
                     const Vec3* axes, double* before);
+  void align(int32_t world, const Contact& contact, Vec3* t, Vec3* u) const;
   double bounce(const ContactLaw& law, const Contact& contact, double before, double change) const;
   // A point of a free body with another or with what is at rest.
   bool is_free(const Contact& contact) const {
@@ -618,7 +619,10 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
     Vec3 t, u;
     tangents(n, &t, &u);
     if (scene_->law_of(w.contact_pairs[i])) {
-      const auto& impulse = contacts_.laws.points[of_law++].impulse;
+      const auto& point = contacts_.laws.points[of_law++];
+      const auto& impulse = point.impulse;
+      for (int r = 0; r < 3; ++r) t[r] = static_cast<double>(point.tangent[r]);
+      u = cross(n, t);
       w.impulses[i] = static_cast<double>(impulse[0]) * n + static_cast<double>(impulse[1]) * t +
                       static_cast<double>(impulse[2]) * u;
       continue;
@@ -792,6 +796,20 @@ double BatchStepper<L>::bounce(const ContactLaw& law, const Contact& contact, do
   return std::max(std::sqrt(left) + std::min(change, 0.0), 0.0);
 }
 
+// MuJoCo's edges of friction of a capsule on a plane: along and across its axis.
+template <class L>
+void BatchStepper<L>::align(int32_t world, const Contact& contact, Vec3* t, Vec3* u) const {
+  if (scene_->shapes[static_cast<size_t>(contact.shape_a)].def.kind != ShapeKind::kCapsule) return;
+  Vec3 p;
+  Mat3 R;
+  shape_pose(world, contact.shape_a, &p, &R);
+  const Vec3 axis{R(0, 2), R(1, 2), R(2, 2)}, along = axis - dot(axis, contact.n) * contact.n;
+  const double length = norm(along);
+  if (length < 1e-6) return;
+  *t = (1 / length) * along;
+  *u = cross(contact.n, *t);
+}
+
 template <class L>
 void BatchStepper<L>::add_law_point(int32_t world, int32_t index, const ContactLaw& law, bool again) {
   WorldState& w = *worlds_[world];
@@ -799,11 +817,13 @@ void BatchStepper<L>::add_law_point(int32_t world, int32_t index, const ContactL
   const double mu = friction(w, w.contact_pairs[index]);
   const double friction_of[] = {0, mu, mu, law.torsional, law.rolling, law.rolling};
   LawPoint& point = contacts_.laws.add(law.rolling > 0 ? 6 : law.torsional > 0 ? 4 : mu > 0 ? 3 : 1);
+  // the collider's point is the deepest of the shape's
+  const bool middle = law.soft() && scene_->shapes[static_cast<size_t>(contact.shape_b)].radius < 0;
   Vec3 axes[3] = {contact.n, {}, {}};
   tangents(contact.n, &axes[1], &axes[2]);
+  if (middle && law.pyramid) align(world, contact, &axes[1], &axes[2]);
+  for (int r = 0; r < 3; ++r) point.tangent[r] = static_cast<S>(axes[1][r]);
   double before[LawContacts<S>::kAxes] = {};
-  // the collider's is the deepest of the shape's
-  const bool middle = law.soft() && scene_->shapes[static_cast<size_t>(contact.shape_b)].radius < 0;
   const Vec3 p = middle ? contact.p + (0.5 * (contact.depth + law.margin)) * contact.n : contact.p;
   add_law_rows(&point, attachments_[contact.shape_a], world, S(1), p, axes, before);
   add_law_rows(&point, attachments_[contact.shape_b], world, S(-1), p + contact.gap, axes, before);
