@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "physics/model/flow.hpp"
 #include "physics/ode/ode_convert.hpp"
 
 namespace rdm {
@@ -12,13 +13,6 @@ namespace {
 
 constexpr int32_t kMaxOdeIterations = 8;  // more would draw from a process-wide seed
 constexpr double kTurnTolerance = 1e-6;   // between a saved quaternion and its matrix
-
-constexpr double kSmallDecay = 1e-4;  // below it series are used, to x^2
-
-// (1 - e^-x) / x
-double mean_decay(double x) {
-  return x > kSmallDecay ? -std::expm1(-x) / x : 1 - x / 2 + x * x / 6;
-}
 
 // What the solver's working memory is taken for: a purpose of its own, because it serves all worlds that
 // share it. ODE gives the old block back before it asks for a larger one, and keeps pointing at it when that
@@ -162,14 +156,13 @@ void OdeWorld::set_force(Force* force, dBodyID body, double linear_damping, doub
   const double h = scene_->def.solver.h;
   force->body = body;
   const auto damp = [&](double damping, double* factor, double* push) {
-    const double x = h * damping;
-    *factor = flies ? std::exp(-x) : 1 / (1 + x);
-    *push = flies ? mean_decay(x) : *factor;
+    const Flow flow = damped_flow(h, damping);
+    *factor = flies ? flow.keep : 1 / (1 + h * damping);
+    *push = flies ? flow.gain : *factor;
   };
   damp(linear_damping, &force->linear, &force->linear_push);
   damp(angular_damping, &force->angular, &force->angular_push);
-  const double x = h * linear_damping;
-  force->way = x > kSmallDecay ? (1 - mean_decay(x)) / x : 0.5 - x / 6;
+  force->way = damped_flow(h, linear_damping).fall;
   if (gravity) force->gravity = (mass * (force->linear_push - 1)) * scene_->def.gravity;
 }
 
