@@ -669,7 +669,11 @@ void BatchStepper<L>::find_extremes(int32_t world) {
     const int32_t a = body_of(w.contacts[i].shape_a), b = body_of(w.contacts[i].shape_b);
     const bool own_law = scene_->law_of(w.contact_pairs[i]) != nullptr;
     directly_[i] = own_law || (a < 0 && b < 0) ? -1 : root(std::max(a, b));
-    if (directly_[i] >= 0) ++island_[directly_[i]].points;
+    if (directly_[i] < 0) continue;
+    // what a robot holds is left to the sweeps: its points hang together through the whole robot
+    const bool held = attachments_[w.contacts[i].shape_a].kind == Attachment::kTree ||
+                      attachments_[w.contacts[i].shape_b].kind == Attachment::kTree;
+    island_[directly_[i]].points += held ? kMostDirect + 1 : 1;
   }
   for (int32_t i = 0; i < w.num_contacts; ++i) {
     if (directly_[i] < 0) continue;
