@@ -41,14 +41,15 @@ struct World {
   }
 };
 
-// A scene of a host's own has room for the contacts of its shapes; the library's task says how many it takes.
+// A scene of a host's own has room for the contacts of its shapes and sees contacts coming; the library's task says how
+// many it takes, and waits for them.
 std::string same_room_as(const char* task) {
   int32_t index = 0;
   rdm_option_info o;
   EXPECT_EQ(rdm_task_find(task, &index), RDM_OK);
   for (int32_t i = 0; rdm_task_option(index, i, &o) == RDM_OK; ++i)
     if (std::string(o.key) == "contacts_max")
-      return "contacts_max=" + std::to_string(static_cast<int>(o.number));
+      return "speculative_contacts=false\ncontacts_max=" + std::to_string(static_cast<int>(o.number));
   ADD_FAILURE() << task << " has no option contacts_max";
   return "";
 }

@@ -52,7 +52,7 @@ TEST(CompoundBody, EveryObjectFallsAndLies) {
       EXPECT_LT(sim->body_overlap(0), 0.002) << name;
       EXPECT_GT(sim->num_contacts(), 0) << name;
       EXPECT_GT(sim->body(0).X.p.z, 0) << name;
-      EXPECT_LT(std::abs(sim->body(0).v.z), 0.05) << name;  // balls roll on
+      EXPECT_LT(std::abs(sim->body(0).v.z), 0.1) << name;  // balls roll on, an egg rocks
     }
 }
 

@@ -10,7 +10,7 @@ namespace rdm {
 namespace {
 
 // Of Debian's packages on x86-64: ODE 0.16 and libccd 2.1, double precision.
-constexpr uint64_t kOde = 0x41cbc3ed4332f8c6, kCcd = 0xc41840d6fb0cac59;
+constexpr uint64_t kOde = 0xcca81df37cfc77cb, kCcd = 0xc41840d6fb0cac59;
 
 constexpr int kPoses = 6;
 
@@ -45,10 +45,11 @@ struct Pair {
 };
 
 uint64_t hash_of_ode() {
-  constexpr Pair pairs[] = {
-      {ShapeKind::kBox, ShapeKind::kBox, 0.08},     {ShapeKind::kSphere, ShapeKind::kBox, 0.06},
-      {ShapeKind::kCapsule, ShapeKind::kBox, 0.06}, {ShapeKind::kCapsule, ShapeKind::kCapsule, 0.05},
-      {ShapeKind::kBox, ShapeKind::kPlane, 0.04},   {ShapeKind::kCapsule, ShapeKind::kPlane, 0.03}};
+  constexpr Pair pairs[] = {{ShapeKind::kBox, ShapeKind::kBox, 0.08},
+                            {ShapeKind::kSphere, ShapeKind::kBox, 0.06},
+                            {ShapeKind::kCapsule, ShapeKind::kCapsule, 0.05},
+                            {ShapeKind::kBox, ShapeKind::kPlane, 0.04},
+                            {ShapeKind::kCapsule, ShapeKind::kPlane, 0.03}};
   const Vec3 size{0.03, 0.041, 0.037};
   const OdeGuard guard;
   const OdeScope scope;
