@@ -47,18 +47,18 @@ inline std::vector<Case> cases() {
 
 // Largest values over all steps and worlds. Speeds are means over a control step, from differences.
 struct Figures {
-  int64_t steps = 0;            // control steps of one world, resets left out
-  int64_t episodes = 0;         // that ended
-  int64_t not_finite = 0;       // steps with a number in any buffer, pose or contact that is not finite
-  int64_t diverged = 0;         // steps with RDM_STATUS_DIVERGED
-  int64_t overflowed = 0;       // steps with RDM_STATUS_CONTACTS
-  int64_t other = 0;            // steps with any other bit than those and RDM_STATUS_SOLVER
-  int64_t unflagged = 0;        // steps whose status has no bit, but a value beyond the bounds below
-  int64_t stuck = 0;            // longest run of diverged steps of one world, resets left out
-  double contacts_mean = 0;     // per step, of the last substep
-  int32_t contacts_max = 0;     // of the library's own list
-  double object_distance = 0;   // m, from the world's origin
-  double object_speed = 0;      // m/s
+  int64_t steps = 0;           // control steps of one world, resets left out
+  int64_t episodes = 0;        // that ended
+  int64_t not_finite = 0;      // steps with a number in any buffer, pose or contact that is not finite
+  int64_t diverged = 0;        // steps with RDM_STATUS_DIVERGED
+  int64_t overflowed = 0;      // steps with RDM_STATUS_CONTACTS
+  int64_t other = 0;           // steps with any other bit than those, RDM_STATUS_SOLVER and RDM_STATUS_SLOWED
+  int64_t unflagged = 0;       // steps whose status has no bit, but a value beyond the bounds below
+  int64_t stuck = 0;           // longest run of diverged steps of one world, resets left out
+  double contacts_mean = 0;    // per step, of the last substep
+  int32_t contacts_max = 0;    // of the library's own list
+  double object_distance = 0;  // m, from the world's origin
+  double object_speed = 0;     // m/s
   double object_height = -1e9;  // m
   double joint_rate = 0;        // rad/s
   double joint_excess = 0;      // rad, beyond a joint's range
@@ -279,8 +279,8 @@ class Trial {
     ++f.steps;
     f.diverged += (status & RDM_STATUS_DIVERGED) != 0;
     f.overflowed += (status & RDM_STATUS_CONTACTS) != 0;
-    f.other +=
-        (status & ~static_cast<uint32_t>(RDM_STATUS_DIVERGED | RDM_STATUS_CONTACTS | RDM_STATUS_SOLVER)) != 0;
+    f.other += (status & ~static_cast<uint32_t>(RDM_STATUS_DIVERGED | RDM_STATUS_CONTACTS |
+                                                RDM_STATUS_SOLVER | RDM_STATUS_SLOWED)) != 0;
     f.episodes += rows_.terminated[env] || rows_.truncated[env];
     run_[e] = status & RDM_STATUS_DIVERGED ? run_[e] + 1 : 0;
     f.stuck = std::max(f.stuck, run_[e]);

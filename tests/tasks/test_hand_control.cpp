@@ -111,7 +111,7 @@ TEST_F(HandControlTest, ABlowIsSlowedAndTheReachIsKept) {
   p->baseline(Baseline::kHold);
   p.action(0)[20] = 1;
   for (int t = 0; t < 60; ++t) p->step(nullptr);
-  EXPECT_GT(p->world(0).base(0).X.p.x, 0.045);
+  EXPECT_GT(p->world(0).base(0).X.p.x, 0.04);
   EXPECT_LT(p->world(0).base(0).X.p.x, 0.055);
 }
 

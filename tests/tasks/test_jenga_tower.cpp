@@ -34,19 +34,21 @@ bool over(const JengaTower& t, int i, int k) {
 TEST(JengaTower, EveryBlockRestsOnWhatIsBelow) {
   for (const char* preset : {"redman", "real"}) {
     const JengaTower t = tower({{"preset", preset, 0}});
+    const double sink =
+        preset[1] == 'e' && preset[2] == 'a' ? 0.0075 / 20 : 0.0005;  // the layer of blocks so thin
     const double table = t.table.z + t.table_half.z;
     EXPECT_NEAR(table, 0.2357, 1e-12);
     for (int i = 0; i <= kJengaBlocks; ++i) {
       int carriers = 0;
       const bool lowest = bottom(t, i) < table;
       if (lowest) {
-        EXPECT_NEAR(bottom(t, i), table - 0.0005, 1e-9);
+        EXPECT_NEAR(bottom(t, i), table - sink, 1e-9);
       }
       for (int k = 0; k <= kJengaBlocks; ++k) {
         if (k == i || !over(t, i, k)) continue;
         const double gap = bottom(t, i) - top(t, k);
-        EXPECT_TRUE(std::abs(gap + 0.0005) < 1e-9 || gap > 0.005 || gap < -0.01) << preset << i << " " << k;
-        carriers += std::abs(gap + 0.0005) < 1e-9;
+        EXPECT_TRUE(std::abs(gap + sink) < 1e-9 || gap > 0.005 || gap < -0.01) << preset << i << " " << k;
+        carriers += std::abs(gap + sink) < 1e-9;
       }
       EXPECT_TRUE(lowest || carriers >= 2) << preset << " " << i;
       for (int axis = 0; axis < 2; ++axis)

@@ -495,7 +495,7 @@ void OdeWorld::save(Writer& out) const {
   const OdeScope scope;
   out.value(scene_->num_links);
   out.value(scene_->num_bodies);
-  out.value(status_);
+  out.value(saved_status(status_));
   const auto bytes = static_cast<size_t>(scene_->num_links) * sizeof(double);
   for (const double* row : {q_, qd_, target_, torque_}) out.bytes(row, bytes);
   out.bytes(sensors_, scene_->sensors.size() * sizeof(Wrench));
