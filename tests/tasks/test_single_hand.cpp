@@ -59,7 +59,7 @@ TEST_F(SingleHandTask, RowsHoldWhatTheWorldHas) {
 TEST_F(SingleHandTask, OnlyTimeEndsAQuietEpisode) {
   for (const char* task : kTasks) {
     TestPool p(task, 1, {{"start.x", nullptr, 0.0}});
-    p->reset(nullptr, nullptr);
+    for (int draw = 0; draw < 2; ++draw) p->reset(nullptr, nullptr);  // of the first the egg rolls out
     for (int t = 1; t <= 74; ++t) {
       p->baseline(Baseline::kZero);
       p->step(nullptr);
