@@ -190,14 +190,17 @@ Rows jenga_rows(const Jenga& s) {
 
 std::vector<Experiment> all_experiments() {
   return {
-      compared("sag", sag, sag_rows),
+      compared(
+          "sag", [](const Column& c) { return sag(c); }, sag_rows),
       compared(
           "rest_50g", [](const Column& c) { return rest(c, 0.05); }, rest_rows),
       compared(
           "rest_200g", [](const Column& c) { return rest(c, 0.2); }, rest_rows),
       compared("throw", throw_ball, throw_rows),
-      compared("reach", reach, reach_rows),
-      compared("flick", flick, flick_rows),
+      compared(
+          "reach", [](const Column& c) { return reach(c); }, reach_rows),
+      compared(
+          "flick", [](const Column& c) { return flick(c); }, flick_rows),
       absolute("limits", limits, limits_rows),
       absolute(
           "squeeze", [](const Column& c) { return squeeze(c, c.reference ? 1 : 20); }, squeeze_rows),
