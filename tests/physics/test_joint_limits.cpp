@@ -216,8 +216,8 @@ TEST(JointLimits, FrictionSticksOrSlides) {
   EXPECT_GT(slides, 5000);
 }
 
-// At an end of the range a spring and a damper push inward once the substep would end beyond, and never pull;
-// the damper is the same for all substeps up to its time constant.
+// At an end of the range a spring and a damper push inward from q + T qd = edge on, and never pull; they are the
+// same for all substeps up to T.
 TEST(JointLimits, LimitIsASpringAndADamper) {
   Stream random(32, 0, Purpose::kTest);
   int held = 0;
@@ -243,11 +243,9 @@ TEST(JointLimits, LimitIsASpringAndADamper) {
     solve_without_contacts(two.batch);
     joint_torques(two.batch, 1.0);
     const double v1 = two.coord[1].v1, held_at = q + time * v1;
-    const double low = std::max(q + solver.h * qd, q + time * qd),
-                 high = std::min(q + solver.h * qd, q + time * qd);
-    const double beyond = low < joint.lower    ? joint.lower - held_at
-                          : high > joint.upper ? joint.upper - held_at
-                                               : 0;
+    const double beyond = q + time * qd < joint.lower   ? joint.lower - held_at
+                          : q + time * qd > joint.upper ? joint.upper - held_at
+                                                        : 0;
     ASSERT_NEAR(two.work[1].torque, solver.limit_stiffness * beyond, 1e-9) << k;
     ASSERT_NEAR(inertia * (v1 - qd), solver.h * two.work[1].torque, 1e-9) << k;
     ASSERT_EQ(two.state[1].limited, beyond > 0 ? -1 : beyond < 0 ? 1 : 0) << k;

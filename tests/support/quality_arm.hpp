@@ -58,7 +58,8 @@ inline SceneDef arm_def() {
   return def;
 }
 
-// All joints are sent to a third of their ranges at once, and back after a quarter of a second.
+// All joints are sent to a third of their ranges at once, and back after a quarter of a second. Ends of ranges are
+// out of the way: each engine has a law of its own for them (limits, in quality_hands.hpp).
 struct Reach {
   static constexpr int kTicks = 30;
   double coordinate[kTicks][kArmHandLinks];  // rad, m
@@ -66,14 +67,20 @@ struct Reach {
 inline Reach reach(const Column& column, bool coupled = true) {
   SceneDef def = arm_def();
   if (!coupled) uncouple(&def);
+  double target[2][kArmHandLinks];
+  int32_t joints = 0;
+  for (ArticulationDef& a : def.articulations)
+    for (LinkDef& link : a.links) {
+      JointDef& joint = link.joint;
+      const double middle = 0.5 * (joint.lower + joint.upper), half = 0.5 * (joint.upper - joint.lower);
+      const double way = (joints % 2 ? -1 : 1) * half / 3;
+      target[0][joints] = middle + way, target[1][joints++] = middle - way;
+      joint.lower -= 1, joint.upper += 1;
+    }
   Rig rig(def, column);
   Reach out;
   for (int k = 0; k < Reach::kTicks; ++k) {
-    for (int32_t i = 0; i < kArmHandLinks; ++i) {
-      const JointDef& joint = rig.scene().link(i).joint;
-      const double middle = 0.5 * (joint.lower + joint.upper), half = 0.5 * (joint.upper - joint.lower);
-      rig->target()[i] = middle + (k < Reach::kTicks / 2 ? 1 : -1) * (i % 2 ? -1 : 1) * half / 3;
-    }
+    for (int32_t i = 0; i < kArmHandLinks; ++i) rig->target()[i] = target[k < Reach::kTicks / 2 ? 0 : 1][i];
     rig.tick([] {});
     for (int32_t i = 0; i < kArmHandLinks; ++i) out.coordinate[k][i] = rig.checked(rig->q()[i]);
   }

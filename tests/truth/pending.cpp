@@ -17,8 +17,6 @@ const char* const kPending[] = {
     "stack of 5 plates of 1 mm, dropped .5 mm each, 2 and 8 substeps: sinks",
     // Joints
     "dry friction without a drive, from 20 rad/s, 2 substeps: angle to rest",
-    "limit, 0.001 kg m2 at 5 rad/s, 2, 8, 16 substeps: speed back / in, spread",
-    "limit, 0.5 kg m2 at 10 rad/s, 2, 8, 16 substeps: speed back / in, spread",
     "limit of a free two-body robot at 20 rad/s, 2 substeps: angular momentum, change",
     "limit of a free two-body robot at 20 rad/s, 16 substeps: angular momentum, change",
     // soft contacts are of first order: .5 mm at 16 substeps, 2.7 at 2

@@ -6,7 +6,7 @@
 //            spring = kp (target - q) + feedforward,  gain = h kp + kd:
 //            kp (target - (q + h v1)) - kd v1, implicit PD, the same as physics/model/drive.hpp's motor row
 //            (target rate spring / gain, softness 1 / gain, force bound)
-//   limit    tau = k (edge - q - T v1)                once q + h v1 is beyond the edge, while it pushes inward
+//   limit    tau = k (edge - q - T v1)                while q + T v1 is beyond the edge: it only pushes inward
 //                                                     (limited = +-1); T in seconds, no less than h (tree.cpp)
 //   friction tau = -f / kStickSpeed v1                while |v1| <= kStickSpeed (slip = 0), else -f slip,
 //            slip = +-1 the way it goes: a bound of its own. Where f is small (below kSmallFriction) against
@@ -231,10 +231,8 @@ typename L::Mask update_active_set(TreeBatch<L>& t, typename L::Mask lanes, bool
                   L::select(active.saturated < zero, L::select(torque <= -joint.bound, V(-one), zero),
                             V(over + under)));
     // one that would pull, as of a joint that comes back, does not act
-    const V next = joint.q + t.h * v1, held = joint.q + model.limit_time * v1;
-    const V low = L::select((active.limited < zero) | (held > next), held, next),
-            high = L::select((active.limited > zero) | (held < next), held, next);
-    V below = L::select(low < model.lower, V(-one), zero), above = L::select(high > model.upper, one, zero);
+    const V held = joint.q + model.limit_time * v1;
+    V below = L::select(held < model.lower, V(-one), zero), above = L::select(held > model.upper, one, zero);
     if (t.limit_law) {
       below = L::select((joint.q < model.lower) & (v1 < joint.limit_push), V(-one), zero);
       above = L::select((joint.q > model.upper) & (v1 > joint.limit_push), one, zero);

@@ -33,16 +33,16 @@ bool is_massless(const Inertia& inertia) {
          std::all_of(inertia.moment, inertia.moment + 6, [](double m) { return m == 0; });
 }
 
-// The solver's stiffness gives way to heavy links: a joint of inertia I that runs into its end at rate v goes
-// beyond by about v h / (1 + h^2 k / I). From kHeavy on, k is kStiff I / h^2, with I the most that the joint
-// may carry in any pose, its motor's own with it (kg m2, kg).
-constexpr double kHeavy = 0.05, kStiff = 10;
+// The solver's stiffness gives way to heavier links: k is at least kStiff I / T^2, with I the most that the joint
+// may carry in any pose, its motor's own with it (kg m2, kg), so that an end of damping k T, which acts from
+// q + T qd = edge on, is overdamped: what runs into it stops at the edge, not beyond, at any substep.
+constexpr double kStiff = 20;
 // Where torques are fed forward, a motor may lean on its stop for good: the end then holds it this far inside
 // the margin, past which it would be stopped without a reaction, and push a free base along.
 // Up to kStiffest I / h^2, for efforts that stand for no bound at all.
 constexpr double kLeaning = 0.5, kStiffest = 1e4;
-// An end's damping is its stiffness times kLimitTime (drive.hpp), or what damps the inertia critically, 2 (k I)^1/2,
-// where that is more: in seconds, whatever the substep; but no less than implicit Euler's own h k.
+// T, an end's damping over its stiffness, is kLimitTime (drive.hpp): in seconds, whatever the substep; but no less
+// than implicit Euler's own h.
 
 void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* member) {
   const SolverDef& solver = scene.def.solver;
@@ -66,15 +66,13 @@ void set_limits(const Scene& scene, const ArticulationDef& def, TreeMember* memb
     double k = solver.limit_stiffness;
     // as stiff as steps of kLimitTime allow, in shorter ones too: where a joint stops does not depend on them
     const double step = std::max(solver.h, kLimitTime), stiff = carried[i] / (step * step);
-    if (k > 0 && carried[i] > kHeavy) k = std::max(k, kStiff * stiff);
+    if (k > 0) k = std::max(k, kStiff * stiff);
     if (k > 0 && scene.def.feedforward && def.free_base && solver.limit_margin > 0)
       k = std::max(k,
                    std::min(def.links[i].joint.effort / (kLeaning * solver.limit_margin), kStiffest * stiff));
     member->links[i].limit_stiffness = k;
     member->links[i].limit_weight = 1;
     member->links[i].limit_time = step;
-    if (k > 0)
-      member->links[i].limit_time = std::max(member->links[i].limit_time, 2 * std::sqrt(carried[i] / k));
   }
 }
 
