@@ -220,7 +220,7 @@ TEST(Collector, RefusesWhatNoFlagAndNoCostIs) {
 
 TEST(Collector, CountsStatusBits) {
   Bench b(world());
-  const std::vector<uint32_t> status = {0, 1, 2 | 16, 4 | 8};
+  const std::vector<uint32_t> status = {0, 1 | 32, 2 | 16, 4 | 8};
   b.t.status = status.data();
   for (int i = 0; i < 2; ++i) b.decide();
   const EpochTotals t = b.collector.totals();
