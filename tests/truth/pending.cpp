@@ -34,7 +34,6 @@ const char* const kPending[] = {
     "catch_underarm_safe_joint, policy of 2 substeps at 16: success lost, of 92 %",
     "clean_house, policy of 2 substeps at 8: return / at 2",
     "clean_house, policy of 2 substeps at 16: return / at 2",
-    "grasp, policy of engine articulated in engine ode: return / in articulated",
 };
 
 }  // namespace
