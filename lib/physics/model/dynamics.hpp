@@ -8,7 +8,7 @@
 //   pair   of materials: mu
 //   world  gravity
 // A world with factors steps as one of a scene with the products does, which they are: rounded once, in
-// double.
+// double. But the ends of its joints stay as stiff as the scene's own masses ask for (articulated/tree.cpp).
 #pragma once
 #include "base/arena.hpp"
 #include "base/bytes.hpp"
