@@ -24,16 +24,15 @@ const char* const kPending[] = {
     "ball at 1 m/s onto a soft plane as MuJoCo's, 2 substeps: fastest up",
     "ball at 1 m/s onto a soft plane as MuJoCo's, 16 substeps: deepest",
     // Engine ode
-    "ode: double pendulum from (1, .5) rad after 1 s, 2 substeps: error",
     "ode: limit of a free two-body robot at 20 rad/s, 2 substeps: momentum, change",
     "ode: limit of a free two-body robot at 20 rad/s, 2 substeps: angular momentum, change",
     // Skills at other substeps
     "hand_over_wall, policy of 2 substeps at 8: success lost, of 90 %",
     "hand_over_wall, policy of 2 substeps at 16: success lost, of 90 %",
-    "catch_underarm_safe_finger, policy of 2 substeps at 16: success lost, of 92 %",
-    "catch_underarm_safe_joint, policy of 2 substeps at 16: success lost, of 92 %",
-    "clean_house, policy of 2 substeps at 8: return / at 2",
-    "clean_house, policy of 2 substeps at 16: return / at 2",
+    // its return loses 4 %: the trash lies just outside of the dustpan's quarter metre
+    "clean_house, policy of 2 substeps at 4: success lost, of 85 %",
+    "clean_house, policy of 2 substeps at 8: success lost, of 85 %",
+    "clean_house, policy of 2 substeps at 16: success lost, of 85 %",
 };
 
 }  // namespace
