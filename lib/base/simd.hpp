@@ -192,6 +192,19 @@ struct Simd {
     for (int l = 0; l < N; ++l) r[l] = std::sqrt(v[l]);
     return r;
   }
+  // Lanes 0, 2, 4 ... and 1, 3, 5 ... of eight or sixteen.
+  [[gnu::always_inline]] static auto evens(const V& v) {
+    if constexpr (N == 16)
+      return __builtin_shufflevector(v, v, 0, 2, 4, 6, 8, 10, 12, 14);
+    else
+      return __builtin_shufflevector(v, v, 0, 2, 4, 6);
+  }
+  [[gnu::always_inline]] static auto odds(const V& v) {
+    if constexpr (N == 16)
+      return __builtin_shufflevector(v, v, 1, 3, 5, 7, 9, 11, 13, 15);
+    else
+      return __builtin_shufflevector(v, v, 1, 3, 5, 7);
+  }
   // to[i] lane l = from[l][i], for i in [0, count).
   [[gnu::always_inline]] static void gather(const S* const* from, int count, V* to) {
     int i = 0;

@@ -52,6 +52,15 @@ SceneDef everything(int32_t contacts_max) {
   return def;
 }
 
+// So many bodies that their boxes are sorted along an axis (crowd.hpp).
+SceneDef many_bodies() {
+  SceneDef def = everything(4096);
+  for (int i = 0; i < 150; ++i)
+    add_body(&def, i % 3 ? ShapeKind::kBox : ShapeKind::kCapsule, {0.02 + 0.001 * (i % 7), 0.03, 0.02},
+             i % 5 ? Vec3{} : Vec3{0.03, 0.01, 0});
+  return def;
+}
+
 // The collider of a scene beside a geom of our own for each shape, all where a world's shapes are.
 class Rig final : public Collider::Poses {
  public:
@@ -102,7 +111,8 @@ class Rig final : public Collider::Poses {
   Collider::Found collide(const PairList* listed = nullptr) {
     asked_.assign(geoms_.size(), 0);
     touched_.assign(scene_.pairs.size(), 0);
-    return collider_.collide(scene_, *this, listed, contacts_.data(), pairs_.data(), touched_.data());
+    return collider_.collide(scene_, *this, listed, nullptr, contacts_.data(), pairs_.data(),
+                             touched_.data());
   }
   double overlap(int32_t body) {
     asked_.assign(geoms_.size(), 0);
@@ -154,46 +164,61 @@ class Rig final : public Collider::Poses {
   std::vector<uint8_t> touched_;
 };
 
-TEST(Collider, FindsWhatAskingEveryPairFinds) {
-  Rig rig(everything(4096));
-  Stream random(1, 0, Purpose::kTest);
-  const int most = rig.scene().def.solver.contacts_per_pair;
+struct Seen {
   int64_t points = 0, robots = 0, planes = 0;
-  for (int k = 0; k < 300; ++k) {
-    rig.scatter(random, k % 2 ? 0.1 : 0.3);
-    const Collider::Found found = rig.collide();
-    ASSERT_FALSE(found.overflow);
+};
+
+// Of so many poses, every other one within `near` m and the rest within `far`.
+Seen expect_what_every_pair_finds(Rig* rig, uint64_t seed, int poses, double near, double far) {
+  Stream random(seed, 0, Purpose::kTest);
+  const int most = rig->scene().def.solver.contacts_per_pair;
+  Seen seen;
+  for (int k = 0; k < poses; ++k) {
+    rig->scatter(random, k % 2 ? near : far);
+    const Collider::Found found = rig->collide();
+    EXPECT_FALSE(found.overflow);
     int32_t at = 0;
-    for (size_t pair = 0; pair < rig.scene().pairs.size(); ++pair) {
+    for (size_t pair = 0; pair < rig->scene().pairs.size(); ++pair) {
       dContactGeom out[kMaxPairPoints];
-      const int n = rig.touch(pair, most, out);
-      ASSERT_EQ(rig.touched(pair), n > 0) << "pair " << pair << " of pose " << k;
-      for (int i = 0; i < n; ++i, ++at) {
-        ASSERT_LT(at, found.count);
-        const Contact& contact = rig.contact(at);
-        ASSERT_EQ(rig.pair(at), pair);
-        EXPECT_EQ(contact.shape_a, rig.scene().pairs[pair].a);
-        EXPECT_EQ(contact.shape_b, rig.scene().pairs[pair].b);
+      const int n = rig->touch(pair, most, out);
+      EXPECT_EQ(rig->touched(pair), n > 0) << "pair " << pair << " of pose " << k;
+      for (int i = 0; i < n && at < found.count; ++i, ++at) {
+        const Contact& contact = rig->contact(at);
+        EXPECT_EQ(rig->pair(at), pair);
+        EXPECT_EQ(contact.shape_a, rig->scene().pairs[pair].a);
+        EXPECT_EQ(contact.shape_b, rig->scene().pairs[pair].b);
         EXPECT_EQ(norm(contact.p - from_ode(out[i].pos)), 0);
         EXPECT_EQ(norm(contact.n - from_ode(out[i].normal)), 0);
         EXPECT_EQ(contact.depth, out[i].depth);
       }
-      const auto& shapes = rig.scene().shapes;
-      const SceneShape& b = shapes[static_cast<size_t>(rig.scene().pairs[pair].b)];
-      robots += n > 0 && b.articulation >= 0;
-      planes += n > 0 && b.def.kind == ShapeKind::kPlane;
+      const auto& shapes = rig->scene().shapes;
+      const SceneShape& b = shapes[static_cast<size_t>(rig->scene().pairs[pair].b)];
+      seen.robots += n > 0 && b.articulation >= 0;
+      seen.planes += n > 0 && b.def.kind == ShapeKind::kPlane;
+      seen.points += n;
     }
-    ASSERT_EQ(at, found.count) << k;
-    points += at;
+    EXPECT_EQ(at, found.count) << k;
   }
-  EXPECT_GT(points, 2500);
-  EXPECT_GT(robots, 1000);
-  EXPECT_GT(planes, 20);
+  return seen;
+}
+
+TEST(Collider, FindsWhatAskingEveryPairFinds) {
+  Rig rig(everything(4096));
+  const Seen seen = expect_what_every_pair_finds(&rig, 1, 300, 0.1, 0.3);
+  EXPECT_GT(seen.points, 2500);
+  EXPECT_GT(seen.robots, 1000);
+  EXPECT_GT(seen.planes, 20);
+}
+
+TEST(Collider, FindsWhatAskingEveryPairOfManyBodiesFinds) {
+  Rig rig(many_bodies());
+  const Seen seen = expect_what_every_pair_finds(&rig, 2, 6, 0.4, 0.8);
+  EXPECT_GT(seen.points, 1000);
 }
 
 // As when bodies sleep: the pairs of every second body with others and with what is at rest are not listed.
-TEST(Collider, APairThatIsNotListedIsLeftOutAndNoOther) {
-  Rig rig(everything(4096));
+void expect_what_is_listed(const SceneDef& def, int poses, double spread) {
+  Rig rig(def);
   const Scene& scene = rig.scene();
   const auto rests = [&](int32_t shape) {
     const SceneShape& s = scene.shapes[static_cast<size_t>(shape)];
@@ -210,8 +235,8 @@ TEST(Collider, APairThatIsNotListedIsLeftOutAndNoOther) {
   const PairList listed = {list.data(), static_cast<int32_t>(list.size())};
   Stream random(3, 0, Purpose::kTest);
   int out = 0, in = 0;
-  for (int k = 0; k < 100; ++k) {
-    rig.scatter(random, 0.2);
+  for (int k = 0; k < poses; ++k) {
+    rig.scatter(random, spread);
     const int32_t all = rig.collide().count;
     std::vector<size_t> want;
     for (int32_t i = 0; i < all; ++i)
@@ -225,6 +250,14 @@ TEST(Collider, APairThatIsNotListedIsLeftOutAndNoOther) {
   }
   EXPECT_GT(in, 500);
   EXPECT_GT(out, 50);
+}
+
+TEST(Collider, APairThatIsNotListedIsLeftOutAndNoOther) {
+  expect_what_is_listed(everything(4096), 100, 0.2);
+}
+
+TEST(Collider, APairOfManyBodiesThatIsNotListedIsLeftOutAndNoOther) {
+  expect_what_is_listed(many_bodies(), 6, 0.6);
 }
 
 // No point of a shape is outside of the capsule around it.

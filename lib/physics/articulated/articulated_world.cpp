@@ -120,6 +120,7 @@ void ArticulatedWorld::make_shared(Arena& arena, ArticulatedWorld* partner, bool
   shared->hooks = hooks;
   shared->model = make_articulated_model(*scene_);
   shared->collider.carve(*scene_, arena);
+  if (!arena.measuring()) shared->collider.make(*scene_);
   const SolverDef& solver = scene_->def.solver;
   const auto make = [&](int32_t lanes) {
     shared->steppers[shared->num_steppers++] =
@@ -133,7 +134,6 @@ void ArticulatedWorld::make_shared(Arena& arena, ArticulatedWorld* partner, bool
     make(single ? 1 : 4);
     for (int32_t lanes = 8; lanes <= widest_lanes(); lanes *= 2) make(lanes);
   }
-  if (!arena.measuring()) shared->collider.make(*scene_);
 }
 
 ArticulatedWorld::~ArticulatedWorld() {

@@ -18,7 +18,8 @@ bool is_push(const Wrench& push) {
   return dot(push.force, push.force) > 0 || dot(push.torque, push.torque) > 0;
 }
 
-// Of the shapes on free bodies; the capsule axis too, for all that have one.
+}  // namespace
+
 void set_body_bounds(const Scene& scene, const WorldState& s, Bound* bounds) {
   for (int32_t i = 0; i < scene.num_body_shapes; ++i) {
     const int32_t at = scene.first_body_shape + i;
@@ -37,6 +38,8 @@ void set_body_bounds(const Scene& scene, const WorldState& s, Bound* bounds) {
     if (s.sleep) s.body_bounds[i] = bounds[at];
   }
 }
+
+namespace {
 
 // Where each point is on its shape a, for now and the next substep.
 void place_points(const Contact* contacts, const int32_t* pairs, int32_t count, const Bound* bounds,
@@ -211,10 +214,10 @@ bool wake_touched(const Scene& scene, WorldState* s, int32_t count) {
 
 }  // namespace
 
-void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses, WorldState* s) {
+void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses,
+                   const uint64_t* near_robots, WorldState* s) {
   const Scene& scene = *model.scene;
   Bound* bounds = collider->bounds();
-  set_body_bounds(scene, *s, bounds);
   Collider::Found found{};
   for (;;) {
     if (s->sleep && !s->lists_fresh && !sort_pairs(model, collider, poses, s)) {
@@ -224,7 +227,7 @@ void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::
     const PairList listed = {s->searched, s->num_searched};
     const bool nothing = s->sleep && listed.count == 0 && model.all_listed;
     found = nothing ? Collider::Found{}
-                    : collider->collide(scene, poses, s->sleep ? &listed : nullptr, s->contacts,
+                    : collider->collide(scene, poses, s->sleep ? &listed : nullptr, near_robots, s->contacts,
                                         s->contact_pairs, s->touched);
     if (!s->sleep || s->num_asleep == 0) break;
     if (found.overflow || found.count + s->num_kept > scene.def.solver.contacts_max) {

@@ -20,9 +20,13 @@
 
 namespace rdm {
 
+// Of the shapes on free bodies, among the bounds of all; the capsule axis too, for all that have one.
+void set_body_bounds(const Scene& scene, const WorldState& s, Bound* bounds);
 // Contact points of the present poses: those that move into contacts, those asleep into kept. Whom a moving
-// one touches is awake afterwards. The collider's bounds of all shapes of trees are set by the caller.
-void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses, WorldState* s);
+// one touches is awake afterwards. The collider's bounds of bodies' shapes are set by the caller, and those of
+// all shapes of trees unless `near_robots` is given (BroadPhase::search).
+void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses,
+                   const uint64_t* near_robots, WorldState* s);
 // At the end of a substep.
 void fall_asleep(const ArticulatedModel& model, WorldState* s);
 // Of a step: pushed bodies are awake, pairs asleep touch.

@@ -33,6 +33,7 @@
 #include "physics/articulated/look_ahead.inl"
 #include "physics/articulated/sleep.hpp"
 #include "physics/articulated/stepper.hpp"
+#include "physics/collision/robot_pairs.inl"
 #include "physics/model/soft_limits.hpp"
 
 namespace rdm {
@@ -56,6 +57,7 @@ class BatchStepper final : public Stepper {
     if (arena.measuring()) return;
     for (int32_t k = 0; k < num_batches_; ++k) fill_constants(batches_[k], k);
     list_attachments();
+    if (in_lanes_) robot_pairs_.make(*scene_, collider_->broad());
   }
   int32_t group_size() const override { return group_size_; }
   void end(const HostHooks& hooks) override { host_delete(hooks, this); }
@@ -65,6 +67,9 @@ class BatchStepper final : public Stepper {
 
  private:
   static constexpr int kBase = static_cast<int>(kBaseWords), kLink = static_cast<int>(kLinkWords);
+  // Robots' pairs are searched for all worlds at once, in vectors of half the width: two hands fill one.
+  static constexpr bool kSearchesWide = sizeof(S) == 4 && L::kCount >= 8;
+  using Half = Simd<float, kSearchesWide ? L::kCount / 2 : 4>;
 
   // The batches of one tree: batches_[first_batch ...].
   struct Group {
@@ -92,6 +97,7 @@ class BatchStepper final : public Stepper {
   struct WorldPoses final : Collider::Poses {
     WorldPoses(const BatchStepper* s, int32_t i) : stepper(s), index(i) { sized = s->worlds_[i]->sized; }
     void place(int32_t shape, Vec3* p, Mat3* R) override { stepper->shape_pose(index, shape, p, R); }
+    void bound(int32_t shape, Bound* bound) override { stepper->robot_pairs_.get(shape, index, bound); }
     Vec3 way(int32_t shape) override { return stepper->shape_way(index, shape); }
     const BatchStepper* stepper;
     int32_t index;
@@ -130,6 +136,9 @@ class BatchStepper final : public Stepper {
   void scatter(TreeBatch<L>& t);
   // the stages
   void substep();
+  void find_robot_pairs();
+  typename Half::V worlds_part(const V& lanes, int32_t members, int32_t member, int32_t chunk) const;
+  void set_bounds(int32_t world);
   void detect_contacts(int32_t world);
   void shape_pose(int32_t world, int32_t shape, Vec3* p, Mat3* R) const;
   Vec3 shape_way(int32_t world, int32_t shape) const;
@@ -182,6 +191,8 @@ class BatchStepper final : public Stepper {
   const V** factor_rows_ = nullptr;  // [most coordinates] of its coordinates
   Quat* q_JL_ = nullptr;             // [num_links]
   Mat3* R_JL_ = nullptr;             // [num_links]
+  RobotPairs<Half> robot_pairs_;
+  bool in_lanes_ = false;  // those are in use
   ContactSolver<S> contacts_;
   DirectContacts<ContactSolver<S>> direct_;
   Island* island_ = nullptr;  // [num_bodies]; null: bodies are much alike
@@ -222,6 +233,7 @@ void BatchStepper<L>::substep() {
     shape_poses(batches_[k]);
     if (batches_[k].shape_way) shape_ways(batches_[k]);
   }
+  if (in_lanes_) find_robot_pairs();
   for (int32_t w = 0; w < count_; ++w) {
     detect_contacts(w);
     predict_bodies(*model_, worlds_[w]);  // of those that a contact has woken too
@@ -262,11 +274,73 @@ void BatchStepper<L>::substep() {
   }
 }
 
-// The bounds of all shapes on trees from the lanes, then the collider.
+// The part of a tree's lanes that belongs to one member, by world.
 template <class L>
-void BatchStepper<L>::detect_contacts(int32_t world) {
-  WorldState& w = *worlds_[world];
+typename BatchStepper<L>::Half::V BatchStepper<L>::worlds_part(const V& lanes, int32_t members,
+                                                               int32_t member, int32_t chunk) const {
+  typename Half::V part{};
+  if constexpr (kSearchesWide) {
+    if (members == 1) {
+      std::memcpy(&part, reinterpret_cast<const char*>(&lanes) + static_cast<size_t>(chunk) * sizeof part,
+                  sizeof part);
+    } else if (members == 2) {
+      part = member == 0 ? L::evens(lanes) : L::odds(lanes);
+    } else {
+      for (int l = 0; l < Half::kCount; ++l)
+        if (const int32_t world = chunk * Half::kCount + l; world < group_size_)
+          Half::set(&part, l, L::get(lanes, world * members + member));
+    }
+  }
+  return part;
+}
+
+// All bounds of all worlds, then the pairs with a robot's shape that may touch.
+template <class L>
+void BatchStepper<L>::find_robot_pairs() {
+  if constexpr (kSearchesWide) {
+    Bound* bounds = collider_->bounds();
+    for (int32_t w = 0; w < count_; ++w) {
+      set_body_bounds(*scene_, *worlds_[w], bounds);
+      for (int32_t i = 0; i < scene_->num_body_shapes; ++i)
+        robot_pairs_.set(scene_->first_body_shape + i, w, bounds[scene_->first_body_shape + i]);
+    }
+    for (int32_t g = 0; g < num_groups_; ++g) {
+      const Tree& tree = *groups_[g].tree;
+      const TreeBatch<L>& batch = batches_[groups_[g].first_batch];
+      for (int32_t m = 0; m < groups_[g].members; ++m) {
+        const TreeMember& member = tree.members[static_cast<size_t>(m)];
+        for (int32_t c = 0; c < robot_pairs_.chunks(); ++c) {
+          typename Half::V origin[3] = {};
+          for (int l = 0; l < Half::kCount && c * Half::kCount + l < count_; ++l)
+            for (int r = 0; r < 3; ++r)
+              Half::set(&origin[r], l,
+                        static_cast<float>(worlds_[c * Half::kCount + l]->bases[member.articulation].X.p[r]));
+          for (int32_t k = 0; k < static_cast<int32_t>(tree.shape_links.size()); ++k) {
+            if (tree.shape_links[static_cast<size_t>(k)] < 0 && !tree.free_base) continue;
+            auto* center = robot_pairs_.center(member.first_shape + k, c);
+            auto* axis = robot_pairs_.axis(member.first_shape + k, c);
+            for (int r = 0; r < 3; ++r)
+              center[r] = origin[r] + worlds_part(batch.center[k][r], groups_[g].members, m, c);
+            for (int r = 0; r < 3 && tree.shape_slender[static_cast<size_t>(k)]; ++r)
+              axis[r] = worlds_part(batch.axis[k][r], groups_[g].members, m, c);
+          }
+        }
+      }
+    }
+    robot_pairs_.search(*scene_, collider_->broad(), count_);
+  }
+}
+
+// Of all shapes that move, for the collider.
+template <class L>
+void BatchStepper<L>::set_bounds(int32_t world) {
+  const WorldState& w = *worlds_[world];
   Bound* bounds = collider_->bounds();
+  if (in_lanes_ && w.sleep)
+    std::copy_n(w.body_bounds, scene_->num_body_shapes, bounds + scene_->first_body_shape);
+  else
+    set_body_bounds(*scene_, w, bounds);
+  if (in_lanes_) return;
   for (int32_t g = 0; g < num_groups_; ++g) {
     const Tree& tree = *groups_[g].tree;
     for (int32_t m = 0; m < groups_[g].members; ++m) {
@@ -289,9 +363,14 @@ void BatchStepper<L>::detect_contacts(int32_t world) {
       }
     }
   }
+}
+
+template <class L>
+void BatchStepper<L>::detect_contacts(int32_t world) {
+  set_bounds(world);
   if (scene_->def.solver.speculative_contacts) find_coming(world);
   WorldPoses poses(this, world);
-  find_contacts(*model_, collider_, poses, &w);
+  find_contacts(*model_, collider_, poses, in_lanes_ ? robot_pairs_.near(world) : nullptr, worlds_[world]);
 }
 
 // In double, from the pose that the lanes have: what the collider asks for once two bounds meet.
@@ -1413,6 +1492,8 @@ void BatchStepper<L>::carve(Arena& arena) {
       if (batches_) batches_[batch] = t;
     }
   }
+  in_lanes_ = kSearchesWide && num_groups_ > 0 && !scene_->def.solver.speculative_contacts;
+  if (in_lanes_) robot_pairs_.carve(*scene_, arena, group_size_);
   attachments_ = arena.make<Attachment>(scene_->shapes.size());
   half_widths_ = arena.make<double>(scene_->shapes.size());
   body_segment_ = arena.make<int32_t>(static_cast<size_t>(scene_->num_bodies));

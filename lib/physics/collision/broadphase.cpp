@@ -10,12 +10,10 @@ namespace rdm {
 namespace {
 
 constexpr int32_t kBatch = 64;        // pairs
-constexpr float kFar = 1e30f;         // m
 constexpr float kEverywhere = 1e15f;  // m, radius of a plane's bound: its square is a number
 constexpr int32_t kBlock = 4;
-constexpr float kSlack = 1e-5f;        // m, for the rounding of bounds
-constexpr float kCenterSlack = 1e-6f;  // the same, per metre from the origin
-constexpr float kFlatness = 1e-6f;     // of two axes that count as parallel
+constexpr float kSlack = kBoundSlack, kCenterSlack = kBoundCenterSlack, kFlatness = kBoundFlatness,
+                kFar = kBoundFar;
 // So far into each other two may come unseen: of the thinner one's half width, and m.
 constexpr float kThinShare = 0.5f, kMostThin = 1.5e-3f;
 
@@ -93,6 +91,17 @@ Vec3 between_segments(const Vec3& r, const Vec3& u, const Vec3& v) {
   return r + s * u - t * v;
 }
 
+// use(k) of the bits k in [first, end) that are set, in their order.
+template <class Use>
+void each_bit(const uint64_t* bits, int32_t first, int32_t end, const Use& use) {
+  for (int32_t word = first / 64; word * 64 < end; ++word) {
+    uint64_t here = bits[word];
+    if (const int32_t before = first - word * 64; before > 0) here &= ~uint64_t{0} << before;
+    if (const int32_t within = end - word * 64; within < 64) here &= (uint64_t{1} << within) - 1;
+    for (; here != 0; here &= here - 1) use(word * 64 + std::countr_zero(here));
+  }
+}
+
 int32_t blocks_in(const ArticulationDef& def) {
   return (static_cast<int32_t>(def.shapes.size()) + kBlock - 1) / kBlock;
 }
@@ -130,7 +139,7 @@ void BroadPhase::each_row(const Scene& scene, const Use& use) const {
   for (const PairRun& run : scene.runs) {
     if (run.shape >= 0) {
       const int32_t owner = scene.shapes[static_cast<size_t>(run.shape)].articulation;
-      use(Row{Row::kRun, run.first, run.count, run.shape, 0, 0, run.articulation, owner});
+      use(Row{Row::kRun, run.first, run.count, run.shape, 0, 0, run.articulation, owner, 0, 0, 0});
       continue;
     }
     Row row{};
@@ -147,8 +156,9 @@ void BroadPhase::each_row(const Scene& scene, const Use& use) const {
         continue;
       }
       if (row.count > 0) use(row);
-      row = {kind, k, 1, -1, 0, 0, -1, -1};
-      if (whole) row = {Row::kOthers, k, 1, pair.a, pair.a * words_ + other / 64, other % 64, -1, -1};
+      row = {kind, k, 1, -1, 0, 0, -1, -1, 0, 0, 0};
+      if (whole)
+        row = {Row::kOthers, k, 1, pair.a, pair.a * words_ + other / 64, other % 64, -1, -1, 0, 0, 0};
     }
     use(row);
   }
@@ -180,6 +190,9 @@ void BroadPhase::carve(const Scene& scene, Arena& arena) {
   neighbours_ = arena.make<uint8_t>(scene.shapes.size());
   near_ = arena.make<uint64_t>(links * static_cast<size_t>(words_));
   rows_ = arena.make<Row>(static_cast<size_t>(num_rows_));
+  num_listed_ = 0;
+  for (const PairRun& run : scene.runs) num_listed_ += run.shape < 0 ? run.count : 0;
+  crowd_.carve(scene, arena);
 }
 
 void BroadPhase::make(const Scene& scene) {
@@ -233,12 +246,20 @@ void BroadPhase::make(const Scene& scene) {
     pairs_[k] = {pair.a, pair.b, other >= 0 ? other_plane_[other] : -1, thin};
     least_thin_ = std::min(least_thin_, thin);
   }
+  crowd_.make(scene);
   Row* row = rows_;
   each_row(scene, [&](const Row& r) { *row++ = r; });
+  for (int32_t i = num_rows_ - 1; i >= 0; --i) {
+    Row& of = rows_[i];
+    const bool with_robot = of.of_robot(), on = with_robot && i + 1 < num_rows_ && rows_[i + 1].of_robot();
+    of.next = on ? rows_[i + 1].next : i + 1;
+    of.end = on ? rows_[i + 1].end : of.first + of.count;
+    of.listed = (of.kind == Row::kRun ? 0 : of.count) + (on ? rows_[i + 1].listed : 0);
+  }
 }
 
-void BroadPhase::update_extents() {
-  for (int32_t i = 0; i < num_moving_; ++i) store4(extents_[i].half, half_sides(bounds_[i]));
+void BroadPhase::update_extents(int32_t first) {
+  for (int32_t i = first; i < num_moving_; ++i) store4(extents_[i].half, half_sides(bounds_[i]));
   for (int32_t i = first_other_; ahead_ && i < num_moving_; ++i)
     store4(extents_[i].half, load4(extents_[i].half) + splat(ways_[i] + link_way_));
 }
@@ -336,6 +357,32 @@ void BroadPhase::mark_neighbours(const Scene& scene, int32_t articulation, const
   for (int32_t i = first; i < first + static_cast<int32_t>(count); ++i) neighbours_[i] = near(i, box);
 }
 
+// Four planes are tried: the box's three sides, and the one square to the way from the box to the capsule's
+// middle. With c and u the capsule's middle and half axis in the box's frame, r its radius and d a plane's
+// direction, the two are apart if d . c - |d . u| - r |d| > |d_x| h_x + |d_y| h_y + |d_z| h_z.
+bool BroadPhase::clears_box(int32_t shape, const Vec3& p_WB, const Mat3& R_WB, const Vec3& half) const {
+  const Bound& bound = bounds_[shape];
+  Vec3 middle, axis;
+  for (int k = 0; k < 3; ++k) {
+    middle[k] = static_cast<double>(bound.center[k]) - p_WB[k];
+    axis[k] = static_cast<double>(bound.axis[k]);
+  }
+  const Mat3 R_BW = transpose(R_WB);
+  const Vec3 c = R_BW * middle, u = R_BW * axis;
+  const double far = std::max({std::fabs(p_WB.x), std::fabs(p_WB.y), std::fabs(p_WB.z)});
+  const double r = static_cast<double>(bound.axis[3]) + static_cast<double>(kSlack) +
+                   4 * static_cast<double>(kCenterSlack) * far;
+  Vec3 d;
+  for (int k = 0; k < 3; ++k) {
+    if (std::fabs(c[k]) - std::fabs(u[k]) - r > half[k]) return true;
+    d[k] = c[k] - std::clamp(c[k], -half[k], half[k]);
+  }
+  const double length = std::sqrt(rdm::dot(d, d));
+  // d points away from the box, so that its support lies on c's side
+  return rdm::dot(d, c) - std::fabs(rdm::dot(d, u)) - r * length >
+         std::fabs(d.x) * half.x + std::fabs(d.y) * half.y + std::fabs(d.z) * half.z;
+}
+
 bool BroadPhase::passes(int32_t index, const Vec3& way) const {
   const Pair& pair = pairs_[index];
   if (pair.plane >= 0) return false;
@@ -419,7 +466,7 @@ void BroadPhase::visit_near(int32_t* list, int32_t count, Visit visit, void* con
 }
 
 void BroadPhase::search_listed(const PairList& listed, Visit visit, void* context) {
-  update_extents();
+  update_extents(first_other_);
   for (int32_t at = 0; at < listed.count;) {
     int32_t list[kBatch + 3], count = 0;
     for (; at < listed.count && count < kBatch; ++at) {
@@ -430,10 +477,13 @@ void BroadPhase::search_listed(const PairList& listed, Visit visit, void* contex
   }
 }
 
-void BroadPhase::search(const Scene& scene, const PairList* listed, Visit visit, void* context) {
-  update_extents();
-  update_boxes();
-  mark_others();
+void BroadPhase::search(const Scene& scene, const PairList* listed, const uint64_t* near_robots, Visit visit,
+                        void* context) {
+  update_extents(near_robots ? first_other_ : 0);
+  if (!near_robots) {
+    update_boxes();
+    mark_others();
+  }
   int32_t list[kBatch + 3], count = 0;
   const auto add = [&](int32_t pair) {
     list[count++] = pair;
@@ -444,11 +494,20 @@ void BroadPhase::search(const Scene& scene, const PairList* listed, Visit visit,
   const auto try_pair = [&](int32_t index) {
     if (boxes_meet(pairs_[index].a, pairs_[index].b)) add(index);
   };
+  if (listed && listed->count == num_listed_) listed = nullptr;
+  const int32_t to_try = listed ? listed->count : num_listed_;
+  const uint64_t* const crowd = crowd_.pays(to_try) ? crowd_.search(bounds_, extents_) : nullptr;
   int32_t marked[2] = {-1, -1};  // the articulations that neighbours_ is about
   int32_t at = 0;                // in the list of those to search
   for (const Row *row = rows_, *last = rows_ + num_rows_; row < last; ++row) {
     const int32_t end = row->first + row->count;
-    if (row->kind == Row::kOthers) {
+    if (near_robots && row->of_robot()) {
+      visit_near(list, count, visit, context);
+      count = 0;
+      each_bit(near_robots, row->first, row->end, [&](int32_t pair) { visit(context, pair, false); });
+      at += row->listed;
+      row = rows_ + row->next - 1;
+    } else if (row->kind == Row::kOthers) {
       at += row->count;
       uint64_t bits = near_[row->word] >> row->shift;
       if (row->count < 64) bits &= (uint64_t{1} << row->count) - 1;
@@ -465,6 +524,13 @@ void BroadPhase::search(const Scene& scene, const PairList* listed, Visit visit,
     } else if (row->kind == Row::kLink) {
       at += row->count;
       for (int32_t k = row->first; k < end; ++k) try_pair(k);
+    } else if (row->kind == Row::kAny && crowd) {
+      each_bit(crowd, row->first, end, [&](int32_t pair) {
+        if (!listed || std::binary_search(listed->pairs + at, listed->pairs + listed->count, pair)) add(pair);
+      });
+      if (listed)
+        at = static_cast<int32_t>(std::lower_bound(listed->pairs + at, listed->pairs + listed->count, end) -
+                                  listed->pairs);
     } else {
       const bool plane = row->kind == Row::kPlane;
       for (int32_t k = row->first; k < end; ++k) {

@@ -8,7 +8,8 @@
 //      shape;
 //   3. per run of pairs of one shape with one articulation: the shape's box against that one's, and that
 //      articulation's shapes against the box of its own;
-//   4. of all other pairs the boxes, one by one; planes against the lowest corner of the shape's box;
+//   4. of all other pairs the boxes, one by one, or of many bodies in order (crowd.hpp); planes against the
+//      lowest corner of the shape's box;
 //   5. of what is left, four at a time, the distance of the segments (Ericson, Real-Time Collision Detection,
 //      2005, section 5.1.9).
 // Looking ahead, the boxes of bodies' shapes grow by their own way and that of the fastest link, and pairs
@@ -16,7 +17,10 @@
 // All in floats, with a slack for their rounding: a pair that touches is never passed over, so what is found
 // does not depend on the bounds. A bound with a number missing (NaN) touches nothing.
 #pragma once
+#include <span>
+
 #include "base/arena.hpp"
+#include "physics/collision/crowd.hpp"
 #include "physics/model/scene.hpp"
 
 namespace rdm {
@@ -28,6 +32,11 @@ struct Capsule {
   double radius;
 };
 Capsule capsule_around(const SceneShape& shape);
+
+// For the rounding of bounds, m, and the same per metre from the origin; of two axes that count as parallel;
+// m, out of reach.
+inline constexpr float kBoundSlack = 1e-5f, kBoundCenterSlack = 1e-6f, kBoundFlatness = 1e-6f,
+                       kBoundFar = 1e30f;
 
 // Which pairs of runs without an articulation to search: indices of Scene::pairs, ascending, all those among
 // them that a link or a base is in. A search skips the others.
@@ -47,6 +56,35 @@ Pose rest_pose(const Scene& scene, const SceneShape& shape);
 
 class BroadPhase {
  public:
+  struct Pair {
+    int32_t a, b;
+    int32_t plane;  // index of planes_ when b is one: only its own test counts; else -1
+    float thin;
+  };
+  struct Plane {
+    Vec3 n;
+    double d;  // n . x = d on it, m
+  };
+  // Pairs in a row.
+  struct Row {
+    enum Kind : int32_t {
+      kPlane,   // one, with a plane
+      kLink,    // a shape of an articulation with shapes of it, or of another without a run
+      kAny,     // no link among them
+      kOthers,  // a shape of an articulation with others that stand in a row too, all in one word of near_
+      kRun      // a run of a shape with an articulation
+    } kind;
+    int32_t first, count;
+    int32_t shape;                // of kOthers and kRun
+    int32_t word, shift;          // kOthers: the first pair's place in near_
+    int32_t articulation, owner;  // kRun; the shape's articulation, -1: none
+    // Of the first of several rows in a row with a robot's shape: past the last of them, past its last pair, and
+    // how many of their pairs are of runs without an articulation. Else as for one.
+    int32_t next, end, listed;
+
+    bool of_robot() const { return kind == kLink || kind == kOthers || kind == kRun; }
+  };
+
   // `ahead`: they do not touch yet, but may before the substep ends.
   using Visit = void (*)(void* context, int32_t pair, bool ahead);
 
@@ -69,54 +107,44 @@ class BroadPhase {
   float thin(int32_t pair) const { return pairs_[pair].thin; }
   // m, half of the least width of a shape; of a plane out of reach.
   float half_width(int32_t shape) const { return half_widths_[shape]; }
+  // What robot_pairs.inl works on.
+  std::span<const Row> rows() const { return {rows_, static_cast<size_t>(num_rows_)}; }
+  const Pair& pair(int32_t k) const { return pairs_[k]; }
+  const Bound& bound(int32_t shape) const { return bounds_[shape]; }
+  float half_side(int32_t shape, int axis) const { return extents_[shape].half[axis]; }
+  // Null: it is no plane that rests.
+  const Plane* plane_of(int32_t shape) const {
+    const int32_t plane = shape < first_other_ ? -1 : other_plane_[shape - first_other_];
+    return plane < 0 ? nullptr : planes_ + plane;
+  }
+
+  // True: the capsule about a shape does not reach a box with these half sides at p_WB, whose axes are R_WB's.
+  bool clears_box(int32_t shape, const Vec3& p_WB, const Mat3& R_WB, const Vec3& half) const;
   // True: the bounds of the two do not meet while a moves by `way` against b.
   bool passes(int32_t pair, const Vec3& way) const;
 
-  // Calls visit for each pair that may touch, in the order of Scene::pairs; null: of all pairs.
-  void search(const Scene& scene, const PairList* listed, Visit visit, void* context);
+  // Calls visit for each pair that may touch, in the order of Scene::pairs; null: of all pairs. `near_robots`,
+  // unless null: [pairs / 64] bit k of pairs with a link or a base is known already (robot_pairs.inl), so that
+  // bounds of robots are not looked at.
+  void search(const Scene& scene, const PairList* listed, const uint64_t* near_robots, Visit visit,
+              void* context);
   // Of the listed ones alone.
   void search_listed(const PairList& listed, Visit visit, void* context);
   // For a single pair.
   bool near(int32_t pair) const;
 
  private:
-  struct Pair {
-    int32_t a, b;
-    int32_t plane;  // index of planes_ when b is one: only its own test counts; else -1
-    float thin;
-  };
-  struct Plane {
-    Vec3 n;
-    double d;  // n . x = d on it, m
-  };
   struct Box {
     float low[4], high[4];
-  };
-  struct Extent {
-    float half[4];
   };
   // Up to four shapes in a row of one articulation, their boxes by coordinate.
   struct Block {
     int32_t first, count;
     float center[3][4], half[3][4];
   };
-  // Pairs in a row.
-  struct Row {
-    enum Kind : int32_t {
-      kPlane,   // one, with a plane
-      kLink,    // a shape of an articulation with shapes of it, or of another without a run
-      kAny,     // no link among them
-      kOthers,  // a shape of an articulation with others that stand in a row too, all in one word of near_
-      kRun      // a run of a shape with an articulation
-    } kind;
-    int32_t first, count;
-    int32_t shape;                // of kOthers and kRun
-    int32_t word, shift;          // kOthers: the first pair's place in near_
-    int32_t articulation, owner;  // kRun; the shape's articulation, -1: none
-  };
   template <class Use>
   void each_row(const Scene& scene, const Use& use) const;
-  void update_extents();  // of the shapes that move
+  void update_extents(int32_t first);  // of the shapes that move, from this one on
   void update_boxes();
   void mark_neighbours(const Scene& scene, int32_t articulation, const Box& box);
   void mark_others();
@@ -147,7 +175,9 @@ class BroadPhase {
   int32_t num_articulations_ = 0, num_blocks_ = 0, num_rows_ = 0, words_ = 0;
   int32_t first_other_ = 0, num_others_ = 0;  // others: shapes of no articulation
   int32_t num_moving_ = 0;                    // shapes before the first that never moves
+  int32_t num_listed_ = 0;                    // pairs of runs without an articulation
   bool ahead_ = false;
+  Crowd crowd_;
   float link_way_ = 0, least_thin_ = 0;  // m, of all pairs
 };
 

@@ -8,10 +8,11 @@
 #include "physics/ode/ode_convert.hpp"
 #include "physics/ode/ode_guard.hpp"
 
-// Per candidate pair: poses of its two geoms, once per search (`placed_` holds the number of the search that
-// put each there), the points (shapes.cpp: ODE's for spheres, capsules, boxes and planes with each other,
-// ours otherwise), then one Contact per point until the world's contacts_max. Contacts stand in the order of
-// the scene's pairs, whatever the bounds let through: results do not depend on the broad phase.
+// Per candidate pair, unless the capsule about one is clear of the other's box: poses of its two geoms, once
+// per search (`placed_` holds the number of the search that put each there), the points (shapes.cpp: ODE's for
+// spheres, capsules, boxes and planes with each other, ours otherwise), then one Contact per point until the
+// world's contacts_max. Contacts stand in the order of the scene's pairs, whatever the bounds let through:
+// results do not depend on the broad phase.
 //
 // Looking ahead, a pair that does not touch is swept (sweep.hpp) where a moves farther against b than its
 // broad phase's `thin`: what is slower is left to overlap, as ever. Overlaps at seams go last (seams.hpp).
@@ -38,6 +39,7 @@ void Collider::carve(const Scene& scene, Arena& arena) {
   broad_.carve(scene, arena);
   seams_.carve(scene, arena);
   placed_ = arena.make<uint32_t>(scene.shapes.size());
+  fetched_ = arena.make<uint32_t>(static_cast<size_t>(first_body_shape_));
   moves_ = arena.make<uint8_t>(scene.shapes.size());
 }
 
@@ -68,7 +70,24 @@ void Collider::put(Poses& poses, int32_t shape) {
   dGeomSetPosition(geoms_[shape].id, p.x, p.y, p.z);
 }
 
+void Collider::fetch(Poses& poses, int32_t shape) {
+  if (shape >= first_body_shape_ || !moves_[shape] || fetched_[shape] == search_) return;
+  fetched_[shape] = search_;
+  poses.bound(shape, &broad_.bounds()[shape]);
+}
+
+// Seen from the box, whose own bound says little of its sides. Two boxes mostly touch once their bounds meet.
+bool Collider::clears_box(Poses& poses, int32_t shape, int32_t box) {
+  const Geom& geom = geoms_[box];
+  const ShapeKind other = geoms_[shape].kind;
+  if (geom.kind != ShapeKind::kBox || other == ShapeKind::kPlane || other == ShapeKind::kBox) return false;
+  put(poses, box);
+  return broad_.clears_box(shape, from_ode(dGeomGetPosition(geom.id)),
+                           mat_from_ode(dGeomGetRotation(geom.id)), geom.size);
+}
+
 int Collider::touch(Poses& poses, const ShapePair& pair, int most, dContactGeom* out) {
+  if (clears_box(poses, pair.a, pair.b) || clears_box(poses, pair.b, pair.a)) return 0;
   put(poses, pair.a);
   put(poses, pair.b);
   return collide_geoms(geoms_[pair.a], geoms_[pair.b], most, out);
@@ -78,6 +97,10 @@ void Collider::add_points(const Search& search, int32_t index) {
   const SolverDef& solver = search.scene.def.solver;
   const ShapePair& pair = search.scene.pairs[static_cast<size_t>(index)];
   dContactGeom points[kMaxPairPoints];
+  if (search.fetches) {
+    fetch(search.poses, pair.a);
+    fetch(search.poses, pair.b);
+  }
   const int n = touch(search.poses, pair, solver.contacts_per_pair, points);
   if (n > 0) search.touched[index] = 1;
   if (n == 0 && broad_.looks_ahead()) add_coming(search, index);
@@ -140,17 +163,19 @@ Collider::Found Collider::search(const Search& search, Walk walk) {
   return *search.found;
 }
 
-Collider::Found Collider::collide(const Scene& scene, Poses& poses, const PairList* listed, Contact* contacts,
-                                  int32_t* pairs, uint8_t* touched) {
+Collider::Found Collider::collide(const Scene& scene, Poses& poses, const PairList* listed,
+                                  const uint64_t* near_robots, Contact* contacts, int32_t* pairs,
+                                  uint8_t* touched) {
   Found found;
-  Search context = {this, scene, poses, contacts, pairs, touched, &found};
-  return search(context, [&](BroadPhase::Visit visit) { broad_.search(scene, listed, visit, &context); });
+  Search context = {this, scene, poses, contacts, pairs, touched, &found, near_robots != nullptr};
+  return search(context,
+                [&](BroadPhase::Visit visit) { broad_.search(scene, listed, near_robots, visit, &context); });
 }
 
 Collider::Found Collider::collide_listed(const Scene& scene, Poses& poses, const PairList& listed,
                                          Contact* contacts, int32_t* pairs, uint8_t* touched) {
   Found found;
-  Search context = {this, scene, poses, contacts, pairs, touched, &found};
+  Search context = {this, scene, poses, contacts, pairs, touched, &found, false};
   return search(context, [&](BroadPhase::Visit visit) { broad_.search_listed(listed, visit, &context); });
 }
 

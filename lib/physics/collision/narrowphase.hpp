@@ -21,6 +21,8 @@ class Collider {
     virtual void place(int32_t shape, Vec3* p_WS, Mat3* R_WS) = 0;
     // Where the substep is about to take a shape's place, m; asked for by searches that look ahead.
     virtual Vec3 way(int32_t) { return {}; }
+    // Of a robot's shape, asked for by searches that were told of robots' pairs.
+    virtual void bound(int32_t, Bound*) {}
     const SizedShape* sized = nullptr;  // [num_body_shapes] of the world; null: the scene's sizes
   };
   struct Found {
@@ -46,14 +48,17 @@ class Collider {
   void look_ahead(float link_way) { broad_.look_ahead(link_way); }
 
   // Contact points in the order of the pairs, without force; `pairs` [contacts_max] gets each point's pair;
-  // touched[] is only set. Of runs without an articulation those of `listed` alone, null: all. Never throws.
-  Found collide(const Scene& scene, Poses& poses, const PairList* listed, Contact* contacts, int32_t* pairs,
-                uint8_t* touched);
-  // Of the listed pairs and no others.
+  // touched[] is only set. Of runs without an articulation those of `listed` alone, null: all. `near_robots`
+  // as in BroadPhase::search: bounds of robots need not be set then, and are afterwards where shape a of a
+  // contact is theirs. Never throws.
+  Found collide(const Scene& scene, Poses& poses, const PairList* listed, const uint64_t* near_robots,
+                Contact* contacts, int32_t* pairs, uint8_t* touched);
+  // Of the listed pairs, which no robot has a part in, and no others.
   Found collide_listed(const Scene& scene, Poses& poses, const PairList& listed, Contact* contacts,
                        int32_t* pairs, uint8_t* touched);
   // Deepest overlap of a body's shapes with all that it may touch, m.
   double overlap(const Scene& scene, Poses& poses, int32_t body);
+  const BroadPhase& broad() const { return broad_; }
 
  private:
   // One call of collide.
@@ -65,19 +70,23 @@ class Collider {
     int32_t* pairs;
     uint8_t* touched;
     Found* found;
+    bool fetches;  // bounds of robots' shapes
   };
   template <class Walk>
   Found search(const Search& search, Walk walk);
+  bool clears_box(Poses& poses, int32_t shape, int32_t box);
   int touch(Poses& poses, const ShapePair& pair, int most, dContactGeom* out);
   void add_points(const Search& search, int32_t pair);
   void add_coming(const Search& search, int32_t pair);
   void add(const Search& search, int32_t pair, const Contact& contact);
   void put(Poses& poses, int32_t shape);
+  void fetch(Poses& poses, int32_t shape);
 
   Geom* geoms_ = nullptr;
   BroadPhase broad_;
   Seams seams_;
-  uint32_t* placed_ = nullptr;  // [shapes] the last search that put the geom in place
+  uint32_t* placed_ = nullptr;   // [shapes] the last search that put the geom in place
+  uint32_t* fetched_ = nullptr;  // [shapes of robots] and that asked for its bound
   uint8_t* moves_ = nullptr;
   uint32_t search_ = 0;
   int32_t num_shapes_ = 0, first_body_shape_ = 0;

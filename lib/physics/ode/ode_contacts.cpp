@@ -126,7 +126,7 @@ OdeContacts::Found OdeContacts::collide(dWorldID world, const Scene& scene, Cont
     const auto* s = static_cast<Search*>(context);
     s->self->add_points(*s, pair);
   };
-  broad_.search(scene, nullptr, visit, &search);
+  broad_.search(scene, nullptr, nullptr, visit, &search);
   return found;
 }
 
