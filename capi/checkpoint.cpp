@@ -1,5 +1,4 @@
 // Checkpoints: agent, pool and a note of the host's in one file.
-#include <optional>
 
 #include "base/file.hpp"
 #include "capi/handles.hpp"
@@ -24,15 +23,7 @@ void section(Writer& w, const char tag[4], F&& body) {
 // The pool's part; a build without the simulation half has none to save.
 #if RDM_WITH_SIM
 template <class Pool>
-class PoolUse {  // of one that may be NULL
- public:
-  explicit PoolUse(Pool* p) {
-    if (p) use_.emplace(p);
-  }
-
- private:
-  std::optional<Use<Pool>> use_;
-};
+using PoolUse = UseIfAny<Pool>;
 void save_pool(const rdm_pool* p, Writer& out) {
   p->pool->get_state(-1, out);
 }

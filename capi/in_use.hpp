@@ -45,7 +45,12 @@ inline constexpr bool kChanges = !std::is_const_v<Handle> || std::remove_const_t
 template <class Handle>
 class Use {
  public:
-  explicit Use(Handle* h) : handle_(h) {
+  explicit Use(Handle* h) : handle_(h) { enter(h); }
+  ~Use() { handle_->in_use.leave(kChanges<Handle>); }
+  Use(const Use&) = delete;
+  Use& operator=(const Use&) = delete;
+
+  static void enter(Handle* h) {
     need_handle(h);
     if (h->in_use.enter(kChanges<Handle>)) return;
     note_failure(true);  // whoever called back says why
@@ -53,9 +58,23 @@ class Use {
          "%s: a call on it has not returned yet, of another thread, or the one that this callback runs in",
          name_of(Handle::kTag));
   }
-  ~Use() { handle_->in_use.leave(kChanges<Handle>); }
-  Use(const Use&) = delete;
-  Use& operator=(const Use&) = delete;
+
+ private:
+  Handle* handle_;
+};
+
+// The same of a handle that may be NULL, or the one that the call is in already: then of none.
+template <class Handle>
+class UseIfAny {
+ public:
+  explicit UseIfAny(Handle* h) : handle_(h) {
+    if (h) Use<Handle>::enter(h);
+  }
+  ~UseIfAny() {
+    if (handle_) handle_->in_use.leave(kChanges<Handle>);
+  }
+  UseIfAny(const UseIfAny&) = delete;
+  UseIfAny& operator=(const UseIfAny&) = delete;
 
  private:
   Handle* handle_;

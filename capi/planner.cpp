@@ -1,5 +1,4 @@
 // rdm_planner_*: planning in a pool's worlds, with a policy's proposals and an agent's critic.
-#include <optional>
 
 #include "capi/handles.hpp"
 
@@ -195,8 +194,7 @@ rdm_result rdm_planner_act(rdm_planner* p, const rdm_pool* pool, int32_t env, fl
   return call_on(p, [&] {
     const Use use(pool);
 #if RDM_WITH_LEARN
-    std::optional<Use<const rdm_agent>> critic;
-    if (p->agent) critic.emplace(p->agent);
+    const UseIfAny<const rdm_agent> critic(p->agent);
 #endif
     need_index(env, pool->pool->config().num_envs, "env");
     need(action, "action");

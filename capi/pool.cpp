@@ -1,5 +1,4 @@
 // rdm_pool_*: config to pool and back. Pictures and poses are in cameras.cpp.
-#include <optional>
 
 #include "capi/handles.hpp"
 #if RDM_WITH_SIM
@@ -355,8 +354,8 @@ rdm_result rdm_pool_hash(const rdm_pool* p, int32_t env, uint64_t* hash) {
 
 rdm_result rdm_pool_copy(rdm_pool* dst, int32_t dst_env, const rdm_pool* src, int32_t src_env) {
   return call_on(dst, [&] {
-    std::optional<Use<const rdm_pool>> use;
-    if (src != dst) use.emplace(src);
+    need_handle(src);
+    const UseIfAny<const rdm_pool> use(src == dst ? nullptr : src);
     const int32_t worlds = dst->pool->config().num_envs;
     if (dst_env < -1 || dst_env >= worlds)
       fail(Code::kRange, "dst_env: %d is outside [-1, %d)", dst_env, worlds);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <optional>
 
 #include "base/file.hpp"
 #include "capi/handles.hpp"
@@ -191,8 +190,8 @@ rdm_result rdm_recording_append(rdm_recording* r, const rdm_recording_rows* rows
 
 rdm_result rdm_recording_append_all(rdm_recording* r, const rdm_recording* other) {
   return change(r, [&](Recording& x) {
-    std::optional<Use<const rdm_recording>> use;
-    if (other != r) use.emplace(other);
+    need_handle(other);
+    const UseIfAny<const rdm_recording> use(other == r ? nullptr : other);
     x.append_all(*other->recording);
   });
 }
