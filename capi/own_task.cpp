@@ -33,7 +33,7 @@ rdm_task_def default_def() {
 
 // The rows that every task of a world with an engine has.
 const OptionTable& simulation_rows() {
-  struct Filled : OptionTable {
+  struct Filled : SizedOptionTable<64> {
     Filled() {
       add_sim_options(*this);
       set_default("contacts_max", 0);  // nobody but the scene knows

@@ -32,7 +32,7 @@ const OptionSpec* filled_options(int32_t* count, OptionTable* chosen) {
     *count = chosen->count();
     return chosen->rows();
   }
-  struct Filled : OptionTable {
+  struct Filled : OwnOptionTable {
     Filled() { fill(*this); }
   };
   static const Filled table;

@@ -84,6 +84,7 @@ void Agent::open(const AgentConfig& config) {
   init_networks(nets_, resolved_);
   restart_average(nets_);
   opened();
+  raw_costs_ = std::strcmp(resolved_.options.text("cost_signal"), "raw") == 0;
   read_live();
   TensorInfo t;
   for (int32_t i = 0; find_tensor(nets_, i, names_[i], &t);) ++i;
@@ -107,9 +108,8 @@ void Agent::read_live() {
 void Agent::set_option(const OptionInput& option) {
   if (!option.key) fail(Code::kArgument, "agent option: the key is NULL");
   Options& o = resolved_.options;
-  for (int32_t i = 0; i < o.count(); ++i)
-    if (same_name(o.spec(i).key, option.key) && !o.spec(i).live)
-      fail(Code::kState, "agent option %s: fixed at creation", o.spec(i).key);
+  if (const OptionSpec* spec = o.spec_of(option.key); spec && !spec->live)
+    fail(Code::kState, "agent option %s: fixed at creation", spec->key);
   if (same_name("cost_limit", option.key) && resolved_.rate_steps > 0)
     fail(Code::kState, "agent option cost_limit: the limit on column 0 is cost_limit_per_step");
   for (const char* key : {"cost_limit", "cost_limit_per_step"}) {
@@ -123,10 +123,6 @@ void Agent::set_option(const OptionInput& option) {
   }
   o.set(option, "agent");
   read_live();
-}
-
-bool Agent::raw_costs() const {
-  return std::strcmp(resolved_.options.text("cost_signal"), "raw") == 0;
 }
 
 void Agent::act(const float* obs, bool sample, float* action, const PointRows& clouds) {

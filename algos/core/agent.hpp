@@ -72,7 +72,7 @@ class Agent {
   int32_t horizon() const { return resolved_.horizon; }
   int32_t action_repeat() const { return resolved_.action_repeat; }
   // Rollouts take magnitudes in the place of costs: option cost_signal.
-  bool raw_costs() const;
+  bool raw_costs() const { return raw_costs_; }
   void drop_horizon() { collector_.drop(); }  // after a cancel: forget what was collected
   // From any state back to between epochs: without a begun horizon, and without a cancel that waits.
   void discard();
@@ -182,6 +182,7 @@ class Agent {
   Stream* shuffle_ = nullptr;  // [this rank's blocks]
   Learned learned_;
   int32_t epoch_ = 0, warm_epochs_ = 0;
+  bool raw_costs_ = false;  // option cost_signal
   bool warned_ = false;  // that a limit cannot be judged
   Regression regression_;
   Imitation imitation_;

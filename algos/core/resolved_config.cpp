@@ -185,7 +185,8 @@ void resolve_blocks(ResolvedAgentConfig& resolved) {
   const int32_t envs = resolved.all_envs(), own = blocks / ranks;
   if (envs % blocks != 0) fail(Code::kArgument, "blocks: %d do not divide %d environments", blocks, envs);
   if (blocks % ranks != 0 || (ranks > 1 && (own & (own - 1)) != 0))
-    fail(Code::kArgument, "blocks: %d are not %d ranks times a power of two", blocks, ranks);
+    fail(Code::kArgument, "blocks: %d are not %d ranks times a power of two, as %d would be", blocks, ranks,
+         ranks);
   resolved.blocks = own;
 }
 

@@ -1,6 +1,7 @@
 #include "base/option.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -103,15 +104,22 @@ bool match_choice(const char* choices, const char* word, char* out) {
 }  // namespace
 
 size_t Options::held_bytes() const {
-  size_t bytes = rows_.capacity() * sizeof(Row);
+  size_t bytes = rows_.capacity() * sizeof(Row) + slots_.capacity() * sizeof(NameSlot);
   for (const Row& r : rows_) bytes += r.long_text.capacity() + r.own_key.capacity();
   return bytes;
 }
 
-int32_t Options::find(const char* key) const {
-  for (size_t i = 0; i < rows_.size(); ++i)
-    if (same_name(key_of(rows_[i]), key)) return static_cast<int32_t>(i);
-  return -1;
+void Options::make_index() {
+  slots_.assign(std::bit_ceil(2 * std::min(rows_.capacity(), kMostIndexed)), {});
+  for (int32_t i = 0; i < count(); ++i) add_indexed(slots_.data(), slots_.size(), key(i), i);
+}
+
+void Options::push(const Row& row) {
+  if (rows_.size() == kMostIndexed)
+    fail(Code::kRange, "options: more than %d", static_cast<int>(kMostIndexed));
+  rows_.push_back(row);
+  if (2 * rows_.size() > slots_.size()) return make_index();
+  add_indexed(slots_.data(), slots_.size(), key_of(row), count() - 1);
 }
 
 // The open row that this key is one of: up to the last '.' of the row's key they agree.
@@ -139,7 +147,7 @@ void Options::add_table(const OptionSpec* specs, int32_t count) {
       write(row, specs[i].text);
     else if (specs[i].text)
       assign(row, {specs[i].key, specs[i].text, 0}, "default");
-    rows_.push_back(row);
+    push(row);
   }
 }
 
@@ -223,10 +231,14 @@ void Options::set_open(const OptionSpec& spec, const OptionInput& input, const c
   assign(row, input, owner);
   // the declared row itself, as lists of all options have it
   if (same_name(input.key, spec.key) && row.value.low == spec.number && !row.value.drawn()) return;
-  for (size_t i = 0; i < rows_.size(); ++i)
-    if (!rows_[i].own_key.empty() && same_name(rows_[i].own_key.data(), input.key))
-      rows_.erase(rows_.begin() + static_cast<ptrdiff_t>(i--));
-  rows_.push_back(row);
+  const auto same = [&](const Row& r) {
+    return !r.own_key.empty() && same_name(r.own_key.data(), input.key);
+  };
+  if (const auto old = std::find_if(rows_.begin(), rows_.end(), same); old != rows_.end()) {
+    rows_.erase(old);
+    make_index();
+  }
+  push(row);
 }
 
 void Options::set_lines(const char* lines, const char* owner) {

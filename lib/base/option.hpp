@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "base/host.hpp"
+#include "base/name_index.hpp"
 #include "base/names.hpp"
 #include "base/rng.hpp"
 
@@ -88,8 +89,11 @@ class Options {
   // kArgument for a value that cannot be read or is not finite. Later duplicates win; of an open row, the key
   // that was set last is the last row.
   void add_table(const OptionSpec* specs, int32_t count);
-  // Makes room for `rows` rows in all: one block from the host.
-  void reserve(int32_t rows) { rows_.reserve(static_cast<size_t>(rows)); }
+  // Makes room for `rows` rows in all: one block for them from the host, and one to find them by.
+  void reserve(int32_t rows) {
+    rows_.reserve(static_cast<size_t>(rows));
+    make_index();
+  }
   size_t held_bytes() const;  // from the host
   void set(const OptionInput& input, const char* owner);
   // Lines key=value; spaces about either, '\r' and empty lines do not count. NULL: none. The errors of set,
@@ -143,13 +147,18 @@ class Options {
   static const char* key_of(const Row& row) {
     return row.own_key.empty() ? row.spec->key : row.own_key.data();
   }
-  int32_t find(const char* key) const;
+  int32_t find(const char* key) const {
+    return find_indexed(slots_.data(), slots_.size(), key, [&](int32_t i) { return key_of(row(i)); });
+  }
   const OptionSpec* find_open(const char* key) const;
   void set_open(const OptionSpec& spec, const OptionInput& input, const char* owner);
   const Row& need(const char* key, OptionKind kind) const;
   static void write(Row& row, const char* text);  // without the spaces at its ends
   void assign(Row& row, const OptionInput& input, const char* owner) const;
+  void push(const Row& row);
+  void make_index();  // of all rows, for as many as there is room for
   Vector<Row> rows_;
+  Vector<NameSlot> slots_;
 };
 
 }  // namespace rdm

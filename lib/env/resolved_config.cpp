@@ -44,7 +44,7 @@ void ResolvedPoolConfig::read_options(const PoolConfig& c) {
   first.add_table(specs, task_rows);
   first.set_known(c.options, c.num_options, c.settings, info->name);
   if (first.chosen()) {
-    table = host_new<OptionTable>(c.hooks, &first);
+    table = host_new<ChosenOptionTable>(c.hooks, &first);
     specs = task_options(*info, &task_rows, table);
   }
   options.add_table(specs, task_rows);

@@ -20,7 +20,7 @@ struct ResolvedPoolConfig {
 
   PoolConfig config;  // its options are laid in: list and lines are gone
   Options options;
-  OptionTable* table =
+  ChosenOptionTable* table =
       nullptr;            // rows of the task, where the host's choices made others than the static ones
   int32_t task_rows = 0;  // that the task has of `options`
   int32_t task_index = -1;

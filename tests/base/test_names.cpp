@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/name_index.hpp"
 #include "base/names.hpp"
 
 namespace rdm {
@@ -80,6 +81,22 @@ TEST(Nearest, KeepsItsBoundsWhateverTheNames) {
   EXPECT_LT(nearest(longest.c_str(), names).size(), sizeof(Nearest::text));
   EXPECT_LT(nearest("a_a_a_a_a_b", {longest.c_str(), part.c_str(), "a_a_a"}).size(), sizeof(Nearest::text));
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+}
+
+TEST(NameIndex, FindsEachNameHoweverItIsSpelt) {
+  std::vector<std::string> names;
+  for (int i = 0; i < 500; ++i) names.push_back("joint.robot_" + std::to_string(i * 7) + ".kp");
+  std::vector<NameSlot> slots(1024);
+  const auto name_of = [&](int32_t i) { return names[static_cast<size_t>(i)].c_str(); };
+  EXPECT_EQ(find_indexed(slots.data(), 0, "joint", name_of), -1);
+  EXPECT_EQ(find_indexed(slots.data(), slots.size(), "joint", name_of), -1);
+  for (int32_t i = 0; i < 500; ++i) add_indexed(slots.data(), slots.size(), name_of(i), i);
+  for (int32_t i = 0; i < 500; ++i) {
+    const std::string typed = "Joint.ROBOT-" + std::to_string(i * 7) + ".KP";
+    EXPECT_EQ(find_indexed(slots.data(), slots.size(), typed.c_str(), name_of), i);
+  }
+  for (const char* other : {"", "joint.robot_1.kp", "joint.robot_7.kpp", "joint.robot_7"})
+    EXPECT_EQ(find_indexed(slots.data(), slots.size(), other, name_of), -1) << other;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace rdm {
 namespace {
 
 TEST(OptionTable, MakesKeysThatLast) {
-  static OptionTable t;
+  static SizedOptionTable<8> t;
   const OptionSpec rows[] = {number_option("alpha", 50, 0, 100, "weight"),
                              flag_option("beta", true, "switch")};
   t.add(rows);
@@ -24,10 +24,12 @@ TEST(OptionTable, MakesKeysThatLast) {
   o.set({"JOINT.ffj2.KP", nullptr, 3}, "test");
   EXPECT_EQ(o.number("joint.FFJ2.kp"), 3);
   EXPECT_EQ(o.number("alpha"), 50);
+  EXPECT_TRUE(t.has("joint.ffj2.kp"));
+  EXPECT_FALSE(t.has("joint.FFJ2"));
 }
 
 TEST(OptionTable, ATaskMaySetADefaultOfItsOwn) {
-  static OptionTable t;
+  static SizedOptionTable<8> t;
   const OptionSpec rows[] = {number_option("alpha", 50, 0, 100, "weight")};
   t.add(rows);
   t.set_default("alpha", 7);
@@ -39,15 +41,20 @@ TEST(OptionTable, ATaskMaySetADefaultOfItsOwn) {
 }
 
 TEST(OptionTable, RefusesWhatDoesNotFit) {
-  static OptionTable t;
+  static SizedOptionTable<8> t;
   const OptionSpec row = number_option("", 1, 0, 10, "");
   EXPECT_EQ(
       guard([&] { t.add("joint", "a_name_that_is_far_too_long_for_the_room_that_a_key_has", "kp", row); }),
       Code::kInternal);
   EXPECT_EQ(t.count(), 0);
-  for (int i = 0; i < OptionTable::kCapacity; ++i) t.add(row);
+  for (int i = 0; i < 8; ++i) t.add(row);
   EXPECT_EQ(guard([&] { t.add(row); }), Code::kInternal);
   EXPECT_EQ(guard([&] { t.add("a", "b", nullptr, row); }), Code::kInternal);
+  static SizedOptionTable<4> letters;
+  const std::string half(40, 'k');
+  for (int i = 0; i < 2; ++i) letters.add(half.c_str(), i ? "b" : "a", nullptr, row);
+  EXPECT_EQ(guard([&] { letters.add(half.c_str(), "c", nullptr, row); }), Code::kInternal);
+  EXPECT_EQ(letters.count(), 2);
 }
 
 }  // namespace
