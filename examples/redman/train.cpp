@@ -58,12 +58,17 @@ void parse_shares(const std::string& text, TeachSettings& teach) {
   teach.start_share_end = dots == std::string::npos ? teach.start_share : share(text.substr(dots + 2));
 }
 
-// The same for any number of ranks, so that the run is.
+// The same for any number of ranks, so that the run is. Fewer worlds than these a block leave lanes of the
+// engine and rows of the networks empty; fewer blocks than those leave nothing for ranks to share.
+constexpr int32_t kBlockWorlds = 16, kLeastBlocks = 4;
+
 void give_blocks(RunSettings& run) {
   for (const auto& [key, value] : run.agent.options)
     if (same_name(key, "blocks")) return;
   int32_t blocks = 1;
-  while (blocks < kMostBlocks && run.pool.envs % (2 * blocks) == 0) blocks *= 2;
+  while (blocks < kMostBlocks && run.pool.envs % (2 * blocks) == 0 &&
+         (blocks < kLeastBlocks || run.pool.envs >= 2 * blocks * kBlockWorlds))
+    blocks *= 2;
   run.agent.options.emplace_back("blocks", std::to_string(blocks));
 }
 
