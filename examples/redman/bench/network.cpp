@@ -1,18 +1,12 @@
 // `bench update`, `bench act`: how fast an agent learns from made-up data, and a frozen policy acts.
-#include <chrono>
-
 #include "bench/bench.hpp"
 #include "bench/malloc_count.hpp"
+#include "common/clock.hpp"
 #include "common/names.hpp"
 #include "common/text.hpp"
 
 namespace tool {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double since(Clock::time_point t) {
-  return std::chrono::duration<double>(Clock::now() - t).count();
-}
 
 // Standard-normal-like numbers for fake data: the sum of uniforms, from a plain generator.
 class Noise {

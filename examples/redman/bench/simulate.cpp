@@ -3,22 +3,17 @@
 #include <redman/redman_sense.h>
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 
 #include "bench/bench.hpp"
 #include "bench/malloc_count.hpp"
+#include "common/clock.hpp"
 #include "common/names.hpp"
 #include "common/posix.hpp"
 #include "common/text.hpp"
 
 namespace tool {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double since(Clock::time_point t) {
-  return std::chrono::duration<double>(Clock::now() - t).count();
-}
 
 void random_steps(redman::Pool& pool, int count) {
   for (int i = 0; i < count; ++i) {

@@ -7,17 +7,13 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "common/clock.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
 #include "common/text.hpp"
 
 namespace tool {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double since(Clock::time_point t) {
-  return std::chrono::duration<double>(Clock::now() - t).count();
-}
 
 std::atomic<int> g_signals{0};
 std::atomic<rdm_agent*> g_agent{nullptr};
