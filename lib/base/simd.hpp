@@ -37,6 +37,17 @@ using Int4 = int32_t __attribute__((vector_size(16)));  // as a mask -1: true, 0
 [[gnu::always_inline]] inline void store4(float* p, Float4 v) {
   std::memcpy(p, &v, sizeof v);
 }
+// Four doubles, rounded, and back.
+[[gnu::always_inline]] inline Float4 rounded4(const double* p) {
+  double v __attribute__((vector_size(32)));
+  std::memcpy(&v, p, sizeof v);
+  return __builtin_convertvector(v, Float4);
+}
+[[gnu::always_inline]] inline void widen4(Float4 v, double* p) {
+  using Double4 = double __attribute__((vector_size(32)));
+  const Double4 wide = __builtin_convertvector(v, Double4);
+  std::memcpy(p, &wide, sizeof wide);
+}
 [[gnu::always_inline]] inline Float4 select(Int4 m, Float4 a, Float4 b) {
   return m ? a : b;
 }
@@ -261,6 +272,37 @@ struct Simd {
       for (int l = 0; l < lanes; ++l) to[l][i] = from[i][l];
   }
 
+  // *at(i) lane l = from[l][i], rounded to S, for i in [0, count).
+  template <class At>
+  [[gnu::always_inline]] static void gather_doubles(const double* const* from, int count, const At& at) {
+    int i = 0;
+    if constexpr (sizeof(S) == 4)
+      for (; i + 4 <= count; i += 4)
+        for (int half = 0; half < N; half += 4) {
+          Float4 r[4];
+          for (int l = 0; l < 4; ++l) r[l] = rounded4(from[half + l] + i);
+          transpose(r);
+          for (int k = 0; k < 4; ++k) store4(reinterpret_cast<S*>(at(i + k)) + half, r[k]);
+        }
+    for (; i < count; ++i)
+      for (int l = 0; l < N; ++l) set(at(i), l, static_cast<S>(from[l][i]));
+  }
+  // to[l][i] = *at(i) lane l, of the first `lanes` lanes.
+  template <class At>
+  [[gnu::always_inline]] static void scatter_doubles(const At& at, int count, int lanes, double* const* to) {
+    int i = 0;
+    if constexpr (sizeof(S) == 4)
+      for (; i + 4 <= count; i += 4)
+        for (int half = 0; half < lanes; half += 4) {
+          Float4 r[4];
+          for (int k = 0; k < 4; ++k) r[k] = load4(reinterpret_cast<const S*>(at(i + k)) + half);
+          transpose(r);
+          for (int l = 0; l < 4 && half + l < lanes; ++l) widen4(r[l], to[half + l] + i);
+        }
+    for (; i < count; ++i)
+      for (int l = 0; l < lanes; ++l) to[l][i] = static_cast<double>(get(*at(i), l));
+  }
+
 #if defined(RDM_SIMD_AVX)
  private:
   // Four rows into four columns, in the lower and in the upper four lanes.
@@ -294,6 +336,14 @@ struct Simd<S, 1> {
   }
   [[gnu::always_inline]] static void scatter(const V* from, int count, int, S* const* to) {
     std::memcpy(to[0], from, sizeof(S) * static_cast<size_t>(count));
+  }
+  template <class At>
+  [[gnu::always_inline]] static void gather_doubles(const double* const* from, int count, const At& at) {
+    for (int i = 0; i < count; ++i) *at(i) = static_cast<S>(from[0][i]);
+  }
+  template <class At>
+  [[gnu::always_inline]] static void scatter_doubles(const At& at, int count, int, double* const* to) {
+    for (int i = 0; i < count; ++i) to[0][i] = static_cast<double>(*at(i));
   }
 };
 

@@ -1328,6 +1328,7 @@ void BatchStepper<L>::gather(TreeBatch<L>& t) {
   const Tree& tree = *t.tree;
   const int32_t offset = tree.coord(0);
   const S* from[L::kCount];
+  const double *q[L::kCount], *qd[L::kCount], *target[L::kCount];
   for (int l = 0; l < L::kCount; ++l) {
     const WorldState& world = *worlds_[t.world[l]];
     const TreeMember& member = member_of(t, l);
@@ -1340,16 +1341,15 @@ void BatchStepper<L>::gather(TreeBatch<L>& t) {
         L::set(&t.coord[3 + k].qd, l, static_cast<S>(base.w[k]));
       }
     }
-    const double *q = world.q + member.first_link, *qd = world.qd + member.first_link,
-                 *target = world.target + member.first_link;
-    for (int32_t i = 0; i < tree.num_links; ++i) {
-      L::set(&t.work[i].q, l, static_cast<S>(q[i]));
-      L::set(&t.coord[offset + i].qd, l, static_cast<S>(qd[i]));
-      L::set(&t.work[i].target, l, static_cast<S>(target[i]));
-    }
+    q[l] = world.q + member.first_link;
+    qd[l] = world.qd + member.first_link;
+    target[l] = world.target + member.first_link;
     for (int32_t i = 0; t.feedforward && i < tree.num_links; ++i)
       L::set(&t.feedforward[i], l, static_cast<S>(world.feedforward[member.first_link + i]));
   }
+  L::gather_doubles(q, tree.num_links, [&](int i) { return &t.work[i].q; });
+  L::gather_doubles(qd, tree.num_links, [&](int i) { return &t.coord[offset + i].qd; });
+  L::gather_doubles(target, tree.num_links, [&](int i) { return &t.work[i].target; });
   L::gather(from, kBase, words(&t.base_state));
   for (const S*& f : from) f += kBase;
   L::gather(from, kLink * tree.num_links, words(t.state));
@@ -1410,19 +1410,19 @@ void BatchStepper<L>::scatter(TreeBatch<L>& t) {
   const Tree& tree = *t.tree;
   const int32_t offset = tree.coord(0);
   S* to[L::kCount] = {};
+  double *q[L::kCount] = {}, *qd[L::kCount] = {}, *torque[L::kCount] = {};
   int lanes = 0;
   for (int l = 0; l < L::kCount && t.used[l]; ++l, ++lanes) {
     WorldState& world = *worlds_[t.world[l]];
     const TreeMember& member = member_of(t, l);
     to[l] = persistent_of(world, member.articulation);
-    double *q = world.q + member.first_link, *qd = world.qd + member.first_link,
-           *torque = world.torque + member.first_link;
-    for (int32_t i = 0; i < tree.num_links; ++i) {
-      q[i] = static_cast<double>(L::get(t.work[i].q, l));
-      qd[i] = static_cast<double>(L::get(t.coord[offset + i].qd, l));
-      torque[i] = static_cast<double>(L::get(t.work[i].torque, l));
-    }
+    q[l] = world.q + member.first_link;
+    qd[l] = world.qd + member.first_link;
+    torque[l] = world.torque + member.first_link;
   }
+  L::scatter_doubles([&](int i) { return &t.work[i].q; }, tree.num_links, lanes, q);
+  L::scatter_doubles([&](int i) { return &t.coord[offset + i].qd; }, tree.num_links, lanes, qd);
+  L::scatter_doubles([&](int i) { return &t.work[i].torque; }, tree.num_links, lanes, torque);
   L::scatter(words(&t.base_state), kBase, lanes, to);
   for (int l = 0; l < lanes; ++l) to[l] += kBase;
   L::scatter(words(t.state), kLink * tree.num_links, lanes, to);
