@@ -50,7 +50,7 @@ TEST(OptionTable, RefusesWhatDoesNotFit) {
   for (int i = 0; i < 8; ++i) t.add(row);
   EXPECT_EQ(guard([&] { t.add(row); }), Code::kInternal);
   EXPECT_EQ(guard([&] { t.add("a", "b", nullptr, row); }), Code::kInternal);
-  static SizedOptionTable<4> letters;
+  static SizedOptionTable<4, 96> letters;
   const std::string half(40, 'k');
   for (int i = 0; i < 2; ++i) letters.add(half.c_str(), i ? "b" : "a", nullptr, row);
   EXPECT_EQ(guard([&] { letters.add(half.c_str(), "c", nullptr, row); }), Code::kInternal);

@@ -10,12 +10,13 @@ namespace rdm {
 namespace {
 
 Options robot_options(std::initializer_list<OptionInput> inputs) {
-  static const OptionTable table = [] {
-    OptionTable t;
-    add_robot_rows(kShadowHand, t);
-    add_robot_scales(t);
-    return t;
-  }();
+  struct Filled : OwnOptionTable {
+    Filled() {
+      add_robot_rows(kShadowHand, *this);
+      add_robot_scales(*this);
+    }
+  };
+  static const Filled table;
   Options o;
   o.add_table(table.rows(), table.count());
   for (const OptionInput& in : inputs) o.set(in, "test");
@@ -84,7 +85,7 @@ TEST(RobotOptions, HaveRoomForTheNamesOfEveryRobot) {
   for (const Robot* robot :
        {&kAllegroHand, &kSchunkSvh, &kBarrettBh282, &kRobotiq3f, &kFrankaPanda, &kAbbIrb4600, &kKinovaJaco2,
         &kKukaIiwa7, &kXarm6, &kAbbCrb15000, &kUr5e, &kUr10e}) {
-    OptionTable table;
+    ChosenOptionTable table;
     add_robot_rows(*robot, table);
     EXPECT_EQ(table.count(), robot->links.count * 6) << robot->name;
     Options o;

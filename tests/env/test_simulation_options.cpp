@@ -7,11 +7,10 @@ namespace rdm {
 namespace {
 
 Options sim_options(std::initializer_list<OptionInput> inputs) {
-  static const OptionTable table = [] {
-    OptionTable t;
-    add_sim_options(t);
-    return t;
-  }();
+  struct Filled : SizedOptionTable<64> {
+    Filled() { add_sim_options(*this); }
+  };
+  static const Filled table;
   Options o;
   o.add_table(table.rows(), table.count());
   for (const OptionInput& in : inputs) o.set(in, "test");

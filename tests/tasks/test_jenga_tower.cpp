@@ -6,9 +6,9 @@ namespace rdm {
 namespace {
 
 JengaTower tower(std::vector<OptionInput> inputs = {}) {
-  static OptionTable* table = nullptr;
+  static OwnOptionTable* table = nullptr;
   if (!table) {
-    table = new OptionTable;
+    table = new OwnOptionTable;
     add_tower_options(*table);
     table->add(number_option("contact_layer", 0.0005, 0, 1, "m"));
   }

@@ -53,15 +53,14 @@ class OptionTable {
   int32_t count_ = 0, letters_used_ = 0;
 };
 
-// With room for so many rows.
-template <int32_t kRows>
+// With room for so many rows, and letters of keys that are made here.
+template <int32_t kRows, int32_t kLetters = kRows * OptionTable::kKeySize>
 class SizedOptionTable : public OptionTable {
  public:
   explicit SizedOptionTable(const Options* choices = nullptr)
       : OptionTable({own_rows_, letters_, slots_, kRows, kLetters, kSlots}, choices) {}
 
  private:
-  static constexpr int32_t kLetters = 24 * kRows;
   static constexpr auto kSlots = static_cast<int32_t>(std::bit_ceil(2u * kRows));
   OptionSpec own_rows_[kRows] = {};
   char letters_[kLetters] = {};
@@ -69,7 +68,7 @@ class SizedOptionTable : public OptionTable {
 };
 
 // Of a task with its own robots, and with any: two of 64 links have 768 rows.
-using OwnOptionTable = SizedOptionTable<256>;
+using OwnOptionTable = SizedOptionTable<256, 256 * 24>;
 using ChosenOptionTable = SizedOptionTable<1024>;
 
 }  // namespace rdm
