@@ -54,7 +54,7 @@ class OptionTable {
 };
 
 // With room for so many rows, and letters of keys that are made here.
-template <int32_t kRows, int32_t kLetters = kRows * OptionTable::kKeySize>
+template <int32_t kRows, int32_t kLetters = kRows* OptionTable::kKeySize>
 class SizedOptionTable : public OptionTable {
  public:
   explicit SizedOptionTable(const Options* choices = nullptr)
