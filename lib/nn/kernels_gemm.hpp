@@ -246,6 +246,7 @@ void skinny_rows(const GemmArgs& g, int32_t i0) {
 // A few rows, both A's rows and B's columns contiguous in k.
 void skinny_product(const GemmArgs& g) {
   int32_t i = 0;
+  for (; i + 4 <= g.m; i += 4) skinny_rows<4>(g, i);  // B is turned once for all of them
   for (; i + 2 <= g.m; i += 2) skinny_rows<2>(g, i);
   if (i < g.m) skinny_rows<1>(g, i);
   finish_rows(g, 0, g.m, 0, g.n);
