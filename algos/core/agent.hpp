@@ -183,7 +183,7 @@ class Agent {
   Learned learned_;
   int32_t epoch_ = 0, warm_epochs_ = 0;
   bool raw_costs_ = false;  // option cost_signal
-  bool warned_ = false;  // that a limit cannot be judged
+  bool warned_ = false;     // that a limit cannot be judged
   Regression regression_;
   Imitation imitation_;
   char (*names_)[kTensorNameSize] = nullptr;  // of the tensors

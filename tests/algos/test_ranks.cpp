@@ -334,8 +334,8 @@ TEST(Ranks, BadArguments) {
   EXPECT_EQ(why(-1, 4, 4, "4"), "rank: -1 is outside [0, 3]");
   EXPECT_EQ(why(0, 0, 4, "4"), "ranks: 0 is outside [1, 4096]");
   EXPECT_EQ(why(0, 4, 4, "4", false), "gather: NULL with 4 ranks");
-  EXPECT_EQ(why(0, 4, 4, "1"), "blocks: 1 are not 4 ranks times a power of two");
-  EXPECT_EQ(why(0, 4, 6, "12"), "blocks: 12 are not 4 ranks times a power of two");
+  EXPECT_EQ(why(0, 4, 4, "1"), "blocks: 1 are not 4 ranks times a power of two, as 4 would be");
+  EXPECT_EQ(why(0, 4, 6, "12"), "blocks: 12 are not 4 ranks times a power of two, as 4 would be");
   EXPECT_EQ(why(0, 4, 4, "32"), "blocks: 32 do not divide 16 environments");
   EXPECT_EQ(why(0, 4, 4, "8"), "");
 }

@@ -165,7 +165,7 @@ TEST(ContractRanks, Refusals) {
   EXPECT_EQ(why(r, RDM_RANGE), "rank: 2 is outside [0, 1]");
   r = good, r.gather = nullptr;
   EXPECT_EQ(why(r, RDM_ARGUMENT), "gather: NULL with 2 ranks");
-  EXPECT_EQ(why(good, RDM_ARGUMENT, ""), "blocks: 1 are not 2 ranks times a power of two");
+  EXPECT_EQ(why(good, RDM_ARGUMENT, ""), "blocks: 1 are not 2 ranks times a power of two, as 2 would be");
   EXPECT_EQ(why(good, RDM_ARGUMENT, "blocks=16"), "blocks: 16 do not divide 8 environments");
   rdm_agent_config c = agent_config();
   rdm_agent* a = nullptr;
