@@ -143,10 +143,13 @@ void soft_limits(TreeBatch<L>& t) {
   }
 }
 
-// v1 of the lanes in `lanes` for the present active set. `factored`: the factors are of this very set, of the
-// last solve; forces alone have changed.
+// What the factors at hand are of: another mass matrix, this one with another active set, or both as they are,
+// so that forces alone have changed.
+enum class Factors { kOther, kOtherSet, kSame };
+
+// v1 of the lanes in `lanes` for the present active set.
 template <class L>
-void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes, bool factored = false) {
+void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes, Factors factors) {
   using V = typename L::V;
   using S = typename L::Scalar;
   const Tree& tree = *t.tree;
@@ -198,10 +201,10 @@ void solve_active_set(TreeBatch<L>& t, typename L::Mask lanes, bool factored = f
     t.dv[self] -= pull;
     t.dv[other] -= ratio * (push - pull);
   }
-  if (factored)
+  if (factors == Factors::kSame)
     reduce_right_side(t);
   else
-    factor(t);
+    factor(t, factors == Factors::kOtherSet);
   substitute(t);
   for (int c = 0; c < tree.num_coords; ++c)
     t.coord[c].v1 = L::select(lanes, V(t.coord[c].qd + t.dv[c]), t.coord[c].v1);
@@ -294,16 +297,16 @@ void solve_without_contacts(TreeBatch<L>& t, bool again = false) {
   const Mask everyone = L::mask(~0u);
   t.frozen = L::nothing();
   if (t.limit_law && !again) soft_limits(t);
-  solve_active_set(t, everyone, again);
+  solve_active_set(t, everyone, again ? Factors::kSame : Factors::kOther);
   for (int pass = 0;; ++pass) {
     const Mask changed = update_active_set(t, everyone, pass >= kAllPasses);
     if (L::bits(changed) == 0) return;
     if (pass >= kSetPasses) {
       damp_active_set(t, changed);
-      solve_active_set(t, everyone);
+      solve_active_set(t, everyone, Factors::kOtherSet);
       return;
     }
-    solve_active_set(t, everyone);
+    solve_active_set(t, everyone, Factors::kOtherSet);
   }
 }
 

@@ -485,7 +485,8 @@ void BatchStepper<L>::solve_contacts() {
       if (round == kContactRounds) damp_active_set(t, lanes);
     }
     if (changed == 0) return;
-    for (int32_t k = 0; k < num_batches_; ++k) solve_active_set(batches_[k], lanes_of(batches_[k], changed));
+    for (int32_t k = 0; k < num_batches_; ++k)
+      solve_active_set(batches_[k], lanes_of(batches_[k], changed), Factors::kOtherSet);
     open = changed;
   }
 }

@@ -66,8 +66,9 @@ struct LinkWork {
   V spring, gain, bound;  // drive: torque = spring - gain v1, inside +-bound; of a coupled joint, v1 of both
   V damping;              // beside it, outside of the bound
   V stick, slip,
-      sticks;   // dry friction: gain while slip is 0, else a torque against slip; 1: a row of its own
-  V uncoupled;  // mass matrix of a coupled joint and the other, without the coupling
+      sticks;           // dry friction: gain while slip is 0, else a torque against slip; 1: a row of its own
+  V uncoupled;          // mass matrix of a coupled joint and the other, without the coupling
+  V factored_coupling;  // with it, in the factors
   V limit_gain, limit_push;  // soft limit: torque = gain (push - v1), inwards alone
   V torque;                  // mean over the substeps so far
   V ahead_v[3], ahead_n[3];  // what the coming motion changes (look_ahead.inl): of c's velocity, of the spin
@@ -80,6 +81,7 @@ struct CoordWork {
   V qd, bias;           // rate at the substep's start; RNEA's force
   V inv_d, inv_sqrt_d;  // 1 / D and its root
   V gain;               // what the active set adds to the diagonal
+  V factored_gain;      // that, in the factors
   V v1;                 // rate at the substep's end
 };
 
@@ -602,16 +604,57 @@ void reduce_entries(const V* matrix, const V* more, const TreeBelow* below, cons
   for (int e = 0; e < kCount; ++e) out[e] = sum[e];
 }
 
-// The rows of t.mass_matrix with the gains on its diagonal: t.factor gets those of L off the diagonal, inv_d
-// 1 / D. t.dv becomes L^-T t.dv on the way.
+// Which rows of the factors are not of the present gains and couplings: those that changed since they were
+// made, and all above them.
 template <class L>
-void factor(TreeBatch<L>& t) {
+void find_stale_rows(TreeBatch<L>& t, uint8_t* stale) {
+  const Tree& tree = *t.tree;
+  const auto differ = [](const typename L::V& a, const typename L::V& b) { return L::bits(a != b) != 0; };
+  for (int k = 0; k < tree.num_coords; ++k) stale[k] = differ(t.coord[k].gain, t.coord[k].factored_gain);
+  for (const int32_t i : tree.coupled)
+    if (differ(t.mass_matrix[tree.links[static_cast<size_t>(i)].coupling_entry], t.work[i].factored_coupling))
+      stale[tree.coord(i)] = 1;
+  for (int k = tree.num_coords - 1; k >= 0; --k) {
+    const auto at = static_cast<size_t>(k);
+    const int16_t* above = tree.path.data() + tree.row[at];
+    for (int d = 0; stale[k] && d < tree.depth[at]; ++d) stale[above[d]] = 1;
+  }
+}
+
+// t.dv[k] takes what the coordinates below it ask for.
+template <class L>
+void reduce_right_side(TreeBatch<L>& t, int k) {
+  const Tree& tree = *t.tree;
+  const auto at = static_cast<size_t>(k);
+  const typename L::V* factor = t.factor + tree.depth[at];
+  typename L::V x = t.dv[k];
+  for (int32_t b = tree.first_below[at]; b < tree.first_below[at + 1]; ++b) {
+    const TreeBelow& below = tree.below[static_cast<size_t>(b)];
+    x -= factor[below.row] * t.dv[below.coord];
+  }
+  t.dv[k] = x;
+}
+
+// The rows of t.mass_matrix with the gains on its diagonal: t.factor gets those of L off the diagonal, inv_d
+// 1 / D. t.dv becomes L^-T t.dv on the way. `kept`: the factors are of this very matrix but for gains and
+// couplings, so that most rows are as they should be.
+template <class L>
+void factor(TreeBatch<L>& t, bool kept) {
   using V = typename L::V;
   using S = typename L::Scalar;
   const Tree& tree = *t.tree;
   const int32_t *rows = tree.row.data(), *depths = tree.depth.data();
   V* const dv = t.dv;
+  uint8_t stale[kMaxCoords];
+  if (kept) find_stale_rows(t, stale);
+  for (const int32_t i : tree.coupled)
+    t.work[i].factored_coupling = t.mass_matrix[tree.links[static_cast<size_t>(i)].coupling_entry];
   for (int k = tree.num_coords - 1; k >= 0; --k) {
+    if (kept && !stale[k]) {
+      reduce_right_side(t, k);
+      continue;
+    }
+    t.coord[k].factored_gain = t.coord[k].gain;
     const int depth = depths[k], row = rows[k];
     const TreeBelow *below = tree.below.data() + tree.first_below[static_cast<size_t>(k)],
                     *end = tree.below.data() + tree.first_below[static_cast<size_t>(k) + 1];
@@ -658,18 +701,7 @@ void factor(TreeBatch<L>& t) {
 // t.dv <- L^-T t.dv, with the factors at hand.
 template <class L>
 void reduce_right_side(TreeBatch<L>& t) {
-  using V = typename L::V;
-  const Tree& tree = *t.tree;
-  for (int k = tree.num_coords - 1; k >= 0; --k) {
-    const auto at = static_cast<size_t>(k);
-    const V* factor = t.factor + tree.depth[at];
-    V x = t.dv[k];
-    for (int32_t b = tree.first_below[at]; b < tree.first_below[at + 1]; ++b) {
-      const TreeBelow& below = tree.below[static_cast<size_t>(b)];
-      x -= factor[below.row] * t.dv[below.coord];
-    }
-    t.dv[k] = x;
-  }
+  for (int k = t.tree->num_coords - 1; k >= 0; --k) reduce_right_side(t, k);
 }
 
 // t.dv <- L^-1 D^-1 t.dv
