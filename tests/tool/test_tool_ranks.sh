@@ -14,7 +14,7 @@ done
 [ "$(wc -l < ppo_lag-1/progress.csv)" -gt 20 ] || { echo "the run is too short to be broken"; failed=1; }
 # Without ranks there is one block of worlds, unless it is asked for.
 # shellcheck disable=SC2086
-"$tool" train $flags --set blocks=16 --steps 4000 --out alone > /dev/null 2>&1
+"$tool" train $flags --set blocks=4 --steps 4000 --out alone > /dev/null 2>&1
 same ppo_lag-1 alone 'one process'
 
 # With threads, and from demonstrations.
