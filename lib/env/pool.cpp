@@ -78,7 +78,7 @@ size_t Pool::Impl::arena_bytes(const ResolvedPoolConfig& plan) {
   for (const bool partnered : {false, true}) {
     world[partnered].make<unsigned char>(plan.task->state_bytes());
     WorldDisturbance().carve(world[partnered], plan.disturbance, *plan.task);
-    World::measure(plan.task->engine(), plan.task->scene(), world[partnered], partnered);
+    World::measure(plan.task->engine(), plan.task->scene(), world[partnered], partnered, plan.block_worlds());
   }
   const auto blocks = static_cast<size_t>(plan.num_blocks());
   return rows.used() + blocks * world[0].used() + (plan.num() - blocks) * world[1].used();
@@ -98,7 +98,7 @@ void Pool::Impl::build() {
       Slot& s = slots[i];
       s.task_state = arena.make<unsigned char>(task->state_bytes());
       s.disturbance.carve(arena, disturbance, *task);
-      s.world = World::create(task->engine(), task->scene(), arena, config.hooks, partner);
+      s.world = World::create(task->engine(), task->scene(), arena, config.hooks, partner, block_worlds());
       if (!partner) partner = s.world;
       name_streams(i, config.seed, static_cast<uint32_t>(i));
     }
@@ -171,15 +171,16 @@ void Pool::memory(const PoolConfig& config, size_t* ours, size_t* engines) {
   const Scene& scene = plan.task->scene();
   const size_t blocks = static_cast<size_t>(plan.num_blocks()), others = plan.num() - blocks;
   Arena measure;
-  World::measure(engine, scene, measure);
-  World::measure(engine, scene, measure, true);
+  const int32_t together = plan.block_worlds();
+  World::measure(engine, scene, measure, false, together);
+  World::measure(engine, scene, measure, true, together);
   Arena arena(config.hooks, measure.used());
   const size_t before = counter.live;
   const auto end = [&hooks](World* world) { World::destroy(world, hooks); };
   using OwnedWorld = std::unique_ptr<World, decltype(end)>;
-  const OwnedWorld first(World::create(engine, scene, arena, hooks), end);
+  const OwnedWorld first(World::create(engine, scene, arena, hooks, nullptr, together), end);
   const size_t between = counter.live;
-  const OwnedWorld other(World::create(engine, scene, arena, hooks, first.get()), end);
+  const OwnedWorld other(World::create(engine, scene, arena, hooks, first.get(), together), end);
   total += blocks * (between - before) + others * (counter.live - between);
   Writer state(nullptr, 0);
   first->save(state);

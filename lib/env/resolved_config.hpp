@@ -36,6 +36,7 @@ struct ResolvedPoolConfig {
 
   size_t num() const { return static_cast<size_t>(config.num_envs); }
   int32_t num_blocks() const;
+  int32_t block_worlds() const { return (config.num_envs + num_blocks() - 1) / num_blocks(); }  // at most
   int32_t block_begin(int32_t block) const;  // first world of a block; of num_blocks(): num_envs
 
  private:

@@ -31,7 +31,7 @@ void check_laws(EngineKind kind, const Scene& scene) {
 }  // namespace
 
 World* World::create(EngineKind kind, const Scene& scene, Arena& arena, const HostHooks& hooks,
-                     World* partner) {
+                     World* partner, int32_t together) {
   const HostScope scope(hooks);
   check_laws(kind, scene);
   if (kind == EngineKind::kOde)
@@ -39,10 +39,10 @@ World* World::create(EngineKind kind, const Scene& scene, Arena& arena, const Ho
   check_kind(kind);
   if (kind == EngineKind::kKinematic) return host_new<KinematicWorld>(hooks, scene, arena);
   return host_new<ArticulatedWorld>(hooks, scene, arena, static_cast<ArticulatedWorld*>(partner),
-                                    partner != nullptr);
+                                    partner != nullptr, together);
 }
 
-void World::measure(EngineKind kind, const Scene& scene, Arena& arena, bool partnered) {
+void World::measure(EngineKind kind, const Scene& scene, Arena& arena, bool partnered, int32_t together) {
   check_kind(kind);
   check_laws(kind, scene);
   if (!arena.measuring()) fail(Code::kInternal, "measure: the arena is a real one");
@@ -51,7 +51,7 @@ void World::measure(EngineKind kind, const Scene& scene, Arena& arena, bool part
   else if (kind == EngineKind::kKinematic)
     const KinematicWorld world(scene, arena);
   else
-    const ArticulatedWorld world(scene, arena, nullptr, partnered);
+    const ArticulatedWorld world(scene, arena, nullptr, partnered, together);
 }
 
 size_t World::engine_bytes(EngineKind kind, const Scene& scene, bool partnered) {

@@ -54,11 +54,13 @@ class World {
   // Arrays come out of `arena` (or are only measured); the engine's own memory is the C library's.
   // `scene` must outlive the world. Error(kUnsupported) for an engine this build has not.
   // `partner`, of the same scene, lends the solver's working memory (half of what an engine takes): the two
-  // worlds must then never step at the same time.
+  // worlds must then never step at the same time. `together`: how many worlds that memory is for, 0: any
+  // number; more or fewer of them step to the same bytes, but slower.
   static World* create(EngineKind kind, const Scene& scene, Arena& arena, const HostHooks& hooks,
-                       World* partner = nullptr);
+                       World* partner = nullptr, int32_t together = 0);
   // What create carves, without or with a partner.
-  static void measure(EngineKind kind, const Scene& scene, Arena& arena, bool partnered = false);
+  static void measure(EngineKind kind, const Scene& scene, Arena& arena, bool partnered = false,
+                      int32_t together = 0);
   // Bytes that the engine allocates by itself for one world, an estimate from above.
   static size_t engine_bytes(EngineKind kind, const Scene& scene, bool partnered = false);
   static void destroy(World* world, const HostHooks& hooks);

@@ -94,6 +94,31 @@ TEST(ArticulatedWorld, TakesTheMemoryItAnnounces) {
     }
 }
 
+// Memory for so many worlds is memory for the widths that they are stepped in; any number goes on in it.
+TEST(ArticulatedWorld, TakesMemoryForTheWorldsThatStepTogether) {
+  const Scene scene = make_scene(floating_hands());
+  size_t last = 0;
+  for (const int32_t together : {1, 3, 12, 0}) {
+    Arena first, second;
+    World::measure(kEngine, scene, first, false, together);
+    World::measure(kEngine, scene, second, true, together);
+    EXPECT_GE(first.used(), last) << together;
+    last = first.used();
+    Arena arena(HostHooks{}, first.used() + 8 * second.used());
+    World* worlds[9];
+    for (int i = 0; i < 9; ++i)
+      worlds[i] = World::create(kEngine, scene, arena, HostHooks{}, i ? worlds[0] : nullptr, together);
+    EXPECT_EQ(arena.used(), first.used() + 8 * second.used()) << together;
+    World::step_together(worlds, 9);
+    for (int i = 1; i < 9; ++i) EXPECT_EQ(worlds[i]->q()[5], worlds[0]->q()[5]) << together;
+    for (World* world : worlds) World::destroy(world, HostHooks{});
+  }
+  Arena any, one;
+  World::measure(kEngine, scene, any);
+  World::measure(kEngine, scene, one, false, 1);
+  EXPECT_LT(3 * one.used(), any.used());
+}
+
 TEST(ArticulatedWorld, TooLittleMemoryIsAnError) {
   const Scene scene = make_scene(test::two_hands_def());
   Arena measure;

@@ -40,7 +40,7 @@ size_t persistent_bytes(const Scene& scene) {
 
 // World's arrays and this class's own, named once in state_ for the stepper.
 ArticulatedWorld::ArticulatedWorld(const Scene& scene, Arena& arena, ArticulatedWorld* partner,
-                                   bool partnered)
+                                   bool partnered, int32_t together)
     : World(scene, arena) {
   const auto links = static_cast<size_t>(scene.num_links), bodies = static_cast<size_t>(scene.num_bodies),
              bases = scene.def.articulations.size(),
@@ -76,7 +76,7 @@ ArticulatedWorld::ArticulatedWorld(const Scene& scene, Arena& arena, Articulated
     heavier_ = arena.make<uint8_t>(bases);
   }
   try {
-    make_shared(arena, partner, partnered);
+    make_shared(arena, partner, partnered, together);
   } catch (...) {  // no destructor runs
     release_shared();
     throw;
@@ -106,7 +106,8 @@ void ArticulatedWorld::carve_sleep(Arena& arena) {
   if (!arena.measuring()) wake_all(*scene_, &state_);
 }
 
-void ArticulatedWorld::make_shared(Arena& arena, ArticulatedWorld* partner, bool partnered) {
+void ArticulatedWorld::make_shared(Arena& arena, ArticulatedWorld* partner, bool partnered,
+                                   int32_t together) {
   if (partnered) {
     if (!partner) return;  // measuring
     shared_ = home_ = partner->home_;
@@ -122,17 +123,28 @@ void ArticulatedWorld::make_shared(Arena& arena, ArticulatedWorld* partner, bool
   shared->collider.carve(*scene_, arena);
   if (!arena.measuring()) shared->collider.make(*scene_);
   const SolverDef& solver = scene_->def.solver;
+  const StepperTable table = best_steppers();
   const auto make = [&](int32_t lanes) {
+    const StepperKind kind = {solver.double_precision, lanes, shared->num_steppers > 0, shared->steppers[0]};
     shared->steppers[shared->num_steppers++] =
-        make_stepper({solver.double_precision, lanes}, shared->model, &shared->collider, hooks, arena);
+        table.make(kind, shared->model, &shared->collider, hooks, arena);
   };
   if (solver.double_precision || solver.lanes > 0) {
     make(std::max(solver.lanes, 1));
   } else {
-    const bool single = std::all_of(shared->model.trees.begin(), shared->model.trees.end(),
-                                    [](const Tree& tree) { return tree.members.size() == 1; });
-    make(single ? 1 : 4);
-    for (int32_t lanes = 8; lanes <= widest_lanes(); lanes *= 2) make(lanes);
+    // one for a world alone, one for full groups of those that step together, and one for the rest of them
+    int32_t members = 1;
+    for (const Tree& tree : shared->model.trees)
+      members = std::max(members, static_cast<int32_t>(tree.members.size()));
+    const int32_t widest = table.lanes, most = std::max(1, widest / members), alone = members == 1 ? 1 : 4;
+    const auto fits = [&](int32_t lanes, int32_t worlds) {  // and nothing narrower does
+      const auto group = [&](int32_t n) { return std::max(1, n / members); };
+      const int32_t narrower = lanes == 8 ? alone : lanes / 2;
+      return worlds > group(narrower) && worlds <= group(lanes);
+    };
+    make(alone);
+    for (int32_t lanes = 8; lanes <= widest; lanes *= 2)
+      if (together == 0 || fits(lanes, std::min(together, most)) || fits(lanes, together % most)) make(lanes);
   }
 }
 

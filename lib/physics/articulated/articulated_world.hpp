@@ -37,7 +37,8 @@ struct ArticulatedShared {
 
 class ArticulatedWorld final : public World {
  public:
-  ArticulatedWorld(const Scene& scene, Arena& arena, ArticulatedWorld* partner, bool partnered);
+  ArticulatedWorld(const Scene& scene, Arena& arena, ArticulatedWorld* partner, bool partnered,
+                   int32_t together);
   ~ArticulatedWorld() override;
 
   static size_t heap_bytes(const Scene& scene);
@@ -64,7 +65,7 @@ class ArticulatedWorld final : public World {
   void dynamics_changed() override;
   void step_group(World* const* worlds, int32_t count) override;
   void fetch_link(int32_t i) const override;
-  void make_shared(Arena& arena, ArticulatedWorld* partner, bool partnered);
+  void make_shared(Arena& arena, ArticulatedWorld* partner, bool partnered, int32_t together);
   // state_'s constants and body models by dynamics_; marks articulations of which a mass is another now.
   void own_constants();
   template <class S>

@@ -23,19 +23,14 @@ bool usable(const StepperTable& table) {
 // 0: the best there is; else an index into the tables, plus 1.
 std::atomic<int> chosen{0};
 
-StepperTable table() {
+}  // namespace
+
+StepperTable best_steppers() {
   const int choice = chosen.load(std::memory_order_acquire);
   if (choice > 0) return table_at(choice - 1);
   int best = kTables - 1;
   while (best > 0 && !usable(table_at(best))) --best;
   return table_at(best);
-}
-
-}  // namespace
-
-Stepper* make_stepper(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
-                      const HostHooks& hooks, Arena& arena) {
-  return table().make(kind, model, collider, hooks, arena);
 }
 
 bool set_stepper_isa(const char* name) {
@@ -50,11 +45,11 @@ bool set_stepper_isa(const char* name) {
 }
 
 const char* stepper_isa() {
-  return table().isa;
+  return best_steppers().isa;
 }
 
 int32_t widest_lanes() {
-  return table().lanes;
+  return best_steppers().lanes;
 }
 
 }  // namespace rdm

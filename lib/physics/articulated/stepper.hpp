@@ -12,9 +12,15 @@ namespace rdm {
 
 inline constexpr int32_t kMostLanes = 16;
 
+class Stepper;
+
 struct StepperKind {
   bool double_precision = false;  // the reference: one lane
   int32_t lanes = 1;              // 1, 4, 8 or 16 floats; 16 are 8 where the set has not so many
+  // Contacts are solved in the memory of `lender`, of the same scene, precision and table, which must outlive this
+  // stepper; the two never step at the same time. While the arena measures, lender is null.
+  bool borrows = false;
+  Stepper* lender = nullptr;
 };
 
 class Stepper {
@@ -30,11 +36,6 @@ class Stepper {
   virtual void end(const HostHooks& hooks) = 0;
 };
 
-// Arrays come out of `arena` and the object out of the hooks; while the arena measures, null. `model` and
-// `collider` must outlive it. The best instruction set of this machine, or the one chosen by set_stepper_isa.
-Stepper* make_stepper(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
-                      const HostHooks& hooks, Arena& arena);
-
 // kBaseIsa, kV3Isa, kV4Isa (base/cpu.hpp): what steppers made from now on use; false where this machine or
 // build has it not.
 bool set_stepper_isa(const char* name);
@@ -45,9 +46,13 @@ int32_t widest_lanes();  // of that set: 8, or 16
 struct StepperTable {
   const char* isa = nullptr;  // null: not in this build
   int32_t lanes = 0;          // the most
+  // Arrays come out of `arena` and the object out of the hooks; while the arena measures, null. `model` and
+  // `collider` must outlive it.
   Stepper* (*make)(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
                    const HostHooks& hooks, Arena& arena) = nullptr;
 };
+// Of the best instruction set of this machine, or the one chosen by set_stepper_isa.
+StepperTable best_steppers();
 StepperTable steppers_v2();
 StepperTable steppers_v3();
 StepperTable steppers_v4();

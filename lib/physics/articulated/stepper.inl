@@ -44,16 +44,26 @@ constexpr int kContactRounds = 3;  // of contacts and active sets in turn
 // (0.8 mm as scenes come), whatever it carries. 200 N at the softness that scenes come with.
 constexpr double kMostYield = 0.02;
 
+// The working memory of one world's contacts, whatever the lanes.
+template <class S>
+struct ContactStepper : Stepper {
+  ContactSolver<S> own_contacts;
+  DirectContacts<ContactSolver<S>> own_direct;
+};
+
 template <class L>
-class BatchStepper final : public Stepper {
+class BatchStepper final : public ContactStepper<typename L::Scalar> {
  public:
   using S = typename L::Scalar;
   using V = typename L::V;
   using Mask = typename L::Mask;
 
-  BatchStepper(const ArticulatedModel& model, Collider* collider, Arena& arena)
-      : model_(&model), scene_(model.scene), collider_(collider) {
-    carve(arena);
+  BatchStepper(const StepperKind& kind, const ArticulatedModel& model, Collider* collider, Arena& arena)
+      : model_(&model),
+        scene_(model.scene),
+        collider_(collider),
+        lender_(kind.lender ? static_cast<ContactStepper<S>*>(kind.lender) : this) {
+    carve(arena, kind.borrows);
     if (arena.measuring()) return;
     for (int32_t k = 0; k < num_batches_; ++k) fill_constants(batches_[k], k);
     list_attachments();
@@ -104,7 +114,7 @@ class BatchStepper final : public Stepper {
   };
 
   // memory and constants
-  void carve(Arena& arena);
+  void carve(Arena& arena, bool borrows);
   bool may_be_extreme() const;
   void fill_constants(TreeBatch<L>& t, int32_t batch);
   void list_attachments();
@@ -193,8 +203,9 @@ class BatchStepper final : public Stepper {
   Mat3* R_JL_ = nullptr;             // [num_links]
   RobotPairs<Half> robot_pairs_;
   bool in_lanes_ = false;  // those are in use
-  ContactSolver<S> contacts_;
-  DirectContacts<ContactSolver<S>> direct_;
+  ContactStepper<S>* lender_;
+  ContactSolver<S>& contacts_ = lender_->own_contacts;
+  DirectContacts<ContactSolver<S>>& direct_ = lender_->own_direct;
   Island* island_ = nullptr;  // [num_bodies]; null: bodies are much alike
   int32_t* directly_ =
       nullptr;             // [contacts_max] of the world being solved: a point's island, -1: by sweeps alone
@@ -1445,7 +1456,7 @@ bool BatchStepper<L>::may_be_extreme() const {
 
 // Segments of the contact solver: those of every member of every tree, then one per body.
 template <class L>
-void BatchStepper<L>::carve(Arena& arena) {
+void BatchStepper<L>::carve(Arena& arena, bool borrows) {
   num_groups_ = static_cast<int32_t>(model_->trees.size());
   groups_ = arena.make<Group>(static_cast<size_t>(num_groups_));
   int32_t most_members = 1, most_coords = 0, segments = scene_->num_bodies, path = 1;
@@ -1505,12 +1516,13 @@ void BatchStepper<L>::carve(Arena& arena) {
   if (may_be_extreme()) {
     island_ = arena.make<Island>(static_cast<size_t>(scene_->num_bodies));
     directly_ = arena.make<int32_t>(static_cast<size_t>(scene_->def.solver.contacts_max));
-    direct_.carve(arena, segments);
+    if (!borrows) direct_.carve(arena, segments);
   }
   path_ = arena.make<S>((scene_->laws.empty() ? 4u : 6u) * static_cast<size_t>(most_coords));
   factor_rows_ = arena.make<const V*>(static_cast<size_t>(most_coords));
   R_JL_ = arena.make<Mat3>(static_cast<size_t>(scene_->num_links));
   q_JL_ = arena.make<Quat>(static_cast<size_t>(scene_->num_links));
+  if (borrows) return;
   contacts_.carve(arena, scene_->def.solver.contacts_max, segments, path, scene_->num_bodies);
   if (!scene_->laws.empty()) contacts_.laws.carve(arena, scene_->def.solver.contacts_max, path);
 }
@@ -1621,24 +1633,24 @@ void BatchStepper<L>::list_attachments() {
 }
 
 template <class L>
-Stepper* make_batches(const ArticulatedModel& model, Collider* collider, const HostHooks& hooks,
-                      Arena& arena) {
+Stepper* make_batches(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
+                      const HostHooks& hooks, Arena& arena) {
   if (arena.measuring()) {
-    const BatchStepper<L> measured(model, collider, arena);
+    const BatchStepper<L> measured(kind, model, collider, arena);
     return nullptr;
   }
-  return host_new<BatchStepper<L>>(hooks, model, collider, arena);
+  return host_new<BatchStepper<L>>(hooks, kind, model, collider, arena);
 }
 
 Stepper* make_kind(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,
                    const HostHooks& hooks, Arena& arena) {
-  if (kind.double_precision) return make_batches<Simd<double, 1>>(model, collider, hooks, arena);
+  if (kind.double_precision) return make_batches<Simd<double, 1>>(kind, model, collider, hooks, arena);
 #if defined(RDM_SIMD_AVX512)
-  if (kind.lanes > 8) return make_batches<Simd<float, 16>>(model, collider, hooks, arena);
+  if (kind.lanes > 8) return make_batches<Simd<float, 16>>(kind, model, collider, hooks, arena);
 #endif
-  if (kind.lanes >= 8) return make_batches<Simd<float, 8>>(model, collider, hooks, arena);
-  if (kind.lanes == 4) return make_batches<Simd<float, 4>>(model, collider, hooks, arena);
-  return make_batches<Simd<float, 1>>(model, collider, hooks, arena);
+  if (kind.lanes >= 8) return make_batches<Simd<float, 8>>(kind, model, collider, hooks, arena);
+  if (kind.lanes == 4) return make_batches<Simd<float, 4>>(kind, model, collider, hooks, arena);
+  return make_batches<Simd<float, 1>>(kind, model, collider, hooks, arena);
 }
 
 StepperTable stepper_table(const char* isa) {
