@@ -147,6 +147,8 @@ ${RDM_WEB}    {nullptr, nullptr},
   set_target_properties(redman_tool PROPERTIES OUTPUT_NAME redman)
   # CLI11 and json take most of the time that a file takes: six share it.
   set_target_properties(redman_tool_parts PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+  # asks for functions before it includes a header
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/examples/redman/common/posix_windows.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   foreach(target redman_tool_parts redman_tool)
     set_target_properties(${target} PROPERTIES CXX_STANDARD 20)
     rdm_example(${target})
