@@ -23,7 +23,13 @@ void section(Writer& w, const char tag[4], F&& body) {
 // The pool's part; a build without the simulation half has none to save.
 #if RDM_WITH_SIM
 template <class Pool>
-using PoolUse = UseIfAny<Pool>;
+class PoolUse {
+ public:
+  explicit PoolUse(Pool* p) : use_(p) {}
+
+ private:
+  UseIfAny<Pool> use_;
+};
 void save_pool(const rdm_pool* p, Writer& out) {
   p->pool->get_state(-1, out);
 }
