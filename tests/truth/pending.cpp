@@ -27,8 +27,6 @@ const char* const kPending[] = {
     "ode: limit of a free two-body robot at 20 rad/s, 2 substeps: momentum, change",
     "ode: limit of a free two-body robot at 20 rad/s, 2 substeps: angular momentum, change",
     // Skills at other substeps
-    "hand_over_wall, policy of 2 substeps at 8: success lost, of 90 %",
-    "hand_over_wall, policy of 2 substeps at 16: success lost, of 90 %",
     // its return loses 4 %: the trash lies just outside of the dustpan's quarter metre
     "clean_house, policy of 2 substeps at 4: success lost, of 85 %",
     "clean_house, policy of 2 substeps at 8: success lost, of 85 %",
