@@ -40,8 +40,9 @@ void check_range(const char* name, double v, double low, double high) {
 
 void check(const OccupancyConfig& c) {
   check_range("resolution", c.resolution, 0.001, 10);
-  if (c.memory < kMinMemory || c.memory > kMaxMemory)
-    fail(Code::kRange, "memory: %llu is outside [%llu, %llu]", static_cast<unsigned long long>(c.memory),
+  const uint64_t memory = c.memory;  // a size_t, which may have 32 bits
+  if (memory < kMinMemory || memory > kMaxMemory)
+    fail(Code::kRange, "memory: %llu is outside [%llu, %llu]", static_cast<unsigned long long>(memory),
          static_cast<unsigned long long>(kMinMemory), static_cast<unsigned long long>(kMaxMemory));
   check_range("max_range", c.max_range, 0, 1e6);
   check_range("hit", c.hit, 0.5, 0.999);
