@@ -22,7 +22,8 @@ struct Target {
 struct Projectile {
   const char* said;
   std::vector<Shape> shapes;
-  double half;  // m
+  double half;   // m
+  double reach;  // m, its farthest point from the centre
 };
 
 std::vector<Projectile> projectiles() {
@@ -31,10 +32,10 @@ std::vector<Projectile> projectiles() {
   const V3 rough[] = {{1, 0, 0},  {-1, 0, 0},      {0, 1, 0},          {0, -1, 0},       {0, 0, 1},
                       {0, 0, -1}, {0.6, 0.6, 0.6}, {-0.6, -0.6, -0.6}, {0.6, -0.6, 0.6}, {-0.6, 0.6, -0.6}};
   for (const V3& p : rough) points.push_back(h * p);
-  return {{"sphere", {sphere(h)}, h},
-          {"box", {box(h, h, h)}, h},
-          {"capsule", {capsule(0.66 * h, h, turn({0, 1, 0}, kPi / 2))}, h},
-          {"hull", {hull(points)}, h}};
+  return {{"sphere", {sphere(h)}, h, h},
+          {"box", {box(h, h, h)}, h, std::sqrt(3.0) * h},
+          {"capsule", {capsule(0.66 * h, h, turn({0, 1, 0}, kPi / 2))}, h, 1.66 * h},
+          {"hull", {hull(points)}, h, std::sqrt(3.0) * 0.6 * h}};
 }
 
 struct Shots {
@@ -99,7 +100,9 @@ void shoot(const Target& target, const Projectile& p, double v, int sub, Shots* 
       out->gained = std::max(out->gained, kinetic(lab, inertia) / start - 1);
       if (now[0] > 0 && before[0] <= 0) {
         const double share = -before[0] / (now[0] - before[0]), y = before[1] + share * (now[1] - before[1]);
-        if (target.kind == Kind::kFinger && std::fabs(y) >= target.half + 1.5 * p.half) break;  // beside it
+        // beside it, and out of its reach
+        if (target.kind == Kind::kFinger && std::fabs(y) >= target.half + std::min(p.reach, 1.5 * p.half))
+          break;
         through = true;
       }
       before = now;
@@ -165,7 +168,7 @@ void small_balls(Rows& rows) {
                [&] {
                  Shots shots;
                  for (const double v : {0.5, 1.0, 2.0, 4.0, 12.0})
-                   shoot(target, {"ball", {sphere(r)}, r}, v, 2, &shots);
+                   shoot(target, {"ball", {sphere(r)}, r, r}, v, 2, &shots);
                  return 100.0 * shots.through / shots.all;
                });
     }
@@ -182,7 +185,7 @@ void depth(Rows& rows) {
           points.push_back({0.03 * z, 0.022 * around * std::cos(a), 0.022 * around * std::sin(a)});
         }
       Shots shots;
-      shoot(t, {"egg", {hull(points)}, 0.03}, 3, 2, &shots);
+      shoot(t, {"egg", {hull(points)}, 0.03, 0.03}, 3, 2, &shots);
       return shots.deepest;
     });
   rows.add({"ball dropped from 3 m onto a plane, 2 substeps: sinks", 0, 2, "mm"}, [] {
