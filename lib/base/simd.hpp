@@ -22,6 +22,7 @@ namespace rdm {
 inline constexpr int kFloat4Lanes = 4;
 using Float4 = float __attribute__((vector_size(16)));
 using Int4 = int32_t __attribute__((vector_size(16)));  // as a mask -1: true, 0: false
+using Double4 = double __attribute__((vector_size(32)));
 
 [[gnu::always_inline]] inline Float4 splat(float v) {
   return Float4{v, v, v, v};
@@ -39,12 +40,11 @@ using Int4 = int32_t __attribute__((vector_size(16)));  // as a mask -1: true, 0
 }
 // Four doubles, rounded, and back.
 [[gnu::always_inline]] inline Float4 rounded4(const double* p) {
-  double v __attribute__((vector_size(32)));
+  Double4 v;
   std::memcpy(&v, p, sizeof v);
   return __builtin_convertvector(v, Float4);
 }
 [[gnu::always_inline]] inline void widen4(Float4 v, double* p) {
-  using Double4 = double __attribute__((vector_size(32)));
   const Double4 wide = __builtin_convertvector(v, Double4);
   std::memcpy(p, &wide, sizeof wide);
 }
@@ -114,6 +114,17 @@ using Int4 = int32_t __attribute__((vector_size(16)));  // as a mask -1: true, 0
   r[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
   r[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
   r[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+[[gnu::always_inline]] inline void transpose(Double4 (&r)[4]) {
+  const Double4 a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6),
+                b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+  const Double4 c = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6),
+                d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+  r[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  r[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  r[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
   r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
 

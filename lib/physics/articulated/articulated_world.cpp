@@ -53,6 +53,8 @@ ArticulatedWorld::ArticulatedWorld(const Scene& scene, Arena& arena, Articulated
   state_.base_R = base_R_;
   state_.bodies = bodies_;
   state_.contacts = contacts_;
+  state_.links = links_;
+  state_.fresh = fresh_;
   state_.sensors = sensors_;
   state_.touched = touched_;
   state_.persistent = arena.make<unsigned char>(persistent_bytes(scene));
@@ -216,7 +218,7 @@ void ArticulatedWorld::links_changed(int32_t articulation) {
 }
 
 void ArticulatedWorld::fetch_link(int32_t i) const {
-  shared_->alone().read_link(state_, i, &links_[i], &link_R_[i]);
+  shared_->alone().read_link(state_, i, &links_[i]);
   fresh_[i] = 1;
 }
 
@@ -236,8 +238,7 @@ void ArticulatedWorld::set_base(int32_t articulation, const Motion& m) {
 
 void ArticulatedWorld::push_link(int32_t i, const Vec3& force, const Vec3& p_W) {
   if (!finite(force) || !finite(p_W)) fail(Code::kArgument, "push: the force is not finite");
-  const Motion& m = link(i);
-  const Vec3 com = m.X.p + link_R_[i] * scene_->link(i).inertia.com;
+  const Vec3 com = link(i).X.p + shared_->alone().link_rotation(state_, i) * scene_->link(i).inertia.com;
   state_.pushes[i].force += force;
   state_.pushes[i].torque += cross(p_W - com, force);
   state_.pushed = true;
@@ -280,7 +281,6 @@ void ArticulatedWorld::recover() {
 void ArticulatedWorld::end_step() {
   status_ = state_.status;
   num_contacts_ = report_contacts(&state_);
-  std::memset(fresh_, 0, static_cast<size_t>(scene_->num_links));
   if (state_.diverged) recover();
   clear_pushes();
 }

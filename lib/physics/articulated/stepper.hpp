@@ -31,7 +31,8 @@ class Stepper {
   virtual void step(WorldState* const* worlds, int32_t count) = 0;
   // Joints or base were set from outside: kinematics and momenta follow.
   virtual void refresh(WorldState* world, int32_t articulation) = 0;
-  virtual void read_link(const WorldState& world, int32_t link, Motion* m, Mat3* R) const = 0;
+  virtual void read_link(const WorldState& world, int32_t link, Motion* m) const = 0;
+  virtual Mat3 link_rotation(const WorldState& world, int32_t link) const = 0;  // R_WL
   // Ends the object, which came from these hooks.
   virtual void end(const HostHooks& hooks) = 0;
 };

@@ -67,24 +67,30 @@ class BatchStepper final : public ContactStepper<typename L::Scalar> {
     if (arena.measuring()) return;
     for (int32_t k = 0; k < num_batches_; ++k) fill_constants(batches_[k], k);
     list_attachments();
+    list_felt_links();
     if (in_lanes_) robot_pairs_.make(*scene_, collider_->broad());
   }
   int32_t group_size() const override { return group_size_; }
   void end(const HostHooks& hooks) override { host_delete(hooks, this); }
   void step(WorldState* const* worlds, int32_t count) override;
   void refresh(WorldState* world, int32_t articulation) override;
-  void read_link(const WorldState& world, int32_t link, Motion* m, Mat3* R) const override;
+  void read_link(const WorldState& world, int32_t link, Motion* m) const override;
+  Mat3 link_rotation(const WorldState& world, int32_t link) const override;
 
  private:
   static constexpr int kBase = static_cast<int>(kBaseWords), kLink = static_cast<int>(kLinkWords);
   // Robots' pairs are searched for all worlds at once, in vectors of half the width: two hands fill one.
   static constexpr bool kSearchesWide = sizeof(S) == 4 && L::kCount >= 8;
   using Half = Simd<float, kSearchesWide ? L::kCount / 2 : 4>;
+  // Links with a sensor are written four lanes at a time (link_motion.inl).
+  static constexpr bool kWritesFelt = sizeof(S) == 4 && L::kCount >= 4;
 
   // The batches of one tree: batches_[first_batch ...].
   struct Group {
     const Tree* tree;
     int32_t members, first_batch, num_batches;
+    int32_t* felt;  // [num_felt] the tree's links with a sensor, of any member
+    int32_t num_felt;
   };
   // What carries a shape.
   struct Attachment {
@@ -118,6 +124,7 @@ class BatchStepper final : public ContactStepper<typename L::Scalar> {
   bool may_be_extreme() const;
   void fill_constants(TreeBatch<L>& t, int32_t batch);
   void list_attachments();
+  void list_felt_links();
   // lanes and worlds
   Lane lane_of(int32_t group, int32_t member, int32_t world) const {
     const Group& g = groups_[group];
@@ -144,6 +151,8 @@ class BatchStepper final : public ContactStepper<typename L::Scalar> {
   void gather_pushes(TreeBatch<L>& t);
   void gather_base(TreeBatch<L>& t, int lane);
   void scatter(TreeBatch<L>& t);
+  PersistentLink<S> link_words(const WorldState& world, int32_t link) const;
+  void write_felt_links(int32_t batch);
   // the stages
   void substep();
   void find_robot_pairs();
@@ -232,6 +241,7 @@ void BatchStepper<L>::step(WorldState* const* worlds, int32_t count) {
   for (int32_t k = 0; k < num_batches_; ++k) {
     orientations(batches_[k]);
     scatter(batches_[k]);
+    write_felt_links(k);
   }
   worlds_ = nullptr;
 }
@@ -1277,27 +1287,6 @@ void BatchStepper<L>::refresh(WorldState* world, int32_t articulation) {
   worlds_ = nullptr;
 }
 
-// A link's motion from its persistent words: joint frame to link frame, base to world.
-template <class L>
-void BatchStepper<L>::read_link(const WorldState& world, int32_t link, Motion* m, Mat3* R) const {
-  const int32_t a = scene_->link_articulation[static_cast<size_t>(link)];
-  const int32_t i = link - scene_->link_offset[static_cast<size_t>(a)];
-  PersistentLink<S> from;
-  std::memcpy(&from, persistent_of(world, a) + kBase + kLink * i, sizeof from);
-  Mat3 R_WJ;
-  for (int k = 0; k < 9; ++k) R_WJ.m[k] = static_cast<double>(from.R[k]);
-  *R = R_WJ * R_JL_[link];
-  const Vec3& base = world.bases[a].X.p;
-  for (int r = 0; r < 3; ++r) {
-    m->X.p[r] = base[r] + static_cast<double>(from.P[r]);
-    m->v[r] = static_cast<double>(from.v[r]);
-    m->w[r] = static_cast<double>(from.w[r]);
-  }
-  const Quat q_WJ = {static_cast<double>(from.q[0]), static_cast<double>(from.q[1]),
-                     static_cast<double>(from.q[2]), static_cast<double>(from.q[3])};
-  m->X.q = normalized(q_WJ * q_JL_[link]);
-}
-
 // --- Worlds into lanes and back.
 
 // Masks of lanes from sets of worlds, a bit each, and back.
@@ -1467,7 +1456,9 @@ void BatchStepper<L>::carve(Arena& arena, bool borrows) {
   for (int32_t g = 0; g < num_groups_; ++g) {
     const Tree& tree = model_->trees[static_cast<size_t>(g)];
     const auto members = static_cast<int32_t>(tree.members.size());
-    const Group group = {&tree, members, num_batches_, (group_size_ * members + L::kCount - 1) / L::kCount};
+    Group group = {&tree,   members, num_batches_, (group_size_ * members + L::kCount - 1) / L::kCount,
+                   nullptr, 0};
+    if (kWritesFelt) group.felt = arena.make<int32_t>(static_cast<size_t>(tree.num_links));
     if (groups_) groups_[g] = group;
     num_batches_ += group.num_batches;
     most_coords = std::max(most_coords, tree.num_coords);
@@ -1631,6 +1622,14 @@ void BatchStepper<L>::list_attachments() {
     attachments_[i].first_segment = body_segment_[s.index];
   }
 }
+
+}  // namespace
+}  // namespace rdm
+
+#include "physics/articulated/link_motion.inl"
+
+namespace rdm {
+namespace {
 
 template <class L>
 Stepper* make_batches(const StepperKind& kind, const ArticulatedModel& model, Collider* collider,

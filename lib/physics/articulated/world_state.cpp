@@ -151,6 +151,7 @@ void begin_step(const ArticulatedModel& model, WorldState* s) {
     s->status |= kStatusDiverged;
   }
   for (size_t i = 0; i < scene.sensors.size(); ++i) s->sensors[i] = {};
+  std::memset(s->fresh, 0, static_cast<size_t>(scene.num_links));
   std::memset(s->touched, 0, scene.pairs.size());
   std::copy_n(s->bodies, scene.num_bodies, s->start_bodies);
   std::copy_n(s->bases, scene.def.articulations.size(), s->start_bases);

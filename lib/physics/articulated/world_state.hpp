@@ -173,6 +173,8 @@ struct WorldState {
 
   // what comes out of the step
   double* torque;    // [num_links] mean over the substeps
+  Motion* links;     // [num_links] where `fresh` is 1: those that nobody asked for yet are read when somebody does
+  uint8_t* fresh;    // [num_links]
   Wrench* sensors;   // [sensors] mean over the substeps, link axes, about the link's origin
   uint8_t* touched;  // [pairs]
   uint32_t status;
