@@ -89,7 +89,7 @@ case $mode in
   clang)
     # Another compiler at -O3 gives the same bytes: what is undefined shows where optimisers differ.
     need clang-14
-    configure dev -B build/clang -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14 -DREDMAN_WERROR=OFF \
+    configure dev -B build/clang -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14 -DREDMAN_WERROR=OFF -DREDMAN_TESTS_TOGETHER=OFF \
       -DREDMAN_TOOL=OFF '-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O3 -g1'
     cmake --build build/clang -j "$(nproc)" --target redman test_golden test_golden_learners test_stepper test_vec >&2 || die "the build with clang failed: see above"
     run_tests clang -R '^(test_golden|test_golden_learners|golden_other_libm|test_stepper|test_vec)$'
@@ -190,7 +190,7 @@ case $mode in
     bash cmake/cross/libcxx.sh || exit 1
     folder=$PWD/build/cross/libcxx
     configure dev -B build/libcxx -DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14 -DREDMAN_WERROR=OFF -DREDMAN_TOOL=OFF -DREDMAN_IMPORT=OFF \
-      -DREDMAN_HARD=OFF "-DCMAKE_CXX_FLAGS=-nostdinc++ -isystem $folder/include/c++/v1 -stdlib=libc++" "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O2 -g1" \
+      -DREDMAN_HARD=OFF -DREDMAN_TESTS_TOGETHER=OFF "-DCMAKE_CXX_FLAGS=-nostdinc++ -isystem $folder/include/c++/v1 -stdlib=libc++" "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O2 -g1" \
       "-DCMAKE_EXE_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_SHARED_LINKER_FLAGS=-L$folder/lib" "-DCMAKE_PREFIX_PATH=$folder" "-DCMAKE_BUILD_RPATH=$folder/lib"
     cmake --build build/libcxx -j "$(nproc)" --target redman test_golden test_golden_learners test_option test_text >&2 ||
       die "the build with libc++ failed: see above"

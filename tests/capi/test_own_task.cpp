@@ -156,7 +156,7 @@ TEST(OwnTask, SameBytesForAnyThreadsAndGroups) {
     c.num_envs = 12;
     c.seed = 3;
     c.group_size = group;
-    Pool* p = Pool::create(c);
+    rdm::Pool* p = rdm::Pool::create(c);
     p->reset(nullptr, nullptr);
     for (int i = 0; i < 100; ++i) {
       p->baseline(Baseline::kRandom);
@@ -164,7 +164,7 @@ TEST(OwnTask, SameBytesForAnyThreadsAndGroups) {
     }
     EXPECT_EQ(p->hash(-1), first) << group;
     std::printf("group %d: hash %016llx\n", group, static_cast<unsigned long long>(p->hash(-1)));
-    Pool::destroy(p);
+    rdm::Pool::destroy(p);
   }
 }
 

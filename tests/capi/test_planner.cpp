@@ -678,7 +678,7 @@ TEST(PlannerMemory, AHostThatRefusesLosesNothing) {
   }
 }
 
-TEST(Sensors, APoolWithPicturesIsPlannedInWithout) {
+TEST(PlannedSensors, APoolWithPicturesIsPlannedInWithout) {
   const Pool seen = pool_of("hand_over_safe_finger", "modality=depth\nimage_width=16\nimage_height=16", 1, 3);
   const Pool blind = pool_of("hand_over_safe_finger", "", 1, 3);
   const Planner planner = planner_of(seen, "samples=3\nhorizon=2");

@@ -55,18 +55,29 @@ third="$(pkg-config --libs ode ccd octomap) -lpthread -lm"
 # shellcheck disable=SC2086
 "$cxx" "$work/use.o" $objects "$library" $third -o "$work/use" && "$work/use" || exit 1
 
-# The tests over all rows, as they are built: none of them is edited.
-for test in tasks/test_catalog tasks/test_task_contract tasks/test_every_task capi/test_contract_tasks \
-  algos/test_algo_registry algos/test_every_algo algos/test_option_tables \
-  robot/test_robot robot/test_robots robot/test_robot_motion robot/test_robot_poses; do
-  name=${test#*/}
-  object=$build/tests/CMakeFiles/$name.dir/$test.cpp.o
-  [ -f "$object" ] || { echo "$name is not built: build the tests first"; status=1; continue; }
+# The tests over all rows, as they are built: none of them is edited. program NAME TEST...: the suites of these files.
+program() {
+  program=tests_$1
+  shift
+  built=$(find "$build/tests/CMakeFiles/$program.dir" -name '*.o' 2> /dev/null)
+  [ -n "$built" ] || { echo "$program is not built: build the tests first"; status=1; return; }
   # shellcheck disable=SC2086
-  "$cxx" "$object" $objects "$library" -lgtest_main -lgtest $third -o "$work/$name" || { status=1; continue; }
-  "$work/$name" > "$work/$name.log" 2>&1 || { echo "$name fails with the recipes' rows:"; grep -vE '^\[ +(OK|RUN) |^\[-' "$work/$name.log" | head -n 20; status=1; }
-  rm -f "$work/$name"
-done
+  "$cxx" $built $objects "$library" -lgtest_main -lgtest $third -o "$work/$program" || { status=1; return; }
+  for test; do
+    suites=$(sed -nE 's/^(TEST|TEST_F|TEST_P|TYPED_TEST)\(([A-Za-z0-9_]+).*/\2/p' "$root/tests/$test.cpp" | sort -u)
+    filter=$(for suite in $suites; do printf '%s.*:*/%s.*:' "$suite" "$suite"; done)
+    "$work/$program" --gtest_filter="$filter" > "$work/log" 2>&1 && grep -q PASSED "$work/log" || {
+      echo "$test fails with the recipes' rows:"
+      grep -vE '^\[ +(OK|RUN) |^\[-' "$work/log" | head -n 20
+      status=1
+    }
+  done
+  rm -f "$work/$program"
+}
+program tasks tasks/test_catalog tasks/test_task_contract tasks/test_every_task
+program abi capi/test_contract_tasks
+program algos algos/test_algo_registry algos/test_every_algo algos/test_option_tables
+program robot robot/test_robot robot/test_robots robot/test_robot_motion robot/test_robot_poses
 
 # The tables of the pages: they want the new rows, and get them from the script that the recipes name.
 if [ -x "$build/bin/redman" ] && [ -f "$build/redman.map" ]; then

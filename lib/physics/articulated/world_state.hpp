@@ -173,7 +173,7 @@ struct WorldState {
 
   // what comes out of the step
   double* torque;    // [num_links] mean over the substeps
-  Motion* links;     // [num_links] where `fresh` is 1: those that nobody asked for yet are read when somebody does
+  Motion* links;     // [num_links] where `fresh` is 1; the others are read when somebody asks
   uint8_t* fresh;    // [num_links]
   Wrench* sensors;   // [sensors] mean over the substeps, link axes, about the link's origin
   uint8_t* touched;  // [pairs]
