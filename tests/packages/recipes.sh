@@ -1,5 +1,5 @@
 #!/bin/sh
-# recipes.sh ROOT: the versions that recipes and changelog name are the header's, and vcpkg.json and conanfile.py can be read.
+# recipes.sh ROOT: the versions that recipes, changelogs and CITATION.cff name are the header's, and vcpkg.json and conanfile.py can be read.
 set -u
 root=$1
 status=0
@@ -9,6 +9,10 @@ version=$(part MAJOR).$(part MINOR).$(part PATCH)
 packaging=$root/cmake/packaging
 grep -q "\"version\": \"$version\"" "$packaging/vcpkg/vcpkg.json" || wrong "vcpkg.json has another version than $version"
 head -n1 "$packaging/debian/changelog" | grep -qF "($version)" || wrong "debian/changelog begins with another version than $version"
+released=$(sed -n "s/^## \[$version\] - //p" "$root/CHANGELOG.md")
+[ -n "$released" ] || wrong "CHANGELOG.md has no section of version $version"
+grep -qxF "version: $version" "$root/CITATION.cff" || wrong "CITATION.cff has another version than $version"
+grep -qxF "date-released: $released" "$root/CITATION.cff" || wrong "CITATION.cff has another date than CHANGELOG.md, $released"
 # Every -D of the recipes is an option that the build has.
 for name in $(grep -ohE 'REDMAN_[A-Z]+' "$packaging/vcpkg/portfile.cmake" "$packaging/conan/conanfile.py" | sort -u); do
   grep -qE "(option|set)\($name " "$root/CMakeLists.txt" || wrong "the recipes set $name, which the build does not know"
