@@ -14,7 +14,7 @@ export UBSAN_OPTIONS=print_stacktrace=1
 fuzz() {
   local most=${REDMAN_FUZZ_RUNS:-2000000} begin=$SECONDS passed=0 failed=0 targets=() left share log status program length
   # "state" of the small worlds and of those with an engine: the one steps in microseconds, the other in milliseconds
-  for t in policy hull tool_run tool_mesh tool_demo tool_record recording agent checkpoint map state options state-large; do
+  for t in policy hull names tool_run tool_mesh tool_demo tool_record recording import task agent checkpoint map state options state-large; do
     [ -x "$bin/fuzz_${t%-*}" ] && targets+=("$t")
   done
   left=${#targets[@]}
@@ -30,6 +30,7 @@ fuzz() {
       state) export RDM_FUZZ_WORLDS=small ;;
       state-large) export RDM_FUZZ_WORLDS=/ length=65536 ;;
       options | tool_demo | hull) length=2048 ;;
+      names) length=8192 ;;
     esac
     "$program" --seeds "$out/corpus-$t" > /dev/null
     "$program" -max_total_time="$share" -runs=$most -max_len=$length -rss_limit_mb=1024 -malloc_limit_mb=1024 \
