@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <locale>
 #include <new>
 #include <redman/redman.hpp>
@@ -141,6 +142,30 @@ void work(CLI::App& app, Run& run, const Arguments& arguments) {
   }
 }
 
+struct Command {
+  const char* name;
+  void (*add)(CLI::App&, Run&);
+};
+constexpr Command kCommands[] = {
+    {"tasks", add_tasks},           {"algos", add_algos},     {"robots", add_robots},
+    {"robot", add_robot},           {"objects", add_objects}, {"object", add_object},
+    {"train", add_train},           {"eval", add_eval},       {"baseline", add_baseline},
+    {"rollout", add_rollout},       {"plan", add_plan},       {"render", add_render},
+    {"bench", add_bench},           {"plot", add_plot},       {"report", add_report},
+    {"export", add_export},         {"hull", add_hull},       {"info", add_info},
+    {"completion", add_completion},
+};
+
+// One that the first word names goes without the others: CLI11 takes most of a short command's time to note the
+// flags of all. A completion completes every command.
+void add_commands(CLI::App& app, Run& run, const std::vector<std::string>& words) {
+  const Command* asked = std::find_if(std::begin(kCommands), std::end(kCommands),
+                                      [&](const Command& c) { return !words.empty() && words[0] == c.name; });
+  const bool alone = asked != std::end(kCommands) && asked->add != add_completion;
+  for (const Command& c : kCommands)
+    if (!alone || &c == asked) c.add(app, run);
+}
+
 int run_tool(int argc, char** argv) {
   Arguments arguments = read_arguments(argc, argv);
   const bool json = arguments.json;
@@ -150,25 +175,7 @@ int run_tool(int argc, char** argv) {
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default();
   Run run;
-  add_tasks(app, run);
-  add_algos(app, run);
-  add_robots(app, run);
-  add_robot(app, run);
-  add_objects(app, run);
-  add_object(app, run);
-  add_train(app, run);
-  add_eval(app, run);
-  add_baseline(app, run);
-  add_rollout(app, run);
-  add_plan(app, run);
-  add_render(app, run);
-  add_bench(app, run);
-  add_plot(app, run);
-  add_report(app, run);
-  add_export(app, run);
-  add_hull(app, run);
-  add_info(app, run);
-  add_completion(app, run);
+  add_commands(app, run, arguments.words);
   app.set_version_flag("--version", "", "Print the version and exit");
   app.set_help_all_flag("--help-all", "Help of every subcommand");
   std::vector<std::string> plugins;  // for the help; they are taken before
