@@ -20,36 +20,46 @@ std::string limit_text(const std::vector<rdm_cost>& costs) {
   return costs.empty() || costs[0].limit < 0 ? "-" : number_text(costs[0].limit);
 }
 
-Json task_json(int32_t index) {
+Json task_json(int32_t index, const Presets& all_presets) {
   const rdm_task t = task_at(index);
+  const std::vector<rdm_field> parts = task_fields(index);
   Json costs = Json::array(), fields = Json::array();
   for (const rdm_cost& c : task_costs(index))
-    costs.push_back({{"name", c.name}, {"limit", c.limit < 0 ? Json() : Json(c.limit)}, {"help", c.help}});
+    costs.push_back(
+        object_of({{"name", c.name}, {"limit", c.limit < 0 ? Json() : Json(c.limit)}, {"help", c.help}}));
   const auto number = [](float x) { return std::isnan(x) ? Json() : Json(x); };
-  for (const rdm_field& f : task_fields(index)) {
+  for (const rdm_field& f : parts) {
     const auto [low, high] = task_field_bounds(index, static_cast<int32_t>(fields.size()));
-    fields.push_back({{"name", f.name},
-                      {"unit", f.unit},
-                      {"offset", f.offset},
-                      {"count", f.count},
-                      {"low", number(low)},
-                      {"high", number(high)}});
+    fields.push_back(object_of({{"name", f.name},
+                                {"unit", f.unit},
+                                {"offset", f.offset},
+                                {"count", f.count},
+                                {"low", number(low)},
+                                {"high", number(high)}}));
   }
   Json defaults = Json::object(), presets = Json::object();
-  for (const rdm_option& o : task_defaults(index)) defaults[o.key] = o.text;
-  for (const ObsPreset& p : obs_presets(t.obs_dim, task_fields(index))) {
+  const std::vector<rdm_option> own = task_defaults(index);
+  defaults.get_ref<Json::object_t&>().reserve(own.size());
+  for (const rdm_option& o : own) defaults[o.key] = o.text;
+  for (const ObsPreset& p : all_presets.of(t.obs_dim, parts)) {
     Json names = Json::array();
-    for (const rdm_field& f : task_fields(index))
+    for (const rdm_field& f : parts)
       if (has_columns(p, f)) names.push_back(f.name);
-    presets[p.name] = {{"entries", p.columns.size()}, {"fields", names}};
+    presets[p.name] = object_of({{"entries", p.columns.size()}, {"fields", std::move(names)}});
   }
-  return {{"name", t.name},           {"summary", t.summary},
-          {"obs_dim", t.obs_dim},     {"action_dim", t.action_dim},
-          {"cost_dim", t.cost_dim},   {"costs", costs},
-          {"max_steps", t.max_steps}, {"control_dt", t.control_dt},
-          {"fields", fields},         {"options", options_json(task_options(index))},
-          {"defaults", defaults},     {"initial_mean", task_initial_mean(index)},
-          {"presets", presets}};
+  return object_of({{"name", t.name},
+                    {"summary", t.summary},
+                    {"obs_dim", t.obs_dim},
+                    {"action_dim", t.action_dim},
+                    {"cost_dim", t.cost_dim},
+                    {"costs", std::move(costs)},
+                    {"max_steps", t.max_steps},
+                    {"control_dt", t.control_dt},
+                    {"fields", std::move(fields)},
+                    {"options", options_json(task_options(index))},
+                    {"defaults", std::move(defaults)},
+                    {"initial_mean", task_initial_mean(index)},
+                    {"presets", std::move(presets)}});
 }
 
 std::string task_text(int32_t index) {
@@ -58,8 +68,9 @@ std::string task_text(int32_t index) {
       format("%s: %s\n%d observations, %d actions, %d costs, %d steps of %.4f s\n\n", t.name, t.summary,
              t.obs_dim, t.action_dim, t.cost_dim, t.max_steps, static_cast<double>(t.control_dt));
   Table fields({"field", "unit", "offset", "count", "presets"}), costs({"cost", "limit", "meaning"});
-  const auto presets = obs_presets(t.obs_dim, task_fields(index));
-  for (const rdm_field& f : task_fields(index)) {
+  const std::vector<rdm_field> parts = task_fields(index);
+  const auto presets = obs_presets(t.obs_dim, parts);
+  for (const rdm_field& f : parts) {
     std::string in;
     for (const ObsPreset& p : presets)
       if (has_columns(p, f)) in += (in.empty() ? "" : " ") + p.name;
@@ -70,8 +81,19 @@ std::string task_text(int32_t index) {
   return out + fields.text() + '\n' + costs.text() + '\n' + options_text(task_options(index));
 }
 
+// Of the task, or of all.
+Presets presets_of(int32_t only) {
+  std::vector<rdm_field> fields;
+  for (int32_t i = 0; i < rdm_task_count(); ++i) {
+    if (only >= 0 && i != only) continue;
+    const std::vector<rdm_field> more = task_fields(i);
+    fields.insert(fields.end(), more.begin(), more.end());
+  }
+  return Presets(fields);
+}
+
 // How many entries each preset of actor_obs leaves; "-": there are no such fields.
-std::string presets_text(int32_t only, bool markdown) {
+std::string presets_text(int32_t only, bool markdown, const Presets& presets) {
   const std::vector<std::string> names = {"state", "vision", "touch", "proprioception"};
   Table table({"task", names[0], names[1], names[2], names[3]});
   for (int32_t i = 0; i < rdm_task_count(); ++i) {
@@ -79,7 +101,7 @@ std::string presets_text(int32_t only, bool markdown) {
     const rdm_task t = task_at(i);
     std::vector<std::string> row = {markdown ? format("`%s`", t.name) : t.name};
     row.resize(1 + names.size(), "-");
-    for (const ObsPreset& p : obs_presets(t.obs_dim, task_fields(i)))
+    for (const ObsPreset& p : presets.of(t.obs_dim, task_fields(i)))
       row[1 + static_cast<size_t>(std::find(names.begin(), names.end(), p.name) - names.begin())] =
           std::to_string(p.columns.size());
     table.add(row);
@@ -91,19 +113,20 @@ Report list_tasks(const ListFlags& flags) {
   Json all = Json::array();
   Table table({"task", "observations", "actions", "costs", "steps", "limit", "summary"});
   const int32_t only = flags.name.empty() ? -1 : find_task(flags.name);
+  const Presets presets = presets_of(only);
   for (int32_t i = 0; i < rdm_task_count(); ++i) {
     if (only >= 0 && i != only) continue;
     const rdm_task t = task_at(i);
-    all.push_back(task_json(i));
+    all.push_back(task_json(i, presets));
     const std::string name = flags.markdown ? format("`%s`", t.name) : t.name;
     table.add({name, std::to_string(t.obs_dim), std::to_string(t.action_dim), std::to_string(t.cost_dim),
                std::to_string(t.max_steps), limit_text(task_costs(i)), t.summary});
   }
-  const std::string text = flags.presets    ? presets_text(only, flags.markdown)
+  const std::string text = flags.presets    ? presets_text(only, flags.markdown, presets)
                            : flags.markdown ? table.markdown()
                            : only >= 0      ? task_text(only)
                                             : table.text();
-  return {{{"tasks", all}}, text};
+  return {object_of({{"tasks", std::move(all)}}), text};
 }
 
 Report list_algos(const ListFlags& flags) {
@@ -115,12 +138,12 @@ Report list_algos(const ListFlags& flags) {
     if (only >= 0 && i != only) continue;
     const rdm_algo a = algo_at(i);
     const auto options = algo_options(i);
-    all.push_back({{"name", a.name}, {"summary", a.summary}, {"params", options_json(options)}});
+    all.push_back(object_of({{"name", a.name}, {"summary", a.summary}, {"params", options_json(options)}}));
     table.add({flags.markdown ? format("`%s`", a.name) : a.name, a.summary});
     if (only >= 0) text = format("%s: %s\n\n", a.name, a.summary) + options_text(options);
   }
   if (flags.markdown) text = table.markdown();
-  return {{{"algos", all}}, text.empty() ? table.text() : text};
+  return {object_of({{"algos", std::move(all)}}), text.empty() ? table.text() : text};
 }
 
 Report show_info() {
@@ -131,7 +154,7 @@ Report show_info() {
   for (const auto& [key, value] : json.items())
     text +=
         format("%-10s ", key.c_str()) + (value.is_string() ? value.get<std::string>() : value.dump()) + '\n';
-  return {json, text};
+  return {std::move(json), text};
 }
 
 void add_list(CLI::App& app, Run& run, const char* name, const char* help, Report (*list)(const ListFlags&)) {

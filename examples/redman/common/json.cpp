@@ -27,6 +27,14 @@ std::string text_of(const Document& value, const std::string& what, size_t most)
 
 }  // namespace
 
+Json object_of(std::initializer_list<JsonMember> members) {
+  Json out = Json::object();
+  auto& object = out.get_ref<Json::object_t&>();
+  object.reserve(members.size());
+  for (const JsonMember& m : members) object.emplace(m.key, std::move(m.value));
+  return out;
+}
+
 Document parse_json(const char* text, size_t size) {
   if (size > kMostJsonBytes) throw Failure("longer than " + std::to_string(kMostJsonBytes) + " bytes");
   const auto shallow = [](int depth, Document::parse_event_t, const Document&) {

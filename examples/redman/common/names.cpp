@@ -156,15 +156,15 @@ Json options_json(const std::vector<rdm_option_info>& table) {
   Json out = Json::array();
   for (const rdm_option_info& o : table) {
     const bool text = o.kind == RDM_TEXT;
-    Json row = {{"key", o.key},
-                {"default", default_json(o)},
-                {"low", text ? Json() : Json(o.low)},
-                {"high", text ? Json() : Json(o.high)},
-                {"help", o.help},
-                {"live", o.live != 0}};
+    Json row = object_of({{"key", o.key},
+                          {"default", default_json(o)},
+                          {"low", text ? Json() : Json(o.low)},
+                          {"high", text ? Json() : Json(o.high)},
+                          {"help", o.help},
+                          {"live", o.live != 0}});
     if (text && o.choices) row["choices"] = o.choices;
     if (!text && o.choices) row["range"] = true;
-    out.push_back(row);
+    out.push_back(std::move(row));
   }
   return out;
 }

@@ -3,6 +3,8 @@
 #pragma once
 #include <redman/redman.h>
 
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,19 @@ struct ObsPreset {
 };
 // Those that this observation has, "state" first.
 std::vector<ObsPreset> obs_presets(int32_t obs_dim, const std::vector<rdm_field>& fields);
+
+// The same for many observations whose fields are among these: asked once for each name, for what a preset does
+// with a field follows from the field's name.
+class Presets {
+ public:
+  explicit Presets(const std::vector<rdm_field>& fields);
+  std::vector<ObsPreset> of(int32_t obs_dim, const std::vector<rdm_field>& fields) const;
+
+ private:
+  std::vector<std::string> names_;                       // of the presets
+  std::map<std::string, unsigned, std::less<>> fields_;  // which presets keep it: bit i the i-th
+  unsigned others_ = 0;                                  // the same of entries of no field
+};
 
 bool has_columns(const ObsPreset& preset, const rdm_field& field);
 

@@ -1,5 +1,6 @@
 // What a command hands back, and how it fails.
 #pragma once
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -7,6 +8,13 @@
 namespace tool {
 
 using Json = nlohmann::ordered_json;
+
+// An object of these members, which are moved into it: a list of lists in braces copies each several times.
+struct JsonMember {
+  const char* key;
+  mutable Json value;
+};
+Json object_of(std::initializer_list<JsonMember> members);
 
 // A command's result: main prints the object with --json, else the text.
 struct Report {
