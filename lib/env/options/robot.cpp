@@ -1,7 +1,6 @@
 #include "env/options/robot.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "robot/override.hpp"
 
@@ -38,28 +37,23 @@ const char* field_name(JointField field) {
   return kJointFields[static_cast<int>(field)];
 }
 
-void make_key(char* key, const char* first, const char* name, const char* last) {
-  std::snprintf(key, OptionTable::kKeySize, "%s.%s.%s", first, name, last);
-}
-
 }  // namespace
 
 void add_robot_rows(const Robot& robot, OptionTable& table) {
-  char key[OptionTable::kKeySize];
   for (const RobotLink& link : robot.links)
     for (const JointRow& row : kJointRows) {
       // an undamped joint could gain energy
       const double low = row.field == JointField::kKd ? std::min(1e-4, link.kd) : 0;
-      make_key(key, "joint", link.joint, field_name(row.field));
-      if (table.has(key)) continue;  // of both hands
+      const OptionTable::Key key = OptionTable::make_key("joint", link.joint, field_name(row.field));
+      if (table.has(key.text)) continue;  // of both hands
       OptionSpec spec =
           number_option("", link.*row.value, low, std::max(row.high, link.*row.value), row.help);
       spec.range = row.field != JointField::kArmature;
       table.add("joint", link.joint, field_name(row.field), spec);
     }
   for (const RobotLink& link : robot.links) {
-    make_key(key, "link", link.name, "mass");
-    if (link.mass == 0 || table.has(key)) continue;
+    const OptionTable::Key key = OptionTable::make_key("link", link.name, "mass");
+    if (link.mass == 0 || table.has(key.text)) continue;
     table.add("link", link.name, "mass",
               drawable(number_option("", link.mass, 1e-4, 1000, "mass, kg; moments follow")));
   }
@@ -71,20 +65,19 @@ void add_robot_scales(OptionTable& table) {
 
 void apply_robot_options(const Options& options, const Robot& robot, const char* prefix, int32_t index,
                          int32_t first, ArticulationDef* def, DynamicsDraws* draws) {
-  char key[OptionTable::kKeySize];
   for (int32_t i = 0; i < robot.links.count; ++i) {
     const RobotLink& link = robot.links[i];
     for (const JointRow& row : kJointRows) {
-      make_key(key, "joint", link.joint, field_name(row.field));
-      if (!options.given(key)) continue;
-      override_joint(def, prefix, link.joint, row.field, options.number(key));
+      const OptionTable::Key key = OptionTable::make_key("joint", link.joint, field_name(row.field));
+      if (!options.given(key.text)) continue;
+      override_joint(def, prefix, link.joint, row.field, options.number(key.text));
       if (row.field != JointField::kArmature)
-        draws->add(options, key, kDrawnFields[static_cast<int>(row.field)], first + i);
+        draws->add(options, key.text, kDrawnFields[static_cast<int>(row.field)], first + i);
     }
-    make_key(key, "link", link.name, "mass");
-    if (link.mass == 0 || !options.given(key)) continue;
-    override_mass(def, prefix, link.name, options.number(key));
-    draws->add(options, key, Drawn::kLinkMass, first + i);
+    const OptionTable::Key key = OptionTable::make_key("link", link.name, "mass");
+    if (link.mass == 0 || !options.given(key.text)) continue;
+    override_mass(def, prefix, link.name, options.number(key.text));
+    draws->add(options, key.text, Drawn::kLinkMass, first + i);
   }
   scale_joints(def, JointField::kKp, options.number("scale.kp"));
   scale_joints(def, JointField::kKd, options.number("scale.kd"));

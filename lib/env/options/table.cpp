@@ -1,6 +1,5 @@
 #include "env/options/table.hpp"
 
-#include <cstdio>
 #include <cstring>
 
 #include "base/error.hpp"
@@ -19,18 +18,25 @@ void OptionTable::add(const OptionSpec& row) {
   room_.rows[count_++] = row;
 }
 
-void OptionTable::add(const char* first, const char* name, const char* last, OptionSpec row) {
-  char key[3 * kKeySize] = "";
+OptionTable::Key OptionTable::make_key(const char* first, const char* name, const char* last) {
+  Key key;
+  char *at = key.text, *const end = key.text + kKeySize - 1;
   for (const char* part : {first, name, last}) {
     if (!part) continue;
-    const size_t at = std::strlen(key);
-    std::snprintf(key + at, sizeof key - at, "%s%s", at ? "." : "", part);
+    if (at > key.text && at < end) *at++ = '.';
+    while (*part && at < end) *at++ = *part++;
+    if (*part) fail(Code::kInternal, "option %s.%s: the key is too long", first, name);
   }
-  const auto size = static_cast<int32_t>(std::strlen(key)) + 1;
-  if (size > kKeySize) fail(Code::kInternal, "option %s: the key is too long", key);
+  *at = '\0';
+  return key;
+}
+
+void OptionTable::add(const char* first, const char* name, const char* last, OptionSpec row) {
+  const Key key = make_key(first, name, last);
+  const auto size = static_cast<int32_t>(std::strlen(key.text)) + 1;
   if (letters_used_ + size > room_.num_letters)
-    fail(Code::kInternal, "option %s: keys of more than %d letters", key, room_.num_letters);
-  row.key = std::strcpy(room_.letters + letters_used_, key);
+    fail(Code::kInternal, "option %s: keys of more than %d letters", key.text, room_.num_letters);
+  row.key = std::strcpy(room_.letters + letters_used_, key.text);
   letters_used_ += size;
   add(row);
 }

@@ -12,6 +12,11 @@ namespace rdm {
 class OptionTable {
  public:
   static constexpr int32_t kKeySize = 48;  // of a key, with its end
+  struct Key {
+    char text[kKeySize];
+  };
+  // "first.name.last", parts may be null. Error(kInternal) when it is too long.
+  static Key make_key(const char* first, const char* name, const char* last);
 
   OptionTable(const OptionTable&) = delete;
   OptionTable& operator=(const OptionTable&) = delete;
