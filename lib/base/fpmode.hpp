@@ -11,7 +11,7 @@
 #endif
 
 #if defined(__SSE2__)
-#include <immintrin.h>
+#include <xmmintrin.h>
 #elif defined(__aarch64__)
 #include <cstdint>
 #endif

@@ -11,7 +11,7 @@
 #include <type_traits>
 
 #if defined(__x86_64__)
-#include <immintrin.h>
+#include <emmintrin.h>  // what AVX adds takes a compiler as long as most files: whoever needs it includes it
 #elif defined(__wasm_simd128__)
 #include <wasm_simd128.h>
 #endif
