@@ -145,8 +145,12 @@ ${RDM_WEB}    {nullptr, nullptr},
   add_executable(redman_tool ${PROJECT_SOURCE_DIR}/examples/redman/main.cpp)
   target_link_libraries(redman_tool PRIVATE redman_tool_parts)
   set_target_properties(redman_tool PROPERTIES OUTPUT_NAME redman)
-  # CLI11 and json take most of the time that a file takes: six share it.
-  set_target_properties(redman_tool_parts PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+  # CLI11 and json take most of the time that a file takes: six share it, and more where none is edited.
+  set(files_together 6)
+  if(RDM_UNITY)
+    set(files_together 21)
+  endif()
+  set_target_properties(redman_tool_parts PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${files_together})
   # asks for functions before it includes a header
   set_source_files_properties(${PROJECT_SOURCE_DIR}/examples/redman/common/posix_windows.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   foreach(target redman_tool_parts redman_tool)

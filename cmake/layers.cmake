@@ -24,6 +24,14 @@ if(REDMAN_COVERAGE)
   target_link_options(rdm_flags INTERFACE --coverage)
 endif()
 
+# Most of what a small file takes to compile are the headers that all of its layer read. A build that is made once lets
+# files share them; one that is edited compiles each alone, and so sees what a file forgot to include. The numerical
+# kernels stay alone: what a compiler inlines depends on what else it sees.
+set(RDM_UNITY OFF)
+if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT CMAKE_CROSSCOMPILING AND NOT WIN32)
+  set(RDM_UNITY ON)
+endif()
+
 set(RDM_OFF_ROWS "")  # of what is switched off
 if(NOT REDMAN_SIM)
   list(APPEND RDM_OFF_ROWS physics robot objects sense env plan tasks)
@@ -78,6 +86,9 @@ function(rdm_layer name folder)
   target_link_libraries(rdm_${name} PRIVATE rdm_flags ${arg_LINKS})
   set_target_properties(rdm_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON
                         CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  if(RDM_UNITY AND name MATCHES "^(base|record|env|plan|algos)$")
+    set_target_properties(rdm_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 14)
+  endif()
   if(name MATCHES "^(tasks|algos|capi)$")
     target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR})
   endif()

@@ -87,14 +87,14 @@ constexpr std::array kFocopsOptions = {
                   true),
     flag_option("multiplier_divide", false, "advantage over (1 + nu), as a peer has it"),
 };
-constexpr auto kOptions =
+constexpr auto kFocopsTable =
     with_defaults(join_options(kSharedOptions, kMultiplierOptions, kFocopsOptions, kOneCostOptions),
                   {OtherDefault{"multiplier_optimizer", 0, "sgd"}, OtherDefault{"multiplier_init", 0},
                    OtherDefault{"multiplier_lr", 0.01}, OtherDefault{"multiplier_max", kPaperBound},
                    OtherDefault{"early_stop_kl", 0.02}});
 }  // namespace
 constinit const AlgoRow kFocops = make_algo_row<Focops>(
-    "focops", "First-order constrained optimisation in policy space (Zhang et al. 2020)", kOptions,
+    "focops", "First-order constrained optimisation in policy space (Zhang et al. 2020)", kFocopsTable,
     Costs::kOne, bound_multiplier);
 
 }  // namespace rdm

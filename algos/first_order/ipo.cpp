@@ -84,13 +84,13 @@ constexpr std::array kBarrierOptions = {
     number_option("barrier_max", 1, 0, kHuge, "bound on the barrier's slope, and the slope beyond the limit",
                   true),
 };
-constexpr auto kOptions = with_defaults(join_options(kSharedOptions, kClipOptions, kBarrierOptions,
-                                                     kSplitOptions, kViolationOptions, kWindowOptions),
-                                        {OtherDefault{"violation_scale", 0, "raw"}});
+constexpr auto kIpoTable = with_defaults(join_options(kSharedOptions, kClipOptions, kBarrierOptions,
+                                                      kSplitOptions, kViolationOptions, kWindowOptions),
+                                         {OtherDefault{"violation_scale", 0, "raw"}});
 }  // namespace
 constinit const AlgoRow kIpo = make_algo_row<Ipo>(
     "ipo",
     "PPO with a cost weight that jumps to 1 at each limit; a barrier with barrier=exact (Liu et al. 2020)",
-    kOptions, Costs::kAny);
+    kIpoTable, Costs::kAny);
 
 }  // namespace rdm

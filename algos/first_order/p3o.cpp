@@ -64,11 +64,11 @@ constexpr std::array kPenaltyOptions = {
     number_option("penalty_max", 20, 0, kMaxPenalty, "largest kappa", true),
     flag_option("penalty_clip", true, "clip the cost's ratio too; the peers do not", true),
 };
-constexpr auto kOptions =
+constexpr auto kP3oTable =
     join_options(kSharedOptions, kClipOptions, kPenaltyOptions, kViolationOptions, kWindowOptions);
 }  // namespace
 constinit const AlgoRow kP3o = make_algo_row<P3o>(
-    "p3o", "PPO with an exact penalty of fixed weight on each cost limit (Zhang et al. 2022)", kOptions,
+    "p3o", "PPO with an exact penalty of fixed weight on each cost limit (Zhang et al. 2022)", kP3oTable,
     Costs::kAny);
 
 }  // namespace rdm

@@ -15,10 +15,10 @@ SampleLoss clipped_loss(float ratio, float gain, float linear, float clip) {
 }
 
 namespace {
-constexpr auto kOptions = join_options(kSharedOptions, kClipOptions);
+constexpr auto kPpoTable = join_options(kSharedOptions, kClipOptions);
 }
 constinit const AlgoRow kPpo = make_algo_row<Ppo>(
-    "ppo", "Proximal policy optimisation, clipped (Schulman et al. 2017); costs are recorded only", kOptions,
+    "ppo", "Proximal policy optimisation, clipped (Schulman et al. 2017); costs are recorded only", kPpoTable,
     Costs::kNone);
 
 }  // namespace rdm

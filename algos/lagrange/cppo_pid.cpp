@@ -57,10 +57,10 @@ constexpr std::array kPidOptions = {
     text_option("pid_norm", "sum", "sum|diff|none",
                 "advantage (A_r - l A_c)/(1 + l), (1 - l) A_r - l A_c with l <= 1, or A_r - l A_c"),
 };
-constexpr auto kOptions = join_options(kSharedOptions, kClipOptions, kPidOptions, kWindowOptions);
+constexpr auto kCppoPidTable = join_options(kSharedOptions, kClipOptions, kPidOptions, kWindowOptions);
 }  // namespace
 constinit const AlgoRow kCppoPid = make_algo_row<CostWeighted<Ppo, PidRule>>(
-    "cppo_pid", "PPO with a PID-controlled multiplier for each cost limit (Stooke et al. 2020)", kOptions,
-    Costs::kAny);
+    "cppo_pid", "PPO with a PID-controlled multiplier for each cost limit (Stooke et al. 2020)",
+    kCppoPidTable, Costs::kAny);
 
 }  // namespace rdm

@@ -44,12 +44,12 @@ void Cpo::visit_state(StateIo& io) {
 }
 
 namespace {
-constexpr auto kOptions = with_defaults(
+constexpr auto kCpoTable = with_defaults(
     join_options(kSharedOptions, kTrustOptions, kViolationOptions, kOneCostOptions, kWindowOptions),
     kTrustDefaults);
 }
 constinit const AlgoRow kCpo = make_algo_row<Cpo>(
-    "cpo", "Constrained policy optimisation, its local problem solved exactly (Achiam et al. 2017)", kOptions,
-    Costs::kOne);
+    "cpo", "Constrained policy optimisation, its local problem solved exactly (Achiam et al. 2017)",
+    kCpoTable, Costs::kOne);
 
 }  // namespace rdm

@@ -27,7 +27,7 @@ class Pcpo final : public Cpo {
 constexpr std::array kProjectionOptions = {
     text_option("projection", "kl", "kl|l2", "metric in which the step is projected onto the cost limit"),
 };
-constexpr auto kOptions =
+constexpr auto kPcpoTable =
     with_defaults(with_defaults(join_options(kSharedOptions, kTrustOptions, kViolationOptions,
                                              kOneCostOptions, kWindowOptions, kProjectionOptions),
                                 kTrustDefaults),
@@ -36,6 +36,6 @@ constexpr auto kOptions =
 }  // namespace
 
 constinit const AlgoRow kPcpo = make_algo_row<Pcpo>(
-    "pcpo", "Projection-based constrained policy optimisation (Yang et al. 2020)", kOptions, Costs::kOne);
+    "pcpo", "Projection-based constrained policy optimisation (Yang et al. 2020)", kPcpoTable, Costs::kOne);
 
 }  // namespace rdm

@@ -43,10 +43,10 @@ void Trpo::learn() {
 }
 
 namespace {
-constexpr auto kOptions = with_defaults(join_options(kSharedOptions, kTrustOptions), kTrustDefaults);
+constexpr auto kTrpoTable = with_defaults(join_options(kSharedOptions, kTrustOptions), kTrustDefaults);
 }
 constinit const AlgoRow kTrpo = make_algo_row<Trpo>(
-    "trpo", "Trust region policy optimisation (Schulman et al. 2015); costs are recorded only", kOptions,
+    "trpo", "Trust region policy optimisation (Schulman et al. 2015); costs are recorded only", kTrpoTable,
     Costs::kNone);
 
 }  // namespace rdm

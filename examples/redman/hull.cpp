@@ -11,8 +11,8 @@
 namespace tool {
 namespace {
 
-constexpr int kMostPoints = 32;    // what option hull takes
-constexpr double kFarthest = 1e3;  // m; so too. The squares of its sums stay small in qhull
+constexpr int kMostPoints = 32;         // what option hull takes
+constexpr double kFarthestPoint = 1e3;  // m; so too. The squares of its sums stay small in qhull
 
 struct HullFlags {
   std::string file;
@@ -21,7 +21,7 @@ struct HullFlags {
 };
 
 // "0.031", "-0.0004": to a hundredth of a millimetre.
-std::string short_number(double x) {
+std::string decimal_text(double x) {
   std::string text = format("%.5f", x);
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
@@ -33,17 +33,17 @@ Report run_hull(const HullFlags& flags) {
   for (Point& p : points)
     for (double& x : p) {
       x *= flags.scale;
-      if (!(std::abs(x) <= kFarthest))
+      if (!(std::abs(x) <= kFarthestPoint))
         throw Failure(flags.file +
-                      format(": with --scale a vertex is farther than %g m from the origin", kFarthest));
+                      format(": with --scale a vertex is farther than %g m from the origin", kFarthestPoint));
     }
   const FewHull few = few_hull(points, static_cast<size_t>(flags.points), flags.file);
   const Hull& part = few.hull;
 
   std::string option;
   for (const Point& p : part.corners)
-    option += (option.empty() ? "" : ";") + short_number(p[0]) + ',' + short_number(p[1]) + ',' +
-              short_number(p[2]);
+    option += (option.empty() ? "" : ";") + decimal_text(p[0]) + ',' + decimal_text(p[1]) + ',' +
+              decimal_text(p[2]);
   const rdm_option asked[] = {{"object", "hull", 0}, {"hull", option.c_str(), 0}};
   rdm_pool_config config = redman::pool_config("hand_over_safe_finger");
   config.options = asked;

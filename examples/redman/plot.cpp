@@ -62,24 +62,24 @@ std::vector<Level> limit_levels(const std::vector<Group>& groups) {
   return levels;
 }
 
-struct Chart {
+struct Figure {
   std::string title;
   std::vector<Panel> panels;
   std::vector<LegendEntry> legend;
   size_t lines = 0;  // groups of runs
 };
 
-Chart chart_of_a_task(const std::vector<const RunData*>& runs, bool each) {
+Figure chart_of_a_task(const std::vector<const RunData*>& runs, bool each) {
   const std::vector<Group> groups = make_groups(runs, each, true);
-  Chart chart{runs[0]->task,
-              {make_panel("Return of an episode", "Metrics/EpRet", groups),
-               make_panel("Cost of an episode (dashed: limit)", "Metrics/EpCost", groups),
-               make_panel("Lagrange multiplier", "Metrics/LagrangeMultiplier", groups),
-               make_panel("Length of an episode, steps", "Metrics/EpLen", groups),
-               make_panel("Episodes that end in a fall", "Metrics/FallRate", groups, true),
-               make_panel("Episodes with success", "Metrics/SuccessRate", groups, true)},
-              {},
-              groups.size()};
+  Figure chart{runs[0]->task,
+               {make_panel("Return of an episode", "Metrics/EpRet", groups),
+                make_panel("Cost of an episode (dashed: limit)", "Metrics/EpCost", groups),
+                make_panel("Lagrange multiplier", "Metrics/LagrangeMultiplier", groups),
+                make_panel("Length of an episode, steps", "Metrics/EpLen", groups),
+                make_panel("Episodes that end in a fall", "Metrics/FallRate", groups, true),
+                make_panel("Episodes with success", "Metrics/SuccessRate", groups, true)},
+               {},
+               groups.size()};
   chart.panels[1].levels = limit_levels(groups);
   for (const Group& g : groups)
     chart.legend.push_back(
@@ -88,8 +88,8 @@ Chart chart_of_a_task(const std::vector<const RunData*>& runs, bool each) {
 }
 
 // A row of panels for each task; an algorithm has one colour in all of them.
-Chart chart_of_tasks(const std::vector<std::vector<const RunData*>>& tasks, bool each) {
-  Chart chart{"Learning curves", {}, {}, 0};
+Figure chart_of_tasks(const std::vector<std::vector<const RunData*>>& tasks, bool each) {
+  Figure chart{"Learning curves", {}, {}, 0};
   for (const auto& runs : tasks) {
     std::vector<Group> groups = make_groups(runs, each, false);
     for (Group& g : groups) {
@@ -121,7 +121,7 @@ Report run_plot(const PlotFlags& flags) {
     if (found == tasks.end()) found = tasks.insert(tasks.end(), std::vector<const RunData*>());
     found->push_back(&run);
   }
-  const Chart chart =
+  const Figure chart =
       tasks.size() == 1 ? chart_of_a_task(tasks[0], flags.each) : chart_of_tasks(tasks, flags.each);
   replace_file(flags.out, draw_chart(chart.title, chart.panels, 3, "control steps", chart.legend));
   return {{{"file", flags.out}, {"runs", runs.size()}, {"lines", chart.lines}}, "wrote " + flags.out + '\n'};

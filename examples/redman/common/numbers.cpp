@@ -31,10 +31,6 @@ std::string why_not_whole(const std::string& text, bool is_signed) {
              : text + " is not a whole number, written in digits";
 }
 
-bool begins(const std::string& text, const char* head) {
-  return text.rfind(head, 0) == 0;
-}
-
 }  // namespace
 
 bool read_whole(const std::string& text, int64_t* out) {
@@ -53,8 +49,8 @@ bool read_number(const std::string& text, double* out) {
 void check_numbers(CLI::App& command) {
   for (CLI::Option* o : command.get_options()) {
     const std::string type = o->get_type_name();
-    const bool natural = begins(type, "UINT"), whole = natural || begins(type, "INT");
-    if (!whole && !begins(type, "FLOAT")) continue;
+    const bool natural = type.starts_with("UINT"), whole = natural || type.starts_with("INT");
+    if (!whole && !type.starts_with("FLOAT")) continue;
     o->transform(CLI::Validator(
         [whole, natural](std::string& text) {
           double real = 0;

@@ -16,10 +16,6 @@ std::string join(const NamedTensor* t) {
   return out;
 }
 
-bool begins(const std::string& text, const char* with) {
-  return text.rfind(with, 0) == 0;
-}
-
 // What a file says of the eyes beside their weights.
 void read_eyes(Network& n, const rdm_policy_info& info) {
   Eyes& e = n.eyes;
@@ -30,7 +26,7 @@ void read_eyes(Network& n, const rdm_policy_info& info) {
   e.color = info.point_color != 0;
   e.features = info.num_features;
   for (const NamedTensor& t : n.tensors)
-    e.num_layers += begins(t.name, "encoder.") && t.name.find(".weight") != std::string::npos;
+    e.num_layers += t.name.starts_with("encoder.") && t.name.find(".weight") != std::string::npos;
   e.activation = kActivations[static_cast<size_t>(n.find("encoder.activation")->values[0])];
   const NamedTensor* origin = n.find("encoder.origin");
   std::copy(origin->values.begin(), origin->values.end(), e.origin);
@@ -58,7 +54,7 @@ Network::Network(const redman::Policy& policy) {
     NamedTensor tensor{t.name, {t.rows}, policy.read(t)};
     const bool weight = tensor.name.find(".weight") != std::string::npos;
     if (weight || t.cols > 1) tensor.shape.push_back(t.cols);
-    num_layers += weight && begins(tensor.name, "actor.");
+    num_layers += weight && tensor.name.starts_with("actor.");
     tensors.push_back(std::move(tensor));
   }
   const uint32_t v = rdm_version();

@@ -8,11 +8,11 @@ namespace tool {
 namespace {
 
 constexpr int64_t kIr = 8, kOperators = 17;
-enum Type : int64_t { kFloat = 1, kByte = 2, kInteger = 7, kDouble = 11 };  // TensorProto.DataType
-constexpr int64_t kBatch = 0, kPoints = -1;                                 // sizes that are free
+enum Type : int64_t { kFloat32 = 1, kByte = 2, kInteger = 7, kDouble = 11 };  // TensorProto.DataType
+constexpr int64_t kBatch = 0, kNumPoints = -1;                                // sizes that are free
 
 template <class T>
-constexpr Type kTypeOf = std::is_same_v<T, float>    ? kFloat
+constexpr Type kTypeOf = std::is_same_v<T, float>    ? kFloat32
                          : std::is_same_v<T, double> ? kDouble
                                                      : kInteger;
 
@@ -82,11 +82,11 @@ class Graph {
     nodes_.push_back(std::move(m));
     return out;
   }
-  void input(const std::string& name, const std::vector<int64_t>& shape, Type element = kFloat) {
+  void input(const std::string& name, const std::vector<int64_t>& shape, Type element = kFloat32) {
     inputs_.push_back(value_message(name, shape, element));
   }
   void output(const std::string& name, const std::vector<int64_t>& shape) {
-    outputs_.push_back(value_message(name, shape, kFloat));
+    outputs_.push_back(value_message(name, shape, kFloat32));
   }
   // GraphProto
   Message message() const {
@@ -122,7 +122,7 @@ void add_normalizer(const Network& network, Graph& graph, std::string& x) {
 }
 
 std::string add_classes(const Eyes& eyes, Graph& graph) {
-  graph.input("point_class", {kBatch, kPoints}, kByte);
+  graph.input("point_class", {kBatch, kNumPoints}, kByte);
   const std::string number = graph.node("Cast", {"point_class"}, "point_class.number", {{"to", kInteger}}),
                     depth = graph.constant<int64_t>("point_class.count", {}, {eyes.classes}),
                     values = graph.constant<float>("point_class.values", {2}, {0, 1});
@@ -132,7 +132,7 @@ std::string add_classes(const Eyes& eyes, Graph& graph) {
 // What the encoder sees of points: whole millimetres from its origin, in units of its range, class and
 // colour. In doubles, as the library has it: with floats a half could become the other millimetre.
 std::string add_points(const Eyes& eyes, Graph& graph) {
-  graph.input("points", {kBatch, kPoints, 3});
+  graph.input("points", {kBatch, kNumPoints, 3});
   const std::vector<double> origin(eyes.origin, eyes.origin + 3);
   std::string x = graph.node("Cast", {"points"}, "points.double", {{"to", kDouble}});
   x = graph.node("Sub", {x, graph.constant("points.origin", {3}, origin)}, "points.metres");
@@ -142,14 +142,14 @@ std::string add_points(const Eyes& eyes, Graph& graph) {
                   graph.constant<double>("points.high", {}, {32767})},
                  "points.bounded");
   x = graph.node("Round", {x}, "points.whole");
-  x = graph.node("Cast", {x}, "points.float", {{"to", kFloat}});
+  x = graph.node("Cast", {x}, "points.float", {{"to", kFloat32}});
   x = graph.node("Mul", {x, graph.constant<float>("points.step", {}, {0.001f / eyes.range})},
                  "points.scaled");
   std::vector<std::string> seen = {x};
   if (eyes.classes) seen.push_back(add_classes(eyes, graph));
   if (eyes.color) {
-    graph.input("point_color", {kBatch, kPoints, 3}, kByte);
-    const std::string color = graph.node("Cast", {"point_color"}, "point_color.float", {{"to", kFloat}});
+    graph.input("point_color", {kBatch, kNumPoints, 3}, kByte);
+    const std::string color = graph.node("Cast", {"point_color"}, "point_color.float", {{"to", kFloat32}});
     seen.push_back(graph.node("Div", {color, graph.constant<float>("point_color.largest", {}, {255})},
                               "point_color.scaled"));
   }

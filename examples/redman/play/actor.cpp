@@ -50,7 +50,7 @@ redman::Agent trained_agent(const std::string& folder, const redman::Pool& pool)
   return agent;
 }
 
-bool ends_with(const std::string& word, const std::string& ending) {
+bool has_ending(const std::string& word, const std::string& ending) {
   return word.size() > ending.size() && word.substr(word.size() - ending.size()) == ending;
 }
 
@@ -81,7 +81,7 @@ ActorChoice choose_actor(const std::string& word, const std::string& task) {
   for (int32_t i = 0; i < 3; ++i)
     if (same_name(word, kBaselines[i])) choice.baseline = i;
   if (choice.baseline >= 0) return choice;
-  const bool script = ends_with(word, ".demo");
+  const bool script = has_ending(word, ".demo");
   choice.demo = script || same_name(word, "demo");
   if (script) {
     const std::string text = read_file(word, kMostDemoBytes);
@@ -90,7 +90,7 @@ ActorChoice choose_actor(const std::string& word, const std::string& task) {
     choice.options = choice.script->options;
   }
   if (choice.demo) return choice;
-  if (ends_with(word, ".npz")) {
+  if (has_ending(word, ".npz")) {
     auto recording = std::make_shared<Recording>(read_recording(word));
     choice.file = word;
     choice.task = recording->pool.task;

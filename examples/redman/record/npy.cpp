@@ -9,7 +9,7 @@ namespace tool {
 namespace {
 
 constexpr char kMagic[] = "\x93NUMPY\x01";  // and minor version 0
-constexpr size_t kHead = 10;                // magic, version, length of the text
+constexpr size_t kHeadBytes = 10;           // magic, version, length of the text
 constexpr size_t kMostShape = 4;
 
 std::u32string points_of(const std::string& utf8) {
@@ -117,7 +117,7 @@ std::string npy_header(const ArrayShape& array) {
   std::string text = "{'descr': '" + array.type + "', 'fortran_order': False, 'shape': (";
   for (const uint64_t n : array.shape) text += std::to_string(n) + ", ";
   text += "), }";
-  text.resize((kHead + text.size() + 1 + 63) / 64 * 64 - kHead - 1, ' ');
+  text.resize((kHeadBytes + text.size() + 1 + 63) / 64 * 64 - kHeadBytes - 1, ' ');
   text += '\n';
   std::string out(kMagic, 8);  // the terminator is the minor version
   out += static_cast<char>(text.size() & 255);
@@ -126,11 +126,12 @@ std::string npy_header(const ArrayShape& array) {
 }
 
 ArrayShape parse_npy_head(const char* bytes, size_t size, size_t* begin) {
-  if (size < kHead || std::memcmp(bytes, kMagic, 8) != 0) throw Failure("not an array of numpy, version 1");
+  if (size < kHeadBytes || std::memcmp(bytes, kMagic, 8) != 0)
+    throw Failure("not an array of numpy, version 1");
   const size_t length = static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
-  if (length > size - kHead) throw Failure("an array ends in its header");
-  *begin = kHead + length;
-  Literal text(std::string(bytes + kHead, length));
+  if (length > size - kHeadBytes) throw Failure("an array ends in its header");
+  *begin = kHeadBytes + length;
+  Literal text(std::string(bytes + kHeadBytes, length));
   ArrayShape out;
   text.need("{");
   unsigned seen = 0;  // a bit a key

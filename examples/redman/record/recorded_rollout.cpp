@@ -13,7 +13,7 @@ namespace {
 
 // All arrays together take at most this, or this many times what the file takes: a rollout's numbers do not
 // pack tighter, while zeros would by 1,000.
-constexpr uint64_t kMostBytes = uint64_t{1} << 26, kMostPacked = 24;
+constexpr uint64_t kMostUnpacked = uint64_t{1} << 26, kMostPacked = 24;
 constexpr size_t kMostHead = 1024;  // of an array file
 
 struct Array {
@@ -69,7 +69,7 @@ Recording parse_recording(const ZipReader& zip) {
   if (episodes < 1 || episodes > kMostEpisodes)
     throw Failure("episode_begin: not the first steps of its episodes");
   if (state.shape.shape[0] != episodes) throw Failure("state: not one for each episode");
-  const uint64_t most = std::max(kMostBytes, kMostPacked * zip.size());
+  const uint64_t most = std::max(kMostUnpacked, kMostPacked * zip.size());
   if (action.shape.bytes() > most || state.shape.bytes() > most - action.shape.bytes())
     throw Failure("action, state: " + std::to_string(action.shape.bytes()) + " and " +
                   std::to_string(state.shape.bytes()) + " bytes out of a file of " +

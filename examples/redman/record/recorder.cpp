@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kPart = size_t{1} << 20;  // bytes that are copied at a time
 
-bool ends_with(const std::string& text, const std::string& end) {
+bool ends_as(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && same_name(text.substr(text.size() - end.size()), end);
 }
 
@@ -60,7 +60,7 @@ std::string bytes_of(const std::vector<T>& values) {
 }
 
 // A cell of the header: quoted where a comma or a quote stands in it.
-std::string cell(const std::string& text) {
+std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"") == std::string::npos) return text;
   std::string out = "\"";
   for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -84,7 +84,7 @@ void Recorder::add(const char* name, const char* help, const T* rows, std::vecto
 Recorder::Recorder(const std::string& path, const redman::Pool& pool, size_t episodes, bool states,
                    bool labels)
     : pool_(pool),
-      table_(ends_with(path, ".csv")),
+      table_(ends_as(path, ".csv")),
       states_(states),
       file_(path),
       scratch_(path),
@@ -264,10 +264,11 @@ void Recorder::write_table() {
         rdm_field f;
         redman::check(rdm_pool_field(pool_.get(), i, &f));
         for (int32_t k = 0; k < f.count; ++k)
-          out += ',' + cell(with_unit(f.name + (f.count > 1 ? format("[%d]", k) : ""), f.unit));
+          out += ',' + csv_cell(with_unit(f.name + (f.count > 1 ? format("[%d]", k) : ""), f.unit));
       }
     } else if (c.name == "cost" || c.name == "cost_raw") {
-      for (const rdm_cost& cost : task_costs(pool_.spec().task)) out += ',' + cell(c.name + '.' + cost.name);
+      for (const rdm_cost& cost : task_costs(pool_.spec().task))
+        out += ',' + csv_cell(c.name + '.' + cost.name);
     } else if (c.name == "action" || c.name == "label") {
       for (uint64_t k = 0; k < c.shape[0]; ++k) out += ',' + c.name + format("[%" PRIu64 "]", k);
     } else {

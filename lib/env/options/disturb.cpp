@@ -10,7 +10,7 @@
 namespace rdm {
 namespace {
 
-constexpr OptionSpec kRows[] = {
+constexpr OptionSpec kDisturbRows[] = {
     open_option(drawable(number_option("noise.FIELD", 0, 0, 1000,
                                        "deviation of normal noise on the field's entries, new in each "
                                        "control step; in the field's unit, cut "
@@ -34,7 +34,8 @@ OptionRange FieldDisturbance::*member_of(const OptionSpec& spec) {
   constexpr OptionRange FieldDisturbance::*kMembers[] = {&FieldDisturbance::noise, &FieldDisturbance::bias,
                                                          &FieldDisturbance::delay,
                                                          &FieldDisturbance::dropout};
-  return &spec >= kRows && &spec < kRows + std::size(kMembers) ? kMembers[&spec - kRows] : nullptr;
+  return &spec >= kDisturbRows && &spec < kDisturbRows + std::size(kMembers) ? kMembers[&spec - kDisturbRows]
+                                                                             : nullptr;
 }
 
 [[noreturn]] void unknown(const char* owner, const char* key, const char* name, const Task& task) {
@@ -47,8 +48,8 @@ OptionRange FieldDisturbance::*member_of(const OptionSpec& spec) {
 }  // namespace
 
 const OptionSpec* disturb_options(int32_t* count) {
-  *count = static_cast<int32_t>(std::size(kRows));
-  return kRows;
+  *count = static_cast<int32_t>(std::size(kDisturbRows));
+  return kDisturbRows;
 }
 
 Disturbance disturbance_from(const Options& options, const Task& task, const char* owner) {
@@ -86,7 +87,7 @@ Disturbance disturbance_from(const Options& options, const Task& task, const cha
 uint64_t hash_disturbance(const Options& options, uint64_t hash) {
   for (int32_t i = 0; i < options.count(); ++i) {
     const OptionSpec& spec = options.spec(i);
-    if (&spec < kRows || &spec >= kRows + std::size(kRows)) continue;
+    if (&spec < kDisturbRows || &spec >= kDisturbRows + std::size(kDisturbRows)) continue;
     const OptionRange value = options.range(i);
     if (!options.open_name(i) && value.low == spec.number && !value.drawn()) continue;
     hash = hash_bytes(options.key(i), std::strlen(options.key(i)) + 1, hash);

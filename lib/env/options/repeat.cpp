@@ -7,7 +7,7 @@ namespace rdm {
 namespace {
 
 constexpr const char* kKey = "action_repeat";
-constexpr OptionSpec kRows[] = {
+constexpr OptionSpec kRepeatRows[] = {
     integer_option(kKey, 1, 0, 10000,
                    "control steps of one step of the pool, with one action; 0: the task's own decision rate"),
 };
@@ -15,8 +15,8 @@ constexpr OptionSpec kRows[] = {
 }  // namespace
 
 const OptionSpec* repeat_options(int32_t* count) {
-  *count = static_cast<int32_t>(std::size(kRows));
-  return kRows;
+  *count = static_cast<int32_t>(std::size(kRepeatRows));
+  return kRepeatRows;
 }
 
 int32_t repeat_from(const Options& options, const TaskInfo& task) {

@@ -9,7 +9,7 @@
 namespace rdm {
 namespace {
 
-constexpr OptionSpec kRows[] = {
+constexpr OptionSpec kSenseRows[] = {
     text_option("modality", "state", nullptr,
                 "what worlds see: state, or any of rgb, depth, segmentation, points, voxels joined by +"),
     integer_option(
@@ -73,8 +73,8 @@ int32_t read_cameras(const char* list, const TaskInfo& info, const Task& task, c
 }  // namespace
 
 const OptionSpec* sense_options(int32_t* count) {
-  *count = static_cast<int32_t>(std::size(kRows));
-  return kRows;
+  *count = static_cast<int32_t>(std::size(kSenseRows));
+  return kSenseRows;
 }
 
 const CameraSpec* camera_at(const TaskInfo& info, const Task& task, int32_t i) {

@@ -13,7 +13,7 @@ constexpr OptionSpec engine_option() {
   return row;
 }
 
-constexpr OptionSpec kRows[] = {
+constexpr OptionSpec kSimulationRows[] = {
     engine_option(),
     number_option("frequency", 60, 10, 1000, "control steps per second, Hz"),
     integer_option("substeps", 2, 1, 16, "physics substeps per control step"),
@@ -62,7 +62,7 @@ Integrator integrator_from(const char* text) {
 }  // namespace
 
 void add_sim_options(OptionTable& table) {
-  table.add(kRows);
+  table.add(kSimulationRows);
 }
 
 EngineKind engine_from(const Options& options) {
