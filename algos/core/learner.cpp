@@ -105,6 +105,7 @@ BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const Batch&
 void Learner::policy_gradient(Workspace& workspace, const PolicyLoss& policy, const int32_t* order,
                               int32_t rows, float* grad) const {
   const PointRows clouds = rollout_->clouds(order);
+  expect_actions(*rollout_, order, rows);
   nets_->forward_actor(workspace.obs, clouds, rows, workspace.actor, workspace.out);
   std::memset(grad, 0, nets_->std_size * sizeof(float));
   const PolicyChunk chunk = chunk_of(workspace, order, rows, grad);
@@ -201,6 +202,7 @@ void Learner::measure_rows(Workspace& workspace, const int32_t* order, int32_t r
   const auto dim = static_cast<int32_t>(r.action_dim);
   const auto costs = static_cast<size_t>(r.num_costs);
   gather_obs(r, order, 1, rows, workspace.obs);
+  expect_actions(r, order, rows);
   nets_->forward_actor(workspace.obs, r.clouds(order), rows, workspace.actor, workspace.out);
   workspace.surrogate = Surrogate();
   const PolicyChunk chunk = chunk_of(workspace, order, rows, nullptr);

@@ -6,6 +6,17 @@
 #include "nn/gaussian.hpp"
 
 namespace rdm {
+namespace {
+
+// Rows of a shuffled list lie anywhere in a rollout that no cache holds, and a copy of one row ends before the
+// processor has foreseen the next: so some rows are asked for ahead.
+constexpr size_t kAhead = 4;
+inline void fetch(const float* row, size_t n) {
+  constexpr size_t kLine = 16;
+  for (size_t j = 0; j < n; j += kLine) __builtin_prefetch(row + j);
+}
+
+}  // namespace
 
 Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
   Rollout r;
@@ -60,10 +71,22 @@ double sample_ratio(const Rollout& r, size_t at, const float* mean, const float*
 }
 
 void gather_obs(const Rollout& r, const int32_t* order, int32_t stride, int32_t n, float* x) {
-  for (size_t i = 0; i < static_cast<size_t>(n); ++i)
-    std::memcpy(x + i * r.obs_dim,
-                r.obs + static_cast<size_t>(order[i * static_cast<size_t>(stride)]) * r.obs_dim,
-                r.obs_dim * sizeof(float));
+  const auto row = [&](size_t i) {
+    return r.obs + static_cast<size_t>(order[i * static_cast<size_t>(stride)]) * r.obs_dim;
+  };
+  const auto rows = static_cast<size_t>(n);
+  for (size_t i = 0; i < rows; ++i) {
+    if (i + kAhead < rows) fetch(row(i + kAhead), r.obs_dim);
+    std::memcpy(x + i * r.obs_dim, row(i), r.obs_dim * sizeof(float));
+  }
+}
+
+void expect_actions(const Rollout& r, const int32_t* order, int32_t n) {
+  for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
+    const size_t at = static_cast<size_t>(order[i]) * r.action_dim;
+    fetch(r.action + at, r.action_dim);
+    fetch(r.mean + at, r.action_dim);
+  }
 }
 
 void combine_advantages(const Rollout& r, const double* weights, Mix mix, bool split) {

@@ -53,6 +53,8 @@ struct AdvantageOptions {
 double sample_ratio(const Rollout& r, size_t at, const float* mean, const float* log_std);
 // Copies the observations of n listed rows, every stride-th entry of the list, to x [n][obs_dim].
 void gather_obs(const Rollout& r, const int32_t* order, int32_t stride, int32_t n, float* x);
+// Asks the memory for the actions and old means of n listed rows, which a loss is about to read.
+void expect_actions(const Rollout& r, const int32_t* order, int32_t n);
 
 // How cost weights l meet the reward: (A_r - sum l_i A_ci) / (1 + sum l_i), (1 - sum l_i) A_r - sum l_i A_ci,
 // or A_r - sum l_i A_ci.
