@@ -12,7 +12,7 @@ static_assert(RDM_OBJECT_SHAPES == kMaxObjectShapes);
 
 namespace {
 
-constexpr size_t kFirstSize = sizeof(rdm_object_def);
+constexpr size_t kFirstObjectSize = sizeof(rdm_object_def);
 constexpr uint8_t kGrey = 200;
 
 rdm_object_def default_def() {
@@ -46,7 +46,7 @@ ObjectShape shape_of(const rdm_shape_def& in, int32_t i, Vector<Vec3>* points) {
 // The object that a caller describes, for the time of `then`.
 template <class F>
 void with_object(const rdm_object_def* def, F&& then) {
-  const auto in = read_struct(def, kFirstSize, default_def(), "def");
+  const auto in = read_struct(def, kFirstObjectSize, default_def(), "def");
   if (in.num_shapes < 1 || in.num_shapes > RDM_OBJECT_SHAPES)
     fail(Code::kRange, "def.num_shapes: %d is outside [1, %d]", in.num_shapes, RDM_OBJECT_SHAPES);
   need(in.shapes, "def.shapes");
@@ -80,7 +80,7 @@ rdm_result rdm_object_at(int32_t index, rdm_object* out) {
 }
 
 rdm_result rdm_object_def_init(rdm_object_def* def, size_t size) {
-  return call([&] { init_struct(def, size, kFirstSize, default_def(), "def"); });
+  return call([&] { init_struct(def, size, kFirstObjectSize, default_def(), "def"); });
 }
 
 rdm_result rdm_object_find(const char* name, int32_t* index) {
@@ -93,7 +93,7 @@ rdm_result rdm_object_find(const char* name, int32_t* index) {
 
 rdm_result rdm_object_get(int32_t object, rdm_object_def* io) {
   return call([&] {
-    check_out(io, kFirstSize, "io");
+    check_out(io, kFirstObjectSize, "io");
     const ObjectRef ref(object);
     rdm_object_def d = default_def();
     d.num_shapes = ref->shapes.count;
@@ -104,7 +104,7 @@ rdm_result rdm_object_get(int32_t object, rdm_object_def* io) {
     d.friction = ref->material.friction;
     d.mass = ref->mass;
     std::copy_n(object_inertia(*ref).moment, 6, d.moment);
-    write_struct(io, d, kFirstSize, "io");
+    write_struct(io, d, kFirstObjectSize, "io");
   });
 }
 

@@ -28,6 +28,7 @@ endif()
 # files share them; one that is edited compiles each alone, and so sees what a file forgot to include. The numerical
 # kernels stay alone: what a compiler inlines depends on what else it sees.
 set(RDM_UNITY OFF)
+set(RDM_ALONE map.cpp own_task.cpp planner.cpp pool.cpp recording.cpp robots.cpp scene.cpp world.cpp)  # of capi
 if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT CMAKE_CROSSCOMPILING AND NOT WIN32)
   set(RDM_UNITY ON)
 endif()
@@ -88,6 +89,11 @@ function(rdm_layer name folder)
                         CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   if(RDM_UNITY AND name MATCHES "^(base|record|env|plan|algos)$")
     set_target_properties(rdm_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 14)
+  elseif(RDM_UNITY AND name STREQUAL "capi" AND REDMAN_SIM AND REDMAN_LEARN)
+    set_target_properties(rdm_capi PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 14)
+    # have small helpers of the same names, which differ
+    list(TRANSFORM RDM_ALONE PREPEND ${PROJECT_SOURCE_DIR}/capi/ OUTPUT_VARIABLE alone)
+    set_source_files_properties(${alone} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
   if(name MATCHES "^(tasks|algos|capi)$")
     target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR})
