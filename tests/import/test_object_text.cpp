@@ -103,6 +103,10 @@ TEST(ObjectText, RefusalsNameTheLine) {
        head + "[[shape]]\nkind = 'hull'\npoints = [[0,0],[1,0,0],[0,1,0],[0,0,1]]\n"},
       {RDM_RANGE, "color: 300 is outside", head + shape + "color = [300, 0, 0]\n"},
       {RDM_FORMAT, "line 2", "name = 'brick'\nmass = \n"},
+      // letters outside ASCII where a key or white space stands
+      {RDM_FORMAT, "line 3", head + "gr\u00f6\u00dfe = 1\n" + shape},
+      {RDM_FORMAT, "line 3", head + "format\u0324 = 1\n" + shape},
+      {RDM_FORMAT, "line 3", head + "\u0498 = 1\n" + shape},
       // of the library, under the file's own name
       {RDM_RANGE, "object brick: mass -1 is outside", "name = 'brick'\nmass = -1\n" + shape},
       {RDM_ARGUMENT, "is made of other than letters", "name = 'a brick'\nmass = 1\n" + shape},
