@@ -70,7 +70,13 @@ in_title { in_title = !/\*\//; next }
 /^$/ { kept = ""; print; next }
 /^#ifdef __cplusplus|^#if.*RDM_EXPERIMENTAL/ { kept = ""; if (section && depth == 0) { print "/** @} */"; section = 0 } print; next }
 in_behind { in_behind = !/\*\//; print escaped($0); next }
-/[;,] *\/\*/ && !/\*\// { in_behind = 1; kept = ""; sub(/\/\*/, "/**<"); print; next }
+/[;,] *\/\*/ && !/\*\// {  # one that goes on in the next lines; only its own words are escaped
+  in_behind = 1
+  kept = ""
+  match($0, /\/\*/)
+  print substr($0, 1, RSTART - 1) "/**<" escaped(substr($0, RSTART + 2))
+  next
+}
 {
   behind = ""
   if (match($0, /\/\*.*\*\//)) {
