@@ -10,9 +10,6 @@ namespace {
 const char* const kPending[] = {
     // Chains without drives
     "free hinge at 20 rad/s, 2 substeps: energy after 10 s / start",
-    // Contacts in time
-    // two of 168: it spins, and turning within a substep is not followed
-    "box at a finger of 16 mm, 1 to 12 m/s, 2 substeps: through",
     // Heavy, light, thin
     "stack of 5 plates of 1 mm, dropped .5 mm each, 2 and 8 substeps: sinks",
     // Joints

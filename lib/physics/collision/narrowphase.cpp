@@ -24,6 +24,13 @@ namespace {
 constexpr double kMostShallow = 1.5e-3, kShallowShare = 0.25;
 constexpr double kComing = -1e-12;  // m, the depth of a point to come that is there already
 
+// What a sweep stopped in the last substep overlaps a little where the two met first: at one end of an edge,
+// while the other end is still to come. Such a pair is swept again, or it would turn about that one point and
+// pass. (A plane has no far side.)
+bool barely_touch(const dContactGeom* points, int n) {
+  return std::all_of(points, points + n, [](const dContactGeom& p) { return p.depth <= kBarely; });
+}
+
 }  // namespace
 
 Collider::~Collider() {
@@ -103,7 +110,8 @@ void Collider::add_points(const Search& search, int32_t index) {
   }
   const int n = touch(search.poses, pair, solver.contacts_per_pair, points);
   if (n > 0) search.touched[index] = 1;
-  if (n == 0 && broad_.looks_ahead()) add_coming(search, index);
+  const bool again = barely_touch(points, n) && geoms_[pair.b].kind != ShapeKind::kPlane;
+  if (broad_.looks_ahead() && (n == 0 || again) && add_coming(search, index, n)) return;
   for (int i = 0; i < n; ++i)
     add(search, index,
         {pair.a, pair.b, from_ode(points[i].pos), from_ode(points[i].normal), points[i].depth, {}, {}});
@@ -119,12 +127,12 @@ void Collider::add(const Search& search, int32_t index, const Contact& contact) 
   search.contacts[count++] = contact;
 }
 
-void Collider::add_coming(const Search& search, int32_t index) {
+bool Collider::add_coming(const Search& search, int32_t index, int more_than) {
   const ShapePair& pair = search.scene.pairs[static_cast<size_t>(index)];
   const auto thin = static_cast<double>(broad_.thin(index));
-  if (broad_.ways()[pair.a] + broad_.ways()[pair.b] <= broad_.thin(index)) return;
+  if (broad_.ways()[pair.a] + broad_.ways()[pair.b] <= broad_.thin(index)) return false;
   const Vec3 way = search.poses.way(pair.a) - search.poses.way(pair.b);
-  if (norm(way) <= thin || broad_.passes(index, way)) return;
+  if (norm(way) <= thin || broad_.passes(index, way)) return false;
   put(search.poses, pair.a);
   put(search.poses, pair.b);
   const Geom &a = geoms_[pair.a], &b = geoms_[pair.b];
@@ -138,9 +146,11 @@ void Collider::add_coming(const Search& search, int32_t index) {
   else
     n = coming_contacts(convex_of(a), convex_of(b), way, shallow, points);
   n = std::min(n, static_cast<int>(search.scene.def.solver.contacts_per_pair));
+  if (n <= more_than) return false;
   for (int i = 0; i < n; ++i)
     add(search, index,
         {pair.a, pair.b, points[i].p, points[i].n, std::min(points[i].depth, kComing), {}, points[i].gap});
+  return true;
 }
 
 template <class Walk>
@@ -152,7 +162,7 @@ Collider::Found Collider::search(const Search& search, Walk walk) {
     walk([](void* context, int32_t pair, bool ahead) {
       const auto* s = static_cast<const Search*>(context);
       if (ahead)
-        s->self->add_coming(*s, pair);
+        s->self->add_coming(*s, pair, 0);
       else
         s->self->add_points(*s, pair);
     });

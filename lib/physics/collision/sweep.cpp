@@ -209,8 +209,9 @@ int coming_contacts(const Convex& a, const Convex& b, const Vec3& way, double sh
       met = true;
       meet_at = t;
       if (!(t > 0)) {
-        there.p = a.p - (kTouch / norm(way)) * way;
-        d = distance(there, b, (1 + kTouch) * way);
+        const Vec3 back = (2 * kBarely / norm(way)) * way;
+        there.p = a.p - back;
+        d = distance(there, b, way + back);
         if (d.misses || !d.known) return 0;
         last = d;
         break;

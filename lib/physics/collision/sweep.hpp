@@ -9,6 +9,8 @@
 
 namespace rdm {
 
+inline constexpr double kBarely = 2e-4;  // m, the deepest overlap from which a sweep starts
+
 struct ComingPoint {
   Vec3 p;        // on a, where it is now
   Vec3 gap;      // from there to the point of b that it meets, as b is now
