@@ -110,8 +110,10 @@ void Collider::add_points(const Search& search, int32_t index) {
   }
   const int n = touch(search.poses, pair, solver.contacts_per_pair, points);
   if (n > 0) search.touched[index] = 1;
-  const bool again = barely_touch(points, n) && geoms_[pair.b].kind != ShapeKind::kPlane;
-  if (broad_.looks_ahead() && (n == 0 || again) && add_coming(search, index, n)) return;
+  if (broad_.looks_ahead() &&
+      (n == 0 || (geoms_[pair.b].kind != ShapeKind::kPlane && barely_touch(points, n))) &&
+      add_coming(search, index, n))
+    return;
   for (int i = 0; i < n; ++i)
     add(search, index,
         {pair.a, pair.b, from_ode(points[i].pos), from_ode(points[i].normal), points[i].depth, {}, {}});

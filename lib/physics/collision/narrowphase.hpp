@@ -77,7 +77,7 @@ class Collider {
   bool clears_box(Poses& poses, int32_t shape, int32_t box);
   int touch(Poses& poses, const ShapePair& pair, int most, dContactGeom* out);
   void add_points(const Search& search, int32_t pair);
-  bool add_coming(const Search& search, int32_t pair, int more_than);  // points, and only if so many
+  bool add_coming(const Search& search, int32_t pair, int more_than);  // false: no more, none added
   void add(const Search& search, int32_t pair, const Contact& contact);
   void put(Poses& poses, int32_t shape);
   void fetch(Poses& poses, int32_t shape);
