@@ -128,6 +128,7 @@ RunFolder RunFolder::go_on(const std::string& path) {
                   (is_folder(path) ? "it has no config.json" : "it is not there" + missing_file_hint(path)) +
                   "; start one with train --out " + path);
   RunFolder folder(path, locked(path));
+  folder.goes_on_ = true;
   check_run_files(path);
   for (const std::string& file : {folder.config(), folder.progress(), folder.policy(), folder.checkpoint()})
     sweep_temporaries(file, true);
@@ -139,6 +140,7 @@ RunFolder::RunFolder(RunFolder&& other) noexcept
       header_(std::move(other.header_)),
       events_(std::move(other.events_)),
       begun_(other.begun_),
+      goes_on_(other.goes_on_),
       lock_(std::exchange(other.lock_, -1)) {}
 
 RunFolder::~RunFolder() {
@@ -169,7 +171,9 @@ void RunFolder::start(const std::string& config, const std::string& header, cons
   // the checkpoint first: a kill in between must not leave it beside another run's files
   if (unlink(checkpoint().c_str()) != 0 && errno != ENOENT)
     throw Failure("cannot remove " + checkpoint() + ": " + std::strerror(errno));
-  for (const std::string& name : event_files()) unlink(file(name.c_str()).c_str());
+  // the event file of a run that goes on is written anew in its place: a reader may be following it
+  if (!goes_on_)
+    for (const std::string& name : event_files()) unlink(file(name.c_str()).c_str());
   new_config.commit();
   new_progress.commit();
   new_policy.commit();

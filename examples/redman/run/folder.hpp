@@ -56,6 +56,7 @@ class RunFolder {
   std::string path_;
   std::string header_, events_;  // of progress.csv; the event file's name, "" without one
   int64_t begun_ = 0;            // unix seconds, as that name says
+  bool goes_on_ = false;         // an existing run, which may begin again when it has no checkpoint yet
   int lock_;  // the open folder; the kernel lets its lock go when the process ends, however it does
 };
 
