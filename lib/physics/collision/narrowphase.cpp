@@ -133,20 +133,27 @@ bool Collider::add_coming(const Search& search, int32_t index, int more_than) {
   const ShapePair& pair = search.scene.pairs[static_cast<size_t>(index)];
   const auto thin = static_cast<double>(broad_.thin(index));
   if (broad_.ways()[pair.a] + broad_.ways()[pair.b] <= broad_.thin(index)) return false;
-  const Vec3 way = search.poses.way(pair.a) - search.poses.way(pair.b);
-  if (norm(way) <= thin || broad_.passes(index, way)) return false;
-  put(search.poses, pair.a);
-  put(search.poses, pair.b);
+  const Vec3 way_a = search.poses.way(pair.a), way_b = search.poses.way(pair.b);
   const Geom &a = geoms_[pair.a], &b = geoms_[pair.b];
   const double shallow = std::min(
       kMostShallow,
       kShallowShare * static_cast<double>(std::min(broad_.half_width(pair.a), broad_.half_width(pair.b))));
   ComingPoint points[kManifoldPoints];
   int n = 0;
-  if (b.kind == ShapeKind::kPlane)
-    n = coming_on_plane(convex_of(a), b.plane_n, b.plane_d, way, shallow, points);
-  else
-    n = coming_contacts(convex_of(a), convex_of(b), way, shallow, points);
+  const auto meet = [&](const Vec3& way) {
+    if (norm(way) <= thin || broad_.passes(index, way)) return;
+    put(search.poses, pair.a);
+    put(search.poses, pair.b);
+    n = b.kind == ShapeKind::kPlane
+            ? coming_on_plane(convex_of(a), b.plane_n, b.plane_d, way, shallow, points)
+            : coming_contacts(convex_of(a), convex_of(b), way, shallow, points);
+  };
+  meet(way_a - way_b);
+  // Two that fall one behind the other meet when something stops the first within the substep.
+  if (n == 0 && dot(way_a, way_b) > 0) {
+    meet(way_a);
+    if (n == 0) meet(-way_b);
+  }
   n = std::min(n, static_cast<int>(search.scene.def.solver.contacts_per_pair));
   if (n <= more_than) return false;
   for (int i = 0; i < n; ++i)
