@@ -332,6 +332,19 @@ void joint_torques(TreeBatch<L>& t, typename L::Scalar weight) {
   }
 }
 
+// What dry friction takes from the rate of a sliding joint it takes evenly over the substep, so that half of it is
+// still there on the way: the rate to be added to v1.
+template <class L>
+typename L::V rate_on_the_way(const TreeBatch<L>& t, int i, const typename L::V& v1) {
+  using V = typename L::V;
+  using S = typename L::Scalar;
+  const LinkWork<V>& joint = t.work[i];
+  const CoordWork<V>& c = t.coord[t.tree->coord(0) + i];
+  const V limited = t.state[i].limited, slides = joint.slip * (S(1) - limited * limited);
+  const V most = t.h * t.model[i].friction * c.inv_d;
+  return S(0.5) * slides * clamp<L>(V(slides * (c.qd - v1)), V{}, most);
+}
+
 // q <- q + h v1, kept within range and margin; qd <- v1. Lanes whose rates are not below `bound` are given
 // back and stand still.
 template <class L>
@@ -347,6 +360,7 @@ typename L::Mask integrate_joints(TreeBatch<L>& t, typename L::Scalar margin, ty
   for (int i = 0; i < tree.num_links; ++i) {
     const LinkModel<L>& model = t.model[i];
     V v = L::select(good, t.coord[offset + i].v1, zero), q = t.work[i].q + t.h * v;
+    if (t.any_stick) q += t.h * L::select(good, rate_on_the_way(t, i, v), zero);
     const V bottom = model.lower - margin, top = model.upper + margin;
     const Mask under = q<bottom, over = q> top;
     v = L::select(under & (v < zero), zero, v);
