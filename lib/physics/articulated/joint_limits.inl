@@ -290,23 +290,23 @@ void damp_active_set(TreeBatch<L>& t, typename L::Mask lanes) {
   }
 }
 
-// v1 of all lanes as if nothing touched. `again`: it was called before in this substep, and forces have changed.
+// v1 of the lanes in `lanes` as if nothing touched. `again`: it was called before in this substep, and forces have
+// changed.
 template <class L>
-void solve_without_contacts(TreeBatch<L>& t, bool again = false) {
+void solve_without_contacts(TreeBatch<L>& t, typename L::Mask lanes = L::mask(~0u), bool again = false) {
   using Mask = typename L::Mask;
-  const Mask everyone = L::mask(~0u);
-  t.frozen = L::nothing();
+  t.frozen = t.frozen & (t.frozen ^ lanes);
   if (t.limit_law && !again) soft_limits(t);
-  solve_active_set(t, everyone, again ? Factors::kSame : Factors::kOther);
+  solve_active_set(t, lanes, again ? Factors::kSame : Factors::kOther);
   for (int pass = 0;; ++pass) {
-    const Mask changed = update_active_set(t, everyone, pass >= kAllPasses);
+    const Mask changed = update_active_set(t, lanes, pass >= kAllPasses);
     if (L::bits(changed) == 0) return;
     if (pass >= kSetPasses) {
       damp_active_set(t, changed);
-      solve_active_set(t, everyone, Factors::kOtherSet);
+      solve_active_set(t, lanes, Factors::kOtherSet);
       return;
     }
-    solve_active_set(t, everyone, Factors::kOtherSet);
+    solve_active_set(t, lanes, Factors::kOtherSet);
   }
 }
 

@@ -11,8 +11,9 @@
 // the trapezoidal rule in joint coordinates: a leapfrog, symmetric in time, whose energy swings and does not drift.
 // D depends on v: first D = 2 (p(q, v-) - P-), that of the last substep; then, from the solution, kinematics of the
 // pose to come. One such pass is enough, and its D is the one that P is stored with, so that what one substep's
-// bias leaves out the next one's has: the momentum of the whole is kept. The mass matrix is the same in both
-// solves.
+// bias leaves out the next one's has: the momentum of the whole is kept. Only a robot that turns far in the substep
+// (kFarTurn) takes a second one, without which it would lose some .5 % of its energy in a second. The mass matrix is
+// the same in all solves.
 #pragma once
 #include "physics/articulated/joint_limits.inl"
 
@@ -31,6 +32,28 @@ inline void momentum_of(const LinkWork<V>& b, const PersistentLink<V>& self, boo
     for (int r = 0; r < 3; ++r) angular[r] = b.moment[0] * self.w[r];
   else
     multiply(b.moment, self.w, angular);
+}
+
+constexpr double kFarTurn = 0.15;  // rad in a substep, of a joint or a base
+
+// The lanes in which v1 turns a joint or the base by more than kFarTurn.
+template <class L>
+typename L::Mask turn_far(const TreeBatch<L>& t) {
+  using V = typename L::V;
+  using S = typename L::Scalar;
+  const Tree& tree = *t.tree;
+  const V most = L::all(S(kFarTurn) * t.inv_h);
+  typename L::Mask far = L::nothing();
+  if (tree.free_base) {
+    const V w[3] = {t.coord[3].v1, t.coord[4].v1, t.coord[5].v1};
+    far = far | (dot(w, w) > most * most);
+  }
+  for (int i = 0; i < tree.num_links; ++i) {
+    if (tree.links[static_cast<size_t>(i)].prismatic) continue;
+    const V& rate = t.coord[tree.coord(0) + i].v1;
+    far = far | (rate > most) | (rate < -most);
+  }
+  return far;
 }
 
 // D of the last substep, from the momenta as stored.
@@ -64,7 +87,7 @@ void guess_ahead(TreeBatch<L>& t) {
 // The base as the rates t.coord[].qd move it in h: R <- exp(h w) R. Its centre of mass keeps its velocity, so
 // that of its origin turns with it. D of the base is that of its angular momentum alone.
 template <class L>
-void move_base_ahead(TreeBatch<L>& t) {
+void move_base_ahead(TreeBatch<L>& t, typename L::Mask lanes) {
   using V = typename L::V;
   using S = typename L::Scalar;
   V w[3], arm[3], x[3], center_v[3], spin[3], sine, cosine;
@@ -88,14 +111,14 @@ void move_base_ahead(TreeBatch<L>& t) {
   link_inertia<L>(t.base_R, origin, t.base_com, t.base_moment, false, &next);
   multiply(t.base.moment, w, x);
   multiply(next.moment, w, spin);
-  for (int r = 0; r < 3; ++r) t.base.ahead_n[r] = spin[r] - x[r];
+  for (int r = 0; r < 3; ++r) t.base.ahead_n[r] = L::select(lanes, V(spin[r] - x[r]), t.base.ahead_n[r]);
   cross(w, next.c, x);
   for (int r = 0; r < 3; ++r) t.coord[r].qd = center_v[r] - x[r];
 }
 
-// D of a substep with the rates v1. Nothing but D is changed.
+// D of a substep with the rates v1, of the lanes in `lanes`. Nothing but D is changed.
 template <class L>
-void look_ahead(TreeBatch<L>& t) {
+void look_ahead(TreeBatch<L>& t, typename L::Mask lanes) {
   using V = typename L::V;
   const Tree& tree = *t.tree;
   const int offset = tree.coord(0);
@@ -116,7 +139,7 @@ void look_ahead(TreeBatch<L>& t) {
   momenta(t);  // p(q, v1)
   t.base_state = stored;
   // p(q + h v1, v1)
-  if (tree.free_base) move_base_ahead(t);
+  if (tree.free_base) move_base_ahead(t, lanes);
   for (int i = 0; i < tree.num_links; ++i) t.work[i].q += t.h * t.coord[offset + i].qd;
   kinematics(t);
   for (int i = 0; i < tree.num_links; ++i) {
@@ -128,8 +151,8 @@ void look_ahead(TreeBatch<L>& t) {
     link_inertia<L>(t.state[i].R, t.state[i].P, t.model[i].com, t.model[i].moment, link.isotropic, &next);
     momentum_of(next, t.state[i], link.isotropic, linear, angular);
     for (int r = 0; r < 3; ++r) {
-      b.ahead_v[r] = linear[r] - t.state[i].linear[r];
-      b.ahead_n[r] = angular[r] - t.state[i].angular[r];
+      b.ahead_v[r] = L::select(lanes, V(linear[r] - t.state[i].linear[r]), b.ahead_v[r]);
+      b.ahead_n[r] = L::select(lanes, V(angular[r] - t.state[i].angular[r]), b.ahead_n[r]);
     }
   }
 
@@ -137,6 +160,15 @@ void look_ahead(TreeBatch<L>& t) {
   for (int k = 0; k < 9; ++k) t.base_R[k] = R[k];
   for (int c = 0; c < tree.num_coords; ++c) t.coord[c].qd = rates[c];
   for (int i = 0; i < tree.num_links; ++i) t.work[i].q = angles[i];
+}
+
+// v1 of the lanes in `lanes` anew, with the bias of the motion that v1 is.
+template <class L>
+void solve_ahead(TreeBatch<L>& t, typename L::Mask lanes) {
+  look_ahead(t, lanes);
+  body_forces(t);
+  bias_forces(t);
+  solve_without_contacts(t, lanes, true);
 }
 
 // The momenta as they are stored: from those at the solved rates to those of the middle.

@@ -270,10 +270,9 @@ void BatchStepper<L>::substep() {
     joint_drives(t);
     solve_without_contacts(t);
     if (!t.tree->looks_ahead) continue;
-    look_ahead(t);
-    body_forces(t);
-    bias_forces(t);
-    solve_without_contacts(t, true);
+    solve_ahead(t, L::mask(~0u));
+    const Mask far = turn_far(t);
+    if (L::bits(far) != 0) solve_ahead(t, far);
   }
   // constraint
   solve_contacts();
