@@ -49,6 +49,12 @@ void add_armature(Inertia* inertia, double armature, const Vec3& axis, bool all_
   set_moment(inertia, moment);
 }
 
+// x of A x = b, by Cramer's rule.
+Vec3 solved(const Mat3& A, const Vec3& b) {
+  const Vec3 x = A.col(0), y = A.col(1), z = A.col(2), across = cross(y, z);
+  return (1 / dot(x, across)) * Vec3{dot(b, across), dot(x, cross(b, z)), dot(x, cross(y, b))};
+}
+
 dBodyID make_body(dWorldID world, const Inertia& inertia) {
   const dBodyID body = dBodyCreate(world);
   dMass mass;
@@ -67,6 +73,8 @@ void OdeLinks::carve(const Scene& scene, Arena& arena) {
   joints_ = arena.make<Joint>(static_cast<size_t>(num_links_));
   bases_ = arena.make<Link>(scene.def.articulations.size());
   bias_ = arena.make<Bias>(static_cast<size_t>(num_links_));
+  pushed_ = arena.make<Wrench>(scene.def.articulations.size());
+  momentum_ = arena.make<Momentum>(scene.def.articulations.size());
 }
 
 // A link without shapes whose only child turns about a second axis through the same origin, at a right
@@ -263,10 +271,75 @@ void OdeLinks::push_velocity_products(const LinkState& state) {
         push(joint.parent, {}, -torque);
       }
     }
-    if (def.free_base)
-      push(bases_[a].body, -factor * of_base.force,
-           -factor * (of_base.moment - cross(base_arm, of_base.force)));
+    if (!def.free_base) continue;
+    pushed_[a] = {-factor * of_base.force, -factor * (of_base.moment - cross(base_arm, of_base.force))};
+    push(bases_[a].body, pushed_[a].force, pushed_[a].torque);
   }
+}
+
+// Of the bodies where ODE has them, turned as the state says.
+OdeLinks::Momentum OdeLinks::momentum(int32_t articulation, const LinkState& state) const {
+  const auto a = static_cast<size_t>(articulation);
+  const int32_t first = state.scene->link_offset[a];
+  const int32_t end = first + static_cast<int32_t>(state.scene->def.articulations[a].links.size());
+  const auto each = [&](auto&& visit) {
+    visit(bases_[articulation].body, state.base_R[articulation]);
+    for (int32_t i = first; i < end; ++i)
+      if (links_[i].owner) visit(links_[i].body, state.link_R[i]);
+  };
+  Momentum sum = {};
+  each([&](dBodyID body, const Mat3&) {
+    dMass m;
+    dBodyGetMass(body, &m);
+    sum.mass += m.mass;
+    sum.center += m.mass * from_ode(dBodyGetPosition(body));
+    sum.linear += m.mass * from_ode(dBodyGetLinearVel(body));
+  });
+  sum.center = (1 / sum.mass) * sum.center;
+  std::fill_n(sum.moment.m, 9, 0.0);
+  each([&](dBodyID body, const Mat3& R) {
+    dMass m;
+    dBodyGetMass(body, &m);
+    const Vec3 r = from_ode(dBodyGetPosition(body)) - sum.center;
+    Mat3 own;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) own(i, j) = m.I[4 * i + j];
+    own = R * own * transpose(R);
+    sum.angular +=
+        own * from_ode(dBodyGetAngularVel(body)) + m.mass * cross(r, from_ode(dBodyGetLinearVel(body)));
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        sum.moment(i, j) += own(i, j) + m.mass * ((i == j ? dot(r, r) : 0.0) - r[i] * r[j]);
+  });
+  return sum;
+}
+
+// The bodies have moved and are still turned as they were.
+void OdeLinks::note_momentum(int32_t articulation, const LinkState& state) {
+  const double h = state.scene->def.solver.h;
+  const dBodyID base = bases_[articulation].body;
+  if (!base) return;
+  Momentum& now = momentum_[articulation];
+  now = momentum(articulation, state);
+  const Wrench& push = pushed_[articulation];
+  // where it was pushed, before they moved
+  const Vec3 arm = from_ode(dBodyGetPosition(base)) - now.center -
+                   h * (from_ode(dBodyGetLinearVel(base)) - (1 / now.mass) * now.linear);
+  now.linear -= h * push.force;
+  now.angular -= h * (push.torque + cross(arm, push.force));
+}
+
+// The whole robot takes the rest as one rigid body, all joints as they are, and its centre of mass is where the solver's
+// bodies have theirs.
+void OdeLinks::restore_momentum(int32_t articulation, const LinkState& state) const {
+  if (!bases_[articulation].body) return;
+  const Momentum now = momentum(articulation, state);
+  const Momentum& meant = momentum_[articulation];
+  const Vec3 w = solved(now.moment, meant.angular - now.angular);
+  Motion& base = state.bases[articulation];
+  base.v += (1 / now.mass) * (meant.linear - now.linear) + cross(w, base.X.p - now.center);
+  base.w += w;
+  base.X.p += meant.center - now.center;
 }
 
 void OdeLinks::tell(Joint& joint, const MotorRow& row) const {

@@ -2,7 +2,8 @@
 //
 // ODE only supplies rates: after each substep they are read about the axes the solver used, integrated
 // here, and every body is put back exactly where forward kinematics says. As rates are kept and not momenta,
-// the velocity products (Coriolis, centrifugal) are pushed from outside.
+// the velocity products (Coriolis, centrifugal) are pushed from outside, and a free robot keeps the momentum that
+// the solver left it.
 #pragma once
 #include <ode/ode.h>
 
@@ -49,6 +50,10 @@ class OdeLinks {
   void write_base(int32_t articulation, const LinkState& state);
   // Poses and velocities of all links of one articulation into their bodies.
   void write(int32_t articulation, const LinkState& state);
+  // A free robot's momentum as the solver left it, less what the products pushed; and that momentum given back by
+  // the base's rates, once the links are written. What a joint's end stops would be lost otherwise.
+  void note_momentum(int32_t articulation, const LinkState& state);
+  void restore_momentum(int32_t articulation, const LinkState& state) const;
   double drift(const Scene& scene) const;
 
  private:
@@ -58,6 +63,11 @@ class OdeLinks {
     bool owner;  // false: the body belongs to the child
     Vec3 com;
     double own_share;
+  };
+  struct Momentum {
+    double mass;
+    Vec3 center, linear, angular;  // angular about the centre of mass
+    Mat3 moment;                   // likewise
   };
   struct Joint {
     dJointID id;
@@ -75,6 +85,7 @@ class OdeLinks {
     Vec3 force, moment;    // that it takes, about the base's origin; then of all that is behind the joint
   };
   bool merges(const Scene& scene, int32_t link) const;
+  Momentum momentum(int32_t articulation, const LinkState& state) const;
   void make_bodies(dWorldID world, int32_t articulation, const LinkState& state);
   void make_joint(dWorldID world, int32_t link, const LinkState& state);
   void tell(Joint& joint, const MotorRow& row) const;
@@ -83,7 +94,9 @@ class OdeLinks {
   Link* links_ = nullptr;
   Link* bases_ = nullptr;
   Joint* joints_ = nullptr;
-  Bias* bias_ = nullptr;  // [num_links]
+  Bias* bias_ = nullptr;          // [num_links]
+  Wrench* pushed_ = nullptr;      // [articulations] of the base, by the products
+  Momentum* momentum_ = nullptr;  // [articulations]
   int32_t num_links_ = 0;
 };
 

@@ -393,8 +393,15 @@ bool OdeWorld::substep(double weight) {
   fly();
   contact_.read_forces(num_contacts_, contacts_);
   add_sensors(weight);
+  const auto articulations = static_cast<int32_t>(scene_->def.articulations.size());
+  for (int32_t a = 0; a < articulations; ++a) tree_.note_momentum(a, state());
   if (!tree_.integrate(state(), weight) || !read_bodies()) return false;
-  for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a) {
+  for (int32_t a = 0; a < articulations; ++a) {
+    rebuild(a);
+    tree_.write(a, state());
+    if (!tree_.base(a)) continue;
+    tree_.restore_momentum(a, state());
+    tree_.write_base(a, state());
     rebuild(a);
     tree_.write(a, state());
   }
