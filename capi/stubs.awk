@@ -1,4 +1,4 @@
-# Reads the public header and writes, for the halves that a build leaves out, the functions that say so.
+# Reads the public headers and writes, for the halves that a build leaves out, the functions that say so.
 # -v sim=0|1 -v learn=0|1 -v policy=0|1: which halves there are, and whether frozen policies run. A function belongs to a half by its name; one of agents that
 # takes a pool needs both; recordings are in either. The two config_init functions are in every build, and what has no half is too.
 function half_of(name, parameters) {

@@ -6,6 +6,6 @@ if(NOT RDM_DOXYGEN)
 endif()
 set(RDM_REFERENCE ${CMAKE_CURRENT_BINARY_DIR}/reference)
 configure_file(cmake/packaging/Doxyfile.in ${RDM_REFERENCE}/Doxyfile @ONLY)
-add_custom_target(docs VERBATIM COMMENT "Reference of redman.h: ${RDM_REFERENCE}/html/index.html"
+add_custom_target(docs VERBATIM COMMENT "Reference of the C interface: ${RDM_REFERENCE}/html/index.html"
   COMMAND ${RDM_DOXYGEN} ${RDM_REFERENCE}/Doxyfile
   COMMAND sh ${PROJECT_SOURCE_DIR}/cmake/packaging/reference.sh ${PROJECT_SOURCE_DIR} ${RDM_REFERENCE})

@@ -35,5 +35,6 @@ target_link_libraries(redman_import_static PRIVATE tinyxml2::tinyxml2 Threads::T
 if(REDMAN_SHARED)
   rdm_import_library(redman_import SHARED)
   target_link_libraries(redman_import PUBLIC redman PRIVATE tinyxml2::tinyxml2 Threads::Threads)
-  rdm_export(redman_import import/redman_import:REDMAN_IMPORT_EXPERIMENTAL)
+  rdm_export(redman_import
+             import/redman_import:REDMAN_IMPORT_EXPERIMENTAL_${RDM_VERSION_MAJOR}_${RDM_VERSION_MINOR})
 endif()

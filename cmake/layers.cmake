@@ -51,13 +51,19 @@ if(NOT REDMAN_POLICY)
 endif()
 set(RDM_ROWS "")
 
-# The source file, written from the public header, with the functions of the halves that are left out.
+# The public headers, in the order in which redman.h includes them: the stable ones first.
+file(STRINGS ${PROJECT_SOURCE_DIR}/include/redman/redman.h RDM_HEADERS REGEX "^#include <redman/")
+list(TRANSFORM RDM_HEADERS REPLACE "^#include <([a-z/.]+)>.*" "${PROJECT_SOURCE_DIR}/include/\\1")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/redman/redman.h)
+
+# The source file, written from the public headers, with the functions of the halves that are left out.
 function(rdm_stubs out)
   find_program(RDM_AWK NAMES mawk gawk awk REQUIRED)
   set(file ${PROJECT_BINARY_DIR}/stubs.cpp)
   set(awk ${PROJECT_SOURCE_DIR}/capi/stubs.awk)
-  add_custom_command(OUTPUT ${file} DEPENDS ${RDM_HEADER} ${awk} VERBATIM
-    COMMAND sh -c "'${RDM_AWK}' -v sim=$<BOOL:${REDMAN_SIM}> -v learn=$<BOOL:${REDMAN_LEARN}> -v policy=$<BOOL:${REDMAN_POLICY}> -f '${awk}' '${RDM_HEADER}' > '${file}'")
+  list(JOIN RDM_HEADERS "' '" headers)
+  add_custom_command(OUTPUT ${file} DEPENDS ${RDM_HEADERS} ${awk} VERBATIM
+    COMMAND sh -c "'${RDM_AWK}' -v sim=$<BOOL:${REDMAN_SIM}> -v learn=$<BOOL:${REDMAN_LEARN}> -v policy=$<BOOL:${REDMAN_POLICY}> -f '${awk}' '${headers}' > '${file}'")
   set(${out} ${file} PARENT_SCOPE)
 endfunction()
 
@@ -121,22 +127,23 @@ function(rdm_use_rows target)
   target_link_libraries(${target} PRIVATE ${links})
 endfunction()
 
-# rdm_export(target lists...): the shared library exports the names of the checked-in lists (file:NODE) and nothing else.
-# With the linkers of ELF each list has a node of its own, so that a distribution sees who uses what may change in any release.
+# rdm_export(target lists...): the shared library exports the names of the checked-in lists (file:NODE, file:NODE:PARENT)
+# and nothing else. With the linkers of ELF each list has a node of its own: what 1.0 adds is in REDMAN_1.0, so that the
+# loader refuses a program that is too new for a library, and experimental names are in a node of their minor release.
 # On macOS the lists are untested.
 function(rdm_export target)
   set(all "")
   set(nodes "")
   set(local " local: *;")
   foreach(list ${ARGN})
-    string(REGEX MATCH "^(.*):(.*)$" list "${list}")
-    set(file ${PROJECT_SOURCE_DIR}/capi/${CMAKE_MATCH_1}.symbols)
-    set(node ${CMAKE_MATCH_2})
+    string(REPLACE ":" ";" list "${list}")
+    list(POP_FRONT list name node parent)
+    set(file ${PROJECT_SOURCE_DIR}/capi/${name}.symbols)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
     file(STRINGS ${file} names REGEX "^rdm_")
     list(APPEND all ${names})
     list(JOIN names "; " names)
-    string(APPEND nodes "${node} { global: ${names};${local} };\n")
+    string(APPEND nodes "${node} { global: ${names};${local} } ${parent};\n")
     set(local "")
   endforeach()
   if(WIN32)
@@ -177,7 +184,8 @@ function(rdm_library target kind)
     target_link_options(${target} PUBLIC -fsanitize=${REDMAN_SANITIZE})
   endif()
   if(kind STREQUAL "SHARED")
-    rdm_export(${target} redman:REDMAN_${RDM_ABI} redman_experimental:REDMAN_EXPERIMENTAL)
+    rdm_export(${target} redman:REDMAN_${RDM_ABI} redman_1.0:REDMAN_1.0:REDMAN_${RDM_ABI}
+               redman_experimental:REDMAN_EXPERIMENTAL_${RDM_VERSION_MAJOR}_${RDM_VERSION_MINOR})
   else()
     # a project without C++ links what the compiler of C++ would add
     target_link_libraries(${target} INTERFACE $<$<LINK_LANGUAGE:C>:$<IF:$<PLATFORM_ID:Darwin>,c++,stdc++>> $<$<LINK_LANGUAGE:C>:m>)

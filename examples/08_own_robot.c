@@ -4,7 +4,8 @@
  *
  * The importer says what it guessed and what it left out; then the hand has a name like any other, for the
  * options of the tasks. */
-#include <redman/redman_import.h>
+#include <redman/import.h>
+#include <redman/redman.h>
 #include <stdio.h>
 #include <stdlib.h>
 

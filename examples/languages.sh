@@ -8,7 +8,7 @@ set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 language=${1:?usage: languages.sh LANGUAGE POLICY [bench]}
 shift
-export REDMAN_LIBRARY=${REDMAN_LIBRARY:-$root/build/release/libredman.so} REDMAN_HEADER=$root/include/redman/redman.h
+export REDMAN_LIBRARY=${REDMAN_LIBRARY:-$root/build/release/libredman.so} REDMAN_INCLUDE=$root/include/redman
 [ -e "$REDMAN_LIBRARY" ] || { echo "languages.sh: there is no library $REDMAN_LIBRARY: build redman, or set REDMAN_LIBRARY" >&2; exit 1; }
 libraries=$(cd "$(dirname "$REDMAN_LIBRARY")" && pwd)
 source=$root/examples/$language
@@ -22,8 +22,8 @@ skip() {
 }
 # want TOOL HOW...: TOOL can be run, else HOW to get it is the reason.
 want() { command -v "$1" > /dev/null || skip "$@"; }
-# Whether there is no program $1 as new as its source, the header and the library.
-stale() { [ ! "$1" -nt "$2" ] || [ ! "$1" -nt "$REDMAN_HEADER" ] || [ ! "$1" -nt "$REDMAN_LIBRARY" ]; }
+# Whether there is no program $1 as new as its source, the headers and the library.
+stale() { [ ! "$1" -nt "$2" ] || [ -n "$(find "$REDMAN_INCLUDE" -name '*.h' -newer "$1")" ] || [ ! "$1" -nt "$REDMAN_LIBRARY" ]; }
 
 case $language in
   c | cpp)
@@ -39,8 +39,8 @@ case $language in
     want rustc "apt-get install rustc"
     want bindgen "apt-get install bindgen"
     if stale "$hello" "$source/hello.rs"; then
-      bindgen "$REDMAN_HEADER" --size_t-is-usize --no-prepend-enum-name --allowlist-file '.*/redman\.h' \
-        -o "$work/redman_sys.rs" 2> "$work/bindgen.log" || {
+      bindgen "$REDMAN_INCLUDE/redman.h" --size_t-is-usize --no-prepend-enum-name --allowlist-file '.*/redman/[a-z]+\.h' \
+        -o "$work/redman_sys.rs" -- "-I$root/include" 2> "$work/bindgen.log" || {
         ! grep -q 'find.*libclang' "$work/bindgen.log" || skip libclang "apt-get install libclang1-14 libclang-common-14-dev"
         cat "$work/bindgen.log" >&2
         exit 1

@@ -1,4 +1,4 @@
-// redman_import.h, carried out: one barrier, handles with a tag, texts of the thread.
+// redman/import.h, carried out: one barrier, handles with a tag, texts of the thread.
 #include <algorithm>
 #include <cstddef>
 #include <cstring>

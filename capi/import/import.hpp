@@ -1,6 +1,6 @@
 // What the readers of redman_import share: refusals, the robot under construction, and its notes.
 #pragma once
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <array>
 #include <cstdint>

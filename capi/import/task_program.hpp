@@ -1,7 +1,7 @@
 // A task as text, at run time: lists of terms in plain bytes, which `build` leaves for the other functions
 // (task_text.cpp makes them, task_program.cpp walks them). No text, no name, no pointer.
 #pragma once
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <cstdint>
 

@@ -88,7 +88,8 @@ def text_of(comment: str) -> str:
 
 def declarations(text: str) -> Iterator[Declared]:
     """All declarations of a header in their order."""
-    experimental_from = text.find("#if defined(RDM_EXPERIMENTAL)")
+    first_experimental = re.search(r"^/\* redman/\w+\.h: [^\n]* Experimental\.", text, re.M)
+    experimental_from = first_experimental.start() if first_experimental else -1
     pending: Declared | None = None
     above = ""  # the comment above the run of declarations
     covering = covered = ""  # the same while it is what tells of them, and the kind of what it has told of
@@ -310,10 +311,10 @@ class Function(NamedTuple):
 
 
 def headers() -> str:
-    """The text of the public headers of libredman, redman.h first; the importers are a library of their own."""
-    paths = sorted((path for path in INCLUDE.glob("*.h") if path.name != "redman_import.h"),
-                   key=lambda path: (path.name != "redman.h", path.name))
-    return "\n".join(path.read_text(encoding="utf-8") for path in paths)
+    """The text of the public headers of libredman, as redman.h includes them: the stable ones first."""
+    umbrella = (INCLUDE / "redman.h").read_text(encoding="utf-8")
+    names = re.findall(r"^#include <redman/(\w+\.h)>", umbrella, re.M)
+    return "\n".join((INCLUDE / name).read_text(encoding="utf-8") for name in names)
 
 
 def generate(text: str) -> str:

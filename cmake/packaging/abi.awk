@@ -1,8 +1,7 @@
-# From the public header: a C file for abidw to describe (-v mode=functions), which defines each stable function and, for
+# From the stable headers: a C file for abidw to describe (-v mode=functions), which defines each stable function and, for
 # each constant, an array as long as 1000 + its value; or what abidiff is to let pass (-v mode=allowed): structs that
 # begin with struct_size may grow at their ends.
 BEGIN { if (mode == "functions") print "#include <redman/redman.h>\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"" }
-/^#if defined\(RDM_EXPERIMENTAL\)/ { exit }
 /^typedef struct rdm_[a-z_]+ \{/ { struct = $3; next }
 struct != "" && /struct_size;/ { sized = sized "|" struct; struct = "" }
 /^}/ { struct = "" }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# abi.sh dump INCLUDE CC OUT: what a binary built against the stable half of INCLUDE/redman/redman.h relies on, as libabigail
+# abi.sh dump INCLUDE CC OUT: what a binary built against the stable headers in INCLUDE/redman relies on, as libabigail
 # writes it: capi/abi/redman-<release>.abi of each release. The functions are empty, their types are the header's.
 # abi.sh check ROOT CC: the header against the last release's dump. A stable function or type that is gone or changed fails
 # while RDM_ABI is that release's; new functions, and members at the ends of sized structs, pass.
@@ -8,11 +8,13 @@ awk=$(dirname "$0")/abi.awk
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-number() { sed -n "s/^#define $2 \([0-9]*\).*/\1/p" "$1/redman/redman.h"; }
+number() { sed -n "s/^#define $2 \([0-9]*\).*/\1/p" "$1/redman/base.h"; }
+stable() { grep -l '^/\* redman/.* Stable since' "$1"/redman/*.h; }
 
 # library INCLUDE CC OUT
 library() {
-  awk -v mode=functions -f "$awk" "$1/redman/redman.h" > "$work/functions.c"
+  # shellcheck disable=SC2046
+  awk -v mode=functions -f "$awk" $(stable "$1") > "$work/functions.c"
   "$2" -std=c99 -g -O0 -fPIC -shared -nostdlib -I"$1" -Wl,-soname,"libredman.so.$(number "$1" RDM_ABI)" "$work/functions.c" -o "$3"
 }
 
@@ -25,7 +27,8 @@ case $1 in
     root=$2
     last=$(ls "$root"/capi/abi/redman-*.abi | sort -V | tail -n1)
     library "$root/include" "$3" "$work/functions.so"
-    awk -v mode=allowed -f "$awk" "$root/include/redman/redman.h" > "$work/allowed"
+    # shellcheck disable=SC2046
+    awk -v mode=allowed -f "$awk" $(stable "$root/include") > "$work/allowed"
     status=0
     abidiff --no-added-syms --suppressions "$work/allowed" "$last" "$work/functions.so" > "$work/report" || status=$?
     grep -v '^$' "$work/report" || true
@@ -34,7 +37,7 @@ case $1 in
       exit 0
     fi
     if [ $status -ne 0 ]; then
-      echo "redman.h differs from $(basename "$last") in what old binaries rely on: keep it, or move RDM_ABI"
+      echo "the stable headers differ from $(basename "$last") in what old binaries rely on: keep it, or move RDM_ABI"
       exit 1
     fi
     ;;

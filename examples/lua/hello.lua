@@ -1,15 +1,17 @@
--- The program of examples/c in Lua: LuaJIT's ffi reads redman.h itself.
+-- The program of examples/c in Lua: LuaJIT's ffi reads the stable headers themselves.
 --
 --   luajit hello.lua POLICY [bench]
 --
--- REDMAN_HEADER and REDMAN_LIBRARY say where the two files are, when not where they were installed.
+-- REDMAN_INCLUDE (the folder of the headers) and REDMAN_LIBRARY say where they are, when not where they were installed.
 local ffi, bit = require "ffi", require "bit"
 
 -- ffi knows no preprocessor: numbers become enums; comments, directives and the braces of extern "C" go.
-local file = assert(io.open(os.getenv "REDMAN_HEADER" or "/usr/local/include/redman/redman.h"))
-local header = file:read "*a":gsub("/%*.-%*/", ""):gsub("#define (RDM_[%w_]+) +(%d+)", "enum { %1 = %2 };")
-file:close()
-ffi.cdef((header:gsub("#[^\n]*", ""):gsub("RDM_API", ""):gsub('extern "C" {', ""):gsub("\n}%s*\n", "\n")))
+for _, name in ipairs { "base", "policy", "pool", "agent" } do
+  local file = assert(io.open((os.getenv "REDMAN_INCLUDE" or "/usr/local/include/redman") .. "/" .. name .. ".h"))
+  local header = file:read "*a":gsub("/%*.-%*/", ""):gsub("#define (RDM_[%w_]+) +(%d+)", "enum { %1 = %2 };")
+  file:close()
+  ffi.cdef((header:gsub("#[^\n]*", ""):gsub("RDM_API", ""):gsub('extern "C" {', ""):gsub("\n}%s*\n", "\n")))
+end
 ffi.cdef "long clock(void); // CPU time of the process, us"
 local redman = ffi.load(os.getenv "REDMAN_LIBRARY" or "redman")
 

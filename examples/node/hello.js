@@ -1,12 +1,13 @@
-// The program of examples/c in JavaScript: Node with koffi, which is told what redman.h says.
+// The program of examples/c in JavaScript: Node with koffi, which is told what the stable headers say.
 //
 //   npm install koffi && node hello.js POLICY [bench]
 //
-// REDMAN_HEADER and REDMAN_LIBRARY say where the two files are, when not where they were installed.
+// REDMAN_INCLUDE (the folder of the headers) and REDMAN_LIBRARY say where they are, when not where they were installed.
 'use strict';
 const koffi = require('koffi');
-const path = process.env.REDMAN_HEADER || '/usr/local/include/redman/redman.h';
-const header = require('fs').readFileSync(path, 'utf8').replace(/\/\*[^]*?\*\//g, '');
+const folder = process.env.REDMAN_INCLUDE || '/usr/local/include/redman';
+const read = (name) => require('fs').readFileSync(`${folder}/${name}.h`, 'utf8');
+const header = ['base', 'policy', 'pool', 'agent'].map(read).join('\n').replace(/\/\*[^]*?\*\//g, '');
 const library = koffi.load(process.env.REDMAN_LIBRARY || 'libredman.so.1');
 
 // Constants and functions by the header's names.

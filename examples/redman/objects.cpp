@@ -1,7 +1,7 @@
 // `objects` and `object`: the catalogue, and meshes and files that become objects.
 #include "common/objects.hpp"
 
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <cmath>
 #include <memory>

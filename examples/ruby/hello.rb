@@ -1,8 +1,8 @@
-# The program of examples/c in Ruby: Fiddle is told what redman.h says.
+# The program of examples/c in Ruby: Fiddle is told what the stable headers say.
 #
 #   ruby hello.rb POLICY [bench]
 #
-# REDMAN_HEADER and REDMAN_LIBRARY say where the two files are, when not where they were installed.
+# REDMAN_INCLUDE (the folder of the headers) and REDMAN_LIBRARY say where they are, when not where they were installed.
 require 'fiddle/import'
 
 # Constants, structs and functions by the header's names: Redman::RDM_OK, Redman::Rdm_spec, Redman.rdm_pool_step.
@@ -11,7 +11,8 @@ module Redman
   dlload ENV.fetch('REDMAN_LIBRARY', 'libredman.so.1')
   extern 'long clock()' # CPU time of the process, us
   typealias 'rdm_result', 'int32_t'
-  header = File.read(ENV.fetch('REDMAN_HEADER', '/usr/local/include/redman/redman.h')).gsub(%r{/\*.*?\*/}m, '')
+  folder = ENV.fetch('REDMAN_INCLUDE', '/usr/local/include/redman')
+  header = %w[base policy pool agent].map { |name| File.read("#{folder}/#{name}.h") }.join("\n").gsub(%r{/\*.*?\*/}m, '')
   header.scan(/^#define (RDM_\w+) +(\d+)/) { |name, value| const_set(name, value.to_i) }
   header.scan(/\benum \w*\s*{([^}]*)}/) do |list,|
     list.scan(/(\w+)(?:\s*=\s*(-?\d+))?/).reduce(0) { |n, (name, value)| const_set(name, (value || n).to_i) + 1 }

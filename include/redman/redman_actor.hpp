@@ -1,4 +1,4 @@
-// redman_actor.hpp: C++17 over the experimental part of redman.h, as redman.hpp is over the rest: the owner
+// redman_actor.hpp: C++17 over experimental headers, as redman.hpp is over the stable ones: the owner
 // of an actor. May change until version 1.
 //
 //   redman::Actor actor(redman::actor_config(policy, pool));

@@ -1,4 +1,4 @@
-/* redman_map.h: maps are in the experimental part of redman.h. */
+/* redman_map.h: the name of <redman/map.h> before 1.0, with all experimental headers. */
 #ifndef RDM_EXPERIMENTAL
 #define RDM_EXPERIMENTAL
 #endif

@@ -1,4 +1,4 @@
-// redman_map.hpp: C++17 over the experimental part of redman.h, as redman.hpp is over the rest: the owner of
+// redman_map.hpp: C++17 over experimental headers, as redman.hpp is over the stable ones: the owner of
 // a map, views of what worlds see. May change until version 1.
 //
 //   redman::Map map(redman::map_config(0.02));

@@ -1,4 +1,4 @@
-// redman_plan.hpp: C++17 over the experimental part of redman.h, as redman.hpp is over the rest: the owner of
+// redman_plan.hpp: C++17 over experimental headers, as redman.hpp is over the stable ones: the owner of
 // a planner. May change until version 1.
 //
 //   redman::Planner planner(redman::planner_config(pool, "method=cem\nhorizon=20"));

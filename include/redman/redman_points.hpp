@@ -1,4 +1,4 @@
-// redman_points.hpp: C++17 over the experimental part of redman.h, as redman.hpp is over the rest: agents and
+// redman_points.hpp: C++17 over experimental headers, as redman.hpp is over the stable ones: agents and
 // policies that see points. May change until version 1.
 //
 //   const rdm_points seen = redman::points(sensors);

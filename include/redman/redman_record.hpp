@@ -1,4 +1,4 @@
-// redman_record.hpp: C++17 over the experimental part of redman.h, as redman.hpp is over the rest: the owner
+// redman_record.hpp: C++17 over experimental headers, as redman.hpp is over the stable ones: the owner
 // of a recording, and what is learned from one. May change until version 1.
 //
 //   redman::Recording r(pool);

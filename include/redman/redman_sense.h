@@ -1,4 +1,4 @@
-/* redman_sense.h: what worlds see are in the experimental part of redman.h. */
+/* redman_sense.h: the name of <redman/sense.h> before 1.0, with all experimental headers. */
 #ifndef RDM_EXPERIMENTAL
 #define RDM_EXPERIMENTAL
 #endif

@@ -8,7 +8,7 @@
 
 namespace rdm {
 
-// Same values as rdm_result in redman.h; frozen.
+// Same values as rdm_result in redman/base.h; frozen.
 enum class Code : int32_t {
   kOk = 0,
   kArgument = -1,

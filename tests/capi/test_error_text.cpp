@@ -1,6 +1,6 @@
 // Whatever bytes a host hands over as a name, a path or an option: the text of the failure is one line of
 // UTF-8 without control characters, for every task and every algorithm.
-#include <redman/redman_map.h>
+#include <redman/map.h>
 
 #include <filesystem>
 

@@ -1,5 +1,5 @@
 /* Reads a robot out of a text, with the installed library of importers and the installed redman beside it. */
-#include <redman/redman_import.h>
+#include <redman/import.h>
 #include <stdio.h>
 #include <string.h>
 

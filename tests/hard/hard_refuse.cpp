@@ -7,8 +7,8 @@
 //
 //   hard_refuse [--seconds S] [--only TEXT]     S: about so long in all; sites are then sampled
 #include <malloc.h>
-#include <redman/redman_map.h>
-#include <redman/redman_sense.h>
+#include <redman/map.h>
+#include <redman/sense.h>
 
 #include <atomic>
 #include <cerrno>

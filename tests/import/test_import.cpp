@@ -1,6 +1,6 @@
 // Robots out of files: both formats of one hand agree, what is dropped is listed with its line, what cannot
 // be a robot is refused with line and element, and text gives back every robot to the last bit.
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Small files that would cost much: each one of a generator of them is read, or refused, by a process that may take
 // 200 MB more than it has and 10 s of its processor (a wide bound: what is wrong here takes minutes or all memory).
 #include <gtest/gtest.h>
-#include <redman/redman_import.h>
+#include <redman/import.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>

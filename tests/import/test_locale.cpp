@@ -4,8 +4,8 @@
 #ifndef RDM_EXPERIMENTAL
 #define RDM_EXPERIMENTAL
 #endif
+#include <redman/import.h>
 #include <redman/redman.h>
-#include <redman/redman_import.h>
 
 #include <cstring>
 #include <string>

@@ -1,5 +1,5 @@
 // MJCF: what changes mass, pose, axis, range or coupling is read or refused by name.
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <cmath>
 #include <string>

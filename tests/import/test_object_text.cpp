@@ -1,6 +1,6 @@
 // Objects as text: every one reads back to the last bit, and what cannot be one is refused with line and key.
 #include <gtest/gtest.h>
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <cstring>
 #include <string>

@@ -1,7 +1,7 @@
 // Tasks as text: each term where its value is known, each refusal with line and key, files that ship keep
 // what a task promises, and a task as text is the one written in C.
 #include <gtest/gtest.h>
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <cmath>
 #include <cstring>

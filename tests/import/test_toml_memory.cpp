@@ -1,7 +1,7 @@
 // Memory that is refused while TOML is read: MEMORY, whichever request it is, and neither another reason nor the
 // end of the process.
 #include <gtest/gtest.h>
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <cstring>
 #include <functional>

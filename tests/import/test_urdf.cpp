@@ -1,6 +1,6 @@
 // URDF: what changes mass, pose, axis, range or coupling is read or refused by name; what gives links without
 // inertial a mass; where meshes are looked for; names of any script.
-#include <redman/redman_import.h>
+#include <redman/import.h>
 #include <unistd.h>
 
 #include <cmath>

@@ -13,13 +13,15 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 status=0
 # The edits are made to the header as it is, against a dump of it, so they stand for themselves.
-mkdir -p "$work/capi/abi" "$work/include/redman"
+mkdir -p "$work/capi/abi"
 sh "$check" dump "$root/include" "$cc" "$work/capi/abi/redman-0.0.0.abi"
 # edit good|bad WHAT SED
 edit() {
-  sed "$3" "$root/include/redman/redman.h" > "$work/include/redman/redman.h"
-  if cmp -s "$root/include/redman/redman.h" "$work/include/redman/redman.h"; then echo "nothing to edit: $2"; status=1; return; fi
-  if sh "$check" check "$work" "$cc" > "$work/out" 2>&1; then got=good; elif grep -q '^redman.h differs' "$work/out"; then got=bad; else got=broken; fi
+  rm -rf "$work/include"
+  cp -r "$root/include" "$work/include"
+  sed -i "$3" "$work"/include/redman/*.h
+  if diff -r "$root/include" "$work/include" > /dev/null; then echo "nothing to edit: $2"; status=1; return; fi
+  if sh "$check" check "$work" "$cc" > "$work/out" 2>&1; then got=good; elif grep -q '^the stable headers differ' "$work/out"; then got=bad; else got=broken; fi
   [ $got = "$1" ] || { echo "$2 is $got:"; cat "$work/out"; status=1; }
 }
 edit bad 'a function is gone' '/rdm_pool_hash(/d'

@@ -4,7 +4,7 @@ set -u
 root=$1
 status=0
 wrong() { echo "$*"; status=1; }
-part() { sed -n "s/^#define RDM_VERSION_$1 \([0-9]*\).*/\1/p" "$root/include/redman/redman.h"; }
+part() { sed -n "s/^#define RDM_VERSION_$1 \([0-9]*\).*/\1/p" "$root/include/redman/base.h"; }
 version=$(part MAJOR).$(part MINOR).$(part PATCH)
 packaging=$root/cmake/packaging
 grep -q "\"version\": \"$version\"" "$packaging/vcpkg/vcpkg.json" || wrong "vcpkg.json has another version than $version"

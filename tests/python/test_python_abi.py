@@ -33,8 +33,8 @@ class Abi(unittest.TestCase):
         self.assertEqual(sorted(line for line in recorded if line and not line.startswith("rdm_import_")), sorted(ours))
 
     def test_every_exported_function_has_a_signature_and_words(self):
-        for part, experimental in (("redman", False), ("redman_experimental", True)):
-            listed = (TREE / f"capi/{part}.symbols").read_text().split()
+        for parts, experimental in ((("redman", "redman_1.0"), False), (("redman_experimental",), True)):
+            listed = [name for part in parts for name in (TREE / f"capi/{part}.symbols").read_text().split()]
             ours = [name for name, f in _abi.FUNCTIONS.items() if f.experimental == experimental]
             self.assertEqual(sorted(listed), sorted(ours))
         for name, function in _abi.FUNCTIONS.items():

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""redman.h says of every pointer what it is, in the form that generators of bindings read.
+"""The public headers say of every pointer what it is, in the form that generators of bindings read.
 
 Arguments: the project's root. Prints what is missing; the exit status is 0 when nothing is.
-The rules are those of "How to read the declarations" at the top of the header.
+The rules are those of "How to read the declarations" at the top of redman.h.
 """
 import pathlib
 import re
@@ -81,7 +81,9 @@ def split(declaration):
 
 def main(root):
     folder = pathlib.Path(root)
-    header = Header((folder / "include/redman/redman.h").read_text())
+    umbrella = (folder / "include/redman/redman.h").read_text()
+    names = re.findall(r"^#include <(redman/\w+\.h)>", umbrella, re.M)
+    header = Header("\n".join((folder / "include" / name).read_text() for name in names))
     wrong = []
     counts = {}
 
@@ -141,7 +143,7 @@ def main(root):
         for constant in (c.strip() for c in body.split(",")):
             if constant and "=" not in constant:
                 wrong.append(f"enum {name}: {constant} has no value written")
-    listed = {line for part in ("redman", "redman_experimental")
+    listed = {line for part in ("redman", "redman_1.0", "redman_experimental")
               for line in (folder / f"capi/{part}.symbols").read_text().split() if line.startswith("rdm_")}
     found = [name for name, _, _ in header.functions]
     for name in sorted(listed.symmetric_difference(found)):

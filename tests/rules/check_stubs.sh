@@ -6,13 +6,14 @@ root=$1 cxx=$2
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 status=0
-awk -v mode=stable -f "$root/tests/rules/header.awk" "$root/include/redman/redman.h" > "$work/all"
-awk -v mode=experimental -f "$root/tests/rules/header.awk" "$root/include/redman/redman.h" >> "$work/all"
+headers=$(sed -n "s|^#include <\(redman/.*\)>.*|$root/include/\1|p" "$root/include/redman/redman.h")
+# shellcheck disable=SC2086
+for part in stable experimental; do awk -v mode=$part -f "$root/tests/rules/header.awk" $headers; done > "$work/all"
 LC_ALL=C sort -o "$work/all" "$work/all"
 for halves in '0 0' '0 1' '1 0' '1 1'; do
   set -- $halves
   name=$1$2
-  awk -v sim="$1" -v learn="$2" -v policy="$2" -f "$root/capi/stubs.awk" "$root/include/redman/redman.h" > "$work/$name.cpp"
+  awk -v sim="$1" -v learn="$2" -v policy="$2" -f "$root/capi/stubs.awk" $headers > "$work/$name.cpp"
   sed -n 's/^[a-z].*[ *]\(rdm_[a-z_0-9]*\)(.*{.*/\1/p' "$work/$name.cpp" | grep -v '^rdm_result$' |
     LC_ALL=C sort > "$work/$name"
   [ "$name" = 11 ] && continue

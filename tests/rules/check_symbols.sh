@@ -10,25 +10,34 @@ status=0
 same() { # same WHAT A B
   diff "$2" "$3" > "$work/diff" || { echo "$1:"; grep '^[<>]' "$work/diff"; status=1; }
 }
-for part in stable experimental; do
-  case $part in stable) list=capi/redman.symbols ;; *) list=capi/redman_experimental.symbols ;; esac
-  grep '^rdm_' "$root/$list" | LC_ALL=C sort > "$work/$part.listed"
-  # shellcheck disable=SC2046
-  awk -v mode=$part -f "$root/tests/rules/header.awk" $(ls "$root"/include/redman/*.h | grep -v import) | LC_ALL=C sort > "$work/$part.declared"
-  same "declared as $part in the headers (<) and listed in $list (>)" "$work/$part.declared" "$work/$part.listed"
+number() { sed -n "s/^#define RDM_$1 *\([0-9]*\).*/\1/p" "$root/include/redman/base.h"; }
+minor=$(number VERSION_MAJOR)_$(number VERSION_MINOR)
+# A list a version node; what a release adds to the stable half has a list of its own.
+: > "$work/nodes"
+for list in redman redman_1.0 redman_experimental; do
+  case $list in
+    redman) part=stable node=REDMAN_$(number ABI) ;;
+    redman_experimental) part=experimental node=REDMAN_EXPERIMENTAL_$minor ;;
+    *) part=stable node=REDMAN_${list#redman_} ;;
+  esac
+  grep '^rdm_' "$root/capi/$list.symbols" >> "$work/$part.names"
+  sed -n "s/^\(rdm_.*\)/\1@@$node/p" "$root/capi/$list.symbols" >> "$work/nodes"
 done
-# Each list is a version node of its own.
-abi=$(sed -n 's/^#define RDM_ABI *\([0-9]*\).*/\1/p' "$root/include/redman/redman.h")
-sed "s/$/@@REDMAN_$abi/" "$work/stable.listed" > "$work/nodes"
-sed 's/$/@@REDMAN_EXPERIMENTAL/' "$work/experimental.listed" >> "$work/nodes"
 LC_ALL=C sort "$work/nodes" > "$work/listed"
+headers=$(sed -n 's/^#include <redman\/\(.*\)>.*/\1/p' "$root/include/redman/redman.h")
+for part in stable experimental; do
+  LC_ALL=C sort "$work/$part.names" > "$work/$part.listed"
+  # shellcheck disable=SC2086
+  (cd "$root/include/redman" && awk -v mode=$part -f "$root/tests/rules/header.awk" $headers) | LC_ALL=C sort > "$work/$part.declared"
+  same "declared as $part in the headers (<) and listed in capi/*.symbols (>)" "$work/$part.declared" "$work/$part.listed"
+done
 nm -D --defined-only "$library" | awk '$2 != "A" { print $3 }' | LC_ALL=C sort > "$work/exported"
 same "exported (<) and listed (>)" "$work/exported" "$work/listed"
-awk -v mode=stable -f "$root/tests/rules/header.awk" "$root/include/redman/redman_import.h" | LC_ALL=C sort > "$work/declared"
+awk -v mode=experimental -f "$root/tests/rules/header.awk" "$root/include/redman/import.h" | LC_ALL=C sort > "$work/declared"
 grep '^rdm_' "$root/capi/import/redman_import.symbols" | LC_ALL=C sort > "$work/listed"
-same "declared in redman_import.h (<) and listed in capi/import/redman_import.symbols (>)" "$work/declared" "$work/listed"
+same "declared in import.h (<) and listed in capi/import/redman_import.symbols (>)" "$work/declared" "$work/listed"
 if [ -n "$import" ]; then
-  sed -i 's/$/@@REDMAN_IMPORT_EXPERIMENTAL/' "$work/listed"
+  sed -i 's/$/@@REDMAN_IMPORT_EXPERIMENTAL_'"$minor"'/' "$work/listed"
   nm -D --defined-only "$import" | awk '$2 != "A" { print $3 }' | LC_ALL=C sort > "$work/exported"
   same "exported by redman_import (<) and listed (>)" "$work/exported" "$work/listed"
 fi

@@ -1,4 +1,4 @@
-# Reads redman.h and the headers beside it. -v mode=stable|experimental: names of the exported functions of that part;
+# Reads the public headers, whose first lines say whether they are stable. -v mode=stable|experimental: names of the exported functions of that part;
 # mode=layout: a C program that prints size and offsets; mode=docs: functions and fields without comment.
 function strip(text) { gsub(/\/\*[^*]*\*+([^\/*][^*]*\*+)*\//, "", text); return text }
 
@@ -36,16 +36,14 @@ function field_line(text, has_comment,   n, i, list, names) {
 }
 
 BEGIN {
-  part = "stable"
   if (mode == "layout") {
-    print "#define RDM_EXPERIMENTAL\n#include <stdio.h>"
+    print "#include <stdio.h>"
     for (i = 1; i < ARGC; ++i) { name = ARGV[i]; sub(/.*\//, "", name); print "#include <redman/" name ">" }
     print "int main(void) {"
   }
 }
 { sub(/\r$/, "") }
-FNR == 1 { part = "stable" }
-/^#if defined\(RDM_EXPERIMENTAL\)/ { part = "experimental" }  # from here to the end of the file
+FNR == 1 { part = /Experimental/ ? "experimental" : "stable" }
 /^#|^$/ { covered = 0; next }
 in_comment { if (/\*\//) { in_comment = 0; covered = 1 } ; next }
 /^[ \t]*\/\*/ && !/\*\// { in_comment = 1; next }
@@ -68,6 +66,7 @@ line ~ /^\} rdm_[a-z_]+;/ {
   if (mode == "layout") printf "  printf(\"%%s %%zu\\n\", \"%s\", sizeof(%s));\n", struct, struct
   struct = ""; covered = 0; next
 }
-struct != "" && line ~ /;/ { sub(/;.*/, "", line); field_line(line, comment); covered = 0; next }
+struct != "" && line !~ /;/ && line ~ /[^ \t]/ { begun = begun " " line; next }  # a member that goes on
+struct != "" && line ~ /;/ { line = begun " " line; begun = ""; sub(/;.*/, "", line); field_line(line, comment); covered = 0; next }
 line ~ /[;}]/ { covered = 0 }
 END { if (mode == "layout") print "  return 0;\n}" }

@@ -1,7 +1,7 @@
 // Files read as robots, for the tests of the importer.
 #pragma once
 #include <gtest/gtest.h>
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <string>
 #include <utility>

@@ -58,7 +58,9 @@ class ResultCode(enum.IntEnum):
 
 
 class Feature(enum.IntFlag):
-    """The halves of the library: worlds, learners; and frozen policies, which a build may have without the learners."""
+    """The halves of the library: worlds, learners; and frozen policies, which a build may have without
+    the learners.
+    """
 
     SIM = 1
     LEARN = 2
@@ -74,8 +76,22 @@ class OptionKind(enum.IntEnum):
     TEXT = 3
 
 
+class ShapeKind(enum.IntEnum):
+    """of rdm_shape"""
+
+    SPHERE = 0
+    CAPSULE = 1
+    BOX = 2
+    CYLINDER = 3
+    PLANE = 4
+    ELLIPSOID = 5
+    HULL = 6
+
+
 class Autoreset(enum.IntEnum):
-    """When a world begins again by itself: in the step that ended its episode, in the next, or never."""
+    """When a world begins again by itself: in the step that ended its episode, in the next, or
+    never.
+    """
 
     SAME_STEP = 0
     NEXT_STEP = 1
@@ -101,18 +117,6 @@ class BaselineKind(enum.IntEnum):
     RANDOM = 2
 
 
-class ShapeKind(enum.IntEnum):
-    """of rdm_shape"""
-
-    SPHERE = 0
-    CAPSULE = 1
-    BOX = 2
-    CYLINDER = 3
-    PLANE = 4
-    ELLIPSOID = 5
-    HULL = 6
-
-
 class ActMode(enum.IntEnum):
     """of rdm_agent_act"""
 
@@ -133,6 +137,15 @@ class EpochFlag(enum.IntFlag):
     TASK = 128  # decisions flagged RDM_STATUS_TASK
     SOLVER = 256  # decisions flagged RDM_STATUS_SOLVER
     SLOWED = 512  # decisions flagged RDM_STATUS_SLOWED
+
+
+class MapFormat(enum.IntEnum):
+    """OctoMap's files: RDM_MAP_BINARY (.bt: occupied or free) and RDM_MAP_FULL (.ot: the probabilities
+    too).
+    """
+
+    BINARY = 0
+    FULL = 1
 
 
 class RobotKind(enum.IntEnum):
@@ -183,7 +196,7 @@ class Scale(enum.IntEnum):
     LINK_KP = 2
     LINK_KD = 3
     LINK_EFFORT = 4
-    LINK_FRICTION = 5  # [0, 1000]
+    LINK_FRICTION = 5
     BASE_MASS = 6  # [0.001, 1000] of a free base; index: robot
     BASE_DAMPING = 7  # [0, 1000] of all links of a robot with a free base
     BODY_MASS = 8  # [0.001, 1000], moments with it; index: body
@@ -191,13 +204,6 @@ class Scale(enum.IntEnum):
     BODY_LINEAR_DAMPING = 10
     BODY_ANGULAR_DAMPING = 11  # [0, 1000]
     FRICTION = 12  # [0, 1000] of two materials, index and other
-
-
-class MapFormat(enum.IntEnum):
-    """OctoMap's files: RDM_MAP_BINARY (.bt: occupied or free) and RDM_MAP_FULL (.ot: the probabilities too)."""
-
-    BINARY = 0
-    FULL = 1
 
 
 class Build(Record):
@@ -364,6 +370,187 @@ class rdm_option_info(Structure):
     ]
 
 
+class Field(Record):
+    """The values of rdm_field."""
+
+    name: str  # "right.joint_position"
+    unit: str  # "rad", "m/s", "1" after scaling ...
+    offset: int  # first entry
+    count: int  # entries
+
+
+class rdm_field(Structure):
+    """name: "right.joint_position"
+    unit: "rad", "m/s", "1" after scaling ...
+    offset: first entry
+    count: entries
+    """
+
+    name: bytes | None
+    unit: bytes | None
+    offset: int
+    count: int
+    _fields_ = [
+        ("name", c_char_p),
+        ("unit", c_char_p),
+        ("offset", c_int32),
+        ("count", c_int32),
+    ]
+
+
+class Tensor(Record):
+    """The values of rdm_tensor."""
+
+    name: str  # "actor.0.weight", "actor.log_std", "reward_critic.1.bias"
+    rows: int  # row-major; cols 1 for vectors
+    cols: int  # row-major; cols 1 for vectors
+
+
+class rdm_tensor(Structure):
+    """name: "actor.0.weight", "actor.log_std", "reward_critic.1.bias"
+    rows: row-major; cols 1 for vectors
+    cols: row-major; cols 1 for vectors
+    """
+
+    name: bytes | None
+    rows: int
+    cols: int
+    _fields_ = [
+        ("name", c_char_p),
+        ("rows", c_int32),
+        ("cols", c_int32),
+    ]
+
+
+class Spec(Record):
+    """The values of rdm_spec."""
+
+    control_dt: float  # s between steps
+    obs_dim: int  # count
+    action_dim: int  # count
+    cost_dim: int  # count
+    max_steps: int  # control steps of an episode
+    layout_hash: int  # of field names, counts and action order: policies carry it
+    num_fields: int  # for rdm_pool_field
+    num_shapes: int  # for rdm_pool_shape
+    num_joints: int  # of all robots
+    task: int  # index for rdm_task_at and its like
+    action_repeat: int  # control steps in one rdm_pool_step: option action_repeat
+
+
+class rdm_spec(Structure):
+    """struct_size: in: bytes
+    control_dt: s between steps
+    obs_dim: count
+    action_dim: count
+    cost_dim: count
+    max_steps: control steps of an episode
+    layout_hash: of field names, counts and action order: policies carry it
+    num_fields: for rdm_pool_field
+    num_shapes: for rdm_pool_shape
+    num_joints: of all robots
+    task: index for rdm_task_at and its like
+    action_repeat: control steps in one rdm_pool_step: option action_repeat
+    reserved: 0
+    """
+
+    struct_size: int
+    control_dt: float
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    max_steps: int
+    layout_hash: int
+    num_fields: int
+    num_shapes: int
+    num_joints: int
+    task: int
+    action_repeat: int
+    reserved: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("control_dt", c_float),
+        ("obs_dim", c_int32),
+        ("action_dim", c_int32),
+        ("cost_dim", c_int32),
+        ("max_steps", c_int32),
+        ("layout_hash", c_uint64),
+        ("num_fields", c_int32),
+        ("num_shapes", c_int32),
+        ("num_joints", c_int32),
+        ("task", c_int32),
+        ("action_repeat", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
+class PolicyInfo(Record):
+    """The values of rdm_policy_info."""
+
+    obs_dim: int  # count
+    action_dim: int  # count
+    action_repeat: int  # control steps to hold each action
+    control_dt: float  # s, 0: unknown
+    noise_correlation: float  # AR(1) coefficient of the noise it was trained with
+    layout_hash: int  # 0: unknown
+    num_params: int  # of the network
+    task: str  # "" for a host's own environment
+    activation: str  # of the hidden layers: "tanh", "elu", "relu"; static
+    num_points: int  # of the cloud beside each row, for rdm_policy_act_points; 0: it sees none
+    num_point_classes: int  # that it tells points apart by, 0: none
+    num_features: int  # that its encoder makes of a cloud, 0 without
+    point_color: int  # whether it sees the colours of points: 0, 1
+
+
+class rdm_policy_info(Structure):
+    """struct_size: in: bytes
+    obs_dim: count
+    action_dim: count
+    action_repeat: control steps to hold each action
+    control_dt: s, 0: unknown
+    noise_correlation: AR(1) coefficient of the noise it was trained with
+    layout_hash: 0: unknown
+    num_params: of the network
+    task: "" for a host's own environment
+    activation: of the hidden layers: "tanh", "elu", "relu"; static
+    num_points: of the cloud beside each row, for rdm_policy_act_points; 0: it sees none
+    num_point_classes: that it tells points apart by, 0: none
+    num_features: that its encoder makes of a cloud, 0 without
+    point_color: whether it sees the colours of points: 0, 1
+    """
+
+    struct_size: int
+    obs_dim: int
+    action_dim: int
+    action_repeat: int
+    control_dt: float
+    noise_correlation: float
+    layout_hash: int
+    num_params: int
+    task: bytes | None
+    activation: bytes | None
+    num_points: int
+    num_point_classes: int
+    num_features: int
+    point_color: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("obs_dim", c_int32),
+        ("action_dim", c_int32),
+        ("action_repeat", c_int32),
+        ("control_dt", c_float),
+        ("noise_correlation", c_float),
+        ("layout_hash", c_uint64),
+        ("num_params", c_uint64),
+        ("task", c_char_p),
+        ("activation", c_char_p),
+        ("num_points", c_int32),
+        ("num_point_classes", c_int32),
+        ("num_features", c_int32),
+        ("point_color", c_int32),
+    ]
+
+
 class Task(Record):
     """The values of rdm_task."""
 
@@ -423,34 +610,6 @@ class rdm_task(Structure):
     ]
 
 
-class Field(Record):
-    """The values of rdm_field."""
-
-    name: str  # "right.joint_position"
-    unit: str  # "rad", "m/s", "1" after scaling ...
-    offset: int  # first entry
-    count: int  # entries
-
-
-class rdm_field(Structure):
-    """name: "right.joint_position"
-    unit: "rad", "m/s", "1" after scaling ...
-    offset: first entry
-    count: entries
-    """
-
-    name: bytes | None
-    unit: bytes | None
-    offset: int
-    count: int
-    _fields_ = [
-        ("name", c_char_p),
-        ("unit", c_char_p),
-        ("offset", c_int32),
-        ("count", c_int32),
-    ]
-
-
 class Cost(Record):
     """The values of rdm_cost."""
 
@@ -505,33 +664,6 @@ class rdm_camera(Structure):
         ("target", c_float * 3),
         ("fov_y", c_float),
         ("mount", c_int32),
-    ]
-
-
-class Algo(Record):
-    """The values of rdm_algo."""
-
-    num_options: int  # for rdm_algo_option
-    name: str  # "ppo_lag"
-    summary: str  # one line with the paper
-
-
-class rdm_algo(Structure):
-    """struct_size: in: bytes
-    num_options: for rdm_algo_option
-    name: "ppo_lag"
-    summary: one line with the paper
-    """
-
-    struct_size: int
-    num_options: int
-    name: bytes | None
-    summary: bytes | None
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("num_options", c_int32),
-        ("name", c_char_p),
-        ("summary", c_char_p),
     ]
 
 
@@ -685,71 +817,9 @@ class rdm_pool_config(Structure):
     ]
 
 
-class Spec(Record):
-    """The values of rdm_spec."""
-
-    control_dt: float  # s between steps
-    obs_dim: int  # count
-    action_dim: int  # count
-    cost_dim: int  # count
-    max_steps: int  # control steps of an episode
-    layout_hash: int  # of field names, counts and action order: policies carry it
-    num_fields: int  # for rdm_pool_field
-    num_shapes: int  # for rdm_pool_shape
-    num_joints: int  # of all robots
-    task: int  # index for rdm_task_at and its like
-    action_repeat: int  # control steps in one rdm_pool_step: option action_repeat
-
-
-class rdm_spec(Structure):
-    """struct_size: in: bytes
-    control_dt: s between steps
-    obs_dim: count
-    action_dim: count
-    cost_dim: count
-    max_steps: control steps of an episode
-    layout_hash: of field names, counts and action order: policies carry it
-    num_fields: for rdm_pool_field
-    num_shapes: for rdm_pool_shape
-    num_joints: of all robots
-    task: index for rdm_task_at and its like
-    action_repeat: control steps in one rdm_pool_step: option action_repeat
-    reserved: 0
-    """
-
-    struct_size: int
-    control_dt: float
-    obs_dim: int
-    action_dim: int
-    cost_dim: int
-    max_steps: int
-    layout_hash: int
-    num_fields: int
-    num_shapes: int
-    num_joints: int
-    task: int
-    action_repeat: int
-    reserved: int
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("control_dt", c_float),
-        ("obs_dim", c_int32),
-        ("action_dim", c_int32),
-        ("cost_dim", c_int32),
-        ("max_steps", c_int32),
-        ("layout_hash", c_uint64),
-        ("num_fields", c_int32),
-        ("num_shapes", c_int32),
-        ("num_joints", c_int32),
-        ("task", c_int32),
-        ("action_repeat", c_int32),
-        ("reserved", c_int32),
-    ]
-
-
 class rdm_buffers(Structure):
-    """Rows of world i begin at i * width; 64-byte aligned; the same addresses until destroy or bind. The
-    library writes them inside reset, step and set_state only.
+    """Rows of world i begin at i * width; 64-byte aligned; the same addresses until destroy or bind.
+    The library writes them inside reset, step and set_state only.
 
     struct_size: in: bytes
     reserved: 0
@@ -933,6 +1003,33 @@ class rdm_pool_stats(Structure):
     ]
 
 
+class Algo(Record):
+    """The values of rdm_algo."""
+
+    num_options: int  # for rdm_algo_option
+    name: str  # "ppo_lag"
+    summary: str  # one line with the paper
+
+
+class rdm_algo(Structure):
+    """struct_size: in: bytes
+    num_options: for rdm_algo_option
+    name: "ppo_lag"
+    summary: one line with the paper
+    """
+
+    struct_size: int
+    num_options: int
+    name: bytes | None
+    summary: bytes | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_options", c_int32),
+        ("name", c_char_p),
+        ("summary", c_char_p),
+    ]
+
+
 class rdm_agent_config(Structure):
     """struct_size: bytes, set by rdm_agent_config_init
     obs_dim: count, 1..16384, required
@@ -1060,7 +1157,9 @@ class rdm_transition(Structure):
 
 
 class Epoch(Record):
-    """One row of the learning curve; means over the last 100 finished episodes. NaN: nothing was measured."""
+    """One row of the learning curve; means over the last 100 finished episodes. NaN: nothing was
+    measured.
+    """
 
     epoch: int  # count from 1
     env_steps: int  # control steps so far, all environments
@@ -1096,7 +1195,8 @@ class Epoch(Record):
 
 
 class rdm_epoch(Structure):
-    """One row of the learning curve; means over the last 100 finished episodes. NaN: nothing was measured.
+    """One row of the learning curve; means over the last 100 finished episodes. NaN: nothing was
+    measured.
 
     struct_size: in: bytes
     epoch: count from 1
@@ -1212,159 +1312,90 @@ class rdm_epoch(Structure):
     ]
 
 
-class Tensor(Record):
-    """The values of rdm_tensor."""
+class rdm_sensors(Structure):
+    """the same addresses until destroy; NULL where the modality is off
 
-    name: str  # "actor.0.weight", "actor.log_std", "reward_critic.1.bias"
-    rows: int  # row-major; cols 1 for vectors
-    cols: int  # row-major; cols 1 for vectors
-
-
-class rdm_tensor(Structure):
-    """name: "actor.0.weight", "actor.log_std", "reward_critic.1.bias"
-    rows: row-major; cols 1 for vectors
-    cols: row-major; cols 1 for vectors
-    """
-
-    name: bytes | None
-    rows: int
-    cols: int
-    _fields_ = [
-        ("name", c_char_p),
-        ("rows", c_int32),
-        ("cols", c_int32),
-    ]
-
-
-class PolicyInfo(Record):
-    """The values of rdm_policy_info."""
-
-    obs_dim: int  # count
-    action_dim: int  # count
-    action_repeat: int  # control steps to hold each action
-    control_dt: float  # s, 0: unknown
-    noise_correlation: float  # AR(1) coefficient of the noise it was trained with
-    layout_hash: int  # 0: unknown
-    num_params: int  # of the network
-    task: str  # "" for a host's own environment
-    activation: str  # of the hidden layers: "tanh", "elu", "relu"; static
-    num_points: int  # of the cloud beside each row, for rdm_policy_act_points; 0: it sees none
-    num_point_classes: int  # that it tells points apart by, 0: none
-    num_features: int  # that its encoder makes of a cloud, 0 without
-    point_color: int  # whether it sees the colours of points: 0, 1
-
-
-class rdm_policy_info(Structure):
-    """struct_size: in: bytes
-    obs_dim: count
-    action_dim: count
-    action_repeat: control steps to hold each action
-    control_dt: s, 0: unknown
-    noise_correlation: AR(1) coefficient of the noise it was trained with
-    layout_hash: 0: unknown
-    num_params: of the network
-    task: "" for a host's own environment
-    activation: of the hidden layers: "tanh", "elu", "relu"; static
-    num_points: of the cloud beside each row, for rdm_policy_act_points; 0: it sees none
-    num_point_classes: that it tells points apart by, 0: none
-    num_features: that its encoder makes of a cloud, 0 without
-    point_color: whether it sees the colours of points: 0, 1
-    """
-
-    struct_size: int
-    obs_dim: int
-    action_dim: int
-    action_repeat: int
-    control_dt: float
-    noise_correlation: float
-    layout_hash: int
-    num_params: int
-    task: bytes | None
-    activation: bytes | None
-    num_points: int
-    num_point_classes: int
-    num_features: int
-    point_color: int
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("obs_dim", c_int32),
-        ("action_dim", c_int32),
-        ("action_repeat", c_int32),
-        ("control_dt", c_float),
-        ("noise_correlation", c_float),
-        ("layout_hash", c_uint64),
-        ("num_params", c_uint64),
-        ("task", c_char_p),
-        ("activation", c_char_p),
-        ("num_points", c_int32),
-        ("num_point_classes", c_int32),
-        ("num_features", c_int32),
-        ("point_color", c_int32),
-    ]
-
-
-class rdm_ranks(Structure):
-    """Each process has a pool and an agent of num_envs worlds; together they are one learner with ranks * num_envs of them, whose
-    bytes are those of one process with as many worlds and the same option `blocks`, for any number of ranks. redman links no
-    MPI: messages go through a hook.
-
-      rdm_ranks r = {.struct_size = sizeof r, .rank = 1, .ranks = 4, .user = &mine, .gather = my_allgather};
-      rdm_pool_set_rank(pool, r.rank, r.ranks);
-      c.settings = "blocks=16";                      // ranks times a power of two, which divides all worlds
-      rdm_agent_create_ranked(&agent, &c, &r);
-      for (...) rdm_agent_rollout(agent, pool, &e);  // e, the policy and the saved state are the same on each rank
-
-    Configs are the same on all ranks but for num_threads, hooks and texts. All of them make the same calls of rollout, act with
-    RDM_SAMPLE, record, update, save with memory, rdm_checkpoint_write: these exchange messages, in one order. Loading does not:
-    each takes its own part. A state that was saved by some ranks goes on with any other number that `blocks` allows.
-      - CANCELLED: a hook failed (a rank is gone), or rdm_agent_cancel was called on one rank, which stops all of them at one
-        place. The handles are good; after a failed hook, what ranks have learned may differ: load a state that was saved.
-      - STATE: ranks are set up differently, which the first exchange looks for (the rank and number of ranks, the library's
-        version, seed, sizes and options of agent and pool); or are out of step; or one has drifted, which each update looks
-        for. The text names what and whose.
-      - a rank whose call fails otherwise leaves the others waiting in their hooks, unless it ends and these notice.
-
-    struct_size: bytes
-    rank: of this process, 0..ranks - 1; its world 0 is number rank * num_envs of all
-    ranks: processes, 1..4096
+    struct_size: in: bytes
+    num_cameras: of rgb, depth and segmentation, in the order of the option `cameras`
+    width: pixels
+    height: pixels
+    num_points: of a world, option `points`
+    num_voxels: along each side of the local grid, option `voxels`
+    voxel_size: m
     reserved: 0
-    user: passed back to the hooks; may be NULL
-    gather: An allgather: `mine`, `bytes` of them, stands at `all` + r * bytes for each rank r afterwards, on
-        all ranks; bytes is the same on each. Blocks until all have come. Any number but 0 is a failure. NULL
-        only for one rank.
-    swap: Sends mine to rank `partner`, which sends as much here: `theirs`. Takes the place of gather in sums of
-        gradients where ranks is a power of two: each receives 2 of them in 2 log2(ranks) messages, not ranks -
-        1. NULL on all ranks, or on none.
+    rgb: [num_envs][num_cameras][height][width][3]
+    depth: [num_envs][num_cameras][height][width], m along the optical axis, 0: nothing
+    segmentation: [num_envs][num_cameras][height][width], shape of rdm_pool_shape, -1: nothing
+    points: [num_envs][num_points][3], world, m; planes are left out
+    point_shape: [num_envs][num_points], -1: nothing was seen
+    point_count: [num_envs] points that differ; the rest repeats them in turn, up to those of option
+        goal_points, which come last: the first free body where it is to be brought
+    voxels: [num_envs][num_voxels][num_voxels][num_voxels] (x, y, z) about the task's object: 1 occupied, 0
+        free, -1 not seen
+    point_class: [num_envs][num_points] what a point lies on: one of the articulations (hands, arms included),
+        then of the free bodies, then anything else, or nothing; last the goal, with option goal_points
+    num_classes: of those; 0 where points are off
+    reserved2: 0
+    point_color: [num_envs][num_points][3] of what a point lies on, sRGB, 0 for nothing; NULL without option
+        point_color
     """
 
     struct_size: int
-    rank: int
-    ranks: int
+    num_cameras: int
+    width: int
+    height: int
+    num_points: int
+    num_voxels: int
+    voxel_size: float
     reserved: int
-    user: int | None
-    gather: Any
-    swap: Any
+    rgb: int | None
+    depth: int | None
+    segmentation: int | None
+    points: int | None
+    point_shape: int | None
+    point_count: int | None
+    voxels: int | None
+    point_class: int | None
+    num_classes: int
+    reserved2: int
+    point_color: int | None
     _fields_ = [
         ("struct_size", c_uint32),
-        ("rank", c_int32),
-        ("ranks", c_int32),
+        ("num_cameras", c_int32),
+        ("width", c_int32),
+        ("height", c_int32),
+        ("num_points", c_int32),
+        ("num_voxels", c_int32),
+        ("voxel_size", c_float),
         ("reserved", c_int32),
-        ("user", c_void_p),
-        ("gather", CFUNCTYPE(c_int32, c_void_p, c_void_p, c_size_t, c_void_p)),
-        ("swap", CFUNCTYPE(c_int32, c_void_p, c_int32, c_void_p, c_size_t, c_void_p)),
+        ("rgb", c_void_p),
+        ("depth", c_void_p),
+        ("segmentation", c_void_p),
+        ("points", c_void_p),
+        ("point_shape", c_void_p),
+        ("point_count", c_void_p),
+        ("voxels", c_void_p),
+        ("point_class", c_void_p),
+        ("num_classes", c_int32),
+        ("reserved2", c_int32),
+        ("point_color", c_void_p),
     ]
 
 
 class rdm_points(Structure):
-    """With the agent option `encoder` ("64,128") a PointNet makes features of a cloud for the actor, beside the entries of the
-    row that it sees (actor_obs, "vision": nothing of an object); critics see rows alone. Of rdm_sensors:
+    """With the agent option `encoder` ("64,128") a PointNet makes features of a cloud for the actor,
+    beside the entries of the row that it sees (actor_obs, "vision": nothing of an object); critics
+    see rows alone. Of rdm_sensors:
 
       rdm_points seen = {.struct_size = sizeof seen, .num_points = s.num_points, .points = s.points};
-      rdm_agent_act_points(agent, b.obs, &seen, RDM_SAMPLE, b.action);  rdm_pool_step(pool);  rdm_agent_record(agent, &t);
+      rdm_agent_act_points(agent, b.obs, &seen, RDM_SAMPLE, b.action);
+      rdm_pool_step(pool);
+      rdm_agent_record(agent, &t);
 
-    or rdm_agent_rollout with a pool whose modality has points. Points count as whole millimetres from `encoder_origin`,
-    within +-32.767 m; their order and what comes twice change nothing. Several clouds (of two cameras, of a goal) are one
-    whose points have classes that tell them apart.
+    or rdm_agent_rollout with a pool whose modality has points. Points count as whole millimetres
+    from `encoder_origin`, within +-32.767 m; their order and what comes twice change nothing.
+    Several clouds (of two cameras, of a goal) are one whose points have classes that tell them
+    apart.
 
     struct_size: bytes
     num_points: of each cloud: the agent's option encoder_points, the policy's num_points
@@ -1465,6 +1496,115 @@ class rdm_pretrain_report(Structure):
         ("validation_loss", c_double),
         ("accuracy", c_double),
         ("most_common", c_double),
+    ]
+
+
+class rdm_map_config(Structure):
+    """struct_size: bytes, set by rdm_map_config_init
+    reserved: 0
+    resolution: side of a voxel, m, 0.001 to 10, default 0.02
+    memory: bytes that tree and workspace may take, 2^20 to 2^36, default 2^26
+    max_range: m; longer rays clear their way so far and add no occupied voxel; 0: none is too long; default 4,
+        with which looks of a pool's cameras fit into memory
+    hit: probability of occupied where a ray ends, 0.5 to 0.999, default 0.7
+    miss: the same where one passes, 0.001 to 0.5, default 0.4
+    low: no probability goes below, 0.001 to 0.5, default 0.1192
+    high: no probability goes above, 0.5 to 0.999, default 0.971
+    threshold: occupied from this probability on, low to high, default 0.5
+    host: hooks for the workspace, copied; NULL: those of rdm_init
+    error: [error_size] the text of a failing call that takes this config; NULL
+    error_size: bytes, terminator included; what is longer is cut
+    reserved2: 0
+    """
+
+    struct_size: int
+    reserved: int
+    resolution: float
+    memory: int
+    max_range: float
+    hit: float
+    miss: float
+    low: float
+    high: float
+    threshold: float
+    host: Any
+    error: int | None
+    error_size: int
+    reserved2: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("resolution", c_double),
+        ("memory", c_uint64),
+        ("max_range", c_double),
+        ("hit", c_double),
+        ("miss", c_double),
+        ("low", c_double),
+        ("high", c_double),
+        ("threshold", c_double),
+        ("host", POINTER(rdm_host)),
+        ("error", c_void_p),
+        ("error_size", c_int32),
+        ("reserved2", c_int32),
+    ]
+
+
+class MapInfo(Record):
+    """The values of rdm_map_info."""
+
+    full: int  # 1: updates have been dropped since create, clear or load
+    resolution: float  # m; a load takes the file's
+    nodes: int  # of the tree
+    bytes: int  # of the tree
+    bytes_max: int  # memory less the workspace
+    dropped: int  # voxel updates that found no memory, since create, clear or load
+
+
+class rdm_map_info(Structure):
+    """struct_size: in: bytes
+    full: 1: updates have been dropped since create, clear or load
+    resolution: m; a load takes the file's
+    nodes: of the tree
+    bytes: of the tree
+    bytes_max: memory less the workspace
+    dropped: voxel updates that found no memory, since create, clear or load
+    """
+
+    struct_size: int
+    full: int
+    resolution: float
+    nodes: int
+    bytes: int
+    bytes_max: int
+    dropped: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("full", c_uint32),
+        ("resolution", c_double),
+        ("nodes", c_uint64),
+        ("bytes", c_uint64),
+        ("bytes_max", c_uint64),
+        ("dropped", c_uint64),
+    ]
+
+
+class Voxel(Record):
+    """The values of rdm_voxel."""
+
+    centre: tuple[float, ...]  # m
+    side: float  # m; a multiple of the resolution where voxels were joined
+
+
+class rdm_voxel(Structure):
+    """centre: m
+    side: m; a multiple of the resolution where voxels were joined
+    """
+
+    centre: Any
+    side: float
+    _fields_ = [
+        ("centre", c_float * 3),
+        ("side", c_float),
     ]
 
 
@@ -1647,8 +1787,329 @@ class rdm_plan_info(Structure):
     ]
 
 
+class rdm_recording_config(Structure):
+    """struct_size: bytes, set by rdm_recording_config_init
+    obs_dim: count, 1..16384, required
+    action_dim: count, 1..1024, required
+    cost_dim: count, 0..RDM_MAX_COSTS, default 0
+    task: kept in files, "" for a host's own environment; to 63 bytes, copied; default ""
+    layout_hash: kept in files; 0: unknown
+    state_bytes: of one world's state, to 2^30; 0: no states are kept; default 0
+    capacity: rows, 0..2^40, for which memory is taken at once; more grow; default 0
+    state_stride: begin_step keeps the state of every n-th row of an episode, 1..2^30, default 8
+    error_size: bytes of error, terminator included; what is longer is cut
+    error: [error_size] the text of a failing call that takes this config; NULL
+    host: hooks of this handle, copied; NULL: those of rdm_init
+    num_points: of the cloud beside each row, 0..65536; 0: none are kept; default 0
+    point_color: whether its points have colours: 0, 1; default 0
+    """
+
+    struct_size: int
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    task: bytes | None
+    layout_hash: int
+    state_bytes: int
+    capacity: int
+    state_stride: int
+    error_size: int
+    error: int | None
+    host: Any
+    num_points: int
+    point_color: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("obs_dim", c_int32),
+        ("action_dim", c_int32),
+        ("cost_dim", c_int32),
+        ("task", c_char_p),
+        ("layout_hash", c_uint64),
+        ("state_bytes", c_uint64),
+        ("capacity", c_int64),
+        ("state_stride", c_int32),
+        ("error_size", c_int32),
+        ("error", c_void_p),
+        ("host", POINTER(rdm_host)),
+        ("num_points", c_int32),
+        ("point_color", c_int32),
+    ]
+
+
+class RecordingInfo(Record):
+    """The values of rdm_recording_info."""
+
+    obs_dim: int  # count
+    action_dim: int  # count
+    cost_dim: int  # count
+    rows: int  # count
+    episodes: int  # count, those that have not ended too
+    num_states: int  # count
+    state_bytes: int  # of each
+    layout_hash: int  # 0: unknown
+    fingerprint: int  # of obs and label of all rows; what an agent that uses them is resumed by
+    task: str  # "" for a host's own environment
+    num_points: int  # of each row's cloud; 0: it has none
+
+
+class rdm_recording_info(Structure):
+    """struct_size: in: bytes
+    obs_dim: count
+    action_dim: count
+    cost_dim: count
+    rows: count
+    episodes: count, those that have not ended too
+    num_states: count
+    state_bytes: of each
+    layout_hash: 0: unknown
+    fingerprint: of obs and label of all rows; what an agent that uses them is resumed by
+    task: "" for a host's own environment
+    num_points: of each row's cloud; 0: it has none
+    reserved: 0
+    """
+
+    struct_size: int
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    rows: int
+    episodes: int
+    num_states: int
+    state_bytes: int
+    layout_hash: int
+    fingerprint: int
+    task: bytes | None
+    num_points: int
+    reserved: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("obs_dim", c_int32),
+        ("action_dim", c_int32),
+        ("cost_dim", c_int32),
+        ("rows", c_int64),
+        ("episodes", c_int64),
+        ("num_states", c_int64),
+        ("state_bytes", c_uint64),
+        ("layout_hash", c_uint64),
+        ("fingerprint", c_uint64),
+        ("task", c_char_p),
+        ("num_points", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
+class rdm_recording_rows(Structure):
+    """Rows in the order in which they came; those of an episode are in time, those of several may stand
+    in turn.
+
+    struct_size: in: bytes
+    reserved: 0
+    rows: count
+    obs: [rows][obs_dim] before the action
+    action: [rows][action_dim] that was done
+    label: [rows][action_dim] that the teacher meant; to append, NULL: as action
+    reward: [rows] to append, NULL: 0
+    cost: [rows][cost_dim] to append, NULL: 0
+    terminated: [rows] to append, NULL: none
+    truncated: [rows] to append, NULL: none
+    success: [rows] to append, NULL: none
+    episode: [rows] number of its episode from 0; to append, NULL: each end begins one
+    num_states: count
+    state_row: [num_states] row before which the world had the state, ascending
+    state: [num_states][state_bytes] what rdm_pool_set_state takes
+    points: [rows][num_points][3] mm, world, before the action; NULL without clouds
+    point_class: [rows][num_points] as of rdm_sensors; to append, NULL: 0
+    point_color: [rows][num_points][3] likewise; NULL without colours
+    """
+
+    struct_size: int
+    reserved: int
+    rows: int
+    obs: int | None
+    action: int | None
+    label: int | None
+    reward: int | None
+    cost: int | None
+    terminated: int | None
+    truncated: int | None
+    success: int | None
+    episode: int | None
+    num_states: int
+    state_row: int | None
+    state: int | None
+    points: int | None
+    point_class: int | None
+    point_color: int | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("rows", c_int64),
+        ("obs", c_void_p),
+        ("action", c_void_p),
+        ("label", c_void_p),
+        ("reward", c_void_p),
+        ("cost", c_void_p),
+        ("terminated", c_void_p),
+        ("truncated", c_void_p),
+        ("success", c_void_p),
+        ("episode", c_void_p),
+        ("num_states", c_int64),
+        ("state_row", c_void_p),
+        ("state", c_void_p),
+        ("points", c_void_p),
+        ("point_class", c_void_p),
+        ("point_color", c_void_p),
+    ]
+
+
+class rdm_clone_config(Structure):
+    """struct_size: bytes, set by rdm_clone_config_init
+    epochs: passes over the rows, at most, 1..100000, default 30
+    batch_rows: of a minibatch, 1..2^20, default 512
+    patience: epochs without a better validation loss that end it, 0: never; default 5
+    learning_rate: Adam's, in the first epoch, 0..10, default 1e-3
+    learning_rate_end: in the last, linear between, 0..10, default 1e-5
+    validation: share of the rows that are not learned from, whole episodes, 0..0.9, default 0.1
+    action_std: deviation of the actor's actions afterwards; 0: as it is; default 0
+    seed: of shuffling and of the choice for validation, default 0
+    feed_normalizer: flag: the statistics of observations become the recording's first, default 1
+    capacity: entries of the two below
+    train_loss: [capacity] of each epoch, mean squared error of an entry; NULL: not wanted
+    validation_loss: [capacity] likewise, after it
+    """
+
+    struct_size: int
+    epochs: int
+    batch_rows: int
+    patience: int
+    learning_rate: float
+    learning_rate_end: float
+    validation: float
+    action_std: float
+    seed: int
+    feed_normalizer: int
+    capacity: int
+    train_loss: int | None
+    validation_loss: int | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("epochs", c_int32),
+        ("batch_rows", c_int32),
+        ("patience", c_int32),
+        ("learning_rate", c_double),
+        ("learning_rate_end", c_double),
+        ("validation", c_double),
+        ("action_std", c_double),
+        ("seed", c_uint64),
+        ("feed_normalizer", c_int32),
+        ("capacity", c_int32),
+        ("train_loss", c_void_p),
+        ("validation_loss", c_void_p),
+    ]
+
+
+class CloneReport(Record):
+    """The values of rdm_clone_report."""
+
+    epochs: int  # that were run
+    best_epoch: int  # from 1: whose weights were kept; without validation the last one's
+    stopped: int  # flag: it ended early
+    train_rows: int  # count
+    validation_rows: int  # count
+    train_loss: float  # of the best epoch, mean squared error of an entry
+    validation_loss: float  # likewise, 0 without validation
+
+
+class rdm_clone_report(Structure):
+    """struct_size: in: bytes
+    epochs: that were run
+    best_epoch: from 1: whose weights were kept; without validation the last one's
+    stopped: flag: it ended early
+    train_rows: count
+    validation_rows: count
+    train_loss: of the best epoch, mean squared error of an entry
+    validation_loss: likewise, 0 without validation
+    """
+
+    struct_size: int
+    epochs: int
+    best_epoch: int
+    stopped: int
+    train_rows: int
+    validation_rows: int
+    train_loss: float
+    validation_loss: float
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("epochs", c_int32),
+        ("best_epoch", c_int32),
+        ("stopped", c_int32),
+        ("train_rows", c_int64),
+        ("validation_rows", c_int64),
+        ("train_loss", c_double),
+        ("validation_loss", c_double),
+    ]
+
+
+class rdm_ranks(Structure):
+    """Each process has a pool and an agent of num_envs worlds; together they are one learner with ranks
+    * num_envs of them, whose bytes are those of one process with as many worlds and the same option
+    `blocks`, for any number of ranks. redman links no MPI: messages go through a hook.
+
+      rdm_ranks r = {.struct_size = sizeof r, .rank = 1, .ranks = 4, .user = &mine,
+                     .gather = my_allgather};
+      rdm_pool_set_rank(pool, r.rank, r.ranks);
+      c.settings = "blocks=16";    // ranks times a power of two, which divides all worlds
+      rdm_agent_create_ranked(&agent, &c, &r);
+      for (...) rdm_agent_rollout(agent, pool, &e);
+                                   // e, policy and saved state are the same on each rank
+
+    Configs are the same on all ranks but for num_threads, hooks and texts. All of them make the same
+    calls of rollout, act with RDM_SAMPLE, record, update, save with memory, rdm_checkpoint_write:
+    these exchange messages, in one order. Loading does not: each takes its own part. A state that
+    was saved by some ranks goes on with any other number that `blocks` allows.
+      - CANCELLED: a hook failed (a rank is gone), or rdm_agent_cancel was called on one rank, which
+        stops all of them at one place. The handles are good; after a failed hook, what ranks have
+        learned may differ: load a state that was saved.
+      - STATE: ranks are set up differently, which the first exchange looks for (the rank and number
+        of ranks, the library's version, seed, sizes and options of agent and pool); or are out of
+        step; or one has drifted, which each update looks for. The text names what and whose.
+      - a rank whose call fails otherwise leaves the others waiting in their hooks, unless it ends
+        and these notice.
+
+    struct_size: bytes
+    rank: of this process, 0..ranks - 1; its world 0 is number rank * num_envs of all
+    ranks: processes, 1..4096
+    reserved: 0
+    user: passed back to the hooks; may be NULL
+    gather: An allgather: `mine`, `bytes` of them, stands at `all` + r * bytes for each rank r afterwards, on
+        all ranks; bytes is the same on each. Blocks until all have come. Any number but 0 is a failure. NULL
+        only for one rank.
+    swap: Sends mine to rank `partner`, which sends as much here: `theirs`. Takes the place of gather in sums of
+        gradients where ranks is a power of two: each receives 2 of them in 2 log2(ranks) messages, not ranks -
+        1. NULL on all ranks, or on none.
+    """
+
+    struct_size: int
+    rank: int
+    ranks: int
+    reserved: int
+    user: int | None
+    gather: Any
+    swap: Any
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("rank", c_int32),
+        ("ranks", c_int32),
+        ("reserved", c_int32),
+        ("user", c_void_p),
+        ("gather", CFUNCTYPE(c_int32, c_void_p, c_void_p, c_size_t, c_void_p)),
+        ("swap", CFUNCTYPE(c_int32, c_void_p, c_int32, c_void_p, c_size_t, c_void_p)),
+    ]
+
+
 class RobotLink(Record):
-    """The values of rdm_robot_link."""
+    """frozen layout: a link and the joint that moves it; m, rad, kg, N, s"""
 
     name: str  # of the link, unique
     joint: str  # of the joint, unique
@@ -1671,7 +2132,9 @@ class RobotLink(Record):
 
 
 class rdm_robot_link(Structure):
-    """name: of the link, unique
+    """frozen layout: a link and the joint that moves it; m, rad, kg, N, s
+
+    name: of the link, unique
     joint: of the joint, unique
     parent: an earlier row, RDM_ROOT_LINK
     kind: RDM_REVOLUTE, RDM_PRISMATIC
@@ -1732,7 +2195,7 @@ class rdm_robot_link(Structure):
 
 
 class RobotShape(Record):
-    """The values of rdm_robot_shape."""
+    """frozen layout: a link and the joint that moves it; m, rad, kg, N, s"""
 
     name: str  # unique
     link: int  # row, RDM_ROOT_LINK
@@ -1744,7 +2207,9 @@ class RobotShape(Record):
 
 
 class rdm_robot_shape(Structure):
-    """name: unique
+    """frozen layout: a link and the joint that moves it; m, rad, kg, N, s
+
+    name: unique
     link: row, RDM_ROOT_LINK
     kind: RDM_SPHERE, RDM_CAPSULE, RDM_BOX, RDM_CYLINDER, RDM_ELLIPSOID
     size: as rdm_shape, m
@@ -1775,14 +2240,16 @@ class rdm_robot_shape(Structure):
 
 
 class RobotPair(Record):
-    """The values of rdm_robot_pair."""
+    """frozen layout: two shapes of one robot that may touch each other"""
 
     a: int  # rows of shapes
     b: int  # rows of shapes
 
 
 class rdm_robot_pair(Structure):
-    """a: rows of shapes
+    """frozen layout: two shapes of one robot that may touch each other
+
+    a: rows of shapes
     b: rows of shapes
     """
 
@@ -1795,7 +2262,7 @@ class rdm_robot_pair(Structure):
 
 
 class RobotCoupling(Record):
-    """The values of rdm_robot_coupling."""
+    """frozen layout: a joint that a tendon or belt lets follow another"""
 
     link: int  # row whose joint follows
     other: int  # row whose joint leads; itself no follower
@@ -1804,7 +2271,9 @@ class RobotCoupling(Record):
 
 
 class rdm_robot_coupling(Structure):
-    """link: row whose joint follows
+    """frozen layout: a joint that a tendon or belt lets follow another
+
+    link: row whose joint follows
     other: row whose joint leads; itself no follower
     ratio: q = ratio q_other
     slack: rad: within it the joint goes freely
@@ -1823,7 +2292,7 @@ class rdm_robot_coupling(Structure):
 
 
 class RobotCurve(Record):
-    """The values of rdm_robot_curve."""
+    """frozen layout: the target of a joint, piecewise linear in a command of -1 to 1"""
 
     link: int  # row
     driver: int  # row whose command it is: the same, or that of the motor
@@ -1833,7 +2302,9 @@ class RobotCurve(Record):
 
 
 class rdm_robot_curve(Structure):
-    """link: row
+    """frozen layout: the target of a joint, piecewise linear in a command of -1 to 1
+
+    link: row
     driver: row whose command it is: the same, or that of the motor
     num_knots: 2 to RDM_ROBOT_KNOTS
     reserved: 0
@@ -1858,7 +2329,7 @@ class rdm_robot_curve(Structure):
 
 
 class RobotFinger(Record):
-    """The values of rdm_robot_finger."""
+    """frozen layout: its rows stand together, from `first` to `tip`"""
 
     name: str  # short: it begins the names of its observations
     first: int  # row of its first link
@@ -1871,7 +2342,9 @@ class RobotFinger(Record):
 
 
 class rdm_robot_finger(Structure):
-    """name: short: it begins the names of its observations
+    """frozen layout: its rows stand together, from `first` to `tip`
+
+    name: short: it begins the names of its observations
     first: row of its first link
     tip: row of its last; it carries the force sensor
     lateral: row of the joint that spreads it to a side, -1: none
@@ -1902,7 +2375,9 @@ class rdm_robot_finger(Structure):
 
 
 class rdm_robot_def(Structure):
-    """struct_size: bytes, set by rdm_robot_def_init
+    """frozen layout: its rows stand together, from `first` to `tip`
+
+    struct_size: bytes, set by rdm_robot_def_init
     kind: RDM_ROBOT_*
     name: letters, digits, '_', '-', '+'; at most 25
     alias: another name; NULL
@@ -2017,14 +2492,7 @@ class rdm_robot_def(Structure):
 
 
 class rdm_shape_def(Structure):
-    """An object is shapes, a mass, its moments and the friction of its surface, by name: option object=NAME of the tasks of hands,
-    rdm_scene_add_object in a scene. Those of the YCB set are found by their number too ("025_mug"), with or without it.
-
-      rdm_object_def d;  int32_t object;
-      rdm_shape_def s = {.kind = RDM_BOX, .size = {0.02, 0.03, 0.06}};
-      rdm_object_def_init(&d, sizeof d);
-      d.name = "my_box";  d.shapes = &s;  d.num_shapes = 1;  d.mass = 0.2;
-      if (rdm_object_create(&object, &d)) puts(rdm_last_error());
+    """frozen layout: a shape of a body or an object, or one that stands still
 
     name: unique in the scene; NULL: that of the body. Of an object unused
     material: of rdm_scene_add_material; NULL: "default". Of an object unused
@@ -2144,7 +2612,9 @@ class rdm_body_def(Structure):
 
 
 class rdm_scene_robot(Structure):
-    """struct_size: bytes, set by rdm_scene_robot_init
+    """a robot in a scene: one of the list, or a tree of its own (a drawer, a door)
+
+    struct_size: bytes, set by rdm_scene_robot_init
     robot: of rdm_robot_find; default -1: left out
     own: a robot of this scene alone, in the place of `robot`; NULL
     name: begins, with '_', the names of its links, joints and shapes; unique
@@ -2239,7 +2709,9 @@ class rdm_contact_law(Structure):
 
 
 class rdm_joints(Structure):
-    """struct_size: in: bytes
+    """the joints of all robots of a world; the addresses hold within the call
+
+    struct_size: in: bytes
     count: of joints
     control_dt: s of a control step
     q: [count] rad (m)
@@ -2267,7 +2739,7 @@ class rdm_joints(Structure):
 
 
 class Motion(Record):
-    """The values of rdm_motion."""
+    """the joints of all robots of a world; the addresses hold within the call"""
 
     p: tuple[float, ...]  # m
     q: tuple[float, ...]  # rotation
@@ -2276,7 +2748,9 @@ class Motion(Record):
 
 
 class rdm_motion(Structure):
-    """p: m
+    """the joints of all robots of a world; the addresses hold within the call
+
+    p: m
     q: rotation
     v: velocity of the frame's origin, m/s
     w: angular velocity, world axes, rad/s
@@ -2515,488 +2989,47 @@ class rdm_task_def(Structure):
     ]
 
 
-class rdm_map_config(Structure):
-    """struct_size: bytes, set by rdm_map_config_init
-    reserved: 0
-    resolution: side of a voxel, m, 0.001 to 10, default 0.02
-    memory: bytes that tree and workspace may take, 2^20 to 2^36, default 2^26
-    max_range: m; longer rays clear their way so far and add no occupied voxel; 0: none is too long; default 4,
-        with which looks of a pool's cameras fit into memory
-    hit: probability of occupied where a ray ends, 0.5 to 0.999, default 0.7
-    miss: the same where one passes, 0.001 to 0.5, default 0.4
-    low: no probability goes below, 0.001 to 0.5, default 0.1192
-    high: no probability goes above, 0.5 to 0.999, default 0.971
-    threshold: occupied from this probability on, low to high, default 0.5
-    host: hooks for the workspace, copied; NULL: those of rdm_init
-    error: [error_size] the text of a failing call that takes this config; NULL
-    error_size: bytes, terminator included; what is longer is cut
-    reserved2: 0
-    """
-
-    struct_size: int
-    reserved: int
-    resolution: float
-    memory: int
-    max_range: float
-    hit: float
-    miss: float
-    low: float
-    high: float
-    threshold: float
-    host: Any
-    error: int | None
-    error_size: int
-    reserved2: int
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("reserved", c_uint32),
-        ("resolution", c_double),
-        ("memory", c_uint64),
-        ("max_range", c_double),
-        ("hit", c_double),
-        ("miss", c_double),
-        ("low", c_double),
-        ("high", c_double),
-        ("threshold", c_double),
-        ("host", POINTER(rdm_host)),
-        ("error", c_void_p),
-        ("error_size", c_int32),
-        ("reserved2", c_int32),
-    ]
-
-
-class MapInfo(Record):
-    """The values of rdm_map_info."""
-
-    full: int  # 1: updates have been dropped since create, clear or load
-    resolution: float  # m; a load takes the file's
-    nodes: int  # of the tree
-    bytes: int  # of the tree
-    bytes_max: int  # memory less the workspace
-    dropped: int  # voxel updates that found no memory, since create, clear or load
-
-
-class rdm_map_info(Structure):
-    """struct_size: in: bytes
-    full: 1: updates have been dropped since create, clear or load
-    resolution: m; a load takes the file's
-    nodes: of the tree
-    bytes: of the tree
-    bytes_max: memory less the workspace
-    dropped: voxel updates that found no memory, since create, clear or load
-    """
-
-    struct_size: int
-    full: int
-    resolution: float
-    nodes: int
-    bytes: int
-    bytes_max: int
-    dropped: int
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("full", c_uint32),
-        ("resolution", c_double),
-        ("nodes", c_uint64),
-        ("bytes", c_uint64),
-        ("bytes_max", c_uint64),
-        ("dropped", c_uint64),
-    ]
-
-
-class Voxel(Record):
-    """The values of rdm_voxel."""
-
-    centre: tuple[float, ...]  # m
-    side: float  # m; a multiple of the resolution where voxels were joined
-
-
-class rdm_voxel(Structure):
-    """centre: m
-    side: m; a multiple of the resolution where voxels were joined
-    """
-
-    centre: Any
-    side: float
-    _fields_ = [
-        ("centre", c_float * 3),
-        ("side", c_float),
-    ]
-
-
-class rdm_sensors(Structure):
-    """The option `modality` of every task says what is made in each reset and step ("points", "rgb+depth"); other
-    options say from which cameras and how large. Rows show the state that obs shows; nothing is kept of the state
-    before an automatic reset.
-
-      rdm_option seen[] = {{"modality", "points", 0}, {"points", NULL, 1024}};
-      config.options = seen;  config.num_options = 2;  ... rdm_pool_create(&p, &config) ...
-      rdm_sensors s = {.struct_size = sizeof s};
-      rdm_pool_sensors(p, &s);
-      for (...) { rdm_pool_step(p);  use s.points + 3 * s.num_points * env; }
-
-    struct_size: in: bytes
-    num_cameras: of rgb, depth and segmentation, in the order of the option `cameras`
-    width: pixels
-    height: pixels
-    num_points: of a world, option `points`
-    num_voxels: along each side of the local grid, option `voxels`
-    voxel_size: m
-    reserved: 0
-    rgb: [num_envs][num_cameras][height][width][3]
-    depth: [num_envs][num_cameras][height][width], m along the optical axis, 0: nothing
-    segmentation: [num_envs][num_cameras][height][width], shape of rdm_pool_shape, -1: nothing
-    points: [num_envs][num_points][3], world, m; planes are left out
-    point_shape: [num_envs][num_points], -1: nothing was seen
-    point_count: [num_envs] points that differ; the rest repeats them in turn, up to those of option
-        goal_points, which come last: the first free body where it is to be brought
-    voxels: [num_envs][num_voxels][num_voxels][num_voxels] (x, y, z) about the task's object: 1 occupied, 0
-        free, -1 not seen
-    point_class: [num_envs][num_points] what a point lies on: one of the articulations (hands, arms included),
-        then of the free bodies, then anything else, or nothing; last the goal, with option goal_points
-    num_classes: of those; 0 where points are off
-    reserved2: 0
-    point_color: [num_envs][num_points][3] of what a point lies on, sRGB, 0 for nothing; NULL without option
-        point_color
-    """
-
-    struct_size: int
-    num_cameras: int
-    width: int
-    height: int
-    num_points: int
-    num_voxels: int
-    voxel_size: float
-    reserved: int
-    rgb: int | None
-    depth: int | None
-    segmentation: int | None
-    points: int | None
-    point_shape: int | None
-    point_count: int | None
-    voxels: int | None
-    point_class: int | None
-    num_classes: int
-    reserved2: int
-    point_color: int | None
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("num_cameras", c_int32),
-        ("width", c_int32),
-        ("height", c_int32),
-        ("num_points", c_int32),
-        ("num_voxels", c_int32),
-        ("voxel_size", c_float),
-        ("reserved", c_int32),
-        ("rgb", c_void_p),
-        ("depth", c_void_p),
-        ("segmentation", c_void_p),
-        ("points", c_void_p),
-        ("point_shape", c_void_p),
-        ("point_count", c_void_p),
-        ("voxels", c_void_p),
-        ("point_class", c_void_p),
-        ("num_classes", c_int32),
-        ("reserved2", c_int32),
-        ("point_color", c_void_p),
-    ]
-
-
-class rdm_recording_config(Structure):
-    """struct_size: bytes, set by rdm_recording_config_init
-    obs_dim: count, 1..16384, required
-    action_dim: count, 1..1024, required
-    cost_dim: count, 0..RDM_MAX_COSTS, default 0
-    task: kept in files, "" for a host's own environment; to 63 bytes, copied; default ""
-    layout_hash: kept in files; 0: unknown
-    state_bytes: of one world's state, to 2^30; 0: no states are kept; default 0
-    capacity: rows, 0..2^40, for which memory is taken at once; more grow; default 0
-    state_stride: begin_step keeps the state of every n-th row of an episode, 1..2^30, default 8
-    error_size: bytes of error, terminator included; what is longer is cut
-    error: [error_size] the text of a failing call that takes this config; NULL
-    host: hooks of this handle, copied; NULL: those of rdm_init
-    num_points: of the cloud beside each row, 0..65536; 0: none are kept; default 0
-    point_color: whether its points have colours: 0, 1; default 0
-    """
-
-    struct_size: int
-    obs_dim: int
-    action_dim: int
-    cost_dim: int
-    task: bytes | None
-    layout_hash: int
-    state_bytes: int
-    capacity: int
-    state_stride: int
-    error_size: int
-    error: int | None
-    host: Any
-    num_points: int
-    point_color: int
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("obs_dim", c_int32),
-        ("action_dim", c_int32),
-        ("cost_dim", c_int32),
-        ("task", c_char_p),
-        ("layout_hash", c_uint64),
-        ("state_bytes", c_uint64),
-        ("capacity", c_int64),
-        ("state_stride", c_int32),
-        ("error_size", c_int32),
-        ("error", c_void_p),
-        ("host", POINTER(rdm_host)),
-        ("num_points", c_int32),
-        ("point_color", c_int32),
-    ]
-
-
-class RecordingInfo(Record):
-    """The values of rdm_recording_info."""
-
-    obs_dim: int  # count
-    action_dim: int  # count
-    cost_dim: int  # count
-    rows: int  # count
-    episodes: int  # count, those that have not ended too
-    num_states: int  # count
-    state_bytes: int  # of each
-    layout_hash: int  # 0: unknown
-    fingerprint: int  # of obs and label of all rows; what an agent that uses them is resumed by
-    task: str  # "" for a host's own environment
-    num_points: int  # of each row's cloud; 0: it has none
-
-
-class rdm_recording_info(Structure):
-    """struct_size: in: bytes
-    obs_dim: count
-    action_dim: count
-    cost_dim: count
-    rows: count
-    episodes: count, those that have not ended too
-    num_states: count
-    state_bytes: of each
-    layout_hash: 0: unknown
-    fingerprint: of obs and label of all rows; what an agent that uses them is resumed by
-    task: "" for a host's own environment
-    num_points: of each row's cloud; 0: it has none
-    reserved: 0
-    """
-
-    struct_size: int
-    obs_dim: int
-    action_dim: int
-    cost_dim: int
-    rows: int
-    episodes: int
-    num_states: int
-    state_bytes: int
-    layout_hash: int
-    fingerprint: int
-    task: bytes | None
-    num_points: int
-    reserved: int
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("obs_dim", c_int32),
-        ("action_dim", c_int32),
-        ("cost_dim", c_int32),
-        ("rows", c_int64),
-        ("episodes", c_int64),
-        ("num_states", c_int64),
-        ("state_bytes", c_uint64),
-        ("layout_hash", c_uint64),
-        ("fingerprint", c_uint64),
-        ("task", c_char_p),
-        ("num_points", c_int32),
-        ("reserved", c_int32),
-    ]
-
-
-class rdm_recording_rows(Structure):
-    """Rows in the order in which they came; those of an episode are in time, those of several may stand in turn.
-
-    struct_size: in: bytes
-    reserved: 0
-    rows: count
-    obs: [rows][obs_dim] before the action
-    action: [rows][action_dim] that was done
-    label: [rows][action_dim] that the teacher meant; to append, NULL: as action
-    reward: [rows] to append, NULL: 0
-    cost: [rows][cost_dim] to append, NULL: 0
-    terminated: [rows] to append, NULL: none
-    truncated: [rows] to append, NULL: none
-    success: [rows] to append, NULL: none
-    episode: [rows] number of its episode from 0; to append, NULL: each end begins one
-    num_states: count
-    state_row: [num_states] row before which the world had the state, ascending
-    state: [num_states][state_bytes] what rdm_pool_set_state takes
-    points: [rows][num_points][3] mm, world, before the action; NULL without clouds
-    point_class: [rows][num_points] as of rdm_sensors; to append, NULL: 0
-    point_color: [rows][num_points][3] likewise; NULL without colours
-    """
-
-    struct_size: int
-    reserved: int
-    rows: int
-    obs: int | None
-    action: int | None
-    label: int | None
-    reward: int | None
-    cost: int | None
-    terminated: int | None
-    truncated: int | None
-    success: int | None
-    episode: int | None
-    num_states: int
-    state_row: int | None
-    state: int | None
-    points: int | None
-    point_class: int | None
-    point_color: int | None
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("reserved", c_uint32),
-        ("rows", c_int64),
-        ("obs", c_void_p),
-        ("action", c_void_p),
-        ("label", c_void_p),
-        ("reward", c_void_p),
-        ("cost", c_void_p),
-        ("terminated", c_void_p),
-        ("truncated", c_void_p),
-        ("success", c_void_p),
-        ("episode", c_void_p),
-        ("num_states", c_int64),
-        ("state_row", c_void_p),
-        ("state", c_void_p),
-        ("points", c_void_p),
-        ("point_class", c_void_p),
-        ("point_color", c_void_p),
-    ]
-
-
-class rdm_clone_config(Structure):
-    """struct_size: bytes, set by rdm_clone_config_init
-    epochs: passes over the rows, at most, 1..100000, default 30
-    batch_rows: of a minibatch, 1..2^20, default 512
-    patience: epochs without a better validation loss that end it, 0: never; default 5
-    learning_rate: Adam's, in the first epoch, 0..10, default 1e-3
-    learning_rate_end: in the last, linear between, 0..10, default 1e-5
-    validation: share of the rows that are not learned from, whole episodes, 0..0.9, default 0.1
-    action_std: deviation of the actor's actions afterwards; 0: as it is; default 0
-    seed: of shuffling and of the choice for validation, default 0
-    feed_normalizer: flag: the statistics of observations become the recording's first, default 1
-    capacity: entries of the two below
-    train_loss: [capacity] of each epoch, mean squared error of an entry; NULL: not wanted
-    validation_loss: [capacity] likewise, after it
-    """
-
-    struct_size: int
-    epochs: int
-    batch_rows: int
-    patience: int
-    learning_rate: float
-    learning_rate_end: float
-    validation: float
-    action_std: float
-    seed: int
-    feed_normalizer: int
-    capacity: int
-    train_loss: int | None
-    validation_loss: int | None
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("epochs", c_int32),
-        ("batch_rows", c_int32),
-        ("patience", c_int32),
-        ("learning_rate", c_double),
-        ("learning_rate_end", c_double),
-        ("validation", c_double),
-        ("action_std", c_double),
-        ("seed", c_uint64),
-        ("feed_normalizer", c_int32),
-        ("capacity", c_int32),
-        ("train_loss", c_void_p),
-        ("validation_loss", c_void_p),
-    ]
-
-
-class CloneReport(Record):
-    """The values of rdm_clone_report."""
-
-    epochs: int  # that were run
-    best_epoch: int  # from 1: whose weights were kept; without validation the last one's
-    stopped: int  # flag: it ended early
-    train_rows: int  # count
-    validation_rows: int  # count
-    train_loss: float  # of the best epoch, mean squared error of an entry
-    validation_loss: float  # likewise, 0 without validation
-
-
-class rdm_clone_report(Structure):
-    """struct_size: in: bytes
-    epochs: that were run
-    best_epoch: from 1: whose weights were kept; without validation the last one's
-    stopped: flag: it ended early
-    train_rows: count
-    validation_rows: count
-    train_loss: of the best epoch, mean squared error of an entry
-    validation_loss: likewise, 0 without validation
-    """
-
-    struct_size: int
-    epochs: int
-    best_epoch: int
-    stopped: int
-    train_rows: int
-    validation_rows: int
-    train_loss: float
-    validation_loss: float
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("epochs", c_int32),
-        ("best_epoch", c_int32),
-        ("stopped", c_int32),
-        ("train_rows", c_int64),
-        ("validation_rows", c_int64),
-        ("train_loss", c_double),
-        ("validation_loss", c_double),
-    ]
-
-
 STRUCTS: dict[str, type[Structure]] = {
     "rdm_build": rdm_build,
     "rdm_host": rdm_host,
     "rdm_option": rdm_option,
     "rdm_option_info": rdm_option_info,
-    "rdm_task": rdm_task,
     "rdm_field": rdm_field,
+    "rdm_tensor": rdm_tensor,
+    "rdm_spec": rdm_spec,
+    "rdm_policy_info": rdm_policy_info,
+    "rdm_task": rdm_task,
     "rdm_cost": rdm_cost,
     "rdm_camera": rdm_camera,
-    "rdm_algo": rdm_algo,
     "rdm_robot": rdm_robot,
     "rdm_joint": rdm_joint,
     "rdm_object": rdm_object,
     "rdm_pool_config": rdm_pool_config,
-    "rdm_spec": rdm_spec,
     "rdm_buffers": rdm_buffers,
     "rdm_shape": rdm_shape,
     "rdm_contact": rdm_contact,
     "rdm_pool_stats": rdm_pool_stats,
+    "rdm_algo": rdm_algo,
     "rdm_agent_config": rdm_agent_config,
     "rdm_transition": rdm_transition,
     "rdm_epoch": rdm_epoch,
-    "rdm_tensor": rdm_tensor,
-    "rdm_policy_info": rdm_policy_info,
-    "rdm_ranks": rdm_ranks,
+    "rdm_sensors": rdm_sensors,
     "rdm_points": rdm_points,
     "rdm_pretrain_config": rdm_pretrain_config,
     "rdm_pretrain_report": rdm_pretrain_report,
+    "rdm_map_config": rdm_map_config,
+    "rdm_map_info": rdm_map_info,
+    "rdm_voxel": rdm_voxel,
     "rdm_actor_config": rdm_actor_config,
     "rdm_planner_config": rdm_planner_config,
     "rdm_planner_spec": rdm_planner_spec,
     "rdm_plan_info": rdm_plan_info,
+    "rdm_recording_config": rdm_recording_config,
+    "rdm_recording_info": rdm_recording_info,
+    "rdm_recording_rows": rdm_recording_rows,
+    "rdm_clone_config": rdm_clone_config,
+    "rdm_clone_report": rdm_clone_report,
+    "rdm_ranks": rdm_ranks,
     "rdm_robot_link": rdm_robot_link,
     "rdm_robot_shape": rdm_robot_shape,
     "rdm_robot_pair": rdm_robot_pair,
@@ -3016,15 +3049,6 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_verdict": rdm_verdict,
     "rdm_field_def": rdm_field_def,
     "rdm_task_def": rdm_task_def,
-    "rdm_map_config": rdm_map_config,
-    "rdm_map_info": rdm_map_info,
-    "rdm_voxel": rdm_voxel,
-    "rdm_sensors": rdm_sensors,
-    "rdm_recording_config": rdm_recording_config,
-    "rdm_recording_info": rdm_recording_info,
-    "rdm_recording_rows": rdm_recording_rows,
-    "rdm_clone_config": rdm_clone_config,
-    "rdm_clone_report": rdm_clone_report,
 }
 
 # The rows that fields of structs point at.
@@ -3060,6 +3084,17 @@ ROWS: dict[str, dict[str, Rows]] = {
         "steps": Rows("int32", ("num_envs",)),
         "status": Rows("uint32", ("num_envs",)),
     },
+    "rdm_sensors": {
+        "rgb": Rows("uint8", ("num_envs", "num_cameras", "height", "width", "3")),
+        "depth": Rows("float32", ("num_envs", "num_cameras", "height", "width")),
+        "segmentation": Rows("int32", ("num_envs", "num_cameras", "height", "width")),
+        "points": Rows("float32", ("num_envs", "num_points", "3")),
+        "point_shape": Rows("int32", ("num_envs", "num_points")),
+        "point_count": Rows("int32", ("num_envs",)),
+        "voxels": Rows("int8", ("num_envs", "num_voxels", "num_voxels", "num_voxels")),
+        "point_class": Rows("uint8", ("num_envs", "num_points")),
+        "point_color": Rows("uint8", ("num_envs", "num_points", "3")),
+    },
     "rdm_points": {
         "points": Rows("float32", ("rows", "num_points", "3")),
         "point_class": Rows("uint8", ("rows", "num_points")),
@@ -3071,36 +3106,6 @@ ROWS: dict[str, dict[str, Rows]] = {
     "rdm_planner_config": {
         "noise": Rows("float32", ("action_dim",)),
         "cost_limits": Rows("float64", ("cost_dim",)),
-    },
-    "rdm_robot_def": {
-        "commands": Rows("int32", ("num_commands",)),
-        "home": Rows("float64", ("num_links",)),
-        "folded": Rows("float64", ("num_links",)),
-        "closed": Rows("float32", ("num_commands",)),
-    },
-    "rdm_shape_def": {
-        "points": Rows("float64", ("num_points", "3")),
-    },
-    "rdm_joints": {
-        "q": Rows("float64", ("count",)),
-        "qd": Rows("float64", ("count",)),
-        "target": Rows("float64", ("count",)),
-        "torque": Rows("float64", ("count",)),
-    },
-    "rdm_task_def": {
-        "hold": Rows("float32", ("action_dim",)),
-        "mean": Rows("float32", ("action_dim",)),
-    },
-    "rdm_sensors": {
-        "rgb": Rows("uint8", ("num_envs", "num_cameras", "height", "width", "3")),
-        "depth": Rows("float32", ("num_envs", "num_cameras", "height", "width")),
-        "segmentation": Rows("int32", ("num_envs", "num_cameras", "height", "width")),
-        "points": Rows("float32", ("num_envs", "num_points", "3")),
-        "point_shape": Rows("int32", ("num_envs", "num_points")),
-        "point_count": Rows("int32", ("num_envs",)),
-        "voxels": Rows("int8", ("num_envs", "num_voxels", "num_voxels", "num_voxels")),
-        "point_class": Rows("uint8", ("num_envs", "num_points")),
-        "point_color": Rows("uint8", ("num_envs", "num_points", "3")),
     },
     "rdm_recording_rows": {
         "obs": Rows("float32", ("rows", "obs_dim")),
@@ -3122,18 +3127,40 @@ ROWS: dict[str, dict[str, Rows]] = {
         "train_loss": Rows("float64", ("capacity",)),
         "validation_loss": Rows("float64", ("capacity",)),
     },
+    "rdm_robot_def": {
+        "commands": Rows("int32", ("num_commands",)),
+        "home": Rows("float64", ("num_links",)),
+        "folded": Rows("float64", ("num_links",)),
+        "closed": Rows("float32", ("num_commands",)),
+    },
+    "rdm_shape_def": {
+        "points": Rows("float64", ("num_points", "3")),
+    },
+    "rdm_joints": {
+        "q": Rows("float64", ("count",)),
+        "qd": Rows("float64", ("count",)),
+        "target": Rows("float64", ("count",)),
+        "torque": Rows("float64", ("count",)),
+    },
+    "rdm_task_def": {
+        "hold": Rows("float32", ("action_dim",)),
+        "mean": Rows("float32", ("action_dim",)),
+    },
 }
 
 FUNCTIONS: dict[str, Function] = {
     "rdm_result_string": Function(
         c_char_p, {"r": c_int32},
         {}, False,
-        """static, never NULL, also for unknown values"""),
+        """static, never NULL, also for unknown
+        values
+        """),
     "rdm_last_error": Function(
         c_char_p, {},
         {}, False,
-        """This OS thread's last failure, one line; valid until its next failing rdm call; stale after a success. Runtimes that
-        move calls between threads (Go, asynchronous FFI) read config.error, rdm_pool_error and their like instead.
+        """This OS thread's last failure, one line; valid until its next failing rdm call; stale after a
+        success. Runtimes that move calls between threads (Go, asynchronous FFI) read config.error,
+        rdm_pool_error and their like instead.
         """),
     "rdm_version": Function(
         c_uint32, {},
@@ -3154,11 +3181,79 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_init": Function(
         c_int32, {"host": POINTER(rdm_host)},
         {}, False,
-        """Process-wide hooks for handles made later, whose configs give none. Counted; NULL: defaults. Optional."""),
+        """Process-wide hooks for handles made later, whose configs give none. Counted; NULL: defaults.
+        Optional.
+        """),
     "rdm_shutdown": Function(
         None, {},
         {}, False,
         """the last call puts the default hooks back; handles stay valid"""),
+    "rdm_nearest_names": Function(
+        c_int32, {"name": c_char_p, "names": c_char_p, "text": c_void_p, "capacity": c_size_t},
+        {}, False,
+        """What the texts of NOT_FOUND end with, for names of your own: writes to text [capacity] "; nearest
+        is gamma", "; nearest are a, b and c" of several that are equally near, or "" when nobody can
+        have meant one of `names`, one a line, of which the first 500 count. Case is ignored, '-' equals
+        '_'. Cut at capacity >= 1 bytes; 4 * RDM_TEXT_SIZE hold all.
+        """),
+    "rdm_policy_load": Function(
+        c_int32, {"out": POINTER(c_void_p), "bytes": c_void_p, "size": c_size_t},
+        {}, False,
+        """copies bytes [size]"""),
+    "rdm_policy_load_file": Function(
+        c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
+        {}, False,
+        """NOT_FOUND, FORMAT ..."""),
+    "rdm_policy_destroy": Function(
+        None, {"p": c_void_p},
+        {}, False,
+        """NULL is fine"""),
+    "rdm_policy_get_info": Function(
+        c_int32, {"p": c_void_p, "io": POINTER(rdm_policy_info)},
+        {}, False,
+        """fills io"""),
+    "rdm_policy_scratch": Function(
+        c_size_t, {"p": c_void_p, "rows": c_int32},
+        {}, False,
+        """bytes for act, at any
+        address; 0: bad
+        arguments
+        """),
+    "rdm_policy_act": Function(
+        c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
+        {"obs": Rows("float32", ("rows", "obs_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim"))}, False,
+        """One decision, to be held for rdm_policy_info.action_repeat control steps (rdm_actor_act counts
+        them): action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim].
+        noise [rows][action_dim] are the caller's standard normals, NULL: the mean.
+        scratch [scratch_bytes]: rdm_policy_scratch bytes or more, aligned in any way. No heap, no hidden
+        state: any number of threads, each with its own scratch. ARGUMENT when obs or noise is not
+        finite, or so large that the network overflows (action is written then, and of no use). STATE for
+        a policy that sees points.
+        """),
+    "rdm_policy_tensor": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},
+        {}, False,
+        """"actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
+        "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows
+        of obs_dim: a weight of an entry that the policy does not see is 0. Of one that sees points
+        "actor.0.weight" has a column for each feature behind those, and there are "encoder.0.weight" and
+        so on, "encoder.origin" and "encoder.range", in m, "encoder.activation" (0 tanh, 1 elu, 2 relu),
+        "example.points", in m, and "example.point_class".
+        """),
+    "rdm_policy_tensor_read": Function(
+        c_int32, {"p": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
+        {"out": Rows("float32", ("count",))}, False,
+        """Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE."""),
+    "rdm_policy_check": Function(
+        c_int32, {"p": c_void_p, "spec": POINTER(rdm_spec)},
+        {}, False,
+        """OK, or VERSION_MISMATCH with a text that says which field of the spec differs."""),
+    "rdm_policy_columns": Function(
+        c_int32, {"p": c_void_p, "columns": c_void_p, "capacity": c_int32, "count": c_void_p},
+        {"columns": Rows("int32", ("capacity",))}, False,
+        """Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up
+        to capacity of them to columns [capacity]; *count is how many there are.
+        """),
     "rdm_task_count": Function(
         c_int32, {},
         {}, False,
@@ -3195,22 +3290,6 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_option)},
         {}, False,
         """i < num_defaults"""),
-    "rdm_algo_count": Function(
-        c_int32, {},
-        {}, False,
-        """number of algorithms; 0 without the learning half"""),
-    "rdm_algo_at": Function(
-        c_int32, {"index": c_int32, "io": POINTER(rdm_algo)},
-        {}, False,
-        """RANGE past the end"""),
-    "rdm_algo_find": Function(
-        c_int32, {"name": c_char_p, "index": c_void_p},
-        {}, False,
-        """NOT_FOUND: nearest in the text"""),
-    "rdm_algo_option": Function(
-        c_int32, {"algo": c_int32, "i": c_int32, "out": POINTER(rdm_option_info)},
-        {}, False,
-        """i < num_options"""),
     "rdm_robot_count": Function(
         c_int32, {},
         {}, False,
@@ -3219,6 +3298,12 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"index": c_int32, "io": POINTER(rdm_robot)},
         {}, False,
         """RANGE past the end"""),
+    "rdm_robot_find": Function(
+        c_int32, {"name": c_char_p, "index": c_void_p},
+        {}, False,
+        """name or alias; NOT_FOUND:
+        nearest in the text
+        """),
     "rdm_robot_joint": Function(
         c_int32, {"robot": c_int32, "i": c_int32, "out": POINTER(rdm_joint)},
         {}, False,
@@ -3231,21 +3316,30 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"index": c_int32, "out": POINTER(rdm_object)},
         {}, False,
         """RANGE past the end; NOT_FOUND: removed"""),
+    "rdm_object_find": Function(
+        c_int32, {"name": c_char_p, "index": c_void_p},
+        {}, False,
+        """name or alias;
+        NOT_FOUND: nearest in
+        the text
+        """),
     "rdm_pool_config_init": Function(
         c_int32, {"c": POINTER(rdm_pool_config), "size": c_size_t},
         {}, False,
-        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
+        version's.
+        """),
     "rdm_pool_spec": Function(
         c_int32, {"c": POINTER(rdm_pool_config), "io": POINTER(rdm_spec)},
         {}, False,
-        """What a pool of this config would be: OK where rdm_pool_create would be, memory aside, else its error. Makes
-        the task to ask it, and no world; nothing is kept.
+        """What a pool of this config would be: OK where rdm_pool_create would be, memory aside, else its
+        error. Makes the task to ask it, and no world; nothing is kept.
         """),
     "rdm_pool_memory": Function(
         c_int32, {"c": POINTER(rdm_pool_config), "ours": c_void_p, "engines": c_void_p},
         {}, False,
-        """Bytes that creation takes: `ours` from the alloc hook, exact; `engines` by the physics engine from the
-        C library, an estimate. Either may be NULL.
+        """Bytes that creation takes: `ours` from the alloc hook, exact; `engines` by the physics engine
+        from the C library, an estimate. Either may be NULL.
         """),
     "rdm_pool_create": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_pool_config)},
@@ -3258,7 +3352,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_error": Function(
         c_char_p, {"p": c_void_p},
         {}, False,
-        """last failure on this handle; "" at first"""),
+        """last failure on this handle; "" at
+        first
+        """),
     "rdm_pool_get_spec": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_spec)},
         {}, False,
@@ -3274,18 +3370,22 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_initial_mean": Function(
         c_int32, {"p": c_void_p, "action": c_void_p},
         {"action": Rows("float32", ("action_dim",))}, False,
-        """Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of RDM_BASELINE_HOLD."""),
+        """Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of
+        RDM_BASELINE_HOLD.
+        """),
     "rdm_pool_option": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
-        """Option i of the task as this pool has it: key and the value as text [RDM_TEXT_SIZE], which reads back exactly. RANGE
-        for a text that is longer: rdm_pool_settings has it. Behind the task's num_options come keys with a FIELD that were
-        set, in order; RANGE ends them.
+        """Option i of the task as this pool has it: key and the value as text [RDM_TEXT_SIZE], which reads
+        back exactly. RANGE for a text that is longer: rdm_pool_settings has it. Behind the task's
+        num_options come keys with a FIELD that were set, in order; RANGE ends them.
         """),
     "rdm_pool_settings": Function(
         c_int32, {"p": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
-        """All options as text [capacity] of lines key=value: given as settings they make the same pool again."""),
+        """All options as text [capacity] of lines key=value: given as settings they make the same pool
+        again.
+        """),
     "rdm_pool_buffers": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_buffers)},
         {}, False,
@@ -3293,28 +3393,31 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_bind": Function(
         c_int32, {"p": c_void_p, "b": POINTER(rdm_buffers)},
         {}, False,
-        """Non-NULL pointers of b take the place of the pool's (sizes as above, at least 4-byte aligned; they must
-        outlive the pool or the next bind); NULL ones keep what is there. Contents are copied over.
+        """Non-NULL pointers of b take the place of the pool's (sizes as above, at least 4-byte aligned;
+        they must outlive the pool or the next bind); NULL ones keep what is there. Contents are copied
+        over.
         """),
     "rdm_pool_reset": Function(
         c_int32, {"p": c_void_p, "seeds": c_void_p, "mask": c_void_p},
         {"seeds": Rows("uint64", ("num_envs",)), "mask": Rows("uint8", ("num_envs",))}, False,
-        """Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new streams: the seed
-        alone, whatever the world's number, so that seed s gives what a pool of one world created with seed s has. NULL: go
-        on with the worlds' own, which after create is (config.seed, i). Costs are 0 afterwards. An entry of the first
-        observation that is not finite is written as 0, and the world is flagged RDM_STATUS_DIVERGED, its episode with it.
-        Where a host's own task fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand as if
-        they were never reset, the others have begun.
+        """Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new
+        streams: the seed alone, whatever the world's number, so that seed s gives what a pool of one
+        world created with seed s has. NULL: go on with the worlds' own, which after create is
+        (config.seed, i). Costs are 0 afterwards. An entry of the first observation that is not finite is
+        written as 0, and the world is flagged RDM_STATUS_DIVERGED, its episode with it. Where a host's
+        own task fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand
+        as if they were never reset, the others have begun.
         """),
     "rdm_pool_step": Function(
         c_int32, {"p": c_void_p},
         {}, False,
-        """One control step of every world: reads action, writes all the rest. STATE before the first reset, and with
-        autoreset off while an ended world was not reset. Worlds that diverge, get an action that is not finite, or whose
-        task of a host's own fails, are truncated and flagged, with reward and cost 0 in that step; the call returns OK.
-        With option action_repeat it is that many control steps with the same action, or as many as the episode has left:
-        reward and cost are sums over them, success is set if any had it, status has the bits of all, the other rows are
-        those after the last.
+        """One control step of every world: reads action, writes all the rest. STATE before the first reset,
+        and with autoreset off while an ended world was not reset. Worlds that diverge, get an action
+        that is not finite, or whose task of a host's own fails, are truncated and flagged, with reward
+        and cost 0 in that step; the call returns OK. With option action_repeat it is that many control
+        steps with the same action, or as many as the episode has left: reward and cost are sums over
+        them, success is set if any had it, status has the bits of all, the other rows are those after
+        the last.
         """),
     "rdm_pool_step_masked": Function(
         c_int32, {"p": c_void_p, "mask": c_void_p},
@@ -3323,20 +3426,23 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_baseline": Function(
         c_int32, {"p": c_void_p, "kind": c_int32},
         {}, False,
-        """Fills the action buffer: all 0 (the middle of each joint's range), the nominal start pose, or uniform in
-        [-1, 1] from the stream (seed, world, policy).
+        """Fills the action buffer: all 0 (the middle of each joint's range), the nominal start pose, or
+        uniform in [-1, 1] from the stream (seed, world, policy).
         """),
     "rdm_pool_state_size": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p},
         {}, False,
-        """The whole state of world env, exact: a pool of the same task and options that sets it goes on with the same
-        bytes. set_state also rewrites obs and clears the other rows of that world. env -1: all worlds in one block.
-        FORMAT for bytes that are not whole, of another task or options, or hold what no world can have: nothing changes.
+        """The whole state of world env, exact: a pool of the same task and options that sets it goes on
+        with the same bytes. set_state also rewrites obs and clears the other rows of that world. env -1:
+        all worlds in one block. FORMAT for bytes that are not whole, of another task or options, or hold
+        what no world can have: nothing changes.
         """),
     "rdm_pool_get_state": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
-        """to bytes [capacity]; *size is how many there are"""),
+        """to bytes [capacity]; *size is how many
+        there are
+        """),
     "rdm_pool_set_state": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p, "size": c_size_t},
         {}, False,
@@ -3356,26 +3462,67 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_contacts": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "out": POINTER(rdm_contact), "capacity": c_int32, "count": c_void_p},
         {}, False,
-        """Writes up to capacity contacts to out [capacity], of things asleep as they fell asleep; *count is how many there are."""),
+        """Writes up to capacity contacts to out [capacity], of things asleep as they fell asleep; *count is
+        how many there are.
+        """),
     "rdm_pool_render": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "rgb": c_void_p, "depth": c_void_p, "segmentation": c_void_p},
         {"rgb": Rows("uint8", ("h", "w", "3")), "depth": Rows("float32", ("h", "w")), "segmentation": Rows("int32", ("h", "w"))}, False,
-        """A picture of world env. camera: a name of the task's. rgb [h][w][3], depth [h][w] (m along the optical
-        axis, 0: nothing hit), segmentation [h][w] (shape, -1: nothing); each may be NULL. 1 <= w, h <= 8192.
+        """A picture of world env. camera: a name of the task's. rgb [h][w][3], depth [h][w] (m along the
+        optical axis, 0: nothing hit), segmentation [h][w] (shape, -1: nothing); each may be NULL. 1 <=
+        w, h <= 8192.
         """),
     "rdm_pool_get_stats": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_pool_stats)},
         {}, False,
         """fills io"""),
+    "rdm_pool_copy": Function(
+        c_int32, {"dst": c_void_p, "dst_env": c_int32, "src": c_void_p, "src_env": c_int32},
+        {}, False,
+        """World dst_env of dst (-1: all of them) becomes what world src_env of src is, at the price of
+        copying memory: afterwards it goes on with the bytes that set_state(get_state) would give, and
+        its rows (but action, and those of rdm_sensors) are the other's. Pools of the same task and
+        options, of any sizes, threads and seeds; src may be dst. ARGUMENT for pools that differ, RANGE
+        for worlds that are not there: nothing changes. No heap.
+        """),
+    "rdm_pool_push": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "shape": c_int32, "force": c_void_p},
+        {"force": Rows("float32", ("3",))}, False,
+        """Pushes a shape's carrier during the next step: force [3] at its centre of mass, N, world axes."""),
+    "rdm_pool_world_error": Function(
+        c_char_p, {"p": c_void_p, "env": c_int32},
+        {}, False,
+        """What failed last in world env of the pool: "world 3: task press: judge: sensor lost", at most 255
+        bytes; "" at first, and for the library's own tasks. Kept until the world's next failure; no part
+        of a saved state.
+        """),
+    "rdm_algo_count": Function(
+        c_int32, {},
+        {}, False,
+        """number of algorithms; 0 without the learning half"""),
+    "rdm_algo_at": Function(
+        c_int32, {"index": c_int32, "io": POINTER(rdm_algo)},
+        {}, False,
+        """RANGE past the end"""),
+    "rdm_algo_find": Function(
+        c_int32, {"name": c_char_p, "index": c_void_p},
+        {}, False,
+        """NOT_FOUND: nearest in the text"""),
+    "rdm_algo_option": Function(
+        c_int32, {"algo": c_int32, "i": c_int32, "out": POINTER(rdm_option_info)},
+        {}, False,
+        """i < num_options"""),
     "rdm_agent_config_init": Function(
         c_int32, {"c": POINTER(rdm_agent_config), "size": c_size_t},
         {}, False,
-        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
+        version's.
+        """),
     "rdm_agent_config_for_pool": Function(
         c_int32, {"c": POINTER(rdm_agent_config), "p": c_void_p},
         {}, False,
-        """Sets dims, num_envs, task, layout_hash, control_dt, max_steps, defaults, initial_mean, cost_limits and fields from a
-        pool. Pointers are borrowed from the pool.
+        """Sets dims, num_envs, task, layout_hash, control_dt, max_steps, defaults, initial_mean,
+        cost_limits and fields from a pool. Pointers are borrowed from the pool.
         """),
     "rdm_agent_memory": Function(
         c_int32, {"c": POINTER(rdm_agent_config), "bytes": c_void_p},
@@ -3392,53 +3539,59 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_error": Function(
         c_char_p, {"a": c_void_p},
         {}, False,
-        """last failure on this handle; "" at first"""),
+        """last failure on this handle; "" at
+        first
+        """),
     "rdm_agent_act": Function(
         c_int32, {"a": c_void_p, "obs": c_void_p, "mode": c_int32, "action": c_void_p},
         {"obs": Rows("float32", ("num_envs", "obs_dim")), "action": Rows("float32", ("num_envs", "action_dim"))}, False,
-        """action [num_envs][action_dim]: a sample (it is remembered, and record must follow) or the mean of the policy
-        for obs [num_envs][obs_dim] (nothing is remembered). One call is one decision: hold the action for the option
-        action_repeat control steps. Samples are not clipped.
+        """action [num_envs][action_dim]: a sample (it is remembered, and record must follow) or the mean of
+        the policy for obs [num_envs][obs_dim] (nothing is remembered). One call is one decision: hold
+        the action for the option action_repeat control steps. Samples are not clipped.
         """),
     "rdm_agent_record": Function(
         c_int32, {"a": c_void_p, "t": POINTER(rdm_transition)},
         {}, False,
-        """STATE unless a sampled act came before, or when the horizon is full. ARGUMENT for a flag that is neither 0 nor 1, a
-        cost that is not finite or below 0, in any row, and for a reward or final_obs that is not finite in a valid one.
-        A row with valid 0 is not learned from and its reward does not count; its cost counts, and an end in it ends the
-        episode. Its steps count too, but in a row that neither ends an episode nor follows another row of one: that is what
-        next-step autoreset returns for the step that only resets.
-        An episode that is not over after max_steps control steps counts as one there (RDM_EPOCH_CUT): its sums are closed and
-        begin anew. The path goes on, so the value of the next observation follows, as after a truncation. Option
-        episode_steps sets that length, cost_limit_per_step a limit on the cost per control step, which needs no ends.
+        """STATE unless a sampled act came before, or when the horizon is full. ARGUMENT for a flag that is
+        neither 0 nor 1, a cost that is not finite or below 0, in any row, and for a reward or final_obs
+        that is not finite in a valid one. A row with valid 0 is not learned from and its reward does not
+        count; its cost counts, and an end in it ends the episode. Its steps count too, but in a row that
+        neither ends an episode nor follows another row of one: that is what next-step autoreset returns
+        for the step that only resets. An episode that is not over after max_steps control steps counts
+        as one there (RDM_EPOCH_CUT): its sums are closed and begin anew. The path goes on, so the value
+        of the next observation follows, as after a truncation. Option episode_steps sets that length,
+        cost_limit_per_step a limit on the cost per control step, which needs no ends.
         """),
     "rdm_agent_update": Function(
         c_int32, {"a": c_void_p, "last_obs": c_void_p, "io": POINTER(rdm_epoch)},
         {"last_obs": Rows("float32", ("num_envs", "obs_dim"))}, False,
-        """Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL. CANCELLED after
-        rdm_agent_cancel (the horizon is dropped, full or not), STATE when the horizon is not full.
+        """Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL.
+        CANCELLED after rdm_agent_cancel (the horizon is dropped, full or not), STATE when the horizon is
+        not full.
         """),
     "rdm_agent_rollout": Function(
         c_int32, {"a": c_void_p, "p": c_void_p, "io": POINTER(rdm_epoch)},
         {}, False,
-        """One epoch natively: act, step (action_repeat control steps), record until the horizon is full, then update. The
-        pool must have been reset and must not have autoreset off; dims and num_envs must agree. A pool that repeats
-        actions itself takes as many steps at a time: the agent's action_repeat must be a multiple of the pool's, as the
-        defaults are that rdm_agent_config_for_pool sets. With the agent's option cost_signal=raw the costs are sums over
+        """One epoch natively: act, step (action_repeat control steps), record until the horizon is full,
+        then update. The pool must have been reset and must not have autoreset off; dims and num_envs
+        must agree. A pool that repeats actions itself takes as many steps at a time: the agent's
+        action_repeat must be a multiple of the pool's, as the defaults are that
+        rdm_agent_config_for_pool sets. With the agent's option cost_signal=raw the costs are sums over
         control steps of cost_raw where that is above 0.
         """),
     "rdm_agent_cancel": Function(
         None, {"a": c_void_p},
         {}, False,
-        """Async-signal-safe, from any thread: the running rollout or update returns CANCELLED. A horizon that has begun by act
-        and record is dropped by its update; between horizons, the next rollout, update or first act with RDM_SAMPLE
-        returns CANCELLED, before anything is collected.
+        """Async-signal-safe, from any thread: the running rollout or update returns CANCELLED. A horizon
+        that has begun by act and record is dropped by its update; between horizons, the next rollout,
+        update or first act with RDM_SAMPLE returns CANCELLED, before anything is collected.
         """),
     "rdm_agent_discard": Function(
         c_int32, {"a": c_void_p},
         {}, False,
-        """Drops the horizon that has begun, and a cancel that waits: from any state back to between epochs. Nothing is learned from
-        what it drops. Episodes that run go on, with what was recorded of them.
+        """Drops the horizon that has begun, and a cancel that waits: from any state back to between epochs.
+        Nothing is learned from what it drops. Episodes that run go on, with what was recorded of
+        them.
         """),
     "rdm_agent_set": Function(
         c_int32, {"a": c_void_p, "option": POINTER(rdm_option)},
@@ -3447,13 +3600,16 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_option": Function(
         c_int32, {"a": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
-        """Option i of the algorithm as this agent has it: key (static) and the value as text [RDM_TEXT_SIZE], which reads
-        back exactly. RANGE for a text that is longer: rdm_agent_settings has it.
+        """Option i of the algorithm as this agent has it: key (static) and the value as
+        text [RDM_TEXT_SIZE], which reads back exactly. RANGE for a text that is longer:
+        rdm_agent_settings has it.
         """),
     "rdm_agent_settings": Function(
         c_int32, {"a": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
-        """All options as text [capacity] of lines key=value: given as settings they make an agent of the same options."""),
+        """All options as text [capacity] of lines key=value: given as settings they make an agent of the
+        same options.
+        """),
     "rdm_agent_tensor": Function(
         c_int32, {"a": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},
         {}, False,
@@ -3461,11 +3617,15 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_tensor_read": Function(
         c_int32, {"a": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
         {"out": Rows("float32", ("count",))}, False,
-        """Copies the named tensor to out [count] or from values [count]; count must be rows * cols. NOT_FOUND, RANGE."""),
+        """Copies the named tensor to out [count] or from values [count]; count must be rows * cols.
+        NOT_FOUND, RANGE.
+        """),
     "rdm_agent_tensor_write": Function(
         c_int32, {"a": c_void_p, "name": c_char_p, "values": c_void_p, "count": c_size_t},
         {"values": Rows("float32", ("count",))}, False,
-        """Copies the named tensor to out [count] or from values [count]; count must be rows * cols. NOT_FOUND, RANGE."""),
+        """Copies the named tensor to out [count] or from values [count]; count must be rows * cols.
+        NOT_FOUND, RANGE.
+        """),
     "rdm_agent_policy": Function(
         c_int32, {"a": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
@@ -3485,117 +3645,63 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_checkpoint_write": Function(
         c_int32, {"path": c_char_p, "a": c_void_p, "p": c_void_p, "note": c_void_p, "note_size": c_size_t},
         {}, False,
-        """Agent, pool (may be NULL) and a note [note_size] of the host's own, to 2^26 bytes, in one file, replaced
-        atomically.
+        """Agent, pool (may be NULL) and a note [note_size] of the host's own, to 2^26 bytes, in one file,
+        replaced atomically.
         """),
     "rdm_checkpoint_read": Function(
         c_int32, {"path": c_char_p, "a": c_void_p, "p": c_void_p, "note": c_void_p, "capacity": c_size_t, "note_size": c_void_p},
         {}, False,
-        """Reads it back; note [capacity] gets as many bytes, *note_size is how many there are. Nothing changes on failure."""),
-    "rdm_policy_load": Function(
-        c_int32, {"out": POINTER(c_void_p), "bytes": c_void_p, "size": c_size_t},
-        {}, False,
-        """copies bytes [size]"""),
-    "rdm_policy_load_file": Function(
-        c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
-        {}, False,
-        """NOT_FOUND, FORMAT ..."""),
-    "rdm_policy_destroy": Function(
-        None, {"p": c_void_p},
-        {}, False,
-        """NULL is fine"""),
-    "rdm_policy_get_info": Function(
-        c_int32, {"p": c_void_p, "io": POINTER(rdm_policy_info)},
-        {}, False,
+        """Reads it back; note [capacity] gets as many bytes, *note_size is how many there are. Nothing
+        changes on failure.
+        """),
+    "rdm_pool_sensors": Function(
+        c_int32, {"p": c_void_p, "io": POINTER(rdm_sensors)},
+        {}, True,
         """fills io"""),
-    "rdm_policy_scratch": Function(
-        c_size_t, {"p": c_void_p, "rows": c_int32},
-        {}, False,
-        """bytes for act, at any address; 0: bad arguments"""),
-    "rdm_policy_act": Function(
-        c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
-        {"obs": Rows("float32", ("rows", "obs_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim"))}, False,
-        """One decision, to be held for rdm_policy_info.action_repeat control steps (rdm_actor_act counts them):
-        action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise [rows][action_dim] are
-        the caller's standard normals, NULL: the mean. scratch [scratch_bytes]: rdm_policy_scratch bytes or more, aligned
-        in any way. No heap, no hidden state: any number of threads, each with its own scratch. ARGUMENT when obs or noise
-        is not finite, or so large that the network overflows (action is written then, and of no use). STATE for a policy
-        that sees points.
-        """),
-    "rdm_policy_tensor": Function(
-        c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},
-        {}, False,
-        """"actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
-        "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows of obs_dim: a
-        weight of an entry that the policy does not see is 0. Of one that sees points "actor.0.weight" has a column for each
-        feature behind those, and there are "encoder.0.weight" and so on, "encoder.origin" and "encoder.range", in m,
-        "encoder.activation" (0 tanh, 1 elu, 2 relu), "example.points", in m, and "example.point_class".
-        """),
-    "rdm_policy_tensor_read": Function(
-        c_int32, {"p": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
-        {"out": Rows("float32", ("count",))}, False,
-        """Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE."""),
-    "rdm_policy_check": Function(
-        c_int32, {"p": c_void_p, "spec": POINTER(rdm_spec)},
-        {}, False,
-        """OK, or VERSION_MISMATCH with a text that says which field of the spec differs."""),
-    "rdm_nearest_names": Function(
-        c_int32, {"name": c_char_p, "names": c_char_p, "text": c_void_p, "capacity": c_size_t},
+    "rdm_pool_camera": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_camera)},
         {}, True,
-        """What the texts of NOT_FOUND end with, for names of your own: writes to text [capacity] "; nearest is gamma",
-        "; nearest are a, b and c" of several that are equally near, or "" when nobody can have meant one of `names`, one a
-        line, of which the first 500 count. Case is ignored, '-' equals '_'. Cut at capacity >= 1 bytes; 4 * RDM_TEXT_SIZE
-        hold all.
+        """The i-th camera by whose name this pool can look: the task's, then those that ride on its robots
+        ("right_palm" and "left_palm" of hands), then those for clouds. RANGE ends.
         """),
-    "rdm_pool_push": Function(
-        c_int32, {"p": c_void_p, "env": c_int32, "shape": c_int32, "force": c_void_p},
-        {"force": Rows("float32", ("3",))}, True,
-        """Pushes a shape's carrier during the next step: force [3] at its centre of mass, N, world axes."""),
-    "rdm_policy_columns": Function(
-        c_int32, {"p": c_void_p, "columns": c_void_p, "capacity": c_int32, "count": c_void_p},
-        {"columns": Rows("int32", ("capacity",))}, True,
-        """Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up to capacity of them
-        to columns [capacity]; *count is how many there are.
-        """),
-    "rdm_pool_copy": Function(
-        c_int32, {"dst": c_void_p, "dst_env": c_int32, "src": c_void_p, "src_env": c_int32},
+    "rdm_pool_sensor_camera": Function(
+        c_int32, {"p": c_void_p, "cloud": c_int32, "i": c_int32, "out": POINTER(rdm_camera)},
         {}, True,
-        """World dst_env of dst (-1: all of them) becomes what world src_env of src is, at the price of copying memory: afterwards
-        it goes on with the bytes that set_state(get_state) would give, and its rows (but action, and those of rdm_sensors)
-        are the other's. Pools of the same task and options, of any sizes, threads and seeds; src may be dst. ARGUMENT for
-        pools that differ, RANGE for worlds that are not there: nothing changes. No heap.
+        """The cameras that rows stand for: i-th of the pictures (cloud 0) or of points and voxels (cloud
+        1). RANGE ends.
         """),
-    "rdm_agent_values": Function(
-        c_int32, {"a": c_void_p, "obs": c_void_p, "rows": c_int32, "value": c_void_p, "cost": c_void_p},
-        {"obs": Rows("float32", ("rows", "obs_dim")), "value": Rows("float32", ("rows",)), "cost": Rows("float32", ("rows", "RDM_MAX_COSTS"))}, True,
-        """What the agent's critics say of obs [rows][obs_dim], for any number of rows: value [rows], the discounted sum of rewards
-        to come, and the same of the cost columns that it limits, cost [rows][RDM_MAX_COSTS] by column, others 0; cost may be
-        NULL. UNSUPPORTED with options normalize_reward or normalize_cost, which leave critics no unit.
+    "rdm_pool_hull": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "points": c_void_p, "capacity": c_int32, "count": c_void_p},
+        {"points": Rows("float32", ("capacity", "3"))}, True,
+        """Corners, points [capacity][3], of shape i, an RDM_HULL, in its own frame, m. Writes up to
+        capacity of them; *count is how many there are.
         """),
-    "rdm_agent_create_ranked": Function(
-        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_agent_config), "ranks": POINTER(rdm_ranks)},
+    "rdm_sample_furthest": Function(
+        c_int32, {"points": c_void_p, "count": c_int32, "wanted": c_int32, "start": c_int32, "chosen": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
+        {"points": Rows("float32", ("count", "3")), "chosen": Rows("int32", ("wanted",))}, True,
+        """`wanted` of points [count][3] that lie furthest from each other: their numbers, in order of
+        choice, to chosen [wanted]. `start` is the first. Exact. scratch [scratch_bytes]:
+        rdm_sample_scratch bytes or more, aligned in any way; no heap.
+        """),
+    "rdm_sample_scratch": Function(
+        c_size_t, {"count": c_int32},
         {}, True,
-        """As rdm_agent_create, of a rank's agent: c.num_envs worlds of ranks * c.num_envs. Takes more memory than rdm_agent_memory says:
-        a message, half a MiB at most where rows are no wider, for each rank. The hooks must outlive the agent.
-        """),
-    "rdm_pool_set_rank": Function(
-        c_int32, {"p": c_void_p, "rank": c_int32, "ranks": c_int32},
-        {}, True,
-        """Worlds of the pool are numbers rank * num_envs on of ranks * num_envs: of their streams, and of a state of all worlds (env -1),
-        from which set_state takes them. Before the first reset; STATE afterwards. rdm_agent_rollout needs agent and pool of one rank.
+        """bytes, at any address; 0: count is
+        outside [1, 2^22]
         """),
     "rdm_agent_act_points": Function(
         c_int32, {"a": c_void_p, "obs": c_void_p, "points": POINTER(rdm_points), "mode": c_int32, "action": c_void_p},
         {"obs": Rows("float32", ("num_envs", "obs_dim")), "action": Rows("float32", ("num_envs", "action_dim"))}, True,
-        """As rdm_agent_act: action [num_envs][action_dim] for obs [num_envs][obs_dim] and as many clouds, of an agent with the option
-        encoder; STATE without it. ARGUMENT for a point that is not finite, RANGE for another number of points or a class that
-        there is not: nothing is remembered.
+        """As rdm_agent_act: action [num_envs][action_dim] for obs [num_envs][obs_dim] and as many clouds,
+        of an agent with the option encoder; STATE without it. ARGUMENT for a point that is not finite,
+        RANGE for another number of points or a class that there is not: nothing is remembered.
         """),
     "rdm_policy_act_points": Function(
         c_int32, {"p": c_void_p, "obs": c_void_p, "points": POINTER(rdm_points), "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
         {"obs": Rows("float32", ("rows", "obs_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim"))}, True,
-        """As rdm_policy_act, of obs [rows][obs_dim], noise [rows][action_dim] or NULL, action [rows][action_dim] and scratch
-        [scratch_bytes], for a policy whose num_points is not 0; STATE for others, errors as above.
+        """As rdm_policy_act, of obs [rows][obs_dim], noise [rows][action_dim] or NULL,
+        action [rows][action_dim] and scratch [scratch_bytes], for a policy whose num_points is not 0;
+        STATE for others, errors as above.
         """),
     "rdm_pretrain_config_init": Function(
         c_int32, {"how": POINTER(rdm_pretrain_config), "size": c_size_t},
@@ -3604,15 +3710,114 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_pretrain": Function(
         c_int32, {"a": c_void_p, "points": POINTER(rdm_points), "label": c_void_p, "rows": c_int32, "how": POINTER(rdm_pretrain_config), "io": POINTER(rdm_pretrain_report)},
         {"label": Rows("uint8", ("rows", "num_points"))}, True,
-        """The agent's encoder learns to tell the points of clouds [rows] apart by label [rows][num_points], each less than
-        num_labels: a head sees a point's last hidden layer and the cloud's features, and is thrown away afterwards. Nothing else
-        changes. Same seed, same bytes, for any number of threads. STATE inside a horizon or without an encoder; CANCELLED after
-        rdm_agent_cancel: the encoder as before. io may be NULL.
+        """The agent's encoder learns to tell the points of clouds [rows] apart by label [rows][num_points],
+        each less than num_labels: a head sees a point's last hidden layer and the cloud's features, and
+        is thrown away afterwards. Nothing else changes. Same seed, same bytes, for any number of
+        threads. STATE inside a horizon or without an encoder; CANCELLED after rdm_agent_cancel: the
+        encoder as before. io may be NULL.
         """),
+    "rdm_map_config_init": Function(
+        c_int32, {"c": POINTER(rdm_map_config), "size": c_size_t},
+        {}, True,
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
+        version's.
+        """),
+    "rdm_map_create": Function(
+        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_map_config)},
+        {}, True,
+        """RANGE outside the bounds"""),
+    "rdm_map_destroy": Function(
+        None, {"m": c_void_p},
+        {}, True,
+        """NULL is fine"""),
+    "rdm_map_error": Function(
+        c_char_p, {"m": c_void_p},
+        {}, True,
+        """Last failure of a call that may change the map; "" at first. Of those that only read, which many
+        threads may make at a time: rdm_last_error().
+        """),
+    "rdm_map_get_info": Function(
+        c_int32, {"m": c_void_p, "io": POINTER(rdm_map_info)},
+        {}, True,
+        """fills io"""),
+    "rdm_map_clear": Function(
+        c_int32, {"m": c_void_p},
+        {}, True,
+        """all is unknown again"""),
+    "rdm_map_insert": Function(
+        c_int32, {"m": c_void_p, "origin": c_void_p, "points": c_void_p, "count": c_size_t, "dropped": c_void_p},
+        {"origin": Rows("float32", ("3",)), "points": Rows("float32", ("count", "3"))}, True,
+        """One scan: rays from origin [3] to points [count][3]. Each voxel changes once: up where a ray
+        ends, else down where rays pass. Points that are not finite are left out, and those nearer to the
+        origin than a voxel's side: a depth of 0 says that nothing was seen. A full map grows no more:
+        the call returns OK, *dropped (may be NULL) says how many voxels were left out, and voxels that
+        exist go on being updated.
+        """),
+    "rdm_map_scan": Function(
+        c_int32, {"m": c_void_p, "p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "skip": c_void_p, "num_skip": c_int32, "dropped": c_void_p},
+        {"skip": Rows("int32", ("num_skip",))}, True,
+        """One scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on one
+        of the num_skip shapes in skip [num_skip], or meet nothing, are left out. *dropped as above.
+        """),
+    "rdm_map_query": Function(
+        c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "probability": c_void_p},
+        {"points": Rows("float32", ("count", "3")), "probability": Rows("float32", ("count",))}, True,
+        """probability [count] that the voxel of each of points [count][3] is occupied; -1: unknown."""),
+    "rdm_map_box": Function(
+        c_int32, {"m": c_void_p, "low": c_void_p, "high": c_void_p, "out": POINTER(rdm_voxel), "capacity": c_size_t, "count": c_void_p},
+        {"low": Rows("float32", ("3",)), "high": Rows("float32", ("3",))}, True,
+        """Occupied voxels that meet the box from low [3] to high [3]: writes up to capacity to
+        out [capacity], *count is how many there are.
+        """),
+    "rdm_map_meets": Function(
+        c_int32, {"m": c_void_p, "pose": c_void_p, "half": c_void_p, "meets": c_void_p},
+        {"pose": Rows("float32", ("7",)), "half": Rows("float32", ("3",))}, True,
+        """meets is 1 when an occupied voxel meets the turned box: pose [7] (position, quaternion), half
+        sizes half [3].
+        """),
+    "rdm_map_raycast": Function(
+        c_int32, {"m": c_void_p, "origin": c_void_p, "direction": c_void_p, "range": c_float, "through_unknown": c_int32, "hit": c_void_p, "found": c_void_p},
+        {"origin": Rows("float32", ("3",)), "direction": Rows("float32", ("3",)), "hit": Rows("float32", ("3",))}, True,
+        """Where the ray from origin [3] along direction [3] enters the first occupied voxel within `range`
+        m: *found is 1 and hit [3] is written. An unknown voxel ends the ray unless through_unknown is
+        1.
+        """),
+    "rdm_map_distance": Function(
+        c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "most": c_float, "distance": c_void_p},
+        {"points": Rows("float32", ("count", "3")), "distance": Rows("float32", ("count",))}, True,
+        """distance [count] from each of points [count][3] to the nearest point of an occupied voxel, m;
+        `most` if none is so near.
+        """),
+    "rdm_map_grid": Function(
+        c_int32, {"m": c_void_p, "pose": c_void_p, "n": c_void_p, "side": c_float, "out": c_void_p},
+        {"pose": Rows("float32", ("7",)), "n": Rows("int32", ("3",)), "out": Rows("int8", ("n0", "n1", "n2"))}, True,
+        """A grid of counts n [3] of cells of `side` m (each count 1 to 1024) about pose [7]: what the map
+        says at their centres, out [n0][n1][n2], x outermost: 1 occupied, 0 free, -1 unknown.
+        """),
+    "rdm_map_save": Function(
+        c_int32, {"m": c_void_p, "format": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, True,
+        """The map as the bytes [capacity] of a file; NULL asks for the size."""),
+    "rdm_map_save_file": Function(
+        c_int32, {"m": c_void_p, "path": c_char_p},
+        {}, True,
+        """by its ending; replaced atomically"""),
+    "rdm_map_load": Function(
+        c_int32, {"m": c_void_p, "bytes": c_void_p, "size": c_size_t},
+        {}, True,
+        """bytes [size] of a file take the place of what the map holds, resolution included. FORMAT, or
+        MEMORY when it does not fit: unchanged.
+        """),
+    "rdm_map_load_file": Function(
+        c_int32, {"m": c_void_p, "path": c_char_p},
+        {}, True,
+        """NOT_FOUND, FORMAT ..."""),
     "rdm_actor_config_init": Function(
         c_int32, {"c": POINTER(rdm_actor_config), "size": c_size_t},
         {}, True,
-        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
+        version's.
+        """),
     "rdm_actor_memory": Function(
         c_int32, {"c": POINTER(rdm_actor_config), "bytes": c_void_p},
         {}, True,
@@ -3620,8 +3825,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_actor_create": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_actor_config)},
         {}, True,
-        """Makes the actor; every world begins an episode. ARGUMENT for a step that does not divide the policy's decision,
-        VERSION_MISMATCH for a spec that the policy does not fit, RANGE for sizes and a center out of bounds.
+        """Makes the actor; every world begins an episode. ARGUMENT for a step that does not divide the
+        policy's decision, VERSION_MISMATCH for a spec that the policy does not fit, RANGE for sizes and
+        a center out of bounds.
         """),
     "rdm_actor_destroy": Function(
         None, {"actor": c_void_p},
@@ -3630,26 +3836,30 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_actor_error": Function(
         c_char_p, {"actor": c_void_p},
         {}, True,
-        """last failure on this handle; "" at first"""),
+        """last failure on this handle; ""
+        at first
+        """),
     "rdm_actor_act": Function(
         c_int32, {"actor": c_void_p, "obs": c_void_p, "points": POINTER(rdm_points), "mask": c_void_p, "action": c_void_p},
         {"obs": Rows("float32", ("num_envs", "obs_dim")), "mask": Rows("uint8", ("num_envs",)), "action": Rows("float32", ("num_envs", "action_dim"))}, True,
-        """action [num_envs][action_dim] for one step of the worlds whose mask [num_envs] is not 0 (NULL: all): a new decision on
-        obs [num_envs][obs_dim] where one is due, else the one that is held; rows of other worlds are not written. points: clouds of
-        the worlds for a policy that sees points, NULL for others. No heap. ARGUMENT for rows that are not finite where a decision is
-        due: nothing is counted then.
+        """action [num_envs][action_dim] for one step of the worlds whose mask [num_envs] is not 0 (NULL:
+        all): a new decision on obs [num_envs][obs_dim] where one is due, else the one that is held; rows
+        of other worlds are not written. points: clouds of the worlds for a policy that sees points, NULL
+        for others. No heap. ARGUMENT for rows that are not finite where a decision is due: nothing is
+        counted then.
         """),
     "rdm_actor_reset": Function(
         c_int32, {"actor": c_void_p, "terminated": c_void_p, "truncated": c_void_p},
         {"terminated": Rows("uint8", ("num_envs",)), "truncated": Rows("uint8", ("num_envs",))}, True,
-        """Episodes begin anew where terminated [num_envs] or truncated [num_envs] is not 0: a decision is due there, and its noise is
-        fresh. Either may be NULL; both NULL: everywhere. Any mask will do in the place of one of them.
+        """Episodes begin anew where terminated [num_envs] or truncated [num_envs] is not 0: a decision is
+        due there, and its noise is fresh. Either may be NULL; both NULL: everywhere. Any mask will do in
+        the place of one of them.
         """),
     "rdm_actor_write_state": Function(
         c_int32, {"actor": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
-        """Held actions, counts and noise as bytes [capacity]; NULL asks for the size. An actor of the same policy and config that reads
-        them goes on with the same bytes.
+        """Held actions, counts and noise as bytes [capacity]; NULL asks for the size. An actor of the same
+        policy and config that reads them goes on with the same bytes.
         """),
     "rdm_actor_read_state": Function(
         c_int32, {"actor": c_void_p, "bytes": c_void_p, "size": c_size_t},
@@ -3658,12 +3868,15 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_planner_config_init": Function(
         c_int32, {"c": POINTER(rdm_planner_config), "size": c_size_t},
         {}, True,
-        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
+        version's.
+        """),
     "rdm_planner_create": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_planner_config)},
         {}, True,
-        """Makes the planner and its worlds. ARGUMENT, RANGE, NOT_FOUND name what is wrong; VERSION_MISMATCH for a policy that
-        does not fit the pool, UNSUPPORTED for an agent whose critics have no unit (rdm_agent_values).
+        """Makes the planner and its worlds. ARGUMENT, RANGE, NOT_FOUND name what is wrong; VERSION_MISMATCH
+        for a policy that does not fit the pool, UNSUPPORTED for an agent whose critics have no unit
+        (rdm_agent_values).
         """),
     "rdm_planner_destroy": Function(
         None, {"planner": c_void_p},
@@ -3672,7 +3885,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_planner_error": Function(
         c_char_p, {"planner": c_void_p},
         {}, True,
-        """last failure on this handle; "" at first"""),
+        """last failure on this
+        handle; "" at first
+        """),
     "rdm_planner_get_spec": Function(
         c_int32, {"planner": c_void_p, "io": POINTER(rdm_planner_spec)},
         {}, True,
@@ -3680,44 +3895,197 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_planner_option_at": Function(
         c_int32, {"i": c_int32, "out": POINTER(rdm_option_info)},
         {}, True,
-        """Option i of planners: method, samples, horizon, knots, interpolation, noise, elites, temperature, iterations, costs, and
-        others. RANGE past the end.
+        """Option i of planners: method, samples, horizon, knots, interpolation, noise, elites, temperature,
+        iterations, costs, and others. RANGE past the end.
         """),
     "rdm_planner_settings": Function(
         c_int32, {"planner": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
-        """All options as text [capacity] of lines key=value: given as settings they make a planner of the same options."""),
+        """All options as text [capacity] of lines key=value: given as settings they make a planner of the
+        same options.
+        """),
     "rdm_planner_act": Function(
         c_int32, {"planner": c_void_p, "pool": c_void_p, "env": c_int32, "action": c_void_p, "io": POINTER(rdm_plan_info)},
         {"action": Rows("float32", ("action_dim",))}, True,
-        """Plans from the state that world env of the pool is in now, and writes the plan's first action to action [action_dim]. The
-        pool is only read; it has the task and options of the one that the planner was made for, else ARGUMENT. io may be NULL.
-        STATE where no episode runs. No heap.
+        """Plans from the state that world env of the pool is in now, and writes the plan's first action to
+        action [action_dim]. The pool is only read; it has the task and options of the one that the
+        planner was made for, else ARGUMENT. io may be NULL. STATE where no episode runs. No heap.
         """),
     "rdm_planner_reset": Function(
         c_int32, {"planner": c_void_p},
         {}, True,
-        """Forgets the plan; the noise goes on. The next plan begins at rdm_pool_initial_mean, or the policy's rollout."""),
+        """Forgets the plan; the noise goes on. The next plan begins at rdm_pool_initial_mean, or the
+        policy's rollout.
+        """),
     "rdm_planner_get_plan": Function(
         c_int32, {"planner": c_void_p, "plan": c_void_p},
         {"plan": Rows("float32", ("horizon", "action_dim"))}, True,
-        """The plan as it is to plan [horizon][action_dim]: row 0 is the action that rdm_planner_act gave."""),
+        """The plan as it is to plan [horizon][action_dim]: row 0 is the action that rdm_planner_act
+        gave.
+        """),
     "rdm_planner_set_plan": Function(
         c_int32, {"planner": c_void_p, "plan": c_void_p},
         {"plan": Rows("float32", ("horizon", "action_dim"))}, True,
-        """The next call begins at plan [horizon][action_dim], cut to [-1, 1], not shifted. ARGUMENT for entries that are not
-        finite. With a policy it is tried as sample 1.
+        """The next call begins at plan [horizon][action_dim], cut to [-1, 1], not shifted. ARGUMENT for
+        entries that are not finite. With a policy it is tried as sample 1.
         """),
     "rdm_planner_write_state": Function(
         c_int32, {"planner": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
-        """Plan, noise and counters as bytes [capacity]; NULL asks for the size. A planner of the same task, options, noise and limits
-        that reads them goes on with the same bytes.
+        """Plan, noise and counters as bytes [capacity]; NULL asks for the size. A planner of the same task,
+        options, noise and limits that reads them goes on with the same bytes.
         """),
     "rdm_planner_read_state": Function(
         c_int32, {"planner": c_void_p, "bytes": c_void_p, "size": c_size_t},
         {}, True,
         """Of bytes [size]. FORMAT for bytes that are not whole, or of another planner: nothing changes."""),
+    "rdm_agent_values": Function(
+        c_int32, {"a": c_void_p, "obs": c_void_p, "rows": c_int32, "value": c_void_p, "cost": c_void_p},
+        {"obs": Rows("float32", ("rows", "obs_dim")), "value": Rows("float32", ("rows",)), "cost": Rows("float32", ("rows", "RDM_MAX_COSTS"))}, True,
+        """What the agent's critics say of obs [rows][obs_dim], for any number of rows: value [rows], the
+        discounted sum of rewards to come, and the same of the cost columns that it limits,
+        cost [rows][RDM_MAX_COSTS] by column, others 0; cost may be NULL. UNSUPPORTED with options
+        normalize_reward or normalize_cost, which leave critics no unit.
+        """),
+    "rdm_recording_config_init": Function(
+        c_int32, {"c": POINTER(rdm_recording_config), "size": c_size_t},
+        {}, True,
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
+        version's.
+        """),
+    "rdm_recording_config_for_pool": Function(
+        c_int32, {"c": POINTER(rdm_recording_config), "p": c_void_p},
+        {}, True,
+        """Sets dims, task, layout_hash, state_bytes, num_points and point_color from a pool. Pointers are
+        borrowed from the pool.
+        """),
+    "rdm_recording_create": Function(
+        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_recording_config)},
+        {}, True,
+        """empty"""),
+    "rdm_recording_destroy": Function(
+        None, {"r": c_void_p},
+        {}, True,
+        """NULL is fine"""),
+    "rdm_recording_error": Function(
+        c_char_p, {"r": c_void_p},
+        {}, True,
+        """Last failure of a call that may change it; "" at first. Of those that only read:
+        rdm_last_error().
+        """),
+    "rdm_recording_get_info": Function(
+        c_int32, {"r": c_void_p, "io": POINTER(rdm_recording_info)},
+        {}, True,
+        """fills io"""),
+    "rdm_recording_get_rows": Function(
+        c_int32, {"r": c_void_p, "io": POINTER(rdm_recording_rows)},
+        {}, True,
+        """Borrowed pointers, until the next call that changes the recording."""),
+    "rdm_recording_append": Function(
+        c_int32, {"r": c_void_p, "rows": POINTER(rdm_recording_rows)},
+        {}, True,
+        """Adds rows of a host's own; their episodes are numbered behind those that are there, actions and
+        labels are cut to [-1, 1]. ARGUMENT for numbers that are not finite, flags that are not 0 or 1,
+        episodes or states out of order: nothing changes.
+        """),
+    "rdm_recording_append_all": Function(
+        c_int32, {"r": c_void_p, "other": c_void_p},
+        {}, True,
+        """Adds all of another one with the same dims, layout_hash and state_bytes."""),
+    "rdm_recording_begin_step": Function(
+        c_int32, {"r": c_void_p, "p": c_void_p, "label": c_void_p, "mask": c_void_p},
+        {"label": Rows("float32", ("num_envs", "action_dim")), "mask": Rows("uint8", ("num_envs",))}, True,
+        """Around rdm_pool_step, for worlds whose mask [num_envs] is not 0 (NULL: all): begin_step adds a
+        row with the pool's obs and action, and label [num_envs][action_dim] (NULL: as the action);
+        actions and labels are cut to [-1, 1]. end_step adds the step's reward, costs and flags to it;
+        several steps between two begin_step make one row, of sums. A world that ended begins an episode
+        with its next row; one that a pool with next-step autoreset is about to reset gets none. A
+        recording follows one pool at a time: another one begins new episodes.
+        """),
+    "rdm_recording_end_step": Function(
+        c_int32, {"r": c_void_p, "p": c_void_p, "mask": c_void_p},
+        {"mask": Rows("uint8", ("num_envs",))}, True,
+        """Around rdm_pool_step, for worlds whose mask [num_envs] is not 0 (NULL: all): begin_step adds a
+        row with the pool's obs and action, and label [num_envs][action_dim] (NULL: as the action);
+        actions and labels are cut to [-1, 1]. end_step adds the step's reward, costs and flags to it;
+        several steps between two begin_step make one row, of sums. A world that ended begins an episode
+        with its next row; one that a pool with next-step autoreset is about to reset gets none. A
+        recording follows one pool at a time: another one begins new episodes.
+        """),
+    "rdm_recording_filter": Function(
+        c_int32, {"r": c_void_p, "need_success": c_int32, "max_cost": c_void_p, "dropped": c_void_p},
+        {"max_cost": Rows("float64", ("cost_dim",))}, True,
+        """Drops whole episodes: with need_success 1 those without a success, those whose sum of a cost is
+        above its max_cost [cost_dim] (NULL, or a negative number: any). *dropped (may be NULL) says how
+        many. The others are numbered anew; episodes that still run are closed.
+        """),
+    "rdm_recording_clear": Function(
+        c_int32, {"r": c_void_p},
+        {}, True,
+        """no rows; memory stays"""),
+    "rdm_recording_save_file": Function(
+        c_int32, {"r": c_void_p, "path": c_char_p},
+        {}, True,
+        """A file of arrays, .npz, that numpy.load opens: obs, action, label, reward, cost, terminated,
+        truncated, success, episode, state_row, state, points, point_class; task, layout_hash, format.
+        Replaced atomically.
+        """),
+    "rdm_recording_load_file": Function(
+        c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
+        {}, True,
+        """Makes one of such a file, also as numpy.savez writes it, or of one that `redman rollout --record`
+        wrote. NOT_FOUND; FORMAT when a checksum, a shape or a number is wrong, VERSION_MISMATCH for a
+        newer one.
+        """),
+    "rdm_clone_config_init": Function(
+        c_int32, {"how": POINTER(rdm_clone_config), "size": c_size_t},
+        {}, True,
+        """defaults into the first `size` bytes"""),
+    "rdm_agent_clone": Function(
+        c_int32, {"a": c_void_p, "r": c_void_p, "how": POINTER(rdm_clone_config), "io": POINTER(rdm_clone_report)},
+        {}, True,
+        """Behaviour cloning: the actor's mean is fitted to the labels by Adam on minibatches, and the
+        weights with the least validation loss are kept; critics and multipliers stay, and the actor's
+        optimiser begins anew. Between epochs of the agent: STATE inside a horizon. how NULL: defaults;
+        io may be NULL. CANCELLED after rdm_agent_cancel: weights and statistics as before.
+        """),
+    "rdm_agent_set_recording": Function(
+        c_int32, {"a": c_void_p, "r": c_void_p},
+        {}, True,
+        """The rows that the options `imitation` and `imitation_decay` hold the actor near; obs and label
+        are copied. NULL: none. A state that was saved with some loads only beside the same ones.
+        """),
+    "rdm_agent_load_policy": Function(
+        c_int32, {"a": c_void_p, "p": c_void_p, "samples": c_double},
+        {}, True,
+        """Warm start: the actor, its deviation and the statistics of observations become the policy's,
+        which count for `samples` (2 to 10^12) observations; its optimiser begins anew. STATE inside a
+        horizon; ARGUMENT where layout, hidden layers, activation, std_mode, actor_obs, encoder or
+        normalize_obs differ: the text says which, and nothing changes.
+        """),
+    "rdm_pool_set_starts": Function(
+        c_int32, {"p": c_void_p, "r": c_void_p, "share": c_double},
+        {}, True,
+        """Worlds begin an episode, with probability `share` (0 to 1), at a state of the recording, drawn
+        from a stream of their own: all other draws are what they are without. Such an episode has the
+        steps that are left; sums begin at 0. States are copied, and each is tried: FORMAT, and nothing
+        changes. r NULL: the states of the last call, with another share; 0 at first. The streams and the
+        share are part of the state of all worlds (env -1), which loads only beside the same states.
+        """),
+    "rdm_agent_create_ranked": Function(
+        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_agent_config), "ranks": POINTER(rdm_ranks)},
+        {}, True,
+        """As rdm_agent_create, of a rank's agent: c.num_envs worlds of ranks * c.num_envs. Takes more
+        memory than rdm_agent_memory says: a message, half a MiB at most where rows are no wider, for
+        each rank. The hooks must outlive the agent.
+        """),
+    "rdm_pool_set_rank": Function(
+        c_int32, {"p": c_void_p, "rank": c_int32, "ranks": c_int32},
+        {}, True,
+        """Worlds of the pool are numbers rank * num_envs on of ranks * num_envs: of their streams, and of a
+        state of all worlds (env -1), from which set_state takes them. Before the first reset; STATE
+        afterwards. rdm_agent_rollout needs agent and pool of one rank.
+        """),
     "rdm_robot_def_init": Function(
         c_int32, {"def": POINTER(rdm_robot_def), "size": c_size_t},
         {}, True,
@@ -3725,23 +4093,21 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_robot_create": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_robot_def)},
         {}, True,
-        """Adds a robot under a number that no other gets, also later: 2^31 of them in a process; what a removed one took comes
-        back. *out is for rdm_robot_at and what follows here. ARGUMENT, RANGE: the
-        text names the row; a name that is taken is an ARGUMENT. Moments must be positive and keep the triangle rule.
+        """Adds a robot under a number that no other gets, also later: 2^31 of them in a process; what a
+        removed one took comes back. *out is for rdm_robot_at and what follows here. ARGUMENT, RANGE: the
+        text names the row; a name that is taken is an ARGUMENT. Moments must be positive and keep the
+        triangle rule.
         """),
     "rdm_robot_remove": Function(
         c_int32, {"robot": c_int32},
         {}, True,
         """Pools that use it keep it. ARGUMENT for the library's own."""),
-    "rdm_robot_find": Function(
-        c_int32, {"name": c_char_p, "index": c_void_p},
-        {}, True,
-        """name or alias; NOT_FOUND: nearest in the text"""),
     "rdm_robot_mount": Function(
         c_int32, {"out": c_void_p, "name": c_char_p, "arm": c_int32, "hand": c_int32, "yaw": c_double, "adapter": c_double, "left": c_int32},
         {}, True,
-        """A hand on an arm as a robot of its own, under `name`: its root and the arm's last link are one body. The hand is turned by
-        `yaw` (rad) about the flange's z and stands off by `adapter` (m); left: its mirror image. UNSUPPORTED: no arm, no hand.
+        """A hand on an arm as a robot of its own, under `name`: its root and the arm's last link are one
+        body. The hand is turned by `yaw` (rad) about the flange's z and stands off by `adapter` (m);
+        left: its mirror image. UNSUPPORTED: no arm, no hand.
         """),
     "rdm_robot_get": Function(
         c_int32, {"robot": c_int32, "io": POINTER(rdm_robot_def)},
@@ -3774,46 +4140,47 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_robot_poses_of": Function(
         c_int32, {"robot": c_int32, "commands": c_void_p, "home": c_void_p, "folded": c_void_p, "closed": c_void_p},
         {"commands": Rows("int32", ("num_commands",)), "home": Rows("float64", ("num_links",)), "folded": Rows("float64", ("num_links",)), "closed": Rows("float32", ("num_commands",))}, True,
-        """Numbers of the robot's poses and commands: commands [num_commands], home [num_links], folded [num_links] and
-        closed [num_commands] may be NULL. The counts are those of rdm_robot_get; folded and closed are 0 where it has none.
+        """Numbers of the robot's poses and commands: commands [num_commands], home [num_links],
+        folded [num_links] and closed [num_commands] may be NULL. The counts are those of rdm_robot_get;
+        folded and closed are 0 where it has none.
         """),
     "rdm_robot_kinematics": Function(
         c_int32, {"robot": c_int32, "q": c_void_p, "poses": c_void_p, "flange": c_void_p, "tips": c_void_p, "palm": c_void_p},
         {"q": Rows("float64", ("num_links",)), "poses": Rows("float64", ("num_links", "7")), "flange": Rows("float64", ("7",)), "tips": Rows("float64", ("num_fingers", "3")), "palm": Rows("float64", ("7",))}, True,
-        """For joints q [num_links], in the root frame: poses [num_links][7] of the links, position (m) and quaternion. flange [7],
-        tips [num_fingers][3] and palm [7] (origin at hold_p, y into the palm, z as the fingers point) may be NULL.
+        """For joints q [num_links], in the root frame: poses [num_links][7] of the links, position (m) and
+        quaternion. flange [7], tips [num_fingers][3] and palm [7] (origin at hold_p, y into the palm, z
+        as the fingers point) may be NULL.
         """),
     "rdm_robot_reach": Function(
         c_int32, {"robot": c_int32, "pose": c_void_p, "q": c_void_p, "found": c_void_p},
         {"pose": Rows("float64", ("7",)), "q": Rows("float64", ("num_links",))}, True,
-        """Joints q [num_links], from where they are, to where the arm's flange has pose [7] in the root frame. *found is 0 when the
-        least squares end elsewhere. UNSUPPORTED: no flange.
+        """Joints q [num_links], from where they are, to where the arm's flange has pose [7] in the root
+        frame. *found is 0 when the least squares end elsewhere. UNSUPPORTED: no flange.
         """),
     "rdm_object_def_init": Function(
         c_int32, {"def": POINTER(rdm_object_def), "size": c_size_t},
         {}, True,
         """defaults into the first `size` bytes"""),
-    "rdm_object_find": Function(
-        c_int32, {"name": c_char_p, "index": c_void_p},
-        {}, True,
-        """name or alias; NOT_FOUND: nearest in the text"""),
     "rdm_object_get": Function(
         c_int32, {"object": c_int32, "io": POINTER(rdm_object_def)},
         {}, True,
-        """What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which are NULL here.
-        Shape i < num_shapes is in the frame at the centre of mass; the points of a hull live as long as the object.
+        """What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which
+        are NULL here. Shape i < num_shapes is in the frame at the centre of mass; the points of a hull
+        live as long as the object.
         """),
     "rdm_object_shape_at": Function(
         c_int32, {"object": c_int32, "i": c_int32, "out": POINTER(rdm_shape_def)},
         {}, True,
-        """What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which are NULL here.
-        Shape i < num_shapes is in the frame at the centre of mass; the points of a hull live as long as the object.
+        """What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which
+        are NULL here. Shape i < num_shapes is in the frame at the centre of mass; the points of a hull
+        live as long as the object.
         """),
     "rdm_object_create": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_object_def)},
         {}, True,
-        """Adds an object under a number that no other gets, *out for rdm_object_at and what is here. ARGUMENT, RANGE: the text names
-        the row; a name that is taken is an ARGUMENT. Objects belong to the process; any number of threads may look meanwhile.
+        """Adds an object under a number that no other gets, *out for rdm_object_at and what is here.
+        ARGUMENT, RANGE: the text names the row; a name that is taken is an ARGUMENT. Objects belong to
+        the process; any number of threads may look meanwhile.
         """),
     "rdm_object_check": Function(
         c_int32, {"def": POINTER(rdm_object_def)},
@@ -3827,28 +4194,30 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"code": c_int32, "text": c_char_p},
         {}, True,
         """Sets rdm_last_error of this thread to `text` and returns `code`."""),
-    "rdm_pool_world_error": Function(
-        c_char_p, {"p": c_void_p, "env": c_int32},
-        {}, True,
-        """What failed last in world env of the pool: "world 3: task press: judge: sensor lost", at most 255 bytes; "" at first, and
-        for the library's own tasks. Kept until the world's next failure; no part of a saved state.
-        """),
     "rdm_scene_robot_init": Function(
         c_int32, {"robot": POINTER(rdm_scene_robot), "size": c_size_t},
         {}, True,
-        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
+        version's.
+        """),
     "rdm_scene_number": Function(
         c_int32, {"scene": c_void_p, "key": c_char_p, "value": c_void_p},
         {}, True,
-        """Value of the pool's option `key`: *value of a number, integer or flag, *text of a text. NOT_FOUND, ARGUMENT."""),
+        """Value of the pool's option `key`: *value of a number, integer or flag, *text of a text.
+        NOT_FOUND, ARGUMENT.
+        """),
     "rdm_scene_text": Function(
         c_int32, {"scene": c_void_p, "key": c_char_p, "text": POINTER(c_char_p)},
         {}, True,
-        """Value of the pool's option `key`: *value of a number, integer or flag, *text of a text. NOT_FOUND, ARGUMENT."""),
+        """Value of the pool's option `key`: *value of a number, integer or flag, *text of a text.
+        NOT_FOUND, ARGUMENT.
+        """),
     "rdm_scene_range": Function(
         c_int32, {"scene": c_void_p, "key": c_char_p, "low": c_void_p, "high": c_void_p},
         {}, True,
-        """Bounds *low and *high of a number or integer whose row takes a range (choices "a..b"), for reset to draw from; equal: a number."""),
+        """Bounds *low and *high of a number or integer whose row takes a range (choices "a..b"), for reset
+        to draw from; equal: a number.
+        """),
     "rdm_contact_law_init": Function(
         c_int32, {"law": POINTER(rdm_contact_law), "size": c_size_t},
         {}, True,
@@ -3864,8 +4233,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_scene_set_contact": Function(
         c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "law": POINTER(rdm_contact_law)},
         {}, True,
-        """RANGE, ARGUMENT: the text names the field. Making the pool is UNSUPPORTED with engine=ode where a law has more than a
-        restitution. Fingertips feel the forces of such contacts, not the torques of turning.
+        """RANGE, ARGUMENT: the text names the field. Making the pool is UNSUPPORTED with engine=ode where a
+        law has more than a restitution. Fingertips feel the forces of such contacts, not the torques of
+        turning.
         """),
     "rdm_scene_set_gravity": Function(
         c_int32, {"scene": c_void_p, "gravity": c_void_p},
@@ -3874,7 +4244,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_scene_set_feedforward": Function(
         c_int32, {"scene": c_void_p},
         {}, True,
-        """worlds take rdm_world_set_feedforward"""),
+        """worlds take
+        rdm_world_set_feedforward
+        """),
     "rdm_scene_set_adjustable": Function(
         c_int32, {"scene": c_void_p},
         {}, True,
@@ -3890,9 +4262,10 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_scene_add_object": Function(
         c_int32, {"scene": c_void_p, "object": c_int32, "name": c_char_p, "p": c_void_p, "q": c_void_p, "scale": c_double, "index": c_void_p},
         {"p": Rows("float64", ("3",)), "q": Rows("float64", ("4",))}, True,
-        """An object at the pose p [3] (m), q [4] (all 0: none) of its centre of mass, as the body and first shape `name` (others:
-        name_1, name_2 ...), `scale` times as large, 0.05 to 20, its mass as it is; index: NULL. Its material is one of the scene: a
-        new one rubs on each that is there with the object's friction, on another object's with the lower of the two.
+        """An object at the pose p [3] (m), q [4] (all 0: none) of its centre of mass, as the body and first
+        shape `name` (others: name_1, name_2 ...), `scale` times as large, 0.05 to 20, its mass as it is;
+        index: NULL. Its material is one of the scene: a new one rubs on each that is there with the
+        object's friction, on another object's with the lower of the two.
         """),
     "rdm_scene_add_static": Function(
         c_int32, {"scene": c_void_p, "shape": POINTER(rdm_shape_def)},
@@ -3901,14 +4274,16 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_scene_set_field": Function(
         c_int32, {"scene": c_void_p, "field": c_char_p, "count": c_int32},
         {}, True,
-        """For a task whose numbers follow from its options: another count for a field, in the order of rdm_task_def.fields; another
-        count of actions, with hold [count] and mean [count] as in rdm_task_def (NULL: 0).
+        """For a task whose numbers follow from its options: another count for a field, in the order of
+        rdm_task_def.fields; another count of actions, with hold [count] and mean [count] as in
+        rdm_task_def (NULL: 0).
         """),
     "rdm_scene_set_actions": Function(
         c_int32, {"scene": c_void_p, "count": c_int32, "hold": c_void_p, "mean": c_void_p},
         {"hold": Rows("float32", ("count",)), "mean": Rows("float32", ("count",))}, True,
-        """For a task whose numbers follow from its options: another count for a field, in the order of rdm_task_def.fields; another
-        count of actions, with hold [count] and mean [count] as in rdm_task_def (NULL: 0).
+        """For a task whose numbers follow from its options: another count for a field, in the order of
+        rdm_task_def.fields; another count of actions, with hold [count] and mean [count] as in
+        rdm_task_def (NULL: 0).
         """),
     "rdm_scene_find": Function(
         c_int32, {"scene": c_void_p, "part": c_int32, "name": c_char_p, "index": c_void_p},
@@ -3921,8 +4296,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_scene_touch": Function(
         c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "group": c_void_p},
         {}, True,
-        """group, for rdm_world_touch: all contacts of a shape of `a` with one of `b`, each the name of a shape, body or robot, or a
-        pattern of such names with '*' and '?'. NOT_FOUND where nothing has it.
+        """group, for rdm_world_touch: all contacts of a shape of `a` with one of `b`, each the name of a
+        shape, body or robot, or a pattern of such names with '*' and '?'. NOT_FOUND where nothing has
+        it.
         """),
     "rdm_world_joints": Function(
         c_int32, {"world": c_void_p, "io": POINTER(rdm_joints)},
@@ -3947,26 +4323,32 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_world_sensor": Function(
         c_int32, {"world": c_void_p, "sensor": c_int32, "force": c_void_p, "torque": c_void_p},
         {"force": Rows("float64", ("3",)), "torque": Rows("float64", ("3",))}, True,
-        """Contact force [3] (N) and torque [3] (N m) on a fingertip, mean over the step, in the link's frame, about its origin."""),
+        """Contact force [3] (N) and torque [3] (N m) on a fingertip, mean over the step, in the link's
+        frame, about its origin.
+        """),
     "rdm_world_touch": Function(
         c_int32, {"world": c_void_p, "group": c_int32, "pairs": c_void_p, "force": c_void_p},
         {}, True,
-        """pairs is how many pairs of a group's shapes touched in the step; *force (N) the sum of the group's contact forces in its
-        last substep. Either may be NULL.
+        """pairs is how many pairs of a group's shapes touched in the step; *force (N) the sum of the
+        group's contact forces in its last substep. Either may be NULL.
         """),
     "rdm_world_contacts": Function(
         c_int32, {"world": c_void_p, "out": POINTER(rdm_contact), "capacity": c_int32, "count": c_void_p},
         {}, True,
-        """Contacts of the last substep to out [capacity], of things asleep as they fell asleep; *count is how many there are."""),
+        """Contacts of the last substep to out [capacity], of things asleep as they fell asleep; *count is
+        how many there are.
+        """),
     "rdm_world_overlap": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "depth": c_void_p},
         {}, True,
-        """By *depth (m) a body at its present place is within something that it may touch; 0: it is clear."""),
+        """By *depth (m) a body at its present place is within something that it may touch; 0: it is
+        clear.
+        """),
     "rdm_world_set_body": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "motion": POINTER(rdm_motion)},
         {}, True,
-        """Places for what moves freely; joints q [n] and rates qd [n] (NULL: 0) of a robot of n joints, within their ranges, and with
-        them the targets of its drives.
+        """Places for what moves freely; joints q [n] and rates qd [n] (NULL: 0) of a robot of n joints,
+        within their ranges, and with them the targets of its drives.
         """),
     "rdm_world_set_base": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "motion": POINTER(rdm_motion)},
@@ -3979,45 +4361,55 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_world_set_targets": Function(
         c_int32, {"world": c_void_p, "first": c_int32, "targets": c_void_p, "n": c_int32},
         {"targets": Rows("float64", ("n",))}, True,
-        """What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n] in [-1, 1] of all n commands of a
-        robot, which become targets as its description says: ranges or curves, no faster than its joints' velocity.
+        """What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n]
+        in [-1, 1] of all n commands of a robot, which become targets as its description says: ranges or
+        curves, no faster than its joints' velocity.
         """),
     "rdm_world_command": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "commands": c_void_p, "n": c_int32},
         {"commands": Rows("float64", ("n",))}, True,
-        """What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n] in [-1, 1] of all n commands of a
-        robot, which become targets as its description says: ranges or curves, no faster than its joints' velocity.
+        """What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n]
+        in [-1, 1] of all n commands of a robot, which become targets as its description says: ranges or
+        curves, no faster than its joints' velocity.
         """),
     "rdm_world_set_feedforward": Function(
         c_int32, {"world": c_void_p, "first": c_int32, "efforts": c_void_p, "n": c_int32},
         {"efforts": Rows("float64", ("n",))}, True,
-        """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again; STATE unless the scene has
-        them. rdm_world_gravity gives those that hold a robot of n joints against gravity where it is.
+        """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again;
+        STATE unless the scene has them. rdm_world_gravity gives those that hold a robot of n joints
+        against gravity where it is.
         """),
     "rdm_world_gravity": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "efforts": c_void_p, "n": c_int32},
         {"efforts": Rows("float64", ("n",))}, True,
-        """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again; STATE unless the scene has
-        them. rdm_world_gravity gives those that hold a robot of n joints against gravity where it is.
+        """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again;
+        STATE unless the scene has them. rdm_world_gravity gives those that hold a robot of n joints
+        against gravity where it is.
         """),
     "rdm_world_scale": Function(
         c_int32, {"world": c_void_p, "factors": POINTER(rdm_factor), "count": c_int32},
         {}, True,
-        """Lays factors [count] over those that the world has, all 1 at the start of an episode; reset may draw them. All are taken
-        or none. STATE unless the scene is adjustable.
+        """Lays factors [count] over those that the world has, all 1 at the start of an episode; reset may
+        draw them. All are taken or none. STATE unless the scene is adjustable.
         """),
     "rdm_world_push_body": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "force": c_void_p, "torque": c_void_p},
         {"force": Rows("float64", ("3",)), "torque": Rows("float64", ("3",))}, True,
-        """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N m); of a link at `point` [3]."""),
+        """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N
+        m); of a link at `point` [3].
+        """),
     "rdm_world_push_base": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "force": c_void_p, "torque": c_void_p},
         {"force": Rows("float64", ("3",)), "torque": Rows("float64", ("3",))}, True,
-        """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N m); of a link at `point` [3]."""),
+        """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N
+        m); of a link at `point` [3].
+        """),
     "rdm_world_push_link": Function(
         c_int32, {"world": c_void_p, "link": c_int32, "force": c_void_p, "point": c_void_p},
         {"force": Rows("float64", ("3",)), "point": Rows("float64", ("3",))}, True,
-        """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N m); of a link at `point` [3]."""),
+        """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N
+        m); of a link at `point` [3].
+        """),
     "rdm_random_bits": Function(
         c_uint64, {"random": POINTER(rdm_random)},
         {}, True,
@@ -4037,8 +4429,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_rotation": Function(
         c_int32, {"axis": c_void_p, "angle": c_double, "q": c_void_p},
         {"axis": Rows("float64", ("3",)), "q": Rows("float64", ("4",))}, True,
-        """The turn by `angle` (rad) about the unit vector axis [3] to q [4]: the same bits on every machine, where those of a C library's
-        sine are not.
+        """The turn by `angle` (rad) about the unit vector axis [3] to q [4]: the same bits on every
+        machine, where those of a C library's sine are not.
         """),
     "rdm_task_def_init": Function(
         c_int32, {"def": POINTER(rdm_task_def), "size": c_size_t},
@@ -4047,8 +4439,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_task_register": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_task_def)},
         {}, True,
-        """Adds a task under a number that no other gets, *out for rdm_task_at and its like. ARGUMENT, RANGE: the text names the row;
-        a name that is taken is an ARGUMENT. Tasks belong to the process; any number of threads may look meanwhile.
+        """Adds a task under a number that no other gets, *out for rdm_task_at and its like. ARGUMENT,
+        RANGE: the text names the row; a name that is taken is an ARGUMENT. Tasks belong to the process;
+        any number of threads may look meanwhile.
         """),
     "rdm_task_remove": Function(
         c_int32, {"task": c_int32},
@@ -4057,240 +4450,11 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_task_check": Function(
         c_int32, {"task": c_char_p, "settings": c_char_p, "error": c_void_p, "error_size": c_int32},
         {}, True,
-        """Tries what a task promises, any task: the same bytes for the same seed, any threads and after save and restore, rows within
-        their fields and bounds, costs of 0 or more, nothing written past a state or a row, no memory left behind. OK, or the error
-        of making a pool, or ARGUMENT: the text names the function, the step and the entry where a promise broke first; it goes to
+        """Tries what a task promises, any task: the same bytes for the same seed, any threads and after
+        save and restore, rows within their fields and bounds, costs of 0 or more, nothing written past a
+        state or a row, no memory left behind. OK, or the error of making a pool, or ARGUMENT: the text
+        names the function, the step and the entry where a promise broke first; it goes to
         error [error_size] too, NULL: not. `settings` as in rdm_pool_config; NULL: none. Seconds.
-        """),
-    "rdm_map_config_init": Function(
-        c_int32, {"c": POINTER(rdm_map_config), "size": c_size_t},
-        {}, True,
-        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
-    "rdm_map_create": Function(
-        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_map_config)},
-        {}, True,
-        """RANGE outside the bounds"""),
-    "rdm_map_destroy": Function(
-        None, {"m": c_void_p},
-        {}, True,
-        """NULL is fine"""),
-    "rdm_map_error": Function(
-        c_char_p, {"m": c_void_p},
-        {}, True,
-        """Last failure of a call that may change the map; "" at first. Of those that only read, which many threads may
-        make at a time: rdm_last_error().
-        """),
-    "rdm_map_get_info": Function(
-        c_int32, {"m": c_void_p, "io": POINTER(rdm_map_info)},
-        {}, True,
-        """fills io"""),
-    "rdm_map_clear": Function(
-        c_int32, {"m": c_void_p},
-        {}, True,
-        """all is unknown again"""),
-    "rdm_map_insert": Function(
-        c_int32, {"m": c_void_p, "origin": c_void_p, "points": c_void_p, "count": c_size_t, "dropped": c_void_p},
-        {"origin": Rows("float32", ("3",)), "points": Rows("float32", ("count", "3"))}, True,
-        """One scan: rays from origin [3] to points [count][3]. Each voxel changes once: up where a ray ends, else down where
-        rays pass. Points that are not finite are left out, and those nearer to the origin than a voxel's side: a depth of 0
-        says that nothing was seen. A full map grows no more: the call returns OK, *dropped (may
-        be NULL) says how many voxels were left out, and voxels that exist go on being updated.
-        """),
-    "rdm_map_scan": Function(
-        c_int32, {"m": c_void_p, "p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "skip": c_void_p, "num_skip": c_int32, "dropped": c_void_p},
-        {"skip": Rows("int32", ("num_skip",))}, True,
-        """One scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on one of the num_skip
-        shapes in skip [num_skip], or meet nothing, are left out. *dropped as above.
-        """),
-    "rdm_map_query": Function(
-        c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "probability": c_void_p},
-        {"points": Rows("float32", ("count", "3")), "probability": Rows("float32", ("count",))}, True,
-        """probability [count] that the voxel of each of points [count][3] is occupied; -1: unknown."""),
-    "rdm_map_box": Function(
-        c_int32, {"m": c_void_p, "low": c_void_p, "high": c_void_p, "out": POINTER(rdm_voxel), "capacity": c_size_t, "count": c_void_p},
-        {"low": Rows("float32", ("3",)), "high": Rows("float32", ("3",))}, True,
-        """Occupied voxels that meet the box from low [3] to high [3]: writes up to capacity to out [capacity], *count is how
-        many there are.
-        """),
-    "rdm_map_meets": Function(
-        c_int32, {"m": c_void_p, "pose": c_void_p, "half": c_void_p, "meets": c_void_p},
-        {"pose": Rows("float32", ("7",)), "half": Rows("float32", ("3",))}, True,
-        """meets is 1 when an occupied voxel meets the turned box: pose [7] (position, quaternion), half sizes half [3]."""),
-    "rdm_map_raycast": Function(
-        c_int32, {"m": c_void_p, "origin": c_void_p, "direction": c_void_p, "range": c_float, "through_unknown": c_int32, "hit": c_void_p, "found": c_void_p},
-        {"origin": Rows("float32", ("3",)), "direction": Rows("float32", ("3",)), "hit": Rows("float32", ("3",))}, True,
-        """Where the ray from origin [3] along direction [3] enters the first occupied voxel within `range` m: *found is 1 and
-        hit [3] is written. An unknown voxel ends the ray unless through_unknown is 1.
-        """),
-    "rdm_map_distance": Function(
-        c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "most": c_float, "distance": c_void_p},
-        {"points": Rows("float32", ("count", "3")), "distance": Rows("float32", ("count",))}, True,
-        """distance [count] from each of points [count][3] to the nearest point of an occupied voxel, m; `most` if none is so
-        near.
-        """),
-    "rdm_map_grid": Function(
-        c_int32, {"m": c_void_p, "pose": c_void_p, "n": c_void_p, "side": c_float, "out": c_void_p},
-        {"pose": Rows("float32", ("7",)), "n": Rows("int32", ("3",)), "out": Rows("int8", ("n0", "n1", "n2"))}, True,
-        """A grid of counts n [3] of cells of `side` m (each count 1 to 1024) about pose [7]: what the map says at their
-        centres, out [n0][n1][n2], x outermost: 1 occupied, 0 free, -1 unknown.
-        """),
-    "rdm_map_save": Function(
-        c_int32, {"m": c_void_p, "format": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
-        {}, True,
-        """The map as the bytes [capacity] of a file; NULL asks for the size."""),
-    "rdm_map_save_file": Function(
-        c_int32, {"m": c_void_p, "path": c_char_p},
-        {}, True,
-        """by its ending; replaced atomically"""),
-    "rdm_map_load": Function(
-        c_int32, {"m": c_void_p, "bytes": c_void_p, "size": c_size_t},
-        {}, True,
-        """bytes [size] of a file take the place of what the map holds, resolution included. FORMAT, or MEMORY when it does not fit: unchanged."""),
-    "rdm_map_load_file": Function(
-        c_int32, {"m": c_void_p, "path": c_char_p},
-        {}, True,
-        """NOT_FOUND, FORMAT ..."""),
-    "rdm_pool_sensors": Function(
-        c_int32, {"p": c_void_p, "io": POINTER(rdm_sensors)},
-        {}, True,
-        """fills io"""),
-    "rdm_pool_camera": Function(
-        c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_camera)},
-        {}, True,
-        """The i-th camera by whose name this pool can look: the task's, then those that ride on its robots ("right_palm" and
-        "left_palm" of hands), then those for clouds. RANGE ends.
-        """),
-    "rdm_pool_sensor_camera": Function(
-        c_int32, {"p": c_void_p, "cloud": c_int32, "i": c_int32, "out": POINTER(rdm_camera)},
-        {}, True,
-        """The cameras that rows stand for: i-th of the pictures (cloud 0) or of points and voxels (cloud 1). RANGE ends."""),
-    "rdm_pool_hull": Function(
-        c_int32, {"p": c_void_p, "i": c_int32, "points": c_void_p, "capacity": c_int32, "count": c_void_p},
-        {"points": Rows("float32", ("capacity", "3"))}, True,
-        """Corners, points [capacity][3], of shape i, an RDM_HULL, in its own frame, m. Writes up to capacity of them; *count
-        is how many there are.
-        """),
-    "rdm_sample_furthest": Function(
-        c_int32, {"points": c_void_p, "count": c_int32, "wanted": c_int32, "start": c_int32, "chosen": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
-        {"points": Rows("float32", ("count", "3"))}, True,
-        """`wanted` of points [count][3] that lie furthest from each other: their numbers, in order of choice, to chosen
-        [wanted]. `start` is the first. Exact. scratch [scratch_bytes]: rdm_sample_scratch bytes or more, aligned in any
-        way; no heap.
-        """),
-    "rdm_sample_scratch": Function(
-        c_size_t, {"count": c_int32},
-        {}, True,
-        """bytes, at any address; 0: count is outside [1, 2^22]"""),
-    "rdm_recording_config_init": Function(
-        c_int32, {"c": POINTER(rdm_recording_config), "size": c_size_t},
-        {}, True,
-        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first version's."""),
-    "rdm_recording_config_for_pool": Function(
-        c_int32, {"c": POINTER(rdm_recording_config), "p": c_void_p},
-        {}, True,
-        """Sets dims, task, layout_hash, state_bytes, num_points and point_color from a pool. Pointers are borrowed from the pool."""),
-    "rdm_recording_create": Function(
-        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_recording_config)},
-        {}, True,
-        """empty"""),
-    "rdm_recording_destroy": Function(
-        None, {"r": c_void_p},
-        {}, True,
-        """NULL is fine"""),
-    "rdm_recording_error": Function(
-        c_char_p, {"r": c_void_p},
-        {}, True,
-        """Last failure of a call that may change it; "" at first. Of those that only read: rdm_last_error()."""),
-    "rdm_recording_get_info": Function(
-        c_int32, {"r": c_void_p, "io": POINTER(rdm_recording_info)},
-        {}, True,
-        """fills io"""),
-    "rdm_recording_get_rows": Function(
-        c_int32, {"r": c_void_p, "io": POINTER(rdm_recording_rows)},
-        {}, True,
-        """Borrowed pointers, until the next call that changes the recording."""),
-    "rdm_recording_append": Function(
-        c_int32, {"r": c_void_p, "rows": POINTER(rdm_recording_rows)},
-        {}, True,
-        """Adds rows of a host's own; their episodes are numbered behind those that are there, actions and labels are cut to
-        [-1, 1]. ARGUMENT for numbers that are not finite, flags that are not 0 or 1, episodes or states out of order: nothing changes.
-        """),
-    "rdm_recording_append_all": Function(
-        c_int32, {"r": c_void_p, "other": c_void_p},
-        {}, True,
-        """Adds all of another one with the same dims, layout_hash and state_bytes."""),
-    "rdm_recording_begin_step": Function(
-        c_int32, {"r": c_void_p, "p": c_void_p, "label": c_void_p, "mask": c_void_p},
-        {"label": Rows("float32", ("num_envs", "action_dim")), "mask": Rows("uint8", ("num_envs",))}, True,
-        """Around rdm_pool_step, for worlds whose mask [num_envs] is not 0 (NULL: all): begin_step adds a row with the pool's obs and
-        action, and label [num_envs][action_dim] (NULL: as the action); actions and labels are cut to [-1, 1]. end_step adds the
-        step's reward, costs and flags to it; several steps between two begin_step make one row, of sums. A world that ended
-        begins an episode with its next row; one that a pool with next-step autoreset is about to reset gets none. A
-        recording follows one pool at a time: another one begins new episodes.
-        """),
-    "rdm_recording_end_step": Function(
-        c_int32, {"r": c_void_p, "p": c_void_p, "mask": c_void_p},
-        {"mask": Rows("uint8", ("num_envs",))}, True,
-        """Around rdm_pool_step, for worlds whose mask [num_envs] is not 0 (NULL: all): begin_step adds a row with the pool's obs and
-        action, and label [num_envs][action_dim] (NULL: as the action); actions and labels are cut to [-1, 1]. end_step adds the
-        step's reward, costs and flags to it; several steps between two begin_step make one row, of sums. A world that ended
-        begins an episode with its next row; one that a pool with next-step autoreset is about to reset gets none. A
-        recording follows one pool at a time: another one begins new episodes.
-        """),
-    "rdm_recording_filter": Function(
-        c_int32, {"r": c_void_p, "need_success": c_int32, "max_cost": c_void_p, "dropped": c_void_p},
-        {"max_cost": Rows("float64", ("cost_dim",))}, True,
-        """Drops whole episodes: with need_success 1 those without a success, those whose sum of a cost is above its
-        max_cost [cost_dim] (NULL, or a negative number: any). *dropped (may be NULL) says how many. The others are numbered anew;
-        episodes that still run are closed.
-        """),
-    "rdm_recording_clear": Function(
-        c_int32, {"r": c_void_p},
-        {}, True,
-        """no rows; memory stays"""),
-    "rdm_recording_save_file": Function(
-        c_int32, {"r": c_void_p, "path": c_char_p},
-        {}, True,
-        """A file of arrays, .npz, that numpy.load opens: obs, action, label, reward, cost, terminated, truncated, success, episode,
-        state_row, state, points, point_class; task, layout_hash, format. Replaced atomically.
-        """),
-    "rdm_recording_load_file": Function(
-        c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
-        {}, True,
-        """Makes one of such a file, also as numpy.savez writes it, or of one that `redman rollout --record` wrote. NOT_FOUND; FORMAT when a
-        checksum, a shape or a number is wrong, VERSION_MISMATCH for a newer one.
-        """),
-    "rdm_clone_config_init": Function(
-        c_int32, {"how": POINTER(rdm_clone_config), "size": c_size_t},
-        {}, True,
-        """defaults into the first `size` bytes"""),
-    "rdm_agent_clone": Function(
-        c_int32, {"a": c_void_p, "r": c_void_p, "how": POINTER(rdm_clone_config), "io": POINTER(rdm_clone_report)},
-        {}, True,
-        """Behaviour cloning: the actor's mean is fitted to the labels by Adam on minibatches, and the weights with the least validation
-        loss are kept; critics and multipliers stay, and the actor's optimiser begins anew. Between epochs of the agent: STATE
-        inside a horizon. how NULL: defaults; io may be NULL. CANCELLED after rdm_agent_cancel: weights and statistics as before.
-        """),
-    "rdm_agent_set_recording": Function(
-        c_int32, {"a": c_void_p, "r": c_void_p},
-        {}, True,
-        """The rows that the options `imitation` and `imitation_decay` hold the actor near; obs and label are copied. NULL: none. A
-        state that was saved with some loads only beside the same ones.
-        """),
-    "rdm_agent_load_policy": Function(
-        c_int32, {"a": c_void_p, "p": c_void_p, "samples": c_double},
-        {}, True,
-        """Warm start: the actor, its deviation and the statistics of observations become the policy's, which count for `samples` (2 to
-        10^12) observations; its optimiser begins anew. STATE inside a horizon; ARGUMENT where layout, hidden layers, activation,
-        std_mode, actor_obs, encoder or normalize_obs differ: the text says which, and nothing changes.
-        """),
-    "rdm_pool_set_starts": Function(
-        c_int32, {"p": c_void_p, "r": c_void_p, "share": c_double},
-        {}, True,
-        """Worlds begin an episode, with probability `share` (0 to 1), at a state of the recording, drawn from a stream of their own: all
-        other draws are what they are without. Such an episode has the steps that are left; sums begin at 0. States are copied, and
-        each is tried: FORMAT, and nothing changes. r NULL: the states of the last call, with another share; 0 at first. The
-        streams and the share are part of the state of all worlds (env -1), which loads only beside the same states.
         """),
 }
 

@@ -1,4 +1,4 @@
-"""Map: what is occupied, free and unknown in space. Experimental, as its part of redman.h is."""
+"""Map: what is occupied, free and unknown in space. Experimental, as redman/map.h is."""
 from __future__ import annotations
 
 import ctypes

@@ -29,7 +29,7 @@ class Redman(ConanFile):
         return Path(self.recipe_folder).resolve().parents[2]
 
     def set_version(self):
-        header = load(self, self._tree / "include/redman/redman.h")
+        header = load(self, self._tree / "include/redman/base.h")
         self.version = ".".join(re.search(rf"#define RDM_VERSION_{part} (\d+)", header)[1] for part in ("MAJOR", "MINOR", "PATCH"))
 
     def export_sources(self):

@@ -1,6 +1,6 @@
 // `bench step`, `bench observe`: control steps under random actions, blind and with pictures, points or
 // voxels.
-#include <redman/redman_sense.h>
+#include <redman/sense.h>
 
 #include <algorithm>
 #include <ctime>

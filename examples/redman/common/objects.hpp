@@ -1,7 +1,7 @@
 // Objects of the tool's user: .object files that become objects of the library, by --object or `redman
 // object`.
 #pragma once
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <string>
 #include <vector>

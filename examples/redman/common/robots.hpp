@@ -1,7 +1,7 @@
 // Robots of the tool's user: files that become robots of the library (redman_import), by --robot or `redman
 // robot`.
 #pragma once
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <memory>
 #include <string>

@@ -1,6 +1,6 @@
 #include "common/task_files.hpp"
 
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include "common/files.hpp"
 #include "common/names.hpp"

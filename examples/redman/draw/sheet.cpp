@@ -1,6 +1,6 @@
 #include "draw/sheet.hpp"
 
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "play/plan_word.hpp"
 
-#include <redman/redman_sense.h>
+#include <redman/sense.h>
 
 #include "common/names.hpp"
 #include "common/setup.hpp"

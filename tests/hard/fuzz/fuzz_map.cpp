@@ -1,5 +1,5 @@
 // Map files (.bt and .ot): what loads answers every question; what does not load leaves the map as it was.
-#include <redman/redman_map.h>
+#include <redman/map.h>
 
 #include "fuzz.hpp"
 

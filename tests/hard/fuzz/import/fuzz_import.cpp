@@ -1,6 +1,6 @@
 // Robots' files: URDF, MJCF and text. What is read can be made, written, and read back to the same text; what
 // is not is refused with a text. And objects as text. The first byte says as what the rest is read.
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <cstring>
 

@@ -1,6 +1,6 @@
 // Tasks as text: what is read is registered, stepped and removed; what is not is refused with a text and
 // leaves nothing behind.
-#include <redman/redman_import.h>
+#include <redman/import.h>
 
 #include <cstring>
 

@@ -1,0 +1,193 @@
+/* redman/plan.h: actors and planners, which choose actions. Experimental. */
+#ifndef REDMAN_PLAN_H
+#define REDMAN_PLAN_H
+#include <redman/sense.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- actors: a policy that plays ------------------------------------------------------------- */
+/* A policy decides every rdm_policy_info.action_repeat control steps, and its action is held
+ * between. An actor does the counting for worlds of a pool, or of an environment of your own, so
+ * that a policy earns the same wherever it plays:
+ *
+ *   rdm_actor_config c;  rdm_actor *actor;
+ *   rdm_actor_config_init(&c, sizeof c);
+ *   c.policy = policy;  c.spec = &spec;  c.num_envs = n;              // spec: of rdm_pool_get_spec
+ *   if (rdm_actor_create(&actor, &c)) puts(rdm_last_error());
+ *   for (...) {
+ *     rdm_actor_act(actor, b.obs, NULL, NULL, b.action);  rdm_pool_step(pool);
+ *     rdm_actor_reset(actor, b.terminated, b.truncated);      // RDM_AUTORESET_SAME_STEP
+ *   }
+ *   rdm_actor_destroy(actor);
+ *
+ * With RDM_AUTORESET_OFF reset the actor where the pool is reset; with RDM_AUTORESET_NEXT_STEP
+ * after the step that resets, by the ends of the step before. One thread at a time. Same policy,
+ * seed and calls: the same bytes. */
+typedef struct rdm_actor rdm_actor; /* handle */
+typedef struct rdm_actor_config { /* what an actor is made from */
+  uint32_t struct_size;      /* bytes, set by rdm_actor_config_init */
+  int32_t num_envs;          /* rows of an act, 1..65536, required */
+  const rdm_policy *policy;  /* required; must outlive the actor */
+  const rdm_spec *spec;      /* of the pool that it plays in, checked as rdm_policy_check does;
+                              * its action_repeat must divide the policy's. NULL: nothing is
+                              * checked, and a step is one control step */
+  uint64_t seed;             /* of the noise; default 0 */
+  int32_t stochastic;        /* 1: actions are sampled, with the noise correlation of the policy;
+                              * default 0: the mean */
+  int32_t reserved;          /* 0 */
+  const float *center;       /* [action_dim] in [-1, 1] that the environment adds to every action
+                              * it is given, and the actor subtracts (the sum is right to a
+                              * rounding); copied; NULL: 0 */
+  const rdm_host *host;      /* hooks of this handle, copied; NULL: those of rdm_init */
+  char *error;               /* [error_size] the text of a failing call that takes this config;
+                              * NULL */
+  int32_t error_size;        /* bytes, terminator included; what is longer is cut */
+  int32_t reserved2;         /* 0 */
+} rdm_actor_config;
+/* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
+ * version's. */
+RDM_API rdm_result rdm_actor_config_init(rdm_actor_config *c, size_t size);
+/* Bytes *bytes that creation takes from the alloc hook, exact. */
+RDM_API rdm_result rdm_actor_memory(const rdm_actor_config *c, size_t *bytes);
+/* Makes the actor; every world begins an episode. ARGUMENT for a step that does not divide the
+ * policy's decision, VERSION_MISMATCH for a spec that the policy does not fit, RANGE for sizes and
+ * a center out of bounds. */
+RDM_API rdm_result rdm_actor_create(rdm_actor **out, const rdm_actor_config *c);
+RDM_API void rdm_actor_destroy(rdm_actor *actor);             /* NULL is fine */
+RDM_API const char *rdm_actor_error(const rdm_actor *actor); /* last failure on this handle; ""
+                                                              * at first */
+/* action [num_envs][action_dim] for one step of the worlds whose mask [num_envs] is not 0 (NULL:
+ * all): a new decision on obs [num_envs][obs_dim] where one is due, else the one that is held; rows
+ * of other worlds are not written. points: clouds of the worlds for a policy that sees points, NULL
+ * for others. No heap. ARGUMENT for rows that are not finite where a decision is due: nothing is
+ * counted then. */
+RDM_API rdm_result rdm_actor_act(rdm_actor *actor, const float *obs, const rdm_points *points,
+                                 const uint8_t *mask, float *action);
+/* Episodes begin anew where terminated [num_envs] or truncated [num_envs] is not 0: a decision is
+ * due there, and its noise is fresh. Either may be NULL; both NULL: everywhere. Any mask will do in
+ * the place of one of them. */
+RDM_API rdm_result rdm_actor_reset(rdm_actor *actor, const uint8_t *terminated,
+                                   const uint8_t *truncated);
+/* Held actions, counts and noise as bytes [capacity]; NULL asks for the size. An actor of the same
+ * policy and config that reads them goes on with the same bytes. */
+RDM_API rdm_result rdm_actor_write_state(const rdm_actor *actor, void *bytes, size_t capacity,
+                                         size_t *size);
+/* Of bytes [size]. FORMAT for bytes that are not whole, or of another actor: nothing changes. */
+RDM_API rdm_result rdm_actor_read_state(rdm_actor *actor, const void *bytes, size_t size);
+
+/* ---- planning: actions by trying them out ---------------------------------------------------- */
+/* A planner rolls many worlds out from where one stands, each under a noisy plan, and moves the
+ * plan to what went best (predictive sampling, cross-entropy, model predictive path integral).
+ * Costs come first: of plans within what the episode's limits leave the one with the highest return
+ * is best, then those that cost least.
+ *
+ *   rdm_planner_config c;  rdm_planner *planner;
+ *   rdm_planner_config_init(&c, sizeof c);
+ *   c.pool = pool;  c.settings = "method=cem\nsamples=128\nhorizon=20";
+ *   if (rdm_planner_create(&planner, &c)) puts(rdm_last_error());
+ *   for (...) { rdm_planner_act(planner, pool, 0, b.action, NULL);  rdm_pool_step(pool); }
+ *   rdm_planner_destroy(planner);
+ *
+ * The model is the world itself: rollouts know the draws that it will make. One planner follows one
+ * world's episode: call rdm_planner_reset when another begins. One thread at a time. Same seed,
+ * same calls: the same bytes, for any threads. A plan is an action for each of the next `horizon`
+ * steps of the pool. */
+typedef struct rdm_planner rdm_planner; /* handle */
+typedef struct rdm_planner_config { /* what a planner is made from */
+  uint32_t struct_size;      /* bytes, set by rdm_planner_config_init */
+  int32_t num_threads;       /* of the rollouts; 0: as many as the pool has; default 0 */
+  const rdm_pool *pool;      /* rollouts have its task and options; required; not kept */
+  uint64_t seed;             /* of the noise; default 0 */
+  const float *noise;        /* [action_dim] standard deviation of each entry, 0 to 10, copied;
+                              * NULL: option noise */
+  const double *cost_limits; /* [cost_dim] on the sum over an episode, < 0: none, copied; NULL:
+                              * the task's on column 0 */
+  const rdm_policy *policy;  /* proposes: sample 0 of the first iteration is its rollout, the
+                              * others add noise to that; must outlive the planner; NULL: none */
+  const rdm_agent *agent;    /* its critic values states at the horizon's end; must outlive the
+                              * planner, and not be in another thread's use while one plans;
+                              * NULL: none */
+  const rdm_option *options; /* [num_options] as rdm_planner_option_at lists them, copied; NULL:
+                              * none */
+  int32_t num_options;       /* count, default 0 */
+  int32_t reserved;          /* 0 */
+  const rdm_host *host;      /* hooks of this handle, copied; NULL: those of rdm_init */
+  const char *settings;      /* options as lines key=value, laid over `options`, copied; NULL:
+                              * none */
+  char *error;               /* [error_size] the text of a failing call that takes this config;
+                              * NULL */
+  int32_t error_size;        /* bytes, terminator included; what is longer is cut */
+  int32_t reserved2;         /* 0 */
+} rdm_planner_config;
+typedef struct rdm_planner_spec { /* sizes of a planner */
+  uint32_t struct_size;      /* in: bytes */
+  int32_t samples;           /* worlds rolled out in an iteration */
+  int32_t horizon;           /* steps of the pool */
+  int32_t knots;             /* of the noise, the horizon at most */
+  int32_t action_dim;        /* count */
+  int32_t cost_dim;          /* count */
+} rdm_planner_spec;
+typedef struct rdm_plan_info { /* what a call of rdm_planner_act found */
+  uint32_t struct_size;      /* in: bytes */
+  int32_t planned;           /* 1; 0: the plan was followed (option replan), the rest is 0 */
+  int32_t best;              /* sample that is best in the last iteration */
+  int32_t reserved;          /* 0 */
+  double ret;                /* of that sample: discounted sum of rewards, and the critic's value */
+  double cost[RDM_MAX_COSTS]; /* of that sample, sums of each column */
+  double feasible_share;     /* of the last iteration's samples: within what the limits leave */
+  int64_t steps;             /* control steps of all rollouts */
+} rdm_plan_info;
+/* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
+ * version's. */
+RDM_API rdm_result rdm_planner_config_init(rdm_planner_config *c, size_t size);
+/* Makes the planner and its worlds. ARGUMENT, RANGE, NOT_FOUND name what is wrong; VERSION_MISMATCH
+ * for a policy that does not fit the pool, UNSUPPORTED for an agent whose critics have no unit
+ * (rdm_agent_values). */
+RDM_API rdm_result rdm_planner_create(rdm_planner **out, const rdm_planner_config *c);
+RDM_API void rdm_planner_destroy(rdm_planner *planner);           /* NULL is fine */
+RDM_API const char *rdm_planner_error(const rdm_planner *planner); /* last failure on this
+                                                                    * handle; "" at first */
+RDM_API rdm_result rdm_planner_get_spec(const rdm_planner *planner,
+                                        rdm_planner_spec *io); /* fills io */
+/* Option i of planners: method, samples, horizon, knots, interpolation, noise, elites, temperature,
+ * iterations, costs, and others. RANGE past the end. */
+RDM_API rdm_result rdm_planner_option_at(int32_t i, rdm_option_info *out);
+/* All options as text [capacity] of lines key=value: given as settings they make a planner of the
+ * same options. */
+RDM_API rdm_result rdm_planner_settings(const rdm_planner *planner, char *text, size_t capacity,
+                                        size_t *size);
+
+/* Plans from the state that world env of the pool is in now, and writes the plan's first action to
+ * action [action_dim]. The pool is only read; it has the task and options of the one that the
+ * planner was made for, else ARGUMENT. io may be NULL. STATE where no episode runs. No heap. */
+RDM_API rdm_result rdm_planner_act(rdm_planner *planner, const rdm_pool *pool, int32_t env,
+                                   float *action, rdm_plan_info *io);
+/* Forgets the plan; the noise goes on. The next plan begins at rdm_pool_initial_mean, or the
+ * policy's rollout. */
+RDM_API rdm_result rdm_planner_reset(rdm_planner *planner);
+/* The plan as it is to plan [horizon][action_dim]: row 0 is the action that rdm_planner_act
+ * gave. */
+RDM_API rdm_result rdm_planner_get_plan(const rdm_planner *planner, float *plan);
+/* The next call begins at plan [horizon][action_dim], cut to [-1, 1], not shifted. ARGUMENT for
+ * entries that are not finite. With a policy it is tried as sample 1. */
+RDM_API rdm_result rdm_planner_set_plan(rdm_planner *planner, const float *plan);
+/* Plan, noise and counters as bytes [capacity]; NULL asks for the size. A planner of the same task,
+ * options, noise and limits that reads them goes on with the same bytes. */
+RDM_API rdm_result rdm_planner_write_state(const rdm_planner *planner, void *bytes, size_t capacity,
+                                           size_t *size);
+/* Of bytes [size]. FORMAT for bytes that are not whole, or of another planner: nothing changes. */
+RDM_API rdm_result rdm_planner_read_state(rdm_planner *planner, const void *bytes, size_t size);
+
+/* What the agent's critics say of obs [rows][obs_dim], for any number of rows: value [rows], the
+ * discounted sum of rewards to come, and the same of the cost columns that it limits,
+ * cost [rows][RDM_MAX_COSTS] by column, others 0; cost may be NULL. UNSUPPORTED with options
+ * normalize_reward or normalize_cost, which leave critics no unit. */
+RDM_API rdm_result rdm_agent_values(const rdm_agent *a, const float *obs, int32_t rows,
+                                    float *value, float *cost);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* REDMAN_PLAN_H */

@@ -1,0 +1,67 @@
+/* redman/policy.h: the frozen network. Stable since 1.0. */
+#ifndef REDMAN_POLICY_H
+#define REDMAN_POLICY_H
+#include <redman/base.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct rdm_policy rdm_policy; /* handle */
+typedef struct rdm_policy_info { /* what a policy file tells of its network */
+  uint32_t struct_size;       /* in: bytes */
+  int32_t obs_dim;            /* count */
+  int32_t action_dim;         /* count */
+  int32_t action_repeat;      /* control steps to hold each action */
+  float control_dt;           /* s, 0: unknown */
+  float noise_correlation;    /* AR(1) coefficient of the noise it was trained with */
+  uint64_t layout_hash;       /* 0: unknown */
+  uint64_t num_params;        /* of the network */
+  const char *task;           /* "" for a host's own environment */
+  const char *activation;     /* of the hidden layers: "tanh", "elu", "relu"; static */
+  int32_t num_points;         /* of the cloud beside each row, for rdm_policy_act_points; 0: it
+                               * sees none */
+  int32_t num_point_classes;  /* that it tells points apart by, 0: none */
+  int32_t num_features;       /* that its encoder makes of a cloud, 0 without */
+  int32_t point_color;        /* whether it sees the colours of points: 0, 1 */
+} rdm_policy_info;
+RDM_API rdm_result rdm_policy_load(rdm_policy **out, const void *bytes,
+                                   size_t size); /* copies bytes [size] */
+RDM_API rdm_result rdm_policy_load_file(rdm_policy **out,
+                                        const char *path); /* NOT_FOUND, FORMAT ... */
+RDM_API void rdm_policy_destroy(rdm_policy *p);             /* NULL is fine */
+RDM_API rdm_result rdm_policy_get_info(const rdm_policy *p, rdm_policy_info *io); /* fills io */
+RDM_API size_t rdm_policy_scratch(const rdm_policy *p, int32_t rows); /* bytes for act, at any
+                                                                       * address; 0: bad
+                                                                       * arguments */
+/* One decision, to be held for rdm_policy_info.action_repeat control steps (rdm_actor_act counts
+ * them): action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim].
+ * noise [rows][action_dim] are the caller's standard normals, NULL: the mean.
+ * scratch [scratch_bytes]: rdm_policy_scratch bytes or more, aligned in any way. No heap, no hidden
+ * state: any number of threads, each with its own scratch. ARGUMENT when obs or noise is not
+ * finite, or so large that the network overflows (action is written then, and of no use). STATE for
+ * a policy that sees points. */
+RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t rows,
+                                  const float *noise, float *action, void *scratch,
+                                  size_t scratch_bytes);
+/* "actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
+ * "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows
+ * of obs_dim: a weight of an entry that the policy does not see is 0. Of one that sees points
+ * "actor.0.weight" has a column for each feature behind those, and there are "encoder.0.weight" and
+ * so on, "encoder.origin" and "encoder.range", in m, "encoder.activation" (0 tanh, 1 elu, 2 relu),
+ * "example.points", in m, and "example.point_class". */
+RDM_API rdm_result rdm_policy_tensor(const rdm_policy *p, int32_t i, rdm_tensor *out);
+/* Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE. */
+RDM_API rdm_result rdm_policy_tensor_read(const rdm_policy *p, const char *name, float *out,
+                                          size_t count);
+/* OK, or VERSION_MISMATCH with a text that says which field of the spec differs. */
+RDM_API rdm_result rdm_policy_check(const rdm_policy *p, const rdm_spec *spec);
+/* Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up
+ * to capacity of them to columns [capacity]; *count is how many there are. */
+RDM_API rdm_result rdm_policy_columns(const rdm_policy *p, int32_t *columns, int32_t capacity,
+                                      int32_t *count);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* REDMAN_POLICY_H */

@@ -1,0 +1,287 @@
+/* redman/pool.h: what exists, and worlds of one task, stepped together. Stable since 1.0. */
+#ifndef REDMAN_POOL_H
+#define REDMAN_POOL_H
+#include <redman/base.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- discovery: what exists, and what every number in a row means ---------------------------- */
+typedef struct rdm_task { /* a task with its default options */
+  uint32_t struct_size;     /* in: bytes                                                      */
+  float control_dt;         /* s between steps, default options                               */
+  const char *name;         /* "hand_over_safe_finger"                                        */
+  const char *summary;      /* one line                                                       */
+  int32_t obs_dim;          /* count, default options                                         */
+  int32_t action_dim;       /* count, default options                                         */
+  int32_t cost_dim;         /* count of cost columns                                          */
+  int32_t max_steps;        /* control steps of an episode, default options                   */
+  int32_t num_fields;       /* for rdm_task_field                                             */
+  int32_t num_options;      /* for rdm_task_option                                            */
+  int32_t num_cameras;      /* for rdm_task_camera                                            */
+  int32_t num_defaults;     /* for rdm_task_default                                           */
+} rdm_task;
+typedef struct rdm_cost {   /* frozen layout: a cost column */
+  const char *name;         /* column 0 is "cost", the paper's                                */
+  const char *help;         /* one line                                                       */
+  double limit;             /* default limit on the sum over an episode; < 0: none            */
+} rdm_cost;
+typedef struct rdm_camera { /* frozen layout */
+  const char *name;         /* "front"                                                        */
+  float eye[3];             /* m, in the frame that mount names                               */
+  float target[3];          /* m, likewise; the picture's centre looks from eye to target     */
+  float fov_y;              /* rad, vertical field of view                                    */
+  int32_t mount;            /* 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of
+                             * the base of its articulation k - 1 (cameras that ride on a robot) */
+} rdm_camera;
+RDM_API int32_t rdm_task_count(void); /* number of tasks; 0 without the simulation half */
+RDM_API rdm_result rdm_task_at(int32_t index, rdm_task *io); /* RANGE past the end */
+RDM_API rdm_result rdm_task_find(const char *name,
+                                 int32_t *index); /* NOT_FOUND: nearest in the text */
+RDM_API rdm_result rdm_task_field(int32_t task, int32_t i, rdm_field *out);    /* default options */
+/* Bounds *low and *high that every entry of field i keeps, default options; NAN: none. */
+RDM_API rdm_result rdm_task_field_bounds(int32_t task, int32_t i, float *low, float *high);
+RDM_API rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost *out);      /* i < cost_dim */
+RDM_API rdm_result rdm_task_option(int32_t task, int32_t i,
+                                   rdm_option_info *out); /* i < num_options */
+RDM_API rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera *out);  /* i < num_cameras */
+/* The task's own defaults of agent options, to be given as rdm_agent_config.defaults. */
+RDM_API rdm_result rdm_task_default(int32_t task, int32_t i,
+                                    rdm_option *out); /* i < num_defaults */
+
+typedef struct rdm_robot { /* a robot description */
+  uint32_t struct_size;     /* in: bytes                                                      */
+  int32_t num_joints;       /* count                                                          */
+  int32_t num_actuated;     /* count of joints with a motor of their own                      */
+  int32_t reserved;         /* 0                                                              */
+  const char *name;         /* "shadow_hand"                                                  */
+  const char *summary;      /* one line                                                       */
+} rdm_robot;
+typedef struct rdm_joint {  /* frozen layout */
+  const char *name;         /* "FFJ2"                                                         */
+  double lower, upper;      /* rad                                                            */
+  double kp;                /* N m/rad, 0: coupled                                            */
+  double kd;                /* N m s/rad                                                      */
+  double effort;            /* N m                                                            */
+  int32_t action;           /* entry of the hand's action, -1: none                           */
+  int32_t reserved;         /* 0                                                              */
+} rdm_joint;
+RDM_API int32_t rdm_robot_count(void); /* number of robot descriptions */
+RDM_API rdm_result rdm_robot_at(int32_t index, rdm_robot *io); /* RANGE past the end */
+RDM_API rdm_result rdm_robot_find(const char *name, int32_t *index); /* name or alias; NOT_FOUND:
+                                                                      * nearest in the text */
+RDM_API rdm_result rdm_robot_joint(int32_t robot, int32_t i, rdm_joint *out);  /* i < num_joints */
+
+typedef struct rdm_object { /* frozen layout: a thing by name, for option object=... */
+  const char *name;         /* "egg"                                                          */
+  const char *shape;        /* "capsule r 0.03, straight part 0.02": kind and sizes in m      */
+  double mass;              /* kg; hull: of the default points, 500 kg/m3                     */
+} rdm_object;
+RDM_API int32_t rdm_object_count(void); /* number of objects, those that were removed too */
+RDM_API rdm_result rdm_object_at(int32_t index,
+                                 rdm_object *out); /* RANGE past the end; NOT_FOUND: removed */
+RDM_API rdm_result rdm_object_find(const char *name, int32_t *index); /* name or alias;
+                                                                       * NOT_FOUND: nearest in
+                                                                       * the text */
+
+/* ---- pool: worlds of one task, stepped together ---------------------------------------------- */
+typedef struct rdm_pool rdm_pool; /* handle */
+/* When a world begins again by itself: in the step that ended its episode, in the next, or
+ * never. */
+enum rdm_autoreset {
+  RDM_AUTORESET_SAME_STEP = 0, RDM_AUTORESET_NEXT_STEP = 1, RDM_AUTORESET_OFF = 2
+};
+enum rdm_status {                  /* bits of rdm_buffers.status */
+  RDM_STATUS_CONTACTS = 1,         /* contacts beyond contacts_max were left out              */
+  RDM_STATUS_DIVERGED = 2,         /* a value was not finite: the episode was truncated       */
+  RDM_STATUS_BAD_ACTION = 4,       /* the row of actions was not finite: likewise             */
+  RDM_STATUS_TASK = 8,             /* a function of a host's own task failed: likewise        */
+  RDM_STATUS_SOLVER = 16,          /* contacts were not solved, not seen in engine ode: one was
+                                    * wrong by more than 1 m/s along its normal when the sweeps
+                                    * ended (much under something heavier, with few iterations),
+                                    * or gave way for ever (a contact_max_speed below 0.02 m/s) */
+  RDM_STATUS_SLOWED = 32           /* a free body that turned by more than 3 rad in a substep was
+                                    * slowed to that */
+};
+typedef struct rdm_pool_config { /* what a pool is made from */
+  uint32_t struct_size;      /* bytes, set by rdm_pool_config_init */
+  int32_t num_envs;          /* worlds, 1..65536, default 1 */
+  const char *task;          /* name, required; copied */
+  uint64_t seed;             /* world i draws from stream (seed, i), until a reset names another */
+  int32_t num_threads;       /* 0 or 1: the caller's only; up to 256; default 0 */
+  int32_t autoreset;         /* RDM_AUTORESET_*, default same step */
+  const rdm_option *options; /* [num_options], copied; NULL: none */
+  int32_t num_options;       /* count, default 0 */
+  int32_t reserved;          /* 0 */
+  const rdm_host *host;      /* hooks of this handle, copied; NULL: those of rdm_init */
+  const char *settings;      /* options as lines key=value, laid over `options`, copied; NULL:
+                              * none */
+  char *error;               /* [error_size] the text of a failing call that takes this config;
+                              * NULL */
+  int32_t error_size;        /* bytes, terminator included; what is longer is cut */
+  int32_t reserved2;         /* 0 */
+} rdm_pool_config;
+/* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
+ * version's. */
+RDM_API rdm_result rdm_pool_config_init(rdm_pool_config *c, size_t size);
+
+/* What a pool of this config would be: OK where rdm_pool_create would be, memory aside, else its
+ * error. Makes the task to ask it, and no world; nothing is kept. */
+RDM_API rdm_result rdm_pool_spec(const rdm_pool_config *c, rdm_spec *io);
+/* Bytes that creation takes: `ours` from the alloc hook, exact; `engines` by the physics engine
+ * from the C library, an estimate. Either may be NULL. */
+RDM_API rdm_result rdm_pool_memory(const rdm_pool_config *c, size_t *ours, size_t *engines);
+/* Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step. */
+RDM_API rdm_result rdm_pool_create(rdm_pool **out, const rdm_pool_config *c);
+RDM_API void rdm_pool_destroy(rdm_pool *p);                 /* NULL is fine */
+RDM_API const char *rdm_pool_error(const rdm_pool *p); /* last failure on this handle; "" at
+                                                        * first */
+RDM_API rdm_result rdm_pool_get_spec(const rdm_pool *p,
+                                     rdm_spec *io); /* as rdm_pool_spec, of a pool */
+RDM_API rdm_result rdm_pool_field(const rdm_pool *p, int32_t i,
+                                  rdm_field *out); /* i < num_fields */
+/* Bounds *low and *high that every entry of field i keeps; NAN: none. */
+RDM_API rdm_result rdm_pool_field_bounds(const rdm_pool *p, int32_t i, float *low, float *high);
+/* Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of
+ * RDM_BASELINE_HOLD. */
+RDM_API rdm_result rdm_pool_initial_mean(const rdm_pool *p, float *action);
+/* Option i of the task as this pool has it: key and the value as text [RDM_TEXT_SIZE], which reads
+ * back exactly. RANGE for a text that is longer: rdm_pool_settings has it. Behind the task's
+ * num_options come keys with a FIELD that were set, in order; RANGE ends them. */
+RDM_API rdm_result rdm_pool_option(const rdm_pool *p, int32_t i, const char **key, char *text);
+/* All options as text [capacity] of lines key=value: given as settings they make the same pool
+ * again. */
+RDM_API rdm_result rdm_pool_settings(const rdm_pool *p, char *text, size_t capacity, size_t *size);
+
+/* Rows of world i begin at i * width; 64-byte aligned; the same addresses until destroy or bind.
+ * The library writes them inside reset, step and set_state only. */
+typedef struct rdm_buffers {
+  uint32_t struct_size;      /* in: bytes */
+  uint32_t reserved;         /* 0 */
+  float *obs;                /* [num_envs][obs_dim]; tasks with hands cut each entry at +-5 */
+  float *final_obs;          /* [num_envs][obs_dim] last observation where an episode ended, else
+                              * as obs */
+  float *action;             /* [num_envs][action_dim] in [-1, 1], clipped; the host writes */
+  float *reward;             /* [num_envs] */
+  float *cost;               /* [num_envs][cost_dim] >= 0; column 0 is the task's paper cost */
+  float *cost_raw;           /* [num_envs][cost_dim] the measured value behind each cost */
+  float *episode_return;     /* [num_envs] sum of rewards; the finished episode's where one ended */
+  float *episode_cost;       /* [num_envs][cost_dim] likewise */
+  int32_t *episode_step;     /* [num_envs] control steps, likewise */
+  uint32_t *status;          /* [num_envs] RDM_STATUS_* of the last step or reset */
+  uint8_t *terminated;       /* [num_envs] 1: the task ended (a fall) */
+  uint8_t *truncated;        /* [num_envs] 1: cut by the time limit or a bad status */
+  uint8_t *success;          /* [num_envs] 1: the task's success holds in this step */
+  uint32_t *episode_status;  /* [num_envs] all RDM_STATUS_* of the episode; the finished one's
+                              * where one ended */
+} rdm_buffers;
+RDM_API rdm_result rdm_pool_buffers(const rdm_pool *p, rdm_buffers *io); /* borrowed pointers */
+/* Non-NULL pointers of b take the place of the pool's (sizes as above, at least 4-byte aligned;
+ * they must outlive the pool or the next bind); NULL ones keep what is there. Contents are copied
+ * over. */
+RDM_API rdm_result rdm_pool_bind(rdm_pool *p, const rdm_buffers *b);
+
+/* Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new
+ * streams: the seed alone, whatever the world's number, so that seed s gives what a pool of one
+ * world created with seed s has. NULL: go on with the worlds' own, which after create is
+ * (config.seed, i). Costs are 0 afterwards. An entry of the first observation that is not finite is
+ * written as 0, and the world is flagged RDM_STATUS_DIVERGED, its episode with it. Where a host's
+ * own task fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand
+ * as if they were never reset, the others have begun. */
+RDM_API rdm_result rdm_pool_reset(rdm_pool *p, const uint64_t *seeds, const uint8_t *mask);
+/* One control step of every world: reads action, writes all the rest. STATE before the first reset,
+ * and with autoreset off while an ended world was not reset. Worlds that diverge, get an action
+ * that is not finite, or whose task of a host's own fails, are truncated and flagged, with reward
+ * and cost 0 in that step; the call returns OK. With option action_repeat it is that many control
+ * steps with the same action, or as many as the episode has left: reward and cost are sums over
+ * them, success is set if any had it, status has the bits of all, the other rows are those after
+ * the last. */
+RDM_API rdm_result rdm_pool_step(rdm_pool *p);
+/* The same for worlds whose mask [num_envs] is not 0; rows of the others do not change. */
+RDM_API rdm_result rdm_pool_step_masked(rdm_pool *p, const uint8_t *mask);
+
+/* actions that nobody learned */
+enum rdm_baseline_kind { RDM_BASELINE_ZERO = 0, RDM_BASELINE_HOLD = 1, RDM_BASELINE_RANDOM = 2 };
+/* Fills the action buffer: all 0 (the middle of each joint's range), the nominal start pose, or
+ * uniform in [-1, 1] from the stream (seed, world, policy). */
+RDM_API rdm_result rdm_pool_baseline(rdm_pool *p, int32_t kind);
+
+/* The whole state of world env, exact: a pool of the same task and options that sets it goes on
+ * with the same bytes. set_state also rewrites obs and clears the other rows of that world. env -1:
+ * all worlds in one block. FORMAT for bytes that are not whole, of another task or options, or hold
+ * what no world can have: nothing changes. */
+RDM_API rdm_result rdm_pool_state_size(const rdm_pool *p, int32_t env, size_t *bytes);
+RDM_API rdm_result rdm_pool_get_state(const rdm_pool *p, int32_t env, void *bytes, size_t capacity,
+                                      size_t *size); /* to bytes [capacity]; *size is how many
+                                                      * there are */
+RDM_API rdm_result rdm_pool_set_state(rdm_pool *p, int32_t env, const void *bytes,
+                                      size_t size); /* of bytes [size] */
+RDM_API rdm_result rdm_pool_hash(const rdm_pool *p, int32_t env,
+                                 uint64_t *hash); /* of the state; -1: all */
+
+typedef struct rdm_shape {   /* frozen layout: what the scene is made of, the same for all worlds */
+  const char *name;          /* "right.ff_distal" */
+  float size[3];             /* m: radius | radius, half length along z | half sizes (hull: of
+                              * its box) */
+  int32_t kind;              /* RDM_SPHERE ... RDM_HULL; plane: the half space below z = 0 of its
+                              * frame */
+  uint8_t color[4];          /* red, green, blue, 255 */
+  int32_t fixed;             /* flag: never moves */
+} rdm_shape;
+RDM_API rdm_result rdm_pool_shape(const rdm_pool *p, int32_t i,
+                                  rdm_shape *out); /* i < num_shapes */
+/* pose [num_shapes][7]: position (m), quaternion (x, y, z, w); world frame of that world. */
+RDM_API rdm_result rdm_pool_poses(const rdm_pool *p, int32_t env, float *pose);
+typedef struct rdm_contact { /* frozen layout: one contact point of the last substep */
+  int32_t shape_a, shape_b;  /* for rdm_pool_shape */
+  float position[3];         /* m */
+  float normal[3];           /* unit, from b into a */
+  float force[3];            /* N, on a */
+  float depth;               /* m */
+} rdm_contact;
+/* Writes up to capacity contacts to out [capacity], of things asleep as they fell asleep; *count is
+ * how many there are. */
+RDM_API rdm_result rdm_pool_contacts(const rdm_pool *p, int32_t env, rdm_contact *out,
+                                     int32_t capacity, int32_t *count);
+/* A picture of world env. camera: a name of the task's. rgb [h][w][3], depth [h][w] (m along the
+ * optical axis, 0: nothing hit), segmentation [h][w] (shape, -1: nothing); each may be NULL. 1 <=
+ * w, h <= 8192. */
+RDM_API rdm_result rdm_pool_render(rdm_pool *p, int32_t env, const char *camera, int32_t w,
+                                   int32_t h, uint8_t *rgb, float *depth, int32_t *segmentation);
+typedef struct rdm_pool_stats { /* counts since create */
+  uint32_t struct_size;      /* in: bytes */
+  int32_t contacts_max;      /* largest number of contacts in a substep's list since create, all
+                              * worlds */
+  double contacts_mean;      /* mean of the same */
+  double joint_drift;        /* m, largest gap of any joint now, all worlds */
+  int64_t steps;             /* control steps of one world, summed over worlds */
+  int64_t diverged;          /* steps and resets flagged RDM_STATUS_DIVERGED so far */
+  int64_t overflowed;        /* steps flagged RDM_STATUS_CONTACTS so far */
+  int64_t bad_actions;       /* steps flagged RDM_STATUS_BAD_ACTION so far */
+  int64_t task_failed;       /* steps flagged RDM_STATUS_TASK so far */
+  int64_t unconverged;       /* steps flagged RDM_STATUS_SOLVER so far */
+  int64_t slowed;            /* steps flagged RDM_STATUS_SLOWED so far */
+  double solver_residual;    /* m/s, what a contact's normal velocity was still wrong by when the
+                              * last sweep of the last step came to it, the largest of all
+                              * worlds; NaN: engine ode, not measured */
+} rdm_pool_stats;
+RDM_API rdm_result rdm_pool_get_stats(const rdm_pool *p, rdm_pool_stats *io); /* fills io */
+/* World dst_env of dst (-1: all of them) becomes what world src_env of src is, at the price of
+ * copying memory: afterwards it goes on with the bytes that set_state(get_state) would give, and
+ * its rows (but action, and those of rdm_sensors) are the other's. Pools of the same task and
+ * options, of any sizes, threads and seeds; src may be dst. ARGUMENT for pools that differ, RANGE
+ * for worlds that are not there: nothing changes. No heap. */
+RDM_API rdm_result rdm_pool_copy(rdm_pool *dst, int32_t dst_env, const rdm_pool *src,
+                                 int32_t src_env);
+/* Pushes a shape's carrier during the next step: force [3] at its centre of mass, N, world axes. */
+RDM_API rdm_result rdm_pool_push(rdm_pool *p, int32_t env, int32_t shape, const float force[3]);
+/* What failed last in world env of the pool: "world 3: task press: judge: sensor lost", at most 255
+ * bytes; "" at first, and for the library's own tasks. Kept until the world's next failure; no part
+ * of a saved state. */
+RDM_API const char *rdm_pool_world_error(const rdm_pool *p, int32_t env);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* REDMAN_POOL_H */

@@ -1,0 +1,184 @@
+/* redman/robot.h: robots of your own. Experimental. */
+#ifndef REDMAN_ROBOT_H
+#define REDMAN_ROBOT_H
+#include <redman/pool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A robot is a tree of links on a root, as plain arrays; the library's own are described in the
+ * same way (rdm_robot_get, rdm_robot_link_at ...). Frames: a link's frame is that of its joint; it
+ * stands at (p, q) in its parent's frame while the joint is at 0, and turns about (slides along)
+ * `axis` of its own. A hand is given as the right one: fingers and palm by their rows; options
+ * hand= and arm= of the hand tasks take robots by name.
+ *
+ *   rdm_robot_def d;  int32_t robot;
+ *   rdm_robot_def_init(&d, sizeof d);
+ *   d.name = "my_hand";  d.kind = RDM_ROBOT_HAND;  d.links = links;  d.num_links = 9; ...
+ *   if (rdm_robot_create(&robot, &d)) puts(rdm_last_error());          names the row and the number
+ *   config.settings = "hand=my_hand\narm=ur5e";  ... rdm_pool_create(&p, &config) ...
+ *   rdm_robot_remove(robot);
+ *
+ * Robots belong to the process; any number of threads may look while others add and remove. */
+enum rdm_robot_kind { RDM_ROBOT_OTHER = 0, RDM_ROBOT_HAND = 1, RDM_ROBOT_ARM = 2 }; /* of a robot */
+enum rdm_joint_kind { RDM_REVOLUTE = 0, RDM_PRISMATIC = 1 };  /* of a joint */
+enum rdm_robot_row { RDM_ROOT_LINK = -1, RDM_NO_LINK = -2 };  /* in the place of a row of links */
+#define RDM_ROBOT_LINKS 64   /* links of a robot, at most */
+#define RDM_ROBOT_KNOTS 4    /* of a curve, at most */
+/* frozen layout: a link and the joint that moves it; m, rad, kg, N, s */
+typedef struct rdm_robot_link {
+  const char *name;        /* of the link, unique */
+  const char *joint;       /* of the joint, unique */
+  int32_t parent;          /* an earlier row, RDM_ROOT_LINK */
+  int32_t kind;            /* RDM_REVOLUTE, RDM_PRISMATIC */
+  double p[3];             /* position in the parent's frame with the joint at 0 */
+  double q[4];             /* rotation, unit */
+  double axis[3];          /* in the link's own frame, unit */
+  double lower;            /* range, below upper */
+  double upper;            /* range */
+  double velocity;         /* how fast the drive's target may move; 0: at once */
+  double kp;               /* drive: effort kp (target - q) - kd rate */
+  double kd;               /* drive */
+  double effort;           /* bound of the drive's effort, N m (N) */
+  double armature;         /* inertia added about the axis, kg m2; revolute joints alone */
+  double friction;         /* dry friction, N m (N) */
+  double mass;             /* 0 with moments of 0: none */
+  double com[3];           /* centre of mass in the link's frame */
+  double moment[6];        /* xx yy zz xy xz yz about com, axes of the link */
+} rdm_robot_link;
+typedef struct rdm_robot_shape { /* frozen layout: what of a link can be touched and seen */
+  const char *name;        /* unique */
+  int32_t link;            /* row, RDM_ROOT_LINK */
+  int32_t kind;            /* RDM_SPHERE, RDM_CAPSULE, RDM_BOX, RDM_CYLINDER, RDM_ELLIPSOID */
+  double size[3];          /* as rdm_shape, m */
+  double p[3];             /* position in the link's frame, m */
+  double q[4];             /* rotation, unit */
+  uint8_t color[4];        /* red, green, blue, 255 */
+  uint8_t reserved[4];     /* 0 */
+} rdm_robot_shape;
+/* frozen layout: two shapes of one robot that may touch each other */
+typedef struct rdm_robot_pair {
+  int32_t a, b;            /* rows of shapes */
+} rdm_robot_pair;
+/* frozen layout: a joint that a tendon or belt lets follow another */
+typedef struct rdm_robot_coupling {
+  int32_t link;            /* row whose joint follows */
+  int32_t other;           /* row whose joint leads; itself no follower */
+  double ratio;            /* q = ratio q_other */
+  double slack;            /* rad: within it the joint goes freely */
+} rdm_robot_coupling;
+/* frozen layout: the target of a joint, piecewise linear in a command of -1 to 1 */
+typedef struct rdm_robot_curve {
+  int32_t link;            /* row */
+  int32_t driver;          /* row whose command it is: the same, or that of the motor */
+  int32_t num_knots;       /* 2 to RDM_ROBOT_KNOTS */
+  int32_t reserved;        /* 0 */
+  double command[4];       /* ascending */
+  double angle[4];         /* in the joint's range, rad (m) */
+} rdm_robot_curve;
+/* frozen layout: its rows stand together, from `first` to `tip` */
+typedef struct rdm_robot_finger {
+  const char *name;        /* short: it begins the names of its observations */
+  int32_t first;           /* row of its first link */
+  int32_t tip;             /* row of its last; it carries the force sensor */
+  int32_t lateral;         /* row of the joint that spreads it to a side, -1: none */
+  int32_t proximal;        /* row of the joint that bends it at its base, -1: none */
+  int32_t middle;          /* row of the next joint that bends it, -1: none */
+  int32_t thumb;           /* flag */
+  double p_tip[3];         /* its end, in the frame of `tip`, m */
+} rdm_robot_finger;
+typedef struct rdm_robot_def { /* a whole robot; the arrays are copied by rdm_robot_create */
+  uint32_t struct_size;    /* bytes, set by rdm_robot_def_init */
+  int32_t kind;            /* RDM_ROBOT_* */
+  const char *name;        /* letters, digits, '_', '-', '+'; at most 25 */
+  const char *alias;       /* another name; NULL */
+  const char *summary;     /* one line; NULL: none */
+  const rdm_robot_link *links;         /* [num_links] a parent before its children */
+  const rdm_robot_shape *shapes;       /* [num_shapes] NULL with num_shapes 0 */
+  const rdm_robot_pair *pairs;         /* [num_pairs] NULL with num_pairs 0; num_pairs -1: all
+                                        * but neighbours */
+  const rdm_robot_coupling *couplings; /* [num_couplings] NULL with num_couplings 0 */
+  const rdm_robot_curve *curves;       /* [num_curves] NULL with num_curves 0 */
+  const int32_t *commands; /* [num_commands] rows in the order of actions; NULL: all but the
+                            * followers, by row */
+  const rdm_robot_finger *fingers;     /* [num_fingers] the first finger first; NULL with
+                                        * num_fingers 0 */
+  const double *home;      /* [num_links] start pose, rad (m); NULL: 0, or the limit nearest to
+                            * it */
+  const double *folded;    /* [num_links] of a hand: fingers straight, thumb across the palm;
+                            * NULL */
+  const float *closed;     /* [num_commands] of a hand: commands that close it around 5 cm; NULL */
+  int32_t num_links;       /* 1 to RDM_ROBOT_LINKS */
+  int32_t num_shapes;      /* count */
+  int32_t num_pairs;       /* count */
+  int32_t num_couplings;   /* count */
+  int32_t num_curves;      /* count */
+  int32_t num_commands;    /* count; -1: none, springs hold joints at home (of RDM_ROBOT_OTHER: a
+                            * door, scissors) */
+  int32_t num_fingers;     /* count */
+  int32_t mirror;          /* root axis (0, 1, 2) normal to the plane that a left one is mirrored
+                            * in; -1: none */
+  double root_mass;        /* of the root link, kg */
+  double root_com[3];      /* in the root frame, m */
+  double root_moment[6];   /* as rdm_robot_link.moment */
+  double mount_p[3];       /* of hands: the frame, z to the fingers, that comes onto an arm's
+                            * flange; in the root frame */
+  double mount_q[4];       /* rotation */
+  double flange_p[3];      /* of arms: the frame, z out of the arm, that carries a hand; in
+                            * flange_link's frame */
+  double flange_q[4];      /* rotation */
+  int32_t flange_link;     /* row, RDM_NO_LINK */
+  int32_t palm_link;       /* row, RDM_ROOT_LINK, RDM_NO_LINK */
+  double palm_p[3];        /* centre of the palm's surface, in palm_link's frame, m */
+  double palm_normal[3];   /* unit: out of the palm */
+  double palm_fingers[3];  /* unit: the way the fingers point; of a gripper any in the palm's
+                            * plane */
+  double hold_p[3];        /* where a thing is that the hand holds, in palm_link's frame, m */
+} rdm_robot_def;
+RDM_API rdm_result rdm_robot_def_init(rdm_robot_def *def,
+                                      size_t size); /* defaults into the first `size` bytes */
+/* Adds a robot under a number that no other gets, also later: 2^31 of them in a process; what a
+ * removed one took comes back. *out is for rdm_robot_at and what follows here. ARGUMENT, RANGE: the
+ * text names the row; a name that is taken is an ARGUMENT. Moments must be positive and keep the
+ * triangle rule. */
+RDM_API rdm_result rdm_robot_create(int32_t *out, const rdm_robot_def *def);
+/* Pools that use it keep it. ARGUMENT for the library's own. */
+RDM_API rdm_result rdm_robot_remove(int32_t robot);
+/* A hand on an arm as a robot of its own, under `name`: its root and the arm's last link are one
+ * body. The hand is turned by `yaw` (rad) about the flange's z and stands off by `adapter` (m);
+ * left: its mirror image. UNSUPPORTED: no arm, no hand. */
+RDM_API rdm_result rdm_robot_mount(int32_t *out, const char *name, int32_t arm, int32_t hand,
+                                   double yaw, double adapter, int32_t left);
+/* What rdm_robot_create took, but for the arrays, which are NULL here. */
+RDM_API rdm_result rdm_robot_get(int32_t robot, rdm_robot_def *io);
+RDM_API rdm_result rdm_robot_link_at(int32_t robot, int32_t i,
+                                     rdm_robot_link *out); /* i < num_links */
+RDM_API rdm_result rdm_robot_shape_at(int32_t robot, int32_t i,
+                                      rdm_robot_shape *out); /* i < num_shapes */
+RDM_API rdm_result rdm_robot_pair_at(int32_t robot, int32_t i,
+                                     rdm_robot_pair *out); /* i < num_pairs */
+RDM_API rdm_result rdm_robot_coupling_at(int32_t robot, int32_t i,
+                                         rdm_robot_coupling *out); /* i < num_couplings */
+RDM_API rdm_result rdm_robot_curve_at(int32_t robot, int32_t i,
+                                      rdm_robot_curve *out); /* i < num_curves */
+RDM_API rdm_result rdm_robot_finger_at(int32_t robot, int32_t i,
+                                       rdm_robot_finger *out); /* i < num_fingers */
+/* Numbers of the robot's poses and commands: commands [num_commands], home [num_links],
+ * folded [num_links] and closed [num_commands] may be NULL. The counts are those of rdm_robot_get;
+ * folded and closed are 0 where it has none. */
+RDM_API rdm_result rdm_robot_poses_of(int32_t robot, int32_t *commands, double *home,
+                                      double *folded, float *closed);
+/* For joints q [num_links], in the root frame: poses [num_links][7] of the links, position (m) and
+ * quaternion. flange [7], tips [num_fingers][3] and palm [7] (origin at hold_p, y into the palm, z
+ * as the fingers point) may be NULL. */
+RDM_API rdm_result rdm_robot_kinematics(int32_t robot, const double *q, double *poses,
+                                        double *flange, double *tips, double *palm);
+/* Joints q [num_links], from where they are, to where the arm's flange has pose [7] in the root
+ * frame. *found is 0 when the least squares end elsewhere. UNSUPPORTED: no flange. */
+RDM_API rdm_result rdm_robot_reach(int32_t robot, const double pose[7], double *q, int32_t *found);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* REDMAN_ROBOT_H */

@@ -1,0 +1,360 @@
+/* redman/task.h: tasks of your own. Experimental. */
+#ifndef REDMAN_TASK_H
+#define REDMAN_TASK_H
+#include <redman/robot.h>
+#include <redman/object.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A task is a description and functions that the library calls: `build` for each pool that is made,
+ * to make the scene of its worlds; the others in the resets and control steps of a world.
+ * Registered, it is a task like the library's own for all that takes one by name: pools and
+ * threads, states, cameras and points, learners, checkpoints, the tool (--plugin).
+ *
+ *   static rdm_result build(void *user, rdm_scene *scene, void *instance) {
+ *     struct ids *ids = instance;
+ *     if (rdm_scene_add_body(scene, &cup, &ids->cup))
+ *       return rdm_fail(RDM_ARGUMENT, "the cup cannot be");
+ *     ... }
+ *   ...
+ *   rdm_task_def d;  int32_t task;
+ *   rdm_task_def_init(&d, sizeof d);
+ *   d.name = "press";  d.build = build;  d.reset = reset; ...
+ *   if (rdm_task_register(&task, &d)) puts(rdm_last_error());
+ *   if (rdm_task_check("press", NULL, NULL, 0)) puts(rdm_last_error());  the first broken promise
+ *   config.task = "press"; ... rdm_pool_create(&p, &config) ...
+ *
+ * What the functions promise, and rdm_task_check tries:
+ *   - What happens follows from the options, the world, its state and the random numbers that are
+ *     given, alone: threads call them for many worlds at a time, and a world that was saved goes on
+ *     elsewhere. Contacts and touches are those of the step just made, and no part of a saved
+ *     world: they are for judge and observe.
+ *   - `build` may be called more often than pools are made (to ask for sizes).
+ *   - State and instance are plain bytes, zeroed before reset and build. No pointers in a state.
+ *   - No memory is left behind by a step; nothing is kept of a pointer after the call.
+ *   - They return RDM_OK, or an error. One of build is that of making the pool. One of control,
+ *     judge or observe ends the episode of its world: truncated, RDM_STATUS_TASK, reward and cost 0
+ *     in that step; the other worlds go on and the step returns RDM_OK. rdm_pool_world_error has
+ *     the text of the call that failed in them, or of rdm_fail. A reset that fails within a step
+ *     flags the world too, which shows the end that it had until one succeeds in a later step, with
+ *     the draws that follow; one within rdm_pool_reset is that call's error.
+ *   - They do not leave by longjmp, which nothing here survives: a runtime whose errors do (Lua,
+ *     Ruby, PHP) catches them within the function and returns an error. An exception of C++ that
+ *     comes out counts as an ARGUMENT, out of `release` it goes to the log.
+ *   - They do not call the handle that they are called for (STATE). */
+typedef struct rdm_scene rdm_scene; /* handle, within build: what a world is made of */
+typedef struct rdm_world rdm_world; /* handle, within a call of the others: one world */
+/* Sets rdm_last_error of this thread to `text` and returns `code`. */
+RDM_API rdm_result rdm_fail(rdm_result code, const char *text);
+
+typedef struct rdm_body_def { /* a free body; its frame is at its centre of mass */
+  uint32_t struct_size;    /* bytes */
+  int32_t num_shapes;      /* count */
+  const char *name;        /* unique among bodies and robots */
+  const rdm_shape_def *shapes; /* [num_shapes] 1 or more */
+  double p[3];             /* position at the start, m */
+  double q[4];             /* rotation; all 0: none */
+  double mass;             /* kg */
+  double moment[6];        /* xx yy zz xy xz yz, kg m2; all 0: of the shapes, solid, of one
+                            * density */
+  double linear_damping;   /* 1/s */
+  double angular_damping;  /* 1/s; stands for rolling friction */
+  int32_t weightless;      /* flag: feels no gravity */
+  int32_t reserved;        /* 0 */
+} rdm_body_def;
+/* a robot in a scene: one of the list, or a tree of its own (a drawer, a door) */
+typedef struct rdm_scene_robot {
+  uint32_t struct_size;    /* bytes, set by rdm_scene_robot_init */
+  int32_t robot;           /* of rdm_robot_find; default -1: left out */
+  const rdm_robot_def *own; /* a robot of this scene alone, in the place of `robot`; NULL */
+  const char *name;        /* begins, with '_', the names of its links, joints and shapes; unique */
+  const char *material;    /* of its shapes; NULL: "default" */
+  double p[3];             /* its base at the start, m */
+  double q[4];             /* rotation; all 0: none */
+  double base_damping;     /* of a free base: of all links, 1/s */
+  int32_t free_base;       /* flag: the base moves */
+  int32_t left;            /* flag: the mirror image */
+  int32_t gravity;         /* flag: its links feel gravity */
+  int32_t filled;          /* flag, set by rdm_scene_robot_init: without it a robot of 0 was left
+                            * out */
+} rdm_scene_robot;
+/* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
+ * version's. */
+RDM_API rdm_result rdm_scene_robot_init(rdm_scene_robot *robot, size_t size);
+/* what rdm_scene_find looks for; numbers count from 0 in the order of adding */
+enum rdm_scene_part {
+  RDM_SCENE_ROBOT = 0, RDM_SCENE_BODY = 1,
+  RDM_SCENE_LINK = 2,   /* of all robots, robot by robot; joint i moves link i */
+  RDM_SCENE_JOINT = 3,
+  RDM_SCENE_SHAPE = 4,  /* as rdm_pool_shape: robots, bodies, those that stand still */
+  RDM_SCENE_SENSOR = 5, /* the link of a fingertip, for rdm_world_sensor */
+  RDM_SCENE_MATERIAL = 6 /* "default" is 0 */
+};
+/* Value of the pool's option `key`: *value of a number, integer or flag, *text of a text.
+ * NOT_FOUND, ARGUMENT. */
+RDM_API rdm_result rdm_scene_number(rdm_scene *scene, const char *key, double *value);
+RDM_API rdm_result rdm_scene_text(rdm_scene *scene, const char *key, const char **text);
+/* Bounds *low and *high of a number or integer whose row takes a range (choices "a..b"), for reset
+ * to draw from; equal: a number. */
+RDM_API rdm_result rdm_scene_range(rdm_scene *scene, const char *key, double *low, double *high);
+typedef struct rdm_contact_law { /* how two materials meet beside their friction */
+  uint32_t struct_size;    /* bytes, set by rdm_contact_law_init */
+  int32_t pyramid;         /* flag, of soft contacts: friction by edges, as MuJoCo has it by
+                            * default: the softer the more it rubs, and sliding lifts */
+  double restitution;      /* 0 to 1: share of the speed at which a hard contact closed, above
+                            * 0.05 m/s, that it parts with */
+  double torsional;        /* m, 0 to 10: turning about the normal is opposed by at most this
+                            * times the normal force */
+  double rolling;          /* m, 0 to 10: rolling likewise */
+  double time_constant;    /* s, to 10: a spring and damper, as MuJoCo's solref; 0: hard. At
+                            * least two substeps count */
+  double damping_ratio;    /* of it, 0.01 to 100; default 1 */
+  double impedance_min;    /* 1e-4 to 0.9999, of a touch, as MuJoCo's solimp; default 0.9 */
+  double impedance_max;    /* likewise, deeper than the width; default 0.95 */
+  double impedance_width;  /* m, to 10; default 0.001 */
+} rdm_contact_law;
+RDM_API rdm_result rdm_contact_law_init(rdm_contact_law *law,
+                                        size_t size); /* defaults into the first `size` bytes */
+enum rdm_friction { RDM_PASSES = -1 }; /* in the place of a coefficient */
+/* What is added gets the next number. A friction is that of two materials, or of one with itself; 1
+ * unless said; RDM_PASSES: they go through each other. Gravity [3] is in the place of the option's.
+ * The texts of errors name the thing; all is STATE after the first find, touch or joint. A scene
+ * that could not be completed there, or in the end, stays so: all later calls on it, and what
+ * `build` is called for, have that error. A robot that is neither `own` nor given by number is an
+ * ARGUMENT. */
+RDM_API rdm_result rdm_scene_add_material(rdm_scene *scene,
+                                          const char *name); /* "default" is one, 15 more */
+RDM_API rdm_result rdm_scene_set_friction(rdm_scene *scene, const char *a, const char *b,
+                                          double mu); /* 0 or more */
+/* RANGE, ARGUMENT: the text names the field. Making the pool is UNSUPPORTED with engine=ode where a
+ * law has more than a restitution. Fingertips feel the forces of such contacts, not the torques of
+ * turning. */
+RDM_API rdm_result rdm_scene_set_contact(rdm_scene *scene, const char *a, const char *b,
+                                         const rdm_contact_law *law);
+RDM_API rdm_result rdm_scene_set_gravity(rdm_scene *scene, const double gravity[3]); /* m/s2 */
+RDM_API rdm_result rdm_scene_set_feedforward(rdm_scene *scene); /* worlds take
+                                                                 * rdm_world_set_feedforward */
+RDM_API rdm_result rdm_scene_set_adjustable(rdm_scene *scene);  /* worlds take rdm_world_scale */
+RDM_API rdm_result rdm_scene_add_robot(rdm_scene *scene, const rdm_scene_robot *robot,
+                                       int32_t *index); /* index: NULL */
+RDM_API rdm_result rdm_scene_add_body(rdm_scene *scene, const rdm_body_def *body,
+                                      int32_t *index); /* index: NULL */
+/* An object at the pose p [3] (m), q [4] (all 0: none) of its centre of mass, as the body and first
+ * shape `name` (others: name_1, name_2 ...), `scale` times as large, 0.05 to 20, its mass as it is;
+ * index: NULL. Its material is one of the scene: a new one rubs on each that is there with the
+ * object's friction, on another object's with the lower of the two. */
+RDM_API rdm_result rdm_scene_add_object(rdm_scene *scene, int32_t object, const char *name,
+                                        const double p[3], const double q[4], double scale,
+                                        int32_t *index);
+RDM_API rdm_result rdm_scene_add_static(rdm_scene *scene,
+                                        const rdm_shape_def *shape); /* stands still */
+/* For a task whose numbers follow from its options: another count for a field, in the order of
+ * rdm_task_def.fields; another count of actions, with hold [count] and mean [count] as in
+ * rdm_task_def (NULL: 0). */
+RDM_API rdm_result rdm_scene_set_field(rdm_scene *scene, const char *field, int32_t count);
+RDM_API rdm_result rdm_scene_set_actions(rdm_scene *scene, int32_t count, const float *hold,
+                                         const float *mean);
+/* These look at the scene as a whole, which is complete from the first of them on. */
+RDM_API rdm_result rdm_scene_find(rdm_scene *scene, int32_t part, const char *name,
+                                  int32_t *index); /* NOT_FOUND: nearest */
+RDM_API rdm_result rdm_scene_joint(rdm_scene *scene, int32_t i,
+                                   rdm_joint *out); /* action: its robot's command, -1 */
+/* *group, for rdm_world_touch: all contacts of a shape of `a` with one of `b`, each the name of a
+ * shape, body or robot, or a pattern of such names with '*' and '?'. NOT_FOUND where nothing has
+ * it. */
+RDM_API rdm_result rdm_scene_touch(rdm_scene *scene, const char *a, const char *b, int32_t *group);
+
+/* the joints of all robots of a world; the addresses hold within the call */
+typedef struct rdm_joints {
+  uint32_t struct_size;    /* in: bytes */
+  int32_t count;           /* of joints */
+  double control_dt;       /* s of a control step */
+  const double *q;         /* [count] rad (m) */
+  const double *qd;        /* [count] rad/s (m/s) */
+  const double *target;    /* [count] what the drives go for */
+  const double *torque;    /* [count] of the drives, mean over the step, N m (N) */
+} rdm_joints;
+typedef struct rdm_motion { /* frozen layout: of a frame, in the world */
+  double p[3];             /* m */
+  double q[4];             /* rotation */
+  double v[3];             /* velocity of the frame's origin, m/s */
+  double w[3];             /* angular velocity, world axes, rad/s */
+} rdm_motion;
+/* Indices are those of the scene, out of range is RANGE; numbers that are not finite or no world
+ * can have are ARGUMENT; the world then is as before. In observe nothing can be set: STATE. */
+RDM_API rdm_result rdm_world_joints(const rdm_world *world, rdm_joints *io); /* fills io */
+RDM_API rdm_result rdm_world_link(const rdm_world *world, int32_t link,
+                                  rdm_motion *out); /* of its joint's frame */
+RDM_API rdm_result rdm_world_base(const rdm_world *world, int32_t robot,
+                                  rdm_motion *out); /* of its base */
+RDM_API rdm_result rdm_world_body(const rdm_world *world, int32_t body,
+                                  rdm_motion *out); /* of its centre of mass */
+RDM_API rdm_result rdm_world_shape(const rdm_world *world, int32_t shape,
+                                   double pose[7]); /* position, rotation */
+/* Contact force [3] (N) and torque [3] (N m) on a fingertip, mean over the step, in the link's
+ * frame, about its origin. */
+RDM_API rdm_result rdm_world_sensor(const rdm_world *world, int32_t sensor, double force[3],
+                                    double torque[3]);
+/* *pairs is how many pairs of a group's shapes touched in the step; *force (N) the sum of the
+ * group's contact forces in its last substep. Either may be NULL. */
+RDM_API rdm_result rdm_world_touch(const rdm_world *world, int32_t group, int32_t *pairs,
+                                   double *force);
+/* Contacts of the last substep to out [capacity], of things asleep as they fell asleep; *count is
+ * how many there are. */
+RDM_API rdm_result rdm_world_contacts(const rdm_world *world, rdm_contact *out, int32_t capacity,
+                                      int32_t *count);
+/* By *depth (m) a body at its present place is within something that it may touch; 0: it is
+ * clear. */
+RDM_API rdm_result rdm_world_overlap(rdm_world *world, int32_t body, double *depth);
+/* Places for what moves freely; joints q [n] and rates qd [n] (NULL: 0) of a robot of n joints,
+ * within their ranges, and with them the targets of its drives. */
+RDM_API rdm_result rdm_world_set_body(rdm_world *world, int32_t body, const rdm_motion *motion);
+RDM_API rdm_result rdm_world_set_base(rdm_world *world, int32_t robot,
+                                      const rdm_motion *motion); /* STATE: it is fixed */
+RDM_API rdm_result rdm_world_set_joints(rdm_world *world, int32_t robot, const double *q,
+                                        const double *qd, int32_t n); /* all n */
+/* What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n]
+ * in [-1, 1] of all n commands of a robot, which become targets as its description says: ranges or
+ * curves, no faster than its joints' velocity. */
+RDM_API rdm_result rdm_world_set_targets(rdm_world *world, int32_t first, const double *targets,
+                                         int32_t n);
+RDM_API rdm_result rdm_world_command(rdm_world *world, int32_t robot, const double *commands,
+                                     int32_t n);
+/* Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again;
+ * STATE unless the scene has them. rdm_world_gravity gives those that hold a robot of n joints
+ * against gravity where it is. */
+RDM_API rdm_result rdm_world_set_feedforward(rdm_world *world, int32_t first, const double *efforts,
+                                             int32_t n);
+RDM_API rdm_result rdm_world_gravity(const rdm_world *world, int32_t robot, double *efforts,
+                                     int32_t n);
+enum rdm_scale { /* what a factor is on, and in brackets its bounds */
+  RDM_SCALE_GRAVITY = 0,        /* [-10, 10] */
+  RDM_SCALE_LINK_MASS = 1,      /* [0.001, 1000], moments with it; index: link */
+/* [0, 1000] */
+  RDM_SCALE_LINK_KP = 2, RDM_SCALE_LINK_KD = 3, RDM_SCALE_LINK_EFFORT = 4,
+  RDM_SCALE_LINK_FRICTION = 5,
+  RDM_SCALE_BASE_MASS = 6,      /* [0.001, 1000] of a free base; index: robot */
+  RDM_SCALE_BASE_DAMPING = 7,   /* [0, 1000] of all links of a robot with a free base */
+  RDM_SCALE_BODY_MASS = 8,      /* [0.001, 1000], moments with it; index: body */
+  RDM_SCALE_BODY_SIZE = 9,      /* [0.05, 20] of all its shapes, moments with the square */
+  RDM_SCALE_BODY_LINEAR_DAMPING = 10, RDM_SCALE_BODY_ANGULAR_DAMPING = 11, /* [0, 1000] */
+  RDM_SCALE_FRICTION = 12       /* [0, 1000] of two materials, index and other */
+};
+typedef struct rdm_factor { /* frozen layout: on a constant of the scene, in one world */
+  int32_t what;            /* RDM_SCALE_* */
+  int32_t index;           /* of the thing */
+  int32_t other;           /* the second material of a friction */
+  int32_t reserved;        /* 0 */
+  double factor;           /* times the scene's value */
+} rdm_factor;
+/* Lays factors [count] over those that the world has, all 1 at the start of an episode; reset may
+ * draw them. All are taken or none. STATE unless the scene is adjustable. */
+RDM_API rdm_result rdm_world_scale(rdm_world *world, const rdm_factor *factors, int32_t count);
+/* Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N
+ * m); of a link at `point` [3]. */
+RDM_API rdm_result rdm_world_push_body(rdm_world *world, int32_t body, const double force[3],
+                                       const double torque[3]);
+RDM_API rdm_result rdm_world_push_base(rdm_world *world, int32_t robot, const double force[3],
+                                       const double torque[3]);
+RDM_API rdm_result rdm_world_push_link(rdm_world *world, int32_t link, const double force[3],
+                                       const double point[3]);
+
+typedef struct rdm_random { /* frozen layout: a stream of random numbers; may be part of a state */
+  uint64_t seed;           /* its name */
+  uint64_t counter;        /* draws so far */
+  uint32_t world;          /* its name */
+  uint32_t purpose;        /* its name */
+} rdm_random;
+/* Draws from the stream; 0 without one. The same numbers on every machine. */
+RDM_API uint64_t rdm_random_bits(rdm_random *random);
+RDM_API double rdm_random_uniform(rdm_random *random, double low, double high); /* in [low, high) */
+RDM_API double rdm_random_normal(rdm_random *random); /* mean 0, deviation 1 */
+/* Another stream to *out, for draws within an episode: reset makes it and keeps it in the state. */
+RDM_API rdm_result rdm_random_split(rdm_random *random, rdm_random *out);
+/* The turn by `angle` (rad) about the unit vector axis [3] to q [4]: the same bits on every
+ * machine, where those of a C library's sine are not. */
+RDM_API rdm_result rdm_rotation(const double axis[3], double angle, double q[4]);
+
+typedef struct rdm_verdict { /* what judge fills; zeroed before */
+  double reward;           /* of the step */
+  double cost[RDM_MAX_COSTS];     /* each column of the step, 0 or more */
+  double cost_raw[RDM_MAX_COSTS]; /* the measured value behind each */
+  int32_t terminated;      /* flag: the episode ends here */
+  int32_t success;         /* flag */
+} rdm_verdict;
+typedef struct rdm_field_def { /* frozen layout: a run of observation entries */
+  const char *name;        /* unique, at most 31 characters: "cup.position" */
+  const char *unit;        /* of a stored 1: "m", "5 rad/s", "1" */
+  int32_t count;           /* entries */
+  float low;               /* what no entry leaves; low equal to high: none but obs_limit */
+  float high;              /* likewise */
+  int32_t reserved;        /* 0 */
+} rdm_field_def;
+typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_task_register */
+  uint32_t struct_size;    /* bytes, set by rdm_task_def_init */
+  int32_t max_steps;       /* control steps of an episode: default of the option max_steps;
+                            * default 100 */
+  const char *name;        /* letters, digits, '_', '-', '.'; at most 40 */
+  const char *summary;     /* one line; NULL: none */
+  const rdm_field_def *fields;     /* [num_fields] of an observation, in order */
+  const rdm_cost *costs;   /* [num_costs] column 0 is the one that learners limit */
+  const rdm_option_info *options;  /* [num_options] rows, and defaults of its own for those that
+                                    * every task has */
+  const rdm_camera *cameras;       /* [num_cameras] NULL with num_cameras 0: "front", made for
+                                    * the origin */
+  const rdm_option *defaults;      /* [num_defaults] of agent options; NULL with num_defaults 0 */
+  int32_t num_fields;      /* 1 or more */
+  int32_t num_costs;       /* 1 to RDM_MAX_COSTS */
+  int32_t num_options;     /* count */
+  int32_t num_cameras;     /* count */
+  int32_t num_defaults;    /* count */
+  int32_t action_dim;      /* 1 to 1024 */
+  const float *hold;       /* [action_dim] the action that holds still; NULL: 0 */
+  const float *mean;       /* [action_dim] that a new policy starts from; NULL: 0 */
+  const char *action_order;        /* what the entries are, for the layout hash; NULL: "action" */
+  double obs_limit;        /* every observation entry is cut at +- this; 0: none */
+  uint64_t state_bytes;    /* of a world's own state, to 2^20 */
+  uint64_t instance_bytes; /* of what build leaves for the others, to 2^24 */
+  void *user;              /* passed to all; may be NULL */
+  /* makes the scene, and the constants of this pool. Required */
+  rdm_result (*build)(void *user, rdm_scene *scene, void *instance);
+  /* starts an episode, the world is as it was built. Required */
+  rdm_result (*reset)(void *user, const void *instance, rdm_world *world, void *state,
+              rdm_random *random);
+  /* before a step: from the clipped action to targets and pushes. Required */
+  rdm_result (*control)(void *user, const void *instance, rdm_world *world, void *state,
+              const float *action);
+  /* after a step, `step` counts from 1: reward, costs and the end. Required */
+  rdm_result (*judge)(void *user, const void *instance, rdm_world *world, void *state, int32_t step,
+              rdm_verdict *out);
+  /* writes all entries of the observation, after reset and after judge. Required */
+  rdm_result (*observe)(void *user, const void *instance, const rdm_world *world, const void *state,
+              float *obs);
+  /* FORMAT for a saved state that no world can have: indices out of range, numbers that are not
+   * finite. NULL: all are good */
+  rdm_result (*check_state)(void *user, const void *instance, const void *state);
+  /* called once, when the task was removed and its last pool is gone. NULL: none */
+  void (*release)(void *user);
+} rdm_task_def;
+RDM_API rdm_result rdm_task_def_init(rdm_task_def *def,
+                                     size_t size); /* defaults into the first `size` bytes */
+/* Adds a task under a number that no other gets, *out for rdm_task_at and its like. ARGUMENT,
+ * RANGE: the text names the row; a name that is taken is an ARGUMENT. Tasks belong to the process;
+ * any number of threads may look meanwhile. */
+RDM_API rdm_result rdm_task_register(int32_t *out, const rdm_task_def *def);
+/* Pools that have it keep it. ARGUMENT for the library's own. */
+RDM_API rdm_result rdm_task_remove(int32_t task);
+/* Tries what a task promises, any task: the same bytes for the same seed, any threads and after
+ * save and restore, rows within their fields and bounds, costs of 0 or more, nothing written past a
+ * state or a row, no memory left behind. OK, or the error of making a pool, or ARGUMENT: the text
+ * names the function, the step and the entry where a promise broke first; it goes to
+ * error [error_size] too, NULL: not. `settings` as in rdm_pool_config; NULL: none. Seconds. */
+RDM_API rdm_result rdm_task_check(const char *task, const char *settings, char *error,
+                                  int32_t error_size);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* REDMAN_TASK_H */
