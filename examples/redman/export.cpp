@@ -1,5 +1,5 @@
 // `export`: a policy as a file for other programs.
-#include <redman/redman_map.hpp>
+#include <redman/sense.hpp>
 
 #include "commands.hpp"
 #include "common/files.hpp"

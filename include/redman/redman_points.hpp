@@ -1,62 +1,8 @@
-// redman_points.hpp: C++17 over experimental headers, as redman.hpp is over the stable ones: agents and
-// policies that see points. May change until version 1.
-//
-//   const rdm_points seen = redman::points(sensors);
-//   redman::act(agent, pool.obs().data(), seen, RDM_SAMPLE, pool.action().data());
-#ifndef REDMAN_POINTS_HPP
-#define REDMAN_POINTS_HPP
+// redman_points.hpp: the name of <redman/sense.hpp> before 1.0, with all experimental headers.
 #ifndef RDM_EXPERIMENTAL
 #define RDM_EXPERIMENTAL
 #endif
 #include <redman/redman.h>
 
 #include <redman/redman.hpp>
-
-namespace redman {
-
-// Clouds [rows][count][3], m, world; classes [rows][count] and colors [rows][count][3] or NULL. All are
-// borrowed.
-inline rdm_points points(const float* metres, int32_t count, const uint8_t* classes = nullptr,
-                         const uint8_t* colors = nullptr) {
-  auto p = sized<rdm_points>();
-  p.num_points = count;
-  p.points = metres;
-  p.point_class = classes;
-  p.point_color = colors;
-  return p;
-}
-// What the worlds of a pool show, borrowed from it.
-inline rdm_points points(const rdm_sensors& seen) {
-  return points(seen.points, seen.num_points, seen.point_class, seen.point_color);
-}
-
-inline void act(const Agent& agent, const float* obs, const rdm_points& seen, int32_t mode, float* action) {
-  check(rdm_agent_act_points(agent.get(), obs, &seen, mode, action));
-}
-inline void act(const Policy& policy, const float* obs, const rdm_points& seen, int32_t rows,
-                const float* noise, float* action, void* scratch, size_t scratch_bytes) {
-  check(rdm_policy_act_points(policy.get(), obs, &seen, rows, noise, action, scratch, scratch_bytes));
-}
-// The same with scratch from the heap, for who does not count calls.
-inline void act(const Policy& policy, const float* obs, const rdm_points& seen, int32_t rows,
-                const float* noise, float* action) {
-  Bytes scratch(policy.scratch_bytes(rows));
-  act(policy, obs, seen, rows, noise, action, scratch.data(), scratch.size());
-}
-
-// label [rows][seen.num_points], less than num_labels; the rest of `how` as rdm_pretrain_config_init has it.
-inline rdm_pretrain_config pretrain_config(int32_t num_labels) {
-  rdm_pretrain_config how;
-  check(rdm_pretrain_config_init(&how, sizeof how));
-  how.num_labels = num_labels;
-  return how;
-}
-inline rdm_pretrain_report pretrain(const Agent& agent, const rdm_points& seen, const uint8_t* label,
-                                    int32_t rows, const rdm_pretrain_config& how) {
-  auto report = sized<rdm_pretrain_report>();
-  check(rdm_agent_pretrain(agent.get(), &seen, label, rows, &how, &report));
-  return report;
-}
-
-}  // namespace redman
-#endif
+#include <redman/sense.hpp>

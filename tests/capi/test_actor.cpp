@@ -2,7 +2,8 @@
 // ends, states, a center; and each refusal.
 #include <algorithm>
 #include <cmath>
-#include <redman/redman_actor.hpp>
+#include <redman/plan.hpp>
+#include <redman/redman.hpp>
 
 #include "contract.hpp"
 #include "heap_count.hpp"

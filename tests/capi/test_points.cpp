@@ -1,10 +1,11 @@
 // Agents and policies that see points, through the ABI and redman_points.hpp.
 #include <gtest/gtest.h>
+#include <redman/plan.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <redman/redman_points.hpp>
+#include <redman/sense.hpp>
 #include <string>
 #include <vector>
 

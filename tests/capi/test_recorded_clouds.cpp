@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <redman/redman_map.hpp>
-#include <redman/redman_points.hpp>
-#include <redman/redman_record.hpp>
+#include <redman/record.hpp>
+#include <redman/sense.hpp>
 #include <string>
 #include <vector>
 

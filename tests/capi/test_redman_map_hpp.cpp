@@ -1,7 +1,8 @@
-// redman_map.hpp: the owner of a map and views of what worlds see.
+// map.hpp: the owner of a map and views of what worlds see.
 #include <gtest/gtest.h>
 
-#include <redman/redman_map.hpp>
+#include <redman/map.hpp>
+#include <redman/sense.hpp>
 
 namespace {
 

@@ -1,7 +1,7 @@
-// redman_plan.hpp: the owner of a planner.
+// plan.hpp: the owner of a planner.
 #include <gtest/gtest.h>
 
-#include <redman/redman_plan.hpp>
+#include <redman/plan.hpp>
 
 namespace {
 

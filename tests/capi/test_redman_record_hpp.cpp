@@ -1,8 +1,9 @@
-// redman_record.hpp: the owner of a recording, through a whole lesson: rows of a pool, a file, a clone.
+// record.hpp: the owner of a recording, through a whole lesson: rows of a pool, a file, a clone.
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <redman/redman_record.hpp>
+#include <redman/record.hpp>
+#include <redman/redman.hpp>
 
 namespace {
 

@@ -46,7 +46,7 @@ bad=$(
 
   # shellcheck disable=SC2046
   includes $(sources include) | grep -vE ' (<[a-z0-9_]+(\.h)?>|<redman/[a-z_]+\.h>)$' |
-    grep -vE '\.hpp <redman/redman[a-z_]*\.hpp>$' |
+    grep -vE '\.hpp <redman/[a-z_]+\.hpp>$' |
     sed 's/ /: a public header may not include /'
 
   # shellcheck disable=SC2046

@@ -1,8 +1,7 @@
 // `bench policy`: what a policy that sees points costs, part by part: clouds, encoder, update, and all
 // together.
 #include <chrono>
-#include <redman/redman_map.hpp>
-#include <redman/redman_points.hpp>
+#include <redman/sense.hpp>
 
 #include "bench/bench.hpp"
 #include "common/names.hpp"

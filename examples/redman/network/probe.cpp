@@ -1,6 +1,6 @@
 #include "network/probe.hpp"
 
-#include <redman/redman_points.hpp>
+#include <redman/sense.hpp>
 
 namespace tool {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <redman/redman_map.hpp>
+#include <redman/sense.hpp>
 
 #include "common/files.hpp"
 #include "common/names.hpp"

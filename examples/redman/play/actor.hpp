@@ -2,9 +2,8 @@
 // zero, hold, random.
 #pragma once
 #include <optional>
-#include <redman/redman_actor.hpp>
-#include <redman/redman_plan.hpp>
-#include <redman/redman_points.hpp>
+#include <redman/plan.hpp>
+#include <redman/sense.hpp>
 #include <string>
 
 #include "common/setup.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <redman/redman_map.hpp>
+#include <redman/sense.hpp>
 
 #include "common/names.hpp"
 #include "common/text.hpp"

@@ -6,8 +6,8 @@
 // then acts for a growing share of decisions, the teacher labels what it finds, and the student is fitted to
 // all of it again.
 #pragma once
-#include <redman/redman_points.hpp>
-#include <redman/redman_record.hpp>
+#include <redman/record.hpp>
+#include <redman/sense.hpp>
 
 #include "play/actor.hpp"
 #include "teach/settings.hpp"

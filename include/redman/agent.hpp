@@ -1,0 +1,63 @@
+// redman/agent.hpp: the owner of a learner. C++17, stable since 1.0.
+#ifndef REDMAN_AGENT_HPP
+#define REDMAN_AGENT_HPP
+#include <redman/agent.h>
+
+#include <redman/pool.hpp>
+
+namespace redman {
+
+// The defaults of rdm_agent_config_init with the dimensions of a world of the host's own.
+inline rdm_agent_config agent_config(int32_t obs_dim, int32_t action_dim, int32_t num_envs) {
+  rdm_agent_config c;
+  check(rdm_agent_config_init(&c, sizeof c));
+  c.obs_dim = obs_dim;
+  c.action_dim = action_dim;
+  c.num_envs = num_envs;
+  return c;
+}
+// The same as rdm_agent_config_for_pool fills it; arrays are borrowed from the pool.
+inline rdm_agent_config agent_config(const Pool& pool) {
+  auto c = agent_config(0, 0, 0);
+  check(rdm_agent_config_for_pool(&c, pool.get()));
+  return c;
+}
+
+class Agent {
+ public:
+  explicit Agent(const rdm_agent_config& config) : handle_(made(rdm_agent_create, &config)) {}
+  // Takes over an agent that was made otherwise.
+  explicit Agent(rdm_agent* agent) : handle_(agent) {}
+  rdm_agent* get() const { return handle_.get(); }
+  void act(const float* obs, int32_t mode, float* action) { check(rdm_agent_act(get(), obs, mode, action)); }
+  void record(const rdm_transition& t) { check(rdm_agent_record(get(), &t)); }
+  rdm_epoch update(const float* last_obs) {
+    auto e = sized<rdm_epoch>();
+    check(rdm_agent_update(get(), last_obs, &e));
+    return e;
+  }
+  rdm_epoch rollout(Pool& pool) {
+    auto e = sized<rdm_epoch>();
+    check(rdm_agent_rollout(get(), pool.get(), &e));
+    return e;
+  }
+  void cancel() noexcept { rdm_agent_cancel(get()); }
+  std::string settings() const { return text_of(rdm_agent_settings, static_cast<const rdm_agent*>(get())); }
+  // The bytes of a policy file.
+  Bytes policy() const { return bytes_of(rdm_agent_policy); }
+  Bytes save() const { return bytes_of(rdm_agent_save); }
+  void load(const Bytes& bytes) { check(rdm_agent_load(get(), bytes.data(), bytes.size())); }
+
+ private:
+  Bytes bytes_of(rdm_result (*write)(const rdm_agent*, void*, size_t, size_t*)) const {
+    size_t size = 0;
+    check(write(get(), nullptr, 0, &size));
+    Bytes bytes(size);
+    check(write(get(), bytes.data(), bytes.size(), &size));
+    return bytes;
+  }
+  Handle<rdm_agent, rdm_agent_destroy> handle_;
+};
+
+}  // namespace redman
+#endif
