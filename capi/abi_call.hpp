@@ -101,6 +101,20 @@ inline void check_size(size_t size, size_t first_size, const char* name, const c
     fail(Code::kArgument, "%s%s: %zu is more than %zu: was it set?", name, member, size, kMaxStructSize);
 }
 
+// A reserved member may mean something in a later version: whoever sets it must not be misread by this one.
+template <class T>
+void check_reserved(const T& s, const char* name) {
+  const auto zero = [name](const auto& member, const char* which) {
+    unsigned char bytes[sizeof member];
+    std::memcpy(bytes, &member, sizeof member);
+    if (std::any_of(bytes, bytes + sizeof member, [](unsigned char b) { return b != 0; }))
+      fail(Code::kArgument, "%s.%s: it must be 0", name, which);
+  };
+  if constexpr (requires { s.reserved; }) zero(s.reserved, "reserved");
+  if constexpr (requires { s.reserved2; }) zero(s.reserved2, "reserved2");
+  if constexpr (requires { s.reserved3; }) zero(s.reserved3, "reserved3");
+}
+
 // The caller's struct as this version knows it: fields beyond an older caller's size keep `defaults`, a
 // newer caller's tail must be zero.
 template <class T>
@@ -114,6 +128,7 @@ T read_struct(const T* in, size_t first_size, const T& defaults, const char* nam
   T out = defaults;
   std::memcpy(&out, in, std::min(size, sizeof(T)));
   out.struct_size = sizeof(T);
+  check_reserved(out, name);
   return out;
 }
 

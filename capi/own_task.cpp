@@ -281,6 +281,9 @@ void OwnTask::take_fields() {
   int64_t total = 0;
   for (int32_t i = 0; i < def.num_fields; ++i) {
     const rdm_field_def& f = def.fields[i];
+    char row[32];
+    print_text(row, sizeof row, "def.fields[%d]", i);
+    check_reserved(f, row);
     need_name(f.name, RowName("fields", i, "name").text, kNameSize - 1);
     need_text(f.unit, RowName("fields", i, "unit").text);
     if (f.count < 1 || f.count > kMostEntries)

@@ -79,12 +79,14 @@ RobotLink link_of(const rdm_robot_link& in) {
 }
 
 RobotShape shape_of(const rdm_robot_shape& in) {
+  check_reserved(in, "def.shapes");
   RobotShape s{in.link, in.name, static_cast<ShapeKind>(in.kind), vec(in.size), vec(in.p), quat(in.q), {}};
   std::copy_n(in.color, 3, s.color);
   return s;
 }
 
 RobotCurve curve_of(const rdm_robot_curve& in) {
+  check_reserved(in, "def.curves");
   RobotCurve c{in.link, in.driver, in.num_knots, {}, {}};
   std::copy_n(in.command, kMaxKnots, c.command);
   std::copy_n(in.angle, kMaxKnots, c.angle);

@@ -333,6 +333,7 @@ rdm_result rdm_world_scale(rdm_world* world, const rdm_factor* factors, int32_t 
     if (count > 0) need(factors, "factors");
     Dynamics& d = w.edit_dynamics();
     const auto materials = static_cast<int64_t>(world->scene->materials.size());
+    for (int32_t i = 0; i < count; ++i) check_reserved(factors[i], "factors");
     for (int32_t i = 0; i < count; ++i) *place_of(factors[i], materials, &d) = factors[i].factor;
     w.set_dynamics(d);
   });

@@ -37,7 +37,8 @@
  *   - A handle of another kind, or one that was destroyed and whose memory has not been used since,
  *     is an ARGUMENT; to destroy such a one does nothing.
  *   - Structs begin with struct_size = sizeof of your version: set it yourself or through the _init
- *     function. ARGUMENT for less than the first version had or more than 4096.
+ *     function. ARGUMENT for less than the first version had or more than 4096, and for a reserved
+ *     member that is not 0.
  *   - Strings that are returned live as long as their handle (those of tasks, algorithms, robots
  *     and objects: for ever, also where these are removed; equal ones are kept once). UTF-8. What
  *     is no UTF-8 in a name that was given stands in a text as \xNN.

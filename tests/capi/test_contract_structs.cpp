@@ -49,6 +49,29 @@ class Structs : public testing::Test {
     in.get()->struct_size = 4096;
     EXPECT_NE(call(in.get()), RDM_ARGUMENT) << rdm_last_error();
   }
+  // Such a struct that goes in has reserved members that must be 0, so that a later version may use them.
+  template <class T>
+  static void goes_in(const char* name, const T& value, const std::function<rdm_result(T*)>& call) {
+    sizes<T>(name, value, call);
+    SCOPED_TRACE(name);
+    const auto refused = [&](auto member, const char* which) {
+      T in = value;
+      in.struct_size = sizeof in;
+      member(in) = 7;
+      EXPECT_EQ(call(&in), RDM_ARGUMENT) << which;
+      EXPECT_NE(std::string(rdm_last_error()).find(std::string(which) + ": it must be 0"), std::string::npos)
+          << rdm_last_error();
+    };
+    if constexpr (requires(T t) { t.reserved; })
+      refused(
+          [](T & t) -> auto& { return t.reserved; }, "reserved");
+    if constexpr (requires(T t) { t.reserved2; })
+      refused(
+          [](T & t) -> auto& { return t.reserved2; }, "reserved2");
+    if constexpr (requires(T t) { t.reserved3; })
+      refused(
+          [](T & t) -> auto& { return t.reserved3; }, "reserved3");
+  }
 
   rdm_pool* pool_ = nullptr;
   rdm_agent* agent_ = nullptr;
@@ -62,47 +85,47 @@ TEST_F(Structs, ThatGoInHaveASizeThatCanBe) {
   rdm_spec spec{};
   spec.struct_size = sizeof spec;
   size_t n = 0;
-  sizes<rdm_pool_config>("rdm_pool_create", pool_config(), [&](rdm_pool_config* c) {
+  goes_in<rdm_pool_config>("rdm_pool_create", pool_config(), [&](rdm_pool_config* c) {
     rdm_pool* p = nullptr;
     const rdm_result r = rdm_pool_create(&p, c);
     return end_pool(r, p);
   });
-  sizes<rdm_pool_config>("rdm_pool_spec", pool_config(), [&](auto* c) { return rdm_pool_spec(c, &spec); });
-  sizes<rdm_pool_config>("rdm_pool_memory", pool_config(),
-                         [&](auto* c) { return rdm_pool_memory(c, &n, nullptr); });
-  sizes<rdm_agent_config>("rdm_agent_create", agent_config(), [&](rdm_agent_config* c) {
+  goes_in<rdm_pool_config>("rdm_pool_spec", pool_config(), [&](auto* c) { return rdm_pool_spec(c, &spec); });
+  goes_in<rdm_pool_config>("rdm_pool_memory", pool_config(),
+                           [&](auto* c) { return rdm_pool_memory(c, &n, nullptr); });
+  goes_in<rdm_agent_config>("rdm_agent_create", agent_config(), [&](rdm_agent_config* c) {
     rdm_agent* a = nullptr;
     const rdm_result r = rdm_agent_create(&a, c);
     return end_agent(r, a);
   });
-  sizes<rdm_agent_config>("rdm_agent_memory", agent_config(),
-                          [&](auto* c) { return rdm_agent_memory(c, &n); });
-  sizes<rdm_agent_config>("rdm_agent_config_for_pool", agent_config(),
-                          [&](auto* c) { return rdm_agent_config_for_pool(c, pool_); });
-  sizes<rdm_host>("rdm_init", rdm_host{}, [](rdm_host* h) {
+  goes_in<rdm_agent_config>("rdm_agent_memory", agent_config(),
+                            [&](auto* c) { return rdm_agent_memory(c, &n); });
+  goes_in<rdm_agent_config>("rdm_agent_config_for_pool", agent_config(),
+                            [&](auto* c) { return rdm_agent_config_for_pool(c, pool_); });
+  goes_in<rdm_host>("rdm_init", rdm_host{}, [](rdm_host* h) {
     const rdm_result r = rdm_init(h);
     if (!r) rdm_shutdown();
     return r;
   });
-  sizes<rdm_host>("config.host", rdm_host{}, [&](rdm_host* h) {
+  goes_in<rdm_host>("config.host", rdm_host{}, [&](rdm_host* h) {
     rdm_pool_config c = pool_config();
     c.host = h;
     return rdm_pool_spec(&c, &spec);
   });
-  sizes<rdm_buffers>("rdm_pool_bind", rdm_buffers{}, [&](auto* b) { return rdm_pool_bind(pool_, b); });
+  goes_in<rdm_buffers>("rdm_pool_bind", rdm_buffers{}, [&](auto* b) { return rdm_pool_bind(pool_, b); });
   const float reward[4] = {}, cost[4] = {}, obs[12] = {};
   float action[8];
   rdm_transition t{};
   t.reward = reward;
   t.cost = cost;
-  sizes<rdm_transition>("rdm_agent_record", t, [&](auto* in) {
+  goes_in<rdm_transition>("rdm_agent_record", t, [&](auto* in) {
     rdm_agent_act(agent_, obs, RDM_SAMPLE, action);  // STATE while one waits for its record
     return rdm_agent_record(agent_, in);
   });
-  sizes<rdm_spec>("rdm_policy_check", spec, [&](auto* s) { return rdm_policy_check(policy_, s); });
+  goes_in<rdm_spec>("rdm_policy_check", spec, [&](auto* s) { return rdm_policy_check(policy_, s); });
   rdm_map_config mc{};
   ASSERT_EQ(rdm_map_config_init(&mc, sizeof mc), RDM_OK);
-  sizes<rdm_map_config>("rdm_map_create", mc, [&](rdm_map_config* c) {
+  goes_in<rdm_map_config>("rdm_map_create", mc, [&](rdm_map_config* c) {
     rdm_map* m = nullptr;
     const rdm_result r = rdm_map_create(&m, c);
     rdm_map_destroy(m);
@@ -112,7 +135,7 @@ TEST_F(Structs, ThatGoInHaveASizeThatCanBe) {
   ASSERT_EQ(rdm_planner_config_init(&pc, sizeof pc), RDM_OK);
   pc.pool = pool_;
   pc.settings = "samples=2\nhorizon=2";
-  sizes<rdm_planner_config>("rdm_planner_create", pc, [&](rdm_planner_config* c) {
+  goes_in<rdm_planner_config>("rdm_planner_create", pc, [&](rdm_planner_config* c) {
     rdm_planner* planner = nullptr;
     const rdm_result r = rdm_planner_create(&planner, c);
     rdm_planner_destroy(planner);
