@@ -1,8 +1,11 @@
 # Reads the public headers and writes, for the halves that a build leaves out, the functions that say so.
 # -v sim=0|1 -v learn=0|1 -v policy=0|1: which halves there are, and whether frozen policies run. A function belongs to a half by its name; one of agents that
 # takes a pool needs both; recordings are in either. The two config_init functions are in every build, and what has no half is too.
+# -v names=1: the names alone of what a build without such functions leaves out, config_init and the like among them.
 function half_of(name, parameters) {
-  if (name ~ /^rdm_(pool|agent)_config_init$/) return ""
+  if (names && name ~ /^rdm_(clone|pretrain)_/) return learn ? "" : "learning"
+  if (names && name ~ /^rdm_(fail|rotation)$/) return sim ? "" : "simulation"
+  if (!names && name ~ /^rdm_(pool|agent)_config_init$/) return ""
   if (name ~ /^rdm_recording_/) return !sim && parameters ~ /rdm_pool/ ? "simulation" : sim || learn ? "" : "learning"
   if (name ~ /^rdm_agent_/ && parameters ~ /rdm_pool/) return sim ? (learn ? "" : "learning") : "simulation"
   if (name ~ /^rdm_(task|robot|object|pool|planner|map|sample|scene|contact|world|random)_/) return sim ? "" : "simulation"
@@ -30,10 +33,13 @@ function declared(text,   type, name, parameters, half) {
   parameters = substr(text, RSTART + RLENGTH)
   sub(/ $/, "", type)
   half = half_of(name, parameters)
-  if (half != "") print text " " body_of(type, half, parameters)
+  if (half != "") print names ? name : text " " body_of(type, half, parameters)
 }
 
 BEGIN {
+  if (!names) print_head()
+}
+function print_head() {
   print "// The functions of the halves that this build leaves out: they exist and say so. Written by capi/stubs.awk."
   print "#include \"capi/abi_call.hpp\"\n\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"\n"
   print "static rdm_result left_out(const char* half) {"

@@ -79,11 +79,18 @@ void dot_slots(const int32_t* slot, int32_t n, int32_t k, const float* h, const 
   }
 }
 
-#define RDM_KERNEL_TABLE                                                                                  \
-  {                                                                                                       \
-    kIsa, gemm, column_sums, adam, sum_squares, column_moments, normalize, add_noise, log_prob,           \
-        log_prob_grad, kl, max_rows, activate, slope, spread_slots, dot_slots, map<tanh_of>, map<elu_of>, \
-        map<exp_of>                                                                                       \
+// Of a build that acts and does not learn, what only learners call is left out.
+#ifndef RDM_LEARNS
+#define RDM_LEARNS 1
+#endif
+#define RDM_TO_LEARN(kernel) (RDM_LEARNS ? (kernel) : nullptr)
+#define RDM_KERNEL_TABLE                                                                        \
+  {                                                                                             \
+    kIsa, gemm, RDM_TO_LEARN(column_sums), RDM_TO_LEARN(adam), RDM_TO_LEARN(sum_squares),       \
+        RDM_TO_LEARN(column_moments), normalize, add_noise, RDM_TO_LEARN(log_prob),             \
+        RDM_TO_LEARN(log_prob_grad), RDM_TO_LEARN(kl), max_rows, activate, RDM_TO_LEARN(slope), \
+        RDM_TO_LEARN(spread_slots), RDM_TO_LEARN(dot_slots), RDM_TO_LEARN(map<tanh_of>),        \
+        RDM_TO_LEARN(map<elu_of>), RDM_TO_LEARN(map<exp_of>)                                    \
   }
 
 }  // namespace
