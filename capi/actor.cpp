@@ -55,7 +55,7 @@ rdm_result rdm_actor_config_init(rdm_actor_config* c, size_t size) {
   return call([&] { init_struct(c, size, kFirstSize, rdm_actor_config{}, "c"); });
 }
 
-rdm_result rdm_actor_memory(const rdm_actor_config* c, size_t* bytes) {
+rdm_result rdm_actor_config_memory(const rdm_actor_config* c, size_t* bytes) {
   return call_with(c, [&] {
     need(bytes, "bytes");
     *bytes = Actor::memory(read_config(c)) + sizeof(rdm_actor);

@@ -1,4 +1,7 @@
 // rdm_agent_*: config to agent and back.
+#include <algorithm>
+#include <string_view>
+
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "capi/handles.hpp"
@@ -36,7 +39,7 @@ namespace {
 
 constexpr int32_t kMaxPretrainRows = 1 << 20;
 
-constexpr int32_t kMaxValueRows = 1 << 24;  // of rdm_agent_values
+constexpr int32_t kMaxValueRows = 1 << 24;  // of rdm_agent_get_values
 
 // A public config as the library takes it, with the option lists that it points to.
 struct Config {
@@ -44,6 +47,12 @@ struct Config {
   Vector<OptionInput> defaults, options;
   Vector<ObsField> fields;
 };
+
+// Of a task's defaults, as "actor_obs" or "ppo_lag:actor_obs".
+bool names_fields(const OptionInput& option) {
+  const std::string_view key = option.key ? option.key : "";
+  return key.ends_with("actor_obs") || key.ends_with("critic_obs");
+}
 
 void read_config(const rdm_agent_config* c, Config* out) {
   const auto in = read_struct(c, kFirstAgentConfigSize, rdm_agent_config{}, "config");
@@ -66,8 +75,12 @@ void read_config(const rdm_agent_config* c, Config* out) {
   a.cost_limits = in.cost_limits;
   out->defaults = read_options(in.defaults, in.num_defaults, "defaults");
   out->options = read_options(in.options, in.num_options, "options");
+  // Who was compiled before configs had `fields` cannot say what parts of a row are called: its agents see whole rows.
+  if (c->struct_size <= offsetof(rdm_agent_config, fields))
+    out->defaults.erase(std::remove_if(out->defaults.begin(), out->defaults.end(), names_fields),
+                        out->defaults.end());
   a.defaults = out->defaults.data();
-  a.num_defaults = in.num_defaults;
+  a.num_defaults = static_cast<int32_t>(out->defaults.size());
   a.options = out->options.data();
   a.num_options = in.num_options;
   a.settings = in.settings;
@@ -117,7 +130,7 @@ void emit(void* bytes, size_t capacity, size_t* size, F&& write) {
 
 }  // namespace
 
-rdm_result rdm_agent_memory(const rdm_agent_config* c, size_t* bytes) {
+rdm_result rdm_agent_config_memory(const rdm_agent_config* c, size_t* bytes) {
   return call_with(c, [&] {
     need(bytes, "bytes");
     Config config;
@@ -183,9 +196,9 @@ namespace {
 bool read_act(const float* obs, int32_t mode, const float* action) {
   need(obs, "obs");
   need(action, "action");
-  if (mode != RDM_SAMPLE && mode != RDM_MEAN)
-    fail(Code::kRange, "mode: %d is not RDM_SAMPLE or RDM_MEAN", mode);
-  return mode == RDM_SAMPLE;
+  if (mode != RDM_ACT_SAMPLE && mode != RDM_ACT_MEAN)
+    fail(Code::kRange, "mode: %d is not RDM_ACT_SAMPLE or RDM_ACT_MEAN", mode);
+  return mode == RDM_ACT_SAMPLE;
 }
 
 }  // namespace
@@ -254,7 +267,8 @@ rdm_result rdm_agent_record(rdm_agent* a, const rdm_transition* t) {
   });
 }
 
-rdm_result rdm_agent_values(const rdm_agent* a, const float* obs, int32_t rows, float* value, float* cost) {
+rdm_result rdm_agent_get_values(const rdm_agent* a, const float* obs, int32_t rows, float* value,
+                                float* cost) {
   return call_on(a, [&] {
     need(obs, "obs");
     need(value, "value");
@@ -332,7 +346,7 @@ rdm_result rdm_agent_discard(rdm_agent* a) {
   return call_on(a, [&] { a->agent->discard(); });
 }
 
-rdm_result rdm_agent_set(rdm_agent* a, const rdm_option* option) {
+rdm_result rdm_agent_set_option(rdm_agent* a, const rdm_option* option) {
   return call_on(a, [&] {
     need(option, "option");
     need(option->key, "option.key");
@@ -340,15 +354,15 @@ rdm_result rdm_agent_set(rdm_agent* a, const rdm_option* option) {
   });
 }
 
-rdm_result rdm_agent_option(const rdm_agent* a, int32_t i, const char** key, char* text) {
-  return call_on(a, [&] { give_option(a->agent->options(), i, key, text, "rdm_agent_settings"); });
+rdm_result rdm_agent_option_at(const rdm_agent* a, int32_t i, const char** key, char* text) {
+  return call_on(a, [&] { give_option(a->agent->options(), i, key, text, "rdm_agent_get_settings"); });
 }
 
-rdm_result rdm_agent_settings(const rdm_agent* a, char* text, size_t capacity, size_t* size) {
+rdm_result rdm_agent_get_settings(const rdm_agent* a, char* text, size_t capacity, size_t* size) {
   return call_on(a, [&] { give_settings(a->agent->options(), text, capacity, size); });
 }
 
-rdm_result rdm_agent_tensor(const rdm_agent* a, int32_t i, rdm_tensor* out) {
+rdm_result rdm_agent_tensor_at(const rdm_agent* a, int32_t i, rdm_tensor* out) {
   return call_on(a, [&] {
     need(out, "out");
     TensorInfo t;
@@ -375,7 +389,7 @@ TensorInfo find_tensor(Agent& agent, const char* name, size_t count) {
 }
 }  // namespace
 
-rdm_result rdm_agent_tensor_read(const rdm_agent* a, const char* name, float* out, size_t count) {
+rdm_result rdm_agent_get_tensor(const rdm_agent* a, const char* name, float* out, size_t count) {
   return call_on(a, [&] {
     need(out, "out");
     const TensorInfo t = find_tensor(*a->agent, name, count);
@@ -383,7 +397,7 @@ rdm_result rdm_agent_tensor_read(const rdm_agent* a, const char* name, float* ou
   });
 }
 
-rdm_result rdm_agent_tensor_write(rdm_agent* a, const char* name, const float* values, size_t count) {
+rdm_result rdm_agent_set_tensor(rdm_agent* a, const char* name, const float* values, size_t count) {
   return call_on(a, [&] {
     need(values, "values");
     const TensorInfo t = find_tensor(*a->agent, name, count);
@@ -394,11 +408,11 @@ rdm_result rdm_agent_tensor_write(rdm_agent* a, const char* name, const float* v
   });
 }
 
-rdm_result rdm_agent_policy(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
+rdm_result rdm_agent_write_policy(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
   return call_on(a, [&] { emit(bytes, capacity, size, [&](Writer& w) { a->agent->write_policy_file(w); }); });
 }
 
-rdm_result rdm_agent_policy_file(const rdm_agent* a, const char* path) {
+rdm_result rdm_agent_write_policy_file(const rdm_agent* a, const char* path) {
   return call_on(a, [&] {
     need(path, "path");
     Writer count(nullptr, 0);
@@ -410,11 +424,11 @@ rdm_result rdm_agent_policy_file(const rdm_agent* a, const char* path) {
   });
 }
 
-rdm_result rdm_agent_save(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
+rdm_result rdm_agent_write_state(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
   return call_on(a, [&] { emit(bytes, capacity, size, [&](Writer& w) { a->agent->save(w); }); });
 }
 
-rdm_result rdm_agent_load(rdm_agent* a, const void* bytes, size_t size) {
+rdm_result rdm_agent_read_state(rdm_agent* a, const void* bytes, size_t size) {
   return call_on(a, [&] {
     need(bytes, "bytes");
     a->agent->load(bytes, size);

@@ -45,7 +45,7 @@ rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {
   });
 }
 
-rdm_result rdm_pool_hull(const rdm_pool* p, int32_t i, float* points, int32_t capacity, int32_t* count) {
+rdm_result rdm_pool_get_hull(const rdm_pool* p, int32_t i, float* points, int32_t capacity, int32_t* count) {
   return call_on(p, [&] {
     need(count, "count");
     const Scene& scene = p->pool->task().scene();

@@ -198,7 +198,7 @@ rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera* out) {
   });
 }
 
-rdm_result rdm_task_default(int32_t task, int32_t i, rdm_option* out) {
+rdm_result rdm_task_default_at(int32_t task, int32_t i, rdm_option* out) {
   return call([&] {
     need(out, "out");
     const TaskRef ref = ref_at(task);

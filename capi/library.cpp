@@ -54,8 +54,9 @@ rdm_result rdm_nearest_names(const char* name, const char* names, char* text, si
 rdm_result rdm_fail(rdm_result code, const char* text) {
   return call_inside([&] {
     need(text, "text");
-    if ((code > static_cast<rdm_result>(RDM_ARGUMENT) || code < static_cast<rdm_result>(RDM_CANCELLED)) &&
-        code != static_cast<rdm_result>(RDM_INTERNAL))
+    if ((code > static_cast<rdm_result>(RDM_ERROR_ARGUMENT) ||
+         code < static_cast<rdm_result>(RDM_ERROR_CANCELLED)) &&
+        code != static_cast<rdm_result>(RDM_ERROR_INTERNAL))
       fail(Code::kRange, "code: %d is no error; the text was: %s", code, text);
     fail(static_cast<Code>(code), "%s", text);
   });

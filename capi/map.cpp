@@ -248,7 +248,7 @@ rdm_result rdm_map_grid(const rdm_map* m, const float pose[7], const int32_t n[3
   });
 }
 
-rdm_result rdm_map_save(const rdm_map* m, int32_t format, void* bytes, size_t capacity, size_t* size) {
+rdm_result rdm_map_write(const rdm_map* m, int32_t format, void* bytes, size_t capacity, size_t* size) {
   return call_on(m, [&] {
     need(size, "size");
     if (format != RDM_MAP_BINARY && format != RDM_MAP_FULL)
@@ -263,7 +263,7 @@ rdm_result rdm_map_save(const rdm_map* m, int32_t format, void* bytes, size_t ca
   });
 }
 
-rdm_result rdm_map_save_file(const rdm_map* m, const char* path) {
+rdm_result rdm_map_write_file(const rdm_map* m, const char* path) {
   return call_on(m, [&] {
     need(path, "path");
     const HostScope scope(m->hooks);
@@ -273,14 +273,14 @@ rdm_result rdm_map_save_file(const rdm_map* m, const char* path) {
   });
 }
 
-rdm_result rdm_map_load(rdm_map* m, const void* bytes, size_t size) {
+rdm_result rdm_map_read(rdm_map* m, const void* bytes, size_t size) {
   return call_on(m, [&] {
     need(bytes, "bytes");
     m->map->read(bytes, size);
   });
 }
 
-rdm_result rdm_map_load_file(rdm_map* m, const char* path) {
+rdm_result rdm_map_read_file(rdm_map* m, const char* path) {
   return call_on(m, [&] {
     need(path, "path");
     const HostScope scope(m->hooks);

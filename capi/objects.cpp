@@ -8,7 +8,7 @@
 using namespace rdm;
 using namespace rdm::capi;
 
-static_assert(RDM_OBJECT_SHAPES == kMaxObjectShapes);
+static_assert(RDM_MAX_SHAPES == kMaxObjectShapes);
 
 namespace {
 
@@ -32,7 +32,7 @@ ObjectShape shape_of(const rdm_shape_def& in, int32_t i, Vector<Vec3>* points) {
   const bool grey = !(in.color[0] || in.color[1] || in.color[2] || in.color[3]);
   for (int k = 0; k < 3; ++k) s.color[k] = grey ? kGrey : in.color[k];
   s.collides = in.seen_only == 0;
-  if (in.kind != RDM_HULL) return s;
+  if (in.kind != RDM_SHAPE_HULL) return s;
   s.size = {};
   if (in.num_points < 4 || in.num_points > kMaxHullPoints)
     fail(Code::kRange, "def.shapes[%d].num_points: %d is outside [4, %d]", i, in.num_points, kMaxHullPoints);
@@ -47,8 +47,8 @@ ObjectShape shape_of(const rdm_shape_def& in, int32_t i, Vector<Vec3>* points) {
 template <class F>
 void with_object(const rdm_object_def* def, F&& then) {
   const auto in = read_struct(def, kFirstObjectSize, default_def(), "def");
-  if (in.num_shapes < 1 || in.num_shapes > RDM_OBJECT_SHAPES)
-    fail(Code::kRange, "def.num_shapes: %d is outside [1, %d]", in.num_shapes, RDM_OBJECT_SHAPES);
+  if (in.num_shapes < 1 || in.num_shapes > RDM_MAX_SHAPES)
+    fail(Code::kRange, "def.num_shapes: %d is outside [1, %d]", in.num_shapes, RDM_MAX_SHAPES);
   need(in.shapes, "def.shapes");
   Vector<Vector<Vec3>> points(static_cast<size_t>(in.num_shapes));
   Vector<ObjectShape> shapes;
@@ -91,7 +91,7 @@ rdm_result rdm_object_find(const char* name, int32_t* index) {
   });
 }
 
-rdm_result rdm_object_get(int32_t object, rdm_object_def* io) {
+rdm_result rdm_object_get_def(int32_t object, rdm_object_def* io) {
   return call([&] {
     check_out(io, kFirstObjectSize, "io");
     const ObjectRef ref(object);
@@ -141,7 +141,7 @@ rdm_result rdm_object_create(int32_t* out, const rdm_object_def* def) {
   });
 }
 
-rdm_result rdm_object_remove(int32_t object) {
+rdm_result rdm_object_destroy(int32_t object) {
   return call([&] { remove_object(object); });
 }
 #endif

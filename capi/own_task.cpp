@@ -1,4 +1,4 @@
-// rdm_task_register and its like: a host's description becomes a row of the registry, its functions a Task.
+// rdm_task_create and its like: a host's description becomes a row of the registry, its functions a Task.
 #include "capi/own_task.hpp"
 
 #if RDM_WITH_SIM
@@ -75,7 +75,7 @@ struct RowName {  // "def.costs[2]" and a member
 };
 
 const char* kind_name(OptionKind kind) {
-  constexpr const char* kNames[] = {"RDM_NUMBER", "RDM_INTEGER", "RDM_FLAG", "RDM_TEXT"};
+  constexpr const char* kNames[] = {"RDM_KIND_NUMBER", "RDM_KIND_INTEGER", "RDM_KIND_FLAG", "RDM_KIND_TEXT"};
   return kNames[static_cast<int32_t>(kind)];
 }
 
@@ -325,7 +325,7 @@ void OwnTask::take_options() {
     const rdm_option_info& o = def.options[i];
     const RowName key("options", i, "key");
     need_name(o.key, key.text, OptionTable::kKeySize - 1);
-    if (o.kind < RDM_NUMBER || o.kind > RDM_TEXT)
+    if (o.kind < RDM_KIND_NUMBER || o.kind > RDM_KIND_TEXT)
       fail(Code::kRange, "def.options[%d].kind: %d of %s is outside [0, 3]", i, o.kind, o.key);
     const auto kind = static_cast<OptionKind>(o.kind);
     OptionSpec* row = nullptr;
@@ -467,7 +467,8 @@ void OwnTask::end() noexcept {
 
 void OwnTask::blame(const char* function, rdm_result r, bool thrown) const {
   if (thrown) fail(Code::kArgument, "task %s: %s: an exception came out of it", def.name, function);
-  if (r > 0 || (r < static_cast<rdm_result>(RDM_CANCELLED) && r != static_cast<rdm_result>(RDM_INTERNAL)))
+  if (r > 0 ||
+      (r < static_cast<rdm_result>(RDM_ERROR_CANCELLED) && r != static_cast<rdm_result>(RDM_ERROR_INTERNAL)))
     fail(Code::kArgument, "task %s: %s: it returned %d, which is no rdm_result", def.name, function, r);
   char text[kErrorTextSize];
   copy_text(text, sizeof text, failure_noted() ? last_error() : code_string(r));
@@ -478,7 +479,7 @@ rdm_result rdm_task_def_init(rdm_task_def* def, size_t size) {
   return call([&] { init_struct(def, size, kFirstSize, default_def(), "def"); });
 }
 
-rdm_result rdm_task_register(int32_t* out, const rdm_task_def* def) {
+rdm_result rdm_task_create(int32_t* out, const rdm_task_def* def) {
   return call([&] {
     need(out, "out");
     register_builtin_tasks();
@@ -494,7 +495,7 @@ rdm_result rdm_task_register(int32_t* out, const rdm_task_def* def) {
   });
 }
 
-rdm_result rdm_task_remove(int32_t task) {
+rdm_result rdm_task_destroy(int32_t task) {
   return call([&] {
     remove_task(task);
     forget_task(task);

@@ -185,7 +185,7 @@ rdm_result rdm_planner_option_at(int32_t i, rdm_option_info* out) {
   });
 }
 
-rdm_result rdm_planner_settings(const rdm_planner* p, char* text, size_t capacity, size_t* size) {
+rdm_result rdm_planner_get_settings(const rdm_planner* p, char* text, size_t capacity, size_t* size) {
   return call_on(p, [&] { give_settings(p->planner->options(), text, capacity, size); });
 }
 

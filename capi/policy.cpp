@@ -148,7 +148,7 @@ void need_finite(const float* x, int32_t rows, int32_t width, const char* name) 
 }
 }  // namespace
 
-rdm_result rdm_policy_load(rdm_policy** out, const void* bytes, size_t size) {
+rdm_result rdm_policy_read(rdm_policy** out, const void* bytes, size_t size) {
   return call([&] {
     need(out, "out");
     need(bytes, "bytes");
@@ -156,7 +156,7 @@ rdm_result rdm_policy_load(rdm_policy** out, const void* bytes, size_t size) {
   });
 }
 
-rdm_result rdm_policy_load_file(rdm_policy** out, const char* path) {
+rdm_result rdm_policy_read_file(rdm_policy** out, const char* path) {
   return call([&] {
     need(out, "out");
     need(path, "path");
@@ -243,7 +243,7 @@ rdm_result rdm_policy_act_points(const rdm_policy* p, const float* obs, const rd
   });
 }
 
-rdm_result rdm_policy_tensor(const rdm_policy* p, int32_t i, rdm_tensor* out) {
+rdm_result rdm_policy_tensor_at(const rdm_policy* p, int32_t i, rdm_tensor* out) {
   return call([&] {
     need_handle(p);
     need(out, "out");
@@ -253,7 +253,7 @@ rdm_result rdm_policy_tensor(const rdm_policy* p, int32_t i, rdm_tensor* out) {
   });
 }
 
-rdm_result rdm_policy_tensor_read(const rdm_policy* p, const char* name, float* out, size_t count) {
+rdm_result rdm_policy_get_tensor(const rdm_policy* p, const char* name, float* out, size_t count) {
   return call([&] {
     need_handle(p);
     need(name, "name");
@@ -274,7 +274,7 @@ rdm_result rdm_policy_tensor_read(const rdm_policy* p, const char* name, float* 
   });
 }
 
-rdm_result rdm_policy_columns(const rdm_policy* p, int32_t* columns, int32_t capacity, int32_t* count) {
+rdm_result rdm_policy_get_columns(const rdm_policy* p, int32_t* columns, int32_t capacity, int32_t* count) {
   return call([&] {
     need_handle(p);
     need(count, "count");
@@ -322,7 +322,7 @@ rdm_result rdm_policy_check(const rdm_policy* p, const rdm_spec* spec) {
 }
 
 #if RDM_WITH_LEARN
-rdm_result rdm_agent_load_policy(rdm_agent* a, const rdm_policy* p, double samples) {
+rdm_result rdm_agent_set_policy(rdm_agent* a, const rdm_policy* p, double samples) {
   return call_on(a, [&] {
     need_handle(p);
     a->agent->load_policy(p->policy->view(), samples);

@@ -114,7 +114,7 @@ void fill_side(rdm_pool* p) {
 
 }  // namespace
 
-rdm_result rdm_pool_spec(const rdm_pool_config* c, rdm_spec* io) {
+rdm_result rdm_pool_config_spec(const rdm_pool_config* c, rdm_spec* io) {
   return call_with(c, [&] {
     check_out(io, kFirstSpecSize, "io");
     Config config;
@@ -125,7 +125,7 @@ rdm_result rdm_pool_spec(const rdm_pool_config* c, rdm_spec* io) {
   });
 }
 
-rdm_result rdm_pool_memory(const rdm_pool_config* c, size_t* ours, size_t* engines) {
+rdm_result rdm_pool_config_memory(const rdm_pool_config* c, size_t* ours, size_t* engines) {
   return call_with(c, [&] {
     Config config;
     read_config(c, &config);
@@ -196,11 +196,11 @@ rdm_result rdm_pool_field(const rdm_pool* p, int32_t i, rdm_field* out) {
   });
 }
 
-rdm_result rdm_pool_option(const rdm_pool* p, int32_t i, const char** key, char* text) {
-  return call_on(p, [&] { give_option(p->pool->options(), i, key, text, "rdm_pool_settings"); });
+rdm_result rdm_pool_option_at(const rdm_pool* p, int32_t i, const char** key, char* text) {
+  return call_on(p, [&] { give_option(p->pool->options(), i, key, text, "rdm_pool_get_settings"); });
 }
 
-rdm_result rdm_pool_settings(const rdm_pool* p, char* text, size_t capacity, size_t* size) {
+rdm_result rdm_pool_get_settings(const rdm_pool* p, char* text, size_t capacity, size_t* size) {
   return call_on(p, [&] { give_settings(p->pool->options(), text, capacity, size); });
 }
 
@@ -216,14 +216,14 @@ rdm_result rdm_pool_field_bounds(const rdm_pool* p, int32_t i, float* low, float
   });
 }
 
-rdm_result rdm_pool_initial_mean(const rdm_pool* p, float* action) {
+rdm_result rdm_pool_get_initial_mean(const rdm_pool* p, float* action) {
   return call_on(p, [&] {
     need(action, "action");
     std::copy_n(p->initial_mean, p->pool->task().action_dim(), action);
   });
 }
 
-rdm_result rdm_pool_buffers(const rdm_pool* p, rdm_buffers* io) {
+rdm_result rdm_pool_get_buffers(const rdm_pool* p, rdm_buffers* io) {
   return call_on(p, [&] {
     const Buffers& b = p->pool->buffers();
     rdm_buffers out{};
@@ -245,7 +245,7 @@ rdm_result rdm_pool_buffers(const rdm_pool* p, rdm_buffers* io) {
   });
 }
 
-rdm_result rdm_pool_bind(rdm_pool* p, const rdm_buffers* b) {
+rdm_result rdm_pool_set_buffers(rdm_pool* p, const rdm_buffers* b) {
   return call_on(p, [&] {
     const auto in = read_struct(b, sizeof(rdm_buffers), rdm_buffers{}, "b");
     const auto aligned = [](const void* q, const char* name) {
@@ -319,7 +319,7 @@ rdm_result rdm_pool_state_size(const rdm_pool* p, int32_t env, size_t* bytes) {
   });
 }
 
-rdm_result rdm_pool_get_state(const rdm_pool* p, int32_t env, void* bytes, size_t capacity, size_t* size) {
+rdm_result rdm_pool_write_state(const rdm_pool* p, int32_t env, void* bytes, size_t capacity, size_t* size) {
   return call_on(p, [&] {
     check_env(p, env, true);
     need(bytes, "bytes");
@@ -336,7 +336,7 @@ rdm_result rdm_pool_set_rank(rdm_pool* p, int32_t rank, int32_t ranks) {
   return call_on(p, [&] { p->pool->set_rank(rank, ranks); });
 }
 
-rdm_result rdm_pool_set_state(rdm_pool* p, int32_t env, const void* bytes, size_t size) {
+rdm_result rdm_pool_read_state(rdm_pool* p, int32_t env, const void* bytes, size_t size) {
   return call_on(p, [&] {
     check_env(p, env, true);
     need(bytes, "bytes");
@@ -344,7 +344,7 @@ rdm_result rdm_pool_set_state(rdm_pool* p, int32_t env, const void* bytes, size_
   });
 }
 
-rdm_result rdm_pool_hash(const rdm_pool* p, int32_t env, uint64_t* hash) {
+rdm_result rdm_pool_get_hash(const rdm_pool* p, int32_t env, uint64_t* hash) {
   return call_on(p, [&] {
     check_env(p, env, true);
     need(hash, "hash");

@@ -212,7 +212,7 @@ rdm_result rdm_recording_clear(rdm_recording* r) {
   return change(r, [&](Recording& x) { x.clear(); });
 }
 
-rdm_result rdm_recording_save_file(const rdm_recording* r, const char* path) {
+rdm_result rdm_recording_write_file(const rdm_recording* r, const char* path) {
   return call_on(r, [&] {
     need(path, "path");
     const HostScope scope(r->hooks);
@@ -222,7 +222,7 @@ rdm_result rdm_recording_save_file(const rdm_recording* r, const char* path) {
   });
 }
 
-rdm_result rdm_recording_load_file(rdm_recording** out, const char* path) {
+rdm_result rdm_recording_read_file(rdm_recording** out, const char* path) {
   return call([&] {
     need(out, "out");
     need(path, "path");

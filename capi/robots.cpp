@@ -12,10 +12,10 @@
 using namespace rdm;
 using namespace rdm::capi;
 
-static_assert(RDM_ROBOT_LINKS == kMaxRobotLinks && RDM_ROBOT_KNOTS == kMaxKnots);
+static_assert(RDM_MAX_LINKS == kMaxRobotLinks && RDM_MAX_KNOTS == kMaxKnots);
 static_assert(static_cast<int>(RDM_ROBOT_HAND) == static_cast<int>(RobotKind::kHand) &&
               static_cast<int>(RDM_ROBOT_ARM) == static_cast<int>(RobotKind::kArm));
-static_assert(RDM_ROOT_LINK == kRootLink && RDM_NO_LINK == kNoLink);
+static_assert(RDM_LINK_ROOT == kRootLink && RDM_LINK_NONE == kNoLink);
 
 namespace {
 
@@ -44,7 +44,7 @@ rdm_robot_def default_def() {
   rdm_robot_def d{};
   d.mirror = -1;
   d.mount_q[3] = d.flange_q[3] = 1;
-  d.flange_link = d.palm_link = RDM_NO_LINK;
+  d.flange_link = d.palm_link = RDM_LINK_NONE;
   d.palm_normal[1] = -1;
   d.palm_fingers[2] = 1;
   return d;
@@ -128,16 +128,16 @@ void need_finite(const double* x, int32_t count, const char* name) {
 
 RobotCopy rdm::capi::robot_from(const rdm_robot_def* def) {
   const auto in = read_struct(def, kFirstSize, default_def(), "def");
-  need_rows(in.links, in.num_links, RDM_ROBOT_LINKS, "links");
+  need_rows(in.links, in.num_links, RDM_MAX_LINKS, "links");
   need_rows(in.shapes, in.num_shapes, kMostRows, "shapes");
   need_rows(in.pairs, std::max(in.num_pairs, 0), kMostRows, "pairs");
   if (in.num_pairs < -1) fail(Code::kRange, "def.num_pairs: %d is outside [-1, %d]", in.num_pairs, kMostRows);
-  need_rows(in.couplings, in.num_couplings, RDM_ROBOT_LINKS, "couplings");
-  need_rows(in.curves, in.num_curves, RDM_ROBOT_LINKS, "curves");
+  need_rows(in.couplings, in.num_couplings, RDM_MAX_LINKS, "couplings");
+  need_rows(in.curves, in.num_curves, RDM_MAX_LINKS, "curves");
   if (in.num_commands < -1)
-    fail(Code::kRange, "def.num_commands: %d is outside [-1, %d]", in.num_commands, RDM_ROBOT_LINKS);
-  need_rows(in.commands, std::max(in.num_commands, 0), RDM_ROBOT_LINKS, "commands");
-  need_rows(in.fingers, in.num_fingers, RDM_ROBOT_LINKS, "fingers");
+    fail(Code::kRange, "def.num_commands: %d is outside [-1, %d]", in.num_commands, RDM_MAX_LINKS);
+  need_rows(in.commands, std::max(in.num_commands, 0), RDM_MAX_LINKS, "commands");
+  need_rows(in.fingers, in.num_fingers, RDM_MAX_LINKS, "fingers");
   RobotCopy r;
   for (int32_t i = 0; i < in.num_links; ++i) r.links.push_back(link_of(in.links[i]));
   for (int32_t i = 0; i < in.num_shapes; ++i) r.shapes.push_back(shape_of(in.shapes[i]));
@@ -159,7 +159,7 @@ RobotCopy rdm::capi::robot_from(const rdm_robot_def* def) {
   Robot& o = r.bind();
   o.passive = in.num_commands < 0;
   if (in.closed) {
-    r.closed.assign(in.closed, in.closed + std::clamp(o.num_actuated(), 0, RDM_ROBOT_LINKS));
+    r.closed.assign(in.closed, in.closed + std::clamp(o.num_actuated(), 0, RDM_MAX_LINKS));
     r.bind();
   }
   o.name = in.name;
@@ -194,7 +194,7 @@ rdm_result rdm_robot_create(int32_t* out, const rdm_robot_def* def) {
   });
 }
 
-rdm_result rdm_robot_remove(int32_t robot) {
+rdm_result rdm_robot_destroy(int32_t robot) {
   return call([&] { remove_robot(robot); });
 }
 
@@ -206,8 +206,8 @@ rdm_result rdm_robot_find(const char* name, int32_t* index) {
   });
 }
 
-rdm_result rdm_robot_mount(int32_t* out, const char* name, int32_t arm, int32_t hand, double yaw,
-                           double adapter, int32_t left) {
+rdm_result rdm_robot_create_mounted(int32_t* out, const char* name, int32_t arm, int32_t hand, double yaw,
+                                    double adapter, int32_t left) {
   return call([&] {
     need(out, "out");
     need(name, "name");
@@ -222,7 +222,7 @@ rdm_result rdm_robot_mount(int32_t* out, const char* name, int32_t arm, int32_t 
   });
 }
 
-rdm_result rdm_robot_get(int32_t robot, rdm_robot_def* io) {
+rdm_result rdm_robot_get_def(int32_t robot, rdm_robot_def* io) {
   return call([&] {
     check_out(io, kFirstSize, "io");
     const RobotRef ref(robot);
@@ -352,7 +352,8 @@ rdm_result rdm_robot_finger_at(int32_t robot, int32_t i, rdm_robot_finger* out) 
   });
 }
 
-rdm_result rdm_robot_poses_of(int32_t robot, int32_t* commands, double* home, double* folded, float* closed) {
+rdm_result rdm_robot_get_postures(int32_t robot, int32_t* commands, double* home, double* folded,
+                                  float* closed) {
   return call([&] {
     const RobotRef ref(robot);
     const Robot& r = *ref;

@@ -103,7 +103,7 @@ ShapeDef read_shape(const rdm_scene& scene, const rdm_shape_def& in, const char*
   s.X_LS = {vec(in.p), quat(in.q)};
   s.collides = in.seen_only == 0;
   if (in.color[0] || in.color[1] || in.color[2] || in.color[3]) std::copy_n(in.color, 3, s.color);
-  if (in.kind != RDM_HULL) {
+  if (in.kind != RDM_SHAPE_HULL) {
     s.size = vec(in.size);
     return s;
   }
@@ -269,7 +269,7 @@ void rdm::capi::complete_scene(rdm_scene* scene) {
   throw scene->failure;
 }
 
-rdm_result rdm_scene_number(rdm_scene* scene, const char* key, double* value) {
+rdm_result rdm_scene_get_number(rdm_scene* scene, const char* key, double* value) {
   return call_inside([&] {
     need_handle(scene);
     need(key, "key");
@@ -286,23 +286,23 @@ rdm_result rdm_scene_number(rdm_scene* scene, const char* key, double* value) {
         *value = o.flag(key);
         return;
       case OptionKind::kText:
-        fail(Code::kArgument, "option %s is a text: rdm_scene_text has it", key);
+        fail(Code::kArgument, "option %s is a text: rdm_scene_get_text has it", key);
     }
   });
 }
 
-rdm_result rdm_scene_text(rdm_scene* scene, const char* key, const char** text) {
+rdm_result rdm_scene_get_text(rdm_scene* scene, const char* key, const char** text) {
   return call_inside([&] {
     need_handle(scene);
     need(key, "key");
     need(text, "text");
     if (find_option(*scene->options, key).kind != OptionKind::kText)
-      fail(Code::kArgument, "option %s is no text: rdm_scene_number has it", key);
+      fail(Code::kArgument, "option %s is no text: rdm_scene_get_number has it", key);
     *text = scene->options->text(key);
   });
 }
 
-rdm_result rdm_scene_range(rdm_scene* scene, const char* key, double* low, double* high) {
+rdm_result rdm_scene_get_range(rdm_scene* scene, const char* key, double* low, double* high) {
   return call_inside([&] {
     need_handle(scene);
     need(key, "key");
@@ -348,9 +348,9 @@ rdm_result rdm_scene_set_friction(rdm_scene* scene, const char* a, const char* b
     need(a, "a");
     need(b, "b");
     const int32_t i = find_material(*scene, a), k = find_material(*scene, b);
-    const bool passes = mu == static_cast<double>(RDM_PASSES);
+    const bool passes = mu == static_cast<double>(RDM_FRICTION_PASSES);
     if (!passes && !(mu >= 0 && mu <= 1000))
-      fail(Code::kRange, "mu: %g is neither RDM_PASSES nor within [0, 1000]", mu);
+      fail(Code::kRange, "mu: %g is neither RDM_FRICTION_PASSES nor within [0, 1000]", mu);
     Friction f;
     f.passes = passes;
     if (!passes) f.mu = mu;
@@ -370,7 +370,8 @@ rdm_result rdm_contact_law_init(rdm_contact_law* law, size_t size) {
   });
 }
 
-rdm_result rdm_scene_set_contact(rdm_scene* scene, const char* a, const char* b, const rdm_contact_law* law) {
+rdm_result rdm_scene_set_contact_law(rdm_scene* scene, const char* a, const char* b,
+                                     const rdm_contact_law* law) {
   return call_inside([&] {
     need_open(scene);
     need(a, "a");
@@ -573,7 +574,7 @@ rdm_result rdm_scene_find(rdm_scene* scene, int32_t part, const char* name, int3
   });
 }
 
-rdm_result rdm_scene_joint(rdm_scene* scene, int32_t i, rdm_joint* out) {
+rdm_result rdm_scene_joint_at(rdm_scene* scene, int32_t i, rdm_joint* out) {
   return call_inside([&] {
     need_handle(scene);
     need(out, "out");
@@ -597,7 +598,7 @@ rdm_result rdm_scene_joint(rdm_scene* scene, int32_t i, rdm_joint* out) {
   });
 }
 
-rdm_result rdm_scene_touch(rdm_scene* scene, const char* a, const char* b, int32_t* group) {
+rdm_result rdm_scene_add_touch(rdm_scene* scene, const char* a, const char* b, int32_t* group) {
   return call_inside([&] {
     need_handle(scene);
     need(group, "group");

@@ -9,7 +9,7 @@
 using namespace rdm;
 using namespace rdm::capi;
 
-rdm_result rdm_pool_sensors(const rdm_pool* p, rdm_sensors* io) {
+rdm_result rdm_pool_get_sensors(const rdm_pool* p, rdm_sensors* io) {
   return call_on(p, [&] {
     const SenseConfig& c = p->pool->sense();
     const SenseBuffers& b = p->pool->sensed();

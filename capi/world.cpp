@@ -122,7 +122,7 @@ auto draw(rdm_random* random, F&& f) -> decltype(f(std::declval<Stream&>())) {
 
 }  // namespace
 
-rdm_result rdm_world_joints(const rdm_world* world, rdm_joints* io) {
+rdm_result rdm_world_get_joints(const rdm_world* world, rdm_joints* io) {
   return call_inside([&] {
     const World& w = look(world);
     rdm_joints j{};
@@ -136,7 +136,7 @@ rdm_result rdm_world_joints(const rdm_world* world, rdm_joints* io) {
   });
 }
 
-rdm_result rdm_world_link(const rdm_world* world, int32_t link, rdm_motion* out) {
+rdm_result rdm_world_get_link(const rdm_world* world, int32_t link, rdm_motion* out) {
   return call_inside([&] {
     const World& w = look(world);
     need(out, "out");
@@ -145,7 +145,7 @@ rdm_result rdm_world_link(const rdm_world* world, int32_t link, rdm_motion* out)
   });
 }
 
-rdm_result rdm_world_base(const rdm_world* world, int32_t robot, rdm_motion* out) {
+rdm_result rdm_world_get_base(const rdm_world* world, int32_t robot, rdm_motion* out) {
   return call_inside([&] {
     const World& w = look(world);
     need(out, "out");
@@ -154,7 +154,7 @@ rdm_result rdm_world_base(const rdm_world* world, int32_t robot, rdm_motion* out
   });
 }
 
-rdm_result rdm_world_body(const rdm_world* world, int32_t body, rdm_motion* out) {
+rdm_result rdm_world_get_body(const rdm_world* world, int32_t body, rdm_motion* out) {
   return call_inside([&] {
     const World& w = look(world);
     need(out, "out");
@@ -163,7 +163,7 @@ rdm_result rdm_world_body(const rdm_world* world, int32_t body, rdm_motion* out)
   });
 }
 
-rdm_result rdm_world_shape(const rdm_world* world, int32_t shape, double pose[7]) {
+rdm_result rdm_world_get_shape(const rdm_world* world, int32_t shape, double pose[7]) {
   return call_inside([&] {
     const World& w = look(world);
     need(pose, "pose");
@@ -174,7 +174,7 @@ rdm_result rdm_world_shape(const rdm_world* world, int32_t shape, double pose[7]
   });
 }
 
-rdm_result rdm_world_sensor(const rdm_world* world, int32_t sensor, double force[3], double torque[3]) {
+rdm_result rdm_world_get_sensor(const rdm_world* world, int32_t sensor, double force[3], double torque[3]) {
   return call_inside([&] {
     const World& w = look(world);
     need_index(sensor, static_cast<int64_t>(w.scene().sensors.size()), "sensor");
@@ -186,7 +186,7 @@ rdm_result rdm_world_sensor(const rdm_world* world, int32_t sensor, double force
   });
 }
 
-rdm_result rdm_world_touch(const rdm_world* world, int32_t group, int32_t* pairs, double* force) {
+rdm_result rdm_world_get_touch(const rdm_world* world, int32_t group, int32_t* pairs, double* force) {
   return call_inside([&] {
     const World& w = look(world);
     need_index(group, static_cast<int64_t>(world->scene->groups.size()), "group");
@@ -207,7 +207,8 @@ rdm_result rdm_world_touch(const rdm_world* world, int32_t group, int32_t* pairs
   });
 }
 
-rdm_result rdm_world_contacts(const rdm_world* world, rdm_contact* out, int32_t capacity, int32_t* count) {
+rdm_result rdm_world_get_contacts(const rdm_world* world, rdm_contact* out, int32_t capacity,
+                                  int32_t* count) {
   return call_inside([&] {
     const World& w = look(world);
     need(count, "count");
@@ -226,7 +227,7 @@ rdm_result rdm_world_contacts(const rdm_world* world, rdm_contact* out, int32_t 
   });
 }
 
-rdm_result rdm_world_overlap(rdm_world* world, int32_t body, double* depth) {
+rdm_result rdm_world_get_overlap(rdm_world* world, int32_t body, double* depth) {
   return call_inside([&] {
     World& w = change(world);
     need(depth, "depth");
@@ -280,7 +281,7 @@ rdm_result rdm_world_set_targets(rdm_world* world, int32_t first, const double* 
   });
 }
 
-rdm_result rdm_world_command(rdm_world* world, int32_t robot, const double* commands, int32_t n) {
+rdm_result rdm_world_set_commands(rdm_world* world, int32_t robot, const double* commands, int32_t n) {
   return call_inside([&] {
     World& w = change(world);
     need_robot(w, robot);
@@ -315,7 +316,7 @@ rdm_result rdm_world_set_feedforward(rdm_world* world, int32_t first, const doub
   });
 }
 
-rdm_result rdm_world_gravity(const rdm_world* world, int32_t robot, double* efforts, int32_t n) {
+rdm_result rdm_world_get_gravity(const rdm_world* world, int32_t robot, double* efforts, int32_t n) {
   return call_inside([&] {
     const World& w = look(world);
     need_robot(w, robot);
@@ -325,7 +326,7 @@ rdm_result rdm_world_gravity(const rdm_world* world, int32_t robot, double* effo
   });
 }
 
-rdm_result rdm_world_scale(rdm_world* world, const rdm_factor* factors, int32_t count) {
+rdm_result rdm_world_set_factors(rdm_world* world, const rdm_factor* factors, int32_t count) {
   return call_inside([&] {
     World& w = change(world);
     if (!w.dynamics()) fail(Code::kState, "world: its scene is not adjustable, rdm_scene_set_adjustable");

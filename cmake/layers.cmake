@@ -53,6 +53,7 @@ set(RDM_ROWS "")
 
 # The public headers, in the order in which redman.h includes them: the stable ones first.
 file(STRINGS ${PROJECT_SOURCE_DIR}/include/redman/redman.h RDM_HEADERS REGEX "^#include <redman/")
+list(FILTER RDM_HEADERS EXCLUDE REGEX "deprecated")
 list(TRANSFORM RDM_HEADERS REPLACE "^#include <([a-z/.]+)>.*" "${PROJECT_SOURCE_DIR}/include/\\1")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/redman/redman.h)
 
@@ -60,10 +61,14 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_
 set(RDM_LEFT_OUT "")
 find_program(RDM_AWK NAMES mawk gawk awk REQUIRED)
 if(NOT REDMAN_STUBS)
-  foreach(half SIM LEARN POLICY)
+  file(STRINGS ${PROJECT_SOURCE_DIR}/capi/redman_old.symbols old REGEX "^rdm_")
+  foreach(half "SIM;task|pool" "LEARN;agent" "POLICY;policy")
+    list(GET half 1 groups)
+    list(GET half 0 half)
     string(TOLOWER ${half} name)
     if(REDMAN_${half})
       list(APPEND halves -v ${name}=1)
+      list(FILTER old EXCLUDE REGEX "^rdm_(${groups})_")
     else()
       list(APPEND halves -v ${name}=0)
     endif()
@@ -71,6 +76,7 @@ if(NOT REDMAN_STUBS)
   execute_process(COMMAND ${RDM_AWK} ${halves} -v names=1 -f ${PROJECT_SOURCE_DIR}/capi/stubs.awk ${RDM_HEADERS}
                   OUTPUT_VARIABLE RDM_LEFT_OUT COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX MATCHALL "rdm_[a-z_0-9]+" RDM_LEFT_OUT "${RDM_LEFT_OUT}")
+  list(APPEND RDM_LEFT_OUT ${old})
 endif()
 
 # The source file, written from the public headers, with the functions of the halves that are left out.
@@ -122,9 +128,9 @@ function(rdm_layer name folder)
   endif()
   if(name STREQUAL "capi")
     target_include_directories(rdm_capi PRIVATE ${PROJECT_SOURCE_DIR}/include)
-    target_compile_definitions(rdm_capi PRIVATE RDM_EXPERIMENTAL
+    target_compile_definitions(rdm_capi PRIVATE RDM_EXPERIMENTAL RDM_NO_DEPRECATED
       RDM_WITH_SIM=$<BOOL:${REDMAN_SIM}> RDM_WITH_LEARN=$<BOOL:${REDMAN_LEARN}>
-      RDM_WITH_POLICY=$<BOOL:${REDMAN_POLICY}>
+      RDM_WITH_POLICY=$<BOOL:${REDMAN_POLICY}> RDM_STUBS=$<BOOL:${REDMAN_STUBS}>
       RDM_ODE_VERSION="${RDM_VERSION_TEXT_ODE}" RDM_CCD_VERSION="${RDM_VERSION_TEXT_CCD}"
       RDM_EIGEN_VERSION="${RDM_VERSION_TEXT_EIGEN}" RDM_OCTOMAP_VERSION="${RDM_VERSION_TEXT_OCTOMAP}")
   endif()
@@ -143,8 +149,8 @@ function(rdm_use_rows target)
   target_link_libraries(${target} PRIVATE ${links})
 endfunction()
 
-# rdm_export(target lists...): the shared library exports the names of the checked-in lists (file:NODE, file:NODE:PARENT)
-# and nothing else. With the linkers of ELF each list has a node of its own: what 1.0 adds is in REDMAN_1.0, so that the
+# rdm_export(target lists...): the shared library exports the names of the checked-in lists (file:NODE, file:NODE:PARENT;
+# several files of a node as file+file) and nothing else. With the linkers of ELF each list has a node of its own: what 1.0 adds is in REDMAN_1.0, so that the
 # loader refuses a program that is too new for a library, and experimental names are in a node of their minor release.
 # On macOS the lists are untested.
 function(rdm_export target)
@@ -154,9 +160,14 @@ function(rdm_export target)
   foreach(list ${ARGN})
     string(REPLACE ":" ";" list "${list}")
     list(POP_FRONT list name node parent)
-    set(file ${PROJECT_SOURCE_DIR}/capi/${name}.symbols)
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
-    file(STRINGS ${file} names REGEX "^rdm_")
+    string(REPLACE "+" ";" files ${name})
+    set(names "")
+    foreach(file ${files})
+      set(file ${PROJECT_SOURCE_DIR}/capi/${file}.symbols)
+      set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+      file(STRINGS ${file} some REGEX "^rdm_")
+      list(APPEND names ${some})
+    endforeach()
     list(REMOVE_ITEM names ${RDM_LEFT_OUT} "")
     if(NOT names)
       continue()
@@ -204,7 +215,7 @@ function(rdm_library target kind)
     target_link_options(${target} PUBLIC -fsanitize=${REDMAN_SANITIZE})
   endif()
   if(kind STREQUAL "SHARED")
-    rdm_export(${target} redman:REDMAN_${RDM_ABI} redman_1.0:REDMAN_1.0:REDMAN_${RDM_ABI}
+    rdm_export(${target} redman+redman_old:REDMAN_${RDM_ABI} redman_1.0:REDMAN_1.0:REDMAN_${RDM_ABI}
                redman_experimental:REDMAN_EXPERIMENTAL_${RDM_VERSION_MAJOR}_${RDM_VERSION_MINOR})
   else()
     # a project without C++ links what the compiler of C++ would add

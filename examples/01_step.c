@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   if (rdm_pool_config_init(&config, sizeof config)) goto done;
   config.task = "hand_over_safe_finger";
   if (rdm_pool_create(&pool, &config)) goto done;
-  if (rdm_pool_get_spec(pool, &spec) || rdm_pool_buffers(pool, &b)) goto done;
+  if (rdm_pool_get_spec(pool, &spec) || rdm_pool_get_buffers(pool, &b)) goto done;
   if (rdm_pool_reset(pool, NULL, NULL)) goto done;
 
   const int object = field_offset(pool, spec.num_fields, "object.position");

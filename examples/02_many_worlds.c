@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
   config.num_threads = argc > 2 ? atoi(argv[2]) : 2;
   config.seed = 1;
   if (rdm_pool_create(&pool, &config)) goto done;
-  if (rdm_pool_get_spec(pool, &spec) || rdm_pool_buffers(pool, &b)) goto done;
+  if (rdm_pool_get_spec(pool, &spec) || rdm_pool_get_buffers(pool, &b)) goto done;
   if (rdm_pool_reset(pool, NULL, NULL)) goto done;
 
   const double start = seconds();
@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
     }
   }
   const double elapsed = seconds() - start;
-  if (rdm_pool_hash(pool, -1, &hash)) goto done;
+  if (rdm_pool_get_hash(pool, -1, &hash)) goto done;
 
   printf("%d worlds, %d threads: %.0f steps/s\n", WORLDS, (int)config.num_threads, WORLDS * steps / elapsed);
   if (episodes)

@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
     printf("%5d %8lld %8.3f %8.2f %5.0f%% %11.4f\n", (int)e.epoch, (long long)e.env_steps, e.ret, e.cost[0],
            100 * e.fall_rate, e.multiplier[0]);
   }
-  if (rdm_agent_policy_file(agent, path)) goto done;
+  if (rdm_agent_write_policy_file(agent, path)) goto done;
   printf("wrote %s\n", path);
   status = 0;
 done:

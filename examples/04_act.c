@@ -36,8 +36,8 @@ static void* make_policy(size_t* size) {
   config.action_dim = 2;
   config.num_envs = 1;
   if (rdm_agent_create(&agent, &config)) return NULL;
-  if (rdm_agent_policy(agent, NULL, 0, size) == RDM_OK && (bytes = malloc(*size)) != NULL &&
-      rdm_agent_policy(agent, bytes, *size, size) != RDM_OK) {
+  if (rdm_agent_write_policy(agent, NULL, 0, size) == RDM_OK && (bytes = malloc(*size)) != NULL &&
+      rdm_agent_write_policy(agent, bytes, *size, size) != RDM_OK) {
     free(bytes);
     bytes = NULL;
   }
@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
     fprintf(stderr, "04_act: %s%s\n", path[0] ? "cannot read " : "", path[0] ? path : rdm_last_error());
     return 1;
   }
-  const rdm_result loaded = rdm_policy_load(&policy, bytes, size);
+  const rdm_result loaded = rdm_policy_read(&policy, bytes, size);
   free(bytes); /* the policy has its own copy */
   if (loaded || rdm_policy_get_info(policy, &info)) {
     fprintf(stderr, "04_act: %s\n", rdm_last_error());

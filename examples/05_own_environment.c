@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   for (int i = 0; i < CARTS; ++i) observe(&carts[i], obs[i]);
   for (int epoch = 0; epoch < epochs; ++epoch) {
     for (int s = 0; s < HORIZON; ++s) {
-      if (rdm_agent_act(agent, obs[0], RDM_SAMPLE, action[0])) goto done;
+      if (rdm_agent_act(agent, obs[0], RDM_ACT_SAMPLE, action[0])) goto done;
       for (int i = 0; i < CARTS; ++i) {
         reward[i] = drive(&carts[i], action[i][0], &cost[i][0]);
         truncated[i] = carts[i].step == LENGTH;

@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
   pool_config.options = seen;
   pool_config.num_options = 2;
   if (rdm_pool_create(&pool, &pool_config)) goto done;
-  if (rdm_pool_get_spec(pool, &spec) || rdm_pool_sensors(pool, &sensors)) goto done;
+  if (rdm_pool_get_spec(pool, &spec) || rdm_pool_get_sensors(pool, &sensors)) goto done;
   if (rdm_pool_reset(pool, NULL, NULL)) goto done;
   if (rdm_pool_baseline(pool, RDM_BASELINE_HOLD) || rdm_pool_step(pool)) goto done;
   for (int w = 0; w < WORLDS; ++w) {
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
     printf("broom at x %.1f m: %s, the nearest thing %.2f m from its middle\n", (double)plans[i][0],
            meets ? "meets something" : "is free", (double)distance);
   }
-  if (argc > 1 && rdm_map_save_file(map, argv[1])) goto done;
+  if (argc > 1 && rdm_map_write_file(map, argv[1])) goto done;
   status = 0;
 done:
   if (status) fprintf(stderr, "06_see_and_map: %s\n", rdm_last_error());

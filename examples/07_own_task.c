@@ -18,10 +18,10 @@ typedef struct ids { /* what build leaves for the other functions */
 static rdm_result build(void* user, rdm_scene* scene, void* instance) {
   ids* id = instance;
   /* the button is a tree of one link: a cap on a spring */
-  const rdm_robot_shape top = {"top", .kind = RDM_CYLINDER, .size = {0.012, 0.006}, .q[3] = 1};
-  rdm_robot_link cap = {"cap", "spring", .parent = RDM_ROOT_LINK, .kind = RDM_PRISMATIC, .mass = 0.02};
-  const rdm_shape_def side = {.kind = RDM_CYLINDER, .size = {.02, .025}},
-                      ground = {"ground", .kind = RDM_PLANE};
+  const rdm_robot_shape top = {"top", .kind = RDM_SHAPE_CYLINDER, .size = {0.012, 0.006}, .q[3] = 1};
+  rdm_robot_link cap = {"cap", "spring", .parent = RDM_LINK_ROOT, .kind = RDM_JOINT_PRISMATIC, .mass = 0.02};
+  const rdm_shape_def side = {.kind = RDM_SHAPE_CYLINDER, .size = {.02, .025}},
+                      ground = {"ground", .kind = RDM_SHAPE_PLANE};
   const rdm_body_def cup = {sizeof cup, 1, "cup", &side, .p = {0.01, -0.43, 0.025}, .mass = 0.1};
   rdm_robot_def press;
   rdm_scene_robot hand;
@@ -38,8 +38,8 @@ static rdm_result build(void* user, rdm_scene* scene, void* instance) {
       rdm_scene_add_static(scene, &ground) ||
       rdm_scene_find(scene, RDM_SCENE_JOINT, "button_spring", &id->spring) ||
       rdm_scene_find(scene, RDM_SCENE_LINK, "hand_ff_distal", &id->tip))
-    return RDM_ARGUMENT; /* with the text of what failed */
-  return rdm_scene_touch(scene, "hand", "cup", &id->touch);
+    return RDM_ERROR_ARGUMENT; /* with the text of what failed */
+  return rdm_scene_add_touch(scene, "hand", "cup", &id->touch);
 }
 
 static rdm_result reset(void* user, const void* instance, rdm_world* world, void* state, rdm_random* random) {
@@ -53,7 +53,7 @@ static rdm_result control(void* user, const void* instance, rdm_world* world, vo
   double command[COMMANDS];
   (void)user, (void)state;
   for (int i = 0; i < COMMANDS; ++i) command[i] = a[i];
-  return rdm_world_command(world, ((const ids*)instance)->hand, command, COMMANDS);
+  return rdm_world_set_commands(world, ((const ids*)instance)->hand, command, COMMANDS);
 }
 
 static rdm_result judge(void* user, const void* instance, rdm_world* world, void* state, int32_t step,
@@ -63,9 +63,10 @@ static rdm_result judge(void* user, const void* instance, rdm_world* world, void
   rdm_motion tip, cap;
   int32_t touching = 0;
   (void)user, (void)state, (void)step;
-  if (rdm_world_joints(world, &joints) || rdm_world_touch(world, id->touch, &touching, out->cost_raw) ||
-      rdm_world_link(world, id->tip, &tip) || rdm_world_link(world, id->spring, &cap))
-    return RDM_STATE;
+  if (rdm_world_get_joints(world, &joints) ||
+      rdm_world_get_touch(world, id->touch, &touching, out->cost_raw) ||
+      rdm_world_get_link(world, id->tip, &tip) || rdm_world_get_link(world, id->spring, &cap))
+    return RDM_ERROR_STATE;
   const double pressed = joints.q[id->spring] / -0.01;
   out->reward = pressed - 5 * (fabs(tip.p[1] - cap.p[1]) + fabs(tip.p[2] - cap.p[2]));
   out->cost[0] = touching > 0;
@@ -78,7 +79,8 @@ static rdm_result observe(void* user, const void* instance, const rdm_world* w, 
   rdm_joints joints = {.struct_size = sizeof joints};
   rdm_motion cup;
   (void)user, (void)state;
-  if (rdm_world_joints(w, &joints) || rdm_world_body(w, ((const ids*)instance)->cup, &cup)) return RDM_STATE;
+  if (rdm_world_get_joints(w, &joints) || rdm_world_get_body(w, ((const ids*)instance)->cup, &cup))
+    return RDM_ERROR_STATE;
   for (int i = 0; i <= JOINTS; ++i) *obs++ = (float)joints.q[i]; /* the hand's, then the button's */
   for (int i = 0; i <= JOINTS; ++i) *obs++ = (float)(0.1 * joints.qd[i]);
   for (int k = 0; k < 3; ++k) *obs++ = (float)cup.p[k];
@@ -97,7 +99,7 @@ rdm_result redman_plugin(void) { /* the tool calls it of a library that is given
   def.fields = fields, def.num_fields = 3, def.costs = &cost, def.num_costs = 1;
   def.action_dim = COMMANDS, def.obs_limit = 5, def.instance_bytes = sizeof(ids), def.max_steps = 60;
   def.build = build, def.reset = reset, def.control = control, def.judge = judge, def.observe = observe;
-  return rdm_task_register(&task, &def);
+  return rdm_task_create(&task, &def);
 }
 
 int main(int argc, char** argv) {
@@ -118,6 +120,6 @@ int main(int argc, char** argv) {
   if (status) fprintf(stderr, "07_own_task: %s\n", rdm_last_error());
   rdm_agent_destroy(agent);
   rdm_pool_destroy(pool);
-  if (task >= 0) rdm_task_remove(task);
+  if (task >= 0) rdm_task_destroy(task);
   return status;
 }

@@ -24,14 +24,14 @@ int main(int argc, char** argv) {
   int32_t robot;
   int status = 1;
 
-  if (rdm_import_file(&import, file, NULL)) {
+  if (rdm_import_read_file(&import, file, NULL)) {
     fprintf(stderr, "08_own_robot: %s\n", rdm_import_error());
     return 1;
   }
   for (int32_t i = 0; i < rdm_import_note_count(import); ++i)
     if (!rdm_import_note_at(import, i, &note) && note.kind == RDM_NOTE_DROPPED)
       printf("line %d, left out: %s\n", (int)note.line, note.text);
-  if (rdm_robot_def_init(&hand, sizeof hand) || rdm_import_def(import, &hand)) goto done;
+  if (rdm_robot_def_init(&hand, sizeof hand) || rdm_import_get_robot_def(import, &hand)) goto done;
   if (rdm_robot_create(&robot, &hand)) goto done;
   printf("%s: %d joints, %d fingers\n", hand.name, (int)hand.num_links, (int)hand.num_fingers);
 

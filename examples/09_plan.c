@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
   pool_config.autoreset = RDM_AUTORESET_OFF;
   pool_config.settings = lines(options, sizeof options, argc > 4 ? argv[4] : "");
   if (rdm_pool_create(&pool, &pool_config)) goto done;
-  if (rdm_pool_buffers(pool, &b)) goto done;
+  if (rdm_pool_get_buffers(pool, &b)) goto done;
 
   if (rdm_planner_config_init(&config, sizeof config)) goto done;
   config.pool = pool; /* its task and options: what the rollouts have */

@@ -199,8 +199,8 @@ int main(int argc, char** argv) {
          (long long)report.train_rows, report.train_loss, report.validation_loss);
 
   /* What a robot's controller has: the policy, and memory for its calls. */
-  if (rdm_agent_policy(agent, NULL, 0, &size) || !(bytes = malloc(size))) goto done;
-  if (rdm_agent_policy(agent, bytes, size, &size) || rdm_policy_load(&policy, bytes, size)) goto done;
+  if (rdm_agent_write_policy(agent, NULL, 0, &size) || !(bytes = malloc(size))) goto done;
+  if (rdm_agent_write_policy(agent, bytes, size, &size) || rdm_policy_read(&policy, bytes, size)) goto done;
   const size_t scratch_size = rdm_policy_scratch(policy, 1);
   if (!(scratch = malloc(scratch_size))) goto done;
   play("demonstration:", NULL, 0, scenes, NULL, 0);

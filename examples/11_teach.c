@@ -131,9 +131,9 @@ static void print_tally(const char* who, const tally* t) {
 /* Writes the policy of an agent; 0 on success. */
 static int save_policy(const rdm_agent* agent, const char* path) {
   size_t size = 0;
-  if (rdm_agent_policy(agent, NULL, 0, &size)) return 1;
+  if (rdm_agent_write_policy(agent, NULL, 0, &size)) return 1;
   void* bytes = malloc(size);
-  FILE* file = bytes && !rdm_agent_policy(agent, bytes, size, &size) ? fopen(path, "wb") : NULL;
+  FILE* file = bytes && !rdm_agent_write_policy(agent, bytes, size, &size) ? fopen(path, "wb") : NULL;
   int failed = !file || fwrite(bytes, 1, size, file) != size;
   if (file && fclose(file)) failed = 1;
   free(bytes);
@@ -165,8 +165,8 @@ int main(int argc, char** argv) {
   rdm_recording_config_init(&kept, sizeof kept);
   rdm_agent_config_init(&student, sizeof student);
   rdm_clone_config_init(&how, sizeof how);
-  if (rdm_policy_load_file(&walker, path) || rdm_policy_get_info(walker, &info) ||
-      rdm_pool_create(&pool, &config) || rdm_pool_get_spec(pool, &spec) || rdm_pool_buffers(pool, &b) ||
+  if (rdm_policy_read_file(&walker, path) || rdm_policy_get_info(walker, &info) ||
+      rdm_pool_create(&pool, &config) || rdm_pool_get_spec(pool, &spec) || rdm_pool_get_buffers(pool, &b) ||
       rdm_recording_config_for_pool(&kept, pool) || rdm_recording_create(&rows, &kept) ||
       rdm_agent_config_for_pool(&student, pool))
     goto end;
@@ -183,7 +183,8 @@ int main(int argc, char** argv) {
     const int teachers = round ? WORLDS / 4 : WORLDS;
     tally by[2] = {{0, 0, 0, 0}, {0, 0, 0, 0}};
     for (int t = 0; t < decisions; ++t) {
-      if (teach(walker, b.obs, label, scratch, scratch_bytes) || rdm_agent_act(agent, b.obs, RDM_MEAN, own))
+      if (teach(walker, b.obs, label, scratch, scratch_bytes) ||
+          rdm_agent_act(agent, b.obs, RDM_ACT_MEAN, own))
         goto end;
       for (int i = 0; i < WORLDS * ACTIONS; ++i)
         b.action[i] = (i < teachers * ACTIONS ? label : own)[i] + noise * draw();

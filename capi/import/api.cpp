@@ -41,10 +41,10 @@ rdm_result call(const rdm_import_options* options, F&& f) noexcept {
       keep_error(r.text);
     }
   } catch (const std::bad_alloc&) {
-    code = RDM_MEMORY;
+    code = RDM_ERROR_MEMORY;
     std::strcpy(t_error, "out of memory");
   } catch (...) {
-    code = RDM_INTERNAL;
+    code = RDM_ERROR_INTERNAL;
     std::strcpy(t_error, "internal error: unexpected exception");
   }
   constexpr size_t end = offsetof(rdm_import_options, error_size) + sizeof options->error_size;
@@ -58,17 +58,17 @@ rdm_result call(const rdm_import_options* options, F&& f) noexcept {
 }
 
 void need(const void* p, const char* name) {
-  if (!p) refuse(RDM_ARGUMENT, "%s is NULL", name);
+  if (!p) refuse(RDM_ERROR_ARGUMENT, "%s is NULL", name);
 }
 void need_handle(const rdm_import* i) {
   need(i, "import");
   if (i->tag != rdm_import::kTag)
-    refuse(RDM_ARGUMENT, "import: no handle of this kind, or one that was destroyed");
+    refuse(RDM_ERROR_ARGUMENT, "import: no handle of this kind, or one that was destroyed");
 }
 
 void need_robot(const rdm_import* i) {
   need_handle(i);
-  if (i->object) refuse(RDM_ARGUMENT, "import: it is an object, no robot");
+  if (i->object) refuse(RDM_ERROR_ARGUMENT, "import: it is an object, no robot");
 }
 
 rdm_import_options defaults() {
@@ -83,23 +83,24 @@ Options read_options(const rdm_import_options* in) {
     // What the first version of the struct ended with.
     constexpr size_t first = offsetof(rdm_import_options, mend_inertia) + sizeof o.mend_inertia;
     if (in->struct_size < first || in->struct_size > kMaxStruct)
-      refuse(RDM_ARGUMENT, "options.struct_size: %u is outside [%zu, %zu]; set it by rdm_import_options_init",
+      refuse(RDM_ERROR_ARGUMENT,
+             "options.struct_size: %u is outside [%zu, %zu]; set it by rdm_import_options_init",
              in->struct_size, first, kMaxStruct);
     std::memcpy(&o, in, std::min<size_t>(in->struct_size, sizeof o));
     if (o.error && o.error_size < 1)
-      refuse(RDM_RANGE, "options.error_size: %d is less than 1, but error is set", o.error_size);
+      refuse(RDM_ERROR_RANGE, "options.error_size: %d is less than 1, but error is set", o.error_size);
     if (o.format < RDM_IMPORT_AUTO || o.format > RDM_IMPORT_ROBOT)
-      refuse(RDM_RANGE, "options.format: %d is outside [0, 3]", o.format);
+      refuse(RDM_ERROR_RANGE, "options.format: %d is outside [0, 3]", o.format);
     if (o.kind < -1 || o.kind > RDM_ROBOT_ARM)
-      refuse(RDM_RANGE, "options.kind: %d is outside [-1, 2]", o.kind);
+      refuse(RDM_ERROR_RANGE, "options.kind: %d is outside [-1, 2]", o.kind);
     if (o.skip_meshes != 0 && o.skip_meshes != 1)
-      refuse(RDM_RANGE, "options.skip_meshes: %d is outside [0, 1]", o.skip_meshes);
+      refuse(RDM_ERROR_RANGE, "options.skip_meshes: %d is outside [0, 1]", o.skip_meshes);
     if (o.mend_inertia != 0 && o.mend_inertia != 1)
-      refuse(RDM_RANGE, "options.mend_inertia: %d is outside [0, 1]", o.mend_inertia);
+      refuse(RDM_ERROR_RANGE, "options.mend_inertia: %d is outside [0, 1]", o.mend_inertia);
     if (!(o.density >= 0 && o.density <= 1e5))
-      refuse(RDM_RANGE, "options.density: %g is outside [0, 1e5]", o.density);
+      refuse(RDM_ERROR_RANGE, "options.density: %g is outside [0, 1e5]", o.density);
     if (!(o.slide_range >= 0 && o.slide_range <= 1e6))
-      refuse(RDM_RANGE, "options.slide_range: %g is outside [0, 1e6]", o.slide_range);
+      refuse(RDM_ERROR_RANGE, "options.slide_range: %g is outside [0, 1e6]", o.slide_range);
   }
   Options out;
   const auto text = [](const char* t) { return std::string(t ? t : ""); };
@@ -138,7 +139,7 @@ void try_create(rdm_robot_def def) {
   const std::string head = std::string("robot ") + taken.name + ": ";
   if (text != head + "the name is taken") {
     if (text.compare(0, head.size(), head) == 0) text.replace(0, head.size(), "robot " + clean(name) + ": ");
-    refuse(r ? r : RDM_INTERNAL, "%s", text.c_str());
+    refuse(r ? r : RDM_ERROR_INTERNAL, "%s", text.c_str());
   }
   // Names are looked at before the rows are, so that a wrong one is told first.
   def.name = asked.name;
@@ -146,14 +147,14 @@ void try_create(rdm_robot_def def) {
   (void)rdm_robot_create(&robot, &def);
   text = rdm_last_error();
   if (text.find("the name is") != std::string::npos || text.find("a name is made of") != std::string::npos)
-    refuse(RDM_ARGUMENT, "%s", text.c_str());
+    refuse(RDM_ERROR_ARGUMENT, "%s", text.c_str());
 }
 
 // An option that would change the robot, in a format that does not take it.
 void need_taken(const Options& o, int32_t format) {
   if (format == RDM_IMPORT_MJCF && o.density > 0)
     refuse(
-        RDM_ARGUMENT,
+        RDM_ERROR_ARGUMENT,
         "options.density: of URDF alone; a geom of MJCF says its own mass or density, else has 1000 kg/m3");
   if (format != RDM_IMPORT_ROBOT) return;
   const std::pair<const char*, bool> said[] = {
@@ -162,7 +163,7 @@ void need_taken(const Options& o, int32_t format) {
       {"flange", !o.flange.empty()},
   };
   for (const auto& [name, given] : said)
-    if (given) refuse(RDM_ARGUMENT, "options.%s: of URDF and MJCF; a .robot file says it itself", name);
+    if (given) refuse(RDM_ERROR_ARGUMENT, "options.%s: of URDF and MJCF; a .robot file says it itself", name);
 }
 
 // XML that is not well-formed up to its first element too.
@@ -217,7 +218,7 @@ rdm_result rdm_import_options_init(rdm_import_options* options, size_t size) {
   return call(nullptr, [&] {
     need(options, "options");
     if (size < sizeof *options || size > kMaxStruct)
-      refuse(RDM_ARGUMENT, "size: %zu is outside [%zu, %zu]", size, sizeof *options, kMaxStruct);
+      refuse(RDM_ERROR_ARGUMENT, "size: %zu is outside [%zu, %zu]", size, sizeof *options, kMaxStruct);
     std::memset(static_cast<void*>(options), 0, size);
     rdm_import_options o = defaults();
     o.struct_size = static_cast<uint32_t>(size);
@@ -225,7 +226,7 @@ rdm_result rdm_import_options_init(rdm_import_options* options, size_t size) {
   });
 }
 
-rdm_result rdm_import_file(rdm_import** out, const char* path, const rdm_import_options* options) {
+rdm_result rdm_import_read_file(rdm_import** out, const char* path, const rdm_import_options* options) {
   return call(options, [&] {
     need(out, "out");
     need(path, "path");
@@ -235,7 +236,7 @@ rdm_result rdm_import_file(rdm_import** out, const char* path, const rdm_import_
     auto made = std::make_unique<rdm_import>();
     try {
       if (o.format == RDM_IMPORT_AUTO && names_xml(path) && !begins_as_xml(bytes))
-        refuse(RDM_FORMAT, "line 1: no XML: it does not begin with <");
+        refuse(RDM_ERROR_FORMAT, "line 1: no XML: it does not begin with <");
       read(bytes, o, &made->draft);
     } catch (const Refusal& r) {
       refuse(r.code, "%s: %s", clean(path, 160).c_str(), r.text.c_str());
@@ -244,12 +245,12 @@ rdm_result rdm_import_file(rdm_import** out, const char* path, const rdm_import_
   });
 }
 
-rdm_result rdm_import_text(rdm_import** out, const void* bytes, size_t size,
+rdm_result rdm_import_read(rdm_import** out, const void* bytes, size_t size,
                            const rdm_import_options* options) {
   return call(options, [&] {
     need(out, "out");
     if (size > 0) need(bytes, "bytes");
-    if (size > kMostXml) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostXml);
+    if (size > kMostXml) refuse(RDM_ERROR_RANGE, "size: %zu is outside [0, %zu]", size, kMostXml);
     const Options o = read_options(options);
     auto made = std::make_unique<rdm_import>();
     read(std::string(static_cast<const char*>(bytes), size), o, &made->draft);
@@ -257,7 +258,7 @@ rdm_result rdm_import_text(rdm_import** out, const void* bytes, size_t size,
   });
 }
 
-rdm_result rdm_import_robot(rdm_import** out, int32_t robot) {
+rdm_result rdm_import_create_robot(rdm_import** out, int32_t robot) {
   return call(nullptr, [&] {
     need(out, "out");
     auto made = std::make_unique<rdm_import>();
@@ -272,12 +273,12 @@ void rdm_import_destroy(rdm_import* i) {
   delete i;
 }
 
-rdm_result rdm_import_def(const rdm_import* i, rdm_robot_def* io) {
+rdm_result rdm_import_get_robot_def(const rdm_import* i, rdm_robot_def* io) {
   return call(nullptr, [&] {
     need_robot(i);
     need(io, "io");
     if (io->struct_size < sizeof *io || io->struct_size > kMaxStruct)
-      refuse(RDM_ARGUMENT, "io.struct_size: %u is outside [%zu, %zu]; set it by rdm_robot_def_init",
+      refuse(RDM_ERROR_ARGUMENT, "io.struct_size: %u is outside [%zu, %zu]; set it by rdm_robot_def_init",
              io->struct_size, sizeof *io, kMaxStruct);
     const uint32_t size = io->struct_size;
     std::memset(static_cast<void*>(io), 0, size);
@@ -295,7 +296,7 @@ rdm_result rdm_import_note_at(const rdm_import* i, int32_t n, rdm_import_note* o
     need_handle(i);
     need(out, "out");
     const int32_t count = rdm_import_note_count(i);
-    if (n < 0 || n >= count) refuse(RDM_RANGE, "n: %d is outside [0, %d)", n, count);
+    if (n < 0 || n >= count) refuse(RDM_ERROR_RANGE, "n: %d is outside [0, %d)", n, count);
     const Note& note = i->draft.notes[static_cast<size_t>(n)];
     *out = {note.kind, note.line, note.text.c_str()};
   });
@@ -309,22 +310,22 @@ rdm_result rdm_import_check(rdm_import* i) {
   });
 }
 
-rdm_result rdm_import_write(const rdm_robot_def* def, char* text, size_t capacity, size_t* size) {
+rdm_result rdm_import_write_robot(const rdm_robot_def* def, char* text, size_t capacity, size_t* size) {
   return call(nullptr, [&] {
     need(def, "def");
     need(size, "size");
     if (def->struct_size < sizeof *def || def->struct_size > kMaxStruct)
-      refuse(RDM_ARGUMENT, "def.struct_size: %u is outside [%zu, %zu]; set it by rdm_robot_def_init",
+      refuse(RDM_ERROR_ARGUMENT, "def.struct_size: %u is outside [%zu, %zu]; set it by rdm_robot_def_init",
              def->struct_size, sizeof *def, kMaxStruct);
     const std::string out = write_robot(*def);
     if (text && capacity < out.size() + 1)
-      refuse(RDM_RANGE, "capacity: %zu is outside [%zu, ...]", capacity, out.size() + 1);
+      refuse(RDM_ERROR_RANGE, "capacity: %zu is outside [%zu, ...]", capacity, out.size() + 1);
     *size = out.size();
     if (text) std::memcpy(text, out.c_str(), out.size() + 1);
   });
 }
 
-rdm_result rdm_import_task(int32_t* task, const char* path) {
+rdm_result rdm_import_read_task_file(int32_t* task, const char* path) {
   return call(nullptr, [&] {
     need(task, "task");
     need(path, "path");
@@ -332,11 +333,11 @@ rdm_result rdm_import_task(int32_t* task, const char* path) {
   });
 }
 
-rdm_result rdm_import_task_text(int32_t* task, const void* bytes, size_t size, const char* file) {
+rdm_result rdm_import_read_task(int32_t* task, const void* bytes, size_t size, const char* file) {
   return call(nullptr, [&] {
     need(task, "task");
     if (size > 0) need(bytes, "bytes");
-    if (size > kMostToml) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostToml);
+    if (size > kMostToml) refuse(RDM_ERROR_RANGE, "size: %zu is outside [0, %zu]", size, kMostToml);
     *task = read_named_task(std::string(static_cast<const char*>(bytes), size),
                             file ? clean(file, kLongestPath) : "");
   });
@@ -354,7 +355,7 @@ rdm_import* made_object(const std::string& bytes) {
 
 }  // namespace
 
-rdm_result rdm_import_object_file(rdm_import** out, const char* path) {
+rdm_result rdm_import_read_object_file(rdm_import** out, const char* path) {
   return call(nullptr, [&] {
     need(out, "out");
     need(path, "path");
@@ -367,16 +368,16 @@ rdm_result rdm_import_object_file(rdm_import** out, const char* path) {
   });
 }
 
-rdm_result rdm_import_object_text(rdm_import** out, const void* bytes, size_t size) {
+rdm_result rdm_import_read_object(rdm_import** out, const void* bytes, size_t size) {
   return call(nullptr, [&] {
     need(out, "out");
     if (size > 0) need(bytes, "bytes");
-    if (size > kMostToml) refuse(RDM_RANGE, "size: %zu is outside [0, %zu]", size, kMostToml);
+    if (size > kMostToml) refuse(RDM_ERROR_RANGE, "size: %zu is outside [0, %zu]", size, kMostToml);
     *out = made_object(std::string(static_cast<const char*>(bytes), size));
   });
 }
 
-rdm_result rdm_import_object(rdm_import** out, int32_t object) {
+rdm_result rdm_import_create_object(rdm_import** out, int32_t object) {
   return call(nullptr, [&] {
     need(out, "out");
     auto made = std::make_unique<rdm_import>();
@@ -386,13 +387,13 @@ rdm_result rdm_import_object(rdm_import** out, int32_t object) {
   });
 }
 
-rdm_result rdm_import_object_def(const rdm_import* i, rdm_object_def* io) {
+rdm_result rdm_import_get_object_def(const rdm_import* i, rdm_object_def* io) {
   return call(nullptr, [&] {
     need_handle(i);
-    if (!i->object) refuse(RDM_ARGUMENT, "import: it is a robot, no object");
+    if (!i->object) refuse(RDM_ERROR_ARGUMENT, "import: it is a robot, no object");
     need(io, "io");
     if (io->struct_size < sizeof *io || io->struct_size > kMaxStruct)
-      refuse(RDM_ARGUMENT, "io.struct_size: %u is outside [%zu, %zu]; set it by rdm_object_def_init",
+      refuse(RDM_ERROR_ARGUMENT, "io.struct_size: %u is outside [%zu, %zu]; set it by rdm_object_def_init",
              io->struct_size, sizeof *io, kMaxStruct);
     const uint32_t size = io->struct_size;
     std::memset(static_cast<void*>(io), 0, size);
@@ -401,16 +402,16 @@ rdm_result rdm_import_object_def(const rdm_import* i, rdm_object_def* io) {
   });
 }
 
-rdm_result rdm_import_object_write(const rdm_object_def* def, char* text, size_t capacity, size_t* size) {
+rdm_result rdm_import_write_object(const rdm_object_def* def, char* text, size_t capacity, size_t* size) {
   return call(nullptr, [&] {
     need(def, "def");
     need(size, "size");
     if (def->struct_size < sizeof *def || def->struct_size > kMaxStruct)
-      refuse(RDM_ARGUMENT, "def.struct_size: %u is outside [%zu, %zu]; set it by rdm_object_def_init",
+      refuse(RDM_ERROR_ARGUMENT, "def.struct_size: %u is outside [%zu, %zu]; set it by rdm_object_def_init",
              def->struct_size, sizeof *def, kMaxStruct);
     const std::string out = write_object(*def);
     if (text && capacity < out.size() + 1)
-      refuse(RDM_RANGE, "capacity: %zu is outside [%zu, ...]", capacity, out.size() + 1);
+      refuse(RDM_ERROR_RANGE, "capacity: %zu is outside [%zu, ...]", capacity, out.size() + 1);
     *size = out.size();
     if (text) std::memcpy(text, out.c_str(), out.size() + 1);
   });

@@ -32,7 +32,7 @@ Rows mass_matrix(const Draft& d, const std::vector<double>& q) {
     std::vector<V3> jv, jw;
     for (const size_t r : chain) {
       const V3 axis = poses[r].q * vec(d.links[r].axis);
-      const bool slides = d.links[r].kind == RDM_PRISMATIC;
+      const bool slides = d.links[r].kind == RDM_JOINT_PRISMATIC;
       jv.push_back(slides ? axis : cross(axis, com - poses[r].p));
       jw.push_back(slides ? V3{} : axis);
     }
@@ -92,7 +92,7 @@ struct Checker {
     if (!d.all_pairs) return d.pairs;
     std::vector<rdm_robot_pair> all;
     const auto parent = [&](int32_t row) {
-      return row < 0 ? RDM_NO_LINK : d.links[static_cast<size_t>(row)].parent;
+      return row < 0 ? RDM_LINK_NONE : d.links[static_cast<size_t>(row)].parent;
     };
     for (int32_t b = 0; b < static_cast<int32_t>(d.shapes.size()); ++b)
       for (int32_t a = 0; a < b; ++a) {

@@ -226,12 +226,12 @@ Mass shell(const Primitive& s) {
   const auto moments = [&](double x, double y, double z) {
     out.moment = {{{x, 0, 0}, {0, y, 0}, {0, 0, z}}};
   };
-  if (s.kind == RDM_SPHERE) {
+  if (s.kind == RDM_SHAPE_SPHERE) {
     out.mass = 4 * M_PI * r.x * r.x;
     const double m = 2.0 / 3 * out.mass * r.x * r.x;
     moments(m, m, m);
-  } else if (s.kind == RDM_CYLINDER || s.kind == RDM_CAPSULE) {
-    const bool capsule = s.kind == RDM_CAPSULE;
+  } else if (s.kind == RDM_SHAPE_CYLINDER || s.kind == RDM_SHAPE_CAPSULE) {
+    const bool capsule = s.kind == RDM_SHAPE_CAPSULE;
     const double wall = 4 * M_PI * r.x * r.y, ends = (capsule ? 4 : 2) * M_PI * r.x * r.x;
     double across = wall * (r.x * r.x / 2 + r.y * r.y / 3), along = wall * r.x * r.x;
     if (capsule) {
@@ -243,7 +243,7 @@ Mass shell(const Primitive& s) {
     }
     out.mass = wall + ends;
     moments(across, across, along);
-  } else if (s.kind == RDM_BOX) {
+  } else if (s.kind == RDM_SHAPE_BOX) {
     const double yz = 8 * r.y * r.z, zx = 8 * r.z * r.x, xy = 8 * r.x * r.y;  // both sides
     out.mass = yz + zx + xy;
     const auto square = [&](int k) {  // sum of m r_k^2
@@ -258,8 +258,8 @@ Mass shell(const Primitive& s) {
         4 * M_PI *
         std::pow((std::pow(r.x * r.y, p) + std::pow(r.y * r.z, p) + std::pow(r.z * r.x, p)) / 3, 1 / p);
     const V3 more = r + V3{thick, thick, thick};
-    const Mass inner = solid(Primitive{RDM_ELLIPSOID, r, {}}),
-               outer = solid(Primitive{RDM_ELLIPSOID, more, {}});
+    const Mass inner = solid(Primitive{RDM_SHAPE_ELLIPSOID, r, {}}),
+               outer = solid(Primitive{RDM_SHAPE_ELLIPSOID, more, {}});
     const double density = out.mass / (outer.mass - inner.mass);
     for (size_t k = 0; k < 3; ++k) out.moment[k][k] = density * (outer.moment[k][k] - inner.moment[k][k]);
   }
@@ -279,7 +279,7 @@ Mesh hull_of(const std::vector<V3>& points, Budget* budget) {
   Mesh out;
   out.points = corners_of(points);
   if (out.points.size() > kMostOfHull)
-    refuse(RDM_RANGE, "the hull of %zu corners: more than %zu", out.points.size(), kMostOfHull);
+    refuse(RDM_ERROR_RANGE, "the hull of %zu corners: more than %zu", out.points.size(), kMostOfHull);
   if (out.points.size() < 4) return out;
   double size = 0;
   for (const V3& p : out.points) size = std::max(size, norm(p - out.points[0]));

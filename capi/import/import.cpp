@@ -77,7 +77,8 @@ std::string nearest_hint(const std::string& word, const std::vector<std::string>
 void Budget::spend(Cost cost, size_t count) {
   size_t& spent = spent_[static_cast<size_t>(cost)];
   const CostLimit& limit = kCostLimits[static_cast<size_t>(cost)];
-  if (count > limit.most - spent) refuse(RDM_RANGE, "more than %zu %s in one import", limit.most, limit.what);
+  if (count > limit.most - spent)
+    refuse(RDM_ERROR_RANGE, "more than %zu %s in one import", limit.most, limit.what);
   spent += count;
 }
 
@@ -96,7 +97,7 @@ std::string read_file(const std::string& path, size_t longest) {
     const auto bytes = rdm::read_file(path.c_str(), {"", 0, longest, Code::kRange});
     std::string out(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (out.compare(0, std::strlen(kPointer), kPointer) == 0)
-      refuse(RDM_FORMAT, "%s: a pointer of Git LFS, not the file itself: git lfs pull brings it",
+      refuse(RDM_ERROR_FORMAT, "%s: a pointer of Git LFS, not the file itself: git lfs pull brings it",
              clean(path, 160).c_str());
     return out;
   } catch (const Error& e) {
@@ -145,7 +146,7 @@ void Draft::note(int32_t kind, int32_t line, const char* pattern, ...) {
 }
 
 void read_built(int32_t robot, Draft* d) {
-  if (const rdm_result r = rdm_robot_get(robot, &d->def)) refuse(r, "%s", rdm_last_error());
+  if (const rdm_result r = rdm_robot_get_def(robot, &d->def)) refuse(r, "%s", rdm_last_error());
   rdm_robot_def& def = d->def;
   get_rows(robot, def.num_links, &d->links, rdm_robot_link_at);
   get_rows(robot, def.num_shapes, &d->shapes, rdm_robot_shape_at);
@@ -158,8 +159,8 @@ void read_built(int32_t robot, Draft* d) {
   d->closed.resize(d->commands.size());
   d->home.resize(d->links.size());
   d->folded.resize(d->links.size());
-  if (const rdm_result r =
-          rdm_robot_poses_of(robot, d->commands.data(), d->home.data(), d->folded.data(), d->closed.data()))
+  if (const rdm_result r = rdm_robot_get_postures(robot, d->commands.data(), d->home.data(), d->folded.data(),
+                                                  d->closed.data()))
     refuse(r, "%s", rdm_last_error());
   // 0 where it has none
   const auto none = [](const auto& v) {

@@ -57,9 +57,9 @@ const std::string& Meshes::place(const Element& e, const std::string& name) {
 
 const Mesh* Meshes::find(const Element& e, const std::string& name) {
   try {
-    if (!options_.has_folder) refuse(RDM_NOT_FOUND, "a text alone has no folder to look in");
+    if (!options_.has_folder) refuse(RDM_ERROR_NOT_FOUND, "a text alone has no folder to look in");
     const std::string& path = place(e, name);
-    if (path.empty()) refuse(RDM_NOT_FOUND, "not found in the folders above the file");
+    if (path.empty()) refuse(RDM_ERROR_NOT_FOUND, "not found in the folders above the file");
     if (path != last_) {
       last_.clear();
       mesh_ = {};

@@ -47,7 +47,8 @@ const std::string* MjcfReader::value(const Element& e, const char* key, const st
     if (c.empty()) return nullptr;
     std::vector<std::string> names;
     for (const auto& [name, values] : classes) names.push_back(name);
-    refuse_at(RDM_NOT_FOUND, e, "there is no class %s%s", clean(c).c_str(), nearest_hint(c, names).c_str());
+    refuse_at(RDM_ERROR_NOT_FOUND, e, "there is no class %s%s", clean(c).c_str(),
+              nearest_hint(c, names).c_str());
   }
   const std::string tag = kind ? kind : e.tag, name = key;
   for (const Class* at = in->second; at; at = at->parent) {
@@ -73,7 +74,7 @@ double MjcfReader::number_of(const Element& e, const char* key, const std::strin
 bool MjcfReader::flag(const Element& e, const char* key, const std::string& text) const {
   if (text == "true") return true;
   if (text == "false") return false;
-  refuse_at(RDM_FORMAT, e, "%s: %s is neither true nor false", key, clean(text).c_str());
+  refuse_at(RDM_ERROR_FORMAT, e, "%s: %s is neither true nor false", key, clean(text).c_str());
 }
 
 bool MjcfReader::limited(const Element& e, const char* key, const std::string* limited,
@@ -83,7 +84,7 @@ bool MjcfReader::limited(const Element& e, const char* key, const std::string* l
   const auto n = numbers(e, "range", *range, 2, 2);
   const bool has_range = n[0] != 0 || n[1] != 0;
   if (has_range && !compiler.autolimits)
-    refuse_at(RDM_FORMAT, e, "a range and no %s, where autolimits is false: it could hold or not", key);
+    refuse_at(RDM_ERROR_FORMAT, e, "a range and no %s, where autolimits is false: it could hold or not", key);
   return has_range;
 }
 
@@ -96,12 +97,12 @@ Turn MjcfReader::turn_at(const Element& e, const std::string& c) const {
   if (const auto* t = said("quat")) {
     const auto n = numbers(e, "quat", *t, 4, 4);
     const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3]);
-    if (length < 1e-9) refuse_at(RDM_ARGUMENT, e, "quat: its length is 0");
+    if (length < 1e-9) refuse_at(RDM_ERROR_ARGUMENT, e, "quat: its length is 0");
     return normalized({n[1], n[2], n[3], n[0]});
   }
   if (const auto* t = said("axisangle")) {
     const auto n = numbers(e, "axisangle", *t, 4, 4);
-    if (norm({n[0], n[1], n[2]}) < 1e-9) refuse_at(RDM_ARGUMENT, e, "axisangle: its axis is 0");
+    if (norm({n[0], n[1], n[2]}) < 1e-9) refuse_at(RDM_ERROR_ARGUMENT, e, "axisangle: its axis is 0");
     return turn_about(unit({n[0], n[1], n[2]}), angle(n[3]));
   }
   if (const auto* t = said("euler")) {
@@ -121,13 +122,13 @@ Turn MjcfReader::turn_at(const Element& e, const std::string& c) const {
     const V3 raw_x{n[0], n[1], n[2]}, raw{n[3], n[4], n[5]};
     const V3 x = unit(raw_x), across = raw - dot(raw, x) * x;
     if (norm(raw_x) < 1e-9 || norm(across) < 1e-9)
-      refuse_at(RDM_ARGUMENT, e, "xyaxes: an axis is 0, or they are one line");
+      refuse_at(RDM_ERROR_ARGUMENT, e, "xyaxes: an axis is 0, or they are one line");
     const V3 y = unit(across), z = cross(x, y);
     return turn_of({{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}});
   }
   if (const auto* t = said("zaxis")) {
     const V3 raw = vector3(e, "zaxis", *t), z = unit(raw);
-    if (norm(raw) < 1e-9) refuse_at(RDM_ARGUMENT, e, "zaxis: its length is 0");
+    if (norm(raw) < 1e-9) refuse_at(RDM_ERROR_ARGUMENT, e, "zaxis: its length is 0");
     if (z.z < 0 && norm(cross({0, 0, 1}, z)) < 1e-10) return {1, 0, 0, 0};  // half a turn about x
     return turn_between({0, 0, 1}, z);
   }
@@ -145,10 +146,10 @@ Pose MjcfReader::pose_at(const Element& e, const std::string& c) const {
 void MjcfReader::read_classes(const Element& e, const Class* parent, bool top) {
   const std::string* name = e.get("class");
   const std::string key = name ? *name : top ? "main" : "";
-  if (key.empty()) refuse_at(RDM_FORMAT, e, "a class in a class needs a name");
+  if (key.empty()) refuse_at(RDM_ERROR_FORMAT, e, "a class in a class needs a name");
   check_children(e, "default");
   const Class*& row = classes[key];
-  if (row && !top) refuse_at(RDM_ARGUMENT, e, "class %s stands twice", clean(key).c_str());
+  if (row && !top) refuse_at(RDM_ERROR_ARGUMENT, e, "class %s stands twice", clean(key).c_str());
   // A second <default> of the file adds to the first one's class; classes read before do not change by it.
   Class& c = class_rows.emplace_back();
   c.parent = row ? row : parent;
@@ -179,7 +180,7 @@ void MjcfReader::read_compiler() {
     };
     if (const auto* t = e->get("angle")) {
       if (*t != "degree" && *t != "radian")
-        refuse_at(RDM_FORMAT, *e, "angle: %s is neither degree nor radian", clean(*t).c_str());
+        refuse_at(RDM_ERROR_FORMAT, *e, "angle: %s is neither degree nor radian", clean(*t).c_str());
       compiler.degrees = *t == "degree";
     }
     read_flag("autolimits", &compiler.autolimits);
@@ -190,7 +191,7 @@ void MjcfReader::read_compiler() {
     if (const auto* t = e->get("eulerseq")) {
       compiler.sequence = *t;
       if (t->size() != 3 || t->find_first_not_of("xyzXYZ") != std::string::npos)
-        refuse_at(RDM_FORMAT, *e, "eulerseq: %s is not three of x, y, z", clean(*t).c_str());
+        refuse_at(RDM_ERROR_FORMAT, *e, "eulerseq: %s is not three of x, y, z", clean(*t).c_str());
     }
     if (const auto* t = e->get("assetdir")) compiler.meshes = *t;
     if (const auto* t = e->get("meshdir")) compiler.meshes = *t;
@@ -206,7 +207,7 @@ void MjcfReader::read_compiler() {
     read_number("boundinertia", &compiler.least_moment);
     read_number("settotalmass", &compiler.total_mass);
     if (const auto* t = e->get("coordinate"))
-      if (*t != "local") refuse_at(RDM_UNSUPPORTED, *e, "coordinate: only local is read");
+      if (*t != "local") refuse_at(RDM_ERROR_UNSUPPORTED, *e, "coordinate: only local is read");
   }
   for (const auto& o : mujoco.children)
     for (const auto& f : o->children) {
@@ -236,9 +237,9 @@ void MjcfReader::read_assets() {
         key = file->substr(file->rfind('/') == std::string::npos ? 0 : file->rfind('/') + 1);
         key = key.substr(0, key.rfind('.'));
       }
-      if (key.empty()) refuse_at(RDM_FORMAT, *m, "neither a name nor a file");
+      if (key.empty()) refuse_at(RDM_ERROR_FORMAT, *m, "neither a name nor a file");
       if (!assets.emplace(key, m).second)
-        refuse_at(RDM_ARGUMENT, *m, "mesh %s stands twice", clean(key).c_str());
+        refuse_at(RDM_ERROR_ARGUMENT, *m, "mesh %s stands twice", clean(key).c_str());
     }
   }
 }
@@ -290,7 +291,7 @@ void MjcfReader::read() {
   for (BodyIn& b : model.bodies)
     for (JointIn& j : b.joints)
       if (!joint_by.emplace(j.name, &j).second)
-        refuse_at(RDM_ARGUMENT, *j.element, "joint %s stands twice", clean(j.name).c_str());
+        refuse_at(RDM_ERROR_ARGUMENT, *j.element, "joint %s stands twice", clean(j.name).c_str());
   find_driven();
   read_tendons();
   read_equalities();
@@ -306,8 +307,9 @@ void MjcfReader::read() {
 void read_mjcf(const std::string& bytes, const Options& options, Draft* out) {
   const auto mujoco = parse_xml(bytes, options, true, out);
   if (mujoco->tag == "mujocoinclude")
-    refuse_at(RDM_FORMAT, *mujoco, "a part that other files include, no model of its own");
-  if (mujoco->tag != "mujoco") refuse_at(RDM_FORMAT, *mujoco, "no MJCF: the first element is not mujoco");
+    refuse_at(RDM_ERROR_FORMAT, *mujoco, "a part that other files include, no model of its own");
+  if (mujoco->tag != "mujoco")
+    refuse_at(RDM_ERROR_FORMAT, *mujoco, "no MJCF: the first element is not mujoco");
   MjcfReader reader(*mujoco, options, out);
   reader.read();
   list_dropped(*mujoco, out);

@@ -32,7 +32,7 @@ void MjcfReader::add_joint(const Element& e, const Pose& frame, const std::strin
   const std::string kind = type ? *type : "hinge";
   if (kind == "free") return drop_free(e);
   if (kind != "hinge" && kind != "slide")
-    refuse_at(RDM_UNSUPPORTED, e, "type %s: neither hinge nor slide", clean(kind).c_str());
+    refuse_at(RDM_ERROR_UNSUPPORTED, e, "type %s: neither hinge nor slide", clean(kind).c_str());
   JointIn j;
   j.element = &e;
   if (const auto* t = e.get("name")) j.name = *t;
@@ -41,7 +41,7 @@ void MjcfReader::add_joint(const Element& e, const Pose& frame, const std::strin
   j.slides = kind == "slide";
   if (const auto* t = value(e, "pos", c)) j.at = vector3(e, "pos", *t);
   if (const auto* t = value(e, "axis", c)) j.axis = vector3(e, "axis", *t);
-  if (norm(j.axis) < 1e-6) refuse_at(RDM_ARGUMENT, e, "its axis is 0");
+  if (norm(j.axis) < 1e-6) refuse_at(RDM_ERROR_ARGUMENT, e, "its axis is 0");
   j.at = frame * j.at;
   j.axis = frame.q * unit(j.axis);
   const std::string* range = value(e, "range", c);
@@ -49,7 +49,7 @@ void MjcfReader::add_joint(const Element& e, const Pose& frame, const std::strin
   if (limited(e, "limited", value(e, "limited", c), range)) {
     const auto n = range ? numbers(e, "range", *range, 2, 2) : std::vector<double>{0, 0};
     j.lower = scaled(n[0]), j.upper = scaled(n[1]);
-    if (!(j.lower < j.upper)) refuse_at(RDM_RANGE, e, "the range [%g, %g] is empty", n[0], n[1]);
+    if (!(j.lower < j.upper)) refuse_at(RDM_ERROR_RANGE, e, "the range [%g, %g] is empty", n[0], n[1]);
   } else {
     j.upper = most_of(options, j.slides);
     j.lower = -j.upper;
@@ -64,13 +64,13 @@ void MjcfReader::add_joint(const Element& e, const Pose& frame, const std::strin
     const auto* t = value(e, key, c);
     const auto n = t ? numbers(e, key, *t, 1, 3, kMostDamping) : std::vector<double>{0};
     if (std::any_of(n.begin() + 1, n.end(), [](double x) { return x != 0; }))
-      refuse_at(RDM_UNSUPPORTED, e, "%s: a polynomial is not read, its first number alone", key);
+      refuse_at(RDM_ERROR_UNSUPPORTED, e, "%s: a polynomial is not read, its first number alone", key);
     return n[0];
   };
   j.damping = coefficient("damping");
   j.friction = number_of(e, "frictionloss", c, 0);
   for (const double x : {j.armature, j.damping, j.friction})
-    if (x < 0) refuse_at(RDM_RANGE, e, "armature, damping or frictionloss is %g", x);
+    if (x < 0) refuse_at(RDM_ERROR_RANGE, e, "armature, damping or frictionloss is %g", x);
   if (!compiler.damping) j.damping = 0;
   if (!compiler.friction) j.friction = 0;
   const std::string* most = value(e, "actuatorfrcrange", c);
@@ -95,12 +95,12 @@ Mass MjcfReader::inertial(const Element& e, const BodyIn& body, bool moves) {
   const std::string name = clean(body.name);
   Mass m;
   const std::string *mass = e.get("mass"), *diagonal = e.get("diaginertia"), *full = e.get("fullinertia");
-  if (!mass) refuse_at(RDM_FORMAT, e, "body %s: no mass", name.c_str());
+  if (!mass) refuse_at(RDM_ERROR_FORMAT, e, "body %s: no mass", name.c_str());
   m.mass = number(e, "mass", *mass);
   const Pose X = pose_at(e);
   if (full) {
     for (const char* other : {"diaginertia", "quat", "axisangle", "euler", "xyaxes", "zaxis"})
-      if (e.find(other)) refuse_at(RDM_FORMAT, e, "body %s: fullinertia and %s", name.c_str(), other);
+      if (e.find(other)) refuse_at(RDM_ERROR_FORMAT, e, "body %s: fullinertia and %s", name.c_str(), other);
     const auto n = numbers(e, "fullinertia", *full, 6, 6);
     m.moment = {{{n[0], n[3], n[4]}, {n[3], n[1], n[5]}, {n[4], n[5], n[2]}}};
   } else if (diagonal) {
@@ -169,7 +169,7 @@ bool MjcfReader::drops_mocap(const Element& e, const std::string& c) const {
 // What stands in a body, or in a frame of it.
 void MjcfReader::read_parts(const Element& e, const Pose& frame, const std::string& c, int self,
                             Mass* from_geoms, int depth) {
-  if (depth > 200) refuse_at(RDM_RANGE, e, "more than 200 bodies in a chain");
+  if (depth > 200) refuse_at(RDM_ERROR_RANGE, e, "more than 200 bodies in a chain");
   check_children(e, "body");
   for (const auto& child : e.children) {
     const Element& x = *child;
@@ -179,7 +179,7 @@ void MjcfReader::read_parts(const Element& e, const Pose& frame, const std::stri
       check_attributes(x, "frame");
       if (std::any_of(x.children.begin(), x.children.end(),
                       [](const auto& y) { return y->tag == "inertial"; }))
-        refuse_at(RDM_FORMAT, x, "an inertial stands in a body, not in a frame");
+        refuse_at(RDM_ERROR_FORMAT, x, "an inertial stands in a body, not in a frame");
       const std::string* own = x.get("childclass");
       read_parts(x, frame * pose_at(x), own ? *own : c, self, from_geoms, depth + 1);
     } else if (x.tag == "body") {
@@ -223,7 +223,7 @@ void MjcfReader::add_body(const Element& e, int parent, const Pose& frame, const
   if (const auto* t = e.get("mocap"))
     if (flag(e, "mocap", *t)) {
       if (model.bodies.empty() || !drops_mocap(e, c))
-        refuse_at(RDM_UNSUPPORTED, e,
+        refuse_at(RDM_ERROR_UNSUPPORTED, e,
                   "mocap: a body that its host moves is not read; options.root takes another");
       out->note(RDM_NOTE_DROPPED, e.line, "body %s: its host moves it (mocap), and nothing of it touches%s",
                 clean(body.name).c_str(), in_file(e).c_str());
@@ -242,11 +242,11 @@ void MjcfReader::add_body(const Element& e, int parent, const Pose& frame, const
   const size_t self = model.bodies.size() - 1;
   const bool moving = moves(e, c);
   if (const auto all = e.all("inertial"); all.size() > 1)
-    refuse_at(RDM_FORMAT, *all[1], "a second one, after that of line %d", all[0]->line);
+    refuse_at(RDM_ERROR_FORMAT, *all[1], "a second one, after that of line %d", all[0]->line);
   const Element* written = e.child("inertial");
   const Element* given = compiler.inertia_from == "true" ? nullptr : written;
   if (!given && compiler.inertia_from == "false" && compiler.least_mass == 0 && moving)
-    refuse_at(RDM_RANGE, e, "it moves and has no inertial, and inertiafromgeom is false");
+    refuse_at(RDM_ERROR_RANGE, e, "it moves and has no inertial, and inertiafromgeom is false");
   if (given) model.bodies[self].mass = inertial(*given, model.bodies[self], moving);
   Mass from_geoms;
   read_parts(e, {}, inner, static_cast<int>(self),
@@ -335,11 +335,12 @@ void MjcfReader::read_worlds() {
       }
     };
     for (const Element* w : mujoco.all("worldbody")) name_all(*w);
-    refuse(RDM_NOT_FOUND, "options.root: there is no body %s%s", clean(options.root).c_str(),
+    refuse(RDM_ERROR_NOT_FOUND, "options.root: there is no body %s%s", clean(options.root).c_str(),
            nearest_hint(options.root, names).c_str());
   }
-  if (top.empty() && others == 0) refuse_at(RDM_FORMAT, mujoco, "no body in the world");
-  if (top.empty()) refuse_at(RDM_UNSUPPORTED, *first, "its host moves every body (mocap): none is a robot");
+  if (top.empty() && others == 0) refuse_at(RDM_ERROR_FORMAT, mujoco, "no body in the world");
+  if (top.empty())
+    refuse_at(RDM_ERROR_UNSUPPORTED, *first, "its host moves every body (mocap): none is a robot");
   if (options.root == "world") {
     add_world(*first);
     for (const Element* w : mujoco.all("worldbody")) {
@@ -349,7 +350,7 @@ void MjcfReader::read_worlds() {
     return;
   }
   if (top.size() > 1)
-    refuse_at(RDM_ARGUMENT, *top.back().body,
+    refuse_at(RDM_ERROR_ARGUMENT, *top.back().body,
               "%zu bodies stand in the world: options.root says which is taken, or \"world\"", top.size());
   add_root(top[0]);
 }
@@ -374,7 +375,7 @@ void MjcfReader::scale_masses() {
     whole.read_worlds();
     add(whole.model);
   }
-  if (!(sum > 0)) refuse_at(RDM_ARGUMENT, mujoco, "settotalmass: nothing in it has mass");
+  if (!(sum > 0)) refuse_at(RDM_ERROR_ARGUMENT, mujoco, "settotalmass: nothing in it has mass");
   const double factor = compiler.total_mass / sum;
   for (BodyIn& b : model.bodies) {
     b.mass.mass *= factor;

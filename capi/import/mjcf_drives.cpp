@@ -49,7 +49,7 @@ bool MjcfReader::elsewhere(const Element& e, const std::string& joint) const {
   if (!options.root.empty() && options.root != "world") return true;
   std::vector<std::string> names;
   for (const auto& [name, j] : joint_by) names.push_back(name);
-  refuse_at(RDM_NOT_FOUND, e, "there is no joint %s%s", clean(joint).c_str(),
+  refuse_at(RDM_ERROR_NOT_FOUND, e, "there is no joint %s%s", clean(joint).c_str(),
             nearest_hint(joint, names).c_str());
 }
 
@@ -72,8 +72,8 @@ void MjcfReader::refuse_limited(const Element& spatial) const {
     const bool here = site && std::any_of(model.frames.begin(), model.frames.end(),
                                           [&](const FrameIn& f) { return f.name == site->value; });
     if (whole || here)
-      refuse_at(RDM_UNSUPPORTED, spatial, "the range %s of its length would tie joints, and is not read",
-                clean(*range).c_str());
+      refuse_at(RDM_ERROR_UNSUPPORTED, spatial,
+                "the range %s of its length would tie joints, and is not read", clean(*range).c_str());
   }
 }
 
@@ -89,7 +89,7 @@ void MjcfReader::read_tendons() {
       for (const Element* j : f->all("joint")) {
         check_attributes(*j, "fixed/joint");
         const std::string *name = j->get("joint"), *coef = j->get("coef");
-        if (!name || !coef) refuse_at(RDM_FORMAT, *j, "no joint or no coef");
+        if (!name || !coef) refuse_at(RDM_ERROR_FORMAT, *j, "no joint or no coef");
         here = here && !elsewhere(*j, *name);
         const double c = number(*j, "coef", *coef);
         if (c != 0) o.joints.emplace_back(*name, c);
@@ -97,7 +97,8 @@ void MjcfReader::read_tendons() {
       const Attribute* name = f->find("name");
       if (!here || o.joints.empty()) continue;
       tendon_order.push_back(name ? name->value : format("line %d", f->line));
-      if (!tendons.emplace(tendon_order.back(), o).second) refuse_at(RDM_ARGUMENT, *f, "it stands twice");
+      if (!tendons.emplace(tendon_order.back(), o).second)
+        refuse_at(RDM_ERROR_ARGUMENT, *f, "it stands twice");
     }
   }
 }
@@ -117,7 +118,7 @@ void MjcfReader::narrow(const Element& e, const std::string& joint, double one, 
   const double lower = std::max(j.lower, std::min(one, other)),
                upper = std::min(j.upper, std::max(one, other));
   if (!(lower < upper))
-    refuse_at(RDM_RANGE, e, "its range leaves joint %s [%g, %g]", clean(joint).c_str(), lower, upper);
+    refuse_at(RDM_ERROR_RANGE, e, "its range leaves joint %s [%g, %g]", clean(joint).c_str(), lower, upper);
   if (lower - j.lower > 1e-9 || j.upper - upper > 1e-9)
     out->note(RDM_NOTE_CHANGED, e.line, "tendon %s: joint %s goes from %g to %g%s",
               clean(e.find("name") ? e.find("name")->value : "").c_str(), clean(joint).c_str(), lower, upper,
@@ -132,7 +133,7 @@ void MjcfReader::read_tendon_limits() {
     const std::string* range = value(e, "range", "", "tendon");
     if (!limited(e, "limited", value(e, "limited", "", "tendon"), range) || !range) continue;
     const auto n = numbers(e, "range", *range, 2, 2);
-    if (!(n[0] <= n[1])) refuse_at(RDM_RANGE, e, "the range [%g, %g] is empty", n[0], n[1]);
+    if (!(n[0] <= n[1])) refuse_at(RDM_ERROR_RANGE, e, "the range [%g, %g] is empty", n[0], n[1]);
     if (t.joints.size() == 1) {
       narrow(e, t.joints[0].first, n[0] / t.joints[0].second, n[1] / t.joints[0].second);
       continue;
@@ -206,11 +207,11 @@ void MjcfReader::read_equalities() {
       }
       for (const char* key : {"body1", "body2"})
         if (const auto* body = e.get(key); body && is_mocap(*body))
-          refuse_at(RDM_UNSUPPORTED, e,
+          refuse_at(RDM_ERROR_UNSUPPORTED, e,
                     "%s ties a body to %s, which its host moves (mocap): it is not read; without the %s the "
                     "robot's own joints move it",
                     e.tag.c_str(), clean(*body).c_str(), e.tag.c_str());
-      refuse_at(RDM_UNSUPPORTED, e, "%s %s", e.tag.c_str(), row.why);
+      refuse_at(RDM_ERROR_UNSUPPORTED, e, "%s %s", e.tag.c_str(), row.why);
     }
 }
 
@@ -224,15 +225,17 @@ void MjcfReader::read_equality(const Element& e) {
     std::copy(n.begin(), n.end(), poly);
   }
   for (size_t k = 2; k < 5; ++k)
-    if (poly[k] != 0) refuse_at(RDM_UNSUPPORTED, e, "polycoef: a coupling is linear, not of power %zu", k);
+    if (poly[k] != 0)
+      refuse_at(RDM_ERROR_UNSUPPORTED, e, "polycoef: a coupling is linear, not of power %zu", k);
   const std::string *one = e.get(joint ? "joint1" : "tendon1"), *two = e.get(joint ? "joint2" : "tendon2");
-  if (!one) refuse_at(RDM_FORMAT, e, "no %s1", e.tag.c_str());
+  if (!one) refuse_at(RDM_ERROR_FORMAT, e, "no %s1", e.tag.c_str());
   if (!joint) {
     // Of a tendon of two joints whose length stays: they follow each other.
     const auto found = tendons.find(*one);
     if (found == tendons.end() && !options.root.empty()) return;
     if (two || found == tendons.end() || found->second.joints.size() != 2)
-      refuse_at(RDM_UNSUPPORTED, e, "of tendons only a fixed one of two joints is read, held at one length");
+      refuse_at(RDM_ERROR_UNSUPPORTED, e,
+                "of tendons only a fixed one of two joints is read, held at one length");
     const auto& [a, ca] = found->second.joints[0];
     const auto& [b, cb] = found->second.joints[1];
     const double length = poly[0] + ca * joint_by[a]->turned + cb * joint_by[b]->turned;
@@ -244,7 +247,7 @@ void MjcfReader::read_equality(const Element& e) {
               in_file(e).c_str());
     return;
   }
-  if (!two || poly[1] == 0) refuse_at(RDM_UNSUPPORTED, e, "a joint held at one place: make it fixed");
+  if (!two || poly[1] == 0) refuse_at(RDM_ERROR_UNSUPPORTED, e, "a joint held at one place: make it fixed");
   // Both angles count from where the file's pose is.
   const double r1 = joint_by[*one]->turned, r2 = joint_by[*two]->turned;
   model.couplings.push_back({*one, *two, poly[1], poly[0] + r1 - poly[1] * r2, 0, &e});
@@ -364,7 +367,7 @@ void MjcfReader::read_actuator(const Element& e) {
           out->budget.spend(Cost::kSteps, 1);
           there = there || (x->find("name") && x->find("name")->value == *tendon);
         }
-      if (!there) refuse_at(RDM_NOT_FOUND, e, "there is no tendon %s", clean(*tendon).c_str());
+      if (!there) refuse_at(RDM_ERROR_NOT_FOUND, e, "there is no tendon %s", clean(*tendon).c_str());
       return note_left_out(e, "its tendon is none of joints that are here");
     }
     out->budget.spend(Cost::kSteps, 8 * found->second.joints.size());
@@ -380,7 +383,7 @@ void MjcfReader::read_actuator(const Element& e) {
   e.get("name");
   double gear = 1;
   if (const auto* t = get("gear")) gear = numbers(e, "gear", *t, 1, 6)[0];
-  if (gear == 0) refuse_at(RDM_RANGE, e, "gear: 0");
+  if (gear == 0) refuse_at(RDM_ERROR_RANGE, e, "gear: 0");
 
   // How the length grows with the joint that leads; groups that only this tendon joins follow the first.
   std::vector<std::pair<std::string, double>> groups;  // leaders, and length per angle of each
@@ -441,7 +444,7 @@ void MjcfReader::read_actuator(const Element& e) {
     if (limits.size() == 2 && limits[0] > limits[1]) std::swap(limits[0], limits[1]);
   }
   if (kp < 0 || kv < 0 || damping_ratio < 0)
-    refuse_at(RDM_RANGE, e, "kp %g, kv %g or dampratio %g is below 0", kp, kv, damping_ratio);
+    refuse_at(RDM_ERROR_RANGE, e, "kp %g, kv %g or dampratio %g is below 0", kp, kv, damping_ratio);
   if (kp == 0) {
     if (lead->kp >= 0) return note_left_out(e, "its joint is held by another actuator");
     const auto commands = get_range("ctrlrange", "ctrllimited");

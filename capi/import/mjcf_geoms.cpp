@@ -18,7 +18,7 @@ Mass with_mass(double mass, Mass m) {
 }
 
 const char* called(int32_t kind) {
-  return kind == RDM_BOX ? "a box" : kind == RDM_CAPSULE ? "a capsule" : "a sphere";
+  return kind == RDM_SHAPE_BOX ? "a box" : kind == RDM_SHAPE_CAPSULE ? "a capsule" : "a sphere";
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ void MjcfReader::add_geom(const Element& e, const Pose& frame, const std::string
   const double given = mass ? number(e, "mass", *mass) : -1;
   const bool counts = from_geoms && group >= compiler.first_group && group <= compiler.last_group &&
                       (mass ? given != 0 : density != 0);
-  if (mass ? given < 0 : density < 0) refuse_at(RDM_RANGE, e, "its mass or density is below 0");
+  if (mass ? given < 0 : density < 0) refuse_at(RDM_ERROR_RANGE, e, "its mass or density is below 0");
   if (visual) {
     for (const Attribute& a : e.attributes) a.read = true;
     out->note(RDM_NOTE_DROPPED, e.line, "geom%s: seen alone (contype and conaffinity 0)%s%s", name().c_str(),
@@ -49,7 +49,7 @@ void MjcfReader::add_geom(const Element& e, const Pose& frame, const std::string
   }
   if (kind == "plane" || kind == "hfield" || kind == "sdf") {
     if (kind != "plane" && counts)
-      refuse_at(RDM_UNSUPPORTED, e,
+      refuse_at(RDM_ERROR_UNSUPPORTED, e,
                 "the mass of body %s would be that of a geom of type %s: give it an inertial",
                 clean(body->name).c_str(), kind.c_str());
     out->note(RDM_NOTE_DROPPED, e.line, "geom%s: type %s%s", name().c_str(), clean(kind).c_str(),
@@ -62,17 +62,17 @@ void MjcfReader::add_geom(const Element& e, const Pose& frame, const std::string
   p.X = frame * pose_at(e, c);
   Mass one;  // at density 1
   if (kind == "mesh" || mesh_name) {
-    if (!mesh_name) refuse_at(RDM_FORMAT, e, "type mesh, and no mesh");
+    if (!mesh_name) refuse_at(RDM_ERROR_FORMAT, e, "type mesh, and no mesh");
     const MeshIn* mesh = mesh_in(e, *mesh_name);
     if (!mesh) {  // a note says why
       if (counts || kind != "mesh")
-        refuse_at(RDM_NOT_FOUND, e, "the %s of body %s would be that of mesh %s, which cannot be read",
+        refuse_at(RDM_ERROR_NOT_FOUND, e, "the %s of body %s would be that of mesh %s, which cannot be read",
                   counts ? "mass" : "shape", clean(body->name).c_str(), clean(*mesh_name).c_str());
       return;
     }
     const Mass& mass_of_mesh = is_shell && kind == "mesh" ? mesh->surface : mesh->mass;
     if ((counts || kind != "mesh") && !(mass_of_mesh.mass > kLeastVolume))
-      refuse_at(RDM_RANGE, e, "mesh %s encloses nothing: no mass or size can be taken of it",
+      refuse_at(RDM_ERROR_RANGE, e, "mesh %s encloses nothing: no mass or size can be taken of it",
                 clean(*mesh_name).c_str());
     if (kind == "mesh") {
       one = p.X * mass_of_mesh;
@@ -109,7 +109,7 @@ void MjcfReader::add_geom(const Element& e, const Pose& frame, const std::string
 const MeshIn* MjcfReader::mesh_in(const Element& geom, const std::string& name) {
   const auto asset = assets.find(name);
   if (asset == assets.end())
-    refuse_at(RDM_NOT_FOUND, geom, "there is no mesh %s%s", clean(name).c_str(),
+    refuse_at(RDM_ERROR_NOT_FOUND, geom, "there is no mesh %s%s", clean(name).c_str(),
               nearest_key(name, assets).c_str());
   return mesh_of(*asset->second, geom);
 }
@@ -128,20 +128,22 @@ const MeshIn* MjcfReader::mesh_of(const Element& asset, const Element& geom) {
     mesh = *found;
   } else if (const auto* t = asset.get("vertex")) {
     const auto n = numbers(asset, "vertex", *t, 12, 300000);
-    if (n.size() % 3) refuse_at(RDM_FORMAT, asset, "vertex: %zu numbers are no multiple of 3", n.size());
+    if (n.size() % 3)
+      refuse_at(RDM_ERROR_FORMAT, asset, "vertex: %zu numbers are no multiple of 3", n.size());
     for (size_t k = 0; k < n.size(); k += 3) mesh.points.push_back({n[k], n[k + 1], n[k + 2]});
     if (const auto* faces = asset.get("face")) {
       const auto f = numbers(asset, "face", *faces, 3, 600000);
-      if (f.size() % 3) refuse_at(RDM_FORMAT, asset, "face: %zu numbers are no multiple of 3", f.size());
+      if (f.size() % 3)
+        refuse_at(RDM_ERROR_FORMAT, asset, "face: %zu numbers are no multiple of 3", f.size());
       for (size_t k = 0; k < f.size(); ++k) {
         if (!(f[k] >= 0 && f[k] < static_cast<double>(mesh.points.size())))
-          refuse_at(RDM_RANGE, asset, "face: there is no vertex %g", f[k]);
+          refuse_at(RDM_ERROR_RANGE, asset, "face: there is no vertex %g", f[k]);
         if (k % 3 == 0) mesh.faces.push_back({});
         mesh.faces.back()[k % 3] = static_cast<uint32_t>(f[k]);
       }
     }
   } else {
-    refuse_at(RDM_FORMAT, asset, "neither a file nor vertices");
+    refuse_at(RDM_ERROR_FORMAT, asset, "neither a file nor vertices");
   }
   // The reference pose is taken off, then what is left is scaled.
   Pose ref;
@@ -149,7 +151,7 @@ const MeshIn* MjcfReader::mesh_of(const Element& asset, const Element& geom) {
   if (const auto* t = asset.get("refquat")) {
     const auto n = numbers(asset, "refquat", *t, 4, 4);
     if (n[0] == 0 && n[1] == 0 && n[2] == 0 && n[3] == 0)
-      refuse_at(RDM_ARGUMENT, asset, "refquat: its length is 0");
+      refuse_at(RDM_ERROR_ARGUMENT, asset, "refquat: its length is 0");
     ref.q = normalized({n[1], n[2], n[3], n[0]});
   }
   V3 scale{1, 1, 1};
@@ -161,7 +163,8 @@ const MeshIn* MjcfReader::mesh_of(const Element& asset, const Element& geom) {
   const std::string* how = value(asset, "inertia", "");
   const std::string said = how ? *how : compiler.exact ? "exact" : "legacy";
   if (said != "legacy" && said != "exact" && said != "convex" && said != "shell")
-    refuse_at(RDM_FORMAT, asset, "inertia: %s is none of legacy, exact, convex, shell", clean(said).c_str());
+    refuse_at(RDM_ERROR_FORMAT, asset, "inertia: %s is none of legacy, exact, convex, shell",
+              clean(said).c_str());
   MeshIn in;
   in.hull = around(mesh.points);
   try {
@@ -213,25 +216,26 @@ Primitive MjcfReader::fitted(const Element& e, const std::string& kind, const st
   }
   const double across = compiler.fit_box ? std::max(half.x, half.y) : (half.x + half.y) / 2;
   if (kind == "sphere") {
-    p.kind = RDM_SPHERE;
+    p.kind = RDM_SHAPE_SPHERE;
     p.size.x = compiler.fit_box ? std::max(across, half.z) : (half.x + half.y + half.z) / 3;
   } else if (kind == "capsule") {
-    p.kind = RDM_CAPSULE;
+    p.kind = RDM_SHAPE_CAPSULE;
     p.size = {across, half.z - (compiler.fit_box ? across : across / 2), 0};
   } else if (kind == "cylinder") {
-    p.kind = RDM_CYLINDER;
+    p.kind = RDM_SHAPE_CYLINDER;
     p.size = {across, half.z, 0};
   } else if (kind == "box" || kind == "ellipsoid") {
-    p.kind = kind == "box" ? RDM_BOX : RDM_ELLIPSOID;
+    p.kind = kind == "box" ? RDM_SHAPE_BOX : RDM_SHAPE_ELLIPSOID;
     p.size = half;
   } else {
-    refuse_at(RDM_UNSUPPORTED, e, "type %s: neither sphere, capsule, cylinder, box, ellipsoid nor mesh",
+    refuse_at(RDM_ERROR_UNSUPPORTED, e, "type %s: neither sphere, capsule, cylinder, box, ellipsoid nor mesh",
               clean(kind).c_str());
   }
   p.size = scale * p.size;
-  if (kind == "capsule" && p.size.y <= 0) p.kind = RDM_SPHERE, p.size.y = 0;  // no room between its ends
-  for (int k = 0; k < (p.kind == RDM_SPHERE ? 1 : kind == "box" || kind == "ellipsoid" ? 3 : 2); ++k)
-    if (!(p.size[k] > 0)) refuse_at(RDM_RANGE, e, "the size that fits its mesh is %g", p.size[k]);
+  if (kind == "capsule" && p.size.y <= 0)
+    p.kind = RDM_SHAPE_SPHERE, p.size.y = 0;  // no room between its ends
+  for (int k = 0; k < (p.kind == RDM_SHAPE_SPHERE ? 1 : kind == "box" || kind == "ellipsoid" ? 3 : 2); ++k)
+    if (!(p.size[k] > 0)) refuse_at(RDM_ERROR_RANGE, e, "the size that fits its mesh is %g", p.size[k]);
   return p;
 }
 
@@ -240,7 +244,7 @@ Primitive MjcfReader::primitive(const Element& e, const std::string& kind, const
   const bool box = kind == "box", ellipsoid = kind == "ellipsoid", cylinder = kind == "cylinder",
              capsule = kind == "capsule";
   if (!box && !ellipsoid && !cylinder && !capsule && kind != "sphere")
-    refuse_at(RDM_UNSUPPORTED, e, "type %s: neither sphere, capsule, cylinder, box, ellipsoid nor mesh",
+    refuse_at(RDM_ERROR_UNSUPPORTED, e, "type %s: neither sphere, capsule, cylinder, box, ellipsoid nor mesh",
               clean(kind).c_str());
   const std::string* text = value(e, "size", c);
   auto n = text ? numbers(e, "size", *text, 1, 3) : std::vector<double>();
@@ -256,21 +260,21 @@ Primitive MjcfReader::primitive(const Element& e, const std::string& kind, const
   }
   const size_t needed = kind == "sphere" ? 1 : box || ellipsoid ? 3 : 2;
   if (ends && needed > 1) {
-    if (n.empty()) refuse_at(RDM_FORMAT, e, "no size");
+    if (n.empty()) refuse_at(RDM_ERROR_FORMAT, e, "no size");
     if (needed == 2)
       n = {n[0], half};
     else
       n = {n[0], n[0], half};  // as wide as thick, whatever else `size` says
   }
-  if (n.size() < needed) refuse_at(RDM_FORMAT, e, "size: a %s needs %zu", kind.c_str(), needed);
+  if (n.size() < needed) refuse_at(RDM_ERROR_FORMAT, e, "size: a %s needs %zu", kind.c_str(), needed);
   for (size_t k = 0; k < needed; ++k)
-    if (!(n[k] > 0)) refuse_at(RDM_RANGE, e, "size: %g is not above 0", n[k]);
+    if (!(n[k] > 0)) refuse_at(RDM_ERROR_RANGE, e, "size: %g is not above 0", n[k]);
   n.resize(3, 0);
-  const int32_t k = box         ? RDM_BOX
-                    : ellipsoid ? RDM_ELLIPSOID
-                    : cylinder  ? RDM_CYLINDER
-                    : capsule   ? RDM_CAPSULE
-                                : RDM_SPHERE;
+  const int32_t k = box         ? RDM_SHAPE_BOX
+                    : ellipsoid ? RDM_SHAPE_ELLIPSOID
+                    : cylinder  ? RDM_SHAPE_CYLINDER
+                    : capsule   ? RDM_SHAPE_CAPSULE
+                                : RDM_SHAPE_SPHERE;
   return {k, {n[0], needed > 1 ? n[1] : 0, needed > 2 ? n[2] : 0}, at};
 }
 

@@ -149,11 +149,13 @@ void check_attributes(const Element& e, const std::string& kind) {
     const auto found = known.find(a.name);
     if (found == known.end() && harmless(a.name)) continue;
     if (found == known.end())
-      refuse_at(RDM_UNSUPPORTED, e, "%s is no attribute that is known here, and it could change the robot%s",
+      refuse_at(RDM_ERROR_UNSUPPORTED, e,
+                "%s is no attribute that is known here, and it could change the robot%s",
                 clean(a.name).c_str(), nearest_key(a.name, known).c_str());
     const AttributeRow& row = *found->second;
     if (row.use == Use::kRefused && !(row.harmless && a.value == row.harmless))
-      refuse_at(RDM_UNSUPPORTED, e, "%s=\"%s\": %s", clean(a.name).c_str(), clean(a.value).c_str(), row.why);
+      refuse_at(RDM_ERROR_UNSUPPORTED, e, "%s=\"%s\": %s", clean(a.name).c_str(), clean(a.value).c_str(),
+                row.why);
   }
 }
 
@@ -164,10 +166,10 @@ const ElementRow& row_of(const Element& e, const std::string& parent) {
   if (found == known.end() && parent == "mujoco")
     for (const auto& [other, children] : table)
       if (children.count(e.tag))
-        refuse_at(RDM_FORMAT, e, "it stands outside of %s: a part that other files include",
+        refuse_at(RDM_ERROR_FORMAT, e, "it stands outside of %s: a part that other files include",
                   other == "body" ? "worldbody" : other.c_str());
   if (found == known.end())
-    refuse_at(RDM_UNSUPPORTED, e, "no element that is known in %s, and it could change the robot%s",
+    refuse_at(RDM_ERROR_UNSUPPORTED, e, "no element that is known in %s, and it could change the robot%s",
               parent.c_str(), nearest_key(e.tag, known).c_str());
   return *found->second;
 }
@@ -175,7 +177,7 @@ const ElementRow& row_of(const Element& e, const std::string& parent) {
 void check_children(const Element& e, const std::string& kind) {
   for (const auto& child : e.children) {
     const ElementRow& row = row_of(*child, kind);
-    if (row.use == Use::kRefused) refuse_at(RDM_UNSUPPORTED, *child, "%s", row.why);
+    if (row.use == Use::kRefused) refuse_at(RDM_ERROR_UNSUPPORTED, *child, "%s", row.why);
   }
 }
 

@@ -86,7 +86,7 @@ struct Builder {
     if (found != row_of.end()) return found->second;
     std::vector<std::string> names;
     for (const auto& [name, r] : row_of) names.push_back(name);
-    refuse_at(RDM_NOT_FOUND, e, "there is no joint %s%s", clean(joint).c_str(),
+    refuse_at(RDM_ERROR_NOT_FOUND, e, "there is no joint %s%s", clean(joint).c_str(),
               nearest_hint(joint, names).c_str());
   }
 
@@ -95,14 +95,14 @@ struct Builder {
     std::map<std::string, const CouplingIn*> by;
     for (const CouplingIn& c : in.couplings) {
       if (!by.emplace(c.follower, &c).second)
-        refuse_at(RDM_ARGUMENT, *c.element, "joint %s follows two others", clean(c.follower).c_str());
+        refuse_at(RDM_ERROR_ARGUMENT, *c.element, "joint %s follows two others", clean(c.follower).c_str());
     }
     std::vector<CouplingIn> all;
     for (const CouplingIn& first : in.couplings) {
       CouplingIn c = first;
       for (size_t steps = 0; by.count(c.leader); ++steps) {
         if (steps > by.size() || c.leader == c.follower)
-          refuse_at(RDM_ARGUMENT, *c.element, "joint %s follows itself", clean(c.follower).c_str());
+          refuse_at(RDM_ERROR_ARGUMENT, *c.element, "joint %s follows itself", clean(c.follower).c_str());
         const CouplingIn& next = *by[c.leader];
         c.offset += c.ratio * next.offset;
         c.slack += std::abs(c.ratio) * next.slack;
@@ -110,7 +110,7 @@ struct Builder {
         c.leader = next.leader;
       }
       if (c.leader == c.follower)
-        refuse_at(RDM_ARGUMENT, *c.element, "joint %s follows itself", clean(c.follower).c_str());
+        refuse_at(RDM_ERROR_ARGUMENT, *c.element, "joint %s follows itself", clean(c.follower).c_str());
       all.push_back(c);
     }
     return all;
@@ -121,10 +121,10 @@ struct Builder {
     size_t count = 0;
     for (const BodyIn& b : in.bodies)
       for (const JointIn& j : b.joints)
-        if (++count > RDM_ROBOT_LINKS)
-          refuse_at(RDM_RANGE, *j.element, "more than %d joints that move", RDM_ROBOT_LINKS);
+        if (++count > RDM_MAX_LINKS)
+          refuse_at(RDM_ERROR_RANGE, *j.element, "more than %d joints that move", RDM_MAX_LINKS);
     if (in.couplings.size() > kMostRows)
-      refuse_at(RDM_RANGE, *in.couplings[kMostRows].element, "more than %zu couplings", kMostRows);
+      refuse_at(RDM_ERROR_RANGE, *in.couplings[kMostRows].element, "more than %zu couplings", kMostRows);
   }
 
   void add_links() {
@@ -147,11 +147,11 @@ struct Builder {
         put(X.q, l.q);
         put(j.axis, l.axis);
         l.parent = at.row;
-        l.kind = j.slides ? RDM_PRISMATIC : RDM_REVOLUTE;
+        l.kind = j.slides ? RDM_JOINT_PRISMATIC : RDM_JOINT_REVOLUTE;
         l.lower = j.lower - zero;
         l.upper = j.upper - zero;
         if (!(l.lower < l.upper))
-          refuse_at(RDM_RANGE, *j.element, "the range [%g, %g] is empty", j.lower, j.upper);
+          refuse_at(RDM_ERROR_RANGE, *j.element, "the range [%g, %g] is empty", j.lower, j.upper);
         l.velocity = j.velocity;
         l.friction = j.friction;
         if (j.slides && j.armature > 0)
@@ -164,7 +164,7 @@ struct Builder {
         l.joint = names.give(j.name.empty() ? body.name + "_joint" : j.name, "joint", j.element->line);
         const auto row = static_cast<int32_t>(out->links.size());
         if (!j.name.empty() && !row_of.emplace(j.name, row).second)
-          refuse_at(RDM_ARGUMENT, *j.element, "joint %s stands twice", clean(j.name).c_str());
+          refuse_at(RDM_ERROR_ARGUMENT, *j.element, "joint %s stands twice", clean(j.name).c_str());
         out->links.push_back(l);
         masses.push_back({});
         joints.push_back(&j);
@@ -181,7 +181,7 @@ struct Builder {
       if (at.row >= 0 && !body.joints.empty())
         places.emplace(out->links[static_cast<size_t>(at.row)].name, at);
     }
-    if (out->links.empty()) refuse_at(RDM_ARGUMENT, *in.bodies[0].element, "no joint moves");
+    if (out->links.empty()) refuse_at(RDM_ERROR_ARGUMENT, *in.bodies[0].element, "no joint moves");
     for (const FrameIn& f : in.frames) {
       const Place& body = of_body[static_cast<size_t>(f.body)];
       places.emplace(f.name, Place{body.row, body.X * f.X});
@@ -198,13 +198,14 @@ struct Builder {
       if (m.mass > 0) {
         const auto p = principal(m.moment, nullptr);
         if (!(*std::min_element(p.begin(), p.end()) > 0))
-          refuse_at(RDM_ARGUMENT, *bodies[r]->element, "it moves, and its moments of inertia are 0");
+          refuse_at(RDM_ERROR_ARGUMENT, *bodies[r]->element, "it moves, and its moments of inertia are 0");
         continue;
       }
       const bool carries =
           std::any_of(out->links.begin(), out->links.end(),
                       [&](const rdm_robot_link& other) { return other.parent == static_cast<int32_t>(r); });
-      if (!carries) refuse_at(RDM_RANGE, *bodies[r]->element, "it moves and has no mass%s", in.massless_hint);
+      if (!carries)
+        refuse_at(RDM_ERROR_RANGE, *bodies[r]->element, "it moves and has no mass%s", in.massless_hint);
     }
     if (!(root.mass > 0) && root.moment != M3{}) {  // it stands: nothing feels them
       out->note(RDM_NOTE_DROPPED, in.bodies[0].element->line, "the root's moments of inertia, without mass");
@@ -213,8 +214,8 @@ struct Builder {
     if (root.mass > 0) {
       const auto p = principal(root.moment, nullptr);
       if (!(*std::max_element(p.begin(), p.end()) > 0)) {
-        root.moment = solid(Primitive{RDM_SPHERE, {kPointRadius, 0, 0}, {}}).moment;
-        const double factor = root.mass / volume_of({RDM_SPHERE, {kPointRadius, 0, 0}, {}});
+        root.moment = solid(Primitive{RDM_SHAPE_SPHERE, {kPointRadius, 0, 0}, {}}).moment;
+        const double factor = root.mass / volume_of({RDM_SHAPE_SPHERE, {kPointRadius, 0, 0}, {}});
         for (auto& row : root.moment)
           for (double& x : row) x *= factor;
         out->note(RDM_NOTE_GUESSED, in.bodies[0].element->line,
@@ -236,7 +237,7 @@ struct Builder {
       int32_t count = 0;
       for (const ShapeIn& s : in.bodies[b].shapes) {
         if (out->shapes.size() == kMostRows)
-          refuse_at(RDM_RANGE, *s.element, "more than %zu shapes", kMostRows);
+          refuse_at(RDM_ERROR_RANGE, *s.element, "more than %zu shapes", kMostRows);
         rdm_robot_shape o{};
         const Place& at = of_body[b];
         const Pose X = at.X * s.shape.X;
@@ -333,7 +334,7 @@ struct Builder {
     if (!j.has_command || follows(row)) return;
     const double low = std::max(j.command_low, l.lower), high = std::min(j.command_high, l.upper);
     if (!(low < high))
-      refuse_at(RDM_RANGE, *j.element, "its actuator's range [%g, %g] is not in the joint's [%g, %g]",
+      refuse_at(RDM_ERROR_RANGE, *j.element, "its actuator's range [%g, %g] is not in the joint's [%g, %g]",
                 j.command_low, j.command_high, l.lower, l.upper);
     if (low - l.lower < 1e-6 && l.upper - high < 1e-6) return;
     rdm_robot_curve c{};
@@ -347,7 +348,7 @@ struct Builder {
   void add_pairs() {
     const auto poses = link_poses(*out, home_of(*out));
     const auto parent = [&](int32_t link) {
-      return link >= 0 ? out->links[static_cast<size_t>(link)].parent : RDM_NO_LINK;
+      return link >= 0 ? out->links[static_cast<size_t>(link)].parent : RDM_LINK_NONE;
     };
     std::set<std::pair<std::string, std::string>> excluded;
     for (const auto& [x, y] : in.excluded) excluded.emplace(std::min(x, y), std::max(x, y));
@@ -402,7 +403,7 @@ struct Builder {
 }  // namespace
 
 void check_mass(const Element& e, const std::string& what, bool mend, Mass* m, Draft* out) {
-  if (!(m->mass > 0)) refuse_at(RDM_RANGE, e, "%s: the mass %g is not above 0", what.c_str(), m->mass);
+  if (!(m->mass > 0)) refuse_at(RDM_ERROR_RANGE, e, "%s: the mass %g is not above 0", what.c_str(), m->mass);
   M3 axes{};
   const auto p = principal(m->moment, &axes);
   const double least = *std::min_element(p.begin(), p.end()), sum = p[0] + p[1] + p[2],
@@ -412,9 +413,9 @@ void check_mass(const Element& e, const std::string& what, bool mend, Mass* m, D
   const bool positive = least > 0, triangle = sum - most >= most * (1 - 1e-6);
   if (positive && triangle) return;
   if (!mend)
-    refuse_at(RDM_ARGUMENT, e, "%s: the principal moments of inertia %g, %g, %g %s", what.c_str(), p[0], p[1],
-              p[2], positive ? "break the triangle rule" : "are not all above 0");
-  if (!(most > 0)) refuse_at(RDM_ARGUMENT, e, "%s: no moment of inertia is above 0", what.c_str());
+    refuse_at(RDM_ERROR_ARGUMENT, e, "%s: the principal moments of inertia %g, %g, %g %s", what.c_str(), p[0],
+              p[1], p[2], positive ? "break the triangle rule" : "are not all above 0");
+  if (!(most > 0)) refuse_at(RDM_ERROR_ARGUMENT, e, "%s: no moment of inertia is above 0", what.c_str());
   for (size_t k = 0; k < 3; ++k) m->moment[k][k] += lacks;
   out->note(RDM_NOTE_CHANGED, e.line,
             "%s: principal moments %g, %g, %g break the triangle rule: %g was added to each", what.c_str(),
@@ -430,7 +431,8 @@ std::vector<Pose> link_poses(const Draft& d, const std::vector<double>& q) {
   for (size_t i = 0; i < d.links.size(); ++i) {
     const rdm_robot_link& l = d.links[i];
     const V3 axis = vec(l.axis);
-    const Pose moved = l.kind == RDM_PRISMATIC ? Pose{q[i] * axis, {}} : Pose{{}, turn_about(axis, q[i])};
+    const Pose moved =
+        l.kind == RDM_JOINT_PRISMATIC ? Pose{q[i] * axis, {}} : Pose{{}, turn_about(axis, q[i])};
     out.push_back(pose_of(out, l.parent) * Pose{vec(l.p), normalized(turn(l.q))} * moved);
   }
   return out;
@@ -457,7 +459,7 @@ std::vector<double> felt_inertia(const Draft& d, const std::vector<double>& q) {
     for (size_t k = r; k < d.links.size(); ++k) {
       if (!is_below(d, static_cast<int32_t>(k), static_cast<int32_t>(r))) continue;
       const rdm_robot_link& l = d.links[k];
-      if (d.links[r].kind == RDM_PRISMATIC) {
+      if (d.links[r].kind == RDM_JOINT_PRISMATIC) {
         sum += l.mass;
         continue;
       }
@@ -489,7 +491,8 @@ void build(const Model& model, const Options& options, Draft* out) {
   b.add_pairs();
   const std::string name = fitting_name(options.name.empty() ? model.name : options.name, "robot");
   if (!options.name.empty() && name != options.name)
-    refuse(RDM_ARGUMENT, "options.name: %s: a name is made of at most %zu letters, digits, '_', '-' and '+'",
+    refuse(RDM_ERROR_ARGUMENT,
+           "options.name: %s: a name is made of at most %zu letters, digits, '_', '-' and '+'",
            clean(options.name).c_str(), kLongestName);
   if (options.name.empty() && name != model.name)
     out->note(RDM_NOTE_CHANGED, model.bodies[0].element->line, "the robot %s is called %s",

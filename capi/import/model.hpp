@@ -73,9 +73,9 @@ inline double most_of(const Options& options, bool slides) {
   return slides && options.slide_range > 0 ? options.slide_range : 2 * M_PI;
 }
 
-// Where a body or a frame of the file went: `row` of links (RDM_ROOT_LINK), its pose there.
+// Where a body or a frame of the file went: `row` of links (RDM_LINK_ROOT), its pose there.
 struct Place {
-  int32_t row = RDM_ROOT_LINK;
+  int32_t row = RDM_LINK_ROOT;
   Pose X;
 };
 using Places = std::map<std::string, Place>;  // by name in the file, and by the name it got
@@ -88,7 +88,7 @@ void build(const Model& model, const Options& options, Draft* out);
 // Kind, palm, fingers, mount, flange and poses, as far as options do not say them.
 void give_roles(const Places& places, const Options& options, Draft* out);
 
-// Poses of the links in the root frame at joints q [num_links]; of row `row` with RDM_ROOT_LINK.
+// Poses of the links in the root frame at joints q [num_links]; of row `row` with RDM_LINK_ROOT.
 std::vector<Pose> link_poses(const Draft& d, const std::vector<double>& q);
 inline Pose pose_of(const std::vector<Pose>& poses, int32_t row) {
   return row < 0 ? Pose{} : poses[static_cast<size_t>(row)];

@@ -55,14 +55,14 @@ struct Writer {
     static constexpr double kNone[6] = {}, kNoTurn[4] = {0, 0, 0, 1};
     const char* kind = nullptr;
     for (const NamedKind& k : kShapes)
-      if (k.kind == s.kind && s.kind != RDM_PLANE) kind = k.name;
-    if (!kind) refuse(RDM_RANGE, "def.shapes[%d]: kind %d is none of an object", i, s.kind);
+      if (k.kind == s.kind && s.kind != RDM_SHAPE_PLANE) kind = k.name;
+    if (!kind) refuse(RDM_ERROR_RANGE, "def.shapes[%d]: kind %d is none of an object", i, s.kind);
     out += "\n[[shape]]\n";
     text("kind", kind);
-    if (s.kind == RDM_HULL) {
+    if (s.kind == RDM_SHAPE_HULL) {
       if (s.num_points < 4 || s.num_points > 32)
-        refuse(RDM_RANGE, "def.shapes[%d].num_points: %d is outside [4, 32]", i, s.num_points);
-      if (!s.points) refuse(RDM_ARGUMENT, "def.shapes[%d].points is NULL", i);
+        refuse(RDM_ERROR_RANGE, "def.shapes[%d].num_points: %d is outside [4, 32]", i, s.num_points);
+      if (!s.points) refuse(RDM_ERROR_ARGUMENT, "def.shapes[%d].points is NULL", i);
       out += "points = [\n";
       for (int32_t k = 0; k < s.num_points; ++k) out += "  " + list(s.points + 3 * k, 3) + ",\n";
       out += "]\n";
@@ -91,11 +91,11 @@ struct ObjectReader {
     std::copy_n(kGrey, 4, s.color);
     read_color(t, s.color);
     s.seen_only = t.flag("seen_only");
-    if (s.kind == RDM_HULL) {
+    if (s.kind == RDM_SHAPE_HULL) {
       const toml::node& n = t.need("points");
       const toml::array* rows = n.as_array();
       if (!rows || rows->size() < 4 || rows->size() > 32)
-        t.bad(RDM_FORMAT, line_of(n), "points is no list of 4 to 32 points");
+        t.bad(RDM_ERROR_FORMAT, line_of(n), "points is no list of 4 to 32 points");
       std::vector<double>& points = out->points.emplace_back();
       for (const toml::node& row : *rows)
         for (const double x : t.list(row, "a point", 3, 3)) points.push_back(x);
@@ -113,7 +113,7 @@ struct ObjectReader {
     top.only({"format", "name", "alias", "summary", "material", "friction", "mass", "moment", "shape"});
     if (const toml::node* n = file.get("format"))
       if (!n->is_integer() || n->as_integer()->get() != kFormat)
-        top.bad(RDM_VERSION_MISMATCH, line_of(*n), "format: this library reads %d", kFormat);
+        top.bad(RDM_ERROR_VERSION_MISMATCH, line_of(*n), "format: this library reads %d", kFormat);
     rdm_object_def& d = out->def;
     const auto text = [&](const char* key) -> const char* {
       const toml::node* n = file.get(key);
@@ -128,7 +128,7 @@ struct ObjectReader {
     d.mass = top.as_number(top.need("mass"), "mass");
     top.numbers("moment", d.moment, 6);
     for (const Table& t : top.rows("shape")) shape(t);
-    if (out->shapes.empty()) top.bad(RDM_FORMAT, 1, "no [[shape]]");
+    if (out->shapes.empty()) top.bad(RDM_ERROR_FORMAT, 1, "no [[shape]]");
     out->bind();
   }
 };
@@ -150,10 +150,10 @@ void ObjectDraft::bind() {
 }
 
 std::string write_object(const rdm_object_def& def) {
-  if (!def.name) refuse(RDM_ARGUMENT, "def.name is NULL");
-  if (def.num_shapes < 1 || def.num_shapes > RDM_OBJECT_SHAPES)
-    refuse(RDM_RANGE, "def.num_shapes: %d is outside [1, %d]", def.num_shapes, RDM_OBJECT_SHAPES);
-  if (!def.shapes) refuse(RDM_ARGUMENT, "def.shapes is NULL with num_shapes %d", def.num_shapes);
+  if (!def.name) refuse(RDM_ERROR_ARGUMENT, "def.name is NULL");
+  if (def.num_shapes < 1 || def.num_shapes > RDM_MAX_SHAPES)
+    refuse(RDM_ERROR_RANGE, "def.num_shapes: %d is outside [1, %d]", def.num_shapes, RDM_MAX_SHAPES);
+  if (!def.shapes) refuse(RDM_ERROR_ARGUMENT, "def.shapes is NULL with num_shapes %d", def.num_shapes);
   Writer w;
   w.out =
       "# An object of redman: m, kg; quaternions are x, y, z, w. What is left out is 0 or none; without a "
@@ -177,7 +177,7 @@ void read_object(const std::string& bytes, ObjectDraft* out) {
 }
 
 void read_built_object(int32_t object, ObjectDraft* out) {
-  if (const rdm_result r = rdm_object_get(object, &out->def)) refuse(r, "%s", rdm_last_error());
+  if (const rdm_result r = rdm_object_get_def(object, &out->def)) refuse(r, "%s", rdm_last_error());
   for (int32_t i = 0; i < out->def.num_shapes; ++i) {
     rdm_shape_def s;
     if (const rdm_result r = rdm_object_shape_at(object, i, &s)) refuse(r, "%s", rdm_last_error());

@@ -73,55 +73,57 @@ struct Writer {
     numbers(key, q, 4, kNone);
   }
   std::string link(int32_t row, const char* what) const {
-    if (row == RDM_ROOT_LINK) return quoted(kRoot);
+    if (row == RDM_LINK_ROOT) return quoted(kRoot);
     if (row < 0 || row >= d.num_links)
-      refuse(RDM_ARGUMENT, "def: %s: row %d of links is not there", what, row);
+      refuse(RDM_ERROR_ARGUMENT, "def: %s: row %d of links is not there", what, row);
     return quoted(d.links[row].name);
   }
   std::string shape(int32_t row) const {
-    if (row < 0 || row >= d.num_shapes) refuse(RDM_ARGUMENT, "def.pairs: row %d of shapes is not there", row);
+    if (row < 0 || row >= d.num_shapes)
+      refuse(RDM_ERROR_ARGUMENT, "def.pairs: row %d of shapes is not there", row);
     return quoted(d.shapes[row].name);
   }
 
   // Rows are referred to by name: each must have one of its own, and none may be the root's.
   void check() const {
     const auto rows = [](const void* array, int32_t count, const char* what) {
-      if (count < 0 || count > 4096) refuse(RDM_RANGE, "def.num_%s: %d is outside [0, 4096]", what, count);
-      if (count > 0 && !array) refuse(RDM_ARGUMENT, "def.%s is NULL with num_%s %d", what, what, count);
+      if (count < 0 || count > 4096)
+        refuse(RDM_ERROR_RANGE, "def.num_%s: %d is outside [0, 4096]", what, count);
+      if (count > 0 && !array) refuse(RDM_ERROR_ARGUMENT, "def.%s is NULL with num_%s %d", what, what, count);
     };
     rows(d.links, d.num_links, "links");
-    if (d.num_links < 1) refuse(RDM_RANGE, "def.num_links: 0 is outside [1, %d]", RDM_ROBOT_LINKS);
+    if (d.num_links < 1) refuse(RDM_ERROR_RANGE, "def.num_links: 0 is outside [1, %d]", RDM_MAX_LINKS);
     rows(d.shapes, d.num_shapes, "shapes");
     rows(d.pairs, std::max(d.num_pairs, 0), "pairs");
     rows(d.couplings, d.num_couplings, "couplings");
     rows(d.curves, d.num_curves, "curves");
     rows(d.commands, std::max(d.num_commands, 0), "commands");
     rows(d.fingers, d.num_fingers, "fingers");
-    if (!d.name) refuse(RDM_ARGUMENT, "def.name is NULL");
-    if (d.kind < 0 || d.kind > 2) refuse(RDM_RANGE, "def.kind: %d is outside [0, 2]", d.kind);
+    if (!d.name) refuse(RDM_ERROR_ARGUMENT, "def.name is NULL");
+    if (d.kind < 0 || d.kind > 2) refuse(RDM_ERROR_RANGE, "def.kind: %d is outside [0, 2]", d.kind);
     for (int32_t i = 0; i < d.num_links; ++i) {
       const rdm_robot_link& l = d.links[i];
-      if (!l.name || !l.joint) refuse(RDM_ARGUMENT, "def.links: row %d has no name", i);
+      if (!l.name || !l.joint) refuse(RDM_ERROR_ARGUMENT, "def.links: row %d has no name", i);
       if (l.kind < 0 || l.kind > 1)
-        refuse(RDM_RANGE, "def.links: kind %d of %s is outside [0, 1]", l.kind, clean(l.name).c_str());
-      if (same_name(l.name, kRoot)) refuse(RDM_ARGUMENT, "def.links: row %d is called root", i);
+        refuse(RDM_ERROR_RANGE, "def.links: kind %d of %s is outside [0, 1]", l.kind, clean(l.name).c_str());
+      if (same_name(l.name, kRoot)) refuse(RDM_ERROR_ARGUMENT, "def.links: row %d is called root", i);
       for (int32_t k = 0; k < i; ++k)
         if (same_name(d.links[k].name, l.name))
-          refuse(RDM_ARGUMENT, "def.links: %s stands twice", clean(l.name).c_str());
+          refuse(RDM_ERROR_ARGUMENT, "def.links: %s stands twice", clean(l.name).c_str());
     }
     for (int32_t i = 0; i < d.num_shapes; ++i) {
-      if (!d.shapes[i].name) refuse(RDM_ARGUMENT, "def.shapes: row %d has no name", i);
+      if (!d.shapes[i].name) refuse(RDM_ERROR_ARGUMENT, "def.shapes: row %d has no name", i);
       if (d.num_pairs > 0)
         for (int32_t k = 0; k < i; ++k)
           if (same_name(d.shapes[k].name, d.shapes[i].name))
-            refuse(RDM_ARGUMENT, "def.shapes: %s stands twice", clean(d.shapes[i].name).c_str());
+            refuse(RDM_ERROR_ARGUMENT, "def.shapes: %s stands twice", clean(d.shapes[i].name).c_str());
     }
     for (int32_t i = 0; i < d.num_fingers; ++i)
-      if (!d.fingers[i].name) refuse(RDM_ARGUMENT, "def.fingers: row %d has no name", i);
+      if (!d.fingers[i].name) refuse(RDM_ERROR_ARGUMENT, "def.fingers: row %d has no name", i);
     for (int32_t i = 0; i < d.num_curves; ++i)
-      if (d.curves[i].num_knots < 0 || d.curves[i].num_knots > RDM_ROBOT_KNOTS)
-        refuse(RDM_RANGE, "def.curves: num_knots %d is outside [2, %d]", d.curves[i].num_knots,
-               RDM_ROBOT_KNOTS);
+      if (d.curves[i].num_knots < 0 || d.curves[i].num_knots > RDM_MAX_KNOTS)
+        refuse(RDM_ERROR_RANGE, "def.curves: num_knots %d is outside [2, %d]", d.curves[i].num_knots,
+               RDM_MAX_KNOTS);
   }
 
   std::string write() {
@@ -161,12 +163,12 @@ struct Writer {
     numbers("p", d.mount_p, 3);
     turn("q", d.mount_q);
     out += "\n[flange]\n";
-    if (d.flange_link != RDM_NO_LINK) line("link", link(d.flange_link, "flange_link"));
+    if (d.flange_link != RDM_LINK_NONE) line("link", link(d.flange_link, "flange_link"));
     numbers("p", d.flange_p, 3);
     turn("q", d.flange_q);
     out += "\n[palm]\n";
     static constexpr double kNormal[3] = {0, -1, 0}, kWay[3] = {0, 0, 1};
-    if (d.palm_link != RDM_NO_LINK) line("link", link(d.palm_link, "palm_link"));
+    if (d.palm_link != RDM_LINK_NONE) line("link", link(d.palm_link, "palm_link"));
     numbers("p", d.palm_p, 3);
     numbers("normal", d.palm_normal, 3, kNormal);
     numbers("fingers", d.palm_fingers, 3, kWay);
@@ -246,7 +248,7 @@ struct Writer {
     for (int32_t k = 0; k < kRobotShapes; ++k)
       if (kShapes[k].kind == s.kind) kind = kShapes[k].name;
     if (!kind)
-      refuse(RDM_RANGE, "def.shapes: kind %d of %s is none of a robot", s.kind, clean(s.name).c_str());
+      refuse(RDM_ERROR_RANGE, "def.shapes: kind %d of %s is none of a robot", s.kind, clean(s.name).c_str());
     line("kind", quoted(kind));
     numbers("size", s.size, 3);
     numbers("p", s.p, 3);
@@ -262,13 +264,13 @@ struct RobotReader {
 
   int32_t link(const Table& t, const char* key, const toml::node& n) const {
     const std::string text = t.as_text(n, key);
-    if (text == kRoot) return RDM_ROOT_LINK;
+    if (text == kRoot) return RDM_LINK_ROOT;
     std::vector<std::string> names{kRoot};
     for (size_t i = 0; i < out->links.size(); ++i) {
       if (text == out->links[i].name) return static_cast<int32_t>(i);
       names.emplace_back(out->links[i].name);
     }
-    t.bad(RDM_NOT_FOUND, line_of(n), "%s: there is no link %s before it%s", key, clean(text).c_str(),
+    t.bad(RDM_ERROR_NOT_FOUND, line_of(n), "%s: there is no link %s before it%s", key, clean(text).c_str(),
           nearest_hint(text, names).c_str());
   }
   int32_t link_or(const Table& t, const char* key, int32_t otherwise) const {
@@ -281,8 +283,8 @@ struct RobotReader {
     for (const Table& t : top.rows("link")) {
       t.only({"name", "joint", "parent", "kind", "p", "q", "axis", "range", "velocity", "kp", "kd", "effort",
               "armature", "friction", "mass", "com", "moment"});
-      if (out->links.size() == RDM_ROBOT_LINKS)
-        t.bad(RDM_RANGE, line_of(t.t), "more than %d links", RDM_ROBOT_LINKS);
+      if (out->links.size() == RDM_MAX_LINKS)
+        t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d links", RDM_MAX_LINKS);
       rdm_robot_link l{};
       l.name = name(t, "name");
       l.joint = name(t, "joint");
@@ -306,7 +308,7 @@ struct RobotReader {
       t.numbers("moment", l.moment, 6);
       out->links.push_back(l);
     }
-    if (out->links.empty()) top.bad(RDM_FORMAT, line_of(top.t), "no [[link]]");
+    if (out->links.empty()) top.bad(RDM_ERROR_FORMAT, line_of(top.t), "no [[link]]");
   }
   void read_shapes() {
     for (const Table& t : top.rows("shape")) {
@@ -332,7 +334,7 @@ struct RobotReader {
       if (text == out->shapes[i].name) return static_cast<int32_t>(i);
       names.emplace_back(out->shapes[i].name);
     }
-    top.bad(RDM_NOT_FOUND, line_of(n), "pairs: there is no shape %s%s", clean(text).c_str(),
+    top.bad(RDM_ERROR_NOT_FOUND, line_of(n), "pairs: there is no shape %s%s", clean(text).c_str(),
             nearest_hint(text, names).c_str());
   }
   void read_pairs() {
@@ -344,10 +346,11 @@ struct RobotReader {
     }
     const toml::array* a = n->as_array();
     if (!a || a->size() > 4096)
-      top.bad(RDM_FORMAT, line_of(*n), "pairs is neither \"all\" nor a list of at most 4096 pairs of shapes");
+      top.bad(RDM_ERROR_FORMAT, line_of(*n),
+              "pairs is neither \"all\" nor a list of at most 4096 pairs of shapes");
     for (const toml::node& x : *a) {
       const toml::array* pair = x.as_array();
-      if (!pair || pair->size() != 2) top.bad(RDM_FORMAT, line_of(x), "pairs: not two shapes");
+      if (!pair || pair->size() != 2) top.bad(RDM_ERROR_FORMAT, line_of(x), "pairs: not two shapes");
       out->pairs.push_back({shape(*pair->get(0)), shape(*pair->get(1))});
     }
   }
@@ -366,7 +369,7 @@ struct RobotReader {
       rdm_robot_curve c{};
       c.link = link(t, "link", t.need("link"));
       c.driver = link_or(t, "driver", c.link);
-      const auto command = t.list(t.need("command"), "command", 0, RDM_ROBOT_KNOTS);
+      const auto command = t.list(t.need("command"), "command", 0, RDM_MAX_KNOTS);
       const auto angle = t.list(t.need("angle"), "angle", command.size(), command.size());
       c.num_knots = static_cast<int32_t>(command.size());
       std::copy(command.begin(), command.end(), c.command);
@@ -390,7 +393,7 @@ struct RobotReader {
       const toml::array* a = n->as_array();
       out->passive = n->value<std::string>() == "none";
       if (!a && !out->passive)
-        top.bad(RDM_FORMAT, line_of(*n), "commands is neither a list of links nor \"none\"");
+        top.bad(RDM_ERROR_FORMAT, line_of(*n), "commands is neither a list of links nor \"none\"");
       for (size_t i = 0; a && i < a->size(); ++i) {
         const toml::node& x = (*a)[i];
         out->commands.push_back(link(top, "commands", x));
@@ -409,11 +412,11 @@ struct RobotReader {
     mount.numbers("p", d.mount_p, 3);
     mount.numbers("q", d.mount_q, 4);
     flange.only({"link", "p", "q"});
-    d.flange_link = link_or(flange, "link", RDM_NO_LINK);
+    d.flange_link = link_or(flange, "link", RDM_LINK_NONE);
     flange.numbers("p", d.flange_p, 3);
     flange.numbers("q", d.flange_q, 4);
     palm.only({"link", "p", "normal", "fingers", "hold"});
-    d.palm_link = link_or(palm, "link", RDM_NO_LINK);
+    d.palm_link = link_or(palm, "link", RDM_LINK_NONE);
     palm.numbers("p", d.palm_p, 3);
     palm.numbers("normal", d.palm_normal, 3);
     palm.numbers("fingers", d.palm_fingers, 3);
@@ -439,7 +442,7 @@ struct RobotReader {
     top.only(known);
     if (const toml::node* n = top.find("format"))
       if (!n->is_integer() || n->as_integer()->get() != kFormat)
-        top.bad(RDM_VERSION_MISMATCH, line_of(*n), "format: this library reads %d", kFormat);
+        top.bad(RDM_ERROR_VERSION_MISMATCH, line_of(*n), "format: this library reads %d", kFormat);
     rdm_robot_def& d = out->def;
     d.name = options.name.empty() ? name(top, "name") : out->keep(options.name);
     if (const toml::node* n = top.find("alias")) {

@@ -21,7 +21,7 @@ struct Guess {
   Draft* out;
   std::vector<int32_t> ends;
   std::vector<Pose> poses;       // with the joints at 0
-  int32_t fork = RDM_ROOT_LINK;  // the last row that all ends hang on
+  int32_t fork = RDM_LINK_ROOT;  // the last row that all ends hang on
   int32_t stem = 0;              // joints up to it
 
   const char* name(int32_t row) const {
@@ -35,7 +35,7 @@ struct Guess {
     if (found != places.end()) return found->second;
     std::vector<std::string> names;
     for (const auto& [known, p] : places) names.push_back(known);
-    refuse(RDM_NOT_FOUND, "options.%s: there is no link or site %s%s", option, clean(word).c_str(),
+    refuse(RDM_ERROR_NOT_FOUND, "options.%s: there is no link or site %s%s", option, clean(word).c_str(),
            nearest_hint(word, names).c_str());
   }
 
@@ -72,7 +72,7 @@ struct Guess {
     if (!options.flange.empty()) {
       at = place("flange", options.flange);
       if (at.row < 0)
-        refuse(RDM_ARGUMENT, "options.flange: %s is part of the root", clean(options.flange).c_str());
+        refuse(RDM_ERROR_ARGUMENT, "options.flange: %s is part of the root", clean(options.flange).c_str());
     } else {
       at = {ends.size() == 1 ? ends[0] : fork, {}};
       const char* found = nullptr;
@@ -177,7 +177,8 @@ struct Guess {
         const size_t stop = std::min(options.tips.find(',', at), options.tips.size());
         const std::string word = options.tips.substr(at, stop - at);
         const Place& p = place("tips", word);
-        if (p.row < 0) refuse(RDM_ARGUMENT, "options.tips: %s is part of the root", clean(word).c_str());
+        if (p.row < 0)
+          refuse(RDM_ERROR_ARGUMENT, "options.tips: %s is part of the root", clean(word).c_str());
         tips.push_back({p.row, norm(p.X.p) > 0, p.X.p});
         at = stop + 1;
       }
@@ -187,7 +188,7 @@ struct Guess {
     if (!options.palm.empty())
       out->def.palm_link = place("palm", options.palm).row;
     else
-      out->def.palm_link = tips.size() == 1 ? RDM_ROOT_LINK : common(tips);
+      out->def.palm_link = tips.size() == 1 ? RDM_LINK_ROOT : common(tips);
     for (const End& t : tips) {
       Finger f{"", t.row, t.row, t.p, {}, {}, false};
       // Up to the last fork above the tip, or the palm.
@@ -211,7 +212,7 @@ struct Guess {
   }
   template <class Tips>
   int32_t common(const Tips& tips) const {
-    int32_t found = RDM_ROOT_LINK;
+    int32_t found = RDM_LINK_ROOT;
     for (int32_t r = 0; r < static_cast<int32_t>(out->links.size()); ++r)
       if (std::all_of(tips.begin(), tips.end(),
                       [&](const auto& t) { return t.row != r && is_below(*out, t.row, r); }))
@@ -266,7 +267,7 @@ struct Guess {
   V3 motion(int32_t row, V3 point) const {
     const Pose& X = poses[static_cast<size_t>(row)];
     const V3 axis = X.q * vec(out->links[static_cast<size_t>(row)].axis);
-    return out->links[static_cast<size_t>(row)].kind == RDM_PRISMATIC ? axis : cross(axis, point - X.p);
+    return out->links[static_cast<size_t>(row)].kind == RDM_JOINT_PRISMATIC ? axis : cross(axis, point - X.p);
   }
   // +1, -1: which end of its range is farther from home.
   double far_side(int32_t row) const {
@@ -356,7 +357,8 @@ struct Guess {
       } else {
         const Place& at = place("mount", options.mount);
         if (at.row >= 0)
-          refuse(RDM_ARGUMENT, "options.mount: %s moves against the root", clean(options.mount).c_str());
+          refuse(RDM_ERROR_ARGUMENT, "options.mount: %s moves against the root",
+                 clean(options.mount).c_str());
         X = at.X;
       }
     } else {
@@ -455,7 +457,7 @@ struct Guess {
 }  // namespace
 
 void give_roles(const Places& places, const Options& options, Draft* out) {
-  Guess guess{places, options, out, {}, {}, RDM_ROOT_LINK, 0, {}};
+  Guess guess{places, options, out, {}, {}, RDM_LINK_ROOT, 0, {}};
   guess.give();
 }
 

@@ -16,10 +16,10 @@ V3 support(int32_t kind, V3 s, V3 d) {
   if (n == 0) return {};
   const auto sign = [](double x) { return x < 0 ? -1.0 : 1.0; };
   const V3 u = (1 / n) * d;
-  if (kind == RDM_SPHERE) return s.x * u;
-  if (kind == RDM_CAPSULE) return s.x * u + V3{0, 0, sign(d.z) * s.y};
-  if (kind == RDM_BOX) return {sign(d.x) * s.x, sign(d.y) * s.y, sign(d.z) * s.z};
-  if (kind == RDM_CYLINDER) {
+  if (kind == RDM_SHAPE_SPHERE) return s.x * u;
+  if (kind == RDM_SHAPE_CAPSULE) return s.x * u + V3{0, 0, sign(d.z) * s.y};
+  if (kind == RDM_SHAPE_BOX) return {sign(d.x) * s.x, sign(d.y) * s.y, sign(d.z) * s.z};
+  if (kind == RDM_SHAPE_CYLINDER) {
     const double r = std::sqrt(d.x * d.x + d.y * d.y);
     return {r > 0 ? s.x * d.x / r : 0, r > 0 ? s.x * d.y / r : 0, sign(d.z) * s.y};
   }
@@ -84,7 +84,7 @@ Primitive box_along(const std::vector<V3>& points, const M3& axes) {
     const V3 r = back(q) * p;
     for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], r[k]), high[k] = std::max(high[k], r[k]);
   }
-  Primitive out{RDM_BOX, 0.5 * (high - low), {q * (0.5 * (low + high)), q}};
+  Primitive out{RDM_SHAPE_BOX, 0.5 * (high - low), {q * (0.5 * (low + high)), q}};
   for (int k = 0; k < 3; ++k) out.size[k] = std::max(out.size[k], 1e-4);
   return out;
 }
@@ -95,7 +95,7 @@ double lines_number(const char*& c, const char* end, size_t line) {
   double x = 0;
   const auto [after, error] = from_chars(c, end, x);
   if (error != std::errc() || !(std::abs(x) <= 1e6))
-    refuse(RDM_FORMAT, "line %zu: a corner needs three numbers", line);
+    refuse(RDM_ERROR_FORMAT, "line %zu: a corner needs three numbers", line);
   c = after;
   return x;
 }
@@ -124,7 +124,7 @@ class LineReader {
       at = stop + (bytes_.compare(stop, 2, "\r\n") == 0 ? 2 : 1);
     }
     if (!obj && mesh.points.size() % 3 != 0)
-      refuse(RDM_FORMAT, "it ends in a facet: %zu corners are not three for each", mesh.points.size());
+      refuse(RDM_ERROR_FORMAT, "it ends in a facet: %zu corners are not three for each", mesh.points.size());
   }
   Mesh mesh;
 
@@ -147,7 +147,7 @@ class LineReader {
   void corner(const char* c, const char* end) {
     V3 p;
     for (int k = 0; k < 3; ++k) p[k] = lines_number(c, end, line_);
-    if (mesh.points.size() == kMostPoints) refuse(RDM_RANGE, "more than %zu corners", kMostPoints);
+    if (mesh.points.size() == kMostPoints) refuse(RDM_ERROR_RANGE, "more than %zu corners", kMostPoints);
     mesh.points.push_back(p);
     const auto n = static_cast<uint32_t>(mesh.points.size());
     if (!obj_ && n % 3 == 0) mesh.faces.push_back({n - 3, n - 2, n - 1});
@@ -161,11 +161,12 @@ class LineReader {
       if (error != std::errc()) break;
       const auto points = static_cast<long long>(mesh.points.size());
       i = i < 0 ? points + i : i - 1;
-      if (i < 0 || i >= points) refuse(RDM_FORMAT, "line %zu: a face of a corner that is not there", line_);
+      if (i < 0 || i >= points)
+        refuse(RDM_ERROR_FORMAT, "line %zu: a face of a corner that is not there", line_);
       const auto corner = static_cast<uint32_t>(i);
       if (count == 0) first = corner;
       if (count >= 2) {
-        if (mesh.faces.size() == kMostPoints) refuse(RDM_RANGE, "more than %zu faces", kMostPoints);
+        if (mesh.faces.size() == kMostPoints) refuse(RDM_ERROR_RANGE, "more than %zu faces", kMostPoints);
         mesh.faces.push_back({first, before, corner});
       }
       before = corner;
@@ -190,13 +191,13 @@ namespace {
 // Of the ball about X.p that holds it.
 double reach(const Primitive& s) {
   switch (s.kind) {
-    case RDM_SPHERE:
+    case RDM_SHAPE_SPHERE:
       return s.size.x;
-    case RDM_CAPSULE:
+    case RDM_SHAPE_CAPSULE:
       return s.size.x + s.size.y;
-    case RDM_CYLINDER:
+    case RDM_SHAPE_CYLINDER:
       return std::hypot(s.size.x, s.size.y);
-    case RDM_BOX:
+    case RDM_SHAPE_BOX:
       return norm(s.size);
     default:
       return std::max({s.size.x, s.size.y, s.size.z});
@@ -227,13 +228,13 @@ bool touch(const Primitive& a, const Primitive& b) {
 double volume_of(const Primitive& s) {
   const V3& r = s.size;
   switch (s.kind) {
-    case RDM_SPHERE:
+    case RDM_SHAPE_SPHERE:
       return 4.0 / 3 * M_PI * r.x * r.x * r.x;
-    case RDM_CAPSULE:
+    case RDM_SHAPE_CAPSULE:
       return M_PI * r.x * r.x * (2 * r.y + 4.0 / 3 * r.x);
-    case RDM_CYLINDER:
+    case RDM_SHAPE_CYLINDER:
       return M_PI * r.x * r.x * 2 * r.y;
-    case RDM_BOX:
+    case RDM_SHAPE_BOX:
       return 8 * r.x * r.y * r.z;
     default:
       return 4.0 / 3 * M_PI * r.x * r.y * r.z;
@@ -245,18 +246,18 @@ Mass solid(const Primitive& s) {
   const V3& r = s.size;
   out.mass = volume_of(s);
   V3 m;  // moments per mass
-  if (s.kind == RDM_BOX) {
+  if (s.kind == RDM_SHAPE_BOX) {
     m = 1.0 / 3 * V3{r.y * r.y + r.z * r.z, r.x * r.x + r.z * r.z, r.x * r.x + r.y * r.y};
-  } else if (s.kind == RDM_CYLINDER) {
+  } else if (s.kind == RDM_SHAPE_CYLINDER) {
     const double across = r.x * r.x / 4 + r.y * r.y / 3;
     m = {across, across, r.x * r.x / 2};
-  } else if (s.kind == RDM_CAPSULE) {
+  } else if (s.kind == RDM_SHAPE_CAPSULE) {
     const double ball = 4.0 / 3 * r.x / (2 * r.y + 4.0 / 3 * r.x), rod = 1 - ball;
     const double across =
         rod * (r.x * r.x / 4 + r.y * r.y / 3) + ball * (0.4 * r.x * r.x + r.y * r.y + 0.75 * r.x * r.y);
     m = {across, across, rod * r.x * r.x / 2 + ball * 0.4 * r.x * r.x};
   } else {
-    const V3 e = s.kind == RDM_SPHERE ? V3{r.x, r.x, r.x} : r;
+    const V3 e = s.kind == RDM_SHAPE_SPHERE ? V3{r.x, r.x, r.x} : r;
     m = 0.2 * V3{e.y * e.y + e.z * e.z, e.x * e.x + e.z * e.z, e.x * e.x + e.y * e.y};
   }
   for (size_t k = 0; k < 3; ++k) out.moment[k][k] = out.mass * m[static_cast<int>(k)];
@@ -285,21 +286,22 @@ Mesh parse_mesh(std::string bytes, bool obj) {
     out = LineReader(std::move(bytes), obj).mesh;
   } else {
     if (bytes.size() != expected)
-      refuse(RDM_FORMAT, "its header says %u facets, %zu bytes; it has %zu", facets, expected, bytes.size());
-    if (facets == 0) refuse(RDM_FORMAT, "its header says 0 facets");
+      refuse(RDM_ERROR_FORMAT, "its header says %u facets, %zu bytes; it has %zu", facets, expected,
+             bytes.size());
+    if (facets == 0) refuse(RDM_ERROR_FORMAT, "its header says 0 facets");
     if (3 * static_cast<size_t>(facets) > kMostPoints)
-      refuse(RDM_RANGE, "more than %zu corners", kMostPoints);
+      refuse(RDM_ERROR_RANGE, "more than %zu corners", kMostPoints);
     for (uint32_t f = 0; f < facets; ++f) {
       float n[12];  // normal, then three corners
       std::memcpy(n, bytes.data() + kStlHeader + kStlFacet * static_cast<size_t>(f), sizeof n);
       for (int k = 3; k < 12; ++k)
         if (!(std::abs(n[k]) <= 1e6f))
-          refuse(RDM_FORMAT, "facet %u: a corner is not finite, or beyond 1e6", f + 1);
+          refuse(RDM_ERROR_FORMAT, "facet %u: a corner is not finite, or beyond 1e6", f + 1);
       for (int k = 3; k < 12; k += 3) out.points.push_back({n[k], n[k + 1], n[k + 2]});
       out.faces.push_back({3 * f, 3 * f + 1, 3 * f + 2});
     }
   }
-  if (out.points.empty()) refuse(RDM_FORMAT, "no corners in it");
+  if (out.points.empty()) refuse(RDM_ERROR_FORMAT, "no corners in it");
   return out;
 }
 
@@ -307,7 +309,7 @@ Mesh read_mesh(const std::string& path, Budget* budget) {
   std::string ending = path.substr(std::min(path.rfind('.'), path.size()));
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (ending != ".stl" && ending != ".obj")
-    refuse(RDM_UNSUPPORTED, "%s: meshes are read from .stl and .obj", clean(path, 160).c_str());
+    refuse(RDM_ERROR_UNSUPPORTED, "%s: meshes are read from .stl and .obj", clean(path, 160).c_str());
   budget->spend(Cost::kFiles, 1);
   std::string bytes = read_file(path, std::min(kMostMeshBytes, budget->left(Cost::kMeshBytes)));
   budget->spend(Cost::kMeshBytes, bytes.size());
@@ -337,13 +339,13 @@ Primitive around(const std::vector<V3>& points) {
   const auto take = [&](const Primitive& other) {
     if (volume_of(other) < volume_of(best)) best = other;
   };
-  Primitive ball{RDM_SPHERE, {}, {box.X.p, {}}};
+  Primitive ball{RDM_SHAPE_SPHERE, {}, {box.X.p, {}}};
   for (const V3& p : points) ball.size.x = std::max(ball.size.x, norm(p - box.X.p));
   take(ball);
   for (int axis = 0; axis < 3; ++axis) {
     V3 along_axis;
     along_axis[axis] = 1;
-    Primitive capsule{RDM_CAPSULE, {}, {box.X.p, box.X.q * turn_between({0, 0, 1}, along_axis)}};
+    Primitive capsule{RDM_SHAPE_CAPSULE, {}, {box.X.p, box.X.q * turn_between({0, 0, 1}, along_axis)}};
     const V3 way = capsule.X.q * V3{0, 0, 1};
     for (const V3& p : points) {
       const V3 r = p - box.X.p;

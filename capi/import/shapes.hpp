@@ -6,7 +6,7 @@
 namespace rdm::import {
 
 struct Primitive {
-  int32_t kind = RDM_SPHERE;
+  int32_t kind = RDM_SHAPE_SPHERE;
   V3 size;
   Pose X;
 };

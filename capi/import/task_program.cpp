@@ -48,17 +48,17 @@ rdm_result motion_of(const rdm_world* world, const Place& place, rdm_motion* out
     case On::kWorld:
       break;
     case On::kBody:
-      TRY(rdm_world_body(world, place.index, &m));
+      TRY(rdm_world_get_body(world, place.index, &m));
       break;
     case On::kLink:
-      TRY(rdm_world_link(world, place.index, &m));
+      TRY(rdm_world_get_link(world, place.index, &m));
       break;
     case On::kBase:
-      TRY(rdm_world_base(world, place.index, &m));
+      TRY(rdm_world_get_base(world, place.index, &m));
       break;
     case On::kShape: {
       double pose[7];
-      TRY(rdm_world_shape(world, place.index, pose));
+      TRY(rdm_world_get_shape(world, place.index, pose));
       std::copy_n(pose, 3, m.p);
       std::copy_n(pose + 3, 4, m.q);
       break;
@@ -86,7 +86,7 @@ struct Scene {  // what all terms of one call look at
 
 rdm_result open_scene(Scene* s) {
   s->joints.struct_size = sizeof s->joints;
-  return rdm_world_joints(s->world, &s->joints);
+  return rdm_world_get_joints(s->world, &s->joints);
 }
 
 // *raw: what a cost measures, where that is more than the value.
@@ -112,13 +112,13 @@ rdm_result value_of(const Scene& s, const Term& t, double* value, double* raw) {
     case What::kTouch: {
       int32_t pairs = 0;
       double force = 0;
-      TRY(rdm_world_touch(s.world, t.index, &pairs, &force));
+      TRY(rdm_world_get_touch(s.world, t.index, &pairs, &force));
       *value = pairs > 0;
       *raw = force;
       return RDM_OK;
     }
     case What::kForce:
-      TRY(rdm_world_touch(s.world, t.index, nullptr, &sum));
+      TRY(rdm_world_get_touch(s.world, t.index, nullptr, &sum));
       break;
     case What::kJoint: {
       const double q = s.joints.q[joints->index];
@@ -190,16 +190,16 @@ rdm_result value_of(const Scene& s, const Term& t, double* value, double* raw) {
       break;
     }
     case What::kOverlap:
-      if (s.open) TRY(rdm_world_overlap(s.open, t.index, &sum));
+      if (s.open) TRY(rdm_world_get_overlap(s.open, t.index, &sum));
       break;
     case What::kSensor: {
       double force[3], torque[3];
-      TRY(rdm_world_sensor(s.world, t.index, force, torque));
+      TRY(rdm_world_get_sensor(s.world, t.index, force, torque));
       sum = length(force);
       break;
     }
     default:
-      return rdm_fail(RDM_INTERNAL, "a term has no value");
+      return rdm_fail(RDM_ERROR_INTERNAL, "a term has no value");
   }
   *value = *raw = sum;
   return RDM_OK;
@@ -250,7 +250,7 @@ rdm_result place_bodies(const Program& p, rdm_world* world, rdm_random* random) 
     // What stands in something else is drawn again; the last try stays.
     for (int k = 1; d.apart && k < kMostTries; ++k) {
       double depth = 0;
-      TRY(rdm_world_overlap(world, d.body, &depth));
+      TRY(rdm_world_get_overlap(world, d.body, &depth));
       if (depth <= 0) break;
       TRY(put(d));
     }
@@ -283,7 +283,7 @@ rdm_result place_robots(const Program& p, rdm_world* world, State* s, rdm_random
       TRY(rdm_world_set_base(world, player.robot, &m));
     }
     if (player.compensated) {
-      TRY(rdm_world_gravity(world, player.robot, q, player.joints));
+      TRY(rdm_world_get_gravity(world, player.robot, q, player.joints));
       TRY(rdm_world_set_feedforward(world, player.joint, q, player.joints));
     }
   }
@@ -296,7 +296,7 @@ rdm_result draw_factors(const Program& p, rdm_world* world, rdm_random* random) 
     const Factor& f = p.factors[i];
     if (!f.with_last) last = draw(random, f.factor);
     const rdm_factor factor = {f.what, f.index, f.other, 0, last};
-    TRY(rdm_world_scale(world, &factor, 1));
+    TRY(rdm_world_set_factors(world, &factor, 1));
   }
   return RDM_OK;
 }
@@ -388,10 +388,10 @@ rdm_result program_control(void*, const void* instance, rdm_world* world, void* 
                                                         : std::clamp(command[k] + c.step * a, -1.0, 1.0);
     }
     if (player.control != Control::kNone)
-      TRY(rdm_world_command(world, player.robot, command, player.commands));
+      TRY(rdm_world_set_commands(world, player.robot, command, player.commands));
     if (player.compensated) {
       double efforts[kMostTaskJoints];
-      TRY(rdm_world_gravity(world, player.robot, efforts, player.joints));
+      TRY(rdm_world_get_gravity(world, player.robot, efforts, player.joints));
       TRY(rdm_world_set_feedforward(world, player.joint, efforts, player.joints));
     }
     if (player.push_action >= 0) {
@@ -515,7 +515,7 @@ rdm_result program_observe(void*, const void* instance, const rdm_world* world, 
       }
       case What::kTip: {
         double torque[3];
-        TRY(rdm_world_sensor(world, t.index, v, torque));
+        TRY(rdm_world_get_sensor(world, t.index, v, torque));
         for (const double c : v) put(c);
         break;
       }
@@ -538,7 +538,8 @@ rdm_result program_observe(void*, const void* instance, const rdm_world* world, 
 rdm_result program_check_state(void*, const void* instance, const void* state) {
   const Program& p = *static_cast<const Program*>(instance);
   const State& s = *static_cast<const State*>(state);
-  if (s.steps < 0 || s.held < 0 || s.held > p.hold) return rdm_fail(RDM_FORMAT, "a count is out of range");
+  if (s.steps < 0 || s.held < 0 || s.held > p.hold)
+    return rdm_fail(RDM_ERROR_FORMAT, "a count is out of range");
   constexpr double kMost = 1e12;
   const auto good = [](double x) { return std::fabs(x) <= kMost; };
   bool all = true;
@@ -548,7 +549,7 @@ rdm_result program_check_state(void*, const void* instance, const void* state) {
   for (const auto& start : s.start)
     for (const double x : start) all = all && good(x);
   for (const double x : s.last) all = all && good(x);
-  return all ? RDM_OK : rdm_fail(RDM_FORMAT, "a number is not finite, or beyond what a world can have");
+  return all ? RDM_OK : rdm_fail(RDM_ERROR_FORMAT, "a number is not finite, or beyond what a world can have");
 }
 
 }  // namespace rdm::import

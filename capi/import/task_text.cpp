@@ -139,8 +139,8 @@ const TermRow& term_of(const Table& t, bool many) {
     names.emplace_back(row.name);
   }
   for (const TermRow& row : kTerms)
-    if (name == row.name) t.bad(RDM_FORMAT, line_of(n), "term: %s is several numbers", row.name);
-  t.bad(RDM_FORMAT, line_of(n), "term: %s is not known%s", clean(name).c_str(),
+    if (name == row.name) t.bad(RDM_ERROR_FORMAT, line_of(n), "term: %s is several numbers", row.name);
+  t.bad(RDM_ERROR_FORMAT, line_of(n), "term: %s is not known%s", clean(name).c_str(),
         nearest_hint(name, names).c_str());
 }
 
@@ -158,7 +158,8 @@ std::string field_name(const Table& t) {
     if (!std::isalnum(static_cast<unsigned char>(c)) && !std::strchr("_-.", c)) c = '_';
   constexpr size_t kLongest = 31;
   if (out.size() > kLongest)
-    t.bad(RDM_RANGE, line_of(t.t), "name: %s has more than %zu characters", clean(out).c_str(), kLongest);
+    t.bad(RDM_ERROR_RANGE, line_of(t.t), "name: %s has more than %zu characters", clean(out).c_str(),
+          kLongest);
   return out;
 }
 
@@ -168,20 +169,21 @@ class SceneOptions : public Lookup {
   explicit SceneOptions(rdm_scene* scene) : scene_(scene) {}
   double number(const std::string& key) const override {
     double low = 0, high = 0, value = 0;
-    if (rdm_scene_range(scene_, key.c_str(), &low, &high) == RDM_OK && low != high)
-      refuse(RDM_RANGE, "option %s is a range, %g..%g: nothing is drawn here", clean(key).c_str(), low, high);
-    check(rdm_scene_number(scene_, key.c_str(), &value));
+    if (rdm_scene_get_range(scene_, key.c_str(), &low, &high) == RDM_OK && low != high)
+      refuse(RDM_ERROR_RANGE, "option %s is a range, %g..%g: nothing is drawn here", clean(key).c_str(), low,
+             high);
+    check(rdm_scene_get_number(scene_, key.c_str(), &value));
     return value;
   }
   std::string text(const std::string& key) const override {
     const char* text = nullptr;
-    check(rdm_scene_text(scene_, key.c_str(), &text));
+    check(rdm_scene_get_text(scene_, key.c_str(), &text));
     return text;
   }
   Span range(const std::string& key) const {
     Span s{};
-    if (rdm_scene_range(scene_, key.c_str(), &s.low, &s.high) == RDM_OK) return s;
-    check(rdm_scene_number(scene_, key.c_str(), &s.low));
+    if (rdm_scene_get_range(scene_, key.c_str(), &s.low, &s.high) == RDM_OK) return s;
+    check(rdm_scene_get_number(scene_, key.c_str(), &s.low));
     s.high = s.low;
     return s;
   }
@@ -207,7 +209,7 @@ class Registration {
                "camera", "observe", "reward", "cost", "success", "fall", "end"});
     rdm_task_def d;
     rdm_task_def_init(&d, sizeof d);
-    if (!top_.find("task")) top_.bad(RDM_FORMAT, 1, "no [task]");
+    if (!top_.find("task")) top_.bad(RDM_ERROR_FORMAT, 1, "no [task]");
     const Table t = top_.section("task");
     t.only({"name", "summary", "max_steps", "obs_limit", "gravity"});
     d.name = task_.keep(t.as_text(t.need("name"), "name"));
@@ -247,7 +249,7 @@ class Registration {
       task_.stands("fields", task_.fields.size(), line_of(t.t), t.what);
       task_.fields.push_back({task_.keep(field_name(t)), task_.keep(unit), 1, 0, 0, 0});
     }
-    if (task_.fields.empty()) top_.bad(RDM_FORMAT, 1, "no [[observe]]");
+    if (task_.fields.empty()) top_.bad(RDM_ERROR_FORMAT, 1, "no [[observe]]");
   }
   void costs() {
     for (const Table& t : top_.rows("cost")) {
@@ -258,14 +260,14 @@ class Registration {
       const auto there = std::find_if(task_.costs.begin(), task_.costs.end(), same);
       if (there == task_.costs.end()) {
         if (task_.costs.size() == RDM_MAX_COSTS)
-          t.bad(RDM_RANGE, line_of(t.t), "more than %d costs", RDM_MAX_COSTS);
+          t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d costs", RDM_MAX_COSTS);
         task_.stands("costs", task_.costs.size(), line_of(t.t), t.what);
         task_.costs.push_back({name, task_.keep(t.text("help", term_of(t, false).name)), limit});
       } else if (t.find("limit") || t.find("help")) {
-        t.bad(RDM_FORMAT, line_of(t.t), "limit, help: the first row of a cost has them");
+        t.bad(RDM_ERROR_FORMAT, line_of(t.t), "limit, help: the first row of a cost has them");
       }
     }
-    if (task_.costs.empty()) top_.bad(RDM_FORMAT, 1, "no [[cost]]");
+    if (task_.costs.empty()) top_.bad(RDM_ERROR_FORMAT, 1, "no [[cost]]");
   }
   void options() {
     const Table all = top_.section("options");
@@ -288,28 +290,28 @@ class Registration {
     const toml::node& n = t.need("default");
     o->help = task_.keep(t.text("help", "of the task's file"));
     if (n.is_boolean()) {
-      o->kind = RDM_FLAG;
+      o->kind = RDM_KIND_FLAG;
       o->number = n.as_boolean()->get() ? 1 : 0;
       o->high = 1;
     } else if (n.is_string()) {
-      o->kind = RDM_TEXT;
+      o->kind = RDM_KIND_TEXT;
       o->text = task_.keep(t.as_text(n, "default"));
       if (const toml::node* c = t.find("choices")) {
         const toml::array* words = c->as_array();
-        if (!words || words->empty()) t.bad(RDM_FORMAT, line_of(*c), "choices is no list of texts");
+        if (!words || words->empty()) t.bad(RDM_ERROR_FORMAT, line_of(*c), "choices is no list of texts");
         std::string joined;
         for (const toml::node& word : *words)
           joined += (joined.empty() ? "" : "|") + t.as_text(word, "choices");
         o->choices = task_.keep(joined);
       }
     } else {
-      o->kind = t.flag("integer") ? RDM_INTEGER : RDM_NUMBER;
+      o->kind = t.flag("integer") ? RDM_KIND_INTEGER : RDM_KIND_NUMBER;
       o->number = t.as_number(n, "default");
       o->low = t.as_number(t.need("low"), "low");
       o->high = t.as_number(t.need("high"), "high");
-      if (t.flag("range", o->kind == RDM_NUMBER)) o->choices = "a..b";
+      if (t.flag("range", o->kind == RDM_KIND_NUMBER)) o->choices = "a..b";
       if (!(o->low <= o->number && o->number <= o->high))
-        t.bad(RDM_RANGE, line_of(n), "default: %g is outside [%g, %g]", o->number, o->low, o->high);
+        t.bad(RDM_ERROR_RANGE, line_of(n), "default: %g is outside [%g, %g]", o->number, o->low, o->high);
     }
   }
   void shared_option(const Table& t, const toml::node& value, rdm_option_info* o) {
@@ -317,7 +319,7 @@ class Registration {
     const bool known = std::any_of(names.begin(), names.end(),
                                    [&](const std::string& name) { return same_name(name, o->key); });
     if (!known)
-      t.bad(RDM_NOT_FOUND, line_of(value),
+      t.bad(RDM_ERROR_NOT_FOUND, line_of(value),
             "it is none that every task has%s; one of your own is { default = , low = , high = , help = }",
             nearest_hint(o->key, names).c_str());
     rdm_task first{};
@@ -328,7 +330,7 @@ class Registration {
       check(t, line_of(value), rdm_task_option(0, i, &row));
       if (!same_name(row.key, o->key)) continue;
       o->kind = row.kind;
-      if (row.kind == RDM_TEXT)
+      if (row.kind == RDM_KIND_TEXT)
         o->text = task_.keep(t.as_text(value, o->key));
       else if (const auto* flag = value.as_boolean())
         o->number = flag->get() ? 1 : 0;
@@ -379,7 +381,7 @@ std::atomic<uint32_t> g_mounted{0};
 struct Listed {  // a robot that is in the process's list for a while
   int32_t robot = -1;
   ~Listed() {
-    if (robot >= 0) rdm_robot_remove(robot);
+    if (robot >= 0) rdm_robot_destroy(robot);
   }
 };
 
@@ -415,10 +417,10 @@ class Builder {
     if (!draws.empty()) check(draws[0], line_of(draws[0].t), rdm_scene_set_adjustable(scene_));
     if (!joint_names_.empty()) {  // the first look at the whole scene: what is wrong then is no robot's fault
       rdm_joint first;
-      if (const rdm_result r = rdm_scene_joint(scene_, 0, &first)) refuse(r, "%s", rdm_last_error());
+      if (const rdm_result r = rdm_scene_joint_at(scene_, 0, &first)) refuse(r, "%s", rdm_last_error());
     }
     for (size_t i = 0; i < parts_.size(); ++i) add_player(i);
-    if (p_.num_actions == 0) top_.bad(RDM_FORMAT, 1, "nothing is moved by actions: a [[robot]] is");
+    if (p_.num_actions == 0) top_.bad(RDM_ERROR_FORMAT, 1, "nothing is moved by actions: a [[robot]] is");
     check(top_, 1, rdm_scene_set_actions(scene_, p_.num_actions, hold_.data(), hold_.data()));
     for (const Table& t : draws) add_factor(t);
     all_terms();
@@ -445,7 +447,8 @@ class Builder {
       };
       if (dots == std::string::npos || !read(0, dots, &s.low) || !read(dots + 2, text.size(), &s.high) ||
           !(s.low <= s.high))
-        t.bad(RDM_FORMAT, line_of(n), "%s: %s is no range \"a..b\" with a <= b", key, clean(text).c_str());
+        t.bad(RDM_ERROR_FORMAT, line_of(n), "%s: %s is no range \"a..b\" with a <= b", key,
+              clean(text).c_str());
       return s;
     }
     const double x = t.as_number(n, key);
@@ -455,7 +458,8 @@ class Builder {
     const toml::node* n = t.find(key);
     if (!n) return false;
     const toml::array* a = n->as_array();
-    if (!a || a->size() != count) t.bad(RDM_FORMAT, line_of(*n), "%s is no list of %zu numbers", key, count);
+    if (!a || a->size() != count)
+      t.bad(RDM_ERROR_FORMAT, line_of(*n), "%s is no list of %zu numbers", key, count);
     for (size_t k = 0; k < count; ++k) out[k] = span(t, *a->get(k), key);
     return true;
   }
@@ -468,11 +472,11 @@ class Builder {
   // q, or rpy: about x, then y, then z.
   void read_turn(const Table& t, double q[4]) const {
     const toml::node *given = t.find("q"), *rpy = t.find("rpy");
-    if (given && rpy) t.bad(RDM_FORMAT, line_of(*rpy), "q and rpy are both there");
+    if (given && rpy) t.bad(RDM_ERROR_FORMAT, line_of(*rpy), "q and rpy are both there");
     if (given) {
       t.numbers("q", q, 4);
       const double n = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-      if (!(n > 1e-9 && n < 1e9)) t.bad(RDM_RANGE, line_of(*given), "q is no rotation");
+      if (!(n > 1e-9 && n < 1e9)) t.bad(RDM_ERROR_RANGE, line_of(*given), "q is no rotation");
       for (int k = 0; k < 4; ++k) q[k] /= n;
     } else if (rpy) {
       const auto angles = t.list(*rpy, "rpy", 3, 3);
@@ -499,7 +503,7 @@ class Builder {
 
   template <class T>
   T* take(const Table& t, T* rows, int32_t* count, int32_t most, const char* what) const {
-    if (*count == most) t.bad(RDM_RANGE, line_of(t.t), "more than %d %s", most, what);
+    if (*count == most) t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d %s", most, what);
     return rows + (*count)++;
   }
 
@@ -514,7 +518,7 @@ class Builder {
       t.only({"between", "mu"});
       const auto pair = texts(t, "between", 2, 2);
       const toml::node& n = t.need("mu");
-      double mu = RDM_PASSES;
+      double mu = RDM_FRICTION_PASSES;
       if (!n.is_string() || n.as_string()->get() != "passes") mu = t.as_number(n, "mu");
       check(t, line_of(n), rdm_scene_set_friction(scene_, pair[0].c_str(), pair[1].c_str(), mu));
     }
@@ -527,7 +531,7 @@ class Builder {
     else
       out.push_back(t.as_text(n, key));
     if (out.size() < least || out.size() > most)
-      t.bad(RDM_FORMAT, line_of(n), "%s: %zu names, not %zu to %zu", key, out.size(), least, most);
+      t.bad(RDM_ERROR_FORMAT, line_of(n), "%s: %zu names, not %zu to %zu", key, out.size(), least, most);
     return out;
   }
 
@@ -549,23 +553,23 @@ class Builder {
     const bool on_arm = t.find("arm") != nullptr && t.text("arm", "") != "none";
     if (t.find("robot")) {
       if (t.find("hand") || t.find("arm"))
-        t.bad(RDM_FORMAT, line_of(*t.find("robot")), "robot is there, and hand or arm too");
+        t.bad(RDM_ERROR_FORMAT, line_of(*t.find("robot")), "robot is there, and hand or arm too");
       part.listed = find("robot");
     } else if (t.find("hand") && on_arm) {
       double yaw = 0, adapter = 0;
       t.number("yaw", &yaw);
       t.number("adapter", &adapter);
       const std::string name = format("text-%u", g_mounted.fetch_add(1));
-      check(
-          t, line_of(*t.find("hand")),
-          rdm_robot_mount(&mounted.robot, name.c_str(), find("arm"), find("hand"), yaw, adapter, part.left));
+      check(t, line_of(*t.find("hand")),
+            rdm_robot_create_mounted(&mounted.robot, name.c_str(), find("arm"), find("hand"), yaw, adapter,
+                                     part.left));
       part.left = false;  // it is in the rows
     } else if (t.find("hand")) {
       part.listed = find("hand");
     } else if (on_arm) {
       part.listed = find("arm");
     } else {
-      t.bad(RDM_FORMAT, line_of(t.t), "no robot, hand or arm");
+      t.bad(RDM_ERROR_FORMAT, line_of(t.t), "no robot, hand or arm");
     }
     try {
       read_built(mounted.robot >= 0 ? mounted.robot : part.listed, part.draft.get());
@@ -589,7 +593,7 @@ class Builder {
   void add_part(Part part, const char* kind) {
     const Table& t = part.t;
     if (parts_.size() == kMostPlayers)
-      t.bad(RDM_RANGE, line_of(t.t), "more than %d robots and trees", kMostPlayers);
+      t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d robots and trees", kMostPlayers);
     rdm_scene_robot r;
     rdm_scene_robot_init(&r, sizeof r);
     r.robot = part.listed;
@@ -604,18 +608,18 @@ class Builder {
     Span ps[3], turns[3];
     double fixed[4];
     if (read_drawn(t, ps, turns, fixed, part.p, part.q) && !r.free_base)
-      t.bad(RDM_RANGE, line_of(t.t), "p, rpy: a %s whose base is fixed is not moved at a reset", kind);
+      t.bad(RDM_ERROR_RANGE, line_of(t.t), "p, rpy: a %s whose base is fixed is not moved at a reset", kind);
     std::copy_n(part.p, 3, r.p);
     std::copy_n(part.q, 4, r.q);
     if (t.flag("compensate")) {
       if (!r.gravity)
-        t.bad(RDM_FORMAT, line_of(*t.find("compensate")), "compensate goes with gravity = true");
+        t.bad(RDM_ERROR_FORMAT, line_of(*t.find("compensate")), "compensate goes with gravity = true");
       compensated_ = true;
     }
     check(t, line_of(t.t), rdm_scene_add_robot(scene_, &r, nullptr));
     const Draft& d = *part.draft;
     names_.push_back(part.name);
-    if (d.def.palm_link != RDM_NO_LINK) names_.push_back(part.name + ".palm");
+    if (d.def.palm_link != RDM_LINK_NONE) names_.push_back(part.name + ".palm");
     for (const rdm_robot_finger& f : d.fingers) names_.push_back(part.name + '.' + f.name);
     for (const rdm_robot_link& l : d.links) names_.push_back(part.name + '_' + l.name);
     for (const rdm_robot_shape& s : d.shapes) names_.push_back(part.name + '_' + s.name);
@@ -639,7 +643,7 @@ class Builder {
     part->start = of_arm.home;
     int32_t found = 0;
     check(t, line_of(t.t), rdm_robot_reach(arm, pose, part->start.data(), &found));
-    if (!found) t.bad(RDM_RANGE, line_of(t.t), "the arm does not reach this");
+    if (!found) t.bad(RDM_ERROR_RANGE, line_of(t.t), "the arm does not reach this");
   }
 
   struct Shapes {
@@ -656,16 +660,16 @@ class Builder {
     if (name) s.name = keep(*name);
     if (t.find("material")) s.material = keep(t.text("material", ""));
     s.kind = shape_kind(t, static_cast<int32_t>(std::size(kShapes)));
-    if (s.kind == RDM_HULL) {
+    if (s.kind == RDM_SHAPE_HULL) {
       const toml::node& n = t.need("points");
       const toml::array* a = n.as_array();
-      if (!a) t.bad(RDM_FORMAT, line_of(n), "points is no list of [x, y, z]");
+      if (!a) t.bad(RDM_ERROR_FORMAT, line_of(n), "points is no list of [x, y, z]");
       out->points.emplace_back();
       for (const toml::node& x : *a)
         for (const double c : t.list(x, "points", 3, 3)) out->points.back().push_back(c);
       s.points = out->points.back().data();
       s.num_points = static_cast<int32_t>(out->points.back().size() / 3);
-    } else if (s.kind != RDM_PLANE) {
+    } else if (s.kind != RDM_SHAPE_PLANE) {
       const auto size = t.list(t.need("size"), "size", 1, 3);
       std::copy(size.begin(), size.end(), s.size);
     }
@@ -721,7 +725,7 @@ class Builder {
     Shapes shapes;
     if (t.find("kind")) {
       if (t.find("shape"))
-        t.bad(RDM_FORMAT, line_of(*t.find("kind")), "kind is there, and [[body.shape]] too");
+        t.bad(RDM_ERROR_FORMAT, line_of(*t.find("kind")), "kind is there, and [[body.shape]] too");
       read_shape(t, nullptr, &shapes);
       names_.push_back(name);
     } else {
@@ -732,7 +736,7 @@ class Builder {
         place_shape(s, &shapes.rows.back());
         names_.push_back(own);
       }
-      if (shapes.rows.empty()) t.bad(RDM_FORMAT, line_of(t.t), "no kind, and no [[body.shape]]");
+      if (shapes.rows.empty()) t.bad(RDM_ERROR_FORMAT, line_of(t.t), "no kind, and no [[body.shape]]");
       names_.push_back(name);
     }
     b.shapes = shapes.rows.data();
@@ -761,7 +765,7 @@ class Builder {
       if (name == links[i].joint || name == part.name + '_' + links[i].joint) return static_cast<int32_t>(i);
       names.emplace_back(links[i].joint);
     }
-    t.bad(RDM_NOT_FOUND, line, "there is no joint %s%s", clean(name).c_str(),
+    t.bad(RDM_ERROR_NOT_FOUND, line, "there is no joint %s%s", clean(name).c_str(),
           nearest_hint(name, names).c_str());
   }
   // A list of all joints' numbers, or { joint = number } over what stands there.
@@ -787,7 +791,7 @@ class Builder {
     player.joints = joints;
     num_joints_ += joints;
     if (num_joints_ > kMostTaskJoints)
-      t.bad(RDM_RANGE, line_of(t.t), "more than %d joints in all", kMostTaskJoints);
+      t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d joints in all", kMostTaskJoints);
     // where the joints begin
     Span* start = p_.start + player.joint;
     for (int32_t i = 0; i < joints; ++i) {
@@ -795,7 +799,7 @@ class Builder {
       double q = std::clamp(0.0, d.links[at].lower, d.links[at].upper);
       if (at < d.home.size()) q = d.home[at];
       if (const toml::node* n = t.find("start"); n && n->is_string() && n->as_string()->get() == "folded") {
-        if (d.folded.empty()) t.bad(RDM_FORMAT, line_of(*n), "start: it has no folded pose");
+        if (d.folded.empty()) t.bad(RDM_ERROR_FORMAT, line_of(*n), "start: it has no folded pose");
         q = d.folded[at];
       }
       if (at < part.start.size()) q = part.start[at];
@@ -810,7 +814,7 @@ class Builder {
     Span* noise = p_.noise + player.joint;
     if (const toml::node* n = t.find("noise"); n && !n->is_table() && !n->is_array()) {
       const double x = t.as_number(*n, "noise");
-      if (!(x >= 0 && x <= 10)) t.bad(RDM_RANGE, line_of(*n), "noise: %g is outside [0, 10]", x);
+      if (!(x >= 0 && x <= 10)) t.bad(RDM_ERROR_RANGE, line_of(*n), "noise: %g is outside [0, 10]", x);
       std::fill_n(noise, joints, Span{-x, x});
     } else {
       read_joints(part, "noise", noise);
@@ -820,12 +824,12 @@ class Builder {
     for (int32_t i = 0; i < joints; ++i) {
       const int32_t j = player.joint + i;
       rdm_joint info;
-      check(t, line_of(t.t), rdm_scene_joint(scene_, j, &info));
+      check(t, line_of(t.t), rdm_scene_joint_at(scene_, j, &info));
       p_.rest[j] = rest[static_cast<size_t>(i)].low;
       const double beyond = 0.1 * (info.upper - info.lower);  // against a stop
       if (!(start[i].low >= info.lower - beyond && start[i].high <= info.upper + beyond))
-        t.bad(RDM_RANGE, line_of(t.t), "start: %g..%g of %s is outside [%g, %g]", start[i].low, start[i].high,
-              info.name, info.lower, info.upper);
+        t.bad(RDM_ERROR_RANGE, line_of(t.t), "start: %g..%g of %s is outside [%g, %g]", start[i].low,
+              start[i].high, info.name, info.lower, info.upper);
       p_.lower[j] = std::min(info.lower, start[i].low);
       p_.upper[j] = std::max(info.upper, start[i].high);
     }
@@ -838,7 +842,7 @@ class Builder {
     player.compensated = t.flag("compensate");
     player.push_action = -1;
     if (const toml::node* n = t.find("push")) {
-      if (!t.flag("free_base")) t.bad(RDM_FORMAT, line_of(*n), "push goes with free_base = true");
+      if (!t.flag("free_base")) t.bad(RDM_ERROR_FORMAT, line_of(*n), "push goes with free_base = true");
       t.numbers("push", player.push, 2);
       player.push_action = p_.num_actions;
       add_actions(t, 6, 0);
@@ -848,7 +852,7 @@ class Builder {
   void add_actions(const Table& t, int32_t count, float hold) {
     p_.num_actions += count;
     if (p_.num_actions > kMostTaskActions)
-      t.bad(RDM_RANGE, line_of(t.t), "more than %d actions in all", kMostTaskActions);
+      t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d actions in all", kMostTaskActions);
     hold_.insert(hold_.end(), static_cast<size_t>(count), hold);
   }
   void controls(const Part& part, bool robot, Player* player) {
@@ -862,8 +866,8 @@ class Builder {
     t.number("speed", &speed);
     t.number("smooth", &player->keep);
     if (!(player->keep >= 0 && player->keep < 1))
-      t.bad(RDM_RANGE, line_of(*t.find("smooth")), "smooth: %g is outside [0, 1)", player->keep);
-    check(t, line_of(t.t), rdm_scene_number(scene_, "frequency", &frequency));
+      t.bad(RDM_ERROR_RANGE, line_of(*t.find("smooth")), "smooth: %g is outside [0, 1)", player->keep);
+    check(t, line_of(t.t), rdm_scene_get_number(scene_, "frequency", &frequency));
     player->command = p_.num_commands;
     player->action = p_.num_actions;
     std::vector<std::string> drive{"*"};
@@ -871,10 +875,10 @@ class Builder {
     for (int32_t i = 0; i < player->joints; ++i) {
       const int32_t j = player->joint + i;
       rdm_joint info;
-      check(t, line_of(t.t), rdm_scene_joint(scene_, j, &info));
+      check(t, line_of(t.t), rdm_scene_joint_at(scene_, j, &info));
       if (info.action < 0) continue;
       if (player->command + info.action >= kMostTaskActions)
-        t.bad(RDM_RANGE, line_of(t.t), "more than %d commands in all", kMostTaskActions);
+        t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d commands in all", kMostTaskActions);
       Command& c = p_.commands[player->command + info.action];
       c.joint = j;
       c.lower = info.lower, c.upper = info.upper;
@@ -905,8 +909,8 @@ class Builder {
       add_actions(t, 1, player->control == Control::kPosition ? static_cast<float>(command_at(c, q)) : 0.0f);
     }
     if (t.find("drive") && player->actions == 0)
-      t.bad(RDM_NOT_FOUND, line_of(*t.find("drive")), "drive: no joint that has a command is named so%s",
-            nearest_hint(drive[0], joint_names_).c_str());
+      t.bad(RDM_ERROR_NOT_FOUND, line_of(*t.find("drive")),
+            "drive: no joint that has a command is named so%s", nearest_hint(drive[0], joint_names_).c_str());
   }
 
   // -- factors --
@@ -950,8 +954,8 @@ class Builder {
             ++j;
           }
         if (!any)
-          t.bad(RDM_NOT_FOUND, line_of(t.need("of")), "of: there is no link %s%s", clean(pattern).c_str(),
-                nearest_hint(pattern, names_).c_str());
+          t.bad(RDM_ERROR_NOT_FOUND, line_of(t.need("of")), "of: there is no link %s%s",
+                clean(pattern).c_str(), nearest_hint(pattern, names_).c_str());
       }
     }
   }
@@ -1004,7 +1008,7 @@ class Builder {
         out.on = k.on;
         return out;
       }
-    t.bad(RDM_NOT_FOUND, line_of(n), "%s: there is no body, robot, link or shape %s%s", key,
+    t.bad(RDM_ERROR_NOT_FOUND, line_of(n), "%s: there is no body, robot, link or shape %s%s", key,
           clean(name).c_str(), nearest_hint(name, names_).c_str());
   }
   static void mirrored(const Part& part, const double in[3], double out[3]) {
@@ -1015,10 +1019,10 @@ class Builder {
     const Part& part = parts_[index];
     const rdm_robot_def& d = part.draft->def;
     const auto on = [&](int32_t link) {
-      out->on = link == RDM_ROOT_LINK ? On::kBase : On::kLink;
-      out->index = link == RDM_ROOT_LINK ? static_cast<int32_t>(index) : first_joint(index) + link;
+      out->on = link == RDM_LINK_ROOT ? On::kBase : On::kLink;
+      out->index = link == RDM_LINK_ROOT ? static_cast<int32_t>(index) : first_joint(index) + link;
     };
-    if (what == "palm" && d.palm_link != RDM_NO_LINK) {  // y into it, z as the fingers point
+    if (what == "palm" && d.palm_link != RDM_LINK_NONE) {  // y into it, z as the fingers point
       on(d.palm_link);
       mirrored(part, d.hold_p, out->p);
       double y[3], z[3];
@@ -1071,7 +1075,7 @@ class Builder {
   // -- terms --
   void listed_joints(const Table& t, Term* out) {
     if (t.find("of") && t.find("joints"))
-      t.bad(RDM_FORMAT, line_of(*t.find("of")), "of and joints are both there");
+      t.bad(RDM_ERROR_FORMAT, line_of(*t.find("of")), "of and joints are both there");
     const char* key = t.find("joints") ? "joints" : "of";
     out->first = p_.num_joints;
     for (const std::string& pattern : texts(t, key, 1, kMostListed)) {
@@ -1087,7 +1091,7 @@ class Builder {
       if (p_.num_joints == before) {
         std::vector<std::string> robots;
         for (const Part& part : parts_) robots.push_back(part.name);
-        t.bad(RDM_NOT_FOUND, line_of(t.need(key)), "%s: there is no %s %s%s", key,
+        t.bad(RDM_ERROR_NOT_FOUND, line_of(t.need(key)), "%s: there is no %s %s%s", key,
               key[0] == 'o' ? "robot" : "joint", clean(pattern).c_str(),
               nearest_hint(pattern, key[0] == 'o' ? robots : joint_names_).c_str());
       }
@@ -1096,7 +1100,7 @@ class Builder {
   }
   void list_joint(const Table& t, int32_t j) {
     rdm_joint info;
-    check(t, line_of(t.t), rdm_scene_joint(scene_, j, &info));
+    check(t, line_of(t.t), rdm_scene_joint_at(scene_, j, &info));
     *take(t, p_.joints, &p_.num_joints, kMostListed, "joints in terms") = {
         info.lower, info.upper, info.effort, 0, j, 0};
   }
@@ -1105,7 +1109,7 @@ class Builder {
     t.numbers(key, out, 3);
     if (!n || !unit) return;
     const double length = std::sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
-    if (!(length > 1e-9 && length < 1e9)) t.bad(RDM_RANGE, line_of(*n), "%s has no direction", key);
+    if (!(length > 1e-9 && length < 1e9)) t.bad(RDM_ERROR_RANGE, line_of(*n), "%s has no direction", key);
     for (int k = 0; k < 3; ++k) out[k] /= length;
   }
   // What a term is about; the keys that say so are added to `known`.
@@ -1127,7 +1131,7 @@ class Builder {
     if (has(kPlane, {"along"})) t.numbers("along", out.axis, 3);
     if (has(kShapesAB, {"a", "b"})) {
       const std::string a = t.as_text(t.need("a"), "a"), b = t.as_text(t.need("b"), "b");
-      check(t, line_of(t.need("a")), rdm_scene_touch(scene_, a.c_str(), b.c_str(), &out.index));
+      check(t, line_of(t.need("a")), rdm_scene_add_touch(scene_, a.c_str(), b.c_str(), &out.index));
     }
     if (has(kJointsOf, {"of", "joints"})) listed_joints(t, &out);
     if (has(kOneJoint, {"joint", "from", "to"})) {
@@ -1143,7 +1147,7 @@ class Builder {
         out.to = 1;
         t.number("from", &out.from);
         t.number("to", &out.to);
-        if (out.from == out.to) t.bad(RDM_RANGE, line_of(n), "from and to are the same");
+        if (out.from == out.to) t.bad(RDM_ERROR_RANGE, line_of(n), "from and to are the same");
       }
     }
     if (has(kActionOf, {"of"})) {
@@ -1152,7 +1156,7 @@ class Builder {
         const int32_t robot = find(t, "of", RDM_SCENE_ROBOT, t.as_text(*n, "of"));
         out.first = p_.players[robot].action;
         out.count = p_.players[robot].actions + (p_.players[robot].push_action >= 0 ? 6 : 0);
-        if (out.count == 0) t.bad(RDM_RANGE, line_of(*n), "of: no action moves it");
+        if (out.count == 0) t.bad(RDM_ERROR_RANGE, line_of(*n), "of: no action moves it");
       }
     }
     if (has(kBox, {"low", "high", "from"})) {
@@ -1161,7 +1165,8 @@ class Builder {
       t.numbers("high", out.high, 3);
       for (int k = 0; k < 3; ++k)
         if (!(out.low[k] < out.high[k]))
-          t.bad(RDM_RANGE, line_of(t.need("low")), "low %g is not below high %g", out.low[k], out.high[k]);
+          t.bad(RDM_ERROR_RANGE, line_of(t.need("low")), "low %g is not below high %g", out.low[k],
+                out.high[k]);
       if (t.find("from")) out.b = place(t, "from");
     }
     if (has(kWindow, {"low", "high", "share"})) {
@@ -1169,7 +1174,7 @@ class Builder {
       t.number("low", out.low);
       t.number("high", out.high);
       if (!(out.low[0] < out.high[0]))
-        t.bad(RDM_RANGE, line_of(t.t), "low %g is not below high %g", out.low[0], out.high[0]);
+        t.bad(RDM_ERROR_RANGE, line_of(t.t), "low %g is not below high %g", out.low[0], out.high[0]);
       out.scaled = t.flag("share");
     }
     if (has(kShare, {"share"})) out.scaled = t.flag("share");
@@ -1208,19 +1213,19 @@ class Builder {
       const toml::node& n = t.need("width");
       out->width = t.as_number(n, "width");
       if (!(out->width > 0 && out->width < 1e9))
-        t.bad(RDM_RANGE, line_of(n), "width: %g is not above 0", out->width);
+        t.bad(RDM_ERROR_RANGE, line_of(n), "width: %g is not above 0", out->width);
     }
     const bool at = out->curve >= Curve::kAbove && out->curve <= Curve::kUnder;
     if (at) out->at = t.as_number(t.need("at"), "at");
     if (!wide && t.find("width"))
-      t.bad(RDM_FORMAT, line_of(*t.find("width")), "width: curve near or bell has one");
+      t.bad(RDM_ERROR_FORMAT, line_of(*t.find("width")), "width: curve near or bell has one");
     if (!at && t.find("at"))
-      t.bad(RDM_FORMAT, line_of(*t.find("at")), "at: curve above, below, over or under has one");
+      t.bad(RDM_ERROR_FORMAT, line_of(*t.find("at")), "at: curve above, below, over or under has one");
     if (!changes) return;
     known->push_back("change");
     if (t.flag("change")) {
       if (p_.num_last == kMostChanges)
-        t.bad(RDM_RANGE, line_of(t.t), "more than %d terms of a change", kMostChanges);
+        t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d terms of a change", kMostChanges);
       out->last = p_.num_last++;
     }
   }
@@ -1232,10 +1237,10 @@ class Builder {
     t.number("below", &out->below);
     if (t.find("above") || t.find("below")) {
       if (!(out->above < out->below))
-        t.bad(RDM_RANGE, line_of(t.t), "above %g is not less than below %g", out->above, out->below);
+        t.bad(RDM_ERROR_RANGE, line_of(t.t), "above %g is not less than below %g", out->above, out->below);
       return;
     }
-    if (needed) t.bad(RDM_FORMAT, line_of(t.t), "no above, and no below");
+    if (needed) t.bad(RDM_ERROR_FORMAT, line_of(t.t), "no above, and no below");
     out->above = 0;
   }
   Term* add_term(const Table& t) { return take(t, p_.terms, &num_terms_, kMostTerms, "terms"); }
@@ -1245,7 +1250,7 @@ class Builder {
       const TermRow& row = term_of(t, true);
       std::vector<const char*> known{"term", "name", "scale", "unit"};
       Term term = subject(t, row, &known);
-      if (row.what == What::kOverlap) t.bad(RDM_FORMAT, line_of(t.t), "overlap is not observed");
+      if (row.what == What::kOverlap) t.bad(RDM_ERROR_FORMAT, line_of(t.t), "overlap is not observed");
       if (!(row.keys & kMany)) curve(t, &term, &known, false);
       t.only(known);
       term.weight = 1;
@@ -1276,7 +1281,8 @@ class Builder {
       term.weight = 1;
       t.number("weight", &term.weight);
       if (!(term.weight > 0 && term.weight <= 1e6))
-        t.bad(RDM_RANGE, line_of(*t.find("weight")), "weight: %g is not above 0 and up to 1e6", term.weight);
+        t.bad(RDM_ERROR_RANGE, line_of(*t.find("weight")), "weight: %g is not above 0 and up to 1e6",
+              term.weight);
       term.magnitude = t.flag("magnitude");
       const std::string name = t.as_text(t.need("name"), "name");
       const auto same = [&](const std::string& other) { return same_name(other, name); };
@@ -1327,9 +1333,9 @@ rdm_result build(void* user, rdm_scene* scene, void* instance) {
   } catch (const Refusal& r) {
     return named(r.code, r.text);
   } catch (const std::bad_alloc&) {
-    return named(RDM_MEMORY, "out of memory");
+    return named(RDM_ERROR_MEMORY, "out of memory");
   } catch (...) {
-    return named(RDM_INTERNAL, "internal error: unexpected exception");
+    return named(RDM_ERROR_INTERNAL, "internal error: unexpected exception");
   }
 }
 
@@ -1391,12 +1397,12 @@ int32_t read_task(const std::string& bytes, const std::string& file) {
   d.release = release;
   int32_t index = -1;
   const std::string name = d.name;
-  if (const rdm_result r = rdm_task_register(&index, &d)) refuse_def(*task, r);
+  if (const rdm_result r = rdm_task_create(&index, &d)) refuse_def(*task, r);
   (void)task.release();  // the library's, until `release`
   struct Registered {
     int32_t index;
     ~Registered() {
-      if (index >= 0) rdm_task_remove(index);
+      if (index >= 0) rdm_task_destroy(index);
     }
   } registered{index};  // removed also where there is no memory for the reason
   if (const rdm_result r = try_world(name.c_str())) {

@@ -27,8 +27,9 @@ void check_cost(const std::string& bytes) {
       ++parts;
     else if (c == '#' && parts == 0)
       key = false;
-    if (parts > kMostParts) refuse(RDM_RANGE, "line %d: a key of more than %zu parts", line, kMostParts);
-    if (values > kMostValues) refuse(RDM_RANGE, "line %d: more than %zu values", line, kMostValues);
+    if (parts > kMostParts)
+      refuse(RDM_ERROR_RANGE, "line %d: a key of more than %zu parts", line, kMostParts);
+    if (values > kMostValues) refuse(RDM_ERROR_RANGE, "line %d: more than %zu values", line, kMostValues);
   }
 }
 
@@ -39,7 +40,7 @@ void parser_fault() {
 }
 
 toml::table parse_toml(const std::string& bytes) {
-  if (bytes.size() > kMostToml) refuse(RDM_RANGE, "more than %zu bytes", kMostToml);
+  if (bytes.size() > kMostToml) refuse(RDM_ERROR_RANGE, "more than %zu bytes", kMostToml);
   check_cost(bytes);
   try {
     toml::parse_result first = toml::parse(std::string_view(bytes));
@@ -48,9 +49,10 @@ toml::table parse_toml(const std::string& bytes) {
     const toml::parse_result again = toml::parse(std::string_view(bytes));
     const toml::parse_error& e = first.error();
     if (again || again.error().source().begin != e.source().begin) throw std::bad_alloc();
-    refuse(RDM_FORMAT, "line %d: %s", line_of(e.source()), clean(std::string(e.description()), 200).c_str());
+    refuse(RDM_ERROR_FORMAT, "line %d: %s", line_of(e.source()),
+           clean(std::string(e.description()), 200).c_str());
   } catch (const ParserFault&) {
-    refuse(RDM_FORMAT, "line %ld: no TOML", std::count(bytes.begin(), bytes.end(), '\n') + 1);
+    refuse(RDM_ERROR_FORMAT, "line %ld: no TOML", std::count(bytes.begin(), bytes.end(), '\n') + 1);
   }
 }
 
@@ -70,14 +72,14 @@ void Table::only(const std::vector<const char*>& known) const {
     std::vector<std::string> names;
     for (const char* k : known) found = found || name == k, names.emplace_back(k);
     if (!found)
-      bad(RDM_FORMAT, line_of(key.source()), "%s is no key%s", clean(name).c_str(),
+      bad(RDM_ERROR_FORMAT, line_of(key.source()), "%s is no key%s", clean(name).c_str(),
           nearest_hint(name, names).c_str());
   }
 }
 
 const toml::node& Table::need(const char* key) const {
   const toml::node* n = find(key);
-  if (!n) bad(RDM_FORMAT, line_of(t), "no %s", key);
+  if (!n) bad(RDM_ERROR_FORMAT, line_of(t), "no %s", key);
   return *n;
 }
 
@@ -92,7 +94,7 @@ double Table::as_number(const toml::node& n, const char* key) const {
       bad(r.code, line_of(n), "%s: %s", key, r.text.c_str());
     }
   }
-  bad(RDM_FORMAT, line_of(n), "%s is no number", key);
+  bad(RDM_ERROR_FORMAT, line_of(n), "%s is no number", key);
 }
 
 int32_t Table::integer(const char* key, int32_t otherwise, int32_t low, int32_t high) const {
@@ -100,7 +102,7 @@ int32_t Table::integer(const char* key, int32_t otherwise, int32_t low, int32_t 
   if (!n) return otherwise;
   const double x = as_number(*n, key);
   if (!(x >= low && x <= high) || x != std::floor(x))
-    bad(RDM_RANGE, line_of(*n), "%s: %g is no whole number of [%d, %d]", key, x, low, high);
+    bad(RDM_ERROR_RANGE, line_of(*n), "%s: %g is no whole number of [%d, %d]", key, x, low, high);
   return static_cast<int32_t>(x);
 }
 
@@ -110,13 +112,13 @@ bool Table::flag(const char* key, bool otherwise) const {
   if (const auto* x = n->as_boolean()) return x->get();
   if (const auto* x = n->as_string(); x && lookup && x->get().size() > 1 && x->get()[0] == '$')
     return as_number(*n, key) != 0;
-  bad(RDM_FORMAT, line_of(*n), "%s is neither true nor false", key);
+  bad(RDM_ERROR_FORMAT, line_of(*n), "%s is neither true nor false", key);
 }
 
 std::vector<double> Table::list(const toml::node& n, const char* key, size_t least, size_t most) const {
   const toml::array* a = n.as_array();
   if (!a || a->size() < least || a->size() > most)
-    bad(RDM_FORMAT, line_of(n),
+    bad(RDM_ERROR_FORMAT, line_of(n),
         least == most ? "%s is no list of %zu numbers" : "%s is no list of %zu to %zu numbers", key, least,
         most);
   std::vector<double> out;
@@ -126,8 +128,8 @@ std::vector<double> Table::list(const toml::node& n, const char* key, size_t lea
 
 std::string Table::as_text(const toml::node& n, const char* key) const {
   const auto* x = n.as_string();
-  if (!x) bad(RDM_FORMAT, line_of(n), "%s is no text", key);
-  if (x->get().find('\0') != std::string::npos) bad(RDM_FORMAT, line_of(n), "%s has a 0 in it", key);
+  if (!x) bad(RDM_ERROR_FORMAT, line_of(n), "%s is no text", key);
+  if (x->get().find('\0') != std::string::npos) bad(RDM_ERROR_FORMAT, line_of(n), "%s has a 0 in it", key);
   if (!lookup || x->get().size() < 2 || x->get()[0] != '$') return x->get();
   try {
     return lookup->text(x->get().substr(1));
@@ -145,7 +147,7 @@ int32_t Table::choice(const char* key, const char* const* names, int32_t count, 
     if (text == names[i]) return i;
     all.emplace_back(names[i]);
   }
-  bad(RDM_FORMAT, line_of(*n), "%s: %s is not known%s", key, clean(text).c_str(),
+  bad(RDM_ERROR_FORMAT, line_of(*n), "%s: %s is not known%s", key, clean(text).c_str(),
       nearest_hint(text, all).c_str());
 }
 
@@ -154,11 +156,11 @@ std::vector<Table> Table::rows(const char* key) const {
   const toml::node* n = find(key);
   if (!n) return all;
   const toml::array* a = n->as_array();
-  if (!a) bad(RDM_FORMAT, line_of(*n), "%s is written as [[%s]]", key, key);
-  if (a->size() > kMostRows) bad(RDM_RANGE, line_of(*n), "more than %zu rows of %s", kMostRows, key);
+  if (!a) bad(RDM_ERROR_FORMAT, line_of(*n), "%s is written as [[%s]]", key, key);
+  if (a->size() > kMostRows) bad(RDM_ERROR_RANGE, line_of(*n), "more than %zu rows of %s", kMostRows, key);
   for (const toml::node& x : *a) {
     const toml::table* row = x.as_table();
-    if (!row) bad(RDM_FORMAT, line_of(x), "%s is written as [[%s]]", key, key);
+    if (!row) bad(RDM_ERROR_FORMAT, line_of(x), "%s is written as [[%s]]", key, key);
     std::string name = what.empty() ? key : what + ": " + key;
     for (const char* naming : {"name", "link", "term"})
       if (const toml::node* given = row->get(naming); given && given->is_string()) {
@@ -175,7 +177,7 @@ Table Table::section(const char* key) const {
   const toml::node* n = find(key);
   const std::string name = what.empty() ? key : what + ": " + key;
   if (!n) return {kEmpty, name, lookup};
-  if (!n->is_table()) bad(RDM_FORMAT, line_of(*n), "%s is written as [%s]", key, key);
+  if (!n->is_table()) bad(RDM_ERROR_FORMAT, line_of(*n), "%s is written as [%s]", key, key);
   return {*n->as_table(), name, lookup};
 }
 
@@ -191,7 +193,8 @@ bool read_color(const Table& t, uint8_t color[4]) {
   if (!n) return false;
   const auto c = t.list(*n, "color", 3, 3);
   for (size_t k = 0; k < 3; ++k) {
-    if (!(c[k] >= 0 && c[k] <= 255)) t.bad(RDM_RANGE, line_of(*n), "color: %g is outside [0, 255]", c[k]);
+    if (!(c[k] >= 0 && c[k] <= 255))
+      t.bad(RDM_ERROR_RANGE, line_of(*n), "color: %g is outside [0, 255]", c[k]);
     color[k] = static_cast<uint8_t>(c[k]);
   }
   color[3] = 255;

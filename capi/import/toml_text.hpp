@@ -86,10 +86,11 @@ struct NamedKind {
   const char* name;
   int32_t kind;
 };
-// RDM_SPHERE ... as files name them; those that a robot's shape may have are the first kRobotShapes.
+// RDM_SHAPE_SPHERE ... as files name them; those that a robot's shape may have are the first kRobotShapes.
 inline constexpr NamedKind kShapes[] = {
-    {"sphere", RDM_SPHERE},       {"capsule", RDM_CAPSULE}, {"box", RDM_BOX},  {"cylinder", RDM_CYLINDER},
-    {"ellipsoid", RDM_ELLIPSOID}, {"plane", RDM_PLANE},     {"hull", RDM_HULL}};
+    {"sphere", RDM_SHAPE_SPHERE},     {"capsule", RDM_SHAPE_CAPSULE},     {"box", RDM_SHAPE_BOX},
+    {"cylinder", RDM_SHAPE_CYLINDER}, {"ellipsoid", RDM_SHAPE_ELLIPSOID}, {"plane", RDM_SHAPE_PLANE},
+    {"hull", RDM_SHAPE_HULL}};
 inline constexpr int32_t kRobotShapes = 5;
 int32_t shape_kind(const Table& t, int32_t count);
 // [3] of "color", each in [0, 255]; false: it is not there.

@@ -31,7 +31,7 @@ struct Reader {
 
   static std::string needed(const Element& e, const char* attribute) {
     const std::string* text = e.get(attribute);
-    if (!text || text->empty()) refuse_at(RDM_FORMAT, e, "no %s", attribute);
+    if (!text || text->empty()) refuse_at(RDM_ERROR_FORMAT, e, "no %s", attribute);
     refuse_xacro(e, attribute, *text);
     return *text;
   }
@@ -45,10 +45,10 @@ struct Reader {
       if (const std::string* xyz = o->get("xyz")) X.p = vector3(*o, "xyz", *xyz);
       if (const std::string* rpy = o->get("rpy")) X.q = from_rpy(vector3(*o, "rpy", *rpy));
       if (const std::string* quat = o->get("quat_xyzw")) {
-        if (o->find("rpy")) refuse_at(RDM_FORMAT, *o, "rpy and quat_xyzw");
+        if (o->find("rpy")) refuse_at(RDM_ERROR_FORMAT, *o, "rpy and quat_xyzw");
         const auto n = numbers(*o, "quat_xyzw", *quat, 4, 4);
         if (n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3] < 1e-18)
-          refuse_at(RDM_ARGUMENT, *o, "quat_xyzw: its length is 0");
+          refuse_at(RDM_ERROR_ARGUMENT, *o, "quat_xyzw: its length is 0");
         X.q = normalized({n[0], n[1], n[2], n[3]});
       }
     }
@@ -57,16 +57,16 @@ struct Reader {
 
   void find_links() {
     for (const Element* e : robot.all("link")) {
-      if (!links.emplace(needed(*e, "name"), e).second) refuse_at(RDM_ARGUMENT, *e, "it stands twice");
+      if (!links.emplace(needed(*e, "name"), e).second) refuse_at(RDM_ERROR_ARGUMENT, *e, "it stands twice");
     }
-    if (links.empty()) refuse_at(RDM_FORMAT, robot, "no link");
+    if (links.empty()) refuse_at(RDM_ERROR_FORMAT, robot, "no link");
   }
   const Element& link(const Element& joint, const char* which, const std::string& name) const {
     const auto found = links.find(name);
     if (found != links.end()) return *found->second;
     std::vector<std::string> names;
     for (const auto& [known, e] : links) names.push_back(known);
-    refuse_at(RDM_NOT_FOUND, joint, "%s %s: there is no such link%s", which, clean(name).c_str(),
+    refuse_at(RDM_ERROR_NOT_FOUND, joint, "%s %s: there is no such link%s", which, clean(name).c_str(),
               nearest_hint(name, names).c_str());
   }
 
@@ -76,15 +76,15 @@ struct Reader {
       Joint j{e, needed(*e, "name"), needed(*e, "type"), "", ""};
       for (const char* which : {"parent", "child"}) {
         const Element* end = e->child(which);
-        if (!end) refuse_at(RDM_FORMAT, *e, "no %s", which);
+        if (!end) refuse_at(RDM_ERROR_FORMAT, *e, "no %s", which);
         const std::string name = needed(*end, "link");
         link(*e, which, name);
         (which[0] == 'p' ? j.parent : j.child) = name;
       }
-      if (!names.emplace(j.name, e).second) refuse_at(RDM_ARGUMENT, *e, "it stands twice");
+      if (!names.emplace(j.name, e).second) refuse_at(RDM_ERROR_ARGUMENT, *e, "it stands twice");
       const auto [other, first] = above.emplace(j.child, joints.size());
       if (!first)
-        refuse_at(RDM_ARGUMENT, *e, "link %s has two parents: joint %s of line %d too",
+        refuse_at(RDM_ERROR_ARGUMENT, *e, "link %s has two parents: joint %s of line %d too",
                   clean(j.child).c_str(), clean(joints[other->second].name).c_str(),
                   joints[other->second].element->line);
       below[j.parent].push_back(joints.size());
@@ -97,19 +97,20 @@ struct Reader {
       if (links.count(options.root)) return options.root;
       std::vector<std::string> names;
       for (const auto& [known, e] : links) names.push_back(known);
-      refuse(RDM_NOT_FOUND, "options.root: there is no link %s%s", clean(options.root).c_str(),
+      refuse(RDM_ERROR_NOT_FOUND, "options.root: there is no link %s%s", clean(options.root).c_str(),
              nearest_hint(options.root, names).c_str());
     }
     const Element* root = nullptr;
     for (const auto& child : robot.children)
       if (child->tag == "link" && !above.count(child->find("name")->value)) {
         if (root)
-          refuse_at(RDM_ARGUMENT, *child,
+          refuse_at(RDM_ERROR_ARGUMENT, *child,
                     "no joint carries it, nor %s of line %d: options.root says which is taken",
                     where(*root).substr(where(*root).find(": ") + 2).c_str(), root->line);
         root = child.get();
       }
-    if (!root) refuse_at(RDM_ARGUMENT, *joints[0].element, "the joints form a loop: every link has a parent");
+    if (!root)
+      refuse_at(RDM_ERROR_ARGUMENT, *joints[0].element, "the joints form a loop: every link has a parent");
     return root->find("name")->value;
   }
 
@@ -120,8 +121,8 @@ struct Reader {
     if (!inertial) return out_mass;
     const std::string what = "link " + clean(l.find("name")->value);
     const Element *mass = inertial->child("mass"), *inertia = inertial->child("inertia");
-    if (!mass) refuse_at(RDM_FORMAT, *inertial, "%s has no mass", what.c_str());
-    if (!inertia) refuse_at(RDM_FORMAT, *inertial, "%s has no inertia", what.c_str());
+    if (!mass) refuse_at(RDM_ERROR_FORMAT, *inertial, "%s has no mass", what.c_str());
+    if (!inertia) refuse_at(RDM_ERROR_FORMAT, *inertial, "%s has no inertia", what.c_str());
     const Pose X = origin_of(*inertial);
     const double m = number(*mass, "value", needed(*mass, "value"));
     double i[6];
@@ -130,7 +131,7 @@ struct Reader {
     const char* const mirrored[3] = {"iyx", "izx", "izy"};
     for (int k = 0; k < 3; ++k)
       if (given(*inertia, mirrored[k], i[3 + k]) != i[3 + k])
-        refuse_at(RDM_FORMAT, *inertia, "%s: %s is not %s", what.c_str(), mirrored[k], keys[3 + k]);
+        refuse_at(RDM_ERROR_FORMAT, *inertia, "%s: %s is not %s", what.c_str(), mirrored[k], keys[3 + k]);
     const M3 moment{{{i[0], i[3], i[4]}, {i[3], i[1], i[5]}, {i[4], i[5], i[2]}}};
     const bool point = std::all_of(i, i + 6, [](double x) { return x == 0; });
     if (m == 0 && (point || !moves)) {
@@ -140,7 +141,7 @@ struct Reader {
                 point ? "" : "; its moments are part of what carries it");
       return X * Mass{0, {}, one.moment};
     }
-    if (!(m > 0)) refuse_at(RDM_RANGE, *mass, "%s: the mass %g is not above 0", what.c_str(), m);
+    if (!(m > 0)) refuse_at(RDM_ERROR_RANGE, *mass, "%s: the mass %g is not above 0", what.c_str(), m);
     Mass read{m, {}, moment};
     check_mass(*inertia, what, options.mend_inertia, &read, out);
     return X * read;
@@ -198,13 +199,13 @@ struct Reader {
       if (const std::string* name = c->get("name")) s.name = *name;
       const Pose X = origin_of(*c);
       const Element* geometry = c->child("geometry");
-      if (!geometry) refuse_at(RDM_FORMAT, *c, "link %s: no geometry", clean(body->name).c_str());
+      if (!geometry) refuse_at(RDM_ERROR_FORMAT, *c, "link %s: no geometry", clean(body->name).c_str());
       const Element* g = nullptr;
       for (const char* kind : {"box", "cylinder", "sphere", "capsule", "mesh"})
         if (!g) g = geometry->child(kind);
       if (!g)
-        refuse_at(RDM_UNSUPPORTED, *geometry, "link %s: neither box, cylinder, sphere, capsule nor mesh",
-                  clean(body->name).c_str());
+        refuse_at(RDM_ERROR_UNSUPPORTED, *geometry,
+                  "link %s: neither box, cylinder, sphere, capsule nor mesh", clean(body->name).c_str());
       if (is_point(*g)) {
         out->note(RDM_NOTE_DROPPED, g->line, "link %s: a %s of no size", clean(body->name).c_str(),
                   g->tag.c_str());
@@ -214,15 +215,16 @@ struct Reader {
       const auto size = [&](const char* key) {
         const double x = number(*g, key, needed(*g, key));
         if (!(x > 0))
-          refuse_at(RDM_RANGE, *g, "link %s: %s %g is not above 0", clean(body->name).c_str(), key, x);
+          refuse_at(RDM_ERROR_RANGE, *g, "link %s: %s %g is not above 0", clean(body->name).c_str(), key, x);
         return x;
       };
       if (g->tag == "box") {
         const V3 sides = vector3(*g, "size", needed(*g, "size"));
         for (int k = 0; k < 3; ++k)
           if (!(sides[k] > 0))
-            refuse_at(RDM_RANGE, *g, "link %s: size %g is not above 0", clean(body->name).c_str(), sides[k]);
-        p = {RDM_BOX, 0.5 * sides, X};
+            refuse_at(RDM_ERROR_RANGE, *g, "link %s: size %g is not above 0", clean(body->name).c_str(),
+                      sides[k]);
+        p = {RDM_SHAPE_BOX, 0.5 * sides, X};
       } else if (g->tag == "mesh") {
         const std::string file = needed(*g, "filename");
         V3 scale{1, 1, 1};
@@ -235,13 +237,15 @@ struct Reader {
         if (weighs) weighed.push_back(X * mass_of(Mesh{points, mesh->faces}, p));
         p.X = X * p.X;
         out->note(RDM_NOTE_CHANGED, g->line, "mesh %s is %s", clean(file).c_str(),
-                  p.kind == RDM_BOX       ? "a box"
-                  : p.kind == RDM_CAPSULE ? "a capsule"
-                                          : "a sphere");
+                  p.kind == RDM_SHAPE_BOX       ? "a box"
+                  : p.kind == RDM_SHAPE_CAPSULE ? "a capsule"
+                                                : "a sphere");
       } else {
-        p = {RDM_SPHERE, {size("radius"), 0, 0}, X};
+        p = {RDM_SHAPE_SPHERE, {size("radius"), 0, 0}, X};
         if (g->tag != "sphere")
-          p = {g->tag == "cylinder" ? RDM_CYLINDER : RDM_CAPSULE, {p.size.x, size("length") / 2, 0}, X};
+          p = {g->tag == "cylinder" ? RDM_SHAPE_CYLINDER : RDM_SHAPE_CAPSULE,
+               {p.size.x, size("length") / 2, 0},
+               X};
       }
       if (weighs && g->tag != "mesh") weighed.push_back(solid(p));
       body->shapes.push_back(s);
@@ -256,12 +260,12 @@ struct Reader {
     o.axis = {1, 0, 0};
     if (const Element* axis = j.element->child("axis")) {
       o.axis = vector3(*axis, "xyz", needed(*axis, "xyz"));
-      if (norm(o.axis) < 1e-6) refuse_at(RDM_ARGUMENT, *j.element, "its axis is 0");
+      if (norm(o.axis) < 1e-6) refuse_at(RDM_ERROR_ARGUMENT, *j.element, "its axis is 0");
       o.axis = unit(o.axis);
     }
     const Element* limit = j.element->child("limit");
     const bool continuous = j.type == "continuous";
-    if (!limit && !continuous) refuse_at(RDM_FORMAT, *j.element, "no limit");
+    if (!limit && !continuous) refuse_at(RDM_ERROR_FORMAT, *j.element, "no limit");
     if (continuous) {
       o.lower = -2 * M_PI, o.upper = 2 * M_PI;
       out->note(RDM_NOTE_CHANGED, j.element->line, "joint %s turns without end: its range is +-2 pi",
@@ -279,8 +283,8 @@ struct Reader {
       o.lower = end("lower");
       o.upper = end("upper");
       if (!(o.lower < o.upper))
-        refuse_at(RDM_RANGE, *limit, "joint %s: the range [%g, %g] is empty", clean(j.name).c_str(), o.lower,
-                  o.upper);
+        refuse_at(RDM_ERROR_RANGE, *limit, "joint %s: the range [%g, %g] is empty", clean(j.name).c_str(),
+                  o.lower, o.upper);
     }
     if (limit) {
       const auto most = [&](const char* key, double otherwise) {  // infinite: not said
@@ -305,7 +309,7 @@ struct Reader {
         o.damping = numbers(*dynamics, "damping", *t, 1, 1, kMostDamping)[0];
       o.friction = given(*dynamics, "friction", 0);
       if (o.damping < 0 || o.friction < 0)
-        refuse_at(RDM_RANGE, *dynamics, "joint %s: damping %g or friction %g is below 0",
+        refuse_at(RDM_ERROR_RANGE, *dynamics, "joint %s: damping %g or friction %g is below 0",
                   clean(j.name).c_str(), o.damping, o.friction);
     }
     if (const Element* mimic = j.element->child("mimic"))
@@ -316,7 +320,7 @@ struct Reader {
 
   // The link and what hangs on it, in the order of the joints.
   void add(const std::string& name, int parent, const Joint* joint, int depth) {
-    if (depth > 200) refuse_at(RDM_RANGE, *joint->element, "more than 200 links in a chain");
+    if (depth > 200) refuse_at(RDM_ERROR_RANGE, *joint->element, "more than 200 links in a chain");
     const Element& l = *links.at(name);
     BodyIn body;
     body.name = name;
@@ -330,7 +334,7 @@ struct Reader {
         out->note(RDM_NOTE_DROPPED, joint->element->line, "joint %s: floating, taken as fixed",
                   clean(joint->name).c_str());
       } else if (joint->type != "fixed") {
-        refuse_at(RDM_UNSUPPORTED, *joint->element,
+        refuse_at(RDM_ERROR_UNSUPPORTED, *joint->element,
                   "type %s: neither revolute, continuous, prismatic nor fixed", clean(joint->type).c_str());
       } else {  // said of fixed joints without a meaning
         for (const char* tag : {"axis", "limit", "dynamics"})
@@ -339,7 +343,7 @@ struct Reader {
     }
     note_more_inertials(l);
     const double density = density_of(l);
-    if (density < 0) refuse_at(RDM_RANGE, l, "density: %g is below 0", density);
+    if (density < 0) refuse_at(RDM_ERROR_RANGE, l, "density: %g is below 0", density);
     if (density == 0) body.mass = mass_of(l, !body.joints.empty());
     add_shapes(l, &body, density > 0);
     if (density > 0) weigh(l, density, &body);
@@ -365,7 +369,7 @@ struct Reader {
     if (options.root.empty() && model.bodies.size() != links.size()) {
       for (const auto& [name, e] : links)
         if (!taken.count(name))
-          refuse_at(RDM_ARGUMENT, *e, "it hangs in a loop of joints, not on the root %s",
+          refuse_at(RDM_ERROR_ARGUMENT, *e, "it hangs in a loop of joints, not on the root %s",
                     clean(root).c_str());
     }
     if (!options.root.empty())
@@ -381,7 +385,7 @@ struct Reader {
 
 void read_urdf(const std::string& bytes, const Options& options, Draft* out) {
   const auto robot = parse_xml(bytes, options, false, out);
-  if (robot->tag != "robot") refuse_at(RDM_FORMAT, *robot, "no URDF: the first element is not robot");
+  if (robot->tag != "robot") refuse_at(RDM_ERROR_FORMAT, *robot, "no URDF: the first element is not robot");
   check_urdf(*robot);
   Reader reader(*robot, options, out);
   reader.read();

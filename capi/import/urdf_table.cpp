@@ -108,13 +108,13 @@ bool is_foreign(const std::string& name) {
 
 void check_child(const Element& e, const Row& row, const Element& c) {
   for (const Refused& r : kRefused)
-    if (words(r.elements).count(c.tag)) refuse_at(RDM_UNSUPPORTED, c, "%s", r.why);
+    if (words(r.elements).count(c.tag)) refuse_at(RDM_ERROR_UNSUPPORTED, c, "%s", r.why);
   if (row.read.count(c.tag) || row.dropped.count(c.tag) || is_foreign(c.tag) || is_identity(c)) return;
   for (const auto& [other, others] : rows())
     if (others.read.count(c.tag))
-      refuse_at(RDM_FORMAT, c, "it stands in %s, not in %s", other.c_str(), e.tag.c_str());
+      refuse_at(RDM_ERROR_FORMAT, c, "it stands in %s, not in %s", other.c_str(), e.tag.c_str());
   if (e.tag != "geometry")  // its reader says what shapes there are
-    refuse_at(RDM_UNSUPPORTED, c, "no element that is known in %s, and it could change the robot%s",
+    refuse_at(RDM_ERROR_UNSUPPORTED, c, "no element that is known in %s, and it could change the robot%s",
               e.tag.c_str(), nearest(c.tag, row.read).c_str());
 }
 
@@ -129,8 +129,9 @@ void check_element(const Element& e, const Row& row) {
   for (const Attribute& a : e.attributes) {
     if (row.attributes.count(a.name) || row.unused.count(a.name) || is_foreign(a.name) || is_zero(a.value))
       continue;
-    refuse_at(RDM_UNSUPPORTED, e, "%s is no attribute that is known here, and it could change the robot%s",
-              clean(a.name).c_str(), nearest(a.name, row.attributes).c_str());
+    refuse_at(RDM_ERROR_UNSUPPORTED, e,
+              "%s is no attribute that is known here, and it could change the robot%s", clean(a.name).c_str(),
+              nearest(a.name, row.attributes).c_str());
   }
   std::map<std::string, const Element*> found;
   for (const auto& child : e.children) {
@@ -138,7 +139,7 @@ void check_element(const Element& e, const Row& row) {
     if (row.once.count(child->tag)) {
       const auto [first, is_new] = found.emplace(child->tag, child.get());
       if (!is_new && !same(*first->second, *child))
-        refuse_at(RDM_FORMAT, *child, "a second one, after that of line %d: which counts?",
+        refuse_at(RDM_ERROR_FORMAT, *child, "a second one, after that of line %d: which counts?",
                   first->second->line);
     }
     const auto known = rows().find(child->tag);
@@ -154,7 +155,7 @@ void check_mujoco(const Element& robot) {
       for (const Attribute& a : c->attributes)
         if (words("inertiafromgeom inertiagrouprange settotalmass boundmass boundinertia").count(a.name) &&
             !words("auto false 0 -1").count(a.value))
-          refuse_at(RDM_UNSUPPORTED, *c, "%s=\"%s\" would change masses, and is not read in URDF",
+          refuse_at(RDM_ERROR_UNSUPPORTED, *c, "%s=\"%s\" would change masses, and is not read in URDF",
                     clean(a.name).c_str(), clean(a.value).c_str());
     }
 }

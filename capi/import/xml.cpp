@@ -58,7 +58,7 @@ void refuse_doctype(const std::string& bytes, const std::string& file) {
     const auto line = 1 + std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n');
     for (const char* word : {"[", "SYSTEM", "PUBLIC"})
       if (text.find(word) != std::string::npos)
-        refuse(RDM_UNSUPPORTED,
+        refuse(RDM_ERROR_UNSUPPORTED,
                "line %ld%s: DOCTYPE: entities and files of declarations are not read: write the values "
                "themselves",
                static_cast<long>(line), file.empty() ? "" : (" of " + clean(file)).c_str());
@@ -137,7 +137,7 @@ class Scan {
     }
     at_ = std::min(at_ + 1, bytes_.size());
     if (own > kMostAttributes)
-      refuse(RDM_RANGE, "line %d%s: more than %zu attributes of one element", line_at(bytes_, begin),
+      refuse(RDM_ERROR_RANGE, "line %d%s: more than %zu attributes of one element", line_at(bytes_, begin),
              of_.c_str(), kMostAttributes);
     attributes += own;
   }
@@ -162,7 +162,7 @@ struct Parser {
     for (const auto* a = x.FirstAttribute(); a; a = a->Next())
       e->attributes.push_back({a->Name(), a->Value(), false});
     if (e->tag.rfind("xacro:", 0) == 0)
-      refuse_at(RDM_UNSUPPORTED, *e, "xacro is not read: expand the file with the xacro tool first");
+      refuse_at(RDM_ERROR_UNSUPPORTED, *e, "xacro is not read: expand the file with the xacro tool first");
     for (const auto* c = x.FirstChildElement(); c; c = c->NextSiblingElement()) {
       if (includes && std::strcmp(c->Name(), "include") == 0)
         include(*c, file, depth, e.get());
@@ -176,10 +176,11 @@ struct Parser {
     const char* name = x.Attribute("file");
     const std::string at =
         format("line %d%s%s: include", x.GetLineNum(), file.empty() ? "" : " of ", file.c_str());
-    if (!name || !*name) refuse(RDM_FORMAT, "%s: no file", at.c_str());
+    if (!name || !*name) refuse(RDM_ERROR_FORMAT, "%s: no file", at.c_str());
     if (!options.has_folder)
-      refuse(RDM_NOT_FOUND, "%s: %s: a text alone has no folder to look in", at.c_str(), clean(name).c_str());
-    if (depth >= kMostIncludes) refuse(RDM_RANGE, "%s: more than %d deep", at.c_str(), kMostIncludes);
+      refuse(RDM_ERROR_NOT_FOUND, "%s: %s: a text alone has no folder to look in", at.c_str(),
+             clean(name).c_str());
+    if (depth >= kMostIncludes) refuse(RDM_ERROR_RANGE, "%s: more than %d deep", at.c_str(), kMostIncludes);
     std::string bytes;
     try {
       out->budget.spend(Cost::kFiles, 1);
@@ -203,9 +204,10 @@ struct Parser {
     tinyxml2::XMLDocument document;
     const auto result = document.Parse(bytes.data(), bytes.size());
     if (result != tinyxml2::XML_SUCCESS)
-      refuse(RDM_FORMAT, "line %d%s: no XML: %s", document.ErrorLineNum(), of.c_str(), reason_of(result));
+      refuse(RDM_ERROR_FORMAT, "line %d%s: no XML: %s", document.ErrorLineNum(), of.c_str(),
+             reason_of(result));
     const auto* root = document.RootElement();
-    if (!root) refuse(RDM_FORMAT, "line 1%s: no element", of.c_str());
+    if (!root) refuse(RDM_ERROR_FORMAT, "line 1%s: no element", of.c_str());
     if (scan.behind != std::string::npos)
       out->note(RDM_NOTE_DROPPED, line_at(bytes, scan.behind), "what stands behind the end of <%s>%s%s%s",
                 clean(root->Name()).c_str(), file.empty() ? "" : " (in ", file.c_str(),
@@ -337,16 +339,17 @@ double next_number(const char** at, const char* end) {
 
 void refuse_xacro(const Element& e, const char* attribute, const std::string& text) {
   if (text.find("${") != std::string::npos || text.find("$(") != std::string::npos)
-    refuse_at(RDM_UNSUPPORTED, e, "%s: %s: xacro is not read: expand the file with the xacro tool first",
-              attribute, clean(text).c_str());
+    refuse_at(RDM_ERROR_UNSUPPORTED, e,
+              "%s: %s: xacro is not read: expand the file with the xacro tool first", attribute,
+              clean(text).c_str());
 }
 
 std::vector<double> numbers(const Element& e, const char* attribute, const std::string& text, size_t least,
                             size_t most, double largest) {
   std::vector<double> out;
   if (text.size() > kMostText + kEach * most)
-    refuse_at(RDM_RANGE, e, "%s: %zu bytes are too long a text for %zu number%s", attribute, text.size(),
-              most, most == 1 ? "" : "s");
+    refuse_at(RDM_ERROR_RANGE, e, "%s: %zu bytes are too long a text for %zu number%s", attribute,
+              text.size(), most, most == 1 ? "" : "s");
   const char *c = text.data(), *end = c + text.size();
   while (true) {
     while (c != end && is_space(*c)) ++c;
@@ -354,11 +357,11 @@ std::vector<double> numbers(const Element& e, const char* attribute, const std::
     const double value = next_number(&c, end);
     if (std::isnan(value)) {
       refuse_xacro(e, attribute, text);
-      refuse_at(RDM_FORMAT, e, "%s: %s is no number", attribute, clean(text).c_str());
+      refuse_at(RDM_ERROR_FORMAT, e, "%s: %s is no number", attribute, clean(text).c_str());
     }
     if (!(std::abs(value) <= largest)) {
       const int power = static_cast<int>(std::lround(std::log10(largest)));
-      refuse_at(RDM_RANGE, e, "%s: %s is outside [-1e%d, 1e%d]", attribute, clean(text).c_str(), power,
+      refuse_at(RDM_ERROR_RANGE, e, "%s: %s is outside [-1e%d, 1e%d]", attribute, clean(text).c_str(), power,
                 power);
     }
     out.push_back(value);
@@ -366,7 +369,7 @@ std::vector<double> numbers(const Element& e, const char* attribute, const std::
   }
   if (out.size() < least || out.size() > most) {
     const std::string range = least == most ? format("%zu", least) : format("%zu to %zu", least, most);
-    refuse_at(RDM_FORMAT, e, "%s: %s is not %s number%s", attribute, clean(text).c_str(), range.c_str(),
+    refuse_at(RDM_ERROR_FORMAT, e, "%s: %s is not %s number%s", attribute, clean(text).c_str(), range.c_str(),
               most == 1 ? "" : "s");
   }
   return out;

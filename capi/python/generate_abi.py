@@ -313,7 +313,7 @@ class Function(NamedTuple):
 def headers() -> str:
     """The text of the public headers of libredman, as redman.h includes them: the stable ones first."""
     umbrella = (INCLUDE / "redman.h").read_text(encoding="utf-8")
-    names = re.findall(r"^#include <redman/(\w+\.h)>", umbrella, re.M)
+    names = [n for n in re.findall(r"^#include <redman/(\w+\.h)>", umbrella, re.M) if n != "deprecated.h"]
     return "\n".join((INCLUDE / name).read_text(encoding="utf-8") for name in names)
 
 
@@ -336,6 +336,8 @@ def generate(text: str) -> str:
             raise SystemExit(f"headers: an enum without a name: {d.body[:60]!r}")
         rows = members(d)
         prefix = prefix_of([name for name, _, _ in rows])
+        if d.name == "rdm_result_code":  # RDM_OK is none of RDM_ERROR_*
+            rows = [(name.replace("RDM_ERROR_", prefix), value, doc) for name, value, doc in rows]
         flags = len(rows) > 1 and all(value > 0 and value & (value - 1) == 0 for _, value, _ in rows)
         about = text_of(match[0].strip()) if (match := re.match(r"\s*" + COMMENT, d.body, re.S)) else d.doc
         out.append(f"class {camel(d.name)}(enum.{'IntFlag' if flags else 'IntEnum'}):\n"

@@ -1,7 +1,26 @@
-# From the stable headers: a C file for abidw to describe (-v mode=functions), which defines each stable function and, for
-# each constant, an array as long as 1000 + its value; or what abidiff is to let pass (-v mode=allowed): structs that
+# From the stable headers and deprecated.h, whose names old binaries have: a C file for abidw to describe (-v mode=functions),
+# which defines each stable function and, for each constant, an array as long as 1000 + its value; or what abidiff is to let pass (-v mode=allowed): structs that
 # begin with struct_size may grow at their ends.
-BEGIN { if (mode == "functions") print "#include <redman/redman.h>\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"" }
+BEGIN { if (mode == "functions") print "#define RDM_NO_DEPRECATED\n#include <redman/redman.h>\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"" }
+FNR == 1 { old = FILENAME ~ /deprecated/; ended = 0 }
+old && /^#if defined\(RDM_EXPERIMENTAL\)/ { ended = 1 }
+ended { next }
+old && / = RDM_/ {  # RDM_BOX RDM_DEPRECATED("RDM_SHAPE_BOX") = RDM_SHAPE_BOX,
+  value = $NF
+  sub(/,/, "", value)
+  if (mode == "functions") print "const char " $1 "_plus_1000[1000 + " value "] = \"\";"
+  next
+}
+old && /^static inline/ { statement = " "; next }
+old && statement != "" {
+  statement = statement " " $0
+  if (/\{/) {
+    if (mode == "functions") print statement " __builtin_trap(); }"
+    statement = ""
+  }
+  next
+}
+old { next }
 /^typedef struct rdm_[a-z_]+ \{/ { struct = $3; next }
 struct != "" && /struct_size;/ { sized = sized "|" struct; struct = "" }
 /^}/ { struct = "" }

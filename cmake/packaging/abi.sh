@@ -9,7 +9,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 number() { sed -n "s/^#define $2 \([0-9]*\).*/\1/p" "$1/redman/base.h"; }
-stable() { grep -l '^/\* redman/.* Stable since' "$1"/redman/*.h; }
+stable() { grep -l '^/\* redman/.* Stable since' "$1"/redman/*.h; ls "$1"/redman/deprecated.h 2> /dev/null; }
 
 # library INCLUDE CC OUT
 library() {

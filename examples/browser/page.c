@@ -127,7 +127,7 @@ EXPORT int page_open(const char* task, double seed, const char* settings) {
   pool = made;
   spec = (rdm_spec){.struct_size = sizeof spec};
   rows = (rdm_buffers){.struct_size = sizeof rows};
-  if (rdm_pool_get_spec(pool, &spec) || rdm_pool_buffers(pool, &rows) || rdm_pool_reset(pool, NULL, NULL))
+  if (rdm_pool_get_spec(pool, &spec) || rdm_pool_get_buffers(pool, &rows) || rdm_pool_reset(pool, NULL, NULL))
     return -1;
   free(poses);
   free(held);
@@ -195,7 +195,7 @@ EXPORT const char* page_scene(void) {
 /* The policy that acts as kPolicy from now on. */
 EXPORT int page_policy(const void* bytes, int size) {
   rdm_policy* read = NULL;
-  if (rdm_policy_load(&read, bytes, (size_t)size)) return -1;
+  if (rdm_policy_read(&read, bytes, (size_t)size)) return -1;
   if (rdm_policy_check(read, &spec)) {
     rdm_policy_destroy(read);
     return -1;
@@ -312,10 +312,10 @@ EXPORT const char* page_epoch(void) {
 /* The policy as it is now: its size in bytes, behind page_learned. */
 EXPORT int page_freeze(void) {
   size_t size = 0;
-  if (rdm_agent_policy(agent, NULL, 0, &size)) return -1;
+  if (rdm_agent_write_policy(agent, NULL, 0, &size)) return -1;
   free(learned);
   learned = malloc(size);
-  if (!learned || rdm_agent_policy(agent, learned, size, &size)) return -1;
+  if (!learned || rdm_agent_write_policy(agent, learned, size, &size)) return -1;
   return (int)size;
 }
 EXPORT const void* page_learned(void) {
@@ -344,14 +344,14 @@ EXPORT const char* page_hash(const char* task, const char* engine) {
   rdm_spec s = {.struct_size = sizeof s};
   rdm_buffers b = {.struct_size = sizeof b};
   uint64_t hash = kHashSeed, state = 0;
-  int good = p && !rdm_pool_get_spec(p, &s) && !rdm_pool_buffers(p, &b) && !rdm_pool_reset(p, NULL, NULL);
+  int good = p && !rdm_pool_get_spec(p, &s) && !rdm_pool_get_buffers(p, &b) && !rdm_pool_reset(p, NULL, NULL);
   for (int step = 0; good && step < 200; ++step) {
     good = !rdm_pool_baseline(p, RDM_BASELINE_RANDOM) && !rdm_pool_step(p);
     hash = join(b.obs, sizeof(float) * kWorlds * (size_t)s.obs_dim, hash);
     hash = join(b.reward, sizeof(float) * kWorlds, hash);
     hash = join(b.cost, sizeof(float) * kWorlds * (size_t)s.cost_dim, hash);
   }
-  good = good && !rdm_pool_hash(p, -1, &state);
+  good = good && !rdm_pool_get_hash(p, -1, &state);
   rdm_pool_destroy(p);
   return good ? put_hash(join(&state, sizeof state, hash)) : NULL;
 }
@@ -361,10 +361,11 @@ EXPORT const char* page_learner_hash(const char* algo, const char* task) {
   size_t size = 0;
   int good = page_learn(task, algo, 16, 7, 11, "hidden=32,16\nhorizon=24\npasses=2\nminibatches=2") == 0;
   for (int i = 0; good && i < 3; ++i) good = rdm_agent_rollout(agent, class_pool, NULL) == RDM_OK;
-  if (!good || rdm_agent_save(agent, NULL, 0, &size)) return NULL;
+  if (!good || rdm_agent_write_state(agent, NULL, 0, &size)) return NULL;
   void* bytes = malloc(size);
-  const char* hash =
-      bytes && !rdm_agent_save(agent, bytes, size, &size) ? put_hash(join(bytes, size, kHashSeed)) : NULL;
+  const char* hash = bytes && !rdm_agent_write_state(agent, bytes, size, &size)
+                         ? put_hash(join(bytes, size, kHashSeed))
+                         : NULL;
   free(bytes);
   return hash;
 }

@@ -45,7 +45,7 @@ static outcome play(const rdm_policy* policy) {
   void* scratch = NULL;
   size_t size = 0;
   check(rdm_pool_get_spec(pool, &spec));
-  check(rdm_pool_buffers(pool, &rows));
+  check(rdm_pool_get_buffers(pool, &rows));
   if (policy) {
     check(rdm_policy_check(policy, &spec));
     check(rdm_policy_get_info(policy, &info));
@@ -60,7 +60,7 @@ static outcome play(const rdm_policy* policy) {
     o.sum += rows.reward[0];
     o.cost += rows.cost[0];
   }
-  check(rdm_pool_hash(pool, -1, &o.hash));
+  check(rdm_pool_get_hash(pool, -1, &o.hash));
   free(scratch);
   rdm_pool_destroy(pool);
   return o;
@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
   }
   outcome o = play(NULL);
   printf("hold cost %.0f hash %016llx\n", o.cost, (unsigned long long)o.hash);
-  check(rdm_policy_load_file(&policy, argv[1]));
+  check(rdm_policy_read_file(&policy, argv[1]));
   o = play(policy);
   printf("policy return %.4f cost %.0f hash %016llx\n", o.sum, o.cost, (unsigned long long)o.hash);
   rdm_policy_destroy(policy);

@@ -23,12 +23,12 @@ static unsafe class Hello {
   [DllImport("redman")] static extern int rdm_pool_create(out IntPtr pool, PoolConfig* c);
   [DllImport("redman")] static extern void rdm_pool_destroy(IntPtr p);
   [DllImport("redman")] static extern int rdm_pool_get_spec(IntPtr p, ref Spec io);
-  [DllImport("redman")] static extern int rdm_pool_buffers(IntPtr p, ref Buffers io);
+  [DllImport("redman")] static extern int rdm_pool_get_buffers(IntPtr p, ref Buffers io);
   [DllImport("redman")] static extern int rdm_pool_reset(IntPtr p, ulong[] seeds, byte[] mask);
   [DllImport("redman")] static extern int rdm_pool_step(IntPtr p);
   [DllImport("redman")] static extern int rdm_pool_baseline(IntPtr p, int kind);
-  [DllImport("redman")] static extern int rdm_pool_hash(IntPtr p, int env, out ulong hash);
-  [DllImport("redman")] static extern int rdm_policy_load_file(out IntPtr policy, string path);
+  [DllImport("redman")] static extern int rdm_pool_get_hash(IntPtr p, int env, out ulong hash);
+  [DllImport("redman")] static extern int rdm_policy_read_file(out IntPtr policy, string path);
   [DllImport("redman")] static extern void rdm_policy_destroy(IntPtr p);
   [DllImport("redman")] static extern int rdm_policy_get_info(IntPtr p, ref PolicyInfo io);
   [DllImport("redman")] static extern int rdm_policy_check(IntPtr p, ref Spec spec);
@@ -64,7 +64,7 @@ static unsafe class Hello {
     var info = new PolicyInfo { struct_size = (uint)sizeof(PolicyInfo) };
     byte[] scratch = null;
     Check(rdm_pool_get_spec(pool, ref spec));
-    Check(rdm_pool_buffers(pool, ref rows));
+    Check(rdm_pool_get_buffers(pool, ref rows));
     if (policy != IntPtr.Zero) {
       Check(rdm_policy_check(policy, ref spec));
       Check(rdm_policy_get_info(policy, ref info));
@@ -78,7 +78,7 @@ static unsafe class Hello {
       sum += rows.reward[0];
       cost += rows.cost[0];
     }
-    Check(rdm_pool_hash(pool, -1, out ulong hash));
+    Check(rdm_pool_get_hash(pool, -1, out ulong hash));
     rdm_pool_destroy(pool);
     return (sum, cost, hash);
   }
@@ -97,7 +97,7 @@ static unsafe class Hello {
   static void Run(string path, bool bench) {
     var held = Play(IntPtr.Zero);
     Console.WriteLine(Invariant($"hold cost {held.cost:F0} hash {held.hash:x16}"));
-    Check(rdm_policy_load_file(out IntPtr policy, path));
+    Check(rdm_policy_read_file(out IntPtr policy, path));
     var played = Play(policy);
     rdm_policy_destroy(policy);
     Console.WriteLine(Invariant($"policy return {played.sum:F4} cost {played.cost:F0} hash {played.hash:x16}"));

@@ -76,8 +76,8 @@ static int train(const arguments* a, const rdm_ranks* ranks) {
   if (!busy || ranks->gather(ranks->user, &mine, sizeof mine, busy)) goto done;
   for (int r = 0; r < ranks->ranks; ++r)
     if (busy[r] > slowest) slowest = busy[r];
-  if (rdm_agent_policy(agent, NULL, 0, &size) || !(policy = malloc(size))) goto done;
-  if (rdm_agent_policy(agent, policy, size, &size)) goto done;
+  if (rdm_agent_write_policy(agent, NULL, 0, &size) || !(policy = malloc(size))) goto done;
+  if (rdm_agent_write_policy(agent, policy, size, &size)) goto done;
   if (ranks->rank == 0)
     printf("ranks %d  threads %d  blocks %d  policy %016llx  %.0f steps/s  %.3f s of the busiest\n",
            (int)ranks->ranks, a->threads, a->blocks, hash_of(policy, size), (double)e.env_steps / took,

@@ -55,7 +55,7 @@ func play(policy *C.rdm_policy) (sum, cost float64, hash C.uint64_t) {
 	rows := C.rdm_buffers{struct_size: C.sizeof_rdm_buffers}
 	info := C.rdm_policy_info{struct_size: C.sizeof_rdm_policy_info}
 	check(C.rdm_pool_get_spec(pool, &spec))
-	check(C.rdm_pool_buffers(pool, &rows))
+	check(C.rdm_pool_get_buffers(pool, &rows))
 	reward, costs := unsafe.Slice(rows.reward, 4), unsafe.Slice(rows.cost, 4*spec.cost_dim)
 	var scratch []byte
 	if policy != nil {
@@ -72,7 +72,7 @@ func play(policy *C.rdm_policy) (sum, cost float64, hash C.uint64_t) {
 		sum += float64(reward[0])
 		cost += float64(costs[0])
 	}
-	check(C.rdm_pool_hash(pool, -1, &hash))
+	check(C.rdm_pool_get_hash(pool, -1, &hash))
 	return
 }
 
@@ -99,7 +99,7 @@ func main() {
 	path := C.CString(os.Args[1])
 	defer C.free(unsafe.Pointer(path))
 	var policy *C.rdm_policy
-	check(C.rdm_policy_load_file(&policy, path))
+	check(C.rdm_policy_read_file(&policy, path))
 	defer C.rdm_policy_destroy(policy)
 	sum, cost, hash := play(policy)
 	fmt.Printf("policy return %.4f cost %.0f hash %016x\n", sum, cost, uint64(hash))

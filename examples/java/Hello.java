@@ -32,12 +32,12 @@ class Hello {
   static native int rdm_pool_create(long[] pool, PoolConfig c); // a handle is its address
   static native void rdm_pool_destroy(long pool);
   static native int rdm_pool_get_spec(long pool, Spec io);
-  static native int rdm_pool_buffers(long pool, Buffers io);
+  static native int rdm_pool_get_buffers(long pool, Buffers io);
   static native int rdm_pool_reset(long pool, long[] seeds, byte[] mask);
   static native int rdm_pool_step(long pool);
   static native int rdm_pool_baseline(long pool, int kind);
-  static native int rdm_pool_hash(long pool, int env, long[] hash);
-  static native int rdm_policy_load_file(long[] policy, String path);
+  static native int rdm_pool_get_hash(long pool, int env, long[] hash);
+  static native int rdm_policy_read_file(long[] policy, String path);
   static native void rdm_policy_destroy(long policy);
   static native int rdm_policy_get_info(long policy, PolicyInfo io);
   static native int rdm_policy_check(long policy, Spec spec);
@@ -74,7 +74,7 @@ class Hello {
     var info = new PolicyInfo();
     Memory scratch = null;
     check(rdm_pool_get_spec(pool, spec));
-    check(rdm_pool_buffers(pool, rows));
+    check(rdm_pool_get_buffers(pool, rows));
     if (policy != 0) {
       check(rdm_policy_check(policy, spec));
       check(rdm_policy_get_info(policy, info));
@@ -88,7 +88,7 @@ class Hello {
       sum += rows.reward.getFloat(0);
       cost += rows.cost.getFloat(0);
     }
-    check(rdm_pool_hash(pool, -1, hash));
+    check(rdm_pool_get_hash(pool, -1, hash));
     rdm_pool_destroy(pool);
     System.out.printf(ROOT, format, sum, cost, hash[0]);
   }
@@ -108,7 +108,7 @@ class Hello {
     if (arguments.length < 1) throw new IllegalArgumentException("usage: Hello.java POLICY [bench]");
     play(0, "hold cost %2$.0f hash %3$016x%n");
     long[] policy = {0};
-    check(rdm_policy_load_file(policy, arguments[0]));
+    check(rdm_policy_read_file(policy, arguments[0]));
     play(policy[0], "policy return %.4f cost %.0f hash %016x%n");
     rdm_policy_destroy(policy[0]);
     if (arguments.length < 2) return;

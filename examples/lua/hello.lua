@@ -46,7 +46,7 @@ local function play(policy)
   local pool = make_pool("hand_over_safe_finger", 4, 7)
   local spec, rows, info = sized "rdm_spec", sized "rdm_buffers", sized "rdm_policy_info"
   check(redman.rdm_pool_get_spec(pool, spec))
-  check(redman.rdm_pool_buffers(pool, rows))
+  check(redman.rdm_pool_get_buffers(pool, rows))
   local size, scratch
   if policy then
     check(redman.rdm_policy_check(policy, spec))
@@ -63,7 +63,7 @@ local function play(policy)
     sum = sum + rows.reward[0]
     cost = cost + rows.cost[0]
   end
-  check(redman.rdm_pool_hash(pool, -1, hash))
+  check(redman.rdm_pool_get_hash(pool, -1, hash))
   return sum, cost, bit.tohex(hash[0])
 end
 
@@ -81,7 +81,7 @@ local function main(path, bench)
   local _, cost, hash = play()
   print(("hold cost %.0f hash %s"):format(cost, hash))
   local out, sum = ffi.new "rdm_policy *[1]"
-  check(redman.rdm_policy_load_file(out, path))
+  check(redman.rdm_policy_read_file(out, path))
   sum, cost, hash = play(ffi.gc(out[0], redman.rdm_policy_destroy))
   print(("policy return %.4f cost %.0f hash %s"):format(sum, cost, hash))
   if bench then

@@ -61,7 +61,7 @@ function makePool(task, numEnvs, seed) {
 function play(policy) {
   const pool = makePool('hand_over_safe_finger', 4, 7);
   const spec = filled('rdm_spec', (s) => redman.rdm_pool_get_spec(pool, s));
-  const rows = filled('rdm_buffers', (b) => redman.rdm_pool_buffers(pool, b));
+  const rows = filled('rdm_buffers', (b) => redman.rdm_pool_get_buffers(pool, b));
   const floats = (row, width) => new Float32Array(koffi.view(row, 4 * 4 * width));
   const reward = floats(rows.reward, 1), costs = floats(rows.cost, spec.cost_dim);
   let scratch, repeat;
@@ -80,7 +80,7 @@ function play(policy) {
     cost += costs[0];
   }
   const hash = new BigUint64Array(1);
-  check(redman.rdm_pool_hash(pool, -1, hash));
+  check(redman.rdm_pool_get_hash(pool, -1, hash));
   redman.rdm_pool_destroy(pool);
   return [sum, cost, hash[0].toString(16).padStart(16, '0')];
 }
@@ -101,7 +101,7 @@ function main(file, bench) {
   let [sum, cost, hash] = play(null);
   console.log(`hold cost ${cost.toFixed(0)} hash ${hash}`);
   const out = [null];
-  check(redman.rdm_policy_load_file(out, file));
+  check(redman.rdm_policy_read_file(out, file));
   [sum, cost, hash] = play(out[0]);
   redman.rdm_policy_destroy(out[0]);
   console.log(`policy return ${sum.toFixed(4)} cost ${cost.toFixed(0)} hash ${hash}`);

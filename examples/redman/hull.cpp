@@ -49,7 +49,7 @@ Report run_hull(const HullFlags& flags) {
   config.options = asked;
   config.num_options = 2;
   auto spec = redman::sized<rdm_spec>();
-  redman::check(rdm_pool_spec(&config, &spec));
+  redman::check(rdm_pool_config_spec(&config, &spec));
 
   const Json json = {{"file", flags.file},        {"points", part.corners},   {"corners", few.corners},
                      {"error_m", few.error},      {"volume_m3", part.volume}, {"volume_share", few.share},

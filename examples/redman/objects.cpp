@@ -34,7 +34,7 @@ Report list_objects(const ObjectsFlags& flags) {
     rdm_object_def def;
     rdm_object_def_init(&def, sizeof def);
     // An object that was removed leaves its number.
-    if (rdm_object_at(i, &object) != RDM_OK || rdm_object_get(i, &def) != RDM_OK) continue;
+    if (rdm_object_at(i, &object) != RDM_OK || rdm_object_get_def(i, &def) != RDM_OK) continue;
     all.push_back({{"name", object.name},
                    {"alias", def.alias ? Json(def.alias) : Json()},
                    {"shape", object.shape},
@@ -87,8 +87,10 @@ std::string name_of(const std::string& file) {
 }
 
 std::string size_text(const rdm_shape_def& s) {
-  if (s.kind == RDM_HULL) return format("%d points", s.num_points);
-  const int count = s.kind == RDM_SPHERE ? 1 : s.kind == RDM_CAPSULE || s.kind == RDM_CYLINDER ? 2 : 3;
+  if (s.kind == RDM_SHAPE_HULL) return format("%d points", s.num_points);
+  const int count = s.kind == RDM_SHAPE_SPHERE                                    ? 1
+                    : s.kind == RDM_SHAPE_CAPSULE || s.kind == RDM_SHAPE_CYLINDER ? 2
+                                                                                  : 3;
   std::string text;
   for (int i = 0; i < count; ++i) text += format(i ? " x %.4g" : "%.4g", s.size[i]);
   return text;
@@ -152,9 +154,9 @@ Report object_of_mesh(const ObjectFlags& flags) {
     volume += hulls.back().volume;
   }
   if (hulls.empty()) throw Failure(flags.file + ": its parts are flat");
-  if (hulls.size() > RDM_OBJECT_SHAPES)
+  if (hulls.size() > RDM_MAX_SHAPES)
     throw Failure(flags.file +
-                  format(": it fell into %zu parts, more than %d", hulls.size(), RDM_OBJECT_SHAPES));
+                  format(": it fell into %zu parts, more than %d", hulls.size(), RDM_MAX_SHAPES));
   double error = 0;  // how far the mesh stands out of all parts
   for (const Point& p : mesh.points) {
     double least = kFarthest;
@@ -167,7 +169,7 @@ Report object_of_mesh(const ObjectFlags& flags) {
   }
   for (const auto& p : points) {
     rdm_shape_def s{};
-    s.kind = RDM_HULL;
+    s.kind = RDM_SHAPE_HULL;
     s.points = p.data();
     s.num_points = static_cast<int32_t>(p.size() / 3);
     s.q[3] = 1;
@@ -236,7 +238,7 @@ void add_object(CLI::App& app, Run& run) {
   command->add_option("file", flags->file, ".stl, .obj or .object file, or an object's name")->required();
   std::vector<CLI::Option*> of_mesh = {
       command->add_option("--parts", flags->parts, "at most so many convex parts; 1: one hull")
-          ->check(CLI::Range(1, RDM_OBJECT_SHAPES)),
+          ->check(CLI::Range(1, RDM_MAX_SHAPES)),
       command->add_option("--points", flags->points, "at most so many corners of each")
           ->check(CLI::Range(4, 32)),
       command->add_option("--mass", flags->mass, "kg")->check(above_zero()),

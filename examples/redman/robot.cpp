@@ -29,7 +29,7 @@ Report list_robots(const RobotsFlags& flags) {
     rdm_robot_def def;
     rdm_robot_def_init(&def, sizeof def);
     // A robot that was removed leaves its number.
-    if (rdm_robot_at(i, &robot) != RDM_OK || rdm_robot_get(i, &def) != RDM_OK) continue;
+    if (rdm_robot_at(i, &robot) != RDM_OK || rdm_robot_get_def(i, &def) != RDM_OK) continue;
     double mass = def.root_mass;
     for (int32_t k = 0; k < def.num_links; ++k) {
       rdm_robot_link link;

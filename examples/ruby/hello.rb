@@ -61,7 +61,7 @@ end
 def play(policy)
   pool = make_pool('hand_over_safe_finger', 4, 7)
   spec = Redman.filled(Redman::Rdm_spec) { |s| Redman.rdm_pool_get_spec(pool, s) }
-  rows = Redman.filled(Redman::Rdm_buffers) { |b| Redman.rdm_pool_buffers(pool, b) }
+  rows = Redman.filled(Redman::Rdm_buffers) { |b| Redman.rdm_pool_get_buffers(pool, b) }
   if policy
     Redman.check Redman.rdm_policy_check(policy, spec)
     repeat = Redman.filled(Redman::Rdm_policy_info) { |i| Redman.rdm_policy_get_info(policy, i) }.action_repeat
@@ -76,7 +76,7 @@ def play(policy)
     sum += rows.reward[0, 4].unpack1('f')
     cost += rows.cost[0, 4].unpack1('f')
   end
-  hash = Redman.written { |out| Redman.rdm_pool_hash(pool, -1, out) }
+  hash = Redman.written { |out| Redman.rdm_pool_get_hash(pool, -1, out) }
   Redman.rdm_pool_destroy(pool)
   [sum, cost, hash]
 end
@@ -98,7 +98,7 @@ begin
 
   _, cost, hash = play(nil)
   puts format('hold cost %.0f hash %016x', cost, hash)
-  policy = Redman.written { |out| Redman.rdm_policy_load_file(out, path) }
+  policy = Redman.written { |out| Redman.rdm_policy_read_file(out, path) }
   sum, cost, hash = play(policy)
   puts format('policy return %.4f cost %.0f hash %016x', sum, cost, hash)
   Redman.rdm_policy_destroy(policy)

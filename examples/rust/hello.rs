@@ -66,7 +66,7 @@ impl Drop for Pool {
 fn play(policy: Option<*const rdm_policy>) -> Result<(f64, f64, u64)> {
     let mut pool = Pool::new("hand_over_safe_finger", 4, 7)?;
     let spec: rdm_spec = filled(|s| unsafe { rdm_pool_get_spec(pool.handle, s) })?;
-    let rows: rdm_buffers = filled(|b| unsafe { rdm_pool_buffers(pool.handle, b) })?;
+    let rows: rdm_buffers = filled(|b| unsafe { rdm_pool_get_buffers(pool.handle, b) })?;
     let (mut scratch, mut repeat) = (vec![], 1);
     if let Some(policy) = policy {
         check(unsafe { rdm_policy_check(policy, &spec) })?;
@@ -83,7 +83,7 @@ fn play(policy: Option<*const rdm_policy>) -> Result<(f64, f64, u64)> {
         sum += f64::from(unsafe { *rows.reward });
         cost += f64::from(unsafe { *rows.cost });
     }
-    check(unsafe { rdm_pool_hash(pool.handle, -1, &mut hash) })?;
+    check(unsafe { rdm_pool_get_hash(pool.handle, -1, &mut hash) })?;
     Ok((sum, cost, hash))
 }
 
@@ -102,7 +102,7 @@ fn main() -> Result<()> {
     let (_, cost, hash) = play(None)?;
     println!("hold cost {cost:.0} hash {hash:016x}");
     let mut policy = ptr::null_mut();
-    check(unsafe { rdm_policy_load_file(&mut policy, path.as_ptr()) })?;
+    check(unsafe { rdm_policy_read_file(&mut policy, path.as_ptr()) })?;
     let (sum, cost, hash) = play(Some(policy))?;
     println!("policy return {sum:.4} cost {cost:.0} hash {hash:016x}");
     unsafe { rdm_policy_destroy(policy) };

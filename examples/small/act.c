@@ -7,7 +7,7 @@
 int main(int argc, char** argv) {
   rdm_policy* policy = NULL;
   rdm_policy_info info = {.struct_size = sizeof info};
-  if (argc < 2 || rdm_policy_load_file(&policy, argv[1]) != RDM_OK ||
+  if (argc < 2 || rdm_policy_read_file(&policy, argv[1]) != RDM_OK ||
       rdm_policy_get_info(policy, &info) != RDM_OK)
     return 1;
   size_t bytes = rdm_policy_scratch(policy, 1);

@@ -17,13 +17,14 @@ int main(int argc, char** argv) {
   worlds.num_envs = 16;
   for (int i = 2; i < argc && strlen(settings) + strlen(argv[i]) + 2 < sizeof settings; ++i)
     strcat(strcat(settings, argv[i]), "\n");
-  if (rdm_pool_memory(&worlds, &pool_bytes, NULL) != RDM_OK || rdm_pool_create(&pool, &worlds) != RDM_OK ||
-      rdm_pool_reset(pool, NULL, NULL) != RDM_OK ||
+  if (rdm_pool_config_memory(&worlds, &pool_bytes, NULL) != RDM_OK ||
+      rdm_pool_create(&pool, &worlds) != RDM_OK || rdm_pool_reset(pool, NULL, NULL) != RDM_OK ||
       rdm_agent_config_init(&learner, sizeof learner) != RDM_OK ||
       rdm_agent_config_for_pool(&learner, pool) != RDM_OK)
     return 2;
   learner.settings = settings;
-  if (rdm_agent_memory(&learner, &agent_bytes) != RDM_OK || rdm_agent_create(&agent, &learner) != RDM_OK)
+  if (rdm_agent_config_memory(&learner, &agent_bytes) != RDM_OK ||
+      rdm_agent_create(&agent, &learner) != RDM_OK)
     return 3;
   for (int epoch = 0; epoch < 2; ++epoch)
     if (rdm_agent_rollout(agent, pool, NULL) != RDM_OK) return 4;

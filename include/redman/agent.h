@@ -21,7 +21,7 @@ RDM_API rdm_result rdm_algo_option(int32_t algo, int32_t i,
                                    rdm_option_info *out); /* i < num_options */
 
 typedef struct rdm_agent rdm_agent; /* handle */
-enum rdm_act_mode { RDM_SAMPLE = 0, RDM_MEAN = 1 }; /* of rdm_agent_act */
+enum rdm_act_mode { RDM_ACT_SAMPLE = 0, RDM_ACT_MEAN = 1 }; /* of rdm_agent_act */
 typedef struct rdm_agent_config { /* what an agent is made from */
   uint32_t struct_size;       /* bytes, set by rdm_agent_config_init */
   int32_t obs_dim;            /* count, 1..16384, required */
@@ -64,7 +64,7 @@ RDM_API rdm_result rdm_agent_config_init(rdm_agent_config *c, size_t size);
  * cost_limits and fields from a pool. Pointers are borrowed from the pool. */
 RDM_API rdm_result rdm_agent_config_for_pool(rdm_agent_config *c, const rdm_pool *p);
 /* Bytes that creation takes from the alloc hook, exact. */
-RDM_API rdm_result rdm_agent_memory(const rdm_agent_config *c, size_t *bytes);
+RDM_API rdm_result rdm_agent_config_memory(const rdm_agent_config *c, size_t *bytes);
 /* Makes the agent; the config's arrays are copied. */
 RDM_API rdm_result rdm_agent_create(rdm_agent **out, const rdm_agent_config *c);
 RDM_API void rdm_agent_destroy(rdm_agent *a);               /* NULL is fine */
@@ -172,43 +172,45 @@ RDM_API rdm_result rdm_agent_update(rdm_agent *a, const float *last_obs, rdm_epo
 RDM_API rdm_result rdm_agent_rollout(rdm_agent *a, rdm_pool *p, rdm_epoch *io);
 /* Async-signal-safe, from any thread: the running rollout or update returns CANCELLED. A horizon
  * that has begun by act and record is dropped by its update; between horizons, the next rollout,
- * update or first act with RDM_SAMPLE returns CANCELLED, before anything is collected. */
+ * update or first act with RDM_ACT_SAMPLE returns CANCELLED, before anything is collected. */
 RDM_API void rdm_agent_cancel(rdm_agent *a);
 /* Drops the horizon that has begun, and a cancel that waits: from any state back to between epochs.
  * Nothing is learned from what it drops. Episodes that run go on, with what was recorded of
  * them. */
 RDM_API rdm_result rdm_agent_discard(rdm_agent *a);
 /* Changes a live option. NOT_FOUND, RANGE, or STATE when it is not live. */
-RDM_API rdm_result rdm_agent_set(rdm_agent *a, const rdm_option *option);
+RDM_API rdm_result rdm_agent_set_option(rdm_agent *a, const rdm_option *option);
 /* Option i of the algorithm as this agent has it: key (static) and the value as
  * text [RDM_TEXT_SIZE], which reads back exactly. RANGE for a text that is longer:
- * rdm_agent_settings has it. */
-RDM_API rdm_result rdm_agent_option(const rdm_agent *a, int32_t i, const char **key, char *text);
+ * rdm_agent_get_settings has it. */
+RDM_API rdm_result rdm_agent_option_at(const rdm_agent *a, int32_t i, const char **key, char *text);
 /* All options as text [capacity] of lines key=value: given as settings they make an agent of the
  * same options. */
-RDM_API rdm_result rdm_agent_settings(const rdm_agent *a, char *text, size_t capacity,
-                                      size_t *size);
+RDM_API rdm_result rdm_agent_get_settings(const rdm_agent *a, char *text, size_t capacity,
+                                          size_t *size);
 
-RDM_API rdm_result rdm_agent_tensor(const rdm_agent *a, int32_t i,
-                                    rdm_tensor *out); /* RANGE ends the list */
+RDM_API rdm_result rdm_agent_tensor_at(const rdm_agent *a, int32_t i,
+                                       rdm_tensor *out); /* RANGE ends the list */
 /* Copies the named tensor to out [count] or from values [count]; count must be rows * cols.
  * NOT_FOUND, RANGE. */
-RDM_API rdm_result rdm_agent_tensor_read(const rdm_agent *a, const char *name, float *out,
-                                         size_t count);
-RDM_API rdm_result rdm_agent_tensor_write(rdm_agent *a, const char *name, const float *values,
-                                          size_t count);
+RDM_API rdm_result rdm_agent_get_tensor(const rdm_agent *a, const char *name, float *out,
+                                        size_t count);
+RDM_API rdm_result rdm_agent_set_tensor(rdm_agent *a, const char *name, const float *values,
+                                        size_t count);
 
 /* The frozen policy as the bytes [capacity] of a policy file; NULL asks for the size. */
-RDM_API rdm_result rdm_agent_policy(const rdm_agent *a, void *bytes, size_t capacity, size_t *size);
-RDM_API rdm_result rdm_agent_policy_file(const rdm_agent *a,
-                                         const char *path); /* replaced atomically */
+RDM_API rdm_result rdm_agent_write_policy(const rdm_agent *a, void *bytes, size_t capacity,
+                                          size_t *size);
+RDM_API rdm_result rdm_agent_write_policy_file(const rdm_agent *a,
+                                               const char *path); /* replaced atomically */
 /* All state of the agent (networks, optimiser, multipliers, normaliser, streams, counters), between
  * epochs: STATE inside a horizon. load needs an agent of the same config and changes nothing when
  * it fails. */
-RDM_API rdm_result rdm_agent_save(const rdm_agent *a, void *bytes, size_t capacity,
-                                  size_t *size); /* to bytes [capacity]; NULL asks for the size */
-RDM_API rdm_result rdm_agent_load(rdm_agent *a, const void *bytes,
-                                  size_t size); /* of bytes [size] */
+RDM_API rdm_result rdm_agent_write_state(const rdm_agent *a, void *bytes, size_t capacity,
+                                         size_t *size); /* to bytes [capacity]; NULL asks for the
+                                                         * size */
+RDM_API rdm_result rdm_agent_read_state(rdm_agent *a, const void *bytes,
+                                        size_t size); /* of bytes [size] */
 /* Agent, pool (may be NULL) and a note [note_size] of the host's own, to 2^26 bytes, in one file,
  * replaced atomically. */
 RDM_API rdm_result rdm_checkpoint_write(const char *path, const rdm_agent *a, const rdm_pool *p,

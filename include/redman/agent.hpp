@@ -42,11 +42,13 @@ class Agent {
     return e;
   }
   void cancel() noexcept { rdm_agent_cancel(get()); }
-  std::string settings() const { return text_of(rdm_agent_settings, static_cast<const rdm_agent*>(get())); }
+  std::string settings() const {
+    return text_of(rdm_agent_get_settings, static_cast<const rdm_agent*>(get()));
+  }
   // The bytes of a policy file.
-  Bytes policy() const { return bytes_of(rdm_agent_policy); }
-  Bytes save() const { return bytes_of(rdm_agent_save); }
-  void load(const Bytes& bytes) { check(rdm_agent_load(get(), bytes.data(), bytes.size())); }
+  Bytes policy() const { return bytes_of(rdm_agent_write_policy); }
+  Bytes save() const { return bytes_of(rdm_agent_write_state); }
+  void load(const Bytes& bytes) { check(rdm_agent_read_state(get(), bytes.data(), bytes.size())); }
 
  private:
   Bytes bytes_of(rdm_result (*write)(const rdm_agent*, void*, size_t, size_t*)) const {

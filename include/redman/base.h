@@ -16,6 +16,15 @@
 #endif
 #endif
 
+/* What a name of an older release is called now: the text of the compiler's warning. */
+#if defined(RDM_NO_DEPRECATION_WARNINGS)
+#define RDM_DEPRECATED(text)
+#elif defined(__GNUC__)
+#define RDM_DEPRECATED(text) __attribute__((deprecated(text)))
+#else
+#define RDM_DEPRECATED(text)
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -33,18 +42,18 @@ extern "C" {
 typedef int32_t rdm_result; /* frozen values; positive ones are reserved */
 enum rdm_result_code { /* values of rdm_result */
   RDM_OK = 0,
-  RDM_ARGUMENT = -1,    /* NULL, wrong struct_size, not finite, malformed                        */
-  RDM_RANGE = -2,       /* outside the documented bounds; index past the end                     */
-  RDM_STATE = -3,       /* calls in the wrong order                                              */
-  RDM_MEMORY = -4,      /* the allocator refused                                                 */
-  RDM_IO = -5,          /* file system                                                           */
-  RDM_FORMAT = -6,      /* truncated, corrupt or foreign bytes                                   */
-  RDM_VERSION_MISMATCH = -7, /* newer file, newer struct, other ABI                              */
-  RDM_UNSUPPORTED = -8, /* left out of this build, or not defined for this combination           */
-  RDM_PHYSICS = -9,     /* the physics engine gave up where no world could be flagged            */
-  RDM_NOT_FOUND = -10,  /* unknown name (the text offers the nearest), missing file              */
-  RDM_CANCELLED = -11,  /* rdm_agent_cancel was called; the handle is good                       */
-  RDM_INTERNAL = -99    /* a defect of redman                                                    */
+  RDM_ERROR_ARGUMENT = -1,         /* NULL, wrong struct_size, not finite, malformed */
+  RDM_ERROR_RANGE = -2,            /* outside the documented bounds; index past the end */
+  RDM_ERROR_STATE = -3,            /* calls in the wrong order */
+  RDM_ERROR_MEMORY = -4,           /* the allocator refused */
+  RDM_ERROR_IO = -5,               /* file system */
+  RDM_ERROR_FORMAT = -6,           /* truncated, corrupt or foreign bytes */
+  RDM_ERROR_VERSION_MISMATCH = -7, /* newer file, newer struct, other ABI */
+  RDM_ERROR_UNSUPPORTED = -8,      /* left out of this build, or not defined for this combination */
+  RDM_ERROR_PHYSICS = -9,          /* the physics engine gave up where no world could be flagged */
+  RDM_ERROR_NOT_FOUND = -10,       /* unknown name (the text offers the nearest), missing file */
+  RDM_ERROR_CANCELLED = -11,       /* rdm_agent_cancel was called; the handle is good */
+  RDM_ERROR_INTERNAL = -99         /* a defect of redman */
 };
 RDM_API const char *rdm_result_string(rdm_result r); /* static, never NULL, also for unknown
                                                       * values */
@@ -103,8 +112,9 @@ RDM_API rdm_result rdm_init(const rdm_host *host);
 RDM_API void rdm_shutdown(void); /* the last call puts the default hooks back; handles stay valid */
 
 /* ---- options --------------------------------------------------------------------------------- */
-/* of an option */
-enum rdm_option_kind { RDM_NUMBER = 0, RDM_INTEGER = 1, RDM_FLAG = 2, RDM_TEXT = 3 };
+enum rdm_option_kind { /* of an option */
+  RDM_KIND_NUMBER = 0, RDM_KIND_INTEGER = 1, RDM_KIND_FLAG = 2, RDM_KIND_TEXT = 3
+};
 typedef struct rdm_option { /* frozen layout: one key and its value */
   const char *key;          /* case is ignored and '-' equals '_'                             */
   const char *text;         /* value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number
@@ -122,8 +132,8 @@ typedef struct rdm_option_info { /* frozen layout: one row of an option table */
                              * reset; else NULL */
   double number;            /* default of number, integer, flag; of a range its middle        */
   double low, high;         /* inclusive bounds                                               */
-  int32_t kind;             /* RDM_NUMBER, RDM_INTEGER, RDM_FLAG, RDM_TEXT                    */
-  int32_t live;             /* flag: rdm_agent_set may change it after creation               */
+  int32_t kind;             /* RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT */
+  int32_t live;             /* flag: rdm_agent_set_option may change it after creation */
 } rdm_option_info;
 /* Options as one text, wherever a config has `settings`: lines `key=value`; spaces about either,
  * '\r' and lines that are empty do not count. They are laid over the config's `options`, later ones
@@ -147,8 +157,8 @@ typedef struct rdm_tensor {   /* frozen layout: a named block of parameters */
   int32_t rows, cols;         /* row-major; cols 1 for vectors */
 } rdm_tensor;
 enum rdm_shape_kind { /* of rdm_shape */
-  RDM_SPHERE = 0, RDM_CAPSULE = 1, RDM_BOX = 2, RDM_CYLINDER = 3, RDM_PLANE = 4,
-  RDM_ELLIPSOID = 5, RDM_HULL = 6
+  RDM_SHAPE_SPHERE = 0, RDM_SHAPE_CAPSULE = 1, RDM_SHAPE_BOX = 2, RDM_SHAPE_CYLINDER = 3,
+  RDM_SHAPE_PLANE = 4, RDM_SHAPE_ELLIPSOID = 5, RDM_SHAPE_HULL = 6
 };
 typedef struct rdm_spec { /* sizes of a pool's rows; what a policy is checked against */
   uint32_t struct_size;      /* in: bytes */

@@ -85,7 +85,7 @@ T* made(rdm_result (*create)(T**, Args...), Args... args) {
 
 using Bytes = std::vector<unsigned char>;
 
-// A text of the library's that is asked for its size first: rdm_pool_settings, rdm_agent_settings.
+// A text of the library's that is asked for its size first: rdm_pool_get_settings, rdm_agent_get_settings.
 template <class T>
 std::string text_of(rdm_result (*write)(const T*, char*, size_t, size_t*), const T* handle) {
   size_t size = 0;

@@ -7,9 +7,9 @@
  * with its line.
  *
  *   rdm_import *i;  rdm_robot_def d;  int32_t robot;
- *   if (rdm_import_file(&i, "hand.urdf", NULL)) puts(rdm_import_error());  line and element
+ *   if (rdm_import_read_file(&i, "hand.urdf", NULL)) puts(rdm_import_error());  line and element
  *   rdm_robot_def_init(&d, sizeof d);
- *   rdm_import_def(i, &d);
+ *   rdm_import_get_robot_def(i, &d);
  *   rdm_robot_create(&robot, &d);
  *   rdm_import_destroy(i);
  *
@@ -91,17 +91,17 @@ RDM_API rdm_result rdm_import_options_init(rdm_import_options *options, size_t s
  * the robot and is not read. What is no regular file is IO and never waited for. A file and all
  * that it includes or names cost at most 4096 files, 16 MB of text, 512 MB of meshes (64 MB each),
  * 250,000 elements, 400,000 attributes and 10 million steps of work: RANGE beyond. */
-RDM_API rdm_result rdm_import_file(rdm_import **out, const char *path,
-                                   const rdm_import_options *options);
+RDM_API rdm_result rdm_import_read_file(rdm_import **out, const char *path,
+                                        const rdm_import_options *options);
 /* The same for bytes [size] of a file. Without options.folder it has neither meshes nor
  * includes. */
-RDM_API rdm_result rdm_import_text(rdm_import **out, const void *bytes, size_t size,
+RDM_API rdm_result rdm_import_read(rdm_import **out, const void *bytes, size_t size,
                                    const rdm_import_options *options);
 /* A robot that is there, the library's own too, as a handle that can be written. */
-RDM_API rdm_result rdm_import_robot(rdm_import **out, int32_t robot);
+RDM_API rdm_result rdm_import_create_robot(rdm_import **out, int32_t robot);
 RDM_API void rdm_import_destroy(rdm_import *i); /* NULL is fine */
 /* What rdm_robot_create takes; texts and arrays live as long as the handle. */
-RDM_API rdm_result rdm_import_def(const rdm_import *i, rdm_robot_def *io);
+RDM_API rdm_result rdm_import_get_robot_def(const rdm_import *i, rdm_robot_def *io);
 RDM_API int32_t rdm_import_note_count(const rdm_import *i); /* 0 for what is no handle */
 RDM_API rdm_result rdm_import_note_at(const rdm_import *i, int32_t n,
                                       rdm_import_note *out); /* n < the count */
@@ -111,26 +111,27 @@ RDM_API rdm_result rdm_import_note_at(const rdm_import *i, int32_t n,
 RDM_API rdm_result rdm_import_check(rdm_import *i);
 /* The robot as a .robot file, text [capacity]; read back it is the same to the last bit. ARGUMENT:
  * a row names none. */
-RDM_API rdm_result rdm_import_write(const rdm_robot_def *def, char *text, size_t capacity,
-                                    size_t *size);
+RDM_API rdm_result rdm_import_write_robot(const rdm_robot_def *def, char *text, size_t capacity,
+                                          size_t *size);
 /* A task out of a .task file: its scene, observation, rewards and costs as text (TOML, 1:1 with
  * rdm_task_def and what rdm_scene_* takes, and lists of terms in the place of functions).
- * Registered under the name that it says; *task is for rdm_task_at and rdm_task_remove. A world
- * with its default options was made, reset and stepped before. The codes of rdm_import_file. */
-RDM_API rdm_result rdm_import_task(int32_t *task, const char *path);
+ * Registered under the name that it says; *task is for rdm_task_at and rdm_task_destroy. A world
+ * with its default options was made, reset and stepped before. The codes of
+ * rdm_import_read_file. */
+RDM_API rdm_result rdm_import_read_task_file(int32_t *task, const char *path);
 /* The same for bytes [size]; `file` begins the texts of errors, NULL: nothing does. */
-RDM_API rdm_result rdm_import_task_text(int32_t *task, const void *bytes, size_t size,
+RDM_API rdm_result rdm_import_read_task(int32_t *task, const void *bytes, size_t size,
                                         const char *file);
 /* Objects: an .object file (TOML, 1:1 with rdm_object_def; rows [[shape]]) as a handle for the call
  * below, or bytes [size] of one, or an object that is there. FORMAT with the line; ARGUMENT, RANGE
  * as rdm_object_create. */
-RDM_API rdm_result rdm_import_object_file(rdm_import **out, const char *path);
-RDM_API rdm_result rdm_import_object_text(rdm_import **out, const void *bytes, size_t size);
-RDM_API rdm_result rdm_import_object(rdm_import **out, int32_t object);
+RDM_API rdm_result rdm_import_read_object_file(rdm_import **out, const char *path);
+RDM_API rdm_result rdm_import_read_object(rdm_import **out, const void *bytes, size_t size);
+RDM_API rdm_result rdm_import_create_object(rdm_import **out, int32_t object);
 /* What rdm_object_create takes; texts and arrays live as long as the handle. */
-RDM_API rdm_result rdm_import_object_def(const rdm_import *i, rdm_object_def *io);
+RDM_API rdm_result rdm_import_get_object_def(const rdm_import *i, rdm_object_def *io);
 /* The object as an .object file, text [capacity]; read back it is the same to the last bit. */
-RDM_API rdm_result rdm_import_object_write(const rdm_object_def *def, char *text, size_t capacity,
+RDM_API rdm_result rdm_import_write_object(const rdm_object_def *def, char *text, size_t capacity,
                                            size_t *size);
 /* This thread's last failure in this library, one line; valid until its next failing call. */
 RDM_API const char *rdm_import_error(void);

@@ -109,14 +109,14 @@ RDM_API rdm_result rdm_map_grid(const rdm_map *m, const float pose[7], const int
  * too). */
 enum rdm_map_format { RDM_MAP_BINARY = 0, RDM_MAP_FULL = 1 };
 /* The map as the bytes [capacity] of a file; NULL asks for the size. */
-RDM_API rdm_result rdm_map_save(const rdm_map *m, int32_t format, void *bytes, size_t capacity,
-                                size_t *size);
-RDM_API rdm_result rdm_map_save_file(const rdm_map *m,
-                                     const char *path); /* by its ending; replaced atomically */
+RDM_API rdm_result rdm_map_write(const rdm_map *m, int32_t format, void *bytes, size_t capacity,
+                                 size_t *size);
+RDM_API rdm_result rdm_map_write_file(const rdm_map *m,
+                                      const char *path); /* by its ending; replaced atomically */
 /* bytes [size] of a file take the place of what the map holds, resolution included. FORMAT, or
  * MEMORY when it does not fit: unchanged. */
-RDM_API rdm_result rdm_map_load(rdm_map *m, const void *bytes, size_t size);
-RDM_API rdm_result rdm_map_load_file(rdm_map *m, const char *path); /* NOT_FOUND, FORMAT ... */
+RDM_API rdm_result rdm_map_read(rdm_map *m, const void *bytes, size_t size);
+RDM_API rdm_result rdm_map_read_file(rdm_map *m, const char *path); /* NOT_FOUND, FORMAT ... */
 
 #ifdef __cplusplus
 }

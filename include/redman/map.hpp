@@ -75,14 +75,14 @@ class Map {
   // RDM_MAP_BINARY or RDM_MAP_FULL: the bytes of a file.
   Bytes save(int32_t format) const {
     size_t size = 0;
-    check(rdm_map_save(get(), format, nullptr, 0, &size));
+    check(rdm_map_write(get(), format, nullptr, 0, &size));
     Bytes bytes(size);
-    check(rdm_map_save(get(), format, bytes.data(), bytes.size(), &size));
+    check(rdm_map_write(get(), format, bytes.data(), bytes.size(), &size));
     return bytes;
   }
-  void load(const Bytes& bytes) { check(rdm_map_load(get(), bytes.data(), bytes.size())); }
-  void save_file(const char* path) const { check(rdm_map_save_file(get(), path)); }
-  void load_file(const char* path) { check(rdm_map_load_file(get(), path)); }
+  void load(const Bytes& bytes) { check(rdm_map_read(get(), bytes.data(), bytes.size())); }
+  void save_file(const char* path) const { check(rdm_map_write_file(get(), path)); }
+  void load_file(const char* path) { check(rdm_map_read_file(get(), path)); }
 
  private:
   Handle<rdm_map, rdm_map_destroy> handle_;

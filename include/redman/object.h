@@ -12,7 +12,7 @@ extern "C" {
  * found by their number too ("025_mug"), with or without it.
  *
  *   rdm_object_def d;  int32_t object;
- *   rdm_shape_def s = {.kind = RDM_BOX, .size = {0.02, 0.03, 0.06}};
+ *   rdm_shape_def s = {.kind = RDM_SHAPE_BOX, .size = {0.02, 0.03, 0.06}};
  *   rdm_object_def_init(&d, sizeof d);
  *   d.name = "my_box";  d.shapes = &s;  d.num_shapes = 1;  d.mass = 0.2;
  *   if (rdm_object_create(&object, &d)) puts(rdm_last_error());
@@ -21,19 +21,20 @@ extern "C" {
 typedef struct rdm_shape_def {
   const char *name;        /* unique in the scene; NULL: that of the body. Of an object unused */
   const char *material;    /* of rdm_scene_add_material; NULL: "default". Of an object unused */
-  const double *points;    /* [num_points][3] of an RDM_HULL: 4 to 32 points, m; else NULL */
+  const double *points;    /* [num_points][3] of an RDM_SHAPE_HULL: 4 to 32 points, m; else NULL */
   int32_t num_points;      /* count */
-  int32_t kind;            /* RDM_SPHERE ... RDM_HULL; an RDM_PLANE stands still */
+  int32_t kind;            /* RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; an RDM_SHAPE_PLANE stands
+                            * still */
   double size[3];          /* as rdm_shape, m; of a hull unused */
   double p[3];             /* position in the frame of the body, or in the world, m */
   double q[4];             /* rotation; all 0: none */
   uint8_t color[4];        /* red, green, blue, 255; all 0: grey */
   int32_t seen_only;       /* flag: nothing touches it */
 } rdm_shape_def;
-#define RDM_OBJECT_SHAPES 64 /* most shapes of an object */
+#define RDM_MAX_SHAPES 64 /* most shapes of an object */
 typedef struct rdm_object_def { /* a whole object; rdm_object_create copies it with its shapes */
   uint32_t struct_size;    /* bytes, set by rdm_object_def_init */
-  int32_t num_shapes;      /* 1 to RDM_OBJECT_SHAPES */
+  int32_t num_shapes;      /* 1 to RDM_MAX_SHAPES */
   const char *name;        /* letters, digits, '_', '-', '+'; at most 25 */
   const char *alias;       /* another name; NULL */
   const char *summary;     /* one line; NULL: none */
@@ -51,7 +52,7 @@ RDM_API rdm_result rdm_object_def_init(rdm_object_def *def,
 /* What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which
  * are NULL here. Shape i < num_shapes is in the frame at the centre of mass; the points of a hull
  * live as long as the object. */
-RDM_API rdm_result rdm_object_get(int32_t object, rdm_object_def *io);
+RDM_API rdm_result rdm_object_get_def(int32_t object, rdm_object_def *io);
 RDM_API rdm_result rdm_object_shape_at(int32_t object, int32_t i, rdm_shape_def *out);
 /* Adds an object under a number that no other gets, *out for rdm_object_at and what is here.
  * ARGUMENT, RANGE: the text names the row; a name that is taken is an ARGUMENT. Objects belong to
@@ -60,7 +61,7 @@ RDM_API rdm_result rdm_object_create(int32_t *out, const rdm_object_def *def);
 /* What rdm_object_create would say of it, but for a name that is taken; adds nothing. */
 RDM_API rdm_result rdm_object_check(const rdm_object_def *def);
 /* Pools that have it keep it. ARGUMENT for the library's own. */
-RDM_API rdm_result rdm_object_remove(int32_t object);
+RDM_API rdm_result rdm_object_destroy(int32_t object);
 
 #ifdef __cplusplus
 }

@@ -50,7 +50,7 @@ typedef struct rdm_actor_config { /* what an actor is made from */
  * version's. */
 RDM_API rdm_result rdm_actor_config_init(rdm_actor_config *c, size_t size);
 /* Bytes *bytes that creation takes from the alloc hook, exact. */
-RDM_API rdm_result rdm_actor_memory(const rdm_actor_config *c, size_t *bytes);
+RDM_API rdm_result rdm_actor_config_memory(const rdm_actor_config *c, size_t *bytes);
 /* Makes the actor; every world begins an episode. ARGUMENT for a step that does not divide the
  * policy's decision, VERSION_MISMATCH for a spec that the policy does not fit, RANGE for sizes and
  * a center out of bounds. */
@@ -144,7 +144,7 @@ typedef struct rdm_plan_info { /* what a call of rdm_planner_act found */
 RDM_API rdm_result rdm_planner_config_init(rdm_planner_config *c, size_t size);
 /* Makes the planner and its worlds. ARGUMENT, RANGE, NOT_FOUND name what is wrong; VERSION_MISMATCH
  * for a policy that does not fit the pool, UNSUPPORTED for an agent whose critics have no unit
- * (rdm_agent_values). */
+ * (rdm_agent_get_values). */
 RDM_API rdm_result rdm_planner_create(rdm_planner **out, const rdm_planner_config *c);
 RDM_API void rdm_planner_destroy(rdm_planner *planner);           /* NULL is fine */
 RDM_API const char *rdm_planner_error(const rdm_planner *planner); /* last failure on this
@@ -156,15 +156,15 @@ RDM_API rdm_result rdm_planner_get_spec(const rdm_planner *planner,
 RDM_API rdm_result rdm_planner_option_at(int32_t i, rdm_option_info *out);
 /* All options as text [capacity] of lines key=value: given as settings they make a planner of the
  * same options. */
-RDM_API rdm_result rdm_planner_settings(const rdm_planner *planner, char *text, size_t capacity,
-                                        size_t *size);
+RDM_API rdm_result rdm_planner_get_settings(const rdm_planner *planner, char *text, size_t capacity,
+                                            size_t *size);
 
 /* Plans from the state that world env of the pool is in now, and writes the plan's first action to
  * action [action_dim]. The pool is only read; it has the task and options of the one that the
  * planner was made for, else ARGUMENT. io may be NULL. STATE where no episode runs. No heap. */
 RDM_API rdm_result rdm_planner_act(rdm_planner *planner, const rdm_pool *pool, int32_t env,
                                    float *action, rdm_plan_info *io);
-/* Forgets the plan; the noise goes on. The next plan begins at rdm_pool_initial_mean, or the
+/* Forgets the plan; the noise goes on. The next plan begins at rdm_pool_get_initial_mean, or the
  * policy's rollout. */
 RDM_API rdm_result rdm_planner_reset(rdm_planner *planner);
 /* The plan as it is to plan [horizon][action_dim]: row 0 is the action that rdm_planner_act
@@ -184,8 +184,8 @@ RDM_API rdm_result rdm_planner_read_state(rdm_planner *planner, const void *byte
  * discounted sum of rewards to come, and the same of the cost columns that it limits,
  * cost [rows][RDM_MAX_COSTS] by column, others 0; cost may be NULL. UNSUPPORTED with options
  * normalize_reward or normalize_cost, which leave critics no unit. */
-RDM_API rdm_result rdm_agent_values(const rdm_agent *a, const float *obs, int32_t rows,
-                                    float *value, float *cost);
+RDM_API rdm_result rdm_agent_get_values(const rdm_agent *a, const float *obs, int32_t rows,
+                                        float *value, float *cost);
 
 #ifdef __cplusplus
 }

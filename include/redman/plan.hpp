@@ -86,7 +86,7 @@ class Planner {
   }
   void set_plan(const float* plan) { check(rdm_planner_set_plan(get(), plan)); }
   std::string settings() const {
-    return text_of(rdm_planner_settings, static_cast<const rdm_planner*>(get()));
+    return text_of(rdm_planner_get_settings, static_cast<const rdm_planner*>(get()));
   }
   Bytes state() const {
     size_t size = 0;

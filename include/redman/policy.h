@@ -25,9 +25,9 @@ typedef struct rdm_policy_info { /* what a policy file tells of its network */
   int32_t num_features;       /* that its encoder makes of a cloud, 0 without */
   int32_t point_color;        /* whether it sees the colours of points: 0, 1 */
 } rdm_policy_info;
-RDM_API rdm_result rdm_policy_load(rdm_policy **out, const void *bytes,
+RDM_API rdm_result rdm_policy_read(rdm_policy **out, const void *bytes,
                                    size_t size); /* copies bytes [size] */
-RDM_API rdm_result rdm_policy_load_file(rdm_policy **out,
+RDM_API rdm_result rdm_policy_read_file(rdm_policy **out,
                                         const char *path); /* NOT_FOUND, FORMAT ... */
 RDM_API void rdm_policy_destroy(rdm_policy *p);             /* NULL is fine */
 RDM_API rdm_result rdm_policy_get_info(const rdm_policy *p, rdm_policy_info *io); /* fills io */
@@ -50,16 +50,16 @@ RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t
  * "actor.0.weight" has a column for each feature behind those, and there are "encoder.0.weight" and
  * so on, "encoder.origin" and "encoder.range", in m, "encoder.activation" (0 tanh, 1 elu, 2 relu),
  * "example.points", in m, and "example.point_class". */
-RDM_API rdm_result rdm_policy_tensor(const rdm_policy *p, int32_t i, rdm_tensor *out);
+RDM_API rdm_result rdm_policy_tensor_at(const rdm_policy *p, int32_t i, rdm_tensor *out);
 /* Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE. */
-RDM_API rdm_result rdm_policy_tensor_read(const rdm_policy *p, const char *name, float *out,
-                                          size_t count);
+RDM_API rdm_result rdm_policy_get_tensor(const rdm_policy *p, const char *name, float *out,
+                                         size_t count);
 /* OK, or VERSION_MISMATCH with a text that says which field of the spec differs. */
 RDM_API rdm_result rdm_policy_check(const rdm_policy *p, const rdm_spec *spec);
 /* Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up
  * to capacity of them to columns [capacity]; *count is how many there are. */
-RDM_API rdm_result rdm_policy_columns(const rdm_policy *p, int32_t *columns, int32_t capacity,
-                                      int32_t *count);
+RDM_API rdm_result rdm_policy_get_columns(const rdm_policy *p, int32_t *columns, int32_t capacity,
+                                          int32_t *count);
 
 #ifdef __cplusplus
 }

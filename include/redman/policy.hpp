@@ -10,9 +10,9 @@ namespace redman {
 // A policy may be shared between threads; each thread needs scratch memory of its own, at any address.
 class Policy {
  public:
-  explicit Policy(const char* path) : Policy(made(rdm_policy_load_file, path)) {}
+  explicit Policy(const char* path) : Policy(made(rdm_policy_read_file, path)) {}
   explicit Policy(const Bytes& bytes)
-      : Policy(made(rdm_policy_load, static_cast<const void*>(bytes.data()), bytes.size())) {}
+      : Policy(made(rdm_policy_read, static_cast<const void*>(bytes.data()), bytes.size())) {}
   rdm_policy* get() const { return handle_.get(); }
   const rdm_policy_info& info() const { return info_; }
   size_t scratch_bytes(int32_t rows) const { return rdm_policy_scratch(get(), rows); }
@@ -28,13 +28,13 @@ class Policy {
   std::vector<rdm_tensor> tensors() const {
     std::vector<rdm_tensor> out;
     rdm_tensor t;
-    for (int32_t i = 0; rdm_policy_tensor(get(), i, &t) == RDM_OK; ++i) out.push_back(t);
+    for (int32_t i = 0; rdm_policy_tensor_at(get(), i, &t) == RDM_OK; ++i) out.push_back(t);
     return out;
   }
   // [rows][cols] values.
   std::vector<float> read(const rdm_tensor& t) const {
     std::vector<float> out(static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols));
-    check(rdm_policy_tensor_read(get(), t.name, out.data(), out.size()));
+    check(rdm_policy_get_tensor(get(), t.name, out.data(), out.size()));
     return out;
   }
   void check_fits(const rdm_spec& spec) const { check(rdm_policy_check(get(), &spec)); }

@@ -20,7 +20,7 @@ typedef struct rdm_task { /* a task with its default options */
   int32_t num_fields;       /* for rdm_task_field                                             */
   int32_t num_options;      /* for rdm_task_option                                            */
   int32_t num_cameras;      /* for rdm_task_camera                                            */
-  int32_t num_defaults;     /* for rdm_task_default                                           */
+  int32_t num_defaults;     /* for rdm_task_default_at                                           */
 } rdm_task;
 typedef struct rdm_cost {   /* frozen layout: a cost column */
   const char *name;         /* column 0 is "cost", the paper's                                */
@@ -47,8 +47,8 @@ RDM_API rdm_result rdm_task_option(int32_t task, int32_t i,
                                    rdm_option_info *out); /* i < num_options */
 RDM_API rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera *out);  /* i < num_cameras */
 /* The task's own defaults of agent options, to be given as rdm_agent_config.defaults. */
-RDM_API rdm_result rdm_task_default(int32_t task, int32_t i,
-                                    rdm_option *out); /* i < num_defaults */
+RDM_API rdm_result rdm_task_default_at(int32_t task, int32_t i,
+                                       rdm_option *out); /* i < num_defaults */
 
 typedef struct rdm_robot { /* a robot description */
   uint32_t struct_size;     /* in: bytes                                                      */
@@ -128,34 +128,35 @@ RDM_API rdm_result rdm_pool_config_init(rdm_pool_config *c, size_t size);
 
 /* What a pool of this config would be: OK where rdm_pool_create would be, memory aside, else its
  * error. Makes the task to ask it, and no world; nothing is kept. */
-RDM_API rdm_result rdm_pool_spec(const rdm_pool_config *c, rdm_spec *io);
+RDM_API rdm_result rdm_pool_config_spec(const rdm_pool_config *c, rdm_spec *io);
 /* Bytes that creation takes: `ours` from the alloc hook, exact; `engines` by the physics engine
  * from the C library, an estimate. Either may be NULL. */
-RDM_API rdm_result rdm_pool_memory(const rdm_pool_config *c, size_t *ours, size_t *engines);
+RDM_API rdm_result rdm_pool_config_memory(const rdm_pool_config *c, size_t *ours, size_t *engines);
 /* Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step. */
 RDM_API rdm_result rdm_pool_create(rdm_pool **out, const rdm_pool_config *c);
 RDM_API void rdm_pool_destroy(rdm_pool *p);                 /* NULL is fine */
 RDM_API const char *rdm_pool_error(const rdm_pool *p); /* last failure on this handle; "" at
                                                         * first */
 RDM_API rdm_result rdm_pool_get_spec(const rdm_pool *p,
-                                     rdm_spec *io); /* as rdm_pool_spec, of a pool */
+                                     rdm_spec *io); /* as rdm_pool_config_spec, of a pool */
 RDM_API rdm_result rdm_pool_field(const rdm_pool *p, int32_t i,
                                   rdm_field *out); /* i < num_fields */
 /* Bounds *low and *high that every entry of field i keeps; NAN: none. */
 RDM_API rdm_result rdm_pool_field_bounds(const rdm_pool *p, int32_t i, float *low, float *high);
 /* Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of
  * RDM_BASELINE_HOLD. */
-RDM_API rdm_result rdm_pool_initial_mean(const rdm_pool *p, float *action);
+RDM_API rdm_result rdm_pool_get_initial_mean(const rdm_pool *p, float *action);
 /* Option i of the task as this pool has it: key and the value as text [RDM_TEXT_SIZE], which reads
- * back exactly. RANGE for a text that is longer: rdm_pool_settings has it. Behind the task's
+ * back exactly. RANGE for a text that is longer: rdm_pool_get_settings has it. Behind the task's
  * num_options come keys with a FIELD that were set, in order; RANGE ends them. */
-RDM_API rdm_result rdm_pool_option(const rdm_pool *p, int32_t i, const char **key, char *text);
+RDM_API rdm_result rdm_pool_option_at(const rdm_pool *p, int32_t i, const char **key, char *text);
 /* All options as text [capacity] of lines key=value: given as settings they make the same pool
  * again. */
-RDM_API rdm_result rdm_pool_settings(const rdm_pool *p, char *text, size_t capacity, size_t *size);
+RDM_API rdm_result rdm_pool_get_settings(const rdm_pool *p, char *text, size_t capacity,
+                                         size_t *size);
 
 /* Rows of world i begin at i * width; 64-byte aligned; the same addresses until destroy or bind.
- * The library writes them inside reset, step and set_state only. */
+ * The library writes them inside reset, step and read_state only. */
 typedef struct rdm_buffers {
   uint32_t struct_size;      /* in: bytes */
   uint32_t reserved;         /* 0 */
@@ -176,11 +177,11 @@ typedef struct rdm_buffers {
   uint32_t *episode_status;  /* [num_envs] all RDM_STATUS_* of the episode; the finished one's
                               * where one ended */
 } rdm_buffers;
-RDM_API rdm_result rdm_pool_buffers(const rdm_pool *p, rdm_buffers *io); /* borrowed pointers */
+RDM_API rdm_result rdm_pool_get_buffers(const rdm_pool *p, rdm_buffers *io); /* borrowed pointers */
 /* Non-NULL pointers of b take the place of the pool's (sizes as above, at least 4-byte aligned;
  * they must outlive the pool or the next bind); NULL ones keep what is there. Contents are copied
  * over. */
-RDM_API rdm_result rdm_pool_bind(rdm_pool *p, const rdm_buffers *b);
+RDM_API rdm_result rdm_pool_set_buffers(rdm_pool *p, const rdm_buffers *b);
 
 /* Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new
  * streams: the seed alone, whatever the world's number, so that seed s gives what a pool of one
@@ -208,24 +209,25 @@ enum rdm_baseline_kind { RDM_BASELINE_ZERO = 0, RDM_BASELINE_HOLD = 1, RDM_BASEL
 RDM_API rdm_result rdm_pool_baseline(rdm_pool *p, int32_t kind);
 
 /* The whole state of world env, exact: a pool of the same task and options that sets it goes on
- * with the same bytes. set_state also rewrites obs and clears the other rows of that world. env -1:
- * all worlds in one block. FORMAT for bytes that are not whole, of another task or options, or hold
- * what no world can have: nothing changes. */
+ * with the same bytes. read_state also rewrites obs and clears the other rows of that world. env
+ * -1: all worlds in one block. FORMAT for bytes that are not whole, of another task or options, or
+ * hold what no world can have: nothing changes. */
 RDM_API rdm_result rdm_pool_state_size(const rdm_pool *p, int32_t env, size_t *bytes);
-RDM_API rdm_result rdm_pool_get_state(const rdm_pool *p, int32_t env, void *bytes, size_t capacity,
-                                      size_t *size); /* to bytes [capacity]; *size is how many
-                                                      * there are */
-RDM_API rdm_result rdm_pool_set_state(rdm_pool *p, int32_t env, const void *bytes,
-                                      size_t size); /* of bytes [size] */
-RDM_API rdm_result rdm_pool_hash(const rdm_pool *p, int32_t env,
-                                 uint64_t *hash); /* of the state; -1: all */
+RDM_API rdm_result rdm_pool_write_state(const rdm_pool *p, int32_t env, void *bytes,
+                                        size_t capacity, size_t *size); /* to bytes [capacity];
+                                                                         * *size is how many
+                                                                         * there are */
+RDM_API rdm_result rdm_pool_read_state(rdm_pool *p, int32_t env, const void *bytes,
+                                       size_t size); /* of bytes [size] */
+RDM_API rdm_result rdm_pool_get_hash(const rdm_pool *p, int32_t env,
+                                     uint64_t *hash); /* of the state; -1: all */
 
 typedef struct rdm_shape {   /* frozen layout: what the scene is made of, the same for all worlds */
   const char *name;          /* "right.ff_distal" */
   float size[3];             /* m: radius | radius, half length along z | half sizes (hull: of
                               * its box) */
-  int32_t kind;              /* RDM_SPHERE ... RDM_HULL; plane: the half space below z = 0 of its
-                              * frame */
+  int32_t kind;              /* RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below
+                              * z = 0 of its frame */
   uint8_t color[4];          /* red, green, blue, 255 */
   int32_t fixed;             /* flag: never moves */
 } rdm_shape;
@@ -268,7 +270,7 @@ typedef struct rdm_pool_stats { /* counts since create */
 } rdm_pool_stats;
 RDM_API rdm_result rdm_pool_get_stats(const rdm_pool *p, rdm_pool_stats *io); /* fills io */
 /* World dst_env of dst (-1: all of them) becomes what world src_env of src is, at the price of
- * copying memory: afterwards it goes on with the bytes that set_state(get_state) would give, and
+ * copying memory: afterwards it goes on with the bytes that read_state(write_state) would give, and
  * its rows (but action, and those of rdm_sensors) are the other's. Pools of the same task and
  * options, of any sizes, threads and seeds; src may be dst. ARGUMENT for pools that differ, RANGE
  * for worlds that are not there: nothing changes. No heap. */

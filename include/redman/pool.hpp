@@ -23,7 +23,7 @@ class Pool {
   explicit Pool(const rdm_pool_config& config)
       : handle_(made(rdm_pool_create, &config)), num_envs_(static_cast<size_t>(config.num_envs)) {
     check(rdm_pool_get_spec(get(), &spec_));
-    check(rdm_pool_buffers(get(), &buffers_));
+    check(rdm_pool_get_buffers(get(), &buffers_));
   }
   rdm_pool* get() const { return handle_.get(); }
   const rdm_spec& spec() const { return spec_; }
@@ -46,8 +46,8 @@ class Pool {
   }  // of the episode so far
 
   void bind(const rdm_buffers& b) {
-    check(rdm_pool_bind(get(), &b));
-    check(rdm_pool_buffers(get(), &buffers_));
+    check(rdm_pool_set_buffers(get(), &b));
+    check(rdm_pool_get_buffers(get(), &buffers_));
   }
   void reset(const uint64_t* seeds = nullptr, const uint8_t* mask = nullptr) {
     check(rdm_pool_reset(get(), seeds, mask));
@@ -60,22 +60,22 @@ class Pool {
     size_t size = 0;
     check(rdm_pool_state_size(get(), env, &size));
     Bytes bytes(size);
-    check(rdm_pool_get_state(get(), env, bytes.data(), bytes.size(), &size));
+    check(rdm_pool_write_state(get(), env, bytes.data(), bytes.size(), &size));
     return bytes;
   }
   void set_state(const Bytes& bytes, int32_t env = -1) {
-    check(rdm_pool_set_state(get(), env, bytes.data(), bytes.size()));
+    check(rdm_pool_read_state(get(), env, bytes.data(), bytes.size()));
   }
   uint64_t hash(int32_t env = -1) const {
     uint64_t h = 0;
-    check(rdm_pool_hash(get(), env, &h));
+    check(rdm_pool_get_hash(get(), env, &h));
     return h;
   }
   // All options as lines key=value: as pool_config's settings they make the same pool.
-  std::string settings() const { return text_of(rdm_pool_settings, static_cast<const rdm_pool*>(get())); }
+  std::string settings() const { return text_of(rdm_pool_get_settings, static_cast<const rdm_pool*>(get())); }
   std::vector<float> initial_mean() const {
     std::vector<float> mean(static_cast<size_t>(spec_.action_dim));
-    check(rdm_pool_initial_mean(get(), mean.data()));
+    check(rdm_pool_get_initial_mean(get(), mean.data()));
     return mean;
   }
   rdm_pool_stats stats() const {

@@ -20,9 +20,9 @@ extern "C" {
  *                                // e, policy and saved state are the same on each rank
  *
  * Configs are the same on all ranks but for num_threads, hooks and texts. All of them make the same
- * calls of rollout, act with RDM_SAMPLE, record, update, save with memory, rdm_checkpoint_write:
- * these exchange messages, in one order. Loading does not: each takes its own part. A state that
- * was saved by some ranks goes on with any other number that `blocks` allows.
+ * calls of rollout, act with RDM_ACT_SAMPLE, record, update, save with memory,
+ * rdm_checkpoint_write: these exchange messages, in one order. Loading does not: each takes its own
+ * part. A state that was saved by some ranks goes on with any other number that `blocks` allows.
  *   - CANCELLED: a hook failed (a rank is gone), or rdm_agent_cancel was called on one rank, which
  *     stops all of them at one place. The handles are good; after a failed hook, what ranks have
  *     learned may differ: load a state that was saved.
@@ -48,12 +48,12 @@ typedef struct rdm_ranks {  /* who learns together, and how messages go from one
   int32_t (*swap)(void *user, int32_t partner, const void *mine, size_t bytes, void *theirs);
 } rdm_ranks;
 /* As rdm_agent_create, of a rank's agent: c.num_envs worlds of ranks * c.num_envs. Takes more
- * memory than rdm_agent_memory says: a message, half a MiB at most where rows are no wider, for
- * each rank. The hooks must outlive the agent. */
+ * memory than rdm_agent_config_memory says: a message, half a MiB at most where rows are no wider,
+ * for each rank. The hooks must outlive the agent. */
 RDM_API rdm_result rdm_agent_create_ranked(rdm_agent **out, const rdm_agent_config *c,
                                            const rdm_ranks *ranks);
 /* Worlds of the pool are numbers rank * num_envs on of ranks * num_envs: of their streams, and of a
- * state of all worlds (env -1), from which set_state takes them. Before the first reset; STATE
+ * state of all worlds (env -1), from which read_state takes them. Before the first reset; STATE
  * afterwards. rdm_agent_rollout needs agent and pool of one rank. */
 RDM_API rdm_result rdm_pool_set_rank(rdm_pool *p, int32_t rank, int32_t ranks);
 

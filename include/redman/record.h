@@ -97,7 +97,7 @@ typedef struct rdm_recording_rows {
                                * begins one */
   int64_t num_states;         /* count */
   const int64_t *state_row;   /* [num_states] row before which the world had the state, ascending */
-  const uint8_t *state;       /* [num_states][state_bytes] what rdm_pool_set_state takes */
+  const uint8_t *state;       /* [num_states][state_bytes] what rdm_pool_read_state takes */
   const int16_t *points;      /* [rows][num_points][3] mm, world, before the action; NULL without
                                * clouds */
   const uint8_t *point_class; /* [rows][num_points] as of rdm_sensors; to append, NULL: 0 */
@@ -129,11 +129,11 @@ RDM_API rdm_result rdm_recording_clear(rdm_recording *r);         /* no rows; me
 /* A file of arrays, .npz, that numpy.load opens: obs, action, label, reward, cost, terminated,
  * truncated, success, episode, state_row, state, points, point_class; task, layout_hash, format.
  * Replaced atomically. */
-RDM_API rdm_result rdm_recording_save_file(const rdm_recording *r, const char *path);
+RDM_API rdm_result rdm_recording_write_file(const rdm_recording *r, const char *path);
 /* Makes one of such a file, also as numpy.savez writes it, or of one that `redman rollout --record`
  * wrote. NOT_FOUND; FORMAT when a checksum, a shape or a number is wrong, VERSION_MISMATCH for a
  * newer one. */
-RDM_API rdm_result rdm_recording_load_file(rdm_recording **out, const char *path);
+RDM_API rdm_result rdm_recording_read_file(rdm_recording **out, const char *path);
 
 typedef struct rdm_clone_config { /* how rdm_agent_clone learns */
   uint32_t struct_size;       /* bytes, set by rdm_clone_config_init */
@@ -181,7 +181,7 @@ RDM_API rdm_result rdm_agent_set_recording(rdm_agent *a, const rdm_recording *r)
  * which count for `samples` (2 to 10^12) observations; its optimiser begins anew. STATE inside a
  * horizon; ARGUMENT where layout, hidden layers, activation, std_mode, actor_obs, encoder or
  * normalize_obs differ: the text says which, and nothing changes. */
-RDM_API rdm_result rdm_agent_load_policy(rdm_agent *a, const rdm_policy *p, double samples);
+RDM_API rdm_result rdm_agent_set_policy(rdm_agent *a, const rdm_policy *p, double samples);
 /* Worlds begin an episode, with probability `share` (0 to 1), at a state of the recording, drawn
  * from a stream of their own: all other draws are what they are without. Such an episode has the
  * steps that are left; sums begin at 0. States are copied, and each is tried: FORMAT, and nothing

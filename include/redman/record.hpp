@@ -29,7 +29,7 @@ class Recording {
     c.capacity = capacity;
     handle_ = Owner(made(rdm_recording_create, static_cast<const rdm_recording_config*>(&c)));
   }
-  explicit Recording(const char* path) : handle_(made(rdm_recording_load_file, path)) {}
+  explicit Recording(const char* path) : handle_(made(rdm_recording_read_file, path)) {}
 
   rdm_recording* get() const { return handle_.get(); }
   explicit operator bool() const { return get() != nullptr; }
@@ -60,7 +60,7 @@ class Recording {
     return dropped;
   }
   void clear() { check(rdm_recording_clear(get())); }
-  void save(const char* path) const { check(rdm_recording_save_file(get(), path)); }
+  void save(const char* path) const { check(rdm_recording_write_file(get(), path)); }
 
  private:
   using Owner = Handle<rdm_recording, rdm_recording_destroy>;

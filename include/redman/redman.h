@@ -9,7 +9,7 @@
  *   rdm_pool_config_init(&c, sizeof c);
  *   c.task = "hand_over_safe_finger";  c.num_envs = 16;
  *   if (rdm_pool_create(&p, &c)) puts(rdm_last_error());
- *   rdm_pool_buffers(p, &b);
+ *   rdm_pool_get_buffers(p, &b);
  *   rdm_pool_reset(p, NULL, NULL);
  *   for (...) { fill b.action;  rdm_pool_step(p);  read b.obs, b.reward, b.cost, ... }
  *   rdm_pool_destroy(p);
@@ -48,6 +48,19 @@
  *     ODE and libccd were compiled without fused multiply-adds (rdm_build.differs), learners on
  *     every machine with the same rdm_build.kernels.
  *
+ * Words: create and destroy make and end; read and write are for bytes and files, get and set for
+ * values that are copied; _at(i) is row i of a list, which RANGE ends; _config_ functions answer
+ * what a config would give. A name that changes is kept in deprecated.h for one minor release.
+ *
+ * Promises of 1.x, from 1.0 on. A program that was compiled against the stable headers of 1.a runs
+ * with the library of every 1.b, b >= a, and compiles with its headers, but for names that were
+ * deprecated one minor release before. Functions, enumerators and members at the ends of structs
+ * may be added. Policies, states of agents, checkpoints, recordings, maps and robot files that 1.a
+ * wrote are read by every 1.b, b >= a; states of worlds by the version that wrote them. No promise:
+ * the texts of errors, the order of options in a list, results to the byte beyond one version.
+ * Experimental headers may change in any minor release, and the loader refuses a program of another
+ * one.
+ *
  * How to read the declarations, for generators of bindings (tests/rules/check_contract.py holds
  * them to it):
  *   - `const T *x` is read, `T *x` is written. `x [rows][obs_dim]` in the comment of the function,
@@ -65,7 +78,7 @@
  *   - Text and bytes of any length come as (T *x, size_t capacity, size_t *size): x NULL asks for
  *     the size alone, a capacity below it is RANGE. The size of a text is without its 0, for which
  *     the capacity must have room.
- */
+ * / */
 #ifndef REDMAN_H
 #define REDMAN_H
 #include <redman/base.h>   /* results, version, hooks, options          stable since 1.0 */
@@ -85,4 +98,9 @@
 #include <redman/robot.h>  /* robots of your own                                         */
 #include <redman/object.h> /* objects of your own                                        */
 #include <redman/task.h>   /* tasks of your own                                          */
+#endif
+
+/* The names of 0.1, which are deprecated. */
+#if !defined(RDM_NO_DEPRECATED)
+#include <redman/deprecated.h>
 #endif

@@ -8,8 +8,8 @@ extern "C" {
 #endif
 
 /* A robot is a tree of links on a root, as plain arrays; the library's own are described in the
- * same way (rdm_robot_get, rdm_robot_link_at ...). Frames: a link's frame is that of its joint; it
- * stands at (p, q) in its parent's frame while the joint is at 0, and turns about (slides along)
+ * same way (rdm_robot_get_def, rdm_robot_link_at ...). Frames: a link's frame is that of its joint;
+ * it stands at (p, q) in its parent's frame while the joint is at 0, and turns about (slides along)
  * `axis` of its own. A hand is given as the right one: fingers and palm by their rows; options
  * hand= and arm= of the hand tasks take robots by name.
  *
@@ -18,20 +18,20 @@ extern "C" {
  *   d.name = "my_hand";  d.kind = RDM_ROBOT_HAND;  d.links = links;  d.num_links = 9; ...
  *   if (rdm_robot_create(&robot, &d)) puts(rdm_last_error());          names the row and the number
  *   config.settings = "hand=my_hand\narm=ur5e";  ... rdm_pool_create(&p, &config) ...
- *   rdm_robot_remove(robot);
+ *   rdm_robot_destroy(robot);
  *
  * Robots belong to the process; any number of threads may look while others add and remove. */
 enum rdm_robot_kind { RDM_ROBOT_OTHER = 0, RDM_ROBOT_HAND = 1, RDM_ROBOT_ARM = 2 }; /* of a robot */
-enum rdm_joint_kind { RDM_REVOLUTE = 0, RDM_PRISMATIC = 1 };  /* of a joint */
-enum rdm_robot_row { RDM_ROOT_LINK = -1, RDM_NO_LINK = -2 };  /* in the place of a row of links */
-#define RDM_ROBOT_LINKS 64   /* links of a robot, at most */
-#define RDM_ROBOT_KNOTS 4    /* of a curve, at most */
+enum rdm_joint_kind { RDM_JOINT_REVOLUTE = 0, RDM_JOINT_PRISMATIC = 1 };  /* of a joint */
+enum rdm_link_row { RDM_LINK_ROOT = -1, RDM_LINK_NONE = -2 };  /* in the place of a row of links */
+#define RDM_MAX_LINKS 64   /* links of a robot, at most */
+#define RDM_MAX_KNOTS 4    /* of a curve, at most */
 /* frozen layout: a link and the joint that moves it; m, rad, kg, N, s */
 typedef struct rdm_robot_link {
   const char *name;        /* of the link, unique */
   const char *joint;       /* of the joint, unique */
-  int32_t parent;          /* an earlier row, RDM_ROOT_LINK */
-  int32_t kind;            /* RDM_REVOLUTE, RDM_PRISMATIC */
+  int32_t parent;          /* an earlier row, RDM_LINK_ROOT */
+  int32_t kind;            /* RDM_JOINT_REVOLUTE, RDM_JOINT_PRISMATIC */
   double p[3];             /* position in the parent's frame with the joint at 0 */
   double q[4];             /* rotation, unit */
   double axis[3];          /* in the link's own frame, unit */
@@ -49,8 +49,9 @@ typedef struct rdm_robot_link {
 } rdm_robot_link;
 typedef struct rdm_robot_shape { /* frozen layout: what of a link can be touched and seen */
   const char *name;        /* unique */
-  int32_t link;            /* row, RDM_ROOT_LINK */
-  int32_t kind;            /* RDM_SPHERE, RDM_CAPSULE, RDM_BOX, RDM_CYLINDER, RDM_ELLIPSOID */
+  int32_t link;            /* row, RDM_LINK_ROOT */
+  int32_t kind;            /* RDM_SHAPE_SPHERE, RDM_SHAPE_CAPSULE, RDM_SHAPE_BOX,
+                            * RDM_SHAPE_CYLINDER, RDM_SHAPE_ELLIPSOID */
   double size[3];          /* as rdm_shape, m */
   double p[3];             /* position in the link's frame, m */
   double q[4];             /* rotation, unit */
@@ -72,7 +73,7 @@ typedef struct rdm_robot_coupling {
 typedef struct rdm_robot_curve {
   int32_t link;            /* row */
   int32_t driver;          /* row whose command it is: the same, or that of the motor */
-  int32_t num_knots;       /* 2 to RDM_ROBOT_KNOTS */
+  int32_t num_knots;       /* 2 to RDM_MAX_KNOTS */
   int32_t reserved;        /* 0 */
   double command[4];       /* ascending */
   double angle[4];         /* in the joint's range, rad (m) */
@@ -109,7 +110,7 @@ typedef struct rdm_robot_def { /* a whole robot; the arrays are copied by rdm_ro
   const double *folded;    /* [num_links] of a hand: fingers straight, thumb across the palm;
                             * NULL */
   const float *closed;     /* [num_commands] of a hand: commands that close it around 5 cm; NULL */
-  int32_t num_links;       /* 1 to RDM_ROBOT_LINKS */
+  int32_t num_links;       /* 1 to RDM_MAX_LINKS */
   int32_t num_shapes;      /* count */
   int32_t num_pairs;       /* count */
   int32_t num_couplings;   /* count */
@@ -128,8 +129,8 @@ typedef struct rdm_robot_def { /* a whole robot; the arrays are copied by rdm_ro
   double flange_p[3];      /* of arms: the frame, z out of the arm, that carries a hand; in
                             * flange_link's frame */
   double flange_q[4];      /* rotation */
-  int32_t flange_link;     /* row, RDM_NO_LINK */
-  int32_t palm_link;       /* row, RDM_ROOT_LINK, RDM_NO_LINK */
+  int32_t flange_link;     /* row, RDM_LINK_NONE */
+  int32_t palm_link;       /* row, RDM_LINK_ROOT, RDM_LINK_NONE */
   double palm_p[3];        /* centre of the palm's surface, in palm_link's frame, m */
   double palm_normal[3];   /* unit: out of the palm */
   double palm_fingers[3];  /* unit: the way the fingers point; of a gripper any in the palm's
@@ -144,14 +145,14 @@ RDM_API rdm_result rdm_robot_def_init(rdm_robot_def *def,
  * triangle rule. */
 RDM_API rdm_result rdm_robot_create(int32_t *out, const rdm_robot_def *def);
 /* Pools that use it keep it. ARGUMENT for the library's own. */
-RDM_API rdm_result rdm_robot_remove(int32_t robot);
+RDM_API rdm_result rdm_robot_destroy(int32_t robot);
 /* A hand on an arm as a robot of its own, under `name`: its root and the arm's last link are one
  * body. The hand is turned by `yaw` (rad) about the flange's z and stands off by `adapter` (m);
  * left: its mirror image. UNSUPPORTED: no arm, no hand. */
-RDM_API rdm_result rdm_robot_mount(int32_t *out, const char *name, int32_t arm, int32_t hand,
-                                   double yaw, double adapter, int32_t left);
+RDM_API rdm_result rdm_robot_create_mounted(int32_t *out, const char *name, int32_t arm,
+                                            int32_t hand, double yaw, double adapter, int32_t left);
 /* What rdm_robot_create took, but for the arrays, which are NULL here. */
-RDM_API rdm_result rdm_robot_get(int32_t robot, rdm_robot_def *io);
+RDM_API rdm_result rdm_robot_get_def(int32_t robot, rdm_robot_def *io);
 RDM_API rdm_result rdm_robot_link_at(int32_t robot, int32_t i,
                                      rdm_robot_link *out); /* i < num_links */
 RDM_API rdm_result rdm_robot_shape_at(int32_t robot, int32_t i,
@@ -165,10 +166,10 @@ RDM_API rdm_result rdm_robot_curve_at(int32_t robot, int32_t i,
 RDM_API rdm_result rdm_robot_finger_at(int32_t robot, int32_t i,
                                        rdm_robot_finger *out); /* i < num_fingers */
 /* Numbers of the robot's poses and commands: commands [num_commands], home [num_links],
- * folded [num_links] and closed [num_commands] may be NULL. The counts are those of rdm_robot_get;
- * folded and closed are 0 where it has none. */
-RDM_API rdm_result rdm_robot_poses_of(int32_t robot, int32_t *commands, double *home,
-                                      double *folded, float *closed);
+ * folded [num_links] and closed [num_commands] may be NULL. The counts are those of
+ * rdm_robot_get_def; folded and closed are 0 where it has none. */
+RDM_API rdm_result rdm_robot_get_postures(int32_t robot, int32_t *commands, double *home,
+                                          double *folded, float *closed);
 /* For joints q [num_links], in the root frame: poses [num_links][7] of the links, position (m) and
  * quaternion. flange [7], tips [num_fingers][3] and palm [7] (origin at hold_p, y into the palm, z
  * as the fingers point) may be NULL. */

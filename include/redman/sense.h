@@ -16,7 +16,7 @@ extern "C" {
  *   rdm_option seen[] = {{"modality", "points", 0}, {"points", NULL, 1024}};
  *   config.options = seen;  config.num_options = 2;  ... rdm_pool_create(&p, &config) ...
  *   rdm_sensors s = {.struct_size = sizeof s};
- *   rdm_pool_sensors(p, &s);
+ *   rdm_pool_get_sensors(p, &s);
  *   for (...) { rdm_pool_step(p);  use s.points + 3 * s.num_points * env; }
  * / */
 /* the same addresses until destroy; NULL where the modality is off */
@@ -51,7 +51,7 @@ typedef struct rdm_sensors {
   const uint8_t *point_color;     /* [num_envs][num_points][3] of what a point lies on, sRGB, 0
                                    * for nothing; NULL without option point_color */
 } rdm_sensors;
-RDM_API rdm_result rdm_pool_sensors(const rdm_pool *p, rdm_sensors *io); /* fills io */
+RDM_API rdm_result rdm_pool_get_sensors(const rdm_pool *p, rdm_sensors *io); /* fills io */
 /* The i-th camera by whose name this pool can look: the task's, then those that ride on its robots
  * ("right_palm" and "left_palm" of hands), then those for clouds. RANGE ends. */
 RDM_API rdm_result rdm_pool_camera(const rdm_pool *p, int32_t i, rdm_camera *out);
@@ -60,10 +60,10 @@ RDM_API rdm_result rdm_pool_camera(const rdm_pool *p, int32_t i, rdm_camera *out
 RDM_API rdm_result rdm_pool_sensor_camera(const rdm_pool *p, int32_t cloud, int32_t i,
                                           rdm_camera *out);
 
-/* Corners, points [capacity][3], of shape i, an RDM_HULL, in its own frame, m. Writes up to
+/* Corners, points [capacity][3], of shape i, an RDM_SHAPE_HULL, in its own frame, m. Writes up to
  * capacity of them; *count is how many there are. */
-RDM_API rdm_result rdm_pool_hull(const rdm_pool *p, int32_t i, float *points, int32_t capacity,
-                                 int32_t *count);
+RDM_API rdm_result rdm_pool_get_hull(const rdm_pool *p, int32_t i, float *points, int32_t capacity,
+                                     int32_t *count);
 
 /* `wanted` of points [count][3] that lie furthest from each other: their numbers, in order of
  * choice, to chosen [wanted]. `start` is the first. Exact. scratch [scratch_bytes]:
@@ -71,8 +71,8 @@ RDM_API rdm_result rdm_pool_hull(const rdm_pool *p, int32_t i, float *points, in
 RDM_API rdm_result rdm_sample_furthest(const float *points, int32_t count, int32_t wanted,
                                        int32_t start, int32_t *chosen, void *scratch,
                                        size_t scratch_bytes);
-RDM_API size_t rdm_sample_scratch(int32_t count); /* bytes, at any address; 0: count is
-                                                   * outside [1, 2^22] */
+RDM_API size_t rdm_sample_scratch(int32_t count); /* bytes, at any address; 0: count is outside
+                                                   * [1, 2^22] */
 
 /* ---- eyes: agents and policies that see points ----------------------------------------------- */
 /* With the agent option `encoder` ("64,128") a PointNet makes features of a cloud for the actor,
@@ -80,7 +80,7 @@ RDM_API size_t rdm_sample_scratch(int32_t count); /* bytes, at any address; 0: c
  * see rows alone. Of rdm_sensors:
  *
  *   rdm_points seen = {.struct_size = sizeof seen, .num_points = s.num_points, .points = s.points};
- *   rdm_agent_act_points(agent, b.obs, &seen, RDM_SAMPLE, b.action);
+ *   rdm_agent_act_points(agent, b.obs, &seen, RDM_ACT_SAMPLE, b.action);
  *   rdm_pool_step(pool);
  *   rdm_agent_record(agent, &t);
  *

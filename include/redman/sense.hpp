@@ -1,7 +1,7 @@
 // redman/sense.hpp: what worlds see, and agents and policies that see points. C++17, experimental.
 //
 //   const rdm_points seen = redman::points(redman::sensors(pool));
-//   redman::act(agent, pool.obs().data(), seen, RDM_SAMPLE, pool.action().data());
+//   redman::act(agent, pool.obs().data(), seen, RDM_ACT_SAMPLE, pool.action().data());
 #ifndef REDMAN_SENSE_HPP
 #define REDMAN_SENSE_HPP
 #include <redman/sense.h>
@@ -14,7 +14,7 @@ namespace redman {
 // What the pool's worlds see; addresses stay until the pool ends.
 inline rdm_sensors sensors(const Pool& pool) {
   auto s = sized<rdm_sensors>();
-  check(rdm_pool_sensors(pool.get(), &s));
+  check(rdm_pool_get_sensors(pool.get(), &s));
   return s;
 }
 // [num_points][3] of world env; empty when the modality is off.

@@ -16,13 +16,13 @@ extern "C" {
  *   static rdm_result build(void *user, rdm_scene *scene, void *instance) {
  *     struct ids *ids = instance;
  *     if (rdm_scene_add_body(scene, &cup, &ids->cup))
- *       return rdm_fail(RDM_ARGUMENT, "the cup cannot be");
+ *       return rdm_fail(RDM_ERROR_ARGUMENT, "the cup cannot be");
  *     ... }
  *   ...
  *   rdm_task_def d;  int32_t task;
  *   rdm_task_def_init(&d, sizeof d);
  *   d.name = "press";  d.build = build;  d.reset = reset; ...
- *   if (rdm_task_register(&task, &d)) puts(rdm_last_error());
+ *   if (rdm_task_create(&task, &d)) puts(rdm_last_error());
  *   if (rdm_task_check("press", NULL, NULL, 0)) puts(rdm_last_error());  the first broken promise
  *   config.task = "press"; ... rdm_pool_create(&p, &config) ...
  *
@@ -89,16 +89,17 @@ enum rdm_scene_part {
   RDM_SCENE_LINK = 2,   /* of all robots, robot by robot; joint i moves link i */
   RDM_SCENE_JOINT = 3,
   RDM_SCENE_SHAPE = 4,  /* as rdm_pool_shape: robots, bodies, those that stand still */
-  RDM_SCENE_SENSOR = 5, /* the link of a fingertip, for rdm_world_sensor */
+  RDM_SCENE_SENSOR = 5, /* the link of a fingertip, for rdm_world_get_sensor */
   RDM_SCENE_MATERIAL = 6 /* "default" is 0 */
 };
 /* Value of the pool's option `key`: *value of a number, integer or flag, *text of a text.
  * NOT_FOUND, ARGUMENT. */
-RDM_API rdm_result rdm_scene_number(rdm_scene *scene, const char *key, double *value);
-RDM_API rdm_result rdm_scene_text(rdm_scene *scene, const char *key, const char **text);
+RDM_API rdm_result rdm_scene_get_number(rdm_scene *scene, const char *key, double *value);
+RDM_API rdm_result rdm_scene_get_text(rdm_scene *scene, const char *key, const char **text);
 /* Bounds *low and *high of a number or integer whose row takes a range (choices "a..b"), for reset
  * to draw from; equal: a number. */
-RDM_API rdm_result rdm_scene_range(rdm_scene *scene, const char *key, double *low, double *high);
+RDM_API rdm_result rdm_scene_get_range(rdm_scene *scene, const char *key, double *low,
+                                       double *high);
 typedef struct rdm_contact_law { /* how two materials meet beside their friction */
   uint32_t struct_size;    /* bytes, set by rdm_contact_law_init */
   int32_t pyramid;         /* flag, of soft contacts: friction by edges, as MuJoCo has it by
@@ -117,13 +118,13 @@ typedef struct rdm_contact_law { /* how two materials meet beside their friction
 } rdm_contact_law;
 RDM_API rdm_result rdm_contact_law_init(rdm_contact_law *law,
                                         size_t size); /* defaults into the first `size` bytes */
-enum rdm_friction { RDM_PASSES = -1 }; /* in the place of a coefficient */
+enum rdm_friction { RDM_FRICTION_PASSES = -1 }; /* in the place of a coefficient */
 /* What is added gets the next number. A friction is that of two materials, or of one with itself; 1
- * unless said; RDM_PASSES: they go through each other. Gravity [3] is in the place of the option's.
- * The texts of errors name the thing; all is STATE after the first find, touch or joint. A scene
- * that could not be completed there, or in the end, stays so: all later calls on it, and what
- * `build` is called for, have that error. A robot that is neither `own` nor given by number is an
- * ARGUMENT. */
+ * unless said; RDM_FRICTION_PASSES: they go through each other. Gravity [3] is in the place of the
+ * option's. The texts of errors name the thing; all is STATE after the first find, touch or joint.
+ * A scene that could not be completed there, or in the end, stays so: all later calls on it, and
+ * what `build` is called for, have that error. A robot that is neither `own` nor given by number is
+ * an ARGUMENT. */
 RDM_API rdm_result rdm_scene_add_material(rdm_scene *scene,
                                           const char *name); /* "default" is one, 15 more */
 RDM_API rdm_result rdm_scene_set_friction(rdm_scene *scene, const char *a, const char *b,
@@ -131,12 +132,13 @@ RDM_API rdm_result rdm_scene_set_friction(rdm_scene *scene, const char *a, const
 /* RANGE, ARGUMENT: the text names the field. Making the pool is UNSUPPORTED with engine=ode where a
  * law has more than a restitution. Fingertips feel the forces of such contacts, not the torques of
  * turning. */
-RDM_API rdm_result rdm_scene_set_contact(rdm_scene *scene, const char *a, const char *b,
-                                         const rdm_contact_law *law);
+RDM_API rdm_result rdm_scene_set_contact_law(rdm_scene *scene, const char *a, const char *b,
+                                             const rdm_contact_law *law);
 RDM_API rdm_result rdm_scene_set_gravity(rdm_scene *scene, const double gravity[3]); /* m/s2 */
 RDM_API rdm_result rdm_scene_set_feedforward(rdm_scene *scene); /* worlds take
                                                                  * rdm_world_set_feedforward */
-RDM_API rdm_result rdm_scene_set_adjustable(rdm_scene *scene);  /* worlds take rdm_world_scale */
+RDM_API rdm_result rdm_scene_set_adjustable(rdm_scene *scene); /* worlds take
+                                                                * rdm_world_set_factors */
 RDM_API rdm_result rdm_scene_add_robot(rdm_scene *scene, const rdm_scene_robot *robot,
                                        int32_t *index); /* index: NULL */
 RDM_API rdm_result rdm_scene_add_body(rdm_scene *scene, const rdm_body_def *body,
@@ -159,12 +161,13 @@ RDM_API rdm_result rdm_scene_set_actions(rdm_scene *scene, int32_t count, const 
 /* These look at the scene as a whole, which is complete from the first of them on. */
 RDM_API rdm_result rdm_scene_find(rdm_scene *scene, int32_t part, const char *name,
                                   int32_t *index); /* NOT_FOUND: nearest */
-RDM_API rdm_result rdm_scene_joint(rdm_scene *scene, int32_t i,
-                                   rdm_joint *out); /* action: its robot's command, -1 */
-/* *group, for rdm_world_touch: all contacts of a shape of `a` with one of `b`, each the name of a
- * shape, body or robot, or a pattern of such names with '*' and '?'. NOT_FOUND where nothing has
+RDM_API rdm_result rdm_scene_joint_at(rdm_scene *scene, int32_t i,
+                                      rdm_joint *out); /* action: its robot's command, -1 */
+/* *group, for rdm_world_get_touch: all contacts of a shape of `a` with one of `b`, each the name of
+ * a shape, body or robot, or a pattern of such names with '*' and '?'. NOT_FOUND where nothing has
  * it. */
-RDM_API rdm_result rdm_scene_touch(rdm_scene *scene, const char *a, const char *b, int32_t *group);
+RDM_API rdm_result rdm_scene_add_touch(rdm_scene *scene, const char *a, const char *b,
+                                       int32_t *group);
 
 /* the joints of all robots of a world; the addresses hold within the call */
 typedef struct rdm_joints {
@@ -184,30 +187,30 @@ typedef struct rdm_motion { /* frozen layout: of a frame, in the world */
 } rdm_motion;
 /* Indices are those of the scene, out of range is RANGE; numbers that are not finite or no world
  * can have are ARGUMENT; the world then is as before. In observe nothing can be set: STATE. */
-RDM_API rdm_result rdm_world_joints(const rdm_world *world, rdm_joints *io); /* fills io */
-RDM_API rdm_result rdm_world_link(const rdm_world *world, int32_t link,
-                                  rdm_motion *out); /* of its joint's frame */
-RDM_API rdm_result rdm_world_base(const rdm_world *world, int32_t robot,
-                                  rdm_motion *out); /* of its base */
-RDM_API rdm_result rdm_world_body(const rdm_world *world, int32_t body,
-                                  rdm_motion *out); /* of its centre of mass */
-RDM_API rdm_result rdm_world_shape(const rdm_world *world, int32_t shape,
-                                   double pose[7]); /* position, rotation */
+RDM_API rdm_result rdm_world_get_joints(const rdm_world *world, rdm_joints *io); /* fills io */
+RDM_API rdm_result rdm_world_get_link(const rdm_world *world, int32_t link,
+                                      rdm_motion *out); /* of its joint's frame */
+RDM_API rdm_result rdm_world_get_base(const rdm_world *world, int32_t robot,
+                                      rdm_motion *out); /* of its base */
+RDM_API rdm_result rdm_world_get_body(const rdm_world *world, int32_t body,
+                                      rdm_motion *out); /* of its centre of mass */
+RDM_API rdm_result rdm_world_get_shape(const rdm_world *world, int32_t shape,
+                                       double pose[7]); /* position, rotation */
 /* Contact force [3] (N) and torque [3] (N m) on a fingertip, mean over the step, in the link's
  * frame, about its origin. */
-RDM_API rdm_result rdm_world_sensor(const rdm_world *world, int32_t sensor, double force[3],
-                                    double torque[3]);
+RDM_API rdm_result rdm_world_get_sensor(const rdm_world *world, int32_t sensor, double force[3],
+                                        double torque[3]);
 /* *pairs is how many pairs of a group's shapes touched in the step; *force (N) the sum of the
  * group's contact forces in its last substep. Either may be NULL. */
-RDM_API rdm_result rdm_world_touch(const rdm_world *world, int32_t group, int32_t *pairs,
-                                   double *force);
+RDM_API rdm_result rdm_world_get_touch(const rdm_world *world, int32_t group, int32_t *pairs,
+                                       double *force);
 /* Contacts of the last substep to out [capacity], of things asleep as they fell asleep; *count is
  * how many there are. */
-RDM_API rdm_result rdm_world_contacts(const rdm_world *world, rdm_contact *out, int32_t capacity,
-                                      int32_t *count);
+RDM_API rdm_result rdm_world_get_contacts(const rdm_world *world, rdm_contact *out,
+                                          int32_t capacity, int32_t *count);
 /* By *depth (m) a body at its present place is within something that it may touch; 0: it is
  * clear. */
-RDM_API rdm_result rdm_world_overlap(rdm_world *world, int32_t body, double *depth);
+RDM_API rdm_result rdm_world_get_overlap(rdm_world *world, int32_t body, double *depth);
 /* Places for what moves freely; joints q [n] and rates qd [n] (NULL: 0) of a robot of n joints,
  * within their ranges, and with them the targets of its drives. */
 RDM_API rdm_result rdm_world_set_body(rdm_world *world, int32_t body, const rdm_motion *motion);
@@ -220,15 +223,15 @@ RDM_API rdm_result rdm_world_set_joints(rdm_world *world, int32_t robot, const d
  * curves, no faster than its joints' velocity. */
 RDM_API rdm_result rdm_world_set_targets(rdm_world *world, int32_t first, const double *targets,
                                          int32_t n);
-RDM_API rdm_result rdm_world_command(rdm_world *world, int32_t robot, const double *commands,
-                                     int32_t n);
+RDM_API rdm_result rdm_world_set_commands(rdm_world *world, int32_t robot, const double *commands,
+                                          int32_t n);
 /* Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again;
- * STATE unless the scene has them. rdm_world_gravity gives those that hold a robot of n joints
+ * STATE unless the scene has them. rdm_world_get_gravity gives those that hold a robot of n joints
  * against gravity where it is. */
 RDM_API rdm_result rdm_world_set_feedforward(rdm_world *world, int32_t first, const double *efforts,
                                              int32_t n);
-RDM_API rdm_result rdm_world_gravity(const rdm_world *world, int32_t robot, double *efforts,
-                                     int32_t n);
+RDM_API rdm_result rdm_world_get_gravity(const rdm_world *world, int32_t robot, double *efforts,
+                                         int32_t n);
 enum rdm_scale { /* what a factor is on, and in brackets its bounds */
   RDM_SCALE_GRAVITY = 0,        /* [-10, 10] */
   RDM_SCALE_LINK_MASS = 1,      /* [0.001, 1000], moments with it; index: link */
@@ -251,7 +254,8 @@ typedef struct rdm_factor { /* frozen layout: on a constant of the scene, in one
 } rdm_factor;
 /* Lays factors [count] over those that the world has, all 1 at the start of an episode; reset may
  * draw them. All are taken or none. STATE unless the scene is adjustable. */
-RDM_API rdm_result rdm_world_scale(rdm_world *world, const rdm_factor *factors, int32_t count);
+RDM_API rdm_result rdm_world_set_factors(rdm_world *world, const rdm_factor *factors,
+                                         int32_t count);
 /* Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N
  * m); of a link at `point` [3]. */
 RDM_API rdm_result rdm_world_push_body(rdm_world *world, int32_t body, const double force[3],
@@ -292,7 +296,7 @@ typedef struct rdm_field_def { /* frozen layout: a run of observation entries */
   float high;              /* likewise */
   int32_t reserved;        /* 0 */
 } rdm_field_def;
-typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_task_register */
+typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_task_create */
   uint32_t struct_size;    /* bytes, set by rdm_task_def_init */
   int32_t max_steps;       /* control steps of an episode: default of the option max_steps;
                             * default 100 */
@@ -343,9 +347,9 @@ RDM_API rdm_result rdm_task_def_init(rdm_task_def *def,
 /* Adds a task under a number that no other gets, *out for rdm_task_at and its like. ARGUMENT,
  * RANGE: the text names the row; a name that is taken is an ARGUMENT. Tasks belong to the process;
  * any number of threads may look meanwhile. */
-RDM_API rdm_result rdm_task_register(int32_t *out, const rdm_task_def *def);
+RDM_API rdm_result rdm_task_create(int32_t *out, const rdm_task_def *def);
 /* Pools that have it keep it. ARGUMENT for the library's own. */
-RDM_API rdm_result rdm_task_remove(int32_t task);
+RDM_API rdm_result rdm_task_destroy(int32_t task);
 /* Tries what a task promises, any task: the same bytes for the same seed, any threads and after
  * save and restore, rows within their fields and bounds, costs of 0 or more, nothing written past a
  * state or a row, no memory left behind. OK, or the error of making a pool, or ARGUMENT: the text

@@ -25,7 +25,7 @@ struct OptionSpec {
   const char* text;      // default of a text option; of a row that takes a range a default "a..b", else null
   const char* choices;   // text: allowed words separated by '|', or null for free text
   const char* help;      // one line with unit
-  bool live;             // may change after creation (rdm_agent_set)
+  bool live;             // may change after creation (rdm_agent_set_option)
   int32_t longest = 63;  // characters of a text
   bool range = false;    // a number or integer that may be given as "a..b"
   bool open = false;     // what stands behind the last '.' of the key is any name

@@ -1,5 +1,5 @@
 // Memory that a host refuses, at every place where an agent of any algorithm asks for some: the code is
-// RDM_MEMORY, nothing leaks, and the handle works on as if it had not been asked.
+// RDM_ERROR_MEMORY, nothing leaks, and the handle works on as if it had not been asked.
 #include <functional>
 
 #include "contract.hpp"
@@ -30,7 +30,7 @@ size_t refuse_each(CountingHost& host, const std::function<rdm_result()>& call) 
       EXPECT_EQ(r, RDM_OK) << rdm_last_error();
       return k;
     }
-    EXPECT_EQ(r, RDM_MEMORY) << k << ' ' << rdm_last_error();
+    EXPECT_EQ(r, RDM_ERROR_MEMORY) << k << ' ' << rdm_last_error();
     if (k > 1000 || testing::Test::HasFailure()) return k;
   }
 }
@@ -43,29 +43,29 @@ size_t refuse_calls(CountingHost& host, rdm_agent* a) {
   float log_std[2];
   size_t n = 0, refused = 0;
   const std::function<rdm_result()> calls[] = {
-      [&] { return rdm_agent_save(a, bytes.data(), bytes.size(), &n); },
-      [&] { return rdm_agent_load(a, state.data(), state.size()); },
-      [&] { return rdm_agent_policy(a, nullptr, 0, &n); },
-      [&] { return rdm_agent_policy(a, bytes.data(), bytes.size(), &n); },
-      [&] { return rdm_agent_policy_file(a, path.c_str()); },
-      [&] { return rdm_agent_tensor_read(a, "actor.log_std", log_std, 2); },
-      [&] { return rdm_agent_tensor_read(a, "actor.2.bias", log_std, 2); },
-      [&] { return rdm_agent_tensor_write(a, "actor.log_std", log_std, 2); },
+      [&] { return rdm_agent_write_state(a, bytes.data(), bytes.size(), &n); },
+      [&] { return rdm_agent_read_state(a, state.data(), state.size()); },
+      [&] { return rdm_agent_write_policy(a, nullptr, 0, &n); },
+      [&] { return rdm_agent_write_policy(a, bytes.data(), bytes.size(), &n); },
+      [&] { return rdm_agent_write_policy_file(a, path.c_str()); },
+      [&] { return rdm_agent_get_tensor(a, "actor.log_std", log_std, 2); },
+      [&] { return rdm_agent_get_tensor(a, "actor.2.bias", log_std, 2); },
+      [&] { return rdm_agent_set_tensor(a, "actor.log_std", log_std, 2); },
       [&] {
         const rdm_option rate{"learning_rate", nullptr, 3e-4};
-        return rdm_agent_set(a, &rate);
+        return rdm_agent_set_option(a, &rate);
       },
       [&] {
-        const rdm_result r = rdm_agent_load(a, state.data(), state.size());
+        const rdm_result r = rdm_agent_read_state(a, state.data(), state.size());
         return r ? r : feed_epoch(a);
       },
   };
   for (const auto& call : calls) {
-    EXPECT_EQ(rdm_agent_load(a, state.data(), state.size()), RDM_OK);
+    EXPECT_EQ(rdm_agent_read_state(a, state.data(), state.size()), RDM_OK);
     refused += refuse_each(host, call);
   }
   std::remove(path.c_str());
-  EXPECT_EQ(rdm_agent_load(a, state.data(), state.size()), RDM_OK);
+  EXPECT_EQ(rdm_agent_read_state(a, state.data(), state.size()), RDM_OK);
   EXPECT_EQ(saved(a), state);
   EXPECT_EQ(policy_bytes(a), policy);
   EXPECT_EQ(feed_epoch(a), RDM_OK);
@@ -91,7 +91,7 @@ TEST_P(AgentMemory, OfCreate) {
     EXPECT_GE(refuse_each(host,
                           [&] {
                             size_t bytes;
-                            return rdm_agent_memory(&c, &bytes);
+                            return rdm_agent_config_memory(&c, &bytes);
                           }),
               1u);
   }

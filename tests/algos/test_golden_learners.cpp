@@ -43,9 +43,9 @@ uint64_t state_after_three_epochs(const char* algo, const char* task) {
   for (int epoch = 0; epoch < 3; ++epoch)
     EXPECT_EQ(rdm_agent_rollout(a, p, nullptr), RDM_OK) << rdm_last_error();
   size_t size = 0;
-  EXPECT_EQ(rdm_agent_save(a, nullptr, 0, &size), RDM_OK);
+  EXPECT_EQ(rdm_agent_write_state(a, nullptr, 0, &size), RDM_OK);
   std::vector<unsigned char> bytes(size);
-  EXPECT_EQ(rdm_agent_save(a, bytes.data(), size, &size), RDM_OK);
+  EXPECT_EQ(rdm_agent_write_state(a, bytes.data(), size, &size), RDM_OK);
   rdm_agent_destroy(a);
   rdm_pool_destroy(p);
   return rdm::hash_bytes(bytes.data(), bytes.size());
@@ -55,14 +55,14 @@ uint64_t state_after_three_epochs(const char* algo, const char* task) {
 uint64_t acts(const char* task) {
   rdm_policy* policy = nullptr;
   const std::string path = std::string(RDM_TEST_DATA "/../examples/policies/") + task + ".rdm";
-  EXPECT_EQ(rdm_policy_load_file(&policy, path.c_str()), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_policy_read_file(&policy, path.c_str()), RDM_OK) << rdm_last_error();
   rdm_pool* p = make_pool(task, 4);
   rdm_spec spec{};
   spec.struct_size = sizeof spec;
   rdm_buffers b{};
   b.struct_size = sizeof b;
   EXPECT_EQ(rdm_pool_get_spec(p, &spec), RDM_OK);
-  EXPECT_EQ(rdm_pool_buffers(p, &b), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_buffers(p, &b), RDM_OK);
   std::vector<unsigned char> scratch(rdm_policy_scratch(policy, 4));
   uint64_t h = rdm::kHashSeed;
   for (int step = 0; step < 150; ++step) {

@@ -88,11 +88,11 @@ struct Handle {
 
 TEST(Shim, CallKeepsTheHandlesTextAndTheHostsMode) {
   Handle h;
-  EXPECT_EQ(call_on(&h, [] { need_index(5, 3, "i"); }), RDM_RANGE);
+  EXPECT_EQ(call_on(&h, [] { need_index(5, 3, "i"); }), RDM_ERROR_RANGE);
   EXPECT_STREQ(h.error, "i: 5 is outside [0, 3)");
   EXPECT_EQ(call_on(&h, [] {}), RDM_OK);
   EXPECT_STREQ(h.error, "i: 5 is outside [0, 3)");
-  EXPECT_EQ(call([] { throw 1; }), RDM_INTERNAL);
+  EXPECT_EQ(call([] { throw 1; }), RDM_ERROR_INTERNAL);
 }
 
 TEST(Shim, OneCallChangesAHandleOrSeveralReadIt) {
@@ -100,20 +100,20 @@ TEST(Shim, OneCallChangesAHandleOrSeveralReadIt) {
   const Handle& read = h;
   EXPECT_EQ(call_on(&h,
                     [&] {
-                      EXPECT_EQ(call_on(&h, [] {}), RDM_STATE);
-                      EXPECT_EQ(call_on(&read, [] {}), RDM_STATE);
+                      EXPECT_EQ(call_on(&h, [] {}), RDM_ERROR_STATE);
+                      EXPECT_EQ(call_on(&read, [] {}), RDM_ERROR_STATE);
                       EXPECT_FALSE(may_end(&h));
                     }),
             RDM_OK);
   EXPECT_EQ(call_on(&read,
                     [&] {
                       EXPECT_EQ(call_on(&read, [] {}), RDM_OK);
-                      EXPECT_EQ(call_on(&h, [] {}), RDM_STATE);
+                      EXPECT_EQ(call_on(&h, [] {}), RDM_ERROR_STATE);
                       EXPECT_FALSE(may_end(&h));
                     }),
             RDM_OK);
   EXPECT_STREQ(h.error, "");
-  EXPECT_EQ(call_on(&h, [] { throw 1; }), RDM_INTERNAL);
+  EXPECT_EQ(call_on(&h, [] { throw 1; }), RDM_ERROR_INTERNAL);
   EXPECT_EQ(call_on(&h, [] {}), RDM_OK) << "a failure leaves it free";
   EXPECT_TRUE(may_end(&h));
 }

@@ -172,8 +172,8 @@ TEST(ActionRepeat, StatesMoveBetweenPoolsThatRepeatAndThatDoNot) {
   size_t size = 0;
   ASSERT_EQ(rdm_pool_state_size(four.pool, -1, &size), RDM_OK);
   std::vector<unsigned char> state(size);
-  ASSERT_EQ(rdm_pool_get_state(four.pool, -1, state.data(), size, &size), RDM_OK);
-  ASSERT_EQ(rdm_pool_set_state(one.pool, -1, state.data(), size), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_pool_write_state(four.pool, -1, state.data(), size, &size), RDM_OK);
+  ASSERT_EQ(rdm_pool_read_state(one.pool, -1, state.data(), size), RDM_OK) << rdm_last_error();
   ASSERT_EQ(rdm_pool_step(four.pool), RDM_OK);
   for (int t = 0; t < 4; ++t) ASSERT_EQ(rdm_pool_step(one.pool), RDM_OK);
   EXPECT_EQ(hash_of(one.pool), hash_of(four.pool));
@@ -187,7 +187,7 @@ TEST(ActionRepeat, ZeroIsTheTasksOwnRate) {
     c.settings = "action_repeat=0";
     rdm_spec spec{};
     spec.struct_size = sizeof spec;
-    ASSERT_EQ(rdm_pool_spec(&c, &spec), RDM_OK);
+    ASSERT_EQ(rdm_pool_config_spec(&c, &spec), RDM_OK);
     EXPECT_EQ(spec.action_repeat, rate);
   }
 }
@@ -202,7 +202,7 @@ double rate_of_agent(rdm_pool* pool) {
   const char* key = "";
   char text[RDM_TEXT_SIZE] = "";
   for (int32_t i = 0; std::strcmp(key, "action_repeat") != 0; ++i)
-    if (rdm_agent_option(a, i, &key, text) != RDM_OK) {
+    if (rdm_agent_option_at(a, i, &key, text) != RDM_OK) {
       ADD_FAILURE() << rdm_last_error();
       break;
     }
@@ -222,7 +222,7 @@ TEST(ActionRepeat, ZeroIsTheRateOfEveryTasksAgent) {
     c.settings = "action_repeat=0";
     rdm_spec spec{};
     spec.struct_size = sizeof spec;
-    ASSERT_EQ(rdm_pool_spec(&c, &spec), RDM_OK) << task.name;
+    ASSERT_EQ(rdm_pool_config_spec(&c, &spec), RDM_OK) << task.name;
     EXPECT_EQ(spec.action_repeat, rate_of_agent(pool)) << task.name;
     rdm_pool_destroy(pool);
   }
@@ -268,7 +268,7 @@ TEST(ActionRepeat, AnAgentLearnsTheSame) {
       EXPECT_EQ(inside.state, outside.state);
       EXPECT_EQ(inside.policy, outside.policy);
       rdm_policy* policy = nullptr;
-      ASSERT_EQ(rdm_policy_load(&policy, inside.policy.data(), inside.policy.size()), RDM_OK);
+      ASSERT_EQ(rdm_policy_read(&policy, inside.policy.data(), inside.policy.size()), RDM_OK);
       rdm_policy_info info{};
       info.struct_size = sizeof info;
       ASSERT_EQ(rdm_policy_get_info(policy, &info), RDM_OK);
@@ -291,7 +291,7 @@ TEST(ActionRepeat, AnAgentsRateIsAMultipleOfThePools) {
   };
   EXPECT_EQ(rollout("hidden=8\nhorizon=8"), RDM_OK) << rdm_last_error();  // the lent default is 3
   EXPECT_EQ(rollout("hidden=8\nhorizon=8\naction_repeat=6"), RDM_OK);
-  EXPECT_EQ(rollout("hidden=8\nhorizon=8\naction_repeat=4"), RDM_ARGUMENT);
+  EXPECT_EQ(rollout("hidden=8\nhorizon=8\naction_repeat=4"), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_last_error(), "action_repeat: the agent's is 4, no multiple of the pool's 3");
 }
 

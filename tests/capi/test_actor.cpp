@@ -33,7 +33,7 @@ Policy policy_of(const rdm_pool* pool, const char* settings) {
   const auto bytes = policy_bytes(agent);
   rdm_agent_destroy(agent);
   rdm_policy* p = nullptr;
-  EXPECT_EQ(rdm_policy_load(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_policy_read(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
   return Policy(p);
 }
 constexpr const char* kEverySix = "hidden=16\naction_repeat=6\nhorizon=8\nnormalize_obs=false\n";
@@ -125,12 +125,12 @@ TEST(Actor, WhatDoesNotDivideIsRefusedWithBothNumbers) {
     c.error = error;
     c.error_size = sizeof error;
     rdm_actor* a = nullptr;
-    EXPECT_EQ(rdm_actor_create(&a, &c), RDM_ARGUMENT);
+    EXPECT_EQ(rdm_actor_create(&a, &c), RDM_ERROR_ARGUMENT);
     EXPECT_EQ(a, nullptr);
     EXPECT_NE(std::strstr(error, "every 6 control steps"), nullptr) << error;
     EXPECT_NE(std::strstr(error, ("step of " + std::to_string(repeat)).c_str()), nullptr) << error;
     size_t bytes = 0;
-    EXPECT_EQ(rdm_actor_memory(&c, &bytes), RDM_ARGUMENT);
+    EXPECT_EQ(rdm_actor_config_memory(&c, &bytes), RDM_ERROR_ARGUMENT);
   }
 }
 
@@ -140,20 +140,20 @@ TEST(Actor, EachBadArgumentHasAnError) {
   const Policy policy = policy_of(pool.get(), kEverySix);
   rdm_actor* a = nullptr;
   rdm_actor_config c = config_of(policy, &spec, 0);
-  EXPECT_EQ(rdm_actor_create(&a, &c), RDM_RANGE);
+  EXPECT_EQ(rdm_actor_create(&a, &c), RDM_ERROR_RANGE);
   c.num_envs = 65537;
-  EXPECT_EQ(rdm_actor_create(&a, &c), RDM_RANGE);
+  EXPECT_EQ(rdm_actor_create(&a, &c), RDM_ERROR_RANGE);
   c = config_of(policy, &spec, 2);
   c.policy = nullptr;
-  EXPECT_EQ(rdm_actor_create(&a, &c), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_actor_create(&a, &c), RDM_ERROR_ARGUMENT);
   std::vector<float> center(static_cast<size_t>(spec.action_dim), 1.5f);
   c = config_of(policy, &spec, 2);
   c.center = center.data();
-  EXPECT_EQ(rdm_actor_create(&a, &c), RDM_RANGE);
+  EXPECT_EQ(rdm_actor_create(&a, &c), RDM_ERROR_RANGE);
   rdm_spec other = spec;
   other.obs_dim += 1;
   c = config_of(policy, &other, 2);
-  EXPECT_EQ(rdm_actor_create(&a, &c), RDM_VERSION_MISMATCH);
+  EXPECT_EQ(rdm_actor_create(&a, &c), RDM_ERROR_VERSION_MISMATCH);
   EXPECT_EQ(a, nullptr);
   EXPECT_NE(std::strstr(rdm_actor_error(nullptr), "NULL"), nullptr);
   rdm_actor_destroy(nullptr);
@@ -162,9 +162,9 @@ TEST(Actor, EachBadArgumentHasAnError) {
   const rdm_buffers b = buffers_of(pool.get());
   rdm_points clouds{};
   clouds.struct_size = sizeof clouds;
-  EXPECT_EQ(rdm_actor_act(actor.get(), nullptr, nullptr, nullptr, b.action), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_actor_act(actor.get(), b.obs, nullptr, nullptr, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_actor_act(actor.get(), b.obs, &clouds, nullptr, b.action), RDM_STATE);
+  EXPECT_EQ(rdm_actor_act(actor.get(), nullptr, nullptr, nullptr, b.action), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_actor_act(actor.get(), b.obs, nullptr, nullptr, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_actor_act(actor.get(), b.obs, &clouds, nullptr, b.action), RDM_ERROR_STATE);
   EXPECT_NE(std::strstr(rdm_actor_error(actor.get()), "sees no points"), nullptr);
 }
 
@@ -182,7 +182,7 @@ TEST(Actor, ARefusedCallCountsNothing) {
   const size_t width = static_cast<size_t>(2 * spec.action_dim);
   std::vector<float> action(width, 7), expected(width);
   obs.back() = NAN;
-  EXPECT_EQ(rdm_actor_act(refused.get(), obs.data(), nullptr, nullptr, action.data()), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_actor_act(refused.get(), obs.data(), nullptr, nullptr, action.data()), RDM_ERROR_ARGUMENT);
   EXPECT_NE(std::strstr(rdm_actor_error(refused.get()), "obs: row 1"), nullptr);
   EXPECT_EQ(action, std::vector<float>(width, 7));
   EXPECT_EQ(rdm_actor_act(refused.get(), b.obs, nullptr, nullptr, action.data()), RDM_OK);
@@ -192,7 +192,7 @@ TEST(Actor, ARefusedCallCountsNothing) {
     EXPECT_EQ(rdm_actor_act(refused.get(), obs.data(), nullptr, nullptr, action.data()), RDM_OK);
     EXPECT_EQ(action, expected);
   }
-  EXPECT_EQ(rdm_actor_act(refused.get(), obs.data(), nullptr, nullptr, action.data()), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_actor_act(refused.get(), obs.data(), nullptr, nullptr, action.data()), RDM_ERROR_ARGUMENT);
 }
 
 TEST(Actor, RowsOutsideTheMaskAreNeitherWrittenNorCounted) {
@@ -257,7 +257,7 @@ TEST(Actor, ACenterIsTakenFromWhatIsGiven) {
   const Policy policy = policy_of(pool.get(), kEverySix);
   const size_t width = static_cast<size_t>(spec.action_dim);
   std::vector<float> center(width), action(2 * width), about(2 * width);
-  EXPECT_EQ(rdm_pool_initial_mean(pool.get(), center.data()), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_initial_mean(pool.get(), center.data()), RDM_OK);
   rdm_actor_config c = config_of(policy, &spec, 2);
   const rdm_buffers b = buffers_of(pool.get());
   EXPECT_EQ(rdm_actor_act(actor_of(c).get(), b.obs, nullptr, nullptr, action.data()), RDM_OK);
@@ -290,7 +290,7 @@ TEST(Actor, AStateGoesOnWithTheSameBytes) {
   size_t size = 0;
   EXPECT_EQ(rdm_actor_write_state(first.get(), nullptr, 0, &size), RDM_OK);
   std::vector<unsigned char> bytes(size);
-  EXPECT_EQ(rdm_actor_write_state(first.get(), bytes.data(), size - 1, &size), RDM_RANGE);
+  EXPECT_EQ(rdm_actor_write_state(first.get(), bytes.data(), size - 1, &size), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_actor_write_state(first.get(), bytes.data(), size, &size), RDM_OK);
   EXPECT_EQ(rdm_actor_read_state(second.get(), bytes.data(), size), RDM_OK) << rdm_last_error();
   for (int t = 0; t < 15; ++t) {
@@ -301,9 +301,9 @@ TEST(Actor, AStateGoesOnWithTheSameBytes) {
   for (size_t cut = 0; cut < size; cut += 7)
     EXPECT_NE(rdm_actor_read_state(second.get(), bytes.data(), cut), RDM_OK);
   c.stochastic = 0;
-  EXPECT_EQ(rdm_actor_read_state(actor_of(c).get(), bytes.data(), size), RDM_FORMAT);
+  EXPECT_EQ(rdm_actor_read_state(actor_of(c).get(), bytes.data(), size), RDM_ERROR_FORMAT);
   c.num_envs = 1;
-  EXPECT_EQ(rdm_actor_read_state(actor_of(c).get(), bytes.data(), size), RDM_FORMAT);
+  EXPECT_EQ(rdm_actor_read_state(actor_of(c).get(), bytes.data(), size), RDM_ERROR_FORMAT);
   for (size_t i = 0; i < size; ++i) {
     auto wrong = bytes;
     wrong[i] = static_cast<unsigned char>(wrong[i] ^ 0x40);
@@ -323,7 +323,7 @@ TEST(Actor, MemoryIsAskedForOnceAsItSaysAndAllOfItGoesBack) {
     c.stochastic = stochastic;
     c.host = &host.hooks;
     size_t bytes = 0;
-    ASSERT_EQ(rdm_actor_memory(&c, &bytes), RDM_OK);
+    ASSERT_EQ(rdm_actor_config_memory(&c, &bytes), RDM_OK);
     {
       const Actor actor = actor_of(c);
       EXPECT_EQ(host.live, bytes);

@@ -56,21 +56,21 @@ TEST_F(Look, AHullShowsItsCorners) {
   const int32_t i = object(p);
   rdm_shape s;
   ASSERT_EQ(rdm_pool_shape(p, i, &s), RDM_OK);
-  EXPECT_EQ(s.kind, RDM_HULL);
+  EXPECT_EQ(s.kind, RDM_SHAPE_HULL);
   EXPECT_NEAR(s.size[0], 0.045, 1e-6);  // the centre of mass is at a quarter
   float corners[12] = {}, sum[3] = {};
   int32_t count = 0;
-  ASSERT_EQ(rdm_pool_hull(p, i, corners, 4, &count), RDM_OK);
+  ASSERT_EQ(rdm_pool_get_hull(p, i, corners, 4, &count), RDM_OK);
   EXPECT_EQ(count, 4);
   for (int k = 0; k < 12; ++k) sum[k % 3] += corners[k];
   for (const float x : sum) EXPECT_NEAR(x, 0, 1e-6);
-  EXPECT_EQ(rdm_pool_hull(p, i, nullptr, 0, &count), RDM_OK);
-  EXPECT_EQ(rdm_pool_hull(p, i, nullptr, 1, &count), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_pool_hull(p, i, corners, -1, &count), RDM_RANGE);
-  EXPECT_EQ(rdm_pool_hull(p, i, corners, 4, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_pool_hull(p, spec.num_shapes, corners, 4, &count), RDM_RANGE);
-  EXPECT_EQ(rdm_pool_hull(pool, object(), corners, 4, &count), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_pool_hull(nullptr, 0, corners, 4, &count), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_get_hull(p, i, nullptr, 0, &count), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_hull(p, i, nullptr, 1, &count), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_get_hull(p, i, corners, -1, &count), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_get_hull(p, i, corners, 4, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_get_hull(p, spec.num_shapes, corners, 4, &count), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_get_hull(pool, object(), corners, 4, &count), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_get_hull(nullptr, 0, corners, 4, &count), RDM_ERROR_ARGUMENT);
   rdm_pool_destroy(p);
 }
 
@@ -84,7 +84,7 @@ TEST_F(Look, ShapesAndPoses) {
     fixed += s.fixed;
   }
   EXPECT_LT(fixed, spec.num_shapes);
-  EXPECT_EQ(rdm_pool_shape(pool, spec.num_shapes, &s), RDM_RANGE);
+  EXPECT_EQ(rdm_pool_shape(pool, spec.num_shapes, &s), RDM_ERROR_RANGE);
   const auto pose = poses(pool, 1);
   for (size_t i = 0; i < pose.size(); i += 7) {
     const double q = std::hypot(std::hypot(pose[i + 3], pose[i + 4]), std::hypot(pose[i + 5], pose[i + 6]));
@@ -92,8 +92,8 @@ TEST_F(Look, ShapesAndPoses) {
     EXPECT_LT(std::abs(pose[i]) + std::abs(pose[i + 1]) + std::abs(pose[i + 2]), 100);
   }
   float none[7];
-  EXPECT_EQ(rdm_pool_poses(pool, 2, none), RDM_RANGE);
-  EXPECT_EQ(rdm_pool_poses(pool, -1, none), RDM_RANGE);
+  EXPECT_EQ(rdm_pool_poses(pool, 2, none), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_poses(pool, -1, none), RDM_ERROR_RANGE);
 }
 
 TEST_F(Look, ContactsAreCountedBeyondTheCapacity) {
@@ -117,8 +117,8 @@ TEST_F(Look, ContactsAreCountedBeyondTheCapacity) {
   }
   EXPECT_GT(most, 0);  // the object lies in the hand
   int32_t count = 0;
-  EXPECT_EQ(rdm_pool_contacts(pool, 0, nullptr, 5, &count), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_pool_contacts(pool, 0, nullptr, -1, &count), RDM_RANGE);
+  EXPECT_EQ(rdm_pool_contacts(pool, 0, nullptr, 5, &count), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_contacts(pool, 0, nullptr, -1, &count), RDM_ERROR_RANGE);
 }
 
 TEST_F(Look, PicturesAgreeWithEachOther) {
@@ -145,24 +145,24 @@ TEST_F(Look, PicturesAgreeWithEachOther) {
 
 TEST_F(Look, LookingChangesNothing) {
   uint64_t before = 0, after = 0;
-  ASSERT_EQ(rdm_pool_hash(pool, -1, &before), RDM_OK);
+  ASSERT_EQ(rdm_pool_get_hash(pool, -1, &before), RDM_OK);
   std::vector<uint8_t> rgb(3 * 32 * 24);
   int32_t count = 0;
   rdm_pool_render(pool, 0, "front", 32, 24, rgb.data(), nullptr, nullptr);
   rdm_pool_contacts(pool, 0, nullptr, 0, &count);
   poses(pool, 0);
-  ASSERT_EQ(rdm_pool_hash(pool, -1, &after), RDM_OK);
+  ASSERT_EQ(rdm_pool_get_hash(pool, -1, &after), RDM_OK);
   EXPECT_EQ(before, after);
 }
 
 TEST_F(Look, BadPictures) {
   uint8_t rgb[12];
-  EXPECT_EQ(rdm_pool_render(pool, 0, "frnt", 2, 2, rgb, nullptr, nullptr), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_pool_render(pool, 0, "frnt", 2, 2, rgb, nullptr, nullptr), RDM_ERROR_NOT_FOUND);
   EXPECT_NE(std::string(rdm_pool_error(pool)).find("front"), std::string::npos) << rdm_pool_error(pool);
-  EXPECT_EQ(rdm_pool_render(pool, 0, nullptr, 2, 2, rgb, nullptr, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_pool_render(pool, 2, "front", 2, 2, rgb, nullptr, nullptr), RDM_RANGE);
-  EXPECT_EQ(rdm_pool_render(pool, 0, "front", 0, 2, rgb, nullptr, nullptr), RDM_RANGE);
-  EXPECT_EQ(rdm_pool_render(pool, 0, "front", 2, -2, rgb, nullptr, nullptr), RDM_RANGE);
+  EXPECT_EQ(rdm_pool_render(pool, 0, nullptr, 2, 2, rgb, nullptr, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_render(pool, 2, "front", 2, 2, rgb, nullptr, nullptr), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_render(pool, 0, "front", 0, 2, rgb, nullptr, nullptr), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_render(pool, 0, "front", 2, -2, rgb, nullptr, nullptr), RDM_ERROR_RANGE);
 }
 
 TEST_F(Look, PushMovesTheObjectInItsDirectionForOneStep) {
@@ -179,9 +179,9 @@ TEST_F(Look, PushMovesTheObjectInItsDirectionForOneStep) {
   EXPECT_EQ(poses(pool, 1), poses(twin, 1));
   rdm_pool_destroy(twin);
   const float bad[3] = {0, NAN, 0};
-  EXPECT_EQ(rdm_pool_push(pool, 0, shape, bad), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_pool_push(pool, 0, -1, force), RDM_RANGE);
-  EXPECT_EQ(rdm_pool_push(pool, 0, shape, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_push(pool, 0, shape, bad), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_push(pool, 0, -1, force), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_push(pool, 0, shape, nullptr), RDM_ERROR_ARGUMENT);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ TEST(ContractHost, MemoryIsExactToTheByte) {
   rdm_pool_config c = pool_config(3);
   c.host = &host.hooks;
   size_t ours = 0, engines = 0;
-  ASSERT_EQ(rdm_pool_memory(&c, &ours, &engines), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_pool_config_memory(&c, &ours, &engines), RDM_OK) << rdm_last_error();
   EXPECT_EQ(host.live, 0u);
   rdm_pool* p = make_pool(c);
   EXPECT_EQ(host.live, ours);
@@ -30,7 +30,7 @@ TEST(ContractHost, MemoryIsExactToTheByte) {
     rdm_agent_config ac = agent_config();
     ac.host = &host.hooks;
     ac.algo = algo;
-    ASSERT_EQ(rdm_agent_memory(&ac, &ours), RDM_OK) << rdm_last_error();
+    ASSERT_EQ(rdm_agent_config_memory(&ac, &ours), RDM_OK) << rdm_last_error();
     EXPECT_EQ(host.live, 0u);
     rdm_agent* a = make_agent(ac);
     EXPECT_EQ(host.live, ours) << algo;
@@ -53,7 +53,7 @@ TEST(ContractHost, EveryRefusedAllocationIsSurvived) {
     const rdm_result r = rdm_pool_create(&p, &c);
     made = r == RDM_OK;
     if (!made) {
-      ASSERT_EQ(r, RDM_MEMORY) << k << ' ' << rdm_last_error();
+      ASSERT_EQ(r, RDM_ERROR_MEMORY) << k << ' ' << rdm_last_error();
       ASSERT_EQ(p, nullptr);
     }
     rdm_pool_destroy(p);
@@ -70,7 +70,7 @@ TEST(ContractHost, EveryRefusedAllocationIsSurvived) {
     const rdm_result r = rdm_agent_create(&a, &c);
     made = r == RDM_OK;
     if (!made) {
-      ASSERT_EQ(r, RDM_MEMORY) << k << ' ' << rdm_last_error();
+      ASSERT_EQ(r, RDM_ERROR_MEMORY) << k << ' ' << rdm_last_error();
     }
     rdm_agent_destroy(a);
     ASSERT_EQ(host.live, 0u) << k;
@@ -84,8 +84,8 @@ TEST(ContractHost, HooksComeInPairs) {
   rdm_pool_config c = pool_config();
   c.host = &host.hooks;
   rdm_pool* p = nullptr;
-  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_init(&host.hooks), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_init(&host.hooks), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_init(nullptr), RDM_OK);
   rdm_shutdown();
 }
@@ -138,7 +138,7 @@ TEST(ContractHost, TheFloatingPointModeIsPutBack) {
 
 TEST(ContractHost, ErrorTextsBelongToThreads) {
   int32_t index;
-  ASSERT_EQ(rdm_task_find("one", &index), RDM_NOT_FOUND);
+  ASSERT_EQ(rdm_task_find("one", &index), RDM_ERROR_NOT_FOUND);
   const std::string mine = rdm_last_error();
   std::string other;
   std::thread([&] {
@@ -172,7 +172,7 @@ TEST(ContractHost, AForkedChildIsToldThatThreadsDoNotSurvive) {
   ac.num_threads = 2;
   rdm_agent* a = make_agent(ac);
   const auto told = [](rdm_result r, const char* text) {
-    return r == RDM_STATE && std::strcmp(text, rdm_last_error()) == 0 && std::strstr(text, "fork");
+    return r == RDM_ERROR_STATE && std::strcmp(text, rdm_last_error()) == 0 && std::strstr(text, "fork");
   };
   EXPECT_EQ(in_child([&] {
               const bool pool = told(rdm_pool_step(p), rdm_pool_error(p)) &&
@@ -229,10 +229,10 @@ TEST(ContractHost, AForkedChildGoesOnWithHandlesThatHaveNoThreads) {
 
 TEST(ContractHost, HeaderAndLibraryAreCompared) {
   EXPECT_EQ(rdm_check_abi(RDM_ABI, RDM_VERSION), RDM_OK);
-  EXPECT_EQ(rdm_check_abi(RDM_ABI + 1, RDM_VERSION), RDM_VERSION_MISMATCH);
-  EXPECT_EQ(rdm_check_abi(RDM_ABI, RDM_VERSION + 1), RDM_VERSION_MISMATCH);
+  EXPECT_EQ(rdm_check_abi(RDM_ABI + 1, RDM_VERSION), RDM_ERROR_VERSION_MISMATCH);
+  EXPECT_EQ(rdm_check_abi(RDM_ABI, RDM_VERSION + 1), RDM_ERROR_VERSION_MISMATCH);
   rdm_build b{};
-  EXPECT_EQ(rdm_build_info(&b), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_build_info(&b), RDM_ERROR_ARGUMENT);
   b.struct_size = sizeof b;
   ASSERT_EQ(rdm_build_info(&b), RDM_OK);
   EXPECT_STRNE(b.ode, "");

@@ -46,7 +46,7 @@ struct Temptation {
     t.truncated = over, t.valid = valid, t.final_obs = obs;
     double cost = 0;
     for (int32_t step = 0; step < kHorizon; ++step) {
-      ASSERT_EQ(rdm_agent_act(agent, obs, RDM_SAMPLE, action), RDM_OK);
+      ASSERT_EQ(rdm_agent_act(agent, obs, RDM_ACT_SAMPLE, action), RDM_OK);
       const bool last = step % kLength == kLength - 1;
       for (int32_t i = 0; i < kEnvs; ++i) {
         cost += paid[i] = action[i] > 0 ? 1.0f : 0.0f;

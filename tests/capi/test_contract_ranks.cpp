@@ -133,17 +133,17 @@ TEST(ContractRanks, WorldsHaveTheirPlaceAmongAll) {
   size_t size = 0;
   ASSERT_EQ(rdm_pool_state_size(all, -1, &size), RDM_OK);
   Bytes bytes(size);
-  ASSERT_EQ(rdm_pool_get_state(all, -1, bytes.data(), size, &size), RDM_OK);
-  ASSERT_EQ(rdm_pool_set_state(mine, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_pool_write_state(all, -1, bytes.data(), size, &size), RDM_OK);
+  ASSERT_EQ(rdm_pool_read_state(mine, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
   EXPECT_EQ(hash_of(mine, 0), hash_of(all, 2));
   EXPECT_EQ(hash_of(mine, 1), hash_of(all, 3));
-  EXPECT_EQ(rdm_pool_set_rank(mine, 1, 3), RDM_STATE);
+  EXPECT_EQ(rdm_pool_set_rank(mine, 1, 3), RDM_ERROR_STATE);
   EXPECT_STREQ(rdm_pool_error(mine), "set_rank: only before the first reset; world 0 has begun");
-  EXPECT_EQ(rdm_pool_set_rank(nullptr, 0, 1), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_set_rank(nullptr, 0, 1), RDM_ERROR_ARGUMENT);
   rdm_pool* fresh = make_pool(part);
-  EXPECT_EQ(rdm_pool_set_rank(fresh, 3, 3), RDM_RANGE);
+  EXPECT_EQ(rdm_pool_set_rank(fresh, 3, 3), RDM_ERROR_RANGE);
   EXPECT_STREQ(rdm_pool_error(fresh), "rank: 3 is outside [0, 2]");
-  EXPECT_EQ(rdm_pool_set_rank(fresh, 0, 0), RDM_RANGE);
+  EXPECT_EQ(rdm_pool_set_rank(fresh, 0, 0), RDM_ERROR_RANGE);
   for (rdm_pool* p : {all, mine, fresh}) rdm_pool_destroy(p);
 }
 
@@ -160,18 +160,19 @@ TEST(ContractRanks, Refusals) {
   };
   rdm_ranks r = good;
   r.struct_size = 4;
-  why(r, RDM_ARGUMENT);
+  why(r, RDM_ERROR_ARGUMENT);
   r = good, r.rank = 2;
-  EXPECT_EQ(why(r, RDM_RANGE), "rank: 2 is outside [0, 1]");
+  EXPECT_EQ(why(r, RDM_ERROR_RANGE), "rank: 2 is outside [0, 1]");
   r = good, r.gather = nullptr;
-  EXPECT_EQ(why(r, RDM_ARGUMENT), "gather: NULL with 2 ranks");
-  EXPECT_EQ(why(good, RDM_ARGUMENT, ""), "blocks: 1 are not 2 ranks times a power of two, as 2 would be");
-  EXPECT_EQ(why(good, RDM_ARGUMENT, "blocks=16"), "blocks: 16 do not divide 8 environments");
+  EXPECT_EQ(why(r, RDM_ERROR_ARGUMENT), "gather: NULL with 2 ranks");
+  EXPECT_EQ(why(good, RDM_ERROR_ARGUMENT, ""),
+            "blocks: 1 are not 2 ranks times a power of two, as 2 would be");
+  EXPECT_EQ(why(good, RDM_ERROR_ARGUMENT, "blocks=16"), "blocks: 16 do not divide 8 environments");
   rdm_agent_config c = agent_config();
   rdm_agent* a = nullptr;
-  EXPECT_EQ(rdm_agent_create_ranked(&a, &c, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_agent_create_ranked(nullptr, &c, &good), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_agent_create_ranked(&a, nullptr, &good), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_create_ranked(&a, &c, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_agent_create_ranked(nullptr, &c, &good), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_agent_create_ranked(&a, nullptr, &good), RDM_ERROR_ARGUMENT);
 }
 
 TEST(ContractRanks, AgentAndPoolAreOfOneRank) {
@@ -181,7 +182,7 @@ TEST(ContractRanks, AgentAndPoolAreOfOneRank) {
   pc.task = "two_state";
   rdm_pool* other = make_pool(pc);
   ASSERT_EQ(rdm_pool_reset(other, nullptr, nullptr), RDM_OK);
-  EXPECT_EQ(rdm_agent_rollout(part.agent, other, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_rollout(part.agent, other, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_agent_error(part.agent), "rank: the agent has 1, the pool 0");
   rdm_pool_destroy(other);
 }
@@ -199,9 +200,9 @@ TEST(ContractRanks, OneThatDiesAndTheRestGoesOn) {
     if (rank == 3) return meeting.leave();
     heard[static_cast<size_t>(rank)] = rdm_agent_rollout(part.agent, part.pool, nullptr);
     EXPECT_EQ(rdm_checkpoint_write(path_of("never").c_str(), part.agent, part.pool, nullptr, 0),
-              RDM_CANCELLED);
+              RDM_ERROR_CANCELLED);
   });
-  for (size_t rank = 0; rank < 3; ++rank) EXPECT_EQ(heard[rank], RDM_CANCELLED);
+  for (size_t rank = 0; rank < 3; ++rank) EXPECT_EQ(heard[rank], RDM_ERROR_CANCELLED);
   EXPECT_EQ(checkpoint("two_state", "ppo_lag", 2, 2, path, "after"),
             checkpoint("two_state", "ppo_lag", 1, 4, "", "unbroken"));
 }
@@ -219,7 +220,7 @@ std::string meet(const RankMade& second, int32_t claimed = 1) {
     if (rank == 1) r.rank = claimed;
     const Part part(made, r);
     const rdm_result result = rdm_agent_rollout(part.agent, part.pool, nullptr);
-    EXPECT_TRUE(result == RDM_OK || result == RDM_STATE) << rdm_agent_error(part.agent);
+    EXPECT_TRUE(result == RDM_OK || result == RDM_ERROR_STATE) << rdm_agent_error(part.agent);
     if (result != RDM_OK) texts[rank] = rdm_agent_error(part.agent);
   });
   EXPECT_EQ(texts[0], texts[1]) << "both are told the same";

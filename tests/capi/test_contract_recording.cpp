@@ -91,7 +91,7 @@ TEST(ContractRecording, APoolsRows) {
   EXPECT_EQ(v.episode[119], 3);
   // a state is one that a pool takes, and goes on from as it did
   Worlds other(9);
-  ASSERT_EQ(rdm_pool_set_state(other.pool, 0, v.state + 28 * i.state_bytes, i.state_bytes), RDM_OK);
+  ASSERT_EQ(rdm_pool_read_state(other.pool, 0, v.state + 28 * i.state_bytes, i.state_bytes), RDM_OK);
   const int64_t row = v.state_row[28];
   const rdm_buffers c = buffers_of(other.pool);
   EXPECT_EQ(std::memcmp(c.obs, v.obs + row * i.obs_dim, sizeof(float) * static_cast<size_t>(i.obs_dim)), 0);
@@ -125,12 +125,12 @@ TEST(ContractRecording, FilesAndNumpy) {
   Owned o{recording_for(w.pool)}, back;
   record(o.r, w.pool, 12);
   const std::string path = file_path();
-  ASSERT_EQ(rdm_recording_save_file(o.r, path.c_str()), RDM_OK) << rdm_last_error();
-  ASSERT_EQ(rdm_recording_load_file(&back.r, path.c_str()), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_recording_write_file(o.r, path.c_str()), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_recording_read_file(&back.r, path.c_str()), RDM_OK) << rdm_last_error();
   EXPECT_EQ(info_of(back.r).fingerprint, info_of(o.r).fingerprint);
   EXPECT_EQ(info_of(back.r).rows, 48);
   rdm_recording* none = nullptr;
-  EXPECT_EQ(rdm_recording_load_file(&none, "/nowhere/x.npz"), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_recording_read_file(&none, "/nowhere/x.npz"), RDM_ERROR_NOT_FOUND);
 
   // numpy reads it, and what numpy writes is read; where there is no numpy there is nothing to hold it to
   const std::string
@@ -152,10 +152,10 @@ TEST(ContractRecording, FilesAndNumpy) {
   if (std::system("/usr/bin/python3 -c 'import numpy' 2> /dev/null") != 0) GTEST_SKIP() << "no numpy";
   ASSERT_EQ(std::system(("/usr/bin/python3 " + file + " " + path + " " + again).c_str()), 0);
   Owned third;
-  ASSERT_EQ(rdm_recording_load_file(&third.r, again.c_str()), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_recording_read_file(&third.r, again.c_str()), RDM_OK) << rdm_last_error();
   EXPECT_EQ(info_of(third.r).fingerprint, info_of(o.r).fingerprint);
   EXPECT_EQ(info_of(third.r).num_states, 12);
-  EXPECT_EQ(rdm_recording_load_file(&none, path.c_str()), RDM_FORMAT);
+  EXPECT_EQ(rdm_recording_read_file(&none, path.c_str()), RDM_ERROR_FORMAT);
   EXPECT_NE(std::string(rdm_last_error()).find("packed"), std::string::npos) << rdm_last_error();
 }
 
@@ -221,14 +221,14 @@ TEST(ContractRecording, StartsResumeAndDoNotFollowThreads) {
   size_t n = 0;
   ASSERT_EQ(rdm_pool_state_size(a.pool, -1, &n), RDM_OK);
   state.resize(n);
-  ASSERT_EQ(rdm_pool_get_state(a.pool, -1, state.data(), n, &n), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(a.pool, -1, state.data(), n, &n), RDM_OK);
   const uint64_t before = hash_of(b.pool);
-  EXPECT_EQ(rdm_pool_set_state(b.pool, -1, state.data(), n), RDM_FORMAT);
+  EXPECT_EQ(rdm_pool_read_state(b.pool, -1, state.data(), n), RDM_ERROR_FORMAT);
   ASSERT_EQ(rdm_pool_set_starts(b.pool, other.r, 0.1), RDM_OK);
-  EXPECT_EQ(rdm_pool_set_state(b.pool, -1, state.data(), n), RDM_FORMAT);
+  EXPECT_EQ(rdm_pool_read_state(b.pool, -1, state.data(), n), RDM_ERROR_FORMAT);
   EXPECT_EQ(hash_of(b.pool), before);
   ASSERT_EQ(rdm_pool_set_starts(b.pool, o.r, 0.1), RDM_OK);
-  ASSERT_EQ(rdm_pool_set_state(b.pool, -1, state.data(), n), RDM_OK) << rdm_pool_error(b.pool);
+  ASSERT_EQ(rdm_pool_read_state(b.pool, -1, state.data(), n), RDM_OK) << rdm_pool_error(b.pool);
   play(a.pool, 2 * s.max_steps), play(b.pool, 2 * s.max_steps);
   EXPECT_EQ(hash_of(a.pool), hash_of(b.pool));
 }
@@ -236,11 +236,11 @@ TEST(ContractRecording, StartsResumeAndDoNotFollowThreads) {
 TEST(ContractRecording, StartsThatAreNoneAreRefused) {
   Worlds w(5);
   Owned o{recording_for(w.pool, 10)};
-  EXPECT_EQ(rdm_pool_set_starts(w.pool, o.r, 0.5), RDM_ARGUMENT);  // it has no states yet
-  EXPECT_EQ(rdm_pool_set_starts(w.pool, nullptr, 0.5), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_set_starts(w.pool, o.r, 0.5), RDM_ERROR_ARGUMENT);  // it has no states yet
+  EXPECT_EQ(rdm_pool_set_starts(w.pool, nullptr, 0.5), RDM_ERROR_ARGUMENT);
   record(o.r, w.pool, 30);
-  EXPECT_EQ(rdm_pool_set_starts(w.pool, o.r, 1.5), RDM_RANGE);
-  EXPECT_EQ(rdm_pool_set_starts(w.pool, o.r, std::nan("")), RDM_RANGE);
+  EXPECT_EQ(rdm_pool_set_starts(w.pool, o.r, 1.5), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_set_starts(w.pool, o.r, std::nan("")), RDM_ERROR_RANGE);
   rdm_recording_rows v = rows_of(o.r);
   std::vector<uint8_t> bytes(v.state, v.state + static_cast<size_t>(v.num_states) * info_of(o.r).state_bytes);
   bytes[bytes.size() - 9] ^= 1;
@@ -248,11 +248,11 @@ TEST(ContractRecording, StartsThatAreNoneAreRefused) {
   Owned bad{recording_for(w.pool, 10)};
   ASSERT_EQ(rdm_recording_append(bad.r, &v), RDM_OK) << rdm_recording_error(bad.r);
   const uint64_t before = hash_of(w.pool);
-  EXPECT_EQ(rdm_pool_set_starts(w.pool, bad.r, 0.5), RDM_FORMAT);
+  EXPECT_EQ(rdm_pool_set_starts(w.pool, bad.r, 0.5), RDM_ERROR_FORMAT);
   EXPECT_EQ(hash_of(w.pool), before);
   rdm_pool_config c = pool_config(4);
   rdm_pool* hands = make_pool(c);
-  EXPECT_EQ(rdm_pool_set_starts(hands, o.r, 0.5), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_set_starts(hands, o.r, 0.5), RDM_ERROR_ARGUMENT);
   rdm_pool_destroy(hands);
 }
 
@@ -276,7 +276,7 @@ TEST(ContractRecording, AHostWithoutPool) {
   v.rows = 300, v.obs = obs.data(), v.action = action.data();
   ASSERT_EQ(rdm_recording_append(o.r, &v), RDM_OK) << rdm_recording_error(o.r);
   v.obs = nullptr;
-  EXPECT_EQ(rdm_recording_append(o.r, &v), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_recording_append(o.r, &v), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(info_of(o.r).rows, 300);
   EXPECT_GT(host.live, 300u * 7 * 4);
 
@@ -293,7 +293,7 @@ TEST(ContractRecording, AHostWithoutPool) {
   EXPECT_EQ(report.validation_rows, 30);
   EXPECT_LT(report.validation_loss, 2e-3);
   float out[8];
-  ASSERT_EQ(rdm_agent_act(a, obs.data(), RDM_MEAN, out), RDM_OK);
+  ASSERT_EQ(rdm_agent_act(a, obs.data(), RDM_ACT_MEAN, out), RDM_OK);
   for (int i = 0; i < 8; ++i) EXPECT_NEAR(out[i], action[static_cast<size_t>(i)], 0.15f);
 
   ASSERT_EQ(rdm_agent_set_recording(a, o.r), RDM_OK) << rdm_agent_error(a);
@@ -341,7 +341,7 @@ TEST(ContractRecording, RefusedMemoryLosesNothing) {
     const rdm_result r = rdm_recording_append_all(o.r, more.r);
     host.refuse_at = SIZE_MAX;
     if (r == RDM_OK) break;
-    EXPECT_EQ(r, RDM_MEMORY);
+    EXPECT_EQ(r, RDM_ERROR_MEMORY);
     EXPECT_EQ(info_of(o.r).fingerprint, print);
     EXPECT_EQ(info_of(o.r).rows, 12);
   }
@@ -352,20 +352,20 @@ TEST(ContractRecording, OtherHandlesAndNull) {
   rdm_agent* a = make_agent(agent_config());
   Owned o{recording_for(w.pool)};
   auto* wrong = reinterpret_cast<rdm_recording*>(a);
-  EXPECT_EQ(rdm_recording_clear(wrong), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_recording_clear(wrong), RDM_ERROR_ARGUMENT);
   EXPECT_NE(std::string(rdm_last_error()).find("agent"), std::string::npos);
-  EXPECT_EQ(rdm_recording_clear(nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_agent_clone(a, nullptr, nullptr, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_agent_clone(a, o.r, nullptr, nullptr), RDM_ARGUMENT);  // other dims
-  EXPECT_EQ(rdm_agent_set_recording(a, o.r), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_recording_clear(nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_agent_clone(a, nullptr, nullptr, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_agent_clone(a, o.r, nullptr, nullptr), RDM_ERROR_ARGUMENT);  // other dims
+  EXPECT_EQ(rdm_agent_set_recording(a, o.r), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_agent_set_recording(a, nullptr), RDM_OK);
-  EXPECT_EQ(rdm_agent_load_policy(a, nullptr, 100), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_recording_end_step(o.r, w.pool, nullptr), RDM_STATE);
-  EXPECT_EQ(rdm_recording_append_all(o.r, o.r), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_recording_filter(o.r, 2, nullptr, nullptr), RDM_RANGE);
+  EXPECT_EQ(rdm_agent_set_policy(a, nullptr, 100), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_recording_end_step(o.r, w.pool, nullptr), RDM_ERROR_STATE);
+  EXPECT_EQ(rdm_recording_append_all(o.r, o.r), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_recording_filter(o.r, 2, nullptr, nullptr), RDM_ERROR_RANGE);
   const rdm_buffers b = buffers_of(w.pool);
   b.action[1] = std::nanf("");
-  EXPECT_EQ(rdm_recording_begin_step(o.r, w.pool, nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_recording_begin_step(o.r, w.pool, nullptr, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(info_of(o.r).rows, 0);
   rdm_recording_destroy(nullptr);
   rdm_agent_destroy(a);

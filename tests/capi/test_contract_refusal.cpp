@@ -41,7 +41,7 @@ TEST_P(ContractRefusal, APoolIsMadeOrRefusedWhole) {
     refuse_heap(k);
     const rdm_result r = rdm_pool_create(&p, &c);
     made = !allow_heap();
-    ASSERT_EQ(r, made ? RDM_OK : RDM_MEMORY) << k << ' ' << rdm_last_error();
+    ASSERT_EQ(r, made ? RDM_OK : RDM_ERROR_MEMORY) << k << ' ' << rdm_last_error();
     ASSERT_EQ(p != nullptr, made);
     rdm_pool_destroy(p);
     ASSERT_EQ(heap_blocks(), before) << k;

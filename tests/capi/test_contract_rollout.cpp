@@ -115,19 +115,19 @@ TEST(ContractRollout, ACheckpointThatIsRefusedChangesNothing) {
   c.options = other_net;
   c.num_options = 2;
   rdm_agent* other = make_agent(c);
-  EXPECT_EQ(rdm_checkpoint_read(path.c_str(), other, a.pool, note, sizeof note, &n), RDM_FORMAT);
+  EXPECT_EQ(rdm_checkpoint_read(path.c_str(), other, a.pool, note, sizeof note, &n), RDM_ERROR_FORMAT);
   EXPECT_EQ(seen(a.pool), pool_before);
   rdm_agent_destroy(other);
 
   // the agent would take it, the pool does not
   rdm_pool* small = make_pool(pool_config(3));
-  EXPECT_EQ(rdm_checkpoint_read(path.c_str(), a.agent, small, note, sizeof note, &n), RDM_FORMAT);
+  EXPECT_EQ(rdm_checkpoint_read(path.c_str(), a.agent, small, note, sizeof note, &n), RDM_ERROR_FORMAT);
   EXPECT_EQ(saved(a.agent), agent_before);
   rdm_pool_destroy(small);
 
   // it has no pool
   ASSERT_EQ(rdm_checkpoint_write(path.c_str(), a.agent, nullptr, "hello", 5), RDM_OK);
-  EXPECT_EQ(rdm_checkpoint_read(path.c_str(), a.agent, a.pool, note, sizeof note, &n), RDM_FORMAT);
+  EXPECT_EQ(rdm_checkpoint_read(path.c_str(), a.agent, a.pool, note, sizeof note, &n), RDM_ERROR_FORMAT);
   EXPECT_EQ(seen(a.pool), pool_before);
   EXPECT_EQ(saved(a.agent), agent_before);
   EXPECT_STREQ(note, "before");
@@ -160,14 +160,14 @@ TEST(ContractRollout, ACheckpointThatFindsNoMemoryChangesNothing) {
     ASSERT_EQ(rdm_agent_rollout(agent, pool, nullptr), RDM_OK);
     const auto pool_before = seen(pool), agent_before = saved(agent);
     int refused = 0;
-    for (rdm_result r = RDM_MEMORY; r != RDM_OK; ++refused) {
+    for (rdm_result r = RDM_ERROR_MEMORY; r != RDM_OK; ++refused) {
       ASSERT_LT(refused, 1000);
       refusing->calls = 0;
       refusing->refuse_at = static_cast<size_t>(refused);
       r = rdm_checkpoint_read(path.c_str(), agent, pool, note, sizeof note, &n);
       refusing->refuse_at = SIZE_MAX;
       if (r == RDM_OK) break;
-      ASSERT_EQ(r, RDM_MEMORY) << rdm_last_error();
+      ASSERT_EQ(r, RDM_ERROR_MEMORY) << rdm_last_error();
       ASSERT_EQ(seen(pool), pool_before) << refused;
       ASSERT_EQ(saved(agent), agent_before) << refused;
     }
@@ -186,7 +186,7 @@ TEST(ContractRollout, ACheckpointThatFindsNoMemoryChangesNothing) {
       refusing->refuse_at = k;
       const rdm_result r = rdm_checkpoint_read(path.c_str(), other, pool, note, sizeof note, &n);
       refusing->refuse_at = SIZE_MAX;
-      ASSERT_TRUE(r == RDM_MEMORY || r == RDM_FORMAT) << r;
+      ASSERT_TRUE(r == RDM_ERROR_MEMORY || r == RDM_ERROR_FORMAT) << r;
       ASSERT_EQ(seen(pool), pool_before) << k;
       ASSERT_EQ(saved(other), other_before) << k;
     }
@@ -228,13 +228,13 @@ TEST(ContractRollout, DeadStepsAreNotCounted) {
 TEST(ContractRollout, CancelLeavesAGoodHandle) {
   Pair a;
   rdm_agent_cancel(a.agent);
-  EXPECT_EQ(rdm_agent_rollout(a.agent, a.pool, nullptr), RDM_CANCELLED);
+  EXPECT_EQ(rdm_agent_rollout(a.agent, a.pool, nullptr), RDM_ERROR_CANCELLED);
   a.epochs(1);
   rdm_pool* small = make_pool(pool_config(2));
-  EXPECT_EQ(rdm_agent_rollout(a.agent, small, nullptr), RDM_ARGUMENT);  // another number of worlds
+  EXPECT_EQ(rdm_agent_rollout(a.agent, small, nullptr), RDM_ERROR_ARGUMENT);  // another number of worlds
   rdm_pool_destroy(small);
   Pair off(RDM_AUTORESET_OFF);
-  EXPECT_EQ(rdm_agent_rollout(off.agent, off.pool, nullptr), RDM_STATE);
+  EXPECT_EQ(rdm_agent_rollout(off.agent, off.pool, nullptr), RDM_ERROR_STATE);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// rdm_pool_spec, rdm_pool_memory and rdm_pool_create of every task agree on what is good, and none of them
+// rdm_pool_config_spec, rdm_pool_config_memory and rdm_pool_create of every task agree on what is good, and none of them
 // leaks.
 #include "contract.hpp"
 
@@ -64,10 +64,10 @@ TEST_P(ContractSpec, SaysWhatCreateSays) {
     const rdm_pool_config config = this->config(c, &host.hooks);
     rdm_spec spec = empty_spec(), made = empty_spec();
     size_t ours = 0, engines = 0;
-    const rdm_result said = rdm_pool_spec(&config, &spec);
+    const rdm_result said = rdm_pool_config_spec(&config, &spec);
     const std::string text = said ? rdm_last_error() : "";
     EXPECT_EQ(host.live, 0u);
-    const rdm_result measured = rdm_pool_memory(&config, &ours, &engines);
+    const rdm_result measured = rdm_pool_config_memory(&config, &ours, &engines);
     EXPECT_EQ(host.live, 0u);
     rdm_pool* p = nullptr;
     const rdm_result created = rdm_pool_create(&p, &config);
@@ -89,11 +89,11 @@ TEST_P(ContractSpec, EveryRefusedAllocationIsSurvived) {
   const Case c = {"", 2, 0, {}};
   const auto spec = [](const rdm_pool_config& config) {
     rdm_spec s = empty_spec();
-    return rdm_pool_spec(&config, &s);
+    return rdm_pool_config_spec(&config, &s);
   };
   const auto memory = [](const rdm_pool_config& config) {
     size_t ours = 0, engines = 0;
-    return rdm_pool_memory(&config, &ours, &engines);
+    return rdm_pool_config_memory(&config, &ours, &engines);
   };
   rdm_result (*const calls[])(const rdm_pool_config&) = {spec, memory};
   for (const auto call : calls) {
@@ -103,7 +103,7 @@ TEST_P(ContractSpec, EveryRefusedAllocationIsSurvived) {
       CountingHost host;
       host.refuse_at = k;
       const rdm_result r = call(config(c, &host.hooks));
-      ASSERT_TRUE(r == RDM_OK || r == RDM_MEMORY) << k << ' ' << rdm_last_error();
+      ASSERT_TRUE(r == RDM_OK || r == RDM_ERROR_MEMORY) << k << ' ' << rdm_last_error();
       ASSERT_EQ(host.live, 0u) << k;
       good = r == RDM_OK;
     }

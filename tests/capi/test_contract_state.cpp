@@ -1,5 +1,5 @@
 // States whose checksums are right and whose contents are not: no bytes lead to undefined behaviour, for any
-// task and engine. What no world can have is RDM_FORMAT and changes nothing.
+// task and engine. What no world can have is RDM_ERROR_FORMAT and changes nothing.
 #include <cmath>
 #include <limits>
 
@@ -41,7 +41,7 @@ class ContractState : public testing::TestWithParam<std::string> {
     }
   }
   static rdm_result set(rdm_pool* p, const std::vector<unsigned char>& state) {
-    return rdm_pool_set_state(p, 0, state.data(), state.size());
+    return rdm_pool_read_state(p, 0, state.data(), state.size());
   }
   // Rows of both worlds are finite.
   static void expect_finite(const rdm_pool* p) {
@@ -64,8 +64,8 @@ class ContractState : public testing::TestWithParam<std::string> {
       SCOPED_TRACE(at - begin);
       const uint64_t before = hash_of(p);
       const rdm_result r = set(p, good.with(at, value));
-      ASSERT_TRUE(r == RDM_OK || r == RDM_FORMAT) << r << ' ' << rdm_pool_error(p);
-      if (r == RDM_FORMAT) {
+      ASSERT_TRUE(r == RDM_OK || r == RDM_ERROR_FORMAT) << r << ' ' << rdm_pool_error(p);
+      if (r == RDM_ERROR_FORMAT) {
         ASSERT_EQ(hash_of(p), before);
         return;
       }
@@ -95,7 +95,7 @@ TEST_P(ContractState, AnEpisodeThatCannotBeIsRefused) {
   const rdm_buffers b = buffers_of(p);
   const float reward = b.reward[0];
   const auto refused = [&](const char* what, const std::vector<unsigned char>& state) {
-    EXPECT_EQ(set(p, state), RDM_FORMAT) << what;
+    EXPECT_EQ(set(p, state), RDM_ERROR_FORMAT) << what;
     EXPECT_EQ(hash_of(p), before) << what;
     EXPECT_EQ(b.reward[0], reward) << what;
   };

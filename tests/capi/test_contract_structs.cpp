@@ -22,7 +22,7 @@ class Structs : public testing::Test {
     ASSERT_EQ(rdm_pool_reset(pool_, nullptr, nullptr), RDM_OK);
     agent_ = make_agent(agent_config());
     const auto bytes = policy_bytes(agent_);
-    ASSERT_EQ(rdm_policy_load(&policy_, bytes.data(), bytes.size()), RDM_OK);
+    ASSERT_EQ(rdm_policy_read(&policy_, bytes.data(), bytes.size()), RDM_OK);
     rdm_map_config c;
     ASSERT_EQ(rdm_map_config_init(&c, sizeof c), RDM_OK);
     ASSERT_EQ(rdm_map_create(&map_, &c), RDM_OK);
@@ -42,12 +42,12 @@ class Structs : public testing::Test {
     for (const uint32_t size : {4097u, 16384u, 0x7fffffffu, 0xffffffffu, 0u, 4u}) {
       Roomy<T> in(value);
       in.get()->struct_size = size;
-      EXPECT_EQ(call(in.get()), RDM_ARGUMENT) << size;
+      EXPECT_EQ(call(in.get()), RDM_ERROR_ARGUMENT) << size;
       EXPECT_NE(std::string(rdm_last_error()).find("struct_size"), std::string::npos) << rdm_last_error();
     }
     Roomy<T> in(value);
     in.get()->struct_size = 4096;
-    EXPECT_NE(call(in.get()), RDM_ARGUMENT) << rdm_last_error();
+    EXPECT_NE(call(in.get()), RDM_ERROR_ARGUMENT) << rdm_last_error();
   }
   // Such a struct that goes in has reserved members that must be 0, so that a later version may use them.
   template <class T>
@@ -58,7 +58,7 @@ class Structs : public testing::Test {
       T in = value;
       in.struct_size = sizeof in;
       member(in) = 7;
-      EXPECT_EQ(call(&in), RDM_ARGUMENT) << which;
+      EXPECT_EQ(call(&in), RDM_ERROR_ARGUMENT) << which;
       EXPECT_NE(std::string(rdm_last_error()).find(std::string(which) + ": it must be 0"), std::string::npos)
           << rdm_last_error();
     };
@@ -90,16 +90,17 @@ TEST_F(Structs, ThatGoInHaveASizeThatCanBe) {
     const rdm_result r = rdm_pool_create(&p, c);
     return end_pool(r, p);
   });
-  goes_in<rdm_pool_config>("rdm_pool_spec", pool_config(), [&](auto* c) { return rdm_pool_spec(c, &spec); });
-  goes_in<rdm_pool_config>("rdm_pool_memory", pool_config(),
-                           [&](auto* c) { return rdm_pool_memory(c, &n, nullptr); });
+  goes_in<rdm_pool_config>("rdm_pool_config_spec", pool_config(),
+                           [&](auto* c) { return rdm_pool_config_spec(c, &spec); });
+  goes_in<rdm_pool_config>("rdm_pool_config_memory", pool_config(),
+                           [&](auto* c) { return rdm_pool_config_memory(c, &n, nullptr); });
   goes_in<rdm_agent_config>("rdm_agent_create", agent_config(), [&](rdm_agent_config* c) {
     rdm_agent* a = nullptr;
     const rdm_result r = rdm_agent_create(&a, c);
     return end_agent(r, a);
   });
-  goes_in<rdm_agent_config>("rdm_agent_memory", agent_config(),
-                            [&](auto* c) { return rdm_agent_memory(c, &n); });
+  goes_in<rdm_agent_config>("rdm_agent_config_memory", agent_config(),
+                            [&](auto* c) { return rdm_agent_config_memory(c, &n); });
   goes_in<rdm_agent_config>("rdm_agent_config_for_pool", agent_config(),
                             [&](auto* c) { return rdm_agent_config_for_pool(c, pool_); });
   goes_in<rdm_host>("rdm_init", rdm_host{}, [](rdm_host* h) {
@@ -110,16 +111,17 @@ TEST_F(Structs, ThatGoInHaveASizeThatCanBe) {
   goes_in<rdm_host>("config.host", rdm_host{}, [&](rdm_host* h) {
     rdm_pool_config c = pool_config();
     c.host = h;
-    return rdm_pool_spec(&c, &spec);
+    return rdm_pool_config_spec(&c, &spec);
   });
-  goes_in<rdm_buffers>("rdm_pool_bind", rdm_buffers{}, [&](auto* b) { return rdm_pool_bind(pool_, b); });
+  goes_in<rdm_buffers>("rdm_pool_set_buffers", rdm_buffers{},
+                       [&](auto* b) { return rdm_pool_set_buffers(pool_, b); });
   const float reward[4] = {}, cost[4] = {}, obs[12] = {};
   float action[8];
   rdm_transition t{};
   t.reward = reward;
   t.cost = cost;
   goes_in<rdm_transition>("rdm_agent_record", t, [&](auto* in) {
-    rdm_agent_act(agent_, obs, RDM_SAMPLE, action);  // STATE while one waits for its record
+    rdm_agent_act(agent_, obs, RDM_ACT_SAMPLE, action);  // STATE while one waits for its record
     return rdm_agent_record(agent_, in);
   });
   goes_in<rdm_spec>("rdm_policy_check", spec, [&](auto* s) { return rdm_policy_check(policy_, s); });
@@ -148,14 +150,14 @@ TEST_F(Structs, ThatComeOutHaveASizeThatCanBe) {
   sizes<rdm_task>("rdm_task_at", {}, [](auto* io) { return rdm_task_at(0, io); });
   sizes<rdm_algo>("rdm_algo_at", {}, [](auto* io) { return rdm_algo_at(0, io); });
   sizes<rdm_robot>("rdm_robot_at", {}, [](auto* io) { return rdm_robot_at(0, io); });
-  sizes<rdm_spec>("rdm_pool_spec", {}, [](auto* io) {
+  sizes<rdm_spec>("rdm_pool_config_spec", {}, [](auto* io) {
     const rdm_pool_config c = pool_config();
-    return rdm_pool_spec(&c, io);
+    return rdm_pool_config_spec(&c, io);
   });
   sizes<rdm_spec>("rdm_pool_get_spec", {}, [&](auto* io) { return rdm_pool_get_spec(pool_, io); });
-  sizes<rdm_buffers>("rdm_pool_buffers", {}, [&](auto* io) { return rdm_pool_buffers(pool_, io); });
+  sizes<rdm_buffers>("rdm_pool_get_buffers", {}, [&](auto* io) { return rdm_pool_get_buffers(pool_, io); });
   sizes<rdm_pool_stats>("rdm_pool_get_stats", {}, [&](auto* io) { return rdm_pool_get_stats(pool_, io); });
-  sizes<rdm_sensors>("rdm_pool_sensors", {}, [&](auto* io) { return rdm_pool_sensors(pool_, io); });
+  sizes<rdm_sensors>("rdm_pool_get_sensors", {}, [&](auto* io) { return rdm_pool_get_sensors(pool_, io); });
   sizes<rdm_map_info>("rdm_map_get_info", {}, [&](auto* io) { return rdm_map_get_info(map_, io); });
   sizes<rdm_policy_info>("rdm_policy_get_info", {},
                          [&](auto* io) { return rdm_policy_get_info(policy_, io); });
@@ -163,7 +165,7 @@ TEST_F(Structs, ThatComeOutHaveASizeThatCanBe) {
   sizes<rdm_epoch>("rdm_agent_update", {}, [&](auto* io) { return rdm_agent_update(agent_, obs, io); });
   sizes<rdm_epoch>("rdm_agent_rollout", {}, [&](auto* io) {
     const rdm_result r = rdm_agent_rollout(agent_, pool_, io);  // the dimensions differ: refused later
-    return r == RDM_ARGUMENT && !std::strstr(rdm_last_error(), "struct_size") ? RDM_OK : r;
+    return r == RDM_ERROR_ARGUMENT && !std::strstr(rdm_last_error(), "struct_size") ? RDM_OK : r;
   });
 }
 
@@ -173,7 +175,7 @@ TEST_F(Structs, InitFunctionsFillNoMoreThanAStructCanHave) {
     SCOPED_TRACE(name);
     for (const size_t size : {size_t{0}, first - 1, size_t{4097}, size_t{65536}, SIZE_MAX}) {
       std::memset(bytes, 0x5a, sizeof bytes);
-      EXPECT_EQ(init(bytes, size), RDM_ARGUMENT) << size;
+      EXPECT_EQ(init(bytes, size), RDM_ERROR_ARGUMENT) << size;
       for (const unsigned char b : bytes) ASSERT_EQ(b, 0x5a);
     }
     EXPECT_EQ(init(bytes, 4096), RDM_OK);
@@ -213,11 +215,11 @@ TEST_F(Structs, TailsOfNewerCallersAreZeroed) {
   zeroed("rdm_build", rdm_build{}, [](auto* io) { return rdm_build_info(io); });
   zeroed("rdm_task", rdm_task{}, [](auto* io) { return rdm_task_at(0, io); });
   zeroed("rdm_spec", rdm_spec{}, [&](auto* io) { return rdm_pool_get_spec(pool_, io); });
-  zeroed("rdm_buffers", rdm_buffers{}, [&](auto* io) { return rdm_pool_buffers(pool_, io); });
+  zeroed("rdm_buffers", rdm_buffers{}, [&](auto* io) { return rdm_pool_get_buffers(pool_, io); });
   zeroed("rdm_pool_stats", rdm_pool_stats{}, [&](auto* io) { return rdm_pool_get_stats(pool_, io); });
   zeroed("rdm_policy_info", rdm_policy_info{}, [&](auto* io) { return rdm_policy_get_info(policy_, io); });
   zeroed("rdm_map_info", rdm_map_info{}, [&](auto* io) { return rdm_map_get_info(map_, io); });
-  zeroed("rdm_sensors", rdm_sensors{}, [&](auto* io) { return rdm_pool_sensors(pool_, io); });
+  zeroed("rdm_sensors", rdm_sensors{}, [&](auto* io) { return rdm_pool_get_sensors(pool_, io); });
 }
 
 }  // namespace

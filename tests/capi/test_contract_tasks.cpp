@@ -95,9 +95,9 @@ TEST_P(ContractTasks, ASavedStateGoesOnWithTheSameBytes) {
   size_t n = 0;
   ASSERT_EQ(rdm_pool_state_size(p, -1, &n), RDM_OK);
   std::vector<unsigned char> state(n);
-  ASSERT_EQ(rdm_pool_get_state(p, -1, state.data(), n, &n), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(p, -1, state.data(), n, &n), RDM_OK);
   play(other, 7);
-  ASSERT_EQ(rdm_pool_set_state(other, -1, state.data(), n), RDM_OK) << rdm_pool_error(other);
+  ASSERT_EQ(rdm_pool_read_state(other, -1, state.data(), n), RDM_OK) << rdm_pool_error(other);
   const rdm_spec s = spec_of(p);
   const rdm_buffers a = buffers_of(p), b = buffers_of(other);
   EXPECT_EQ(std::memcmp(a.obs, b.obs, sizeof(float) * 3 * static_cast<size_t>(s.obs_dim)), 0);
@@ -143,7 +143,7 @@ TEST_P(ContractTasks, MemoryIsExactAndStepsTakeNone) {
   rdm_pool_config c = config();
   c.host = &host.hooks;
   size_t ours = 0, engines = 0;
-  ASSERT_EQ(rdm_pool_memory(&c, &ours, &engines), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_pool_config_memory(&c, &ours, &engines), RDM_OK) << rdm_last_error();
   EXPECT_EQ(host.live, 0u);
   rdm_pool* p = started(c);
   EXPECT_EQ(host.live, ours);

@@ -17,7 +17,7 @@ void check_option(const rdm_option_info& o, const char* owner) {
   ASSERT_NE(o.help, nullptr);
   EXPECT_GT(std::strlen(o.help), 0u);
   EXPECT_TRUE(o.live == 0 || o.live == 1);
-  if (o.kind == RDM_TEXT) {
+  if (o.kind == RDM_KIND_TEXT) {
     ASSERT_NE(o.text, nullptr);
     EXPECT_LT(std::strlen(o.text), static_cast<size_t>(RDM_TEXT_SIZE));
     const std::string choices = o.choices ? std::string("|") + o.choices + "|" : "";
@@ -28,8 +28,8 @@ void check_option(const rdm_option_info& o, const char* owner) {
   EXPECT_TRUE(!o.text || (o.choices && std::strstr(o.text, ".."))) << o.text;
   EXPECT_LE(o.low, o.number);
   EXPECT_LE(o.number, o.high);
-  EXPECT_TRUE(o.kind != RDM_FLAG || (o.low == 0 && o.high == 1));
-  EXPECT_TRUE(o.kind == RDM_NUMBER || o.number == std::floor(o.number));
+  EXPECT_TRUE(o.kind != RDM_KIND_FLAG || (o.low == 0 && o.high == 1));
+  EXPECT_TRUE(o.kind == RDM_KIND_NUMBER || o.number == std::floor(o.number));
 }
 
 std::vector<rdm_task> all_tasks() {
@@ -62,7 +62,7 @@ TEST(Discovery, FieldsAreAtHand) {
     }
     EXPECT_EQ(offset, tasks[t].obs_dim) << tasks[t].name;
     rdm_field past;
-    EXPECT_EQ(rdm_task_field(static_cast<int32_t>(t), tasks[t].num_fields, &past), RDM_RANGE);
+    EXPECT_EQ(rdm_task_field(static_cast<int32_t>(t), tasks[t].num_fields, &past), RDM_ERROR_RANGE);
   }
   const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
   // far below the 10 ms that making one task can take, and far above what a table needs
@@ -83,7 +83,7 @@ TEST(Discovery, TasksAreFoundByTheirNames) {
   int32_t found = -1;
   EXPECT_EQ(rdm_task_find("Hand-Over-SAFE-finger", &found), RDM_OK);
   EXPECT_STREQ(tasks[static_cast<size_t>(found)].name, "hand_over_safe_finger");
-  EXPECT_EQ(rdm_task_find("hand_over_safe_finder", &found), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_task_find("hand_over_safe_finder", &found), RDM_ERROR_NOT_FOUND);
   EXPECT_NE(std::string(rdm_last_error()).find("hand_over_safe_finger"), std::string::npos)
       << rdm_last_error();
 }
@@ -105,8 +105,8 @@ TEST(Discovery, FieldsCoverTheObservationWithoutGaps) {
       next += f.count;
     }
     EXPECT_EQ(next, task.obs_dim);
-    EXPECT_EQ(rdm_task_field(t, task.num_fields, &f), RDM_RANGE);
-    EXPECT_EQ(rdm_task_field(t, -1, &f), RDM_RANGE);
+    EXPECT_EQ(rdm_task_field(t, task.num_fields, &f), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_task_field(t, -1, &f), RDM_ERROR_RANGE);
   }
 }
 
@@ -126,7 +126,7 @@ TEST(Discovery, CostsOptionsCamerasAndDefaults) {
     }
     ASSERT_EQ(rdm_task_cost(t, 0, &cost), RDM_OK);
     EXPECT_GE(cost.limit, 0);
-    EXPECT_EQ(rdm_task_cost(t, task.cost_dim, &cost), RDM_RANGE);
+    EXPECT_EQ(rdm_task_cost(t, task.cost_dim, &cost), RDM_ERROR_RANGE);
 
     std::set<std::string> keys;
     rdm_option_info option;
@@ -135,7 +135,7 @@ TEST(Discovery, CostsOptionsCamerasAndDefaults) {
       check_option(option, task.name);
       EXPECT_TRUE(keys.insert(option.key).second) << option.key;
     }
-    EXPECT_EQ(rdm_task_option(t, task.num_options, &option), RDM_RANGE);
+    EXPECT_EQ(rdm_task_option(t, task.num_options, &option), RDM_ERROR_RANGE);
 
     rdm_camera camera;
     ASSERT_GE(task.num_cameras, 1);
@@ -145,7 +145,7 @@ TEST(Discovery, CostsOptionsCamerasAndDefaults) {
       EXPECT_LT(camera.fov_y, 3.1f);
       EXPECT_NE(std::memcmp(camera.eye, camera.target, sizeof camera.eye), 0);
     }
-    EXPECT_EQ(rdm_task_camera(t, task.num_cameras, &camera), RDM_RANGE);
+    EXPECT_EQ(rdm_task_camera(t, task.num_cameras, &camera), RDM_ERROR_RANGE);
   }
 }
 
@@ -155,9 +155,9 @@ TEST(Discovery, DefaultsOfEveryTaskFitEveryAlgorithm) {
   for (int32_t t = 0; t < rdm_task_count(); ++t) {
     std::vector<rdm_option> defaults(static_cast<size_t>(tasks[static_cast<size_t>(t)].num_defaults));
     for (size_t i = 0; i < defaults.size(); ++i)
-      ASSERT_EQ(rdm_task_default(t, static_cast<int32_t>(i), &defaults[i]), RDM_OK);
+      ASSERT_EQ(rdm_task_default_at(t, static_cast<int32_t>(i), &defaults[i]), RDM_OK);
     rdm_option past;
-    EXPECT_EQ(rdm_task_default(t, static_cast<int32_t>(defaults.size()), &past), RDM_RANGE);
+    EXPECT_EQ(rdm_task_default_at(t, static_cast<int32_t>(defaults.size()), &past), RDM_ERROR_RANGE);
     // they may name parts of the observation
     std::vector<rdm_field> fields(static_cast<size_t>(tasks[static_cast<size_t>(t)].num_fields));
     for (size_t i = 0; i < fields.size(); ++i)
@@ -177,7 +177,7 @@ TEST(Discovery, DefaultsOfEveryTaskFitEveryAlgorithm) {
       config.defaults = defaults.data();
       config.num_defaults = static_cast<int32_t>(defaults.size());
       size_t bytes = 0;
-      EXPECT_EQ(rdm_agent_memory(&config, &bytes), RDM_OK) << algo.name << ": " << rdm_last_error();
+      EXPECT_EQ(rdm_agent_config_memory(&config, &bytes), RDM_OK) << algo.name << ": " << rdm_last_error();
     }
   }
 }
@@ -190,7 +190,7 @@ TEST(Discovery, TasksAreWhatTheirPoolsAre) {
     config.task = task.name;
     rdm_spec spec;
     spec.struct_size = sizeof spec;
-    ASSERT_EQ(rdm_pool_spec(&config, &spec), RDM_OK) << rdm_last_error();
+    ASSERT_EQ(rdm_pool_config_spec(&config, &spec), RDM_OK) << rdm_last_error();
     EXPECT_EQ(spec.obs_dim, task.obs_dim);
     EXPECT_EQ(spec.action_dim, task.action_dim);
     EXPECT_EQ(spec.cost_dim, task.cost_dim);
@@ -217,10 +217,10 @@ TEST(Discovery, Algorithms) {
       check_option(option, algo.name);
       EXPECT_TRUE(keys.insert(option.key).second) << option.key;
     }
-    EXPECT_EQ(rdm_algo_option(a, algo.num_options, &option), RDM_RANGE);
+    EXPECT_EQ(rdm_algo_option(a, algo.num_options, &option), RDM_ERROR_RANGE);
   }
   int32_t found = -1;
-  EXPECT_EQ(rdm_algo_find("ppo_lagg", &found), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_algo_find("ppo_lagg", &found), RDM_ERROR_NOT_FOUND);
   EXPECT_NE(std::string(rdm_last_error()).find("ppo_lag"), std::string::npos);
 }
 
@@ -244,7 +244,7 @@ TEST(Discovery, RobotsAndObjects) {
     if (actions.empty()) continue;  // a drawer, a door
     EXPECT_EQ(*actions.begin(), 0);
     EXPECT_EQ(*actions.rbegin(), robot.num_actuated - 1);
-    EXPECT_EQ(rdm_robot_joint(r, robot.num_joints, &joint), RDM_RANGE);
+    EXPECT_EQ(rdm_robot_joint(r, robot.num_joints, &joint), RDM_ERROR_RANGE);
   }
   rdm_object object;
   ASSERT_GT(rdm_object_count(), 0);
@@ -253,28 +253,28 @@ TEST(Discovery, RobotsAndObjects) {
     EXPECT_GT(object.mass, 0) << object.name;
     EXPECT_GT(std::strlen(object.shape), 0u) << object.name;
   }
-  EXPECT_EQ(rdm_object_at(rdm_object_count(), &object), RDM_RANGE);
+  EXPECT_EQ(rdm_object_at(rdm_object_count(), &object), RDM_ERROR_RANGE);
 }
 
 TEST(Discovery, SurvivesBadCalls) {
   int32_t index = 0;
-  EXPECT_EQ(rdm_task_at(0, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_task_find(nullptr, &index), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_task_find("grasp", nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_task_field(0, 0, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_task_option(0, 0, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_algo_find(nullptr, &index), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_algo_option(0, 0, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_robot_at(0, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_object_at(0, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_task_at(0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_task_find(nullptr, &index), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_task_find("grasp", nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_task_field(0, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_task_option(0, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_algo_find(nullptr, &index), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_algo_option(0, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_robot_at(0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_object_at(0, nullptr), RDM_ERROR_ARGUMENT);
   rdm_task task;
   task.struct_size = 4;
-  EXPECT_EQ(rdm_task_at(0, &task), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_task_at(0, &task), RDM_ERROR_ARGUMENT);
   task.struct_size = sizeof task;
-  EXPECT_EQ(rdm_task_at(rdm_task_count(), &task), RDM_RANGE);
-  EXPECT_EQ(rdm_task_at(-1, &task), RDM_RANGE);
+  EXPECT_EQ(rdm_task_at(rdm_task_count(), &task), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_task_at(-1, &task), RDM_ERROR_RANGE);
   rdm_field field;
-  EXPECT_EQ(rdm_task_field(rdm_task_count(), 0, &field), RDM_RANGE);
+  EXPECT_EQ(rdm_task_field(rdm_task_count(), 0, &field), RDM_ERROR_RANGE);
 }
 
 }  // namespace

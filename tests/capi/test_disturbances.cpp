@@ -7,9 +7,9 @@ namespace {
 
 std::string settings_of(const rdm_pool* p) {
   size_t size = 0;
-  EXPECT_EQ(rdm_pool_settings(p, nullptr, 0, &size), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_settings(p, nullptr, 0, &size), RDM_OK);
   std::string text(size + 1, '#');
-  EXPECT_EQ(rdm_pool_settings(p, text.data(), text.size(), &size), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_settings(p, text.data(), text.size(), &size), RDM_OK);
   text.resize(size);
   return text;
 }
@@ -36,13 +36,13 @@ TEST(Disturbances, OfEveryTaskComeBackAsTheyWereSet) {
     // one by one, behind those of the task
     const char* key = nullptr;
     char text[RDM_TEXT_SIZE];
-    ASSERT_EQ(rdm_pool_option(p, task.num_options, &key, text), RDM_OK);
+    ASSERT_EQ(rdm_pool_option_at(p, task.num_options, &key, text), RDM_OK);
     EXPECT_STREQ(key, "noise.*");
-    ASSERT_EQ(rdm_pool_option(p, task.num_options + 1, &key, text), RDM_OK);
+    ASSERT_EQ(rdm_pool_option_at(p, task.num_options + 1, &key, text), RDM_OK);
     EXPECT_STREQ(text, "0.01..0.02");
-    ASSERT_EQ(rdm_pool_option(p, task.num_options + 4, &key, text), RDM_OK);
+    ASSERT_EQ(rdm_pool_option_at(p, task.num_options + 4, &key, text), RDM_OK);
     EXPECT_EQ(key, std::string("noise.") + field.name);
-    EXPECT_EQ(rdm_pool_option(p, task.num_options + 5, &key, text), RDM_RANGE);
+    EXPECT_EQ(rdm_pool_option_at(p, task.num_options + 5, &key, text), RDM_ERROR_RANGE);
     rdm_pool_config d = c;
     d.settings = all.c_str();
     rdm_pool* again = make_pool(d);
@@ -74,7 +74,7 @@ TEST(Disturbances, KeepTheBoundsOfEveryField) {
     ASSERT_NE(p, nullptr);
     rdm_buffers b{};
     b.struct_size = sizeof b;
-    ASSERT_EQ(rdm_pool_buffers(p, &b), RDM_OK);
+    ASSERT_EQ(rdm_pool_get_buffers(p, &b), RDM_OK);
     ASSERT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
     for (int t = 0; t < 3; ++t) {
       for (int32_t k = 0; k < task.num_fields; ++k) {

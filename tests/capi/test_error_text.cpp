@@ -48,9 +48,9 @@ INSTANTIATE_TEST_SUITE_P(Names, ErrorText, testing::ValuesIn(bad_names()),
 TEST_P(ErrorText, OfNames) {
   const char* name = GetParam().c_str();
   int32_t index = -1;
-  EXPECT_EQ(rdm_task_find(name, &index), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_task_find(name, &index), RDM_ERROR_NOT_FOUND);
   EXPECT_TRUE(printable(rdm_last_error()));
-  EXPECT_EQ(rdm_algo_find(name, &index), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_algo_find(name, &index), RDM_ERROR_NOT_FOUND);
   EXPECT_TRUE(printable(rdm_last_error()));
 
   rdm_pool_config c = pool_config(1);
@@ -64,22 +64,22 @@ TEST_P(ErrorText, OfNames) {
 
   rdm_agent* a = make_agent(agent_config());
   float number = 0;
-  EXPECT_EQ(rdm_agent_tensor_read(a, name, &number, 1), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_agent_get_tensor(a, name, &number, 1), RDM_ERROR_NOT_FOUND);
   EXPECT_TRUE(printable(rdm_last_error()));
-  EXPECT_EQ(rdm_agent_tensor_write(a, name, &number, 1), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_agent_set_tensor(a, name, &number, 1), RDM_ERROR_NOT_FOUND);
   EXPECT_TRUE(printable(rdm_last_error()));
   EXPECT_TRUE(printable(rdm_agent_error(a)));
   const auto bytes = policy_bytes(a);
   rdm_policy* policy = nullptr;
-  ASSERT_EQ(rdm_policy_load(&policy, bytes.data(), bytes.size()), RDM_OK);
-  EXPECT_EQ(rdm_policy_tensor_read(policy, name, &number, 1), RDM_NOT_FOUND);
+  ASSERT_EQ(rdm_policy_read(&policy, bytes.data(), bytes.size()), RDM_OK);
+  EXPECT_EQ(rdm_policy_get_tensor(policy, name, &number, 1), RDM_ERROR_NOT_FOUND);
   EXPECT_TRUE(printable(rdm_last_error()));
   rdm_policy_destroy(policy);
 
   const std::string path = (std::filesystem::temp_directory_path() / "no_such_folder").string() + "/" + name;
-  EXPECT_NE(rdm_agent_policy_file(a, path.c_str()), RDM_OK);
+  EXPECT_NE(rdm_agent_write_policy_file(a, path.c_str()), RDM_OK);
   EXPECT_TRUE(printable(rdm_last_error()));
-  EXPECT_NE(rdm_policy_load_file(&policy, path.c_str()), RDM_OK);
+  EXPECT_NE(rdm_policy_read_file(&policy, path.c_str()), RDM_OK);
   EXPECT_TRUE(printable(rdm_last_error()));
   EXPECT_NE(rdm_checkpoint_read(path.c_str(), a, nullptr, nullptr, 0, nullptr), RDM_OK);
   EXPECT_TRUE(printable(rdm_last_error()));
@@ -90,9 +90,9 @@ TEST_P(ErrorText, OfNames) {
   rdm_map* map = nullptr;
   ASSERT_EQ(rdm_map_create(&map, &m), RDM_OK) << rdm_last_error();
   for (const char* ending : {"", ".bt"}) {
-    EXPECT_NE(rdm_map_save_file(map, (path + ending).c_str()), RDM_OK);
+    EXPECT_NE(rdm_map_write_file(map, (path + ending).c_str()), RDM_OK);
     EXPECT_TRUE(printable(rdm_last_error()));
-    EXPECT_NE(rdm_map_load_file(map, (path + ending).c_str()), RDM_OK);
+    EXPECT_NE(rdm_map_read_file(map, (path + ending).c_str()), RDM_OK);
     EXPECT_TRUE(printable(rdm_last_error()));
   }
   rdm_map_destroy(map);

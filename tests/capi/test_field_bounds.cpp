@@ -53,9 +53,9 @@ TEST(FieldBounds, RandomEpisodesStayWithin) {
       ASSERT_EQ(rdm_pool_step(p), RDM_OK);
     }
     float low = 7;
-    EXPECT_EQ(rdm_pool_field_bounds(p, spec.num_fields, &low, &low), RDM_RANGE);
-    EXPECT_EQ(rdm_pool_field_bounds(p, 0, &low, nullptr), RDM_ARGUMENT);
-    EXPECT_EQ(rdm_task_field_bounds(spec.task, -1, &low, &low), RDM_RANGE);
+    EXPECT_EQ(rdm_pool_field_bounds(p, spec.num_fields, &low, &low), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_pool_field_bounds(p, 0, &low, nullptr), RDM_ERROR_ARGUMENT);
+    EXPECT_EQ(rdm_task_field_bounds(spec.task, -1, &low, &low), RDM_ERROR_RANGE);
     EXPECT_EQ(low, 7);
     rdm_pool_destroy(p);
   }
@@ -91,7 +91,7 @@ TEST(InitialMean, IsWhatAgentsAreLent) {
     ASSERT_EQ(rdm_agent_config_init(&a, sizeof a), RDM_OK);
     ASSERT_EQ(rdm_agent_config_for_pool(&a, p), RDM_OK);
     std::vector<float> mean(static_cast<size_t>(a.action_dim), 9.0f);
-    ASSERT_EQ(rdm_pool_initial_mean(p, mean.data()), RDM_OK);
+    ASSERT_EQ(rdm_pool_get_initial_mean(p, mean.data()), RDM_OK);
     EXPECT_EQ(mean, std::vector<float>(a.initial_mean, a.initial_mean + a.action_dim));
     rdm_pool_destroy(p);
   }

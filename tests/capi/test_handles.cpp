@@ -41,7 +41,7 @@ struct Handles {
     agent = make_agent(a);
     const auto file = policy_bytes(agent);
     EXPECT_EQ(rdm_init(&host.hooks), RDM_OK);
-    EXPECT_EQ(rdm_policy_load(&policy, file.data(), file.size()), RDM_OK);
+    EXPECT_EQ(rdm_policy_read(&policy, file.data(), file.size()), RDM_OK);
     rdm_shutdown();
     rdm_map_config m;
     EXPECT_EQ(rdm_map_config_init(&m, sizeof m), RDM_OK);
@@ -107,19 +107,19 @@ const std::vector<Call> kPoolCalls = {
     CALL(rdm_pool_get_spec(POOL, sized<rdm_spec>())),
     CALL(rdm_pool_field(POOL, 0, plain<rdm_field>())),
     CALL(rdm_pool_field_bounds(POOL, 0, g_floats, g_floats + 1)),
-    CALL(rdm_pool_initial_mean(POOL, g_floats)),
-    CALL(rdm_pool_option(POOL, 0, &g_key, g_bytes)),
-    CALL(rdm_pool_settings(POOL, nullptr, 0, &g_size)),
-    CALL(rdm_pool_buffers(POOL, sized<rdm_buffers>())),
-    CALL(rdm_pool_bind(POOL, sized<rdm_buffers>())),
+    CALL(rdm_pool_get_initial_mean(POOL, g_floats)),
+    CALL(rdm_pool_option_at(POOL, 0, &g_key, g_bytes)),
+    CALL(rdm_pool_get_settings(POOL, nullptr, 0, &g_size)),
+    CALL(rdm_pool_get_buffers(POOL, sized<rdm_buffers>())),
+    CALL(rdm_pool_set_buffers(POOL, sized<rdm_buffers>())),
     CALL(rdm_pool_reset(POOL, nullptr, nullptr)),
     CALL(rdm_pool_step(POOL)),
     CALL(rdm_pool_step_masked(POOL, reinterpret_cast<const uint8_t*>(g_bytes))),
     CALL(rdm_pool_baseline(POOL, 0)),
     CALL(rdm_pool_state_size(POOL, 0, &g_size)),
-    CALL(rdm_pool_get_state(POOL, 0, g_bytes, sizeof g_bytes, &g_size)),
-    CALL(rdm_pool_set_state(POOL, 0, g_bytes, 8)),
-    CALL(rdm_pool_hash(POOL, 0, &g_hash)),
+    CALL(rdm_pool_write_state(POOL, 0, g_bytes, sizeof g_bytes, &g_size)),
+    CALL(rdm_pool_read_state(POOL, 0, g_bytes, 8)),
+    CALL(rdm_pool_get_hash(POOL, 0, &g_hash)),
     CALL(rdm_pool_shape(POOL, 0, plain<rdm_shape>())),
     CALL(rdm_pool_poses(POOL, 0, g_floats)),
     CALL(rdm_pool_contacts(POOL, 0, nullptr, 0, &g_number)),
@@ -129,38 +129,38 @@ const std::vector<Call> kPoolCalls = {
     CALL(rdm_pool_copy(POOL, 0, good.pool, 0)),
     CALL(rdm_pool_copy(good.pool, 0, POOL, 0)),
     CALL(rdm_planner_act(good.planner, POOL, 0, g_floats, nullptr)),
-    CALL(rdm_pool_sensors(POOL, sized<rdm_sensors>())),
+    CALL(rdm_pool_get_sensors(POOL, sized<rdm_sensors>())),
     CALL(rdm_pool_sensor_camera(POOL, 0, 0, plain<rdm_camera>())),
-    CALL(rdm_pool_hull(POOL, 0, nullptr, 0, &g_number)),
+    CALL(rdm_pool_get_hull(POOL, 0, nullptr, 0, &g_number)),
     CALL(rdm_agent_config_for_pool(sized<rdm_agent_config>(), POOL)),
     CALL(rdm_agent_rollout(good.agent, POOL, nullptr)),
     CALL(rdm_map_scan(good.map, POOL, 0, "front", 8, 8, nullptr, 0, nullptr)),
     CALL(rdm_checkpoint_write("/no/such/folder/file", good.agent, POOL, nullptr, 0)),
 };
 const std::vector<Call> kAgentCalls = {
-    CALL(rdm_agent_act(AGENT, g_floats, RDM_MEAN, g_floats + 100)),
+    CALL(rdm_agent_act(AGENT, g_floats, RDM_ACT_MEAN, g_floats + 100)),
     CALL(rdm_agent_record(AGENT, sized<rdm_transition>())),
     CALL(rdm_agent_update(AGENT, g_floats, nullptr)),
     CALL(rdm_agent_rollout(AGENT, good.pool, nullptr)),
-    CALL(rdm_agent_set(AGENT, plain<rdm_option>())),
-    CALL(rdm_agent_option(AGENT, 0, &g_key, g_bytes)),
-    CALL(rdm_agent_settings(AGENT, nullptr, 0, &g_size)),
-    CALL(rdm_agent_values(AGENT, g_floats, 1, g_floats + 100, nullptr)),
-    CALL(rdm_agent_tensor(AGENT, 0, plain<rdm_tensor>())),
-    CALL(rdm_agent_tensor_read(AGENT, "actor.0.weight", g_floats, 24)),
-    CALL(rdm_agent_tensor_write(AGENT, "actor.0.weight", g_floats, 24)),
-    CALL(rdm_agent_policy(AGENT, nullptr, 0, &g_size)),
-    CALL(rdm_agent_policy_file(AGENT, "/no/such/folder/file")),
-    CALL(rdm_agent_save(AGENT, nullptr, 0, &g_size)),
-    CALL(rdm_agent_load(AGENT, g_bytes, 8)),
+    CALL(rdm_agent_set_option(AGENT, plain<rdm_option>())),
+    CALL(rdm_agent_option_at(AGENT, 0, &g_key, g_bytes)),
+    CALL(rdm_agent_get_settings(AGENT, nullptr, 0, &g_size)),
+    CALL(rdm_agent_get_values(AGENT, g_floats, 1, g_floats + 100, nullptr)),
+    CALL(rdm_agent_tensor_at(AGENT, 0, plain<rdm_tensor>())),
+    CALL(rdm_agent_get_tensor(AGENT, "actor.0.weight", g_floats, 24)),
+    CALL(rdm_agent_set_tensor(AGENT, "actor.0.weight", g_floats, 24)),
+    CALL(rdm_agent_write_policy(AGENT, nullptr, 0, &g_size)),
+    CALL(rdm_agent_write_policy_file(AGENT, "/no/such/folder/file")),
+    CALL(rdm_agent_write_state(AGENT, nullptr, 0, &g_size)),
+    CALL(rdm_agent_read_state(AGENT, g_bytes, 8)),
     CALL(rdm_checkpoint_write("/no/such/folder/file", AGENT, nullptr, nullptr, 0)),
     CALL(rdm_checkpoint_read("/no/such/folder/file", AGENT, nullptr, nullptr, 0, &g_size)),
 };
 const std::vector<Call> kPolicyCalls = {
     CALL(rdm_policy_get_info(POLICY, sized<rdm_policy_info>())),
     CALL(rdm_policy_act(POLICY, g_floats, 1, nullptr, g_floats + 100, g_bytes, sizeof g_bytes)),
-    CALL(rdm_policy_tensor(POLICY, 0, plain<rdm_tensor>())),
-    CALL(rdm_policy_tensor_read(POLICY, "actor.0.weight", g_floats, 24)),
+    CALL(rdm_policy_tensor_at(POLICY, 0, plain<rdm_tensor>())),
+    CALL(rdm_policy_get_tensor(POLICY, "actor.0.weight", g_floats, 24)),
     CALL(rdm_policy_check(POLICY, sized<rdm_spec>())),
 };
 const std::vector<Call> kMapCalls = {
@@ -175,15 +175,15 @@ const std::vector<Call> kMapCalls = {
     CALL(rdm_map_distance(MAP, g_floats, 1, 1, g_floats + 100)),
     CALL(rdm_map_grid(MAP, g_floats, plain<std::array<int32_t, 3>>()->data(), 1,
                       reinterpret_cast<int8_t*>(g_bytes))),
-    CALL(rdm_map_save(MAP, 0, nullptr, 0, &g_size)),
-    CALL(rdm_map_save_file(MAP, "/no/such/folder/file.bt")),
-    CALL(rdm_map_load(MAP, g_bytes, 8)),
-    CALL(rdm_map_load_file(MAP, "/no/such/folder/file.bt")),
+    CALL(rdm_map_write(MAP, 0, nullptr, 0, &g_size)),
+    CALL(rdm_map_write_file(MAP, "/no/such/folder/file.bt")),
+    CALL(rdm_map_read(MAP, g_bytes, 8)),
+    CALL(rdm_map_read_file(MAP, "/no/such/folder/file.bt")),
 };
 
 const std::vector<Call> kPlannerCalls = {
     CALL(rdm_planner_get_spec(PLANNER, sized<rdm_planner_spec>())),
-    CALL(rdm_planner_settings(PLANNER, nullptr, 0, &g_size)),
+    CALL(rdm_planner_get_settings(PLANNER, nullptr, 0, &g_size)),
     CALL(rdm_planner_act(PLANNER, good.pool, 0, g_floats, nullptr)),
     CALL(rdm_planner_reset(PLANNER)),
     CALL(rdm_planner_get_plan(PLANNER, g_floats)),
@@ -201,14 +201,14 @@ const std::vector<Call> kActorCalls = {
 
 void expect_refused(const std::vector<Call>& calls, void* h, Handles& good, const char* text) {
   for (size_t i = 0; i < calls.size(); ++i) {
-    EXPECT_EQ(calls[i](h, good), RDM_ARGUMENT) << "call " << i;
+    EXPECT_EQ(calls[i](h, good), RDM_ERROR_ARGUMENT) << "call " << i;
     EXPECT_NE(std::strstr(rdm_last_error(), text), nullptr) << "call " << i << ": " << rdm_last_error();
   }
 }
 
 TEST(Handles, OfAnotherKindAreNamed) {
   Handles good;
-  EXPECT_EQ(rdm_pool_step(reinterpret_cast<rdm_pool*>(good.agent)), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_step(reinterpret_cast<rdm_pool*>(good.agent)), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_agent_error(good.agent), "");  // whose own text stays what it was
   expect_refused(kPoolCalls, good.agent, good, "pool: the handle is of kind agent");
   expect_refused(kAgentCalls, good.pool, good, "agent: the handle is of kind pool");

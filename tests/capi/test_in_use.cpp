@@ -45,13 +45,13 @@ TEST(InUse, APoolIsNotCalledWithinItsOwnCalls) {
       {"step", [&] { return rdm_pool_step(pool); }},
       {"reset", [&] { return rdm_pool_reset(pool, nullptr, nullptr); }},
       {"baseline", [&] { return rdm_pool_baseline(pool, RDM_BASELINE_RANDOM); }},
-      {"set_state", [&] { return rdm_pool_set_state(pool, 0, "x", 1); }},
+      {"set_state", [&] { return rdm_pool_read_state(pool, 0, "x", 1); }},
       {"copy to", [&] { return rdm_pool_copy(pool, 0, other, 0); }},
       {"copy from", [&] { return rdm_pool_copy(other, 0, pool, 0); }},
       {"hash",
        [&] {
          uint64_t hash;
-         return rdm_pool_hash(pool, 0, &hash);
+         return rdm_pool_get_hash(pool, 0, &hash);
        }},
       {"render", [&] {
          float depth[4];
@@ -68,13 +68,13 @@ TEST(InUse, APoolIsNotCalledWithinItsOwnCalls) {
     };
     task.reset = [&](rdm_world*, rdm_random*) { return once(); };
     EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK) << name;
-    EXPECT_EQ(inner, RDM_STATE) << name << " in reset";
+    EXPECT_EQ(inner, RDM_ERROR_STATE) << name << " in reset";
     EXPECT_EQ(text, std::string("pool") + kBusy);
     inner = 99;
     task.reset = nullptr;
     task.judge = [&](const rdm_world*, int64_t, rdm_verdict*) { return once(); };
     EXPECT_EQ(rdm_pool_step(pool), RDM_OK) << name;
-    EXPECT_EQ(inner, RDM_STATE) << name << " in judge";
+    EXPECT_EQ(inner, RDM_ERROR_STATE) << name << " in judge";
     EXPECT_STREQ(rdm_pool_error(pool), "") << "that of a refused call is the thread's alone";
     task.judge = nullptr;
   }
@@ -108,12 +108,12 @@ TEST(InUse, AnAgentIsNotCalledWithinItsRollout) {
     uint64_t hash;
     const rdm_option rate = {"learning_rate", nullptr, 1e-3};
     inner = {rdm_agent_rollout(agent, pool, nullptr),
-             rdm_agent_act(agent, obs, RDM_MEAN, action),
+             rdm_agent_act(agent, obs, RDM_ACT_MEAN, action),
              rdm_agent_update(agent, obs, nullptr),
-             rdm_agent_set(agent, &rate),
-             rdm_agent_save(agent, nullptr, 0, &size),
+             rdm_agent_set_option(agent, &rate),
+             rdm_agent_write_state(agent, nullptr, 0, &size),
              rdm_pool_step(pool),
-             rdm_pool_hash(pool, 0, &hash)};
+             rdm_pool_get_hash(pool, 0, &hash)};
     rdm_agent_destroy(agent);
     rdm_pool_destroy(pool);
     return rdm_result{RDM_OK};
@@ -121,14 +121,14 @@ TEST(InUse, AnAgentIsNotCalledWithinItsRollout) {
   rdm_epoch e{};
   e.struct_size = sizeof e;
   EXPECT_EQ(rdm_agent_rollout(agent, pool, &e), RDM_OK) << rdm_agent_error(agent);
-  EXPECT_EQ(inner, std::vector<rdm_result>(7, RDM_STATE));
+  EXPECT_EQ(inner, std::vector<rdm_result>(7, RDM_ERROR_STATE));
   EXPECT_EQ(e.env_steps, 16);
   EXPECT_EQ(log.lines.size(), 2u);
   task.judge = [&](const rdm_world*, int64_t, rdm_verdict*) {
     rdm_agent_cancel(agent);
     return rdm_result{RDM_OK};
   };
-  EXPECT_EQ(rdm_agent_rollout(agent, pool, &e), RDM_CANCELLED);
+  EXPECT_EQ(rdm_agent_rollout(agent, pool, &e), RDM_ERROR_CANCELLED);
   task.judge = nullptr;
   EXPECT_EQ(rdm_agent_rollout(agent, pool, &e), RDM_OK) << rdm_agent_error(agent);
   rdm_agent_destroy(agent);
@@ -156,14 +156,14 @@ TEST(InUse, APlannerIsNotCalledWithinItsPlan) {
     uint64_t hash;
     inner = {rdm_planner_act(planner, pool, 0, row, nullptr), rdm_planner_reset(planner),
              rdm_planner_get_plan(planner, row), rdm_pool_step(pool),
-             rdm_agent_values(agent, row, 1, value, nullptr)};
-    EXPECT_EQ(rdm_pool_hash(pool, 0, &hash), RDM_OK) << "two that read";
+             rdm_agent_get_values(agent, row, 1, value, nullptr)};
+    EXPECT_EQ(rdm_pool_get_hash(pool, 0, &hash), RDM_OK) << "two that read";
     rdm_planner_destroy(planner);
     rdm_agent_destroy(agent);
     return rdm_result{RDM_OK};
   };
   EXPECT_EQ(rdm_planner_act(planner, pool, 0, action, nullptr), RDM_OK) << rdm_last_error();
-  EXPECT_EQ(inner, std::vector<rdm_result>(5, RDM_STATE));
+  EXPECT_EQ(inner, std::vector<rdm_result>(5, RDM_ERROR_STATE));
   task.judge = nullptr;
   EXPECT_EQ(rdm_planner_act(planner, pool, 0, action, nullptr), RDM_OK);
   rdm_planner_destroy(planner);
@@ -185,8 +185,8 @@ TEST(InUse, OneThreadAtATime) {
   std::thread steps([&] { EXPECT_EQ(rdm_pool_step(pool), RDM_OK); });
   while (!inside) std::this_thread::yield();
   uint64_t hash;
-  EXPECT_EQ(rdm_pool_step(pool), RDM_STATE);
-  EXPECT_EQ(rdm_pool_hash(pool, 0, &hash), RDM_STATE);
+  EXPECT_EQ(rdm_pool_step(pool), RDM_ERROR_STATE);
+  EXPECT_EQ(rdm_pool_get_hash(pool, 0, &hash), RDM_ERROR_STATE);
   EXPECT_EQ(std::string(rdm_last_error()), std::string("pool") + kBusy);
   rdm_pool_destroy(pool);
   tried = true;
@@ -205,7 +205,7 @@ TEST(InUse, CallsThatRaceAreWholeOrRefused) {
   const auto go = [&] {
     for (int i = 0; i < 300; ++i) {
       const rdm_result r = rdm_pool_step(pool);
-      EXPECT_TRUE(r == RDM_OK || r == RDM_STATE) << rdm_last_error();
+      EXPECT_TRUE(r == RDM_OK || r == RDM_ERROR_STATE) << rdm_last_error();
       ++(r == RDM_OK ? steps : refused);
     }
   };
@@ -231,14 +231,14 @@ TEST(InUse, ManyMayRead) {
   rdm_recording* recording = nullptr;
   ASSERT_EQ(rdm_recording_create(&recording, &rc), RDM_OK);
   uint64_t wanted = 0;
-  EXPECT_EQ(rdm_pool_hash(pool, -1, &wanted), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_hash(pool, -1, &wanted), RDM_OK);
   const auto read = [&] {
     for (int i = 0; i < 200; ++i) {
       uint64_t hash = 0;
       size_t size = 0;
-      EXPECT_EQ(rdm_pool_hash(pool, -1, &hash), RDM_OK);
+      EXPECT_EQ(rdm_pool_get_hash(pool, -1, &hash), RDM_OK);
       EXPECT_EQ(hash, wanted);
-      EXPECT_EQ(rdm_pool_state_size(pool, 9, &size), RDM_RANGE);
+      EXPECT_EQ(rdm_pool_state_size(pool, 9, &size), RDM_ERROR_RANGE);
       rdm_recording_info info{};
       info.struct_size = sizeof info;
       EXPECT_EQ(rdm_recording_get_info(recording, &info), RDM_OK);
@@ -279,12 +279,12 @@ TEST(ParallelHook, ThatRunsTooLittleOrTooMuchIsTold) {
     c.host = &jobs.hooks;
     rdm_pool* const pool = make_pool(c);
     jobs.does = does;
-    EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_STATE);
+    EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_ERROR_STATE);
     EXPECT_STREQ(rdm_pool_error(pool), text);
     jobs.does = Jobs::Does::kAll;
     EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK);
     jobs.does = does;
-    EXPECT_EQ(rdm_pool_step(pool), RDM_STATE);
+    EXPECT_EQ(rdm_pool_step(pool), RDM_ERROR_STATE);
     EXPECT_STREQ(rdm_pool_error(pool), text);
 
     // an agent over it learns nothing of rows that stand from before
@@ -294,7 +294,7 @@ TEST(ParallelHook, ThatRunsTooLittleOrTooMuchIsTold) {
     rdm_epoch e{};
     e.struct_size = sizeof e;
     jobs.does = does;
-    EXPECT_EQ(rdm_agent_rollout(agent, pool, &e), RDM_STATE);
+    EXPECT_EQ(rdm_agent_rollout(agent, pool, &e), RDM_ERROR_STATE);
     EXPECT_STREQ(rdm_agent_error(agent), text);
     EXPECT_EQ(e.epoch, 0);
     jobs.does = Jobs::Does::kAll;
@@ -312,16 +312,16 @@ TEST(ParallelHook, ThatRunsTooLittleOrTooMuchIsTold) {
     rdm_agent* const spread = make_agent(a);
     rdm_buffers b{};
     b.struct_size = sizeof b;
-    EXPECT_EQ(rdm_pool_buffers(pool, &b), RDM_OK);
+    EXPECT_EQ(rdm_pool_get_buffers(pool, &b), RDM_OK);
     rdm_transition t{};
     t.struct_size = sizeof t;
     t.reward = b.reward, t.cost = b.cost;
     for (int i = 0; i < 256; ++i) {
-      EXPECT_EQ(rdm_agent_act(spread, b.obs, RDM_SAMPLE, b.action), RDM_OK);
+      EXPECT_EQ(rdm_agent_act(spread, b.obs, RDM_ACT_SAMPLE, b.action), RDM_OK);
       EXPECT_EQ(rdm_agent_record(spread, &t), RDM_OK);
     }
     jobs.does = does;
-    EXPECT_EQ(rdm_agent_update(spread, b.obs, &e), RDM_STATE);
+    EXPECT_EQ(rdm_agent_update(spread, b.obs, &e), RDM_ERROR_STATE);
     EXPECT_STREQ(rdm_agent_error(spread), text);
     jobs.does = Jobs::Does::kAll;
     rdm_agent_destroy(spread);
@@ -337,7 +337,7 @@ TEST(ParallelHook, ThatRunsTooLittleOrTooMuchIsTold) {
     ASSERT_EQ(rdm_planner_create(&planner, &p), RDM_OK) << rdm_last_error();
     EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK);
     jobs.does = does;
-    EXPECT_EQ(rdm_planner_act(planner, pool, 0, b.action, nullptr), RDM_STATE);
+    EXPECT_EQ(rdm_planner_act(planner, pool, 0, b.action, nullptr), RDM_ERROR_STATE);
     EXPECT_STREQ(rdm_planner_error(planner), text);
     jobs.does = Jobs::Does::kAll;
     EXPECT_EQ(rdm_planner_act(planner, pool, 0, b.action, nullptr), RDM_OK) << rdm_planner_error(planner);

@@ -29,20 +29,20 @@ rdm_agent* agent_of(const rdm_pool* p, const std::string& settings, rdm_result w
 rdm_policy* policy_of(const rdm_agent* a) {
   const std::vector<unsigned char> bytes = policy_bytes(a);
   rdm_policy* p = nullptr;
-  EXPECT_EQ(rdm_policy_load(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_policy_read(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
   return p;
 }
 
 std::vector<float> tensor(const rdm_policy* p, const char* name, int32_t rows, int32_t cols) {
   std::vector<float> out(static_cast<size_t>(rows) * static_cast<size_t>(cols));
-  EXPECT_EQ(rdm_policy_tensor_read(p, name, out.data(), out.size()), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_policy_get_tensor(p, name, out.data(), out.size()), RDM_OK) << rdm_last_error();
   return out;
 }
 
 // Of tasks with hands: nothing but hands and goals.
 void expect_no_object(const rdm_pool* p, const rdm_policy* policy, int32_t count) {
   std::vector<int32_t> columns(static_cast<size_t>(count));
-  ASSERT_EQ(rdm_policy_columns(policy, columns.data(), count, &count), RDM_OK);
+  ASSERT_EQ(rdm_policy_get_columns(policy, columns.data(), count, &count), RDM_OK);
   rdm_field f;
   for (int i = 0; rdm_pool_field(p, i, &f) == RDM_OK; ++i) {
     const std::string name = f.name;
@@ -74,14 +74,14 @@ TEST(LearnerView, APolicyOfAPartTakesWholeRows) {
   }
   std::vector<int32_t> columns(static_cast<size_t>(spec.obs_dim), -1);
   int32_t count = 0;
-  ASSERT_EQ(rdm_policy_columns(policy, nullptr, 0, &count), RDM_OK);
+  ASSERT_EQ(rdm_policy_get_columns(policy, nullptr, 0, &count), RDM_OK);
   EXPECT_EQ(count, static_cast<int32_t>(wanted.size()));
-  ASSERT_EQ(rdm_policy_columns(policy, columns.data(), count, &count), RDM_OK);
+  ASSERT_EQ(rdm_policy_get_columns(policy, columns.data(), count, &count), RDM_OK);
   columns.resize(wanted.size());
   EXPECT_EQ(columns, wanted);
-  EXPECT_EQ(rdm_policy_columns(policy, nullptr, 1, &count), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_policy_columns(policy, columns.data(), -1, &count), RDM_RANGE);
-  EXPECT_EQ(rdm_policy_columns(policy, columns.data(), 1, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_policy_get_columns(policy, nullptr, 1, &count), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_policy_get_columns(policy, columns.data(), -1, &count), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_policy_get_columns(policy, columns.data(), 1, nullptr), RDM_ERROR_ARGUMENT);
 
   // tensors are over whole rows: who computes with them need not know of the part
   rdm_policy_info info{};
@@ -89,7 +89,7 @@ TEST(LearnerView, APolicyOfAPartTakesWholeRows) {
   ASSERT_EQ(rdm_policy_get_info(policy, &info), RDM_OK);
   EXPECT_EQ(info.obs_dim, spec.obs_dim);
   rdm_tensor t;
-  ASSERT_EQ(rdm_policy_tensor(policy, 0, &t), RDM_OK);
+  ASSERT_EQ(rdm_policy_tensor_at(policy, 0, &t), RDM_OK);
   EXPECT_STREQ(t.name, "actor.0.weight");
   EXPECT_EQ(t.rows, 16);
   EXPECT_EQ(t.cols, spec.obs_dim);
@@ -133,7 +133,7 @@ TEST(LearnerView, APolicyOfAPartTakesWholeRows) {
   // a policy that sees all says so
   a = agent_of(p, "hidden=16\nhorizon=16\nactor_obs=state");
   policy = policy_of(a);
-  ASSERT_EQ(rdm_policy_columns(policy, nullptr, 0, &count), RDM_OK);
+  ASSERT_EQ(rdm_policy_get_columns(policy, nullptr, 0, &count), RDM_OK);
   EXPECT_EQ(count, spec.obs_dim);
   rdm_policy_destroy(policy);
   rdm_agent_destroy(a);
@@ -155,10 +155,11 @@ TEST(LearnerView, PresetsFitEveryTaskWithARobot) {
     const char* presets[] = {"state", "touch", "proprioception", "vision"};
     for (int k = 0; k < 4; ++k) {
       const bool known = k == 0 || hands || sensors || joints;
-      rdm_agent* a = agent_of(p, std::string("actor_obs=") + presets[k], known ? RDM_OK : RDM_NOT_FOUND);
+      rdm_agent* a =
+          agent_of(p, std::string("actor_obs=") + presets[k], known ? RDM_OK : RDM_ERROR_NOT_FOUND);
       if (!a) continue;
       rdm_policy* policy = policy_of(a);
-      EXPECT_EQ(rdm_policy_columns(policy, nullptr, 0, &counts[k]), RDM_OK);
+      EXPECT_EQ(rdm_policy_get_columns(policy, nullptr, 0, &counts[k]), RDM_OK);
       if (k == 3) expect_no_object(p, policy, counts[k]);
       rdm_policy_destroy(policy);
       rdm_agent_destroy(a);
@@ -198,18 +199,18 @@ TEST(LearnerView, APoolLendsTheNamesOfItsFields) {
   EXPECT_EQ(rdm_agent_create(&a, &c), RDM_OK) << rdm_last_error();
   rdm_agent_destroy(a);
   c.settings = "actor_obs=touch";
-  EXPECT_EQ(rdm_agent_create(&a, &c), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_create(&a, &c), RDM_ERROR_ARGUMENT);
   c.struct_size = sizeof c;
   c.settings = "critic_obs=object.positon";
-  EXPECT_EQ(rdm_agent_create(&a, &c), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_agent_create(&a, &c), RDM_ERROR_NOT_FOUND);
   EXPECT_STREQ(rdm_last_error(),
                "critic_obs: 'object.positon' names no field of the observation; nearest is object.position");
   c.settings = nullptr;
   c.num_fields = -1;
-  EXPECT_EQ(rdm_agent_create(&a, &c), RDM_RANGE);
+  EXPECT_EQ(rdm_agent_create(&a, &c), RDM_ERROR_RANGE);
   c.num_fields = 1;
   c.fields = nullptr;
-  EXPECT_EQ(rdm_agent_create(&a, &c), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_create(&a, &c), RDM_ERROR_ARGUMENT);
   rdm_pool_destroy(p);
 }
 
@@ -225,7 +226,7 @@ TEST(LearnerView, MemoryIsToldExactlyWithAPart) {
     c.settings = settings;
     c.host = &host.hooks;
     size_t bytes = 0;
-    ASSERT_EQ(rdm_agent_memory(&c, &bytes), RDM_OK) << rdm_last_error();
+    ASSERT_EQ(rdm_agent_config_memory(&c, &bytes), RDM_OK) << rdm_last_error();
     EXPECT_EQ(host.live, 0u);
     rdm_agent* a = make_agent(c);
     EXPECT_EQ(host.live, bytes) << settings;
@@ -254,7 +255,7 @@ Sums played(const char* task, const std::string& settings, int horizon) {
   Sums s;
   double flag[4] = {}, raw[4] = {};
   for (int t = 0; t < horizon; ++t) {
-    EXPECT_EQ(rdm_agent_act(a, b.obs, RDM_SAMPLE, b.action), RDM_OK);
+    EXPECT_EQ(rdm_agent_act(a, b.obs, RDM_ACT_SAMPLE, b.action), RDM_OK);
     EXPECT_EQ(rdm_pool_step(p), RDM_OK);
     rdm_transition x{};
     x.struct_size = sizeof x;
@@ -318,7 +319,7 @@ TEST(LearnerView, MagnitudesAreSummedWhoeverRepeats) {
   EXPECT_EQ(policies[0].size(), policies[1].size());
   rdm_policy* p[2] = {};
   for (int k = 0; k < 2; ++k)
-    ASSERT_EQ(rdm_policy_load(&p[k], policies[k].data(), policies[k].size()), RDM_OK);
+    ASSERT_EQ(rdm_policy_read(&p[k], policies[k].data(), policies[k].size()), RDM_OK);
   const auto a = tensor(p[0], "actor.0.bias", 8, 1), b = tensor(p[1], "actor.0.bias", 8, 1);
   for (size_t i = 0; i < 8; ++i) EXPECT_NEAR(a[i], b[i], 1e-5);  // sums of float and of double
   for (rdm_policy* one : p) rdm_policy_destroy(one);

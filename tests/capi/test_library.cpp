@@ -17,8 +17,8 @@ TEST(Library, HeaderAndLibraryAreCompared) {
   EXPECT_EQ(rdm_version(), static_cast<uint32_t>(RDM_VERSION));
   EXPECT_EQ(rdm_check_abi(RDM_ABI, RDM_VERSION), RDM_OK);
   EXPECT_EQ(rdm_check_abi(RDM_ABI, 0), RDM_OK);  // an older header
-  EXPECT_EQ(rdm_check_abi(RDM_ABI, RDM_VERSION + 1), RDM_VERSION_MISMATCH);
-  EXPECT_EQ(rdm_check_abi(RDM_ABI + 1, RDM_VERSION), RDM_VERSION_MISMATCH);
+  EXPECT_EQ(rdm_check_abi(RDM_ABI, RDM_VERSION + 1), RDM_ERROR_VERSION_MISMATCH);
+  EXPECT_EQ(rdm_check_abi(RDM_ABI + 1, RDM_VERSION), RDM_ERROR_VERSION_MISMATCH);
   EXPECT_NE(std::string(rdm_last_error()).find("abi"), std::string::npos);
 }
 
@@ -39,18 +39,19 @@ TEST(Library, NearestNamesAreThoseOfItsOwnTexts) {
       rdm_nearest_names(most.c_str(), (most + "a\n" + most + "b\n" + most + "c").c_str(), text, sizeof text),
       RDM_OK);
   EXPECT_LT(std::strlen(text), sizeof text - 1);
-  EXPECT_EQ(rdm_nearest_names(nullptr, "a", text, sizeof text), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_nearest_names("a", nullptr, text, sizeof text), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_nearest_names("a", "a", nullptr, sizeof text), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_nearest_names("a", "a", text, 0), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_nearest_names(nullptr, "a", text, sizeof text), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_nearest_names("a", nullptr, text, sizeof text), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_nearest_names("a", "a", nullptr, sizeof text), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_nearest_names("a", "a", text, 0), RDM_ERROR_ARGUMENT);
 }
 
 TEST(Library, ResultsHaveStrings) {
   for (const rdm_result r : std::initializer_list<rdm_result>{
-           RDM_OK, RDM_ARGUMENT, RDM_RANGE, RDM_STATE, RDM_MEMORY, RDM_IO, RDM_FORMAT, RDM_VERSION_MISMATCH,
-           RDM_UNSUPPORTED, RDM_PHYSICS, RDM_NOT_FOUND, RDM_CANCELLED, RDM_INTERNAL, 1, 1000, -1000})
+           RDM_OK, RDM_ERROR_ARGUMENT, RDM_ERROR_RANGE, RDM_ERROR_STATE, RDM_ERROR_MEMORY, RDM_ERROR_IO,
+           RDM_ERROR_FORMAT, RDM_ERROR_VERSION_MISMATCH, RDM_ERROR_UNSUPPORTED, RDM_ERROR_PHYSICS,
+           RDM_ERROR_NOT_FOUND, RDM_ERROR_CANCELLED, RDM_ERROR_INTERNAL, 1, 1000, -1000})
     EXPECT_GT(std::strlen(rdm_result_string(r)), 0u) << r;
-  EXPECT_STRNE(rdm_result_string(RDM_IO), rdm_result_string(RDM_FORMAT));
+  EXPECT_STRNE(rdm_result_string(RDM_ERROR_IO), rdm_result_string(RDM_ERROR_FORMAT));
 }
 
 TEST(Library, BuildInfoFillsNoMoreThanItsCallerHas) {
@@ -66,9 +67,9 @@ TEST(Library, BuildInfoFillsNoMoreThanItsCallerHas) {
   const std::string want = std::to_string(RDM_VERSION_MAJOR) + "." + std::to_string(RDM_VERSION_MINOR) + "." +
                            std::to_string(RDM_VERSION_PATCH);
   EXPECT_EQ(newer.build.version, want);
-  EXPECT_EQ(rdm_build_info(nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_build_info(nullptr), RDM_ERROR_ARGUMENT);
   newer.build.struct_size = 8;
-  EXPECT_EQ(rdm_build_info(&newer.build), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_build_info(&newer.build), RDM_ERROR_ARGUMENT);
 }
 
 TEST(Library, BuildInfoServesACallerOfTheFirstVersion) {
@@ -95,7 +96,7 @@ TEST(Library, HooksAreCountedAndPutBack) {
     ++calls;
     return std::aligned_alloc(align, (bytes + align - 1) / align * align);
   };
-  EXPECT_EQ(rdm_init(&host), RDM_ARGUMENT);  // alloc without release
+  EXPECT_EQ(rdm_init(&host), RDM_ERROR_ARGUMENT);  // alloc without release
   host.release = [](void*, void* p, size_t, size_t) { std::free(p); };
   const auto make_policyless_agent = [] {
     rdm_agent_config config;
@@ -108,8 +109,8 @@ TEST(Library, HooksAreCountedAndPutBack) {
   };
 
   ASSERT_EQ(rdm_init(&host), RDM_OK);
-  ASSERT_EQ(rdm_init(nullptr), RDM_OK);   // a second user of the library
-  EXPECT_EQ(rdm_init(&host), RDM_STATE);  // who may not change the hooks under the first
+  ASSERT_EQ(rdm_init(nullptr), RDM_OK);         // a second user of the library
+  EXPECT_EQ(rdm_init(&host), RDM_ERROR_STATE);  // who may not change the hooks under the first
   rdm_agent* hooked = make_policyless_agent();
   EXPECT_GT(calls, 0);
   rdm_shutdown();
@@ -130,11 +131,11 @@ TEST(Library, ARefusedInitSaysWhatWentBefore) {
   rdm_host host{};
   host.struct_size = sizeof host;
   ASSERT_EQ(rdm_init(nullptr), RDM_OK);
-  EXPECT_EQ(rdm_init(&host), RDM_STATE);
+  EXPECT_EQ(rdm_init(&host), RDM_ERROR_STATE);
   EXPECT_STREQ(rdm_last_error(), "rdm_init: called before, without hooks; shut down first");
   rdm_shutdown();
   ASSERT_EQ(rdm_init(&host), RDM_OK);
-  EXPECT_EQ(rdm_init(&host), RDM_STATE);
+  EXPECT_EQ(rdm_init(&host), RDM_ERROR_STATE);
   EXPECT_STREQ(rdm_last_error(), "rdm_init: called before, with hooks; shut down first");
   rdm_shutdown();
 }
@@ -173,11 +174,11 @@ TEST(Library, InitBesideThreadsThatMakeHandles) {
 }
 
 TEST(Library, ErrorTextBelongsToTheThread) {
-  ASSERT_EQ(rdm_check_abi(RDM_ABI + 1, 0), RDM_VERSION_MISMATCH);
+  ASSERT_EQ(rdm_check_abi(RDM_ABI + 1, 0), RDM_ERROR_VERSION_MISMATCH);
   const std::string mine = rdm_last_error();
   std::thread([] {
     EXPECT_STREQ(rdm_last_error(), "");
-    EXPECT_EQ(rdm_task_find(nullptr, nullptr), RDM_ARGUMENT);
+    EXPECT_EQ(rdm_task_find(nullptr, nullptr), RDM_ERROR_ARGUMENT);
   }).join();
   EXPECT_EQ(rdm_last_error(), mine);
 }

@@ -150,24 +150,24 @@ TEST(Map, FilesAndBytesComeBack) {
   ASSERT_EQ(rdm_map_insert(map.m, origin, points, 2, nullptr), RDM_OK);
   for (const char* ending : {".bt", ".ot"}) {
     const std::string path = stem + ending;
-    ASSERT_EQ(rdm_map_save_file(map.m, path.c_str()), RDM_OK) << rdm_last_error();
-    ASSERT_EQ(rdm_map_load_file(other.m, path.c_str()), RDM_OK) << rdm_map_error(other.m);
+    ASSERT_EQ(rdm_map_write_file(map.m, path.c_str()), RDM_OK) << rdm_last_error();
+    ASSERT_EQ(rdm_map_read_file(other.m, path.c_str()), RDM_OK) << rdm_map_error(other.m);
     float p[2];
     ASSERT_EQ(rdm_map_query(other.m, points, 2, p), RDM_OK);
     EXPECT_GT(p[0], 0.5f);
     EXPECT_GT(p[1], 0.5f);
     std::remove(path.c_str());
-    EXPECT_EQ(rdm_map_load_file(other.m, path.c_str()), RDM_NOT_FOUND);
+    EXPECT_EQ(rdm_map_read_file(other.m, path.c_str()), RDM_ERROR_NOT_FOUND);
   }
-  EXPECT_EQ(rdm_map_save_file(map.m, (stem + ".txt").c_str()), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_map_write_file(map.m, (stem + ".txt").c_str()), RDM_ERROR_ARGUMENT);
   size_t size = 0, again = 0;
-  ASSERT_EQ(rdm_map_save(map.m, RDM_MAP_FULL, nullptr, 0, &size), RDM_OK);
+  ASSERT_EQ(rdm_map_write(map.m, RDM_MAP_FULL, nullptr, 0, &size), RDM_OK);
   std::vector<char> bytes(size);
-  EXPECT_EQ(rdm_map_save(map.m, RDM_MAP_FULL, bytes.data(), size - 1, &again), RDM_RANGE);
-  ASSERT_EQ(rdm_map_save(map.m, RDM_MAP_FULL, bytes.data(), size, &again), RDM_OK);
-  EXPECT_EQ(rdm_map_load(other.m, bytes.data(), size / 2), RDM_FORMAT);
+  EXPECT_EQ(rdm_map_write(map.m, RDM_MAP_FULL, bytes.data(), size - 1, &again), RDM_ERROR_RANGE);
+  ASSERT_EQ(rdm_map_write(map.m, RDM_MAP_FULL, bytes.data(), size, &again), RDM_OK);
+  EXPECT_EQ(rdm_map_read(other.m, bytes.data(), size / 2), RDM_ERROR_FORMAT);
   EXPECT_NE(std::string(rdm_map_error(other.m)), "");
-  EXPECT_EQ(rdm_map_load(other.m, bytes.data(), size), RDM_OK);
+  EXPECT_EQ(rdm_map_read(other.m, bytes.data(), size), RDM_OK);
 }
 
 TEST(Map, AFullOneSaysSo) {
@@ -209,16 +209,16 @@ TEST(Map, BadArgumentsGetAnswersAndNothingIsPrinted) {
   rdm_map* m = nullptr;
   rdm_map_config c;
   ASSERT_EQ(rdm_map_config_init(&c, sizeof c), RDM_OK);
-  EXPECT_EQ(rdm_map_config_init(nullptr, sizeof c), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_config_init(&c, 4), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_create(nullptr, &c), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_create(&m, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_map_config_init(nullptr, sizeof c), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_config_init(&c, 4), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_create(nullptr, &c), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_create(&m, nullptr), RDM_ERROR_ARGUMENT);
   c.resolution = NAN;
-  EXPECT_EQ(rdm_map_create(&m, &c), RDM_RANGE);
+  EXPECT_EQ(rdm_map_create(&m, &c), RDM_ERROR_RANGE);
   EXPECT_NE(std::string(rdm_last_error()).find("resolution"), std::string::npos);
   rdm_map_config_init(&c, sizeof c);
   c.memory = 1;
-  EXPECT_EQ(rdm_map_create(&m, &c), RDM_RANGE);
+  EXPECT_EQ(rdm_map_create(&m, &c), RDM_ERROR_RANGE);
   EXPECT_STREQ(rdm_last_error(), "memory: 1 is outside [1048576, 68719476736]");
   EXPECT_EQ(m, nullptr);
   const float p[3] = {0, 0, 0}, nan[3] = {NAN, 0, 0}, pose[7] = {0, 0, 0, 0, 0, 0, 1}, no_pose[7] = {};
@@ -227,33 +227,33 @@ TEST(Map, BadArgumentsGetAnswersAndNothingIsPrinted) {
   int32_t flag, n[3] = {1, 1, 1}, none[3] = {0, 1, 1};
   size_t count;
   rdm_map_info info{};
-  EXPECT_EQ(rdm_map_get_info(map.m, &info), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_get_info(nullptr, &info), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_clear(nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_insert(nullptr, p, p, 1, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_insert(map.m, nullptr, p, 1, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_insert(map.m, p, nullptr, 1, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_insert(map.m, nan, p, 1, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_map_get_info(map.m, &info), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_get_info(nullptr, &info), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_clear(nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_insert(nullptr, p, p, 1, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_insert(map.m, nullptr, p, 1, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_insert(map.m, p, nullptr, 1, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_insert(map.m, nan, p, 1, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_insert(map.m, p, nullptr, 0, nullptr), RDM_OK);
-  EXPECT_EQ(rdm_map_insert(map.m, p, p, SIZE_MAX, nullptr), RDM_RANGE);
-  EXPECT_EQ(rdm_map_scan(map.m, nullptr, 0, "top", 8, 8, nullptr, 0, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_query(map.m, nullptr, 1, out), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_map_insert(map.m, p, p, SIZE_MAX, nullptr), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_scan(map.m, nullptr, 0, "top", 8, 8, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_query(map.m, nullptr, 1, out), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_query(map.m, nan, 1, out), RDM_OK);
   EXPECT_EQ(out[0], -1);
-  EXPECT_EQ(rdm_map_box(map.m, p, nan, nullptr, 0, &count), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_box(map.m, p, p, nullptr, 1, &count), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_meets(map.m, no_pose, p, &flag), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_meets(map.m, pose, nan, &flag), RDM_RANGE);
-  EXPECT_EQ(rdm_map_raycast(map.m, p, p, 1, 1, out, &flag), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_raycast(map.m, p, pose + 4, NAN, 1, out, &flag), RDM_RANGE);
-  EXPECT_EQ(rdm_map_distance(map.m, nan, 1, 1, out), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_distance(map.m, p, 1, 0, out), RDM_RANGE);
-  EXPECT_EQ(rdm_map_grid(map.m, pose, none, 0.1f, &cell), RDM_RANGE);
-  EXPECT_EQ(rdm_map_grid(map.m, pose, n, 0, &cell), RDM_RANGE);
+  EXPECT_EQ(rdm_map_box(map.m, p, nan, nullptr, 0, &count), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_box(map.m, p, p, nullptr, 1, &count), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_meets(map.m, no_pose, p, &flag), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_meets(map.m, pose, nan, &flag), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_raycast(map.m, p, p, 1, 1, out, &flag), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_raycast(map.m, p, pose + 4, NAN, 1, out, &flag), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_distance(map.m, nan, 1, 1, out), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_distance(map.m, p, 1, 0, out), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_grid(map.m, pose, none, 0.1f, &cell), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_grid(map.m, pose, n, 0, &cell), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_map_grid(map.m, pose, n, 0.1f, &cell), RDM_OK);
-  EXPECT_EQ(rdm_map_save(map.m, 2, nullptr, 0, &count), RDM_RANGE);
-  EXPECT_EQ(rdm_map_load(map.m, nullptr, 0), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_load(map.m, "x", 1), RDM_FORMAT);
+  EXPECT_EQ(rdm_map_write(map.m, 2, nullptr, 0, &count), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_read(map.m, nullptr, 0), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_read(map.m, "x", 1), RDM_ERROR_FORMAT);
   rdm_map_destroy(nullptr);
   EXPECT_EQ(silence.restore(), "");
 }
@@ -261,12 +261,12 @@ TEST(Map, BadArgumentsGetAnswersAndNothingIsPrinted) {
 TEST(Map, BadScansAreRefused) {
   rdm_pool* p = make_world();
   const MapHandle map;
-  EXPECT_EQ(rdm_map_scan(map.m, p, 2, "top", 8, 8, nullptr, 0, nullptr), RDM_RANGE);
-  EXPECT_EQ(rdm_map_scan(map.m, p, 0, "topp", 8, 8, nullptr, 0, nullptr), RDM_NOT_FOUND);
-  EXPECT_EQ(rdm_map_scan(map.m, p, 0, nullptr, 8, 8, nullptr, 0, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_scan(map.m, p, 0, "top", 0, 8, nullptr, 0, nullptr), RDM_RANGE);
-  EXPECT_EQ(rdm_map_scan(map.m, p, 0, "top", 8, 8, nullptr, 1, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_map_scan(map.m, p, 0, "top", 8, 8, nullptr, -1, nullptr), RDM_RANGE);
+  EXPECT_EQ(rdm_map_scan(map.m, p, 2, "top", 8, 8, nullptr, 0, nullptr), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_scan(map.m, p, 0, "topp", 8, 8, nullptr, 0, nullptr), RDM_ERROR_NOT_FOUND);
+  EXPECT_EQ(rdm_map_scan(map.m, p, 0, nullptr, 8, 8, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_scan(map.m, p, 0, "top", 0, 8, nullptr, 0, nullptr), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_scan(map.m, p, 0, "top", 8, 8, nullptr, 1, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_scan(map.m, p, 0, "top", 8, 8, nullptr, -1, nullptr), RDM_ERROR_RANGE);
   rdm_pool_destroy(p);
 }
 

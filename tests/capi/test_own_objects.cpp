@@ -25,7 +25,7 @@ struct Described {
   explicit Described(const char* name) {
     int32_t object = -1;
     EXPECT_EQ(rdm_object_find(name, &object), RDM_OK) << rdm_last_error();
-    EXPECT_EQ(rdm_object_get(object, &def), RDM_OK);
+    EXPECT_EQ(rdm_object_get_def(object, &def), RDM_OK);
     shapes.resize(static_cast<size_t>(def.num_shapes));
     for (int32_t i = 0; i < def.num_shapes; ++i)
       EXPECT_EQ(rdm_object_shape_at(object, i, shapes.data() + i), RDM_OK);
@@ -36,7 +36,7 @@ struct Described {
 struct Objects {  // removes what it made
   std::vector<int32_t> made;
   ~Objects() {
-    for (const int32_t object : made) rdm_object_remove(object);
+    for (const int32_t object : made) rdm_object_destroy(object);
   }
   int32_t create(const rdm_object_def& def) {
     int32_t object = -1;
@@ -64,7 +64,7 @@ uint64_t hash_after(const char* task, const char* settings, int32_t threads = 1)
   EXPECT_EQ(rdm_pool_get_stats(p, &stats), RDM_OK);
   EXPECT_EQ(stats.diverged, 0) << settings;
   uint64_t hash = 0;
-  EXPECT_EQ(rdm_pool_hash(p, -1, &hash), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_hash(p, -1, &hash), RDM_OK);
   rdm_pool_destroy(p);
   return hash;
 }
@@ -89,7 +89,7 @@ TEST(Objects, EveryOneCanBeMadeAgain) {
       EXPECT_EQ(std::memcmp(again.shapes[k].p, d.shapes[k].p, sizeof d.shapes[k].p), 0) << object.name;
       EXPECT_EQ(again.shapes[k].num_points, d.shapes[k].num_points);
     }
-    EXPECT_EQ(rdm_object_remove(made), RDM_OK);
+    EXPECT_EQ(rdm_object_destroy(made), RDM_OK);
     own.made.clear();
   }
   EXPECT_EQ(rdm_object_count(), 2 * count);  // numbers are never given twice
@@ -108,13 +108,13 @@ TEST(Objects, OnesOwnIsTakenByTheTasks) {
     EXPECT_NE(hash_after(task, "object=mug_with_handle\nobject_scale=1.2"), theirs) << task;
     EXPECT_NE(hash_after(task, "object=mug_with_handle\nown_friction=true"), theirs) << task;
   }
-  EXPECT_EQ(rdm_object_remove(own.made[0]), RDM_OK);
+  EXPECT_EQ(rdm_object_destroy(own.made[0]), RDM_OK);
   own.made.clear();
   rdm_pool_config c;
   rdm_pool_config_init(&c, sizeof c);
   c.task = "grasp", c.settings = "object=my_mugg";
   rdm_pool* p = nullptr;
-  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ERROR_NOT_FOUND);
 }
 
 TEST(Objects, PoolsKeepWhatWasRemoved) {
@@ -127,7 +127,7 @@ TEST(Objects, PoolsKeepWhatWasRemoved) {
   c.task = "grasp", c.settings = "object=short_lived";
   rdm_pool* p = nullptr;
   ASSERT_EQ(rdm_pool_create(&p, &c), RDM_OK) << rdm_last_error();
-  EXPECT_EQ(rdm_object_remove(own.made[0]), RDM_OK);
+  EXPECT_EQ(rdm_object_destroy(own.made[0]), RDM_OK);
   own.made.clear();
   EXPECT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
   EXPECT_EQ(rdm_pool_step(p), RDM_OK);
@@ -142,7 +142,7 @@ TEST(Objects, PoolsKeepWhatWasRemoved) {
 TEST(Objects, RefusalsNameTheRow) {
   const rdm_shape_def box = [] {
     rdm_shape_def s{};
-    s.kind = RDM_BOX;
+    s.kind = RDM_SHAPE_BOX;
     s.size[0] = s.size[1] = s.size[2] = 0.02;
     return s;
   }();
@@ -157,40 +157,40 @@ TEST(Objects, RefusalsNameTheRow) {
     EXPECT_EQ(object, -7);
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  refused(RDM_ARGUMENT, "struct_size", [](auto& d, auto*) { d.struct_size = 8; });
-  refused(RDM_RANGE, "num_shapes: 65 is outside [1, 64]", [](auto& d, auto*) { d.num_shapes = 65; });
-  refused(RDM_RANGE, "num_shapes: 0", [](auto& d, auto*) { d.num_shapes = 0; });
-  refused(RDM_ARGUMENT, "shapes is NULL", [](auto& d, auto*) { d.shapes = nullptr; });
-  refused(RDM_ARGUMENT, "the name is empty", [](auto& d, auto*) { d.name = nullptr; });
-  refused(RDM_ARGUMENT, "the name is taken", [](auto& d, auto*) { d.name = "011_banana"; });
-  refused(RDM_RANGE, "mass 0 is outside", [](auto& d, auto*) { d.mass = 0; });
-  refused(RDM_ARGUMENT, "friction is not finite", [&](auto& d, auto*) { d.friction = nan; });
-  refused(RDM_RANGE, "shapes[1]: size", [](auto&, auto* s) { s[1].size[2] = -1; });
-  refused(RDM_ARGUMENT, "shapes[1]: kind 4", [](auto&, auto* s) { s[1].kind = RDM_PLANE; });
-  refused(RDM_ARGUMENT, "shapes[0]: kind -3", [](auto&, auto* s) { s[0].kind = -3; });
-  refused(RDM_RANGE, "shapes[1].num_points: 3",
-          [](auto&, auto* s) { s[1].kind = RDM_HULL, s[1].num_points = 3; });
-  refused(RDM_ARGUMENT, "shapes[1].points is NULL",
-          [](auto&, auto* s) { s[1].kind = RDM_HULL, s[1].num_points = 8; });
-  refused(RDM_ARGUMENT, "place is not finite", [&](auto&, auto* s) { s[0].p[1] = nan; });
-  refused(RDM_ARGUMENT, "triangle rule",
+  refused(RDM_ERROR_ARGUMENT, "struct_size", [](auto& d, auto*) { d.struct_size = 8; });
+  refused(RDM_ERROR_RANGE, "num_shapes: 65 is outside [1, 64]", [](auto& d, auto*) { d.num_shapes = 65; });
+  refused(RDM_ERROR_RANGE, "num_shapes: 0", [](auto& d, auto*) { d.num_shapes = 0; });
+  refused(RDM_ERROR_ARGUMENT, "shapes is NULL", [](auto& d, auto*) { d.shapes = nullptr; });
+  refused(RDM_ERROR_ARGUMENT, "the name is empty", [](auto& d, auto*) { d.name = nullptr; });
+  refused(RDM_ERROR_ARGUMENT, "the name is taken", [](auto& d, auto*) { d.name = "011_banana"; });
+  refused(RDM_ERROR_RANGE, "mass 0 is outside", [](auto& d, auto*) { d.mass = 0; });
+  refused(RDM_ERROR_ARGUMENT, "friction is not finite", [&](auto& d, auto*) { d.friction = nan; });
+  refused(RDM_ERROR_RANGE, "shapes[1]: size", [](auto&, auto* s) { s[1].size[2] = -1; });
+  refused(RDM_ERROR_ARGUMENT, "shapes[1]: kind 4", [](auto&, auto* s) { s[1].kind = RDM_SHAPE_PLANE; });
+  refused(RDM_ERROR_ARGUMENT, "shapes[0]: kind -3", [](auto&, auto* s) { s[0].kind = -3; });
+  refused(RDM_ERROR_RANGE, "shapes[1].num_points: 3",
+          [](auto&, auto* s) { s[1].kind = RDM_SHAPE_HULL, s[1].num_points = 3; });
+  refused(RDM_ERROR_ARGUMENT, "shapes[1].points is NULL",
+          [](auto&, auto* s) { s[1].kind = RDM_SHAPE_HULL, s[1].num_points = 8; });
+  refused(RDM_ERROR_ARGUMENT, "place is not finite", [&](auto&, auto* s) { s[0].p[1] = nan; });
+  refused(RDM_ERROR_ARGUMENT, "triangle rule",
           [](auto& d, auto*) { d.moment[0] = d.moment[1] = 1e-4, d.moment[2] = 3e-4; });
   int32_t object = -1;
   const rdm_object_def d = default_def();
-  EXPECT_EQ(rdm_object_create(nullptr, &d), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_object_create(&object, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_object_find(nullptr, &object), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_object_find("egg", nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_object_find("banan", &object), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_object_create(nullptr, &d), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_object_create(&object, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_object_find(nullptr, &object), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_object_find("egg", nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_object_find("banan", &object), RDM_ERROR_NOT_FOUND);
   EXPECT_NE(std::strstr(rdm_last_error(), "banana"), nullptr);
-  EXPECT_EQ(rdm_object_get(0, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_object_get_def(0, nullptr), RDM_ERROR_ARGUMENT);
   rdm_shape_def s;
-  EXPECT_EQ(rdm_object_shape_at(0, 1, &s), RDM_RANGE);
-  EXPECT_EQ(rdm_object_shape_at(0, 0, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_object_shape_at(rdm_object_count(), 0, &s), RDM_RANGE);
-  EXPECT_EQ(rdm_object_remove(0), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_object_remove(-1), RDM_RANGE);
-  EXPECT_EQ(rdm_object_def_init(nullptr, sizeof d), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_object_shape_at(0, 1, &s), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_object_shape_at(0, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_object_shape_at(rdm_object_count(), 0, &s), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_object_destroy(0), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_object_destroy(-1), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_object_def_init(nullptr, sizeof d), RDM_ERROR_ARGUMENT);
 }
 
 // ---- in a scene of one's own
@@ -205,7 +205,7 @@ struct Seen {
 rdm_result build(void* user, rdm_scene* scene, void*) {
   auto& seen = *static_cast<Seen*>(user);
   rdm_shape_def ground{};
-  ground.name = "ground", ground.kind = RDM_PLANE;
+  ground.name = "ground", ground.kind = RDM_SHAPE_PLANE;
   rdm_result r = rdm_scene_add_static(scene, &ground);
   int32_t mug = -1, ball = -1;
   rdm_object_find("025_mug", &mug);
@@ -226,8 +226,8 @@ rdm_result build(void* user, rdm_scene* scene, void*) {
   int32_t metal = -1, plastic = -1;
   if (r == RDM_OK) r = rdm_scene_find(scene, RDM_SCENE_MATERIAL, "metal", &metal);
   if (r == RDM_OK) r = rdm_scene_find(scene, RDM_SCENE_MATERIAL, "plastic", &plastic);
-  if (r == RDM_OK && (metal != 1 || plastic != 2)) r = rdm_fail(RDM_INTERNAL, "materials");
-  if (r == RDM_OK) r = rdm_scene_touch(scene, "mug", "ground", &seen.touch);
+  if (r == RDM_OK && (metal != 1 || plastic != 2)) r = rdm_fail(RDM_ERROR_INTERNAL, "materials");
+  if (r == RDM_OK) r = rdm_scene_add_touch(scene, "mug", "ground", &seen.touch);
   note(5, rdm_scene_add_object(scene, mug, "late", p, q, 1, nullptr));
   return r;
 }
@@ -241,8 +241,8 @@ rdm_result judge(void* user, const void*, rdm_world* world, void*, int32_t, rdm_
   auto& seen = *static_cast<Seen*>(user);
   double force = 0;
   rdm_motion m;
-  rdm_result r = rdm_world_touch(world, seen.touch, nullptr, &force);
-  if (r == RDM_OK) r = rdm_world_body(world, seen.mug, &m);
+  rdm_result r = rdm_world_get_touch(world, seen.touch, nullptr, &force);
+  if (r == RDM_OK) r = rdm_world_get_body(world, seen.mug, &m);
   seen.mug_height = m.p[2];
   v->reward = seen.rest = force;
   return r;
@@ -262,7 +262,7 @@ TEST(Objects, StandInAScene) {
   d.action_dim = 1, d.user = &seen;
   d.build = build, d.reset = reset, d.control = control, d.judge = judge, d.observe = observe;
   int32_t task = -1;
-  ASSERT_EQ(rdm_task_register(&task, &d), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_task_create(&task, &d), RDM_OK) << rdm_last_error();
   rdm_pool_config c;
   rdm_pool_config_init(&c, sizeof c);
   c.task = d.name;
@@ -270,7 +270,8 @@ TEST(Objects, StandInAScene) {
   ASSERT_EQ(rdm_pool_create(&p, &c), RDM_OK) << rdm_last_error();
   EXPECT_EQ(seen.mug, 0);
   EXPECT_EQ(seen.ball, 1);
-  const rdm_result codes[6] = {RDM_ARGUMENT, RDM_RANGE, RDM_RANGE, RDM_ARGUMENT, RDM_ARGUMENT, RDM_STATE};
+  const rdm_result codes[6] = {RDM_ERROR_ARGUMENT, RDM_ERROR_RANGE,    RDM_ERROR_RANGE,
+                               RDM_ERROR_ARGUMENT, RDM_ERROR_ARGUMENT, RDM_ERROR_STATE};
   const char* texts[6] = {"mug is taken", "object: 100000", "scale: 0", "name", "p", "complete"};
   for (int i = 0; i < 6; ++i) {
     EXPECT_EQ(seen.bad[i], codes[i]) << i;
@@ -292,13 +293,13 @@ TEST(Objects, StandInAScene) {
   EXPECT_NEAR(seen.rest, 0.118 * 9.81, 0.05);  // its weight
   EXPECT_LT(seen.mug_height, 0.06);
   rdm_pool_destroy(p);
-  EXPECT_EQ(rdm_task_remove(task), RDM_OK);
+  EXPECT_EQ(rdm_task_destroy(task), RDM_OK);
 }
 
 // An object is looked at without being added, under a name that is taken too.
 TEST(OwnObjects, CheckAddsNothing) {
   rdm_shape_def box{};
-  box.kind = RDM_BOX;
+  box.kind = RDM_SHAPE_BOX;
   std::fill_n(box.size, 3, 0.02);
   rdm_object_def d;
   rdm_object_def_init(&d, sizeof d);
@@ -306,9 +307,9 @@ TEST(OwnObjects, CheckAddsNothing) {
   const int32_t count = rdm_object_count();
   EXPECT_EQ(rdm_object_check(&d), RDM_OK) << rdm_last_error();
   d.mass = -1;
-  EXPECT_EQ(rdm_object_check(&d), RDM_RANGE);
+  EXPECT_EQ(rdm_object_check(&d), RDM_ERROR_RANGE);
   EXPECT_NE(std::string(rdm_last_error()).find("mass -1"), std::string::npos) << rdm_last_error();
-  EXPECT_EQ(rdm_object_check(nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_object_check(nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_object_count(), count);
 }
 

@@ -26,7 +26,7 @@ struct Described {
 
   explicit Described(int32_t robot) {
     rdm_robot_def_init(&def, sizeof def);
-    EXPECT_EQ(rdm_robot_get(robot, &def), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(rdm_robot_get_def(robot, &def), RDM_OK) << rdm_last_error();
     const auto rows = [robot](auto* out, int32_t count, auto* at) {
       out->resize(static_cast<size_t>(count));
       for (int32_t i = 0; i < count; ++i)
@@ -42,7 +42,8 @@ struct Described {
     closed.resize(commands.size());
     home.resize(links.size());
     folded.resize(links.size());
-    EXPECT_EQ(rdm_robot_poses_of(robot, commands.data(), home.data(), folded.data(), closed.data()), RDM_OK);
+    EXPECT_EQ(rdm_robot_get_postures(robot, commands.data(), home.data(), folded.data(), closed.data()),
+              RDM_OK);
     bind();
   }
   void bind() {
@@ -61,7 +62,7 @@ struct Described {
 struct Robots {  // removes what it made
   std::vector<int32_t> made;
   ~Robots() {
-    for (const int32_t robot : made) rdm_robot_remove(robot);
+    for (const int32_t robot : made) rdm_robot_destroy(robot);
   }
   int32_t create(const rdm_robot_def& def) {
     int32_t robot = -1;
@@ -109,21 +110,21 @@ TEST(Robots, NamesAreTakenOnceAndNumbersNeverTwice) {
   own.def.alias = "deux";
   int32_t first = -1, second = -1, found = -1;
   ASSERT_EQ(rdm_robot_create(&first, &own.def), RDM_OK) << rdm_last_error();
-  EXPECT_EQ(rdm_robot_create(&second, &own.def), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_robot_create(&second, &own.def), RDM_ERROR_ARGUMENT);
   EXPECT_NE(std::strstr(rdm_last_error(), "twice"), nullptr);
   EXPECT_EQ(rdm_robot_find("DEUX", &found), RDM_OK);
   EXPECT_EQ(found, first);
-  EXPECT_EQ(rdm_robot_remove(first), RDM_OK);
-  EXPECT_EQ(rdm_robot_remove(first), RDM_NOT_FOUND);
-  EXPECT_EQ(rdm_robot_find("twice", &found), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_robot_destroy(first), RDM_OK);
+  EXPECT_EQ(rdm_robot_destroy(first), RDM_ERROR_NOT_FOUND);
+  EXPECT_EQ(rdm_robot_find("twice", &found), RDM_ERROR_NOT_FOUND);
   rdm_robot_def io;
   rdm_robot_def_init(&io, sizeof io);
-  EXPECT_EQ(rdm_robot_get(first, &io), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_robot_get_def(first, &io), RDM_ERROR_NOT_FOUND);
   ASSERT_EQ(rdm_robot_create(&second, &own.def), RDM_OK) << rdm_last_error();
   EXPECT_GT(second, first);
-  EXPECT_EQ(rdm_robot_remove(second), RDM_OK);
-  EXPECT_EQ(rdm_robot_remove(0), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_robot_remove(-1), RDM_RANGE);
+  EXPECT_EQ(rdm_robot_destroy(second), RDM_OK);
+  EXPECT_EQ(rdm_robot_destroy(0), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_robot_destroy(-1), RDM_ERROR_RANGE);
 }
 
 // One joint with a flange: a pendulum that a hand can be put on.
@@ -131,7 +132,7 @@ rdm_robot_link hinge() {
   rdm_robot_link l{};
   l.name = "rod";
   l.joint = "hinge";
-  l.parent = RDM_ROOT_LINK;
+  l.parent = RDM_LINK_ROOT;
   l.p[2] = 0.5;
   l.q[3] = 1;
   l.axis[0] = 1;
@@ -163,7 +164,7 @@ TEST(Robots, AHandOnAnArmIsARobot) {
   const rdm_robot_link link = hinge();
   const int32_t arm = robots.create(pendulum(&link));
   int32_t both = -1;
-  ASSERT_EQ(rdm_robot_mount(&both, "both", arm, 0, 0.3, 0.02, 0), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_robot_create_mounted(&both, "both", arm, 0, 0.3, 0.02, 0), RDM_OK) << rdm_last_error();
   robots.made.push_back(both);
   Described own(both), hand(0);
   EXPECT_EQ(own.links.size(), 1 + hand.links.size());
@@ -183,10 +184,10 @@ TEST(Robots, AHandOnAnArmIsARobot) {
     EXPECT_NEAR(tips[3 * i + 1], std::sin(0.3) * x + std::cos(0.3) * y, 1e-12);
     EXPECT_NEAR(tips[3 * i + 2], 0.5 + 0.4 + 0.02 + z, 1e-12);
   }
-  EXPECT_EQ(rdm_robot_mount(&both, "again", 0, 0, 0, 0, 0), RDM_UNSUPPORTED);
-  EXPECT_EQ(rdm_robot_mount(&both, "again", arm, arm, 0, 0, 0), RDM_UNSUPPORTED);
-  EXPECT_EQ(rdm_robot_mount(&both, "again", arm, 0, 0, -1, 0), RDM_RANGE);
-  EXPECT_EQ(rdm_robot_mount(&both, "again", arm, 0, NAN, 0, 0), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_robot_create_mounted(&both, "again", 0, 0, 0, 0, 0), RDM_ERROR_UNSUPPORTED);
+  EXPECT_EQ(rdm_robot_create_mounted(&both, "again", arm, arm, 0, 0, 0), RDM_ERROR_UNSUPPORTED);
+  EXPECT_EQ(rdm_robot_create_mounted(&both, "again", arm, 0, 0, -1, 0), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_robot_create_mounted(&both, "again", arm, 0, NAN, 0, 0), RDM_ERROR_ARGUMENT);
 }
 
 TEST(Robots, AFlangeIsReachedOrNot) {
@@ -204,8 +205,8 @@ TEST(Robots, AFlangeIsReachedOrNot) {
   ASSERT_EQ(rdm_robot_reach(arm, pose, &q, &found), RDM_OK);
   EXPECT_EQ(found, 0);
   q = NAN;
-  EXPECT_EQ(rdm_robot_reach(arm, pose, &q, &found), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_robot_reach(0, pose, &q, &found), RDM_UNSUPPORTED);
+  EXPECT_EQ(rdm_robot_reach(arm, pose, &q, &found), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_robot_reach(0, pose, &q, &found), RDM_ERROR_UNSUPPORTED);
 }
 
 // What is wrong is named.
@@ -221,25 +222,25 @@ TEST(Robots, BadOnesAreRefusedByName) {
   };
   using D = rdm_robot_def;
   using L = rdm_robot_link;
-  refused(RDM_ARGUMENT, "name is empty", [](D& d, L&) { d.name = ""; });
-  refused(RDM_ARGUMENT, "name is empty", [](D&, L& l) { l.joint = nullptr; });
-  refused(RDM_RANGE, "longer than 25", [](D& d, L&) { d.name = "abcdefghijklmnopqrstuvwxyz"; });
-  refused(RDM_ARGUMENT, "links is NULL", [](D& d, L&) { d.links = nullptr; });
-  refused(RDM_RANGE, "num_links", [](D& d, L&) { d.num_links = 65; });
-  refused(RDM_RANGE, "0 links", [](D& d, L&) { d.num_links = 0; });
-  refused(RDM_RANGE, "parent 0", [](D&, L& l) { l.parent = 0; });
-  refused(RDM_ARGUMENT, "triangle", [](D&, L& l) { l.moment[2] = 0.3; });
-  refused(RDM_ARGUMENT, "positive definite", [](D&, L& l) { l.moment[0] = -0.1; });
-  refused(RDM_RANGE, "mass", [](D&, L& l) { l.mass = -1; });
-  refused(RDM_ARGUMENT, "rod: mass is not finite",
+  refused(RDM_ERROR_ARGUMENT, "name is empty", [](D& d, L&) { d.name = ""; });
+  refused(RDM_ERROR_ARGUMENT, "name is empty", [](D&, L& l) { l.joint = nullptr; });
+  refused(RDM_ERROR_RANGE, "longer than 25", [](D& d, L&) { d.name = "abcdefghijklmnopqrstuvwxyz"; });
+  refused(RDM_ERROR_ARGUMENT, "links is NULL", [](D& d, L&) { d.links = nullptr; });
+  refused(RDM_ERROR_RANGE, "num_links", [](D& d, L&) { d.num_links = 65; });
+  refused(RDM_ERROR_RANGE, "0 links", [](D& d, L&) { d.num_links = 0; });
+  refused(RDM_ERROR_RANGE, "parent 0", [](D&, L& l) { l.parent = 0; });
+  refused(RDM_ERROR_ARGUMENT, "triangle", [](D&, L& l) { l.moment[2] = 0.3; });
+  refused(RDM_ERROR_ARGUMENT, "positive definite", [](D&, L& l) { l.moment[0] = -0.1; });
+  refused(RDM_ERROR_RANGE, "mass", [](D&, L& l) { l.mass = -1; });
+  refused(RDM_ERROR_ARGUMENT, "rod: mass is not finite",
           [](D&, L& l) { l.mass = std::numeric_limits<double>::infinity(); });
-  refused(RDM_RANGE, "hinge: the range [2, 2] is empty", [](D&, L& l) { l.lower = 2; });
-  refused(RDM_ARGUMENT, "axis has length 0", [](D&, L& l) { l.axis[0] = 0; });
-  refused(RDM_ARGUMENT, "quaternion", [](D&, L& l) { l.q[3] = 2; });
-  refused(RDM_RANGE, "kind", [](D& d, L&) { d.kind = 3; });
-  refused(RDM_RANGE, "flange", [](D& d, L&) { d.flange_link = 1; });
-  refused(RDM_ARGUMENT, "a hand has a palm", [](D& d, L&) { d.kind = RDM_ROBOT_HAND; });
-  refused(RDM_RANGE, "mirror", [](D& d, L&) { d.mirror = 3; });
+  refused(RDM_ERROR_RANGE, "hinge: the range [2, 2] is empty", [](D&, L& l) { l.lower = 2; });
+  refused(RDM_ERROR_ARGUMENT, "axis has length 0", [](D&, L& l) { l.axis[0] = 0; });
+  refused(RDM_ERROR_ARGUMENT, "quaternion", [](D&, L& l) { l.q[3] = 2; });
+  refused(RDM_ERROR_RANGE, "kind", [](D& d, L&) { d.kind = 3; });
+  refused(RDM_ERROR_RANGE, "flange", [](D& d, L&) { d.flange_link = 1; });
+  refused(RDM_ERROR_ARGUMENT, "a hand has a palm", [](D& d, L&) { d.kind = RDM_ROBOT_HAND; });
+  refused(RDM_ERROR_RANGE, "mirror", [](D& d, L&) { d.mirror = 3; });
 }
 
 TEST(Robots, PairsAreAllButNeighbours) {
@@ -251,7 +252,7 @@ TEST(Robots, PairsAreAllButNeighbours) {
   const char* names[4] = {"a", "b", "c", "d"};
   for (int i = 0; i < 4; ++i) {
     shapes[i].name = names[i];
-    shapes[i].kind = RDM_SPHERE;
+    shapes[i].kind = RDM_SHAPE_SPHERE;
     shapes[i].size[0] = 0.01;
     shapes[i].q[3] = 1;
     shapes[i].link = i - 1;
@@ -269,7 +270,7 @@ TEST(Robots, PairsAreAllButNeighbours) {
     EXPECT_EQ(pair[i].a, expected[i][0]) << i;
     EXPECT_EQ(pair[i].b, expected[i][1]) << i;
   }
-  EXPECT_EQ(rdm_robot_pair_at(robot, 3, pair), RDM_RANGE);
+  EXPECT_EQ(rdm_robot_pair_at(robot, 3, pair), RDM_ERROR_RANGE);
 }
 
 TEST(Robots, MayTakeNoCommands) {
@@ -293,11 +294,11 @@ TEST(Robots, MayTakeNoCommands) {
   int32_t robot_index = -1;
   d.def.name = "another_door";
   d.def.num_commands = -2;
-  EXPECT_EQ(rdm_robot_create(&robot_index, &d.def), RDM_RANGE);
+  EXPECT_EQ(rdm_robot_create(&robot_index, &d.def), RDM_ERROR_RANGE);
   EXPECT_NE(std::strstr(rdm_last_error(), "num_commands: -2"), nullptr);
   d.def.num_commands = -1;
   d.def.kind = RDM_ROBOT_ARM;
-  EXPECT_EQ(rdm_robot_create(&robot_index, &d.def), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_robot_create(&robot_index, &d.def), RDM_ERROR_ARGUMENT);
   EXPECT_NE(std::strstr(rdm_last_error(), "takes commands"), nullptr) << rdm_last_error();
 }
 

@@ -29,7 +29,7 @@ struct Rows {
     b.struct_size = sizeof b;
     spec.struct_size = sizeof spec;
     if (!pool) return;
-    EXPECT_EQ(rdm_pool_buffers(pool, &b), RDM_OK);
+    EXPECT_EQ(rdm_pool_get_buffers(pool, &b), RDM_OK);
     EXPECT_EQ(rdm_pool_get_spec(pool, &spec), RDM_OK);
     EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK) << rdm_last_error();
   }
@@ -44,7 +44,7 @@ struct Rows {
   }
   uint64_t hash() const {
     uint64_t h = 0;
-    EXPECT_EQ(rdm_pool_hash(pool, -1, &h), RDM_OK);
+    EXPECT_EQ(rdm_pool_get_hash(pool, -1, &h), RDM_OK);
     return h;
   }
 };
@@ -89,7 +89,7 @@ TEST(OwnTask, IsFoundAndDescribed) {
   ASSERT_EQ(rdm_task_camera(found, 0, &camera), RDM_OK);
   EXPECT_EQ(camera.eye[1], -1);
   rdm_option given;
-  ASSERT_EQ(rdm_task_default(found, 1, &given), RDM_OK);
+  ASSERT_EQ(rdm_task_default_at(found, 1, &given), RDM_OK);
   EXPECT_STREQ(given.text, "64");
 }
 
@@ -107,25 +107,25 @@ TEST(OwnTask, TheDescriptionIsCopied) {
 TEST(OwnTask, StaysWhileAPoolHasIt) {
   BallTask t("own_kept");
   int32_t task = -1, found = -1;
-  ASSERT_EQ(rdm_task_register(&task, &t.def), RDM_OK) << rdm_last_error();
-  EXPECT_EQ(rdm_task_register(&found, &t.def), RDM_ARGUMENT);
+  ASSERT_EQ(rdm_task_create(&task, &t.def), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_task_create(&found, &t.def), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_last_error(), "task own_kept: the name is taken");
   {
     Rows rows("own_kept", 2);
     rows.step(3);
-    ASSERT_EQ(rdm_task_remove(task), RDM_OK) << rdm_last_error();
-    EXPECT_EQ(rdm_task_remove(task), RDM_NOT_FOUND);
-    EXPECT_EQ(rdm_task_find("own_kept", &found), RDM_NOT_FOUND);
+    ASSERT_EQ(rdm_task_destroy(task), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(rdm_task_destroy(task), RDM_ERROR_NOT_FOUND);
+    EXPECT_EQ(rdm_task_find("own_kept", &found), RDM_ERROR_NOT_FOUND);
     rdm_task io{};
     io.struct_size = sizeof io;
-    EXPECT_EQ(rdm_task_at(task, &io), RDM_NOT_FOUND);
+    EXPECT_EQ(rdm_task_at(task, &io), RDM_ERROR_NOT_FOUND);
     EXPECT_EQ(t.user.released, 0);
     rows.step(60);  // into the next episode
     rdm_pool_config c;
     rdm_pool_config_init(&c, sizeof c);
     c.task = "own_kept";
     rdm_pool* none = nullptr;
-    EXPECT_EQ(rdm_pool_create(&none, &c), RDM_NOT_FOUND);
+    EXPECT_EQ(rdm_pool_create(&none, &c), RDM_ERROR_NOT_FOUND);
     BallTask again("own_kept");  // another one may have the name
     const Registered other(again.def);
     EXPECT_GT(other.index(), task);
@@ -134,9 +134,9 @@ TEST(OwnTask, StaysWhileAPoolHasIt) {
     rows.step();
   }
   EXPECT_EQ(t.user.released, 1);
-  EXPECT_EQ(rdm_task_remove(0), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_task_remove(-1), RDM_RANGE);
-  EXPECT_EQ(rdm_task_remove(rdm_task_count()), RDM_RANGE);
+  EXPECT_EQ(rdm_task_destroy(0), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_task_destroy(-1), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_task_destroy(rdm_task_count()), RDM_ERROR_RANGE);
 }
 
 TEST(OwnTask, SameBytesForAnyThreadsAndGroups) {
@@ -176,8 +176,8 @@ TEST(OwnTask, GoesOnFromAState) {
   size_t size = 0;
   ASSERT_EQ(rdm_pool_state_size(a.pool, -1, &size), RDM_OK);
   std::vector<unsigned char> bytes(size);
-  ASSERT_EQ(rdm_pool_get_state(a.pool, -1, bytes.data(), size, &size), RDM_OK);
-  ASSERT_EQ(rdm_pool_set_state(b.pool, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_pool_write_state(a.pool, -1, bytes.data(), size, &size), RDM_OK);
+  ASSERT_EQ(rdm_pool_read_state(b.pool, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
   for (int i = 0; i < 50; ++i) {
     a.step();
     b.step();
@@ -187,20 +187,20 @@ TEST(OwnTask, GoesOnFromAState) {
   t.user.fault = Fault::kStateOutside;
   Rows bad("own_state", 3);
   bad.step(6);
-  ASSERT_EQ(rdm_pool_get_state(bad.pool, -1, bytes.data(), size, &size), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(bad.pool, -1, bytes.data(), size, &size), RDM_OK);
   const uint64_t before = a.hash();
-  EXPECT_EQ(rdm_pool_set_state(a.pool, -1, bytes.data(), size), RDM_FORMAT);
+  EXPECT_EQ(rdm_pool_read_state(a.pool, -1, bytes.data(), size), RDM_ERROR_FORMAT);
   EXPECT_STREQ(rdm_last_error(), "task own_state: check_state: start is not within +-1");
   EXPECT_EQ(a.hash(), before);
   // of a task of that name whose state has another size
   t.user.fault = Fault::kNone;
-  ASSERT_EQ(rdm_pool_get_state(a.pool, -1, bytes.data(), size, &size), RDM_OK);
-  ASSERT_EQ(rdm_task_remove(made.index()), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(a.pool, -1, bytes.data(), size, &size), RDM_OK);
+  ASSERT_EQ(rdm_task_destroy(made.index()), RDM_OK);
   BallTask larger("own_state");
   larger.def.state_bytes += 8;
   const Registered other(larger.def);
   Rows c("own_state", 3);
-  EXPECT_EQ(rdm_pool_set_state(c.pool, -1, bytes.data(), size), RDM_FORMAT);
+  EXPECT_EQ(rdm_pool_read_state(c.pool, -1, bytes.data(), size), RDM_ERROR_FORMAT);
 }
 
 TEST(OwnTask, ARowThatIsNotFiniteEndsTheEpisode) {
@@ -224,7 +224,7 @@ TEST(OwnTask, IsSeenAndLearned) {
   Rows rows("own_seen", 8, 2, "modality=rgb+points+voxels\ncloud_cameras=front\npoints=64\npush=1");
   rdm_sensors s{};
   s.struct_size = sizeof s;
-  ASSERT_EQ(rdm_pool_sensors(rows.pool, &s), RDM_OK);
+  ASSERT_EQ(rdm_pool_get_sensors(rows.pool, &s), RDM_OK);
   EXPECT_GT(s.point_count[0], 10);
   std::vector<uint8_t> rgb(3 * 32 * 32);
   EXPECT_EQ(rdm_pool_render(rows.pool, 0, "front", 32, 32, rgb.data(), nullptr, nullptr), RDM_OK);
@@ -243,11 +243,11 @@ TEST(OwnTask, IsSeenAndLearned) {
 
 TEST(OwnTask, CountsFollowFromOptions) {
   BallTask t("own_counts");
-  t.options.push_back({"entries", "of the action's field", nullptr, nullptr, 2, 1, 5, RDM_INTEGER, 0});
+  t.options.push_back({"entries", "of the action's field", nullptr, nullptr, 2, 1, 5, RDM_KIND_INTEGER, 0});
   t.bind();
   t.def.build = [](void* user, rdm_scene* scene, void* instance) {
     double n = 0;
-    rdm_result r = rdm_scene_number(scene, "entries", &n);
+    rdm_result r = rdm_scene_get_number(scene, "entries", &n);
     const float mean[5] = {0.5f, 0.5f, 0.5f, 0.5f, 0.5f};
     if (r == RDM_OK) r = rdm_scene_set_field(scene, "action", static_cast<int32_t>(n));
     if (r == RDM_OK) r = rdm_scene_set_actions(scene, static_cast<int32_t>(n), nullptr, mean);
@@ -261,13 +261,13 @@ TEST(OwnTask, CountsFollowFromOptions) {
   c.settings = "entries=5";
   rdm_spec spec{};
   spec.struct_size = sizeof spec;
-  ASSERT_EQ(rdm_pool_spec(&c, &spec), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_pool_config_spec(&c, &spec), RDM_OK) << rdm_last_error();
   EXPECT_EQ(spec.obs_dim, kBallObs + 3);
   EXPECT_EQ(spec.action_dim, 5);
   EXPECT_NE(spec.layout_hash, two.spec.layout_hash);
   EXPECT_EQ(same.spec.layout_hash, two.spec.layout_hash);
   float mean[2] = {};
-  ASSERT_EQ(rdm_pool_initial_mean(two.pool, mean), RDM_OK);
+  ASSERT_EQ(rdm_pool_get_initial_mean(two.pool, mean), RDM_OK);
   EXPECT_EQ(mean[1], 0.5f);
 }
 
@@ -277,7 +277,7 @@ TEST(OwnTask, AnInstanceIsZeroedToTheLastByte) {
   t.def.build = [](void* user, rdm_scene* scene, void* instance) {
     const auto* bytes = static_cast<const unsigned char*>(instance);
     if (std::any_of(bytes, bytes + 8192, [](unsigned char b) { return b != 0; }))
-      return rdm_fail(RDM_INTERNAL, "not zeroed");
+      return rdm_fail(RDM_ERROR_INTERNAL, "not zeroed");
     const rdm_result r = ball_build(user, scene, instance);
     std::memset(static_cast<unsigned char*>(instance) + sizeof(BallIds), 0xa5, 8192 - sizeof(BallIds));
     return r;  // what is freed now is what the next one is made of
@@ -291,8 +291,9 @@ TEST(OwnTask, OptionsMayBeRanges) {
   t.options[0].choices = "a..b";
   t.def.build = [](void* user, rdm_scene* scene, void* instance) {
     double low = 0, high = 0;
-    rdm_result r = rdm_scene_range(scene, "push", &low, &high);
-    if (r == RDM_OK && (low != 0.5 || high != 2)) r = rdm_fail(RDM_RANGE, "not the range that was given");
+    rdm_result r = rdm_scene_get_range(scene, "push", &low, &high);
+    if (r == RDM_OK && (low != 0.5 || high != 2))
+      r = rdm_fail(RDM_ERROR_RANGE, "not the range that was given");
     return r != RDM_OK ? r : ball_build(user, scene, instance);
   };
   const Registered made(t.def);
@@ -304,7 +305,7 @@ TEST(OwnTask, OptionsMayBeRanges) {
   rdm_pool_config_init(&c, sizeof c);
   c.task = "own_ranges";
   rdm_pool* p = nullptr;
-  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_RANGE);
+  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ERROR_RANGE);
   EXPECT_STREQ(rdm_last_error(), "task own_ranges: build: not the range that was given");
   // of an option that every task has, each world draws by itself
   Rows heavy("own_ranges", 2, 0, "push=0.5..2\ngravity=5..15"), plain("own_ranges", 2, 0, "push=0.5..2");
@@ -327,12 +328,12 @@ TEST(OwnTask, WorldsHaveConstantsOfTheirOwn) {
     t.def.build = [](void*, rdm_scene* scene, void* instance) {
       auto* ids = static_cast<BallIds*>(instance);
       rdm_shape_def sphere{};
-      sphere.kind = RDM_SPHERE, sphere.size[0] = 0.05;
+      sphere.kind = RDM_SHAPE_SPHERE, sphere.size[0] = 0.05;
       rdm_body_def ball{};
       ball.struct_size = sizeof ball, ball.name = "ball", ball.shapes = &sphere, ball.num_shapes = 1;
       ball.mass = 0.5 * (by_world ? 1 : factor), ball.p[2] = 0.05;
       rdm_shape_def ground{};
-      ground.name = "ground", ground.kind = RDM_PLANE;
+      ground.name = "ground", ground.kind = RDM_SHAPE_PLANE;
       rdm_result r = rdm_scene_set_adjustable(scene);
       if (r == RDM_OK) r = rdm_scene_add_body(scene, &ball, &ids->ball);
       return r != RDM_OK ? r : rdm_scene_add_static(scene, &ground);
@@ -342,8 +343,8 @@ TEST(OwnTask, WorldsHaveConstantsOfTheirOwn) {
       const rdm_factor f[] = {
           {RDM_SCALE_BODY_MASS, static_cast<const BallIds*>(instance)->ball, 0, 0, factor},
           {RDM_SCALE_FRICTION, 0, 0, 0, 1}};
-      EXPECT_EQ(rdm_world_scale(world, &bad, 1), RDM_RANGE);
-      return by_world ? rdm_world_scale(world, f, 2) : static_cast<rdm_result>(RDM_OK);
+      EXPECT_EQ(rdm_world_set_factors(world, &bad, 1), RDM_ERROR_RANGE);
+      return by_world ? rdm_world_set_factors(world, f, 2) : static_cast<rdm_result>(RDM_OK);
     };
     t.def.control = [](void*, const void* instance, rdm_world* world, void*, const float* action) {
       const double force[3] = {static_cast<double>(action[0]), 0, 0}, none[3] = {0, 0, 0};
@@ -354,7 +355,7 @@ TEST(OwnTask, WorldsHaveConstantsOfTheirOwn) {
     };
     t.def.observe = [](void*, const void* instance, const rdm_world* world, const void*, float* obs) {
       rdm_motion m;
-      const rdm_result r = rdm_world_body(world, static_cast<const BallIds*>(instance)->ball, &m);
+      const rdm_result r = rdm_world_get_body(world, static_cast<const BallIds*>(instance)->ball, &m);
       for (int i = 0; i < kBallObs; ++i) obs[i] = i < 3 ? static_cast<float>(m.p[i]) : 0;
       return r;
     };
@@ -374,7 +375,7 @@ TEST(OwnTask, WorldsHaveConstantsOfTheirOwn) {
 struct Arm {
   bool held = false;
   int32_t joints = 0;
-  double home[RDM_ROBOT_LINKS] = {};
+  double home[RDM_MAX_LINKS] = {};
 };
 
 rdm_result arm_build(void* user, rdm_scene* scene, void*) {
@@ -385,8 +386,8 @@ rdm_result arm_build(void* user, rdm_scene* scene, void*) {
   rdm_robot_def d;
   rdm_robot_def_init(&d, sizeof d);
   rdm_result r = rdm_robot_find("ur5e", &robot.robot);
-  if (r == RDM_OK) r = rdm_robot_get(robot.robot, &d);
-  if (r == RDM_OK) r = rdm_robot_poses_of(robot.robot, nullptr, arm->home, nullptr, nullptr);
+  if (r == RDM_OK) r = rdm_robot_get_def(robot.robot, &d);
+  if (r == RDM_OK) r = rdm_robot_get_postures(robot.robot, nullptr, arm->home, nullptr, nullptr);
   arm->joints = d.num_links;
   if (r == RDM_OK) r = rdm_scene_add_robot(scene, &robot, nullptr);
   return r != RDM_OK ? r : rdm_scene_set_feedforward(scene);
@@ -410,15 +411,15 @@ TEST(OwnTask, AnArmIsHeldByFeedForward) {
     };
     d.control = [](void* user, const void*, rdm_world* world, void*, const float*) {
       const auto* a = static_cast<const Arm*>(user);
-      double efforts[RDM_ROBOT_LINKS];
-      const rdm_result r = rdm_world_gravity(world, 0, efforts, a->joints);
+      double efforts[RDM_MAX_LINKS];
+      const rdm_result r = rdm_world_get_gravity(world, 0, efforts, a->joints);
       return r != RDM_OK || !a->held ? r : rdm_world_set_feedforward(world, 0, efforts, a->joints);
     };
     d.judge = [](void* user, const void*, rdm_world* world, void*, int32_t, rdm_verdict* out) {
       const auto* a = static_cast<const Arm*>(user);
       rdm_joints joints{};
       joints.struct_size = sizeof joints;
-      const rdm_result r = rdm_world_joints(world, &joints);
+      const rdm_result r = rdm_world_get_joints(world, &joints);
       for (int32_t i = 0; i < a->joints; ++i)
         out->cost_raw[0] = std::max(out->cost_raw[0], std::fabs(joints.q[i] - a->home[i]));
       return r;
@@ -446,10 +447,10 @@ TEST(OwnTask, ManyThreadsAddAndRemove) {
       for (int round = 0; round < 5; ++round) {
         BallTask t(name.c_str());
         int32_t task = -1;
-        ASSERT_EQ(rdm_task_register(&task, &t.def), RDM_OK) << rdm_last_error();
+        ASSERT_EQ(rdm_task_create(&task, &t.def), RDM_OK) << rdm_last_error();
         {
           Rows rows(name.c_str(), 1);
-          ASSERT_EQ(rdm_task_remove(task), RDM_OK);
+          ASSERT_EQ(rdm_task_destroy(task), RDM_OK);
           rows.step(3);
         }
         EXPECT_EQ(t.user.released, 1);
@@ -479,7 +480,7 @@ TEST(OwnTask, StepsWithoutTheHostsMemory) {
   c.num_envs = 4;
   c.host = &host;
   size_t told = 0;
-  ASSERT_EQ(rdm_pool_memory(&c, &told, nullptr), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_pool_config_memory(&c, &told, nullptr), RDM_OK) << rdm_last_error();
   EXPECT_GT(told, 0u);
   rdm_pool* p = nullptr;
   ASSERT_EQ(rdm_pool_create(&p, &c), RDM_OK) << rdm_last_error();

@@ -22,11 +22,11 @@ TEST(TaskCheck, GoodTasksPass) {
 
 TEST(TaskCheck, ATaskThatCannotBeMadeIsItsError) {
   char text[80] = "";
-  EXPECT_EQ(rdm_task_check("grasb", nullptr, text, sizeof text), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_task_check("grasb", nullptr, text, sizeof text), RDM_ERROR_NOT_FOUND);
   EXPECT_STREQ(text, "task grasb: unknown; nearest is grasp");
-  EXPECT_EQ(rdm_task_check(nullptr, nullptr, nullptr, 0), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_task_check("grasp", "objekt=egg", nullptr, 0), RDM_NOT_FOUND);
-  EXPECT_EQ(rdm_task_check("grasp", nullptr, text, 0), RDM_RANGE);
+  EXPECT_EQ(rdm_task_check(nullptr, nullptr, nullptr, 0), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_task_check("grasp", "objekt=egg", nullptr, 0), RDM_ERROR_NOT_FOUND);
+  EXPECT_EQ(rdm_task_check("grasp", nullptr, text, 0), RDM_ERROR_RANGE);
 }
 
 struct Broken {
@@ -80,7 +80,7 @@ TEST(TaskCheck, MemoryThatIsLeftBehindIsNamed) {
   BallTask t("leaks", Fault::kJudgeLeaks);
   t.user.leaked.reserve(100000);
   const Registered made(t.def);
-  EXPECT_EQ(rdm_task_check("leaks", nullptr, nullptr, 0), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_task_check("leaks", nullptr, nullptr, 0), RDM_ERROR_ARGUMENT);
   EXPECT_NE(std::strstr(rdm_last_error(), "judge: it leaves memory behind"), nullptr) << rdm_last_error();
   std::printf("%s\n", rdm_last_error());
 }

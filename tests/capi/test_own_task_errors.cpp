@@ -25,76 +25,82 @@ struct BadDef {
 TEST(OwnTaskErrors, OfDescriptions) {
   static const float far[2] = {2, 0};
   const BadDef rows[] = {
-      {RDM_ARGUMENT, "def.name is NULL", [](auto& t) { t.def.name = nullptr; }},
-      {RDM_RANGE, "def.name:  has not 1 to 40 characters", [](auto& t) { t.def.name = ""; }},
-      {RDM_ARGUMENT, "def.name: a b has other characters than letters, digits, '_', '-', '.'",
+      {RDM_ERROR_ARGUMENT, "def.name is NULL", [](auto& t) { t.def.name = nullptr; }},
+      {RDM_ERROR_RANGE, "def.name:  has not 1 to 40 characters", [](auto& t) { t.def.name = ""; }},
+      {RDM_ERROR_ARGUMENT, "def.name: a b has other characters than letters, digits, '_', '-', '.'",
        [](auto& t) { t.def.name = "a b"; }},
-      {RDM_ARGUMENT, "task grasp: the name is taken", [](auto& t) { t.def.name = "grasp"; }},
-      {RDM_RANGE, "def.max_steps: 0 is outside [1, 100000]", [](auto& t) { t.def.max_steps = 0; }},
-      {RDM_RANGE, "def.action_dim: 1025 is outside [1, 1024]", [](auto& t) { t.def.action_dim = 1025; }},
-      {RDM_RANGE, "def.obs_limit: -1 is outside [0, 1e30]", [](auto& t) { t.def.obs_limit = -1; }},
-      {RDM_RANGE, "def.state_bytes: 1048577 is above 1048576",
+      {RDM_ERROR_ARGUMENT, "task grasp: the name is taken", [](auto& t) { t.def.name = "grasp"; }},
+      {RDM_ERROR_RANGE, "def.max_steps: 0 is outside [1, 100000]", [](auto& t) { t.def.max_steps = 0; }},
+      {RDM_ERROR_RANGE, "def.action_dim: 1025 is outside [1, 1024]",
+       [](auto& t) { t.def.action_dim = 1025; }},
+      {RDM_ERROR_RANGE, "def.obs_limit: -1 is outside [0, 1e30]", [](auto& t) { t.def.obs_limit = -1; }},
+      {RDM_ERROR_RANGE, "def.state_bytes: 1048577 is above 1048576",
        [](auto& t) { t.def.state_bytes = (1 << 20) + 1; }},
-      {RDM_RANGE, "def.instance_bytes: 16777217 is above 16777216",
+      {RDM_ERROR_RANGE, "def.instance_bytes: 16777217 is above 16777216",
        [](auto& t) { t.def.instance_bytes = (1 << 24) + 1; }},
-      {RDM_ARGUMENT, "def.build is NULL", [](auto& t) { t.def.build = nullptr; }},
-      {RDM_ARGUMENT, "def.observe is NULL", [](auto& t) { t.def.observe = nullptr; }},
-      {RDM_RANGE, "def.hold[0]: 2 is outside [-1, 1]", [](auto& t) { t.def.hold = far; }},
-      {RDM_RANGE, "def.num_fields: 0 is outside [1, 512]", [](auto& t) { t.def.num_fields = 0; }},
-      {RDM_ARGUMENT, "def.fields is NULL with num_fields 4", [](auto& t) { t.def.fields = nullptr; }},
-      {RDM_ARGUMENT, "def.fields[1].name: ball.position is there twice",
+      {RDM_ERROR_ARGUMENT, "def.build is NULL", [](auto& t) { t.def.build = nullptr; }},
+      {RDM_ERROR_ARGUMENT, "def.observe is NULL", [](auto& t) { t.def.observe = nullptr; }},
+      {RDM_ERROR_RANGE, "def.hold[0]: 2 is outside [-1, 1]", [](auto& t) { t.def.hold = far; }},
+      {RDM_ERROR_RANGE, "def.num_fields: 0 is outside [1, 512]", [](auto& t) { t.def.num_fields = 0; }},
+      {RDM_ERROR_ARGUMENT, "def.fields is NULL with num_fields 4", [](auto& t) { t.def.fields = nullptr; }},
+      {RDM_ERROR_ARGUMENT, "def.fields[1].name: ball.position is there twice",
        [](auto& t) { t.fields[1].name = "ball.position"; }},
-      {RDM_ARGUMENT, "def.fields[0].unit is NULL", [](auto& t) { t.fields[0].unit = nullptr; }},
-      {RDM_RANGE, "def.fields[2].count: 0 of paddle.position is outside [1, 16384]",
+      {RDM_ERROR_ARGUMENT, "def.fields[0].unit is NULL", [](auto& t) { t.fields[0].unit = nullptr; }},
+      {RDM_ERROR_RANGE, "def.fields[2].count: 0 of paddle.position is outside [1, 16384]",
        [](auto& t) { t.fields[2].count = 0; }},
-      {RDM_RANGE, "def.fields[2]: low 1 of paddle.position is not below high -1",
+      {RDM_ERROR_RANGE, "def.fields[2]: low 1 of paddle.position is not below high -1",
        [](auto& t) { t.fields[2].low = 1, t.fields[2].high = -1; }},
-      {RDM_RANGE, "def.num_costs: 0 is outside [1, 16]", [](auto& t) { t.def.num_costs = 0; }},
-      {RDM_RANGE, "def.num_costs: 17 is outside [1, 16]", [](auto& t) { t.def.num_costs = 17; }},
-      {RDM_ARGUMENT, "def.costs[1].name: touch is there twice", [](auto& t) { t.costs[1].name = "touch"; }},
-      {RDM_ARGUMENT, "def.costs[0].limit of touch is not finite", [](auto& t) { t.costs[0].limit = NAN; }},
-      {RDM_ARGUMENT, "def.options[1].key: push is there twice", [](auto& t) { t.options[1].key = "push"; }},
-      {RDM_ARGUMENT, "def.options[0].help is NULL", [](auto& t) { t.options[0].help = nullptr; }},
-      {RDM_RANGE, "def.options[0].number: 11 of push is outside [0, 10], or no integer",
+      {RDM_ERROR_RANGE, "def.num_costs: 0 is outside [1, 16]", [](auto& t) { t.def.num_costs = 0; }},
+      {RDM_ERROR_RANGE, "def.num_costs: 17 is outside [1, 16]", [](auto& t) { t.def.num_costs = 17; }},
+      {RDM_ERROR_ARGUMENT, "def.costs[1].name: touch is there twice",
+       [](auto& t) { t.costs[1].name = "touch"; }},
+      {RDM_ERROR_ARGUMENT, "def.costs[0].limit of touch is not finite",
+       [](auto& t) { t.costs[0].limit = NAN; }},
+      {RDM_ERROR_ARGUMENT, "def.options[1].key: push is there twice",
+       [](auto& t) { t.options[1].key = "push"; }},
+      {RDM_ERROR_ARGUMENT, "def.options[0].help is NULL", [](auto& t) { t.options[0].help = nullptr; }},
+      {RDM_ERROR_RANGE, "def.options[0].number: 11 of push is outside [0, 10], or no integer",
        [](auto& t) { t.options[0].number = 11; }},
-      {RDM_ARGUMENT, "def.options[0].choices of push: a number or integer has a..b or NULL",
+      {RDM_ERROR_ARGUMENT, "def.options[0].choices of push: a number or integer has a..b or NULL",
        [](auto& t) { t.options[0].choices = "1|2"; }},
-      {RDM_RANGE, "def.options[1].text: cross of mood is none of calm|wild",
+      {RDM_ERROR_RANGE, "def.options[1].text: cross of mood is none of calm|wild",
        [](auto& t) { t.options[1].text = "cross"; }},
-      {RDM_RANGE, "def.options[0]: low -1e+300 or high 10 of push is outside [-2147483648, 2147483647]",
-       [](auto& t) { t.options[0].kind = RDM_INTEGER, t.options[0].low = -1e300; }},
-      {RDM_RANGE, "def.options[0]: low 0 or high 2.14748e+09 of push is outside [-2147483648, 2147483647]",
-       [](auto& t) { t.options[0].kind = RDM_INTEGER, t.options[0].high = 2147483648.0; }},
-      {RDM_RANGE, "def.options[0].number: 1e+12 of push is outside [0, 10], or no integer",
-       [](auto& t) { t.options[0].kind = RDM_INTEGER, t.options[0].number = 1e12; }},
-      {RDM_RANGE, "def.options[0].kind: 9 of push is outside [0, 3]", [](auto& t) { t.options[0].kind = 9; }},
-      {RDM_ARGUMENT, "def.options[2].kind: frequency, which every task has, is an RDM_NUMBER",
-       [](auto& t) { t.options[2].kind = RDM_TEXT; }},
-      {RDM_RANGE, "def.options[2].number: 5 of frequency is outside [10, 1000], or no integer",
+      {RDM_ERROR_RANGE, "def.options[0]: low -1e+300 or high 10 of push is outside [-2147483648, 2147483647]",
+       [](auto& t) { t.options[0].kind = RDM_KIND_INTEGER, t.options[0].low = -1e300; }},
+      {RDM_ERROR_RANGE,
+       "def.options[0]: low 0 or high 2.14748e+09 of push is outside [-2147483648, 2147483647]",
+       [](auto& t) { t.options[0].kind = RDM_KIND_INTEGER, t.options[0].high = 2147483648.0; }},
+      {RDM_ERROR_RANGE, "def.options[0].number: 1e+12 of push is outside [0, 10], or no integer",
+       [](auto& t) { t.options[0].kind = RDM_KIND_INTEGER, t.options[0].number = 1e12; }},
+      {RDM_ERROR_RANGE, "def.options[0].kind: 9 of push is outside [0, 3]",
+       [](auto& t) { t.options[0].kind = 9; }},
+      {RDM_ERROR_ARGUMENT, "def.options[2].kind: frequency, which every task has, is an RDM_KIND_NUMBER",
+       [](auto& t) { t.options[2].kind = RDM_KIND_TEXT; }},
+      {RDM_ERROR_RANGE, "def.options[2].number: 5 of frequency is outside [10, 1000], or no integer",
        [](auto& t) { t.options[2].number = 5; }},
-      {RDM_ARGUMENT, "def.options[0].key: max_steps is def.max_steps",
+      {RDM_ERROR_ARGUMENT, "def.options[0].key: max_steps is def.max_steps",
        [](auto& t) { t.options[0].key = "max_steps"; }},
-      {RDM_RANGE, "def.cameras[0].fov_y: 0 of front is outside [0.01, 3]",
+      {RDM_ERROR_RANGE, "def.cameras[0].fov_y: 0 of front is outside [0.01, 3]",
        [](auto& t) { t.cameras[0].fov_y = 0; }},
-      {RDM_ARGUMENT, "def.cameras[0]: front does not look from one place to another",
+      {RDM_ERROR_ARGUMENT, "def.cameras[0]: front does not look from one place to another",
        [](auto& t) { std::copy_n(t.cameras[0].eye, 3, t.cameras[0].target); }},
-      {RDM_ARGUMENT, "def.defaults[0].key is NULL", [](auto& t) { t.defaults[0].key = nullptr; }},
+      {RDM_ERROR_ARGUMENT, "def.defaults[0].key is NULL", [](auto& t) { t.defaults[0].key = nullptr; }},
   };
   const int32_t count = rdm_task_count();
   for (const BadDef& row : rows) {
     BallTask t("bad_def");
     row.change(t);
     int32_t task = -5;
-    expect_text(rdm_task_register(&task, &t.def), row.code, row.text);
+    expect_text(rdm_task_create(&task, &t.def), row.code, row.text);
     EXPECT_EQ(task, -5);
   }
   EXPECT_EQ(rdm_task_count(), count);
   BallTask t("bad_def");
-  EXPECT_EQ(rdm_task_register(nullptr, &t.def), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_task_create(nullptr, &t.def), RDM_ERROR_ARGUMENT);
   int32_t task = -1;
-  EXPECT_EQ(rdm_task_register(&task, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_task_create(&task, nullptr), RDM_ERROR_ARGUMENT);
   t.def.struct_size = 8;
-  EXPECT_EQ(rdm_task_register(&task, &t.def), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_task_create(&task, &t.def), RDM_ERROR_ARGUMENT);
 }
 
 // A task whose build or reset is what a row says; the others do nothing.
@@ -105,7 +111,7 @@ struct Scripted {
 
 rdm_result simple_scene(rdm_scene* scene) {
   rdm_shape_def ball{};
-  ball.kind = RDM_SPHERE, ball.size[0] = 0.05;
+  ball.kind = RDM_SHAPE_SPHERE, ball.size[0] = 0.05;
   rdm_body_def body{};
   body.struct_size = sizeof body, body.name = "ball", body.shapes = &ball, body.num_shapes = 1, body.mass = 1;
   if (const rdm_result r = rdm_scene_add_body(scene, &body, nullptr)) return r;
@@ -156,7 +162,7 @@ std::function<rdm_result(rdm_scene*)> with_body(std::function<void(rdm_body_def&
   return [change](rdm_scene* scene) {
     if (const rdm_result r = simple_scene(scene)) return r;
     rdm_shape_def box{};
-    box.kind = RDM_BOX, box.size[0] = box.size[1] = box.size[2] = 0.05;
+    box.kind = RDM_SHAPE_BOX, box.size[0] = box.size[1] = box.size[2] = 0.05;
     rdm_body_def cup{};
     cup.struct_size = sizeof cup, cup.name = "cup", cup.shapes = &box, cup.num_shapes = 1, cup.mass = 0.1;
     change(cup, box);
@@ -187,7 +193,7 @@ std::function<rdm_result(rdm_scene*)> with_law(const char* material,
     rdm_contact_law law;
     rdm_contact_law_init(&law, sizeof law);
     change(law);
-    return rdm_scene_set_contact(scene, material, "default", &law);
+    return rdm_scene_set_contact_law(scene, material, "default", &law);
   });
 }
 
@@ -197,116 +203,124 @@ TEST(OwnTaskErrors, OfScenes) {
   const auto add_static = [](const char* name) {
     return after([name](rdm_scene* s) {
       rdm_shape_def ground{};
-      ground.name = name, ground.kind = RDM_PLANE;
+      ground.name = name, ground.kind = RDM_SHAPE_PLANE;
       return rdm_scene_add_static(s, &ground);
     });
   };
   const BadScene rows[] = {
-      {RDM_ARGUMENT, "scene: nothing in it can move", [](rdm_scene*) -> rdm_result { return RDM_OK; }},
-      {RDM_ARGUMENT, "scene: the name ball is taken", with_body([](auto& b, auto&) { b.name = "ball"; })},
-      {RDM_ARGUMENT, "shape ball is there twice", with_body([](auto&, auto& s) { s.name = "ball"; })},
-      {RDM_ARGUMENT, "body.name is NULL", with_body([](auto& b, auto&) { b.name = nullptr; })},
-      {RDM_RANGE, "body cup: mass 0 is not above 0 and up to 1e6",
+      {RDM_ERROR_ARGUMENT, "scene: nothing in it can move", [](rdm_scene*) -> rdm_result { return RDM_OK; }},
+      {RDM_ERROR_ARGUMENT, "scene: the name ball is taken",
+       with_body([](auto& b, auto&) { b.name = "ball"; })},
+      {RDM_ERROR_ARGUMENT, "shape ball is there twice", with_body([](auto&, auto& s) { s.name = "ball"; })},
+      {RDM_ERROR_ARGUMENT, "body.name is NULL", with_body([](auto& b, auto&) { b.name = nullptr; })},
+      {RDM_ERROR_RANGE, "body cup: mass 0 is not above 0 and up to 1e6",
        with_body([](auto& b, auto&) { b.mass = 0; })},
-      {RDM_RANGE, "body cup: num_shapes: 0 is outside [1, 256]",
+      {RDM_ERROR_RANGE, "body cup: num_shapes: 0 is outside [1, 256]",
        with_body([](auto& b, auto&) { b.num_shapes = 0; })},
-      {RDM_ARGUMENT,
+      {RDM_ERROR_ARGUMENT,
        "body cup: its shapes' centre of mass is at (0, 0, 0.1), not at the origin: move them, or give "
        "moments",
        with_body([](auto&, auto& s) { s.p[2] = 0.1; })},
-      {RDM_RANGE, "shape cup: a size or its place is not within bounds",
+      {RDM_ERROR_RANGE, "shape cup: a size or its place is not within bounds",
        with_body([](auto&, auto& s) { s.size[1] = 0; })},
-      {RDM_RANGE, "cup: half size 0 is outside [1e-06, 1000]", with_body([](auto& b, auto& s) {
+      {RDM_ERROR_RANGE, "cup: half size 0 is outside [1e-06, 1000]", with_body([](auto& b, auto& s) {
          s.size[1] = 0;
          b.moment[0] = b.moment[1] = b.moment[2] = 1;
        })},
-      {RDM_ARGUMENT, "cup: moment of inertia is not positive definite",
+      {RDM_ERROR_ARGUMENT, "cup: moment of inertia is not positive definite",
        with_body([](auto& b, auto&) { b.moment[0] = -1; })},
-      {RDM_ARGUMENT, "cup: the quaternion is not a unit one", with_body([](auto& b, auto&) { b.q[0] = 2; })},
-      {RDM_ARGUMENT, "cup: position is not finite", with_body([](auto& b, auto&) { b.p[0] = NAN; })},
-      {RDM_RANGE, "cup: linear_damping -1 is outside [0, 1e+06]",
+      {RDM_ERROR_ARGUMENT, "cup: the quaternion is not a unit one",
+       with_body([](auto& b, auto&) { b.q[0] = 2; })},
+      {RDM_ERROR_ARGUMENT, "cup: position is not finite", with_body([](auto& b, auto&) { b.p[0] = NAN; })},
+      {RDM_ERROR_RANGE, "cup: linear_damping -1 is outside [0, 1e+06]",
        with_body([](auto& b, auto&) { b.linear_damping = -1; })},
-      {RDM_NOT_FOUND, "material ruber: unknown", with_body([](auto&, auto& s) { s.material = "ruber"; })},
-      {RDM_ARGUMENT, "shape cup: kind 4 makes no body",
-       with_body([](auto&, auto& s) { s.kind = RDM_PLANE; })},
-      {RDM_ARGUMENT, "shape cup: kind 12 makes no body", with_body([](auto&, auto& s) { s.kind = 12; })},
-      {RDM_RANGE, "shape cup: num_points: 0 is outside [4, 32]",
-       with_body([](auto&, auto& s) { s.kind = RDM_HULL; })},
-      {RDM_ARGUMENT, "shape cup: points is NULL", with_body([](auto&, auto& s) {
-         s.kind = RDM_HULL;
+      {RDM_ERROR_NOT_FOUND, "material ruber: unknown",
+       with_body([](auto&, auto& s) { s.material = "ruber"; })},
+      {RDM_ERROR_ARGUMENT, "shape cup: kind 4 makes no body",
+       with_body([](auto&, auto& s) { s.kind = RDM_SHAPE_PLANE; })},
+      {RDM_ERROR_ARGUMENT, "shape cup: kind 12 makes no body",
+       with_body([](auto&, auto& s) { s.kind = 12; })},
+      {RDM_ERROR_RANGE, "shape cup: num_points: 0 is outside [4, 32]",
+       with_body([](auto&, auto& s) { s.kind = RDM_SHAPE_HULL; })},
+      {RDM_ERROR_ARGUMENT, "shape cup: points is NULL", with_body([](auto&, auto& s) {
+         s.kind = RDM_SHAPE_HULL;
          s.num_points = 4;
        })},
-      {RDM_ARGUMENT, "cup: the points are in one plane or too near each other", with_body([](auto&, auto& s) {
-         s.kind = RDM_HULL;
+      {RDM_ERROR_ARGUMENT, "cup: the points are in one plane or too near each other",
+       with_body([](auto&, auto& s) {
+         s.kind = RDM_SHAPE_HULL;
          s.num_points = 4;
          s.points = flat;
        })},
-      {RDM_ARGUMENT,
+      {RDM_ERROR_ARGUMENT,
        "robot.robot of other: left out: of rdm_robot_find, in a struct that rdm_scene_robot_init has filled",
        with_robot([](auto& r) { r.robot = -1; })},
-      {RDM_RANGE, no_robot.c_str(), with_robot([](auto& r) { r.robot = 99999; })},
-      {RDM_ARGUMENT, "robot.name is NULL", with_robot([](auto& r) { r.name = nullptr; })},
-      {RDM_ARGUMENT, "scene: the name hand is taken", with_robot([](auto& r) { r.name = "hand"; })},
-      {RDM_ARGUMENT, "robot.struct_size: 3 is less than 112", with_robot([](auto& r) { r.struct_size = 3; })},
-      {RDM_RANGE, "other: base_damping -1 is outside [0, 1e+06]",
+      {RDM_ERROR_RANGE, no_robot.c_str(), with_robot([](auto& r) { r.robot = 99999; })},
+      {RDM_ERROR_ARGUMENT, "robot.name is NULL", with_robot([](auto& r) { r.name = nullptr; })},
+      {RDM_ERROR_ARGUMENT, "scene: the name hand is taken", with_robot([](auto& r) { r.name = "hand"; })},
+      {RDM_ERROR_ARGUMENT, "robot.struct_size: 3 is less than 112",
+       with_robot([](auto& r) { r.struct_size = 3; })},
+      {RDM_ERROR_RANGE, "other: base_damping -1 is outside [0, 1e+06]",
        with_robot([](auto& r) { r.base_damping = -1; })},
-      {RDM_ARGUMENT, "material clay is there twice", after([](auto* s) {
+      {RDM_ERROR_ARGUMENT, "material clay is there twice", after([](auto* s) {
          rdm_scene_add_material(s, "clay");
          return rdm_scene_add_material(s, "clay");
        })},
-      {RDM_NOT_FOUND, "material clay: unknown",
+      {RDM_ERROR_NOT_FOUND, "material clay: unknown",
        after([](auto* s) { return rdm_scene_set_friction(s, "clay", "default", 1); })},
-      {RDM_RANGE, "mu: -2 is neither RDM_PASSES nor within [0, 1000]",
+      {RDM_ERROR_RANGE, "mu: -2 is neither RDM_FRICTION_PASSES nor within [0, 1000]",
        after([](auto* s) { return rdm_scene_set_friction(s, "default", "default", -2); })},
-      {RDM_NOT_FOUND, "material clay: unknown", with_law("clay", [](auto&) {})},
-      {RDM_RANGE, "contact law: restitution: 2 is outside [0, 1]",
+      {RDM_ERROR_NOT_FOUND, "material clay: unknown", with_law("clay", [](auto&) {})},
+      {RDM_ERROR_RANGE, "contact law: restitution: 2 is outside [0, 1]",
        with_law("default", [](auto& l) { l.restitution = 2; })},
-      {RDM_ARGUMENT, "law.struct_size: 3 is less than 72",
+      {RDM_ERROR_ARGUMENT, "law.struct_size: 3 is less than 72",
        with_law("default", [](auto& l) { l.struct_size = 3; })},
-      {RDM_ARGUMENT, "shape.name is NULL", add_static(nullptr)},
-      {RDM_ARGUMENT, "shape ball is there twice", add_static("ball")},
-      {RDM_NOT_FOUND, "body bal: unknown; nearest is ball", after([](auto* s) {
+      {RDM_ERROR_ARGUMENT, "shape.name is NULL", add_static(nullptr)},
+      {RDM_ERROR_ARGUMENT, "shape ball is there twice", add_static("ball")},
+      {RDM_ERROR_NOT_FOUND, "body bal: unknown; nearest is ball", after([](auto* s) {
          int32_t i;
          return rdm_scene_find(s, RDM_SCENE_BODY, "bal", &i);
        })},
-      {RDM_RANGE, "part: 7 is outside [0, 6]", after([](auto* s) {
+      {RDM_ERROR_RANGE, "part: 7 is outside [0, 6]", after([](auto* s) {
          int32_t i;
          return rdm_scene_find(s, 7, "ball", &i);
        })},
-      {RDM_NOT_FOUND, "b cub*: unknown", after([](auto* s) {
+      {RDM_ERROR_NOT_FOUND, "b cub*: unknown", after([](auto* s) {
          int32_t i;
-         return rdm_scene_touch(s, "hand*", "cub*", &i);
+         return rdm_scene_add_touch(s, "hand*", "cub*", &i);
        })},
-      {RDM_STATE, "scene: it is complete: nothing is added or set after the first find, touch or joint",
+      {RDM_ERROR_STATE, "scene: it is complete: nothing is added or set after the first find, touch or joint",
        after([](auto* s) {
          int32_t i;
          rdm_scene_find(s, RDM_SCENE_BODY, "ball", &i);
          return rdm_scene_add_material(s, "late");
        })},
-      {RDM_NOT_FOUND, "field two: unknown", after([](auto* s) { return rdm_scene_set_field(s, "two", 2); })},
-      {RDM_RANGE, "count: 0 is outside [1, 1024]",
+      {RDM_ERROR_NOT_FOUND, "field two: unknown",
+       after([](auto* s) { return rdm_scene_set_field(s, "two", 2); })},
+      {RDM_ERROR_RANGE, "count: 0 is outside [1, 1024]",
        after([](auto* s) { return rdm_scene_set_actions(s, 0, nullptr, nullptr); })},
-      {RDM_ARGUMENT, "option engine is a text: rdm_scene_text has it", after([](auto* s) {
+      {RDM_ERROR_ARGUMENT, "option engine is a text: rdm_scene_get_text has it", after([](auto* s) {
          double x;
-         return rdm_scene_number(s, "engine", &x);
+         return rdm_scene_get_number(s, "engine", &x);
        })},
-      {RDM_NOT_FOUND, "option gravty: unknown; nearest is gravity", after([](auto* s) {
+      {RDM_ERROR_NOT_FOUND, "option gravty: unknown; nearest is gravity", after([](auto* s) {
          double x;
-         return rdm_scene_number(s, "gravty", &x);
+         return rdm_scene_get_number(s, "gravty", &x);
        })},
-      {RDM_NOT_FOUND, "option gravty: unknown; nearest is gravity", after([](auto* s) {
+      {RDM_ERROR_NOT_FOUND, "option gravty: unknown; nearest is gravity", after([](auto* s) {
          double low, high;
-         return rdm_scene_range(s, "gravty", &low, &high);
+         return rdm_scene_get_range(s, "gravty", &low, &high);
        })},
-      {RDM_ARGUMENT, "option engine is neither number nor integer", after([](auto* s) {
+      {RDM_ERROR_ARGUMENT, "option engine is neither number nor integer", after([](auto* s) {
          double low, high;
-         return rdm_scene_range(s, "engine", &low, &high);
+         return rdm_scene_get_range(s, "engine", &low, &high);
        })},
-      {RDM_ARGUMENT, "option gravity is no text: rdm_scene_number has it", after([](auto* s) {
+      {RDM_ERROR_ARGUMENT, "option gravity is no text: rdm_scene_get_number has it", after([](auto* s) {
          const char* text;
-         return rdm_scene_text(s, "gravity", &text);
+         return rdm_scene_get_text(s, "gravity", &text);
        })},
-      {RDM_STATE, "call not allowed in this state", after([](auto*) -> rdm_result { return RDM_STATE; })},
+      {RDM_ERROR_STATE, "call not allowed in this state",
+       after([](auto*) -> rdm_result { return RDM_ERROR_STATE; })},
   };
   for (const BadScene& row : rows) {
     Scripted script{row.build, nullptr};
@@ -325,60 +339,68 @@ TEST(OwnTaskErrors, OfCallsInAWorld) {
   static double x[64];
   static const double nan[3] = {NAN, 0, 0}, zero[3] = {0, 0, 0};
   const BadCall rows[] = {
-      {RDM_RANGE, "body: 1 is outside [0, 1)", [](auto* w) { return rdm_world_body(w, 1, &out); }},
-      {RDM_RANGE, "link: -1 is outside [0, 24)", [](auto* w) { return rdm_world_link(w, -1, &out); }},
-      {RDM_RANGE, "robot: 1 is outside [0, 1)", [](auto* w) { return rdm_world_base(w, 1, &out); }},
-      {RDM_RANGE, "shape: 500 is outside", [](auto* w) { return rdm_world_shape(w, 500, x); }},
-      {RDM_RANGE, "sensor: 5 is outside [0, 5)", [](auto* w) { return rdm_world_sensor(w, 5, x, x); }},
-      {RDM_RANGE, "group: 0 is outside [0, 0)",
-       [](auto* w) { return rdm_world_touch(w, 0, nullptr, nullptr); }},
-      {RDM_ARGUMENT, "out is NULL", [](auto* w) { return rdm_world_body(w, 0, nullptr); }},
-      {RDM_ARGUMENT, "set_body: motion 0 has no unit quaternion",
+      {RDM_ERROR_RANGE, "body: 1 is outside [0, 1)", [](auto* w) { return rdm_world_get_body(w, 1, &out); }},
+      {RDM_ERROR_RANGE, "link: -1 is outside [0, 24)",
+       [](auto* w) { return rdm_world_get_link(w, -1, &out); }},
+      {RDM_ERROR_RANGE, "robot: 1 is outside [0, 1)", [](auto* w) { return rdm_world_get_base(w, 1, &out); }},
+      {RDM_ERROR_RANGE, "shape: 500 is outside", [](auto* w) { return rdm_world_get_shape(w, 500, x); }},
+      {RDM_ERROR_RANGE, "sensor: 5 is outside [0, 5)",
+       [](auto* w) { return rdm_world_get_sensor(w, 5, x, x); }},
+      {RDM_ERROR_RANGE, "group: 0 is outside [0, 0)",
+       [](auto* w) { return rdm_world_get_touch(w, 0, nullptr, nullptr); }},
+      {RDM_ERROR_ARGUMENT, "out is NULL", [](auto* w) { return rdm_world_get_body(w, 0, nullptr); }},
+      {RDM_ERROR_ARGUMENT, "set_body: motion 0 has no unit quaternion",
        [](auto* w) {
          const rdm_motion m{};
          return rdm_world_set_body(w, 0, &m);
        }},
-      {RDM_ARGUMENT, "set_body: motion 0 is not finite or beyond 1e+06",
+      {RDM_ERROR_ARGUMENT, "set_body: motion 0 is not finite or beyond 1e+06",
        [](auto* w) {
          rdm_motion m{};
          m.q[3] = 1, m.v[1] = NAN;
          return rdm_world_set_body(w, 0, &m);
        }},
-      {RDM_STATE, "robot hand: its base is fixed", [](auto* w) { return rdm_world_set_base(w, 0, &out); }},
-      {RDM_STATE, "robot hand: its base is fixed",
+      {RDM_ERROR_STATE, "robot hand: its base is fixed",
+       [](auto* w) { return rdm_world_set_base(w, 0, &out); }},
+      {RDM_ERROR_STATE, "robot hand: its base is fixed",
        [](auto* w) { return rdm_world_push_base(w, 0, zero, zero); }},
-      {RDM_RANGE, "n: 3 q, the robot has 24",
+      {RDM_ERROR_RANGE, "n: 3 q, the robot has 24",
        [](auto* w) { return rdm_world_set_joints(w, 0, x, nullptr, 3); }},
-      {RDM_ARGUMENT, "set_joints: joint 2 is not finite or faster than 1e+06",
+      {RDM_ERROR_ARGUMENT, "set_joints: joint 2 is not finite or faster than 1e+06",
        [](auto* w) {
          double q[24] = {};
          q[2] = NAN;
          return rdm_world_set_joints(w, 0, q, nullptr, 24);
        }},
-      {RDM_RANGE, "first, n: 10 joints from 20 on, of 24",
+      {RDM_ERROR_RANGE, "first, n: 10 joints from 20 on, of 24",
        [](auto* w) { return rdm_world_set_targets(w, 20, x, 10); }},
-      {RDM_ARGUMENT, "targets[0] is not finite or beyond 1e+06",
+      {RDM_ERROR_ARGUMENT, "targets[0] is not finite or beyond 1e+06",
        [](auto* w) { return rdm_world_set_targets(w, 0, nan, 1); }},
-      {RDM_RANGE, "n: 24 commands, the robot has 20", [](auto* w) { return rdm_world_command(w, 0, x, 24); }},
-      {RDM_STATE, "world: its scene has no feed-forward, rdm_scene_set_feedforward",
+      {RDM_ERROR_RANGE, "n: 24 commands, the robot has 20",
+       [](auto* w) { return rdm_world_set_commands(w, 0, x, 24); }},
+      {RDM_ERROR_STATE, "world: its scene has no feed-forward, rdm_scene_set_feedforward",
        [](auto* w) { return rdm_world_set_feedforward(w, 0, x, 1); }},
-      {RDM_RANGE, "n: 2 efforts, the robot has 24", [](auto* w) { return rdm_world_gravity(w, 0, x, 2); }},
-      {RDM_STATE, "world: its scene is not adjustable, rdm_scene_set_adjustable",
-       [](auto* w) { return rdm_world_scale(w, nullptr, 0); }},
-      {RDM_ARGUMENT, "force is not finite", [](auto* w) { return rdm_world_push_body(w, 0, nan, zero); }},
-      {RDM_ARGUMENT, "point is not finite", [](auto* w) { return rdm_world_push_link(w, 0, zero, nan); }},
-      {RDM_RANGE, "capacity: -1 is negative",
+      {RDM_ERROR_RANGE, "n: 2 efforts, the robot has 24",
+       [](auto* w) { return rdm_world_get_gravity(w, 0, x, 2); }},
+      {RDM_ERROR_STATE, "world: its scene is not adjustable, rdm_scene_set_adjustable",
+       [](auto* w) { return rdm_world_set_factors(w, nullptr, 0); }},
+      {RDM_ERROR_ARGUMENT, "force is not finite",
+       [](auto* w) { return rdm_world_push_body(w, 0, nan, zero); }},
+      {RDM_ERROR_ARGUMENT, "point is not finite",
+       [](auto* w) { return rdm_world_push_link(w, 0, zero, nan); }},
+      {RDM_ERROR_RANGE, "capacity: -1 is negative",
        [](auto* w) {
          int32_t n;
-         return rdm_world_contacts(w, nullptr, -1, &n);
+         return rdm_world_get_contacts(w, nullptr, -1, &n);
        }},
-      {RDM_ARGUMENT, "io.struct_size: 0 is less than 48",
+      {RDM_ERROR_ARGUMENT, "io.struct_size: 0 is less than 48",
        [](auto* w) {
          rdm_joints j{};
-         return rdm_world_joints(w, &j);
+         return rdm_world_get_joints(w, &j);
        }},
-      {RDM_FORMAT, "of my own", [](auto*) { return rdm_fail(RDM_FORMAT, "of my own"); }},
-      {RDM_RANGE, "code: 0 is no error; the text was: fine", [](auto*) { return rdm_fail(RDM_OK, "fine"); }},
+      {RDM_ERROR_FORMAT, "of my own", [](auto*) { return rdm_fail(RDM_ERROR_FORMAT, "of my own"); }},
+      {RDM_ERROR_RANGE, "code: 0 is no error; the text was: fine",
+       [](auto*) { return rdm_fail(RDM_OK, "fine"); }},
   };
   for (const BadCall& row : rows) {
     Scripted script{simple_scene, row.reset};
@@ -393,8 +415,8 @@ TEST(OwnTaskErrors, OfCallsInAWorld) {
 TEST(OwnTaskErrors, HandlesOutsideOfTheirCall) {
   rdm_motion out;
   int32_t i = 0;
-  EXPECT_EQ(rdm_world_body(nullptr, 0, &out), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_scene_find(nullptr, 0, "x", &i), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_world_get_body(nullptr, 0, &out), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_scene_find(nullptr, 0, "x", &i), RDM_ERROR_ARGUMENT);
   static rdm_result late = RDM_OK;
   Scripted script;
   rdm_scene* kept = nullptr;
@@ -404,18 +426,19 @@ TEST(OwnTaskErrors, HandlesOutsideOfTheirCall) {
   };
   script.reset = [&](rdm_world* w) {
     late = rdm_scene_find(kept, RDM_SCENE_BODY, "ball", &i);
-    EXPECT_EQ(rdm_scene_find(reinterpret_cast<rdm_scene*>(w), RDM_SCENE_BODY, "ball", &i), RDM_ARGUMENT);
+    EXPECT_EQ(rdm_scene_find(reinterpret_cast<rdm_scene*>(w), RDM_SCENE_BODY, "ball", &i),
+              RDM_ERROR_ARGUMENT);
     EXPECT_NE(std::strstr(rdm_last_error(), "of kind world"), nullptr);
     return static_cast<rdm_result>(RDM_OK);
   };
   EXPECT_EQ(try_task(&script), RDM_OK) << rdm_last_error();
-  EXPECT_EQ(late, RDM_ARGUMENT);
+  EXPECT_EQ(late, RDM_ERROR_ARGUMENT);
 }
 
 TEST(OwnTaskErrors, RandomNumbers) {
   EXPECT_EQ(rdm_random_bits(nullptr), 0u);
   EXPECT_EQ(rdm_random_uniform(nullptr, 1, 2), 0);
-  EXPECT_EQ(rdm_random_split(nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_random_split(nullptr, nullptr), RDM_ERROR_ARGUMENT);
   rdm_random a{5, 0, 1, 1}, b = a, c;
   for (int i = 0; i < 100; ++i) {
     const double x = rdm_random_uniform(&a, -2, 3);
@@ -438,8 +461,8 @@ TEST(OwnTaskErrors, RandomNumbers) {
   ASSERT_EQ(rdm_rotation(z, 1.5, q), RDM_OK);
   EXPECT_NEAR(q[2], std::sin(0.75), 1e-15);
   EXPECT_NEAR(q[3], std::cos(0.75), 1e-15);
-  EXPECT_EQ(rdm_rotation(none, 1, q), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_rotation(z, NAN, q), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_rotation(none, 1, q), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_rotation(z, NAN, q), RDM_ERROR_ARGUMENT);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ struct Lottery {
   }
   static bool chosen(const rdm_world* world) {
     rdm_motion m;
-    EXPECT_EQ(rdm_world_body(world, 0, &m), RDM_OK);
+    EXPECT_EQ(rdm_world_get_body(world, 0, &m), RDM_OK);
     return m.p[2] > 1.5;
   }
 };
@@ -34,7 +34,7 @@ TEST(OwnTaskFailures, OneWorldIsFlaggedAndTheOthersGoOn) {
       TaskPool p("fails_alone", 8, threads);
       EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, nullptr), RDM_OK);
       const auto fails = [](const rdm_world* world) {
-        return Lottery::chosen(world) ? rdm_fail(RDM_IO, "sensor lost") : rdm_result{RDM_OK};
+        return Lottery::chosen(world) ? rdm_fail(RDM_ERROR_IO, "sensor lost") : rdm_result{RDM_OK};
       };
       if (function == "control") l.task.control = [&](rdm_world* w, int64_t*) { return fails(w); };
       if (function == "judge")
@@ -73,10 +73,10 @@ TEST(OwnTaskFailures, OneWorldIsFlaggedAndTheOthersGoOn) {
 TEST(OwnTaskFailures, SameBytesForAnyThreads) {
   Lottery l("fails_alike");
   l.task.judge = [](const rdm_world* w, int64_t steps, rdm_verdict*) {
-    return Lottery::chosen(w) && steps > 3 ? RDM_IO : RDM_OK;
+    return Lottery::chosen(w) && steps > 3 ? RDM_ERROR_IO : RDM_OK;
   };
   auto fails_to_reset = [reset = l.task.reset](rdm_world* w, rdm_random* random) {
-    if (rdm_random_uniform(random, 0, 1) < 0.3) return rdm_fail(RDM_STATE, "no place");
+    if (rdm_random_uniform(random, 0, 1) < 0.3) return rdm_fail(RDM_ERROR_STATE, "no place");
     return reset(w, random);
   };
   for (const int32_t autoreset : {RDM_AUTORESET_SAME_STEP, RDM_AUTORESET_NEXT_STEP}) {
@@ -92,8 +92,8 @@ TEST(OwnTaskFailures, SameBytesForAnyThreads) {
         EXPECT_EQ(rdm_pool_step(p->pool), RDM_OK);
       }
       uint64_t a = 0, b = 1, c = 2;
-      EXPECT_EQ(rdm_pool_hash(one.pool, -1, &a), RDM_OK);
-      EXPECT_EQ(rdm_pool_hash(four.pool, -1, &b), RDM_OK);
+      EXPECT_EQ(rdm_pool_get_hash(one.pool, -1, &a), RDM_OK);
+      EXPECT_EQ(rdm_pool_get_hash(four.pool, -1, &b), RDM_OK);
       ASSERT_EQ(a, b) << step;
       for (int32_t i = 0; i < 6; ++i) {
         EXPECT_EQ(one.b.status[i], four.b.status[i]);
@@ -103,9 +103,9 @@ TEST(OwnTaskFailures, SameBytesForAnyThreads) {
       size_t size = 0;
       ASSERT_EQ(rdm_pool_state_size(one.pool, -1, &size), RDM_OK);
       std::vector<unsigned char> bytes(size);
-      ASSERT_EQ(rdm_pool_get_state(one.pool, -1, bytes.data(), size, &size), RDM_OK);
-      ASSERT_EQ(rdm_pool_set_state(again.pool, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
-      EXPECT_EQ(rdm_pool_hash(again.pool, -1, &c), RDM_OK);
+      ASSERT_EQ(rdm_pool_write_state(one.pool, -1, bytes.data(), size, &size), RDM_OK);
+      ASSERT_EQ(rdm_pool_read_state(again.pool, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
+      EXPECT_EQ(rdm_pool_get_hash(again.pool, -1, &c), RDM_OK);
       ASSERT_EQ(a, c) << step;
     }
     EXPECT_GT(retried, 0);
@@ -118,15 +118,15 @@ TEST(OwnTaskFailures, AResetThatFails) {
   const auto good = l.task.reset;
   TaskPool p("fails_reset", 3);
   l.task.reset = [&](rdm_world* w, rdm_random* random) {
-    return ++calls == 2 ? rdm_fail(RDM_IO, "no place") : good(w, random);
+    return ++calls == 2 ? rdm_fail(RDM_ERROR_IO, "no place") : good(w, random);
   };
-  EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, nullptr), RDM_IO);
+  EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, nullptr), RDM_ERROR_IO);
   EXPECT_STREQ(rdm_pool_error(p.pool), "world 1: task fails_reset: reset: no place");
   EXPECT_EQ(p.text(1), rdm_pool_error(p.pool));
   EXPECT_EQ(p.b.status[0], 0u);
   EXPECT_EQ(p.b.status[1], static_cast<uint32_t>(RDM_STATUS_TASK));
   EXPECT_EQ(p.b.status[2], 0u);
-  EXPECT_EQ(rdm_pool_step(p.pool), RDM_STATE);
+  EXPECT_EQ(rdm_pool_step(p.pool), RDM_ERROR_STATE);
   EXPECT_STREQ(rdm_pool_error(p.pool), "step: world 1 was not reset yet");
   const uint8_t mask[3] = {0, 1, 0};
   EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, mask), RDM_OK);
@@ -141,7 +141,7 @@ TEST(OwnTaskFailures, AResetThatFailsWithinAStep) {
   bool fails = false;
   const auto good = l.task.reset;
   l.task.reset = [&](rdm_world* w, rdm_random* random) {
-    return fails ? rdm_fail(RDM_IO, "no place") : good(w, random);
+    return fails ? rdm_fail(RDM_ERROR_IO, "no place") : good(w, random);
   };
   TaskPool p("fails_later", 2);
   EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, nullptr), RDM_OK);
@@ -194,19 +194,19 @@ TEST(OwnTaskFailures, ExceptionsAreTheHosts) {
     EXPECT_EQ(p.b.status[0], static_cast<uint32_t>(RDM_STATUS_TASK));
     EXPECT_EQ(p.text(0), "world 0: task throws: judge: an exception came out of it");
     t.reset = [](rdm_world*, rdm_random*) -> rdm_result { throw 1; };
-    EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, nullptr), RDM_ARGUMENT);
+    EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, nullptr), RDM_ERROR_ARGUMENT);
   }
   t.build = [](rdm_scene*) -> rdm_result { throw 1; };
   rdm_pool_config c = pool_config(1);
   c.task = "throws";
   rdm_pool* pool = nullptr;
-  EXPECT_EQ(rdm_pool_create(&pool, &c), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_create(&pool, &c), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_last_error(), "task throws: build: an exception came out of it");
   t.release = [&] {
     ++released;
     throw 1;
   };
-  EXPECT_EQ(rdm_task_remove(t.number), RDM_OK);
+  EXPECT_EQ(rdm_task_destroy(t.number), RDM_OK);
   EXPECT_EQ(released, 1);
   t.release = nullptr;
 }
@@ -215,11 +215,11 @@ TEST(OwnTaskFailures, TheTaskCheckNamesAFailureThatOnlyPoolsSee) {
   CalledTask t("fails_in_pools");
   std::atomic<int64_t> calls{0};  // worlds are judged by several threads
   t.judge = [&](const rdm_world*, int64_t, rdm_verdict*) {
-    return ++calls > 2000 ? rdm_fail(RDM_IO, "worn out") : rdm_result{RDM_OK};
+    return ++calls > 2000 ? rdm_fail(RDM_ERROR_IO, "worn out") : rdm_result{RDM_OK};
   };
   rdm_result r = RDM_OK;
   for (int k = 0; k < 20 && r == RDM_OK; ++k) r = rdm_task_check("fails_in_pools", nullptr, nullptr, 0);
-  EXPECT_EQ(r, RDM_ARGUMENT);
+  EXPECT_EQ(r, RDM_ERROR_ARGUMENT);
   EXPECT_NE(std::string(rdm_last_error()).find("judge: worn out; step"), std::string::npos)
       << rdm_last_error();
 }
@@ -243,7 +243,7 @@ TEST(OwnTaskFailures, ABuildThatMakesItsOwnPoolEnds) {
   rdm_pool_config c = pool_config(1);
   c.task = "builds_itself";
   rdm_pool* p = nullptr;
-  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_STATE);
+  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ERROR_STATE);
   EXPECT_EQ(builds, 8);
   EXPECT_EQ(
       text,
@@ -283,7 +283,7 @@ struct Build {
 
 rdm_result add_static(rdm_scene* scene, const char* name) {
   rdm_shape_def s{};
-  s.kind = RDM_SPHERE, s.size[0] = 0.1, s.name = name;
+  s.kind = RDM_SHAPE_SPHERE, s.size[0] = 0.1, s.name = name;
   return rdm_scene_add_static(scene, &s);
 }
 
@@ -300,10 +300,10 @@ TEST(OwnTaskBuilds, AFailedOneStaysFailed) {
     for (int i = 0; i < 2; ++i)
       EXPECT_EQ(add_static(scene, "x"), RDM_OK) << "looked at when the scene is complete";
     int32_t k = 0;
-    EXPECT_EQ(rdm_scene_find(scene, RDM_SCENE_SHAPE, "x", &k), RDM_ARGUMENT);
+    EXPECT_EQ(rdm_scene_find(scene, RDM_SCENE_SHAPE, "x", &k), RDM_ERROR_ARGUMENT);
     first = rdm_last_error();
     rdm_shape_def sphere{};
-    sphere.kind = RDM_SPHERE, sphere.size[0] = 0.05;
+    sphere.kind = RDM_SHAPE_SPHERE, sphere.size[0] = 0.05;
     rdm_body_def ball{};
     ball.struct_size = sizeof ball, ball.name = "other", ball.shapes = &sphere, ball.num_shapes = 1;
     ball.mass = 0.1, ball.p[2] = 2;
@@ -311,8 +311,8 @@ TEST(OwnTaskBuilds, AFailedOneStaysFailed) {
     const double p[3] = {}, q[4] = {};
     later = {rdm_scene_add_body(scene, &ball, nullptr),
              rdm_scene_find(scene, RDM_SCENE_SHAPE, "x", &k),
-             rdm_scene_joint(scene, 0, &joint),
-             rdm_scene_touch(scene, "hand", "ball", &k),
+             rdm_scene_joint_at(scene, 0, &joint),
+             rdm_scene_add_touch(scene, "hand", "ball", &k),
              rdm_scene_add_material(scene, "wood"),
              rdm_scene_add_object(scene, 0, "thing", p, q, 1, nullptr),
              rdm_scene_add_robot(scene, &hand, nullptr),
@@ -321,9 +321,9 @@ TEST(OwnTaskBuilds, AFailedOneStaysFailed) {
              rdm_scene_set_field(scene, "steps", 2)};
     return rdm_result{RDM_OK};
   };
-  EXPECT_EQ(b.create(), RDM_ARGUMENT);
+  EXPECT_EQ(b.create(), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(std::string(rdm_last_error()), "task builds: build: " + first);
-  EXPECT_EQ(later, std::vector<rdm_result>(10, RDM_ARGUMENT));
+  EXPECT_EQ(later, std::vector<rdm_result>(10, RDM_ERROR_ARGUMENT));
 }
 
 // Memory that is refused at each place in turn, to a build that goes on as if nothing had happened: it is
@@ -344,7 +344,7 @@ TEST(OwnTaskBuilds, RefusedMemoryLeavesNoHalf) {
     rdm_scene_add_object(scene, 0, "thing", p, q, 1, nullptr);
     int32_t k = 0;
     rdm_scene_find(scene, RDM_SCENE_BODY, "ball", &k);
-    rdm_scene_touch(scene, "left*", "ball", &k);
+    rdm_scene_add_touch(scene, "left*", "ball", &k);
     return rdm_result{RDM_OK};
   };
   int32_t refused = 0, made = 0;
@@ -372,7 +372,7 @@ TEST(OwnTaskBuilds, RefusedMemoryLeavesNoHalf) {
       for (int k = 0; k < 3; ++k) EXPECT_EQ(rdm_pool_step(pool), RDM_OK) << at;
     } else {
       ++refused;
-      EXPECT_EQ(r, RDM_MEMORY) << at << ": " << rdm_last_error();
+      EXPECT_EQ(r, RDM_ERROR_MEMORY) << at << ": " << rdm_last_error();
     }
     rdm_pool_destroy(pool);
     EXPECT_EQ(host.live, 0u) << at;
@@ -396,7 +396,7 @@ TEST(OwnTaskBuilds, ARobotThatWasLeftOutIsNoShadowHand) {
     return added;
   };
   change = [](rdm_scene_robot&) {};
-  EXPECT_EQ(b.create(), RDM_ARGUMENT);
+  EXPECT_EQ(b.create(), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(
       text,
       "robot.robot of r: left out: of rdm_robot_find, in a struct that rdm_scene_robot_init has filled");
@@ -404,7 +404,7 @@ TEST(OwnTaskBuilds, ARobotThatWasLeftOutIsNoShadowHand) {
     EXPECT_EQ(rdm_scene_robot_init(&r, sizeof r), RDM_OK);
     r.name = "r";
   };
-  EXPECT_EQ(b.create(), RDM_ARGUMENT);
+  EXPECT_EQ(b.create(), RDM_ERROR_ARGUMENT);
   change = [](rdm_scene_robot& r) {
     EXPECT_EQ(rdm_scene_robot_init(&r, sizeof r), RDM_OK);
     r.name = "r";

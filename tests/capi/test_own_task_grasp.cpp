@@ -23,7 +23,7 @@ struct World {
     EXPECT_EQ(rdm_pool_create(&pool, &c), RDM_OK) << rdm_last_error();
     b.struct_size = sizeof b;
     spec.struct_size = sizeof spec;
-    EXPECT_EQ(rdm_pool_buffers(pool, &b), RDM_OK);
+    EXPECT_EQ(rdm_pool_get_buffers(pool, &b), RDM_OK);
     EXPECT_EQ(rdm_pool_get_spec(pool, &spec), RDM_OK);
     EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK) << rdm_last_error();
   }
@@ -36,7 +36,7 @@ struct World {
   }
   uint64_t hash() const {
     uint64_t h = 0;
-    EXPECT_EQ(rdm_pool_hash(pool, -1, &h), RDM_OK);
+    EXPECT_EQ(rdm_pool_get_hash(pool, -1, &h), RDM_OK);
     return h;
   }
 };

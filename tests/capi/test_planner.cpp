@@ -392,21 +392,21 @@ TEST(Determinism, AStateThatIsNotWholeOrOfAnotherPlannerIsRefused) {
   act(a, pool, &x);
   const auto state = state_of(a);
   const auto before = state_of(other);
-  EXPECT_EQ(rdm_planner_read_state(other.get(), state.data(), state.size()), RDM_FORMAT);
+  EXPECT_EQ(rdm_planner_read_state(other.get(), state.data(), state.size()), RDM_ERROR_FORMAT);
   EXPECT_NE(std::string(rdm_planner_error(other.get())).find("other options"), std::string::npos);
   EXPECT_EQ(state_of(other), before);
   for (size_t size = 0; size < state.size(); ++size)
-    ASSERT_EQ(rdm_planner_read_state(a.get(), state.data(), size), RDM_FORMAT) << size;
+    ASSERT_EQ(rdm_planner_read_state(a.get(), state.data(), size), RDM_ERROR_FORMAT) << size;
   for (size_t at = 0; at < state.size(); ++at) {
     auto bad = state;
     bad[at] ^= 0xffu;
     const rdm_result r = rdm_planner_read_state(a.get(), bad.data(), bad.size());
-    ASSERT_TRUE(r == RDM_FORMAT || r == RDM_VERSION_MISMATCH) << at << ' ' << r;
+    ASSERT_TRUE(r == RDM_ERROR_FORMAT || r == RDM_ERROR_VERSION_MISMATCH) << at << ' ' << r;
   }
   EXPECT_EQ(state_of(a), state);
   size_t size = 0;
   unsigned char small[8];
-  EXPECT_EQ(rdm_planner_write_state(a.get(), small, sizeof small, &size), RDM_RANGE);
+  EXPECT_EQ(rdm_planner_write_state(a.get(), small, sizeof small, &size), RDM_ERROR_RANGE);
 }
 
 // An agent for the pool, with every weight 0: its policy's mean is what the last bias says.
@@ -421,19 +421,19 @@ Agent agent_of(const Pool& pool, const char* settings) {
 void set_output(const Agent& agent, const std::string& net, float value) {
   rdm_tensor t;
   std::string last;
-  for (int32_t i = 0; rdm_agent_tensor(agent.get(), i, &t) == RDM_OK; ++i) {
+  for (int32_t i = 0; rdm_agent_tensor_at(agent.get(), i, &t) == RDM_OK; ++i) {
     const std::string name = t.name;
     if (name.rfind(net, 0) != 0 || name.find("log_std") != std::string::npos) continue;
     const std::vector<float> zero(sz(t.rows * t.cols));
-    ASSERT_EQ(rdm_agent_tensor_write(agent.get(), t.name, zero.data(), zero.size()), RDM_OK);
+    ASSERT_EQ(rdm_agent_set_tensor(agent.get(), t.name, zero.data(), zero.size()), RDM_OK);
     if (name.find("bias") != std::string::npos) last = name;
   }
-  ASSERT_EQ(rdm_agent_tensor_write(agent.get(), last.c_str(), &value, 1), RDM_OK) << last;
+  ASSERT_EQ(rdm_agent_set_tensor(agent.get(), last.c_str(), &value, 1), RDM_OK) << last;
 }
 Policy policy_of(const Agent& agent) {
   const auto bytes = policy_bytes(agent.get());
   rdm_policy* p = nullptr;
-  EXPECT_EQ(rdm_policy_load(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_policy_read(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
   return Policy(p);
 }
 
@@ -493,7 +493,7 @@ TEST(Critics, AStateIsWorthWhatTheCriticSays) {
   set_output(agent, "cost_critic", 2);
   float value = 0, cost[RDM_MAX_COSTS];
   const float obs = 0.3f;
-  ASSERT_EQ(rdm_agent_values(agent.get(), &obs, 1, &value, cost), RDM_OK) << rdm_agent_error(agent.get());
+  ASSERT_EQ(rdm_agent_get_values(agent.get(), &obs, 1, &value, cost), RDM_OK) << rdm_agent_error(agent.get());
   EXPECT_FLOAT_EQ(value, 6);  // in the task's units
   EXPECT_FLOAT_EQ(cost[0], 2);
   EXPECT_EQ(cost[1], 0);
@@ -518,24 +518,24 @@ TEST(Critics, AnyNumberOfRows) {
   const Agent agent = agent_of(pool, "hidden=8");
   std::vector<float> obs(1000), all(1000);
   for (size_t i = 0; i < obs.size(); ++i) obs[i] = static_cast<float>(i) * 0.01f - 5;
-  ASSERT_EQ(rdm_agent_values(agent.get(), obs.data(), 1000, all.data(), nullptr), RDM_OK);
+  ASSERT_EQ(rdm_agent_get_values(agent.get(), obs.data(), 1000, all.data(), nullptr), RDM_OK);
   EXPECT_NE(all[0], all[999]);
   for (size_t i = 0; i < obs.size(); i += 37) {
     float one = 0;
-    ASSERT_EQ(rdm_agent_values(agent.get(), &obs[i], 1, &one, nullptr), RDM_OK);
+    ASSERT_EQ(rdm_agent_get_values(agent.get(), &obs[i], 1, &one, nullptr), RDM_OK);
     EXPECT_EQ(one, all[i]) << i;
   }
-  EXPECT_EQ(rdm_agent_values(agent.get(), obs.data(), 0, all.data(), nullptr), RDM_RANGE);
-  EXPECT_EQ(rdm_agent_values(agent.get(), nullptr, 1, all.data(), nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_agent_values(agent.get(), obs.data(), 1, nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_get_values(agent.get(), obs.data(), 0, all.data(), nullptr), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_agent_get_values(agent.get(), nullptr, 1, all.data(), nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_agent_get_values(agent.get(), obs.data(), 1, nullptr, nullptr), RDM_ERROR_ARGUMENT);
   obs[1] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(rdm_agent_values(agent.get(), obs.data(), 2, all.data(), nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_get_values(agent.get(), obs.data(), 2, all.data(), nullptr), RDM_ERROR_ARGUMENT);
   const Agent scaled = agent_of(pool, "normalize_reward=true");
-  EXPECT_EQ(rdm_agent_values(scaled.get(), obs.data(), 1, all.data(), nullptr), RDM_UNSUPPORTED);
+  EXPECT_EQ(rdm_agent_get_values(scaled.get(), obs.data(), 1, all.data(), nullptr), RDM_ERROR_UNSUPPORTED);
   rdm_planner_config c = config_of(pool, "samples=2");
   c.agent = scaled.get();
   rdm_planner* p = nullptr;
-  EXPECT_EQ(rdm_planner_create(&p, &c), RDM_UNSUPPORTED);
+  EXPECT_EQ(rdm_planner_create(&p, &c), RDM_ERROR_UNSUPPORTED);
 }
 
 TEST(PlannerErrors, AWrongConfigIsNamed) {
@@ -551,33 +551,33 @@ TEST(PlannerErrors, AWrongConfigIsNamed) {
   };
   rdm_planner_config c = config_of(pool, nullptr);
   c.pool = nullptr;
-  refused(c, RDM_ARGUMENT, "config.pool is NULL");
-  refused(config_of(pool, "sampels=3"), RDM_NOT_FOUND, "nearest is samples");
-  refused(config_of(pool, "samples=0"), RDM_RANGE, "samples");
-  refused(config_of(pool, "method=sampling"), RDM_RANGE, "method");
-  refused(config_of(pool, "horizon=3\nreplan=4"), RDM_RANGE, "replan: 4 is above the horizon, 3");
+  refused(c, RDM_ERROR_ARGUMENT, "config.pool is NULL");
+  refused(config_of(pool, "sampels=3"), RDM_ERROR_NOT_FOUND, "nearest is samples");
+  refused(config_of(pool, "samples=0"), RDM_ERROR_RANGE, "samples");
+  refused(config_of(pool, "method=sampling"), RDM_ERROR_RANGE, "method");
+  refused(config_of(pool, "horizon=3\nreplan=4"), RDM_ERROR_RANGE, "replan: 4 is above the horizon, 3");
   c = config_of(pool, nullptr);
   c.num_threads = 257;
-  refused(c, RDM_RANGE, "config.num_threads: 257");
+  refused(c, RDM_ERROR_RANGE, "config.num_threads: 257");
   float noise = -1;
   c = config_of(pool, nullptr);
   c.noise = &noise;
-  refused(c, RDM_RANGE, "noise: entry 0 is outside [0, 10]");
+  refused(c, RDM_ERROR_RANGE, "noise: entry 0 is outside [0, 10]");
   noise = std::numeric_limits<float>::quiet_NaN();
-  refused(c, RDM_RANGE, "noise: entry 0");
+  refused(c, RDM_ERROR_RANGE, "noise: entry 0");
   const double limit = std::numeric_limits<double>::quiet_NaN();
   c = config_of(pool, nullptr);
   c.cost_limits = &limit;
-  refused(c, RDM_ARGUMENT, "cost_limits: entry 0 is not a number");
+  refused(c, RDM_ERROR_ARGUMENT, "cost_limits: entry 0 is not a number");
   const Pool hands = pool_of("hand_over_safe_finger");
   const Agent agent = agent_of(hands, "hidden=4");
   const Policy policy = policy_of(agent);
   c = config_of(pool, nullptr);
   c.policy = policy.get();
-  refused(c, RDM_VERSION_MISMATCH, "obs_dim: the policy has");
+  refused(c, RDM_ERROR_VERSION_MISMATCH, "obs_dim: the policy has");
   c = config_of(pool, nullptr);
   c.agent = agent.get();
-  refused(c, RDM_ARGUMENT, "obs_dim: the agent has");
+  refused(c, RDM_ERROR_ARGUMENT, "obs_dim: the agent has");
 }
 
 TEST(PlannerErrors, AWrongCallChangesNothing) {
@@ -593,18 +593,19 @@ TEST(PlannerErrors, AWrongCallChangesNothing) {
     EXPECT_EQ(state_of(planner), before);
   };
   action = 9;
-  refused(rdm_planner_act(planner.get(), other.get(), 0, &action, nullptr), RDM_ARGUMENT,
+  refused(rdm_planner_act(planner.get(), other.get(), 0, &action, nullptr), RDM_ERROR_ARGUMENT,
           "pool: a pool of task lqr_line with other options");
-  refused(rdm_planner_act(planner.get(), pool.get(), 1, &action, nullptr), RDM_RANGE, "env: 1");
-  refused(rdm_planner_act(planner.get(), nullptr, 0, &action, nullptr), RDM_ARGUMENT, "pool is NULL");
-  refused(rdm_planner_act(planner.get(), pool.get(), 0, nullptr, nullptr), RDM_ARGUMENT, "action is NULL");
+  refused(rdm_planner_act(planner.get(), pool.get(), 1, &action, nullptr), RDM_ERROR_RANGE, "env: 1");
+  refused(rdm_planner_act(planner.get(), nullptr, 0, &action, nullptr), RDM_ERROR_ARGUMENT, "pool is NULL");
+  refused(rdm_planner_act(planner.get(), pool.get(), 0, nullptr, nullptr), RDM_ERROR_ARGUMENT,
+          "action is NULL");
   const float bad[] = {0, std::numeric_limits<float>::infinity()};
-  refused(rdm_planner_set_plan(planner.get(), bad), RDM_ARGUMENT, "plan: entry 1 is not finite");
+  refused(rdm_planner_set_plan(planner.get(), bad), RDM_ERROR_ARGUMENT, "plan: entry 1 is not finite");
   for (int i = 0; i < 2; ++i) ASSERT_EQ(rdm_pool_step(pool.get()), RDM_OK);
-  refused(rdm_planner_act(planner.get(), pool.get(), 0, &action, nullptr), RDM_STATE,
+  refused(rdm_planner_act(planner.get(), pool.get(), 0, &action, nullptr), RDM_ERROR_STATE,
           "no episode runs in world 0");
   EXPECT_EQ(action, 9);
-  EXPECT_EQ(rdm_planner_act(nullptr, pool.get(), 0, &action, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_planner_act(nullptr, pool.get(), 0, &action, nullptr), RDM_ERROR_ARGUMENT);
   rdm_planner_destroy(nullptr);
 }
 
@@ -615,14 +616,14 @@ TEST(PlannerOptions, AreListedAndGivenBack) {
   for (; rdm_planner_option_at(count, &row) == RDM_OK; ++count) method |= std::string(row.key) == "method";
   EXPECT_TRUE(method);
   EXPECT_GT(count, 10);
-  EXPECT_EQ(rdm_planner_option_at(-1, &row), RDM_RANGE);
-  EXPECT_EQ(rdm_planner_option_at(count, &row), RDM_RANGE);
+  EXPECT_EQ(rdm_planner_option_at(-1, &row), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_planner_option_at(count, &row), RDM_ERROR_RANGE);
   const Pool pool = pool_of("lqr_line", "");
   const Planner a = planner_of(pool, "method=cem\nnoise=0.33\nhorizon=9");
   size_t size = 0;
-  ASSERT_EQ(rdm_planner_settings(a.get(), nullptr, 0, &size), RDM_OK);
+  ASSERT_EQ(rdm_planner_get_settings(a.get(), nullptr, 0, &size), RDM_OK);
   std::string text(size + 1, '\0');
-  ASSERT_EQ(rdm_planner_settings(a.get(), text.data(), text.size(), &size), RDM_OK);
+  ASSERT_EQ(rdm_planner_get_settings(a.get(), text.data(), text.size(), &size), RDM_OK);
   EXPECT_NE(text.find("noise=0.33"), std::string::npos) << text;
   const Planner b = planner_of(pool, text.c_str());
   float x = 0, y = 0;
@@ -672,7 +673,7 @@ TEST(PlannerMemory, AHostThatRefusesLosesNothing) {
     host.calls = 0;
     host.refuse_at = at;
     rdm_planner* p = nullptr;
-    EXPECT_EQ(rdm_planner_create(&p, &c), RDM_MEMORY) << at;
+    EXPECT_EQ(rdm_planner_create(&p, &c), RDM_ERROR_MEMORY) << at;
     EXPECT_EQ(p, nullptr);
     EXPECT_EQ(host.live, 0u) << at;
   }

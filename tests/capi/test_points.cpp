@@ -38,7 +38,7 @@ struct Host {
     auto t = redman::sized<rdm_transition>();
     t.reward = reward.data(), t.cost = cost.data();
     for (int32_t i = 0; i < horizon; ++i) {
-      redman::act(a, obs.data(), seen(), RDM_SAMPLE, action.data());
+      redman::act(a, obs.data(), seen(), RDM_ACT_SAMPLE, action.data());
       draw();
       a.record(t);
     }
@@ -58,7 +58,7 @@ constexpr const char* kEyes = "encoder=8,12\nencoder_points=32\nencoder_classes=
 constexpr const char* kBlind = "horizon=4\nhidden=16";
 
 std::string error_of(const redman::Agent& a, const rdm_points* seen, Host& h, rdm_result code) {
-  EXPECT_EQ(rdm_agent_act_points(a.get(), h.obs.data(), seen, RDM_SAMPLE, h.action.data()), code);
+  EXPECT_EQ(rdm_agent_act_points(a.get(), h.obs.data(), seen, RDM_ACT_SAMPLE, h.action.data()), code);
   return rdm_agent_error(a.get());
 }
 
@@ -68,7 +68,7 @@ TEST(Points, AnAgentLearnsAndItsPolicyActs) {
   redman::Agent a = agent_of(kEyes);
   Host h;
   for (int i = 0; i < 3; ++i) h.epoch(a);
-  redman::act(a, h.obs.data(), h.seen(), RDM_MEAN, h.action.data());
+  redman::act(a, h.obs.data(), h.seen(), RDM_ACT_MEAN, h.action.data());
   const auto wanted = h.action;
   const redman::Policy p(a.policy());
   EXPECT_EQ(p.info().obs_dim, kObs);
@@ -143,7 +143,7 @@ TEST(Points, ThePolicyIsShownAsTensors) {
     const auto w = q.read(t);
     ASSERT_EQ(t.cols, kObs + 12);
     std::vector<float> own(16 * 13);
-    ASSERT_EQ(rdm_agent_tensor_read(part.get(), "actor.0.weight", own.data(), own.size()), RDM_OK);
+    ASSERT_EQ(rdm_agent_get_tensor(part.get(), "actor.0.weight", own.data(), own.size()), RDM_OK);
     for (size_t r = 0; r < 16; ++r) {
       EXPECT_EQ(w[r * 15], own[r * 13]);
       EXPECT_EQ(w[r * 15 + 1], 0);
@@ -161,19 +161,19 @@ TEST(Points, ColoursAreSeen) {
   std::vector<uint8_t> colors(h.metres.size());
   for (size_t i = 0; i < colors.size(); ++i) colors[i] = static_cast<uint8_t>(i * 37);
   rdm_points seen = h.seen();
-  EXPECT_EQ(error_of(a, &seen, h, RDM_ARGUMENT), "point_color: NULL, but the encoder sees colours");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "point_color: NULL, but the encoder sees colours");
   seen.point_color = colors.data();
   seen.struct_size = offsetof(rdm_points, point_color);  // of an older host: as if it were NULL
-  EXPECT_EQ(error_of(a, &seen, h, RDM_ARGUMENT), "point_color: NULL, but the encoder sees colours");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "point_color: NULL, but the encoder sees colours");
   seen.struct_size = sizeof seen;
   auto t = redman::sized<rdm_transition>();
   t.reward = h.reward.data(), t.cost = h.cost.data();
   for (int i = 0; i < 4; ++i) {
-    redman::act(a, h.obs.data(), seen, RDM_SAMPLE, h.action.data());
+    redman::act(a, h.obs.data(), seen, RDM_ACT_SAMPLE, h.action.data());
     a.record(t);
   }
   a.update(h.obs.data());
-  redman::act(a, h.obs.data(), seen, RDM_MEAN, h.action.data());
+  redman::act(a, h.obs.data(), seen, RDM_ACT_MEAN, h.action.data());
   const auto wanted = h.action;
   const redman::Policy p(a.policy());
   EXPECT_EQ(p.info().point_color, 1);
@@ -200,24 +200,24 @@ TEST(Points, WhatIsWrongIsSaidInOneLine) {
   const redman::Agent blind = agent_of(kBlind);
   Host h;
   rdm_points seen = h.seen();
-  EXPECT_EQ(rdm_agent_act(a.get(), h.obs.data(), RDM_SAMPLE, h.action.data()), RDM_STATE);
+  EXPECT_EQ(rdm_agent_act(a.get(), h.obs.data(), RDM_ACT_SAMPLE, h.action.data()), RDM_ERROR_STATE);
   EXPECT_STREQ(rdm_agent_error(a.get()), "act: the agent's encoder needs points");
-  EXPECT_EQ(error_of(blind, &seen, h, RDM_STATE), "points: the agent has no encoder");
-  EXPECT_EQ(error_of(a, nullptr, h, RDM_ARGUMENT), "points is NULL");
+  EXPECT_EQ(error_of(blind, &seen, h, RDM_ERROR_STATE), "points: the agent has no encoder");
+  EXPECT_EQ(error_of(a, nullptr, h, RDM_ERROR_ARGUMENT), "points is NULL");
   seen.struct_size = 0;
-  EXPECT_EQ(error_of(a, &seen, h, RDM_ARGUMENT), "points.struct_size: 0 is less than 24");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "points.struct_size: 0 is less than 24");
   seen = h.seen(), seen.points = nullptr;
-  EXPECT_EQ(error_of(a, &seen, h, RDM_ARGUMENT), "points.points is NULL");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "points.points is NULL");
   seen = h.seen(), seen.num_points = 31;
-  EXPECT_EQ(error_of(a, &seen, h, RDM_RANGE), "points.num_points: 31, the encoder sees 32");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_RANGE), "points.num_points: 31, the encoder sees 32");
   seen = h.seen(), seen.point_class = nullptr;
-  EXPECT_EQ(error_of(a, &seen, h, RDM_ARGUMENT), "point_class: NULL, but the encoder sees 2 classes");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "point_class: NULL, but the encoder sees 2 classes");
   seen = h.seen();
   h.classes[40] = 2;
-  EXPECT_EQ(error_of(a, &seen, h, RDM_RANGE), "point_class: row 1 has class 2, outside [0, 2)");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_RANGE), "point_class: row 1 has class 2, outside [0, 2)");
   h.classes[40] = 0;
   h.metres[3 * kPoints * 7 + 5] = INFINITY;
-  EXPECT_EQ(error_of(a, &seen, h, RDM_ARGUMENT), "points: row 7 is not finite");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "points: row 7 is not finite");
   h.draw();
   h.epoch(a);  // nothing was remembered
 
@@ -238,7 +238,7 @@ TEST(Points, WhatIsWrongIsSaidInOneLine) {
   EXPECT_EQ(act(p, kEnvs, scratch.size()), "point_class: row 0 has class 7, outside [0, 2)");
   EXPECT_EQ(
       rdm_policy_act(p.get(), h.obs.data(), 1, nullptr, h.action.data(), scratch.data(), scratch.size()),
-      RDM_STATE);
+      RDM_ERROR_STATE);
   EXPECT_STREQ(rdm_last_error(), "policy: it sees points, which come with rdm_policy_act_points");
 }
 
@@ -259,7 +259,7 @@ TEST(Points, MemoryIsToldExactly) {
       std::free(p);
     };
     c.host = &host;
-    ASSERT_EQ(rdm_agent_memory(&c, &bytes), RDM_OK);
+    ASSERT_EQ(rdm_agent_config_memory(&c, &bytes), RDM_OK);
     EXPECT_EQ(live, 0u);
     {
       const redman::Agent a(c);
@@ -282,14 +282,14 @@ TEST(Points, PretrainingThroughTheAbi) {
   EXPECT_LT(report.most_common, 0.7);
   EXPECT_LT(report.validation_loss, 0.4);
   how.epochs = 0;
-  EXPECT_EQ(rdm_agent_pretrain(a.get(), &seen, h.classes.data(), 60, &how, nullptr), RDM_RANGE);
+  EXPECT_EQ(rdm_agent_pretrain(a.get(), &seen, h.classes.data(), 60, &how, nullptr), RDM_ERROR_RANGE);
   EXPECT_STREQ(rdm_agent_error(a.get()), "epochs: 0 is outside [1, 100000]");
   how.epochs = 1;
-  EXPECT_EQ(rdm_agent_pretrain(a.get(), &seen, h.classes.data(), 0, &how, nullptr), RDM_RANGE);
-  EXPECT_EQ(rdm_agent_pretrain(a.get(), &seen, nullptr, 60, &how, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_agent_pretrain(a.get(), &seen, h.classes.data(), 60, nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_pretrain(a.get(), &seen, h.classes.data(), 0, &how, nullptr), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_agent_pretrain(a.get(), &seen, nullptr, 60, &how, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_agent_pretrain(a.get(), &seen, h.classes.data(), 60, nullptr, nullptr), RDM_ERROR_ARGUMENT);
   const redman::Agent blind = agent_of(kBlind);
-  EXPECT_EQ(rdm_agent_pretrain(blind.get(), &seen, h.classes.data(), 60, &how, nullptr), RDM_STATE);
+  EXPECT_EQ(rdm_agent_pretrain(blind.get(), &seen, h.classes.data(), 60, &how, nullptr), RDM_ERROR_STATE);
 }
 
 // A pool's own clouds: rollout takes them.
@@ -308,22 +308,22 @@ TEST(Points, ARolloutSeesWhatThePoolShows) {
   EXPECT_GT(e.env_steps, 0);
   const redman::Policy p(a.policy());
   int32_t columns = 0;
-  EXPECT_EQ(rdm_policy_columns(p.get(), nullptr, 0, &columns), RDM_OK);
+  EXPECT_EQ(rdm_policy_get_columns(p.get(), nullptr, 0, &columns), RDM_OK);
   EXPECT_EQ(columns, 381);
 
   redman::Agent b = with((common + "encoder=8,16\nencoder_points=65").c_str());
-  EXPECT_EQ(rdm_agent_rollout(b.get(), pool.get(), nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_rollout(b.get(), pool.get(), nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_agent_error(b.get()), "encoder_points: the agent's encoder sees 65, the pool has 64");
   // two hands, the object, anything else
   redman::Agent d = with((common + "encoder=8,16\nencoder_points=64\nencoder_classes=4").c_str());
   EXPECT_EQ(rdm_agent_rollout(d.get(), pool.get(), nullptr), RDM_OK) << rdm_agent_error(d.get());
   redman::Agent few = with((common + "encoder=8,16\nencoder_points=64\nencoder_classes=2").c_str());
-  EXPECT_EQ(rdm_agent_rollout(few.get(), pool.get(), nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_rollout(few.get(), pool.get(), nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_agent_error(few.get()),
                "encoder_classes: the pool's points have 4 classes, the agent's encoder sees 2");
   redman::Pool blind(redman::pool_config("hand_over_safe_finger", 2));
   blind.reset();
-  EXPECT_EQ(rdm_agent_rollout(a.get(), blind.get(), nullptr), RDM_STATE);
+  EXPECT_EQ(rdm_agent_rollout(a.get(), blind.get(), nullptr), RDM_ERROR_STATE);
   EXPECT_STREQ(rdm_agent_error(a.get()),
                "pool: it has no points for the agent's encoder: option modality=points");
 
@@ -331,5 +331,5 @@ TEST(Points, ARolloutSeesWhatThePoolShows) {
   ASSERT_EQ(rdm_planner_config_init(&plan, sizeof plan), RDM_OK);
   plan.pool = blind.get(), plan.policy = p.get();
   rdm_planner* planner = nullptr;
-  EXPECT_EQ(rdm_planner_create(&planner, &plan), RDM_UNSUPPORTED);
+  EXPECT_EQ(rdm_planner_create(&planner, &plan), RDM_ERROR_UNSUPPORTED);
 }

@@ -77,14 +77,14 @@ struct Worlds {
   }
   uint64_t hash(int32_t env) const {
     uint64_t h = 0;
-    EXPECT_EQ(rdm_pool_hash(pool, env, &h), RDM_OK);
+    EXPECT_EQ(rdm_pool_get_hash(pool, env, &h), RDM_OK);
     return h;
   }
   std::vector<unsigned char> state(int32_t env) const {
     size_t size = 0;
     EXPECT_EQ(rdm_pool_state_size(pool, env, &size), RDM_OK);
     std::vector<unsigned char> bytes(size);
-    EXPECT_EQ(rdm_pool_get_state(pool, env, bytes.data(), size, &size), RDM_OK);
+    EXPECT_EQ(rdm_pool_write_state(pool, env, bytes.data(), size, &size), RDM_OK);
     return bytes;
   }
 };
@@ -103,7 +103,7 @@ TEST_P(PoolCopy, GoesOnWithTheBytesOfASavedState) {
   for (int i = 0; i < 6; ++i) restored.step(0, actions(200 + i));
   const uint64_t other = copied.hash(0);
   const std::vector<unsigned char> state = from.state(1);
-  ASSERT_EQ(rdm_pool_set_state(restored.pool, 0, state.data(), state.size()), RDM_OK);
+  ASSERT_EQ(rdm_pool_read_state(restored.pool, 0, state.data(), state.size()), RDM_OK);
   ASSERT_EQ(rdm_pool_copy(copied.pool, 2, from.pool, 1), RDM_OK) << rdm_pool_error(copied.pool);
   EXPECT_EQ(copied.state(2), state);
   EXPECT_EQ(copied.rows(2), from.rows(1));
@@ -149,7 +149,7 @@ TEST(PoolCopyOfSleepers, GoOnWithTheBytesOfASavedState) {
   hold(from, 120);
   hold(copied, 20);
   const std::vector<unsigned char> state = from.state(0);
-  ASSERT_EQ(rdm_pool_set_state(restored.pool, 0, state.data(), state.size()), RDM_OK);
+  ASSERT_EQ(rdm_pool_read_state(restored.pool, 0, state.data(), state.size()), RDM_OK);
   ASSERT_EQ(rdm_pool_copy(copied.pool, 0, from.pool, 0), RDM_OK);
   EXPECT_EQ(copied.state(0), state);
   for (Worlds* w : {&from, &copied, &restored}) hold(*w, 20);
@@ -177,14 +177,14 @@ TEST(PoolCopyErrors, PoolsThatDifferAndWorldsThatAreNotThereAreRefused) {
     EXPECT_NE(std::string(rdm_pool_error(a.pool)).find(text), std::string::npos) << rdm_pool_error(a.pool);
     EXPECT_EQ(a.hash(-1), before);
   };
-  refused(0, options.pool, 0, RDM_ARGUMENT, "other options");
-  refused(0, task.pool, 0, RDM_ARGUMENT, "task two_state");
-  refused(2, a.pool, 0, RDM_RANGE, "dst_env: 2 is outside [-1, 2)");
-  refused(-2, a.pool, 0, RDM_RANGE, "dst_env: -2");
-  refused(0, a.pool, -1, RDM_RANGE, "src_env: -1 is outside [0, 2)");
-  refused(0, a.pool, 2, RDM_RANGE, "src_env: 2");
-  refused(0, nullptr, 0, RDM_ARGUMENT, "pool is NULL");
-  EXPECT_EQ(rdm_pool_copy(nullptr, 0, a.pool, 0), RDM_ARGUMENT);
+  refused(0, options.pool, 0, RDM_ERROR_ARGUMENT, "other options");
+  refused(0, task.pool, 0, RDM_ERROR_ARGUMENT, "task two_state");
+  refused(2, a.pool, 0, RDM_ERROR_RANGE, "dst_env: 2 is outside [-1, 2)");
+  refused(-2, a.pool, 0, RDM_ERROR_RANGE, "dst_env: -2");
+  refused(0, a.pool, -1, RDM_ERROR_RANGE, "src_env: -1 is outside [0, 2)");
+  refused(0, a.pool, 2, RDM_ERROR_RANGE, "src_env: 2");
+  refused(0, nullptr, 0, RDM_ERROR_ARGUMENT, "pool is NULL");
+  EXPECT_EQ(rdm_pool_copy(nullptr, 0, a.pool, 0), RDM_ERROR_ARGUMENT);
 }
 
 TEST(PoolCopyErrors, AWorldThatWaitsForItsResetIsCopiedToo) {
@@ -195,13 +195,13 @@ TEST(PoolCopyErrors, AWorldThatWaitsForItsResetIsCopiedToo) {
   ASSERT_EQ(a.b.truncated[0], 1);
   ASSERT_EQ(rdm_pool_copy(b.pool, 0, a.pool, 0), RDM_OK);
   EXPECT_EQ(b.b.truncated[0], 1);
-  EXPECT_EQ(rdm_pool_step(b.pool), RDM_STATE);
+  EXPECT_EQ(rdm_pool_step(b.pool), RDM_ERROR_STATE);
   rdm_pool_config c = pool_config(1);
   c.task = "lqr_line";
   c.settings = "max_steps=2";
   rdm_pool* fresh = make_pool(c);
   ASSERT_EQ(rdm_pool_copy(b.pool, 0, fresh, 0), RDM_OK);
-  EXPECT_EQ(rdm_pool_step(b.pool), RDM_STATE);  // never reset, as the other
+  EXPECT_EQ(rdm_pool_step(b.pool), RDM_ERROR_STATE);  // never reset, as the other
   rdm_pool_destroy(fresh);
 }
 

@@ -50,7 +50,7 @@ TEST(RecordedClouds, AreWhatThePoolShowed) {
   EXPECT_GT(*std::max_element(classes.begin(), classes.end()), 1) << "hands and the object";
 
   const char* path = "recorded_clouds.npz";
-  ASSERT_EQ(rdm_recording_save_file(r.get(), path), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_recording_write_file(r.get(), path), RDM_OK) << rdm_last_error();
   const redman::Recording again(path);
   EXPECT_EQ(again.info().fingerprint, r.info().fingerprint);
   const rdm_recording_rows w = again.rows();
@@ -85,7 +85,7 @@ TEST(RecordedClouds, ColoursAreKept) {
   ASSERT_TRUE(r.rows().point_color);
   EXPECT_TRUE(std::equal(shown.begin(), shown.end(), r.rows().point_color));
   const char* path = "colored_clouds.npz";
-  ASSERT_EQ(rdm_recording_save_file(r.get(), path), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_recording_write_file(r.get(), path), RDM_OK) << rdm_last_error();
   const redman::Recording again(path);
   EXPECT_EQ(again.info().fingerprint, r.info().fingerprint);
   EXPECT_TRUE(std::equal(shown.begin(), shown.end(), again.rows().point_color));
@@ -95,9 +95,9 @@ TEST(RecordedClouds, ColoursAreKept) {
   EXPECT_FALSE(redman::sensors(grey).point_color);
   redman::Recording plain(grey, 10);
   EXPECT_FALSE(plain.rows().point_color);
-  EXPECT_EQ(rdm_recording_begin_step(r.get(), grey.get(), nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_recording_begin_step(r.get(), grey.get(), nullptr, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_recording_error(r.get()), "point_color: the recording has colours, the pool has none");
-  EXPECT_EQ(rdm_recording_append_all(plain.get(), r.get()), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_recording_append_all(plain.get(), r.get()), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_recording_error(plain.get()), "other: one of the two has no colours");
 
   // whoever sees colours is not taught without them
@@ -110,9 +110,9 @@ TEST(RecordedClouds, ColoursAreKept) {
   plain.begin_step(grey);
   grey.step();
   plain.end_step(grey);
-  EXPECT_EQ(rdm_agent_set_recording(a.get(), plain.get()), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_set_recording(a.get(), plain.get()), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_agent_set_recording(a.get(), r.get()), RDM_OK) << rdm_agent_error(a.get());
-  EXPECT_EQ(rdm_agent_rollout(a.get(), grey.get(), nullptr), RDM_STATE);
+  EXPECT_EQ(rdm_agent_rollout(a.get(), grey.get(), nullptr), RDM_ERROR_STATE);
 }
 
 // The last points lie on the object where it is to be brought, and are of a class of their own.
@@ -148,7 +148,7 @@ TEST(RecordedClouds, AGoalIsSeen) {
   auto c = redman::pool_config("jenga", 1);
   rdm_pool* p = nullptr;
   c.settings = "modality=points\ngoal_points=24";
-  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ERROR_ARGUMENT);
   EXPECT_NE(std::string(rdm_last_error()).find("goal_points: task jenga brings no object to a pose"),
             std::string::npos);
 }
@@ -159,7 +159,7 @@ TEST(RecordedClouds, WhatDoesNotFitIsRefused) {
   auto blind_config = redman::pool_config("hand_over_safe_finger", kEnvs);
   redman::Pool blind(blind_config);
   blind.reset();
-  EXPECT_EQ(rdm_recording_begin_step(r.get(), blind.get(), nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_recording_begin_step(r.get(), blind.get(), nullptr, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_NE(std::string(rdm_recording_error(r.get())).find("num_points"), std::string::npos);
   EXPECT_EQ(r.info().rows, 0);
   auto rows = redman::sized<rdm_recording_rows>();
@@ -168,7 +168,7 @@ TEST(RecordedClouds, WhatDoesNotFitIsRefused) {
   rows.rows = 1;
   rows.obs = obs.data();
   rows.action = action.data();
-  EXPECT_EQ(rdm_recording_append(r.get(), &rows), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_recording_append(r.get(), &rows), RDM_ERROR_ARGUMENT);
   EXPECT_NE(std::string(rdm_recording_error(r.get())).find("points"), std::string::npos);
   std::vector<int16_t> points(kPoints * 3, 5);
   rows.points = points.data();
@@ -176,8 +176,8 @@ TEST(RecordedClouds, WhatDoesNotFitIsRefused) {
   EXPECT_EQ(r.rows().points[7], 5);
   EXPECT_EQ(r.rows().point_class[7], 0);
   redman::Recording plain(blind, 10);
-  EXPECT_EQ(rdm_recording_append(plain.get(), &rows), RDM_ARGUMENT) << "it has no clouds";
-  EXPECT_EQ(rdm_recording_append_all(plain.get(), r.get()), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_recording_append(plain.get(), &rows), RDM_ERROR_ARGUMENT) << "it has no clouds";
+  EXPECT_EQ(rdm_recording_append_all(plain.get(), r.get()), RDM_ERROR_ARGUMENT);
 }
 
 // A teacher whose action is the object's height above where it began: nothing but the cloud tells it. What an
@@ -220,7 +220,7 @@ TEST(RecordedClouds, EyesAreTaught) {
     c.settings = "encoder=8,8\nencoder_points=32";
     return c;
   }());
-  EXPECT_EQ(rdm_agent_clone(other.get(), r.get(), nullptr, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_clone(other.get(), r.get(), nullptr, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_NE(std::string(rdm_agent_error(other.get())).find("64 points"), std::string::npos);
 }
 

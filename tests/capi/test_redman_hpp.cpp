@@ -27,7 +27,7 @@ TEST(RedmanHpp, ErrorsCarryCodeAndText) {
     redman::Pool pool(redman::pool_config("hand_over_safe_fingr"));
     FAIL() << "a pool of an unknown task";
   } catch (const redman::Error& e) {
-    EXPECT_EQ(e.code(), RDM_NOT_FOUND);
+    EXPECT_EQ(e.code(), RDM_ERROR_NOT_FOUND);
     EXPECT_NE(std::string(e.what()).find(kTask), std::string::npos) << e.what();
   }
   redman::Pool pool(redman::pool_config(kTask));
@@ -35,7 +35,7 @@ TEST(RedmanHpp, ErrorsCarryCodeAndText) {
     pool.step();
     FAIL() << "a step before the first reset";
   } catch (const redman::Error& e) {
-    EXPECT_EQ(e.code(), RDM_STATE);
+    EXPECT_EQ(e.code(), RDM_ERROR_STATE);
     EXPECT_STREQ(e.what(), rdm_pool_error(pool.get()));
   }
   EXPECT_THROW(redman::Policy(redman::Bytes(10)), redman::Error);
@@ -50,7 +50,7 @@ TEST(RedmanHpp, PicturesOfNoSizeAreErrorsOfTheLibrary) {
       pool.render(0, "front", s[0], s[1]);
       FAIL() << s[0] << ' ' << s[1];
     } catch (const redman::Error& e) {
-      EXPECT_EQ(e.code(), RDM_RANGE) << e.what();
+      EXPECT_EQ(e.code(), RDM_ERROR_RANGE) << e.what();
     }
   }
   EXPECT_EQ(pool.render(0, "front", 4, 3).size(), 36u);
@@ -125,7 +125,7 @@ TEST(RedmanHpp, AgentLearnsFromAPoolAndItsPolicyActs) {
   redman::Bytes scratch(policy.scratch_bytes(2));
   policy.act(pool.obs().data(), 2, nullptr, again.data(), scratch.data(), scratch.size());
   EXPECT_EQ(again, by_policy);
-  agent.act(pool.obs().data(), RDM_MEAN, by_agent.data());
+  agent.act(pool.obs().data(), RDM_ACT_MEAN, by_agent.data());
   for (size_t i = 0; i < by_agent.size(); ++i)
     EXPECT_NEAR(by_policy[i], std::min(1.0f, std::max(-1.0f, by_agent[i])), 1e-5f) << i;
 }

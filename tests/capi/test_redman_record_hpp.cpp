@@ -51,7 +51,7 @@ TEST(RedmanRecordHpp, FilesComeBack) {
     redman::Recording none(path.c_str());
     FAIL() << "a file that is not there was read";
   } catch (const redman::Error& e) {
-    EXPECT_EQ(e.code(), RDM_NOT_FOUND);
+    EXPECT_EQ(e.code(), RDM_ERROR_NOT_FOUND);
   }
 }
 

@@ -12,7 +12,7 @@ constexpr int32_t kMany = 5000;
 
 rdm_result add_robot(const char* name, int32_t* number) {
   rdm_robot_link link{};
-  link.name = "link", link.joint = "joint", link.parent = RDM_ROOT_LINK;
+  link.name = "link", link.joint = "joint", link.parent = RDM_LINK_ROOT;
   link.q[3] = 1, link.axis[2] = 1, link.lower = -1, link.upper = 1;
   link.kp = 1, link.kd = 0.1, link.effort = 1, link.mass = 1;
   for (int k = 0; k < 3; ++k) link.moment[k] = 0.1;
@@ -31,7 +31,7 @@ rdm_result robot_name(int32_t number, const char** name) {
 
 rdm_result add_object(const char* name, int32_t* number) {
   rdm_shape_def s{};
-  s.kind = RDM_BOX, s.size[0] = s.size[1] = s.size[2] = 0.02;
+  s.kind = RDM_SHAPE_BOX, s.size[0] = s.size[1] = s.size[2] = 0.02;
   rdm_object_def d;
   EXPECT_EQ(rdm_object_def_init(&d, sizeof d), RDM_OK);
   d.name = name, d.shapes = &s, d.num_shapes = 1, d.mass = 0.1;
@@ -52,7 +52,7 @@ rdm_result add_task(const char* name, int32_t* number) {
   rdm_task_def d = pattern().def;
   d.name = name;
   d.release = nullptr;
-  return rdm_task_register(number, &d);
+  return rdm_task_create(number, &d);
 }
 rdm_result task_name(int32_t number, const char** name) {
   rdm_task t{};
@@ -69,9 +69,9 @@ struct Kind {
   rdm_result (*name_of)(int32_t number, const char** name);
   int32_t (*count)();
 };
-const Kind kKinds[] = {{"robot", add_robot, rdm_robot_remove, robot_name, rdm_robot_count},
-                       {"object", add_object, rdm_object_remove, object_name, rdm_object_count},
-                       {"task", add_task, rdm_task_remove, task_name, rdm_task_count}};
+const Kind kKinds[] = {{"robot", add_robot, rdm_robot_destroy, robot_name, rdm_robot_count},
+                       {"object", add_object, rdm_object_destroy, object_name, rdm_object_count},
+                       {"task", add_task, rdm_task_destroy, task_name, rdm_task_count}};
 
 TEST(Registries, ThousandsComeAndGo) {
   pattern();
@@ -95,15 +95,15 @@ TEST(Registries, ThousandsComeAndGo) {
     }
     EXPECT_EQ(kind.count(), last + 1);
     for (const int32_t gone : {first, first + kMany / 2, last}) {
-      EXPECT_EQ(kind.name_of(gone, &name), RDM_NOT_FOUND);
+      EXPECT_EQ(kind.name_of(gone, &name), RDM_ERROR_NOT_FOUND);
       EXPECT_EQ(std::string(rdm_last_error()),
                 std::string(kind.what) + " " + std::to_string(gone) + " was removed");
-      EXPECT_EQ(kind.remove(gone), RDM_NOT_FOUND);
+      EXPECT_EQ(kind.remove(gone), RDM_ERROR_NOT_FOUND);
     }
-    EXPECT_EQ(kind.name_of(last + 1, &name), RDM_RANGE);
+    EXPECT_EQ(kind.name_of(last + 1, &name), RDM_ERROR_RANGE);
     EXPECT_EQ(kind.name_of(kept, &name), RDM_OK);
     EXPECT_STREQ(name, "kept");
-    EXPECT_EQ(kind.add("kept", &last), RDM_ARGUMENT) << "the name is taken";
+    EXPECT_EQ(kind.add("kept", &last), RDM_ERROR_ARGUMENT) << "the name is taken";
     EXPECT_EQ(kind.remove(kept), RDM_OK);
     EXPECT_EQ(host.live, 0u);
     rdm_shutdown();
@@ -116,11 +116,11 @@ TEST(Registries, AUsedOneStays) {
   rdm_pool_config c = pool_config(1);
   c.task = "registries_used";
   rdm_pool* const pool = make_pool(c);
-  ASSERT_EQ(rdm_task_remove(task.number), RDM_OK);
+  ASSERT_EQ(rdm_task_destroy(task.number), RDM_OK);
   int32_t number = -1;
   for (int i = 0; i < 100; ++i) {
     ASSERT_EQ(add_task("registries_used", &number), RDM_OK);
-    ASSERT_EQ(rdm_task_remove(number), RDM_OK);
+    ASSERT_EQ(rdm_task_destroy(number), RDM_OK);
   }
   EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK);
   EXPECT_EQ(rdm_pool_step(pool), RDM_OK);
@@ -161,10 +161,10 @@ TEST(Registries, NamesOfRemovedThingsStay) {
   int32_t number = -1;
   ASSERT_EQ(add_object("a_passing_name_3", &number), RDM_OK);
   ASSERT_EQ(object_name(number, &a), RDM_OK);
-  ASSERT_EQ(rdm_object_remove(number), RDM_OK);
+  ASSERT_EQ(rdm_object_destroy(number), RDM_OK);
   ASSERT_EQ(add_object("a_passing_name_3", &number), RDM_OK);
   ASSERT_EQ(object_name(number, &b), RDM_OK);
-  ASSERT_EQ(rdm_object_remove(number), RDM_OK);
+  ASSERT_EQ(rdm_object_destroy(number), RDM_OK);
   EXPECT_EQ(a, b);
   EXPECT_STREQ(a, "a_passing_name_3");
 }

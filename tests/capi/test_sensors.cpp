@@ -1,4 +1,4 @@
-// rdm_pool_sensors and rdm_sample_furthest through the C ABI, on the hands.
+// rdm_pool_get_sensors and rdm_sample_furthest through the C ABI, on the hands.
 #include <cmath>
 #include <memory>
 #include <set>
@@ -16,11 +16,11 @@ struct Seeing {
     c.num_threads = threads;
     c.options = options.data();
     c.num_options = static_cast<int32_t>(options.size());
-    EXPECT_EQ(rdm_pool_memory(&c, &ours, nullptr), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(rdm_pool_config_memory(&c, &ours, nullptr), RDM_OK) << rdm_last_error();
     EXPECT_EQ(rdm_pool_create(&p, &c), RDM_OK) << rdm_last_error();
     EXPECT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK) << rdm_pool_error(p);
     s.struct_size = sizeof s;
-    EXPECT_EQ(rdm_pool_sensors(p, &s), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(rdm_pool_get_sensors(p, &s), RDM_OK) << rdm_last_error();
   }
   ~Seeing() { rdm_pool_destroy(p); }
   rdm_pool* p = nullptr;
@@ -101,7 +101,7 @@ TEST(Sensors, MemoryIsWhatWasSaid) {
   c.num_options = 1;
   c.host = &host.hooks;
   size_t ours = 0;
-  ASSERT_EQ(rdm_pool_memory(&c, &ours, nullptr), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_pool_config_memory(&c, &ours, nullptr), RDM_OK) << rdm_last_error();
   rdm_pool* p = nullptr;
   ASSERT_EQ(rdm_pool_create(&p, &c), RDM_OK) << rdm_last_error();
   EXPECT_EQ(host.live, ours);
@@ -120,7 +120,7 @@ TEST(Sensors, EveryTaskHasTheOptions) {
       ASSERT_EQ(rdm_task_option(t, i, &o), RDM_OK);
       EXPECT_TRUE(keys.insert(o.key).second) << task.name << " has " << o.key << " twice";
     }
-    EXPECT_EQ(rdm_task_option(t, task.num_options, &o), RDM_RANGE);
+    EXPECT_EQ(rdm_task_option(t, task.num_options, &o), RDM_ERROR_RANGE);
     EXPECT_TRUE(keys.count("modality") && keys.count("cloud_cameras")) << task.name;
     // every modality works in it
     const rdm_option all[] = {{"modality", "rgb+depth+segmentation+points+voxels", 0},
@@ -151,19 +151,19 @@ TEST(Sensors, BadWordsAreRefused) {
     EXPECT_EQ(p, nullptr);
     return r;
   };
-  EXPECT_EQ(create({"modality", "smell", 0}), RDM_ARGUMENT);
-  EXPECT_EQ(create({"points", nullptr, -3}), RDM_RANGE);
-  EXPECT_EQ(create({"sampling", "best", 0}), RDM_RANGE);
+  EXPECT_EQ(create({"modality", "smell", 0}), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(create({"points", nullptr, -3}), RDM_ERROR_RANGE);
+  EXPECT_EQ(create({"sampling", "best", 0}), RDM_ERROR_RANGE);
   const Seeing seeing({});
   rdm_sensors s{};
   rdm_camera camera;
-  EXPECT_EQ(rdm_pool_sensors(nullptr, &s), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_pool_sensors(seeing.p, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_pool_sensors(seeing.p, &s), RDM_ARGUMENT);  // no struct_size
+  EXPECT_EQ(rdm_pool_get_sensors(nullptr, &s), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_get_sensors(seeing.p, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_get_sensors(seeing.p, &s), RDM_ERROR_ARGUMENT);  // no struct_size
   EXPECT_EQ(seeing.s.points, nullptr);
-  EXPECT_EQ(rdm_pool_sensor_camera(seeing.p, 0, 0, &camera), RDM_RANGE);
-  EXPECT_EQ(rdm_pool_sensor_camera(seeing.p, 2, 0, &camera), RDM_RANGE);
-  EXPECT_EQ(rdm_pool_sensor_camera(seeing.p, 0, 0, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_sensor_camera(seeing.p, 0, 0, &camera), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_sensor_camera(seeing.p, 2, 0, &camera), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_sensor_camera(seeing.p, 0, 0, nullptr), RDM_ERROR_ARGUMENT);
 }
 
 TEST(Sensors, HostsSampleTheirOwnClouds) {
@@ -181,12 +181,12 @@ TEST(Sensors, HostsSampleTheirOwnClouds) {
   EXPECT_EQ(chosen[2], 2);
   EXPECT_EQ(chosen[3], 3);
   const float nan[] = {0, NAN, 0};
-  EXPECT_EQ(rdm_sample_furthest(nan, 1, 1, 0, chosen, scratch, bytes), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_sample_furthest(nullptr, 1, 1, 0, chosen, scratch, bytes), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_sample_furthest(points, 4, 5, 0, chosen, scratch, bytes), RDM_RANGE);
-  EXPECT_EQ(rdm_sample_furthest(points, 4, 1, 4, chosen, scratch, bytes), RDM_RANGE);
-  EXPECT_EQ(rdm_sample_furthest(points, 4, 1, 0, chosen, scratch, bytes - 1), RDM_RANGE);
-  EXPECT_EQ(rdm_sample_furthest(points, 0, 1, 0, chosen, scratch, bytes), RDM_RANGE);
+  EXPECT_EQ(rdm_sample_furthest(nan, 1, 1, 0, chosen, scratch, bytes), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_sample_furthest(nullptr, 1, 1, 0, chosen, scratch, bytes), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_sample_furthest(points, 4, 5, 0, chosen, scratch, bytes), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_sample_furthest(points, 4, 1, 4, chosen, scratch, bytes), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_sample_furthest(points, 4, 1, 0, chosen, scratch, bytes - 1), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_sample_furthest(points, 0, 1, 0, chosen, scratch, bytes), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_sample_scratch(0), 0u);
   EXPECT_EQ(rdm_sample_scratch(1 << 30), 0u);
 }

@@ -7,11 +7,12 @@ namespace {
 
 std::string settings_of(const rdm_pool* p) {
   size_t size = 0;
-  EXPECT_EQ(rdm_pool_settings(p, nullptr, 0, &size), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_settings(p, nullptr, 0, &size), RDM_OK);
   std::string text(size + 1, '#');
-  EXPECT_EQ(rdm_pool_settings(p, text.data(), size, &size), RDM_RANGE);  // no room for the terminator
+  EXPECT_EQ(rdm_pool_get_settings(p, text.data(), size, &size),
+            RDM_ERROR_RANGE);  // no room for the terminator
   EXPECT_EQ(text[0], '#');
-  EXPECT_EQ(rdm_pool_settings(p, text.data(), text.size(), &size), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_settings(p, text.data(), text.size(), &size), RDM_OK);
   EXPECT_EQ(text[size], '\0');
   text.resize(size);
   return text;
@@ -19,9 +20,9 @@ std::string settings_of(const rdm_pool* p) {
 
 std::string settings_of(const rdm_agent* a) {
   size_t size = 0;
-  EXPECT_EQ(rdm_agent_settings(a, nullptr, 0, &size), RDM_OK);
+  EXPECT_EQ(rdm_agent_get_settings(a, nullptr, 0, &size), RDM_OK);
   std::string text(size + 1, '#');
-  EXPECT_EQ(rdm_agent_settings(a, text.data(), text.size(), &size), RDM_OK);
+  EXPECT_EQ(rdm_agent_get_settings(a, text.data(), text.size(), &size), RDM_OK);
   text.resize(size);
   return text;
 }
@@ -59,8 +60,8 @@ void expect_same_again(const char* task, const char* settings) {
   size_t size = 0;
   ASSERT_EQ(rdm_pool_state_size(p, -1, &size), RDM_OK);
   std::vector<unsigned char> state(size);
-  ASSERT_EQ(rdm_pool_get_state(p, -1, state.data(), size, &size), RDM_OK);
-  EXPECT_EQ(rdm_pool_set_state(again, -1, state.data(), size), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_pool_write_state(p, -1, state.data(), size, &size), RDM_OK);
+  EXPECT_EQ(rdm_pool_read_state(again, -1, state.data(), size), RDM_OK) << rdm_last_error();
   rdm_pool_destroy(again);
   rdm_pool_destroy(p);
 }
@@ -97,16 +98,16 @@ TEST(Settings, LongTextsAndExactNumbersReadBack) {
   for (int32_t i = 0; i < task.num_options; ++i) {
     const char* key = nullptr;
     char text[RDM_TEXT_SIZE] = "untouched";
-    const rdm_result r = rdm_pool_option(p, i, &key, text);
+    const rdm_result r = rdm_pool_option_at(p, i, &key, text);
     if (r == RDM_OK && std::strstr(key, ".FIELD")) continue;  // no key, but the pattern of some
     if (r == RDM_OK) {
       EXPECT_EQ(value_of(whole, key), text);
       continue;
     }
     ++long_ones;
-    EXPECT_EQ(r, RDM_RANGE);
+    EXPECT_EQ(r, RDM_ERROR_RANGE);
     EXPECT_STREQ(text, "untouched");
-    EXPECT_NE(std::strstr(rdm_pool_error(p), "rdm_pool_settings"), nullptr) << rdm_pool_error(p);
+    EXPECT_NE(std::strstr(rdm_pool_error(p), "rdm_pool_get_settings"), nullptr) << rdm_pool_error(p);
   }
   EXPECT_EQ(long_ones, 1);
   rdm_pool_destroy(p);
@@ -161,7 +162,7 @@ TEST(ConfigError, GetsTheTextOfEveryFailingCallThatTakesThePoolConfig) {
   c.error_size = sizeof text;
   c.settings = "gravity=9\nfriction_of_all=1";
   const auto failed = [&](rdm_result r) {
-    EXPECT_EQ(r, RDM_NOT_FOUND);
+    EXPECT_EQ(r, RDM_ERROR_NOT_FOUND);
     EXPECT_STREQ(text, rdm_last_error());
     EXPECT_NE(std::strstr(text, "option friction_of_all: unknown"), nullptr) << text;
     std::strcpy(text, "untouched");
@@ -170,12 +171,12 @@ TEST(ConfigError, GetsTheTextOfEveryFailingCallThatTakesThePoolConfig) {
   rdm_spec spec{};
   spec.struct_size = sizeof spec;
   failed(rdm_pool_create(&p, &c));
-  failed(rdm_pool_spec(&c, &spec));
-  failed(rdm_pool_memory(&c, nullptr, nullptr));
+  failed(rdm_pool_config_spec(&c, &spec));
+  failed(rdm_pool_config_memory(&c, nullptr, nullptr));
   c.settings = nullptr;
-  EXPECT_EQ(rdm_pool_spec(&c, &spec), RDM_OK);
+  EXPECT_EQ(rdm_pool_config_spec(&c, &spec), RDM_OK);
   EXPECT_STREQ(text, "untouched");
-  EXPECT_EQ(rdm_pool_create(nullptr, &c), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_pool_create(nullptr, &c), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(text, "out is NULL");
 }
 
@@ -188,7 +189,7 @@ TEST(ConfigError, IsCutBetweenCharacters) {
   for (int32_t size = 1; size <= 16; ++size) {
     c.error_size = size;
     rdm_pool* p = nullptr;
-    EXPECT_EQ(rdm_pool_create(&p, &c), RDM_NOT_FOUND);
+    EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ERROR_NOT_FOUND);
     const std::string whole = rdm_last_error(), got = text;
     EXPECT_LT(got.size(), static_cast<size_t>(size));
     EXPECT_GE(got.size() + 2, static_cast<size_t>(size));
@@ -198,7 +199,7 @@ TEST(ConfigError, IsCutBetweenCharacters) {
   for (const int32_t size : {0, -1}) {
     c.error_size = size;
     rdm_pool* p = nullptr;
-    EXPECT_EQ(rdm_pool_create(&p, &c), RDM_RANGE);
+    EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ERROR_RANGE);
   }
 }
 
@@ -209,13 +210,13 @@ TEST(ConfigError, OfAgentsAndMaps) {
   a.error_size = sizeof text;
   a.num_envs = 0;
   rdm_agent* agent = nullptr;
-  EXPECT_EQ(rdm_agent_create(&agent, &a), RDM_RANGE);
+  EXPECT_EQ(rdm_agent_create(&agent, &a), RDM_ERROR_RANGE);
   EXPECT_STREQ(text, rdm_last_error());
   size_t bytes = 0;
   text[0] = '\0';
-  EXPECT_EQ(rdm_agent_memory(&a, &bytes), RDM_RANGE);
+  EXPECT_EQ(rdm_agent_config_memory(&a, &bytes), RDM_ERROR_RANGE);
   EXPECT_STREQ(text, rdm_last_error());
-  EXPECT_EQ(rdm_agent_config_for_pool(&a, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_agent_config_for_pool(&a, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(text, "pool is NULL");
 
   rdm_map_config m;
@@ -224,7 +225,7 @@ TEST(ConfigError, OfAgentsAndMaps) {
   m.error_size = sizeof text;
   m.resolution = -1;
   rdm_map* map = nullptr;
-  EXPECT_EQ(rdm_map_create(&map, &m), RDM_RANGE);
+  EXPECT_EQ(rdm_map_create(&map, &m), RDM_ERROR_RANGE);
   EXPECT_STREQ(text, rdm_last_error());
 }
 
@@ -240,7 +241,7 @@ TEST(ConfigError, OlderStructsHaveNone) {
   EXPECT_EQ(rdm_pool_create(&p, &c), RDM_OK) << rdm_last_error();
   rdm_pool_destroy(p);
   c.task = "nonsense";
-  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ERROR_NOT_FOUND);
   EXPECT_STREQ(text, "untouched");
 }
 

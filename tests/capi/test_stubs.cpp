@@ -27,17 +27,17 @@ TEST(Halves, SimulationIsThereOrSaysThatItIsNot) {
   config.num_envs = 1;
   rdm_pool* pool = nullptr;
   size_t ours = 0, engines = 0;
-  EXPECT_EQ(rdm_pool_create(&pool, &config), RDM_UNSUPPORTED);
+  EXPECT_EQ(rdm_pool_create(&pool, &config), RDM_ERROR_UNSUPPORTED);
   EXPECT_NE(std::string(rdm_last_error()).find("simulation"), std::string::npos) << rdm_last_error();
   EXPECT_EQ(pool, nullptr);
-  EXPECT_EQ(rdm_pool_memory(&config, &ours, &engines), RDM_UNSUPPORTED);
+  EXPECT_EQ(rdm_pool_config_memory(&config, &ours, &engines), RDM_ERROR_UNSUPPORTED);
   char text[64] = "";
   config.error = text;
   config.error_size = sizeof text;
-  EXPECT_EQ(rdm_pool_create(&pool, &config), RDM_UNSUPPORTED);
+  EXPECT_EQ(rdm_pool_create(&pool, &config), RDM_ERROR_UNSUPPORTED);
   EXPECT_STREQ(text, "this build was made without the simulation half");
-  EXPECT_EQ(rdm_pool_step(nullptr), RDM_UNSUPPORTED);
-  EXPECT_EQ(rdm_pool_render(nullptr, 0, "front", 8, 8, nullptr, nullptr, nullptr), RDM_UNSUPPORTED);
+  EXPECT_EQ(rdm_pool_step(nullptr), RDM_ERROR_UNSUPPORTED);
+  EXPECT_EQ(rdm_pool_render(nullptr, 0, "front", 8, 8, nullptr, nullptr, nullptr), RDM_ERROR_UNSUPPORTED);
   rdm_pool_destroy(nullptr);
 }
 
@@ -54,18 +54,18 @@ TEST(Halves, LearningIsThereOrSaysThatItIsNot) {
     ASSERT_EQ(rdm_agent_create(&agent, &config), RDM_OK) << rdm_last_error();
     const float obs[6] = {};
     float action[2] = {9, 9};
-    EXPECT_EQ(rdm_agent_act(agent, obs, RDM_MEAN, action), RDM_OK);
+    EXPECT_EQ(rdm_agent_act(agent, obs, RDM_ACT_MEAN, action), RDM_OK);
     EXPECT_LT(action[0], 9);
     rdm_agent_destroy(agent);
     return;
   }
   EXPECT_EQ(rdm_algo_count(), 0);
   rdm_policy* policy = nullptr;
-  EXPECT_EQ(rdm_policy_load(&policy, "x", 1), RDM_UNSUPPORTED);
+  EXPECT_EQ(rdm_policy_read(&policy, "x", 1), RDM_ERROR_UNSUPPORTED);
   EXPECT_NE(std::string(rdm_last_error()).find("learning"), std::string::npos) << rdm_last_error();
   EXPECT_EQ(policy, nullptr);
   EXPECT_EQ(rdm_policy_scratch(nullptr, 1), 0u);
-  EXPECT_EQ(rdm_agent_update(nullptr, nullptr, nullptr), RDM_UNSUPPORTED);
+  EXPECT_EQ(rdm_agent_update(nullptr, nullptr, nullptr), RDM_ERROR_UNSUPPORTED);
   rdm_agent_cancel(nullptr);
   rdm_agent_destroy(nullptr);
   rdm_policy_destroy(nullptr);

@@ -51,7 +51,7 @@ rdm_epoch learn(rdm_pool* pool) {
 // A box of `mass` kg and 10 cm.
 rdm_result add_box(rdm_scene* scene, const char* name, double mass, double height) {
   rdm_shape_def box{};
-  box.kind = RDM_BOX, box.size[0] = box.size[1] = box.size[2] = 0.05;
+  box.kind = RDM_SHAPE_BOX, box.size[0] = box.size[1] = box.size[2] = 0.05;
   rdm_body_def body{};
   body.struct_size = sizeof body, body.name = name, body.shapes = &box, body.num_shapes = 1;
   body.mass = mass, body.p[0] = 1, body.p[2] = height;
@@ -60,7 +60,7 @@ rdm_result add_box(rdm_scene* scene, const char* name, double mass, double heigh
 
 rdm_result add_ground(rdm_scene* scene) {
   rdm_shape_def ground{};
-  ground.name = "ground", ground.kind = RDM_PLANE;
+  ground.name = "ground", ground.kind = RDM_SHAPE_PLANE;
   return rdm_scene_add_static(scene, &ground);
 }
 
@@ -114,7 +114,7 @@ TEST(Trouble, ActionsThatAreNotFiniteAreCounted) {
 TEST(Trouble, FailuresOfTheTaskAreCounted) {
   CalledTask task("fails_counted");
   Pool p("fails_counted");
-  task.control = [](rdm_world*, int64_t*) { return RDM_IO; };
+  task.control = [](rdm_world*, int64_t*) { return RDM_ERROR_IO; };
   p.step(2);
   p.expect_status(RDM_STATUS_TASK, RDM_STATUS_TASK);
   EXPECT_EQ(p.stats().task_failed, 2 * kWorlds);
@@ -131,8 +131,8 @@ TEST(Trouble, AFirstObservationThatIsNotFiniteIsFlaggedAndMended) {
   size_t size = 0;
   EXPECT_EQ(rdm_pool_state_size(p.pool, -1, &size), RDM_OK);
   std::vector<unsigned char> state(size);
-  EXPECT_EQ(rdm_pool_get_state(p.pool, -1, state.data(), size, &size), RDM_OK);
-  EXPECT_EQ(rdm_pool_set_state(p.pool, -1, state.data(), size), RDM_OK) << rdm_pool_error(p.pool);
+  EXPECT_EQ(rdm_pool_write_state(p.pool, -1, state.data(), size, &size), RDM_OK);
+  EXPECT_EQ(rdm_pool_read_state(p.pool, -1, state.data(), size), RDM_OK) << rdm_pool_error(p.pool);
   p.step();
   p.expect_status(0, RDM_STATUS_DIVERGED);
   EXPECT_EQ(p.stats().diverged, kWorlds);
@@ -216,10 +216,10 @@ TEST(Trouble, StatesAndCopiesKeepTheEpisodesStatus) {
   p.step(3);
   std::vector<unsigned char> state(1 << 20);
   size_t size = 0;
-  EXPECT_EQ(rdm_pool_get_state(p.pool, 1, state.data(), state.size(), &size), RDM_OK);
+  EXPECT_EQ(rdm_pool_write_state(p.pool, 1, state.data(), state.size(), &size), RDM_OK);
   EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, nullptr), RDM_OK);
   p.expect_status(0, 0);
-  EXPECT_EQ(rdm_pool_set_state(p.pool, 2, state.data(), size), RDM_OK);
+  EXPECT_EQ(rdm_pool_read_state(p.pool, 2, state.data(), size), RDM_OK);
   EXPECT_EQ(p.b.episode_status[2], uint32_t{RDM_STATUS_CONTACTS});
   EXPECT_EQ(rdm_pool_copy(p.pool, 0, p.pool, 2), RDM_OK);
   EXPECT_EQ(p.b.episode_status[0], uint32_t{RDM_STATUS_CONTACTS});

@@ -21,7 +21,7 @@ int main(void) {
   config.task = task.name;
   config.num_envs = 2;
   if (rdm_pool_create(&pool, &config)) return failed("create");
-  if (rdm_pool_buffers(pool, &rows)) return failed("buffers");
+  if (rdm_pool_get_buffers(pool, &rows)) return failed("buffers");
   if (rdm_pool_reset(pool, NULL, NULL)) return failed("reset");
   for (step = 0; step < 5; ++step)
     if (rdm_pool_step(pool)) return failed("step");

@@ -10,8 +10,8 @@ int main(void) {
   rdm_import* i;
   rdm_robot_def def;
   int32_t robot;
-  if (rdm_import_text(&i, text, strlen(text), NULL) || rdm_robot_def_init(&def, sizeof def) ||
-      rdm_import_def(i, &def)) {
+  if (rdm_import_read(&i, text, strlen(text), NULL) || rdm_robot_def_init(&def, sizeof def) ||
+      rdm_import_get_robot_def(i, &def)) {
     puts(rdm_import_error());
     return 1;
   }
@@ -20,6 +20,6 @@ int main(void) {
     return 1;
   }
   rdm_import_destroy(i);
-  rdm_robot_remove(robot);
+  rdm_robot_destroy(robot);
   return 0;
 }

@@ -1,5 +1,5 @@
 // Refused memory at every allocation site: for each thing that the library makes or does, allocation number
-// 1, 2, 3 ... fails, once alone and once with all that follow. The code must be RDM_MEMORY (or the call must
+// 1, 2, 3 ... fails, once alone and once with all that follow. The code must be RDM_ERROR_MEMORY (or the call must
 // do without), nothing may leak, and the same call must work when memory is there again.
 //
 // Two ways in: the host's alloc hook, and the C library's malloc with its kin, which takes in operator new,
@@ -149,9 +149,9 @@ rdm_result fill_map() {
 }
 Bytes map_bytes(int32_t format) {
   size_t n = 0;
-  must(rdm_map_save(g.map, format, nullptr, 0, &n));
+  must(rdm_map_write(g.map, format, nullptr, 0, &n));
   Bytes out(n);
-  must(rdm_map_save(g.map, format, out.data(), n, &n));
+  must(rdm_map_write(g.map, format, out.data(), n, &n));
   return out;
 }
 
@@ -187,7 +187,7 @@ std::vector<Case> all_cases() {
                      g.bytes = g.pool.state();
                    },
                    [](const rdm_host*) {
-                     return rdm_pool_set_state(g.pool.handle, -1, g.bytes.data(), g.bytes.size());
+                     return rdm_pool_read_state(g.pool.handle, -1, g.bytes.data(), g.bytes.size());
                    },
                    clear});
   }
@@ -195,8 +195,8 @@ std::vector<Case> all_cases() {
                  [](const rdm_host*) {
                    static rdm::test::BallTask own("own_refused");
                    int32_t task = -1;
-                   const rdm_result r = rdm_task_register(&task, &own.def);
-                   if (r == RDM_OK) rdm_task_remove(task);
+                   const rdm_result r = rdm_task_create(&task, &own.def);
+                   if (r == RDM_OK) rdm_task_destroy(task);
                    return r;
                  },
                  clear});
@@ -218,8 +218,8 @@ std::vector<Case> all_cases() {
                      spec.struct_size = sizeof spec;
                      size_t ours = 0, engines = 0;
                      rdm_field field;
-                     rdm_result r = rdm_pool_spec(&c, &spec);
-                     if (r == RDM_OK) r = rdm_pool_memory(&c, &ours, &engines);
+                     rdm_result r = rdm_pool_config_spec(&c, &spec);
+                     if (r == RDM_OK) r = rdm_pool_config_memory(&c, &ours, &engines);
                      if (r == RDM_OK) r = rdm_task_field(w.index, 0, &field);
                      return r;
                    },
@@ -275,7 +275,7 @@ std::vector<Case> all_cases() {
            must(g.agent.epoch());
            g.bytes = g.agent.state();
          },
-         [](const rdm_host*) { return rdm_agent_load(g.agent.handle, g.bytes.data(), g.bytes.size()); },
+         [](const rdm_host*) { return rdm_agent_read_state(g.agent.handle, g.bytes.data(), g.bytes.size()); },
          clear});
     out.push_back({"agent save and policy " + algo,
                    [=](const rdm_host* host) {
@@ -284,9 +284,11 @@ std::vector<Case> all_cases() {
                    },
                    [](const rdm_host*) {
                      size_t n = 0;
-                     const rdm_result r = rdm_agent_save(g.agent.handle, g.bytes.data(), g.bytes.size(), &n);
-                     return r == RDM_OK ? rdm_agent_policy(g.agent.handle, g.bytes.data(), g.bytes.size(), &n)
-                                        : r;
+                     const rdm_result r =
+                         rdm_agent_write_state(g.agent.handle, g.bytes.data(), g.bytes.size(), &n);
+                     return r == RDM_OK
+                                ? rdm_agent_write_policy(g.agent.handle, g.bytes.data(), g.bytes.size(), &n)
+                                : r;
                    },
                    clear});
   }
@@ -318,7 +320,7 @@ std::vector<Case> all_cases() {
                    must(g.agent.create());
                    g.bytes = g.agent.policy();
                  },
-                 [](const rdm_host*) { return rdm_policy_load(&g.policy, g.bytes.data(), g.bytes.size()); },
+                 [](const rdm_host*) { return rdm_policy_read(&g.policy, g.bytes.data(), g.bytes.size()); },
                  clear});
   const std::string checkpoint = "hard_refuse-" + std::to_string(getpid()) + ".rdm";
   const auto pair = [=](const rdm_host* host) {
@@ -355,7 +357,7 @@ std::vector<Case> all_cases() {
                    must(a.make("ppo", host));
                    g.bytes = a.policy();
                  },
-                 [](const rdm_host*) { return rdm_policy_load(&g.policy, g.bytes.data(), g.bytes.size()); },
+                 [](const rdm_host*) { return rdm_policy_read(&g.policy, g.bytes.data(), g.bytes.size()); },
                  clear});
   out.push_back({"map", nothing,
                  [](const rdm_host* host) {
@@ -378,7 +380,7 @@ std::vector<Case> all_cases() {
                      filled(host);
                      g.bytes = map_bytes(format);
                    },
-                   [](const rdm_host*) { return rdm_map_load(g.map, g.bytes.data(), g.bytes.size()); },
+                   [](const rdm_host*) { return rdm_map_read(g.map, g.bytes.data(), g.bytes.size()); },
                    clear});
     out.push_back({"map save" + name,
                    [=](const rdm_host* host) {
@@ -387,7 +389,7 @@ std::vector<Case> all_cases() {
                    },
                    [=](const rdm_host*) {
                      size_t n = 0;
-                     return rdm_map_save(g.map, format, g.bytes.data(), g.bytes.size(), &n);
+                     return rdm_map_write(g.map, format, g.bytes.data(), g.bytes.size(), &n);
                    },
                    clear});
   }
@@ -432,7 +434,7 @@ Outcome refuse_one(const Case& c, const rdm_host* host, long at, bool onwards, T
     faults.armed = false;
     const bool fired = faults.calls >= at;
     if (fired && r == RDM_OK) absorbed = true;
-    if (r != RDM_OK && r != RDM_MEMORY) {
+    if (r != RDM_OK && r != RDM_ERROR_MEMORY) {
       tally.remember("allocation %ld%s: code %d, %s", at, onwards ? " and all after" : "", r,
                      rdm_last_error());
       return Outcome::kBad;

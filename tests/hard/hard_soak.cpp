@@ -42,7 +42,7 @@ void soak(const World& w, long steps, double seconds, Soak& out) {
   HARD_REQUIRE(pool.make(w, kEnvs) == RDM_OK, "%s", rdm_last_error());
   HARD_REQUIRE(rdm_pool_reset(pool.handle, nullptr, nullptr) == RDM_OK, "%s", rdm_last_error());
   size_t ours = 0, engines = 0;
-  HARD_REQUIRE(rdm_pool_memory(&pool.config, &ours, &engines) == RDM_OK, "%s", rdm_last_error());
+  HARD_REQUIRE(rdm_pool_config_memory(&pool.config, &ours, &engines) == RDM_OK, "%s", rdm_last_error());
   out.world = static_cast<long>((ours + engines) / kEnvs);
   const double begin = now();
   long warm = 0, t = 0;

@@ -50,14 +50,14 @@ void many(int rounds) {
         pool.fill_actions(k);
         must(rdm_pool_step(pool.handle));
       }
-      must(rdm_pool_hash(pool.handle, -1, &hashes[static_cast<size_t>(i)]));
+      must(rdm_pool_get_hash(pool.handle, -1, &hashes[static_cast<size_t>(i)]));
       AgentOf agent;
       must(agent.make(algos[static_cast<size_t>(round + i) % algos.size()], nullptr, i % 2 ? 2 : 0));
       must(agent.epoch());
       rdm_field field;
       must(rdm_task_field(w.index, 0, &field));
       rdm_pool* none = nullptr;
-      HARD_REQUIRE(rdm_pool_create(&none, nullptr) == RDM_ARGUMENT && *rdm_last_error(), "no refusal");
+      HARD_REQUIRE(rdm_pool_create(&none, nullptr) == RDM_ERROR_ARGUMENT && *rdm_last_error(), "no refusal");
     });
     for (size_t i = 0; i < 8; i += 2)
       HARD_REQUIRE(hashes[i] == hashes[i + 1], "with workers another state comes out");
@@ -70,7 +70,7 @@ void one_policy(int rounds) {
   must(agent.epoch());
   const Bytes bytes = agent.policy();
   rdm_policy* p = nullptr;
-  must(rdm_policy_load(&p, bytes.data(), bytes.size()));
+  must(rdm_policy_read(&p, bytes.data(), bytes.size()));
   const int32_t rows = 5;
   std::vector<float> obs(rows * AgentOf::kObs), expected(rows * AgentOf::kActions);
   for (size_t i = 0; i < obs.size(); ++i) obs[i] = static_cast<float>(i % 5) * 0.3f;
@@ -112,15 +112,15 @@ void cancel(int rounds) {
   int cancelled = 0;
   for (int k = 0; k < 1000 * rounds && cancelled < 20 * rounds; ++k) {
     const rdm_result r = rdm_agent_rollout(g_agent, pool.handle, nullptr);
-    if (r != RDM_CANCELLED) must(r);
-    cancelled += r == RDM_CANCELLED;
+    if (r != RDM_ERROR_CANCELLED) must(r);
+    cancelled += r == RDM_ERROR_CANCELLED;
   }
   const itimerval never{};
   setitimer(ITIMER_REAL, &never, nullptr);
   HARD_REQUIRE(cancelled > 0, "nothing was cancelled");
   // a cancel that came after the last call is for the next one
   const rdm_result last = rdm_agent_rollout(g_agent, pool.handle, nullptr);
-  if (last != RDM_CANCELLED) must(last);
+  if (last != RDM_ERROR_CANCELLED) must(last);
   must(rdm_agent_rollout(g_agent, pool.handle, nullptr));
   // and from another thread
   std::atomic<bool> end{false};
@@ -129,7 +129,7 @@ void cancel(int rounds) {
   });
   for (int k = 0; k < 20; ++k) {
     const rdm_result r = rdm_agent_rollout(g_agent, pool.handle, nullptr);
-    if (r != RDM_CANCELLED) must(r);
+    if (r != RDM_ERROR_CANCELLED) must(r);
   }
   end = true;
   other.join();
@@ -189,13 +189,13 @@ void after_fork(int) {
     if (child == 0) {
       alarm(60);
       must(rdm_pool_step(alone.handle));
-      must(rdm_pool_hash(alone.handle, -1, &expected));
+      must(rdm_pool_get_hash(alone.handle, -1, &expected));
       const rdm_result r = rdm_pool_step(shared.handle);
-      HARD_REQUIRE(r == RDM_STATE && std::strstr(rdm_last_error(), "fork"), "code %d: %s", r,
+      HARD_REQUIRE(r == RDM_ERROR_STATE && std::strstr(rdm_last_error(), "fork"), "code %d: %s", r,
                    rdm_last_error());
       const rdm_result e = agent.epoch();
-      HARD_REQUIRE(e == RDM_OK || (e == RDM_STATE && std::strstr(rdm_last_error(), "fork")), "code %d: %s", e,
-                   rdm_last_error());
+      HARD_REQUIRE(e == RDM_OK || (e == RDM_ERROR_STATE && std::strstr(rdm_last_error(), "fork")),
+                   "code %d: %s", e, rdm_last_error());
       shared.reset();
       agent.reset();
       PoolOf fresh;
@@ -211,8 +211,8 @@ void after_fork(int) {
     for (PoolOf* p : {&alone, &shared}) must(rdm_pool_step(p->handle));
     must(agent.epoch());
     uint64_t a = 0, b = 0;
-    must(rdm_pool_hash(alone.handle, -1, &a));
-    must(rdm_pool_hash(shared.handle, -1, &b));
+    must(rdm_pool_get_hash(alone.handle, -1, &a));
+    must(rdm_pool_get_hash(shared.handle, -1, &b));
     HARD_REQUIRE(a == b, "workers change the bytes");
   }
 }

@@ -95,7 +95,7 @@ Experiment world_experiment(const World& w) {
     Bytes bytes;
     std::string what;
     if (!places->change(k, bytes, what)) return Outcome::kOther;
-    const rdm_result r = rdm_pool_set_state(pool->handle, -1, bytes.data(), bytes.size());
+    const rdm_result r = rdm_pool_read_state(pool->handle, -1, bytes.data(), bytes.size());
     if (r != RDM_OK) {
       require_refusal(r);
       if (pool->state() == places->good) return Outcome::kGood;
@@ -107,7 +107,7 @@ Experiment world_experiment(const World& w) {
         if (rdm_pool_step(pool->handle) != RDM_OK) break;
         bad = pool->broken_row();
       }
-      HARD_REQUIRE(rdm_pool_set_state(pool->handle, -1, places->good.data(), places->good.size()) == RDM_OK,
+      HARD_REQUIRE(rdm_pool_read_state(pool->handle, -1, places->good.data(), places->good.size()) == RDM_OK,
                    "%s", rdm_last_error());
       if (!bad) return Outcome::kOther;
       tally.remember("%s: taken, and %s is out of its bounds", what.c_str(), bad);
@@ -126,7 +126,7 @@ Experiment agent_experiment(const std::string& algo) {
     Bytes bytes;
     std::string what;
     if (!places->change(k, bytes, what)) return Outcome::kOther;
-    const rdm_result r = rdm_agent_load(agent->handle, bytes.data(), bytes.size());
+    const rdm_result r = rdm_agent_read_state(agent->handle, bytes.data(), bytes.size());
     if (r != RDM_OK) {
       require_refusal(r);
       if (agent->state() == places->good) return Outcome::kGood;
@@ -134,12 +134,12 @@ Experiment agent_experiment(const std::string& algo) {
     } else {
       const Bytes policy = agent->policy();
       rdm_policy* p = nullptr;
-      const bool loads = rdm_policy_load(&p, policy.data(), policy.size()) == RDM_OK;
+      const bool loads = rdm_policy_read(&p, policy.data(), policy.size()) == RDM_OK;
       rdm_policy_destroy(p);
       const rdm_result e = agent->epoch();
       if (e != RDM_OK) require_refusal(e);
-      HARD_REQUIRE(rdm_agent_load(agent->handle, places->good.data(), places->good.size()) == RDM_OK, "%s",
-                   rdm_last_error());
+      HARD_REQUIRE(rdm_agent_read_state(agent->handle, places->good.data(), places->good.size()) == RDM_OK,
+                   "%s", rdm_last_error());
       if (loads) return Outcome::kOther;
       tally.remember("%s: taken, and the policy does not load", what.c_str());
     }

@@ -90,7 +90,7 @@ inline std::vector<World> all_pairs(const std::string& task) {
   for (int32_t i = 0; i < rdm_robot_count(); ++i) {
     rdm_robot_def d{};
     d.struct_size = sizeof d;
-    HARD_REQUIRE(rdm_robot_get(i, &d) == RDM_OK, "%s", rdm_last_error());
+    HARD_REQUIRE(rdm_robot_get_def(i, &d) == RDM_OK, "%s", rdm_last_error());
     of[d.kind].push_back(d.name);
   }
   for (const std::string& hand : of[RDM_ROBOT_HAND])
@@ -135,7 +135,7 @@ struct PoolOf {
     if (r != RDM_OK) return r;
     rows.struct_size = sizeof rows;
     spec.struct_size = sizeof spec;
-    rdm_pool_buffers(handle, &rows);
+    rdm_pool_get_buffers(handle, &rows);
     rdm_pool_get_spec(handle, &spec);
     return RDM_OK;
   }
@@ -156,7 +156,7 @@ struct PoolOf {
     size_t n = 0;
     HARD_REQUIRE(rdm_pool_state_size(handle, -1, &n) == RDM_OK, "%s", rdm_last_error());
     Bytes out(n);
-    HARD_REQUIRE(rdm_pool_get_state(handle, -1, out.data(), n, &n) == RDM_OK, "%s", rdm_last_error());
+    HARD_REQUIRE(rdm_pool_write_state(handle, -1, out.data(), n, &n) == RDM_OK, "%s", rdm_last_error());
     return out;
   }
   // All that a step writes is finite, costs are not negative.
@@ -203,7 +203,7 @@ inline bool good_text(const char* text) {
 
 // After a refusal: a known code, and a text that a program may print.
 inline void require_refusal(rdm_result r) {
-  HARD_REQUIRE(r != RDM_INTERNAL && std::strcmp(rdm_result_string(r), rdm_result_string(-1234567)) != 0,
+  HARD_REQUIRE(r != RDM_ERROR_INTERNAL && std::strcmp(rdm_result_string(r), rdm_result_string(-1234567)) != 0,
                "code %d: %s", r, rdm_last_error());
   HARD_REQUIRE(*rdm_last_error() && good_text(rdm_last_error()), "text of code %d: %s", r, rdm_last_error());
 }
@@ -253,7 +253,7 @@ struct AgentOf {
     uint8_t ended[kRows];
     for (int h = 0; h < kHorizon; ++h) {
       for (int i = 0; i < kRows * kObs; ++i) obs[i] = static_cast<float>((7 * i + 3 * h) % 11) * 0.1f;
-      if (const rdm_result r = rdm_agent_act(handle, obs, RDM_SAMPLE, action)) return r;
+      if (const rdm_result r = rdm_agent_act(handle, obs, RDM_ACT_SAMPLE, action)) return r;
       for (float a : action) HARD_REQUIRE(!require_finite || std::isfinite(a), "an action is not finite");
       for (int i = 0; i < kRows; ++i) {
         reward[i] = -0.1f * static_cast<float>(h % 3);
@@ -271,16 +271,16 @@ struct AgentOf {
   }
   Bytes state() const {
     size_t n = 0;
-    HARD_REQUIRE(rdm_agent_save(handle, nullptr, 0, &n) == RDM_OK, "%s", rdm_last_error());
+    HARD_REQUIRE(rdm_agent_write_state(handle, nullptr, 0, &n) == RDM_OK, "%s", rdm_last_error());
     Bytes out(n);
-    HARD_REQUIRE(rdm_agent_save(handle, out.data(), n, &n) == RDM_OK, "%s", rdm_last_error());
+    HARD_REQUIRE(rdm_agent_write_state(handle, out.data(), n, &n) == RDM_OK, "%s", rdm_last_error());
     return out;
   }
   Bytes policy() const {
     size_t n = 0;
-    HARD_REQUIRE(rdm_agent_policy(handle, nullptr, 0, &n) == RDM_OK, "%s", rdm_last_error());
+    HARD_REQUIRE(rdm_agent_write_policy(handle, nullptr, 0, &n) == RDM_OK, "%s", rdm_last_error());
     Bytes out(n);
-    HARD_REQUIRE(rdm_agent_policy(handle, out.data(), n, &n) == RDM_OK, "%s", rdm_last_error());
+    HARD_REQUIRE(rdm_agent_write_policy(handle, out.data(), n, &n) == RDM_OK, "%s", rdm_last_error());
     return out;
   }
 

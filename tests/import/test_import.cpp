@@ -24,9 +24,9 @@ Import from_file(const std::string& name, const rdm_import_options* o = nullptr)
 
 std::string written(const rdm_robot_def& def) {
   size_t size = 0;
-  EXPECT_EQ(rdm_import_write(&def, nullptr, 0, &size), RDM_OK) << rdm_import_error();
+  EXPECT_EQ(rdm_import_write_robot(&def, nullptr, 0, &size), RDM_OK) << rdm_import_error();
   std::string text(size + 1, '\0');
-  EXPECT_EQ(rdm_import_write(&def, text.data(), text.size(), &size), RDM_OK) << rdm_import_error();
+  EXPECT_EQ(rdm_import_write_robot(&def, text.data(), text.size(), &size), RDM_OK) << rdm_import_error();
   text.pop_back();
   return text;
 }
@@ -45,7 +45,7 @@ struct Robot {  // in the process's list for a while
     EXPECT_EQ(rdm_robot_create(&index, &def), RDM_OK) << rdm_last_error();
   }
   ~Robot() {
-    if (index >= 0) rdm_robot_remove(index);
+    if (index >= 0) rdm_robot_destroy(index);
   }
   std::vector<double> poses(const std::vector<double>& q) const {
     std::vector<double> out(7 * q.size());
@@ -75,7 +75,7 @@ TEST(Import, UrdfBecomesAHand) {
   EXPECT_EQ(d.couplings[0].link, i.link("ring_distal"));
   EXPECT_EQ(d.couplings[0].other, i.link("ring_proximal"));
   EXPECT_DOUBLE_EQ(d.couplings[0].ratio, 0.8);
-  EXPECT_EQ(d.shapes[1].kind, RDM_CYLINDER);
+  EXPECT_EQ(d.shapes[1].kind, RDM_SHAPE_CYLINDER);
   EXPECT_DOUBLE_EQ(d.shapes[1].size[1], 0.015);
   for (const char* text :
        {"line 4: material grey", "line 11: visual", "line 140: gazebo", "line 141: transmission t"})
@@ -100,7 +100,7 @@ TEST(Import, RolesAreGuessedAndListed) {
   }
   EXPECT_NEAR(d.fingers[0].p_tip[2], 0.022, 1e-12);  // the frame index_tip
   EXPECT_NEAR(d.fingers[1].p_tip[2], 0.021, 1e-12);  // the end of its sphere
-  EXPECT_EQ(d.palm_link, RDM_ROOT_LINK);
+  EXPECT_EQ(d.palm_link, RDM_LINK_ROOT);
   EXPECT_NEAR(d.palm_normal[1], -1, 1e-9);
   EXPECT_NEAR(d.palm_fingers[2], 1, 1e-9);
   EXPECT_EQ(d.mirror, 0);
@@ -124,7 +124,7 @@ TEST(Import, OptionsThatAFormatDoesNotTakeAreRefused) {
   const auto refused = [](const std::string& bytes, const std::string& text, auto&& set) {
     rdm_import_options o = options();
     set(o);
-    expect_refused(bytes, RDM_ARGUMENT, text, &o);
+    expect_refused(bytes, RDM_ERROR_ARGUMENT, text, &o);
   };
   refused(read("hand.xml"), "options.density: of URDF alone; a geom of MJCF says its own mass or density",
           [](auto& o) { o.density = 1000; });
@@ -220,18 +220,18 @@ TEST(Import, GrippersHaveRailsOffsetsAndMeshes) {
   EXPECT_NEAR(head.moment[1], 3e-4, 1e-12);
   EXPECT_STREQ(d.links[1].name, "jaw_a");
   EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "line 43: link jaw.a is called jaw_a"));
-  EXPECT_EQ(d.links[1].kind, RDM_PRISMATIC);
+  EXPECT_EQ(d.links[1].kind, RDM_JOINT_PRISMATIC);
   // jaw_b = jaw_a + 0.01: its 0 is where it stood at 0.01.
   ASSERT_EQ(d.num_couplings, 1);
   EXPECT_DOUBLE_EQ(d.couplings[0].ratio, 1);
   EXPECT_NEAR(d.links[2].lower, 0, 1e-15);
   EXPECT_NEAR(d.links[2].p[0], -0.02, 1e-15);
   const rdm_robot_shape &pad = d.shapes[1], &rod = d.shapes[2];
-  EXPECT_EQ(pad.kind, RDM_BOX);
+  EXPECT_EQ(pad.kind, RDM_SHAPE_BOX);
   EXPECT_NEAR(pad.size[0], 0.005, 1e-9);
   EXPECT_NEAR(pad.size[2], 0.03, 1e-9);
   EXPECT_NEAR(pad.p[2], 0.03, 1e-9);
-  EXPECT_EQ(rod.kind, RDM_CAPSULE);
+  EXPECT_EQ(rod.kind, RDM_SHAPE_CAPSULE);
   EXPECT_NEAR(rod.size[0], 0.01, 1e-4);
   EXPECT_NEAR(rod.size[1], 0.03, 1e-3);
 }
@@ -262,8 +262,9 @@ TEST(Import, ArmsHaveFlangesReferencesAndMassesOfShapes) {
   const Import hand = from_file("hand.xml");
   const Robot a(d), h(hand.def);
   int32_t both = -1;
-  ASSERT_EQ(rdm_robot_mount(&both, "imported-pair", a.index, h.index, 0, 0, 0), RDM_OK) << rdm_last_error();
-  rdm_robot_remove(both);
+  ASSERT_EQ(rdm_robot_create_mounted(&both, "imported-pair", a.index, h.index, 0, 0, 0), RDM_OK)
+      << rdm_last_error();
+  rdm_robot_destroy(both);
 }
 
 TEST(Import, ChecksTellWhatTouchesAndWhatShakes) {
@@ -351,10 +352,10 @@ TEST(RobotText, EveryRobotReadsBackToTheBit) {
   for (int32_t r = 0; r < rdm_robot_count(); ++r) {
     rdm_robot_def def;
     rdm_robot_def_init(&def, sizeof def);
-    if (rdm_robot_get(r, &def) != RDM_OK) continue;
+    if (rdm_robot_get_def(r, &def) != RDM_OK) continue;
     SCOPED_TRACE(def.name);
     rdm_import* made = nullptr;
-    ASSERT_EQ(rdm_import_robot(&made, r), RDM_OK) << rdm_import_error();
+    ASSERT_EQ(rdm_import_create_robot(&made, r), RDM_OK) << rdm_import_error();
     const Import built(made);
     const std::string text = written(built.def);
     const Import again = from_text(text);
@@ -413,7 +414,7 @@ void expect_refusals(const std::string& good, const char* folder, const std::vec
     ASSERT_NE(at, std::string::npos) << r.what;
     text.replace(at, std::strlen(r.what), r.by);
     rdm_import* i = nullptr;
-    EXPECT_EQ(rdm_import_text(&i, text.data(), text.size(), &o), r.code)
+    EXPECT_EQ(rdm_import_read(&i, text.data(), text.size(), &o), r.code)
         << r.by << ": " << rdm_import_error();
     EXPECT_EQ(i, nullptr);
     EXPECT_NE(std::string(rdm_import_error()).find(r.text), std::string::npos)
@@ -426,93 +427,95 @@ void expect_refusals(const std::string& good, const char* folder, const std::vec
 TEST(Refusals, Urdf) {
   expect_refusals(
       read("hand.urdf"), nullptr,
-      {{"<mass value=\"0.02\"", "<mass value=\"0\"", RDM_RANGE,
+      {{"<mass value=\"0.02\"", "<mass value=\"0\"", RDM_ERROR_RANGE,
         "line 26: mass: link index_proximal: the mass 0 is not above 0"},
-       {"<mass value=\"0.02\"", "<mass value=\"-1\"", RDM_RANGE,
+       {"<mass value=\"0.02\"", "<mass value=\"-1\"", RDM_ERROR_RANGE,
         "line 26: mass: link index_proximal: the mass -1 is not above 0"},
-       {"<mass value=\"0.02\"", "<mass value=\"nan\"", RDM_FORMAT, "line 26: mass: value: nan is no number"},
-       {"izz=\"1e-6\"", "izz=\"7e-6\"", RDM_ARGUMENT,
+       {"<mass value=\"0.02\"", "<mass value=\"nan\"", RDM_ERROR_FORMAT,
+        "line 26: mass: value: nan is no number"},
+       {"izz=\"1e-6\"", "izz=\"7e-6\"", RDM_ERROR_ARGUMENT,
         "line 26: inertia: link index_proximal: the principal moments of inertia 3e-06, 3e-06, 7e-06 break "
         "the triangle rule"},
-       {"ixx=\"3e-6\"", "ixx=\"-3e-6\"", RDM_ARGUMENT,
+       {"ixx=\"3e-6\"", "ixx=\"-3e-6\"", RDM_ERROR_ARGUMENT,
         "line 26: inertia: link index_proximal: the principal moments of inertia -3e-06"},
-       {"lower=\"0\" upper=\"1.5\"", "lower=\"1\" upper=\"1\"", RDM_RANGE,
+       {"lower=\"0\" upper=\"1.5\"", "lower=\"1\" upper=\"1\"", RDM_ERROR_RANGE,
         "line 22: limit: joint index_bend: the range [1, 1] is empty"},
-       {"<limit lower=\"0\" upper=\"1.5\" effort=\"0.8\" velocity=\"6\"/>", "", RDM_FORMAT,
+       {"<limit lower=\"0\" upper=\"1.5\" effort=\"0.8\" velocity=\"6\"/>", "", RDM_ERROR_FORMAT,
         "line 17: joint index_bend: no limit"},
-       {"<child link=\"middle_proximal\"/>", "<child link=\"index_proximal\"/>", RDM_ARGUMENT,
+       {"<child link=\"middle_proximal\"/>", "<child link=\"index_proximal\"/>", RDM_ERROR_ARGUMENT,
         "line 46: joint middle_bend: link index_proximal has two parents: joint index_bend of line 17 too"},
-       {"<parent link=\"palm\"/>", "<parent link=\"index_distal\"/>", RDM_ARGUMENT,
+       {"<parent link=\"palm\"/>", "<parent link=\"index_distal\"/>", RDM_ERROR_ARGUMENT,
         "it hangs in a loop of joints"},
-       {"<parent link=\"palm\"/>", "<parent link=\"plam\"/>", RDM_NOT_FOUND,
+       {"<parent link=\"palm\"/>", "<parent link=\"plam\"/>", RDM_ERROR_NOT_FOUND,
         "line 17: joint index_bend: parent plam: there is no such link; nearest is palm"},
-       {"<box size=\"0.09 0.03 0.1\"/>", "<mesh filename=\"palm.stl\"/>", RDM_NOT_FOUND,
+       {"<box size=\"0.09 0.03 0.1\"/>", "<mesh filename=\"palm.stl\"/>", RDM_ERROR_NOT_FOUND,
         "line 14: mesh: mesh palm.stl: a text alone has no folder"},
-       {"<box size=\"0.09 0.03 0.1\"/>", "<box size=\"0.09 0.03\"/>", RDM_FORMAT,
+       {"<box size=\"0.09 0.03 0.1\"/>", "<box size=\"0.09 0.03\"/>", RDM_ERROR_FORMAT,
         "line 14: box: size: 0.09 0.03 is not 3 numbers"},
-       {"<box size=\"0.09 0.03 0.1\"/>", "<box size=\"0.09 0 0.1\"/>", RDM_RANGE,
+       {"<box size=\"0.09 0.03 0.1\"/>", "<box size=\"0.09 0 0.1\"/>", RDM_ERROR_RANGE,
         "line 14: box: link palm: size 0 is not above 0"},
-       {"<box size=\"0.09 0.03 0.1\"/>", "<cone size=\"1\"/>", RDM_UNSUPPORTED,
+       {"<box size=\"0.09 0.03 0.1\"/>", "<cone size=\"1\"/>", RDM_ERROR_UNSUPPORTED,
         "line 14: geometry: link palm: neither box"},
-       {"type=\"revolute\"", "type=\"planar\"", RDM_UNSUPPORTED, "line 17: joint index_bend: type planar"},
-       {"<axis xyz=\"1 0 0\"/>", "<axis xyz=\"0 0 0\"/>", RDM_ARGUMENT,
+       {"type=\"revolute\"", "type=\"planar\"", RDM_ERROR_UNSUPPORTED,
+        "line 17: joint index_bend: type planar"},
+       {"<axis xyz=\"1 0 0\"/>", "<axis xyz=\"0 0 0\"/>", RDM_ERROR_ARGUMENT,
         "line 17: joint index_bend: its axis is 0"},
-       {"<mimic joint=\"ring_bend\"", "<mimic joint=\"ring_band\"", RDM_NOT_FOUND,
+       {"<mimic joint=\"ring_bend\"", "<mimic joint=\"ring_band\"", RDM_ERROR_NOT_FOUND,
         "line 96: mimic: there is no joint ring_band; nearest is ring_bend"},
-       {"<mimic joint=\"ring_bend\"", "<mimic joint=\"ring_curl\"", RDM_ARGUMENT,
+       {"<mimic joint=\"ring_bend\"", "<mimic joint=\"ring_curl\"", RDM_ERROR_ARGUMENT,
         "line 96: mimic: joint ring_curl follows itself"},
-       {"<link name=\"index_distal\">", "<link name=\"index_proximal\">", RDM_ARGUMENT,
+       {"<link name=\"index_distal\">", "<link name=\"index_proximal\">", RDM_ERROR_ARGUMENT,
         "line 39: link index_proximal: it stands twice"},
-       {"<link name=\"index_tip\"/>", "<link name=\"index_tip\"/><link name=\"lost\"/>", RDM_ARGUMENT,
+       {"<link name=\"index_tip\"/>", "<link name=\"index_tip\"/><link name=\"lost\"/>", RDM_ERROR_ARGUMENT,
         "line 139: link lost: no joint carries it, nor link palm of line 5"},
        {"<inertial><origin xyz=\"0 0 0.012\"/><mass value=\"0.01\"/><inertia ixx=\"1e-6\" iyy=\"1e-6\" "
         "izz=\"5e-7\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>",
-        "", RDM_RANGE, "line 39: link index_distal: it moves and has no mass"},
-       {"</robot>", "", RDM_FORMAT, "no XML"},
-       {"<robot name=\"plain_hand\">", "<robot name=\"plain_hand\"><xacro:arg name=\"x\"/>", RDM_UNSUPPORTED,
-        "line 3: xacro:arg x: xacro is not read"}});
+        "", RDM_ERROR_RANGE, "line 39: link index_distal: it moves and has no mass"},
+       {"</robot>", "", RDM_ERROR_FORMAT, "no XML"},
+       {"<robot name=\"plain_hand\">", "<robot name=\"plain_hand\"><xacro:arg name=\"x\"/>",
+        RDM_ERROR_UNSUPPORTED, "line 3: xacro:arg x: xacro is not read"}});
 }
 
 TEST(Refusals, Mjcf) {
   const std::string folder = kData;
   expect_refusals(
       read("hand.xml"), folder.c_str(),
-      {{"mass=\"0.02\"", "mass=\"0\"", RDM_RANGE,
+      {{"mass=\"0.02\"", "mass=\"0\"", RDM_ERROR_RANGE,
         "line 29: inertial: body index_proximal: the mass 0 is not above 0"},
-       {"diaginertia=\"3e-6 3e-6 1e-6\"", "diaginertia=\"3e-6 3e-6 7e-6\"", RDM_ARGUMENT,
+       {"diaginertia=\"3e-6 3e-6 1e-6\"", "diaginertia=\"3e-6 3e-6 7e-6\"", RDM_ERROR_ARGUMENT,
         "line 29: inertial: body index_proximal: the principal moments of inertia 3e-06, 3e-06, 7e-06 break "
         "the triangle rule"},
-       {"name=\"index_bend\" class=\"bend\"", "name=\"index_bend\" class=\"bent\"", RDM_NOT_FOUND,
+       {"name=\"index_bend\" class=\"bend\"", "name=\"index_bend\" class=\"bent\"", RDM_ERROR_NOT_FOUND,
         "line 30: joint index_bend: there is no class bent; nearest is bend"},
-       {"name=\"index_bend\" class=\"bend\"", "name=\"index_bend\" range=\"3 1\"", RDM_RANGE,
+       {"name=\"index_bend\" class=\"bend\"", "name=\"index_bend\" range=\"3 1\"", RDM_ERROR_RANGE,
         "line 30: joint index_bend: the range [3, 1] is empty"},
-       {"name=\"index_bend\" class=\"bend\"", "name=\"index_bend\" type=\"ball\"", RDM_UNSUPPORTED,
+       {"name=\"index_bend\" class=\"bend\"", "name=\"index_bend\" type=\"ball\"", RDM_ERROR_UNSUPPORTED,
         "line 30: joint index_bend: type ball"},
-       {"name=\"middle_bend\"", "name=\"index_bend\"", RDM_ARGUMENT, "joint index_bend stands twice"},
-       {"<geom size=\"0.008\" fromto", "<geom type=\"mesh\" mesh=\"bone\" fromto", RDM_NOT_FOUND,
+       {"name=\"middle_bend\"", "name=\"index_bend\"", RDM_ERROR_ARGUMENT, "joint index_bend stands twice"},
+       {"<geom size=\"0.008\" fromto", "<geom type=\"mesh\" mesh=\"bone\" fromto", RDM_ERROR_NOT_FOUND,
         "line 31: geom: there is no mesh bone"},
        {"<geom size=\"0.008\" fromto=\"0 0 0.008 0 0 0.032\"/>", "<geom type=\"mesh\" mesh=\"bone\"/>",
-        RDM_NOT_FOUND, "line 31: geom: there is no mesh bone"},
-       {"type=\"box\" size=\"0.045 0.015 0.05\"", "type=\"box\" size=\"0.045 0.015\"", RDM_FORMAT,
+        RDM_ERROR_NOT_FOUND, "line 31: geom: there is no mesh bone"},
+       {"type=\"box\" size=\"0.045 0.015 0.05\"", "type=\"box\" size=\"0.045 0.015\"", RDM_ERROR_FORMAT,
         "line 26: geom palm_box: size: a box needs 3"},
-       {"type=\"box\" size=\"0.045 0.015 0.05\"", "type=\"torus\" size=\"0.045 0.015 0.05\"", RDM_UNSUPPORTED,
-        "line 26: geom palm_box: type torus"},
-       {"<include file=\"hand_drives.xml\"/>", "<include file=\"drives.xml\"/>", RDM_NOT_FOUND,
+       {"type=\"box\" size=\"0.045 0.015 0.05\"", "type=\"torus\" size=\"0.045 0.015 0.05\"",
+        RDM_ERROR_UNSUPPORTED, "line 26: geom palm_box: type torus"},
+       {"<include file=\"hand_drives.xml\"/>", "<include file=\"drives.xml\"/>", RDM_ERROR_NOT_FOUND,
         "line 71: include: "},
        {"<include file=\"hand_drives.xml\"/>",
         "<equality><connect body1=\"palm\" body2=\"thumb_distal\" anchor=\"0 0 0\"/></equality>",
-        RDM_UNSUPPORTED, "line 71: connect: connect closes a loop of bodies"},
+        RDM_ERROR_UNSUPPORTED, "line 71: connect: connect closes a loop of bodies"},
        {"<include file=\"hand_drives.xml\"/>",
         "<equality><joint joint1=\"index_curl\" joint2=\"index_bend\" polycoef=\"0 1 2\"/></equality>",
-        RDM_UNSUPPORTED, "line 71: joint: polycoef"},
+        RDM_ERROR_UNSUPPORTED, "line 71: joint: polycoef"},
        {"<include file=\"hand_drives.xml\"/>", "<actuator><position joint=\"index_bond\"/></actuator>",
-        RDM_NOT_FOUND, "line 71: position: there is no joint index_bond; nearest is index_bend"},
+        RDM_ERROR_NOT_FOUND, "line 71: position: there is no joint index_bond; nearest is index_bend"},
        {"<include file=\"hand_drives.xml\"/>",
-        "<actuator><position joint=\"index_bend\" ctrlrange=\"4 5\"/></actuator>", RDM_RANGE,
+        "<actuator><position joint=\"index_bend\" ctrlrange=\"4 5\"/></actuator>", RDM_ERROR_RANGE,
         "line 30: joint index_bend: its actuator's range [4, 5]"},
-       {"</worldbody>", "<body name=\"ball\"/></worldbody>", RDM_ARGUMENT,
+       {"</worldbody>", "<body name=\"ball\"/></worldbody>", RDM_ERROR_ARGUMENT,
         "line 70: body ball: 2 bodies stand in the world: options.root"},
-       {"angle=\"degree\"", "angle=\"turn\"", RDM_FORMAT,
+       {"angle=\"degree\"", "angle=\"turn\"", RDM_ERROR_FORMAT,
         "line 3: compiler: angle: turn is neither degree nor radian"}});
 }
 
@@ -533,43 +536,44 @@ TEST(Refusals, RobotText) {
               ": pairs: there is no shape palm_bax; nearest is palm_box";
   expect_refusals(
       good, nullptr,
-      {{"kp = 4.0", "kpp = 4.0", RDM_FORMAT, stiff.c_str()},
-       {"kind = \"hand\"", "kind = \"hant\"", RDM_FORMAT, kind.c_str()},
-       {"parent = \"index_proximal\"", "parent = \"index_proxima\"", RDM_NOT_FOUND, parent.c_str()},
-       {"range = [0.0, 1.5]", "range = [0.0]", RDM_FORMAT, range.c_str()},
-       {"[\"palm_box\", \"index_distal\"]", "[\"palm_bax\", \"index_distal\"]", RDM_NOT_FOUND, shape.c_str()},
-       {"format = 1", "format = 2", RDM_VERSION_MISMATCH, "line 2: format: this library reads 1"},
-       {"range = [0.0, 1.5]", "range = [1.0, 1.0]", RDM_RANGE,
+      {{"kp = 4.0", "kpp = 4.0", RDM_ERROR_FORMAT, stiff.c_str()},
+       {"kind = \"hand\"", "kind = \"hant\"", RDM_ERROR_FORMAT, kind.c_str()},
+       {"parent = \"index_proximal\"", "parent = \"index_proxima\"", RDM_ERROR_NOT_FOUND, parent.c_str()},
+       {"range = [0.0, 1.5]", "range = [0.0]", RDM_ERROR_FORMAT, range.c_str()},
+       {"[\"palm_box\", \"index_distal\"]", "[\"palm_bax\", \"index_distal\"]", RDM_ERROR_NOT_FOUND,
+        shape.c_str()},
+       {"format = 1", "format = 2", RDM_ERROR_VERSION_MISMATCH, "line 2: format: this library reads 1"},
+       {"range = [0.0, 1.5]", "range = [1.0, 1.0]", RDM_ERROR_RANGE,
         "robot plain_hand: index_bend: the range [1, 1] is empty"},
-       {"name = \"plain_hand\"", "name = \"plain hand\"", RDM_ARGUMENT, "a name is made of letters"},
-       {"mass = 0.4", "mass = ", RDM_FORMAT, "line "},
-       {"[root]", "[roof]", RDM_FORMAT, "roof is no key; nearest is root"}});
+       {"name = \"plain_hand\"", "name = \"plain hand\"", RDM_ERROR_ARGUMENT, "a name is made of letters"},
+       {"mass = 0.4", "mass = ", RDM_ERROR_FORMAT, "line "},
+       {"[root]", "[roof]", RDM_ERROR_FORMAT, "roof is no key; nearest is root"}});
 }
 
 TEST(Refusals, OptionsOfTheCall) {
   const auto refused = [](const char* file, const rdm_import_options& o, rdm_result code, const char* text) {
     rdm_import* i = nullptr;
-    EXPECT_EQ(rdm_import_file(&i, (kData + file).c_str(), &o), code) << text;
+    EXPECT_EQ(rdm_import_read_file(&i, (kData + file).c_str(), &o), code) << text;
     EXPECT_NE(std::string(rdm_import_error()).find(text), std::string::npos) << rdm_import_error();
     rdm_import_destroy(i);
   };
   rdm_import_options o = options();
   o.tips = "index_tip,thum_distal";
-  refused("hand.urdf", o, RDM_NOT_FOUND,
+  refused("hand.urdf", o, RDM_ERROR_NOT_FOUND,
           "options.tips: there is no link or site thum_distal; nearest is thumb_distal");
   o = options(), o.root = "nowhere";
-  refused("hand.urdf", o, RDM_NOT_FOUND, "options.root: there is no link nowhere");
-  refused("hand.xml", o, RDM_NOT_FOUND, "options.root: there is no body nowhere");
+  refused("hand.urdf", o, RDM_ERROR_NOT_FOUND, "options.root: there is no link nowhere");
+  refused("hand.xml", o, RDM_ERROR_NOT_FOUND, "options.root: there is no body nowhere");
   o = options(), o.mount = "index_distal";
-  refused("hand.urdf", o, RDM_ARGUMENT, "options.mount: index_distal moves against the root");
+  refused("hand.urdf", o, RDM_ERROR_ARGUMENT, "options.mount: index_distal moves against the root");
   o = options(), o.format = 7;
-  refused("hand.urdf", o, RDM_RANGE, "options.format: 7 is outside [0, 3]");
+  refused("hand.urdf", o, RDM_ERROR_RANGE, "options.format: 7 is outside [0, 3]");
   o = options(), o.struct_size = 3;
-  refused("hand.urdf", o, RDM_ARGUMENT, "options.struct_size: 3");
+  refused("hand.urdf", o, RDM_ERROR_ARGUMENT, "options.struct_size: 3");
   o = options(), o.format = RDM_IMPORT_MJCF;
-  refused("hand.urdf", o, RDM_FORMAT, "no MJCF: the first element is not mujoco");
+  refused("hand.urdf", o, RDM_ERROR_FORMAT, "no MJCF: the first element is not mujoco");
   o = options();
-  refused("none.urdf", o, RDM_NOT_FOUND, "none.urdf: cannot open");
+  refused("none.urdf", o, RDM_ERROR_NOT_FOUND, "none.urdf: cannot open");
   // A part of a tree, meshes that are not there, moments that are mended.
   o = options(), o.root = "head";
   EXPECT_EQ(from_file("gripper.urdf", &o).def.num_links, 2);
@@ -577,7 +581,7 @@ TEST(Refusals, OptionsOfTheCall) {
   text.replace(text.find("izz=\"1e-5\""), 10, "izz=\"3e-5\"");
   o = options(), o.skip_meshes = 1, o.mend_inertia = 1;
   rdm_import* made = nullptr;
-  ASSERT_EQ(rdm_import_text(&made, text.data(), text.size(), &o), RDM_OK) << rdm_import_error();
+  ASSERT_EQ(rdm_import_read(&made, text.data(), text.size(), &o), RDM_OK) << rdm_import_error();
   const Import mended(made);
   EXPECT_EQ(mended.def.num_shapes, 1);
   EXPECT_TRUE(mended.has_note(RDM_NOTE_DROPPED,
@@ -588,31 +592,31 @@ TEST(Refusals, OptionsOfTheCall) {
 
 TEST(Import, HandlesAndPointersAreChecked) {
   rdm_import* i = nullptr;
-  EXPECT_EQ(rdm_import_file(nullptr, "x", nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_import_read_file(nullptr, "x", nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_import_error(), "out is NULL");
-  EXPECT_EQ(rdm_import_file(&i, nullptr, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_import_text(&i, nullptr, 3, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_import_text(&i, "", 0, nullptr), RDM_FORMAT);
-  EXPECT_EQ(rdm_import_robot(&i, -1), RDM_RANGE);
-  EXPECT_EQ(rdm_import_def(nullptr, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_import_check(nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_import_read_file(&i, nullptr, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_import_read(&i, nullptr, 3, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_import_read(&i, "", 0, nullptr), RDM_ERROR_FORMAT);
+  EXPECT_EQ(rdm_import_create_robot(&i, -1), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_import_get_robot_def(nullptr, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_import_check(nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_import_note_count(nullptr), 0);
-  EXPECT_EQ(rdm_import_options_init(nullptr, 0), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_import_options_init(nullptr, 0), RDM_ERROR_ARGUMENT);
   rdm_import_destroy(nullptr);
   const Import good = from_file("hand.urdf");
   rdm_import_note note;
-  EXPECT_EQ(rdm_import_note_at(good.handle, rdm_import_note_count(good.handle), &note), RDM_RANGE);
-  EXPECT_EQ(rdm_import_note_at(good.handle, 0, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_import_note_at(good.handle, rdm_import_note_count(good.handle), &note), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_import_note_at(good.handle, 0, nullptr), RDM_ERROR_ARGUMENT);
   size_t size = 0;
   char small[4];
-  EXPECT_EQ(rdm_import_write(&good.def, small, sizeof small, &size), RDM_RANGE);
-  EXPECT_EQ(rdm_import_write(&good.def, nullptr, 0, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_import_write_robot(&good.def, small, sizeof small, &size), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_import_write_robot(&good.def, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   rdm_robot_def nameless = good.def;
   nameless.name = nullptr;
-  EXPECT_EQ(rdm_import_write(&nameless, nullptr, 0, &size), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_import_write_robot(&nameless, nullptr, 0, &size), RDM_ERROR_ARGUMENT);
   rdm_robot_def short_def = good.def;
   short_def.struct_size = 8;
-  EXPECT_EQ(rdm_import_def(good.handle, &short_def), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_import_get_robot_def(good.handle, &short_def), RDM_ERROR_ARGUMENT);
 }
 
 // What breaks off anywhere is refused or read, and what is read can be made.
@@ -620,7 +624,7 @@ TEST(Import, AnyBeginningOfAFileIsSurvived) {
   for (const std::string& text : {read("hand.urdf"), read("arm.xml"), written(from_file("arm.xml").def)})
     for (size_t n = 0; n < text.size(); n += 7) {
       rdm_import* i = nullptr;
-      if (rdm_import_text(&i, text.data(), n, nullptr) == RDM_OK) {
+      if (rdm_import_read(&i, text.data(), n, nullptr) == RDM_OK) {
         const Import made(i);
         const Robot robot(made.def, "beginning");
       } else {

@@ -360,12 +360,12 @@ rdm_result read(const Case& c, std::string* text) {
   rdm_result r = RDM_OK;
   const std::string kind = c.kind;
   if (kind == "task")
-    r = rdm_import_task_text(&task, c.text.data(), c.text.size(), nullptr);
+    r = rdm_import_read_task(&task, c.text.data(), c.text.size(), nullptr);
   else if (kind == "object")
-    r = rdm_import_object_text(&i, c.text.data(), c.text.size());
+    r = rdm_import_read_object(&i, c.text.data(), c.text.size());
   else {
     o.format = kind == "urdf" ? RDM_IMPORT_URDF : kind == "mjcf" ? RDM_IMPORT_MJCF : RDM_IMPORT_ROBOT;
-    r = rdm_import_text(&i, c.text.data(), c.text.size(), &o);
+    r = rdm_import_read(&i, c.text.data(), c.text.size(), &o);
   }
   *text = r ? rdm_import_error() : "taken";
   rdm_import_destroy(i);
@@ -462,7 +462,7 @@ class Folder {
 
 std::string read_file(const std::string& path) {
   rdm_import* i = nullptr;
-  const rdm_result r = rdm_import_file(&i, path.c_str(), nullptr);
+  const rdm_result r = rdm_import_read_file(&i, path.c_str(), nullptr);
   rdm_import_destroy(i);
   return r ? rdm_import_error() : "taken";
 }
@@ -528,10 +528,10 @@ TEST(ImportCost, NothingButARegularFileIsRead) {
                  read_file(f.put("m.urdf", two_links("<collision><geometry><mesh filename=\"pipe.stl\"/>"
                                                      "</geometry></collision>"))));
   int32_t task = -1;
-  EXPECT_NE(rdm_import_task(&task, f.path("pipe.task").c_str()), RDM_OK);
+  EXPECT_NE(rdm_import_read_task_file(&task, f.path("pipe.task").c_str()), RDM_OK);
   expect_refused("task", rdm_import_error());
   rdm_import* i = nullptr;
-  EXPECT_NE(rdm_import_object_file(&i, f.path("pipe.object").c_str()), RDM_OK);
+  EXPECT_NE(rdm_import_read_object_file(&i, f.path("pipe.object").c_str()), RDM_OK);
   expect_refused("object", rdm_import_error());
 }
 

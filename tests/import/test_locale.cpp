@@ -36,9 +36,9 @@ void add_settings(std::vector<std::string>& out) {
       continue;
     }
     size_t size = 0;
-    EXPECT_EQ(rdm_pool_settings(pool, nullptr, 0, &size), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(rdm_pool_get_settings(pool, nullptr, 0, &size), RDM_OK) << rdm_last_error();
     std::string text(size + 1, '\0');
-    EXPECT_EQ(rdm_pool_settings(pool, text.data(), text.size(), &size), RDM_OK);
+    EXPECT_EQ(rdm_pool_get_settings(pool, text.data(), text.size(), &size), RDM_OK);
     out.push_back(text);
     rdm_pool_destroy(pool);
   }
@@ -52,11 +52,11 @@ void add_import(rdm_import* import, std::vector<std::string>& out) {
   }
   rdm_robot_def def;
   rdm_robot_def_init(&def, sizeof def);
-  EXPECT_EQ(rdm_import_def(import, &def), RDM_OK);
+  EXPECT_EQ(rdm_import_get_robot_def(import, &def), RDM_OK);
   size_t size = 0;
-  EXPECT_EQ(rdm_import_write(&def, nullptr, 0, &size), RDM_OK);
+  EXPECT_EQ(rdm_import_write_robot(&def, nullptr, 0, &size), RDM_OK);
   std::string text(size + 1, '\0');
-  EXPECT_EQ(rdm_import_write(&def, text.data(), text.size(), &size), RDM_OK);
+  EXPECT_EQ(rdm_import_write_robot(&def, text.data(), text.size(), &size), RDM_OK);
   out.push_back(text);
   rdm_import_destroy(import);
 }
@@ -64,7 +64,7 @@ void add_import(rdm_import* import, std::vector<std::string>& out) {
 void add_robots(std::vector<std::string>& out) {
   for (const char* file : {"arm.xml", "hand.xml", "hand.urdf", "hand_drives.xml"}) {
     rdm_import* import = nullptr;
-    if (rdm_import_file(&import, (kData + "/import/" + file).c_str(), nullptr) == RDM_OK)
+    if (rdm_import_read_file(&import, (kData + "/import/" + file).c_str(), nullptr) == RDM_OK)
       add_import(import, out);
     else
       out.emplace_back(rdm_import_error());
@@ -81,16 +81,16 @@ void add_robots(std::vector<std::string>& out) {
       rdm_import_options_init(&o, sizeof o);
       o.mend_inertia = mend;
       rdm_import* import = nullptr;
-      if (rdm_import_text(&import, text.data(), text.size(), &o) == RDM_OK)
+      if (rdm_import_read(&import, text.data(), text.size(), &o) == RDM_OK)
         add_import(import, out);
       else
         out.emplace_back(rdm_import_error());
     }
   rdm_import* arm = nullptr;
-  ASSERT_EQ(rdm_import_file(&arm, (kData + "/import/arm.xml").c_str(), nullptr), RDM_OK);
+  ASSERT_EQ(rdm_import_read_file(&arm, (kData + "/import/arm.xml").c_str(), nullptr), RDM_OK);
   rdm_robot_def def;
   rdm_robot_def_init(&def, sizeof def);
-  EXPECT_EQ(rdm_import_def(arm, &def), RDM_OK);
+  EXPECT_EQ(rdm_import_get_robot_def(arm, &def), RDM_OK);
   def.root_mass = -0.5;
   int32_t robot = -1;
   EXPECT_NE(rdm_robot_create(&robot, &def), RDM_OK);
@@ -106,22 +106,22 @@ void add_objects(std::vector<std::string>& out) {
       "format = 1\nname = \"locale_ball\"\nmass = 0.0625\n[[shapes]]\nkind = \"capsule\"\nsize = [0.0125, "
       "0.0375]\n";
   rdm_import* import = nullptr;
-  if (rdm_import_object_text(&import, text.data(), text.size()) != RDM_OK) {
+  if (rdm_import_read_object(&import, text.data(), text.size()) != RDM_OK) {
     out.emplace_back(rdm_import_error());
     return;
   }
   rdm_object_def def;
   rdm_object_def_init(&def, sizeof def);
-  EXPECT_EQ(rdm_import_object_def(import, &def), RDM_OK);
+  EXPECT_EQ(rdm_import_get_object_def(import, &def), RDM_OK);
   size_t size = 0;
-  EXPECT_EQ(rdm_import_object_write(&def, nullptr, 0, &size), RDM_OK);
+  EXPECT_EQ(rdm_import_write_object(&def, nullptr, 0, &size), RDM_OK);
   std::string written(size + 1, '\0');
-  EXPECT_EQ(rdm_import_object_write(&def, written.data(), written.size(), &size), RDM_OK);
+  EXPECT_EQ(rdm_import_write_object(&def, written.data(), written.size(), &size), RDM_OK);
   out.push_back(written);
   int32_t index = -1;
   EXPECT_EQ(rdm_object_create(&index, &def), RDM_OK) << rdm_last_error();
   if (rdm_object_at(index, &object) == RDM_OK) out.emplace_back(object.shape);
-  EXPECT_EQ(rdm_object_remove(index), RDM_OK);
+  EXPECT_EQ(rdm_object_destroy(index), RDM_OK);
   rdm_import_destroy(import);
 }
 
@@ -129,7 +129,7 @@ void add_objects(std::vector<std::string>& out) {
 void add_task(std::vector<std::string>& out) {
   const std::string file = kData + "/../examples/scenes/press.task";
   int32_t task = -1;
-  ASSERT_EQ(rdm_import_task(&task, file.c_str()), RDM_OK) << rdm_import_error();
+  ASSERT_EQ(rdm_import_read_task_file(&task, file.c_str()), RDM_OK) << rdm_import_error();
   rdm_task t{};
   t.struct_size = sizeof t;
   EXPECT_EQ(rdm_task_at(task, &t), RDM_OK);
@@ -140,12 +140,12 @@ void add_task(std::vector<std::string>& out) {
   }
   for (int32_t i = 0; i < t.num_defaults; ++i) {
     rdm_option option;
-    EXPECT_EQ(rdm_task_default(task, i, &option), RDM_OK);
+    EXPECT_EQ(rdm_task_default_at(task, i, &option), RDM_OK);
     out.push_back(std::string(option.key) + "=" + (option.text ? option.text : "-"));
   }
-  EXPECT_EQ(rdm_task_remove(task), RDM_OK);
+  EXPECT_EQ(rdm_task_destroy(task), RDM_OK);
   const std::string bad = "format = 1\nname = \"x\"\nmax_steps = 2.5\n";
-  EXPECT_NE(rdm_import_task_text(&task, bad.data(), bad.size(), "x.task"), RDM_OK);
+  EXPECT_NE(rdm_import_read_task(&task, bad.data(), bad.size(), "x.task"), RDM_OK);
   out.emplace_back(rdm_import_error());
 }
 

@@ -102,9 +102,9 @@ TEST(Mjcf, RangesHoldWhereTheySaySo) {
     EXPECT_DOUBLE_EQ(i.def.links[0].upper, r.upper);
     EXPECT_EQ(i.has_note(RDM_NOTE_CHANGED, "without end"), r.upper > 6);
   }
-  expect_refused(file(arm(kRod, "range='-90 90'"), "<compiler autolimits='false'/>"), RDM_FORMAT,
+  expect_refused(file(arm(kRod, "range='-90 90'"), "<compiler autolimits='false'/>"), RDM_ERROR_FORMAT,
                  "joint j: a range and no limited, where autolimits is false");
-  expect_refused(file(arm(kRod, "range='0 0' limited='true'")), RDM_RANGE,
+  expect_refused(file(arm(kRod, "range='0 0' limited='true'")), RDM_ERROR_RANGE,
                  "joint j: the range [0, 0] is empty");
 }
 
@@ -164,7 +164,7 @@ TEST(Mjcf, BoundsOfMassesAreOfPrincipalMoments) {
   EXPECT_NEAR(bound.def.links[0].moment[2], 2.5e-3, 1e-15);
   EXPECT_NEAR(bound.def.links[0].moment[3], 0, 1e-15);
   const std::string wrong = arm("<inertial pos='0 0 .1' mass='1' diaginertia='1e-3 1e-3 4e-3'/>");
-  expect_refused(file(wrong), RDM_ARGUMENT, "break the triangle rule");
+  expect_refused(file(wrong), RDM_ERROR_ARGUMENT, "break the triangle rule");
   EXPECT_NEAR(from_text(file(wrong, "<compiler balanceinertia='true'/>")).def.links[0].moment[2], 2e-3,
               1e-15);
   // A body without any mass gets the least, where its own frame stands in what carries it.
@@ -180,7 +180,7 @@ TEST(Mjcf, InertiaComesFromGeomsWhereTheCompilerSaysSo) {
   EXPECT_DOUBLE_EQ(from_text(file(both)).def.links[0].mass, 3);
   EXPECT_DOUBLE_EQ(from_text(file(both, "<compiler inertiafromgeom='true'/>")).def.links[0].mass, 0.5);
   EXPECT_DOUBLE_EQ(from_text(file(both, "<compiler inertiafromgeom='false'/>")).def.links[0].mass, 3);
-  expect_refused(file(arm(kRod), "<compiler inertiafromgeom='false'/>"), RDM_RANGE,
+  expect_refused(file(arm(kRod), "<compiler inertiafromgeom='false'/>"), RDM_ERROR_RANGE,
                  "body arm: it moves and has no inertial, and inertiafromgeom is false");
 }
 
@@ -196,9 +196,9 @@ TEST(Mjcf, FixedBodiesMayHaveNoMass) {
   const Import without = from_text(file(arm(kRod)));
   EXPECT_NEAR(with.def.links[0].moment[0], without.def.links[0].moment[0] + 0.1, 1e-12);
   EXPECT_DOUBLE_EQ(with.def.links[0].mass, 0.1);
-  expect_refused(file(arm("<inertial pos='0 0 0' mass='0' diaginertia='1 1 1'/>")), RDM_RANGE,
+  expect_refused(file(arm("<inertial pos='0 0 0' mass='0' diaginertia='1 1 1'/>")), RDM_ERROR_RANGE,
                  "body arm: the mass 0 is not above 0");
-  expect_refused(file(arm("<inertial pos='0 0 0' mass='0' diaginertia='0 0 0'/>")), RDM_RANGE,
+  expect_refused(file(arm("<inertial pos='0 0 0' mass='0' diaginertia='0 0 0'/>")), RDM_ERROR_RANGE,
                  "it moves and has no mass");
 }
 
@@ -311,12 +311,12 @@ TEST(Mjcf, PrimitivesAreFittedToMeshes) {
     return std::make_pair(s, i.def.links[0].mass);
   };
   const auto [box, box_mass] = shape("type='box'");
-  EXPECT_EQ(box.kind, RDM_BOX);
+  EXPECT_EQ(box.kind, RDM_SHAPE_BOX);
   EXPECT_NEAR(box.size[0], 1, 1e-9);
   EXPECT_NEAR(box.size[2], 3, 1e-9);
   EXPECT_NEAR(box_mass, 48, 1e-9);
   const auto [ball, ball_mass] = shape("");  // no type is a ball
-  EXPECT_EQ(ball.kind, RDM_SPHERE);
+  EXPECT_EQ(ball.kind, RDM_SHAPE_SPHERE);
   EXPECT_NEAR(ball.size[0], 2, 1e-9);
   EXPECT_NEAR(ball_mass, 4.0 / 3 * M_PI * 8, 1e-9);
   const auto [rod, rod_mass] = shape("type='capsule' fitscale='.5'");
@@ -333,16 +333,16 @@ TEST(Mjcf, MassesOfMeshesThatAreNotThereAreRefused) {
   o.skip_meshes = 1;
   const std::string asset = "<asset><mesh name='m' file='m.obj'/></asset>";
   const std::string geom = "<geom type='mesh' mesh='m'/>";
-  expect_refused(file(arm(geom), asset), RDM_NOT_FOUND,
+  expect_refused(file(arm(geom), asset), RDM_ERROR_NOT_FOUND,
                  "the mass of body arm would be that of mesh m, which cannot be read", &o);
   const Import i =
       from_text(file(arm("<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>" + geom), asset), &o);
   EXPECT_DOUBLE_EQ(i.def.links[0].mass, 1);
   expect_refused(file(arm(geom), "<asset><mesh name='m' builtin='cone' params='8 .5'/></asset>"),
-                 RDM_UNSUPPORTED, "mesh m: builtin=\"cone\": a shape that MuJoCo makes is not read");
+                 RDM_ERROR_UNSUPPORTED, "mesh m: builtin=\"cone\": a shape that MuJoCo makes is not read");
   expect_refused(file(arm("<geom type='mesh' mesh='m'/>"),
                       "<asset><mesh name='m' vertex='0 0 0 1 0 0 0 1 0 1 1 0'/></asset>"),
-                 RDM_RANGE, "mesh m encloses nothing");
+                 RDM_ERROR_RANGE, "mesh m encloses nothing");
 }
 
 TEST(Mjcf, BoxesBetweenTwoEndsAreAsWideAsThick) {
@@ -416,7 +416,7 @@ TEST(Mjcf, GroupsOfCouplingsHaveOneLeader) {
       chain(2,
             "<equality><joint joint1='j0' joint2='j1'/><joint joint1='j0' joint2='j1' polycoef='0 2'/>"
             "</equality>"),
-      RDM_ARGUMENT, "joint j0 follows two others");
+      RDM_ERROR_ARGUMENT, "joint j0 follows two others");
 }
 
 TEST(Mjcf, EqualitiesOfTendonsCouple) {
@@ -428,8 +428,8 @@ TEST(Mjcf, EqualitiesOfTendonsCouple) {
   EXPECT_EQ(from_text(chain(2, tendon + "<equality><tendon tendon1='t' active='false'/></equality>"))
                 .def.num_couplings,
             0);
-  expect_refused(chain(2, tendon + "<equality><tendon tendon1='t' tendon2='s'/></equality>"), RDM_UNSUPPORTED,
-                 "of tendons only a fixed one of two joints is read");
+  expect_refused(chain(2, tendon + "<equality><tendon tendon1='t' tendon2='s'/></equality>"),
+                 RDM_ERROR_UNSUPPORTED, "of tendons only a fixed one of two joints is read");
 }
 
 // ---- drives ----
@@ -529,7 +529,7 @@ TEST(Mjcf, WhatCouldChangeTheRobotIsRefusedByName) {
   };
   for (const Row& r : rows) {
     rdm_import* i = nullptr;
-    EXPECT_NE(rdm_import_text(&i, r.text.data(), r.text.size(), nullptr), RDM_OK) << r.words;
+    EXPECT_NE(rdm_import_read(&i, r.text.data(), r.text.size(), nullptr), RDM_OK) << r.words;
     EXPECT_NE(std::string(rdm_import_error()).find(r.words), std::string::npos)
         << "'" << rdm_import_error() << "' is not '" << r.words << "'";
     rdm_import_destroy(i);
@@ -570,7 +570,7 @@ TEST(Mjcf, TargetsOfTheHostAreDropped) {
   EXPECT_EQ(i.def.num_shapes, 2);
   EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, "body goal: its host moves it (mocap)"));
   o.root = "goal";
-  expect_refused(text, RDM_UNSUPPORTED, "body goal: mocap", &o);
+  expect_refused(text, RDM_ERROR_UNSUPPORTED, "body goal: mocap", &o);
 }
 
 // What ties bodies of which none moves changes nothing; what a host pulls is no robot.
@@ -584,9 +584,9 @@ TEST(Mjcf, TiesToTargetsOfTheHost) {
   const Import i = from_text(text("<weld body1='goal' body2='base'/>"));
   EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, "weld : neither of its bodies moves"));
   EXPECT_EQ(from_text(text("<weld body1='base'/>")).def.num_links, 1);
-  expect_refused(text("<weld body1='goal' body2='arm'/>"), RDM_UNSUPPORTED,
+  expect_refused(text("<weld body1='goal' body2='arm'/>"), RDM_ERROR_UNSUPPORTED,
                  "weld ties a body to goal, which its host moves (mocap): it is not read; without the weld");
-  expect_refused(text("<connect body1='base' body2='arm' anchor='0 0 0'/>"), RDM_UNSUPPORTED,
+  expect_refused(text("<connect body1='base' body2='arm' anchor='0 0 0'/>"), RDM_ERROR_UNSUPPORTED,
                  "connect closes a loop of bodies");
 }
 
@@ -599,11 +599,12 @@ TEST(Mjcf, LimitsOfTendonsOfOneJointAreTheJoints) {
   EXPECT_NEAR(i.def.links[0].upper, 0.4, 1e-12);
   EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "tendon t: joint j0 goes from 0.1 to 0.4"));
   EXPECT_DOUBLE_EQ(from_text(text("range='-9 9'><joint joint='j0' coef='2'/>")).def.links[0].upper, 1);
-  expect_refused(text("range='4 5'><joint joint='j0' coef='2'/>"), RDM_RANGE, "its range leaves joint j0");
+  expect_refused(text("range='4 5'><joint joint='j0' coef='2'/>"), RDM_ERROR_RANGE,
+                 "its range leaves joint j0");
   std::string spatial = chain(1,
                               "<tendon><spatial limited='true' range='0 1'><site site='a'/><site "
                               "site='b'/></spatial></tendon>");
-  expect_refused(spatial, RDM_UNSUPPORTED, "spatial: the range 0 1 of its length would tie joints");
+  expect_refused(spatial, RDM_ERROR_UNSUPPORTED, "spatial: the range 0 1 of its length would tie joints");
   spatial.replace(spatial.find("'true'"), 6, "'false'");
   EXPECT_EQ(from_text(spatial).def.num_links, 1);
 }
@@ -626,13 +627,14 @@ TEST(Mjcf, InertialsOfAMassAloneArePoints) {
   const std::string point = "<inertial pos='0 0 .1' mass='2'/>";
   const Import i = from_text(file(arm(kRod + "<body name='tool'>" + point + "</body>")));
   EXPECT_NEAR(i.def.links[0].mass, 2.1, 1e-12);
-  expect_refused(file(arm(point)), RDM_ARGUMENT, "it moves, and its moments of inertia are 0");
+  expect_refused(file(arm(point)), RDM_ERROR_ARGUMENT, "it moves, and its moments of inertia are 0");
 }
 
 TEST(Mjcf, WhatStandsTwiceIsRefused) {
   const std::string inertial = "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
-  expect_refused(file(arm(inertial + inertial)), RDM_FORMAT, "inertial: a second one, after that of line 1");
-  expect_refused(file(arm(kRod, "axis='0 1 0' axis='1 0 0' range='0 1'")), RDM_FORMAT,
+  expect_refused(file(arm(inertial + inertial)), RDM_ERROR_FORMAT,
+                 "inertial: a second one, after that of line 1");
+  expect_refused(file(arm(kRod, "axis='0 1 0' axis='1 0 0' range='0 1'")), RDM_ERROR_FORMAT,
                  "an attribute that is not name=\"value\", or stands twice");
 }
 

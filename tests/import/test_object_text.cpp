@@ -14,7 +14,7 @@ struct Import {
   explicit Import(rdm_import* made) : handle(made) {
     rdm_object_def_init(&def, sizeof def);
     if (made) {
-      EXPECT_EQ(rdm_import_object_def(handle, &def), RDM_OK) << rdm_import_error();
+      EXPECT_EQ(rdm_import_get_object_def(handle, &def), RDM_OK) << rdm_import_error();
     }
   }
   Import(const Import&) = delete;
@@ -24,14 +24,14 @@ struct Import {
 
 rdm_import* from_text(const std::string& text) {
   rdm_import* i = nullptr;
-  EXPECT_EQ(rdm_import_object_text(&i, text.data(), text.size()), RDM_OK) << rdm_import_error();
+  EXPECT_EQ(rdm_import_read_object(&i, text.data(), text.size()), RDM_OK) << rdm_import_error();
   return i;
 }
 std::string written(const rdm_object_def& def) {
   size_t size = 0;
-  EXPECT_EQ(rdm_import_object_write(&def, nullptr, 0, &size), RDM_OK) << rdm_import_error();
+  EXPECT_EQ(rdm_import_write_object(&def, nullptr, 0, &size), RDM_OK) << rdm_import_error();
   std::string text(size + 1, '\0');
-  EXPECT_EQ(rdm_import_object_write(&def, text.data(), text.size(), &size), RDM_OK) << rdm_import_error();
+  EXPECT_EQ(rdm_import_write_object(&def, text.data(), text.size(), &size), RDM_OK) << rdm_import_error();
   text.pop_back();
   return text;
 }
@@ -39,7 +39,7 @@ std::string written(const rdm_object_def& def) {
 TEST(ObjectText, EveryObjectReadsBackToTheBit) {
   for (int32_t i = 0; i < rdm_object_count(); ++i) {
     rdm_import* built = nullptr;
-    ASSERT_EQ(rdm_import_object(&built, i), RDM_OK) << rdm_import_error();
+    ASSERT_EQ(rdm_import_create_object(&built, i), RDM_OK) << rdm_import_error();
     const Import a(built);
     const std::string text = written(a.def);
     const Import b(from_text(text));
@@ -77,7 +77,7 @@ TEST(ObjectText, WhatIsLeftOutIsTheDefault) {
   EXPECT_EQ(i.def.shapes[0].color[0], 200);
   int32_t object = -1;
   ASSERT_EQ(rdm_object_create(&object, &i.def), RDM_OK) << rdm_last_error();
-  EXPECT_EQ(rdm_object_remove(object), RDM_OK);
+  EXPECT_EQ(rdm_object_destroy(object), RDM_OK);
 }
 
 TEST(ObjectText, RefusalsNameTheLine) {
@@ -88,35 +88,36 @@ TEST(ObjectText, RefusalsNameTheLine) {
     const char* text;
     std::string file;
   } rows[] = {
-      {RDM_FORMAT, "line 1: no name", "mass = 1\n" + shape},
-      {RDM_FORMAT, "no mass", "name = 'brick'\n" + shape},
-      {RDM_FORMAT, "no [[shape]]", head},
-      {RDM_FORMAT, "line 3: weight is no key", head + "weight = 1\n" + shape},
-      {RDM_FORMAT, "line 2: mass is no number", "name = 'brick'\nmass = '1'\n" + shape},
-      {RDM_FORMAT, "line 3: moment is no list of 6 numbers", head + "moment = [1, 2]\n" + shape},
-      {RDM_VERSION_MISMATCH, "line 3: format", head + "format = 2\n" + shape},
-      {RDM_FORMAT, "line 4: shape: kind: bocks is not known", head + "[[shape]]\nkind = 'bocks'\n"},
-      {RDM_FORMAT, "no size", head + "[[shape]]\nkind = 'box'\n"},
-      {RDM_FORMAT, "points is no list of 4 to 32 points",
+      {RDM_ERROR_FORMAT, "line 1: no name", "mass = 1\n" + shape},
+      {RDM_ERROR_FORMAT, "no mass", "name = 'brick'\n" + shape},
+      {RDM_ERROR_FORMAT, "no [[shape]]", head},
+      {RDM_ERROR_FORMAT, "line 3: weight is no key", head + "weight = 1\n" + shape},
+      {RDM_ERROR_FORMAT, "line 2: mass is no number", "name = 'brick'\nmass = '1'\n" + shape},
+      {RDM_ERROR_FORMAT, "line 3: moment is no list of 6 numbers", head + "moment = [1, 2]\n" + shape},
+      {RDM_ERROR_VERSION_MISMATCH, "line 3: format", head + "format = 2\n" + shape},
+      {RDM_ERROR_FORMAT, "line 4: shape: kind: bocks is not known", head + "[[shape]]\nkind = 'bocks'\n"},
+      {RDM_ERROR_FORMAT, "no size", head + "[[shape]]\nkind = 'box'\n"},
+      {RDM_ERROR_FORMAT, "points is no list of 4 to 32 points",
        head + "[[shape]]\nkind = 'hull'\npoints = [[0,0,0]]\n"},
-      {RDM_FORMAT, "a point is no list of 3 numbers",
+      {RDM_ERROR_FORMAT, "a point is no list of 3 numbers",
        head + "[[shape]]\nkind = 'hull'\npoints = [[0,0],[1,0,0],[0,1,0],[0,0,1]]\n"},
-      {RDM_RANGE, "color: 300 is outside", head + shape + "color = [300, 0, 0]\n"},
-      {RDM_FORMAT, "line 2", "name = 'brick'\nmass = \n"},
+      {RDM_ERROR_RANGE, "color: 300 is outside", head + shape + "color = [300, 0, 0]\n"},
+      {RDM_ERROR_FORMAT, "line 2", "name = 'brick'\nmass = \n"},
       // letters outside ASCII where a key or white space stands
-      {RDM_FORMAT, "line 3", head + "gr\u00f6\u00dfe = 1\n" + shape},
-      {RDM_FORMAT, "line 3", head + "format\u0324 = 1\n" + shape},
-      {RDM_FORMAT, "line 3", head + "\u0498 = 1\n" + shape},
+      {RDM_ERROR_FORMAT, "line 3", head + "gr\u00f6\u00dfe = 1\n" + shape},
+      {RDM_ERROR_FORMAT, "line 3", head + "format\u0324 = 1\n" + shape},
+      {RDM_ERROR_FORMAT, "line 3", head + "\u0498 = 1\n" + shape},
       // of the library, under the file's own name
-      {RDM_RANGE, "object brick: mass -1 is outside", "name = 'brick'\nmass = -1\n" + shape},
-      {RDM_ARGUMENT, "is made of other than letters", "name = 'a brick'\nmass = 1\n" + shape},
-      {RDM_ARGUMENT, "shapes[0]: kind 4", head + "[[shape]]\nkind = 'plane'\nsize = [1]\n"},
-      {RDM_RANGE, "object brick: shapes[0]: size", head + "[[shape]]\nkind = 'box'\nsize = [1, 1, 0]\n"},
-      {RDM_ARGUMENT, "triangle rule", head + "moment = [1, 1, 3, 0, 0, 0]\n" + shape},
+      {RDM_ERROR_RANGE, "object brick: mass -1 is outside", "name = 'brick'\nmass = -1\n" + shape},
+      {RDM_ERROR_ARGUMENT, "is made of other than letters", "name = 'a brick'\nmass = 1\n" + shape},
+      {RDM_ERROR_ARGUMENT, "shapes[0]: kind 4", head + "[[shape]]\nkind = 'plane'\nsize = [1]\n"},
+      {RDM_ERROR_RANGE, "object brick: shapes[0]: size",
+       head + "[[shape]]\nkind = 'box'\nsize = [1, 1, 0]\n"},
+      {RDM_ERROR_ARGUMENT, "triangle rule", head + "moment = [1, 1, 3, 0, 0, 0]\n" + shape},
   };
   for (const auto& row : rows) {
     rdm_import* i = nullptr;
-    EXPECT_EQ(rdm_import_object_text(&i, row.file.data(), row.file.size()), row.code) << row.text;
+    EXPECT_EQ(rdm_import_read_object(&i, row.file.data(), row.file.size()), row.code) << row.text;
     EXPECT_EQ(i, nullptr);
     EXPECT_NE(std::string(rdm_import_error()).find(row.text), std::string::npos)
         << rdm_import_error() << "\n  wants: " << row.text;
@@ -134,44 +135,44 @@ TEST(ObjectText, ReadingAddsNothing) {
 TEST(ObjectText, HandlesAndPointersAreChecked) {
   rdm_import *object = from_text("name = 'x'\nmass = 1\n[[shape]]\nkind = 'sphere'\nsize = [0.1]\n"),
              *robot = nullptr;
-  ASSERT_EQ(rdm_import_robot(&robot, 0), RDM_OK);
+  ASSERT_EQ(rdm_import_create_robot(&robot, 0), RDM_OK);
   rdm_object_def o;
   rdm_object_def_init(&o, sizeof o);
   rdm_robot_def r;
   rdm_robot_def_init(&r, sizeof r);
-  EXPECT_EQ(rdm_import_object_def(robot, &o), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_import_def(object, &r), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_import_check(object), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_import_get_object_def(robot, &o), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_import_get_robot_def(object, &r), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_import_check(object), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_import_note_count(object), 0);
-  EXPECT_EQ(rdm_import_object_def(object, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_import_object_def(nullptr, &o), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_import_get_object_def(object, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_import_get_object_def(nullptr, &o), RDM_ERROR_ARGUMENT);
   o.struct_size = 4;
-  EXPECT_EQ(rdm_import_object_def(object, &o), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_import_get_object_def(object, &o), RDM_ERROR_ARGUMENT);
   rdm_import* none = nullptr;
-  EXPECT_EQ(rdm_import_object_file(nullptr, "x"), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_import_object_file(&none, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_import_object_file(&none, "/nowhere.object"), RDM_NOT_FOUND);
-  EXPECT_EQ(rdm_import_object_text(&none, nullptr, 3), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_import_object(&none, -1), RDM_RANGE);
+  EXPECT_EQ(rdm_import_read_object_file(nullptr, "x"), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_import_read_object_file(&none, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_import_read_object_file(&none, "/nowhere.object"), RDM_ERROR_NOT_FOUND);
+  EXPECT_EQ(rdm_import_read_object(&none, nullptr, 3), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_import_create_object(&none, -1), RDM_ERROR_RANGE);
   size_t size = 0;
   char small[4];
   rdm_object_def_init(&o, sizeof o);
-  EXPECT_EQ(rdm_import_object_write(&o, nullptr, 0, &size), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_import_object_write(nullptr, nullptr, 0, &size), RDM_ARGUMENT);
-  ASSERT_EQ(rdm_import_object_def(object, &o), RDM_OK);
-  EXPECT_EQ(rdm_import_object_write(&o, small, sizeof small, &size), RDM_RANGE);
+  EXPECT_EQ(rdm_import_write_object(&o, nullptr, 0, &size), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_import_write_object(nullptr, nullptr, 0, &size), RDM_ERROR_ARGUMENT);
+  ASSERT_EQ(rdm_import_get_object_def(object, &o), RDM_OK);
+  EXPECT_EQ(rdm_import_write_object(&o, small, sizeof small, &size), RDM_ERROR_RANGE);
   rdm_import_destroy(object);
   rdm_import_destroy(robot);
 }
 
 TEST(ObjectText, AnyBeginningOfAFileIsSurvived) {
   rdm_import* built = nullptr;
-  ASSERT_EQ(rdm_import_object(&built, 40), RDM_OK);
+  ASSERT_EQ(rdm_import_create_object(&built, 40), RDM_OK);
   const Import a(built);
   const std::string text = written(a.def);
   for (size_t n = 0; n < text.size(); n += 7) {
     rdm_import* i = nullptr;
-    if (rdm_import_object_text(&i, text.data(), n) == RDM_OK) rdm_import_destroy(i);
+    if (rdm_import_read_object(&i, text.data(), n) == RDM_OK) rdm_import_destroy(i);
   }
 }
 

@@ -20,11 +20,11 @@ const std::string kScenes = RDM_TEST_DATA "/../examples/scenes/";
 struct Task {
   int32_t index = -1;
   explicit Task(const std::string& text) {
-    EXPECT_EQ(rdm_import_task_text(&index, text.data(), text.size(), "t.task"), RDM_OK) << rdm_import_error();
+    EXPECT_EQ(rdm_import_read_task(&index, text.data(), text.size(), "t.task"), RDM_OK) << rdm_import_error();
   }
   ~Task() {
     if (index < 0) return;
-    EXPECT_EQ(rdm_task_remove(index), RDM_OK);
+    EXPECT_EQ(rdm_task_destroy(index), RDM_OK);
   }
   Task(const Task&) = delete;
   Task& operator=(const Task&) = delete;
@@ -47,7 +47,7 @@ struct Pool {
     EXPECT_EQ(rdm_pool_create(&pool, &c), RDM_OK) << rdm_last_error();
     b.struct_size = sizeof b;
     spec.struct_size = sizeof spec;
-    EXPECT_EQ(rdm_pool_buffers(pool, &b), RDM_OK);
+    EXPECT_EQ(rdm_pool_get_buffers(pool, &b), RDM_OK);
     EXPECT_EQ(rdm_pool_get_spec(pool, &spec), RDM_OK);
     EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK) << rdm_last_error();
   }
@@ -73,7 +73,7 @@ struct Pool {
   double reward() const { return static_cast<double>(b.reward[0]); }
   uint64_t hash() const {
     uint64_t h = 0;
-    EXPECT_EQ(rdm_pool_hash(pool, -1, &h), RDM_OK);
+    EXPECT_EQ(rdm_pool_get_hash(pool, -1, &h), RDM_OK);
     return h;
   }
 };
@@ -302,7 +302,7 @@ TEST(TaskText, BodiesAreObjectsOfTheCatalogue) {
     mug.struct_size = sizeof mug;
     int32_t index = -1;
     EXPECT_EQ(rdm_object_find("mug", &index), RDM_OK);
-    EXPECT_EQ(rdm_object_get(index, &mug), RDM_OK);
+    EXPECT_EQ(rdm_object_get_def(index, &mug), RDM_OK);
     EXPECT_NEAR(pool.number("f"), mug.mass * 9.81, 0.02 * mug.mass * 9.81);
     return pool.number("x");
   };
@@ -404,19 +404,19 @@ TEST(TaskText, RefusalsNameLineAndKey) {
     ASSERT_NE(at, std::string::npos) << w.from;
     text.replace(at, std::strlen(w.from), w.to);
     int32_t task = -7;
-    EXPECT_NE(rdm_import_task_text(&task, text.data(), text.size(), "t.task"), RDM_OK) << w.to;
+    EXPECT_NE(rdm_import_read_task(&task, text.data(), text.size(), "t.task"), RDM_OK) << w.to;
     EXPECT_NE(std::string(rdm_import_error()).find(w.text), std::string::npos)
         << rdm_import_error() << "\n  wanted " << w.text;
     EXPECT_EQ(task, -7);
     int32_t found = -1;
-    EXPECT_EQ(rdm_task_find("text_test", &found), RDM_NOT_FOUND) << "left behind";
+    EXPECT_EQ(rdm_task_find("text_test", &found), RDM_ERROR_NOT_FOUND) << "left behind";
   }
   int32_t task = -1;
-  EXPECT_EQ(rdm_import_task(&task, "/nowhere/x.task"), RDM_NOT_FOUND);
-  EXPECT_EQ(rdm_import_task(nullptr, "x"), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_import_task_text(&task, nullptr, 4, nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_import_read_task_file(&task, "/nowhere/x.task"), RDM_ERROR_NOT_FOUND);
+  EXPECT_EQ(rdm_import_read_task_file(nullptr, "x"), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_import_read_task(&task, nullptr, 4, nullptr), RDM_ERROR_ARGUMENT);
   const Task one(good);
-  EXPECT_EQ(rdm_import_task_text(&task, good.data(), good.size(), nullptr), RDM_ARGUMENT);
+  EXPECT_EQ(rdm_import_read_task(&task, good.data(), good.size(), nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_import_error(), "line 1: task text_test: the name is taken");
 }
 
@@ -435,8 +435,8 @@ TEST(TaskText, BodiesWithARangeAreBounded) {
   const auto refusal = [&](const std::string& more) -> std::string {
     int32_t task = -1;
     const std::string text = good + more;
-    if (rdm_import_task_text(&task, text.data(), text.size(), "t.task") != RDM_OK) return rdm_import_error();
-    EXPECT_EQ(rdm_task_remove(task), RDM_OK);
+    if (rdm_import_read_task(&task, text.data(), text.size(), "t.task") != RDM_OK) return rdm_import_error();
+    EXPECT_EQ(rdm_task_destroy(task), RDM_OK);
     return "";
   };
   EXPECT_EQ(refusal(bodies(100, "0")), "");
@@ -464,7 +464,7 @@ TEST(TaskText, TermRefusals) {
            {"term = \"upright\"\na = \"ball\"\naxis = [0, 0, 0]\n", "axis has no direction"}}) {
     const std::string file = watch(row);
     int32_t task = -1;
-    EXPECT_NE(rdm_import_task_text(&task, file.data(), file.size(), nullptr), RDM_OK) << row;
+    EXPECT_NE(rdm_import_read_task(&task, file.data(), file.size(), nullptr), RDM_OK) << row;
     EXPECT_NE(std::string(rdm_import_error()).find(text), std::string::npos) << rdm_import_error();
   }
 }
@@ -521,12 +521,12 @@ TEST(TaskText, IsTheTaskThatTheSeventhExampleWritesInC) {
   EXPECT_EQ(rdm_task_check("press_text", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
   int32_t press = -1;
   ASSERT_EQ(rdm_task_find("press", &press), RDM_OK);
-  EXPECT_EQ(rdm_task_remove(press), RDM_OK);
+  EXPECT_EQ(rdm_task_destroy(press), RDM_OK);
 }
 
 TEST(TaskText, FilesThatShipKeepWhatATaskPromises) {
   int32_t task = -1;
-  ASSERT_EQ(rdm_import_task(&task, (kScenes + "press.task").c_str()), RDM_OK) << rdm_import_error();
+  ASSERT_EQ(rdm_import_read_task_file(&task, (kScenes + "press.task").c_str()), RDM_OK) << rdm_import_error();
   EXPECT_EQ(rdm_task_check("press_button", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
   uint64_t hashes[3];
   for (int32_t threads = 0; threads < 3; ++threads) {
@@ -537,10 +537,10 @@ TEST(TaskText, FilesThatShipKeepWhatATaskPromises) {
       size_t size = 0;
       ASSERT_EQ(rdm_pool_state_size(pool.pool, -1, &size), RDM_OK);
       std::vector<char> bytes(size);
-      ASSERT_EQ(rdm_pool_get_state(pool.pool, -1, bytes.data(), size, &size), RDM_OK);
+      ASSERT_EQ(rdm_pool_write_state(pool.pool, -1, bytes.data(), size, &size), RDM_OK);
       for (int i = 0; i < 10; ++i) pool.step(0.5f);
       const uint64_t later = pool.hash();
-      ASSERT_EQ(rdm_pool_set_state(pool.pool, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
+      ASSERT_EQ(rdm_pool_read_state(pool.pool, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
       EXPECT_EQ(pool.hash(), hashes[2]);
       for (int i = 0; i < 10; ++i) pool.step(0.5f);
       EXPECT_EQ(pool.hash(), later);
@@ -548,7 +548,7 @@ TEST(TaskText, FilesThatShipKeepWhatATaskPromises) {
   }
   EXPECT_EQ(hashes[0], hashes[1]);
   EXPECT_EQ(hashes[0], hashes[2]);
-  EXPECT_EQ(rdm_task_remove(task), RDM_OK);
+  EXPECT_EQ(rdm_task_destroy(task), RDM_OK);
 }
 
 TEST(TaskText, HandsOnArmsLeftOnesAndOptions) {
@@ -570,8 +570,8 @@ TEST(TaskText, HandsOnArmsLeftOnesAndOptions) {
   // A mirror image keeps what lies between two tips, and that between a tip and a joint's frame.
   int32_t hand = -1;
   ASSERT_EQ(rdm_robot_find("shadow_hand", &hand), RDM_OK);
-  double home[RDM_ROBOT_LINKS], poses[7 * RDM_ROBOT_LINKS], tips[3 * 8];
-  ASSERT_EQ(rdm_robot_poses_of(hand, nullptr, home, nullptr, nullptr), RDM_OK);
+  double home[RDM_MAX_LINKS], poses[7 * RDM_MAX_LINKS], tips[3 * 8];
+  ASSERT_EQ(rdm_robot_get_postures(hand, nullptr, home, nullptr, nullptr), RDM_OK);
   ASSERT_EQ(rdm_robot_kinematics(hand, home, poses, nullptr, tips, nullptr), RDM_OK);
   const auto between = [](const double* a, const double* b) {
     return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);

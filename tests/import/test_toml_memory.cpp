@@ -58,7 +58,7 @@ int64_t sweep(const char* text, rdm_result otherwise, bool once, const Read& rea
       happened = refusal.happened();
     }
     remove();
-    EXPECT_TRUE(r == otherwise || (happened && r == RDM_MEMORY))
+    EXPECT_TRUE(r == otherwise || (happened && r == RDM_ERROR_MEMORY))
         << "request " << at << ": " << r << " " << rdm_import_error();
     if (!happened) return at;
   }
@@ -67,23 +67,23 @@ int64_t sweep(const char* text, rdm_result otherwise, bool once, const Read& rea
 TEST(TomlMemory, OfATask) {
   int32_t task = -1;
   const Read read = [&](const char* text, size_t size) {
-    return rdm_import_task_text(&task, text, size, "x.task");
+    return rdm_import_read_task(&task, text, size, "x.task");
   };
   const Remove remove = [&] {
     if (task >= 0) {
-      EXPECT_EQ(rdm_task_remove(task), RDM_OK) << rdm_last_error();
+      EXPECT_EQ(rdm_task_destroy(task), RDM_OK) << rdm_last_error();
     }
     task = -1;
   };
   for (const bool once : {true, false}) {
     EXPECT_GT(sweep(kTask, RDM_OK, once, read, remove), 200);
-    EXPECT_GT(sweep(kBroken, RDM_FORMAT, once, read, remove), 10);
+    EXPECT_GT(sweep(kBroken, RDM_ERROR_FORMAT, once, read, remove), 10);
   }
 }
 
 TEST(TomlMemory, OfAnObject) {
   rdm_import* i = nullptr;
-  const Read read = [&](const char* text, size_t size) { return rdm_import_object_text(&i, text, size); };
+  const Read read = [&](const char* text, size_t size) { return rdm_import_read_object(&i, text, size); };
   const Remove remove = [&] {
     rdm_import_destroy(i);
     i = nullptr;

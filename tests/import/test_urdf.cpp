@@ -73,36 +73,36 @@ std::string tetrahedron(double side, bool closed = true) {
 // ---- what is not known ----
 TEST(Urdf, SlipsOfThePenAreRefusedWithTheNearestWord) {
   expect_refused(
-      with_joint("<origin xyz='0 0 1' rrpy='0 1 0'/>" + kLimit), RDM_UNSUPPORTED,
+      with_joint("<origin xyz='0 0 1' rrpy='0 1 0'/>" + kLimit), RDM_ERROR_UNSUPPORTED,
       "origin: rrpy is no attribute that is known here, and it could change the robot; nearest is rpy");
-  expect_refused(with_joint("<axis xzy='0 0 1'/>" + kLimit), RDM_UNSUPPORTED, "nearest is xyz");
-  expect_refused(with_joint("<axis rpy='0 1 0' xyz='0 0 1'/>" + kLimit), RDM_UNSUPPORTED, "axis: rpy");
+  expect_refused(with_joint("<axis xzy='0 0 1'/>" + kLimit), RDM_ERROR_UNSUPPORTED, "nearest is xyz");
+  expect_refused(with_joint("<axis rpy='0 1 0' xyz='0 0 1'/>" + kLimit), RDM_ERROR_UNSUPPORTED, "axis: rpy");
   expect_refused(
-      with_joint("<orgin xyz='0 0 1'/>" + kLimit), RDM_UNSUPPORTED,
+      with_joint("<orgin xyz='0 0 1'/>" + kLimit), RDM_ERROR_UNSUPPORTED,
       "orgin: no element that is known in joint, and it could change the robot; nearest is origin");
-  expect_refused(with_joint(kLimit + "<mimik joint='k'/>"), RDM_UNSUPPORTED, "nearest is mimic");
-  expect_refused(with_joint("<limit lower='-1' uper='1'/>"), RDM_UNSUPPORTED, "nearest is upper");
-  expect_refused(with_arm("<inertail/>"), RDM_UNSUPPORTED, "nearest is inertial");
-  expect_refused(with_more("<lnk name='x'/>"), RDM_UNSUPPORTED, "nearest is link");
-  expect_refused(with_joint(kLimit + "<mimic joint='k' multipler='2'/>"), RDM_UNSUPPORTED,
+  expect_refused(with_joint(kLimit + "<mimik joint='k'/>"), RDM_ERROR_UNSUPPORTED, "nearest is mimic");
+  expect_refused(with_joint("<limit lower='-1' uper='1'/>"), RDM_ERROR_UNSUPPORTED, "nearest is upper");
+  expect_refused(with_arm("<inertail/>"), RDM_ERROR_UNSUPPORTED, "nearest is inertial");
+  expect_refused(with_more("<lnk name='x'/>"), RDM_ERROR_UNSUPPORTED, "nearest is link");
+  expect_refused(with_joint(kLimit + "<mimic joint='k' multipler='2'/>"), RDM_ERROR_UNSUPPORTED,
                  "nearest is multiplier");
 }
 
 TEST(Urdf, ElementsInTheWrongPlaceAreRefused) {
-  expect_refused(with_more(kInertial), RDM_FORMAT, "inertial: it stands in link, not in robot");
+  expect_refused(with_more(kInertial), RDM_ERROR_FORMAT, "inertial: it stands in link, not in robot");
   expect_refused(
       with_arm("<collision><geometry><origin xyz='0 0 1'/><box size='1 1 1'/></geometry></collision>"),
-      RDM_FORMAT, "origin: it stands in collision, not in geometry");
-  expect_refused(with_arm(kInertial + "<origin xyz='0 0 1'/>"), RDM_FORMAT, "not in link");
+      RDM_ERROR_FORMAT, "origin: it stands in collision, not in geometry");
+  expect_refused(with_arm(kInertial + "<origin xyz='0 0 1'/>"), RDM_ERROR_FORMAT, "not in link");
   EXPECT_TRUE(from_text(with_arm(kInertial + "<origin xyz='0 0 0' rpy='0 0 0'/>"))
                   .has_note(RDM_NOTE_DROPPED, "origin"));
 }
 
 TEST(Urdf, SecondOnesAreRefusedUnlessTheySayTheSame) {
-  expect_refused(with_joint(kOrigin + "<origin xyz='0 0 0.2'/>" + kLimit), RDM_FORMAT,
+  expect_refused(with_joint(kOrigin + "<origin xyz='0 0 0.2'/>" + kLimit), RDM_ERROR_FORMAT,
                  "origin: a second one, after that of line 1");
-  expect_refused(with_joint("<child link='base'/>" + kLimit), RDM_FORMAT, "child: a second one");
-  expect_refused(with_joint("<dynamics damping='1'/><dynamics damping='2'/>" + kLimit), RDM_FORMAT,
+  expect_refused(with_joint("<child link='base'/>" + kLimit), RDM_ERROR_FORMAT, "child: a second one");
+  expect_refused(with_joint("<dynamics damping='1'/><dynamics damping='2'/>" + kLimit), RDM_ERROR_FORMAT,
                  "dynamics: a second one");
 }
 
@@ -119,7 +119,7 @@ TEST(Urdf, OfTwoInertialsTheFirstCounts) {
   EXPECT_TRUE(twins.has_note(RDM_NOTE_CHANGED, "a second inertial"));
   // What is passed over is looked at all the same.
   other.replace(other.find("<mass"), 5, "<mas");
-  expect_refused(with_arm(kInertial + other), RDM_UNSUPPORTED, "nearest is mass");
+  expect_refused(with_arm(kInertial + other), RDM_ERROR_UNSUPPORTED, "nearest is mass");
 }
 
 TEST(Urdf, ADampingThatHoldsAJointStillIsTheLargest) {
@@ -130,15 +130,16 @@ TEST(Urdf, ADampingThatHoldsAJointStillIsTheLargest) {
   EXPECT_EQ(i.def.links[0].kd, 1e6);
   EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "damping 1e+11 is 1e+06, the most that a joint has"));
   EXPECT_TRUE(from_text(with_damping("1e6")).notes(RDM_NOTE_CHANGED).empty());
-  expect_refused(with_damping("-1"), RDM_RANGE, "damping -1 or friction 0 is below 0");
-  expect_refused(with_damping("1e31"), RDM_RANGE, "damping: 1e31 is outside [-1e30, 1e30]");
+  expect_refused(with_damping("-1"), RDM_ERROR_RANGE, "damping -1 or friction 0 is below 0");
+  expect_refused(with_damping("1e31"), RDM_ERROR_RANGE, "damping: 1e31 is outside [-1e30, 1e30]");
 }
 
 TEST(Urdf, WhatClosesLoopsOrBendsIsRefused) {
-  expect_refused(with_more("<loop_joint name='l'/>"), RDM_UNSUPPORTED, "loop_joint l: it closes a loop");
-  expect_refused(with_more("<drake:joint name='l' type='ball'/>"), RDM_UNSUPPORTED, "drake:joint l");
-  expect_refused(with_joint(kLimit + "<drake:mimic joint='k'/>"), RDM_UNSUPPORTED, "write it as mimic");
-  expect_refused(with_arm(kInertial + "<fem/>"), RDM_UNSUPPORTED, "bodies that bend");
+  expect_refused(with_more("<loop_joint name='l'/>"), RDM_ERROR_UNSUPPORTED,
+                 "loop_joint l: it closes a loop");
+  expect_refused(with_more("<drake:joint name='l' type='ball'/>"), RDM_ERROR_UNSUPPORTED, "drake:joint l");
+  expect_refused(with_joint(kLimit + "<drake:mimic joint='k'/>"), RDM_ERROR_UNSUPPORTED, "write it as mimic");
+  expect_refused(with_arm(kInertial + "<fem/>"), RDM_ERROR_UNSUPPORTED, "bodies that bend");
 }
 
 TEST(Urdf, WordsOfOtherProgramsAreDroppedAndListed) {
@@ -147,18 +148,18 @@ TEST(Urdf, WordsOfOtherProgramsAreDroppedAndListed) {
       "name='g'/><mujoco><compiler meshdir='meshes' balanceinertia='true'/></mujoco>"));
   for (const char* text : {"gazebo", "transmission t", "drake:collision_filter_group g", "mujoco"})
     EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, text)) << text;
-  expect_refused(with_more("<mujoco><compiler settotalmass='14'/></mujoco>"), RDM_UNSUPPORTED,
+  expect_refused(with_more("<mujoco><compiler settotalmass='14'/></mujoco>"), RDM_ERROR_UNSUPPORTED,
                  "settotalmass=\"14\" would change masses");
   EXPECT_EQ(from_text(with_more("<mujoco><compiler settotalmass='-1'/></mujoco>")).def.links[0].mass, 0.5);
 }
 
 // ---- numbers ----
 TEST(Urdf, NoNumberAndTooLargeANumberAreTwoReasons) {
-  expect_refused(with_joint("<origin xyz='0 0 1e16'/>" + kLimit), RDM_RANGE,
+  expect_refused(with_joint("<origin xyz='0 0 1e16'/>" + kLimit), RDM_ERROR_RANGE,
                  "xyz: 0 0 1e16 is outside [-1e9, 1e9]");
-  expect_refused(with_joint("<origin xyz='0 0 inf'/>" + kLimit), RDM_RANGE, "xyz: 0 0 inf is outside");
-  expect_refused(with_joint("<origin xyz='0 0 1,5.5.5'/>" + kLimit), RDM_FORMAT, "is no number");
-  expect_refused(with_joint("<origin xyz='0 0 1e999'/>" + kLimit), RDM_RANGE, "is outside");
+  expect_refused(with_joint("<origin xyz='0 0 inf'/>" + kLimit), RDM_ERROR_RANGE, "xyz: 0 0 inf is outside");
+  expect_refused(with_joint("<origin xyz='0 0 1,5.5.5'/>" + kLimit), RDM_ERROR_FORMAT, "is no number");
+  expect_refused(with_joint("<origin xyz='0 0 1e999'/>" + kLimit), RDM_ERROR_RANGE, "is outside");
   EXPECT_EQ(from_text(with_joint("<origin xyz='0 0 1e-999'/>" + kLimit)).def.links[0].p[2], 0);
 }
 
@@ -173,7 +174,7 @@ TEST(Urdf, ABoundThatIsNoneIsNone) {
     EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "effort"));
     EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "joint j: effort"));
   }
-  expect_refused(with_joint("<limit lower='nan' upper='0.5' effort='1' velocity='1'/>"), RDM_FORMAT,
+  expect_refused(with_joint("<limit lower='nan' upper='0.5' effort='1' velocity='1'/>"), RDM_ERROR_FORMAT,
                  "lower: nan is no number");
   File slide;
   slide.type = "prismatic", slide.joint = "<limit lower='-inf' upper='inf' effort='1' velocity='1'/>";
@@ -191,13 +192,13 @@ TEST(Urdf, ShapesOfNoSizeAreDropped) {
     EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, "link arm: a ")) << shape;
   }
   expect_refused(with_arm(kInertial + "<collision><geometry><box size='0 1 1'/></geometry></collision>"),
-                 RDM_RANGE, "size 0 is not above 0");
+                 RDM_ERROR_RANGE, "size 0 is not above 0");
 }
 
 TEST(Urdf, FilesThatAreNoXmlSaySo) {
   const Folder folder;
   rdm_import* i = nullptr;
-  EXPECT_EQ(rdm_import_file(&i, folder.add("a.urdf", "hand = 1\n").c_str(), nullptr), RDM_FORMAT);
+  EXPECT_EQ(rdm_import_read_file(&i, folder.add("a.urdf", "hand = 1\n").c_str(), nullptr), RDM_ERROR_FORMAT);
   EXPECT_NE(std::string(rdm_import_error()).find("line 1: no XML"), std::string::npos) << rdm_import_error();
 }
 
@@ -208,16 +209,16 @@ TEST(Urdf, NegativeNumbersAreSaidOrRefused) {
   EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "joint j: effort"));
   EXPECT_TRUE(from_text(with_joint("<limit lower='-1' upper='1' effort='0' velocity='1'/>"))
                   .has_note(RDM_NOTE_CHANGED, "joint j: effort 0 is none"));
-  expect_refused(with_joint(kLimit + "<dynamics damping='-1'/>"), RDM_RANGE,
+  expect_refused(with_joint(kLimit + "<dynamics damping='-1'/>"), RDM_ERROR_RANGE,
                  "damping -1 or friction 0 is below 0");
-  expect_refused(with_joint("<origin xyz='0 0 1' xyz='0 0 2'/>" + kLimit), RDM_FORMAT,
+  expect_refused(with_joint("<origin xyz='0 0 1' xyz='0 0 2'/>" + kLimit), RDM_ERROR_FORMAT,
                  "an attribute that is not name=\"value\", or stands twice");
 }
 
 TEST(Urdf, TurnsByQuaternionAndMirroredMomentsAreRead) {
   const Import i = from_text(with_joint("<origin xyz='0 0 1' quat_xyzw='0 0 2 0'/>" + kLimit));
   EXPECT_NEAR(std::abs(i.def.links[0].q[2]), 1, 1e-12);
-  expect_refused(with_joint("<origin rpy='0 0 0' quat_xyzw='0 0 1 0'/>" + kLimit), RDM_FORMAT,
+  expect_refused(with_joint("<origin rpy='0 0 0' quat_xyzw='0 0 1 0'/>" + kLimit), RDM_ERROR_FORMAT,
                  "rpy and quat_xyzw");
   const auto moments = [](const char* iyx) {
     return with_arm(
@@ -226,12 +227,13 @@ TEST(Urdf, TurnsByQuaternionAndMirroredMomentsAreRead) {
         std::string(iyx) + "'/></inertial>");
   };
   EXPECT_DOUBLE_EQ(from_text(moments("1e-4")).def.links[0].moment[3], 1e-4);
-  expect_refused(moments("2e-4"), RDM_FORMAT, "link arm: iyx is not ixy");
+  expect_refused(moments("2e-4"), RDM_ERROR_FORMAT, "link arm: iyx is not ixy");
 }
 
 // ---- masses ----
 TEST(Urdf, ADensityWeighsLinksWithoutInertial) {
-  expect_refused(with_arm(kBox), RDM_RANGE, "link arm: it moves and has no mass: options.density gives one");
+  expect_refused(with_arm(kBox), RDM_ERROR_RANGE,
+                 "link arm: it moves and has no mass: options.density gives one");
   rdm_import_options o = options();
   o.density = 500;
   const Import i = from_text(with_arm("<collision><origin xyz='0 0 0.3'/><geometry><box size='0.2 0.2 0.1'/>"
@@ -242,13 +244,14 @@ TEST(Urdf, ADensityWeighsLinksWithoutInertial) {
   EXPECT_NEAR(i.def.links[0].moment[0], 2 * (0.04 + 0.01) / 12, 1e-12);
   EXPECT_DOUBLE_EQ(i.def.root_mass, 0.5);  // it says its mass
   EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "link arm: mass 2, of its shapes at 500 kg/m3"));
-  expect_refused(with_arm(""), RDM_RANGE, "link arm: it moves and has no mass", &o);  // nothing to weigh
+  expect_refused(with_arm(""), RDM_ERROR_RANGE, "link arm: it moves and has no mass",
+                 &o);  // nothing to weigh
   // Isaac Gym's: a density of the link itself.
   EXPECT_DOUBLE_EQ(
       from_text(with_arm("<inertial><density value='250'/></inertial>" + kBox)).def.links[0].mass, 1);
   for (const double wrong : {-1.0, 1e6, double(NAN)}) {
     o.density = wrong;
-    expect_refused(with_arm(kBox), RDM_RANGE, "options.density", &o);
+    expect_refused(with_arm(kBox), RDM_ERROR_RANGE, "options.density", &o);
   }
 }
 
@@ -318,7 +321,8 @@ TEST(Urdf, HullsDrawOnTheBudget) {
   rdm_import_options o = options();
   o.density = 1000;
   rdm_import* i = nullptr;
-  EXPECT_EQ(rdm_import_file(&i, folder.add("many.urdf", text + "</robot>").c_str(), &o), RDM_RANGE);
+  EXPECT_EQ(rdm_import_read_file(&i, folder.add("many.urdf", text + "</robot>").c_str(), &o),
+            RDM_ERROR_RANGE);
   EXPECT_NE(std::string(rdm_import_error()).find("steps of work in one import"), std::string::npos)
       << rdm_import_error();
   rdm_import_destroy(i);
@@ -335,7 +339,7 @@ TEST(Urdf, FixedLinksMayHaveMomentsAlone) {
   EXPECT_NEAR(i.def.links[0].moment[0], 0.101, 1e-12);
   EXPECT_TRUE(
       i.has_note(RDM_NOTE_CHANGED, "link flange has no mass; its moments are part of what carries it"));
-  expect_refused(with_arm(moments), RDM_RANGE, "link arm: the mass 0 is not above 0");
+  expect_refused(with_arm(moments), RDM_ERROR_RANGE, "link arm: the mass 0 is not above 0");
 }
 
 TEST(Urdf, TheRootMayBeAPoint) {
@@ -352,13 +356,13 @@ TEST(Urdf, TheRootMayBeAPoint) {
 // ---- text ----
 TEST(Urdf, XacroIsNamedWhereverItStands) {
   const char* words = "xacro is not read: expand the file with the xacro tool first";
-  expect_refused(with_arm(kInertial + "<xacro:insert_block name='x'/>"), RDM_UNSUPPORTED, words);
-  expect_refused(with_joint("<origin xyz='0 0 ${height}'/>" + kLimit), RDM_UNSUPPORTED, words);
-  expect_refused(with_joint("<origin xyz='$(optenv XYZ 0 0 0)'/>" + kLimit), RDM_UNSUPPORTED, words);
+  expect_refused(with_arm(kInertial + "<xacro:insert_block name='x'/>"), RDM_ERROR_UNSUPPORTED, words);
+  expect_refused(with_joint("<origin xyz='0 0 ${height}'/>" + kLimit), RDM_ERROR_UNSUPPORTED, words);
+  expect_refused(with_joint("<origin xyz='$(optenv XYZ 0 0 0)'/>" + kLimit), RDM_ERROR_UNSUPPORTED, words);
   expect_refused(
       with_arm(kInertial +
                "<collision><geometry><mesh filename='$(find hand)/a.stl'/></geometry></collision>"),
-      RDM_UNSUPPORTED, words);
+      RDM_ERROR_UNSUPPORTED, words);
   EXPECT_EQ(from_text("<robot xmlns:xacro='http://ros.org/wiki/xacro'" + with_arm(kInertial).substr(6))
                 .def.num_links,
             1);
@@ -367,20 +371,20 @@ TEST(Urdf, XacroIsNamedWhereverItStands) {
 TEST(Urdf, DoctypesAndXmlErrorsSayWhatIsWrong) {
   File f;
   f.before = "<!DOCTYPE robot [<!ENTITY h '0.3'>]>\n";
-  expect_refused(f.text(), RDM_UNSUPPORTED, "line 1: DOCTYPE: entities");
+  expect_refused(f.text(), RDM_ERROR_UNSUPPORTED, "line 1: DOCTYPE: entities");
   f.before = "<?xml version='1.0'?>\n<!-- hand -->\n<!DOCTYPE robot SYSTEM 'robot.dtd'>";
-  expect_refused(f.text(), RDM_UNSUPPORTED, "line 3: DOCTYPE");
+  expect_refused(f.text(), RDM_ERROR_UNSUPPORTED, "line 3: DOCTYPE");
   f.before = "<!DOCTYPE robot>";
   EXPECT_EQ(from_text(f.text()).def.num_links, 1);
   f.before = "<!-- licence -->\n<?xml version='1.0'?>";
   EXPECT_EQ(from_text(f.text()).def.num_links, 1);
-  expect_refused(with_more("<?xml version='1.0'?>"), RDM_FORMAT,
+  expect_refused(with_more("<?xml version='1.0'?>"), RDM_ERROR_FORMAT,
                  "no XML: the declaration <?xml ...?> must stand first in the file");
-  expect_refused("<robot name='x'><link name='a'></robot>", RDM_FORMAT,
+  expect_refused("<robot name='x'><link name='a'></robot>", RDM_ERROR_FORMAT,
                  "no XML: an element that another one's end closes");
-  expect_refused("<!-- a -->\n -->\n<mujoco><worldbody/></mujoco>", RDM_FORMAT,
+  expect_refused("<!-- a -->\n -->\n<mujoco><worldbody/></mujoco>", RDM_ERROR_FORMAT,
                  "line 3: mujoco: no body");  // no .robot file
-  expect_refused("<robot name=x>", RDM_FORMAT, "no XML: an attribute that is not name=\"value\"");
+  expect_refused("<robot name=x>", RDM_ERROR_FORMAT, "no XML: an attribute that is not name=\"value\"");
 }
 
 // ---- meshes ----
@@ -415,7 +419,7 @@ TEST(Urdf, MeshesOfOtherSystemsAreReadAndBrokenOnesSayWhy) {
   };
   const auto refused = [&](const std::string& name, const std::string& bytes, const std::string& words) {
     rdm_import* i = nullptr;
-    EXPECT_EQ(rdm_import_file(&i, shape(name, bytes).c_str(), nullptr), RDM_FORMAT) << words;
+    EXPECT_EQ(rdm_import_read_file(&i, shape(name, bytes).c_str(), nullptr), RDM_ERROR_FORMAT) << words;
     EXPECT_NE(std::string(rdm_import_error()).find(words), std::string::npos) << rdm_import_error();
     rdm_import_destroy(i);
   };

@@ -31,21 +31,21 @@ struct Loaded {
     for (int step = 0; step < 4; ++step) {
       for (size_t i = 0; i < obs.size(); ++i)
         obs[i] = 3 + std::sin(static_cast<float>(7 * i) + static_cast<float>(step));
-      EXPECT_EQ(rdm_agent_act(a, obs.data(), RDM_SAMPLE, action.data()), RDM_OK);
+      EXPECT_EQ(rdm_agent_act(a, obs.data(), RDM_ACT_SAMPLE, action.data()), RDM_OK);
       EXPECT_EQ(rdm_agent_record(a, &t), RDM_OK) << rdm_agent_error(a);
     }
     EXPECT_EQ(rdm_agent_update(a, obs.data(), nullptr), RDM_OK) << rdm_agent_error(a);
     size_t size = 0;
-    EXPECT_EQ(rdm_agent_policy(a, nullptr, 0, &size), RDM_OK);
+    EXPECT_EQ(rdm_agent_write_policy(a, nullptr, 0, &size), RDM_OK);
     std::vector<unsigned char> bytes(size);
-    EXPECT_EQ(rdm_agent_policy(a, bytes.data(), size, &size), RDM_OK);
+    EXPECT_EQ(rdm_agent_write_policy(a, bytes.data(), size, &size), RDM_OK);
     rdm_agent_destroy(a);
-    EXPECT_EQ(rdm_policy_load(&policy, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(rdm_policy_read(&policy, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
     rdm_tensor tensor;
-    for (int32_t i = 0; rdm_policy_tensor(policy, i, &tensor) == RDM_OK; ++i) {
+    for (int32_t i = 0; rdm_policy_tensor_at(policy, i, &tensor) == RDM_OK; ++i) {
       auto& values = tensors[tensor.name];
       values.resize(static_cast<size_t>(tensor.rows) * static_cast<size_t>(tensor.cols));
-      EXPECT_EQ(rdm_policy_tensor_read(policy, tensor.name, values.data(), values.size()), RDM_OK);
+      EXPECT_EQ(rdm_policy_get_tensor(policy, tensor.name, values.data(), values.size()), RDM_OK);
     }
     info.struct_size = sizeof info;
     EXPECT_EQ(rdm_policy_get_info(policy, &info), RDM_OK);
@@ -139,15 +139,15 @@ TEST(PolicyTensorList, BadQuestionsGetAnswers) {
   Loaded p({{"horizon", nullptr, 4}, {"minibatches", nullptr, 1}});
   rdm_tensor t;
   float x[5];
-  EXPECT_EQ(rdm_policy_tensor(nullptr, 0, &t), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_policy_tensor(p.policy, 0, nullptr), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_policy_tensor(p.policy, -1, &t), RDM_RANGE);
-  EXPECT_EQ(rdm_policy_tensor(p.policy, 1000, &t), RDM_RANGE);
-  EXPECT_EQ(rdm_policy_tensor_read(nullptr, "example.obs", x, 5), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_policy_tensor_read(p.policy, nullptr, x, 5), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_policy_tensor_read(p.policy, "example.obs", nullptr, 5), RDM_ARGUMENT);
-  EXPECT_EQ(rdm_policy_tensor_read(p.policy, "example.obs", x, 4), RDM_RANGE);
-  EXPECT_EQ(rdm_policy_tensor_read(p.policy, "example.ob", x, 5), RDM_NOT_FOUND);
+  EXPECT_EQ(rdm_policy_tensor_at(nullptr, 0, &t), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_policy_tensor_at(p.policy, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_policy_tensor_at(p.policy, -1, &t), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_policy_tensor_at(p.policy, 1000, &t), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_policy_get_tensor(nullptr, "example.obs", x, 5), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_policy_get_tensor(p.policy, nullptr, x, 5), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_policy_get_tensor(p.policy, "example.obs", nullptr, 5), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_policy_get_tensor(p.policy, "example.obs", x, 4), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_policy_get_tensor(p.policy, "example.ob", x, 5), RDM_ERROR_NOT_FOUND);
   EXPECT_NE(std::string(rdm_last_error()).find("example.obs"), std::string::npos);
 }
 

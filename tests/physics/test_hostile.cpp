@@ -18,7 +18,7 @@ std::vector<unsigned char> state_of(const rdm_pool* p, int32_t env) {
   size_t n = 0;
   EXPECT_EQ(rdm_pool_state_size(p, env, &n), RDM_OK);
   std::vector<unsigned char> out(n);
-  EXPECT_EQ(rdm_pool_get_state(p, env, out.data(), n, &n), RDM_OK);
+  EXPECT_EQ(rdm_pool_write_state(p, env, out.data(), n, &n), RDM_OK);
   return out;
 }
 
@@ -65,7 +65,7 @@ TEST_P(Hostile, EveryCaseStaysFiniteAndBoundedOrIsFlagged) {
     EXPECT_LE(f.stuck, 1);
     // a state is refused when a number in it is not finite
     const auto bytes = state_of(trial.pool(), -1);
-    EXPECT_EQ(rdm_pool_set_state(trial.pool(), -1, bytes.data(), bytes.size()), RDM_OK)
+    EXPECT_EQ(rdm_pool_read_state(trial.pool(), -1, bytes.data(), bytes.size()), RDM_OK)
         << rdm_pool_error(trial.pool());
   }
 }
@@ -80,8 +80,8 @@ TEST_P(Hostile, ALostWorldIsFlaggedAloneAndIsUsableAfterwards) {
       rdm_pool *pool = make_pool(GetParam(), kWorlds), *twin = make_pool(GetParam(), kWorlds);
       rdm_buffers b{}, t{};
       b.struct_size = t.struct_size = sizeof b;
-      ASSERT_EQ(rdm_pool_buffers(pool, &b), RDM_OK);
-      ASSERT_EQ(rdm_pool_buffers(twin, &t), RDM_OK);
+      ASSERT_EQ(rdm_pool_get_buffers(pool, &b), RDM_OK);
+      ASSERT_EQ(rdm_pool_get_buffers(twin, &t), RDM_OK);
       const auto step_both = [&](int steps) {
         for (int i = 0; i < steps; ++i) {
           for (rdm_pool* p : {pool, twin}) {
@@ -134,7 +134,7 @@ TEST_P(Hostile, EveryShapeTakesAPushOrRefusesIt) {
   rdm_shape s;
   for (int32_t i = 0; rdm_pool_shape(pool, i, &s) == RDM_OK; ++i) {
     const bool rests = i == base || i == ground || i == shape_named(pool, "left_forearm");
-    EXPECT_EQ(rdm_pool_push(pool, 0, i, force), rests ? RDM_ARGUMENT : RDM_OK) << s.name;
+    EXPECT_EQ(rdm_pool_push(pool, 0, i, force), rests ? RDM_ERROR_ARGUMENT : RDM_OK) << s.name;
   }
   ASSERT_EQ(rdm_pool_step(pool), RDM_OK);
   rdm_pool_destroy(pool);

@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
   config.autoreset = RDM_AUTORESET_OFF;
   config.settings = argv[5];
   if (!check(rdm_pool_create(&pool, &config)) || !check(rdm_pool_get_spec(pool, &spec)) ||
-      !check(rdm_pool_buffers(pool, &rows)) || !check(rdm_policy_load_file(&policy, argv[1])))
+      !check(rdm_pool_get_buffers(pool, &rows)) || !check(rdm_policy_read_file(&policy, argv[1])))
     return 1;
   how.policy = policy;
   how.spec = &spec;

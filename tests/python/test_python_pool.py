@@ -65,7 +65,7 @@ class SameWorlds(unittest.TestCase):
 class Rows(unittest.TestCase):
     def test_rows_are_the_memory_that_the_library_writes(self):
         pool = played()
-        buffers = redman._library.filled(redman._abi.rdm_buffers, redman._library.lib.rdm_pool_buffers, pool._p)
+        buffers = redman._library.filled(redman._abi.rdm_buffers, redman._library.lib.rdm_pool_get_buffers, pool._p)
         for name, rows in redman._abi.ROWS["rdm_buffers"].items():
             array = getattr(pool, name)
             self.assertEqual(array.ctypes.data, getattr(buffers, name), name)

@@ -82,7 +82,7 @@ def split(declaration):
 def main(root):
     folder = pathlib.Path(root)
     umbrella = (folder / "include/redman/redman.h").read_text()
-    names = re.findall(r"^#include <(redman/\w+\.h)>", umbrella, re.M)
+    names = [n for n in re.findall(r"^#include <(redman/\w+\.h)>", umbrella, re.M) if "deprecated" not in n]
     header = Header("\n".join((folder / "include" / name).read_text() for name in names))
     wrong = []
     counts = {}

@@ -14,17 +14,18 @@ number() { sed -n "s/^#define RDM_$1 *\([0-9]*\).*/\1/p" "$root/include/redman/b
 minor=$(number VERSION_MAJOR)_$(number VERSION_MINOR)
 # A list a version node; what a release adds to the stable half has a list of its own.
 : > "$work/nodes"
-for list in redman redman_1.0 redman_experimental; do
+for list in redman redman_old redman_1.0 redman_experimental; do
   case $list in
-    redman) part=stable node=REDMAN_$(number ABI) ;;
+    redman | redman_old) part=stable node=REDMAN_$(number ABI) ;;
     redman_experimental) part=experimental node=REDMAN_EXPERIMENTAL_$minor ;;
     *) part=stable node=REDMAN_${list#redman_} ;;
   esac
-  grep '^rdm_' "$root/capi/$list.symbols" >> "$work/$part.names"
+  # what has another name now is in no header but deprecated.h
+  [ $list = redman_old ] || grep '^rdm_' "$root/capi/$list.symbols" >> "$work/$part.names"
   sed -n "s/^\(rdm_.*\)/\1@@$node/p" "$root/capi/$list.symbols" >> "$work/nodes"
 done
 LC_ALL=C sort "$work/nodes" > "$work/listed"
-headers=$(sed -n 's/^#include <redman\/\(.*\)>.*/\1/p' "$root/include/redman/redman.h")
+headers=$(sed -n 's/^#include <redman\/\(.*\)>.*/\1/p' "$root/include/redman/redman.h" | grep -v deprecated)
 for part in stable experimental; do
   LC_ALL=C sort "$work/$part.names" > "$work/$part.listed"
   # shellcheck disable=SC2086

@@ -33,7 +33,7 @@ class CalledTask {
     def.user = this;
     def.build = [](void* u, rdm_scene* scene, void*) {
       rdm_shape_def sphere{};
-      sphere.kind = RDM_SPHERE, sphere.size[0] = 0.05;
+      sphere.kind = RDM_SHAPE_SPHERE, sphere.size[0] = 0.05;
       rdm_body_def ball{};
       ball.struct_size = sizeof ball, ball.name = "ball", ball.shapes = &sphere, ball.num_shapes = 1;
       ball.mass = 0.1, ball.p[2] = 1;
@@ -61,9 +61,9 @@ class CalledTask {
     def.release = [](void* u) {
       if (self(u).release) self(u).release();
     };
-    if (rdm_task_register(&number, &def) != RDM_OK) ADD_FAILURE() << rdm_last_error();
+    if (rdm_task_create(&number, &def) != RDM_OK) ADD_FAILURE() << rdm_last_error();
   }
-  ~CalledTask() { rdm_task_remove(number); }
+  ~CalledTask() { rdm_task_destroy(number); }
   CalledTask(const CalledTask&) = delete;
   CalledTask& operator=(const CalledTask&) = delete;
 

@@ -94,7 +94,7 @@ inline rdm_pool* make_pool(const rdm_pool_config& c) {
 inline rdm_buffers buffers_of(const rdm_pool* p) {
   rdm_buffers b{};
   b.struct_size = sizeof b;
-  EXPECT_EQ(rdm_pool_buffers(p, &b), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_buffers(p, &b), RDM_OK);
   return b;
 }
 
@@ -107,7 +107,7 @@ inline rdm_spec spec_of(const rdm_pool* p) {
 
 inline uint64_t hash_of(const rdm_pool* p, int32_t env = -1) {
   uint64_t h = 0;
-  EXPECT_EQ(rdm_pool_hash(p, env, &h), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_hash(p, env, &h), RDM_OK);
   return h;
 }
 
@@ -138,7 +138,7 @@ inline rdm_result feed_epoch(rdm_agent* a, int horizon = 8) {
   uint8_t ended[4] = {};
   for (int h = 0; h < horizon; ++h) {
     for (int i = 0; i < 12; ++i) obs[i] = static_cast<float>((7 * i + 3 * h) % 11) * 0.1f;
-    if (const rdm_result r = rdm_agent_act(a, obs, RDM_SAMPLE, action)) return r;
+    if (const rdm_result r = rdm_agent_act(a, obs, RDM_ACT_SAMPLE, action)) return r;
     for (int i = 0; i < 4; ++i) {
       reward[i] = -action[2 * i] * action[2 * i];
       cost[i] = action[2 * i + 1] > 0;
@@ -156,16 +156,16 @@ inline rdm_result feed_epoch(rdm_agent* a, int horizon = 8) {
 
 inline std::vector<unsigned char> policy_bytes(const rdm_agent* a) {
   size_t n = 0;
-  EXPECT_EQ(rdm_agent_policy(a, nullptr, 0, &n), RDM_OK);
+  EXPECT_EQ(rdm_agent_write_policy(a, nullptr, 0, &n), RDM_OK);
   std::vector<unsigned char> out(n);
-  EXPECT_EQ(rdm_agent_policy(a, out.data(), n, &n), RDM_OK);
+  EXPECT_EQ(rdm_agent_write_policy(a, out.data(), n, &n), RDM_OK);
   return out;
 }
 
 inline std::vector<unsigned char> saved(const rdm_agent* a) {
   size_t n = 0;
-  EXPECT_EQ(rdm_agent_save(a, nullptr, 0, &n), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_agent_write_state(a, nullptr, 0, &n), RDM_OK) << rdm_last_error();
   std::vector<unsigned char> out(n);
-  EXPECT_EQ(rdm_agent_save(a, out.data(), n, &n), RDM_OK);
+  EXPECT_EQ(rdm_agent_write_state(a, out.data(), n, &n), RDM_OK);
   return out;
 }

@@ -98,7 +98,7 @@ class Trial {
     spec_.struct_size = sizeof spec_;
     rows_.struct_size = sizeof rows_;
     rdm_pool_get_spec(pool_, &spec_);
-    rdm_pool_buffers(pool_, &rows_);
+    rdm_pool_get_buffers(pool_, &rows_);
     rdm_pool_reset(pool_, nullptr, nullptr);
     find_fields();
     find_shapes();

@@ -14,7 +14,7 @@ struct Import {
   explicit Import(rdm_import* made) : Import() {
     handle = made;
     if (made) {
-      EXPECT_EQ(rdm_import_def(handle, &def), RDM_OK) << rdm_import_error();
+      EXPECT_EQ(rdm_import_get_robot_def(handle, &def), RDM_OK) << rdm_import_error();
     }
   }
   Import(Import&& other) noexcept : handle(std::exchange(other.handle, nullptr)), def(other.def) {}
@@ -49,19 +49,19 @@ inline rdm_import_options options() {
 }
 inline Import from_path(const std::string& path, const rdm_import_options* o = nullptr) {
   rdm_import* i = nullptr;
-  EXPECT_EQ(rdm_import_file(&i, path.c_str(), o), RDM_OK) << rdm_import_error();
+  EXPECT_EQ(rdm_import_read_file(&i, path.c_str(), o), RDM_OK) << rdm_import_error();
   return Import(i);
 }
 inline Import from_text(const std::string& text, const rdm_import_options* o = nullptr) {
   rdm_import* i = nullptr;
-  EXPECT_EQ(rdm_import_text(&i, text.data(), text.size(), o), RDM_OK) << rdm_import_error();
+  EXPECT_EQ(rdm_import_read(&i, text.data(), text.size(), o), RDM_OK) << rdm_import_error();
   return Import(i);
 }
 // The text is refused with this code, and the error holds these words.
 inline void expect_refused(const std::string& text, rdm_result code, const std::string& words,
                            const rdm_import_options* o = nullptr) {
   rdm_import* i = nullptr;
-  EXPECT_EQ(rdm_import_text(&i, text.data(), text.size(), o), code) << words << ": " << rdm_import_error();
+  EXPECT_EQ(rdm_import_read(&i, text.data(), text.size(), o), code) << words << ": " << rdm_import_error();
   EXPECT_NE(std::string(rdm_import_error()).find(words), std::string::npos)
       << "'" << rdm_import_error() << "' is not '" << words << "'";
   rdm_import_destroy(i);

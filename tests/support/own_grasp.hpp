@@ -56,7 +56,7 @@ inline rdm_result grasp_build(void*, rdm_scene* scene, void* instance) {
   OWN_TRY(rdm_robot_find("shadow_hand", &hand.robot));
   OWN_TRY(rdm_scene_add_robot(scene, &hand, &ids->hand));
   rdm_shape_def box{};
-  box.kind = RDM_BOX, box.material = "object", box.size[0] = box.size[1] = box.size[2] = 0.025;
+  box.kind = RDM_SHAPE_BOX, box.material = "object", box.size[0] = box.size[1] = box.size[2] = 0.025;
   rdm_body_def cube{};
   cube.struct_size = sizeof cube, cube.name = "object", cube.shapes = &box, cube.num_shapes = 1;
   cube.mass = 0.071, cube.angular_damping = 0.1;
@@ -65,14 +65,14 @@ inline rdm_result grasp_build(void*, rdm_scene* scene, void* instance) {
   for (int k = 0; k < 3; ++k) cube.moment[k] = moment * cube.mass / cube.mass;
   OWN_TRY(rdm_scene_add_body(scene, &cube, &ids->object));
   rdm_shape_def ground{};
-  ground.name = "ground", ground.kind = RDM_PLANE, ground.material = "ground";
+  ground.name = "ground", ground.kind = RDM_SHAPE_PLANE, ground.material = "ground";
   OWN_TRY(rdm_scene_add_static(scene, &ground));
 
   rdm_robot_def d;
   OWN_TRY(rdm_robot_def_init(&d, sizeof d));
-  OWN_TRY(rdm_robot_get(hand.robot, &d));
+  OWN_TRY(rdm_robot_get_def(hand.robot, &d));
   ids->joints = d.num_links, ids->actions = d.num_commands, ids->tips = d.num_fingers;
-  OWN_TRY(rdm_robot_poses_of(hand.robot, ids->joint, ids->home, nullptr, nullptr));
+  OWN_TRY(rdm_robot_get_postures(hand.robot, ids->joint, ids->home, nullptr, nullptr));
   std::fill_n(ids->effort, kMostGraspJoints, std::numeric_limits<double>::infinity());
   std::fill_n(ids->leader, kMostGraspJoints, -1);
   for (int32_t i = 0; i < d.num_couplings; ++i) {
@@ -82,7 +82,7 @@ inline rdm_result grasp_build(void*, rdm_scene* scene, void* instance) {
   }
   for (int32_t i = 0; i < ids->joints; ++i) {
     rdm_joint joint;
-    OWN_TRY(rdm_scene_joint(scene, i, &joint));
+    OWN_TRY(rdm_scene_joint_at(scene, i, &joint));
     ids->lower[i] = joint.lower, ids->upper[i] = joint.upper;
     if (joint.action >= 0 && joint.effort > 0) ids->effort[i] = joint.effort;
   }
@@ -117,7 +117,7 @@ inline rdm_result grasp_reset(void*, const void* instance, rdm_world* world, voi
   OWN_TRY(rdm_world_set_joints(world, ids->hand, q, nullptr, ids->joints));
   rdm_joints joints{};
   joints.struct_size = sizeof joints;
-  OWN_TRY(rdm_world_joints(world, &joints));
+  OWN_TRY(rdm_world_get_joints(world, &joints));
   for (int32_t i = 0; i < ids->actions; ++i) {
     const int32_t j = ids->joint[i];
     s->command[i] = to_command(ids->lower[j], ids->upper[j], joints.q[j]);
@@ -128,12 +128,12 @@ inline rdm_result grasp_reset(void*, const void* instance, rdm_world* world, voi
     for (int k = 0; k < 3; ++k) m.p[k] = start[k] + 0.001 * rdm_random_uniform(random, -1, 1);
     OWN_TRY(rdm_rotation(z, kPi * rdm_random_uniform(random, -1, 1), m.q));
     OWN_TRY(rdm_world_set_body(world, ids->object, &m));
-    OWN_TRY(rdm_world_overlap(world, ids->object, &depth));
+    OWN_TRY(rdm_world_get_overlap(world, ids->object, &depth));
   }
   for (int raise = 0; raise < 100 && depth > 0; ++raise) {
     m.p[2] += 0.005;
     OWN_TRY(rdm_world_set_body(world, ids->object, &m));
-    OWN_TRY(rdm_world_overlap(world, ids->object, &depth));
+    OWN_TRY(rdm_world_get_overlap(world, ids->object, &depth));
   }
   double about_x[4], about_y[4], goal[4];
   const double a = kPi * rdm_random_uniform(random, -1, 1), b = kPi * rdm_random_uniform(random, -1, 1);
@@ -151,7 +151,7 @@ inline rdm_result grasp_control(void*, const void* instance, rdm_world* world, v
   auto* s = static_cast<GraspState*>(state);
   std::copy_n(action, ids->actions, s->action);
   for (int32_t i = 0; i < ids->actions; ++i) s->command[i] = static_cast<double>(action[i]);
-  return rdm_world_command(world, ids->hand, s->command, ids->actions);
+  return rdm_world_set_commands(world, ids->hand, s->command, ids->actions);
 }
 
 inline rdm_result grasp_judge(void*, const void* instance, rdm_world* world, void* state, int32_t,
@@ -161,8 +161,8 @@ inline rdm_result grasp_judge(void*, const void* instance, rdm_world* world, voi
   rdm_motion cube;
   rdm_joints joints{};
   joints.struct_size = sizeof joints;
-  OWN_TRY(rdm_world_body(world, ids->object, &cube));
-  OWN_TRY(rdm_world_joints(world, &joints));
+  OWN_TRY(rdm_world_get_body(world, ids->object, &cube));
+  OWN_TRY(rdm_world_get_joints(world, &joints));
   out->reward = 100 * (cube.p[2] - 0);
   out->success = cube.p[2] >= 0.1;
   double effort = 0, range = 0;
@@ -191,12 +191,12 @@ inline rdm_result grasp_observe(void*, const void* instance, const rdm_world* wo
   rdm_motion m;
   rdm_joints joints{};
   joints.struct_size = sizeof joints;
-  OWN_TRY(rdm_world_joints(world, &joints));
+  OWN_TRY(rdm_world_get_joints(world, &joints));
   for (int32_t i = 0; i < ids->joints; ++i)
     *obs++ = static_cast<float>(to_command(ids->lower[i], ids->upper[i], joints.q[i]));
   obs = put(joints.qd, ids->joints, 0.2, obs);
   obs = put(joints.torque, ids->joints, 10, obs);
-  OWN_TRY(rdm_world_body(world, ids->object, &m));
+  OWN_TRY(rdm_world_get_body(world, ids->object, &m));
   obs = put(m.p, 3, 1, obs);
   obs = put(m.q, 4, 1, obs);
   obs = put(m.v, 3, 1, obs);
@@ -209,7 +209,7 @@ inline rdm_result grasp_observe(void*, const void* instance, const rdm_world* wo
   multiply(m.q, back, error);
   obs = put(error, 4, 1, obs);
   for (int32_t i = 0; i < ids->tips; ++i) {
-    OWN_TRY(rdm_world_link(world, ids->tip[i], &m));
+    OWN_TRY(rdm_world_get_link(world, ids->tip[i], &m));
     obs = put(m.p, 3, 1, obs);
     obs = put(m.q, 4, 1, obs);
     obs = put(m.v, 3, 1, obs);
@@ -217,7 +217,7 @@ inline rdm_result grasp_observe(void*, const void* instance, const rdm_world* wo
   }
   for (int32_t i = 0; i < ids->tips; ++i) {
     double force[3], torque[3];
-    OWN_TRY(rdm_world_sensor(world, ids->sensor[i], force, torque));
+    OWN_TRY(rdm_world_get_sensor(world, ids->sensor[i], force, torque));
     obs = put(force, 3, 10, obs);
     obs = put(torque, 3, 10, obs);
   }

@@ -74,20 +74,20 @@ inline rdm_result ball_build(void* user, rdm_scene* scene, void* instance) {
   auto* u = static_cast<BallUser*>(user);
   auto* ids = static_cast<BallIds*>(instance);
   ++u->built;
-  if (u->fault == Fault::kBuildFails) return rdm_fail(RDM_RANGE, "the ball is too large");
+  if (u->fault == Fault::kBuildFails) return rdm_fail(RDM_ERROR_RANGE, "the ball is too large");
   if (u->fault == Fault::kBuildReturnsNonsense) return 7;
   if (u->fault == Fault::kBuildThrows) throw 7;
   rdm_result r = rdm_scene_add_material(scene, "rubber");
   if (r == RDM_OK) r = rdm_scene_set_friction(scene, "rubber", "default", 0.8);
   rdm_robot_link link{};
   link.name = "plate", link.joint = "rail";
-  link.parent = RDM_ROOT_LINK, link.kind = RDM_PRISMATIC;
+  link.parent = RDM_LINK_ROOT, link.kind = RDM_JOINT_PRISMATIC;
   link.q[3] = 1, link.axis[0] = 1;
   link.lower = -0.3, link.upper = 0.3, link.kp = 200, link.kd = 10, link.effort = 20, link.velocity = 2;
   link.mass = 0.2;
   for (int k = 0; k < 3; ++k) link.moment[k] = 1e-3;
   rdm_robot_shape plate{};
-  plate.name = "plate", plate.kind = RDM_BOX, plate.q[3] = 1;
+  plate.name = "plate", plate.kind = RDM_SHAPE_BOX, plate.q[3] = 1;
   plate.size[0] = 0.01, plate.size[1] = 0.1, plate.size[2] = 0.05;
   rdm_robot_def d;
   if (r == RDM_OK) r = rdm_robot_def_init(&d, sizeof d);
@@ -96,18 +96,18 @@ inline rdm_result ball_build(void* user, rdm_scene* scene, void* instance) {
   robot.struct_size = sizeof robot, robot.own = &d, robot.name = "paddle", robot.p[2] = 0.06;
   if (r == RDM_OK) r = rdm_scene_add_robot(scene, &robot, &ids->paddle);
   rdm_shape_def sphere{};
-  sphere.kind = RDM_SPHERE, sphere.size[0] = 0.05, sphere.material = "rubber";
+  sphere.kind = RDM_SHAPE_SPHERE, sphere.size[0] = 0.05, sphere.material = "rubber";
   rdm_body_def ball{};
   ball.struct_size = sizeof ball, ball.name = "ball", ball.shapes = &sphere, ball.num_shapes = 1;
   ball.mass = 0.1, ball.p[0] = 0.15, ball.p[2] = 0.05, ball.angular_damping = 0.5;
   if (r == RDM_OK) r = rdm_scene_add_body(scene, &ball, &ids->ball);
   rdm_shape_def ground{};
-  ground.name = "ground", ground.kind = RDM_PLANE;
+  ground.name = "ground", ground.kind = RDM_SHAPE_PLANE;
   if (r == RDM_OK) r = rdm_scene_add_static(scene, &ground);
-  if (r == RDM_OK) r = rdm_scene_number(scene, "push", &ids->push);
+  if (r == RDM_OK) r = rdm_scene_get_number(scene, "push", &ids->push);
   if (r == RDM_OK) r = rdm_scene_find(scene, RDM_SCENE_JOINT, "paddle_rail", &ids->rail);
   if (r == RDM_OK) r = rdm_scene_find(scene, RDM_SCENE_SHAPE, "ground", &ids->ground);
-  if (r == RDM_OK) r = rdm_scene_touch(scene, "paddle*", "ball", &ids->touch);
+  if (r == RDM_OK) r = rdm_scene_add_touch(scene, "paddle*", "ball", &ids->touch);
   return r;
 }
 
@@ -116,7 +116,7 @@ inline rdm_result ball_reset(void* user, const void* instance, rdm_world* world,
   auto* u = static_cast<BallUser*>(user);
   const auto* ids = static_cast<const BallIds*>(instance);
   auto* s = static_cast<BallState*>(state);
-  if (u->fault == Fault::kResetFails) return RDM_STATE;
+  if (u->fault == Fault::kResetFails) return RDM_ERROR_STATE;
   s->start = rdm_random_uniform(random, 0.12, 0.2);
   if (u->fault == Fault::kResetHidden) s->start += 1e-3 * static_cast<double>(++u->calls % 7);
   rdm_random_split(random, &s->draws);
@@ -144,7 +144,7 @@ inline rdm_result ball_control(void* user, const void* instance, rdm_world* worl
     return rdm_world_set_targets(world, ids->rail, &nan, 1);
   }
   int32_t contacts = 0;
-  if (u->fault == Fault::kControlTouches) rdm_world_contacts(world, nullptr, 0, &contacts);
+  if (u->fault == Fault::kControlTouches) rdm_world_get_contacts(world, nullptr, 0, &contacts);
   if (u->fault == Fault::kStateElsewhere) {
     command += u->hidden;
     u->hidden = 0.01 * static_cast<double>(action[1]);
@@ -154,7 +154,7 @@ inline rdm_result ball_control(void* user, const void* instance, rdm_world* worl
   const double force[3] = {ids->push * static_cast<double>(action[1]) + jitter + contacts, 0, 0},
                none[3] = {0, 0, 0};
   const double blast[3] = {1e308, 0, 0};
-  rdm_result r = rdm_world_command(world, ids->paddle, &command, 1);
+  rdm_result r = rdm_world_set_commands(world, ids->paddle, &command, 1);
   if (r == RDM_OK) r = rdm_world_push_body(world, ids->ball, force, none);
   if (u->fault == Fault::kHoldFlies && action[0] == 0.25f)
     for (int twice = 0; twice < 2; ++twice) rdm_world_push_body(world, ids->ball, blast, none);
@@ -170,8 +170,8 @@ inline rdm_result ball_judge(void* user, const void* instance, rdm_world* world,
   rdm_motion ball;
   int32_t pairs = 0;
   double force = 0;
-  rdm_result r = rdm_world_body(world, ids->ball, &ball);
-  if (r == RDM_OK) r = rdm_world_touch(world, ids->touch, &pairs, &force);
+  rdm_result r = rdm_world_get_body(world, ids->ball, &ball);
+  if (r == RDM_OK) r = rdm_world_get_touch(world, ids->touch, &pairs, &force);
   out->reward = ball.v[0];
   out->cost[0] = pairs > 0;
   out->cost_raw[0] = force;
@@ -208,8 +208,8 @@ inline rdm_result ball_observe(void* user, const void* instance, const rdm_world
   rdm_motion ball;
   rdm_joints joints{};
   joints.struct_size = sizeof joints;
-  rdm_result r = rdm_world_body(world, ids->ball, &ball);
-  if (r == RDM_OK) r = rdm_world_joints(world, &joints);
+  rdm_result r = rdm_world_get_body(world, ids->ball, &ball);
+  if (r == RDM_OK) r = rdm_world_get_joints(world, &joints);
   if (r != RDM_OK) return r;
   for (int k = 0; k < 3; ++k) obs[k] = static_cast<float>(ball.p[k]);
   for (int k = 0; k < 3; ++k) obs[3 + k] = static_cast<float>(ball.v[k]);
@@ -245,10 +245,10 @@ inline rdm_result ball_observe(void* user, const void* instance, const rdm_world
 
 inline rdm_result ball_check_state(void*, const void*, const void* state) {
   const auto* s = static_cast<const BallState*>(state);
-  if (!(std::fabs(s->start) <= 1)) return rdm_fail(RDM_FORMAT, "start is not within +-1");
+  if (!(std::fabs(s->start) <= 1)) return rdm_fail(RDM_ERROR_FORMAT, "start is not within +-1");
   for (const float a : s->action)
-    if (!(std::fabs(a) <= 1)) return rdm_fail(RDM_FORMAT, "an action is not within +-1");
-  if (s->steps < 0 || s->steps > 1000000) return rdm_fail(RDM_FORMAT, "steps are outside [0, 1e6]");
+    if (!(std::fabs(a) <= 1)) return rdm_fail(RDM_ERROR_FORMAT, "an action is not within +-1");
+  if (s->steps < 0 || s->steps > 1000000) return rdm_fail(RDM_ERROR_FORMAT, "steps are outside [0, 1e6]");
   return RDM_OK;
 }
 
@@ -261,9 +261,10 @@ struct BallTask {
                                        {"action", "1", kBallActions, -1, 1, 0}};
   std::vector<rdm_cost> costs = {{"touch", "the paddle touches the ball", 5}, {"speed", "of the ball", -1}};
   std::vector<rdm_option_info> options = {
-      {"push", "force of an action entry of 1 on the ball, N", nullptr, nullptr, 0.05, 0, 10, RDM_NUMBER, 0},
-      {"mood", "does nothing", "calm", "calm|wild", 0, 0, 0, RDM_TEXT, 0},
-      {"frequency", nullptr, nullptr, nullptr, 50, 0, 0, RDM_NUMBER, 0}};
+      {"push", "force of an action entry of 1 on the ball, N", nullptr, nullptr, 0.05, 0, 10, RDM_KIND_NUMBER,
+       0},
+      {"mood", "does nothing", "calm", "calm|wild", 0, 0, 0, RDM_KIND_TEXT, 0},
+      {"frequency", nullptr, nullptr, nullptr, 50, 0, 0, RDM_KIND_NUMBER, 0}};
   std::vector<rdm_camera> cameras = {{"front", {0, -1.0f, 0.5f}, {0, 0, 0}, 0.8f, 0}};
   std::vector<rdm_option> defaults = {{"hidden", "16,16", 0}, {"horizon", nullptr, 64}};
   float hold[kBallActions] = {0.25f, 0};
@@ -303,11 +304,11 @@ struct BallTask {
 class Registered {
  public:
   explicit Registered(const rdm_task_def& def) {
-    if (rdm_task_register(&task_, &def) == RDM_OK) return;
+    if (rdm_task_create(&task_, &def) == RDM_OK) return;
     std::fprintf(stderr, "%s\n", rdm_last_error());
     std::abort();
   }
-  ~Registered() { rdm_task_remove(task_); }
+  ~Registered() { rdm_task_destroy(task_); }
   Registered(const Registered&) = delete;
   Registered& operator=(const Registered&) = delete;
   int32_t index() const { return task_; }

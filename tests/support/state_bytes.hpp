@@ -14,7 +14,7 @@ class StateBytes {
     size_t size = 0;
     rdm_pool_state_size(p, env, &size);
     bytes_.resize(size);
-    rdm_pool_get_state(p, env, bytes_.data(), size, &size);
+    rdm_pool_write_state(p, env, bytes_.data(), size, &size);
     rdm_spec spec{};
     spec.struct_size = sizeof spec;
     rdm_pool_get_spec(p, &spec);

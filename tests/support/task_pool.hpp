@@ -18,7 +18,7 @@ struct TaskPool {
     c.settings = settings;
     pool = make_pool(c);
     b.struct_size = sizeof b;
-    EXPECT_EQ(rdm_pool_buffers(pool, &b), RDM_OK);
+    EXPECT_EQ(rdm_pool_get_buffers(pool, &b), RDM_OK);
   }
   ~TaskPool() { rdm_pool_destroy(pool); }
   TaskPool(const TaskPool&) = delete;

@@ -31,7 +31,7 @@ uint64_t run(const char* task, const rdm_option* engine) {
   rdm_buffers b{};
   b.struct_size = sizeof b;
   EXPECT_EQ(rdm_pool_get_spec(p, &spec), RDM_OK);
-  EXPECT_EQ(rdm_pool_buffers(p, &b), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_buffers(p, &b), RDM_OK);
   EXPECT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
   uint64_t h = rdm::kHashSeed;
   for (int step = 0; step < 200; ++step) {
@@ -42,7 +42,7 @@ uint64_t run(const char* task, const rdm_option* engine) {
     h = rdm::hash_bytes(b.cost, sizeof(float) * 4 * static_cast<size_t>(spec.cost_dim), h);
   }
   uint64_t state = 0;
-  EXPECT_EQ(rdm_pool_hash(p, -1, &state), RDM_OK);
+  EXPECT_EQ(rdm_pool_get_hash(p, -1, &state), RDM_OK);
   rdm_pool_destroy(p);
   return rdm::hash_bytes(&state, sizeof state, h);
 }
@@ -56,7 +56,7 @@ bool has_engines(const rdm_task& task) {
   c.num_options = 1;
   rdm_spec spec{};
   spec.struct_size = sizeof spec;
-  return rdm_pool_spec(&c, &spec) == RDM_OK;
+  return rdm_pool_config_spec(&c, &spec) == RDM_OK;
 }
 
 constexpr const char* kRows = RDM_TEST_DATA "/golden/tasks.txt";

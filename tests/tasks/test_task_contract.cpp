@@ -151,7 +151,7 @@ TEST_P(TaskContract, ItsSpecIsWhatAPoolHas) {
   c.task = GetParam().c_str();
   rdm_spec told{}, had{};
   told.struct_size = had.struct_size = sizeof told;
-  ASSERT_EQ(rdm_pool_spec(&c, &told), RDM_OK) << rdm_last_error();
+  ASSERT_EQ(rdm_pool_config_spec(&c, &told), RDM_OK) << rdm_last_error();
   rdm_pool* p = nullptr;
   ASSERT_EQ(rdm_pool_create(&p, &c), RDM_OK) << rdm_last_error();
   EXPECT_EQ(rdm_pool_get_spec(p, &had), RDM_OK);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <redman/sense.hpp>
 
 #include "common/setup.hpp"
 #include "draw/cloud.hpp"
@@ -29,12 +30,6 @@ rdm_camera camera_of(const redman::Pool& pool, const std::string& name) {
   return c;
 }
 
-rdm_sensors sensors(const redman::Pool& pool) {
-  auto s = redman::sized<rdm_sensors>();
-  redman::check(rdm_pool_sensors(pool.get(), &s));
-  return s;
-}
-
 // The shape that the library draws in each pixel.
 std::vector<int32_t> shapes_seen(redman::Pool& pool, const char* camera) {
   std::vector<int32_t> out(size_t{kWidth} * kHeight);
@@ -48,7 +43,7 @@ TEST_P(Clouds, PointsAreWhereTheirShapesAreSeen) {
   const char* name = GetParam();
   redman::Pool pool = make_pool(settings_with(name, "hand_over_safe_finger"), RDM_AUTORESET_OFF);
   pool.reset();
-  const rdm_sensors s = sensors(pool);
+  const rdm_sensors s = redman::sensors(pool);
   const rdm_camera camera = camera_of(pool, name);
   const Projection projection(camera, kWidth, kHeight);
   const auto seen = shapes_seen(pool, name);

@@ -13,7 +13,7 @@ make() {
 }
 "$cc" -std=c99 -shared -fPIC "-I$root/include" "$root/examples/07_own_task.c" -lm -o press.so || exit 1
 make none 'int other(void) { return 0; }'
-make refuses 'rdm_result redman_plugin(void) { return rdm_fail(RDM_RANGE, "the moon is full"); }'
+make refuses 'rdm_result redman_plugin(void) { return rdm_fail(RDM_ERROR_RANGE, "the moon is full"); }'
 
 if ! "$tool" --plugin ./press.so tasks > out 2> err; then
   grep -q 'undefined symbol' err && { echo "the tool carries the library in itself: $(cat err)"; exit 77; }

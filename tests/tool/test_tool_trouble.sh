@@ -13,7 +13,7 @@ cat > faulty.c << 'C'
 #include <math.h>
 #include <redman/redman.h>
 static rdm_result build(void* user, rdm_scene* scene, void* instance) {
-  const rdm_shape_def sphere = {.kind = RDM_SPHERE, .size = {.05}};
+  const rdm_shape_def sphere = {.kind = RDM_SHAPE_SPHERE, .size = {.05}};
   const rdm_body_def ball = {sizeof ball, 1, "ball", &sphere, .p = {0, 0, 1}, .mass = 0.1};
   (void)user, (void)instance;
   return rdm_scene_add_body(scene, &ball, NULL);
@@ -46,7 +46,7 @@ rdm_result redman_plugin(void) {
   d.name = "faulty", d.summary = "half of its episodes diverge", d.max_steps = 10, d.action_dim = 1;
   d.fields = &field, d.num_fields = 1, d.costs = &cost, d.num_costs = 1, d.state_bytes = sizeof(double);
   d.build = build, d.reset = reset, d.control = control, d.observe = observe, d.judge = judge;
-  return rdm_task_register(&number, &d);
+  return rdm_task_create(&number, &d);
 }
 C
 "$cc" -std=c99 -shared -fPIC "-I$root/include" faulty.c -lm -o faulty.so || exit 1

@@ -16,7 +16,7 @@ Scene ball(int sub, const rdm_contact_law& law, double up, const V3& v, const V3
   Scene s;
   s.bodies = {b}, s.statics = {plane()};
   s.settings = text("substeps=%d", sub);
-  s.materials = [law](rdm_scene* scene) { check(rdm_scene_set_contact(scene, "m", "m", &law)); };
+  s.materials = [law](rdm_scene* scene) { check(rdm_scene_set_contact_law(scene, "m", "m", &law)); };
   return s;
 }
 

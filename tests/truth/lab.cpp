@@ -49,27 +49,27 @@ V3 vec(const float* a) {
 
 Shape sphere(double r) {
   Shape s;
-  s.kind = RDM_SPHERE, s.size = {r, 0, 0};
+  s.kind = RDM_SHAPE_SPHERE, s.size = {r, 0, 0};
   return s;
 }
 Shape box(double x, double y, double z) {
   Shape s;
-  s.kind = RDM_BOX, s.size = {x, y, z};
+  s.kind = RDM_SHAPE_BOX, s.size = {x, y, z};
   return s;
 }
 Shape capsule(double r, double half, const V4& q) {
   Shape s;
-  s.kind = RDM_CAPSULE, s.size = {r, half, 0}, s.q = q;
+  s.kind = RDM_SHAPE_CAPSULE, s.size = {r, half, 0}, s.q = q;
   return s;
 }
 Shape cylinder(double r, double half, const V4& q) {
   Shape s = capsule(r, half, q);
-  s.kind = RDM_CYLINDER;
+  s.kind = RDM_SHAPE_CYLINDER;
   return s;
 }
 Shape hull(std::vector<V3> points) {
   Shape s;
-  s.kind = RDM_HULL, s.points = std::move(points);
+  s.kind = RDM_SHAPE_HULL, s.points = std::move(points);
   return s;
 }
 Shape block(double x, double y, double z) {
@@ -81,7 +81,7 @@ Shape block(double x, double y, double z) {
 }
 Shape plane() {
   Shape s;
-  s.kind = RDM_PLANE, s.name = "ground";
+  s.kind = RDM_SHAPE_PLANE, s.name = "ground";
   return s;
 }
 
@@ -124,7 +124,7 @@ struct Lab::Calls {
       return RDM_OK;
     } catch (const std::exception& e) {
       lab.error_ = e.what();
-      return rdm_fail(RDM_ARGUMENT, lab.error_.c_str());
+      return rdm_fail(RDM_ERROR_ARGUMENT, lab.error_.c_str());
     }
   }
   static rdm_result build(void* user, rdm_scene* scene, void*) {
@@ -158,7 +158,7 @@ Lab::Lab(Scene s) : scene(std::move(s)) {
   d.fields = &field, d.num_fields = 1, d.costs = &cost, d.num_costs = 1;
   d.build = Calls::build, d.reset = Calls::reset, d.control = Calls::control;
   d.judge = Calls::judge, d.observe = Calls::observe;
-  check(rdm_task_register(&task_, &d));
+  check(rdm_task_create(&task_, &d));
   try {
     rdm_pool_config c;
     check(rdm_pool_config_init(&c, sizeof c));
@@ -166,20 +166,20 @@ Lab::Lab(Scene s) : scene(std::move(s)) {
     check(rdm_pool_create(&pool_, &c));
     rdm_buffers b{};
     b.struct_size = sizeof b;
-    check(rdm_pool_buffers(pool_, &b));
+    check(rdm_pool_get_buffers(pool_, &b));
     b.action[0] = 0;
     status_row_ = b.status;
     reset();
   } catch (...) {
     rdm_pool_destroy(pool_);
-    rdm_task_remove(task_);
+    rdm_task_destroy(task_);
     throw;
   }
 }
 
 Lab::~Lab() {
   rdm_pool_destroy(pool_);
-  rdm_task_remove(task_);
+  rdm_task_destroy(task_);
 }
 
 rdm_result Lab::build(rdm_scene* out) {
@@ -205,7 +205,7 @@ rdm_result Lab::build(rdm_scene* out) {
     std::vector<rdm_robot_coupling> couplings;
     if (!r.known.empty()) {
       check(rdm_robot_find(r.known.c_str(), &s.robot));
-      check(rdm_robot_get(s.robot, &d));
+      check(rdm_robot_get_def(s.robot, &d));
       joints_ += static_cast<size_t>(d.num_links);
     } else {
       for (const Link& l : r.links) {
@@ -280,20 +280,22 @@ void Lab::look(const rdm_world* world) {
   links.resize(joints_);
   bases.resize(scene.robots.size());
   for (size_t i = 0; i < bodies.size(); ++i)
-    check(rdm_world_body(world, static_cast<int32_t>(i), &bodies[i]));
-  for (size_t i = 0; i < links.size(); ++i) check(rdm_world_link(world, static_cast<int32_t>(i), &links[i]));
-  for (size_t i = 0; i < bases.size(); ++i) check(rdm_world_base(world, static_cast<int32_t>(i), &bases[i]));
+    check(rdm_world_get_body(world, static_cast<int32_t>(i), &bodies[i]));
+  for (size_t i = 0; i < links.size(); ++i)
+    check(rdm_world_get_link(world, static_cast<int32_t>(i), &links[i]));
+  for (size_t i = 0; i < bases.size(); ++i)
+    check(rdm_world_get_base(world, static_cast<int32_t>(i), &bases[i]));
   rdm_joints j{};
   j.struct_size = sizeof j;
-  check(rdm_world_joints(world, &j));
+  check(rdm_world_get_joints(world, &j));
   control_dt = j.control_dt;
   q.assign(j.q, j.q + joints_);
   qd.assign(j.qd, j.qd + joints_);
   torque.assign(j.torque, j.torque + joints_);
   int32_t count = 0;
-  check(rdm_world_contacts(world, nullptr, 0, &count));
+  check(rdm_world_get_contacts(world, nullptr, 0, &count));
   contacts.resize(static_cast<size_t>(count));
-  check(rdm_world_contacts(world, contacts.data(), count, &count));
+  check(rdm_world_get_contacts(world, contacts.data(), count, &count));
 }
 
 void Lab::reset() {

@@ -1,5 +1,5 @@
 // A laboratory on the public header alone: a scene of plain structs becomes a task of its own
-// (rdm_task_register, rdm_scene_*) and a pool of one world; after each control step all that can be seen of
+// (rdm_task_create, rdm_scene_*) and a pool of one world; after each control step all that can be seen of
 // it is copied out. SI units, radians; quaternions (x, y, z, w), as in redman.h.
 #pragma once
 #ifndef RDM_EXPERIMENTAL
@@ -32,7 +32,7 @@ V3 unrotate(const V4& q, const V3& a);  // and back
 V4 turn(const V3& axis, double angle);  // axis of any length
 
 struct Shape {
-  int32_t kind = RDM_SPHERE;
+  int32_t kind = RDM_SHAPE_SPHERE;
   V3 size{};
   V3 p{};
   V4 q = kNoTurn;
@@ -58,8 +58,8 @@ struct Body {
 };
 
 struct Link {
-  int32_t parent = RDM_ROOT_LINK;
-  int32_t kind = RDM_REVOLUTE;
+  int32_t parent = RDM_LINK_ROOT;
+  int32_t kind = RDM_JOINT_REVOLUTE;
   V3 p{};
   V3 axis = {0, 1, 0};
   double lower = -1e3, upper = 1e3;

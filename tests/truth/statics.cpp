@@ -1,5 +1,5 @@
 // Statics and Newton's law: drives carry m g l, contacts carry what lies on a robot, efforts of
-// rdm_world_gravity hold an arm, and of each body in a pile m dv = h (sum of its listed contact forces + m g)
+// rdm_world_get_gravity hold an arm, and of each body in a pile m dv = h (sum of its listed contact forces + m g)
 // in every substep.
 #include <algorithm>
 
@@ -35,13 +35,13 @@ void held_arm(Rows& rows) {
   }
   rows.add({"arm of two links held level: torque of the shoulder / m g l, off by", 0, 1e-4}, error[0], note);
   rows.add({"arm of two links held level: torque of the elbow / m g l, off by", 0, 1e-4}, error[1], note);
-  rows.add({"arm held by rdm_world_gravity's efforts alone for 5 s: moves", 0, 1e-3, "rad"}, [] {
+  rows.add({"arm held by rdm_world_get_gravity's efforts alone for 5 s: moves", 0, 1e-3, "rad"}, [] {
     Scene s;
     s.robots = {arm(0, 0.5)};
     s.feedforward = true;
     s.control = [](const Lab&, rdm_world* world) {
       double efforts[2];
-      check(rdm_world_gravity(world, 0, efforts, 2));
+      check(rdm_world_get_gravity(world, 0, efforts, 2));
       check(rdm_world_set_feedforward(world, 0, efforts, 2));
     };
     Lab lab(std::move(s));
@@ -55,7 +55,7 @@ void lift(Rows& rows) {
   std::string note;
   try {
     Link l;
-    l.kind = RDM_PRISMATIC, l.axis = {0, 0, 1}, l.kp = 2000, l.kd = 100, l.effort = 1000, l.mass = 2,
+    l.kind = RDM_JOINT_PRISMATIC, l.axis = {0, 0, 1}, l.kp = 2000, l.kd = 100, l.effort = 1000, l.mass = 2,
     l.lower = -1, l.upper = 1;
     l.moment = {1e-2, 1e-2, 1e-2};
     Robot r;

@@ -122,11 +122,11 @@ const double kSpeeds[] = {1, 2, 3, 4, 6, 8, 12};
 
 // Measured in the same shots at h 1/120.
 const char* mujoco_through(const Target& t, const Projectile& p) {
-  if (t.kind != Kind::kWall || p.shapes[0].kind == RDM_HULL) return "";
-  const bool longer = p.shapes[0].kind == RDM_CAPSULE;
-  if (t.half == 0.05) return p.shapes[0].kind == RDM_BOX ? "3.6 (h 1/120)" : "4.2 (h 1/120)";
+  if (t.kind != Kind::kWall || p.shapes[0].kind == RDM_SHAPE_HULL) return "";
+  const bool longer = p.shapes[0].kind == RDM_SHAPE_CAPSULE;
+  if (t.half == 0.05) return p.shapes[0].kind == RDM_SHAPE_BOX ? "3.6 (h 1/120)" : "4.2 (h 1/120)";
   if (t.half == 0.01) return longer ? "31 (h 1/120)" : "21 (h 1/120)";
-  return p.shapes[0].kind == RDM_SPHERE ? "42 at 6 m/s (h 1/120), 100 (h 2 ms)" : "";
+  return p.shapes[0].kind == RDM_SHAPE_SPHERE ? "42 at 6 m/s (h 1/120), 100 (h 2 ms)" : "";
 }
 
 void through(Rows& rows) {
@@ -235,7 +235,7 @@ void tiles(Rows& rows) {
             lab.step();
             hop = std::max(hop, 1e3 * (lab.p()[2] - s.height));
           }
-          const bool rolls = s.shape.kind == RDM_SPHERE && v == 1;  // after .29 s, at 5/7 of its speed
+          const bool rolls = s.shape.kind == RDM_SHAPE_SPHERE && v == 1;  // after .29 s, at 5/7 of its speed
           off = std::max(off, std::fabs(lab.v()[0] - (rolls ? 5.0 / 7 : v - 0.1 * kG * 0.6)));
         }
       } catch (const Failure& e) {
@@ -244,10 +244,10 @@ void tiles(Rows& rows) {
       }
       const std::string at =
           text("%s over tiles, laid %s, 1 and 5 m/s, mu .1: ", s.said, laid == 0 ? "flush" : ".5 mm deep");
-      const char* const mujoco = laid != 0                      ? ""
-                                 : s.shape.kind == RDM_BOX      ? ".11"
-                                 : s.shape.kind == RDM_CYLINDER ? "3.9"
-                                                                : "";
+      const char* const mujoco = laid != 0                            ? ""
+                                 : s.shape.kind == RDM_SHAPE_BOX      ? ".11"
+                                 : s.shape.kind == RDM_SHAPE_CYLINDER ? "3.9"
+                                                                      : "";
       rows.add({at + "speed after .6 s, off by", 0, 0.03, "m/s", mujoco}, off, note);
       rows.add({at + "hops", 0, 0.6, "mm"}, hop, note);
     }

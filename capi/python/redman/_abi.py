@@ -32,9 +32,9 @@ RDM_VERSION_PATCH = 0  # Of this header; that of the library is rdm_version().
 RDM_ABI = 1  # = SONAME; moves only when an old binary would break
 RDM_MAX_COSTS = 16  # cost columns of a task or an agent
 RDM_TEXT_SIZE = 64  # bytes of an option's text value, terminator included
-RDM_ROBOT_LINKS = 64  # links of a robot, at most
-RDM_ROBOT_KNOTS = 4  # of a curve, at most
-RDM_OBJECT_SHAPES = 64  # most shapes of an object
+RDM_MAX_LINKS = 64  # links of a robot, at most
+RDM_MAX_KNOTS = 4  # of a curve, at most
+RDM_MAX_SHAPES = 64  # most shapes of an object
 RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH
 VERSION = "0.1.0"  # that these types are of
 
@@ -163,11 +163,11 @@ class JointKind(enum.IntEnum):
     PRISMATIC = 1
 
 
-class RobotRow(enum.IntEnum):
+class LinkRow(enum.IntEnum):
     """in the place of a row of links"""
 
-    ROOT_LINK = -1
-    NO_LINK = -2
+    ROOT = -1
+    NONE = -2
 
 
 class ScenePart(enum.IntEnum):
@@ -178,7 +178,7 @@ class ScenePart(enum.IntEnum):
     LINK = 2  # of all robots, robot by robot; joint i moves link i
     JOINT = 3
     SHAPE = 4  # as rdm_pool_shape: robots, bodies, those that stand still
-    SENSOR = 5  # the link of a fingertip, for rdm_world_sensor
+    SENSOR = 5  # the link of a fingertip, for rdm_world_get_sensor
     MATERIAL = 6  # "default" is 0
 
 
@@ -331,8 +331,8 @@ class OptionInfo(Record):
     number: float  # default of number, integer, flag; of a range its middle
     low: float  # inclusive bounds
     high: float  # inclusive bounds
-    kind: int  # RDM_NUMBER, RDM_INTEGER, RDM_FLAG, RDM_TEXT
-    live: int  # flag: rdm_agent_set may change it after creation
+    kind: int  # RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
+    live: int  # flag: rdm_agent_set_option may change it after creation
 
 
 class rdm_option_info(Structure):
@@ -344,8 +344,8 @@ class rdm_option_info(Structure):
     number: default of number, integer, flag; of a range its middle
     low: inclusive bounds
     high: inclusive bounds
-    kind: RDM_NUMBER, RDM_INTEGER, RDM_FLAG, RDM_TEXT
-    live: flag: rdm_agent_set may change it after creation
+    kind: RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
+    live: flag: rdm_agent_set_option may change it after creation
     """
 
     key: bytes | None
@@ -564,7 +564,7 @@ class Task(Record):
     num_fields: int  # for rdm_task_field
     num_options: int  # for rdm_task_option
     num_cameras: int  # for rdm_task_camera
-    num_defaults: int  # for rdm_task_default
+    num_defaults: int  # for rdm_task_default_at
 
 
 class rdm_task(Structure):
@@ -579,7 +579,7 @@ class rdm_task(Structure):
     num_fields: for rdm_task_field
     num_options: for rdm_task_option
     num_cameras: for rdm_task_camera
-    num_defaults: for rdm_task_default
+    num_defaults: for rdm_task_default_at
     """
 
     struct_size: int
@@ -819,7 +819,7 @@ class rdm_pool_config(Structure):
 
 class rdm_buffers(Structure):
     """Rows of world i begin at i * width; 64-byte aligned; the same addresses until destroy or bind.
-    The library writes them inside reset, step and set_state only.
+    The library writes them inside reset, step and read_state only.
 
     struct_size: in: bytes
     reserved: 0
@@ -880,7 +880,7 @@ class Shape(Record):
 
     name: str  # "right.ff_distal"
     size: tuple[float, ...]  # m: radius | radius, half length along z | half sizes (hull: of its box)
-    kind: int  # RDM_SPHERE ... RDM_HULL; plane: the half space below z = 0 of its frame
+    kind: int  # RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below z = 0 of its frame
     color: tuple[int, ...]  # red, green, blue, 255
     fixed: int  # flag: never moves
 
@@ -888,7 +888,7 @@ class Shape(Record):
 class rdm_shape(Structure):
     """name: "right.ff_distal"
     size: m: radius | radius, half length along z | half sizes (hull: of its box)
-    kind: RDM_SPHERE ... RDM_HULL; plane: the half space below z = 0 of its frame
+    kind: RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below z = 0 of its frame
     color: red, green, blue, 255
     fixed: flag: never moves
     """
@@ -1388,7 +1388,7 @@ class rdm_points(Structure):
     see rows alone. Of rdm_sensors:
 
       rdm_points seen = {.struct_size = sizeof seen, .num_points = s.num_points, .points = s.points};
-      rdm_agent_act_points(agent, b.obs, &seen, RDM_SAMPLE, b.action);
+      rdm_agent_act_points(agent, b.obs, &seen, RDM_ACT_SAMPLE, b.action);
       rdm_pool_step(pool);
       rdm_agent_record(agent, &t);
 
@@ -1916,7 +1916,7 @@ class rdm_recording_rows(Structure):
     episode: [rows] number of its episode from 0; to append, NULL: each end begins one
     num_states: count
     state_row: [num_states] row before which the world had the state, ascending
-    state: [num_states][state_bytes] what rdm_pool_set_state takes
+    state: [num_states][state_bytes] what rdm_pool_read_state takes
     points: [rows][num_points][3] mm, world, before the action; NULL without clouds
     point_class: [rows][num_points] as of rdm_sensors; to append, NULL: 0
     point_color: [rows][num_points][3] likewise; NULL without colours
@@ -2065,9 +2065,9 @@ class rdm_ranks(Structure):
                                    // e, policy and saved state are the same on each rank
 
     Configs are the same on all ranks but for num_threads, hooks and texts. All of them make the same
-    calls of rollout, act with RDM_SAMPLE, record, update, save with memory, rdm_checkpoint_write:
-    these exchange messages, in one order. Loading does not: each takes its own part. A state that
-    was saved by some ranks goes on with any other number that `blocks` allows.
+    calls of rollout, act with RDM_ACT_SAMPLE, record, update, save with memory,
+    rdm_checkpoint_write: these exchange messages, in one order. Loading does not: each takes its own
+    part. A state that was saved by some ranks goes on with any other number that `blocks` allows.
       - CANCELLED: a hook failed (a rank is gone), or rdm_agent_cancel was called on one rank, which
         stops all of them at one place. The handles are good; after a failed hook, what ranks have
         learned may differ: load a state that was saved.
@@ -2113,8 +2113,8 @@ class RobotLink(Record):
 
     name: str  # of the link, unique
     joint: str  # of the joint, unique
-    parent: int  # an earlier row, RDM_ROOT_LINK
-    kind: int  # RDM_REVOLUTE, RDM_PRISMATIC
+    parent: int  # an earlier row, RDM_LINK_ROOT
+    kind: int  # RDM_JOINT_REVOLUTE, RDM_JOINT_PRISMATIC
     p: tuple[float, ...]  # position in the parent's frame with the joint at 0
     q: tuple[float, ...]  # rotation, unit
     axis: tuple[float, ...]  # in the link's own frame, unit
@@ -2136,8 +2136,8 @@ class rdm_robot_link(Structure):
 
     name: of the link, unique
     joint: of the joint, unique
-    parent: an earlier row, RDM_ROOT_LINK
-    kind: RDM_REVOLUTE, RDM_PRISMATIC
+    parent: an earlier row, RDM_LINK_ROOT
+    kind: RDM_JOINT_REVOLUTE, RDM_JOINT_PRISMATIC
     p: position in the parent's frame with the joint at 0
     q: rotation, unit
     axis: in the link's own frame, unit
@@ -2198,8 +2198,8 @@ class RobotShape(Record):
     """frozen layout: a link and the joint that moves it; m, rad, kg, N, s"""
 
     name: str  # unique
-    link: int  # row, RDM_ROOT_LINK
-    kind: int  # RDM_SPHERE, RDM_CAPSULE, RDM_BOX, RDM_CYLINDER, RDM_ELLIPSOID
+    link: int  # row, RDM_LINK_ROOT
+    kind: int  # RDM_SHAPE_SPHERE, RDM_SHAPE_CAPSULE, RDM_SHAPE_BOX, RDM_SHAPE_CYLINDER, RDM_SHAPE_ELLIPSOID
     size: tuple[float, ...]  # as rdm_shape, m
     p: tuple[float, ...]  # position in the link's frame, m
     q: tuple[float, ...]  # rotation, unit
@@ -2210,8 +2210,8 @@ class rdm_robot_shape(Structure):
     """frozen layout: a link and the joint that moves it; m, rad, kg, N, s
 
     name: unique
-    link: row, RDM_ROOT_LINK
-    kind: RDM_SPHERE, RDM_CAPSULE, RDM_BOX, RDM_CYLINDER, RDM_ELLIPSOID
+    link: row, RDM_LINK_ROOT
+    kind: RDM_SHAPE_SPHERE, RDM_SHAPE_CAPSULE, RDM_SHAPE_BOX, RDM_SHAPE_CYLINDER, RDM_SHAPE_ELLIPSOID
     size: as rdm_shape, m
     p: position in the link's frame, m
     q: rotation, unit
@@ -2296,7 +2296,7 @@ class RobotCurve(Record):
 
     link: int  # row
     driver: int  # row whose command it is: the same, or that of the motor
-    num_knots: int  # 2 to RDM_ROBOT_KNOTS
+    num_knots: int  # 2 to RDM_MAX_KNOTS
     command: tuple[float, ...]  # ascending
     angle: tuple[float, ...]  # in the joint's range, rad (m)
 
@@ -2306,7 +2306,7 @@ class rdm_robot_curve(Structure):
 
     link: row
     driver: row whose command it is: the same, or that of the motor
-    num_knots: 2 to RDM_ROBOT_KNOTS
+    num_knots: 2 to RDM_MAX_KNOTS
     reserved: 0
     command: ascending
     angle: in the joint's range, rad (m)
@@ -2392,7 +2392,7 @@ class rdm_robot_def(Structure):
     home: [num_links] start pose, rad (m); NULL: 0, or the limit nearest to it
     folded: [num_links] of a hand: fingers straight, thumb across the palm; NULL
     closed: [num_commands] of a hand: commands that close it around 5 cm; NULL
-    num_links: 1 to RDM_ROBOT_LINKS
+    num_links: 1 to RDM_MAX_LINKS
     num_shapes: count
     num_pairs: count
     num_couplings: count
@@ -2407,8 +2407,8 @@ class rdm_robot_def(Structure):
     mount_q: rotation
     flange_p: of arms: the frame, z out of the arm, that carries a hand; in flange_link's frame
     flange_q: rotation
-    flange_link: row, RDM_NO_LINK
-    palm_link: row, RDM_ROOT_LINK, RDM_NO_LINK
+    flange_link: row, RDM_LINK_NONE
+    palm_link: row, RDM_LINK_ROOT, RDM_LINK_NONE
     palm_p: centre of the palm's surface, in palm_link's frame, m
     palm_normal: unit: out of the palm
     palm_fingers: unit: the way the fingers point; of a gripper any in the palm's plane
@@ -2496,9 +2496,9 @@ class rdm_shape_def(Structure):
 
     name: unique in the scene; NULL: that of the body. Of an object unused
     material: of rdm_scene_add_material; NULL: "default". Of an object unused
-    points: [num_points][3] of an RDM_HULL: 4 to 32 points, m; else NULL
+    points: [num_points][3] of an RDM_SHAPE_HULL: 4 to 32 points, m; else NULL
     num_points: count
-    kind: RDM_SPHERE ... RDM_HULL; an RDM_PLANE stands still
+    kind: RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; an RDM_SHAPE_PLANE stands still
     size: as rdm_shape, m; of a hull unused
     p: position in the frame of the body, or in the world, m
     q: rotation; all 0: none
@@ -2532,7 +2532,7 @@ class rdm_shape_def(Structure):
 
 class rdm_object_def(Structure):
     """struct_size: bytes, set by rdm_object_def_init
-    num_shapes: 1 to RDM_OBJECT_SHAPES
+    num_shapes: 1 to RDM_MAX_SHAPES
     name: letters, digits, '_', '-', '+'; at most 25
     alias: another name; NULL
     summary: one line; NULL: none
@@ -3196,11 +3196,11 @@ FUNCTIONS: dict[str, Function] = {
         have meant one of `names`, one a line, of which the first 500 count. Case is ignored, '-' equals
         '_'. Cut at capacity >= 1 bytes; 4 * RDM_TEXT_SIZE hold all.
         """),
-    "rdm_policy_load": Function(
+    "rdm_policy_read": Function(
         c_int32, {"out": POINTER(c_void_p), "bytes": c_void_p, "size": c_size_t},
         {}, False,
         """copies bytes [size]"""),
-    "rdm_policy_load_file": Function(
+    "rdm_policy_read_file": Function(
         c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
         {}, False,
         """NOT_FOUND, FORMAT ..."""),
@@ -3230,7 +3230,7 @@ FUNCTIONS: dict[str, Function] = {
         finite, or so large that the network overflows (action is written then, and of no use). STATE for
         a policy that sees points.
         """),
-    "rdm_policy_tensor": Function(
+    "rdm_policy_tensor_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},
         {}, False,
         """"actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
@@ -3240,7 +3240,7 @@ FUNCTIONS: dict[str, Function] = {
         so on, "encoder.origin" and "encoder.range", in m, "encoder.activation" (0 tanh, 1 elu, 2 relu),
         "example.points", in m, and "example.point_class".
         """),
-    "rdm_policy_tensor_read": Function(
+    "rdm_policy_get_tensor": Function(
         c_int32, {"p": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
         {"out": Rows("float32", ("count",))}, False,
         """Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE."""),
@@ -3248,7 +3248,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "spec": POINTER(rdm_spec)},
         {}, False,
         """OK, or VERSION_MISMATCH with a text that says which field of the spec differs."""),
-    "rdm_policy_columns": Function(
+    "rdm_policy_get_columns": Function(
         c_int32, {"p": c_void_p, "columns": c_void_p, "capacity": c_int32, "count": c_void_p},
         {"columns": Rows("int32", ("capacity",))}, False,
         """Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up
@@ -3286,7 +3286,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_camera)},
         {}, False,
         """i < num_cameras"""),
-    "rdm_task_default": Function(
+    "rdm_task_default_at": Function(
         c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_option)},
         {}, False,
         """i < num_defaults"""),
@@ -3329,13 +3329,13 @@ FUNCTIONS: dict[str, Function] = {
         """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
         version's.
         """),
-    "rdm_pool_spec": Function(
+    "rdm_pool_config_spec": Function(
         c_int32, {"c": POINTER(rdm_pool_config), "io": POINTER(rdm_spec)},
         {}, False,
         """What a pool of this config would be: OK where rdm_pool_create would be, memory aside, else its
         error. Makes the task to ask it, and no world; nothing is kept.
         """),
-    "rdm_pool_memory": Function(
+    "rdm_pool_config_memory": Function(
         c_int32, {"c": POINTER(rdm_pool_config), "ours": c_void_p, "engines": c_void_p},
         {}, False,
         """Bytes that creation takes: `ours` from the alloc hook, exact; `engines` by the physics engine
@@ -3358,7 +3358,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_get_spec": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_spec)},
         {}, False,
-        """as rdm_pool_spec, of a pool"""),
+        """as rdm_pool_config_spec, of a pool"""),
     "rdm_pool_field": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_field)},
         {}, False,
@@ -3367,30 +3367,30 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "i": c_int32, "low": c_void_p, "high": c_void_p},
         {}, False,
         """Bounds *low and *high that every entry of field i keeps; NAN: none."""),
-    "rdm_pool_initial_mean": Function(
+    "rdm_pool_get_initial_mean": Function(
         c_int32, {"p": c_void_p, "action": c_void_p},
         {"action": Rows("float32", ("action_dim",))}, False,
         """Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of
         RDM_BASELINE_HOLD.
         """),
-    "rdm_pool_option": Function(
+    "rdm_pool_option_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
         """Option i of the task as this pool has it: key and the value as text [RDM_TEXT_SIZE], which reads
-        back exactly. RANGE for a text that is longer: rdm_pool_settings has it. Behind the task's
+        back exactly. RANGE for a text that is longer: rdm_pool_get_settings has it. Behind the task's
         num_options come keys with a FIELD that were set, in order; RANGE ends them.
         """),
-    "rdm_pool_settings": Function(
+    "rdm_pool_get_settings": Function(
         c_int32, {"p": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
         """All options as text [capacity] of lines key=value: given as settings they make the same pool
         again.
         """),
-    "rdm_pool_buffers": Function(
+    "rdm_pool_get_buffers": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_buffers)},
         {}, False,
         """borrowed pointers"""),
-    "rdm_pool_bind": Function(
+    "rdm_pool_set_buffers": Function(
         c_int32, {"p": c_void_p, "b": POINTER(rdm_buffers)},
         {}, False,
         """Non-NULL pointers of b take the place of the pool's (sizes as above, at least 4-byte aligned;
@@ -3433,21 +3433,22 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p},
         {}, False,
         """The whole state of world env, exact: a pool of the same task and options that sets it goes on
-        with the same bytes. set_state also rewrites obs and clears the other rows of that world. env -1:
-        all worlds in one block. FORMAT for bytes that are not whole, of another task or options, or hold
-        what no world can have: nothing changes.
+        with the same bytes. read_state also rewrites obs and clears the other rows of that world. env
+        -1: all worlds in one block. FORMAT for bytes that are not whole, of another task or options, or
+        hold what no world can have: nothing changes.
         """),
-    "rdm_pool_get_state": Function(
+    "rdm_pool_write_state": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
-        """to bytes [capacity]; *size is how many
+        """to bytes [capacity];
+        *size is how many
         there are
         """),
-    "rdm_pool_set_state": Function(
+    "rdm_pool_read_state": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p, "size": c_size_t},
         {}, False,
         """of bytes [size]"""),
-    "rdm_pool_hash": Function(
+    "rdm_pool_get_hash": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "hash": c_void_p},
         {}, False,
         """of the state; -1: all"""),
@@ -3480,7 +3481,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"dst": c_void_p, "dst_env": c_int32, "src": c_void_p, "src_env": c_int32},
         {}, False,
         """World dst_env of dst (-1: all of them) becomes what world src_env of src is, at the price of
-        copying memory: afterwards it goes on with the bytes that set_state(get_state) would give, and
+        copying memory: afterwards it goes on with the bytes that read_state(write_state) would give, and
         its rows (but action, and those of rdm_sensors) are the other's. Pools of the same task and
         options, of any sizes, threads and seeds; src may be dst. ARGUMENT for pools that differ, RANGE
         for worlds that are not there: nothing changes. No heap.
@@ -3524,7 +3525,7 @@ FUNCTIONS: dict[str, Function] = {
         """Sets dims, num_envs, task, layout_hash, control_dt, max_steps, defaults, initial_mean,
         cost_limits and fields from a pool. Pointers are borrowed from the pool.
         """),
-    "rdm_agent_memory": Function(
+    "rdm_agent_config_memory": Function(
         c_int32, {"c": POINTER(rdm_agent_config), "bytes": c_void_p},
         {}, False,
         """Bytes that creation takes from the alloc hook, exact."""),
@@ -3584,7 +3585,7 @@ FUNCTIONS: dict[str, Function] = {
         {}, False,
         """Async-signal-safe, from any thread: the running rollout or update returns CANCELLED. A horizon
         that has begun by act and record is dropped by its update; between horizons, the next rollout,
-        update or first act with RDM_SAMPLE returns CANCELLED, before anything is collected.
+        update or first act with RDM_ACT_SAMPLE returns CANCELLED, before anything is collected.
         """),
     "rdm_agent_discard": Function(
         c_int32, {"a": c_void_p},
@@ -3593,52 +3594,54 @@ FUNCTIONS: dict[str, Function] = {
         Nothing is learned from what it drops. Episodes that run go on, with what was recorded of
         them.
         """),
-    "rdm_agent_set": Function(
+    "rdm_agent_set_option": Function(
         c_int32, {"a": c_void_p, "option": POINTER(rdm_option)},
         {}, False,
         """Changes a live option. NOT_FOUND, RANGE, or STATE when it is not live."""),
-    "rdm_agent_option": Function(
+    "rdm_agent_option_at": Function(
         c_int32, {"a": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
         """Option i of the algorithm as this agent has it: key (static) and the value as
         text [RDM_TEXT_SIZE], which reads back exactly. RANGE for a text that is longer:
-        rdm_agent_settings has it.
+        rdm_agent_get_settings has it.
         """),
-    "rdm_agent_settings": Function(
+    "rdm_agent_get_settings": Function(
         c_int32, {"a": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
         """All options as text [capacity] of lines key=value: given as settings they make an agent of the
         same options.
         """),
-    "rdm_agent_tensor": Function(
+    "rdm_agent_tensor_at": Function(
         c_int32, {"a": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},
         {}, False,
         """RANGE ends the list"""),
-    "rdm_agent_tensor_read": Function(
+    "rdm_agent_get_tensor": Function(
         c_int32, {"a": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
         {"out": Rows("float32", ("count",))}, False,
         """Copies the named tensor to out [count] or from values [count]; count must be rows * cols.
         NOT_FOUND, RANGE.
         """),
-    "rdm_agent_tensor_write": Function(
+    "rdm_agent_set_tensor": Function(
         c_int32, {"a": c_void_p, "name": c_char_p, "values": c_void_p, "count": c_size_t},
         {"values": Rows("float32", ("count",))}, False,
         """Copies the named tensor to out [count] or from values [count]; count must be rows * cols.
         NOT_FOUND, RANGE.
         """),
-    "rdm_agent_policy": Function(
+    "rdm_agent_write_policy": Function(
         c_int32, {"a": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
         """The frozen policy as the bytes [capacity] of a policy file; NULL asks for the size."""),
-    "rdm_agent_policy_file": Function(
+    "rdm_agent_write_policy_file": Function(
         c_int32, {"a": c_void_p, "path": c_char_p},
         {}, False,
         """replaced atomically"""),
-    "rdm_agent_save": Function(
+    "rdm_agent_write_state": Function(
         c_int32, {"a": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
-        """to bytes [capacity]; NULL asks for the size"""),
-    "rdm_agent_load": Function(
+        """to bytes [capacity]; NULL asks for the
+        size
+        """),
+    "rdm_agent_read_state": Function(
         c_int32, {"a": c_void_p, "bytes": c_void_p, "size": c_size_t},
         {}, False,
         """of bytes [size]"""),
@@ -3654,7 +3657,7 @@ FUNCTIONS: dict[str, Function] = {
         """Reads it back; note [capacity] gets as many bytes, *note_size is how many there are. Nothing
         changes on failure.
         """),
-    "rdm_pool_sensors": Function(
+    "rdm_pool_get_sensors": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_sensors)},
         {}, True,
         """fills io"""),
@@ -3670,10 +3673,10 @@ FUNCTIONS: dict[str, Function] = {
         """The cameras that rows stand for: i-th of the pictures (cloud 0) or of points and voxels (cloud
         1). RANGE ends.
         """),
-    "rdm_pool_hull": Function(
+    "rdm_pool_get_hull": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "points": c_void_p, "capacity": c_int32, "count": c_void_p},
         {"points": Rows("float32", ("capacity", "3"))}, True,
-        """Corners, points [capacity][3], of shape i, an RDM_HULL, in its own frame, m. Writes up to
+        """Corners, points [capacity][3], of shape i, an RDM_SHAPE_HULL, in its own frame, m. Writes up to
         capacity of them; *count is how many there are.
         """),
     "rdm_sample_furthest": Function(
@@ -3686,8 +3689,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_sample_scratch": Function(
         c_size_t, {"count": c_int32},
         {}, True,
-        """bytes, at any address; 0: count is
-        outside [1, 2^22]
+        """bytes, at any address; 0: count is outside
+        [1, 2^22]
         """),
     "rdm_agent_act_points": Function(
         c_int32, {"a": c_void_p, "obs": c_void_p, "points": POINTER(rdm_points), "mode": c_int32, "action": c_void_p},
@@ -3794,21 +3797,21 @@ FUNCTIONS: dict[str, Function] = {
         """A grid of counts n [3] of cells of `side` m (each count 1 to 1024) about pose [7]: what the map
         says at their centres, out [n0][n1][n2], x outermost: 1 occupied, 0 free, -1 unknown.
         """),
-    "rdm_map_save": Function(
+    "rdm_map_write": Function(
         c_int32, {"m": c_void_p, "format": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
         """The map as the bytes [capacity] of a file; NULL asks for the size."""),
-    "rdm_map_save_file": Function(
+    "rdm_map_write_file": Function(
         c_int32, {"m": c_void_p, "path": c_char_p},
         {}, True,
         """by its ending; replaced atomically"""),
-    "rdm_map_load": Function(
+    "rdm_map_read": Function(
         c_int32, {"m": c_void_p, "bytes": c_void_p, "size": c_size_t},
         {}, True,
         """bytes [size] of a file take the place of what the map holds, resolution included. FORMAT, or
         MEMORY when it does not fit: unchanged.
         """),
-    "rdm_map_load_file": Function(
+    "rdm_map_read_file": Function(
         c_int32, {"m": c_void_p, "path": c_char_p},
         {}, True,
         """NOT_FOUND, FORMAT ..."""),
@@ -3818,7 +3821,7 @@ FUNCTIONS: dict[str, Function] = {
         """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
         version's.
         """),
-    "rdm_actor_memory": Function(
+    "rdm_actor_config_memory": Function(
         c_int32, {"c": POINTER(rdm_actor_config), "bytes": c_void_p},
         {}, True,
         """Bytes *bytes that creation takes from the alloc hook, exact."""),
@@ -3876,7 +3879,7 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """Makes the planner and its worlds. ARGUMENT, RANGE, NOT_FOUND name what is wrong; VERSION_MISMATCH
         for a policy that does not fit the pool, UNSUPPORTED for an agent whose critics have no unit
-        (rdm_agent_values).
+        (rdm_agent_get_values).
         """),
     "rdm_planner_destroy": Function(
         None, {"planner": c_void_p},
@@ -3898,7 +3901,7 @@ FUNCTIONS: dict[str, Function] = {
         """Option i of planners: method, samples, horizon, knots, interpolation, noise, elites, temperature,
         iterations, costs, and others. RANGE past the end.
         """),
-    "rdm_planner_settings": Function(
+    "rdm_planner_get_settings": Function(
         c_int32, {"planner": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
         """All options as text [capacity] of lines key=value: given as settings they make a planner of the
@@ -3914,7 +3917,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_planner_reset": Function(
         c_int32, {"planner": c_void_p},
         {}, True,
-        """Forgets the plan; the noise goes on. The next plan begins at rdm_pool_initial_mean, or the
+        """Forgets the plan; the noise goes on. The next plan begins at rdm_pool_get_initial_mean, or the
         policy's rollout.
         """),
     "rdm_planner_get_plan": Function(
@@ -3939,7 +3942,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"planner": c_void_p, "bytes": c_void_p, "size": c_size_t},
         {}, True,
         """Of bytes [size]. FORMAT for bytes that are not whole, or of another planner: nothing changes."""),
-    "rdm_agent_values": Function(
+    "rdm_agent_get_values": Function(
         c_int32, {"a": c_void_p, "obs": c_void_p, "rows": c_int32, "value": c_void_p, "cost": c_void_p},
         {"obs": Rows("float32", ("rows", "obs_dim")), "value": Rows("float32", ("rows",)), "cost": Rows("float32", ("rows", "RDM_MAX_COSTS"))}, True,
         """What the agent's critics say of obs [rows][obs_dim], for any number of rows: value [rows], the
@@ -4023,14 +4026,14 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"r": c_void_p},
         {}, True,
         """no rows; memory stays"""),
-    "rdm_recording_save_file": Function(
+    "rdm_recording_write_file": Function(
         c_int32, {"r": c_void_p, "path": c_char_p},
         {}, True,
         """A file of arrays, .npz, that numpy.load opens: obs, action, label, reward, cost, terminated,
         truncated, success, episode, state_row, state, points, point_class; task, layout_hash, format.
         Replaced atomically.
         """),
-    "rdm_recording_load_file": Function(
+    "rdm_recording_read_file": Function(
         c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
         {}, True,
         """Makes one of such a file, also as numpy.savez writes it, or of one that `redman rollout --record`
@@ -4055,7 +4058,7 @@ FUNCTIONS: dict[str, Function] = {
         """The rows that the options `imitation` and `imitation_decay` hold the actor near; obs and label
         are copied. NULL: none. A state that was saved with some loads only beside the same ones.
         """),
-    "rdm_agent_load_policy": Function(
+    "rdm_agent_set_policy": Function(
         c_int32, {"a": c_void_p, "p": c_void_p, "samples": c_double},
         {}, True,
         """Warm start: the actor, its deviation and the statistics of observations become the policy's,
@@ -4076,14 +4079,14 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_agent_config), "ranks": POINTER(rdm_ranks)},
         {}, True,
         """As rdm_agent_create, of a rank's agent: c.num_envs worlds of ranks * c.num_envs. Takes more
-        memory than rdm_agent_memory says: a message, half a MiB at most where rows are no wider, for
-        each rank. The hooks must outlive the agent.
+        memory than rdm_agent_config_memory says: a message, half a MiB at most where rows are no wider,
+        for each rank. The hooks must outlive the agent.
         """),
     "rdm_pool_set_rank": Function(
         c_int32, {"p": c_void_p, "rank": c_int32, "ranks": c_int32},
         {}, True,
         """Worlds of the pool are numbers rank * num_envs on of ranks * num_envs: of their streams, and of a
-        state of all worlds (env -1), from which set_state takes them. Before the first reset; STATE
+        state of all worlds (env -1), from which read_state takes them. Before the first reset; STATE
         afterwards. rdm_agent_rollout needs agent and pool of one rank.
         """),
     "rdm_robot_def_init": Function(
@@ -4098,18 +4101,18 @@ FUNCTIONS: dict[str, Function] = {
         text names the row; a name that is taken is an ARGUMENT. Moments must be positive and keep the
         triangle rule.
         """),
-    "rdm_robot_remove": Function(
+    "rdm_robot_destroy": Function(
         c_int32, {"robot": c_int32},
         {}, True,
         """Pools that use it keep it. ARGUMENT for the library's own."""),
-    "rdm_robot_mount": Function(
+    "rdm_robot_create_mounted": Function(
         c_int32, {"out": c_void_p, "name": c_char_p, "arm": c_int32, "hand": c_int32, "yaw": c_double, "adapter": c_double, "left": c_int32},
         {}, True,
         """A hand on an arm as a robot of its own, under `name`: its root and the arm's last link are one
         body. The hand is turned by `yaw` (rad) about the flange's z and stands off by `adapter` (m);
         left: its mirror image. UNSUPPORTED: no arm, no hand.
         """),
-    "rdm_robot_get": Function(
+    "rdm_robot_get_def": Function(
         c_int32, {"robot": c_int32, "io": POINTER(rdm_robot_def)},
         {}, True,
         """What rdm_robot_create took, but for the arrays, which are NULL here."""),
@@ -4137,12 +4140,12 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"robot": c_int32, "i": c_int32, "out": POINTER(rdm_robot_finger)},
         {}, True,
         """i < num_fingers"""),
-    "rdm_robot_poses_of": Function(
+    "rdm_robot_get_postures": Function(
         c_int32, {"robot": c_int32, "commands": c_void_p, "home": c_void_p, "folded": c_void_p, "closed": c_void_p},
         {"commands": Rows("int32", ("num_commands",)), "home": Rows("float64", ("num_links",)), "folded": Rows("float64", ("num_links",)), "closed": Rows("float32", ("num_commands",))}, True,
         """Numbers of the robot's poses and commands: commands [num_commands], home [num_links],
-        folded [num_links] and closed [num_commands] may be NULL. The counts are those of rdm_robot_get;
-        folded and closed are 0 where it has none.
+        folded [num_links] and closed [num_commands] may be NULL. The counts are those of
+        rdm_robot_get_def; folded and closed are 0 where it has none.
         """),
     "rdm_robot_kinematics": Function(
         c_int32, {"robot": c_int32, "q": c_void_p, "poses": c_void_p, "flange": c_void_p, "tips": c_void_p, "palm": c_void_p},
@@ -4161,7 +4164,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"def": POINTER(rdm_object_def), "size": c_size_t},
         {}, True,
         """defaults into the first `size` bytes"""),
-    "rdm_object_get": Function(
+    "rdm_object_get_def": Function(
         c_int32, {"object": c_int32, "io": POINTER(rdm_object_def)},
         {}, True,
         """What rdm_object_create took, with the moments about the centre of mass, but for the shapes, which
@@ -4186,7 +4189,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"def": POINTER(rdm_object_def)},
         {}, True,
         """What rdm_object_create would say of it, but for a name that is taken; adds nothing."""),
-    "rdm_object_remove": Function(
+    "rdm_object_destroy": Function(
         c_int32, {"object": c_int32},
         {}, True,
         """Pools that have it keep it. ARGUMENT for the library's own."""),
@@ -4200,19 +4203,19 @@ FUNCTIONS: dict[str, Function] = {
         """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
         version's.
         """),
-    "rdm_scene_number": Function(
+    "rdm_scene_get_number": Function(
         c_int32, {"scene": c_void_p, "key": c_char_p, "value": c_void_p},
         {}, True,
         """Value of the pool's option `key`: *value of a number, integer or flag, *text of a text.
         NOT_FOUND, ARGUMENT.
         """),
-    "rdm_scene_text": Function(
+    "rdm_scene_get_text": Function(
         c_int32, {"scene": c_void_p, "key": c_char_p, "text": POINTER(c_char_p)},
         {}, True,
         """Value of the pool's option `key`: *value of a number, integer or flag, *text of a text.
         NOT_FOUND, ARGUMENT.
         """),
-    "rdm_scene_range": Function(
+    "rdm_scene_get_range": Function(
         c_int32, {"scene": c_void_p, "key": c_char_p, "low": c_void_p, "high": c_void_p},
         {}, True,
         """Bounds *low and *high of a number or integer whose row takes a range (choices "a..b"), for reset
@@ -4230,7 +4233,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "mu": c_double},
         {}, True,
         """0 or more"""),
-    "rdm_scene_set_contact": Function(
+    "rdm_scene_set_contact_law": Function(
         c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "law": POINTER(rdm_contact_law)},
         {}, True,
         """RANGE, ARGUMENT: the text names the field. Making the pool is UNSUPPORTED with engine=ode where a
@@ -4250,7 +4253,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_scene_set_adjustable": Function(
         c_int32, {"scene": c_void_p},
         {}, True,
-        """worlds take rdm_world_scale"""),
+        """worlds take
+        rdm_world_set_factors
+        """),
     "rdm_scene_add_robot": Function(
         c_int32, {"scene": c_void_p, "robot": POINTER(rdm_scene_robot), "index": c_void_p},
         {}, True,
@@ -4289,56 +4294,56 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"scene": c_void_p, "part": c_int32, "name": c_char_p, "index": c_void_p},
         {}, True,
         """NOT_FOUND: nearest"""),
-    "rdm_scene_joint": Function(
+    "rdm_scene_joint_at": Function(
         c_int32, {"scene": c_void_p, "i": c_int32, "out": POINTER(rdm_joint)},
         {}, True,
         """action: its robot's command, -1"""),
-    "rdm_scene_touch": Function(
+    "rdm_scene_add_touch": Function(
         c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "group": c_void_p},
         {}, True,
-        """group, for rdm_world_touch: all contacts of a shape of `a` with one of `b`, each the name of a
-        shape, body or robot, or a pattern of such names with '*' and '?'. NOT_FOUND where nothing has
+        """group, for rdm_world_get_touch: all contacts of a shape of `a` with one of `b`, each the name of
+        a shape, body or robot, or a pattern of such names with '*' and '?'. NOT_FOUND where nothing has
         it.
         """),
-    "rdm_world_joints": Function(
+    "rdm_world_get_joints": Function(
         c_int32, {"world": c_void_p, "io": POINTER(rdm_joints)},
         {}, True,
         """fills io"""),
-    "rdm_world_link": Function(
+    "rdm_world_get_link": Function(
         c_int32, {"world": c_void_p, "link": c_int32, "out": POINTER(rdm_motion)},
         {}, True,
         """of its joint's frame"""),
-    "rdm_world_base": Function(
+    "rdm_world_get_base": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "out": POINTER(rdm_motion)},
         {}, True,
         """of its base"""),
-    "rdm_world_body": Function(
+    "rdm_world_get_body": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "out": POINTER(rdm_motion)},
         {}, True,
         """of its centre of mass"""),
-    "rdm_world_shape": Function(
+    "rdm_world_get_shape": Function(
         c_int32, {"world": c_void_p, "shape": c_int32, "pose": c_void_p},
         {"pose": Rows("float64", ("7",))}, True,
         """position, rotation"""),
-    "rdm_world_sensor": Function(
+    "rdm_world_get_sensor": Function(
         c_int32, {"world": c_void_p, "sensor": c_int32, "force": c_void_p, "torque": c_void_p},
         {"force": Rows("float64", ("3",)), "torque": Rows("float64", ("3",))}, True,
         """Contact force [3] (N) and torque [3] (N m) on a fingertip, mean over the step, in the link's
         frame, about its origin.
         """),
-    "rdm_world_touch": Function(
+    "rdm_world_get_touch": Function(
         c_int32, {"world": c_void_p, "group": c_int32, "pairs": c_void_p, "force": c_void_p},
         {}, True,
         """pairs is how many pairs of a group's shapes touched in the step; *force (N) the sum of the
         group's contact forces in its last substep. Either may be NULL.
         """),
-    "rdm_world_contacts": Function(
+    "rdm_world_get_contacts": Function(
         c_int32, {"world": c_void_p, "out": POINTER(rdm_contact), "capacity": c_int32, "count": c_void_p},
         {}, True,
         """Contacts of the last substep to out [capacity], of things asleep as they fell asleep; *count is
         how many there are.
         """),
-    "rdm_world_overlap": Function(
+    "rdm_world_get_overlap": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "depth": c_void_p},
         {}, True,
         """By *depth (m) a body at its present place is within something that it may touch; 0: it is
@@ -4365,7 +4370,7 @@ FUNCTIONS: dict[str, Function] = {
         in [-1, 1] of all n commands of a robot, which become targets as its description says: ranges or
         curves, no faster than its joints' velocity.
         """),
-    "rdm_world_command": Function(
+    "rdm_world_set_commands": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "commands": c_void_p, "n": c_int32},
         {"commands": Rows("float64", ("n",))}, True,
         """What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n]
@@ -4376,17 +4381,17 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"world": c_void_p, "first": c_int32, "efforts": c_void_p, "n": c_int32},
         {"efforts": Rows("float64", ("n",))}, True,
         """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again;
-        STATE unless the scene has them. rdm_world_gravity gives those that hold a robot of n joints
+        STATE unless the scene has them. rdm_world_get_gravity gives those that hold a robot of n joints
         against gravity where it is.
         """),
-    "rdm_world_gravity": Function(
+    "rdm_world_get_gravity": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "efforts": c_void_p, "n": c_int32},
         {"efforts": Rows("float64", ("n",))}, True,
         """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again;
-        STATE unless the scene has them. rdm_world_gravity gives those that hold a robot of n joints
+        STATE unless the scene has them. rdm_world_get_gravity gives those that hold a robot of n joints
         against gravity where it is.
         """),
-    "rdm_world_scale": Function(
+    "rdm_world_set_factors": Function(
         c_int32, {"world": c_void_p, "factors": POINTER(rdm_factor), "count": c_int32},
         {}, True,
         """Lays factors [count] over those that the world has, all 1 at the start of an episode; reset may
@@ -4436,14 +4441,14 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"def": POINTER(rdm_task_def), "size": c_size_t},
         {}, True,
         """defaults into the first `size` bytes"""),
-    "rdm_task_register": Function(
+    "rdm_task_create": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_task_def)},
         {}, True,
         """Adds a task under a number that no other gets, *out for rdm_task_at and its like. ARGUMENT,
         RANGE: the text names the row; a name that is taken is an ARGUMENT. Tasks belong to the process;
         any number of threads may look meanwhile.
         """),
-    "rdm_task_remove": Function(
+    "rdm_task_destroy": Function(
         c_int32, {"task": c_int32},
         {}, True,
         """Pools that have it keep it. ARGUMENT for the library's own."""),

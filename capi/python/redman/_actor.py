@@ -203,7 +203,7 @@ class Actor:
             raise UnsupportedError(f"actor: the policy sees clouds of {i.num_points} points: options modality=points and "
                                    f"points={i.num_points}")
         raw = _abi.rdm_sensors(struct_size=ctypes.sizeof(_abi.rdm_sensors))
-        check(lib.rdm_pool_sensors(self._pool._open(), byref(raw)))
+        check(lib.rdm_pool_get_sensors(self._pool._open(), byref(raw)))
         self._kept = seen
         return _abi.rdm_points(struct_size=ctypes.sizeof(_abi.rdm_points), num_points=raw.num_points, points=raw.points,
                                point_class=raw.point_class, point_color=raw.point_color)

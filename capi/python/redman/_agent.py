@@ -62,7 +62,7 @@ class _AgentTensors(Tensors, MutableMapping[str, FloatArray]):
         self[name]  # an unknown name is told first
         array = np.ascontiguousarray(values, np.float32)
         with self._owner._lock:
-            check(lib.rdm_agent_tensor_write(self._owner._open(), encoded(name), array.ctypes.data,
+            check(lib.rdm_agent_set_tensor(self._owner._open(), encoded(name), array.ctypes.data,
                                              array.size))
 
     def __delitem__(self, name: str) -> None:
@@ -265,7 +265,7 @@ class Agent(Hinted):
     @property
     def options(self) -> dict[str, Value]:
         """All options of the algorithm as this agent has them."""
-        return read_settings(lib.rdm_agent_settings, self._open(),
+        return read_settings(lib.rdm_agent_get_settings, self._open(),
                              {key: option.kind for key, option in self.algo.options.items()})
 
     def set(self, **options: Given) -> None:
@@ -273,7 +273,7 @@ class Agent(Hinted):
         kinds = known_options(self.algo, options)
         for row in option_array(options, kinds):
             with self._lock:
-                self._check(lib.rdm_agent_set(self._a, byref(row)))
+                self._check(lib.rdm_agent_set_option(self._a, byref(row)))
 
     @property
     def cost_limits(self) -> list[Optional[float]]:
@@ -286,12 +286,12 @@ class Agent(Hinted):
     @property
     def tensors(self) -> _AgentTensors:
         """The parameters by name: agent.tensors["actor.log_std"][...] is a copy, assignment writes."""
-        return _AgentTensors(self, lib.rdm_agent_tensor, lib.rdm_agent_tensor_read)
+        return _AgentTensors(self, lib.rdm_agent_tensor_at, lib.rdm_agent_get_tensor)
 
     def policy(self) -> Policy:
         """The frozen policy as it is now."""
         with self._lock:
-            return Policy(bytes_of(lib.rdm_agent_policy, self._open()))
+            return Policy(bytes_of(lib.rdm_agent_write_policy, self._open()))
 
     # ---- state ------------------------------------------------------------------------------------------------
 
@@ -299,7 +299,7 @@ class Agent(Hinted):
         """All state, between epochs: networks, optimiser, multipliers, normaliser, streams, counters. With a path it is
         written there too, whole or not at all."""
         with self._lock:
-            state = bytes_of(lib.rdm_agent_save, self._open())
+            state = bytes_of(lib.rdm_agent_write_state, self._open())
         if path is not None:
             write_whole(path, state, "agent")
         return state
@@ -309,7 +309,7 @@ class Agent(Hinted):
         fails."""
         data = read_whole(state, "agent") if isinstance(state, (str, os.PathLike)) else bytes(state)
         with self._lock:
-            self._check(lib.rdm_agent_load(self._a, data, len(data)))
+            self._check(lib.rdm_agent_read_state(self._a, data, len(data)))
 
     def write_checkpoint(self, path: Union[str, os.PathLike[str]], pool: Optional[Pool] = None,
                          note: bytes = b"") -> None:

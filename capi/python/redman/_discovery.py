@@ -79,7 +79,7 @@ class Task(_abi.Task):
     costs: dict[str, Cost]
     options: dict[str, Option]
     cameras: dict[str, _abi.Camera]
-    defaults: dict[str, Value]  # of learner options: rdm_task_default
+    defaults: dict[str, Value]  # of learner options: rdm_task_default_at
 
     def __init__(self, index: int) -> None:
         super().__init__(filled(_abi.rdm_task, lib.rdm_task_at, index))
@@ -89,7 +89,7 @@ class Task(_abi.Task):
         said["options"] = _records(Option, _abi.rdm_option_info, lib.rdm_task_option, self.num_options, index)
         said["cameras"] = _records(_abi.Camera, _abi.rdm_camera, lib.rdm_task_camera, self.num_cameras, index)
         said["defaults"] = laid(
-            filled(_abi.rdm_option, lib.rdm_task_default, index, i) for i in range(self.num_defaults))
+            filled(_abi.rdm_option, lib.rdm_task_default_at, index, i) for i in range(self.num_defaults))
 
     def __repr__(self) -> str:
         return f"<Task {self.name}: {self.summary}>"

@@ -162,21 +162,21 @@ class Map:
         """The bytes of an OctoMap file: "ot" with probabilities, "bt" occupied or free."""
         if format not in _FORMATS:
             raise ArgumentError(f"format: {format!r} is none of {', '.join(_FORMATS)}")
-        return bytes_of(lib.rdm_map_save, self._open(), _FORMATS[format])
+        return bytes_of(lib.rdm_map_write, self._open(), _FORMATS[format])
 
     def load(self, data: bytes) -> None:
         """What a file's bytes hold takes the place of what the map holds."""
         with self._lock:
-            self._check(lib.rdm_map_load(self._m, bytes(data), len(data)))
+            self._check(lib.rdm_map_read(self._m, bytes(data), len(data)))
 
     def save_file(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes .bt or .ot, by its ending, whole or not at all."""
-        self._check(lib.rdm_map_save_file(self._open(), encoded(path)))
+        self._check(lib.rdm_map_write_file(self._open(), encoded(path)))
 
     def load_file(self, path: Union[str, os.PathLike[str]]) -> None:
         """Reads .bt or .ot."""
         with self._lock:
-            self._check(lib.rdm_map_load_file(self._m, encoded(path)))
+            self._check(lib.rdm_map_read_file(self._m, encoded(path)))
 
     def close(self) -> None:
         """Ends the map. A second call does nothing."""

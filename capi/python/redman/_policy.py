@@ -77,7 +77,7 @@ class Policy(Hinted):
         if self._bytes[:len(_MAGIC)] != _MAGIC:
             raise FormatError("policy: these bytes are no policy file of redman (.rdm)")
         self.origin = origin
-        self._handle = Handle(lib.rdm_policy_load, lib.rdm_policy_destroy, self._bytes, len(self._bytes))
+        self._handle = Handle(lib.rdm_policy_read, lib.rdm_policy_destroy, self._bytes, len(self._bytes))
         self.info = _abi.PolicyInfo(filled(_abi.rdm_policy_info, lib.rdm_policy_get_info, self._handle.value))
         self._local = threading.local()
 
@@ -220,13 +220,13 @@ class Policy(Hinted):
         """Which entries of a row the policy sees, ascending: all, but for option actor_obs of its agent."""
         out = np.empty(self.info.obs_dim, np.int32)
         count = ctypes.c_int32()
-        check(lib.rdm_policy_columns(self._open(), out.ctypes.data, len(out), ctypes.byref(count)))
+        check(lib.rdm_policy_get_columns(self._open(), out.ctypes.data, len(out), ctypes.byref(count)))
         return out[:count.value]
 
     @property
     def tensors(self) -> Tensors:
         """Weights and normaliser by name, and an example of the network's input and output."""
-        return Tensors(self, lib.rdm_policy_tensor, lib.rdm_policy_tensor_read)
+        return Tensors(self, lib.rdm_policy_tensor_at, lib.rdm_policy_get_tensor)
 
     def _open(self) -> int:
         assert self._handle.value is not None

@@ -63,7 +63,7 @@ def memory(task: Union[str, _discovery.Task], num_envs: int = 1, options: Option
     config = _struct({"task": _discovery.task_name(task), "num_envs": num_envs, "seed": 0, "threads": 0, "autoreset": "same_step",
                       "options": dict(options or {})})
     ours, engines = c_size_t(), c_size_t()
-    check(lib.rdm_pool_memory(byref(config), byref(ours), byref(engines)))
+    check(lib.rdm_pool_config_memory(byref(config), byref(ours), byref(engines)))
     return ours.value, engines.value
 
 
@@ -82,7 +82,7 @@ class Sensors:
     cloud_cameras: list[_abi.Camera]  # of points and voxels
 
     def __init__(self, handle: Handle, num_envs: int) -> None:
-        s = filled(_abi.rdm_sensors, lib.rdm_pool_sensors, handle.value)
+        s = filled(_abi.rdm_sensors, lib.rdm_pool_get_sensors, handle.value)
         self.voxel_size = s.voxel_size
         lengths = {"num_envs": num_envs, "num_cameras": s.num_cameras, "height": s.height, "width": s.width,
                    "num_points": s.num_points, "num_voxels": s.num_voxels}
@@ -148,7 +148,7 @@ class Pool(Hinted):
         buffers = sized(_abi.rdm_buffers)
         for name, array in self._rows.items():
             setattr(buffers, name, array.ctypes.data)
-        check(lib.rdm_pool_bind(self._p, byref(buffers)))
+        check(lib.rdm_pool_set_buffers(self._p, byref(buffers)))
         self._action = self._rows["action"]
         self._obs = self._rows["obs"]
         self._watch = Watch()
@@ -336,19 +336,19 @@ class Pool(Hinted):
             size = c_size_t()
             self._check(lib.rdm_pool_state_size(self._p, int32(env, "env"), byref(size)))
             raw = ctypes.create_string_buffer(size.value)
-            self._check(lib.rdm_pool_get_state(self._p, env, raw, size, byref(size)))
+            self._check(lib.rdm_pool_write_state(self._p, env, raw, size, byref(size)))
             return raw.raw
 
     def set_state(self, state: bytes, env: int = -1) -> None:
         """Goes on from state(): the same bytes follow. Writes obs anew and clears the other rows of that world."""
         with self._lock:
-            self._check(lib.rdm_pool_set_state(self._p, int32(env, "env"), bytes(state), len(state)))
+            self._check(lib.rdm_pool_read_state(self._p, int32(env, "env"), bytes(state), len(state)))
 
     def hash(self, env: int = -1) -> str:
         """The hash of the state as the tool prints it, 16 hexadecimal digits."""
         out = c_uint64()
         with self._lock:
-            self._check(lib.rdm_pool_hash(self._p, int32(env, "env"), byref(out)))
+            self._check(lib.rdm_pool_get_hash(self._p, int32(env, "env"), byref(out)))
         return f"{out.value:016x}"
 
     # ---- what a world shows -----------------------------------------------------------------------------------
@@ -408,9 +408,9 @@ class Pool(Hinted):
     def hull(self, shape: int) -> FloatArray:
         """[count][3] corners of a shape that is a hull, in its own frame, m."""
         count = c_int32()
-        self._check(lib.rdm_pool_hull(self._open(), int32(shape, "shape"), None, 0, byref(count)))
+        self._check(lib.rdm_pool_get_hull(self._open(), int32(shape, "shape"), None, 0, byref(count)))
         out = np.empty((count.value, 3), np.float32)
-        self._check(lib.rdm_pool_hull(self._p, shape, out.ctypes.data, len(out), byref(count)))
+        self._check(lib.rdm_pool_get_hull(self._p, shape, out.ctypes.data, len(out), byref(count)))
         return out
 
     def contacts(self, env: int = 0) -> Array:
@@ -474,7 +474,7 @@ class Pool(Hinted):
     def initial_mean(self) -> FloatArray:
         """[action_dim] the mean action that a new policy starts from: the task's start pose."""
         out = np.empty(self.action_dim, np.float32)
-        self._check(lib.rdm_pool_initial_mean(self._p, out.ctypes.data))
+        self._check(lib.rdm_pool_get_initial_mean(self._p, out.ctypes.data))
         return out
 
     @property
@@ -499,7 +499,7 @@ class Pool(Hinted):
 
     @cached_property
     def _options(self) -> dict[str, Value]:
-        return read_settings(lib.rdm_pool_settings, self._open(),
+        return read_settings(lib.rdm_pool_get_settings, self._open(),
                              {key: option.kind for key, option in self.task.options.items()})
 
     @property

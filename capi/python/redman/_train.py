@@ -149,7 +149,7 @@ def _handles_costs(algo: str, columns: int) -> bool:
     config.obs_dim = config.action_dim = config.num_envs = 1
     config.cost_dim, config.algo, config.cost_limits = columns, encoded(algo), none.ctypes.data
     size = ctypes.c_size_t()
-    return bool(lib.rdm_agent_memory(byref(config), byref(size)))
+    return bool(lib.rdm_agent_config_memory(byref(config), byref(size)))
 
 
 class _Meter:

@@ -37,7 +37,7 @@ class FakeWorld {
     t.terminated = terminated_.data();
     for (int32_t s = 0; s < horizon; ++s) {
       for (float& x : obs_) x = noise_.normal();
-      agent.act(obs_.data(), RDM_SAMPLE, action_.data());
+      agent.act(obs_.data(), RDM_ACT_SAMPLE, action_.data());
       for (float& x : reward_) x = noise_.normal();
       for (float& x : cost_) x = noise_.unit() < 0.2f ? 1.0f : 0.0f;
       for (uint8_t& x : terminated_) x = noise_.unit() < 0.02f;
@@ -80,7 +80,7 @@ Report bench_update(const UpdateFlags& flags) {
   config.options = raw.data();
   config.num_options = static_cast<int32_t>(raw.size());
   size_t bytes = 0;
-  as_usage([&] { redman::check(rdm_agent_memory(&config, &bytes)); });
+  as_usage([&] { redman::check(rdm_agent_config_memory(&config, &bytes)); });
   redman::Agent agent(config);
   FakeWorld world(static_cast<size_t>(envs), static_cast<size_t>(flags.obs), static_cast<size_t>(flags.act));
   agent.update(world.fill(agent, horizon));  // warm-up

@@ -53,7 +53,7 @@ rdm_epoch collect_and_update(redman::Agent& agent, redman::Pool& pool, int32_t h
   t.truncated = pool.truncated().data();
   const rdm_points points = redman::points(redman::sensors(pool));
   for (int32_t i = 0; i < horizon; ++i) {
-    redman::act(agent, pool.obs().data(), points, RDM_SAMPLE, pool.action().data());
+    redman::act(agent, pool.obs().data(), points, RDM_ACT_SAMPLE, pool.action().data());
     pool.step();
     agent.record(t);
   }

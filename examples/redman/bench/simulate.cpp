@@ -126,7 +126,7 @@ Report bench_observe(ObserveFlags flags) {
   redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_SAME_STEP),
                without = make_pool(blind, RDM_AUTORESET_SAME_STEP);
   auto sensors = redman::sized<rdm_sensors>();
-  redman::check(rdm_pool_sensors(pool.get(), &sensors));
+  redman::check(rdm_pool_get_sensors(pool.get(), &sensors));
   const Rate seeing = measure(pool, 0.7 * flags.seconds), bare = measure(without, 0.3 * flags.seconds);
   const double microseconds = 1e6 * (seeing.cpu_seconds - bare.cpu_seconds);
   Json json = {{"task", task_at(pool.spec().task).name},

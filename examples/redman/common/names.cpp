@@ -22,7 +22,7 @@ std::string folded(std::string s) {
 int32_t find(rdm_result (*find_name)(const char*, int32_t*), const std::string& name) {
   int32_t index = -1;
   const rdm_result r = find_name(name.c_str(), &index);
-  if (r == RDM_UNSUPPORTED) throw Failure(rdm_last_error());
+  if (r == RDM_ERROR_UNSUPPORTED) throw Failure(rdm_last_error());
   if (r != RDM_OK) throw Usage(rdm_last_error());
   return index;
 }
@@ -36,15 +36,15 @@ std::vector<T> collect(int32_t count, Get get) {
 }
 
 Json default_json(const rdm_option_info& o) {
-  if (o.kind == RDM_TEXT || o.text) return o.text ? o.text : "";
-  if (o.kind == RDM_FLAG) return o.number != 0;
-  if (o.kind == RDM_INTEGER) return static_cast<int64_t>(o.number);
+  if (o.kind == RDM_KIND_TEXT || o.text) return o.text ? o.text : "";
+  if (o.kind == RDM_KIND_FLAG) return o.number != 0;
+  if (o.kind == RDM_KIND_INTEGER) return static_cast<int64_t>(o.number);
   return o.number;
 }
 
 std::string bounds_text(const rdm_option_info& o) {
-  if (o.kind == RDM_TEXT) return o.choices ? o.choices : "text";
-  if (o.kind == RDM_FLAG) return "true|false";
+  if (o.kind == RDM_KIND_TEXT) return o.choices ? o.choices : "text";
+  if (o.kind == RDM_KIND_FLAG) return "true|false";
   return number_text(o.low) + " .. " + number_text(o.high) + (o.choices ? ", or a range" : "");
 }
 
@@ -108,7 +108,7 @@ std::vector<rdm_cost> task_costs(int32_t task) {
 
 std::vector<rdm_option> task_defaults(int32_t task) {
   return collect<rdm_option>(task_at(task).num_defaults,
-                             [&](int32_t i, rdm_option* out) { return rdm_task_default(task, i, out); });
+                             [&](int32_t i, rdm_option* out) { return rdm_task_default_at(task, i, out); });
 }
 
 std::pair<float, float> task_field_bounds(int32_t task, int32_t i) {
@@ -155,7 +155,7 @@ Json build_json() {
 Json options_json(const std::vector<rdm_option_info>& table) {
   Json out = Json::array();
   for (const rdm_option_info& o : table) {
-    const bool text = o.kind == RDM_TEXT;
+    const bool text = o.kind == RDM_KIND_TEXT;
     Json row = object_of({{"key", o.key},
                           {"default", default_json(o)},
                           {"low", text ? Json() : Json(o.low)},
@@ -172,10 +172,10 @@ Json options_json(const std::vector<rdm_option_info>& table) {
 std::string options_text(const std::vector<rdm_option_info>& table) {
   Table out({"option", "default", "values", "meaning"});
   for (const rdm_option_info& o : table) {
-    const std::string value = o.text               ? o.text
-                              : o.kind == RDM_TEXT ? ""
-                              : o.kind == RDM_FLAG ? (o.number != 0 ? "true" : "false")
-                                                   : number_text(o.number);
+    const std::string value = o.text                    ? o.text
+                              : o.kind == RDM_KIND_TEXT ? ""
+                              : o.kind == RDM_KIND_FLAG ? (o.number != 0 ? "true" : "false")
+                                                        : number_text(o.number);
     out.add({o.key, value, bounds_text(o), o.help});
   }
   return out.text();

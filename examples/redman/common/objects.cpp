@@ -37,8 +37,8 @@ Import import_object(const std::string& file) {
       if (std::filesystem::exists(file, error)) throw Failure(file + ": it is not a regular file");
       throw Failure(file + ": no file, and no object of that name" + hint_of(file));
     }
-    if (rdm_import_object(&made, known) != RDM_OK) throw Failure(rdm_import_error());
-  } else if (rdm_import_object_file(&made, file.c_str()) != RDM_OK) {
+    if (rdm_import_create_object(&made, known) != RDM_OK) throw Failure(rdm_import_error());
+  } else if (rdm_import_read_object_file(&made, file.c_str()) != RDM_OK) {
     throw Failure(rdm_import_error());
   }
   return Import(made);
@@ -46,7 +46,7 @@ Import import_object(const std::string& file) {
 
 Import import_object_text(const std::string& text, const std::string& where) {
   rdm_import* made = nullptr;
-  if (rdm_import_object_text(&made, text.data(), text.size()) != RDM_OK)
+  if (rdm_import_read_object(&made, text.data(), text.size()) != RDM_OK)
     throw Failure(where + ": " + rdm_import_error());
   return Import(made);
 }
@@ -54,15 +54,15 @@ Import import_object_text(const std::string& text, const std::string& where) {
 rdm_object_def object_def_of(const Import& import) {
   rdm_object_def def;
   rdm_object_def_init(&def, sizeof def);
-  if (rdm_import_object_def(import.get(), &def) != RDM_OK) throw Failure(rdm_import_error());
+  if (rdm_import_get_object_def(import.get(), &def) != RDM_OK) throw Failure(rdm_import_error());
   return def;
 }
 
 std::string object_text(const rdm_object_def& def) {
   size_t size = 0;
-  if (rdm_import_object_write(&def, nullptr, 0, &size) != RDM_OK) throw Failure(rdm_import_error());
+  if (rdm_import_write_object(&def, nullptr, 0, &size) != RDM_OK) throw Failure(rdm_import_error());
   std::string text(size + 1, '\0');
-  if (rdm_import_object_write(&def, text.data(), text.size(), &size) != RDM_OK)
+  if (rdm_import_write_object(&def, text.data(), text.size(), &size) != RDM_OK)
     throw Failure(rdm_import_error());
   text.pop_back();
   return text;

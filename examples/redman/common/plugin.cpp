@@ -59,7 +59,7 @@ bool is_other(Count count) {
 
 // What the plugin answers; the error's text is its own, not that of an earlier call.
 rdm_result call(Plugin plugin, const std::string& owner) {
-  rdm_fail(RDM_ARGUMENT, "it gave no text");
+  rdm_fail(RDM_ERROR_ARGUMENT, "it gave no text");
   try {
     return plugin();
   } catch (const std::exception& e) {

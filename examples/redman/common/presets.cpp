@@ -21,9 +21,9 @@ constexpr const char* kPresetNames[] = {"state", "vision", "touch", "propriocept
 
 std::vector<int32_t> policy_columns(const rdm_policy* policy) {
   int32_t count = 0;
-  redman::check(rdm_policy_columns(policy, nullptr, 0, &count));
+  redman::check(rdm_policy_get_columns(policy, nullptr, 0, &count));
   std::vector<int32_t> columns(static_cast<size_t>(count));
-  redman::check(rdm_policy_columns(policy, columns.data(), count, &count));
+  redman::check(rdm_policy_get_columns(policy, columns.data(), count, &count));
   return columns;
 }
 
@@ -40,7 +40,7 @@ std::vector<ObsPreset> obs_presets(int32_t obs_dim, const std::vector<rdm_field>
       const redman::Policy policy(redman::Agent(config).policy());
       out.push_back({name, policy_columns(policy.get())});
     } catch (const redman::Error& e) {
-      if (e.code() != RDM_NOT_FOUND && e.code() != RDM_UNSUPPORTED) throw;
+      if (e.code() != RDM_ERROR_NOT_FOUND && e.code() != RDM_ERROR_UNSUPPORTED) throw;
     }
   }
   return out;

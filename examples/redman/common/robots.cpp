@@ -46,15 +46,15 @@ Import import_robot(const std::string& file, const ImportFlags& flags) {
   int32_t known = -1;
   if (!file_exists(file) && file.find('/') == std::string::npos &&
       rdm_robot_find(file.c_str(), &known) == RDM_OK) {
-    if (rdm_import_robot(&made, known) != RDM_OK) throw Failure(rdm_import_error());
+    if (rdm_import_create_robot(&made, known) != RDM_OK) throw Failure(rdm_import_error());
     // Flags mean the same as for its own .robot file.
     const std::string written = robot_text(def_of(Import(made)));
-    if (rdm_import_text(&made, written.data(), written.size(), &o) != RDM_OK)
+    if (rdm_import_read(&made, written.data(), written.size(), &o) != RDM_OK)
       throw Failure(file + ": " + rdm_import_error());
     return Import(made);
   }
-  const rdm_result r = rdm_import_file(&made, file.c_str(), &o);
-  if (r == RDM_NOT_FOUND && !file_exists(file)) {
+  const rdm_result r = rdm_import_read_file(&made, file.c_str(), &o);
+  if (r == RDM_ERROR_NOT_FOUND && !file_exists(file)) {
     std::vector<std::string> names;
     for (int32_t i = 0; i < rdm_robot_count(); ++i) {
       auto robot = redman::sized<rdm_robot>();
@@ -71,7 +71,7 @@ Import import_robot(const std::string& file, const ImportFlags& flags) {
 rdm_robot_def def_of(const Import& import) {
   rdm_robot_def def;
   rdm_robot_def_init(&def, sizeof def);
-  if (rdm_import_def(import.get(), &def) != RDM_OK) throw Failure(rdm_import_error());
+  if (rdm_import_get_robot_def(import.get(), &def) != RDM_OK) throw Failure(rdm_import_error());
   return def;
 }
 
@@ -106,16 +106,17 @@ int32_t load_robot_text(const std::string& text, const std::string& where) {
   rdm_import_options_init(&o, sizeof o);
   o.format = RDM_IMPORT_ROBOT;
   rdm_import* made = nullptr;
-  if (rdm_import_text(&made, text.data(), text.size(), &o) != RDM_OK)
+  if (rdm_import_read(&made, text.data(), text.size(), &o) != RDM_OK)
     throw Failure(where + ": " + rdm_import_error());
   return add_robot(Import(made), where);
 }
 
 std::string robot_text(const rdm_robot_def& def) {
   size_t size = 0;
-  if (rdm_import_write(&def, nullptr, 0, &size) != RDM_OK) throw Failure(rdm_import_error());
+  if (rdm_import_write_robot(&def, nullptr, 0, &size) != RDM_OK) throw Failure(rdm_import_error());
   std::string text(size + 1, '\0');
-  if (rdm_import_write(&def, text.data(), text.size(), &size) != RDM_OK) throw Failure(rdm_import_error());
+  if (rdm_import_write_robot(&def, text.data(), text.size(), &size) != RDM_OK)
+    throw Failure(rdm_import_error());
   text.pop_back();
   return text;
 }

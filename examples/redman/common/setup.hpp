@@ -85,7 +85,8 @@ auto as_usage(F&& f) {
     return f();
   } catch (const redman::Error& e) {
     const rdm_result r = e.code();
-    if (r == RDM_ARGUMENT || r == RDM_RANGE || r == RDM_NOT_FOUND || r == RDM_UNSUPPORTED)
+    if (r == RDM_ERROR_ARGUMENT || r == RDM_ERROR_RANGE || r == RDM_ERROR_NOT_FOUND ||
+        r == RDM_ERROR_UNSUPPORTED)
       throw Usage(e.what());
     throw;
   }

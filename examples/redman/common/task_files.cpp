@@ -29,7 +29,7 @@ Loaded& loaded() {
 std::string add_task(const std::string& text, const std::string& file) {
 #ifdef REDMAN_IMPORT
   int32_t index = -1;
-  if (rdm_import_task_text(&index, text.data(), text.size(), file.c_str()) != RDM_OK)
+  if (rdm_import_read_task(&index, text.data(), text.size(), file.c_str()) != RDM_OK)
     throw Failure(rdm_import_error());
   const std::string name = task_at(index).name;
   loaded().tasks[name] = text;

@@ -76,7 +76,7 @@ rdm_robot robot_at(int32_t index) {
 rdm_robot_def def_at(int32_t index) {
   rdm_robot_def def;
   redman::check(rdm_robot_def_init(&def, sizeof def));
-  redman::check(rdm_robot_get(index, &def));
+  redman::check(rdm_robot_get_def(index, &def));
   return def;
 }
 
@@ -95,7 +95,7 @@ bool find_base(const redman::Pool& pool, int32_t robot, const std::string& prefi
   for (int32_t i = 0; i < def.num_shapes; ++i) {
     rdm_robot_shape own;
     redman::check(rdm_robot_shape_at(robot, i, &own));
-    if (own.link != RDM_ROOT_LINK) continue;
+    if (own.link != RDM_LINK_ROOT) continue;
     double local[7];
     std::copy_n(own.p, 3, local);
     std::copy_n(own.q, 4, local + 3);
@@ -167,9 +167,9 @@ DemoHand::DemoHand(const redman::Pool& pool, const Options& settings, int32_t si
     static std::atomic<int> made{0};
     const bool left = side == 1 && !same_name(option_of(settings, "left_model"), "right_copy");
     const std::string name = format("demo-%d", made++);
-    redman::check(rdm_robot_mount(&mounted_, name.c_str(), find_robot(arm), robot_,
-                                  std::atof(option("mount_yaw").c_str()) * kDegree,
-                                  std::atof(option("adapter").c_str()), left));
+    redman::check(rdm_robot_create_mounted(&mounted_, name.c_str(), find_robot(arm), robot_,
+                                           std::atof(option("mount_yaw").c_str()) * kDegree,
+                                           std::atof(option("adapter").c_str()), left));
     robot_ = mounted_;
     arm_joints_ = robot_at(find_robot(arm)).num_joints;
     if (!find_base(pool, robot_, side == 0 ? "right_" : "left_", &base_))
@@ -214,7 +214,7 @@ DemoHand::DemoHand(const redman::Pool& pool, const Options& settings, int32_t si
 }
 
 DemoHand::~DemoHand() {
-  if (mounted_ >= 0) rdm_robot_remove(mounted_);
+  if (mounted_ >= 0) rdm_robot_destroy(mounted_);
 }
 
 DemoHand::DemoHand(DemoHand&& o) noexcept

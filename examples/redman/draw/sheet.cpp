@@ -38,13 +38,13 @@ template <class S>
 void half_sizes(const S& s, double* half) {
   const double* d = s.size;
   switch (s.kind) {
-    case RDM_SPHERE:
+    case RDM_SHAPE_SPHERE:
       half[0] = half[1] = half[2] = d[0];
       break;
-    case RDM_CAPSULE:
+    case RDM_SHAPE_CAPSULE:
       half[0] = half[1] = d[0], half[2] = d[0] + d[1];
       break;
-    case RDM_CYLINDER:
+    case RDM_SHAPE_CYLINDER:
       half[0] = half[1] = d[0], half[2] = d[1];
       break;
     default:
@@ -80,7 +80,7 @@ Shown show_object(int32_t index) {
   out.index = index;
   rdm_object_def def;
   rdm_object_def_init(&def, sizeof def);
-  redman::check(rdm_object_get(index, &def));
+  redman::check(rdm_object_get_def(index, &def));
   Bounds b;
   for (int32_t i = 0; i < def.num_shapes; ++i) {
     rdm_shape_def s;
@@ -88,7 +88,7 @@ Shown show_object(int32_t index) {
     for (int32_t k = 0; k < s.num_points; ++k) b.add(turned(s.q, s.points + 3 * k), s.p);
     double half[3];
     half_sizes(s, half);
-    if (s.kind != RDM_HULL) b.add_box(half, s.q, s.p);
+    if (s.kind != RDM_SHAPE_HULL) b.add_box(half, s.q, s.p);
   }
   b.give(&out);
   return out;
@@ -127,7 +127,7 @@ Shown show_robot(int32_t index, int32_t joints) {
 rdm_result build(void* user, rdm_scene* scene, void*) {
   const auto& shown = *static_cast<const Shown*>(user);
   rdm_shape_def ground{};
-  ground.name = "ground", ground.kind = RDM_PLANE;
+  ground.name = "ground", ground.kind = RDM_SHAPE_PLANE;
   ground.color[0] = ground.color[1] = ground.color[2] = 225, ground.color[3] = 255;
   if (const rdm_result r = rdm_scene_add_static(scene, &ground)) return r;
   const double p[3] = {0, 0, shown.lift}, q[4] = {};
@@ -156,7 +156,7 @@ rdm_result observe(void*, const void*, const rdm_world*, const void*, float* obs
 struct Task {
   int32_t index = -1;
   ~Task() {
-    if (index >= 0) rdm_task_remove(index);
+    if (index >= 0) rdm_task_destroy(index);
   }
 };
 
@@ -181,7 +181,7 @@ Image picture(Shown shown, int32_t side) {
   def.user = &shown;
   def.build = build, def.reset = reset, def.control = control, def.judge = judge, def.observe = observe;
   Task task;
-  redman::check(rdm_task_register(&task.index, &def));
+  redman::check(rdm_task_create(&task.index, &def));
   rdm_pool_config config = redman::pool_config(def.name);
   rdm_pool* made = nullptr;
   redman::check(rdm_pool_create(&made, &config));
@@ -206,7 +206,7 @@ Sheet draw_sheet(int32_t side, int32_t columns) {
   for (int32_t i = 0; i < rdm_robot_count(); ++i) {
     rdm_robot_def def;
     rdm_robot_def_init(&def, sizeof def);
-    if (rdm_robot_get(i, &def) != RDM_OK || def.num_commands >= 0) continue;
+    if (rdm_robot_get_def(i, &def) != RDM_OK || def.num_commands >= 0) continue;
     out.names.emplace_back(def.name);
     all.push_back(show_robot(i, def.num_links));
   }

@@ -21,7 +21,7 @@ void read_eyes(Network& n, const rdm_policy_info& info) {
   Eyes& e = n.eyes;
   e.points = info.num_points;
   if (e.points == 0) return;
-  constexpr const char* kActivations[] = {"tanh", "elu", "relu"};  // as rdm_policy_tensor numbers them
+  constexpr const char* kActivations[] = {"tanh", "elu", "relu"};  // as rdm_policy_tensor_at numbers them
   e.classes = info.num_point_classes;
   e.color = info.point_color != 0;
   e.features = info.num_features;

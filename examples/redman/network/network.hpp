@@ -30,7 +30,7 @@ struct Network {
   std::string activation;  // "tanh", "elu", "relu"
   int32_t obs_dim = 0, action_dim = 0, num_layers = 0;
   Eyes eyes;
-  std::vector<NamedTensor> tensors;  // as rdm_policy_tensor names them
+  std::vector<NamedTensor> tensors;  // as rdm_policy_tensor_at names them
   // What a reader has to know beside the numbers: task, layout hash, rates, bounds of the action, entries of
   // a row that count.
   std::vector<std::pair<std::string, std::string>> metadata;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-// rdm_pool_hull; the header gives its experimental part to a file that has seen the rest before, too
+// rdm_pool_get_hull; the header gives its experimental part to a file that has seen the rest before, too
 #define RDM_EXPERIMENTAL
 #include <redman/redman.h>
 
@@ -19,11 +19,11 @@ Body body_at(const redman::Pool& pool, int32_t index) {
   body.kind = shape.kind;
   std::copy_n(shape.size, 3, body.size);
   std::copy_n(shape.color, 3, body.color);
-  if (shape.kind != RDM_HULL) return body;
+  if (shape.kind != RDM_SHAPE_HULL) return body;
   int32_t count = 0;
-  redman::check(rdm_pool_hull(pool.get(), index, nullptr, 0, &count));
+  redman::check(rdm_pool_get_hull(pool.get(), index, nullptr, 0, &count));
   body.corners.resize(static_cast<size_t>(count) * 3);
-  redman::check(rdm_pool_hull(pool.get(), index, body.corners.data(), count, &count));
+  redman::check(rdm_pool_get_hull(pool.get(), index, body.corners.data(), count, &count));
   return body;
 }
 

@@ -8,7 +8,7 @@ namespace tool {
 
 struct Body {
   std::string name;            // "right.ff_distal"
-  int32_t kind = 0;            // RDM_SPHERE ... RDM_HULL
+  int32_t kind = 0;            // RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL
   float size[3] = {};          // as in rdm_shape
   uint8_t color[3] = {};       // red, green, blue
   std::vector<float> corners;  // [n][3] of a hull, own frame, m

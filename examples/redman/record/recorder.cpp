@@ -198,7 +198,7 @@ std::string Recorder::metadata(const RecordNote& note, uint64_t steps) const {
   for (const rdm_option_info& o : task_options(spec.task)) {
     const char* key = nullptr;
     char text[RDM_TEXT_SIZE];
-    if (rdm_pool_option(pool_.get(), index++, &key, text) == RDM_OK) options[o.key] = text;
+    if (rdm_pool_option_at(pool_.get(), index++, &key, text) == RDM_OK) options[o.key] = text;
     for (const auto& [name, value] : note.options)  // a longer text than that call gives
       if (same_name(name, o.key) && value.size() >= sizeof text) options[o.key] = value;
   }
@@ -231,7 +231,7 @@ void Recorder::write_arrays(const RecordNote& note, uint64_t steps) {
   ZipWriter zip(file_);
   const std::string text = metadata(note, steps);
   write_array(zip, "metadata", text_shape(text), text_bytes(text));
-  // what rdm_recording_load_file wants to know
+  // what rdm_recording_read_file wants to know
   const std::string task = task_at(pool_.spec().task).name;
   write_array(zip, "task", {"|S" + std::to_string(task.size()), {}}, task);
   write_array(zip, "layout_hash", {"<u8", {}}, bytes_of(std::vector<uint64_t>{pool_.spec().layout_hash}));

@@ -73,7 +73,7 @@ bool handles_costs(const std::string& algo, const redman::Pool& pool) {
   config.algo = algo.c_str();
   config.cost_limits = none.data();
   size_t bytes = 0;
-  return rdm_agent_memory(&config, &bytes) != RDM_OK;
+  return rdm_agent_config_memory(&config, &bytes) != RDM_OK;
 }
 
 std::string agent_option(const redman::Agent& agent, const std::string& algo, const char* wanted) {
@@ -81,7 +81,7 @@ std::string agent_option(const redman::Agent& agent, const std::string& algo, co
   for (int32_t i = 0; i < count; ++i) {
     const char* key = nullptr;
     char text[RDM_TEXT_SIZE];
-    redman::check(rdm_agent_option(agent.get(), i, &key, text));
+    redman::check(rdm_agent_option_at(agent.get(), i, &key, text));
     if (same_name(key, wanted)) return text;
   }
   throw Failure("algorithm " + algo + " has no option " + wanted);
@@ -185,7 +185,7 @@ void Trainer::plan_schedule() {
   const double epochs =
       std::ceil(static_cast<double>(settings_.steps) / static_cast<double>(steps_per_epoch()));
   const rdm_option option = {"total_epochs", nullptr, std::max(1.0, epochs)};
-  as_usage([&] { redman::check(rdm_agent_set(agent_.get(), &option)); });
+  as_usage([&] { redman::check(rdm_agent_set_option(agent_.get(), &option)); });
 }
 
 void Trainer::save() {
@@ -293,7 +293,7 @@ void Trainer::train_to_the_end(Meter& meter) {
     while (env_steps_ < settings_.steps && !stopped()) train_epoch(meter);
     if (saved_epoch_ != epoch_) save();
   } catch (const redman::Error& e) {
-    if (e.code() != RDM_CANCELLED || g_signals == 0) throw;
+    if (e.code() != RDM_ERROR_CANCELLED || g_signals == 0) throw;
   }
 }
 

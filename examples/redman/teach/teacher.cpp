@@ -171,7 +171,7 @@ void drop_failures(redman::Recording& recording) {
 void load_policy(const std::string& file, const redman::Pool& pool, redman::Agent& agent) {
   const redman::Policy policy(file.c_str());
   policy.check_fits(pool.spec());
-  if (rdm_agent_load_policy(agent.get(), policy.get(), kPolicySamples) != RDM_OK)
+  if (rdm_agent_set_policy(agent.get(), policy.get(), kPolicySamples) != RDM_OK)
     throw Failure("--from " + file + ": " + rdm_agent_error(agent.get()));
 }
 
@@ -262,7 +262,7 @@ Taught teach(const TeachSettings& s, const PoolSettings& settings, redman::Agent
     out.report = clone(s, agent, out.recording, settings.seed + static_cast<uint64_t>(round));
   }
   out.cloned = true;
-  if (!save.empty() && rdm_recording_save_file(out.recording.get(), save.c_str()) != RDM_OK)
+  if (!save.empty() && rdm_recording_write_file(out.recording.get(), save.c_str()) != RDM_OK)
     throw Failure("--save-recording: " + std::string(rdm_last_error()));
   return out;
 }

@@ -43,7 +43,7 @@ Extent extent_of(const Playback& p) {
   Extent e;
   bool first = true;
   for (size_t b = 0; b < p.bodies.size(); ++b) {
-    if (p.bodies[b].kind == RDM_PLANE) continue;
+    if (p.bodies[b].kind == RDM_SHAPE_PLANE) continue;
     for (size_t k = 0; k < p.frames; ++k)
       for (size_t i = 0; i < 3; ++i) {
         const float v = p.pose(k, b)[i];
@@ -81,17 +81,17 @@ Solid make_solid(const Playback& p, size_t body) {
   const Body& b = p.bodies[body];
   const float sphere[3] = {b.size[0], b.size[0], b.size[0]};
   switch (b.kind) {
-    case RDM_SPHERE:
+    case RDM_SHAPE_SPHERE:
       return make_ellipsoid(sphere);
-    case RDM_ELLIPSOID:
+    case RDM_SHAPE_ELLIPSOID:
       return make_ellipsoid(b.size);
-    case RDM_CAPSULE:
+    case RDM_SHAPE_CAPSULE:
       return make_cylinder(b.size[0], b.size[1], true);
-    case RDM_CYLINDER:
+    case RDM_SHAPE_CYLINDER:
       return make_cylinder(b.size[0], b.size[1], false);
-    case RDM_BOX:
+    case RDM_SHAPE_BOX:
       return make_box(b.size);
-    case RDM_HULL:
+    case RDM_SHAPE_HULL:
       return make_hull(b.corners);
     default:
       return make_ground(p, body);
@@ -193,7 +193,7 @@ class Glb {
   size_t mesh(size_t body) {
     const Body& b = p_.bodies[body];
     const auto key = std::tuple(b.kind, std::to_array(b.size), std::to_array(b.color), b.corners,
-                                b.kind == RDM_PLANE ? body : 0);
+                                b.kind == RDM_SHAPE_PLANE ? body : 0);
     const auto [found, fresh] = meshes_.try_emplace(key, json_["meshes"].size());
     if (!fresh) return found->second;
     const Solid s = make_solid(p_, body);
@@ -229,7 +229,7 @@ class Glb {
                  {"mesh", number},
                  {"translation", rounded_list(std::vector<float>(pose, pose + 3))},
                  {"rotation", rounded_list(std::vector<float>(pose + 3, pose + 7))}};
-    if (p_.bodies[body].kind == RDM_PLANE) node["extras"] = {{"plane", true}};
+    if (p_.bodies[body].kind == RDM_SHAPE_PLANE) node["extras"] = {{"plane", true}};
     add_child(node);
   }
 

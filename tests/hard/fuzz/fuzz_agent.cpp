@@ -48,7 +48,7 @@ void one(const unsigned char* data, size_t size) {
   if (size == 0) return;
   Subject& s = subjects()[pick(data, size, subjects().size())];
   rdm_agent* a = s.agent.handle;
-  const rdm_result r = rdm_agent_load(a, data + 1, size - 1);
+  const rdm_result r = rdm_agent_read_state(a, data + 1, size - 1);
   if (r != RDM_OK) {
     require_refusal(r);
     static unsigned n = 0;
@@ -57,14 +57,14 @@ void one(const unsigned char* data, size_t size) {
   }
   const Bytes policy = s.agent.policy();
   rdm_policy* p = nullptr;
-  HARD_REQUIRE(rdm_policy_load(&p, policy.data(), policy.size()) == RDM_OK, "a policy does not load: %s",
+  HARD_REQUIRE(rdm_policy_read(&p, policy.data(), policy.size()) == RDM_OK, "a policy does not load: %s",
                rdm_last_error());
   rdm_policy_destroy(p);
   // An epoch takes longer than all the rest: every fourth of what is taken learns one.
   static unsigned taken = 0;
   const rdm_result e = ++taken % 4 == 0 ? s.agent.epoch() : RDM_OK;
   if (e != RDM_OK) require_refusal(e);
-  HARD_REQUIRE(rdm_agent_load(a, s.trained.data(), s.trained.size()) == RDM_OK, "%s", rdm_last_error());
+  HARD_REQUIRE(rdm_agent_read_state(a, s.trained.data(), s.trained.size()) == RDM_OK, "%s", rdm_last_error());
 }
 
 }  // namespace hard

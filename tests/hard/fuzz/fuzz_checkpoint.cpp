@@ -86,9 +86,9 @@ void one(const unsigned char* data, size_t size) {
   }
   const rdm_result e = goes_on ? s.agent.epoch() : RDM_OK;
   if (e != RDM_OK) require_refusal(e);
-  HARD_REQUIRE(rdm_agent_load(s.agent.handle, s.agent_state.data(), s.agent_state.size()) == RDM_OK, "%s",
-               rdm_last_error());
-  HARD_REQUIRE(rdm_pool_set_state(s.pool.handle, -1, s.pool_state.data(), s.pool_state.size()) == RDM_OK,
+  HARD_REQUIRE(rdm_agent_read_state(s.agent.handle, s.agent_state.data(), s.agent_state.size()) == RDM_OK,
+               "%s", rdm_last_error());
+  HARD_REQUIRE(rdm_pool_read_state(s.pool.handle, -1, s.pool_state.data(), s.pool_state.size()) == RDM_OK,
                "%s", rdm_last_error());
 }
 

@@ -26,9 +26,9 @@ void fill(rdm_map* m, int count) {
 
 Bytes saved(const rdm_map* m, int32_t format) {
   size_t n = 0;
-  HARD_REQUIRE(rdm_map_save(m, format, nullptr, 0, &n) == RDM_OK, "%s", rdm_last_error());
+  HARD_REQUIRE(rdm_map_write(m, format, nullptr, 0, &n) == RDM_OK, "%s", rdm_last_error());
   Bytes out(n);
-  HARD_REQUIRE(rdm_map_save(m, format, out.data(), n, &n) == RDM_OK, "%s", rdm_last_error());
+  HARD_REQUIRE(rdm_map_write(m, format, out.data(), n, &n) == RDM_OK, "%s", rdm_last_error());
   return out;
 }
 
@@ -56,7 +56,7 @@ void one(const unsigned char* data, size_t size) {
     fill(m, 4);
     return saved(m, RDM_MAP_FULL);
   }();
-  const rdm_result r = rdm_map_load(m, data, size);
+  const rdm_result r = rdm_map_read(m, data, size);
   if (r != RDM_OK) {
     require_refusal(r);
     static unsigned n = 0;
@@ -84,9 +84,9 @@ void one(const unsigned char* data, size_t size) {
                rdm_last_error());
   HARD_REQUIRE(rdm_map_grid(m, pose, cells, 0.1f, grid) == RDM_OK, "%s", rdm_last_error());
   const Bytes again = saved(m, RDM_MAP_FULL);
-  HARD_REQUIRE(rdm_map_load(m, again.data(), again.size()) == RDM_OK, "a saved map does not load: %s",
+  HARD_REQUIRE(rdm_map_read(m, again.data(), again.size()) == RDM_OK, "a saved map does not load: %s",
                rdm_last_error());
-  HARD_REQUIRE(rdm_map_load(m, good.data(), good.size()) == RDM_OK, "%s", rdm_last_error());
+  HARD_REQUIRE(rdm_map_read(m, good.data(), good.size()) == RDM_OK, "%s", rdm_last_error());
 }
 
 }  // namespace hard

@@ -71,10 +71,10 @@ void ask_task(const World& w, Lines& lines) {
   give(lines, c);
   rdm_spec spec{};
   spec.struct_size = sizeof spec;
-  const rdm_result r = rdm_pool_spec(&c, &spec);
+  const rdm_result r = rdm_pool_config_spec(&c, &spec);
   if (r != RDM_OK) return require_refusal(r);
   size_t ours = 0, engines = 0;
-  HARD_REQUIRE(rdm_pool_memory(&c, &ours, &engines) == RDM_OK, "spec took what memory refuses: %s",
+  HARD_REQUIRE(rdm_pool_config_memory(&c, &ours, &engines) == RDM_OK, "spec took what memory refuses: %s",
                rdm_last_error());
   if (ours > kMostMemory || !make_it()) return;
   rdm_pool* p = nullptr;
@@ -84,13 +84,13 @@ void ask_task(const World& w, Lines& lines) {
   if (step != RDM_OK) require_refusal(step);
   const char* key;
   char text[RDM_TEXT_SIZE];
-  for (int32_t i = 0; rdm_pool_option(p, i, &key, text) == RDM_OK; ++i)
+  for (int32_t i = 0; rdm_pool_option_at(p, i, &key, text) == RDM_OK; ++i)
     HARD_REQUIRE(good_text(text), "option %s", key);
-  const std::string settings = settings_of<rdm_pool>(rdm_pool_settings, p);
+  const std::string settings = settings_of<rdm_pool>(rdm_pool_get_settings, p);
   c.options = nullptr;
   c.num_options = 0;
   c.settings = settings.c_str();
-  HARD_REQUIRE(rdm_pool_spec(&c, &spec) == RDM_OK, "its own settings: %s", rdm_last_error());
+  HARD_REQUIRE(rdm_pool_config_spec(&c, &spec) == RDM_OK, "its own settings: %s", rdm_last_error());
   rdm_pool_destroy(p);
 }
 
@@ -103,22 +103,22 @@ void ask_algo(const std::string& algo, Lines& lines) {
   c.num_envs = 2;
   give(lines, c);
   size_t bytes = 0;
-  const rdm_result r = rdm_agent_memory(&c, &bytes);
+  const rdm_result r = rdm_agent_config_memory(&c, &bytes);
   if (r != RDM_OK) return require_refusal(r);
   if (bytes > kMostMemory / 8 || !make_it()) return;
   rdm_agent* a = nullptr;
   HARD_REQUIRE(rdm_agent_create(&a, &c) == RDM_OK, "memory took what create refuses: %s", rdm_last_error());
-  const rdm_result set = lines.options.empty() ? RDM_OK : rdm_agent_set(a, lines.options.data());
+  const rdm_result set = lines.options.empty() ? RDM_OK : rdm_agent_set_option(a, lines.options.data());
   if (set != RDM_OK) require_refusal(set);
   const char* key;
   char text[RDM_TEXT_SIZE];
-  for (int32_t i = 0; rdm_agent_option(a, i, &key, text) == RDM_OK; ++i)
+  for (int32_t i = 0; rdm_agent_option_at(a, i, &key, text) == RDM_OK; ++i)
     HARD_REQUIRE(good_text(text), "option %s", key);
-  const std::string settings = settings_of<rdm_agent>(rdm_agent_settings, a);
+  const std::string settings = settings_of<rdm_agent>(rdm_agent_get_settings, a);
   c.options = nullptr;
   c.num_options = 0;
   c.settings = settings.c_str();
-  HARD_REQUIRE(rdm_agent_memory(&c, &bytes) == RDM_OK, "its own settings: %s", rdm_last_error());
+  HARD_REQUIRE(rdm_agent_config_memory(&c, &bytes) == RDM_OK, "its own settings: %s", rdm_last_error());
   rdm_agent_destroy(a);
 }
 

@@ -29,7 +29,7 @@ size_t fixed_bytes() {
 
 void one(const unsigned char* data, size_t size) {
   rdm_policy* p = nullptr;
-  const rdm_result r = rdm_policy_load(&p, data, size);
+  const rdm_result r = rdm_policy_read(&p, data, size);
   if (r != RDM_OK) return require_refusal(r);
   rdm_policy_info info{};
   info.struct_size = sizeof info;
@@ -59,9 +59,9 @@ void one(const unsigned char* data, size_t size) {
   }
   std::free(scratch);
   rdm_tensor t;
-  for (int32_t i = 0; rdm_policy_tensor(p, i, &t) == RDM_OK; ++i) {
+  for (int32_t i = 0; rdm_policy_tensor_at(p, i, &t) == RDM_OK; ++i) {
     std::vector<float> values(count(t.rows, t.cols));
-    HARD_REQUIRE(rdm_policy_tensor_read(p, t.name, values.data(), values.size()) == RDM_OK, "%s",
+    HARD_REQUIRE(rdm_policy_get_tensor(p, t.name, values.data(), values.size()) == RDM_OK, "%s",
                  rdm_last_error());
   }
   rdm_policy_destroy(p);

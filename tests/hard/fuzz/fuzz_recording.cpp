@@ -64,7 +64,7 @@ std::vector<Bytes> seeds() {
     rows.state = state;
     HARD_REQUIRE(rdm_recording_append(r, &rows) == RDM_OK, "%s", rdm_last_error());
     const std::string path = "fuzz_recording-" + std::to_string(getpid()) + ".npz";
-    HARD_REQUIRE(rdm_recording_save_file(r, path.c_str()) == RDM_OK, "%s", rdm_last_error());
+    HARD_REQUIRE(rdm_recording_write_file(r, path.c_str()) == RDM_OK, "%s", rdm_last_error());
     out.push_back(read_all(path));
     unlink(path.c_str());
     rdm_recording_destroy(r);
@@ -83,7 +83,7 @@ void one(const unsigned char* data, size_t size) {
   static const MemoryFile file;
   file.fill(data, size);
   rdm_recording* r = nullptr;
-  const rdm_result loaded = rdm_recording_load_file(&r, file.path());
+  const rdm_result loaded = rdm_recording_read_file(&r, file.path());
   if (loaded != RDM_OK) return require_refusal(loaded);
   rdm_recording_info info{};
   info.struct_size = sizeof info;

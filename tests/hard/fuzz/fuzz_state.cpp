@@ -59,7 +59,7 @@ void one(const unsigned char* data, size_t size) {
   if (size == 0) return;
   Subject& s = subjects()[pick(data, size, subjects().size())];
   s.ready();
-  const rdm_result r = rdm_pool_set_state(s.pool.handle, -1, data + 1, size - 1);
+  const rdm_result r = rdm_pool_read_state(s.pool.handle, -1, data + 1, size - 1);
   if (r != RDM_OK) {
     require_refusal(r);
     static unsigned n = 0;
@@ -80,7 +80,7 @@ void one(const unsigned char* data, size_t size) {
     bad = s.pool.broken_row();
     HARD_REQUIRE(!bad, "%s: %s is out of its bounds", s.world.name().c_str(), bad);
   }
-  HARD_REQUIRE(rdm_pool_set_state(s.pool.handle, -1, s.state.data(), s.state.size()) == RDM_OK, "%s",
+  HARD_REQUIRE(rdm_pool_read_state(s.pool.handle, -1, s.state.data(), s.state.size()) == RDM_OK, "%s",
                rdm_last_error());
 }
 

@@ -37,9 +37,10 @@ const char kMjcf[] =
 
 std::string written(const rdm_robot_def& def) {
   size_t size = 0;
-  HARD_REQUIRE(rdm_import_write(&def, nullptr, 0, &size) == RDM_OK, "%s", rdm_import_error());
+  HARD_REQUIRE(rdm_import_write_robot(&def, nullptr, 0, &size) == RDM_OK, "%s", rdm_import_error());
   std::string text(size + 1, '\0');
-  HARD_REQUIRE(rdm_import_write(&def, text.data(), text.size(), &size) == RDM_OK, "%s", rdm_import_error());
+  HARD_REQUIRE(rdm_import_write_robot(&def, text.data(), text.size(), &size) == RDM_OK, "%s",
+               rdm_import_error());
   text.pop_back();
   return text;
 }
@@ -47,7 +48,7 @@ std::string written(const rdm_robot_def& def) {
 rdm_robot_def def_of(const rdm_import* i) {
   rdm_robot_def def;
   rdm_robot_def_init(&def, sizeof def);
-  HARD_REQUIRE(rdm_import_def(i, &def) == RDM_OK, "%s", rdm_import_error());
+  HARD_REQUIRE(rdm_import_get_robot_def(i, &def) == RDM_OK, "%s", rdm_import_error());
   return def;
 }
 
@@ -57,11 +58,11 @@ constexpr int kObject = RDM_IMPORT_ROBOT + 1;
 std::string written(const rdm_import* i) {
   rdm_object_def def;
   rdm_object_def_init(&def, sizeof def);
-  HARD_REQUIRE(rdm_import_object_def(i, &def) == RDM_OK, "%s", rdm_import_error());
+  HARD_REQUIRE(rdm_import_get_object_def(i, &def) == RDM_OK, "%s", rdm_import_error());
   size_t size = 0;
-  HARD_REQUIRE(rdm_import_object_write(&def, nullptr, 0, &size) == RDM_OK, "%s", rdm_import_error());
+  HARD_REQUIRE(rdm_import_write_object(&def, nullptr, 0, &size) == RDM_OK, "%s", rdm_import_error());
   std::string text(size + 1, '\0');
-  HARD_REQUIRE(rdm_import_object_write(&def, text.data(), text.size(), &size) == RDM_OK, "%s",
+  HARD_REQUIRE(rdm_import_write_object(&def, text.data(), text.size(), &size) == RDM_OK, "%s",
                rdm_import_error());
   text.pop_back();
   return text;
@@ -69,14 +70,14 @@ std::string written(const rdm_import* i) {
 
 void one_object(const unsigned char* data, size_t size) {
   rdm_import *i = nullptr, *again = nullptr;
-  const rdm_result r = rdm_import_object_text(&i, data, size);
+  const rdm_result r = rdm_import_read_object(&i, data, size);
   if (r != RDM_OK) {
-    HARD_REQUIRE(i == nullptr && rdm_import_error()[0] != 0 && r != RDM_INTERNAL, "%d %s", r,
+    HARD_REQUIRE(i == nullptr && rdm_import_error()[0] != 0 && r != RDM_ERROR_INTERNAL, "%d %s", r,
                  rdm_import_error());
     return;
   }
   const std::string text = written(i);
-  HARD_REQUIRE(rdm_import_object_text(&again, text.data(), text.size()) == RDM_OK, "%s", rdm_import_error());
+  HARD_REQUIRE(rdm_import_read_object(&again, text.data(), text.size()) == RDM_OK, "%s", rdm_import_error());
   HARD_REQUIRE(written(again) == text, "an object does not read back");
   rdm_import_destroy(again);
   rdm_import_destroy(i);
@@ -89,15 +90,15 @@ std::vector<Bytes> seeds() {
                          with_pick(RDM_IMPORT_MJCF, bytes_of(kMjcf))};
   for (const char* text : {kUrdf, kMjcf}) {
     rdm_import* i = nullptr;
-    HARD_REQUIRE(rdm_import_text(&i, text, std::strlen(text), nullptr) == RDM_OK, "%s", rdm_import_error());
+    HARD_REQUIRE(rdm_import_read(&i, text, std::strlen(text), nullptr) == RDM_OK, "%s", rdm_import_error());
     out.push_back(with_pick(RDM_IMPORT_ROBOT, bytes_of(written(def_of(i)))));
     rdm_import_destroy(i);
   }
   for (const char* name : {"mug_with_handle", "banana"}) {
     int32_t object = -1;
     rdm_import* i = nullptr;
-    HARD_REQUIRE(rdm_object_find(name, &object) == RDM_OK && rdm_import_object(&i, object) == RDM_OK, "%s",
-                 name);
+    HARD_REQUIRE(rdm_object_find(name, &object) == RDM_OK && rdm_import_create_object(&i, object) == RDM_OK,
+                 "%s", name);
     out.push_back(with_pick(kObject, bytes_of(written(i))));
     rdm_import_destroy(i);
   }
@@ -116,15 +117,15 @@ void one(const unsigned char* data, size_t size) {
   o.format = format;
   o.skip_meshes = o.mend_inertia = size > 0 && data[0] >= 128;
   rdm_import* i = nullptr;
-  const rdm_result r = rdm_import_text(&i, size ? data + 1 : data, size ? size - 1 : 0, &o);
+  const rdm_result r = rdm_import_read(&i, size ? data + 1 : data, size ? size - 1 : 0, &o);
   if (r != RDM_OK) {
-    HARD_REQUIRE(i == nullptr && rdm_import_error()[0] != 0 && r != RDM_INTERNAL, "%d %s", r,
+    HARD_REQUIRE(i == nullptr && rdm_import_error()[0] != 0 && r != RDM_ERROR_INTERNAL, "%d %s", r,
                  rdm_import_error());
     return;
   }
   const std::string text = written(def_of(i));
   rdm_import* again = nullptr;
-  HARD_REQUIRE(rdm_import_text(&again, text.data(), text.size(), nullptr) == RDM_OK, "%s",
+  HARD_REQUIRE(rdm_import_read(&again, text.data(), text.size(), nullptr) == RDM_OK, "%s",
                rdm_import_error());
   HARD_REQUIRE(written(def_of(again)) == text, "a robot does not read back");
   rdm_import_note note;

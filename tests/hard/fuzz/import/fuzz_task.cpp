@@ -44,9 +44,9 @@ size_t fixed_bytes() {
 
 void one(const unsigned char* data, size_t size) {
   int32_t task = -1;
-  const rdm_result r = rdm_import_task_text(&task, data, size, "f.task");
+  const rdm_result r = rdm_import_read_task(&task, data, size, "f.task");
   if (r != RDM_OK) {
-    HARD_REQUIRE(task == -1 && rdm_import_error()[0] != 0 && r != RDM_INTERNAL, "%d %s", r,
+    HARD_REQUIRE(task == -1 && rdm_import_error()[0] != 0 && r != RDM_ERROR_INTERNAL, "%d %s", r,
                  rdm_import_error());
     HARD_REQUIRE(!std::strchr(rdm_import_error(), '\n'), "%s", rdm_import_error());
     return;
@@ -63,12 +63,12 @@ void one(const unsigned char* data, size_t size) {
     for (int i = 0; i < 5; ++i) {
       HARD_REQUIRE(rdm_pool_baseline(pool, RDM_BASELINE_RANDOM) == RDM_OK, "%s", rdm_last_error());
       if (const rdm_result stepped = rdm_pool_step(pool); stepped != RDM_OK) {
-        HARD_REQUIRE(stepped != RDM_INTERNAL, "%s", rdm_last_error());
+        HARD_REQUIRE(stepped != RDM_ERROR_INTERNAL, "%s", rdm_last_error());
         break;
       }
     }
   rdm_pool_destroy(pool);
-  HARD_REQUIRE(rdm_task_remove(task) == RDM_OK, "%s", rdm_last_error());
+  HARD_REQUIRE(rdm_task_destroy(task) == RDM_OK, "%s", rdm_last_error());
 }
 
 }  // namespace hard

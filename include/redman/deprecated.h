@@ -1,0 +1,409 @@
+/* redman/deprecated.h: the names of 0.1. Each calls, or is, what stands in its warning.
+ *
+ * Included by redman.h unless RDM_NO_DEPRECATED is defined; it goes with 1.1. The symbols stay in
+ * the library as long as RDM_ABI. RDM_NO_DEPRECATION_WARNINGS keeps the compiler quiet. */
+#ifndef REDMAN_DEPRECATED_H
+#define REDMAN_DEPRECATED_H
+#include <redman/agent.h>
+#include <redman/policy.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+  RDM_ARGUMENT RDM_DEPRECATED("RDM_ERROR_ARGUMENT") = RDM_ERROR_ARGUMENT,
+  RDM_RANGE RDM_DEPRECATED("RDM_ERROR_RANGE") = RDM_ERROR_RANGE,
+  RDM_STATE RDM_DEPRECATED("RDM_ERROR_STATE") = RDM_ERROR_STATE,
+  RDM_MEMORY RDM_DEPRECATED("RDM_ERROR_MEMORY") = RDM_ERROR_MEMORY,
+  RDM_IO RDM_DEPRECATED("RDM_ERROR_IO") = RDM_ERROR_IO,
+  RDM_FORMAT RDM_DEPRECATED("RDM_ERROR_FORMAT") = RDM_ERROR_FORMAT,
+  RDM_VERSION_MISMATCH RDM_DEPRECATED("RDM_ERROR_VERSION_MISMATCH") = RDM_ERROR_VERSION_MISMATCH,
+  RDM_UNSUPPORTED RDM_DEPRECATED("RDM_ERROR_UNSUPPORTED") = RDM_ERROR_UNSUPPORTED,
+  RDM_PHYSICS RDM_DEPRECATED("RDM_ERROR_PHYSICS") = RDM_ERROR_PHYSICS,
+  RDM_NOT_FOUND RDM_DEPRECATED("RDM_ERROR_NOT_FOUND") = RDM_ERROR_NOT_FOUND,
+  RDM_CANCELLED RDM_DEPRECATED("RDM_ERROR_CANCELLED") = RDM_ERROR_CANCELLED,
+  RDM_INTERNAL RDM_DEPRECATED("RDM_ERROR_INTERNAL") = RDM_ERROR_INTERNAL,
+  RDM_NUMBER RDM_DEPRECATED("RDM_KIND_NUMBER") = RDM_KIND_NUMBER,
+  RDM_INTEGER RDM_DEPRECATED("RDM_KIND_INTEGER") = RDM_KIND_INTEGER,
+  RDM_FLAG RDM_DEPRECATED("RDM_KIND_FLAG") = RDM_KIND_FLAG,
+  RDM_TEXT RDM_DEPRECATED("RDM_KIND_TEXT") = RDM_KIND_TEXT,
+  RDM_SPHERE RDM_DEPRECATED("RDM_SHAPE_SPHERE") = RDM_SHAPE_SPHERE,
+  RDM_CAPSULE RDM_DEPRECATED("RDM_SHAPE_CAPSULE") = RDM_SHAPE_CAPSULE,
+  RDM_BOX RDM_DEPRECATED("RDM_SHAPE_BOX") = RDM_SHAPE_BOX,
+  RDM_CYLINDER RDM_DEPRECATED("RDM_SHAPE_CYLINDER") = RDM_SHAPE_CYLINDER,
+  RDM_PLANE RDM_DEPRECATED("RDM_SHAPE_PLANE") = RDM_SHAPE_PLANE,
+  RDM_ELLIPSOID RDM_DEPRECATED("RDM_SHAPE_ELLIPSOID") = RDM_SHAPE_ELLIPSOID,
+  RDM_HULL RDM_DEPRECATED("RDM_SHAPE_HULL") = RDM_SHAPE_HULL,
+  RDM_SAMPLE RDM_DEPRECATED("RDM_ACT_SAMPLE") = RDM_ACT_SAMPLE,
+  RDM_MEAN RDM_DEPRECATED("RDM_ACT_MEAN") = RDM_ACT_MEAN
+};
+
+static inline RDM_DEPRECATED("rdm_policy_read")
+rdm_result rdm_policy_load(rdm_policy **out, const void *bytes, size_t size) {
+  return rdm_policy_read(out, bytes, size);
+}
+
+static inline RDM_DEPRECATED("rdm_policy_read_file")
+rdm_result rdm_policy_load_file(rdm_policy **out, const char *path) {
+  return rdm_policy_read_file(out, path);
+}
+
+static inline RDM_DEPRECATED("rdm_policy_tensor_at")
+rdm_result rdm_policy_tensor(const rdm_policy *p, int32_t i, rdm_tensor *out) {
+  return rdm_policy_tensor_at(p, i, out);
+}
+
+static inline RDM_DEPRECATED("rdm_policy_get_tensor")
+rdm_result rdm_policy_tensor_read(const rdm_policy *p, const char *name, float *out, size_t count) {
+  return rdm_policy_get_tensor(p, name, out, count);
+}
+
+static inline RDM_DEPRECATED("rdm_task_default_at")
+rdm_result rdm_task_default(int32_t task, int32_t i, rdm_option *out) {
+  return rdm_task_default_at(task, i, out);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_config_spec")
+rdm_result rdm_pool_spec(const rdm_pool_config *c, rdm_spec *io) {
+  return rdm_pool_config_spec(c, io);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_config_memory")
+rdm_result rdm_pool_memory(const rdm_pool_config *c, size_t *ours, size_t *engines) {
+  return rdm_pool_config_memory(c, ours, engines);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_get_initial_mean")
+rdm_result rdm_pool_initial_mean(const rdm_pool *p, float *action) {
+  return rdm_pool_get_initial_mean(p, action);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_option_at")
+rdm_result rdm_pool_option(const rdm_pool *p, int32_t i, const char **key, char *text) {
+  return rdm_pool_option_at(p, i, key, text);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_get_settings")
+rdm_result rdm_pool_settings(const rdm_pool *p, char *text, size_t capacity, size_t *size) {
+  return rdm_pool_get_settings(p, text, capacity, size);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_get_buffers")
+rdm_result rdm_pool_buffers(const rdm_pool *p, rdm_buffers *io) {
+  return rdm_pool_get_buffers(p, io);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_set_buffers")
+rdm_result rdm_pool_bind(rdm_pool *p, const rdm_buffers *b) {
+  return rdm_pool_set_buffers(p, b);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_write_state")
+rdm_result rdm_pool_get_state(const rdm_pool *p, int32_t env, void *bytes, size_t capacity,
+                              size_t *size) {
+  return rdm_pool_write_state(p, env, bytes, capacity, size);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_read_state")
+rdm_result rdm_pool_set_state(rdm_pool *p, int32_t env, const void *bytes, size_t size) {
+  return rdm_pool_read_state(p, env, bytes, size);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_get_hash")
+rdm_result rdm_pool_hash(const rdm_pool *p, int32_t env, uint64_t *hash) {
+  return rdm_pool_get_hash(p, env, hash);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_config_memory")
+rdm_result rdm_agent_memory(const rdm_agent_config *c, size_t *bytes) {
+  return rdm_agent_config_memory(c, bytes);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_set_option")
+rdm_result rdm_agent_set(rdm_agent *a, const rdm_option *option) {
+  return rdm_agent_set_option(a, option);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_option_at")
+rdm_result rdm_agent_option(const rdm_agent *a, int32_t i, const char **key, char *text) {
+  return rdm_agent_option_at(a, i, key, text);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_get_settings")
+rdm_result rdm_agent_settings(const rdm_agent *a, char *text, size_t capacity, size_t *size) {
+  return rdm_agent_get_settings(a, text, capacity, size);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_tensor_at")
+rdm_result rdm_agent_tensor(const rdm_agent *a, int32_t i, rdm_tensor *out) {
+  return rdm_agent_tensor_at(a, i, out);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_get_tensor")
+rdm_result rdm_agent_tensor_read(const rdm_agent *a, const char *name, float *out, size_t count) {
+  return rdm_agent_get_tensor(a, name, out, count);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_set_tensor")
+rdm_result rdm_agent_tensor_write(rdm_agent *a, const char *name, const float *values,
+                                  size_t count) {
+  return rdm_agent_set_tensor(a, name, values, count);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_write_policy")
+rdm_result rdm_agent_policy(const rdm_agent *a, void *bytes, size_t capacity, size_t *size) {
+  return rdm_agent_write_policy(a, bytes, capacity, size);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_write_policy_file")
+rdm_result rdm_agent_policy_file(const rdm_agent *a, const char *path) {
+  return rdm_agent_write_policy_file(a, path);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_write_state")
+rdm_result rdm_agent_save(const rdm_agent *a, void *bytes, size_t capacity, size_t *size) {
+  return rdm_agent_write_state(a, bytes, capacity, size);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_read_state")
+rdm_result rdm_agent_load(rdm_agent *a, const void *bytes, size_t size) {
+  return rdm_agent_read_state(a, bytes, size);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* REDMAN_DEPRECATED_H */
+
+#if defined(RDM_EXPERIMENTAL) && !defined(REDMAN_DEPRECATED_EXPERIMENTAL_H)
+#define REDMAN_DEPRECATED_EXPERIMENTAL_H
+#include <redman/map.h>
+#include <redman/plan.h>
+#include <redman/record.h>
+#include <redman/task.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+  RDM_REVOLUTE RDM_DEPRECATED("RDM_JOINT_REVOLUTE") = RDM_JOINT_REVOLUTE,
+  RDM_PRISMATIC RDM_DEPRECATED("RDM_JOINT_PRISMATIC") = RDM_JOINT_PRISMATIC,
+  RDM_ROOT_LINK RDM_DEPRECATED("RDM_LINK_ROOT") = RDM_LINK_ROOT,
+  RDM_NO_LINK RDM_DEPRECATED("RDM_LINK_NONE") = RDM_LINK_NONE,
+  RDM_PASSES RDM_DEPRECATED("RDM_FRICTION_PASSES") = RDM_FRICTION_PASSES
+};
+#define RDM_ROBOT_LINKS RDM_MAX_LINKS
+#define RDM_ROBOT_KNOTS RDM_MAX_KNOTS
+#define RDM_OBJECT_SHAPES RDM_MAX_SHAPES
+
+static inline RDM_DEPRECATED("rdm_policy_get_columns")
+rdm_result rdm_policy_columns(const rdm_policy *p, int32_t *columns, int32_t capacity,
+                              int32_t *count) {
+  return rdm_policy_get_columns(p, columns, capacity, count);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_get_sensors")
+rdm_result rdm_pool_sensors(const rdm_pool *p, rdm_sensors *io) {
+  return rdm_pool_get_sensors(p, io);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_get_hull")
+rdm_result rdm_pool_hull(const rdm_pool *p, int32_t i, float *points, int32_t capacity,
+                         int32_t *count) {
+  return rdm_pool_get_hull(p, i, points, capacity, count);
+}
+
+static inline RDM_DEPRECATED("rdm_map_write")
+rdm_result rdm_map_save(const rdm_map *m, int32_t format, void *bytes, size_t capacity,
+                        size_t *size) {
+  return rdm_map_write(m, format, bytes, capacity, size);
+}
+
+static inline RDM_DEPRECATED("rdm_map_write_file")
+rdm_result rdm_map_save_file(const rdm_map *m, const char *path) {
+  return rdm_map_write_file(m, path);
+}
+
+static inline RDM_DEPRECATED("rdm_map_read")
+rdm_result rdm_map_load(rdm_map *m, const void *bytes, size_t size) {
+  return rdm_map_read(m, bytes, size);
+}
+
+static inline RDM_DEPRECATED("rdm_map_read_file")
+rdm_result rdm_map_load_file(rdm_map *m, const char *path) {
+  return rdm_map_read_file(m, path);
+}
+
+static inline RDM_DEPRECATED("rdm_actor_config_memory")
+rdm_result rdm_actor_memory(const rdm_actor_config *c, size_t *bytes) {
+  return rdm_actor_config_memory(c, bytes);
+}
+
+static inline RDM_DEPRECATED("rdm_planner_get_settings")
+rdm_result rdm_planner_settings(const rdm_planner *planner, char *text, size_t capacity,
+                                size_t *size) {
+  return rdm_planner_get_settings(planner, text, capacity, size);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_get_values")
+rdm_result rdm_agent_values(const rdm_agent *a, const float *obs, int32_t rows, float *value,
+                            float *cost) {
+  return rdm_agent_get_values(a, obs, rows, value, cost);
+}
+
+static inline RDM_DEPRECATED("rdm_recording_write_file")
+rdm_result rdm_recording_save_file(const rdm_recording *r, const char *path) {
+  return rdm_recording_write_file(r, path);
+}
+
+static inline RDM_DEPRECATED("rdm_recording_read_file")
+rdm_result rdm_recording_load_file(rdm_recording **out, const char *path) {
+  return rdm_recording_read_file(out, path);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_set_policy")
+rdm_result rdm_agent_load_policy(rdm_agent *a, const rdm_policy *p, double samples) {
+  return rdm_agent_set_policy(a, p, samples);
+}
+
+static inline RDM_DEPRECATED("rdm_robot_destroy")
+rdm_result rdm_robot_remove(int32_t robot) {
+  return rdm_robot_destroy(robot);
+}
+
+static inline RDM_DEPRECATED("rdm_robot_create_mounted")
+rdm_result rdm_robot_mount(int32_t *out, const char *name, int32_t arm, int32_t hand, double yaw,
+                           double adapter, int32_t left) {
+  return rdm_robot_create_mounted(out, name, arm, hand, yaw, adapter, left);
+}
+
+static inline RDM_DEPRECATED("rdm_robot_get_def")
+rdm_result rdm_robot_get(int32_t robot, rdm_robot_def *io) {
+  return rdm_robot_get_def(robot, io);
+}
+
+static inline RDM_DEPRECATED("rdm_robot_get_postures")
+rdm_result rdm_robot_poses_of(int32_t robot, int32_t *commands, double *home, double *folded,
+                              float *closed) {
+  return rdm_robot_get_postures(robot, commands, home, folded, closed);
+}
+
+static inline RDM_DEPRECATED("rdm_object_destroy")
+rdm_result rdm_object_remove(int32_t object) {
+  return rdm_object_destroy(object);
+}
+
+static inline RDM_DEPRECATED("rdm_object_get_def")
+rdm_result rdm_object_get(int32_t object, rdm_object_def *io) {
+  return rdm_object_get_def(object, io);
+}
+
+static inline RDM_DEPRECATED("rdm_scene_get_number")
+rdm_result rdm_scene_number(rdm_scene *scene, const char *key, double *value) {
+  return rdm_scene_get_number(scene, key, value);
+}
+
+static inline RDM_DEPRECATED("rdm_scene_get_text")
+rdm_result rdm_scene_text(rdm_scene *scene, const char *key, const char **text) {
+  return rdm_scene_get_text(scene, key, text);
+}
+
+static inline RDM_DEPRECATED("rdm_scene_get_range")
+rdm_result rdm_scene_range(rdm_scene *scene, const char *key, double *low, double *high) {
+  return rdm_scene_get_range(scene, key, low, high);
+}
+
+static inline RDM_DEPRECATED("rdm_scene_set_contact_law")
+rdm_result rdm_scene_set_contact(rdm_scene *scene, const char *a, const char *b,
+                                 const rdm_contact_law *law) {
+  return rdm_scene_set_contact_law(scene, a, b, law);
+}
+
+static inline RDM_DEPRECATED("rdm_scene_joint_at")
+rdm_result rdm_scene_joint(rdm_scene *scene, int32_t i, rdm_joint *out) {
+  return rdm_scene_joint_at(scene, i, out);
+}
+
+static inline RDM_DEPRECATED("rdm_scene_add_touch")
+rdm_result rdm_scene_touch(rdm_scene *scene, const char *a, const char *b, int32_t *group) {
+  return rdm_scene_add_touch(scene, a, b, group);
+}
+
+static inline RDM_DEPRECATED("rdm_world_get_joints")
+rdm_result rdm_world_joints(const rdm_world *world, rdm_joints *io) {
+  return rdm_world_get_joints(world, io);
+}
+
+static inline RDM_DEPRECATED("rdm_world_get_link")
+rdm_result rdm_world_link(const rdm_world *world, int32_t link, rdm_motion *out) {
+  return rdm_world_get_link(world, link, out);
+}
+
+static inline RDM_DEPRECATED("rdm_world_get_base")
+rdm_result rdm_world_base(const rdm_world *world, int32_t robot, rdm_motion *out) {
+  return rdm_world_get_base(world, robot, out);
+}
+
+static inline RDM_DEPRECATED("rdm_world_get_body")
+rdm_result rdm_world_body(const rdm_world *world, int32_t body, rdm_motion *out) {
+  return rdm_world_get_body(world, body, out);
+}
+
+static inline RDM_DEPRECATED("rdm_world_get_shape")
+rdm_result rdm_world_shape(const rdm_world *world, int32_t shape, double pose[7]) {
+  return rdm_world_get_shape(world, shape, pose);
+}
+
+static inline RDM_DEPRECATED("rdm_world_get_sensor")
+rdm_result rdm_world_sensor(const rdm_world *world, int32_t sensor, double force[3],
+                            double torque[3]) {
+  return rdm_world_get_sensor(world, sensor, force, torque);
+}
+
+static inline RDM_DEPRECATED("rdm_world_get_touch")
+rdm_result rdm_world_touch(const rdm_world *world, int32_t group, int32_t *pairs, double *force) {
+  return rdm_world_get_touch(world, group, pairs, force);
+}
+
+static inline RDM_DEPRECATED("rdm_world_get_contacts")
+rdm_result rdm_world_contacts(const rdm_world *world, rdm_contact *out, int32_t capacity,
+                              int32_t *count) {
+  return rdm_world_get_contacts(world, out, capacity, count);
+}
+
+static inline RDM_DEPRECATED("rdm_world_get_overlap")
+rdm_result rdm_world_overlap(rdm_world *world, int32_t body, double *depth) {
+  return rdm_world_get_overlap(world, body, depth);
+}
+
+static inline RDM_DEPRECATED("rdm_world_get_gravity")
+rdm_result rdm_world_gravity(const rdm_world *world, int32_t robot, double *efforts, int32_t n) {
+  return rdm_world_get_gravity(world, robot, efforts, n);
+}
+
+static inline RDM_DEPRECATED("rdm_world_set_commands")
+rdm_result rdm_world_command(rdm_world *world, int32_t robot, const double *commands, int32_t n) {
+  return rdm_world_set_commands(world, robot, commands, n);
+}
+
+static inline RDM_DEPRECATED("rdm_world_set_factors")
+rdm_result rdm_world_scale(rdm_world *world, const rdm_factor *factors, int32_t count) {
+  return rdm_world_set_factors(world, factors, count);
+}
+
+static inline RDM_DEPRECATED("rdm_task_create")
+rdm_result rdm_task_register(int32_t *out, const rdm_task_def *def) {
+  return rdm_task_create(out, def);
+}
+
+static inline RDM_DEPRECATED("rdm_task_destroy")
+rdm_result rdm_task_remove(int32_t task) {
+  return rdm_task_destroy(task);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* RDM_EXPERIMENTAL */
