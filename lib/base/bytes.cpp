@@ -1,7 +1,5 @@
 #include "base/bytes.hpp"
 
-#include <array>
-
 #include "base/error.hpp"
 
 namespace rdm {
@@ -9,20 +7,6 @@ namespace {
 
 constexpr uint32_t kByteOrder = 0x01020304u;
 constexpr size_t kFileHeader = 8 + 4 + 4 + 8, kSectionHeader = 4 + 4 + 8;
-
-// Four bytes at a time: table k has what a byte does with k more behind it.
-constexpr std::array<std::array<uint32_t, 256>, 4> make_crc_tables() {
-  std::array<std::array<uint32_t, 256>, 4> t{};
-  for (uint32_t i = 0; i < 256; ++i) {
-    uint32_t c = i;
-    for (int k = 0; k < 8; ++k) c = (c & 1u) ? 0xEDB88320u ^ (c >> 1) : c >> 1;
-    t[0][i] = c;
-  }
-  for (size_t k = 1; k < 4; ++k)
-    for (size_t i = 0; i < 256; ++i) t[k][i] = t[0][t[k - 1][i] & 0xFFu] ^ (t[k - 1][i] >> 8);
-  return t;
-}
-constexpr auto kCrc = make_crc_tables();
 
 template <class T>
 T load(const unsigned char* p) {
@@ -32,18 +16,6 @@ T load(const unsigned char* p) {
 }
 
 }  // namespace
-
-uint32_t crc32(const void* data, size_t size, uint32_t crc) {
-  const auto* p = static_cast<const unsigned char*>(data);
-  crc = ~crc;
-  const auto at = [&](uint32_t k) { return static_cast<uint32_t>(p[k]) << 8 * k; };
-  for (; size >= 4; p += 4, size -= 4) {
-    crc ^= at(0) | at(1) | at(2) | at(3);
-    crc = kCrc[3][crc & 0xFFu] ^ kCrc[2][crc >> 8 & 0xFFu] ^ kCrc[1][crc >> 16 & 0xFFu] ^ kCrc[0][crc >> 24];
-  }
-  for (; size > 0; ++p, --size) crc = kCrc[0][(crc ^ *p) & 0xFFu] ^ (crc >> 8);
-  return ~crc;
-}
 
 void Writer::text(const char* s) {
   const size_t n = std::strlen(s);

@@ -10,6 +10,7 @@
 
 namespace rdm {
 
+// CRC-32, as of zip; `crc` is that of what came before (crc.cpp).
 uint32_t crc32(const void* data, size_t size, uint32_t crc = 0);
 
 // Writes into [data, data + capacity), or only counts when data is null or the end is passed: size()

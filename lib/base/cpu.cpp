@@ -7,6 +7,7 @@ Cpu ask() {
   Cpu c;
 #if defined(__x86_64__)
   __builtin_cpu_init();  // a host's static objects may come here before the runtime has
+  c.carryless = __builtin_cpu_supports("pclmul") && __builtin_cpu_supports("sse4.1");
   c.avx2 = __builtin_cpu_supports("avx2");
   c.v3 = c.avx2 && __builtin_cpu_supports("fma");
   c.v4 = c.v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&

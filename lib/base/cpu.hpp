@@ -17,6 +17,7 @@ inline constexpr const char* kV3Isa = "x86-64-v3";
 inline constexpr const char* kV4Isa = "x86-64-v4";
 
 struct Cpu {
+  bool carryless = false;  // PCLMULQDQ and SSE4.1
   bool avx2 = false;
   bool v3 = false;  // AVX2 and FMA
   bool v4 = false;  // these, and AVX-512 F, BW, DQ and VL

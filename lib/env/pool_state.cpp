@@ -137,7 +137,7 @@ void Pool::get_state(int32_t env, Writer& out) const {
   out.text(m.info->name);
   out.value(static_cast<int32_t>(m.slots[0].world->engine()));
   out.value(m.options_hash);
-  out.value(layout_hash(*m.task));
+  out.value(m.layout);
   out.value(range.count());
   out.end_section();
   out.begin_section("WRLD");
@@ -168,7 +168,7 @@ int32_t Pool::Impl::open_state(Reader& in, int32_t worlds, int32_t other, uint32
     fail(Code::kFormat, "state: of another physics engine");
   if (in.value<uint64_t>() != options_hash)
     fail(Code::kFormat, "state: of a pool of task %s with other options", info->name);
-  if (in.value<uint64_t>() != layout_hash(*task)) fail(Code::kFormat, "state: of another layout");
+  if (in.value<uint64_t>() != layout) fail(Code::kFormat, "state: of another layout");
   const auto count = in.value<int32_t>();
   if (count != worlds && count != other)
     fail(Code::kFormat, "state: it holds %d worlds, %d are to be set", count, worlds);

@@ -71,6 +71,25 @@ TEST(Crc32, CheckValueAndChaining) {
     EXPECT_EQ(crc32("123456789" + cut, 9 - cut, crc32("123456789", cut)), 0xCBF43926u);
 }
 
+// By tables or by products: the remainder bit by bit, for any length, place and start.
+TEST(Bytes, ChecksumIsTheSameForEveryLength) {
+  const auto plain = [](const unsigned char* p, size_t n, uint32_t crc) {
+    crc = ~crc;
+    for (size_t i = 0; i < n; ++i) {
+      crc ^= p[i];
+      for (int k = 0; k < 8; ++k) crc = (crc & 1u) ? 0xEDB88320u ^ (crc >> 1) : crc >> 1;
+    }
+    return ~crc;
+  };
+  unsigned char bytes[1100];
+  uint32_t x = 1;
+  for (unsigned char& b : bytes) b = static_cast<unsigned char>((x = x * 1664525u + 1013904223u) >> 24);
+  for (size_t n = 0; n <= 1024; n += n < 300 ? 1 : 37)
+    for (const size_t from : {0, 1, 7, 61})
+      for (const uint32_t start : {0u, 0xdeadbeefu})
+        ASSERT_EQ(crc32(bytes + from, n, start), plain(bytes + from, n, start)) << n << " from " << from;
+}
+
 TEST(Bytes, RoundTripInAnyOrder) {
   EXPECT_EQ(code_of(sample()), Code::kOk);
 }
