@@ -93,6 +93,14 @@ rdm_result rdm_check_abi(uint32_t abi, uint32_t version) {
   });
 }
 
+rdm_result rdm_check_experimental(uint32_t version) {
+  return call([&] {
+    if (version / 1000 != RDM_VERSION / 1000)
+      fail(Code::kVersion, "version: the header has %u, the library %d: experimental functions differ",
+           version, RDM_VERSION);
+  });
+}
+
 rdm_result rdm_build_info(rdm_build* io) {
   return call([&] {
     check_out(io, kFirstBuildSize, "io");

@@ -314,7 +314,8 @@ def headers() -> str:
     """The text of the public headers of libredman, as redman.h includes them: the stable ones first."""
     umbrella = (INCLUDE / "redman.h").read_text(encoding="utf-8")
     names = [n for n in re.findall(r"^#include <redman/(\w+\.h)>", umbrella, re.M) if n != "deprecated.h"]
-    return "\n".join((INCLUDE / name).read_text(encoding="utf-8") for name in names)
+    text = "\n".join((INCLUDE / name).read_text(encoding="utf-8") for name in names)
+    return re.sub(r"^#ifdef __cplusplus\n/\*.*?\*/\ntemplate.*?^#else\n", "#if 0\n", text, flags=re.M | re.S)
 
 
 def generate(text: str) -> str:

@@ -26,6 +26,21 @@
 #endif
 
 #ifdef __cplusplus
+/* What RDM_INIT is in C++, where a list of initialisers may not leave members out. */
+template <class T>
+inline T rdm_sized() {
+  T x = T();
+  x.struct_size = static_cast<uint32_t>(sizeof(T));
+  return x;
+}
+/* A struct that says its size, all else 0: `rdm_buffers b = RDM_INIT(rdm_buffers);`. For those that
+ * have no _init function; those that have one have defaults that are not 0. */
+#define RDM_INIT(T) rdm_sized<T>()
+#else
+#define RDM_INIT(T) {.struct_size = (uint32_t)sizeof(T)}
+#endif
+
+#ifdef __cplusplus
 extern "C" {
 #endif
 
@@ -70,6 +85,10 @@ RDM_API uint32_t rdm_version(void);  /* RDM_VERSION of the library that runs */
 RDM_API uint32_t rdm_features(void); /* RDM_FEATURE_*: what this build has */
 /* VERSION_MISMATCH unless the library has this ABI and at least this version. */
 RDM_API rdm_result rdm_check_abi(uint32_t abi, uint32_t version);
+/* For who calls experimental functions: VERSION_MISMATCH unless major and minor of `version`, the
+ * header's RDM_VERSION, are the library's. With ELF's symbol versions the loader has looked; who
+ * finds functions by name at run time, or runs where symbols have no versions, asks here. */
+RDM_API rdm_result rdm_check_experimental(uint32_t version);
 typedef struct rdm_build { /* what this library was made of */
   uint32_t struct_size;   /* in: bytes                                              */
   uint32_t abi;           /* RDM_ABI of the library                                 */

@@ -20,6 +20,10 @@ TEST(Library, HeaderAndLibraryAreCompared) {
   EXPECT_EQ(rdm_check_abi(RDM_ABI, RDM_VERSION + 1), RDM_ERROR_VERSION_MISMATCH);
   EXPECT_EQ(rdm_check_abi(RDM_ABI + 1, RDM_VERSION), RDM_ERROR_VERSION_MISMATCH);
   EXPECT_NE(std::string(rdm_last_error()).find("abi"), std::string::npos);
+  EXPECT_EQ(rdm_check_experimental(RDM_VERSION), RDM_OK);
+  EXPECT_EQ(rdm_check_experimental(RDM_VERSION / 1000 * 1000 + 999), RDM_OK);  // another patch
+  EXPECT_EQ(rdm_check_experimental(RDM_VERSION + 1000), RDM_ERROR_VERSION_MISMATCH);
+  EXPECT_EQ(rdm_check_experimental(RDM_VERSION - 1000), RDM_ERROR_VERSION_MISMATCH);
 }
 
 TEST(Library, NearestNamesAreThoseOfItsOwnTexts) {

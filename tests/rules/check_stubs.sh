@@ -25,7 +25,7 @@ unknown=$(LC_ALL=C comm -23 "$work/00" "$work/all")
 [ -z "$unknown" ] || { echo "not in the header: $unknown"; status=1; }
 # what is in every build has no half; nothing else is missing from the stubs of a build with neither
 always=$(LC_ALL=C comm -13 "$work/00" "$work/all" | tr '\n' ' ')
-expected='rdm_agent_config_init rdm_build_info rdm_check_abi rdm_clone_config_init rdm_fail rdm_features rdm_init rdm_last_error rdm_nearest_names rdm_pool_config_init rdm_pretrain_config_init rdm_result_string rdm_rotation rdm_shutdown rdm_version '
+expected='rdm_agent_config_init rdm_build_info rdm_check_abi rdm_check_experimental rdm_clone_config_init rdm_fail rdm_features rdm_init rdm_last_error rdm_nearest_names rdm_pool_config_init rdm_pretrain_config_init rdm_result_string rdm_rotation rdm_shutdown rdm_version '
 [ "$always" = "$expected" ] || { echo "in every build: $always"; status=1; }
 # a function that both builds with one half lack takes a pool and an agent
 both=$(LC_ALL=C comm -12 "$work/01" "$work/10" | tr '\n' ' ')

@@ -3174,6 +3174,13 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"abi": c_uint32, "version": c_uint32},
         {}, False,
         """VERSION_MISMATCH unless the library has this ABI and at least this version."""),
+    "rdm_check_experimental": Function(
+        c_int32, {"version": c_uint32},
+        {}, False,
+        """For who calls experimental functions: VERSION_MISMATCH unless major and minor of `version`, the
+        header's RDM_VERSION, are the library's. With ELF's symbol versions the loader has looked; who
+        finds functions by name at run time, or runs where symbols have no versions, asks here.
+        """),
     "rdm_build_info": Function(
         c_int32, {"io": POINTER(rdm_build)},
         {}, False,

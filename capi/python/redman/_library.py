@@ -43,7 +43,8 @@ def _load() -> ctypes.CDLL:
         except AttributeError as error:
             tried.append(f"{path}: older than this package ({error})")
             continue
-        if library.rdm_check_abi(_abi.RDM_ABI, _abi.RDM_VERSION):
+        if (library.rdm_check_abi(_abi.RDM_ABI, _abi.RDM_VERSION)
+                or library.rdm_check_experimental(_abi.RDM_VERSION)):
             tried.append(f"{path}: {library.rdm_last_error().decode(errors='replace')}")
             continue
         return library
