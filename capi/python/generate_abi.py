@@ -314,8 +314,7 @@ def headers() -> str:
     """The text of the public headers of libredman, as redman.h includes them: the stable ones first."""
     umbrella = (INCLUDE / "redman.h").read_text(encoding="utf-8")
     names = [n for n in re.findall(r"^#include <redman/(\w+\.h)>", umbrella, re.M) if n != "deprecated.h"]
-    text = "\n".join((INCLUDE / name).read_text(encoding="utf-8") for name in names)
-    return re.sub(r"^#ifdef __cplusplus\n/\*.*?\*/\ntemplate.*?^#else\n", "#if 0\n", text, flags=re.M | re.S)
+    return "\n".join((INCLUDE / name).read_text(encoding="utf-8") for name in names)
 
 
 def generate(text: str) -> str:

@@ -86,7 +86,7 @@ in_behind { in_behind = !/\*\//; print escaped($0); next }
     sub(/ *\*\/$/, "", behind)
     behind = escaped(behind)
   }
-  starts = /^(RDM_API|typedef|enum|#define|template)/ || (depth > 0 && !/^}/)
+  starts = /^(RDM_API|typedef|enum|#define)/ || (depth > 0 && !/^}/)
   if (statement) starts = 0
   if (/^enum.*};/ && behind != "") { print "/** " behind " */"; print; kept = ""; next }
   if (starts && /\{ *$/) {  # what stands behind the brace of a struct or enum is about all of it

@@ -5,9 +5,8 @@
 // REDMAN_INCLUDE (the folder of the headers) and REDMAN_LIBRARY say where they are, when not where they were installed.
 'use strict';
 const koffi = require('koffi');
-const folder = process.env.REDMAN_INCLUDE || '/usr/local/include/redman';
-const read = (name) => require('fs').readFileSync(`${folder}/${name}.h`, 'utf8');
-const header = ['base', 'policy', 'pool', 'agent'].map(read).join('\n').replace(/\/\*[^]*?\*\//g, '');
+const header = ['base', 'policy', 'pool', 'agent'].map((name) => require('fs').readFileSync(
+  `${process.env.REDMAN_INCLUDE || '/usr/local/include/redman'}/${name}.h`, 'utf8')).join('\n').replace(/\/\*[^]*?\*\//g, '');
 const library = koffi.load(process.env.REDMAN_LIBRARY || 'libredman.so.1');
 
 // Constants and functions by the header's names.

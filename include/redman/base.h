@@ -26,18 +26,11 @@
 #endif
 
 #ifdef __cplusplus
-/* What RDM_INIT is in C++, where a list of initialisers may not leave members out. */
-template <class T>
-inline T rdm_sized() {
-  T x = T();
-  x.struct_size = static_cast<uint32_t>(sizeof(T));
-  return x;
-}
 /* A struct that says its size, all else 0: `rdm_buffers b = RDM_INIT(rdm_buffers);`. For those that
  * have no _init function; those that have one have defaults that are not 0. */
-#define RDM_INIT(T) rdm_sized<T>()
+#define RDM_INIT(T) ([]() -> T { T x = T(); x.struct_size = uint32_t(sizeof(T)); return x; }())
 #else
-#define RDM_INIT(T) {.struct_size = (uint32_t)sizeof(T)}
+#define RDM_INIT(T) {.struct_size = (uint32_t)sizeof(T)} /* the same; C++ has no such list */
 #endif
 
 #ifdef __cplusplus
