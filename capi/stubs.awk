@@ -1,7 +1,8 @@
 # Reads the public headers and writes, for the halves that a build leaves out, the functions that say so.
 # -v sim=0|1 -v learn=0|1 -v policy=0|1: which halves there are, and whether frozen policies run. A function belongs to a half by its name; one of agents that
 # takes a pool needs both; recordings are in either. The two config_init functions are in every build, and what has no half is too.
-# -v names=1: the names alone of what a build without such functions leaves out, config_init and the like among them.
+# -v names=1: the names alone of what a build without such functions leaves out, config_init and the like among them; lists of
+# symbols may be given too.
 function half_of(name, parameters) {
   if (names && name ~ /^rdm_(clone|pretrain)_/) return learn ? "" : "learning"
   if (names && name ~ /^rdm_(fail|rotation)$/) return sim ? "" : "simulation"
@@ -48,6 +49,7 @@ function print_head() {
   print "  return rdm::capi::call_with(c, [half] { rdm::capi::left_out(half); });\n}"
 }
 { sub(/\r$/, "") }
+names && /^rdm_[a-z_0-9]+$/ && half_of($0, "") != "" { print; next }
 statement == "" && /^RDM_API/ { statement = " " }
 statement != "" {
   statement = statement " " $0

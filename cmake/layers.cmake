@@ -61,22 +61,18 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_
 set(RDM_LEFT_OUT "")
 find_program(RDM_AWK NAMES mawk gawk awk REQUIRED)
 if(NOT REDMAN_STUBS)
-  file(STRINGS ${PROJECT_SOURCE_DIR}/capi/redman_old.symbols old REGEX "^rdm_")
-  foreach(half "SIM;task|pool" "LEARN;agent" "POLICY;policy")
-    list(GET half 1 groups)
-    list(GET half 0 half)
+  foreach(half SIM LEARN POLICY)
     string(TOLOWER ${half} name)
     if(REDMAN_${half})
       list(APPEND halves -v ${name}=1)
-      list(FILTER old EXCLUDE REGEX "^rdm_(${groups})_")
     else()
       list(APPEND halves -v ${name}=0)
     endif()
   endforeach()
   execute_process(COMMAND ${RDM_AWK} ${halves} -v names=1 -f ${PROJECT_SOURCE_DIR}/capi/stubs.awk ${RDM_HEADERS}
+                          ${PROJECT_SOURCE_DIR}/capi/redman_old.symbols
                   OUTPUT_VARIABLE RDM_LEFT_OUT COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX MATCHALL "rdm_[a-z_0-9]+" RDM_LEFT_OUT "${RDM_LEFT_OUT}")
-  list(APPEND RDM_LEFT_OUT ${old})
 endif()
 
 # The source file, written from the public headers, with the functions of the halves that are left out.

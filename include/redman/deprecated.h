@@ -1,4 +1,4 @@
-/* redman/deprecated.h: the names of 0.1. Each calls, or is, what stands in its warning.
+/* redman/deprecated.h: the names of 0.1. Each is, or calls, what its warning names.
  *
  * Included by redman.h unless RDM_NO_DEPRECATED is defined; it goes with 1.1. The symbols stay in
  * the library as long as RDM_ABI. RDM_NO_DEPRECATION_WARNINGS keeps the compiler quiet. */

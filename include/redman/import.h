@@ -45,9 +45,9 @@ enum rdm_import_format { /* of a file; AUTO looks at the first element */
   RDM_IMPORT_ROBOT = 3
 };
 enum rdm_note_kind { /* of a note */
-  RDM_NOTE_DROPPED = 0, /* stands in the file, not in the robot  */
-  RDM_NOTE_CHANGED = 1, /* stands in the robot in another form   */
-  RDM_NOTE_GUESSED = 2, /* does not stand in the file            */
+  RDM_NOTE_DROPPED = 0, /* in the file, not in the robot         */
+  RDM_NOTE_CHANGED = 1, /* in the robot, in another form         */
+  RDM_NOTE_GUESSED = 2, /* not in the file                       */
   RDM_NOTE_CHECK = 3    /* found by rdm_import_check             */
 };
 /* how a file is read; a .robot file takes no root, roles, density or slide_range: ARGUMENT */

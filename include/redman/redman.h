@@ -40,8 +40,8 @@
  *     function. ARGUMENT for less than the first version had or more than 4096, and for a reserved
  *     member that is not 0.
  *   - Strings that are returned live as long as their handle (those of tasks, algorithms, robots
- *     and objects: for ever, also where these are removed; equal ones are kept once). UTF-8. What
- *     is no UTF-8 in a name that was given stands in a text as \xNN.
+ *     and objects: for ever, also where these are removed; equal ones are kept once). UTF-8; what
+ *     is no UTF-8 in a given name is printed as \xNN.
  *   - Arrays are row-major. SI units, radians. Quaternions are (x, y, z, w) here and in
  *     observations.
  *   - Same seed, same bytes: for any number of threads; worlds on every little-endian machine whose

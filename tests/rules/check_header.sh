@@ -8,7 +8,7 @@ strict='-Wall -Wextra -pedantic -Werror -fsyntax-only'
 try() { # try COMPILER LANGUAGE HEADER DIALECT
   padded=-Wpadded
   case $3 in *.hpp) padded= ;; esac
-  case $3 in redman.*) macros='RDM_STABLE_ONLY RDM_EXPERIMENTAL' ;; *) macros=RDM_STABLE_ONLY ;; esac
+  case $3 in redman.* | deprecated.h) macros='RDM_STABLE_ONLY RDM_EXPERIMENTAL' ;; *) macros=RDM_STABLE_ONLY ;; esac
   for macro in $macros; do
     # shellcheck disable=SC2086
     printf '#include <redman/%s>\n' "$3" | "$1" -x "$2" "-std=$4" "-D$macro" "-I$root/include" $strict $padded - ||
