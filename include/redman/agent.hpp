@@ -46,18 +46,11 @@ class Agent {
     return text_of(rdm_agent_get_settings, static_cast<const rdm_agent*>(get()));
   }
   // The bytes of a policy file.
-  Bytes policy() const { return bytes_of(rdm_agent_write_policy); }
-  Bytes save() const { return bytes_of(rdm_agent_write_state); }
+  Bytes policy() const { return bytes_of(rdm_agent_write_policy, static_cast<const rdm_agent*>(get())); }
+  Bytes save() const { return bytes_of(rdm_agent_write_state, static_cast<const rdm_agent*>(get())); }
   void load(const Bytes& bytes) { check(rdm_agent_read_state(get(), bytes.data(), bytes.size())); }
 
  private:
-  Bytes bytes_of(rdm_result (*write)(const rdm_agent*, void*, size_t, size_t*)) const {
-    size_t size = 0;
-    check(write(get(), nullptr, 0, &size));
-    Bytes bytes(size);
-    check(write(get(), bytes.data(), bytes.size(), &size));
-    return bytes;
-  }
   Handle<rdm_agent, rdm_agent_destroy> handle_;
 };
 

@@ -96,6 +96,16 @@ std::string text_of(rdm_result (*write)(const T*, char*, size_t, size_t*), const
   return text;
 }
 
+// Bytes that are asked for their size first: a state, a policy file.
+template <class T>
+Bytes bytes_of(rdm_result (*write)(const T*, void*, size_t, size_t*), const T* handle) {
+  size_t size = 0;
+  check(write(handle, nullptr, 0, &size));
+  Bytes bytes(size);
+  check(write(handle, bytes.data(), bytes.size(), &size));
+  return bytes;
+}
+
 // A struct with struct_size set and everything else 0.
 template <class T>
 T sized() {

@@ -42,13 +42,7 @@ class Actor {
   void reset(const uint8_t* terminated = nullptr, const uint8_t* truncated = nullptr) {
     check(rdm_actor_reset(get(), terminated, truncated));
   }
-  Bytes state() const {
-    size_t size = 0;
-    check(rdm_actor_write_state(get(), nullptr, 0, &size));
-    Bytes bytes(size);
-    check(rdm_actor_write_state(get(), bytes.data(), bytes.size(), &size));
-    return bytes;
-  }
+  Bytes state() const { return bytes_of(rdm_actor_write_state, static_cast<const rdm_actor*>(get())); }
   void set_state(const Bytes& bytes) { check(rdm_actor_read_state(get(), bytes.data(), bytes.size())); }
 
  private:
@@ -88,13 +82,7 @@ class Planner {
   std::string settings() const {
     return text_of(rdm_planner_get_settings, static_cast<const rdm_planner*>(get()));
   }
-  Bytes state() const {
-    size_t size = 0;
-    check(rdm_planner_write_state(get(), nullptr, 0, &size));
-    Bytes bytes(size);
-    check(rdm_planner_write_state(get(), bytes.data(), bytes.size(), &size));
-    return bytes;
-  }
+  Bytes state() const { return bytes_of(rdm_planner_write_state, static_cast<const rdm_planner*>(get())); }
   void set_state(const Bytes& bytes) { check(rdm_planner_read_state(get(), bytes.data(), bytes.size())); }
 
  private:
