@@ -298,6 +298,7 @@ class CleanHouse final : public PropTask {
     const int32_t chair = kChair;
     scan_scene(scene(), false, &chair, 1, cameras.data(), static_cast<int32_t>(cameras.size()), kMapRays,
                map_.get());
+    map_->end_inserts();
     map_->box({-kMapReach, -kMapReach, -kMapReach}, {kMapReach, kMapReach, kMapReach},
               [this](const OccupiedVoxel& v) {
                 for (int k = 0; k < 3; ++k) {

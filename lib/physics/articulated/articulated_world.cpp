@@ -61,10 +61,7 @@ ArticulatedWorld::ArticulatedWorld(const Scene& scene, Arena& arena, Articulated
   state_.free_bodies = arena.make<FreeBody>(bodies);
   state_.pushes = arena.make<Wrench>(links + bases + bodies);
   state_.contact_pairs = arena.make<int32_t>(contacts);
-  state_.impulses = arena.make<Vec3>(contacts);
   state_.warm = arena.make<WarmPoint>(contacts);
-  state_.next_warm = arena.make<WarmPoint>(contacts);
-  state_.match = arena.make<int32_t>(contacts);
   carve_sleep(arena);
   state_.start_bodies = arena.make<Motion>(bodies);
   state_.start_bases = arena.make<Motion>(bases);
@@ -95,13 +92,12 @@ void ArticulatedWorld::carve_sleep(Arena& arena) {
              contacts = static_cast<size_t>(scene_->def.solver.contacts_max);
   if (!sleeps()) return;
   state_.sleep = arena.make<BodySleep>(bodies);
-  state_.kept = arena.make<Contact>(contacts);
+  state_.kept = arena.make<KeptPoint>(contacts);
   state_.kept_pairs = arena.make<int32_t>(contacts);
   state_.kept_warm = arena.make<WarmPoint>(contacts);
   size_t listed = 0;
   for (const PairRun& run : scene_->runs) listed += run.shape < 0 ? static_cast<size_t>(run.count) : 0;
-  state_.searched = arena.make<int32_t>(listed);
-  state_.resting = arena.make<int32_t>(listed);
+  state_.listed = arena.make<int32_t>(listed);
   state_.body_bounds = arena.make<Bound>(static_cast<size_t>(scene_->num_body_shapes));
   state_.parent = arena.make<int32_t>(bodies);
   state_.island_marks = arena.make<uint8_t>(bodies);
@@ -280,7 +276,7 @@ void ArticulatedWorld::recover() {
 
 void ArticulatedWorld::end_step() {
   status_ = state_.status;
-  num_contacts_ = report_contacts(&state_);
+  num_contacts_ = report_contacts(*scene_, &state_);
   if (state_.diverged) recover();
   clear_pushes();
 }
@@ -447,10 +443,10 @@ void ArticulatedWorld::save(Writer& out) const {
   out.bytes(bodies_, static_cast<size_t>(scene_->num_bodies) * sizeof(Motion));
   out.bytes(state_.persistent, persistent_bytes(*scene_));
   // as many points as there can be, so that the size never changes
-  const int32_t num_warm = state_.num_kept > 0 ? all_warm(state_, state_.next_warm) : state_.num_warm;
-  const WarmPoint *warm = state_.num_kept > 0 ? state_.next_warm : state_.warm, none{};
+  const int32_t num_warm = state_.num_warm + state_.num_kept;
   out.value(num_warm);
-  for (int32_t i = 0; i < scene_->def.solver.contacts_max; ++i) out.value(i < num_warm ? warm[i] : none);
+  each_warm(state_, [&](const WarmPoint& point) { out.value(point); });
+  for (int32_t i = num_warm; i < scene_->def.solver.contacts_max; ++i) out.value(WarmPoint{});
   if (sleeps()) out.bytes(state_.sleep, static_cast<size_t>(scene_->num_bodies) * sizeof(BodySleep));
   save_extras(out);
 }
@@ -486,7 +482,8 @@ void ArticulatedWorld::copy(const World& world) {
   const auto& other = static_cast<const ArticulatedWorld&>(world);
   if (copy_rows(other)) own_constants();
   std::memcpy(state_.persistent, other.state_.persistent, persistent_bytes(*scene_));
-  state_.num_warm = all_warm(other.state_, state_.warm);
+  state_.num_warm = 0;
+  each_warm(other.state_, [&](const WarmPoint& point) { state_.warm[state_.num_warm++] = point; });
   if (sleeps()) std::copy_n(other.state_.sleep, scene_->num_bodies, state_.sleep);
   for (int32_t i = 0; i < scene_->num_bodies; ++i) state_.free_bodies[i].R = other.state_.free_bodies[i].R;
   std::fill_n(fresh_, scene_->num_links, uint8_t{0});

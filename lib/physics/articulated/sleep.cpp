@@ -60,13 +60,13 @@ Float4 place_of(const WarmPoint& point) {
   return p;
 }
 
-// For each point the nearest of the last substep's points of the same pair, measured from shape a's centre
-// (points slide with it), the first of those as near; -1: none. Both lists are in the order of the pairs.
-void match_points(const WarmPoint* now, int32_t count, const WarmPoint* before, int32_t num_before,
-                  int32_t* match) {
+// Each point starts from the impulse of the nearest of the last substep's points of the same pair, measured from
+// shape a's centre (points slide with it), the first of those as near; NaN: there is none. Both lists are in the
+// order of the pairs.
+void match_points(WarmPoint* now, int32_t count, const WarmPoint* before, int32_t num_before) {
   for (int32_t i = 0, first = 0, last = 0; i < count;) {
     const int32_t pair = now[i].pair, begin = i;
-    while (i < count && now[i].pair == pair) match[i++] = -1;
+    while (i < count && now[i].pair == pair) std::fill_n(now[i++].impulse, 3, NAN);
     for (first = last; first < num_before && before[first].pair < pair;) ++first;
     for (last = first; last < num_before && before[last].pair == pair;) ++last;
     float nearest[kMaxPairPoints];
@@ -86,7 +86,7 @@ void match_points(const WarmPoint* now, int32_t count, const WarmPoint* before, 
           const int l = std::countr_zero(bits);
           if (!(square[l] < least)) continue;
           least = square[l];
-          match[m] = k + l;
+          std::copy_n(before[k + l].impulse, 3, now[m].impulse);
         }
       }
     }
@@ -94,10 +94,12 @@ void match_points(const WarmPoint* now, int32_t count, const WarmPoint* before, 
 }
 
 // Kept points are points like all others again.
-void release_kept(WorldState* s) {
+void release_kept(WarmPoint* work, WorldState* s) {
   if (s->num_kept == 0) return;
-  s->num_warm = all_warm(*s, s->next_warm);
-  std::swap(s->warm, s->next_warm);
+  int32_t count = 0;
+  each_warm(*s, [&](const WarmPoint& point) { work[count++] = point; });
+  std::copy_n(work, count, s->warm);
+  s->num_warm = count;
   s->num_kept = 0;
 }
 
@@ -113,7 +115,6 @@ void unite(const Scene& scene, int32_t a, int32_t b, WorldState* s) {
 // pair first found now keeps what is found, without a force. What is kept follows from poses and from
 // impulses as a state stores them, and does not change when it is kept again. False: there is no room.
 bool keep_points(const Scene& scene, const Bound* bounds, int32_t num_found, WorldState* s) {
-  const double inv_h = 1 / scene.def.solver.h;
   s->num_kept = 0;
   for (int32_t begin = 0, end = 0, at = 0; begin < num_found; begin = end) {
     const int32_t pair = s->contact_pairs[begin];
@@ -127,7 +128,6 @@ bool keep_points(const Scene& scene, const Bound* bounds, int32_t num_found, Wor
     const float* center = bounds[s->contacts[begin].shape_a].center;
     for (int32_t k = 0; k < count; ++k, ++s->num_kept) {
       WarmPoint& point = s->kept_warm[s->num_kept];
-      Contact& contact = s->kept[s->num_kept];
       s->kept_pairs[s->num_kept] = pair;
       if (known) {
         point = s->warm[first + k];
@@ -145,9 +145,7 @@ bool keep_points(const Scene& scene, const Bound* bounds, int32_t num_found, Wor
         least = dot(apart, apart);
         nearest = i;
       }
-      contact = s->contacts[nearest];
-      contact.p = p;
-      for (int r = 0; r < 3; ++r) contact.force[r] = inv_h * static_cast<double>(point.impulse[r]);
+      s->kept[s->num_kept] = {p, s->contacts[nearest].n, s->contacts[nearest].depth};
     }
   }
   return true;
@@ -155,9 +153,11 @@ bool keep_points(const Scene& scene, const Bound* bounds, int32_t num_found, Wor
 
 // The lists of pairs by who sleeps, and the points of pairs where both sides are at rest. False: there is no
 // room for them all.
-bool sort_pairs(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses, WorldState* s) {
+bool sort_pairs(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses, WarmPoint* work,
+                WorldState* s) {
   const Scene& scene = *model.scene;
-  release_kept(s);
+  int32_t* const end = s->listed + model.listed_pairs.size();
+  release_kept(work, s);
   s->lists_fresh = true;
   s->only_kept = false;
   s->num_searched = s->num_resting = 0;
@@ -166,19 +166,21 @@ bool sort_pairs(const ArticulatedModel& model, Collider* collider, Collider::Pos
   };
   for (const ListedPair& pair : model.listed_pairs) {
     if (s->num_asleep > 0 && rests(pair.a) && rests(pair.b))
-      s->resting[s->num_resting++] = pair.pair;
+      *(end - ++s->num_resting) = pair.pair;
     else
-      s->searched[s->num_searched++] = pair.pair;
+      s->listed[s->num_searched++] = pair.pair;
   }
   if (s->num_resting == 0) return true;
+  int32_t* const resting = end - s->num_resting;
+  std::reverse(resting, end);
   // `contacts` are free until the search
-  const Collider::Found found = collider->collide_listed(scene, poses, {s->resting, s->num_resting},
-                                                         s->contacts, s->contact_pairs, s->touched);
+  const Collider::Found found = collider->collide_listed(scene, poses, {resting, s->num_resting}, s->contacts,
+                                                         s->contact_pairs, s->touched);
   if (found.failed) s->diverged = true;
   // those of the others that stay
   const auto stays = [&](int32_t i, int32_t* at) {
-    while (*at < s->num_resting && s->resting[*at] < s->warm[i].pair) ++*at;
-    return *at == s->num_resting || s->resting[*at] != s->warm[i].pair;
+    while (*at < s->num_resting && resting[*at] < s->warm[i].pair) ++*at;
+    return *at == s->num_resting || resting[*at] != s->warm[i].pair;
   };
   int32_t left = 0;
   for (int32_t i = 0, at = 0; i < s->num_warm; ++i) left += stays(i, &at);
@@ -188,8 +190,9 @@ bool sort_pairs(const ArticulatedModel& model, Collider* collider, Collider::Pos
     return false;
   }
   for (int32_t i = 0; i < s->num_kept; ++i) {
-    const int32_t a = scene.shapes[static_cast<size_t>(s->kept[i].shape_a)].index,
-                  b = scene.shapes[static_cast<size_t>(s->kept[i].shape_b)].index;
+    const ShapePair& pair = scene.pairs[static_cast<size_t>(s->kept_pairs[i])];
+    const int32_t a = scene.shapes[static_cast<size_t>(pair.a)].index,
+                  b = scene.shapes[static_cast<size_t>(pair.b)].index;
     if (b >= 0) unite(scene, a, b, s);
   }
   left = 0;
@@ -215,16 +218,16 @@ bool wake_touched(const Scene& scene, WorldState* s, int32_t count) {
 }  // namespace
 
 void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses,
-                   const uint64_t* near_robots, WorldState* s) {
+                   const uint64_t* near_robots, WarmPoint* work, WorldState* s) {
   const Scene& scene = *model.scene;
   Bound* bounds = collider->bounds();
   Collider::Found found{};
   for (;;) {
-    if (s->sleep && !s->lists_fresh && !sort_pairs(model, collider, poses, s)) {
+    if (s->sleep && !s->lists_fresh && !sort_pairs(model, collider, poses, work, s)) {
       wake_all(scene, s);
       continue;
     }
-    const PairList listed = {s->searched, s->num_searched};
+    const PairList listed = {s->listed, s->num_searched};
     const bool nothing = s->sleep && listed.count == 0 && model.all_listed;
     found = nothing ? Collider::Found{}
                     : collider->collide(scene, poses, s->sleep ? &listed : nullptr, near_robots, s->contacts,
@@ -240,8 +243,10 @@ void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::
   if (found.count > 0) s->only_kept = false;
   if (found.failed) s->diverged = true;
   if (found.overflow) s->status |= kStatusContactOverflow;
-  place_points(s->contacts, s->contact_pairs, found.count, bounds, s->next_warm);
-  match_points(s->next_warm, found.count, s->warm, s->num_warm, s->match);
+  place_points(s->contacts, s->contact_pairs, found.count, bounds, work);
+  match_points(work, found.count, s->warm, s->num_warm);
+  std::copy_n(work, found.count, s->warm);
+  s->num_warm = found.count;
 }
 
 void fall_asleep(const ArticulatedModel& model, WorldState* s) {
@@ -309,14 +314,22 @@ void begin_sleepers(const ArticulatedModel& model, WorldState* s) {
   for (int32_t i = 0; s->lists_fresh && i < s->num_kept; ++i) s->touched[s->kept_pairs[i]] = 1;
 }
 
-int32_t report_contacts(WorldState* s) {
+int32_t report_contacts(const Scene& scene, WorldState* s) {
   if (s->num_kept == 0) return s->num_contacts;
   const int32_t total = s->num_contacts + s->num_kept;
   if (s->only_kept) return total;
+  const double inv_h = 1 / scene.def.solver.h;
+  const auto kept_contact = [&](int32_t i) {
+    const ShapePair& pair = scene.pairs[static_cast<size_t>(s->kept_pairs[i])];
+    const KeptPoint& point = s->kept[i];
+    Vec3 force;
+    for (int r = 0; r < 3; ++r) force[r] = inv_h * static_cast<double>(s->kept_warm[i].impulse[r]);
+    return Contact{pair.a, pair.b, point.p, point.n, point.depth, force, {}};
+  };
   int32_t moving = s->num_contacts - 1, kept = s->num_kept - 1;
   for (int32_t to = total - 1; kept >= 0; --to) {
     const bool later = moving >= 0 && s->contact_pairs[moving] > s->kept_pairs[kept];
-    s->contacts[to] = later ? s->contacts[moving] : s->kept[kept];
+    s->contacts[to] = later ? s->contacts[moving] : kept_contact(kept);
     s->contact_pairs[to] = later ? s->contact_pairs[moving] : s->kept_pairs[kept];
     --(later ? moving : kept);
   }
@@ -354,15 +367,6 @@ void forget_kept(const Scene& scene, WorldState* s) {
     FreeBody& body = s->free_bodies[i];
     body.v = body.w = body.v1 = body.w1 = {};
   }
-}
-
-int32_t all_warm(const WorldState& s, WarmPoint* out) {
-  int32_t i = 0, k = 0, count = 0;
-  while (i < s.num_warm || k < s.num_kept) {
-    const bool moving = k == s.num_kept || (i < s.num_warm && s.warm[i].pair < s.kept_warm[k].pair);
-    out[count++] = moving ? s.warm[i++] : s.kept_warm[k++];
-  }
-  return count;
 }
 
 }  // namespace rdm

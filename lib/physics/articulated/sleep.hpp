@@ -24,22 +24,28 @@ namespace rdm {
 void set_body_bounds(const Scene& scene, const WorldState& s, Bound* bounds);
 // Contact points of the present poses: those that move into contacts, those asleep into kept. Whom a moving
 // one touches is awake afterwards. The collider's bounds of bodies' shapes are set by the caller, and those of
-// all shapes of trees unless `near_robots` is given (BroadPhase::search).
+// all shapes of trees unless `near_robots` is given (BroadPhase::search). `work` has room for contacts_max.
 void find_contacts(const ArticulatedModel& model, Collider* collider, Collider::Poses& poses,
-                   const uint64_t* near_robots, WorldState* s);
+                   const uint64_t* near_robots, WarmPoint* work, WorldState* s);
 // At the end of a substep.
 void fall_asleep(const ArticulatedModel& model, WorldState* s);
 // Of a step: pushed bodies are awake, pairs asleep touch.
 void begin_sleepers(const ArticulatedModel& model, WorldState* s);
 // Kept points in their places among contacts; their number.
-int32_t report_contacts(WorldState* s);
+int32_t report_contacts(const Scene& scene, WorldState* s);
 
 // A body and all that sleep with it; an awake one starts to count anew.
 void wake(const Scene& scene, int32_t body, WorldState* s);
 void wake_all(const Scene& scene, WorldState* s);
 // Sleep was loaded: nothing else is known of it.
 void forget_kept(const Scene& scene, WorldState* s);
-// All points from which the next solve starts, in the order of their pairs; `out` has room for contacts_max.
-int32_t all_warm(const WorldState& s, WarmPoint* out);
+// visit(point) for all points from which the next solve starts, num_warm and num_kept, in the order of their pairs.
+template <class Visit>
+void each_warm(const WorldState& s, const Visit& visit) {
+  for (int32_t i = 0, k = 0; i < s.num_warm || k < s.num_kept;) {
+    const bool moving = k == s.num_kept || (i < s.num_warm && s.warm[i].pair < s.kept_warm[k].pair);
+    visit(moving ? s.warm[i++] : s.kept_warm[k++]);
+  }
+}
 
 }  // namespace rdm

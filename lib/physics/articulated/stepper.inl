@@ -49,6 +49,7 @@ template <class S>
 struct ContactStepper : Stepper {
   ContactSolver<S> own_contacts;
   DirectContacts<ContactSolver<S>> own_direct;
+  WarmPoint* own_points = nullptr;  // [contacts_max] for find_contacts
 };
 
 template <class L>
@@ -288,7 +289,6 @@ void BatchStepper<L>::substep() {
     kinematics(t);
   }
   for (int32_t w = 0; w < count_; ++w) {
-    store_impulses(worlds_[w]);
     integrate_bodies(*model_, worlds_[w]);
     fall_asleep(*model_, worlds_[w]);
   }
@@ -390,7 +390,8 @@ void BatchStepper<L>::detect_contacts(int32_t world) {
   set_bounds(world);
   if (scene_->def.solver.speculative_contacts) find_coming(world);
   WorldPoses poses(this, world);
-  find_contacts(*model_, collider_, poses, in_lanes_ ? robot_pairs_.near(world) : nullptr, worlds_[world]);
+  find_contacts(*model_, collider_, poses, in_lanes_ ? robot_pairs_.near(world) : nullptr,
+                lender_->own_points, worlds_[world]);
 }
 
 // In double, from the pose that the lanes have: what the collider asks for once two bounds meet.
@@ -702,7 +703,7 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
     contacts_.prepare(&point);
     Vec3 last;
     if (piles && again)
-      last = w.impulses[i];
+      last = w.contacts[i].force;
     else if (!warm_impulse(w, i, &last))
       continue;
     S start[3];
@@ -723,13 +724,13 @@ void BatchStepper<L>::solve_contacts_of(int32_t world, bool again) {
       const auto& impulse = point.impulse;
       for (int r = 0; r < 3; ++r) t[r] = static_cast<double>(point.tangent[r]);
       u = cross(n, t);
-      w.impulses[i] = static_cast<double>(impulse[0]) * n + static_cast<double>(impulse[1]) * t +
-                      static_cast<double>(impulse[2]) * u;
+      w.contacts[i].force = static_cast<double>(impulse[0]) * n + static_cast<double>(impulse[1]) * t +
+                            static_cast<double>(impulse[2]) * u;
       continue;
     }
     const auto& impulse = contacts_.points[k++].impulse;
-    w.impulses[i] = static_cast<double>(impulse[0]) * n + static_cast<double>(impulse[1]) * t +
-                    static_cast<double>(impulse[2]) * u;
+    w.contacts[i].force = static_cast<double>(impulse[0]) * n + static_cast<double>(impulse[1]) * t +
+                          static_cast<double>(impulse[2]) * u;
   }
   if (piles) read_pile_impulses(world);
   take_impulses(world);
@@ -955,7 +956,7 @@ void BatchStepper<L>::add_law_point(int32_t world, int32_t index, const ContactL
   }
   Vec3 last;
   if (again)
-    last = w.impulses[index];
+    last = w.contacts[index].force;
   else if (!warm_impulse(w, index, &last))
     return;
   S start[3];
@@ -1046,7 +1047,7 @@ void BatchStepper<L>::add_pile_points(int32_t world, bool again, typename WideCo
           group->body_b[l] < 0 ? Vec3{} : contact.p + contact.gap - w.bodies[group->body_b[l]].X.p;
       Vec3 start;
       if (again)
-        start = w.impulses[i];
+        start = w.contacts[i].force;
       else
         warm_impulse(w, i, &start);
       put(&push_out, l, push_out_speed(w, i));
@@ -1104,7 +1105,7 @@ void BatchStepper<L>::read_pile_impulses(int32_t world) {
         for (int r = 0; r < 3; ++r) out[r] += __builtin_convertvector(p.axis[f][r], Doubles) * impulse;
       }
       for (int l = 0; l < group.lanes; ++l)
-        if (k < group.count[l]) w.impulses[group.first[l] + k] = {out[0][l], out[1][l], out[2][l]};
+        if (k < group.count[l]) w.contacts[group.first[l] + k].force = {out[0][l], out[1][l], out[2][l]};
     }
   }
 }
@@ -1163,24 +1164,23 @@ inline void drop_unmet(WorldState* w) {
   for (int32_t i = 0; i < w->num_contacts; ++i) {
     Contact& contact = w->contacts[i];
     if (contact.depth < 0) {
-      if (dot(w->impulses[i], w->impulses[i]) == 0) continue;
+      if (dot(contact.force, contact.force) == 0) continue;
       w->touched[w->contact_pairs[i]] = 1;
       contact.depth = 0;
     }
     if (kept != i) {
       w->contacts[kept] = contact;
       w->contact_pairs[kept] = w->contact_pairs[i];
-      w->impulses[kept] = w->impulses[i];
-      w->next_warm[kept] = w->next_warm[i];
-      w->match[kept] = w->match[i];
+      w->warm[kept] = w->warm[i];
     }
     ++kept;
   }
-  w->num_contacts = kept;
+  w->num_contacts = w->num_warm = kept;
 }
 
-// Contact forces, and their mean on the links with a sensor, in the pose they act in. A point that is solved
-// moves apart at push_out_speed - softness n: where that is the bound and n is larger, it gives way for ever.
+// Contact forces, the impulses that the next substep's solve starts from, and the mean of the forces on the links
+// with a sensor, in the pose they act in. A point that is solved moves apart at push_out_speed - softness n: where
+// that is the bound and n is larger, it gives way for ever.
 template <class L>
 void BatchStepper<L>::contact_forces(int32_t world) {
   WorldState& w = *worlds_[world];
@@ -1191,10 +1191,11 @@ void BatchStepper<L>::contact_forces(int32_t world) {
   for (int32_t i = 0; i < w.num_contacts; ++i) {
     Contact& contact = w.contacts[i];
     const ContactLaw* law = scene_->law_of(w.contact_pairs[i]);
-    if (!(law && law->soft()) && softness(w, i) * dot(w.impulses[i], contact.n) > fastest &&
+    if (!(law && law->soft()) && softness(w, i) * dot(contact.force, contact.n) > fastest &&
         push_out_speed(w, i) == fastest)
       w.status |= kStatusUnconverged;
-    contact.force = inv_h * w.impulses[i];
+    for (int r = 0; r < 3; ++r) w.warm[i].impulse[r] = static_cast<float>(contact.force[r]);
+    contact.force = inv_h * contact.force;
     for (int side = 0; side < 2; ++side) {
       const Attachment& at = attachments_[side ? contact.shape_b : contact.shape_a];
       if (at.kind == Attachment::kBody) w.free_bodies[at.body].touches = true;
@@ -1513,6 +1514,7 @@ void BatchStepper<L>::carve(Arena& arena, bool borrows) {
   R_JL_ = arena.make<Mat3>(static_cast<size_t>(scene_->num_links));
   q_JL_ = arena.make<Quat>(static_cast<size_t>(scene_->num_links));
   if (borrows) return;
+  this->own_points = arena.make<WarmPoint>(static_cast<size_t>(scene_->def.solver.contacts_max));
   contacts_.carve(arena, scene_->def.solver.contacts_max, segments, path, scene_->num_bodies);
   if (!scene_->laws.empty()) contacts_.laws.carve(arena, scene_->def.solver.contacts_max, path);
 }

@@ -194,13 +194,6 @@ void size_bound(const SceneShape& shape, double factor, Bound* bound) {
   for (int k = 0; k < 3; ++k) bound->axis[k] *= static_cast<float>(factor);
 }
 
-void store_impulses(WorldState* s) {
-  for (int32_t i = 0; i < s->num_contacts; ++i)
-    for (int k = 0; k < 3; ++k) s->next_warm[i].impulse[k] = static_cast<float>(s->impulses[i][k]);
-  std::swap(s->warm, s->next_warm);
-  s->num_warm = s->num_contacts;
-}
-
 void integrate_bodies(const ArticulatedModel& model, WorldState* s) {
   const double h = model.scene->def.solver.h;
   for (int32_t i = 0; i < model.scene->num_bodies; ++i) {

@@ -11,6 +11,7 @@
 // keep, gain and fall are those of damping over a substep (model/flow.hpp): a flight is exact at any substep.
 // R rotates the body's axes into world axes.
 #pragma once
+#include <cmath>
 #include <cstdint>
 
 #include "physics/articulated/tree.hpp"
@@ -118,6 +119,12 @@ struct WarmPoint {
   float impulse[3];  // world, N s
 };
 
+// Where two things touch that both sleep; its pair and impulse stand beside it.
+struct KeptPoint {
+  Vec3 p, n;     // as Contact's
+  double depth;  // m
+};
+
 // Whether a body sleeps (sleep.hpp).
 struct BodySleep {
   int32_t island;  // the lowest body of those it sleeps with; kAwake
@@ -133,7 +140,8 @@ struct WorldState {
   Mat3* base_R;      // [articulations] R_WB
   Motion* bodies;    // [num_bodies]
   void* persistent;  // [articulations]: PersistentBase, then PersistentLink per link; float or double
-  WarmPoint* warm;   // [contacts_max], num_warm of the last substep
+  WarmPoint* warm;  // [contacts_max], num_warm: of the last substep; from find_contacts on those of this one,
+                    // with the impulses that its solve starts from
   int32_t num_warm;
   BodySleep* sleep;  // [num_bodies]; null, and all of sleep below: no body ever falls asleep
 
@@ -151,19 +159,18 @@ struct WorldState {
 
   // of the substep
   FreeBody* free_bodies;   // [num_bodies]
-  Contact* contacts;       // [contacts_max], in the order of the scene's pairs
+  Contact* contacts;       // [contacts_max], in the order of the scene's pairs; until contact_forces their
+                           // force is the impulse on shape a, N s
   int32_t* contact_pairs;  // [contacts_max] index of Scene::pairs
-  Vec3* impulses;          // [contacts_max] on shape a, N s
-  WarmPoint* next_warm;    // [contacts_max] this substep's points
-  int32_t* match;          // [contacts_max] their nearest in `warm`, -1: none
   int32_t num_contacts;
 
   // of sleep
-  Contact* kept;         // [contacts_max] num_kept points among the sleeping, in the order of their pairs
+  KeptPoint* kept;       // [contacts_max] num_kept points among the sleeping, in the order of their pairs
   int32_t* kept_pairs;   // [contacts_max]
   WarmPoint* kept_warm;  // [contacts_max]
   int32_t num_kept, num_asleep;
-  int32_t *searched, *resting;  // [listed pairs] those with a side awake; the others
+  // [listed pairs] num_searched with a side awake, and from the end on num_resting others, each in order
+  int32_t* listed;
   int32_t num_searched, num_resting;
   bool lists_fresh;       // lists and kept points are of the present sleepers
   bool only_kept;         // contacts are the kept points, in their places
@@ -194,12 +201,11 @@ void begin_step(const ArticulatedModel& model, WorldState* s);
 void predict_bodies(const ArticulatedModel& model, WorldState* s);
 // Impulse on shape a that the last substep gave at a point like this one; false: none.
 inline bool warm_impulse(const WorldState& s, int32_t contact, Vec3* impulse) {
-  if (s.match[contact] < 0) return false;
-  const float* found = s.warm[s.match[contact]].impulse;
+  const float* found = s.warm[contact].impulse;
+  if (std::isnan(found[0])) return false;
   *impulse = {static_cast<double>(found[0]), static_cast<double>(found[1]), static_cast<double>(found[2])};
   return true;
 }
-void store_impulses(WorldState* s);
 void integrate_bodies(const ArticulatedModel& model, WorldState* s);  // by v1, w1
 
 void set_bound(const SceneShape& shape, const Vec3& p, const Mat3& R, Bound* bound);

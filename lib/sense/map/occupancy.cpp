@@ -144,7 +144,13 @@ void Occupancy::apply(size_t begin, size_t end, float change) {
   for (size_t i = begin; i < end; ++i) dropped_ += !update(set_[i], change);
 }
 
+void Occupancy::end_inserts() {
+  set_ = KeySet();
+  arena_ = Arena();
+}
+
 uint64_t Occupancy::insert(const Vec3& origin, const float* points, size_t count) {
+  if (set_.capacity() == 0) fail(Code::kState, "insert: the map has ended its inserts");
   const VoxelLattice lattice(tree_->getResolution());
   VoxelKey key;
   if (!finite(origin)) fail(Code::kArgument, "origin is not finite");

@@ -48,6 +48,8 @@ class Occupancy {
   // memory; they are left out, those that exist go on being updated. Error(kArgument) when origin is not
   // finite, kRange when it lies outside the lattice of 65536 voxels a side.
   uint64_t insert(const Vec3& origin, const float* points, size_t count);
+  // Gives back the memory that insert works with, some quarter of the map's: there are no more inserts (kState).
+  void end_inserts();
   void clear();
 
   // Probability that the voxel of each point [count][3] is occupied; -1: unknown.
