@@ -1,8 +1,10 @@
 # shellcheck shell=bash
 # Sourced by the scripts of this folder: Debian packages on demand, and the words to stop with.
 # shellcheck disable=SC2034
-build_packages="g++ cmake ninja-build pkg-config libode-dev libccd-dev libeigen3-dev liboctomap-dev
-                libcli11-dev nlohmann-json3-dev libpng-dev libqhull-dev libtinyxml2-dev libtomlplusplus-dev"
+library_packages="g++ cmake ninja-build pkg-config libode-dev libccd-dev libeigen3-dev liboctomap-dev"
+tool_packages="libcli11-dev nlohmann-json3-dev libpng-dev libqhull-dev"
+import_packages="libtinyxml2-dev libtomlplusplus-dev"
+build_packages="$library_packages $tool_packages $import_packages"
 viewer_packages="libjs-three"  # what `redman render --html` puts into its pages
 
 die() {
@@ -10,20 +12,27 @@ die() {
   exit 1
 }
 
+# missing PACKAGE...: those that are not installed; none on a system that is not Debian, where they are taken to be there.
+missing() {
+  local package
+  command -v dpkg-query > /dev/null || return 0
+  for package in "$@"; do
+    dpkg-query -W -f '${Status}\n' "$package" 2> /dev/null | grep -q '^install ok installed' || printf ' %s' "$package"
+  done
+}
+
+# can_install: whether there is root, or a sudo that asks nothing (or a person at a terminal whom it may ask).
+can_install() {
+  [ "$(id -u)" -eq 0 ] || { command -v sudo > /dev/null && { [ -t 0 ] || sudo -n true 2> /dev/null; }; }
+}
+
 # need PACKAGE...: installs what is missing, as root or through sudo, without questions.
 need() {
-  local missing="" package log as_root=()
-  if ! command -v dpkg-query > /dev/null; then
-    echo "not a Debian system: taking it that these are here: $*" | tr -s ' \n' ' ' >&2
-    echo >&2
-    return
-  fi
-  for package in "$@"; do
-    dpkg-query -W -f '${Status}\n' "$package" 2> /dev/null | grep -q '^install ok installed' || missing+=" $package"
-  done
+  local missing log as_root=()
+  missing=$(missing "$@")
   [ -n "$missing" ] || return 0
+  can_install || die "these packages are missing, and there is neither root nor sudo to install them:$missing"
   if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo > /dev/null || die "these packages are missing, and there is no sudo to install them:$missing"
     as_root=(sudo)
     [ -t 0 ] || as_root+=(-n)
   fi
@@ -39,9 +48,15 @@ need() {
   rm -f "$log"
 }
 
-# want PACKAGE...: the same of what a build can do without.
+# want LOSS PACKAGE...: the same of what a build or its tests can do without; else it says what is lost.
 want() {
-  (need "$@") || echo "going on without: $*" >&2
+  local loss=$1 missing
+  shift
+  missing=$(missing "$@")
+  [ -n "$missing" ] || return 0
+  # shellcheck disable=SC2086
+  can_install && (need $missing) && return
+  echo "not here:$missing. Without: $loss" >&2
 }
 
 # configure PRESET [options...]; build PRESET: quiet unless they fail.

@@ -25,7 +25,7 @@ part "packages"
 # shellcheck disable=SC2086
 need $build_packages
 # shellcheck disable=SC2086
-want $viewer_packages
+want "the viewer of pages that \`redman render --html\` writes" $viewer_packages
 part "building"
 configure release
 build release

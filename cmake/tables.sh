@@ -32,6 +32,7 @@ table() {
   fi
 }
 
+table CONTRIBUTING.md modes bash cmake/check.sh --markdown
 table README.md algorithms "$tool" algos --markdown
 table tasks/README.md tasks "$tool" tasks --markdown
 table tasks/README.md presets "$tool" tasks --presets --markdown
