@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 
-#include "algos/core/agent.hpp"
+#include "algos/agent/agent.hpp"
 #include "algos/core/resolved_config.hpp"
 
 namespace rdm {

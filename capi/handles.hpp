@@ -8,7 +8,7 @@
 #include "sense/render/raycast.hpp"
 #endif
 #if RDM_WITH_LEARN
-#include "algos/core/agent.hpp"
+#include "algos/agent/agent.hpp"
 #endif
 #if RDM_WITH_POLICY
 #include "nn/actor.hpp"

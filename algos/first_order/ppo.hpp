@@ -5,7 +5,7 @@
 // Around it, none of it in the paper's equation: advantages standardised over the batch, Adam behind a bound
 // on the gradient's norm, a rate that may follow the KL (lr_schedule=kl), passes that may stop early by it.
 #pragma once
-#include "algos/core/agent.hpp"
+#include "algos/agent/agent.hpp"
 #include "algos/first_order/ratio_loss.hpp"
 
 namespace rdm {

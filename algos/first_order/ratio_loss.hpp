@@ -1,6 +1,6 @@
 // Losses that see a sample through its probability ratio rho = p(a) / p_old(a) alone.
 #pragma once
-#include "algos/core/learner.hpp"
+#include "algos/agent/learner.hpp"
 
 namespace rdm {
 

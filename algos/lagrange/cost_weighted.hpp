@@ -1,6 +1,6 @@
 // Safe methods that only weigh costs against the reward = a policy step x a rule for the weights.
 #pragma once
-#include "algos/core/agent.hpp"
+#include "algos/agent/agent.hpp"
 
 namespace rdm {
 

@@ -2,7 +2,7 @@
 //
 //   y = sqrt(2 delta / x'H x) x, x = H^-1 G;   y is shortened until KL <= delta and the gain >= 0
 #pragma once
-#include "algos/core/agent.hpp"
+#include "algos/agent/agent.hpp"
 #include "algos/first_order/ratio_loss.hpp"
 #include "algos/trust_region/trust_region.hpp"
 

@@ -10,8 +10,8 @@
 // delta is trust_kl: 0.01 as in the papers' locomotion, 0.02 in preset=paper, but 0.15 in the defaults of
 // throws, as measured on them. With lr_schedule=linear the radius shrinks as a learning rate would.
 #pragma once
+#include "algos/agent/learner.hpp"
 #include "algos/core/cancel.hpp"
-#include "algos/core/learner.hpp"
 #include "algos/trust_region/conjugate_gradient.hpp"
 #include "algos/trust_region/fisher.hpp"
 

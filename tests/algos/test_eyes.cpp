@@ -3,7 +3,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "algos/core/agent.hpp"
+#include "algos/agent/agent.hpp"
 #include "algos/trust_region/fisher.hpp"
 #include "heap_count.hpp"
 #include "nn/policy.hpp"

@@ -1,4 +1,4 @@
-#include "algos/first_order/ipo.hpp"
+#include "algos/penalty/ipo.hpp"
 #include "bandit.hpp"
 #include "learner_bench.hpp"
 

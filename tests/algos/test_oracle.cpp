@@ -1,6 +1,6 @@
 // Losses, gradients and a Fisher product against torch's autograd: tests/oracle/losses.py makes the vectors.
-#include "algos/first_order/focops.hpp"
-#include "algos/first_order/p3o.hpp"
+#include "algos/lagrange/focops.hpp"
+#include "algos/penalty/p3o.hpp"
 #include "algos/trust_region/fisher.hpp"
 #include "learner_bench.hpp"
 #include "oracle_losses.hpp"

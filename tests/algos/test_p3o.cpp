@@ -1,4 +1,4 @@
-#include "algos/first_order/p3o.hpp"
+#include "algos/penalty/p3o.hpp"
 #include "bandit.hpp"
 #include "learner_bench.hpp"
 

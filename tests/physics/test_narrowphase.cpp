@@ -7,8 +7,8 @@
 #include "hulls.hpp"
 #include "physics/collision/convex.hpp"
 #include "physics/collision/narrowphase.hpp"
-#include "physics/ode/ode_convert.hpp"
-#include "physics/ode/ode_guard.hpp"
+#include "physics/ode_library/ode_convert.hpp"
+#include "physics/ode_library/ode_guard.hpp"
 
 namespace rdm {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "heap_count.hpp"
-#include "physics/ode/ode_guard.hpp"
+#include "physics/ode_library/ode_guard.hpp"
 
 namespace rdm {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "physics/collision/shapes.hpp"
-#include "physics/ode/ode_convert.hpp"
-#include "physics/ode/ode_guard.hpp"
+#include "physics/ode_library/ode_convert.hpp"
+#include "physics/ode_library/ode_guard.hpp"
 
 namespace rdm {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "algos/core/agent.hpp"
+#include "algos/agent/agent.hpp"
 #include "base/bytes.hpp"
 #include "base/error.hpp"
 #include "base/rng.hpp"

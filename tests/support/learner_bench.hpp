@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "agents.hpp"
-#include "algos/core/learner.hpp"
+#include "algos/agent/learner.hpp"
 #include "algos/first_order/ppo.hpp"
 
 namespace rdm::test {

@@ -10,7 +10,7 @@
 #include "physics/articulated/stepper.hpp"
 #include "physics/articulated/world_state.hpp"
 #include "physics/collision/narrowphase.hpp"
-#include "physics/ode/ode_guard.hpp"
+#include "physics/ode_library/ode_guard.hpp"
 #include "physics/world.hpp"
 
 namespace rdm {

@@ -5,8 +5,8 @@
 #include "base/error.hpp"
 #include "physics/collision/overlap.hpp"
 #include "physics/collision/sweep.hpp"
-#include "physics/ode/ode_convert.hpp"
-#include "physics/ode/ode_guard.hpp"
+#include "physics/ode_library/ode_convert.hpp"
+#include "physics/ode_library/ode_guard.hpp"
 
 // Per candidate pair, unless the capsule about one is clear of the other's box: poses of its two geoms, once
 // per search (`placed_` holds the number of the search that put each there), the points (shapes.cpp: ODE's for

@@ -5,7 +5,7 @@
 
 #include "physics/collision/manifold.hpp"
 #include "physics/collision/thinning.hpp"
-#include "physics/ode/ode_convert.hpp"
+#include "physics/ode_library/ode_convert.hpp"
 
 namespace rdm {
 namespace {

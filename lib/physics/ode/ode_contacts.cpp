@@ -1,7 +1,7 @@
 #include "physics/ode/ode_contacts.hpp"
 
 #include "physics/collision/overlap.hpp"
-#include "physics/ode/ode_convert.hpp"
+#include "physics/ode_library/ode_convert.hpp"
 
 namespace rdm {
 namespace {

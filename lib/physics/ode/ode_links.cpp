@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "physics/model/inertia.hpp"
-#include "physics/ode/ode_convert.hpp"
+#include "physics/ode_library/ode_convert.hpp"
 
 // One substep; W world, L link, P parent (World::rebuild has the kinematics):
 //   products   rates that stay are not momenta that stay: the bodies' velocities J(q) qd change by h dJ/dt qd

@@ -6,7 +6,7 @@
 
 #include "base/error.hpp"
 #include "physics/model/flow.hpp"
-#include "physics/ode/ode_convert.hpp"
+#include "physics/ode_library/ode_convert.hpp"
 
 namespace rdm {
 namespace {

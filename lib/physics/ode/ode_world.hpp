@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "physics/ode/ode_contacts.hpp"
-#include "physics/ode/ode_guard.hpp"
 #include "physics/ode/ode_links.hpp"
+#include "physics/ode_library/ode_guard.hpp"
 #include "physics/world.hpp"
 
 namespace rdm {

@@ -12,7 +12,7 @@
 // the most violated one alone weighs in an epoch, with a nu of its own. At a limit of 0 nu_max is at most the
 // paper's 2, unless the host gives another.
 #pragma once
-#include "algos/core/agent.hpp"
+#include "algos/agent/agent.hpp"
 #include "algos/lagrange/cost_weighted.hpp"
 #include "algos/lagrange/lagrange.hpp"
 

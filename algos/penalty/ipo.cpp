@@ -1,11 +1,11 @@
-#include "algos/first_order/ipo.hpp"
+#include "algos/penalty/ipo.hpp"
 
 #include <cstring>
 
 #include "algos/algo_registry.hpp"
 #include "algos/core/option_tables.hpp"
-#include "algos/first_order/p3o.hpp"
 #include "algos/lagrange/cost_weighted.hpp"
+#include "algos/penalty/p3o.hpp"
 
 namespace rdm {
 

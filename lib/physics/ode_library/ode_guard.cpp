@@ -1,4 +1,4 @@
-#include "physics/ode/ode_guard.hpp"
+#include "physics/ode_library/ode_guard.hpp"
 
 #include <ode/ode.h>
 

@@ -1,4 +1,4 @@
-#include "algos/first_order/focops.hpp"
+#include "algos/lagrange/focops.hpp"
 
 #include <algorithm>
 

@@ -13,7 +13,7 @@
 // at the J_c that each minibatch estimates for the policy as it is then, the reward is clipped and the cost
 // is not.
 #pragma once
-#include "algos/first_order/p3o.hpp"
+#include "algos/penalty/p3o.hpp"
 
 namespace rdm {
 

@@ -29,8 +29,8 @@
 // Work on a minibatch is cut into chunks of fixed size that are reduced in a fixed order, so any number of
 // threads gives the same bytes; and, over blocks of worlds, any number of processes (ranks.hpp).
 #pragma once
+#include "algos/agent/learner.hpp"
 #include "algos/core/cancel.hpp"
-#include "algos/core/learner.hpp"
 #include "algos/core/schedule.hpp"
 #include "algos/imitation/clone.hpp"
 #include "algos/imitation/imitation.hpp"

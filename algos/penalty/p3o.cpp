@@ -1,4 +1,4 @@
-#include "algos/first_order/p3o.hpp"
+#include "algos/penalty/p3o.hpp"
 
 #include "algos/algo_registry.hpp"
 #include "algos/core/option_tables.hpp"

@@ -1,4 +1,4 @@
-#include "algos/core/learner.hpp"
+#include "algos/agent/learner.hpp"
 
 #include <cmath>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "algos/core/agent.hpp"
+#include "algos/agent/agent.hpp"
 
 #include <cstring>
 
