@@ -8,8 +8,8 @@
 #include "base/bit_cast.hpp"
 #include "base/format.hpp"
 #include "base/text.hpp"
+#include "env/option_table.hpp"
 #include "env/options/simulation.hpp"
-#include "env/options/table.hpp"
 #include "tasks/catalog.hpp"
 
 using namespace rdm;

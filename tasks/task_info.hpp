@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <iterator>
 
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 #include "env/task.hpp"
 
 namespace rdm {

@@ -7,7 +7,7 @@
 #pragma once
 #include "base/option.hpp"
 #include "base/rng.hpp"
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 #include "physics/world.hpp"
 
 namespace rdm {

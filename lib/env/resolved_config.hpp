@@ -1,10 +1,10 @@
 // A pool's config made concrete: its task made, its options laid in, its sizes known. What a spec, a measure
 // and a pool have in common, so that none of them accepts what another refuses.
 #pragma once
+#include "env/option_table.hpp"
 #include "env/options/disturb.hpp"
 #include "env/options/repeat.hpp"
 #include "env/options/sense.hpp"
-#include "env/options/table.hpp"
 #include "env/pool.hpp"
 #include "env/task.hpp"
 

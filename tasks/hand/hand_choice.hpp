@@ -5,7 +5,7 @@
 // holding point and its palm are where that robot's would be (palm_frame in kinematics.hpp); an arm so that
 // it carries the hand there, and its angles in that pose are its home.
 #pragma once
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 #include "physics/model/scene.hpp"
 #include "robot/robots.hpp"
 

@@ -11,7 +11,7 @@
 #pragma once
 #include "base/option.hpp"
 #include "base/rng.hpp"
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 #include "tasks/hand/hand_observation.hpp"
 #include "tasks/hand/hands.hpp"
 

@@ -7,7 +7,7 @@
 #include "base/option.hpp"
 #include "base/rng.hpp"
 #include "env/dynamics_draw.hpp"
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 #include "physics/world.hpp"
 #include "robot/robot.hpp"
 #include "tasks/hand/hand_choice.hpp"

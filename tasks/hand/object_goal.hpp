@@ -3,7 +3,7 @@
 #include "base/option.hpp"
 #include "base/rng.hpp"
 #include "env/fields.hpp"
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 #include "physics/world.hpp"
 
 namespace rdm {

@@ -1,7 +1,7 @@
 // The tower of the Jenga task: where its blocks, the target among them, and the table stand.
 #pragma once
 #include "base/option.hpp"
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 #include "physics/model/scene.hpp"
 
 namespace rdm {

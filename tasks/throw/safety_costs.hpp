@@ -12,7 +12,7 @@
 #include <array>
 
 #include "base/option.hpp"
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 #include "env/task.hpp"
 #include "tasks/hand/hands.hpp"
 #include "tasks/throw/throw_setup.hpp"

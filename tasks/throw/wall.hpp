@@ -1,7 +1,7 @@
 // A wall with a rectangular hole, or of the user's own boxes: static shapes "wall1", "wall2", ...
 #pragma once
 #include "base/option.hpp"
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 #include "physics/model/scene.hpp"
 
 namespace rdm {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 
 namespace rdm {
 namespace {

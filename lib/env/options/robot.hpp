@@ -3,7 +3,7 @@
 #pragma once
 #include "base/option.hpp"
 #include "env/dynamics_draw.hpp"
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 #include "robot/robot.hpp"
 
 namespace rdm {

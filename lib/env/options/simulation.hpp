@@ -1,7 +1,7 @@
 // Options of time and solver that every task has.
 #pragma once
 #include "base/option.hpp"
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 #include "physics/world.hpp"
 
 namespace rdm {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "sense/map/voxel_walk.hpp"
+#include "sense/cloud/voxel_walk.hpp"
 
 namespace rdm {
 namespace {

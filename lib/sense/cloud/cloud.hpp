@@ -8,7 +8,7 @@
 
 #include "base/rng.hpp"
 #include "sense/cloud/furthest.hpp"
-#include "sense/map/key_set.hpp"
+#include "sense/cloud/key_set.hpp"
 #include "sense/render/camera.hpp"
 
 namespace rdm {

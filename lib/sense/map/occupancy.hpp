@@ -7,7 +7,7 @@
 #include "base/arena.hpp"
 #include "base/file.hpp"
 #include "base/vec.hpp"
-#include "sense/map/key_set.hpp"
+#include "sense/cloud/key_set.hpp"
 
 namespace rdm {
 

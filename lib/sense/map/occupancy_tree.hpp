@@ -18,8 +18,8 @@
 #define OCTOMAP_DEBUG_STR(...) ((void)0)
 #include <octomap/OcTree.h>
 
+#include "sense/cloud/voxel_walk.hpp"
 #include "sense/map/occupancy.hpp"
-#include "sense/map/voxel_walk.hpp"
 
 namespace rdm {
 

@@ -1,4 +1,4 @@
-#include "env/options/table.hpp"
+#include "env/option_table.hpp"
 
 #include <cstring>
 

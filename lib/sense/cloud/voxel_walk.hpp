@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/vec.hpp"
-#include "sense/map/key_set.hpp"
+#include "sense/cloud/key_set.hpp"
 
 namespace rdm {
 
