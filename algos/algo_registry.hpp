@@ -3,23 +3,10 @@
 #include <array>
 
 #include "algos/agent/agent.hpp"
+#include "algos/core/algo_row.hpp"
 #include "algos/core/resolved_config.hpp"
 
 namespace rdm {
-
-// How many limited cost columns an algorithm learns from: none, any number, or one at a time (several are
-// refused, or the most violated counts, by option several_costs).
-enum class Costs : int32_t { kNone, kAny, kOne };
-
-struct AlgoRow {
-  AlgoInfo info;
-  Costs costs;
-  size_t (*measure)(ResolvedAgentConfig&& resolved);
-  Agent* (*make)(const HostHooks& hooks, ResolvedAgentConfig&& resolved);
-  void (*end)(Agent* agent);
-  void (*adapt)(ResolvedAgentConfig& resolved);  // defaults that hang on the limits, by set_default; or null
-};
-const AlgoRow& algo_row(int32_t index);
 
 // One per algorithm file.
 extern const AlgoRow kPpo, kTrpo, kPpoLag, kTrpoLag, kCppoPid, kCpo, kPcpo, kFocops, kP3o, kIpo;

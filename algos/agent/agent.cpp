@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "algos/algo_registry.hpp"
+#include "algos/core/algo_row.hpp"
 #include "algos/core/fingerprint.hpp"
 #include "algos/core/option_tables.hpp"
 #include "base/elementary.hpp"

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "algos/imitation/imitation.hpp"
-#include "algos/trust_region/conjugate_gradient.hpp"
 #include "base/elementary.hpp"
+#include "nn/dot.hpp"
 #include "nn/gaussian.hpp"
 
 namespace rdm {

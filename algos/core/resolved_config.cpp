@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "algos/algo_registry.hpp"
+#include "algos/core/algo_row.hpp"
 #include "algos/core/option_tables.hpp"
 #include "base/chars.hpp"
 #include "base/elementary.hpp"

@@ -7,26 +7,17 @@
 // After k products x minimises |x - A^-1 b| in the metric of A over the first k powers of A on b; ten to
 // fifteen are enough for a natural gradient (Schulman et al. 2015, appendix C).
 //
-// Not Eigen's ConjugateGradient: its float sums run in the order of the processor's vectors, here dot() adds
-// in double in one order, so that a policy is the same on every machine.
+// Not Eigen's ConjugateGradient: its float sums run in the order of the processor's vectors, dot() adds in
+// double in one order, so that a policy is the same on every machine.
 #pragma once
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 #include "base/arena.hpp"
+#include "nn/dot.hpp"
 
 namespace rdm {
-
-// Sum of a[i] b[i] in double, in a fixed order.
-inline double dot(const float* a, const float* b, size_t n) {
-  double sum[4] = {};
-  size_t i = 0;
-  for (; i + 4 <= n; i += 4)
-    for (size_t k = 0; k < 4; ++k) sum[k] += static_cast<double>(a[i + k]) * static_cast<double>(b[i + k]);
-  for (; i < n; ++i) sum[0] += static_cast<double>(a[i]) * static_cast<double>(b[i]);
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
 
 struct CgWork {
   size_t size = 0;

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Every #include line against the one-way stack. Arguments: the project's root and the table of rows
-# ("name folder rows it sees...", one per line).
+# Every #include line against the one-way stack, and no circle among the folders within a layer. Arguments: the project's
+# root and the table of rows ("name folder rows it sees...", one per line).
 set -u
 root=$1 table=$2
 cd "$root" || exit 1
@@ -19,7 +19,23 @@ sources() {
   find "$1" \( -name '*.c' -o -name '*.h' -o -name '*.cpp' -o -name '*.hpp' -o -name '*.inl' \) 2> /dev/null
 }
 
+# circles NAME FOLDER: what goes in a circle there. A folder of the layer is a node, and so is each file beside them.
+circles() {
+  # shellcheck disable=SC2046
+  includes $(sources "$2") | awk -v name="$1/" -v folder="$2/" '
+    function node(path) { sub(/\/.*/, "", path); return path }
+    { from = substr($1, length(folder) + 1); to = $2; gsub(/"/, "", to) }
+    index(to, name) == 1 && node(from) != node(to = substr(to, length(name) + 1)) { print node(from), node(to), $1, $2 }' > "$edges"
+  cut -d ' ' -f 1,2 "$edges" | sort -u | tsort 2>&1 > /dev/null | sed -n '/loop/d; s/^tsort: //p' > "$loop"
+  awk -v name="$1" 'NR == FNR { on[$1]; next }
+    $1 in on && $2 in on { print $3 ": " name " has a circle of folders, to include " $4 " closes it" }' "$loop" "$edges"
+}
+edges=$(mktemp) loop=$(mktemp)
+trap 'rm -f "$edges" "$loop"' EXIT
+
 bad=$(
+  while read -r name folder _; do circles "$name" "$folder"; done < "$table"
+
   while read -r name folder sees; do
     third=none rows=$(echo "$name" "$sees" | tr ' ' '|')
     case $name in

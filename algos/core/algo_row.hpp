@@ -1,0 +1,24 @@
+// What is known of an algorithm before one is made: a row of the list in algo_registry.cpp.
+#pragma once
+#include "algos/core/agent_types.hpp"
+
+namespace rdm {
+
+class Agent;
+struct ResolvedAgentConfig;
+
+// How many limited cost columns an algorithm learns from: none, any number, or one at a time (several are
+// refused, or the most violated counts, by option several_costs).
+enum class Costs : int32_t { kNone, kAny, kOne };
+
+struct AlgoRow {
+  AlgoInfo info;
+  Costs costs;
+  size_t (*measure)(ResolvedAgentConfig&& resolved);
+  Agent* (*make)(const HostHooks& hooks, ResolvedAgentConfig&& resolved);
+  void (*end)(Agent* agent);
+  void (*adapt)(ResolvedAgentConfig& resolved);  // defaults that hang on the limits, by set_default; or null
+};
+const AlgoRow& algo_row(int32_t index);
+
+}  // namespace rdm
