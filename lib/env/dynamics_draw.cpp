@@ -29,13 +29,15 @@ bool levelled(const char* key) {
                      [&](const char* k) { return same_name(k, key); });
 }
 
+// What is drawn is a factor on the scene's own number, which is the middle of the range that was given; of a
+// level, a factor about 1.
 OptionRange factor_of(const Options& o, const char* key) {
   if (!o.given(key)) {
     const double spread = levelled(key) && o.knows("level") ? kSpread[o.integer("level")] : 0;
     return {1 - spread, 1 + spread};
   }
   const OptionRange range = o.range(key);
-  if (!range.drawn()) return {1, 1};
+  if (!range.drawn()) return {1, 1};  // the scene was made with that number
   const double middle = range.middle();
   if (!(middle > 0))
     fail(Code::kRange, "option %s: the middle of a range that is drawn must be above 0", key);
@@ -52,6 +54,7 @@ void DynamicsDraws::add(const Options& options, const char* key, Drawn what, int
   const OptionRange factor = factor_of(options, key);
   if (!factor.drawn()) return;
   const OptionSpec* spec = options.spec_of(key);
+  // Rows of one option share its draw: all links of a hand are heavier together.
   const auto at = std::find(specs_.begin(), specs_.end(), spec);
   const auto option = static_cast<int32_t>(at - specs_.begin());
   if (at == specs_.end()) {
@@ -62,13 +65,14 @@ void DynamicsDraws::add(const Options& options, const char* key, Drawn what, int
 }
 
 void DynamicsDraws::apply(World& world, Stream& stream) const {
-  if (rows_.empty()) return;
+  if (rows_.empty()) return;  // and takes nothing from the stream
   Dynamics& d = world.edit_dynamics();
-  d.reset();
+  d.reset();                    // factors of the last episode do not pile up
   constexpr size_t kMost = 64;  // factors kept at a time: rows of one option stand near each other
   double factors[kMost];
   for (size_t begin = 0; begin < options_.size(); begin += kMost) {
     const size_t end = std::min(begin + kMost, options_.size());
+    // in the order of the options, however rows stand: the draws of a seed stay when a row is added
     for (size_t i = begin; i < end; ++i) factors[i - begin] = options_[i].draw(stream);
     for (const Row& row : rows_) {
       const auto option = static_cast<size_t>(row.option);

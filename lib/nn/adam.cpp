@@ -19,9 +19,11 @@ Adam carve_adam(Arena& arena, size_t size) {
 AdamStep adam_begin(Adam& adam, float* params, const float* grad, double rate, double max_norm) {
   AdamStep step;
   step.norm = std::sqrt(kernels().sum_squares(grad, adam.size));
-  if (!std::isfinite(step.norm)) return step;
+  if (!std::isfinite(step.norm)) return step;  // args.size stays 0: adam_range does nothing
+  // As PyTorch's clip_grad_norm_: the 1e-6 keeps 0 / 0 away.
   const double clip = max_norm > 0 ? std::min(1.0, max_norm / (step.norm + 1e-6)) : 1.0;
   ++adam.t;
+  // The means begin at 0: divided by 1 - beta^t they are unbiased. Both become constants of the step.
   const double bias1 = 1 - elementary::pow(0.9, adam.t);
   const double bias2 = 1 - elementary::pow(0.999, adam.t);
   step.args = {adam.size,
@@ -37,7 +39,7 @@ AdamStep adam_begin(Adam& adam, float* params, const float* grad, double rate, d
 
 void adam_range(const AdamStep& step, size_t low, size_t high) {
   AdamArgs part = step.args;
-  high = std::min(high, part.size);
+  high = std::min(high, part.size);  // the last thread's share may be short
   if (low >= high) return;
   part.size = high - low;
   part.params += low, part.m += low, part.v += low, part.grad += low;
