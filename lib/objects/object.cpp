@@ -147,27 +147,12 @@ struct Check {
   void shape(const ObjectShape& s, int32_t i) const {
     char what[32];
     std::snprintf(what, sizeof what, "shapes[%d]: size", i);
-    int sizes = 0;
-    switch (s.kind) {
-      case ShapeKind::kSphere:
-        sizes = 1;
-        break;
-      case ShapeKind::kCapsule:
-      case ShapeKind::kCylinder:
-        sizes = 2;
-        break;
-      case ShapeKind::kBox:
-      case ShapeKind::kEllipsoid:
-        sizes = 3;
-        break;
-      case ShapeKind::kHull:
-        if (s.points.count < 4 || s.points.count > kMaxHullPoints)
-          bad(Code::kRange, "shapes[%d]: num_points %d is outside [4, %d]", i, s.points.count,
-              kMaxHullPoints);
-        break;
-      case ShapeKind::kPlane:
-      default:
-        bad(Code::kArgument, "shapes[%d]: kind %d makes no object", i, static_cast<int>(s.kind));
+    const int sizes = num_sizes(s.kind);
+    if (s.kind == ShapeKind::kHull) {
+      if (s.points.count < 4 || s.points.count > kMaxHullPoints)
+        bad(Code::kRange, "shapes[%d]: num_points %d is outside [4, %d]", i, s.points.count, kMaxHullPoints);
+    } else if (sizes == 0) {
+      bad(Code::kArgument, "shapes[%d]: kind %d makes no object", i, static_cast<int>(s.kind));
     }
     for (int k = 0; k < sizes; ++k) within(s.size[k], kLeast, kMost, what);
     std::snprintf(what, sizeof what, "shapes[%d]: place", i);

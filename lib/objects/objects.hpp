@@ -1,39 +1,36 @@
-// The objects that there are, by number and by name: the library's own tables and those that a host has
-// added.
-//
-// Any number of threads may look while others add and remove. A number is never given twice.
+// The objects that there are, by number and by name: the library's own tables and those that a host has added.
 #pragma once
+#include "base/registry.hpp"
 #include "objects/object_copy.hpp"
 
 namespace rdm {
 
-int32_t num_objects();  // numbers that were given; those of removed objects count
-
-// While it lives, the object stays.
-class ObjectRef {
- public:
-  ObjectRef() = default;
-  explicit ObjectRef(int32_t index);  // Error(kRange); Error(kNotFound): it was removed
-  ObjectRef(const ObjectRef&) = delete;
-  ObjectRef& operator=(const ObjectRef&) = delete;
-  ObjectRef(ObjectRef&& other) noexcept;
-  ObjectRef& operator=(ObjectRef&& other) noexcept;
-  ~ObjectRef();
-  const Object& operator*() const { return *object_; }
-  const Object* operator->() const { return object_; }
-
- private:
-  int32_t index_ = -1;  // of an added one
-  const Object* object_ = nullptr;
+struct Objects {
+  using Thing = Object;
+  using Copy = ObjectCopy;
+  static constexpr const char* kNoun = "object";
+  static constexpr int kRounds = 3;  // names before aliases, so that a short alias hides none
+  static int32_t num_own();
+  static const Object& own(int32_t index);
+  static const Object& shown(const ObjectCopy& copy) { return copy.object(); }
+  // Name, alias, or an alias without the number that it begins with.
+  static bool called(const Object& object, const char* name, int round);
+  static void check(const Object& object);
 };
+using ObjectRef = Ref<Objects>;
 
-// Name, alias, or an alias without the number that it begins with; Error(kNotFound) with the nearest.
-int32_t find_object(const char* name);
-
-// A deep copy joins the list. Error(kArgument), Error(kRange) as check_object, also for a name that is taken.
-int32_t add_object(const Object& object);
-// Whoever holds a reference keeps it. Error(kArgument) for one of the library's own.
-void remove_object(int32_t index);
+inline int32_t num_objects() {
+  return Registry<Objects>::get().given();
+}
+inline int32_t find_object(const char* name) {
+  return Registry<Objects>::get().find(name);
+}
+inline int32_t add_object(const Object& object) {
+  return Registry<Objects>::get().add(object);
+}
+inline void remove_object(int32_t index) {
+  Registry<Objects>::get().remove(index);
+}
 
 // The tables in the library.
 Table<Object> basic_objects();

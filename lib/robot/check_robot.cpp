@@ -140,26 +140,10 @@ struct Check {
           bad(Code::kArgument, "shape %s stands twice", Quoted(s.name).text);
       index(s.link, kRootLink, robot.links.count, s.name, "link");
       pose({s.p, s.q}, s.name);
-      int sizes = 0;
-      switch (s.kind) {
-        case ShapeKind::kSphere:
-          sizes = 1;
-          break;
-        case ShapeKind::kCapsule:
-        case ShapeKind::kCylinder:
-          sizes = 2;
-          break;
-        case ShapeKind::kBox:
-        case ShapeKind::kEllipsoid:
-          sizes = 3;
-          break;
-        case ShapeKind::kPlane:
-        case ShapeKind::kHull:
-        default:
-          bad(Code::kUnsupported,
-              "%s: a robot's shapes are spheres, capsules, boxes, cylinders and ellipsoids",
-              Quoted(s.name).text);
-      }
+      const int sizes = num_sizes(s.kind);
+      if (sizes == 0)
+        bad(Code::kUnsupported, "%s: a robot's shapes are spheres, capsules, boxes, cylinders and ellipsoids",
+            Quoted(s.name).text);
       for (int k = 0; k < sizes; ++k) within(s.size[k], 1e-6, 1e3, s.name, "size");
     }
     for (const RobotPair& p : robot.self_pairs) {

@@ -1,36 +1,34 @@
 // The robots that there are, by number and by name: the library's own tables and those that a host has added.
-//
-// Any number of threads may look while others add and remove. A number is never given twice.
 #pragma once
+#include "base/registry.hpp"
 #include "robot/robot_copy.hpp"
 
 namespace rdm {
 
-int32_t num_robots();  // numbers that were given; those of removed robots count
-
-// While it lives, the robot stays.
-class RobotRef {
- public:
-  RobotRef() = default;
-  explicit RobotRef(int32_t index);  // Error(kRange); Error(kNotFound): it was removed
-  RobotRef(const RobotRef&) = delete;
-  RobotRef& operator=(const RobotRef&) = delete;
-  RobotRef(RobotRef&& other) noexcept;
-  RobotRef& operator=(RobotRef&& other) noexcept;
-  ~RobotRef();
-  const Robot& operator*() const { return *robot_; }
-  const Robot* operator->() const { return robot_; }
-
- private:
-  int32_t index_ = -1;  // of an added one
-  const Robot* robot_ = nullptr;
+struct Robots {
+  using Thing = Robot;
+  using Copy = RobotCopy;
+  static constexpr const char* kNoun = "robot";
+  static constexpr int kRounds = 1;
+  static int32_t num_own();
+  static const Robot& own(int32_t index);
+  static const Robot& shown(const RobotCopy& copy) { return copy.robot(); }
+  static bool called(const Robot& robot, const char* name, int round);  // name or alias
+  static void check(const Robot& robot);
 };
+using RobotRef = Ref<Robots>;
 
-int32_t find_robot(const char* name);  // name or alias; Error(kNotFound) with the nearest
-
-// A deep copy joins the list. Error(kArgument), Error(kRange) as check_robot, also for a name that is taken.
-int32_t add_robot(const Robot& robot);
-// Whoever holds a reference keeps it. Error(kArgument) for one of the library's own.
-void remove_robot(int32_t index);
+inline int32_t num_robots() {
+  return Registry<Robots>::get().given();
+}
+inline int32_t find_robot(const char* name) {
+  return Registry<Robots>::get().find(name);
+}
+inline int32_t add_robot(const Robot& robot) {
+  return Registry<Robots>::get().add(robot);
+}
+inline void remove_robot(int32_t index) {
+  Registry<Robots>::get().remove(index);
+}
 
 }  // namespace rdm

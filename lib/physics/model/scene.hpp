@@ -31,6 +31,24 @@ enum class ShapeKind : int32_t {
   kHull = 6
 };
 
+// How many sizes a primitive has; 0 for hulls, planes and what is no kind.
+constexpr int num_sizes(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::kSphere:
+      return 1;
+    case ShapeKind::kCapsule:
+    case ShapeKind::kCylinder:
+      return 2;
+    case ShapeKind::kBox:
+    case ShapeKind::kEllipsoid:
+      return 3;
+    case ShapeKind::kHull:
+    case ShapeKind::kPlane:
+      break;
+  }
+  return 0;
+}
+
 // size: sphere (radius, 0, 0); capsule and cylinder along z (radius, half length of the straight part, 0);
 // box half sizes; plane (0, 0, 0): the half space below z = 0 of its frame; ellipsoid half axes; hull: the
 // scene sets it to half sizes of the box about its frame's origin that holds it. m.
