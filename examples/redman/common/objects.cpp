@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <redman/redman.hpp>
 
+#include "common/added.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
 #include "common/report.hpp"
@@ -58,14 +59,19 @@ rdm_object_def object_def_of(const Import& import) {
   return def;
 }
 
+namespace {
+constexpr AddedKind<rdm_object_def> kObject = {"object", rdm_import_write_object, rdm_object_create,
+                                               rdm_object_find, remember_object};
+}  // namespace
+
 std::string object_text(const rdm_object_def& def) {
-  size_t size = 0;
-  if (rdm_import_write_object(&def, nullptr, 0, &size) != RDM_OK) throw Failure(rdm_import_error());
-  std::string text(size + 1, '\0');
-  if (rdm_import_write_object(&def, text.data(), text.size(), &size) != RDM_OK)
-    throw Failure(rdm_import_error());
-  text.pop_back();
-  return text;
+  return text_of(kObject, def);
+}
+int32_t load_object(const std::string& file) {
+  return add(kObject, object_def_of(import_object(file)), file);
+}
+int32_t load_object_text(const std::string& text, const std::string& where) {
+  return add(kObject, object_def_of(import_object_text(text, where)), where);
 }
 #else
 namespace {
@@ -87,35 +93,13 @@ rdm_object_def object_def_of(const Import&) {
 std::string object_text(const rdm_object_def&) {
   without();
 }
+int32_t load_object(const std::string&) {
+  without();
+}
+int32_t load_object_text(const std::string&, const std::string&) {
+  without();
+}
 #endif
-
-namespace {
-int32_t add_object(const Import& import, const std::string& where) {
-  const rdm_object_def def = object_def_of(import);
-  int32_t object = -1;
-  if (rdm_object_create(&object, &def) != RDM_OK) {
-    int32_t taken = -1;
-    const std::string text = rdm_last_error();
-    const bool other = rdm_object_find(def.name, &taken) == RDM_OK ||
-                       (def.alias && rdm_object_find(def.alias, &taken) == RDM_OK);
-    throw Failure(where + ": " + text +
-                  (other ? ": give it another by redman object " + where +
-                               " --name NAME --out NAME.object, and "
-                               "take that file"
-                         : ""));
-  }
-  remember_object(def.name, object_text(def));
-  return object;
-}
-}  // namespace
-
-int32_t load_object(const std::string& file) {
-  return add_object(import_object(file), file);
-}
-
-int32_t load_object_text(const std::string& text, const std::string& where) {
-  return add_object(import_object_text(text, where), where);
-}
 
 void add_object_flag(CLI::App& command) {
   command

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <redman/redman.hpp>
 
+#include "common/added.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
 #include "common/report.hpp"
@@ -76,29 +77,12 @@ rdm_robot_def def_of(const Import& import) {
 }
 
 namespace {
-
-int32_t add_robot(const Import& import, const std::string& where) {
-  const rdm_robot_def def = def_of(import);
-  int32_t robot = -1;
-  if (rdm_robot_create(&robot, &def) != RDM_OK) {
-    int32_t taken = -1;
-    const std::string text = rdm_last_error();
-    const bool other = rdm_robot_find(def.name, &taken) == RDM_OK ||
-                       (def.alias && rdm_robot_find(def.alias, &taken) == RDM_OK);
-    throw Failure(where + ": " + text +
-                  (other ? ": give it another by redman robot " + where +
-                               " --name NAME --out NAME.robot, and take "
-                               "that file"
-                         : ""));
-  }
-  remember_robot(def.name, robot_text(def));
-  return robot;
-}
-
+constexpr AddedKind<rdm_robot_def> kRobot = {"robot", rdm_import_write_robot, rdm_robot_create,
+                                             rdm_robot_find, remember_robot};
 }  // namespace
 
 int32_t load_robot(const std::string& file) {
-  return add_robot(import_robot(file, {}), file);
+  return add(kRobot, def_of(import_robot(file, {})), file);
 }
 
 int32_t load_robot_text(const std::string& text, const std::string& where) {
@@ -108,17 +92,11 @@ int32_t load_robot_text(const std::string& text, const std::string& where) {
   rdm_import* made = nullptr;
   if (rdm_import_read(&made, text.data(), text.size(), &o) != RDM_OK)
     throw Failure(where + ": " + rdm_import_error());
-  return add_robot(Import(made), where);
+  return add(kRobot, def_of(Import(made)), where);
 }
 
 std::string robot_text(const rdm_robot_def& def) {
-  size_t size = 0;
-  if (rdm_import_write_robot(&def, nullptr, 0, &size) != RDM_OK) throw Failure(rdm_import_error());
-  std::string text(size + 1, '\0');
-  if (rdm_import_write_robot(&def, text.data(), text.size(), &size) != RDM_OK)
-    throw Failure(rdm_import_error());
-  text.pop_back();
-  return text;
+  return text_of(kRobot, def);
 }
 #else
 namespace {
