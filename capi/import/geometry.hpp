@@ -1,74 +1,34 @@
-// Vectors, turns, poses and moments of inertia of the readers: double, quaternions (x, y, z, w).
+// Vectors, turns, poses and moments of inertia of the readers: double. Arrays have quaternions as (x, y, z, w).
 #pragma once
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "base/vec.hpp"
+
 namespace rdm::import {
 
-struct V3 {
-  double x = 0, y = 0, z = 0;
-  double& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
-  double operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
-};
-inline V3 operator+(V3 a, V3 b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-inline V3 operator-(V3 a, V3 b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline V3 operator*(double s, V3 a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-inline double dot(V3 a, V3 b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-inline V3 cross(V3 a, V3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline double norm(V3 a) {
-  return std::sqrt(dot(a, a));
-}
+using V3 = Vec3;
+using Turn = Quat;  // its operators, norm, dot and cross are base's
+
 // `otherwise` for what has no direction.
 inline V3 unit(V3 a, V3 otherwise = {0, 0, 1}) {
   const double n = norm(a);
   return n > 1e-12 ? (1 / n) * a : otherwise;
 }
 
-struct Turn {
-  double x = 0, y = 0, z = 0, w = 1;
-};
-inline Turn operator*(Turn a, Turn b) {
-  return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
-}
 inline Turn back(Turn q) {
-  return {-q.x, -q.y, -q.z, q.w};
+  return conjugate(q);
 }
 inline V3 operator*(Turn q, V3 v) {
-  const V3 u{q.x, q.y, q.z};
-  const V3 t = 2 * cross(u, v);
-  return v + q.w * t + cross(u, t);
-}
-inline Turn normalized(Turn q) {
-  const double n = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  return {q.x / n, q.y / n, q.z / n, q.w / n};
-}
-inline Turn turn_about(V3 axis, double angle) {
-  const double s = std::sin(angle / 2);
-  return {s * axis.x, s * axis.y, s * axis.z, std::cos(angle / 2)};
-}
-// About fixed axes, x first.
-inline Turn from_rpy(V3 r) {
-  return turn_about({0, 0, 1}, r.z) * turn_about({0, 1, 0}, r.y) * turn_about({1, 0, 0}, r.x);
+  return rotate(q, v);
 }
 // The least turn from one unit vector to another.
 inline Turn turn_between(V3 a, V3 b) {
   const double c = dot(a, b);
-  if (c < -1 + 1e-12)
-    return turn_about(unit(cross(a, std::abs(a.x) < 0.7 ? V3{1, 0, 0} : V3{0, 1, 0})), M_PI);
+  if (c < -1 + 1e-12) return axis_angle(unit(cross(a, std::abs(a.x) < 0.7 ? V3{1, 0, 0} : V3{0, 1, 0})), kPi);
   const V3 v = cross(a, b);
-  return normalized({v.x, v.y, v.z, 1 + c});
+  return normalized(Turn{1 + c, v.x, v.y, v.z});
 }
 
 struct Pose {
@@ -95,7 +55,7 @@ inline Turn turn_of(const M3& m) {
   const double t = m[0][0] + m[1][1] + m[2][2];
   if (t > 0) {
     const double s = 2 * std::sqrt(t + 1);
-    return normalized({(m[2][1] - m[1][2]) / s, (m[0][2] - m[2][0]) / s, (m[1][0] - m[0][1]) / s, s / 4});
+    return normalized(Turn{s / 4, (m[2][1] - m[1][2]) / s, (m[0][2] - m[2][0]) / s, (m[1][0] - m[0][1]) / s});
   }
   const int i = m[0][0] > m[1][1] && m[0][0] > m[2][2] ? 0 : m[1][1] > m[2][2] ? 1 : 2;
   const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -105,7 +65,7 @@ inline Turn turn_of(const M3& m) {
   v[i] = s / 4;
   v[j] = (at(j, i) + at(i, j)) / s;
   v[k] = (at(k, i) + at(i, k)) / s;
-  return normalized({v.x, v.y, v.z, (at(k, j) - at(j, k)) / s});
+  return normalized(Turn{(at(k, j) - at(j, k)) / s, v.x, v.y, v.z});
 }
 inline M3 times(const M3& a, const M3& b) {
   M3 out{};
@@ -184,7 +144,7 @@ inline V3 vec(const double* v) {
   return {v[0], v[1], v[2]};
 }
 inline Turn turn(const double* q) {
-  return {q[0], q[1], q[2], q[3]};
+  return {q[3], q[0], q[1], q[2]};
 }
 inline void put(V3 v, double* out) {
   out[0] = v.x, out[1] = v.y, out[2] = v.z;

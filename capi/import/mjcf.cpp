@@ -98,12 +98,12 @@ Turn MjcfReader::turn_at(const Element& e, const std::string& c) const {
     const auto n = numbers(e, "quat", *t, 4, 4);
     const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3]);
     if (length < 1e-9) refuse_at(RDM_ERROR_ARGUMENT, e, "quat: its length is 0");
-    return normalized({n[1], n[2], n[3], n[0]});
+    return normalized(Turn{n[0], n[1], n[2], n[3]});
   }
   if (const auto* t = said("axisangle")) {
     const auto n = numbers(e, "axisangle", *t, 4, 4);
     if (norm({n[0], n[1], n[2]}) < 1e-9) refuse_at(RDM_ERROR_ARGUMENT, e, "axisangle: its axis is 0");
-    return turn_about(unit({n[0], n[1], n[2]}), angle(n[3]));
+    return axis_angle(unit({n[0], n[1], n[2]}), angle(n[3]));
   }
   if (const auto* t = said("euler")) {
     const auto n = numbers(e, "euler", *t, 3, 3);
@@ -112,7 +112,7 @@ Turn MjcfReader::turn_at(const Element& e, const std::string& c) const {
       const char letter = compiler.sequence[k];
       V3 axis;
       axis[std::tolower(letter) - 'x'] = 1;
-      const Turn one = turn_about(axis, angle(n[k]));
+      const Turn one = axis_angle(axis, angle(n[k]));
       q = std::islower(letter) ? q * one : one * q;  // small letters turn with the body
     }
     return q;
@@ -129,7 +129,7 @@ Turn MjcfReader::turn_at(const Element& e, const std::string& c) const {
   if (const auto* t = said("zaxis")) {
     const V3 raw = vector3(e, "zaxis", *t), z = unit(raw);
     if (norm(raw) < 1e-9) refuse_at(RDM_ERROR_ARGUMENT, e, "zaxis: its length is 0");
-    if (z.z < 0 && norm(cross({0, 0, 1}, z)) < 1e-10) return {1, 0, 0, 0};  // half a turn about x
+    if (z.z < 0 && norm(cross({0, 0, 1}, z)) < 1e-10) return {0, 1, 0, 0};  // half a turn about x
     return turn_between({0, 0, 1}, z);
   }
   return {};

@@ -152,7 +152,7 @@ const MeshIn* MjcfReader::mesh_of(const Element& asset, const Element& geom) {
     const auto n = numbers(asset, "refquat", *t, 4, 4);
     if (n[0] == 0 && n[1] == 0 && n[2] == 0 && n[3] == 0)
       refuse_at(RDM_ERROR_ARGUMENT, asset, "refquat: its length is 0");
-    ref.q = normalized({n[1], n[2], n[3], n[0]});
+    ref.q = normalized(Turn{n[0], n[1], n[2], n[3]});
   }
   V3 scale{1, 1, 1};
   if (const auto* t = value(asset, "scale", "")) scale = vector3(asset, "scale", *t);

@@ -142,7 +142,7 @@ struct Builder {
         const double ahead = zero - j.turned;
         rdm_robot_link l{};
         Pose X = at.X * Pose{j.at, {}};
-        X = X * (j.slides ? Pose{ahead * j.axis, {}} : Pose{{}, turn_about(j.axis, ahead)});
+        X = X * (j.slides ? Pose{ahead * j.axis, {}} : Pose{{}, axis_angle(j.axis, ahead)});
         put(X.p, l.p);
         put(X.q, l.q);
         put(j.axis, l.axis);
@@ -432,7 +432,7 @@ std::vector<Pose> link_poses(const Draft& d, const std::vector<double>& q) {
     const rdm_robot_link& l = d.links[i];
     const V3 axis = vec(l.axis);
     const Pose moved =
-        l.kind == RDM_JOINT_PRISMATIC ? Pose{q[i] * axis, {}} : Pose{{}, turn_about(axis, q[i])};
+        l.kind == RDM_JOINT_PRISMATIC ? Pose{q[i] * axis, {}} : Pose{{}, axis_angle(axis, q[i])};
     out.push_back(pose_of(out, l.parent) * Pose{vec(l.p), normalized(turn(l.q))} * moved);
   }
   return out;

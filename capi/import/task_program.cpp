@@ -1,11 +1,12 @@
-// Terms are evaluated as they stand in the file. Curves of a value v, with w = width:
-//   near  exp(-|v| / w)     bell  exp(-(v / w)^2)     over  max(0, v - at)     under  max(0, at - v)
+// Terms are evaluated as they stand in the file; what each is, and the curves, is told in task_program.hpp.
 #include "task_program.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
+#include "base/elementary.hpp"
+#include "geometry.hpp"
 #include "import.hpp"
 
 namespace rdm::import {
@@ -14,26 +15,11 @@ namespace {
 #define TRY(call) \
   if (const rdm_result result = (call)) return result
 
-// exp(-x) of x >= 0 by reduction and Taylor's series: the same bits everywhere, as a C library's is not.
-double decay(double x) {
-  constexpr double kLog2High = 0.693147180369123816490, kLog2Low = 1.90821492927058770002e-10;
-  if (!(x < 700)) return 0;
-  const double n = std::floor(x / (kLog2High + kLog2Low) + 0.5);
-  const double r = n * kLog2High - x + n * kLog2Low;  // -x = r - n log 2
-  double sum = 1;
-  for (int k = 14; k > 0; --k) sum = 1 + sum * r / k;
-  return std::ldexp(sum, -static_cast<int>(n));
-}
-
 double length(const double v[3]) {
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  return norm(vec(v));
 }
 void unrotate(const double q[4], const double v[3], double out[3]) {
-  const double back[4] = {-q[0], -q[1], -q[2], q[3]};
-  rotate(back, v, out);
+  put(back(turn(q)) * vec(v), out);
 }
 
 double draw(rdm_random* random, const Span& s) {
@@ -144,7 +130,7 @@ rdm_result value_of(const Scene& s, const Term& t, double* value, double* raw) {
       TRY(motion_of(s.world, t.a, &a));
       double axis[3];
       rotate(a.q, t.axis, axis);
-      sum = dot(axis, t.up);
+      sum = dot(vec(axis), vec(t.up));
       break;
     }
     case What::kSpeed:
@@ -210,9 +196,9 @@ double curve_of(const Term& t, double v) {
     case Curve::kValue:
       return v;
     case Curve::kNear:
-      return decay(std::fabs(v) / t.width);
+      return elementary::exp(-std::fabs(v) / t.width);
     case Curve::kBell:
-      return decay(v / t.width * (v / t.width));
+      return elementary::exp(-(v / t.width) * (v / t.width));
     case Curve::kAbove:
       return v > t.at ? 1 : 0;
     case Curve::kBelow:
@@ -304,23 +290,11 @@ rdm_result draw_factors(const Program& p, rdm_world* world, rdm_random* random) 
 }  // namespace
 
 void multiply(const double p[4], const double q[4], double out[4]) {
-  const double x = p[3] * q[0] + p[0] * q[3] + p[1] * q[2] - p[2] * q[1],
-               y = p[3] * q[1] + p[1] * q[3] + p[2] * q[0] - p[0] * q[2],
-               z = p[3] * q[2] + p[2] * q[3] + p[0] * q[1] - p[1] * q[0],
-               w = p[3] * q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2];
-  out[0] = x, out[1] = y, out[2] = z, out[3] = w;
+  put(turn(p) * turn(q), out);
 }
 
 void rotate(const double q[4], const double v[3], double out[3]) {
-  double t[3], in[3] = {v[0], v[1], v[2]};
-  for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    t[k] = 2 * (q[i] * in[j] - q[j] * in[i]);
-  }
-  for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    out[k] = in[k] + q[3] * t[k] + q[i] * t[j] - q[j] * t[i];
-  }
+  put(turn(q) * vec(v), out);
 }
 
 rdm_result turn_of(const double rpy[3], double q[4]) {

@@ -17,42 +17,54 @@ struct Span {  // drawn at a reset where the two differ
   double low, high;
 };
 
+// What a term's value is, before its curve; a and b are places, b the world unless the file says another. Names and keys are in
+// term_table.cpp.
 enum class What : int32_t {
   // one number
-  kConstant,
-  kTime,
-  kDistance,
-  kTouch,
-  kForce,
-  kJoint,
-  kMoved,
-  kLifted,
-  kHeight,
-  kUpright,
-  kSpeed,
-  kSpin,
-  kJointWindow,
-  kEffort,
-  kJointSpeed,
-  kAction,
-  kActionRate,
-  kLeavesBox,
-  kOverlap,
-  kSensor,
+  kConstant,     // 1
+  kTime,         // s since the reset
+  kDistance,     // m from a to b, each axis weighted by `along`
+  kTouch,        // 1 while the two touch; the raw value is their force
+  kForce,        // N between the two
+  kJoint,        // rad (m), or 0 to 1 from `from` to `to`
+  kMoved,        // m that a is from where it began
+  kLifted,       // m that a is above where it began
+  kHeight,       // m that a is above the world's origin
+  kUpright,      // cosine between a's axis and `up`
+  kSpeed,        // m/s of a
+  kSpin,         // rad/s of a
+  kJointWindow,  // rad (m) beyond [low, high], summed over the joints
+  kEffort,       // the largest torque over its bound
+  kJointSpeed,   // rad/s (m/s) of the fastest joint
+  kAction,       // mean square of the entries
+  kActionRate,   // mean square of their change
+  kLeavesBox,    // m that a is outside of a box in the frame of b
+  kOverlap,      // m by which a body is in others; where nothing changes, 0
+  kSensor,       // N that a link feels
   // several: observations alone
-  kJoints,
-  kRates,
-  kTargets,
-  kTorques,
-  kPosition,
-  kRotation,
-  kVelocity,
-  kTurning,
-  kTip,
-  kActions,
-  kWhere
+  kJoints,    // rad (m), or their share of the range in [-1, 1]
+  kRates,     // rad/s (m/s)
+  kTargets,   // rad (m) that drives go for
+  kTorques,   // N m (N), or their share of the bound
+  kPosition,  // [3] m of a, in the frame of b
+  kRotation,  // [4] x, y, z, w of a in the frame of b, w >= 0
+  kVelocity,  // [3] m/s of a less b's, in the frame of b
+  kTurning,   // [3] rad/s, likewise
+  kTip,       // [3] N that a link feels
+  kActions,   // entries of the last action
+  kWhere      // [3] m where a began
 };
-enum class Curve : int32_t { kValue, kNear, kBell, kAbove, kBelow, kOver, kUnder, kSquare };
+// What becomes of a value v, with w = width.
+enum class Curve : int32_t {
+  kValue,  // v
+  kNear,   // exp(-|v| / w)
+  kBell,   // exp(-(v / w)^2)
+  kAbove,  // 1 where v > at, else 0
+  kBelow,  // 1 where v < at, else 0
+  kOver,   // max(0, v - at)
+  kUnder,  // max(0, at - v)
+  kSquare  // v^2
+};
 
 struct Term {
   What what;

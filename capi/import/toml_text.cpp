@@ -23,9 +23,9 @@ void check_cost(const std::string& bytes) {
       ++line, parts = 0, key = true;
     else if (c == ',' || c == '[' || c == '{' || c == '=')
       ++values, parts = 0, key = c != '=';
-    else if (c == '.' && key)
+    else if (c == '.' && key)  // a.b.c = is a table in a table in a table
       ++parts;
-    else if (c == '#' && parts == 0)
+    else if (c == '#' && parts == 0)  // the dots of a comment are none of a key
       key = false;
     if (parts > kMostParts)
       refuse(RDM_ERROR_RANGE, "line %d: a key of more than %zu parts", line, kMostParts);
@@ -85,8 +85,9 @@ const toml::node& Table::need(const char* key) const {
 
 double Table::as_number(const toml::node& n, const char* key) const {
   if (const auto* x = n.as_floating_point()) return x->get();
-  if (const auto* x = n.as_integer())
+  if (const auto* x = n.as_integer())  // beyond 2^53 a double would be another number
     if (std::abs(static_cast<double>(x->get())) <= 9007199254740992.0) return static_cast<double>(x->get());
+  // "$mass" is the option of that name. While the task is registered there is no lookup: no option has a value.
   if (const auto* x = n.as_string(); x && lookup && x->get().size() > 1 && x->get()[0] == '$') {
     try {
       return lookup->number(x->get().substr(1));
@@ -129,6 +130,7 @@ std::vector<double> Table::list(const toml::node& n, const char* key, size_t lea
 std::string Table::as_text(const toml::node& n, const char* key) const {
   const auto* x = n.as_string();
   if (!x) bad(RDM_ERROR_FORMAT, line_of(n), "%s is no text", key);
+  // it would end the name for C, and two names could be the same
   if (x->get().find('\0') != std::string::npos) bad(RDM_ERROR_FORMAT, line_of(n), "%s has a 0 in it", key);
   if (!lookup || x->get().size() < 2 || x->get()[0] != '$') return x->get();
   try {
@@ -162,6 +164,7 @@ std::vector<Table> Table::rows(const char* key) const {
     const toml::table* row = x.as_table();
     if (!row) bad(RDM_ERROR_FORMAT, line_of(x), "%s is written as [[%s]]", key, key);
     std::string name = what.empty() ? key : what + ": " + key;
+    // what a reader of an error finds the row by
     for (const char* naming : {"name", "link", "term"})
       if (const toml::node* given = row->get(naming); given && given->is_string()) {
         name += ' ' + clean(given->as_string()->get());
@@ -173,7 +176,7 @@ std::vector<Table> Table::rows(const char* key) const {
 }
 
 Table Table::section(const char* key) const {
-  static const toml::table kEmpty;
+  static const toml::table kEmpty;  // so that all keys of a section that is not there have their defaults
   const toml::node* n = find(key);
   const std::string name = what.empty() ? key : what + ": " + key;
   if (!n) return {kEmpty, name, lookup};

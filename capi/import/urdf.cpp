@@ -49,7 +49,7 @@ struct Reader {
         const auto n = numbers(*o, "quat_xyzw", *quat, 4, 4);
         if (n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3] < 1e-18)
           refuse_at(RDM_ERROR_ARGUMENT, *o, "quat_xyzw: its length is 0");
-        X.q = normalized({n[0], n[1], n[2], n[3]});
+        X.q = normalized(Turn{n[3], n[0], n[1], n[2]});
       }
     }
     return X;

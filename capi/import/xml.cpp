@@ -52,8 +52,8 @@ void refuse_doctype(const std::string& bytes, const std::string& file) {
       if (at == std::string::npos) return;
       continue;
     }
-    if (bytes.compare(at, 2, "<?") == 0) continue;
-    if (bytes.compare(at, 9, "<!DOCTYPE") != 0) return;
+    if (bytes.compare(at, 2, "<?") == 0) continue;       // a declaration may stand before it
+    if (bytes.compare(at, 9, "<!DOCTYPE") != 0) return;  // the root element: none may come behind it
     const std::string text = bytes.substr(at, bytes.find('>', at) - at);
     const auto line = 1 + std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n');
     for (const char* word : {"[", "SYSTEM", "PUBLIC"})
@@ -70,11 +70,12 @@ void refuse_doctype(const std::string& bytes, const std::string& file) {
 void blank_late_declaration(std::string* bytes) {
   const size_t at = bytes->find("<?xml ");
   if (at == std::string::npos || at == 0) return;
+  // An element of our own behind it is the first one only if comments alone are before.
   if (first_element(bytes->substr(0, at) + "<x/>") == "x") {
     const size_t end = bytes->find("?>", at);
     if (end == std::string::npos) return;
     for (size_t k = at; k < end + 2; ++k)
-      if ((*bytes)[k] != '\n') (*bytes)[k] = ' ';
+      if ((*bytes)[k] != '\n') (*bytes)[k] = ' ';  // lines keep their numbers
   }
 }
 
@@ -102,7 +103,7 @@ class Scan {
   void markup() {
     const size_t text = bytes_.find_first_not_of(" \t\r\n", at_);
     at_ = std::min(bytes_.find('<', at_), bytes_.size());
-    if (text < at_) ++nodes;
+    if (text < at_) ++nodes;  // of text that is not white space
     if (at_ == bytes_.size()) return;
     const size_t begin = at_;
     if (skip("</", ">")) {
@@ -118,7 +119,7 @@ class Scan {
   }
   void end(size_t begin) {
     if (ended_) behind = std::min(behind, begin);
-    ended_ |= --depth_ <= 0;
+    ended_ |= --depth_ <= 0;  // below 0 where an end has no beginning, which the parser refuses
   }
   void element() {
     const size_t begin = at_;
@@ -126,7 +127,7 @@ class Scan {
     char quote = 0;
     for (++at_; at_ < bytes_.size(); ++at_) {
       const char c = bytes_[at_];
-      if (quote)
+      if (quote)  // a '>' within a value ends no element
         quote = c == quote ? 0 : quote;
       else if (c == '"' || c == '\'')
         quote = c;
@@ -161,6 +162,7 @@ struct Parser {
     e->line = x.GetLineNum();
     for (const auto* a = x.FirstAttribute(); a; a = a->Next())
       e->attributes.push_back({a->Name(), a->Value(), false});
+    // its elements would be dropped as unknown ones, and with them half of the robot
     if (e->tag.rfind("xacro:", 0) == 0)
       refuse_at(RDM_ERROR_UNSUPPORTED, *e, "xacro is not read: expand the file with the xacro tool first");
     for (const auto* c = x.FirstChildElement(); c; c = c->NextSiblingElement()) {
@@ -189,6 +191,7 @@ struct Parser {
     } catch (const Refusal& r) {
       refuse(r.code, "%s: %s", at.c_str(), r.text.c_str());
     }
+    // MJCF: children of the included root stand where the include stood
     auto root = parse(bytes, clean(name), depth + 1);
     for (auto& child : root->children) into->children.push_back(std::move(child));
   }
@@ -198,7 +201,7 @@ struct Parser {
     out->budget.spend(Cost::kTextBytes, bytes.size());
     blank_late_declaration(&bytes);
     refuse_doctype(bytes, file);
-    const Scan scan(bytes, of);
+    const Scan scan(bytes, of);  // counted before the parser takes memory for them
     out->budget.spend(Cost::kNodes, scan.nodes);
     out->budget.spend(Cost::kAttributes, scan.attributes);
     tinyxml2::XMLDocument document;
@@ -216,8 +219,9 @@ struct Parser {
   }
 };
 
+// What nobody has asked for: an element as a whole, else its attributes.
 void list(const Element& e, bool root, Draft* out) {
-  if (out->notes.size() > kMostNotes) return;
+  if (out->notes.size() > kMostNotes) return;  // a file may have a million
   const auto in = e.file.empty() ? std::string() : " (in " + e.file + ")";
   if (!root && !e.seen) {
     const Attribute* name = e.find("name");
@@ -288,6 +292,7 @@ std::string first_element(const std::string& bytes) {
     at = bytes.find_first_not_of(" \t\r\n", at);
     if (at == std::string::npos || bytes[at] != '<') return "";
     if (skip("<?", "?>") || skip("<!--", "-->")) continue;
+    // a subset in brackets has '>' of its own
     const size_t subset = bytes.find_first_of("[>", at);  // of a DOCTYPE
     if (skip("<!", subset != std::string::npos && bytes[subset] == '[' ? "]>" : ">")) continue;
     const size_t end = bytes.find_first_of(" \t\r\n/>", at + 1);
@@ -320,11 +325,12 @@ bool is_space(char x) {
 // The next number of a text, which may be infinite; NaN: there is none.
 double next_number(const char** at, const char* end) {
   const char* c = *at;
-  if (*c == '+' && c + 1 != end && c[1] != '-') ++c;
+  if (*c == '+' && c + 1 != end && c[1] != '-') ++c;  // from_chars takes no '+', XML's numbers may have one
   double value = 0;
   const auto [after, error] = from_chars(c, end, value);
   if (after != end && !is_space(*after)) return NAN;
   if (error == std::errc::result_out_of_range) {
+    // too small is 0, as other readers have it; too large is infinite, and the caller says of what
     const std::string text(c, after);
     const bool small = text.find("e-") != std::string::npos || text.find("E-") != std::string::npos;
     value = small ? 0 : *c == '-' ? -INFINITY : INFINITY;
@@ -365,7 +371,7 @@ std::vector<double> numbers(const Element& e, const char* attribute, const std::
                 power);
     }
     out.push_back(value);
-    if (out.size() > most) break;
+    if (out.size() > most) break;  // one too many is enough to refuse
   }
   if (out.size() < least || out.size() > most) {
     const std::string range = least == most ? format("%zu", least) : format("%zu to %zu", least, most);

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "env/options/simulation_rows.hpp"
+
 extern "C" rdm_result redman_plugin(void);  // of examples/07_own_task.c
 
 namespace {
@@ -340,6 +342,22 @@ TEST(TaskText, ResetsDraw) {
   }());
   Pool two("text_two", 8, "far=0.5..1");
   EXPECT_NE(two.b.obs[0], two.b.obs[two.spec.obs_dim]);
+}
+
+TEST(TaskText, TakesEachOptionOfTimeAndSolver) {
+  for (const rdm::OptionSpec& row : rdm::kSimulationRows) {
+    SCOPED_TRACE(row.key);
+    std::string line = std::string(row.key) + " = ";
+    if (row.kind == rdm::OptionKind::kText)
+      line += std::string("\"") + row.text + '"';
+    else if (row.kind == rdm::OptionKind::kFlag)
+      line += row.number != 0 ? "true" : "false";
+    else
+      line += std::to_string(row.number);
+    std::string text = with("");
+    text.replace(text.find("frequency = 50"), 14, line);
+    const Task task(text);
+  }
 }
 
 struct Wrong {
