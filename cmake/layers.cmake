@@ -52,9 +52,9 @@ endif()
 set(RDM_ROWS "")
 
 # The public headers, in the order in which redman.h includes them: the stable ones first.
-file(STRINGS ${PROJECT_SOURCE_DIR}/include/redman/redman.h RDM_HEADERS REGEX "^#include <redman/")
-list(FILTER RDM_HEADERS EXCLUDE REGEX "deprecated")
-list(TRANSFORM RDM_HEADERS REPLACE "^#include <([a-z/.]+)>.*" "${PROJECT_SOURCE_DIR}/include/\\1")
+execute_process(COMMAND sh ${PROJECT_SOURCE_DIR}/cmake/headers.sh ${PROJECT_SOURCE_DIR}/include
+                OUTPUT_VARIABLE RDM_HEADERS OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+string(REPLACE "\n" ";" RDM_HEADERS "${RDM_HEADERS}")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/redman/redman.h)
 
 # With REDMAN_STUBS=OFF the names that this build leaves out: no list of exports has them.

@@ -13,13 +13,14 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
 import sys
 import textwrap
 from pathlib import Path
 from typing import Iterator, NamedTuple
 
 HERE = Path(__file__).resolve().parent
-INCLUDE = HERE.parents[1] / "include" / "redman"
+ROOT = HERE.parents[1]
 OUTPUT = HERE / "redman" / "_abi.py"
 
 SCALARS = {
@@ -312,9 +313,9 @@ class Function(NamedTuple):
 
 def headers() -> str:
     """The text of the public headers of libredman, as redman.h includes them: the stable ones first."""
-    umbrella = (INCLUDE / "redman.h").read_text(encoding="utf-8")
-    names = [n for n in re.findall(r"^#include <redman/(\w+\.h)>", umbrella, re.M) if n != "deprecated.h"]
-    return "\n".join((INCLUDE / name).read_text(encoding="utf-8") for name in names)
+    command = ["sh", str(ROOT / "cmake" / "headers.sh"), str(ROOT / "include")]
+    listed = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+    return "\n".join(Path(name).read_text(encoding="utf-8") for name in listed.split("\n")[:-1])
 
 
 def generate(text: str) -> str:

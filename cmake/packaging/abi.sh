@@ -4,12 +4,12 @@
 # abi.sh check ROOT CC: the header against the last release's dump. A stable function or type that is gone or changed fails
 # while RDM_ABI is that release's; new functions, and members at the ends of sized structs, pass.
 set -eu
-awk=$(dirname "$0")/abi.awk
+awk=$(dirname "$0")/abi.awk headers=$(dirname "$0")/../headers.sh
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 number() { sed -n "s/^#define $2 \([0-9]*\).*/\1/p" "$1/redman/base.h"; }
-stable() { grep -l '^/\* redman/.* Stable since' "$1"/redman/*.h; ls "$1"/redman/deprecated.h 2> /dev/null; }
+stable() { sh "$headers" "$1" stable; ls "$1"/redman/deprecated.h 2> /dev/null; }
 
 # library INCLUDE CC OUT
 library() {

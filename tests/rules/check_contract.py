@@ -6,6 +6,7 @@ The rules are those of "How to read the declarations" at the top of redman.h.
 """
 import pathlib
 import re
+import subprocess
 import sys
 
 HANDLES = {"rdm_pool", "rdm_agent", "rdm_policy", "rdm_actor", "rdm_recording", "rdm_planner", "rdm_map", "rdm_scene", "rdm_world"}
@@ -81,9 +82,9 @@ def split(declaration):
 
 def main(root):
     folder = pathlib.Path(root)
-    umbrella = (folder / "include/redman/redman.h").read_text()
-    names = [n for n in re.findall(r"^#include <(redman/\w+\.h)>", umbrella, re.M) if "deprecated" not in n]
-    header = Header("\n".join((folder / "include" / name).read_text() for name in names))
+    listed = ["sh", folder / "cmake/headers.sh", folder / "include"]
+    names = subprocess.run(listed, check=True, capture_output=True, text=True).stdout.split("\n")[:-1]
+    header = Header("\n".join(pathlib.Path(name).read_text() for name in names))
     wrong = []
     counts = {}
 

@@ -6,7 +6,7 @@ root=$1 cxx=$2
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 status=0
-headers=$(sed -n "s|^#include <\(redman/.*\)>.*|$root/include/\1|p" "$root/include/redman/redman.h" | grep -v deprecated)
+headers=$(sh "$root/cmake/headers.sh" "$root/include")
 # shellcheck disable=SC2086
 for part in stable experimental; do awk -v mode=$part -f "$root/tests/rules/header.awk" $headers; done > "$work/all"
 LC_ALL=C sort -o "$work/all" "$work/all"

@@ -25,11 +25,10 @@ for list in redman redman_old redman_1.0 redman_experimental; do
   sed -n "s/^\(rdm_.*\)/\1@@$node/p" "$root/capi/$list.symbols" >> "$work/nodes"
 done
 LC_ALL=C sort "$work/nodes" > "$work/listed"
-headers=$(sed -n 's/^#include <redman\/\(.*\)>.*/\1/p' "$root/include/redman/redman.h" | grep -v deprecated)
 for part in stable experimental; do
   LC_ALL=C sort "$work/$part.names" > "$work/$part.listed"
-  # shellcheck disable=SC2086
-  (cd "$root/include/redman" && awk -v mode=$part -f "$root/tests/rules/header.awk" $headers) | LC_ALL=C sort > "$work/$part.declared"
+  # shellcheck disable=SC2046
+  awk -v mode=$part -f "$root/tests/rules/header.awk" $(sh "$root/cmake/headers.sh" "$root/include" $part) | LC_ALL=C sort > "$work/$part.declared"
   same "declared as $part in the headers (<) and listed in capi/*.symbols (>)" "$work/$part.declared" "$work/$part.listed"
 done
 nm -D --defined-only "$library" | awk '$2 != "A" { print $3 }' | LC_ALL=C sort > "$work/exported"
