@@ -1,6 +1,8 @@
 # Reads the public headers and writes, for the halves that a build leaves out, the functions that say so.
 # -v sim=0|1 -v learn=0|1 -v policy=0|1: which halves there are, and whether frozen policies run. A function belongs to a half by its name; one of agents that
 # takes a pool needs both; recordings are in either. The two config_init functions are in every build, and what has no half is too.
+# -v old=1, of deprecated.h: the functions of 0.1 that have another name now, for programs that were linked with it; without
+# -v stubs=1 those of a half that is left out do not exist.
 # -v names=1: the names alone of what a build without such functions leaves out, config_init and the like among them; lists of
 # symbols may be given too.
 function half_of(name, parameters) {
@@ -34,12 +36,15 @@ function declared(text,   type, name, parameters, half) {
   parameters = substr(text, RSTART + RLENGTH)
   sub(/ $/, "", type)
   half = half_of(name, parameters)
-  if (half != "") print names ? name : text " " body_of(type, half, parameters)
+  if (old) { if (half == "" || stubs) print "RDM_API " body }
+  else if (half != "") print names ? name : text " " body_of(type, half, parameters)
 }
 
 BEGIN {
-  if (!names) print_head()
+  if (old) print "// The names of 0.1. Written by capi/stubs.awk from redman/deprecated.h.\n#include \"redman/deprecated.h\"\n\nextern \"C\" {"
+  else if (!names) print_head()
 }
+END { if (old) print "}" }
 function print_head() {
   print "// The functions of the halves that this build leaves out: they exist and say so. Written by capi/stubs.awk."
   print "#include \"capi/abi_call.hpp\"\n\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"\n"
@@ -50,6 +55,14 @@ function print_head() {
 }
 { sub(/\r$/, "") }
 names && /^rdm_[a-z_0-9]+$/ && half_of($0, "") != "" { print; next }
+old && /defined\(RDM_EXPERIMENTAL\)/ { exit }  # no symbols for those
+old && /^static inline/ { body = " "; next }
+old && body != "" {
+  body = body == " " ? $0 : body "\n" $0
+  if (/^}/) { declared(substr(body, 1, index(body, "{") - 1) ";"); body = "" }
+  next
+}
+old { next }
 statement == "" && /^RDM_API/ { statement = " " }
 statement != "" {
   statement = statement " " $0

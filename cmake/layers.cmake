@@ -57,32 +57,36 @@ execute_process(COMMAND sh ${PROJECT_SOURCE_DIR}/cmake/headers.sh ${PROJECT_SOUR
 string(REPLACE "\n" ";" RDM_HEADERS "${RDM_HEADERS}")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/redman/redman.h)
 
+# Which halves there are, for capi/stubs.awk.
+find_program(RDM_AWK NAMES mawk gawk awk REQUIRED)
+set(RDM_HALVES "")
+foreach(half SIM LEARN POLICY STUBS)
+  string(TOLOWER ${half} name)
+  if(REDMAN_${half})
+    list(APPEND RDM_HALVES -v ${name}=1)
+  else()
+    list(APPEND RDM_HALVES -v ${name}=0)
+  endif()
+endforeach()
+list(APPEND RDM_HALVES -f ${PROJECT_SOURCE_DIR}/capi/stubs.awk)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/capi/stubs.awk)
+
 # With REDMAN_STUBS=OFF the names that this build leaves out: no list of exports has them.
 set(RDM_LEFT_OUT "")
-find_program(RDM_AWK NAMES mawk gawk awk REQUIRED)
 if(NOT REDMAN_STUBS)
-  foreach(half SIM LEARN POLICY)
-    string(TOLOWER ${half} name)
-    if(REDMAN_${half})
-      list(APPEND halves -v ${name}=1)
-    else()
-      list(APPEND halves -v ${name}=0)
-    endif()
-  endforeach()
-  execute_process(COMMAND ${RDM_AWK} ${halves} -v names=1 -f ${PROJECT_SOURCE_DIR}/capi/stubs.awk ${RDM_HEADERS}
-                          ${PROJECT_SOURCE_DIR}/capi/redman_old.symbols
+  execute_process(COMMAND ${RDM_AWK} -v names=1 ${RDM_HALVES} ${RDM_HEADERS} ${PROJECT_SOURCE_DIR}/capi/redman_old.symbols
                   OUTPUT_VARIABLE RDM_LEFT_OUT COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX MATCHALL "rdm_[a-z_0-9]+" RDM_LEFT_OUT "${RDM_LEFT_OUT}")
 endif()
 
-# The source file, written from the public headers, with the functions of the halves that are left out.
-function(rdm_stubs out)
-  set(file ${PROJECT_BINARY_DIR}/stubs.cpp)
-  set(awk ${PROJECT_SOURCE_DIR}/capi/stubs.awk)
-  list(JOIN RDM_HEADERS "' '" headers)
-  add_custom_command(OUTPUT ${file} DEPENDS ${RDM_HEADERS} ${awk} VERBATIM
-    COMMAND sh -c "'${RDM_AWK}' -v sim=$<BOOL:${REDMAN_SIM}> -v learn=$<BOOL:${REDMAN_LEARN}> -v policy=$<BOOL:${REDMAN_POLICY}> -f '${awk}' '${headers}' > '${file}'")
-  set(${out} ${file} PARENT_SCOPE)
+# rdm_written(list file old headers...): appends the file that capi/stubs.awk writes from the headers. old 0: the functions of
+# the halves that are left out; 1: those that have another name now.
+function(rdm_written list file old)
+  list(JOIN RDM_HALVES "' '" halves)
+  list(JOIN ARGN "' '" headers)
+  add_custom_command(OUTPUT ${file} DEPENDS ${ARGN} ${PROJECT_SOURCE_DIR}/capi/stubs.awk VERBATIM
+    COMMAND sh -c "'${RDM_AWK}' -v old=${old} '${halves}' '${headers}' > '${file}'")
+  set(${list} ${${list}} ${file} PARENT_SCOPE)
 endfunction()
 
 # rdm_layer(name folder SEES rows... LINKS libraries...): the folder's sources as the object library
@@ -102,9 +106,11 @@ function(rdm_layer name folder)
   if(NOT sources)
     return()
   endif()
-  if(name STREQUAL "capi" AND REDMAN_STUBS AND NOT (REDMAN_SIM AND REDMAN_LEARN))
-    rdm_stubs(stubs)
-    list(APPEND sources ${stubs})
+  if(name STREQUAL "capi")
+    rdm_written(sources ${PROJECT_BINARY_DIR}/old_names.cpp 1 ${PROJECT_SOURCE_DIR}/include/redman/deprecated.h)
+    if(REDMAN_STUBS AND NOT (REDMAN_SIM AND REDMAN_LEARN))
+      rdm_written(sources ${PROJECT_BINARY_DIR}/stubs.cpp 0 ${RDM_HEADERS})
+    endif()
   endif()
   add_library(rdm_${name} OBJECT ${sources})
   target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR}/lib)

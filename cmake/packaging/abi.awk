@@ -1,7 +1,7 @@
 # From the stable headers and deprecated.h, whose names old binaries have: a C file for abidw to describe (-v mode=functions),
 # which defines each stable function and, for each constant, an array as long as 1000 + its value; or what abidiff is to let pass (-v mode=allowed): structs that
 # begin with struct_size may grow at their ends.
-BEGIN { if (mode == "functions") print "#define RDM_NO_DEPRECATED\n#include <redman/redman.h>\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"" }
+BEGIN { if (mode == "functions") print "#define RDM_NO_DEPRECATED\n#include <redman/deprecated.h>\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"" }
 FNR == 1 { old = FILENAME ~ /deprecated/; ended = 0 }
 old && /^#if defined\(RDM_EXPERIMENTAL\)/ { ended = 1 }
 ended { next }

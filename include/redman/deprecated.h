@@ -1,7 +1,8 @@
 /* redman/deprecated.h: the names of 0.1. Each is, or calls, what its warning names.
  *
  * Included by redman.h unless RDM_NO_DEPRECATED is defined; it goes with 1.1. The symbols stay in
- * the library as long as RDM_ABI. RDM_NO_DEPRECATION_WARNINGS keeps the compiler quiet. */
+ * the library as long as RDM_ABI: capi/stubs.awk writes them from the functions of the first part.
+ * RDM_NO_DEPRECATION_WARNINGS keeps the compiler quiet. */
 #ifndef REDMAN_DEPRECATED_H
 #define REDMAN_DEPRECATED_H
 #include <redman/agent.h>
@@ -11,6 +12,7 @@
 extern "C" {
 #endif
 
+#if !defined(RDM_NO_DEPRECATED)
 enum {
   RDM_ARGUMENT RDM_DEPRECATED("RDM_ERROR_ARGUMENT") = RDM_ERROR_ARGUMENT,
   RDM_RANGE RDM_DEPRECATED("RDM_ERROR_RANGE") = RDM_ERROR_RANGE,
@@ -170,13 +172,15 @@ static inline RDM_DEPRECATED("rdm_agent_read_state")
 rdm_result rdm_agent_load(rdm_agent *a, const void *bytes, size_t size) {
   return rdm_agent_read_state(a, bytes, size);
 }
+#endif /* RDM_NO_DEPRECATED */
 
 #ifdef __cplusplus
 }
 #endif
 #endif /* REDMAN_DEPRECATED_H */
 
-#if defined(RDM_EXPERIMENTAL) && !defined(REDMAN_DEPRECATED_EXPERIMENTAL_H)
+#if defined(RDM_EXPERIMENTAL) && !defined(RDM_NO_DEPRECATED) \
+    && !defined(REDMAN_DEPRECATED_EXPERIMENTAL_H)
 #define REDMAN_DEPRECATED_EXPERIMENTAL_H
 #include <redman/map.h>
 #include <redman/plan.h>
