@@ -42,8 +42,7 @@ std::array<OptionTableView, 4> tables_of(const TaskInfo& info) {
 // What a task with its default options has.
 struct Described {
   rdm_task task{};
-  std::vector<rdm_field> fields;
-  std::vector<std::array<float, 2>> bounds;  // of each
+  std::vector<rdm_field_info> fields;
 };
 
 Described describe(const TaskInfo& info) {
@@ -66,8 +65,6 @@ Described describe(const TaskInfo& info) {
     d.fields.push_back(field_of(*task, i));
     d.fields.back().name = lasting(d.fields.back().name);
     d.fields.back().unit = lasting(d.fields.back().unit);
-    const FieldSpec f = bounded_field(*task, i);
-    d.bounds.push_back({f.low, f.high});
   }
   return d;
 }
@@ -129,23 +126,12 @@ rdm_result rdm_task_find(const char* name, int32_t* index) {
   });
 }
 
-rdm_result rdm_task_field(int32_t task, int32_t i, rdm_field* out) {
+rdm_result rdm_task_field_at(int32_t task, int32_t i, rdm_field_info* io) {
   return call([&] {
-    need(out, "out");
+    check_out(io, sizeof(rdm_field_info), "io");
     const auto d = described(task);
     need_index(i, d->task.num_fields, "i");
-    *out = d->fields[static_cast<size_t>(i)];
-  });
-}
-
-rdm_result rdm_task_field_bounds(int32_t task, int32_t i, float* low, float* high) {
-  return call([&] {
-    need(low, "low");
-    need(high, "high");
-    const auto d = described(task);
-    need_index(i, d->task.num_fields, "i");
-    *low = d->bounds[static_cast<size_t>(i)][0];
-    *high = d->bounds[static_cast<size_t>(i)][1];
+    write_struct(io, d->fields[static_cast<size_t>(i)], sizeof(rdm_field_info), "io");
   });
 }
 

@@ -38,7 +38,7 @@ namespace rdm::capi {
 Camera pool_camera(const rdm_pool* p, int32_t env, const char* name);  // as it stands in that world now
 rdm_camera describe(const CameraSpec& c);
 // Field i of a task's observation; Error(kRange) past the end.
-rdm_field field_of(const Task& task, int32_t i);
+rdm_field_info field_of(const Task& task, int32_t i);
 // What a host says of a robot; check_robot has not seen it.
 RobotCopy robot_from(const rdm_robot_def* def);
 // Discovery drops what it knows of a task that was removed.

@@ -107,7 +107,10 @@ void fill_side(rdm_pool* p) {
   carve(p->arena, task, info, p);
   p->num_defaults = fill_defaults(info, p->pool->repeat(), p->defaults);
   task.initial_mean(p->initial_mean);
-  for (size_t i = 0; i < task.fields().size(); ++i) p->fields[i] = field_of(task, static_cast<int32_t>(i));
+  for (size_t i = 0; i < task.fields().size(); ++i) {
+    const rdm_field_info f = field_of(task, static_cast<int32_t>(i));
+    p->fields[i] = {f.name, f.unit, f.offset, f.count};
+  }
   // only column 0 is limited unless the host says otherwise
   for (int32_t i = 0; i < info.num_costs; ++i) p->cost_limits[i] = i == 0 ? info.costs[0].limit : -1;
 }
@@ -180,19 +183,24 @@ rdm_result rdm_pool_get_spec(const rdm_pool* p, rdm_spec* io) {
   });
 }
 
-rdm_field rdm::capi::field_of(const Task& task, int32_t i) {
+rdm_field_info rdm::capi::field_of(const Task& task, int32_t i) {
   const auto& fields = task.fields();
   need_index(i, static_cast<int64_t>(fields.size()), "i");
-  rdm_field f{fields[static_cast<size_t>(i)].name.text, fields[static_cast<size_t>(i)].unit, 0,
-              fields[static_cast<size_t>(i)].count};
-  for (int32_t k = 0; k < i; ++k) f.offset += fields[static_cast<size_t>(k)].count;
-  return f;
+  const FieldSpec f = bounded_field(task, i);
+  rdm_field_info o{};
+  for (int32_t k = 0; k < i; ++k) o.offset += fields[static_cast<size_t>(k)].count;
+  o.count = f.count;
+  o.name = fields[static_cast<size_t>(i)].name.text;
+  o.unit = f.unit;
+  o.low = f.low;
+  o.high = f.high;
+  return o;
 }
 
-rdm_result rdm_pool_field(const rdm_pool* p, int32_t i, rdm_field* out) {
+rdm_result rdm_pool_field_at(const rdm_pool* p, int32_t i, rdm_field_info* io) {
   return call_on(p, [&] {
-    need(out, "out");
-    *out = field_of(p->pool->task(), i);
+    check_out(io, sizeof(rdm_field_info), "io");
+    write_struct(io, field_of(p->pool->task(), i), sizeof(rdm_field_info), "io");
   });
 }
 
@@ -202,18 +210,6 @@ rdm_result rdm_pool_option_at(const rdm_pool* p, int32_t i, const char** key, ch
 
 rdm_result rdm_pool_get_settings(const rdm_pool* p, char* text, size_t capacity, size_t* size) {
   return call_on(p, [&] { give_settings(p->pool->options(), text, capacity, size); });
-}
-
-rdm_result rdm_pool_field_bounds(const rdm_pool* p, int32_t i, float* low, float* high) {
-  return call_on(p, [&] {
-    need(low, "low");
-    need(high, "high");
-    const Task& task = p->pool->task();
-    need_index(i, static_cast<int64_t>(task.fields().size()), "i");
-    const FieldSpec f = bounded_field(task, i);
-    *low = f.low;
-    *high = f.high;
-  });
 }
 
 rdm_result rdm_pool_get_initial_mean(const rdm_pool* p, float* action) {

@@ -11,8 +11,8 @@
 /* An observation is one row of numbers; its fields have names. */
 static int field_offset(const rdm_pool* pool, int num_fields, const char* name) {
   for (int i = 0; i < num_fields; ++i) {
-    rdm_field field;
-    if (rdm_pool_field(pool, i, &field) == RDM_OK && strcmp(field.name, name) == 0) return field.offset;
+    rdm_field_info field = RDM_INIT(rdm_field_info);
+    if (rdm_pool_field_at(pool, i, &field) == RDM_OK && strcmp(field.name, name) == 0) return field.offset;
   }
   return -1;
 }

@@ -5,7 +5,7 @@ BEGIN { if (mode == "functions") print "#define RDM_NO_DEPRECATED\n#include <red
 FNR == 1 { old = FILENAME ~ /deprecated/; ended = 0 }
 old && /^#if defined\(RDM_EXPERIMENTAL\)/ { ended = 1 }
 ended { next }
-old && / = RDM_/ {  # RDM_BOX RDM_DEPRECATED("RDM_SHAPE_BOX") = RDM_SHAPE_BOX,
+old && /^  RDM_[A-Z_0-9]+ RDM_DEPRECATED/ {  # RDM_BOX RDM_DEPRECATED("RDM_SHAPE_BOX") = RDM_SHAPE_BOX,
   value = $NF
   sub(/,/, "", value)
   if (mode == "functions") print "const char " $1 "_plus_1000[1000 + " value "] = \"\";"

@@ -80,25 +80,26 @@ Json probe_json(const redman::Policy& policy, const Network& network, const Acto
 
 // What the observation is made of, as the policy's task has it with the options of its run; empty when that
 // is not the layout that the policy knows.
-std::vector<rdm_field> fields_of(const std::optional<redman::Pool>& pool) {
-  std::vector<rdm_field> fields;
-  rdm_field f;
+std::vector<rdm_field_info> fields_of(const std::optional<redman::Pool>& pool) {
+  std::vector<rdm_field_info> fields;
+  rdm_field_info f = RDM_INIT(rdm_field_info);
   for (int32_t i = 0; pool && i < pool->spec().num_fields; ++i) {
-    redman::check(rdm_pool_field(pool->get(), i, &f));
+    redman::check(rdm_pool_field_at(pool->get(), i, &f));
     fields.push_back(f);
   }
   return fields;
 }
 
-std::vector<ObsField> seen_fields(const std::vector<rdm_field>& fields, const std::vector<int32_t>& columns) {
+std::vector<ObsField> seen_fields(const std::vector<rdm_field_info>& fields,
+                                  const std::vector<int32_t>& columns) {
   std::vector<ObsField> out;
-  for (const rdm_field& f : fields)
+  for (const rdm_field_info& f : fields)
     out.push_back({f.name, f.unit, f.offset, f.count, has_columns({"", columns}, f)});
   return out;
 }
 
 // The preset that leaves just these columns; "" for none.
-std::string preset_of(int32_t obs_dim, const std::vector<rdm_field>& fields,
+std::string preset_of(int32_t obs_dim, const std::vector<rdm_field_info>& fields,
                       const std::vector<int32_t>& columns) {
   if (fields.empty()) return "";
   for (const ObsPreset& p : obs_presets(obs_dim, fields))
@@ -117,7 +118,7 @@ Report run_export(const ExportFlags& flags) {
   const redman::Policy policy(choice.file.c_str());
   Network network(policy);
   const auto world = world_of(policy, choice, 0);  // lends the names of its fields
-  const std::vector<rdm_field> fields = fields_of(world);
+  const std::vector<rdm_field_info> fields = fields_of(world);
   const std::vector<int32_t> columns = policy_columns(policy.get());
   if (const std::string preset = preset_of(network.obs_dim, fields, columns); !preset.empty())
     network.metadata.push_back({"observation_preset", preset});

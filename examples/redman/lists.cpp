@@ -22,28 +22,26 @@ std::string limit_text(const std::vector<rdm_cost>& costs) {
 
 Json task_json(int32_t index, const Presets& all_presets) {
   const rdm_task t = task_at(index);
-  const std::vector<rdm_field> parts = task_fields(index);
+  const std::vector<rdm_field_info> parts = task_fields(index);
   Json costs = Json::array(), fields = Json::array();
   for (const rdm_cost& c : task_costs(index))
     costs.push_back(
         object_of({{"name", c.name}, {"limit", c.limit < 0 ? Json() : Json(c.limit)}, {"help", c.help}}));
   const auto number = [](float x) { return std::isnan(x) ? Json() : Json(x); };
-  for (const rdm_field& f : parts) {
-    const auto [low, high] = task_field_bounds(index, static_cast<int32_t>(fields.size()));
+  for (const rdm_field_info& f : parts)
     fields.push_back(object_of({{"name", f.name},
                                 {"unit", f.unit},
                                 {"offset", f.offset},
                                 {"count", f.count},
-                                {"low", number(low)},
-                                {"high", number(high)}}));
-  }
+                                {"low", number(f.low)},
+                                {"high", number(f.high)}}));
   Json defaults = Json::object(), presets = Json::object();
   const std::vector<rdm_option> own = task_defaults(index);
   defaults.get_ref<Json::object_t&>().reserve(own.size());
   for (const rdm_option& o : own) defaults[o.key] = o.text;
   for (const ObsPreset& p : all_presets.of(t.obs_dim, parts)) {
     Json names = Json::array();
-    for (const rdm_field& f : parts)
+    for (const rdm_field_info& f : parts)
       if (has_columns(p, f)) names.push_back(f.name);
     presets[p.name] = object_of({{"entries", p.columns.size()}, {"fields", std::move(names)}});
   }
@@ -68,9 +66,9 @@ std::string task_text(int32_t index) {
       format("%s: %s\n%d observations, %d actions, %d costs, %d steps of %.4f s\n\n", t.name, t.summary,
              t.obs_dim, t.action_dim, t.cost_dim, t.max_steps, static_cast<double>(t.control_dt));
   Table fields({"field", "unit", "offset", "count", "presets"}), costs({"cost", "limit", "meaning"});
-  const std::vector<rdm_field> parts = task_fields(index);
+  const std::vector<rdm_field_info> parts = task_fields(index);
   const auto presets = obs_presets(t.obs_dim, parts);
-  for (const rdm_field& f : parts) {
+  for (const rdm_field_info& f : parts) {
     std::string in;
     for (const ObsPreset& p : presets)
       if (has_columns(p, f)) in += (in.empty() ? "" : " ") + p.name;
@@ -83,10 +81,10 @@ std::string task_text(int32_t index) {
 
 // Of the task, or of all.
 Presets presets_of(int32_t only) {
-  std::vector<rdm_field> fields;
+  std::vector<rdm_field_info> fields;
   for (int32_t i = 0; i < rdm_task_count(); ++i) {
     if (only >= 0 && i != only) continue;
-    const std::vector<rdm_field> more = task_fields(i);
+    const std::vector<rdm_field_info> more = task_fields(i);
     fields.insert(fields.end(), more.begin(), more.end());
   }
   return Presets(fields);

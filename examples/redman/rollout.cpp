@@ -33,8 +33,8 @@ class StepTable {
       header_ += std::string(",") + (c.name == std::string("cost") ? "cost" : std::string("cost.") + c.name);
     header_ += ",terminated,truncated,success,status";
     for (int32_t i = 0; i < pool.spec().num_fields; ++i) {
-      rdm_field field;
-      redman::check(rdm_pool_field(pool.get(), i, &field));
+      rdm_field_info field = RDM_INIT(rdm_field_info);
+      redman::check(rdm_pool_field_at(pool.get(), i, &field));
       if (std::string(field.name).rfind("object", 0) != 0) continue;
       fields_.push_back(field);
       for (int32_t k = 0; k < field.count; ++k) header_ += format(",%s.%d", field.name, k);
@@ -46,7 +46,7 @@ class StepTable {
     for (const float c : pool.cost()[env]) out += format(",%.9g", static_cast<double>(c));
     out += format(",%d,%d,%d,%u", pool.terminated()[env], pool.truncated()[env], pool.success()[env],
                   pool.status()[env]);
-    for (const rdm_field& f : fields_)
+    for (const rdm_field_info& f : fields_)
       for (int32_t k = 0; k < f.count; ++k)
         out += format(",%.9g", static_cast<double>(pool.obs()[env][static_cast<size_t>(f.offset + k)]));
     out += '\n';
@@ -59,9 +59,9 @@ class StepTable {
 
  private:
   std::string header_;
-  std::vector<rdm_field> fields_;  // what the observation says about the object
-  std::vector<std::string> rows_;  // [episodes]
-  std::vector<int32_t> steps_;     // [episodes]
+  std::vector<rdm_field_info> fields_;  // what the observation says about the object
+  std::vector<std::string> rows_;       // [episodes]
+  std::vector<int32_t> steps_;          // [episodes]
 };
 
 // What a recording was played with, for what no flag says.

@@ -164,6 +164,15 @@ typedef struct rdm_field {  /* frozen layout: a run of observation entries */
   int32_t offset;           /* first entry                                                    */
   int32_t count;            /* entries                                                        */
 } rdm_field;
+typedef struct rdm_field_info { /* what a run of observation entries is */
+  uint32_t struct_size;     /* in: bytes                                                      */
+  int32_t offset;           /* first entry                                                    */
+  int32_t count;            /* entries                                                        */
+  int32_t reserved;         /* 0                                                              */
+  const char *name;         /* "right.joint_position"                                         */
+  const char *unit;         /* "rad", "m/s", "1" after scaling ...                            */
+  float low, high;          /* bounds that every entry keeps; NaN: none                       */
+} rdm_field_info;
 typedef struct rdm_tensor {   /* frozen layout: a named block of parameters */
   const char *name;           /* "actor.0.weight", "actor.log_std", "reward_critic.1.bias" */
   int32_t rows, cols;         /* row-major; cols 1 for vectors */
@@ -180,7 +189,7 @@ typedef struct rdm_spec { /* sizes of a pool's rows; what a policy is checked ag
   int32_t cost_dim;          /* count */
   int32_t max_steps;         /* control steps of an episode */
   uint64_t layout_hash;      /* of field names, counts and action order: policies carry it */
-  int32_t num_fields;        /* for rdm_pool_field */
+  int32_t num_fields;        /* for rdm_pool_field_at */
   int32_t num_shapes;        /* for rdm_pool_shape */
   int32_t num_joints;        /* of all robots */
   int32_t task;              /* index for rdm_task_at and its like */

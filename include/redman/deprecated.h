@@ -61,6 +61,30 @@ rdm_result rdm_policy_tensor_read(const rdm_policy *p, const char *name, float *
   return rdm_policy_get_tensor(p, name, out, count);
 }
 
+static inline RDM_DEPRECATED("rdm_task_field_at")
+rdm_result rdm_task_field(int32_t task, int32_t i, rdm_field *out) {
+  rdm_field_info info = RDM_INIT(rdm_field_info);
+  const rdm_result r = rdm_task_field_at(task, i, out ? &info : NULL);
+  if (r == RDM_OK) {
+    out->name = info.name;
+    out->unit = info.unit;
+    out->offset = info.offset;
+    out->count = info.count;
+  }
+  return r;
+}
+
+static inline RDM_DEPRECATED("rdm_task_field_at")
+rdm_result rdm_task_field_bounds(int32_t task, int32_t i, float *low, float *high) {
+  rdm_field_info info = RDM_INIT(rdm_field_info);
+  const rdm_result r = rdm_task_field_at(task, i, low && high ? &info : NULL);
+  if (r == RDM_OK) {
+    *low = info.low;
+    *high = info.high;
+  }
+  return r;
+}
+
 static inline RDM_DEPRECATED("rdm_task_default_at")
 rdm_result rdm_task_default(int32_t task, int32_t i, rdm_option *out) {
   return rdm_task_default_at(task, i, out);
@@ -74,6 +98,30 @@ rdm_result rdm_pool_spec(const rdm_pool_config *c, rdm_spec *io) {
 static inline RDM_DEPRECATED("rdm_pool_config_memory")
 rdm_result rdm_pool_memory(const rdm_pool_config *c, size_t *ours, size_t *engines) {
   return rdm_pool_config_memory(c, ours, engines);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_field_at")
+rdm_result rdm_pool_field(const rdm_pool *p, int32_t i, rdm_field *out) {
+  rdm_field_info info = RDM_INIT(rdm_field_info);
+  const rdm_result r = rdm_pool_field_at(p, i, out ? &info : NULL);
+  if (r == RDM_OK) {
+    out->name = info.name;
+    out->unit = info.unit;
+    out->offset = info.offset;
+    out->count = info.count;
+  }
+  return r;
+}
+
+static inline RDM_DEPRECATED("rdm_pool_field_at")
+rdm_result rdm_pool_field_bounds(const rdm_pool *p, int32_t i, float *low, float *high) {
+  rdm_field_info info = RDM_INIT(rdm_field_info);
+  const rdm_result r = rdm_pool_field_at(p, i, low && high ? &info : NULL);
+  if (r == RDM_OK) {
+    *low = info.low;
+    *high = info.high;
+  }
+  return r;
 }
 
 static inline RDM_DEPRECATED("rdm_pool_get_initial_mean")

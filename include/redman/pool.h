@@ -17,7 +17,7 @@ typedef struct rdm_task { /* a task with its default options */
   int32_t action_dim;       /* count, default options                                         */
   int32_t cost_dim;         /* count of cost columns                                          */
   int32_t max_steps;        /* control steps of an episode, default options                   */
-  int32_t num_fields;       /* for rdm_task_field                                             */
+  int32_t num_fields;       /* for rdm_task_field_at                                          */
   int32_t num_options;      /* for rdm_task_option                                            */
   int32_t num_cameras;      /* for rdm_task_camera                                            */
   int32_t num_defaults;     /* for rdm_task_default_at                                           */
@@ -39,9 +39,8 @@ RDM_API int32_t rdm_task_count(void); /* number of tasks; 0 without the simulati
 RDM_API rdm_result rdm_task_at(int32_t index, rdm_task *io); /* RANGE past the end */
 RDM_API rdm_result rdm_task_find(const char *name,
                                  int32_t *index); /* NOT_FOUND: nearest in the text */
-RDM_API rdm_result rdm_task_field(int32_t task, int32_t i, rdm_field *out);    /* default options */
-/* Bounds *low and *high that every entry of field i keeps, default options; NAN: none. */
-RDM_API rdm_result rdm_task_field_bounds(int32_t task, int32_t i, float *low, float *high);
+RDM_API rdm_result rdm_task_field_at(int32_t task, int32_t i,
+                                     rdm_field_info *io); /* default options; i < num_fields */
 RDM_API rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost *out);      /* i < cost_dim */
 RDM_API rdm_result rdm_task_option(int32_t task, int32_t i,
                                    rdm_option_info *out); /* i < num_options */
@@ -139,10 +138,8 @@ RDM_API const char *rdm_pool_error(const rdm_pool *p); /* last failure on this h
                                                         * first */
 RDM_API rdm_result rdm_pool_get_spec(const rdm_pool *p,
                                      rdm_spec *io); /* as rdm_pool_config_spec, of a pool */
-RDM_API rdm_result rdm_pool_field(const rdm_pool *p, int32_t i,
-                                  rdm_field *out); /* i < num_fields */
-/* Bounds *low and *high that every entry of field i keeps; NAN: none. */
-RDM_API rdm_result rdm_pool_field_bounds(const rdm_pool *p, int32_t i, float *low, float *high);
+RDM_API rdm_result rdm_pool_field_at(const rdm_pool *p, int32_t i,
+                                     rdm_field_info *io); /* i < num_fields */
 /* Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of
  * RDM_BASELINE_HOLD. */
 RDM_API rdm_result rdm_pool_get_initial_mean(const rdm_pool *p, float *action);

@@ -32,17 +32,16 @@ TEST(ContractTexts, OfAPool) {
   const char* key = nullptr;
   int32_t count = 0;
   rdm_shape shape;
-  rdm_field field;
+  rdm_field_info field = RDM_INIT(rdm_field_info);
   rdm_camera camera;
   float number = 0;
   expect_texts(
       {
           {"step", [&] { return rdm_pool_step(p); }},
           {"get_spec", [&] { return rdm_pool_get_spec(p, nullptr); }},
-          {"field", [&] { return rdm_pool_field(p, -1, &field); }},
+          {"field", [&] { return rdm_pool_field_at(p, -1, &field); }},
           {"option", [&] { return rdm_pool_option_at(p, 100000, &key, text); }},
           {"settings", [&] { return rdm_pool_get_settings(p, text, 1, &n); }},
-          {"field_bounds", [&] { return rdm_pool_field_bounds(p, 1000, &number, &number); }},
           {"initial_mean", [&] { return rdm_pool_get_initial_mean(p, nullptr); }},
           {"buffers", [&] { return rdm_pool_get_buffers(p, nullptr); }},
           {"bind", [&] { return rdm_pool_set_buffers(p, nullptr); }},

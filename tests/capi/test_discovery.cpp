@@ -51,9 +51,9 @@ TEST(Discovery, FieldsAreAtHand) {
   for (size_t t = 0; t < tasks.size(); ++t) {
     int32_t offset = 0;
     for (int32_t i = 0; i < tasks[t].num_fields; ++i, ++fields) {
-      rdm_field f, again;
-      ASSERT_EQ(rdm_task_field(static_cast<int32_t>(t), i, &f), RDM_OK) << rdm_last_error();
-      ASSERT_EQ(rdm_task_field(static_cast<int32_t>(t), i, &again), RDM_OK);
+      rdm_field_info f = RDM_INIT(rdm_field_info), again = f;
+      ASSERT_EQ(rdm_task_field_at(static_cast<int32_t>(t), i, &f), RDM_OK) << rdm_last_error();
+      ASSERT_EQ(rdm_task_field_at(static_cast<int32_t>(t), i, &again), RDM_OK);
       EXPECT_EQ(f.name, again.name);  // the same text, which stays
       EXPECT_EQ(f.offset, offset);
       EXPECT_GT(std::strlen(f.name), 0u);
@@ -61,8 +61,8 @@ TEST(Discovery, FieldsAreAtHand) {
       offset += f.count;
     }
     EXPECT_EQ(offset, tasks[t].obs_dim) << tasks[t].name;
-    rdm_field past;
-    EXPECT_EQ(rdm_task_field(static_cast<int32_t>(t), tasks[t].num_fields, &past), RDM_ERROR_RANGE);
+    rdm_field_info past = RDM_INIT(rdm_field_info);
+    EXPECT_EQ(rdm_task_field_at(static_cast<int32_t>(t), tasks[t].num_fields, &past), RDM_ERROR_RANGE);
   }
   const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
   // far below the 10 ms that making one task can take, and far above what a table needs
@@ -95,9 +95,9 @@ TEST(Discovery, FieldsCoverTheObservationWithoutGaps) {
     SCOPED_TRACE(task.name);
     int32_t next = 0;
     std::set<std::string> names;
-    rdm_field f;
+    rdm_field_info f = RDM_INIT(rdm_field_info);
     for (int32_t i = 0; i < task.num_fields; ++i) {
-      ASSERT_EQ(rdm_task_field(t, i, &f), RDM_OK) << rdm_last_error();
+      ASSERT_EQ(rdm_task_field_at(t, i, &f), RDM_OK) << rdm_last_error();
       EXPECT_EQ(f.offset, next) << f.name;
       EXPECT_GT(f.count, 0) << f.name;
       EXPECT_GT(std::strlen(f.unit), 0u) << f.name;
@@ -105,8 +105,8 @@ TEST(Discovery, FieldsCoverTheObservationWithoutGaps) {
       next += f.count;
     }
     EXPECT_EQ(next, task.obs_dim);
-    EXPECT_EQ(rdm_task_field(t, task.num_fields, &f), RDM_ERROR_RANGE);
-    EXPECT_EQ(rdm_task_field(t, -1, &f), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_task_field_at(t, task.num_fields, &f), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_task_field_at(t, -1, &f), RDM_ERROR_RANGE);
   }
 }
 
@@ -159,9 +159,11 @@ TEST(Discovery, DefaultsOfEveryTaskFitEveryAlgorithm) {
     rdm_option past;
     EXPECT_EQ(rdm_task_default_at(t, static_cast<int32_t>(defaults.size()), &past), RDM_ERROR_RANGE);
     // they may name parts of the observation
-    std::vector<rdm_field> fields(static_cast<size_t>(tasks[static_cast<size_t>(t)].num_fields));
-    for (size_t i = 0; i < fields.size(); ++i)
-      ASSERT_EQ(rdm_task_field(t, static_cast<int32_t>(i), &fields[i]), RDM_OK);
+    std::vector<rdm_field> fields;
+    rdm_field_info f = RDM_INIT(rdm_field_info);
+    for (int32_t i = 0; rdm_task_field_at(t, i, &f) == RDM_OK; ++i)
+      fields.push_back({f.name, f.unit, f.offset, f.count});
+    ASSERT_EQ(static_cast<int32_t>(fields.size()), tasks[static_cast<size_t>(t)].num_fields);
     for (int32_t a = 0; a < rdm_algo_count(); ++a) {
       rdm_algo algo;
       algo.struct_size = sizeof algo;
@@ -261,7 +263,7 @@ TEST(Discovery, SurvivesBadCalls) {
   EXPECT_EQ(rdm_task_at(0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_task_find(nullptr, &index), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_task_find("grasp", nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_task_field(0, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_task_field_at(0, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_task_option(0, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_algo_find(nullptr, &index), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_algo_option(0, 0, nullptr), RDM_ERROR_ARGUMENT);
@@ -273,8 +275,8 @@ TEST(Discovery, SurvivesBadCalls) {
   task.struct_size = sizeof task;
   EXPECT_EQ(rdm_task_at(rdm_task_count(), &task), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_task_at(-1, &task), RDM_ERROR_RANGE);
-  rdm_field field;
-  EXPECT_EQ(rdm_task_field(rdm_task_count(), 0, &field), RDM_ERROR_RANGE);
+  rdm_field_info field = RDM_INIT(rdm_field_info);
+  EXPECT_EQ(rdm_task_field_at(rdm_task_count(), 0, &field), RDM_ERROR_RANGE);
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ TEST(Disturbances, OfEveryTaskComeBackAsTheyWereSet) {
     task.struct_size = sizeof task;
     ASSERT_EQ(rdm_task_at(i, &task), RDM_OK);
     SCOPED_TRACE(task.name);
-    rdm_field field;
-    ASSERT_EQ(rdm_task_field(i, 0, &field), RDM_OK);
+    rdm_field_info field = RDM_INIT(rdm_field_info);
+    ASSERT_EQ(rdm_task_field_at(i, 0, &field), RDM_OK);
     const std::string own = lines + "noise." + field.name + "=0.125\n", given = "action_delay=1..2\n" + own;
     rdm_pool_config c = pool_config(3);
     c.task = task.name;
@@ -78,14 +78,12 @@ TEST(Disturbances, KeepTheBoundsOfEveryField) {
     ASSERT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
     for (int t = 0; t < 3; ++t) {
       for (int32_t k = 0; k < task.num_fields; ++k) {
-        rdm_field f;
-        float low = 0, high = 0;
-        ASSERT_EQ(rdm_pool_field(p, k, &f), RDM_OK);
-        ASSERT_EQ(rdm_pool_field_bounds(p, k, &low, &high), RDM_OK);
+        rdm_field_info f = RDM_INIT(rdm_field_info);
+        ASSERT_EQ(rdm_pool_field_at(p, k, &f), RDM_OK);
         for (int32_t e = 0; e < f.count; ++e) {
           const float x = b.obs[f.offset + e];
           EXPECT_TRUE(std::isfinite(x));
-          EXPECT_FALSE(x < low || x > high) << f.name << ' ' << x;
+          EXPECT_FALSE(x < f.low || x > f.high) << f.name << ' ' << x;
         }
       }
       ASSERT_EQ(rdm_pool_baseline(p, RDM_BASELINE_RANDOM), RDM_OK);

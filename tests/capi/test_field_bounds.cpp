@@ -13,19 +13,17 @@ struct Bounds {
 Bounds bounds_of(const rdm_pool* p, const rdm_spec& spec) {
   Bounds b;
   for (int32_t i = 0; i < spec.num_fields; ++i) {
-    rdm_field field;
-    float low = 0, high = 0, task_low = 0, task_high = 0;
-    EXPECT_EQ(rdm_pool_field(p, i, &field), RDM_OK);
-    EXPECT_EQ(rdm_pool_field_bounds(p, i, &low, &high), RDM_OK);
-    EXPECT_EQ(rdm_task_field_bounds(spec.task, i, &task_low, &task_high), RDM_OK);
-    EXPECT_EQ(std::isnan(low), std::isnan(high)) << field.name;
-    if (!std::isnan(low)) {
-      EXPECT_LE(low, high) << field.name;
-      EXPECT_EQ(low, task_low) << field.name;
-      EXPECT_EQ(high, task_high) << field.name;
+    rdm_field_info field = RDM_INIT(rdm_field_info), of_task = field;
+    EXPECT_EQ(rdm_pool_field_at(p, i, &field), RDM_OK);
+    EXPECT_EQ(rdm_task_field_at(spec.task, i, &of_task), RDM_OK);
+    EXPECT_EQ(std::isnan(field.low), std::isnan(field.high)) << field.name;
+    if (!std::isnan(field.low)) {
+      EXPECT_LE(field.low, field.high) << field.name;
+      EXPECT_EQ(field.low, of_task.low) << field.name;
+      EXPECT_EQ(field.high, of_task.high) << field.name;
     }
-    b.low.insert(b.low.end(), static_cast<size_t>(field.count), low);
-    b.high.insert(b.high.end(), static_cast<size_t>(field.count), high);
+    b.low.insert(b.low.end(), static_cast<size_t>(field.count), field.low);
+    b.high.insert(b.high.end(), static_cast<size_t>(field.count), field.high);
   }
   return b;
 }
@@ -52,11 +50,14 @@ TEST(FieldBounds, RandomEpisodesStayWithin) {
       ASSERT_EQ(rdm_pool_baseline(p, RDM_BASELINE_RANDOM), RDM_OK);
       ASSERT_EQ(rdm_pool_step(p), RDM_OK);
     }
-    float low = 7;
-    EXPECT_EQ(rdm_pool_field_bounds(p, spec.num_fields, &low, &low), RDM_ERROR_RANGE);
-    EXPECT_EQ(rdm_pool_field_bounds(p, 0, &low, nullptr), RDM_ERROR_ARGUMENT);
-    EXPECT_EQ(rdm_task_field_bounds(spec.task, -1, &low, &low), RDM_ERROR_RANGE);
-    EXPECT_EQ(low, 7);
+    rdm_field_info past = RDM_INIT(rdm_field_info);
+    past.low = 7;
+    EXPECT_EQ(rdm_pool_field_at(p, spec.num_fields, &past), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_pool_field_at(p, 0, nullptr), RDM_ERROR_ARGUMENT);
+    EXPECT_EQ(rdm_task_field_at(spec.task, -1, &past), RDM_ERROR_RANGE);
+    past.struct_size = sizeof past - 1;
+    EXPECT_EQ(rdm_pool_field_at(p, 0, &past), RDM_ERROR_ARGUMENT);
+    EXPECT_EQ(past.low, 7);
     rdm_pool_destroy(p);
   }
 }
@@ -66,13 +67,11 @@ TEST(FieldBounds, OfSomeFields) {
   const auto bounds = [](const char* task, const char* wanted) {
     int32_t index = 0;
     EXPECT_EQ(rdm_task_find(task, &index), RDM_OK);
-    rdm_field field;
-    float low = 0, high = 0;
-    for (int32_t i = 0; rdm_task_field(index, i, &field) == RDM_OK; ++i)
-      if (std::string(field.name) == wanted) {
-        EXPECT_EQ(rdm_task_field_bounds(index, i, &low, &high), RDM_OK);
-      }
-    return std::pair(low, high);
+    rdm_field_info field = RDM_INIT(rdm_field_info);
+    int32_t i = 0;
+    while (rdm_task_field_at(index, i, &field) == RDM_OK && std::string(field.name) != wanted) ++i;
+    EXPECT_STREQ(field.name, wanted);
+    return std::pair(field.low, field.high);
   };
   EXPECT_EQ(bounds("hand_over_safe_finger", "right.joint_velocity"), std::pair(-5.0f, 5.0f));
   EXPECT_EQ(bounds("hand_over_safe_finger", "right.action"), std::pair(-1.0f, 1.0f));

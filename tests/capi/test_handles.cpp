@@ -105,8 +105,7 @@ T* plain() {
 
 const std::vector<Call> kPoolCalls = {
     CALL(rdm_pool_get_spec(POOL, sized<rdm_spec>())),
-    CALL(rdm_pool_field(POOL, 0, plain<rdm_field>())),
-    CALL(rdm_pool_field_bounds(POOL, 0, g_floats, g_floats + 1)),
+    CALL(rdm_pool_field_at(POOL, 0, sized<rdm_field_info>())),
     CALL(rdm_pool_get_initial_mean(POOL, g_floats)),
     CALL(rdm_pool_option_at(POOL, 0, &g_key, g_bytes)),
     CALL(rdm_pool_get_settings(POOL, nullptr, 0, &g_size)),

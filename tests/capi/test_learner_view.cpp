@@ -43,8 +43,8 @@ std::vector<float> tensor(const rdm_policy* p, const char* name, int32_t rows, i
 void expect_no_object(const rdm_pool* p, const rdm_policy* policy, int32_t count) {
   std::vector<int32_t> columns(static_cast<size_t>(count));
   ASSERT_EQ(rdm_policy_get_columns(policy, columns.data(), count, &count), RDM_OK);
-  rdm_field f;
-  for (int i = 0; rdm_pool_field(p, i, &f) == RDM_OK; ++i) {
+  rdm_field_info f = RDM_INIT(rdm_field_info);
+  for (int i = 0; rdm_pool_field_at(p, i, &f) == RDM_OK; ++i) {
     const std::string name = f.name;
     const bool hidden = name.find("object") == 0 || name.find("target") == 0 ||
                         name.find("_bottle.") != std::string::npos || name.find("trash") == 0 ||
@@ -66,8 +66,8 @@ TEST(LearnerView, APolicyOfAPartTakesWholeRows) {
 
   std::vector<int32_t> wanted;
   for (int32_t i = 0; i < spec.num_fields; ++i) {
-    rdm_field f;
-    ASSERT_EQ(rdm_pool_field(p, i, &f), RDM_OK);
+    rdm_field_info f = RDM_INIT(rdm_field_info);
+    ASSERT_EQ(rdm_pool_field_at(p, i, &f), RDM_OK);
     const std::string name = f.name;
     if (name.rfind("right.", 0) == 0 && name.rfind("right.ff_tip_", 0) != 0)
       for (int32_t k = 0; k < f.count; ++k) wanted.push_back(f.offset + k);
@@ -144,12 +144,12 @@ TEST(LearnerView, PresetsFitEveryTaskWithARobot) {
   for (const std::string& task : task_names()) {
     SCOPED_TRACE(task);
     rdm_pool* p = pool_of(task.c_str(), nullptr);
-    rdm_field f;
-    ASSERT_EQ(rdm_pool_field(p, 0, &f), RDM_OK);
+    rdm_field_info f = RDM_INIT(rdm_field_info);
+    ASSERT_EQ(rdm_pool_field_at(p, 0, &f), RDM_OK);
     const std::string first = f.name;
     const bool hands = first == "right.joint_position", sensors = first == "accelerometer";
     bool joints = false;
-    for (int i = 0; rdm_pool_field(p, i, &f) == RDM_OK; ++i)
+    for (int i = 0; rdm_pool_field_at(p, i, &f) == RDM_OK; ++i)
       joints |= std::string(f.name) == "joint_position";
     int32_t counts[4] = {};
     const char* presets[] = {"state", "touch", "proprioception", "vision"};
@@ -187,8 +187,8 @@ TEST(LearnerView, APoolLendsTheNamesOfItsFields) {
   ASSERT_EQ(rdm_pool_get_spec(p, &spec), RDM_OK);
   ASSERT_EQ(c.num_fields, spec.num_fields);
   for (int32_t i = 0; i < spec.num_fields; ++i) {
-    rdm_field f;
-    ASSERT_EQ(rdm_pool_field(p, i, &f), RDM_OK);
+    rdm_field_info f = RDM_INIT(rdm_field_info);
+    ASSERT_EQ(rdm_pool_field_at(p, i, &f), RDM_OK);
     EXPECT_STREQ(c.fields[i].name, f.name);
     EXPECT_EQ(c.fields[i].offset, f.offset);
     EXPECT_EQ(c.fields[i].count, f.count);

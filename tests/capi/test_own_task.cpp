@@ -66,15 +66,14 @@ TEST(OwnTask, IsFoundAndDescribed) {
   EXPECT_EQ(task.cost_dim, kBallCosts);
   EXPECT_EQ(task.max_steps, 40);
   EXPECT_EQ(task.control_dt, 0.02f);  // its own default of an option that every task has
-  rdm_field field;
-  ASSERT_EQ(rdm_task_field(found, 3, &field), RDM_OK);
+  rdm_field_info field = RDM_INIT(rdm_field_info);
+  ASSERT_EQ(rdm_task_field_at(found, 3, &field), RDM_OK);
   EXPECT_STREQ(field.name, "action");
   EXPECT_EQ(field.offset, 7);
-  float low = 0, high = 0;
-  ASSERT_EQ(rdm_task_field_bounds(found, 2, &low, &high), RDM_OK);
-  EXPECT_EQ(low, -0.4f);
-  ASSERT_EQ(rdm_task_field_bounds(found, 0, &low, &high), RDM_OK);
-  EXPECT_EQ(high, 5);
+  ASSERT_EQ(rdm_task_field_at(found, 2, &field), RDM_OK);
+  EXPECT_EQ(field.low, -0.4f);
+  ASSERT_EQ(rdm_task_field_at(found, 0, &field), RDM_OK);
+  EXPECT_EQ(field.high, 5);
   rdm_cost cost;
   ASSERT_EQ(rdm_task_cost(found, 0, &cost), RDM_OK);
   EXPECT_STREQ(cost.name, "touch");

@@ -124,8 +124,8 @@ TEST(RecordedClouds, AGoalIsSeen) {
     const rdm_sensors s = redman::sensors(pool), without = redman::sensors(plain);
     EXPECT_EQ(s.num_classes, without.num_classes + 1);
     size_t position = 0;
-    rdm_field f;
-    for (int32_t i = 0; rdm_pool_field(pool.get(), i, &f) == RDM_OK; ++i)
+    rdm_field_info f = RDM_INIT(rdm_field_info);
+    for (int32_t i = 0; rdm_pool_field_at(pool.get(), i, &f) == RDM_OK; ++i)
       if (std::string(f.name) == "goal.position") position = static_cast<size_t>(f.offset);
     ASSERT_GT(position, 0u);
     for (size_t i = 0; i < kEnvs; ++i) {

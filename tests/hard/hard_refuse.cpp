@@ -217,10 +217,10 @@ std::vector<Case> all_cases() {
                      rdm_spec spec{};
                      spec.struct_size = sizeof spec;
                      size_t ours = 0, engines = 0;
-                     rdm_field field;
+                     rdm_field_info field = RDM_INIT(rdm_field_info);
                      rdm_result r = rdm_pool_config_spec(&c, &spec);
                      if (r == RDM_OK) r = rdm_pool_config_memory(&c, &ours, &engines);
-                     if (r == RDM_OK) r = rdm_task_field(w.index, 0, &field);
+                     if (r == RDM_OK) r = rdm_task_field_at(w.index, 0, &field);
                      return r;
                    },
                    clear});

@@ -54,8 +54,8 @@ void many(int rounds) {
       AgentOf agent;
       must(agent.make(algos[static_cast<size_t>(round + i) % algos.size()], nullptr, i % 2 ? 2 : 0));
       must(agent.epoch());
-      rdm_field field;
-      must(rdm_task_field(w.index, 0, &field));
+      rdm_field_info field = RDM_INIT(rdm_field_info);
+      must(rdm_task_field_at(w.index, 0, &field));
       rdm_pool* none = nullptr;
       HARD_REQUIRE(rdm_pool_create(&none, nullptr) == RDM_ERROR_ARGUMENT && *rdm_last_error(), "no refusal");
     });

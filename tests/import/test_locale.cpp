@@ -134,8 +134,8 @@ void add_task(std::vector<std::string>& out) {
   t.struct_size = sizeof t;
   EXPECT_EQ(rdm_task_at(task, &t), RDM_OK);
   for (int32_t i = 0; i < t.num_fields; ++i) {
-    rdm_field field;
-    EXPECT_EQ(rdm_task_field(task, i, &field), RDM_OK);
+    rdm_field_info field = RDM_INIT(rdm_field_info);
+    EXPECT_EQ(rdm_task_field_at(task, i, &field), RDM_OK);
     out.push_back(std::string(field.name) + " " + field.unit);
   }
   for (int32_t i = 0; i < t.num_defaults; ++i) {

@@ -65,8 +65,8 @@ struct Pool {
     ASSERT_EQ(rdm_pool_step(pool), RDM_OK) << rdm_last_error();
   }
   std::vector<double> field(const std::string& name) const {
-    rdm_field f;
-    for (int32_t i = 0; rdm_pool_field(pool, i, &f) == RDM_OK; ++i)
+    rdm_field_info f = RDM_INIT(rdm_field_info);
+    for (int32_t i = 0; rdm_pool_field_at(pool, i, &f) == RDM_OK; ++i)
       if (name == f.name) return {b.obs + f.offset, b.obs + f.offset + f.count};
     ADD_FAILURE() << "no field " << name;
     return {};

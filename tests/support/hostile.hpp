@@ -148,9 +148,9 @@ class Trial {
   }
 
   void find_fields() {
-    rdm_field f;
+    rdm_field_info f = RDM_INIT(rdm_field_info);
     for (int32_t i = 0; i < spec_.num_fields; ++i) {
-      rdm_pool_field(pool_, i, &f);
+      rdm_pool_field_at(pool_, i, &f);
       const std::string name = f.name;
       if (name == "object.position") object_ = f.offset;
       if (name == "object.rotation") rotation_ = f.offset;

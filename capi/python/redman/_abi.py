@@ -398,6 +398,48 @@ class rdm_field(Structure):
     ]
 
 
+class FieldInfo(Record):
+    """The values of rdm_field_info."""
+
+    offset: int  # first entry
+    count: int  # entries
+    name: str  # "right.joint_position"
+    unit: str  # "rad", "m/s", "1" after scaling ...
+    low: float  # bounds that every entry keeps; NaN: none
+    high: float  # bounds that every entry keeps; NaN: none
+
+
+class rdm_field_info(Structure):
+    """struct_size: in: bytes
+    offset: first entry
+    count: entries
+    reserved: 0
+    name: "right.joint_position"
+    unit: "rad", "m/s", "1" after scaling ...
+    low: bounds that every entry keeps; NaN: none
+    high: bounds that every entry keeps; NaN: none
+    """
+
+    struct_size: int
+    offset: int
+    count: int
+    reserved: int
+    name: bytes | None
+    unit: bytes | None
+    low: float
+    high: float
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("offset", c_int32),
+        ("count", c_int32),
+        ("reserved", c_int32),
+        ("name", c_char_p),
+        ("unit", c_char_p),
+        ("low", c_float),
+        ("high", c_float),
+    ]
+
+
 class Tensor(Record):
     """The values of rdm_tensor."""
 
@@ -431,7 +473,7 @@ class Spec(Record):
     cost_dim: int  # count
     max_steps: int  # control steps of an episode
     layout_hash: int  # of field names, counts and action order: policies carry it
-    num_fields: int  # for rdm_pool_field
+    num_fields: int  # for rdm_pool_field_at
     num_shapes: int  # for rdm_pool_shape
     num_joints: int  # of all robots
     task: int  # index for rdm_task_at and its like
@@ -446,7 +488,7 @@ class rdm_spec(Structure):
     cost_dim: count
     max_steps: control steps of an episode
     layout_hash: of field names, counts and action order: policies carry it
-    num_fields: for rdm_pool_field
+    num_fields: for rdm_pool_field_at
     num_shapes: for rdm_pool_shape
     num_joints: of all robots
     task: index for rdm_task_at and its like
@@ -561,7 +603,7 @@ class Task(Record):
     action_dim: int  # count, default options
     cost_dim: int  # count of cost columns
     max_steps: int  # control steps of an episode, default options
-    num_fields: int  # for rdm_task_field
+    num_fields: int  # for rdm_task_field_at
     num_options: int  # for rdm_task_option
     num_cameras: int  # for rdm_task_camera
     num_defaults: int  # for rdm_task_default_at
@@ -576,7 +618,7 @@ class rdm_task(Structure):
     action_dim: count, default options
     cost_dim: count of cost columns
     max_steps: control steps of an episode, default options
-    num_fields: for rdm_task_field
+    num_fields: for rdm_task_field_at
     num_options: for rdm_task_option
     num_cameras: for rdm_task_camera
     num_defaults: for rdm_task_default_at
@@ -2995,6 +3037,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_option": rdm_option,
     "rdm_option_info": rdm_option_info,
     "rdm_field": rdm_field,
+    "rdm_field_info": rdm_field_info,
     "rdm_tensor": rdm_tensor,
     "rdm_spec": rdm_spec,
     "rdm_policy_info": rdm_policy_info,
@@ -3273,14 +3316,10 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"name": c_char_p, "index": c_void_p},
         {}, False,
         """NOT_FOUND: nearest in the text"""),
-    "rdm_task_field": Function(
-        c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_field)},
+    "rdm_task_field_at": Function(
+        c_int32, {"task": c_int32, "i": c_int32, "io": POINTER(rdm_field_info)},
         {}, False,
-        """default options"""),
-    "rdm_task_field_bounds": Function(
-        c_int32, {"task": c_int32, "i": c_int32, "low": c_void_p, "high": c_void_p},
-        {}, False,
-        """Bounds *low and *high that every entry of field i keeps, default options; NAN: none."""),
+        """default options; i < num_fields"""),
     "rdm_task_cost": Function(
         c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_cost)},
         {}, False,
@@ -3366,14 +3405,10 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "io": POINTER(rdm_spec)},
         {}, False,
         """as rdm_pool_config_spec, of a pool"""),
-    "rdm_pool_field": Function(
-        c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_field)},
+    "rdm_pool_field_at": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "io": POINTER(rdm_field_info)},
         {}, False,
         """i < num_fields"""),
-    "rdm_pool_field_bounds": Function(
-        c_int32, {"p": c_void_p, "i": c_int32, "low": c_void_p, "high": c_void_p},
-        {}, False,
-        """Bounds *low and *high that every entry of field i keeps; NAN: none."""),
     "rdm_pool_get_initial_mean": Function(
         c_int32, {"p": c_void_p, "action": c_void_p},
         {"action": Rows("float32", ("action_dim",))}, False,

@@ -2,16 +2,15 @@
 from __future__ import annotations
 
 import ctypes
-import math
 import re
-from ctypes import byref, c_float, c_int32
+from ctypes import byref, c_int32
 from functools import lru_cache
 from typing import Any, Callable, Iterator, Optional, TypeVar, Union
 
 from . import _abi
 from ._abi import OptionKind
 from ._error import NotFoundError, UsageError
-from ._library import encoded, filled, check, lib, text
+from ._library import encoded, filled, check, lib
 from ._options import Value, default_of, laid
 from ._record import Record
 
@@ -39,30 +38,17 @@ class Cost(_abi.Cost):
         self.__dict__["limit"] = None if struct.limit < 0 else struct.limit
 
 
-class Field(_abi.Field):
+class Field(_abi.FieldInfo):
     """A run of observation entries, obs[:, field.slice], and the bounds that they keep; nan: none."""
-
-    low: float
-    high: float
-
-    def __init__(self, struct: _abi.rdm_field, low: float = math.nan, high: float = math.nan) -> None:
-        super().__init__(struct)
-        self.__dict__.update(low=low, high=high)
 
     @property
     def slice(self) -> slice:
         return slice(self.offset, self.offset + self.count)
 
 
-def fields_of(owner: int, count: int, field: Callable[..., int], bounds: Callable[..., int]) -> dict[str, Field]:
+def fields_of(owner: int, count: int, call: Callable[..., int]) -> dict[str, Field]:
     """All fields of a task or a pool by name."""
-    out = {}
-    low, high = c_float(), c_float()
-    for i in range(count):
-        struct = filled(_abi.rdm_field, field, owner, i)
-        check(bounds(owner, i, byref(low), byref(high)))
-        out[text(struct.name)] = Field(struct, low.value, high.value)
-    return out
+    return _records(Field, _abi.rdm_field_info, call, count, owner)
 
 
 def _records(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., int], count: int,
@@ -84,7 +70,7 @@ class Task(_abi.Task):
     def __init__(self, index: int) -> None:
         super().__init__(filled(_abi.rdm_task, lib.rdm_task_at, index))
         said = self.__dict__
-        said["fields"] = fields_of(index, self.num_fields, lib.rdm_task_field, lib.rdm_task_field_bounds)
+        said["fields"] = fields_of(index, self.num_fields, lib.rdm_task_field_at)
         said["costs"] = _records(Cost, _abi.rdm_cost, lib.rdm_task_cost, self.cost_dim, index)
         said["options"] = _records(Option, _abi.rdm_option_info, lib.rdm_task_option, self.num_options, index)
         said["cameras"] = _records(_abi.Camera, _abi.rdm_camera, lib.rdm_task_camera, self.num_cameras, index)

@@ -457,7 +457,7 @@ class Pool(Hinted):
 
     @cached_property
     def _fields(self) -> dict[str, _discovery.Field]:
-        return _discovery.fields_of(self._open(), self.spec.num_fields, lib.rdm_pool_field, lib.rdm_pool_field_bounds)
+        return _discovery.fields_of(self._open(), self.spec.num_fields, lib.rdm_pool_field_at)
 
     @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:

@@ -30,7 +30,9 @@ int32_t find(rdm_result (*find_name)(const char*, int32_t*), const std::string& 
 // All entries of a list of the ABI: get(i, &entry) until it answers RANGE.
 template <class T, class Get>
 std::vector<T> collect(int32_t count, Get get) {
-  std::vector<T> out(static_cast<size_t>(count));
+  T row{};
+  if constexpr (requires { row.struct_size; }) row.struct_size = sizeof row;
+  std::vector<T> out(static_cast<size_t>(count), row);
   for (int32_t i = 0; i < count; ++i) redman::check(get(i, &out[static_cast<size_t>(i)]));
   return out;
 }
@@ -96,9 +98,10 @@ rdm_algo algo_at(int32_t index) {
   return a;
 }
 
-std::vector<rdm_field> task_fields(int32_t task) {
-  return collect<rdm_field>(task_at(task).num_fields,
-                            [&](int32_t i, rdm_field* out) { return rdm_task_field(task, i, out); });
+std::vector<rdm_field_info> task_fields(int32_t task) {
+  return collect<rdm_field_info>(task_at(task).num_fields, [&](int32_t i, rdm_field_info* out) {
+    return rdm_task_field_at(task, i, out);
+  });
 }
 
 std::vector<rdm_cost> task_costs(int32_t task) {
@@ -109,12 +112,6 @@ std::vector<rdm_cost> task_costs(int32_t task) {
 std::vector<rdm_option> task_defaults(int32_t task) {
   return collect<rdm_option>(task_at(task).num_defaults,
                              [&](int32_t i, rdm_option* out) { return rdm_task_default_at(task, i, out); });
-}
-
-std::pair<float, float> task_field_bounds(int32_t task, int32_t i) {
-  std::pair<float, float> bounds;
-  redman::check(rdm_task_field_bounds(task, i, &bounds.first, &bounds.second));
-  return bounds;
 }
 
 std::vector<float> task_initial_mean(int32_t task) {

@@ -27,13 +27,11 @@ int32_t find_algo(const std::string& name);
 rdm_task task_at(int32_t index);
 rdm_algo algo_at(int32_t index);
 
-std::vector<rdm_field> task_fields(int32_t task);
+std::vector<rdm_field_info> task_fields(int32_t task);
 std::vector<rdm_cost> task_costs(int32_t task);
 // The task's own defaults of agent options, and the mean action of its new policies.
 std::vector<rdm_option> task_defaults(int32_t task);
 std::vector<float> task_initial_mean(int32_t task);
-// What no entry of field i ever leaves; NAN: no bound.
-std::pair<float, float> task_field_bounds(int32_t task, int32_t i);
 std::vector<rdm_option_info> task_options(int32_t task);
 std::vector<rdm_option_info> algo_options(int32_t algo);
 bool has_option(const std::vector<rdm_option_info>& table, const std::string& key);

@@ -27,12 +27,14 @@ std::vector<int32_t> policy_columns(const rdm_policy* policy) {
   return columns;
 }
 
-std::vector<ObsPreset> obs_presets(int32_t obs_dim, const std::vector<rdm_field>& fields) {
+std::vector<ObsPreset> obs_presets(int32_t obs_dim, const std::vector<rdm_field_info>& fields) {
   std::vector<ObsPreset> out;
+  std::vector<rdm_field> rows;
+  for (const rdm_field_info& f : fields) rows.push_back({f.name, f.unit, f.offset, f.count});
   for (const char* name : kPresetNames) {
     rdm_agent_config config = redman::agent_config(obs_dim, 1, 1);
-    config.fields = fields.data();
-    config.num_fields = static_cast<int32_t>(fields.size());
+    config.fields = rows.data();
+    config.num_fields = static_cast<int32_t>(rows.size());
     const std::string settings =
         std::string("hidden=1\ncritic_hidden=1\nhorizon=1\nminibatches=1\nactor_obs=") + name;
     config.settings = settings.c_str();
@@ -46,14 +48,14 @@ std::vector<ObsPreset> obs_presets(int32_t obs_dim, const std::vector<rdm_field>
   return out;
 }
 
-Presets::Presets(const std::vector<rdm_field>& fields) {
-  for (const rdm_field& f : fields) fields_.emplace(f.name, 0);
+Presets::Presets(const std::vector<rdm_field_info>& fields) {
+  for (const rdm_field_info& f : fields) fields_.emplace(f.name, 0);
   for (const char* name : kPresetNames)  // a field of that name hides the preset, where it is
     for (auto f = fields_.begin(); f != fields_.end();)
       f = same_name(f->first, name) ? fields_.erase(f) : ++f;
-  std::vector<rdm_field> once;
+  std::vector<rdm_field_info> once;
   for (const auto& [name, kept] : fields_) {
-    rdm_field f{};
+    rdm_field_info f{};
     f.name = name.c_str();
     f.unit = "";
     f.offset = static_cast<int32_t>(once.size());
@@ -72,7 +74,7 @@ Presets::Presets(const std::vector<rdm_field>& fields) {
   }
 }
 
-std::vector<ObsPreset> Presets::of(int32_t obs_dim, const std::vector<rdm_field>& fields) const {
+std::vector<ObsPreset> Presets::of(int32_t obs_dim, const std::vector<rdm_field_info>& fields) const {
   std::vector<unsigned> kept(static_cast<size_t>(obs_dim), others_), by(fields.size());
   for (size_t i = 0; i < fields.size(); ++i) {
     const auto known = fields_.find(std::string_view(fields[i].name));
@@ -92,7 +94,7 @@ std::vector<ObsPreset> Presets::of(int32_t obs_dim, const std::vector<rdm_field>
   return out;
 }
 
-bool has_columns(const ObsPreset& preset, const rdm_field& field) {
+bool has_columns(const ObsPreset& preset, const rdm_field_info& field) {
   const auto first = std::lower_bound(preset.columns.begin(), preset.columns.end(), field.offset);
   return first != preset.columns.end() && *first < field.offset + field.count;
 }

@@ -15,14 +15,14 @@ struct ObsPreset {
   std::vector<int32_t> columns;  // entries of a row that it leaves, ascending
 };
 // Those that this observation has, "state" first.
-std::vector<ObsPreset> obs_presets(int32_t obs_dim, const std::vector<rdm_field>& fields);
+std::vector<ObsPreset> obs_presets(int32_t obs_dim, const std::vector<rdm_field_info>& fields);
 
 // The same for many observations whose fields are among these: asked once for each name, for what a preset does
 // with a field follows from the field's name.
 class Presets {
  public:
-  explicit Presets(const std::vector<rdm_field>& fields);
-  std::vector<ObsPreset> of(int32_t obs_dim, const std::vector<rdm_field>& fields) const;
+  explicit Presets(const std::vector<rdm_field_info>& fields);
+  std::vector<ObsPreset> of(int32_t obs_dim, const std::vector<rdm_field_info>& fields) const;
 
  private:
   std::vector<std::string> names_;                       // of the presets
@@ -30,7 +30,7 @@ class Presets {
   unsigned others_ = 0;                                  // the same of entries of no field
 };
 
-bool has_columns(const ObsPreset& preset, const rdm_field& field);
+bool has_columns(const ObsPreset& preset, const rdm_field_info& field);
 
 // Entries that a policy sees, ascending.
 std::vector<int32_t> policy_columns(const rdm_policy* policy);

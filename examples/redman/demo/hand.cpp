@@ -59,8 +59,8 @@ Place place_from(const T pose[7]) {
 
 bool observes(const redman::Pool& pool, const std::string& name) {
   for (int32_t i = 0; i < pool.spec().num_fields; ++i) {
-    rdm_field f;
-    redman::check(rdm_pool_field(pool.get(), i, &f));
+    rdm_field_info f = RDM_INIT(rdm_field_info);
+    redman::check(rdm_pool_field_at(pool.get(), i, &f));
     if (name == f.name) return true;
   }
   return false;

@@ -19,8 +19,8 @@ std::vector<DemoHand> hands_of(const redman::Pool& pool) {
   const Options settings = settings_of(pool);
   bool two = false;
   for (int32_t i = 0; i < pool.spec().num_fields; ++i) {
-    rdm_field f;
-    redman::check(rdm_pool_field(pool.get(), i, &f));
+    rdm_field_info f = RDM_INIT(rdm_field_info);
+    redman::check(rdm_pool_field_at(pool.get(), i, &f));
     two = two || std::string(f.name).rfind("left.", 0) == 0;
   }
   std::vector<DemoHand> out;
@@ -46,8 +46,8 @@ int32_t observed(const redman::Pool& pool, const std::string& word, bool* angle)
   const long k = open == std::string::npos ? 0 : std::strtol(word.c_str() + open + 1, &end, 10);
   if (end && (end == word.c_str() + open + 1 || std::strcmp(end, "]") != 0)) return -1;
   for (int32_t i = 0; i < pool.spec().num_fields; ++i) {
-    rdm_field f;
-    redman::check(rdm_pool_field(pool.get(), i, &f));
+    rdm_field_info f = RDM_INIT(rdm_field_info);
+    redman::check(rdm_pool_field_at(pool.get(), i, &f));
     if (!same_name(f.name, name)) continue;
     if (angle) *angle = std::string(f.unit) == "rad";
     return k >= 0 && k < f.count ? f.offset + static_cast<int32_t>(k) : -1;

@@ -185,8 +185,8 @@ std::string Recorder::metadata(const RecordNote& note, uint64_t steps) const {
   Json fields = Json::array(), costs = Json::array(), options = Json::object(), set = Json::array(),
        arrays = Json::object();
   for (int32_t i = 0; i < spec.num_fields; ++i) {
-    rdm_field f;
-    redman::check(rdm_pool_field(pool_.get(), i, &f));
+    rdm_field_info f = RDM_INIT(rdm_field_info);
+    redman::check(rdm_pool_field_at(pool_.get(), i, &f));
     fields.push_back({{"name", f.name}, {"unit", f.unit}, {"offset", f.offset}, {"count", f.count}});
   }
   const std::vector<double> limits = cost_limits(pool_, {});
@@ -261,8 +261,8 @@ void Recorder::write_table() {
   for (const Column& c : columns_) {
     if (c.name == "obs") {
       for (int32_t i = 0; i < pool_.spec().num_fields; ++i) {
-        rdm_field f;
-        redman::check(rdm_pool_field(pool_.get(), i, &f));
+        rdm_field_info f = RDM_INIT(rdm_field_info);
+        redman::check(rdm_pool_field_at(pool_.get(), i, &f));
         for (int32_t k = 0; k < f.count; ++k)
           out += ',' + csv_cell(with_unit(f.name + (f.count > 1 ? format("[%d]", k) : ""), f.unit));
       }
