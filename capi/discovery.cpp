@@ -135,13 +135,17 @@ rdm_result rdm_task_field_at(int32_t task, int32_t i, rdm_field_info* io) {
   });
 }
 
-rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost* out) {
+rdm_result rdm_task_cost_at(int32_t task, int32_t i, rdm_cost_info* io) {
   return call([&] {
-    need(out, "out");
+    check_out(io, sizeof(rdm_cost_info), "io");
     const TaskRef ref = ref_at(task);
     const TaskInfo& info = *ref;
     need_index(i, info.num_costs, "i");
-    *out = {lasting(info.costs[i].name), lasting(info.costs[i].help), info.costs[i].limit};
+    rdm_cost_info o{};
+    o.name = lasting(info.costs[i].name);
+    o.help = lasting(info.costs[i].help);
+    o.limit = info.costs[i].limit;
+    write_struct(io, o, sizeof(rdm_cost_info), "io");
   });
 }
 

@@ -306,7 +306,7 @@ void OwnTask::take_fields() {
 void OwnTask::take_costs() {
   need_rows(def.costs, def.num_costs, 1, "costs", kMaxTaskCosts);
   for (int32_t i = 0; i < def.num_costs; ++i) {
-    const rdm_cost& c = def.costs[i];
+    const rdm_cost_def& c = def.costs[i];
     need_name(c.name, RowName("costs", i, "name").text, kNameSize - 1);
     if (c.help) need_text(c.help, RowName("costs", i, "help").text);
     if (!std::isfinite(c.limit)) fail(Code::kArgument, "def.costs[%d].limit of %s is not finite", i, c.name);

@@ -92,7 +92,7 @@ rdm_result redman_plugin(void) { /* the tool calls it of a library that is given
   static const rdm_field_def fields[] = {{"joints", "rad", JOINTS + 1, 0, 0, 0},
                                          {"rates", "10 rad/s", JOINTS + 1, 0, 0, 0},
                                          {"cup", "m", 3, 0, 0, 0}};
-  static const rdm_cost cost = {"touch", "the hand touches the cup; raw: contact force, N", 5};
+  static const rdm_cost_def cost = {"touch", "the hand touches the cup; raw: contact force, N", 5};
   rdm_task_def def;
   rdm_task_def_init(&def, sizeof def);
   def.name = "press", def.summary = "press a button; cost: touching the cup beside it";

@@ -66,7 +66,7 @@ class Registration {
       const char* name = task_.keep(t.as_text(t.need("name"), "name"));
       double limit = -1;
       t.number("limit", &limit);
-      const auto same = [&](const rdm_cost& c) { return same_name(c.name, name); };
+      const auto same = [&](const rdm_cost_def& c) { return same_name(c.name, name); };
       const auto there = std::find_if(task_.costs.begin(), task_.costs.end(), same);
       if (there == task_.costs.end()) {
         if (task_.costs.size() == RDM_MAX_COSTS)

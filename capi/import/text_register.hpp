@@ -9,7 +9,7 @@ struct TextTask {
   toml::table root;
   std::deque<std::string> texts;
   std::vector<rdm_field_def> fields;
-  std::vector<rdm_cost> costs;
+  std::vector<rdm_cost_def> costs;
   std::vector<rdm_option_info> options;
   std::vector<rdm_camera> cameras;
   std::vector<rdm_option> defaults;

@@ -167,8 +167,8 @@ EXPORT const char* page_scene(void) {
   }
   put("%s", "],\"costs\":[");
   for (int i = 0; i < spec.cost_dim; ++i) {
-    rdm_cost cost;
-    if (rdm_task_cost(spec.task, i, &cost)) return NULL;
+    rdm_cost_info cost = RDM_INIT(rdm_cost_info);
+    if (rdm_task_cost_at(spec.task, i, &cost)) return NULL;
     put("%s", i ? ",{" : "{");
     put_member("name", cost.name);
     put("%s", ",");

@@ -12,7 +12,7 @@ Evaluation evaluate(const ActorChoice& choice, PoolSettings settings, const std:
   redman::Pool pool = make_pool(counted(settings), RDM_AUTORESET_OFF);
   Evaluation out;
   out.limits = cost_limits(pool, limits);
-  for (const rdm_cost& c : task_costs(pool.spec().task)) out.costs.push_back(c.name);
+  for (const rdm_cost_info& c : task_costs(pool.spec().task)) out.costs.push_back(c.name);
   Actor actor(choice, pool, stochastic, settings.seed);
   pool.reset();
   out.magnitudes = settings.magnitudes;

@@ -16,7 +16,7 @@ struct ListFlags {
   bool markdown = false, presets = false;
 };
 
-std::string limit_text(const std::vector<rdm_cost>& costs) {
+std::string limit_text(const std::vector<rdm_cost_info>& costs) {
   return costs.empty() || costs[0].limit < 0 ? "-" : number_text(costs[0].limit);
 }
 
@@ -24,7 +24,7 @@ Json task_json(int32_t index, const Presets& all_presets) {
   const rdm_task t = task_at(index);
   const std::vector<rdm_field_info> parts = task_fields(index);
   Json costs = Json::array(), fields = Json::array();
-  for (const rdm_cost& c : task_costs(index))
+  for (const rdm_cost_info& c : task_costs(index))
     costs.push_back(
         object_of({{"name", c.name}, {"limit", c.limit < 0 ? Json() : Json(c.limit)}, {"help", c.help}}));
   const auto number = [](float x) { return std::isnan(x) ? Json() : Json(x); };
@@ -74,7 +74,7 @@ std::string task_text(int32_t index) {
       if (has_columns(p, f)) in += (in.empty() ? "" : " ") + p.name;
     fields.add({f.name, f.unit, std::to_string(f.offset), std::to_string(f.count), in});
   }
-  for (const rdm_cost& c : task_costs(index))
+  for (const rdm_cost_info& c : task_costs(index))
     costs.add({c.name, c.limit < 0 ? "-" : number_text(c.limit), c.help});
   return out + fields.text() + '\n' + costs.text() + '\n' + options_text(task_options(index));
 }

@@ -39,7 +39,7 @@ Report run_plan(PlanFlags flags) {
   redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_OFF);
   Evaluation e;
   e.limits = cost_limits(pool, choice.limits);
-  for (const rdm_cost& c : task_costs(pool.spec().task)) e.costs.push_back(c.name);
+  for (const rdm_cost_info& c : task_costs(pool.spec().task)) e.costs.push_back(c.name);
   Actor actor(choice, pool, false, flags.pool.seed);
   const auto episodes = static_cast<size_t>(flags.episodes);
   std::unique_ptr<Recorder> recorder;

@@ -29,7 +29,7 @@ class StepTable {
  public:
   StepTable(const redman::Pool& pool, size_t episodes) : rows_(episodes), steps_(episodes) {
     header_ = "episode,step,reward";
-    for (const rdm_cost& c : task_costs(pool.spec().task))
+    for (const rdm_cost_info& c : task_costs(pool.spec().task))
       header_ += std::string(",") + (c.name == std::string("cost") ? "cost" : std::string("cost.") + c.name);
     header_ += ",terminated,truncated,success,status";
     for (int32_t i = 0; i < pool.spec().num_fields; ++i) {

@@ -12,6 +12,12 @@
 extern "C" {
 #endif
 
+typedef struct rdm_cost {   /* frozen layout: a cost column */
+  const char *name;         /* column 0 is "cost", the paper's                                */
+  const char *help;         /* one line                                                       */
+  double limit;             /* default limit on the sum over an episode; < 0: none            */
+} rdm_cost;
+
 #if !defined(RDM_NO_DEPRECATED)
 enum {
   RDM_ARGUMENT RDM_DEPRECATED("RDM_ERROR_ARGUMENT") = RDM_ERROR_ARGUMENT,
@@ -81,6 +87,18 @@ rdm_result rdm_task_field_bounds(int32_t task, int32_t i, float *low, float *hig
   if (r == RDM_OK) {
     *low = info.low;
     *high = info.high;
+  }
+  return r;
+}
+
+static inline RDM_DEPRECATED("rdm_task_cost_at")
+rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost *out) {
+  rdm_cost_info info = RDM_INIT(rdm_cost_info);
+  const rdm_result r = rdm_task_cost_at(task, i, out ? &info : NULL);
+  if (r == RDM_OK) {
+    out->name = info.name;
+    out->help = info.help;
+    out->limit = info.limit;
   }
   return r;
 }

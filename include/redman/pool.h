@@ -22,11 +22,13 @@ typedef struct rdm_task { /* a task with its default options */
   int32_t num_cameras;      /* for rdm_task_camera                                            */
   int32_t num_defaults;     /* for rdm_task_default_at                                           */
 } rdm_task;
-typedef struct rdm_cost {   /* frozen layout: a cost column */
+typedef struct rdm_cost_info { /* a cost column */
+  uint32_t struct_size;     /* in: bytes                                                      */
+  uint32_t reserved;        /* 0                                                              */
   const char *name;         /* column 0 is "cost", the paper's                                */
   const char *help;         /* one line                                                       */
   double limit;             /* default limit on the sum over an episode; < 0: none            */
-} rdm_cost;
+} rdm_cost_info;
 typedef struct rdm_camera { /* frozen layout */
   const char *name;         /* "front"                                                        */
   float eye[3];             /* m, in the frame that mount names                               */
@@ -41,7 +43,7 @@ RDM_API rdm_result rdm_task_find(const char *name,
                                  int32_t *index); /* NOT_FOUND: nearest in the text */
 RDM_API rdm_result rdm_task_field_at(int32_t task, int32_t i,
                                      rdm_field_info *io); /* default options; i < num_fields */
-RDM_API rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost *out);      /* i < cost_dim */
+RDM_API rdm_result rdm_task_cost_at(int32_t task, int32_t i, rdm_cost_info *io); /* i < cost_dim */
 RDM_API rdm_result rdm_task_option(int32_t task, int32_t i,
                                    rdm_option_info *out); /* i < num_options */
 RDM_API rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera *out);  /* i < num_cameras */

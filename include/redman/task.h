@@ -296,6 +296,11 @@ typedef struct rdm_field_def { /* frozen layout: a run of observation entries */
   float high;              /* likewise */
   int32_t reserved;        /* 0 */
 } rdm_field_def;
+typedef struct rdm_cost_def { /* frozen layout: a cost column */
+  const char *name;        /* unique: "touch" */
+  const char *help;        /* one line */
+  double limit;            /* default limit on the sum over an episode; < 0: none */
+} rdm_cost_def;
 typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_task_create */
   uint32_t struct_size;    /* bytes, set by rdm_task_def_init */
   int32_t max_steps;       /* control steps of an episode: default of the option max_steps;
@@ -303,7 +308,7 @@ typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_t
   const char *name;        /* letters, digits, '_', '-', '.'; at most 40 */
   const char *summary;     /* one line; NULL: none */
   const rdm_field_def *fields;     /* [num_fields] of an observation, in order */
-  const rdm_cost *costs;   /* [num_costs] column 0 is the one that learners limit */
+  const rdm_cost_def *costs;       /* [num_costs] column 0 is the one that learners limit */
   const rdm_option_info *options;  /* [num_options] rows, and defaults of its own for those that
                                     * every task has */
   const rdm_camera *cameras;       /* [num_cameras] NULL with num_cameras 0: "front", made for

@@ -117,16 +117,16 @@ TEST(Discovery, CostsOptionsCamerasAndDefaults) {
     SCOPED_TRACE(task.name);
     ASSERT_GE(task.cost_dim, 1);
     ASSERT_LE(task.cost_dim, RDM_MAX_COSTS);
-    rdm_cost cost;
+    rdm_cost_info cost = RDM_INIT(rdm_cost_info);
     for (int32_t i = 0; i < task.cost_dim; ++i) {
-      ASSERT_EQ(rdm_task_cost(t, i, &cost), RDM_OK);
+      ASSERT_EQ(rdm_task_cost_at(t, i, &cost), RDM_OK);
       EXPECT_GT(std::strlen(cost.name), 0u);
       EXPECT_GT(std::strlen(cost.help), 0u);
       EXPECT_FALSE(std::isnan(cost.limit));
     }
-    ASSERT_EQ(rdm_task_cost(t, 0, &cost), RDM_OK);
+    ASSERT_EQ(rdm_task_cost_at(t, 0, &cost), RDM_OK);
     EXPECT_GE(cost.limit, 0);
-    EXPECT_EQ(rdm_task_cost(t, task.cost_dim, &cost), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_task_cost_at(t, task.cost_dim, &cost), RDM_ERROR_RANGE);
 
     std::set<std::string> keys;
     rdm_option_info option;

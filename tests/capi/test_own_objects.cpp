@@ -255,7 +255,7 @@ rdm_result observe(void*, const void*, const rdm_world*, const void*, float* obs
 TEST(Objects, StandInAScene) {
   Seen seen;
   const rdm_field_def field = {"nothing", "1", 1, 0, 0, 0};
-  const rdm_cost cost = {"cost", "none", -1};
+  const rdm_cost_def cost = {"cost", "none", -1};
   rdm_task_def d;
   ASSERT_EQ(rdm_task_def_init(&d, sizeof d), RDM_OK);
   d.name = "objects_stand", d.fields = &field, d.num_fields = 1, d.costs = &cost, d.num_costs = 1;

@@ -74,8 +74,8 @@ TEST(OwnTask, IsFoundAndDescribed) {
   EXPECT_EQ(field.low, -0.4f);
   ASSERT_EQ(rdm_task_field_at(found, 0, &field), RDM_OK);
   EXPECT_EQ(field.high, 5);
-  rdm_cost cost;
-  ASSERT_EQ(rdm_task_cost(found, 0, &cost), RDM_OK);
+  rdm_cost_info cost = RDM_INIT(rdm_cost_info);
+  ASSERT_EQ(rdm_task_cost_at(found, 0, &cost), RDM_OK);
   EXPECT_STREQ(cost.name, "touch");
   EXPECT_EQ(cost.limit, 5);
   rdm_option_info option;
@@ -394,7 +394,7 @@ rdm_result arm_build(void* user, rdm_scene* scene, void*) {
 
 TEST(OwnTask, AnArmIsHeldByFeedForward) {
   static const rdm_field_def field = {"one", "1", 1, 0, 0, 0};
-  static const rdm_cost cost = {"sag", "0; raw: how far a joint is from home, rad", -1};
+  static const rdm_cost_def cost = {"sag", "0; raw: how far a joint is from home, rad", -1};
   double sag[2];
   for (const bool held : {false, true}) {
     Arm arm;

@@ -124,7 +124,7 @@ rdm_result simple_scene(rdm_scene* scene) {
 
 rdm_result try_task(Scripted* script) {
   static const rdm_field_def field = {"one", "1", 1, 0, 0, 0};
-  static const rdm_cost cost = {"cost", "none", -1};
+  static const rdm_cost_def cost = {"cost", "none", -1};
   rdm_task_def d;
   rdm_task_def_init(&d, sizeof d);
   d.name = "t", d.fields = &field, d.num_fields = 1, d.costs = &cost, d.num_costs = 1, d.action_dim = 1;

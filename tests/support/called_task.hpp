@@ -72,7 +72,7 @@ class CalledTask {
  private:
   static CalledTask& self(void* user) { return *static_cast<CalledTask*>(user); }
   rdm_field_def field_ = {"steps", "1", 1, 0, 0, 0};
-  rdm_cost cost_ = {"cost", "half of one in each step", 5};
+  rdm_cost_def cost_ = {"cost", "half of one in each step", 5};
 };
 
 }  // namespace rdm::test

@@ -230,9 +230,9 @@ struct GraspTask {
                                        {"object", "1", 24, 0, 0, 0},
                                        {"tips", "1", 95, 0, 0, 0},
                                        {"action", "1", 20, -1, 1, 0}};
-  std::vector<rdm_cost> costs = {{"cost", "a finger joint strains", 25},
-                                 {"finger_effort", "a finger joint's force above 0.4 of its limit", -1},
-                                 {"finger_range", "a first finger's command beyond 0.9", -1}};
+  std::vector<rdm_cost_def> costs = {{"cost", "a finger joint strains", 25},
+                                     {"finger_effort", "a finger joint's force above 0.4 of its limit", -1},
+                                     {"finger_range", "a first finger's command beyond 0.9", -1}};
   rdm_task_def def;
   GraspTask() {
     rdm_task_def_init(&def, sizeof def);

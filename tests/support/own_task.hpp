@@ -259,7 +259,8 @@ struct BallTask {
                                        {"ball.velocity", "m/s", 3, 0, 0, 0},
                                        {"paddle.position", "m", 1, -0.4f, 0.4f, 0},
                                        {"action", "1", kBallActions, -1, 1, 0}};
-  std::vector<rdm_cost> costs = {{"touch", "the paddle touches the ball", 5}, {"speed", "of the ball", -1}};
+  std::vector<rdm_cost_def> costs = {{"touch", "the paddle touches the ball", 5},
+                                     {"speed", "of the ball", -1}};
   std::vector<rdm_option_info> options = {
       {"push", "force of an action entry of 1 on the ball, N", nullptr, nullptr, 0.05, 0, 10, RDM_KIND_NUMBER,
        0},

@@ -39,7 +39,7 @@ static rdm_result judge(void* user, const void* instance, rdm_world* world, void
 }
 rdm_result redman_plugin(void) {
   static const rdm_field_def field = {"draw", "1", 1, 0, 0, 0};
-  static const rdm_cost cost = {"cost", "none", 5};
+  static const rdm_cost_def cost = {"cost", "none", 5};
   static int32_t number;
   rdm_task_def d;
   rdm_task_def_init(&d, sizeof d);

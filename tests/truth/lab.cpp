@@ -151,7 +151,7 @@ Lab::Lab(Scene s) : scene(std::move(s)) {
   static std::atomic<int> count{0};
   name_ = text("lab%d", ++count);
   const rdm_field_def field{"none", "1", 1, 0, 0, 0};
-  const rdm_cost cost{"cost", "none", -1};
+  const rdm_cost_def cost{"cost", "none", -1};
   rdm_task_def d;
   check(rdm_task_def_init(&d, sizeof d));
   d.name = name_.c_str(), d.max_steps = 100000, d.action_dim = 1, d.user = this;

@@ -652,24 +652,30 @@ class rdm_task(Structure):
     ]
 
 
-class Cost(Record):
-    """The values of rdm_cost."""
+class CostInfo(Record):
+    """The values of rdm_cost_info."""
 
     name: str  # column 0 is "cost", the paper's
     help: str  # one line
     limit: float  # default limit on the sum over an episode; < 0: none
 
 
-class rdm_cost(Structure):
-    """name: column 0 is "cost", the paper's
+class rdm_cost_info(Structure):
+    """struct_size: in: bytes
+    reserved: 0
+    name: column 0 is "cost", the paper's
     help: one line
     limit: default limit on the sum over an episode; < 0: none
     """
 
+    struct_size: int
+    reserved: int
     name: bytes | None
     help: bytes | None
     limit: float
     _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
         ("name", c_char_p),
         ("help", c_char_p),
         ("limit", c_double),
@@ -2936,6 +2942,30 @@ class rdm_field_def(Structure):
     ]
 
 
+class CostDef(Record):
+    """The values of rdm_cost_def."""
+
+    name: str  # unique: "touch"
+    help: str  # one line
+    limit: float  # default limit on the sum over an episode; < 0: none
+
+
+class rdm_cost_def(Structure):
+    """name: unique: "touch"
+    help: one line
+    limit: default limit on the sum over an episode; < 0: none
+    """
+
+    name: bytes | None
+    help: bytes | None
+    limit: float
+    _fields_ = [
+        ("name", c_char_p),
+        ("help", c_char_p),
+        ("limit", c_double),
+    ]
+
+
 class rdm_task_def(Structure):
     """struct_size: bytes, set by rdm_task_def_init
     max_steps: control steps of an episode: default of the option max_steps; default 100
@@ -3004,7 +3034,7 @@ class rdm_task_def(Structure):
         ("name", c_char_p),
         ("summary", c_char_p),
         ("fields", POINTER(rdm_field_def)),
-        ("costs", POINTER(rdm_cost)),
+        ("costs", POINTER(rdm_cost_def)),
         ("options", POINTER(rdm_option_info)),
         ("cameras", POINTER(rdm_camera)),
         ("defaults", POINTER(rdm_option)),
@@ -3042,7 +3072,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_spec": rdm_spec,
     "rdm_policy_info": rdm_policy_info,
     "rdm_task": rdm_task,
-    "rdm_cost": rdm_cost,
+    "rdm_cost_info": rdm_cost_info,
     "rdm_camera": rdm_camera,
     "rdm_robot": rdm_robot,
     "rdm_joint": rdm_joint,
@@ -3091,6 +3121,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_random": rdm_random,
     "rdm_verdict": rdm_verdict,
     "rdm_field_def": rdm_field_def,
+    "rdm_cost_def": rdm_cost_def,
     "rdm_task_def": rdm_task_def,
 }
 
@@ -3320,8 +3351,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"task": c_int32, "i": c_int32, "io": POINTER(rdm_field_info)},
         {}, False,
         """default options; i < num_fields"""),
-    "rdm_task_cost": Function(
-        c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_cost)},
+    "rdm_task_cost_at": Function(
+        c_int32, {"task": c_int32, "i": c_int32, "io": POINTER(rdm_cost_info)},
         {}, False,
         """i < cost_dim"""),
     "rdm_task_option": Function(

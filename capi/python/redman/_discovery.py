@@ -28,12 +28,12 @@ class Option(_abi.OptionInfo):
         self.__dict__.update(kind=OptionKind(struct.kind), default=default_of(struct))
 
 
-class Cost(_abi.Cost):
+class Cost(_abi.CostInfo):
     """A cost column. limit: on its sum over an episode, None where there is none."""
 
     limit: Optional[float]  # type: ignore[assignment]
 
-    def __init__(self, struct: _abi.rdm_cost) -> None:
+    def __init__(self, struct: _abi.rdm_cost_info) -> None:
         super().__init__(struct)
         self.__dict__["limit"] = None if struct.limit < 0 else struct.limit
 
@@ -71,7 +71,7 @@ class Task(_abi.Task):
         super().__init__(filled(_abi.rdm_task, lib.rdm_task_at, index))
         said = self.__dict__
         said["fields"] = fields_of(index, self.num_fields, lib.rdm_task_field_at)
-        said["costs"] = _records(Cost, _abi.rdm_cost, lib.rdm_task_cost, self.cost_dim, index)
+        said["costs"] = _records(Cost, _abi.rdm_cost_info, lib.rdm_task_cost_at, self.cost_dim, index)
         said["options"] = _records(Option, _abi.rdm_option_info, lib.rdm_task_option, self.num_options, index)
         said["cameras"] = _records(_abi.Camera, _abi.rdm_camera, lib.rdm_task_camera, self.num_cameras, index)
         said["defaults"] = laid(

@@ -104,9 +104,9 @@ std::vector<rdm_field_info> task_fields(int32_t task) {
   });
 }
 
-std::vector<rdm_cost> task_costs(int32_t task) {
-  return collect<rdm_cost>(task_at(task).cost_dim,
-                           [&](int32_t i, rdm_cost* out) { return rdm_task_cost(task, i, out); });
+std::vector<rdm_cost_info> task_costs(int32_t task) {
+  return collect<rdm_cost_info>(
+      task_at(task).cost_dim, [&](int32_t i, rdm_cost_info* out) { return rdm_task_cost_at(task, i, out); });
 }
 
 std::vector<rdm_option> task_defaults(int32_t task) {

@@ -28,7 +28,7 @@ rdm_task task_at(int32_t index);
 rdm_algo algo_at(int32_t index);
 
 std::vector<rdm_field_info> task_fields(int32_t task);
-std::vector<rdm_cost> task_costs(int32_t task);
+std::vector<rdm_cost_info> task_costs(int32_t task);
 // The task's own defaults of agent options, and the mean action of its new policies.
 std::vector<rdm_option> task_defaults(int32_t task);
 std::vector<float> task_initial_mean(int32_t task);

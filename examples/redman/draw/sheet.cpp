@@ -170,7 +170,7 @@ Image picture(Shown shown, int32_t side) {
     camera.eye[k] = static_cast<float>(shown.centre[k] + away * way[k]);
   }
   const rdm_field_def field = {"nothing", "1", 1, 0, 0, 0};
-  const rdm_cost cost = {"cost", "none", -1};
+  const rdm_cost_def cost = {"cost", "none", -1};
   rdm_task_def def;
   rdm_task_def_init(&def, sizeof def);
   def.name = "sheet_of_objects";

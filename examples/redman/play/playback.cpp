@@ -52,7 +52,7 @@ Playback begin_playback(const redman::Pool& pool, const std::vector<double>& lim
     out.cameras.emplace_back();
     redman::check(rdm_task_camera(spec.task, i, &out.cameras.back()));
   }
-  for (const rdm_cost& c : task_costs(spec.task))
+  for (const rdm_cost_info& c : task_costs(spec.task))
     out.costs.push_back({c.name, c.help, limits[out.costs.size()]});
   return out;
 }

@@ -190,7 +190,7 @@ std::string Recorder::metadata(const RecordNote& note, uint64_t steps) const {
     fields.push_back({{"name", f.name}, {"unit", f.unit}, {"offset", f.offset}, {"count", f.count}});
   }
   const std::vector<double> limits = cost_limits(pool_, {});
-  for (const rdm_cost& c : task_costs(spec.task)) {
+  for (const rdm_cost_info& c : task_costs(spec.task)) {
     const double limit = limits[costs.size()];
     costs.push_back({{"name", c.name}, {"help", c.help}, {"limit", limit < 0 ? Json() : Json(limit)}});
   }
@@ -267,7 +267,7 @@ void Recorder::write_table() {
           out += ',' + csv_cell(with_unit(f.name + (f.count > 1 ? format("[%d]", k) : ""), f.unit));
       }
     } else if (c.name == "cost" || c.name == "cost_raw") {
-      for (const rdm_cost& cost : task_costs(pool_.spec().task))
+      for (const rdm_cost_info& cost : task_costs(pool_.spec().task))
         out += ',' + csv_cell(c.name + '.' + cost.name);
     } else if (c.name == "action" || c.name == "label") {
       for (uint64_t k = 0; k < c.shape[0]; ++k) out += ',' + c.name + format("[%" PRIu64 "]", k);

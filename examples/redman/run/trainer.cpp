@@ -62,7 +62,7 @@ PoolSettings part_of(const PoolSettings& whole, const Ranks* ranks) {
 
 std::vector<CostColumn> cost_columns(int32_t task, const std::vector<double>& limits) {
   std::vector<CostColumn> columns;
-  for (const rdm_cost& c : task_costs(task)) columns.push_back({c.name, limits[columns.size()] >= 0});
+  for (const rdm_cost_info& c : task_costs(task)) columns.push_back({c.name, limits[columns.size()] >= 0});
   return columns;
 }
 
