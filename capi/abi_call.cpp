@@ -51,10 +51,18 @@ const char* name_of(Tag tag) {
   return nullptr;
 }
 
-rdm_option_info describe(const OptionSpec& s) {
-  return {s.key,         s.help, s.text, s.range ? "a..b" : s.choices,
-          s.number,      s.low,  s.high, static_cast<int32_t>(s.kind),
-          s.live ? 1 : 0};
+rdm_option_spec describe(const OptionSpec& s) {
+  rdm_option_spec o{};
+  o.kind = static_cast<int32_t>(s.kind);
+  o.live = s.live ? 1 : 0;
+  o.key = s.key;
+  o.help = s.help;
+  o.text = s.text;
+  o.choices = s.range ? "a..b" : s.choices;
+  o.number = s.number;
+  o.low = s.low;
+  o.high = s.high;
+  return o;
 }
 
 void give_settings(const Options& options, char* text, size_t capacity, size_t* size) {

@@ -185,7 +185,7 @@ inline constexpr size_t kFirstSensorsSize = offsetof(rdm_sensors, point_class);
 // Hooks of a handle: the config's, else the process's.
 HostHooks hooks_from(const rdm_host* host);
 
-rdm_option_info describe(const OptionSpec& spec);
+rdm_option_spec describe(const OptionSpec& spec);
 
 // Text of any length for (text, capacity, size): NULL asks for the size alone, which is without the
 // terminator.

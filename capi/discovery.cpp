@@ -149,19 +149,21 @@ rdm_result rdm_task_cost_at(int32_t task, int32_t i, rdm_cost_info* io) {
   });
 }
 
-rdm_result rdm_task_option(int32_t task, int32_t i, rdm_option_info* out) {
+rdm_result rdm_task_option_at(int32_t task, int32_t i, rdm_option_spec* io) {
   return call([&] {
-    need(out, "out");
+    check_out(io, sizeof(rdm_option_spec), "io");
     const TaskRef info = ref_at(task);
     const auto tables = tables_of(*info);
     int32_t count = 0;
     for (const OptionTableView& t : tables) count += t.count;
     need_index(i, count, "i");
+    rdm_option_spec o{};
     for (const OptionTableView& t : tables) {
-      if (i >= 0 && i < t.count) *out = describe(t.rows[i]);
+      if (i >= 0 && i < t.count) o = describe(t.rows[i]);
       i -= t.count;
     }
-    for (const char** text : {&out->key, &out->help, &out->text, &out->choices}) *text = lasting(*text);
+    for (const char** text : {&o.key, &o.help, &o.text, &o.choices}) *text = lasting(*text);
+    write_struct(io, o, sizeof(rdm_option_spec), "io");
   });
 }
 
@@ -266,13 +268,13 @@ rdm_result rdm_algo_find(const char* name, int32_t* index) {
   });
 }
 
-rdm_result rdm_algo_option(int32_t algo, int32_t i, rdm_option_info* out) {
+rdm_result rdm_algo_option_at(int32_t algo, int32_t i, rdm_option_spec* io) {
   return call([&] {
-    need(out, "out");
+    check_out(io, sizeof(rdm_option_spec), "io");
     need_index(algo, algo_count(), "algo");
     const AlgoInfo& a = algo_at(algo);
     need_index(i, a.num_options, "i");
-    *out = describe(a.options[i]);
+    write_struct(io, describe(a.options[i]), sizeof(rdm_option_spec), "io");
   });
 }
 #endif

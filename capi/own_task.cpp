@@ -322,7 +322,7 @@ void OwnTask::take_options() {
   const OptionTable& shared = simulation_rows();
   Vector<OptionSpec> tail(shared.rows(), shared.rows() + shared.count());
   for (int32_t i = 0; i < def.num_options; ++i) {
-    const rdm_option_info& o = def.options[i];
+    const rdm_option_def& o = def.options[i];
     const RowName key("options", i, "key");
     need_name(o.key, key.text, OptionTable::kKeySize - 1);
     if (o.kind < RDM_KIND_NUMBER || o.kind > RDM_KIND_TEXT)

@@ -175,13 +175,13 @@ rdm_result rdm_planner_get_spec(const rdm_planner* p, rdm_planner_spec* io) {
   });
 }
 
-rdm_result rdm_planner_option_at(int32_t i, rdm_option_info* out) {
+rdm_result rdm_planner_option_at(int32_t i, rdm_option_spec* io) {
   return call([&] {
-    need(out, "out");
+    check_out(io, sizeof(rdm_option_spec), "io");
     int32_t count = 0;
     const OptionSpec* rows = planner_options(&count);
     need_index(i, count, "i");
-    *out = describe(rows[i]);
+    write_struct(io, describe(rows[i]), sizeof(rdm_option_spec), "io");
   });
 }
 

@@ -83,7 +83,7 @@ class Registration {
     const Table all = top_.section("options");
     for (const auto& [key, value] : all.t) {
       const std::string name(key.str());
-      rdm_option_info o{};
+      rdm_option_def o{};
       o.key = task_.keep(name);
       const toml::table* own = value.as_table();
       const Table t{own ? *own : all.t, "options: " + clean(name), nullptr};
@@ -95,7 +95,7 @@ class Registration {
       task_.options.push_back(o);
     }
   }
-  void own_option(const Table& t, rdm_option_info* o) {
+  void own_option(const Table& t, rdm_option_def* o) {
     t.only({"default", "low", "high", "help", "integer", "range", "choices"});
     const toml::node& n = t.need("default");
     o->help = task_.keep(t.text("help", "of the task's file"));
@@ -124,7 +124,7 @@ class Registration {
         t.bad(RDM_ERROR_RANGE, line_of(n), "default: %g is outside [%g, %g]", o->number, o->low, o->high);
     }
   }
-  void shared_option(const Table& t, const toml::node& value, rdm_option_info* o) {
+  void shared_option(const Table& t, const toml::node& value, rdm_option_def* o) {
     const OptionSpec* row = nullptr;
     std::vector<std::string> names;
     for (const OptionSpec& r : kSimulationRows) {

@@ -82,7 +82,7 @@ void add_plan(CLI::App& app, Run& run) {
   command->add_option("--critic", flags->critic,
                       "run folder whose critic values where a plan ends; default: none");
   command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));
-  for (const rdm_option_info& row : planner_options()) {
+  for (const rdm_option_spec& row : planner_options()) {
     const std::string key = row.key;
     if (key != "method" && key != "samples" && key != "horizon" && key != "iterations") continue;
     command->add_option_function<std::string>(

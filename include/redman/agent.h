@@ -9,7 +9,7 @@ extern "C" {
 
 typedef struct rdm_algo { /* an algorithm */
   uint32_t struct_size;     /* in: bytes                                                      */
-  int32_t num_options;      /* for rdm_algo_option                                            */
+  int32_t num_options;      /* for rdm_algo_option_at                                         */
   const char *name;         /* "ppo_lag"                                                      */
   const char *summary;      /* one line with the paper                                        */
 } rdm_algo;
@@ -17,8 +17,8 @@ RDM_API int32_t rdm_algo_count(void); /* number of algorithms; 0 without the lea
 RDM_API rdm_result rdm_algo_at(int32_t index, rdm_algo *io); /* RANGE past the end */
 RDM_API rdm_result rdm_algo_find(const char *name,
                                  int32_t *index); /* NOT_FOUND: nearest in the text */
-RDM_API rdm_result rdm_algo_option(int32_t algo, int32_t i,
-                                   rdm_option_info *out); /* i < num_options */
+RDM_API rdm_result rdm_algo_option_at(int32_t algo, int32_t i,
+                                      rdm_option_spec *io); /* i < num_options */
 
 typedef struct rdm_agent rdm_agent; /* handle */
 enum rdm_act_mode { RDM_ACT_SAMPLE = 0, RDM_ACT_MEAN = 1 }; /* of rdm_agent_act */

@@ -133,7 +133,11 @@ typedef struct rdm_option { /* frozen layout: one key and its value */
                              * is it */
   double number;            /* value when text is NULL                                        */
 } rdm_option;
-typedef struct rdm_option_info { /* frozen layout: one row of an option table */
+typedef struct rdm_option_spec { /* one row of an option table */
+  uint32_t struct_size;     /* in: bytes                                                      */
+  int32_t kind;             /* RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT */
+  int32_t live;             /* flag: rdm_agent_set_option may change it after creation */
+  int32_t reserved;         /* 0                                                              */
   const char *key;          /* static; its last word FIELD: any name of a field, or a pattern
                              * with '*' */
   const char *help;         /* one line, with the unit                                        */
@@ -144,9 +148,7 @@ typedef struct rdm_option_info { /* frozen layout: one row of an option table */
                              * reset; else NULL */
   double number;            /* default of number, integer, flag; of a range its middle        */
   double low, high;         /* inclusive bounds                                               */
-  int32_t kind;             /* RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT */
-  int32_t live;             /* flag: rdm_agent_set_option may change it after creation */
-} rdm_option_info;
+} rdm_option_spec;
 /* Options as one text, wherever a config has `settings`: lines `key=value`; spaces about either,
  * '\r' and lines that are empty do not count. They are laid over the config's `options`, later ones
  * over earlier ones; an error names the line. A NULL is none. */

@@ -12,6 +12,20 @@
 extern "C" {
 #endif
 
+typedef struct rdm_option_info { /* frozen layout: one row of an option table */
+  const char *key;          /* static; its last word FIELD: any name of a field, or a pattern
+                             * with '*' */
+  const char *help;         /* one line, with the unit                                        */
+  const char *text;         /* default of a text option, or of a number that is a range, else
+                             * NULL */
+  const char *choices;      /* text: allowed words "a|b|c", NULL: any; number, integer: "a..b":
+                             * takes a range "0.7..1.3" too, which each world draws from at a
+                             * reset; else NULL */
+  double number;            /* default of number, integer, flag; of a range its middle        */
+  double low, high;         /* inclusive bounds                                               */
+  int32_t kind;             /* RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT */
+  int32_t live;             /* flag: rdm_agent_set_option may change it after creation */
+} rdm_option_info;
 typedef struct rdm_cost {   /* frozen layout: a cost column */
   const char *name;         /* column 0 is "cost", the paper's                                */
   const char *help;         /* one line                                                       */
@@ -103,6 +117,24 @@ rdm_result rdm_task_cost(int32_t task, int32_t i, rdm_cost *out) {
   return r;
 }
 
+static inline RDM_DEPRECATED("rdm_task_option_at")
+rdm_result rdm_task_option(int32_t task, int32_t i, rdm_option_info *out) {
+  rdm_option_spec spec = RDM_INIT(rdm_option_spec);
+  const rdm_result r = rdm_task_option_at(task, i, out ? &spec : NULL);
+  if (r == RDM_OK) {
+    out->key = spec.key;
+    out->help = spec.help;
+    out->text = spec.text;
+    out->choices = spec.choices;
+    out->number = spec.number;
+    out->low = spec.low;
+    out->high = spec.high;
+    out->kind = spec.kind;
+    out->live = spec.live;
+  }
+  return r;
+}
+
 static inline RDM_DEPRECATED("rdm_task_default_at")
 rdm_result rdm_task_default(int32_t task, int32_t i, rdm_option *out) {
   return rdm_task_default_at(task, i, out);
@@ -181,6 +213,24 @@ rdm_result rdm_pool_set_state(rdm_pool *p, int32_t env, const void *bytes, size_
 static inline RDM_DEPRECATED("rdm_pool_get_hash")
 rdm_result rdm_pool_hash(const rdm_pool *p, int32_t env, uint64_t *hash) {
   return rdm_pool_get_hash(p, env, hash);
+}
+
+static inline RDM_DEPRECATED("rdm_algo_option_at")
+rdm_result rdm_algo_option(int32_t algo, int32_t i, rdm_option_info *out) {
+  rdm_option_spec spec = RDM_INIT(rdm_option_spec);
+  const rdm_result r = rdm_algo_option_at(algo, i, out ? &spec : NULL);
+  if (r == RDM_OK) {
+    out->key = spec.key;
+    out->help = spec.help;
+    out->text = spec.text;
+    out->choices = spec.choices;
+    out->number = spec.number;
+    out->low = spec.low;
+    out->high = spec.high;
+    out->kind = spec.kind;
+    out->live = spec.live;
+  }
+  return r;
 }
 
 static inline RDM_DEPRECATED("rdm_agent_config_memory")

@@ -153,7 +153,7 @@ RDM_API rdm_result rdm_planner_get_spec(const rdm_planner *planner,
                                         rdm_planner_spec *io); /* fills io */
 /* Option i of planners: method, samples, horizon, knots, interpolation, noise, elites, temperature,
  * iterations, costs, and others. RANGE past the end. */
-RDM_API rdm_result rdm_planner_option_at(int32_t i, rdm_option_info *out);
+RDM_API rdm_result rdm_planner_option_at(int32_t i, rdm_option_spec *io);
 /* All options as text [capacity] of lines key=value: given as settings they make a planner of the
  * same options. */
 RDM_API rdm_result rdm_planner_get_settings(const rdm_planner *planner, char *text, size_t capacity,

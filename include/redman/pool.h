@@ -18,7 +18,7 @@ typedef struct rdm_task { /* a task with its default options */
   int32_t cost_dim;         /* count of cost columns                                          */
   int32_t max_steps;        /* control steps of an episode, default options                   */
   int32_t num_fields;       /* for rdm_task_field_at                                          */
-  int32_t num_options;      /* for rdm_task_option                                            */
+  int32_t num_options;      /* for rdm_task_option_at                                         */
   int32_t num_cameras;      /* for rdm_task_camera                                            */
   int32_t num_defaults;     /* for rdm_task_default_at                                           */
 } rdm_task;
@@ -44,8 +44,8 @@ RDM_API rdm_result rdm_task_find(const char *name,
 RDM_API rdm_result rdm_task_field_at(int32_t task, int32_t i,
                                      rdm_field_info *io); /* default options; i < num_fields */
 RDM_API rdm_result rdm_task_cost_at(int32_t task, int32_t i, rdm_cost_info *io); /* i < cost_dim */
-RDM_API rdm_result rdm_task_option(int32_t task, int32_t i,
-                                   rdm_option_info *out); /* i < num_options */
+RDM_API rdm_result rdm_task_option_at(int32_t task, int32_t i,
+                                      rdm_option_spec *io); /* i < num_options */
 RDM_API rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera *out);  /* i < num_cameras */
 /* The task's own defaults of agent options, to be given as rdm_agent_config.defaults. */
 RDM_API rdm_result rdm_task_default_at(int32_t task, int32_t i,

@@ -301,6 +301,17 @@ typedef struct rdm_cost_def { /* frozen layout: a cost column */
   const char *help;        /* one line */
   double limit;            /* default limit on the sum over an episode; < 0: none */
 } rdm_cost_def;
+typedef struct rdm_option_def { /* frozen layout: one row of an option table, as rdm_option_spec */
+  const char *key;         /* letters, digits, '_', '-', '.' */
+  const char *help;        /* one line, with the unit; unused of one that every task has */
+  const char *text;        /* default of a text option, or of a number that is a range, else NULL */
+  const char *choices;     /* text: allowed words "a|b|c", NULL: any; number, integer: "a..b":
+                            * takes a range too; else NULL */
+  double number;           /* default of number, integer, flag; of a range its middle */
+  double low, high;        /* inclusive bounds */
+  int32_t kind;            /* RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT */
+  int32_t live;            /* unused */
+} rdm_option_def;
 typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_task_create */
   uint32_t struct_size;    /* bytes, set by rdm_task_def_init */
   int32_t max_steps;       /* control steps of an episode: default of the option max_steps;
@@ -309,7 +320,7 @@ typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_t
   const char *summary;     /* one line; NULL: none */
   const rdm_field_def *fields;     /* [num_fields] of an observation, in order */
   const rdm_cost_def *costs;       /* [num_costs] column 0 is the one that learners limit */
-  const rdm_option_info *options;  /* [num_options] rows, and defaults of its own for those that
+  const rdm_option_def *options;   /* [num_options] rows, and defaults of its own for those that
                                     * every task has */
   const rdm_camera *cameras;       /* [num_cameras] NULL with num_cameras 0: "front", made for
                                     * the origin */

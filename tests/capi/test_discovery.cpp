@@ -11,7 +11,7 @@
 
 namespace {
 
-void check_option(const rdm_option_info& o, const char* owner) {
+void check_option(const rdm_option_spec& o, const char* owner) {
   SCOPED_TRACE(std::string(owner) + "." + o.key);
   ASSERT_GT(std::strlen(o.key), 0u);
   ASSERT_NE(o.help, nullptr);
@@ -129,13 +129,13 @@ TEST(Discovery, CostsOptionsCamerasAndDefaults) {
     EXPECT_EQ(rdm_task_cost_at(t, task.cost_dim, &cost), RDM_ERROR_RANGE);
 
     std::set<std::string> keys;
-    rdm_option_info option;
+    rdm_option_spec option = RDM_INIT(rdm_option_spec);
     for (int32_t i = 0; i < task.num_options; ++i) {
-      ASSERT_EQ(rdm_task_option(t, i, &option), RDM_OK);
+      ASSERT_EQ(rdm_task_option_at(t, i, &option), RDM_OK);
       check_option(option, task.name);
       EXPECT_TRUE(keys.insert(option.key).second) << option.key;
     }
-    EXPECT_EQ(rdm_task_option(t, task.num_options, &option), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_task_option_at(t, task.num_options, &option), RDM_ERROR_RANGE);
 
     rdm_camera camera;
     ASSERT_GE(task.num_cameras, 1);
@@ -213,13 +213,13 @@ TEST(Discovery, Algorithms) {
     EXPECT_EQ(rdm_algo_find(algo.name, &found), RDM_OK);
     EXPECT_EQ(found, a);
     std::set<std::string> keys;
-    rdm_option_info option;
+    rdm_option_spec option = RDM_INIT(rdm_option_spec);
     for (int32_t i = 0; i < algo.num_options; ++i) {
-      ASSERT_EQ(rdm_algo_option(a, i, &option), RDM_OK);
+      ASSERT_EQ(rdm_algo_option_at(a, i, &option), RDM_OK);
       check_option(option, algo.name);
       EXPECT_TRUE(keys.insert(option.key).second) << option.key;
     }
-    EXPECT_EQ(rdm_algo_option(a, algo.num_options, &option), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_algo_option_at(a, algo.num_options, &option), RDM_ERROR_RANGE);
   }
   int32_t found = -1;
   EXPECT_EQ(rdm_algo_find("ppo_lagg", &found), RDM_ERROR_NOT_FOUND);
@@ -264,9 +264,9 @@ TEST(Discovery, SurvivesBadCalls) {
   EXPECT_EQ(rdm_task_find(nullptr, &index), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_task_find("grasp", nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_task_field_at(0, 0, nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_task_option(0, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_task_option_at(0, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_algo_find(nullptr, &index), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_algo_option(0, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_algo_option_at(0, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_robot_at(0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_object_at(0, nullptr), RDM_ERROR_ARGUMENT);
   rdm_task task;

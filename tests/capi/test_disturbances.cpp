@@ -101,8 +101,8 @@ TEST(Disturbances, AreRowsOfEveryTask) {
     ASSERT_EQ(rdm_task_at(i, &task), RDM_OK);
     int found = 0;
     for (int32_t k = 0; k < task.num_options; ++k) {
-      rdm_option_info o;
-      ASSERT_EQ(rdm_task_option(i, k, &o), RDM_OK);
+      rdm_option_spec o = RDM_INIT(rdm_option_spec);
+      ASSERT_EQ(rdm_task_option_at(i, k, &o), RDM_OK);
       const std::string key = o.key;
       const bool open =
           key == "noise.FIELD" || key == "bias.FIELD" || key == "delay.FIELD" || key == "dropout.FIELD";

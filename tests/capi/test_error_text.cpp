@@ -110,8 +110,8 @@ TEST(ErrorTextAll, TasksAndTheirOptions) {
     for (const std::string& name : names) {
       std::vector<rdm_option> options{{name.c_str(), nullptr, 0}};
       for (int32_t i = 0; i < task.num_options; ++i) {
-        rdm_option_info info;
-        ASSERT_EQ(rdm_task_option(t, i, &info), RDM_OK);
+        rdm_option_spec info = RDM_INIT(rdm_option_spec);
+        ASSERT_EQ(rdm_task_option_at(t, i, &info), RDM_OK);
         options.push_back({info.key, name.c_str(), 0});
       }
       for (const rdm_option& o : options) {
@@ -138,8 +138,8 @@ TEST(ErrorTextAll, AlgorithmsAndTheirOptions) {
     for (const std::string& name : names) {
       std::vector<rdm_option> options{{name.c_str(), nullptr, 0}};
       for (int32_t i = 0; i < algo.num_options; ++i) {
-        rdm_option_info info;
-        ASSERT_EQ(rdm_algo_option(g, i, &info), RDM_OK);
+        rdm_option_spec info = RDM_INIT(rdm_option_spec);
+        ASSERT_EQ(rdm_algo_option_at(g, i, &info), RDM_OK);
         options.push_back({info.key, name.c_str(), 0});
       }
       for (const rdm_option& o : options) {

@@ -78,10 +78,10 @@ TEST(OwnTask, IsFoundAndDescribed) {
   ASSERT_EQ(rdm_task_cost_at(found, 0, &cost), RDM_OK);
   EXPECT_STREQ(cost.name, "touch");
   EXPECT_EQ(cost.limit, 5);
-  rdm_option_info option;
-  ASSERT_EQ(rdm_task_option(found, 1, &option), RDM_OK);
+  rdm_option_spec option = RDM_INIT(rdm_option_spec);
+  ASSERT_EQ(rdm_task_option_at(found, 1, &option), RDM_OK);
   EXPECT_STREQ(option.choices, "calm|wild");
-  ASSERT_EQ(rdm_task_option(found, 2, &option), RDM_OK);
+  ASSERT_EQ(rdm_task_option_at(found, 2, &option), RDM_OK);
   EXPECT_STREQ(option.key, "max_steps");
   EXPECT_EQ(option.number, 40);
   rdm_camera camera;
@@ -297,8 +297,8 @@ TEST(OwnTask, OptionsMayBeRanges) {
   };
   const Registered made(t.def);
   Rows rows("own_ranges", 1, 0, "push=0.5..2");
-  rdm_option_info option;
-  ASSERT_EQ(rdm_task_option(made.index(), 0, &option), RDM_OK);
+  rdm_option_spec option = RDM_INIT(rdm_option_spec);
+  ASSERT_EQ(rdm_task_option_at(made.index(), 0, &option), RDM_OK);
   EXPECT_STREQ(option.choices, "a..b");
   rdm_pool_config c;
   rdm_pool_config_init(&c, sizeof c);

@@ -45,9 +45,9 @@ struct World {
 // many it takes, and waits for them.
 std::string same_room_as(const char* task) {
   int32_t index = 0;
-  rdm_option_info o;
+  rdm_option_spec o = RDM_INIT(rdm_option_spec);
   EXPECT_EQ(rdm_task_find(task, &index), RDM_OK);
-  for (int32_t i = 0; rdm_task_option(index, i, &o) == RDM_OK; ++i)
+  for (int32_t i = 0; rdm_task_option_at(index, i, &o) == RDM_OK; ++i)
     if (std::string(o.key) == "contacts_max")
       return "speculative_contacts=false\ncontacts_max=" + std::to_string(static_cast<int>(o.number));
   ADD_FAILURE() << task << " has no option contacts_max";

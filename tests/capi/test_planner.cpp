@@ -610,7 +610,7 @@ TEST(PlannerErrors, AWrongCallChangesNothing) {
 }
 
 TEST(PlannerOptions, AreListedAndGivenBack) {
-  rdm_option_info row;
+  rdm_option_spec row = RDM_INIT(rdm_option_spec);
   int32_t count = 0;
   bool method = false;
   for (; rdm_planner_option_at(count, &row) == RDM_OK; ++count) method |= std::string(row.key) == "method";

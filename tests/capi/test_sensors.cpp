@@ -115,12 +115,12 @@ TEST(Sensors, EveryTaskHasTheOptions) {
     task.struct_size = sizeof task;
     ASSERT_EQ(rdm_task_at(t, &task), RDM_OK);
     std::set<std::string> keys;
-    rdm_option_info o;
+    rdm_option_spec o = RDM_INIT(rdm_option_spec);
     for (int32_t i = 0; i < task.num_options; ++i) {
-      ASSERT_EQ(rdm_task_option(t, i, &o), RDM_OK);
+      ASSERT_EQ(rdm_task_option_at(t, i, &o), RDM_OK);
       EXPECT_TRUE(keys.insert(o.key).second) << task.name << " has " << o.key << " twice";
     }
-    EXPECT_EQ(rdm_task_option(t, task.num_options, &o), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_task_option_at(t, task.num_options, &o), RDM_ERROR_RANGE);
     EXPECT_TRUE(keys.count("modality") && keys.count("cloud_cameras")) << task.name;
     // every modality works in it
     const rdm_option all[] = {{"modality", "rgb+depth+segmentation+points+voxels", 0},

@@ -66,8 +66,8 @@ inline std::vector<World> all_worlds() {
     HARD_REQUIRE(rdm_task_at(i, &t) == RDM_OK, "%s", rdm_last_error());
     bool has_engine = false;
     for (int32_t k = 0; k < t.num_options; ++k) {
-      rdm_option_info o;
-      if (rdm_task_option(i, k, &o) != RDM_OK || std::strcmp(o.key, "engine") != 0) continue;
+      rdm_option_spec o = RDM_INIT(rdm_option_spec);
+      if (rdm_task_option_at(i, k, &o) != RDM_OK || std::strcmp(o.key, "engine") != 0) continue;
       has_engine = true;
       std::string choices = o.choices ? o.choices : "";
       for (size_t at = 0; at < choices.size();) {

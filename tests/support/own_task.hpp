@@ -261,7 +261,7 @@ struct BallTask {
                                        {"action", "1", kBallActions, -1, 1, 0}};
   std::vector<rdm_cost_def> costs = {{"touch", "the paddle touches the ball", 5},
                                      {"speed", "of the ball", -1}};
-  std::vector<rdm_option_info> options = {
+  std::vector<rdm_option_def> options = {
       {"push", "force of an action entry of 1 on the ball, N", nullptr, nullptr, 0.05, 0, 10, RDM_KIND_NUMBER,
        0},
       {"mood", "does nothing", "calm", "calm|wild", 0, 0, 0, RDM_KIND_TEXT, 0},

@@ -321,9 +321,11 @@ class rdm_option(Structure):
     ]
 
 
-class OptionInfo(Record):
-    """The values of rdm_option_info."""
+class OptionSpec(Record):
+    """The values of rdm_option_spec."""
 
+    kind: int  # RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
+    live: int  # flag: rdm_agent_set_option may change it after creation
     key: str  # static; its last word FIELD: any name of a field, or a pattern with '*'
     help: str  # one line, with the unit
     text: str | None  # default of a text option, or of a number that is a range, else NULL
@@ -331,12 +333,14 @@ class OptionInfo(Record):
     number: float  # default of number, integer, flag; of a range its middle
     low: float  # inclusive bounds
     high: float  # inclusive bounds
-    kind: int  # RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
-    live: int  # flag: rdm_agent_set_option may change it after creation
 
 
-class rdm_option_info(Structure):
-    """key: static; its last word FIELD: any name of a field, or a pattern with '*'
+class rdm_option_spec(Structure):
+    """struct_size: in: bytes
+    kind: RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
+    live: flag: rdm_agent_set_option may change it after creation
+    reserved: 0
+    key: static; its last word FIELD: any name of a field, or a pattern with '*'
     help: one line, with the unit
     text: default of a text option, or of a number that is a range, else NULL
     choices: text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range "0.7..1.3" too,
@@ -344,10 +348,12 @@ class rdm_option_info(Structure):
     number: default of number, integer, flag; of a range its middle
     low: inclusive bounds
     high: inclusive bounds
-    kind: RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
-    live: flag: rdm_agent_set_option may change it after creation
     """
 
+    struct_size: int
+    kind: int
+    live: int
+    reserved: int
     key: bytes | None
     help: bytes | None
     text: bytes | None
@@ -355,9 +361,11 @@ class rdm_option_info(Structure):
     number: float
     low: float
     high: float
-    kind: int
-    live: int
     _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_int32),
+        ("live", c_int32),
+        ("reserved", c_int32),
         ("key", c_char_p),
         ("help", c_char_p),
         ("text", c_char_p),
@@ -365,8 +373,6 @@ class rdm_option_info(Structure):
         ("number", c_double),
         ("low", c_double),
         ("high", c_double),
-        ("kind", c_int32),
-        ("live", c_int32),
     ]
 
 
@@ -604,7 +610,7 @@ class Task(Record):
     cost_dim: int  # count of cost columns
     max_steps: int  # control steps of an episode, default options
     num_fields: int  # for rdm_task_field_at
-    num_options: int  # for rdm_task_option
+    num_options: int  # for rdm_task_option_at
     num_cameras: int  # for rdm_task_camera
     num_defaults: int  # for rdm_task_default_at
 
@@ -619,7 +625,7 @@ class rdm_task(Structure):
     cost_dim: count of cost columns
     max_steps: control steps of an episode, default options
     num_fields: for rdm_task_field_at
-    num_options: for rdm_task_option
+    num_options: for rdm_task_option_at
     num_cameras: for rdm_task_camera
     num_defaults: for rdm_task_default_at
     """
@@ -1054,14 +1060,14 @@ class rdm_pool_stats(Structure):
 class Algo(Record):
     """The values of rdm_algo."""
 
-    num_options: int  # for rdm_algo_option
+    num_options: int  # for rdm_algo_option_at
     name: str  # "ppo_lag"
     summary: str  # one line with the paper
 
 
 class rdm_algo(Structure):
     """struct_size: in: bytes
-    num_options: for rdm_algo_option
+    num_options: for rdm_algo_option_at
     name: "ppo_lag"
     summary: one line with the paper
     """
@@ -2966,6 +2972,54 @@ class rdm_cost_def(Structure):
     ]
 
 
+class OptionDef(Record):
+    """The values of rdm_option_def."""
+
+    key: str  # letters, digits, '_', '-', '.'
+    help: str  # one line, with the unit; unused of one that every task has
+    text: str | None  # default of a text option, or of a number that is a range, else NULL
+    choices: str | None  # text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range too; else NULL
+    number: float  # default of number, integer, flag; of a range its middle
+    low: float  # inclusive bounds
+    high: float  # inclusive bounds
+    kind: int  # RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
+    live: int  # unused
+
+
+class rdm_option_def(Structure):
+    """key: letters, digits, '_', '-', '.'
+    help: one line, with the unit; unused of one that every task has
+    text: default of a text option, or of a number that is a range, else NULL
+    choices: text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range too; else NULL
+    number: default of number, integer, flag; of a range its middle
+    low: inclusive bounds
+    high: inclusive bounds
+    kind: RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
+    live: unused
+    """
+
+    key: bytes | None
+    help: bytes | None
+    text: bytes | None
+    choices: bytes | None
+    number: float
+    low: float
+    high: float
+    kind: int
+    live: int
+    _fields_ = [
+        ("key", c_char_p),
+        ("help", c_char_p),
+        ("text", c_char_p),
+        ("choices", c_char_p),
+        ("number", c_double),
+        ("low", c_double),
+        ("high", c_double),
+        ("kind", c_int32),
+        ("live", c_int32),
+    ]
+
+
 class rdm_task_def(Structure):
     """struct_size: bytes, set by rdm_task_def_init
     max_steps: control steps of an episode: default of the option max_steps; default 100
@@ -3035,7 +3089,7 @@ class rdm_task_def(Structure):
         ("summary", c_char_p),
         ("fields", POINTER(rdm_field_def)),
         ("costs", POINTER(rdm_cost_def)),
-        ("options", POINTER(rdm_option_info)),
+        ("options", POINTER(rdm_option_def)),
         ("cameras", POINTER(rdm_camera)),
         ("defaults", POINTER(rdm_option)),
         ("num_fields", c_int32),
@@ -3065,7 +3119,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_build": rdm_build,
     "rdm_host": rdm_host,
     "rdm_option": rdm_option,
-    "rdm_option_info": rdm_option_info,
+    "rdm_option_spec": rdm_option_spec,
     "rdm_field": rdm_field,
     "rdm_field_info": rdm_field_info,
     "rdm_tensor": rdm_tensor,
@@ -3122,6 +3176,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_verdict": rdm_verdict,
     "rdm_field_def": rdm_field_def,
     "rdm_cost_def": rdm_cost_def,
+    "rdm_option_def": rdm_option_def,
     "rdm_task_def": rdm_task_def,
 }
 
@@ -3355,8 +3410,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"task": c_int32, "i": c_int32, "io": POINTER(rdm_cost_info)},
         {}, False,
         """i < cost_dim"""),
-    "rdm_task_option": Function(
-        c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_option_info)},
+    "rdm_task_option_at": Function(
+        c_int32, {"task": c_int32, "i": c_int32, "io": POINTER(rdm_option_spec)},
         {}, False,
         """i < num_options"""),
     "rdm_task_camera": Function(
@@ -3582,8 +3637,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"name": c_char_p, "index": c_void_p},
         {}, False,
         """NOT_FOUND: nearest in the text"""),
-    "rdm_algo_option": Function(
-        c_int32, {"algo": c_int32, "i": c_int32, "out": POINTER(rdm_option_info)},
+    "rdm_algo_option_at": Function(
+        c_int32, {"algo": c_int32, "i": c_int32, "io": POINTER(rdm_option_spec)},
         {}, False,
         """i < num_options"""),
     "rdm_agent_config_init": Function(
@@ -3969,7 +4024,7 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """fills io"""),
     "rdm_planner_option_at": Function(
-        c_int32, {"i": c_int32, "out": POINTER(rdm_option_info)},
+        c_int32, {"i": c_int32, "io": POINTER(rdm_option_spec)},
         {}, True,
         """Option i of planners: method, samples, horizon, knots, interpolation, noise, elites, temperature,
         iterations, costs, and others. RANGE past the end.

@@ -17,13 +17,13 @@ from ._record import Record
 R = TypeVar("R", bound=Record)
 
 
-class Option(_abi.OptionInfo):
+class Option(_abi.OptionSpec):
     """One row of an option table; default is as its kind says: a text, a number or a flag."""
 
     kind: OptionKind
     default: Value
 
-    def __init__(self, struct: _abi.rdm_option_info) -> None:
+    def __init__(self, struct: _abi.rdm_option_spec) -> None:
         super().__init__(struct)
         self.__dict__.update(kind=OptionKind(struct.kind), default=default_of(struct))
 
@@ -72,7 +72,7 @@ class Task(_abi.Task):
         said = self.__dict__
         said["fields"] = fields_of(index, self.num_fields, lib.rdm_task_field_at)
         said["costs"] = _records(Cost, _abi.rdm_cost_info, lib.rdm_task_cost_at, self.cost_dim, index)
-        said["options"] = _records(Option, _abi.rdm_option_info, lib.rdm_task_option, self.num_options, index)
+        said["options"] = _records(Option, _abi.rdm_option_spec, lib.rdm_task_option_at, self.num_options, index)
         said["cameras"] = _records(_abi.Camera, _abi.rdm_camera, lib.rdm_task_camera, self.num_cameras, index)
         said["defaults"] = laid(
             filled(_abi.rdm_option, lib.rdm_task_default_at, index, i) for i in range(self.num_defaults))
@@ -89,7 +89,7 @@ class Algo(_abi.Algo):
     def __init__(self, index: int) -> None:
         super().__init__(filled(_abi.rdm_algo, lib.rdm_algo_at, index))
         self.__dict__["options"] = _records(
-            Option, _abi.rdm_option_info, lib.rdm_algo_option, self.num_options, index)
+            Option, _abi.rdm_option_spec, lib.rdm_algo_option_at, self.num_options, index)
 
     def __repr__(self) -> str:
         return f"<Algo {self.name}: {self.summary}>"

@@ -98,7 +98,7 @@ def value_of(kind: Optional[int], said: str) -> Value:
     return int(float(said)) if kind == OptionKind.INTEGER else float(said)
 
 
-def default_of(info: _abi.rdm_option_info) -> Value:
+def default_of(info: _abi.rdm_option_spec) -> Value:
     """The default of an option as its kind says."""
     if info.kind == OptionKind.TEXT:
         return text(info.text)

@@ -37,14 +37,14 @@ std::vector<T> collect(int32_t count, Get get) {
   return out;
 }
 
-Json default_json(const rdm_option_info& o) {
+Json default_json(const rdm_option_spec& o) {
   if (o.kind == RDM_KIND_TEXT || o.text) return o.text ? o.text : "";
   if (o.kind == RDM_KIND_FLAG) return o.number != 0;
   if (o.kind == RDM_KIND_INTEGER) return static_cast<int64_t>(o.number);
   return o.number;
 }
 
-std::string bounds_text(const rdm_option_info& o) {
+std::string bounds_text(const rdm_option_spec& o) {
   if (o.kind == RDM_KIND_TEXT) return o.choices ? o.choices : "text";
   if (o.kind == RDM_KIND_FLAG) return "true|false";
   return number_text(o.low) + " .. " + number_text(o.high) + (o.choices ? ", or a range" : "");
@@ -118,19 +118,19 @@ std::vector<float> task_initial_mean(int32_t task) {
   return redman::Pool(redman::pool_config(task_at(task).name)).initial_mean();
 }
 
-std::vector<rdm_option_info> task_options(int32_t task) {
-  return collect<rdm_option_info>(task_at(task).num_options, [&](int32_t i, rdm_option_info* out) {
-    return rdm_task_option(task, i, out);
+std::vector<rdm_option_spec> task_options(int32_t task) {
+  return collect<rdm_option_spec>(task_at(task).num_options, [&](int32_t i, rdm_option_spec* out) {
+    return rdm_task_option_at(task, i, out);
   });
 }
 
-std::vector<rdm_option_info> algo_options(int32_t algo) {
-  return collect<rdm_option_info>(algo_at(algo).num_options, [&](int32_t i, rdm_option_info* out) {
-    return rdm_algo_option(algo, i, out);
+std::vector<rdm_option_spec> algo_options(int32_t algo) {
+  return collect<rdm_option_spec>(algo_at(algo).num_options, [&](int32_t i, rdm_option_spec* out) {
+    return rdm_algo_option_at(algo, i, out);
   });
 }
 
-bool has_option(const std::vector<rdm_option_info>& table, const std::string& key) {
+bool has_option(const std::vector<rdm_option_spec>& table, const std::string& key) {
   return std::any_of(table.begin(), table.end(), [&](const auto& o) {
     const std::string known = o.key;  // "noise.tip_force" is one of "noise.FIELD"
     const size_t dot = known.rfind('.') + 1;
@@ -149,9 +149,9 @@ Json build_json() {
           {"differs", b.differs}};
 }
 
-Json options_json(const std::vector<rdm_option_info>& table) {
+Json options_json(const std::vector<rdm_option_spec>& table) {
   Json out = Json::array();
-  for (const rdm_option_info& o : table) {
+  for (const rdm_option_spec& o : table) {
     const bool text = o.kind == RDM_KIND_TEXT;
     Json row = object_of({{"key", o.key},
                           {"default", default_json(o)},
@@ -166,9 +166,9 @@ Json options_json(const std::vector<rdm_option_info>& table) {
   return out;
 }
 
-std::string options_text(const std::vector<rdm_option_info>& table) {
+std::string options_text(const std::vector<rdm_option_spec>& table) {
   Table out({"option", "default", "values", "meaning"});
-  for (const rdm_option_info& o : table) {
+  for (const rdm_option_spec& o : table) {
     const std::string value = o.text                    ? o.text
                               : o.kind == RDM_KIND_TEXT ? ""
                               : o.kind == RDM_KIND_FLAG ? (o.number != 0 ? "true" : "false")

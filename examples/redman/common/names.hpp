@@ -32,15 +32,15 @@ std::vector<rdm_cost_info> task_costs(int32_t task);
 // The task's own defaults of agent options, and the mean action of its new policies.
 std::vector<rdm_option> task_defaults(int32_t task);
 std::vector<float> task_initial_mean(int32_t task);
-std::vector<rdm_option_info> task_options(int32_t task);
-std::vector<rdm_option_info> algo_options(int32_t algo);
-bool has_option(const std::vector<rdm_option_info>& table, const std::string& key);
+std::vector<rdm_option_spec> task_options(int32_t task);
+std::vector<rdm_option_spec> algo_options(int32_t algo);
+bool has_option(const std::vector<rdm_option_spec>& table, const std::string& key);
 
 // Versions and how the library was built.
 Json build_json();
 
 // A table of options as the tool's JSON has it, and as text for people.
-Json options_json(const std::vector<rdm_option_info>& table);
-std::string options_text(const std::vector<rdm_option_info>& table);
+Json options_json(const std::vector<rdm_option_spec>& table);
+std::string options_text(const std::vector<rdm_option_spec>& table);
 
 }  // namespace tool

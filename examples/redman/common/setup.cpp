@@ -24,8 +24,8 @@ double limit_number(const std::string& text, const std::string& whole) {
   return value;
 }
 
-void append_keys(const std::vector<rdm_option_info>& table, std::vector<std::string>& keys) {
-  for (const rdm_option_info& o : table) keys.push_back(o.key);
+void append_keys(const std::vector<rdm_option_spec>& table, std::vector<std::string>& keys) {
+  for (const rdm_option_spec& o : table) keys.push_back(o.key);
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ void give_eyes(const AgentSettings& agent, PoolSettings& pool) {
   const auto table = algo_options(find_algo(agent.algo));
   const auto value = [&](const char* key) {
     std::string out;
-    for (const rdm_option_info& o : table)
+    for (const rdm_option_spec& o : table)
       if (same_name(o.key, key)) out = o.text ? o.text : number_text(o.number);
     for (const rdm_option& o : task_defaults(find_task(pool.task)))
       if (same_name(o.key, key)) out = o.text ? o.text : number_text(o.number);
@@ -147,7 +147,7 @@ void add_cost_limit_flag(CLI::App& command, std::vector<std::string>& limits) {
 
 void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentSettings* agent) {
   const auto task_table = task_options(find_task(pool.task));
-  const auto algo_table = agent ? algo_options(find_algo(agent->algo)) : std::vector<rdm_option_info>();
+  const auto algo_table = agent ? algo_options(find_algo(agent->algo)) : std::vector<rdm_option_spec>();
   for (const std::string& text : sets) {
     const auto pair = split_pair(text, "--set");
     if (printable(text) != text) throw Usage("--set " + text + ": control characters, or not UTF-8");

@@ -7,16 +7,16 @@
 
 namespace tool {
 
-std::vector<rdm_option_info> planner_options() {
-  std::vector<rdm_option_info> out;
-  rdm_option_info row;
+std::vector<rdm_option_spec> planner_options() {
+  std::vector<rdm_option_spec> out;
+  rdm_option_spec row = RDM_INIT(rdm_option_spec);
   for (int32_t i = 0; rdm_planner_option_at(i, &row) == RDM_OK; ++i) out.push_back(row);
   return out;
 }
 
 std::string planner_hint(const std::string& key) {
   std::vector<std::string> keys = {"policy", "critic"};
-  for (const rdm_option_info& row : planner_options()) keys.push_back(row.key);
+  for (const rdm_option_spec& row : planner_options()) keys.push_back(row.key);
   return nearest_hint(key, keys);
 }
 

@@ -20,7 +20,7 @@ struct PlanWord {
 bool read_plan_word(const std::string& word, PlanWord* out);
 std::string plan_word(const std::vector<std::pair<std::string, std::string>>& options,
                       const std::string& policy, const std::string& critic);
-std::vector<rdm_option_info> planner_options();
+std::vector<rdm_option_spec> planner_options();
 // "; nearest is samples" for what is no option of planners, "" when none is near.
 std::string planner_hint(const std::string& key);
 

@@ -195,7 +195,7 @@ std::string Recorder::metadata(const RecordNote& note, uint64_t steps) const {
     costs.push_back({{"name", c.name}, {"help", c.help}, {"limit", limit < 0 ? Json() : Json(limit)}});
   }
   int32_t index = 0;
-  for (const rdm_option_info& o : task_options(spec.task)) {
+  for (const rdm_option_spec& o : task_options(spec.task)) {
     const char* key = nullptr;
     char text[RDM_TEXT_SIZE];
     if (rdm_pool_option_at(pool_.get(), index++, &key, text) == RDM_OK) options[o.key] = text;

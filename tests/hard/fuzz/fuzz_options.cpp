@@ -136,7 +136,7 @@ const std::vector<World>& worlds() {
   return *out;
 }
 
-std::string line_of(const rdm_option_info& o) {
+std::string line_of(const rdm_option_spec& o) {
   return std::string(o.key) + "=" + (o.text ? o.text : std::to_string(o.number)) + "\n";
 }
 
@@ -146,11 +146,11 @@ std::vector<Bytes> seeds() {
   std::vector<Bytes> out;
   for (size_t i = 0; i < algos().size() + worlds().size(); ++i) {
     std::string text;
-    rdm_option_info o;
+    rdm_option_spec o = RDM_INIT(rdm_option_spec);
     for (int32_t k = 0;; ++k) {
       const bool more = i < algos().size()
-                            ? rdm_algo_option(static_cast<int32_t>(i), k, &o) == RDM_OK
-                            : rdm_task_option(worlds()[i - algos().size()].index, k, &o) == RDM_OK;
+                            ? rdm_algo_option_at(static_cast<int32_t>(i), k, &o) == RDM_OK
+                            : rdm_task_option_at(worlds()[i - algos().size()].index, k, &o) == RDM_OK;
       if (more) text += line_of(o);
       if (!text.empty() && (!more || k % static_cast<int32_t>(kMostOptions) == 7)) {
         out.push_back(with_pick(i, bytes_of(text)));
