@@ -167,26 +167,30 @@ rdm_result rdm_task_option_at(int32_t task, int32_t i, rdm_option_spec* io) {
   });
 }
 
-rdm_camera rdm::capi::describe(const CameraSpec& c) {
-  rdm_camera o{};
+rdm_camera_info rdm::capi::describe(const CameraSpec& c) {
+  rdm_camera_info o{};
+  o.mount = c.mount;
   o.name = c.name;
   for (int k = 0; k < 3; ++k) {
     o.eye[k] = static_cast<float>(c.eye[k]);
     o.target[k] = static_cast<float>(c.target[k]);
+    o.up[k] = static_cast<float>(c.up[k]);
   }
   o.fov_y = static_cast<float>(c.fov_y);
-  o.mount = c.mount;
+  o.cx = static_cast<float>(c.cx);
+  o.cy = static_cast<float>(c.cy);
   return o;
 }
 
-rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera* out) {
+rdm_result rdm_task_camera_at(int32_t task, int32_t i, rdm_camera_info* io) {
   return call([&] {
-    need(out, "out");
+    check_out(io, sizeof(rdm_camera_info), "io");
     const TaskRef ref = ref_at(task);
     const TaskInfo& info = *ref;
     need_index(i, info.num_cameras, "i");
-    *out = describe(info.cameras[i]);
-    out->name = lasting(out->name);
+    rdm_camera_info o = describe(info.cameras[i]);
+    o.name = lasting(o.name);
+    write_struct(io, o, sizeof(rdm_camera_info), "io");
   });
 }
 

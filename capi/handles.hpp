@@ -36,7 +36,7 @@ struct rdm_pool {
 namespace rdm::capi {
 // A camera of the task by name; Error(kNotFound) offers the nearest.
 Camera pool_camera(const rdm_pool* p, int32_t env, const char* name);  // as it stands in that world now
-rdm_camera describe(const CameraSpec& c);
+rdm_camera_info describe(const CameraSpec& c);
 // Field i of a task's observation; Error(kRange) past the end.
 rdm_field_info field_of(const Task& task, int32_t i);
 // What a host says of a robot; check_robot has not seen it.

@@ -390,17 +390,29 @@ void OwnTask::take_options() {
 void OwnTask::take_cameras() {
   need_rows(def.cameras, def.num_cameras, 0, "cameras");
   for (int32_t i = 0; i < def.num_cameras; ++i) {
-    const rdm_camera& c = def.cameras[i];
+    const rdm_camera_def& c = def.cameras[i];
+    char row[32];
+    print_text(row, sizeof row, "def.cameras[%d]", i);
+    check_reserved(c, row);
     need_name(c.name, RowName("cameras", i, "name").text, kNameSize - 1);
     CameraSpec spec{nullptr, {}, {}, static_cast<double>(c.fov_y)};
+    Vec3 up;
     for (int k = 0; k < 3; ++k) {
       spec.eye[k] = static_cast<double>(c.eye[k]);
       spec.target[k] = static_cast<double>(c.target[k]);
+      up[k] = static_cast<double>(c.up[k]);
     }
     if (!finite(spec.eye) || !finite(spec.target) || !(norm(spec.eye - spec.target) > 0))
       fail(Code::kArgument, "def.cameras[%d]: %s does not look from one place to another", i, c.name);
     if (!(spec.fov_y > 0.01 && spec.fov_y < 3))
       fail(Code::kRange, "def.cameras[%d].fov_y: %g of %s is outside [0.01, 3]", i, spec.fov_y, c.name);
+    if (!finite(up)) fail(Code::kArgument, "def.cameras[%d].up of %s is not finite", i, c.name);
+    if (norm(up) > 0) spec.up = normalized(up);
+    spec.cx = static_cast<double>(c.cx), spec.cy = static_cast<double>(c.cy);
+    for (const double shift : {spec.cx, spec.cy})
+      if (!(std::abs(shift) <= kMaxShift))
+        fail(Code::kRange, "def.cameras[%d]: cx or cy of %s is %g, outside [-%g, %g]", i, c.name, shift,
+             kMaxShift, kMaxShift);
     spec.mount = c.mount;  // a pool checks it, whose scene is built
     for (const CameraSpec& other : cameras_)
       if (same_name(other.name, c.name))

@@ -34,23 +34,24 @@ rdm_result rdm_pool_get_sensors(const rdm_pool* p, rdm_sensors* io) {
   });
 }
 
-rdm_result rdm_pool_camera(const rdm_pool* p, int32_t i, rdm_camera* out) {
+rdm_result rdm_pool_camera_at(const rdm_pool* p, int32_t i, rdm_camera_info* io) {
   return call_on(p, [&] {
-    need(out, "out");
+    check_out(io, sizeof(rdm_camera_info), "io");
     const CameraSpec* c = i < 0 ? nullptr : camera_at(task_at(p->pool->task_index()), p->pool->task(), i);
     if (!c) fail(Code::kRange, "i: %d is past the last camera", i);
-    *out = describe(*c);
+    write_struct(io, describe(*c), sizeof(rdm_camera_info), "io");
   });
 }
 
-rdm_result rdm_pool_sensor_camera(const rdm_pool* p, int32_t cloud, int32_t i, rdm_camera* out) {
+rdm_result rdm_pool_sensor_camera_at(const rdm_pool* p, int32_t cloud, int32_t i, rdm_camera_info* io) {
   return call_on(p, [&] {
-    need(out, "out");
+    check_out(io, sizeof(rdm_camera_info), "io");
     if (cloud < 0 || cloud > 1) fail(Code::kRange, "cloud: %d is outside [0, 1]", cloud);
     const SenseConfig& c = p->pool->sense();
     need_index(i, cloud ? c.num_cloud_cameras : c.num_cameras, "i");
-    *out = describe(camera_spec(task_at(p->pool->task_index()), p->pool->task(),
-                                (cloud ? c.cloud_cameras : c.cameras)[i].name.text));
+    const char* name = (cloud ? c.cloud_cameras : c.cameras)[i].name.text;
+    write_struct(io, describe(camera_spec(task_at(p->pool->task_index()), p->pool->task(), name)),
+                 sizeof(rdm_camera_info), "io");
   });
 }
 

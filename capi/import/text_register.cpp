@@ -145,8 +145,8 @@ class Registration {
   }
   void cameras() {
     for (const Table& t : top_.rows("camera")) {
-      t.only({"name", "eye", "target", "fov"});
-      rdm_camera c{};
+      t.only({"name", "eye", "target", "fov", "up", "cx", "cy"});
+      rdm_camera_def c{};
       c.name = task_.keep(t.as_text(t.need("name"), "name"));
       const auto eye = t.list(t.need("eye"), "eye", 3, 3), target = t.list(t.need("target"), "target", 3, 3);
       for (size_t k = 0; k < 3; ++k) {
@@ -156,6 +156,12 @@ class Registration {
       double fov = 0.785398163397448;
       t.number("fov", &fov);
       c.fov_y = static_cast<float>(fov);
+      if (const toml::node* up = t.find("up"))
+        for (size_t k = 0; k < 3; ++k) c.up[k] = static_cast<float>(t.list(*up, "up", 3, 3)[k]);
+      double cx = 0, cy = 0;
+      t.number("cx", &cx);
+      t.number("cy", &cy);
+      c.cx = static_cast<float>(cx), c.cy = static_cast<float>(cy);
       task_.stands("cameras", task_.cameras.size(), line_of(t.t), t.what);
       task_.cameras.push_back(c);
     }

@@ -11,7 +11,7 @@ struct TextTask {
   std::vector<rdm_field_def> fields;
   std::vector<rdm_cost_def> costs;
   std::vector<rdm_option_def> options;
-  std::vector<rdm_camera> cameras;
+  std::vector<rdm_camera_def> cameras;
   std::vector<rdm_option> defaults;
   struct Row {  // where a row of rdm_task_def stands in the file
     std::string def;

@@ -177,8 +177,8 @@ EXPORT const char* page_scene(void) {
   }
   put("%s", "],\"cameras\":[");
   for (int i = 0, shown = 0; i < task.num_cameras; ++i) {
-    rdm_camera camera;
-    if (rdm_task_camera(spec.task, i, &camera)) return NULL;
+    rdm_camera_info camera = RDM_INIT(rdm_camera_info);
+    if (rdm_task_camera_at(spec.task, i, &camera)) return NULL;
     if (camera.mount) continue;
     put("%s", shown++ ? ",{" : "{");
     put_member("name", camera.name);

@@ -49,8 +49,8 @@ Outcome evaluated(const RunData& run, const ReportFlags& flags) {
 std::string camera_of(int32_t task) {
   std::string first;
   for (int32_t i = 0; i < task_at(task).num_cameras; ++i) {
-    rdm_camera c;
-    redman::check(rdm_task_camera(task, i, &c));
+    rdm_camera_info c = RDM_INIT(rdm_camera_info);
+    redman::check(rdm_task_camera_at(task, i, &c));
     if (i == 0) first = c.name;
     if (same_name(c.name, "close")) return c.name;
   }

@@ -31,6 +31,14 @@ typedef struct rdm_cost {   /* frozen layout: a cost column */
   const char *help;         /* one line                                                       */
   double limit;             /* default limit on the sum over an episode; < 0: none            */
 } rdm_cost;
+typedef struct rdm_camera { /* frozen layout */
+  const char *name;         /* "front"                                                        */
+  float eye[3];             /* m, in the frame that mount names                               */
+  float target[3];          /* m, likewise; the picture's centre looks from eye to target     */
+  float fov_y;              /* rad, vertical field of view                                    */
+  int32_t mount;            /* 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of
+                             * the base of its articulation k - 1 (cameras that ride on a robot) */
+} rdm_camera;
 
 #if !defined(RDM_NO_DEPRECATED)
 enum {
@@ -131,6 +139,23 @@ rdm_result rdm_task_option(int32_t task, int32_t i, rdm_option_info *out) {
     out->high = spec.high;
     out->kind = spec.kind;
     out->live = spec.live;
+  }
+  return r;
+}
+
+static inline RDM_DEPRECATED("rdm_task_camera_at")
+rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera *out) {
+  rdm_camera_info info = RDM_INIT(rdm_camera_info);
+  const rdm_result r = rdm_task_camera_at(task, i, out ? &info : NULL);
+  if (r == RDM_OK) {
+    int k;
+    out->name = info.name;
+    for (k = 0; k < 3; ++k) {
+      out->eye[k] = info.eye[k];
+      out->target[k] = info.target[k];
+    }
+    out->fov_y = info.fov_y;
+    out->mount = info.mount;
   }
   return r;
 }

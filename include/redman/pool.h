@@ -19,7 +19,7 @@ typedef struct rdm_task { /* a task with its default options */
   int32_t max_steps;        /* control steps of an episode, default options                   */
   int32_t num_fields;       /* for rdm_task_field_at                                          */
   int32_t num_options;      /* for rdm_task_option_at                                         */
-  int32_t num_cameras;      /* for rdm_task_camera                                            */
+  int32_t num_cameras;      /* for rdm_task_camera_at                                         */
   int32_t num_defaults;     /* for rdm_task_default_at                                           */
 } rdm_task;
 typedef struct rdm_cost_info { /* a cost column */
@@ -29,14 +29,21 @@ typedef struct rdm_cost_info { /* a cost column */
   const char *help;         /* one line                                                       */
   double limit;             /* default limit on the sum over an episode; < 0: none            */
 } rdm_cost_info;
-typedef struct rdm_camera { /* frozen layout */
-  const char *name;         /* "front"                                                        */
-  float eye[3];             /* m, in the frame that mount names                               */
-  float target[3];          /* m, likewise; the picture's centre looks from eye to target     */
-  float fov_y;              /* rad, vertical field of view                                    */
+typedef struct rdm_camera_info { /* a pinhole camera */
+  uint32_t struct_size;     /* in: bytes                                                      */
   int32_t mount;            /* 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of
                              * the base of its articulation k - 1 (cameras that ride on a robot) */
-} rdm_camera;
+  const char *name;         /* "front"                                                        */
+  float eye[3];             /* m, in the frame that mount names                               */
+  float target[3];          /* m, likewise; the optical axis runs from eye to target          */
+  float up[3];              /* likewise: what points up in the picture; where it lies along the
+                             * axis, -x of the world does                                     */
+  float fov_y;              /* rad: in pixels, the focal length is half a picture's height /
+                             * tan(fov_y / 2)                                                 */
+  float cx;                 /* where the optical axis meets the picture: to the right of its
+                             * centre, as a share of its width                                */
+  float cy;                 /* likewise: below its centre, as a share of its height           */
+} rdm_camera_info;
 RDM_API int32_t rdm_task_count(void); /* number of tasks; 0 without the simulation half */
 RDM_API rdm_result rdm_task_at(int32_t index, rdm_task *io); /* RANGE past the end */
 RDM_API rdm_result rdm_task_find(const char *name,
@@ -46,7 +53,8 @@ RDM_API rdm_result rdm_task_field_at(int32_t task, int32_t i,
 RDM_API rdm_result rdm_task_cost_at(int32_t task, int32_t i, rdm_cost_info *io); /* i < cost_dim */
 RDM_API rdm_result rdm_task_option_at(int32_t task, int32_t i,
                                       rdm_option_spec *io); /* i < num_options */
-RDM_API rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera *out);  /* i < num_cameras */
+RDM_API rdm_result rdm_task_camera_at(int32_t task, int32_t i,
+                                      rdm_camera_info *io); /* i < num_cameras */
 /* The task's own defaults of agent options, to be given as rdm_agent_config.defaults. */
 RDM_API rdm_result rdm_task_default_at(int32_t task, int32_t i,
                                        rdm_option *out); /* i < num_defaults */

@@ -54,11 +54,11 @@ typedef struct rdm_sensors {
 RDM_API rdm_result rdm_pool_get_sensors(const rdm_pool *p, rdm_sensors *io); /* fills io */
 /* The i-th camera by whose name this pool can look: the task's, then those that ride on its robots
  * ("right_palm" and "left_palm" of hands), then those for clouds. RANGE ends. */
-RDM_API rdm_result rdm_pool_camera(const rdm_pool *p, int32_t i, rdm_camera *out);
+RDM_API rdm_result rdm_pool_camera_at(const rdm_pool *p, int32_t i, rdm_camera_info *io);
 /* The cameras that rows stand for: i-th of the pictures (cloud 0) or of points and voxels (cloud
  * 1). RANGE ends. */
-RDM_API rdm_result rdm_pool_sensor_camera(const rdm_pool *p, int32_t cloud, int32_t i,
-                                          rdm_camera *out);
+RDM_API rdm_result rdm_pool_sensor_camera_at(const rdm_pool *p, int32_t cloud, int32_t i,
+                                             rdm_camera_info *io);
 
 /* Corners, points [capacity][3], of shape i, an RDM_SHAPE_HULL, in its own frame, m. Writes up to
  * capacity of them; *count is how many there are. */

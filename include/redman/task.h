@@ -312,6 +312,18 @@ typedef struct rdm_option_def { /* frozen layout: one row of an option table, as
   int32_t kind;            /* RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT */
   int32_t live;            /* unused */
 } rdm_option_def;
+typedef struct rdm_camera_def { /* frozen layout: a pinhole camera, as rdm_camera_info */
+  const char *name;        /* unique: "front" */
+  float eye[3];            /* m, in the frame that mount names */
+  float target[3];         /* m, likewise; the optical axis runs from eye to target */
+  float fov_y;             /* vertical field of view, rad, 0.01 to 3 */
+  int32_t mount;           /* 0: the world's frame; k > 0: of link k - 1; -k: of base k - 1 */
+  float up[3];             /* likewise: what points up in the picture; all 0: z */
+  float cx;                /* where the optical axis meets the picture: to the right of its centre,
+                            * as a share of its width, within +-10 */
+  float cy;                /* likewise: below its centre, as a share of its height */
+  int32_t reserved;        /* 0 */
+} rdm_camera_def;
 typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_task_create */
   uint32_t struct_size;    /* bytes, set by rdm_task_def_init */
   int32_t max_steps;       /* control steps of an episode: default of the option max_steps;
@@ -322,7 +334,7 @@ typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_t
   const rdm_cost_def *costs;       /* [num_costs] column 0 is the one that learners limit */
   const rdm_option_def *options;   /* [num_options] rows, and defaults of its own for those that
                                     * every task has */
-  const rdm_camera *cameras;       /* [num_cameras] NULL with num_cameras 0: "front", made for
+  const rdm_camera_def *cameras;   /* [num_cameras] NULL with num_cameras 0: "front", made for
                                     * the origin */
   const rdm_option *defaults;      /* [num_defaults] of agent options; NULL with num_defaults 0 */
   int32_t num_fields;      /* 1 or more */

@@ -37,6 +37,7 @@ struct CameraSpec {
   double fov_y;      // rad
   Vec3 up = {0, 0, 1};
   int32_t mount = 0;
+  double cx = 0, cy = 0;
 };
 struct LearnerDefault {
   const char* key;

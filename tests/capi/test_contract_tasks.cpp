@@ -172,8 +172,8 @@ TEST_P(ContractTasks, EveryCameraShowsSomethingThatMoves) {
   std::vector<int32_t> seen(kWidth * kHeight);
   const uint64_t before = hash_of(p);
   for (int32_t i = 0; i < task.num_cameras; ++i) {
-    rdm_camera camera;
-    ASSERT_EQ(rdm_task_camera(index, i, &camera), RDM_OK);
+    rdm_camera_info camera = RDM_INIT(rdm_camera_info);
+    ASSERT_EQ(rdm_task_camera_at(index, i, &camera), RDM_OK);
     ASSERT_EQ(rdm_pool_render(p, 0, camera.name, kWidth, kHeight, nullptr, nullptr, seen.data()), RDM_OK);
     int moving = 0;
     for (const int32_t shape : seen) {

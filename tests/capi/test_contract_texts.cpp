@@ -33,7 +33,7 @@ TEST(ContractTexts, OfAPool) {
   int32_t count = 0;
   rdm_shape shape;
   rdm_field_info field = RDM_INIT(rdm_field_info);
-  rdm_camera camera;
+  rdm_camera_info camera = RDM_INIT(rdm_camera_info);
   float number = 0;
   expect_texts(
       {
@@ -57,7 +57,7 @@ TEST(ContractTexts, OfAPool) {
           {"render", [&] { return rdm_pool_render(p, 0, "nowhere", 8, 8, nullptr, nullptr, nullptr); }},
           {"get_stats", [&] { return rdm_pool_get_stats(p, nullptr); }},
           {"sensors", [&] { return rdm_pool_get_sensors(p, nullptr); }},
-          {"sensor_camera", [&] { return rdm_pool_sensor_camera(p, 0, 5, &camera); }},
+          {"sensor_camera", [&] { return rdm_pool_sensor_camera_at(p, 0, 5, &camera); }},
           {"hull", [&] { return rdm_pool_get_hull(p, -3, &number, 1, &count); }},
           {"agent_config_for_pool", [&] { return rdm_agent_config_for_pool(nullptr, p); }},
       },

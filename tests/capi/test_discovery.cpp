@@ -137,15 +137,15 @@ TEST(Discovery, CostsOptionsCamerasAndDefaults) {
     }
     EXPECT_EQ(rdm_task_option_at(t, task.num_options, &option), RDM_ERROR_RANGE);
 
-    rdm_camera camera;
+    rdm_camera_info camera = RDM_INIT(rdm_camera_info);
     ASSERT_GE(task.num_cameras, 1);
     for (int32_t i = 0; i < task.num_cameras; ++i) {
-      ASSERT_EQ(rdm_task_camera(t, i, &camera), RDM_OK);
+      ASSERT_EQ(rdm_task_camera_at(t, i, &camera), RDM_OK);
       EXPECT_GT(camera.fov_y, 0.05f);
       EXPECT_LT(camera.fov_y, 3.1f);
       EXPECT_NE(std::memcmp(camera.eye, camera.target, sizeof camera.eye), 0);
     }
-    EXPECT_EQ(rdm_task_camera(t, task.num_cameras, &camera), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_task_camera_at(t, task.num_cameras, &camera), RDM_ERROR_RANGE);
   }
 }
 

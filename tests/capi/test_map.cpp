@@ -40,13 +40,13 @@ TEST(Map, ScansOfATasksCamerasShowItsShapes) {
         << rdm_map_error(map.m);
   EXPECT_EQ(dropped, 0u);
   // what a depth picture of another size sees is occupied, or a voxel beside it is
-  rdm_camera camera{};
+  rdm_camera_info camera = RDM_INIT(rdm_camera_info);
   std::vector<float> depth(40 * 30), points, distance;
   std::vector<int32_t> shape(40 * 30);
   ASSERT_EQ(rdm_pool_render(p, 1, "top", 40, 30, nullptr, depth.data(), shape.data()), RDM_OK);
   int32_t task = -1;
   ASSERT_EQ(rdm_task_find("hand_over_safe_finger", &task), RDM_OK);
-  ASSERT_EQ(rdm_task_camera(task, 1, &camera), RDM_OK);
+  ASSERT_EQ(rdm_task_camera_at(task, 1, &camera), RDM_OK);
   ASSERT_STREQ(camera.name, "top");  // looks straight down, world -x up
   const float pixel = 2 * std::tan(camera.fov_y / 2) / 30;
   for (int v = 0; v < 30; ++v)

@@ -84,8 +84,8 @@ TEST(OwnTask, IsFoundAndDescribed) {
   ASSERT_EQ(rdm_task_option_at(found, 2, &option), RDM_OK);
   EXPECT_STREQ(option.key, "max_steps");
   EXPECT_EQ(option.number, 40);
-  rdm_camera camera;
-  ASSERT_EQ(rdm_task_camera(found, 0, &camera), RDM_OK);
+  rdm_camera_info camera = RDM_INIT(rdm_camera_info);
+  ASSERT_EQ(rdm_task_camera_at(found, 0, &camera), RDM_OK);
   EXPECT_EQ(camera.eye[1], -1);
   rdm_option given;
   ASSERT_EQ(rdm_task_default_at(found, 1, &given), RDM_OK);

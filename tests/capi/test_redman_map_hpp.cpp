@@ -50,8 +50,8 @@ TEST(RedmanMapHpp, WorldsAreSeenAndScanned) {
   redman::Pool blind(redman::pool_config("grasp"));
   EXPECT_EQ(redman::points(redman::sensors(blind), 0).data(), nullptr);
 
-  rdm_camera camera;
-  ASSERT_EQ(rdm_pool_sensor_camera(pool.get(), 1, 0, &camera), RDM_OK);
+  rdm_camera_info camera = RDM_INIT(rdm_camera_info);
+  ASSERT_EQ(rdm_pool_sensor_camera_at(pool.get(), 1, 0, &camera), RDM_OK);
   redman::Map map(redman::map_config(0.02));
   EXPECT_EQ(map.scan(pool, 0, camera.name, 64, 64), 0u);
   EXPECT_GT(map.info().nodes, 0u);

@@ -65,8 +65,8 @@ TEST(Sensors, PicturesAreThoseOfRender) {
   std::vector<int32_t> shape(32 * 24);
   for (int env = 0; env < 2; ++env)
     for (int k = 0; k < 2; ++k) {
-      rdm_camera camera;
-      ASSERT_EQ(rdm_pool_sensor_camera(seeing.p, 0, k, &camera), RDM_OK);
+      rdm_camera_info camera = RDM_INIT(rdm_camera_info);
+      ASSERT_EQ(rdm_pool_sensor_camera_at(seeing.p, 0, k, &camera), RDM_OK);
       EXPECT_STREQ(camera.name, k ? "front" : "top");
       ASSERT_EQ(rdm_pool_render(seeing.p, env, camera.name, 32, 24, nullptr, depth.data(), shape.data()),
                 RDM_OK);
@@ -156,14 +156,14 @@ TEST(Sensors, BadWordsAreRefused) {
   EXPECT_EQ(create({"sampling", "best", 0}), RDM_ERROR_RANGE);
   const Seeing seeing({});
   rdm_sensors s{};
-  rdm_camera camera;
+  rdm_camera_info camera = RDM_INIT(rdm_camera_info);
   EXPECT_EQ(rdm_pool_get_sensors(nullptr, &s), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_get_sensors(seeing.p, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_get_sensors(seeing.p, &s), RDM_ERROR_ARGUMENT);  // no struct_size
   EXPECT_EQ(seeing.s.points, nullptr);
-  EXPECT_EQ(rdm_pool_sensor_camera(seeing.p, 0, 0, &camera), RDM_ERROR_RANGE);
-  EXPECT_EQ(rdm_pool_sensor_camera(seeing.p, 2, 0, &camera), RDM_ERROR_RANGE);
-  EXPECT_EQ(rdm_pool_sensor_camera(seeing.p, 0, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_sensor_camera_at(seeing.p, 0, 0, &camera), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_sensor_camera_at(seeing.p, 2, 0, &camera), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_sensor_camera_at(seeing.p, 0, 0, nullptr), RDM_ERROR_ARGUMENT);
 }
 
 TEST(Sensors, HostsSampleTheirOwnClouds) {

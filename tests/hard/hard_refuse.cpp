@@ -239,8 +239,8 @@ std::vector<Case> all_cases() {
       out.push_back({"steps that see, " + std::string(sight[0].text) + " " + w.name(), ready(w, sight),
                      [](const rdm_host*) { return steps(2); }, clear});
     }
-    rdm_camera camera;
-    if (rdm_task_camera(w.index, 0, &camera) != RDM_OK) continue;
+    rdm_camera_info camera = RDM_INIT(rdm_camera_info);
+    if (rdm_task_camera_at(w.index, 0, &camera) != RDM_OK) continue;
     const std::string name = camera.name;
     out.push_back({"render " + w.name(), ready(w, {}),
                    [=](const rdm_host*) {

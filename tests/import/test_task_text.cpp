@@ -314,6 +314,25 @@ TEST(TaskText, BodiesAreObjectsOfTheCatalogue) {
   EXPECT_NEAR(settled("scale = 2\n"), 2 * height, 0.002);
 }
 
+TEST(TaskText, CamerasRollAndShift) {
+  const Task task(
+      with("[[camera]]\nname = \"plain\"\neye = [1, 0, 1]\ntarget = [0, 0, 0]\n"
+           "[[camera]]\nname = \"odd\"\neye = [1, 0, 1]\ntarget = [0, 0, 0]\nfov = 0.5\n"
+           "up = [0, 2, 0]\ncx = 0.25\ncy = -0.5\n"));
+  int32_t index = -1;
+  ASSERT_EQ(rdm_task_find("text_test", &index), RDM_OK);
+  rdm_camera_info plain = RDM_INIT(rdm_camera_info), odd = plain;
+  ASSERT_EQ(rdm_task_camera_at(index, 0, &plain), RDM_OK);
+  ASSERT_EQ(rdm_task_camera_at(index, 1, &odd), RDM_OK);
+  EXPECT_EQ(plain.up[2], 1);
+  EXPECT_EQ(plain.cx, 0);
+  EXPECT_EQ(odd.up[1], 1);
+  EXPECT_EQ(odd.up[2], 0);
+  EXPECT_EQ(odd.cx, 0.25f);
+  EXPECT_EQ(odd.cy, -0.5f);
+  EXPECT_EQ(odd.fov_y, 0.5f);
+}
+
 TEST(TaskText, ResetsDraw) {
   std::string text = watch("term = \"position\"\na = \"ball\"\n");
   text.replace(text.find("\"$far\""), 6, "\"-0.25..0.25\"");

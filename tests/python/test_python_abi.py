@@ -43,14 +43,14 @@ class Abi(unittest.TestCase):
 
     def test_a_function_or_member_that_is_added_to_the_header_arrives(self):
         header = generate_abi.headers()
-        header = header.replace("} rdm_camera;", "  float roll[2]; /* [2] rad */\n} rdm_camera;")
+        header = header.replace("} rdm_camera_info;", "  float more[2]; /* [2] rad */\n} rdm_camera_info;")
         header = header.replace("RDM_API uint32_t rdm_features(void);",
                                 "/* Adds row [n] to out [n][2]. */\n"
                                 "RDM_API rdm_result rdm_new(const double *row, int32_t n, float *out);\n"
                                 "RDM_API uint32_t rdm_features(void);")
         scope = {"__name__": "redman._abi", "__package__": "redman"}
         exec(compile(generate_abi.generate(header), "new", "exec"), scope)
-        self.assertEqual(ctypes.sizeof(scope["rdm_camera"]), ctypes.sizeof(_abi.rdm_camera) + 8)
+        self.assertEqual(ctypes.sizeof(scope["rdm_camera_info"]), ctypes.sizeof(_abi.rdm_camera_info) + 8)
         new = scope["FUNCTIONS"]["rdm_new"]
         self.assertEqual({name: (rows.dtype, rows.shape) for name, rows in new.rows.items()},
                          {"row": ("float64", ("n",)), "out": ("float32", ("n", "2"))})
@@ -70,9 +70,9 @@ class Abi(unittest.TestCase):
         self.assertEqual(build.abi, _abi.RDM_ABI)
         with self.assertRaises(AttributeError):
             build.abi = 2
-        camera = _abi.rdm_camera(b"top", (1, 2, 3), (4, 5, 6), 0.5, 0)
-        self.assertEqual(_abi.Camera(camera).eye, (1.0, 2.0, 3.0))
-        self.assertEqual(_abi.Camera(camera), _abi.Camera(camera))
+        camera = _abi.rdm_camera_info(name=b"top", eye=(1, 2, 3))
+        self.assertEqual(redman.Camera(camera).eye, (1.0, 2.0, 3.0))
+        self.assertEqual(redman.Camera(camera), redman.Camera(camera))
 
 
 class Types(unittest.TestCase):

@@ -24,7 +24,7 @@ const Camera kFront{"front", {1.1, -0.5, 0.9}, {0, -0.5, 0.5}, kPi / 4},
 // Image point at which a world point is seen, pixels.
 Vec3 seen_at(const View& view, const Vec3& p_W) {
   const Vec3 p = transpose(view.R_WC) * (p_W - view.eye);
-  return {0.5 * view.width + p.x / p.z / view.pixel, 0.5 * view.height + p.y / p.z / view.pixel, p.z};
+  return {view.cx + p.x / p.z / view.pixel, view.cy + p.y / p.z / view.pixel, p.z};
 }
 
 TEST(Camera, FrontHasTheRightHandOnTheRight) {
@@ -82,6 +82,11 @@ TEST(Camera, RefusesWhatCannotBeSeen) {
   EXPECT_EQ(code_of({"c", {std::nan(""), 2, 3}, {1, 2, 3}, 1}, 8, 8), Code::kArgument);
   EXPECT_EQ(code_of({"c", {0, 0, 0}, {HUGE_VAL, 2, 3}, 1}, 8, 8), Code::kArgument);
   EXPECT_EQ(code_of({"c", {-1e308, 0, 0}, {1e308, 0, 0}, 1}, 8, 8), Code::kArgument);
+  EXPECT_EQ(code_of({"c", {0, 0, 0}, {1, 0, 0}, 1, {0, std::nan(""), 1}}, 8, 8), Code::kArgument);
+  for (const double shift : {-10.1, 10.1, HUGE_VAL, std::nan("")}) {
+    EXPECT_EQ(code_of({"c", {0, 0, 0}, {1, 0, 0}, 1, {0, 0, 1}, 0, shift, 0}, 8, 8), Code::kRange) << shift;
+    EXPECT_EQ(code_of({"c", {0, 0, 0}, {1, 0, 0}, 1, {0, 0, 1}, 0, 0, shift}, 8, 8), Code::kRange) << shift;
+  }
 }
 
 }  // namespace

@@ -266,7 +266,7 @@ struct BallTask {
        0},
       {"mood", "does nothing", "calm", "calm|wild", 0, 0, 0, RDM_KIND_TEXT, 0},
       {"frequency", nullptr, nullptr, nullptr, 50, 0, 0, RDM_KIND_NUMBER, 0}};
-  std::vector<rdm_camera> cameras = {{"front", {0, -1.0f, 0.5f}, {0, 0, 0}, 0.8f, 0}};
+  std::vector<rdm_camera_def> cameras = {{"front", {0, -1.0f, 0.5f}, {0, 0, 0}, 0.8f, 0, {}, 0, 0, 0}};
   std::vector<rdm_option> defaults = {{"hidden", "16,16", 0}, {"horizon", nullptr, 64}};
   float hold[kBallActions] = {0.25f, 0};
   rdm_task_def def;

@@ -24,9 +24,9 @@ PoolSettings settings_with(const std::string& camera, const char* task) {
   return s;
 }
 
-rdm_camera camera_of(const redman::Pool& pool, const std::string& name) {
-  rdm_camera c{};
-  for (int32_t i = 0; rdm_pool_camera(pool.get(), i, &c) == RDM_OK && name != c.name;) ++i;
+rdm_camera_info camera_of(const redman::Pool& pool, const std::string& name) {
+  rdm_camera_info c = RDM_INIT(rdm_camera_info);
+  for (int32_t i = 0; rdm_pool_camera_at(pool.get(), i, &c) == RDM_OK && name != c.name;) ++i;
   return c;
 }
 
@@ -44,7 +44,7 @@ TEST_P(Clouds, PointsAreWhereTheirShapesAreSeen) {
   redman::Pool pool = make_pool(settings_with(name, "hand_over_safe_finger"), RDM_AUTORESET_OFF);
   pool.reset();
   const rdm_sensors s = redman::sensors(pool);
-  const rdm_camera camera = camera_of(pool, name);
+  const rdm_camera_info camera = camera_of(pool, name);
   const Projection projection(camera, kWidth, kHeight);
   const auto seen = shapes_seen(pool, name);
   const Image image =
@@ -75,9 +75,10 @@ TEST_P(Clouds, PointsAreWhereTheirShapesAreSeen) {
 INSTANTIATE_TEST_SUITE_P(Cameras, Clouds, testing::Values("front", "top", "side_left"));
 
 TEST(Cloud, NearerDotsHideOthersAndUnseenOnesAreNone) {
-  rdm_camera camera{};
+  rdm_camera_info camera = RDM_INIT(rdm_camera_info);
   camera.name = "x";
   camera.target[1] = 1;
+  camera.up[2] = 1;
   camera.fov_y = 1;
   const float points[] = {0, 1, 0, 0, 2, 0, 0, -1, 0, 0.2f, 1, 0};
   const int32_t shape[] = {3, 4, 5, -1};

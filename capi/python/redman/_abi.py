@@ -611,7 +611,7 @@ class Task(Record):
     max_steps: int  # control steps of an episode, default options
     num_fields: int  # for rdm_task_field_at
     num_options: int  # for rdm_task_option_at
-    num_cameras: int  # for rdm_task_camera
+    num_cameras: int  # for rdm_task_camera_at
     num_defaults: int  # for rdm_task_default_at
 
 
@@ -626,7 +626,7 @@ class rdm_task(Structure):
     max_steps: control steps of an episode, default options
     num_fields: for rdm_task_field_at
     num_options: for rdm_task_option_at
-    num_cameras: for rdm_task_camera
+    num_cameras: for rdm_task_camera_at
     num_defaults: for rdm_task_default_at
     """
 
@@ -688,36 +688,51 @@ class rdm_cost_info(Structure):
     ]
 
 
-class Camera(Record):
-    """The values of rdm_camera."""
+class CameraInfo(Record):
+    """The values of rdm_camera_info."""
 
+    mount: int  # 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of the base of its articulation k - 1 (cameras that ride on a robot)
     name: str  # "front"
     eye: tuple[float, ...]  # m, in the frame that mount names
-    target: tuple[float, ...]  # m, likewise; the picture's centre looks from eye to target
-    fov_y: float  # rad, vertical field of view
-    mount: int  # 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of the base of its articulation k - 1 (cameras that ride on a robot)
+    target: tuple[float, ...]  # m, likewise; the optical axis runs from eye to target
+    up: tuple[float, ...]  # likewise: what points up in the picture; where it lies along the axis, -x of the world does
+    fov_y: float  # rad: in pixels, the focal length is half a picture's height / tan(fov_y / 2)
+    cx: float  # where the optical axis meets the picture: to the right of its centre, as a share of its width
+    cy: float  # likewise: below its centre, as a share of its height
 
 
-class rdm_camera(Structure):
-    """name: "front"
-    eye: m, in the frame that mount names
-    target: m, likewise; the picture's centre looks from eye to target
-    fov_y: rad, vertical field of view
+class rdm_camera_info(Structure):
+    """struct_size: in: bytes
     mount: 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of the base of its articulation k - 1
         (cameras that ride on a robot)
+    name: "front"
+    eye: m, in the frame that mount names
+    target: m, likewise; the optical axis runs from eye to target
+    up: likewise: what points up in the picture; where it lies along the axis, -x of the world does
+    fov_y: rad: in pixels, the focal length is half a picture's height / tan(fov_y / 2)
+    cx: where the optical axis meets the picture: to the right of its centre, as a share of its width
+    cy: likewise: below its centre, as a share of its height
     """
 
+    struct_size: int
+    mount: int
     name: bytes | None
     eye: Any
     target: Any
+    up: Any
     fov_y: float
-    mount: int
+    cx: float
+    cy: float
     _fields_ = [
+        ("struct_size", c_uint32),
+        ("mount", c_int32),
         ("name", c_char_p),
         ("eye", c_float * 3),
         ("target", c_float * 3),
+        ("up", c_float * 3),
         ("fov_y", c_float),
-        ("mount", c_int32),
+        ("cx", c_float),
+        ("cy", c_float),
     ]
 
 
@@ -3020,6 +3035,54 @@ class rdm_option_def(Structure):
     ]
 
 
+class CameraDef(Record):
+    """The values of rdm_camera_def."""
+
+    name: str  # unique: "front"
+    eye: tuple[float, ...]  # m, in the frame that mount names
+    target: tuple[float, ...]  # m, likewise; the optical axis runs from eye to target
+    fov_y: float  # vertical field of view, rad, 0.01 to 3
+    mount: int  # 0: the world's frame; k > 0: of link k - 1; -k: of base k - 1
+    up: tuple[float, ...]  # likewise: what points up in the picture; all 0: z
+    cx: float  # where the optical axis meets the picture: to the right of its centre, as a share of its width, within +-10
+    cy: float  # likewise: below its centre, as a share of its height
+
+
+class rdm_camera_def(Structure):
+    """name: unique: "front"
+    eye: m, in the frame that mount names
+    target: m, likewise; the optical axis runs from eye to target
+    fov_y: vertical field of view, rad, 0.01 to 3
+    mount: 0: the world's frame; k > 0: of link k - 1; -k: of base k - 1
+    up: likewise: what points up in the picture; all 0: z
+    cx: where the optical axis meets the picture: to the right of its centre, as a share of its width, within
+        +-10
+    cy: likewise: below its centre, as a share of its height
+    reserved: 0
+    """
+
+    name: bytes | None
+    eye: Any
+    target: Any
+    fov_y: float
+    mount: int
+    up: Any
+    cx: float
+    cy: float
+    reserved: int
+    _fields_ = [
+        ("name", c_char_p),
+        ("eye", c_float * 3),
+        ("target", c_float * 3),
+        ("fov_y", c_float),
+        ("mount", c_int32),
+        ("up", c_float * 3),
+        ("cx", c_float),
+        ("cy", c_float),
+        ("reserved", c_int32),
+    ]
+
+
 class rdm_task_def(Structure):
     """struct_size: bytes, set by rdm_task_def_init
     max_steps: control steps of an episode: default of the option max_steps; default 100
@@ -3090,7 +3153,7 @@ class rdm_task_def(Structure):
         ("fields", POINTER(rdm_field_def)),
         ("costs", POINTER(rdm_cost_def)),
         ("options", POINTER(rdm_option_def)),
-        ("cameras", POINTER(rdm_camera)),
+        ("cameras", POINTER(rdm_camera_def)),
         ("defaults", POINTER(rdm_option)),
         ("num_fields", c_int32),
         ("num_costs", c_int32),
@@ -3127,7 +3190,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_policy_info": rdm_policy_info,
     "rdm_task": rdm_task,
     "rdm_cost_info": rdm_cost_info,
-    "rdm_camera": rdm_camera,
+    "rdm_camera_info": rdm_camera_info,
     "rdm_robot": rdm_robot,
     "rdm_joint": rdm_joint,
     "rdm_object": rdm_object,
@@ -3177,6 +3240,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_field_def": rdm_field_def,
     "rdm_cost_def": rdm_cost_def,
     "rdm_option_def": rdm_option_def,
+    "rdm_camera_def": rdm_camera_def,
     "rdm_task_def": rdm_task_def,
 }
 
@@ -3414,8 +3478,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"task": c_int32, "i": c_int32, "io": POINTER(rdm_option_spec)},
         {}, False,
         """i < num_options"""),
-    "rdm_task_camera": Function(
-        c_int32, {"task": c_int32, "i": c_int32, "out": POINTER(rdm_camera)},
+    "rdm_task_camera_at": Function(
+        c_int32, {"task": c_int32, "i": c_int32, "io": POINTER(rdm_camera_info)},
         {}, False,
         """i < num_cameras"""),
     "rdm_task_default_at": Function(
@@ -3789,14 +3853,14 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "io": POINTER(rdm_sensors)},
         {}, True,
         """fills io"""),
-    "rdm_pool_camera": Function(
-        c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_camera)},
+    "rdm_pool_camera_at": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "io": POINTER(rdm_camera_info)},
         {}, True,
         """The i-th camera by whose name this pool can look: the task's, then those that ride on its robots
         ("right_palm" and "left_palm" of hands), then those for clouds. RANGE ends.
         """),
-    "rdm_pool_sensor_camera": Function(
-        c_int32, {"p": c_void_p, "cloud": c_int32, "i": c_int32, "out": POINTER(rdm_camera)},
+    "rdm_pool_sensor_camera_at": Function(
+        c_int32, {"p": c_void_p, "cloud": c_int32, "i": c_int32, "io": POINTER(rdm_camera_info)},
         {}, True,
         """The cameras that rows stand for: i-th of the pictures (cloud 0) or of points and voxels (cloud
         1). RANGE ends.

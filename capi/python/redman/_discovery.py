@@ -46,6 +46,11 @@ class Field(_abi.FieldInfo):
         return slice(self.offset, self.offset + self.count)
 
 
+class Camera(_abi.CameraInfo):
+    """A pinhole camera: its optical axis runs from eye to target, and meets the picture cx of its width to the right of
+    its centre, cy of its height below it."""
+
+
 def fields_of(owner: int, count: int, call: Callable[..., int]) -> dict[str, Field]:
     """All fields of a task or a pool by name."""
     return _records(Field, _abi.rdm_field_info, call, count, owner)
@@ -64,7 +69,7 @@ class Task(_abi.Task):
     fields: dict[str, Field]
     costs: dict[str, Cost]
     options: dict[str, Option]
-    cameras: dict[str, _abi.Camera]
+    cameras: dict[str, Camera]
     defaults: dict[str, Value]  # of learner options: rdm_task_default_at
 
     def __init__(self, index: int) -> None:
@@ -73,7 +78,7 @@ class Task(_abi.Task):
         said["fields"] = fields_of(index, self.num_fields, lib.rdm_task_field_at)
         said["costs"] = _records(Cost, _abi.rdm_cost_info, lib.rdm_task_cost_at, self.cost_dim, index)
         said["options"] = _records(Option, _abi.rdm_option_spec, lib.rdm_task_option_at, self.num_options, index)
-        said["cameras"] = _records(_abi.Camera, _abi.rdm_camera, lib.rdm_task_camera, self.num_cameras, index)
+        said["cameras"] = _records(Camera, _abi.rdm_camera_info, lib.rdm_task_camera_at, self.num_cameras, index)
         said["defaults"] = laid(
             filled(_abi.rdm_option, lib.rdm_task_default_at, index, i) for i in range(self.num_defaults))
 

@@ -78,8 +78,8 @@ class Sensors:
     point_count: Optional[npt.NDArray[np.int32]]
     voxels: Optional[npt.NDArray[np.int8]]
     voxel_size: float
-    cameras: list[_abi.Camera]  # of the pictures
-    cloud_cameras: list[_abi.Camera]  # of points and voxels
+    cameras: list[_discovery.Camera]  # of the pictures
+    cloud_cameras: list[_discovery.Camera]  # of points and voxels
 
     def __init__(self, handle: Handle, num_envs: int) -> None:
         s = filled(_abi.rdm_sensors, lib.rdm_pool_get_sensors, handle.value)
@@ -92,11 +92,11 @@ class Sensors:
         self.cameras, self.cloud_cameras = (list(self._cameras(handle, cloud)) for cloud in (0, 1))
 
     @staticmethod
-    def _cameras(handle: Handle, cloud: int) -> Iterator[_abi.Camera]:
-        row = _abi.rdm_camera()
+    def _cameras(handle: Handle, cloud: int) -> Iterator[_discovery.Camera]:
+        row = sized(_abi.rdm_camera_info)
         i = 0
-        while not lib.rdm_pool_sensor_camera(handle.value, cloud, i, byref(row)):
-            yield _abi.Camera(row)
+        while not lib.rdm_pool_sensor_camera_at(handle.value, cloud, i, byref(row)):
+            yield _discovery.Camera(row)
             i += 1
 
 
@@ -354,7 +354,7 @@ class Pool(Hinted):
     # ---- what a world shows -----------------------------------------------------------------------------------
 
     @property
-    def cameras(self) -> dict[str, _abi.Camera]:
+    def cameras(self) -> dict[str, _discovery.Camera]:
         """The task's cameras by name."""
         return dict(self.task.cameras)
 

@@ -26,15 +26,18 @@ bool normalise(double v[3]) {
 
 }  // namespace
 
-Projection::Projection(const rdm_camera& camera, int32_t width, int32_t height)
+Projection::Projection(const rdm_camera_info& camera, int32_t width, int32_t height)
     : focus_(height / (2 * std::tan(0.5 * static_cast<double>(camera.fov_y)))),
-      middle_{0.5 * width, 0.5 * height} {
+      middle_{(0.5 + static_cast<double>(camera.cx)) * width,
+              (0.5 + static_cast<double>(camera.cy)) * height} {
+  double up[3];
   for (int i = 0; i < 3; ++i) {
     eye_[i] = static_cast<double>(camera.eye[i]);
     ahead_[i] = static_cast<double>(camera.target[i]) - eye_[i];
+    up[i] = static_cast<double>(camera.up[i]);
   }
   normalise(ahead_);
-  const double up[3] = {0, 0, 1}, back[3] = {-1, 0, 0};  // a camera that looks straight down has -x up
+  const double back[3] = {-1, 0, 0};  // up of a camera that looks along its own
   cross(ahead_, up, side_);
   if (!normalise(side_)) {
     cross(ahead_, back, side_);
@@ -61,8 +64,8 @@ void cloud_color(uint8_t kind, unsigned char rgb[3]) {
   for (int i = 0; i < 3; ++i) rgb[i] = static_cast<unsigned char>(hex >> (16 - 8 * i));
 }
 
-Image draw_cloud(const rdm_camera& camera, const float* points, const int32_t* shape, const uint8_t* kind,
-                 int32_t count, int32_t width, int32_t height) {
+Image draw_cloud(const rdm_camera_info& camera, const float* points, const int32_t* shape,
+                 const uint8_t* kind, int32_t count, int32_t width, int32_t height) {
   struct Dot {
     double at[3];
     uint8_t kind;

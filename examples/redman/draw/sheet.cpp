@@ -161,7 +161,7 @@ struct Task {
 };
 
 Image picture(Shown shown, int32_t side) {
-  rdm_camera camera{};
+  rdm_camera_def camera{};
   camera.name = "it";
   camera.fov_y = 0.5f;
   const double away = 1.02 * shown.radius / std::sin(0.25), way[3] = {0.72, -0.48, 0.5};

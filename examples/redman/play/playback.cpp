@@ -49,8 +49,8 @@ Playback begin_playback(const redman::Pool& pool, const std::vector<double>& lim
   out.first_step = pool.buffers().episode_step[0];
   for (int32_t i = 0; i < spec.num_shapes; ++i) out.bodies.push_back(body_at(pool, i));
   for (int32_t i = 0; i < task_at(spec.task).num_cameras; ++i) {
-    out.cameras.emplace_back();
-    redman::check(rdm_task_camera(spec.task, i, &out.cameras.back()));
+    out.cameras.push_back(RDM_INIT(rdm_camera_info));
+    redman::check(rdm_task_camera_at(spec.task, i, &out.cameras.back()));
   }
   for (const rdm_cost_info& c : task_costs(spec.task))
     out.costs.push_back({c.name, c.help, limits[out.costs.size()]});

@@ -25,7 +25,7 @@ struct Playback {
   double control_dt = 0;  // s between frames
   int32_t first_step = 0;
   std::vector<Body> bodies;
-  std::vector<rdm_camera> cameras;
+  std::vector<rdm_camera_info> cameras;
   std::vector<CostCurve> costs;
 
   size_t frames = 0;

@@ -12,12 +12,12 @@ namespace tool {
 namespace {
 
 // The camera, to look at clouds with.
-rdm_camera cloud_camera(const redman::Pool& pool, const std::string& name) {
+rdm_camera_info cloud_camera(const redman::Pool& pool, const std::string& name) {
   if (!redman::sensors(pool).points)
     throw Usage(
         "--cloud: these worlds make no clouds; give --set modality=points, or a policy that sees points");
-  rdm_camera camera{};
-  for (int32_t i = 0; rdm_pool_camera(pool.get(), i, &camera) == RDM_OK && !same_name(camera.name, name);)
+  rdm_camera_info camera = RDM_INIT(rdm_camera_info);
+  for (int32_t i = 0; rdm_pool_camera_at(pool.get(), i, &camera) == RDM_OK && !same_name(camera.name, name);)
     ++i;
   if (camera.mount != 0) throw Usage("--cloud: camera " + name + " rides on a robot; give one that stands");
   return camera;

@@ -27,7 +27,7 @@ class Scene {
   redman::Pool pool_;
   Actor actor_;
   std::string camera_;
-  std::optional<rdm_camera> cloud_;  // that looks at clouds, where they are wanted
+  std::optional<rdm_camera_info> cloud_;  // that looks at clouds, where they are wanted
   int32_t width_, height_, step_ = 0, frames_ = 0;
   double seconds_ = 0;
 };

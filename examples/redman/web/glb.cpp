@@ -99,19 +99,25 @@ Solid make_solid(const Playback& p, size_t body) {
 }
 
 // A camera's rotation: it looks along -z with y up.
-std::array<double, 4> look_at(const rdm_camera& c) {
-  std::array<double, 3> back, right, up;
-  double length = 0;
+std::array<double, 4> look_at(const rdm_camera_info& c) {
+  using Vec = std::array<double, 3>;
+  const auto cross = [](const Vec& a, const Vec& b) {
+    return Vec{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  };
+  const auto normalise = [](Vec& v) {
+    const double length = std::hypot(v[0], v[1], v[2]);
+    for (double& x : v) x /= length;
+    return length > 1e-6;
+  };
+  Vec back, up;
   for (size_t i = 0; i < 3; ++i) {
     back[i] = static_cast<double>(c.eye[i]) - static_cast<double>(c.target[i]);
-    length += back[i] * back[i];
+    up[i] = static_cast<double>(c.up[i]);
   }
-  for (double& v : back) v /= std::sqrt(length);
-  const double across = std::hypot(back[0], back[1]);
-  right = across > 1e-6 ? std::array<double, 3>{-back[1] / across, back[0] / across, 0}
-                        : std::array<double, 3>{0, 1, 0};
-  up = {back[1] * right[2] - back[2] * right[1], back[2] * right[0] - back[0] * right[2],
-        back[0] * right[1] - back[1] * right[0]};
+  normalise(back);
+  Vec right = cross(up, back);
+  if (!normalise(right)) normalise(right = cross({-1, 0, 0}, back));
+  up = cross(back, right);
   // columns right, up, back; the branch with the largest divisor
   const double m[3][3] = {{right[0], up[0], back[0]}, {right[1], up[1], back[1]}, {right[2], up[2], back[2]}};
   const double trace = m[0][0] + m[1][1] + m[2][2];
@@ -143,7 +149,7 @@ class Glb {
     begin();
     json_["nodes"].push_back({{"name", "redman"}, {"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}});
     for (size_t b = 0; b < p_.bodies.size(); ++b) add_body(b);
-    for (const rdm_camera& c : p_.cameras) add_camera(c);
+    for (const rdm_camera_info& c : p_.cameras) add_camera(c);
     finish();
     std::string text = json_text(json_);
     text.resize((text.size() + 3) / 4 * 4, ' ');
@@ -261,7 +267,7 @@ class Glb {
     samplers_.push_back({{"input", times_ - 1}, {"interpolation", "LINEAR"}, {"output", output}});
   }
 
-  void add_camera(const rdm_camera& c) {
+  void add_camera(const rdm_camera_info& c) {
     add_child({{"name", std::string("camera ") + c.name},
                {"camera", json_["cameras"].size()},
                {"translation", rounded_list(std::vector<float>(c.eye, c.eye + 3))},

@@ -62,7 +62,7 @@ Json contacts_json(const Playback& p) {
       {"unit", reach / 32767}, {"xyz", base64_of(at)}, {"force", base64_of(force)}, {"end", p.contacts_end}};
 }
 
-Json camera_json(const rdm_camera& c) {
+Json camera_json(const rdm_camera_info& c) {
   return {{"name", c.name}, {"eye", c.eye}, {"target", c.target}, {"fov_y", c.fov_y}};
 }
 
@@ -73,7 +73,7 @@ std::string playback_page(const Playback& p, const std::string& camera) {
   const std::string glb = glb_bytes(p);
   Json cameras = Json::array(), success = Json::array();
   std::string first;
-  for (const rdm_camera& c : p.cameras) {
+  for (const rdm_camera_info& c : p.cameras) {
     cameras.push_back(camera_json(c));
     if (same_name(camera, c.name)) first = c.name;
   }

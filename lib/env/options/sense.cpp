@@ -104,7 +104,7 @@ Camera camera_of(const TaskInfo& info, const Task& task, const char* name) {
              bases = static_cast<int32_t>(scene.def.articulations.size());
   if (c.mount < -bases || c.mount > links)
     fail(Code::kRange, "camera %s: mount %d is outside [%d, %d]", c.name, c.mount, -bases, links);
-  return {c.name, c.eye, c.target, c.fov_y, c.up, c.mount};
+  return {c.name, c.eye, c.target, c.fov_y, c.up, c.mount, c.cx, c.cy};
 }
 
 SenseConfig sense_from(const Options& options, const TaskInfo& info, const Task& task) {

@@ -13,8 +13,8 @@ int8_t look(const DepthPicture& picture, const Vec3& p, double half) {
   const Vec3 d = p - v.eye;
   const double z = dot(v.R_WC.col(2), d);
   if (z < kNear) return -1;
-  const double x = dot(v.R_WC.col(0), d) / (z * v.pixel) + 0.5 * v.width;
-  const double y = dot(v.R_WC.col(1), d) / (z * v.pixel) + 0.5 * v.height;
+  const double x = dot(v.R_WC.col(0), d) / (z * v.pixel) + v.cx;
+  const double y = dot(v.R_WC.col(1), d) / (z * v.pixel) + v.cy;
   if (!(x >= 0 && x < v.width && y >= 0 && y < v.height)) return -1;
   const double depth =
       static_cast<double>(picture.depth[static_cast<ptrdiff_t>(y) * v.width + static_cast<ptrdiff_t>(x)]);

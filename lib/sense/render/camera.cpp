@@ -15,9 +15,12 @@ View make_view(const Camera& camera, int32_t width, int32_t height) {
     fail(Code::kRange, "height: %d is outside [1, %d]", height, kMaxImageSide);
   if (!(camera.fov_y > 0 && camera.fov_y < std::numbers::pi))
     fail(Code::kRange, "fov_y: %g rad is outside (0, pi)", camera.fov_y);
+  for (const double shift : {camera.cx, camera.cy})
+    if (!(shift >= -kMaxShift && shift <= kMaxShift))
+      fail(Code::kRange, "camera: cx or cy is %g, outside [-%g, %g]", shift, kMaxShift, kMaxShift);
   const Vec3 ahead = camera.target - camera.eye;
-  if (!finite(camera.eye) || !finite(camera.target) || !finite(ahead))
-    fail(Code::kArgument, "camera: eye or target is not finite");
+  if (!finite(camera.eye) || !finite(camera.target) || !finite(ahead) || !finite(camera.up))
+    fail(Code::kArgument, "camera: eye, target or up is not finite");
   if (!(norm(ahead) >= 1e-6)) fail(Code::kArgument, "camera: eye and target are less than 1e-6 m apart");
 
   const Vec3 z = normalized(ahead);
@@ -32,6 +35,8 @@ View make_view(const Camera& camera, int32_t width, int32_t height) {
   view.pixel = 2 * half.sin / (half.cos * height);
   view.width = width;
   view.height = height;
+  view.cx = (0.5 + camera.cx) * width;
+  view.cy = (0.5 + camera.cy) * height;
   return view;
 }
 

@@ -114,10 +114,10 @@ void bound_in_image(const RenderShape& shape, const Mat3& R_CS, const Vec3& p_CS
   // Half a pixel and a thousandth of the depth stand for the rounding of floats.
   const double scale = 1 / view.pixel;
   out->nearest = static_cast<float>(0.999 * near);
-  out->x0 = static_cast<float>(0.5 * view.width + x0 * scale - 0.5);
-  out->x1 = static_cast<float>(0.5 * view.width + x1 * scale + 0.5);
-  out->y0 = static_cast<float>(0.5 * view.height + y0 * scale - 0.5);
-  out->y1 = static_cast<float>(0.5 * view.height + y1 * scale + 0.5);
+  out->x0 = static_cast<float>(view.cx + x0 * scale - 0.5);
+  out->x1 = static_cast<float>(view.cx + x1 * scale + 0.5);
+  out->y0 = static_cast<float>(view.cy + y0 * scale - 0.5);
+  out->y1 = static_cast<float>(view.cy + y1 * scale + 0.5);
 }
 
 // Capsule of about the same bulk, along the longest axis of the shape.
