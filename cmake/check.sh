@@ -276,7 +276,7 @@ case $mode in
     need chromium nodejs fonts-dejavu-core
     command -v npm > /dev/null || need npm
     configure dev
-    cmake --build --preset dev -j "$(nproc)" --target redman_tool test_tool_solid >&2 || die "preset dev could not be built: see above"
+    cmake --build --preset dev -j "$(nproc)" --target redman_tool tests_tool >&2 || die "preset dev could not be built: see above"
     mkdir -p build/pages
     PAGES=$PWD/build/pages run_tests dev -R '^test_tool_(pages|events|solid)$'
     ;;

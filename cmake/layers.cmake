@@ -25,12 +25,17 @@ if(REDMAN_COVERAGE)
 endif()
 
 # Most of what a small file takes to compile are the headers that all of its layer read. A build that is made once lets
-# files share them; one that is edited compiles each alone, and so sees what a file forgot to include. The numerical
-# kernels stay alone: what a compiler inlines depends on what else it sees.
+# many files share them; one that is edited three, so that an edit stays quick. The numerical kernels stay alone: what a
+# compiler inlines depends on what else it sees.
 set(RDM_UNITY OFF)
+set(RDM_FILES_TOGETHER 3)
+if(CMAKE_CROSSCOMPILING OR WIN32)
+  set(RDM_FILES_TOGETHER 1)
+endif()
 set(RDM_ALONE map.cpp own_task.cpp planner.cpp pool.cpp recording.cpp robots.cpp scene.cpp world.cpp)  # of capi
 if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT CMAKE_CROSSCOMPILING AND NOT WIN32)
   set(RDM_UNITY ON)
+  set(RDM_FILES_TOGETHER 14)
 endif()
 
 set(RDM_OFF_ROWS "")  # of what is switched off
@@ -117,8 +122,10 @@ function(rdm_layer name folder)
   target_link_libraries(rdm_${name} PRIVATE rdm_flags ${arg_LINKS})
   set_target_properties(rdm_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON
                         CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-  if(RDM_UNITY AND name MATCHES "^(base|record|env|plan|algos)$")
-    set_target_properties(rdm_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 14)
+  if(RDM_FILES_TOGETHER GREATER 1 AND name MATCHES "^(base|record|env|plan|algos)$")
+    set_target_properties(rdm_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${RDM_FILES_TOGETHER})
+    # alone, so that test `recipes` can put another in its place
+    set_source_files_properties(${PROJECT_SOURCE_DIR}/algos/algo_registry.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   elseif(RDM_UNITY AND name STREQUAL "capi" AND REDMAN_SIM AND REDMAN_LEARN)
     set_target_properties(rdm_capi PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 14)
     # have small helpers of the same names, which differ

@@ -1,11 +1,11 @@
 # Many test files as few: what a test costs to build is mostly the headers that it includes.
 #
 # rdm_join writes a folder's files into a handful of sources. Each of these includes the headers of its files first and then
-# the files, each within a namespace of its own, in which rdm, rdm::test and rdm::capi are the library's: two files may have
+# the files, each within a namespace of its own, in which rdm, rdm::test, rdm::capi and tool are the library's: two files may have
 # helpers of one name, as they may in programs of their own. A file with other lines of the preprocessor than #include and
 # RDM_EXPERIMENTAL stays a source of its own.
 
-set(RDM_JOINED 8)  # files in one source, at most
+set(RDM_JOINED 12)  # files in one source, at most
 # GCC takes a fixture of an unnamed namespace for one that others include, since the file is included itself.
 set(RDM_JOINED_HEAD [[
 #define RDM_EXPERIMENTAL
@@ -104,11 +104,11 @@ function(rdm_write_joined name files out)
     list(APPEND headers ${of_file})
     get_filename_component(noun ${file} NAME_WE)
     string(APPEND bodies "\nnamespace of_${noun} {\nnamespace rdm {\nusing namespace ::rdm;\n"
-      "namespace test {\nusing namespace ::rdm::test;\n}\nnamespace capi {\nusing namespace ::rdm::capi;\n}\n}\n#include \"${file}\"\n}\n")
+      "namespace test {\nusing namespace ::rdm::test;\n}\nnamespace capi {\nusing namespace ::rdm::capi;\n}\n}\nnamespace tool {\nusing namespace ::tool;\n}\n#include \"${file}\"\n}\n")
   endforeach()
   list(REMOVE_DUPLICATES headers)
   list(JOIN headers "\n" headers)
   set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
-  file(CONFIGURE OUTPUT ${source} CONTENT "${RDM_JOINED_HEAD}\n${headers}\n#include <gtest/gtest.h>\nnamespace rdm {\nnamespace test {}\nnamespace capi {}\n}\n${bodies}" @ONLY)
+  file(CONFIGURE OUTPUT ${source} CONTENT "${RDM_JOINED_HEAD}\n${headers}\n#include <gtest/gtest.h>\nnamespace rdm {\nnamespace test {}\nnamespace capi {}\n}\nnamespace tool {}\n${bodies}" @ONLY)
   set(${out} ${source} PARENT_SCOPE)
 endfunction()
