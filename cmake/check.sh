@@ -17,6 +17,7 @@ valgrind|examples, `lib/base` and the contract of the ABI under valgrind|memory
 tidy|clang-tidy 14|new files
 halves|each half builds, passes and installs without the other|the ABI, CMake
 small|what the library takes where there is little, beside its table|memory, dependencies
+budget|exports, bytes, dependencies, instructions of a start, steps and seconds of builds beside cmake/budget.txt|dependencies, start, CMake
 clang|the recorded hashes by clang 14 at -O3|arithmetic
 libc++|the recorded hashes by clang 14 with libc++|arithmetic, standard headers
 arm64 [all]|the recorded hashes on 64-bit ARM under qemu; `all`: also the tests that take half an hour there|arithmetic
@@ -263,6 +264,16 @@ case $mode in
   small)
     # What the library takes where there is little, beside the table of examples/small/README.md.
     bash cmake/small_table.sh
+    ;;
+  budget)
+    need valgrind
+    configure dev
+    cmake --build --preset dev -j "$(nproc)" --target redman >&2 || die "preset dev could not be built: see above"
+    configure release
+    build release
+    configure small
+    build small
+    bash cmake/budget.sh --time
     ;;
   embedded)
     # Policies as C source, on this machine and on Cortex-M processors under qemu, with a table of what they take.
