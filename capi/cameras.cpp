@@ -28,20 +28,20 @@ Camera rdm::capi::pool_camera(const rdm_pool* p, int32_t env, const char* name) 
   return placed(camera_of(task_at(p->pool->task_index()), p->pool->task(), name), p->pool->world(env));
 }
 
-rdm_result rdm_pool_shape(const rdm_pool* p, int32_t i, rdm_shape* out) {
+rdm_result rdm_pool_shape_at(const rdm_pool* p, int32_t i, rdm_shape_info* io) {
   return call_on(p, [&] {
-    need(out, "out");
+    check_out(io, sizeof(rdm_shape_info), "io");
     const auto& shapes = p->pool->task().scene().shapes;
     need_index(i, static_cast<int64_t>(shapes.size()), "i");
     const SceneShape& s = shapes[static_cast<size_t>(i)];
-    rdm_shape shape{};
-    shape.name = s.def.name.text;
-    to_floats(s.def.size, shape.size);
-    shape.kind = static_cast<int32_t>(s.def.kind);
-    std::copy(s.def.color, s.def.color + 3, shape.color);
-    shape.color[3] = 255;
-    shape.fixed = s.carrier == Carrier::kStatic;
-    *out = shape;
+    rdm_shape_info o{};
+    o.kind = static_cast<int32_t>(s.def.kind);
+    o.fixed = s.carrier == Carrier::kStatic;
+    std::copy(s.def.color, s.def.color + 3, o.color);
+    o.color[3] = 255;
+    o.name = s.def.name.text;
+    for (int k = 0; k < 3; ++k) o.size[k] = s.def.size[k];
+    write_struct(io, o, sizeof(rdm_shape_info), "io");
   });
 }
 

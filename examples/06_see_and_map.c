@@ -18,8 +18,8 @@ static int shapes_named(const rdm_pool* pool, int num_shapes, const char* const*
                         int capacity) {
   int count = 0;
   for (int i = 0; i < num_shapes; ++i) {
-    rdm_shape shape;
-    if (rdm_pool_shape(pool, i, &shape) != RDM_OK) break;
+    rdm_shape_info shape = RDM_INIT(rdm_shape_info);
+    if (rdm_pool_shape_at(pool, i, &shape) != RDM_OK) break;
     for (const char* const* word = words; *word; ++word)
       if (strncmp(shape.name, *word, strlen(*word)) == 0 && count < capacity) out[count++] = i;
   }

@@ -156,13 +156,15 @@ EXPORT const char* page_scene(void) {
   put_member("summary", task.summary);
   put("%s", ",\"shapes\":[");
   for (int i = 0; i < spec.num_shapes; ++i) {
-    rdm_shape shape;
-    if (rdm_pool_shape(pool, i, &shape)) return NULL;
+    rdm_shape_info shape = RDM_INIT(rdm_shape_info);
+    if (rdm_pool_shape_at(pool, i, &shape)) return NULL;
     put("%s", i ? ",{" : "{");
     put_member("name", shape.name);
     put(",\"kind\":%d,\"fixed\":%d,\"color\":[%d,%d,%d],", shape.kind, shape.fixed, shape.color[0],
         shape.color[1], shape.color[2]);
-    put_floats("size", shape.size, 3);
+    float size[3];
+    for (int k = 0; k < 3; ++k) size[k] = (float)shape.size[k];
+    put_floats("size", size, 3);
     put("%s", "}");
   }
   put("%s", "],\"costs\":[");

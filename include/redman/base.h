@@ -179,7 +179,7 @@ typedef struct rdm_tensor {   /* frozen layout: a named block of parameters */
   const char *name;           /* "actor.0.weight", "actor.log_std", "reward_critic.1.bias" */
   int32_t rows, cols;         /* row-major; cols 1 for vectors */
 } rdm_tensor;
-enum rdm_shape_kind { /* of rdm_shape */
+enum rdm_shape_kind { /* of rdm_shape_info */
   RDM_SHAPE_SPHERE = 0, RDM_SHAPE_CAPSULE = 1, RDM_SHAPE_BOX = 2, RDM_SHAPE_CYLINDER = 3,
   RDM_SHAPE_PLANE = 4, RDM_SHAPE_ELLIPSOID = 5, RDM_SHAPE_HULL = 6
 };
@@ -192,7 +192,7 @@ typedef struct rdm_spec { /* sizes of a pool's rows; what a policy is checked ag
   int32_t max_steps;         /* control steps of an episode */
   uint64_t layout_hash;      /* of field names, counts and action order: policies carry it */
   int32_t num_fields;        /* for rdm_pool_field_at */
-  int32_t num_shapes;        /* for rdm_pool_shape */
+  int32_t num_shapes;        /* for rdm_pool_shape_at */
   int32_t num_joints;        /* of all robots */
   int32_t task;              /* index for rdm_task_at and its like */
   int32_t action_repeat;     /* control steps in one rdm_pool_step: option action_repeat */

@@ -39,6 +39,15 @@ typedef struct rdm_camera { /* frozen layout */
   int32_t mount;            /* 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of
                              * the base of its articulation k - 1 (cameras that ride on a robot) */
 } rdm_camera;
+typedef struct rdm_shape {   /* frozen layout: what the scene is made of, the same for all worlds */
+  const char *name;          /* "right.ff_distal" */
+  float size[3];             /* m: radius | radius, half length along z | half sizes (hull: of
+                              * its box) */
+  int32_t kind;              /* RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below
+                              * z = 0 of its frame */
+  uint8_t color[4];          /* red, green, blue, 255 */
+  int32_t fixed;             /* flag: never moves */
+} rdm_shape;
 
 #if !defined(RDM_NO_DEPRECATED)
 enum {
@@ -254,6 +263,21 @@ rdm_result rdm_algo_option(int32_t algo, int32_t i, rdm_option_info *out) {
     out->high = spec.high;
     out->kind = spec.kind;
     out->live = spec.live;
+  }
+  return r;
+}
+
+static inline RDM_DEPRECATED("rdm_pool_shape_at")
+rdm_result rdm_pool_shape(const rdm_pool *p, int32_t i, rdm_shape *out) {
+  rdm_shape_info info = RDM_INIT(rdm_shape_info);
+  const rdm_result r = rdm_pool_shape_at(p, i, out ? &info : NULL);
+  if (r == RDM_OK) {
+    int k;
+    out->name = info.name;
+    for (k = 0; k < 3; ++k) out->size[k] = (float)info.size[k];
+    out->kind = info.kind;
+    for (k = 0; k < 4; ++k) out->color[k] = info.color[k];
+    out->fixed = info.fixed;
   }
   return r;
 }

@@ -25,7 +25,7 @@ typedef struct rdm_shape_def {
   int32_t num_points;      /* count */
   int32_t kind;            /* RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; an RDM_SHAPE_PLANE stands
                             * still */
-  double size[3];          /* as rdm_shape, m; of a hull unused */
+  double size[3];          /* as rdm_shape_info, m; of a hull unused */
   double p[3];             /* position in the frame of the body, or in the world, m */
   double q[4];             /* rotation; all 0: none */
   uint8_t color[4];        /* red, green, blue, 255; all 0: grey */

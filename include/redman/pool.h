@@ -229,21 +229,22 @@ RDM_API rdm_result rdm_pool_read_state(rdm_pool *p, int32_t env, const void *byt
 RDM_API rdm_result rdm_pool_get_hash(const rdm_pool *p, int32_t env,
                                      uint64_t *hash); /* of the state; -1: all */
 
-typedef struct rdm_shape {   /* frozen layout: what the scene is made of, the same for all worlds */
-  const char *name;          /* "right.ff_distal" */
-  float size[3];             /* m: radius | radius, half length along z | half sizes (hull: of
-                              * its box) */
+typedef struct rdm_shape_info { /* a part of what the scene is made of, the same for all worlds */
+  uint32_t struct_size;      /* in: bytes */
   int32_t kind;              /* RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below
                               * z = 0 of its frame */
-  uint8_t color[4];          /* red, green, blue, 255 */
   int32_t fixed;             /* flag: never moves */
-} rdm_shape;
-RDM_API rdm_result rdm_pool_shape(const rdm_pool *p, int32_t i,
-                                  rdm_shape *out); /* i < num_shapes */
+  uint8_t color[4];          /* red, green, blue, 255 */
+  const char *name;          /* "right.ff_distal" */
+  double size[3];            /* m: radius | radius, half length along z | half sizes (hull: of
+                              * its box) */
+} rdm_shape_info;
+RDM_API rdm_result rdm_pool_shape_at(const rdm_pool *p, int32_t i,
+                                     rdm_shape_info *io); /* i < num_shapes */
 /* pose [num_shapes][7]: position (m), quaternion (x, y, z, w); world frame of that world. */
 RDM_API rdm_result rdm_pool_poses(const rdm_pool *p, int32_t env, float *pose);
 typedef struct rdm_contact { /* frozen layout: one contact point of the last substep */
-  int32_t shape_a, shape_b;  /* for rdm_pool_shape */
+  int32_t shape_a, shape_b;  /* for rdm_pool_shape_at */
   float position[3];         /* m */
   float normal[3];           /* unit, from b into a */
   float force[3];            /* N, on a */

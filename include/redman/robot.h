@@ -52,7 +52,7 @@ typedef struct rdm_robot_shape { /* frozen layout: what of a link can be touched
   int32_t link;            /* row, RDM_LINK_ROOT */
   int32_t kind;            /* RDM_SHAPE_SPHERE, RDM_SHAPE_CAPSULE, RDM_SHAPE_BOX,
                             * RDM_SHAPE_CYLINDER, RDM_SHAPE_ELLIPSOID */
-  double size[3];          /* as rdm_shape, m */
+  double size[3];          /* as rdm_shape_info, m */
   double p[3];             /* position in the link's frame, m */
   double q[4];             /* rotation, unit */
   uint8_t color[4];        /* red, green, blue, 255 */

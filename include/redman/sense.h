@@ -34,7 +34,7 @@ typedef struct rdm_sensors {
   const float *depth;             /* [num_envs][num_cameras][height][width], m along the optical
                                    * axis, 0: nothing */
   const int32_t *segmentation;    /* [num_envs][num_cameras][height][width], shape of
-                                   * rdm_pool_shape, -1: nothing */
+                                   * rdm_pool_shape_at, -1: nothing */
   const float *points;            /* [num_envs][num_points][3], world, m; planes are left out */
   const int32_t *point_shape;     /* [num_envs][num_points], -1: nothing was seen */
   const int32_t *point_count;     /* [num_envs] points that differ; the rest repeats them in

@@ -88,7 +88,7 @@ enum rdm_scene_part {
   RDM_SCENE_ROBOT = 0, RDM_SCENE_BODY = 1,
   RDM_SCENE_LINK = 2,   /* of all robots, robot by robot; joint i moves link i */
   RDM_SCENE_JOINT = 3,
-  RDM_SCENE_SHAPE = 4,  /* as rdm_pool_shape: robots, bodies, those that stand still */
+  RDM_SCENE_SHAPE = 4,  /* as rdm_pool_shape_at: robots, bodies, those that stand still */
   RDM_SCENE_SENSOR = 5, /* the link of a fingertip, for rdm_world_get_sensor */
   RDM_SCENE_MATERIAL = 6 /* "default" is 0 */
 };

@@ -38,9 +38,9 @@ class Look : public testing::Test {
   }
   int32_t object() const { return object(pool); }
   int32_t object(const rdm_pool* p) const {
-    rdm_shape s;
+    rdm_shape_info s = RDM_INIT(rdm_shape_info);
     for (int32_t i = 0; i < spec.num_shapes; ++i)
-      if (rdm_pool_shape(p, i, &s) == RDM_OK && std::string(s.name).find("object") != std::string::npos)
+      if (rdm_pool_shape_at(p, i, &s) == RDM_OK && std::string(s.name).find("object") != std::string::npos)
         return i;
     ADD_FAILURE() << "no shape is called object";
     return 0;
@@ -54,8 +54,8 @@ TEST_F(Look, AHullShowsItsCorners) {
                               {"hull", "0,0,0;0.06,0,0;0,0.06,0;0,0,0.06;0.01,0.01,0.01", 0}};
   rdm_pool* p = make(asked, 2);
   const int32_t i = object(p);
-  rdm_shape s;
-  ASSERT_EQ(rdm_pool_shape(p, i, &s), RDM_OK);
+  rdm_shape_info s = RDM_INIT(rdm_shape_info);
+  ASSERT_EQ(rdm_pool_shape_at(p, i, &s), RDM_OK);
   EXPECT_EQ(s.kind, RDM_SHAPE_HULL);
   EXPECT_NEAR(s.size[0], 0.045, 1e-6);  // the centre of mass is at a quarter
   float corners[12] = {}, sum[3] = {};
@@ -76,15 +76,15 @@ TEST_F(Look, AHullShowsItsCorners) {
 
 TEST_F(Look, ShapesAndPoses) {
   ASSERT_GT(spec.num_shapes, 30);
-  rdm_shape s;
+  rdm_shape_info s = RDM_INIT(rdm_shape_info);
   int fixed = 0;
   for (int32_t i = 0; i < spec.num_shapes; ++i) {
-    ASSERT_EQ(rdm_pool_shape(pool, i, &s), RDM_OK);
+    ASSERT_EQ(rdm_pool_shape_at(pool, i, &s), RDM_OK);
     EXPECT_GT(std::strlen(s.name), 0u);
     fixed += s.fixed;
   }
   EXPECT_LT(fixed, spec.num_shapes);
-  EXPECT_EQ(rdm_pool_shape(pool, spec.num_shapes, &s), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_shape_at(pool, spec.num_shapes, &s), RDM_ERROR_RANGE);
   const auto pose = poses(pool, 1);
   for (size_t i = 0; i < pose.size(); i += 7) {
     const double q = std::hypot(std::hypot(pose[i + 3], pose[i + 4]), std::hypot(pose[i + 5], pose[i + 6]));

@@ -30,7 +30,7 @@ TEST(ContractPool, NullIsAnArgumentError) {
   EXPECT_EQ(rdm_pool_state_size(nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_write_state(nullptr, 0, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_read_state(nullptr, 0, nullptr, 0), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_pool_shape(nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_shape_at(nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_poses(nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_contacts(nullptr, 0, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_render(nullptr, 0, "front", 8, 8, nullptr, nullptr, nullptr), RDM_ERROR_ARGUMENT);
@@ -191,12 +191,12 @@ TEST(ContractPool, CorruptStatesChangeNothing) {
 TEST(ContractPool, IndicesAndSizesAreChecked) {
   rdm_pool* p = make_pool(pool_config());
   ASSERT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
-  rdm_shape shape;
+  rdm_shape_info shape = RDM_INIT(rdm_shape_info);
   rdm_field_info field = RDM_INIT(rdm_field_info);
   uint64_t h;
   std::vector<uint8_t> rgb(64 * 64 * 3);
-  EXPECT_EQ(rdm_pool_shape(p, -1, &shape), RDM_ERROR_RANGE);
-  EXPECT_EQ(rdm_pool_shape(p, 100000, &shape), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_shape_at(p, -1, &shape), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_shape_at(p, 100000, &shape), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_pool_field_at(p, 100000, &field), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_pool_get_hash(p, 2, &h), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_pool_get_hash(p, -2, &h), RDM_ERROR_RANGE);

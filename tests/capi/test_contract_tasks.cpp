@@ -177,8 +177,8 @@ TEST_P(ContractTasks, EveryCameraShowsSomethingThatMoves) {
     ASSERT_EQ(rdm_pool_render(p, 0, camera.name, kWidth, kHeight, nullptr, nullptr, seen.data()), RDM_OK);
     int moving = 0;
     for (const int32_t shape : seen) {
-      rdm_shape s{};
-      if (shape >= 0 && rdm_pool_shape(p, shape, &s) == RDM_OK) moving += !s.fixed;
+      rdm_shape_info s = RDM_INIT(rdm_shape_info);
+      if (shape >= 0 && rdm_pool_shape_at(p, shape, &s) == RDM_OK) moving += !s.fixed;
     }
     EXPECT_GT(moving, 0) << camera.name;
   }

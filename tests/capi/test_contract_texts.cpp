@@ -31,7 +31,7 @@ TEST(ContractTexts, OfAPool) {
   unsigned char byte = 0;
   const char* key = nullptr;
   int32_t count = 0;
-  rdm_shape shape;
+  rdm_shape_info shape = RDM_INIT(rdm_shape_info);
   rdm_field_info field = RDM_INIT(rdm_field_info);
   rdm_camera_info camera = RDM_INIT(rdm_camera_info);
   float number = 0;
@@ -51,7 +51,7 @@ TEST(ContractTexts, OfAPool) {
           {"get_state", [&] { return rdm_pool_write_state(p, 0, &byte, 1, &n); }},
           {"set_state", [&] { return rdm_pool_read_state(p, 0, &byte, 1); }},
           {"hash", [&] { return rdm_pool_get_hash(p, -2, nullptr); }},
-          {"shape", [&] { return rdm_pool_shape(p, 9999, &shape); }},
+          {"shape", [&] { return rdm_pool_shape_at(p, 9999, &shape); }},
           {"poses", [&] { return rdm_pool_poses(p, 2, &number); }},
           {"contacts", [&] { return rdm_pool_contacts(p, 0, nullptr, -1, &count); }},
           {"render", [&] { return rdm_pool_render(p, 0, "nowhere", 8, 8, nullptr, nullptr, nullptr); }},

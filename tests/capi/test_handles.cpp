@@ -119,7 +119,7 @@ const std::vector<Call> kPoolCalls = {
     CALL(rdm_pool_write_state(POOL, 0, g_bytes, sizeof g_bytes, &g_size)),
     CALL(rdm_pool_read_state(POOL, 0, g_bytes, 8)),
     CALL(rdm_pool_get_hash(POOL, 0, &g_hash)),
-    CALL(rdm_pool_shape(POOL, 0, plain<rdm_shape>())),
+    CALL(rdm_pool_shape_at(POOL, 0, sized<rdm_shape_info>())),
     CALL(rdm_pool_poses(POOL, 0, g_floats)),
     CALL(rdm_pool_contacts(POOL, 0, nullptr, 0, &g_number)),
     CALL(rdm_pool_render(POOL, 0, "front", 8, 8, nullptr, g_floats, nullptr)),

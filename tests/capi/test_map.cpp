@@ -81,8 +81,8 @@ TEST(Map, ScansOfATasksCamerasShowItsShapes) {
   info.struct_size = sizeof info;
   ASSERT_EQ(rdm_map_clear(map.m), RDM_OK);
   std::vector<int32_t> all;
-  rdm_shape s;
-  for (int32_t i = 0; rdm_pool_shape(p, i, &s) == RDM_OK; ++i) all.push_back(i);
+  rdm_shape_info s = RDM_INIT(rdm_shape_info);
+  for (int32_t i = 0; rdm_pool_shape_at(p, i, &s) == RDM_OK; ++i) all.push_back(i);
   ASSERT_EQ(rdm_map_scan(map.m, p, 0, "top", 80, 60, all.data(), static_cast<int32_t>(all.size()), nullptr),
             RDM_OK);
   ASSERT_EQ(rdm_map_get_info(map.m, &info), RDM_OK);

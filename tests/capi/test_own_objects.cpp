@@ -132,8 +132,8 @@ TEST(Objects, PoolsKeepWhatWasRemoved) {
   EXPECT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
   EXPECT_EQ(rdm_pool_step(p), RDM_OK);
   int shapes = 0;
-  rdm_shape s;
-  for (int32_t i = 0; rdm_pool_shape(p, i, &s) == RDM_OK; ++i)
+  rdm_shape_info s = RDM_INIT(rdm_shape_info);
+  for (int32_t i = 0; rdm_pool_shape_at(p, i, &s) == RDM_OK; ++i)
     shapes += std::strncmp(s.name, "object", 6) == 0;
   EXPECT_EQ(shapes, 6);
   rdm_pool_destroy(p);
@@ -278,11 +278,11 @@ TEST(Objects, StandInAScene) {
     EXPECT_NE(seen.texts[i].find(texts[i]), std::string::npos) << seen.texts[i];
   }
   std::vector<std::string> names;
-  rdm_shape s;
-  for (int32_t i = 0; rdm_pool_shape(p, i, &s) == RDM_OK; ++i) {
+  rdm_shape_info s = RDM_INIT(rdm_shape_info);
+  for (int32_t i = 0; rdm_pool_shape_at(p, i, &s) == RDM_OK; ++i) {
     names.emplace_back(s.name);
     if (names.back() == "ball") {
-      EXPECT_FLOAT_EQ(s.size[0], 0.0427f);  // twice as large
+      EXPECT_DOUBLE_EQ(s.size[0], 0.0427);  // twice as large
     }
   }
   EXPECT_EQ(names.size(), 14u);  // 12 of the mug, the ball, the ground

@@ -75,8 +75,8 @@ TEST(RecordedClouds, ColoursAreKept) {
   const rdm_sensors s = redman::sensors(pool);
   std::vector<uint8_t> shown(s.point_color, s.point_color + kEnvs * kPoints * 3);
   for (int32_t i = 0; i < kEnvs * kPoints; ++i) {
-    rdm_shape shape;
-    ASSERT_EQ(rdm_pool_shape(pool.get(), s.point_shape[i], &shape), RDM_OK);
+    rdm_shape_info shape = RDM_INIT(rdm_shape_info);
+    ASSERT_EQ(rdm_pool_shape_at(pool.get(), s.point_shape[i], &shape), RDM_OK);
     for (int k = 0; k < 3; ++k) ASSERT_EQ(s.point_color[3 * i + k], shape.color[k]) << "point " << i;
   }
   r.begin_step(pool);

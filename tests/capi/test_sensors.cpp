@@ -41,8 +41,8 @@ TEST(Sensors, TwoThousandPointsOfBothHandsAndTheObject) {
     for (int i = 0; i < 2048; ++i) {
       const float* at = s.points + 3 * (2048 * env + i);
       low = std::min(low, at[2]);
-      rdm_shape shape;
-      ASSERT_EQ(rdm_pool_shape(seeing.p, s.point_shape[2048 * env + i], &shape), RDM_OK);
+      rdm_shape_info shape = RDM_INIT(rdm_shape_info);
+      ASSERT_EQ(rdm_pool_shape_at(seeing.p, s.point_shape[2048 * env + i], &shape), RDM_OK);
       EXPECT_NE(std::string(shape.name), "ground");
       bodies.insert(std::string(shape.name).substr(0, 5));
     }

@@ -38,8 +38,8 @@ rdm_pool* make_pool(const char* engine, int32_t envs) {
 }
 
 int32_t shape_named(const rdm_pool* p, const std::string& name) {
-  rdm_shape s;
-  for (int32_t i = 0; rdm_pool_shape(p, i, &s) == RDM_OK; ++i)
+  rdm_shape_info s = RDM_INIT(rdm_shape_info);
+  for (int32_t i = 0; rdm_pool_shape_at(p, i, &s) == RDM_OK; ++i)
     if (name == s.name) return i;
   ADD_FAILURE() << "no shape " << name;
   return 0;
@@ -131,8 +131,8 @@ TEST_P(Hostile, EveryShapeTakesAPushOrRefusesIt) {
   rdm_pool* pool = make_pool(GetParam(), 1);
   const float force[3] = {0, 0, 1000};
   const int32_t base = shape_named(pool, "right_forearm"), ground = shape_named(pool, "ground");
-  rdm_shape s;
-  for (int32_t i = 0; rdm_pool_shape(pool, i, &s) == RDM_OK; ++i) {
+  rdm_shape_info s = RDM_INIT(rdm_shape_info);
+  for (int32_t i = 0; rdm_pool_shape_at(pool, i, &s) == RDM_OK; ++i) {
     const bool rests = i == base || i == ground || i == shape_named(pool, "left_forearm");
     EXPECT_EQ(rdm_pool_push(pool, 0, i, force), rests ? RDM_ERROR_ARGUMENT : RDM_OK) << s.name;
   }

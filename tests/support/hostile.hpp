@@ -166,9 +166,9 @@ class Trial {
   }
 
   void find_shapes() {
-    rdm_shape s;
+    rdm_shape_info s = RDM_INIT(rdm_shape_info);
     for (int32_t i = 0; i < spec_.num_shapes; ++i) {
-      rdm_pool_shape(pool_, i, &s);
+      rdm_pool_shape_at(pool_, i, &s);
       const std::string name = s.name;
       if (name == "object") object_shape_ = i;
       const float nothing[3] = {};

@@ -13,13 +13,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ._abi import (Autoreset, BaselineKind, Build, Joint, MapInfo, Object, OptionKind, PolicyInfo, PoolStats,
-                   ResultCode, Shape, ShapeKind, Spec, Status)
+                   ResultCode, ShapeKind, Spec, Status)
 from ._actor import Actor
 from ._agent import Agent, CostLimits, Epoch
 from ._callbacks import c_function
 from ._curve import Curve, Curves, curve
-from ._discovery import (Algo, Camera, Cost, Field, Option, Robot, Task, algo, algos, build, objects, robots, task,
-                         tasks)
+from ._discovery import (Algo, Camera, Cost, Field, Option, Robot, Shape, Task, algo, algos, build, objects, robots,
+                         task, tasks)
 from ._error import (AllocationError, ArgumentError, CancelledError, Error, FileError, FormatError, InternalError,
                      MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError, UsageError,
                      VersionError)

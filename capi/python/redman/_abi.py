@@ -77,7 +77,7 @@ class OptionKind(enum.IntEnum):
 
 
 class ShapeKind(enum.IntEnum):
-    """of rdm_shape"""
+    """of rdm_shape_info"""
 
     SPHERE = 0
     CAPSULE = 1
@@ -177,7 +177,7 @@ class ScenePart(enum.IntEnum):
     BODY = 1
     LINK = 2  # of all robots, robot by robot; joint i moves link i
     JOINT = 3
-    SHAPE = 4  # as rdm_pool_shape: robots, bodies, those that stand still
+    SHAPE = 4  # as rdm_pool_shape_at: robots, bodies, those that stand still
     SENSOR = 5  # the link of a fingertip, for rdm_world_get_sensor
     MATERIAL = 6  # "default" is 0
 
@@ -480,7 +480,7 @@ class Spec(Record):
     max_steps: int  # control steps of an episode
     layout_hash: int  # of field names, counts and action order: policies carry it
     num_fields: int  # for rdm_pool_field_at
-    num_shapes: int  # for rdm_pool_shape
+    num_shapes: int  # for rdm_pool_shape_at
     num_joints: int  # of all robots
     task: int  # index for rdm_task_at and its like
     action_repeat: int  # control steps in one rdm_pool_step: option action_repeat
@@ -495,7 +495,7 @@ class rdm_spec(Structure):
     max_steps: control steps of an episode
     layout_hash: of field names, counts and action order: policies carry it
     num_fields: for rdm_pool_field_at
-    num_shapes: for rdm_pool_shape
+    num_shapes: for rdm_pool_shape_at
     num_joints: of all robots
     task: index for rdm_task_at and its like
     action_repeat: control steps in one rdm_pool_step: option action_repeat
@@ -944,43 +944,46 @@ class rdm_buffers(Structure):
     ]
 
 
-class Shape(Record):
-    """The values of rdm_shape."""
+class ShapeInfo(Record):
+    """The values of rdm_shape_info."""
 
+    kind: int  # RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below z = 0 of its frame
+    fixed: int  # flag: never moves
+    color: tuple[int, ...]  # red, green, blue, 255
     name: str  # "right.ff_distal"
     size: tuple[float, ...]  # m: radius | radius, half length along z | half sizes (hull: of its box)
-    kind: int  # RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below z = 0 of its frame
-    color: tuple[int, ...]  # red, green, blue, 255
-    fixed: int  # flag: never moves
 
 
-class rdm_shape(Structure):
-    """name: "right.ff_distal"
-    size: m: radius | radius, half length along z | half sizes (hull: of its box)
+class rdm_shape_info(Structure):
+    """struct_size: in: bytes
     kind: RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below z = 0 of its frame
-    color: red, green, blue, 255
     fixed: flag: never moves
+    color: red, green, blue, 255
+    name: "right.ff_distal"
+    size: m: radius | radius, half length along z | half sizes (hull: of its box)
     """
 
+    struct_size: int
+    kind: int
+    fixed: int
+    color: Any
     name: bytes | None
     size: Any
-    kind: int
-    color: Any
-    fixed: int
     _fields_ = [
-        ("name", c_char_p),
-        ("size", c_float * 3),
+        ("struct_size", c_uint32),
         ("kind", c_int32),
-        ("color", c_uint8 * 4),
         ("fixed", c_int32),
+        ("color", c_uint8 * 4),
+        ("name", c_char_p),
+        ("size", c_double * 3),
     ]
 
 
 class Contact(Record):
     """The values of rdm_contact."""
 
-    shape_a: int  # for rdm_pool_shape
-    shape_b: int  # for rdm_pool_shape
+    shape_a: int  # for rdm_pool_shape_at
+    shape_b: int  # for rdm_pool_shape_at
     position: tuple[float, ...]  # m
     normal: tuple[float, ...]  # unit, from b into a
     force: tuple[float, ...]  # N, on a
@@ -988,8 +991,8 @@ class Contact(Record):
 
 
 class rdm_contact(Structure):
-    """shape_a: for rdm_pool_shape
-    shape_b: for rdm_pool_shape
+    """shape_a: for rdm_pool_shape_at
+    shape_b: for rdm_pool_shape_at
     position: m
     normal: unit, from b into a
     force: N, on a
@@ -1394,7 +1397,7 @@ class rdm_sensors(Structure):
     reserved: 0
     rgb: [num_envs][num_cameras][height][width][3]
     depth: [num_envs][num_cameras][height][width], m along the optical axis, 0: nothing
-    segmentation: [num_envs][num_cameras][height][width], shape of rdm_pool_shape, -1: nothing
+    segmentation: [num_envs][num_cameras][height][width], shape of rdm_pool_shape_at, -1: nothing
     points: [num_envs][num_points][3], world, m; planes are left out
     point_shape: [num_envs][num_points], -1: nothing was seen
     point_count: [num_envs] points that differ; the rest repeats them in turn, up to those of option
@@ -2269,7 +2272,7 @@ class RobotShape(Record):
     name: str  # unique
     link: int  # row, RDM_LINK_ROOT
     kind: int  # RDM_SHAPE_SPHERE, RDM_SHAPE_CAPSULE, RDM_SHAPE_BOX, RDM_SHAPE_CYLINDER, RDM_SHAPE_ELLIPSOID
-    size: tuple[float, ...]  # as rdm_shape, m
+    size: tuple[float, ...]  # as rdm_shape_info, m
     p: tuple[float, ...]  # position in the link's frame, m
     q: tuple[float, ...]  # rotation, unit
     color: tuple[int, ...]  # red, green, blue, 255
@@ -2281,7 +2284,7 @@ class rdm_robot_shape(Structure):
     name: unique
     link: row, RDM_LINK_ROOT
     kind: RDM_SHAPE_SPHERE, RDM_SHAPE_CAPSULE, RDM_SHAPE_BOX, RDM_SHAPE_CYLINDER, RDM_SHAPE_ELLIPSOID
-    size: as rdm_shape, m
+    size: as rdm_shape_info, m
     p: position in the link's frame, m
     q: rotation, unit
     color: red, green, blue, 255
@@ -2568,7 +2571,7 @@ class rdm_shape_def(Structure):
     points: [num_points][3] of an RDM_SHAPE_HULL: 4 to 32 points, m; else NULL
     num_points: count
     kind: RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; an RDM_SHAPE_PLANE stands still
-    size: as rdm_shape, m; of a hull unused
+    size: as rdm_shape_info, m; of a hull unused
     p: position in the frame of the body, or in the world, m
     q: rotation; all 0: none
     color: red, green, blue, 255; all 0: grey
@@ -3196,7 +3199,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_object": rdm_object,
     "rdm_pool_config": rdm_pool_config,
     "rdm_buffers": rdm_buffers,
-    "rdm_shape": rdm_shape,
+    "rdm_shape_info": rdm_shape_info,
     "rdm_contact": rdm_contact,
     "rdm_pool_stats": rdm_pool_stats,
     "rdm_algo": rdm_algo,
@@ -3644,8 +3647,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "env": c_int32, "hash": c_void_p},
         {}, False,
         """of the state; -1: all"""),
-    "rdm_pool_shape": Function(
-        c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_shape)},
+    "rdm_pool_shape_at": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "io": POINTER(rdm_shape_info)},
         {}, False,
         """i < num_shapes"""),
     "rdm_pool_poses": Function(

@@ -51,6 +51,10 @@ class Camera(_abi.CameraInfo):
     its centre, cy of its height below it."""
 
 
+class Shape(_abi.ShapeInfo):
+    """A part of what the scene is made of; kind is a redman.ShapeKind."""
+
+
 def fields_of(owner: int, count: int, call: Callable[..., int]) -> dict[str, Field]:
     """All fields of a task or a pool by name."""
     return _records(Field, _abi.rdm_field_info, call, count, owner)

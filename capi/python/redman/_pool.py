@@ -384,13 +384,13 @@ class Pool(Hinted):
         return _png.row(pictures)
 
     @property
-    def shapes(self) -> list[_abi.Shape]:
+    def shapes(self) -> list[_discovery.Shape]:
         """What the scene is made of, the same for all worlds; kind is a redman.ShapeKind."""
         return list(self._shapes)
 
     @cached_property
-    def _shapes(self) -> list[_abi.Shape]:
-        return [_abi.Shape(filled(_abi.rdm_shape, lib.rdm_pool_shape, self._open(), i))
+    def _shapes(self) -> list[_discovery.Shape]:
+        return [_discovery.Shape(filled(_abi.rdm_shape_info, lib.rdm_pool_shape_at, self._open(), i))
                 for i in range(self.spec.num_shapes)]
 
     def _open(self) -> int:

@@ -100,8 +100,8 @@ bool find_base(const redman::Pool& pool, int32_t robot, const std::string& prefi
     std::copy_n(own.p, 3, local);
     std::copy_n(own.q, 4, local + 3);
     for (int32_t k = 0; k < count; ++k) {
-      rdm_shape shape;
-      redman::check(rdm_pool_shape(pool.get(), k, &shape));
+      rdm_shape_info shape = RDM_INIT(rdm_shape_info);
+      redman::check(rdm_pool_shape_at(pool.get(), k, &shape));
       if (prefix + own.name != shape.name) continue;
       *out = place_from(&poses[7 * static_cast<size_t>(k)]) * inverse(place_from(local));
       return true;

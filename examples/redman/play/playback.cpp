@@ -12,12 +12,12 @@ namespace tool {
 namespace {
 
 Body body_at(const redman::Pool& pool, int32_t index) {
-  rdm_shape shape;
-  redman::check(rdm_pool_shape(pool.get(), index, &shape));
+  rdm_shape_info shape = RDM_INIT(rdm_shape_info);
+  redman::check(rdm_pool_shape_at(pool.get(), index, &shape));
   Body body;
   body.name = shape.name;
   body.kind = shape.kind;
-  std::copy_n(shape.size, 3, body.size);
+  for (int k = 0; k < 3; ++k) body.size[k] = static_cast<float>(shape.size[k]);
   std::copy_n(shape.color, 3, body.color);
   if (shape.kind != RDM_SHAPE_HULL) return body;
   int32_t count = 0;

@@ -9,7 +9,7 @@ namespace tool {
 struct Body {
   std::string name;            // "right.ff_distal"
   int32_t kind = 0;            // RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL
-  float size[3] = {};          // as in rdm_shape
+  float size[3] = {};          // as in rdm_shape_info
   uint8_t color[3] = {};       // red, green, blue
   std::vector<float> corners;  // [n][3] of a hull, own frame, m
 };
