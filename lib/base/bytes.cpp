@@ -72,17 +72,6 @@ void Reader::bad(const char* why) const {
   fail(Code::kFormat, "%s: %s", what_, why);
 }
 
-void Reader::bytes(void* dst, size_t n) {
-  const unsigned char* p = view(n);
-  if (n) std::memcpy(dst, p, n);
-}
-
-const unsigned char* Reader::view(size_t n) {
-  if (n > end_ - at_) bad("truncated");
-  at_ += n;
-  return data_ + at_ - n;
-}
-
 void Reader::text(char* dst, size_t capacity) {
   const auto n = value<uint32_t>();
   if (n >= capacity) bad("a text is too long");

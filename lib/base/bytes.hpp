@@ -8,6 +8,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "base/hash.hpp"
+
 namespace rdm {
 
 // CRC-32, as of zip; `crc` is that of what came before (crc.cpp).
@@ -19,9 +21,14 @@ class Writer {
  public:
   Writer(void* data, size_t capacity)
       : data_(static_cast<unsigned char*>(data)), capacity_(data ? capacity : 0) {}
+  // Keeps nothing: the bytes go on with *hash (base/hash.hpp). No files and sections.
+  explicit Writer(uint64_t* hash) : data_(nullptr), capacity_(0), hash_(hash) {}
 
   void bytes(const void* src, size_t n) {
-    if (n && at_ + n <= capacity_) std::memcpy(data_ + at_, src, n);
+    if (n && at_ + n <= capacity_)
+      std::memcpy(data_ + at_, src, n);
+    else if (hash_)
+      *hash_ = hash_bytes(src, n, *hash_);
     at_ += n;
   }
   template <class T>
@@ -38,7 +45,7 @@ class Writer {
 
   size_t size() const { return at_; }
   bool fits() const { return at_ <= capacity_; }
-  bool counts() const { return !data_; }  // and writes nothing
+  bool counts() const { return !data_ && !hash_; }  // and writes nothing
 
  private:
   static constexpr int kDepth = 8;
@@ -47,6 +54,7 @@ class Writer {
   size_t pop();
   unsigned char* data_;
   size_t capacity_, at_ = 0;
+  uint64_t* hash_ = nullptr;
   size_t open_[kDepth] = {};  // where the files and sections that are not ended began
   int depth_ = 0;
 };
@@ -61,8 +69,15 @@ class Reader {
   Reader(const void* data, size_t size, const char* what)
       : data_(static_cast<const unsigned char*>(data)), size_(size), what_(what) {}
 
-  void bytes(void* dst, size_t n);
-  const unsigned char* view(size_t n);  // n bytes in place
+  void bytes(void* dst, size_t n) {
+    const unsigned char* p = view(n);
+    if (n) std::memcpy(dst, p, n);
+  }
+  const unsigned char* view(size_t n) {  // n bytes in place
+    if (n > end_ - at_) bad("truncated");
+    at_ += n;
+    return data_ + at_ - n;
+  }
   template <class T>
   T value() {
     static_assert(std::is_trivially_copyable_v<T>);

@@ -61,6 +61,8 @@ Pool::Impl::Carved Pool::Impl::carve_rows(const ResolvedPoolConfig& plan, Arena&
   c.slots = arena.make<Slot>(n);
   c.blocks = arena.make<Block>(blocks);
   if (plan.info->source) c.task_errors = arena.make<char>(n * kErrorTextSize);
+  c.tried_state = arena.make<unsigned char>(plan.task->state_bytes());
+  c.tried.carve(arena, plan.disturbance, *plan.task);
   for (size_t i = 0; i < blocks; ++i) {
     float* action = arena.make<float>(actions);
     const SenseScratch sense =
@@ -92,6 +94,8 @@ void Pool::Impl::build() {
   slots = carved.slots;
   blocks = carved.blocks;
   task_errors = carved.task_errors;
+  tried_state = carved.tried_state;
+  tried = carved.tried;
   for (int32_t b = 0; b < num_blocks(); ++b) {
     World* partner = nullptr;  // the worlds of a block step one after the other
     for (int32_t i = block_begin(b); i < block_begin(b + 1); ++i) {

@@ -89,6 +89,8 @@ struct Pool::Impl : ResolvedPoolConfig {
     Slot* slots = nullptr;
     Block* blocks = nullptr;
     char* task_errors = nullptr;
+    unsigned char* tried_state = nullptr;
+    WorldDisturbance tried;
   };
   static Carved carve_rows(const ResolvedPoolConfig& plan, Arena& arena);
   static size_t arena_bytes(const ResolvedPoolConfig& plan);
@@ -135,10 +137,12 @@ struct Pool::Impl : ResolvedPoolConfig {
   // it returns; then the worlds can be read.
   int32_t open_state(Reader& in, int32_t worlds, int32_t other = 0, uint32_t* version = nullptr) const;
   void write_world(int32_t env, Writer& out) const;
-  // keep_streams: those of the disturbances stay the world's own.
+  // Reads a world's record without taking any of it: the phase of its episode. Error(kFormat) for what no
+  // world of this pool can have.
+  Phase check_world(Reader& in);
+  // Of a record that check_world has passed. keep_streams: those of the disturbances stay the world's own.
   void read_world(int32_t env, Reader& in, bool keep_streams = false);
   void copy_world(int32_t env, const Impl& from, int32_t source);
-  void check_world(int32_t env) const;  // Error(kFormat) when what was read makes no sense
 
   int32_t rank = 0, ranks = 1;
   float* obs(int32_t env) const { return buffers.obs + env * static_cast<ptrdiff_t>(obs_dim); }
@@ -151,10 +155,12 @@ struct Pool::Impl : ResolvedPoolConfig {
   Arena arena;
   Buffers buffers;
   SenseBuffers sensed;
-  Slot* slots = nullptr;              // [num_envs]
-  Block* blocks = nullptr;            // [num_blocks]
-  char* task_errors = nullptr;        // [num_envs][kErrorTextSize] of a host's task; null for other ones
-  unsigned char* pristine = nullptr;  // a world's state before anything happened: what a reset starts from
+  Slot* slots = nullptr;                 // [num_envs]
+  Block* blocks = nullptr;               // [num_blocks]
+  char* task_errors = nullptr;           // [num_envs][kErrorTextSize] of a host's task; null for other ones
+  unsigned char* tried_state = nullptr;  // [state_bytes] of a record that is looked at
+  WorldDisturbance tried;                // likewise
+  unsigned char* pristine = nullptr;     // a world's state before anything happened: what a reset starts from
   size_t pristine_size = 0;
   Starts starts;
   uint64_t layout = 0;     // layout_hash of the task

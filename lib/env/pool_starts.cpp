@@ -24,38 +24,22 @@ void Pool::set_starts(const unsigned char* states, size_t state_bytes, int64_t c
   }
   Starts next;
   next.count = count, next.mark = mark, next.share = share;
-  Writer need(nullptr, 0);
-  m.write_world(0, need);
-  Vector<unsigned char> backup(need.size());
-  Writer keep(backup.data(), backup.size());
-  m.write_world(0, keep);
-  const auto restore = [&] {
-    Reader old(backup.data(), backup.size(), "state");
-    m.read_world(0, old);
-  };
   int64_t i = 0;
   try {
     for (; i < count; ++i) {
       Reader in(states + static_cast<size_t>(i) * state_bytes, state_bytes, "state");
       m.open_state(in, 1);
       const size_t size = in.left();
-      if (i == 0) next.record_bytes = size, next.records.reserve(static_cast<size_t>(count) * size);
-      if (size != next.record_bytes) fail(Code::kFormat, "state: its record has another length");
       const unsigned char* record = in.view(size);
       Reader world(record, size, "state");
-      m.read_world(0, world);
-      m.check_world(0);
-      if (m.slots[0].episode.phase != Phase::kRunning) fail(Code::kFormat, "state: of no running episode");
+      if (m.check_world(world) != Phase::kRunning) fail(Code::kFormat, "state: of no running episode");
+      world.expect_end();
+      if (i == 0) next.record_bytes = size, next.records.reserve(static_cast<size_t>(count) * size);
       next.records.insert(next.records.end(), record, record + size);
     }
   } catch (const Error& e) {
-    restore();
     fail(e.code, "state %lld of the recording: %s", static_cast<long long>(i), e.text);
-  } catch (...) {
-    restore();
-    throw;
   }
-  restore();
   m.starts = std::move(next);
 }
 

@@ -83,9 +83,7 @@ void check_episode(const Episode& e, int32_t costs, int32_t max_steps) {
 
 void Pool::Impl::write_world(int32_t env, Writer& out) const {
   const Slot& s = slots[env];
-  Writer count(nullptr, 0);
-  s.world->save(count);
-  out.value(static_cast<uint64_t>(count.size()));
+  out.value(static_cast<uint64_t>(pristine_size));
   s.world->save(out);
   out.bytes(s.task_state, task->state_bytes());
   write_episode(s.episode, cost_dim, out);
@@ -95,31 +93,35 @@ void Pool::Impl::write_world(int32_t env, Writer& out) const {
 
 void Pool::Impl::read_world(int32_t env, Reader& in, bool keep_streams) {
   Slot& s = slots[env];
-  const auto size = in.value<uint64_t>();
-  if (size > in.left()) fail(Code::kFormat, "state: truncated");
-  const auto left = static_cast<size_t>(in.left() - size);
-  s.world->load(in);
-  if (in.left() != left) fail(Code::kFormat, "state: a world's record has another length");
+  in.view(sizeof(uint64_t));
+  s.world->take(in);
   in.bytes(s.task_state, task->state_bytes());
   read_episode(in, cost_dim, &s.episode);
   in.bytes(obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
   if (disturbance.any()) s.disturbance.read(in, keep_streams);
 }
 
-// The world's own part is checked by its load.
-void Pool::Impl::check_world(int32_t env) const {
-  const Slot& s = slots[env];
-  check_episode(s.episode, cost_dim, task->max_steps());
-  // of a world that is not running, the next reset zeroes the struct before anything reads it
-  if (s.episode.phase == Phase::kRunning) {
-    task->check_state(s.task_state);
-    if (disturbance.any()) s.disturbance.check(disturbance);
-  }
-  const float* row = obs(env);
-  for (int32_t i = 0; i < obs_dim; ++i)
-    if (!std::isfinite(row[i]) || std::abs(row[i]) > obs_limit)
+Phase Pool::Impl::check_world(Reader& in) {
+  if (in.value<uint64_t>() != pristine_size || in.left() < pristine_size)
+    fail(Code::kFormat, "state: a world's record has another length");
+  slots[0].world->check(in);
+  in.bytes(tried_state, task->state_bytes());
+  Episode e{};
+  read_episode(in, cost_dim, &e);
+  check_episode(e, cost_dim, task->max_steps());
+  for (int32_t i = 0; i < obs_dim; ++i) {
+    const auto x = in.value<float>();
+    if (!std::isfinite(x) || std::abs(x) > obs_limit)
       fail(Code::kFormat, "state: observation %d is not finite, or beyond %g", i,
            static_cast<double>(obs_limit));
+  }
+  if (disturbance.any()) tried.read(in);
+  // of a world that is not running, the next reset zeroes the struct before anything reads it
+  if (e.phase == Phase::kRunning) {
+    task->check_state(tried_state);
+    if (disturbance.any()) tried.check(disturbance);
+  }
+  return e.phase;
 }
 
 size_t Pool::state_size(int32_t env) const {
@@ -180,7 +182,6 @@ int32_t Pool::Impl::open_state(Reader& in, int32_t worlds, int32_t other, uint32
 void Pool::set_state(int32_t env, const void* bytes, size_t size) {
   const FpMode mode;
   Impl& m = *impl_;
-  const HostScope scope(m.config.hooks);
   const Range range = range_of(env, m.config.num_envs);
   Reader in(bytes, size, "state");
   const int32_t own = range.count(), all = env < 0 ? own * m.ranks : own;
@@ -213,26 +214,15 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
     flags.view(sizeof(uint32_t) * static_cast<size_t>(before));
   }
 
-  // a record that turns out bad half-way must leave no trace
-  Writer need(nullptr, 0);
-  for (int32_t i = range.begin; i < range.end; ++i) m.write_world(i, need);
-  Vector<unsigned char> backup(need.size());
-  Writer keep(backup.data(), backup.size());
-  for (int32_t i = range.begin; i < range.end; ++i) m.write_world(i, keep);
-  int32_t at = range.begin;
-  try {
-    for (int32_t i = 0; i < before; ++i) m.read_world(at, in);  // of other ranks
-    for (; at < range.end; ++at) {
-      m.read_world(at, in);
-      m.check_world(at);
-    }
-    if (held == own) in.expect_end();
-  } catch (...) {
-    Reader old(backup.data(), backup.size(), "state");
-    for (int32_t i = range.begin; i < range.end && i <= at; ++i) m.read_world(i, old);
-    throw;
+  // a record that is bad must leave no trace
+  Reader look = in;
+  for (int32_t i = 0; i < before + own; ++i) {
+    m.check_world(look);
+    if (i < before) in = look;  // of other ranks
   }
+  if (held == own) look.expect_end();
   for (int32_t i = range.begin; i < range.end; ++i) {
+    m.read_world(i, in);
     m.slots[i].status = flagged ? flags.value<uint32_t>() : 0;
     m.clear_rows(i);
     // the flags of an ended world that waits for its reset belong to its state; all else is of a step
@@ -354,18 +344,10 @@ void Pool::copy(int32_t env, const Pool& from, int32_t source) {
 uint64_t Pool::hash(int32_t env) const {
   const FpMode mode;
   const Impl& m = *impl_;
-  const HostScope scope(m.config.hooks);
   const Range range = range_of(env, m.config.num_envs);
-  Vector<unsigned char> record;
   uint64_t hash = kHashSeed;
-  for (int32_t i = range.begin; i < range.end; ++i) {
-    Writer count(nullptr, 0);
-    m.write_world(i, count);
-    record.resize(count.size());
-    Writer out(record.data(), record.size());
-    m.write_world(i, out);
-    hash = hash_bytes(record.data(), record.size(), hash);
-  }
+  Writer out(&hash);
+  for (int32_t i = range.begin; i < range.end; ++i) m.write_world(i, out);
   return hash;
 }
 

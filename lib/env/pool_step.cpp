@@ -125,7 +125,7 @@ Code Pool::Impl::begin_episode(int32_t env) {
   // from the state that a new world has: nothing of the last episode is left in the engine
   const auto renew = [&] {
     Reader in(pristine, pristine_size, "pristine world");
-    s.world->load(in);
+    s.world->take(in);
     std::memset(s.task_state, 0, task->state_bytes());
   };
   renew();

@@ -33,11 +33,13 @@ void KinematicWorld::save(Writer& out) const {
   out.bytes(bodies_, sizeof(Motion) * static_cast<size_t>(scene_->num_bodies));
 }
 
-void KinematicWorld::load(Reader& in) {
-  Reader check = in;
+void KinematicWorld::check(Reader& in) const {
   for (int32_t i = 0; i < scene_->num_bodies; ++i)
-    if (!sound(check.value<Motion>()))
+    if (!sound(in.value<Motion>()))
       fail(Code::kFormat, "world state: the motion of body %d is not finite or out of range", i);
+}
+
+void KinematicWorld::take(Reader& in) {
   in.bytes(bodies_, sizeof(Motion) * static_cast<size_t>(scene_->num_bodies));
 }
 

@@ -23,7 +23,8 @@ class KinematicWorld final : public World {
   double body_overlap(int32_t) override { return 0; }
   double joint_drift() const override { return 0; }
   void save(Writer& out) const override;
-  void load(Reader& in) override;
+  void check(Reader& in) const override;
+  void take(Reader& in) override;
   void copy(const World& other) override { copy_rows(other); }
 
  private:

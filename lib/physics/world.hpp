@@ -150,10 +150,19 @@ class World {
   virtual double solver_residual() const { return std::numeric_limits<double>::quiet_NaN(); }
 
   // The whole state, exact to the bit: a world that loads it goes on as the one that saved it. Torques,
-  // sensors and status are in it; contacts are not (none after load), nor are pushes not yet acted on.
-  // load: Error(kFormat) where a number is not finite or out of its range; the world then stays as it was.
+  // sensors and status are in it; contacts are not (none after load), nor are pushes not yet acted on. Its
+  // size is the scene's.
   virtual void save(Writer& out) const = 0;
-  virtual void load(Reader& in) = 0;
+  // Reads a state without taking any of it. Error(kFormat) where a number is not finite or out of its range.
+  virtual void check(Reader& in) const = 0;
+  // Of bytes that check has passed, or that a world of the same scene saved.
+  virtual void take(Reader& in) = 0;
+  // Both; where check fails the world stays as it was.
+  void load(Reader& in) {
+    Reader look = in;
+    check(look);
+    take(in);
+  }
   // What load(save(other)) does, as plain memory: `other` is a world of the same engine and of an equal
   // scene.
   virtual void copy(const World& other) = 0;

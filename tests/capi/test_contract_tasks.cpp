@@ -138,7 +138,7 @@ TEST_P(ContractTasks, SeedsAndWorldsDiffer) {
   rdm_pool_destroy(other);
 }
 
-TEST_P(ContractTasks, MemoryIsExactAndStepsTakeNone) {
+TEST_P(ContractTasks, MemoryIsExactAndStepsAndStatesTakeNone) {
   CountingHost host;
   rdm_pool_config c = config();
   c.host = &host.hooks;
@@ -148,12 +148,20 @@ TEST_P(ContractTasks, MemoryIsExactAndStepsTakeNone) {
   rdm_pool* p = started(c);
   EXPECT_EQ(host.live, ours);
   play(p, 2);
+  size_t size = 0;
+  ASSERT_EQ(rdm_pool_state_size(p, -1, &size), RDM_OK);
+  std::vector<unsigned char> state(size);
   const int64_t before = heap_count();
   const size_t calls = host.calls;
   for (int i = 0; i < 300; ++i) {
     rdm_pool_baseline(p, RDM_BASELINE_RANDOM);
     rdm_pool_step(p);
   }
+  ASSERT_EQ(rdm_pool_write_state(p, -1, state.data(), size, &size), RDM_OK);
+  const uint64_t hash = hash_of(p);
+  rdm_pool_step(p);
+  ASSERT_EQ(rdm_pool_read_state(p, -1, state.data(), size), RDM_OK) << rdm_pool_error(p);
+  EXPECT_EQ(hash_of(p), hash);
   EXPECT_EQ(host.calls, calls);
   EXPECT_EQ(heap_count(), before);  // always 0 where the heap is not counted
   rdm_pool_destroy(p);

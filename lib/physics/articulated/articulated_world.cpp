@@ -378,8 +378,7 @@ bool same_motion(const Motion& a, const Motion& b) {
 
 }  // namespace
 
-// Reads a whole state without taking any of it. Error(kFormat) for one this world could not go on from.
-void ArticulatedWorld::check_state(Reader in) const {
+void ArticulatedWorld::check(Reader& in) const {
   const SolverDef& solver = scene_->def.solver;
   if (in.value<int32_t>() != tag()) fail(Code::kFormat, "world state: it is of another engine");
   if (in.value<int32_t>() != scene_->num_links || in.value<int32_t>() != scene_->num_bodies)
@@ -451,8 +450,7 @@ void ArticulatedWorld::save(Writer& out) const {
   save_extras(out);
 }
 
-void ArticulatedWorld::load(Reader& in) {
-  check_state(in);
+void ArticulatedWorld::take(Reader& in) {
   in.view(3 * sizeof(int32_t));
   status_ = in.value<uint32_t>();
   const auto links = static_cast<size_t>(scene_->num_links), bodies = static_cast<size_t>(scene_->num_bodies),

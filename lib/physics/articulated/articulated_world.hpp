@@ -57,7 +57,8 @@ class ArticulatedWorld final : public World {
   double joint_drift() const override { return 0; }
   double solver_residual() const override { return state_.residual; }
   void save(Writer& out) const override;
-  void load(Reader& in) override;
+  void check(Reader& in) const override;
+  void take(Reader& in) override;
   void copy(const World& other) override;
 
  private:
@@ -75,7 +76,6 @@ class ArticulatedWorld final : public World {
   void carve_sleep(Arena& arena);
   bool sleep_sound(Reader& in, Reader bodies) const;
   int32_t tag() const;
-  void check_state(Reader in) const;
   void end_step();
   void clear_pushes();
   void recover();

@@ -512,8 +512,7 @@ void OdeWorld::save(Writer& out) const {
   save_extras(out);
 }
 
-// Reads a whole state without taking any of it. Error(kFormat) for one that no step leads to.
-void OdeWorld::check_state(Reader in) const {
+void OdeWorld::check(Reader& in) const {
   if (in.value<int32_t>() != scene_->num_links || in.value<int32_t>() != scene_->num_bodies)
     fail(Code::kFormat, "world state: it is of another scene");
   bool good = sound_rows(in, *scene_);
@@ -532,8 +531,7 @@ bool OdeWorld::sound_body(const BodyState& state) {
   return sound({{state.p, state.q}, state.v, state.w});
 }
 
-void OdeWorld::load(Reader& in) {
-  check_state(in);
+void OdeWorld::take(Reader& in) {
   const OdeScope scope;
   in.view(2 * sizeof(int32_t));
   status_ = in.value<uint32_t>();

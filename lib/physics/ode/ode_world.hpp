@@ -33,7 +33,8 @@ class OdeWorld final : public World {
   double body_overlap(int32_t body) override;
   double joint_drift() const override;
   void save(Writer& out) const override;
-  void load(Reader& in) override;
+  void check(Reader& in) const override;
+  void take(Reader& in) override;
   void copy(const World& other) override;
 
  private:
@@ -79,7 +80,6 @@ class OdeWorld final : public World {
   void restart_solver();
   struct BodyState;
   static bool sound_body(const BodyState& state);
-  void check_state(Reader in) const;
   void save_body(Writer& out, dBodyID body) const;
   void load_body(Reader& in, dBodyID body);
   void read_body(int32_t i);
