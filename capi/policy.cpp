@@ -9,8 +9,7 @@ using namespace rdm;
 using namespace rdm::capi;
 
 namespace {
-void make(rdm_policy** out, const void* bytes, size_t size) {
-  const HostHooks hooks = host();
+void make(rdm_policy** out, const void* bytes, size_t size, const HostHooks& hooks) {
   rdm_policy* p = host_new<rdm_policy>(hooks);
   p->hooks = hooks;
   try {
@@ -20,6 +19,28 @@ void make(rdm_policy** out, const void* bytes, size_t size) {
     throw;
   }
   *out = p;
+}
+
+// Hooks that cut blocks from a caller's memory, one after the other, and take none back. What `user` points to is needed
+// while blocks are cut alone.
+struct Given {
+  unsigned char* at;
+  size_t left;
+};
+void* cut(void* user, size_t bytes, size_t align) {
+  auto* given = static_cast<Given*>(user);
+  const size_t gap = (align - reinterpret_cast<uintptr_t>(given->at) % align) % align;
+  if (bytes > given->left || gap > given->left - bytes) return nullptr;
+  unsigned char* block = given->at + gap;
+  given->at = block + bytes, given->left -= gap + bytes;
+  return block;
+}
+void keep(void*, void*, size_t, size_t) {}
+
+// Of the handle, then what Policy::read takes, at any address.
+size_t memory_of(const void* bytes, size_t size) {
+  constexpr size_t kHandle = (sizeof(rdm_policy) + Arena::kAlign - 1) / Arena::kAlign * Arena::kAlign;
+  return kHandle + Policy::memory(bytes, size) + Arena::kAlign - 1;
 }
 
 const char* activation_name(Activation a) {
@@ -152,7 +173,30 @@ rdm_result rdm_policy_read(rdm_policy** out, const void* bytes, size_t size) {
   return call([&] {
     need(out, "out");
     need(bytes, "bytes");
-    make(out, bytes, size);
+    make(out, bytes, size, host());
+  });
+}
+
+rdm_result rdm_policy_read_memory(const void* bytes, size_t size, size_t* memory) {
+  return call([&] {
+    need(bytes, "bytes");
+    need(memory, "memory");
+    *memory = memory_of(bytes, size);
+  });
+}
+
+rdm_result rdm_policy_read_in(rdm_policy** out, const void* bytes, size_t size, void* memory,
+                              size_t capacity) {
+  return call([&] {
+    need(out, "out");
+    need(bytes, "bytes");
+    need(memory, "memory");
+    const size_t needed = memory_of(bytes, size);
+    if (capacity < needed) fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, needed);
+    Given given{static_cast<unsigned char*>(memory), capacity};
+    HostHooks hooks;
+    hooks.user = &given, hooks.alloc = cut, hooks.release = keep;
+    make(out, bytes, size, hooks);
   });
 }
 
@@ -161,7 +205,7 @@ rdm_result rdm_policy_read_file(rdm_policy** out, const char* path) {
     need(out, "out");
     need(path, "path");
     const auto bytes = read_file(path, Policy::file_limits());
-    make(out, bytes.data(), bytes.size());
+    make(out, bytes.data(), bytes.size(), host());
   });
 }
 
@@ -199,19 +243,27 @@ size_t rdm_policy_scratch(const rdm_policy* p, int32_t rows) {
 }
 
 namespace {
-void act(const Policy& policy, const float* obs, const PointRows& clouds, int32_t rows, const float* noise,
-         float* action, void* scratch, size_t scratch_bytes) {
-  need(action, "action");
+void need_rows(int32_t rows) {
+  if (rows < 1) fail(Code::kRange, "rows: %d is less than 1", rows);
+}
+// Of one that sees no points.
+void need_blind(const Policy& policy) {
+  if (policy.view().eyes.points)
+    fail(Code::kState, "policy: it sees points, which come with rdm_policy_act_points");
+}
+
+// run(scratch) writes the rows that are not NULL, action and mean, which are looked at then.
+template <class Run>
+void act(const Policy& policy, const float* obs, int32_t rows, const float* noise, const float* action,
+         const float* mean, void* scratch, size_t scratch_bytes, Run&& run) {
   need(scratch, "scratch");
   scratch = aligned_scratch(scratch, scratch_bytes, policy.scratch_bytes(rows));
   const PolicyView& v = policy.view();
   need_finite(obs, rows, v.obs_dim(), "obs");
   if (noise) need_finite(noise, rows, v.action_dim(), "noise");
-  policy.act(obs, rows, noise, action, scratch, clouds);
-  need_finite(action, rows, v.action_dim(), "action: the network overflows on these observations");
-}
-void need_rows(int32_t rows) {
-  if (rows < 1) fail(Code::kRange, "rows: %d is less than 1", rows);
+  run(scratch);
+  for (const float* x : {action, mean})
+    if (x) need_finite(x, rows, v.action_dim(), "action: the network overflows on these observations");
 }
 }  // namespace
 
@@ -221,9 +273,23 @@ rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, c
     need_handle(p);
     need(obs, "obs");
     need_rows(rows);
-    if (p->policy->view().eyes.points)
-      fail(Code::kState, "policy: it sees points, which come with rdm_policy_act_points");
-    act(*p->policy, obs, {}, rows, noise, action, scratch, scratch_bytes);
+    need_blind(*p->policy);
+    need(action, "action");
+    act(*p->policy, obs, rows, noise, action, nullptr, scratch, scratch_bytes,
+        [&](void* memory) { p->policy->act(obs, rows, noise, action, memory); });
+  });
+}
+
+rdm_result rdm_policy_sample(const rdm_policy* p, const float* obs, int32_t rows, const float* noise,
+                             float* action, float* mean, void* scratch, size_t scratch_bytes) {
+  return call([&] {
+    need_handle(p);
+    need(obs, "obs");
+    need_rows(rows);
+    need_blind(*p->policy);
+    if (!action && !mean) fail(Code::kArgument, "action and mean are NULL: there is nothing to write");
+    act(*p->policy, obs, rows, noise, action, mean, scratch, scratch_bytes,
+        [&](void* memory) { p->policy->sample(obs, rows, noise, action, mean, memory); });
   });
 }
 
@@ -239,7 +305,9 @@ rdm_result rdm_policy_act_points(const rdm_policy* p, const float* obs, const rd
     const PointRows clouds = read_points(points, eyes);
     need_finite(clouds.metres, rows, 3 * eyes.points, "points");
     need_channels(eyes, clouds, static_cast<size_t>(rows));
-    act(*p->policy, obs, clouds, rows, noise, action, scratch, scratch_bytes);
+    need(action, "action");
+    act(*p->policy, obs, rows, noise, action, nullptr, scratch, scratch_bytes,
+        [&](void* memory) { p->policy->act(obs, rows, noise, action, memory, clouds); });
   });
 }
 

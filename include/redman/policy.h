@@ -29,6 +29,15 @@ RDM_API rdm_result rdm_policy_read(rdm_policy **out, const void *bytes,
                                    size_t size); /* copies bytes [size] */
 RDM_API rdm_result rdm_policy_read_file(rdm_policy **out,
                                         const char *path); /* NOT_FOUND, FORMAT ... */
+/* For who has no heap: how many bytes rdm_policy_read_in needs for the policy file bytes [size].
+ * Errors as of rdm_policy_read, but for a network that does not give the file's example. */
+RDM_API rdm_result rdm_policy_read_memory(const void *bytes, size_t size, size_t *memory);
+/* As rdm_policy_read of bytes [size], which may go at once, into memory [capacity] at any address,
+ * which the caller keeps until the policy is destroyed. Nothing is taken from heap or hooks, then
+ * or by what is done with the policy later; rdm_policy_get_tensor and calls that fail may take from
+ * the heap for a moment. RANGE where capacity is less than rdm_policy_read_memory says. */
+RDM_API rdm_result rdm_policy_read_in(rdm_policy **out, const void *bytes, size_t size,
+                                      void *memory, size_t capacity);
 RDM_API void rdm_policy_destroy(rdm_policy *p);             /* NULL is fine */
 RDM_API rdm_result rdm_policy_get_info(const rdm_policy *p, rdm_policy_info *io); /* fills io */
 RDM_API size_t rdm_policy_scratch(const rdm_policy *p, int32_t rows); /* bytes for act, at any
@@ -44,6 +53,13 @@ RDM_API size_t rdm_policy_scratch(const rdm_policy *p, int32_t rows); /* bytes f
 RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t rows,
                                   const float *noise, float *action, void *scratch,
                                   size_t scratch_bytes);
+/* The same without the clip, as rdm_agent_act samples, so that what was sampled elsewhere can be
+ * learned from: action [rows][action_dim] = mean + std noise, and mean [rows][action_dim], for
+ * obs [rows][obs_dim] and noise [rows][action_dim], NULL: none. One of action and mean may be NULL.
+ * scratch [scratch_bytes] and errors as of rdm_policy_act. */
+RDM_API rdm_result rdm_policy_sample(const rdm_policy *p, const float *obs, int32_t rows,
+                                     const float *noise, float *action, float *mean,
+                                     void *scratch, size_t scratch_bytes);
 /* "actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
  * "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows
  * of obs_dim: a weight of an entry that the policy does not see is 0. Of one that sees points

@@ -69,8 +69,8 @@ struct Kernels {
   // y = clip((x - shift) scale, +-limit); not-a-number stays.
   void (*normalize)(const float* x, int32_t rows, int32_t n, const float* shift, const float* scale,
                     float limit, float* y);
-  // y = clip(y + exp(log_std) noise, +-1); noise null: the clip alone. y, noise [rows][n].
-  void (*add_noise)(const float* log_std, const float* noise, int32_t rows, int32_t n, float* y);
+  // y = clip(y + exp(log_std) noise, +-limit); noise null: the clip alone. y, noise [rows][n].
+  void (*add_noise)(const float* log_std, const float* noise, int32_t rows, int32_t n, float limit, float* y);
   float (*log_prob)(const float* mean, const float* log_std, const float* action, int32_t n);
   void (*log_prob_grad)(const float* mean, const float* log_std, const float* action, int32_t n, float scale,
                         float* dmean, float* dlog_std);

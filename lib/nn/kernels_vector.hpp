@@ -137,12 +137,12 @@ void normalize(const float* x, int32_t rows, int32_t n, const float* shift, cons
     });
 }
 
-void add_noise(const float* log_std, const float* noise, int32_t rows, int32_t n, float* y) {
+void add_noise(const float* log_std, const float* noise, int32_t rows, int32_t n, float limit, float* y) {
   for (int32_t r = 0; r < rows; ++r, y += n)
     by_lanes(n, [&](size_t j, int32_t count) {
       V a = get(y + j, count);
       if (noise) a = fma(exp_of(get(log_std + j, count)), get(noise + at(r) * at(n) + j, count), a);
-      put(y + j, low(all(1.0f), high(all(-1.0f), a)), count);
+      put(y + j, low(all(limit), high(all(-limit), a)), count);
     });
 }
 

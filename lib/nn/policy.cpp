@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.hpp"
 #include "nn/kernels.hpp"
@@ -42,12 +43,6 @@ const unsigned char* view_floats(Reader& in, size_t n) {
   return p;
 }
 
-const float* keep(Arena& arena, const unsigned char* from, size_t n) {
-  float* to = arena.make<float>(n);
-  if (to) std::memcpy(to, from, n * sizeof(float));
-  return to;
-}
-
 // What act needs per chunk of rows; nothing of the backward pass.
 struct ActScratch {
   MlpScratch mlp;
@@ -73,26 +68,40 @@ ActScratch cut_act_scratch(const PolicyView& v, int32_t rows, void* memory) {
   return s;
 }
 
-// Actions out of what a network with state_std gave: head [rows][2 action_dim].
-void act_head(const PolicyView& v, float* head, int32_t rows, const float* noise, float* action) {
-  const size_t dim = sz(v.action_dim());
-  for (size_t i = 0; i < sz(rows); ++i, head += 2 * dim) {
-    std::copy_n(head, dim, action + i * dim);
-    for (size_t j = dim; j < 2 * dim; ++j) head[j] = std::clamp(head[j], v.std_bounds[0], v.std_bounds[1]);
-    kernels().add_noise(head + dim, noise ? noise + i * dim : nullptr, 1, v.action_dim(), action + i * dim);
+// Where rows of an action and of its mean go; null: they are not wanted, but one of them is.
+struct ActOut {
+  float *action = nullptr, *mean = nullptr;
+  float limit = 1;  // on magnitudes of actions
+  ActOut from(size_t numbers) const {
+    return {action ? action + numbers : nullptr, mean ? mean + numbers : nullptr, limit};
+  }
+};
+
+// Actions out of the network's outputs y [rows], which with state_std have log deviations behind each row's means.
+void act_outputs(const PolicyView& v, float* y, int32_t rows, const float* noise, const ActOut& out) {
+  const size_t dim = sz(v.action_dim()), width = sz(v.actor.out);
+  for (size_t i = 0; i < sz(rows); ++i, y += width) {
+    float* const log_std = y + dim;
+    for (size_t j = 0; v.state_std && j < dim; ++j)
+      log_std[j] = std::clamp(log_std[j], v.std_bounds[0], v.std_bounds[1]);
+    for (float* to : {out.mean, out.action})
+      if (to && to + i * dim != y) std::copy_n(y, dim, to + i * dim);
+    if (out.action)
+      kernels().add_noise(v.state_std ? log_std : v.log_std, noise ? noise + i * dim : nullptr, 1,
+                          v.action_dim(), out.limit, out.action + i * dim);
   }
 }
 
 void act_view(const PolicyView& v, const float* obs, const PointRows& clouds, int32_t rows,
-              const float* noise, float* action, void* scratch) {
+              const float* noise, const ActOut& out, void* scratch) {
   const Kernels& kernel = kernels();
   const ActScratch s = cut_act_scratch(v, rows, scratch);
-  const size_t in = sz(v.obs_dim()), out = sz(v.action_dim());
+  const size_t in = sz(v.obs_dim()), dim = sz(v.action_dim());
   for (int32_t at = 0; at < rows; at += s.mlp.rows) {
     const int32_t n = std::min(s.mlp.rows, rows - at);
     const float* x = obs + sz(at) * in;
-    const float* e = noise ? noise + sz(at) * out : nullptr;
-    float* a = action + sz(at) * out;
+    const ActOut to = out.from(sz(at) * dim);
+    float* const y = v.state_std ? s.head : to.mean ? to.mean : to.action;
     float* const entries = s.row ? s.row : s.obs;
     if (v.columns) {
       pick_columns(x, n, v.obs_dim(), v.columns, v.entries(), entries);
@@ -109,11 +118,8 @@ void act_view(const PolicyView& v, const float* obs, const PointRows& clouds, in
                        sz(v.actor.in), nullptr);
       x = s.obs;
     }
-    mlp_forward(v.actor, v.params, x, n, s.mlp, v.state_std ? s.head : a);
-    if (v.state_std)
-      act_head(v, s.head, n, e, a);
-    else
-      kernel.add_noise(v.log_std, e, n, v.actor.out, a);
+    mlp_forward(v.actor, v.params, x, n, s.mlp, y);
+    act_outputs(v, y, n, noise ? noise + sz(at) * dim : nullptr, to);
   }
 }
 
@@ -231,22 +237,141 @@ void write_columns(Writer& out, const PolicyView& v) {
   out.end_section();
 }
 
-void read_columns(Reader& in, PolicyView& v, Vector<int32_t>* columns) {
+// A policy file's parts in place, all of them looked at but for the example's action.
+struct PolicyParts {
+  PolicyView v;                           // its numbers; pointers come with keep_parts
+  const unsigned char* ranges = nullptr;  // of entries, where it sees a part of the row
+  int32_t num_ranges = 0;
+  const unsigned char *params = nullptr, *eyes = nullptr, *log_std = nullptr, *shift = nullptr,
+                      *scale = nullptr;
+  const unsigned char *obs = nullptr, *action = nullptr, *points = nullptr, *classes = nullptr,
+                      *colors = nullptr;
+};
+
+// Range k of entries.
+struct Range {
+  int32_t begin, end;
+};
+Range range_of(const PolicyParts& parts, int32_t k) {
+  Range r;
+  std::memcpy(&r, parts.ranges + sz(k) * sizeof r, sizeof r);
+  return r;
+}
+
+void read_columns(Reader& in, PolicyParts& parts) {
   in.need_section("COLS");
+  PolicyView& v = parts.v;
+  const int32_t entries = v.entries();
   v.row_dim = in.value<int32_t>();
-  if (v.row_dim <= v.entries() || v.row_dim > kMaxInputs) bad("the observation's size is out of range");
-  const auto ranges = in.value<int32_t>();
-  if (ranges < 1 || ranges > v.entries()) bad("the ranges of entries are no such ranges");
-  for (int32_t k = 0, last = -1; k < ranges; ++k) {
-    const auto begin = in.value<int32_t>(), end = in.value<int32_t>();
-    if (begin <= last || end <= begin || end > v.row_dim) bad("the ranges of entries are no such ranges");
-    for (int32_t i = begin; i < end; ++i) columns->push_back(i);
-    last = end;
-  }
+  if (v.row_dim <= entries || v.row_dim > kMaxInputs) bad("the observation's size is out of range");
+  parts.num_ranges = in.value<int32_t>();
+  if (parts.num_ranges < 1 || parts.num_ranges > entries) bad("the ranges of entries are no such ranges");
+  parts.ranges = in.view(sz(parts.num_ranges) * sizeof(Range));
   in.expect_end();
-  if (columns->size() != sz(v.entries()))
-    bad("the ranges of entries are not as many as the network's inputs");
-  v.columns = columns->data();
+  int32_t count = 0;
+  for (int32_t k = 0, last = -1; k < parts.num_ranges; ++k) {
+    const Range r = range_of(parts, k);
+    if (r.begin <= last || r.end <= r.begin || r.end > v.row_dim)
+      bad("the ranges of entries are no such ranges");
+    count += r.end - r.begin;
+    last = r.end;
+  }
+  if (count != entries) bad("the ranges of entries are not as many as the network's inputs");
+}
+
+PolicyParts read_parts(const void* bytes, size_t size) {
+  PolicyParts parts;
+  PolicyView& v = parts.v;
+  Reader in(bytes, size, kWhat);
+  const uint32_t version = in.begin_file(kPolicyMagic, kPolicyVersion);
+  read_meta(in, v);
+  read_arch(in, v.actor);
+  if (version > 1) read_head(in, v);
+  if (version > 3) read_eyes(in, v, version > 4);
+  v.row_dim = v.entries();
+  if (version == 3 || (version > 3 && in.find_section("COLS"))) read_columns(in, parts);
+  in.need_section("WGTS");
+  parts.params = view_floats(in, v.actor.num_params());
+  parts.eyes = view_floats(in, v.eyes.num_params());
+  parts.log_std = view_floats(in, v.state_std ? 0 : sz(v.action_dim()));
+  in.expect_end();
+  in.need_section("NORM");
+  const size_t n_norm = v.clip > 0 ? sz(v.entries()) : 0;
+  parts.shift = view_floats(in, n_norm);
+  parts.scale = view_floats(in, n_norm);
+  in.expect_end();
+  for (size_t j = 0; j < n_norm; ++j) {
+    float scale;
+    std::memcpy(&scale, parts.scale + j * sizeof scale, sizeof scale);
+    if (!(scale > 0)) bad("a scale of the normaliser is not positive");
+  }
+  in.need_section("EXMP");
+  parts.obs = view_floats(in, sz(v.row_dim));
+  parts.action = view_floats(in, sz(v.action_dim()));
+  parts.points = in.view(v.eyes.row_points() * sizeof(int16_t));
+  parts.classes = in.view(v.eyes.classes ? sz(v.eyes.points) : 0);
+  parts.colors = in.view(v.eyes.color ? v.eyes.row_points() : 0);
+  in.expect_end();
+  for (int32_t i = 0; v.eyes.classes && i < v.eyes.points; ++i)
+    if (parts.classes[i] >= v.eyes.classes) bad("a point of the example is of a class that there is not");
+  return parts;
+}
+
+template <class T>
+const T* keep(Arena& arena, const unsigned char* from, size_t n) {
+  T* to = arena.make<T>(n);
+  if (to && n) std::memcpy(to, from, n * sizeof(T));
+  return n ? to : nullptr;
+}
+
+const int32_t* keep_columns(Arena& arena, const PolicyParts& parts) {
+  if (!parts.ranges) return nullptr;
+  auto* const columns = arena.make<int32_t>(sz(parts.v.entries()));
+  int32_t* at = columns;
+  for (int32_t k = 0; at && k < parts.num_ranges; ++k) {
+    const Range r = range_of(parts, k);
+    for (int32_t i = r.begin; i < r.end; ++i) *at++ = i;
+  }
+  return columns;
+}
+
+// The view of a copy in the arena, which then has the scratch of one row, and room for its action, at its end.
+struct Kept {
+  PolicyView v;
+  float* action = nullptr;
+  unsigned char* scratch = nullptr;
+};
+Kept keep_parts(Arena& arena, const PolicyParts& parts) {
+  Kept kept;
+  PolicyView& v = kept.v = parts.v;
+  const size_t n_out = sz(v.action_dim()), n_norm = v.clip > 0 ? sz(v.entries()) : 0;
+  v.columns = keep_columns(arena, parts);
+  v.params = keep<float>(arena, parts.params, v.actor.num_params());
+  v.eyes_params = keep<float>(arena, parts.eyes, v.eyes.num_params());
+  v.example_points = keep<int16_t>(arena, parts.points, v.eyes.row_points());
+  v.example_classes = keep<uint8_t>(arena, parts.classes, v.eyes.classes ? sz(v.eyes.points) : 0);
+  v.example_colors = keep<uint8_t>(arena, parts.colors, v.eyes.color ? v.eyes.row_points() : 0);
+  v.log_std = keep<float>(arena, parts.log_std, v.state_std ? 0 : n_out);
+  v.shift = keep<float>(arena, parts.shift, n_norm);
+  v.scale = keep<float>(arena, parts.scale, n_norm);
+  v.example_obs = keep<float>(arena, parts.obs, sz(v.row_dim));
+  v.example_action = keep<float>(arena, parts.action, n_out);
+  kept.action = arena.make<float>(n_out);
+  kept.scratch = arena.make<unsigned char>(cut_act_scratch(v, 1, nullptr).bytes);
+  return kept;
+}
+
+// What only a network that computes can say.
+void try_example(const Kept& kept) {
+  const PolicyView& v = kept.v;
+  // What is not a number would lose against any other point, unseen.
+  if (v.eyes.points && mlp_bound(v.eyes.mlp, v.eyes_params, largest_point(v.eyes)) > kMaxSum)
+    bad("the encoder's sums may be too large");
+  act_view(v, v.example_obs, {v.example_points, nullptr, v.example_classes, v.example_colors}, 1, nullptr,
+           {kept.action}, kept.scratch);
+  for (size_t j = 0; j < sz(v.action_dim()); ++j)
+    if (!(std::abs(kept.action[j] - clip_unit(v.example_action[j])) <= kExampleTolerance))
+      bad("the network does not give the example action that is stored beside it");
 }
 
 }  // namespace
@@ -272,7 +397,7 @@ void write_policy(Writer& out, const PolicyView& view) {
     std::copy_n(view.example_action, n_out, action.begin());
   } else {
     Vector<float> memory(cut_act_scratch(view, 1, nullptr).bytes / sizeof(float) + Arena::kAlign);
-    act_view(view, obs.data(), cloud, 1, nullptr, action.data(), align_scratch(memory.data()));
+    act_view(view, obs.data(), cloud, 1, nullptr, {action.data()}, align_scratch(memory.data()));
   }
   out.begin_file(kPolicyMagic, eyes.points      ? (eyes.color ? 5 : 4)
                                : view.columns   ? 3
@@ -322,83 +447,23 @@ void write_policy(Writer& out, const PolicyView& view) {
   out.end_file();
 }
 
-Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
-  PolicyView v;
-  Reader in(bytes, size, kWhat);
-  const uint32_t version = in.begin_file(kPolicyMagic, kPolicyVersion);
-  read_meta(in, v);
-  read_arch(in, v.actor);
-  if (version > 1) read_head(in, v);
-  Vector<int32_t> columns;
-  if (version > 3) read_eyes(in, v, version > 4);
-  if (version == 3 || (version > 3 && in.find_section("COLS"))) read_columns(in, v, &columns);
-  const size_t n_row = sz(v.obs_dim());
-  const size_t n_in = sz(v.entries()), n_out = sz(v.action_dim()), n_params = v.actor.num_params();
-  const size_t n_eyes = v.eyes.num_params(), n_points = v.eyes.row_points();
-  const size_t n_classes = v.eyes.classes ? sz(v.eyes.points) : 0, n_colors = v.eyes.color ? n_points : 0;
-  const size_t n_std = v.state_std ? 0 : n_out;
-  in.need_section("WGTS");
-  const unsigned char *params = view_floats(in, n_params), *eyes = view_floats(in, n_eyes);
-  const unsigned char* log_std = view_floats(in, n_std);
-  in.expect_end();
-  in.need_section("NORM");
-  const size_t n_norm = v.clip > 0 ? n_in : 0;
-  const unsigned char *shift = view_floats(in, n_norm), *scale = view_floats(in, n_norm);
-  in.expect_end();
-  for (size_t j = 0; j < n_norm; ++j) {
-    float v_j;
-    std::memcpy(&v_j, scale + j * sizeof v_j, sizeof v_j);
-    if (!(v_j > 0)) bad("a scale of the normaliser is not positive");
-  }
-  in.need_section("EXMP");
-  const unsigned char *obs = view_floats(in, n_row), *action = view_floats(in, n_out);
-  const unsigned char *points = in.view(n_points * sizeof(int16_t)), *classes = in.view(n_classes);
-  const unsigned char* colors = in.view(n_colors);
-  in.expect_end();
-  for (size_t i = 0; i < n_classes; ++i)
-    if (classes[i] >= v.eyes.classes) bad("a point of the example is of a class that there is not");
-
-  const auto carve = [&](Arena& arena) {
-    if (!columns.empty()) {
-      auto* kept = arena.make<int32_t>(n_in);
-      v.columns = kept ? std::copy_n(columns.data(), n_in, kept) - n_in : columns.data();
-    }
-    v.params = keep(arena, params, n_params);
-    v.eyes_params = n_eyes ? keep(arena, eyes, n_eyes) : nullptr;
-    auto* example = arena.make<int16_t>(n_points);
-    auto* example_classes = arena.make<uint8_t>(n_classes);
-    auto* example_colors = arena.make<uint8_t>(n_colors);
-    if (example && n_points) std::memcpy(example, points, n_points * sizeof(int16_t));
-    if (example_classes && n_classes) std::memcpy(example_classes, classes, n_classes);
-    if (example_colors && n_colors) std::memcpy(example_colors, colors, n_colors);
-    v.example_points = n_points ? example : nullptr;
-    v.example_classes = n_classes ? example_classes : nullptr;
-    v.example_colors = n_colors ? example_colors : nullptr;
-    v.log_std = n_std ? keep(arena, log_std, n_std) : nullptr;
-    v.shift = n_norm ? keep(arena, shift, n_in) : nullptr;
-    v.scale = n_norm ? keep(arena, scale, n_in) : nullptr;
-    v.example_obs = keep(arena, obs, n_row);
-    v.example_action = keep(arena, action, n_out);
-    float* check = arena.make<float>(n_out);
-    auto* scratch = arena.make<unsigned char>(cut_act_scratch(v, 1, nullptr).bytes);
-    if (arena.measuring()) return;
-    // What is not a number would lose against any other point, unseen.
-    if (n_eyes && mlp_bound(v.eyes.mlp, v.eyes_params, largest_point(v.eyes)) > kMaxSum)
-      bad("the encoder's sums may be too large");
-    act_view(v, v.example_obs, {v.example_points, nullptr, v.example_classes, v.example_colors}, 1, nullptr,
-             check, scratch);
-    for (size_t j = 0; j < n_out; ++j)
-      if (!(std::abs(check[j] - clip_unit(v.example_action[j])) <= kExampleTolerance))
-        bad("the network does not give the example action that is stored beside it");
-  };
+size_t Policy::memory(const void* bytes, size_t size) {
   Arena measure;
-  carve(measure);
+  keep_parts(measure, read_parts(bytes, size));
+  return (sizeof(Policy) + Arena::kAlign - 1) / Arena::kAlign * Arena::kAlign + measure.used();
+}
+
+Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
+  const PolicyParts parts = read_parts(bytes, size);
+  Arena measure;
+  keep_parts(measure, parts);
   Arena arena(hooks, measure.used());
-  carve(arena);
+  const Kept kept = keep_parts(arena, parts);
+  try_example(kept);
   Policy* p = host_new<Policy>(hooks);
   p->hooks_ = hooks;
   p->arena_ = std::move(arena);
-  p->view_ = v;
+  p->view_ = kept.v;
   return p;
 }
 
@@ -419,7 +484,12 @@ size_t Policy::scratch_bytes(int32_t rows) const {
 
 void Policy::act(const float* obs, int32_t rows, const float* noise, float* action, void* scratch,
                  const PointRows& clouds) const {
-  act_view(view_, obs, clouds, rows, noise, action, scratch);
+  act_view(view_, obs, clouds, rows, noise, {action}, scratch);
+}
+
+void Policy::sample(const float* obs, int32_t rows, const float* noise, float* action, float* mean,
+                    void* scratch) const {
+  act_view(view_, obs, {}, rows, noise, {action, mean, std::numeric_limits<float>::infinity()}, scratch);
 }
 
 }  // namespace rdm

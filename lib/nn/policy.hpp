@@ -21,7 +21,7 @@ struct PolicyView {
   PointNetShape eyes;                  // points 0: none; their features are the actor's last inputs
   const float* eyes_params = nullptr;  // [eyes.num_params()]
   const int32_t* columns = nullptr;    // [entries()] entries of the row, ascending; null: all of them
-  int32_t row_dim = 0;                 // with columns: entries of a row
+  int32_t row_dim = 0;                 // entries of a row; of no use without columns
   const float* params = nullptr;       // [actor.num_params()]
   const float* log_std = nullptr;      // [action_dim], null with state_std
   bool state_std = false;              // the network gives the log deviations
@@ -51,7 +51,11 @@ void write_policy(Writer& out, const PolicyView& view);
 class Policy {
  public:
   // Copies. Error(kFormat) for anything that is not a whole policy file, kVersion for a newer one.
+  // The hooks are all that it takes memory from.
   static Policy* read(const void* bytes, size_t size, const HostHooks& hooks);
+  // Bytes that read takes, in two blocks: the object's, as a multiple of Arena::kAlign, then the arena's. It
+  // finds all that can be wrong but an example that the network does not give.
+  static size_t memory(const void* bytes, size_t size);
   static void destroy(Policy* p);
   static FileLimits file_limits();  // of policy files
 
@@ -62,6 +66,9 @@ class Policy {
   // clouds [rows]: of a policy that sees points.
   void act(const float* obs, int32_t rows, const float* noise, float* action, void* scratch,
            const PointRows& clouds = {}) const;
+  // The same without the clip, of one that sees no points; the mean too. One of the two may be null.
+  void sample(const float* obs, int32_t rows, const float* noise, float* action, float* mean,
+              void* scratch) const;
 
  private:
   HostHooks hooks_;

@@ -3407,6 +3407,20 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
         {}, False,
         """NOT_FOUND, FORMAT ..."""),
+    "rdm_policy_read_memory": Function(
+        c_int32, {"bytes": c_void_p, "size": c_size_t, "memory": c_void_p},
+        {}, False,
+        """For who has no heap: how many bytes rdm_policy_read_in needs for the policy file bytes [size].
+        Errors as of rdm_policy_read, but for a network that does not give the file's example.
+        """),
+    "rdm_policy_read_in": Function(
+        c_int32, {"out": POINTER(c_void_p), "bytes": c_void_p, "size": c_size_t, "memory": c_void_p, "capacity": c_size_t},
+        {}, False,
+        """As rdm_policy_read of bytes [size], which may go at once, into memory [capacity] at any address,
+        which the caller keeps until the policy is destroyed. Nothing is taken from heap or hooks, then
+        or by what is done with the policy later; rdm_policy_get_tensor and calls that fail may take from
+        the heap for a moment. RANGE where capacity is less than rdm_policy_read_memory says.
+        """),
     "rdm_policy_destroy": Function(
         None, {"p": c_void_p},
         {}, False,
@@ -3432,6 +3446,14 @@ FUNCTIONS: dict[str, Function] = {
         state: any number of threads, each with its own scratch. ARGUMENT when obs or noise is not
         finite, or so large that the network overflows (action is written then, and of no use). STATE for
         a policy that sees points.
+        """),
+    "rdm_policy_sample": Function(
+        c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "mean": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
+        {"obs": Rows("float32", ("rows", "obs_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim")), "mean": Rows("float32", ("rows", "action_dim"))}, False,
+        """The same without the clip, as rdm_agent_act samples, so that what was sampled elsewhere can be
+        learned from: action [rows][action_dim] = mean + std noise, and mean [rows][action_dim], for
+        obs [rows][obs_dim] and noise [rows][action_dim], NULL: none. One of action and mean may be NULL.
+        scratch [scratch_bytes] and errors as of rdm_policy_act.
         """),
     "rdm_policy_tensor_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},

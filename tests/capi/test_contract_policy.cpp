@@ -1,0 +1,209 @@
+// Frozen policies of the C ABI: in a caller's memory, samples.
+#include <cmath>
+
+#include "contract.hpp"
+#include "heap_count.hpp"
+
+namespace {
+
+using Bytes = std::vector<unsigned char>;
+
+struct PolicyEnd {
+  void operator()(rdm_policy* p) const { rdm_policy_destroy(p); }
+};
+using Owned = std::unique_ptr<rdm_policy, PolicyEnd>;
+Owned read(const Bytes& bytes) {
+  rdm_policy* p = nullptr;
+  EXPECT_EQ(rdm_policy_read(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
+  return Owned(p);
+}
+
+rdm_policy_info info_of(const rdm_policy* p) {
+  rdm_policy_info info = RDM_INIT(rdm_policy_info);
+  EXPECT_EQ(rdm_policy_get_info(p, &info), RDM_OK);
+  return info;
+}
+
+// Agents of the small one's sizes, of all kinds of networks.
+const rdm_field kFields[] = {{"place", "m", 0, 1}, {"speed", "m/s", 1, 2}};
+const char* const kKinds[] = {"", "std_mode=state", "actor_obs=speed", "normalize_obs=false",
+                              "encoder=4,6\nencoder_points=8\nencoder_classes=2\nencoder_color=true"};
+rdm_agent* agent_of(const char* settings) {
+  rdm_agent_config c = agent_config();
+  c.settings = settings;
+  c.fields = kFields;
+  c.num_fields = 2;
+  return make_agent(c);
+}
+Bytes file_of(const char* settings) {
+  rdm_agent* a = agent_of(settings);
+  if (!std::strstr(settings, "encoder")) {
+    EXPECT_EQ(feed_epoch(a), RDM_OK) << rdm_last_error();
+  }
+  const Bytes bytes = policy_bytes(a);
+  rdm_agent_destroy(a);
+  return bytes;
+}
+
+constexpr float kObs[12] = {0.1f, -0.4f, 2, 0, 0.5f, 0.25f, 3, -3, 1, 0.7f, 0.7f, 0.7f};
+
+// Actions [4][2] for kObs; of a policy that sees points, for one cloud.
+std::vector<float> act(const rdm_policy* p, const float* noise = nullptr) {
+  std::vector<float> action(8);
+  Bytes scratch(rdm_policy_scratch(p, 4));
+  if (info_of(p).num_points > 0) {
+    const std::vector<float> metres(3 * 8 * 4, 0.1f);
+    const Bytes classes(8 * 4), colors(3 * 8 * 4, 90);
+    const rdm_points cloud = {sizeof cloud, 8, metres.data(), classes.data(), colors.data()};
+    EXPECT_EQ(rdm_policy_act_points(p, kObs, &cloud, 4, noise, action.data(), scratch.data(), scratch.size()),
+              RDM_OK)
+        << rdm_last_error();
+  } else {
+    EXPECT_EQ(rdm_policy_act(p, kObs, 4, noise, action.data(), scratch.data(), scratch.size()), RDM_OK)
+        << rdm_last_error();
+  }
+  return action;
+}
+
+TEST(PolicyInMemory, ActsAsTheOneOfTheHeapAtAnyAddress) {
+  for (const char* kind : kKinds) {
+    SCOPED_TRACE(kind);
+    Bytes file = file_of(kind);
+    const Owned on_heap = read(file);
+    size_t needed = 0;
+    ASSERT_EQ(rdm_policy_read_memory(file.data(), file.size(), &needed), RDM_OK) << rdm_last_error();
+    Bytes memory(needed + 65);
+    for (const size_t shift : {0, 1, 13, 63}) {
+      std::fill(memory.begin(), memory.end(), 0xA5);
+      const Bytes before = file;
+      rdm_policy* p = nullptr;
+      ASSERT_EQ(rdm_policy_read_in(&p, file.data(), file.size(), memory.data() + shift, needed), RDM_OK)
+          << rdm_last_error();
+      for (size_t i = 0; i < memory.size(); ++i)
+        ASSERT_TRUE((i >= shift && i < shift + needed) || memory[i] == 0xA5) << i;
+      std::fill(file.begin(), file.end(), 0);  // the file may go at once
+      EXPECT_EQ(act(p), act(on_heap.get()));
+      rdm_policy_destroy(p);
+      EXPECT_EQ(rdm_policy_scratch(p, 1), 0u) << "its handle is of no use any more";
+      file = before;
+    }
+  }
+}
+
+TEST(PolicyInMemory, TakesNothingFromHeapOrHooks) {
+  if (!kHeapIsCounted) GTEST_SKIP() << "the heap is not counted";
+  const Bytes file = file_of("actor_obs=speed");
+  CountingHost host;
+  ASSERT_EQ(rdm_init(&host.hooks), RDM_OK);
+  size_t needed = 0;
+  float action[2], mean[2];
+  unsigned char scratch[1024];
+  int32_t columns[3], count;
+  rdm_tensor t;
+  rdm_policy_info info = RDM_INIT(rdm_policy_info);
+  Bytes memory(1 << 16);
+  const int64_t before = heap_count(), blocks = heap_blocks();
+  rdm_result r = rdm_policy_read_memory(file.data(), file.size(), &needed);
+  rdm_policy* p = nullptr;
+  if (r == RDM_OK) r = rdm_policy_read_in(&p, file.data(), file.size(), memory.data(), needed);
+  if (r == RDM_OK) r = rdm_policy_get_info(p, &info);
+  if (r == RDM_OK) r = rdm_policy_act(p, kObs, 1, nullptr, action, scratch, sizeof scratch);
+  if (r == RDM_OK) r = rdm_policy_sample(p, kObs, 1, kObs, action, mean, scratch, sizeof scratch);
+  if (r == RDM_OK) r = rdm_policy_tensor_at(p, 0, &t);
+  if (r == RDM_OK) r = rdm_policy_get_columns(p, columns, 3, &count);
+  rdm_policy_destroy(p);
+  const int64_t calls = heap_count() - before;
+  rdm_shutdown();
+  EXPECT_EQ(r, RDM_OK) << rdm_last_error();
+  EXPECT_EQ(calls, 0);
+  EXPECT_EQ(heap_blocks(), blocks);
+  EXPECT_EQ(host.calls, 0u);
+}
+
+TEST(PolicyInMemory, IsRefusedAsOnTheHeap) {
+  const Bytes good = file_of("actor_obs=speed");
+  size_t needed = 0;
+  ASSERT_EQ(rdm_policy_read_memory(good.data(), good.size(), &needed), RDM_OK);
+  Bytes memory(needed);
+  rdm_policy *p = nullptr, *other = nullptr;
+  EXPECT_EQ(rdm_policy_read_in(&p, good.data(), good.size(), memory.data(), needed - 1), RDM_ERROR_RANGE);
+  EXPECT_NE(std::string(rdm_last_error()).find(std::to_string(needed) + " are needed"), std::string::npos);
+  EXPECT_EQ(rdm_policy_read_in(&p, good.data(), good.size(), nullptr, needed), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_policy_read_memory(good.data(), good.size(), nullptr), RDM_ERROR_ARGUMENT);
+  for (size_t cut = 0; cut < good.size(); cut += 7)
+    EXPECT_EQ(rdm_policy_read_in(&p, good.data(), cut, memory.data(), needed), RDM_ERROR_FORMAT) << cut;
+  for (size_t at = 0; at < good.size(); ++at) {
+    Bytes bad = good;
+    bad[at] ^= static_cast<unsigned char>(1u << (at % 8));
+    const rdm_result wanted = rdm_policy_read(&other, bad.data(), bad.size());
+    const std::string text = rdm_last_error();
+    EXPECT_EQ(rdm_policy_read_in(&p, bad.data(), bad.size(), memory.data(), needed), wanted) << at;
+    EXPECT_EQ(rdm_last_error(), text);
+    EXPECT_LT(wanted, 0);
+  }
+  EXPECT_EQ(p, nullptr);
+}
+
+TEST(PolicySample, IsTheActionBeforeTheClipBesideItsMean) {
+  for (const char* kind : kKinds) {
+    if (std::strstr(kind, "encoder")) continue;
+    SCOPED_TRACE(kind);
+    const Owned p = read(file_of(kind));
+    const float noise[8] = {4, -0.3f, 0, -5, 0.1f, 1, -3, 0.5f};
+    Bytes scratch(rdm_policy_scratch(p.get(), 4));
+    float action[8], mean[8], alone[8], bare[8];
+    const auto sample = [&](const float* e, float* a, float* m) {
+      return rdm_policy_sample(p.get(), kObs, 4, e, a, m, scratch.data(), scratch.size());
+    };
+    ASSERT_EQ(sample(noise, action, mean), RDM_OK) << rdm_last_error();
+    ASSERT_EQ(sample(noise, alone, nullptr), RDM_OK);
+    EXPECT_EQ(std::memcmp(action, alone, sizeof action), 0);
+    ASSERT_EQ(sample(noise, nullptr, alone), RDM_OK);
+    EXPECT_EQ(std::memcmp(mean, alone, sizeof mean), 0);
+    ASSERT_EQ(sample(nullptr, bare, alone), RDM_OK);
+    EXPECT_EQ(std::memcmp(bare, mean, sizeof mean), 0) << "without noise the mean";
+    float largest = 0;
+    for (const float a : action) largest = std::max(largest, std::abs(a));
+    EXPECT_GT(largest, 1) << "else the clip has nothing to do here";
+    const auto clipped = act(p.get(), noise), clipped_mean = act(p.get());
+    for (size_t i = 0; i < 8; ++i) {
+      EXPECT_EQ(clipped[i], std::clamp(action[i], -1.0f, 1.0f)) << i;
+      EXPECT_EQ(clipped_mean[i], std::clamp(mean[i], -1.0f, 1.0f)) << i;
+    }
+    EXPECT_EQ(sample(noise, nullptr, nullptr), RDM_ERROR_ARGUMENT);
+    EXPECT_EQ(rdm_policy_sample(p.get(), kObs, 0, noise, action, mean, scratch.data(), scratch.size()),
+              RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_policy_sample(p.get(), kObs, 4, noise, action, mean, scratch.data(), scratch.size() - 1),
+              RDM_ERROR_RANGE);
+    const float bad[12] = {NAN};
+    EXPECT_EQ(rdm_policy_sample(p.get(), bad, 4, noise, action, mean, scratch.data(), scratch.size()),
+              RDM_ERROR_ARGUMENT);
+  }
+  const Owned sees = read(file_of(kKinds[4]));
+  Bytes scratch(rdm_policy_scratch(sees.get(), 1));
+  float action[2];
+  EXPECT_EQ(rdm_policy_sample(sees.get(), kObs, 1, nullptr, action, nullptr, scratch.data(), scratch.size()),
+            RDM_ERROR_STATE);
+}
+
+// What an agent samples is what its policy file samples with the same noise.
+TEST(PolicySample, SaysWhatTheAgentActedOn) {
+  rdm_agent* a = agent_of("");
+  ASSERT_EQ(feed_epoch(a), RDM_OK);
+  float by_agent[8], action[8], mean[8], agent_mean[8], noise[8] = {};
+  ASSERT_EQ(rdm_agent_act(a, kObs, RDM_ACT_SAMPLE, by_agent), RDM_OK);
+  ASSERT_EQ(rdm_agent_act(a, kObs, RDM_ACT_MEAN, agent_mean), RDM_OK);
+  const Owned p = read(policy_bytes(a));  // after the act, which moved the normaliser
+  float log_std[2];
+  ASSERT_EQ(rdm_policy_get_tensor(p.get(), "actor.log_std", log_std, 2), RDM_OK);
+  for (int i = 0; i < 8; ++i) noise[i] = (by_agent[i] - agent_mean[i]) / std::exp(log_std[i % 2]);
+  Bytes scratch(rdm_policy_scratch(p.get(), 4));
+  ASSERT_EQ(rdm_policy_sample(p.get(), kObs, 4, noise, action, mean, scratch.data(), scratch.size()), RDM_OK);
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_NEAR(mean[i], agent_mean[i], 1e-5f);
+    EXPECT_NEAR(action[i], by_agent[i], 1e-5f);
+  }
+  rdm_agent_destroy(a);
+}
+
+}  // namespace
