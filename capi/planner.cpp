@@ -10,7 +10,8 @@ using namespace rdm::capi;
 
 namespace {
 
-constexpr size_t kFirstSize = sizeof(rdm_planner_config);
+constexpr size_t kFirstSize = offsetof(rdm_planner_config, stop);
+constexpr size_t kFirstInfoSize = offsetof(rdm_plan_info, iterations);
 
 #if RDM_WITH_POLICY
 // A policy's mean action.
@@ -136,6 +137,8 @@ rdm_result rdm_planner_create(rdm_planner** out, const rdm_planner_config* c) {
     config.options = options.data();
     config.num_options = in.num_options;
     config.settings = in.settings;
+    config.stop = in.stop;
+    config.user = in.user;
     config.hooks = hooks;
     rdm_planner* p = host_new<rdm_planner>(hooks);
     p->hooks = hooks;
@@ -198,19 +201,25 @@ rdm_result rdm_planner_act(rdm_planner* p, const rdm_pool* pool, int32_t env, fl
 #endif
     need_index(env, pool->pool->config().num_envs, "env");
     need(action, "action");
-    if (io) check_out(io, sizeof *io, "io");
+    if (io) check_out(io, kFirstInfoSize, "io");
     PlanInfo info;
     p->planner->act(*pool->pool, env, action, &info);
     if (!io) return;
     rdm_plan_info out{};
-    out.planned = info.planned;
+    out.planned = info.iterations > 0;
     out.best = info.best_sample;
     out.ret = info.best.ret;
     std::copy(info.best.cost, info.best.cost + kMaxTaskCosts, out.cost);
     out.feasible_share = info.feasible_share;
     out.steps = info.steps;
-    write_struct(io, out, sizeof out, "io");
+    out.cut = info.cut;
+    out.iterations = info.iterations;
+    write_struct(io, out, kFirstInfoSize, "io");
   });
+}
+
+void rdm_planner_cancel(rdm_planner* p) {
+  if (is_handle(p)) p->planner->cancel();
 }
 
 rdm_result rdm_planner_reset(rdm_planner* p) {

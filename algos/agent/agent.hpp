@@ -30,12 +30,12 @@
 // threads gives the same bytes; and, over blocks of worlds, any number of processes (ranks.hpp).
 #pragma once
 #include "algos/agent/learner.hpp"
-#include "algos/core/cancel.hpp"
 #include "algos/core/schedule.hpp"
 #include "algos/imitation/clone.hpp"
 #include "algos/imitation/imitation.hpp"
 #include "algos/imitation/pretrain.hpp"
 #include "algos/rollout/collector.hpp"
+#include "base/cancel.hpp"
 
 namespace rdm {
 

@@ -19,10 +19,10 @@
 #pragma once
 #include <array>
 
-#include "algos/core/cancel.hpp"
 #include "algos/core/rank_setup.hpp"
 #include "algos/core/resolved_config.hpp"
 #include "base/arena.hpp"
+#include "base/cancel.hpp"
 
 namespace rdm {
 

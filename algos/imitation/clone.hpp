@@ -5,8 +5,8 @@
 // one episode single rows are. Adam on shuffled minibatches, its rate falling linearly from epoch to epoch;
 // the weights with the least validation loss are kept. Same seed, same bytes, for any number of threads.
 #pragma once
-#include "algos/core/cancel.hpp"
 #include "algos/imitation/regression.hpp"
+#include "base/cancel.hpp"
 
 namespace rdm {
 

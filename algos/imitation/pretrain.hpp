@@ -6,7 +6,7 @@
 // in order, as everywhere (learner.hpp).
 #pragma once
 #include "algos/core/batch_workers.hpp"
-#include "algos/core/cancel.hpp"
+#include "base/cancel.hpp"
 
 namespace rdm {
 

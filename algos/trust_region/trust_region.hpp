@@ -11,9 +11,9 @@
 // throws, as measured on them. With lr_schedule=linear the radius shrinks as a learning rate would.
 #pragma once
 #include "algos/agent/learner.hpp"
-#include "algos/core/cancel.hpp"
 #include "algos/trust_region/conjugate_gradient.hpp"
 #include "algos/trust_region/fisher.hpp"
+#include "base/cancel.hpp"
 
 namespace rdm {
 

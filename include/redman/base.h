@@ -60,7 +60,7 @@ enum rdm_result_code { /* values of rdm_result */
   RDM_ERROR_UNSUPPORTED = -8,      /* left out of this build, or not defined for this combination */
   RDM_ERROR_PHYSICS = -9,          /* the physics engine gave up where no world could be flagged */
   RDM_ERROR_NOT_FOUND = -10,       /* unknown name (the text offers the nearest), missing file */
-  RDM_ERROR_CANCELLED = -11,       /* rdm_agent_cancel was called; the handle is good */
+  RDM_ERROR_CANCELLED = -11,       /* the host ended the call; the handle is good */
   RDM_ERROR_INTERNAL = -99         /* a defect of redman */
 };
 RDM_API const char *rdm_result_string(rdm_result r); /* static, never NULL, also for unknown
@@ -102,6 +102,10 @@ RDM_API rdm_result rdm_build_info(rdm_build *io); /* fills io; strings are stati
 
 /* ---- host hooks ------------------------------------------------------------------------------ */
 typedef void (*rdm_body)(void *context, int32_t index); /* one piece of parallel work */
+/* Whether a call that takes long is to end now: not 0. Asked in that call's thread, at places that do
+ * not depend on the number of threads. `steps`: the control steps that worlds have taken for it so
+ * far, by which a host that has no clock can bound it. */
+typedef int32_t (*rdm_stop)(void *user, int64_t steps);
 typedef struct rdm_host { /* what a host gives in the place of the C library and of our threads */
   uint32_t struct_size;   /* bytes */
   uint32_t reserved;      /* 0 */

@@ -90,6 +90,12 @@ RDM_API rdm_result rdm_actor_read_state(rdm_actor *actor, const void *bytes, siz
  *   for (...) { rdm_planner_act(planner, pool, 0, b.action, NULL);  rdm_pool_step(pool); }
  *   rdm_planner_destroy(planner);
  *
+ * A control loop that has little time gives `stop`: the action is then the best of what was finished.
+ * The library reads no clock; what a call gives follows from the answers alone.
+ *
+ *   static int32_t late(void *until, int64_t steps) { return now_ns() > *(int64_t *)until; }
+ *   c.stop = late;  c.user = &until;  ... until = now_ns() + 2000000;  rdm_planner_act(...) ...
+ *
  * The model is the world itself: rollouts know the draws that it will make. One planner follows one
  * world's episode: call rdm_planner_reset when another begins. One thread at a time. Same seed,
  * same calls: the same bytes, for any threads. A plan is an action for each of the next `horizon`
@@ -120,6 +126,9 @@ typedef struct rdm_planner_config { /* what a planner is made from */
                               * NULL */
   int32_t error_size;        /* bytes, terminator included; what is longer is cut */
   int32_t reserved2;         /* 0 */
+  rdm_stop stop;             /* asked by rdm_planner_act before every step of its rollouts; NULL:
+                              * plans are always finished */
+  void *user;                /* given to `stop`; may be NULL */
 } rdm_planner_config;
 typedef struct rdm_planner_spec { /* sizes of a planner */
   uint32_t struct_size;      /* in: bytes */
@@ -131,13 +140,15 @@ typedef struct rdm_planner_spec { /* sizes of a planner */
 } rdm_planner_spec;
 typedef struct rdm_plan_info { /* what a call of rdm_planner_act found */
   uint32_t struct_size;      /* in: bytes */
-  int32_t planned;           /* 1; 0: the plan was followed (option replan), the rest is 0 */
-  int32_t best;              /* sample that is best in the last iteration */
-  int32_t reserved;          /* 0 */
+  int32_t planned;           /* 1; 0: the plan was followed, all else but cut and steps is 0 */
+  int32_t best;              /* sample that is best in the last iteration that was finished */
+  int32_t cut;               /* 1: config.stop ended it early; else 0 */
   double ret;                /* of that sample: discounted sum of rewards, and the critic's value */
   double cost[RDM_MAX_COSTS]; /* of that sample, sums of each column */
-  double feasible_share;     /* of the last iteration's samples: within what the limits leave */
+  double feasible_share;     /* of that iteration's samples: within what the limits leave */
   int64_t steps;             /* control steps of all rollouts */
+  int32_t iterations;        /* finished: option iterations, or fewer with cut */
+  int32_t reserved;          /* 0 */
 } rdm_plan_info;
 /* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
  * version's. */
@@ -161,9 +172,17 @@ RDM_API rdm_result rdm_planner_get_settings(const rdm_planner *planner, char *te
 
 /* Plans from the state that world env of the pool is in now, and writes the plan's first action to
  * action [action_dim]. The pool is only read; it has the task and options of the one that the
- * planner was made for, else ARGUMENT. io may be NULL. STATE where no episode runs. No heap. */
+ * planner was made for, else ARGUMENT. io may be NULL. STATE where no episode runs. No heap.
+ * Where config.stop says so it plans no further: action, plan and what follows have the bytes of a
+ * planner whose option iterations is io.iterations. Before the first iteration was finished the plan
+ * of before is followed, shifted by a step; without one, the policy's rollout so far or
+ * rdm_pool_get_initial_mean; and the next call plans. CANCELLED after rdm_planner_cancel: as after
+ * every error, plan, noise, action and io are as before. */
 RDM_API rdm_result rdm_planner_act(rdm_planner *planner, const rdm_pool *pool, int32_t env,
                                    float *action, rdm_plan_info *io);
+/* Async-signal-safe, from any thread: the running rdm_planner_act returns CANCELLED before the next
+ * step of its rollouts, or else the next one does. NULL is fine. */
+RDM_API void rdm_planner_cancel(rdm_planner *planner);
 /* Forgets the plan; the noise goes on. The next plan begins at rdm_pool_get_initial_mean, or the
  * policy's rollout. */
 RDM_API rdm_result rdm_planner_reset(rdm_planner *planner);

@@ -71,6 +71,7 @@ class Planner {
     check(rdm_planner_act(get(), pool.get(), env, action, &info));
     return info;
   }
+  void cancel() noexcept { rdm_planner_cancel(get()); }  // from any thread or signal handler
   void reset() { check(rdm_planner_reset(get())); }
   // [horizon][action_dim]
   std::vector<float> plan() const {

@@ -21,8 +21,8 @@
  *     rdm_pool_error(p) or rdm_agent_error(a) (where a call takes both: the agent's), and names the
  *     argument and its range.
  *   - Handles are made through `out` and ended by a void destroy function that takes NULL.
- *   - A pool and an agent: one thread at a time, not bound to a thread; rdm_agent_cancel and the
- *     _error functions from any. A policy: immutable, shared freely. What takes no handle: any
+ *   - A pool and an agent: one thread at a time, not bound to a thread; the _cancel and _error
+ *     functions from any. A policy: immutable, shared freely. What takes no handle: any
  *     number of threads.
  *   - One call at a time changes a pool, agent, planner, recording or map; while none does, any
  *     number read one (take it as `const`; an agent never). A call that comes while another is

@@ -139,7 +139,12 @@ void Planner::carve(Arena& arena) {
 }
 
 Planner::Planner(const PlannerConfig& c)
-    : hooks_(c.hooks), policy_(c.policy), critic_(c.critic), stream_(c.seed, 0, Purpose::kPolicyNoise) {
+    : hooks_(c.hooks),
+      policy_(c.policy),
+      critic_(c.critic),
+      stop_(c.stop),
+      user_(c.user),
+      stream_(c.seed, 0, Purpose::kPolicyNoise) {
   const HostScope scope(hooks_);
   read_options(c);
   try {
@@ -218,7 +223,12 @@ void Planner::set_budgets(const Pool& pool, int32_t env) {
     rule_.budget[k] = limit_[k] < 0 ? -1 : share * std::max(limit_[k] - pool.spent(env, k), 0.0);
 }
 
-void Planner::propose(const Pool& pool, int32_t env) {
+bool Planner::stopped() {
+  cancel_.check();
+  return stop_ && stop_(user_, steps_) != 0;
+}
+
+bool Planner::propose(const Pool& pool, int32_t env) {
   rollouts_->copy(0, pool, env);
   const Buffers& b = rollouts_->buffers();
   const int32_t steps = std::max(1, policy_->repeat() / pool.repeat());
@@ -226,6 +236,7 @@ void Planner::propose(const Pool& pool, int32_t env) {
   const int32_t phase = pool.episode_step(env) / pool.repeat();
   std::fill_n(alive_, samples_, uint8_t{0});
   alive_[0] = 1;
+  bool whole = true;
   for (int32_t t = 0; t < horizon_; ++t) {
     float* action = centre_ + sz(t) * sz(action_dim_);
     const float* before = t > 0 ? action - action_dim_ : last_;
@@ -237,11 +248,17 @@ void Planner::propose(const Pool& pool, int32_t env) {
     for (int32_t j = 0; j < action_dim_; ++j)  // a network that overflows proposes nothing
       action[j] = std::isfinite(action[j]) ? clip_unit(action[j]) : before[j];
     if (!alive_[0] || t + 1 == horizon_) continue;
+    if (stopped()) {
+      whole = false;
+      alive_[0] = 0;  // the rest is the last action
+      continue;
+    }
     std::copy_n(action, action_dim_, b.action);
     rollouts_->step(alive_);
     steps_ += rollouts_->taken(0);
     alive_[0] = !b.terminated[0] && !b.truncated[0];
   }
+  return whole;
 }
 
 void Planner::draw_noise() {
@@ -256,10 +273,14 @@ void Planner::draw_noise() {
   }
 }
 
+const float* Planner::plan_row(int32_t step) const {
+  return plan_ + sz(std::min(step + ahead_, horizon_ - 1)) * sz(action_dim_);
+}
+
 void Planner::sample_action(int32_t sample, int32_t step, float* action) const {
   const size_t dim = sz(action_dim_), at = sz(step) * dim;
   if (sample == 1 && foreign_) {
-    std::copy_n(plan_ + at, dim, action);
+    std::copy_n(plan_row(step), dim, action);
     return;
   }
   const KnotRow& row = rows_[step];
@@ -271,7 +292,7 @@ void Planner::sample_action(int32_t sample, int32_t step, float* action) const {
   for (size_t j = 0; j < dim; ++j) action[j] = clip_unit(action[j]);
 }
 
-void Planner::roll_out(const Pool& pool, int32_t env) {
+bool Planner::roll_out(const Pool& pool, int32_t env) {
   rollouts_->copy(-1, pool, env);
   const Buffers& b = rollouts_->buffers();
   std::fill_n(alive_, samples_, uint8_t{1});
@@ -279,6 +300,7 @@ void Planner::roll_out(const Pool& pool, int32_t env) {
   double discount = 1;
   int32_t alive = samples_;
   for (int32_t t = 0; t < horizon_ && alive > 0; ++t, discount *= discount_) {
+    if (stopped()) return false;
     for (int32_t i = 0; i < samples_; ++i)
       if (alive_[i]) sample_action(i, t, b.action + sz(i) * sz(action_dim_));
     rollouts_->step(alive_);
@@ -296,6 +318,7 @@ void Planner::roll_out(const Pool& pool, int32_t env) {
     }
   }
   if (critic_ && alive > 0) add_terminal(discount);
+  return true;
 }
 
 void Planner::add_terminal(double discount) {
@@ -335,44 +358,65 @@ void Planner::move_centre() {
   std::swap(centre_, next_);
 }
 
+void Planner::describe_iteration(PlanInfo* out) const {
+  out->best_sample = order_[0];
+  out->best = courses_[order_[0]];
+  int32_t feasible = 0;
+  for (int32_t i = 0; i < samples_; ++i) feasible += !courses_[i].lost && within(courses_[i], rule_);
+  out->feasible_share = static_cast<double>(feasible) / samples_;
+}
+
+void Planner::make_plan(const Pool& pool, int32_t env, PlanInfo* out) {
+  rollouts_->copy(0, pool, env);  // refuses a pool that does not fit
+  steps_ = 0;
+  ahead_ = given_ ? 1 : 0;
+  set_budgets(pool, env);
+  for (int32_t k = 0; k < knots_; ++k) std::copy_n(noise_std_, action_dim_, sigma_ + sz(k) * sz(action_dim_));
+  foreign_ = policy_ && planned_ && warm_;
+  const Stream first = stream_;
+  try {
+    if (policy_)
+      out->cut = !propose(pool, env);
+    else if (!warm_)
+      start_plan(centre_);
+    else
+      for (int32_t t = 0; t < horizon_; ++t)
+        std::copy_n(plan_row(t), action_dim_, centre_ + sz(t) * sz(action_dim_));
+    while (!out->cut && out->iterations < iterations_) {
+      const Stream before = stream_;
+      draw_noise();
+      if (!roll_out(pool, env)) {
+        stream_ = before;  // the next call's noise is as if this iteration had not begun
+        out->cut = true;
+        break;
+      }
+      move_centre();
+      ++out->iterations;
+      describe_iteration(out);
+      foreign_ = false;
+    }
+  } catch (...) {
+    stream_ = first;
+    throw;
+  }
+  out->steps = steps_;
+}
+
 void Planner::act(const Pool& pool, int32_t env, float* action, PlanInfo* info) {
   const FpMode mode;
   rollouts_->need_same(pool, "pool", "the planner");
   if (!pool.running(env)) fail(Code::kState, "act: no episode runs in world %d; reset it first", env);
-  const size_t count = sz(horizon_) * sz(action_dim_);
-  PlanInfo out;
-  steps_ = 0;
+  cancel_.check();
   const bool follow = planned_ && given_ && since_ + 1 < replan_;
-  if (!follow) rollouts_->copy(0, pool, env);  // a pool that does not fit changes nothing
-  if (given_) shift_plan();
-  given_ = false;
-  if (!follow) {
-    if (!warm_) start_plan(plan_);
-    set_budgets(pool, env);
-    for (int32_t k = 0; k < knots_; ++k)
-      std::copy_n(noise_std_, action_dim_, sigma_ + sz(k) * sz(action_dim_));
-    foreign_ = policy_ && planned_ && warm_;
-    if (policy_)
-      propose(pool, env);
-    else
-      std::copy_n(plan_, count, centre_);
-    for (int32_t i = 0; i < iterations_; ++i, foreign_ = false) {
-      draw_noise();
-      roll_out(pool, env);
-      move_centre();
-    }
-    std::copy_n(centre_, count, plan_);
-    planned_ = true;
-    out.planned = true;
-    out.best_sample = order_[0];
-    out.best = courses_[order_[0]];
-    int32_t feasible = 0;
-    for (int32_t i = 0; i < samples_; ++i) feasible += !courses_[i].lost && within(courses_[i], rule_);
-    out.feasible_share = static_cast<double>(feasible) / samples_;
-    out.steps = steps_;
-  }
-  since_ = follow ? since_ + 1 : 0;
-  given_ = true;
+  PlanInfo out;
+  if (!follow) make_plan(pool, env, &out);
+  if (out.iterations > 0 || !planned_)
+    std::copy_n(centre_, sz(horizon_) * sz(action_dim_), plan_);
+  else if (given_)
+    shift_plan();
+  // a plan that was not made is made in the next call
+  since_ = out.iterations > 0 ? 0 : follow ? since_ + 1 : replan_ - 1;
+  planned_ = given_ = true;
   std::copy_n(plan_, action_dim_, last_);
   std::copy_n(plan_, action_dim_, action);
   if (info) *info = out;

@@ -10,7 +10,11 @@
 //   cem          the mean of the elites' a_i(t); s_k becomes the deviation of their e_ik
 // The world is its own model: rollouts know what it will draw. The sum of a rollout ends where its episode
 // does; one that is still running at H adds the critic's value.
+//
+// A call ends early, between two steps of its rollouts, by cancel(): an error, and nothing has changed; or by
+// config.stop: what the finished iterations made of the plan is the plan, as if there were no more of them.
 #pragma once
+#include "base/cancel.hpp"
 #include "env/pool.hpp"
 #include "plan/knots.hpp"
 #include "plan/ranking.hpp"
@@ -52,15 +56,18 @@ struct PlannerConfig {
   const char* settings = nullptr;
   PlanPolicy* policy = nullptr;  // both outlive the planner; null: none
   PlanCritic* critic = nullptr;
+  int32_t (*stop)(void* user, int64_t steps) = nullptr;  // not 0: no more of this plan; null: never
+  void* user = nullptr;                                  // given to stop
   HostHooks hooks;
 };
 
 struct PlanInfo {
-  Course best;                // of the last iteration
+  Course best;                // of the last iteration that was finished, as the two below
   int32_t best_sample = 0;    // its number
-  double feasible_share = 0;  // of the last iteration's samples
-  bool planned = false;       // false: the plan was followed (option replan)
-  int64_t steps = 0;          // that the rollouts took
+  double feasible_share = 0;  // of its samples
+  int32_t iterations = 0;     // finished; 0: the plan of before was followed
+  bool cut = false;           // config.stop ended it
+  int64_t steps = 0;          // that the rollouts took, those of an unfinished iteration too
 };
 
 class Planner {
@@ -69,9 +76,10 @@ class Planner {
   static void destroy(Planner* p);
 
   // Plans from the present state of a world and gives the first action of the plan. Error(kState) where no
-  // episode runs, else as Pool::copy. No heap use.
+  // episode runs, Error(kCancelled), else as Pool::copy: nothing has changed then. No heap use.
   void act(const Pool& pool, int32_t env, float* action, PlanInfo* info);
-  void forget();  // the plan: the next call starts anew; the noise goes on
+  void cancel() { cancel_.set(); }  // from any thread or signal handler
+  void forget();                    // the plan: the next call starts anew; the noise goes on
   // [horizon][action_dim]; row 0 is the action that act gave. What set_plan takes is the next call's own, not
   // shifted; entries are clipped. Error(kArgument) for one that is not finite.
   const float* plan() const { return plan_; }
@@ -100,13 +108,17 @@ class Planner {
   void start_plan(float* plan) const;
   void shift_plan();
   void set_budgets(const Pool& pool, int32_t env);
-  // The policy's rollout from the state of `env`: its actions become the centre.
-  void propose(const Pool& pool, int32_t env);
+  void make_plan(const Pool& pool, int32_t env, PlanInfo* out);  // as the centre
+  bool stopped();                                                // asked between two steps; Error(kCancelled)
+  // The policy's rollout from the state of `env`: its actions become the centre. False: stopped on the way.
+  bool propose(const Pool& pool, int32_t env);
   void draw_noise();
+  const float* plan_row(int32_t step) const;  // of the plan as this call finds it
   void sample_action(int32_t sample, int32_t step, float* action) const;
-  void roll_out(const Pool& pool, int32_t env);
+  bool roll_out(const Pool& pool, int32_t env);  // false: stopped on the way
   void add_terminal(double discount);
   void move_centre();
+  void describe_iteration(PlanInfo* out) const;
 
   HostHooks hooks_;
   Options options_;
@@ -118,6 +130,9 @@ class Planner {
   double limit_[kMaxTaskCosts] = {};  // of an episode, < 0: none
   PlanPolicy* policy_ = nullptr;
   PlanCritic* critic_ = nullptr;
+  int32_t (*stop_)(void*, int64_t) = nullptr;
+  void* user_ = nullptr;
+  CancelFlag cancel_;
 
   Pool* rollouts_ = nullptr;  // [samples] worlds
   int32_t action_dim_ = 0, cost_dim_ = 0;
@@ -140,6 +155,7 @@ class Planner {
   Stream stream_;
   bool planned_ = false, given_ = false;  // there is a plan; its first row was given, so it is shifted next
   bool foreign_ = false;                  // sample 1 is the plan, not noise about the centre
+  int32_t ahead_ = 0;                     // rows of the plan that were given
   int32_t since_ = 0;                     // calls since it was made
 };
 

@@ -197,7 +197,7 @@ TEST_F(Structs, InitFunctionsFillNoMoreThanAStructCanHave) {
   tried(
       "rdm_planner_config_init",
       [](void* c, size_t n) { return rdm_planner_config_init(static_cast<rdm_planner_config*>(c), n); },
-      sizeof(rdm_planner_config));
+      offsetof(rdm_planner_config, stop));
 }
 
 // What a newer caller's struct has and this library does not know is 0, not what stood there.

@@ -1,8 +1,12 @@
 // rdm_planner_*: plans that are near the optimum of a known problem, within its limit, the same for any
-// threads and after a saved state; each method's move against the formula, each refusal.
+// threads and after a saved state; each method's move against the formula, each refusal; what a call does that
+// is stopped or cancelled.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <csignal>
 #include <limits>
+#include <thread>
 
 #include "base/rng.hpp"
 #include "contract.hpp"
@@ -435,6 +439,273 @@ Policy policy_of(const Agent& agent) {
   rdm_policy* p = nullptr;
   EXPECT_EQ(rdm_policy_read(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
   return Policy(p);
+}
+
+// Lets a call ask so many times, then says stop.
+struct Patience {
+  int64_t left = 0;
+  int64_t asked = 0, steps = 0;
+
+  static int32_t stop(void* user, int64_t steps) {
+    auto* p = static_cast<Patience*>(user);
+    EXPECT_GE(steps, p->asked == 0 ? 0 : p->steps);
+    p->steps = steps;
+    return p->asked++ >= p->left;
+  }
+};
+Planner planner_of(const Pool& pool, const char* settings, Patience* patience,
+                   const rdm_policy* policy = nullptr, int32_t threads = 0) {
+  rdm_planner_config c = config_of(pool, settings);
+  c.stop = patience ? Patience::stop : nullptr;
+  c.user = patience;
+  c.policy = policy;
+  c.num_threads = threads;
+  return planner_of(c);
+}
+constexpr const char* kMethods[] = {"method=predictive\n", "method=cem\nelites=3\n", "method=mppi\n"};
+
+TEST(Stops, WhatWasFinishedCountsAsIfMoreHadNotBeenAskedFor) {
+  for (const char* method : kMethods)
+    for (int32_t finished = 1; finished <= 3; ++finished)
+      for (int32_t begun = 0; begun < 5; ++begun) {  // steps of the next iteration
+        const Pool pool = pool_of("lqr_line", kLine), twin = pool_of("lqr_line", kLine);
+        const std::string settings = std::string(method) + "samples=9\nhorizon=5\niterations=";
+        Patience patience;
+        const Planner cut = planner_of(pool, (settings + "4").c_str(), &patience);
+        const Planner fewer = planner_of(twin, (settings + std::to_string(finished)).c_str());
+        const rdm_buffers b = buffers_of(pool.get()), t = buffers_of(twin.get());
+        for (int call = 0; call < 4; ++call) {
+          patience = {5 * finished + begun};
+          const rdm_plan_info info = act(cut, pool, b.action), other = act(fewer, twin, t.action);
+          ASSERT_EQ(b.action[0], t.action[0]) << settings << finished << ' ' << begun << ' ' << call;
+          ASSERT_EQ(plan_of(cut), plan_of(fewer));
+          EXPECT_EQ(info.cut, 1);
+          EXPECT_EQ(info.planned, 1);
+          EXPECT_EQ(info.iterations, finished);
+          EXPECT_EQ(info.steps, 9 * (5 * finished + begun));
+          EXPECT_EQ(patience.steps, info.steps) << "what it was asked with last";
+          EXPECT_EQ(other.cut, 0);
+          EXPECT_EQ(other.iterations, finished);
+          EXPECT_EQ(info.best, other.best);
+          EXPECT_EQ(info.ret, other.ret);
+          EXPECT_EQ(info.feasible_share, other.feasible_share);
+          ASSERT_EQ(rdm_pool_step(pool.get()), RDM_OK);
+          ASSERT_EQ(rdm_pool_step(twin.get()), RDM_OK);
+        }
+      }
+}
+
+TEST(Stops, OnesThatNeverComeChangeNothing) {
+  for (const char* method : kMethods) {
+    const Pool pool = pool_of("lqr_line", kLine);
+    const std::string settings = std::string(method) + "samples=9\nhorizon=5\niterations=3";
+    Patience patience{15};
+    const Planner asked = planner_of(pool, settings.c_str(), &patience);
+    const Planner plain = planner_of(pool, settings.c_str());
+    float x = 0, y = 0;
+    const rdm_plan_info info = act(asked, pool, &x);
+    act(plain, pool, &y);
+    EXPECT_EQ(info.cut, 0) << "an answer is asked for before a step, not behind the last one";
+    EXPECT_EQ(info.iterations, 3);
+    EXPECT_EQ(patience.asked, 15);
+    EXPECT_EQ(x, y);
+    EXPECT_EQ(state_of(asked), state_of(plain));
+  }
+}
+
+TEST(Stops, BeforeTheFirstIterationThePlanIsFollowedAndTheNextCallPlans) {
+  const Pool pool = pool_of("lqr_line", kLine);
+  Patience patience{1000};
+  const Planner planner =
+      planner_of(pool, "method=cem\nsamples=9\nhorizon=5\nreplan=3\niterations=2", &patience);
+  float action = 9;
+  patience = {4};  // there is no plan yet
+  rdm_plan_info info = act(planner, pool, &action);
+  EXPECT_EQ(info.cut, 1);
+  EXPECT_EQ(info.planned, 0);
+  EXPECT_EQ(info.iterations, 0);
+  EXPECT_EQ(info.steps, 36);
+  EXPECT_EQ(info.ret, 0);
+  ASSERT_EQ(rdm_pool_get_initial_mean(pool.get(), &action), RDM_OK);
+  EXPECT_EQ(plan_of(planner), std::vector<float>(5, action));
+  patience = {1000};
+  EXPECT_EQ(act(planner, pool, &action).planned, 1) << "option replan counts from a plan that was made";
+  EXPECT_EQ(act(planner, pool, &action).planned, 0);
+  EXPECT_EQ(act(planner, pool, &action).planned, 0);
+  std::vector<float> plan = plan_of(planner);
+  const auto stream = state_of(planner);
+  patience = {0};
+  info = act(planner, pool, &action);
+  EXPECT_EQ(info.cut, 1);
+  EXPECT_EQ(info.steps, 0);
+  std::rotate(plan.begin(), plan.begin() + 1, plan.end());
+  plan[4] = plan[3];
+  EXPECT_EQ(plan_of(planner), plan);
+  EXPECT_EQ(action, plan[0]);
+  patience = {1000};
+  EXPECT_EQ(act(planner, pool, &action).planned, 1);
+}
+
+TEST(Stops, AtEachPlaceTheSameBytesForAnyThreads) {
+  const auto course = [](int32_t threads, int64_t asks, bool with_policy) {
+    const Pool pool = pool_of("hand_over_safe_finger", "max_steps=40");
+    const Agent agent = agent_of(pool, "hidden=8");
+    const Policy policy = policy_of(agent);
+    Patience patience;
+    const Planner planner = planner_of(pool, "method=cem\nelites=3\nsamples=6\nhorizon=4\niterations=2",
+                                       &patience, with_policy ? policy.get() : nullptr, threads);
+    const rdm_buffers b = buffers_of(pool.get());
+    std::vector<unsigned char> out;
+    for (int call = 0; call < 3; ++call) {
+      patience = {call == 1 ? asks : 1000};
+      const rdm_plan_info info = act(planner, pool, b.action);
+      const auto* bytes = reinterpret_cast<const unsigned char*>(&info);
+      out.insert(out.end(), bytes, bytes + sizeof info);
+      const auto state = state_of(planner);
+      out.insert(out.end(), state.begin(), state.end());
+      EXPECT_EQ(rdm_pool_step(pool.get()), RDM_OK);
+    }
+    return out;
+  };
+  for (const bool with_policy : {false, true}) {
+    std::vector<unsigned char> last;
+    for (const int64_t asks : {0, 1, 4, 5, 7, 8}) {
+      const auto one = course(1, asks, with_policy);
+      EXPECT_EQ(course(2, asks, with_policy), one) << asks;
+      EXPECT_NE(one, last) << asks;
+      last = one;
+    }
+  }
+}
+
+TEST(Stops, WithoutAPlanThePolicyActs) {
+  const Pool pool = pool_of("lqr_line", kLine);
+  const Agent agent = agent_of(pool, "hidden=4");
+  set_output(agent, "actor", 0.25f);
+  const Policy policy = policy_of(agent);
+  for (const int64_t asks : {0, 2, 4, 6}) {
+    Patience patience{asks};
+    const Planner planner = planner_of(pool, "samples=4\nhorizon=5", &patience, policy.get());
+    float action = 0;
+    const rdm_plan_info info = act(planner, pool, &action);
+    EXPECT_EQ(info.cut, 1) << asks;
+    EXPECT_EQ(info.iterations, 0);
+    EXPECT_EQ(action, 0.25f);
+    EXPECT_EQ(plan_of(planner), std::vector<float>(5, 0.25f));
+  }
+}
+
+TEST(Stops, WhoIsAskedMayNotCallThePlanner) {
+  struct Host {
+    rdm_planner* planner = nullptr;
+    rdm_result inner = RDM_OK;
+    static int32_t stop(void* user, int64_t) {
+      auto* h = static_cast<Host*>(user);
+      h->inner = rdm_planner_reset(h->planner);
+      return 0;
+    }
+  } host;
+  const Pool pool = pool_of("lqr_line", kLine);
+  rdm_planner_config c = config_of(pool, "samples=3\nhorizon=2");
+  c.stop = Host::stop;
+  c.user = &host;
+  const Planner planner = planner_of(c);
+  host.planner = planner.get();
+  float action = 0;
+  EXPECT_EQ(act(planner, pool, &action).cut, 0);
+  EXPECT_EQ(host.inner, RDM_ERROR_STATE);
+}
+
+// What a cancelled call leaves: everything as it was, so that the next one is the twin's.
+struct Cancelled {
+  static constexpr int kMost = 10000;  // questions
+  Pool pool = pool_of("lqr_line", kLine);
+  std::atomic<int> asked = 0;
+  void (*when_asked)(Cancelled*) = nullptr;
+  Planner planner, twin;
+
+  explicit Cancelled(void (*then)(Cancelled*)) {
+    const char* settings = "method=cem\nsamples=64\nhorizon=20\niterations=1000";
+    rdm_planner_config c = config_of(pool, settings);
+    c.stop = [](void* user, int64_t) {
+      auto* self = static_cast<Cancelled*>(user);
+      if (++self->asked == 700 && self->when_asked) self->when_asked(self);
+      return self->asked > kMost ? 1 : 0;
+    };
+    c.user = this;
+    planner = planner_of(c);
+    when_asked = nullptr;
+    twin = planner_of(pool, "method=cem\nsamples=64\nhorizon=20\niterations=1");
+    float action = 9;
+    asked = kMost - 20;  // one iteration
+    EXPECT_EQ(act(planner, pool, &action).cut, 1);
+    EXPECT_EQ(act(twin, pool, &action).cut, 0);
+    asked = 0;
+    when_asked = then;
+  }
+  void expect_unheard_of() {
+    float action = 9;
+    rdm_plan_info info{};
+    info.struct_size = sizeof info;
+    info.best = 77;
+    const auto before = state_of(planner);
+    EXPECT_EQ(rdm_planner_act(planner.get(), pool.get(), 0, &action, &info), RDM_ERROR_CANCELLED);
+    EXPECT_LE(asked, kMost) << "it ended by the stop";
+    EXPECT_STREQ(rdm_planner_error(planner.get()), "cancelled by the host");
+    EXPECT_EQ(action, 9);
+    EXPECT_EQ(info.best, 77);
+    EXPECT_EQ(state_of(planner), before);
+    // once
+    when_asked = nullptr;
+    asked = kMost - 20;
+    float x = 0, y = 1;
+    EXPECT_EQ(act(planner, pool, &x).iterations, 1);
+    act(twin, pool, &y);
+    EXPECT_EQ(x, y);
+    EXPECT_EQ(plan_of(planner), plan_of(twin));
+  }
+};
+
+TEST(Cancels, FromAnotherThread) {
+  static std::atomic<bool> done = false;
+  Cancelled c([](Cancelled*) {
+    while (!done) std::this_thread::yield();
+  });
+  std::thread other([&] {
+    while (c.asked < 700) std::this_thread::yield();
+    rdm_planner_cancel(c.planner.get());
+    done = true;
+  });
+  c.expect_unheard_of();
+  other.join();
+}
+
+TEST(Cancels, FromASignalHandler) {
+  static rdm_planner* planner = nullptr;
+  Cancelled c([](Cancelled*) { EXPECT_EQ(std::raise(SIGINT), 0); });
+  planner = c.planner.get();
+  const auto before = std::signal(SIGINT, [](int) { rdm_planner_cancel(planner); });
+  c.expect_unheard_of();
+  std::signal(SIGINT, before);
+}
+
+TEST(Cancels, OfNothingThatRunsIsHeardByTheNextCall) {
+  Cancelled c(nullptr);
+  rdm_planner_cancel(c.planner.get());
+  c.expect_unheard_of();
+  rdm_planner_cancel(nullptr);
+}
+
+TEST(Cancels, AFollowedPlanHearsItToo) {
+  const Pool pool = pool_of("lqr_line", kLine);
+  const Planner planner = planner_of(pool, "samples=3\nhorizon=4\nreplan=4");
+  float action = 0;
+  EXPECT_EQ(act(planner, pool, &action).planned, 1);
+  const auto before = state_of(planner);
+  rdm_planner_cancel(planner.get());
+  EXPECT_EQ(rdm_planner_act(planner.get(), pool.get(), 0, &action, nullptr), RDM_ERROR_CANCELLED);
+  EXPECT_EQ(state_of(planner), before);
+  EXPECT_EQ(act(planner, pool, &action).planned, 0);
 }
 
 TEST(Proposals, APolicyAloneActsAsItDoesWithoutAPlanner) {

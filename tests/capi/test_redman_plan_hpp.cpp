@@ -56,6 +56,9 @@ TEST(RedmanPlanHpp, WhatFailsThrows) {
   redman::Planner planner(redman::planner_config(pool, kSettings));
   float action = 0;
   EXPECT_THROW(planner.act(pool, 1, &action), redman::Error);
+  planner.cancel();
+  EXPECT_THROW(planner.act(pool, 0, &action), redman::Error);
+  EXPECT_EQ(planner.act(pool, 0, &action).cut, 0);
   EXPECT_THROW(planner.set_state(redman::Bytes(7)), redman::Error);
 }
 

@@ -53,7 +53,7 @@ class ResultCode(enum.IntEnum):
     UNSUPPORTED = -8  # left out of this build, or not defined for this combination
     PHYSICS = -9  # the physics engine gave up where no world could be flagged
     NOT_FOUND = -10  # unknown name (the text offers the nearest), missing file
-    CANCELLED = -11  # rdm_agent_cancel was called; the handle is good
+    CANCELLED = -11  # the host ended the call; the handle is good
     INTERNAL = -99  # a defect of redman
 
 
@@ -264,6 +264,9 @@ class rdm_build(Structure):
 
 
 rdm_body = CFUNCTYPE(None, c_void_p, c_int32)
+
+
+rdm_stop = CFUNCTYPE(c_int32, c_void_p, c_int64)
 
 
 class rdm_host(Structure):
@@ -1744,6 +1747,8 @@ class rdm_planner_config(Structure):
     error: [error_size] the text of a failing call that takes this config; NULL
     error_size: bytes, terminator included; what is longer is cut
     reserved2: 0
+    stop: asked by rdm_planner_act before every step of its rollouts; NULL: plans are always finished
+    user: given to `stop`; may be NULL
     """
 
     struct_size: int
@@ -1762,6 +1767,8 @@ class rdm_planner_config(Structure):
     error: int | None
     error_size: int
     reserved2: int
+    stop: Any
+    user: int | None
     _fields_ = [
         ("struct_size", c_uint32),
         ("num_threads", c_int32),
@@ -1779,6 +1786,8 @@ class rdm_planner_config(Structure):
         ("error", c_void_p),
         ("error_size", c_int32),
         ("reserved2", c_int32),
+        ("stop", rdm_stop),
+        ("user", c_void_p),
     ]
 
 
@@ -1820,42 +1829,50 @@ class rdm_planner_spec(Structure):
 class PlanInfo(Record):
     """The values of rdm_plan_info."""
 
-    planned: int  # 1; 0: the plan was followed (option replan), the rest is 0
-    best: int  # sample that is best in the last iteration
+    planned: int  # 1; 0: the plan was followed, all else but cut and steps is 0
+    best: int  # sample that is best in the last iteration that was finished
+    cut: int  # 1: config.stop ended it early; else 0
     ret: float  # of that sample: discounted sum of rewards, and the critic's value
     cost: tuple[float, ...]  # of that sample, sums of each column
-    feasible_share: float  # of the last iteration's samples: within what the limits leave
+    feasible_share: float  # of that iteration's samples: within what the limits leave
     steps: int  # control steps of all rollouts
+    iterations: int  # finished: option iterations, or fewer with cut
 
 
 class rdm_plan_info(Structure):
     """struct_size: in: bytes
-    planned: 1; 0: the plan was followed (option replan), the rest is 0
-    best: sample that is best in the last iteration
-    reserved: 0
+    planned: 1; 0: the plan was followed, all else but cut and steps is 0
+    best: sample that is best in the last iteration that was finished
+    cut: 1: config.stop ended it early; else 0
     ret: of that sample: discounted sum of rewards, and the critic's value
     cost: of that sample, sums of each column
-    feasible_share: of the last iteration's samples: within what the limits leave
+    feasible_share: of that iteration's samples: within what the limits leave
     steps: control steps of all rollouts
+    iterations: finished: option iterations, or fewer with cut
+    reserved: 0
     """
 
     struct_size: int
     planned: int
     best: int
-    reserved: int
+    cut: int
     ret: float
     cost: Any
     feasible_share: float
     steps: int
+    iterations: int
+    reserved: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("planned", c_int32),
         ("best", c_int32),
-        ("reserved", c_int32),
+        ("cut", c_int32),
         ("ret", c_double),
         ("cost", c_double * RDM_MAX_COSTS),
         ("feasible_share", c_double),
         ("steps", c_int64),
+        ("iterations", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -4130,6 +4147,17 @@ FUNCTIONS: dict[str, Function] = {
         """Plans from the state that world env of the pool is in now, and writes the plan's first action to
         action [action_dim]. The pool is only read; it has the task and options of the one that the
         planner was made for, else ARGUMENT. io may be NULL. STATE where no episode runs. No heap.
+        Where config.stop says so it plans no further: action, plan and what follows have the bytes of a
+        planner whose option iterations is io.iterations. Before the first iteration was finished the plan
+        of before is followed, shifted by a step; without one, the policy's rollout so far or
+        rdm_pool_get_initial_mean; and the next call plans. CANCELLED after rdm_planner_cancel: as after
+        every error, plan, noise, action and io are as before.
+        """),
+    "rdm_planner_cancel": Function(
+        None, {"planner": c_void_p},
+        {}, True,
+        """Async-signal-safe, from any thread: the running rdm_planner_act returns CANCELLED before the next
+        step of its rollouts, or else the next one does. NULL is fine.
         """),
     "rdm_planner_reset": Function(
         c_int32, {"planner": c_void_p},

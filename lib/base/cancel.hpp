@@ -1,4 +1,4 @@
-// A host's wish that a long call stop, heard between minibatches and between products of the trust region.
+// A host's wish that a long call end, heard between minibatches, products of the trust region, steps of a plan.
 #pragma once
 #include <atomic>
 
