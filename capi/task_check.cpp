@@ -47,6 +47,19 @@ struct Heap {
   int32_t calls[5] = {}, grown[5] = {};
 };
 
+// Whether the host still wants to know.
+struct Patience {
+  const char* task;
+  rdm_stop stop;
+  void* user;
+  int64_t steps = 0;
+  void ask() const {
+    if (stop && stop(user, steps) != 0)
+      fail(Code::kCancelled, "task %s: the host ended the check after %lld control steps", task,
+           static_cast<long long>(steps));
+  }
+};
+
 // Bytes that a function may write, between two guards.
 class Guarded {
  public:
@@ -83,10 +96,11 @@ struct Trace {
 // One world and the bytes of a task, whose functions are called one by one.
 class Stage {
  public:
-  Stage(const ResolvedPoolConfig& plan, Heap* heap)
+  Stage(const ResolvedPoolConfig& plan, Heap* heap, Patience* patience)
       : plan_(plan),
         task_(*plan.task),
         heap_(heap),
+        patience_(patience),
         state_(task_.state_bytes()),
         obs_(sizeof(float) * static_cast<size_t>(plan.obs_dim)),
         action_(sizeof(float) * static_cast<size_t>(plan.action_dim)) {
@@ -114,6 +128,8 @@ class Stage {
 
   // A control step; false when the episode is over or the world diverged.
   bool step(Stream& actions) {
+    patience_->ask();
+    ++patience_->steps;
     ++step_;
     auto* action = reinterpret_cast<float*>(action_.data());
     actions.signed_units(action, plan_.action_dim);
@@ -238,6 +254,7 @@ class Stage {
   const ResolvedPoolConfig& plan_;
   const Task& task_;
   Heap* heap_;
+  Patience* patience_;
   Arena arena_;
   World* world_ = nullptr;
   Guarded state_, obs_, action_;
@@ -270,9 +287,9 @@ void compare(const char* task, const Vector<Trace>& a, const Vector<Trace>& b, c
     fail(Code::kArgument, "task %s: judge: an episode has another length %s", task, when);
 }
 
-void check_functions(const ResolvedPoolConfig& plan) {
+void check_functions(const ResolvedPoolConfig& plan, Patience* patience) {
   Heap heap;
-  Stage one(plan, &heap), two(plan, &heap), other(plan, &heap);
+  Stage one(plan, &heap, patience), two(plan, &heap, patience), other(plan, &heap, patience);
   for (int32_t e = 0; e < kEpisodes; ++e) {
     const auto seed = static_cast<uint64_t>(11 + e);
     // a world of another seed steps in between: nothing of it may be seen
@@ -337,13 +354,18 @@ void compare_rows(const Pool& a, const Pool& b, const char* task, int32_t step, 
       fail(Code::kArgument, "task %s: the state of world %d is another one %s; step %d", task, i, when, step);
 }
 
-// No function of the task failed in a world.
-void need_told(const Pool& p, int32_t step) {
-  for (int32_t i = 0; i < kPoolWorlds; ++i)
-    if (p.buffers().status[i] & kStatusTask) fail(Code::kArgument, "%s; step %d", p.task_error(i), step);
+// No function of the task may fail in a world.
+void step_pool(const PoolPtr& p, Baseline actions, int32_t step, Patience* patience) {
+  patience->ask();
+  p->baseline(actions);
+  p->step(nullptr);
+  for (int32_t i = 0; i < kPoolWorlds; ++i) {
+    patience->steps += p->taken(i);
+    if (p->buffers().status[i] & kStatusTask) fail(Code::kArgument, "%s; step %d", p->task_error(i), step);
+  }
 }
 
-void check_pools(PoolConfig config, const char* task) {
+void check_pools(PoolConfig config, const char* task, Patience* patience) {
   config.num_envs = kPoolWorlds;
   const PoolPtr one(Pool::create(config));
   config.num_threads = 2;
@@ -352,16 +374,11 @@ void check_pools(PoolConfig config, const char* task) {
   two->reset(nullptr, nullptr);
   Vector<unsigned char> bytes;
   for (int32_t step = 1; step <= kPoolSteps; ++step) {
-    for (Pool* p : {one.get(), two.get()}) {
-      p->baseline(Baseline::kRandom);
-      p->step(nullptr);
-      need_told(*p, step);
-    }
+    step_pool(one, Baseline::kRandom, step, patience);
+    step_pool(two, Baseline::kRandom, step, patience);
     compare_rows(*one, *two, task, step, "with two threads");
     if (step > kPoolSteps / 2) {
-      restored->baseline(Baseline::kRandom);
-      restored->step(nullptr);
-      need_told(*restored, step);
+      step_pool(restored, Baseline::kRandom, step, patience);
       compare_rows(*one, *restored, task, step, "in a pool that was restored");
     } else if (step == kPoolSteps / 2) {
       bytes.resize(one->state_size(-1));
@@ -372,9 +389,7 @@ void check_pools(PoolConfig config, const char* task) {
   }
   one->reset(nullptr, nullptr);
   for (int32_t step = 1; step <= kPoolSteps; ++step) {
-    one->baseline(Baseline::kHold);
-    one->step(nullptr);
-    need_told(*one, step);
+    step_pool(one, Baseline::kHold, step, patience);
     for (int32_t i = 0; i < kPoolWorlds; ++i)
       if (one->buffers().status[i] & kStatusDiverged)
         fail(Code::kArgument, "task %s: with the hold action world %d diverges; step %d", task, i, step);
@@ -383,7 +398,8 @@ void check_pools(PoolConfig config, const char* task) {
 
 }  // namespace
 
-rdm_result rdm_task_check(const char* task, const char* settings, char* error, int32_t error_size) {
+rdm_result rdm_task_check(const char* task, const char* settings, rdm_stop stop, void* user, char* error,
+                          int32_t error_size) {
   const rdm_result r = call([&] {
     need(task, "task");
     if (error && error_size < 1)
@@ -393,11 +409,12 @@ rdm_result rdm_task_check(const char* task, const char* settings, char* error, i
     config.hooks = host();
     config.task = task;
     config.settings = settings;
+    Patience patience{task, stop, user};
     {
       const ResolvedPoolConfig plan(config);
-      check_functions(plan);
+      check_functions(plan, &patience);
     }
-    check_pools(config, task);
+    check_pools(config, task, &patience);
   });
   if (r != RDM_OK && error && error_size > 0) copy_text(error, static_cast<size_t>(error_size), last_error());
   return r;

@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
   rdm_pool* pool = NULL;
   rdm_agent* agent = NULL;
   rdm_epoch e = {.struct_size = sizeof e};
-  int status = redman_plugin() || rdm_task_check("press", NULL, NULL, 0) ||
+  int status = redman_plugin() || rdm_task_check("press", NULL, NULL, NULL, NULL, 0) ||
                rdm_pool_config_init(&w, sizeof w) || rdm_agent_config_init(&l, sizeof l);
   w.task = "press", w.num_envs = 64;
   status = status || rdm_pool_create(&pool, &w) || rdm_pool_reset(pool, NULL, NULL) ||

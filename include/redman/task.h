@@ -23,7 +23,7 @@ extern "C" {
  *   rdm_task_def_init(&d, sizeof d);
  *   d.name = "press";  d.build = build;  d.reset = reset; ...
  *   if (rdm_task_create(&task, &d)) puts(rdm_last_error());
- *   if (rdm_task_check("press", NULL, NULL, 0)) puts(rdm_last_error());  the first broken promise
+ *   if (rdm_task_check("press", NULL, NULL, NULL, NULL, 0)) puts(rdm_last_error());  what it breaks
  *   config.task = "press"; ... rdm_pool_create(&p, &config) ...
  *
  * What the functions promise, and rdm_task_check tries:
@@ -382,9 +382,11 @@ RDM_API rdm_result rdm_task_destroy(int32_t task);
  * save and restore, rows within their fields and bounds, costs of 0 or more, nothing written past a
  * state or a row, no memory left behind. OK, or the error of making a pool, or ARGUMENT: the text
  * names the function, the step and the entry where a promise broke first; it goes to
- * error [error_size] too, NULL: not. `settings` as in rdm_pool_config; NULL: none. Seconds. */
-RDM_API rdm_result rdm_task_check(const char *task, const char *settings, char *error,
-                                  int32_t error_size);
+ * error [error_size] too, NULL: not. `settings` as in rdm_pool_config; NULL: none. Seconds: `stop`,
+ * NULL: never, is asked before every step of its worlds, and given `user`; CANCELLED where it says
+ * so, nothing is left behind. */
+RDM_API rdm_result rdm_task_check(const char *task, const char *settings, rdm_stop stop, void *user,
+                                  char *error, int32_t error_size);
 
 #ifdef __cplusplus
 }

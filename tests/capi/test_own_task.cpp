@@ -311,7 +311,7 @@ TEST(OwnTask, OptionsMayBeRanges) {
   heavy.step(20);
   plain.step(20);
   EXPECT_NE(heavy.b.obs[2], plain.b.obs[2]);
-  EXPECT_EQ(rdm_task_check("own_ranges", "push=0.5..2\ngravity=5..15", nullptr, 0), RDM_OK)
+  EXPECT_EQ(rdm_task_check("own_ranges", "push=0.5..2\ngravity=5..15", nullptr, nullptr, nullptr, 0), RDM_OK)
       << rdm_last_error();
 }
 
@@ -364,7 +364,8 @@ TEST(OwnTask, WorldsHaveConstantsOfTheirOwn) {
     uint32_t x = 0;
     std::memcpy(&x, rows.b.obs, sizeof x);
     bytes[way] = x;
-    EXPECT_EQ(rdm_task_check("own_scaled", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(rdm_task_check("own_scaled", nullptr, nullptr, nullptr, nullptr, 0), RDM_OK)
+        << rdm_last_error();
   }
   EXPECT_NE(bytes[0], bytes[1]);
   EXPECT_EQ(bytes[2], bytes[1]);
@@ -431,7 +432,7 @@ TEST(OwnTask, AnArmIsHeldByFeedForward) {
     Rows rows("own_arm", 1);
     rows.step(120);
     sag[held] = static_cast<double>(rows.b.cost_raw[0]);
-    EXPECT_EQ(rdm_task_check("own_arm", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(rdm_task_check("own_arm", nullptr, nullptr, nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
   }
   std::printf("sag of an arm after 2 s: %.3g rad, held %.3g rad\n", sag[0], sag[1]);
   EXPECT_GT(sag[0], 10 * sag[1]);

@@ -1,7 +1,8 @@
 // rdm_task_check names the first promise that a task breaks; tasks that keep them pass.
-#include <gtest/gtest.h>
-#include <redman/redman.h>
+#include <atomic>
+#include <thread>
 
+#include "contract.hpp"
 #include "own_task.hpp"
 
 namespace rdm::test {
@@ -10,23 +11,77 @@ namespace {
 TEST(TaskCheck, GoodTasksPass) {
   BallTask t("check_good");
   const Registered made(t.def);
-  EXPECT_EQ(rdm_task_check("check_good", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
-  EXPECT_EQ(rdm_task_check("check_good", "push=2\nengine=ode", nullptr, 0), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_task_check("check_good", nullptr, nullptr, nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_task_check("check_good", "push=2\nengine=ode", nullptr, nullptr, nullptr, 0), RDM_OK)
+      << rdm_last_error();
   for (int32_t i = 0; i < rdm_task_count(); ++i) {
     rdm_task task{};
     task.struct_size = sizeof task;
     ASSERT_EQ(rdm_task_at(i, &task), RDM_OK);
-    EXPECT_EQ(rdm_task_check(task.name, nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(rdm_task_check(task.name, nullptr, nullptr, nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
   }
 }
 
 TEST(TaskCheck, ATaskThatCannotBeMadeIsItsError) {
   char text[80] = "";
-  EXPECT_EQ(rdm_task_check("grasb", nullptr, text, sizeof text), RDM_ERROR_NOT_FOUND);
+  EXPECT_EQ(rdm_task_check("grasb", nullptr, nullptr, nullptr, text, sizeof text), RDM_ERROR_NOT_FOUND);
   EXPECT_STREQ(text, "task grasb: unknown; nearest is grasp");
-  EXPECT_EQ(rdm_task_check(nullptr, nullptr, nullptr, 0), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_task_check("grasp", "objekt=egg", nullptr, 0), RDM_ERROR_NOT_FOUND);
-  EXPECT_EQ(rdm_task_check("grasp", nullptr, text, 0), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_task_check(nullptr, nullptr, nullptr, nullptr, nullptr, 0), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_task_check("grasp", "objekt=egg", nullptr, nullptr, nullptr, 0), RDM_ERROR_NOT_FOUND);
+  EXPECT_EQ(rdm_task_check("grasp", nullptr, nullptr, nullptr, text, 0), RDM_ERROR_RANGE);
+}
+
+// Says stop when it was asked so many times; a flag that another thread may set does, too.
+struct Patience {
+  int64_t left;
+  int64_t asked = 0, steps = 0;
+  std::atomic<bool> enough = false;
+  std::atomic<bool> begun = false;
+
+  static int32_t stop(void* user, int64_t steps) {
+    auto* p = static_cast<Patience*>(user);
+    EXPECT_GE(steps, p->steps);
+    p->steps = steps;
+    p->begun = true;
+    return p->asked++ >= p->left || p->enough;
+  }
+};
+
+TEST(TaskCheck, EndsWhereItsHostSaysSo) {
+  CountingHost host;
+  ASSERT_EQ(rdm_init(&host.hooks), RDM_OK);
+  {
+    BallTask t("check_ends");
+    const Registered made(t.def);
+    const size_t live = host.live;
+    Patience whole{INT64_MAX};
+    ASSERT_EQ(rdm_task_check("check_ends", nullptr, Patience::stop, &whole, nullptr, 0), RDM_OK);
+    EXPECT_GT(whole.asked, 500);
+    EXPECT_GT(whole.steps, whole.asked);
+    for (const int64_t left : {int64_t{0}, int64_t{1}, whole.asked / 3, whole.asked / 2, whole.asked - 1}) {
+      Patience patience{left};
+      char text[128] = "";
+      EXPECT_EQ(rdm_task_check("check_ends", nullptr, Patience::stop, &patience, text, sizeof text),
+                RDM_ERROR_CANCELLED);
+      EXPECT_EQ(patience.asked, left + 1);
+      EXPECT_EQ(std::string(text), "task check_ends: the host ended the check after " +
+                                       std::to_string(patience.steps) + " control steps");
+      EXPECT_EQ(host.live, live) << left;
+    }
+    Patience last{whole.asked};
+    EXPECT_EQ(rdm_task_check("check_ends", nullptr, Patience::stop, &last, nullptr, 0), RDM_OK);
+  }
+  rdm_shutdown();
+}
+
+TEST(TaskCheck, EndsWhenAnotherThreadWantsIt) {
+  Patience patience{INT64_MAX};
+  std::thread other([&] {
+    while (!patience.begun) std::this_thread::yield();
+    patience.enough = true;
+  });
+  EXPECT_EQ(rdm_task_check("jenga", nullptr, Patience::stop, &patience, nullptr, 0), RDM_ERROR_CANCELLED);
+  other.join();
 }
 
 struct Broken {
@@ -67,7 +122,7 @@ TEST(TaskCheck, TheFirstBrokenPromiseIsNamed) {
     BallTask t("broken", broken.fault);
     const Registered made(t.def);
     char text[256] = "";
-    EXPECT_NE(rdm_task_check("broken", nullptr, text, sizeof text), RDM_OK) << broken.text;
+    EXPECT_NE(rdm_task_check("broken", nullptr, nullptr, nullptr, text, sizeof text), RDM_OK) << broken.text;
     EXPECT_NE(std::string(text).find(broken.text), std::string::npos) << text << "\nexpected " << broken.text;
     EXPECT_EQ(std::string(text).rfind("task broken: ", 0), 0u) << text;
     EXPECT_STREQ(rdm_last_error(), text);
@@ -80,7 +135,7 @@ TEST(TaskCheck, MemoryThatIsLeftBehindIsNamed) {
   BallTask t("leaks", Fault::kJudgeLeaks);
   t.user.leaked.reserve(100000);
   const Registered made(t.def);
-  EXPECT_EQ(rdm_task_check("leaks", nullptr, nullptr, 0), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_task_check("leaks", nullptr, nullptr, nullptr, nullptr, 0), RDM_ERROR_ARGUMENT);
   EXPECT_NE(std::strstr(rdm_last_error(), "judge: it leaves memory behind"), nullptr) << rdm_last_error();
   std::printf("%s\n", rdm_last_error());
 }

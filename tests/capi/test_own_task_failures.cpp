@@ -218,7 +218,8 @@ TEST(OwnTaskFailures, TheTaskCheckNamesAFailureThatOnlyPoolsSee) {
     return ++calls > 2000 ? rdm_fail(RDM_ERROR_IO, "worn out") : rdm_result{RDM_OK};
   };
   rdm_result r = RDM_OK;
-  for (int k = 0; k < 20 && r == RDM_OK; ++k) r = rdm_task_check("fails_in_pools", nullptr, nullptr, 0);
+  for (int k = 0; k < 20 && r == RDM_OK; ++k)
+    r = rdm_task_check("fails_in_pools", nullptr, nullptr, nullptr, nullptr, 0);
   EXPECT_EQ(r, RDM_ERROR_ARGUMENT);
   EXPECT_NE(std::string(rdm_last_error()).find("judge: worn out; step"), std::string::npos)
       << rdm_last_error();

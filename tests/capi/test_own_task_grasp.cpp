@@ -86,7 +86,7 @@ TEST(OwnGrasp, HasTheBytesOfTheLibrarysOwn) {
 TEST(OwnGrasp, KeepsItsPromises) {
   GraspTask t;
   const Registered made(t.def);
-  EXPECT_EQ(rdm_task_check("own_grasp", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_task_check("own_grasp", nullptr, nullptr, nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
 }
 
 }  // namespace

@@ -555,7 +555,7 @@ TEST(TaskText, IsTheTaskThatTheSeventhExampleWritesInC) {
       EXPECT_EQ(told.b.cost_raw[e], written.b.cost_raw[e]);
     }
   }
-  EXPECT_EQ(rdm_task_check("press_text", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_task_check("press_text", nullptr, nullptr, nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
   int32_t press = -1;
   ASSERT_EQ(rdm_task_find("press", &press), RDM_OK);
   EXPECT_EQ(rdm_task_destroy(press), RDM_OK);
@@ -564,7 +564,8 @@ TEST(TaskText, IsTheTaskThatTheSeventhExampleWritesInC) {
 TEST(TaskText, FilesThatShipKeepWhatATaskPromises) {
   int32_t task = -1;
   ASSERT_EQ(rdm_import_read_task_file(&task, (kScenes + "press.task").c_str()), RDM_OK) << rdm_import_error();
-  EXPECT_EQ(rdm_task_check("press_button", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_task_check("press_button", nullptr, nullptr, nullptr, nullptr, 0), RDM_OK)
+      << rdm_last_error();
   uint64_t hashes[3];
   for (int32_t threads = 0; threads < 3; ++threads) {
     Pool pool("press_button", 6, nullptr, threads);
@@ -623,7 +624,7 @@ TEST(TaskText, HandsOnArmsLeftOnesAndOptions) {
   for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(after[k], before[k], 2e-3) << "the arm sags";
   Pool other("text_arms", 1, "hand=shadow_hand");
   EXPECT_EQ(other.spec.action_dim, 6 + 20 + 20 + 6);
-  EXPECT_EQ(rdm_task_check("text_arms", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_task_check("text_arms", nullptr, nullptr, nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
 }
 
 }  // namespace

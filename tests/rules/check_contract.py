@@ -109,7 +109,7 @@ def main(root):
         if shape:
             words(where, shape, names)
             return "array"
-        if base == "void" and member:
+        if base == "void" and (member or name == "user"):
             return "passed through"
         if base in header.structs and not (member and base == "rdm_option"):
             return "struct in" if const else "struct out"

@@ -4698,13 +4698,15 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """Pools that have it keep it. ARGUMENT for the library's own."""),
     "rdm_task_check": Function(
-        c_int32, {"task": c_char_p, "settings": c_char_p, "error": c_void_p, "error_size": c_int32},
+        c_int32, {"task": c_char_p, "settings": c_char_p, "stop": rdm_stop, "user": c_void_p, "error": c_void_p, "error_size": c_int32},
         {}, True,
         """Tries what a task promises, any task: the same bytes for the same seed, any threads and after
         save and restore, rows within their fields and bounds, costs of 0 or more, nothing written past a
         state or a row, no memory left behind. OK, or the error of making a pool, or ARGUMENT: the text
         names the function, the step and the entry where a promise broke first; it goes to
-        error [error_size] too, NULL: not. `settings` as in rdm_pool_config; NULL: none. Seconds.
+        error [error_size] too, NULL: not. `settings` as in rdm_pool_config; NULL: none. Seconds: `stop`,
+        NULL: never, is asked before every step of its worlds, and given `user`; CANCELLED where it says
+        so, nothing is left behind.
         """),
 }
 
