@@ -84,11 +84,12 @@ void read_config(const rdm_agent_config* c, Config* out) {
   a.options = out->options.data();
   a.num_options = in.num_options;
   a.settings = in.settings;
-  if (in.num_fields < 0 || in.num_fields > 4096)
-    fail(Code::kRange, "config.num_fields: %d is outside [0, 4096]", in.num_fields);
+  if (in.num_fields < 0 || in.num_fields > kMaxFields)
+    fail(Code::kRange, "config.num_fields: %d is outside [0, %d]", in.num_fields, kMaxFields);
   if (in.num_fields > 0) need(in.fields, "config.fields");
   for (int32_t i = 0; i < in.num_fields; ++i)
-    out->fields.push_back({in.fields[i].name, in.fields[i].offset, in.fields[i].count});
+    out->fields.push_back({in.fields[i].name, in.fields[i].offset, in.fields[i].count,
+                           in.fields[i].unit ? in.fields[i].unit : ""});
   a.fields = out->fields.data();
   a.num_fields = in.num_fields;
 }

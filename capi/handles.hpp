@@ -3,6 +3,7 @@
 #pragma once
 #include "capi/in_use.hpp"
 #if RDM_WITH_SIM
+#include "capi/layouts.hpp"
 #include "env/pool.hpp"
 #include "robot/robot_copy.hpp"
 #include "sense/render/raycast.hpp"
@@ -29,6 +30,7 @@ struct rdm_pool {
   float* initial_mean = nullptr;  // [action_dim]
   double* cost_limits = nullptr;  // [cost_dim]
   rdm_field* fields = nullptr;    // [number of fields]
+  rdm::capi::Layout layout;       // these, for texts
   rdm::RaycastScratch raycast;
   rdm::RenderShape* shapes = nullptr;  // [num_shapes]
 };

@@ -1,6 +1,7 @@
 // rdm_policy_*: the frozen network.
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "capi/handles.hpp"
 
@@ -27,7 +28,7 @@ struct Given {
   unsigned char* at;
   size_t left;
 };
-void* cut(void* user, size_t bytes, size_t align) {
+void* cut_given(void* user, size_t bytes, size_t align) {
   auto* given = static_cast<Given*>(user);
   const size_t gap = (align - reinterpret_cast<uintptr_t>(given->at) % align) % align;
   if (bytes > given->left || gap > given->left - bytes) return nullptr;
@@ -35,7 +36,7 @@ void* cut(void* user, size_t bytes, size_t align) {
   given->at = block + bytes, given->left -= gap + bytes;
   return block;
 }
-void keep(void*, void*, size_t, size_t) {}
+void keep_given(void*, void*, size_t, size_t) {}
 
 // Of the handle, then what Policy::read takes, at any address.
 size_t memory_of(const void* bytes, size_t size) {
@@ -195,7 +196,7 @@ rdm_result rdm_policy_read_in(rdm_policy** out, const void* bytes, size_t size, 
     if (capacity < needed) fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, needed);
     Given given{static_cast<unsigned char*>(memory), capacity};
     HostHooks hooks;
-    hooks.user = &given, hooks.alloc = cut, hooks.release = keep;
+    hooks.user = &given, hooks.alloc = cut_given, hooks.release = keep_given;
     make(out, bytes, size, hooks);
   });
 }
@@ -234,6 +235,7 @@ rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
     info.num_point_classes = v.eyes.classes;
     info.num_features = v.eyes.features();
     info.point_color = v.eyes.color;
+    info.num_fields = v.num_fields;
     write_struct(io, info, offsetof(rdm_policy_info, activation), "io");
   });
 }
@@ -342,6 +344,17 @@ rdm_result rdm_policy_get_tensor(const rdm_policy* p, const char* name, float* o
   });
 }
 
+rdm_result rdm_policy_field_at(const rdm_policy* p, int32_t i, rdm_field_info* io) {
+  return call([&] {
+    need_handle(p);
+    const PolicyView& v = p->policy->view();
+    check_out(io, sizeof(rdm_field_info), "io");
+    need_index(i, v.num_fields, "i");
+    const ObsField& f = v.fields[i];
+    write_struct(io, {0, f.offset, f.count, 0, f.name, f.unit, NAN, NAN}, sizeof(rdm_field_info), "io");
+  });
+}
+
 rdm_result rdm_policy_get_columns(const rdm_policy* p, int32_t* columns, int32_t capacity, int32_t* count) {
   return call([&] {
     need_handle(p);
@@ -366,17 +379,52 @@ PointRows rdm::capi::read_points(const rdm_points* points, const PointNetShape& 
   return clouds;
 }
 
+namespace {
+// Which field is the first that differs, for the end of a text; "" where none does, or one side says none.
+struct FieldDifference {
+  FieldDifference(const PolicyView& v, const rdm_field* fields, int32_t count) {
+    if (v.num_fields == 0 || count == 0) return;
+    for (int32_t i = 0; i < std::max(v.num_fields, count); ++i) {
+      const ObsField* mine = i < v.num_fields ? &v.fields[i] : nullptr;
+      const rdm_field* theirs = i < count ? &fields[i] : nullptr;
+      if (mine && theirs && std::strcmp(mine->name, theirs->name) == 0 && mine->offset == theirs->offset &&
+          mine->count == theirs->count)
+        continue;
+      char has[96] = "nothing";
+      if (theirs) print_text(has, sizeof has, "%s [%d]", theirs->name, theirs->count);
+      if (mine)
+        print_text(text, sizeof text, "; field %d is %s [%d] to the policy, %s to the task", i, mine->name,
+                   mine->count, has);
+      else
+        print_text(text, sizeof text, "; field %d is nothing to the policy, %s to the task", i, has);
+      return;
+    }
+  }
+  char text[256] = "";
+};
+
+FieldDifference difference_of(const PolicyView& v, const rdm_spec& s) {
+#if RDM_WITH_SIM
+  const KnownLayout known(s.layout_hash);
+  return {v, known.fields(), known.count()};
+#else
+  return {v, nullptr, 0};
+#endif
+}
+}  // namespace
+
 void rdm::capi::check_policy(const PolicyView& v, const rdm_spec& s) {
   const char *origin = v.task[0] ? "; the policy learned in task " : "", *task = v.task;
   if (v.obs_dim() != s.obs_dim)
-    fail(Code::kVersion, "obs_dim: the policy has %d, the task %d%s%s", v.obs_dim(), s.obs_dim, origin, task);
+    fail(Code::kVersion, "obs_dim: the policy has %d, the task %d%s%s%s", v.obs_dim(), s.obs_dim,
+         difference_of(v, s).text, origin, task);
   if (v.action_dim() != s.action_dim)
     fail(Code::kVersion, "action_dim: the policy has %d, the task %d%s%s", v.action_dim(), s.action_dim,
          origin, task);
   if (v.layout_hash && s.layout_hash && v.layout_hash != s.layout_hash)
     fail(Code::kVersion,
-         "layout_hash: the policy learned another layout of observations or actions than the task has%s%s",
-         origin, task);
+         "layout_hash: the policy learned another layout of observations or actions than the task has%s%s%s",
+         difference_of(v, s).text, origin, task);
   if (v.control_dt > 0 && s.control_dt > 0 && std::abs(v.control_dt - s.control_dt) > 1e-6f)
     fail(Code::kVersion, "control_dt: the policy has %g s, the task %g s%s%s",
          static_cast<double>(v.control_dt), static_cast<double>(s.control_dt), origin, task);

@@ -150,6 +150,8 @@ rdm_result rdm_pool_create(rdm_pool** out, const rdm_pool_config* c) {
     try {
       p->pool = Pool::create(config.pool);
       fill_side(p);
+      p->layout.list(layout_hash(p->pool->task()), p->fields,
+                     static_cast<int32_t>(p->pool->task().fields().size()));
     } catch (...) {
       rdm_pool_destroy(p);
       throw;
@@ -161,6 +163,7 @@ rdm_result rdm_pool_create(rdm_pool** out, const rdm_pool_config* c) {
 void rdm_pool_destroy(rdm_pool* p) {
   if (!may_end(p)) return;
   const FpMode mode;
+  p->layout.end();
   if (p->pool) Pool::destroy(p->pool);
   retire(p);
   host_delete(p->hooks, p);

@@ -60,6 +60,7 @@ void Agent::carve(Arena& arena) {
   workers_.carve(arena, resolved_, nets_.size);
   collector_.carve(arena, resolved_);
   learner_.carve(arena, resolved_, nets_.size);
+  fields_ = keep_fields(arena, resolved_.config.fields, resolved_.config.num_fields);
   shuffle_ = arena.make<Stream>(static_cast<size_t>(resolved_.blocks));
   char* names = arena.make<char>(static_cast<size_t>(nets_.num_tensors()) * kTensorNameSize);
   names_ = reinterpret_cast<char(*)[kTensorNameSize]>(names);
@@ -554,6 +555,8 @@ void Agent::write_policy_file(Writer& out) {
   v.control_dt = resolved_.config.control_dt;
   v.layout_hash = resolved_.config.layout_hash;
   std::memcpy(v.task, resolved_.task, sizeof v.task);
+  v.fields = fields_;
+  v.num_fields = resolved_.config.num_fields;
   v.example_obs = n.shift;
   write_policy(out, v);
 }

@@ -187,6 +187,7 @@ class Agent {
   Regression regression_;
   Imitation imitation_;
   char (*names_)[kTensorNameSize] = nullptr;  // of the tensors
+  const ObsField* fields_ = nullptr;          // [num_fields] for policy files
 };
 
 }  // namespace rdm

@@ -127,4 +127,20 @@ Vector<int32_t> select_columns(const char* key, const char* list, const ObsField
   return selection.columns();
 }
 
+const ObsField* keep_fields(Arena& arena, const ObsField* fields, int32_t num_fields) {
+  auto* const kept = arena.make<ObsField>(static_cast<size_t>(num_fields));
+  const auto keep = [&](const char* text) {
+    const size_t size = std::strlen(text) * (is_clean_text(text) ? 1 : 4) + 1;
+    char* const to = arena.make<char>(size);
+    if (to) clean_text(to, size, text);
+    return to;
+  };
+  for (int32_t i = 0; i < num_fields; ++i) {
+    const ObsField& f = fields[i];
+    const ObsField copy = {keep(f.name), f.offset, f.count, keep(f.unit)};
+    if (kept) kept[i] = copy;
+  }
+  return kept;
+}
+
 }  // namespace rdm

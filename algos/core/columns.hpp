@@ -9,19 +9,17 @@
 #pragma once
 #include <cstdint>
 
-#include "base/host.hpp"
+#include "base/arena.hpp"
+#include "nn/obs_field.hpp"
 
 namespace rdm {
-
-// A part of an observation row.
-struct ObsField {
-  const char* name;
-  int32_t offset, count;
-};
 
 // The columns, ascending; empty when they are all of [0, obs_dim). Error(kNotFound) for a word that names
 // nothing, kArgument when nothing is left, or for names without fields.
 Vector<int32_t> select_columns(const char* key, const char* list, const ObsField* fields, int32_t num_fields,
                                int32_t obs_dim);
+
+// A copy in the arena; of texts what may be printed (base/text.hpp). Null while it measures.
+const ObsField* keep_fields(Arena& arena, const ObsField* fields, int32_t num_fields);
 
 }  // namespace rdm

@@ -56,7 +56,7 @@ void check_config(const AgentConfig& c) {
     fail(Code::kRange, "task: longer than %d characters", kOptionTextSize - 1);
   for (int32_t i = 0; c.initial_mean && i < c.action_dim; ++i)
     if (!std::isfinite(c.initial_mean[i])) fail(Code::kArgument, "initial_mean[%d] is not finite", i);
-  check_range("num_fields", c.num_fields, 0, 4096);
+  check_range("num_fields", c.num_fields, 0, kMaxFields);
   if (c.num_fields && !c.fields) fail(Code::kArgument, "fields: NULL with num_fields %d", c.num_fields);
   for (int32_t i = 0; i < c.num_fields; ++i) {
     const ObsField& f = c.fields[i];

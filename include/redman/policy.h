@@ -24,6 +24,8 @@ typedef struct rdm_policy_info { /* what a policy file tells of its network */
   int32_t num_point_classes;  /* that it tells points apart by, 0: none */
   int32_t num_features;       /* that its encoder makes of a cloud, 0 without */
   int32_t point_color;        /* whether it sees the colours of points: 0, 1 */
+  int32_t num_fields;         /* for rdm_policy_field_at; 0: the file says none */
+  int32_t reserved;           /* 0 */
 } rdm_policy_info;
 RDM_API rdm_result rdm_policy_read(rdm_policy **out, const void *bytes,
                                    size_t size); /* copies bytes [size] */
@@ -70,7 +72,11 @@ RDM_API rdm_result rdm_policy_tensor_at(const rdm_policy *p, int32_t i, rdm_tens
 /* Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE. */
 RDM_API rdm_result rdm_policy_get_tensor(const rdm_policy *p, const char *name, float *out,
                                          size_t count);
-/* OK, or VERSION_MISMATCH with a text that says which field of the spec differs. */
+/* Part i of a row, whose names are the policy's; bounds are unknown. RANGE ends the list. */
+RDM_API rdm_result rdm_policy_field_at(const rdm_policy *p, int32_t i, rdm_field_info *io);
+/* OK, or VERSION_MISMATCH with a text that says which field of the spec differs; where rows are of
+ * another layout, the first part that differs, if the policy says its parts and a pool of the spec's
+ * layout lives. */
 RDM_API rdm_result rdm_policy_check(const rdm_policy *p, const rdm_spec *spec);
 /* Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up
  * to capacity of them to columns [capacity]; *count is how many there are. */

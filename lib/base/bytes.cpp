@@ -58,6 +58,11 @@ void Writer::begin_section(const char tag[4]) {
   value(uint64_t{0});
 }
 
+void Writer::begin_later_section(const char tag[4]) {
+  begin_section(tag);
+  bytes(tag, 4);
+}
+
 void Writer::end_section() {
   const size_t section = pop();
   const size_t begin = section + kSectionHeader;
@@ -116,6 +121,20 @@ bool Reader::find_section(const char tag[4]) {
 
 void Reader::need_section(const char tag[4]) {
   if (!find_section(tag)) fail(Code::kFormat, "%s: section %.4s is missing", what_, tag);
+}
+
+bool Reader::find_later_section(const char tag[4]) {
+  return find_section(tag) && std::memcmp(view(4), tag, 4) == 0;
+}
+
+void Reader::need_whole_tags(const char* known) const {
+  for (size_t p = file_begin_; p < file_end_;) {
+    const auto n = static_cast<size_t>(load<uint64_t>(data_ + p + 8));
+    bool good = n >= 4 && std::memcmp(data_ + p, data_ + p + kSectionHeader, 4) == 0;
+    for (const char* tag = known; !good && *tag; tag += 4) good = std::memcmp(data_ + p, tag, 4) == 0;
+    if (!good) bad("a section's tag is damaged");
+    p += kSectionHeader + n;
+  }
 }
 
 void Reader::expect_end() {

@@ -42,6 +42,8 @@ class Writer {
   void end_file();
   void begin_section(const char tag[4]);
   void end_section();
+  // One that older readers pass over: its payload begins with the tag, which so has a checksum.
+  void begin_later_section(const char tag[4]);
 
   size_t size() const { return at_; }
   bool fits() const { return at_ <= capacity_; }
@@ -93,6 +95,10 @@ class Reader {
   // can be read.
   bool find_section(const char tag[4]);
   void need_section(const char tag[4]);
+  // Of begin_later_section; what can be read then follows the tag.
+  bool find_later_section(const char tag[4]);
+  // Error unless each section is one of the `known` tags, which stand in one text, or a later one, whole.
+  void need_whole_tags(const char* known) const;
   size_t left() const { return end_ - at_; }
   void expect_end();  // error when the section has bytes left over
 

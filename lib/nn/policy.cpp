@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "nn/kernels.hpp"
 #include "nn/scratch.hpp"
 
@@ -237,25 +238,63 @@ void write_columns(Writer& out, const PolicyView& v) {
   out.end_section();
 }
 
+void write_fields(Writer& out, const PolicyView& v) {
+  out.begin_later_section("FLDS");
+  out.value(v.num_fields);
+  for (int32_t i = 0; i < v.num_fields; ++i) {
+    out.value(v.fields[i].offset);
+    out.value(v.fields[i].count);
+  }
+  for (int32_t i = 0; i < v.num_fields; ++i)
+    for (const char* text : {v.fields[i].name, v.fields[i].unit}) out.bytes(text, std::strlen(text) + 1);
+  out.end_section();
+}
+
 // A policy file's parts in place, all of them looked at but for the example's action.
 struct PolicyParts {
   PolicyView v;                           // its numbers; pointers come with keep_parts
   const unsigned char* ranges = nullptr;  // of entries, where it sees a part of the row
   int32_t num_ranges = 0;
+  // Of each field offset and count, then names and units with their terminators.
+  const unsigned char *field_entries = nullptr, *field_texts = nullptr;
+  size_t field_bytes = 0;  // of the texts
   const unsigned char *params = nullptr, *eyes = nullptr, *log_std = nullptr, *shift = nullptr,
                       *scale = nullptr;
   const unsigned char *obs = nullptr, *action = nullptr, *points = nullptr, *classes = nullptr,
                       *colors = nullptr;
 };
 
-// Range k of entries.
-struct Range {
-  int32_t begin, end;
+// Two numbers of a list of pairs: a range of entries, or a field's offset and count.
+struct Pair {
+  int32_t first, second;
 };
-Range range_of(const PolicyParts& parts, int32_t k) {
-  Range r;
-  std::memcpy(&r, parts.ranges + sz(k) * sizeof r, sizeof r);
+Pair pair_of(const unsigned char* list, int32_t k) {
+  Pair r;
+  std::memcpy(&r, list + sz(k) * sizeof r, sizeof r);
   return r;
+}
+
+void read_fields(Reader& in, PolicyParts& parts) {
+  PolicyView& v = parts.v;
+  if (!in.find_later_section("FLDS")) return;
+  v.num_fields = in.value<int32_t>();
+  if (v.num_fields < 1 || v.num_fields > kMaxFields) bad("the number of fields is out of range");
+  parts.field_entries = in.view(sz(v.num_fields) * sizeof(Pair));
+  parts.field_bytes = in.left();
+  parts.field_texts = in.view(parts.field_bytes);
+  for (int32_t i = 0; i < v.num_fields; ++i) {
+    const auto [offset, count] = pair_of(parts.field_entries, i);
+    if (offset < 0 || count < 1 || count > v.row_dim || offset > v.row_dim - count)
+      bad("a field is not within the observation");
+  }
+  const auto *at = reinterpret_cast<const char*>(parts.field_texts), *end = at + parts.field_bytes;
+  for (int32_t i = 0; i < 2 * v.num_fields; ++i) {
+    const auto* stop =
+        at < end ? static_cast<const char*>(std::memchr(at, 0, static_cast<size_t>(end - at))) : nullptr;
+    if (!stop || !is_clean_text(at) || (i % 2 == 0 && stop == at)) bad("a field's name or unit is no text");
+    at = stop + 1;
+  }
+  if (at != end) bad("there are more texts than fields");
 }
 
 void read_columns(Reader& in, PolicyParts& parts) {
@@ -266,15 +305,14 @@ void read_columns(Reader& in, PolicyParts& parts) {
   if (v.row_dim <= entries || v.row_dim > kMaxInputs) bad("the observation's size is out of range");
   parts.num_ranges = in.value<int32_t>();
   if (parts.num_ranges < 1 || parts.num_ranges > entries) bad("the ranges of entries are no such ranges");
-  parts.ranges = in.view(sz(parts.num_ranges) * sizeof(Range));
+  parts.ranges = in.view(sz(parts.num_ranges) * sizeof(Pair));
   in.expect_end();
   int32_t count = 0;
   for (int32_t k = 0, last = -1; k < parts.num_ranges; ++k) {
-    const Range r = range_of(parts, k);
-    if (r.begin <= last || r.end <= r.begin || r.end > v.row_dim)
-      bad("the ranges of entries are no such ranges");
-    count += r.end - r.begin;
-    last = r.end;
+    const auto [begin, end] = pair_of(parts.ranges, k);
+    if (begin <= last || end <= begin || end > v.row_dim) bad("the ranges of entries are no such ranges");
+    count += end - begin;
+    last = end;
   }
   if (count != entries) bad("the ranges of entries are not as many as the network's inputs");
 }
@@ -284,12 +322,14 @@ PolicyParts read_parts(const void* bytes, size_t size) {
   PolicyView& v = parts.v;
   Reader in(bytes, size, kWhat);
   const uint32_t version = in.begin_file(kPolicyMagic, kPolicyVersion);
+  in.need_whole_tags("METAARCHHEADEYESCOLSWGTSNORMEXMP");
   read_meta(in, v);
   read_arch(in, v.actor);
   if (version > 1) read_head(in, v);
   if (version > 3) read_eyes(in, v, version > 4);
   v.row_dim = v.entries();
   if (version == 3 || (version > 3 && in.find_section("COLS"))) read_columns(in, parts);
+  read_fields(in, parts);
   in.need_section("WGTS");
   parts.params = view_floats(in, v.actor.num_params());
   parts.eyes = view_floats(in, v.eyes.num_params());
@@ -329,10 +369,22 @@ const int32_t* keep_columns(Arena& arena, const PolicyParts& parts) {
   auto* const columns = arena.make<int32_t>(sz(parts.v.entries()));
   int32_t* at = columns;
   for (int32_t k = 0; at && k < parts.num_ranges; ++k) {
-    const Range r = range_of(parts, k);
-    for (int32_t i = r.begin; i < r.end; ++i) *at++ = i;
+    const auto [begin, end] = pair_of(parts.ranges, k);
+    for (int32_t i = begin; i < end; ++i) *at++ = i;
   }
   return columns;
+}
+
+const ObsField* keep_fields(Arena& arena, const PolicyParts& parts) {
+  auto* const fields = arena.make<ObsField>(sz(parts.v.num_fields));
+  const auto* text = keep<char>(arena, parts.field_texts, parts.field_bytes);
+  for (int32_t i = 0; text && i < parts.v.num_fields; ++i) {
+    const auto [offset, count] = pair_of(parts.field_entries, i);
+    const char* const unit = text + std::strlen(text) + 1;
+    fields[i] = {text, offset, count, unit};
+    text = unit + std::strlen(unit) + 1;
+  }
+  return fields;
 }
 
 // The view of a copy in the arena, which then has the scratch of one row, and room for its action, at its end.
@@ -346,6 +398,7 @@ Kept keep_parts(Arena& arena, const PolicyParts& parts) {
   PolicyView& v = kept.v = parts.v;
   const size_t n_out = sz(v.action_dim()), n_norm = v.clip > 0 ? sz(v.entries()) : 0;
   v.columns = keep_columns(arena, parts);
+  v.fields = keep_fields(arena, parts);
   v.params = keep<float>(arena, parts.params, v.actor.num_params());
   v.eyes_params = keep<float>(arena, parts.eyes, v.eyes.num_params());
   v.example_points = keep<int16_t>(arena, parts.points, v.eyes.row_points());
@@ -426,6 +479,7 @@ void write_policy(Writer& out, const PolicyView& view) {
   }
   if (eyes.points) write_eyes(out, view);
   if (view.columns) write_columns(out, view);
+  if (view.num_fields > 0) write_fields(out, view);
   out.begin_section("WGTS");
   write_floats(out, view.params, shape.num_params());
   write_floats(out, view.eyes_params, eyes.num_params());

@@ -2,11 +2,14 @@
 // Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC". Version 2 is written for a policy
 // whose deviation depends on the state, version 3 for one that sees a part of the observation alone, version
 // 4 for one that sees points, version 5 for one that sees their colours: versions before do not know these.
+// Section FLDS, the names of fields, came later and is in files of each version: a reader finds sections by
+// their tags, and passes over others.
 #pragma once
 #include <cstdint>
 
 #include "base/bytes.hpp"
 #include "base/file.hpp"
+#include "nn/obs_field.hpp"
 #include "nn/pointnet.hpp"
 
 namespace rdm {
@@ -34,6 +37,8 @@ struct PolicyView {
   float control_dt = 0;                // s, 0 unknown
   uint64_t layout_hash = 0;            // of the observation and action layout, 0 unknown
   char task[64] = "";                  // "" for a host's own environment
+  const ObsField* fields = nullptr;    // [num_fields] parts of a row
+  int32_t num_fields = 0;              // 0: their names are unknown
   const float* example_obs = nullptr;  // [obs_dim()], null: zeros are written
   const float* example_action = nullptr;  // [action_dim], the mean action for it; a load checks it
   const int16_t* example_points =

@@ -206,4 +206,115 @@ TEST(PolicySample, SaysWhatTheAgentActedOn) {
   rdm_agent_destroy(a);
 }
 
+// Of a policy file: its names of fields.
+std::vector<rdm_field_info> fields_of(const rdm_policy* p) {
+  std::vector<rdm_field_info> out;
+  rdm_field_info f = RDM_INIT(rdm_field_info);
+  for (int32_t i = 0; rdm_policy_field_at(p, i, &f) == RDM_OK; ++i) out.push_back(f);
+  EXPECT_EQ(static_cast<int32_t>(out.size()), info_of(p).num_fields);
+  return out;
+}
+
+TEST(PolicyFields, AreThoseOfTheConfig) {
+  const Owned p = read(file_of(""));
+  const auto fields = fields_of(p.get());
+  ASSERT_EQ(fields.size(), 2u);
+  for (size_t i = 0; i < 2; ++i) {
+    EXPECT_STREQ(fields[i].name, kFields[i].name);
+    EXPECT_STREQ(fields[i].unit, kFields[i].unit);
+    EXPECT_EQ(fields[i].offset, kFields[i].offset);
+    EXPECT_EQ(fields[i].count, kFields[i].count);
+    EXPECT_TRUE(std::isnan(fields[i].low) && std::isnan(fields[i].high));
+  }
+  rdm_field_info f = RDM_INIT(rdm_field_info);
+  EXPECT_EQ(rdm_policy_field_at(p.get(), 2, &f), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_policy_field_at(p.get(), -1, &f), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_policy_field_at(p.get(), 0, nullptr), RDM_ERROR_ARGUMENT);
+
+  rdm_agent* a = make_agent(agent_config());
+  EXPECT_EQ(info_of(read(policy_bytes(a)).get()).num_fields, 0) << "a config without fields";
+  rdm_agent_destroy(a);
+}
+
+// What a host calls its fields may be anything; what comes from a file can be printed.
+TEST(PolicyFields, AreTextsThatCanBePrinted) {
+  rdm_agent_config c = agent_config();
+  const rdm_field odd[] = {{"a\x1b[31m\nb\xff", nullptr, 0, 3}};
+  c.fields = odd;
+  c.num_fields = 1;
+  rdm_agent* a = make_agent(c);
+  const Owned p = read(policy_bytes(a));
+  rdm_agent_destroy(a);
+  const auto fields = fields_of(p.get());
+  ASSERT_EQ(fields.size(), 1u);
+  EXPECT_STREQ(fields[0].name, "a [31m b\\xff");
+  EXPECT_STREQ(fields[0].unit, "");
+}
+
+Owned policy_for(const rdm_pool* pool) {
+  rdm_agent_config c;
+  EXPECT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+  EXPECT_EQ(rdm_agent_config_for_pool(&c, pool), RDM_OK);
+  c.settings = "hidden=8";
+  rdm_agent* a = make_agent(c);
+  Owned p = read(policy_bytes(a));
+  rdm_agent_destroy(a);
+  return p;
+}
+rdm_pool* pool_of(const char* task, const char* settings = nullptr) {
+  rdm_pool_config c = pool_config(1);
+  c.task = task;
+  c.settings = settings;
+  return make_pool(c);
+}
+
+TEST(PolicyFields, OfAPoolAreThePools) {
+  rdm_pool* pool = pool_of("hand_over_safe_finger");
+  const Owned p = policy_for(pool);
+  const auto fields = fields_of(p.get());
+  const rdm_spec spec = spec_of(pool);
+  ASSERT_EQ(static_cast<int32_t>(fields.size()), spec.num_fields);
+  for (int32_t i = 0; i < spec.num_fields; ++i) {
+    rdm_field_info f = RDM_INIT(rdm_field_info);
+    ASSERT_EQ(rdm_pool_field_at(pool, i, &f), RDM_OK);
+    EXPECT_STREQ(fields[static_cast<size_t>(i)].name, f.name);
+    EXPECT_STREQ(fields[static_cast<size_t>(i)].unit, f.unit);
+    EXPECT_EQ(fields[static_cast<size_t>(i)].offset, f.offset);
+    EXPECT_EQ(fields[static_cast<size_t>(i)].count, f.count);
+  }
+  EXPECT_EQ(rdm_policy_check(p.get(), &spec), RDM_OK) << rdm_last_error();
+  rdm_pool_destroy(pool);
+}
+
+std::string refusal(const rdm_policy* p, const rdm_spec& spec) {
+  EXPECT_EQ(rdm_policy_check(p, &spec), RDM_ERROR_VERSION_MISMATCH);
+  return rdm_last_error();
+}
+
+// The fields of the pool that the spec is of; when it has ended they are not known.
+TEST(PolicyFields, AreNamedWhereALayoutDiffers) {
+  rdm_pool* own = pool_of("ball_circle");
+  const Owned p = policy_for(own);
+  for (const char* task : {"car_circle", "point_goal1"}) {
+    SCOPED_TRACE(task);
+    rdm_pool* other = pool_of(task);
+    const rdm_spec spec = spec_of(other);
+    rdm_field_info mine = RDM_INIT(rdm_field_info), theirs = mine;
+    int32_t i = -1;
+    do {
+      ++i;
+      ASSERT_EQ(rdm_pool_field_at(own, i, &mine), RDM_OK);
+      ASSERT_EQ(rdm_pool_field_at(other, i, &theirs), RDM_OK);
+    } while (std::strcmp(mine.name, theirs.name) == 0 && mine.count == theirs.count);
+    const std::string wanted = "; field " + std::to_string(i) + " is " + mine.name + " [" +
+                               std::to_string(mine.count) + "] to the policy, " + theirs.name + " [" +
+                               std::to_string(theirs.count) +
+                               "] to the task; the policy learned in task ball_circle";
+    EXPECT_NE(refusal(p.get(), spec).find(wanted), std::string::npos) << rdm_last_error() << "\n" << wanted;
+    rdm_pool_destroy(other);
+    EXPECT_EQ(refusal(p.get(), spec).find("; field"), std::string::npos) << rdm_last_error();
+  }
+  rdm_pool_destroy(own);
+}
+
 }  // namespace

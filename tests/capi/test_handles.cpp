@@ -159,6 +159,7 @@ const std::vector<Call> kPolicyCalls = {
     CALL(rdm_policy_get_info(POLICY, sized<rdm_policy_info>())),
     CALL(rdm_policy_act(POLICY, g_floats, 1, nullptr, g_floats + 100, g_bytes, sizeof g_bytes)),
     CALL(rdm_policy_sample(POLICY, g_floats, 1, nullptr, g_floats + 100, nullptr, g_bytes, sizeof g_bytes)),
+    CALL(rdm_policy_field_at(POLICY, 0, sized<rdm_field_info>())),
     CALL(rdm_policy_tensor_at(POLICY, 0, plain<rdm_tensor>())),
     CALL(rdm_policy_get_tensor(POLICY, "actor.0.weight", g_floats, 24)),
     CALL(rdm_policy_check(POLICY, sized<rdm_spec>())),

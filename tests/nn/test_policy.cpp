@@ -42,6 +42,9 @@ struct Made {
     view.layout_hash = 0x0123456789abcdefull;
     std::strcpy(view.task, "egg_catch");
     view.example_obs = obs.data();
+    fields = {{"first", 0, 1, "rad"}, {"again", 0, 1, ""}};
+    view.fields = fields.data();
+    view.num_fields = 2;
   }
   Bytes bytes() const {
     Writer measure(nullptr, 0);
@@ -53,6 +56,7 @@ struct Made {
     return b;
   }
   std::vector<float> params, log_std, shift, scale, obs;
+  std::vector<ObsField> fields;
   PolicyView view;
 };
 
@@ -127,6 +131,13 @@ TEST(Policy, RoundTripKeepsEverything) {
   EXPECT_EQ(v.control_dt, 1.0f / 60);
   EXPECT_EQ(v.layout_hash, 0x0123456789abcdefull);
   EXPECT_STREQ(v.task, "egg_catch");
+  ASSERT_EQ(v.num_fields, 2);
+  for (size_t i = 0; i < 2; ++i) {
+    EXPECT_STREQ(v.fields[i].name, made.fields[i].name);
+    EXPECT_STREQ(v.fields[i].unit, made.fields[i].unit);
+    EXPECT_EQ(v.fields[i].offset, made.fields[i].offset);
+    EXPECT_EQ(v.fields[i].count, made.fields[i].count);
+  }
   EXPECT_EQ(std::memcmp(v.example_obs, made.obs.data(), 84), 0);
   const auto action = act(*p, v.example_obs, 1, nullptr);
   EXPECT_EQ(std::memcmp(v.example_action, action.data(), 20), 0);
@@ -379,7 +390,7 @@ TEST(Policy, EveryFlippedBitIsAnError) {
 TEST(Policy, ForgedBytesAreAPolicyOrAnError) {
   const Bytes b = Made(make_shape(3, {2}, 2), 5, true).bytes();
   int errors = 0;
-  for (const char* tag : {"META", "ARCH", "HEAD", "WGTS", "NORM", "EXMP"}) {
+  for (const char* tag : {"META", "ARCH", "HEAD", "FLDS", "WGTS", "NORM", "EXMP"}) {
     Bytes whole = b;
     size_t size = 0;
     section(whole, tag, &size);
@@ -441,6 +452,32 @@ TEST(Policy, ValuesOutOfRangeAreErrors) {
   EXPECT_EQ(with("NORM", 4, INFINITY), Code::kFormat);
   EXPECT_EQ(with("NORM", 12, 0.0f), Code::kFormat);  // a scale that is not positive
   EXPECT_EQ(with("EXMP", 0, NAN), Code::kFormat);
+  for (const int32_t n : {0, -1, 1, 3, 4097, INT32_MAX}) EXPECT_EQ(with("FLDS", 4, n), Code::kFormat) << n;
+  for (const size_t field : {0, 1})
+    for (const int32_t n : {-1, 4, INT32_MAX}) {
+      EXPECT_EQ(with("FLDS", 8 + 8 * field, n), Code::kFormat) << "offset " << n;
+      EXPECT_EQ(with("FLDS", 12 + 8 * field, n), Code::kFormat) << "count " << n;
+    }
+  EXPECT_EQ(with("FLDS", 24, uint8_t{'\n'}), Code::kFormat);  // of a name
+  EXPECT_EQ(with("FLDS", 24, uint8_t{0}), Code::kFormat);     // an empty one, and a text too many
+  EXPECT_EQ(with("FLDS", 40, uint8_t{'x'}), Code::kFormat);   // the last text has no end
+  EXPECT_EQ(with("FLDS", 24, uint8_t{0xff}), Code::kFormat);  // no UTF-8
+}
+
+// Sections are found by their names: those of later releases are passed over, and files of before have fewer.
+TEST(Policy, SectionsThatAreNotKnownArePassedOver) {
+  Made made(make_shape(3, {2}, 1));
+  Bytes b = made.bytes();
+  const char next[] = {'N', 'E', 'X', 'T', 0, 0, 0, 0, 5, 0, 0, 0, 0, 0, 0, 0, 'N', 'E', 'X', 'T', '!'};
+  b.insert(b.begin() + 24, next, next + sizeof next);
+  put(&b[16], static_cast<uint64_t>(b.size() - 24));
+  seal(b);
+  ASSERT_EQ(code_of(b), Code::kOk) << last_error();
+  EXPECT_EQ(read(b)->view().num_fields, 2);
+  b[24] = 'M';
+  EXPECT_EQ(code_of(b), Code::kFormat) << "a tag that is not the one of the payload";
+  made.view.num_fields = 0;
+  EXPECT_EQ(read(made.bytes())->view().num_fields, 0);
 }
 
 TEST(Policy, ForeignAndNewerFilesAreNamed) {

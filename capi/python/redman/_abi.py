@@ -551,6 +551,7 @@ class PolicyInfo(Record):
     num_point_classes: int  # that it tells points apart by, 0: none
     num_features: int  # that its encoder makes of a cloud, 0 without
     point_color: int  # whether it sees the colours of points: 0, 1
+    num_fields: int  # for rdm_policy_field_at; 0: the file says none
 
 
 class rdm_policy_info(Structure):
@@ -568,6 +569,8 @@ class rdm_policy_info(Structure):
     num_point_classes: that it tells points apart by, 0: none
     num_features: that its encoder makes of a cloud, 0 without
     point_color: whether it sees the colours of points: 0, 1
+    num_fields: for rdm_policy_field_at; 0: the file says none
+    reserved: 0
     """
 
     struct_size: int
@@ -584,6 +587,8 @@ class rdm_policy_info(Structure):
     num_point_classes: int
     num_features: int
     point_color: int
+    num_fields: int
+    reserved: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("obs_dim", c_int32),
@@ -599,6 +604,8 @@ class rdm_policy_info(Structure):
         ("num_point_classes", c_int32),
         ("num_features", c_int32),
         ("point_color", c_int32),
+        ("num_fields", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -3486,10 +3493,17 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
         {"out": Rows("float32", ("count",))}, False,
         """Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE."""),
+    "rdm_policy_field_at": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "io": POINTER(rdm_field_info)},
+        {}, False,
+        """Part i of a row, whose names are the policy's; bounds are unknown. RANGE ends the list."""),
     "rdm_policy_check": Function(
         c_int32, {"p": c_void_p, "spec": POINTER(rdm_spec)},
         {}, False,
-        """OK, or VERSION_MISMATCH with a text that says which field of the spec differs."""),
+        """OK, or VERSION_MISMATCH with a text that says which field of the spec differs; where rows are of
+        another layout, the first part that differs, if the policy says its parts and a pool of the spec's
+        layout lives.
+        """),
     "rdm_policy_get_columns": Function(
         c_int32, {"p": c_void_p, "columns": c_void_p, "capacity": c_int32, "count": c_void_p},
         {"columns": Rows("int32", ("capacity",))}, False,
