@@ -425,6 +425,13 @@ rdm_result rdm_agent_write_policy_file(const rdm_agent* a, const char* path) {
   });
 }
 
+rdm_result rdm_policy_update_from(rdm_policy* p, const rdm_agent* a) {
+  return call_on(a, [&] {
+    need_handle(p);
+    p->changes.change("policy", [&] { a->agent->update_policy(*p->policy); });
+  });
+}
+
 rdm_result rdm_agent_write_state(const rdm_agent* a, void* bytes, size_t capacity, size_t* size) {
   return call_on(a, [&] { emit(bytes, capacity, size, [&](Writer& w) { a->agent->save(w); }); });
 }

@@ -82,6 +82,7 @@ struct rdm_policy {
   rdm::capi::Tag tag = kTag;
   rdm::HostHooks hooks;
   rdm::Policy* policy = nullptr;
+  rdm::capi::Changes changes;
 };
 
 namespace rdm::capi {

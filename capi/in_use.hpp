@@ -80,6 +80,36 @@ class UseIfAny {
   Handle* handle_;
 };
 
+// Of a handle that seldom changes and that any number read in short calls: these count nothing, they look before and
+// after. Error(kState) for who reads or changes it while another one changes it.
+class Changes {
+ public:
+  uint32_t begin_reading(const char* name) const {
+    const uint32_t now = count_.load();
+    check(now % 2 == 0, name);
+    return now;
+  }
+  void end_reading(uint32_t begun, const char* name) const { check(count_.load() == begun, name); }
+  template <class F>
+  void change(const char* name, F&& f) {
+    uint32_t now = count_.load();
+    check(now % 2 == 0 && count_.compare_exchange_strong(now, now + 1), name);
+    try {
+      f();
+    } catch (...) {
+      count_.store(now + 2);
+      throw;
+    }
+    count_.store(now + 2);
+  }
+
+ private:
+  static void check(bool good, const char* name) {
+    if (!good) fail(Code::kState, "%s: another call changes it meanwhile", name);
+  }
+  std::atomic<uint32_t> count_ = 0;  // odd within a change
+};
+
 // A call on a handle: f runs while nobody else is in it. A failure's text becomes the handle's too, where it
 // keeps those of such calls; that of a call that was refused does not, as the handle is another's then.
 template <class Handle, class F>

@@ -236,6 +236,7 @@ rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
     info.num_features = v.eyes.features();
     info.point_color = v.eyes.color;
     info.num_fields = v.num_fields;
+    info.generation = v.generation;
     write_struct(io, info, offsetof(rdm_policy_info, activation), "io");
   });
 }
@@ -256,14 +257,16 @@ void need_blind(const Policy& policy) {
 
 // run(scratch) writes the rows that are not NULL, action and mean, which are looked at then.
 template <class Run>
-void act(const Policy& policy, const float* obs, int32_t rows, const float* noise, const float* action,
+void act(const rdm_policy* p, const float* obs, int32_t rows, const float* noise, const float* action,
          const float* mean, void* scratch, size_t scratch_bytes, Run&& run) {
+  const uint32_t begun = p->changes.begin_reading("policy");
   need(scratch, "scratch");
-  scratch = aligned_scratch(scratch, scratch_bytes, policy.scratch_bytes(rows));
-  const PolicyView& v = policy.view();
+  scratch = aligned_scratch(scratch, scratch_bytes, p->policy->scratch_bytes(rows));
+  const PolicyView& v = p->policy->view();
   need_finite(obs, rows, v.obs_dim(), "obs");
   if (noise) need_finite(noise, rows, v.action_dim(), "noise");
   run(scratch);
+  p->changes.end_reading(begun, "policy");
   for (const float* x : {action, mean})
     if (x) need_finite(x, rows, v.action_dim(), "action: the network overflows on these observations");
 }
@@ -277,7 +280,7 @@ rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, c
     need_rows(rows);
     need_blind(*p->policy);
     need(action, "action");
-    act(*p->policy, obs, rows, noise, action, nullptr, scratch, scratch_bytes,
+    act(p, obs, rows, noise, action, nullptr, scratch, scratch_bytes,
         [&](void* memory) { p->policy->act(obs, rows, noise, action, memory); });
   });
 }
@@ -290,7 +293,7 @@ rdm_result rdm_policy_sample(const rdm_policy* p, const float* obs, int32_t rows
     need_rows(rows);
     need_blind(*p->policy);
     if (!action && !mean) fail(Code::kArgument, "action and mean are NULL: there is nothing to write");
-    act(*p->policy, obs, rows, noise, action, mean, scratch, scratch_bytes,
+    act(p, obs, rows, noise, action, mean, scratch, scratch_bytes,
         [&](void* memory) { p->policy->sample(obs, rows, noise, action, mean, memory); });
   });
 }
@@ -308,7 +311,7 @@ rdm_result rdm_policy_act_points(const rdm_policy* p, const float* obs, const rd
     need_finite(clouds.metres, rows, 3 * eyes.points, "points");
     need_channels(eyes, clouds, static_cast<size_t>(rows));
     need(action, "action");
-    act(*p->policy, obs, rows, noise, action, nullptr, scratch, scratch_bytes,
+    act(p, obs, rows, noise, action, nullptr, scratch, scratch_bytes,
         [&](void* memory) { p->policy->act(obs, rows, noise, action, memory, clouds); });
   });
 }

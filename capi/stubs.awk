@@ -1,6 +1,6 @@
 # Reads the public headers and writes, for the halves that a build leaves out, the functions that say so.
 # -v sim=0|1 -v learn=0|1 -v policy=0|1: which halves there are, and whether frozen policies run. A function belongs to a half by its name; one of agents that
-# takes a pool needs both; recordings are in either. The two config_init functions are in every build, and what has no half is too.
+# takes a pool needs both, one of policies that takes an agent learners; recordings are in either. The two config_init functions are in every build, and what has no half is too.
 # -v old=1, of deprecated.h: the functions of 0.1 that have another name now, for programs that were linked with it; without
 # -v stubs=1 those of a half that is left out do not exist.
 # -v names=1: the names alone of what a build without such functions leaves out, config_init and the like among them; lists of
@@ -12,6 +12,7 @@ function half_of(name, parameters) {
   if (name ~ /^rdm_recording_/) return !sim && parameters ~ /rdm_pool/ ? "simulation" : sim || learn ? "" : "learning"
   if (name ~ /^rdm_agent_/ && parameters ~ /rdm_pool/) return sim ? (learn ? "" : "learning") : "simulation"
   if (name ~ /^rdm_(task|robot|object|pool|planner|map|sample|scene|contact|world|random)_/) return sim ? "" : "simulation"
+  if (name == "rdm_policy_update_from") return learn ? "" : "learning"
   if (name ~ /^rdm_(policy|actor)_/) return policy ? "" : "learning"
   if (name ~ /^rdm_(algo|agent|checkpoint)_/) return learn ? "" : "learning"
   return ""

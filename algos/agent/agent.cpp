@@ -60,6 +60,8 @@ void Agent::carve(Arena& arena) {
   workers_.carve(arena, resolved_, nets_.size);
   collector_.carve(arena, resolved_);
   learner_.carve(arena, resolved_, nets_.size);
+  seen_statistics_ =
+      arena.make<float>(resolved_.actor_columns.empty() ? 0 : 2 * static_cast<size_t>(nets_.actor_entries()));
   fields_ = keep_fields(arena, resolved_.config.fields, resolved_.config.num_fields);
   shuffle_ = arena.make<Stream>(static_cast<size_t>(resolved_.blocks));
   char* names = arena.make<char>(static_cast<size_t>(nets_.num_tensors()) * kTensorNameSize);
@@ -334,10 +336,7 @@ void Agent::set_recording(const DemoRows& demo, uint64_t mark) {
   imitation_.set(demo, mark, resolved_.config.hooks);
 }
 
-void Agent::load_policy(const PolicyView& p, double samples) {
-  const FpMode mode;
-  need_idle("load_policy");
-  if (!(samples >= 2 && samples <= 1e12)) fail(Code::kRange, "samples: %g is outside [2, 1e12]", samples);
+void Agent::need_same_shape(const PolicyView& p) const {
   const AgentConfig& c = resolved_.config;
   const MlpShape& actor = nets_.shape[Networks::kActor];
   const auto differ = [](const char* what) {
@@ -361,10 +360,20 @@ void Agent::load_policy(const PolicyView& p, double samples) {
   if (p.actor.in != actor.in || (p.columns != nullptr) != (columns != nullptr) ||
       (columns && !std::equal(columns, columns + entries, p.columns)))
     differ("actor_obs");
-  Normalizer& n = collector_.normalizer();
-  if ((p.clip > 0) != collector_.normalizes() || (p.clip > 0 && p.clip != n.clip))
+  if ((p.clip > 0) != collector_.normalizes() || (p.clip > 0 && p.clip != collector_.normalizer().clip))
     differ("normalize_obs, or obs_clip,");
+}
 
+void Agent::load_policy(const PolicyView& p, double samples) {
+  const FpMode mode;
+  need_idle("load_policy");
+  if (!(samples >= 2 && samples <= 1e12)) fail(Code::kRange, "samples: %g is outside [2, 1e12]", samples);
+  need_same_shape(p);
+  const MlpShape& actor = nets_.shape[Networks::kActor];
+  const int32_t* columns = nets_.columns[Networks::kActor];
+  const PointNetShape& eyes = nets_.eyes;
+  const int32_t entries = nets_.actor_entries();
+  Normalizer& n = collector_.normalizer();
   std::copy_n(p.params, actor.num_params(), nets_.net(Networks::kActor));
   if (eyes.points) std::copy_n(p.eyes_params, eyes.num_params(), nets_.eyes_net());
   if (!nets_.state_std()) std::copy_n(p.log_std, nets_.action_dim, nets_.log_std());
@@ -526,8 +535,13 @@ void Agent::load(const void* bytes, size_t size) {
   drop_horizon();
 }
 
-void Agent::write_policy_file(Writer& out) {
-  const HostScope scope(resolved_.config.hooks);
+uint64_t Agent::generation_of(const float* actor) const {
+  const uint64_t network = crc32(actor, nets_.block[Networks::kActor].size * sizeof *actor);
+  const uint64_t generation = network << 32 | static_cast<uint32_t>(epoch_);
+  return generation ? generation : uint64_t{1} << 32;
+}
+
+PolicyView Agent::policy_view() {
   const Normalizer& n = collector_.normalizer();
   PolicyView v;
   v.actor = nets_.shape[Networks::kActor];
@@ -542,23 +556,37 @@ void Agent::write_policy_file(Writer& out) {
     v.log_std = nets_.kept_log_std();
   v.shift = n.shift;
   v.scale = n.scale;
-  Vector<float> seen(v.columns ? 2 * static_cast<size_t>(v.entries()) : 0);
   if (v.columns) {
-    float* const scale = seen.data() + v.entries();
-    pick_columns(n.shift, 1, n.dim, v.columns, v.entries(), seen.data());
+    float *const shift = seen_statistics_, *const scale = shift + v.entries();
+    pick_columns(n.shift, 1, n.dim, v.columns, v.entries(), shift);
     pick_columns(n.scale, 1, n.dim, v.columns, v.entries(), scale);
-    v.shift = seen.data(), v.scale = scale;
+    v.shift = shift, v.scale = scale;
   }
   v.clip = collector_.normalizes() ? n.clip : 0;
   v.action_repeat = resolved_.action_repeat;
   v.noise_correlation = static_cast<float>(resolved_.options.number("noise_correlation"));
   v.control_dt = resolved_.config.control_dt;
   v.layout_hash = resolved_.config.layout_hash;
+  v.generation = generation_of(nets_.kept_log_std());
   std::memcpy(v.task, resolved_.task, sizeof v.task);
   v.fields = fields_;
   v.num_fields = resolved_.config.num_fields;
   v.example_obs = n.shift;
-  write_policy(out, v);
+  return v;
+}
+
+void Agent::write_policy_file(Writer& out) {
+  const HostScope scope(resolved_.config.hooks);
+  write_policy(out, policy_view());
+}
+
+void Agent::update_policy(Policy& policy) {
+  const FpMode mode;
+  need_same_shape(policy.view());
+  const PolicyView now = policy_view();
+  if (policy.view().action_repeat != now.action_repeat)
+    fail(Code::kArgument, "policy: action_repeat differs from the agent's");
+  policy.update(now);
 }
 
 }  // namespace rdm

@@ -40,6 +40,7 @@
 namespace rdm {
 
 struct PolicyView;
+class Policy;
 
 class Agent {
  public:
@@ -101,7 +102,11 @@ class Agent {
   void load_policy(const PolicyView& policy, double samples);
 
   void write_policy_file(Writer& out);  // const but for scratch
-  void save(Writer& out) const;         // Error(kState) inside a horizon
+  // The policy becomes what that file would be, without memory; Error(kArgument) names what differs.
+  void update_policy(Policy& policy);  // const but for scratch
+  // What samples: a checksum of the actor, then the epoch. With option average policies are of another one.
+  uint64_t generation() const { return generation_of(nets_.params); }
+  void save(Writer& out) const;  // Error(kState) inside a horizon
   // Error(kFormat, kVersion) unless load would take these bytes; changes nothing.
   void check_state(const void* bytes, size_t size);
   void load(const void* bytes, size_t size);  // changes nothing when it fails
@@ -160,6 +165,11 @@ class Agent {
 
  private:
   void warm_up();
+  uint64_t generation_of(const float* actor) const;
+  // Of the actor that others get to see, valid until statistics move.
+  PolicyView policy_view();
+  // Error(kArgument) names what differs.
+  void need_same_shape(const PolicyView& policy) const;
   uint64_t learned_hash() const;
   void need_idle(const char* call) const;
   void need_clouds(const DemoRows& demo) const;
@@ -188,6 +198,7 @@ class Agent {
   Imitation imitation_;
   char (*names_)[kTensorNameSize] = nullptr;  // of the tensors
   const ObsField* fields_ = nullptr;          // [num_fields] for policy files
+  float* seen_statistics_ = nullptr;          // [2][actor_entries], where the actor sees a part of a row
 };
 
 }  // namespace rdm

@@ -1,6 +1,7 @@
 /* redman/agent.h: one algorithm that acts and learns. Stable since 1.0. */
 #ifndef REDMAN_AGENT_H
 #define REDMAN_AGENT_H
+#include <redman/policy.h>
 #include <redman/pool.h>
 
 #ifdef __cplusplus
@@ -203,6 +204,12 @@ RDM_API rdm_result rdm_agent_write_policy(const rdm_agent *a, void *bytes, size_
                                           size_t *size);
 RDM_API rdm_result rdm_agent_write_policy_file(const rdm_agent *a,
                                                const char *path); /* replaced atomically */
+/* The agent's network and statistics as they are now, into a policy of the same sizes, without
+ * memory: afterwards p is what rdm_agent_write_policy writes, but for the names of its fields.
+ * ARGUMENT names what differs, in network, entries that it sees, normaliser, layout_hash or
+ * action_repeat, and p is as it was. Nobody else may be in a call with p, nor an actor or planner
+ * that plays it: a rdm_policy_act meanwhile is STATE. */
+RDM_API rdm_result rdm_policy_update_from(rdm_policy *p, const rdm_agent *a);
 /* All state of the agent (networks, optimiser, multipliers, normaliser, streams, counters), between
  * epochs: STATE inside a horizon. load needs an agent of the same config and changes nothing when
  * it fails. */

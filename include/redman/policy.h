@@ -26,6 +26,9 @@ typedef struct rdm_policy_info { /* what a policy file tells of its network */
   int32_t point_color;        /* whether it sees the colours of points: 0, 1 */
   int32_t num_fields;         /* for rdm_policy_field_at; 0: the file says none */
   int32_t reserved;           /* 0 */
+  uint64_t generation;        /* which network: the low 32 bits are the epochs that its agent had
+                               * learned, the high ones a checksum of it; what was sampled by
+                               * another one is stale. 0: unknown */
 } rdm_policy_info;
 RDM_API rdm_result rdm_policy_read(rdm_policy **out, const void *bytes,
                                    size_t size); /* copies bytes [size] */

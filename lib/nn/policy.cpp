@@ -238,6 +238,12 @@ void write_columns(Writer& out, const PolicyView& v) {
   out.end_section();
 }
 
+void read_generation(Reader& in, PolicyView& v) {
+  if (!in.find_later_section("GENR")) return;
+  v.generation = in.value<uint64_t>();
+  in.expect_end();
+}
+
 void write_fields(Writer& out, const PolicyView& v) {
   out.begin_later_section("FLDS");
   out.value(v.num_fields);
@@ -330,6 +336,7 @@ PolicyParts read_parts(const void* bytes, size_t size) {
   v.row_dim = v.entries();
   if (version == 3 || (version > 3 && in.find_section("COLS"))) read_columns(in, parts);
   read_fields(in, parts);
+  read_generation(in, v);
   in.need_section("WGTS");
   parts.params = view_floats(in, v.actor.num_params());
   parts.eyes = view_floats(in, v.eyes.num_params());
@@ -414,12 +421,15 @@ Kept keep_parts(Arena& arena, const PolicyParts& parts) {
   return kept;
 }
 
+// Of an encoder what is not a number would lose against any other point, unseen.
+bool sums_stay_finite(const PointNetShape& eyes, const float* params) {
+  return !eyes.points || mlp_bound(eyes.mlp, params, largest_point(eyes)) <= kMaxSum;
+}
+
 // What only a network that computes can say.
 void try_example(const Kept& kept) {
   const PolicyView& v = kept.v;
-  // What is not a number would lose against any other point, unseen.
-  if (v.eyes.points && mlp_bound(v.eyes.mlp, v.eyes_params, largest_point(v.eyes)) > kMaxSum)
-    bad("the encoder's sums may be too large");
+  if (!sums_stay_finite(v.eyes, v.eyes_params)) bad("the encoder's sums may be too large");
   act_view(v, v.example_obs, {v.example_points, nullptr, v.example_classes, v.example_colors}, 1, nullptr,
            {kept.action}, kept.scratch);
   for (size_t j = 0; j < sz(v.action_dim()); ++j)
@@ -480,6 +490,11 @@ void write_policy(Writer& out, const PolicyView& view) {
   if (eyes.points) write_eyes(out, view);
   if (view.columns) write_columns(out, view);
   if (view.num_fields > 0) write_fields(out, view);
+  if (view.generation) {
+    out.begin_later_section("GENR");
+    out.value(view.generation);
+    out.end_section();
+  }
   out.begin_section("WGTS");
   write_floats(out, view.params, shape.num_params());
   write_floats(out, view.eyes_params, eyes.num_params());
@@ -518,6 +533,7 @@ Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
   p->hooks_ = hooks;
   p->arena_ = std::move(arena);
   p->view_ = kept.v;
+  p->scratch_ = kept.scratch;
   return p;
 }
 
@@ -530,6 +546,37 @@ FileLimits Policy::file_limits() {
 
 void Policy::destroy(Policy* p) {
   if (p) host_delete(p->hooks_, p);
+}
+
+void Policy::update(const PolicyView& from) {
+  PolicyView& v = view_;
+  const size_t n_out = sz(v.action_dim()), n_row = sz(v.obs_dim());
+  struct Part {
+    const float *from, *to;
+    size_t count;
+  };
+  const size_t n_norm = v.clip > 0 ? sz(v.entries()) : 0;
+  const Part parts[] = {{from.params, v.params, v.actor.num_params()},
+                        {from.eyes_params, v.eyes_params, v.eyes.num_params()},
+                        {from.log_std, v.log_std, v.state_std ? 0 : n_out},
+                        {from.shift, v.shift, n_norm},
+                        {from.scale, v.scale, n_norm},
+                        {from.example_obs, v.example_obs, n_row}};
+  for (const Part& p : parts)
+    for (size_t i = 0; i < p.count; ++i)
+      if (!std::isfinite(p.from[i]))
+        fail(Code::kArgument, "policy: a number of the new network is not finite");
+  if (!sums_stay_finite(v.eyes, from.eyes_params))
+    fail(Code::kArgument, "policy: the sums of the new encoder may be too large");
+  for (const Part& p : parts) std::copy_n(p.from, p.count, const_cast<float*>(p.to));  // the arena's
+  std::copy_n(from.std_bounds, 2, v.std_bounds);
+  v.noise_correlation = from.noise_correlation;
+  v.control_dt = from.control_dt;
+  v.layout_hash = from.layout_hash;
+  v.generation = from.generation;
+  std::memcpy(v.task, from.task, sizeof v.task);
+  act_view(v, v.example_obs, {v.example_points, nullptr, v.example_classes, v.example_colors}, 1, nullptr,
+           {const_cast<float*>(v.example_action)}, scratch_);
 }
 
 size_t Policy::scratch_bytes(int32_t rows) const {

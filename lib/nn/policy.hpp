@@ -2,8 +2,8 @@
 // Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC". Version 2 is written for a policy
 // whose deviation depends on the state, version 3 for one that sees a part of the observation alone, version
 // 4 for one that sees points, version 5 for one that sees their colours: versions before do not know these.
-// Section FLDS, the names of fields, came later and is in files of each version: a reader finds sections by
-// their tags, and passes over others.
+// Sections FLDS, the names of fields, and GENR, the generation, came later and are in files of each version: a
+// reader finds sections by their tags, and passes over others.
 #pragma once
 #include <cstdint>
 
@@ -36,6 +36,7 @@ struct PolicyView {
   float noise_correlation = 0;         // AR(1) coefficient of the exploration noise
   float control_dt = 0;                // s, 0 unknown
   uint64_t layout_hash = 0;            // of the observation and action layout, 0 unknown
+  uint64_t generation = 0;             // which network, 0 unknown: of whoever wrote it
   char task[64] = "";                  // "" for a host's own environment
   const ObsField* fields = nullptr;    // [num_fields] parts of a row
   int32_t num_fields = 0;              // 0: their names are unknown
@@ -75,10 +76,15 @@ class Policy {
   void sample(const float* obs, int32_t rows, const float* noise, float* action, float* mean,
               void* scratch) const;
 
+  // Becomes what a file of `from` would be read as, but for the names of fields; sizes and action_repeat agree.
+  // Error(kArgument) for numbers that a file is refused for: nothing changes.
+  void update(const PolicyView& from);
+
  private:
   HostHooks hooks_;
   Arena arena_;
   PolicyView view_;
+  unsigned char* scratch_ = nullptr;  // for one row: of the example
 };
 
 }  // namespace rdm

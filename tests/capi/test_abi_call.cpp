@@ -118,6 +118,22 @@ TEST(Shim, OneCallChangesAHandleOrSeveralReadIt) {
   EXPECT_TRUE(may_end(&h));
 }
 
+TEST(Shim, WhoReadsWhileAnotherChangesIsTold) {
+  Changes c;
+  const auto read = [&] { return guard([&] { c.end_reading(c.begin_reading("it"), "it"); }); };
+  EXPECT_EQ(read(), Code::kOk);
+  const uint32_t begun = c.begin_reading("it");
+  c.change("it", [&] {
+    EXPECT_EQ(read(), Code::kState);
+    EXPECT_STREQ(last_error(), "it: another call changes it meanwhile");
+    EXPECT_EQ(guard([&] { c.change("it", [] {}); }), Code::kState);
+  });
+  EXPECT_EQ(guard([&] { c.end_reading(begun, "it"); }), Code::kState) << "begun before";
+  EXPECT_EQ(read(), Code::kOk);
+  EXPECT_EQ(guard([&] { c.change("it", [] { fail(Code::kRange, "no"); }); }), Code::kRange);
+  EXPECT_EQ(read(), Code::kOk) << "a failure leaves it free";
+}
+
 TEST(Shim, OptionListsAreChecked) {
   const rdm_option list[2] = {{"a", nullptr, 1}, {"b", "x", 0}};
   EXPECT_EQ(read_options(list, 2, "options").size(), 2u);

@@ -1,4 +1,4 @@
-// Frozen policies of the C ABI: in a caller's memory, samples.
+// Frozen policies of the C ABI: in a caller's memory, samples, names of fields, updates, generations.
 #include <cmath>
 
 #include "contract.hpp"
@@ -315,6 +315,152 @@ TEST(PolicyFields, AreNamedWhereALayoutDiffers) {
     EXPECT_EQ(refusal(p.get(), spec).find("; field"), std::string::npos) << rdm_last_error();
   }
   rdm_pool_destroy(own);
+}
+
+// The file as 0.1.0 would have written it: without the sections that came later.
+Bytes without_later(const Bytes& file) {
+  Bytes out(file.begin(), file.begin() + 24);
+  for (size_t at = 24; at < file.size();) {
+    uint64_t n;
+    std::memcpy(&n, &file[at + 8], 8);
+    const auto end = at + 16 + static_cast<size_t>(n);
+    if (n < 4 || std::memcmp(&file[at], &file[at + 16], 4) != 0)
+      out.insert(out.end(), file.begin() + static_cast<ptrdiff_t>(at),
+                 file.begin() + static_cast<ptrdiff_t>(end));
+    at = end;
+  }
+  const uint64_t length = out.size() - 24;
+  std::memcpy(&out[16], &length, 8);
+  return out;
+}
+
+// All numbers of a policy, and what it does.
+std::vector<float> everything(const rdm_policy* p) {
+  std::vector<float> out = act(p, kObs);
+  rdm_tensor t;
+  for (int32_t i = 0; rdm_policy_tensor_at(p, i, &t) == RDM_OK; ++i) {
+    std::vector<float> values(static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols));
+    EXPECT_EQ(rdm_policy_get_tensor(p, t.name, values.data(), values.size()), RDM_OK);
+    out.insert(out.end(), values.begin(), values.end());
+  }
+  const rdm_policy_info i = info_of(p);
+  out.insert(out.end(), {i.control_dt, i.noise_correlation, static_cast<float>(i.action_repeat)});
+  return out;
+}
+
+// Another epoch of whichever kind of agent.
+void learn(rdm_agent* a, bool sees) {
+  if (!sees) {
+    EXPECT_EQ(feed_epoch(a), RDM_OK) << rdm_last_error();
+    return;
+  }
+  rdm_tensor t;
+  for (int32_t i = 0; rdm_agent_tensor_at(a, i, &t) == RDM_OK; ++i) {
+    std::vector<float> values(static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols));
+    EXPECT_EQ(rdm_agent_get_tensor(a, t.name, values.data(), values.size()), RDM_OK);
+    for (float& v : values) v *= 0.75f;
+    EXPECT_EQ(rdm_agent_set_tensor(a, t.name, values.data(), values.size()), RDM_OK);
+  }
+}
+
+TEST(PolicyUpdate, MakesThePolicyThatTheAgentWouldWrite) {
+  for (const char* kind :
+       {"", "std_mode=state", "actor_obs=speed", "normalize_obs=false", "average=0.9", kKinds[4]}) {
+    SCOPED_TRACE(kind);
+    const bool sees = std::strstr(kind, "encoder") != nullptr;
+    rdm_agent* a = agent_of(kind);
+    learn(a, sees);
+    const Bytes before = policy_bytes(a), old = without_later(before);
+    EXPECT_LT(old.size(), before.size());
+    learn(a, sees);
+    const Owned now = read(policy_bytes(a));
+    size_t needed = 0;
+    ASSERT_EQ(rdm_policy_read_memory(before.data(), before.size(), &needed), RDM_OK);
+    Bytes memory(needed);
+    rdm_policy* inside = nullptr;
+    ASSERT_EQ(rdm_policy_read_in(&inside, before.data(), before.size(), memory.data(), needed), RDM_OK);
+    const Owned policies[] = {read(before), read(old), Owned(inside)};
+    EXPECT_EQ(info_of(policies[1].get()).generation, 0u);
+    for (const Owned& p : policies) {
+      EXPECT_NE(everything(p.get()), everything(now.get()));
+      EXPECT_NE(info_of(p.get()).generation, info_of(now.get()).generation);
+      const int64_t calls = heap_count();
+      const rdm_result r = rdm_policy_update_from(p.get(), a);
+      EXPECT_EQ(heap_count(), calls);
+      ASSERT_EQ(r, RDM_OK) << rdm_last_error();
+      EXPECT_EQ(everything(p.get()), everything(now.get()));
+      EXPECT_EQ(info_of(p.get()).generation, info_of(now.get()).generation);
+    }
+    EXPECT_EQ(info_of(policies[0].get()).num_fields, 2);
+    EXPECT_EQ(info_of(policies[1].get()).num_fields, 0) << "names of fields stay as they were";
+    rdm_agent_destroy(a);
+  }
+}
+
+TEST(PolicyUpdate, SaysWhatDiffersAndChangesNothing) {
+  const std::pair<const char*, const char*> kinds[] = {{"hidden=8", "hidden"},
+                                                       {"hidden=8,4", "hidden"},
+                                                       {"activation=relu", "activation"},
+                                                       {"std_mode=state", "std_mode"},
+                                                       {"actor_obs=speed", "actor_obs"},
+                                                       {"normalize_obs=false", "normalize_obs, or obs_clip,"},
+                                                       {"obs_clip=4", "normalize_obs, or obs_clip,"},
+                                                       {"action_repeat=2", "action_repeat"},
+                                                       {kKinds[4], "encoder_points"}};
+  rdm_agent* a = agent_of("activation=tanh");
+  ASSERT_EQ(feed_epoch(a), RDM_OK);
+  for (const auto& [settings, what] : kinds) {
+    SCOPED_TRACE(settings);
+    rdm_agent* other = agent_of(settings);
+    const Owned p = read(policy_bytes(other));
+    rdm_agent_destroy(other);
+    const auto before = everything(p.get());
+    EXPECT_EQ(rdm_policy_update_from(p.get(), a), RDM_ERROR_ARGUMENT);
+    EXPECT_EQ(rdm_agent_error(a), "policy: " + std::string(what) + " differs from the agent's");
+    EXPECT_EQ(everything(p.get()), before);
+  }
+  rdm_agent_config c = agent_config();
+  c.layout_hash = 1;
+  rdm_agent* hashed = make_agent(c);
+  c.layout_hash = 2;
+  rdm_agent* other = make_agent(c);
+  const Owned p = read(policy_bytes(other));
+  EXPECT_EQ(rdm_policy_update_from(p.get(), hashed), RDM_ERROR_ARGUMENT);
+  EXPECT_STREQ(rdm_agent_error(hashed), "policy: layout_hash differs from the agent's");
+  rdm_agent_destroy(other);
+  rdm_agent_destroy(hashed);
+  EXPECT_EQ(rdm_policy_update_from(nullptr, a), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_policy_update_from(p.get(), nullptr), RDM_ERROR_ARGUMENT);
+  rdm_agent_destroy(a);
+}
+
+TEST(PolicyGeneration, IsTheEpochAndTheNetwork) {
+  rdm_agent* a = agent_of("");
+  const auto generation = [&] { return info_of(read(policy_bytes(a)).get()).generation; };
+  const uint64_t first = generation();
+  EXPECT_EQ(static_cast<uint32_t>(first), 0u);
+  EXPECT_NE(first, 0u);
+  float action[8];
+  ASSERT_EQ(rdm_agent_act(a, kObs, RDM_ACT_SAMPLE, action), RDM_OK);
+  EXPECT_EQ(generation(), first) << "within a horizon it is the same network";
+  ASSERT_EQ(rdm_agent_discard(a), RDM_OK);
+  ASSERT_EQ(feed_epoch(a), RDM_OK);
+  const uint64_t second = generation();
+  EXPECT_EQ(static_cast<uint32_t>(second), 1u);
+  EXPECT_NE(second >> 32, first >> 32);
+  const Bytes state = saved(a);
+  ASSERT_EQ(feed_epoch(a), RDM_OK);
+  EXPECT_EQ(static_cast<uint32_t>(generation()), 2u);
+  ASSERT_EQ(rdm_agent_read_state(a, state.data(), state.size()), RDM_OK);
+  EXPECT_EQ(generation(), second);
+  // whoever sets a weight has another network in the same epoch
+  float bias[8];
+  ASSERT_EQ(rdm_agent_get_tensor(a, "actor.0.bias", bias, 8), RDM_OK);
+  bias[0] += 1;
+  ASSERT_EQ(rdm_agent_set_tensor(a, "actor.0.bias", bias, 8), RDM_OK);
+  EXPECT_EQ(static_cast<uint32_t>(generation()), 1u);
+  EXPECT_NE(generation(), second);
+  rdm_agent_destroy(a);
 }
 
 }  // namespace

@@ -40,6 +40,7 @@ struct Made {
     view.noise_correlation = 0.25f;
     view.control_dt = 1.0f / 60;
     view.layout_hash = 0x0123456789abcdefull;
+    view.generation = 77;
     std::strcpy(view.task, "egg_catch");
     view.example_obs = obs.data();
     fields = {{"first", 0, 1, "rad"}, {"again", 0, 1, ""}};
@@ -130,6 +131,7 @@ TEST(Policy, RoundTripKeepsEverything) {
   EXPECT_EQ(v.noise_correlation, 0.25f);
   EXPECT_EQ(v.control_dt, 1.0f / 60);
   EXPECT_EQ(v.layout_hash, 0x0123456789abcdefull);
+  EXPECT_EQ(v.generation, 77u);
   EXPECT_STREQ(v.task, "egg_catch");
   ASSERT_EQ(v.num_fields, 2);
   for (size_t i = 0; i < 2; ++i) {
@@ -390,7 +392,7 @@ TEST(Policy, EveryFlippedBitIsAnError) {
 TEST(Policy, ForgedBytesAreAPolicyOrAnError) {
   const Bytes b = Made(make_shape(3, {2}, 2), 5, true).bytes();
   int errors = 0;
-  for (const char* tag : {"META", "ARCH", "HEAD", "FLDS", "WGTS", "NORM", "EXMP"}) {
+  for (const char* tag : {"META", "ARCH", "HEAD", "FLDS", "GENR", "WGTS", "NORM", "EXMP"}) {
     Bytes whole = b;
     size_t size = 0;
     section(whole, tag, &size);

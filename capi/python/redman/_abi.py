@@ -552,6 +552,7 @@ class PolicyInfo(Record):
     num_features: int  # that its encoder makes of a cloud, 0 without
     point_color: int  # whether it sees the colours of points: 0, 1
     num_fields: int  # for rdm_policy_field_at; 0: the file says none
+    generation: int  # which network: the low 32 bits are the epochs that its agent had learned, the high ones a checksum of it; what was sampled by another one is stale. 0: unknown
 
 
 class rdm_policy_info(Structure):
@@ -571,6 +572,8 @@ class rdm_policy_info(Structure):
     point_color: whether it sees the colours of points: 0, 1
     num_fields: for rdm_policy_field_at; 0: the file says none
     reserved: 0
+    generation: which network: the low 32 bits are the epochs that its agent had learned, the high ones a
+        checksum of it; what was sampled by another one is stale. 0: unknown
     """
 
     struct_size: int
@@ -589,6 +592,7 @@ class rdm_policy_info(Structure):
     point_color: int
     num_fields: int
     reserved: int
+    generation: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("obs_dim", c_int32),
@@ -606,6 +610,7 @@ class rdm_policy_info(Structure):
         ("point_color", c_int32),
         ("num_fields", c_int32),
         ("reserved", c_int32),
+        ("generation", c_uint64),
     ]
 
 
@@ -3883,6 +3888,15 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"a": c_void_p, "path": c_char_p},
         {}, False,
         """replaced atomically"""),
+    "rdm_policy_update_from": Function(
+        c_int32, {"p": c_void_p, "a": c_void_p},
+        {}, False,
+        """The agent's network and statistics as they are now, into a policy of the same sizes, without
+        memory: afterwards p is what rdm_agent_write_policy writes, but for the names of its fields.
+        ARGUMENT names what differs, in network, entries that it sees, normaliser, layout_hash or
+        action_repeat, and p is as it was. Nobody else may be in a call with p, nor an actor or planner
+        that plays it: a rdm_policy_act meanwhile is STATE.
+        """),
     "rdm_agent_write_state": Function(
         c_int32, {"a": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
