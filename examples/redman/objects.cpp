@@ -33,7 +33,7 @@ Report list_objects(const ObjectsFlags& flags) {
     rdm_object object;
     rdm_object_def def;
     rdm_object_def_init(&def, sizeof def);
-    // An object that was removed leaves its number.
+    // An object that was destroyed leaves its number.
     if (rdm_object_at(i, &object) != RDM_OK || rdm_object_get_def(i, &def) != RDM_OK) continue;
     all.push_back({{"name", object.name},
                    {"alias", def.alias ? Json(def.alias) : Json()},

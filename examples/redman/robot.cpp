@@ -28,7 +28,7 @@ Report list_robots(const RobotsFlags& flags) {
     auto robot = redman::sized<rdm_robot>();
     rdm_robot_def def;
     rdm_robot_def_init(&def, sizeof def);
-    // A robot that was removed leaves its number.
+    // A robot that was destroyed leaves its number.
     if (rdm_robot_at(i, &robot) != RDM_OK || rdm_robot_get_def(i, &def) != RDM_OK) continue;
     double mass = def.root_mass;
     for (int32_t k = 0; k < def.num_links; ++k) {

@@ -44,8 +44,10 @@ typedef struct rdm_camera_info { /* a pinhole camera */
                              * centre, as a share of its width                                */
   float cy;                 /* likewise: below its centre, as a share of its height           */
 } rdm_camera_info;
-RDM_API int32_t rdm_task_count(void); /* number of tasks; 0 without the simulation half */
-RDM_API rdm_result rdm_task_at(int32_t index, rdm_task *io); /* RANGE past the end */
+RDM_API int32_t rdm_task_count(void); /* one more than the highest number of a task; 0 without the
+                                       * simulation half */
+RDM_API rdm_result rdm_task_at(int32_t index, rdm_task *io); /* NOT_FOUND: destroyed; RANGE: no
+                                                              * task had this number */
 RDM_API rdm_result rdm_task_find(const char *name,
                                  int32_t *index); /* NOT_FOUND: nearest in the text */
 RDM_API rdm_result rdm_task_field_at(int32_t task, int32_t i,
@@ -76,8 +78,8 @@ typedef struct rdm_joint {  /* frozen layout */
   int32_t action;           /* entry of the hand's action, -1: none                           */
   int32_t reserved;         /* 0                                                              */
 } rdm_joint;
-RDM_API int32_t rdm_robot_count(void); /* number of robot descriptions */
-RDM_API rdm_result rdm_robot_at(int32_t index, rdm_robot *io); /* RANGE past the end */
+RDM_API int32_t rdm_robot_count(void); /* as rdm_task_count */
+RDM_API rdm_result rdm_robot_at(int32_t index, rdm_robot *io); /* errors as rdm_task_at */
 RDM_API rdm_result rdm_robot_find(const char *name, int32_t *index); /* name or alias; NOT_FOUND:
                                                                       * nearest in the text */
 RDM_API rdm_result rdm_robot_joint(int32_t robot, int32_t i, rdm_joint *out);  /* i < num_joints */
@@ -87,9 +89,8 @@ typedef struct rdm_object { /* frozen layout: a thing by name, for option object
   const char *shape;        /* "capsule r 0.03, straight part 0.02": kind and sizes in m      */
   double mass;              /* kg; hull: of the default points, 500 kg/m3                     */
 } rdm_object;
-RDM_API int32_t rdm_object_count(void); /* number of objects, those that were removed too */
-RDM_API rdm_result rdm_object_at(int32_t index,
-                                 rdm_object *out); /* RANGE past the end; NOT_FOUND: removed */
+RDM_API int32_t rdm_object_count(void); /* as rdm_task_count */
+RDM_API rdm_result rdm_object_at(int32_t index, rdm_object *out); /* errors as rdm_task_at */
 RDM_API rdm_result rdm_object_find(const char *name, int32_t *index); /* name or alias;
                                                                        * NOT_FOUND: nearest in
                                                                        * the text */

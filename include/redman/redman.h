@@ -39,8 +39,12 @@
  *   - Structs begin with struct_size = sizeof of your version: set it yourself or through the _init
  *     function. ARGUMENT for less than the first version had or more than 4096, and for a reserved
  *     member that is not 0.
+ *   - Robots, objects and tasks go by number, the library's own and those of a host. The number of
+ *     one that was destroyed is NOT_FOUND wherever it is given, and no other one's before 2^31 more
+ *     were made; what it took is free again. To see all, look at 0 to _count() - 1 and pass over
+ *     NOT_FOUND.
  *   - Strings that are returned live as long as their handle (those of tasks, algorithms, robots
- *     and objects: for ever, also where these are removed; equal ones are kept once). UTF-8; what
+ *     and objects: for ever, also where these are destroyed; equal ones are kept once). UTF-8; what
  *     is no UTF-8 in a given name is printed as \xNN.
  *   - Arrays are row-major. SI units, radians. Quaternions are (x, y, z, w) here and in
  *     observations.

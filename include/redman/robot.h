@@ -139,10 +139,9 @@ typedef struct rdm_robot_def { /* a whole robot; the arrays are copied by rdm_ro
 } rdm_robot_def;
 RDM_API rdm_result rdm_robot_def_init(rdm_robot_def *def,
                                       size_t size); /* defaults into the first `size` bytes */
-/* Adds a robot under a number that no other gets, also later: 2^31 of them in a process; what a
- * removed one took comes back. *out is for rdm_robot_at and what follows here. ARGUMENT, RANGE: the
- * text names the row; a name that is taken is an ARGUMENT. Moments must be positive and keep the
- * triangle rule. */
+/* Adds a robot under a number of its own, *out for rdm_robot_at and what follows here. ARGUMENT,
+ * RANGE: the text names the row; a name that is taken is an ARGUMENT. Moments must be positive and
+ * keep the triangle rule. */
 RDM_API rdm_result rdm_robot_create(int32_t *out, const rdm_robot_def *def);
 /* Pools that use it keep it. ARGUMENT for the library's own. */
 RDM_API rdm_result rdm_robot_destroy(int32_t robot);

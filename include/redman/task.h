@@ -367,12 +367,12 @@ typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_t
   /* FORMAT for a saved state that no world can have: indices out of range, numbers that are not
    * finite. NULL: all are good */
   rdm_result (*check_state)(void *user, const void *instance, const void *state);
-  /* called once, when the task was removed and its last pool is gone. NULL: none */
+  /* called once, when the task was destroyed and its last pool is gone. NULL: none */
   void (*release)(void *user);
 } rdm_task_def;
 RDM_API rdm_result rdm_task_def_init(rdm_task_def *def,
                                      size_t size); /* defaults into the first `size` bytes */
-/* Adds a task under a number that no other gets, *out for rdm_task_at and its like. ARGUMENT,
+/* Adds a task under a number of its own, *out for rdm_task_at and its like. ARGUMENT,
  * RANGE: the text names the row; a name that is taken is an ARGUMENT. Tasks belong to the process;
  * any number of threads may look meanwhile. */
 RDM_API rdm_result rdm_task_create(int32_t *out, const rdm_task_def *def);

@@ -1,6 +1,6 @@
 // Things of a kind by number and by name: the library's own, which stand first, and deep copies of those that a host adds.
 //
-// Any number of threads may look while others add and remove. A number is never given twice. A Kind says what they are:
+// Any number of threads may look while others add and remove. Numbers: numbered.hpp. A Kind says what they are:
 //   using Thing = ...; using Copy = ...;        // Copy(thing) owns what it shows
 //   static constexpr const char* kNoun;         // in texts
 //   static constexpr int kRounds;               // of names: what is called so in an earlier one goes before
@@ -33,10 +33,10 @@ class Registry {
     return *list;
   }
 
-  // Numbers that were given; those of removed things count.
-  int32_t given() {
+  // One behind the last number that is listed.
+  int32_t count() {
     const std::lock_guard<std::mutex> hold(lock_);
-    return added_.given();
+    return added_.count();
   }
 
   // Error(kNotFound) with the nearest.
@@ -139,7 +139,7 @@ class Ref {
  public:
   using Thing = typename Kind::Thing;
   Ref() = default;
-  // Error(kRange); Error(kNotFound): it was removed
+  // Error(kRange); Error(kNotFound): it was destroyed
   explicit Ref(int32_t index) {
     bool counted = false;
     thing_ = &Registry<Kind>::get().take(index, &counted);

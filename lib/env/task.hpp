@@ -127,14 +127,14 @@ using TaskHandle = std::unique_ptr<Task, EndTask>;
 TaskHandle make_task(const TaskInfo& info, const Options& options, const HostHooks& hooks);
 const OptionSpec* task_options(const TaskInfo& info, int32_t* count, OptionTable* chosen = nullptr);
 
-// The rows by number and by name. Any number of threads may look while others add and remove; a number is
-// never given twice.
+// The rows by number and by name. Any number of threads may look while others add and remove; numbers:
+// base/numbered.hpp.
 void register_task(const TaskInfo& info);  // static data
 // Error(kArgument) for a name that is taken; the source is then the caller's still.
 int32_t add_task(TaskSource* source);
 void remove_task(int32_t index);  // who holds a reference keeps it; Error(kArgument) for a static one
 bool task_listed(int32_t index);
-int32_t task_count();                    // numbers that were given; those of removed tasks count
+int32_t task_count();                    // one behind the last number
 const TaskInfo& task_at(int32_t index);  // of an added task: as long as someone holds a reference
 int32_t task_find(const char* name);     // Error(kNotFound) with the nearest name; aliases count
 
@@ -142,7 +142,7 @@ int32_t task_find(const char* name);     // Error(kNotFound) with the nearest na
 class TaskRef {
  public:
   TaskRef() = default;
-  explicit TaskRef(int32_t index);  // Error(kRange); Error(kNotFound): it was removed
+  explicit TaskRef(int32_t index);  // Error(kRange); Error(kNotFound): it was destroyed
   TaskRef(const TaskRef&) = delete;
   TaskRef& operator=(const TaskRef&) = delete;
   TaskRef(TaskRef&& other) noexcept;

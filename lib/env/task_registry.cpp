@@ -92,7 +92,7 @@ bool task_listed(int32_t index) {
 
 int32_t task_count() {
   const std::lock_guard<std::mutex> hold(g_lock);
-  return rows().given();
+  return rows().count();
 }
 
 const TaskInfo& task_at(int32_t index) {

@@ -20,7 +20,7 @@ struct Objects {
 using ObjectRef = Ref<Objects>;
 
 inline int32_t num_objects() {
-  return Registry<Objects>::get().given();
+  return Registry<Objects>::get().count();
 }
 inline int32_t find_object(const char* name) {
   return Registry<Objects>::get().find(name);

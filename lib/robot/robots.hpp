@@ -19,7 +19,7 @@ struct Robots {
 using RobotRef = Ref<Robots>;
 
 inline int32_t num_robots() {
-  return Registry<Robots>::get().given();
+  return Registry<Robots>::get().count();
 }
 inline int32_t find_robot(const char* name) {
   return Registry<Robots>::get().find(name);

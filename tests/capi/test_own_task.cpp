@@ -53,7 +53,8 @@ TEST(OwnTask, IsFoundAndDescribed) {
   BallTask t("own_ball");
   const int32_t count = rdm_task_count();
   const Registered made(t.def);
-  EXPECT_EQ(made.index(), count);
+  EXPECT_GE(made.index(), count);
+  EXPECT_EQ(rdm_task_count(), made.index() + 1);
   int32_t found = -1;
   ASSERT_EQ(rdm_task_find("Own-Ball", &found), RDM_OK);
   EXPECT_EQ(found, made.index());
@@ -135,7 +136,7 @@ TEST(OwnTask, StaysWhileAPoolHasIt) {
   EXPECT_EQ(t.user.released, 1);
   EXPECT_EQ(rdm_task_destroy(0), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_task_destroy(-1), RDM_ERROR_RANGE);
-  EXPECT_EQ(rdm_task_destroy(rdm_task_count()), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_task_destroy(INT32_MAX), RDM_ERROR_RANGE);
 }
 
 TEST(OwnTask, SameBytesForAnyThreadsAndGroups) {

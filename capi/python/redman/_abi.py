@@ -3145,7 +3145,7 @@ class rdm_task_def(Structure):
     observe: writes all entries of the observation, after reset and after judge. Required
     check_state: FORMAT for a saved state that no world can have: indices out of range, numbers that are not
         finite. NULL: all are good
-    release: called once, when the task was removed and its last pool is gone. NULL: none
+    release: called once, when the task was destroyed and its last pool is gone. NULL: none
     """
 
     struct_size: int
@@ -3518,11 +3518,15 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_task_count": Function(
         c_int32, {},
         {}, False,
-        """number of tasks; 0 without the simulation half"""),
+        """one more than the highest number of a task; 0 without the
+        simulation half
+        """),
     "rdm_task_at": Function(
         c_int32, {"index": c_int32, "io": POINTER(rdm_task)},
         {}, False,
-        """RANGE past the end"""),
+        """NOT_FOUND: destroyed; RANGE: no
+        task had this number
+        """),
     "rdm_task_find": Function(
         c_int32, {"name": c_char_p, "index": c_void_p},
         {}, False,
@@ -3550,11 +3554,11 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_robot_count": Function(
         c_int32, {},
         {}, False,
-        """number of robot descriptions"""),
+        """as rdm_task_count"""),
     "rdm_robot_at": Function(
         c_int32, {"index": c_int32, "io": POINTER(rdm_robot)},
         {}, False,
-        """RANGE past the end"""),
+        """errors as rdm_task_at"""),
     "rdm_robot_find": Function(
         c_int32, {"name": c_char_p, "index": c_void_p},
         {}, False,
@@ -3568,11 +3572,11 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_object_count": Function(
         c_int32, {},
         {}, False,
-        """number of objects, those that were removed too"""),
+        """as rdm_task_count"""),
     "rdm_object_at": Function(
         c_int32, {"index": c_int32, "out": POINTER(rdm_object)},
         {}, False,
-        """RANGE past the end; NOT_FOUND: removed"""),
+        """errors as rdm_task_at"""),
     "rdm_object_find": Function(
         c_int32, {"name": c_char_p, "index": c_void_p},
         {}, False,
@@ -4369,10 +4373,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_robot_create": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_robot_def)},
         {}, True,
-        """Adds a robot under a number that no other gets, also later: 2^31 of them in a process; what a
-        removed one took comes back. *out is for rdm_robot_at and what follows here. ARGUMENT, RANGE: the
-        text names the row; a name that is taken is an ARGUMENT. Moments must be positive and keep the
-        triangle rule.
+        """Adds a robot under a number of its own, *out for rdm_robot_at and what follows here. ARGUMENT,
+        RANGE: the text names the row; a name that is taken is an ARGUMENT. Moments must be positive and
+        keep the triangle rule.
         """),
     "rdm_robot_destroy": Function(
         c_int32, {"robot": c_int32},
@@ -4454,7 +4457,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_object_create": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_object_def)},
         {}, True,
-        """Adds an object under a number that no other gets, *out for rdm_object_at and what is here.
+        """Adds an object under a number of its own, *out for rdm_object_at and what is here.
         ARGUMENT, RANGE: the text names the row; a name that is taken is an ARGUMENT. Objects belong to
         the process; any number of threads may look meanwhile.
         """),
@@ -4717,7 +4720,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_task_create": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_task_def)},
         {}, True,
-        """Adds a task under a number that no other gets, *out for rdm_task_at and its like. ARGUMENT,
+        """Adds a task under a number of its own, *out for rdm_task_at and its like. ARGUMENT,
         RANGE: the text names the row; a name that is taken is an ARGUMENT. Tasks belong to the process;
         any number of threads may look meanwhile.
         """),

@@ -133,7 +133,7 @@ def find(call: Callable[..., int], name: str) -> int:
 
 
 def _listed(at: Callable[[int], R], count: int) -> Iterator[R]:
-    """Those of the numbers 0 to count that were not removed since."""
+    """Those of the numbers below count that were not destroyed since."""
     for index in range(count):
         try:
             yield at(index)

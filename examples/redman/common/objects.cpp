@@ -15,7 +15,7 @@ namespace tool {
 std::vector<std::string> object_names() {
   std::vector<std::string> names;
   for (int32_t i = 0; i < rdm_object_count(); ++i) {
-    rdm_object object;  // one that was removed leaves its number
+    rdm_object object;  // one that was destroyed leaves its number
     if (rdm_object_at(i, &object) == RDM_OK) names.emplace_back(object.name);
   }
   return names;
