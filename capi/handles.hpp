@@ -3,6 +3,7 @@
 #pragma once
 #include "capi/in_use.hpp"
 #if RDM_WITH_SIM
+#include "base/memory_block.hpp"
 #include "capi/layouts.hpp"
 #include "env/pool.hpp"
 #include "robot/robot_copy.hpp"
@@ -21,9 +22,12 @@ struct rdm_pool {
   static constexpr bool kOneAtATime = false;
   rdm::capi::Tag tag = kTag;
   mutable rdm::capi::InUse in_use;
-  rdm::HostHooks hooks;
+  rdm::HostHooks hooks;                          // those of `block`
   mutable char error[rdm::kErrorTextSize] = "";  // also of calls that only read
   rdm::Pool* pool = nullptr;
+  rdm::MemoryBlock* block = nullptr;  // in which all of it lies
+  void* memory = nullptr;             // [bytes] the block's, of the alloc hook; null: it is a host's own
+  size_t bytes = 0;
   rdm::Arena arena;                // the arrays below
   rdm_option* defaults = nullptr;  // [num_defaults] of the agent, for rdm_agent_config_for_pool
   int32_t num_defaults = 0;

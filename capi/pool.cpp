@@ -30,13 +30,13 @@ struct Config {
   Vector<OptionInput> options;
 };
 
+// All but the hooks.
 void read_config(const rdm_pool_config* c, Config* out) {
   register_builtin_tasks();
   const auto in = read_struct(c, kFirstConfigSize, rdm_pool_config{}, "config");
   check_error(in);
   need(in.task, "config.task");
   PoolConfig& p = out->pool;
-  p.hooks = hooks_from(in.host);
   p.num_envs = in.num_envs;
   p.num_threads = in.num_threads;
   p.task = in.task;
@@ -77,12 +77,10 @@ void carve(Arena& arena, const Task& task, const TaskInfo& info, rdm_pool* p) {
   p->raycast = carve_raycast_scratch(arena, static_cast<int32_t>(shapes));
 }
 
-size_t side_bytes(const PoolConfig& config) {
-  const HostScope scope(config.hooks);
-  const ResolvedPoolConfig plan(config);
+size_t side_bytes(const Task& task, const TaskInfo& info) {
   Arena measure;
   rdm_pool none;
-  carve(measure, *plan.task, *plan.info, &none);
+  carve(measure, task, info, &none);
   return measure.used();
 }
 
@@ -101,9 +99,7 @@ int32_t fill_defaults(const TaskInfo& info, int32_t repeat, rdm_option* out) {
 void fill_side(rdm_pool* p) {
   const Task& task = p->pool->task();
   const TaskInfo& info = task_at(p->pool->task_index());
-  Arena measure;
-  carve(measure, task, info, p);
-  p->arena = Arena(p->hooks, measure.used());
+  p->arena = Arena(p->hooks, side_bytes(task, info));
   carve(p->arena, task, info, p);
   p->num_defaults = fill_defaults(info, p->pool->repeat(), p->defaults);
   task.initial_mean(p->initial_mean);
@@ -115,14 +111,68 @@ void fill_side(rdm_pool* p) {
   for (int32_t i = 0; i < info.num_costs; ++i) p->cost_limits[i] = i == 0 ? info.costs[0].limit : -1;
 }
 
+HostHooks hooks_of(const rdm_pool_config* c) {
+  return hooks_from(read_struct(c, kFirstConfigSize, rdm_pool_config{}, "config").host);
+}
+
+// What a block must have for a pool of this config: *engines may be null. What is made to know it is made in
+// memory of the C library, and is not kept.
+size_t block_bytes(const rdm_pool_config* c, size_t* engines) {
+  MemoryCount count;
+  HostHooks hooks = count.hooks();
+  const HostScope scope(hooks);
+  Config config;
+  read_config(c, &config);
+  if (hooks_of(c).parallel) hooks.parallel = [](void*, int32_t, ParallelBody, void*) {};  // it counts
+  config.pool.hooks = hooks;
+  count.take(sizeof(rdm_pool));
+  Pool::measure(config.pool, &count, engines, side_bytes);
+  return count.bytes();
+}
+
+[[noreturn]] void too_small(const rdm_pool_config* c, size_t bytes) {
+  fail(Code::kRange, "bytes: %zu, %zu are needed", bytes, block_bytes(c, nullptr));
+}
+
+void end_pool(rdm_pool* p) {
+  p->layout.end();
+  if (p->pool) Pool::destroy(p->pool);
+  retire(p);
+  host_delete(p->hooks, p);
+}
+
+// In the order of block_bytes, so that both take the same.
+rdm_pool* make_pool(MemoryBlock* block, const rdm_pool_config* c) {
+  const HostHooks hooks = block->hooks();
+  const HostScope scope(hooks);
+  Config config;
+  read_config(c, &config);
+  config.pool.hooks = hooks;
+  rdm_pool* p = host_new<rdm_pool>(hooks);
+  p->hooks = hooks;
+  p->block = block;
+  try {
+    p->pool = Pool::create(config.pool);
+    fill_side(p);
+    p->layout.list(layout_hash(p->pool->task()), p->fields,
+                   static_cast<int32_t>(p->pool->task().fields().size()));
+  } catch (...) {
+    end_pool(p);
+    throw;
+  }
+  return p;
+}
+
 }  // namespace
 
 rdm_result rdm_pool_config_spec(const rdm_pool_config* c, rdm_spec* io) {
   return call_with(c, [&] {
     check_out(io, kFirstSpecSize, "io");
+    const HostHooks hooks = hooks_of(c);
+    const HostScope scope(hooks);
     Config config;
     read_config(c, &config);
-    const HostScope scope(config.pool.hooks);
+    config.pool.hooks = hooks;
     const ResolvedPoolConfig plan(config.pool);
     write_struct(io, spec_of(*plan.task, plan.task_index, plan.repeat), kFirstSpecSize, "io");
   });
@@ -130,43 +180,60 @@ rdm_result rdm_pool_config_spec(const rdm_pool_config* c, rdm_spec* io) {
 
 rdm_result rdm_pool_config_memory(const rdm_pool_config* c, size_t* ours, size_t* engines) {
   return call_with(c, [&] {
-    Config config;
-    read_config(c, &config);
-    size_t a = 0, b = 0;
-    Pool::memory(config.pool, &a, &b);
-    if (ours) *ours = a + sizeof(rdm_pool) + side_bytes(config.pool);
-    if (engines) *engines = b;
+    size_t theirs = 0;
+    const size_t bytes = block_bytes(c, &theirs);
+    if (ours) *ours = bytes;
+    if (engines) *engines = theirs;
   });
 }
 
 rdm_result rdm_pool_create(rdm_pool** out, const rdm_pool_config* c) {
   return call_with(c, [&] {
     need(out, "out");
-    Config config;
-    read_config(c, &config);
-    const HostScope scope(config.pool.hooks);
-    rdm_pool* p = host_new<rdm_pool>(config.pool.hooks);
-    p->hooks = config.pool.hooks;
+    const size_t bytes = block_bytes(c, nullptr);
+    const HostHooks hooks = hooks_of(c);
+    void* const memory = host_alloc(hooks, bytes, Arena::kAlign);
+    MemoryBlock* const block = MemoryBlock::make(memory, bytes, hooks, true);
     try {
-      p->pool = Pool::create(config.pool);
-      fill_side(p);
-      p->layout.list(layout_hash(p->pool->task()), p->fields,
-                     static_cast<int32_t>(p->pool->task().fields().size()));
+      rdm_pool* const p = make_pool(block, c);
+      p->memory = memory;
+      p->bytes = bytes;
+      *out = p;
     } catch (...) {
-      rdm_pool_destroy(p);
+      MemoryBlock::end(block);
+      host_release(hooks, memory, bytes, Arena::kAlign);
       throw;
     }
-    *out = p;
+  });
+}
+
+rdm_result rdm_pool_create_in(rdm_pool** out, const rdm_pool_config* c, void* memory, size_t bytes) {
+  return call_with(c, [&] {
+    need(out, "out");
+    need(memory, "memory");
+    MemoryBlock* const block = MemoryBlock::make(memory, bytes, hooks_of(c), false);
+    try {
+      if (!block) too_small(c, bytes);
+      *out = make_pool(block, c);
+    } catch (...) {
+      const bool refused = block && block->refused();
+      if (block) MemoryBlock::end(block);
+      if (refused) too_small(c, bytes);
+      throw;
+    }
   });
 }
 
 void rdm_pool_destroy(rdm_pool* p) {
   if (!may_end(p)) return;
   const FpMode mode;
-  p->layout.end();
-  if (p->pool) Pool::destroy(p->pool);
-  retire(p);
-  host_delete(p->hooks, p);
+  MemoryBlock* const block = p->block;
+  void* const memory = p->memory;
+  const size_t bytes = p->bytes;
+  end_pool(p);
+  const HostHooks host = block->host();
+  MemoryBlock::end(block);
+  if (memory) host_release(host, memory, bytes, Arena::kAlign);
 }
 
 const char* rdm_pool_error(const rdm_pool* p) {

@@ -139,11 +139,21 @@ RDM_API rdm_result rdm_pool_config_init(rdm_pool_config *c, size_t size);
 /* What a pool of this config would be: OK where rdm_pool_create would be, memory aside, else its
  * error. Makes the task to ask it, and no world; nothing is kept. */
 RDM_API rdm_result rdm_pool_config_spec(const rdm_pool_config *c, rdm_spec *io);
-/* Bytes that creation takes: `ours` from the alloc hook, exact; `engines` by the physics engine
- * from the C library, an estimate. Either may be NULL. */
+/* Bytes that creation takes: `ours` in one block, exact; `engines` by the physics engine from the C
+ * library, an estimate. Either may be NULL. No hook is called. The task must be made to know them:
+ * that is done in memory of the C library, which has it back at the end. */
 RDM_API rdm_result rdm_pool_config_memory(const rdm_pool_config *c, size_t *ours, size_t *engines);
-/* Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step. */
+/* Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step. All of the
+ * pool lies in one block, for which the alloc hook is called once; its size is counted before as by
+ * rdm_pool_config_memory, so that a host's own task is built twice. */
 RDM_API rdm_result rdm_pool_create(rdm_pool **out, const rdm_pool_config *c);
+/* The same in memory [bytes] at any address, which is the pool's until it is destroyed, and the
+ * caller's all the time: at least `ours` of rdm_pool_config_memory. Fewer are RANGE, and the text
+ * says how many are needed. Neither alloc hook nor C library are asked for memory, then and later,
+ * but by the physics engine, and by the system for threads; what rdm_pool_set_starts keeps must
+ * have room in what is left (MEMORY). */
+RDM_API rdm_result rdm_pool_create_in(rdm_pool **out, const rdm_pool_config *c, void *memory,
+                                      size_t bytes);
 RDM_API void rdm_pool_destroy(rdm_pool *p);                 /* NULL is fine */
 RDM_API const char *rdm_pool_error(const rdm_pool *p); /* last failure on this handle; "" at
                                                         * first */
@@ -219,7 +229,9 @@ RDM_API rdm_result rdm_pool_baseline(rdm_pool *p, int32_t kind);
 /* The whole state of world env, exact: a pool of the same task and options that sets it goes on
  * with the same bytes. read_state also rewrites obs and clears the other rows of that world. env
  * -1: all worlds in one block. FORMAT for bytes that are not whole, of another task or options, or
- * hold what no world can have: nothing changes. */
+ * hold what no world can have: nothing changes. Bytes are for files and other processes. Snapshots
+ * within one, as for going back some steps, are cheap by rdm_pool_copy, with a second pool whose
+ * worlds are the ring: a thirtieth of writing and reading again, in a task of hands. */
 RDM_API rdm_result rdm_pool_state_size(const rdm_pool *p, int32_t env, size_t *bytes);
 RDM_API rdm_result rdm_pool_write_state(const rdm_pool *p, int32_t env, void *bytes,
                                         size_t capacity, size_t *size); /* to bytes [capacity];

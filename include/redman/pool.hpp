@@ -20,10 +20,14 @@ inline rdm_pool_config pool_config(const char* task, int32_t num_envs = 1, const
 
 class Pool {
  public:
-  explicit Pool(const rdm_pool_config& config)
-      : handle_(made(rdm_pool_create, &config)), num_envs_(static_cast<size_t>(config.num_envs)) {
-    check(rdm_pool_get_spec(get(), &spec_));
-    check(rdm_pool_get_buffers(get(), &buffers_));
+  explicit Pool(const rdm_pool_config& config) : Pool(made(rdm_pool_create, &config), config) {}
+  // In memory [bytes] that must outlive it: at least Pool::memory(config).
+  Pool(const rdm_pool_config& config, void* memory, size_t bytes)
+      : Pool(made(rdm_pool_create_in, &config, memory, bytes), config) {}
+  static size_t memory(const rdm_pool_config& config) {
+    size_t ours = 0;
+    check(rdm_pool_config_memory(&config, &ours, nullptr));
+    return ours;
   }
   rdm_pool* get() const { return handle_.get(); }
   const rdm_spec& spec() const { return spec_; }
@@ -92,6 +96,11 @@ class Pool {
   }
 
  private:
+  Pool(rdm_pool* handle, const rdm_pool_config& config)
+      : handle_(handle), num_envs_(static_cast<size_t>(config.num_envs)) {
+    check(rdm_pool_get_spec(get(), &spec_));
+    check(rdm_pool_get_buffers(get(), &buffers_));
+  }
   Rows<float> table(float* data, int32_t width) const {
     return {data, num_envs_, static_cast<size_t>(width)};
   }

@@ -96,11 +96,17 @@ Workers::Workers(const HostHooks& hooks, int32_t threads)
   }
 }
 
+Workers::Taken Workers::takes(const HostHooks& hooks, int32_t threads) {
+  const auto n = static_cast<size_t>(threads);
+  if (threads <= 1) return {{}, 0};
+  return {{n * sizeof(Cursor), sizeof(Shared), (n - 1) * sizeof(std::thread)}, hooks.parallel ? 1 : 3};
+}
+
 size_t Workers::memory(const HostHooks& hooks, int32_t threads) {
-  if (threads <= 1) return 0;
-  const size_t cursors = static_cast<size_t>(threads) * sizeof(Cursor);
-  if (hooks.parallel) return cursors;
-  return cursors + sizeof(Shared) + static_cast<size_t>(threads - 1) * sizeof(std::thread);
+  const Taken taken = takes(hooks, threads);
+  size_t sum = 0;
+  for (int32_t i = 0; i < taken.count; ++i) sum += taken.bytes[i];
+  return sum;
 }
 
 Workers::~Workers() {

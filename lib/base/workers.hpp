@@ -38,7 +38,12 @@ class Workers {
 
   int32_t width() const { return width_; }
   static constexpr int32_t kMost = 256;
-  // Bytes that the constructor takes from the alloc hook.
+  // Bytes that the constructor takes from the alloc hook, call by call; their sum.
+  struct Taken {
+    size_t bytes[3];
+    int32_t count;
+  };
+  static Taken takes(const HostHooks& hooks, int32_t threads);
   static size_t memory(const HostHooks& hooks, int32_t threads);
 
  private:

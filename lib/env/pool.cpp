@@ -11,28 +11,29 @@
 namespace rdm {
 namespace {
 
-struct Counter {
-  HostHooks inner;
-  size_t live = 0;
-};
-
-HostHooks counting(Counter* counter) {
-  HostHooks hooks = counter->inner;
-  hooks.user = counter;
-  hooks.log = nullptr;
-  hooks.parallel = nullptr;
-  hooks.alloc = [](void* user, size_t bytes, size_t align) {
-    auto* c = static_cast<Counter*>(user);
-    void* p = host_alloc(c->inner, bytes, align);
-    c->live += bytes;
-    return p;
-  };
-  hooks.release = [](void* user, void* p, size_t bytes, size_t align) {
-    auto* c = static_cast<Counter*>(user);
-    host_release(c->inner, p, bytes, align);
-    c->live -= bytes;
-  };
-  return hooks;
+// What a pool takes for its worlds, from `block` on, and then last(bytes of a world's state). The first world
+// of each block is made, as nobody knows otherwise what it takes beside its arrays.
+template <class F>
+void count_worlds(const ResolvedPoolConfig& plan, int32_t block, size_t state_bytes, MemoryCount* count,
+                  const F& last) {
+  if (block == plan.num_blocks()) return last(state_bytes);
+  const EngineKind engine = plan.task->engine();
+  const Scene& scene = plan.task->scene();
+  const HostHooks uncounted;
+  Arena measure;
+  {
+    const HostScope scope(uncounted);
+    World::measure(engine, scene, measure, false, plan.block_worlds());
+  }
+  Arena arena(uncounted, measure.used());
+  const auto end = [&](World* world) { World::destroy(world, plan.config.hooks); };
+  const std::unique_ptr<World, decltype(end)> first(
+      World::create(engine, scene, arena, plan.config.hooks, nullptr, plan.block_worlds()), end);
+  for (int32_t i = plan.block_begin(block) + 1; i < plan.block_begin(block + 1); ++i)
+    count->take(World::object_bytes(engine));
+  Writer state(nullptr, 0);
+  first->save(state);
+  count_worlds(plan, block + 1, state.size(), count, last);
 }
 
 }  // namespace
@@ -158,42 +159,26 @@ Pool::Impl::~Impl() {
   host_delete(config.hooks, workers);
 }
 
-// Makes the parts of a pool with hooks that count.
-void Pool::memory(const PoolConfig& config, size_t* ours, size_t* engines) {
+void Pool::measure(const PoolConfig& config, MemoryCount* count, size_t* engines, SideBytes* side) {
   const FpMode mode;
-  Counter counter{config.hooks};
-  const HostHooks hooks = counting(&counter);
-  const HostScope scope(hooks);
-  PoolConfig counted = config;
-  counted.hooks = hooks;
-  const ResolvedPoolConfig plan(counted);
-  size_t total = counter.live + sizeof(Pool) + sizeof(Impl) + Impl::arena_bytes(plan) + sizeof(Workers) +
-                 Workers::memory(config.hooks, config.num_threads);
-
-  // two worlds tell what each takes beside its arrays, and how long its saved state is
+  const HostScope scope(config.hooks);
+  count->take(sizeof(Pool));
+  count->take(sizeof(Impl));
+  const ResolvedPoolConfig plan(config);
+  const auto blocks = static_cast<size_t>(plan.num_blocks());
   const EngineKind engine = plan.task->engine();
   const Scene& scene = plan.task->scene();
-  const size_t blocks = static_cast<size_t>(plan.num_blocks()), others = plan.num() - blocks;
-  Arena measure;
-  const int32_t together = plan.block_worlds();
-  World::measure(engine, scene, measure, false, together);
-  World::measure(engine, scene, measure, true, together);
-  Arena arena(config.hooks, measure.used());
-  const size_t before = counter.live;
-  const auto end = [&hooks](World* world) { World::destroy(world, hooks); };
-  using OwnedWorld = std::unique_ptr<World, decltype(end)>;
-  const OwnedWorld first(World::create(engine, scene, arena, hooks, nullptr, together), end);
-  const size_t between = counter.live;
-  const OwnedWorld other(World::create(engine, scene, arena, hooks, first.get(), together), end);
-  total += blocks * (between - before) + others * (counter.live - between);
-  Writer state(nullptr, 0);
-  first->save(state);
-  total += state.size();
-
-  if (ours) *ours = total;
+  count->take(Impl::arena_bytes(plan));
+  count_worlds(plan, 0, 0, count, [&](size_t state_bytes) {
+    count->take(state_bytes);
+    count->take(sizeof(Workers));
+    const Workers::Taken taken = Workers::takes(config.hooks, config.num_threads);
+    for (int32_t i = 0; i < taken.count; ++i) count->take(taken.bytes[i]);
+    if (side) count->take(side(*plan.task, *plan.info));
+  });
   if (engines)
-    *engines =
-        blocks * World::engine_bytes(engine, scene) + others * World::engine_bytes(engine, scene, true);
+    *engines = blocks * World::engine_bytes(engine, scene) +
+               (plan.num() - blocks) * World::engine_bytes(engine, scene, true);
 }
 
 Pool::Pool() : impl_(nullptr) {}

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/arena.hpp"
+#include "base/memory_block.hpp"
 #include "base/workers.hpp"
 #include "env/observer.hpp"
 #include "env/task.hpp"
@@ -47,8 +48,12 @@ enum class Baseline : int32_t { kZero = 0, kHold = 1, kRandom = 2 };
 
 class Pool {
  public:
-  // Validates the config; bytes of create from the hooks (exact) and of the engines (estimate).
-  static void memory(const PoolConfig& config, size_t* ours, size_t* engines);
+  // Validates the config, whose hooks must be those of `count`: takes from it what create takes from its hooks,
+  // in the same order, and at last what `side` says (null: nothing) that whoever makes the pool takes beside
+  // it. *engines: bytes that these take, an estimate; may be null.
+  using SideBytes = size_t(const Task& task, const TaskInfo& info);
+  static void measure(const PoolConfig& config, MemoryCount* count, size_t* engines,
+                      SideBytes* side = nullptr);
   static Pool* create(const PoolConfig& config);
   static void destroy(Pool* p);
 

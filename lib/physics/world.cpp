@@ -54,6 +54,12 @@ void World::measure(EngineKind kind, const Scene& scene, Arena& arena, bool part
     const ArticulatedWorld world(scene, arena, nullptr, partnered, together);
 }
 
+size_t World::object_bytes(EngineKind kind) {
+  check_kind(kind);
+  if (kind == EngineKind::kOde) return sizeof(OdeWorld);
+  return kind == EngineKind::kKinematic ? sizeof(KinematicWorld) : sizeof(ArticulatedWorld);
+}
+
 size_t World::engine_bytes(EngineKind kind, const Scene& scene, bool partnered) {
   check_kind(kind);
   if (kind == EngineKind::kOde) return OdeWorld::heap_bytes(scene);

@@ -61,6 +61,8 @@ class World {
   // What create carves, without or with a partner.
   static void measure(EngineKind kind, const Scene& scene, Arena& arena, bool partnered = false,
                       int32_t together = 0);
+  // Bytes of the world itself. With a partner create takes no others from the hooks.
+  static size_t object_bytes(EngineKind kind);
   // Bytes that the engine allocates by itself for one world, an estimate from above.
   static size_t engine_bytes(EngineKind kind, const Scene& scene, bool partnered = false);
   static void destroy(World* world, const HostHooks& hooks);

@@ -90,6 +90,12 @@ TEST_F(Structs, ThatGoInHaveASizeThatCanBe) {
     const rdm_result r = rdm_pool_create(&p, c);
     return end_pool(r, p);
   });
+  std::vector<unsigned char> memory(1 << 20);
+  goes_in<rdm_pool_config>("rdm_pool_create_in", pool_config(), [&](rdm_pool_config* c) {
+    rdm_pool* p = nullptr;
+    const rdm_result r = rdm_pool_create_in(&p, c, memory.data(), memory.size());
+    return end_pool(r, p);
+  });
   goes_in<rdm_pool_config>("rdm_pool_config_spec", pool_config(),
                            [&](auto* c) { return rdm_pool_config_spec(c, &spec); });
   goes_in<rdm_pool_config>("rdm_pool_config_memory", pool_config(),

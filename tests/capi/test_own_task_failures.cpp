@@ -3,7 +3,9 @@
 #include <cmath>
 #include <string>
 
+#include "base/error.hpp"
 #include "called_task.hpp"
+#include "env/pool.hpp"
 #include "task_pool.hpp"
 
 namespace rdm::test {
@@ -352,12 +354,12 @@ TEST(OwnTaskBuilds, RefusedMemoryLeavesNoHalf) {
   for (size_t at = 0;; ++at) {
     CountingHost host;
     host.refuse_at = at;
-    rdm_pool_config c = pool_config(1);
+    PoolConfig c;  // rdm_pool_create asks its host once for all
     c.task = "builds";
-    c.host = &host.hooks;
-    rdm_pool* pool = nullptr;
+    c.hooks.user = &host;
+    c.hooks.release = CountingHost::release;
     // refused once alone, as where another part of the process frees some
-    host.hooks.alloc = [](void* user, size_t bytes, size_t align) -> void* {
+    c.hooks.alloc = [](void* user, size_t bytes, size_t align) -> void* {
       auto* h = static_cast<CountingHost*>(user);
       if (h->calls == h->refuse_at) return ++h->calls, nullptr;
       const size_t keep = h->refuse_at;
@@ -366,16 +368,17 @@ TEST(OwnTaskBuilds, RefusedMemoryLeavesNoHalf) {
       h->refuse_at = keep;
       return p;
     };
-    const rdm_result r = rdm_pool_create(&pool, &c);
-    if (r == RDM_OK) {
+    Pool* pool = nullptr;
+    const Code r = guard([&] { pool = Pool::create(c); });
+    if (r == Code::kOk) {
       ++made;
-      EXPECT_EQ(rdm_pool_reset(pool, nullptr, nullptr), RDM_OK) << at;
-      for (int k = 0; k < 3; ++k) EXPECT_EQ(rdm_pool_step(pool), RDM_OK) << at;
+      pool->reset(nullptr, nullptr);
+      for (int k = 0; k < 3; ++k) pool->step(nullptr);
     } else {
       ++refused;
-      EXPECT_EQ(r, RDM_ERROR_MEMORY) << at << ": " << rdm_last_error();
+      EXPECT_EQ(r, Code::kMemory) << at << ": " << last_error();
     }
-    rdm_pool_destroy(pool);
+    Pool::destroy(pool);
     EXPECT_EQ(host.live, 0u) << at;
     if (host.calls <= at) break;
   }

@@ -95,6 +95,18 @@ TEST(RedmanHpp, StatesOfOneWorldAndOfAllGoRound) {
   EXPECT_EQ(pool.hash(), hash);
 }
 
+TEST(RedmanHpp, PoolLiesInMemoryThatIsLent) {
+  const rdm_pool_config config = redman::pool_config(kTask, 2);
+  std::vector<unsigned char> memory(redman::Pool::memory(config));
+  EXPECT_THROW(redman::Pool(config, memory.data(), memory.size() - 1), redman::Error);
+  redman::Pool pool(config, memory.data(), memory.size()), other(config);
+  for (redman::Pool* each : {&pool, &other}) {
+    each->reset();
+    each->step();
+  }
+  EXPECT_EQ(pool.hash(), other.hash());
+}
+
 TEST(RedmanHpp, AgentLearnsFromAPoolAndItsPolicyActs) {
   redman::Pool pool(redman::pool_config(kTask, 2));
   pool.reset();

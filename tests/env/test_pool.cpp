@@ -109,8 +109,9 @@ TEST(Pool, AnEngineThatIsNotThereIsUnsupported) {
   c.options = &engine;
   c.num_options = 1;
   EXPECT_EQ(code_of([&] { Pool::destroy(Pool::create(c)); }), Code::kUnsupported);
-  size_t ours = 0;
-  EXPECT_EQ(code_of([&] { Pool::memory(c, &ours, nullptr); }), Code::kUnsupported);
+  MemoryCount count;
+  c.hooks = count.hooks();
+  EXPECT_EQ(code_of([&] { Pool::measure(c, &count, nullptr); }), Code::kUnsupported);
 }
 
 TEST(Pool, MadeTasksCanBeAsked) {

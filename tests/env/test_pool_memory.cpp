@@ -1,5 +1,6 @@
-// The bytes that Pool::memory reports are those that create takes, and all come back.
+// What Pool::measure counts is what create takes, and all comes back.
 #include <cstdlib>
+#include <vector>
 
 #include "tasks/catalog.hpp"
 #include "toy_task.hpp"
@@ -36,24 +37,26 @@ TEST(PoolMemory, IsExact) {
   for (const char* task : {"toy_push", "hand_over_safe_finger"})
     for (const int32_t envs : {1, 5})
       for (const int32_t threads : {0, 3}) {
-        CountedHost host;
         PoolConfig c;
         c.task = task;
         c.num_envs = envs;
         c.num_threads = threads;
-        c.hooks = host.hooks();
         c.settings = threads ? kDisturbed : nullptr;
-        size_t ours = 0, engines = 0;
-        Pool::memory(c, &ours, &engines);
-        EXPECT_EQ(host.live, 0u);
+        MemoryCount count;
+        c.hooks = count.hooks();
+        size_t engines = 0;
+        Pool::measure(c, &count, &engines);
         EXPECT_GT(engines, 0u);
+        std::vector<unsigned char> memory(count.bytes());
+        MemoryBlock* block = MemoryBlock::make(memory.data(), count.bytes(), {}, false);
+        c.hooks = block->hooks();
         Pool* p = Pool::create(c);
-        EXPECT_EQ(host.live, ours) << task << " x " << envs << " on " << threads;
+        EXPECT_EQ(block->bytes(), count.bytes()) << task << " x " << envs << " on " << threads;
         p->reset(nullptr, nullptr);
         p->step(nullptr);
-        EXPECT_EQ(host.live, ours);
+        EXPECT_EQ(block->bytes(), count.bytes());
         Pool::destroy(p);
-        EXPECT_EQ(host.live, 0u);
+        MemoryBlock::end(block);
       }
 }
 

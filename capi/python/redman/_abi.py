@@ -3599,13 +3599,26 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_config_memory": Function(
         c_int32, {"c": POINTER(rdm_pool_config), "ours": c_void_p, "engines": c_void_p},
         {}, False,
-        """Bytes that creation takes: `ours` from the alloc hook, exact; `engines` by the physics engine
-        from the C library, an estimate. Either may be NULL.
+        """Bytes that creation takes: `ours` in one block, exact; `engines` by the physics engine from the C
+        library, an estimate. Either may be NULL. No hook is called. The task must be made to know them:
+        that is done in memory of the C library, which has it back at the end.
         """),
     "rdm_pool_create": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_pool_config)},
         {}, False,
-        """Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step."""),
+        """Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step. All of the
+        pool lies in one block, for which the alloc hook is called once; its size is counted before as by
+        rdm_pool_config_memory, so that a host's own task is built twice.
+        """),
+    "rdm_pool_create_in": Function(
+        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_pool_config), "memory": c_void_p, "bytes": c_size_t},
+        {}, False,
+        """The same in memory [bytes] at any address, which is the pool's until it is destroyed, and the
+        caller's all the time: at least `ours` of rdm_pool_config_memory. Fewer are RANGE, and the text
+        says how many are needed. Neither alloc hook nor C library are asked for memory, then and later,
+        but by the physics engine, and by the system for threads; what rdm_pool_set_starts keeps must
+        have room in what is left (MEMORY).
+        """),
     "rdm_pool_destroy": Function(
         None, {"p": c_void_p},
         {}, False,
@@ -3692,7 +3705,9 @@ FUNCTIONS: dict[str, Function] = {
         """The whole state of world env, exact: a pool of the same task and options that sets it goes on
         with the same bytes. read_state also rewrites obs and clears the other rows of that world. env
         -1: all worlds in one block. FORMAT for bytes that are not whole, of another task or options, or
-        hold what no world can have: nothing changes.
+        hold what no world can have: nothing changes. Bytes are for files and other processes. Snapshots
+        within one, as for going back some steps, are cheap by rdm_pool_copy, with a second pool whose
+        worlds are the ring: a thirtieth of writing and reading again, in a task of hands.
         """),
     "rdm_pool_write_state": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},

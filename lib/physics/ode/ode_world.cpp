@@ -38,6 +38,7 @@ OdeWorld::OdeWorld(const Scene& scene, Arena& arena, OdeWorld* partner) : World(
   tree_.carve(scene, arena);
   contact_.carve(scene, arena);
   body_ids_ = arena.make<dBodyID>(bodies);
+  heads_ = arena.make<dBodyID>(scene.def.articulations.size() + bodies + 1);
   sensor_of_link_ = arena.make<int32_t>(links);
   num_forces_ = static_cast<int32_t>(links + scene.def.articulations.size() + bodies);
   forces_ = arena.make<Force>(static_cast<size_t>(num_forces_));
@@ -206,13 +207,13 @@ void OdeWorld::make_threading() {
 // One solver step with as many contacts as there can ever be, in one island: ODE's working memory has its
 // final size before the first real step. The bodies have moved then.
 void OdeWorld::grow_working_memory() {
-  Vector<dBodyID> heads;
+  int32_t count = 0;
   for (size_t a = 0; a < scene_->link_offset.size(); ++a)
-    if (!scene_->def.articulations[a].links.empty()) heads.push_back(tree_.body(scene_->link_offset[a]));
-  for (int32_t i = 0; i < scene_->num_bodies; ++i) heads.push_back(body_ids_[i]);
-  if (heads.empty()) heads.push_back(tree_.base(0));
+    if (!scene_->def.articulations[a].links.empty()) heads_[count++] = tree_.body(scene_->link_offset[a]);
+  for (int32_t i = 0; i < scene_->num_bodies; ++i) heads_[count++] = body_ids_[i];
+  if (count == 0) heads_[count++] = tree_.base(0);
   tree_.drive(state());
-  contact_.fill(ode_, *scene_, heads.data(), static_cast<int32_t>(heads.size()));
+  contact_.fill(ode_, *scene_, heads_, count);
   solve();
   contact_.empty();
 }

@@ -92,6 +92,7 @@ class OdeWorld final : public World {
   OdeLinks tree_;
   OdeContacts contact_;
   dBodyID* body_ids_ = nullptr;        // [num_bodies]
+  dBodyID* heads_ = nullptr;           // [articulations + num_bodies + 1] for grow_working_memory
   int32_t* sensor_of_link_ = nullptr;  // [num_links], -1: none
   // Links (a merged one shares its child's), bases, bodies.
   Force* forces_ = nullptr;
