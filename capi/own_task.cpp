@@ -109,13 +109,14 @@ struct Nested {
 // A task of one pool: what its functions are called with.
 class BuiltTask final : public Task {
  public:
-  BuiltTask(const OwnTask& own, const Options& o)
+  BuiltTask(const OwnTask& own, const Options& o, void* user)
       : own_(own),
         engine_(engine_from(o)),
         max_steps_(o.integer("max_steps")),
         instance_(static_cast<size_t>(own.def.instance_bytes / sizeof(Block)) + 1) {
     const Nested nested(own.def.name);
     begin_scene(own, o, &scene_);
+    scene_.user = user;
     struct Retire {
       rdm_scene* scene;
       ~Retire() { retire(scene); }
@@ -453,9 +454,9 @@ const OptionSpec* OwnTask::options(int32_t* count) const {
   return options_.data();
 }
 
-Task* OwnTask::make(const Options& options, const HostHooks& hooks) const {
+Task* OwnTask::make(const Options& options, const HostHooks& hooks, void* user) const {
   const HostScope scope(hooks);
-  return host_new<BuiltTask>(hooks, *this, options);
+  return host_new<BuiltTask>(hooks, *this, options, user);
 }
 
 void OwnTask::destroy(Task* task, const HostHooks& hooks) const {

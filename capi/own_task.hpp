@@ -54,7 +54,7 @@ class OwnTask final : public TaskSource {
   OwnTask(const rdm_task_def& def, const HostHooks& hooks);
   const TaskInfo& info() const override { return info_; }
   const OptionSpec* options(int32_t* count) const override;
-  Task* make(const Options& options, const HostHooks& hooks) const override;
+  Task* make(const Options& options, const HostHooks& hooks, void* user) const override;
   void destroy(Task* task, const HostHooks& hooks) const override;
   void end() noexcept override;
 
@@ -107,7 +107,8 @@ struct rdm_scene {
   static constexpr rdm::capi::Tag kTag = rdm::capi::Tag::kScene;
   rdm::capi::Tag tag = kTag;
   const rdm::Options* options = nullptr;
-  rdm::SceneDef def;  // gone into `scene` when that is made
+  void* user = nullptr;  // the pool's
+  rdm::SceneDef def;     // gone into `scene` when that is made
   rdm::Vector<rdm::Name> materials;
   rdm::Vector<double> frictions;  // of materials that objects brought; -1 of others, as long as materials
   rdm::Vector<rdm::capi::PlacedRobot> robots;

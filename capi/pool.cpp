@@ -37,6 +37,7 @@ void read_config(const rdm_pool_config* c, Config* out) {
   check_error(in);
   need(in.task, "config.task");
   PoolConfig& p = out->pool;
+  p.user = in.user;
   p.num_envs = in.num_envs;
   p.num_threads = in.num_threads;
   p.task = in.task;

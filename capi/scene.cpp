@@ -559,6 +559,10 @@ rdm_result rdm_scene_set_actions(rdm_scene* scene, int32_t count, const float* h
   });
 }
 
+void* rdm_scene_user(const rdm_scene* scene) {
+  return is_handle(scene) ? scene->user : nullptr;
+}
+
 rdm_result rdm_scene_find(rdm_scene* scene, int32_t part, const char* name, int32_t* index) {
   return call_inside([&] {
     need_handle(scene);

@@ -122,6 +122,14 @@ auto draw(rdm_random* random, F&& f) -> decltype(f(std::declval<Stream&>())) {
 
 }  // namespace
 
+int32_t rdm_world_number(const rdm_world* world) {
+  return is_handle(world) ? world->world->number() : -1;
+}
+
+void* rdm_world_user(const rdm_world* world) {
+  return is_handle(world) ? world->scene->user : nullptr;
+}
+
 rdm_result rdm_world_get_joints(const rdm_world* world, rdm_joints* io) {
   return call_inside([&] {
     const World& w = look(world);

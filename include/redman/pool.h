@@ -131,6 +131,7 @@ typedef struct rdm_pool_config { /* what a pool is made from */
                               * NULL */
   int32_t error_size;        /* bytes, terminator included; what is longer is cut */
   int32_t reserved2;         /* 0 */
+  void *user;                /* for a host's own task: rdm_scene_user, rdm_world_user; NULL */
 } rdm_pool_config;
 /* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
  * version's. */

@@ -83,6 +83,9 @@ typedef struct rdm_scene_robot {
 /* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
  * version's. */
 RDM_API rdm_result rdm_scene_robot_init(rdm_scene_robot *robot, size_t size);
+/* rdm_pool_config.user of the pool that is made, NULL where a task is asked about without a config
+ * (rdm_task_at); NULL of a scene that is none. */
+RDM_API void *rdm_scene_user(const rdm_scene *scene);
 /* what rdm_scene_find looks for; numbers count from 0 in the order of adding */
 enum rdm_scene_part {
   RDM_SCENE_ROBOT = 0, RDM_SCENE_BODY = 1,
@@ -169,6 +172,13 @@ RDM_API rdm_result rdm_scene_joint_at(rdm_scene *scene, int32_t i,
 RDM_API rdm_result rdm_scene_add_touch(rdm_scene *scene, const char *a, const char *b,
                                        int32_t *group);
 
+/* Which world of its pool it is, from 0 on; -1 in rdm_task_check's trials of one world alone, and
+ * of a world that is none. */
+RDM_API int32_t rdm_world_number(const rdm_world *world);
+/* rdm_pool_config.user of the world's pool: a pool keeps its own, whatever it takes of states and
+ * of other pools. What it leads to is for what is outside of a world (a viewer, a log); what
+ * happens within must not depend on it, nor on the number. NULL of a world that is none. */
+RDM_API void *rdm_world_user(const rdm_world *world);
 /* the joints of all robots of a world; the addresses hold within the call */
 typedef struct rdm_joints {
   uint32_t struct_size;    /* in: bytes */

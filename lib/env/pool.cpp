@@ -104,6 +104,7 @@ void Pool::Impl::build() {
       s.task_state = arena.make<unsigned char>(task->state_bytes());
       s.disturbance.carve(arena, disturbance, *task);
       s.world = World::create(task->engine(), task->scene(), arena, config.hooks, partner, block_worlds());
+      s.world->set_number(i);
       if (!partner) partner = s.world;
       name_streams(i, config.seed, static_cast<uint32_t>(i));
     }

@@ -25,6 +25,7 @@ struct PoolConfig {
   const char* settings = nullptr;  // lines key=value, laid over the options
   int32_t group_size = 0;  // worlds that the engine steps together, at most; 0: as many as it likes to
   HostHooks hooks;
+  void* user = nullptr;  // handed on to the task of a host
 };
 
 // Meaning and shapes as rdm_buffers.

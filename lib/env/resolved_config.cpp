@@ -58,9 +58,9 @@ void ResolvedPoolConfig::read_options(const PoolConfig& c) {
   set_all(c, info->name, &options);
 }
 
-TaskHandle make_task(const TaskInfo& info, const Options& options, const HostHooks& hooks) {
+TaskHandle make_task(const TaskInfo& info, const Options& options, const HostHooks& hooks, void* user) {
   const HostScope scope(hooks);
-  return {info.source ? info.source->make(options, hooks) : info.make(options, hooks), {&info, hooks}};
+  return {info.source ? info.source->make(options, hooks, user) : info.make(options, hooks), {&info, hooks}};
 }
 
 void EndTask::operator()(Task* task) const {
@@ -92,7 +92,7 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
   read_options(c);
   repeat = repeat_from(options, *info);
   options_hash = hash_options();
-  task = make_task(*info, options, config.hooks);
+  task = make_task(*info, options, config.hooks, config.user);
   sense = sense_from(options, *info, *task);
   if (info->source) {  // another task may have its name by now
     const size_t bytes = task->state_bytes();

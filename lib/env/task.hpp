@@ -92,7 +92,8 @@ class TaskSource {
  public:
   virtual const struct TaskInfo& info() const = 0;
   virtual const OptionSpec* options(int32_t* count) const = 0;
-  virtual Task* make(const Options& options, const HostHooks& hooks) const = 0;
+  // `user` is the pool's.
+  virtual Task* make(const Options& options, const HostHooks& hooks, void* user) const = 0;
   virtual void destroy(Task* task, const HostHooks& hooks) const = 0;
   virtual void end() noexcept = 0;  // it was removed and its last user is gone
 
@@ -124,7 +125,8 @@ struct EndTask {
   void operator()(Task* task) const;
 };
 using TaskHandle = std::unique_ptr<Task, EndTask>;
-TaskHandle make_task(const TaskInfo& info, const Options& options, const HostHooks& hooks);
+TaskHandle make_task(const TaskInfo& info, const Options& options, const HostHooks& hooks,
+                     void* user = nullptr);
 const OptionSpec* task_options(const TaskInfo& info, int32_t* count, OptionTable* chosen = nullptr);
 
 // The rows by number and by name. Any number of threads may look while others add and remove; numbers:

@@ -70,6 +70,9 @@ class World {
 
   const Scene& scene() const { return *scene_; }
   virtual EngineKind engine() const = 0;
+  // The name that whoever made it gives it, no part of its state; -1 at first.
+  int32_t number() const { return number_; }
+  void set_number(int32_t number) { number_ = number; }
 
   // One control step: solver.substeps substeps towards `target`. Clears and sets status, contacts,
   // torques, wrenches. Never throws.
@@ -217,7 +220,7 @@ class World {
   Dynamics dynamics_, edited_;
   SizedShape* sized_ = nullptr;  // [num_body_shapes]
   Hull* hulls_ = nullptr;        // of those that are hulls, in order
-  int32_t num_contacts_ = 0;
+  int32_t num_contacts_ = 0, number_ = -1;
   uint32_t status_ = 0;
 };
 

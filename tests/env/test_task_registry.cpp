@@ -38,7 +38,9 @@ class Source final : public TaskSource {
   }
   const TaskInfo& info() const override { return info_; }
   const OptionSpec* options(int32_t* count) const override { return toy_info().options(count, nullptr); }
-  Task* make(const Options& o, const HostHooks& hooks) const override { return toy_info().make(o, hooks); }
+  Task* make(const Options& o, const HostHooks& hooks, void*) const override {
+    return toy_info().make(o, hooks);
+  }
   void destroy(Task* task, const HostHooks& hooks) const override { toy_info().destroy(task, hooks); }
   void end() noexcept override { ++ended; }
   int ended = 0;

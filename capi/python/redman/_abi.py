@@ -867,6 +867,7 @@ class rdm_pool_config(Structure):
     error: [error_size] the text of a failing call that takes this config; NULL
     error_size: bytes, terminator included; what is longer is cut
     reserved2: 0
+    user: for a host's own task: rdm_scene_user, rdm_world_user; NULL
     """
 
     struct_size: int
@@ -883,6 +884,7 @@ class rdm_pool_config(Structure):
     error: int | None
     error_size: int
     reserved2: int
+    user: int | None
     _fields_ = [
         ("struct_size", c_uint32),
         ("num_envs", c_int32),
@@ -898,6 +900,7 @@ class rdm_pool_config(Structure):
         ("error", c_void_p),
         ("error_size", c_int32),
         ("reserved2", c_int32),
+        ("user", c_void_p),
     ]
 
 
@@ -4494,6 +4497,12 @@ FUNCTIONS: dict[str, Function] = {
         """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
         version's.
         """),
+    "rdm_scene_user": Function(
+        c_void_p, {"scene": c_void_p},
+        {}, True,
+        """rdm_pool_config.user of the pool that is made, NULL where a task is asked about without a config
+        (rdm_task_at); NULL of a scene that is none.
+        """),
     "rdm_scene_get_number": Function(
         c_int32, {"scene": c_void_p, "key": c_char_p, "value": c_void_p},
         {}, True,
@@ -4595,6 +4604,19 @@ FUNCTIONS: dict[str, Function] = {
         """group, for rdm_world_get_touch: all contacts of a shape of `a` with one of `b`, each the name of
         a shape, body or robot, or a pattern of such names with '*' and '?'. NOT_FOUND where nothing has
         it.
+        """),
+    "rdm_world_number": Function(
+        c_int32, {"world": c_void_p},
+        {}, True,
+        """Which world of its pool it is, from 0 on; -1 in rdm_task_check's trials of one world alone, and
+        of a world that is none.
+        """),
+    "rdm_world_user": Function(
+        c_void_p, {"world": c_void_p},
+        {}, True,
+        """rdm_pool_config.user of the world's pool: a pool keeps its own, whatever it takes of states and
+        of other pools. What it leads to is for what is outside of a world (a viewer, a log); what
+        happens within must not depend on it, nor on the number. NULL of a world that is none.
         """),
     "rdm_world_get_joints": Function(
         c_int32, {"world": c_void_p, "io": POINTER(rdm_joints)},
