@@ -83,6 +83,22 @@ RDM_API rdm_result rdm_robot_at(int32_t index, rdm_robot *io); /* errors as rdm_
 RDM_API rdm_result rdm_robot_find(const char *name, int32_t *index); /* name or alias; NOT_FOUND:
                                                                       * nearest in the text */
 RDM_API rdm_result rdm_robot_joint(int32_t robot, int32_t i, rdm_joint *out);  /* i < num_joints */
+enum rdm_joint_kind { RDM_JOINT_REVOLUTE = 0, RDM_JOINT_PRISMATIC = 1 };  /* of a joint */
+typedef struct rdm_joint_info { /* a joint of a robot, or of a pool's worlds */
+  uint32_t struct_size;     /* in: bytes                                                      */
+  int32_t kind;             /* RDM_JOINT_*: revolute joints in rad and N m, prismatic in m and N */
+  int32_t parent;           /* the joint before it on the way from the base, -1: none         */
+  int32_t action;           /* entry of the action (of a robot: its command) that is its own; -1:
+                             * none, or only the functions of a host's task know              */
+  const char *name;         /* "FFJ2"; of a pool "right_FFJ2"                                 */
+  double lower, upper;      /* range, rad (m)                                                 */
+  double velocity;          /* how fast its drive's target may move, rad/s (m/s); NaN: not known */
+  double kp;                /* of its drive, N m/rad (N/m); 0: coupled, or no spring          */
+  double kd;                /* of its drive, N m s/rad (N s/m)                                */
+  double effort;            /* bound of its drive's torque, N m (N)                           */
+} rdm_joint_info;
+RDM_API rdm_result rdm_robot_joint_at(int32_t robot, int32_t i,
+                                      rdm_joint_info *io); /* i < num_joints; RANGE past the end */
 
 typedef struct rdm_object { /* frozen layout: a thing by name, for option object=... */
   const char *name;         /* "egg"                                                          */
@@ -298,6 +314,23 @@ RDM_API rdm_result rdm_pool_get_stats(const rdm_pool *p, rdm_pool_stats *io); /*
  * for worlds that are not there: nothing changes. No heap. */
 RDM_API rdm_result rdm_pool_copy(rdm_pool *dst, int32_t dst_env, const rdm_pool *src,
                                  int32_t src_env);
+/* Joint i of a world's robots, the same for all worlds; i < num_joints of rdm_spec. */
+RDM_API rdm_result rdm_pool_joint_at(const rdm_pool *p, int32_t i,
+                                     rdm_joint_info *io); /* RANGE past the end */
+/* Where the joints of world env are and how fast, q [count] and qd [count] (rad, rad/s; m, m/s) in
+ * the order of rdm_pool_joint_at; count: num_joints. Either array may be NULL. */
+RDM_API rdm_result rdm_pool_get_joints(const rdm_pool *p, int32_t env, double *q, double *qd,
+                                       size_t count);
+/* Puts them there: q [count], and with it what their drives go for, and qd [count]; what is NULL
+ * stays. RANGE names the joint that is beyond its range by more than its ends give way (option
+ * limit_margin; 10 where ends are soft), or as fast as 1e6; ARGUMENT one that is not finite. STATE
+ * where no episode runs. Nothing changes then. A coupled joint is moved by its drive alone: it may
+ * be off, and is drawn back. NaN of one is where, or as fast as, the other joint leads it. Bases,
+ * bodies and what the task remembers of commands stay. Numbers are rounded to float where the
+ * engine keeps floats. As read_state it rewrites obs and clears the other rows. Where a host's own
+ * task fails to observe: its error; the joints are set, and obs is as it was. */
+RDM_API rdm_result rdm_pool_set_joints(rdm_pool *p, int32_t env, const double *q, const double *qd,
+                                       size_t count);
 /* Pushes a shape's carrier during the next step: force [3] at its centre of mass, N, world axes. */
 RDM_API rdm_result rdm_pool_push(rdm_pool *p, int32_t env, int32_t shape, const float force[3]);
 /* What failed last in world env of the pool: "world 3: task press: judge: sensor lost", at most 255

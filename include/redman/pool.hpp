@@ -87,6 +87,30 @@ class Pool {
     check(rdm_pool_get_stats(get(), &s));
     return s;
   }
+  rdm_joint_info joint(int32_t i) const {
+    auto j = sized<rdm_joint_info>();
+    check(rdm_pool_joint_at(get(), i, &j));
+    return j;
+  }
+  // [num_joints] rad, rad/s (m, m/s).
+  std::vector<double> joint_positions(int32_t env = 0) const {
+    std::vector<double> q(static_cast<size_t>(spec_.num_joints));
+    check(rdm_pool_get_joints(get(), env, q.data(), nullptr, q.size()));
+    return q;
+  }
+  std::vector<double> joint_velocities(int32_t env = 0) const {
+    std::vector<double> qd(static_cast<size_t>(spec_.num_joints));
+    check(rdm_pool_get_joints(get(), env, nullptr, qd.data(), qd.size()));
+    return qd;
+  }
+  // What is empty stays.
+  void set_joints(int32_t env, const std::vector<double>& q, const std::vector<double>& qd = {}) {
+    auto count = static_cast<size_t>(spec_.num_joints);
+    for (const auto* given : {&qd, &q})
+      if (!given->empty() && given->size() != count) count = given->size();  // which the call refuses
+    check(rdm_pool_set_joints(get(), env, q.empty() ? nullptr : q.data(), qd.empty() ? nullptr : qd.data(),
+                              count));
+  }
   // [h][w][3] bytes.
   Bytes render(int32_t env, const char* camera, int32_t w, int32_t h) {
     const bool fits = w >= 1 && h >= 1 && w <= 8192 && h <= 8192;  // if not, the call says so

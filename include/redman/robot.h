@@ -22,7 +22,6 @@ extern "C" {
  *
  * Robots belong to the process; any number of threads may look while others add and remove. */
 enum rdm_robot_kind { RDM_ROBOT_OTHER = 0, RDM_ROBOT_HAND = 1, RDM_ROBOT_ARM = 2 }; /* of a robot */
-enum rdm_joint_kind { RDM_JOINT_REVOLUTE = 0, RDM_JOINT_PRISMATIC = 1 };  /* of a joint */
 enum rdm_link_row { RDM_LINK_ROOT = -1, RDM_LINK_NONE = -2 };  /* in the place of a row of links */
 #define RDM_MAX_LINKS 64   /* links of a robot, at most */
 #define RDM_MAX_KNOTS 4    /* of a curve, at most */

@@ -112,6 +112,9 @@ class Pool {
   bool running(int32_t env) const;
   int32_t episode_step(int32_t env) const;
   double spent(int32_t env, int32_t cost) const;
+  // As World::place_joints; the observation is then of these, and the world's other rows are those of no step.
+  // Error(kState) where no episode runs; that of a host's task that fails to observe, whose row stays.
+  void set_joints(int32_t env, const double* q, const double* qd);
 
   World& world(int32_t env);
   const World& world(int32_t env) const;

@@ -66,6 +66,28 @@ void Pool::step(const uint8_t* mask) {
       mask != nullptr);
 }
 
+void Pool::set_joints(int32_t env, const double* q, const double* qd) {
+  const FpMode mode;
+  Impl& m = *impl_;
+  Slot& s = m.slots[env];
+  const Phase phase = s.episode.phase;
+  if (phase != Phase::kRunning)
+    fail(Code::kState, "set_joints: world %d %s", env,
+         phase == Phase::kNew ? "was not reset yet" : "has ended its episode; reset it first");
+  s.world->place_joints(q, qd);
+  float *const row = m.obs(env), *const next = m.final_obs(env);
+  bool good = true;
+  const Code code = m.attempt_task(env, [&] { good = m.observe(env, s.episode.step, next); });
+  if (code == Code::kOk) std::copy_n(next, m.obs_dim, row);
+  if (!good) {
+    mend_row(row, m.obs_dim);
+    m.count(env, kStatusDiverged);
+  }
+  m.clear_rows(env);
+  if (code != Code::kOk) fail(code, "%s", task_error(env));
+  if (!good) m.buffers.status[env] = kStatusDiverged;
+}
+
 void Pool::baseline(Baseline kind) {
   const FpMode mode;
   Impl& m = *impl_;

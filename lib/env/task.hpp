@@ -85,6 +85,8 @@ class Task {
   virtual void hold_action(float* action) const = 0;
   // Mean action that a new policy starts from. [action_dim]
   virtual void initial_mean(float* action) const = 0;
+  // Entry of the action that drives a joint of the scene; -1: none, or nobody knows.
+  virtual int32_t action_of(int32_t) const { return -1; }
 };
 
 // What stands behind a row that was added while the program runs, in the place of its three functions.

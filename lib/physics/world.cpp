@@ -209,6 +209,39 @@ void World::set_joints(int32_t articulation, const double* q, const double* qd) 
   links_changed(articulation);
 }
 
+void World::place_joints(const double* q, const double* qd) {
+  const auto name = [&](int32_t i) { return scene_->link(i).joint.name.text; };
+  const auto led = [&](int32_t i, const double* x) {
+    return std::isnan(x[i]) && scene_->link(i).joint.coupled_to >= 0;
+  };
+  for (int32_t i = 0; q && i < scene_->num_links; ++i) {
+    const JointDef& joint = scene_->link(i).joint;
+    if (led(i, q)) continue;
+    if (!std::isfinite(q[i])) fail(Code::kArgument, "q: joint %s is not finite", name(i));
+    if (!sound_joint(joint, scene_->def.solver, q[i]))
+      fail(Code::kRange, "q: %g of joint %s is outside [%g, %g]", q[i], name(i), joint.lower, joint.upper);
+  }
+  for (int32_t i = 0; qd && i < scene_->num_links; ++i) {
+    if (led(i, qd)) continue;
+    if (!std::isfinite(qd[i])) fail(Code::kArgument, "qd: joint %s is not finite", name(i));
+    if (!bounded(qd[i], kRateBound))
+      fail(Code::kRange, "qd: %g of joint %s is outside (%g, %g)", qd[i], name(i), -kRateBound, kRateBound);
+  }
+  for (size_t a = 0; a < scene_->def.articulations.size(); ++a) {
+    const int32_t first = scene_->link_offset[a];
+    const auto count = static_cast<int32_t>(scene_->def.articulations[a].links.size());
+    for (int32_t i = first; i < first + count; ++i) {
+      const JointDef& joint = scene_->link(i).joint;
+      const int32_t other = first + joint.coupled_to;
+      if (qd) qd_[i] = led(i, qd) ? joint.ratio * qd[other] : qd[i];
+      if (!q) continue;
+      q_[i] = led(i, q) ? std::clamp(joint.ratio * q[other], joint.lower, joint.upper) : q[i];
+      target_[i] = std::clamp(q_[i], joint.lower, joint.upper);
+    }
+    if (q || qd) links_changed(static_cast<int32_t>(a));
+  }
+}
+
 Motion World::checked_motion(const char* call, int32_t index, const Motion& m) {
   if (!bounded(m.X.p) || !bounded(m.v) || !bounded(m.w))
     fail(Code::kArgument, "%s: motion %d is not finite or beyond %g", call, index, kStateBound);
@@ -221,16 +254,16 @@ bool World::sound(const Motion& m) {
   return bounded(m.X.p) && bounded(m.v) && bounded(m.w) && is_unit(m.X.q);
 }
 
+bool World::sound_joint(const JointDef& joint, const SolverDef& solver, double q) {
+  // an engine may keep angles as floats
+  const double room = stop_margin(solver) + 1e-6 * (1 + std::fabs(joint.lower) + std::fabs(joint.upper));
+  return q >= joint.lower - room && q <= joint.upper + room;
+}
+
 bool World::sound_rows(Reader& in, const Scene& scene) {
   bool good = (in.value<uint32_t>() & ~(kStatusContactOverflow | kStatusDiverged)) == 0;
-  for (int32_t i = 0; i < scene.num_links; ++i) {
-    const JointDef& joint = scene.link(i).joint;
-    // an engine may keep angles as floats
-    const double room =
-        stop_margin(scene.def.solver) + 1e-6 * (1 + std::fabs(joint.lower) + std::fabs(joint.upper));
-    const auto q = in.value<double>();
-    good &= q >= joint.lower - room && q <= joint.upper + room;
-  }
+  for (int32_t i = 0; i < scene.num_links; ++i)
+    good &= sound_joint(scene.link(i).joint, scene.def.solver, in.value<double>());
   for (int32_t i = 0; i < scene.num_links; ++i) good &= bounded(in.value<double>(), kRateBound);
   for (int32_t i = 0; i < scene.num_links; ++i) good &= bounded(in.value<double>(), kStateBound);  // target
   for (int32_t i = 0; i < scene.num_links; ++i) good &= bounded(in.value<double>(), FLT_MAX);      // torque

@@ -104,6 +104,11 @@ class World {
   // Sets all joint coordinates of one articulation and rebuilds its links. Values are clamped to range.
   // Error(kArgument) for a value that is not finite, a rate beyond kRateBound.
   void set_joints(int32_t articulation, const double* q, const double* qd);
+  // The same of all articulations, [num_links], but as they are, and with q the drives' targets; null: these
+  // stay. NaN of a coupled joint is what the other one leads it to. Error(kRange) for what no world can have,
+  // with the joint's name: beyond a range by more than its ends give way, a rate beyond kRateBound;
+  // Error(kArgument) for what is not finite. Nothing has changed then.
+  void place_joints(const double* q, const double* qd);
 
   // Factors on the scene's constants that hold in this world alone, all 1 at first; null unless the scene is
   // adjustable.
@@ -195,6 +200,8 @@ class World {
   static Motion checked_motion(const char* call, int32_t index, const Motion& m);
   // A motion of a loaded state.
   static bool sound(const Motion& m);
+  // A joint of a loaded state is within its range, or beyond it by what its ends give way.
+  static bool sound_joint(const JointDef& joint, const SolverDef& solver, double q);
   // What a scene asks for beside them, saved behind everything else.
   void save_extras(Writer& out) const;
   void load_extras(Reader& in);

@@ -41,6 +41,7 @@ LinkDef make_link(const Robot& robot, const RobotLink& row, const char* prefix) 
   joint.kp = row.kp;
   joint.kd = row.kd;
   joint.effort = row.effort;
+  joint.velocity = row.velocity;
   joint.armature = row.armature;
   joint.friction = row.friction;
   for (const RobotTip& tip : robot.tips)

@@ -77,6 +77,13 @@ class HandControl {
   int32_t base_entries(int32_t i) const {
     return first_entry_[i] + (paper_order_ ? hands_[i].num_actions : 0);
   }
+  // Entry of the action row for a joint of the scene; -1: none.
+  int32_t action_of(int32_t joint) const {
+    for (int32_t i = 0; i < count_; ++i)
+      for (int32_t k = 0; k < hands_[i].num_actions; ++k)
+        if (hands_[i].actuated[k] == joint) return joint_entries(i) + k;
+    return -1;
+  }
   // Where among the commands hand i's begin.
   int32_t first_command(int32_t i) const { return first_command_[i]; }
 

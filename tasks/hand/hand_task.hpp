@@ -15,6 +15,7 @@ class HandTask : public Task {
   int32_t action_dim() const override { return hands_.action_dim(); }
   const Vector<FieldSpec>& fields() const override { return fields_; }
   const char* action_order() const override { return hands_.action_order(); }
+  int32_t action_of(int32_t joint) const override { return hands_.action_of(joint); }
   size_t state_bytes() const override { return own_bytes_ + hands_.state_bytes(); }
   void control(World& world, void* state, const float* action) const override {
     hands_.control(world, control_state(state), action);

@@ -1,5 +1,6 @@
 // What tasks without a physics engine share: a floor with marks and bodies that the task places itself.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <initializer_list>
 
@@ -55,6 +56,10 @@ class PlanarTask : public Task {
   const Vector<FieldSpec>& fields() const override { return fields_; }
   void hold_action(float* action) const override;
   void initial_mean(float* action) const override;
+  // Robots' motors come behind the joints that nothing drives, in the order of the action.
+  int32_t action_of(int32_t joint) const override {
+    return std::max(joint - (scene_.num_links - action_dim()), -1);
+  }
 
  protected:
   PlanarTask(Scene&& scene, int32_t max_steps, std::initializer_list<FieldSpec> fields);

@@ -107,6 +107,23 @@ TEST(RedmanHpp, PoolLiesInMemoryThatIsLent) {
   EXPECT_EQ(pool.hash(), other.hash());
 }
 
+TEST(RedmanHpp, PoolShowsAndSetsJoints) {
+  redman::Pool pool(redman::pool_config("hand_over_safe_finger", 2));
+  pool.reset();
+  EXPECT_STREQ(pool.joint(0).name, "right_WRJ1");
+  std::vector<double> q = pool.joint_positions(1), qd = pool.joint_velocities(1);
+  ASSERT_EQ(q.size(), 48u);
+  q[5] = pool.joint(5).lower;
+  qd[5] = 0.5;
+  pool.set_joints(1, q, qd);
+  EXPECT_NEAR(pool.joint_positions(1)[5], q[5], 1e-6);
+  pool.set_joints(1, {}, std::vector<double>(48));
+  EXPECT_EQ(pool.joint_velocities(1)[5], 0);
+  EXPECT_THROW(pool.set_joints(1, q, {0.5}), redman::Error);
+  EXPECT_THROW(pool.set_joints(1, {0.5}, qd), redman::Error);
+  EXPECT_THROW(pool.joint(48), redman::Error);
+}
+
 TEST(RedmanHpp, AgentLearnsFromAPoolAndItsPolicyActs) {
   redman::Pool pool(redman::pool_config(kTask, 2));
   pool.reset();

@@ -228,6 +228,28 @@ class Shown(unittest.TestCase):
         with self.assertRaises(redman.ArgumentError):
             pool.push(0, "nothing", (0, 0, 5))
 
+    def test_joints_are_seen_and_set(self):
+        pool = played()
+        names = [joint.name for joint in pool.joints]
+        self.assertEqual(len(set(names)), pool.spec.num_joints)
+        self.assertEqual({joint.kind for joint in pool.joints}, {redman.JointKind.REVOLUTE})
+        q, qd = pool.joint_positions(1), pool.joint_velocities(1)
+        self.assertEqual(q.shape, (48,))
+        self.assertGreater(np.abs(qd).max(), 0)
+        pool.set_joints(0, q, qd)
+        np.testing.assert_array_equal(pool.joint_positions(0), q)
+        np.testing.assert_array_equal(pool.joint_velocities(0), qd)
+        before = pool.obs[0].copy()
+        q[3] = pool.joints[3].upper
+        pool.set_joints(0, q)
+        self.assertTrue((pool.obs[0] != before).any())
+        np.testing.assert_array_equal(pool.joint_velocities(0), qd)
+        q[3] = 9
+        with self.assertRaisesRegex(redman.RangeError, pool.joints[3].name):
+            pool.set_joints(0, q)
+        with self.assertRaises(redman.ArgumentError):
+            pool.set_joints(0, q[:5])
+
     def test_contacts_name_shapes(self):
         pool = redman.Pool("grasp", 1)
         pool.reset()
@@ -318,6 +340,7 @@ class Refused(unittest.TestCase):
         with pool:
             pass
         for call in (pool.step, pool.reset, pool.hash, pool.state, pool.render, pool.baseline, pool.poses,
+                     pool.joint_positions, lambda: pool.joints, lambda: pool.set_joints(0),
                      lambda: pool.stats, lambda: pool.fields, lambda: pool.options, lambda: pool.sensors,
                      lambda: pool.shapes, lambda: pickle.dumps(pool)):
             with self.assertRaisesRegex(redman.StateError, "closed"):

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ._abi import (Autoreset, BaselineKind, Build, Joint, MapInfo, Object, OptionKind, PolicyInfo, PoolStats,
-                   ResultCode, ShapeKind, Spec, Status)
+from ._abi import (Autoreset, BaselineKind, Build, Joint, JointInfo, JointKind, MapInfo, Object, OptionKind,
+                   PolicyInfo, PoolStats, ResultCode, ShapeKind, Spec, Status)
 from ._actor import Actor
 from ._agent import Agent, CostLimits, Epoch
 from ._callbacks import c_function
@@ -37,9 +37,9 @@ __version__ = version = build().version
 __all__ = [
     "Actor", "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "Build", "Callback", "Camera",
     "CancelledError", "Cost", "CostLimits", "Curve", "Curves", "Epoch", "Error", "Evaluation", "Field", "FileError",
-    "FormatError", "HoldWarning", "InternalError", "Joint", "Map", "MapInfo", "MissingFileError", "NotFoundError", "Object",
-    "Option", "OptionKind", "Options", "Origin", "PhysicsError", "Player", "Policy", "PolicyInfo", "Pool", "PoolStats",
-    "RangeError", "ResultCode", "Robot", "Run", "Sensors", "Shape", "ShapeKind", "Spec", "StateError", "Status", "Task",
+    "FormatError", "HoldWarning", "InternalError", "Joint", "JointInfo", "JointKind", "Map", "MapInfo", "MissingFileError",
+    "NotFoundError", "Object", "Option", "OptionKind", "Options", "Origin", "PhysicsError", "Player", "Policy", "PolicyInfo",
+    "Pool", "PoolStats", "RangeError", "ResultCode", "Robot", "Run", "Sensors", "Shape", "ShapeKind", "Spec", "StateError", "Status", "Task",
     "UnsupportedError", "UsageError", "VersionError", "__version__", "algo", "algos", "build", "c_function", "curve",
     "evaluate", "memory", "objects", "robots", "sample_furthest", "task", "tasks", "train", "version",
 ]

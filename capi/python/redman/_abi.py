@@ -88,6 +88,13 @@ class ShapeKind(enum.IntEnum):
     HULL = 6
 
 
+class JointKind(enum.IntEnum):
+    """of a joint"""
+
+    REVOLUTE = 0
+    PRISMATIC = 1
+
+
 class Autoreset(enum.IntEnum):
     """When a world begins again by itself: in the step that ended its episode, in the next, or
     never.
@@ -154,13 +161,6 @@ class RobotKind(enum.IntEnum):
     OTHER = 0
     HAND = 1
     ARM = 2
-
-
-class JointKind(enum.IntEnum):
-    """of a joint"""
-
-    REVOLUTE = 0
-    PRISMATIC = 1
 
 
 class LinkRow(enum.IntEnum):
@@ -825,6 +825,62 @@ class rdm_joint(Structure):
         ("effort", c_double),
         ("action", c_int32),
         ("reserved", c_int32),
+    ]
+
+
+class JointInfo(Record):
+    """The values of rdm_joint_info."""
+
+    kind: int  # RDM_JOINT_*: revolute joints in rad and N m, prismatic in m and N
+    parent: int  # the joint before it on the way from the base, -1: none
+    action: int  # entry of the action (of a robot: its command) that is its own; -1: none, or only the functions of a host's task know
+    name: str  # "FFJ2"; of a pool "right_FFJ2"
+    lower: float  # range, rad (m)
+    upper: float  # range, rad (m)
+    velocity: float  # how fast its drive's target may move, rad/s (m/s); NaN: not known
+    kp: float  # of its drive, N m/rad (N/m); 0: coupled, or no spring
+    kd: float  # of its drive, N m s/rad (N s/m)
+    effort: float  # bound of its drive's torque, N m (N)
+
+
+class rdm_joint_info(Structure):
+    """struct_size: in: bytes
+    kind: RDM_JOINT_*: revolute joints in rad and N m, prismatic in m and N
+    parent: the joint before it on the way from the base, -1: none
+    action: entry of the action (of a robot: its command) that is its own; -1: none, or only the functions of a
+        host's task know
+    name: "FFJ2"; of a pool "right_FFJ2"
+    lower: range, rad (m)
+    upper: range, rad (m)
+    velocity: how fast its drive's target may move, rad/s (m/s); NaN: not known
+    kp: of its drive, N m/rad (N/m); 0: coupled, or no spring
+    kd: of its drive, N m s/rad (N s/m)
+    effort: bound of its drive's torque, N m (N)
+    """
+
+    struct_size: int
+    kind: int
+    parent: int
+    action: int
+    name: bytes | None
+    lower: float
+    upper: float
+    velocity: float
+    kp: float
+    kd: float
+    effort: float
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_int32),
+        ("parent", c_int32),
+        ("action", c_int32),
+        ("name", c_char_p),
+        ("lower", c_double),
+        ("upper", c_double),
+        ("velocity", c_double),
+        ("kp", c_double),
+        ("kd", c_double),
+        ("effort", c_double),
     ]
 
 
@@ -3228,6 +3284,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_camera_info": rdm_camera_info,
     "rdm_robot": rdm_robot,
     "rdm_joint": rdm_joint,
+    "rdm_joint_info": rdm_joint_info,
     "rdm_object": rdm_object,
     "rdm_pool_config": rdm_pool_config,
     "rdm_buffers": rdm_buffers,
@@ -3572,6 +3629,10 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"robot": c_int32, "i": c_int32, "out": POINTER(rdm_joint)},
         {}, False,
         """i < num_joints"""),
+    "rdm_robot_joint_at": Function(
+        c_int32, {"robot": c_int32, "i": c_int32, "io": POINTER(rdm_joint_info)},
+        {}, False,
+        """i < num_joints; RANGE past the end"""),
     "rdm_object_count": Function(
         c_int32, {},
         {}, False,
@@ -3760,6 +3821,28 @@ FUNCTIONS: dict[str, Function] = {
         its rows (but action, and those of rdm_sensors) are the other's. Pools of the same task and
         options, of any sizes, threads and seeds; src may be dst. ARGUMENT for pools that differ, RANGE
         for worlds that are not there: nothing changes. No heap.
+        """),
+    "rdm_pool_joint_at": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "io": POINTER(rdm_joint_info)},
+        {}, False,
+        """RANGE past the end"""),
+    "rdm_pool_get_joints": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "q": c_void_p, "qd": c_void_p, "count": c_size_t},
+        {"q": Rows("float64", ("count",)), "qd": Rows("float64", ("count",))}, False,
+        """Where the joints of world env are and how fast, q [count] and qd [count] (rad, rad/s; m, m/s) in
+        the order of rdm_pool_joint_at; count: num_joints. Either array may be NULL.
+        """),
+    "rdm_pool_set_joints": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "q": c_void_p, "qd": c_void_p, "count": c_size_t},
+        {"q": Rows("float64", ("count",)), "qd": Rows("float64", ("count",))}, False,
+        """Puts them there: q [count], and with it what their drives go for, and qd [count]; what is NULL
+        stays. RANGE names the joint that is beyond its range by more than its ends give way (option
+        limit_margin; 10 where ends are soft), or as fast as 1e6; ARGUMENT one that is not finite. STATE
+        where no episode runs. Nothing changes then. A coupled joint is moved by its drive alone: it may
+        be off, and is drawn back. NaN of one is where, or as fast as, the other joint leads it. Bases,
+        bodies and what the task remembers of commands stay. Numbers are rounded to float where the
+        engine keeps floats. As read_state it rewrites obs and clears the other rows. Where a host's own
+        task fails to observe: its error; the joints are set, and obs is as it was.
         """),
     "rdm_pool_push": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "shape": c_int32, "force": c_void_p},

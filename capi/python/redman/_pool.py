@@ -413,6 +413,39 @@ class Pool(Hinted):
         self._check(lib.rdm_pool_get_hull(self._p, shape, out.ctypes.data, len(out), byref(count)))
         return out
 
+    @property
+    def joints(self) -> list[_abi.JointInfo]:
+        """The joints of all robots of a world, the same for all worlds; kind is a redman.JointKind."""
+        return [_abi.JointInfo(filled(_abi.rdm_joint_info, lib.rdm_pool_joint_at, self._open(), i))
+                for i in range(self.spec.num_joints)]
+
+    def joint_positions(self, env: int = 0) -> Array:
+        """[num_joints] where the joints of one world are, rad (m)."""
+        return self._joint_row(env, 0)
+
+    def joint_velocities(self, env: int = 0) -> Array:
+        """[num_joints] how fast they are, rad/s (m/s)."""
+        return self._joint_row(env, 1)
+
+    def _joint_row(self, env: int, which: int) -> Array:
+        out = np.empty(self.spec.num_joints)
+        rows: list[Optional[int]] = [None, None]
+        rows[which] = out.ctypes.data
+        with self._lock:
+            self._check(lib.rdm_pool_get_joints(self._p, int32(env, "env"), *rows, len(out)))
+        return out
+
+    def set_joints(self, env: int, q: Optional[npt.ArrayLike] = None, qd: Optional[npt.ArrayLike] = None) -> None:
+        """Puts the joints of one world there; None: these stay. NaN of a coupled joint: where the other one leads it.
+
+        Writes obs anew and clears the other rows of that world, as set_state does."""
+        kinds, lengths = _abi.FUNCTIONS["rdm_pool_set_joints"].rows, {"count": self.spec.num_joints}
+        rows = [None if row is None else given(row, kinds[name], lengths, name) for name, row in (("q", q), ("qd", qd))]
+        with self._lock:
+            self._check(lib.rdm_pool_set_joints(self._p, int32(env, "env"),
+                                                *(None if row is None else row.ctypes.data for row in rows),
+                                                self.spec.num_joints))
+
     def contacts(self, env: int = 0) -> Array:
         """Contact points of the last substep: rows of shape_a, shape_b, position, normal, force, depth."""
         out = np.empty(0, np.dtype(_abi.rdm_contact))

@@ -74,6 +74,7 @@ struct JointDef {
   double lower = 0, upper = 0;  // range
   double kp = 0, kd = 0;        // drive: torque = kp (target - q) - kd qd, implicit
   double effort = 0;            // bound of the drive's torque
+  double velocity = 0;          // how fast its target may move, which whoever sets it sees to; 0: at once
   double armature = 0;          // added inertia about the axis, kg m2; revolute only
   double friction = 0;          // dry friction torque
   // A coupled joint has no target of its own: it is driven to clamp(q, ratio q_other -+ slack).
