@@ -2,7 +2,12 @@
 #include "capi/handles.hpp"
 
 #if RDM_WITH_SIM
+#include <cmath>
+#include <limits>
+
+#include "physics/limits.hpp"
 #include "sense/mounted_camera.hpp"
+#include "sense/ray.hpp"
 #include "sense/scene_shapes.hpp"
 
 using namespace rdm;
@@ -110,6 +115,34 @@ rdm_result rdm_pool_render(rdm_pool* p, int32_t env, const char* camera, int32_t
     RenderOptions options;
     options.samples_per_side = rgb ? kColorSamples : 1;
     render(p->shapes, count, eye, image, options, p->raycast);
+  });
+}
+
+rdm_result rdm_pool_raycast(const rdm_pool* p, int32_t env, const double origin[3], const double direction[3],
+                            double range, rdm_ray_hit* io) {
+  return call_on(p, [&] {
+    const World& world = world_of(p, env);
+    need(origin, "origin");
+    need(direction, "direction");
+    check_out(io, sizeof(rdm_ray_hit), "io");
+    const Vec3 from{origin[0], origin[1], origin[2]}, along{direction[0], direction[1], direction[2]};
+    if (!bounded(from)) fail(Code::kArgument, "origin: it is not finite, or beyond %g", kStateBound);
+    const double length = norm(along);
+    if (!(length > 0 && std::isfinite(length)))
+      fail(Code::kArgument, "direction: its length is 0 or not finite");
+    if (!(range > 0)) fail(Code::kRange, "range: %g is not above 0", range);
+    RayHit hit;
+    rdm_ray_hit out{};
+    out.shape = -1;
+    out.distance = std::numeric_limits<double>::quiet_NaN();
+    std::fill_n(out.point, 3, out.distance);
+    std::fill_n(out.normal, 3, out.distance);
+    if (cast_ray(world, from, (1 / length) * along, range, &hit)) {
+      out.shape = hit.shape;
+      out.distance = hit.distance;
+      for (int k = 0; k < 3; ++k) out.point[k] = hit.p[k], out.normal[k] = hit.n[k];
+    }
+    write_struct(io, out, sizeof(rdm_ray_hit), "io");
   });
 }
 

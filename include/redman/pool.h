@@ -331,6 +331,18 @@ RDM_API rdm_result rdm_pool_get_joints(const rdm_pool *p, int32_t env, double *q
  * task fails to observe: its error; the joints are set, and obs is as it was. */
 RDM_API rdm_result rdm_pool_set_joints(rdm_pool *p, int32_t env, const double *q, const double *qd,
                                        size_t count);
+typedef struct rdm_ray_hit { /* what a ray meets first */
+  uint32_t struct_size;      /* in: bytes */
+  int32_t shape;             /* for rdm_pool_shape; -1: nothing, all else is NaN */
+  double distance;           /* m, from the origin */
+  double point[3];           /* m, where the ray enters it */
+  double normal[3];          /* unit, out of the shape there */
+} rdm_ray_hit;
+/* The nearest shape of world env that the ray from origin [3] (m, world axes) along direction [3]
+ * (of any length above 0) enters within `range` m, above 0, INFINITY too. Shapes are those that
+ * pictures show; one that holds the origin is not met. */
+RDM_API rdm_result rdm_pool_raycast(const rdm_pool *p, int32_t env, const double origin[3],
+                                    const double direction[3], double range, rdm_ray_hit *io);
 /* Pushes a shape's carrier during the next step: force [3] at its centre of mass, N, world axes. */
 RDM_API rdm_result rdm_pool_push(rdm_pool *p, int32_t env, int32_t shape, const float force[3]);
 /* What failed last in world env of the pool: "world 3: task press: judge: sensor lost", at most 255

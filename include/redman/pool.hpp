@@ -111,6 +111,13 @@ class Pool {
     check(rdm_pool_set_joints(get(), env, q.empty() ? nullptr : q.data(), qd.empty() ? nullptr : qd.data(),
                               count));
   }
+  // hit.shape is -1 where the ray meets nothing.
+  rdm_ray_hit raycast(int32_t env, const double (&origin)[3], const double (&direction)[3],
+                      double range) const {
+    auto hit = sized<rdm_ray_hit>();
+    check(rdm_pool_raycast(get(), env, origin, direction, range, &hit));
+    return hit;
+  }
   // [h][w][3] bytes.
   Bytes render(int32_t env, const char* camera, int32_t w, int32_t h) {
     const bool fits = w >= 1 && h >= 1 && w <= 8192 && h <= 8192;  // if not, the call says so

@@ -307,7 +307,7 @@ Pose World::shape_pose(int32_t shape) const {
   const SceneShape& s = scene_->shapes[static_cast<size_t>(shape)];
   switch (s.carrier) {
     case Carrier::kLink:
-      return link(s.index).X * s.def.X_LS;
+      return peek_link(s.index).X * s.def.X_LS;
     case Carrier::kBody:
       if (const SizedShape* own = sized(shape)) return bodies_[s.index].X * Pose{own->p, s.def.X_LS.q};
       return bodies_[s.index].X * s.def.X_LS;

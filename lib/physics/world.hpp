@@ -121,8 +121,15 @@ class World {
   void set_dynamics(const Dynamics& dynamics);
 
   const Motion& link(int32_t i) const {  // [num_links]
-    if (!fresh_[i]) fetch_link(i);
+    if (!fresh_[i]) read_link(i, &links_[i]), fresh_[i] = 1;
     return links_[i];
+  }
+  // The same for any number of threads that only look.
+  Motion peek_link(int32_t i) const {
+    if (fresh_[i]) return links_[i];
+    Motion m;
+    read_link(i, &m);
+    return m;
   }
   const Motion& base(int32_t articulation) const { return bases_[articulation]; }
   const Motion& body(int32_t i) const { return bodies_[i]; }  // [num_bodies]
@@ -182,8 +189,8 @@ class World {
   void carve(Arena& arena);
   // Forward kinematics of one articulation: links_ from q_, qd_ and bases_.
   void rebuild(int32_t articulation);
-  // Brings links_[i] and link_R_[i] up to date where an engine does so only when asked: fresh_[i] is 0.
-  virtual void fetch_link(int32_t) const {}
+  // Where an engine makes links_[i] only when asked (fresh_[i] is 0): what it then is.
+  virtual void read_link(int32_t, Motion*) const {}
   // Called after q_, qd_ or bases_ changed outside of step.
   virtual void links_changed(int32_t articulation) = 0;
   // Called after dynamics_ changed.

@@ -7,8 +7,10 @@
 
 namespace rdm {
 
+// Shape i of the world's scene at its present pose; id is i.
+RenderShape shape_of(const World& world, int32_t i);
 // Writes all shapes of the world's scene at their present poses to `out` [scene().shapes.size()], in the
-// scene's order; id is the shape's number in the scene. Returns how many there are.
+// scene's order. Returns how many there are.
 int32_t gather_shapes(const World& world, RenderShape* out);
 
 }  // namespace rdm

@@ -164,6 +164,9 @@ TEST_F(Structs, ThatComeOutHaveASizeThatCanBe) {
   sizes<rdm_buffers>("rdm_pool_get_buffers", {}, [&](auto* io) { return rdm_pool_get_buffers(pool_, io); });
   sizes<rdm_joint_info>("rdm_robot_joint_at", {}, [](auto* io) { return rdm_robot_joint_at(0, 0, io); });
   sizes<rdm_joint_info>("rdm_pool_joint_at", {}, [&](auto* io) { return rdm_pool_joint_at(pool_, 0, io); });
+  const double origin[] = {0, 0, 9}, down[] = {0, 0, -1};
+  sizes<rdm_ray_hit>("rdm_pool_raycast", {},
+                     [&](auto* io) { return rdm_pool_raycast(pool_, 0, origin, down, 100, io); });
   sizes<rdm_pool_stats>("rdm_pool_get_stats", {}, [&](auto* io) { return rdm_pool_get_stats(pool_, io); });
   sizes<rdm_sensors>("rdm_pool_get_sensors", {}, [&](auto* io) { return rdm_pool_get_sensors(pool_, io); });
   sizes<rdm_map_info>("rdm_map_get_info", {}, [&](auto* io) { return rdm_map_get_info(map_, io); });

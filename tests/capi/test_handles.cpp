@@ -75,6 +75,7 @@ using Call = std::function<rdm_result(void* h, Handles& good)>;
 char g_bytes[1 << 16];
 size_t g_size;
 float g_floats[4096];
+double g_three[3] = {0, 0, 1};
 int32_t g_number;
 uint64_t g_hash;
 const char* g_key;
@@ -128,6 +129,7 @@ const std::vector<Call> kPoolCalls = {
     CALL(rdm_pool_joint_at(POOL, 0, sized<rdm_joint_info>())),
     CALL(rdm_pool_get_joints(POOL, 0, nullptr, nullptr, 0)),
     CALL(rdm_pool_set_joints(POOL, 0, nullptr, nullptr, 0)),
+    CALL(rdm_pool_raycast(POOL, 0, g_three, g_three, 1, sized<rdm_ray_hit>())),
     CALL(rdm_pool_copy(POOL, 0, good.pool, 0)),
     CALL(rdm_pool_copy(good.pool, 0, POOL, 0)),
     CALL(rdm_planner_act(good.planner, POOL, 0, g_floats, nullptr)),

@@ -124,6 +124,15 @@ TEST(RedmanHpp, PoolShowsAndSetsJoints) {
   EXPECT_THROW(pool.joint(48), redman::Error);
 }
 
+TEST(RedmanHpp, PoolCastsRays) {
+  redman::Pool pool(redman::pool_config("hand_over_safe_finger"));
+  pool.reset();
+  const rdm_ray_hit hit = pool.raycast(0, {0, 0, 50}, {0, 0, -1}, 100);
+  EXPECT_GE(hit.shape, 0);
+  EXPECT_NEAR(hit.point[2], 50 - hit.distance, 1e-9);
+  EXPECT_EQ(pool.raycast(0, {0, 0, 50}, {0, 0, 1}, 100).shape, -1);
+}
+
 TEST(RedmanHpp, AgentLearnsFromAPoolAndItsPolicyActs) {
   redman::Pool pool(redman::pool_config(kTask, 2));
   pool.reset();

@@ -250,6 +250,19 @@ class Shown(unittest.TestCase):
         with self.assertRaises(redman.ArgumentError):
             pool.set_joints(0, q[:5])
 
+    def test_rays_meet_what_is_there(self):
+        pool = played()
+        hit = pool.raycast(0, (0, 0, 50), (0, 0, -2))
+        self.assertLess(hit.shape, len(pool.shapes))
+        self.assertAlmostEqual(hit.point[2], 50 - hit.distance)
+        self.assertGreater(hit.normal[2], 0)
+        self.assertIsNone(pool.raycast(0, (0, 0, 50), (0, 0, 1)))
+        self.assertIsNone(pool.raycast(0, (0, 0, 50), (0, 0, -1), 10))
+        with self.assertRaises(redman.ArgumentError):
+            pool.raycast(0, (0, 0, 50), (0, 0, 0))
+        with self.assertRaises(redman.RangeError):
+            pool.raycast(0, (0, 0, 50), (0, 0, 1), 0)
+
     def test_contacts_name_shapes(self):
         pool = redman.Pool("grasp", 1)
         pool.reset()
@@ -341,7 +354,7 @@ class Refused(unittest.TestCase):
             pass
         for call in (pool.step, pool.reset, pool.hash, pool.state, pool.render, pool.baseline, pool.poses,
                      pool.joint_positions, lambda: pool.joints, lambda: pool.set_joints(0),
-                     lambda: pool.stats, lambda: pool.fields, lambda: pool.options, lambda: pool.sensors,
+                     lambda: pool.raycast(0, (0, 0, 1), (0, 0, 1)), lambda: pool.stats, lambda: pool.fields, lambda: pool.options, lambda: pool.sensors,
                      lambda: pool.shapes, lambda: pickle.dumps(pool)):
             with self.assertRaisesRegex(redman.StateError, "closed"):
                 call()

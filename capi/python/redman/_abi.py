@@ -1149,6 +1149,37 @@ class rdm_pool_stats(Structure):
     ]
 
 
+class RayHit(Record):
+    """The values of rdm_ray_hit."""
+
+    shape: int  # for rdm_pool_shape; -1: nothing, all else is NaN
+    distance: float  # m, from the origin
+    point: tuple[float, ...]  # m, where the ray enters it
+    normal: tuple[float, ...]  # unit, out of the shape there
+
+
+class rdm_ray_hit(Structure):
+    """struct_size: in: bytes
+    shape: for rdm_pool_shape; -1: nothing, all else is NaN
+    distance: m, from the origin
+    point: m, where the ray enters it
+    normal: unit, out of the shape there
+    """
+
+    struct_size: int
+    shape: int
+    distance: float
+    point: Any
+    normal: Any
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("shape", c_int32),
+        ("distance", c_double),
+        ("point", c_double * 3),
+        ("normal", c_double * 3),
+    ]
+
+
 class Algo(Record):
     """The values of rdm_algo."""
 
@@ -3291,6 +3322,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_shape_info": rdm_shape_info,
     "rdm_contact": rdm_contact,
     "rdm_pool_stats": rdm_pool_stats,
+    "rdm_ray_hit": rdm_ray_hit,
     "rdm_algo": rdm_algo,
     "rdm_agent_config": rdm_agent_config,
     "rdm_transition": rdm_transition,
@@ -3843,6 +3875,13 @@ FUNCTIONS: dict[str, Function] = {
         bodies and what the task remembers of commands stay. Numbers are rounded to float where the
         engine keeps floats. As read_state it rewrites obs and clears the other rows. Where a host's own
         task fails to observe: its error; the joints are set, and obs is as it was.
+        """),
+    "rdm_pool_raycast": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "origin": c_void_p, "direction": c_void_p, "range": c_double, "io": POINTER(rdm_ray_hit)},
+        {"origin": Rows("float64", ("3",)), "direction": Rows("float64", ("3",))}, False,
+        """The nearest shape of world env that the ray from origin [3] (m, world axes) along direction [3]
+        (of any length above 0) enters within `range` m, above 0, INFINITY too. Shapes are those that
+        pictures show; one that holds the origin is not met.
         """),
     "rdm_pool_push": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "shape": c_int32, "force": c_void_p},

@@ -446,6 +446,17 @@ class Pool(Hinted):
                                                 *(None if row is None else row.ctypes.data for row in rows),
                                                 self.spec.num_joints))
 
+    def raycast(self, env: int, origin: Sequence[float], direction: Sequence[float],
+                range: float = math.inf) -> Optional[_abi.RayHit]:
+        """The nearest shape that a ray meets within `range` m, with distance, point and normal; None: nothing."""
+        kinds = _abi.FUNCTIONS["rdm_pool_raycast"].rows
+        rows = [given(row, kinds[name], {}, name) for name, row in (("origin", origin), ("direction", direction))]
+        hit = sized(_abi.rdm_ray_hit)
+        with self._lock:
+            self._check(lib.rdm_pool_raycast(self._p, int32(env, "env"), *(row.ctypes.data for row in rows),
+                                             range, byref(hit)))
+        return None if hit.shape < 0 else _abi.RayHit(hit)
+
     def contacts(self, env: int = 0) -> Array:
         """Contact points of the last substep: rows of shape_a, shape_b, position, normal, force, depth."""
         out = np.empty(0, np.dtype(_abi.rdm_contact))

@@ -213,9 +213,8 @@ void ArticulatedWorld::links_changed(int32_t articulation) {
   shared_->alone().refresh(&state_, articulation);
 }
 
-void ArticulatedWorld::fetch_link(int32_t i) const {
-  shared_->alone().read_link(state_, i, &links_[i]);
-  fresh_[i] = 1;
+void ArticulatedWorld::read_link(int32_t i, Motion* out) const {
+  shared_->alone().read_link(state_, i, out);
 }
 
 void ArticulatedWorld::set_body(int32_t i, const Motion& m) {
@@ -310,6 +309,7 @@ void ArticulatedWorld::step_group(World* const* worlds, int32_t count) {
 
 double ArticulatedWorld::body_overlap(int32_t body) {
   const OdeScope scope;
+  for (int32_t i = 0; i < scene_->num_links; ++i) link(i);  // once, not for each shape and pair
   Bound* bounds = shared_->collider.bounds();
   for (size_t i = 0; i < scene_->shapes.size(); ++i) {
     const SceneShape& s = scene_->shapes[i];

@@ -65,7 +65,7 @@ class ArticulatedWorld final : public World {
   void links_changed(int32_t articulation) override;
   void dynamics_changed() override;
   void step_group(World* const* worlds, int32_t count) override;
-  void fetch_link(int32_t i) const override;
+  void read_link(int32_t i, Motion* out) const override;
   void make_shared(Arena& arena, ArticulatedWorld* partner, bool partnered, int32_t together);
   // state_'s constants and body models by dynamics_; marks articulations of which a mass is another now.
   void own_constants();
