@@ -29,14 +29,14 @@ void PrintTo(const Case& c, std::ostream* out) {
 }
 
 // A pool of so many worlds, reset.
-struct Pool {
+struct JointsPool {
   rdm_pool* p;
   rdm_spec spec;
   rdm_buffers b;
   size_t n;
 
-  explicit Pool(const Case& test, int32_t envs = 1, uint64_t seed = 0,
-                int32_t autoreset = RDM_AUTORESET_SAME_STEP) {
+  explicit JointsPool(const Case& test, int32_t envs = 1, uint64_t seed = 0,
+                      int32_t autoreset = RDM_AUTORESET_SAME_STEP) {
     rdm_pool_config c = pool_config(envs);
     c.task = test.task;
     c.settings = test.settings;
@@ -48,7 +48,7 @@ struct Pool {
     n = static_cast<size_t>(spec.num_joints);
     EXPECT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
   }
-  ~Pool() { rdm_pool_destroy(p); }
+  ~JointsPool() { rdm_pool_destroy(p); }
   void play(int steps) {
     for (int i = 0; i < steps; ++i) {
       ASSERT_EQ(rdm_pool_baseline(p, RDM_BASELINE_RANDOM), RDM_OK);
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"hopper_velocity", ""}, Case{"walker2d_velocity", ""}, Case{"bandit", ""}));
 
 TEST_P(Joints, AreDescribed) {
-  Pool pool(GetParam());
+  JointsPool pool(GetParam());
   std::set<std::string> names;
   std::set<int32_t> entries;
   for (int32_t i = 0; i < pool.spec.num_joints; ++i) {
@@ -113,7 +113,7 @@ TEST_P(Joints, AreDescribed) {
 
 // Of all joints that have an entry, a changed one moves its own the most.
 TEST_P(Joints, AreMovedByTheirEntries) {
-  Pool pool(GetParam(), 2, 3);
+  JointsPool pool(GetParam(), 2, 3);
   for (int32_t i = 0; i < pool.spec.num_joints; ++i) {
     const rdm_joint_info j = info_at(pool.p, i);
     if (j.action < 0) continue;
@@ -138,7 +138,7 @@ TEST_P(Joints, AreMovedByTheirEntries) {
 }
 
 TEST_P(Joints, AreWhereTheyWerePut) {
-  Pool from(GetParam(), 1, 5), to(GetParam(), 2, 5);
+  JointsPool from(GetParam(), 1, 5), to(GetParam(), 2, 5);
   from.play(20);
   const std::vector<double> q = from.q(), qd = from.qd();
   const std::vector<double> other = to.q(0);
@@ -159,7 +159,7 @@ TEST_P(Joints, AreWhereTheyWerePut) {
 
 // Links, rows and saved states follow.
 TEST_P(Joints, TheWorldFollows) {
-  Pool from(GetParam(), 1, 5), to(GetParam(), 1, 5), twin(GetParam(), 1, 9);
+  JointsPool from(GetParam(), 1, 5), to(GetParam(), 1, 5), twin(GetParam(), 1, 9);
   from.play(20);
   const bool moves = from.n > 0;
   const std::vector<float> before = to.obs();
@@ -169,8 +169,8 @@ TEST_P(Joints, TheWorldFollows) {
   const std::vector<float> a = from.poses(), b = to.poses();
   const std::string task = GetParam().task;
   for (int32_t i = 0; i < from.spec.num_shapes && (task == "grasp" || task.rfind("hand_over", 0) == 0); ++i) {
-    rdm_shape shape;
-    ASSERT_EQ(rdm_pool_shape(from.p, i, &shape), RDM_OK);
+    rdm_shape_info shape = RDM_INIT(rdm_shape_info);
+    ASSERT_EQ(rdm_pool_shape_at(from.p, i, &shape), RDM_OK);
     if (std::strncmp(shape.name, "right_", 6) != 0 && std::strncmp(shape.name, "left_", 5) != 0) continue;
     for (size_t k = 0; k < 7; ++k)
       EXPECT_NEAR(a[7 * static_cast<size_t>(i) + k], b[7 * static_cast<size_t>(i) + k], 2e-5) << shape.name;
@@ -190,7 +190,7 @@ TEST_P(Joints, TheWorldFollows) {
   EXPECT_EQ(twin.q(), to.q());
   EXPECT_EQ(twin.obs(), after);
   for (int i = 0; i < 10; ++i) {
-    for (Pool* each : {&to, &twin}) {
+    for (JointsPool* each : {&to, &twin}) {
       std::fill_n(each->b.action, each->spec.action_dim, 0.25f);
       ASSERT_EQ(rdm_pool_step(each->p), RDM_OK);
     }
@@ -200,7 +200,7 @@ TEST_P(Joints, TheWorldFollows) {
 }
 
 TEST_P(Joints, WhatNoWorldHasIsRefused) {
-  Pool pool(GetParam(), 2);
+  JointsPool pool(GetParam(), 2);
   const size_t n = pool.n;
   std::vector<double> q(n + 1), qd(n + 1);
   EXPECT_EQ(rdm_pool_get_joints(pool.p, 2, q.data(), nullptr, n), RDM_ERROR_RANGE);
@@ -236,7 +236,7 @@ TEST_P(Joints, WhatNoWorldHasIsRefused) {
 }
 
 TEST_P(Joints, TakeNoMemory) {
-  Pool pool(GetParam());
+  JointsPool pool(GetParam());
   std::vector<double> q(pool.n), qd(pool.n);
   const int64_t heap = heap_count();
   for (int i = 0; i < 10; ++i) {
@@ -248,7 +248,7 @@ TEST_P(Joints, TakeNoMemory) {
 
 // Not even a little beyond where ends are hard; where hands have them, as far as they give way.
 TEST(JointLimits, EndWhereTheyGiveWay) {
-  Pool pool({"hand_over_safe_finger", ""});
+  JointsPool pool({"hand_over_safe_finger", ""});
   std::vector<double> q = pool.q();
   const rdm_joint_info j = info_at(pool.p, 3);
   q[3] = j.upper + 0.004;
@@ -270,7 +270,7 @@ TEST(JointLimits, OnlyOfAnEpisodeThatRuns) {
   EXPECT_STREQ(rdm_last_error(), "set_joints: world 0 was not reset yet");
   EXPECT_EQ(rdm_pool_get_joints(fresh, 0, q.data(), nullptr, 48), RDM_OK);
   rdm_pool_destroy(fresh);
-  Pool pool(test, 1, 0, RDM_AUTORESET_OFF);
+  JointsPool pool(test, 1, 0, RDM_AUTORESET_OFF);
   pool.play(3);
   ASSERT_EQ(pool.b.truncated[0], 1);
   EXPECT_EQ(pool.set(pool.q(), {}), RDM_ERROR_STATE);
@@ -286,7 +286,7 @@ TEST(CoupledJoints, FollowTheJointThatLeadsThem) {
   ASSERT_EQ(rdm_robot_coupling_at(robot, 0, &c), RDM_OK);
   for (const char* engine : {"engine=articulated", "engine=ode"}) {
     SCOPED_TRACE(engine);
-    Pool pool({"hand_over_safe_finger", engine});
+    JointsPool pool({"hand_over_safe_finger", engine});
     const auto i = static_cast<size_t>(c.link), lead = static_cast<size_t>(c.other);
     const rdm_joint_info j = info_at(pool.p, c.link);
     EXPECT_EQ(j.kp, 0);
@@ -344,7 +344,7 @@ TEST(JointsOfOwnTask, ObserveMayFail) {
   task.observe = [&](const rdm_world*) {
     return fails ? rdm_fail(RDM_ERROR_IO, "the sensor is lost") : rdm_result{RDM_OK};
   };
-  Pool pool({"joints_own", ""});
+  JointsPool pool({"joints_own", ""});
   pool.play(2);
   const std::vector<float> row = pool.obs();
   EXPECT_EQ(pool.set({}, {}), RDM_OK);

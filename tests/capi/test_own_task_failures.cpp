@@ -368,8 +368,8 @@ TEST(OwnTaskBuilds, RefusedMemoryLeavesNoHalf) {
       h->refuse_at = keep;
       return p;
     };
-    Pool* pool = nullptr;
-    const Code r = guard([&] { pool = Pool::create(c); });
+    rdm::Pool* pool = nullptr;
+    const Code r = guard([&] { pool = rdm::Pool::create(c); });
     if (r == Code::kOk) {
       ++made;
       pool->reset(nullptr, nullptr);
@@ -378,7 +378,7 @@ TEST(OwnTaskBuilds, RefusedMemoryLeavesNoHalf) {
       ++refused;
       EXPECT_EQ(r, Code::kMemory) << at << ": " << last_error();
     }
-    Pool::destroy(pool);
+    rdm::Pool::destroy(pool);
     EXPECT_EQ(host.live, 0u) << at;
     if (host.calls <= at) break;
   }

@@ -34,10 +34,10 @@ TEST_P(PoolRaycast, MeetsWhatPicturesShow) {
     ASSERT_EQ(rdm_pool_baseline(p, RDM_BASELINE_RANDOM), RDM_OK);
     ASSERT_EQ(rdm_pool_step(p), RDM_OK);
   }
-  rdm_camera seen{};
+  rdm_camera_info seen = RDM_INIT(rdm_camera_info);
   int32_t task = -1;
   ASSERT_EQ(rdm_task_find(c.task, &task), RDM_OK);
-  for (int32_t i = 0; rdm_task_camera(task, i, &seen) == RDM_OK; ++i)
+  for (int32_t i = 0; rdm_task_camera_at(task, i, &seen) == RDM_OK; ++i)
     if (std::strcmp(seen.name, GetParam().camera) == 0) break;
   ASSERT_STREQ(seen.name, GetParam().camera);
   rdm::Camera camera;
@@ -94,8 +94,8 @@ TEST(PoolRay, NothingIsNoError) {
   EXPECT_EQ(rdm_pool_raycast(p, 0, origin, down, 10, &hit), RDM_OK);
   EXPECT_EQ(hit.shape, -1);
   EXPECT_EQ(rdm_pool_raycast(p, 0, origin, down, kInf, &hit), RDM_OK);
-  rdm_shape shape;
-  ASSERT_EQ(rdm_pool_shape(p, hit.shape, &shape), RDM_OK);
+  rdm_shape_info shape = RDM_INIT(rdm_shape_info);
+  ASSERT_EQ(rdm_pool_shape_at(p, hit.shape, &shape), RDM_OK);
   EXPECT_GT(hit.distance, 40);
   EXPECT_GT(hit.normal[2], 0);
   EXPECT_NEAR(hit.point[2], 50 - hit.distance, 1e-9);

@@ -82,7 +82,7 @@ TEST(PoolUser, AndNumberReachEveryFunction) {
   ASSERT_EQ(rdm_task_at(told.task.number, &task), RDM_OK);
   for (const void* user : told.scenes) EXPECT_EQ(user, nullptr);
   told.worlds.clear();
-  EXPECT_EQ(rdm_task_check("user_told", nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_task_check("user_told", nullptr, nullptr, nullptr, nullptr, 0), RDM_OK) << rdm_last_error();
   EXPECT_TRUE(told.worlds.count({nullptr, -1}));
   for (rdm_pool* each : {p, other, plain}) rdm_pool_destroy(each);
 }

@@ -213,18 +213,16 @@ TEST(Registries, ANumberThatWasKeptTooLongIsRefusedEverywhere) {
   refused(gone[1], rdm_object_destroy(object));
   rdm_task t{};
   t.struct_size = sizeof t;
-  rdm_field field;
-  float low, high;
-  rdm_cost cost;
-  rdm_option_info option;
-  rdm_camera camera;
+  rdm_field_info field = RDM_INIT(rdm_field_info);
+  rdm_cost_info cost = RDM_INIT(rdm_cost_info);
+  rdm_option_spec option = RDM_INIT(rdm_option_spec);
+  rdm_camera_info camera = RDM_INIT(rdm_camera_info);
   rdm_option own;
   refused(gone[2], rdm_task_at(task, &t));
-  refused(gone[2], rdm_task_field(task, 0, &field));
-  refused(gone[2], rdm_task_field_bounds(task, 0, &low, &high));
-  refused(gone[2], rdm_task_cost(task, 0, &cost));
-  refused(gone[2], rdm_task_option(task, 0, &option));
-  refused(gone[2], rdm_task_camera(task, 0, &camera));
+  refused(gone[2], rdm_task_field_at(task, 0, &field));
+  refused(gone[2], rdm_task_cost_at(task, 0, &cost));
+  refused(gone[2], rdm_task_option_at(task, 0, &option));
+  refused(gone[2], rdm_task_camera_at(task, 0, &camera));
   refused(gone[2], rdm_task_default_at(task, 0, &own));
   refused(gone[2], rdm_task_destroy(task));
   // in a scene, where it is the error of making the pool
@@ -242,7 +240,7 @@ TEST(Registries, ANumberThatWasKeptTooLongIsRefusedEverywhere) {
   const double p[3] = {0, 0, 1}, turn[4] = {};
   scene.build = [&](rdm_scene* s) { return rdm_scene_add_object(s, object, "o", p, turn, 1, nullptr); };
   refused(gone[1], rdm_pool_create(&pool, &c));
-  EXPECT_EQ(checked, 29);
+  EXPECT_EQ(checked, 28);
   // by name: the one that there is
   scene.build = nullptr;
   c.task = "stale";
