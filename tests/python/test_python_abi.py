@@ -2,6 +2,7 @@
 import ctypes
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -24,13 +25,16 @@ class Abi(unittest.TestCase):
 
     def test_structs_have_the_recorded_layout(self):
         recorded = (TREE / "capi/layout.golden").read_text().split("\n")
+        gone = set(re.findall(r"^} (rdm_\w+);", (TREE / "include/redman/deprecated.h").read_text(), re.MULTILINE))  # not bound
+        self.assertTrue(gone)
         ours = []
         for name, struct in _abi.STRUCTS.items():
             for field, _ in struct._fields_:
                 place = getattr(struct, field)
                 ours.append(f"{name}.{field} {place.offset} {place.size}")
             ours.append(f"{name} {ctypes.sizeof(struct)}")
-        self.assertEqual(sorted(line for line in recorded if line and not line.startswith("rdm_import_")), sorted(ours))
+        wanted = [line for line in recorded if line and not line.startswith("rdm_import_") and re.split(r"[. ]", line)[0] not in gone]
+        self.assertEqual(sorted(wanted), sorted(ours))
 
     def test_every_exported_function_has_a_signature_and_words(self):
         for parts, experimental in ((("redman", "redman_1.0"), False), (("redman_experimental",), True)):

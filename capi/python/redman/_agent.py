@@ -111,7 +111,7 @@ class Agent(Hinted):
                 raise ArgumentError("agent: give a pool, or obs_dim and action_dim")
             own.update(obs_dim=obs_dim, action_dim=action_dim, num_envs=num_envs, cost_dim=cost_dim, task=task,
                        control_dt=float(control_dt), max_steps=max_steps, layout_hash=layout_hash, initial_mean=None,
-                       defaults={}, cost_limits=None, fields=dict(fields or {}))
+                       defaults={}, cost_limits=None, fields=[(name, "", offset, count) for name, (offset, count) in (fields or {}).items()])
             columns = [f"cost {k}" for k in range(cost_dim)]
         if initial_mean is not None:
             own["initial_mean"] = np.broadcast_to(np.asarray(initial_mean, np.float32), own["action_dim"]).copy()
@@ -386,7 +386,7 @@ def _config_of(pool: Pool) -> dict[str, Any]:
             "num_envs": config.num_envs, "task": text(config.task), "layout_hash": config.layout_hash,
             "control_dt": config.control_dt, "max_steps": config.max_steps, "defaults": defaults,
             "initial_mean": pointed.get("initial_mean"), "cost_limits": pointed.get("cost_limits"),
-            "fields": {text(f.name): (f.offset, f.count) for f in config.fields[:config.num_fields]}}
+            "fields": [(text(f.name), text(f.unit), f.offset, f.count) for f in config.fields[:config.num_fields]]}
 
 
 def _limits(wanted: CostLimits, usual: Optional[Array], columns: Sequence[str]) -> Optional[list[float]]:
@@ -449,7 +449,7 @@ def _created(own: Mapping[str, Any]) -> Handle:
     for name, array in arrays.items():
         setattr(config, name, address(array))
     fields = (_abi.rdm_field * len(own["fields"]))()
-    for field, (name, (offset, count)) in zip(fields, own["fields"].items()):
-        field.name, field.offset, field.count = encoded(name), offset, count
+    for field, (name, unit, offset, count) in zip(fields, own["fields"]):
+        field.name, field.unit, field.offset, field.count = encoded(name), encoded(unit), offset, count
     config.fields, config.num_fields = fields, len(fields)
     return Handle(lib.rdm_agent_create, lib.rdm_agent_destroy, byref(config))
