@@ -85,7 +85,7 @@ if [ -x "$build/bin/redman" ] && [ -f "$build/redman.map" ]; then
   "$cxx" -shared -Wl,-z,muldefs $objects -Wl,--whole-archive "$library" -Wl,--no-whole-archive $third \
     -Wl,--version-script="$build/redman.map" -Wl,-soname,libredman.so.1 -o "$work/libredman.so.1" || exit 1
   for page in README.md tasks/README.md lib/objects/README.md examples/robots/README.md examples/results/hand_tasks.md \
-    examples/results/short.md cmake/tables.sh; do
+    examples/results/short.md CONTRIBUTING.md cmake/tables.sh cmake/check.sh cmake/packages.sh cmake/skips.sh; do
     mkdir -p "$tree/$(dirname $page)" && cp "$root/$page" "$tree/$page"
   done
   tables() { LD_LIBRARY_PATH=$work bash "$tree/cmake/tables.sh" "$build/bin/redman" "$@"; }
