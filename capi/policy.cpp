@@ -40,8 +40,7 @@ void keep_given(void*, void*, size_t, size_t) {}
 
 // Of the handle, then what Policy::read takes, at any address.
 size_t memory_of(const void* bytes, size_t size) {
-  constexpr size_t kHandle = (sizeof(rdm_policy) + Arena::kAlign - 1) / Arena::kAlign * Arena::kAlign;
-  return kHandle + Policy::memory(bytes, size) + Arena::kAlign - 1;
+  return Arena::padded(sizeof(rdm_policy)) + Policy::memory(bytes, size) + Arena::kAlign - 1;
 }
 
 const char* activation_name(Activation a) {

@@ -28,9 +28,8 @@ Arena& Arena::operator=(Arena&& other) noexcept {
 }
 
 void* Arena::take(size_t bytes) {
-  const size_t padded = (bytes + kAlign - 1) / kAlign * kAlign;
   const size_t at = used_;
-  used_ += padded;
+  used_ += padded(bytes);
   if (!block_) return nullptr;
   if (used_ > capacity_)
     fail(Code::kInternal, "arena of %zu bytes asked for %zu: measured and carved sizes differ", capacity_,

@@ -14,6 +14,8 @@ namespace rdm {
 class Arena {
  public:
   static constexpr size_t kAlign = 64;
+  // What so many bytes take in a block.
+  static constexpr size_t padded(size_t bytes) { return (bytes + kAlign - 1) / kAlign * kAlign; }
 
   Arena() = default;                               // measuring: make() returns null and counts
   Arena(const HostHooks& hooks, size_t capacity);  // one zeroed block of `capacity` bytes

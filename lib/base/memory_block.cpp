@@ -11,14 +11,10 @@ namespace {
 
 constexpr size_t kGrain = Places::kGrain;
 
-size_t rounded(size_t bytes) {
-  return (bytes + kGrain - 1) / kGrain * kGrain;
-}
-
 }  // namespace
 
 size_t Places::take(size_t bytes) {
-  const size_t n = rounded(bytes);
+  const size_t n = Arena::padded(bytes);
   if (n < bytes) return kNone;
   for (Gap* g = gaps_; g < gaps_ + num_gaps_; ++g) {
     if (g->end - g->begin < n) continue;
@@ -38,7 +34,7 @@ size_t Places::take(size_t bytes) {
 }
 
 void Places::give(size_t at, size_t bytes) {
-  size_t end = at + rounded(bytes);
+  size_t end = at + Arena::padded(bytes);
   Gap* const last = gaps_ + num_gaps_;
   Gap* after = std::find_if(gaps_, last, [at](const Gap& g) { return g.begin > at; });
   Gap* before = after > gaps_ && after[-1].end == at ? after - 1 : nullptr;
@@ -60,14 +56,14 @@ void Places::give(size_t at, size_t bytes) {
 }
 
 size_t MemoryBlock::head() {
-  return rounded(sizeof(MemoryBlock)) + kGrain - 1;
+  return Arena::padded(sizeof(MemoryBlock)) + kGrain - 1;
 }
 
 MemoryBlock* MemoryBlock::make(void* memory, size_t bytes, const HostHooks& host, bool spills) {
   if (bytes < head()) return nullptr;
   const size_t off = (kGrain - reinterpret_cast<uintptr_t>(memory) % kGrain) % kGrain;
   auto* const at = static_cast<unsigned char*>(memory) + off;
-  return new (at) MemoryBlock(at + rounded(sizeof(MemoryBlock)), bytes - head(), host, spills);
+  return new (at) MemoryBlock(at + Arena::padded(sizeof(MemoryBlock)), bytes - head(), host, spills);
 }
 
 size_t MemoryBlock::bytes() const {

@@ -5,6 +5,7 @@
 #pragma once
 #include <mutex>
 
+#include "base/arena.hpp"
 #include "base/host.hpp"
 
 namespace rdm {
@@ -12,7 +13,7 @@ namespace rdm {
 // Which bytes are taken; the bytes themselves are not looked at.
 class Places {
  public:
-  static constexpr size_t kGrain = 64, kNone = SIZE_MAX;
+  static constexpr size_t kGrain = Arena::kAlign, kNone = SIZE_MAX;
 
   explicit Places(size_t capacity) : capacity_(capacity) {}
   size_t take(size_t bytes);  // where they begin; kNone: there is no room

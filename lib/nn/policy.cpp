@@ -519,7 +519,7 @@ void write_policy(Writer& out, const PolicyView& view) {
 size_t Policy::memory(const void* bytes, size_t size) {
   Arena measure;
   keep_parts(measure, read_parts(bytes, size));
-  return (sizeof(Policy) + Arena::kAlign - 1) / Arena::kAlign * Arena::kAlign + measure.used();
+  return Arena::padded(sizeof(Policy)) + measure.used();
 }
 
 Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {

@@ -14,7 +14,7 @@ class ScratchCutter {
 
   float* make(size_t count) {
     const size_t at = used_;
-    used_ += (count * sizeof(float) + Arena::kAlign - 1) / Arena::kAlign * Arena::kAlign;
+    used_ += Arena::padded(count * sizeof(float));
     return memory_ ? reinterpret_cast<float*>(memory_ + at) : nullptr;
   }
   size_t used() const { return used_; }
