@@ -149,19 +149,19 @@ class Registration {
       rdm_camera_def c{};
       c.name = task_.keep(t.as_text(t.need("name"), "name"));
       const auto eye = t.list(t.need("eye"), "eye", 3, 3), target = t.list(t.need("target"), "target", 3, 3);
+      double up[3] = {}, fov = 0.785398163397448, cx = 0, cy = 0;
+      t.numbers("up", up, 3);
+      t.number("fov", &fov);
+      t.number("cx", &cx);
+      t.number("cy", &cy);
       for (size_t k = 0; k < 3; ++k) {
         c.eye[k] = static_cast<float>(eye[k]);
         c.target[k] = static_cast<float>(target[k]);
+        c.up[k] = static_cast<float>(up[k]);
       }
-      double fov = 0.785398163397448;
-      t.number("fov", &fov);
       c.fov_y = static_cast<float>(fov);
-      if (const toml::node* up = t.find("up"))
-        for (size_t k = 0; k < 3; ++k) c.up[k] = static_cast<float>(t.list(*up, "up", 3, 3)[k]);
-      double cx = 0, cy = 0;
-      t.number("cx", &cx);
-      t.number("cy", &cy);
-      c.cx = static_cast<float>(cx), c.cy = static_cast<float>(cy);
+      c.cx = static_cast<float>(cx);
+      c.cy = static_cast<float>(cy);
       task_.stands("cameras", task_.cameras.size(), line_of(t.t), t.what);
       task_.cameras.push_back(c);
     }
