@@ -105,9 +105,10 @@ class Pool {
   }
   // What is empty stays.
   void set_joints(int32_t env, const std::vector<double>& q, const std::vector<double>& qd = {}) {
-    auto count = static_cast<size_t>(spec_.num_joints);
+    const auto joints = static_cast<size_t>(spec_.num_joints);
+    size_t count = joints;  // another one is refused
     for (const auto* given : {&qd, &q})
-      if (!given->empty() && given->size() != count) count = given->size();  // which the call refuses
+      if (!given->empty() && given->size() != joints) count = given->size();
     check(rdm_pool_set_joints(get(), env, q.empty() ? nullptr : q.data(), qd.empty() ? nullptr : qd.data(),
                               count));
   }

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <redman/redman.hpp>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -121,6 +123,13 @@ TEST(RedmanHpp, PoolShowsAndSetsJoints) {
   EXPECT_EQ(pool.joint_velocities(1)[5], 0);
   EXPECT_THROW(pool.set_joints(1, q, {0.5}), redman::Error);
   EXPECT_THROW(pool.set_joints(1, {0.5}, qd), redman::Error);
+  for (const auto& [given_q, given_qd] : {std::pair(q, std::vector{0.5}), std::pair(std::vector{0.5}, qd)})
+    try {
+      pool.set_joints(1, given_q, given_qd);
+    } catch (const redman::Error& e) {
+      EXPECT_EQ(e.code(), RDM_ERROR_RANGE);
+      EXPECT_NE(std::strstr(e.what(), "count: 1, "), nullptr) << e.what();
+    }
   EXPECT_THROW(pool.joint(48), redman::Error);
 }
 
