@@ -142,9 +142,8 @@ void end_pool(rdm_pool* p) {
   host_delete(p->hooks, p);
 }
 
-// In the order of block_bytes, so that both take the same.
-rdm_pool* make_pool(MemoryBlock* block, const rdm_pool_config* c) {
-  const HostHooks hooks = block->hooks();
+// In the order of block_bytes, so that both take the same. block: whose memory `hooks` gives out, or null.
+rdm_pool* make_pool(const HostHooks& hooks, MemoryBlock* block, const rdm_pool_config* c) {
   const HostScope scope(hooks);
   Config config;
   read_config(c, &config);
@@ -191,12 +190,16 @@ rdm_result rdm_pool_config_memory(const rdm_pool_config* c, size_t* ours, size_t
 rdm_result rdm_pool_create(rdm_pool** out, const rdm_pool_config* c) {
   return call_with(c, [&] {
     need(out, "out");
-    const size_t bytes = block_bytes(c, nullptr);
     const HostHooks hooks = hooks_of(c);
+    if (!hooks.alloc) {  // nobody sees how often the C library is asked: the pool need not be made twice
+      *out = make_pool(hooks, nullptr, c);
+      return;
+    }
+    const size_t bytes = block_bytes(c, nullptr);
     void* const memory = host_alloc(hooks, bytes, Arena::kAlign);
     MemoryBlock* const block = MemoryBlock::make(memory, bytes, hooks, true);
     try {
-      rdm_pool* const p = make_pool(block, c);
+      rdm_pool* const p = make_pool(block->hooks(), block, c);
       p->memory = memory;
       p->bytes = bytes;
       *out = p;
@@ -215,7 +218,7 @@ rdm_result rdm_pool_create_in(rdm_pool** out, const rdm_pool_config* c, void* me
     MemoryBlock* const block = MemoryBlock::make(memory, bytes, hooks_of(c), false);
     try {
       if (!block) too_small(c, bytes);
-      *out = make_pool(block, c);
+      *out = make_pool(block->hooks(), block, c);
     } catch (...) {
       const bool refused = block && block->refused();
       if (block) MemoryBlock::end(block);
@@ -232,6 +235,7 @@ void rdm_pool_destroy(rdm_pool* p) {
   void* const memory = p->memory;
   const size_t bytes = p->bytes;
   end_pool(p);
+  if (!block) return;
   const HostHooks host = block->host();
   MemoryBlock::end(block);
   if (memory) host_release(host, memory, bytes, Arena::kAlign);

@@ -75,7 +75,7 @@ constexpr CameraSpec kCameras[] = {
 };
 
 constexpr int32_t kMapRays = 128;               // along a side of a scan
-constexpr size_t kMapMemory = size_t{8} << 20;  // bytes
+constexpr size_t kMapMemory = size_t{4} << 20;  // bytes; of voxels below 5 cm twice as many
 constexpr double kMapReach = 100;               // m, about all that the scans see
 constexpr double kMapSlack = 1e-6;              // m, of the bounds about what is occupied
 
@@ -289,7 +289,7 @@ class CleanHouse final : public PropTask {
   void map_house(double resolution) {
     OccupancyConfig config;
     config.resolution = resolution;
-    config.memory = kMapMemory;
+    config.memory = resolution < 0.05 ? 2 * kMapMemory : kMapMemory;
     map_.reset(Occupancy::create(config, host()));
     Vector<Camera> cameras;
     for (const CameraSpec& c : kCameras)
