@@ -55,6 +55,7 @@ rdm_option_spec describe(const OptionSpec& s) {
   rdm_option_spec o{};
   o.kind = static_cast<int32_t>(s.kind);
   o.live = s.live ? 1 : 0;
+  o.level = static_cast<int32_t>(s.level);
   o.key = s.key;
   o.help = s.help;
   o.text = s.text;

@@ -338,7 +338,7 @@ void OwnTask::take_options() {
     for (const OptionSpec& other : options_)
       if (same_name(other.key, o.key)) fail(Code::kArgument, "%s: %s is there twice", key.text, o.key);
     if (same_name(o.key, "max_steps")) fail(Code::kArgument, "%s: max_steps is def.max_steps", key.text);
-    OptionSpec made = number_option("", 0, 0, 0, "");
+    OptionSpec made = basic(number_option("", 0, 0, 0, ""));
     if (row) {
       made = *row;
     } else {

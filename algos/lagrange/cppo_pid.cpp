@@ -45,10 +45,10 @@ void PidRule::visit(StateIo& io) {
 
 namespace {
 constexpr std::array kPidOptions = {
-    number_option("pid_kp", 0.1, 0, 1e6, "multiplier per smoothed violation", true),
-    number_option("pid_ki", 0.01, 0, 1e6, "multiplier per summed violation", true),
-    number_option("pid_kd", 0.01, 0, 1e6, "multiplier per rise of the smoothed cost over pid_delay epochs",
-                  true),
+    basic(number_option("pid_kp", 0.1, 0, 1e6, "multiplier per smoothed violation", true)),
+    basic(number_option("pid_ki", 0.01, 0, 1e6, "multiplier per summed violation", true)),
+    basic(number_option("pid_kd", 0.01, 0, 1e6,
+                        "multiplier per rise of the smoothed cost over pid_delay epochs", true)),
     number_option("pid_smooth_p", 0.95, 0, 0.9999, "EMA factor of the violation; 0: none"),
     number_option("pid_smooth_d", 0.95, 0, 0.9999, "EMA factor of the cost that is derived; 0: none"),
     integer_option("pid_delay", 10, 1, kMaxPidDelay, "epochs that the derivative looks back"),

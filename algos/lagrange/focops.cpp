@@ -83,9 +83,9 @@ void bound_multiplier(ResolvedAgentConfig& resolved) {
 
 constexpr std::array kFocopsOptions = {
     number_option("temperature", 1.5, 1e-6, 1e6, "lambda of the paper, fixed", true),
-    number_option("focops_eta", 0.02, 0, 1e6, "samples whose KL(new || old) is above this teach nothing",
-                  true),
-    flag_option("multiplier_divide", false, "advantage over (1 + nu), as a peer has it"),
+    basic(number_option("focops_eta", 0.02, 0, 1e6,
+                        "samples whose KL(new || old) is above this teach nothing", true)),
+    legacy(flag_option("multiplier_divide", false, "advantage over (1 + nu), as a peer has it")),
 };
 constexpr auto kFocopsTable =
     with_defaults(join_options(kSharedOptions, kMultiplierOptions, kFocopsOptions, kOneCostOptions),

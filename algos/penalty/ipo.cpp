@@ -80,7 +80,8 @@ constexpr std::array kBarrierOptions = {
     text_option(
         "barrier", "epoch", "epoch|exact",
         "epoch: slope at J_c for an epoch, nearly a switch; exact: the paper's, at each minibatch's J_c"),
-    number_option("barrier_kappa", 0.01, 0, 1e6, "weight of ln(limit - J_c): 1 / m of the paper", true),
+    basic(
+        number_option("barrier_kappa", 0.01, 0, 1e6, "weight of ln(limit - J_c): 1 / m of the paper", true)),
     number_option("barrier_max", 1, 0, kHuge, "bound on the barrier's slope, and the slope beyond the limit",
                   true),
 };

@@ -58,7 +58,7 @@ void P3o::visit_state(StateIo& io) {
 
 namespace {
 constexpr std::array kPenaltyOptions = {
-    number_option("penalty", 20, 0, 1e6, "kappa, initial weight of the penalty"),
+    basic(number_option("penalty", 20, 0, 1e6, "kappa, initial weight of the penalty")),
     number_option("penalty_growth", 1, 1, 10,
                   "factor on kappa per epoch; 1: fixed, where the paper has it grow", true),
     number_option("penalty_max", 20, 0, kMaxPenalty, "largest kappa", true),

@@ -25,7 +25,8 @@ class Pcpo final : public Cpo {
 };
 
 constexpr std::array kProjectionOptions = {
-    text_option("projection", "kl", "kl|l2", "metric in which the step is projected onto the cost limit"),
+    basic(text_option("projection", "kl", "kl|l2",
+                      "metric in which the step is projected onto the cost limit")),
 };
 constexpr auto kPcpoTable =
     with_defaults(with_defaults(join_options(kSharedOptions, kTrustOptions, kViolationOptions,

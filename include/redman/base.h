@@ -131,6 +131,11 @@ RDM_API void rdm_shutdown(void); /* the last call puts the default hooks back; h
 enum rdm_option_kind { /* of an option */
   RDM_KIND_NUMBER = 0, RDM_KIND_INTEGER = 1, RDM_KIND_FLAG = 2, RDM_KIND_TEXT = 3
 };
+enum rdm_option_level { /* whom an option is for */
+  RDM_LEVEL_BASIC = 0,    /* all users: lists begin with these; rows of tasks of your own are */
+  RDM_LEVEL_ADVANCED = 1, /* those who tune */
+  RDM_LEVEL_LEGACY = 2    /* those who compare with the paper, an older release or another engine */
+};
 typedef struct rdm_option { /* frozen layout: one key and its value */
   const char *key;          /* case is ignored and '-' equals '_'                             */
   const char *text;         /* value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number
@@ -141,7 +146,7 @@ typedef struct rdm_option_spec { /* one row of an option table */
   uint32_t struct_size;     /* in: bytes                                                      */
   int32_t kind;             /* RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT */
   int32_t live;             /* flag: rdm_agent_set_option may change it after creation */
-  int32_t reserved;         /* 0                                                              */
+  int32_t level;            /* RDM_LEVEL_BASIC, RDM_LEVEL_ADVANCED, RDM_LEVEL_LEGACY          */
   const char *key;          /* static; its last word FIELD: any name of a field, or a pattern
                              * with '*' */
   const char *help;         /* one line, with the unit                                        */

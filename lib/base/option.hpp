@@ -15,6 +15,8 @@
 namespace rdm {
 
 enum class OptionKind : int32_t { kNumber = 0, kInteger = 1, kFlag = 2, kText = 3 };
+// Whom a row is for: all users, those who tune, those who compare with the paper, an older release or an engine.
+enum class OptionLevel : int32_t { kBasic = 0, kAdvanced = 1, kLegacy = 2 };
 
 // One row of an option table. Static data: the strings outlive the library.
 struct OptionSpec {
@@ -30,6 +32,7 @@ struct OptionSpec {
   bool range = false;    // a number or integer that may be given as "a..b"
   bool open = false;     // what stands behind the last '.' of the key is any name
   bool chooses = false;  // what other rows the table has follows from it
+  OptionLevel level = OptionLevel::kAdvanced;
 };
 
 constexpr OptionSpec number_option(const char* key, double value, double low, double high, const char* help,
@@ -56,6 +59,17 @@ constexpr OptionSpec drawable(OptionSpec row) {
 // The row of a key such as "noise.FIELD", whose last word stands for any name.
 constexpr OptionSpec open_option(OptionSpec row) {
   row.open = true;
+  return row;
+}
+
+// The row, which lists begin with.
+constexpr OptionSpec basic(OptionSpec row) {
+  row.level = OptionLevel::kBasic;
+  return row;
+}
+// The row, which lists end with.
+constexpr OptionSpec legacy(OptionSpec row) {
+  row.level = OptionLevel::kLegacy;
   return row;
 }
 

@@ -8,10 +8,11 @@ namespace rdm {
 namespace {
 
 constexpr OptionSpec kRows[] = {
-    integer_option("level", 0, 0, 3,
-                   "masses, gains, efforts, damping and friction that are drawn for each world at a reset: "
-                   "within 0, 10, "
-                   "20 or 30 % of what they are, but for options that are given"),
+    basic(integer_option(
+        "level", 0, 0, 3,
+        "masses, gains, efforts, damping and friction that are drawn for each world at a reset: "
+        "within 0, 10, "
+        "20 or 30 % of what they are, but for options that are given")),
 };
 constexpr double kSpread[] = {0, 0.1, 0.2, 0.3};
 constexpr const char* kLevelled[] = {"scale.mass",

@@ -92,10 +92,10 @@ class Circle final : public AgentTask<A> {
 
 constexpr std::array<OptionSpec, 4> circle_options(int32_t max_steps) {
   return {
-      number_option("radius", 7, 1, 100, "radius of the circle, m"),
-      number_option("safe_x", 6, 0.1, 100, "a step with |x| beyond this costs 1, m"),
-      number_option("wall", 12, 5, 1000, "distance of the eight walls from the middle, m"),
-      integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"),
+      basic(number_option("radius", 7, 1, 100, "radius of the circle, m")),
+      basic(number_option("safe_x", 6, 0.1, 100, "a step with |x| beyond this costs 1, m")),
+      basic(number_option("wall", 12, 5, 1000, "distance of the eight walls from the middle, m")),
+      basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode")),
   };
 }
 constexpr auto kBallOptions = circle_options(Ball::kSteps), kCarOptions = circle_options(Car::kSteps),

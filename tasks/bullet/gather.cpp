@@ -163,10 +163,10 @@ class Gather final : public AgentTask<A> {
 
 constexpr std::array<OptionSpec, 4> gather_options(int32_t max_steps) {
   return {
-      integer_option("apples", 8, 1, kMaxOfKind, "number of apples"),
-      integer_option("bombs", 8, 0, kMaxOfKind, "number of bombs"),
-      number_option("apple_reward", 10, 0, 1000, "reward for an apple"),
-      integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"),
+      basic(integer_option("apples", 8, 1, kMaxOfKind, "number of apples")),
+      basic(integer_option("bombs", 8, 0, kMaxOfKind, "number of bombs")),
+      basic(number_option("apple_reward", 10, 0, 1000, "reward for an apple")),
+      basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode")),
   };
 }
 constexpr auto kBallOptions = gather_options(Ball::kSteps), kCarOptions = gather_options(Car::kSteps),

@@ -234,10 +234,10 @@ class Reach final : public AgentTask<A> {
 
 constexpr std::array<OptionSpec, 4> reach_options(int32_t max_steps) {
   return {
-      integer_option("obstacles", kMaxObstacles, 0, kMaxObstacles, "number of puddles or pillars"),
-      number_option("goal_size", 1.3, 0.01, 10, "distance at which a goal is reached, m"),
-      number_option("goal_reward", 5, 0, 1000, "reward for a reached goal"),
-      integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"),
+      basic(integer_option("obstacles", kMaxObstacles, 0, kMaxObstacles, "number of puddles or pillars")),
+      basic(number_option("goal_size", 1.3, 0.01, 10, "distance at which a goal is reached, m")),
+      basic(number_option("goal_reward", 5, 0, 1000, "reward for a reached goal")),
+      basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode")),
   };
 }
 constexpr auto kBallOptions = reach_options(Ball::kSteps), kCarOptions = reach_options(Car::kSteps),

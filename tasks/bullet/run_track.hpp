@@ -23,10 +23,10 @@ struct RunPlace {
 
 constexpr std::array<OptionSpec, 4> track_options(double speed_limit, double finish, int32_t max_steps) {
   return {
-      number_option("speed_limit", speed_limit, 0, 100, "speed above which a step costs 1, m/s"),
-      number_option("lane", 2, 0.1, 100, "half width of the lane, m"),
-      number_option("finish", finish, 0, 1000, "success: x beyond this inside the lane, m"),
-      integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"),
+      basic(number_option("speed_limit", speed_limit, 0, 100, "speed above which a step costs 1, m/s")),
+      basic(number_option("lane", 2, 0.1, 100, "half width of the lane, m")),
+      basic(number_option("finish", finish, 0, 1000, "success: x beyond this inside the lane, m")),
+      basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode")),
   };
 }
 RunTrack track_from(const Options& options);

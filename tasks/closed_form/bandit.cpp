@@ -69,8 +69,8 @@ class Bandit final : public PlanarTask {
 };
 
 constexpr OptionSpec kOptions[] = {
-    number_option("target", 2, -4, 4, "action that the reward wants"),
-    number_option("action_scale", 5, 0.1, 100, "what an action entry of 1 stands for"),
+    basic(number_option("target", 2, -4, 4, "action that the reward wants")),
+    basic(number_option("action_scale", 5, 0.1, 100, "what an action entry of 1 stands for")),
 };
 constexpr CostSpec kCosts[] = {{"cost", "the action a where it is positive, else 0; raw: a", kLimit}};
 constexpr CameraSpec kCameras[] = {

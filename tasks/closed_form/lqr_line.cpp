@@ -70,10 +70,10 @@ class LqrLine final : public SampledTask<State> {
 };
 
 constexpr OptionSpec kOptions[] = {
-    number_option("action_scale", 5, 0.1, 100, "displacement for an action entry of 1, m"),
-    number_option("noise", 0.1, 0, 10, "standard deviation of the noise, m"),
-    number_option("effort", 0.1, 0, 10, "weight of a^2 in the reward"),
-    integer_option("max_steps", 20, 1, 100000, "control steps of an episode"),
+    basic(number_option("action_scale", 5, 0.1, 100, "displacement for an action entry of 1, m")),
+    basic(number_option("noise", 0.1, 0, 10, "standard deviation of the noise, m")),
+    basic(number_option("effort", 0.1, 0, 10, "weight of a^2 in the reward")),
+    basic(integer_option("max_steps", 20, 1, 100000, "control steps of an episode")),
 };
 constexpr CostSpec kCosts[] = {{"cost", "squared displacement a^2, m2", 1}};
 constexpr CameraSpec kCameras[] = {

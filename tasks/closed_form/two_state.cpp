@@ -73,8 +73,8 @@ class TwoState final : public SampledTask<State> {
 };
 
 constexpr OptionSpec kOptions[] = {
-    number_option("end_probability", 0.1, 0.001, 1, "of the episode, at each step"),
-    integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"),
+    basic(number_option("end_probability", 0.1, 0.001, 1, "of the episode, at each step")),
+    basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode")),
 };
 constexpr CostSpec kCosts[] = {{"cost", "0.2 for a = 1 in state 0, 1 for a = 1 in state 1", 2.5}};
 constexpr CameraSpec kCameras[] = {

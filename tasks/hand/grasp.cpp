@@ -26,12 +26,12 @@ const SingleHandConfig kConfig = {{.count = 1, .bases = {{{0, 0, 0.1}, {0, 0, 1,
                                   0};
 
 constexpr OptionSpec kRows[] = {
-    text_option("reward", "literal", "literal|lift",
-                "100 times the object's height, or (lift) its height above lift_height"),
-    number_option("lift_height", 0.025, -1, 10, "height without a lift, m"),
-    number_option("success_height", 0.1, 0, 10, "object height that counts as success, m"),
-    text_option("cost_mode", "default", "default|paper|literal",
-                "default, paper: joint force; literal: range of the first finger's command"),
+    basic(text_option("reward", "literal", "literal|lift",
+                      "100 times the object's height, or (lift) its height above lift_height")),
+    basic(number_option("lift_height", 0.025, -1, 10, "height without a lift, m")),
+    basic(number_option("success_height", 0.1, 0, 10, "object height that counts as success, m")),
+    legacy(text_option("cost_mode", "default", "default|paper|literal",
+                       "default, paper: joint force; literal: range of the first finger's command")),
     number_option("effort_share", 0.4, 0, 1, "cost: a finger joint's force above this share of its limit"),
     text_option(
         "initial_mean", "close", "close|hold|zero",

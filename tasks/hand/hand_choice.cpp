@@ -23,8 +23,8 @@ constexpr OptionSpec choosing(OptionSpec row) {
 }
 
 constexpr OptionSpec kRows[] = {
-    choosing(text_option("arm", kNone, nullptr,
-                         "the arm that carries each hand, a robot's name; none: as the task has it")),
+    choosing(basic(text_option("arm", kNone, nullptr,
+                               "the arm that carries each hand, a robot's name; none: as the task has it"))),
 };
 constexpr OptionSpec kArmRows[] = {
     text_option("arm_base", "auto", nullptr,
@@ -168,8 +168,8 @@ void set_arm(const Pose& X_WB, const double* q, ChosenHand* hand) {
 }
 
 int32_t add_hand_choice_options(const HandControlConfig& config, OptionTable& table) {
-  table.add(
-      choosing(text_option("hand", config.robot->name, nullptr, "the robot that each hand is, by name")));
+  table.add(choosing(
+      basic(text_option("hand", config.robot->name, nullptr, "the robot that each hand is, by name"))));
   table.add(kRows);
   const auto side = [&](int32_t i) { return config.sides ? config.sides[i] : HandDefault{"", "", "", ""}; };
   for (int32_t i = 0; i < config.count; ++i) {

@@ -17,9 +17,9 @@ constexpr double kSourceStep = 1.0 / 60;  // s, of the source's scales
 constexpr OptionSpec kRows[] = {
     number_option("action_average", 1, 0.01, 1, "weight of the new action in the moving average of targets"),
     text_option("sensor", "contact", "contact|none", "fingertip force entries: contact forces, or zero"),
-    text_option(
+    basic(text_option(
         "control", "position", "position|velocity|torque",
-        "what a joint's action entry is: its target, the target's velocity, or a share of its effort"),
+        "what a joint's action entry is: its target, the target's velocity, or a share of its effort")),
     number_option("arm_range", 0.3, 0, 10,
                   "how far from the start an arm's joint goes with an entry of 1, rad; 0: its whole range"),
     number_option("arm_noise", 0, 0, 1, "half width of the draw of an arm's joints at a reset, rad"),
@@ -36,11 +36,13 @@ constexpr OptionSpec kFrictionRows[] = {
     drawable(number_option("friction.hand_ground", 1, 0, 10, "friction coefficient of hand and ground")),
 };
 constexpr OptionSpec kFlyingRows[] = {
-    text_option("action_order", "paper", "paper|legacy",
-                "of a hand's entries: joints, force, torque (paper) or force, torque, joints (legacy)"),
+    legacy(
+        text_option("action_order", "paper", "paper|legacy",
+                    "of a hand's entries: joints, force, torque (paper) or force, torque, joints (legacy)")),
     drawable(number_option("base_damping", 100, 0, 1e4, "damping of a flying hand's links, 1/s")),
-    text_option("base_angles", "positive", "positive|signed",
-                "base angles in the observation: in [0, 2 pi), where the bound of +-5 cuts, or in [-pi, pi]"),
+    legacy(text_option(
+        "base_angles", "positive", "positive|signed",
+        "base angles in the observation: in [0, 2 pi), where the bound of +-5 cuts, or in [-pi, pi]")),
     number_option("base_speed", 2, 0.01, 100, "bound of a base's speed, m/s"),
     number_option("base_spin", 10, 0.1, 1000, "bound of a base's angular speed, rad/s"),
     number_option("base_reach", 0, 0, 10, "how far from its start a base can fly, m; 0: no bound"),
@@ -55,8 +57,8 @@ Vec3 bounded(const Vec3& v, double most) {
 
 void add_hand_control_options(const HandControlConfig& config, OptionTable& table, int32_t contacts_max) {
   table.add(kRows);
-  table.add(drawable(number_option("friction.hand_object", config.friction, 0, 10,
-                                   "friction coefficient of hands and object")));
+  table.add(drawable(basic(number_option("friction.hand_object", config.friction, 0, 10,
+                                         "friction coefficient of hands and object"))));
   table.add(kFrictionRows);
   if (config.count > 1) {
     table.add(kPairRows);

@@ -12,13 +12,14 @@ namespace rdm {
 namespace {
 
 constexpr OptionSpec kRows[] = {
-    text_option("coupling", "model", "model|paper",
-                "distal joints: 1.142 of the middle one within 0.142 rad, or (paper) the middle one's angle"),
+    legacy(text_option(
+        "coupling", "model", "model|paper",
+        "distal joints: 1.142 of the middle one within 0.142 rad, or (paper) the middle one's angle")),
 };
 
 constexpr OptionSpec kLeftRows[] = {
-    text_option("left_model", "mirror", "mirror|right_copy",
-                "left hand: mirror image, or a second right hand"),
+    legacy(text_option("left_model", "mirror", "mirror|right_copy",
+                       "left hand: mirror image, or a second right hand")),
 };
 
 }  // namespace

@@ -22,8 +22,8 @@ constexpr OptionSpec kRows[] = {
     text_option("goal_rotation", "random", "random|fixed", "rotation of the goal, redrawn at each reset"),
     drawable(number_option("object_damping", 0.1, 0, 100,
                            "angular damping of the object, 1/s; stands for rolling friction")),
-    drawable(number_option("object_scale", 1, 0.1, 10, "factor on the object's size; its mass stays")),
-    flag_option("canonical_rotation", false, "rotation error with w >= 0 in the observation"),
+    drawable(basic(number_option("object_scale", 1, 0.1, 10, "factor on the object's size; its mass stays"))),
+    legacy(flag_option("canonical_rotation", false, "rotation error with w >= 0 in the observation")),
     flag_option(
         "own_friction", false,
         "the friction that the object's surface has, for friction.hand_object and friction.object_ground"),
@@ -48,19 +48,20 @@ void check_goal(const GoalState& state) {
 }
 
 void add_object_options(const ObjectPlace& place, OptionTable& table) {
-  table.add(
-      text_option("object", place.object, nullptr, "what is handled, an object's name (redman objects)"));
+  table.add(basic(
+      text_option("object", place.object, nullptr, "what is handled, an object's name (redman objects)")));
   table.add(text_option("hull", kOctahedron, nullptr,
                         "points of object=hull, m, at most 32: x,y,z;x,y,z;... (redman hull makes them)",
                         kHullTextSize - 1));
-  table.add(drawable(number_option("object_mass", place.mass, 0, 10, "mass of the object, kg; 0: its own")));
+  table.add(
+      drawable(basic(number_option("object_mass", place.mass, 0, 10, "mass of the object, kg; 0: its own"))));
   constexpr const char* kAxes[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i)
     table.add("start", kAxes[i], nullptr, number_option("", place.start[i], -10, 10, "start position, m"));
   for (int i = 0; i < 3; ++i)
     table.add("goal", kAxes[i], nullptr, number_option("", place.goal[i], -10, 10, "goal position, m"));
-  table.add(number_option("start_noise", place.noise, 0, 0.2,
-                          "half width of the start position's draw, m per axis"));
+  table.add(basic(number_option("start_noise", place.noise, 0, 0.2,
+                                "half width of the start position's draw, m per axis")));
   table.add(text_option("start_rotation", place.start_rotation, "random|yaw|fixed",
                         "rotation of the object at the start; yaw: about the vertical"));
   table.add(kRows);

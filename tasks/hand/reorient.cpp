@@ -33,18 +33,20 @@ const SingleHandConfig kConfig = {{.count = 1, .bases = {{{0, 0, 0.5}, {}}}},
 
 constexpr OptionSpec kRows[] = {
     number_option("action_price", 0.0002, 0, 1, "reward: times the sum of the action's squares"),
-    number_option("turn_reward", 0, 0, 1000,
-                  "reward per rad that the rotation error shrinks in a step, less the same where it grows; "
-                  "not the paper's, for training"),
+    basic(number_option(
+        "turn_reward", 0, 0, 1000,
+        "reward per rad that the rotation error shrinks in a step, less the same where it grows; "
+        "not the paper's, for training")),
     number_option("success_bonus", 250, 0, 1e6, "reward at the goal rotation"),
-    number_option("success_angle", 0.1, 0, 3.2, "rotation error that counts as success, rad"),
-    number_option("fall_distance", 0.4, 0.01, 100,
-                  "the episode ends with the object so far from the goal, m"),
-    text_option("cost_mode", "default", "default|paper|literal|object",
-                "default, paper: any fingertip's force, another finger's too; object: the object's alone; "
-                "literal: the "
-                "largest of 15 signed numbers, forces and torques of two fingers and a force"),
-    number_option("force_threshold", 0.5, 0, 1000, "cost: a fingertip's contact force above, N"),
+    basic(number_option("success_angle", 0.1, 0, 3.2, "rotation error that counts as success, rad")),
+    basic(number_option("fall_distance", 0.4, 0.01, 100,
+                        "the episode ends with the object so far from the goal, m")),
+    legacy(text_option(
+        "cost_mode", "default", "default|paper|literal|object",
+        "default, paper: any fingertip's force, another finger's too; object: the object's alone; "
+        "literal: the "
+        "largest of 15 signed numbers, forces and torques of two fingers and a force")),
+    basic(number_option("force_threshold", 0.5, 0, 1000, "cost: a fingertip's contact force above, N")),
 };
 
 enum : int { kCost, kFingertipForce, kObjectForce, kNumCosts };

@@ -6,7 +6,7 @@ namespace rdm {
 namespace {
 
 constexpr OptionSpec kRows[] = {
-    integer_option("max_steps", 74, 1, 100000, "control steps of an episode"),
+    basic(integer_option("max_steps", 74, 1, 100000, "control steps of an episode")),
 };
 
 HandScene make_scene_def(const SingleHandConfig& config, const Options& o) {

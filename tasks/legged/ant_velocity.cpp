@@ -183,13 +183,13 @@ class AntVelocity final : public PlanarTask {
 };
 
 constexpr OptionSpec kOptions[] = {
-    number_option("speed_limit", 2.6222, 0, 100, "speed in the plane above which a step costs 1, m/s"),
-    number_option("effort_weight", 0.5, 0, 10, "weight of the squared action in the reward"),
+    basic(number_option("speed_limit", 2.6222, 0, 100, "speed in the plane above which a step costs 1, m/s")),
+    basic(number_option("effort_weight", 0.5, 0, 10, "weight of the squared action in the reward")),
     number_option("contact_weight", 5e-4, 0, 10, "weight of the squared contact forces in the reward"),
-    number_option("healthy_reward", 1, 0, 100, "reward of each step"),
+    basic(number_option("healthy_reward", 1, 0, 100, "reward of each step")),
     number_option("reset_noise", 0.1, 0, 0.2, "of the start's draw: uniform in places, normal in rates"),
-    integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"),
-    text_option("order", "gymnasium", "gymnasium|redman", "of actions and contact rows"),
+    basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode")),
+    legacy(text_option("order", "gymnasium", "gymnasium|redman", "of actions and contact rows")),
 };
 constexpr CostSpec kCosts[] = {{"cost", "1 above the speed limit; raw: speed in the plane, m/s", 25}};
 constexpr CameraSpec kCameras[] = {

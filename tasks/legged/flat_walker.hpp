@@ -59,11 +59,12 @@ void add_flat_leg(const FlatLeg& leg, PlanarScene& scene);
 
 constexpr std::array<OptionSpec, 5> flat_walker_options(double speed_limit) {
   return {
-      number_option("speed_limit", speed_limit, 0, 100, "speed along x above which a step costs 1, m/s"),
-      number_option("effort_weight", 1e-3, 0, 10, "weight of the squared action in the reward"),
-      number_option("healthy_reward", 1, 0, 100, "reward of each step"),
+      basic(
+          number_option("speed_limit", speed_limit, 0, 100, "speed along x above which a step costs 1, m/s")),
+      basic(number_option("effort_weight", 1e-3, 0, 10, "weight of the squared action in the reward")),
+      basic(number_option("healthy_reward", 1, 0, 100, "reward of each step")),
       number_option("reset_noise", 5e-3, 0, 0.1, "half width of the start's draw, rad, m, rad/s, m/s"),
-      integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"),
+      basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode")),
   };
 }
 inline constexpr CostSpec kFlatCosts[] = {{"cost", "1 above the speed limit; raw: speed along x, m/s", 25}};

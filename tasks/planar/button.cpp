@@ -190,7 +190,7 @@ class Button final : public ArenaTask<R> {
 constexpr auto options_of(const ArenaLevel& level, int32_t gremlins) {
   return arena_options(
       level, "reward for a pressed goal button",
-      {integer_option("gremlins", gremlins, 0, kMaxThings, "number of gremlins"),
+      {basic(integer_option("gremlins", gremlins, 0, kMaxThings, "number of gremlins")),
        integer_option("pause", 10, 0, 1000, "steps after a success in which other buttons cost nothing")});
 }
 constexpr auto kOptions1 = options_of({1.5, 4}, 4), kOptions2 = options_of({1.8, 8}, 6);

@@ -77,12 +77,12 @@ template <size_t N>
 constexpr std::array<OptionSpec, 6 + N> arena_options(const ArenaLevel& level, const char* reward_help,
                                                       const OptionSpec (&more)[N]) {
   const OptionSpec shared[] = {
-      number_option("extent", level.extent, 0.5, 100, "half width of the square of the layout, m"),
-      integer_option("hazards", level.hazards, 0, kMaxThings, "number of hazards"),
+      basic(number_option("extent", level.extent, 0.5, 100, "half width of the square of the layout, m")),
+      basic(integer_option("hazards", level.hazards, 0, kMaxThings, "number of hazards")),
       number_option("hazard_size", 0.2, 0.01, 10, "radius of a hazard, m"),
-      number_option("goal_reward", 1, 0, 100, reward_help),
+      basic(number_option("goal_reward", 1, 0, 100, reward_help)),
       number_option("lidar_range", 3, 0.1, 100, "range of the lidar, m"),
-      integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"),
+      basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode")),
   };
   std::array<OptionSpec, 6 + N> out{};
   for (size_t i = 0; i < 6; ++i) out[i] = shared[i];

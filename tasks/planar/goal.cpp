@@ -173,10 +173,11 @@ class Goal final : public ArenaTask<R> {
 };
 
 constexpr auto options_of(const ArenaLevel& level, int32_t vases, bool fragile) {
-  return arena_options(level, "reward for a reached goal",
-                       {integer_option("vases", vases, 0, kMaxThings, "number of vases"),
-                        flag_option("fragile_vases", fragile, "touching a vase costs 1"),
-                        number_option("goal_size", 0.3, 0.01, 10, "distance at which a goal is reached, m")});
+  return arena_options(
+      level, "reward for a reached goal",
+      {basic(integer_option("vases", vases, 0, kMaxThings, "number of vases")),
+       flag_option("fragile_vases", fragile, "touching a vase costs 1"),
+       basic(number_option("goal_size", 0.3, 0.01, 10, "distance at which a goal is reached, m"))});
 }
 constexpr auto kOptions1 = options_of({1.5, 8}, 1, false), kOptions2 = options_of({2, 10}, 10, true);
 constexpr CostSpec kCosts[] = {

@@ -96,10 +96,10 @@ class SwimmerVelocity final : public PlanarTask {
 };
 
 constexpr OptionSpec kOptions[] = {
-    number_option("speed_limit", 0.2282, 0, 100, "speed along x above which a step costs 1, m/s"),
-    number_option("effort_weight", 1e-4, 0, 10, "weight of the squared action in the reward"),
+    basic(number_option("speed_limit", 0.2282, 0, 100, "speed along x above which a step costs 1, m/s")),
+    basic(number_option("effort_weight", 1e-4, 0, 10, "weight of the squared action in the reward")),
     number_option("reset_noise", 0.1, 0, 1, "half width of the start's draw, rad, m, rad/s, m/s"),
-    integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"),
+    basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode")),
 };
 constexpr CostSpec kCosts[] = {{"cost", "1 above the speed limit; raw: speed along x, m/s", 25}};
 constexpr CameraSpec kCameras[] = {

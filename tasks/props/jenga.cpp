@@ -65,17 +65,19 @@ constexpr CostSpec kCosts[kNumCosts] = {
 };
 
 constexpr OptionSpec kRows[] = {
-    text_option("cost_mode", "default", "default|any|paper|all|literal|sum|contact",
-                "any block moved (default, any), all moved by 0.1 mm (paper, all), ways of all 0.25 m in sum "
-                "(literal, sum), or a hand touches one (contact)"),
-    number_option("cost_sum", 0.25, 0, 100, "cost_mode literal: sum of all ways, m"),
-    number_option("cost_all", 1e-4, 0, 1, "cost_mode paper: way of every block, m"),
-    text_option(
+    legacy(text_option(
+        "cost_mode", "default", "default|any|paper|all|literal|sum|contact",
+        "any block moved (default, any), all moved by 0.1 mm (paper, all), ways of all 0.25 m in sum "
+        "(literal, sum), or a hand touches one (contact)")),
+    legacy(number_option("cost_sum", 0.25, 0, 100, "cost_mode literal: sum of all ways, m")),
+    legacy(number_option("cost_all", 1e-4, 0, 1, "cost_mode paper: way of every block, m")),
+    basic(text_option(
         "reward_finger", "right", "right|left",
-        "whose middle finger the reward draws to the target: right, which can push, or (the paper's) left"),
-    number_option("reward_push", 30, 0, 1000, "reward for a metre of the target's way along +y"),
-    number_option("push_limit", 0.3, 0, 10, "way of the target beyond which it pays no more, m"),
-    number_option("success_push", 0, 0, 10, "way of the target that counts as success, m; 0: its length"),
+        "whose middle finger the reward draws to the target: right, which can push, or (the paper's) left")),
+    basic(number_option("reward_push", 30, 0, 1000, "reward for a metre of the target's way along +y")),
+    basic(number_option("push_limit", 0.3, 0, 10, "way of the target beyond which it pays no more, m")),
+    basic(number_option("success_push", 0, 0, 10,
+                        "way of the target that counts as success, m; 0: its length")),
     number_option("drop_limit", 0.01, 0, 10, "the episode ends when all blocks are moved in z by more, m"),
     flag_option("extended_obs", false, "positions of all blocks at the end of the observation"),
     drawable(number_option("friction.block_table", 0.5, 0, 10, "friction coefficient of blocks and table")),

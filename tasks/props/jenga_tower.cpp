@@ -12,10 +12,12 @@ constexpr double kTableTop = 0.2357, kTableY = -0.6;  // m
 constexpr Vec3 kTableHalf = {0.15, 0.189, 0.01};
 
 constexpr OptionSpec kRows[] = {
-    text_option("preset", "redman", "redman|real",
-                "blocks of 0.26 x 0.04 x 0.04 m in pairs, or (real) of 0.075 x 0.025 x 0.015 m in threes"),
-    text_option("tower", "on", "on|off", "off: no blocks, the target alone lies on the table"),
-    number_option("block_mass", 0, 0, 10, "mass of a block, kg; 0: the preset's; the target's follows"),
+    basic(text_option(
+        "preset", "redman", "redman|real",
+        "blocks of 0.26 x 0.04 x 0.04 m in pairs, or (real) of 0.075 x 0.025 x 0.015 m in threes")),
+    basic(text_option("tower", "on", "on|off", "off: no blocks, the target alone lies on the table")),
+    basic(
+        number_option("block_mass", 0, 0, 10, "mass of a block, kg; 0: the preset's; the target's follows")),
     number_option("friction.block_block", -1, -1, 10,
                   "friction coefficient of two blocks; -1: the preset's, 0.05 or (real) 0.4"),
     number_option("block_limit", 0, 0, 1,

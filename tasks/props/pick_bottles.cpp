@@ -50,18 +50,23 @@ constexpr CostSpec kCosts[kNumCosts] = {
 };
 
 constexpr OptionSpec kRows[] = {
-    text_option("cost_mode", "default", "default|paper|contact|literal|lane",
-                "contact with another bottle (default, paper, contact), or (literal, lane) a picked bottle "
-                "leaves its lane by 0.03 m"),
-    text_option("reward", "palm", "palm|fingers",
-                "hands to caps: palm points, or (fingers) the sums over five fingertips"),
-    number_option("reward_height", 20, 0, 1000, "reward for a metre of the lower picked bottle's height"),
-    number_option("success_height", 0.05, 0, 10, "height of both picked bottles that counts as success, m"),
+    legacy(text_option(
+        "cost_mode", "default", "default|paper|contact|literal|lane",
+        "contact with another bottle (default, paper, contact), or (literal, lane) a picked bottle "
+        "leaves its lane by 0.03 m")),
+    basic(text_option("reward", "palm", "palm|fingers",
+                      "hands to caps: palm points, or (fingers) the sums over five fingertips")),
+    basic(number_option("reward_height", 20, 0, 1000,
+                        "reward for a metre of the lower picked bottle's height")),
+    basic(number_option("success_height", 0.05, 0, 10,
+                        "height of both picked bottles that counts as success, m")),
     number_option("fall_height", 0.45, -10, 10, "the episode ends with a bottle's origin below, m"),
-    number_option("finger_limit", 1.5, 0, 100,
-                  "the episode ends when the five fingertips of a hand are farther from the cap, sum in m"),
-    number_option("palm_limit", 0.25, 0, 10, "the episode ends when a palm is farther from its cap, m"),
-    number_option("bottle_mass", 0.06, 0.001, 10, "mass of a bottle, kg; a full one has 0.5"),
+    basic(number_option(
+        "finger_limit", 1.5, 0, 100,
+        "the episode ends when the five fingertips of a hand are farther from the cap, sum in m")),
+    basic(
+        number_option("palm_limit", 0.25, 0, 10, "the episode ends when a palm is farther from its cap, m")),
+    basic(number_option("bottle_mass", 0.06, 0.001, 10, "mass of a bottle, kg; a full one has 0.5")),
     flag_option("fixed_neighbours", false, "the bottles that stay cannot be moved"),
     drawable(number_option("friction.hand_other", 0.1, 0, 10,
                            "friction coefficient of hands and bottles that stay")),

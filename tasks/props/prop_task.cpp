@@ -16,7 +16,7 @@ constexpr OptionSpec kRows[] = {
 
 void add_prop_options(const HandControlConfig& config, int32_t max_steps, int32_t contacts_max,
                       OptionTable& table) {
-  table.add(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"));
+  table.add(basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode")));
   table.add(kRows);
   add_hand_control_options(config, table, contacts_max);
 }

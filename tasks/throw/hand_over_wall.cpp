@@ -24,16 +24,16 @@ const ThrowConfig kConfig = {.hands = {.bases = {{{0, 0, 0.5}, {}}, {{0, -1.05, 
 constexpr double kSourceHalfWidth = 0.25, kSourceLow = 0.60, kSourceHigh = 0.70;
 
 constexpr OptionSpec kRows[] = {
-    text_option(
+    legacy(text_option(
         "cost_mode", "default", "default|paper|literal",
         "default, paper: contact with the wall; literal: the object's centre in the wall's slab outside "
-        "of a hole 0.5 m wide, z 0.60 to 0.70 m"),
-    text_option("wall", "auto", "auto|solid|ghost",
-                "solid, or (ghost) nothing touches it; auto: ghost where cost_mode is literal"),
+        "of a hole 0.5 m wide, z 0.60 to 0.70 m")),
+    basic(text_option("wall", "auto", "auto|solid|ghost",
+                      "solid, or (ghost) nothing touches it; auto: ghost where cost_mode is literal")),
     flag_option("count_hands", false, "hands that touch the wall cost too"),
     drawable(
         number_option("friction.wall", 0.5, 0, 10, "friction coefficient of the wall with hands and object")),
-    number_option("throw_height", 0.8, 0, 10, "cost throw_height: object above, m"),
+    basic(number_option("throw_height", 0.8, 0, 10, "cost throw_height: object above, m")),
     text_option("initial_mean", "auto", "auto|flat|hold|zero",
                 "start of a new policy: right hand flat, the hold action, or 0; auto: flat"),
 };

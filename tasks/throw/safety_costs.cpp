@@ -30,13 +30,14 @@ constexpr double kWindowLow[kNumWindows] = {22.5, 22.5, -10}, kWindowHigh[kNumWi
 constexpr double kRangeMid[kNumWindows] = {45, 45, 0}, kRangeHalf[kNumWindows] = {45, 45, 20};
 
 constexpr OptionSpec kRows[] = {
-    text_option(
+    legacy(text_option(
         "cost_mode", "default", "default|paper|literal",
         "default: commanded target; paper: measured angle; literal: target, joint task tests a[4]; of flying "
-        "hands a[2..4] are the base's"),
-    text_option("cost_signal", "auto", "auto|target|angle", "what the windows test; auto: as cost_mode says"),
-    text_option("cost_joint", "auto", "auto|paper|legacy",
-                "joint task: FF4 (paper) or FF2 (legacy, a[4]); auto: as cost_mode says"),
+        "hands a[2..4] are the base's")),
+    legacy(text_option("cost_signal", "auto", "auto|target|angle",
+                       "what the windows test; auto: as cost_mode says")),
+    legacy(text_option("cost_joint", "auto", "auto|paper|legacy",
+                       "joint task: FF4 (paper) or FF2 (legacy, a[4]); auto: as cost_mode says")),
     number_option("release_speed", 1, 0, 100, "speed from which leaving the right hand is a throw, m/s"),
 };
 
@@ -129,8 +130,8 @@ double JointWindow::command_excess(double a) const {
 
 void add_safety_options(const SafetyDefaults& defaults, OptionTable& table) {
   table.add(kRows);
-  table.add(
-      number_option("throw_height", defaults.throw_height, 0, 10, "cost throw_height: object above, m"));
+  table.add(basic(
+      number_option("throw_height", defaults.throw_height, 0, 10, "cost throw_height: object above, m")));
   table.add(number_option("throw_angle.low", defaults.throw_low, -90, 90,
                           "cost throw_angle: lowest release elevation, degrees"));
   table.add(number_option("throw_angle.high", defaults.throw_high, -90, 90,

@@ -7,14 +7,14 @@ namespace {
 
 constexpr OptionSpec kRows[] = {
     number_option("joint_noise", 0.2, 0, 1, "share of each joint's range that is drawn at a reset"),
-    text_option("joint_noise_mode", "one_sided", "one_sided|literal",
-                "draw u in [0, 1) for each hand, or (literal) in [-1, 1) and the same for both"),
+    legacy(text_option("joint_noise_mode", "one_sided", "one_sided|literal",
+                       "draw u in [0, 1) for each hand, or (literal) in [-1, 1) and the same for both")),
     number_option("alpha", 50, 0, 1000, "weight of distance in the reward, 1/m"),
-    number_option("reward_scale", 1, 0, 1000, "factor on the reward"),
+    basic(number_option("reward_scale", 1, 0, 1000, "factor on the reward")),
     flag_option("ignore_rotation", false, "leave the rotation out of the reward"),
-    number_option("success_distance", 0.05, 0, 1, "object to goal distance that counts as success, m"),
+    basic(number_option("success_distance", 0.05, 0, 1, "object to goal distance that counts as success, m")),
     integer_option("success_steps", 10, 1, 1000, "consecutive steps within it"),
-    integer_option("max_steps", 75, 1, 100000, "control steps of an episode"),
+    basic(integer_option("max_steps", 75, 1, 100000, "control steps of an episode")),
 };
 
 }  // namespace

@@ -10,8 +10,8 @@ namespace rdm {
 void add_throw_task_options(const ThrowConfig& config, OptionTable& table) {
   add_throw_options(config.place, config.fall_height, table);
   if (config.hands.flying)
-    table.add(number_option("base_limit", config.base_limit, 0, 100,
-                            "the episode ends with a base so far from its start, m"));
+    table.add(basic(number_option("base_limit", config.base_limit, 0, 100,
+                                  "the episode ends with a base so far from its start, m")));
   add_hand_control_options(config.hands, table);
 }
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ._abi import (Autoreset, BaselineKind, Build, Joint, JointInfo, JointKind, MapInfo, Object, OptionKind,
+from ._abi import (Autoreset, BaselineKind, Build, Joint, JointInfo, JointKind, MapInfo, Object, OptionKind, OptionLevel,
                    PolicyInfo, PoolStats, RayHit, ResultCode, ShapeKind, Spec, Status)
 from ._actor import Actor
 from ._agent import Agent, CostLimits, Epoch
@@ -38,7 +38,7 @@ __all__ = [
     "Actor", "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "Build", "Callback", "Camera",
     "CancelledError", "Cost", "CostLimits", "Curve", "Curves", "Epoch", "Error", "Evaluation", "Field", "FileError",
     "FormatError", "HoldWarning", "InternalError", "Joint", "JointInfo", "JointKind", "Map", "MapInfo", "MissingFileError",
-    "NotFoundError", "Object", "Option", "OptionKind", "Options", "Origin", "PhysicsError", "Player", "Policy", "PolicyInfo",
+    "NotFoundError", "Object", "Option", "OptionKind", "OptionLevel", "Options", "Origin", "PhysicsError", "Player", "Policy", "PolicyInfo",
     "Pool", "PoolStats", "RangeError", "RayHit", "ResultCode", "Robot", "Run", "Sensors", "Shape", "ShapeKind", "Spec", "StateError", "Status", "Task",
     "UnsupportedError", "UsageError", "VersionError", "__version__", "algo", "algos", "build", "c_function", "curve",
     "evaluate", "memory", "objects", "robots", "sample_furthest", "task", "tasks", "train", "version",

@@ -76,6 +76,14 @@ class OptionKind(enum.IntEnum):
     TEXT = 3
 
 
+class OptionLevel(enum.IntEnum):
+    """whom an option is for"""
+
+    BASIC = 0  # all users: lists begin with these; rows of tasks of your own are
+    ADVANCED = 1  # those who tune
+    LEGACY = 2  # those who compare with the paper, an older release or another engine
+
+
 class ShapeKind(enum.IntEnum):
     """of rdm_shape_info"""
 
@@ -329,6 +337,7 @@ class OptionSpec(Record):
 
     kind: int  # RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
     live: int  # flag: rdm_agent_set_option may change it after creation
+    level: int  # RDM_LEVEL_BASIC, RDM_LEVEL_ADVANCED, RDM_LEVEL_LEGACY
     key: str  # static; its last word FIELD: any name of a field, or a pattern with '*'
     help: str  # one line, with the unit
     text: str | None  # default of a text option, or of a number that is a range, else NULL
@@ -342,7 +351,7 @@ class rdm_option_spec(Structure):
     """struct_size: in: bytes
     kind: RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
     live: flag: rdm_agent_set_option may change it after creation
-    reserved: 0
+    level: RDM_LEVEL_BASIC, RDM_LEVEL_ADVANCED, RDM_LEVEL_LEGACY
     key: static; its last word FIELD: any name of a field, or a pattern with '*'
     help: one line, with the unit
     text: default of a text option, or of a number that is a range, else NULL
@@ -356,7 +365,7 @@ class rdm_option_spec(Structure):
     struct_size: int
     kind: int
     live: int
-    reserved: int
+    level: int
     key: bytes | None
     help: bytes | None
     text: bytes | None
@@ -368,7 +377,7 @@ class rdm_option_spec(Structure):
         ("struct_size", c_uint32),
         ("kind", c_int32),
         ("live", c_int32),
-        ("reserved", c_int32),
+        ("level", c_int32),
         ("key", c_char_p),
         ("help", c_char_p),
         ("text", c_char_p),

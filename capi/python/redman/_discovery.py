@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Any, Callable, Iterator, Optional, TypeVar, Union
 
 from . import _abi
-from ._abi import OptionKind
+from ._abi import OptionKind, OptionLevel
 from ._error import NotFoundError, UsageError
 from ._library import encoded, filled, check, lib
 from ._options import Value, default_of, laid
@@ -21,11 +21,12 @@ class Option(_abi.OptionSpec):
     """One row of an option table; default is as its kind says: a text, a number or a flag."""
 
     kind: OptionKind
+    level: OptionLevel
     default: Value
 
     def __init__(self, struct: _abi.rdm_option_spec) -> None:
         super().__init__(struct)
-        self.__dict__.update(kind=OptionKind(struct.kind), default=default_of(struct))
+        self.__dict__.update(kind=OptionKind(struct.kind), level=OptionLevel(struct.level), default=default_of(struct))
 
 
 class Cost(_abi.CostInfo):

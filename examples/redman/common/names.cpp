@@ -149,6 +149,10 @@ Json build_json() {
           {"differs", b.differs}};
 }
 
+const char* level_name(int32_t level) {
+  return level == RDM_LEVEL_BASIC ? "basic" : level == RDM_LEVEL_ADVANCED ? "advanced" : "legacy";
+}
+
 Json options_json(const std::vector<rdm_option_spec>& table) {
   Json out = Json::array();
   for (const rdm_option_spec& o : table) {
@@ -158,7 +162,8 @@ Json options_json(const std::vector<rdm_option_spec>& table) {
                           {"low", text ? Json() : Json(o.low)},
                           {"high", text ? Json() : Json(o.high)},
                           {"help", o.help},
-                          {"live", o.live != 0}});
+                          {"live", o.live != 0},
+                          {"level", level_name(o.level)}});
     if (text && o.choices) row["choices"] = o.choices;
     if (!text && o.choices) row["range"] = true;
     out.push_back(std::move(row));
@@ -166,16 +171,24 @@ Json options_json(const std::vector<rdm_option_spec>& table) {
   return out;
 }
 
+// One table for each level that has rows, the basic one first.
 std::string options_text(const std::vector<rdm_option_spec>& table) {
-  Table out({"option", "default", "values", "meaning"});
-  for (const rdm_option_spec& o : table) {
-    const std::string value = o.text                    ? o.text
-                              : o.kind == RDM_KIND_TEXT ? ""
-                              : o.kind == RDM_KIND_FLAG ? (o.number != 0 ? "true" : "false")
-                                                        : number_text(o.number);
-    out.add({o.key, value, bounds_text(o), o.help});
+  std::string text;
+  for (const int32_t level : {RDM_LEVEL_BASIC, RDM_LEVEL_ADVANCED, RDM_LEVEL_LEGACY}) {
+    Table out({std::string(level_name(level)) + " option", "default", "values", "meaning"});
+    bool any = false;
+    for (const rdm_option_spec& o : table) {
+      if (o.level != level) continue;
+      const std::string value = o.text                    ? o.text
+                                : o.kind == RDM_KIND_TEXT ? ""
+                                : o.kind == RDM_KIND_FLAG ? (o.number != 0 ? "true" : "false")
+                                                          : number_text(o.number);
+      out.add({o.key, value, bounds_text(o), o.help});
+      any = true;
+    }
+    if (any) text += (text.empty() ? "" : "\n") + out.text();
   }
-  return out.text();
+  return text;
 }
 
 }  // namespace tool

@@ -11,23 +11,25 @@ namespace rdm {
 namespace {
 
 constexpr OptionSpec kDisturbRows[] = {
-    open_option(drawable(number_option("noise.FIELD", 0, 0, 1000,
-                                       "deviation of normal noise on the field's entries, new in each "
-                                       "control step; in the field's unit, cut "
-                                       "at its bounds; FIELD: a field, or several by '*', later lines win"))),
+    open_option(
+        drawable(basic(number_option("noise.FIELD", 0, 0, 1000,
+                                     "deviation of normal noise on the field's entries, new in each "
+                                     "control step; in the field's unit, cut "
+                                     "at its bounds; FIELD: a field, or several by '*', later lines win")))),
     open_option(drawable(number_option(
         "bias.FIELD", 0, 0, 1000,
         "each entry of the field is off by what is drawn from +-this at a reset; in the field's unit"))),
-    open_option(
-        drawable(integer_option("delay.FIELD", 0, 0, kMaxDelay,
-                                "control steps by which the field is late; the reset's value before"))),
+    open_option(drawable(
+        basic(integer_option("delay.FIELD", 0, 0, kMaxDelay,
+                             "control steps by which the field is late; the reset's value before")))),
     open_option(
         drawable(number_option("dropout.FIELD", 0, 0, 1,
                                "probability in a control step that the field stays as it was shown last"))),
-    drawable(integer_option("action_delay", 0, 0, kMaxDelay,
-                            "control steps by which actions are late; the hold action before the first")),
-    flag_option("end_on_cost", false,
-                "a cost that is not 0, of column 0 or of one with a limit, ends the episode"),
+    drawable(
+        basic(integer_option("action_delay", 0, 0, kMaxDelay,
+                             "control steps by which actions are late; the hold action before the first"))),
+    basic(flag_option("end_on_cost", false,
+                      "a cost that is not 0, of column 0 or of one with a limit, ends the episode")),
 };
 
 OptionRange FieldDisturbance::*member_of(const OptionSpec& spec) {

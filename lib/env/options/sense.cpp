@@ -10,12 +10,13 @@ namespace rdm {
 namespace {
 
 constexpr OptionSpec kSenseRows[] = {
-    text_option("modality", "state", nullptr,
-                "what worlds see: state, or any of rgb, depth, segmentation, points, voxels joined by +"),
+    basic(text_option(
+        "modality", "state", nullptr,
+        "what worlds see: state, or any of rgb, depth, segmentation, points, voxels joined by +")),
     integer_option(
         "sense_every", 1, 1, 10000,
         "control steps of an episode from look to look: rows show the last one; a policy's action_repeat"),
-    text_option("cameras", "front", nullptr, "cameras of rgb, depth and segmentation, joined by +"),
+    basic(text_option("cameras", "front", nullptr, "cameras of rgb, depth and segmentation, joined by +")),
     integer_option("image_width", 64, 1, 2048, "of rgb, depth and segmentation, pixels"),
     integer_option("image_height", 64, 1, 2048, "of rgb, depth and segmentation, pixels"),
     text_option("cloud_cameras", "above+side_right+side_left", nullptr,
@@ -24,7 +25,7 @@ constexpr OptionSpec kSenseRows[] = {
     integer_option("cloud_height", 96, 1, 512, "of a depth camera of points and voxels, pixels"),
     number_option("cloud_range", 2, 0.01, 100,
                   "points further than this from what the first cloud camera looks at are left out, m"),
-    integer_option("points", 2048, 1, 65536, "points of a world"),
+    basic(integer_option("points", 2048, 1, 65536, "points of a world")),
     text_option("sampling", "furthest", "furthest|random|voxel", "how points are chosen of those seen"),
     number_option("sampling_voxel", 0.01, 0.001, 1, "sampling = voxel: side of a voxel, m"),
     number_option("point_noise", 0, 0, 0.5, "deviation of the noise on each coordinate of a point, m"),

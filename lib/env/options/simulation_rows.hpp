@@ -7,22 +7,23 @@ namespace rdm {
 
 constexpr OptionSpec engine_option() {
   OptionSpec row =
-      text_option("engine", "articulated", "articulated|ode",
-                  "robots in joint coordinates, or bodies and joints of ODE: slow, a cross-check");
+      basic(text_option("engine", "articulated", "articulated|ode",
+                        "robots in joint coordinates, or bodies and joints of ODE: slow, a cross-check"));
   row.chooses = true;  // a task may have other numbers for each
   return row;
 }
 
 inline constexpr OptionSpec kSimulationRows[] = {
     engine_option(),
-    number_option("frequency", 60, 10, 1000, "control steps per second, Hz"),
-    integer_option("substeps", 2, 1, 16, "physics substeps per control step"),
+    basic(number_option("frequency", 60, 10, 1000, "control steps per second, Hz")),
+    basic(integer_option("substeps", 2, 1, 16, "physics substeps per control step")),
     integer_option("iterations", 8, 1, 1000,
                    "solver iterations per substep, at most; engine ode takes 8 at most"),
-    drawable(number_option("gravity", 9.81, 0, 100, "acceleration along -z, m/s2; hands do not feel it")),
-    number_option("relaxation", 1.3, 0.1, 1.9, "over-relaxation factor of the solver"),
-    number_option("erp", 0.8, 0, 1, "share of a joint error that one substep corrects"),
-    number_option("cfm", 1e-9, 0, 1, "softness of joint constraints"),
+    drawable(
+        basic(number_option("gravity", 9.81, 0, 100, "acceleration along -z, m/s2; hands do not feel it"))),
+    legacy(number_option("relaxation", 1.3, 0.1, 1.9, "over-relaxation factor of the solver")),
+    legacy(number_option("erp", 0.8, 0, 1, "share of a joint error that one substep corrects")),
+    legacy(number_option("cfm", 1e-9, 0, 1, "softness of joint constraints")),
     number_option("contact_erp", 0.2, 0, 1, "share of a contact's depth that one substep corrects"),
     number_option("contact_cfm", 1e-4, 0, 1, "softness of contacts"),
     number_option("contact_layer", 0.0005, 0, 0.01,
@@ -34,7 +35,8 @@ inline constexpr OptionSpec kSimulationRows[] = {
                    "contact points of a world in one substep; 0: as the scene's shapes need"),
     number_option("limit_margin", 5e-3, 0, 0.1, "how far a joint may leave its range, rad"),
     number_option("limit_stiffness", 100, 0, 1e5, "stiffness of joint limits, N m/rad"),
-    number_option("link_armature", 3e-5, 0, 0.1, "inertia added to finger links in engine ode, kg m2"),
+    legacy(
+        number_option("link_armature", 3e-5, 0, 0.1, "inertia added to finger links in engine ode, kg m2")),
     text_option("effort_bounds", "drive", "drive|spring",
                 "what a joint's effort limit bounds: spring and damping, or the spring alone"),
     text_option("integrator", "auto", "auto|euler|trapezoid",
@@ -49,9 +51,9 @@ inline constexpr OptionSpec kSimulationRows[] = {
     number_option("sleep_spin", 0.25, 0, 100, "angular speed below which a thing is slow, rad/s"),
     flag_option("speculative_contacts", false,
                 "engine articulated: fast things stop at what they would pass through; costs some speed"),
-    flag_option(
+    legacy(flag_option(
         "exact_solver", true,
-        "engine ode: the direct solver; false: QuickStep's eight sweeps, in which grips slip, for piles"),
+        "engine ode: the direct solver; false: QuickStep's eight sweeps, in which grips slip, for piles")),
 };
 
 }  // namespace rdm
