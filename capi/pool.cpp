@@ -298,20 +298,9 @@ rdm_result rdm_pool_get_buffers(const rdm_pool* p, rdm_buffers* io) {
   return call_on(p, [&] {
     const Buffers& b = p->pool->buffers();
     rdm_buffers out{};
-    out.obs = b.obs;
-    out.final_obs = b.final_obs;
-    out.action = b.action;
-    out.reward = b.reward;
-    out.cost = b.cost;
-    out.cost_raw = b.cost_raw;
-    out.episode_return = b.episode_return;
-    out.episode_cost = b.episode_cost;
-    out.episode_step = b.episode_step;
-    out.status = b.status;
-    out.episode_status = b.episode_status;
-    out.terminated = b.terminated;
-    out.truncated = b.truncated;
-    out.success = b.success;
+#define RDM_GIVE(type, name, width) out.name = b.name;
+    RDM_POOL_BUFFERS(RDM_GIVE)
+#undef RDM_GIVE
     write_struct(io, out, sizeof(rdm_buffers), "io");
   });
 }
@@ -319,35 +308,15 @@ rdm_result rdm_pool_get_buffers(const rdm_pool* p, rdm_buffers* io) {
 rdm_result rdm_pool_set_buffers(rdm_pool* p, const rdm_buffers* b) {
   return call_on(p, [&] {
     const auto in = read_struct(b, sizeof(rdm_buffers), rdm_buffers{}, "b");
-    const auto aligned = [](const void* q, const char* name) {
-      if (reinterpret_cast<uintptr_t>(q) % 4) fail(Code::kArgument, "b.%s is not 4-byte aligned", name);
-    };
-    aligned(in.obs, "obs");
-    aligned(in.final_obs, "final_obs");
-    aligned(in.action, "action");
-    aligned(in.reward, "reward");
-    aligned(in.cost, "cost");
-    aligned(in.cost_raw, "cost_raw");
-    aligned(in.episode_return, "episode_return");
-    aligned(in.episode_cost, "episode_cost");
-    aligned(in.episode_step, "episode_step");
-    aligned(in.status, "status");
-    aligned(in.episode_status, "episode_status");
     Buffers h;
-    h.obs = in.obs;
-    h.final_obs = in.final_obs;
-    h.action = in.action;
-    h.reward = in.reward;
-    h.cost = in.cost;
-    h.cost_raw = in.cost_raw;
-    h.episode_return = in.episode_return;
-    h.episode_cost = in.episode_cost;
-    h.episode_step = in.episode_step;
-    h.status = in.status;
-    h.episode_status = in.episode_status;
-    h.terminated = in.terminated;
-    h.truncated = in.truncated;
-    h.success = in.success;
+    const auto lend = [](auto*& to, auto* array, const char* name) {
+      if (reinterpret_cast<uintptr_t>(array) % alignof(decltype(*array)))
+        fail(Code::kArgument, "b.%s is not %zu-byte aligned", name, alignof(decltype(*array)));
+      to = array;
+    };
+#define RDM_LEND(type, name, width) lend(h.name, in.name, #name);
+    RDM_POOL_BUFFERS(RDM_LEND)
+#undef RDM_LEND
     p->pool->bind(h);
   });
 }

@@ -40,24 +40,14 @@ void count_worlds(const ResolvedPoolConfig& plan, int32_t block, size_t state_by
 
 Pool::Impl::Carved Pool::Impl::carve_rows(const ResolvedPoolConfig& plan, Arena& arena) {
   const size_t n = plan.num(), blocks = static_cast<size_t>(plan.num_blocks());
-  const auto obs = static_cast<size_t>(plan.obs_dim), actions = static_cast<size_t>(plan.action_dim),
-             costs = static_cast<size_t>(plan.cost_dim);
+  const auto width_obs = static_cast<size_t>(plan.obs_dim),
+             width_action = static_cast<size_t>(plan.action_dim),
+             width_cost = static_cast<size_t>(plan.cost_dim);
   Carved c;
   Buffers& b = c.buffers;
-  b.obs = arena.make<float>(n * obs);
-  b.final_obs = arena.make<float>(n * obs);
-  b.action = arena.make<float>(n * actions);
-  b.reward = arena.make<float>(n);
-  b.cost = arena.make<float>(n * costs);
-  b.cost_raw = arena.make<float>(n * costs);
-  b.episode_return = arena.make<float>(n);
-  b.episode_cost = arena.make<float>(n * costs);
-  b.episode_step = arena.make<int32_t>(n);
-  b.status = arena.make<uint32_t>(n);
-  b.episode_status = arena.make<uint32_t>(n);
-  b.terminated = arena.make<uint8_t>(n);
-  b.truncated = arena.make<uint8_t>(n);
-  b.success = arena.make<uint8_t>(n);
+#define RDM_CARVE(type, name, width) b.name = arena.make<type>(n * (width));
+  RDM_POOL_BUFFERS(RDM_CARVE)
+#undef RDM_CARVE
   c.sensed = carve_sense_buffers(arena, plan.sense, n);
   c.slots = arena.make<Slot>(n);
   c.blocks = arena.make<Block>(blocks);
@@ -65,7 +55,7 @@ Pool::Impl::Carved Pool::Impl::carve_rows(const ResolvedPoolConfig& plan, Arena&
   c.tried_state = arena.make<unsigned char>(plan.task->state_bytes());
   c.tried.carve(arena, plan.disturbance, *plan.task);
   for (size_t i = 0; i < blocks; ++i) {
-    float* action = arena.make<float>(actions);
+    float* action = arena.make<float>(width_action);
     const SenseScratch sense =
         carve_sense_scratch(arena, plan.sense, static_cast<int32_t>(plan.task->scene().shapes.size()));
     if (!c.blocks) continue;
@@ -278,23 +268,12 @@ void Pool::bind(const Buffers& host) {
     std::memmove(theirs, mine, count * sizeof *mine);
     mine = theirs;
   };
-  const size_t n = m.num(), obs = n * static_cast<size_t>(m.obs_dim),
-               costs = n * static_cast<size_t>(m.cost_dim);
-  Buffers& b = m.buffers;
-  take(b.obs, host.obs, obs);
-  take(b.final_obs, host.final_obs, obs);
-  take(b.action, host.action, n * static_cast<size_t>(m.action_dim));
-  take(b.reward, host.reward, n);
-  take(b.cost, host.cost, costs);
-  take(b.cost_raw, host.cost_raw, costs);
-  take(b.episode_return, host.episode_return, n);
-  take(b.episode_cost, host.episode_cost, costs);
-  take(b.episode_step, host.episode_step, n);
-  take(b.status, host.status, n);
-  take(b.episode_status, host.episode_status, n);
-  take(b.terminated, host.terminated, n);
-  take(b.truncated, host.truncated, n);
-  take(b.success, host.success, n);
+  const size_t n = m.num();
+  const auto width_obs = static_cast<size_t>(m.obs_dim), width_action = static_cast<size_t>(m.action_dim),
+             width_cost = static_cast<size_t>(m.cost_dim);
+#define RDM_TAKE(type, name, width) take(m.buffers.name, host.name, n*(width));
+  RDM_POOL_BUFFERS(RDM_TAKE)
+#undef RDM_TAKE
 }
 
 PoolStats Pool::stats() const {

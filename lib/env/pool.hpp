@@ -28,13 +28,28 @@ struct PoolConfig {
   void* user = nullptr;  // handed on to the task of a host
 };
 
-// Meaning and shapes as rdm_buffers.
+// The arrays of a pool, with the meaning and shapes of rdm_buffers, each named here alone: F(type, member,
+// entries of a world's row). width_obs, width_action and width_cost are the dimensions where it is used.
+#define RDM_POOL_BUFFERS(F)          \
+  F(float, obs, width_obs)           \
+  F(float, final_obs, width_obs)     \
+  F(float, action, width_action)     \
+  F(float, reward, 1)                \
+  F(float, cost, width_cost)         \
+  F(float, cost_raw, width_cost)     \
+  F(float, episode_return, 1)        \
+  F(float, episode_cost, width_cost) \
+  F(int32_t, episode_step, 1)        \
+  F(uint32_t, status, 1)             \
+  F(uint32_t, episode_status, 1)     \
+  F(uint8_t, terminated, 1)          \
+  F(uint8_t, truncated, 1)           \
+  F(uint8_t, success, 1)
+
 struct Buffers {
-  float *obs = nullptr, *final_obs = nullptr, *action = nullptr, *reward = nullptr, *cost = nullptr,
-        *cost_raw = nullptr, *episode_return = nullptr, *episode_cost = nullptr;
-  int32_t* episode_step = nullptr;
-  uint32_t *status = nullptr, *episode_status = nullptr;
-  uint8_t *terminated = nullptr, *truncated = nullptr, *success = nullptr;
+#define RDM_MEMBER(type, name, width) type* name = nullptr;
+  RDM_POOL_BUFFERS(RDM_MEMBER)
+#undef RDM_MEMBER
 };
 
 struct PoolStats {
