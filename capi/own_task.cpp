@@ -121,6 +121,7 @@ class BuiltTask final : public Task {
       rdm_scene* scene;
       ~Retire() { retire(scene); }
     } retired{&scene_};
+    // build adds to the scene; what it left out is filled in afterwards, and errors of either name "build"
     own.run("build", [&] {
       const rdm_result r = own.def.build(own.def.user, &scene_, instance_.data());
       return r != RDM_OK ? r : call_inside([&] { complete_scene(&scene_); });
@@ -155,14 +156,14 @@ class BuiltTask final : public Task {
     try {
       own_.run("check_state", [&] { return d.check_state(d.user, instance_.data(), state); });
     } catch (Error& e) {
-      e.code = Code::kFormat;
+      e.code = Code::kFormat;  // whatever the host returned: it is the bytes that are wrong
       throw;
     }
   }
   void reset(World& world, void* state, Stream& stream) const override {
     const rdm_task_def& d = own_.def;
     rdm_world w(&world, &scene_, false);
-    scene_.draws.apply(world, stream);
+    scene_.draws.apply(world, stream);  // before the host's own draws, whose order it chooses
     auto random = rdm::bit_cast<rdm_random>(stream);
     const auto keep = [&] { stream = rdm::bit_cast<Stream>(random); };
     try {
@@ -329,6 +330,7 @@ void OwnTask::take_options() {
     if (o.kind < RDM_KIND_NUMBER || o.kind > RDM_KIND_TEXT)
       fail(Code::kRange, "def.options[%d].kind: %d of %s is outside [0, 3]", i, o.kind, o.key);
     const auto kind = static_cast<OptionKind>(o.kind);
+    // a key that every task has takes the host's default in its own row; others are new rows
     OptionSpec* row = nullptr;
     for (OptionSpec& r : tail)
       if (same_name(r.key, o.key)) row = &r;
@@ -355,6 +357,7 @@ void OwnTask::take_options() {
       made.help = texts_.keep(o.help);
       made.range = ranged;
       if (kind == OptionKind::kFlag) made.low = 0, made.high = 1;
+      // integers are read into 32 bits
       const bool wide = made.low < -0x1p31 || made.high > 0x1p31 - 1;
       if (kind == OptionKind::kInteger && wide)
         fail(Code::kRange, "def.options[%d]: low %g or high %g of %s is outside [-2147483648, 2147483647]", i,
@@ -383,6 +386,7 @@ void OwnTask::take_options() {
     else
       options_.push_back(made);
   }
+  // order of the table: the host's own, max_steps, those that every task has
   options_.push_back(
       integer_option("max_steps", def.max_steps, 1, kMostSteps, "control steps of an episode"));
   options_.insert(options_.end(), tail.begin(), tail.end());
@@ -431,7 +435,7 @@ void OwnTask::take_defaults() {
     need_text(d.key, RowName("defaults", i, "key").text);
     char number[kOptionTextSize];
     const char* text = d.text;
-    if (!text) {
+    if (!text) {  // defaults are kept as texts, from which a number reads back exactly
       if (!std::isfinite(d.number))
         fail(Code::kArgument, "def.defaults[%d].number of %s is not finite", i, d.key);
       print_text(number, sizeof number, "%.17g", d.number);
@@ -464,6 +468,7 @@ void OwnTask::destroy(Task* task, const HostHooks& hooks) const {
 }
 
 void OwnTask::end() noexcept {
+  // copies: `this` is gone before the host's function runs
   const auto release = def.release;
   void* const user = def.user;
   const HostHooks hooks = hooks_;
@@ -480,6 +485,7 @@ void OwnTask::end() noexcept {
 
 void OwnTask::blame(const char* function, rdm_result r, bool thrown) const {
   if (thrown) fail(Code::kArgument, "task %s: %s: an exception came out of it", def.name, function);
+  // a host may return any code that has a meaning here, and nothing else
   if (r > 0 ||
       (r < static_cast<rdm_result>(RDM_ERROR_CANCELLED) && r != static_cast<rdm_result>(RDM_ERROR_INTERNAL)))
     fail(Code::kArgument, "task %s: %s: it returned %d, which is no rdm_result", def.name, function, r);

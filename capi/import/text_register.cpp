@@ -10,6 +10,8 @@
 namespace rdm::import {
 namespace {
 
+// What rdm_task_create must know before any scene is built: names, fields, costs, options, cameras. The
+// task's build reads terms and scene, with the values that options have then.
 class Registration {
  public:
   explicit Registration(TextTask* task) : task_(*task), top_{task->root, "", nullptr} {}
@@ -53,10 +55,12 @@ class Registration {
     for (const Table& t : top_.rows("observe")) {
       const TermRow& row = term_of(t, true);
       double scale = 1;
+      // a scale that is an option's name has no value yet
       if (const toml::node* n = t.find("scale"); n && !n->is_string()) scale = t.as_number(*n, "scale");
       std::string unit = t.text("unit", row.unit);
       if (!t.find("unit") && scale != 1) unit = format("%g %s", 1 / scale, row.unit);
       task_.stands("fields", task_.fields.size(), line_of(t.t), t.what);
+      // one entry until build says how many; equal bounds are none
       task_.fields.push_back({task_.keep(field_name(t)), task_.keep(unit), 1, 0, 0, 0});
     }
     if (task_.fields.empty()) top_.bad(RDM_ERROR_FORMAT, 1, "no [[observe]]");
@@ -86,6 +90,7 @@ class Registration {
       rdm_option_def o{};
       o.key = task_.keep(name);
       const toml::table* own = value.as_table();
+      // a table declares an option of this task; a value sets the default of one that every task has
       const Table t{own ? *own : all.t, "options: " + clean(name), nullptr};
       if (own)
         own_option(t, &o);
@@ -97,7 +102,7 @@ class Registration {
   }
   void own_option(const Table& t, rdm_option_def* o) {
     t.only({"default", "low", "high", "help", "integer", "range", "choices"});
-    const toml::node& n = t.need("default");
+    const toml::node& n = t.need("default");  // its type is the option's kind
     o->help = task_.keep(t.text("help", "of the task's file"));
     if (n.is_boolean()) {
       o->kind = RDM_KIND_FLAG;

@@ -18,9 +18,10 @@ void TermText::listed_joints(const Table& t, Term* out) {
   if (t.find("of") && t.find("joints"))
     t.bad(RDM_ERROR_FORMAT, line_of(*t.find("of")), "of and joints are both there");
   const char* key = t.find("joints") ? "joints" : "of";
+  // The term keeps a run of the program's list of joints: [first, first + count), in the patterns' order.
   out->first = p_.num_joints;
   for (const std::string& pattern : texts(t, key, 1, kMostListed)) {
-    int32_t j = 0;
+    int32_t j = 0;  // of the scene: robots' joints follow one another in the order of the parts
     const int32_t before = p_.num_joints;
     for (const Part& part : parts_)
       for (size_t i = 0; i < part.draft->links.size(); ++i, ++j) {
@@ -57,6 +58,8 @@ void TermText::vector(const Table& t, const char* key, double* out, bool unit) c
 }
 
 Term TermText::subject(const Table& t, const TermRow& row, std::vector<const char*>* known) {
+  // row.keys says what a term of this kind reads. Each block below reads the keys of one bit, and adds them
+  // to those that the table may have.
   Term out{};
   out.what = row.what;
   out.last = -1;
@@ -70,7 +73,7 @@ Term TermText::subject(const Table& t, const TermRow& row, std::vector<const cha
   if (has(kA, {"a"})) out.a = place(t, "a");
   if (has(kB, {"b"})) out.b = place(t, "b");
   if (has(kFrom, {"from"}) && t.find("from")) out.b = place(t, "from");
-  std::fill_n(out.axis, 3, 1.0);
+  std::fill_n(out.axis, 3, 1.0);  // of a distance: factors on its three components
   if (has(kPlane, {"along"})) t.numbers("along", out.axis, 3);
   if (has(kShapesAB, {"a", "b"})) {
     const std::string a = t.as_text(t.need("a"), "a"), b = t.as_text(t.need("b"), "b");
@@ -86,7 +89,7 @@ Term TermText::subject(const Table& t, const TermRow& row, std::vector<const cha
     out.first = p_.num_joints;
     out.count = 1;
     list_joint(t, j);
-    if (t.find("from") || t.find("to")) {
+    if (t.find("from") || t.find("to")) {  // counts the way from one value to the other as 0 to 1
       out.to = 1;
       t.number("from", &out.from);
       t.number("to", &out.to);
@@ -98,6 +101,7 @@ Term TermText::subject(const Table& t, const TermRow& row, std::vector<const cha
     if (const toml::node* n = t.find("of")) {
       const int32_t robot = find(t, "of", RDM_SCENE_ROBOT, t.as_text(*n, "of"));
       out.first = p_.players[robot].action;
+      // the entries of its joints, and force and torque on a base that floats
       out.count = p_.players[robot].actions + (p_.players[robot].push_action >= 0 ? 6 : 0);
       if (out.count == 0) t.bad(RDM_ERROR_RANGE, line_of(*n), "of: no action moves it");
     }
@@ -129,6 +133,7 @@ Term TermText::subject(const Table& t, const TermRow& row, std::vector<const cha
   }
   if (has(kBodyA, {"a"})) out.index = find(t, "a", RDM_SCENE_BODY, t.as_text(t.need("a"), "a"));
   if (has(kTipA, {"a"})) {
+    // "robot.finger" stands for the link at the finger's tip
     std::string link = t.as_text(t.need("a"), "a");
     for (const Part& part : parts_)
       for (const rdm_robot_finger& f : part.draft->fingers)
@@ -136,7 +141,7 @@ Term TermText::subject(const Table& t, const TermRow& row, std::vector<const cha
           link = part.name + '_' + part.draft->links[static_cast<size_t>(f.tip)].name;
     out.index = find(t, "a", RDM_SCENE_SENSOR, link);
   }
-  if (keys & kStart) {
+  if (keys & kStart) {  // measured from where the place was at the reset: equal places share one memory
     const auto same = [&](const Place& x) {
       return x.on == out.a.on && x.index == out.a.index && std::equal(x.p, x.p + 3, out.a.p) &&
              std::equal(x.q, x.q + 4, out.a.q);
@@ -179,13 +184,13 @@ void TermText::threshold(const Table& t, Term* out, std::vector<const char*>* kn
   out->above = -kInfinite, out->below = kInfinite;
   t.number("above", &out->above);
   t.number("below", &out->below);
-  if (t.find("above") || t.find("below")) {
+  if (t.find("above") || t.find("below")) {  // holds while above < value < below
     if (!(out->above < out->below))
       t.bad(RDM_ERROR_RANGE, line_of(t.t), "above %g is not less than below %g", out->above, out->below);
     return;
   }
   if (needed) t.bad(RDM_ERROR_FORMAT, line_of(t.t), "no above, and no below");
-  out->above = 0;
+  out->above = 0;  // a cost without thresholds counts what is above 0
 }
 
 void TermText::read_terms() {
@@ -230,6 +235,7 @@ void TermText::read_terms() {
     const std::string name = t.as_text(t.need("name"), "name");
     const auto same = [&](const std::string& other) { return same_name(other, name); };
     const auto there = std::find_if(columns.begin(), columns.end(), same);
+    // rows of one name add up in one column
     term.column = static_cast<int32_t>(there - columns.begin());
     if (there == columns.end()) columns.push_back(name);
     *add_term(t) = term;

@@ -90,6 +90,7 @@ void Planner::read_options(const PlannerConfig& c) {
 void Planner::make_rollouts(const PlannerConfig& c) {
   const Pool& pool = *c.pool;
   const TaskInfo& info = task_at(pool.task_index());
+  // The rollouts' pool is the host's with its settings as lines, so options that a host gave hold there too;
   // no pictures: a plan is judged by rewards and costs
   constexpr char kBlind[] = "modality=state\n";
   Vector<char> settings(pool.options().print_lines(nullptr, 0) + sizeof kBlind + 1);
@@ -117,6 +118,7 @@ void Planner::carve(Arena& arena) {
   if (int64_t{samples_} * knots_ * action_dim_ > kMaxNumbers || int64_t{horizon_} * action_dim_ > kMaxNumbers)
     fail(Code::kRange, "samples: %d times %d knots times %d actions are above %lld", samples_, knots_,
          action_dim_, static_cast<long long>(kMaxNumbers));
+  // plan [horizon][action_dim], width: knots of one sample's noise
   const size_t n = sz(samples_), dim = sz(action_dim_), plan = sz(horizon_) * dim, width = sz(knots_) * dim;
   rows_ = arena.make<KnotRow>(sz(horizon_));
   start_ = arena.make<float>(dim);
@@ -172,7 +174,7 @@ Planner::Planner(const PlannerConfig& c)
   for (int32_t t = 0; t < horizon_; ++t) rows_[t] = knot_row(kind, knots_, horizon_, t);
   rollouts_->task().initial_mean(start_);
   for (int32_t j = 0; j < action_dim_; ++j) start_[j] = clip_unit(start_[j]);
-  forget();
+  forget();  // a plan is the start action until one is made
 }
 
 Planner::~Planner() {
@@ -218,6 +220,7 @@ void Planner::shift_plan() {
 }
 
 void Planner::set_budgets(const Pool& pool, int32_t env) {
+  // share: of the budget that is left, as much as the horizon is of the steps that are left
   const double left = pool.task().max_steps() - pool.episode_step(env);
   const double share = share_ ? std::min(1.0, horizon_ * pool.repeat() / left) : 1.0;
   for (int32_t k = 0; k < cost_dim_; ++k)
@@ -267,7 +270,7 @@ void Planner::draw_noise() {
   stream_.normals(noise_, samples_ * width);
   for (int32_t i = 0; i < samples_; ++i) {
     float* e = noise_ + sz(i) * sz(width);
-    if (i == 0 || (i == 1 && foreign_))
+    if (i == 0 || (i == 1 && foreign_))  // the centre itself, and the plan of before beside a policy's
       std::fill_n(e, width, 0.0f);
     else
       for (int32_t j = 0; j < width; ++j) e[j] *= sigma_[j];
@@ -294,7 +297,7 @@ void Planner::sample_action(int32_t sample, int32_t step, float* action) const {
 }
 
 bool Planner::roll_out(const Pool& pool, int32_t env) {
-  rollouts_->copy(-1, pool, env);
+  rollouts_->copy(-1, pool, env);  // into all worlds
   const Buffers& b = rollouts_->buffers();
   std::fill_n(alive_, samples_, uint8_t{1});
   std::fill_n(courses_, samples_, Course{});
@@ -313,6 +316,7 @@ bool Planner::roll_out(const Pool& pool, int32_t env) {
       for (int32_t k = 0; k < cost_dim_; ++k)
         c.cost[k] += static_cast<double>(b.cost[sz(i) * sz(cost_dim_) + sz(k)]);
       if (!b.terminated[i] && !b.truncated[i]) continue;
+      // an end by failure of the world is none to be sought, whatever its return
       c.lost = (b.status[i] & (kStatusDiverged | kStatusBadAction | kStatusTask)) != 0;
       alive_[i] = 0;
       --alive;
@@ -337,6 +341,8 @@ void Planner::add_terminal(double discount) {
 void Planner::move_centre() {
   for (int32_t i = 0; i < samples_; ++i) standings_[i] = standing(courses_[i], rule_);
   rank_courses(standings_, samples_, order_);
+  // The new centre is a weighted mean of samples: of the best alone, of all by e^(return / temperature), or
+  // of the elites alike.
   std::fill_n(weights_, samples_, 0.0);
   if (best_only_)
     weights_[order_[0]] = 1;
@@ -370,7 +376,7 @@ void Planner::describe_iteration(PlanInfo* out) const {
 void Planner::make_plan(const Pool& pool, int32_t env, PlanInfo* out) {
   rollouts_->copy(0, pool, env);  // refuses a pool that does not fit
   steps_ = 0;
-  ahead_ = given_ ? 1 : 0;
+  ahead_ = given_ ? 1 : 0;  // the old plan's first action has been taken
   set_budgets(pool, env);
   for (int32_t k = 0; k < knots_; ++k) std::copy_n(noise_std_, action_dim_, sigma_ + sz(k) * sz(action_dim_));
   foreign_ = policy_ && planned_ && warm_;
@@ -394,7 +400,7 @@ void Planner::make_plan(const Pool& pool, int32_t env, PlanInfo* out) {
       move_centre();
       ++out->iterations;
       describe_iteration(out);
-      foreign_ = false;
+      foreign_ = false;  // where it was good, the centre has moved to it
     }
   } catch (...) {
     stream_ = first;
