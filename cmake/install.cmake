@@ -46,15 +46,15 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/redmanConfig.cmake ${CMAKE_CURRENT_BIN
 
 set(RDM_PC_NAME redman)
 set(RDM_PC_REQUIRES "")
+set(RDM_PC_ENGINES "")
 if(REDMAN_SIM)
-  set(RDM_PC_REQUIRES "ode ccd")
-endif()
-if(RDM_OCTOMAP)
-  string(APPEND RDM_PC_REQUIRES " octomap")
+  set(RDM_PC_REQUIRES "ode ccd octomap")
+  set(RDM_PC_ENGINES " -lode -lccd -loctomap -loctomath")
 endif()
 file(RELATIVE_PATH RDM_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 # redman-static names the archive: beside the shared library, -lredman would not be it.
-set(RDM_PC_LINKS "Requires.private: ${RDM_PC_REQUIRES}\nLibs: -L\${libdir} -lredman\nLibs.private: -lstdc++ -lm -pthread")
+# The engines are no Requires.private: pkg-config would want their files for --cflags, which the shared library does not.
+set(RDM_PC_LINKS "Libs: -L\${libdir} -lredman\nLibs.private:${RDM_PC_ENGINES} -lstdc++ -lm -pthread")
 configure_file(cmake/redman.pc.in redman.pc @ONLY)
 set(RDM_PC_LINKS "Requires: ${RDM_PC_REQUIRES}\nLibs: \${libdir}/libredman.a -lstdc++ -lm -pthread")
 configure_file(cmake/redman.pc.in redman-static.pc @ONLY)

@@ -6,8 +6,9 @@ cc=$1 prefix=$2 libdir=$3 out=$4
 source=$(dirname "$0")/use.c
 PKG_CONFIG_PATH=$prefix/$libdir/pkgconfig
 export PKG_CONFIG_PATH
+# Shared, where no package of another library can be found.
 # shellcheck disable=SC2046
-"$cc" -std=c99 "$source" -o "$out/use_shared" $(pkg-config --cflags --libs redman)
+"$cc" -std=c99 "$source" -o "$out/use_shared" $(PKG_CONFIG_LIBDIR=$PKG_CONFIG_PATH pkg-config --cflags --libs redman)
 LD_LIBRARY_PATH=$prefix/$libdir "$out/use_shared"
 # shellcheck disable=SC2046
 "$cc" -std=c99 "$source" -o "$out/use_static" $(pkg-config --cflags --libs redman-static)
