@@ -3,11 +3,12 @@
 # takes a pool needs both, one of policies that takes an agent learners; recordings are in either. The two config_init functions are in every build, and what has no half is too.
 # -v old=1, of deprecated.h: the functions of 0.1 that have another name now, for programs that were linked with it; without
 # -v stubs=1 those of a half that is left out do not exist.
-# -v names=1: the names alone of what a build without such functions leaves out, config_init and the like among them; lists of
-# symbols may be given too.
+# -v names=1: the names alone of what a build without such functions leaves out, config_init and the like among them; one of policies alone has
+# those of base.h and policy.h. Lists of symbols may be given too.
 function half_of(name, parameters) {
   if (names && name ~ /^rdm_(clone|pretrain)_/) return learn ? "" : "learning"
   if (names && name ~ /^rdm_(fail|rotation)$/) return sim ? "" : "simulation"
+  if (names && !sim && !learn && name ~ /^rdm_(actor_|policy_act_points$)/) return "learning"
   if (!names && name ~ /^rdm_(pool|agent)_config_init$/) return ""
   if (name ~ /^rdm_recording_/) return !sim && parameters ~ /rdm_pool/ ? "simulation" : sim || learn ? "" : "learning"
   if (name ~ /^rdm_agent_/ && parameters ~ /rdm_pool/) return sim ? (learn ? "" : "learning") : "simulation"

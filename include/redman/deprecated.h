@@ -73,9 +73,7 @@ enum {
   RDM_CYLINDER RDM_DEPRECATED("RDM_SHAPE_CYLINDER") = RDM_SHAPE_CYLINDER,
   RDM_PLANE RDM_DEPRECATED("RDM_SHAPE_PLANE") = RDM_SHAPE_PLANE,
   RDM_ELLIPSOID RDM_DEPRECATED("RDM_SHAPE_ELLIPSOID") = RDM_SHAPE_ELLIPSOID,
-  RDM_HULL RDM_DEPRECATED("RDM_SHAPE_HULL") = RDM_SHAPE_HULL,
-  RDM_SAMPLE RDM_DEPRECATED("RDM_ACT_SAMPLE") = RDM_ACT_SAMPLE,
-  RDM_MEAN RDM_DEPRECATED("RDM_ACT_MEAN") = RDM_ACT_MEAN
+  RDM_HULL RDM_DEPRECATED("RDM_SHAPE_HULL") = RDM_SHAPE_HULL
 };
 
 static inline RDM_DEPRECATED("rdm_policy_read")
@@ -97,6 +95,12 @@ static inline RDM_DEPRECATED("rdm_policy_get_tensor")
 rdm_result rdm_policy_tensor_read(const rdm_policy *p, const char *name, float *out, size_t count) {
   return rdm_policy_get_tensor(p, name, out, count);
 }
+
+#if defined(REDMAN_AGENT_H) /* not there beside a library of policies alone */
+enum {
+  RDM_SAMPLE RDM_DEPRECATED("RDM_ACT_SAMPLE") = RDM_ACT_SAMPLE,
+  RDM_MEAN RDM_DEPRECATED("RDM_ACT_MEAN") = RDM_ACT_MEAN
+};
 
 static inline RDM_DEPRECATED("rdm_task_field_at")
 rdm_result rdm_task_field(int32_t task, int32_t i, rdm_field *out) {
@@ -337,6 +341,7 @@ static inline RDM_DEPRECATED("rdm_agent_read_state")
 rdm_result rdm_agent_load(rdm_agent *a, const void *bytes, size_t size) {
   return rdm_agent_read_state(a, bytes, size);
 }
+#endif /* REDMAN_AGENT_H */
 #endif /* RDM_NO_DEPRECATED */
 
 #ifdef __cplusplus
@@ -344,7 +349,7 @@ rdm_result rdm_agent_load(rdm_agent *a, const void *bytes, size_t size) {
 #endif
 #endif /* REDMAN_DEPRECATED_H */
 
-#if defined(RDM_EXPERIMENTAL) && !defined(RDM_NO_DEPRECATED) \
+#if defined(RDM_EXPERIMENTAL) && !defined(RDM_NO_DEPRECATED) && defined(REDMAN_AGENT_H) \
     && !defined(REDMAN_DEPRECATED_EXPERIMENTAL_H)
 #define REDMAN_DEPRECATED_EXPERIMENTAL_H
 #include <redman/map.h>

@@ -1,6 +1,7 @@
 #!/bin/sh
-# small.sh SMALL FULL: the library of preset `small` is under 150 kB, needs the C library alone, and a policy trained with
-# the library of FULL acts the same with both; a program without any shared library too. Prints sizes and start times.
+# small.sh SMALL FULL: what preset `small` installs. The headers are those of what the libraries have, and each is good by itself; the
+# shared library is under 150 kB and needs the C library alone. A policy trained with the library of FULL acts the same with all of
+# them, in a program without any shared library too. Prints sizes and start times.
 set -eu
 small=$1 full=$2
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -9,34 +10,60 @@ trap 'rm -rf "$work"' EXIT
 status=0
 wrong() { echo "$*"; status=1; }
 
-bytes=$(stat -L -c %s "$small/libredman.so")
-[ "$bytes" -lt 150000 ] || wrong "libredman.so has $bytes bytes"
-needs=$(readelf -d "$small/libredman.so" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | tr '\n' ' ')
-for name in $needs; do
-  case $name in libc.so.* | libm.so.* | ld-linux-*) ;; *) wrong "libredman.so needs $name" ;; esac
+cmake --install "$small" --prefix "$work/small" > /dev/null
+include=$work/small/include lib=$work/small/lib
+headers=$(cd "$include/redman" && echo *)
+[ "$headers" = "base.h base.hpp deprecated.h policy.h policy.hpp redman.h redman.hpp" ] || wrong "these headers are installed: $headers"
+for header in $headers; do
+  case $header in
+    *.h) set -- cc -x c -std=c99 ;;
+    *) set -- c++ -x c++ -std=c++17 ;;
+  esac
+  for more in -Wextra -DRDM_EXPERIMENTAL; do
+    echo "#include <redman/$header>" | "$@" $more -Wall -pedantic -Werror "-I$include" -fsyntax-only - || wrong "$header does not stand alone"
+  done
 done
-echo "libredman.so: $bytes bytes, needs $needs"
+awk -v mode=stable -f "$root/tests/rules/header.awk" "$include/redman/base.h" "$include/redman/policy.h" | sort > "$work/declared"
+grep -o 'rdm_[a-z_0-9]*(' "$include/redman/deprecated.h" | tr -d '(' | sort -u - "$work/declared" > "$work/known"
+for library in "-D $lib/libredman.so"; do
+  # shellcheck disable=SC2086
+  nm -g --defined-only $library | awk 'NF == 3 && $2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort > "$work/has"
+  comm -23 "$work/declared" "$work/has" | sed "s|$|: a header has it, not ${library##*/}|" > "$work/differs"
+  comm -13 "$work/known" "$work/has" | sed "s|$|: no header has it, but ${library##*/}|" >> "$work/differs"
+  [ ! -s "$work/differs" ] || wrong "$(cat "$work/differs")"
+done
+
+bytes=$(stat -L -c %s "$lib/libredman.so")
+[ "$bytes" -lt 150000 ] || wrong "libredman.so has $bytes bytes"
+# only_libc FILE NAME...: it needs the C library, the loader and what is named
+only_libc() {
+  file=$1
+  shift
+  for name in $(readelf -d "$file" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p'); do
+    case " $* " in *" $name "*) continue ;; esac
+    case $name in libc.so.* | libm.so.* | ld-linux-*) ;; *) wrong "$(basename "$file") needs $name" ;; esac
+  done
+}
+only_libc "$lib/libredman.so"
+echo "libredman.so: $bytes bytes, libredman.a: $(stat -c %s "$lib/libredman.a") bytes"
 
 "$full/bin/redman" train --task hand_over_safe_finger --envs 16 --steps 12000 --seed 0 --set hidden=128,128 --out "$work/run" > "$work/log" 2>&1 ||
   { cat "$work/log"; exit 1; }
 policy=$work/run/policy.rdm
-# runner NAME LIBRARIES...
+# runner NAME INCLUDE LIBRARIES...
 runner() {
-  name=$1
-  shift
-  cc -std=c99 -Os "-I$root/include" "$root/examples/04_act.c" "$@" -s -o "$work/$name"
+  name=$1 from=$2
+  shift 2
+  cc -std=c99 -Os "-I$from" "$root/tests/packages/small.c" "$@" -s -o "$work/$name" || { wrong "$name was not linked"; return; }
   "$work/$name" "$policy" 1000 > "$work/$name.out" || wrong "$name ended with $?"
+  diff "$work/full.out" "$work/$name.out" || wrong "$name does not act as the full library does"
+  if "$work/$name" "$work/none" 1 2> "$work/said"; then wrong "$name reads a file that is not there"; fi
+  grep -q 'none: cannot open' "$work/said" || wrong "$name says of a file that is not there: $(cat "$work/said")"
 }
-runner full "-L$full" -lredman "-Wl,-rpath,$(realpath "$full")"
-runner small "-L$small" -lredman "-Wl,-rpath,$(realpath "$small")"
-runner static -static -Wl,--gc-sections "$small/libredman.a" -lstdc++ -lm
-cat "$work/small.out"
-for name in small static; do
-  # what scratch takes differs with the vector unit
-  sed 's/[0-9]* bytes of scratch/scratch/' "$work/$name.out" > "$work/said"
-  sed 's/[0-9]* bytes of scratch/scratch/' "$work/full.out" | diff - "$work/said" || wrong "$name does not act as the full library does"
-done
-for name in full small static; do
+runner full "$root/include" "-L$full" -lredman "-Wl,-rpath,$(realpath "$full")"
+runner shared "$include" "-L$lib" -lredman "-Wl,-rpath,$lib"
+runner static "$include" -static -Wl,--gc-sections "$lib/libredman.a" -lstdc++ -lm
+for name in full shared static; do
   spent=$( { i=0; while [ $i -lt 100 ]; do "$work/$name" "$policy" 1 > /dev/null; i=$((i + 1)); done; times; } | tail -n1 |
     awk '{ for (i = 1; i <= 2; ++i) { split($i, t, /[ms]/); sum += 60 * t[1] + t[2] } printf "%.1f", 10 * sum }')
   echo "$name: $(stat -c %s "$work/$name") bytes, $spent ms of processor time from start to the first action and the end"
