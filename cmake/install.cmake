@@ -67,12 +67,16 @@ if(REDMAN_SIM)
   set(RDM_PC_REQUIRES "ode ccd octomap")
   set(RDM_PC_ENGINES " -lode -lccd -loctomap -loctomath")
 endif()
+set(RDM_PC_RUNTIME " -lstdc++")
+if(RDM_STANDALONE_ARCHIVE)
+  set(RDM_PC_RUNTIME "")
+endif()
 file(RELATIVE_PATH RDM_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 # redman-static names the archive: beside the shared library, -lredman would not be it.
 # The engines are no Requires.private: pkg-config would want their files for --cflags, which the shared library does not.
-set(RDM_PC_LINKS "Libs: -L\${libdir} -lredman\nLibs.private:${RDM_PC_ENGINES} -lstdc++ -lm -pthread")
+set(RDM_PC_LINKS "Libs: -L\${libdir} -lredman\nLibs.private:${RDM_PC_ENGINES}${RDM_PC_RUNTIME} -lm -pthread")
 configure_file(cmake/redman.pc.in redman.pc @ONLY)
-set(RDM_PC_LINKS "Requires: ${RDM_PC_REQUIRES}\nLibs: \${libdir}/libredman.a -lstdc++ -lm -pthread")
+set(RDM_PC_LINKS "Requires: ${RDM_PC_REQUIRES}\nLibs: \${libdir}/libredman.a${RDM_PC_RUNTIME} -lm -pthread")
 configure_file(cmake/redman.pc.in redman-static.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/redman.pc ${CMAKE_CURRENT_BINARY_DIR}/redman-static.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)

@@ -18,12 +18,12 @@ build small
 configure small -B build/small-all -DREDMAN_SIM=ON -DREDMAN_LEARN=ON -DREDMAN_TOOL=OFF -DREDMAN_IMPORT=OFF -DREDMAN_INSTALL=OFF
 cmake --build build/small-all -j "$(nproc)" --target redman redman_static >&2 || die "the whole library could not be built for size: see above"
 echo 'int main(void) { return 0; }' > $folder/nothing.c
-engines="-lode -lccd -loctomap -loctomath" static=build/cross/native/lib
+engines="-lode -lccd -loctomap -loctomath -lstdc++" static=build/cross/native/lib
 # program NAME SOURCE BUILD LIBRARIES...: a static and a dynamic one, stripped.
 program() {
   local name=$1 source=$2 build=$3
   shift 3
-  gcc -std=c99 -Os -s -static -Wl,--gc-sections -Iinclude "$source" ${build:+"build/$build/libredman.a"} -L$static "$@" -lstdc++ -lm -o "$folder/$name" ||
+  gcc -std=c99 -Os -s -static -Wl,--gc-sections -Iinclude "$source" ${build:+"build/$build/libredman.a"} -L$static "$@" -lm -o "$folder/$name" ||
     die "$name could not be linked"
   [ -z "$build" ] || gcc -std=c99 -Os -s -Iinclude "$source" "-Lbuild/$build" -lredman "-Wl,-rpath,$PWD/build/$build" -o "$folder/$name-shared" ||
     die "$name-shared could not be linked"

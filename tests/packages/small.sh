@@ -1,7 +1,7 @@
 #!/bin/sh
 # small.sh SMALL FULL: what preset `small` installs. The headers are those of what the libraries have, and each is good by itself; the
-# shared library is under 150 kB and needs the C library alone. A policy trained with the library of FULL acts the same with all of
-# them, in a program without any shared library too. Prints sizes and start times.
+# shared library is under 150 kB and needs the C library alone; a program in C links the static one without the compiler of C++,
+# shared or whole. A policy trained with the library of FULL acts the same with all of them. Prints sizes and start times.
 set -eu
 small=$1 full=$2
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -25,9 +25,9 @@ for header in $headers; do
 done
 awk -v mode=stable -f "$root/tests/rules/header.awk" "$include/redman/base.h" "$include/redman/policy.h" | sort > "$work/declared"
 grep -o 'rdm_[a-z_0-9]*(' "$include/redman/deprecated.h" | tr -d '(' | sort -u - "$work/declared" > "$work/known"
-for library in "-D $lib/libredman.so"; do
+for library in "-D $lib/libredman.so" "$lib/libredman.a"; do
   # shellcheck disable=SC2086
-  nm -g --defined-only $library | awk 'NF == 3 && $2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort > "$work/has"
+  nm -g --defined-only $library | awk 'NF == 3 && $2 != "A" && $2 != "u" { sub(/@.*/, "", $3); print $3 }' | sort > "$work/has"
   comm -23 "$work/declared" "$work/has" | sed "s|$|: a header has it, not ${library##*/}|" > "$work/differs"
   comm -13 "$work/known" "$work/has" | sed "s|$|: no header has it, but ${library##*/}|" >> "$work/differs"
   [ ! -s "$work/differs" ] || wrong "$(cat "$work/differs")"
@@ -62,8 +62,18 @@ runner() {
 }
 runner full "$root/include" "-L$full" -lredman "-Wl,-rpath,$(realpath "$full")"
 runner shared "$include" "-L$lib" -lredman "-Wl,-rpath,$lib"
-runner static "$include" -static -Wl,--gc-sections "$lib/libredman.a" -lstdc++ -lm
-for name in full shared static; do
+runner archive "$include" "$lib/libredman.a" -lm
+runner own "$include" -static-libgcc -Wl,--gc-sections "$lib/libredman.a" -lm
+runner static "$include" -static -Wl,--gc-sections "$lib/libredman.a" -lm
+only_libc "$work/archive" libgcc_s.so.1 # the unwinder
+only_libc "$work/own"
+# beside a C++ runtime of the program's own
+printf '#include <redman/redman.hpp>\n#include <cstdio>\nint main() try { redman::Policy p("none"); } catch (const redman::Error& e) { std::puts(e.what()); }\n' > "$work/owner.cpp"
+for how in -pie -static; do
+  c++ -std=c++17 $how "-I$include" "$work/owner.cpp" "$lib/libredman.a" -o "$work/owner" && [ "$("$work/owner")" = "none: cannot open: No such file or directory" ] ||
+    wrong "a program in C++ does not run with libredman.a $how"
+done
+for name in full shared archive own static; do
   spent=$( { i=0; while [ $i -lt 100 ]; do "$work/$name" "$policy" 1 > /dev/null; i=$((i + 1)); done; times; } | tail -n1 |
     awk '{ for (i = 1; i <= 2; ++i) { split($i, t, /[ms]/); sum += 60 * t[1] + t[2] } printf "%.1f", 10 * sum }')
   echo "$name: $(stat -c %s "$work/$name") bytes, $spent ms of processor time from start to the first action and the end"
