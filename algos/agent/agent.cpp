@@ -8,8 +8,6 @@
 #include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
-#include "base/hash.hpp"
-#include "base/shuffle.hpp"
 #include "nn/policy.hpp"
 
 namespace rdm {
@@ -17,8 +15,7 @@ namespace {
 
 constexpr char kMagic[8] = {'R', 'D', 'M', 'A', 'G', 'E', 'N', 'T'};
 constexpr uint32_t kVersion = 1;
-constexpr int32_t kMaxEpochs = 1 << 30;                // of a state that loads; as many more do not overflow
-constexpr double kEntropyOfUnit = 1.4189385332046727;  // of a normal with deviation 1
+constexpr int32_t kMaxEpochs = 1 << 30;  // of a state that loads; as many more do not overflow
 
 bool same_network(const PointNetShape& a, const PointNetShape& b) {
   return a.classes == b.classes && a.color == b.color && a.mlp.num_hidden == b.mlp.num_hidden &&
@@ -64,6 +61,7 @@ void Agent::carve(Arena& arena) {
       arena.make<float>(resolved_.actor_columns.empty() ? 0 : 2 * static_cast<size_t>(nets_.actor_entries()));
   fields_ = keep_fields(arena, resolved_.config.fields, resolved_.config.num_fields);
   shuffle_ = arena.make<Stream>(static_cast<size_t>(resolved_.blocks));
+  spread_ = arena.make<double>(resolved_.state_std() ? 2 * static_cast<size_t>(resolved_.blocks) : 0);
   char* names = arena.make<char>(static_cast<size_t>(nets_.num_tensors()) * kTensorNameSize);
   names_ = reinterpret_cast<char(*)[kTensorNameSize]>(names);
 }
@@ -150,137 +148,9 @@ void Agent::record(const Transition& t) {
   collector_.record(t);
 }
 
-void Agent::update(const float* last_obs, Epoch* out) {
-  const FpMode mode;
-  hear_cancel();
-  if (missing() > 0) fail(Code::kState, "update: %d decisions are missing in this horizon", missing());
-  if (!last_obs) fail(Code::kArgument, "last_obs: NULL");
-  check_rows("last_obs", last_obs, nullptr, resolved_.config.num_envs, resolved_.obs_dim());
-  try {
-    collector_.settle();
-    collector_.estimate(last_obs);
-    const EpisodeStats stats = collector_.episodes().stats();
-    const EpochTotals totals = collector_.totals();
-    const bool warm = warming();
-    imitation_.begin_epoch(std::max(0, epoch_ - warm_epochs_));
-    warn_of_limits(stats);
-    if (!warm) begin_epoch(judge(resolved_, stats, totals), epoch_ + 1);
-    const double rate = warm ? 0 : schedule_.rate(epoch_);
-    const int64_t skipped = learner_.skipped();
-    learned_ = Learned();
-    if (warm) {
-      warm_up();
-    } else {
-      imitation_.draw(valid_rows());
-      learn();
-    }
-    if (learner_.skipped() > skipped)
-      log(resolved_.config.hooks, LogLevel::kWarning, "update: %lld gradients were not finite and left out",
-          static_cast<long long>(learner_.skipped() - skipped));
-    if (learned_.passes > 0 && !warm) schedule_.adapt(learned_.mean.kl, epoch_);
-    collector_.episodes().mark();
-    ++epoch_;
-    if (!warm) schedule_std(nets_, resolved_.options, epoch_);
-    if (!warm) average_actor(nets_);
-    Epoch e;
-    fill_episodes(stats, totals, e);
-    fill_counts(totals, learner_.skipped() - skipped, e);
-    fill_learned(rate, e);
-    workers_.ranks().agree(learned_hash());
-    if (out) *out = e;
-  } catch (...) {
-    drop_horizon();
-    throw;
-  }
-  drop_horizon();
-}
-
-// A cancel drops what was collected, full or not.
-void Agent::hear_cancel() {
-  try {
-    check_cancel();
-  } catch (...) {
-    drop_horizon();
-    throw;
-  }
-}
-
 void Agent::discard() {
   drop_horizon();
   cancel_.take();
-}
-
-void Agent::warn_of_limits(const EpisodeStats& stats) {
-  if (warned_ || !lacks_length(resolved_, stats)) return;
-  warned_ = true;
-  log(resolved_.config.hooks, LogLevel::kWarning,
-      "update: no episode has ended and none has a length, so limits on an episode's cost cannot be judged, "
-      "only broken by those that run; give max_steps, or option episode_steps or cost_limit_per_step");
-}
-
-void Agent::begin_epoch(const JudgedCosts&, int32_t) {
-  follow_reward();
-}
-
-void Agent::follow_reward() {
-  const Rollout& r = rollout();
-  const auto n = static_cast<size_t>(r.samples());
-  std::memcpy(r.gain, r.advantage, n * sizeof(float));
-  std::memset(r.linear, 0, n * sizeof(float));
-}
-
-BatchSums Agent::pass(const PolicyLoss* policy) {
-  const int32_t parts = std::min(resolved_.options.integer("minibatches"), valid_rows());
-  const double rate = schedule_.rate(epoch_);
-  const Batch& whole = whole_batch();
-  for (int32_t b = 0; b < whole.blocks; ++b)
-    shuffle(shuffle_[b], rollout().order + whole.segment(b).first, whole.segment(b).rows);
-  BatchSums sums;
-  for (int32_t i = 0; i < parts; ++i) {
-    const Batch batch = collector_.minibatch(i, parts);
-    if (batch.rows == 0) continue;
-    check_cancel();
-    if (policy) {
-      begin_minibatch(batch);
-      imitation_.draw(batch.rows);
-    }
-    sums += learner_.gradient(policy, true, batch);
-    learner_.step(rate, schedule_.change(epoch_));
-  }
-  return sums;
-}
-
-double Agent::violation(const JudgedCosts& costs, int32_t i) const {
-  const double gap = costs.known[i] ? costs.excess(i) : 0;
-  const char* scale = resolved_.options.text("violation_scale");
-  if (std::strcmp(scale, "raw") == 0) return gap;
-  if (std::strcmp(scale, "discount") == 0)
-    return gap * (1 - elementary::pow(resolved_.options.number("discount"), resolved_.action_repeat));
-  return gap / std::max(1.0, costs.steps[i] / resolved_.action_repeat);
-}
-
-void Agent::learn() {
-  const Options& o = resolved_.options;
-  const double stop = o.number("early_stop_kl"), count = valid_rows();
-  BatchSums all, last;
-  while (count > 0 && learned_.passes < o.integer("passes")) {
-    last = pass(&policy_loss());
-    all += last;
-    ++learned_.passes;
-    if (stop > 0 && learner_.kl(whole_batch()) > stop) break;
-  }
-  if (learned_.passes == 0) return;
-  learned_.last_kl = last.kl / count;
-  learned_.mean = all.scaled(1 / (count * learned_.passes));
-}
-
-// Passes that move the critics alone.
-void Agent::warm_up() {
-  BatchSums all;
-  for (; valid_rows() > 0 && learned_.passes < resolved_.options.integer("passes"); ++learned_.passes)
-    all += pass(nullptr);
-  if (learned_.passes > 0)
-    learned_.mean = all.scaled(1 / (static_cast<double>(valid_rows()) * learned_.passes));
 }
 
 void Agent::need_idle(const char* call) const {
@@ -394,88 +264,6 @@ void Agent::load_policy(const PolicyView& p, double samples) {
     n.m2[at] = std * std * (samples - 1);
   }
   normalizer_refresh(n);
-}
-
-void Agent::fill_spread(Epoch& e) {
-  const int32_t dim = resolved_.config.action_dim;
-  const auto add = [&](const float* log_std, double share, double count, double& std, double& entropy) {
-    for (int32_t j = 0; j < dim; ++j) {
-      const auto l = static_cast<double>(log_std[j]);
-      std += elementary::exp(l) / (count * dim);
-      entropy += (l + share + kEntropyOfUnit) / count;
-    }
-  };
-  const auto share = static_cast<double>(resolved_.log_share);
-  if (!nets_.state_std()) return add(nets_.log_std(), share, 1, e.action_std, e.entropy);
-  const Rollout& r = rollout();
-  const auto sums = workers_.ranks().sum<2>([&](int32_t b, double* out) {
-    const Segment s = whole_batch().segment(b);
-    out[0] = out[1] = 0;
-    for (int32_t i = s.first; i < s.first + s.rows; ++i)
-      add(r.log_std_of(static_cast<size_t>(r.order[i])), 0, valid_rows(), out[0], out[1]);
-  });
-  e.action_std = sums[0] * elementary::exp(-share);
-  e.entropy = sums[1];
-}
-
-// Of what all ranks must have alike.
-uint64_t Agent::learned_hash() const {
-  if (workers_.ranks().alone()) return 0;
-  uint64_t hash = hash_bytes(nets_.params, nets_.size * sizeof(float));
-  const Normalizer& n = collector_.normalizer();
-  for (const double* x : {n.mean, n.m2}) hash = hash_bytes(x, static_cast<size_t>(n.dim) * sizeof *x, hash);
-  return hash;
-}
-
-void Agent::fill_episodes(const EpisodeStats& stats, const EpochTotals& totals, Epoch& e) const {
-  e.episodes = stats.finished;
-  e.ret = stats.ret;
-  std::copy_n(stats.cost, resolved_.config.cost_dim, e.cost);
-  const bool by_rate = resolved_.rate_steps > 0 || stats.finished == 0;
-  e.cost_per_step = by_rate ? totals.rate(0) : stats.cost_per_step;
-  e.length = stats.length;
-  e.fall_rate = stats.fall_rate;
-  e.success_rate = stats.success_rate;
-  if (stats.finished == 0) e.flags |= kEpochNoEpisode;
-}
-
-void Agent::fill_counts(const EpochTotals& totals, int64_t skipped, Epoch& e) const {
-  const auto count = [&](int64_t& to, int64_t n, EpochFlag flag) {
-    to = n;
-    if (n > 0) e.flags |= flag;
-  };
-  count(e.skipped_gradients, skipped, kEpochSkippedGradients);
-  count(e.invalid_rows, totals.invalid, kEpochInvalidRows);
-  if (totals.cut > 0) e.flags |= kEpochCut;
-  count(e.contacts_left_out, totals.status[0], kEpochContacts);
-  count(e.diverged, totals.status[1], kEpochDiverged);
-  count(e.bad_actions, totals.status[2], kEpochBadAction);
-  count(e.task_failed, totals.status[3], kEpochTask);
-  count(e.unconverged, totals.status[4], kEpochSolver);
-  count(e.slowed, totals.status[5], kEpochSlowed);
-}
-
-void Agent::fill_learned(double rate, Epoch& e) {
-  e.epoch = epoch_;
-  e.env_steps = collector_.env_steps();
-  for (int32_t i = 0; i < resolved_.num_limited; ++i) e.multiplier[resolved_.column[i]] = cost_weight(i);
-  fill_spread(e);
-  e.learning_rate = rate;
-  e.passes = learned_.passes;
-  e.cost_signal = raw_costs();
-  if (valid_rows() == 0) {
-    for (double* x : {&e.kl, &e.loss_policy, &e.loss_reward_value, &e.loss_cost_value, &e.clip_fraction,
-                      &e.value_reward, &e.value_cost})
-      *x = kNothing;
-    return;
-  }
-  e.kl = learned_.last_kl;
-  e.loss_policy = learned_.mean.loss;
-  e.loss_reward_value = learned_.mean.reward_loss;
-  e.loss_cost_value = learned_.mean.cost_loss;
-  e.clip_fraction = learned_.mean.clipped;
-  e.value_reward = collector_.mean_value(false);
-  if (rollout().num_costs > 0) e.value_cost = collector_.mean_value(true);
 }
 
 bool Agent::tensor(int32_t index, TensorInfo* out) {

@@ -6,11 +6,12 @@
 //   update       advantages and targets (collector, gae)
 //                begin_epoch  the algorithm's multipliers, penalties or barriers, from the episodes' costs
 //                             J_c against their limits; leaves in the rollout what the actor climbs
-//                learn        passes over shuffled minibatches (policy_loss, learner), or a trust region's
-//                             step; both move the critics too
+//                a trust region's step of the policy (begin_step, step_on)
+//                passes over shuffled minibatches (learner), which move the critics and, but after such a
+//                step, the policy (policy_loss)
 //                the Epoch, the schedules, an empty rollout
-// An algorithm overrides what it does differently: the loss of the policy (policy_loss), what happens before
-// the policy step (begin_epoch), or the whole step (learn).
+// It is a sequence of jobs (agent_update.cpp). An algorithm overrides what it does differently: the loss of the
+// policy (policy_loss), what happens before the policy step (begin_epoch), or the step itself.
 //
 // Whose arrays: the agent's one arena holds them all, cut at creation by carve, so act, record and update
 // allocate nothing. Each part owns what its own carve cut and lends it by pointer:
@@ -116,43 +117,40 @@ class Agent {
  protected:
   // After open has made everything.
   virtual void opened() {}
-  // What the passes of the default learn() minimise.
-  virtual const PolicyLoss& policy_loss() const = 0;
+  // What the passes minimise; null: they move the critics alone.
+  virtual const PolicyLoss* policy_loss() const = 0;
   // After advantages were estimated, before the policy step: moves multipliers, sets gain and linear of the
   // rollout. Default: the reward advantage. epoch counts from 1.
   virtual void begin_epoch(const JudgedCosts& costs, int32_t epoch);
   // gain becomes the reward advantage, linear 0.
   void follow_reward();
-  // The steps of policy and critics. Default: passes over shuffled minibatches, stopped early by KL.
-  virtual void learn();
-  // Before the gradient of each minibatch of the default learn().
-  virtual void begin_minibatch(const Batch&) {}
+  // A step of the policy over the whole batch, before the passes: job after job until there is none.
+  virtual void begin_step() {}
+  virtual Job step_on() { return {}; }
+  // What is measured of each minibatch of the policy's passes before its gradient, and what follows from it.
+  virtual Job measure_minibatch(const Batch&) { return {}; }
+  virtual void begin_minibatch(const Surrogate&) {}
   // Multiplier of limited cost i.
   virtual double cost_weight(int32_t) const { return 0; }
-  // One pass over the valid rows in shuffled minibatches, each with its share of every block: a step of the
-  // critics and, unless null, of the policy for each.
-  BatchSums pass(const PolicyLoss* policy);
-  // The first epochs, in which the critics learn alone.
-  bool warming() const { return epoch_ < warm_epochs_; }
   // Copies live options to where they are used.
   virtual void read_live();
   virtual void visit_state(StateIo& io);
   // Checks a saved state, or with `apply` takes one that was checked.
   void read_state(const void* bytes, size_t size, bool apply);
 
-  // What learn() leaves for the Epoch: means over samples.
+  // For the Epoch: means over samples.
   struct Learned {
     int32_t passes = 0;
     double last_kl = 0;  // KL(old || new) over the last pass, each minibatch's before its step
     BatchSums mean;      // over all passes
   };
+  // What a step of the policy has to say beside the passes.
+  virtual void report(Learned&) const {}
 
   const ResolvedAgentConfig& resolved() const { return resolved_; }
   Networks& nets() { return nets_; }
   BatchWorkers& workers() { return workers_; }
   Learner& learner() { return learner_; }
-  Learned& learned() { return learned_; }
-  CancelFlag& cancel_flag() { return cancel_; }
   // Share of a linear schedule that is left in this epoch.
   double schedule_share() const { return schedule_.share(epoch_); }
   // Of all ranks.
@@ -164,7 +162,39 @@ class Agent {
   const Rollout& rollout() const { return collector_.rollout(); }
 
  private:
-  void warm_up();
+  // What an update comes to next; behind a job, what it has left.
+  enum class Phase {
+    kIdle,
+    kEstimate,
+    kJudge,
+    kStep,
+    kPass,
+    kMinibatch,
+    kGradient,
+    kAdam,
+    kStop,
+    kSpread,
+    kEnd
+  };
+  // Of the update that runs.
+  struct Run {
+    EpisodeStats stats;
+    EpochTotals totals;
+    bool warm = false;      // one of the first epochs, in which the critics learn alone
+    int64_t skipped = 0;    // gradients, before it
+    int32_t minibatch = 0;  // that comes next
+    Batch batch;
+    int32_t block = 0, row = 0;  // that spread_on comes to next
+    BatchSums last, all;         // of this pass so far, of those before
+    Epoch epoch;
+  };
+  void unit(bool whole);
+  void judge_epoch();
+  void begin_pass();
+  bool next_minibatch();
+  void end_pass(const PolicyLoss* policy);
+  void end_update();
+  void end_run();
   uint64_t generation_of(const float* actor) const;
   // Of the actor that others get to see, valid until statistics move.
   PolicyView policy_view();
@@ -174,6 +204,8 @@ class Agent {
   void need_idle(const char* call) const;
   void need_clouds(const DemoRows& demo) const;
   // action_std and entropy: of the policy now, or with std_mode=state as it was on the epoch's data.
+  bool spread_on();
+  void add_spread(const float* log_std, double share, double count, double* out) const;
   void fill_spread(Epoch& e);
   void fill_episodes(const EpisodeStats& stats, const EpochTotals& totals, Epoch& e) const;
   void fill_counts(const EpochTotals& totals, int64_t skipped, Epoch& e) const;
@@ -190,6 +222,10 @@ class Agent {
   Learner learner_;
   RateSchedule schedule_;
   Stream* shuffle_ = nullptr;  // [this rank's blocks]
+  double* spread_ = nullptr;   // [this rank's blocks][2], with std_mode=state
+  Phase phase_ = Phase::kIdle;
+  Job job_;
+  Run run_;
   Learned learned_;
   int32_t epoch_ = 0, warm_epochs_ = 0;
   bool raw_costs_ = false;  // option cost_signal

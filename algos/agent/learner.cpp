@@ -61,45 +61,68 @@ BatchSums Learner::sums_of_blocks() {
   return block_sums_[0];
 }
 
-BatchSums Learner::gradient(const PolicyLoss* policy, bool critics, const Batch& batch) {
-  const int32_t rows = batch.rows;
+Job Learner::begin_gradient(const PolicyLoss* policy, bool critics, const Batch& batch) {
   refresh_log_std();
-  policy_ = policy != nullptr;
+  policy_ = policy;
   critics_ = critics;
-  scale_ = 1 / static_cast<float>(rows);
-  begin_ = policy_ ? 0 : nets_->block[Networks::kReward].offset;
+  first_net_ = net_ = policy ? Networks::kActor : Networks::kReward;
+  last_net_ = critics ? nets_->count : int32_t{Networks::kReward};
+  begin_ = nets_->block[first_net_].offset;
   end_ = critics ? nets_->size : nets_->block[Networks::kReward].offset;
-  int32_t depth = 0;
-  workers_->sweep(
-      batch, 1, resolved_->chunk_rows,
-      [&](Workspace& workspace, const Chunk& chunk) {
-        float* grad = BatchWorkers::gradient_of(workspace, grad_);
-        const int32_t n = chunk.rows;
-        workspace.sums = BatchSums();
-        if (n == 0) return std::fill(grad + begin_, grad + end_, 0.0f);
-        gather_obs(*rollout_, chunk.order, 1, n, workspace.obs);
-        if (policy) policy_gradient(workspace, *policy, chunk.order, n, grad);
-        if (!critics) return;
-        workspace.sums.reward_loss = critic_gradient(workspace, Networks::kReward, chunk.order, n, grad);
-        if (nets_->count > Networks::kCost)
-          workspace.sums.cost_loss = critic_gradient(workspace, Networks::kCost, chunk.order, n, grad);
-      },
-      [&](int32_t n) {
-        for (int32_t i = 0; i < n; ++i) {
-          const Workspace& w = (*workers_)[i];
-          if (w.chunk.begins) block_sums_[w.chunk.block] = BatchSums();
-          block_sums_[w.chunk.block] += w.sums;
-        }
-        workers_->reduce(n, batch.blocks, grad_, begin_, end_, &depth);
-      });
-  BatchSums sums = sums_of_blocks();
-  double few[] = {sums.loss, sums.kl, sums.clipped, sums.reward_loss, sums.cost_loss};
+  scale_ = 1 / static_cast<float>(batch.rows);
+  sweep_ = Sweep(batch);
+  with_term_ = policy && policy->explores();
+  term_ = Job();
+  return Job::of<&Learner::advance_gradient>(this);
+}
+
+bool Learner::advance_gradient(bool whole) {
+  if (term_) {
+    if (!term_.advance(whole)) return false;
+    sums_.loss += sweep_.batch.rows * imitation_->term();
+    return true;
+  }
+  if (net_ == first_net_) workers_->cut(sweep_, resolved_->chunk_rows);
+  const int32_t first = net_;
+  net_ = whole ? last_net_ : net_ + 1;
+  workers_->each(sweep_, [&](Workspace& w, const Chunk& chunk) { chunk_gradient(w, chunk, first, net_); });
+  if (net_ < last_net_) return false;
+  net_ = first_net_;
+  for (int32_t i = 0; i < sweep_.chunks; ++i) {
+    const Workspace& w = (*workers_)[i];
+    if (w.chunk.begins) block_sums_[w.chunk.block] = BatchSums();
+    block_sums_[w.chunk.block] += w.sums;
+  }
+  workers_->reduce(sweep_, grad_, begin_, end_);
+  if (!sweep_.over()) return false;
+  end_gradient();
+  if (with_term_ && imitation_ && imitation_->active()) term_ = imitation_->begin(grad_);
+  return !term_;
+}
+
+// Rows are gathered for each part of a chunk: between two, what acts may have used the workspace.
+void Learner::chunk_gradient(Workspace& workspace, const Chunk& chunk, int32_t first, int32_t last) const {
+  float* grad = BatchWorkers::gradient_of(workspace, grad_);
+  const int32_t n = chunk.rows;
+  if (first == first_net_) workspace.sums = BatchSums();
+  if (n == 0) return std::fill(grad + begin_, grad + end_, 0.0f);
+  gather_obs(*rollout_, chunk.order, 1, n, workspace.obs);
+  for (int32_t net = first; net < last; ++net) {
+    if (net == Networks::kActor)
+      policy_gradient(workspace, *policy_, chunk.order, n, grad);
+    else if (net == Networks::kReward)
+      workspace.sums.reward_loss = critic_gradient(workspace, Networks::kReward, chunk.order, n, grad);
+    else
+      workspace.sums.cost_loss = critic_gradient(workspace, Networks::kCost, chunk.order, n, grad);
+  }
+}
+
+void Learner::end_gradient() {
+  sums_ = sums_of_blocks();
+  double few[] = {sums_.loss, sums_.kl, sums_.clipped, sums_.reward_loss, sums_.cost_loss};
   workers_->ranks().sum(grad_ + begin_, end_ - begin_, few, std::size(few));
-  sums = {few[0], few[1], few[2], few[3], few[4]};
-  add_penalties(policy);
-  if (policy && policy->explores() && imitation_ && imitation_->active())
-    sums.loss += rows * imitation_->add_gradient(grad_);
-  return sums;
+  sums_ = {few[0], few[1], few[2], few[3], few[4]};
+  add_penalties();
 }
 
 void Learner::policy_gradient(Workspace& workspace, const PolicyLoss& policy, const int32_t* order,
@@ -144,13 +167,9 @@ double Learner::critic_gradient(Workspace& workspace, Networks::Index net, const
   return loss;
 }
 
-double Learner::imitation() const {
-  return imitation_ ? imitation_->term() : 0;
-}
-
-void Learner::add_penalties(const PolicyLoss* policy) {
-  const auto bonus = policy && policy->explores() ? static_cast<float>(entropy_) : 0.0f;
-  for (size_t j = 0; policy && !nets_->state_std() && j < resolved_->action_dim(); ++j)
+void Learner::add_penalties() {
+  const auto bonus = policy_ && policy_->explores() ? static_cast<float>(entropy_) : 0.0f;
+  for (size_t j = 0; policy_ && !nets_->state_std() && j < resolved_->action_dim(); ++j)
     grad_[j] = learn_std_ ? grad_[j] - bonus : 0;
   if (!critics_ || critic_l2_ == 0) return;
   const auto twice = static_cast<float>(2 * critic_l2_);
@@ -170,8 +189,7 @@ double Learner::joint_scale(int32_t first, int32_t last) const {
 }
 
 void Learner::step(double actor_rate, double actor_share) {
-  const int32_t first = policy_ ? Networks::kActor : Networks::kReward;
-  const int32_t last = critics_ ? nets_->count : int32_t{Networks::kReward};
+  const int32_t first = first_net_, last = last_net_;
   const double critic_rate = follow_actor_ ? critic_rate_ * actor_share : critic_rate_;
   double bound = max_norm_;
   if (joint_norm_) {
@@ -197,7 +215,7 @@ void Learner::step(double actor_rate, double actor_share) {
   if (policy_) clamp_log_std(*nets_);
 }
 
-void Learner::measure_rows(Workspace& workspace, const int32_t* order, int32_t rows, float clip) const {
+void Learner::measure_rows(Workspace& workspace, const int32_t* order, int32_t rows) const {
   const Rollout& r = *rollout_;
   const auto dim = static_cast<int32_t>(r.action_dim);
   const auto costs = static_cast<size_t>(r.num_costs);
@@ -214,38 +232,52 @@ void Learner::measure_rows(Workspace& workspace, const int32_t* order, int32_t r
     const double ratio = sample_ratio(r, at, mean, log_std);
     workspace.surrogate.gain += ratio * static_cast<double>(r.gain[at] + r.linear[at]);
     const double bounded =
-        std::clamp(ratio, 1.0 - static_cast<double>(clip), 1.0 + static_cast<double>(clip));
+        std::clamp(ratio, 1.0 - static_cast<double>(clip_), 1.0 + static_cast<double>(clip_));
     for (size_t k = 0; k < costs; ++k) {
       const auto cost = static_cast<double>(r.cost_advantage[at * costs + k]);
-      workspace.surrogate.cost[k] += clip > 0 ? std::max(ratio * cost, bounded * cost) : ratio * cost;
+      workspace.surrogate.cost[k] += clip_ > 0 ? std::max(ratio * cost, bounded * cost) : ratio * cost;
     }
   }
 }
 
-Surrogate Learner::measure(const Batch& batch, float clip) {
+Job Learner::begin_measure(const Batch& batch, float clip, bool term) {
   refresh_log_std();
-  workers_->sweep(
-      batch, 1, resolved_->chunk_rows,
-      [&](Workspace& workspace, const Chunk& chunk) {
-        measure_rows(workspace, chunk.order, chunk.rows, clip);
-      },
-      [&](int32_t n) {
-        for (int32_t i = 0; i < n; ++i) {
-          const Workspace& w = (*workers_)[i];
-          Surrogate& sum = block_surrogate_[w.chunk.block];
-          if (w.chunk.begins) sum = Surrogate();
-          sum += w.surrogate;
-        }
-      });
-  Surrogate mean;
+  clip_ = clip;
+  sweep_ = Sweep(batch);
+  with_term_ = term;
+  term_ = Job();
+  return Job::of<&Learner::advance_measure>(this);
+}
+
+bool Learner::advance_measure(bool whole) {
+  if (term_) {
+    if (!term_.advance(whole)) return false;
+    measured_.gain -= imitation_->term();
+    return true;
+  }
+  workers_->cut(sweep_, resolved_->chunk_rows);
+  workers_->each(sweep_, [&](Workspace& w, const Chunk& chunk) { measure_rows(w, chunk.order, chunk.rows); });
+  for (int32_t i = 0; i < sweep_.chunks; ++i) {
+    const Workspace& w = (*workers_)[i];
+    Surrogate& sum = block_surrogate_[w.chunk.block];
+    if (w.chunk.begins) sum = Surrogate();
+    sum += w.surrogate;
+  }
+  if (!sweep_.over()) return false;
+  end_measure();
+  if (with_term_ && imitation_ && imitation_->active()) term_ = imitation_->begin(nullptr);
+  return !term_;
+}
+
+void Learner::end_measure() {
+  const int32_t rows = sweep_.batch.rows;
   const auto sums = workers_->ranks().sum<2 + kMaxCosts>([&](int32_t b, double* out) {
     const Surrogate& s = block_surrogate_[b];
     *out++ = s.gain, *out++ = s.kl;
     std::copy_n(s.cost, kMaxCosts, out);
   });
-  mean.gain = sums[0] / batch.rows, mean.kl = sums[1] / batch.rows;
-  for (size_t k = 0; k < kMaxCosts; ++k) mean.cost[k] = sums[2 + k] / batch.rows;
-  return mean;
+  measured_.gain = sums[0] / rows, measured_.kl = sums[1] / rows;
+  for (size_t k = 0; k < kMaxCosts; ++k) measured_.cost[k] = sums[2 + k] / rows;
 }
 
 void Learner::visit(StateIo& io) {

@@ -20,6 +20,7 @@
 // number of threads, which Eigen's products and reductions do not promise; the matrix products are lib/nn's.
 #pragma once
 #include "algos/core/batch_workers.hpp"
+#include "algos/core/job.hpp"
 #include "algos/core/networks.hpp"
 #include "algos/rollout/rollout.hpp"
 
@@ -67,20 +68,31 @@ class Learner {
   void read_live(const Options& options);
 
   // Gradients of mean loss over the listed rows: the policy's (null: none) less the entropy bonus, and, if
-  // asked, the critics' squared errors with their L2 term. Valid until the next call.
-  BatchSums gradient(const PolicyLoss* policy, bool critics, const Batch& batch);
+  // asked, the critics' squared errors with their L2 term. When the job is done they are in gradient(), what
+  // was summed beside them in sums(), both until the next job; the loss must live as long.
+  Job begin_gradient(const PolicyLoss* policy, bool critics, const Batch& batch);
   const float* gradient() const { return grad_; }
+  const BatchSums& sums() const { return sums_; }
+  BatchSums gradient(const PolicyLoss* policy, bool critics, const Batch& batch) {
+    begin_gradient(policy, critics, batch).finish();
+    return sums_;
+  }
   // Adam steps along what the last gradient computed; actor_share: actor_rate over its first value, which the
   // critics may follow. A network whose gradient is not finite stays as it is.
   void step(double actor_rate, double actor_share = 1);
 
   // The policy's loss has this term too, where it is active; null: none.
-  void imitate(const Imitation* term) { imitation_ = term; }
-  double imitation() const;
+  void imitate(Imitation* term) { imitation_ = term; }
 
-  // Of the policy as it is now, over the listed rows. clip > 0: each sample's cost is
-  // max(rho A_c, clip(rho, 1 - clip, 1 + clip) A_c), so that only a fall of the cost can be hidden.
-  Surrogate measure(const Batch& batch, float clip = 0);
+  // Of the policy as it is now, over the listed rows, in measured() when the job is done. clip > 0: each
+  // sample's cost is max(rho A_c, clip(rho, 1 - clip, 1 + clip) A_c), so that only a fall of the cost can be
+  // hidden. term: the gain is less the imitation term, as the gradient's loss has it.
+  Job begin_measure(const Batch& batch, float clip = 0, bool term = false);
+  const Surrogate& measured() const { return measured_; }
+  Surrogate measure(const Batch& batch, float clip = 0) {
+    begin_measure(batch, clip).finish();
+    return measured_;
+  }
   double kl(const Batch& batch) { return measure(batch).kl; }
   // Steps that were left out so far.
   int64_t skipped() const { return skipped_; }
@@ -94,8 +106,14 @@ class Learner {
                        float* grad) const;
   double critic_gradient(Workspace& workspace, Networks::Index net, const int32_t* order, int32_t rows,
                          float* grad) const;
-  void measure_rows(Workspace& workspace, const int32_t* order, int32_t rows, float clip) const;
-  void add_penalties(const PolicyLoss* policy);
+  void measure_rows(Workspace& workspace, const int32_t* order, int32_t rows) const;
+  bool advance_gradient(bool whole);
+  bool advance_measure(bool whole);
+  // Networks [first, last) of one chunk.
+  void chunk_gradient(Workspace& workspace, const Chunk& chunk, int32_t first, int32_t last) const;
+  void end_gradient();
+  void end_measure();
+  void add_penalties();
   double joint_scale(int32_t first, int32_t last) const;
   BatchSums sums_of_blocks();
 
@@ -107,13 +125,24 @@ class Learner {
   float* log_std_ = nullptr;              // [action_dim] of the innovation; none with std_mode=state
   BatchSums* block_sums_ = nullptr;       // [this rank's blocks]
   Surrogate* block_surrogate_ = nullptr;  // likewise
-  float scale_ = 1;                       // 1 / rows of the batch
-  size_t begin_ = 0, end_ = 0;            // of grad_: what the last gradient covers
-  bool policy_ = false, critics_ = false, learn_std_ = true, joint_norm_ = false, follow_actor_ = false;
+  // Of the last gradient or measure.
+  Sweep sweep_;
+  const PolicyLoss* policy_ = nullptr;
+  bool critics_ = false;
+  int32_t first_net_ = 0, last_net_ = 0, net_ = 0;  // those that take part; the next one of the group at hand
+  size_t begin_ = 0, end_ = 0;                      // of grad_
+  float scale_ = 1;                                 // 1 / rows of the batch
+  float clip_ = 0;
+  bool with_term_ = false;
+  Job term_;  // behind the rows: the imitation term's
+  BatchSums sums_;
+  Surrogate measured_;
+
+  bool learn_std_ = true, joint_norm_ = false, follow_actor_ = false;
   float value_clip_ = 0;
   double critic_rate_ = 0, entropy_ = 0, max_norm_ = 0, critic_l2_ = 0;
   int64_t skipped_ = 0;
-  const Imitation* imitation_ = nullptr;
+  Imitation* imitation_ = nullptr;
 };
 
 }  // namespace rdm

@@ -81,9 +81,22 @@ int32_t BatchWorkers::add_group(int32_t n, int32_t blocks, float* total, size_t 
   return depth;
 }
 
-void BatchWorkers::reduce(int32_t n, int32_t blocks, float* total, size_t begin, size_t end, int32_t* depth) {
-  ranges(begin, end, [&](size_t low, size_t high) { add_group(n, blocks, total, low, high, *depth); });
-  *depth = add_group(n, blocks, total, 0, 0, *depth);
+void BatchWorkers::reduce(Sweep& sweep, float* total, size_t begin, size_t end) {
+  const int32_t n = sweep.chunks, blocks = sweep.batch.blocks;
+  ranges(begin, end, [&](size_t low, size_t high) { add_group(n, blocks, total, low, high, sweep.depth); });
+  sweep.depth = add_group(n, blocks, total, 0, 0, sweep.depth);
+}
+
+void BatchWorkers::cut(Sweep& s, int32_t chunk_rows) {
+  for (s.chunks = 0; s.chunks < count_ && !s.over(); ++s.chunks) {
+    const Segment segment = s.batch.segment(s.block);
+    const int32_t rows = (segment.rows + s.stride - 1) / s.stride, here = std::min(chunk_rows, rows - s.done);
+    const bool ends = s.done + here == rows;
+    const int32_t* first = s.batch.order + segment.first + s.done * s.stride;
+    workspaces_[s.chunks].chunk = {s.block, first, here, s.done == 0, ends};
+    s.done = ends ? 0 : s.done + here;
+    s.block += ends;
+  }
 }
 
 void BatchWorkers::carve(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_params) {

@@ -59,6 +59,19 @@ struct Chunk {
   bool begins = true, ends = true;  // the block's first, its last
 };
 
+// Where a sweep over every stride-th row of each block of a batch is: groups of chunks that run together.
+struct Sweep {
+  Sweep() = default;
+  explicit Sweep(const Batch& rows, int32_t every = 1) : batch(rows), stride(every) {}
+  bool over() const { return block >= batch.blocks; }
+
+  Batch batch;
+  int32_t stride = 1;
+  int32_t block = 0, done = 0;  // where the next group begins: rows of the block that are done
+  int32_t chunks = 0;           // of the group at hand
+  int32_t depth = 0;            // nodes of the tree that wait (BatchWorkers::reduce)
+};
+
 // Workspace of one chunk in flight.
 struct Workspace {
   int32_t rows = 0;
@@ -107,19 +120,24 @@ class BatchWorkers {
     });
   }
 
-  // work(workspace, first, n) for the chunks of [0, rows), then reduce(first chunk, n) for each group of
-  // chunks that ran together, in order: chunk `first chunk + i` was done by workspace i.
+  // work(workspace, first, n) for the group of chunks of [0, rows) that begins with chunk `group`, then
+  // reduce(group, n): chunk group + i was done by workspace i. Returns the next group's first chunk, -1 behind
+  // the last group.
+  template <class Work, class Reduce>
+  int32_t sweep_group(int32_t rows, int32_t chunk_rows, int32_t group, Work&& work, Reduce&& reduce) {
+    const int32_t chunks = (rows + chunk_rows - 1) / chunk_rows, n = std::min(count_, chunks - group);
+    if (n <= 0) return -1;
+    spread(n, [&](int32_t i) {
+      const int32_t first = (group + i) * chunk_rows;
+      work(workspaces_[i], first, std::min(chunk_rows, rows - first));
+    });
+    reduce(group, n);
+    return group + n < chunks ? group + n : -1;
+  }
+  // The same for all groups, in order.
   template <class Work, class Reduce>
   void sweep(int32_t rows, int32_t chunk_rows, Work&& work, Reduce&& reduce) {
-    const int32_t chunks = (rows + chunk_rows - 1) / chunk_rows;
-    for (int32_t group = 0; group < chunks; group += count_) {
-      const int32_t n = std::min(count_, chunks - group);
-      spread(n, [&](int32_t i) {
-        const int32_t first = (group + i) * chunk_rows;
-        work(workspaces_[i], first, std::min(chunk_rows, rows - first));
-      });
-      reduce(group, n);
-    }
+    for (int32_t group = 0; group >= 0;) group = sweep_group(rows, chunk_rows, group, work, reduce);
   }
   // Adds entries [begin, end) of the gradients of the n workers of a group to total, in order, every range of
   // them by another thread. The first chunk of all is taken to have written its part into total itself.
@@ -129,32 +147,20 @@ class BatchWorkers {
     sweep(rows, chunk_rows, work, [](int32_t, int32_t) {});
   }
 
-  // work(workspace, chunk) for the chunks of every stride-th row of each block of the batch, then reduce(n)
-  // for each group of n workspaces that ran together, in order.
-  template <class Work, class Reduce>
-  void sweep(const Batch& batch, int32_t stride, int32_t chunk_rows, Work&& work, Reduce&& reduce) {
-    for (int32_t block = 0, done = 0; block < batch.blocks;) {
-      int32_t n = 0;
-      for (; n < count_ && block < batch.blocks; ++n) {
-        const Segment s = batch.segment(block);
-        const int32_t rows = (s.rows + stride - 1) / stride, here = std::min(chunk_rows, rows - done);
-        const bool ends = done + here == rows;
-        workspaces_[n].chunk = {block, batch.order + s.first + done * stride, here, done == 0, ends};
-        done = ends ? 0 : done + here;
-        block += ends;
-      }
-      spread(n, [&](int32_t i) { work(workspaces_[i], workspaces_[i].chunk); });
-      reduce(n);
-    }
+  // Cuts the next group of chunks of a sweep, one for each of sweep.chunks workspaces.
+  void cut(Sweep& sweep, int32_t chunk_rows);
+  // work(workspace, chunk) for the chunks of the group.
+  template <class Work>
+  void each(const Sweep& sweep, Work&& work) {
+    spread(sweep.chunks, [&](int32_t i) { work(workspaces_[i], workspaces_[i].chunk); });
   }
   // Where the gradient of a workspace's chunk goes: that of the first of all where the sum is wanted.
   static float* gradient_of(Workspace& workspace, float* total) {
     return workspace.chunk.begins && workspace.chunk.block == 0 ? total : workspace.grad;
   }
-  // Adds entries [begin, end) of the gradients of the n workers of a group, every range of them by another
-  // thread: to their blocks', and these along the tree to total. depth: nodes that wait, 0 before the first
-  // group; 1 after the last one of so many blocks.
-  void reduce(int32_t n, int32_t blocks, float* total, size_t begin, size_t end, int32_t* depth);
+  // Adds entries [begin, end) of the gradients of a sweep's group, every range of them by another thread: to
+  // their blocks', and these along the tree to total, which after the last group has the whole sum.
+  void reduce(Sweep& sweep, float* total, size_t begin, size_t end);
 
  private:
   int32_t add_group(int32_t n, int32_t blocks, float* total, size_t low, size_t high, int32_t depth) const;

@@ -58,6 +58,7 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
     n.size += (n.block[i].size + 15) / 16 * 16;
   }
   n.params = arena.make<float>(n.size);
+  n.before = arena.make<float>(n.block[Networks::kActor].size);
   n.average_share = resolved.options.number("average");
   if (n.average_share > 0) {
     n.average = arena.make<float>(n.block[Networks::kActor].size);
@@ -158,6 +159,14 @@ void restart_average(const Networks& n) {
   if (!n.average) return;
   *n.averaged = 0;
   std::copy_n(n.params, n.block[Networks::kActor].size, n.average);
+}
+
+void keep_actor(const Networks& n) {
+  std::copy_n(n.params, n.block[Networks::kActor].size, n.before);
+}
+
+void restore_actor(const Networks& n) {
+  std::copy_n(n.before, n.block[Networks::kActor].size, n.params);
 }
 
 void clamp_log_std(const Networks& n) {

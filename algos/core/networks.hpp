@@ -51,6 +51,8 @@ struct Networks {
   double average_share = 0;     // of the average that the next epoch leaves, at most
   int64_t* averaged = nullptr;  // epochs in it; null: as average
 
+  float* before = nullptr;  // the actor's block as keep_actor found it
+
   bool state_std() const { return std_size == 0; }
   float* log_std() const { return params; }
   size_t net_offset(int32_t i) const { return block[i].offset + (i == kActor ? std_size : 0); }
@@ -122,6 +124,9 @@ void clamp_log_std(const Networks& n);
 void average_actor(const Networks& n);
 // It begins again with the actor as it is.
 void restart_average(const Networks& n);
+// The actor as it is, and back to it: around a line search.
+void keep_actor(const Networks& n);
+void restore_actor(const Networks& n);
 // With std_schedule=linear the deviation for the epoch that follows `done` finished ones.
 void schedule_std(const Networks& n, const Options& options, int32_t done);
 

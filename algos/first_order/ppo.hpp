@@ -28,7 +28,7 @@ class Ppo : public Agent {
   explicit Ppo(ResolvedAgentConfig&& resolved) : Agent(std::move(resolved)) {}
 
  protected:
-  const PolicyLoss& policy_loss() const override { return loss_; }
+  const PolicyLoss* policy_loss() const override { return &loss_; }
   void read_live() override {
     Agent::read_live();
     loss_.clip = static_cast<float>(options().number("clip"));

@@ -124,8 +124,7 @@ CloneReport clone_actor(const ResolvedAgentConfig& resolved, const DemoRows& giv
         cancel.check();
         const int32_t rows = std::min(how.batch_rows, out.train_rows - first);
         // the mean over entries of squared errors is 2 / dim of the regression's
-        sum +=
-            rows * regression.gradient(demo, order.data() + first, rows, false, 2 / dim, false, grad.data());
+        sum += rows * regression.gradient(demo, order.data() + first, rows, false, 2 / dim, grad.data());
         adam_step(adam, nets.params, grad.data(), rate, 0);
       }
       const double train = 2 / dim * sum / out.train_rows;

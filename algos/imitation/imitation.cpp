@@ -49,12 +49,9 @@ void Imitation::draw(int32_t rows) {
     order_[static_cast<size_t>(i)] = static_cast<int32_t>(stream_.below(count));
 }
 
-double Imitation::add_gradient(float* grad) const {
-  return weight_ * regression_->gradient(demo_, order_.data(), rows_, true, weight_, true, grad);
-}
-
-double Imitation::term() const {
-  return active() ? weight_ * regression_->loss(demo_, order_.data(), rows_, true) : 0;
+Job Imitation::begin(float* grad) {
+  fit_ = {&demo_, order_.data(), rows_, true, weight_, grad, true};
+  return Job::of<&Imitation::advance>(this);
 }
 
 void Imitation::visit(StateIo& io) {

@@ -7,6 +7,7 @@
 // advantage; here advantages are standardised, and sigma is left to the algorithm: at deviations of a few
 // hundredths the likelihood's pull on sigma would open it.
 #pragma once
+#include "algos/core/job.hpp"
 #include "algos/imitation/regression.hpp"
 
 namespace rdm {
@@ -25,14 +26,17 @@ class Imitation {
   void begin_epoch(int32_t done);
   bool active() const { return weight_ > 0 && rows_ > 0; }
   void draw(int32_t rows);  // for a batch of so many
-  // Adds the term's gradient to the actor's block of grad; returns the term.
-  double add_gradient(float* grad) const;
-  double term() const;  // 0 unless active
+  // Where it is active: the term, in term() when the job is done; unless grad is null its gradient is added to
+  // the actor's block of grad.
+  Job begin(float* grad);
+  double term() const { return weight_ * fit_.loss(); }
 
   // Error(kFormat) for a state that was saved beside other rows.
   void visit(StateIo& io);
 
  private:
+  bool advance(bool) { return regression_->advance(fit_); }
+
   const ResolvedAgentConfig* resolved_ = nullptr;
   const Regression* regression_ = nullptr;
   Vector<float> obs_, label_;
@@ -44,6 +48,7 @@ class Imitation {
   Stream stream_;
   double base_ = 0, decay_ = 1, weight_ = 0;
   int32_t rows_ = 0;  // drawn
+  Fit fit_;
 };
 
 }  // namespace rdm

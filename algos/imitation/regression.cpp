@@ -48,37 +48,35 @@ double Regression::chunk(const Workspace& workspace, const DemoRows& demo, const
   return sum;
 }
 
-double Regression::gradient(const DemoRows& demo, const int32_t* order, int32_t rows, bool precise,
-                            double weight, bool add, float* grad) const {
-  const auto scale = static_cast<float>(weight / rows);
+bool Regression::advance(Fit& fit) const {
+  const auto scale = static_cast<float>(fit.weight / fit.rows);
   const size_t end = nets_->block[Networks::kReward].offset;
-  double sum = 0;
-  workers_->sweep(
-      rows, resolved_->chunk_rows,
+  fit.group = workers_->sweep_group(
+      fit.rows, resolved_->chunk_rows, fit.group,
       [&](Workspace& workspace, int32_t first, int32_t n) {
-        float* to = first == 0 && !add ? grad : workspace.grad;
+        float* to = first == 0 && !fit.add ? fit.grad : workspace.grad;
         workspace.sums = BatchSums();
-        workspace.sums.loss = chunk(workspace, demo, order + first, n, precise, scale, to);
+        workspace.sums.loss =
+            chunk(workspace, *fit.demo, fit.order + first, n, fit.precise, scale, fit.grad ? to : nullptr);
       },
       [&](int32_t group, int32_t n) {
-        for (int32_t i = 0; i < n; ++i) sum += (*workers_)[i].sums.loss;
-        workers_->reduce(add ? group + 1 : group, n, grad, 0, end);  // of group 0 the first is there already
+        for (int32_t i = 0; i < n; ++i) fit.sum += (*workers_)[i].sums.loss;
+        // of group 0 the first is there already
+        if (fit.grad) workers_->reduce(fit.add ? group + 1 : group, n, fit.grad, 0, end);
       });
-  return sum / (2.0 * rows);
+  return fit.group < 0;
+}
+
+double Regression::gradient(const DemoRows& demo, const int32_t* order, int32_t rows, bool precise,
+                            double weight, float* grad) const {
+  Fit fit{&demo, order, rows, precise, weight, grad};
+  while (!advance(fit)) {
+  }
+  return fit.loss();
 }
 
 double Regression::loss(const DemoRows& demo, const int32_t* order, int32_t rows, bool precise) const {
-  double sum = 0;
-  workers_->sweep(
-      rows, resolved_->chunk_rows,
-      [&](Workspace& workspace, int32_t first, int32_t n) {
-        workspace.sums = BatchSums();
-        workspace.sums.loss = chunk(workspace, demo, order + first, n, precise, 0, nullptr);
-      },
-      [&](int32_t, int32_t n) {
-        for (int32_t i = 0; i < n; ++i) sum += (*workers_)[i].sums.loss;
-      });
-  return sum / (2.0 * rows);
+  return gradient(demo, order, rows, precise, 0, nullptr);
 }
 
 void Regression::features(const DemoRows& demo, float* out) const {

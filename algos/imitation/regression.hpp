@@ -21,15 +21,31 @@ struct DemoRows {
   PointRows clouds = {};             // [rows], for an agent with eyes
 };
 
+// L of listed rows on its way.
+struct Fit {
+  const DemoRows* demo = nullptr;
+  const int32_t* order = nullptr;  // [rows]
+  int32_t rows = 0;
+  bool precise = false;   // p = 1 / sigma^2
+  double weight = 0;      // of the gradient
+  float* grad = nullptr;  // [Networks::size], of which the actor's block gets weight dL; null: L alone
+  bool add = false;       // it is added
+  int32_t group = 0;      // the chunk that comes next, -1: none
+  double sum = 0;
+  double loss() const { return sum / (2.0 * rows); }
+};
+
 class Regression {
  public:
   // All must outlive it.
   void open(const ResolvedAgentConfig& resolved, const Collector& collector, const Networks& nets,
             BatchWorkers& workers);
 
-  // L, and weight dL of the actor's block: written to grad [Networks::size], or with `add` added to it.
+  // One group of chunks more; true when that was the last one.
+  bool advance(Fit& fit) const;
+  // L, and weight dL of the actor's block, written to grad [Networks::size].
   double gradient(const DemoRows& demo, const int32_t* order, int32_t rows, bool precise, double weight,
-                  bool add, float* grad) const;
+                  float* grad) const;
   double loss(const DemoRows& demo, const int32_t* order, int32_t rows, bool precise) const;
   // What the encoder makes of all clouds: out [rows][features].
   void features(const DemoRows& demo, float* out) const;

@@ -30,7 +30,7 @@ class FocopsBase : public Agent {
   explicit FocopsBase(ResolvedAgentConfig&& resolved) : Agent(std::move(resolved)) {}
 
  protected:
-  const PolicyLoss& policy_loss() const override { return loss_; }
+  const PolicyLoss* policy_loss() const override { return &loss_; }
   void read_live() override;
 
  private:

@@ -43,10 +43,7 @@ class Ipo final : public CostWeighted<Ppo, BarrierRule> {
   explicit Ipo(ResolvedAgentConfig&& resolved) : CostWeighted(std::move(resolved)) {}
 
  protected:
-  const PolicyLoss& policy_loss() const override {
-    if (exact_) return loss_;
-    return CostWeighted::policy_loss();
-  }
+  const PolicyLoss* policy_loss() const override { return exact_ ? &loss_ : CostWeighted::policy_loss(); }
   void opened() override { exact_ = std::strcmp(options().text("barrier"), "exact") == 0; }
   void read_live() override {
     CostWeighted::read_live();
@@ -63,8 +60,11 @@ class Ipo final : public CostWeighted<Ppo, BarrierRule> {
       violation_[i] = violation(costs, i), loss_.weight[i] = 0;
     if (known_) loss_.aim(Surrogate(), violation_, resolved().num_limited);
   }
-  void begin_minibatch(const Batch& batch) override {
-    if (exact_ && known_) loss_.aim(learner().measure(batch), violation_, resolved().num_limited);
+  Job measure_minibatch(const Batch& batch) override {
+    return exact_ && known_ ? learner().begin_measure(batch) : Job();
+  }
+  void begin_minibatch(const Surrogate& now) override {
+    if (exact_ && known_) loss_.aim(now, violation_, resolved().num_limited);
   }
   double cost_weight(int32_t i) const override {
     return exact_ ? static_cast<double>(loss_.weight[i]) : CostWeighted::cost_weight(i);

@@ -44,8 +44,11 @@ void P3o::begin_epoch(const JudgedCosts& costs, int32_t epoch) {
   for (int32_t i = 0; i < resolved().num_limited; ++i) violation_[i] = violation(costs, i);
 }
 
-void P3o::begin_minibatch(const Batch& batch) {
-  const Surrogate now = learner().measure(batch, loss_.clip_cost ? loss_.clip : 0);
+Job P3o::measure_minibatch(const Batch& batch) {
+  return learner().begin_measure(batch, loss_.clip_cost ? loss_.clip : 0);
+}
+
+void P3o::begin_minibatch(const Surrogate& now) {
   for (int32_t k = 0; k < resolved().num_limited; ++k)
     loss_.weight[k] = now.cost[k] + violation_[k] > 0 ? static_cast<float>(kappa_) : 0;
 }

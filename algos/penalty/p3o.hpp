@@ -36,10 +36,11 @@ class P3o final : public Ppo {
   explicit P3o(ResolvedAgentConfig&& resolved) : Ppo(std::move(resolved)) {}
 
  protected:
-  const PolicyLoss& policy_loss() const override { return loss_; }
+  const PolicyLoss* policy_loss() const override { return &loss_; }
   void begin_epoch(const JudgedCosts& costs, int32_t epoch) override;
   // The penalty is on where the minibatch's estimate of the constraint is above 0.
-  void begin_minibatch(const Batch& batch) override;
+  Job measure_minibatch(const Batch& batch) override;
+  void begin_minibatch(const Surrogate& now) override;
   double cost_weight(int32_t) const override { return kappa_; }
   void opened() override { kappa_ = options().number("penalty"); }
   void read_live() override;

@@ -455,7 +455,7 @@ double Collector::mean_value(bool of_cost) const {
                  : masked_mean(r.rows(), r.value, 1, workers_->ranks());
 }
 
-void Collector::estimate(const float* last_obs) {
+void Collector::begin_estimate(const float* last_obs) {
   const Rollout& r = rollout_;
   workers_->sweep(r.num_envs, resolved_->chunk_rows,
                   [&](const Workspace& workspace, int32_t first, int32_t rows) {
@@ -464,8 +464,21 @@ void Collector::estimate(const float* last_obs) {
                     values(workspace, x, rows, r.last_value + at,
                            r.last_cost_value + at * static_cast<size_t>(r.num_costs));
                   });
+  column_ = -1;
+}
+
+bool Collector::estimate_on() {
+  if (column_ < rollout_.num_costs) {
+    estimate_advantage(rollout_, column_++, advantage_, workers_->ranks());
+    return false;
+  }
+  list_rows();
+  return true;
+}
+
+void Collector::list_rows() {
+  const Rollout& r = rollout_;
   Ranks& ranks = workers_->ranks();
-  estimate_advantages(r, advantage_, ranks);
   const int32_t envs = ranks.block_envs();
   int32_t* const own = block_rows_ + ranks.first_block();
   for (int32_t b = 0, at = 0; b < ranks.blocks(); ++b, at += own[b - 1]) {

@@ -42,8 +42,15 @@ class Collector {
   // Of the horizon so far, over all ranks.
   EpochTotals totals() const;
   // Advantages and targets of a full horizon, in the rollout, whose order then lists the valid rows by
-  // blocks.
-  void estimate(const float* last_obs);
+  // blocks: after the values of the last observations a column at a time, until estimate_on says that it is
+  // done.
+  void begin_estimate(const float* last_obs);
+  bool estimate_on();
+  void estimate(const float* last_obs) {
+    begin_estimate(last_obs);
+    while (!estimate_on()) {
+    }
+  }
   // The listed rows, those of all ranks counted.
   const Batch& listed() const { return listed_rows_; }
   // Minibatch i of `parts`: of each block's list the part of that number.
@@ -81,6 +88,7 @@ class Collector {
   PointRows keep_points(const PointRows& clouds, size_t at, int32_t rows) const;
   void check(const Transition& t) const;
   void value_truncated(const Transition& t);
+  void list_rows();
   void scale_rewards(const Transition& t);
   void merge(Normalizer& n, const float* x, const uint8_t* mask, double count_max);
   void check_flags(const char* name, const uint8_t* flags) const;
@@ -112,6 +120,7 @@ class Collector {
   Segment* segments_ = nullptr;    // [this rank's blocks]
   Segment* part_ = nullptr;        // likewise, of the last minibatch
   Batch listed_rows_;
+  int32_t column_ = -1;  // that estimate_on comes to next
   // Of this horizon: [num_envs][cost_dim], [num_envs], and counts that need no order.
   double *epoch_cost_ = nullptr, *epoch_steps_ = nullptr;
   int64_t invalid_ = 0, cut_ = 0, status_[EpochTotals::kStatusKinds] = {};

@@ -52,16 +52,21 @@ Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
   return r;
 }
 
-void estimate_advantages(const Rollout& r, const AdvantageOptions& options, Ranks& ranks) {
-  gae({r.reward, r.value, r.last_value, r.advantage, r.target, 1}, r.discount, r.valid, r.horizon, r.num_envs,
-      options.lambda);
-  if (options.standardize_reward) standardize(r.rows(), r.advantage, 1, true, ranks);
-  for (int32_t k = 0; k < r.num_costs; ++k) {
-    gae({r.cost + k, r.cost_value + k, r.last_cost_value + k, r.cost_advantage + k, r.cost_target + k,
-         r.num_costs},
-        r.discount, r.valid, r.horizon, r.num_envs, options.cost_lambda);
-    standardize(r.rows(), r.cost_advantage + k, r.num_costs, options.standardize_cost, ranks);
+void estimate_advantage(const Rollout& r, int32_t k, const AdvantageOptions& options, Ranks& ranks) {
+  if (k < 0) {
+    gae({r.reward, r.value, r.last_value, r.advantage, r.target, 1}, r.discount, r.valid, r.horizon,
+        r.num_envs, options.lambda);
+    if (options.standardize_reward) standardize(r.rows(), r.advantage, 1, true, ranks);
+    return;
   }
+  gae({r.cost + k, r.cost_value + k, r.last_cost_value + k, r.cost_advantage + k, r.cost_target + k,
+       r.num_costs},
+      r.discount, r.valid, r.horizon, r.num_envs, options.cost_lambda);
+  standardize(r.rows(), r.cost_advantage + k, r.num_costs, options.standardize_cost, ranks);
+}
+
+void estimate_advantages(const Rollout& r, const AdvantageOptions& options, Ranks& ranks) {
+  for (int32_t k = -1; k < r.num_costs; ++k) estimate_advantage(r, k, options, ranks);
 }
 
 double sample_ratio(const Rollout& r, size_t at, const float* mean, const float* log_std) {

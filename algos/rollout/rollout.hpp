@@ -60,7 +60,9 @@ void expect_actions(const Rollout& r, const int32_t* order, int32_t n);
 // or A_r - sum l_i A_ci.
 enum class Mix : int32_t { kSum, kDifference, kPlain };
 
-// Fills advantages and targets of reward and costs, and scales the advantages by those of all ranks.
+// Fills advantages and targets of the reward (column -1) or a limited cost, and scales the advantages by those
+// of all ranks.
+void estimate_advantage(const Rollout& r, int32_t column, const AdvantageOptions& options, Ranks& ranks);
 void estimate_advantages(const Rollout& r, const AdvantageOptions& options, Ranks& ranks);
 // What the actor climbs under cost weights l [num_costs], in gain; with split the cost part of it stands in
 // linear instead, which no clip touches.

@@ -35,29 +35,60 @@ struct CgOptions {
   double tolerance = 1e-6;  // |residual| / |b| that is enough
 };
 
-// x [size] = the iterate reached from 0. multiply(v, out): out = A v. Stops early at the tolerance, and
-// where rounding leaves no positive curvature. Returns the number of products.
-template <class Multiply>
-int32_t conjugate_gradient(Multiply&& multiply, const float* b, const CgWork& work, const CgOptions& options,
-                           float* x) {
-  const size_t n = work.size;
-  float *const r = work.residual, *const d = work.direction, *const z = work.product;
-  for (size_t i = 0; i < n; ++i) x[i] = 0, r[i] = d[i] = b[i];
-  double rr = dot(r, r, n);
-  const double enough = options.tolerance * options.tolerance * rr;
-  for (int32_t k = 0; k < options.iterations; ++k) {
-    if (!(rr > enough)) return k;
-    multiply(static_cast<const float*>(d), z);
-    const double curvature = dot(d, z, n);
-    if (!(curvature > 0) || !std::isfinite(curvature)) return k;
-    const auto alpha = static_cast<float>(rr / curvature);
-    for (size_t i = 0; i < n; ++i) x[i] += alpha * d[i], r[i] -= alpha * z[i];
-    const double next = dot(r, r, n);
-    const auto beta = static_cast<float>(next / rr);
-    for (size_t i = 0; i < n; ++i) d[i] = r[i] + beta * d[i];
-    rr = next;
-  }
-  return options.iterations;
+// The iterates, a product at a time:
+//   begin(b, ...);  while (next()) product = A direction
+// leaves in x [size] the iterate reached from 0. Stops early at the tolerance, and where rounding leaves no
+// positive curvature.
+class ConjugateGradient {
+ public:
+  void begin(const float* b, const CgWork& work, const CgOptions& options, float* x);
+  // Takes in the product that it asked for, and asks for the next one; false: x is as it stays.
+  bool next();
+  const float* direction() const { return work_.direction; }
+  float* product() const { return work_.product; }
+  int32_t products() const { return products_; }  // that x is made of
+
+ private:
+  bool take();
+
+  CgWork work_;
+  CgOptions options_;
+  float* x_ = nullptr;
+  double rr_ = 0, enough_ = 0;
+  int32_t products_ = 0;
+  bool asked_ = false;
+};
+
+inline void ConjugateGradient::begin(const float* b, const CgWork& work, const CgOptions& options, float* x) {
+  work_ = work;
+  options_ = options;
+  x_ = x;
+  for (size_t i = 0; i < work.size; ++i) x[i] = 0, work.residual[i] = work.direction[i] = b[i];
+  rr_ = dot(work.residual, work.residual, work.size);
+  enough_ = options.tolerance * options.tolerance * rr_;
+  products_ = 0;
+  asked_ = false;
+}
+
+inline bool ConjugateGradient::take() {
+  const size_t n = work_.size;
+  float *const r = work_.residual, *const d = work_.direction, *const z = work_.product;
+  const double curvature = dot(d, z, n);
+  if (!(curvature > 0) || !std::isfinite(curvature)) return false;
+  const auto alpha = static_cast<float>(rr_ / curvature);
+  for (size_t i = 0; i < n; ++i) x_[i] += alpha * d[i], r[i] -= alpha * z[i];
+  const double next = dot(r, r, n);
+  const auto beta = static_cast<float>(next / rr_);
+  for (size_t i = 0; i < n; ++i) d[i] = r[i] + beta * d[i];
+  rr_ = next;
+  ++products_;
+  return true;
+}
+
+inline bool ConjugateGradient::next() {
+  if (asked_ && !take()) return false;
+  asked_ = products_ < options_.iterations && rr_ > enough_;
+  return asked_;
 }
 
 }  // namespace rdm

@@ -26,14 +26,10 @@ bool Cpo::solve(double c) {
   return y.which == CpoCase::kBoundary || y.which == CpoCase::kInside || y.which == CpoCase::kNoCost;
 }
 
-double Cpo::step_policy(const Batch& batch) {
-  region().linearize(batch, free_ ? -1 : cost_, schedule_share());
-  const bool keep_reward = solve(free_ ? 0 : c_);
+bool Cpo::accept(const Surrogate& before, const Surrogate& after) const {
   const auto k = static_cast<size_t>(cost_);
-  return region().search([&](const Surrogate& before, const Surrogate& after) {
-    return (free_ || after.cost[k] - before.cost[k] <= std::max(-c_, 0.0)) &&
-           (!keep_reward || after.gain >= before.gain);
-  });
+  return (free_ || after.cost[k] - before.cost[k] <= std::max(-c_, 0.0)) &&
+         (!keep_reward_ || after.gain >= before.gain);
 }
 
 void Cpo::visit_state(StateIo& io) {

@@ -18,8 +18,10 @@ class Cpo : public Trpo {
 
  protected:
   void begin_epoch(const JudgedCosts& costs, int32_t epoch) override;
-  double step_policy(const Batch& batch) override;
   bool constrained() const override { return true; }
+  int32_t followed_cost() const override { return free_ ? -1 : cost_; }
+  void aim() override { keep_reward_ = solve(free_ ? 0 : c_); }
+  bool accept(const Surrogate& before, const Surrogate& after) const override;
   double cost_weight(int32_t i) const override { return i == cost_ ? nu_ : 0; }
   void visit_state(StateIo& io) override;
 
@@ -32,6 +34,7 @@ class Cpo : public Trpo {
   int32_t cost_ = 0;  // the limited cost that this epoch follows
   double c_ = 0;
   bool free_ = false;  // no limit can bind
+  bool keep_reward_ = false;
 };
 
 }  // namespace rdm

@@ -28,21 +28,24 @@ void Fisher::read_live(const Options& o) {
   stride_ = o.integer("fisher_stride");
 }
 
-void Fisher::set_rows(const Batch& batch) {
+Job Fisher::begin_rows(const Batch& batch) {
   batch_ = batch;
   int32_t own = 0;
   for (int32_t b = 0; b < batch.blocks; ++b) own += (batch.segment(b).rows + stride_ - 1) / stride_;
   rows_ = static_cast<int32_t>(workers_->ranks().total(own));
-  if (nets_->eyes.points && !nets_->frozen) see();
   for (size_t j = 0; !nets_->state_std() && j < resolved_->action_dim(); ++j) {
     const auto log_std = static_cast<double>(nets_->log_std()[j] + resolved_->log_share);
     weight_[j] = static_cast<float>(elementary::exp(-2 * log_std) / (rows_ * dims_));
   }
+  if (!features_) return {};
+  sweep_ = Sweep(batch, stride_);
+  return Job::of<&Fisher::advance_rows>(this);
 }
 
-void Fisher::see() {
+bool Fisher::advance_rows(bool) {
   const auto width = static_cast<size_t>(nets_->eyes.features());
-  const auto look = [&](const Workspace& workspace, const Chunk& chunk) {
+  workers_->cut(sweep_, resolved_->chunk_rows);
+  workers_->each(sweep_, [&](const Workspace& workspace, const Chunk& chunk) {
     const PointRows seen = rollout_->clouds(chunk.order, stride_);
     pointnet_forward(nets_->eyes, nets_->eyes_net(), seen, chunk.rows, workspace.actor.eyes,
                      workspace.actor.dfeatures, width, workspace.actor.winner);
@@ -50,8 +53,8 @@ void Fisher::see() {
       std::copy_n(workspace.actor.dfeatures + i * width, width, features_ + seen.row(i) * width);
       std::copy_n(workspace.actor.winner + i * width, width, winner_ + seen.row(i) * width);
     }
-  };
-  workers_->sweep(batch_, stride_, resolved_->chunk_rows, look, [](int32_t) {});
+  });
+  return sweep_.over();
 }
 
 PointRows Fisher::clouds(const int32_t* rows) const {
@@ -77,27 +80,40 @@ void Fisher::weigh(const float* y, int32_t n, float* dy) const {
   nets_->gate_std(y, n, dy);
 }
 
-void Fisher::multiply(const float* v, float* out) {
+Job Fisher::begin_product(const float* v, float* out) {
+  v_ = v;
+  out_ = out;
+  sweep_ = Sweep(batch_, stride_);
+  return Job::of<&Fisher::advance_product>(this);
+}
+
+bool Fisher::advance_product(bool) {
+  workers_->cut(sweep_, resolved_->chunk_rows);
+  workers_->each(sweep_, [&](Workspace& w, const Chunk& chunk) { multiply_chunk(w, chunk); });
+  workers_->reduce(sweep_, out_, nets_->std_size, nets_->block[Networks::kActor].size);
+  if (sweep_.over()) end_product();
+  return sweep_.over();
+}
+
+void Fisher::multiply_chunk(Workspace& workspace, const Chunk& chunk) {
   const size_t skip = nets_->std_size, size = nets_->block[Networks::kActor].size;
-  int32_t depth = 0;
-  workers_->sweep(
-      batch_, stride_, resolved_->chunk_rows,
-      [&](Workspace& workspace, const Chunk& chunk) {
-        float* grad = BatchWorkers::gradient_of(workspace, out);
-        const int32_t n = chunk.rows;
-        if (n == 0) return std::fill(grad + skip, grad + size, 0.0f);
-        const PointRows seen = clouds(chunk.order);
-        gather_obs(*rollout_, chunk.order, stride_, n, workspace.obs);
-        nets_->forward_actor(workspace.obs, seen, n, workspace.actor, workspace.out);
-        nets_->tangent_actor(v + skip, workspace.obs, seen, n, workspace.actor, workspace.dout);
-        weigh(workspace.out, n, workspace.dout);
-        nets_->backward_actor(workspace.obs, seen, n, workspace.actor, workspace.dout, grad);
-      },
-      [&](int32_t n) { workers_->reduce(n, batch_.blocks, out, skip, size, &depth); });
-  workers_->ranks().sum(out + skip, size - skip, nullptr, 0);
+  float* grad = BatchWorkers::gradient_of(workspace, out_);
+  const int32_t n = chunk.rows;
+  if (n == 0) return std::fill(grad + skip, grad + size, 0.0f);
+  const PointRows seen = clouds(chunk.order);
+  gather_obs(*rollout_, chunk.order, stride_, n, workspace.obs);
+  nets_->forward_actor(workspace.obs, seen, n, workspace.actor, workspace.out);
+  nets_->tangent_actor(v_ + skip, workspace.obs, seen, n, workspace.actor, workspace.dout);
+  weigh(workspace.out, n, workspace.dout);
+  nets_->backward_actor(workspace.obs, seen, n, workspace.actor, workspace.dout, grad);
+}
+
+void Fisher::end_product() {
+  const size_t skip = nets_->std_size, size = nets_->block[Networks::kActor].size;
+  workers_->ranks().sum(out_ + skip, size - skip, nullptr, 0);
   const auto damping = static_cast<float>(damping_), own = static_cast<float>(2 / dims_);
-  for (size_t j = 0; j < skip; ++j) out[j] = (own + damping) * v[j];
-  for (size_t j = skip; j < size; ++j) out[j] += damping * v[j];
+  for (size_t j = 0; j < skip; ++j) out_[j] = (own + damping) * v_[j];
+  for (size_t j = skip; j < size; ++j) out_[j] += damping * v_[j];
 }
 
 }  // namespace rdm

@@ -13,6 +13,7 @@
 // does, where the paper sums.
 #pragma once
 #include "algos/core/batch_workers.hpp"
+#include "algos/core/job.hpp"
 #include "algos/core/networks.hpp"
 #include "algos/rollout/rollout.hpp"
 
@@ -27,13 +28,19 @@ class Fisher {
   void read_live(const Options& options);
 
   // The matrix is of every stride-th of each block's rows, at the policy as it is at each product. An encoder
-  // is held at what it is now: all points go through it here, once, and winners alone in each product.
-  void set_rows(const Batch& batch);
+  // is held at what it is now: all points go through it here, once, and winners alone in each product; of no
+  // job there are none.
+  Job begin_rows(const Batch& batch);
+  void set_rows(const Batch& batch) { begin_rows(batch).finish(); }
   // out = (F + damping I) v; both laid out as the actor's block.
-  void multiply(const float* v, float* out);
+  Job begin_product(const float* v, float* out);
+  void multiply(const float* v, float* out) { begin_product(v, out).finish(); }
 
  private:
-  void see();
+  bool advance_rows(bool whole);
+  bool advance_product(bool whole);
+  void multiply_chunk(Workspace& workspace, const Chunk& chunk);
+  void end_product();
   PointRows clouds(const int32_t* rows) const;
   // Tangents of the outputs of n rows into what is propagated back.
   void weigh(const float* y, int32_t n, float* dy) const;
@@ -46,6 +53,9 @@ class Fisher {
   float* features_ = nullptr;  // [samples][features] of an encoder that learns, and the points that won
   int32_t* winner_ = nullptr;  // likewise
   Batch batch_;
+  Sweep sweep_;
+  const float* v_ = nullptr;  // of the product at hand
+  float* out_ = nullptr;
   int32_t rows_ = 0, stride_ = 1;    // rows: that the matrix is of, of all ranks
   double damping_ = 0.1, dims_ = 1;  // dims: what sums over action dimensions are divided by
 };

@@ -13,7 +13,7 @@ void Trpo::carve(Arena& arena) {
 }
 
 void Trpo::opened() {
-  region_.open(cancel_flag(), resolved(), rollout(), nets(), workers(), learner());
+  region_.open(resolved(), rollout(), nets(), workers(), learner());
 }
 
 void Trpo::read_live() {
@@ -21,23 +21,29 @@ void Trpo::read_live() {
   region_.read_live(options());
 }
 
-double Trpo::step_policy(const Batch& batch) {
-  region_.linearize(batch, -1, schedule_share());
-  if (region_.q() > 0)
-    region_.set_step(std::sqrt(2 * region_.delta() / region_.q()), 0, 0);
-  else
-    region_.set_step(0, 0, 0);
-  return region_.search(
-      [](const Surrogate& before, const Surrogate& after) { return after.gain >= before.gain; });
+void Trpo::begin_step() {
+  region_.begin_linearize(whole_batch(), followed_cost(), schedule_share());
+  searching_ = false;
 }
 
-void Trpo::learn() {
-  if (valid_rows() == 0) return;
-  step_policy(whole_batch());
-  BatchSums sums;
-  Learned& out = learned();
-  for (; out.passes < options().integer("passes"); ++out.passes) sums += pass(nullptr);
-  if (out.passes > 0) out.mean = sums.scaled(1.0 / (static_cast<double>(valid_rows()) * out.passes));
+Job Trpo::step_on() {
+  if (searching_)
+    return region_.search_on([&](const Surrogate& a, const Surrogate& b) { return accept(a, b); });
+  if (Job job = region_.linearize_on()) return job;
+  aim();
+  searching_ = true;
+  return region_.begin_search();
+}
+
+void Trpo::aim() {
+  region_.set_step(region_.q() > 0 ? std::sqrt(2 * region_.delta() / region_.q()) : 0, 0, 0);
+}
+
+bool Trpo::accept(const Surrogate& before, const Surrogate& after) const {
+  return after.gain >= before.gain;
+}
+
+void Trpo::report(Learned& out) const {
   out.mean.loss = -region_.reached().gain;
   out.mean.kl = out.last_kl = region_.reached().kl;
 }

@@ -3,7 +3,6 @@
 //   y = sqrt(2 delta / x'H x) x, x = H^-1 G;   y is shortened until KL <= delta and the gain >= 0
 #pragma once
 #include "algos/agent/agent.hpp"
-#include "algos/first_order/ratio_loss.hpp"
 #include "algos/trust_region/trust_region.hpp"
 
 namespace rdm {
@@ -16,17 +15,22 @@ class Trpo : public Agent {
  protected:
   void opened() override;
   void read_live() override;
-  void learn() override;
-  const PolicyLoss& policy_loss() const override { return loss_; }
-  // The step of the actor over the listed rows; returns the fraction of it that the line search took.
-  virtual double step_policy(const Batch& batch);
+  const PolicyLoss* policy_loss() const override { return nullptr; }
+  void begin_step() override;
+  Job step_on() override;
+  void report(Learned& out) const override;
   // A limited cost is linearised beside the reward.
   virtual bool constrained() const { return false; }
+  // The one, -1: none in this epoch.
+  virtual int32_t followed_cost() const { return -1; }
+  // The region is linearised: how far along each of its vectors.
+  virtual void aim();
+  virtual bool accept(const Surrogate& before, const Surrogate& after) const;
   TrustRegion& region() { return region_; }
 
  private:
-  GainLoss loss_;
   TrustRegion region_;
+  bool searching_ = false;
 };
 
 }  // namespace rdm

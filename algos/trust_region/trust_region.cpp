@@ -3,23 +3,20 @@
 #include <algorithm>
 #include <cstring>
 
-#include "algos/first_order/ratio_loss.hpp"
-
 namespace rdm {
 
 void TrustRegion::carve(Arena& arena, const ResolvedAgentConfig& resolved, const Networks& nets,
                         bool with_cost) {
   size_ = nets.block[Networks::kActor].size;
   fisher_.carve(arena, resolved);
-  cg_ = carve_cg_work(arena, size_);
-  for (float** v : {&g_, &x_, &step_, &before_}) *v = arena.make<float>(size_);
+  cg_work_ = carve_cg_work(arena, size_);
+  for (float** v : {&g_, &x_, &step_}) *v = arena.make<float>(size_);
   if (!with_cost) return;
   for (float** v : {&b_, &p_}) *v = arena.make<float>(size_);
 }
 
-void TrustRegion::open(CancelFlag& cancel, const ResolvedAgentConfig& resolved, const Rollout& rollout,
-                       Networks& nets, BatchWorkers& workers, Learner& learner) {
-  cancel_ = &cancel;
+void TrustRegion::open(const ResolvedAgentConfig& resolved, const Rollout& rollout, Networks& nets,
+                       BatchWorkers& workers, Learner& learner) {
   resolved_ = &resolved;
   nets_ = &nets;
   learner_ = &learner;
@@ -35,40 +32,66 @@ void TrustRegion::read_live(const Options& o) {
   decay_ = o.number("line_search_decay");
 }
 
-void TrustRegion::gradient_of(const PolicyLoss& loss, float sign, float* out) {
-  cancel_->check();
-  learner_->gradient(&loss, false, batch_);
+Job TrustRegion::begin_gradient(const PolicyLoss& loss) {
+  return learner_->begin_gradient(&loss, false, batch_);
+}
+
+void TrustRegion::begin_solve(float sign, float* out, float* x) {
   for (size_t i = 0; i < size_; ++i) out[i] = sign * learner_->gradient()[i];
+  cg_.begin(out, cg_work_, cg_options_, x);
 }
 
-void TrustRegion::solve(const float* b, float* x) {
-  conjugate_gradient(
-      [&](const float* v, float* out) {
-        cancel_->check();
-        fisher_.multiply(v, out);
-      },
-      b, cg_, cg_options_, x);
+Job TrustRegion::solve_on() {
+  return cg_.next() ? fisher_.begin_product(cg_.direction(), cg_.product()) : Job();
 }
 
-void TrustRegion::linearize(const Batch& batch, int32_t cost, double share) {
+void TrustRegion::begin_linearize(const Batch& batch, int32_t cost, double share) {
   delta_ = limit_ * share * share;
   batch_ = batch;
-  fisher_.set_rows(batch);
-  gradient_of(GainLoss(), -1, g_);
-  solve(g_, x_);
-  // By x'F x rather than G'x: right also where conjugate gradients stopped early.
-  fisher_.multiply(x_, cg_.product);
-  q_ = dot(x_, cg_.product, size_);
+  cost_ = cost;
+  cost_loss_ = CostLoss(cost);
   r_ = s_ = bb_ = 0;
-  if (cost < 0) {
-    if (p_) std::fill_n(b_, size_, 0.0f), std::fill_n(p_, size_, 0.0f);
-    return;
-  }
-  gradient_of(CostLoss(cost), 1, b_);
-  solve(b_, p_);
-  r_ = dot(b_, x_, size_);
-  s_ = dot(b_, p_, size_);
-  bb_ = dot(b_, b_, size_);
+  if (p_) std::fill_n(b_, size_, 0.0f), std::fill_n(p_, size_, 0.0f);
+  stage_ = Stage::kRows;
+}
+
+Job TrustRegion::linearize_on() {
+  for (;;) switch (stage_) {
+      case Stage::kRows:
+        stage_ = Stage::kGain;
+        if (Job job = fisher_.begin_rows(batch_)) return job;
+        break;
+      case Stage::kGain:
+        stage_ = Stage::kGainThere;
+        return begin_gradient(gain_);
+      case Stage::kGainThere:
+        stage_ = Stage::kSolveGain;
+        begin_solve(-1, g_, x_);
+        break;
+      case Stage::kSolveGain:
+        if (Job job = solve_on()) return job;
+        stage_ = Stage::kProductThere;
+        return fisher_.begin_product(x_, cg_.product());
+      case Stage::kProductThere:
+        // By x'F x rather than G'x: right also where conjugate gradients stopped early.
+        q_ = dot(x_, cg_.product(), size_);
+        stage_ = cost_ < 0 ? Stage::kDone : Stage::kCostThere;
+        if (cost_ >= 0) return begin_gradient(cost_loss_);
+        break;
+      case Stage::kCostThere:
+        stage_ = Stage::kSolveCost;
+        begin_solve(1, b_, p_);
+        break;
+      case Stage::kSolveCost:
+        if (Job job = solve_on()) return job;
+        r_ = dot(b_, x_, size_);
+        s_ = dot(b_, p_, size_);
+        bb_ = dot(b_, b_, size_);
+        stage_ = Stage::kDone;
+        break;
+      case Stage::kDone:
+        return {};
+    }
 }
 
 void TrustRegion::set_step(double along_x, double along_p, double along_b) {
@@ -79,25 +102,38 @@ void TrustRegion::set_step(double along_x, double along_p, double along_b) {
   }
 }
 
-// The gain is less the imitation term, as its gradient is.
-Surrogate TrustRegion::measure() {
-  Surrogate s = learner_->measure(batch_);
-  s.gain -= learner_->imitation();
-  return s;
+Job TrustRegion::begin_search() {
+  keep_actor(*nets_);
+  fraction_ = 1;
+  tried_ = 0;
+  return learner_->begin_measure(batch_, 0, true);
 }
 
-void TrustRegion::save() {
-  std::memcpy(before_, nets_->params, size_ * sizeof(float));
+bool TrustRegion::in_region() const {
+  const Surrogate& s = learner_->measured();
+  return s.finite() && s.kl / dims_ <= delta_;
 }
 
-void TrustRegion::restore() {
-  std::memcpy(nets_->params, before_, size_ * sizeof(float));
+Job TrustRegion::next_try() {
+  if (tried_ == tries_) {
+    restore_actor(*nets_);
+    return end_search(0, before_);
+  }
+  if (tried_++ > 0) fraction_ *= decay_;
+  move(fraction_);
+  return learner_->begin_measure(batch_, 0, true);
+}
+
+Job TrustRegion::end_search(double taken, const Surrogate& reached) {
+  taken_ = taken;
+  reached_ = reached;
+  return {};
 }
 
 void TrustRegion::move(double f) {
   for (size_t i = 0; i < size_; ++i)
     nets_->params[i] =
-        static_cast<float>(static_cast<double>(before_[i]) + f * static_cast<double>(step_[i]));
+        static_cast<float>(static_cast<double>(nets_->before[i]) + f * static_cast<double>(step_[i]));
   clamp_log_std(*nets_);
 }
 

@@ -11,9 +11,9 @@
 // throws, as measured on them. With lr_schedule=linear the radius shrinks as a learning rate would.
 #pragma once
 #include "algos/agent/learner.hpp"
+#include "algos/first_order/ratio_loss.hpp"
 #include "algos/trust_region/conjugate_gradient.hpp"
 #include "algos/trust_region/fisher.hpp"
-#include "base/cancel.hpp"
 
 namespace rdm {
 
@@ -22,14 +22,19 @@ class TrustRegion {
  public:
   // with_cost: also the two vectors of a cost gradient.
   void carve(Arena& arena, const ResolvedAgentConfig& resolved, const Networks& nets, bool with_cost);
-  void open(CancelFlag& cancel, const ResolvedAgentConfig& resolved, const Rollout& rollout, Networks& nets,
+  void open(const ResolvedAgentConfig& resolved, const Rollout& rollout, Networks& nets,
             BatchWorkers& workers, Learner& learner);
   void read_live(const Options& options);
 
   // Gradients at the policy as it is over the listed rows: of the gain, by which all steps rise, and of
-  // limited cost `cost` (< 0: none); then x = H^-1 G and p = H^-1 b.
+  // limited cost `cost` (< 0: none); then x = H^-1 G and p = H^-1 b. Job after job until there is none.
   // share scales the region's radius.
-  void linearize(const Batch& batch, int32_t cost, double share);
+  void begin_linearize(const Batch& batch, int32_t cost, double share);
+  Job linearize_on();
+  void linearize(const Batch& batch, int32_t cost, double share) {
+    begin_linearize(batch, cost, share);
+    while (Job job = linearize_on()) job.finish();
+  }
   // Scalars of the linearised problem: q = G'x, r = b'x, s = b'p, b'b.
   double q() const { return q_; }
   double r() const { return r_; }
@@ -42,47 +47,56 @@ class TrustRegion {
   const float* step() const { return step_; }
 
   // Tries theta + f step for f = 1, decay, decay^2, ... until the KL is within delta, all is finite and
-  // accept(before, after) holds; else theta stays as it was. Returns f, 0 for none.
+  // accept(before, after) holds; else theta stays as it was. Job after job until there is none; then taken()
+  // is f, 0 for none.
+  Job begin_search();
+  template <class Accept>
+  Job search_on(Accept&& accept) {
+    if (tried_ == 0)
+      before_ = learner_->measured();
+    else if (in_region() && accept(before_, learner_->measured()))
+      return end_search(fraction_, learner_->measured());
+    return next_try();
+  }
+  double taken() const { return taken_; }
   template <class Accept>
   double search(Accept&& accept) {
-    save();
-    const Surrogate before = measure();
-    double f = 1;
-    for (int32_t i = 0; i < tries_; ++i, f *= decay_) {
-      move(f);
-      const Surrogate after = measure();
-      if (!after.finite() || after.kl / dims_ > delta_ || !accept(before, after)) continue;
-      reached_ = after;
-      return f;
-    }
-    restore();
-    reached_ = before;
-    return 0;
+    for (Job job = begin_search(); job; job = search_on(accept)) job.finish();
+    return taken_;
   }
   // What the last search left the policy at.
   const Surrogate& reached() const { return reached_; }
 
  private:
-  void gradient_of(const PolicyLoss& loss, float sign, float* out);
-  void solve(const float* b, float* x);
-  void save();
-  void restore();
-  void move(double f);
-  Surrogate measure();
+  // Of linearize: what comes next, or what a job has left.
+  enum class Stage { kRows, kGain, kGainThere, kSolveGain, kProductThere, kCostThere, kSolveCost, kDone };
 
-  CancelFlag* cancel_ = nullptr;
+  Job begin_gradient(const PolicyLoss& loss);
+  // The last gradient into out, conjugate gradients for it into x.
+  void begin_solve(float sign, float* out, float* x);
+  Job solve_on();
+  bool in_region() const;
+  Job next_try();
+  Job end_search(double taken, const Surrogate& reached);
+  void move(double f);
+
   const ResolvedAgentConfig* resolved_ = nullptr;
   Networks* nets_ = nullptr;
   Learner* learner_ = nullptr;
   Fisher fisher_;
-  CgWork cg_;
+  CgWork cg_work_;
   CgOptions cg_options_;
+  ConjugateGradient cg_;
   size_t size_ = 0;
-  float *g_ = nullptr, *x_ = nullptr, *b_ = nullptr, *p_ = nullptr, *step_ = nullptr, *before_ = nullptr;
+  float *g_ = nullptr, *x_ = nullptr, *b_ = nullptr, *p_ = nullptr, *step_ = nullptr;
   Batch batch_;
-  int32_t tries_ = 15;
+  Stage stage_ = Stage::kDone;
+  GainLoss gain_;
+  CostLoss cost_loss_{0};
+  int32_t cost_ = -1, tries_ = 15, tried_ = 0;
   double q_ = 0, r_ = 0, s_ = 0, bb_ = 0, limit_ = 0.01, delta_ = 0.01, decay_ = 0.8, dims_ = 1;
-  Surrogate reached_;
+  double fraction_ = 1, taken_ = 0;  // of the step: what is tried, what was taken
+  Surrogate before_, reached_;
 };
 
 }  // namespace rdm

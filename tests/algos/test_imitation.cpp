@@ -215,8 +215,12 @@ TEST(Imitation, GradientIsThatOfTheTerm) {
     for (int32_t i = 0; i < 64; ++i) order.push_back(63 - i);
     std::vector<float> grad(nets.size, 1.0f), fresh(nets.size);
     const double weight = 0.5;
-    const double loss = regression.gradient(lesson.rows(), order.data(), 64, true, weight, true, grad.data());
-    regression.gradient(lesson.rows(), order.data(), 64, true, weight, false, fresh.data());
+    const DemoRows rows = lesson.rows();
+    Fit added{&rows, order.data(), 64, true, weight, grad.data(), true};
+    while (!regression.advance(added)) {
+    }
+    const double loss = regression.gradient(rows, order.data(), 64, true, weight, fresh.data());
+    EXPECT_EQ(added.loss(), loss);
     EXPECT_DOUBLE_EQ(loss, regression.loss(lesson.rows(), order.data(), 64, true));
     const size_t first = nets.std_size, last = first + nets.shape[Networks::kActor].num_params();
     for (size_t i = first; i < last; ++i) EXPECT_NEAR(grad[i], 1 + fresh[i], 1e-5);

@@ -51,6 +51,26 @@ TEST(Ipo, ExactBarrierHasTheGradientOfTheLogarithm) {
   expect_gradient(b, total, 5e-6);
 }
 
+// Nothing has ended, so nobody knows what an episode costs: no barrier, to the end of the update.
+TEST(Ipo, ExactBarrierIsLeftOutWhereNoCostIsKnown) {
+  AgentSetup s("ipo", 6, 3, 4);
+  s.with("cost_limit", "0.1").with("barrier", "exact").with("horizon", "12").with("hidden", "8");
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  while (a->missing() > 0) {
+    a->act(world.obs(), true, world.action());
+    world.draw();
+    Transition t = world.transition();
+    t.terminated = t.truncated = nullptr;
+    const std::vector<float> none(4);
+    t.cost = none.data();
+    a->record(t);
+  }
+  Epoch e;
+  a->update(world.obs(), &e);
+  EXPECT_EQ(e.multiplier[0], 0);
+}
+
 TEST(Ipo, ExactBarrierStopsBeforeTheLimit) {
   AgentSetup s = bandit("ipo");
   s.with("cost_limit", "6").with("barrier", "exact").with("multiplier_window", "2000");

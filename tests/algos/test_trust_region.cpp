@@ -9,7 +9,6 @@ namespace {
 
 struct RegionBench {
   GoldenNet net;
-  CancelFlag cancel;
   Arena arena;
   TrustRegion region;
   explicit RegionBench(AgentSetup s = GoldenNet::setup("cpo")) : net(std::move(s)) {
@@ -17,7 +16,7 @@ struct RegionBench {
     region.carve(measure, net.resolved, net.nets, true);
     arena = Arena(HostHooks(), measure.used());
     region.carve(arena, net.resolved, net.nets, true);
-    region.open(cancel, net.resolved, net.rollout, net.nets, net.workers, net.learner);
+    region.open(net.resolved, net.rollout, net.nets, net.workers, net.learner);
     region.read_live(net.resolved.options);
     region.linearize({net.order.data(), 2}, 0, 1);
   }

@@ -1,0 +1,317 @@
+// An update, as the sequence of its jobs.
+//
+//   begin     values of the last observations
+//   estimate  advantages and targets, a column at a time; the list of rows
+//   judge     episodes' costs against their limits, the algorithm's begin_epoch
+//   step      the algorithm's own step of the policy, where it has one (a trust region)
+//   passes    shuffled minibatches: what the algorithm measures, the gradient, Adam's step; the KL that may end
+//             them
+//   end       schedules, the Epoch, an empty rollout
+//
+// Between two jobs, and between two units of a job, it could be left: what it needs to go on stands in members.
+#include <cstring>
+
+#include "algos/agent/agent.hpp"
+#include "base/elementary.hpp"
+#include "base/error.hpp"
+#include "base/fpmode.hpp"
+#include "base/hash.hpp"
+#include "base/shuffle.hpp"
+
+namespace rdm {
+namespace {
+
+constexpr double kEntropyOfUnit = 1.4189385332046727;  // of a normal with deviation 1
+
+}  // namespace
+
+void Agent::update(const float* last_obs, Epoch* out) {
+  const FpMode mode;
+  hear_cancel();
+  if (missing() > 0) fail(Code::kState, "update: %d decisions are missing in this horizon", missing());
+  if (!last_obs) fail(Code::kArgument, "last_obs: NULL");
+  check_rows("last_obs", last_obs, nullptr, resolved_.config.num_envs, resolved_.obs_dim());
+  try {
+    collector_.settle();
+    collector_.begin_estimate(last_obs);
+    phase_ = Phase::kEstimate;
+    while (phase_ != Phase::kIdle) unit(true);
+  } catch (...) {
+    end_run();
+    drop_horizon();
+    throw;
+  }
+  if (out) *out = run_.epoch;
+}
+
+// Short work until there is a job, of which it does one unit. What takes its time otherwise is one too.
+void Agent::unit(bool whole) {
+  check_cancel();
+  const PolicyLoss* policy = run_.warm ? nullptr : policy_loss();
+  while (!job_) switch (phase_) {
+      case Phase::kEstimate:
+        if (collector_.estimate_on()) phase_ = Phase::kJudge;
+        return;
+      case Phase::kJudge:
+        return judge_epoch();
+      case Phase::kStep:
+        job_ = step_on();
+        if (!job_) phase_ = Phase::kPass;
+        break;
+      case Phase::kPass:
+        if (learned_.passes < resolved_.options.integer("passes")) return begin_pass();
+        phase_ = Phase::kSpread;
+        break;
+      case Phase::kMinibatch:
+        if (!next_minibatch()) {
+          end_pass(policy);
+        } else {
+          if (policy) job_ = measure_minibatch(run_.batch);
+          phase_ = Phase::kGradient;
+        }
+        break;
+      case Phase::kGradient:
+        if (policy) {
+          begin_minibatch(learner_.measured());
+          imitation_.draw(run_.batch.rows);
+        }
+        job_ = learner_.begin_gradient(policy, true, run_.batch);
+        phase_ = Phase::kAdam;
+        break;
+      case Phase::kAdam:
+        run_.last += learner_.sums();
+        learner_.step(schedule_.rate(epoch_), schedule_.change(epoch_));
+        phase_ = Phase::kMinibatch;
+        return;
+      case Phase::kStop: {
+        const bool far = learner_.measured().kl > resolved_.options.number("early_stop_kl");
+        phase_ = far ? Phase::kSpread : Phase::kPass;
+        break;
+      }
+      case Phase::kSpread:
+        if (!spread_on()) return;
+        phase_ = Phase::kEnd;
+        break;
+      case Phase::kEnd:
+        return end_update();
+      case Phase::kIdle:
+        return;
+    }
+  if (job_.advance(whole)) job_ = Job();
+}
+
+void Agent::judge_epoch() {
+  run_ = Run();
+  run_.stats = collector_.episodes().stats();
+  run_.totals = collector_.totals();
+  run_.warm = epoch_ < warm_epochs_;
+  run_.skipped = learner_.skipped();
+  learned_ = Learned();
+  imitation_.begin_epoch(std::max(0, epoch_ - warm_epochs_));
+  warn_of_limits(run_.stats);
+  phase_ = valid_rows() > 0 ? Phase::kPass : Phase::kSpread;
+  if (run_.warm) return;
+  begin_epoch(judge(resolved_, run_.stats, run_.totals), epoch_ + 1);
+  imitation_.draw(valid_rows());
+  if (valid_rows() == 0) return;
+  begin_step();
+  phase_ = Phase::kStep;
+}
+
+void Agent::begin_pass() {
+  const Batch& whole = whole_batch();
+  for (int32_t b = 0; b < whole.blocks; ++b)
+    shuffle(shuffle_[b], rollout().order + whole.segment(b).first, whole.segment(b).rows);
+  run_.minibatch = 0;
+  run_.last = BatchSums();
+  phase_ = Phase::kMinibatch;
+}
+
+// The next one of the pass that has rows.
+bool Agent::next_minibatch() {
+  const int32_t parts = std::min(resolved_.options.integer("minibatches"), valid_rows());
+  while (run_.minibatch < parts) {
+    run_.batch = collector_.minibatch(run_.minibatch++, parts);
+    if (run_.batch.rows > 0) return true;
+  }
+  return false;
+}
+
+void Agent::end_pass(const PolicyLoss* policy) {
+  run_.all += run_.last;
+  ++learned_.passes;
+  phase_ = Phase::kPass;
+  if (!policy || resolved_.options.number("early_stop_kl") <= 0) return;
+  job_ = learner_.begin_measure(whole_batch());
+  phase_ = Phase::kStop;
+}
+
+void Agent::end_update() {
+  const bool warm = run_.warm;
+  if (learned_.passes > 0) {
+    const double count = valid_rows();
+    learned_.last_kl = run_.last.kl / count;
+    learned_.mean = run_.all.scaled(1 / (count * learned_.passes));
+  }
+  if (!warm && valid_rows() > 0) report(learned_);
+  const int64_t skipped = learner_.skipped() - run_.skipped;
+  if (skipped > 0)
+    log(resolved_.config.hooks, LogLevel::kWarning, "update: %lld gradients were not finite and left out",
+        static_cast<long long>(skipped));
+  const double rate = warm ? 0 : schedule_.rate(epoch_);
+  if (learned_.passes > 0 && !warm) schedule_.adapt(learned_.mean.kl, epoch_);
+  collector_.episodes().mark();
+  ++epoch_;
+  if (!warm) schedule_std(nets_, resolved_.options, epoch_);
+  if (!warm) average_actor(nets_);
+  end_run();
+  Epoch& e = run_.epoch;
+  fill_episodes(run_.stats, run_.totals, e);
+  fill_counts(run_.totals, skipped, e);
+  fill_learned(rate, e);
+  workers_.ranks().agree(learned_hash());
+  collector_.drop();
+}
+
+void Agent::end_run() {
+  phase_ = Phase::kIdle;
+  job_ = Job();
+}
+
+// A cancel drops what was collected, full or not.
+void Agent::hear_cancel() {
+  try {
+    check_cancel();
+  } catch (...) {
+    drop_horizon();
+    throw;
+  }
+}
+
+void Agent::warn_of_limits(const EpisodeStats& stats) {
+  if (warned_ || !lacks_length(resolved_, stats)) return;
+  warned_ = true;
+  log(resolved_.config.hooks, LogLevel::kWarning,
+      "update: no episode has ended and none has a length, so limits on an episode's cost cannot be judged, "
+      "only broken by those that run; give max_steps, or option episode_steps or cost_limit_per_step");
+}
+
+void Agent::begin_epoch(const JudgedCosts&, int32_t) {
+  follow_reward();
+}
+
+void Agent::follow_reward() {
+  const Rollout& r = rollout();
+  const auto n = static_cast<size_t>(r.samples());
+  std::memcpy(r.gain, r.advantage, n * sizeof(float));
+  std::memset(r.linear, 0, n * sizeof(float));
+}
+
+double Agent::violation(const JudgedCosts& costs, int32_t i) const {
+  const double gap = costs.known[i] ? costs.excess(i) : 0;
+  const char* scale = resolved_.options.text("violation_scale");
+  if (std::strcmp(scale, "raw") == 0) return gap;
+  if (std::strcmp(scale, "discount") == 0)
+    return gap * (1 - elementary::pow(resolved_.options.number("discount"), resolved_.action_repeat));
+  return gap / std::max(1.0, costs.steps[i] / resolved_.action_repeat);
+}
+
+// Of the deviations that acted, some rows at a time; true when all are in.
+bool Agent::spread_on() {
+  const Batch& whole = whole_batch();
+  if (!nets_.state_std() || run_.block == whole.blocks) return true;
+  const Segment s = whole.segment(run_.block);
+  const int32_t end = std::min(run_.row + resolved_.chunk_rows, s.rows);
+  double* const out = spread_ + 2 * static_cast<size_t>(run_.block);
+  if (run_.row == 0) out[0] = out[1] = 0;
+  for (int32_t i = run_.row; i < end; ++i)
+    add_spread(rollout().log_std_of(static_cast<size_t>(rollout().order[s.first + i])), 0, valid_rows(), out);
+  run_.row = end < s.rows ? end : 0;
+  run_.block += end == s.rows;
+  return false;
+}
+
+void Agent::add_spread(const float* log_std, double share, double count, double* out) const {
+  const int32_t dim = resolved_.config.action_dim;
+  for (int32_t j = 0; j < dim; ++j) {
+    const auto l = static_cast<double>(log_std[j]);
+    out[0] += elementary::exp(l) / (count * dim);
+    out[1] += (l + share + kEntropyOfUnit) / count;
+  }
+}
+
+void Agent::fill_spread(Epoch& e) {
+  const auto share = static_cast<double>(resolved_.log_share);
+  double now[2] = {};
+  if (!nets_.state_std()) {
+    add_spread(nets_.log_std(), share, 1, now);
+  } else {
+    const auto sums = workers_.ranks().sum<2>(
+        [&](int32_t b, double* out) { std::copy_n(spread_ + 2 * static_cast<size_t>(b), 2, out); });
+    now[0] = sums[0] * elementary::exp(-share), now[1] = sums[1];
+  }
+  e.action_std = now[0];
+  e.entropy = now[1];
+}
+
+// Of what all ranks must have alike.
+uint64_t Agent::learned_hash() const {
+  if (workers_.ranks().alone()) return 0;
+  uint64_t hash = hash_bytes(nets_.params, nets_.size * sizeof(float));
+  const Normalizer& n = collector_.normalizer();
+  for (const double* x : {n.mean, n.m2}) hash = hash_bytes(x, static_cast<size_t>(n.dim) * sizeof *x, hash);
+  return hash;
+}
+
+void Agent::fill_episodes(const EpisodeStats& stats, const EpochTotals& totals, Epoch& e) const {
+  e.episodes = stats.finished;
+  e.ret = stats.ret;
+  std::copy_n(stats.cost, resolved_.config.cost_dim, e.cost);
+  const bool by_rate = resolved_.rate_steps > 0 || stats.finished == 0;
+  e.cost_per_step = by_rate ? totals.rate(0) : stats.cost_per_step;
+  e.length = stats.length;
+  e.fall_rate = stats.fall_rate;
+  e.success_rate = stats.success_rate;
+  if (stats.finished == 0) e.flags |= kEpochNoEpisode;
+}
+
+void Agent::fill_counts(const EpochTotals& totals, int64_t skipped, Epoch& e) const {
+  const auto count = [&](int64_t& to, int64_t n, EpochFlag flag) {
+    to = n;
+    if (n > 0) e.flags |= flag;
+  };
+  count(e.skipped_gradients, skipped, kEpochSkippedGradients);
+  count(e.invalid_rows, totals.invalid, kEpochInvalidRows);
+  if (totals.cut > 0) e.flags |= kEpochCut;
+  count(e.contacts_left_out, totals.status[0], kEpochContacts);
+  count(e.diverged, totals.status[1], kEpochDiverged);
+  count(e.bad_actions, totals.status[2], kEpochBadAction);
+  count(e.task_failed, totals.status[3], kEpochTask);
+  count(e.unconverged, totals.status[4], kEpochSolver);
+  count(e.slowed, totals.status[5], kEpochSlowed);
+}
+
+void Agent::fill_learned(double rate, Epoch& e) {
+  e.epoch = epoch_;
+  e.env_steps = collector_.env_steps();
+  for (int32_t i = 0; i < resolved_.num_limited; ++i) e.multiplier[resolved_.column[i]] = cost_weight(i);
+  fill_spread(e);
+  e.learning_rate = rate;
+  e.passes = learned_.passes;
+  e.cost_signal = raw_costs();
+  if (valid_rows() == 0) {
+    for (double* x : {&e.kl, &e.loss_policy, &e.loss_reward_value, &e.loss_cost_value, &e.clip_fraction,
+                      &e.value_reward, &e.value_cost})
+      *x = kNothing;
+    return;
+  }
+  e.kl = learned_.last_kl;
+  e.loss_policy = learned_.mean.loss;
+  e.loss_reward_value = learned_.mean.reward_loss;
+  e.loss_cost_value = learned_.mean.cost_loss;
+  e.clip_fraction = learned_.mean.clipped;
+  e.value_reward = collector_.mean_value(false);
+  if (rollout().num_costs > 0) e.value_cost = collector_.mean_value(true);
+}
+
+}  // namespace rdm
